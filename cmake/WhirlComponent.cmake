@@ -1,0 +1,37 @@
+# One folder is one component: a static library of its *.cpp files (or an interface, when it has none).
+# whirl_component(NAME DIR <dir> [EXCLUDE <regex>] [DEPS <targets>])
+add_library(whirl_flags INTERFACE)
+target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic -Wno-maybe-uninitialized)
+# Eigen's alignment is pinned so that code built for different instruction sets shares one binary layout.
+target_compile_definitions(whirl_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=32 EIGEN_DONT_PARALLELIZE)
+target_include_directories(whirl_flags INTERFACE ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR})
+if(WHIRL_MARCH)
+  target_compile_options(whirl_flags INTERFACE -march=${WHIRL_MARCH})
+endif()
+
+function(whirl_component NAME)
+  cmake_parse_arguments(A "" "DIR;EXCLUDE" "DEPS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${A_DIR}/*.cpp)
+  if(A_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX ${A_EXCLUDE})
+  endif()
+  if(sources)
+    add_library(whirl_${NAME} STATIC ${sources})
+    target_link_libraries(whirl_${NAME} PUBLIC whirl_flags Eigen3::Eigen ${A_DEPS})
+  else()
+    add_library(whirl_${NAME} INTERFACE)
+    target_link_libraries(whirl_${NAME} INTERFACE whirl_flags Eigen3::Eigen ${A_DEPS})
+  endif()
+endfunction()
+
+# A test program of all test_*.cpp in a folder; each GoogleTest case becomes a CTest test.
+function(whirl_tests NAME)
+  cmake_parse_arguments(A "" "DIR;LABEL" "DEPS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${A_DIR}/test_*.cpp)
+  if(sources)
+    add_executable(test_${NAME} ${sources})
+    target_link_libraries(test_${NAME} PRIVATE ${A_DEPS} GTest::gtest_main)
+    gtest_discover_tests(test_${NAME} TEST_PREFIX "${NAME}." DISCOVERY_TIMEOUT 60
+                         PROPERTIES LABELS "${A_LABEL}" WORKING_DIRECTORY ${A_DIR})
+  endif()
+endfunction()

@@ -1,0 +1,52 @@
+// Time laws: a scalar function of time with its first two derivatives. Prescribed speeds and angles, loads,
+// growing unbalance and base motion all use these.
+#pragma once
+#include <memory>
+#include <vector>
+
+namespace whirl {
+
+struct LawValue {
+  double f = 0.0;    ///< value
+  double df = 0.0;   ///< first derivative, 1/s
+  double ddf = 0.0;  ///< second derivative, 1/s^2
+};
+
+class Law {
+ public:
+  virtual ~Law() = default;
+  virtual LawValue at(double t) const = 0;
+  /// Integral of the value from 0 to t (exact: a prescribed speed law becomes an angle law through it).
+  virtual double integral(double t) const = 0;
+  /// Times at which a derivative up to the second jumps; the time integrator lands a step on each.
+  virtual std::vector<double> breakpoints() const { return {}; }
+};
+
+using LawPtr = std::shared_ptr<const Law>;
+
+/// f = c
+LawPtr make_constant(double c);
+/// Straight lines through (t_i, f_i), held constant outside. Errors: fewer than 1 point, t not increasing.
+LawPtr make_table(std::vector<double> t, std::vector<double> f);
+/// Monotone piecewise cubic (Fritsch-Carlson) through (t_i, f_i), held constant outside.
+LawPtr make_pchip(std::vector<double> t, std::vector<double> f);
+/// f0 before t0, f1 after t1, between them: linear.
+LawPtr make_ramp(double t0, double t1, double f0, double f1);
+/// f0 before t0, f1 after t1, between them the quintic with zero first and second derivative at both ends.
+LawPtr make_smooth_step(double t0, double t1, double f0, double f1);
+/// f0 before t0, f1 after t1, between them f0 + (f1-f0)(1-cos(pi (t-t0)/(t1-t0)))/2.
+LawPtr make_cosine_step(double t0, double t1, double f0, double f1);
+/// f = mean + amplitude cos(omega t + phase)
+LawPtr make_harmonic(double mean, double amplitude, double omega, double phase);
+/// Polynomial sum c_k t^k
+LawPtr make_polynomial(std::vector<double> coefficients);
+/// Pieces in time: law k holds from start[k] to start[k+1]; each sees the global time.
+LawPtr make_piecewise(std::vector<double> start, std::vector<LawPtr> laws);
+/// The sum of laws.
+LawPtr make_sum(std::vector<LawPtr> laws);
+/// scale * law(t)
+LawPtr make_scaled(double scale, LawPtr law);
+/// The angle law phi0 + integral of a speed law (its value is the angle, df the speed, ddf the acceleration).
+LawPtr make_angle_of_speed(LawPtr speed, double phi0);
+
+}  // namespace whirl

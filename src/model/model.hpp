@@ -1,0 +1,267 @@
+// The model: what the deck says, as plain values in SI (m, kg, s, rad, N). Validated once by the deck reader, then const.
+// No matrices, no mesh, no numbering. Every entity keeps where in the deck it stands.
+#pragma once
+#include <core/error.hpp>
+#include <core/law.hpp>
+#include <core/types.hpp>
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace whirl::model {
+
+struct Entity {
+  std::string name;
+  Where where;
+};
+
+// ---------------------------------------------------------------- shafts
+
+struct Material : Entity {
+  double E = 0, G = 0, nu = 0.3, rho = 0;  ///< Pa, Pa, -, kg/m3 (G = E/(2(1+nu)) unless given)
+  double yield = 0;                        ///< Pa, 0 = not given
+};
+
+enum class ShearFactor { cowper, hutchinson, none /* Euler-Bernoulli or Rayleigh */, given };
+
+/// One section of a station table, left to right. Conical when the left and right diameters differ.
+struct Section : Entity {
+  double length = 0;
+  double od_l = 0, id_l = 0, od_r = 0, id_r = 0;  ///< mass diameters, m
+  std::optional<std::array<double, 4>> stiffness_diameters;  ///< od_l, id_l, od_r, id_r for stiffness, when they differ
+  std::size_t material = 0;                       ///< index into Model::materials
+  bool rigid = false;                             ///< rigid link: no deformation; massless unless it has diameters
+  ShearFactor shear = ShearFactor::cowper;
+  double kappa = 0;                               ///< for ShearFactor::given
+  bool rotary_inertia = true;                     ///< false: Euler-Bernoulli mass
+  double added_mass_per_length = 0;               ///< kg/m without stiffness
+  int min_elements = 1;
+  double max_element_length = infinity;
+  /// General sections (not axisymmetric): stiffnesses given directly; I about the section's own y and z axes.
+  struct General { double A = 0, Iy = 0, Iz = 0, J = 0, kappa_y = 0, kappa_z = 0, angle = 0; };
+  std::optional<General> general;
+  /// Stiffness and inertia constants given directly (benchmarks that state them): EA, kGA, GJ, EI; rhoA, rhoI (transverse), rhoIp.
+  struct Constants { double EA = 0, kGA = 0, GJ = 0, EI = 0, rhoA = 0, rhoI = 0, rhoIp = 0; };
+  std::optional<Constants> constants;
+};
+
+/// Damping of a shaft line.
+struct ShaftDamping {
+  double alpha = 0;             ///< mass-proportional, external (fixed frame), 1/s
+  double beta_external = 0;     ///< stiffness-proportional, non-rotating, s
+  double beta_internal = 0;     ///< stiffness-proportional, rotating (viscous), s
+  double loss_factor = 0;       ///< hysteretic, rotating
+  double beta_torsion = 0;      ///< torsional viscous, s
+};
+
+struct Shaft : Entity {
+  Vec3 origin = Vec3::Zero();   ///< position of station 0, m; the line runs along +x
+  std::vector<Section> sections;
+  ShaftDamping damping;
+  bool rotating = true;         ///< false: a casing or foundation beam
+  double speed_ratio = 1;       ///< speed of this line relative to the reference speed of frequency-domain steps
+  double spin0 = 0;             ///< initial spin of transients unless a drive says otherwise, rad/s
+  double axial_preload = 0;     ///< N, tension positive
+  double length() const { double s = 0; for (const auto& x : sections) s += x.length; return s; }
+};
+
+/// A place on a shaft line: distance from station 0.
+struct Location {
+  std::size_t shaft = 0;
+  double s = 0;        ///< m
+  std::string text;    ///< as written in the deck ("body2:mid")
+  Where where;
+};
+
+// ---------------------------------------------------------------- what sits on a shaft
+
+/// Rigid disk or body, fixed to the shaft at `at`.
+struct Disk : Entity {
+  Location at;
+  double mass = 0, Ip = 0, Id = 0;      ///< about the mass centre
+  std::optional<Mat3> inertia;          ///< full body-fixed tensor about the mass centre, axes (e, e2, e3) at phi = 0
+  Vec3 offset = Vec3::Zero();           ///< mass centre from the station, body axes (x along the shaft): unbalance is mass * offset_yz
+  double skew = 0, skew_phase = 0;      ///< rad: principal axis tilted by `skew` towards body angle `skew_phase`
+  double draw_od = 0, draw_id = 0, draw_width = 0;  ///< picture only
+};
+
+struct Unbalance : Entity {
+  Location at;
+  double amount = 0;   ///< kg m
+  double phase = 0;    ///< rad, body angle from e2 towards e3
+  LawPtr factor;       ///< time law multiplying amount (blade loss, thermal growth); null = 1
+};
+
+/// Initial values of a free body or line: applied to all nodes as a rigid motion.
+struct InitialMotion : Entity {
+  std::size_t shaft = 0;
+  Vec3 displacement = Vec3::Zero(), velocity = Vec3::Zero(), omega = Vec3::Zero();
+  Vec2 gamma = Vec2::Zero();
+  Vec3 about = Vec3::Zero();            ///< point the rotation and velocity refer to (reference position)
+};
+
+// ---------------------------------------------------------------- supports and bearings
+
+/// The paper's spring block at a point: force -C1 (r - r0), moment -C2 gamma (gamma: Euler vector of the axis tilt).
+struct SpringBlock { double C1 = 0, C2 = 0; };
+
+/// Linear bearing or support between a shaft station and ground (or another station): 6x6 K, C, M in the order
+/// (x, y, z, rx, ry, rz), fixed axes; force on the shaft = preload - K (q - setpoint) - C q'.
+struct LinearBearing {
+  Matrix<6> K = Matrix<6>::Zero(), C = Matrix<6>::Zero(), M = Matrix<6>::Zero();
+  Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
+};
+
+/// K, C (and M) tabulated against speed: rows of full 2x2 lateral blocks in order yy, yz, zy, zz.
+struct TableBearing {
+  std::vector<double> speed;                      ///< rad/s, increasing
+  std::vector<std::array<double, 4>> K, C, M;     ///< same length as speed; M may be empty
+  bool monotone_cubic = true;                     ///< else linear
+  bool extrapolate_hold = false;                  ///< else outside the table is an error
+  std::string file;
+};
+
+/// Directions held rigidly (constraints, no penalty): x, y, z, rx (spin), ry, rz.
+struct RigidSupport { std::array<bool, 6> held{}; };
+
+using BearingLaw = std::variant<SpringBlock, LinearBearing, TableBearing, RigidSupport>;
+
+/// A mass-spring-damper pedestal under a bearing: mass with its own y, z (and x) motion.
+struct Pedestal { double mass = 0; Mat3 K = Mat3::Zero(), C = Mat3::Zero(); };
+
+struct Bearing : Entity {
+  Location at;
+  std::optional<Location> to;          ///< second shaft station (intershaft bearing or coupling); absent = ground
+  BearingLaw law;
+  std::optional<Pedestal> pedestal;
+};
+
+// ---------------------------------------------------------------- loads and drives
+
+enum class LoadFrame { fixed, rotating };   ///< fixed directions, or turning with phi (body axes)
+
+struct PointLoad : Entity {
+  Location at;
+  LoadFrame frame = LoadFrame::fixed;
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();   ///< N, N m; multiplied by factor(t)
+  LawPtr factor;                                      ///< null = 1
+};
+
+/// Torque along the shaft on phi (a constant-velocity joint, along (e+d)/(1+e.d)) or as a fixed-direction moment.
+enum class TorqueKind { spin, fixed_direction };
+
+/// Torque as a function of the station's own spin: T(t, s).
+struct TorqueCurve {
+  LawPtr of_time;                               ///< T(t); null = 0
+  std::vector<double> speed, torque;            ///< table against spin, rad/s -> N m (linear between, held outside); may be empty
+  double constant = 0, viscous = 0, quadratic = 0;  ///< load torque -(constant sign(s) + viscous s + quadratic s|s|)
+  struct Induction { double breakdown = 0, slip_breakdown = 0.1, synchronous = 0; };   ///< Kloss: 2 Tb/(x/xb + xb/x)
+  std::optional<Induction> induction;
+  struct ConstantPower { double power = 0, max_torque = 0; };
+  std::optional<ConstantPower> power;
+  struct Governor { double target = 0, kp = 0, ki = 0, max_torque = infinity; };       ///< PI on speed
+  std::optional<Governor> governor;
+};
+
+struct PrescribedSpin { LawPtr angle; };        ///< phi(t) at the station, exact constraint
+struct Drive : Entity {
+  Location at;
+  std::variant<PrescribedSpin, TorqueCurve> law;
+  TorqueKind kind = TorqueKind::spin;
+  std::string step;                             ///< the transient step it belongs to; empty = all
+};
+
+// ---------------------------------------------------------------- observation
+
+struct Probe : Entity {
+  Location at;
+  std::vector<double> angles;   ///< rad from +y towards +z; empty: y and z
+};
+
+// ---------------------------------------------------------------- steps
+
+struct IntegratorOptions {
+  std::string method = "radau5";   ///< radau5, generalized_alpha, gauss4, gauss6, ida, momentum_rk
+  double tolerance = 1e-4;         ///< one user-facing accuracy number, relative to the peak response of each kind
+  double rho_inf = 0.9;            ///< generalized-alpha
+  double dt = 0;                   ///< fixed step, s; 0 = adaptive
+  double dt_max = infinity, dt_min = 0, dt_first = 0;
+};
+
+struct SpeedRange { double start = 0, stop = 0; int points = 2; std::vector<double> values; bool refine_peaks = false; };
+
+struct StaticStep { int load_steps = 1; double speed = 0; };
+struct ModalStep { double speed = 0; int modes = 10; };
+struct CampbellStep { SpeedRange speed; int modes = 10; std::vector<double> orders{1.0}; };
+struct CriticalStep { double max_speed = 0; std::vector<double> orders{1.0}; int modes = 10; };
+struct UnbalanceStep { SpeedRange speed; };
+struct TransientStep {
+  double duration = 0;             ///< s; from 0 unless it continues a previous step
+  IntegratorOptions integrator;
+  enum class Start { rest, static_equilibrium } start = Start::static_equilibrium;
+  double speed0 = 0;               ///< rad/s, initial spin of every rotating line times its speed_ratio
+  double stop_speed = 0;           ///< stop when the reference spin passes this value; 0 = never
+  double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
+};
+
+using StepLaw = std::variant<StaticStep, ModalStep, CampbellStep, CriticalStep, UnbalanceStep, TransientStep>;
+struct Step : Entity {
+  std::string from;                ///< earlier step whose result it starts from
+  StepLaw law;
+};
+
+// ---------------------------------------------------------------- output
+
+struct VtkOutput {
+  std::string step;
+  double t0 = 0, t1 = infinity;
+  double every = 0;                ///< s between frames; 0 = use frames_per_revolution or frames
+  double frames_per_revolution = 0;
+  int frames = 200;                ///< used when nothing else is given
+  int max_frames = 5000;
+  std::vector<std::string> content{"line", "surface"};
+  double deformation_scale = 1;
+  int points_around = 32;
+  Where where;
+};
+
+struct Output {
+  std::string directory;           ///< default results/<deck name>
+  double every = 0;                ///< s between rows of time histories; 0 = every accepted step
+  std::vector<std::string> quantities{"speed", "probes", "energy"};
+  bool csv = true, binary = false, report = true;
+  bool peak_to_peak = false;
+  std::vector<VtkOutput> vtk;
+};
+
+// ---------------------------------------------------------------- the model
+
+struct Model {
+  int format = 1;
+  std::string title;
+  std::string deck_path;           ///< as given by the user
+  std::string deck_name;           ///< file name without extension
+  std::string resolved;            ///< the resolved deck (parameters substituted, includes merged), TOML text
+  Vec3 gravity = Vec3::Zero();     ///< m/s2, global axes; +x along the shaft
+  bool chart_change = true;        ///< re-chart rotations beyond 2 rad of tilt
+  bool keep_everything = false;
+  double max_element_length = infinity;
+  int min_elements = 1;
+  std::vector<Material> materials;
+  std::vector<Shaft> shafts;
+  std::vector<Disk> disks;
+  std::vector<Unbalance> unbalances;
+  std::vector<InitialMotion> initial;
+  std::vector<Bearing> bearings;
+  std::vector<PointLoad> loads;
+  std::vector<Drive> drives;
+  std::vector<Probe> probes;
+  std::vector<Step> steps;
+  Output output;
+  std::vector<Diagnostic> warnings;
+};
+
+}  // namespace whirl::model

@@ -1,0 +1,32 @@
+// What an element is: a stateless kernel whose data members are its parameters.
+//
+//   struct RigidDisk {
+//     static constexpr int n_nodes = 1;       // nodes it touches
+//     static constexpr int width = 7;         // coordinates a node: 3 = (u), 7 = (u, d, phi)
+//     static constexpr bool has_M = true, has_C = true, has_K = true;   // tangents that exist at all
+//     void add_force(const Nodes<1>&, const Context&, ForceX<7>& f) const;        // f += left side of M a + f = 0
+//     void add_tangent(const Nodes<1>&, const Context&, TangentX<7>& k) const;    // += exact derivatives of f
+//     void add_energy(const Nodes<1>&, const Context&, Energy& e) const;
+//   };
+//
+// Sign: f is what stands on the LEFT: inertia + internal force - external force. Absent tangents (has_* false) are never
+// touched. Kernels do not allocate, throw, or branch on physics that the deck could have left out: that is another kernel.
+#pragma once
+#include <system/node.hpp>
+#include <concepts>
+
+namespace whirl::system {
+
+template <class K>
+concept Kernel = requires(const K& k, const Nodes<K::n_nodes>& x, const Context& c, ForceX<K::n_nodes * K::width>& f,
+                          TangentX<K::n_nodes * K::width>& t, Energy& e) {
+  requires K::width == 3 || K::width == 7;
+  { K::has_M } -> std::convertible_to<bool>;
+  { K::has_C } -> std::convertible_to<bool>;
+  { K::has_K } -> std::convertible_to<bool>;
+  k.add_force(x, c, f);
+  k.add_tangent(x, c, t);
+  k.add_energy(x, c, e);
+};
+
+}  // namespace whirl::system
