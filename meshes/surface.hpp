@@ -1,0 +1,125 @@
+// The rotor as a picture: bodies of revolution about the deformed centre lines, rebuilt at every frame.
+//
+// A section stands on the centre line at r with its normal d; a vector w fixed to the section (w perpendicular to e) is
+// carried by R = P(d<-e) L(phi e), P the minimal rotation, so a stripe painted on the shaft shows the true spin.
+// Between two nodes the centre line is the cubic with the directors as end slopes; the sections stand normal to it.
+#pragma once
+#include <core/types.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace whirl::meshes {
+
+/// Where a node is. phi may lack whole turns as long as all nodes of a line lack the same.
+struct Pose {
+  Vec3 r = Vec3::Zero();        ///< position, m, global axes
+  Vec3 d = Vec3::UnitX();       ///< section normal (director), unit
+  double phi = 0.0;             ///< axial angle, rad
+};
+
+/// A place on a line: `offset` m along the director of a node (0 = at the node).
+struct Place {
+  Index node = 0;
+  double offset = 0.0;
+};
+
+/// A piece of shaft between two places, radii in m; conical when they differ. inner = 0: solid.
+struct ShaftPiece {
+  Place left, right;
+  double outer_left = 0, outer_right = 0, inner_left = 0, inner_right = 0;
+};
+
+/// A disk, centred on its place. inner: the bore, usually the shaft radius.
+struct DiskShape {
+  std::string name;
+  Place at;
+  double outer = 0, inner = 0, width = 0;   ///< m
+};
+
+/// A spring, bearing or support glyph.
+struct SupportShape {
+  enum class Kind { spring, bearing };
+  std::string name;
+  Kind kind = Kind::bearing;
+  Place at;                        ///< on the shaft
+  bool to_node = false;            ///< the far end is a place too (intershaft bearing, coupling, pedestal); else the ground
+  Place to;
+  double radius = 0;               ///< shaft radius there, m
+};
+
+/// What there is to draw, in the reference state. Plain data, independent of how it is written.
+struct Scene {
+  struct Line {
+    std::string name;
+    Mat3 triad = Mat3::Identity();          ///< columns e, e2, e3
+    std::vector<Place> points;              ///< along the centre line, left to right
+    std::vector<double> radius;             ///< outer radius at each point, m (may be empty)
+    std::vector<ShaftPiece> pieces;         ///< left to right
+    std::vector<DiskShape> disks;
+  };
+  struct Trail { std::string name; Place at; };   ///< points whose orbit is drawn
+
+  std::vector<Vec3> nodes;                  ///< reference positions, m
+  std::vector<Index> node_line;             ///< index into lines of each node
+  std::vector<Line> lines;
+  std::vector<SupportShape> supports;
+  std::vector<Trail> trails;
+};
+
+/// Displacement and tilt magnified, spin not: r0 + s (r - r0), and d from e + s (d - e). s = 1 returns the pose itself.
+Pose magnified(const Pose& p, const Vec3& r0, const Vec3& e, double s);
+
+/// Pose of a place given the poses of all nodes.
+Pose pose_at(std::span<const Pose> nodes, const Place& p);
+
+/// Pose at fraction xi in [0,1] between two poses `length` apart in the reference state.
+Pose interpolate(const Pose& a, const Pose& b, double length, double xi);
+
+/// Rotation of the section, P(d<-e) L(phi e) applied to the triad: columns d, R e2, R e3. e + d = 0 is not reached:
+/// there the azimuth of P is undefined and any is returned.
+Mat3 section_axes(const Mat3& triad, const Vec3& d, double phi);
+
+/// Quadrilateral skin of all shafts and disks of a scene. Topology is fixed; positions and normals follow the poses.
+/// Rings are duplicated where the surface has an edge (diameter steps, end faces), shared where it is smooth.
+class Skin {
+ public:
+  /// points_around >= 3 points on each circle.
+  Skin(const Scene& scene, int points_around);
+
+  Index point_count() const { return static_cast<Index>(rings_.size()) * around_; }
+  Index quad_count() const { return static_cast<Index>(quads_.size() / 4); }
+  /// Four point indices a quad, counter-clockwise seen from outside.
+  const std::vector<Index>& quads() const { return quads_; }
+  /// Per quad: 1 on the painted stripe.
+  const std::vector<unsigned char>& stripe() const { return stripe_; }
+  /// Per quad: 0 = shaft, k = k-th disk of the scene (from 1).
+  const std::vector<int>& part() const { return part_; }
+  /// Per point: reference position, 3 values.
+  const std::vector<float>& reference() const { return reference_; }
+
+  /// Positions and outward unit normals at the given (already magnified) poses: 3 floats a point. No allocation when
+  /// the vectors already have their size.
+  void update(std::span<const Pose> nodes, std::vector<float>& points, std::vector<float>& normals) const;
+
+ private:
+  struct Ring {
+    Index line;
+    Place a, b;              ///< between these places ...
+    double length, xi;       ///< ... their reference distance, and where
+    double offset;           ///< m along the section normal from there
+    double radius;
+    double n_axial, n_radial;
+  };
+  void add_body(Index line, int part, const std::vector<Ring>& edge);
+  std::vector<Mat3> triads_;
+  std::vector<double> cos_, sin_;
+  Index around_ = 0;
+  std::vector<Ring> rings_;
+  std::vector<Index> quads_;
+  std::vector<unsigned char> stripe_;
+  std::vector<int> part_;
+  std::vector<float> reference_;
+};
+
+}  // namespace whirl::meshes

@@ -1,0 +1,122 @@
+// What a run leaves behind: a results folder, time series that stream to disk, tables, and a JSON summary.
+//
+// Every whole file is written beside its place and renamed, so a reader sees the old one or the new one. Time series
+// are append-only: a killed run keeps every row flushed so far, and can be continued (`resume`).
+#pragma once
+#include <io/value.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace whirl::io {
+
+/// One column, or a few that belong together, of a time series.
+struct Channel {
+  std::string name;                      ///< "DE-XY", "bearing NDE force": unique within a series
+  std::string unit;                      ///< unit of what is written ("m", "rpm"); "-" = dimensionless
+  std::string description;               ///< one line, with sign convention and amplitude convention where it matters
+  std::vector<std::string> components;   ///< empty = scalar; otherwise one name a column ("x", "y", "z")
+  double scale = 1.0;                    ///< written value = scale * appended value (rad/s -> rpm: 30/pi)
+  std::string group;                     ///< data set it goes into in binary files; "" = "series"
+
+  std::size_t width() const { return components.empty() ? 1 : components.size(); }
+  /// Column title of component k: "name" or "name.component".
+  std::string column(std::size_t k) const { return components.empty() ? name : name + "." + components[k]; }
+};
+
+/// Number of values in a row.
+std::size_t row_width(std::span<const Channel> channels);
+
+/// A sink for rows. begin() or resume() once, append() per row, close() at the end (also done by the destructor, which
+/// swallows errors). Errors: Error with Exit::io.
+class TimeSeries {
+ public:
+  virtual ~TimeSeries() = default;
+  /// Starts a new series; an older file of that name is replaced. The first channel is the time by convention.
+  virtual void begin(std::span<const Channel> channels) = 0;
+  /// Continues a file: keeps its first `rows` rows, drops what follows (a run killed after its last checkpoint).
+  /// Error when its channels differ or when it holds fewer rows.
+  virtual void resume(std::span<const Channel> channels, std::uint64_t rows) = 0;
+  /// Appends one row of row_width(channels) values, unscaled. Does not allocate.
+  virtual void append(std::span<const double> row) = 0;
+  /// Everything appended so far becomes readable by others.
+  virtual void flush() = 0;
+  virtual void close() = 0;
+  /// Rows in the file once flushed, counting those kept by resume(): what a checkpoint remembers.
+  virtual std::uint64_t rows() const = 0;
+};
+using TimeSeriesPtr = std::unique_ptr<TimeSeries>;
+
+struct SeriesOptions {
+  double flush_seconds = 1.0;         ///< wall clock between flushes
+  std::size_t buffer_bytes = 1 << 18; ///< flushed earlier when this much is waiting
+};
+
+/// Comma-separated values: header "name [unit],...", then shortest decimal forms that read back to the same double.
+TimeSeriesPtr make_csv_series(std::filesystem::path file, SeriesOptions options = {});
+
+/// HDF5 (plug-in, loaded by this call): one compressed rows x columns data set a group; the file
+/// explains itself in its attribute "layout". Error when the plug-in was not built.
+TimeSeriesPtr make_hdf5_series(std::filesystem::path file, SeriesOptions options = {});
+bool hdf5_available();
+
+/// Sends every row to several sinks.
+TimeSeriesPtr make_tee(std::vector<TimeSeriesPtr> sinks);
+
+/// What comes back from a series or table file.
+struct Columns {
+  std::vector<std::string> names, units;
+  std::vector<std::vector<double>> values;   ///< one vector a column
+  std::size_t rows() const { return values.empty() ? 0 : values.front().size(); }
+  /// Column by title. Error when there is none.
+  const std::vector<double>& operator[](std::string_view name) const;
+};
+/// Reads a CSV series or table; an unfinished last line (killed run) is left out. Text cells read as NaN.
+Columns read_csv(const std::filesystem::path& file);
+/// Reads an HDF5 series, also of a killed or still running program.
+Columns read_hdf5(const std::filesystem::path& file);
+
+/// A finished table: Campbell lines, critical speeds, modes. Cells are numbers or text.
+class Table {
+ public:
+  struct Cell {
+    double number = 0.0;
+    std::string text;
+    bool is_text = false;
+    Cell(double x) : number(x) {}
+    Cell(int x) : number(x) {}
+    Cell(std::string s) : text(std::move(s)), is_text(true) {}
+    Cell(const char* s) : text(s), is_text(true) {}
+  };
+  struct Column { std::string name, unit, description; };
+
+  std::string title;
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows;
+
+  /// Adds a row; it must have one cell a column.
+  void add(std::vector<Cell> row);
+};
+/// CSV, header "name [unit]", written atomically.
+void write_csv(const std::filesystem::path& file, const Table& table);
+
+/// A folder of results. Made on construction (with parents). All names are relative to it.
+class ResultsFolder {
+ public:
+  explicit ResultsFolder(std::filesystem::path root);
+  const std::filesystem::path& root() const { return root_; }
+  /// Path of a file in it; makes the folders in between.
+  std::filesystem::path path(std::string_view name) const;
+  void write_text(std::string_view name, std::string_view content) const;   ///< atomic
+  void write_json(std::string_view name, const Value& value) const;         ///< atomic
+  void write_table(std::string_view name, const Table& table) const;        ///< atomic
+
+ private:
+  std::filesystem::path root_;
+};
+
+}  // namespace whirl::io

@@ -1,0 +1,18 @@
+// Figure -> SVG text, by our own renderer.
+#pragma once
+#include <io/plot.hpp>
+#include <filesystem>
+#include <string>
+
+namespace whirl::io {
+
+struct SvgOptions {
+  bool standalone = true;         ///< XML header, white background, light colours; else for inlining in the report
+  double columns_per_px = 1.0;    ///< decimation keeps first, last, lowest and highest point of each such column
+};
+
+std::string render_svg(const Figure& figure, const SvgOptions& options = {});
+/// Writes it atomically.
+void write_svg(const std::filesystem::path& file, const Figure& figure);
+
+}  // namespace whirl::io
