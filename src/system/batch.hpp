@@ -1,0 +1,118 @@
+// A batch holds all elements of one kind with their nodes and the precomputed slots of their blocks: one virtual call
+// per kind and evaluation, none per element.
+#pragma once
+#include <la/block.hpp>
+#include <system/kernel.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace whirl::system {
+
+/// Everything an evaluation writes to; one per thread. Sized once.
+struct Workspace {
+  std::vector<NodeState> nodes;
+  std::vector<Mat32> D, D_rate, D_accel;   ///< node Jacobians in global axes
+  std::vector<Vec2> gamma;
+  std::vector<Vector<7>> force;            ///< X-space force of every node
+  la::BlockMatrix<7> M, C, K;              ///< X-space tangents
+  Context context;
+  Index outside = -1;                      ///< node that left the chart (|gamma| >= pi), or -1
+};
+
+/// All elements of one kind.
+class Term {
+ public:
+  virtual ~Term() = default;
+  virtual std::string_view kind() const = 0;
+  virtual std::size_t count() const = 0;
+  virtual int width() const = 0;           ///< 3: translations only; 7: rotations too
+  virtual bool inertial() const = 0;       ///< nothing but rigid-body inertia
+  virtual void add_force(Workspace& w) const = 0;
+  virtual void add_tangent(Workspace& w) const = 0;
+  virtual void add_energy(const Workspace& w, Energy& e) const = 0;
+  virtual void list_couplings(std::vector<std::pair<Index, Index>>& out) const = 0;
+  virtual void list_nodes(std::vector<Index>& out) const = 0;
+  /// row[i]: matrix row of node i or -1 when nothing of it is unknown.
+  virtual void bind(const la::BlockPattern& p, const std::vector<Index>& row) = 0;
+};
+
+template <Kernel K>
+class Batch final : public Term {
+ public:
+  static constexpr int N = K::n_nodes, W = K::width;
+  explicit Batch(std::string kind) : kind_(std::move(kind)) {}
+  void add(const K& k, const std::array<Index, N>& nodes) { elements_.push_back(k), nodes_.push_back(nodes); }
+  std::string_view kind() const override { return kind_; }
+  std::size_t count() const override { return elements_.size(); }
+  int width() const override { return W; }
+  bool inertial() const override {
+    if constexpr (requires { K::inertial; }) return K::inertial;
+    else return false;
+  }
+  std::vector<K>& elements() { return elements_; }
+  const std::vector<K>& elements() const { return elements_; }
+  const std::vector<std::array<Index, N>>& nodes() const { return nodes_; }
+
+  void add_force(Workspace& w) const override {
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      ForceX<N * W> f = ForceX<N * W>::Zero();
+      elements_[i].add_force(gather(w, i), w.context, f);
+      for (int a = 0; a < N; ++a)
+        w.force[static_cast<std::size_t>(nodes_[i][a])].template head<W>() += f.template segment<W>(W * a);
+    }
+  }
+  void add_tangent(Workspace& w) const override {
+    if constexpr (K::has_M || K::has_C || K::has_K) {
+      TangentX<N * W> t;
+      for (std::size_t i = 0; i < elements_.size(); ++i) {
+        if constexpr (K::has_M) t.M.setZero();
+        if constexpr (K::has_C) t.C.setZero();
+        if constexpr (K::has_K) t.K.setZero();
+        elements_[i].add_tangent(gather(w, i), w.context, t);
+        for (int a = 0; a < N; ++a)
+          for (int b = 0; b < N; ++b) {
+            const Index s = slots_[i][static_cast<std::size_t>(a * N + b)];
+            if (s < 0) continue;
+            if constexpr (K::has_M) w.M.block(s).template topLeftCorner<W, W>() += t.M.template block<W, W>(W * a, W * b);
+            if constexpr (K::has_C) w.C.block(s).template topLeftCorner<W, W>() += t.C.template block<W, W>(W * a, W * b);
+            if constexpr (K::has_K) w.K.block(s).template topLeftCorner<W, W>() += t.K.template block<W, W>(W * a, W * b);
+          }
+      }
+    }
+  }
+  void add_energy(const Workspace& w, Energy& e) const override {
+    for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i].add_energy(gather(w, i), w.context, e);
+  }
+  void list_couplings(std::vector<std::pair<Index, Index>>& out) const override {
+    if constexpr (N > 1)
+      for (const auto& n : nodes_)
+        for (int a = 0; a < N; ++a)
+          for (int b = a + 1; b < N; ++b) out.emplace_back(n[a], n[b]);
+  }
+  void list_nodes(std::vector<Index>& out) const override {
+    for (const auto& n : nodes_) out.insert(out.end(), n.begin(), n.end());
+  }
+  void bind(const la::BlockPattern& p, const std::vector<Index>& row) override {
+    slots_.resize(elements_.size());
+    for (std::size_t i = 0; i < elements_.size(); ++i)
+      for (int a = 0; a < N; ++a)
+        for (int b = 0; b < N; ++b) {
+          const Index ra = row[static_cast<std::size_t>(nodes_[i][a])], rb = row[static_cast<std::size_t>(nodes_[i][b])];
+          slots_[i][static_cast<std::size_t>(a * N + b)] = ra < 0 || rb < 0 ? -1 : p.slot(ra, rb);
+        }
+  }
+
+ private:
+  Nodes<N> gather(const Workspace& w, std::size_t i) const {
+    Nodes<N> x;
+    for (int a = 0; a < N; ++a) x[a] = &w.nodes[static_cast<std::size_t>(nodes_[i][a])];
+    return x;
+  }
+  std::string kind_;
+  std::vector<K> elements_;
+  std::vector<std::array<Index, N>> nodes_;
+  std::vector<std::array<Index, N * N>> slots_;
+};
+
+}  // namespace whirl::system

@@ -1,0 +1,64 @@
+// The System as the time schemes and Newton see it.
+#pragma once
+#include <la/direct.hpp>
+#include <system/system.hpp>
+#include <time/problem.hpp>
+#include <memory>
+
+namespace whirl::system {
+
+struct ProblemOptions {
+  la::SolverKind solver = la::SolverKind::automatic;
+  bool chart_change = true;   ///< re-chart a line when a node's tilt passes chart_limit
+  double chart_limit = 2.0;   ///< rad
+};
+
+/// Owns frames, workspace, matrices and factorisations; borrows the System.
+class SystemProblem final : public time::Problem {
+ public:
+  SystemProblem(const System& system, ProblemOptions options = {});
+
+  Index size() const override { return system_.size(); }
+  std::span<const time::Kind> kinds() const override { return kinds_; }
+  void impose(double t, time::Ref q, time::Ref v, time::Ref a) const override { system_.impose(frames, t, q, v, a); }
+  bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
+  void linearize(double t, time::CRef q, time::CRef v, time::CRef a) override;
+  void add_M(double s, time::CRef x, time::Ref y) const override { matrices_.M.add_multiply(s, x, y); }
+  void add_C(double s, time::CRef x, time::Ref y) const override { matrices_.C.add_multiply(s, x, y); }
+  void add_K(double s, time::CRef x, time::Ref y) const override { matrices_.K.add_multiply(s, x, y); }
+  bool factor(double cm, double cc, double ck) override;
+  bool factor(Complex cm, Complex cc, Complex ck) override;
+  void solve(time::Ref b) const override { real_->solve(b); }
+  void solve(time::RefC b) const override { complex_->solve(b); }
+  Power power(double t, time::CRef q, time::CRef v, time::CRef a, time::CRef reactions) override;
+  bool accept(double t, time::Ref q, time::Ref v, time::Ref a) override;
+
+  const System& system() const { return system_; }
+  const la::MCK& matrices() const { return matrices_; }
+  Workspace& workspace() { return workspace_; }
+  /// Energies split by kind at the last power() call.
+  const Energy& energy() const { return energy_; }
+  /// Node that left its chart in the last failed residual, or -1.
+  Index outside() const { return workspace_.outside; }
+  /// After factor() returned false: "y of node ...", or empty.
+  std::string singular_unknown() const;
+
+  Frames frames;   ///< current charts and turns; copy into State to checkpoint
+
+ private:
+  bool rechart(Index line, time::Ref q, time::Ref v, time::Ref a);
+
+  const System& system_;
+  ProblemOptions options_;
+  std::vector<time::Kind> kinds_;
+  std::vector<std::vector<Index>> line_nodes_;
+  std::vector<unsigned char> rechartable_;
+  std::vector<Index> lead_;           ///< node whose phi decides about whole turns, per line
+  Workspace workspace_;
+  la::MCK matrices_;
+  std::unique_ptr<la::DirectSolver<double>> real_;
+  std::unique_ptr<la::DirectSolver<Complex>> complex_;
+  Energy energy_;
+};
+
+}  // namespace whirl::system

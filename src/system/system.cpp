@@ -1,0 +1,215 @@
+#include <system/system.hpp>
+
+#include <core/error.hpp>
+#include <core/rotation.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::system {
+
+namespace {
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+std::string_view component_name(int c) {
+  constexpr std::string_view names[] = {"x", "y", "z", "spin", "tilt gamma2", "tilt gamma3"};
+  return names[c];
+}
+
+Index Builder::add_line(std::string name, const Mat3& triad) {
+  system_.line_names_.push_back(std::move(name));
+  system_.charts_.push_back(triad);
+  return static_cast<Index>(system_.charts_.size()) - 1;
+}
+
+Index Builder::add_node(NodeDef def) {
+  if (system_.charts_.empty()) add_line("model");
+  system_.defs_.push_back(std::move(def));
+  return nodes() - 1;
+}
+
+Index Builder::add_ground(const Vec3& position, std::string name) {
+  const Index n = add_node({position, 0, std::move(name), false});
+  for (int c = 0; c < 6; ++c) hold(n, c);
+  return n;
+}
+
+void Builder::hold(Index node, int component, LawPtr law) { holds_.push_back({6 * node + component, std::move(law)}); }
+
+System Builder::finalize() {
+  System& s = system_;
+  s.active_.assign(at(s.size()), 1);
+  // A law outranks a plain hold of the same unknown; the last law wins.
+  std::stable_sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) {
+    return a.unknown != b.unknown ? a.unknown < b.unknown : !a.law && b.law;
+  });
+  // Unknowns no element can touch: rotations of nodes with translational elements only, all but the first of scalars.
+  std::vector<int> width(at(s.nodes()), 0);
+  for (const auto& term : s.terms_) {
+    std::vector<Index> touched;
+    term->list_nodes(touched);
+    for (Index n : touched) width[at(n)] = std::max(width[at(n)], term->width());
+  }
+  std::vector<LawPtr> law(at(s.size()));
+  for (Index i = 0; i < s.nodes(); ++i) {
+    const int first_free = s.defs_[at(i)].scalar ? 1 : width[at(i)] == 7 ? 6 : width[at(i)] == 3 ? 3 : 0;
+    for (int c = first_free; c < 6; ++c) s.active_[at(6 * i + c)] = 0;
+  }
+  for (const Hold& h : holds_) s.active_[at(h.unknown)] = 0, law[at(h.unknown)] = h.law;
+  std::vector<Index> row(at(s.nodes()), -1);
+  for (Index k = 0; k < s.size(); ++k) {
+    if (s.active_[at(k)]) row[at(k / 6)] = k / 6;
+    else s.holds_.push_back({k, law[at(k)]});
+  }
+  std::vector<std::pair<Index, Index>> all, kept;
+  for (const auto& term : s.terms_) term->list_couplings(all);
+  for (auto [i, j] : all)
+    if (row[at(i)] >= 0 && row[at(j)] >= 0) kept.emplace_back(i, j);
+  s.pattern_ = std::make_unique<la::BlockPattern>(s.nodes(), kept);
+  for (auto& term : s.terms_) term->bind(*s.pattern_, row);
+  return std::move(system_);
+}
+
+std::vector<double> System::breakpoints() const {
+  std::vector<double> out;
+  auto take = [&](const LawPtr& l) {
+    if (l) for (double t : l->breakpoints()) out.push_back(t);
+  };
+  for (const Hold& h : holds_) take(h.law);
+  for (const LawPtr& l : base_) take(l);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+State System::make_state() const {
+  State s;
+  s.q = s.v = s.a = VecX::Zero(size());
+  s.frames.chart = charts_;
+  s.frames.turns.assign(charts_.size(), 0.0);
+  return s;
+}
+
+Workspace System::make_workspace() const {
+  Workspace w;
+  const std::size_t n = at(nodes());
+  w.nodes.resize(n), w.D.resize(n), w.D_rate.resize(n), w.D_accel.resize(n), w.gamma.resize(n), w.force.resize(n);
+  w.M = la::BlockMatrix<7>(*pattern_), w.C = la::BlockMatrix<7>(*pattern_), w.K = la::BlockMatrix<7>(*pattern_);
+  return w;
+}
+
+Vec3 System::gravity_at(double t) const {
+  Vec3 g = gravity_;
+  for (int k = 0; k < 3; ++k)
+    if (base_[at(k)]) g[k] -= base_[at(k)]->at(t).f;
+  return g;
+}
+
+void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v, Eigen::Ref<VecX> a) const {
+  for (const Hold& h : holds_) {
+    if (!h.law) {
+      q[h.unknown] = v[h.unknown] = a[h.unknown] = 0.0;
+      continue;
+    }
+    const LawValue x = h.law->at(t);
+    q[h.unknown] = x.f, v[h.unknown] = x.df, a[h.unknown] = x.ddf;
+    if (h.unknown % 6 == spin_phi) q[h.unknown] -= two_pi * f.turns[at(defs_[at(h.unknown / 6)].line)];
+  }
+}
+
+bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
+                            Eigen::Ref<const VecX> a) const {
+  w.context.time = t;
+  w.context.gravity = gravity_at(t);
+  w.outside = -1;
+  for (Index i = 0; i < nodes(); ++i) {
+    const NodeDef& def = defs_[at(i)];
+    NodeState& n = w.nodes[at(i)];
+    const Mat3& E = f.chart[at(def.line)];
+    n.chart = &E;
+    n.turns = f.turns[at(def.line)];
+    n.u = q.segment<3>(6 * i), n.du = v.segment<3>(6 * i), n.ddu = a.segment<3>(6 * i);
+    if (!def.scalar) n.ddu -= w.context.gravity;
+    n.phi = q[6 * i + 3], n.dphi = v[6 * i + 3], n.ddphi = a[6 * i + 3];
+    const Vec2 gamma = q.segment<2>(6 * i + 4);
+    if (!(gamma.squaredNorm() < 3.14 * 3.14)) {   // also catches NaN
+      w.outside = i;
+      return false;
+    }
+    w.gamma[at(i)] = gamma;
+    rotation::Director dir;
+    rotation::director(gamma, v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4), dir);
+    n.t.noalias() = E * dir.t, n.dd.noalias() = E * dir.rate, n.ddd.noalias() = E * dir.accel;
+    w.D[at(i)].noalias() = E * dir.D, w.D_rate[at(i)].noalias() = E * dir.D_rate, w.D_accel[at(i)].noalias() = E * dir.D_accel;
+  }
+  return true;
+}
+
+void System::project_force(const Workspace& w, Eigen::Ref<VecX> r) const {
+  for (Index i = 0; i < nodes(); ++i) {
+    const Vector<7>& f = w.force[at(i)];
+    r.segment<3>(6 * i) = f.head<3>();
+    r[6 * i + 3] = f[6];
+    r.segment<2>(6 * i + 4).noalias() = w.D[at(i)].transpose() * f.segment<3>(3);
+  }
+}
+
+bool System::residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
+                      Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r) const {
+  if (!evaluate_nodes(w, f, t, q, v, a)) return false;
+  for (auto& x : w.force) x.setZero();
+  for (const auto& term : terms_) term->add_force(w);
+  project_force(w, r);
+  return r.allFinite();
+}
+
+bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
+                     Eigen::Ref<const VecX> a, la::MCK& out) const {
+  if (!evaluate_nodes(w, f, t, q, v, a)) return false;
+  for (auto& x : w.force) x.setZero();
+  w.M.set_zero(), w.C.set_zero(), w.K.set_zero();
+  for (const auto& term : terms_) term->add_force(w), term->add_tangent(w);
+
+  // q-space blocks: columns of gamma through D and its rates (node.hpp), then rows through D^T.
+  const auto& start = pattern_->row_start();
+  const auto& cols = pattern_->cols();
+  auto rows = [](const Mat32& D, const Matrix<7, 6>& x, auto y) {
+    y.template topRows<3>() = x.topRows<3>();
+    y.row(3) = x.row(6);
+    y.template bottomRows<2>().noalias() = D.transpose() * x.middleRows<3>(3);
+  };
+  for (Index i = 0; i < nodes(); ++i) {
+    const Mat32& Di = w.D[at(i)];
+    for (Index s = start[at(i)]; s < start[at(i) + 1]; ++s) {
+      const std::size_t j = at(cols[at(s)]);
+      const auto M = w.M.block(s), C = w.C.block(s), K = w.K.block(s);
+      Matrix<7, 6> x;
+      x.leftCols<3>() = M.leftCols<3>(), x.col(3) = M.col(6);
+      x.rightCols<2>().noalias() = M.middleCols<3>(3) * w.D[j];
+      rows(Di, x, out.M.block(s));
+      x.leftCols<3>() = C.leftCols<3>(), x.col(3) = C.col(6);
+      x.rightCols<2>().noalias() = C.middleCols<3>(3) * w.D[j];
+      x.rightCols<2>().noalias() += M.middleCols<3>(3) * (2.0 * w.D_rate[j]);
+      rows(Di, x, out.C.block(s));
+      x.leftCols<3>() = K.leftCols<3>(), x.col(3) = K.col(6);
+      x.rightCols<2>().noalias() = K.middleCols<3>(3) * w.D[j];
+      x.rightCols<2>().noalias() += C.middleCols<3>(3) * w.D_rate[j];
+      x.rightCols<2>().noalias() += M.middleCols<3>(3) * w.D_accel[j];
+      rows(Di, x, out.K.block(s));
+    }
+    rotation::Director dir;
+    dir.gamma = w.gamma[at(i)];
+    out.K.block(pattern_->diagonal(i)).bottomRightCorner<2, 2>() +=
+        dir.curvature(w.nodes[at(i)].chart->transpose() * w.force[at(i)].segment<3>(3));
+  }
+  return true;
+}
+
+Energy System::energy(const Workspace& w) const {
+  Energy e;
+  for (const auto& term : terms_) term->add_energy(w, e);
+  return e;
+}
+
+}  // namespace whirl::system

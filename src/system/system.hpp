@@ -1,0 +1,135 @@
+// The assembled equations of motion R(t, q, v, a) = M(q) a + f(q, v, t) of nodes and element batches.
+// A System is const once built; what changes lives in State, scratch in Workspace.
+#pragma once
+#include <core/law.hpp>
+#include <system/batch.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <typeindex>
+#include <unordered_map>
+#include <vector>
+
+namespace whirl::system {
+
+/// Components of a node's unknowns in q: q[6 i + c].
+enum Component : int { ux = 0, uy = 1, uz = 2, spin_phi = 3, gamma2 = 4, gamma3 = 5 };
+std::string_view component_name(int c);
+
+struct NodeDef {
+  Vec3 position = Vec3::Zero();  ///< reference position, m, global axes
+  Index line = 0;                ///< shaft line whose chart it uses
+  std::string name;              ///< for messages: "node at 0.25 m of shaft 'hp'"
+  bool scalar = false;           ///< an internal unknown: only component 0 exists, gravity does not act
+};
+
+/// Chart triad and whole turns of each shaft line: part of the state, changed between steps only.
+struct Frames {
+  std::vector<Mat3> chart;       ///< columns e, e2, e3
+  std::vector<double> turns;     ///< whole turns taken out of phi
+};
+
+/// A complete state: copy it to checkpoint.
+struct State {
+  double t = 0;
+  VecX q, v, a;
+  Frames frames;
+  /// phi of node i with its whole turns, rad.
+  double total_phi(Index node, Index line) const {
+    return q[6 * node + spin_phi] + two_pi * frames.turns[static_cast<std::size_t>(line)];
+  }
+};
+
+struct Hold { Index unknown; LawPtr law; };   ///< null law: held at zero
+
+class System {
+ public:
+  Index nodes() const { return static_cast<Index>(defs_.size()); }
+  Index size() const { return 6 * nodes(); }
+  Index lines() const { return static_cast<Index>(line_names_.size()); }
+  const NodeDef& node(Index i) const { return defs_[static_cast<std::size_t>(i)]; }
+  const std::string& line_name(Index l) const { return line_names_[static_cast<std::size_t>(l)]; }
+  const la::BlockPattern& pattern() const { return *pattern_; }
+  /// 1 where q[k] is unknown, 0 where it is held.
+  std::span<const unsigned char> active() const { return active_; }
+  const std::vector<Hold>& holds() const { return holds_; }
+  const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
+  const Vec3& gravity() const { return gravity_; }
+  /// The batch of kernel type K, or null when the scene has none.
+  template <Kernel K> const Batch<K>* batch() const {
+    auto it = by_type_.find(std::type_index(typeid(K)));
+    return it == by_type_.end() ? nullptr : static_cast<const Batch<K>*>(terms_[it->second].get());
+  }
+  template <Kernel K> Batch<K>* batch() { return const_cast<Batch<K>*>(std::as_const(*this).template batch<K>()); }
+  /// Law breakpoints of holds and of base motion, sorted.
+  std::vector<double> breakpoints() const;
+
+  State make_state() const;
+  Workspace make_workspace() const;
+  la::MCK make_matrices() const { return la::MCK(*pattern_); }
+
+  /// Sets held entries of q, v, a at time t. phi laws are reduced by the line's whole turns.
+  void impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v, Eigen::Ref<VecX> a) const;
+  /// Node states only (for probes, pictures). False when a node is outside its chart.
+  bool evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
+                      Eigen::Ref<const VecX> a) const;
+  /// r = R(t, q, v, a); held entries hold the reactions (force and torque the support exerts on the model).
+  bool residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
+                Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r) const;
+  /// M = dR/da, C = dR/dv, K = dR/dq, exact.
+  bool tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
+               Eigen::Ref<const VecX> a, la::MCK& out) const;
+  /// Energies and powers of the elements at the node states of the last evaluation.
+  Energy energy(const Workspace& w) const;
+
+ private:
+  friend class Builder;
+  void project_force(const Workspace& w, Eigen::Ref<VecX> r) const;
+  Vec3 gravity_at(double t) const;
+
+  std::vector<NodeDef> defs_;
+  std::vector<std::string> line_names_;
+  std::vector<Mat3> charts_;
+  std::vector<Hold> holds_;
+  std::vector<unsigned char> active_;
+  std::unique_ptr<la::BlockPattern> pattern_;
+  std::vector<std::unique_ptr<Term>> terms_;
+  std::unordered_map<std::type_index, std::size_t> by_type_;
+  Vec3 gravity_ = Vec3::Zero();
+  std::array<LawPtr, 3> base_;   ///< base acceleration along x, y, z; null = none
+};
+
+/// Puts a System together. Order of nodes along a shaft is the elimination order: keep it natural.
+class Builder {
+ public:
+  /// A shaft line with its reference triad (columns e, e2, e3).
+  Index add_line(std::string name, const Mat3& triad = Mat3::Identity());
+  Index add_node(NodeDef def);
+  /// Holds component c of a node: at zero, or on a law (value, rate, acceleration all exact).
+  void hold(Index node, int component, LawPtr law = nullptr);
+  /// A node that never moves (a ground point).
+  Index add_ground(const Vec3& position, std::string name);
+  void set_gravity(const Vec3& g) { system_.gravity_ = g; }
+  void set_base_acceleration(int axis, LawPtr law) { system_.base_[static_cast<std::size_t>(axis)] = std::move(law); }
+  /// `kind` names the batch in summaries ("shaft elements"); the first call for a type decides.
+  template <Kernel K> void add(const K& k, const std::array<Index, K::n_nodes>& nodes, const char* kind) {
+    const std::type_index key(typeid(K));
+    auto it = system_.by_type_.find(key);
+    if (it == system_.by_type_.end()) {
+      it = system_.by_type_.emplace(key, system_.terms_.size()).first;
+      system_.terms_.push_back(std::make_unique<Batch<K>>(kind));
+    }
+    static_cast<Batch<K>&>(*system_.terms_[it->second]).add(k, nodes);
+  }
+  const NodeDef& node(Index i) const { return system_.defs_[static_cast<std::size_t>(i)]; }
+  Index nodes() const { return static_cast<Index>(system_.defs_.size()); }
+  /// Holds every rotational unknown no element resists or loads, then freezes pattern and slots.
+  System finalize();
+
+ private:
+  System system_;
+  std::vector<Hold> holds_;
+};
+
+}  // namespace whirl::system
