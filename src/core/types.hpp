@@ -1,6 +1,7 @@
 // Fixed-size linear algebra names used everywhere.
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <complex>
 #include <cstddef>
 #include <limits>
