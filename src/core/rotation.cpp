@@ -1,0 +1,327 @@
+#include <core/error.hpp>
+#include <core/rotation.hpp>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace whirl::rotation {
+
+namespace {
+
+// b_m = sum_k (-x/2)^k / (k! (2m+2k+1)!!).
+template <int M, int N>
+constexpr std::array<double, N> bessel_series() {
+  std::array<double, N> c{};
+  long double first = 1.0L;
+  for (int j = 1; j <= 2 * M + 1; j += 2) first *= j;
+  long double term = 1.0L / first;
+  for (int k = 0; k < N; ++k) {
+    c[static_cast<std::size_t>(k)] = static_cast<double>(term);
+    term *= -0.5L / (static_cast<long double>(k + 1) * (2 * M + 2 * k + 3));
+  }
+  return c;
+}
+
+// (g - sin g)/g^3 = sum_k (-x)^k / (2k+3)!
+template <int N>
+constexpr std::array<double, N> g_minus_sin_series() {
+  std::array<double, N> c{};
+  long double term = 1.0L / 6.0L;
+  for (int k = 0; k < N; ++k) {
+    c[static_cast<std::size_t>(k)] = static_cast<double>(term);
+    term *= -1.0L / (static_cast<long double>(2 * k + 4) * (2 * k + 5));
+  }
+  return c;
+}
+
+template <int N, std::size_t Size>
+double horner(const std::array<double, Size>& c, double x) {
+  static_assert(N <= static_cast<int>(Size));
+  double s = c[N - 1];
+  for (int k = N - 2; k >= 0; --k) s = s * x + c[static_cast<std::size_t>(k)];
+  return s;
+}
+
+constexpr auto series_b2 = bessel_series<2, 12>();
+constexpr auto series_b3 = bessel_series<3, 12>();
+constexpr auto series_gs = g_minus_sin_series<13>();
+
+// Downwards the recurrence b_{k-1} = (2k+1) b_k - x b_{k+1} is stable for small x.
+BesselRatios downwards(double x, double b2, double b3) {
+  BesselRatios r;
+  r.b3 = b3;
+  r.b2 = b2;
+  r.b1 = 5.0 * b2 - x * b3;
+  r.b0 = 3.0 * r.b1 - x * b2;
+  r.cosine = r.b0 - x * r.b1;
+  return r;
+}
+
+double cross2(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// P turns gamma into p = gamma x e: (g2, g3) -> (g3, -g2).
+Vec2 turn(const Vec2& v) { return Vec2(v.y(), -v.x()); }
+Vec2 turn_back(const Vec2& v) { return Vec2(-v.y(), v.x()); }
+
+double one_minus_cos_slope(double x) {  // d/dx of b0(x/4)^2/2
+  const BesselRatios h = bessel_ratios(0.25 * x);
+  return -0.125 * h.b0 * h.b1;
+}
+
+// D+ d' for d' in the tangent plane: d'_perp = b0 P gamma' - b1 p alpha, d'_x = -b0 alpha, alpha = gamma.gamma'.
+Vec2 pull_back(const Vec2& gamma, const BesselRatios& b, const Vec3& v) {
+  const Vec2 p = turn(gamma), v_perp = v.tail<2>();
+  const double alpha = b.cosine * p.dot(v_perp) - b.b0 * gamma.squaredNorm() * v.x();
+  return turn_back(v_perp + b.b1 * alpha * p) / b.b0;
+}
+
+Vec3 whole(const Vec3& t) { return Vec3(1.0 + t.x(), t.y(), t.z()); }
+
+void position(const Vec2& g, Director& o) {
+  const double x = g.squaredNorm();
+  o.gamma = g;
+  o.b = bessel_ratios(x);
+  const BesselRatios& b = o.b;
+  const Vec2 p = turn(g);
+  // cos g - 1 without cancellation
+  o.t.x() = b.cosine > -0.5 ? -x * b.b0 * b.b0 / (1.0 + b.cosine) : b.cosine - 1.0;
+  o.t.tail<2>() = b.b0 * p;
+  o.D.row(0) = -b.b0 * g.transpose();
+  o.D(1, 0) = -b.b1 * p.x() * g.x();
+  o.D(1, 1) = b.b0 - b.b1 * p.x() * g.y();
+  o.D(2, 0) = -b.b0 - b.b1 * p.y() * g.x();
+  o.D(2, 1) = -b.b1 * p.y() * g.y();
+}
+
+// d2 d[w, .] as a 3x2 matrix.
+Mat32 second(const Director& o, const Vec2& w) {
+  const BesselRatios& b = o.b;
+  const Vec2 &g = o.gamma, p = turn(g), pw = turn(w);
+  const double alpha = g.dot(w);
+  Mat32 m;
+  m.row(0) = (b.b1 * alpha) * g.transpose() - b.b0 * w.transpose();
+  const Vec2 left = b.b2 * alpha * p - b.b1 * pw;  // times gamma^T
+  for (int i = 0; i < 2; ++i) m.row(1 + i) = left[i] * g.transpose() - (b.b1 * p[i]) * w.transpose();
+  m(1, 1) -= b.b1 * alpha;
+  m(2, 0) += b.b1 * alpha;
+  return m;
+}
+
+}  // namespace
+
+BesselRatios bessel_ratios(double x) {
+  // Usual tilts (below 0.2 rad) need six terms; twelve are exact up to the chart switch at 2 rad.
+  if (x <= 0.04) return downwards(x, horner<6>(series_b2, x), horner<6>(series_b3, x));
+  if (x <= 4.0) return downwards(x, horner<12>(series_b2, x), horner<12>(series_b3, x));
+  const double g = std::sqrt(x);
+  BesselRatios r;
+  r.cosine = std::cos(g);
+  r.b0 = std::sin(g) / g;
+  r.b1 = (r.b0 - r.cosine) / x;
+  r.b2 = (3.0 * r.b1 - r.b0) / x;
+  r.b3 = (5.0 * r.b2 - r.b1) / x;
+  return r;
+}
+
+double one_minus_cos_ratio(double x) {
+  const double b = bessel_ratios(0.25 * x).b0;
+  return 0.5 * b * b;
+}
+
+double g_minus_sin_ratio(double x) {
+  return x <= 4.0 ? horner<13>(series_gs, x) : (1.0 - bessel_ratios(x).b0) / x;
+}
+
+Even cosine_of_square(double x) {
+  const BesselRatios b = bessel_ratios(x);
+  return {b.cosine, -0.5 * b.b0, 0.25 * b.b1, -0.125 * b.b2};
+}
+
+Even sinc_of_square(double x) {
+  const BesselRatios b = bessel_ratios(x);
+  return {b.b0, -0.5 * b.b1, 0.25 * b.b2, -0.125 * b.b3};
+}
+
+Mat3 L(const Vec3& v) {
+  const double x = v.squaredNorm();
+  const Mat3 s = skew(v);
+  return Mat3::Identity() + bessel_ratios(x).b0 * s + one_minus_cos_ratio(x) * s * s;
+}
+
+Mat3 B(const Vec3& v) {
+  const double x = v.squaredNorm();
+  const Mat3 s = skew(v);
+  return Mat3::Identity() + one_minus_cos_ratio(x) * s + g_minus_sin_ratio(x) * s * s;
+}
+
+Mat3 B_inverse(const Vec3& v) {
+  // (1 - h cot h)/(4 h^2) = b1/(4 b0) at h = g/2: no difference of large terms.
+  const BesselRatios h = bessel_ratios(0.25 * v.squaredNorm());
+  const Mat3 s = skew(v);
+  return Mat3::Identity() - 0.5 * s + (0.25 * h.b1 / h.b0) * s * s;
+}
+
+Vec3 euler_vector(const Mat3& R) {
+  // Quaternion by its largest component, which is at least 1/2: accurate for every angle.
+  const double tr = R.trace();
+  const std::array<double, 4> c{tr, R(0, 0), R(1, 1), R(2, 2)};
+  std::size_t k = 0;
+  for (std::size_t i = 1; i < 4; ++i)
+    if (c[i] > c[k]) k = i;
+  double w;
+  Vec3 v;
+  if (k == 0) {
+    w = 1.0 + tr;
+    v << R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1);
+  } else {
+    const int i = static_cast<int>(k) - 1, j = (i + 1) % 3, l = (i + 2) % 3;
+    w = R(l, j) - R(j, l);
+    v[i] = 1.0 + R(i, i) - R(j, j) - R(l, l);
+    v[j] = R(j, i) + R(i, j);
+    v[l] = R(l, i) + R(i, l);
+  }
+  if (w < 0.0) w = -w, v = -v;
+  const double n = v.stableNorm();
+  return n > 0.0 ? Vec3(v * (2.0 * std::atan2(n, w) / n)) : Vec3(Vec3::Zero());
+}
+
+Mat3 minimal_rotation(const Vec3& a, const Vec3& b) {
+  const double c = 0.5 * (a + b).squaredNorm();  // 1 + a.b
+  if (!(c > 1e-24))
+    throw run_error("E71", "no minimal rotation takes a direction to its opposite",
+                    "choose an intermediate direction");
+  const Vec3 v = a.cross(b);
+  return (c - 1.0) * Mat3::Identity() + skew(v) + (v / c) * v.transpose();
+}
+
+double solid_angle(const Vec3& u, const Vec3& v, const Vec3& w) {
+  return 2.0 * std::atan2(u.dot(v.cross(w)), 1.0 + u.dot(v) + v.dot(w) + w.dot(u));
+}
+
+Mat2 Director::curvature(const Vec3& f) const {
+  const Vec2 fp = f.tail<2>(), p = turn(gamma), h = turn_back(fp);
+  const double fpp = fp.dot(p);
+  const double diagonal = -(b.b0 * f.x() + b.b1 * fpp), outer = b.b1 * f.x() + b.b2 * fpp;
+  Mat2 m;
+  m(0, 0) = diagonal + gamma.x() * (outer * gamma.x() - 2.0 * b.b1 * h.x());
+  m(1, 1) = diagonal + gamma.y() * (outer * gamma.y() - 2.0 * b.b1 * h.y());
+  m(0, 1) = m(1, 0) = outer * gamma.x() * gamma.y() - b.b1 * (gamma.x() * h.y() + h.x() * gamma.y());
+  return m;
+}
+
+void director(const Vec2& gamma, Director& out) { position(gamma, out); }
+
+void director(const Vec2& gamma, const Vec2& dgamma, const Vec2& ddgamma, Director& o) {
+  position(gamma, o);
+  const BesselRatios& b = o.b;
+  const Vec2 &g = gamma, &w = dgamma, p = turn(g), pw = turn(w);
+  const double alpha = g.dot(w), ww = w.squaredNorm();
+  o.D_rate = second(o, w);
+  o.rate = o.D * w;
+  o.accel = o.D * ddgamma + o.D_rate * w;
+  // d3 d[w, w, .] + d2 d[gamma'', .]
+  o.D_accel = second(o, ddgamma);
+  o.D_accel.row(0) += (b.b1 * ww - b.b2 * alpha * alpha) * g.transpose() + (2.0 * b.b1 * alpha) * w.transpose();
+  const Vec2 left_g = (b.b2 * ww - b.b3 * alpha * alpha) * p + (2.0 * b.b2 * alpha) * pw;
+  const Vec2 left_w = 2.0 * (b.b2 * alpha * p - b.b1 * pw);
+  for (int i = 0; i < 2; ++i) o.D_accel.row(1 + i) += left_g[i] * g.transpose() + left_w[i] * w.transpose();
+  const double turning = b.b2 * alpha * alpha - b.b1 * ww;
+  o.D_accel(1, 1) += turning;
+  o.D_accel(2, 0) -= turning;
+}
+
+Vec2 gamma_of_director(const Vec3& t) {
+  const double sine = std::hypot(t.y(), t.z());
+  if (sine == 0.0) {
+    if (t.x() < -1.0)
+      throw run_error("E71", "the section normal is opposite to the reference axis: the transverse rotation is pi",
+                      "turn on the change of chart (model.chart_change = true)");
+    return Vec2::Zero();
+  }
+  const double scale = std::atan2(sine, 1.0 + t.x()) / sine;
+  return Vec2(-t.z() * scale, t.y() * scale);
+}
+
+ChartRates rates_of_omega(const Vec2& gamma, const Vec3& omega) {
+  Director o;
+  position(gamma, o);
+  const Vec3 d = whole(o.t);
+  const Vec2 rate = pull_back(gamma, o.b, omega.cross(d));
+  // (11) in the form s + (1-cos g)/g^2 e.(gamma x gamma'), regular wherever gamma' is
+  return {omega.dot(d) + one_minus_cos_ratio(gamma.squaredNorm()) * cross2(gamma, rate), rate};
+}
+
+Vec3 omega_of_rates(const Vec2& gamma, double dphi, const Vec2& dgamma) {
+  Director o;
+  position(gamma, o);
+  const Vec3 d = whole(o.t);
+  const double s = dphi - one_minus_cos_ratio(gamma.squaredNorm()) * cross2(gamma, dgamma);
+  return d.cross(o.D * dgamma) + s * d;
+}
+
+ChartRates accelerations_of_omega(const Vec2& gamma, double dphi, const Vec2& dgamma, const Vec3& domega) {
+  Director o;
+  director(gamma, dgamma, Vec2::Zero(), o);
+  const double x = gamma.squaredNorm(), a = one_minus_cos_ratio(x), swept = cross2(gamma, dgamma);
+  const Vec3 d = whole(o.t), omega = d.cross(o.rate) + (dphi - a * swept) * d;
+  // o.accel holds D' gamma' here; the remainder D gamma'' is tangent to the sphere
+  const Vec2 ddgamma = pull_back(gamma, o.b, domega.cross(d) + omega.cross(o.rate) - o.accel);
+  const double a_rate = 2.0 * one_minus_cos_slope(x) * gamma.dot(dgamma);
+  return {domega.dot(d) + a_rate * swept + a * cross2(gamma, ddgamma), ddgamma};
+}
+
+Vec3 omega_rate_of_rates(const Vec2& gamma, double dphi, const Vec2& dgamma, double ddphi, const Vec2& ddgamma) {
+  Director o;
+  director(gamma, dgamma, ddgamma, o);
+  const double x = gamma.squaredNorm(), a = one_minus_cos_ratio(x), swept = cross2(gamma, dgamma);
+  const double a_rate = 2.0 * one_minus_cos_slope(x) * gamma.dot(dgamma);
+  const double s = dphi - a * swept, ds = ddphi - a_rate * swept - a * cross2(gamma, ddgamma);
+  const Vec3 d = whole(o.t);
+  return d.cross(o.accel) + ds * d + s * o.rate;
+}
+
+double chart_condition(double g) {
+  // Along gamma the map is an isometry; across it, it is [1, -(1-cos g)/g; 0, sin g/g].
+  const double x = g * g, b = std::abs(bessel_ratios(x).b0), c = one_minus_cos_ratio(x) * g;
+  const double largest = 0.5 * (std::hypot(1.0 + b, c) + std::hypot(1.0 - b, c));
+  return largest * largest / b;
+}
+
+void throw_beyond_chart(double g, const std::string& node, double time) {
+  throw run_error("E71",
+                  fmt::format("transverse rotation |gamma| = {:.6g} rad of {} at t = {:.9g} s is beyond the chart "
+                              "(limit {} rad; the split into phi and gamma is singular at pi)",
+                              g, node, time, chart_limit),
+                  "turn on the change of chart (model.chart_change = true)", node);
+}
+
+ChartChange::ChartChange(const Mat3& triad, const Vec3& new_e)
+    : from_(triad), to_(minimal_rotation(triad.col(0), new_e.normalized()) * triad) {}
+
+Angles ChartChange::apply(const Angles& old) const {
+  Director o;
+  position(old.gamma, o);
+  const Vec3 d = whole(o.t);                 // in the old chart's axes
+  const Mat3 Q = to_.transpose() * from_;    // old axes -> new axes
+  const Vec3 new_e = Q.row(0).transpose();   // e' in the old axes
+  const Vec3 t = Q * d - Vec3::UnitX();
+  Angles now;
+  now.phi = old.phi + solid_angle(Vec3::UnitX(), d, new_e);
+  now.gamma = gamma_of_director(t);
+  const Vec3 omega = Q * omega_of_rates(old.gamma, old.dphi, old.dgamma);
+  const Vec3 domega = Q * omega_rate_of_rates(old.gamma, old.dphi, old.dgamma, old.ddphi, old.ddgamma);
+  const ChartRates v = rates_of_omega(now.gamma, omega);
+  now.dphi = v.phi, now.dgamma = v.gamma;
+  const ChartRates acc = accelerations_of_omega(now.gamma, now.dphi, now.dgamma, domega);
+  now.ddphi = acc.phi, now.ddgamma = acc.gamma;
+  return now;
+}
+
+double take_turns(double& phi) {
+  constexpr double low = 2.4492935982947064e-16;  // 2 pi - two_pi
+  const double n = std::nearbyint(phi / two_pi);
+  if (n != 0.0) phi = std::fma(-n, two_pi, phi) - n * low;
+  return n;
+}
+
+}  // namespace whirl::rotation
