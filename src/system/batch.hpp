@@ -1,6 +1,7 @@
 // A batch holds all elements of one kind with their nodes and the precomputed slots of their blocks: one virtual call
 // per kind and evaluation, none per element.
 #pragma once
+#include <core/rotation.hpp>
 #include <la/block.hpp>
 #include <system/kernel.hpp>
 #include <string>
@@ -13,7 +14,7 @@ namespace whirl::system {
 struct Workspace {
   std::vector<NodeState> nodes;
   std::vector<Mat32> D, D_rate, D_accel;   ///< node Jacobians in global axes
-  std::vector<Vec2> gamma;
+  std::vector<rotation::Director> director;///< in chart axes
   std::vector<Vector<7>> force;            ///< X-space force of every node
   la::BlockMatrix<7> M, C, K;              ///< X-space tangents
   Context context;

@@ -84,13 +84,11 @@ bool SystemProblem::accept(double, time::Ref q, time::Ref v, time::Ref a) {
     if (nodes.empty()) continue;
     // Whole turns leave phi, all nodes of the line together: differences and trigonometry see no change, and phi keeps its
     // last digit over any number of revolutions. 2 pi is taken out in two parts, so that the turns are true turns.
-    const double turns = std::round(q[6 * lead_[at(l)] + spin_phi] / two_pi);
+    double phi = q[6 * lead_[at(l)] + spin_phi];
+    const double turns = std::round(phi / two_pi);
     if (std::abs(turns) >= 1.0) {
-      constexpr double two_pi_low = 2.4492935982947064e-16;
-      for (Index i : nodes) {
-        double& phi = q[6 * i + spin_phi];
-        phi = (phi - turns * two_pi) - turns * two_pi_low;
-      }
+      // 2 pi in two parts: true turns leave phi
+      for (Index i : nodes) rotation::take_turns(q[6 * i + spin_phi], turns);
       frames.turns[at(l)] += turns;
       changed = true;
     }
@@ -116,15 +114,14 @@ bool SystemProblem::rechart(Index line, time::Ref q, time::Ref v, time::Ref a) {
   Vec3 mean = Vec3::Zero();
   for (Index i : nodes) mean += director_of(i);
   if (mean.norm() < 1e-3 * static_cast<double>(nodes.size())) return false;
-  const Mat3 new_chart = rotation::minimal_rotation(old_chart.col(0), mean.normalized()) * old_chart;
+  const rotation::ChartChange change(old_chart, mean.normalized());
   for (Index i : nodes) {
-    const rotation::ChartPoint p{q[6 * i + 3], q.segment<2>(6 * i + 4), v[6 * i + 3], v.segment<2>(6 * i + 4),
-                                 a[6 * i + 3], a.segment<2>(6 * i + 4)};
-    const rotation::ChartPoint n = rotation::change_chart(p, old_chart, new_chart);
+    const rotation::Angles n = change.apply({q[6 * i + 3], v[6 * i + 3], a[6 * i + 3], q.segment<2>(6 * i + 4),
+                                             v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4)});
     q[6 * i + 3] = n.phi, v[6 * i + 3] = n.dphi, a[6 * i + 3] = n.ddphi;
     q.segment<2>(6 * i + 4) = n.gamma, v.segment<2>(6 * i + 4) = n.dgamma, a.segment<2>(6 * i + 4) = n.ddgamma;
   }
-  frames.chart[at(line)] = new_chart;
+  frames.chart[at(line)] = change.new_triad();
   return true;
 }
 

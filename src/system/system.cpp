@@ -94,7 +94,7 @@ State System::make_state() const {
 Workspace System::make_workspace() const {
   Workspace w;
   const std::size_t n = at(nodes());
-  w.nodes.resize(n), w.D.resize(n), w.D_rate.resize(n), w.D_accel.resize(n), w.gamma.resize(n), w.force.resize(n);
+  w.nodes.resize(n), w.D.resize(n), w.D_rate.resize(n), w.D_accel.resize(n), w.director.resize(n), w.force.resize(n);
   w.M = la::BlockMatrix<7>(*pattern_), w.C = la::BlockMatrix<7>(*pattern_), w.K = la::BlockMatrix<7>(*pattern_);
   return w;
 }
@@ -133,12 +133,11 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
     if (!def.scalar) n.ddu -= w.context.gravity;
     n.phi = q[6 * i + 3], n.dphi = v[6 * i + 3], n.ddphi = a[6 * i + 3];
     const Vec2 gamma = q.segment<2>(6 * i + 4);
-    if (!(gamma.squaredNorm() < 3.14 * 3.14)) {   // also catches NaN
+    if (!(gamma.squaredNorm() < rotation::chart_limit * rotation::chart_limit)) {   // also catches NaN
       w.outside = i;
       return false;
     }
-    w.gamma[at(i)] = gamma;
-    rotation::Director dir;
+    rotation::Director& dir = w.director[at(i)];
     rotation::director(gamma, v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4), dir);
     n.t.noalias() = E * dir.t, n.dd.noalias() = E * dir.rate, n.ddd.noalias() = E * dir.accel;
     w.D[at(i)].noalias() = E * dir.D, w.D_rate[at(i)].noalias() = E * dir.D_rate, w.D_accel[at(i)].noalias() = E * dir.D_accel;
@@ -198,10 +197,8 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
       x.rightCols<2>().noalias() += M.middleCols<3>(3) * w.D_accel[j];
       rows(Di, x, out.K.block(s));
     }
-    rotation::Director dir;
-    dir.gamma = w.gamma[at(i)];
     out.K.block(pattern_->diagonal(i)).bottomRightCorner<2, 2>() +=
-        dir.curvature(w.nodes[at(i)].chart->transpose() * w.force[at(i)].segment<3>(3));
+        w.director[at(i)].curvature(w.nodes[at(i)].chart->transpose() * w.force[at(i)].segment<3>(3));
   }
   return true;
 }
