@@ -317,10 +317,14 @@ Angles ChartChange::apply(const Angles& old) const {
   return now;
 }
 
-double take_turns(double& phi) {
+void take_turns(double& phi, double n) {
   constexpr double low = 2.4492935982947064e-16;  // 2 pi - two_pi
+  phi = std::fma(-n, two_pi, phi) - n * low;
+}
+
+double take_turns(double& phi) {
   const double n = std::nearbyint(phi / two_pi);
-  if (n != 0.0) phi = std::fma(-n, two_pi, phi) - n * low;
+  if (n != 0.0) take_turns(phi, n);
   return n;
 }
 

@@ -103,5 +103,7 @@ class ChartChange {
 /// Takes the whole turns out of phi, leaving |phi| <= pi, and returns their number. 2 pi is carried to 107 bits, so that
 /// the azimuth is right to the last digit after any number of turns.
 double take_turns(double& phi);
+/// Takes n whole turns out of phi, with the same care.
+void take_turns(double& phi, double n);
 
 }  // namespace whirl::rotation

@@ -1,6 +1,5 @@
 #include <system/problem.hpp>
 
-#include <core/error.hpp>
 #include <core/rotation.hpp>
 
 #include <cmath>
@@ -84,10 +83,8 @@ bool SystemProblem::accept(double, time::Ref q, time::Ref v, time::Ref a) {
     if (nodes.empty()) continue;
     // Whole turns leave phi, all nodes of the line together: differences and trigonometry see no change, and phi keeps its
     // last digit over any number of revolutions. 2 pi is taken out in two parts, so that the turns are true turns.
-    double phi = q[6 * lead_[at(l)] + spin_phi];
-    const double turns = std::round(phi / two_pi);
+    const double turns = std::round(q[6 * lead_[at(l)] + spin_phi] / two_pi);
     if (std::abs(turns) >= 1.0) {
-      // 2 pi in two parts: true turns leave phi
       for (Index i : nodes) rotation::take_turns(q[6 * i + spin_phi], turns);
       frames.turns[at(l)] += turns;
       changed = true;
