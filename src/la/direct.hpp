@@ -23,8 +23,12 @@ class DirectSolver {
   /// After `singular`: the unknown (6 * node + component) whose pivot vanished, or -1.
   virtual Index singular_unknown() const { return -1; }
   virtual std::string_view name() const = 0;
+  /// How much elimination made entries grow in the last factorisation: the relative backward error is about this times
+  /// 2e-16. 1 means none.
+  virtual double growth() const = 0;
 };
 
+/// automatic: block, and KLU (made when first needed) for a matrix that pivoting inside node blocks cannot handle.
 enum class SolverKind { automatic, block, klu };
 
 /// active: 6 * pattern.size() flags (1 = unknown, 0 = held). The pattern must outlive the solver.

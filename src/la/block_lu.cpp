@@ -1,0 +1,111 @@
+#include <la/block_lu.hpp>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <type_traits>
+
+namespace whirl::la {
+
+namespace {
+
+template <class Scalar>
+constexpr std::size_t planes = std::is_same_v<Scalar, Complex> ? 2 : 1;
+
+void add_term(lu::Terms& t, const BlockMatrix<6>& m, Complex c) {
+  if (c == Complex(0.0)) return;
+  t.value[t.count] = m.data();
+  t.re[t.count] = c.real();
+  t.im[t.count] = c.imag();
+  ++t.count;
+}
+
+}  // namespace
+
+template <class Scalar>
+BlockLu<Scalar>::BlockLu(const BlockPattern& pattern, std::span<const unsigned char> active, lu::Ordering ordering,
+                         const lu::Kernels* kernels)
+    : symbolic_(pattern, active, ordering),
+      kernels_(kernels ? *kernels : lu::kernels()),
+      inverse_(static_cast<std::size_t>(pattern.size() * lu::plane) * planes<Scalar>),
+      lower_(static_cast<std::size_t>(symbolic_.entries() * lu::plane) * planes<Scalar>),
+      upper_(static_cast<std::size_t>(symbolic_.entries() * lu::plane) * planes<Scalar>),
+      vec_(static_cast<std::size_t>(pattern.size() * lu::lane) * planes<Scalar>) {
+  // A singular chain leaves a last pivot of the size of the rounding errors it has gathered; they add up at random.
+  const double tolerance = std::numeric_limits<double>::epsilon() * (16.0 + std::sqrt(static_cast<double>(pattern.size())));
+  factors_ = {inverse_.data(), lower_.data(), upper_.data(), vec_.data(), tolerance};
+}
+
+template <class Scalar>
+Status BlockLu<Scalar>::factor(const MCK& m, Scalar cm, Scalar cc, Scalar ck) {
+  lu::Terms t;
+  add_term(t, m.M, cm);
+  add_term(t, m.C, cc);
+  add_term(t, m.K, ck);
+  if (t.count == 0) t.value[t.count++] = m.K.data();  // S = 0: only held unknowns are regular
+  if constexpr (std::is_same_v<Scalar, double>)
+    outcome_ = kernels_.factor_real(symbolic_.plan(), t, factors_);
+  else
+    outcome_ = kernels_.factor_complex(symbolic_.plan(), t, factors_);
+  singular_ = outcome_.step < 0 ? -1 : 6 * Index(symbolic_.plan().node[outcome_.step]) + outcome_.component;
+  return singular_ < 0 ? Status::ok : Status::singular;
+}
+
+template <class Scalar>
+void BlockLu<Scalar>::solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> b) {
+  if constexpr (std::is_same_v<Scalar, double>)
+    kernels_.solve_real(symbolic_.plan(), factors_, b.data());
+  else
+    kernels_.solve_complex(symbolic_.plan(), factors_, reinterpret_cast<double*>(b.data()));
+}
+
+template <class Scalar>
+Eigen::Matrix<Scalar, 6, 6> BlockLu<Scalar>::inverse_pivot_block(Index step) const {
+  const double* const p = inverse_.data() + static_cast<std::size_t>(step * lu::plane) * planes<Scalar>;
+  Eigen::Matrix<Scalar, 6, 6> d;
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 6; ++i) {
+      if constexpr (std::is_same_v<Scalar, double>)
+        d(i, j) = p[8 * j + i];
+      else
+        d(i, j) = Complex(p[8 * j + i], p[8 * j + i + lu::plane]);
+    }
+  return d;
+}
+
+template <class Scalar>
+std::pair<double, Complex> BlockLu<Scalar>::determinant() const {
+  double log10_size = 0.0;
+  Complex phase = 1.0;
+  for (Index k = 0; k < symbolic_.plan().n; ++k) {
+    const auto lu = inverse_pivot_block(k).partialPivLu();  // of D^-1: reciprocal determinant
+    phase *= static_cast<double>(lu.permutationP().determinant());
+    for (int i = 0; i < 6; ++i) {
+      const Complex u = lu.matrixLU()(i, i);
+      log10_size -= std::log10(std::abs(u));
+      phase *= std::conj(u) / std::abs(u);
+    }
+    phase /= std::abs(phase);
+  }
+  return {log10_size, phase};
+}
+
+template <class Scalar>
+Index BlockLu<Scalar>::negative_eigenvalues() const {
+  Index count = 0;
+  for (Index k = 0; k < symbolic_.plan().n; ++k) {
+    // The inverse has the signs of D. Scaling by the diagonal keeps them and evens out the units.
+    Eigen::Matrix<Scalar, 6, 6> d = inverse_pivot_block(k);
+    d = (0.5 * (d + d.adjoint())).eval();
+    Vector<6> s;
+    for (int i = 0; i < 6; ++i) s(i) = 1.0 / std::sqrt(std::max(d.row(i).cwiseAbs().maxCoeff(), 1e-300));
+    d = (s.asDiagonal() * d * s.asDiagonal()).eval();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Scalar, 6, 6>> eig(d, Eigen::EigenvaluesOnly);
+    count += (eig.eigenvalues().array() < 0.0).count();
+  }
+  return count;
+}
+
+template class BlockLu<double>;
+template class BlockLu<Complex>;
+
+}  // namespace whirl::la

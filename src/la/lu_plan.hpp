@@ -1,0 +1,41 @@
+// Symbolic block LU: elimination order, fill and update lists for the kernels of lu_kernel.hpp.
+#pragma once
+#include <la/block.hpp>
+#include <la/lu_kernel.hpp>
+#include <span>
+#include <vector>
+
+namespace whirl::la::lu {
+
+/// How the nodes are ordered.
+enum class Ordering {
+  natural,   ///< as numbered
+  two_ended, ///< tridiagonal patterns: 0, n-1, 1, n-2, ...: no fill, and two independent chains that overlap in the processor
+  amd,       ///< approximate minimum degree on the node graph
+  best       ///< two_ended on tridiagonal patterns, amd on others
+};
+
+/// Elimination order of the nodes: order[k] is eliminated at step k.
+std::vector<int> make_order(const BlockPattern& pattern, Ordering ordering);
+
+class Symbolic {
+ public:
+  Symbolic(const BlockPattern& pattern, std::span<const unsigned char> active, Ordering ordering);
+  Symbolic(const Symbolic&) = delete;
+  Symbolic& operator=(const Symbolic&) = delete;
+
+  const Plan& plan() const { return plan_; }
+  /// Number of factor entries (L, U pairs).
+  Index entries() const { return static_cast<Index>(row_.size()); }
+  /// Step at which a node is eliminated.
+  int step(Index node) const { return step_[static_cast<std::size_t>(node)]; }
+
+ private:
+  std::vector<int> node_, step_, diag_slot_, entry_start_, row_, lower_slot_, upper_slot_;
+  std::vector<int> row_start_, row_entry_, row_step_, update_start_, update_;
+  std::vector<unsigned char> partial_;
+  std::vector<long long> mask_;
+  Plan plan_;
+};
+
+}  // namespace whirl::la::lu
