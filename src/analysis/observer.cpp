@@ -1,0 +1,99 @@
+#include <analysis/observer.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::analysis {
+
+Recorder::Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0, double t1)
+    : channels_(std::move(channels)), sink_(std::move(sink)), ticker_(t_begin, every), every_(every), t0_(t0), t1_(t1) {
+  std::size_t n = 1;
+  for (const Measurement& m : channels_) n += m.width();
+  row_.resize(n);
+}
+
+void Recorder::write(const Snapshot& s) {
+  row_[0] = s.t();
+  double* out = row_.data() + 1;
+  for (const Measurement& m : channels_) m.evaluate(s, out), out += m.width();
+  sink_(row_);
+  ++rows_;
+}
+
+void Recorder::begin(const Snapshot& s) {
+  if (s.t() >= t0_ && s.t() <= t1_) write(s);
+  ticker_.advance();
+}
+
+void Recorder::step(StepAccess& s) {
+  if (every_ <= 0.0) {
+    if (s.t1() >= t0_ && s.t1() <= t1_) write(s.end());
+    return;
+  }
+  // a tick within round-off of the step's end belongs to this step
+  for (const double slack = 1e-12 * std::max(std::abs(s.t1()), every_); ticker_.next() <= s.t1() + slack; ticker_.advance())
+    if (const double t = std::min(ticker_.next(), s.t1()); t >= t0_ && t <= t1_) write(s.at(t));
+}
+
+PeakTracker::PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from)
+    : points_(std::move(points)), reference_(reference), t_from_(t_from) {
+  for (const auto& p : points_) peaks_.push_back({p.first, 0.0, 0.0, 0.0});
+}
+
+void PeakTracker::begin(const Snapshot& s) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const double r = displacement(s, points_[i].second).tail<2>().norm();
+    peaks_[i] = {points_[i].first, r, s.t(), s.node(reference_).spin()};
+  }
+}
+
+void PeakTracker::step(StepAccess& s) {
+  if (s.t1() < t_from_) return;
+  // Four looks a step bracket a maximum; golden section on the dense output finishes a new one.
+  constexpr int looks = 4;
+  const double h = s.t1() - s.t0();
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    auto radius = [&](double t) { return displacement(s.at(t), points_[i].second).tail<2>().norm(); };
+    double best = 0.0, where = s.t1();
+    for (int k = 1; k <= looks; ++k) {
+      const double t = k == looks ? s.t1() : s.t0() + h * k / looks, r = radius(t);
+      if (r > best) best = r, where = t;
+    }
+    if (best < 0.9 * peaks_[i].amplitude) continue;
+    double a = std::max(s.t0(), where - h / looks), b = std::min(s.t1(), where + h / looks);
+    constexpr double golden = 0.6180339887498949;
+    double x1 = b - golden * (b - a), x2 = a + golden * (b - a), r1 = radius(x1), r2 = radius(x2);
+    for (int k = 0; k < 24 && best > 0.99 * peaks_[i].amplitude; ++k) {
+      if (r1 > r2) b = x2, x2 = x1, r2 = r1, x1 = b - golden * (b - a), r1 = radius(x1);
+      else a = x1, x1 = x2, r1 = r2, x2 = a + golden * (b - a), r2 = radius(x2);
+    }
+    if (r1 > best) best = r1, where = x1;
+    if (r2 > best) best = r2, where = x2;
+    if (best > peaks_[i].amplitude) peaks_[i] = {points_[i].first, best, where, s.at(where).node(reference_).spin()};
+  }
+}
+
+void EnergyBalance::begin(const Snapshot& s) {
+  const auto p = s.power();
+  e0_ = e1_ = p.stored;
+  largest_kinetic_ = p.kinetic;
+}
+
+void EnergyBalance::step(StepAccess& s) {
+  // Powers at the Radau points of the step: the collocation polynomial is most accurate there, and the quadrature has order 5.
+  static const double r6 = std::sqrt(6.0);
+  const double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
+  const double b[3] = {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0};
+  const double h = s.t1() - s.t0();
+  time::Problem::Power p;
+  for (int k = 0; k < 3; ++k) {
+    p = (k == 2 ? s.end() : s.at(s.t0() + c[k] * h)).power();
+    supplied_ += h * b[k] * p.supplied;
+    dissipated_ += h * b[k] * p.dissipated;
+  }
+  e1_ = p.stored;
+  largest_kinetic_ = std::max(largest_kinetic_, p.kinetic);
+  worst_ = std::max(worst_, std::abs(defect()));
+}
+
+}  // namespace whirl::analysis

@@ -1,0 +1,105 @@
+// Observers watch a transient step by step: time histories, frames, peaks, energy balance, checkpoints. The stepping loop
+// knows none of them; what a deck does not ask for is an observer that does not exist.
+#pragma once
+#include <analysis/measurement.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace whirl::analysis {
+
+/// The accepted step [t0, t1] with its dense output. at() evaluates a state inside it; the reference is good until the next
+/// call.
+class StepAccess {
+ public:
+  virtual ~StepAccess() = default;
+  virtual double t0() const = 0;
+  virtual double t1() const = 0;
+  virtual const Snapshot& at(double t) = 0;
+  const Snapshot& end() { return at(t1()); }
+};
+
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// The initial state, once.
+  virtual void begin(const Snapshot& s) { (void)s; }
+  virtual void step(StepAccess& s) = 0;
+  virtual void end() {}
+};
+
+/// Times k * every from t_begin on, free of accumulated rounding.
+class Ticker {
+ public:
+  Ticker(double t_begin, double every) : t0_(t_begin), every_(every) {}
+  double next() const { return t0_ + static_cast<double>(k_) * every_; }
+  void advance() { ++k_; }
+  long count() const { return k_; }
+  void set_count(long k) { k_ = k; }
+
+ private:
+  double t0_, every_;
+  long k_ = 0;
+};
+
+/// Receives rows of measured values.
+using RowSink = std::function<void(const std::vector<double>&)>;
+
+/// Rows of measurements (time first) at fixed intervals, or at every accepted step (every = 0). Decimation by interval; window by
+/// [t0, t1]. Values are SI and unscaled.
+class Recorder final : public Observer {
+ public:
+  Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0 = -infinity, double t1 = infinity);
+  void begin(const Snapshot& s) override;
+  void step(StepAccess& s) override;
+  long rows() const { return rows_; }
+  Ticker& ticker() { return ticker_; }
+
+ private:
+  void write(const Snapshot& s);
+  std::vector<Measurement> channels_;
+  RowSink sink_;
+  Ticker ticker_;
+  double every_, t0_, t1_;
+  long rows_ = 0;
+  std::vector<double> row_;
+};
+
+/// Largest lateral amplitude of a point, where on the speed axis it happened, refined inside steps by golden section.
+struct Peak {
+  std::string name;
+  double amplitude = 0, time = 0, speed = 0;   ///< m, s, rad/s
+};
+class PeakTracker final : public Observer {
+ public:
+  /// reference: node whose spin is the speed axis. samples: dense-output evaluations a step (a step may span a large part of a whirl).
+  PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from = -infinity);
+  void begin(const Snapshot& s) override;
+  void step(StepAccess& s) override;
+  const std::vector<Peak>& peaks() const { return peaks_; }
+
+ private:
+  std::vector<std::pair<std::string, Point>> points_;
+  std::vector<Peak> peaks_;
+  Index reference_;
+  double t_from_;
+};
+
+/// Work and energy: E(t) - E(0) = work supplied - energy dissipated; the defect is the run's own measure of accuracy.
+class EnergyBalance final : public Observer {
+ public:
+  void begin(const Snapshot& s) override;
+  void step(StepAccess& s) override;
+  double stored0() const { return e0_; }
+  double stored() const { return e1_; }
+  double supplied() const { return supplied_; }
+  double dissipated() const { return dissipated_; }
+  double defect() const { return e1_ - e0_ - supplied_ + dissipated_; }
+  double worst_defect() const { return worst_; }
+  double largest_kinetic() const { return largest_kinetic_; }
+
+ private:
+  double e0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0;
+};
+
+}  // namespace whirl::analysis
