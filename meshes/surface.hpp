@@ -89,37 +89,40 @@ class Skin {
 
   Index point_count() const { return static_cast<Index>(rings_.size()) * around_; }
   Index quad_count() const { return static_cast<Index>(quads_.size() / 4); }
+  int around() const { return static_cast<int>(around_); }
   /// Four point indices a quad, counter-clockwise seen from outside.
   const std::vector<Index>& quads() const { return quads_; }
   /// Per quad: 1 on the painted stripe.
   const std::vector<unsigned char>& stripe() const { return stripe_; }
   /// Per quad: 0 = shaft, k = k-th disk of the scene (from 1).
   const std::vector<int>& part() const { return part_; }
-  /// Per point: reference position, 3 values.
-  const std::vector<float>& reference() const { return reference_; }
 
+  /// After a change of chart: the triad that the poses of a line refer to from now on.
+  void set_chart(Index line, const Mat3& triad) { triads_[static_cast<std::size_t>(line)] = triad; }
   /// Positions and outward unit normals at the given (already magnified) poses: 3 floats a point. No allocation when
   /// the vectors already have their size.
   void update(std::span<const Pose> nodes, std::vector<float>& points, std::vector<float>& normals) const;
+  /// Displacement of the centre line at each point's section, m: 3 floats a point.
+  void centre_displacement(std::span<const Pose> nodes, std::vector<float>& displacement) const;
 
  private:
-  struct Ring {
-    Index line;
-    Place a, b;              ///< between these places ...
-    double length, xi;       ///< ... their reference distance, and where
-    double offset;           ///< m along the section normal from there
-    double radius;
-    double n_axial, n_radial;
-  };
-  void add_body(Index line, int part, const std::vector<Ring>& edge);
+  struct Station { Index line; Place a, b; double length, xi; Vec3 reference; };   ///< where on the line a ring stands
+  struct Ring { std::size_t station; double radius, n_axial, n_radial; };
+  struct Vertex { std::size_t station; double s, radius; };
+  std::size_t add_station(const Scene& scene, Index line, const Place& a, const Place& b, double xi);
+  Pose pose(std::span<const Pose> nodes, const Station& s) const;
+  void add_shaft(const Scene& scene, Index line);
+  void add_disk(const Scene& scene, Index line, const DiskShape& disk, int part);
+  /// Revolves a closed polyline; the outside is on its left. Corners get two rings.
+  void revolve(const std::vector<Vertex>& profile, int part);
   std::vector<Mat3> triads_;
   std::vector<double> cos_, sin_;
   Index around_ = 0;
+  std::vector<Station> stations_;
   std::vector<Ring> rings_;
   std::vector<Index> quads_;
   std::vector<unsigned char> stripe_;
   std::vector<int> part_;
-  std::vector<float> reference_;
 };
 
 }  // namespace whirl::meshes

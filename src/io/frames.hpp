@@ -19,6 +19,7 @@ using meshes::Scene;
 struct FrameState {
   double time = 0.0;                        ///< s (phase in rad for mode shapes)
   std::span<const Pose> nodes;              ///< one a node of the scene
+  std::span<const Mat3> charts;             ///< triad of each line that (d, phi) refer to, after a change of chart
   std::span<const Vec3> velocity;           ///< m/s
   std::span<const Vec3> angular_velocity;   ///< rad/s
   std::span<const Vec3> force;              ///< N, internal force at the node (section to its right on its left)
@@ -43,7 +44,8 @@ struct VtkFrameOptions {
   double deformation_scale = 1.0;    ///< magnifies displacement and tilt, not the spin
   int points_around = 32;
   std::uint64_t max_frames = 5000;   ///< beyond it every other frame is removed and the stride doubles
-  double trail_seconds = 0.0;        ///< length of orbit trails; 0 = all frames up to 2000 points
+  std::size_t trail_points = 2000;   ///< longest orbit trail, frames
+  double keep_until = -infinity;     ///< continued run: frames of the earlier run up to this time stay
 };
 
 /// Sets from deck names: "line", "surface", "bearings", "orbits". Error for any other.

@@ -1,0 +1,159 @@
+#include <core/error.hpp>
+#include <fcntl.h>
+#include <io/file.hpp>
+#include <unistd.h>
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+namespace whirl::io {
+
+namespace fs = std::filesystem;
+
+void io_failure(const fs::path& file, const std::string& what, int error_number) {
+  std::string m = what + " '" + file.string() + "'";
+  if (error_number) m += std::string(": ") + std::strerror(error_number);
+  std::string hint;
+  if (error_number == ENOSPC) hint = "the disk is full";
+  if (error_number == EACCES || error_number == EROFS) hint = "choose another output directory";
+  throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", std::move(m), std::move(hint), Where{}});
+}
+
+fs::path temporary_beside(const fs::path& file) {
+  static std::atomic<unsigned> count{0};
+  return file.parent_path() /
+         ("." + file.filename().string() + "." + std::to_string(::getpid()) + "." + std::to_string(count++));
+}
+
+void rename_into_place(const fs::path& from, const fs::path& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0) {
+    const int e = errno;
+    ::unlink(from.c_str());
+    io_failure(to, "cannot write", e);
+  }
+}
+
+namespace {
+
+void make_parent(const fs::path& file) {
+  if (!file.has_parent_path()) return;
+  std::error_code ec;
+  fs::create_directories(file.parent_path(), ec);
+  if (ec) io_failure(file.parent_path(), "cannot make the folder", ec.value());
+}
+
+// Returns 0 or errno.
+int write_all(int fd, const char* p, std::size_t n) {
+  while (n > 0) {
+    const ssize_t k = ::write(fd, p, n);
+    if (k < 0) {
+      if (errno == EINTR) continue;
+      return errno;
+    }
+    p += k, n -= static_cast<std::size_t>(k);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void write_atomic(const fs::path& file, std::string_view content) {
+  make_parent(file);
+  const fs::path tmp = temporary_beside(file);
+  const int fd = ::open(tmp.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd < 0) io_failure(file, "cannot write", errno);
+  int e = write_all(fd, content.data(), content.size());
+  if (::close(fd) != 0 && e == 0) e = errno;
+  if (e != 0) {
+    ::unlink(tmp.c_str());
+    io_failure(file, "cannot write", e);
+  }
+  rename_into_place(tmp, file);
+}
+
+std::string read_text(const fs::path& file) {
+  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) io_failure(file, "cannot read", errno);
+  std::string s;
+  std::size_t n = 0;
+  for (;;) {
+    if (s.size() < n + 65536) s.resize(std::max<std::size_t>(n + 65536, 2 * n));
+    const ssize_t k = ::read(fd, s.data() + n, s.size() - n);
+    if (k < 0 && errno == EINTR) continue;
+    if (k < 0) {
+      const int e = errno;
+      ::close(fd);
+      io_failure(file, "cannot read", e);
+    }
+    if (k == 0) break;
+    n += static_cast<std::size_t>(k);
+  }
+  ::close(fd);
+  s.resize(n);
+  return s;
+}
+
+AppendFile::AppendFile(std::size_t buffer_bytes) : buffer_(std::max<std::size_t>(buffer_bytes, 4096), '\0') {}
+
+AppendFile::~AppendFile() {
+  try {
+    close();
+  } catch (...) {  // a destructor has nobody to tell; close() before it to know
+  }
+}
+
+void AppendFile::create(const fs::path& file, std::string_view head) {
+  close();
+  make_parent(file);
+  path_ = file;
+  const fs::path tmp = temporary_beside(file);
+  fd_ = ::open(tmp.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd_ < 0) io_failure(file, "cannot write", errno);
+  if (const int e = write_all(fd_, head.data(), head.size())) {
+    ::close(std::exchange(fd_, -1));
+    ::unlink(tmp.c_str());
+    io_failure(file, "cannot write", e);
+  }
+  rename_into_place(tmp, file);  // the descriptor follows the file
+}
+
+void AppendFile::reopen(const fs::path& file, std::uint64_t size) {
+  close();
+  path_ = file;
+  fd_ = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  if (fd_ < 0) io_failure(file, "cannot continue", errno);
+  if (::ftruncate(fd_, static_cast<off_t>(size)) != 0 || ::lseek(fd_, static_cast<off_t>(size), SEEK_SET) < 0)
+    io_failure(file, "cannot continue", errno);
+}
+
+char* AppendFile::reserve(std::size_t n) {
+  if (used_ + n > buffer_.size()) flush();
+  if (n > buffer_.size()) buffer_.resize(n);
+  return buffer_.data() + used_;
+}
+
+void AppendFile::flush() {
+  if (fd_ < 0 || used_ == 0) return;
+  const int e = write_all(fd_, buffer_.data(), used_);
+  used_ = 0;
+  if (e != 0) io_failure(path_, "cannot write", e);
+}
+
+void AppendFile::close() {
+  if (fd_ < 0) return;
+  const int fd = fd_;
+  try {
+    flush();
+  } catch (...) {
+    fd_ = -1;
+    ::close(fd);
+    throw;
+  }
+  fd_ = -1;
+  if (::close(fd) != 0) io_failure(path_, "cannot write", errno);
+}
+
+}  // namespace whirl::io

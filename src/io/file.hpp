@@ -1,0 +1,45 @@
+// Files that are either whole or not there.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace whirl::io {
+
+/// Writes `content` beside `file` and renames it into place. Makes missing folders. Error with Exit::io.
+void write_atomic(const std::filesystem::path& file, std::string_view content);
+/// Name of the file that write_atomic and others use before renaming: same folder, hidden, unique to this process.
+std::filesystem::path temporary_beside(const std::filesystem::path& file);
+/// Renames; removes `from` and throws on failure.
+void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
+std::string read_text(const std::filesystem::path& file);
+[[noreturn]] void io_failure(const std::filesystem::path& file, const std::string& what, int error_number = 0);
+
+/// An append-only file descriptor with a fixed buffer; short writes and full disks become Errors.
+class AppendFile {
+ public:
+  explicit AppendFile(std::size_t buffer_bytes);
+  ~AppendFile();
+  AppendFile(const AppendFile&) = delete;
+  AppendFile& operator=(const AppendFile&) = delete;
+  /// A new file holding `head`, put in place of an older one in one go.
+  void create(const std::filesystem::path& file, std::string_view head);
+  /// An existing file cut to `size` bytes; appends go there.
+  void reopen(const std::filesystem::path& file, std::uint64_t size);
+  bool is_open() const { return fd_ >= 0; }
+  /// Space for at least n more bytes (n <= buffer size), to be filled and then committed.
+  char* reserve(std::size_t n);
+  void commit(std::size_t n) { used_ += n; }
+  std::size_t waiting() const { return used_; }
+  void flush();
+  void close();
+
+ private:
+  std::filesystem::path path_;
+  std::string buffer_;
+  std::size_t used_ = 0;
+  int fd_ = -1;
+};
+
+}  // namespace whirl::io

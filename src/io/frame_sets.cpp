@@ -1,0 +1,289 @@
+#include <Eigen/Geometry>
+#include <io/frame_sets.hpp>
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::io {
+namespace {
+
+using meshes::interpolate;
+using meshes::Place;
+using meshes::pose_at;
+using meshes::section_axes;
+using meshes::Skin;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+void put(std::vector<float>& v, std::size_t i, const Vec3& x) {
+  for (std::size_t c = 0; c < 3; ++c) v[3 * i + c] = static_cast<float>(x[static_cast<Index>(c)]);
+}
+
+PolyData::Array array(std::string name, int components, std::size_t n) {
+  return {std::move(name), components, std::vector<float>(n * static_cast<std::size_t>(components))};
+}
+
+Index line_of(const Scene& s, const Place& p) { return s.node_line[at(p.node)]; }
+
+class LineSet final : public FrameSet {
+ public:
+  explicit LineSet(const Scene& scene) : scene_(scene) {
+    std::vector<std::int64_t> ids;
+    for (std::size_t l = 0; l < scene_.lines.size(); ++l) {
+      const auto& line = scene_.lines[l];
+      ids.clear();
+      for (std::size_t k = 0; k < line.points.size(); ++k) {
+        const bool last = k + 1 == line.points.size();
+        const Place a = line.points[k], b = last ? a : line.points[k + 1];
+        const double ra = k < line.radius.size() ? line.radius[k] : 0.0;
+        const double rb = k + 1 < line.radius.size() ? line.radius[k + 1] : ra;
+        const int n = last || a.node == b.node ? 1 : 4;
+        for (int j = 0; j < n; ++j) {
+          const double xi = static_cast<double>(j) / n;
+          ids.push_back(static_cast<std::int64_t>(places_.size()));
+          places_.push_back({static_cast<Index>(l), a, b, length(line, a, b), xi, reference(line, a, b, xi)});
+          radius_.push_back(static_cast<float>(ra + xi * (rb - ra)));
+        }
+      }
+      if (ids.size() > 1) data_.lines.add(ids.data(), ids.size());
+      else if (ids.size() == 1) data_.vertices.add(ids.data(), 1);
+    }
+    const std::size_t n = places_.size();
+    data_.points.resize(3 * n);
+    for (const char* name : {"displacement", "rotation", "director", "axis2", "axis3"}) data_.point_data.push_back(array(name, 3, n));
+    data_.point_data.push_back(array("spin_angle", 1, n));
+    data_.point_data.push_back({"radius", 1, radius_});
+  }
+
+  const char* name() const override { return "line"; }
+
+  void update(const FramePoses& f) override {
+    const std::size_t n = places_.size();
+    auto& arrays = data_.point_data;
+    arrays.resize(7);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto& p = places_[i];
+      const Mat3& triad = f.state->charts.empty() ? scene_.lines[at(p.line)].triad : f.state->charts[at(p.line)];
+      const Pose x = pose(f.true_poses, p);
+      put(data_.points, i, pose(f.drawn, p).r);
+      const Vec3 e = triad.col(0), axis = e.cross(x.d);
+      const double s = std::sqrt(axis.squaredNorm()), g = std::atan2(s, e.dot(x.d));
+      const Mat3 axes = section_axes(triad, x.d, x.phi);
+      put(arrays[0].floats(), i, x.r - p.reference);
+      put(arrays[1].floats(), i, s > 0 ? Vec3(g / s * axis) : Vec3(Vec3::Zero()));
+      put(arrays[2].floats(), i, x.d);
+      put(arrays[3].floats(), i, axes.col(1));
+      put(arrays[4].floats(), i, axes.col(2));
+      arrays[5].floats()[i] = static_cast<float>(x.phi);
+    }
+    add("velocity", f.state->velocity);
+    add("angular_velocity", f.state->angular_velocity);
+    add("force", f.state->force);
+    add("moment", f.state->moment);
+  }
+
+ private:
+  struct Spot { Index line; Place a, b; double length, xi; Vec3 reference; };
+
+  Vec3 reference(const Scene::Line& line, const Place& a, const Place& b, double xi) const {
+    const Vec3 e = line.triad.col(0);
+    return (1 - xi) * (scene_.nodes[at(a.node)] + a.offset * e) + xi * (scene_.nodes[at(b.node)] + b.offset * e);
+  }
+  double length(const Scene::Line& line, const Place& a, const Place& b) const {
+    return std::sqrt((reference(line, a, b, 1) - reference(line, a, b, 0)).squaredNorm());
+  }
+  static Pose pose(std::span<const Pose> nodes, const Spot& s) {
+    const Pose a = pose_at(nodes, s.a);
+    return s.xi <= 0.0 ? a : interpolate(a, pose_at(nodes, s.b), s.length, s.xi);
+  }
+  void add(const char* name, std::span<const Vec3> values) {
+    if (values.empty()) return;
+    auto a = array(name, 3, places_.size());
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const auto& p = places_[i];
+      put(a.floats(), i, (1 - p.xi) * values[at(p.a.node)] + p.xi * values[at(p.b.node)]);
+    }
+    data_.point_data.push_back(std::move(a));
+  }
+
+  Scene scene_;
+  std::vector<Spot> places_;
+  std::vector<float> radius_;
+};
+
+class SurfaceSet final : public FrameSet {
+ public:
+  SurfaceSet(const Scene& scene, int points_around) : skin_(scene, points_around) {
+    const auto& q = skin_.quads();
+    std::vector<std::int64_t> id(4);
+    for (std::size_t k = 0; k < q.size(); k += 4) {
+      std::copy_n(q.begin() + static_cast<std::ptrdiff_t>(k), 4, id.begin());
+      data_.polygons.add(id.data(), 4);
+    }
+    data_.normals = "Normals";
+    data_.point_data.push_back({"Normals", 3, std::vector<float>{}});
+    data_.point_data.push_back({"displacement", 3, std::vector<float>{}});
+    data_.cell_data.push_back({"stripe", 1, skin_.stripe()});
+    data_.cell_data.push_back({"part", 1, std::vector<std::int32_t>(skin_.part().begin(), skin_.part().end())});
+  }
+  const char* name() const override { return "surface"; }
+  void update(const FramePoses& f) override {
+    for (std::size_t l = 0; l < f.state->charts.size(); ++l) skin_.set_chart(static_cast<Index>(l), f.state->charts[l]);
+    skin_.update(f.drawn, data_.points, data_.point_data[0].floats());
+    skin_.centre_displacement(f.true_poses, data_.point_data[1].floats());
+  }
+
+ private:
+  Skin skin_;
+};
+
+class SupportSet final : public FrameSet {
+ public:
+  explicit SupportSet(const Scene& scene) : scene_(scene) {
+    for (std::size_t k = 0; k < scene_.supports.size(); ++k) {
+      const auto& s = scene_.supports[k];
+      const std::int64_t vertex = grow(1);
+      data_.vertices.add(&vertex, 1);
+      if (s.kind == meshes::SupportShape::Kind::bearing)
+        for (int ring = 0; ring < 2; ++ring) polyline(ring_points + 1);
+      polylines_of_springs(s);
+    }
+    data_.points.resize(3 * count_);
+    data_.point_data.push_back(array("force", 3, count_));
+    // Cell data follow the order of cells: all vertices, then all lines.
+    std::vector<std::int32_t> number;
+    for (std::size_t k = 0; k < scene_.supports.size(); ++k) number.push_back(static_cast<std::int32_t>(k));
+    for (std::size_t k = 0; k < scene_.supports.size(); ++k) {
+      const auto& s = scene_.supports[k];
+      number.insert(number.end(), s.kind == meshes::SupportShape::Kind::bearing ? 6 : 2, static_cast<std::int32_t>(k));
+    }
+    data_.cell_data.push_back({"support", 1, std::move(number)});
+  }
+  const char* name() const override { return "bearings"; }
+
+  void update(const FramePoses& f) override {
+    std::size_t i = 0;
+    auto& force = data_.point_data[0].floats();
+    for (std::size_t k = 0; k < scene_.supports.size(); ++k) {
+      const auto& s = scene_.supports[k];
+      const Mat3& triad = scene_.lines[at(line_of(scene_, s.at))].triad;
+      const Pose journal = pose_at(f.drawn, s.at);
+      Vec3 far = scene_.nodes[at(s.at.node)] + s.at.offset * triad.col(0);
+      Mat3 far_axes = triad;
+      if (s.to_node) {
+        const Pose other = pose_at(f.drawn, s.to);
+        far = other.r;
+        far_axes = section_axes(scene_.lines[at(line_of(scene_, s.to))].triad, other.d, 0.0);
+      }
+      const double r = s.radius > 0 ? s.radius : default_radius();
+      if (!f.state->support_force.empty()) put(force, i, f.state->support_force[k]);
+      put(data_.points, i++, journal.r);
+      // Springs do not turn with the shaft: axes at phi = 0.
+      const Mat3 axes = section_axes(triad, journal.d, 0.0);
+      if (s.kind == meshes::SupportShape::Kind::bearing) {
+        circle(journal.r, axes, 1.12 * r, i);
+        circle(far, far_axes, 1.9 * r, i);
+        for (int q = 0; q < 4; ++q) {
+          const double a = pi / 4 + q * pi / 2;
+          helix(far + 1.9 * r * (std::cos(a) * far_axes.col(1) + std::sin(a) * far_axes.col(2)),
+                journal.r + 1.12 * r * (std::cos(a) * axes.col(1) + std::sin(a) * axes.col(2)), triad.col(0), 0.12 * r, i);
+        }
+      } else {
+        for (int q = 1; q < 3; ++q) helix(far - 5.0 * r * far_axes.col(q), journal.r, triad.col(0), 0.5 * r, i);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t ring_points = 48, spring_points = 97, turns = 6;
+
+  std::int64_t grow(std::size_t n) {
+    const auto first = static_cast<std::int64_t>(count_);
+    count_ += n;
+    return first;
+  }
+  void polyline(std::size_t n) {
+    std::vector<std::int64_t> id(n);
+    std::int64_t first = grow(n);
+    for (auto& x : id) x = first++;
+    data_.lines.add(id.data(), n);
+  }
+  void polylines_of_springs(const meshes::SupportShape& s) {
+    const int n = s.kind == meshes::SupportShape::Kind::bearing ? 4 : 2;
+    for (int q = 0; q < n; ++q) polyline(spring_points);
+  }
+  // A support on a line without a radius (rigid massless rod): a fiftieth of the rotor's length.
+  double default_radius() const {
+    Vec3 lo = scene_.nodes.front(), hi = lo;
+    for (const auto& x : scene_.nodes) lo = lo.cwiseMin(x), hi = hi.cwiseMax(x);
+    double longest = (hi - lo).maxCoeff();
+    for (const auto& l : scene_.lines)
+      for (const auto& d : l.disks) longest = std::max(longest, d.outer);
+    return longest > 0 ? longest / 50 : 1.0;
+  }
+  void circle(const Vec3& centre, const Mat3& axes, double r, std::size_t& i) {
+    for (std::size_t k = 0; k <= ring_points; ++k) {
+      const double a = two_pi * static_cast<double>(k) / ring_points;
+      put(data_.points, i++, centre + r * (std::cos(a) * axes.col(1) + std::sin(a) * axes.col(2)));
+    }
+  }
+  // A spring from a to b: straight ends, `turns` coils between.
+  void helix(const Vec3& a, const Vec3& b, const Vec3& side, double r, std::size_t& i) {
+    const Vec3 axis = b - a;
+    Vec3 n1 = axis.cross(side);
+    const double l = std::sqrt(n1.squaredNorm());
+    n1 = l > 0 ? Vec3(n1 / l) : Vec3(Vec3::Zero());
+    for (std::size_t k = 0; k < spring_points; ++k) {
+      const double x = static_cast<double>(k) / (spring_points - 1);
+      const double coil = std::clamp((x - 0.12) / 0.76, 0.0, 1.0), angle = two_pi * turns * coil;
+      const double swell = r * std::min({1.0, 12 * coil, 12 * (1 - coil)});
+      put(data_.points, i++, a + x * axis + swell * (std::cos(angle) * n1 + std::sin(angle) * side));
+    }
+  }
+
+  Scene scene_;
+  std::size_t count_ = 0;
+};
+
+class TrailSet final : public FrameSet {
+ public:
+  TrailSet(const Scene& scene, std::size_t longest) : scene_(scene), longest_(std::max<std::size_t>(longest, 2)), points_(scene.trails.size()) {
+    data_.point_data.push_back(array("age", 1, 0));
+  }
+  const char* name() const override { return "orbits"; }
+  void update(const FramePoses& f) override {
+    if (times_.size() == longest_) times_.pop_front();
+    times_.push_back(f.state->time);
+    data_.points.clear(), data_.lines.clear(), data_.vertices.clear();
+    auto& age = data_.point_data[0].floats();
+    age.clear();
+    ++data_.topology;
+    std::vector<std::int64_t> id;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      if (points_[k].size() == longest_) points_[k].pop_front();
+      points_[k].push_back(pose_at(f.drawn, scene_.trails[k].at).r);
+      id.clear();
+      for (std::size_t j = 0; j < points_[k].size(); ++j) {
+        id.push_back(static_cast<std::int64_t>(data_.points.size() / 3));
+        for (int c = 0; c < 3; ++c) data_.points.push_back(static_cast<float>(points_[k][j][c]));
+        age.push_back(static_cast<float>(f.state->time - times_[j]));
+      }
+      if (id.size() > 1) data_.lines.add(id.data(), id.size());
+      else data_.vertices.add(id.data(), 1);
+    }
+  }
+
+ private:
+  Scene scene_;
+  std::size_t longest_;
+  std::deque<double> times_;
+  std::vector<std::deque<Vec3>> points_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSet> make_line_set(const Scene& scene) { return std::make_unique<LineSet>(scene); }
+std::unique_ptr<FrameSet> make_surface_set(const Scene& scene, int points_around) { return std::make_unique<SurfaceSet>(scene, points_around); }
+std::unique_ptr<FrameSet> make_support_set(const Scene& scene) { return std::make_unique<SupportSet>(scene); }
+std::unique_ptr<FrameSet> make_trail_set(const Scene& scene, std::size_t longest) { return std::make_unique<TrailSet>(scene, longest); }
+
+}  // namespace whirl::io

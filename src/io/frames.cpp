@@ -1,0 +1,249 @@
+#include <core/error.hpp>
+#include <core/plugin.hpp>
+#include <io/file.hpp>
+#include <io/frame_sets.hpp>
+#include <io/frames.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+namespace whirl::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string shortest(double x) {
+  char b[32];
+  return {b, std::to_chars(b, b + sizeof b, x).ptr};
+}
+
+std::string padded(std::uint64_t k) {
+  std::string s = std::to_string(k);
+  return s.size() < 6 ? std::string(6 - s.size(), '0') + s : s;
+}
+
+/// One .pvd and its folder of frames. The .pvd is rewritten after every frame, so it always lists whole files.
+class Collection {
+ public:
+  Collection(const fs::path& directory, const std::string& stem, double keep_until)
+      : pvd_(directory / (stem + ".pvd")), folder_(directory / stem), stem_(stem) {
+    std::error_code ec;
+    fs::create_directories(folder_, ec);
+    if (ec) io_failure(folder_, "cannot make the folder", ec.value());
+    if (keep_until > -infinity && fs::exists(pvd_, ec)) recover(keep_until);
+    // Frames of an earlier run that are not kept.
+    std::vector<fs::path> stale;
+    for (const auto& f : fs::directory_iterator(folder_, ec))
+      if (f.path().extension() == ".vtp" && !listed(f.path().filename().string())) stale.push_back(f.path());
+    for (const auto& f : stale) fs::remove(f, ec);
+  }
+
+  fs::path next_file() const { return folder_ / ("frame_" + padded(next_) + ".vtp"); }
+  std::size_t size() const { return frames_.size(); }
+
+  void add(double time) {
+    frames_.push_back({time, next_file().filename().string()});
+    ++next_;
+    write_pvd();
+  }
+
+  /// Leaves every other frame, the first one among them.
+  void thin() {
+    std::vector<Frame> kept;
+    std::vector<fs::path> gone;
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+      if (k % 2 == 0) kept.push_back(std::move(frames_[k]));
+      else gone.push_back(folder_ / frames_[k].file);
+    }
+    frames_ = std::move(kept);
+    write_pvd();   // before the files go: the list never names a missing one
+    std::error_code ec;
+    for (const auto& f : gone) fs::remove(f, ec);
+  }
+
+ private:
+  struct Frame { double time; std::string file; };
+
+  bool listed(const std::string& file) const {
+    for (const auto& f : frames_)
+      if (f.file == file) return true;
+    return false;
+  }
+
+  void recover(double keep_until) {
+    const std::string text = read_text(pvd_);
+    constexpr std::string_view open = "<DataSet timestep=\"", mid = "file=\"";
+    for (std::size_t p = text.find(open); p != std::string::npos; p = text.find(open, p + 1)) {
+      double time = 0;
+      std::from_chars(text.data() + p + open.size(), text.data() + text.size(), time);
+      const std::size_t a = text.find(mid, p), slash = text.find('/', a), end = text.find('"', slash);
+      if (end == std::string::npos || time > keep_until) break;
+      frames_.push_back({time, text.substr(slash + 1, end - slash - 1)});
+    }
+    if (!frames_.empty()) {
+      const std::string& f = frames_.back().file;   // frame_000123.vtp
+      std::from_chars(f.data() + 6, f.data() + f.size(), next_);
+      ++next_;
+    }
+  }
+
+  void write_pvd() const {
+    std::string s =
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+    s.reserve(s.size() + 96 * frames_.size());
+    for (const auto& f : frames_)
+      s += "<DataSet timestep=\"" + shortest(f.time) + "\" part=\"0\" file=\"" + stem_ + "/" + f.file + "\"/>\n";
+    s += "</Collection>\n</VTKFile>\n";
+    write_atomic(pvd_, s);
+  }
+
+  fs::path pvd_, folder_;
+  std::string stem_;
+  std::vector<Frame> frames_;
+  std::uint64_t next_ = 0;
+};
+
+class VtkFrames final : public FrameWriter {
+ public:
+  explicit VtkFrames(VtkFrameOptions o) : options_(std::move(o)), plugin_(Plugin::load("vtk")) {}
+
+  void begin(const Scene& scene) override {
+    sets_.clear();
+    scene_ = scene;
+    drawn_.resize(scene_.nodes.size());
+    const auto add = [&](std::unique_ptr<FrameSet> set) {
+      Collection files(options_.directory, options_.name + "_" + set->name(), options_.keep_until);
+      sets_.push_back({std::move(set), std::move(files),
+                       std::unique_ptr<PolyDataWriter>(plugin_.function<VtkMakeWriter>(vtk_make_writer)())});
+    };
+    if (options_.line) add(make_line_set(scene_));
+    if (options_.surface) add(make_surface_set(scene_, options_.points_around));
+    if (options_.bearings && !scene_.supports.empty()) add(make_support_set(scene_));
+    if (options_.orbits && !scene_.trails.empty()) add(make_trail_set(scene_, options_.trail_points));
+    frames_ = sets_.empty() ? 0 : sets_.front().files.size();
+    offered_ = 0, stride_ = 1;
+  }
+
+  void frame(const FrameState& state) override {
+    if (state.nodes.size() != scene_.nodes.size()) throw std::logic_error("FrameWriter: not one pose a node");
+    if (offered_++ % stride_ != 0) return;
+    if (frames_ >= options_.max_frames && options_.max_frames > 1) {
+      for (auto& s : sets_) s.files.thin();
+      frames_ = sets_.empty() ? 0 : sets_.front().files.size();
+      const bool on_stride = (offered_ - 1) % (2 * stride_) == 0;
+      stride_ *= 2;
+      if (!on_stride) return;
+    }
+    for (std::size_t i = 0; i < drawn_.size(); ++i) {
+      const auto line = static_cast<std::size_t>(scene_.node_line[i]);
+      const Vec3 e = scene_.lines[line].triad.col(0);
+      drawn_[i] = meshes::magnified(state.nodes[i], scene_.nodes[i], e, options_.deformation_scale);
+    }
+    const FramePoses poses{state.nodes, drawn_, &state};
+    for (auto& s : sets_) {
+      s.set->update(poses);
+      s.writer->write(s.files.next_file(), s.set->data(), state.time);
+      s.files.add(state.time);
+    }
+    ++frames_;
+  }
+
+  void end() override {}
+  std::uint64_t frames() const override { return frames_; }
+
+ private:
+  struct Set {
+    std::unique_ptr<FrameSet> set;
+    Collection files;
+    std::unique_ptr<PolyDataWriter> writer;
+  };
+  VtkFrameOptions options_;
+  const Plugin& plugin_;
+  Scene scene_;
+  std::vector<Pose> drawn_;
+  std::vector<Set> sets_;
+  std::uint64_t frames_ = 0, offered_ = 0, stride_ = 1;
+};
+
+}  // namespace
+
+void set_content(VtkFrameOptions& o, std::span<const std::string> names) {
+  o.line = o.surface = o.bearings = o.orbits = false;
+  for (const auto& n : names) {
+    if (n == "line") o.line = true;
+    else if (n == "surface") o.surface = true;
+    else if (n == "bearings") o.bearings = true;
+    else if (n == "orbits") o.orbits = true;
+    else
+      throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E93", "unknown VTK content '" + n + "'",
+                                         "one of: line, surface, bearings, orbits", Where{}});
+  }
+}
+
+bool vtk_available() { return Plugin::available("vtk"); }
+
+std::unique_ptr<FrameWriter> make_vtk_frames(VtkFrameOptions options) {
+  return std::make_unique<VtkFrames>(std::move(options));
+}
+
+FrameSchedule::FrameSchedule(const Options& o, double t_begin, double t_end)
+    : t0_(std::max(o.t0, t_begin)), t1_(std::min(o.t1, t_end)) {
+  const int cap = std::max(o.max_frames, 2);
+  if (o.every <= 0.0 && o.frames_per_revolution > 0.0) {
+    step_angle_ = two_pi / o.frames_per_revolution;
+    return;
+  }
+  if (!(t1_ >= t0_)) return;   // the window lies outside the run
+  const double span = t1_ - t0_;
+  step_ = o.every > 0.0 ? o.every : span / std::max(o.frames - 1, 1);
+  if (step_ > 0.0 && span / step_ > cap - 1) {
+    stretch_ = span / step_ / (cap - 1);
+    step_ *= stretch_;
+  }
+  planned_ = step_ > 0.0 ? static_cast<std::uint64_t>(std::floor(span / step_ * (1 + 1e-12))) + 1 : 1;
+  next_time_ = t0_;
+}
+
+double FrameSchedule::next_angle(double phi, double direction) const {
+  // A frame at phi itself is behind us: the next multiple, a hair beyond for round-off.
+  const double k = phi / step_angle_;
+  return direction >= 0.0 ? (std::floor(k + 1e-9) + 1.0) * step_angle_ : (std::ceil(k - 1e-9) - 1.0) * step_angle_;
+}
+
+void FrameSchedule::advance() {
+  ++taken_;
+  // Counted, not summed: frame k stands at t0 + k step to the last digit; the last one at the end of the window.
+  next_time_ = taken_ < planned_ ? std::min(t0_ + static_cast<double>(taken_) * step_, t1_) : infinity;
+}
+
+void pose_of_phase(std::span<const Pose> rest, const HarmonicShape& shape, double amplitude, double theta,
+                   std::vector<Pose>& out) {
+  const Complex z = amplitude * std::polar(1.0, theta);
+  out.resize(rest.size());
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    out[i].r = rest[i].r + (z * shape.u[i]).real();
+    const Vec3 d = rest[i].d + (z * shape.tilt[i]).real();
+    out[i].d = d / std::sqrt(d.squaredNorm());
+    out[i].phi = rest[i].phi + (shape.phi.empty() ? 0.0 : (z * shape.phi[i]).real());
+  }
+}
+
+void write_harmonic(FrameWriter& writer, const Scene& scene, const HarmonicShape& shape, double amplitude, int phases) {
+  if (shape.u.size() != scene.nodes.size() || shape.tilt.size() != scene.nodes.size())
+    throw std::invalid_argument("write_harmonic: one u and one tilt a node");
+  std::vector<Pose> rest(scene.nodes.size()), now;
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    rest[i] = {scene.nodes[i], scene.lines[static_cast<std::size_t>(scene.node_line[i])].triad.col(0), 0.0};
+  writer.begin(scene);
+  for (int k = 0; k < phases; ++k) {
+    FrameState s;
+    s.time = two_pi * k / phases;
+    pose_of_phase(rest, shape, amplitude, s.time, now);
+    s.nodes = now;
+    writer.frame(s);
+  }
+  writer.end();
+}
+
+}  // namespace whirl::io

@@ -1,0 +1,46 @@
+// One picture frame as plain arrays, and the interface of what writes it to a file.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace whirl::io {
+
+/// Points, and cells given by counts and point indices. Cell data are ordered: vertices, lines, polygons.
+struct PolyData {
+  struct Cells {
+    std::vector<std::int64_t> offset{0};      ///< starts of the cells in `point`, one more than cells
+    std::vector<std::int64_t> point;
+    std::size_t size() const { return offset.size() - 1; }
+    void add(const std::int64_t* p, std::size_t n) { point.insert(point.end(), p, p + n), offset.push_back(static_cast<std::int64_t>(point.size())); }
+    void clear() { offset.assign(1, 0), point.clear(); }
+  };
+  struct Array {
+    std::string name;
+    int components = 1;
+    std::variant<std::vector<float>, std::vector<std::uint8_t>, std::vector<std::int32_t>> values;
+    std::vector<float>& floats() { return std::get<0>(values); }
+  };
+  std::vector<float> points;                  ///< 3 a point
+  Cells vertices, lines, polygons;
+  std::vector<Array> point_data, cell_data;
+  std::string normals;                        ///< name of the point array that holds normals; empty: none
+  std::uint64_t topology = 0;                 ///< changes when the cells do
+};
+
+/// Writes frames of one set; keeps what does not change between them.
+class PolyDataWriter {
+ public:
+  virtual ~PolyDataWriter() = default;
+  /// Whole file or none (temporary and rename); `time` goes into the field data array TimeValue.
+  virtual void write(const std::filesystem::path& file, const PolyData& data, double time) = 0;
+};
+
+/// Entry point of the VTK plug-in.
+using VtkMakeWriter = PolyDataWriter*();
+inline constexpr const char* vtk_make_writer = "whirl_vtk_make_writer";
+
+}  // namespace whirl::io

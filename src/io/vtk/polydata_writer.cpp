@@ -1,0 +1,113 @@
+// The only file that sees VTK: .vtp by VTK's own XML writer, appended raw data, zlib.
+#include <core/plugin.hpp>
+#include <io/file.hpp>
+#include <io/polydata.hpp>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkObject.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <optional>
+
+namespace whirl::io {
+namespace {
+
+// The arrays are lent to VTK, not copied: they live until the file is written.
+template <class VtkArray, class T>
+vtkSmartPointer<vtkDataArray> lend(const std::vector<T>& v, int components, const char* name) {
+  auto a = vtkSmartPointer<VtkArray>::New();
+  a->SetName(name);
+  a->SetNumberOfComponents(components);
+  a->SetArray(const_cast<T*>(v.data()), static_cast<vtkIdType>(v.size()), 1);
+  return a;
+}
+
+vtkSmartPointer<vtkDataArray> lend(const PolyData::Array& a) {
+  struct Visitor {
+    const PolyData::Array& a;
+    vtkSmartPointer<vtkDataArray> operator()(const std::vector<float>& v) const { return lend<vtkFloatArray>(v, a.components, a.name.c_str()); }
+    vtkSmartPointer<vtkDataArray> operator()(const std::vector<std::uint8_t>& v) const { return lend<vtkUnsignedCharArray>(v, a.components, a.name.c_str()); }
+    vtkSmartPointer<vtkDataArray> operator()(const std::vector<std::int32_t>& v) const { return lend<vtkIntArray>(v, a.components, a.name.c_str()); }
+  };
+  return std::visit(Visitor{a}, a.values);
+}
+
+vtkSmartPointer<vtkCellArray> copy(const PolyData::Cells& c) {
+  vtkNew<vtkTypeInt64Array> offsets, points;
+  offsets->SetNumberOfValues(static_cast<vtkIdType>(c.offset.size()));
+  points->SetNumberOfValues(static_cast<vtkIdType>(c.point.size()));
+  std::copy(c.offset.begin(), c.offset.end(), offsets->GetPointer(0));
+  std::copy(c.point.begin(), c.point.end(), points->GetPointer(0));
+  auto cells = vtkSmartPointer<vtkCellArray>::New();
+  cells->SetData(offsets, points);
+  return cells;
+}
+
+class Writer final : public PolyDataWriter {
+ public:
+  Writer() {
+    vtkObject::GlobalWarningDisplayOff();   // failures come back as an error code
+    writer_->SetDataModeToAppended();
+    writer_->EncodeAppendedDataOff();
+    writer_->SetCompressorTypeToZLib();
+    writer_->SetCompressionLevel(1);        // level 5 saves a tenth of the size for twice the time
+    time_->SetName("TimeValue");
+    time_->SetNumberOfValues(1);
+  }
+
+  void write(const std::filesystem::path& file, const PolyData& data, double time) override {
+    if (topology_ != data.topology) {
+      vertices_ = copy(data.vertices), lines_ = copy(data.lines), polygons_ = copy(data.polygons);
+      topology_ = data.topology;
+    }
+    vtkNew<vtkPolyData> poly;
+    vtkNew<vtkPoints> points;
+    points->SetData(lend<vtkFloatArray>(data.points, 3, "Points"));
+    poly->SetPoints(points);
+    if (data.vertices.size()) poly->SetVerts(vertices_);
+    if (data.lines.size()) poly->SetLines(lines_);
+    if (data.polygons.size()) poly->SetPolys(polygons_);
+    for (const auto& a : data.point_data) {
+      if (a.name == data.normals) poly->GetPointData()->SetNormals(lend(a));
+      else poly->GetPointData()->AddArray(lend(a));
+    }
+    for (const auto& a : data.cell_data) poly->GetCellData()->AddArray(lend(a));
+    time_->SetValue(0, time);
+    poly->GetFieldData()->AddArray(time_);
+    const auto temporary = temporary_beside(file);
+    writer_->SetFileName(temporary.c_str());
+    writer_->SetInputData(poly);
+    const bool ok = writer_->Write() == 1 && writer_->GetErrorCode() == vtkErrorCode::NoError;
+    const auto code = writer_->GetErrorCode();
+    writer_->SetInputData(nullptr);
+    if (!ok) {
+      std::error_code ec;
+      std::filesystem::remove(temporary, ec);
+      io_failure(file, std::string("VTK cannot write (") + vtkErrorCode::GetStringFromErrorCode(code) + ")");
+    }
+    rename_into_place(temporary, file);
+  }
+
+ private:
+  vtkNew<vtkXMLPolyDataWriter> writer_;
+  vtkNew<vtkDoubleArray> time_;
+  vtkSmartPointer<vtkCellArray> vertices_, lines_, polygons_;
+  std::optional<std::uint64_t> topology_;
+};
+
+}  // namespace
+}  // namespace whirl::io
+
+WHIRL_DEFINE_PLUGIN
+WHIRL_PLUGIN_EXPORT whirl::io::PolyDataWriter* whirl_vtk_make_writer() { return new whirl::io::Writer; }
