@@ -24,8 +24,13 @@ void io_failure(const fs::path& file, const std::string& what, int error_number)
 
 fs::path temporary_beside(const fs::path& file) {
   static std::atomic<unsigned> count{0};
-  return file.parent_path() /
-         ("." + file.filename().string() + "." + std::to_string(::getpid()) + "." + std::to_string(count++));
+  std::string name(1, '.');
+  name += file.filename().string();
+  name += '.';
+  name += std::to_string(::getpid());
+  name += '.';
+  name += std::to_string(count++);
+  return file.parent_path() / name;
 }
 
 void rename_into_place(const fs::path& from, const fs::path& to) {

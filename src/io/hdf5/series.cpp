@@ -28,7 +28,7 @@ constexpr const char* layout_text =
     "attributes 'columns', 'units' and 'descriptions' name the columns. While the program runs, or after it was killed, "
     "state = (rows valid in the data sets, row number of the first row of tail, rows in tail), and tail holds the newest "
     "rows, all columns side by side in the order of the attribute 'order'; open such a file in SWMR read mode (h5py: "
-    "swmr=True) or clear its flag with h5clear -s. After a normal end tail is empty.";
+    "swmr=True) or make it an ordinary file with h5clear -s -i. After a normal end tail is empty.";
 
 // The library is not thread-safe.
 std::mutex library;
@@ -124,9 +124,14 @@ Opened open_series(const fs::path& path, bool writing) {
   H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
   hid_t id = -1;
   if (writing) {
-    // The mark that a killed writer left; the same property that the tool h5clear sets.
+    // The mark that a killed writer left: the same properties that the tool h5clear sets.
     const hbool_t clear = 1;
     H5Pset(access, "clear_status_flags", &clear);
+    H5Pset(access, "skip_eof_check", &clear);
+    // Nor did a killed writer record where the file ends; what it wrote is beyond the recorded end.
+    Handle first(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose, path, "cannot open the HDF5 file");
+    if (H5Fincrement_filesize(first, 0) < 0) io_failure(path, "cannot repair the HDF5 file");
+    first.reset();
     id = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
   } else {
     id = H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access);
