@@ -10,12 +10,12 @@ namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Growth (largest entry of U over largest of the matrix, by columns) at which pivots kept from an earlier
-/// factorisation are given up.
-constexpr double refactor_growth = 1e5;
+/// Pivots kept from an earlier factorisation are given up when entries grow by more than this (largest entry of U over
+/// largest of the matrix, by columns). That is measured when a pivot falls below its reciprocal times its column.
+constexpr double refactor_growth = 1e4;
 
 /// Rows and columns are scaled to largest entry 1 before KLU sees them, so that neither the pivot threshold nor the test
-/// for zero pivots depends on units.
+/// for zero pivots depends on units. Refactorisations keep the scaling.
 template <class Scalar>
 class KluSolver final : public DirectSolver<Scalar> {
   static constexpr bool complex = std::is_same_v<Scalar, Complex>;
@@ -52,6 +52,7 @@ class KluSolver final : public DirectSolver<Scalar> {
     value_.resize(row_.size());
     row_scale_.resize(unknown_.size());
     col_scale_.resize(unknown_.size());
+    col_size_.resize(unknown_.size());
     work_.resize(unknown_.size());
     if (!unknown_.empty()) {
       symbolic_ = klu_analyze(n(), start_.data(), row_.data(), &common_);
@@ -69,11 +70,16 @@ class KluSolver final : public DirectSolver<Scalar> {
     singular_ = -1;
     growth_ = 1.0;
     if (unknown_.empty()) return Status::ok;
-    for (std::size_t e = 0; e < value_.size(); ++e) value_[e] = Scalar(0.0);
-    add(m.M, cm), add(m.C, cc), add(m.K, ck);
+    if (numeric_) {
+      form(m, cm, cc, ck);
+      if (refactor()) return Status::ok;
+      free_numeric();
+      growth_ = 1.0;
+    }
+    std::fill(row_scale_.begin(), row_scale_.end(), 1.0);
+    std::fill(col_scale_.begin(), col_scale_.end(), 1.0);
+    form(m, cm, cc, ck);
     if (!scale()) return Status::singular;
-    if (numeric_ && refactor() && growth_ <= refactor_growth && pivots_ok()) return Status::ok;
-    if (numeric_) free_numeric();
     common_.halt_if_singular = 1;
     if constexpr (complex)
       numeric_ = klu_z_factor(start_.data(), row_.data(), raw(value_), symbolic_, &common_);
@@ -86,8 +92,15 @@ class KluSolver final : public DirectSolver<Scalar> {
       singular_ = j >= 0 && j < n() ? unknown_[at(j)] : unknown_[0];
       return Status::singular;
     }
-    measure_growth();
-    return pivots_ok() ? Status::ok : Status::singular;
+    int worst = 0;
+    const double least = least_pivot(worst);
+    if (!(least > tolerance())) {
+      singular_ = unknown_[at(symbolic_->Q[worst])];
+      free_numeric();
+      return Status::singular;
+    }
+    if (least < 1.0 / refactor_growth) measure_growth();
+    return Status::ok;
   }
 
   void solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> b) override {
@@ -107,26 +120,50 @@ class KluSolver final : public DirectSolver<Scalar> {
   int n() const { return static_cast<int>(unknown_.size()); }
   static double* raw(std::vector<Scalar>& v) { return reinterpret_cast<double*>(v.data()); }
 
-  void add(const BlockMatrix<6>& a, Scalar c) {
-    if (c == Scalar(0.0)) return;
-    const double* const x = a.data();
-    for (std::size_t e = 0; e < value_.size(); ++e) value_[e] += c * x[source_[e]];
+  /// Values of cm M + cc C + ck K with the present scales, and the largest of each column.
+  void form(const MCK& m, Scalar cm, Scalar cc, Scalar ck) {
+    if (cc == Scalar(0.0)) return form_terms(m.M.data(), cm, m.K.data(), ck, nullptr, cc);
+    if (cm == Scalar(0.0)) return form_terms(m.C.data(), cc, m.K.data(), ck, nullptr, cm);
+    form_terms(m.M.data(), cm, m.K.data(), ck, m.C.data(), cc);
   }
+  void form_terms(const double* a, Scalar ca, const double* b, Scalar cb, const double* c, Scalar cc) {
+    for (int j = 0; j < n(); ++j) {
+      double largest = 0.0;
+      for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e) {
+        const int from = source_[at(e)];
+        // A matrix with a zero coefficient is not looked at: it may hold anything.
+        Scalar x = Scalar(0.0);
+        if (ca != Scalar(0.0)) x += ca * a[from];
+        if (cb != Scalar(0.0)) x += cb * b[from];
+        if (c) x += cc * c[from];
+        x *= row_scale_[at(row_[at(e)])] * col_scale_[at(j)];
+        value_[at(e)] = x;
+        largest = std::max(largest, size(x));
+      }
+      col_size_[at(j)] = largest;
+    }
+  }
+  static double size(double x) { return std::abs(x); }
+  static double size(Complex x) { return std::max(std::abs(x.real()), std::abs(x.imag())); }
 
-  /// False when a row or column is zero (or not finite): singular.
+  /// Scales freshly formed values; false when a row or column is zero (or not finite): singular.
   bool scale() {
     std::fill(row_scale_.begin(), row_scale_.end(), 0.0);
-    for (std::size_t e = 0; e < value_.size(); ++e)
-      row_scale_[at(row_[e])] = std::max(row_scale_[at(row_[e])], std::abs(value_[e]));
+    for (std::size_t e = 0; e < value_.size(); ++e) {
+      double& s = row_scale_[at(row_[e])];
+      if (!(size(value_[e]) <= s)) s = size(value_[e]);  // NaN is kept
+    }
     if (!invert(row_scale_)) return false;
     for (int j = 0; j < n(); ++j) {
       double s = 0.0;
-      for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e) s = std::max(s, row_scale_[at(row_[at(e)])] * std::abs(value_[at(e)]));
+      for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e) s = std::max(s, row_scale_[at(row_[at(e)])] * size(value_[at(e)]));
       col_scale_[at(j)] = s;
     }
     if (!invert(col_scale_)) return false;
-    for (int j = 0; j < n(); ++j)
+    for (int j = 0; j < n(); ++j) {
       for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e) value_[at(e)] *= row_scale_[at(row_[at(e)])] * col_scale_[at(j)];
+      col_size_[at(j)] = 1.0;
+    }
     return true;
   }
   bool invert(std::vector<double>& s) {
@@ -140,6 +177,7 @@ class KluSolver final : public DirectSolver<Scalar> {
     return true;
   }
 
+  /// New values on the old pivots; false when those do not serve.
   bool refactor() {
     int done = 0;
     if constexpr (complex)
@@ -147,8 +185,11 @@ class KluSolver final : public DirectSolver<Scalar> {
     else
       done = klu_refactor(start_.data(), row_.data(), raw(value_), symbolic_, numeric_, &common_);
     if (!done || common_.status != KLU_OK) return false;
-    measure_growth();
-    return true;
+    int worst = 0;
+    const double least = least_pivot(worst);
+    if (!(least > tolerance())) return false;
+    if (least < 1.0 / refactor_growth) measure_growth();
+    return growth_ <= refactor_growth;
   }
 
   void measure_growth() {
@@ -160,18 +201,18 @@ class KluSolver final : public DirectSolver<Scalar> {
   }
 
   /// Rounding leaves pivots of a singular matrix at a few times 1e-16 of the scaled entries.
-  bool pivots_ok() {
-    const double tolerance = std::numeric_limits<double>::epsilon() * (16.0 + std::sqrt(static_cast<double>(n())));
+  double tolerance() const { return std::numeric_limits<double>::epsilon() * (16.0 + std::sqrt(static_cast<double>(n()))); }
+
+  /// Smallest pivot relative to the largest entry of its column (NaN when there is one), and its step.
+  double least_pivot(int& worst) const {
     const Scalar* const u = static_cast<const Scalar*>(numeric_->Udiag);
-    int worst = -1;
-    double least = tolerance;
+    double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < n(); ++k) {
-      const double s = std::abs(u[k]);
-      if (!(s > least)) worst = k, least = s;
+      const double s = size(u[k]) / col_size_[at(symbolic_->Q[k])];
+      if (!(s >= least)) worst = k, least = s;
+      if (s != s) break;
     }
-    if (worst < 0) return true;
-    singular_ = unknown_[at(symbolic_->Q[worst])];
-    return false;
+    return least;
   }
 
   void free_numeric() {
@@ -188,7 +229,7 @@ class KluSolver final : public DirectSolver<Scalar> {
   std::vector<Index> unknown_;
   std::vector<int> start_, row_, source_;
   std::vector<Scalar> value_, work_;
-  std::vector<double> row_scale_, col_scale_;
+  std::vector<double> row_scale_, col_scale_, col_size_;
   double growth_ = 1.0;
   Index singular_ = -1;
 };

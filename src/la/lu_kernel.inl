@@ -67,7 +67,11 @@ template <int N, class T> WHIRL_INLINE void assemble(Block<T>& b, const Plan& p,
     return;
   }
   form<N>(b, t, slot);
-  if (__builtin_expect(p.partial[i] | p.partial[j], 0)) hold(p, b, i, j);
+  if (__builtin_expect(p.partial[i] | p.partial[j], 0)) {
+    Block<T> h = b;  // a copy, so that b itself can stay in registers
+    hold(p, h, i, j);
+    b = h;
+  }
 }
 
 template <class T> WHIRL_INLINE void store_block(double* p, const Block<T>& b) {

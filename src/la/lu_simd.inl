@@ -1,11 +1,9 @@
-// Columns of six doubles padded to eight, as compiler vectors: two of 32 bytes (lowered to 16 bytes on a baseline
-// machine), or one of 64 bytes with AVX-512. Real and complex scalars share the algorithms in lu_kernel.inl through the
+// Columns of six doubles padded to eight, as compiler vectors: three of 16 bytes on a baseline machine (the padding is
+// never touched), two of 32 bytes with AVX2, or one of 64 bytes with AVX-512. Real and complex scalars share the algorithms in lu_kernel.inl through the
 // types Real and Cplx below.
 #define WHIRL_INLINE static inline __attribute__((always_inline))
 
 typedef double v2 __attribute__((vector_size(16), aligned(8), may_alias));
-typedef double v4 __attribute__((vector_size(32), aligned(8), may_alias));
-typedef long long i4 __attribute__((vector_size(32), aligned(8), may_alias));
 
 #ifdef __AVX512F__
 
@@ -36,7 +34,10 @@ WHIRL_INLINE void note_unless_le(Violation& v, Col a, Col b) {
 }
 WHIRL_INLINE bool any(Violation v) { return (v.m & 0x3f) != 0; }
 
-#else
+#elif defined(__AVX2__)
+
+typedef double v4 __attribute__((vector_size(32), aligned(8), may_alias));
+typedef long long i4 __attribute__((vector_size(32), aligned(8), may_alias));
 
 struct Col { v4 a, b; };
 WHIRL_INLINE Col zero_col() { return {v4{}, v4{}}; }
@@ -81,6 +82,48 @@ struct Violation { i4 m; };
 WHIRL_INLINE Violation no_violation() { return {i4{}}; }
 WHIRL_INLINE void note_unless_le(Violation& v, Col x, Col y) { v.m |= ~(x.a <= y.a) | ~(x.b <= y.b); }
 WHIRL_INLINE bool any(Violation v) { return (v.m[0] | v.m[1] | v.m[2] | v.m[3]) != 0; }
+
+#else
+
+typedef long long i2 __attribute__((vector_size(16), aligned(8), may_alias));
+struct Col { v2 a, b, c; };
+WHIRL_INLINE Col splat(double s) { return {v2{s, s}, v2{s, s}, v2{s, s}}; }
+WHIRL_INLINE Col zero_col() { return splat(0.0); }
+WHIRL_INLINE Col load(const double* p) { return {*(const v2*)p, *(const v2*)(p + 2), *(const v2*)(p + 4)}; }
+WHIRL_INLINE Col load6(const double* p) { return load(p); }
+WHIRL_INLINE void store(double* p, Col x) { *(v2*)p = x.a, *(v2*)(p + 2) = x.b, *(v2*)(p + 4) = x.c; }
+WHIRL_INLINE void store6(double* p, Col x) { store(p, x); }
+WHIRL_INLINE Col operator+(Col x, Col y) { return {x.a + y.a, x.b + y.b, x.c + y.c}; }
+WHIRL_INLINE Col operator-(Col x, Col y) { return {x.a - y.a, x.b - y.b, x.c - y.c}; }
+WHIRL_INLINE Col operator*(Col x, Col y) { return {x.a * y.a, x.b * y.b, x.c * y.c}; }
+WHIRL_INLINE Col operator/(Col x, Col y) { return {x.a / y.a, x.b / y.b, x.c / y.c}; }
+WHIRL_INLINE v2 select(i2 m, v2 x, v2 y) { return (v2)(((i2)x & m) | ((i2)y & ~m)); }
+WHIRL_INLINE Col abs(Col x) {
+  const long long m = 0x7fffffffffffffffLL;
+  const i2 mm = {m, m};
+  return {(v2)((i2)x.a & mm), (v2)((i2)x.b & mm), (v2)((i2)x.c & mm)};
+}
+WHIRL_INLINE Col max(Col x, Col y) {
+  return {select(x.a > y.a, x.a, y.a), select(x.b > y.b, x.b, y.b), select(x.c > y.c, x.c, y.c)};
+}
+template <int P> WHIRL_INLINE v2 half(Col x) { return P < 2 ? x.a : P < 4 ? x.b : x.c; }
+template <int P> WHIRL_INLINE Col broadcast(Col x) {
+  const v2 r = __builtin_shufflevector(half<P>(x), half<P>(x), P % 2, P % 2);
+  return {r, r, r};
+}
+/// x with row P replaced by row P of y.
+template <int P> WHIRL_INLINE Col replace(Col x, Col y) {
+  const v2 r = __builtin_shufflevector(half<P>(x), half<P>(y), P % 2 == 0 ? 2 : 0, P % 2 == 0 ? 1 : 3);
+  return {P / 2 == 0 ? r : x.a, P / 2 == 1 ? r : x.b, P / 2 == 2 ? r : x.c};
+}
+WHIRL_INLINE Col mask_and(Col x, const long long* m) {
+  return {(v2)((i2)x.a & *(const i2*)m), (v2)((i2)x.b & *(const i2*)(m + 2)), (v2)((i2)x.c & *(const i2*)(m + 4))};
+}
+/// True when a <= b fails in any of the rows (NaN fails).
+struct Violation { i2 m; };
+WHIRL_INLINE Violation no_violation() { return {i2{}}; }
+WHIRL_INLINE void note_unless_le(Violation& v, Col x, Col y) { v.m |= ~(x.a <= y.a) | ~(x.b <= y.b) | ~(x.c <= y.c); }
+WHIRL_INLINE bool any(Violation v) { return (v.m[0] | v.m[1]) != 0; }
 
 #endif
 
