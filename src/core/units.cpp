@@ -138,6 +138,7 @@ class Parser {
       else if (utf8("\xC2\xB7") || utf8("\xC3\x97")) { i_ += 2; op = times; }
       else if (peek() == '.' && !number_here()) { ++i_; op = times; }
       else if (peek() == '/') { ++i_; op = over; }
+      else if (peek() == '1' && peek(1) == '/') { i_ += 2; op = over; }   // "0.5 1/s"
       else if (unit_here() || peek() == '(') op = times;   // nothing written between
       if (op == next) return a;
       skip();
@@ -269,6 +270,8 @@ class Parser {
     if (word == "lb" || word == "lbs") hint = "say which: 'lbm' is the mass, 'lbf' the force";
     else if (word == "C" || word == "F") hint = fmt::format("temperatures are written \"deg{}\"", word);
     else {
+      const std::string other_case = nearest_unit(word, 0.7);   // "RPM", "KN"
+      if (!other_case.empty()) hint = fmt::format("did you mean '{}'?", other_case);
       for (std::size_t k = 1; k < word.size() && hint.empty(); ++k)   // "Nm", "Ns", "kgm": units written together
         if (find_unit(word.substr(0, k)) && find_unit(word.substr(k)))
           hint = fmt::format("write a point between units: '{}.{}'", word.substr(0, k), word.substr(k));
@@ -299,10 +302,7 @@ std::optional<double> agree(const Dimension& given, const Dimension& wanted) {
   return {};
 }
 
-/// "1.5 /s" for 1/s, else "1.5 mm".
-std::string with_unit(std::string_view number, std::string_view unit) {
-  return fmt::format("{} {}", number, unit.starts_with("1/") ? unit.substr(1) : unit);
-}
+std::string with_unit(std::string_view number, std::string_view unit) { return fmt::format("{} {}", number, unit); }
 
 Problem mismatch(std::string_view text, const Quantity& q, const Dimension& want, std::string_view wanted) {
   Problem p;
@@ -429,7 +429,7 @@ std::string name_of(const Dimension& d) {
   return fmt::format("a quantity in {}", base_units(d));
 }
 
-std::string nearest_unit(std::string_view text) {
+std::string nearest_unit(std::string_view text, double limit) {
   // Optimal string alignment distance, a difference of case counting little, over every unit with every prefix it takes.
   const auto distance = [](std::string_view a, std::string_view b) {
     std::vector<double> row(b.size() + 1), up(b.size() + 1);
@@ -447,7 +447,7 @@ std::string nearest_unit(std::string_view text) {
   };
   if (text.size() > 12) return {};
   std::string best;
-  double least = text.size() <= 2 ? 0.7 : text.size() <= 4 ? 1.3 : 2.3;
+  double least = std::min(limit, text.size() <= 2 ? 0.7 : text.size() <= 4 ? 1.3 : 2.3);
   for (const auto& e : entries()) {
     const std::string prefixes = std::string(1, '\0') + e.prefixes;
     for (char p : prefixes) {

@@ -73,8 +73,8 @@ std::string format_number(double value);
 std::string name_of(const Dimension& dimension);
 /// "kg.m^2.s^-2"
 std::string base_units(const Dimension& dimension);
-/// The unit nearest in spelling, or empty.
-std::string nearest_unit(std::string_view text);
+/// The unit nearest in spelling (edit distance below `limit`, a change of case counting 0.2), or empty.
+std::string nearest_unit(std::string_view text, double limit = 3);
 /// All unit names with their meaning, for the reference documentation.
 struct UnitInfo { std::string name, meaning; bool prefixes; };
 std::vector<UnitInfo> unit_table();

@@ -162,6 +162,9 @@ struct TorqueCurve {
   std::optional<Induction> induction;
   struct ConstantPower { double power = 0, max_torque = 0; };
   std::optional<ConstantPower> power;
+  struct DcLine { double stall = 0, no_load_speed = 0; };                              ///< stall (1 - s/no_load_speed), N m, rad/s
+  std::optional<DcLine> dc;
+  LawPtr brake;                                 ///< magnitude of a torque opposing the spin, N m(t); null = 0
   struct Governor { double target = 0, kp = 0, ki = 0, max_torque = infinity; };       ///< PI on speed
   std::optional<Governor> governor;
 };

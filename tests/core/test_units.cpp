@@ -29,7 +29,7 @@ TEST(Units, Values) {
       {"3000 cpm", "rad/s", 3000 * two_pi / 60},
       {"50 Hz/s", "rad/s^2", 50 * two_pi},
       {"50 Hz", "1/s", 50},
-      {"0.5 1/s", "1/s", nan},   // see Bad: a number may not stand after the number
+      {"0.5 1/s", "1/s", 0.5},
       {"0.5 /s", "1/s", 0.5},
       {"0.5 s^-1", "1/s", 0.5},
       {"10 rev/s", "rad/s", 10 * two_pi},
@@ -92,10 +92,6 @@ TEST(Units, Values) {
   };
   for (const auto& g : table) {
     const auto c = units::convert(g.text, g.wanted);
-    if (std::isnan(g.value)) {
-      EXPECT_TRUE(c.problem) << g.text;
-      continue;
-    }
     ASSERT_FALSE(c.problem) << g.text << ": " << c.problem->message;
     // four roundings at most: the number, two scales, the quotient
     EXPECT_NEAR(c.value, g.value, 4 * 1.2e-16 * std::abs(g.value)) << g.text;
@@ -114,10 +110,11 @@ TEST(Units, DecimalLiteralsAreExact) {
 TEST(Units, Problems) {
   const Bad table[] = {
       {"75", "m", "E07", "\"75\" has no unit where a length is needed", "write the unit, for example \"75 m\""},
-      {"0.5", "1/s", "E07", "\"0.5\" has no unit where a rate (1/s) is needed", "write the unit, for example \"0.5 /s\""},
+      {"0.5", "1/s", "E07", "\"0.5\" has no unit where a rate (1/s) is needed", "write the unit, for example \"0.5 1/s\""},
       {"0.5", "rad", "E07", "\"0.5\" has no unit where an angle is needed", "write the unit, for example \"0.5 rad\""},
       {"75 kg", "mm", "E08", "\"75 kg\" is a mass where a length is needed", "write it in mm or another unit of the same kind"},
-      {"157 1/s", "rpm", "E10", "\"157 1/s\" cannot be read as a quantity: unexpected '1'", "a quantity is a number and a unit, such as \"75 um\" or \"8e4 N/m\""},
+      {"157 mm 5", "m", "E10", "\"157 mm 5\" cannot be read as a quantity: unexpected '5'", "a quantity is a number and a unit, such as \"75 um\" or \"8e4 N/m\""},
+      {"157 1/s", "rpm", "E08", "\"157 1/s\" is a rate (1/s) where an angular speed is needed", "say what turns: write it in rad/s, Hz or rpm"},
       {"157 /s", "rpm", "E08", "\"157 /s\" is a rate (1/s) where an angular speed is needed", "say what turns: write it in rad/s, Hz or rpm"},
       {"5 deg", "", "E08", "\"5 deg\" is an angle where a plain number is needed", "this value has no unit: write a plain number"},
       {"5 N.m/rad", "N.m", "E08", "\"5 N.m/rad\" is a torsional stiffness where a torque, moment or energy is needed", "write it in N.m or another unit of the same kind"},
@@ -134,7 +131,7 @@ TEST(Units, Problems) {
       {"nan m", "m", "E13", "\"nan m\" is not a finite number", "leave the key out where no limit is meant"},
       {"-inf", "m", "E13", "\"-inf\" is not a finite number", "leave the key out where no limit is meant"},
       {"1e999 m", "m", "E13", "\"1e999 m\" has a number beyond the range of double precision", ""},
-      {"1e300 Gm", "m", "E13", "\"1e300 Gm\" is not a finite number", "the value overflows double precision"},
+      {"1e300 GN", "N", "E13", "\"1e300 GN\" is not a finite number", "the value overflows double precision"},
       {"1/0", "", "E13", "\"1/0\" is not a finite number", "the value overflows double precision"},
       {"", "m", "E10", "the text is empty where a quantity is expected", ""},
       {"5 mm +", "m", "E10", "\"5 mm +\" ends where a number or a unit is expected", ""},
@@ -185,7 +182,7 @@ TEST(Units, FormatReadsBackExactly) {
   EXPECT_EQ(units::format(75e-6, "um"), "75 um");
   EXPECT_EQ(units::format(9000 * two_pi / 60, "rpm"), "9000 rpm");
   EXPECT_EQ(units::format(0.25, ""), "0.25");
-  EXPECT_EQ(units::format(0.5, "1/s"), "0.5 /s");
+  EXPECT_EQ(units::format(0.5, "1/s"), "0.5 1/s");
   EXPECT_EQ(units::format(0, "N/m"), "0 N/m");
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> mantissa(-10, 10);
