@@ -1,0 +1,58 @@
+// General beam element: unequal principal stiffnesses, any direction, initial curvature and twist, rigid end offsets.
+// For keyed or slotted shafts (it turns with phi), bowed rotors, curved lines, frames and casings.
+//
+// Each end carries an orthonormal triad (D, B, C) fixed to its node, D along the element, B and C the principal axes, and a rigid
+// offset: r_i = x_i + R_i o_i. With the chord a = (r2 - r1)/l and the twistless transport P(a <- D_i):
+//   p_i      vector from a towards D_i, perpendicular to a, |p_i| = angle between them
+//   y, z     section axes at mid-element: bisector of the transported B1, B2, and a x y
+//   psi      angle from transported B1 to transported B2 about a, in (-pi, pi]
+//   V = 1/2 EA_l w^2 + 1/2 sum_ij [kz_ij (p_i - p0_i).y (p_j - p0_j).y + ky_ij (p_i - p0_i).z (p_j - p0_j).z] + 1/2 GJ_l (psi - psi0)^2
+//   w = l - l0 + length/2 sum_ij b_ij (p_i.p_j - p0_i.p0_j)
+// The force is found from the power of the stresses on objective rates, p_i o = (p_i')_perp - sigma a x p_i and psi' = sigma2 - sigma1,
+// sigma_i = (a + D_i).(omega_i - a x a')/(1 + a.D_i), which are exactly the rates of the measures above. beta damps the same rates
+// (viscous, rotating with the section).
+// Inertia: M4 (x) 1 on (r1, D1, r2, D2), rotary inertia on the triads, 1/2 sum_ij m_ij (rhoI_z B_i'.B_j' + rhoI_y C_i'.C_j'), m the mean of
+// consistent and lumped: exact for every rigid motion.
+//
+// The tangent is by forward differentiation (core/dual.hpp): exact, about ten times the cost of the axisymmetric element.
+// Units SI. Limits: relative twist of one element below pi; angle between chord and D below pi; small strain.
+// Source of the corotational idea with transported triads: Battini & Pacoste 2002, doi 10.1016/S0045-7825(01)00352-8.
+#pragma once
+#include <system/kernel.hpp>
+
+namespace whirl::elements {
+
+struct GeneralBeamConstants {
+  double length = 0;                 ///< m, arc length used in stiffness and mass
+  double EA_l = 0, GJ_l = 0;         ///< N/m, N m
+  /// End stiffnesses for deflection along the section's y (bending about z: EIz) and along z (EIy), N m.
+  double ky_def11 = 0, ky_def12 = 0, ky_def22 = 0, kz_def11 = 0, kz_def12 = 0, kz_def22 = 0;
+  double b11 = 0, b12 = 0, b22 = 0;  ///< bowing coefficients
+  Matrix<4> M4 = Matrix<4>::Zero();  ///< translational inertia on (r1, D1, r2, D2), kg, kg m, kg m^2
+  double rhoIz_l = 0, rhoIy_l = 0;   ///< rho int y^2 dA length, rho int z^2 dA length, kg m^2
+  double beta = 0;                   ///< stiffness-proportional rotating damping, s
+};
+
+struct GeneralBeam {
+  static constexpr int n_nodes = 2, width = 7;
+  static constexpr bool has_M = true, has_C = true, has_K = true;
+
+  GeneralBeamConstants c;
+  Vec3 chord = Vec3::UnitX();        ///< r2 - r1 in the reference configuration, m
+  Mat3 triad1 = Mat3::Identity(), triad2 = Mat3::Identity();   ///< columns D, B, C of each end in the reference configuration
+  Vec3 offset1 = Vec3::Zero(), offset2 = Vec3::Zero();         ///< o_i in the reference configuration, m
+  // unstressed values of the measures (made by the constructor)
+  double l0 = 0, psi0 = 0;
+  Vec2 p01 = Vec2::Zero(), p02 = Vec2::Zero();
+
+  GeneralBeam() = default;
+  /// The reference configuration is stress-free, whatever the angles between chord and triads.
+  GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chord, const Mat3& triad1, const Mat3& triad2,
+              const Vec3& offset1 = Vec3::Zero(), const Vec3& offset2 = Vec3::Zero());
+
+  void add_force(const system::Nodes<2>& x, const system::Context& ctx, system::ForceX<14>& f) const;
+  void add_tangent(const system::Nodes<2>& x, const system::Context& ctx, system::TangentX<14>& t) const;
+  void add_energy(const system::Nodes<2>& x, const system::Context& ctx, system::Energy& e) const;
+};
+
+}  // namespace whirl::elements
