@@ -1,0 +1,187 @@
+#include <analysis/transient.hpp>
+
+#include <core/rotation.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+namespace whirl::analysis {
+
+std::string_view to_string(StopReason r) {
+  switch (r) {
+    case StopReason::end_time: return "end time reached";
+    case StopReason::speed_reached: return "stop speed reached";
+    case StopReason::amplitude_limit: return "amplitude limit exceeded";
+    case StopReason::interrupted: return "interrupted";
+    case StopReason::failed: return "failed";
+  }
+  return "";
+}
+
+namespace {
+
+double cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// The integrator's last step as observers see it.
+class Dense final : public StepAccess {
+ public:
+  Dense(system::SystemProblem& p, time::Integrator& i) : integrator_(i), snapshot_(p), q_(p.size()), v_(p.size()), a_(p.size()) {}
+  void set(double t0, double t1) { t0_ = t0, t1_ = t1, at_end_ = false; }
+  double t0() const override { return t0_; }
+  double t1() const override { return t1_; }
+  const Snapshot& at(double t) override {
+    if (t >= t1_) {
+      // the end state itself, evaluated once however many observers ask
+      if (!at_end_) snapshot_.set(t1_, integrator_.q(), integrator_.v(), integrator_.a());
+      at_end_ = true;
+    } else {
+      integrator_.interpolate(t, q_, v_, a_);
+      snapshot_.set(t, q_, v_, a_);
+      at_end_ = false;
+    }
+    return snapshot_;
+  }
+
+ private:
+  time::Integrator& integrator_;
+  Snapshot snapshot_;
+  VecX q_, v_, a_;
+  double t0_ = 0, t1_ = 0;
+  bool at_end_ = false;
+};
+
+/// First time in the step where f changes sign from its value at t0, or a negative number.
+template <class F>
+double crossing(Dense& step, F&& f, double f0) {
+  // four looks: a step may span a good part of a whirl
+  constexpr int looks = 4;
+  double a = step.t0(), fa = f0;
+  for (int k = 1; k <= looks; ++k) {
+    const double b = k == looks ? step.t1() : step.t0() + (step.t1() - step.t0()) * k / looks, fb = f(step.at(b));
+    if ((fa < 0.0) != (fb < 0.0)) {
+      double lo = a, hi = b;
+      for (int i = 0; i < 60 && hi - lo > 1e-14 * std::abs(hi); ++i) {
+        const double m = 0.5 * (lo + hi);
+        ((f(step.at(m)) < 0.0) == (fa < 0.0) ? lo : hi) = m;
+      }
+      return hi;
+    }
+    a = b, fa = fb;
+  }
+  return -1.0;
+}
+
+std::string failure(const system::SystemProblem& problem, const time::StepReport& report) {
+  std::string text = fmt::format("at t = {:.9g} s: {}", report.t0, time::message(report.status));
+  if (problem.outside() >= 0)
+    text += fmt::format("; tilt of {} at the limit of its chart ({} rad of pi)", problem.system().node(problem.outside()).name,
+                        rotation::chart_limit);
+  else if (const std::string s = problem.singular_unknown(); report.status == time::StepStatus::singular && !s.empty())
+    text += "; nothing determines " + s;
+  return text;
+}
+
+}  // namespace
+
+TransientResult run_transient(system::SystemProblem& problem, const system::State& start, const TransientOptions& options,
+                              const std::vector<Observer*>& observers, const time::IntegratorState* resume) {
+  TransientResult result;
+  const double cpu0 = cpu_seconds();
+  problem.frames = start.frames;
+  auto integrator = time::make_integrator(options.method, problem, options.integrator);
+  if (resume) integrator->restore(*resume);
+  else integrator->start(start.t, start.q, start.v);
+  Dense step(problem, *integrator);
+
+  auto state_now = [&] {
+    return system::State{integrator->time(), integrator->q(), integrator->v(), integrator->a(), problem.frames};
+  };
+  step.set(integrator->time(), integrator->time());
+  if (!resume)
+    for (Observer* o : observers) o->begin(step.end());
+
+  std::vector<double> speed_before(options.speed_stops.size());
+  for (std::size_t i = 0; i < speed_before.size(); ++i)
+    speed_before[i] = step.end().node(options.speed_stops[i].node).spin() - options.speed_stops[i].speed;
+
+  using Clock = std::chrono::steady_clock;
+  auto last_checkpoint = Clock::now();
+  const double t_end = options.integrator.t_end;
+  Progress progress{integrator->time(), t_end, 0, 0, 0, 0};
+  bool stop = false;
+  while (!stop && integrator->time() < t_end) {
+    if (options.interrupt && options.interrupt->load(std::memory_order_relaxed)) {
+      result.reason = StopReason::interrupted;
+      break;
+    }
+    time::StepReport report = integrator->advance();
+    if (!report.ok()) {
+      result.reason = StopReason::failed;
+      result.detail = failure(problem, report);
+      break;
+    }
+    step.set(report.t0, report.t1);
+
+    double t_stop = infinity;
+    for (std::size_t i = 0; i < options.speed_stops.size(); ++i) {
+      const SpeedStop& s = options.speed_stops[i];
+      auto f = [&](const Snapshot& x) { return x.node(s.node).spin() - s.speed; };
+      const double t = crossing(step, f, speed_before[i]);
+      if (t >= 0.0 && t < t_stop) {
+        t_stop = t, result.reason = StopReason::speed_reached;
+        result.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", s.speed * 30.0 / pi, t);
+      }
+      speed_before[i] = f(step.end());
+    }
+    for (const AmplitudeStop& s : options.amplitude_stops) {
+      auto f = [&](const Snapshot& x) { return displacement(x, s.point).tail<2>().norm() - s.limit; };
+      const double t = crossing(step, f, -1.0);
+      if (t >= 0.0 && t < t_stop) {
+        t_stop = t, result.reason = StopReason::amplitude_limit;
+        result.detail = fmt::format("{} passes {:.4g} m at t = {:.9g} s", s.name, s.limit, t);
+      }
+    }
+    if (t_stop < infinity) {
+      stop = true;
+      if (t_stop < report.t1 && t_stop > report.t0) {
+        report = integrator->shorten_to(t_stop);
+        if (!report.ok()) {
+          result.reason = StopReason::failed, result.detail = failure(problem, report);
+          break;
+        }
+        step.set(report.t0, report.t1);
+      }
+    }
+
+    for (Observer* o : observers) o->step(step);
+    if (options.progress) {
+      progress.t = report.t1, progress.dt = report.t1 - report.t0, ++progress.steps;
+      progress.newton = integrator->statistics().newton_iterations;
+      progress.spin = step.end().node(options.reference).spin();
+      options.progress(progress);
+    }
+    if (options.checkpoint && std::chrono::duration<double>(Clock::now() - last_checkpoint).count() > options.checkpoint_seconds) {
+      const time::IntegratorState s = integrator->save();
+      options.checkpoint(state_now(), s);
+      last_checkpoint = Clock::now();
+    }
+  }
+  if (options.checkpoint && (result.reason == StopReason::interrupted || options.checkpoint_seconds < infinity)) {
+    const time::IntegratorState s = integrator->save();
+    options.checkpoint(state_now(), s);
+  }
+  result.end = state_now();
+  result.statistics = integrator->statistics();
+  for (Observer* o : observers) o->end();
+  result.seconds = cpu_seconds() - cpu0;
+  return result;
+}
+
+}  // namespace whirl::analysis
