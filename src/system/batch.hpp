@@ -34,6 +34,8 @@ class Term {
   virtual void add_energy(const Workspace& w, Energy& e) const = 0;
   virtual void list_couplings(std::vector<std::pair<Index, Index>>& out) const = 0;
   virtual void list_nodes(std::vector<Index>& out) const = 0;
+  /// Appends the breakpoints of the time laws in the elements (kernels that have a breakpoints()).
+  virtual void list_breakpoints(std::vector<double>& out) const = 0;
   /// row[i]: matrix row of node i or -1 when nothing of it is unknown.
   virtual void bind(const la::BlockPattern& p, const std::vector<Index>& row) = 0;
 };
@@ -93,6 +95,13 @@ class Batch final : public Term {
   }
   void list_nodes(std::vector<Index>& out) const override {
     for (const auto& n : nodes_) out.insert(out.end(), n.begin(), n.end());
+  }
+  void list_breakpoints(std::vector<double>& out) const override {
+    if constexpr (requires(const K& k) { k.breakpoints(); })
+      for (const K& k : elements_)
+        for (double t : k.breakpoints()) out.push_back(t);
+    else
+      (void)out;
   }
   void bind(const la::BlockPattern& p, const std::vector<Index>& row) override {
     slots_.resize(elements_.size());

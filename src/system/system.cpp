@@ -78,6 +78,7 @@ std::vector<double> System::breakpoints() const {
   };
   for (const Hold& h : holds_) take(h.law);
   for (const LawPtr& l : base_) take(l);
+  for (const auto& term : terms_) term->list_breakpoints(out);
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;

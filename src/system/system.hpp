@@ -62,7 +62,7 @@ class System {
     return it == by_type_.end() ? nullptr : static_cast<const Batch<K>*>(terms_[it->second].get());
   }
   template <Kernel K> Batch<K>* batch() { return const_cast<Batch<K>*>(std::as_const(*this).template batch<K>()); }
-  /// Law breakpoints of holds and of base motion, sorted.
+  /// Law breakpoints of holds, base motion and elements, sorted.
   std::vector<double> breakpoints() const;
 
   State make_state() const;
