@@ -1,0 +1,304 @@
+// Element constants against closed forms, and the natural frequencies of small beams built from them.
+#include <elements/timoshenko_matrices.hpp>
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+#include <cmath>
+#include <functional>
+
+using namespace whirl;
+using namespace whirl::elements;
+
+namespace {
+
+ElementSection cylinder(double d, ShearRule shear = ShearRule::cowper, bool rotary = true) {
+  ElementSection s;
+  s.od1 = s.od2 = s.mass_od1 = s.mass_od2 = d;
+  s.E = 2.1e11, s.G = 2.1e11 / 2.6, s.rho = 7850;
+  s.shear = shear;
+  s.rotary_inertia = rotary;
+  return s;
+}
+
+ElementSection cone(double d1, double d2, double bore1 = 0, double bore2 = 0, ShearRule shear = ShearRule::cowper,
+                    bool rotary = true) {
+  ElementSection s = cylinder(d1, shear, rotary);
+  s.od2 = s.mass_od2 = d2;
+  s.id1 = s.mass_id1 = bore1;
+  s.id2 = s.mass_id2 = bore2;
+  return s;
+}
+
+/// Independent quadrature: composite midpoint with Richardson extrapolation (error ~ h^6).
+double integrate(const std::function<double(double)>& f, double a, double b) {
+  const auto mid = [&](int n) {
+    double s = 0, h = (b - a) / n;
+    for (int i = 0; i < n; ++i) s += f(a + (i + 0.5) * h);
+    return s * h;
+  };
+  const double m1 = mid(2000), m2 = mid(4000), m4 = mid(8000);
+  const double r1 = (4 * m2 - m1) / 3, r2 = (4 * m4 - m2) / 3;
+  return (16 * r2 - r1) / 15;
+}
+
+// ---------------------------------------------------------------- statics
+
+TEST(TimoshenkoElement, UniformClosedForms) {
+  for (double l : {5.0, 0.3, 0.05, 0.005}) {
+    const ElementSection s = cylinder(0.06);
+    const SectionProperties p = s.at(0.5);
+    const double Phi = 12 * p.EI / (p.kGA * l * l), q = 1 + Phi;
+    const ShaftElementConstants c = make_shaft_constants(s, l);
+    SCOPED_TRACE(Phi);
+    const double k = p.EI / (l * q), tol = 1e-13 * (1 + Phi);  // k12 is a difference of terms of size Phi
+    EXPECT_NEAR(c.k11 / k, 4 + Phi, tol * 4);
+    EXPECT_NEAR(c.k22 / k, 4 + Phi, tol * 4);
+    EXPECT_NEAR(c.k12 / k, 2 - Phi, tol * 4);
+    EXPECT_NEAR(c.EA_l, p.EA / l, 1e-14 * c.EA_l);
+    EXPECT_NEAR(c.GJ_l, p.GJ / l, 1e-14 * c.GJ_l);
+    EXPECT_NEAR(c.tau_c, 0.5 * (1 - Phi) / q, 1e-13);
+    const double b1 = 2.0 / 15 + Phi / 6 + Phi * Phi / 12, b2 = 1.0 / 30 + Phi / 6 + Phi * Phi / 12;
+    EXPECT_NEAR(c.b11, b1 / (q * q), 1e-13);
+    EXPECT_NEAR(c.b22, b1 / (q * q), 1e-13);
+    EXPECT_NEAR(c.b12, -b2 / (q * q), 1e-13);
+    EXPECT_NEAR(c.polar(0, 0), 5.0 / 12 * p.rhoIp * l, 1e-14 * p.rhoIp * l);
+    EXPECT_NEAR(c.polar(0, 1), 1.0 / 12 * p.rhoIp * l, 1e-14 * p.rhoIp * l);
+    Matrix<4> add;
+    add << 12, 6 * l, -12, 6 * l, 6 * l, (4 + Phi) * l * l, -6 * l, (2 - Phi) * l * l, -12, -6 * l, 12, -6 * l, 6 * l,
+        (2 - Phi) * l * l, -6 * l, (4 + Phi) * l * l;
+    add *= p.rhoA * l * (1 + 5 * Phi) / (720 * q);
+    const Matrix<4> got = c.M4 - make_shaft_constants(s, l, 0, 0, MassKind::consistent).M4;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) EXPECT_NEAR(got(i, j), add(i, j), 1e-12 * std::abs(add(i, i)) * q);
+  }
+}
+
+// Consistent Timoshenko mass: Friedman & Kosmatka, Computers & Structures 47 (1993) 473-481, doi 10.1016/0045-7949(93)90243-7.
+TEST(TimoshenkoElement, UniformConsistentMassIsTheKnownOne) {
+  const ElementSection s = cylinder(0.06);
+  const double l = 0.1;
+  const SectionProperties p = s.at(0);
+  const double Phi = 12 * p.EI / (p.kGA * l * l);
+  const Matrix<4> M = make_shaft_constants(s, l, 0, 0, MassKind::consistent).M4;
+  const double a = p.rhoA * l / (210 * (1 + Phi) * (1 + Phi)), b = p.rhoI / (30 * (1 + Phi) * (1 + Phi) * l);
+  const double P = Phi;
+  EXPECT_NEAR(M(0, 0), a * (70 * P * P + 147 * P + 78) + b * 36, 1e-13 * M(0, 0));
+  EXPECT_NEAR(M(0, 1), a * l / 4 * (35 * P * P + 77 * P + 44) - b * l * (15 * P - 3), 1e-13 * M(0, 0));
+  EXPECT_NEAR(M(0, 2), a * (35 * P * P + 63 * P + 27) - b * 36, 1e-13 * M(0, 0));
+  EXPECT_NEAR(M(0, 3), -a * l / 4 * (35 * P * P + 63 * P + 26) - b * l * (15 * P - 3), 1e-13 * M(0, 0));
+  EXPECT_NEAR(M(1, 1), a * l * l / 4 * (7 * P * P + 14 * P + 8) + b * l * l * (10 * P * P + 5 * P + 4), 1e-13 * M(0, 0));
+  EXPECT_NEAR(M(1, 3), -a * l * l / 4 * (7 * P * P + 14 * P + 6) + b * l * l * (5 * P * P - 5 * P - 1), 1e-13 * M(0, 0));
+}
+
+TEST(TimoshenkoElement, EulerBernoulliIsTheLimitOfStiffShear) {
+  const ShaftElementConstants c = make_shaft_constants(cylinder(0.06, ShearRule::rigid), 0.5);
+  const double EI = cylinder(0.06).at(0).EI;
+  EXPECT_NEAR(c.k11, 4 * EI / 0.5, 1e-13 * c.k11);
+  EXPECT_NEAR(c.k12, 2 * EI / 0.5, 1e-13 * c.k11);
+  EXPECT_NEAR(c.tau_c, 0.5, 1e-14);
+}
+
+// One conical element, clamped at its left end, is exact under a tip force and a tip moment.
+TEST(TimoshenkoElement, ConicalCantileverIsExact) {
+  struct Case { double d1, d2, b1, b2, l; };
+  for (const Case k : {Case{0.10, 0.05, 0, 0, 0.8}, Case{0.02, 0.20, 0, 0.1, 0.4}, Case{0.1, 0.1, 0.0, 0.095, 0.5},
+                       Case{0.3, 0.003, 0, 0, 0.5}}) {
+    const ElementSection s = cone(k.d1, k.d2, k.b1, k.b2);
+    const ShaftElementConstants c = make_shaft_constants(s, k.l);
+    const Matrix<4> K = bending_stiffness(c);
+    const Mat2 tip = K.bottomRightCorner<2, 2>();
+    const Mat2 flex = tip.inverse();
+    SCOPED_TRACE(k.d2);
+    const auto EI = [&](double x) { return s.at(x / k.l).EI; };
+    const double l = k.l;
+    // Substitution x = l - l u^3 clusters the independent rule at the thin end.
+    const auto I = [&](auto f) {
+      return integrate([&](double u) { return 3 * l * u * u * f(l - l * u * u * u); }, 0, 1);
+    };
+    const double wF = I([&](double x) { return (l - x) * (l - x) / EI(x) + 1 / s.at(x / l).kGA; });
+    const double wM = I([&](double x) { return (l - x) / EI(x); });
+    const double tM = I([&](double x) { return 1 / EI(x); });
+    const double tol = 3e-9;  // the independent rule's own error for the sharpest cone
+    EXPECT_NEAR(flex(0, 0) / wF, 1, tol);
+    EXPECT_NEAR(flex(0, 1) / wM, 1, tol);
+    EXPECT_NEAR(flex(1, 1) / tM, 1, tol);
+    EXPECT_NEAR(c.EA_l * I([&](double x) { return 1 / s.at(x / l).EA; }), 1, tol);
+    EXPECT_NEAR(c.GJ_l * I([&](double x) { return 1 / s.at(x / l).GJ; }), 1, tol);
+  }
+}
+
+// Solid Euler-Bernoulli cone, closed forms: int ds/EI etc. with EI = EI1 (1+q xi)^4, q = d2/d1 - 1.
+TEST(TimoshenkoElement, SolidConeClosedForms) {
+  const double d1 = 0.04, d2 = 0.10, l = 0.7;
+  const ElementSection s = cone(d1, d2, 0, 0, ShearRule::rigid);
+  const ShaftElementConstants c = make_shaft_constants(s, l);
+  const double r = d2 / d1, q = r - 1;
+  EXPECT_NEAR(c.EA_l, s.at(0).EA * r / l, 1e-13 * c.EA_l);
+  EXPECT_NEAR(c.GJ_l, s.at(0).GJ / l * 3 * q / (1 - std::pow(r, -3)), 1e-13 * c.GJ_l);
+  EXPECT_NEAR(c.mass, s.rho * pi * l / 12 * (d1 * d1 + d1 * d2 + d2 * d2), 1e-13 * c.mass);
+  const Mat2 flex = bending_stiffness(c).bottomRightCorner<2, 2>().inverse();
+  EXPECT_NEAR(flex(1, 1), l / s.at(0).EI * (1 - std::pow(r, -3)) / (3 * q), 1e-12 * flex(1, 1));
+  EXPECT_NEAR(flex(0, 0), l * l * l / (3 * s.at(0).EI * r), 1e-12 * flex(0, 0));  // P l^3/(3 E I1 (d2/d1)), load at end 2
+}
+
+TEST(TimoshenkoElement, PanelsDoNotMatter) {
+  // A very slight cone goes through the 16-point rule; it must agree with the cylinder's 4-point rule.
+  const ShaftElementConstants a = make_shaft_constants(cylinder(0.06), 0.2, 0.03, -0.02);
+  const ShaftElementConstants b = make_shaft_constants(cone(0.06, 0.06 * (1 + 1e-15)), 0.2, 0.03, -0.02);
+  EXPECT_LT((a.M4 - b.M4).cwiseAbs().maxCoeff(), 1e-13 * a.M4.cwiseAbs().maxCoeff());
+  EXPECT_LT((a.G4 - b.G4).cwiseAbs().maxCoeff(), 1e-12 * a.G4.cwiseAbs().maxCoeff());
+  EXPECT_LT((a.polar - b.polar).cwiseAbs().maxCoeff(), 1e-13 * a.polar(0, 0));
+  EXPECT_NEAR(a.tau_c, b.tau_c, 1e-13);
+  EXPECT_NEAR(a.b12, b.b12, 1e-13);
+}
+
+// Bowing and twist coefficients of a cone against integrals of the sampled shape functions.
+TEST(TimoshenkoElement, ConicalBowingAndTwistCouplingFromShapes) {
+  const ElementSection s = cone(0.1, 0.04, 0.02, 0.01);
+  const double l = 0.15;
+  const ShaftElementConstants c = make_shaft_constants(s, l);
+  const int n = 2000;
+  std::vector<double> xi;
+  for (int i = 0; i <= n; ++i) xi.push_back(static_cast<double>(i) / n);
+  const auto f = shape_functions(s, l, xi);
+  double b11 = 0, b12 = 0, b22 = 0, area = 0;
+  for (int i = 0; i <= n; ++i) {
+    const double w = (i == 0 || i == n ? 1.0 : i % 2 ? 4.0 : 2.0) / (3.0 * n);
+    b11 += w * f[i].slope(1) * f[i].slope(1);
+    b12 += w * f[i].slope(1) * f[i].slope(3);
+    b22 += w * f[i].slope(3) * f[i].slope(3);
+  }
+  for (int i = 0; i < n; ++i)  // polygon area of the director curve (g1, g2)
+    area += 0.5 * (f[i].G(1) * f[i + 1].G(3) - f[i].G(3) * f[i + 1].G(1));
+  EXPECT_NEAR(c.b11, b11, 1e-10);
+  EXPECT_NEAR(c.b12, b12, 1e-10);
+  EXPECT_NEAR(c.b22, b22, 1e-10);
+  EXPECT_NEAR(c.tau_c, -area, 1e-6);  // polygon: error ~ 1/n^2
+}
+
+TEST(TimoshenkoElement, ShapesInterpolateAndReproduceRigidMotion) {
+  const ElementSection s = cone(0.1, 0.05);
+  const double l = 0.3;
+  const std::vector<double> xi{0.0, 0.1, 0.37, 0.5, 1.0};
+  const auto f = shape_functions(s, l, xi);
+  EXPECT_LT((f.front().N - Vector<4>(1, 0, 0, 0)).norm(), 1e-14);
+  EXPECT_LT((f.front().G - Vector<4>(0, 1, 0, 0)).norm(), 1e-13);
+  EXPECT_LT((f.back().N - Vector<4>(0, 0, 1, 0)).norm(), 1e-14);
+  EXPECT_LT((f.back().G - Vector<4>(0, 0, 0, 1)).norm(), 1e-12);
+  for (const auto& g : f) {
+    const Vector<4> shift(1, 0, 1, 0), turn(0, 1, l, 1);  // r = 1, d = 0;  r = s, d = 1
+    EXPECT_NEAR(g.N.dot(shift), 1, 1e-14);
+    EXPECT_NEAR(g.G.dot(shift), 0, 1e-13);
+    EXPECT_NEAR(g.N.dot(turn), g.xi * l, 1e-14);
+    EXPECT_NEAR(g.G.dot(turn), 1, 1e-13);
+    EXPECT_NEAR(g.slope.dot(turn), 1, 1e-13);
+  }
+}
+
+// ---------------------------------------------------------------- inertia of rigid motion
+
+TEST(TimoshenkoElement, RigidInertiaIsExact) {
+  for (MassKind kind : {MassKind::consistent, MassKind::corrected})
+    for (double d2 : {0.06, 0.02, 0.15}) {
+      const ElementSection s = cone(0.06, d2, 0.01, 0.015);
+      const double l = 0.21, o1 = 0.04, o2 = -0.03;
+      const ShaftElementConstants c = make_shaft_constants(s, l, o1, o2, kind);
+      const auto I = [&](auto f) { return integrate([&](double x) { return f(x, s.at(x / l)); }, 0, l); };
+      const double m = I([](double, const auto& p) { return p.rhoA; });
+      const double S = I([](double x, const auto& p) { return p.rhoA * x; });
+      const double J = I([](double x, const auto& p) { return p.rhoA * x * x + p.rhoI; });
+      const double Jp = I([](double, const auto& p) { return p.rhoIp; });
+      // Node positions are r_i - o_i d_i: nodes at -o1 and l - o2 from end 1.
+      const Vector<4> shift(1, 0, 1, 0), turn(-o1, 1, l - o2, 1);
+      const double tol = 1e-12;  // of the independent rule
+      EXPECT_NEAR(shift.dot(c.M4 * shift), m, tol * m);
+      EXPECT_NEAR(shift.dot(c.M4 * turn), S, tol * m * l);
+      EXPECT_NEAR(turn.dot(c.M4 * turn), J, tol * m * l * l);
+      EXPECT_NEAR(turn.dot(c.G4 * turn), Jp, tol * Jp);
+      EXPECT_NEAR(shift.dot(c.G4 * shift), 0, tol * Jp / (l * l));
+      EXPECT_NEAR(c.polar.sum(), Jp, tol * Jp);
+      EXPECT_NEAR(c.mass, m, tol * m);
+      EXPECT_NEAR((bending_stiffness(c) * turn).norm() / bending_stiffness(c).norm(), 0, 1e-15);
+      EXPECT_LT((c.M4 - c.M4.transpose()).norm(), 1e-15 * c.M4.norm());
+      Eigen::SelfAdjointEigenSolver<Matrix<4>> eig(c.M4);
+      EXPECT_GT(eig.eigenvalues()(0), 0.0);
+    }
+}
+
+TEST(TimoshenkoElement, MasslessAndTorsionlessConstants) {
+  ElementSection s;
+  s.constants = true;
+  s.given.EI = 1000, s.given.EA = 1e6;
+  const ShaftElementConstants c = make_shaft_constants(s, 0.5);
+  EXPECT_EQ(c.M4.norm(), 0.0);
+  EXPECT_EQ(c.polar.norm(), 0.0);
+  EXPECT_EQ(c.GJ_l, 0.0);
+  EXPECT_NEAR(c.k11, 8000, 1e-9);
+}
+
+// ---------------------------------------------------------------- natural frequencies
+
+/// Plane beam of n equal elements of one (conical) section; unknowns (w, d) a node.
+struct Beam {
+  MatX K, M;
+  Beam(const ElementSection& s, double L, int n, MassKind kind, double first_fraction = 0) : K(2 * n + 2, 2 * n + 2), M(K) {
+    K.setZero(), M.setZero();
+    for (int e = 0; e < n; ++e) {
+      double x1 = static_cast<double>(e) / n, x2 = static_cast<double>(e + 1) / n;
+      if (first_fraction > 0) {  // alternate long and short elements
+        const double shift = first_fraction / n;
+        if (e % 2) x1 += shift; else x2 += shift;
+      }
+      const ShaftElementConstants c = make_shaft_constants(s.part(x1, x2), L * (x2 - x1), 0, 0, kind);
+      K.block<4, 4>(2 * e, 2 * e) += bending_stiffness(c);
+      M.block<4, 4>(2 * e, 2 * e) += c.M4;
+    }
+  }
+  /// Squared frequency number `mode` (from 0) with the unknowns `held` removed.
+  double lambda(const std::vector<int>& held, int mode) const {
+    std::vector<int> keep;
+    for (int i = 0; i < K.rows(); ++i)
+      if (std::find(held.begin(), held.end(), i) == held.end()) keep.push_back(i);
+    const MatX k = K(keep, keep), m = M(keep, keep);
+    return Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(k, m, Eigen::EigenvaluesOnly).eigenvalues()(mode);
+  }
+  int last() const { return static_cast<int>(K.rows()) - 2; }
+};
+
+double slope(double e1, double e2, int n1, int n2) { return std::log(std::abs(e1 / e2)) / std::log(static_cast<double>(n2) / n1); }
+
+/// Pinned Timoshenko beam, exact: (rhoA rhoI) l^2 ... quadratic in lambda = omega^2 for wave number k = m pi / L:
+/// rhoA rhoI lambda^2 - lambda (kGA (rhoA + rhoI k^2) + rhoA EI k^2) + kGA EI k^4 = 0; Euler-Bernoulli when kGA -> inf.
+double pinned_lambda(const SectionProperties& p, double L, int m) {
+  const double k2 = std::pow(m * pi / L, 2);
+  if (std::isinf(p.kGA)) return p.EI * k2 * k2 / (p.rhoA + p.rhoI * k2);
+  const double a = p.rhoA * p.rhoI, b = p.kGA * (p.rhoA + p.rhoI * k2) + p.rhoA * p.EI * k2, c = p.kGA * p.EI * k2 * k2;
+  return 2 * c / (b + std::sqrt(b * b - 4 * a * c));
+}
+
+TEST(TimoshenkoConvergence, Report) {
+  const double L = 1.0;
+  for (double d : {0.02, 0.1}) 
+    for (int rot = 0; rot < 3; ++rot) {
+      const ElementSection s = cylinder(d, rot == 0 ? ShearRule::rigid : ShearRule::cowper, rot == 2);
+      for (int mode : {0, 2})
+        for (int n : {4, 8, 16, 32}) {
+          double e[2];
+          for (int k = 0; k < 2; ++k) {
+            const Beam b(s, L, n, k ? MassKind::corrected : MassKind::consistent);
+            const double l = b.lambda({0, b.last()}, mode);
+            e[k] = std::sqrt(l / pinned_lambda(s.at(0), L, mode + 1)) - 1;
+          }
+          std::printf("pinned d=%g kind=%d mode %d n=%d  consistent %.2e corrected %.2e\n", d, rot, mode, n, e[0], e[1]);
+        }
+    }
+  const ElementSection s = cylinder(0.02, ShearRule::rigid, false);
+  const double w1 = s.at(0).EI / s.at(0).rhoA;
+  for (int n : {2, 4, 8, 16, 32})
+    for (int k = 0; k < 2; ++k) {
+      const Beam b(s, L, n, k ? MassKind::corrected : MassKind::consistent);
+      std::printf("n=%d kind %d: clamped-free %.2e  free-free %.2e\n", n, k, std::sqrt(b.lambda({0, 1}, 0) / w1 / std::pow(1.875104068711961, 4)) - 1,
+                  std::sqrt(b.lambda({}, 2) / w1 / std::pow(4.730040744862704, 4)) - 1);
+    }
+}
+
+}  // namespace
