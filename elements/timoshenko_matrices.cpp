@@ -112,6 +112,12 @@ struct Sampled {
     for (const Point& p : points) sum += p.ds * f(p);
     return sum;
   }
+  /// Integral of f(point) from 0 to each point.
+  template <class F> std::vector<double> running(F f) const {
+    std::vector<double> v(points.size());
+    for (std::size_t n = 0; n < v.size(); ++n) v[n] = f(points[n]);
+    return running(v, 0.0);
+  }
   /// start + integral of f (one value a point) from 0 to each point; at the panel ends in `at_ends` when given.
   std::vector<double> running(const std::vector<double>& f, double start, std::vector<double>* at_ends = nullptr) const {
     std::vector<double> out(f.size());
@@ -180,27 +186,49 @@ Matrix<4> offset_map(double o1, double o2) {
   return T;
 }
 
-/// Compliance of the element clamped at both ends under the load rhoA(s), divided by its mass (the c of the header).
-double clamped_compliance(const Sampled& sp, const Mat2& k, double mass) {
-  if (!(mass > 0)) return 0;
-  std::vector<double> f(sp.points.size());
-  const auto fill = [&](auto g) {
-    for (std::size_t n = 0; n < f.size(); ++n) f[n] = g(sp.points[n]);
-  };
-  fill([](const auto& q) { return q.p.rhoA; });
-  std::vector<double> Q = sp.running(f, 0.0);  // simply supported: Q = R - int rhoA, M = -int Q
-  const double R = sp.integral([](const auto& q) { return q.p.rhoA * (1 - q.xi); });
-  for (double& q : Q) q = R - q;
-  const std::vector<double> M = sp.running(Q, 0.0);
+/// Bending stiffness on (r1, d1, r2, d2): th_i = d_i - (r2 - r1)/l to first order in the plane of bending.
+Matrix<4> end_point_stiffness(const Mat2& k, double l) {
+  Matrix<2, 4> th;
+  th << 1 / l, 1, -1 / l, 0, 1 / l, 0, -1 / l, 1;
+  return th.transpose() * k * th;
+}
+
+/// Twice the complementary energy of the element clamped at both ends, from any equilibrium M(s), Q(s) of its load.
+double clamped_energy(const Sampled& sp, const Mat2& k, const std::vector<double>& M, const std::vector<double>& Q) {
   double own = 0;
   Vec2 g = Vec2::Zero();
-  for (std::size_t n = 0; n < f.size(); ++n) {
+  for (std::size_t n = 0; n < sp.points.size(); ++n) {
     const auto& q = sp.points[n];
     const double flex = q.ds / q.p.EI, shear = q.ds * shear_softness(q.p);
     own += flex * M[n] * M[n] + shear * Q[n] * Q[n];
-    g += flex * -M[n] * Vec2(-(1 - q.xi), q.xi) + shear * Q[n] * Vec2(-1 / sp.l, -1 / sp.l);
+    g += flex * M[n] * Vec2(-(1 - q.xi), q.xi) - shear * Q[n] / sp.l * Vec2::Ones();
   }
-  return (own - g.dot(k * g)) / mass;
+  return std::max(own - g.dot(k * g), 0.0);
+}
+
+/// c_w of the header, s^2: the element clamped at both ends under the load rhoA(s).
+double translation_softness(const Sampled& sp, const Mat2& k, double mass) {
+  if (!(mass > 0)) return 0;
+  std::vector<double> Q = sp.running([](const auto& q) { return q.p.rhoA; });  // simply supported: Q = R - int rhoA, M' = -Q
+  const double R = sp.integral([](const auto& q) { return q.p.rhoA * (1 - q.xi); });
+  for (double& q : Q) q -= R;
+  std::vector<double> M = sp.running(Q, 0.0);
+  for (double& q : Q) q = -q;
+  return clamped_energy(sp, k, M, Q) / mass;
+}
+
+/// c_th and c_p: clamped at both ends under a distributed moment inertia(s) (= rhoI or rhoIp): M' = -inertia, Q = 0.
+template <class F> double rotation_softness(const Sampled& sp, const Mat2& k, F inertia) {
+  const double total = sp.integral(inertia);
+  if (!(total > 0)) return 0;
+  const std::vector<double> M = sp.running(inertia);
+  return clamped_energy(sp, k, M, std::vector<double>(M.size(), 0.0)) / total;
+}
+
+/// (c_i + c_j)/2 K_ij with c = (cr, cd, cr, cd).
+Matrix<4> weighted(const Matrix<4>& K, double cr, double cd) {
+  const Vector<4> c(cr, cd, cr, cd);
+  return 0.5 * (c.asDiagonal() * K + K * c.asDiagonal());
 }
 
 /// (L1, L2): the exact static twist, and the polar mass built on it.
@@ -208,18 +236,16 @@ Mat2 polar_mass(const Sampled& sp, MassKind kind) {
   const double soft = sp.integral([](const auto& q) { return q.soft_t; });
   const double total = sp.integral([](const auto& q) { return q.p.rhoIp; });
   if (!(total > 0)) return Mat2::Zero();
-  std::vector<double> f(sp.points.size());
-  for (std::size_t n = 0; n < f.size(); ++n) f[n] = sp.points[n].soft_t / soft;
-  const std::vector<double> L2 = sp.running(f, 0.0);
-  for (std::size_t n = 0; n < f.size(); ++n) f[n] = sp.points[n].p.rhoIp;
-  const std::vector<double> V = sp.running(f, 0.0);  // fixed ends, load rhoIp: torque T0 - V
+  const std::vector<double> L2 = sp.running([soft](const auto& q) { return q.soft_t / soft; });
+  const std::vector<double> V = sp.running([](const auto& q) { return q.p.rhoIp; });  // fixed ends: torque T0 - V
   Mat2 m = Mat2::Zero();
   double vv = 0, v = 0;
-  for (std::size_t n = 0; n < f.size(); ++n) {
+  for (std::size_t n = 0; n < V.size(); ++n) {
+    const auto& q = sp.points[n];
     const Vec2 L(1 - L2[n], L2[n]);
-    m += sp.points[n].ds * f[n] * L * L.transpose();
-    vv += sp.points[n].ds * sp.points[n].soft_t * V[n] * V[n];
-    v += sp.points[n].ds * sp.points[n].soft_t * V[n];
+    m += q.ds * q.p.rhoIp * L * L.transpose();
+    vv += q.ds * q.soft_t * V[n] * V[n];
+    v += q.ds * q.soft_t * V[n];
   }
   if (kind == MassKind::corrected) {
     const double c = (vv - v * v / soft) / total / soft;  // c_t times the torsional stiffness
@@ -262,20 +288,25 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
     area += q.ds * 0.5 * (g1 * dg2 - g2 * dg1);
   }
   c.tau_c = -area;
+  if (kind == MassKind::corrected) {
+    const auto rhoI = [](const auto& q) { return q.p.rhoI; };
+    const auto rhoIp = [](const auto& q) { return q.p.rhoIp; };
+    const Matrix<4> K = end_point_stiffness(k, l);
+    const double I = sp.integral(rhoI), share = I > 0 ? 15 * I / (15 * I + c.mass * l * l) : 0.0;
+    const double cw = translation_softness(sp, k, c.mass), cd = rotation_softness(sp, k, rhoI);
+    M += weighted(K, cw, cw - share * (cw - cd));
+    G4 += weighted(K, 0.0, rotation_softness(sp, k, rhoIp));
+  }
   const Matrix<4> T = offset_map(o1, o2);
   c.M4 = T.transpose() * M * T;
   c.G4 = T.transpose() * G4 * T;
-  if (kind == MassKind::corrected) c.M4 += clamped_compliance(sp, k, c.mass) * bending_stiffness(c);
   c.polar = polar_mass(sp, kind);
   return c;
 }
 
 Matrix<4> bending_stiffness(const ShaftElementConstants& c) {
-  const double l = c.length;
-  Matrix<2, 4> th;  // th_i = d_i - (r2 - r1)/l, to first order in the plane of bending
-  th << 1 / l, 1, -1 / l, 0, 1 / l, 0, -1 / l, 1;
-  const Matrix<2, 4> on_x = th * offset_map(c.o1, c.o2);
-  return on_x.transpose() * (Mat2() << c.k11, c.k12, c.k12, c.k22).finished() * on_x;
+  const Matrix<4> T = offset_map(c.o1, c.o2);
+  return T.transpose() * end_point_stiffness((Mat2() << c.k11, c.k12, c.k12, c.k22).finished(), c.length) * T;
 }
 
 std::vector<ShapeFunctions> shape_functions(const ElementSection& section, double l, const std::vector<double>& xi) {

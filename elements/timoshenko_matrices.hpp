@@ -9,15 +9,29 @@
 // ch. 5 and 11, for the uniform case):
 //   r(s) = N1 r1 + N2 d1 + N3 r2 + N4 d2,   d(s) = G1 r1 + G2 d1 + G3 r2 + G4 d2.
 //
-// Mass. M4 = int rhoA N N^T + rhoI G G^T + c K4, K4 the bending stiffness on (r1, d1, r2, d2) and
-//   c = int rhoA w_q ds / int rhoA ds,   w_q the deflection of the element clamped at both ends under the load rhoA(s)
-// (uniform: c = rhoA l^4 (1+5Phi)/(720 EI)). The consistent mass leaves out the ends-clamped motion of the element, which
-// lowers the frequencies by the inertia force omega^2 rhoA w acting on w_q: a relative error omega^2 c of omega^2, of order
-// l^4. Since K4 vanishes for rigid motion, c K4 alters neither mass, inertia nor gravity loads; where c is the same along a
-// shaft it cancels the leading error of every mode exactly (the spectrum is only shifted, lambda -> lambda/(1 + c lambda)),
-// and elsewhere the part of it that the variation of c does not bring back.
-// The polar mass is built in the same way on the twist: consistent with the exact static twist plus c_t K_t, which is
-// rho I_p l [5/12 1/12; 1/12 5/12] for a uniform element.
+// Consistent mass. M4 = int rhoA N N^T + rhoI G G^T, G4 = int rhoIp G G^T. They leave out the motion of the element between
+// clamped ends, which the inertia loads omega^2 rhoA w and (omega^2 rhoI - omega Omega rhoIp) th excite. The error of omega^2
+// is of order l^4 omega^2 rhoA/EI when slender, and of order l^2 omega^2 rho/G when the elements are as short as the shaft is
+// thick.
+//
+// Correction. Let c_w, c_th, c_p (s^2) be the compliance of the clamped element under the loads rhoA(s), the moments rhoI(s),
+// rhoIp(s), each divided by the integral of its load (uniform: rhoA l^4 (1+5Phi)/(720 EI), rhoI l^2/(12 EI) Phi/(1+Phi), the
+// same with rhoIp). The inertia missed is omega^2 (c_w int rhoA w^2 + ..) times omega^2; by the equation of motion
+// omega^2 int (rhoA w^2 + rhoI th^2) = x.K4 x, and omega^2 int rhoI th^2 = (the part of x_d.(K4 x)_d that is rotary), d the
+// director rows. So
+//   M4 += (c_i + c_j)/2 K4_ij,  c = (c_w, c_d, c_w, c_d),  c_d = c_w - share (c_w - c_th),
+//   G4 += the same with c = (0, c_p, 0, c_p),  share = int rhoI / (int rhoI + int rhoA l^2/15),
+// share being the rotary part of the nodal inertia moments of M4. Without rotary inertia it is M4 += c_w K4: a mere shift of
+// the spectrum, lambda -> lambda/(1 + c_w lambda), which cancels the leading error of every mode. Translations are untouched
+// (K4 times a translation is zero), so mass, gravity loads and nodally exact sag are; the energy of rigid rotation is, too.
+// Measured orders of the frequencies: slender 6, thick Timoshenko shafts 4, spinning or not (consistent mass: 4 and 2).
+// Limits: the argument needs c_w the same in neighbouring elements. Where it varies (cones, unequal lengths) the leading order
+// stays with a smaller constant: slender cones 4; thick solid cones 4; thick hollow cones whose kappa changes 2, with a tenth
+// of the consistent mass's error.
+//
+// The polar mass is built in the same way on the exact static twist: consistent plus c_t K_t, which is
+// rhoIp l [5/12 1/12; 1/12 5/12] for a uniform element; order 4 where l sqrt(rhoIp/GJ) is the same in all elements,
+// between 2 and 4 elsewhere.
 #pragma once
 #include <elements/section.hpp>
 #include <elements/shaft_constants.hpp>
@@ -26,7 +40,7 @@
 namespace whirl::elements {
 
 enum class MassKind {
-  corrected,   ///< with c K4 and c_t K_t
+  corrected,   ///< with the corrections above
   consistent,  ///< without them
 };
 

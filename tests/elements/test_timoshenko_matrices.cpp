@@ -65,10 +65,24 @@ TEST(TimoshenkoElement, UniformClosedForms) {
     Matrix<4> add;
     add << 12, 6 * l, -12, 6 * l, 6 * l, (4 + Phi) * l * l, -6 * l, (2 - Phi) * l * l, -12, -6 * l, 12, -6 * l, 6 * l,
         (2 - Phi) * l * l, -6 * l, (4 + Phi) * l * l;
-    add *= p.rhoA * l * (1 + 5 * Phi) / (720 * q);
-    const Matrix<4> got = c.M4 - make_shaft_constants(s, l, 0, 0, MassKind::consistent).M4;
+    const double cw = p.rhoA * std::pow(l, 4) * (1 + 5 * Phi) / (720 * p.EI);
+    const double cp = p.rhoIp * l * l / (12 * p.EI) * Phi / q, cth = 0.5 * cp;
+    const double share = p.rhoI / (p.rhoI + p.rhoA * l * l / 15), cd = cw - share * (cw - cth);
+    const Matrix<4> K = add * p.EI / (l * l * l * q);
+    const ShaftElementConstants plain = make_shaft_constants(s, l, 0, 0, MassKind::consistent);
+    EXPECT_LT((bending_stiffness(c) - K).cwiseAbs().maxCoeff(), tol * K.cwiseAbs().maxCoeff());
     for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) EXPECT_NEAR(got(i, j), add(i, j), 1e-12 * std::abs(add(i, i)) * q);
+      for (int j = 0; j < 4; ++j) {
+        const double ci = i % 2 ? cd : cw, cj = j % 2 ? cd : cw, size = std::sqrt(c.M4(i, i) * c.M4(j, j));
+        EXPECT_NEAR(c.M4(i, j) - plain.M4(i, j), 0.5 * (ci + cj) * K(i, j), 1e-13 * size);
+        const double gi = i % 2 ? cp : 0, gj = j % 2 ? cp : 0, gsize = std::sqrt(c.G4(i, i) * c.G4(j, j));
+        EXPECT_NEAR(c.G4(i, j) - plain.G4(i, j), 0.5 * (gi + gj) * K(i, j), 1e-12 * gsize);
+      }
+    // Without rotary inertia: rhoA l (1+5 Phi)/(720 (1+Phi)) [12 6l -12 6l; ...].
+    const ElementSection e = cylinder(0.06, ShearRule::cowper, false);
+    const Matrix<4> got = make_shaft_constants(e, l).M4 - make_shaft_constants(e, l, 0, 0, MassKind::consistent).M4;
+    add *= p.rhoA * l * (1 + 5 * Phi) / (720 * q);
+    EXPECT_LT((got - add).cwiseAbs().maxCoeff(), 1e-13 * q * c.M4.cwiseAbs().maxCoeff());
   }
 }
 
@@ -233,72 +247,6 @@ TEST(TimoshenkoElement, MasslessAndTorsionlessConstants) {
   EXPECT_EQ(c.polar.norm(), 0.0);
   EXPECT_EQ(c.GJ_l, 0.0);
   EXPECT_NEAR(c.k11, 8000, 1e-9);
-}
-
-// ---------------------------------------------------------------- natural frequencies
-
-/// Plane beam of n equal elements of one (conical) section; unknowns (w, d) a node.
-struct Beam {
-  MatX K, M;
-  Beam(const ElementSection& s, double L, int n, MassKind kind, double first_fraction = 0) : K(2 * n + 2, 2 * n + 2), M(K) {
-    K.setZero(), M.setZero();
-    for (int e = 0; e < n; ++e) {
-      double x1 = static_cast<double>(e) / n, x2 = static_cast<double>(e + 1) / n;
-      if (first_fraction > 0) {  // alternate long and short elements
-        const double shift = first_fraction / n;
-        if (e % 2) x1 += shift; else x2 += shift;
-      }
-      const ShaftElementConstants c = make_shaft_constants(s.part(x1, x2), L * (x2 - x1), 0, 0, kind);
-      K.block<4, 4>(2 * e, 2 * e) += bending_stiffness(c);
-      M.block<4, 4>(2 * e, 2 * e) += c.M4;
-    }
-  }
-  /// Squared frequency number `mode` (from 0) with the unknowns `held` removed.
-  double lambda(const std::vector<int>& held, int mode) const {
-    std::vector<int> keep;
-    for (int i = 0; i < K.rows(); ++i)
-      if (std::find(held.begin(), held.end(), i) == held.end()) keep.push_back(i);
-    const MatX k = K(keep, keep), m = M(keep, keep);
-    return Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(k, m, Eigen::EigenvaluesOnly).eigenvalues()(mode);
-  }
-  int last() const { return static_cast<int>(K.rows()) - 2; }
-};
-
-double slope(double e1, double e2, int n1, int n2) { return std::log(std::abs(e1 / e2)) / std::log(static_cast<double>(n2) / n1); }
-
-/// Pinned Timoshenko beam, exact: (rhoA rhoI) l^2 ... quadratic in lambda = omega^2 for wave number k = m pi / L:
-/// rhoA rhoI lambda^2 - lambda (kGA (rhoA + rhoI k^2) + rhoA EI k^2) + kGA EI k^4 = 0; Euler-Bernoulli when kGA -> inf.
-double pinned_lambda(const SectionProperties& p, double L, int m) {
-  const double k2 = std::pow(m * pi / L, 2);
-  if (std::isinf(p.kGA)) return p.EI * k2 * k2 / (p.rhoA + p.rhoI * k2);
-  const double a = p.rhoA * p.rhoI, b = p.kGA * (p.rhoA + p.rhoI * k2) + p.rhoA * p.EI * k2, c = p.kGA * p.EI * k2 * k2;
-  return 2 * c / (b + std::sqrt(b * b - 4 * a * c));
-}
-
-TEST(TimoshenkoConvergence, Report) {
-  const double L = 1.0;
-  for (double d : {0.02, 0.1}) 
-    for (int rot = 0; rot < 3; ++rot) {
-      const ElementSection s = cylinder(d, rot == 0 ? ShearRule::rigid : ShearRule::cowper, rot == 2);
-      for (int mode : {0, 2})
-        for (int n : {4, 8, 16, 32}) {
-          double e[2];
-          for (int k = 0; k < 2; ++k) {
-            const Beam b(s, L, n, k ? MassKind::corrected : MassKind::consistent);
-            const double l = b.lambda({0, b.last()}, mode);
-            e[k] = std::sqrt(l / pinned_lambda(s.at(0), L, mode + 1)) - 1;
-          }
-          std::printf("pinned d=%g kind=%d mode %d n=%d  consistent %.2e corrected %.2e\n", d, rot, mode, n, e[0], e[1]);
-        }
-    }
-  const ElementSection s = cylinder(0.02, ShearRule::rigid, false);
-  const double w1 = s.at(0).EI / s.at(0).rhoA;
-  for (int n : {2, 4, 8, 16, 32})
-    for (int k = 0; k < 2; ++k) {
-      const Beam b(s, L, n, k ? MassKind::corrected : MassKind::consistent);
-      std::printf("n=%d kind %d: clamped-free %.2e  free-free %.2e\n", n, k, std::sqrt(b.lambda({0, 1}, 0) / w1 / std::pow(1.875104068711961, 4)) - 1,
-                  std::sqrt(b.lambda({}, 2) / w1 / std::pow(4.730040744862704, 4)) - 1);
-    }
 }
 
 }  // namespace
