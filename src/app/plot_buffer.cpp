@@ -1,0 +1,51 @@
+#include "plot_buffer.hpp"
+
+namespace whirl::app {
+
+void PlotBuffer::append(const std::vector<double>& row) {
+  if (filled_ == 0) {
+    if (data_.size() == capacity_ * channels_) halve();
+    for (std::size_t k = 0; k < channels_; ++k) data_.push_back({row[k + 1], row[k + 1], row[0], row[0]});
+  } else {
+    Extreme* bucket = data_.data() + data_.size() - channels_;
+    for (std::size_t k = 0; k < channels_; ++k) {
+      const double y = row[k + 1];
+      if (y < bucket[k].lo) bucket[k].lo = y, bucket[k].t_lo = row[0];
+      if (y > bucket[k].hi) bucket[k].hi = y, bucket[k].t_hi = row[0];
+    }
+  }
+  if (++filled_ == stride_) filled_ = 0;
+  ++rows_;
+}
+
+void PlotBuffer::halve() {
+  const std::size_t half = capacity_ / 2;
+  for (std::size_t b = 0; b < half; ++b)
+    for (std::size_t k = 0; k < channels_; ++k) {
+      const Extreme &x = data_[2 * b * channels_ + k], &y = data_[(2 * b + 1) * channels_ + k];
+      Extreme& out = data_[b * channels_ + k];
+      const Extreme merged{x.lo <= y.lo ? x.lo : y.lo, x.hi >= y.hi ? x.hi : y.hi, x.lo <= y.lo ? x.t_lo : y.t_lo,
+                           x.hi >= y.hi ? x.t_hi : y.t_hi};
+      out = merged;
+    }
+  data_.resize(half * channels_);
+  stride_ *= 2;
+}
+
+PlotBuffer::Points PlotBuffer::channel(std::size_t k) const {
+  Points p;
+  const std::size_t n = channels_ ? data_.size() / channels_ : 0;
+  for (std::size_t b = 0; b < n; ++b) {
+    const Extreme& x = data_[b * channels_ + k];
+    if (x.t_lo == x.t_hi) {
+      p.t.push_back(x.t_lo), p.y.push_back(x.lo);
+      continue;
+    }
+    const bool low_first = x.t_lo < x.t_hi;
+    p.t.push_back(low_first ? x.t_lo : x.t_hi), p.y.push_back(low_first ? x.lo : x.hi);
+    p.t.push_back(low_first ? x.t_hi : x.t_lo), p.y.push_back(low_first ? x.hi : x.lo);
+  }
+  return p;
+}
+
+}  // namespace whirl::app

@@ -1,0 +1,26 @@
+// Keeps the shape of arbitrarily long time histories in bounded memory: the extremes of every channel in buckets of time.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+namespace whirl::app {
+
+class PlotBuffer {
+ public:
+  /// channels: values a row beside the time. capacity: buckets kept (rows themselves, until there are more).
+  explicit PlotBuffer(std::size_t channels, std::size_t capacity = 1 << 14) : channels_(channels), capacity_(capacity) {}
+  /// row[0] is the time.
+  void append(const std::vector<double>& row);
+  /// Points of one channel: the rows themselves while they fit, else minimum and maximum of each bucket in order of time.
+  struct Points { std::vector<double> t, y; };
+  Points channel(std::size_t k) const;
+  std::size_t rows() const { return rows_; }
+
+ private:
+  struct Extreme { double lo, hi, t_lo, t_hi; };
+  void halve();
+  std::size_t channels_, capacity_, stride_ = 1, rows_ = 0, filled_ = 0;
+  std::vector<Extreme> data_;   // bucket-major
+};
+
+}  // namespace whirl::app
