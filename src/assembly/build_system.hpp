@@ -1,0 +1,49 @@
+// The only translator from Model + Mesh to System. Absent physics is an absent batch: what the deck does not contain is not added.
+#pragma once
+#include <meshes/mesh.hpp>
+#include <model/model.hpp>
+#include <system/system.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace whirl::assembly {
+
+/// How results read a state: node states and reactions (residual at held unknowns, system::System::residual).
+using NodeAt = std::function<const system::NodeState&(Index)>;
+using ReactionAt = std::function<double(Index unknown)>;
+
+/// Force of a support on the shaft, N, global axes (and moment, N m, where it has one).
+struct SupportForce {
+  std::string name;                 ///< of the bearing
+  std::function<Vec3(const NodeAt&, double t, const ReactionAt&)> force;
+};
+
+/// Torque of a drive on its shaft, N m: of a torque curve, or the reaction of a prescribed angle.
+struct DriveTorque {
+  std::string name;
+  std::function<double(const NodeAt&, double t, const ReactionAt&)> torque;
+};
+
+/// Spin every node of a line starts with: from a prescribed angle law of the step, else Shaft::spin0.
+struct LineSpin {
+  bool prescribed = false;
+  LawPtr angle;                     ///< when prescribed
+  double spin0 = 0;                 ///< rad/s
+};
+
+struct Built {
+  system::System system;
+  std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors), sorted: integrator steps land on them
+  std::vector<SupportForce> support_forces;
+  std::vector<DriveTorque> drive_torques;
+  std::vector<LineSpin> spins;      ///< one a line
+  Index reference = 0;              ///< node whose spin is the speed axis: the first drive's, else the first node of the first rotating line
+  std::vector<std::string> left_out;   ///< physics this scene does not need, one line each, for the summary
+};
+
+/// step: name of the step whose drives act (drives without a step always act); "" = only those without.
+/// Errors (Exit::deck): unrestrained motion named with its shaft, attachments off the shaft, impossible bodies.
+Built build_system(const model::Model& model, const meshes::Mesh& mesh, const std::string& step = {});
+
+}  // namespace whirl::assembly
