@@ -30,6 +30,7 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi) const {
     if (x * power->max_torque > power->power) v.T += power->power / x, v.dx -= power->power / (x * x);
     else v.T += power->max_torque;
   }
+  if (dc) v.T += dc->stall * (1.0 - x / dc->no_load_speed), v.dx -= dc->stall / dc->no_load_speed;
   if (governor) {
     const Governor& g = *governor;
     const double T = g.kp * (g.target - x) + g.ki * (g.target * t - (phi - g.phi0));
@@ -37,10 +38,19 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi) const {
     else v.T += std::copysign(g.max_torque, T);
   }
   const double smooth = std::tanh(x / friction_speed);
-  v.loss = -(friction * smooth + viscous * x + quadratic * x * std::abs(x));
+  const double dry = friction + (brake ? brake->at(t).f : 0.0);
+  v.loss = -(dry * smooth + viscous * x + quadratic * x * std::abs(x));
   v.T += v.loss;
-  v.dx -= friction * (1.0 - smooth * smooth) / friction_speed + viscous + 2.0 * quadratic * std::abs(x);
+  v.dx -= dry * (1.0 - smooth * smooth) / friction_speed + viscous + 2.0 * quadratic * std::abs(x);
   return v;
+}
+
+std::vector<double> TorqueLaw::breakpoints() const {
+  std::vector<double> out;
+  for (const LawPtr& l : {of_time, brake})
+    if (l)
+      for (double t : l->breakpoints()) out.push_back(t);
+  return out;
 }
 
 namespace {

@@ -11,7 +11,7 @@
 
 namespace whirl::elements {
 
-/// T(t, x) = of_time + table + motor + power + governor - (friction tanh(x/friction_speed) + viscous x + quadratic x|x|).
+/// T(t, x) = of_time + table + motors + governor - ((friction + brake(t)) tanh(x/friction_speed) + viscous x + quadratic x|x|).
 /// N m, rad/s. Terms that are zero or absent cost nothing worth mentioning.
 struct TorqueLaw {
   LawPtr of_time;                                 ///< N m; null = 0
@@ -24,6 +24,10 @@ struct TorqueLaw {
   /// power/x, never above max_torque; at and below zero speed max_torque
   struct ConstantPower { double power = 0, max_torque = 0; };
   std::optional<ConstantPower> power;
+  /// stall (1 - x/no_load_speed)
+  struct DcLine { double stall = 0, no_load_speed = 0; };
+  std::optional<DcLine> dc;
+  LawPtr brake;                                   ///< dry torque against the motion, N m, >= 0; null = 0
   /// kp (target - x) + ki (target t - angle turned), limited to +-max_torque. For a torque on phi the integral of the speed
   /// error is exactly target t - (phi - phi(0)), with no extra state; ki is used there only.
   struct Governor { double target = 0, kp = 0, ki = 0, max_torque = infinity, phi0 = 0; };
@@ -32,7 +36,7 @@ struct TorqueLaw {
   /// Torque, its derivatives in x and in the angle, and the part of it that is loss (<= 0 against x).
   struct Value { double T = 0, dx = 0, dphi = 0, loss = 0; };
   Value at(double t, double x, double phi) const;
-  std::vector<double> breakpoints() const { return of_time ? of_time->breakpoints() : std::vector<double>{}; }
+  std::vector<double> breakpoints() const;
 };
 
 enum class TorqueAction { joint, normal, fixed };

@@ -322,9 +322,14 @@ void take_turns(double& phi, double n) {
   phi = std::fma(-n, two_pi, phi) - n * low;
 }
 
+double without_turns(double phi, double turns) {
+  constexpr double low = 2.4492935982947064e-16;  // 2 pi - two_pi
+  return turns == 0.0 ? phi : std::fma(-turns, two_pi, phi) - turns * low;
+}
+
 double take_turns(double& phi) {
   const double n = std::nearbyint(phi / two_pi);
-  if (n != 0.0) take_turns(phi, n);
+  phi = without_turns(phi, n);
   return n;
 }
 

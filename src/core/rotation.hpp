@@ -100,8 +100,10 @@ class ChartChange {
   Mat3 from_, to_;
 };
 
-/// Takes the whole turns out of phi, leaving |phi| <= pi, and returns their number. 2 pi is carried to 107 bits, so that
-/// the azimuth is right to the last digit after any number of turns.
+/// phi less a number of whole turns, 2 pi carried to 107 bits.
+double without_turns(double phi, double turns);
+/// Takes the whole turns out of phi, leaving |phi| <= pi, and returns their number: the azimuth stays right to the last digit
+/// after any number of turns.
 double take_turns(double& phi);
 /// Takes n whole turns out of phi, with the same care.
 void take_turns(double& phi, double n);

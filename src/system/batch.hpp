@@ -4,6 +4,7 @@
 #include <core/rotation.hpp>
 #include <la/block.hpp>
 #include <system/kernel.hpp>
+#include <system/rigid_inertia.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,8 @@ class Term {
   virtual std::size_t count() const = 0;
   virtual int width() const = 0;           ///< 3: translations only; 7: rotations too
   virtual bool inertial() const = 0;       ///< nothing but rigid-body inertia
+  /// Adds the inertia of an inertial() term to its nodes; false when it is not constant in time.
+  virtual bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const = 0;
   virtual void add_force(Workspace& w) const = 0;
   virtual void add_tangent(Workspace& w) const = 0;
   virtual void add_energy(const Workspace& w, Energy& e) const = 0;
@@ -52,6 +55,17 @@ class Batch final : public Term {
   bool inertial() const override {
     if constexpr (requires { K::inertial; }) return K::inertial;
     else return false;
+  }
+  bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const override {
+    bool constant = true;
+    if constexpr (requires(const K& k) { k.inertia(0.0); })
+      for (std::size_t i = 0; i < elements_.size(); ++i) {
+        of_node[static_cast<std::size_t>(nodes_[i][0])] += elements_[i].inertia(0.0);
+        if constexpr (requires(const K& k) { k.factor; }) constant = constant && !elements_[i].factor;
+      }
+    else
+      (void)of_node;
+    return constant;
   }
   std::vector<K>& elements() { return elements_; }
   const std::vector<K>& elements() const { return elements_; }

@@ -30,7 +30,10 @@ Index Builder::add_node(NodeDef def) {
 }
 
 Index Builder::add_ground(const Vec3& position, std::string name) {
-  const Index n = add_node({position, 0, std::move(name), false});
+  // on a line of its own: its axes stay when the chart of a shaft line is moved
+  if (system_.charts_.empty()) add_line("model");
+  if (ground_line_ < 0) ground_line_ = add_line("ground");
+  const Index n = add_node({position, ground_line_, std::move(name), false});
   for (int c = 0; c < 6; ++c) hold(n, c);
   return n;
 }

@@ -130,6 +130,7 @@ class Builder {
  private:
   System system_;
   std::vector<Hold> holds_;
+  Index ground_line_ = -1;
 };
 
 }  // namespace whirl::system

@@ -23,6 +23,8 @@ TorqueLaw smooth_law() {
   t.of_time = law;
   t.friction = 0.3, t.friction_speed = 2.0, t.viscous = 0.1;
   t.induction = TorqueLaw::Induction{2.0, 0.2, 12.0};
+  t.dc = TorqueLaw::DcLine{1.5, 20.0};
+  t.brake = make_polynomial({0.1, 0.2});
   t.governor = TorqueLaw::Governor{3.0, 0.7, 0.5, infinity, 0.2};
   return t;
 }
@@ -139,6 +141,15 @@ TEST(TorqueLaw, Terms) {
   EXPECT_DOUBLE_EQ(t.at(2, 95, 191).T, 2 * 5 + 0.5 * 10);
   EXPECT_DOUBLE_EQ(t.at(2, 0, 191).T, 30);
   EXPECT_DOUBLE_EQ(t.at(2, 300, 191).T, -30);
+  t = {};
+  t.dc = TorqueLaw::DcLine{8, 40};
+  EXPECT_DOUBLE_EQ(t.at(0, 10, 0).T, 6);
+  EXPECT_DOUBLE_EQ(t.at(0, 10, 0).dx, -0.2);
+  t = {};
+  t.brake = make_ramp(1, 2, 0, 6);
+  EXPECT_DOUBLE_EQ(t.at(1.5, 10, 0).T, -3);
+  EXPECT_DOUBLE_EQ(t.at(1.5, -10, 0).loss, 3);
+  EXPECT_EQ(t.breakpoints(), (std::vector<double>{1, 2}));
   t = {};
   t.friction = 5, t.viscous = 0.1, t.quadratic = 0.01;
   EXPECT_DOUBLE_EQ(t.at(0, 10, 0).T, -(5 + 1 + 1));
