@@ -295,8 +295,14 @@ void throw_beyond_chart(double g, const std::string& node, double time) {
                   "turn on the change of chart (model.chart_change = true)", node);
 }
 
-ChartChange::ChartChange(const Mat3& triad, const Vec3& new_e)
-    : from_(triad), to_(minimal_rotation(triad.col(0), new_e.normalized()) * triad) {}
+ChartChange::ChartChange(const Mat3& triad, const Vec3& new_e) : from_(triad) {
+  // Orthonormal to the last digit again: rounding would grow by a factor at every change and turn up as energy.
+  const Vec3 e = new_e.normalized();
+  const Vec3 e2 = minimal_rotation(triad.col(0), e) * triad.col(1);
+  to_.col(0) = e;
+  to_.col(1) = (e2 - e2.dot(e) * e).normalized();
+  to_.col(2) = e.cross(to_.col(1));
+}
 
 Angles ChartChange::apply(const Angles& old) const {
   Director o;

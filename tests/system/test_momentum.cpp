@@ -94,7 +94,9 @@ TEST(Momentum, SatisfiesTheSecondOrderEquations) {
     s.residual(w, z.frames, t, z.q, z.v, z.a, residual);
     s.residual(w, z.frames, t, z.q, z.v, VecX::Zero(s.size()), at_rest);
     for (Index i = 0; i < s.size(); ++i)
-      if (s.active()[static_cast<std::size_t>(i)]) EXPECT_NEAR(residual[i], 0.0, 1e-12 * at_rest.norm()) << i;
+      if (s.active()[static_cast<std::size_t>(i)]) {
+        EXPECT_NEAR(residual[i], 0.0, 1e-12 * at_rest.norm()) << i;
+      }
   }
 }
 
@@ -130,8 +132,8 @@ TEST(Momentum, OneDiskRotorOfThePaper) {
   const double E0 = energy(x), T0 = 0.5 * 2 * J * 2500;
   EXPECT_NEAR(E0, T0, 1e-11);
   for (const auto& row : table) {
-    // steps of 1/50 s: about one radian of spin each, order 14
-    y = run(p, t, row[0], y, static_cast<int>(50 * (row[0] - t)));
+    // steps of 1/200 s: 0.7 rad of the fastest whirl each, order 14
+    y = run(p, t, row[0], y, static_cast<int>(200 * (row[0] - t)));
     t = row[0];
     ASSERT_TRUE(p.get_state(t, y, x));
     const double computed[6] = {l + x.q[0], x.q[1], x.q[2], x.total_phi(disk, line), x.q[4], x.q[5]};
@@ -183,7 +185,7 @@ TEST(Momentum, ChartsAndTurnsDoNotChangeTheMotion) {
   Builder b;
   const Index line = b.add_line("body"), n = b.add_node({Vec3::Zero(), line, "body"});
   Mat3 J;
-  J << 2, 0.1, 0, 0.1, 1, 0.2, 0, 0.2, 3;
+  J << 2, 0.1, 0, 0.1, 1.5, 0.2, 0, 0.2, 3;
   b.add(RigidBody(1.0, Vec3(0.1, -0.2, 0.3), J), {n}, "body");
   const System s = b.finalize();
   MomentumProblem p(s);
@@ -204,7 +206,9 @@ TEST(Momentum, ChartsAndTurnsDoNotChangeTheMotion) {
   EXPECT_GT(moved, 10);
   State z;
   ASSERT_TRUE(p.get_state(20, y, z));
-  EXPECT_LT((y.head<3>() - r0 - 20 * v0).norm(), 1e-12);
+  EXPECT_EQ((y.segment<3>(3) - v0).norm(), 0.0);
+  // rounding of r, 4e-15 at 30 m, times the extrapolation's weights (25) and 2000 steps
+  EXPECT_LT((y.head<3>() - r0 - 20 * v0).norm(), 5e-10);
   // the attitude against quaternions in long double
   using Y = Eigen::Matrix<Real, 4, 1>;
   const auto rate = [&](Real, const Y& q) {
