@@ -1,0 +1,115 @@
+#include <meshes/mass_properties.hpp>
+
+#include <core/rotation.hpp>
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace whirl::meshes {
+namespace {
+
+/// int A ds, int A s ds, int A s^2 ds, int J ds of a solid frustum.
+struct Frustum {
+  double V = 0, S = 0, I = 0, J = 0;
+  Frustum(double L, double a, double b) {
+    V = pi * L / 12 * (a * a + a * b + b * b);
+    S = pi * L * L / 48 * (a * a + 2 * a * b + 3 * b * b);
+    I = pi * L * L * L / 120 * (a * a + 3 * a * b + 6 * b * b);
+    J = pi * L / 160 * (a * a * a * a + a * a * a * b + a * a * b * b + a * b * b * b + b * b * b * b);
+  }
+};
+
+/// Inertia tensor of a point mass at c about the origin.
+Mat3 steiner(double m, const Vec3& c) { return m * (c.squaredNorm() * Mat3::Identity() - c * c.transpose()); }
+
+}  // namespace
+
+Mat3 MassProperties::about_centre() const { return about_origin - steiner(mass, centre()); }
+
+MassProperties& MassProperties::operator+=(const MassProperties& o) {
+  mass += o.mass, moment += o.moment, about_origin += o.about_origin;
+  return *this;
+}
+
+void MassProperties::add(double m, const Vec3& c, const Mat3& J) {
+  mass += m, moment += m * c, about_origin += J + steiner(m, c);
+}
+
+MassProperties section_mass(const model::Model& m, const model::Section& s, const Vec3& left_end) {
+  const double L = s.length, rho = m.materials.empty() ? 0.0 : m.materials.at(s.material).rho;
+  // line integrals about the left end: mass, first and second moment, transverse (about y, z) and polar inertia
+  double mass = 0, first = 0, second = 0, about_y = 0, about_z = 0, polar = 0;
+  if (s.constants) {
+    const auto& c = *s.constants;
+    mass = c.rhoA * L, first = mass * L / 2, second = mass * L * L / 3;
+    about_y = about_z = c.rhoI * L, polar = c.rhoIp * L;
+  } else if (s.od_l > 0 || s.od_r > 0) {
+    const Frustum out(L, s.od_l, s.od_r), in(L, s.id_l, s.id_r);
+    mass = rho * (out.V - in.V), first = rho * (out.S - in.S), second = rho * (out.I - in.I);
+    polar = rho * (out.J - in.J), about_y = about_z = polar / 2;
+  } else if (s.general) {
+    const auto& g = *s.general;
+    const double c = std::cos(g.angle), n = std::sin(g.angle);   // about_* refer to global y, z
+    mass = rho * g.A * L, first = mass * L / 2, second = mass * L * L / 3;
+    about_y = rho * L * (g.Iy * c * c + g.Iz * n * n), about_z = rho * L * (g.Iy * n * n + g.Iz * c * c);
+    polar = rho * L * (g.Iy + g.Iz);
+  }
+  if (!s.rotary_inertia && !s.rigid) about_y = about_z = 0;
+  const double added = s.added_mass_per_length * L;
+  mass += added, first += added * L / 2, second += added * L * L / 3;
+  MassProperties p;
+  if (!(mass > 0)) return p;
+  const double x = first / mass, own = second - mass * x * x;   // about the section's own centre
+  p.add(mass, left_end + Vec3(x, 0, 0), Vec3(polar, own + about_y, own + about_z).asDiagonal());
+  return p;
+}
+
+MassProperties disk_mass(const model::Disk& d, const Vec3& station) {
+  Mat3 J = d.inertia ? *d.inertia : Mat3(Vec3(d.Ip, d.Id, d.Id).asDiagonal());
+  if (d.skew != 0) {   // the principal axis leans towards the body angle skew_phase
+    const Mat3 R = rotation::L(d.skew * Vec3(0, -std::sin(d.skew_phase), std::cos(d.skew_phase)));
+    J = R * J * R.transpose();
+  }
+  MassProperties p;
+  p.add(d.mass, station + d.offset, J);
+  return p;
+}
+
+MassProperties shaft_mass(const model::Model& m, std::size_t shaft) {
+  const model::Shaft& s = m.shafts.at(shaft);
+  MassProperties p;
+  Vec3 x = s.origin;
+  for (const auto& k : s.sections) {
+    p += section_mass(m, k, x);
+    x.x() += k.length;
+  }
+  for (const auto& d : m.disks)
+    if (d.at.shaft == shaft) p += disk_mass(d, s.origin + Vec3(d.at.s, 0, 0));
+  for (const auto& u : m.unbalances)
+    if (u.at.shaft == shaft) {
+      const double now = u.factor ? u.amount * u.factor->at(0).f : u.amount;
+      const Vec3 at = s.origin + Vec3(u.at.s, 0, 0), arm = now * Vec3(0, std::cos(u.phase), std::sin(u.phase));
+      p.moment += arm;
+      p.about_origin += 2 * at.dot(arm) * Mat3::Identity() - at * arm.transpose() - arm * at.transpose();
+    }
+  return p;
+}
+
+MassProperties total_mass(const model::Model& m) {
+  MassProperties p;
+  for (std::size_t k = 0; k < m.shafts.size(); ++k) p += shaft_mass(m, k);
+  return p;
+}
+
+std::string mass_table(const model::Model& m) {
+  std::string out = fmt::format("{:<20} {:>13} {:>36} {:>13} {:>13}\n", "shaft", "mass, kg", "centre x, y, z, m", "Ip, kg m2", "Id, kg m2");
+  const auto row = [&](const std::string& name, const MassProperties& p) {
+    const Vec3 c = p.centre();
+    out += fmt::format("{:<20} {:>13.6g} {:>12.6g}{:>12.3g}{:>12.3g} {:>13.6g} {:>13.6g}\n", name, p.mass, c.x(), c.y(), c.z(), p.Ip(), p.Id());
+  };
+  for (std::size_t k = 0; k < m.shafts.size(); ++k) row(m.shafts[k].name, shaft_mass(m, k));
+  if (m.shafts.size() > 1) row("total", total_mass(m));
+  return out;
+}
+
+}  // namespace whirl::meshes
