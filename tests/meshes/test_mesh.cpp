@@ -1,5 +1,6 @@
 #include "models.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <meshes/mesh.hpp>
 #include <meshes/mesh_tables.hpp>
@@ -197,8 +198,8 @@ TEST(Mesh, TwoSpoolsCasingAndPedestals) {
   m.bearings.push_back(pinned);
   const Mesh mesh = make_mesh(m);
   check_invariants(m, mesh);
-  EXPECT_EQ(mesh.lines[0].nodes, 6);   // 4 elements with a cut at 0.7: 3 + 2... see below
-  EXPECT_EQ(mesh.lines[1].first_node, 6);
+  EXPECT_EQ(mesh.lines[0].nodes, 5);   // 3 elements left of the bearing at 0.7 m, 1 right of it
+  EXPECT_EQ(mesh.lines[1].first_node, 5);
   EXPECT_FALSE(mesh.lines[2].rotating);
   EXPECT_EQ(mesh.bearings[0].other.node, mesh.lines[1].first_node + 2);
   EXPECT_EQ(mesh.bearings[0].ground, -1);
@@ -219,13 +220,13 @@ TEST(Mesh, RandomShaftsKeepTheInvariants) {
     const int n = 1 + static_cast<int>(u(random) * 8);
     for (int k = 0; k < n; ++k) {
       const double length = std::pow(10, -4 + 4 * u(random));
-      sections.push_back(u(random) < 0.3 ? rigid("r" + std::to_string(k), length)
-                                         : cylinder("f" + std::to_string(k), length, 0.05, 0, 1 + static_cast<int>(3 * u(random))));
+      sections.push_back(u(random) < 0.3 ? rigid(fmt::format("r{}", k), length)
+                                         : cylinder(fmt::format("f{}", k), length, 0.05, 0, 1 + static_cast<int>(3 * u(random))));
     }
     model::Model m = one_shaft(sections);
     if (u(random) < 0.5) m.max_element_length = 0.02 + u(random);
     const double L = m.shafts[0].length();
-    for (int k = 0; k < 6; ++k) m.disks.push_back(disk("d" + std::to_string(k), L * u(random), u(random), 1e-3, 1e-3));
+    for (int k = 0; k < 6; ++k) m.disks.push_back(disk(fmt::format("d{}", k), L * u(random), u(random), 1e-3, 1e-3));
     m.disks.push_back(disk("left", 0, 1, 1, 1));
     m.disks.push_back(disk("right", L, 1, 1, 1));
     SCOPED_TRACE(trial);
@@ -268,7 +269,7 @@ TEST(Mesh, AllErrorsAtOnceWithPlaceAndName) {
 }
 
 TEST(Mesh, ImpossibleSections) {
-  for (auto spoil : {+[](model::Section& s) { s.length = 0; }, +[](model::Section& s) { s.length = nan; },
+  for (auto spoil : {+[](model::Section& s) { s.length = 0; }, +[](model::Section& s) { s.length = whirl::nan; },
                      +[](model::Section& s) { s.od_r = 0; }, +[](model::Section& s) { s.min_elements = 0; },
                      +[](model::Section& s) { s.max_element_length = 1e-9; },
                      +[](model::Section& s) { s.constants = model::Section::Constants{}; }}) {
