@@ -41,7 +41,7 @@ void RigidDisk::add_energy(const Nodes<1>& x, const Context& c, Energy& e) const
   const NodeState& n = *x[0];
   const double s = n.spin();
   e.kinetic += 0.5 * (mass * (n.du + offset * n.dd).squaredNorm() + Jt * n.dd.squaredNorm() + Jp * s * s);
-  e.gravity -= mass * c.gravity.dot(n.u + offset * n.t);
+  e.gravity -= mass * c.gravity.dot(n.u + offset * n.d());   // d, not t: t starts anew when the chart is moved
 }
 
 RigidInertia RigidDisk::inertia(double) const {
