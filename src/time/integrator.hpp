@@ -119,6 +119,8 @@ class Integrator {
   /// State at t inside the last step, held entries exact from their laws. v = q', a = q'' of the same interpolant.
   virtual void interpolate(double t, Ref q, Ref v, Ref a) const = 0;
 
+  /// To be called by whoever used linearize() or factor() of the problem between steps.
+  virtual void refresh() = 0;
   virtual void set_end(double t_end) = 0;
   virtual void set_breakpoints(std::vector<double> times) = 0;
   virtual const Statistics& statistics() const = 0;

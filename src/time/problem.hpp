@@ -20,6 +20,9 @@ class Problem {
   virtual Index size() const = 0;
   /// Kind of every unknown; Kind::held marks entries that impose() sets and Newton leaves alone.
   virtual std::span<const Kind> kinds() const = 0;
+  /// True when M, C, K are constant and R is affine in (q, v, a): one linearisation serves the run and Newton's first
+  /// iteration is exact.
+  virtual bool is_linear() const { return false; }
   /// Sets the held entries of q, v, a at time t (exactly, from their laws).
   virtual void impose(double t, Ref q, Ref v, Ref a) const = 0;
   /// r = R(t, q, v, a); entries of held unknowns are the reactions. Returns false when the configuration is outside

@@ -1,0 +1,52 @@
+// Collocation (Radau IIA 5, Gauss 4, Gauss 6) for second-order implicit systems R(t, q, v, a) = 0. See collocation.cpp.
+#pragma once
+#include <time/newton.hpp>
+#include <time/stepper.hpp>
+#include <time/tableau.hpp>
+
+namespace whirl::time {
+
+class Collocation final : public Stepper {
+ public:
+  Collocation(std::string_view name, const Tableau& tableau, Problem& problem, const Options& options);
+  std::string_view name() const override { return name_; }
+  int order() const override { return tab_.order; }
+
+ private:
+  Attempt attempt(double h) override;
+  bool factor(double h) override;
+  void commit(double h) override;
+  void rewind() override { theta_start_ = 0.0; }
+  void drop_history() override { have_history_ = false; }
+  void dense(double theta, Ref q, Ref v, Ref a) const override;
+  void save_history(std::vector<double>& out) const override;
+  const double* restore_history(const double* in) override;
+
+  void predict(double h, bool extrapolate);
+  /// Residuals of all stages at the present increments into r_; false: outside the model's domain.
+  bool evaluate_stages(double h);
+  /// Newton on the stages; iterations and status into `out`.
+  void newton(double h, Attempt& out);
+  /// r_ := corrections of the stages from their residuals, Y -= r_; false when not finite.
+  bool correct();
+  void finish(double h);
+  double estimate(double h);
+
+  std::string_view name_;
+  const Tableau& tab_;
+  int s_;
+  double allowance_;
+  NewtonMonitor newton_;
+  // stage quantities, one column a stage
+  MatX y_, a_stage_, r_;
+  VecX qs_, vs_, as_, dq_;
+  VecX u_, e_, rho_q_, rho_v_, start_residual_;
+  VecXc uc_;
+  bool have_start_residual_ = false;
+  // history: stage accelerations of the last step and its length
+  MatX a_last_;
+  double h_last_ = 0.0, theta_start_ = 1.0;
+  bool have_history_ = false;
+};
+
+}  // namespace whirl::time

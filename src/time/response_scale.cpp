@@ -1,0 +1,103 @@
+#include <time/response_scale.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::time {
+namespace {
+constexpr std::size_t of(Kind k) { return static_cast<std::size_t>(k); }
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
+  kinds_.assign(kinds.begin(), kinds.end());
+  options_ = options;
+  const auto n = static_cast<Index>(kinds_.size());
+  low_ = high_ = weight_ = inertia_ = VecX::Zero(n);
+  internal_.clear();
+  spin_.clear();
+  for (Index i = 0; i < n; ++i) {
+    if (kinds_[at(i)] == Kind::internal) internal_.push_back(i);
+    if (kinds_[at(i)] == Kind::spin_angle) spin_.push_back(i);
+  }
+  set_spin_inertia(VecX::Zero(n));
+}
+
+void ResponseScale::reset(CRef q) {
+  low_ = high_ = q;
+  swept_.fill(0.0);
+}
+
+void ResponseScale::set_spin_inertia(CRef inertia) {
+  double sum = 0.0;
+  for (Index i : spin_) sum += std::abs(inertia[i]);
+  for (Index i : spin_)
+    inertia_[i] = sum > 0.0 && std::isfinite(sum) ? std::abs(inertia[i]) / sum : 1.0 / static_cast<double>(spin_.size());
+}
+
+void ResponseScale::observe(CRef q) {
+  for (Index i = 0; i < q.size(); ++i) {
+    low_[i] = std::min(low_[i], q[i]);
+    high_[i] = std::max(high_[i], q[i]);
+    double& s = swept_[of(kinds_[at(i)])];
+    s = std::max(s, 0.5 * (high_[i] - low_[i]));
+  }
+}
+
+void ResponseScale::rebase(Index i, double q) { low_[i] = high_[i] = q; }
+
+void ResponseScale::begin_step(CRef dq) {
+  std::array<double, kinds_count> s = swept_;
+  for (Index i = 0; i < dq.size(); ++i) {
+    double& k = s[of(kinds_[at(i)])];
+    k = std::max(k, 0.5 * std::abs(dq[i]));
+  }
+  const Scales& o = options_;
+  double& u = s[of(Kind::displacement)];
+  double& g = s[of(Kind::tilt)];
+  u = std::max({u, o.displacement, o.floor_displacement});
+  g = std::max({g, o.tilt, o.floor_tilt});
+  const double u0 = u;
+  u = std::max(u, o.cross_floor * o.length * g);
+  g = std::max(g, o.cross_floor * u0 / o.length);
+  s[of(Kind::spin_angle)] = o.spin_angle;
+  s[of(Kind::held)] = infinity;
+  if (s != used_) {
+    used_ = s;
+    for (Index i = 0; i < weight_.size(); ++i) weight_[i] = 1.0 / s[of(kinds_[at(i)])];
+  }
+  const double floor = std::max(o.internal, o.floor_internal);
+  for (Index i : internal_)
+    weight_[i] = 1.0 / std::max({0.5 * (high_[i] - low_[i]), 0.5 * std::abs(dq[i]), floor});
+}
+
+double ResponseScale::norm(CRef x) const { return x.cwiseProduct(weight_).lpNorm<Eigen::Infinity>(); }
+
+double ResponseScale::error_norm(CRef x) const {
+  double largest = 0.0, spin = 0.0;
+  for (Index i = 0; i < x.size(); ++i) {
+    if (kinds_[at(i)] == Kind::spin_angle) continue;
+    largest = std::max(largest, std::abs(x[i]) * weight_[i]);
+  }
+  for (Index i : spin_) spin += inertia_[i] * x[i] * x[i] * weight_[i] * weight_[i];
+  // NaN must not be lost in a comparison
+  const double sum = x.sum();
+  return std::isfinite(sum) ? std::max(largest, std::sqrt(spin)) : infinity;
+}
+
+void ResponseScale::save(std::vector<double>& out) const {
+  out.insert(out.end(), swept_.begin(), swept_.end());
+  for (const VecX* x : {&low_, &high_, &inertia_}) out.insert(out.end(), x->data(), x->data() + x->size());
+}
+
+const double* ResponseScale::restore(const double* in) {
+  std::copy_n(in, kinds_count, swept_.begin());
+  in += kinds_count;
+  for (VecX* x : {&low_, &high_, &inertia_}) {
+    std::copy_n(in, x->size(), x->data());
+    in += x->size();
+  }
+  return in;
+}
+
+}  // namespace whirl::time
