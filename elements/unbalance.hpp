@@ -1,10 +1,10 @@
 // Unbalance: the static moment U = mass x eccentricity of the station's bodies, turning with them. One node.
-//   T = U u'.b',  b = P(d <- e)(cos(phi + beta) e2 + sin(phi + beta) e3);  potential -U g.b
-//   f_u = U b'',  (f_d, f_phi) = U (db/d(d, phi))^T (u'' - g)
+//   T = U (u + o d)'.b',  b = P(d <- e)(cos(phi + beta) e2 + sin(phi + beta) e3);  potential -U g.b
+//   f_u = U b'',  f_d = U o b'',  (f_d, f_phi) += U (db/d(d, phi))^T (u'' + o d'' - g)
 // Exact at any amplitude: a body of given mass, given inertia about the node and static moment U, in force, moment, torque
 // and gravity. U(t) = amount factor(t): mass that comes or goes moves with the body and carries its own energy
 // (counted as supplied power), so a step factor is a blade loss without impulse. amount kg m; beta rad, body angle at
-// phi = 0 from e2 towards e3; factor dimensionless, null = 1.
+// phi = 0 from e2 towards e3; factor dimensionless, null = 1; offset o: the station from the node along d, m.
 #pragma once
 #include <core/law.hpp>
 #include <system/kernel.hpp>
@@ -18,9 +18,10 @@ struct UnbalanceMass {
 
   double amount = 0, cos_beta = 1, sin_beta = 0;
   LawPtr factor;
+  double offset = 0;
 
   UnbalanceMass() = default;
-  UnbalanceMass(double U, double beta, LawPtr law = nullptr);
+  UnbalanceMass(double U, double beta, LawPtr law = nullptr, double o = 0);
   /// kg m at time t
   double at(double t) const { return factor ? amount * factor->at(t).f : amount; }
 

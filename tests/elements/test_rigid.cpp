@@ -46,6 +46,7 @@ TEST(Unbalance, Conformance) {
   ConformanceOptions o = free_body();
   o.semidefinite_M = false;  // the static moment alone is a difference of bodies
   check_kernel(UnbalanceMass(0.03, 0.4), o);
+  check_kernel(UnbalanceMass(0.03, 0.4, nullptr, -0.3), o);
   check_kernel(UnbalanceMass(0.03, -2.0, make_smooth_step(0, 2, 0.3, 1.7)), o);
 }
 
@@ -123,21 +124,28 @@ TEST(RigidBody, IsNewtonEuler) {
 TEST(Unbalance, IsTheOffsetMassCentreOfADisk) {
   // disk about the node + static moment = body with its mass centre at eps and inertia about the mass centre less m eps^2
   const double m = 5, eps = 0.01, beta = 0.7, Jp = 0.15, Jt = 0.08;
-  const Vec3 offset(0, eps * std::cos(beta), eps * std::sin(beta));
-  const Mat3 about_node = Vec3(Jp, Jt, Jt).asDiagonal();
-  const RigidBody body(m, offset, about_node - m * (eps * eps * Mat3::Identity() - offset * offset.transpose()));
-  const RigidDisk centred{m, Jt, Jp, 0};
-  const UnbalanceMass u(m * eps, beta);
-  Random r(6);
-  for (int n = 0; n < 20; ++n) {
-    const Vector<6> q = r.vector<6>(), v = 5 * r.vector<6>(), a = 9 * r.vector<6>();
-    const Mat3 chart = r.rotation();
-    const NodeFrame<1, 7> x(q, v, a, chart, Vec3(0, 0, -9.81));
-    const system::Context c{0.0, Vec3(0, 0, -9.81)};
-    system::ForceX<7> f1 = Vector<7>::Zero(), f2 = f1;
-    body.add_force(x.nodes(), c, f1);
-    centred.add_force(x.nodes(), c, f2), u.add_force(x.nodes(), c, f2);
-    EXPECT_LT((x.J.transpose() * (f1 - f2)).norm(), 1e-13 * f1.norm());
+  const Vec3 arm(0, eps * std::cos(beta), eps * std::sin(beta));
+  const Mat3 about_station = Vec3(Jp, Jt, Jt).asDiagonal();
+  for (double station : {0.0, 0.2}) {   // from the node along the shaft
+    const RigidBody body(m, arm + Vec3(station, 0, 0), about_station - m * (eps * eps * Mat3::Identity() - arm * arm.transpose()));
+    const RigidDisk centred{m, Jt, Jp, station};
+    const UnbalanceMass u(m * eps, beta, nullptr, station);
+    system::RigidInertia parts = centred.inertia(0.0);
+    parts += u.inertia(0.0);
+    const system::RigidInertia whole = body.inertia(0.0);
+    EXPECT_LT((parts.J - whole.J).norm(), 1e-14 * whole.J.norm());
+    EXPECT_LT((parts.moment - whole.moment).norm(), 1e-14 * whole.moment.norm());
+    Random r(6);
+    for (int n = 0; n < 20; ++n) {
+      const Vector<6> q = r.vector<6>(), v = 5 * r.vector<6>(), a = 9 * r.vector<6>();
+      const Mat3 chart = r.rotation();
+      const NodeFrame<1, 7> x(q, v, a, chart, Vec3(0, 0, -9.81));
+      const system::Context c{0.0, Vec3(0, 0, -9.81)};
+      system::ForceX<7> f1 = Vector<7>::Zero(), f2 = f1;
+      body.add_force(x.nodes(), c, f1);
+      centred.add_force(x.nodes(), c, f2), u.add_force(x.nodes(), c, f2);
+      EXPECT_LT((x.J.transpose() * (f1 - f2)).norm(), 1e-13 * f1.norm());
+    }
   }
 }
 
