@@ -40,7 +40,8 @@ struct Series {
   double amplitude_per_y = 0.0;         ///< ... and the readout is (y - baseline) * amplitude_per_y; 0 = plain y
   std::string trace_label;              ///< shown in the readout instead of label
   std::vector<Extra> extra{};
-  bool keep_all = false;                ///< no decimation (few points that all matter)
+  std::vector<std::string> point_names{};  ///< one a point, shown in the readout ("tolerance 1e-6")
+  bool keep_all = false;                ///< no decimation (few points that all matter; also implied by extra and point_names)
 };
 
 struct Bars { std::string label; std::vector<double> x, height; double width = 0.8; Style style{}; bool right_axis = false; };
@@ -82,6 +83,7 @@ struct Axis {
   double min = nan, max = nan;             ///< nan: from the data
   bool include_zero = false;
   std::vector<double> ticks{};             ///< empty: chosen
+  std::vector<std::string> tick_labels{};  ///< names instead of numbers, one a tick (bars)
   Axis() = default;
   Axis(std::string label_, std::string unit_, bool log = false)
       : label(std::move(label_)), unit(std::move(unit_)), logarithmic(log) {}
