@@ -38,6 +38,7 @@ struct Series {
   bool fill_to_baseline = false;        ///< waterfalls: hides what is behind
   double baseline = 0.0;                ///< waterfalls: y of zero amplitude ...
   double amplitude_per_y = 0.0;         ///< ... and the readout is (y - baseline) * amplitude_per_y; 0 = plain y
+  std::string amplitude_unit;           ///< of that readout
   std::string trace_label;              ///< shown in the readout instead of label
   std::vector<Extra> extra{};
   std::vector<std::string> point_names{};  ///< one a point, shown in the readout ("tolerance 1e-6")

@@ -58,7 +58,7 @@ Figure plot_waterfall(std::string name, std::string title, std::span<const Spect
   for (const auto* t : shown) {   // the highest speed first: lower ones stand in front
     Series s;
     s.baseline = t->speed * rpm;
-    s.amplitude_per_y = per_y;
+    s.amplitude_per_y = per_y, s.amplitude_unit = u.name + " " + to_string(convention);
     s.fill_to_baseline = true;
     s.style = {0, Dash::solid, 1.0};
     s.trace_label = readable(s.baseline, 5) + " rpm";

@@ -94,6 +94,7 @@ std::string readout_attributes(const Series& s, const std::vector<double>& px, c
     char v[80];
     std::snprintf(v, sizeof v, " data-base=\"%.9g %.9g\"", s.baseline, s.amplitude_per_y);
     out += v;
+    out += " data-unit=\"" + escape(s.amplitude_unit) + '"';
   }
   return out + point_attributes(s, px, py);
 }

@@ -1,0 +1,75 @@
+// Uses the report as a reader would and leaves "ok", or what went wrong, in <pre id="probe">. Expected numbers come from gallery.hpp.
+(() => {
+  const wrong = [...window.faults];
+  const check = (ok, what) => { if (!ok) wrong.push(what); };
+  const svg = (id) => document.getElementById(id);
+  const readout = document.getElementById("readout");
+  const at = (s, x, y) => { const m = s.getScreenCTM(); return { clientX: m.a * x + m.e, clientY: m.d * y + m.f }; };
+  const fire = (s, type, x, y, more = {}) => s.dispatchEvent(new PointerEvent(type, { bubbles: true, cancelable: true, pointerId: 1, button: 0, ...at(s, x, y), ...more }));
+  const text = () => (readout.style.display === "none" ? "" : readout.innerText);
+  const value = (label) => { const m = text().replace(/−/g, "-").match(new RegExp(label + "[^\\d-]*(-?[\\d.]+)")); return m ? +m[1] : NaN; };
+  // px of a value on plane axes
+  const place = (id, vx, vy, k = 0) => {
+    const g = svg(id).querySelectorAll("g.axes")[k], [bx, by, bw, bh] = g.dataset.box.split(" ").map(Number);
+    const f = (d, v) => { const [lo, hi, log] = d.split(" ").map(Number); return log ? Math.log(v / lo) / Math.log(hi / lo) : (v - lo) / (hi - lo); };
+    return [bx + bw * f(g.dataset.x, vx), by + bh * (1 - f(g.dataset.y, vy))];
+  };
+  SVGElement.prototype.setPointerCapture = () => {};   // there is no real pointer
+
+  // Readout: the torsional line of the Campbell diagram, 1010 rad/s at any speed, log decrement 0.02.
+  svg("campbell").scrollIntoView();
+  fire(svg("campbell"), "pointermove", ...place("campbell", 9000, 1010 / (2 * Math.PI)));
+  check(Math.abs(value("natural frequency") - 1010 / (2 * Math.PI)) < 0.05, "Campbell frequency: " + text());
+  check(Math.abs(value("log decrement") - 0.02) < 1e-9, "Campbell log decrement: " + text());
+  check(text().includes("torsion 1"), "Campbell name: " + text());
+
+  // A polar plot and a map answer too.
+  svg("spectrogram").scrollIntoView();
+  fire(svg("spectrogram"), "pointermove", ...place("spectrogram", 12000, 485 / (2 * Math.PI)));
+  check(value("0-peak") > 30, "map: " + text());
+  svg("study").scrollIntoView();
+  fire(svg("study"), "pointermove", ...place("study", 0.02, 0.02));
+  check(Math.abs(value("run time \\(CPU\\)") - 0.02) < 1e-4 && text().includes("step 1.0"), "study: " + text());
+
+  // Wheel: nothing before the figure is clicked, then closer, with new ticks on all axes that share x.
+  const h = svg("history");
+  h.scrollIntoView();
+  const ticks = () => [...h.querySelectorAll(".tx")].map((g) => g.textContent).join("|");
+  const before = ticks(), [hx, hy] = place("history", 2.4, 0);
+  const wheel = () => h.dispatchEvent(new WheelEvent("wheel", { bubbles: true, cancelable: true, deltaY: -600, ...at(h, hx, hy) }));
+  wheel();
+  check(ticks() === before, "the wheel zoomed unasked");
+  fire(h, "pointerdown", hx, hy), fire(h, "pointerup", hx, hy);
+  wheel();
+  check(ticks() !== before, "the wheel did not zoom");
+  const moved = [...h.querySelectorAll(".plot")].map((g) => g.getAttribute("transform")?.split(" ")[0]);
+  check(moved.length === 3 && new Set(moved).size === 1 && moved[0], "shared x: " + moved);
+  fire(h, "pointermove", ...place("history", 2.4, 0));
+  check(Math.abs(value("time") - 2.4) < 0.05, "readout under zoom: " + text());
+  h.dispatchEvent(new MouseEvent("dblclick", { bubbles: true }));
+  check(ticks() === before, "double click did not reset: " + ticks());
+
+  // Legend: the phase follows the amplitude.
+  const entry = svg("bode").querySelector(".entry[data-s='0']"), hidden = () => [...svg("bode").querySelectorAll("path[data-s='0']")].filter((p) => getComputedStyle(p).display === "none").length;
+  entry.dispatchEvent(new MouseEvent("click", { bubbles: true }));
+  check(hidden() === 2, "legend hides " + hidden());
+  entry.dispatchEvent(new MouseEvent("click", { bubbles: true }));
+  check(hidden() === 0, "legend shows again");
+
+  // A figure in space turns, and reads x, y, z.
+  const s = svg("space"), path = s.querySelector("path[data-xyz]"), d0 = path.getAttribute("d"), box = s.querySelector("g.axes").dataset.box.split(" ").map(Number);
+  s.scrollIntoView();
+  const c = [box[0] + box[2] / 2, box[1] + box[3] / 2];
+  s.dispatchEvent(new MouseEvent("dblclick", { bubbles: true }));
+  const same = (a, b) => { const n = (t) => t.match(/-?[\d.]+/g).map(Number); const x = n(a), y = n(b); return x.length === y.length && x.every((v, i) => Math.abs(v - y[i]) < 0.35); };
+  check(same(d0, path.getAttribute("d")), "the script projects otherwise than the renderer");
+  fire(s, "pointerdown", ...c), fire(s, "pointermove", c[0] + 80, c[1] + 20), fire(s, "pointerup", c[0] + 80, c[1] + 20);
+  check(!same(d0, path.getAttribute("d")), "it does not turn");
+  s.dispatchEvent(new MouseEvent("dblclick", { bubbles: true }));
+  check(same(d0, path.getAttribute("d")), "it does not turn back");
+
+  const out = document.createElement("pre");
+  out.id = "probe";
+  out.textContent = wrong.length ? wrong.join("\n") : "ok";
+  document.body.append(out);
+})();

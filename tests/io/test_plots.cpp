@@ -1,0 +1,284 @@
+// Figures: thinning keeps extremes, ticks are where a reader expects them, SVG is well-formed, axes name their units.
+#include "gallery.hpp"
+#include "temp_folder.hpp"
+#include "xml_check.hpp"
+#include <io/collector.hpp>
+#include <io/file.hpp>
+#include <io/palette.hpp>
+#include <io/png.hpp>
+#include <io/svg.hpp>
+#include <io/text.hpp>
+#include <io/ticks.hpp>
+#include <algorithm>
+#include <random>
+#include <set>
+
+namespace whirl::io {
+namespace {
+
+TEST(Decimate, EveryColumnKeepsItsLowestAndHighestPoint) {
+  std::mt19937 rng(7);
+  std::normal_distribution<double> noise;
+  std::vector<double> x, y;
+  for (int i = 0; i < 1000000; ++i) x.push_back(i * 1e-5), y.push_back(noise(rng) * (i == 123456 ? 1000 : 1));
+  constexpr std::size_t columns = 700;
+  const auto keep = decimate_columns(x, y, 0, 10, columns);
+  EXPECT_LE(keep.size(), 4 * columns);
+  EXPECT_TRUE(std::is_sorted(keep.begin(), keep.end()));
+  std::vector<double> lo(columns, 1e9), hi(columns, -1e9), klo = lo, khi = hi;
+  const auto column = [&](double v) { return std::min(columns - 1, static_cast<std::size_t>(v * columns / 10)); };
+  for (std::size_t i = 0; i < x.size(); ++i) lo[column(x[i])] = std::min(lo[column(x[i])], y[i]), hi[column(x[i])] = std::max(hi[column(x[i])], y[i]);
+  for (const auto i : keep) klo[column(x[i])] = std::min(klo[column(x[i])], y[i]), khi[column(x[i])] = std::max(khi[column(x[i])], y[i]);
+  EXPECT_EQ(lo, klo);
+  EXPECT_EQ(hi, khi);
+  EXPECT_EQ(keep.front(), 0u);
+  EXPECT_EQ(keep.back(), x.size() - 1);
+}
+
+TEST(Decimate, GapsStayGaps) {
+  std::vector<double> x(1000), y(1000, 1.0);
+  for (std::size_t i = 0; i < 1000; ++i) x[i] = static_cast<double>(i);
+  for (std::size_t i = 400; i < 500; ++i) y[i] = nan;
+  const auto keep = decimate_columns(x, y, 0, 1000, 10);
+  EXPECT_EQ(std::count_if(keep.begin(), keep.end(), [&](auto i) { return std::isnan(y[i]); }), 1);
+  EXPECT_TRUE(std::find(keep.begin(), keep.end(), 399u) != keep.end());
+  EXPECT_TRUE(std::find(keep.begin(), keep.end(), 500u) != keep.end());
+}
+
+TEST(Decimate, RepeatedOrbitIsDrawnOnce) {
+  std::vector<double> x, y;
+  for (int i = 0; i < 100000; ++i) x.push_back(100 * std::cos(two_pi * i / 500)), y.push_back(100 * std::sin(two_pi * i / 500));
+  std::size_t points = 0;
+  double far = 0;
+  for (const auto& run : decimate_path(x, y)) {
+    points += run.size();
+    for (const auto i : run) far = std::max(far, x[i]);
+  }
+  EXPECT_LT(points, 600u);
+  EXPECT_EQ(far, 100.0);
+}
+
+TEST(Envelope, BoundedMemoryExactExtremes) {
+  std::mt19937 rng(3);
+  std::normal_distribution<double> noise;
+  Envelope e(256);
+  double lo = 0, hi = 0, t_hi = 0;
+  for (int i = 0; i < 1000000; ++i) {
+    const double v = noise(rng);
+    if (v > hi) hi = v, t_hi = i;
+    lo = std::min(lo, v);
+    e.add(i, v);
+  }
+  std::vector<double> x, y;
+  e.points(x, y);
+  EXPECT_LE(x.size(), 4u * 256);
+  EXPECT_GT(x.size(), 2u * 128);
+  EXPECT_TRUE(std::is_sorted(x.begin(), x.end()));
+  EXPECT_EQ(*std::max_element(y.begin(), y.end()), hi);
+  EXPECT_EQ(*std::min_element(y.begin(), y.end()), lo);
+  EXPECT_EQ(x[static_cast<std::size_t>(std::max_element(y.begin(), y.end()) - y.begin())], t_hi);
+  EXPECT_EQ(x.front(), 0);
+  EXPECT_EQ(x.back(), 999999);
+}
+
+TEST(Collector, KeepsEnvelopeAndLastRowsInWrittenUnits) {
+  const Channel channels[] = {{"time", "s", "", {}, 1, ""}, {"speed", "rpm", "", {}, 10, ""}};
+  Collector c(64, 5);
+  c.begin(channels);
+  for (int i = 0; i < 1000; ++i) c.append(std::array{0.1 * i, static_cast<double>(i)});
+  std::vector<double> x, y;
+  c.curve(1, x, y);
+  EXPECT_EQ(y.back(), 9990);
+  EXPECT_EQ(c.last()["speed"], (std::vector<double>{9950, 9960, 9970, 9980, 9990}));
+  Collector again(64, 5);
+  again.resume(channels, 5);
+  replay(c.last(), channels, 5, again);
+  EXPECT_EQ(again.last()["time"], c.last()["time"]);
+}
+
+TEST(Ticks, RoundNumbersInsideTheRange) {
+  const Ticks a = linear_ticks(0.3, 9.7, 5);
+  EXPECT_EQ(a.major, (std::vector<double>{2, 4, 6, 8}));
+  EXPECT_EQ(a.labels, (std::vector<std::string>{"2", "4", "6", "8"}));
+  const Ticks b = linear_ticks(-2.2e-6, 2.2e-6, 5);
+  EXPECT_EQ(b.exponent, -6);
+  EXPECT_EQ(b.labels.front(), "−2");
+  EXPECT_EQ(b.labels[b.labels.size() / 2], "0");
+  const Ticks c = linear_ticks(49.9931, 50.0012, 4);
+  EXPECT_EQ(c.labels.front(), "49.9950");   // steps of 0.0025
+  for (const double span : {1e-300, 1e-9, 1.0, 7.3, 1e9, 1e300})
+    for (const double at : {0.0, 1.0, -3.0}) {
+      const Ticks t = linear_ticks(at * span, (at + 1) * span, 6);
+      EXPECT_GE(t.major.size(), 3u) << span;
+      EXPECT_LE(t.major.size(), 13u) << span;
+      for (const double v : t.major) EXPECT_TRUE(v >= (at - 1e-6) * span && v <= (at + 1 + 1e-6) * span);
+    }
+}
+
+TEST(Ticks, DecadesAndTheirFractions) {
+  const Ticks a = log_ticks(2e-8, 3, 5);
+  EXPECT_EQ(a.labels.size(), a.major.size());
+  EXPECT_LE(a.major.size(), 6u);
+  for (const double v : a.major) EXPECT_NEAR(std::log10(v), std::round(std::log10(v)), 1e-9);
+  EXPECT_EQ(log_ticks(1, 100, 6).labels, (std::vector<std::string>{"1", "2", "5", "10", "20", "50", "100"}));
+}
+
+TEST(Text, EscapesAndRepairs) {
+  EXPECT_EQ(escape("a<b & \"c\">"), "a&lt;b &amp; &quot;c&quot;&gt;");
+  EXPECT_EQ(escape("\xff\x01µ\xc3"), "\xEF\xBF\xBD\xEF\xBF\xBDµ\xEF\xBF\xBD");
+  EXPECT_EQ(readable(-1.23456e-7, 3), "−1.23×10⁻⁷");
+  EXPECT_EQ(readable(4812.34, 5), "4812.3");
+  EXPECT_EQ(readable(0.1 + 0.2, 6), "0.3");
+  EXPECT_EQ(readable(1200000, 3), "1.2×10⁶");
+  EXPECT_EQ(number_text(-1e-9), "0");
+  EXPECT_EQ(base64("Man"), "TWFu");
+  EXPECT_EQ(base64("Ma"), "TWE=");
+  EXPECT_EQ(base64("M"), "TQ==");
+}
+
+TEST(Palette, MapGrowsLighterInEqualSteps) {
+  double last = -1;
+  for (const auto& c : color_map()) {
+    // Relative luminance, sRGB.
+    const auto lin = [](unsigned char v) { const double x = v / 255.0; return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); };
+    const double y = 0.2126 * lin(c.r) + 0.7152 * lin(c.g) + 0.0722 * lin(c.b);
+    EXPECT_GT(y, last - 2e-3);   // one step of 8-bit rounding
+    last = std::max(last, y);
+  }
+  EXPECT_GT(last, 0.8);
+}
+
+TEST(Png, CellsStandInTheFileAsTheyAre) {
+  std::vector<std::uint8_t> cells(70000);
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<std::uint8_t>(i * 31);
+  const std::string png = make_png(700, 100, cells, color_map());
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_NE(png.find(std::string("\0", 1) + std::string(cells.begin() + 700, cells.begin() + 1400)), std::string::npos);
+  EXPECT_NE(png.find("IEND\xae\x42\x60\x82"), std::string::npos);   // the one checksum everybody knows
+}
+
+TEST(XmlCheck, FindsFaults) {
+  EXPECT_EQ(xml_fault("<a b=\"1\"><c/>x &amp; y</a>"), "");
+  for (const char* bad : {"<a><b></a></b>", "<a b=1/>", "<a>&nbsp;</a>", "<a/><b/>", "<a", "x", "<a b=\"<\"/>", "<a b=\"1\" b=\"2\"/>"}) EXPECT_NE(xml_fault(bad), "") << bad;
+}
+
+class Gallery : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  static const std::vector<Figure>& figures() {
+    static const std::vector<Figure> f = gallery();
+    return f;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Plots, Gallery, ::testing::Range<std::size_t>(0, 15), [](const auto& i) { return gallery()[i.param].name; });
+
+TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
+  ASSERT_EQ(figures().size(), 15u);
+  const Figure& f = figures()[GetParam()];
+  for (const bool standalone : {true, false}) {
+    const std::string svg = render_svg(f, {standalone, 1.0});
+    EXPECT_EQ(xml_fault(svg), "");
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(svg.find("inf\""), std::string::npos);
+    EXPECT_EQ(svg.find("=\"\" x="), std::string::npos);
+    EXPECT_LT(svg.size(), 500000u);
+    // No reference to the outside but the name of the SVG namespace.
+    std::size_t urls = 0;
+    for (std::size_t at = svg.find("http"); at != std::string::npos; at = svg.find("http", at + 1)) ++urls;
+    EXPECT_EQ(urls, standalone ? 1u : 0u);
+  }
+  for (const auto& a : f.axes) {
+    EXPECT_FALSE(a.x.unit.empty());
+    EXPECT_FALSE(a.y.unit.empty());
+    EXPECT_TRUE(a.kind != AxesKind::space || !a.z.unit.empty());
+  }
+  // Ids are unique: several figures share a page.
+  const std::string svg = render_svg(f);
+  std::set<std::string> ids;
+  for (std::size_t at = svg.find(" id=\""); at != std::string::npos; at = svg.find(" id=\"", at + 1)) {
+    const auto id = svg.substr(at + 5, svg.find('"', at + 5) - at - 5);
+    EXPECT_TRUE(ids.insert(id).second) << id;
+    EXPECT_EQ(id.find(f.name), 0u);
+  }
+}
+
+TEST(Svg, OneMillionPointsMakeASmallFileWithThePeakInIt) {
+  Figure f;
+  f.name = "long";
+  Axes a;
+  a.x = Axis("time", "s"), a.y = Axis("displacement", "µm");
+  a.y.min = 0, a.y.max = 100;
+  Series s;
+  for (int i = 0; i < 1000000; ++i) s.x.push_back(1e-3 * i), s.y.push_back(40 + 10 * std::sin(i * 0.7) + (i == 654321 ? 50 : 0));
+  a.series.push_back(s);
+  f.axes.push_back(a);
+  const std::string svg = render_svg(f);
+  EXPECT_LT(svg.size(), 60000u);
+  // The frame and the path tell where 40 + 10 sin + 50 stands.
+  const auto box_at = svg.find("data-box=\"") + 10;
+  double bx, by, bw, bh;
+  ASSERT_EQ(std::sscanf(svg.c_str() + box_at, "%lf %lf %lf %lf", &bx, &by, &bw, &bh), 4);
+  const auto path_at = svg.find("<path data-s=\"0\"");
+  const auto d = svg.substr(svg.find(" d=\"M", path_at) + 5);
+  double highest = 1e9, x = 0, y = 0, at_x = 0;
+  const char* p = d.c_str();
+  for (int n = 0; std::sscanf(p, "%lf %lf%n", &x, &y, &n) == 2; p += *p == '"' ? 0 : 1) {
+    if (y < highest) highest = y, at_x = x;
+    p += n;
+    if (*p == '"') break;
+  }
+  const double peak = 40 + 10 * std::sin(654321 * 0.7) + 50;
+  EXPECT_NEAR(highest, by + bh * (1 - peak / 100), 0.006);   // two decimals of a px
+  EXPECT_NEAR(at_x, bx + bw * 654.321 / 999.999, 0.006);
+}
+
+TEST(Svg, EmptyConstantAndBrokenDataAreDrawn) {
+  for (const bool log : {false, true}) {
+    Figure f;
+    f.name = "odd";
+    Axes a;
+    a.x = Axis("x", "-", log), a.y = Axis("y", "-", log);
+    f.axes.push_back(a);
+    EXPECT_EQ(xml_fault(render_svg(f)), "");
+    for (const auto& y : {std::vector<double>{3, 3, 3}, {nan, nan, nan}, {1, nan, 2}, {0, 0, 0}, {-1, 1e300, 2}, {infinity, 1, 2}}) {
+      f.axes[0].series.clear();
+      Series s;
+      s.label = "<&\">";
+      s.x = {1, 2, 3}, s.y = y;
+      s.style.marker = Marker::circle;
+      f.axes[0].series.push_back(s);
+      const std::string svg = render_svg(f);
+      EXPECT_EQ(xml_fault(svg), "");
+      EXPECT_EQ(svg.find("=\"nan"), std::string::npos);
+    }
+  }
+}
+
+TEST(Svg, FileIsWrittenWhole) {
+  TempFolder dir;
+  write_svg(dir / "a/b.svg", gallery().front());
+  EXPECT_EQ(xml_fault(read_text(dir / "a/b.svg")), "");
+  EXPECT_EQ(file_count(dir / "a"), 1u);
+}
+
+TEST(Units, SuitTheSize) {
+  EXPECT_EQ(length_unit(30e-6).name, "µm");
+  EXPECT_EQ(length_unit(0.02).name, "mm");
+  EXPECT_EQ(length_unit(0.75).name, "m");
+  EXPECT_EQ(unit_for("J", 2e-6).name, "µJ");
+  EXPECT_EQ(unit_for("N", 2e5).name, "kN");
+  EXPECT_EQ(unit_for("N m", 3).name, "N·m");
+  EXPECT_NEAR(unit_for("rad/s", 100).factor * two_pi, 60, 1e-12);
+  EXPECT_EQ(unit_for("s", 1000).name, "s");
+}
+
+TEST(Pareto, FrontIsTheLowerLeftStaircase) {
+  const StudyCurve c[] = {{"a", {{1, 1e-2, ""}, {2, 1e-3, ""}, {8, 5e-3, ""}}}, {"b", {{4, 1e-6, ""}, {3, 1e-2, ""}}}};
+  const Figure f = plot_study("s", "s", c, "error", "-");
+  const auto& front = f.axes[0].series.back();
+  EXPECT_EQ(front.label, "Pareto front");
+  EXPECT_EQ(front.x, (std::vector<double>{1, 2, 2, 4, 4}));
+  EXPECT_EQ(front.y, (std::vector<double>{1e-2, 1e-2, 1e-3, 1e-3, 1e-6}));
+}
+
+}  // namespace
+}  // namespace whirl::io
