@@ -31,6 +31,22 @@ bool is_word(char c) {
   return std::isalpha(u) || c == '_' || c == '%';
 }
 
+const char* find_name(const Dimension& d) {
+  static const auto names = [] {
+    std::vector<std::pair<Dimension, const char*>> r;
+    for (const auto& n : dimension_names()) r.emplace_back(unit(n.unit).dimension, n.name);
+    return r;
+  }();
+  for (const auto& [dim, name] : names)
+    if (dim == d) return name;
+  for (const auto& [dim, name] : names) {   // Hz counted as 1/s inside compounds
+    Dimension x = d;
+    x.cycles = dim.cycles;
+    if (dim == x) return name;
+  }
+  return nullptr;
+}
+
 class Parser {
  public:
   explicit Parser(std::string_view s) : s_(s) {}
@@ -270,11 +286,13 @@ class Parser {
     if (word == "lb" || word == "lbs") hint = "say which: 'lbm' is the mass, 'lbf' the force";
     else if (word == "C" || word == "F") hint = fmt::format("temperatures are written \"deg{}\"", word);
     else {
-      const std::string other_case = nearest_unit(word, 0.7);   // "RPM", "KN"
-      if (!other_case.empty()) hint = fmt::format("did you mean '{}'?", other_case);
-      for (std::size_t k = 1; k < word.size() && hint.empty(); ++k)   // "Nm", "Ns", "kgm": units written together
-        if (find_unit(word.substr(0, k)) && find_unit(word.substr(k)))
-          hint = fmt::format("write a point between units: '{}.{}'", word.substr(0, k), word.substr(k));
+      for (std::size_t k = 1; k < word.size() && hint.empty(); ++k) {   // "Nm", "Ns", "kgm": units written together
+        const auto a = find_unit(word.substr(0, k)), b = find_unit(word.substr(k));
+        if (!a || !b) continue;
+        Quantity both = *a;
+        combine(both, *b, 1);
+        if (find_name(both.dimension)) hint = fmt::format("write a point between units: '{}.{}'", word.substr(0, k), word.substr(k));
+      }
       if (hint.empty()) {
         const std::string n = nearest_unit(word);
         if (!n.empty()) hint = fmt::format("did you mean '{}'?", n);
@@ -414,19 +432,8 @@ std::string base_units(const Dimension& d) {
 }
 
 std::string name_of(const Dimension& d) {
-  static const auto names = [] {
-    std::vector<std::pair<Dimension, const char*>> r;
-    for (const auto& n : dimension_names()) r.emplace_back(unit(n.unit).dimension, n.name);
-    return r;
-  }();
-  for (const auto& [dim, name] : names)
-    if (dim == d) return name;
-  for (const auto& [dim, name] : names) {   // Hz counted as 1/s inside compounds
-    Dimension x = d;
-    x.cycles = dim.cycles;
-    if (dim == x) return name;
-  }
-  return fmt::format("a quantity in {}", base_units(d));
+  const char* name = find_name(d);
+  return name ? std::string(name) : fmt::format("a quantity in {}", base_units(d));
 }
 
 std::string nearest_unit(std::string_view text, double limit) {

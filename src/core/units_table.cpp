@@ -163,6 +163,7 @@ const std::vector<DimensionName>& dimension_names() {
       {"1/s^2", "a rate squared (1/s^2)"},
       {"N", "a force"},
       {"N.m", "a torque, moment or energy"},
+      {"N.s", "an impulse"},
       {"N/m", "a stiffness or force per length"},
       {"N.s/m", "a damping coefficient"},
       {"N.m/rad", "a torsional stiffness"},
