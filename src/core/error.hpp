@@ -2,6 +2,7 @@
 #pragma once
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace whirl {
@@ -27,6 +28,24 @@ struct Diagnostic {
   std::string hint;
   Where where;
 };
+
+/// "deck.toml:62:12: error[E07]: message", the source line with a caret underline when one is given, and the hint.
+/// Lines end with a newline. `colour` adds terminal escape codes.
+std::string format(const Diagnostic& d, std::string_view source_line = {}, bool colour = false);
+/// "error", "warning", "note"
+const char* name_of(Diagnostic::Severity s);
+
+/// What is known about a code: the long answer of `whirl explain CODE`.
+struct CodeInfo {
+  const char* code;
+  const char* title;     ///< one line
+  const char* text;      ///< what it means, why it is checked, what to do
+  const char* example;   ///< wrong and right, as they stand in a deck; may be empty
+};
+/// All codes in order.
+const std::vector<CodeInfo>& error_catalogue();
+/// nullptr when there is no such code.
+const CodeInfo* find_code(std::string_view code);
 
 /// Thrown at API edges; never in the step loop (non-convergence inside is a returned status).
 class Error : public std::runtime_error {

@@ -1,0 +1,183 @@
+// The long explanations behind `whirl explain CODE`. Codes never change their meaning. E01-E39: the deck; E70-E89: while
+// running; E90-E99: files and plug-ins; W..: warnings. A new code is one more row, kept in order.
+#include <core/error.hpp>
+
+namespace whirl {
+
+const std::vector<CodeInfo>& error_catalogue() {
+  static const std::vector<CodeInfo> t = {
+      {"E01", "the deck is not valid TOML",
+       "A deck is a TOML 1.0 file: 'key = value' lines under [table] and [[list of tables]] headers. Text stands in double quotes, lists in "
+       "square brackets, comments start with '#'. The place shown is where reading had to stop; the mistake may be just before it, "
+       "for example a quote or bracket that was not closed on the line above. Reading goes on after the line, so that one run shows all "
+       "mistakes.",
+       "title = \"Pump      # wrong: the quote is not closed\ntitle = \"Pump\"     # right"},
+      {"E02", "a file cannot be read",
+       "The deck, a file it includes or a table it names is missing, is a folder, or may not be read. A relative path is taken from the "
+       "folder of the file that names it.",
+       "file = \"tables/bearing.csv\"   # beside the deck, in the folder tables"},
+      {"E03", "the file is not a deck",
+       "The file is empty, is not UTF-8 text, is larger than the limit (8 MiB for a deck, 256 MiB for a CSV table), or nests brackets or "
+       "dotted keys deeper than any deck does (64 levels). It was rejected before it was parsed.",
+       ""},
+      {"E04", "unknown key",
+       "The table has no such key; keys are never ignored silently. The hint names the nearest key that exists here. Keys that belong to "
+       "another 'type' are unknown too. `whirl schema --reference` lists every table and key. In CSV tables and 'columns' the same holds for "
+       "column names.",
+       "lenght = \"80 mm\"   # wrong\nlength = \"80 mm\"   # right"},
+      {"E05", "a key is missing",
+       "The table lacks a key that has no default. The place shown is the header of the table, or the 'columns' list for a table of rows.",
+       "[[disk]]\nname = \"impeller\"   # wrong: 'at' is missing"},
+      {"E06", "wrong type of value",
+       "The key expects another kind of value: text, a plain number, a whole number, true or false, a list, or a table. Dates and times are "
+       "never expected.",
+       "modes = \"ten\"   # wrong\nmodes = 10      # right"},
+      {"E07", "a unit is missing",
+       "Every value that has a dimension carries its unit in a string; tables carry it in the column header. There is no default unit, since "
+       "unstated units are the most frequent cause of wrong results.",
+       "clearance = 75         # wrong\nclearance = \"75 um\"    # right\ncolumns = [\"length[mm]\", \"od[mm]\"]"},
+      {"E08", "wrong dimension",
+       "The value has a unit, but of another kind of quantity. Angles are tracked: 1/s is not an angular speed (is it Hz or rad/s?), a plain "
+       "number is not an angle. Hz counts as 2 pi rad/s where an angular speed is wanted. An ounce ('oz') is a mass, 'ozf' a force; "
+       "so 'oz.in' is an unbalance and 'ozf.in' a torque.",
+       "speed = \"157 1/s\"     # wrong\nspeed = \"157 rad/s\"   # right, or \"25 Hz\", or \"1500 rpm\""},
+      {"E09", "unknown unit",
+       "The unit is not in the table of units. Units are case-sensitive (kN, not KN; rpm, not RPM) and joined by a point: N.m, not Nm. "
+       "'lb' alone is ambiguous: 'lbm' is the mass, 'lbf' the force. `whirl schema --units` lists all units.",
+       "torque = \"5 Nm\"    # wrong\ntorque = \"5 N.m\"   # right"},
+      {"E10", "a quantity cannot be read",
+       "A quantity is a number and a unit; sums, products, quotients and powers of such are allowed, with parentheses. After a '/' a further "
+       "product needs parentheses, because \"W/m.K\" is read in two ways.",
+       "k = \"8e4 N/m\"\nlength = \"2 * 35 mm + 1 in\"\nconductivity = \"15 W/(m.K)\""},
+      {"E11", "a quantity without quotes",
+       "In TOML a value with a unit is a string and stands in double quotes.",
+       "length = 80 mm       # wrong\nlength = \"80 mm\"     # right"},
+      {"E12", "a comma inside a number",
+       "Decimals take a point, and thousands are not separated. In lists the comma separates values, so 1,5 would be two of them.",
+       "viscosity = \"0,019 Pa.s\"   # wrong\nviscosity = \"0.019 Pa.s\"   # right"},
+      {"E13", "not a finite number",
+       "nan and inf are legal TOML but never a meaningful input here; a number beyond the range of double precision is rejected as well. To "
+       "say that something has no limit, leave the key out.",
+       "dt_max = inf   # wrong: leave the key out"},
+      {"E14", "out of range",
+       "The value lies outside what is physically or numerically possible for this key: a negative or zero size, a loss factor above one, a "
+       "number of points below the least. The message states the range.",
+       "od = \"-80 mm\"   # wrong"},
+      {"E15", "unknown option",
+       "The key takes one of a few words; the hint lists them and names the nearest one.",
+       "type = \"liner\"    # wrong\ntype = \"linear\"   # right"},
+      {"E16", "duplicate name",
+       "Two things of the same kind have the same name, so a reference to it would be ambiguous. Sections of different shafts may share a "
+       "name; it is then written shaft/section where it is used.",
+       "[[disk]]\nname = \"impeller\"\n[[disk]]\nname = \"impeller\"   # wrong"},
+      {"E17", "unknown name",
+       "A material, shaft or step is named that the deck does not define. Built-in materials are steel, stainless_steel, titanium, aluminium, "
+       "inconel_718 and cast_iron; others come from [[material]].",
+       "material = \"stel\"   # wrong"},
+      {"E18", "unknown station",
+       "A place on a shaft is written \"section\", \"section:start\", \":mid\" or \":end\", each with an offset where wanted "
+       "(\"body2:end-20 mm\"), or as a distance from the left end (\"1.14 m\"). A section alone means its start. The name of a disk or bearing is a "
+       "place too, and so is the shaft (\"hp:end\"). With several shafts write \"hp/body2:mid\".",
+       "at = \"body2:middle\"   # wrong\nat = \"body2:mid\"      # right"},
+      {"E19", "beyond the shaft",
+       "The place lies before the start or after the end of its shaft. The message states the distance and the length of the shaft.",
+       "at = \"overhang:end + 20 mm\"   # wrong: the shaft ends at overhang:end"},
+      {"E20", "wrong number of values",
+       "A row has fewer or more cells than the header, or two lists that belong together (time and value, say) differ in length.",
+       "columns = [\"name\", \"length[mm]\", \"od[mm]\"]\nrows = [[\"body\", 260]]   # wrong: od is missing"},
+      {"E21", "values do not increase",
+       "The times of a law and the speeds of a table must increase from each row to the next; a jump is written with two close points or with "
+       "a 'piecewise' law.",
+       "time = [\"0 s\", \"2 s\", \"1 s\"]   # wrong"},
+      {"E22", "a table does not cover the speed range",
+       "A step asks for speeds outside the table of a bearing whose 'extrapolate' is \"error\". Extend the table, narrow the step, or write "
+       "extrapolate = \"hold\" to keep the end values.",
+       ""},
+      {"E23", "bore not smaller than the outer diameter",
+       "A section or disk has an inner diameter equal to or larger than its outer diameter at one of its ends: no material is left.",
+       "od = \"80 mm\"\nid = \"80 mm\"   # wrong; a diameter, not a radius"},
+      {"E24", "no such body",
+       "No distribution of mass has these moments of inertia: Id is at least Ip/2 (equality for an infinitely thin disk), and for a full tensor "
+       "the sum of any two principal moments is at least the third. Often Ip and Id are interchanged or one is given in other units.",
+       "Ip = \"0.92 kg.m^2\"\nId = \"0.40 kg.m^2\"   # wrong: less than half of Ip"},
+      {"E25", "sections overlap or leave a gap",
+       "Sections follow each other from left to right. Where 'from' states the start of a section it must be the end of the one before.",
+       ""},
+      {"E26", "keys that contradict or need each other",
+       "The same thing is given in two ways, or only in part: a disk by mass and by geometry, a shaft by rows and by a file, od with od_l. Keep "
+       "one way, complete.",
+       "mass = \"38 kg\"\nod = \"260 mm\"   # wrong: either mass, Ip, Id or od, width, material"},
+      {"E27", "undefined or circular parameter",
+       "${name} refers to a key of [parameters]. A parameter may use others, but not itself by any detour.",
+       "[parameters]\na = \"${b}\"\nb = \"${a}\"   # wrong"},
+      {"E28", "a file includes itself",
+       "'include' lists files whose tables are merged before those of the deck. A file may not include itself by any detour, and nesting is "
+       "limited to 16 levels.",
+       ""},
+      {"E29", "set twice",
+       "A key is set both in an included file and in the file that includes it, or twice in one table. Lists of tables ([[disk]]) are joined "
+       "instead. To try another value without editing, use --set or a parameter.",
+       ""},
+      {"E30", "undefined or circular step reference",
+       "'from' names an earlier step whose result this step starts from. It must exist, stand above, and be of a kind that leaves a state: "
+       "static or transient.",
+       "[[step]]\nname = \"a\"\nfrom = \"a\"   # wrong"},
+      {"E31", "unknown format version",
+       "The first lines of a deck say 'format = 1'. A deck of a later version needs a later program.",
+       "format = 1"},
+      {"E32", "unrestrained motion",
+       "A static equilibrium is asked for, but nothing resists one of the rigid motions of a shaft, so there is none or it is not unique. The "
+       "message names the shaft and the motion. The spin itself need not be held. Add a stiffness in that direction, hold it with a bearing of "
+       "type \"rigid\", or start the transient from rest (start = \"rest\").",
+       "[[bearing]]\nname = \"thrust\"\nat = \"shaft:start\"\ntype = \"rigid\"\ndirections = [\"x\"]"},
+      {"E33", "the output would fill the disk",
+       "The estimate of what the deck asks for exceeds the free space of the results folder. Write rows less often (output.every), ask for "
+       "fewer frames, a window, or fewer contents in [[output.vtk]], or choose another directory.",
+       ""},
+      {"E34", "a --set that cannot be applied",
+       "The form is --set path=value, with the path of keys as in the deck. Members of a list are found by name or by number from 0. The value is "
+       "checked exactly like one in the deck; quotes may be left out.",
+       "--set parameters.clearance=90um\n--set bearing.DE.kyy='8e7 N/m'\n--set step.run_up.duration='5 s'"},
+      {"E35", "nothing to work on",
+       "The model has no shaft, a shaft has no section, or a run is asked for and the deck has no step.",
+       "[[step]]\nname = \"modes\"\ntype = \"modal\"\nspeed = \"3000 rpm\""},
+      {"E36", "non-physical material",
+       "E, G and the density are positive, and Poisson's ratio lies between -1 and 0.5. G, when given, must agree with E/(2(1+nu)) for an "
+       "isotropic material unless nu is left out.",
+       ""},
+      {"E71", "the split of the rotation reached its limit",
+       "A section normal turned by pi from the axis of its shaft: the axial angle and the azimuth of the transverse rotation then describe the same "
+       "motion. With model.chart_change = true (the default) the reference axes are moved before that happens; without, the run ends "
+       "here. Tumbling free bodies need the change of chart; a shaft that gets there has failed long before.",
+       ""},
+      {"E72", "a time law cannot be built",
+       "The points of a law must increase in time, be finite and number at least one; a transition needs a positive duration.",
+       ""},
+      {"E73", "a rigid body that cannot be",
+       "Mass and moments of inertia must be finite and positive definite where a body is free to move.",
+       ""},
+      {"E90", "a plug-in is missing or does not fit",
+       "VTK, HDF5 and SUNDIALS live in plug-ins that are loaded only when a deck asks for them. The message lists where the file was looked for. "
+       "Install the package that holds it, set WHIRL_PLUGIN_PATH, or ask for another output or method.",
+       ""},
+      {"E91", "a file cannot be written or read",
+       "The operating system refused: the disk is full, the folder may not be written, or the file is not what it should be. Files are written "
+       "beside their place and renamed, so that what was there before is unharmed.",
+       ""},
+      {"E92", "not a JSON file",
+       "A results file that should be JSON cannot be parsed; it was probably edited or cut off by another program.",
+       ""},
+      {"E93", "unknown content of a VTK output",
+       "content lists any of line, surface, bearings, orbits.",
+       "content = [\"line\", \"surface\"]"},
+      {"W01", "unused parameter",
+       "A key of [parameters] is used nowhere: probably a misspelt ${name}, or a leftover.",
+       ""},
+      {"W02", "a setting without effect",
+       "The key is understood but nothing in this deck reads it, for example a VTK output when no step is transient.",
+       ""},
+  };
+  return t;
+}
+
+}  // namespace whirl

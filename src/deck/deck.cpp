@@ -1,0 +1,131 @@
+#include <deck/assemble.hpp>
+#include <deck/deck.hpp>
+#include <deck/materials.hpp>
+#include <deck/reader.hpp>
+#include <deck/validate.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace whirl::deck {
+namespace {
+
+std::string stem_of(const std::filesystem::path& file) {
+  const std::string s = file.stem().string();
+  // examples/01_paper_rotor/deck.toml is better called after its folder
+  if (s == "deck" && file.has_parent_path() && file.parent_path().has_filename() && file.parent_path().filename() != "." && file.parent_path().filename() != "..") return file.parent_path().filename().string();
+  return s.empty() ? "deck" : s;
+}
+
+/// Built-in materials that were used go into the resolved deck, so that it stands alone.
+void add_builtin_materials(Value& resolved, const model::Model& m) {
+  Member* list = resolved.find("material");
+  std::size_t have = list ? list->value.items.size() : 0;
+  if (have >= m.materials.size()) return;
+  Value all = list ? list->value : Value::make_array();
+  for (; have < m.materials.size(); ++have) {
+    const auto& x = m.materials[have];
+    Value t = Value::make_table();
+    t.add("name", Value::of_text(x.name));
+    t.add("E", Value::of_text(units::format(x.E, "GPa")));
+    t.add("nu", Value::of_number(x.nu));
+    t.add("density", Value::of_text(units::format(x.rho, "kg/m^3")));
+    all.items.push_back(std::move(t));
+  }
+  if (list) list->value = std::move(all);
+  else resolved.members.insert(resolved.members.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, resolved.members.size())), Member{"material", {}, std::move(all)});
+}
+
+void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions& options) {
+  Diagnostics diagnostics;
+  const TextProblem bad = check_text(deck.sources[0].text, true);
+  if (!bad.ok()) {
+    diagnostics.error("E03", Spot{0, bad.line, bad.column, 1}, bad.message, bad.hint);
+  } else {
+    Document document = assemble(deck.sources, diagnostics, {options.files_allowed});
+    if (document.complete) {
+      apply_overrides(document, options.set, deck.sources, diagnostics);
+      if (document.root.spot.line == 0) document.root.spot = Spot{0, 1, 1, 1};
+      deck.model.deck_path = file.string();
+      deck.model.deck_name = stem_of(file);
+      deck.model.output.directory = "results/" + deck.model.deck_name;
+      const Member* parameters = document.root.find("parameters");
+      Parameters names(parameters && parameters->value.is_table() ? &parameters->value : nullptr, {{"deck", deck.model.deck_name}});
+      Reader reader(deck.sources, diagnostics, names, document, deck.model);
+      reader.files_allowed = options.files_allowed;
+      reader.read();
+      if (diagnostics.errors() == 0) names.warn_unused(diagnostics);
+      Value resolved = reader.take_resolved();
+      add_builtin_materials(resolved, deck.model);
+      if (diagnostics.errors() == 0) deck.model.resolved = write_toml(resolved);
+    }
+  }
+  deck.errors = diagnostics.errors();
+  deck.diagnostics = diagnostics.take(deck.sources);
+  if (deck.errors > 0) return;
+  for (auto& p : check_model(deck.model)) {
+    Diagnostic d;
+    d.severity = p.severity;
+    d.code = p.code;
+    d.message = p.message;
+    d.hint = p.hint;
+    d.where = p.where;
+    deck.errors += p.severity == Diagnostic::Severity::error;
+    deck.diagnostics.push_back(std::move(d));
+  }
+  std::stable_sort(deck.diagnostics.begin(), deck.diagnostics.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return a.where.file == b.where.file && std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
+  });
+  for (const auto& d : deck.diagnostics)
+    if (d.severity == Diagnostic::Severity::warning) deck.model.warnings.push_back(d);
+}
+
+}  // namespace
+
+std::string Deck::report(bool colour) const {
+  std::string out;
+  for (const auto& d : diagnostics) out += format(d, sources.line(d.where), colour);
+  return out;
+}
+
+Deck read_deck(const std::filesystem::path& file, const ReadOptions& options) {
+  Deck deck;
+  FileText text = read_file(file, max_deck_bytes);
+  deck.sources.add(file.string(), file.parent_path(), std::move(text.text));
+  if (!text.ok()) {
+    Diagnostic d;
+    d.code = text.code;
+    d.message = text.message;
+    d.hint = text.hint;
+    deck.diagnostics.push_back(std::move(d));
+    deck.errors = 1;
+    return deck;
+  }
+  read_into(deck, file, options);
+  return deck;
+}
+
+Deck read_deck_text(std::string text, const std::string& name, const ReadOptions& options, const std::filesystem::path& folder) {
+  Deck deck;
+  deck.sources.add(name, folder, std::move(text));
+  read_into(deck, name, options);
+  return deck;
+}
+
+model::Model load_model(const std::filesystem::path& file, const ReadOptions& options) {
+  Deck deck = read_deck(file, options);
+  if (!deck.ok()) throw Error(exit_of(deck.diagnostics), std::move(deck.diagnostics));
+  return std::move(deck.model);
+}
+
+Exit exit_of(const std::vector<Diagnostic>& diagnostics) {
+  bool usage = false, other = false, io = false;
+  for (const auto& d : diagnostics) {
+    if (d.severity != Diagnostic::Severity::error) continue;
+    if (d.where.file == "--set" && d.code == "E34") usage = true;
+    else if (d.code == "E02" && d.where.line == 0) io = true;
+    else other = true;
+  }
+  return other ? Exit::deck : usage ? Exit::usage : io ? Exit::io : Exit::deck;
+}
+
+}  // namespace whirl::deck

@@ -1,0 +1,43 @@
+// Reading decks: the public face of this component.
+#pragma once
+#include <deck/sources.hpp>
+#include <filesystem>
+#include <model/model.hpp>
+#include <string>
+#include <vector>
+
+namespace whirl::deck {
+
+struct ReadOptions {
+  std::vector<std::string> set;   ///< "path=value" overrides, applied before anything is checked
+  bool files_allowed = true;      ///< false: included files and CSV tables are refused (untrusted text)
+};
+
+/// What came out of a deck. With errors the model is not to be used.
+struct Deck {
+  model::Model model;
+  std::vector<Diagnostic> diagnostics;   ///< errors and warnings in the order of the text
+  Sources sources;                       ///< the texts, for caret lines
+  int errors = 0;
+  bool ok() const { return errors == 0; }
+  /// All diagnostics as shown to the user.
+  std::string report(bool colour = false) const;
+};
+
+/// Reads and checks a deck. Never throws for what a deck can contain.
+Deck read_deck(const std::filesystem::path& file, const ReadOptions& options = {});
+/// The same from memory; `name` is shown in messages, relative paths start at `folder`.
+Deck read_deck_text(std::string text, const std::string& name = "deck.toml", const ReadOptions& options = {}, const std::filesystem::path& folder = {});
+/// The model of a deck; throws Error(Exit::deck) with all diagnostics when there are errors. Warnings are in the model.
+model::Model load_model(const std::filesystem::path& file, const ReadOptions& options = {});
+
+/// The exit code that fits the errors: Exit::usage for a bad --set, Exit::io for a deck that cannot be read, else Exit::deck.
+Exit exit_of(const std::vector<Diagnostic>& diagnostics);
+
+/// Bytes the outputs of a model will take, roughly (rows of the histories, frames of pictures).
+struct OutputEstimate { double histories = 0, pictures = 0; double total() const { return histories + pictures; } };
+OutputEstimate estimate_output(const model::Model& model);
+/// E33 when the estimate exceeds `available` bytes, else nothing.
+std::vector<Diagnostic> check_output(const model::Model& model, double available);
+
+}  // namespace whirl::deck

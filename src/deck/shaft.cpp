@@ -1,0 +1,184 @@
+// [[material]], [[shaft]] and their sections.
+#include <deck/visitor.hpp>
+#include <cmath>
+#include <core/units.hpp>
+#include <fmt/format.h>
+
+namespace whirl::deck {
+namespace {
+
+constexpr std::size_t no_material = static_cast<std::size_t>(-1);
+
+struct Diameters {
+  double od_l = 0, id_l = 0, od_r = 0, id_r = 0;
+  bool given = false;
+};
+
+/// od and id for a cylinder, or the four ends of a cone; `keys`: od, id, od_l, id_l, od_r, id_r.
+void describe_diameters(Visitor& v, Diameters& d, const char* const (&keys)[6], const char* what) {
+  double od = 0, id = 0;
+  const bool cylinder = v.quantity(optional(keys[0], "see od_l and od_r"), od, "mm", positive, what);
+  const bool bore = v.quantity(optional(keys[1], "solid"), id, "mm", not_negative, "inner diameter");
+  const bool left = v.quantity(optional(keys[2], "od"), d.od_l, "mm", positive, "outer diameter at the left end of a cone");
+  const bool left_bore = v.quantity(optional(keys[3], "id"), d.id_l, "mm", not_negative, "inner diameter at the left end");
+  const bool right = v.quantity(optional(keys[4], "od, or od_l"), d.od_r, "mm", positive, "outer diameter at the right end");
+  const bool right_bore = v.quantity(optional(keys[5], "id, or id_l"), d.id_r, "mm", not_negative, "inner diameter at the right end");
+  d.given = cylinder || left || right;
+  if (!v.clean()) return;
+  if ((cylinder && (left || right)) || (bore && (left_bore || right_bore)))
+    v.error("E26", cylinder && (left || right) ? keys[0] : keys[1], "the diameter is given once for the section and once for its ends", "keep od, or od_l and od_r");
+  else if (right && !left)
+    v.error("E26", keys[4], fmt::format("'{}' needs '{}'", keys[4], keys[2]));
+  else if ((bore || left_bore || right_bore) && !d.given)
+    v.error("E26", bore ? keys[1] : left_bore ? keys[3] : keys[5], "an inner diameter needs an outer one");
+  if (!v.clean()) return;
+  if (cylinder) d.od_l = d.od_r = od;
+  if (left && !right) d.od_r = d.od_l;
+  if (bore) d.id_l = d.id_r = id;
+  if (left_bore && !right_bore) d.id_r = d.id_l;
+  const auto bore_fits = [&](double outer, double inner, const char* key, const char* end) {
+    if (d.given && inner >= outer)
+      v.error("E23", key, fmt::format("the bore of {} is not smaller than the outer diameter of {}{}", units::format(inner, "mm"), units::format(outer, "mm"), end),
+              "these are diameters, not radii");
+  };
+  if (bore && cylinder) bore_fits(od, id, keys[1], "");
+  else {
+    bore_fits(d.od_l, d.id_l, bore ? keys[1] : keys[3], " at the left end");
+    if (v.clean()) bore_fits(d.od_r, d.id_r, bore ? keys[1] : right_bore ? keys[5] : keys[3], " at the right end");
+  }
+}
+
+void describe_damping(Visitor& v, model::ShaftDamping& d) {
+  v.quantity("rayleigh_alpha", d.alpha, "1/s", not_negative, "mass-proportional damping, external (acts on the motion in fixed axes)");
+  v.quantity("external_beta", d.beta_external, "s", not_negative, "stiffness-proportional damping, external: damps at every speed");
+  v.quantity("internal_beta", d.beta_internal, "s", not_negative, "stiffness-proportional viscous damping of the shaft itself, in its rotating axes: destabilises forward whirl above the critical speed");
+  v.number("internal_loss_factor", d.loss_factor, fraction, "hysteretic damping of the shaft itself, in its rotating axes");
+  v.quantity("torsion_beta", d.beta_torsion, "s", not_negative, "stiffness-proportional damping of the twist");
+}
+
+void describe_shear(Visitor& v, model::Section& s) {
+  v.choice("shear", s.shear,
+           {{"cowper", "shear factor after Cowper (1966)"}, {"hutchinson", "after Hutchinson (2001)"}, {"none", "no shear deformation (Euler-Bernoulli)"}, {"given", "the value of kappa"}},
+           "shear deformation of the sections");
+  const bool kappa = v.number(optional("kappa", "from shear"), s.kappa, Range{0, 2, true, false}, "shear factor, with shear = \"given\"");
+  v.flag("rotary_inertia", s.rotary_inertia, "rotary inertia of the cross-sections (false: as in the Euler-Bernoulli beam)");
+  if (!v.clean()) return;
+  const bool wanted = s.shear == model::ShearFactor::given;
+  if (kappa && !wanted) v.error("E26", "kappa", "'kappa' is given, but shear is not \"given\"");
+  if (wanted && s.kappa == 0) v.error("E26", "shear", "shear = \"given\" needs 'kappa'");
+}
+
+}  // namespace
+
+void describe(Visitor& v, model::Material& m) {
+  v.name(m, "material");
+  const bool E = v.quantity(required("E"), m.E, "GPa", any, "Young's modulus");
+  const bool G = v.quantity(optional("G", "E/(2(1+nu))"), m.G, "GPa", any, "shear modulus");
+  const bool nu = v.number(optional("nu", "0.3, or from E and G"), m.nu, any, "Poisson's ratio");
+  v.quantity(required("density"), m.rho, "kg/m^3", any, "density");
+  v.quantity(optional("yield", "not given"), m.yield, "MPa", positive, "yield stress, for reports");
+  if (!v.clean() || !E) return;
+  if (!(m.E > 0)) v.error("E36", "E", "Young's modulus must be positive");
+  if (G && !(m.G > 0)) v.error("E36", "G", "the shear modulus must be positive");
+  if (!(m.rho >= 0)) v.error("E36", "density", "the density must not be negative");
+  if (nu && !(m.nu > -1 && m.nu <= 0.5)) v.error("E36", "nu", fmt::format("Poisson's ratio {} lies outside -1 to 0.5", m.nu));
+  if (!v.clean()) return;
+  if (!G) m.G = m.E / (2 * (1 + m.nu));
+  else if (!nu) m.nu = m.E / (2 * m.G) - 1;
+  else if (std::abs(m.G * 2 * (1 + m.nu) / m.E - 1) > 0.02)   // rounded handbook values agree to better than 2 %
+    v.error("E36", "G", fmt::format("G and nu contradict each other: E/(2(1+nu)) is {}", units::format(m.E / (2 * (1 + m.nu)), "GPa")), "leave one of them out");
+  if (G && !nu && !(m.nu > -1 && m.nu <= 0.5)) v.error("E36", "G", fmt::format("E and G give Poisson's ratio {:.3g}, outside -1 to 0.5", m.nu), "check both moduli");
+}
+
+void describe(Visitor& v, model::Section& s) {
+  static constexpr const char* keys[6] = {"od", "id", "od_l", "id_l", "od_r", "id_r"};
+  static constexpr const char* stiffness_keys[6] = {"stiffness_od", "stiffness_id", "stiffness_od_l", "stiffness_id_l", "stiffness_od_r", "stiffness_id_r"};
+  v.name(s, "section");
+  double from = 0;
+  v.quantity(optional("from", "the end of the section before"), from, "mm", any, "start of the section, checked against the end of the one before");
+  v.quantity(required("length"), s.length, "mm", positive, "length along the shaft");
+  Diameters d;
+  describe_diameters(v, d, keys, "outer diameter (mass and stiffness)");
+  Diameters stiffness;
+  describe_diameters(v, stiffness, stiffness_keys, "outer diameter for the stiffness, where it differs from that for the mass (sleeves, shrink fits)");
+  v.material(optional("material", "that of the shaft"), s.material, "name of a material");
+  v.flag("rigid", s.rigid, "a rigid link: no deformation, and no mass unless it has diameters");
+  describe_shear(v, s);
+  v.quantity("added_mass", s.added_mass_per_length, "kg/m", not_negative, "distributed mass without stiffness");
+  v.integer(optional("min_elements", "model.mesh"), s.min_elements, between(1, 10000), "least number of elements");
+  v.quantity(optional("max_element_length", "model.mesh"), s.max_element_length, "mm", positive, "longest element");
+  v.table(optional("general", "a round section"), [&](Visitor& w) {
+    model::Section::General g;
+    w.quantity(required("A"), g.A, "mm^2", positive, "area");
+    w.quantity(required("Iy"), g.Iy, "mm^4", positive, "second moment of area about the section's y axis (bending in the x-z plane)");
+    w.quantity(required("Iz"), g.Iz, "mm^4", positive, "second moment of area about the section's z axis");
+    w.quantity(required("J"), g.J, "mm^4", positive, "torsion constant");
+    w.number(required("kappa_y"), g.kappa_y, positive, "shear factor along y");
+    w.number(required("kappa_z"), g.kappa_z, positive, "shear factor along z");
+    w.quantity("angle", g.angle, "deg", any, "of the section's y axis from that of the shaft, towards z");
+    if (w.clean()) s.general = g;
+  }, "a section that is not round: keyed, slotted, rectangular");
+  v.table(optional("constants", "from diameters and material"), [&](Visitor& w) {
+    model::Section::Constants c;
+    w.quantity(required("EA"), c.EA, "N", positive, "axial stiffness");
+    w.quantity(required("kGA"), c.kGA, "N", positive, "shear stiffness");
+    w.quantity(required("GJ"), c.GJ, "N.m^2", positive, "torsional stiffness");
+    w.quantity(required("EI"), c.EI, "N.m^2", positive, "bending stiffness");
+    w.quantity(required("rhoA"), c.rhoA, "kg/m", not_negative, "mass per length");
+    w.quantity(required("rhoI"), c.rhoI, "kg.m", not_negative, "transverse inertia per length");
+    w.quantity(required("rhoIp"), c.rhoIp, "kg.m", not_negative, "polar inertia per length");
+    if (w.clean()) s.constants = c;
+  }, "stiffness and inertia of the section given directly; diameters are then for pictures only");
+  if (!v.clean()) return;
+  s.od_l = d.od_l; s.id_l = d.id_l; s.od_r = d.od_r; s.id_r = d.id_r;
+  if (stiffness.given) s.stiffness_diameters = {stiffness.od_l, stiffness.id_l, stiffness.od_r, stiffness.id_r};
+  if (s.general && s.constants) v.error("E26", "constants", "the section is given by 'general' and by 'constants'", "keep one of the two");
+  else if (!s.rigid && !s.general && !s.constants && !d.given) v.error("E05", nullptr, fmt::format("section '{}' has no diameter", s.name), "give od, or od_l and od_r");
+  else if (s.rigid && (s.general || s.constants)) v.error("E26", "rigid", "a rigid section has no stiffness of its own");
+  const bool needs_material = !s.constants && (!s.rigid || d.given);
+  if (s.material == no_material) {
+    if (needs_material && v.clean()) v.error("E05", nullptr, fmt::format("section '{}' has no material", s.name), "give material = \"steel\" here or for the whole shaft");
+    s.material = 0;
+  }
+}
+
+void describe(Visitor& v, model::Shaft& s) {
+  v.name(s, "shaft");
+  model::Section start;
+  start.material = no_material;
+  start.min_elements = v.model().min_elements;
+  start.max_element_length = v.model().max_element_length;
+  v.vector("origin", s.origin, "mm", "position of the left end");
+  v.material(optional("material", "given by each section"), start.material, "material of all sections that do not name another");
+  describe_shear(v, start);
+  v.flag("rotating", s.rotating, "false: a casing or foundation beam that does not turn");
+  v.number("speed_ratio", s.speed_ratio, any, "speed relative to the reference speed of frequency-domain steps; negative: turns the other way");
+  v.quantity("initial_spin", s.spin0, "rpm", any, "spin at the start of transients, unless the step or a drive says otherwise");
+  v.quantity("axial_preload", s.axial_preload, "N", any, "axial force, tension positive");
+  v.table("damping", [&](Visitor& w) { describe_damping(w, s.damping); }, "damping of the shaft material and its surroundings");
+
+  // sections, with the checks that need the one before
+  double end = 0;
+  const auto add = [&](Visitor& w) {
+    s.sections.push_back(start);
+    model::Section& x = s.sections.back();
+    describe(w, x);
+    if (w.clean() && w.given("from")) {
+      double from = 0;
+      w.quantity(optional("from", ""), from, "mm", any, "");
+      // positions written with three decimals of a millimetre agree to half a micrometre
+      if (std::abs(from - end) > 0.5e-6)
+        w.error("E25", "from", fmt::format("section '{}' starts at {}, but the one before ends at {}: {}", x.name, units::format(from, "mm"), units::format(end, "mm"),
+                                           from < end ? "they overlap" : "there is a gap"));
+    }
+    end += x.length;
+  };
+  const auto prototype = [&](Visitor& w) { model::Section x = start; describe(w, x); };
+  const bool rows = v.rows({add, prototype}, false, "the sections as a table");
+  const bool tables = v.given("section");
+  if (rows && tables && v.clean()) v.error("E26", "section", "the sections are given by rows and by [[shaft.section]]", "keep one of the two");
+  v.list(optional("section", "the rows"), {add, prototype}, "the sections one by one, from left to right; needed for rigid links, general sections and constants");
+  if (v.clean() && s.sections.empty()) v.error("E05", nullptr, fmt::format("shaft '{}' has no sections", s.name), "give columns and rows, file = \"shaft.csv\", or [[shaft.section]]");
+}
+
+}  // namespace whirl::deck

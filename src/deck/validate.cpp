@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <cmath>
+#include <core/units.hpp>
+#include <deck/deck.hpp>
+#include <deck/validate.hpp>
+#include <fmt/format.h>
+#include <set>
+
+namespace whirl::deck {
+namespace {
+
+using Problems = std::vector<WholeModelProblem>;
+
+void add(Problems& p, const char* code, std::string message, std::string hint, const Where& where, Diagnostic::Severity severity = Diagnostic::Severity::error) {
+  p.push_back({severity, code, std::move(message), std::move(hint), where});
+}
+
+/// Rigid motions of one shaft that something resists. Lateral and tilting restraint in one plane follows from the stations
+/// where that plane is held: one place holds the shift, a second place or a tilting stiffness the tilt.
+struct Restraint {
+  bool axial = false;
+  std::array<std::set<double>, 2> stations;   ///< held laterally along y, z
+  std::array<bool, 2> tilt{};                 ///< tilt in the x-y, x-z plane held by a moment
+  bool lateral(int k) const { return !stations[static_cast<std::size_t>(k)].empty(); }
+  bool tilting(int k) const { return tilt[static_cast<std::size_t>(k)] || stations[static_cast<std::size_t>(k)].size() > 1; }
+};
+
+/// What one bearing holds: x, y, z, tilt in x-y (about z), tilt in x-z (about y). A kind of bearing that is not listed
+/// here is a film, contact or the like and is taken to hold both lateral directions.
+std::array<bool, 5> held_by(const model::BearingLaw& law) {
+  if (const auto* b = std::get_if<model::SpringBlock>(&law)) return {b->C1 > 0, b->C1 > 0, b->C1 > 0, b->C2 > 0, b->C2 > 0};
+  if (const auto* b = std::get_if<model::LinearBearing>(&law)) return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
+  if (const auto* b = std::get_if<model::RigidSupport>(&law)) return {b->held[0], b->held[1], b->held[2], b->held[5], b->held[4]};
+  return {false, true, true, false, false};
+}
+
+std::vector<Restraint> restraints(const model::Model& m) {
+  std::vector<Restraint> r(m.shafts.size());
+  const auto apply = [&](const model::Location& at, const std::array<bool, 5>& held) {
+    Restraint& x = r[at.shaft];
+    x.axial = x.axial || held[0];
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (held[1 + k]) x.stations[k].insert(at.s);
+      x.tilt[k] = x.tilt[k] || held[3 + k];
+    }
+  };
+  for (const auto& b : m.bearings)
+    if (!b.to) apply(b.at, held_by(b.law));
+  // a bearing to another shaft holds as far as that shaft is held there; whole chains settle in as many passes
+  for (std::size_t pass = 0; pass < m.shafts.size(); ++pass)
+    for (const auto& b : m.bearings) {
+      if (!b.to) continue;
+      for (const auto& [here, there] : {std::pair(b.at, *b.to), std::pair(*b.to, b.at)}) {
+        if (here.shaft == there.shaft) continue;
+        const Restraint& other = r[there.shaft];
+        std::array<bool, 5> held = held_by(b.law);
+        held[0] = held[0] && other.axial;
+        for (std::size_t k = 0; k < 2; ++k) {
+          const bool fixed = other.lateral(static_cast<int>(k)) && other.tilting(static_cast<int>(k));
+          held[1 + k] = held[1 + k] && fixed;
+          held[3 + k] = held[3 + k] && fixed;
+        }
+        apply(here, held);
+      }
+    }
+  return r;
+}
+
+bool starts_static(const model::Step& s) {
+  if (std::holds_alternative<model::StaticStep>(s.law)) return true;
+  if (const auto* t = std::get_if<model::TransientStep>(&s.law)) return s.from.empty() && t->start == model::TransientStep::Start::static_equilibrium;
+  return false;
+}
+
+void check_restraint(const model::Model& m, Problems& out) {
+  const auto needs = std::find_if(m.steps.begin(), m.steps.end(), starts_static);
+  if (needs == m.steps.end()) return;
+  const auto r = restraints(m);
+  for (std::size_t k = 0; k < m.shafts.size(); ++k) {
+    const auto say = [&](const char* motion, const char* hint) {
+      add(out, "E32", fmt::format("nothing resists {} of shaft '{}', but step '{}' needs a static equilibrium", motion, m.shafts[k].name, needs->name), hint, m.shafts[k].where);
+    };
+    if (!r[k].axial) say("axial motion", "give a bearing kxx, or add one of type \"rigid\" with directions = [\"x\"]; or start from rest");
+    for (int a = 0; a < 2; ++a) {
+      const char* axis = a == 0 ? "y" : "z";
+      if (!r[k].lateral(a)) say(a == 0 ? "motion along y" : "motion along z", a == 0 ? "a bearing with kyy is missing" : "a bearing with kzz is missing");
+      else if (!r[k].tilting(a)) say(a == 0 ? "tilting in the x-y plane" : "tilting in the x-z plane", fmt::format("it is held along {} at one place only: a second bearing or a tilting stiffness is missing", axis).c_str());
+    }
+  }
+}
+
+/// Speeds a step goes through: least and largest of the reference shaft, or nothing.
+std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const model::Step& s, std::size_t shaft) {
+  const double ratio = m.shafts[shaft].speed_ratio;
+  const auto range = [&](const model::SpeedRange& r) {
+    const double a = r.values.empty() ? r.start : r.values.front(), b = r.values.empty() ? r.stop : r.values.back();
+    return std::pair(std::min(a * ratio, b * ratio), std::max(a * ratio, b * ratio));
+  };
+  if (const auto* x = std::get_if<model::StaticStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::ModalStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) return range(x->speed);
+  if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) return range(x->speed);
+  if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {
+    for (const auto& d : m.drives) {
+      const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
+      if (!p || !p->angle || d.at.shaft != shaft || (!d.step.empty() && d.step != s.name)) continue;
+      // a law is smooth between its breakpoints; 1000 samples find its extremes well enough for a check
+      double low = infinity, high = -infinity;
+      std::vector<double> t = p->angle->breakpoints();
+      for (int i = 0; i <= 1000; ++i) t.push_back(x->duration * i / 1000);
+      for (double ti : t) {
+        if (ti < 0 || ti > x->duration) continue;
+        const double w = p->angle->at(ti).df;
+        low = std::min(low, w);
+        high = std::max(high, w);
+      }
+      return std::pair(low, high);
+    }
+  }
+  return {};   // critical speeds look inside the table only; a free spin is not known beforehand
+}
+
+void check_tables(const model::Model& m, Problems& out) {
+  for (const auto& b : m.bearings) {
+    const auto* table = std::get_if<model::TableBearing>(&b.law);
+    if (!table || table->extrapolate_hold || table->speed.empty()) continue;
+    for (const auto& s : m.steps) {
+      const auto range = speeds_of(m, s, b.at.shaft);
+      if (!range) continue;
+      // rounding of rpm to rad/s and back
+      const double slack = 1e-9 * std::max(std::abs(table->speed.front()), std::abs(table->speed.back()));
+      if (range->first < table->speed.front() - slack || range->second > table->speed.back() + slack)
+        add(out, "E22", fmt::format("the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}", b.name, units::format(table->speed.front(), "rpm"), units::format(table->speed.back(), "rpm"), s.name,
+                                    units::format(range->first, "rpm"), units::format(range->second, "rpm")),
+            "extend the table, narrow the step, or write extrapolate = \"hold\"", b.where);
+    }
+  }
+}
+
+void check_drives(const model::Model& m, Problems& out) {
+  for (std::size_t i = 0; i < m.drives.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto &a = m.drives[j], &b = m.drives[i];
+      const bool both = std::holds_alternative<model::PrescribedSpin>(a.law) && std::holds_alternative<model::PrescribedSpin>(b.law);
+      if (both && a.at.shaft == b.at.shaft && a.at.s == b.at.s && (a.step.empty() || b.step.empty() || a.step == b.step))
+        add(out, "E26", fmt::format("drives '{}' and '{}' both prescribe the spin of one station", a.name, b.name), "keep one of the two, or give them different steps", b.where);
+    }
+}
+
+void check_effects(const model::Model& m, Problems& out) {
+  const bool transient = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) { return std::holds_alternative<model::TransientStep>(s.law); });
+  const auto warn = [&](std::string what, const Where& w) {
+    add(out, "W02", fmt::format("{} without effect: the deck has no transient step", what), "", w, Diagnostic::Severity::warning);
+  };
+  if (transient) return;
+  if (!m.drives.empty()) warn("a drive", m.drives.front().where);
+  if (!m.initial.empty()) warn("an initial motion", m.initial.front().where);
+  for (const auto& o : m.output.vtk)
+    if (o.step.empty()) warn("a picture output", o.where);
+}
+
+}  // namespace
+
+std::vector<WholeModelProblem> check_model(const model::Model& m) {
+  Problems out;
+  check_restraint(m, out);
+  check_tables(m, out);
+  check_drives(m, out);
+  check_effects(m, out);
+  return out;
+}
+
+OutputEstimate estimate_output(const model::Model& m) {
+  OutputEstimate e;
+  double length = 0, sections = 0;
+  for (const auto& s : m.shafts) {
+    length += s.length();
+    for (const auto& x : s.sections) sections += std::max(x.min_elements, std::isfinite(x.max_element_length) ? static_cast<int>(std::min(1e6, std::ceil(x.length / x.max_element_length))) : 1);
+  }
+  const double nodes = sections + static_cast<double>(m.shafts.size() + m.disks.size() + m.bearings.size());
+  double columns = 2 + static_cast<double>(m.shafts.size());
+  for (const auto& p : m.probes) columns += p.angles.empty() ? 2 : static_cast<double>(p.angles.size());
+  columns += 3.0 * static_cast<double>(m.bearings.size()) + 6;
+  for (const auto& s : m.steps) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    if (!t) continue;
+    // 20 characters a number; the adaptive step is not known beforehand, so only a given interval can be judged
+    const double every = m.output.every > 0 ? m.output.every : t->integrator.dt;
+    if (every > 0) e.histories += t->duration / every * columns * ((m.output.csv ? 20 : 0) + (m.output.binary ? 8 : 0));
+    for (const auto& o : m.output.vtk) {
+      if (!o.step.empty() && o.step != s.name) continue;
+      const double window = std::max(0.0, std::min(o.t1, t->duration) - std::max(0.0, o.t0));
+      double frames = o.every > 0 ? window / o.every : o.frames;
+      if (o.every == 0 && o.frames_per_revolution > 0) frames = o.max_frames;
+      frames = std::min<double>(frames, o.max_frames);
+      const bool surface = std::find(o.content.begin(), o.content.end(), "surface") != o.content.end();
+      // a centre-line node carries some 20 doubles; a surface point 12 floats and its share of connectivity
+      e.pictures += frames * (nodes * 160 + (surface ? nodes * o.points_around * 80 : 0) + 4000);
+    }
+  }
+  return e;
+}
+
+std::vector<Diagnostic> check_output(const model::Model& m, double available) {
+  const OutputEstimate e = estimate_output(m);
+  if (e.total() <= available) return {};
+  const auto size = [](double bytes) { return bytes < 1e6 ? fmt::format("{:.0f} kB", bytes / 1e3) : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : bytes < 1e12 ? fmt::format("{:.1f} GB", bytes / 1e9) : fmt::format("{:.1f} TB", bytes / 1e12); };
+  Diagnostic d;
+  d.code = "E33";
+  d.message = fmt::format("the output would take about {} (histories {}, pictures {}), but only {} are free", size(e.total()), size(e.histories), size(e.pictures), size(available));
+  d.hint = e.histories > e.pictures ? "write rows less often: output.every" : "ask for fewer frames or a window in [[output.vtk]]";
+  return {d};
+}
+
+}  // namespace whirl::deck
