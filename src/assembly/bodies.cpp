@@ -1,0 +1,57 @@
+#include <assembly/parts.hpp>
+#include <elements/point_mass.hpp>
+#include <elements/rigid_body.hpp>
+#include <elements/unbalance.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace whirl::assembly {
+namespace {
+
+/// Id may fall below Ip/2 by rounding of printed data.
+constexpr double printed_digits = 1e-6;
+
+void add_disk(Assembly& a, const model::Disk& d) {
+  const std::string who = fmt::format("disk '{}'", d.name);
+  const meshes::Place at = a.mesh.place(d.at);
+  if (!(d.mass >= 0) || d.Ip < 0 || d.Id < 0) {
+    a.error("E14", fmt::format("{}: mass and moments of inertia cannot be negative", who), {}, d, who);
+    return;
+  }
+  if (!d.inertia && d.Id < 0.5 * d.Ip * (1 - printed_digits)) {
+    a.error("E24", fmt::format("{}: Id = {:.6g} kg m2 is less than Ip/2 = {:.6g} kg m2; no body has such moments of inertia", who, d.Id, 0.5 * d.Ip),
+            "Ip is about the shaft axis, Id about a diameter; are they interchanged?", d, who);
+    return;
+  }
+  const Vec3 offset = d.offset + Vec3(at.offset, 0, 0);
+  if (!d.inertia && d.skew == 0 && offset.y() == 0 && offset.z() == 0) {
+    if (d.Ip == 0 && d.Id == 0 && offset.x() == 0) a.builder.add(elements::PointMass{d.mass}, {at.node}, "point masses");
+    else a.builder.add(elements::RigidDisk{d.mass, d.Id, d.Ip, offset.x()}, {at.node}, "rigid disks");
+    return;
+  }
+  Mat3 J = d.inertia ? *d.inertia : elements::skewed_inertia(d.Ip, d.Id, d.skew, d.skew_phase);
+  if (d.inertia && d.skew != 0) {
+    a.error("E26", fmt::format("{}: skew and a full inertia tensor are two ways to say the same", who), "give one of them", d, who);
+    return;
+  }
+  try {
+    a.builder.add(elements::RigidBody(d.mass, offset, J), {at.node}, "rigid bodies");
+  } catch (const Error& e) {
+    a.error("E24", fmt::format("{}: {}", who, e.what()), {}, d, who);
+  }
+}
+
+}  // namespace
+
+void add_bodies(Assembly& a) {
+  for (const model::Disk& d : a.model.disks) add_disk(a, d);
+  for (const model::Unbalance& u : a.model.unbalances) {
+    const meshes::Place at = a.mesh.place(u.at);
+    a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node}, "unbalances");
+    a.take_breakpoints(u.factor);
+  }
+}
+
+}  // namespace whirl::assembly

@@ -1,0 +1,15 @@
+// From a section of the model to the numbers of its elements.
+#pragma once
+#include <elements/section.hpp>
+#include <elements/timoshenko_matrices.hpp>
+#include <meshes/mesh.hpp>
+#include <model/model.hpp>
+
+namespace whirl::assembly {
+
+/// The part of a (circular or given) section that a mesh element covers.
+elements::ElementSection element_section(const model::Model& m, const meshes::Element& e);
+/// Constants of a mesh element, with its offsets. Not for general sections.
+elements::ShaftElementConstants element_constants(const model::Model& m, const meshes::Element& e);
+
+}  // namespace whirl::assembly

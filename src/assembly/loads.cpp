@@ -1,0 +1,85 @@
+#include <assembly/parts.hpp>
+#include <elements/point_load.hpp>
+#include <elements/spin_torque.hpp>
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace whirl::assembly {
+namespace {
+
+elements::TorqueLaw torque_law(const model::TorqueCurve& c) {
+  elements::TorqueLaw t;
+  t.of_time = c.of_time;
+  t.speed = c.speed, t.torque = c.torque;
+  t.friction = c.constant, t.viscous = c.viscous, t.quadratic = c.quadratic;
+  if (c.induction) t.induction = {c.induction->breakdown, c.induction->slip_breakdown, c.induction->synchronous};
+  if (c.power) t.power = {c.power->power, c.power->max_torque};
+  if (c.dc) t.dc = {c.dc->stall, c.dc->no_load_speed};
+  t.brake = c.brake;
+  if (c.governor) t.governor = {c.governor->target, c.governor->kp, c.governor->ki, c.governor->max_torque, 0.0};
+  return t;
+}
+
+template <elements::TorqueAction A>
+void add_torque(Assembly& a, const model::Drive& d, Index node) {
+  elements::SpinTorque<A> k;
+  k.law = torque_law(std::get<model::TorqueCurve>(d.law));
+  a.take_breakpoints(k.breakpoints());
+  a.builder.add(k, {node}, "drives");
+  a.built.drive_torques.push_back({d.name, [k, node](const NodeAt& at, double t, const ReactionAt&) { return k.working(at(node), t).torque; }});
+}
+
+void add_load(Assembly& a, const model::PointLoad& l) {
+  const meshes::Place at = a.mesh.place(l.at);
+  a.take_breakpoints(l.factor);
+  if (l.frame == model::LoadFrame::rotating)
+    a.builder.add(elements::BodyLoad{l.force, l.moment, at.offset, l.factor}, {at.node}, "loads");
+  else if (l.moment.isZero(0.0) && at.offset == 0)
+    a.builder.add(elements::PointForce{l.force, l.factor}, {at.node}, "forces");
+  else
+    a.builder.add(elements::FixedLoad{l.force, l.moment, at.offset, l.factor}, {at.node}, "loads");
+}
+
+}  // namespace
+
+void add_loads(Assembly& a) {
+  for (const model::PointLoad& l : a.model.loads) add_load(a, l);
+
+  for (const model::Shaft& s : a.model.shafts) {
+    LineSpin spin;
+    spin.spin0 = s.rotating ? s.spin0 : 0.0;
+    a.built.spins.push_back(spin);
+  }
+  std::set<Index> prescribed;
+  Index first_drive = -1;
+  for (const model::Drive& d : a.model.drives) {
+    if (!a.acts(d)) continue;
+    const Index node = a.mesh.place(d.at).node;
+    if (first_drive < 0) first_drive = node;
+    if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law)) {
+      if (!prescribed.insert(node).second) {
+        const std::string who = fmt::format("drive '{}'", d.name);
+        a.error("E26", fmt::format("{}: the angle at {} is prescribed twice", who, a.builder.node(node).name), {}, d, who);
+        continue;
+      }
+      a.builder.hold(node, system::spin_phi, p->angle);
+      LineSpin& spin = a.built.spins[d.at.shaft];
+      if (!spin.prescribed) spin = {true, p->angle, spin.spin0};
+      const Index unknown = 6 * node + system::spin_phi;
+      a.built.drive_torques.push_back({d.name, [unknown](const NodeAt&, double, const ReactionAt& r) { return r(unknown); }});
+    } else if (d.kind == model::TorqueKind::fixed_direction) {
+      add_torque<elements::TorqueAction::fixed>(a, d, node);
+    } else {
+      add_torque<elements::TorqueAction::joint>(a, d, node);
+    }
+  }
+  // The speed axis: the first drive's node, else the first node of the first line that turns.
+  a.built.reference = first_drive;
+  for (const meshes::Line& line : a.mesh.lines)
+    if (a.built.reference < 0 && line.rotating) a.built.reference = line.first_node;
+  if (a.built.reference < 0) a.built.reference = 0;
+}
+
+}  // namespace whirl::assembly

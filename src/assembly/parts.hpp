@@ -1,0 +1,32 @@
+// The parts build_system() is made of; each adds one kind of thing. Internal to src/assembly.
+#pragma once
+#include <assembly/build_system.hpp>
+
+namespace whirl::assembly {
+
+struct Assembly {
+  const model::Model& model;
+  const meshes::Mesh& mesh;
+  const std::string& step;
+  system::Builder builder;
+  Built built;
+  std::vector<Diagnostic> errors;
+
+  bool acts(const model::Drive& d) const { return d.step.empty() || d.step == step; }
+  void error(const char* code, std::string message, std::string hint, const model::Entity& e, std::string entity);
+  void take_breakpoints(const std::vector<double>& t) { built.breakpoints.insert(built.breakpoints.end(), t.begin(), t.end()); }
+  void take_breakpoints(const LawPtr& law) { if (law) take_breakpoints(law->breakpoints()); }
+};
+
+/// Shaft and casing elements with their damping, and rigid sections as bodies.
+void add_shafts(Assembly& a);
+/// Disks and unbalances.
+void add_bodies(Assembly& a);
+/// Bearings, rigid supports, pedestals.
+void add_supports(Assembly& a);
+/// Loads and drives, and what each line spins with.
+void add_loads(Assembly& a);
+/// Unrestrained motion: left out where nothing excites it, else an error.
+void check_restraint(Assembly& a);
+
+}  // namespace whirl::assembly

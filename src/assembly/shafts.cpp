@@ -1,0 +1,111 @@
+// Shaft elements. Damping of a line: beta_internal acts on bending and axial strain rates seen turning with the shaft,
+// beta_external on those seen in fixed axes; the twist rate is the same in both, so torsion gets
+// beta_internal + beta_external + beta_torsion. alpha acts on the velocities of the shaft's own mass.
+#include <assembly/element_section.hpp>
+#include <assembly/parts.hpp>
+#include <elements/general_beam.hpp>
+#include <elements/point_mass.hpp>
+#include <elements/rigid_disk.hpp>
+#include <elements/shaft_beam.hpp>
+#include <elements/shaft_damping.hpp>
+#include <meshes/mass_properties.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace whirl::assembly {
+namespace {
+
+using elements::ShaftElementConstants;
+
+void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConstants& c, const std::array<Index, 2>& nodes, bool internal) {
+  const model::ShaftDamping& d = shaft.damping;
+  const Vec3 e0 = Vec3::UnitX();
+  const double twist = d.beta_internal + d.beta_external + d.beta_torsion;
+  // The twist goes with whichever of the two exists.
+  const bool rotating = internal && d.beta_internal != 0, fixed = d.beta_external != 0;
+  if (rotating)
+    a.builder.add(elements::ShaftDamping<true>(c, e0, d.beta_internal, twist, d.beta_internal), nodes, "internal damping");
+  if (fixed || (twist != 0 && !rotating))
+    a.builder.add(elements::ShaftDamping<false>(c, e0, d.beta_external, rotating ? 0.0 : twist, d.beta_external), nodes, "external damping");
+  if (d.alpha != 0) {
+    elements::ShaftMassDamping m;
+    m.C4 = d.alpha * c.M4;
+    a.builder.add(m, nodes, "mass-proportional damping");
+  }
+}
+
+/// Section with unequal principal axes. Deflection along the section's y bends about its z.
+void add_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& e) {
+  const model::Section& s = shaft.sections[e.section];
+  const model::Section::General& g = *s.general;
+  const model::Material& material = a.model.materials.at(s.material);
+  const bool circle = s.od_l > 0;   // diameters, when given, say the mass
+  const double A = circle ? elements::annulus_area(s.od_l, s.id_l) : g.A, l = e.s2 - e.s1;
+  elements::ElementSection plane;
+  plane.constants = true;
+  const auto constants = [&](double I, double kappa) {
+    plane.given = {material.E * g.A, kappa > 0 ? kappa * material.G * g.A : 0.0, material.G * g.J, material.E * I,
+                   material.rho * A + s.added_mass_per_length, 0, 0};
+    return elements::make_shaft_constants(plane, l);
+  };
+  const ShaftElementConstants y = constants(g.Iz, g.kappa_y), z = constants(g.Iy, g.kappa_z);
+  elements::GeneralBeamConstants c;
+  c.length = l;
+  c.EA_l = y.EA_l, c.GJ_l = y.GJ_l;
+  c.ky_def11 = y.k11, c.ky_def12 = y.k12, c.ky_def22 = y.k22;
+  c.kz_def11 = z.k11, c.kz_def12 = z.k12, c.kz_def22 = z.k22;
+  c.b11 = 0.5 * (y.b11 + z.b11), c.b12 = 0.5 * (y.b12 + z.b12), c.b22 = 0.5 * (y.b22 + z.b22);
+  c.M4 = 0.5 * (y.M4 + z.M4);
+  const double rho = s.rotary_inertia ? material.rho * l : 0.0, I = circle ? elements::annulus_I(s.od_l, s.id_l) : 0.0;
+  c.rhoIz_l = rho * (circle ? I : g.Iz), c.rhoIy_l = rho * (circle ? I : g.Iy);
+  c.beta = shaft.damping.beta_internal;
+  Mat3 triad;
+  triad << Vec3::UnitX(), Vec3(0, std::cos(g.angle), std::sin(g.angle)), Vec3(0, -std::sin(g.angle), std::cos(g.angle));
+  const std::array<Index, 2> nodes{e.left.node, e.right.node};
+  a.builder.add(elements::GeneralBeam(c, Vec3(l, 0, 0), triad, triad, Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0)), nodes,
+                "general beam elements");
+  // Fixed-axes damping does not turn with the section: it takes the mean of both planes.
+  ShaftElementConstants mean = y;
+  mean.k11 = 0.5 * (y.k11 + z.k11), mean.k12 = 0.5 * (y.k12 + z.k12), mean.k22 = 0.5 * (y.k22 + z.k22);
+  mean.o1 = e.left.offset, mean.o2 = e.right.offset;
+  Matrix<4> T = Matrix<4>::Identity();
+  T(0, 1) = mean.o1, T(2, 3) = mean.o2;
+  mean.M4 = T.transpose() * c.M4 * T;
+  add_damping(a, shaft, mean, nodes, false);
+}
+
+void add_rigid_part(Assembly& a, const model::Shaft& shaft, const meshes::RigidPart& r) {
+  const meshes::MassProperties p = meshes::section_mass(a.model, shaft.sections[r.section], Vec3(r.o1, 0, 0));   // from the node
+  if (!(p.mass > 0)) return;
+  a.builder.add(elements::RigidDisk{p.mass, p.Id(), p.Ip(), p.centre().x()}, {r.node}, "rigid disks");
+}
+
+}  // namespace
+
+void add_shafts(Assembly& a) {
+  for (const meshes::Element& e : a.mesh.elements) {
+    const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
+    if (shaft.sections[e.section].general) {
+      add_general(a, shaft, e);
+      continue;
+    }
+    const ShaftElementConstants c = element_constants(a.model, e);
+    const std::array<Index, 2> nodes{e.left.node, e.right.node};
+    const auto add = [&](auto beam) {
+      beam.preload = shaft.axial_preload;
+      a.builder.add(beam, nodes, "shaft elements");
+    };
+    if (c.o1 == 0 && c.o2 == 0) add(elements::ShaftBeam<false>(c, Vec3::UnitX()));
+    else add(elements::ShaftBeam<true>(c, Vec3::UnitX()));
+    add_damping(a, shaft, c, nodes, true);
+  }
+  for (const meshes::RigidPart& r : a.mesh.rigid_parts) add_rigid_part(a, a.model.shafts[static_cast<std::size_t>(r.line)], r);
+  for (const model::Shaft& s : a.model.shafts)
+    if (s.damping.loss_factor != 0)
+      a.built.left_out.push_back(fmt::format("hysteretic damping of shaft '{}' (loss factor {}): it has no form in time; frequency-domain steps apply it",
+                                             s.name, s.damping.loss_factor));
+}
+
+}  // namespace whirl::assembly
