@@ -37,8 +37,8 @@ void MassProperties::add(double m, const Vec3& c, const Mat3& J) {
 
 MassProperties section_mass(const model::Model& m, const model::Section& s, const Vec3& left_end) {
   const double L = s.length, rho = m.materials.empty() ? 0.0 : m.materials.at(s.material).rho;
-  // line integrals about the left end: mass, first and second moment, transverse (about y, z) and polar inertia
-  double mass = 0, first = 0, second = 0, about_y = 0, about_z = 0, polar = 0;
+  // line integrals about the left end: mass, first and second moment, inertia about y, z and the axis, int yz
+  double mass = 0, first = 0, second = 0, about_y = 0, about_z = 0, polar = 0, product = 0;
   if (s.constants) {
     const auto& c = *s.constants;
     mass = c.rhoA * L, first = mass * L / 2, second = mass * L * L / 3;
@@ -52,15 +52,17 @@ MassProperties section_mass(const model::Model& m, const model::Section& s, cons
     const double c = std::cos(g.angle), n = std::sin(g.angle);   // about_* refer to global y, z
     mass = rho * g.A * L, first = mass * L / 2, second = mass * L * L / 3;
     about_y = rho * L * (g.Iy * c * c + g.Iz * n * n), about_z = rho * L * (g.Iy * n * n + g.Iz * c * c);
-    polar = rho * L * (g.Iy + g.Iz);
+    polar = rho * L * (g.Iy + g.Iz), product = rho * L * (g.Iz - g.Iy) * c * n;
   }
-  if (!s.rotary_inertia && !s.rigid) about_y = about_z = 0;
+  if (!s.rotary_inertia && !s.rigid) about_y = about_z = product = 0;
   const double added = s.added_mass_per_length * L;
   mass += added, first += added * L / 2, second += added * L * L / 3;
   MassProperties p;
   if (!(mass > 0)) return p;
   const double x = first / mass, own = second - mass * x * x;   // about the section's own centre
-  p.add(mass, left_end + Vec3(x, 0, 0), Vec3(polar, own + about_y, own + about_z).asDiagonal());
+  Mat3 J = Vec3(polar, own + about_y, own + about_z).asDiagonal();
+  J(1, 2) = J(2, 1) = -product;
+  p.add(mass, left_end + Vec3(x, 0, 0), J);
   return p;
 }
 

@@ -4,92 +4,99 @@
 #include <cmath>
 
 namespace whirl::meshes {
-
 namespace {
 
-struct Diameters { double od_l, id_l, od_r, id_r; };
+struct Radii { double outer, inner; };
 
-/// Diameters of a section between fractions xi1 and xi2, with a stand-in for sections that have none.
-Diameters part(const model::Section& s, double xi1, double xi2, double thin) {
-  auto mix = [](double a, double b, double x) { return a + (b - a) * x; };
-  Diameters d{mix(s.od_l, s.od_r, xi1), mix(s.id_l, s.id_r, xi1), mix(s.od_l, s.od_r, xi2), mix(s.id_l, s.id_r, xi2)};
-  if (d.od_l <= 0.0 && s.constants && s.constants->rhoA > 0.0) {
-    // a solid round bar with this ratio of bending inertia to mass
-    d.od_l = d.od_r = 4.0 * std::sqrt(s.constants->rhoI / s.constants->rhoA);
+/// Radii of a section at the fraction xi.
+Radii radii(const model::Section& s, double line_length, double xi) {
+  const auto mix = [xi](double a, double b) { return 0.5 * (a + xi * (b - a)); };
+  if (s.od_l > 0 || s.od_r > 0) return {mix(s.od_l, s.od_r), mix(s.id_l, s.id_r)};
+  if (s.constants && s.constants->EA > 0 && s.constants->EI > 0) return {2 * std::sqrt(s.constants->EI / s.constants->EA), 0};   // EI/EA = r^2/4
+  if (s.general && s.general->A > 0) return {std::sqrt(s.general->A / pi), 0};
+  return {0.01 * line_length, 0};
+}
+
+/// Largest radius of the line at a place (a step has two).
+double radius_at(const model::Shaft& shaft, double length, double s) {
+  double start = 0, r = 0;
+  for (const auto& k : shaft.sections) {
+    if (s >= start - 1e-9 * length && s <= start + k.length + 1e-9 * length)
+      r = std::max(r, radii(k, length, std::clamp((s - start) / k.length, 0.0, 1.0)).outer);
+    start += k.length;
   }
-  if (d.od_l <= 0.0 && s.general) d.od_l = d.od_r = 2.0 * std::sqrt(s.general->A / pi);
-  if (d.od_l <= 0.0) d.od_l = d.od_r = thin;
-  return d;
+  return r;
+}
+
+DiskShape disk_shape(const model::Disk& d, Place at, double shaft_radius) {
+  DiskShape out;
+  out.name = d.name;
+  out.at = {at.node, at.offset + d.offset.x()};
+  out.outer = 0.5 * d.draw_od;
+  out.width = d.draw_width;
+  if (!(out.outer > 0) && d.mass > 0 && d.Ip > 0) out.outer = std::sqrt(2 * d.Ip / d.mass);
+  if (!(out.outer > 0)) out.outer = shaft_radius > 0 ? 2 * shaft_radius : 0.05;
+  if (!(out.width > 0) && d.mass > 0) {   // Id = m (3 r^2 + w^2)/12
+    const double w2 = 12 * d.Id / d.mass - 3 * out.outer * out.outer;
+    out.width = w2 > 0 ? std::min(std::sqrt(w2), 2 * out.outer) : 0.0;
+  }
+  out.width = std::max(out.width, 0.04 * out.outer);
+  out.inner = d.draw_id > 0 ? 0.5 * d.draw_id : shaft_radius;
+  out.inner = std::min(out.inner, 0.9 * out.outer);
+  return out;
 }
 
 }  // namespace
 
-Scene make_scene(const model::Model& model, const Mesh& mesh) {
+Scene make_scene(const model::Model& m, const Mesh& mesh) {
   Scene scene;
-  double length = 0.0;
-  for (const Line& l : mesh.lines) length = std::max(length, l.length);
-  const double thin = 0.02 * length;
   for (const Node& n : mesh.nodes) {
     scene.nodes.push_back(n.position);
     scene.node_line.push_back(std::max<Index>(n.line, 0));
   }
-  std::vector<double> radius_at(mesh.lines.size(), 0.5 * thin);
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
     const Line& line = mesh.lines[l];
-    const model::Shaft& shaft = model.shafts[l];
+    const model::Shaft& shaft = m.shafts[l];
     Scene::Line out;
     out.name = line.name;
-    // pieces, left to right: flexible elements and rigid sections
-    struct Piece { double s; ShaftPiece piece; };
+    for (Index k = line.first_station; k < line.first_station + line.stations; ++k) {
+      const Station& s = mesh.stations[static_cast<std::size_t>(k)];
+      out.points.push_back(s.at);
+      out.radius.push_back(radius_at(shaft, line.length, s.s));
+    }
+    // Elements and rigid parts in order of their left ends.
+    struct Piece { double s; ShaftPiece shape; };
     std::vector<Piece> pieces;
-    auto add = [&](double s, const Place& a, const Place& b, const Diameters& d) {
-      pieces.push_back({s, {a, b, 0.5 * d.od_l, 0.5 * d.od_r, 0.5 * d.id_l, 0.5 * d.id_r}});
+    const auto add = [&](std::size_t section, double s, Place a, Place b, double xi1, double xi2) {
+      const Radii r1 = radii(shaft.sections[section], line.length, xi1), r2 = radii(shaft.sections[section], line.length, xi2);
+      pieces.push_back({s, {a, b, r1.outer, r2.outer, r1.inner, r2.inner}});
     };
     for (Index k = line.first_element; k < line.first_element + line.elements; ++k) {
       const Element& e = mesh.elements[static_cast<std::size_t>(k)];
-      add(e.s1, e.left, e.right, part(shaft.sections[e.section], e.xi1, e.xi2, thin));
+      add(e.section, e.s1, e.left, e.right, e.xi1, e.xi2);
     }
-    for (const RigidPart& r : mesh.rigid_parts) {
-      if (r.line != static_cast<Index>(l)) continue;
-      const Node& n = mesh.nodes[static_cast<std::size_t>(r.node)];
-      add(n.s + r.o1, {r.node, r.o1}, {r.node, r.o2}, part(shaft.sections[r.section], 0.0, 1.0, thin));
-    }
+    for (const RigidPart& r : mesh.rigid_parts)
+      if (r.line == static_cast<Index>(l))
+        add(r.section, mesh.nodes[static_cast<std::size_t>(r.node)].s + r.o1, {r.node, r.o1}, {r.node, r.o2}, 0, 1);
     std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.s < b.s; });
-    for (Piece& p : pieces) {
-      if (out.points.empty()) {
-        out.points.push_back(p.piece.left);
-        out.radius.push_back(p.piece.outer_left);
-      }
-      out.points.push_back(p.piece.right);
-      out.radius.push_back(p.piece.outer_right);
-      out.pieces.push_back(p.piece);
-    }
-    for (const model::Disk& d : model.disks) {
-      if (d.at.shaft != l) continue;
-      const double bore = std::max(mesh.radius(model, l, d.at.s), 0.5 * thin);
-      DiskShape shape{d.name, mesh.place(d.at), 0.5 * d.draw_od, 0.5 * d.draw_id, d.draw_width};
-      // a solid round disk of this polar inertia
-      if (shape.outer <= 0.0 && d.mass > 0.0 && d.Ip > 0.0) shape.outer = std::sqrt(2.0 * d.Ip / d.mass);
-      if (shape.outer <= bore) continue;   // no larger than its shaft: nothing to draw
-      if (shape.inner <= 0.0) shape.inner = bore;
-      if (shape.width <= 0.0) shape.width = 0.15 * shape.outer;
-      out.disks.push_back(shape);
-    }
+    for (Piece& p : pieces) out.pieces.push_back(p.shape);
+    for (const auto& d : m.disks)
+      if (d.at.shaft == l) out.disks.push_back(disk_shape(d, mesh.place(d.at), radius_at(shaft, line.length, d.at.s)));
     scene.lines.push_back(std::move(out));
   }
-  for (std::size_t k = 0; k < model.bearings.size(); ++k) {
-    const model::Bearing& b = model.bearings[k];
-    const BearingNodes& at = mesh.bearings[k];
+  for (std::size_t i = 0; i < m.bearings.size(); ++i) {
+    const model::Bearing& b = m.bearings[i];
+    const BearingNodes& n = mesh.bearings[i];
     SupportShape s;
     s.name = b.name;
     s.kind = std::holds_alternative<model::SpringBlock>(b.law) ? SupportShape::Kind::spring : SupportShape::Kind::bearing;
-    s.at = at.shaft;
-    if (b.to || at.pedestal >= 0) s.to_node = true, s.to = at.other;
-    s.radius = std::max(mesh.radius(model, b.at.shaft, b.at.s), 0.5 * thin);
-    scene.supports.push_back(s);
+    s.at = n.shaft;
+    s.to_node = n.other.node >= 0 && n.other.node != n.ground;
+    if (s.to_node) s.to = n.other;
+    s.radius = radius_at(m.shafts[b.at.shaft], mesh.lines[b.at.shaft].length, b.at.s);
+    scene.supports.push_back(std::move(s));
   }
-  for (const model::Probe& p : model.probes) scene.trails.push_back({p.name, mesh.place(p.at)});
-  for (const model::Disk& d : model.disks) scene.trails.push_back({"disk " + d.name, mesh.place(d.at)});
+  for (const auto& p : m.probes) scene.trails.push_back({p.name, mesh.place(p.at)});
   return scene;
 }
 

@@ -1,12 +1,14 @@
-// From model and mesh to the picture of the rotor (surface.hpp): plain data for frame writers.
+// What there is to draw of a model, from the model and its mesh.
 #pragma once
 #include <meshes/mesh.hpp>
 #include <meshes/surface.hpp>
+#include <model/model.hpp>
 
 namespace whirl::meshes {
 
-/// Lines, sections, disks, supports and probe trails. A rigid section without diameters is drawn as a thin rod (a fiftieth of the
-/// model's length); disks without drawing sizes get a diameter from their polar inertia and mass.
-Scene make_scene(const model::Model& model, const Mesh& mesh);
+/// Node indices are those of the mesh. Sizes that the model does not give are estimated for the picture: disks without drawing
+/// data from their mass and inertia (as solid cylinders), sections without diameters from EI/EA or as rods of a hundredth of
+/// the line's length.
+Scene make_scene(const model::Model& m, const Mesh& mesh);
 
 }  // namespace whirl::meshes

@@ -1,0 +1,223 @@
+// Which rigid motions of shafts and casings nothing resists. Only whether a support acts in a direction counts, not how
+// strongly, so a spring of 1 N/m beside one of 1e12 N/m is seen.
+//
+// Rigid motions of a line in a plane: sideways, and turning about its middle (unit displacement at the ends); axially: one.
+// Each support is a row: relative motion of its two sides. What the rows leave free is their null space, found for each group
+// of connected lines on its own.
+#include <assembly/parts.hpp>
+#include <meshes/mass_properties.hpp>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace whirl::assembly {
+namespace {
+
+enum Direction { x, y, z, rx, ry, rz };
+
+/// Directions in which a bearing resists relative motion of its sides.
+std::array<bool, 6> resisted(const model::Bearing& b) {
+  std::array<bool, 6> out{};
+  if (const auto* linear = std::get_if<model::LinearBearing>(&b.law)) {
+    for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = !linear->K.row(c).isZero(0.0);
+  } else if (const auto* table = std::get_if<model::TableBearing>(&b.law)) {
+    for (const auto& k : table->K) out[y] = out[y] || k[0] != 0 || k[1] != 0, out[z] = out[z] || k[2] != 0 || k[3] != 0;
+  } else if (const auto* block = std::get_if<model::SpringBlock>(&b.law)) {
+    out[x] = out[y] = out[z] = block->C1 != 0;
+    out[ry] = out[rz] = block->C2 != 0;
+  } else if (const auto* rigid = std::get_if<model::RigidSupport>(&b.law)) {
+    out = rigid->held;
+    for (std::size_t c = 0; c < 3 && b.pedestal; ++c)   // through the spring of its pedestal
+      out[c] = out[c] && !b.pedestal->K.row(static_cast<Index>(c)).isZero(0.0);
+  } else {
+    out[y] = out[z] = true;   // a film or a clearance carries load once it is displaced
+  }
+  return out;
+}
+
+/// A point whose motion counts: on a line, or nowhere (ground; pedestals resist in every direction, see add_pedestal).
+struct End { Index line = -1; double s = 0; };
+
+class Restraint {
+ public:
+  explicit Restraint(Assembly& a) : a_(a), group_(a.mesh.lines.size()) {
+    for (std::size_t i = 0; i < a.model.bearings.size(); ++i) {
+      const model::Bearing& b = a.model.bearings[i];
+      End other;
+      if (b.to) other = {static_cast<Index>(b.to->shaft), b.to->s};
+      links_.push_back({{static_cast<Index>(b.at.shaft), b.at.s}, other, resisted(b)});
+    }
+    for (const model::Step& s : a.model.steps) {
+      if (!s.from.empty()) continue;
+      if (std::holds_alternative<model::StaticStep>(s.law)) equilibrium_ = true;
+      else if (const auto* t = std::get_if<model::TransientStep>(&s.law)) equilibrium_ |= t->start == model::TransientStep::Start::static_equilibrium;
+      else frequency_ = true;
+    }
+  }
+
+  void check_axial() {
+    for (const auto& lines : groups({x})) {
+      if (grounded(lines, x)) continue;
+      if (loaded(lines, true) && (equilibrium_ || frequency_)) {
+        complain(lines, "axial motion of {}", "add a thrust bearing (kxx), or a bearing of type \"rigid\" with directions = [\"x\"]");
+      } else if (equilibrium_ || frequency_) {
+        const Index node = a_.mesh.lines[lines.front()].first_node;
+        a_.builder.hold(node, x);
+        a_.built.left_out.push_back(fmt::format("axial motion of {} as a whole: nothing resists or loads it; held at the {}", named(lines),
+                                                a_.builder.node(node).name));
+      }
+    }
+  }
+
+  void check_lateral() {
+    std::vector<std::pair<std::vector<std::size_t>, std::string>> found[2];
+    for (int p = 0; p < 2; ++p) {
+      const Direction along = p == 0 ? y : z, turn = p == 0 ? rz : ry;
+      for (const auto& lines : groups({along, turn}))
+        if (const std::string what = free_motion(lines, along, turn); !what.empty() && wrong(lines, what)) found[p].push_back({lines, what});
+    }
+    const char* hint = "a shaft needs two lateral bearings, or one that also holds its tilt; to let it move freely start the transient from rest "
+                       "(start = \"rest\")";
+    for (const auto& f : found[0]) {
+      const bool both = std::find(found[1].begin(), found[1].end(), f) != found[1].end();
+      complain(f.first, f.second + (both ? " (y and z)" : " (y)"), hint);
+    }
+    for (const auto& f : found[1])
+      if (std::find(found[0].begin(), found[0].end(), f) == found[0].end()) complain(f.first, f.second + " (z)", hint);
+  }
+
+  void check_spin() {
+    for (std::size_t l = 0; l < a_.mesh.lines.size(); ++l) {
+      const meshes::Line& line = a_.mesh.lines[l];
+      if (!line.rotating) {
+        if (grounded({l}, rx)) continue;
+        a_.builder.hold(line.first_node, system::spin_phi);
+        a_.built.left_out.push_back(fmt::format("turning of casing '{}' about its axis: held at its left end", line.name));
+        continue;
+      }
+      // No inertia about the axis at all: an unknown spin would have no equation.
+      const meshes::MassProperties p = meshes::shaft_mass(a_.model, l);
+      LineSpin& spin = a_.built.spins[l];
+      if (spin.prescribed || p.Ip() > 1e-15 * p.mass * line.length * line.length) continue;
+      for (const model::Drive& d : a_.model.drives)
+        if (a_.acts(d) && d.at.shaft == l) {
+          const std::string who = fmt::format("drive '{}'", d.name);
+          a_.error("E32", fmt::format("{}: shaft '{}' has no inertia about its axis that a torque could accelerate", who, line.name),
+                   "give a disk its Ip, or prescribe the speed", d, who);
+        }
+      spin.prescribed = true;
+      spin.angle = make_angle_of_speed(make_constant(spin.spin0), 0.0);
+      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) a_.builder.hold(n, system::spin_phi, spin.angle);
+      a_.built.left_out.push_back(fmt::format("torsion and spin of shaft '{}' as unknowns: no inertia about its axis; it turns at {:.6g} rad/s", line.name,
+                                              spin.spin0));
+    }
+  }
+
+ private:
+  struct Link { End a, b; std::array<bool, 6> in; };
+
+  /// Groups of lines connected by links that act in one of the directions.
+  std::vector<std::vector<std::size_t>> groups(std::vector<Direction> directions) {
+    std::iota(group_.begin(), group_.end(), std::size_t{0});
+    const auto root = [this](std::size_t i) {
+      while (group_[i] != i) i = group_[i];
+      return i;
+    };
+    for (const Link& k : links_)
+      for (Direction d : directions)
+        if (k.in[d] && k.b.line >= 0) group_[root(static_cast<std::size_t>(k.b.line))] = root(static_cast<std::size_t>(k.a.line));
+    std::vector<std::vector<std::size_t>> out(group_.size());
+    for (std::size_t i = 0; i < group_.size(); ++i) out[root(i)].push_back(i);
+    out.erase(std::remove_if(out.begin(), out.end(), [](const auto& g) { return g.empty(); }), out.end());
+    return out;
+  }
+  static bool contains(const std::vector<std::size_t>& lines, Index l) {
+    return l >= 0 && std::find(lines.begin(), lines.end(), static_cast<std::size_t>(l)) != lines.end();
+  }
+  bool grounded(const std::vector<std::size_t>& lines, Direction d) const {
+    return std::any_of(links_.begin(), links_.end(), [&](const Link& k) { return k.in[d] && k.b.line < 0 && contains(lines, k.a.line); });
+  }
+
+  double half(std::size_t l) const { return a_.mesh.lines[l].length > 0 ? 0.5 * a_.mesh.lines[l].length : 1.0; }
+
+  /// "" when every motion of the group in the plane is resisted, else which is not ("turning of {} ..").
+  std::string free_motion(const std::vector<std::size_t>& lines, Direction along, Direction turn) const {
+    const Index n = 2 * static_cast<Index>(lines.size());   // (sideways, turning) a line
+    MatX A = MatX::Zero(n, n);
+    const auto add = [&](VecX& row, const End& e, bool tilt, double sign) {
+      const auto it = std::find(lines.begin(), lines.end(), static_cast<std::size_t>(e.line));
+      if (e.line < 0 || it == lines.end()) return;
+      const Index i = 2 * (it - lines.begin());
+      const double h = half(*it), middle = 0.5 * a_.mesh.lines[*it].length;
+      if (!tilt) row[i] += sign, row[i + 1] += sign * (e.s - middle) / h;
+      else row[i + 1] += sign * half(lines.front()) / h;
+    };
+    for (const Link& k : links_)
+      for (bool tilt : {false, true}) {
+        if (!k.in[tilt ? turn : along] || !contains(lines, k.a.line)) continue;
+        VecX row = VecX::Zero(n);
+        add(row, k.a, tilt, 1.0), add(row, k.b, tilt, -1.0);
+        A += row * row.transpose();
+      }
+    // Two supports at a distance of 1e-6 of the shaft still count as two.
+    const Eigen::SelfAdjointEigenSolver<MatX> eig(A);
+    const Index free = (eig.eigenvalues().array() < 1e-12).count();
+    if (free == 0) return {};
+    if (free >= 2) return "lateral motion of {}";
+    const VecX v = eig.eigenvectors().col(0);
+    const double side = v[0], tilt = v[1];
+    if (std::abs(tilt) < 1e-6 * std::abs(side)) return "sideways motion of {}";
+    const double h = half(lines.front()), pivot = 0.5 * a_.mesh.lines[lines.front()].length - h * side / tilt;
+    return fmt::format("turning of {{}} about the point at {:.4g} m", std::abs(pivot) < 1e-9 * h ? 0.0 : pivot);
+  }
+
+  /// Free turning is no mistake where weight along the axis can give it an equilibrium (a pendulum), nor is any free motion
+  /// where nothing asks for an equilibrium.
+  bool wrong(const std::vector<std::size_t>& lines, const std::string& what) const {
+    if (what.front() == 't' && a_.model.gravity.x() != 0) return false;
+    return equilibrium_ || (frequency_ && loaded(lines, false));
+  }
+
+  bool loaded(const std::vector<std::size_t>& lines, bool axial) const {
+    const auto acts = [axial](const Vec3& f) { return axial ? f.x() != 0 : f.y() != 0 || f.z() != 0; };
+    for (const model::PointLoad& l : a_.model.loads)
+      if (contains(lines, static_cast<Index>(l.at.shaft)) && acts(l.force)) return true;
+    for (const model::Bearing& b : a_.model.bearings)
+      if (const auto* k = std::get_if<model::LinearBearing>(&b.law))
+        if (contains(lines, static_cast<Index>(b.at.shaft)) && acts(k->preload.head<3>())) return true;
+    return acts(a_.model.gravity);
+  }
+
+  std::string named(const std::vector<std::size_t>& lines) const {
+    std::string out;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const meshes::Line& l = a_.mesh.lines[lines[i]];
+      out += fmt::format("{}{} '{}'", i == 0 ? "" : i + 1 == lines.size() ? " and " : ", ", l.rotating ? "shaft" : "casing", l.name);
+    }
+    return lines.size() > 1 ? out + " together" : out;
+  }
+  void complain(const std::vector<std::size_t>& lines, const std::string& motion, const char* hint) {
+    const model::Shaft& shaft = a_.model.shafts[lines.front()];
+    a_.error("E32", "nothing resists " + fmt::format(fmt::runtime(motion), named(lines)), hint, shaft, named({lines.front()}));
+  }
+
+  Assembly& a_;
+  std::vector<Link> links_;
+  std::vector<std::size_t> group_;
+  bool equilibrium_ = false, frequency_ = false;
+};
+
+}  // namespace
+
+void check_restraint(Assembly& a) {
+  Restraint r(a);
+  r.check_axial();
+  r.check_lateral();
+  r.check_spin();
+}
+
+}  // namespace whirl::assembly

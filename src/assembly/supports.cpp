@@ -1,0 +1,214 @@
+// Bearings, supports and pedestals. A bearing acts between its shaft node and the other side: ground, pedestal, or a second
+// station. Rigid supports hold unknowns of the shaft node itself; no penalty stiffness anywhere.
+#include <assembly/parts.hpp>
+#include <elements/linear_bearing.hpp>
+#include <elements/point_mass.hpp>
+#include <elements/spring_block.hpp>
+#include <elements/table_bearing.hpp>
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace whirl::assembly {
+namespace {
+
+using system::NodeState;
+using Pair = std::array<Index, 2>;
+
+std::string name_of(const model::Bearing& b) { return fmt::format("bearing '{}'", b.name); }
+
+system::Nodes<2> nodes_of(const NodeAt& at, const Pair& n) { return {&at(n[0]), &at(n[1])}; }
+
+// ---------------------------------------------------------------- one function a law
+
+void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::LinearBearing& law) {
+  const Pair nodes{n.shaft.node, n.other.node};
+  const auto translations_only = [](const Matrix<6>& m) {
+    return m.bottomRows<3>().isZero(0.0) && m.topRightCorner<3, 3>().isZero(0.0);
+  };
+  const bool small = n.shaft.offset == 0 && n.other.offset == 0 && translations_only(law.K) && translations_only(law.C) &&
+                     translations_only(law.M) && law.preload.tail<3>().isZero(0.0);
+  if (small) {
+    const elements::TranslationalBearing k{law.K.topLeftCorner<3, 3>(), law.C.topLeftCorner<3, 3>(), law.M.topLeftCorner<3, 3>(),
+                                           law.setpoint.head<3>(), law.preload.head<3>()};
+    a.builder.add(k, nodes, "linear bearings");
+    a.built.support_forces.push_back(
+        {b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return k.force_on_first(nodes_of(at, nodes)); }});
+    return;
+  }
+  const elements::LinearBearing k(law.K, law.C, law.M, law.setpoint, law.preload, n.shaft.offset, n.other.offset);
+  a.builder.add(k, nodes, "linear bearings");
+  a.built.support_forces.push_back(
+      {b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>()); }});
+}
+
+void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::SpringBlock& law) {
+  if (n.other.node >= 0) {   // relative to a moving point: the linear form
+    model::LinearBearing linear;
+    linear.K.diagonal() << law.C1, law.C1, law.C1, 0, law.C2, law.C2;
+    add_linear(a, b, n, linear);
+    return;
+  }
+  elements::SpringBlock k;
+  k.C1 = law.C1, k.C2 = law.C2, k.offset = n.shaft.offset;
+  const Index node = n.shaft.node;
+  a.builder.add(k, {node}, "spring blocks");
+  a.built.support_forces.push_back(
+      {b.name, [k, node](const NodeAt& at, double, const ReactionAt&) { return Vec3(-k.C1 * k.displacement(at(node))); }});
+}
+
+/// A lateral law between journal and housing.
+template <class Law>
+void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Law& law, const char* kind) {
+  const Pair nodes{n.shaft.node, n.other.node};
+  const auto add = [&](auto joint) {
+    joint.law = law;
+    joint.offset = {n.shaft.offset, n.other.offset};
+    a.builder.add(joint, nodes, kind);
+    a.built.support_forces.push_back({b.name, [joint, nodes](const NodeAt& at, double, const ReactionAt&) {
+      Vector<4> z;
+      joint.law.force(joint.motion_of(nodes_of(at, nodes)), z);
+      return Vec3(0, z[0], z[1]);
+    }});
+  };
+  if (n.shaft.offset == 0 && n.other.offset == 0) add(elements::LateralJoint<Law, false>{});
+  else add(elements::LateralJoint<Law, true>{});
+}
+
+void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law) {
+  using Table = elements::CoefficientTable;
+  const auto matrix = [](const std::array<double, 4>& c) { return (Mat2() << c[0], c[1], c[2], c[3]).finished(); };
+  std::vector<Table::Values> rows(law.speed.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].K = i < law.K.size() ? matrix(law.K[i]) : Mat2::Zero();
+    rows[i].C = i < law.C.size() ? matrix(law.C[i]) : Mat2::Zero();
+    rows[i].M = i < law.M.size() ? matrix(law.M[i]) : Mat2::Zero();
+  }
+  std::shared_ptr<const Table> table;
+  try {
+    table = std::make_shared<Table>(law.speed, std::move(rows), law.monotone_cubic ? Table::Between::monotone_cubic : Table::Between::linear,
+                                    law.extrapolate_hold ? Table::Outside::hold : Table::Outside::undefined);
+  } catch (const Error& e) {
+    const Diagnostic& d = e.diagnostics().front();
+    a.error(d.code.c_str(), fmt::format("{}: {}", name_of(b), d.message), d.hint, b, name_of(b));
+    return;
+  }
+  if (table->has_mass()) add_lateral(a, b, n, elements::TableBearingLaw<true>{table}, "tabulated bearings");
+  else add_lateral(a, b, n, elements::TableBearingLaw<false>{table}, "tabulated bearings");
+}
+
+// ---------------------------------------------------------------- rigid supports
+
+/// What rigid supports hold of one node. A second one on the same rigid stretch, `arm` away, holds the tilts instead: with u held,
+/// u + arm (d - e) = 0 means d_y = gamma3 sin g/g = 0, d_z = -gamma2 sin g/g = 0.
+/// The reaction of a displacement is then the sum of both supports' forces.
+struct HeldNode {
+  struct Share { std::size_t direction; Index unknown; double scale; };
+  std::array<bool, 6> held{};                                  // unknowns of the node
+  std::shared_ptr<std::vector<Share>> second = std::make_shared<std::vector<Share>>();
+};
+
+void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::RigidSupport& law,
+               std::map<Index, HeldNode>& held) {
+  const std::string who = name_of(b);
+  if (n.other.node >= 0) {
+    a.error("E26", fmt::format("{}: a rigid bearing holds a shaft to the ground; between two shafts it must have a stiffness", who),
+            "use type = \"linear\" with the stiffness of the connection", b, who);
+    return;
+  }
+  const Index node = n.shaft.node;
+  const double arm = n.shaft.offset;
+  HeldNode& h = held[node];
+  // x, y, z, rx, ry, rz in order are u, phi, gamma2, gamma3.
+  std::array<Index, 3> unknown{-1, -1, -1};   // whose reaction is the force along x, y, z
+  std::array<double, 3> scale{1, 1, 1};
+  bool first = false;
+  if (b.pedestal) {
+    // The shaft sits rigidly in the pedestal: its mass, spring and damper act on the shaft station, in the directions held.
+    Vec3 on = Vec3::Zero();
+    for (int c = 0; c < 3; ++c) on[c] = law.held[static_cast<std::size_t>(c)] ? 1.0 : 0.0;
+    model::LinearBearing linear;
+    linear.K.topLeftCorner<3, 3>() = on.asDiagonal() * b.pedestal->K * on.asDiagonal();
+    linear.C.topLeftCorner<3, 3>() = on.asDiagonal() * b.pedestal->C * on.asDiagonal();
+    const bool whole = on.sum() == 3 && arm == 0;
+    if (!whole) linear.M.topLeftCorner<3, 3>() = b.pedestal->mass * Mat3(on.asDiagonal());
+    meshes::BearingNodes to_ground = n;
+    to_ground.other = {n.ground, 0.0};
+    add_linear(a, b, to_ground, linear);
+    if (whole && b.pedestal->mass > 0) a.builder.add(elements::PointMass{b.pedestal->mass}, {node}, "point masses");
+    for (std::size_t c = 3; c < 6; ++c)
+      if (law.held[c]) a.builder.hold(node, static_cast<int>(c)), h.held[c] = true;
+    return;
+  }
+  for (std::size_t c = 0; c < 6; ++c) {
+    if (!law.held[c]) continue;
+    if (c >= 3 || arm == 0) {
+      h.held[c] = true;
+      a.builder.hold(node, static_cast<int>(c));
+      if (c < 3) unknown[c] = 6 * node + static_cast<Index>(c), first = true;
+      continue;
+    }
+    const std::size_t tilt = c == 1 ? 5 : 4;   // y: gamma3, z: gamma2
+    if (c == 0 || !h.held[c] || h.held[tilt]) {
+      a.error("E26", fmt::format("{}: the rigid stretch it stands on is held elsewhere in a way that leaves no room for holding {} here",
+                                 who, "xyz"[c]),
+              "on a rigid stretch two rigid bearings may hold y and z both, x one of them, and no third one anything", b, who);
+      continue;
+    }
+    h.held[tilt] = true;
+    a.builder.hold(node, static_cast<int>(tilt));
+    unknown[c] = 6 * node + static_cast<Index>(tilt);
+    scale[c] = (c == 1 ? 1.0 : -1.0) / arm;   // Q_gamma3 = arm F_y, Q_gamma2 = -arm F_z
+    h.second->push_back({c, unknown[c], scale[c]});
+  }
+  const auto others = first ? h.second : nullptr;
+  a.built.support_forces.push_back({b.name, [unknown, scale, others](const NodeAt&, double, const ReactionAt& r) {
+    Vec3 F = Vec3::Zero();
+    for (std::size_t c = 0; c < 3; ++c)
+      if (unknown[c] >= 0) F[static_cast<Index>(c)] = scale[c] * r(unknown[c]);
+    if (others)
+      for (const HeldNode::Share& o : *others) F[static_cast<Index>(o.direction)] -= o.scale * r(o.unknown);
+    return F;
+  }});
+}
+
+// ---------------------------------------------------------------- pedestals
+
+void add_pedestal(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n) {
+  const model::Pedestal& p = *b.pedestal;
+  if (p.mass > 0) a.builder.add(elements::PointMass{p.mass}, {n.pedestal}, "point masses");
+  a.builder.add(elements::TranslationalBearing{p.K, p.C, Mat3::Zero(), Vec3::Zero(), Vec3::Zero()}, {n.pedestal, n.ground}, "pedestals");
+  for (int c = 0; c < 6; ++c)   // it does not turn, and where it has no spring it does not move
+    if (c >= 3 || (p.K.row(c).isZero(0.0) && p.K.col(c).isZero(0.0))) a.builder.hold(n.pedestal, c);
+}
+
+}  // namespace
+
+void add_supports(Assembly& a) {
+  std::map<Index, HeldNode> held;
+  for (std::size_t i = 0; i < a.model.bearings.size(); ++i) {
+    const model::Bearing& b = a.model.bearings[i];
+    const meshes::BearingNodes& n = a.mesh.bearings[i];
+    if (b.to && b.pedestal) {
+      a.error("E26", fmt::format("{}: a pedestal stands on the ground; between two shafts there is none", name_of(b)), {}, b, name_of(b));
+      continue;
+    }
+    if (n.other.node == n.shaft.node) {
+      a.error("E26", fmt::format("{}: both its ends are the same place or rigidly connected", name_of(b)), {}, b, name_of(b));
+      continue;
+    }
+    std::visit(
+        [&](const auto& law) {
+          using Law = std::decay_t<decltype(law)>;
+          if constexpr (std::is_same_v<Law, model::LinearBearing>) add_linear(a, b, n, law);
+          else if constexpr (std::is_same_v<Law, model::SpringBlock>) add_block(a, b, n, law);
+          else if constexpr (std::is_same_v<Law, model::TableBearing>) add_table(a, b, n, law);
+          else add_rigid(a, b, n, law, held);
+        },
+        b.law);
+    if (n.pedestal >= 0) add_pedestal(a, b, n);
+  }
+}
+
+}  // namespace whirl::assembly
