@@ -161,4 +161,24 @@ void AppendFile::close() {
   if (::close(fd) != 0) io_failure(path_, "cannot write", errno);
 }
 
+void OverwriteFile::open(const fs::path& file) {
+  close();
+  path_ = file;
+  fd_ = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  if (fd_ < 0) io_failure(path_, "cannot write", errno);
+}
+
+void OverwriteFile::put(std::uint64_t offset, std::string_view s) {
+  while (!s.empty()) {   // a write to a disk is cut short only when the disk is full
+    const ssize_t k = ::pwrite(fd_, s.data(), s.size(), static_cast<off_t>(offset));
+    if (k < 0 && errno == EINTR) continue;
+    if (k < 0) io_failure(path_, "cannot write", errno);
+    s.remove_prefix(static_cast<std::size_t>(k)), offset += static_cast<std::uint64_t>(k);
+  }
+}
+
+void OverwriteFile::close() {
+  if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+}
+
 }  // namespace whirl::io

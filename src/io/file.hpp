@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace whirl::io {
 
@@ -39,6 +40,22 @@ class AppendFile {
   std::filesystem::path path_;
   std::string buffer_;
   std::size_t used_ = 0;
+  int fd_ = -1;
+};
+
+/// An existing file parts of which are replaced, each in one write.
+class OverwriteFile {
+ public:
+  OverwriteFile() = default;
+  OverwriteFile(OverwriteFile&& o) noexcept : path_(std::move(o.path_)), fd_(std::exchange(o.fd_, -1)) {}
+  OverwriteFile& operator=(OverwriteFile&&) = delete;
+  ~OverwriteFile() { close(); }
+  void open(const std::filesystem::path& file);
+  void put(std::uint64_t offset, std::string_view content);
+
+ private:
+  void close();
+  std::filesystem::path path_;
   int fd_ = -1;
 };
 

@@ -2,6 +2,7 @@
 #include <io/frame_sets.hpp>
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace whirl::io {
 namespace {
@@ -79,6 +80,7 @@ class LineSet final : public FrameSet {
     add("angular_velocity", f.state->angular_velocity);
     add("force", f.state->force);
     add("moment", f.state->moment);
+    add("von_mises", f.state->stress);
   }
 
  private:
@@ -95,12 +97,17 @@ class LineSet final : public FrameSet {
     const Pose a = pose_at(nodes, s.a);
     return s.xi <= 0.0 ? a : interpolate(a, pose_at(nodes, s.b), s.length, s.xi);
   }
-  void add(const char* name, std::span<const Vec3> values) {
+  // Node values, linear between nodes.
+  template <class T>
+  void add(const char* name, std::span<const T> values) {
     if (values.empty()) return;
-    auto a = array(name, 3, places_.size());
+    constexpr bool vector = std::is_same_v<T, Vec3>;
+    auto a = array(name, vector ? 3 : 1, places_.size());
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const auto& p = places_[i];
-      put(a.floats(), i, (1 - p.xi) * values[at(p.a.node)] + p.xi * values[at(p.b.node)]);
+      const T v = (1 - p.xi) * values[at(p.a.node)] + p.xi * values[at(p.b.node)];
+      if constexpr (vector) put(a.floats(), i, v);
+      else a.floats()[i] = static_cast<float>(v);
     }
     data_.point_data.push_back(std::move(a));
   }
@@ -122,7 +129,7 @@ class SurfaceSet final : public FrameSet {
     data_.normals = "Normals";
     data_.point_data.push_back({"Normals", 3, std::vector<float>{}});
     data_.point_data.push_back({"displacement", 3, std::vector<float>{}});
-    data_.cell_data.push_back({"stripe", 1, skin_.stripe()});
+    data_.cell_data.push_back({"stripe", 1, std::vector<std::int32_t>(skin_.stripe().begin(), skin_.stripe().end())});
     data_.cell_data.push_back({"part", 1, std::vector<std::int32_t>(skin_.part().begin(), skin_.part().end())});
   }
   const char* name() const override { return "surface"; }

@@ -24,7 +24,7 @@ class FrameSet {
 };
 
 /// Centre lines: displacement, rotation (Euler vector of the tilt), spin_angle, radius, director, axis2, axis3; velocity,
-/// angular_velocity, force, moment where the state has them. Four segments between two nodes.
+/// angular_velocity, force, moment, von_mises where the state has them. Four segments between two nodes.
 std::unique_ptr<FrameSet> make_line_set(const Scene& scene);
 /// True surface: normals, displacement of the centre line; cells: stripe (1 = painted), part (0 shaft, k disk).
 std::unique_ptr<FrameSet> make_surface_set(const Scene& scene, int points_around);

@@ -23,7 +23,13 @@ std::string padded(std::uint64_t k) {
   return s.size() < 6 ? std::string(6 - s.size(), '0') + s : s;
 }
 
-/// One .pvd and its folder of frames. The .pvd is rewritten after every frame, so it always lists whole files.
+constexpr std::string_view pvd_head =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+constexpr std::string_view pvd_foot = "</Collection>\n</VTKFile>\n";
+
+/// One .pvd and its folder of frames. The .pvd always lists whole files and always ends in its footer: a new entry and the
+/// footer after it are put over the old footer in one write. (A file renamed into place for every frame costs four times
+/// the frame itself in the file system.)
 class Collection {
  public:
   Collection(const fs::path& directory, const std::string& stem, double keep_until)
@@ -32,7 +38,7 @@ class Collection {
     fs::create_directories(folder_, ec);
     if (ec) io_failure(folder_, "cannot make the folder", ec.value());
     if (keep_until > -infinity && fs::exists(pvd_, ec)) recover(keep_until);
-    // Frames of an earlier run that are not kept.
+    write_list();   // before files go: the list never names a missing one
     std::vector<fs::path> stale;
     for (const auto& f : fs::directory_iterator(folder_, ec))
       if (f.path().extension() == ".vtp" && !listed(f.path().filename().string())) stale.push_back(f.path());
@@ -45,7 +51,9 @@ class Collection {
   void add(double time) {
     frames_.push_back({time, next_file().filename().string()});
     ++next_;
-    write_pvd();
+    const std::string entry = line(frames_.back());
+    file_.put(length_, entry + std::string(pvd_foot));
+    length_ += entry.size();
   }
 
   /// Leaves every other frame, the first one among them.
@@ -57,7 +65,7 @@ class Collection {
       else gone.push_back(folder_ / frames_[k].file);
     }
     frames_ = std::move(kept);
-    write_pvd();   // before the files go: the list never names a missing one
+    write_list();   // before the files go
     std::error_code ec;
     for (const auto& f : gone) fs::remove(f, ec);
   }
@@ -88,20 +96,24 @@ class Collection {
     }
   }
 
-  void write_pvd() const {
-    std::string s =
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
-    s.reserve(s.size() + 96 * frames_.size());
-    for (const auto& f : frames_)
-      s += "<DataSet timestep=\"" + shortest(f.time) + "\" part=\"0\" file=\"" + stem_ + "/" + f.file + "\"/>\n";
-    s += "</Collection>\n</VTKFile>\n";
-    write_atomic(pvd_, s);
+  std::string line(const Frame& f) const {
+    return "<DataSet timestep=\"" + shortest(f.time) + "\" part=\"0\" file=\"" + stem_ + "/" + f.file + "\"/>\n";
+  }
+
+  // The whole list, in place of an older file in one go.
+  void write_list() {
+    std::string s(pvd_head);
+    for (const auto& f : frames_) s += line(f);
+    length_ = s.size();
+    write_atomic(pvd_, s + std::string(pvd_foot));
+    file_.open(pvd_);
   }
 
   fs::path pvd_, folder_;
   std::string stem_;
   std::vector<Frame> frames_;
-  std::uint64_t next_ = 0;
+  std::uint64_t next_ = 0, length_ = 0;   // of the .pvd without its footer
+  OverwriteFile file_;
 };
 
 class VtkFrames final : public FrameWriter {

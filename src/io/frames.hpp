@@ -24,6 +24,7 @@ struct FrameState {
   std::span<const Vec3> angular_velocity;   ///< rad/s
   std::span<const Vec3> force;              ///< N, internal force at the node (section to its right on its left)
   std::span<const Vec3> moment;             ///< N m
+  std::span<const double> stress;           ///< Pa, equivalent (von Mises) stress at the node
   std::span<const Vec3> support_force;      ///< N on the shaft, one a support of the scene
 };
 

@@ -21,7 +21,7 @@ struct PolyData {
   struct Array {
     std::string name;
     int components = 1;
-    std::variant<std::vector<float>, std::vector<std::uint8_t>, std::vector<std::int32_t>> values;
+    std::variant<std::vector<float>, std::vector<std::int32_t>> values;   ///< bytes would be taken for colours
     std::vector<float>& floats() { return std::get<0>(values); }
   };
   std::vector<float> points;                  ///< 3 a point

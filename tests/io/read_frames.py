@@ -51,6 +51,8 @@ check(all(near(s, (100 * t,), 1e-5) for s in data["spin_angle"]), "spin angle")
 check(near(data["rotation"][0], (0, -3e-3 * w[1], 3e-3 * w[0]), 1e-7), "rotation vector")
 check(all(near(r, (0.03,), 1e-8) for r in data["radius"]) and line.GetNumberOfLines() == 1, "line and radius")
 
+check(data["von_mises"][middle] == (3e6,) and max(data["von_mises"])[0] == 3e6, "stress")
+
 surface = read("surface", 3)
 data, cells = arrays(surface.GetPointData()), arrays(surface.GetCellData())
 check(surface.GetPointData().GetNormals() is not None and len(data["Normals"][0]) == 3, "normals")

@@ -63,7 +63,8 @@ class Frames : public ::testing::Test {
     const auto p = poses_at(scene, t);
     const std::vector<Vec3> v(3, Vec3(0, 1, 2)), f(2, Vec3(0, 0, 500));
     FrameState s;
-    s.time = t, s.nodes = p, s.velocity = v, s.support_force = f;
+    const double stress[] = {1e6, 3e6, 1e6};
+    s.time = t, s.nodes = p, s.velocity = v, s.support_force = f, s.stress = stress;
     w.frame(s);
   }
   TempFolder dir_;

@@ -1,4 +1,4 @@
-// The only file that sees VTK: .vtp by VTK's own XML writer, appended raw data, zlib.
+// The only file that sees VTK: .vtp by VTK's own XML writer, appended raw data, LZ4.
 #include <core/plugin.hpp>
 #include <io/file.hpp>
 #include <io/polydata.hpp>
@@ -15,8 +15,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
-#include <vtkTypeInt64Array.h>
-#include <vtkUnsignedCharArray.h>
+#include <vtkTypeInt32Array.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <optional>
 
@@ -37,14 +36,13 @@ vtkSmartPointer<vtkDataArray> lend(const PolyData::Array& a) {
   struct Visitor {
     const PolyData::Array& a;
     vtkSmartPointer<vtkDataArray> operator()(const std::vector<float>& v) const { return lend<vtkFloatArray>(v, a.components, a.name.c_str()); }
-    vtkSmartPointer<vtkDataArray> operator()(const std::vector<std::uint8_t>& v) const { return lend<vtkUnsignedCharArray>(v, a.components, a.name.c_str()); }
     vtkSmartPointer<vtkDataArray> operator()(const std::vector<std::int32_t>& v) const { return lend<vtkIntArray>(v, a.components, a.name.c_str()); }
   };
   return std::visit(Visitor{a}, a.values);
 }
 
 vtkSmartPointer<vtkCellArray> copy(const PolyData::Cells& c) {
-  vtkNew<vtkTypeInt64Array> offsets, points;
+  vtkNew<vtkTypeInt32Array> offsets, points;
   offsets->SetNumberOfValues(static_cast<vtkIdType>(c.offset.size()));
   points->SetNumberOfValues(static_cast<vtkIdType>(c.point.size()));
   std::copy(c.offset.begin(), c.offset.end(), offsets->GetPointer(0));
@@ -60,8 +58,7 @@ class Writer final : public PolyDataWriter {
     vtkObject::GlobalWarningDisplayOff();   // failures come back as an error code
     writer_->SetDataModeToAppended();
     writer_->EncodeAppendedDataOff();
-    writer_->SetCompressorTypeToZLib();
-    writer_->SetCompressionLevel(1);        // level 5 saves a tenth of the size for twice the time
+    writer_->SetCompressorTypeToLZ4();   // a third of the time of zlib, for 1.7 times the size
     time_->SetName("TimeValue");
     time_->SetNumberOfValues(1);
   }

@@ -1,0 +1,45 @@
+#include <io/rotor_drawing.hpp>
+#include <algorithm>
+
+namespace whirl::io {
+
+std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const meshes::Mesh& mesh, const meshes::Scene& scene) {
+  std::vector<RotorDrawing> all;
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    const auto& line = mesh.lines[l];
+    const auto& pieces = scene.lines[l].pieces;
+    const auto s_of = [&](const meshes::Place& p) { return mesh.nodes[static_cast<std::size_t>(p.node)].s + p.offset; };
+    const auto on_line = [&](const meshes::Place& p) { return mesh.nodes[static_cast<std::size_t>(p.node)].line == static_cast<Index>(l); };
+    RotorDrawing d;
+    d.title = "Shaft ‘" + line.name + "’";
+    double s = 0;
+    for (const auto& section : model.shafts[l].sections) {
+      DrawnSection x{s, s + section.length, section.od_l / 2, section.od_r / 2, section.id_l / 2, section.id_r / 2, section.name};
+      if (x.outer_left <= 0 && x.outer_right <= 0)   // constants instead of diameters
+        for (const auto& p : pieces)
+          if (const double m = (s_of(p.left) + s_of(p.right)) / 2; m > x.s0 && m < x.s1) x.outer_left = p.outer_left, x.outer_right = p.outer_right;
+      d.sections.push_back(std::move(x));
+      s += section.length;
+    }
+    const auto radius = [&](double at) {
+      double r = 0;
+      for (const auto& x : d.sections)
+        if (at >= x.s0 - 1e-9 && at <= x.s1 + 1e-9) {
+          const double f = x.s1 > x.s0 ? std::clamp((at - x.s0) / (x.s1 - x.s0), 0.0, 1.0) : 0.0;
+          r = std::max(r, x.outer_left + f * (x.outer_right - x.outer_left));
+        }
+      return r;
+    };
+    for (const auto& k : scene.lines[l].disks) d.disks.push_back({s_of(k.at), k.outer, k.inner, k.width, k.name});
+    for (const auto& b : scene.supports)
+      for (const auto* p : {&b.at, b.to_node ? &b.to : nullptr})
+        if (p && on_line(*p)) d.bearings.push_back({s_of(*p), radius(s_of(*p)), b.name});
+    for (const auto& p : model.probes)
+      if (p.at.shaft == l) d.probes.push_back({p.at.s, radius(p.at.s), p.name});
+    for (Index k = line.first_node; k < line.first_node + line.nodes; ++k) d.nodes.push_back(mesh.nodes[static_cast<std::size_t>(k)].s);
+    all.push_back(std::move(d));
+  }
+  return all;
+}
+
+}  // namespace whirl::io
