@@ -1,4 +1,6 @@
-#include "plot_buffer.hpp"
+#include <app/plot_buffer.hpp>
+
+#include <utility>
 
 namespace whirl::app {
 
@@ -15,6 +17,14 @@ void PlotBuffer::append(const std::vector<double>& row) {
     }
   }
   if (++filled_ == stride_) filled_ = 0;
+  if (rows_ % keep_stride_ == 0) {
+    if (kept_.size() == capacity_) {
+      for (std::size_t i = 0; i < capacity_ / 2; ++i) kept_[i] = std::move(kept_[2 * i]);
+      kept_.resize(capacity_ / 2);
+      keep_stride_ *= 2;
+    }
+    if (rows_ % keep_stride_ == 0) kept_.push_back(row);
+  }
   ++rows_;
 }
 

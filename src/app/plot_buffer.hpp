@@ -15,12 +15,16 @@ class PlotBuffer {
   struct Points { std::vector<double> t, y; };
   Points channel(std::size_t k) const;
   std::size_t rows() const { return rows_; }
+  /// Whole rows (time first), every stride-th of them: for paths, where columns belong together.
+  const std::vector<std::vector<double>>& kept_rows() const { return kept_; }
 
  private:
   struct Extreme { double lo, hi, t_lo, t_hi; };
   void halve();
   std::size_t channels_, capacity_, stride_ = 1, rows_ = 0, filled_ = 0;
   std::vector<Extreme> data_;   // bucket-major
+  std::vector<std::vector<double>> kept_;
+  std::size_t keep_stride_ = 1;
 };
 
 }  // namespace whirl::app

@@ -1,0 +1,72 @@
+// One run of a deck: model -> mesh -> system -> the deck's steps, in order, each writing its results. The body of run_deck().
+#pragma once
+#include <analysis/measurement.hpp>
+#include <app/run.hpp>
+#include <assembly/build_system.hpp>
+#include <io/frames.hpp>
+#include <io/report.hpp>
+#include <io/results.hpp>
+#include <meshes/scene.hpp>
+#include <model/model.hpp>
+#include <system/system.hpp>
+#include <map>
+#include <string>
+
+namespace whirl::app {
+
+/// Results of a finished step that a later one can start from.
+struct StepState {
+  system::State state;
+  double speed = 0;   ///< rad/s of the reference line
+};
+
+struct Job {
+  const model::Model& model;
+  const RunOptions& options;
+  meshes::Mesh mesh;
+  assembly::Built built;               ///< system, breakpoints of element laws, what was left out
+  meshes::Scene scene;
+  io::ResultsFolder folder;
+  io::Report report;
+  io::Value summary;
+  std::map<std::string, StepState> states;
+
+  std::string built_for;
+
+  Job(const model::Model& m, const RunOptions& o, const std::filesystem::path& root);
+  const system::System& system() const { return built.system; }
+  Index reference() const { return built.reference; }
+  /// Builds the system with the drives of a step (the same one again costs nothing).
+  void build_for(const model::Step& step);
+  /// Initial state of a step: that of the step it names, else at rest with the lines' spins.
+  StepState start_of(const model::Step& step, double speed) const;
+  /// Moves a start to its static equilibrium (spinning, loaded). Error R11 when none is found.
+  void settle(system::SystemProblem& problem, StepState& start) const;
+};
+
+class PlotBuffer;
+/// Figures of a transient's time histories: speed, probes (time, amplitude against speed, orbit), paths, rotation, energies.
+/// start[i]: first column of measurement i in the buffer.
+void add_history_figures(const Job&, const model::Step&, const std::vector<analysis::Measurement>&, const std::vector<std::size_t>& start,
+                         const PlotBuffer&, io::ReportSection&);
+
+/// Each runs one step, adds its section to the report and its entry to the summary, and writes its files.
+void run_static_step(Job&, const model::Step&, const model::StaticStep&);
+void run_transient_step(Job&, const model::Step&, const model::TransientStep&);
+void run_frequency_step(Job&, const model::Step&);   ///< modal, Campbell, critical speeds, unbalance response
+
+/// Progress on a terminal (one line, rewritten) or one line per 10 %.
+class ProgressLine {
+ public:
+  ProgressLine(std::string name, bool quiet);
+  void update(double fraction, const std::string& text);
+  void done(const std::string& text);
+
+ private:
+  std::string name_;
+  bool quiet_, terminal_;
+  int last_tenth_ = -1;
+  double last_time_ = 0;
+};
+
+}  // namespace whirl::app
