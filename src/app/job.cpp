@@ -1,0 +1,94 @@
+#include <app/job.hpp>
+
+#include <analysis/equilibrium.hpp>
+#include <core/rotation.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <unistd.h>
+
+namespace whirl::app {
+
+Job::Job(const model::Model& m, const RunOptions& o, const std::filesystem::path& root)
+    : model(m), options(o), mesh(meshes::make_mesh(m)), scene(meshes::make_scene(m, mesh)), folder(root) {}
+
+void Job::build_for(const model::Step& step) {
+  // Only drives belong to steps: without drives of its own a step shares the last system.
+  std::string key;
+  for (const model::Drive& d : model.drives)
+    if (d.step == step.name) key = step.name;
+  if (!built_for.empty() && built_for == "<" + key) return;
+  built = assembly::build_system(model, mesh, key);
+  built_for = "<" + key;
+}
+
+StepState Job::start_of(const model::Step& step, double speed) const {
+  if (!step.from.empty()) {
+    StepState s = states.at(step.from);
+    if (speed != 0.0) s.speed = speed;
+    return s;
+  }
+  StepState s{system().make_state(), speed};
+  system::State& x = s.state;
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    const meshes::Line& line = mesh.lines[l];
+    const model::Shaft& shaft = model.shafts[l];
+    const assembly::LineSpin& law = built.spins[l];
+    double phi = 0.0, spin = speed != 0.0 ? speed * shaft.speed_ratio : law.spin0;
+    if (law.prescribed) {
+      const LawValue v = law.angle->at(0.0);
+      phi = v.f, spin = v.df;
+    }
+    if (!shaft.rotating) spin = 0.0;
+    if (static_cast<Index>(l) == mesh.nodes[static_cast<std::size_t>(built.reference)].line) s.speed = spin;
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
+      x.q[6 * n + system::spin_phi] = phi;
+      x.v[6 * n + system::spin_phi] = spin;
+    }
+  }
+  for (const model::InitialMotion& i : model.initial) {
+    const meshes::Line& line = mesh.lines[i.shaft];
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
+      const Mat3& chart = x.frames.chart[i.shaft];
+      const Vec3 arm = mesh.nodes[static_cast<std::size_t>(n)].position - i.about;
+      const Mat3 R = rotation::L(chart * Vec3(0, i.gamma[0], i.gamma[1]));
+      x.q.segment<3>(6 * n) += i.displacement + (R - Mat3::Identity()) * arm;
+      x.q.segment<2>(6 * n + 4) = i.gamma;
+      // the line's own spin is about the tilted axis; omega is added to it
+      const Vec3 omega = i.omega + x.v[6 * n + system::spin_phi] * R * chart.col(0);
+      const rotation::ChartRates r = rotation::rates_of_omega(i.gamma, chart.transpose() * omega);
+      x.v[6 * n + system::spin_phi] = r.phi;
+      x.v.segment<2>(6 * n + 4) = r.gamma;
+      x.v.segment<3>(6 * n) += i.velocity + i.omega.cross(R * arm);
+    }
+  }
+  return s;
+}
+
+ProgressLine::ProgressLine(std::string name, bool quiet) : name_(std::move(name)), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+namespace {
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+}  // namespace
+
+void ProgressLine::update(double fraction, const std::string& text) {
+  if (quiet_) return;
+  if (terminal_) {
+    const double t = now();
+    if (t - last_time_ < 0.1) return;
+    last_time_ = t;
+    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", name_.c_str(), 100.0 * fraction, text.c_str());
+  } else if (const int tenth = static_cast<int>(10.0 * fraction); tenth > last_tenth_ && tenth < 10) {
+    last_tenth_ = tenth;
+    if (tenth > 0) std::fprintf(stderr, "%s %d %%  %s\n", name_.c_str(), 10 * tenth, text.c_str());
+  }
+}
+
+void ProgressLine::done(const std::string& text) {
+  if (quiet_) return;
+  std::fprintf(stderr, "%s%s: %s\n", terminal_ ? "\r\033[K" : "", name_.c_str(), text.c_str());
+}
+
+}  // namespace whirl::app
