@@ -58,7 +58,6 @@ struct Form {
 };
 
 using Vector9 = Vector<9>;   // (a, d1, d2)
-using Matrix9 = Matrix<9>;
 
 /// Gradient of a Form in (a, d1, d2).
 Vector9 gradient(const Form& f, const Strain& s) {
@@ -91,6 +90,11 @@ struct Twist {
 void chain_gradient(const Strain& s, double Vl, Vector9& g) {
   const Vec3 ga = g.head<3>();
   g.head<3>() = Vl * s.a + (ga - s.a.dot(ga) * s.a) / s.l;
+}
+
+/// m += s [v]
+inline void add_skew(Mat3& m, double f, const Vec3& v) {
+  m(0, 1) -= f * v.z(), m(0, 2) += f * v.y(), m(1, 0) += f * v.z(), m(1, 2) -= f * v.x(), m(2, 0) -= f * v.y(), m(2, 1) += f * v.x();
 }
 
 /// Start of (x1, d1, x2, d2) in the element's 14.
@@ -153,53 +157,63 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   const double T = c.GJ_l * (x2.phi - x1.phi + t.geometric - psi0);
   const Vector9 ga = gradient(bend, s) + T * t.g;
 
-  // Hessian in (a, d1, d2): rank-one parts of w and psi, the form in (n1, n2, m, tau), and the curvature of these scalars.
-  Matrix9 H;
-  H.noalias() = (c.EA_l * gw) * gw.transpose();
-  H.noalias() += (c.GJ_l * t.g) * t.g.transpose();
+  // Hessian in (a, d1, d2), by blocks: rank-one parts of w and psi, the form in (n1, n2, m, tau), the curvature of these scalars.
+  // Outer products are spelled out (add_outer): small fixed sizes that general product code would not unroll.
   const double TG = T * c.tau_c;
   const double G1 = s.r1.G, G2 = s.r2.G, D1 = s.r1.G1, D2 = s.r2.G1;
   const double w1 = bend.g1 + TG * D1 * G2 * s.tau, w2 = bend.g2 + TG * G1 * D2 * s.tau, wm = bend.gm, wt = TG * G1 * G2;
-  Eigen::Matrix<double, 9, 4> g;   // gradients of n1, n2, m, tau
-  g.col(0) << -s.delta1, s.delta1, Vec3::Zero();
-  g.col(1) << -s.delta2, Vec3::Zero(), s.delta2;
-  g.col(2) << -s.delta1 - s.delta2, s.delta2, s.delta1;
-  g.col(3) << t.tau_a, t.tau_1, t.tau_2;
   const double h11 = bend.h11 + TG * s.r1.G2 * G2 * s.tau, h22 = bend.h22 + TG * G1 * s.r2.G2 * s.tau;
   const double h12 = bend.h12 + TG * D1 * D2 * s.tau, h1t = TG * D1 * G2, h2t = TG * G1 * D2;
-  Matrix<4> h;
-  h << h11, h12, bend.h1m, h1t,
-       h12, h22, bend.h2m, h2t,
-       bend.h1m, bend.h2m, 0.0, 0.0,
-       h1t, h2t, 0.0, 0.0;
-  const Eigen::Matrix<double, 9, 4> gh = g * h;
-  H.noalias() += gh * g.transpose();
+  // rows of h g for the gradients g of (n1, n2, m, tau) in d1, d2 and a
+  const Vec3 &p1 = s.delta1, &p2 = s.delta2, ps = p1 + p2;
+  const Vec3 y11 = h11 * p1 + bend.h1m * p2 + h1t * t.tau_1, y12 = h12 * p1 + bend.h2m * p2 + h2t * t.tau_1;
+  const Vec3 y1m = bend.h1m * p1, y1t = h1t * p1;
+  const Vec3 y21 = h12 * p2 + bend.h1m * p1 + h1t * t.tau_2, y22 = h22 * p2 + bend.h2m * p1 + h2t * t.tau_2;
+  const Vec3 y2m = bend.h2m * p2, y2t = h2t * p2;
+  const Vec3 ya1 = -h11 * p1 - h12 * p2 - bend.h1m * ps + h1t * t.tau_a, ya2 = -h12 * p1 - h22 * p2 - bend.h2m * ps + h2t * t.tau_a;
+  const Vec3 yam = -bend.h1m * p1 - bend.h2m * p2, yat = -h1t * p1 - h2t * p2;
+  const Vec3 wa = gw.head<3>(), wd1 = gw.segment<3>(3), wd2 = gw.tail<3>();
+  const Vec3 ta = t.g.head<3>(), td1 = t.g.segment<3>(3), td2 = t.g.tail<3>();
+  auto start = [&](const Vec3& wx, const Vec3& tx, const Vec3& wy, const Vec3& ty) {
+    Mat3 m = Mat3::Zero();
+    add_outer(m, c.EA_l * wx, wy);
+    add_outer(m, c.GJ_l * tx, ty);
+    return m;
+  };
   const Vec3 e = x1.e();
-  const Mat3 I = Mat3::Identity();
-  H.block<3, 3>(0, 0) += (w1 + w2 + 2.0 * wm) * I - T * (t.o1.hess_ww() + t.o2.hess_vv());
-  H.block<3, 3>(3, 3) += w1 * I - T * t.o1.hess_vv();
-  H.block<3, 3>(6, 6) += w2 * I - T * t.o2.hess_ww();
-  const Mat3 H_1a = -(w1 + wm) * I + wt * skew(s.d2) - T * t.o1.hess_vw(e);
-  const Mat3 H_a2 = -(w2 + wm) * I + wt * skew(s.d1) - T * t.o2.hess_vw(e);
-  const Mat3 H_12 = wm * I - wt * skew(s.a);
-  H.block<3, 3>(3, 0) += H_1a, H.block<3, 3>(0, 3) += H_1a.transpose();
-  H.block<3, 3>(0, 6) += H_a2, H.block<3, 3>(6, 0) += H_a2.transpose();
-  H.block<3, 3>(3, 6) += H_12, H.block<3, 3>(6, 3) += H_12.transpose();
+  Mat3 H11 = start(wd1, td1, wd1, td1), H12 = start(wd1, td1, wd2, td2), H22 = start(wd2, td2, wd2, td2);
+  Mat3 H1a = start(wd1, td1, wa, ta), H2a = start(wd2, td2, wa, ta), Haa = start(wa, ta, wa, ta);
+  add_outer(H11, y11, p1), add_outer(H11, y1m, p2), add_outer(H11, y1t, t.tau_1);
+  add_outer(H12, y12, p2), add_outer(H12, y1m, p1), add_outer(H12, y1t, t.tau_2);
+  add_outer(H22, y22, p2), add_outer(H22, y2m, p1), add_outer(H22, y2t, t.tau_2);
+  add_outer(H1a, -y11 - y1m, p1), add_outer(H1a, -y12 - y1m, p2), add_outer(H1a, y1t, t.tau_a);
+  add_outer(H2a, -y21 - y2m, p1), add_outer(H2a, -y22 - y2m, p2), add_outer(H2a, y2t, t.tau_a);
+  add_outer(Haa, -ya1 - yam, p1), add_outer(Haa, -ya2 - yam, p2), add_outer(Haa, yat, t.tau_a);
+  t.o1.add_vv(-T, H11), t.o1.add_ww(-T, Haa), t.o1.add_vw(-T, e, H1a);
+  t.o2.add_ww(-T, H22), t.o2.add_vv(-T, Haa), t.o2.add_wv(-T, e, H2a);
+  H11.diagonal().array() += w1, H22.diagonal().array() += w2, H12.diagonal().array() += wm;
+  Haa.diagonal().array() += w1 + w2 + 2.0 * wm;
+  H1a.diagonal().array() -= w1 + wm, H2a.diagonal().array() -= w2 + wm;
+  add_skew(H1a, wt, s.d2), add_skew(H2a, -wt, s.d1), add_skew(H12, -wt, s.a);
 
   // from (a, l) to lambda: da = P dlambda, P = (1 - a a^T)/l
-  const Mat3 aa = s.a * s.a.transpose(), P = (I - aa) / s.l;
-  const Vec3 va = ga.head<3>(), Pva = P * va, Pcw = P * (c.EA_l * gw.head<3>());   // d2V/dl da = EA_l gw_a
-  Mat3 Hll = c.EA_l * aa + P * H.block<3, 3>(0, 0) * P;
-  Hll += s.a * Pcw.transpose() + Pcw * s.a.transpose();
-  Hll += (N - s.a.dot(va) / s.l) * P - (Pva * s.a.transpose() + s.a * Pva.transpose()) / s.l;
-  const Eigen::Matrix<double, 3, 6> Hld = P * H.block<3, 6>(0, 3) + s.a * (c.EA_l * gw.tail<6>()).transpose();
+  const Vec3 va = ga.head<3>(), Pva = (va - s.a.dot(va) * s.a) / s.l, Pcw = (c.EA_l / s.l) * (wa - s.a.dot(wa) * s.a);
+  // P Haa P = (Haa - a (a^T Haa) - (Haa a) a^T + (a^T Haa a) a a^T)/l^2
+  const Vec3 Ha = Haa * s.a;
+  const double il = 1.0 / s.l, il2 = il * il, aHa = s.a.dot(Ha), tension = (N - s.a.dot(va) * il) * il;
+  Mat3 Hll = il2 * Haa;
+  Hll.diagonal().array() += tension;
+  const Vec3 side = Pcw - il2 * Ha - il * Pva;
+  add_outer(Hll, s.a, side), add_outer(Hll, side + (il2 * aHa + c.EA_l - tension) * s.a, s.a);
+  // Hl_i = P Haa_i + EA a gw_i^T, i = 1, 2
+  auto lambda_d = [&](const Mat3& Hda, const Vec3& wd) {
+    Mat3 m = il * Hda.transpose();
+    add_outer(m, s.a, c.EA_l * wd - il * (Hda * s.a));
+    return m;
+  };
+  Mat3 H1 = lambda_d(H1a, wd1), H2 = lambda_d(H2a, wd2);
   Vector9 tg = t.g;
   chain_gradient(s, 0.0, tg);
-
-  auto& K = out.K;
-  auto add = [&K](int r, int q, const Mat3& b) { K.template block<3, 3>(r, q) += b; };
-  Mat3 H1 = Hld.leftCols<3>(), H2 = Hld.rightCols<3>(), H11 = H.block<3, 3>(3, 3), H22 = H.block<3, 3>(6, 6),
-       H12 = H.block<3, 3>(3, 6);
   Vec3 tg1 = tg.segment<3>(3), tg2 = tg.segment<3>(6);
   if constexpr (Offsets) {
     // d lambda = dx2 - dx1 + o2 dd2 - o1 dd1
@@ -210,15 +224,22 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
     H1 -= o1 * Hll, H2 += o2 * Hll;
     tg1 -= o1 * tg.head<3>(), tg2 += o2 * tg.head<3>();
   }
-  add(0, 0, Hll), add(7, 7, Hll), add(0, 7, -Hll), add(7, 0, -Hll);
-  add(0, 3, -H1), add(7, 3, H1), add(3, 0, -H1.transpose()), add(3, 7, H1.transpose());
-  add(0, 10, -H2), add(7, 10, H2), add(10, 0, -H2.transpose()), add(10, 7, H2.transpose());
-  add(3, 3, H11), add(10, 10, H22), add(3, 10, H12), add(10, 3, H12.transpose());
-  Vector<14> tp;   // d torque/dX but for phi
-  tp << -tg.head<3>(), tg1, 0.0, tg.head<3>(), tg2, 0.0;
-  tp *= c.GJ_l;
-  K.row(13) += tp.transpose(), K.row(6) -= tp.transpose();
-  K.col(13) += tp, K.col(6) -= tp;
+  auto& K = out.K;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) {
+      const double ll = Hll(i, j), l1 = H1(i, j), l2 = H2(i, j), m12 = H12(i, j);
+      K(i, j) += ll, K(7 + i, 7 + j) += ll, K(i, 7 + j) -= ll, K(7 + i, j) -= ll;
+      K(i, 3 + j) -= l1, K(7 + i, 3 + j) += l1, K(3 + j, i) -= l1, K(3 + j, 7 + i) += l1;
+      K(i, 10 + j) -= l2, K(7 + i, 10 + j) += l2, K(10 + j, i) -= l2, K(10 + j, 7 + i) += l2;
+      K(3 + i, 3 + j) += H11(i, j), K(10 + i, 10 + j) += H22(i, j), K(3 + i, 10 + j) += m12, K(10 + j, 3 + i) += m12;
+    }
+  for (int i = 0; i < 3; ++i) {   // torque against phi
+    const double l = c.GJ_l * tg[i], d1 = c.GJ_l * tg1[i], d2 = c.GJ_l * tg2[i];
+    K(13, i) -= l, K(i, 13) -= l, K(6, i) += l, K(i, 6) += l;
+    K(13, 7 + i) += l, K(7 + i, 13) += l, K(6, 7 + i) -= l, K(7 + i, 6) -= l;
+    K(13, 3 + i) += d1, K(3 + i, 13) += d1, K(6, 3 + i) -= d1, K(3 + i, 6) -= d1;
+    K(13, 10 + i) += d2, K(10 + i, 13) += d2, K(6, 10 + i) -= d2, K(10 + i, 6) -= d2;
+  }
   K(6, 6) += c.GJ_l, K(13, 13) += c.GJ_l, K(6, 13) -= c.GJ_l, K(13, 6) -= c.GJ_l;
 
   // inertia
@@ -226,44 +247,58 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   const SpinRate sp[2] = {SpinRate(x1), SpinRate(x2)};
   const Vec3* vel[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
   const double mean_spin = 0.5 * (sp[0].s + sp[1].s);
-  const Mat3 sa = mean_spin * skew(s.a);
+  auto &C = out.C, &M = out.M;
+  const Vec3 ms = mean_spin * s.a;
   for (int k = 0; k < 4; ++k) {
+    const int r = pos[k];
     Vec3 v = Vec3::Zero();
     for (int j = 0; j < 4; ++j) {
+      const int q = pos[j];
       v += G4c(k, j) * *vel[j];
-      out.M.template block<3, 3>(pos[k], pos[j]).diagonal().array() += c.M4(k, j);
-      out.C.template block<3, 3>(pos[k], pos[j]) -= G4c(k, j) * sa;
+      const double m = c.M4(k, j), gx = G4c(k, j) * ms.x(), gy = G4c(k, j) * ms.y(), gz = G4c(k, j) * ms.z();
+      M(r, q) += m, M(r + 1, q + 1) += m, M(r + 2, q + 2) += m;
+      C(r, q + 1) += gz, C(r, q + 2) -= gy, C(r + 1, q) -= gz, C(r + 1, q + 2) += gx, C(r + 2, q) += gy, C(r + 2, q + 1) -= gx;
     }
-    // -s a x v through the spins, then through a
+    // -s a x v through the spins, then through a: s [v] P = s ([v] - (v x a) a^T)/l
     const Vec3 av = 0.5 * s.a.cross(v);
-    for (int j = 0; j < 2; ++j) {
-      out.C.template block<3, 1>(pos[k], 7 * j + 6) -= av;
-      out.C.template block<3, 3>(pos[k], 7 * j + 3) += av * sp[j].w.transpose();
-      out.K.template block<3, 3>(pos[k], 7 * j + 3) -= av * sp[j].s_d.transpose();
+    Mat3 B = Mat3::Zero();
+    add_skew(B, mean_spin * il, v);
+    add_outer(B, (-mean_spin * il) * v.cross(s.a), s.a);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 2; ++j) C(r + i, 7 * j + 6) -= av[i];
+      for (int j = 0; j < 3; ++j) {
+        C(r + i, 3 + j) += av[i] * sp[0].w[j], C(r + i, 10 + j) += av[i] * sp[1].w[j];
+        K(r + i, 3 + j) -= av[i] * sp[0].s_d[j], K(r + i, 10 + j) -= av[i] * sp[1].s_d[j];
+        K(r + i, j) -= B(i, j), K(r + i, 7 + j) += B(i, j);
+        if constexpr (Offsets) K(r + i, 3 + j) -= c.o1 * B(i, j), K(r + i, 10 + j) += c.o2 * B(i, j);
+      }
     }
-    const Mat3 B = (mean_spin * skew(v)) * P;
-    add(pos[k], 0, -B), add(pos[k], 7, B);
-    if constexpr (Offsets) add(pos[k], 3, -c.o1 * B), add(pos[k], 10, c.o2 * B);
   }
   for (int i = 0; i < 2; ++i) {
     const int r = 7 * i;
     const double hi = c.polar(i, 0) * sp[0].s + c.polar(i, 1) * sp[1].s;
     const double hdot = c.polar(i, 0) * sp[0].sdot + c.polar(i, 1) * sp[1].sdot;
-    const Vec3 dxd = n[i]->d().cross(n[i]->dd);
-    out.K.template block<3, 3>(r + 3, r + 3) += hi * skew(n[i]->dd) - hdot * sp[i].W();
-    out.C.template block<3, 3>(r + 3, r + 3) -= hi * skew(n[i]->d());
+    const Vec3 d = n[i]->d(), dxd = d.cross(n[i]->dd);
+    const Mat3 W = sp[i].W();
+    Mat3 A = Mat3::Zero(), B = Mat3::Zero();
+    add_skew(A, hi, n[i]->dd), add_skew(B, -hi, d);
+    for (int b = 0; b < 3; ++b)
+      for (int a = 0; a < 3; ++a) K(r + 3 + a, r + 3 + b) += A(a, b) - hdot * W(a, b), C(r + 3 + a, r + 3 + b) += B(a, b);
     for (int j = 0; j < 2; ++j) {
       const int q = 7 * j;
       const double p = c.polar(i, j);
-      out.M(r + 6, q + 6) += p;
-      out.M.template block<1, 3>(r + 6, q + 3) -= p * sp[j].w.transpose();
-      out.M.template block<3, 1>(r + 3, q + 6) -= p * sp[i].w;
-      out.M.template block<3, 3>(r + 3, q + 3) += p * sp[i].w * sp[j].w.transpose();
-      out.C.template block<1, 3>(r + 6, q + 3) += p * sp[j].sdot_dd.transpose();
-      out.C.template block<3, 3>(r + 3, q + 3) -= p * (sp[i].w * sp[j].sdot_dd.transpose() - dxd * sp[j].w.transpose());
-      out.C.template block<3, 1>(r + 3, q + 6) -= p * dxd;
-      out.K.template block<1, 3>(r + 6, q + 3) += p * sp[j].sdot_d.transpose();
-      out.K.template block<3, 3>(r + 3, q + 3) -= p * (sp[i].w * sp[j].sdot_d.transpose() + dxd * sp[j].s_d.transpose());
+      const Vec3 &wi = sp[i].w, &wj = sp[j].w;
+      M(r + 6, q + 6) += p;
+      for (int b = 0; b < 3; ++b) {
+        M(r + 6, q + 3 + b) -= p * wj[b], M(r + 3 + b, q + 6) -= p * wi[b];
+        C(r + 6, q + 3 + b) += p * sp[j].sdot_dd[b], C(r + 3 + b, q + 6) -= p * dxd[b];
+        K(r + 6, q + 3 + b) += p * sp[j].sdot_d[b];
+        for (int a = 0; a < 3; ++a) {
+          M(r + 3 + a, q + 3 + b) += p * wi[a] * wj[b];
+          C(r + 3 + a, q + 3 + b) -= p * (wi[a] * sp[j].sdot_dd[b] - dxd[a] * wj[b]);
+          K(r + 3 + a, q + 3 + b) -= p * (wi[a] * sp[j].sdot_d[b] + dxd[a] * sp[j].s_d[b]);
+        }
+      }
     }
   }
 }

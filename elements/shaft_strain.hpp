@@ -30,6 +30,12 @@ struct AngleRatio {
   }
 };
 
+/// m += a b^T
+inline void add_outer(Mat3& m, const Vec3& a, const Vec3& b) {
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) m(i, j) += a[i] * b[j];
+}
+
 /// Omega(e, v, w) = 2 atan2(N, D), N = e.(v x w), D = 1 + e.v + v.w + w.e: first and second derivative in (v, w), e fixed.
 struct SolidAngle {
   double value, p, r;            ///< dOmega = p dN + r dD
@@ -43,14 +49,21 @@ struct SolidAngle {
   }
   Vec3 grad_v() const { return p * Nv + r * Dv; }
   Vec3 grad_w() const { return p * Nw + r * Dw; }
-  Mat3 hess_vv() const { return outer(Nv, Dv, Nv, Dv); }
-  Mat3 hess_ww() const { return outer(Nw, Dw, Nw, Dw); }
-  /// N is bilinear with d2N/dv dw = -[e], D with 1.
-  Mat3 hess_vw(const Vec3& e) const { return outer(Nv, Dv, Nw, Dw) - p * skew(e) + r * Mat3::Identity(); }
+  /// m += f times the second derivative. N is bilinear with d2N/dv dw = -[e], D with 1.
+  void add_vv(double f, Mat3& m) const { add(f, Nv, Dv, Nv, Dv, m); }
+  void add_ww(double f, Mat3& m) const { add(f, Nw, Dw, Nw, Dw, m); }
+  void add_vw(double f, const Vec3& e, Mat3& m) const { add(f, Nv, Dv, Nw, Dw, m), mixed(f, -1.0, e, m); }
+  void add_wv(double f, const Vec3& e, Mat3& m) const { add(f, Nw, Dw, Nv, Dv, m), mixed(f, 1.0, e, m); }
 
  private:
-  Mat3 outer(const Vec3& Nx, const Vec3& Dx, const Vec3& Ny, const Vec3& Dy) const {
-    return (c2 * Dx - c1 * Nx) * Dy.transpose() - (c1 * Dx + c2 * Nx) * Ny.transpose();
+  void add(double f, const Vec3& Nx, const Vec3& Dx, const Vec3& Ny, const Vec3& Dy, Mat3& m) const {
+    add_outer(m, f * (c2 * Dx - c1 * Nx), Dy);
+    add_outer(m, -f * (c1 * Dx + c2 * Nx), Ny);
+  }
+  void mixed(double f, double sign, const Vec3& e, Mat3& m) const {
+    const double q = sign * f * p;
+    m(0, 1) -= q * e.z(), m(0, 2) += q * e.y(), m(1, 0) += q * e.z(), m(1, 2) -= q * e.x(), m(2, 0) -= q * e.y(), m(2, 1) += q * e.x();
+    m.diagonal().array() += f * r;
   }
 };
 

@@ -10,6 +10,24 @@ namespace whirl::system {
 
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// One 7x7 block in X (columns u, d, phi) to the 6x6 block in q (u, phi, gamma): y = J_i^T x J_j, where gamma_column(k, r) is row r
+/// of column gamma_k. Column-major, spelled out: it runs for every block of every linearisation.
+template <class Column>
+inline void project_block(const Mat32& Di, const double* x, double* y, Column&& gamma_column) {
+  auto finish = [&](const double* col, double* out) {
+    out[0] = col[0], out[1] = col[1], out[2] = col[2], out[3] = col[6];
+    out[4] = Di(0, 0) * col[3] + Di(1, 0) * col[4] + Di(2, 0) * col[5];
+    out[5] = Di(0, 1) * col[3] + Di(1, 1) * col[4] + Di(2, 1) * col[5];
+  };
+  for (int c = 0; c < 3; ++c) finish(x + 7 * c, y + 6 * c);
+  finish(x + 42, y + 18);
+  for (int k = 0; k < 2; ++k) {
+    double col[7];
+    for (int r = 0; r < 7; ++r) col[r] = gamma_column(k, r);
+    finish(col, y + 24 + 6 * k);
+  }
+}
 }  // namespace
 
 std::string_view component_name(int c) {
@@ -177,29 +195,23 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
   // q-space blocks: columns of gamma through D and its rates (node.hpp), then rows through D^T.
   const auto& start = pattern_->row_start();
   const auto& cols = pattern_->cols();
-  auto rows = [](const Mat32& D, const Matrix<7, 6>& x, auto y) {
-    y.template topRows<3>() = x.topRows<3>();
-    y.row(3) = x.row(6);
-    y.template bottomRows<2>().noalias() = D.transpose() * x.middleRows<3>(3);
-  };
   for (Index i = 0; i < nodes(); ++i) {
     const Mat32& Di = w.D[at(i)];
     for (Index s = start[at(i)]; s < start[at(i) + 1]; ++s) {
       const std::size_t j = at(cols[at(s)]);
-      const auto M = w.M.block(s), C = w.C.block(s), K = w.K.block(s);
-      Matrix<7, 6> x;
-      x.leftCols<3>() = M.leftCols<3>(), x.col(3) = M.col(6);
-      x.rightCols<2>().noalias() = M.middleCols<3>(3) * w.D[j];
-      rows(Di, x, out.M.block(s));
-      x.leftCols<3>() = C.leftCols<3>(), x.col(3) = C.col(6);
-      x.rightCols<2>().noalias() = C.middleCols<3>(3) * w.D[j];
-      x.rightCols<2>().noalias() += M.middleCols<3>(3) * (2.0 * w.D_rate[j]);
-      rows(Di, x, out.C.block(s));
-      x.leftCols<3>() = K.leftCols<3>(), x.col(3) = K.col(6);
-      x.rightCols<2>().noalias() = K.middleCols<3>(3) * w.D[j];
-      x.rightCols<2>().noalias() += C.middleCols<3>(3) * w.D_rate[j];
-      x.rightCols<2>().noalias() += M.middleCols<3>(3) * w.D_accel[j];
-      rows(Di, x, out.K.block(s));
+      const double *M = w.M.block(s).data(), *C = w.C.block(s).data(), *K = w.K.block(s).data();
+      const Mat32 &D = w.D[j], &D1 = w.D_rate[j], &D2 = w.D_accel[j];
+      project_block(Di, M, out.M.block(s).data(), [&](int k, int r) { return D(0, k) * M[21 + r] + D(1, k) * M[28 + r] + D(2, k) * M[35 + r]; });
+      project_block(Di, C, out.C.block(s).data(), [&](int k, int r) {
+        double y = 0.0;
+        for (int b = 0; b < 3; ++b) y += D(b, k) * C[21 + 7 * b + r] + 2.0 * D1(b, k) * M[21 + 7 * b + r];
+        return y;
+      });
+      project_block(Di, K, out.K.block(s).data(), [&](int k, int r) {
+        double y = 0.0;
+        for (int b = 0; b < 3; ++b) y += D(b, k) * K[21 + 7 * b + r] + D1(b, k) * C[21 + 7 * b + r] + D2(b, k) * M[21 + 7 * b + r];
+        return y;
+      });
     }
     out.K.block(pattern_->diagonal(i)).bottomRightCorner<2, 2>() +=
         w.director[at(i)].curvature(w.nodes[at(i)].chart->transpose() * w.force[at(i)].segment<3>(3));
