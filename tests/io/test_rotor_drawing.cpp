@@ -52,7 +52,7 @@ TEST(RotorDrawing, FollowsTheModel) {
   EXPECT_NEAR(d.bearings[0].radius, 0.025, 1e-12);
   ASSERT_EQ(d.probes.size(), 1u);
   EXPECT_NEAR(d.probes[0].radius, 0.04, 1e-12);   // at a step: the larger side
-  EXPECT_EQ(d.nodes.size(), mesh.nodes.size());
+  EXPECT_EQ(d.nodes.size(), static_cast<std::size_t>(mesh.lines[0].nodes));
   EXPECT_EQ(xml_fault(render_svg(plot_rotor("rotor", d))), "");
 }
 
