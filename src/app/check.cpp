@@ -1,0 +1,126 @@
+#include <app/commands.hpp>
+#include <app/diagnose.hpp>
+#include <app/results_folder.hpp>
+#include <core/units.hpp>
+#include <cstdio>
+#include <fmt/format.h>
+#include <meshes/mass_properties.hpp>
+#include <meshes/mesh.hpp>
+#include <meshes/mesh_tables.hpp>
+
+namespace whirl::app {
+namespace {
+
+const char* kind_of(const model::StepLaw& law) {
+  static constexpr const char* names[] = {"static", "modal", "campbell", "critical_speeds", "unbalance_response", "transient"};
+  static_assert(std::size(names) == std::variant_size_v<model::StepLaw>);
+  return names[law.index()];
+}
+
+std::string count(std::size_t n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
+
+std::string summary(const model::Model& m, const meshes::Mesh& mesh) {
+  std::string r = fmt::format("{}{}{}\n", m.deck_path, m.title.empty() ? "" : ": ", m.title);
+  r += fmt::format("  {}, {}, {}, {}, {}, {}\n", count(m.shafts.size(), "shaft", "shafts"), count(m.disks.size(), "disk", "disks"), count(m.bearings.size(), "bearing", "bearings"),
+                   count(m.unbalances.size(), "unbalance", "unbalances"), count(mesh.nodes.size(), "node", "nodes"), count(mesh.elements.size(), "shaft element", "shaft elements"));
+  r += fmt::format("  gravity {} m/s^2 along ({:g}, {:g}, {:g})\n", units::format_number(m.gravity.norm()), m.gravity.x(), m.gravity.y(), m.gravity.z());
+  for (const auto& s : m.steps) r += fmt::format("  step '{}': {}{}\n", s.name, kind_of(s.law), s.from.empty() ? "" : ", from '" + s.from + "'");
+  if (m.steps.empty()) r += "  no steps: nothing to run\n";
+  return r;
+}
+
+io::Value summary_value(const model::Model& m, const meshes::Mesh& mesh) {
+  io::Value v = io::Value::object();
+  v["title"] = m.title;
+  v["deck"] = m.deck_path;
+  v["sha256"] = deck_hash(m);
+  v["nodes"] = mesh.nodes.size();
+  v["elements"] = mesh.elements.size();
+  v["shafts"] = io::Value::array();
+  for (std::size_t k = 0; k < m.shafts.size(); ++k) {
+    const auto p = meshes::shaft_mass(m, k);
+    io::Value s = io::Value::object();
+    s["name"] = m.shafts[k].name;
+    s["length_m"] = m.shafts[k].length();
+    s["sections"] = m.shafts[k].sections.size();
+    s["mass_kg"] = p.mass;
+    s["centre_x_m"] = p.centre().x();
+    s["Ip_kg_m2"] = p.Ip();
+    s["Id_kg_m2"] = p.Id();
+    v["shafts"].push(std::move(s));
+  }
+  const auto names = [&](const char* key, const auto& list) {
+    v[key] = io::Value::array();
+    for (const auto& x : list) v[key].push(x.name);
+  };
+  names("disks", m.disks);
+  names("bearings", m.bearings);
+  names("probes", m.probes);
+  v["steps"] = io::Value::array();
+  for (const auto& s : m.steps) {
+    io::Value t = io::Value::object();
+    t["name"] = s.name;
+    t["type"] = kind_of(s.law);
+    v["steps"].push(std::move(t));
+  }
+  const auto e = deck::estimate_output(m);
+  v["output_bytes"] = e.total();
+  return v;
+}
+
+}  // namespace
+
+int check_deck(const CheckOptions& o) {
+  const deck::Deck d = deck::read_deck(o.deck, o.read);
+  if (!d.ok()) {
+    if (o.json) {
+      io::Value v = io::Value::object();
+      v["ok"] = false;
+      v["diagnostics"] = to_value(d.diagnostics);
+      std::fputs(io::to_json(v).c_str(), stdout);
+    } else {
+      print_diagnostics(d, o.quiet);
+    }
+    return static_cast<int>(deck::exit_of(d.diagnostics));
+  }
+  const meshes::Mesh mesh = meshes::make_mesh(d.model);
+  if (o.resolved) {
+    print_diagnostics(d, o.quiet);
+    std::fputs(d.model.resolved.c_str(), stdout);
+  } else if (o.json) {
+    io::Value v = io::Value::object();
+    v["ok"] = true;
+    v["diagnostics"] = to_value(d.diagnostics);
+    v["model"] = summary_value(d.model, mesh);
+    std::fputs(io::to_json(v).c_str(), stdout);
+  } else {
+    print_diagnostics(d, o.quiet);
+    if (!o.quiet)
+      std::fputs((summary(d.model, mesh) + "\n" + meshes::station_table(d.model, mesh) + "\n" + meshes::mass_table(d.model)).c_str(), stdout);
+  }
+  return static_cast<int>(Exit::ok);
+}
+
+int run_command(const RunCommand& o) {
+  const deck::Deck d = deck::read_deck(o.deck, o.read);
+  if (!d.ok() && o.run.json) {
+    io::Value v = io::Value::object();
+    v["ok"] = false;
+    v["diagnostics"] = to_value(d.diagnostics);
+    std::fputs(io::to_json(v).c_str(), stdout);
+  } else {
+    print_diagnostics(d, o.run.quiet);
+  }
+  if (!d.ok()) return static_cast<int>(deck::exit_of(d.diagnostics));
+  if (d.model.steps.empty()) {
+    Diagnostic e;
+    e.code = "E35";
+    e.message = "the deck has no step: there is nothing to run";
+    e.hint = "add a [[step]]; `whirl check` looks at a model without steps";
+    e.where.file = d.model.deck_path;
+    throw Error(Exit::deck, std::move(e));
+  }
+  return run_deck(d.model, o.run);
+}
+
+}  // namespace whirl::app

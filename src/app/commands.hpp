@@ -1,0 +1,49 @@
+// One function per command of the program. Each returns the exit code of core/error.hpp and throws Error.
+#pragma once
+#include <app/run.hpp>
+#include <string>
+#include <vector>
+
+namespace whirl::app {
+
+struct CheckOptions {
+  std::filesystem::path deck;
+  deck::ReadOptions read;
+  bool json = false, quiet = false, resolved = false;
+};
+/// Reads a deck and prints what is wrong with it; station table, masses and summary of a good one.
+int check_deck(const CheckOptions& options);
+
+struct RunCommand {
+  std::filesystem::path deck;
+  deck::ReadOptions read;
+  RunOptions run;
+};
+int run_command(const RunCommand& options);
+
+enum class SchemaForm { json, reference, units };
+/// JSON schema of decks, the reference of all tables and keys, or the table of units (Markdown).
+int print_schema(SchemaForm form);
+std::string json_schema();
+
+/// The long text of each code, or the list of all codes.
+int explain(const std::vector<std::string>& codes);
+
+struct NewOptions {
+  std::string example;            ///< empty: list the examples
+  std::filesystem::path file;     ///< empty: standard output
+  bool force = false;
+};
+/// Writes a commented deck to start from.
+int new_deck(const NewOptions& options);
+
+/// One command as the shell completion needs it.
+struct CommandInfo {
+  std::string name;
+  std::vector<std::string> options;
+  bool takes_deck = false;
+};
+/// Completion script for bash (also zsh through bashcompinit); "fish" has its own.
+std::string completion_script(const std::string& shell, const std::vector<CommandInfo>& commands);
+
+}  // namespace whirl::app

@@ -1,0 +1,153 @@
+// The command line. CLI11 is known here alone.
+#include <CLI/CLI.hpp>
+
+#include <app/commands.hpp>
+#include <app/diagnose.hpp>
+#include <app/terminal.hpp>
+#include <app/version.hpp>
+#include <cstdio>
+#include <exception>
+#include <fmt/format.h>
+
+namespace {
+
+using namespace whirl;
+using namespace whirl::app;
+
+void add_deck(CLI::App* c, std::filesystem::path& deck, deck::ReadOptions& read) {
+  c->add_option("deck", deck, "deck file (TOML)")->required();
+  c->add_option("--set", read.set, "override a key: --set step.run_up.duration='5 s' (may be repeated)")->type_name("PATH=VALUE")->take_all()->allow_extra_args(false);
+}
+
+void add_run(CLI::App* c, RunOptions& run) {
+  c->add_flag("-q,--quiet", run.quiet, "no progress and no summary");
+  c->add_flag("--json", run.json, "summary as JSON on standard output");
+  c->add_option("-j,--jobs", run.jobs, "threads for what can go in parallel (0: all processors)")->check(CLI::Range(0, 1024))->type_name("N");
+  c->add_option("-o,--output", run.output, "results folder instead of the deck's")->type_name("FOLDER");
+}
+
+std::vector<CommandInfo> commands_of(const CLI::App& app) {
+  std::vector<CommandInfo> r;
+  for (const auto* c : app.get_subcommands([](const CLI::App*) { return true; })) {
+    CommandInfo info{c->get_name(), {}, false};
+    for (const auto* o : c->get_options()) {
+      for (const auto& n : o->get_lnames()) info.options.push_back("--" + n);
+      info.takes_deck = info.takes_deck || o->get_name() == "deck";
+    }
+    r.push_back(std::move(info));
+  }
+  return r;
+}
+
+int command_line(int argc, char** argv) {
+  CLI::App app{"Whirl: dynamics of rotor-shaft systems, exact in large rotation", "whirl"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", [] { return "whirl " + version(); });
+  app.failure_message(CLI::FailureMessage::simple);
+  app.footer("Exit codes: 0 done, 1 internal error, 2 usage, 3 deck, 4 no convergence, 5 input or output, 130 interrupted.\nExamples:\n"
+             "  whirl new --example run_up deck.toml    a commented deck to start from\n  whirl check deck.toml                   what is in it, what is wrong with it\n"
+             "  whirl run deck.toml                     run it\n  whirl explain E07                       what an error code means");
+
+  CheckOptions check;
+  auto* c = app.add_subcommand("check", "read a deck; print stations, masses and everything that is wrong");
+  add_deck(c, check.deck, check.read);
+  c->add_flag("--json", check.json, "result as JSON on standard output");
+  c->add_flag("-q,--quiet", check.quiet, "errors only");
+  c->add_flag("--resolved", check.resolved, "print the resolved deck: parameters put in, defaults explicit");
+
+  RunCommand run;
+  c = app.add_subcommand("run", "run the steps of a deck");
+  add_deck(c, run.deck, run.read);
+  add_run(c, run.run);
+  c->add_flag("--resume", run.run.resume, "continue from the last checkpoint");
+  bool keep_everything = false;
+  c->add_flag("--keep-everything", keep_everything, "keep the parts of the model that no load reaches");
+
+#ifdef WHIRL_HAVE_REPORT
+  ReportOptions report;
+  c = app.add_subcommand("report", "write the report of a results folder anew");
+  c->add_option("results", report.results, "results folder")->required();
+  c->add_flag("-q,--quiet", report.quiet, "say nothing");
+#endif
+#ifdef WHIRL_HAVE_STUDY
+  StudyOptions study;
+  c = app.add_subcommand("study", "error against run time of a deck over tolerances, steps, integrators and meshes");
+  add_deck(c, study.deck, study.read);
+  add_run(c, study.run);
+#endif
+
+  bool reference = false, unit_list = false;
+  c = app.add_subcommand("schema", "JSON schema of decks, for editors");
+  auto* r = c->add_flag("--reference", reference, "all tables and keys as Markdown");
+  c->add_flag("--units", unit_list, "all units as Markdown")->excludes(r);
+
+  std::vector<std::string> codes;
+  c = app.add_subcommand("explain", "what an error code means; without a code: the list");
+  c->add_option("codes", codes, "error codes")->type_name("CODE");
+
+  NewOptions fresh;
+  c = app.add_subcommand("new", "write a commented deck to start from; without --example: the list");
+  c->add_option("--example", fresh.example, "which one")->type_name("NAME");
+  c->add_option("file", fresh.file, "file to write (standard output when left out)");
+  c->add_flag("--force", fresh.force, "replace an existing file");
+
+  std::string shell;
+  c = app.add_subcommand("completion", "completion script for a shell");
+  c->add_option("shell", shell, "bash or fish")->required()->check(CLI::IsMember({"bash", "fish"}));
+
+  app.add_subcommand("version", "version, compiler, plug-ins");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    const int code = app.exit(e);   // prints help, version or the message
+    return code == 0 ? static_cast<int>(Exit::ok) : static_cast<int>(Exit::usage);
+  }
+  const auto given = [&](const char* name) { return app.got_subcommand(name); };
+  if (given("check")) return check_deck(check);
+  if (given("run")) {
+    run.run.terminal = is_terminal(2);
+    if (keep_everything) run.read.set.emplace_back("model.keep_everything=true");
+    return run_command(run);
+  }
+#ifdef WHIRL_HAVE_REPORT
+  if (given("report")) return report_results(report);
+#endif
+#ifdef WHIRL_HAVE_STUDY
+  if (given("study")) {
+    study.run.terminal = is_terminal(2);
+    return study_deck(study);
+  }
+#endif
+  if (given("schema")) return print_schema(reference ? SchemaForm::reference : unit_list ? SchemaForm::units : SchemaForm::json);
+  if (given("explain")) return explain(codes);
+  if (given("new")) return new_deck(fresh);
+  if (given("completion")) {
+    std::fputs(completion_script(shell, commands_of(app)).c_str(), stdout);
+    return static_cast<int>(Exit::ok);
+  }
+  std::fputs(version_text().c_str(), stdout);
+  return static_cast<int>(Exit::ok);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const int code = command_line(argc, argv);
+    // a full disk or a closed pipe shows only here
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+      std::fputs("error: cannot write to standard output\n", stderr);
+      return static_cast<int>(whirl::Exit::io);
+    }
+    return code;
+  } catch (const whirl::Error& e) {
+    print_diagnostics(e.diagnostics());
+    return static_cast<int>(e.exit());
+  } catch (const std::bad_alloc&) {
+    std::fputs("internal error: out of memory\n", stderr);
+  } catch (const std::exception& e) {
+    std::fputs(fmt::format("internal error: {}\n", e.what()).c_str(), stderr);
+  }
+  return static_cast<int>(whirl::Exit::internal);
+}

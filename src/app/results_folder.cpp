@@ -1,0 +1,44 @@
+#include <app/results_folder.hpp>
+#include <app/sha256.hpp>
+#include <app/version.hpp>
+#include <chrono>
+#include <ctime>
+#include <fmt/format.h>
+#include <io/file.hpp>
+#include <io/value.hpp>
+#include <system_error>
+
+namespace whirl::app {
+
+std::string deck_hash(const model::Model& model) { return sha256_hex(model.resolved); }
+
+std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options) {
+  const std::filesystem::path folder = options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
+  std::error_code ec;
+  std::filesystem::create_directories(folder, ec);
+  if (ec) io::io_failure(folder, "cannot make the results folder", ec.value());
+  const auto space = std::filesystem::space(folder, ec);
+  if (!ec) {
+    auto problems = deck::check_output(model, static_cast<double>(space.available));
+    if (!problems.empty()) {
+      problems.front().where.file = model.deck_path;
+      throw Error(Exit::deck, std::move(problems));
+    }
+  }
+  io::write_atomic(folder / "resolved.toml", model.resolved);
+  io::Value run = io::Value::object();
+  run["program"] = "whirl " + version();
+  run["deck"] = model.deck_path;
+  run["title"] = model.title;
+  run["sha256"] = deck_hash(model);
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  run["started"] = text;
+  io::write_atomic(folder / "run.json", io::to_json(run));
+  return folder;
+}
+
+}  // namespace whirl::app
