@@ -21,18 +21,20 @@ template <class T> using V3 = Vec3T<T>;
 /// Node coordinates, rates and accelerations in any scalar.
 template <class T>
 struct NodeT {
+  const Mat3* chart;
   V3<T> u, t, du, dd, ddu, ddd;
   T phi, dphi, ddphi;
   explicit NodeT(const NodeState& n)
-      : u(n.u), t(n.t), du(n.du), dd(n.dd), ddu(n.ddu), ddd(n.ddd), phi(n.phi), dphi(n.dphi), ddphi(n.ddphi) {}
+      : chart(n.chart), u(n.u), t(n.t), du(n.du), dd(n.dd), ddu(n.ddu), ddd(n.ddd), phi(n.phi), dphi(n.dphi), ddphi(n.ddphi) {}
 };
 
 /// Rotation, angular velocity and acceleration of a node.
 template <class T>
 struct Motion {
   V3<T> e, d, s2, omega, alpha, w;   // s2 = (e + d)/(1 + e.d)
+  V3<T> e2, e3;
   T cphi, sphi;
-  explicit Motion(const Vec3& axis, const NodeT<T>& n) : e(axis), d(e + n.t) {
+  explicit Motion(const NodeT<T>& n) : e(Vec3(n.chart->col(0))), d(e + n.t), e2(Vec3(n.chart->col(1))), e3(Vec3(n.chart->col(2))) {
     using std::cos;
     using std::sin;
     const T D = T(2.0) + e.dot(n.t);
@@ -44,12 +46,10 @@ struct Motion {
     alpha = d.cross(n.ddd) + sdot * d + s * n.dd;
     cphi = cos(n.phi), sphi = sin(n.phi);
   }
-  /// R c of a constant global vector.
-  V3<T> turn(const Vec3& axis, const Vec3& c) const {
-    const double along = c.dot(axis);
-    const Vec3 p = c - along * axis;
-    const V3<T> m = cphi * V3<T>(p) + sphi * V3<T>(axis.cross(p));
-    return T(along) * d + m - d.dot(m) * s2;
+  /// A vector fixed in the node, given by its components in the node's chart at rest.
+  V3<T> turn(const Vec3& c) const {
+    const V3<T> m = (T(c.y()) * cphi - T(c.z()) * sphi) * e2 + (T(c.y()) * sphi + T(c.z()) * cphi) * e3;
+    return T(c.x()) * d + m - d.dot(m) * s2;
   }
   V3<T> accel(const V3<T>& r) const { return alpha.cross(r) + omega.cross(omega.cross(r)); }
 };
@@ -60,17 +60,17 @@ struct Shape {
   V3<T> a, D[2], delta[2], q[2], p[2], y, z, ro[2];
   T l, stretch, n[2], G[2], G1[2], psi;
   AngleRatio ratio[2];
-  Shape(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1, const Motion<T>& m2, const Vec3& e) {
+  Shape(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1, const Motion<T>& m2) {
     using std::atan2;
     using std::sqrt;
-    ro[0] = m1.turn(e, b.offset1), ro[1] = m2.turn(e, b.offset2);
+    ro[0] = m1.turn(b.arm1), ro[1] = m2.turn(b.arm2);
     const V3<T> du = n2.u - n1.u + (ro[1] - V3<T>(b.offset2)) - (ro[0] - V3<T>(b.offset1));
     const V3<T> lambda = V3<T>(b.chord) + du;
     l = sqrt(lambda.dot(lambda));
     stretch = (2.0 * V3<T>(b.chord).dot(du) + du.dot(du)) / (l + T(b.l0));
     a = (T(1.0) / l) * lambda;
-    D[0] = m1.turn(e, b.triad1.col(0)), D[1] = m2.turn(e, b.triad2.col(0));
-    const V3<T> B[2] = {m1.turn(e, b.triad1.col(1)), m2.turn(e, b.triad2.col(1))};
+    D[0] = m1.turn(b.body1.col(0)), D[1] = m2.turn(b.body2.col(0));
+    const V3<T> B[2] = {m1.turn(b.body1.col(1)), m2.turn(b.body2.col(1))};
     V3<T> Bt[2];
     for (int i = 0; i < 2; ++i) {
       delta[i] = D[i] - a;
@@ -102,10 +102,10 @@ struct ForceOut {
 };
 
 template <class T>
-ForceOut<T> beam_force(const GeneralBeam& b, const Vec3& e, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1,
+ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1,
                        const Motion<T>& m2) {
   const GeneralBeamConstants& c = b.c;
-  const Shape<T> s(b, n1, n2, m1, m2, e);
+  const Shape<T> s(b, n1, n2, m1, m2);
   const Motion<T>* mo[2] = {&m1, &m2};
   const NodeT<T>* no[2] = {&n1, &n2};
   ForceOut<T> out;
@@ -174,7 +174,7 @@ ForceOut<T> beam_force(const GeneralBeam& b, const Vec3& e, const NodeT<T>& n1, 
   }
   for (int axis = 1; axis <= 2; ++axis) {
     const double J = axis == 1 ? c.rhoIz_l : c.rhoIy_l;
-    const V3<T> b1 = m1.turn(e, b.triad1.col(axis)), b2 = m2.turn(e, b.triad2.col(axis));
+    const V3<T> b1 = m1.turn(b.body1.col(axis)), b2 = m2.turn(b.body2.col(axis));
     const V3<T> a1 = m1.accel(b1), a2 = m2.accel(b2);
     out.m[0] = out.m[0] + b1.cross(T(J * 5.0 / 12.0) * a1 + T(J / 12.0) * a2);
     out.m[1] = out.m[1] + b2.cross(T(J / 12.0) * a1 + T(J * 5.0 / 12.0) * a2);
@@ -206,9 +206,8 @@ template <class Seed>
 Matrix<14> differentiate(const GeneralBeam& b, const Nodes<2>& x, Seed&& seed) {
   NodeT<D14> n[2] = {NodeT<D14>(*x[0]), NodeT<D14>(*x[1])};
   for (int i = 0; i < 2; ++i) seed(n[i], *x[i], 7 * i);
-  const Vec3 e = x[0]->e();
-  const Motion<D14> m1(e, n[0]), m2(e, n[1]);
-  const auto f = to_X(beam_force(b, e, n[0], n[1], m1, m2), m1, m2);
+  const Motion<D14> m1(n[0]), m2(n[1]);
+  const auto f = to_X(beam_force(b, n[0], n[1], m1, m2), m1, m2);
   Matrix<14> J;
   for (int k = 0; k < 14; ++k) J.row(k) = f[static_cast<std::size_t>(k)].g.transpose();
   return J;
@@ -217,24 +216,23 @@ Matrix<14> differentiate(const GeneralBeam& b, const Nodes<2>& x, Seed&& seed) {
 }  // namespace
 
 GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chord_, const Mat3& t1, const Mat3& t2, const Vec3& o1,
-                         const Vec3& o2)
-    : c(constants), chord(chord_), triad1(t1), triad2(t2), offset1(o1), offset2(o2), l0(chord_.norm()) {
-  const Mat3 I = Mat3::Identity();
-  NodeState rest;
-  rest.u = rest.du = rest.ddu = rest.t = rest.dd = rest.ddd = Vec3::Zero();
-  rest.chart = &I;
-  const NodeT<double> n(rest);
-  const Motion<double> m(I.col(0), n);
-  const Shape<double> s(*this, n, n, m, m, I.col(0));
+                         const Vec3& o2, const Mat3& chart1, const Mat3& chart2)
+    : c(constants), chord(chord_), triad1(t1), triad2(t2), offset1(o1), offset2(o2), body1(chart1.transpose() * t1),
+      body2(chart2.transpose() * t2), arm1(chart1.transpose() * o1), arm2(chart2.transpose() * o2), l0(chord_.norm()) {
+  NodeState rest1, rest2;
+  for (NodeState* r : {&rest1, &rest2}) r->u = r->du = r->ddu = r->t = r->dd = r->ddd = Vec3::Zero();
+  rest1.chart = &chart1, rest2.chart = &chart2;
+  const NodeT<double> n1(rest1), n2(rest2);
+  const Motion<double> m1(n1), m2(n2);
+  const Shape<double> s(*this, n1, n2, m1, m2);
   psi0 = s.psi;
   p01 = Vec2(s.p[0].dot(s.y), s.p[0].dot(s.z)), p02 = Vec2(s.p[1].dot(s.y), s.p[1].dot(s.z));
 }
 
 void GeneralBeam::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
   const NodeT<double> n1(*x[0]), n2(*x[1]);
-  const Vec3 e = x[0]->e();
-  const Motion<double> m1(e, n1), m2(e, n2);
-  const auto r = to_X(beam_force(*this, e, n1, n2, m1, m2), m1, m2);
+  const Motion<double> m1(n1), m2(n2);
+  const auto r = to_X(beam_force(*this, n1, n2, m1, m2), m1, m2);
   f += Eigen::Map<const Vector<14>>(r.data());
 }
 
@@ -252,9 +250,8 @@ void GeneralBeam::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& o
 
 void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) const {
   const NodeT<double> n1(*x[0]), n2(*x[1]);
-  const Vec3 e = x[0]->e();
-  const Motion<double> m1(e, n1), m2(e, n2);
-  const Shape<double> s(*this, n1, n2, m1, m2, e);
+  const Motion<double> m1(n1), m2(n2);
+  const Shape<double> s(*this, n1, n2, m1, m2);
   const double w = s.stretch + c.length * (s.bow(c) - bow0(*this));
   double V = 0.5 * c.EA_l * w * w + 0.5 * c.GJ_l * (s.psi - psi0) * (s.psi - psi0);
   const double y1 = s.p[0].dot(s.y) - p01[0], y2 = s.p[1].dot(s.y) - p02[0], z1 = s.p[0].dot(s.z) - p01[1], z2 = s.p[1].dot(s.z) - p02[1];
@@ -269,12 +266,12 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
     for (int j = 0; j < 4; ++j) en.kinetic += 0.5 * c.M4(k, j) * v[k].dot(v[j]);
   for (int axis = 1; axis <= 2; ++axis) {
     const double J = axis == 1 ? c.rhoIz_l : c.rhoIy_l;
-    const Vec3 b1 = w1.cross(vec(m1.turn(e, triad1.col(axis)))), b2 = w2.cross(vec(m2.turn(e, triad2.col(axis))));
+    const Vec3 b1 = w1.cross(vec(m1.turn(body1.col(axis)))), b2 = w2.cross(vec(m2.turn(body2.col(axis))));
     en.kinetic += 0.5 * J * (5.0 / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) + b1.dot(b2) / 6.0);
   }
   const Vec3 P[4] = {x[0]->u + X[0], X[1], x[1]->u + X[2], X[3]};
   for (int j = 0; j < 4; ++j) en.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(P[j]);
-  if (c.beta > 0.0) en.dissipated += beam_force(*this, e, n1, n2, m1, m2).dissipated;
+  if (c.beta > 0.0) en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
 }
 
 }  // namespace whirl::elements

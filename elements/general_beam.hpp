@@ -35,20 +35,24 @@ struct GeneralBeamConstants {
 
 struct GeneralBeam {
   static constexpr int n_nodes = 2, width = 7;
-  static constexpr bool has_M = true, has_C = true, has_K = true;
+  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true;
 
   GeneralBeamConstants c;
   Vec3 chord = Vec3::UnitX();        ///< r2 - r1 in the reference configuration, m
   Mat3 triad1 = Mat3::Identity(), triad2 = Mat3::Identity();   ///< columns D, B, C of each end in the reference configuration
   Vec3 offset1 = Vec3::Zero(), offset2 = Vec3::Zero();         ///< o_i in the reference configuration, m
+  Mat3 body1 = Mat3::Identity(), body2 = Mat3::Identity();     ///< the same triads and offsets in components of the nodes' charts at rest
+  Vec3 arm1 = Vec3::Zero(), arm2 = Vec3::Zero();
   // unstressed values of the measures (made by the constructor)
   double l0 = 0, psi0 = 0;
   Vec2 p01 = Vec2::Zero(), p02 = Vec2::Zero();
 
   GeneralBeam() = default;
-  /// The reference configuration is stress-free, whatever the angles between chord and triads.
+  /// The reference configuration is stress-free, whatever the angles between chord and triads. chart1, chart2: triads of the nodes'
+  /// lines as given to the builder. The nodes may be on different lines; charts may be moved.
   GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chord, const Mat3& triad1, const Mat3& triad2,
-              const Vec3& offset1 = Vec3::Zero(), const Vec3& offset2 = Vec3::Zero());
+              const Vec3& offset1 = Vec3::Zero(), const Vec3& offset2 = Vec3::Zero(), const Mat3& chart1 = Mat3::Identity(),
+              const Mat3& chart2 = Mat3::Identity());
 
   void add_force(const system::Nodes<2>& x, const system::Context& ctx, system::ForceX<14>& f) const;
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx, system::TangentX<14>& t) const;

@@ -18,7 +18,7 @@ namespace whirl::elements {
 template <bool Rotating>
 struct ShaftDamping {
   static constexpr int n_nodes = 2, width = 7;
-  static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr bool has_M = false, has_C = true, has_K = true, quadratic_in_rates = true;
 
   double length = 0, o1 = 0, o2 = 0;
   Vec3 e0 = Vec3::UnitX();
@@ -37,7 +37,7 @@ extern template struct ShaftDamping<true>;
 /// External damping proportional to the element's mass, in fixed axes: f = alpha (M4 (x) 1) X'. 1/s.
 struct ShaftMassDamping {
   static constexpr int n_nodes = 2, width = 7;
-  static constexpr bool has_M = false, has_C = true, has_K = false;
+  static constexpr bool has_M = false, has_C = true, has_K = false, quadratic_in_rates = true;
   Matrix<4> C4 = Matrix<4>::Zero();   ///< alpha M4
   void add_force(const system::Nodes<2>& x, const system::Context& ctx, system::ForceX<14>& f) const;
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx, system::TangentX<14>& t) const;

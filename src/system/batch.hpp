@@ -30,6 +30,8 @@ class Term {
   virtual std::size_t count() const = 0;
   virtual int width() const = 0;           ///< 3: translations only; 7: rotations too
   virtual bool inertial() const = 0;       ///< nothing but rigid-body inertia
+  /// The force is a polynomial of degree <= 2 in the rates (kernels that say quadratic_in_rates = true).
+  virtual bool quadratic_in_rates() const = 0;
   /// Adds the inertia of an inertial() term to its nodes; false when it is not constant in time.
   virtual bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const = 0;
   virtual void add_force(Workspace& w) const = 0;
@@ -66,6 +68,10 @@ class Batch final : public Term {
     else
       (void)of_node;
     return constant;
+  }
+  bool quadratic_in_rates() const override {
+    if constexpr (requires { K::quadratic_in_rates; }) return K::quadratic_in_rates;
+    else return false;
   }
   std::vector<K>& elements() { return elements_; }
   const std::vector<K>& elements() const { return elements_; }

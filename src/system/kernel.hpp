@@ -9,6 +9,9 @@
 //     void add_energy(const Nodes<1>&, const Context&, Energy& e) const;
 //   };
 //
+// Optional: quadratic_in_rates = true says that f is a polynomial of degree <= 2 in u', d', phi' at fixed u, d, phi, with
+// constant M: frequency-domain analyses then combine its matrices for any speed from three evaluations.
+//
 // Sign: f is what stands on the LEFT: inertia + internal force - external force. Absent tangents (has_* false) are never
 // touched. Kernels do not allocate, throw, or branch on physics that the deck could have left out: that is another kernel.
 #pragma once

@@ -37,6 +37,7 @@ template <int N> using Nodes = std::array<const NodeState*, N>;
 struct Context {
   double time = 0.0;
   Vec3 gravity = Vec3::Zero();  ///< g(t) minus base acceleration; already inside NodeState::ddu, here for energies
+  double load = 1.0;            ///< factor on gravity and given loads: statics in load steps, buckling; 1 in every motion
 };
 
 /// Force contribution in X: 3 (u) or 7 (u, d, phi) entries a node.

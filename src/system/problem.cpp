@@ -26,22 +26,30 @@ SystemProblem::SystemProblem(const System& system, ProblemOptions options)
   line_nodes_.resize(at(system.lines()));
   rechartable_.assign(at(system.lines()), 1);
   lead_.assign(at(system.lines()), -1);
+  // A fixed angle or a clamped end shares chart and turns of its line: such a line keeps both.
+  std::vector<unsigned char> clamped(at(system.lines()), 0), rotates(at(system.nodes()), 0);
+  for (const auto& term : system.terms()) {
+    std::vector<Index> touched;
+    if (term->width() == 7) term->list_nodes(touched);
+    for (Index i : touched) rotates[at(i)] = 1;
+  }
   for (Index i = 0; i < system.nodes(); ++i) {
     const NodeDef& def = system.node(i);
     if (def.scalar) continue;
     bool any = false, rotation_held = false;
     for (int c = 3; c < 6; ++c) (active[at(6 * i + c)] ? any : rotation_held) = true;
-    if (!any) {
-      // a prescribed spin still turns: it counts for whole turns
-      bool law = false;
-      for (const Hold& h : system.holds()) law = law || (h.unknown == 6 * i + spin_phi && h.law);
-      if (!law) continue;
-    }
+    // a prescribed spin still turns: it counts for whole turns
+    bool law = false;
+    for (const Hold& h : system.holds()) law = law || (h.unknown == 6 * i + spin_phi && h.law);
+    if (rotates[at(i)] && !active[at(6 * i + spin_phi)] && !law) clamped[at(def.line)] = 1;
+    if (!any && !law) continue;
     line_nodes_[at(def.line)].push_back(i);
     // a held tilt or angle is held in this chart: such a line keeps it
     if (rotation_held) rechartable_[at(def.line)] = 0;
     if (lead_[at(def.line)] < 0) lead_[at(def.line)] = i;
   }
+  for (Index l = 0; l < system.lines(); ++l)
+    if (clamped[at(l)]) line_nodes_[at(l)].clear();
 }
 
 bool SystemProblem::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {

@@ -143,7 +143,7 @@ void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<Ve
 bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
                             Eigen::Ref<const VecX> a) const {
   w.context.time = t;
-  w.context.gravity = gravity_at(t);
+  w.context.gravity = w.context.load * gravity_at(t);
   w.outside = -1;
   for (Index i = 0; i < nodes(); ++i) {
     const NodeDef& def = defs_[at(i)];
@@ -177,20 +177,26 @@ void System::project_force(const Workspace& w, Eigen::Ref<VecX> r) const {
 }
 
 bool System::residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                      Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r) const {
+                      Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r, Selection only) const {
   if (!evaluate_nodes(w, f, t, q, v, a)) return false;
   for (auto& x : w.force) x.setZero();
-  for (const auto& term : terms_) term->add_force(w);
+  if (only)
+    for (std::size_t k : *only) terms_[k]->add_force(w);
+  else
+    for (const auto& term : terms_) term->add_force(w);
   project_force(w, r);
   return r.allFinite();
 }
 
 bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                     Eigen::Ref<const VecX> a, la::MCK& out) const {
+                     Eigen::Ref<const VecX> a, la::MCK& out, Selection only) const {
   if (!evaluate_nodes(w, f, t, q, v, a)) return false;
   for (auto& x : w.force) x.setZero();
   w.M.set_zero(), w.C.set_zero(), w.K.set_zero();
-  for (const auto& term : terms_) term->add_force(w), term->add_tangent(w);
+  if (only)
+    for (std::size_t k : *only) terms_[k]->add_force(w), terms_[k]->add_tangent(w);
+  else
+    for (const auto& term : terms_) term->add_force(w), term->add_tangent(w);
 
   // q-space blocks: columns of gamma through D and its rates (node.hpp), then rows through D^T.
   const auto& start = pattern_->row_start();

@@ -74,12 +74,14 @@ class System {
   /// Node states only (for probes, pictures). False when a node is outside its chart.
   bool evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
                       Eigen::Ref<const VecX> a) const;
+  /// Some of the terms, as numbers into terms(); a null pointer means all.
+  using Selection = const std::vector<std::size_t>*;
   /// r = R(t, q, v, a); held entries hold the reactions (force and torque the support exerts on the model).
   bool residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r) const;
+                Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r, Selection only = nullptr) const;
   /// M = dR/da, C = dR/dv, K = dR/dq, exact.
   bool tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-               Eigen::Ref<const VecX> a, la::MCK& out) const;
+               Eigen::Ref<const VecX> a, la::MCK& out, Selection only = nullptr) const;
   /// Energies and powers of the elements at the node states of the last evaluation.
   Energy energy(const Workspace& w) const;
 

@@ -181,3 +181,43 @@ TEST(GeneralBeam, AgreesWithTheAxisymmetricElement) {
   ASSERT_TRUE(sa.residual(wa, f, 0, q, v, acc, ra));
   EXPECT_LT((rg - ra).norm(), 1e-12 * ra.norm());
 }
+
+TEST(GeneralBeam, AMovedChartChangesNothing) {
+  // The same configuration described in other charts, one for each node: force and moment on the nodes stay what they are.
+  const Mat3 T = rotation::L(Vec3(0.3, 0.5, -0.4));
+  const Mat3 t1 = T * rotation::L(Vec3(0.2, 0.1, -0.15)), t2 = T * rotation::L(Vec3(-0.1, 0.12, 0.2));
+  const Vec3 o1(0.02, 0.05, -0.03), o2(-0.04, 0.01, 0.02), chord = 0.39 * T.col(0);
+  Builder b;
+  const Mat3 chart2 = rotation::L(Vec3(-0.7, 0.4, 0.9));
+  const Index l1 = b.add_line("1"), l2 = b.add_line("2", chart2);
+  const Index n1 = b.add_node({Vec3::Zero(), l1, "1"}), n2 = b.add_node({chord + o1 - o2, l2, "2"});
+  b.add(GeneralBeam(constants(1e-3), chord, t1, t2, o1, o2, Mat3::Identity(), chart2), {n1, n2}, "general beams");
+  const System sys = b.finalize();
+  Workspace w = sys.make_workspace();
+  State s = sys.make_state();
+  std::mt19937 rng(5);
+  std::normal_distribution<double> d;
+  for (int k = 0; k < 12; ++k) s.q[k] = 0.4 * d(rng), s.v[k] = d(rng), s.a[k] = d(rng);
+  auto loads = [&](Vector<12>& out) {
+    VecX r(12);
+    ASSERT_TRUE(sys.residual(w, s.frames, 0, s.q, s.v, s.a, r));
+    for (int i = 0; i < 2; ++i) {
+      const NodeState& n = w.nodes[static_cast<std::size_t>(i)];
+      const Vector<7>& f = w.force[static_cast<std::size_t>(i)];
+      out.segment<3>(6 * i) = f.head<3>();
+      out.segment<3>(6 * i + 3) = n.d().cross(f.segment<3>(3)) + (f[6] / (2.0 + n.e().dot(n.t))) * (n.e() + n.d());
+    }
+  };
+  Vector<12> before, after;
+  loads(before);
+  for (int i = 0; i < 2; ++i) {
+    const rotation::ChartChange change(s.frames.chart[static_cast<std::size_t>(i)], Vec3(1, 0.5 + i, -0.7).normalized());
+    const rotation::Angles n = change.apply({s.q[6 * i + 3], s.v[6 * i + 3], s.a[6 * i + 3], s.q.segment<2>(6 * i + 4),
+                                             s.v.segment<2>(6 * i + 4), s.a.segment<2>(6 * i + 4)});
+    s.q[6 * i + 3] = n.phi, s.v[6 * i + 3] = n.dphi, s.a[6 * i + 3] = n.ddphi;
+    s.q.segment<2>(6 * i + 4) = n.gamma, s.v.segment<2>(6 * i + 4) = n.dgamma, s.a.segment<2>(6 * i + 4) = n.ddgamma;
+    s.frames.chart[static_cast<std::size_t>(i)] = change.new_triad();
+  }
+  loads(after);
+  EXPECT_LT((before - after).norm(), 1e-12 * before.norm());
+}

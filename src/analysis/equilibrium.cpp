@@ -1,0 +1,257 @@
+#include <analysis/equilibrium.hpp>
+
+#include <core/error.hpp>
+#include <core/rotation.hpp>
+#include <system/problem.hpp>
+
+#include <fmt/format.h>
+#include <cstdlib>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::analysis {
+
+namespace {
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+EquilibriumSolver::EquilibriumSolver(RunningSystem& running, EquilibriumOptions options)
+    : running_(running), options_(options), free_(running.system().active().begin(), running.system().active().end()),
+      matrices_(running.system().make_matrices()), r_(running.system().size()) {
+  const system::System& s = running.system();
+  Vec3 low = Vec3::Constant(infinity), high = -low;
+  for (Index i = 0; i < s.nodes(); ++i)
+    if (!s.node(i).scalar) low = low.cwiseMin(s.node(i).position), high = high.cwiseMax(s.node(i).position);
+  length_ = (high - low).norm();
+  if (!(length_ > 0)) length_ = 1.0;   // one body: metre and radian weigh alike
+}
+
+void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
+  // A rotor turns freely when K times the motion "all its phi by its ratio" vanishes to rounding. What sees phi (weight on an
+  // unbalance) holds it in no useful sense and is left out.
+  const system::System& sys = running_.system();
+  const Index L = sys.lines();
+  if (!running_.blind_tangent(s.frames, Omega, s.q, matrices_)) return;
+  std::vector<Index> first(at(L), -1);
+  std::vector<VecX> e(at(L)), ke(at(L)), size(at(L));
+  for (Index l = 0; l < L; ++l) e[at(l)] = VecX::Zero(sys.size());
+  for (Index i = 0; i < sys.nodes(); ++i) {
+    const Index l = sys.node(i).line, k = 6 * i + system::spin_phi;
+    if (!running_.spinning()[at(i)]) continue;
+    e[at(l)][k] = running_.ratio(l);
+    if (first[at(l)] < 0) first[at(l)] = free_[at(k)] ? k : -1;
+  }
+  // The size of the single products, against which "zero" is measured.
+  const auto& start = sys.pattern().row_start();
+  const auto& cols = sys.pattern().cols();
+  for (Index l = 0; l < L; ++l) {
+    ke[at(l)] = VecX::Zero(sys.size()), size[at(l)] = VecX::Zero(sys.size());
+    if (first[at(l)] < 0) continue;
+    matrices_.K.add_multiply(1.0, e[at(l)], ke[at(l)]);
+    for (Index i = 0; i < sys.nodes(); ++i)
+      for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b)
+        size[at(l)].segment<6>(6 * i) += matrices_.K.block(b).cwiseAbs() * e[at(l)].segment<6>(6 * cols[at(b)]).cwiseAbs();
+  }
+  // Lines whose torques meet (gears, couplings) are one rotor.
+  std::vector<Index> group(at(L));
+  for (Index l = 0; l < L; ++l) group[at(l)] = l;
+  auto root = [&](Index l) {
+    while (group[at(l)] != l) l = group[at(l)];
+    return l;
+  };
+  for (Index l = 0; l < L; ++l)
+    for (Index m = 0; m < l; ++m) {
+      bool meet = false;
+      for (Index k = 0; k < sys.size() && !meet; ++k) meet = e[at(m)][k] != 0.0 && std::abs(ke[at(l)][k]) > 1e-9 * size[at(l)][k];
+      if (meet) group[at(root(l))] = root(m);
+    }
+  for (Index g = 0; g < L; ++g) {
+    if (root(g) != g) continue;
+    VecX sum = VecX::Zero(sys.size()), scale = sum;
+    Index lead = -1;
+    bool held = false;
+    for (Index l = 0; l < L; ++l) {
+      if (root(l) != g) continue;
+      sum += ke[at(l)], scale += size[at(l)];
+      if (lead < 0) lead = first[at(l)];
+    }
+    for (Index i = 0; i < sys.nodes(); ++i)   // a prescribed angle holds its whole group
+      if (running_.spinning()[at(i)] && root(sys.node(i).line) == g && !sys.active()[at(6 * i + 3)]) held = true;
+    if (lead < 0 || held) continue;
+    double torque = 0;
+    for (Index k = 3; k < sys.size(); k += 6) torque = std::max(torque, scale[k]);
+    bool resisted = false;
+    for (Index k = 0; k < sys.size(); ++k)
+      resisted = resisted || (free_[at(k)] && std::abs(sum[k]) > 1e-9 * std::max(scale[k], k % 6 < 3 ? torque / length_ : torque));
+    if (!resisted) spin_holds_.push_back(lead), free_[at(lead)] = 0;
+  }
+}
+
+double EquilibriumSolver::correction_size(const VecX& d) const {
+  double m = 0;
+  const system::System& s = running_.system();
+  for (Index k = 0; k < d.size(); ++k) m = std::max(m, std::abs(d[k]) / (k % 6 < 3 && !s.node(k / 6).scalar ? length_ : 1.0));
+  return m;
+}
+
+bool EquilibriumSolver::is_small(const VecX& d, const VecX& q) const {
+  // Displacements against the largest displacement, tilts against the largest tilt, twists against the largest twist. Below
+  // 1e-15 of the model's size (rad) nothing more can be asked.
+  const system::System& s = running_.system();
+  double now[4] = {}, all[4] = {};
+  for (Index k = 0; k < d.size(); ++k) {
+    const int c = s.node(k / 6).scalar ? 3 : k % 6 < 3 ? 0 : k % 6 == 3 ? 1 : 2;
+    now[c] = std::max(now[c], std::abs(d[k])), all[c] = std::max(all[c], std::abs(q[k]));
+  }
+  for (int c = 0; c < 4; ++c)
+    if (now[c] > std::max(options_.tolerance * all[c], c == 0 ? 1e-15 * length_ : 1e-15)) return false;
+  return true;
+}
+
+EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State& s, int& iterations) {
+  const system::System& sys = running_.system();
+  if (!solver_) solver_ = la::make_direct_solver<double>(sys.pattern(), free_, options_.solver);
+  const auto masked = [&](VecX& x) {
+    for (Index k = 0; k < x.size(); ++k)
+      if (!free_[at(k)]) x[k] = 0.0;
+  };
+  if (!running_.residual(s.frames, Omega, s.q, r_)) {
+    why_ = "the state lies outside the range of an element or of the tilt (pi)";
+    return Outcome::diverged;
+  }
+  double last = infinity, damping = 1.0;
+  for (int it = 0; it < options_.max_iterations; ++it, ++iterations) {
+    step_ = r_;
+    masked(step_);
+    if (step_.isZero(0.0)) return Outcome::converged;
+    running_.tangent(s.frames, Omega, s.q, matrices_);
+    if (solver_->factor(matrices_, 0.0, 0.0, 1.0) != la::Status::ok) {
+      const Index k = solver_->singular_unknown();
+      why_ = k < 0 ? std::string("the stiffness matrix is singular")
+                   : fmt::format("nothing resists a motion along {} of {}", system::component_name(static_cast<int>(k % 6)), sys.node(k / 6).name);
+      return Outcome::singular;
+    }
+    solver_->solve(step_);
+    step_ = -step_;
+    const double size = correction_size(step_);
+    if (!std::isfinite(size)) {
+      why_ = "a correction is not finite";
+      return Outcome::diverged;
+    }
+    // A start that needs no correction stays what it is to the last bit: sweeps over speed rely on it.
+    if (it == 0 && is_small(step_, s.q)) return Outcome::converged;
+    // Converged, or as small as rounding lets it become.
+    if (is_small(step_, s.q) || (damping == 1.0 && size < 1e-8 && size > 0.25 * last)) {
+      s.q += step_;
+      if (!running_.residual(s.frames, Omega, s.q, r_)) s.q -= step_, running_.residual(s.frames, Omega, s.q, r_);
+      return Outcome::converged;
+    }
+    if (getenv("DBG")) fmt::print("it {} size {:.3e} damping {}\n", it, size, damping);
+    // Natural monotonicity: the simplified Newton correction after the step must be shorter than the correction itself.
+    double alpha = std::min(1.0, 2.0 * damping);
+    bool taken = false;
+    for (int halving = 0; halving < 30; ++halving, alpha *= 0.5) {
+      trial_ = s.q + alpha * step_;
+      if (!running_.residual(s.frames, Omega, trial_, r_)) continue;
+      next_ = r_;
+      masked(next_);
+      solver_->solve(next_);
+      const double after = correction_size(next_);
+      if (after <= (1.0 - 0.25 * alpha) * size || (alpha == 1.0 && size < 1e-8)) {
+        taken = true;
+        break;
+      }
+    }
+    if (!taken) {
+      why_ = "Newton's iteration finds no descent";
+      return Outcome::diverged;
+    }
+    s.q = trial_;
+    damping = alpha, last = size;
+  }
+  why_ = fmt::format("no convergence in {} iterations", options_.max_iterations);
+  return Outcome::diverged;
+}
+
+void EquilibriumSolver::change_charts(system::State& s) {
+  const system::System& sys = running_.system();
+  bool far = false;
+  for (Index i = 0; i < sys.nodes() && !far; ++i)
+    far = !sys.node(i).scalar && s.q.segment<2>(6 * i + 4).norm() > rotation::chart_switch;
+  if (!far) return;
+  system::SystemProblem problem(sys);
+  problem.frames = s.frames;
+  problem.accept(s.t, s.q, s.v, s.a);
+  s.frames = problem.frames;
+}
+
+std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const system::State* start) {
+  const system::System& sys = running_.system();
+  Equilibrium out;
+  out.Omega = Omega;
+  out.state = start ? *start : sys.make_state();
+  system::State& s = out.state;
+  s.t = running_.running().time;
+  running_.impose(s.frames, s.q);
+  running_.set_rates(Omega, s.v);
+  s.a.setZero();
+  if (!holds_known_) find_spin_holds(s, Omega), holds_known_ = true;
+  for (Index k : spin_holds_) s.q[k] = 0.0;
+
+  const system::State begin = s;
+  Outcome o = newton(Omega, s, out.iterations);
+  if (o != Outcome::converged) {
+    // Loads in steps from the unloaded state, doubled after an easy step, halved after a failure.
+    const double full = running_.load();
+    double done = 0.0, step = 0.25;
+    s = sys.make_state();
+    s.t = begin.t;
+    running_.impose(s.frames, s.q);
+    running_.set_rates(Omega, s.v);
+    system::State kept = s;
+    out.load_steps = 0;
+    bool first = true;
+    while (true) {
+      const double factor = first ? 0.0 : std::min(1.0, done + step);
+      running_.set_load(full * factor);
+      s = kept;
+      int n = 0;
+      o = newton(Omega, s, n);
+      out.iterations += n, ++out.load_steps;
+      if (o == Outcome::converged) {
+        if (options_.chart_change) change_charts(s);
+        kept = s, done = factor;
+        if (factor == 1.0) break;
+        if (!first && n <= 6) step *= 2.0;
+        first = false;
+      } else {
+        step *= 0.5;
+        if (first || step < 1e-6 || out.load_steps >= options_.max_load_steps) {
+          why_ += fmt::format(" (at {:.4g} of the load)", first ? 0.0 : done);
+          running_.set_load(full);
+          return std::nullopt;
+        }
+      }
+    }
+    running_.set_load(full);
+    running_.residual(s.frames, Omega, s.q, r_);
+  }
+  if (options_.chart_change) change_charts(s);
+  out.reactions = r_;
+  for (Index k = 0; k < r_.size(); ++k)
+    if (free_[at(k)]) out.reactions[k] = 0.0;
+  out.spin_holds = spin_holds_;
+  return out;
+}
+
+Equilibrium EquilibriumSolver::solve(double Omega, const system::State* start) {
+  auto out = try_solve(Omega, start);
+  if (out) return std::move(*out);
+  const bool singular = why_.starts_with("nothing resists");
+  throw run_error(singular ? "E75" : "E76", (singular ? "" : "no equilibrium found: ") + why_,
+                  singular ? "add a support in that direction, or hold it rigidly; at a high load: the structure is at a limit point or buckles"
+                           : "the load may lie beyond a limit point (try the buckling analysis), or a bearing beyond its capacity");
+}
+
+}  // namespace whirl::analysis

@@ -1,0 +1,98 @@
+#include <analysis/linear.hpp>
+
+#include <core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::analysis {
+
+namespace {
+constexpr std::size_t at_(Index i) { return static_cast<std::size_t>(i); }
+
+/// Largest force and largest moment of the free unknowns.
+Vec2 largest(const VecX& r, std::span<const unsigned char> free) {
+  Vec2 m = Vec2::Zero();
+  for (Index k = 0; k < r.size(); ++k)
+    if (free[at_(k)]) {
+      double& x = m[k % 6 < 3 ? 0 : 1];
+      x = std::max(x, std::abs(r[k]));
+    }
+  return m;
+}
+}  // namespace
+
+Linearizer::Linearizer(const system::System& system, Running running, EquilibriumOptions options)
+    : running_(system, std::move(running)), solver_(running_, options), matrices_(system.make_matrices()) {}
+
+void Linearizer::set_equilibrium(const Equilibrium& e) {
+  equilibrium_ = e;
+  have_ = true;
+  running_.residual(e.state.frames, e.Omega, e.state.q, r_);
+  floor_ = largest(r_, solver_.free());
+}
+
+bool Linearizer::still_balanced(double Omega) {
+  // A rotor in linear bearings keeps its equilibrium at every speed: then the residual stays at its rounding level.
+  if (!have_ || !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_)) return false;
+  const Vec2 now = largest(r_, solver_.free());
+  return now[0] <= 4.0 * floor_[0] && now[1] <= 4.0 * floor_[1];
+}
+
+const la::MCK& Linearizer::at(double Omega) {
+  if (still_balanced(Omega)) {
+    equilibrium_.Omega = Omega;
+    running_.set_rates(Omega, equilibrium_.state.v);
+    equilibrium_.reactions = r_;
+    for (Index k = 0; k < r_.size(); ++k)
+      if (solver_.free()[at_(k)]) equilibrium_.reactions[k] = 0.0;
+  } else {
+    set_equilibrium(solver_.solve(Omega, have_ ? &equilibrium_.state : nullptr));
+  }
+  have_forcing_ = false;
+  if (!running_.tangent(equilibrium_.state.frames, Omega, equilibrium_.state.q, matrices_))
+    throw run_error("E76", "no linearisation: the state lies outside the range of an element");
+  return matrices_;
+}
+
+const la::MCK& Linearizer::conservative_at(double Omega) {
+  at(Omega);
+  if (conservative_.M.value_count() == 0) conservative_ = system().make_matrices();
+  take_conservative_part(matrices_, conservative_);
+  return conservative_;
+}
+
+const std::vector<VecXc>& Linearizer::forcing() {
+  if (!have_forcing_) {
+    running_.forcing(equilibrium_.state.frames, equilibrium_.Omega, equilibrium_.state.q, forcing_);
+    have_forcing_ = true;
+  }
+  return forcing_;
+}
+
+void take_conservative_part(const la::MCK& m, la::MCK& out) {
+  const la::BlockPattern& p = m.M.pattern();
+  std::copy_n(m.M.data(), m.M.value_count(), out.M.data());
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index s = p.row_start()[at_(i)]; s < p.row_start()[at_(i) + 1]; ++s) {
+      const Index j = p.cols()[at_(s)], t = p.slot(j, i);
+      out.C.block(s) = 0.5 * (m.C.block(s) - m.C.block(t).transpose());
+      out.K.block(s) = 0.5 * (m.K.block(s) + m.K.block(t).transpose());
+    }
+}
+
+std::vector<unsigned char> select_motion(const system::System& system, Motion kind) {
+  std::vector<unsigned char> out(system.active().begin(), system.active().end());
+  if (kind == Motion::all) return out;
+  for (Index i = 0; i < system.nodes(); ++i) {
+    // components along the axis of the line are axial, spin is torsional, the rest lateral
+    const bool rotates = !system.node(i).scalar;
+    for (int c = 0; c < 6; ++c) {
+      const Motion m = !rotates ? Motion::lateral : c == system::spin_phi ? Motion::torsional : c == system::ux ? Motion::axial : Motion::lateral;
+      if (m != kind) out[at_(6 * i + c)] = 0;
+    }
+  }
+  return out;
+}
+
+}  // namespace whirl::analysis

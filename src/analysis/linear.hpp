@@ -1,0 +1,50 @@
+// Small motions about the spinning, loaded equilibrium: M, C(Omega), K(Omega) on the system's block pattern, in
+// q = (u, phi, gamma) a node, fixed axes:
+//   M x'' + C x' + K x = -sum_k Re(f_k exp(i order_k Omega t))
+// C holds damping and gyroscopic effects, K all stiffness, geometric and circulatory ones included; both are exact derivatives
+// of the nonlinear model, averaged over the revolution where something turns (running.hpp).
+#pragma once
+#include <analysis/equilibrium.hpp>
+
+namespace whirl::analysis {
+
+class Linearizer {
+ public:
+  explicit Linearizer(const system::System& system, Running running = {}, EquilibriumOptions options = {});
+
+  /// Moves the equilibrium to Omega (rad/s, from the last one) and returns the matrices there; valid until the next call.
+  /// Errors: as EquilibriumSolver::solve.
+  const la::MCK& at(double Omega);
+  /// The part of them that keeps energy: M, skew part of C (gyroscopic), symmetric part of K. For "undamped" results.
+  const la::MCK& conservative_at(double Omega);
+  double Omega() const { return equilibrium_.Omega; }
+  const Equilibrium& equilibrium() const { return equilibrium_; }
+  /// Starts the next equilibrium from here.
+  void set_equilibrium(const Equilibrium& e);
+  /// Forcing amplitudes at the last speed, one for each of running().orders().
+  const std::vector<VecXc>& forcing();
+  RunningSystem& running() { return running_; }
+  const system::System& system() const { return running_.system(); }
+  /// Unknowns of small motions: what is not held by a support. A free rotor may turn.
+  std::span<const unsigned char> active() const { return running_.system().active(); }
+
+ private:
+  bool still_balanced(double Omega);
+  RunningSystem running_;
+  EquilibriumSolver solver_;
+  Equilibrium equilibrium_;
+  bool have_ = false, have_forcing_ = false;
+  Vec2 floor_ = Vec2::Zero();      ///< residual left at the last solution: force, moment
+  la::MCK matrices_, conservative_;
+  std::vector<VecXc> forcing_;
+  VecX r_;
+};
+
+/// M, (C - C^T)/2, (K + K^T)/2.
+void take_conservative_part(const la::MCK& m, la::MCK& out);
+
+/// Active flags restricted to a kind of motion (others held): for models in which the kinds do not couple.
+enum class Motion { all, lateral, torsional, axial };
+std::vector<unsigned char> select_motion(const system::System& system, Motion kind);
+
+}  // namespace whirl::analysis

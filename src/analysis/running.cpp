@@ -1,0 +1,288 @@
+#include <analysis/running.hpp>
+
+#include <core/error.hpp>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace whirl::analysis {
+
+namespace {
+
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+void add_scaled(la::BlockMatrix<6>& y, double s, const la::BlockMatrix<6>& x) {
+  Eigen::Map<VecX>(y.data(), static_cast<Index>(y.value_count())) +=
+      s * Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count()));
+}
+void set_scaled(la::BlockMatrix<6>& y, double s, const la::BlockMatrix<6>& x) {
+  Eigen::Map<VecX>(y.data(), static_cast<Index>(y.value_count())) =
+      s * Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count()));
+}
+void add_scaled(la::MCK& y, double s, const la::MCK& x) { add_scaled(y.M, s, x.M), add_scaled(y.C, s, x.C), add_scaled(y.K, s, x.K); }
+
+}  // namespace
+
+RunningSystem::RunningSystem(const system::System& system, Running running)
+    : system_(system), running_(std::move(running)), ratio_(running_.ratio), workspace_(system.make_workspace()),
+      q_(system.size()), v_(system.size()), a_(VecX::Zero(system.size())), r_(system.size()), part_(system.make_matrices()) {
+  if (ratio_.empty()) ratio_.assign(at(system.lines()), 1.0);
+  ratio_.resize(at(system.lines()), 0.0);
+  std::vector<unsigned char> turnable(at(system.nodes()), 0);
+  for (const auto& term : system.terms())
+    if (term->width() == 7) {
+      std::vector<Index> nodes;
+      term->list_nodes(nodes);
+      for (Index i : nodes) turnable[at(i)] = 1;
+    }
+  spinning_.assign(at(system.nodes()), 0);
+  for (Index i = 0; i < system.nodes(); ++i)
+    spinning_[at(i)] = turnable[at(i)] && !system.node(i).scalar && ratio_[at(system.node(i).line)] != 0.0;
+  for (const auto& h : system.holds()) {
+    const Index i = h.unknown / 6;
+    if (h.unknown % 6 != system::spin_phi || !spinning_[at(i)] || h.law) continue;
+    // A ground point shares its line with whatever it holds; it has no freedom at all and does not turn.
+    bool fixed = true;
+    for (int c = 0; c < 6; ++c) fixed = fixed && !system.active()[at(6 * i + c)];
+    if (!fixed)
+      throw run_error("E78", "shaft '" + system.line_name(system.node(i).line) + "' cannot turn: its spin is held at " + system.node(i).name,
+                      "release the rotation about the axis (rx) of that support, or give the shaft speed_ratio = 0");
+    spinning_[at(i)] = 0;
+  }
+  for (Index i = 0; i < system.nodes(); ++i)
+    if (spinning_[at(i)]) orders_.push_back(std::abs(ratio_[at(system.node(i).line)]));
+  std::sort(orders_.begin(), orders_.end());
+  orders_.erase(std::unique(orders_.begin(), orders_.end()), orders_.end());
+  make_samples();
+  sort_terms();
+}
+
+void RunningSystem::set_load(double factor) {
+  if (workspace_.context.load != factor) workspace_.context.load = factor, polynomial_ = seen_ = false;
+}
+
+void RunningSystem::make_samples() {
+  const Index k = static_cast<Index>(orders_.size());
+  if (k <= 1) {
+    // four a revolution: exact up to the second harmonic, aliases of the third and fourth
+    theta_ = {0.0, 0.5 * pi, pi, 1.5 * pi};
+    if (k == 1) for (double& x : theta_) x /= orders_[0];
+    weights_.resize(3, 4);
+    weights_ << 0.25, 0.25, 0.25, 0.25, 0.5, 0, -0.5, 0, 0, 0.5, 0, -0.5;
+    return;
+  }
+  std::vector<double> harmonics = orders_;
+  for (double o : orders_) harmonics.push_back(2.0 * o);
+  std::sort(harmonics.begin(), harmonics.end());
+  harmonics.erase(std::unique(harmonics.begin(), harmonics.end(), [](double a, double b) { return b - a < 1e-9 * b; }), harmonics.end());
+  double spacing = harmonics.front();
+  for (std::size_t i = 1; i < harmonics.size(); ++i) spacing = std::min(spacing, harmonics[i] - harmonics[i - 1]);
+  const Index unknowns = 1 + 2 * static_cast<Index>(harmonics.size()), samples = 3 * unknowns;
+  MatX A(samples, unknowns);
+  theta_.resize(at(samples));
+  for (Index j = 0; j < samples; ++j) {
+    // golden-section points over a few periods of the slowest beat
+    const double g = 0.6180339887498949 * static_cast<double>(j + 1);
+    theta_[at(j)] = (g - std::floor(g)) * 4.0 * two_pi / spacing;
+    A(j, 0) = 1.0;
+    for (Index h = 0; h < static_cast<Index>(harmonics.size()); ++h)
+      A(j, 1 + 2 * h) = std::cos(harmonics[at(h)] * theta_[at(j)]), A(j, 2 + 2 * h) = std::sin(harmonics[at(h)] * theta_[at(j)]);
+  }
+  const MatX inverse = A.completeOrthogonalDecomposition().pseudoInverse();
+  weights_.resize(1 + 2 * k, samples);
+  weights_.row(0) = inverse.row(0);
+  for (Index o = 0; o < k; ++o) {
+    Index h = 0;
+    while (std::abs(harmonics[at(h)] - orders_[at(o)]) > 1e-9 * orders_[at(o)]) ++h;
+    weights_.middleRows(1 + 2 * o, 2) = inverse.middleRows(1 + 2 * h, 2);
+  }
+}
+
+void RunningSystem::sort_terms() {
+  // A term sees phi when its force changes as all lines turn on together. Small generic motions, equal for all angles.
+  std::mt19937 rng(7);
+  std::normal_distribution<double> normal;
+  const system::Frames frames = system_.make_state().frames;
+  VecX q(system_.size()), v(system_.size()), a(system_.size());
+  for (Index k = 0; k < q.size(); ++k) q[k] = 1e-6 * normal(rng), v[k] = 1e-4 * normal(rng), a[k] = normal(rng);
+  VecX turned = q;
+  for (Index i = 0; i < system_.nodes(); ++i)
+    if (spinning_[at(i)]) v[6 * i + 3] += 10.0 * ratio_[at(system_.node(i).line)];
+  const auto& terms = system_.terms();
+  std::vector<std::vector<Vector<7>>> base(terms.size());
+  std::vector<unsigned char> sees(terms.size(), 0);
+  for (double theta : {0.0, 1.0, 2.3}) {
+    for (Index i = 0; i < system_.nodes(); ++i)
+      if (spinning_[at(i)]) turned[6 * i + 3] = q[6 * i + 3] + theta * ratio_[at(system_.node(i).line)];
+    system_.evaluate_nodes(workspace_, frames, running_.time, turned, v, a);
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      for (auto& x : workspace_.force) x.setZero();
+      terms[k]->add_force(workspace_);
+      if (theta == 0.0) {
+        base[k] = workspace_.force;
+        continue;
+      }
+      Vec3 size = Vec3::Zero(), change = Vec3::Zero();   // forces, director forces, torques
+      for (std::size_t i = 0; i < base[k].size(); ++i) {
+        const Vector<7>&f = base[k][i], g = workspace_.force[i] - f;
+        const Vec3 s(f.head<3>().cwiseAbs().maxCoeff(), f.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(f[6]));
+        const Vec3 c(g.head<3>().cwiseAbs().maxCoeff(), g.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(g[6]));
+        size = size.cwiseMax(s), change = change.cwiseMax(c);
+      }
+      for (int c = 0; c < 3; ++c)
+        if (!(change[c] <= 1e-8 * size[c])) sees[k] = 1;   // rounding of phi differences stays below
+    }
+  }
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    all_.push_back(k);
+    if (!sees[k]) blind_.push_back(k);
+    if (sees[k]) turning_.push_back(k);
+    else if (terms[k]->quadratic_in_rates()) smooth_.push_back(k);
+    else other_.push_back(k);
+  }
+  if (!running_.mean) {
+    // nothing is averaged: what turns is evaluated like the rest
+    other_.insert(other_.end(), turning_.begin(), turning_.end());
+    turning_.clear();
+  }
+}
+
+void RunningSystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
+  v.setZero();
+  for (Index i = 0; i < system_.nodes(); ++i)
+    if (spinning_[at(i)]) v[6 * i + 3] = Omega * ratio_[at(system_.node(i).line)];
+}
+
+void RunningSystem::impose(const system::Frames& f, Eigen::Ref<VecX> q) const {
+  std::vector<double> lead(at(system_.lines()), nan);
+  for (const auto& h : system_.holds()) {
+    if (!h.law) {
+      q[h.unknown] = 0.0;
+      continue;
+    }
+    const Index i = h.unknown / 6;
+    double x = h.law->at(running_.time).f;
+    if (h.unknown % 6 == system::spin_phi && spinning_[at(i)]) {
+      double& first = lead[at(system_.node(i).line)];
+      if (std::isnan(first)) first = x;
+      x -= first;
+    } else if (h.unknown % 6 == system::spin_phi) {
+      x -= two_pi * f.turns[at(system_.node(i).line)];
+    }
+    q[h.unknown] = x;
+  }
+}
+
+bool RunningSystem::evaluate_residual(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r, const Terms& only) {
+  set_rates(Omega, v_);
+  if (theta == 0.0) return system_.residual(workspace_, f, running_.time, q, v_, a_, r, &only);
+  q_ = q;
+  for (Index i = 0; i < system_.nodes(); ++i)
+    if (spinning_[at(i)]) q_[6 * i + 3] += theta * ratio_[at(system_.node(i).line)];
+  return system_.residual(workspace_, f, running_.time, q_, v_, a_, r, &only);
+}
+
+bool RunningSystem::evaluate_tangent(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out, const Terms& only) {
+  set_rates(Omega, v_);
+  if (theta == 0.0) return system_.tangent(workspace_, f, running_.time, q, v_, a_, out, &only);
+  q_ = q;
+  for (Index i = 0; i < system_.nodes(); ++i)
+    if (spinning_[at(i)]) q_[6 * i + 3] += theta * ratio_[at(system_.node(i).line)];
+  return system_.tangent(workspace_, f, running_.time, q_, v_, a_, out, &only);
+}
+
+bool RunningSystem::residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r) {
+  return evaluate_residual(f, Omega, q, theta, r, all_);
+}
+bool RunningSystem::tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out) {
+  return evaluate_tangent(f, Omega, q, theta, out, all_);
+}
+
+bool RunningSystem::fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const {
+  return polynomial_ && std::abs(Omega) <= 2.0 * scale_ && q == polynomial_q_ && f.chart == polynomial_charts_;
+}
+
+bool RunningSystem::make_polynomial(const system::Frames& f, double Omega, const VecX& q) {
+  // Interpolation at -s, 0, s with s near the top speed: no digits are lost below it.
+  const double s = std::max({std::abs(Omega), running_.top_speed, 1.0});
+  if (p0_.M.value_count() == 0) p0_ = system_.make_matrices(), p1_ = system_.make_matrices(), k2_ = la::BlockMatrix<6>(system_.pattern());
+  if (!evaluate_tangent(f, s, q, 0.0, p1_, smooth_) || !evaluate_residual(f, s, q, 0.0, r1_, smooth_)) return false;
+  if (!evaluate_tangent(f, -s, q, 0.0, part_, smooth_) || !evaluate_residual(f, -s, q, 0.0, r2_, smooth_)) return false;
+  if (!evaluate_tangent(f, 0.0, q, 0.0, p0_, smooth_) || !evaluate_residual(f, 0.0, q, 0.0, r0_, smooth_)) return false;
+  set_scaled(k2_, 0.5 / (s * s), p1_.K), add_scaled(k2_, 0.5 / (s * s), part_.K), add_scaled(k2_, -1.0 / (s * s), p0_.K);
+  for (auto [p, m] : {std::pair{&p1_.C, &part_.C}, std::pair{&p1_.K, &part_.K}}) {
+    set_scaled(*p, 0.5 / s, *p);
+    add_scaled(*p, -0.5 / s, *m);
+  }
+  const VecX plus = r1_, minus = r2_;
+  r1_ = (0.5 / s) * (plus - minus);
+  r2_ = (0.5 / (s * s)) * (plus + minus - 2.0 * r0_);
+  polynomial_ = true, scale_ = s, polynomial_q_ = q, polynomial_charts_ = f.chart;
+  return true;
+}
+
+bool RunningSystem::residual(const system::Frames& f, double Omega, const VecX& q, VecX& r) {
+  r.resize(q.size());
+  if (fits_polynomial(f, Omega, q)) {
+    r = r0_ + Omega * r1_ + (Omega * Omega) * r2_;
+  } else {
+    if (!evaluate_residual(f, Omega, q, 0.0, r, smooth_)) return false;
+  }
+  if (!other_.empty()) {
+    if (!evaluate_residual(f, Omega, q, 0.0, r_, other_)) return false;
+    r += r_;
+  }
+  if (!turning_.empty())
+    for (std::size_t k = 0; k < theta_.size(); ++k) {
+      if (!evaluate_residual(f, Omega, q, theta_[k], r_, turning_)) return false;
+      r += weights_(0, static_cast<Index>(k)) * r_;
+    }
+  return true;
+}
+
+bool RunningSystem::tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
+  if (!fits_polynomial(f, Omega, q)) {
+    // A second speed at the same equilibrium: a sweep, in which the polynomials pay.
+    const bool sweep = seen_ && seen_speed_ != Omega && seen_q_ == q;
+    if (sweep && !make_polynomial(f, Omega, q)) return false;
+    seen_ = true, seen_speed_ = Omega, seen_q_ = q;
+  }
+  if (fits_polynomial(f, Omega, q)) {
+    std::copy_n(p0_.M.data(), p0_.M.value_count(), out.M.data());
+    const Index n = static_cast<Index>(p0_.C.value_count());
+    Eigen::Map<VecX>(out.C.data(), n) = Eigen::Map<const VecX>(p0_.C.data(), n) + Omega * Eigen::Map<const VecX>(p1_.C.data(), n);
+    Eigen::Map<VecX>(out.K.data(), n) = Eigen::Map<const VecX>(p0_.K.data(), n) + Omega * Eigen::Map<const VecX>(p1_.K.data(), n) +
+                                        (Omega * Omega) * Eigen::Map<const VecX>(k2_.data(), n);
+  } else if (!evaluate_tangent(f, Omega, q, 0.0, out, smooth_)) {
+    return false;
+  }
+  if (!other_.empty()) {
+    if (!evaluate_tangent(f, Omega, q, 0.0, part_, other_)) return false;
+    add_scaled(out, 1.0, part_);
+  }
+  if (!turning_.empty())
+    for (std::size_t k = 0; k < theta_.size(); ++k) {
+      if (!evaluate_tangent(f, Omega, q, theta_[k], part_, turning_)) return false;
+      add_scaled(out, weights_(0, static_cast<Index>(k)), part_);
+    }
+  return true;
+}
+
+bool RunningSystem::forcing(const system::Frames& f, double Omega, const VecX& q, std::vector<VecXc>& out) {
+  out.resize(orders_.size());
+  for (auto& x : out) x = VecXc::Zero(q.size());
+  if (turning_.empty()) return true;
+  for (std::size_t k = 0; k < theta_.size(); ++k) {
+    if (!evaluate_residual(f, Omega, q, theta_[k], r_, turning_)) return false;
+    // A cos + B sin = Re((A - iB) e^(i x))
+    for (std::size_t o = 0; o < orders_.size(); ++o) {
+      const Index c = 1 + 2 * static_cast<Index>(o), j = static_cast<Index>(k);
+      out[o] += r_ * Complex(weights_(c, j), -weights_(c + 1, j));
+    }
+  }
+  return true;
+}
+
+}  // namespace whirl::analysis

@@ -1,0 +1,94 @@
+// The system turning at constant speed: what every analysis in the frequency domain is about.
+//
+// Each spinning line l turns at Omega ratio_l and nothing else moves. R(q; Omega) is the residual averaged over the
+// revolution: what turns with a rotor and has no mean (unbalance, skew, bow, key ways) drops out and stands in the forcing
+// instead,
+//   R(theta) = R + sum_k Re(f_k exp(i order_k theta)) + ...,   theta = Omega t,  order_k = |ratio|, distinct values,
+// found from samples of the exact residual over theta (four a revolution when all lines have one speed, else a least-squares
+// fit with first and second harmonics of every speed; exact for what has no higher harmonics). No element is known by name.
+// The same averages of the tangents are the matrices M, C(Omega), K(Omega); an axisymmetric balanced rotor needs no average.
+//
+// Terms that are quadratic in the rates and do not see phi keep their matrices as polynomials in Omega (C linear, K
+// quadratic: exact), so a sweep over speeds re-evaluates bearings and the like only.
+#pragma once
+#include <system/system.hpp>
+#include <span>
+#include <vector>
+
+namespace whirl::analysis {
+
+struct Running {
+  std::vector<double> ratio;   ///< spin of each line relative to the reference speed (negative: the other way); empty = all 1;
+                               ///< shorter than the lines: the rest (ground) stand still
+  double time = 0;             ///< laws of time are read here
+  bool mean = true;            ///< average over the revolution; false: rotor angles as they stand (statics)
+  double top_speed = 0;        ///< highest |Omega| expected, rad/s (keeps the polynomials from being made twice); 0 = unknown
+};
+
+class RunningSystem {
+ public:
+  /// Errors: E78, a line that shall spin is held against it.
+  explicit RunningSystem(const system::System& system, Running running = {});
+
+  const system::System& system() const { return system_; }
+  const Running& running() const { return running_; }
+  double ratio(Index line) const { return ratio_[static_cast<std::size_t>(line)]; }
+  /// 1 where phi turns with the line.
+  std::span<const unsigned char> spinning() const { return spinning_; }
+  bool phase_dependent() const { return !turning_.empty(); }
+  /// Distinct |ratio| > 0, ascending.
+  std::span<const double> orders() const { return orders_; }
+
+  /// Factor on gravity and given loads.
+  void set_load(double factor);
+  double load() const { return workspace_.context.load; }
+
+  /// v of the steady motion: Omega ratio at spinning phi, else zero.
+  void set_rates(double Omega, Eigen::Ref<VecX> v) const;
+  /// Held unknowns at their laws (running.time), spinning phi that is prescribed: relative to the first prescribed one.
+  void impose(const system::Frames& f, Eigen::Ref<VecX> q) const;
+  /// Mean residual; held rows are the reactions. False outside the domain of charts or elements.
+  bool residual(const system::Frames& f, double Omega, const VecX& q, VecX& r);
+  /// Mean matrices.
+  bool tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
+  /// K of all terms that do not see phi: what can hold a rotor's angle.
+  bool blind_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
+    return evaluate_tangent(f, Omega, q, 0.0, out, blind_);
+  }
+  /// f_k of orders(): complex amplitudes of what stands in the residual; the response solves S a = -f.
+  bool forcing(const system::Frames& f, double Omega, const VecX& q, std::vector<VecXc>& out);
+  /// Samples of tangents over the revolution, for periodic systems: f(theta) with theta = 2 pi k/n, k = 0 .. n-1.
+  bool tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out);
+  bool residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r);
+
+ private:
+  using Terms = std::vector<std::size_t>;
+  bool evaluate_residual(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r, const Terms& only);
+  bool evaluate_tangent(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out, const Terms& only);
+  bool make_polynomial(const system::Frames& f, double Omega, const VecX& q);
+  bool fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const;
+  void sort_terms();
+  void make_samples();
+
+  const system::System& system_;
+  Running running_;
+  std::vector<double> ratio_, orders_;
+  std::vector<unsigned char> spinning_;
+  Terms smooth_, other_, turning_;         ///< quadratic in rates and blind to phi; blind to phi; the rest
+  Terms blind_, all_;
+  std::vector<double> theta_;              ///< samples
+  MatX weights_;                           ///< rows: mean, then cos and sin of each order; columns: samples
+  system::Workspace workspace_;
+  VecX q_, v_, a_, r_;                     // scratch
+  la::MCK part_;
+  // smooth terms as polynomials at one q
+  bool polynomial_ = false, seen_ = false;
+  double scale_ = 0, polynomial_load_ = 1, seen_speed_ = 0;
+  VecX polynomial_q_, seen_q_;
+  std::vector<Mat3> polynomial_charts_;
+  la::MCK p0_, p1_;                        ///< constant part; slopes of C and K
+  la::BlockMatrix<6> k2_;                  ///< curvature of K
+  VecX r0_, r1_, r2_;
+};
+
+}  // namespace whirl::analysis
