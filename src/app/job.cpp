@@ -67,6 +67,22 @@ StepState Job::start_of(const model::Step& step, double speed) const {
   return s;
 }
 
+void Job::settle(system::SystemProblem&, StepState& start) const {
+  analysis::Running running;
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    const Index n = mesh.lines[l].first_node;
+    const double spin = start.state.v[6 * n + system::spin_phi];
+    running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : 0.0);
+  }
+  running.ratio.resize(static_cast<std::size_t>(system().lines()), 0.0);
+  analysis::RunningSystem turning(system(), running);
+  analysis::EquilibriumOptions o;
+  o.chart_change = model.chart_change;
+  analysis::EquilibriumSolver solver(turning, o);
+  start.state = solver.solve(start.speed, &start.state).state;
+  start.state.a.setZero();
+}
+
 ProgressLine::ProgressLine(std::string name, bool quiet) : name_(std::move(name)), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 namespace {
