@@ -1,7 +1,8 @@
 // Runs the steps of a deck in order and writes summary and report, complete or not: a failed step keeps what came before it.
 #include <app/job.hpp>
 #include <app/steps.hpp>
-#include <io/plots.hpp>
+#include <io/rotor_drawing.hpp>
+#include <io/svg.hpp>
 
 #include <fmt/format.h>
 
@@ -32,31 +33,6 @@ void describe_model(Job& job) {
 
 }  // namespace
 
-io::RotorDrawing drawing_of(const model::Model& model, const meshes::Mesh& mesh) {
-  io::RotorDrawing d;
-  d.title = model.title.empty() ? model.deck_name : model.title;
-  double longest = 0.0;
-  for (const meshes::Line& l : mesh.lines) longest = std::max(longest, l.length);
-  for (std::size_t l = 0; l < model.shafts.size(); ++l) {
-    double s = model.shafts[l].origin.x();
-    for (const model::Section& x : model.shafts[l].sections) {
-      const double thin = x.od_l > 0.0 ? 0.0 : 0.02 * longest;
-      d.sections.push_back({s, s + x.length, x.od_l + thin, x.od_r + thin, x.id_l, x.id_r, x.name});
-      s += x.length;
-    }
-  }
-  auto at = [&](const model::Location& p) { return model.shafts[p.shaft].origin.x() + p.s; };
-  for (const model::Disk& k : model.disks) {
-    double od = k.draw_od;
-    if (od <= 0.0 && k.mass > 0.0 && k.Ip > 0.0) od = 2.0 * std::sqrt(2.0 * k.Ip / k.mass);
-    d.disks.push_back({at(k.at), od, 2.0 * mesh.radius(model, k.at.shaft, k.at.s), k.draw_width > 0 ? k.draw_width : 0.08 * od, k.name});
-  }
-  for (const model::Bearing& b : model.bearings) d.bearings.push_back({at(b.at), mesh.radius(model, b.at.shaft, b.at.s), b.name});
-  for (const model::Probe& p : model.probes) d.probes.push_back({at(p.at), mesh.radius(model, p.at.shaft, p.at.s), p.name});
-  for (const meshes::Station& s : mesh.stations) d.nodes.push_back(s.position.x());
-  return d;
-}
-
 void run_steps(Job& job) {
   const double t0 = wall();
   job.report.title = job.model.title.empty() ? job.model.deck_name : job.model.title;
@@ -69,7 +45,8 @@ void run_steps(Job& job) {
       job.report.summary = job.summary;
       io::ReportSection rotor;
       rotor.title = "Rotor";
-      rotor.figures.push_back(io::plot_rotor("rotor", drawing_of(job.model, job.mesh)));
+      for (const io::RotorDrawing& d : io::make_rotor_drawings(job.model, job.mesh, job.scene))
+        rotor.figures.push_back(io::plot_rotor(rotor.figures.empty() ? "rotor" : fmt::format("rotor_{}", rotor.figures.size() + 1), d));
       job.report.sections.insert(job.report.sections.begin(), std::move(rotor));
       io::write_report(job.folder.path("report.html"), job.report);
       for (const io::ReportSection& s : job.report.sections)

@@ -146,7 +146,10 @@ class Frames final : public analysis::Observer {
       poses_[i] = {job_.mesh.nodes[i].position + n.u, n.d(), n.phi};
       velocity_[i] = n.du, omega_[i] = n.omega();
     }
-    writer_->frame({s.t(), poses_, velocity_, omega_, {}, {}, {}});
+    io::FrameState frame;
+    frame.time = s.t();
+    frame.nodes = poses_, frame.velocity = velocity_, frame.angular_velocity = omega_;
+    writer_->frame(frame);
   }
   const Job& job_;
   io::FrameSchedule schedule_;
