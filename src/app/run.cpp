@@ -1,14 +1,23 @@
+#include <app/interrupt.hpp>
+#include <app/job.hpp>
 #include <app/results_folder.hpp>
 #include <app/run.hpp>
-#include <cstdio>
+#include <app/steps.hpp>
+
 #include <fmt/format.h>
+
+#include <cstdio>
 
 namespace whirl::app {
 
 int run_deck(const model::Model& model, const RunOptions& options) {
-  const auto folder = prepare_results(model, options);
-  if (!options.quiet) std::fputs(fmt::format("results: {}\n", folder.string()).c_str(), stdout);
-  return static_cast<int>(Exit::ok);
+  install_interrupt_handlers();
+  const auto root = prepare_results(model, options);
+  Job job(model, options, root);
+  run_steps(job);
+  if (options.json) std::fputs(io::to_json(job.summary).c_str(), stdout);
+  else if (!options.quiet) std::fputs(fmt::format("results: {}\n", root.string()).c_str(), stdout);
+  return static_cast<int>(interrupted() ? Exit::interrupted : Exit::ok);
 }
 
 }  // namespace whirl::app
