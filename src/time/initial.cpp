@@ -85,7 +85,8 @@ StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, Ve
             break;
         }
       }
-      const double error = std::max(size > 0.0 ? change / size : 0.0,
+      // R is affine in a: two solutions determine it to round-off, which at an equilibrium (a = 0) is all there is of a
+      const double error = std::max(size > 0.0 && iteration < 2 ? change / size : 0.0,
                                     size_massless > 0.0 ? change_massless / size_massless : 0.0);
       // 1e-12: what a and the error filter need; at round-off the corrections stop shrinking
       if (error <= 1e-12 || (iteration > 1 && error <= 1e-8 && error >= 0.5 * previous)) return StepStatus::ok;
