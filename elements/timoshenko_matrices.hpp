@@ -27,7 +27,9 @@
 // Measured orders of the frequencies: slender 6, thick Timoshenko shafts 4, spinning or not (consistent mass: 4 and 2).
 // Limits: the argument needs c_w the same in neighbouring elements. Where it varies (cones, unequal lengths) the leading order
 // stays with a smaller constant: slender cones 4; thick solid cones 4; thick hollow cones whose kappa changes 2, with a tenth
-// of the consistent mass's error.
+// of the consistent mass's error. Concentrated inertia works through x.K4 x as well: with disks much heavier than the shaft
+// the first frequency keeps an error of the size of the consistent mass's with the other sign (1e-5 with 12 elements between two
+// supports), while the higher ones gain a factor of 3 to 10.
 //
 // The polar mass is built in the same way on the exact static twist: consistent plus c_t K_t, which is
 // rhoIp l [5/12 1/12; 1/12 5/12] for a uniform element; order 4 where l sqrt(rhoIp/GJ) is the same in all elements,
