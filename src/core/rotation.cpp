@@ -93,20 +93,6 @@ void position(const Vec2& g, Director& o) {
   o.D(2, 1) = -b.b1 * p.y() * g.y();
 }
 
-// d2 d[w, .] as a 3x2 matrix.
-Mat32 second(const Director& o, const Vec2& w) {
-  const BesselRatios& b = o.b;
-  const Vec2 &g = o.gamma, p = turn(g), pw = turn(w);
-  const double alpha = g.dot(w);
-  Mat32 m;
-  m.row(0) = (b.b1 * alpha) * g.transpose() - b.b0 * w.transpose();
-  const Vec2 left = b.b2 * alpha * p - b.b1 * pw;  // times gamma^T
-  for (int i = 0; i < 2; ++i) m.row(1 + i) = left[i] * g.transpose() - (b.b1 * p[i]) * w.transpose();
-  m(1, 1) -= b.b1 * alpha;
-  m(2, 0) += b.b1 * alpha;
-  return m;
-}
-
 }  // namespace
 
 BesselRatios bessel_ratios(double x) {
@@ -213,21 +199,29 @@ void director(const Vec2& gamma, Director& out) { position(gamma, out); }
 
 void director(const Vec2& gamma, const Vec2& dgamma, const Vec2& ddgamma, Director& o) {
   position(gamma, o);
-  const BesselRatios& b = o.b;
-  const Vec2 &g = gamma, &w = dgamma, p = turn(g), pw = turn(w);
-  const double alpha = g.dot(w), ww = w.squaredNorm();
-  o.D_rate = second(o, w);
-  o.rate = o.D * w;
-  o.accel = o.D * ddgamma + o.D_rate * w;
-  // d3 d[w, w, .] + d2 d[gamma'', .]
-  o.D_accel = second(o, ddgamma);
-  o.D_accel.row(0) += (b.b1 * ww - b.b2 * alpha * alpha) * g.transpose() + (2.0 * b.b1 * alpha) * w.transpose();
-  const Vec2 left_g = (b.b2 * ww - b.b3 * alpha * alpha) * p + (2.0 * b.b2 * alpha) * pw;
-  const Vec2 left_w = 2.0 * (b.b2 * alpha * p - b.b1 * pw);
-  for (int i = 0; i < 2; ++i) o.D_accel.row(1 + i) += left_g[i] * g.transpose() + left_w[i] * w.transpose();
-  const double turning = b.b2 * alpha * alpha - b.b1 * ww;
-  o.D_accel(1, 1) += turning;
-  o.D_accel(2, 0) -= turning;
+  // Written out in scalars: this runs for every node of every evaluation. d2 d[w, .] and d2 d[gamma'', .], then d3 d[w, w, .].
+  const double b0 = o.b.b0, b1 = o.b.b1, b2 = o.b.b2, b3 = o.b.b3;
+  const double g2 = gamma.x(), g3 = gamma.y(), w2 = dgamma.x(), w3 = dgamma.y(), a2 = ddgamma.x(), a3 = ddgamma.y();
+  const double alpha = g2 * w2 + g3 * w3, beta = g2 * a2 + g3 * a3, ww = w2 * w2 + w3 * w3;
+  const double ba = b1 * alpha, bg2 = b1 * g2, bg3 = b1 * g3;
+  // rows (x, y, z) of D' = d2 d[w, .]; p = (g3, -g2) turns into (w3, -w2)
+  const double l3 = b2 * alpha * g3 - b1 * w3, l2 = b1 * w2 - b2 * alpha * g2;
+  const double r00 = ba * g2 - b0 * w2, r01 = ba * g3 - b0 * w3;
+  const double r10 = l3 * g2 - bg3 * w2, r11 = l3 * g3 - bg3 * w3 - ba;
+  const double r20 = l2 * g2 + bg2 * w2 + ba, r21 = l2 * g3 + bg2 * w3;
+  o.D_rate << r00, r01, r10, r11, r20, r21;
+  for (int i = 0; i < 3; ++i) {
+    o.rate[i] = o.D(i, 0) * w2 + o.D(i, 1) * w3;
+    o.accel[i] = o.D(i, 0) * a2 + o.D(i, 1) * a3 + o.D_rate(i, 0) * w2 + o.D_rate(i, 1) * w3;
+  }
+  // d2 d[gamma'', .] + d3 d[w, w, .]: coefficients of g^T, w^T and gamma''^T, and the part that turns
+  const double aa = alpha * alpha, cg = b1 * beta + b1 * ww - b2 * aa, cw = 2.0 * ba;
+  const double q = b2 * (beta + ww) - b3 * aa, k = 2.0 * b2 * alpha, turning = b2 * aa - b1 * (ww + beta);
+  const double m3 = q * g3 + k * w3 - b1 * a3, m2 = b1 * a2 - q * g2 - k * w2;       // times g^T
+  const double n3 = k * g3 - 2.0 * b1 * w3, n2 = 2.0 * b1 * w2 - k * g2;             // times w^T
+  o.D_accel << cg * g2 + cw * w2 - b0 * a2, cg * g3 + cw * w3 - b0 * a3,
+      m3 * g2 + n3 * w2 - bg3 * a2, m3 * g3 + n3 * w3 - bg3 * a3 + turning,
+      m2 * g2 + n2 * w2 + bg2 * a2 - turning, m2 * g3 + n2 * w3 + bg2 * a3;
 }
 
 Vec2 gamma_of_director(const Vec3& t) {
