@@ -57,7 +57,7 @@ Collocation::Collocation(std::string_view name, const Tableau& tableau, Problem&
     : Stepper(problem, options), name_(name), tab_(tableau), s_(tableau.stages) {
   const double exponent = static_cast<double>(s_ + 1) / tab_.order;
   allowance_ = allowance_factor(tab_) * std::pow(options.tolerance, exponent);
-  newton_.configure(options.max_newton, newton_share * std::pow(options.tolerance, 1.0 + 1.0 / tab_.order));
+  newton_.configure(options.max_newton, newton_share * std::pow(options.tolerance, 1.0 + 1.0 / tab_.order), 0.03 * allowance_);
   control_.configure(s_ + 1);
   for (MatX* m : {&y_, &a_stage_, &r_, &a_last_}) *m = MatX::Zero(n_, s_);
   for (VecX* x : {&qs_, &vs_, &as_, &dq_, &u_, &e_, &rho_q_, &rho_v_, &start_residual_}) *x = VecX::Zero(n_);
@@ -171,7 +171,7 @@ void Collocation::newton(double h, Attempt& out) {
         return;
       case NewtonMonitor::Verdict::failed:
         out.status = StepStatus::newton;
-        newton_.set_eta(1.0);
+        newton_.forget();
         return;
       case NewtonMonitor::Verdict::iterate:
         break;
@@ -299,7 +299,8 @@ void Collocation::dense(double theta, Ref q, Ref v, Ref a) const {
 }
 
 void Collocation::save_history(std::vector<double>& out) const {
-  out.insert(out.end(), {h_last_, theta_start_, have_history_ ? 1.0 : 0.0, newton_.eta()});
+  out.insert(out.end(), {h_last_, theta_start_, have_history_ ? 1.0 : 0.0});
+  newton_.save(out);
   out.insert(out.end(), a_last_.data(), a_last_.data() + a_last_.size());
 }
 
@@ -307,7 +308,7 @@ const double* Collocation::restore_history(const double* in) {
   h_last_ = *in++;
   theta_start_ = *in++;
   have_history_ = *in++ != 0.0;
-  newton_.set_eta(*in++);
+  in = newton_.restore(in);
   std::copy_n(in, a_last_.size(), a_last_.data());
   return in + a_last_.size();
 }

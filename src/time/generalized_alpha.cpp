@@ -19,12 +19,13 @@
 // Dense output: q the cubic Hermite polynomial, v = q', a = q''.
 #include <time/generalized_alpha.hpp>
 
+#include <time/hermite.hpp>
 #include <cmath>
 
 namespace whirl::time {
 namespace {
 constexpr double allowance_factor = 7e-3;
-constexpr double newton_share = 1e-3;   // largest Newton error of a step, in units of the tolerance
+constexpr double newton_share = 0.01;   // largest Newton error of a step over its largest local error
 }  // namespace
 
 GeneralizedAlpha::GeneralizedAlpha(Problem& problem, const Options& options) : Stepper(problem, options) {
@@ -35,7 +36,7 @@ GeneralizedAlpha::GeneralizedAlpha(Problem& problem, const Options& options) : S
   beta_ = 0.25 * (gamma_ + 0.5) * (gamma_ + 0.5);
   error_constant_ = beta_ - 1.0 / 6.0 + 0.5 * (alpha_m_ - alpha_f_);
   allowance_ = allowance_factor * std::pow(options.tolerance, 1.5);
-  newton_.configure(options.max_newton, std::min(newton_share * options.tolerance, 0.1 * allowance_));
+  newton_.configure(options.max_newton, newton_share * allowance_, 0.03 * allowance_);
   control_.configure(3);
   for (VecX* x : {&algorithmic0_, &algorithmic_, &algorithmic_before_, &difference_, &difference_before_, &r_, &dq_, &dv_, &e_})
     *x = VecX::Zero(n_);
@@ -91,7 +92,7 @@ Stepper::Attempt GeneralizedAlpha::attempt(double h) {
     if (verdict == NewtonMonitor::Verdict::converged) break;
     if (verdict == NewtonMonitor::Verdict::failed) {
       out.status = StepStatus::newton;
-      newton_.set_eta(1.0);
+      newton_.forget();
       return out;
     }
   }
@@ -133,21 +134,19 @@ void GeneralizedAlpha::rewind() {
 void GeneralizedAlpha::drop_history() { h_last_ = h_before_ = 0.0; }
 
 void GeneralizedAlpha::dense(double theta, Ref q, Ref v, Ref a) const {
-  const double x = theta, y = 1.0 - theta, h = h_;
-  q = (y * y * (1.0 + 2.0 * x)) * q0_ + (x * x * (3.0 - 2.0 * x)) * q_ + (h * x * y * y) * v0_ - (h * x * x * y) * v_;
-  v = (6.0 * x * y / h) * (q_ - q0_) + (y * (1.0 - 3.0 * x)) * v0_ + (x * (3.0 * x - 2.0)) * v_;
-  a = (6.0 * (1.0 - 2.0 * x) / (h * h)) * (q_ - q0_) + ((6.0 * x - 4.0) / h) * v0_ + ((6.0 * x - 2.0) / h) * v_;
+  hermite(theta, h_, q0_, v0_, q_, v_, q, v, a);
 }
 
 void GeneralizedAlpha::save_history(std::vector<double>& out) const {
-  out.insert(out.end(), {h_last_, newton_.eta()});
+  out.insert(out.end(), {h_last_});
+  newton_.save(out);
   for (const VecX* x : {&algorithmic_, &difference_}) out.insert(out.end(), x->data(), x->data() + n_);
 }
 
 const double* GeneralizedAlpha::restore_history(const double* in) {
   h_last_ = *in++;
   h_before_ = 0.0;
-  newton_.set_eta(*in++);
+  in = newton_.restore(in);
   for (VecX* x : {&algorithmic_, &difference_}) {
     std::copy_n(in, n_, x->data());
     in += n_;

@@ -3,6 +3,7 @@
 #include <time/problem.hpp>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace whirl::time {
 
@@ -11,13 +12,17 @@ namespace whirl::time {
 class NewtonMonitor {
  public:
   enum class Verdict { iterate, converged, failed };
-  /// limit: largest number of iterations; allowance: largest iteration error of a step.
-  void configure(int limit, double allowance) { limit_ = limit, allowance_ = allowance; }
+  /// limit: largest number of iterations; allowance: largest iteration error of a step; acceptable: what is still taken
+  /// when round-off stops the iteration before the allowance is reached.
+  void configure(int limit, double allowance, double acceptable) {
+    limit_ = limit, allowance_ = allowance, acceptable_ = std::max(acceptable, allowance);
+  }
   void begin() {
     count_ = 0;
     rate_ = 0.0;
     // rates of earlier steps are trusted less with each step, and no further than the floor: a contact may close now
     eta_ = std::max(std::pow(eta_, 0.8), eta_floor);
+    noise_ *= 0.9;
   }
   Verdict update(double change) {
     ++count_;
@@ -25,29 +30,40 @@ class NewtonMonitor {
     if (count_ > 1) {
       const double ratio = previous_ > 0.0 ? change / previous_ : 0.0;
       rate_ = count_ == 2 ? ratio : std::sqrt(ratio * rate_);
-      if (rate_ >= 0.99) {
-        if (change > allowance_) return Verdict::failed;
-        eta_ = 100.0;
-      } else {
-        eta_ = rate_ / (1.0 - rate_);
+      eta_ = rate_ < 0.99 ? rate_ / (1.0 - rate_) : 100.0;
+      if (eta_ * change > allowance_) {
+        // stagnation at round-off: corrections that no longer shrink, yet far below what the error test sees
+        if (count_ > 2 && ratio > stagnant && 10.0 * change <= acceptable_) {
+          noise_ = std::max(noise_, change);
+          eta_ = 1.0;
+          return Verdict::converged;
+        }
+        if (rate_ >= 0.99 && 10.0 * change > acceptable_) return Verdict::failed;
+        // hopeless within the iterations left: say so now
+        if (eta_ * change * std::pow(rate_, limit_ - count_) > 10.0 * acceptable_) return Verdict::failed;
       }
-      // hopeless within the iterations left: say so now
-      if (eta_ * change * std::pow(rate_, limit_ - count_) > 10.0 * allowance_) return Verdict::failed;
     }
-    if (eta_ * change <= allowance_) return Verdict::converged;
+    if (eta_ * change <= allowance_ || change <= noise_) return Verdict::converged;
     previous_ = change;
-    return count_ < limit_ ? Verdict::iterate : Verdict::failed;
+    if (count_ < limit_) return Verdict::iterate;
+    return eta_ * change <= acceptable_ ? Verdict::converged : Verdict::failed;
   }
   /// True when the matrices have become too old: a new linearisation costs about one iteration and would save one.
   bool slow() const { return count_ > 2 && rate_ > slow_rate; }
   int count() const { return count_; }
-  double eta() const { return eta_; }
-  void set_eta(double eta) { eta_ = eta; }
+  /// A failed iteration says nothing about the next.
+  void forget() { eta_ = 1.0; }
+  void save(std::vector<double>& out) const { out.insert(out.end(), {eta_, noise_}); }
+  const double* restore(const double* in) {
+    eta_ = in[0], noise_ = in[1];
+    return in + 2;
+  }
 
  private:
-  static constexpr double eta_floor = 1e-3, slow_rate = 0.05;
+  static constexpr double eta_floor = 1e-3, slow_rate = 0.05, stagnant = 0.3;
   int limit_ = 10, count_ = 0;
-  double allowance_ = 1e-7, eta_ = 1.0, rate_ = 0.0, previous_ = 0.0;
+  double allowance_ = 1e-7, acceptable_ = 1e-6, eta_ = 1.0, rate_ = 0.0, previous_ = 0.0;
+  double noise_ = 0.0;   ///< size of corrections that are round-off, as last seen; fades
 };
 
 }  // namespace whirl::time

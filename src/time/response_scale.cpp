@@ -7,6 +7,8 @@ namespace whirl::time {
 namespace {
 constexpr std::size_t of(Kind k) { return static_cast<std::size_t>(k); }
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+/// Motion below this share of a coordinate's size (a sag, a pre-deflection) is at rest: round-off of the size is near.
+constexpr double offset_share = 1e-6;
 }  // namespace
 
 void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
@@ -26,6 +28,8 @@ void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
 void ResponseScale::reset(CRef q) {
   low_ = high_ = q;
   swept_.fill(0.0);
+  size_.fill(0.0);
+  observe(q);
 }
 
 void ResponseScale::set_spin_inertia(CRef inertia) {
@@ -41,6 +45,8 @@ void ResponseScale::observe(CRef q) {
     high_[i] = std::max(high_[i], q[i]);
     double& s = swept_[of(kinds_[at(i)])];
     s = std::max(s, 0.5 * (high_[i] - low_[i]));
+    double& size = size_[of(kinds_[at(i)])];
+    size = std::max(size, std::abs(q[i]));
   }
 }
 
@@ -55,8 +61,8 @@ void ResponseScale::begin_step(CRef dq) {
   const Scales& o = options_;
   double& u = s[of(Kind::displacement)];
   double& g = s[of(Kind::tilt)];
-  u = std::max({u, o.displacement, o.floor_displacement});
-  g = std::max({g, o.tilt, o.floor_tilt});
+  u = std::max({u, o.displacement, o.floor_displacement, offset_share * size_[of(Kind::displacement)]});
+  g = std::max({g, o.tilt, o.floor_tilt, offset_share * size_[of(Kind::tilt)]});
   const double u0 = u;
   u = std::max(u, o.cross_floor * o.length * g);
   g = std::max(g, o.cross_floor * u0 / o.length);
@@ -87,12 +93,14 @@ double ResponseScale::error_norm(CRef x) const {
 
 void ResponseScale::save(std::vector<double>& out) const {
   out.insert(out.end(), swept_.begin(), swept_.end());
+  out.insert(out.end(), size_.begin(), size_.end());
   for (const VecX* x : {&low_, &high_, &inertia_}) out.insert(out.end(), x->data(), x->data() + x->size());
 }
 
 const double* ResponseScale::restore(const double* in) {
   std::copy_n(in, kinds_count, swept_.begin());
-  in += kinds_count;
+  std::copy_n(in + kinds_count, kinds_count, size_.begin());
+  in += 2 * kinds_count;
   for (VecX* x : {&low_, &high_, &inertia_}) {
     std::copy_n(in, x->size(), x->data());
     in += x->size();

@@ -37,7 +37,7 @@ class ResponseScale {
   static constexpr std::size_t kinds_count = 5;
   std::vector<Kind> kinds_;
   Scales options_;
-  std::array<double, kinds_count> swept_{}, used_{};   ///< of the run so far; of the current weights
+  std::array<double, kinds_count> swept_{}, size_{}, used_{};   ///< range and size of the run so far; of the weights
   VecX low_, high_, weight_, inertia_;
   std::vector<Index> internal_, spin_;
 };

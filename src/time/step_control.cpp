@@ -8,6 +8,8 @@ namespace {
 constexpr double safety = 0.9;
 constexpr double grow_limit = 8.0, shrink_limit = 0.2;
 constexpr double dead_band = 1.2;    // growth below this is not worth a factorisation
+constexpr double hold = 0.95;        // nor is a reduction above this, while the safety factor covers it;
+constexpr double notch = 0.85;       // a smaller one is made large enough to last
 constexpr double prompt = 2.0;       // growth beyond this is taken at once, else it must last
 constexpr double error_floor = 1e-8; // of the allowance; keeps the ratio of two round-off errors out of the prediction
 }  // namespace
@@ -35,7 +37,8 @@ double StepControl::accepted(double h, double error, int iterations, int limit) 
     for (double r : recent_) lasting = std::min(lasting, r == large ? ratio : r);
     ratio = lasting;
   }
-  if (ratio >= 1.0 && ratio < dead_band) return h;
+  if (ratio >= hold && ratio < dead_band) return h;
+  if (ratio < 1.0) ratio = std::min(ratio, notch);
   // the stored ratios refer to the step they were proposed for
   for (double& r : recent_)
     if (r != large) r /= ratio;
