@@ -1,3 +1,4 @@
+#include <analysis/momentum_route.hpp>
 #include <analysis/transient.hpp>
 
 #include <core/rotation.hpp>
@@ -95,7 +96,8 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
   TransientResult result;
   const double cpu0 = cpu_seconds();
   problem.frames = start.frames;
-  auto integrator = time::make_integrator(options.method, problem, options.integrator);
+  auto integrator = options.method == "momentum_rk" ? make_momentum_integrator(problem, options.integrator)
+                                                   : time::make_integrator(options.method, problem, options.integrator);
   if (resume) integrator->restore(*resume);
   else integrator->start(start.t, start.q, start.v);
   Dense step(problem, *integrator);
