@@ -25,7 +25,7 @@
 //     [ (mu/h)^2 M + (mu/h) C + K ] e_q = M (rho_v + (mu/h) rho_q) + C rho_q,    e_v = (mu/h) e_q - rho_q.
 // Radau: mu is the real eigenvalue, the matrix is Newton's, and a0 is the last stage of the step before (the state is
 // consistent). Gauss 6: likewise, but (q0, v0) is not a stage, so M a0 is replaced by M a0 - R(t0, q0, v0, a0), one
-// residual a step. Gauss 4: the same with mu = |lambda| and a real factorisation of its own. The error is O(h^(s+1)) with
+// residual a step (which also shows whether the model holds at the step's end). Gauss 4: the same with mu = |lambda| and a real factorisation of its own. The error is O(h^(s+1)) with
 // s = 3, 3, 2. Where it exceeds its allowance on a first or repeated attempt, the defect is taken again at the filtered
 // point (q0 + e_q, v0 + e_v): on stiff transients the first estimate is far too large (Hairer & Wanner, IV.8 (8.20)).
 // Tested are e_q and h e_v in the scale of q.
@@ -48,8 +48,8 @@ namespace {
 /// Local allowance at tolerance 1 (c above).
 double allowance_factor(const Tableau& t) { return t.stiffly_accurate ? 0.03 : t.stages == 3 ? 0.05 : 0.026; }
 /// Largest Newton error of a step: this times tolerance^(1 + 1/p). It leaves a momentum error that a free spin sums up over
-/// the run, and the number of steps grows as tolerance^(-1/p).
-constexpr double newton_share = 5e-5;
+/// the run, and the number of steps grows as tolerance^(-1/p). Gauss takes longer steps (6) or more of them (4).
+double newton_share(const Tableau& t) { return t.stiffly_accurate ? 5e-4 : 5e-5; }
 
 }  // namespace
 
@@ -57,10 +57,10 @@ Collocation::Collocation(std::string_view name, const Tableau& tableau, Problem&
     : Stepper(problem, options), name_(name), tab_(tableau), s_(tableau.stages) {
   const double exponent = static_cast<double>(s_ + 1) / tab_.order;
   allowance_ = allowance_factor(tab_) * std::pow(options.tolerance, exponent);
-  newton_.configure(options.max_newton, newton_share * std::pow(options.tolerance, 1.0 + 1.0 / tab_.order), 0.03 * allowance_);
+  newton_.configure(options.max_newton, newton_share(tab_) * std::pow(options.tolerance, 1.0 + 1.0 / tab_.order), 0.03 * allowance_);
   control_.configure(s_ + 1);
   for (MatX* m : {&y_, &a_stage_, &r_, &a_last_}) *m = MatX::Zero(n_, s_);
-  for (VecX* x : {&qs_, &vs_, &as_, &dq_, &u_, &e_, &rho_q_, &rho_v_, &start_residual_}) *x = VecX::Zero(n_);
+  for (VecX* x : {&qs_, &vs_, &as_, &dq_, &u_, &e_, &rho_q_, &rho_v_, &start_residual_, &end_residual_, &start_before_}) *x = VecX::Zero(n_);
   uc_ = VecXc::Zero(n_);
 }
 
@@ -71,7 +71,10 @@ bool Collocation::factor(double h) {
 }
 
 void Collocation::predict(double h, bool extrapolate) {
-  if (extrapolate) {
+  if (problem_.is_linear()) {
+    // One iteration solves exactly, whatever the start; from zero it cannot lose digits to an extrapolated stiff mode.
+    y_.setZero();
+  } else if (extrapolate) {
     const Tableau::Mat e = tab_.extrapolation(theta_start_, h / h_last_);
     const double h2 = h * h;
     for (int i = 0; i < s_; ++i) {
@@ -243,16 +246,8 @@ double Collocation::estimate(double h) {
     return std::max(scale_.error_norm(e_), scale_.error_norm(dq_)) / allowance_;
   };
 
-  const VecX* r0 = nullptr;
-  if (!tab_.stiffly_accurate && !first_) {
-    if (!have_start_residual_) {
-      vs_ = v0_;
-      if (!residual(t0_, q0_, vs_, a0_, start_residual_)) return infinity;
-      have_start_residual_ = true;
-    }
-    r0 = &start_residual_;
-  }
-  double error = filter(r0);
+  const bool consistent = tab_.stiffly_accurate || first_;   // a0 solves the equations at the start
+  double error = filter(consistent ? nullptr : &start_residual_);
   if (error > 1.0 && (first_ || retrying_)) {
     qs_ = q0_ + e_;
     vs_ = v0_ + u_ / h;
@@ -269,11 +264,22 @@ double Collocation::estimate(double h) {
 
 Stepper::Attempt Collocation::attempt(double h) {
   Attempt out;
-  if (!retrying_) have_start_residual_ = false;
+  if (!tab_.stiffly_accurate && !first_ && !have_start_residual_) {
+    have_start_residual_ = residual(t0_, q0_, v0_, a0_, start_residual_);
+    if (!have_start_residual_) {
+      out.status = StepStatus::domain;
+      return out;
+    }
+  }
   predict(h, have_history_);
   newton(h, out);
   if (out.status != StepStatus::ok) return out;
   finish(h);
+  // Gauss: the end is no stage. Its residual shows whether the model holds there, and serves the next step's estimate.
+  if (!tab_.stiffly_accurate && !residual(t1_eval_, q_, v_, a_, end_residual_)) {
+    out.status = StepStatus::domain;
+    return out;
+  }
   out.error = estimate(h);
   return out;
 }
@@ -283,7 +289,19 @@ void Collocation::commit(double h) {
   h_last_ = h;
   theta_start_ = 1.0;
   have_history_ = true;
+  start_before_.swap(start_residual_);
+  start_residual_.swap(end_residual_);
+  had_start_residual_ = have_start_residual_;
+  have_start_residual_ = true;
 }
+
+void Collocation::rewind() {
+  theta_start_ = 0.0;
+  start_residual_.swap(start_before_);
+  have_start_residual_ = had_start_residual_;
+}
+
+void Collocation::drop_history() { have_history_ = have_start_residual_ = false; }
 
 void Collocation::dense(double theta, Ref q, Ref v, Ref a) const {
   const Tableau::Basis b = tab_.basis(theta);
@@ -299,18 +317,22 @@ void Collocation::dense(double theta, Ref q, Ref v, Ref a) const {
 }
 
 void Collocation::save_history(std::vector<double>& out) const {
-  out.insert(out.end(), {h_last_, theta_start_, have_history_ ? 1.0 : 0.0});
+  out.insert(out.end(), {h_last_, theta_start_, have_history_ ? 1.0 : 0.0, have_start_residual_ ? 1.0 : 0.0});
   newton_.save(out);
   out.insert(out.end(), a_last_.data(), a_last_.data() + a_last_.size());
+  out.insert(out.end(), start_residual_.data(), start_residual_.data() + n_);
 }
 
 const double* Collocation::restore_history(const double* in) {
   h_last_ = *in++;
   theta_start_ = *in++;
   have_history_ = *in++ != 0.0;
+  have_start_residual_ = *in++ != 0.0;
   in = newton_.restore(in);
   std::copy_n(in, a_last_.size(), a_last_.data());
-  return in + a_last_.size();
+  in += a_last_.size();
+  std::copy_n(in, n_, start_residual_.data());
+  return in + n_;
 }
 
 }  // namespace whirl::time

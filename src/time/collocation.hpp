@@ -16,8 +16,8 @@ class Collocation final : public Stepper {
   Attempt attempt(double h) override;
   bool factor(double h) override;
   void commit(double h) override;
-  void rewind() override { theta_start_ = 0.0; }
-  void drop_history() override { have_history_ = false; }
+  void rewind() override;
+  void drop_history() override;
   void dense(double theta, Ref q, Ref v, Ref a) const override;
   void save_history(std::vector<double>& out) const override;
   const double* restore_history(const double* in) override;
@@ -40,9 +40,11 @@ class Collocation final : public Stepper {
   // stage quantities, one column a stage
   MatX y_, a_stage_, r_;
   VecX qs_, vs_, as_, dq_;
-  VecX u_, e_, rho_q_, rho_v_, start_residual_;
+  VecX u_, e_, rho_q_, rho_v_;
   VecXc uc_;
-  bool have_start_residual_ = false;
+  // Gauss: residual at the start of the step, at its end, and at the start of the step before (for a repeated step)
+  VecX start_residual_, end_residual_, start_before_;
+  bool have_start_residual_ = false, had_start_residual_ = false;
   // history: stage accelerations of the last step and its length
   MatX a_last_;
   double h_last_ = 0.0, theta_start_ = 1.0;

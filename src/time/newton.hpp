@@ -33,7 +33,7 @@ class NewtonMonitor {
       eta_ = rate_ < 0.99 ? rate_ / (1.0 - rate_) : 100.0;
       if (eta_ * change > allowance_) {
         // stagnation at round-off: corrections that no longer shrink, yet far below what the error test sees
-        if (count_ > 2 && ratio > stagnant && 10.0 * change <= acceptable_) {
+        if (count_ > 2 && ratio > stagnant && ratio < 1.2 && 10.0 * change <= acceptable_) {
           noise_ = std::max(noise_, change);
           eta_ = 1.0;
           return Verdict::converged;

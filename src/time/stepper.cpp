@@ -267,7 +267,7 @@ StepReport Stepper::advance() {
       q_low_ = q0_low_, v_low_ = v0_low_;
       t_ = t0_, t_low_ = t0_low_;
       report.status = result.status;
-      h_next_ = h_wanted;
+      h_next_ = std::max(h_wanted, dt_min);
       return report;
     }
   }
