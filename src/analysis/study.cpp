@@ -83,8 +83,9 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
   struct Fit { double n = 0, x = 0, y = 0, xx = 0, xy = 0; };
   std::map<std::string, Fit> fits;
   for (const StudySample& s : result.samples) {
+    if (s.setting.tolerance > 0 || s.setting.mesh_factor != 1) continue;   // the steps of adaptive runs are not proportional
     if (!s.ok || !(s.worst() > floor) || !(s.worst() < 0.3) || s.steps <= 0) continue;
-    Fit& f = fits[s.setting.method + (s.setting.tolerance > 0 ? " (adaptive)" : " (fixed)")];
+    Fit& f = fits[s.setting.method];
     const double x = -std::log(static_cast<double>(s.steps)), y = std::log(s.worst());
     f.n += 1, f.x += x, f.y += y, f.xx += x * x, f.xy += x * y;
   }

@@ -1,6 +1,7 @@
 // One run of a deck: model -> mesh -> system -> the deck's steps, in order, each writing its results. The body of run_deck().
 #pragma once
 #include <analysis/measurement.hpp>
+#include <analysis/transient.hpp>
 #include <app/run.hpp>
 #include <assembly/build_system.hpp>
 #include <io/frames.hpp>
@@ -54,6 +55,13 @@ void add_history_figures(const Job&, const model::Step&, const std::vector<analy
 void run_static_step(Job&, const model::Step&, const model::StaticStep&);
 void run_transient_step(Job&, const model::Step&, const model::TransientStep&);
 void run_frequency_step(Job&, const model::Step&);   ///< modal, Campbell, critical speeds, unbalance response
+
+/// Where a transient's peaks are looked for: the probes, or the disks when there are none.
+std::vector<std::pair<std::string, analysis::Point>> watched_points(const Job&);
+/// Scheme, accuracy, breakpoints and stops of a transient step.
+analysis::TransientOptions transient_options(const Job&, const model::TransientStep&, double t0);
+/// The state it starts from, settled when the deck asks for the static equilibrium.
+StepState transient_start(Job&, system::SystemProblem&, const model::Step&, const model::TransientStep&);
 
 /// Progress on a terminal (one line, rewritten) or one line per 10 %.
 class ProgressLine {

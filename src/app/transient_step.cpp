@@ -159,42 +159,50 @@ class Frames final : public analysis::Observer {
   double phi_ = 0;
 };
 
-time::Options integrator_options(const Job& job, const model::TransientStep& law, double t0) {
-  time::Options o;
-  o.tolerance = law.integrator.tolerance;
-  o.t_end = t0 + law.duration;
-  o.dt_fixed = law.integrator.dt, o.dt_first = law.integrator.dt_first, o.dt_min = law.integrator.dt_min, o.dt_max = law.integrator.dt_max;
-  o.rho_inf = law.integrator.rho_inf;
-  for (double t : job.built.breakpoints)
-    if (t > t0 && t < o.t_end) o.breakpoints.push_back(t);
-  double length = 0.0;
-  for (const meshes::Line& l : job.mesh.lines) length = std::max(length, l.length);
-  if (length > 0.0) o.scales.length = length;
-  return o;
-}
-
 }  // namespace
 
-void run_transient_step(Job& job, const model::Step& step, const model::TransientStep& law) {
-  job.build_for(step);
-  system::SystemProblem problem(job.system(), {la::SolverKind::automatic, job.model.chart_change, 2.0});
-  StepState start = job.start_of(step, law.speed0);
-  if (law.start == model::TransientStep::Start::static_equilibrium && step.from.empty())
-    job.settle(problem, start);
-  const double t0 = start.state.t;
-
-  analysis::TransientOptions options;
-  options.method = law.integrator.method;
-  options.integrator = integrator_options(job, law, t0);
-  options.reference = job.reference();
-  options.interrupt = &interrupted();
-  if (law.stop_speed != 0.0) options.speed_stops.push_back({job.reference(), law.stop_speed});
+std::vector<std::pair<std::string, Point>> watched_points(const Job& job) {
   std::vector<std::pair<std::string, Point>> watched;
   for (const model::Probe& p : job.model.probes) watched.emplace_back(p.name, point_of(job, p.at));
   if (watched.empty())
     for (const model::Disk& d : job.model.disks) watched.emplace_back("disk " + d.name, point_of(job, d.at));
+  return watched;
+}
+
+analysis::TransientOptions transient_options(const Job& job, const model::TransientStep& law, double t0) {
+  analysis::TransientOptions t;
+  t.method = law.integrator.method;
+  t.reference = job.reference();
+  t.interrupt = &interrupted();
+  time::Options& o = t.integrator;
+  o.tolerance = law.integrator.tolerance;
+  o.t_end = t0 + law.duration;
+  o.dt_fixed = law.integrator.dt, o.dt_first = law.integrator.dt_first, o.dt_min = law.integrator.dt_min, o.dt_max = law.integrator.dt_max;
+  o.rho_inf = law.integrator.rho_inf;
+  for (double b : job.built.breakpoints)
+    if (b > t0 && b < o.t_end) o.breakpoints.push_back(b);
+  double length = 0.0;
+  for (const meshes::Line& l : job.mesh.lines) length = std::max(length, l.length);
+  if (length > 0.0) o.scales.length = length;
+  if (law.stop_speed != 0.0) t.speed_stops.push_back({job.reference(), law.stop_speed});
   if (law.amplitude_limit < infinity)
-    for (const auto& [name, p] : watched) options.amplitude_stops.push_back({p, law.amplitude_limit, name});
+    for (const auto& [name, p] : watched_points(job)) t.amplitude_stops.push_back({p, law.amplitude_limit, name});
+  return t;
+}
+
+StepState transient_start(Job& job, system::SystemProblem& problem, const model::Step& step, const model::TransientStep& law) {
+  StepState start = job.start_of(step, law.speed0);
+  if (law.start == model::TransientStep::Start::static_equilibrium && step.from.empty()) job.settle(problem, start);
+  return start;
+}
+
+void run_transient_step(Job& job, const model::Step& step, const model::TransientStep& law) {
+  job.build_for(step);
+  system::SystemProblem problem(job.system(), {la::SolverKind::automatic, job.model.chart_change, 2.0});
+  StepState start = transient_start(job, problem, step, law);
+  const double t0 = start.state.t;
+  analysis::TransientOptions options = transient_options(job, law, t0);
+  const std::vector<std::pair<std::string, Point>> watched = watched_points(job);
 
   // observers: only what the deck asks for
   std::vector<analysis::Observer*> observers;
