@@ -9,6 +9,7 @@
 // Only plain data crosses this interface, so that no inline function shared with other code is ever compiled for an
 // instruction set the machine may lack.
 #pragma once
+#include <cstddef>
 
 namespace whirl::la::lu {
 
@@ -58,12 +59,27 @@ struct Outcome {
   int repivoted = 0;    ///< blocks that needed complete pivoting
 };
 
+/// A matrix on the rows and columns of a block pattern (BlockPattern's arrays): unpadded 6x6 blocks, column-major.
+struct Matrix6 {
+  std::ptrdiff_t n = 0;
+  const std::ptrdiff_t* start = nullptr;
+  const std::ptrdiff_t* cols = nullptr;
+  const double* value = nullptr;
+};
+
 struct Kernels {
   const char* isa;
   Outcome (*factor_real)(const Plan&, const Terms&, const Factors&);
   Outcome (*factor_complex)(const Plan&, const Terms&, const Factors&);
   void (*solve_real)(const Plan&, const Factors&, double* b);
   void (*solve_complex)(const Plan&, const Factors&, double* b);  ///< b interleaved (re, im)
+  void (*multiply_real)(const Matrix6&, const double* x, double* y);     ///< y = A x
+  void (*multiply_complex)(const Matrix6&, const double* x, double* y);  ///< the same, x and y interleaved
+  /// y[t] = A_t x for three matrices on one pattern (value of Matrix6 unused), all interleaved.
+  void (*multiply_three)(const Matrix6&, const double* const a[3], const double* x, double* const y[3]);
+  /// y = A x with sums in twice the working precision, interleaved.
+  void (*multiply_exact)(const Matrix6&, const double* x, double* y);
+  void (*add_multiply_size)(const Matrix6&, double s, const double* x, double* y);  ///< y += s |A| x
 };
 
 /// The best set for the machine the program runs on.

@@ -338,7 +338,97 @@ template <class T> void solve(const Plan& p, const Factors& f, double* b) {
   }
 }
 
-constexpr Kernels table = {WHIRL_LU_ISA, factor_any<Real>, factor_any<Cplx>, solve<Real>, solve<Cplx>};
+void multiply_real(const Matrix6& m, const double* x, double* y) {
+  for (std::ptrdiff_t i = 0; i < m.n; ++i) {
+    Col even = zero_col(), odd = zero_col();
+    for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k) {
+      const double* const a = m.value + 36 * k;
+      const double* const v = x + 6 * m.cols[k];
+      for (int c = 0; c < 6; c += 2) {
+        even = even + load6(a + 6 * c) * splat(v[c]);
+        odd = odd + load6(a + 6 * c + 6) * splat(v[c + 1]);
+      }
+    }
+    store6(y + 6 * i, even + odd);
+  }
+}
+
+void multiply_complex(const Matrix6& m, const double* x, double* y) {
+  for (std::ptrdiff_t i = 0; i < m.n; ++i) {
+    Cplx r = zero_of<Cplx>();
+    for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k) {
+      const double* const a = m.value + 36 * k;
+      const double* const v = x + 12 * m.cols[k];
+      for (int c = 0; c < 6; ++c) {
+        const Col col = load6(a + 6 * c);
+        r.x = r.x + col * splat(v[2 * c]);
+        r.y = r.y + col * splat(v[2 * c + 1]);
+      }
+    }
+    store_rhs(y + 12 * i, r);
+  }
+}
+
+void multiply_three(const Matrix6& m, const double* const a[3], const double* x, double* const y[3]) {
+  for (std::ptrdiff_t i = 0; i < m.n; ++i) {
+    Cplx r0 = zero_of<Cplx>(), r1 = r0, r2 = r0;
+    for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k) {
+      const double* const v = x + 12 * m.cols[k];
+      for (int c = 0; c < 6; ++c) {
+        const Col re = splat(v[2 * c]), im = splat(v[2 * c + 1]);
+        const Col c0 = load6(a[0] + 36 * k + 6 * c), c1 = load6(a[1] + 36 * k + 6 * c), c2 = load6(a[2] + 36 * k + 6 * c);
+        r0.x = r0.x + c0 * re, r0.y = r0.y + c0 * im;
+        r1.x = r1.x + c1 * re, r1.y = r1.y + c1 * im;
+        r2.x = r2.x + c2 * re, r2.y = r2.y + c2 * im;
+      }
+    }
+    store_rhs(y[0] + 12 * i, r0);
+    store_rhs(y[1] + 12 * i, r1);
+    store_rhs(y[2] + 12 * i, r2);
+  }
+}
+
+/// (sum, rest) += a b without rounding error but in rest: T. Ogita, S. Rump and S. Oishi, doi 10.1137/030601818.
+WHIRL_INLINE void add_exact(Col& sum, Col& rest, Col a, Col b) {
+  const Col p = opaque(a * b);  // opaque: p must be the rounded product, not part of a fused sum
+  const Col s = sum + p, z = s - sum;
+  rest = rest + ((sum - (s - z)) + (p - z)) + product_error(a, b, p);
+  sum = s;
+}
+
+void multiply_exact(const Matrix6& m, const double* x, double* y) {
+  for (std::ptrdiff_t i = 0; i < m.n; ++i) {
+    Cplx sum = zero_of<Cplx>(), rest = sum;
+    for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k) {
+      const double* const v = x + 12 * m.cols[k];
+      for (int c = 0; c < 6; ++c) {
+        const Col a = load6(m.value + 36 * k + 6 * c);
+        add_exact(sum.x, rest.x, a, splat(v[2 * c]));
+        add_exact(sum.y, rest.y, a, splat(v[2 * c + 1]));
+      }
+    }
+    store_rhs(y + 12 * i, Cplx{sum.x + rest.x, sum.y + rest.y});
+  }
+}
+
+void add_multiply_size(const Matrix6& m, double s, const double* x, double* y) {
+  for (std::ptrdiff_t i = 0; i < m.n; ++i) {
+    Col even = zero_col(), odd = zero_col();
+    for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k) {
+      const double* const a = m.value + 36 * k;
+      const double* const v = x + 6 * m.cols[k];
+      for (int c = 0; c < 6; c += 2) {
+        even = even + abs(load6(a + 6 * c)) * splat(v[c]);
+        odd = odd + abs(load6(a + 6 * c + 6)) * splat(v[c + 1]);
+      }
+    }
+    store6(y + 6 * i, load6(y + 6 * i) + splat(s) * (even + odd));
+  }
+}
+
+constexpr Kernels table = {WHIRL_LU_ISA,  factor_any<Real>, factor_any<Cplx>, solve<Real>,
+                           solve<Cplx>,   multiply_real,    multiply_complex, multiply_three,
+                           multiply_exact, add_multiply_size};
 
 }  // namespace
 

@@ -3,6 +3,14 @@
 // types Real and Cplx below.
 #define WHIRL_INLINE static inline __attribute__((always_inline))
 
+/// a b - p by splitting the factors in halves (Veltkamp, Dekker), for machines without a fused multiply-add.
+template <class C> WHIRL_INLINE C split_product_error(C a, C b, C p) {
+  const C f = a.all(134217729.0), fa = f * a, fb = f * b;
+  const C ah = fa - (fa - a), bh = fb - (fb - b);
+  const C al = a - ah, bl = b - bh;
+  return al * bl - (((p - ah * bh) - al * bh) - ah * bl);
+}
+
 typedef double v2 __attribute__((vector_size(16), aligned(8), may_alias));
 
 #ifdef __AVX512F__
@@ -26,6 +34,13 @@ template <int P> WHIRL_INLINE Col replace(Col c, Col d) { return {_mm512_mask_mo
 WHIRL_INLINE Col mask_and(Col c, const long long* m) {
   return {_mm512_maskz_mov_pd(_mm512_test_epi64_mask(_mm512_loadu_si512(m), _mm512_set1_epi64(-1)), c.x)};
 }
+/// c, hidden from the optimiser.
+WHIRL_INLINE Col opaque(Col c) {
+  __asm__("" : "+v"(c.x));
+  return c;
+}
+/// a b - p without rounding, p the rounded product.
+WHIRL_INLINE Col product_error(Col a, Col b, Col p) { return {_mm512_fmsub_pd(a.x, b.x, p.x)}; }
 /// True when a <= b fails in any of the rows (NaN fails).
 struct Violation { __mmask8 m; };
 WHIRL_INLINE Violation no_violation() { return {0}; }
@@ -39,9 +54,12 @@ WHIRL_INLINE bool any(Violation v) { return (v.m & 0x3f) != 0; }
 typedef double v4 __attribute__((vector_size(32), aligned(8), may_alias));
 typedef long long i4 __attribute__((vector_size(32), aligned(8), may_alias));
 
-struct Col { v4 a, b; };
+struct Col {
+  v4 a, b;
+  static Col all(double s) { return {v4{s, s, s, s}, v4{s, s, s, s}}; }
+};
 WHIRL_INLINE Col zero_col() { return {v4{}, v4{}}; }
-WHIRL_INLINE Col splat(double s) { return {v4{s, s, s, s}, v4{s, s, s, s}}; }
+WHIRL_INLINE Col splat(double s) { return Col::all(s); }
 WHIRL_INLINE Col load(const double* p) { return {*(const v4*)p, *(const v4*)(p + 4)}; }
 WHIRL_INLINE Col load6(const double* p) {
   return {*(const v4*)p, __builtin_shufflevector(*(const v2*)(p + 4), v2{}, 0, 1, 2, 3)};
@@ -77,6 +95,17 @@ template <int P> WHIRL_INLINE Col replace(Col c, Col d) {
 WHIRL_INLINE Col mask_and(Col c, const long long* m) {
   return {(v4)((i4)c.a & *(const i4*)m), (v4)((i4)c.b & *(const i4*)(m + 4))};
 }
+WHIRL_INLINE Col opaque(Col c) {
+  __asm__("" : "+x"(c.a), "+x"(c.b));
+  return c;
+}
+WHIRL_INLINE Col product_error(Col a, Col b, Col p) {
+#ifdef __FMA__
+  return {_mm256_fmsub_pd(a.a, b.a, p.a), _mm256_fmsub_pd(a.b, b.b, p.b)};
+#else
+  return split_product_error(a, b, p);
+#endif
+}
 /// True when a <= b fails in any of the rows (NaN fails). Padded rows hold 0 <= 0.
 struct Violation { i4 m; };
 WHIRL_INLINE Violation no_violation() { return {i4{}}; }
@@ -86,8 +115,11 @@ WHIRL_INLINE bool any(Violation v) { return (v.m[0] | v.m[1] | v.m[2] | v.m[3]) 
 #else
 
 typedef long long i2 __attribute__((vector_size(16), aligned(8), may_alias));
-struct Col { v2 a, b, c; };
-WHIRL_INLINE Col splat(double s) { return {v2{s, s}, v2{s, s}, v2{s, s}}; }
+struct Col {
+  v2 a, b, c;
+  static Col all(double s) { return {v2{s, s}, v2{s, s}, v2{s, s}}; }
+};
+WHIRL_INLINE Col splat(double s) { return Col::all(s); }
 WHIRL_INLINE Col zero_col() { return splat(0.0); }
 WHIRL_INLINE Col load(const double* p) { return {*(const v2*)p, *(const v2*)(p + 2), *(const v2*)(p + 4)}; }
 WHIRL_INLINE Col load6(const double* p) { return load(p); }
@@ -118,6 +150,27 @@ template <int P> WHIRL_INLINE Col replace(Col x, Col y) {
 }
 WHIRL_INLINE Col mask_and(Col x, const long long* m) {
   return {(v2)((i2)x.a & *(const i2*)m), (v2)((i2)x.b & *(const i2*)(m + 2)), (v2)((i2)x.c & *(const i2*)(m + 4))};
+}
+WHIRL_INLINE Col opaque(Col c) {
+#if defined(__x86_64__)
+  __asm__("" : "+x"(c.a), "+x"(c.b), "+x"(c.c));
+#elif defined(__aarch64__)
+  __asm__("" : "+w"(c.a), "+w"(c.b), "+w"(c.c));
+#endif
+  return c;
+}
+WHIRL_INLINE Col product_error(Col a, Col b, Col p) {
+#if defined(__FMA__) || defined(__aarch64__)
+  Col e;
+  for (int i = 0; i < 2; ++i) {
+    e.a[i] = __builtin_fma(a.a[i], b.a[i], -p.a[i]);
+    e.b[i] = __builtin_fma(a.b[i], b.b[i], -p.b[i]);
+    e.c[i] = __builtin_fma(a.c[i], b.c[i], -p.c[i]);
+  }
+  return e;
+#else
+  return split_product_error(a, b, p);
+#endif
 }
 /// True when a <= b fails in any of the rows (NaN fails).
 struct Violation { i2 m; };

@@ -1,5 +1,6 @@
 #include "fixtures.hpp"
 #include <gtest/gtest.h>
+#include <la/multiply.hpp>
 
 using namespace whirl;
 using namespace whirl::la;
@@ -41,4 +42,57 @@ TEST(BlockMatrix, MultipliesAsItsDenseForm) {
   VecXc yc = VecXc::Zero(42);
   m.M.add_multiply(1.0, xc, yc);
   EXPECT_LT((yc - dense(m.M) * xc).norm(), 1e-13 * yc.norm());
+}
+
+TEST(Multiply, MatchesDense) {
+  std::mt19937 rng(6);
+  const BlockPattern p(9, random_graph(9, 4, rng));
+  const MCK m = random_matrices(p, 0.0, rng);
+  const VecX x = VecX::Random(54);
+  const VecXc z = VecXc::Random(54);
+  VecX y(54);
+  VecXc w(54), a(54), b(54), c(54);
+  multiply(m.K, x, y);
+  multiply(m.K, z, w);
+  multiply(m, z, a, b, c);
+  const MatX k = dense(m.K);
+  EXPECT_LT((y - k * x).norm(), 1e-14 * y.norm());
+  EXPECT_LT((w - k * z).norm(), 1e-14 * w.norm());
+  EXPECT_LT((a - dense(m.M) * z).norm(), 1e-14 * a.norm());
+  EXPECT_LT((b - dense(m.C) * z).norm(), 1e-14 * b.norm());
+  EXPECT_LT((c - k * z).norm(), 1e-14 * c.norm());
+  y.setOnes();
+  add_multiply_size(m.K, 2.5, x, y);
+  EXPECT_LT((y - VecX::Ones(54) - 2.5 * k.cwiseAbs() * x).norm(), 1e-14 * y.norm());
+}
+
+TEST(Multiply, ExactSumsSurviveCancellation) {
+  // Rows whose terms cancel to 1e-12 of their size: plain sums keep four digits, these all of them (long double as reference).
+  std::mt19937 rng(8);
+  const BlockPattern p(12, chain(12));
+  MCK m = random_matrices(p, 0.0, rng);
+  const VecXc z = VecXc::Random(72);
+  const VecX x = z.real();
+  for (Index i = 0; i < 12; ++i) {
+    auto d = m.K.block(p.diagonal(i));
+    VecX y = VecX::Zero(72);
+    m.K.add_multiply(1.0, x, y);
+    for (int r = 0; r < 6; ++r) d(r, 0) -= y(6 * i + r) / x(6 * i) * (1.0 - 1e-12);
+  }
+  VecXc w(72), plain(72);
+  multiply_exact(m.K, z, w);
+  multiply(m.K, z, plain);
+  const MatX k = dense(m.K);
+  double worst = 0.0, worst_plain = 0.0;
+  for (Index r = 0; r < 72; ++r) {
+    long double s = 0.0L, size = 0.0L;
+    for (Index c = 0; c < 72; ++c) {
+      s += static_cast<long double>(k(r, c)) * x(c);
+      size += std::abs(static_cast<long double>(k(r, c)) * x(c));
+    }
+    worst = std::max(worst, static_cast<double>(std::abs(s - w(r).real()) / size));
+    worst_plain = std::max(worst_plain, static_cast<double>(std::abs(s - plain(r).real()) / size));
+    EXPECT_NEAR(static_cast<double>(s), w(r).real(), 1e-18 * static_cast<double>(size) + 1e-15 * std::abs(w(r).real()));
+  }
+  EXPECT_GT(worst_plain, 20.0 * worst);  // the reference itself is good to 1e-19
 }

@@ -1,0 +1,267 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <la/multiply.hpp>
+#include <la/polish.hpp>
+
+namespace whirl::la {
+
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+void diagonal_of(const BlockMatrix<6>& a, VecX& d) {
+  const BlockPattern& p = a.pattern();
+  for (Index i = 0; i < p.size(); ++i) d.segment<6>(6 * i) = a.block(p.diagonal(i)).diagonal().cwiseAbs();
+}
+
+double size_of(Complex z) { return std::abs(z.real()) + std::abs(z.imag()); }
+
+}  // namespace
+
+Polisher::Polisher(const BlockPattern& pattern, std::span<const unsigned char> active)
+    : active_(active.begin(), active.end()), block_(make_direct_solver<Complex>(pattern, active, SolverKind::block)), pattern_(pattern) {
+  const Index n = 6 * pattern.size();
+  for (VecX* v : {&abs_x_, &size_, &diagonal_k_, &diagonal_c_, &diagonal_m_}) v->resize(n);
+  y_.resize(n);
+  for (Index u = 0; u < n; ++u)
+    if (!active_[at(u)]) held_.push_back(u);
+}
+
+void Polisher::set(const MCK& m) {
+  m_ = &m;
+  diagonal_of(m.M, diagonal_m_);
+  diagonal_of(m.C, diagonal_c_);
+  diagonal_of(m.K, diagonal_k_);
+}
+
+bool Polisher::factor(Complex shift) {
+  ++factorizations;
+  solver_ = block_.get();
+  if (block_->factor(*m_, shift * shift, shift, 1.0) == Status::ok) return true;
+  if (!general_) general_ = make_direct_solver<Complex>(pattern_, active_, SolverKind::klu);
+  solver_ = general_.get();
+  return general_->factor(*m_, shift * shift, shift, 1.0) == Status::ok;
+}
+
+void Polisher::mask(VecXc& v) const {
+  for (const Index u : held_) v(u) = 0.0;
+}
+
+bool Polisher::evaluate(Pair& p, bool exact) {
+  mask(p.x);
+  Index big = 0;
+  double size = 0.0;
+  for (Index u = 0; u < p.x.size(); ++u) {
+    const double v = std::norm(p.x(u));
+    if (!(v <= size)) size = v, big = u;
+  }
+  if (!(size > 0.0 && size < std::numeric_limits<double>::infinity())) return false;
+  p.x *= 1.0 / p.x(big);
+  // What a mode does not move decays from iteration to iteration; denormal numbers would cost a hundred times as much.
+  for (Index u = 0; u < p.x.size(); ++u)
+    if (size_of(p.x(u)) < 1e-40) p.x(u) = 0.0;
+  for (VecXc* v : {&p.Mx, &p.Cx, &p.Kx}) v->resize(p.x.size());
+  multiply(*m_, p.x, p.Mx, p.Cx, p.Kx);
+  if (exact) multiply_exact(m_->K, p.x, p.Kx);
+  for (VecXc* v : {&p.Mx, &p.Cx, &p.Kx}) mask(*v);
+  return true;
+}
+
+Complex Polisher::rayleigh_root(const Pair& p, Complex s0) {
+  const Complex a = p.x.dot(p.Mx), b = p.x.dot(p.Cx), c = p.x.dot(p.Kx);
+  // Both roots without cancellation: q = -(b + sign sqrt(b^2 - 4ac))/2, s = q/a and c/q.
+  Complex d = std::sqrt(b * b - 4.0 * a * c);
+  if ((std::conj(b) * d).real() < 0.0) d = -d;
+  const Complex q = -0.5 * (b + d);
+  Complex best = s0;
+  double distance = std::numeric_limits<double>::infinity();
+  const auto consider = [&](Complex s) {
+    const double r = std::abs(s - s0);
+    if (r < distance) distance = r, best = s;  // false for NaN
+  };
+  if (a != 0.0) consider(q / a);
+  if (q != 0.0) consider(c / q);
+  return best;
+}
+
+/// Residual in the scaling by diagonal entries that makes forces and moments comparable.
+double Polisher::residual_norm(const Pair& p, Complex lambda) {
+  const double s = std::abs(lambda), s2 = s * s;
+  double worst = 0.0;
+  for (Index u = 0; u < p.x.size(); ++u) {
+    const double w = diagonal_k_(u) + s * diagonal_c_(u) + s2 * diagonal_m_(u);
+    const double r = std::norm(lambda * (lambda * p.Mx(u) + p.Cx(u)) + p.Kx(u));
+    if (r > 0.0) worst = std::max(worst, r / w);
+    if (r != r) return r;
+  }
+  return worst;
+}
+
+bool Polisher::polish(Pair& p, double tolerance, bool near) {
+  if (p.Kx.size() == 0 && !evaluate(p)) return false;
+  const Complex start = p.lambda;
+  const double floor = std::numeric_limits<double>::epsilon() * std::abs(start) + 1e-300;
+  double change = std::numeric_limits<double>::infinity();
+  Complex shift;
+  // Newton. Quadratic, so that a change of 1e-3 leaves about 1e-6 for the linear phase.
+  for (int k = 0; k < 12 && change > 1e-3; ++k) {
+    // A little beside: a start that is an eigenvalue already must not make Q singular.
+    shift = p.lambda * (1.0 + 1e-6);
+    if (!factor(shift)) return false;
+    for (int inner = 0; inner < (near ? 2 : 1); ++inner) {
+      const double xx = p.x.squaredNorm();
+      y_ = 2.0 * shift * p.Mx + p.Cx;
+      solver_->solve(y_);
+      const Complex newton = shift - xx / p.x.dot(y_);
+      p.x.swap(y_);
+      if (!evaluate(p)) return false;
+      const Complex ritz = rayleigh_root(p, newton);
+      p.lambda = residual_norm(p, newton) < residual_norm(p, ritz) ? newton : ritz;
+    }
+    change = std::abs(p.lambda - shift) / std::max(std::abs(p.lambda), floor);
+    if (!(change < 1e12)) return false;
+    near = false;
+  }
+  if (!(change <= 1e-3)) return false;
+  // x -= Q(shift)^-1 Q(lambda) x: the error falls by |lambda - shift| / gap each time.
+  // What rounding of K x alone can do to lambda: beams of many elements need sums better than working precision.
+  const bool exact = uncertainty(p) > 1e-10 * std::abs(p.lambda);
+  if (exact) {
+    multiply_exact(m_->K, p.x, p.Kx);
+    mask(p.Kx);
+    p.lambda = rayleigh_root(p, p.lambda);
+  }
+  double last = 0.5, step = 1.0;
+  for (int k = 0; k < 8; ++k) {
+    y_ = p.lambda * (p.lambda * p.Mx + p.Cx) + p.Kx;
+    solver_->solve(y_);
+    step = 0.0;
+    for (Index u = 0; u < y_.size(); ++u) step = std::max(step, size_of(y_(u)));
+    if (!(step < last)) break;  // the limit that rounding sets
+    p.x -= y_;
+    if (!evaluate(p, exact)) return false;
+    const Complex next = rayleigh_root(p, p.lambda);
+    change = std::abs(next - p.lambda) / std::max(std::abs(next), floor);
+    p.lambda = next;
+    // The vector converges linearly; what its last step leaves in lambda is below the product of both.
+    if (change <= tolerance && step <= 1e-8) break;
+    last = 0.5 * step;
+  }
+  // What is left, relative to the largest component. Eigenvalues closer together than this shift can resolve keep the vectors mixed; the
+  // caller separates them.
+  return step < 1e-3 || std::abs(p.lambda - shift) < 1e-5 * std::abs(p.lambda);
+}
+
+void Polisher::sizes(const Pair& p, double cm, double cc, double ck) {
+  abs_x_ = p.x.cwiseAbs();
+  size_.setZero();
+  if (cm > 0.0) add_multiply_size(m_->M, cm, abs_x_, size_);
+  if (cc > 0.0) add_multiply_size(m_->C, cc, abs_x_, size_);
+  if (ck > 0.0) add_multiply_size(m_->K, ck, abs_x_, size_);
+}
+
+double Polisher::uncertainty(const Pair& p) {
+  sizes(p, 0.0, 0.0, 1.0);
+  const double slope = std::abs(2.0 * p.lambda * p.x.dot(p.Mx) + p.x.dot(p.Cx));
+  return slope > 0.0 ? eps * abs_x_.dot(size_) / slope : 0.0;
+}
+
+void Polisher::assess(Pair& p) {
+  const double s = std::abs(p.lambda);
+  p.uncertainty = uncertainty(p);
+  if (s > 0.0) {
+    add_multiply_size(m_->M, s * s, abs_x_, size_);
+    add_multiply_size(m_->C, s, abs_x_, size_);
+  }
+  double residual = 0.0, size = 0.0;
+  for (Index u = 0; u < p.x.size(); ++u) {
+    const double w = diagonal_k_(u) + s * diagonal_c_(u) + s * s * diagonal_m_(u);
+    if (!(w > 0.0)) continue;
+    residual = std::max(residual, std::norm(p.lambda * (p.lambda * p.Mx(u) + p.Cx(u)) + p.Kx(u)) / w);
+    size = std::max(size, size_(u) * size_(u) / w);
+  }
+  p.residual = residual > 0.0 ? std::sqrt(residual / size) : 0.0;
+}
+
+bool Polisher::is_unresisted(const Pair& p) {
+  sizes(p, 0.0, 0.0, 1.0);
+  // Rounding of n products of random sign; 16 eps is far below any support that could be told from none.
+  return std::abs(p.x.dot(p.Kx)) <= 16.0 * eps * abs_x_.dot(size_);
+}
+
+void Polisher::separate(std::span<Pair*> group) {
+  const Index k = static_cast<Index>(group.size()), n = y_.size();
+  if (k == 1) {
+    const Complex root = rayleigh_root(*group[0], group[0]->lambda);
+    if (group[0]->lambda.imag() != 0.0 || root.imag() == 0.0) group[0]->lambda = root;
+    return;
+  }
+  MatXc X(n, k), MX(n, k), CX(n, k), KX(n, k);
+  Complex centre = 0.0;
+  double radius = 0.0;
+  bool real = true;  // overdamped roots with real vectors: a real projected problem
+  for (Index j = 0; j < k; ++j) {
+    const Pair& p = *group[at(j)];
+    real = real && p.lambda.imag() == 0.0;
+    const double s = 1.0 / p.x.norm();
+    X.col(j) = s * p.x, MX.col(j) = s * p.Mx, CX.col(j) = s * p.Cx, KX.col(j) = s * p.Kx;
+    centre += p.lambda / static_cast<double>(k);
+  }
+  for (Index j = 0; j < k; ++j) radius = std::max(radius, std::abs(group[at(j)]->lambda - centre));
+  // A shift off the group, so that none of its eigenvalues is hit.
+  const Complex c = centre + 0.3 * std::max(radius, 1e-2 * std::abs(centre)) * Complex(1.0, 0.2);
+  const MatXc gram = X.adjoint() * X;
+  const Eigen::SelfAdjointEigenSolver<MatXc> independence(gram, Eigen::EigenvaluesOnly);
+  if (independence.eigenvalues()(0) < 1e-8) return;
+  const MatXc a2 = X.adjoint() * MX, a1 = X.adjoint() * CX, a0 = X.adjoint() * KX;
+  const Eigen::PartialPivLU<MatXc> q(c * c * a2 + c * a1 + a0);
+  const double alpha = std::max(std::abs(c), 1e-300);
+  MatXc op(2 * k, 2 * k);
+  op.topLeftCorner(k, k) = -q.solve(a1 + c * a2);
+  op.topRightCorner(k, k) = -alpha * q.solve(a2);
+  op.bottomLeftCorner(k, k) = (MatXc::Identity(k, k) + c * op.topLeftCorner(k, k)) / alpha;
+  op.bottomRightCorner(k, k) = c * op.topRightCorner(k, k) / alpha;
+  if (!op.allFinite()) return;
+  const Eigen::ComplexEigenSolver<MatXc> eig(op);
+  std::vector<Index> order(at(2 * k));
+  for (Index j = 0; j < 2 * k; ++j) order[at(j)] = j;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::abs(eig.eigenvalues()(a)) > std::abs(eig.eigenvalues()(b)); });
+  // The k nearest to the centre, each given to the old vector it contains most of.
+  MatXc y(k, k);
+  VecXc lambda(k);
+  for (Index j = 0; j < k; ++j) {
+    const Index e = order[at(j)];
+    lambda(j) = c + 1.0 / eig.eigenvalues()(e);
+    y.col(j) = eig.eigenvectors().col(e).head(k);
+    y.col(j) /= y.col(j).norm();
+  }
+  if (!lambda.allFinite() || !y.allFinite()) return;
+  std::vector<bool> taken(at(k), false), given(at(k), false);
+  std::vector<Index> of(at(k), 0);
+  for (Index round = 0; round < k; ++round) {
+    double best = -1.0;
+    Index bi = 0, bj = 0;
+    for (Index i = 0; i < k; ++i)
+      for (Index j = 0; j < k; ++j)
+        if (!taken[at(j)] && !given[at(i)] && std::abs(y(i, j)) > best) best = std::abs(y(i, j)), bi = i, bj = j;
+    taken[at(bj)] = given[at(bi)] = true;
+    of[at(bi)] = bj;
+  }
+  for (Index i = 0; i < k; ++i) {
+    Pair& p = *group[at(i)];
+    VecXc w = y.col(of[at(i)]);
+    p.lambda = lambda(of[at(i)]);
+    Index big = 0;
+    w.cwiseAbs().maxCoeff(&big);
+    w *= 1.0 / w(big);
+    if (real && std::abs(p.lambda.imag()) < 1e-9 * std::abs(p.lambda)) {
+      p.lambda = p.lambda.real();
+      w = w.real().cast<Complex>().eval();
+    }
+    p.x = X * w, p.Mx = MX * w, p.Cx = CX * w, p.Kx = KX * w;
+  }
+}
+
+}  // namespace whirl::la
