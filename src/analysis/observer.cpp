@@ -96,4 +96,9 @@ void EnergyBalance::step(StepAccess& s) {
   worst_ = std::max(worst_, std::abs(defect()));
 }
 
+void TiltWatch::look(const Snapshot& s) {
+  for (Index i = 0; i < s.system().nodes(); ++i)
+    if (const double g = s.gamma(i).norm(); g > tilt_) tilt_ = g, time_ = s.t(), node_ = i;
+}
+
 }  // namespace whirl::analysis

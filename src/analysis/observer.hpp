@@ -102,4 +102,19 @@ class EnergyBalance final : public Observer {
   double e0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0;
 };
 
+/// Largest tilt |gamma| of any node, where and when: how far the run was from the limit of the chart (pi).
+class TiltWatch final : public Observer {
+ public:
+  void begin(const Snapshot& s) override { look(s); }
+  void step(StepAccess& s) override { look(s.end()); }
+  double tilt() const { return tilt_; }
+  double time() const { return time_; }
+  Index node() const { return node_; }
+
+ private:
+  void look(const Snapshot& s);
+  double tilt_ = 0, time_ = 0;
+  Index node_ = 0;
+};
+
 }  // namespace whirl::analysis

@@ -4,6 +4,7 @@
 #include <app/interrupt.hpp>
 #include <app/job.hpp>
 #include <app/plot_buffer.hpp>
+#include <core/rotation.hpp>
 #include <io/plots.hpp>
 
 #include <fmt/format.h>
@@ -226,6 +227,8 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   if (!watched.empty()) observers.push_back(&peaks);
   analysis::EnergyBalance energy;
   observers.push_back(&energy);
+  analysis::TiltWatch tilt;
+  observers.push_back(&tilt);
   std::vector<std::unique_ptr<Frames>> frames;
   for (const model::VtkOutput& v : out.vtk)
     if (v.step.empty() || v.step == step.name) {
@@ -264,6 +267,9 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
     io::Value& q = v["peaks"][p.name];
     q["amplitude 0-peak [m]"] = p.amplitude, q["time [s]"] = p.time, q["speed [rpm]"] = p.speed * 30.0 / pi;
   }
+  v["largest tilt"]["|gamma| [rad]"] = tilt.tilt(), v["largest tilt"]["time [s]"] = tilt.time();
+  v["largest tilt"]["node"] = job.system().node(tilt.node()).name;
+  v["largest tilt"]["condition of (phi', gamma') -> omega"] = rotation::chart_condition(tilt.tilt());
   for (const auto& f : frames) v["frames"] = f->frames();
 
   line.done(fmt::format("{}: {} steps, {} Newton iterations, {:.3f} s, energy defect {:.2e} J", to_string(r.reason), s.accepted,
