@@ -110,16 +110,30 @@ void add_history_figures(const Job& job, const model::Step& step, const std::vec
       add(figure(step, probe.name + "_history", probe.name + ": displacement", std::move(axes)));
       if (m.width() == 2) {
         const std::size_t y = 1 + start[k];
+        // about the place at the start: the static sag is not a vibration
+        const double y0 = rows.front()[y], z0 = rows.front()[y + 1];
+        std::size_t largest_row = 0;
+        std::vector<double> radius(rows.size());
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+          radius[r] = std::hypot(rows[r][y] - y0, rows[r][y + 1] - z0);
+          if (radius[r] > radius[largest_row]) largest_row = r;
+        }
         if (speed_varies) {
           io::Axes a;
           a.x = io::Axis("spin", "rpm");
-          a.y = io::Axis(fmt::format("orbit radius, {}", convention), unit.name);
+          a.y = io::Axis(fmt::format("orbit radius about the place at the start, {}", convention), unit.name);
           a.y.include_zero = true;
-          io::Series s;
-          s.style.width = 1.0;
-          for (std::size_t r = 0; r < rows.size(); ++r)
-            s.x.push_back(rpm[r]), s.y.push_back(factor * unit.factor * std::hypot(rows[r][y], rows[r][y + 1]));
-          a.series.push_back(std::move(s));
+          // up and down apart: they differ by the beat of the passage
+          const std::size_t top = static_cast<std::size_t>(std::max_element(rpm.begin(), rpm.end()) - rpm.begin());
+          io::Series up, down;
+          up.label = top + 1 < rows.size() ? "speed rising" : "", down.label = "speed falling";
+          up.style.width = down.style.width = 1.0;
+          for (std::size_t r = 0; r < rows.size(); ++r) {
+            io::Series& s = r <= top ? up : down;
+            s.x.push_back(rpm[r]), s.y.push_back(factor * unit.factor * radius[r]);
+          }
+          a.series.push_back(std::move(up));
+          if (!down.x.empty()) a.series.push_back(std::move(down));
           add(figure(step, probe.name + "_amplitude", probe.name + ": orbit radius against spin", {std::move(a)}));
         }
         io::Axes a;
@@ -127,9 +141,20 @@ void add_history_figures(const Job& job, const model::Step& step, const std::vec
         a.equal_aspect = true;
         io::Series s;
         s.style.width = 0.8;
-        for (const auto& r : rows) s.x.push_back(unit.factor * r[y]), s.y.push_back(unit.factor * r[y + 1]);
+        // ten turns about the largest radius when the spin is known and the run is long; else the whole path
+        const std::ptrdiff_t turn = src.find("phi");
+        std::size_t from = 0, to = rows.size();
+        if (turn >= 0 && speed_varies) {
+          const std::size_t p = 1 + start[static_cast<std::size_t>(turn)];
+          const double phi = rows[largest_row][p];
+          while (from < largest_row && std::abs(rows[from][p] - phi) > 5.0 * two_pi) ++from;
+          for (to = largest_row; to < rows.size() && std::abs(rows[to][p] - phi) <= 5.0 * two_pi;) ++to;
+        }
+        for (std::size_t r = from; r < to; ++r) s.x.push_back(unit.factor * rows[r][y]), s.y.push_back(unit.factor * rows[r][y + 1]);
+        const bool part = to - from < rows.size();
         a.series.push_back(std::move(s));
-        add(figure(step, probe.name + "_orbit", probe.name + ": orbit", {std::move(a)}, 520));
+        add(figure(step, probe.name + "_orbit", probe.name + (part ? fmt::format(": orbit, ten turns about the largest radius ({:.0f} rpm)", rpm[largest_row]) : ": orbit"),
+                   {std::move(a)}, 520));
       }
     }
     if (const std::ptrdiff_t j = src.find(probe.name + " position"); j >= 0) {

@@ -18,9 +18,9 @@ void PlotBuffer::append(const std::vector<double>& row) {
   }
   if (++filled_ == stride_) filled_ = 0;
   if (rows_ % keep_stride_ == 0) {
-    if (kept_.size() == capacity_) {
-      for (std::size_t i = 1; i < capacity_ / 2; ++i) kept_[i] = std::move(kept_[2 * i]);
-      kept_.resize(capacity_ / 2);
+    if (kept_.size() == rows_capacity) {
+      for (std::size_t i = 1; i < rows_capacity / 2; ++i) kept_[i] = std::move(kept_[2 * i]);
+      kept_.resize(rows_capacity / 2);
       keep_stride_ *= 2;
     }
     if (rows_ % keep_stride_ == 0) kept_.push_back(row);

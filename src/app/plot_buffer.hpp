@@ -21,6 +21,7 @@ class PlotBuffer {
  private:
   struct Extreme { double lo, hi, t_lo, t_hi; };
   void halve();
+  static constexpr std::size_t rows_capacity = 1 << 16;
   std::size_t channels_, capacity_, stride_ = 1, rows_ = 0, filled_ = 0;
   std::vector<Extreme> data_;   // bucket-major
   std::vector<std::vector<double>> kept_;
