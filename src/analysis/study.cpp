@@ -18,7 +18,8 @@ std::string StudyCase::label() const {
 
 double StudySample::worst() const {
   double w = 0.0;
-  for (double e : errors) w = std::isfinite(e) ? std::max(w, e) : infinity;
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (i >= counted.size() || counted[i]) w = std::isfinite(errors[i]) ? std::max(w, errors[i]) : infinity;
   return errors.empty() ? infinity : w;
 }
 
@@ -73,17 +74,19 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
   for (const StudyCase& c : options.ladder) {
     StudySample s = timed(run, c, options.repeats);
     if (s.ok) s.errors = errors_of(s.quantities, result.reference.quantities);
+    for (double u : result.uncertainty) s.counted.push_back(u <= resolved);
     if (options.progress) options.progress(s);
     result.samples.push_back(std::move(s));
   }
 
   // slope of log(worst error) by least squares over the samples still above the reference's own uncertainty
   double floor = 1e-13;
-  for (double u : result.uncertainty) floor = std::max(floor, std::isfinite(u) ? 3.0 * u : 0.0);
+  for (double u : result.uncertainty)
+    if (u <= resolved) floor = std::max(floor, 3.0 * u);
   struct Fit { double n = 0, x = 0, y = 0, xx = 0, xy = 0; };
   std::map<std::string, Fit> fits;
   for (const StudySample& s : result.samples) {
-    if (s.setting.tolerance > 0 || s.setting.mesh_factor != 1) continue;   // the steps of adaptive runs are not proportional
+    if (s.setting.tolerance > 0) continue;   // the steps of adaptive runs are not proportional
     if (!s.ok || !(s.worst() > floor) || !(s.worst() < 0.3) || s.steps <= 0) continue;
     Fit& f = fits[s.setting.method];
     const double x = -std::log(static_cast<double>(s.steps)), y = std::log(s.worst());

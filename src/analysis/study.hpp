@@ -22,6 +22,10 @@ struct Quantity {
   double scale = 0;             ///< 0: the largest |value| of the reference
 };
 
+/// A quantity whose reference and cross-check differ by more than this is not a number of the model (undamped ringing sampled at an
+/// instant): its errors are listed but do not count in worst().
+inline constexpr double resolved = 1e-4;
+
 struct StudySample {
   StudyCase setting;
   bool ok = true;
@@ -30,6 +34,7 @@ struct StudySample {
   long steps = 0, newton = 0, factorizations = 0;
   std::vector<Quantity> quantities;
   std::vector<double> errors;   ///< one a quantity; filled by run_study
+  std::vector<bool> counted;    ///< quantities that count
   double worst() const;
 };
 
