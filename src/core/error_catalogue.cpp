@@ -156,6 +156,11 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"E73", "a rigid body that cannot be",
        "Mass and moments of inertia must be finite and positive definite where a body is free to move.",
        ""},
+      {"E74", "the momentum form does not cover the model",
+       "Integrator momentum_rk writes the equations in momenta of free rigid bodies, bodies about a fixed point and point masses. The message names "
+       "what stands against it: shaft elements with mass, added mass in a bearing, a body without mass or rotary inertia, a partly held node, "
+       "a prescribed motion, or an unbalance that changes in time.",
+       "method = \"radau5\""},
       {"E90", "a plug-in is missing or does not fit",
        "VTK, HDF5 and SUNDIALS live in plug-ins that are loaded only when a deck asks for them. The message lists where the file was looked for. "
        "Install the package that holds it, set WHIRL_PLUGIN_PATH, or ask for another output or method.",
