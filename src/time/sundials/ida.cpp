@@ -280,7 +280,6 @@ void Ida::reinitialize() {
     // the iteration error is to be small against the local error: it adds up coherently in a free spin
     check(IDASetNonlinConvCoef(ida_, 0.01), "IDASetNonlinConvCoef");
     if (std::isfinite(options_.dt_max)) check(IDASetMaxStep(ida_, options_.dt_max), "IDASetMaxStep");
-    if (options_.dt_min > 0.0) check(IDASetMinStep(ida_, options_.dt_min), "IDASetMinStep");
     initialized_ = true;
   } else {
     check(IDAReInit(ida_, t_, y_.handle(), yp_.handle()), "IDAReInit");
@@ -337,6 +336,9 @@ StepReport Ida::step_to(double stop, bool is_break) {
   report.t0 = report.t1 = t0_;
   t_stop_eval_ = is_break ? std::nextafter(stop, t0_) : infinity;
   if (std::isfinite(stop)) check(IDASetStopTime(ida_, stop), "IDASetStopTime");
+  // without a least step IDA creeps towards an impassable state for ever
+  const double least = options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
+  check(IDASetMinStep(ida_, std::min(least, options_.dt_max)), "IDASetMinStep");
   realtype reached = t0_;
   const double far = std::isfinite(stop) ? stop : t0_ + 1e3 * std::max(1.0, std::abs(t0_));
   const int flag = IDASolve(ida_, far, &reached, y_.handle(), yp_.handle(), IDA_ONE_STEP);
