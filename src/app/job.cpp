@@ -20,6 +20,7 @@ void Job::build_for(const model::Step& step) {
   for (const model::Drive& d : model.drives)
     if (d.step == step.name) key = step.name;
   if (!built_for.empty() && built_for == "<" + key) return;
+  const PhaseTimer timer(*this, "assembly");
   built = assembly::build_system(model, mesh, key);
   built_for = "<" + key;
 }
@@ -88,6 +89,18 @@ ProgressLine::ProgressLine(std::string name, bool quiet) : name_(std::move(name)
 namespace {
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 }  // namespace
+
+PhaseTimer::PhaseTimer(Job& job, std::string phase) : job_(job), phase_(std::move(phase)), start_(now()) {}
+
+PhaseTimer::~PhaseTimer() {
+  const double spent = now() - start_;
+  for (auto& [name, seconds] : job_.phases)
+    if (name == phase_) {
+      seconds += spent;
+      return;
+    }
+  job_.phases.emplace_back(phase_, spent);
+}
 
 void ProgressLine::update(double fraction, const std::string& text) {
   if (quiet_) return;

@@ -31,6 +31,7 @@ struct Job {
   io::Report report;
   io::Value summary;
   std::map<std::string, StepState> states;
+  std::vector<std::pair<std::string, double>> phases;   ///< wall-clock seconds by phase, for the summary
 
   std::string built_for;
 
@@ -62,6 +63,20 @@ std::vector<std::pair<std::string, analysis::Point>> watched_points(const Job&);
 analysis::TransientOptions transient_options(const Job&, const model::TransientStep&, double t0);
 /// The state it starts from, settled when the deck asks for the static equilibrium.
 StepState transient_start(Job&, system::SystemProblem&, const model::Step&, const model::TransientStep&);
+
+/// Adds the time since its construction to a phase of the job.
+class PhaseTimer {
+ public:
+  PhaseTimer(Job& job, std::string phase);
+  ~PhaseTimer();
+  PhaseTimer(const PhaseTimer&) = delete;
+  PhaseTimer& operator=(const PhaseTimer&) = delete;
+
+ private:
+  Job& job_;
+  std::string phase_;
+  double start_;
+};
 
 /// Progress on a terminal (one line, rewritten) or one line per 10 %.
 class ProgressLine {

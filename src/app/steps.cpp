@@ -39,9 +39,13 @@ void run_steps(Job& job) {
   job.report.deck = job.model.resolved;
   for (const Diagnostic& w : job.model.warnings) job.report.warnings.push_back(w.message);
   auto finish = [&] {
-    job.summary["run time, wall [s]"] = wall() - t0;
-    job.folder.write_json("summary.json", job.summary);
+    auto take_times = [&] {
+      for (const auto& [name, seconds] : job.phases) job.summary["run time by phase, wall [s]"][name] = seconds;
+      job.summary["run time, wall [s]"] = wall() - t0;
+    };
+    take_times();
     if (job.model.output.report) {
+      const PhaseTimer timer(job, "report");
       job.report.summary = job.summary;
       io::ReportSection rotor;
       rotor.title = "Rotor";
@@ -52,6 +56,8 @@ void run_steps(Job& job) {
       for (const io::ReportSection& s : job.report.sections)
         for (const io::Figure& f : s.figures) job.folder.write_text("plots/" + f.name + ".svg", io::render_svg(f));
     }
+    take_times();
+    job.folder.write_json("summary.json", job.summary);
   };
   try {
     for (const model::Step& step : job.model.steps) {

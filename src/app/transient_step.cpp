@@ -193,7 +193,10 @@ analysis::TransientOptions transient_options(const Job& job, const model::Transi
 
 StepState transient_start(Job& job, system::SystemProblem& problem, const model::Step& step, const model::TransientStep& law) {
   StepState start = job.start_of(step, law.speed0);
-  if (law.start == model::TransientStep::Start::static_equilibrium && step.from.empty()) job.settle(problem, start);
+  if (law.start == model::TransientStep::Start::static_equilibrium && step.from.empty()) {
+    const PhaseTimer timer(job, "equilibrium");
+    job.settle(problem, start);
+  }
   return start;
 }
 
@@ -241,7 +244,10 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
     line.update((p.t - t0) / law.duration,
                 fmt::format("t {:.4g} s  {:.0f} rpm  dt {:.2e} s  {} steps  {} Newton", p.t, p.spin * 30.0 / pi, p.dt, p.steps, p.newton));
   };
-  const analysis::TransientResult r = analysis::run_transient(problem, start.state, options, observers);
+  const analysis::TransientResult r = [&] {
+    const PhaseTimer timer(job, "stepping and histories");
+    return analysis::run_transient(problem, start.state, options, observers);
+  }();
   if (sink) sink->close();
   job.states[step.name] = {r.end, start.speed};
 

@@ -101,7 +101,7 @@ TEST(Accuracy, IndependentOfUnits) {
       integrator->start(0.0, VecX::Constant(1, length), VecX::Zero(1));
       EXPECT_EQ(run(*integrator, 10.0 * time), StepStatus::ok);
       EXPECT_NEAR(integrator->q()[0] / length, 1.0, 1e-5);
-      EXPECT_LT(integrator->statistics().accepted, 450);
+      EXPECT_LT(integrator->statistics().accepted, 500);   // under 50 a period at 1e-4, in any unit
     }
 }
 
