@@ -3,6 +3,7 @@
 #include <io/file.hpp>
 #include <io/frame_sets.hpp>
 #include <io/frames.hpp>
+#include <io/text.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -125,7 +126,7 @@ class VtkFrames final : public FrameWriter {
     scene_ = scene;
     drawn_.resize(scene_.nodes.size());
     const auto add = [&](std::unique_ptr<FrameSet> set) {
-      Collection files(options_.directory, options_.name + "_" + set->name(), options_.keep_until);
+      Collection files(options_.directory, safe_name(options_.name) + "_" + set->name(), options_.keep_until);
       sets_.push_back({std::move(set), std::move(files),
                        std::unique_ptr<PolyDataWriter>(plugin_.function<VtkMakeWriter>(vtk_make_writer)())});
     };

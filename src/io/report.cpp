@@ -4,7 +4,7 @@
 #include <io/svg.hpp>
 #include <io/text.hpp>
 #include <algorithm>
-#include <cmath>
+#include <set>
 
 namespace whirl::io {
 namespace {
@@ -62,13 +62,13 @@ bool turns(const Figure& f) {
   return std::any_of(f.axes.begin(), f.axes.end(), [](const Axes& a) { return a.kind == AxesKind::space; });
 }
 
-std::string figure_html(const Figure& f) {
+std::string figure_html(const Figure& f, const std::string& id) {
   std::string s = "<figure style=\"width:" + number_text(f.width) + "px\"><div class=\"bar\"><h3>" + escape(f.title) + "</h3><span class=\"hint\">";
   s += turns(f) ? "drag turns" : "click, then wheel zooms; drag pans; shift-drag: window";
   s += "</span><button data-do=\"reset\" title=\"back to the whole picture (double click)\">reset</button>"
        "<button data-do=\"save\" title=\"save this picture as it is now\">SVG</button></div>\n";
   // Twice the density of the printed picture: something is left to zoom into.
-  s += render_svg(f, {false, 2.0});
+  s += render_svg(f, {false, id, 2.0});
   if (!f.caption.empty()) s += "<figcaption>" + escape(f.caption) + "</figcaption>";
   return s + "</figure>\n";
 }
@@ -83,6 +83,15 @@ std::string render_report(const Report& r) {
   s += report_css;
   s += "</style>\n</head>\n<body>\n";
   const bool nav = r.sections.size() > 1;
+  // Ids of figures: their names, made different where two steps draw the same plot.
+  std::vector<std::vector<std::string>> ids(r.sections.size());
+  std::set<std::string> taken;
+  for (std::size_t k = 0; k < r.sections.size(); ++k)
+    for (const auto& f : r.sections[k].figures) {
+      std::string id = safe_name(f.name);
+      for (int n = 2; !taken.insert(id).second; ++n) id = safe_name(f.name) + "-" + std::to_string(n) + "-";
+      ids[k].push_back(std::move(id));
+    }
   s += nav ? "<div class=\"page with-nav\">\n" : "<div class=\"page\">\n";
   s += "<header><h1>" + escape(r.title) + "</h1>";
   if (!r.subtitle.empty()) s += "<p class=\"subtitle\">" + escape(r.subtitle) + "</p>";
@@ -91,7 +100,8 @@ std::string render_report(const Report& r) {
     s += "<nav aria-label=\"Contents\"><ol>";
     for (std::size_t k = 0; k < r.sections.size(); ++k) {
       s += "<li><a href=\"#" + anchor(k) + "\">" + escape(r.sections[k].title) + "</a>";
-      for (const auto& f : r.sections[k].figures) s += "<span class=\"sub\"><a href=\"#" + escape(f.name) + "\">" + escape(f.title) + "</a></span>";
+      for (std::size_t i = 0; i < ids[k].size(); ++i)
+        s += "<span class=\"sub\"><a href=\"#" + ids[k][i] + "\">" + escape(r.sections[k].figures[i].title) + "</a></span>";
       s += "</li>";
     }
     s += "</ol></nav>\n";
@@ -113,7 +123,7 @@ std::string render_report(const Report& r) {
     for (const auto& t : x.tables) s += table_html(t);
     if (!x.figures.empty()) {
       s += "<div class=\"figures\">";
-      for (const auto& f : x.figures) s += figure_html(f);
+      for (std::size_t i = 0; i < x.figures.size(); ++i) s += figure_html(x.figures[i], ids[k][i]);
       s += "</div>\n";
     }
     if (!x.files.empty()) {

@@ -10,11 +10,11 @@ namespace whirl::io {
 using namespace svg;
 
 std::string render_svg(const Figure& figure, const SvgOptions& options) {
-  Canvas c{{}, figure, options};
+  Canvas c{{}, figure, options, safe_name(options.id.empty() ? figure.name : options.id)};
   const double W = figure.width, H = figure.height;
   const std::string size = number_text(W) + " " + number_text(H);
   if (options.standalone) c.add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-  c.add("<svg class=\"figure\" id=\"" + escape(figure.name) + "\" viewBox=\"0 0 " + size + "\" width=\"" + number_text(W) + "\" height=\"" + number_text(H) + '"');
+  c.add("<svg class=\"figure\" id=\"" + c.prefix + "\" viewBox=\"0 0 " + size + "\" width=\"" + number_text(W) + "\" height=\"" + number_text(H) + '"');
   if (options.standalone) c.add(" xmlns=\"http://www.w3.org/2000/svg\"");
   c.add(" font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\" role=\"img\">\n");
   c.add("<title>" + escape(figure.title.empty() ? figure.name : figure.title) + "</title>\n");

@@ -33,8 +33,9 @@ struct Canvas {
   std::string out;
   const Figure& figure;
   const SvgOptions& options;
+  std::string prefix;   ///< of ids
   int ids = 0;
-  std::string id() { return figure.name + "-" + std::to_string(++ids); }
+  std::string id() { return prefix + "-" + std::to_string(++ids); }
   void add(std::string_view s) { out += s; }
   /// name="value" with two decimals.
   void attr(const char* name, double v);

@@ -156,6 +156,19 @@ TEST_F(Frames, ContinuedRunKeepsEarlierFramesAndDropsLaterOnes) {
   EXPECT_EQ(file_count(dir_ / "frames_line"), 1u);
 }
 
+TEST_F(Frames, NamesOfDecksStayInTheFolder) {
+  VtkFrameOptions o;
+  o.directory = dir_.path();
+  o.name = "../run & up";
+  o.surface = false;
+  auto w = make_vtk_frames(o);
+  w->begin(small_rotor());
+  write(*w, small_rotor(), 0);
+  const auto list = read_pvd(dir_ / "_.._run___up_line.pvd");
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_TRUE(fs::exists(dir_ / list[0].file));
+}
+
 TEST_F(Frames, ModesHavePhasesOfOnePeriod) {
   const Scene scene = small_rotor();
   HarmonicShape mode;

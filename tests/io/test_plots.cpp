@@ -175,7 +175,7 @@ TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
   ASSERT_EQ(figures().size(), 15u);
   const Figure& f = figures()[GetParam()];
   for (const bool standalone : {true, false}) {
-    const std::string svg = render_svg(f, {standalone, 1.0});
+    const std::string svg = render_svg(f, {standalone, "", 1.0});
     EXPECT_EQ(xml_fault(svg), "");
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf\""), std::string::npos);
@@ -251,6 +251,16 @@ TEST(Svg, EmptyConstantAndBrokenDataAreDrawn) {
       EXPECT_EQ(svg.find("=\"nan"), std::string::npos);
     }
   }
+}
+
+TEST(Svg, NamesOfDecksBecomeIds) {
+  Figure f = gallery().front();
+  f.name = "step \"a/b\" <1>";
+  const std::string svg = render_svg(f);
+  EXPECT_EQ(xml_fault(svg), "");
+  EXPECT_NE(svg.find("id=\"step__a_b___1_\""), std::string::npos);
+  EXPECT_EQ(safe_name("../x"), "_.._x");
+  EXPECT_EQ(safe_name(""), "_");
 }
 
 TEST(Svg, FileIsWrittenWhole) {

@@ -6,7 +6,7 @@
 #include <io/report.hpp>
 #include <io/report/assets.hpp>
 #include <cstdlib>
-#include <fstream>
+#include <set>
 
 namespace whirl::io {
 namespace {
@@ -65,6 +65,21 @@ TEST(Report, HoldsEverythingInOrderAndEscaped) {
   for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1), ++figures)
     EXPECT_EQ(xml_fault(html.substr(at, html.find("</svg>", at) + 6 - at)), "");
   EXPECT_EQ(figures, gallery().size());
+}
+
+TEST(Report, SameFigureInTwoStepsGetsTwoIds) {
+  Report r;
+  const Figure f = gallery().front();
+  r.sections = {{"a", "", {}, {f}, {}}, {"b", "", {}, {f}, {}}};
+  const std::string html = render_report(r);
+  std::set<std::string> ids;
+  std::size_t figures = 0;
+  for (std::size_t at = html.find(" id=\""); at != std::string::npos; at = html.find(" id=\"", at + 1)) {
+    const auto id = html.substr(at + 5, html.find('"', at + 5) - at - 5);
+    EXPECT_TRUE(ids.insert(id).second) << id;
+    figures += html.compare(at - 6, 6, "figure") == 0 || html.compare(at - 7, 7, "figure\"") == 0 ? 1 : 0;
+  }
+  EXPECT_EQ(figures, 2u);
 }
 
 TEST(Report, OneSectionAndNothingElse) {
