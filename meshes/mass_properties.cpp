@@ -43,16 +43,16 @@ MassProperties section_mass(const model::Model& m, const model::Section& s, cons
     const auto& c = *s.constants;
     mass = c.rhoA * L, first = mass * L / 2, second = mass * L * L / 3;
     about_y = about_z = c.rhoI * L, polar = c.rhoIp * L;
-  } else if (s.od_l > 0 || s.od_r > 0) {
-    const Frustum out(L, s.od_l, s.od_r), in(L, s.id_l, s.id_r);
-    mass = rho * (out.V - in.V), first = rho * (out.S - in.S), second = rho * (out.I - in.I);
-    polar = rho * (out.J - in.J), about_y = about_z = polar / 2;
   } else if (s.general) {
     const auto& g = *s.general;
     const double c = std::cos(g.angle), n = std::sin(g.angle);   // about_* refer to global y, z
     mass = rho * g.A * L, first = mass * L / 2, second = mass * L * L / 3;
     about_y = rho * L * (g.Iy * c * c + g.Iz * n * n), about_z = rho * L * (g.Iy * n * n + g.Iz * c * c);
     polar = rho * L * (g.Iy + g.Iz), product = rho * L * (g.Iz - g.Iy) * c * n;
+  } else if (s.od_l > 0 || s.od_r > 0) {
+    const Frustum out(L, s.od_l, s.od_r), in(L, s.id_l, s.id_r);
+    mass = rho * (out.V - in.V), first = rho * (out.S - in.S), second = rho * (out.I - in.I);
+    polar = rho * (out.J - in.J), about_y = about_z = polar / 2;
   }
   if (!s.rotary_inertia && !s.rigid) about_y = about_z = product = 0;
   const double added = s.added_mass_per_length * L;

@@ -41,13 +41,12 @@ void add_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& 
   const model::Section& s = shaft.sections[e.section];
   const model::Section::General& g = *s.general;
   const model::Material& material = a.model.materials.at(s.material);
-  const bool circle = s.od_l > 0;   // diameters, when given, say the mass
-  const double A = circle ? elements::annulus_area(s.od_l, s.id_l) : g.A, l = e.s2 - e.s1;
+  const double l = e.s2 - e.s1;
   elements::ElementSection plane;
   plane.constants = true;
   const auto constants = [&](double I, double kappa) {
     plane.given = {material.E * g.A, kappa > 0 ? kappa * material.G * g.A : 0.0, material.G * g.J, material.E * I,
-                   material.rho * A + s.added_mass_per_length, 0, 0};
+                   material.rho * g.A + s.added_mass_per_length, 0, 0};
     return elements::make_shaft_constants(plane, l);
   };
   const ShaftElementConstants y = constants(g.Iz, g.kappa_y), z = constants(g.Iy, g.kappa_z);
@@ -58,8 +57,8 @@ void add_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& 
   c.kz_def11 = z.k11, c.kz_def12 = z.k12, c.kz_def22 = z.k22;
   c.b11 = 0.5 * (y.b11 + z.b11), c.b12 = 0.5 * (y.b12 + z.b12), c.b22 = 0.5 * (y.b22 + z.b22);
   c.M4 = 0.5 * (y.M4 + z.M4);
-  const double rho = s.rotary_inertia ? material.rho * l : 0.0, I = circle ? elements::annulus_I(s.od_l, s.id_l) : 0.0;
-  c.rhoIz_l = rho * (circle ? I : g.Iz), c.rhoIy_l = rho * (circle ? I : g.Iy);
+  const double rho = s.rotary_inertia ? material.rho * l : 0.0;
+  c.rhoIz_l = rho * g.Iz, c.rhoIy_l = rho * g.Iy;
   c.beta = shaft.damping.beta_internal;
   Mat3 triad;
   triad << Vec3::UnitX(), Vec3(0, std::cos(g.angle), std::sin(g.angle)), Vec3(0, -std::sin(g.angle), std::cos(g.angle));

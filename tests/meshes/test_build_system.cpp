@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 #include <system/problem.hpp>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 
 using namespace whirl;
 using namespace whirl::assembly;
@@ -190,7 +190,7 @@ TEST(BuildSystem, AssembledMassIsThatOfTheModel) {
   m.unbalances = {u};
   model::Shaft keyed;
   keyed.name = "keyed";
-  keyed.sections = {cylinder("g", 0.5, 0, 0, 3)};
+  keyed.sections = {cylinder("g", 0.5, 0.02, 0, 3)};
   keyed.sections[0].general = model::Section::General{1e-3, 2e-7, 1e-7, 2e-7, 0.85, 0.85, 0.4};
   m.shafts.push_back(keyed);
   m.bearings = {held("left", 0.0, {true, true, true, true, true, true})};   // a wholly held node keeps its mass
