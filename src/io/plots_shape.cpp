@@ -138,11 +138,11 @@ Figure plot_rotor(std::string name, const RotorDrawing& rotor) {
     probes.style = {3, Dash::solid, 0, Marker::triangle, 9};
     a.series.push_back(std::move(probes));
   }
-  // Names outside the outline: disks above their rim, bearings below their triangle, probes above theirs.
+  // Names outside the outline: disks and bearings below, probes above.
   const auto centred = [](const std::string& text, double dy) { return std::pair{-text_width(text, 11) / 2, dy}; };
   for (const auto& p : rotor.disks) {
-    const auto [dx, dy] = centred(p.name, -5);
-    a.notes.push_back({mm * p.s, mm * p.outer, p.name, false, dx, dy});
+    const auto [dx, dy] = centred(p.name, 15);
+    a.notes.push_back({mm * p.s, -mm * p.outer, p.name, false, dx, dy});
   }
   for (const auto& p : rotor.bearings) {
     const auto [dx, dy] = centred(p.name, 15);

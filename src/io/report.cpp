@@ -30,7 +30,7 @@ std::string table_html(const Table& t) {
     const auto& c = t.columns[k];
     s += numeric[k] ? "<th class=\"n\"" : "<th";
     if (!c.description.empty()) s += " title=\"" + escape(c.description) + '"';
-    s += ">" + escape(c.name) + (c.unit.empty() ? "" : "<small>" + escape(c.unit) + "</small>") + "</th>";
+    s += ">" + escape(c.name) + (c.unit.empty() || c.unit == "-" ? "" : "<small>" + escape(c.unit) + "</small>") + "</th>";
   }
   s += "</tr></thead>\n<tbody>";
   for (const auto& row : t.rows) {

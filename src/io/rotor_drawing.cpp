@@ -1,5 +1,6 @@
 #include <io/rotor_drawing.hpp>
 #include <algorithm>
+#include <cmath>
 
 namespace whirl::io {
 
@@ -34,8 +35,13 @@ std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const m
     for (const auto& b : scene.supports)
       for (const auto* p : {&b.at, b.to_node ? &b.to : nullptr})
         if (p && on_line(*p)) d.bearings.push_back({s_of(*p), radius(s_of(*p)), b.name});
-    for (const auto& p : model.probes)
-      if (p.at.shaft == l) d.probes.push_back({p.at.s, radius(p.at.s), p.name});
+    for (const auto& p : model.probes) {
+      if (p.at.shaft != l) continue;
+      double r = radius(p.at.s);   // a probe at a disk is drawn at its rim
+      for (const auto& k : d.disks)
+        if (std::abs(p.at.s - k.s) <= k.width / 2) r = std::max(r, k.outer);
+      d.probes.push_back({p.at.s, r, p.name});
+    }
     for (Index k = line.first_node; k < line.first_node + line.nodes; ++k) d.nodes.push_back(mesh.nodes[static_cast<std::size_t>(k)].s);
     all.push_back(std::move(d));
   }

@@ -127,7 +127,9 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
   if (!f.hide_x)
     c.text(b.x + b.w / 2, b.bottom() + tick_length + 31, axis_title(a.x, p.tx.exponent), label_size, "middle", "data-label=\"x\"");
   const auto sideways = [&](double x, double y, const std::string& t, const char* which) {
-    c.text(x, y, t, label_size, "middle", "data-label=\"" + std::string(which) + "\" transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
+    // A title longer than its axis is set smaller.
+    const double size = label_size * std::clamp((b.h + 24) / std::max(1.0, text_width(t, label_size)), 0.7, 1.0);
+    c.text(x, y, t, size, "middle", "data-label=\"" + std::string(which) + "\" transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
   };
   sideways(b.x - tick_length - 10 - widest_label(p.ty), b.y + b.h / 2, axis_title(a.y, p.ty.exponent), "y");
   if (right) sideways(b.right() + tick_length + 18 + widest_label(p.tr), b.y + b.h / 2, axis_title(a.right, p.tr.exponent), "r");
