@@ -13,7 +13,7 @@ using Word = std::uint32_t;
 /// integer root of p * 2^(32 k).
 template <std::size_t N>
 std::array<Word, N> root_fractions(int k) {
-  using Wide = unsigned __int128;
+  __extension__ using Wide = unsigned __int128;
   std::array<Word, N> r{};
   std::size_t n = 0;
   for (unsigned p = 2; n < N; ++p) {

@@ -7,18 +7,24 @@ namespace {
 
 constexpr int widest = 140;   // characters of a source line shown
 
-/// Splits UTF-8 into code points; tabs and control characters become a space so that the caret stays under its text.
-std::vector<std::string> characters(std::string_view line) {
-  std::vector<std::string> r;
-  for (std::size_t i = 0; i < line.size();) {
+/// Characters first to last of a line of UTF-8; tabs and control characters become a space and bad bytes '?' so that the caret
+/// stays under its text. Returns how many characters the line has.
+int cut(std::string_view line, int first, int last, std::string& out) {
+  int k = 0;
+  for (std::size_t i = 0; i < line.size(); ++k) {
     const auto c = static_cast<unsigned char>(line[i]);
     std::size_t n = c < 0x80 ? 1 : c < 0xE0 ? 2 : c < 0xF0 ? 3 : 4;
     n = std::min(n, line.size() - i);
-    if (c < 0x20 || c == 0x7F || (c >= 0x80 && c < 0xC2)) { r.emplace_back(c == 0x7F || c >= 0x80 ? "?" : " "); n = 1; }
-    else r.emplace_back(line.substr(i, n));
+    const bool bad = c >= 0x80 && c < 0xC2;
+    if (bad) n = 1;
+    if (k >= first && k < last) {
+      if (c < 0x20) out += ' ';
+      else if (bad || c == 0x7F) out += '?';
+      else out += line.substr(i, n);
+    }
     i += n;
   }
-  return r;
+  return k;
 }
 
 }  // namespace
@@ -37,23 +43,20 @@ std::string format(const Diagnostic& d, std::string_view source_line, bool colou
     out += ": ";
   }
   const char* tint = d.severity == Diagnostic::Severity::error ? "1;31" : d.severity == Diagnostic::Severity::warning ? "1;33" : "1;36";
-  out += paint(tint, fmt::format("{}{}", name_of(d.severity), d.code.empty() ? "" : fmt::format("[{}]", d.code))) + ": " + d.message + "\n";
+  const std::string code = d.code.empty() ? std::string() : fmt::format("[{}]", d.code);
+  out += fmt::format("{}: {}\n", paint(tint, fmt::format("{}{}", name_of(d.severity), code)), d.message);
 
   const std::string number = fmt::format("{:>4}", d.where.line);
   const std::string blank(number.size(), ' ');
   if (d.where.line > 0 && !source_line.empty()) {
-    auto text = characters(source_line);
-    int column = std::max(d.where.column, 1) - 1;
-    column = std::min<int>(column, static_cast<int>(text.size()));
-    int length = std::clamp(d.where.length, 1, std::max(1, static_cast<int>(text.size()) - column));
-    int first = 0;
-    if (static_cast<int>(text.size()) > widest) first = std::clamp(column - widest / 2, 0, static_cast<int>(text.size()) - widest);
-    const int last = std::min<int>(first + widest, static_cast<int>(text.size()));
-    length = std::min(length, std::max(1, last - column));
-    std::string line = first > 0 ? "..." : "";
-    for (int i = first; i < last; ++i) line += text[static_cast<std::size_t>(i)];
-    if (last < static_cast<int>(text.size())) line += "...";
-    out += fmt::format("{} | {}\n", number, line);
+    std::string line;
+    const int size = cut(source_line, 0, 0, line);
+    const int column = std::min(std::max(d.where.column, 1) - 1, size);
+    const int first = size > widest ? std::clamp(column - widest / 2, 0, size - widest) : 0;
+    const int last = std::min(first + widest, size);
+    const int length = std::clamp(d.where.length, 1, std::max(1, last - column));
+    cut(source_line, first, last, line);
+    out += fmt::format("{} | {}{}{}\n", number, first > 0 ? "..." : "", line, last < size ? "..." : "");
     if (d.where.column > 0)
       out += fmt::format("{} | {}{}\n", blank, std::string(static_cast<std::size_t>(column - first + (first > 0 ? 3 : 0)), ' '),
                          paint(tint, fmt::format("^{:~<{}}", "", length - 1)));

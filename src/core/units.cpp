@@ -403,6 +403,12 @@ std::string format_number(double value) {
   return fmt::format("{}", value);
 }
 
+std::string display(double value, std::string_view unit_text) {
+  const Quantity u = unit(unit_text);
+  const double x = (value - u.offset) * u.den / (u.num * u.number);
+  return unit_text.empty() ? fmt::format("{:.6g}", x) : fmt::format("{:.6g} {}", x, unit_text);
+}
+
 std::string format(double value, std::string_view unit_text) {
   const Quantity u = unit(unit_text);
   if (u.dimension.dimensionless() && !u.has_unit) return format_number(value);

@@ -66,6 +66,8 @@ Factor factor(std::string_view given, std::string_view wanted);
 
 /// Shortest text that reads back as exactly `value` (base units), in `unit` when that is possible, else in base units.
 std::string format(double value, std::string_view unit);
+/// For messages: six significant digits.
+std::string display(double value, std::string_view unit);
 /// Shortest text of a plain double that reads back exactly.
 std::string format_number(double value);
 

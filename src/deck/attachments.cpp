@@ -57,7 +57,7 @@ void describe(Visitor& v, model::Disk& d) {
   } else if (by_shape && (!has_width || !has_material)) {
     v.error("E05", nullptr, fmt::format("disk '{}' lacks '{}'", d.name, has_width ? "material" : "width"), "a shape is od, width and material");
   } else if (by_shape && id >= od) {
-    v.error("E23", "id", fmt::format("the bore of {} is not smaller than the outer diameter of {}", units::format(id, "mm"), units::format(od, "mm")), "these are diameters, not radii");
+    v.error("E23", "id", fmt::format("the bore of {} is not smaller than the outer diameter of {}", units::display(id, "mm"), units::display(od, "mm")), "these are diameters, not radii");
   } else if (tensor && (Ip || Id)) {
     v.error("E26", "inertia", "the inertia is given by 'inertia' and by Ip or Id", "keep one of the two");
   }
@@ -78,7 +78,7 @@ void describe(Visitor& v, model::Disk& d) {
     if (!Id) d.Id = d.Ip / 2;
     // rounded inputs of a thin disk may miss equality by their last digit
     if (d.Id < 0.5 * d.Ip * (1 - 1e-6))
-      v.error("E24", "Id", fmt::format("no body has Id = {} with Ip = {}: Id is at least Ip/2", units::format(d.Id, "kg.m^2"), units::format(d.Ip, "kg.m^2")),
+      v.error("E24", "Id", fmt::format("no body has Id = {} with Ip = {}: Id is at least Ip/2", units::display(d.Id, "kg.m^2"), units::display(d.Ip, "kg.m^2")),
               d.Ip > 0 && d.Id > 0 ? "equality holds for an infinitely thin disk; are Ip and Id interchanged?" : "");
   }
 }

@@ -129,7 +129,7 @@ void describe(Visitor& v, model::TableBearing& b) {
     TableRow r;
     describe(w, r);
     if (w.clean() && !(r.speed > before))
-      w.error("E21", "speed", fmt::format("the speeds do not increase: {} after {}", units::format(r.speed, "rpm"), units::format(before, "rpm")));
+      w.error("E21", "speed", fmt::format("the speeds do not increase: {} after {}", units::display(r.speed, "rpm"), units::display(before, "rpm")));
     before = r.speed;
     b.speed.push_back(r.speed);
     b.K.push_back(r.K);

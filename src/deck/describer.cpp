@@ -141,11 +141,15 @@ void Describer::list(const Key& k, const ListBody& body, const char* doc) {
   add(k, KeyInfo::Kind::list, doc).table = std::move(t);
 }
 
+namespace {
+bool fits_a_cell(const KeyInfo& i) {
+  return i.kind != KeyInfo::Kind::table && i.kind != KeyInfo::Kind::list && i.kind != KeyInfo::Kind::matrix && i.kind != KeyInfo::Kind::quantities && i.kind != KeyInfo::Kind::texts;
+}
+}  // namespace
+
 bool Describer::rows(const ListBody& body, bool must, const char* doc) {
   auto t = collect(body.prototype);
-  std::erase_if(t->keys, [](const KeyInfo& i) {
-    return i.kind == KeyInfo::Kind::table || i.kind == KeyInfo::Kind::list || i.kind == KeyInfo::Kind::matrix || i.kind == KeyInfo::Kind::quantities;
-  });
+  std::erase_if(t->keys, [](const KeyInfo& i) { return !fits_a_cell(i); });
   tables_.back()->row = std::move(t);
   tables_.back()->row_required = must;
   tables_.back()->row_doc = doc;
@@ -189,6 +193,16 @@ std::vector<std::string> key_names(const std::function<void(Visitor&)>& body) {
   body(d);
   std::vector<std::string> r;
   for (const auto& k : t.keys) r.push_back(k.name);
+  return r;
+}
+
+std::vector<std::string> column_names(const std::function<void(Visitor&)>& body) {
+  TableInfo t;
+  Describer d(t);
+  body(d);
+  std::vector<std::string> r;
+  for (const auto& k : t.keys)
+    if (fits_a_cell(k)) r.push_back(k.name);
   return r;
 }
 

@@ -73,6 +73,8 @@ class Describer : public Visitor {
 const TableInfo& deck_keys();
 /// The names of all keys of one table, alternatives and columns left out.
 std::vector<std::string> key_names(const std::function<void(Visitor&)>& body);
+/// Those of them that can be columns of a table: one value each.
+std::vector<std::string> column_names(const std::function<void(Visitor&)>& body);
 /// Reference documentation of every table and key, Markdown.
 std::string reference_markdown();
 /// Table of units, Markdown.

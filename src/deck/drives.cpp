@@ -38,7 +38,7 @@ void describe_torque(Visitor& v, model::Drive& d) {
                         SpeedTorque r;
                         describe(w, r);
                         if (w.clean() && !t.speed.empty() && !(r.speed > t.speed.back()))
-                          w.error("E21", "speed", fmt::format("the speeds do not increase: {} after {}", units::format(r.speed, "rpm"), units::format(t.speed.back(), "rpm")));
+                          w.error("E21", "speed", fmt::format("the speeds do not increase: {} after {}", units::display(r.speed, "rpm"), units::display(t.speed.back(), "rpm")));
                         t.speed.push_back(r.speed);
                         t.torque.push_back(r.torque);
                       },

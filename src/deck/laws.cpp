@@ -65,7 +65,7 @@ void points(Visitor& v, const Context& c, Blend blend, bool table) {
     const bool rows = v.rows({[&](Visitor& w) {
                                 Point p;
                                 describe_point(w, p);
-                                if (w.clean() && !t.empty() && !(p.time > t.back())) w.error("E21", "time", fmt::format("the times do not increase: {} after {}", units::format(p.time, "s"), units::format(t.back(), "s")));
+                                if (w.clean() && !t.empty() && !(p.time > t.back())) w.error("E21", "time", fmt::format("the times do not increase: {} after {}", units::display(p.time, "s"), units::display(t.back(), "s")));
                                 t.push_back(p.time);
                                 f.push_back(p.value);
                               },
@@ -75,11 +75,11 @@ void points(Visitor& v, const Context& c, Blend blend, bool table) {
     if (v.clean() && !rows && !lists) v.error("E05", nullptr, "the law has no points", "give time = [...] and value = [...], or file = \"law.csv\" with columns time[s] and value[...]");
   }
   if (v.clean() && t.size() != f.size())
-    v.error("E20", "value", fmt::format("{} times and {} values", t.size(), f.size()), "each time needs its value");
+    v.error("E20", "value", fmt::format("the lists differ in length: {} and {}", t.size(), f.size()), "each time needs its value");
   const std::size_t least = table ? 1 : 2;
   if (v.clean() && t.size() < least) v.error("E20", "time", fmt::format("at least {} points are needed", least));
   for (std::size_t i = 1; v.clean() && i < t.size(); ++i)
-    if (!(t[i] > t[i - 1])) v.error("E21", "time", fmt::format("the times do not increase: {} after {}", units::format(t[i], "s"), units::format(t[i - 1], "s")));
+    if (!(t[i] > t[i - 1])) v.error("E21", "time", fmt::format("the times do not increase: {} after {}", units::display(t[i], "s"), units::display(t[i - 1], "s")));
   build(v, *c.target, "time", [&] { return make_points(blend, t, f); });
 }
 

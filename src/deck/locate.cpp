@@ -49,9 +49,9 @@ Located check(const model::Model& m, std::size_t shaft, double s, std::string_vi
   // a sum of section lengths may miss the end by a few roundings
   const double slack = 1e-9 * std::max(length, 1e-12);
   if (s < -slack || s > length + slack)
-    return fail("E19", fmt::format("\"{}\" is {} {} the {} of shaft '{}'", text, units::format(std::abs(s < 0 ? s : s - length), "mm"),
+    return fail("E19", fmt::format("\"{}\" is {} {} the {} of shaft '{}'", text, units::display(std::abs(s < 0 ? s : s - length), "mm"),
                                    s < 0 ? "before" : "beyond", s < 0 ? "start" : "end", m.shafts[shaft].name),
-                fmt::format("the shaft is {} long", units::format(length, "mm")));
+                fmt::format("the shaft is {} long", units::display(length, "mm")));
   Located r;
   r.at = model::Location{shaft, std::clamp(s, 0.0, length), std::string(text), {}};
   return r;
@@ -100,6 +100,14 @@ Located locate(const model::Model& m, std::string_view given) {
     const std::string word(trim(rest.substr(0, stop)));
     std::vector<std::string> all;
     for (const auto& n : names) all.push_back(n.name);
+    if (const std::size_t slash = word.find('/'); slash != std::string::npos) {
+      std::vector<std::string> shafts;
+      for (const auto& x : m.shafts) shafts.push_back(x.name);
+      const std::string shaft = word.substr(0, slash);
+      const auto near_shaft = nearest(shaft, shafts);
+      return fail("E18", fmt::format("there is no shaft '{}'", shaft), near_shaft.empty() ? fmt::format("the shafts are: {}", fmt::join(shafts, ", ")) : fmt::format("did you mean '{}'?", near_shaft.front()),
+                  static_cast<std::size_t>(rest.data() - given.data()), shaft.size());
+    }
     const auto near = nearest(word, all);
     std::string known;
     for (std::size_t i = 0; i < all.size() && i < 12; ++i) known += (i ? ", " : "") + all[i];

@@ -27,7 +27,7 @@ Reader::Reader(Sources& sources, Diagnostics& diagnostics, Parameters& parameter
     : sources_(sources), diagnostics_(diagnostics), parameters_(parameters), document_(document), model_(model) {}
 
 void Reader::read() {
-  in_table(document_.root, &resolved_, nullptr, [&](Visitor& v) { describe(v, model_); });
+  in_table("", document_.root, &resolved_, nullptr, [&](Visitor& v) { describe(v, model_); });
   settle_steps();
 }
 

@@ -54,6 +54,7 @@ class Reader : public Visitor {
     int errors_at_start = 0;
     bool dirty = false;                            ///< holds something reported before
     bool any_key = false;                          ///< unknown keys are not reported (their table has an unknown type)
+    std::string path;                              ///< "output" in [output]; empty at the top
     std::string entity;                            ///< "disk 'impeller'"
     const Spot* header = nullptr;                  ///< of rows: where missing columns are reported
     std::vector<Alternative> others;               ///< alternatives not chosen, for hints
@@ -76,7 +77,9 @@ class Reader : public Visitor {
   bool read_option(const char* key, const Value&, std::span<const Option>, int& index);
   bool read_list(const Key&, const Member&, int count, Value& list);
   void close_table();
-  void in_table(const Value&, Value* resolved, const Spot* header, const std::function<void(Visitor&)>& body);
+  void in_table(const char* key, const Value&, Value* resolved, const Spot* header, const std::function<void(Visitor&)>& body);
+  /// Path of a key of the present table, as it stands in a header: "output.vtk".
+  std::string path_of(const char* key) const;
   void read_row(const std::vector<ColumnUnit*>& columns, const std::vector<std::string>& keys, std::vector<Value> cells, const Spot& row, const Spot& header, const ListBody&);
   bool read_titles(const std::vector<Value>& titles, const ListBody&, std::vector<ColumnUnit*>& columns, std::vector<std::string>& keys);
   void read_rows_from_file(const Value& file, const ListBody&, Value& columns, Value& rows);

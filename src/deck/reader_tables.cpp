@@ -9,12 +9,17 @@
 
 namespace whirl::deck {
 
-void Reader::in_table(const Value& table, Value* resolved, const Spot* header, const std::function<void(Visitor&)>& body) {
+std::string Reader::path_of(const char* key) const {
+  return scopes_.empty() || scope().path.empty() ? std::string(key) : fmt::format("{}.{}", scope().path, key);
+}
+
+void Reader::in_table(const char* key, const Value& table, Value* resolved, const Spot* header, const std::function<void(Visitor&)>& body) {
   Scope s;
   s.table = &table;
   s.resolved = resolved;
   s.header = header;
   s.errors_at_start = diagnostics_.errors();
+  s.path = path_of(key);
   if (!scopes_.empty()) s.entity = scope().entity;
   scopes_.push_back(std::move(s));
   body(*this);
@@ -57,7 +62,7 @@ bool Reader::table(const Key& k, const std::function<void(Visitor&)>& body, cons
   if (!m) {
     if (k.required || k.absent) return false;
     const Value empty = Value::make_table(scope().table->spot);   // its defaults
-    in_table(empty, &resolved, nullptr, body);
+    in_table(k.name, empty, &resolved, nullptr, body);
     if (!resolved.members.empty()) put(k, std::move(resolved));
     return false;
   }
@@ -67,7 +72,7 @@ bool Reader::table(const Key& k, const std::function<void(Visitor&)>& body, cons
     wrong_type(k.name, v, "a table");
     return true;
   }
-  in_table(v, &resolved, nullptr, body);
+  in_table(k.name, v, &resolved, nullptr, body);
   put(k, std::move(resolved));
   return true;
 }
@@ -78,20 +83,22 @@ void Reader::list(const Key& k, const ListBody& body, const char*) {
   expanded_.push_back(expand(m->value));
   const Value& v = expanded_.back();
   if (!v.is_array() && !v.is_table()) {
-    wrong_type(k.name, v, "a list of tables", fmt::format("write [[{}]]", k.name));
+    wrong_type(k.name, v, "a list of tables", fmt::format("write [[{}]]", path_of(k.name)));
     return;
   }
   Value all = Value::make_array();
-  const int errors = diagnostics_.errors();
+  const bool dirty_before = scope().dirty;
+  scope().dirty = false;
   const auto one = [&](const Value& item) {
-    if (!item.is_table()) { wrong_type(k.name, item, "a list of tables", fmt::format("write [[{}]]", k.name)); return; }
+    if (!item.is_table()) { wrong_type(k.name, item, "a list of tables", fmt::format("write [[{}]]", path_of(k.name))); return; }
     Value resolved = Value::make_table();
-    in_table(item, &resolved, nullptr, body.add_and_describe);
+    in_table(k.name, item, &resolved, nullptr, body.add_and_describe);
     all.items.push_back(std::move(resolved));
   };
   if (v.is_table()) one(v);
   else for (const auto& item : v.items) one(item);
-  if (scopes_.size() == 1 && std::string_view(k.name) == "shaft") shafts_bad_ = diagnostics_.errors() > errors || scope().dirty;
+  if (scopes_.size() == 1 && std::string_view(k.name) == "shaft") shafts_bad_ = scope().dirty;
+  scope().dirty = scope().dirty || dirty_before;
   if (!all.items.empty()) put(k, std::move(all));
 }
 
@@ -121,7 +128,7 @@ bool Reader::either(const Key& k, double& simple, const char* unit, bool& is_sim
   if (v.is_table()) {
     is_simple = false;
     Value resolved = Value::make_table();
-    in_table(v, &resolved, nullptr, body);
+    in_table(k.name, v, &resolved, nullptr, body);
     put(k, std::move(resolved));
     return true;
   }
@@ -134,7 +141,7 @@ bool Reader::either(const Key& k, double& simple, const char* unit, bool& is_sim
 // ---------------------------------------------------------------- rows
 
 bool Reader::read_titles(const std::vector<Value>& titles, const ListBody& body, std::vector<ColumnUnit*>& columns, std::vector<std::string>& keys) {
-  const auto known = key_names(body.prototype);
+  const auto known = column_names(body.prototype);
   bool good = true;
   for (const auto& given : titles) {
     const Value t = expand(given);
@@ -168,7 +175,7 @@ void Reader::read_row(const std::vector<ColumnUnit*>& columns, const std::vector
     const Spot spot = cells[i].spot;
     table.add(keys[i], std::move(cells[i]), spot);
   }
-  in_table(table, nullptr, &header, body.add_and_describe);
+  in_table("", table, nullptr, &header, body.add_and_describe);
 }
 
 void Reader::read_rows_from_deck(const Value& titles, const Value& rows, const ListBody& body, Value& out_columns, Value& out_rows) {

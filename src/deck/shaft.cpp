@@ -38,7 +38,7 @@ void describe_diameters(Visitor& v, Diameters& d, const char* const (&keys)[6], 
   if (left_bore && !right_bore) d.id_r = d.id_l;
   const auto bore_fits = [&](double outer, double inner, const char* key, const char* end) {
     if (d.given && inner >= outer)
-      v.error("E23", key, fmt::format("the bore of {} is not smaller than the outer diameter of {}{}", units::format(inner, "mm"), units::format(outer, "mm"), end),
+      v.error("E23", key, fmt::format("the bore of {} is not smaller than the outer diameter of {}{}", units::display(inner, "mm"), units::display(outer, "mm"), end),
               "these are diameters, not radii");
   };
   if (bore && cylinder) bore_fits(od, id, keys[1], "");
@@ -86,7 +86,7 @@ void describe(Visitor& v, model::Material& m) {
   if (!G) m.G = m.E / (2 * (1 + m.nu));
   else if (!nu) m.nu = m.E / (2 * m.G) - 1;
   else if (std::abs(m.G * 2 * (1 + m.nu) / m.E - 1) > 0.02)   // rounded handbook values agree to better than 2 %
-    v.error("E36", "G", fmt::format("G and nu contradict each other: E/(2(1+nu)) is {}", units::format(m.E / (2 * (1 + m.nu)), "GPa")), "leave one of them out");
+    v.error("E36", "G", fmt::format("G and nu contradict each other: E/(2(1+nu)) is {}", units::display(m.E / (2 * (1 + m.nu)), "GPa")), "leave one of them out");
   if (G && !nu && !(m.nu > -1 && m.nu <= 0.5)) v.error("E36", "G", fmt::format("E and G give Poisson's ratio {:.3g}, outside -1 to 0.5", m.nu), "check both moduli");
 }
 
@@ -101,7 +101,7 @@ void describe(Visitor& v, model::Section& s) {
   describe_diameters(v, d, keys, "outer diameter (mass and stiffness)");
   Diameters stiffness;
   describe_diameters(v, stiffness, stiffness_keys, "outer diameter for the stiffness, where it differs from that for the mass (sleeves, shrink fits)");
-  v.material(optional("material", "that of the shaft"), s.material, "name of a material");
+  if (v.material(optional("material", "that of the shaft"), s.material, "name of a material") && s.material == no_material) s.material = 0;
   v.flag("rigid", s.rigid, "a rigid link: no deformation, and no mass unless it has diameters");
   describe_shear(v, s);
   v.quantity("added_mass", s.added_mass_per_length, "kg/m", not_negative, "distributed mass without stiffness");
@@ -149,7 +149,8 @@ void describe(Visitor& v, model::Shaft& s) {
   start.min_elements = v.model().min_elements;
   start.max_element_length = v.model().max_element_length;
   v.vector("origin", s.origin, "mm", "position of the left end");
-  v.material(optional("material", "given by each section"), start.material, "material of all sections that do not name another");
+  if (v.material(optional("material", "given by each section"), start.material, "material of all sections that do not name another") && start.material == no_material)
+    start.material = 0;   // unknown, and reported: not to be reported again for each section
   describe_shear(v, start);
   v.flag("rotating", s.rotating, "false: a casing or foundation beam that does not turn");
   v.number("speed_ratio", s.speed_ratio, any, "speed relative to the reference speed of frequency-domain steps; negative: turns the other way");
@@ -168,7 +169,7 @@ void describe(Visitor& v, model::Shaft& s) {
       w.quantity(optional("from", ""), from, "mm", any, "");
       // positions written with three decimals of a millimetre agree to half a micrometre
       if (std::abs(from - end) > 0.5e-6)
-        w.error("E25", "from", fmt::format("section '{}' starts at {}, but the one before ends at {}: {}", x.name, units::format(from, "mm"), units::format(end, "mm"),
+        w.error("E25", "from", fmt::format("section '{}' starts at {}, but the one before ends at {}: {}", x.name, units::display(from, "mm"), units::display(end, "mm"),
                                            from < end ? "they overlap" : "there is a gap"));
     }
     end += x.length;

@@ -19,9 +19,9 @@ void describe(Visitor& v, model::SpeedRange& r) {
   else if (!values && (!stop || !points)) v.error("E05", nullptr, fmt::format("the speeds lack '{}'", stop ? "points" : "stop"), "speed = { start = \"0 rpm\", stop = \"14000 rpm\", points = 71 }");
   else if (values && r.values.empty()) v.error("E20", "values", "at least one speed is needed");
   else if (!values && r.points > 1 && !(r.stop > r.start))
-    v.error("E21", "stop", fmt::format("the range ends at {}, not above its start at {}", units::format(r.stop, "rpm"), units::format(r.start, "rpm")));
+    v.error("E21", "stop", fmt::format("the range ends at {}, not above its start at {}", units::display(r.stop, "rpm"), units::display(r.start, "rpm")));
   for (std::size_t k = 1; v.clean() && k < r.values.size(); ++k)
-    if (!(r.values[k] > r.values[k - 1])) v.error("E21", "values", fmt::format("the speeds do not increase: {} after {}", units::format(r.values[k], "rpm"), units::format(r.values[k - 1], "rpm")));
+    if (!(r.values[k] > r.values[k - 1])) v.error("E21", "values", fmt::format("the speeds do not increase: {} after {}", units::display(r.values[k], "rpm"), units::display(r.values[k - 1], "rpm")));
 }
 
 void describe(Visitor& v, model::IntegratorOptions& o) {

@@ -143,6 +143,20 @@ std::string lower_first(std::string s) {
   return s;
 }
 
+/// What the library says, in the words of a user, for the usual mistakes.
+std::pair<std::string, std::string> explain_syntax(const std::string& description, std::string_view line) {
+  const auto says = [&](const char* s) { return description.find(s) != std::string::npos; };
+  if (says("control characters other than TAB") || (says("string") && says("end-of-file"))) return {"a quote is not closed", "text stands between two double quotes on one line"};
+  if (says("expected value, saw")) return {"a value is missing after '='", ""};
+  if (says("could not determine value type") && line.find("==") != std::string_view::npos) return {"'==' where '=' is expected", ""};
+  if (says("could not determine value type")) return {"a value that is neither a number nor text in quotes", "text stands in double quotes"};
+  if (says("parsing table header")) return {"a header that is not closed", "write [name] or [[name]]"};
+  if (says("end-of-file")) return {"the file ends inside a value", "a bracket or quote is not closed"};
+  std::string text = description;
+  if (text.starts_with("Error while ")) text = "while " + text.substr(12);
+  return {fmt::format("not valid TOML ({})", lower_first(text)), ""};
+}
+
 }  // namespace
 
 Document parse_toml(const Sources& sources, int source, Diagnostics& diagnostics) {
@@ -197,7 +211,8 @@ Document parse_toml(const Sources& sources, int source, Diagnostics& diagnostics
         at.length = static_cast<int>(std::max<std::size_t>(1, line.find_last_of(']') == std::string::npos ? 1 : line.find_last_of(']') + 1 - line.find('[')));
         diagnostics.error("E29", at, fmt::format("the table {} is given twice", line.substr(line.find('['), static_cast<std::size_t>(at.length))), "join the two, or write [[...]] for a list of tables");
       } else {
-        diagnostics.error("E01", at, fmt::format("not valid TOML: {}", lower_first(description)));
+        const auto [message, hint] = explain_syntax(description, line);
+        diagnostics.error("E01", at, message, hint);
       }
       const std::size_t first = line.find_first_not_of(" \t");
       const bool header = first != std::string::npos && line[first] == '[' && value == std::string::npos && line.find('=') == std::string::npos && line.find(',') == std::string::npos;

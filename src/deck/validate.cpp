@@ -130,8 +130,8 @@ void check_tables(const model::Model& m, Problems& out) {
       // rounding of rpm to rad/s and back
       const double slack = 1e-9 * std::max(std::abs(table->speed.front()), std::abs(table->speed.back()));
       if (range->first < table->speed.front() - slack || range->second > table->speed.back() + slack)
-        add(out, "E22", fmt::format("the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}", b.name, units::format(table->speed.front(), "rpm"), units::format(table->speed.back(), "rpm"), s.name,
-                                    units::format(range->first, "rpm"), units::format(range->second, "rpm")),
+        add(out, "E22", fmt::format("the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}", b.name, units::display(table->speed.front(), "rpm"), units::display(table->speed.back(), "rpm"), s.name,
+                                    units::display(range->first, "rpm"), units::display(range->second, "rpm")),
             "extend the table, narrow the step, or write extrapolate = \"hold\"", b.where);
     }
   }

@@ -1,0 +1,101 @@
+"""Every shipped deck satisfies the JSON schema, decks with mistakes of structure do not. Standard library only.
+
+usage: check_schema.py WHIRL REPOSITORY
+"""
+import copy
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tomllib
+
+
+def errors(value, schema, path="deck"):
+    """The mistakes of `value` under the part of JSON schema 2020-12 that the program writes."""
+    known = {"$schema", "title", "description", "type", "properties", "required", "additionalProperties", "items", "minItems", "maxItems",
+             "anyOf", "oneOf", "enum", "const", "pattern", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum"}
+    assert set(schema) <= known, f"{path}: this check does not know {set(schema) - known}"
+    types = {"object": dict, "array": list, "string": str, "boolean": bool}
+    found = []
+    if "type" in schema:
+        t = schema["type"]
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        good = (number if t == "number" else number and value == int(value) if t == "integer" else isinstance(value, types[t]))
+        if not good:
+            return [f"{path}: not of type {t}"]
+    if "const" in schema and value != schema["const"]:
+        found.append(f"{path}: not {schema['const']}")
+    if "enum" in schema and value not in schema["enum"]:
+        found.append(f"{path}: not one of {schema['enum']}")
+    if "pattern" in schema and not re.search(schema["pattern"], value):
+        found.append(f"{path}: does not match {schema['pattern']}")
+    for key, bad in (("minimum", lambda a, b: a < b), ("maximum", lambda a, b: a > b),
+                     ("exclusiveMinimum", lambda a, b: a <= b), ("exclusiveMaximum", lambda a, b: a >= b)):
+        if key in schema and bad(value, schema[key]):
+            found.append(f"{path}: violates {key} {schema[key]}")
+    if isinstance(value, dict):
+        for key in schema.get("required", []):
+            if key not in value:
+                found.append(f"{path}: lacks {key}")
+        for key, v in value.items():
+            if key in schema.get("properties", {}):
+                found += errors(v, schema["properties"][key], f"{path}.{key}")
+            elif schema.get("additionalProperties") is False:
+                found.append(f"{path}: unknown {key}")
+    if isinstance(value, list):
+        if len(value) < schema.get("minItems", 0) or len(value) > schema.get("maxItems", len(value)):
+            found.append(f"{path}: wrong number of items")
+        for i, v in enumerate(value):
+            found += errors(v, schema.get("items", {}), f"{path}[{i}]")
+    if "anyOf" in schema:
+        tries = [errors(value, s, path) for s in schema["anyOf"]]
+        if all(tries):
+            found += min(tries, key=len)
+    if "oneOf" in schema:
+        tries = [errors(value, s, path) for s in schema["oneOf"]]
+        if sum(not t for t in tries) != 1:
+            found += min(tries, key=len) or [f"{path}: fits more than one form"]
+    return found
+
+
+def main():
+    program, root = sys.argv[1], pathlib.Path(sys.argv[2])
+    schema = json.loads(subprocess.run([program, "schema"], check=True, capture_output=True, text=True).stdout)
+    decks = sorted(root.glob("examples/*/deck.toml")) + [root / "tests/deck/good/everything.toml"]
+    assert len(decks) >= 5
+    for deck in decks:
+        value = tomllib.loads(deck.read_text())
+        found = errors(value, schema)
+        assert not found, (deck, found)
+        resolved = subprocess.run([program, "check", "--resolved", str(deck)], check=True, capture_output=True, text=True).stdout
+        found = errors(tomllib.loads(resolved), schema)
+        assert not found, (deck, "resolved", found)
+
+    # the schema is no empty promise: mistakes are found
+    good = tomllib.loads(decks[0].read_text())
+    def broken(change):
+        d = copy.deepcopy(good)
+        change(d)
+        assert errors(d, schema), change
+    broken(lambda d: d.pop("format"))
+    broken(lambda d: d.update(tittle="x"))
+    broken(lambda d: d["disk"][0].update(mass=5))
+    broken(lambda d: d["disk"][0].pop("at"))
+    broken(lambda d: d["bearing"][0].update(type="linear"))
+    broken(lambda d: d["bearing"][0].update(type="liner"))
+    broken(lambda d: d["step"][0]["integrator"].update(method="euler"))
+    broken(lambda d: d["step"][0]["integrator"].update(tolerance=2.0))
+    broken(lambda d: d["output"].update(quantities=["sped"]))
+
+    try:
+        import jsonschema
+    except ImportError:
+        return
+    validator = jsonschema.Draft202012Validator
+    validator.check_schema(schema)
+    for deck in decks:
+        validator(schema).validate(tomllib.loads(deck.read_text()))
+
+
+main()

@@ -1,0 +1,155 @@
+// Every number and name of a model as text, for comparing two of them exactly. Places in the deck are left out.
+#pragma once
+#include <fmt/format.h>
+#include <model/model.hpp>
+#include <string>
+
+namespace whirl {
+
+class ModelDump {
+ public:
+  explicit ModelDump(const model::Model& m) { all(m); }
+  const std::string& text() const { return out_; }
+
+ private:
+  void put(const char* key, double x) { out_ += fmt::format("{}={:a} ", key, x); }
+  void put(const char* key, const std::string& s) { out_ += fmt::format("{}='{}' ", key, s); }
+  template <class V> void each(const char* key, const V& values) {
+    out_ += fmt::format("{}=(", key);
+    for (const auto& v : values) out_ += fmt::format("{:a} ", static_cast<double>(v));
+    out_ += ") ";
+  }
+  template <class M> void matrix(const char* key, const M& m) {
+    out_ += fmt::format("{}=(", key);
+    for (Index i = 0; i < m.rows(); ++i)
+      for (Index j = 0; j < m.cols(); ++j) out_ += fmt::format("{:a} ", m(i, j));
+    out_ += ") ";
+  }
+  void law(const char* key, const LawPtr& l) {
+    out_ += fmt::format("{}=", key);
+    if (!l) { out_ += "none "; return; }
+    for (double t : {-1.0, 0.0, 0.3, 0.7, 1.0, 1.1, 1.9, 2.0, 3.7, 8.0, 30.0}) {
+      const LawValue v = l->at(t);
+      out_ += fmt::format("({:a} {:a} {:a} {:a}) ", v.f, v.df, v.ddf, l->integral(t));
+    }
+    each("breaks", l->breakpoints());
+  }
+  void at(const char* key, const model::Location& l) { out_ += fmt::format("{}=({} {:a} '{}') ", key, l.shaft, l.s, l.text); }
+  void head(const char* kind, const model::Entity& e) { out_ += fmt::format("\n{} '{}' ", kind, e.name); }
+
+  void shaft(const model::Shaft& s) {
+    head("shaft", s);
+    matrix("origin", s.origin);
+    each("damping", std::array{s.damping.alpha, s.damping.beta_external, s.damping.beta_internal, s.damping.loss_factor, s.damping.beta_torsion});
+    each("state", std::array{double(s.rotating), s.speed_ratio, s.spin0, s.axial_preload});
+    for (const auto& x : s.sections) {
+      head(" section", x);
+      each("d", std::array{x.length, x.od_l, x.id_l, x.od_r, x.id_r});
+      if (x.stiffness_diameters) each("stiffness", *x.stiffness_diameters);
+      each("flags", std::array{double(x.material), double(x.rigid), double(x.shear), x.kappa, double(x.rotary_inertia), x.added_mass_per_length, double(x.min_elements), x.max_element_length});
+      if (const auto& g = x.general) each("general", std::array{g->A, g->Iy, g->Iz, g->J, g->kappa_y, g->kappa_z, g->angle});
+      if (const auto& c = x.constants) each("constants", std::array{c->EA, c->kGA, c->GJ, c->EI, c->rhoA, c->rhoI, c->rhoIp});
+    }
+  }
+
+  void bearing(const model::Bearing& b) {
+    head("bearing", b);
+    at("at", b.at);
+    if (b.to) at("to", *b.to);
+    put("law", double(b.law.index()));
+    if (const auto* x = std::get_if<model::SpringBlock>(&b.law)) each("C", std::array{x->C1, x->C2});
+    if (const auto* x = std::get_if<model::LinearBearing>(&b.law)) {
+      matrix("K", x->K); matrix("C", x->C); matrix("M", x->M); matrix("setpoint", x->setpoint); matrix("preload", x->preload);
+    }
+    if (const auto* x = std::get_if<model::TableBearing>(&b.law)) {
+      each("speed", x->speed);
+      for (const auto& r : x->K) each("K", r);
+      for (const auto& r : x->C) each("C", r);
+      for (const auto& r : x->M) each("M", r);
+      each("how", std::array{x->monotone_cubic, x->extrapolate_hold});
+    }
+    if (const auto* x = std::get_if<model::RigidSupport>(&b.law)) each("held", x->held);
+    if (b.pedestal) { put("mass", b.pedestal->mass); matrix("K", b.pedestal->K); matrix("C", b.pedestal->C); }
+  }
+
+  void drive(const model::Drive& d) {
+    head("drive", d);
+    at("at", d.at);
+    put("step", d.step);
+    put("kind", double(d.kind));
+    if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law)) law("angle", p->angle);
+    if (const auto* t = std::get_if<model::TorqueCurve>(&d.law)) {
+      law("torque", t->of_time);
+      law("brake", t->brake);
+      each("speed", t->speed); each("torque", t->torque); each("load", std::array{t->constant, t->viscous, t->quadratic});
+      if (t->induction) each("induction", std::array{t->induction->breakdown, t->induction->slip_breakdown, t->induction->synchronous});
+      if (t->dc) each("dc", std::array{t->dc->stall, t->dc->no_load_speed});
+      if (t->power) each("power", std::array{t->power->power, t->power->max_torque});
+      if (t->governor) each("governor", std::array{t->governor->target, t->governor->kp, t->governor->ki, t->governor->max_torque});
+    }
+  }
+
+  void range(const model::SpeedRange& r) {
+    each("range", std::array{r.start, r.stop, double(r.points), double(r.refine_peaks)});
+    each("values", r.values);
+  }
+
+  void step(const model::Step& s) {
+    head("step", s);
+    put("from", s.from);
+    put("kind", double(s.law.index()));
+    if (const auto* x = std::get_if<model::StaticStep>(&s.law)) each("static", std::array{double(x->load_steps), x->speed});
+    if (const auto* x = std::get_if<model::ModalStep>(&s.law)) each("modal", std::array{x->speed, double(x->modes)});
+    if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) { range(x->speed); put("modes", x->modes); each("orders", x->orders); }
+    if (const auto* x = std::get_if<model::CriticalStep>(&s.law)) { each("critical", std::array{x->max_speed, double(x->modes)}); each("orders", x->orders); }
+    if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) range(x->speed);
+    if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {
+      each("transient", std::array{x->duration, double(x->start), x->speed0, x->stop_speed, x->amplitude_limit});
+      const auto& o = x->integrator;
+      put("method", o.method);
+      each("integrator", std::array{o.tolerance, o.rho_inf, o.dt, o.dt_max, o.dt_min, o.dt_first});
+    }
+  }
+
+  void all(const model::Model& m) {
+    put("format", m.format);
+    put("title", m.title);
+    matrix("gravity", m.gravity);
+    each("settings", std::array{double(m.chart_change), double(m.keep_everything), m.max_element_length, double(m.min_elements)});
+    for (const auto& x : m.materials) { head("material", x); each("", std::array{x.E, x.G, x.nu, x.rho, x.yield}); }
+    for (const auto& x : m.shafts) shaft(x);
+    for (const auto& d : m.disks) {
+      head("disk", d);
+      at("at", d.at);
+      each("body", std::array{d.mass, d.Ip, d.Id, d.skew, d.skew_phase, d.draw_od, d.draw_id, d.draw_width});
+      if (d.inertia) matrix("inertia", *d.inertia);
+      matrix("offset", d.offset);
+    }
+    for (const auto& u : m.unbalances) { head("unbalance", u); at("at", u.at); each("", std::array{u.amount, u.phase}); law("factor", u.factor); }
+    for (const auto& i : m.initial) {
+      head("initial", i);
+      put("shaft", double(i.shaft));
+      matrix("displacement", i.displacement); matrix("velocity", i.velocity); matrix("omega", i.omega); matrix("gamma", i.gamma); matrix("about", i.about);
+    }
+    for (const auto& b : m.bearings) bearing(b);
+    for (const auto& l : m.loads) { head("load", l); at("at", l.at); put("frame", double(l.frame)); matrix("force", l.force); matrix("moment", l.moment); law("factor", l.factor); }
+    for (const auto& d : m.drives) drive(d);
+    for (const auto& p : m.probes) { head("probe", p); at("at", p.at); each("angles", p.angles); }
+    for (const auto& s : m.steps) step(s);
+    const auto& o = m.output;
+    out_ += "\noutput ";
+    each("", std::array{o.every, double(o.csv), double(o.binary), double(o.report), double(o.peak_to_peak)});
+    put("directory", o.directory);
+    for (const auto& q : o.quantities) put("quantity", q);
+    for (const auto& v : o.vtk) {
+      out_ += "\nvtk ";
+      put("step", v.step);
+      each("", std::array{v.t0, v.t1, v.every, v.frames_per_revolution, double(v.frames), double(v.max_frames), v.deformation_scale, double(v.points_around)});
+      for (const auto& c : v.content) put("content", c);
+    }
+  }
+
+  std::string out_;
+};
+
+}  // namespace whirl

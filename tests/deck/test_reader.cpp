@@ -1,0 +1,243 @@
+// Reading good decks: what arrives in the model, and that the resolved deck says the same again.
+#include <deck/deck.hpp>
+#include <gtest/gtest.h>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include "dump_model.hpp"
+
+namespace fs = std::filesystem;
+using namespace whirl;
+
+namespace {
+
+constexpr const char* shaft_text = R"(
+[shaft]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["left", 300, 40], ["right", 200, 50]]
+)";
+
+deck::Deck read(const std::string& text, std::vector<std::string> set = {}) {
+  deck::ReadOptions o;
+  o.set = std::move(set);
+  return deck::read_deck_text(text, "deck.toml", o);
+}
+
+std::vector<fs::path> good_decks() {
+  std::vector<fs::path> r{"good/everything.toml"};
+  for (const auto& e : fs::directory_iterator("../../examples"))
+    if (fs::exists(e.path() / "deck.toml")) r.push_back(e.path() / "deck.toml");
+  return r;
+}
+
+}  // namespace
+
+TEST(Reader, PaperRotor) {
+  const auto d = deck::read_deck("../../examples/01_paper_rotor/deck.toml");
+  ASSERT_TRUE(d.ok()) << d.report();
+  EXPECT_TRUE(d.diagnostics.empty()) << d.report();
+  const model::Model& m = d.model;
+  EXPECT_EQ(m.gravity, Vec3(0, 0, -9.81));
+  ASSERT_EQ(m.shafts.size(), 1u);
+  ASSERT_EQ(m.shafts[0].sections.size(), 1u);
+  EXPECT_TRUE(m.shafts[0].sections[0].rigid);
+  EXPECT_EQ(m.shafts[0].length(), 0.75);
+  ASSERT_EQ(m.disks.size(), 1u);
+  EXPECT_EQ(m.disks[0].at.s, 0.75);
+  EXPECT_EQ(m.disks[0].mass, 5);
+  EXPECT_EQ(m.disks[0].Ip, 5 * 0.25 / 8);
+  EXPECT_EQ(m.disks[0].Id, 5 * 0.25 / 16);
+  const auto& block = std::get<model::SpringBlock>(m.bearings.at(0).law);
+  EXPECT_EQ(block.C1, 2000);
+  EXPECT_EQ(block.C2, 500);
+  EXPECT_EQ(m.bearings[0].at.s, 0);
+  const auto& run = std::get<model::TransientStep>(m.steps.at(0).law);
+  EXPECT_EQ(run.speed0, 50);
+  EXPECT_EQ(run.duration, 10);
+  EXPECT_EQ(run.start, model::TransientStep::Start::rest);
+  EXPECT_EQ(run.integrator.method, "radau5");
+  EXPECT_FALSE(m.output.vtk.empty());
+}
+
+TEST(Reader, Everything) {
+  const auto d = deck::read_deck("good/everything.toml");
+  ASSERT_TRUE(d.ok()) << d.report();
+  EXPECT_TRUE(d.diagnostics.empty()) << d.report();
+  const model::Model& m = d.model;
+  EXPECT_EQ(m.title, "Everything \"quoted\", \xCE\xA9");
+  EXPECT_EQ(m.gravity, Vec3(0.1, 0, -9.8));
+  ASSERT_EQ(m.materials.size(), 4u);   // two of its own, steel and titanium used
+  EXPECT_EQ(m.materials[0].name, "own");
+  EXPECT_NEAR(m.materials[0].nu, 30 / (2 * 11.5) - 1, 1e-15);   // one rounding each of E, G and their ratio
+  EXPECT_NEAR(m.materials[0].rho, 0.283 * 0.45359237 / std::pow(0.0254, 3), 1e-11);   // 7833 kg/m3 with a few roundings
+  ASSERT_EQ(m.shafts.size(), 2u);
+  const auto& hp = m.shafts[0];
+  ASSERT_EQ(hp.sections.size(), 2u);
+  EXPECT_EQ(hp.sections[0].name, "a");
+  EXPECT_EQ(hp.sections[0].length, 0.1205);
+  EXPECT_EQ(hp.sections[1].length, 0.25);
+  EXPECT_EQ(hp.sections[1].id_r, 0.02);
+  EXPECT_EQ(hp.sections[1].material, 1u);
+  EXPECT_EQ(hp.sections[0].shear, model::ShearFactor::given);
+  EXPECT_EQ(hp.sections[0].kappa, 0.85);
+  EXPECT_EQ(hp.sections[0].min_elements, 2);
+  EXPECT_EQ(hp.sections[0].max_element_length, 0.06);
+  EXPECT_EQ(hp.damping.loss_factor, 0.002);
+  EXPECT_EQ(hp.speed_ratio, -1.5);
+  EXPECT_EQ(hp.axial_preload, -2000);
+  const auto& lp = m.shafts[1];
+  ASSERT_EQ(lp.sections.size(), 5u);
+  EXPECT_EQ(lp.sections[0].length, 0.1016);
+  EXPECT_EQ(lp.sections[1].od_r, 0.06);
+  EXPECT_EQ(lp.sections[1].id_l, 0.01);
+  EXPECT_EQ(lp.sections[1].stiffness_diameters->at(2), 0.038);
+  EXPECT_EQ(lp.sections[1].min_elements, 3);
+  EXPECT_FALSE(lp.sections[1].rotary_inertia);
+  EXPECT_TRUE(lp.sections[2].rigid);
+  EXPECT_EQ(lp.sections[3].general->Iy, 1.1e-7);
+  EXPECT_EQ(lp.sections[4].constants->EI, 354500);
+  EXPECT_EQ(m.disks[0].offset, Vec3(1e-3, 75e-6, 0));
+  EXPECT_EQ(m.disks[0].at.shaft, 0u);
+  EXPECT_EQ(m.disks[0].at.s, 0.1205);
+  EXPECT_EQ(m.disks[1].at.shaft, 1u);
+  EXPECT_NEAR(m.disks[1].at.s, 0.1016 + 0.1 + 0.005, 1e-15);
+  EXPECT_NEAR(m.disks[1].mass, 7850 * pi / 4 * (0.26 * 0.26 - 0.14 * 0.14) * 0.055, 1e-13);
+  EXPECT_EQ((*m.disks[2].inertia)(1, 2), -0.02);
+  EXPECT_EQ(m.disks[3].mass, 1);   // "1 kg * (2 * (75 um))/(150 um)"
+  const auto& linear = std::get<model::LinearBearing>(m.bearings[0].law);
+  EXPECT_EQ(linear.K(1, 2), 1e6);
+  EXPECT_EQ(linear.K(2, 1), -1e6);
+  EXPECT_EQ(linear.K(4, 4), 1e4);
+  EXPECT_EQ(linear.K(5, 5), 1e4);
+  EXPECT_EQ(linear.C(3, 3), 1);
+  EXPECT_EQ(linear.M(0, 0), 0.2);
+  EXPECT_EQ(linear.setpoint[1], 10e-6);
+  EXPECT_NEAR(linear.preload[1], 5 * 4.4482216152605, 1e-14);
+  EXPECT_EQ(m.bearings[0].pedestal->mass, 60);
+  EXPECT_EQ(m.bearings[0].pedestal->K(2, 2), 3.5e8);
+  const auto& matrix = std::get<model::LinearBearing>(m.bearings[1].law);
+  EXPECT_EQ(matrix.K(1, 5), 2e5);
+  EXPECT_EQ(matrix.K(5, 1), 2e5);
+  const auto& table = std::get<model::TableBearing>(m.bearings[3].law);
+  ASSERT_EQ(table.speed.size(), 2u);
+  EXPECT_NEAR(table.speed[1], 12000 * two_pi / 60, 1e-12);   // one rounding
+  EXPECT_EQ(table.K[1], (std::array<double, 4>{3e7, 2e5, -2e5, 3.1e7}));
+  EXPECT_FALSE(table.monotone_cubic);
+  EXPECT_TRUE(table.M.empty());
+  const auto& rows = std::get<model::TableBearing>(m.bearings[4].law);
+  EXPECT_EQ(rows.K[1][0], 2e8);
+  EXPECT_EQ(rows.C[1][3], 1100);
+  ASSERT_EQ(rows.M.size(), 2u);
+  EXPECT_EQ(rows.M[1][0], 0.5);
+  const auto& held = std::get<model::RigidSupport>(m.bearings[5].law).held;
+  EXPECT_EQ(held, (std::array<bool, 6>{true, true, false, false, false, true}));
+  EXPECT_EQ(m.bearings[6].to->shaft, 1u);
+  EXPECT_EQ(m.unbalances[0].amount, 12e-6);
+  EXPECT_NEAR(m.unbalances[0].factor->at(1.05).f, 0.5, 1e-12);
+  // ISO 21940-11: e omega = 2.5 mm/s at 9000 rpm, times the given mass
+  EXPECT_NEAR(m.unbalances[2].amount, 100 * 6.3e-3 / (9000 * two_pi / 60), 1e-18);
+  EXPECT_GT(m.unbalances[1].amount, 0);
+  EXPECT_EQ(m.loads[1].factor->at(3).f, 2);
+  EXPECT_EQ(m.loads[0].frame, model::LoadFrame::rotating);
+  const auto& speed = std::get<model::PrescribedSpin>(m.drives[0].law).angle;
+  EXPECT_NEAR(speed->at(0.25).df, 24, 1e-12);
+  EXPECT_NEAR(speed->at(2).df, 72, 1e-12);
+  EXPECT_NEAR(speed->at(0).f, pi / 18, 1e-15);
+  const auto& polynomial = std::get<model::PrescribedSpin>(m.drives[1].law).angle;
+  EXPECT_NEAR(polynomial->at(2).f, 22, 1e-12);
+  const auto& motor = std::get<model::TorqueCurve>(m.drives[2].law);
+  EXPECT_EQ(m.drives[2].kind, model::TorqueKind::fixed_direction);
+  EXPECT_NEAR(motor.of_time->at(2.5).f, 2.5, 1e-12);
+  EXPECT_EQ(motor.speed.size(), 2u);
+  EXPECT_EQ(motor.quadratic, 2e-5);
+  EXPECT_EQ(motor.power->power, 1e4);
+  EXPECT_EQ(motor.governor->ki, 1);
+  EXPECT_EQ(motor.dc->stall, 10);
+  EXPECT_NEAR(std::get<model::TorqueCurve>(m.drives[3].law).of_time->at(1.5).f, 3.25, 1e-12);
+  EXPECT_EQ(m.initial[0].shaft, 1u);
+  EXPECT_NEAR(m.initial[0].gamma[1], pi / 36, 1e-16);
+  EXPECT_EQ(m.probes[0].angles.size(), 2u);
+  EXPECT_EQ(std::get<model::ModalStep>(m.steps[1].law).modes, 7);
+  EXPECT_EQ(m.steps[1].from, "weight");
+  EXPECT_TRUE(std::get<model::UnbalanceStep>(m.steps[4].law).speed.refine_peaks);
+  EXPECT_EQ(std::get<model::TransientStep>(m.steps[6].law).speed0, two_pi);
+  EXPECT_EQ(m.output.directory, "results/everything/base");
+  EXPECT_TRUE(m.output.peak_to_peak);
+  EXPECT_EQ(m.output.vtk[0].t1, 4.5);
+  EXPECT_EQ(m.output.vtk[1].every, 1e-3);
+}
+
+TEST(Reader, ResolvedDeckSaysTheSame) {
+  for (const auto& p : good_decks()) {
+    const auto first = deck::read_deck(p);
+    ASSERT_TRUE(first.ok()) << p << "\n" << first.report();
+    const auto second = deck::read_deck_text(first.model.resolved, "resolved.toml");   // no other file is needed
+    ASSERT_TRUE(second.ok()) << p << "\n" << second.report() << first.model.resolved;
+    EXPECT_EQ(ModelDump(first.model).text(), ModelDump(second.model).text()) << p;
+    const auto third = deck::read_deck_text(second.model.resolved, "resolved.toml");
+    EXPECT_EQ(second.model.resolved, third.model.resolved) << p;
+  }
+}
+
+TEST(Reader, EveryEntityKeepsItsPlace) {
+  const auto d = read(std::string("format = 1\n") + shaft_text + "\n[[disk]]\nname = \"wheel\"\nat = \"left:end\"\nmass = \"1 kg\"\n");
+  ASSERT_TRUE(d.ok()) << d.report();
+  EXPECT_EQ(d.model.shafts[0].where.line, 3);
+  EXPECT_EQ(d.model.disks[0].where.line, 8);
+  EXPECT_EQ(d.model.disks[0].where.file, "deck.toml");
+  EXPECT_EQ(d.model.disks[0].where.entity, "disk 'wheel'");
+  EXPECT_EQ(d.model.disks[0].at.where.line, 10);
+}
+
+TEST(Reader, LineEndsAndByteOrderMark) {
+  const std::string unix_text = std::string("format = 1\n") + shaft_text + "[[disk]]\nat = \"left:end\"\nmass = 3\n";
+  std::string windows = "\xEF\xBB\xBF";
+  for (char c : unix_text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(read(unix_text).report(), read(windows).report());
+  EXPECT_EQ(read(unix_text).errors, 1);
+}
+
+TEST(Reader, Overrides) {
+  const std::string text = std::string("format = 1\n[parameters]\nm = \"1 kg\"\n") + shaft_text + "[[disk]]\nname = \"wheel\"\nat = \"left:end\"\nmass = \"${m}\"\n[[disk]]\nname = \"x.y\"\nat = \"left:end\"\nmass = \"1 kg\"\n";
+  EXPECT_EQ(read(text, {"parameters.m=2 kg"}).model.disks[0].mass, 2);
+  EXPECT_EQ(read(text, {"parameters.m=\"2 kg\""}).model.disks[0].mass, 2);
+  EXPECT_EQ(read(text, {"disk.wheel.mass=3kg", "disk.1.mass=4kg"}).model.disks[1].mass, 4);
+  EXPECT_EQ(read(text, {"disk.\"x.y\".mass=5kg"}).model.disks[1].mass, 5);
+  EXPECT_EQ(read(text, {"model.gravity=0 m/s^2"}).model.gravity.norm(), 0);
+  EXPECT_EQ(read(text, {"model.chart_change=false"}).model.chart_change, false);
+  EXPECT_EQ(read(text, {"shaft.rows=[[\"left\", 100, 40]]"}).model.shafts[0].length(), 0.1);
+  EXPECT_EQ(read(text, {"title=two words"}).model.title, "two words");
+}
+
+TEST(Reader, IncludesJoinLists) {
+  const fs::path folder = fs::temp_directory_path() / "whirl deck test with blanks";
+  fs::create_directories(folder);
+  std::ofstream(folder / "more disks.toml") << "[[disk]]\nname = \"first\"\nat = \"left:end\"\nmass = \"1 kg\"\n[model]\nchart_change = false\n";
+  std::ofstream(folder / "a deck.toml") << "format = 1\ninclude = [\"more disks.toml\"]\n" << shaft_text << "[[disk]]\nname = \"second\"\nat = \"left:end\"\nmass = \"1 kg\"\n[model]\ngravity = \"1 m/s^2\"\n";
+  const auto d = deck::read_deck(folder / "a deck.toml");
+  ASSERT_TRUE(d.ok()) << d.report();
+  ASSERT_EQ(d.model.disks.size(), 2u);
+  EXPECT_EQ(d.model.disks[0].name, "first");
+  EXPECT_EQ(d.model.gravity, Vec3(0, 0, -1));
+  EXPECT_FALSE(d.model.chart_change);
+  EXPECT_EQ(d.model.deck_name, "a deck");
+  fs::remove_all(folder);
+}
+
+TEST(Reader, DefaultGravityAndNames) {
+  const auto d = read(std::string("format = 1\n") + shaft_text + "[[disk]]\nat = \"left:end\"\nmass = \"1 kg\"\n[[disk]]\nat = \"left:end\"\nmass = \"1 kg\"\n");
+  ASSERT_TRUE(d.ok()) << d.report();
+  EXPECT_EQ(d.model.gravity, Vec3(0, 0, -9.80665));
+  EXPECT_EQ(d.model.disks[0].name, "disk 1");
+  EXPECT_EQ(d.model.disks[1].name, "disk 2");
+  EXPECT_EQ(d.model.shafts[0].name, "shaft");
+}
+
+TEST(Reader, FilesCanBeRefused) {
+  deck::ReadOptions o;
+  o.files_allowed = false;
+  const auto d = deck::read_deck_text("format = 1\ninclude = [\"x.toml\"]\n[shaft]\nfile = \"shaft.csv\"\n", "deck.toml", o);
+  EXPECT_EQ(d.errors, 2);
+  EXPECT_NE(d.report().find("cannot read 'x.toml': files are not allowed here"), std::string::npos) << d.report();
+}
