@@ -5,7 +5,6 @@
 #include <system/problem.hpp>
 
 #include <fmt/format.h>
-#include <cstdlib>
 
 #include <algorithm>
 #include <cmath>
@@ -110,6 +109,16 @@ bool EquilibriumSolver::is_small(const VecX& d, const VecX& q) const {
 }
 
 EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State& s, int& iterations) {
+  const VecX begin = s.q;
+  Outcome o = newton(Omega, s, iterations, Step::bold);
+  if (o == Outcome::diverged) {
+    s.q = begin;
+    o = newton(Omega, s, iterations, Step::careful);
+  }
+  return o;
+}
+
+EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State& s, int& iterations, Step kind) {
   const system::System& sys = running_.system();
   if (!solver_) solver_ = la::make_direct_solver<double>(sys.pattern(), free_, options_.solver);
   const auto masked = [&](VecX& x) {
@@ -120,7 +129,7 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
     why_ = "the state lies outside the range of an element or of the tilt (pi)";
     return Outcome::diverged;
   }
-  double last = infinity, damping = 1.0;
+  double last = infinity, damping = 1.0, first = infinity;
   for (int it = 0; it < options_.max_iterations; ++it, ++iterations) {
     step_ = r_;
     masked(step_);
@@ -135,6 +144,7 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
     solver_->solve(step_);
     step_ = -step_;
     const double size = correction_size(step_);
+    if (it == 0) first = std::max(size, 1e-3);
     if (!std::isfinite(size)) {
       why_ = "a correction is not finite";
       return Outcome::diverged;
@@ -147,20 +157,32 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
       if (!running_.residual(s.frames, Omega, s.q, r_)) s.q -= step_, running_.residual(s.frames, Omega, s.q, r_);
       return Outcome::converged;
     }
-    if (getenv("DBG")) fmt::print("it {} size {:.3e} damping {}\n", it, size, damping);
-    // Natural monotonicity: the simplified Newton correction after the step must be shorter than the correction itself.
-    double alpha = std::min(1.0, 2.0 * damping);
+    double alpha;
     bool taken = false;
-    for (int halving = 0; halving < 30; ++halving, alpha *= 0.5) {
-      trial_ = s.q + alpha * step_;
-      if (!running_.residual(s.frames, Omega, trial_, r_)) continue;
-      next_ = r_;
-      masked(next_);
-      solver_->solve(next_);
-      const double after = correction_size(next_);
-      if (after <= (1.0 - 0.25 * alpha) * size || (alpha == 1.0 && size < 1e-8)) {
-        taken = true;
-        break;
+    if (kind == Step::bold) {
+      // Whole steps, no turn of more than half a radian and no move of more than half the model: what slender structures in large
+      // rotation want, whose axial force rises before it falls.
+      alpha = std::min(1.0, 0.5 / size);
+      for (int halving = 0; halving < 10 && !taken; ++halving, alpha *= taken ? 1.0 : 0.5) {
+        trial_ = s.q + alpha * step_;
+        taken = running_.residual(s.frames, Omega, trial_, r_);
+      }
+      if (size > 1e4 * first) taken = false;
+    } else {
+      // Natural monotonicity: the simplified Newton correction after the step must be shorter than the correction itself.
+      alpha = std::min(1.0, 2.0 * damping);
+      for (int halving = 0; halving < 30; ++halving, alpha *= 0.5) {
+        trial_ = s.q + alpha * step_;
+        if (!running_.residual(s.frames, Omega, trial_, r_)) continue;
+        next_ = r_;
+        masked(next_);
+        solver_->solve(next_);
+        const double after = correction_size(next_);
+        if (after <= (1.0 - 0.25 * alpha) * size || (alpha == 1.0 && size < 1e-8)) {
+          taken = true;
+          break;
+        }
+        if (alpha < 1e-6) break;
       }
     }
     if (!taken) {

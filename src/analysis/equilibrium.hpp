@@ -1,6 +1,6 @@
 // Spinning, loaded equilibrium: R(q; Omega) = 0 of running.hpp, with gravity sag, preload, torque and what internal damping and
-// films add at speed. Newton with the exact tangent and a natural monotonicity line search (P. Deuflhard, Newton Methods
-// for Nonlinear Problems, 2004, ch. 3); when that fails, the loads are put on in steps.
+// films add at speed. Newton with the exact tangent, in whole steps; when that fails, with a natural monotonicity line search
+// (P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, ch. 3); when that fails too, the loads are put on in steps.
 //
 // A rotor that is free to turn needs one more condition a rotor: the axial angle of its first node is held, and the torque
 // that keeps it at its speed comes out as a reaction. Geared lines that turn together count as one rotor.
@@ -48,7 +48,9 @@ class EquilibriumSolver {
  private:
   enum class Outcome { converged, singular, diverged };
   void find_spin_holds(const system::State& s, double Omega);
+  enum class Step { bold, careful };
   Outcome newton(double Omega, system::State& s, int& iterations);
+  Outcome newton(double Omega, system::State& s, int& iterations, Step kind);
   void change_charts(system::State& s);
   double correction_size(const VecX& d) const;
   bool is_small(const VecX& d, const VecX& q) const;

@@ -40,16 +40,16 @@ RunningSystem::RunningSystem(const system::System& system, Running running)
   spinning_.assign(at(system.nodes()), 0);
   for (Index i = 0; i < system.nodes(); ++i)
     spinning_[at(i)] = turnable[at(i)] && !system.node(i).scalar && ratio_[at(system.node(i).line)] != 0.0;
+  // A line whose angle is held somewhere stands still. (The line of the ground points has nothing that could turn.)
+  std::vector<unsigned char> moves(at(system.lines()), 0);
+  for (Index k = 0; k < system.size(); ++k)
+    if (system.active()[at(k)]) moves[at(system.node(k / 6).line)] = 1;
   for (const auto& h : system.holds()) {
-    const Index i = h.unknown / 6;
+    const Index i = h.unknown / 6, line = system.node(i).line;
     if (h.unknown % 6 != system::spin_phi || !spinning_[at(i)] || h.law) continue;
-    // A ground point shares its line with whatever it holds; it has no freedom at all and does not turn.
-    bool fixed = true;
-    for (int c = 0; c < 6; ++c) fixed = fixed && !system.active()[at(6 * i + c)];
-    if (!fixed)
-      throw run_error("E78", "shaft '" + system.line_name(system.node(i).line) + "' cannot turn: its spin is held at " + system.node(i).name,
-                      "release the rotation about the axis (rx) of that support, or give the shaft speed_ratio = 0");
-    spinning_[at(i)] = 0;
+    if (moves[at(line)]) held_.emplace_back(line, i);
+    for (Index j = 0; j < system.nodes(); ++j)
+      if (system.node(j).line == line) spinning_[at(j)] = 0;
   }
   for (Index i = 0; i < system.nodes(); ++i)
     if (spinning_[at(i)]) orders_.push_back(std::abs(ratio_[at(system.node(i).line)]));
@@ -151,6 +151,10 @@ void RunningSystem::sort_terms() {
 
 void RunningSystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
   v.setZero();
+  if (Omega != 0.0)
+    for (const auto& [line, node] : held_)
+      throw run_error("E78", "shaft '" + system_.line_name(line) + "' cannot turn: its spin is held at " + system_.node(node).name,
+                      "release the rotation about the axis (rx) of that support, or give the shaft speed_ratio = 0");
   for (Index i = 0; i < system_.nodes(); ++i)
     if (spinning_[at(i)]) v[6 * i + 3] = Omega * ratio_[at(system_.node(i).line)];
 }

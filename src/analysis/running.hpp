@@ -27,7 +27,6 @@ struct Running {
 
 class RunningSystem {
  public:
-  /// Errors: E78, a line that shall spin is held against it.
   explicit RunningSystem(const system::System& system, Running running = {});
 
   const system::System& system() const { return system_; }
@@ -43,7 +42,7 @@ class RunningSystem {
   void set_load(double factor);
   double load() const { return workspace_.context.load; }
 
-  /// v of the steady motion: Omega ratio at spinning phi, else zero.
+  /// v of the steady motion: Omega ratio at spinning phi, else zero. Errors: E78, a line that shall turn is held against it.
   void set_rates(double Omega, Eigen::Ref<VecX> v) const;
   /// Held unknowns at their laws (running.time), spinning phi that is prescribed: relative to the first prescribed one.
   void impose(const system::Frames& f, Eigen::Ref<VecX> q) const;
@@ -74,6 +73,7 @@ class RunningSystem {
   Running running_;
   std::vector<double> ratio_, orders_;
   std::vector<unsigned char> spinning_;
+  std::vector<std::pair<Index, Index>> held_;   ///< line that cannot turn, and the node at which it is held
   Terms smooth_, other_, turning_;         ///< quadratic in rates and blind to phi; blind to phi; the rest
   Terms blind_, all_;
   std::vector<double> theta_;              ///< samples

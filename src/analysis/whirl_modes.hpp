@@ -1,0 +1,83 @@
+// Whirl modes of the spinning rotor: frequency, damping, direction, kind, shape.
+//
+// x(t) = Re(x exp(lambda t)). Direction: the orbit of a node in the plane across its shaft is the sum of a part that turns with
+// the spin, |Y + iZ|/2, and one against it, |Y - iZ|/2 (Y, Z amplitudes along e2, e3). Kind: the largest share of the energy
+// (kinetic and strain) among lateral, torsional and axial motion.
+#pragma once
+#include <analysis/linear.hpp>
+#include <la/eigen.hpp>
+#include <string_view>
+
+namespace whirl::analysis {
+
+enum class Direction { forward, backward, mixed, planar, none };   ///< planar: no orbit has an area; none: not lateral
+enum class ModeKind { lateral, torsional, axial };
+std::string_view to_string(Direction d);
+std::string_view to_string(ModeKind k);
+
+struct WhirlMode {
+  Complex lambda;              ///< 1/s, Im >= 0
+  double frequency = 0;        ///< damped natural frequency Im lambda, rad/s
+  double damping_ratio = 0;    ///< -Re lambda / |lambda|; 0 for a rigid motion
+  double log_decrement = 0;    ///< -2 pi Re lambda / Im lambda, per cycle; +-inf when it does not oscillate
+  ModeKind kind = ModeKind::lateral;
+  Direction direction = Direction::none;
+  double forwardness = 0;      ///< sum of (forward^2 - backward^2)/(forward^2 + backward^2), -1 .. 1: a smooth measure of direction
+  double lateral = 0, torsional = 0, axial = 0;   ///< shares of energy
+  VecXc x;                     ///< (u, phi, gamma) a node; largest displacement (twist, when torsional) is 1 and real
+  double residual = 0;         ///< backward error of the eigenpair
+  Index from = -1;             ///< mode of the last speed it continues, -1: none
+};
+
+struct ModesOptions {
+  Index count = 12;                        ///< modes of least frequency
+  double max_frequency = infinity;         ///< rad/s; with count = 0: all modes up to it
+  Motion motion = Motion::all;
+  bool damped = true;                      ///< false: conservative part of the matrices only
+  bool real_roots = false;                 ///< also motions that do not oscillate
+};
+
+/// Modes at one speed, least frequency first.
+std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const ModesOptions& options = {});
+
+/// Modes at a series of speeds; each call starts from what the last one found.
+class WhirlSolver {
+ public:
+  explicit WhirlSolver(Linearizer& linear, const ModesOptions& options = {});
+  const std::vector<WhirlMode>& solve(double Omega);
+  /// The mode near `start` at another speed, by Newton; nullopt when there is none or another one was met (shape changed).
+  std::optional<WhirlMode> follow(double Omega, const WhirlMode& start);
+  /// Matrices at the last speed.
+  const la::MCK& matrices() const { return *matrices_; }
+  Linearizer& linear() { return linear_; }
+  const ModesOptions& options() const { return options_; }
+  la::ModeSolver::Work work() const { return solver_.work(); }
+
+ private:
+  const la::MCK& matrices_at(double Omega);
+  Linearizer& linear_;
+  ModesOptions options_;
+  std::vector<unsigned char> active_;
+  la::ModeSolver solver_;
+  const la::MCK* matrices_ = nullptr;
+  std::vector<WhirlMode> modes_;
+};
+
+/// Fills kind, direction and the rest from lambda and x. Scales x.
+WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer& linear);
+
+/// |x^H M y|^2/((x^H M x)(y^H M y)), 0 .. 1: likeness of two shapes.
+double likeness(const la::MCK& m, const VecXc& x, const VecXc& y);
+
+/// The elliptic orbit Re((Y, Z) exp(i omega t)) of a point.
+struct Orbit {
+  double forward = 0, backward = 0;   ///< radii of the two circles
+  double major = 0, minor = 0;        ///< half axes; minor < 0: backward
+  double angle = 0;                   ///< of the major axis, from e2 towards e3, rad
+};
+Orbit orbit_of(Complex Y, Complex Z);
+
+/// Displacement amplitude of a node along the axes (e, e2, e3) of its line.
+Eigen::Vector3cd local_displacement(const Linearizer& linear, const VecXc& x, Index node);
+
+}  // namespace whirl::analysis
