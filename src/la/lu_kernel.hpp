@@ -77,8 +77,9 @@ struct Kernels {
   void (*multiply_complex)(const Matrix6&, const double* x, double* y);  ///< the same, x and y interleaved
   /// y[t] = A_t x for three matrices on one pattern (value of Matrix6 unused), all interleaved.
   void (*multiply_three)(const Matrix6&, const double* const a[3], const double* x, double* const y[3]);
-  /// y = A x with sums in twice the working precision, interleaved.
-  void (*multiply_exact)(const Matrix6&, const double* x, double* y);
+  /// y = A x with sums in twice the working precision; complex interleaved.
+  void (*multiply_exact_real)(const Matrix6&, const double* x, double* y);
+  void (*multiply_exact_complex)(const Matrix6&, const double* x, double* y);
   void (*add_multiply_size)(const Matrix6&, double s, const double* x, double* y);  ///< y += s |A| x
 };
 

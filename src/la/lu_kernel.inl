@@ -396,7 +396,16 @@ WHIRL_INLINE void add_exact(Col& sum, Col& rest, Col a, Col b) {
   sum = s;
 }
 
-void multiply_exact(const Matrix6& m, const double* x, double* y) {
+void multiply_exact_real(const Matrix6& m, const double* x, double* y) {
+  for (std::ptrdiff_t i = 0; i < m.n; ++i) {
+    Col sum = zero_col(), rest = sum;
+    for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k)
+      for (int c = 0; c < 6; ++c) add_exact(sum, rest, load6(m.value + 36 * k + 6 * c), splat(x[6 * m.cols[k] + c]));
+    store6(y + 6 * i, sum + rest);
+  }
+}
+
+void multiply_exact_complex(const Matrix6& m, const double* x, double* y) {
   for (std::ptrdiff_t i = 0; i < m.n; ++i) {
     Cplx sum = zero_of<Cplx>(), rest = sum;
     for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k) {
@@ -428,7 +437,7 @@ void add_multiply_size(const Matrix6& m, double s, const double* x, double* y) {
 
 constexpr Kernels table = {WHIRL_LU_ISA,  factor_any<Real>, factor_any<Cplx>, solve<Real>,
                            solve<Cplx>,   multiply_real,    multiply_complex, multiply_three,
-                           multiply_exact, add_multiply_size};
+                           multiply_exact_real, multiply_exact_complex, add_multiply_size};
 
 }  // namespace
 

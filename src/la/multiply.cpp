@@ -16,8 +16,12 @@ void multiply(const BlockMatrix<6>& a, const VecXc& x, VecXc& y) {
   lu::kernels().multiply_complex(view(a), reinterpret_cast<const double*>(x.data()), reinterpret_cast<double*>(y.data()));
 }
 
+void multiply_exact(const BlockMatrix<6>& a, const VecX& x, VecX& y) {
+  lu::kernels().multiply_exact_real(view(a), x.data(), y.data());
+}
+
 void multiply_exact(const BlockMatrix<6>& a, const VecXc& x, VecXc& y) {
-  lu::kernels().multiply_exact(view(a), reinterpret_cast<const double*>(x.data()), reinterpret_cast<double*>(y.data()));
+  lu::kernels().multiply_exact_complex(view(a), reinterpret_cast<const double*>(x.data()), reinterpret_cast<double*>(y.data()));
 }
 
 void multiply(const MCK& m, const VecXc& x, VecXc& Mx, VecXc& Cx, VecXc& Kx) {

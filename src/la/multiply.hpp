@@ -8,6 +8,7 @@ namespace whirl::la {
 void multiply(const BlockMatrix<6>& a, const VecX& x, VecX& y);
 void multiply(const BlockMatrix<6>& a, const VecXc& x, VecXc& y);
 /// The same with sums in twice the working precision: the error is that of rounding the result.
+void multiply_exact(const BlockMatrix<6>& a, const VecX& x, VecX& y);
 void multiply_exact(const BlockMatrix<6>& a, const VecXc& x, VecXc& y);
 /// Mx = M x, Cx = C x, Kx = K x in one pass.
 void multiply(const MCK& m, const VecXc& x, VecXc& Mx, VecXc& Cx, VecXc& Kx);
