@@ -212,6 +212,7 @@ bool RunningSystem::make_polynomial(const system::Frames& f, double Omega, const
   // Interpolation at -s, 0, s with s near the top speed: no digits are lost below it.
   const double s = std::max({std::abs(Omega), running_.top_speed, 1.0});
   if (p0_.M.value_count() == 0) p0_ = system_.make_matrices(), p1_ = system_.make_matrices(), k2_ = la::BlockMatrix<6>(system_.pattern());
+  for (VecX* r : {&r0_, &r1_, &r2_}) r->resize(q.size());
   if (!evaluate_tangent(f, s, q, 0.0, p1_, smooth_) || !evaluate_residual(f, s, q, 0.0, r1_, smooth_)) return false;
   if (!evaluate_tangent(f, -s, q, 0.0, part_, smooth_) || !evaluate_residual(f, -s, q, 0.0, r2_, smooth_)) return false;
   if (!evaluate_tangent(f, 0.0, q, 0.0, p0_, smooth_) || !evaluate_residual(f, 0.0, q, 0.0, r0_, smooth_)) return false;

@@ -4,7 +4,7 @@
 
 namespace whirl::la {
 
-/// y = A x. x and y of length 6 * nodes, not overlapping.
+/// y = A x. x of length 6 * nodes, y (resized) not overlapping it.
 void multiply(const BlockMatrix<6>& a, const VecX& x, VecX& y);
 void multiply(const BlockMatrix<6>& a, const VecXc& x, VecXc& y);
 /// The same with sums in twice the working precision: the error is that of rounding the result.
