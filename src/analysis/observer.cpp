@@ -35,6 +35,14 @@ void Recorder::step(StepAccess& s) {
     if (const double t = std::min(ticker_.next(), s.t1()); t >= t0_ && t <= t1_) write(s.at(t));
 }
 
+void Recorder::save(OutArchive& out) const {
+  out.put_count(static_cast<std::uint64_t>(ticker_.count())), out.put_count(static_cast<std::uint64_t>(rows_));
+}
+
+void Recorder::restore(InArchive& in) {
+  ticker_.set_count(static_cast<long>(in.count())), rows_ = static_cast<long>(in.count());
+}
+
 PeakTracker::PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from)
     : points_(std::move(points)), reference_(reference), t_from_(t_from) {
   for (const auto& p : points_) peaks_.push_back({p.first, 0.0, 0.0, 0.0});
@@ -73,6 +81,14 @@ void PeakTracker::step(StepAccess& s) {
   }
 }
 
+void PeakTracker::save(OutArchive& out) const {
+  for (const Peak& p : peaks_) out.put(p.amplitude), out.put(p.time), out.put(p.speed);
+}
+
+void PeakTracker::restore(InArchive& in) {
+  for (Peak& p : peaks_) p.amplitude = in.number(), p.time = in.number(), p.speed = in.number();
+}
+
 void EnergyBalance::begin(const Snapshot& s) {
   const auto p = s.power();
   e0_ = e1_ = p.stored;
@@ -95,6 +111,17 @@ void EnergyBalance::step(StepAccess& s) {
   largest_kinetic_ = std::max(largest_kinetic_, p.kinetic);
   worst_ = std::max(worst_, std::abs(defect()));
 }
+
+void EnergyBalance::save(OutArchive& out) const {
+  for (double x : {e0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_}) out.put(x);
+}
+
+void EnergyBalance::restore(InArchive& in) {
+  for (double* x : {&e0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_}) *x = in.number();
+}
+
+void TiltWatch::save(OutArchive& out) const { out.put(tilt_), out.put(time_), out.put_count(static_cast<std::uint64_t>(node_)); }
+void TiltWatch::restore(InArchive& in) { tilt_ = in.number(), time_ = in.number(), node_ = static_cast<Index>(in.count()); }
 
 void TiltWatch::look(const Snapshot& s) {
   for (Index i = 0; i < s.system().nodes(); ++i)

@@ -2,6 +2,7 @@
 // knows none of them; what a deck does not ask for is an observer that does not exist.
 #pragma once
 #include <analysis/measurement.hpp>
+#include <core/archive.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ class Observer {
   virtual void begin(const Snapshot& s) { (void)s; }
   virtual void step(StepAccess& s) = 0;
   virtual void end() {}
+  /// What it knows so far, for a checkpoint; restore() of an observer made alike instead of begin() continues bit for bit.
+  virtual void save(OutArchive& out) const { (void)out; }
+  virtual void restore(InArchive& in) { (void)in; }
 };
 
 /// Times k * every from t_begin on, free of accumulated rounding.
@@ -52,6 +56,8 @@ class Recorder final : public Observer {
   Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0 = -infinity, double t1 = infinity);
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
+  void save(OutArchive& out) const override;
+  void restore(InArchive& in) override;
   long rows() const { return rows_; }
   Ticker& ticker() { return ticker_; }
 
@@ -76,6 +82,8 @@ class PeakTracker final : public Observer {
   PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from = -infinity);
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
+  void save(OutArchive& out) const override;
+  void restore(InArchive& in) override;
   const std::vector<Peak>& peaks() const { return peaks_; }
 
  private:
@@ -90,6 +98,8 @@ class EnergyBalance final : public Observer {
  public:
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
+  void save(OutArchive& out) const override;
+  void restore(InArchive& in) override;
   double stored0() const { return e0_; }
   double stored() const { return e1_; }
   double supplied() const { return supplied_; }
@@ -107,6 +117,8 @@ class TiltWatch final : public Observer {
  public:
   void begin(const Snapshot& s) override { look(s); }
   void step(StepAccess& s) override { look(s.end()); }
+  void save(OutArchive& out) const override;
+  void restore(InArchive& in) override;
   double tilt() const { return tilt_; }
   double time() const { return time_; }
   Index node() const { return node_; }

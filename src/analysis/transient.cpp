@@ -106,8 +106,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
     return system::State{integrator->time(), integrator->q(), integrator->v(), integrator->a(), problem.frames};
   };
   step.set(integrator->time(), integrator->time());
-  if (!resume)
-    for (Observer* o : observers) o->begin(step.end());
+  for (Observer* o : resume ? options.new_observers : observers) o->begin(step.end());
 
   std::vector<double> speed_before(options.speed_stops.size());
   for (std::size_t i = 0; i < speed_before.size(); ++i)
@@ -116,10 +115,11 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
   using Clock = std::chrono::steady_clock;
   auto last_checkpoint = Clock::now();
   const double t_end = options.integrator.t_end;
+  const auto interrupted = [&] { return options.interrupt && options.interrupt->load(std::memory_order_relaxed); };
   Progress progress{integrator->time(), t_end, 0, 0, 0, 0};
   bool stop = false;
   while (!stop && integrator->time() < t_end) {
-    if (options.interrupt && options.interrupt->load(std::memory_order_relaxed)) {
+    if (options.steps_between_marks == 0 && interrupted()) {
       result.reason = StopReason::interrupted;
       break;
     }
@@ -169,13 +169,19 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
       progress.spin = step.end().node(options.reference).spin();
       options.progress(progress);
     }
-    if (options.checkpoint && std::chrono::duration<double>(Clock::now() - last_checkpoint).count() > options.checkpoint_seconds) {
+    if (options.steps_between_marks > 0 && integrator->statistics().accepted % options.steps_between_marks == 0) {
       const time::IntegratorState s = integrator->save();
-      options.checkpoint(state_now(), s);
-      last_checkpoint = Clock::now();
+      if (interrupted() && !stop && report.t1 < t_end) {
+        result.reason = StopReason::interrupted;
+        break;
+      }
+      if (options.checkpoint && std::chrono::duration<double>(Clock::now() - last_checkpoint).count() >= options.checkpoint_seconds) {
+        options.checkpoint(state_now(), s);
+        last_checkpoint = Clock::now();
+      }
     }
   }
-  if (options.checkpoint && (result.reason == StopReason::interrupted || options.checkpoint_seconds < infinity)) {
+  if (options.checkpoint && result.reason != StopReason::failed) {
     const time::IntegratorState s = integrator->save();
     options.checkpoint(state_now(), s);
   }

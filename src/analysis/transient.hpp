@@ -28,8 +28,13 @@ struct TransientOptions {
   Index reference = 0;               ///< node whose spin progress reports
   std::function<void(const Progress&)> progress;            ///< after every step
   const std::atomic<bool>* interrupt = nullptr;             ///< set by Ctrl-C
+  /// Every so many accepted steps the matrices are made anew, whether a checkpoint is written there or not: the motion does not
+  /// depend on the clock, and checkpoints and interruptions fall on these steps only. 0: none.
+  long steps_between_marks = 0;
   double checkpoint_seconds = infinity;                     ///< wall clock between checkpoints
+  /// Called at a mark when it is time, when interrupted, and at the end of the run (not after a failure).
   std::function<void(const system::State&, const time::IntegratorState&)> checkpoint;
+  std::vector<Observer*> new_observers;                     ///< of a resumed run: those that begin at its start
 };
 
 enum class StopReason { end_time, speed_reached, amplitude_limit, interrupted, failed };
@@ -44,7 +49,8 @@ struct TransientResult {
 };
 
 /// Runs from `start` to integrator.t_end. Observers see every accepted step in order. A failure (no step possible) is a result,
-/// with node and time in `detail`; the observers have seen all steps before it. resume: continue from a checkpoint.
+/// with node and time in `detail`; the observers have seen all steps before it. resume: continue from a checkpoint (`start` gives the
+/// frames); observers are those of the earlier run restored, or named in new_observers.
 TransientResult run_transient(system::SystemProblem& problem, const system::State& start, const TransientOptions& options,
                               const std::vector<Observer*>& observers, const time::IntegratorState* resume = nullptr);
 

@@ -1,4 +1,5 @@
-// Ctrl-C and SIGTERM ask the running step to stop at the next accepted step; results and a checkpoint are then complete.
+// Ctrl-C and SIGTERM ask the running step to stop at its next mark (transient.hpp), within a fraction of
+// a second; results and a checkpoint are then complete.
 #pragma once
 #include <atomic>
 

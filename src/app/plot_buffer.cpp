@@ -42,6 +42,21 @@ void PlotBuffer::halve() {
   stride_ *= 2;
 }
 
+void PlotBuffer::save(OutArchive& out) const {
+  for (std::size_t n : {stride_, rows_, filled_, keep_stride_, data_.size(), kept_.size()}) out.put_count(n);
+  for (const Extreme& e : data_) out.put(e.lo), out.put(e.hi), out.put(e.t_lo), out.put(e.t_hi);
+  for (const auto& row : kept_) out.put(row);
+}
+
+void PlotBuffer::restore(InArchive& in) {
+  std::size_t data = 0, kept = 0;
+  for (std::size_t* n : {&stride_, &rows_, &filled_, &keep_stride_, &data, &kept}) *n = in.count();
+  if (data > capacity_ * channels_ || kept > rows_capacity) throw std::invalid_argument("plot buffer of another run");
+  data_.resize(data), kept_.resize(kept);
+  for (Extreme& e : data_) e.lo = in.number(), e.hi = in.number(), e.t_lo = in.number(), e.t_hi = in.number();
+  for (auto& row : kept_) row = in.numbers();
+}
+
 PlotBuffer::Points PlotBuffer::channel(std::size_t k) const {
   Points p;
   const std::size_t n = channels_ ? data_.size() / channels_ : 0;

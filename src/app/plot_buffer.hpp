@@ -1,5 +1,6 @@
 // Keeps the shape of arbitrarily long time histories in bounded memory: the extremes of every channel in buckets of time.
 #pragma once
+#include <core/archive.hpp>
 #include <cstddef>
 #include <vector>
 
@@ -15,6 +16,8 @@ class PlotBuffer {
   struct Points { std::vector<double> t, y; };
   Points channel(std::size_t k) const;
   std::size_t rows() const { return rows_; }
+  void save(OutArchive& out) const;
+  void restore(InArchive& in);
   /// Whole rows (time first), every stride-th of them: for paths, where columns belong together.
   const std::vector<std::vector<double>>& kept_rows() const { return kept_; }
 

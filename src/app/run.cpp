@@ -1,3 +1,4 @@
+#include <app/checkpoint.hpp>
 #include <app/interrupt.hpp>
 #include <app/job.hpp>
 #include <app/results_folder.hpp>
@@ -12,6 +13,13 @@ namespace whirl::app {
 
 int run_deck(const model::Model& model, const RunOptions& options) {
   install_interrupt_handlers();
+  const std::filesystem::path folder = options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
+  if (options.resume) {
+    check_checkpoints(folder, model);   // before anything in the folder changes
+    if (!options.quiet && !has_checkpoint(folder, model)) std::fputs(fmt::format("no checkpoint in {}: starting from the beginning\n", folder.string()).c_str(), stderr);
+  } else {
+    remove_checkpoints(folder);
+  }
   const auto root = prepare_results(model, options);
   Job job(model, options, root);
   run_steps(job);

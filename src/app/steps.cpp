@@ -1,4 +1,5 @@
 // Runs the steps of a deck in order and writes summary and report, complete or not: a failed step keeps what came before it.
+#include <app/interrupt.hpp>
 #include <app/job.hpp>
 #include <app/steps.hpp>
 #include <io/rotor_drawing.hpp>
@@ -61,6 +62,7 @@ void run_steps(Job& job) {
   };
   try {
     for (const model::Step& step : job.model.steps) {
+      if (interrupted()) break;
       job.build_for(step);
       if (!job.summary.is_object() || job.summary.at("model").is_null()) describe_model(job);
       std::visit(

@@ -1,9 +1,11 @@
 // A transient step: initial state, observers for what the deck asks for, the run, and its results.
 #include <analysis/equilibrium.hpp>
 #include <analysis/transient.hpp>
+#include <app/checkpoint.hpp>
 #include <app/interrupt.hpp>
 #include <app/job.hpp>
 #include <app/plot_buffer.hpp>
+#include <app/transient_outputs.hpp>
 #include <core/rotation.hpp>
 #include <io/plots.hpp>
 
@@ -11,156 +13,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 
 namespace whirl::app {
 
-namespace {
-
 using analysis::Measurement;
 using analysis::Point;
-using analysis::Snapshot;
-
-bool wants(const model::Output& o, std::string_view quantity) {
-  return std::find(o.quantities.begin(), o.quantities.end(), quantity) != o.quantities.end();
-}
-
-Point point_of(const Job& job, const model::Location& at) {
-  const meshes::Place p = job.mesh.place(at);
-  return {p.node, p.offset};
-}
-
-/// Channels of a time history, with the plots they belong to.
-struct Channels {
-  std::vector<Measurement> all;
-  std::vector<std::size_t> start;        // first column (without time) of each measurement
-  std::size_t columns = 0;
-  std::size_t add(Measurement m) {
-    start.push_back(columns);
-    columns += m.width();
-    all.push_back(std::move(m));
-    return all.size() - 1;
-  }
-};
-
-Channels make_channels(const Job& job) {
-  const model::Model& m = job.model;
-  Channels c;
-  if (wants(m.output, "speed")) {
-    c.add(analysis::measure_spin("speed", job.reference()));
-    c.add(analysis::measure_phi("phi", job.reference()));
-    for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
-      const meshes::Line& line = job.mesh.lines[l];
-      if (line.rotating && job.mesh.lines.size() > 1) c.add(analysis::measure_spin("speed " + line.name, line.first_node));
-    }
-  }
-  if (wants(m.output, "probes"))
-    for (const model::Probe& p : m.probes) c.add(analysis::measure_displacement(p.name, point_of(job, p.at), p.angles));
-  if (wants(m.output, "positions"))
-    for (const model::Probe& p : m.probes) c.add(analysis::measure_position(p.name + " position", point_of(job, p.at)));
-  if (wants(m.output, "velocity"))
-    for (const model::Probe& p : m.probes) c.add(analysis::measure_velocity(p.name + " velocity", point_of(job, p.at)));
-  if (wants(m.output, "rotation"))
-    for (const model::Probe& p : m.probes) {
-      const Point at = point_of(job, p.at);
-      c.add(analysis::measure_gamma(p.name + " gamma", at.node));
-      c.add(analysis::measure_phi(p.name + " phi", at.node));
-      c.add(analysis::measure_phi_rate(p.name + " omega_phi", at.node));
-    }
-  if (wants(m.output, "bearing_force"))
-    for (const assembly::SupportForce& f : job.built.support_forces) {
-      Measurement x{"bearing " + f.name + " force", "N", "force of the support on the shaft, fixed axes", {"x", "y", "z"}, 1.0, {}};
-      x.evaluate = [&f](const Snapshot& s, double* out) {
-        Eigen::Map<Vec3>{out} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); }, s.t(),
-                                        [&s](Index k) { return s.reactions()[k]; });
-      };
-      c.add(std::move(x));
-    }
-  if (wants(m.output, "torque"))
-    for (const assembly::DriveTorque& d : job.built.drive_torques) {
-      Measurement x{"drive " + d.name + " torque", "N.m", "torque of the drive on the shaft", {}, 1.0, {}};
-      x.evaluate = [&d](const Snapshot& s, double* out) {
-        *out = d.torque([&s](Index n) -> const system::NodeState& { return s.node(n); }, s.t(), [&s](Index k) { return s.reactions()[k]; });
-      };
-      c.add(std::move(x));
-    }
-  if (wants(m.output, "energy")) c.add(analysis::measure_energy());
-  return c;
-}
-
-std::vector<io::Channel> io_channels(const Channels& c) {
-  std::vector<io::Channel> out{{"t", "s", "time", {}, 1.0, {}}};
-  for (const Measurement& m : c.all) out.push_back({m.name, m.unit, m.description, m.components, m.scale, {}});
-  return out;
-}
-
-/// Writes frames of the moving rotor when they are due.
-class Frames final : public analysis::Observer {
- public:
-  Frames(const Job& job, const model::VtkOutput& o, const std::string& step, double t0, double t1)
-      : job_(job), schedule_({o.t0, o.t1, o.every, o.frames_per_revolution, o.frames, o.max_frames}, t0, t1) {
-    io::VtkFrameOptions options;
-    options.directory = job.folder.path("vtk");
-    options.name = step;
-    io::set_content(options, o.content);
-    options.deformation_scale = o.deformation_scale;
-    options.points_around = o.points_around;
-    options.max_frames = static_cast<std::uint64_t>(o.max_frames);
-    writer_ = io::make_vtk_frames(options);
-    const std::size_t n = job.mesh.nodes.size();
-    poses_.resize(n), velocity_.resize(n), omega_.resize(n);
-  }
-  void begin(const Snapshot& s) override {
-    writer_->begin(job_.scene);
-    phi_ = s.total_phi(job_.reference());
-    if (!schedule_.by_revolution() && schedule_.next_time() <= s.t()) write(s), schedule_.advance();
-  }
-  void step(analysis::StepAccess& s) override {
-    if (!schedule_.by_revolution()) {
-      for (; schedule_.next_time() <= s.t1() * (1 + 1e-12); schedule_.advance()) write(s.at(std::min(schedule_.next_time(), s.t1())));
-      return;
-    }
-    // frames at fixed angles of the reference: phi is nearly linear inside a step, so a secant needs two or three looks
-    const double phi1 = s.end().total_phi(job_.reference()), sign = phi1 >= phi_ ? 1.0 : -1.0;
-    double target = schedule_.next_angle(phi_, sign), a = s.t0(), fa = phi_;
-    while (sign * (phi1 - target) >= 0.0 && phi1 != phi_) {
-      double lo = a, flo = fa, hi = s.t1(), fhi = phi1, t = hi;
-      for (int k = 0; k < 8 && std::abs(fhi - flo) > 1e-9; ++k) {
-        t = lo + (hi - lo) * (target - flo) / (fhi - flo);
-        const double f = s.at(t).total_phi(job_.reference());
-        if (std::abs(f - target) < 1e-6) break;
-        (sign * (f - target) < 0.0 ? lo : hi) = t;
-        (sign * (f - target) < 0.0 ? flo : fhi) = f;
-      }
-      if (schedule_.in_window(t)) write(s.at(t));
-      a = t, fa = target;
-      target = schedule_.next_angle(target + sign * 1e-9, sign);
-    }
-    phi_ = phi1;
-  }
-  void end() override { writer_->end(); }
-  std::uint64_t frames() const { return writer_->frames(); }
-
- private:
-  void write(const Snapshot& s) {
-    for (std::size_t i = 0; i < poses_.size(); ++i) {
-      const system::NodeState& n = s.node(static_cast<Index>(i));
-      poses_[i] = {job_.mesh.nodes[i].position + n.u, n.d(), n.phi};
-      velocity_[i] = n.du, omega_[i] = n.omega();
-    }
-    io::FrameState frame;
-    frame.time = s.t();
-    frame.nodes = poses_, frame.velocity = velocity_, frame.angular_velocity = omega_;
-    writer_->frame(frame);
-  }
-  const Job& job_;
-  io::FrameSchedule schedule_;
-  std::unique_ptr<io::FrameWriter> writer_;
-  std::vector<io::Pose> poses_;
-  std::vector<Vec3> velocity_, omega_;
-  double phi_ = 0;
-};
-
-}  // namespace
 
 std::vector<std::pair<std::string, Point>> watched_points(const Job& job) {
   std::vector<std::pair<std::string, Point>> watched;
@@ -175,6 +33,9 @@ analysis::TransientOptions transient_options(const Job& job, const model::Transi
   t.method = law.integrator.method;
   t.reference = job.reference();
   t.interrupt = &interrupted();
+  // marks about a quarter of a second of computing apart, counted in steps: the motion must not depend on the clock
+  t.steps_between_marks = std::clamp<long>(50000 / std::max<long>(static_cast<long>(job.mesh.nodes.size()), 1), 20, 1000);
+  t.checkpoint_seconds = law.checkpoint > 0.0 ? law.checkpoint : infinity;
   time::Options& o = t.integrator;
   o.tolerance = law.integrator.tolerance;
   o.t_end = t0 + law.duration;
@@ -200,11 +61,35 @@ StepState transient_start(Job& job, system::SystemProblem& problem, const model:
   return start;
 }
 
+namespace {
+
+double cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Histories of other columns than those of the earlier part of the run: the file of that part gets a number.
+void keep_earlier_series(const Job& job, const std::string& name) {
+  for (const char* extension : {".csv", ".h5"}) {
+    const std::filesystem::path file = job.folder.path(name + extension);
+    std::error_code ec;
+    if (!std::filesystem::exists(file, ec)) continue;
+    int n = 1;
+    while (std::filesystem::exists(job.folder.path(fmt::format("{}.{}{}", name, n, extension)), ec)) ++n;
+    std::filesystem::rename(file, job.folder.path(fmt::format("{}.{}{}", name, n, extension)), ec);
+  }
+}
+
+}  // namespace
+
 void run_transient_step(Job& job, const model::Step& step, const model::TransientStep& law) {
   job.build_for(step);
   system::SystemProblem problem(job.system(), {la::SolverKind::automatic, job.model.chart_change, 2.0});
-  StepState start = transient_start(job, problem, step, law);
-  const double t0 = start.state.t;
+  const std::filesystem::path checkpoint_path = checkpoint_file(job.folder.root(), step.name);
+  const std::optional<Checkpoint> resumed = job.options.resume ? read_checkpoint(checkpoint_path) : std::nullopt;
+  StepState start = resumed ? StepState{resumed->state, resumed->speed} : transient_start(job, problem, step, law);
+  const double t0 = resumed ? resumed->t_begin : start.state.t;
   analysis::TransientOptions options = transient_options(job, law, t0);
   const std::vector<std::pair<std::string, Point>> watched = watched_points(job);
 
@@ -217,7 +102,18 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   if (out.csv) sinks.push_back(io::make_csv_series(job.folder.path(step.name + ".csv")));
   if (out.binary) sinks.push_back(io::make_hdf5_series(job.folder.path(step.name + ".h5")));
   io::TimeSeriesPtr sink = sinks.empty() ? nullptr : sinks.size() == 1 ? std::move(sinks.front()) : io::make_tee(std::move(sinks));
-  if (sink) sink->begin(io_channels(channels));
+  Parts parts;
+  // what a key says must be what decides whether the saved part fits
+  std::string columns, watching;
+  for (const Measurement& m : channels.all)
+    for (std::size_t k = 0; k < m.width(); ++k) columns += m.name + "." + (m.components.empty() ? "" : m.components[k]) + " ";
+  for (const auto& w : watched) watching += w.first + " ";
+  bool series_continues = false;
+  const std::string series_key = fmt::format("series {}{}: {}", out.csv ? "csv " : "", out.binary ? "hdf5 " : "", columns);
+  if (sink)
+    parts.add(series_key, [&](OutArchive& a) { sink->flush(), a.put_count(sink->rows()); },
+              [&](InArchive& a) { sink->resume(io_channels(channels), a.count()), series_continues = true; });
+  parts.add("plot buffer " + columns, [&](OutArchive& a) { buffer.save(a); }, [&](InArchive& a) { buffer.restore(a); });
   analysis::Recorder recorder(
       channels.all,
       [&](const std::vector<double>& row) {
@@ -225,29 +121,56 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
         if (out.report) buffer.append(row);
       },
       t0, out.every);
-  if (channels.columns > 0 && (sink || out.report)) observers.push_back(&recorder);
+  if (channels.columns > 0 && (sink || out.report)) {
+    observers.push_back(&recorder);
+    parts.add(fmt::format("recorder every {} {}", out.every, series_key), recorder);
+  }
   analysis::PeakTracker peaks(watched, job.reference());
-  if (!watched.empty()) observers.push_back(&peaks);
+  if (!watched.empty()) observers.push_back(&peaks), parts.add("peaks " + watching, peaks);
   analysis::EnergyBalance energy;
-  observers.push_back(&energy);
+  observers.push_back(&energy), parts.add("energy", energy);
   analysis::TiltWatch tilt;
-  observers.push_back(&tilt);
+  observers.push_back(&tilt), parts.add("tilt", tilt);
   std::vector<std::unique_ptr<Frames>> frames;
   for (const model::VtkOutput& v : out.vtk)
     if (v.step.empty() || v.step == step.name) {
-      frames.push_back(std::make_unique<Frames>(job, v, step.name, t0, options.integrator.t_end));
+      const std::string name = frames.empty() ? step.name : fmt::format("{}_{}", step.name, frames.size() + 1);
+      frames.push_back(std::make_unique<Frames>(job, v, name, t0, options.integrator.t_end));
       observers.push_back(frames.back().get());
+      std::string content;
+      for (const std::string& c : v.content) content += " " + c;
+      parts.add(fmt::format("frames {} window {} {} every {} per revolution {} scale {} around {}{}", frames.size(), v.t0, v.t1, v.every, v.frames_per_revolution,
+                            v.deformation_scale, v.points_around, content), *frames.back());
     }
+  double seconds_before = 0.0;
+  if (resumed) {
+    parts.restore(*resumed);
+    options.new_observers = parts.fresh();
+    seconds_before = resumed->seconds;
+  }
+  if (sink && !series_continues) {
+    if (resumed) keep_earlier_series(job, step.name);
+    sink->begin(io_channels(channels));
+  }
+  const std::string deck = what_moves(job.model, step.name);
+  const double cpu0 = cpu_seconds();
+  if (law.checkpoint > 0.0)
+    options.checkpoint = [&](const system::State& state, const time::IntegratorState& integrator) {
+      Checkpoint c{deck, t0, start.speed, seconds_before + cpu_seconds() - cpu0, {}, state, integrator, {}};
+      parts.save(c);
+      write_checkpoint(checkpoint_path, c);
+    };
 
   ProgressLine line(step.name, job.options.quiet);
   options.progress = [&](const analysis::Progress& p) {
     line.update((p.t - t0) / law.duration,
                 fmt::format("t {:.4g} s  {:.0f} rpm  dt {:.2e} s  {} steps  {} Newton", p.t, p.spin * 30.0 / pi, p.dt, p.steps, p.newton));
   };
-  const analysis::TransientResult r = [&] {
+  analysis::TransientResult r = [&] {
     const PhaseTimer timer(job, "stepping and histories");
-    return analysis::run_transient(problem, start.state, options, observers);
+    return analysis::run_transient(problem, start.state, options, observers, resumed ? &resumed->integrator : nullptr);
   }();
+  r.seconds += seconds_before;
   if (sink) sink->close();
   job.states[step.name] = {r.end, start.speed};
 
@@ -257,6 +180,7 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   v["type"] = "transient", v["outcome"] = std::string(to_string(r.reason));
   if (!r.detail.empty()) v["detail"] = r.detail;
   v["t_end [s]"] = r.end.t;
+  if (resumed) v["resumed at [s]"] = resumed->state.t;
   v["integrator"]["method"] = law.integrator.method, v["integrator"]["tolerance"] = law.integrator.tolerance;
   v["integrator"]["steps"] = s.accepted, v["integrator"]["rejected by error"] = s.rejected_error;
   v["integrator"]["rejected by Newton"] = s.rejected_newton, v["integrator"]["Newton iterations"] = s.newton_iterations;

@@ -175,6 +175,10 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"E93", "unknown content of a VTK output",
        "content lists any of line, surface, bearings, orbits.",
        "content = [\"line\", \"surface\"]"},
+      {"E94", "the model is not the one of the checkpoint",
+       "A resumed run continues the motion bit for bit, so everything the motion depends on must be what it was: model, laws, integrator, earlier steps. "
+       "Outputs, probes, titles, the duration, stop conditions and later steps may change. The message shows the first line of the resolved deck that differs.",
+       "whirl run deck.toml            # anew\nwhirl run deck.toml --resume   # with duration = \"30 s\" instead of \"20 s\": goes on"},
       {"W01", "unused parameter",
        "A key of [parameters] is used nowhere: probably a misspelt ${name}, or a leftover.",
        ""},

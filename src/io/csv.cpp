@@ -4,8 +4,10 @@
 #include <io/results.hpp>
 #include <charconv>
 #include <chrono>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 
 namespace whirl::io {
 namespace {
@@ -57,15 +59,26 @@ class CsvSeries final : public TimeSeries {
 
   void resume(std::span<const Channel> channels, std::uint64_t rows) override {
     prepare(channels);
-    const std::string text = read_text(path_);
+    // in pieces: the file may be larger than the memory
+    std::ifstream in(path_, std::ios::binary);
+    if (!in) io_failure(path_, "cannot read", errno);
     const std::string head = header_line(channels);
-    if (text.compare(0, head.size(), head) != 0)
-      io_failure(path_, "the columns asked for are not those of");
-    std::size_t at = head.size();
-    for (std::uint64_t k = 0; k < rows; ++k) {
-      at = text.find('\n', at);
-      if (at == std::string::npos) io_failure(path_, "fewer rows than the checkpoint knows in");
-      ++at;
+    std::string text(head.size(), '\0');
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (text != head) io_failure(path_, "the columns asked for are not those of");
+    std::uint64_t at = head.size();
+    text.resize(std::size_t{1} << 20);
+    for (std::uint64_t k = 0; k < rows;) {
+      in.read(text.data(), static_cast<std::streamsize>(text.size()));
+      const std::string_view piece(text.data(), static_cast<std::size_t>(in.gcount()));
+      if (piece.empty()) io_failure(path_, "fewer rows than the checkpoint knows in");
+      std::size_t p = 0;
+      for (; k < rows; ++k) {
+        const std::size_t end = piece.find('\n', p);
+        if (end == std::string_view::npos) break;
+        p = end + 1;
+      }
+      at += k < rows ? piece.size() : p;
     }
     rows_ = rows;
     out_.reopen(path_, at);

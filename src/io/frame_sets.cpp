@@ -279,6 +279,23 @@ class TrailSet final : public FrameSet {
     }
   }
 
+  void save(OutArchive& out) const override {
+    out.put_count(times_.size());
+    for (const double t : times_) out.put(t);
+    for (const auto& trail : points_)
+      for (const Vec3& r : trail)
+        for (int c = 0; c < 3; ++c) out.put(r[c]);
+  }
+  void restore(InArchive& in) override {
+    times_.resize(in.count());
+    for (double& t : times_) t = in.number();
+    for (auto& trail : points_) {
+      trail.resize(times_.size());
+      for (Vec3& r : trail)
+        for (int c = 0; c < 3; ++c) r[c] = in.number();
+    }
+  }
+
  private:
   Scene scene_;
   std::size_t longest_;

@@ -18,6 +18,9 @@ class FrameSet {
   virtual const char* name() const = 0;
   virtual void update(const FramePoses& poses) = 0;
   const PolyData& data() const { return data_; }
+  /// What a later frame still needs of the earlier ones.
+  virtual void save(OutArchive& out) const { (void)out; }
+  virtual void restore(InArchive& in) { (void)in; }
 
  protected:
   PolyData data_;

@@ -33,21 +33,26 @@ constexpr std::string_view pvd_foot = "</Collection>\n</VTKFile>\n";
 /// the frame itself in the file system.)
 class Collection {
  public:
-  Collection(const fs::path& directory, const std::string& stem, double keep_until)
-      : pvd_(directory / (stem + ".pvd")), folder_(directory / stem), stem_(stem) {
+  struct Frame { double time; std::string file; };
+  /// kept: frames of the earlier run that stay, whose number is `next`; else those of the .pvd up to keep_until.
+  Collection(const fs::path& directory, const std::string& stem, double keep_until, std::vector<Frame> kept = {}, std::uint64_t next = 0)
+      : frames_(std::move(kept)), next_(next), pvd_(directory / (stem + ".pvd")), folder_(directory / stem), stem_(stem) {
     std::error_code ec;
     fs::create_directories(folder_, ec);
     if (ec) io_failure(folder_, "cannot make the folder", ec.value());
-    if (keep_until > -infinity && fs::exists(pvd_, ec)) recover(keep_until);
+    if (next_ == 0 && keep_until > -infinity && fs::exists(pvd_, ec)) recover(keep_until);
     write_list();   // before files go: the list never names a missing one
     std::vector<fs::path> stale;
     for (const auto& f : fs::directory_iterator(folder_, ec))
-      if (f.path().extension() == ".vtp" && !listed(f.path().filename().string())) stale.push_back(f.path());
+      // and what a killed run was writing
+      if (const std::string name = f.path().filename().string(); (name.starts_with("frame_") || name.starts_with(".frame_")) && !listed(name)) stale.push_back(f.path());
     for (const auto& f : stale) fs::remove(f, ec);
   }
 
   fs::path next_file() const { return folder_ / ("frame_" + padded(next_) + ".vtp"); }
   std::size_t size() const { return frames_.size(); }
+  const std::vector<Frame>& frames() const { return frames_; }
+  std::uint64_t next() const { return next_; }
 
   void add(double time) {
     frames_.push_back({time, next_file().filename().string()});
@@ -72,8 +77,6 @@ class Collection {
   }
 
  private:
-  struct Frame { double time; std::string file; };
-
   bool listed(const std::string& file) const {
     for (const auto& f : frames_)
       if (f.file == file) return true;
@@ -104,16 +107,20 @@ class Collection {
   // The whole list, in place of an older file in one go.
   void write_list() {
     std::string s(pvd_head);
-    for (const auto& f : frames_) s += line(f);
+    // after a kill a frame may be gone that the checkpoint still counts: it is thinned out again at the same frame
+    std::error_code ec;
+    for (const auto& f : frames_)
+      if (fs::exists(folder_ / f.file, ec)) s += line(f);
     length_ = s.size();
     write_atomic(pvd_, s + std::string(pvd_foot));
     file_.open(pvd_);
   }
 
+  std::vector<Frame> frames_;
+  std::uint64_t next_ = 0;
   fs::path pvd_, folder_;
   std::string stem_;
-  std::vector<Frame> frames_;
-  std::uint64_t next_ = 0, length_ = 0;   // of the .pvd without its footer
+  std::uint64_t length_ = 0;   // of the .pvd without its footer
   OverwriteFile file_;
 };
 
@@ -122,20 +129,26 @@ class VtkFrames final : public FrameWriter {
   explicit VtkFrames(VtkFrameOptions o) : options_(std::move(o)), plugin_(Plugin::load("vtk")) {}
 
   void begin(const Scene& scene) override {
-    sets_.clear();
-    scene_ = scene;
-    drawn_.resize(scene_.nodes.size());
-    const auto add = [&](std::unique_ptr<FrameSet> set) {
-      Collection files(options_.directory, safe_name(options_.name) + "_" + set->name(), options_.keep_until);
-      sets_.push_back({std::move(set), std::move(files),
-                       std::unique_ptr<PolyDataWriter>(plugin_.function<VtkMakeWriter>(vtk_make_writer)())});
-    };
-    if (options_.line) add(make_line_set(scene_));
-    if (options_.surface) add(make_surface_set(scene_, options_.points_around));
-    if (options_.bearings && !scene_.supports.empty()) add(make_support_set(scene_));
-    if (options_.orbits && !scene_.trails.empty()) add(make_trail_set(scene_, options_.trail_points));
-    frames_ = sets_.empty() ? 0 : sets_.front().files.size();
+    open(scene, {}, 0);
     offered_ = 0, stride_ = 1;
+  }
+
+  void save(OutArchive& out) const override {
+    out.put_count(offered_), out.put_count(stride_);
+    out.put_count(sets_.empty() ? 0 : sets_.front().files.next());
+    out.put_count(sets_.empty() ? 0 : sets_.front().files.frames().size());
+    if (!sets_.empty())
+      for (const auto& f : sets_.front().files.frames()) out.put(f.time), out.put(f.file);
+    for (const auto& s : sets_) s.set->save(out);
+  }
+
+  void resume(const Scene& scene, InArchive& in) override {
+    offered_ = in.count(), stride_ = in.count();
+    const std::uint64_t next = in.count();
+    std::vector<Collection::Frame> kept(in.count());
+    for (auto& f : kept) f.time = in.number(), f.file = in.text();
+    open(scene, kept, next);
+    for (const auto& s : sets_) s.set->restore(in);
   }
 
   void frame(const FrameState& state) override {
@@ -171,6 +184,22 @@ class VtkFrames final : public FrameWriter {
     Collection files;
     std::unique_ptr<PolyDataWriter> writer;
   };
+  void open(const Scene& scene, const std::vector<Collection::Frame>& kept, std::uint64_t next) {
+    sets_.clear();
+    scene_ = scene;
+    drawn_.resize(scene_.nodes.size());
+    const auto add = [&](std::unique_ptr<FrameSet> set) {
+      Collection files(options_.directory, safe_name(options_.name) + "_" + set->name(), options_.keep_until, kept, next);
+      sets_.push_back({std::move(set), std::move(files),
+                       std::unique_ptr<PolyDataWriter>(plugin_.function<VtkMakeWriter>(vtk_make_writer)())});
+    };
+    if (options_.line) add(make_line_set(scene_));
+    if (options_.surface) add(make_surface_set(scene_, options_.points_around));
+    if (options_.bearings && !scene_.supports.empty()) add(make_support_set(scene_));
+    if (options_.orbits && !scene_.trails.empty()) add(make_trail_set(scene_, options_.trail_points));
+    frames_ = sets_.empty() ? 0 : sets_.front().files.size();
+  }
+
   VtkFrameOptions options_;
   const Plugin& plugin_;
   Scene scene_;
@@ -216,6 +245,11 @@ FrameSchedule::FrameSchedule(const Options& o, double t_begin, double t_end)
   }
   planned_ = step_ > 0.0 ? static_cast<std::uint64_t>(std::floor(span / step_ * (1 + 1e-12))) + 1 : 1;
   next_time_ = t0_;
+}
+
+void FrameSchedule::set_taken(std::uint64_t n) {
+  taken_ = n;
+  if (planned_ > 0 && n > 0) next_time_ = n < planned_ ? std::min(t0_ + static_cast<double>(n) * step_, t1_) : infinity;
 }
 
 double FrameSchedule::next_angle(double phi, double direction) const {

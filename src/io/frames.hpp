@@ -1,6 +1,7 @@
 // Frames of the moving rotor. The writer draws a Scene (plain data) at node states; the VTK writer is a plug-in that is
 // loaded by make_vtk_frames() and by nothing else.
 #pragma once
+#include <core/archive.hpp>
 #include <core/types.hpp>
 #include <meshes/surface.hpp>
 #include <cstdint>
@@ -36,6 +37,9 @@ class FrameWriter {
   /// The files are complete after every frame; end() only closes.
   virtual void end() = 0;
   virtual std::uint64_t frames() const = 0;
+  /// What a checkpoint must know; resume() instead of begin() continues the files from there: later frames are dropped.
+  virtual void save(OutArchive& out) const = 0;
+  virtual void resume(const Scene& scene, InArchive& in) = 0;
 };
 
 struct VtkFrameOptions {
@@ -78,6 +82,9 @@ class FrameSchedule {
   bool in_window(double t) const { return t >= t0_ && t <= t1_; }
   /// Call once the frame at next_time() is written.
   void advance();
+  std::uint64_t taken() const { return taken_; }
+  /// Of a continued run: so many frames are behind us.
+  void set_taken(std::uint64_t n);
   double stretch() const { return stretch_; }
   /// Number of frames by time over the whole window; 0 when by revolution.
   std::uint64_t planned() const { return planned_; }

@@ -208,6 +208,7 @@ struct TransientStep {
   double speed0 = 0;               ///< rad/s, initial spin of every rotating line times its speed_ratio
   double stop_speed = 0;           ///< stop when the reference spin passes this value; 0 = never
   double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
+  double checkpoint = 60;          ///< wall-clock s between checkpoints; 0 = none
 };
 
 using StepLaw = std::variant<StaticStep, ModalStep, CampbellStep, CriticalStep, UnbalanceStep, TransientStep>;

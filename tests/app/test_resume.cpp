@@ -1,0 +1,234 @@
+// A run that is killed, interrupted and continued leaves the files of an uninterrupted one.
+#include <gtest/gtest.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
+#include <thread>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string read(const fs::path& p) {
+  std::ifstream in(p, std::ios::binary);
+  std::ostringstream s;
+  s << in.rdbuf();
+  return s.str();
+}
+
+/// Unbalanced rotor on soft bearings through its critical speed under a motor torque: events of every kind, some seconds of work.
+constexpr const char* deck = R"(format = 1
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["left", 300, 20, 3], ["right", 300, 20, 3]]
+[[disk]]
+name = "disk"
+at = "left:end"
+mass = "3 kg"
+Ip = "0.015 kg.m^2"
+Id = "0.0076 kg.m^2"
+[[unbalance]]
+at = "disk"
+amount = "60 g.mm"
+[[bearing]]
+name = "A"
+at = "left:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "2e6 N/m"
+kzz = "1e6 N/m"
+cyy = "200 N.s/m"
+czz = "200 N.s/m"
+[[bearing]]
+name = "B"
+at = "right:end"
+type = "linear"
+kyy = "2e6 N/m"
+kzz = "1e6 N/m"
+cyy = "200 N.s/m"
+czz = "200 N.s/m"
+[[drive]]
+name = "motor"
+at = "left:start"
+type = "torque"
+torque = "3 N.m"
+load = { quadratic = "1e-6 N.m.s^2/rad^2" }
+[[probe]]
+name = "disk"
+at = "disk"
+[[step]]
+name = "hold"
+type = "static"
+[[step]]
+name = "run_up"
+type = "transient"
+from = "hold"
+duration = "DURATION"
+checkpoint = "0.02 s"
+METHOD
+[output]
+every = "0.1 ms"
+quantities = ["speed", "probes", "bearing_force", "torque", "energy"]
+[[output.vtk]]
+frames_per_revolution = 1.0
+max_frames = 30
+content = ["line", "orbits"]
+)";
+
+class Resume : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    for (char& c : name) if (c == '/') c = '_';
+    folder_ = fs::temp_directory_path() / ("whirl_resume_" + std::to_string(::getpid()) + "_" + name);
+    fs::create_directories(folder_);
+    fs::current_path(folder_);
+  }
+  void TearDown() override {
+    fs::current_path("/");
+    fs::remove_all(folder_);
+  }
+  void write_deck(const std::string& file, const std::string& duration, const std::string& more = "", const std::string& integrator = "") {
+    std::string text = deck;
+    text.replace(text.find("DURATION"), 8, duration);
+    text.replace(text.find("METHOD"), 6, integrator);
+    std::ofstream(file) << text << more;
+  }
+  /// Starts `whirl run`; with seconds > 0 sends `signal` after that time. Returns the exit code, minus the signal when it died of one.
+  int run(const std::string& file, const std::string& output, bool resume, double seconds = 0, int signal = 0) {
+    const pid_t pid = ::fork();
+    if (pid == 0) {
+      const int log = ::open("log.txt", O_WRONLY | O_CREAT | O_APPEND, 0644);
+      ::dup2(log, 1), ::dup2(log, 2);
+      if (resume) ::execl(WHIRL_EXE, WHIRL_EXE, "run", file.c_str(), "-o", output.c_str(), "--resume", nullptr);
+      else ::execl(WHIRL_EXE, WHIRL_EXE, "run", file.c_str(), "-o", output.c_str(), nullptr);
+      ::_exit(127);
+    }
+    if (seconds > 0) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+      ::kill(pid, signal);
+    }
+    int status = 0;
+    ::waitpid(pid, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  /// Relative path and content of what must not depend on interruptions: all but run times and the checkpoint's own.
+  static std::map<std::string, std::string> files(const fs::path& root) {
+    std::map<std::string, std::string> out;
+    for (const auto& e : fs::recursive_directory_iterator(root)) {
+      const std::string name = fs::relative(e.path(), root).string(), ext = e.path().extension().string();
+      if (e.is_regular_file() && ext != ".json" && ext != ".html" && ext != ".whirl") out[name] = read(e.path());
+    }
+    return out;
+  }
+  static void expect_same(const fs::path& a, const fs::path& b) {
+    const auto x = files(a), y = files(b);
+    for (const auto& [name, content] : x) {
+      ASSERT_TRUE(y.count(name)) << name << " is missing";
+      EXPECT_TRUE(y.at(name) == content) << name << " differs";
+    }
+    EXPECT_EQ(x.size(), y.size());
+  }
+  fs::path folder_;
+};
+
+class ResumeScheme : public Resume, public testing::WithParamInterface<const char*> {};
+
+}  // namespace
+
+TEST_P(ResumeScheme, KilledAtRandomTimesEqualsUninterrupted) {
+  write_deck("d.toml", "0.5 s", "", "integrator = { method = \"" + std::string(GetParam()) + "\" }");
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(run("d.toml", "whole", false), 0);
+  const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  std::mt19937 random(std::random_device{}());
+  std::uniform_real_distribution<double> share(0.15, 0.6);
+  int code = run("d.toml", "cut", false, share(random) * whole, SIGKILL), cuts = 0;
+  for (; code != 0 && cuts < 50; ++cuts) {
+    EXPECT_TRUE(code == -SIGKILL || code == 130) << code;
+    code = cuts < 4 ? run("d.toml", "cut", true, share(random) * whole, cuts % 2 ? SIGKILL : SIGINT) : run("d.toml", "cut", true);
+  }
+  ASSERT_EQ(code, 0) << read("log.txt");
+  EXPECT_GE(cuts, 1);
+  expect_same("whole", "cut");
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, ResumeScheme, testing::Values("radau5", "generalized_alpha", "gauss4"));
+
+TEST_F(Resume, LaterEndAndOtherOutputs) {
+  write_deck("short.toml", "0.2 s");
+  write_deck("long.toml", "0.4 s", "points_around = 16\n[[output.vtk]]\nframes = 11\ncontent = [\"bearings\"]\n");
+  ASSERT_EQ(run("short.toml", "r", false), 0);
+  const std::string before = read("r/run_up.csv");
+  ASSERT_EQ(run("long.toml", "r", true), 0) << read("log.txt");
+  const std::string after = read("r/run_up.csv");
+  EXPECT_EQ(after.substr(0, before.size()), before);
+  EXPECT_GT(after.size(), 1.9 * before.size());
+  EXPECT_TRUE(fs::exists("r/vtk/run_up_2_bearings.pvd"));
+  // and it stays on the track of a run that was meant to last so long: the end of the first part changed some steps
+  ASSERT_EQ(run("long.toml", "whole", false), 0);
+  const auto last = [](const std::string& csv) {
+    const std::string line = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
+    std::istringstream in(line);
+    std::vector<double> x;
+    for (std::string cell; std::getline(in, cell, ',');) x.push_back(std::stod(cell));
+    return x;
+  };
+  const auto a = last(after), b = last(read("whole/run_up.csv"));
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(a[0], 0.4);
+  EXPECT_NEAR(a[1], b[1], 1e-3 * b[1]);   // spin: ten times the tolerance, 1e-4
+}
+
+TEST_F(Resume, OtherColumnsKeepTheEarlierFile) {
+  write_deck("a.toml", "0.1 s");
+  ASSERT_EQ(run("a.toml", "r", false), 0);
+  const std::string before = read("r/run_up.csv");
+  std::string text = read("a.toml");
+  text.replace(text.find("\"0.1 s\""), 7, "\"0.2 s\"");
+  text.replace(text.find(", \"energy\""), 10, "");
+  std::ofstream("b.toml") << text;
+  ASSERT_EQ(run("b.toml", "r", true), 0) << read("log.txt");
+  EXPECT_EQ(read("r/run_up.1.csv"), before);
+  EXPECT_EQ(read("r/run_up.csv").find("energy"), std::string::npos);
+}
+
+TEST_F(Resume, AnotherModelIsRefused) {
+  write_deck("a.toml", "0.1 s");
+  ASSERT_EQ(run("a.toml", "r", false), 0);
+  const auto before = files("r");
+  std::string text = read("a.toml");
+  text.replace(text.find("\"3 kg\""), 6, "\"4 kg\"");
+  std::ofstream("b.toml") << text;
+  EXPECT_EQ(run("b.toml", "r", true), 3);
+  EXPECT_NE(read("log.txt").find("error[E94]"), std::string::npos) << read("log.txt");
+  EXPECT_NE(read("log.txt").find("mass = \"4 kg\""), std::string::npos) << read("log.txt");
+  EXPECT_TRUE(files("r") == before);
+}
+
+TEST_F(Resume, DamagedCheckpointIsAnError) {
+  write_deck("a.toml", "0.1 s");
+  ASSERT_EQ(run("a.toml", "r", false), 0);
+  std::string c = read("r/checkpoint/run_up.whirl");
+  c[c.size() / 2] ^= 1;
+  std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << c;
+  EXPECT_EQ(run("a.toml", "r", true), 5);
+  EXPECT_NE(read("log.txt").find("damaged checkpoint"), std::string::npos) << read("log.txt");
+}
+
+TEST_F(Resume, WithoutACheckpointStartsAnew) {
+  write_deck("a.toml", "0.1 s");
+  ASSERT_EQ(run("a.toml", "whole", false), 0);
+  ASSERT_EQ(run("a.toml", "r", true), 0);
+  EXPECT_NE(read("log.txt").find("no checkpoint in r"), std::string::npos);
+  expect_same("whole", "r");
+}
