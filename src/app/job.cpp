@@ -73,7 +73,8 @@ void Job::settle(system::SystemProblem&, StepState& start) const {
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
     const Index n = mesh.lines[l].first_node;
     const double spin = start.state.v[6 * n + system::spin_phi];
-    running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : 0.0);
+    // at rest too a rotor that nothing holds is free to turn
+    running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : model.shafts[l].rotating ? model.shafts[l].speed_ratio : 0.0);
   }
   running.ratio.resize(static_cast<std::size_t>(system().lines()), 0.0);
   analysis::RunningSystem turning(system(), running);

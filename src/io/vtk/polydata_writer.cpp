@@ -81,6 +81,7 @@ class Writer final : public PolyDataWriter {
     }
     for (const auto& a : data.cell_data) poly->GetCellData()->AddArray(lend(a));
     time_->SetValue(0, time);
+    time_->Modified();   // or the range in the file stays that of the first frame
     poly->GetFieldData()->AddArray(time_);
     const auto temporary = temporary_beside(file);
     writer_->SetFileName(temporary.c_str());
