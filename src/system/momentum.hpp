@@ -37,7 +37,7 @@ class MomentumProblem final : public time::FirstOrderProblem {
   void set_state(const State& s, time::Ref y);
   /// q, v and a of (t, y); a from the rates, so that residuals, probes and energies apply. False outside the charts.
   bool get_state(double t, time::CRef y, State& s);
-  /// Between steps: takes whole turns out of phi and moves charts beyond rotation::chart_switch. True when y has changed:
+  /// Between steps: takes whole turns (64 or more at once) out of phi and moves charts beyond rotation::chart_switch. True when y has changed:
   /// the integrator then starts anew from it.
   bool accept(time::Ref y);
   Frames frames;   ///< charts and turns of y
