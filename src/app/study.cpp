@@ -110,7 +110,7 @@ int study_deck(const StudyOptions& options) {
   while (which < model.steps.size() && !std::holds_alternative<model::TransientStep>(model.steps[which].law)) ++which;
   if (which == model.steps.size() || !model.steps[which].from.empty())
     throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95", "the deck has no transient step that starts by itself",
-                                       "a study compares integrators on the first transient step", Where{options.deck.string()}});
+                                       "a study compares integrators on the first transient step", Where{options.deck.string(), 0, 0, 0, ""}});
   RunOptions run = options.run;
   run.quiet = true;
   const auto root = prepare_results(model, run);

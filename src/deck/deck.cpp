@@ -31,8 +31,13 @@ void add_builtin_materials(Value& resolved, const model::Model& m) {
     t.add("density", Value::of_text(units::format(x.rho, "kg/m^3")));
     all.items.push_back(std::move(t));
   }
-  if (list) list->value = std::move(all);
-  else resolved.members.insert(resolved.members.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, resolved.members.size())), Member{"material", {}, std::move(all)});
+  if (list) {
+    list->value = std::move(all);
+    return;
+  }
+  // where the reader puts a given one: right after [model], so that a resolved deck resolves to itself
+  const auto model = std::find_if(resolved.members.begin(), resolved.members.end(), [](const Member& x) { return x.key == "model"; });
+  resolved.members.insert(model == resolved.members.end() ? model : model + 1, Member{"material", {}, std::move(all)});
 }
 
 void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions& options) {
