@@ -1,7 +1,9 @@
 #include <elements/shaft_beam.hpp>
 
+#include <elements/shaft_lanes.hpp>
 #include <elements/shaft_strain.hpp>
 #include <system/spin.hpp>
+#include <cstddef>
 
 namespace whirl::elements {
 
@@ -110,40 +112,31 @@ ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3
 }
 
 template <bool Offsets>
-void ShaftBeam<Offsets>::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
-  const NodeState &x1 = *x[0], &x2 = *x[1];
-  const Strain s(*this, x1, x2);
-  const double N = preload + c.EA_l * (s.stretch + c.length * s.bow(c)), NL = N * c.length;
-  Vector9 g = gradient(Form(c.k11 + NL * c.b11, c.k12 + NL * c.b12, c.k22 + NL * c.b22, s), s);
-  const Twist t(x1.e(), s, c.tau_c);
-  const double torque = c.GJ_l * (x2.phi - x1.phi + t.geometric - psi0);
-  g += torque * t.g;
-  chain_gradient(s, N, g);
-  f.segment<3>(0) -= g.head<3>();
-  f.segment<3>(7) += g.head<3>();
-  f.segment<3>(3) += g.segment<3>(3);
-  f.segment<3>(10) += g.segment<3>(6);
-  if constexpr (Offsets) {
-    f.segment<3>(3) -= c.o1 * g.head<3>();
-    f.segment<3>(10) += c.o2 * g.head<3>();
-  }
-  f[6] -= torque, f[13] += torque;
+void ShaftBeam<Offsets>::add_forces(std::span<const ShaftBeam> elements, const std::array<Index, 2>* nodes, const NodeState* states,
+                                    const Context&, Vector<7>* force) {
+  if (elements.empty()) return;
+  static_assert(sizeof(ShaftBeam) % sizeof(double) == 0 && sizeof(NodeState) % sizeof(double) == 0 && sizeof(Vector<7>) == 7 * sizeof(double));
+  static_assert(offsetof(NodeState, ddphi) == 20 * sizeof(double) && offsetof(ShaftElementConstants, tau_c) - offsetof(ShaftElementConstants, length) == 11 * sizeof(double));
+  const ShaftBeam& k = elements[0];
+  const double* const start = reinterpret_cast<const double*>(&k);
+  lanes::ShaftElements b;
+  b.element = start, b.stride = sizeof(ShaftBeam) / sizeof(double), b.count = elements.size();
+  b.scalars = &k.c.length - start, b.M4 = k.c.M4.data() - start, b.G4c = k.G4c.data() - start, b.polar = k.c.polar.data() - start;
+  b.e0 = k.e0.data() - start, b.psi0 = &k.psi0 - start, b.preload = &k.preload - start;
+  b.nodes = nodes->data();
+  b.state = states[0].u.data(), b.state_stride = sizeof(NodeState) / sizeof(double), b.chart = offsetof(NodeState, chart) / sizeof(double);
+  b.force = force->data();
+  static const lanes::Kernels& kernels = lanes::kernels();
+  (Offsets ? kernels.add_force_offset : kernels.add_force)(b);
+}
 
-  // inertia
-  const SpinRate s1(x1), s2(x2);
-  const Vec3* acc[4] = {&x1.ddu, &x1.ddd, &x2.ddu, &x2.ddd};
-  const Vec3* vel[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
-  const double mean_spin = 0.5 * (s1.s + s2.s);
-  for (int k = 0; k < 4; ++k) {
-    Vec3 y = Vec3::Zero(), v = Vec3::Zero();
-    for (int j = 0; j < 4; ++j) y += c.M4(k, j) * *acc[j], v += G4c(k, j) * *vel[j];
-    f.segment<3>(pos[k]) += y - mean_spin * s.a.cross(v);
-  }
-  const double h1 = c.polar(0, 0) * s1.s + c.polar(0, 1) * s2.s, h2 = c.polar(1, 0) * s1.s + c.polar(1, 1) * s2.s;
-  const double r1 = c.polar(0, 0) * s1.sdot + c.polar(0, 1) * s2.sdot, r2 = c.polar(1, 0) * s1.sdot + c.polar(1, 1) * s2.sdot;
-  f.segment<3>(3) -= r1 * s1.w + h1 * s.d1.cross(x1.dd);
-  f.segment<3>(10) -= r2 * s2.w + h2 * s.d2.cross(x2.dd);
-  f[6] += r1, f[13] += r2;
+template <bool Offsets>
+void ShaftBeam<Offsets>::add_force(const Nodes<2>& x, const Context& ctx, ForceX<14>& f) const {
+  const NodeState states[2] = {*x[0], *x[1]};
+  const std::array<Index, 2> nodes{0, 1};
+  Vector<7> force[2] = {f.template head<7>(), f.template tail<7>()};
+  add_forces({this, 1}, &nodes, states, ctx, force);
+  f << force[0], force[1];
 }
 
 template <bool Offsets>

@@ -20,6 +20,7 @@
 #pragma once
 #include <elements/shaft_constants.hpp>
 #include <system/kernel.hpp>
+#include <span>
 
 namespace whirl::elements {
 
@@ -39,6 +40,9 @@ struct ShaftBeam {
   ShaftBeam(const ShaftElementConstants& constants, const Vec3& direction);
 
   void add_force(const system::Nodes<2>& x, const system::Context& ctx, system::ForceX<14>& f) const;
+  /// All elements of a batch, several at a time (shaft_lanes.hpp): nodes[i] of element i index states and forces.
+  static void add_forces(std::span<const ShaftBeam> elements, const std::array<Index, 2>* nodes, const system::NodeState* states,
+                         const system::Context& ctx, Vector<7>* force);
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx, system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context& ctx, system::Energy& e) const;
 

@@ -5,6 +5,7 @@
 #include <la/block.hpp>
 #include <system/kernel.hpp>
 #include <system/rigid_inertia.hpp>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,6 +79,10 @@ class Batch final : public Term {
   const std::vector<std::array<Index, N>>& nodes() const { return nodes_; }
 
   void add_force(Workspace& w) const override {
+    if constexpr (requires { K::add_forces(std::span<const K>(elements_), nodes_.data(), w.nodes.data(), w.context, w.force.data()); }) {
+      K::add_forces(elements_, nodes_.data(), w.nodes.data(), w.context, w.force.data());
+      return;
+    }
     for (std::size_t i = 0; i < elements_.size(); ++i) {
       ForceX<N * W> f = ForceX<N * W>::Zero();
       elements_[i].add_force(gather(w, i), w.context, f);

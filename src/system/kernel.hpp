@@ -9,6 +9,9 @@
 //     void add_energy(const Nodes<1>&, const Context&, Energy& e) const;
 //   };
 //
+// Optional: static void add_forces(std::span<const K>, const std::array<Index, n_nodes>* nodes, const NodeState*, const Context&,
+// Vector<7>* force), the same for all elements of a batch at once, where a kernel is fast that way.
+//
 // Optional: quadratic_in_rates = true says that f is a polynomial of degree <= 2 in u', d', phi' at fixed u, d, phi, with
 // constant M: frequency-domain analyses then combine its matrices for any speed from three evaluations.
 //
