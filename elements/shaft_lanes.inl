@@ -4,72 +4,10 @@
 #include <elements/shaft_lanes.hpp>
 #include <math.h>
 
-#define WHIRL_INLINE static inline __attribute__((always_inline))
-
 namespace whirl::elements::lanes {
 namespace {
 
-#ifdef __AVX2__
-constexpr int width = 4;
-#else
-constexpr int width = 2;
-#endif
-typedef double T __attribute__((vector_size(8 * width), aligned(8), may_alias));
-typedef long long Mask __attribute__((vector_size(8 * width), aligned(8), may_alias));
-
-WHIRL_INLINE T all(double s) { return T{} + s; }
-WHIRL_INLINE bool every(Mask m) {
-  long long r = -1;
-  for (int i = 0; i < width; ++i) r &= m[i];
-  return r != 0;
-}
-WHIRL_INLINE T root(T x) {
-  for (int i = 0; i < width; ++i) x[i] = __builtin_sqrt(x[i]);
-  return x;
-}
-
-/// Four consecutive doubles of each element into four vectors.
-WHIRL_INLINE void load4(const double* const* p, T& a, T& b, T& c, T& d) {
-#ifdef __AVX2__
-  const T r0 = *(const T*)p[0], r1 = *(const T*)p[1], r2 = *(const T*)p[2], r3 = *(const T*)p[3];
-  const T l01 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6), h01 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
-  const T l23 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6), h23 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
-  a = __builtin_shufflevector(l01, l23, 0, 1, 4, 5), b = __builtin_shufflevector(h01, h23, 0, 1, 4, 5);
-  c = __builtin_shufflevector(l01, l23, 2, 3, 6, 7), d = __builtin_shufflevector(h01, h23, 2, 3, 6, 7);
-#else
-  a = T{p[0][0], p[1][0]}, b = T{p[0][1], p[1][1]}, c = T{p[0][2], p[1][2]}, d = T{p[0][3], p[1][3]};
-#endif
-}
-WHIRL_INLINE void advance(const double** p, int n) {
-  for (int i = 0; i < width; ++i) p[i] += n;
-}
-WHIRL_INLINE T load(const double* const* p) {
-  T r{};
-  for (int i = 0; i < width; ++i) r[i] = *p[i];
-  return r;
-}
-/// Adds four components to four consecutive doubles of each element, the first `used` elements only.
-WHIRL_INLINE void add4(double* const* p, int offset, int used, T a, T b, T c, T d) {
-#ifdef __AVX2__
-  const T l01 = __builtin_shufflevector(a, b, 0, 4, 2, 6), h01 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const T l23 = __builtin_shufflevector(c, d, 0, 4, 2, 6), h23 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  const T r[4] = {__builtin_shufflevector(l01, l23, 0, 1, 4, 5), __builtin_shufflevector(h01, h23, 0, 1, 4, 5),
-                  __builtin_shufflevector(l01, l23, 2, 3, 6, 7), __builtin_shufflevector(h01, h23, 2, 3, 6, 7)};
-  for (int i = 0; i < width; ++i)
-    if (i < used) *(T*)(p[i] + offset) += r[i];
-#else
-  for (int i = 0; i < width; ++i)
-    if (i < used) p[i][offset] += a[i], p[i][offset + 1] += b[i], p[i][offset + 2] += c[i], p[i][offset + 3] += d[i];
-#endif
-}
-
-struct V { T x, y, z; };
-WHIRL_INLINE V operator+(V a, V b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-WHIRL_INLINE V operator-(V a, V b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-WHIRL_INLINE V operator*(T s, V a) { return {s * a.x, s * a.y, s * a.z}; }
-WHIRL_INLINE T dot(V a, V b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-WHIRL_INLINE V cross(V a, V b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-WHIRL_INLINE void add(V& a, V b) { a = a + b; }
+#include <core/lanes.inl>
 
 struct Node {
   V u, du, ddu, t, dd, ddd;

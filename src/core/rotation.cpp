@@ -2,25 +2,17 @@
 #include <core/rotation.hpp>
 #include <array>
 #include <cmath>
+#include <math.h>
 #include <fmt/format.h>
 
 namespace whirl::rotation {
 
 namespace {
 
-// b_m = sum_k (-x/2)^k / (k! (2m+2k+1)!!).
-template <int M, int N>
-constexpr std::array<double, N> bessel_series() {
-  std::array<double, N> c{};
-  long double first = 1.0L;
-  for (int j = 1; j <= 2 * M + 1; j += 2) first *= j;
-  long double term = 1.0L / first;
-  for (int k = 0; k < N; ++k) {
-    c[static_cast<std::size_t>(k)] = static_cast<double>(term);
-    term *= -0.5L / (static_cast<long double>(k + 1) * (2 * M + 2 * k + 3));
-  }
-  return c;
-}
+#define WHIRL_INLINE static inline
+inline bool every(bool x) { return x; }
+#include <core/director.inl>
+#undef WHIRL_INLINE
 
 // (g - sin g)/g^3 = sum_k (-x)^k / (2k+3)!
 template <int N>
@@ -34,28 +26,7 @@ constexpr std::array<double, N> g_minus_sin_series() {
   return c;
 }
 
-template <int N, std::size_t Size>
-double horner(const std::array<double, Size>& c, double x) {
-  static_assert(N <= static_cast<int>(Size));
-  double s = c[N - 1];
-  for (int k = N - 2; k >= 0; --k) s = s * x + c[static_cast<std::size_t>(k)];
-  return s;
-}
-
-constexpr auto series_b2 = bessel_series<2, 12>();
-constexpr auto series_b3 = bessel_series<3, 12>();
 constexpr auto series_gs = g_minus_sin_series<13>();
-
-// Downwards the recurrence b_{k-1} = (2k+1) b_k - x b_{k+1} is stable for small x.
-BesselRatios downwards(double x, double b2, double b3) {
-  BesselRatios r;
-  r.b3 = b3;
-  r.b2 = b2;
-  r.b1 = 5.0 * b2 - x * b3;
-  r.b0 = 3.0 * r.b1 - x * b2;
-  r.cosine = r.b0 - x * r.b1;
-  return r;
-}
 
 double cross2(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -77,37 +48,22 @@ Vec2 pull_back(const Vec2& gamma, const BesselRatios& b, const Vec3& v) {
 
 Vec3 whole(const Vec3& t) { return Vec3(1.0 + t.x(), t.y(), t.z()); }
 
-void position(const Vec2& g, Director& o) {
+BesselRatios plain(const Ratios<double>& r) { return {r.b0, r.b1, r.b2, r.b3, r.cosine}; }
+Ratios<double> plain(const BesselRatios& r) { return {r.b0, r.b1, r.b2, r.b3, r.cosine}; }
+
+Place<double> position(const Vec2& g, Director& o) {
   const double x = g.squaredNorm();
   o.gamma = g;
   o.b = bessel_ratios(x);
-  const BesselRatios& b = o.b;
-  const Vec2 p = turn(g);
-  // cos g - 1 without cancellation
-  o.t.x() = b.cosine > -0.5 ? -x * b.b0 * b.b0 / (1.0 + b.cosine) : b.cosine - 1.0;
-  o.t.tail<2>() = b.b0 * p;
-  o.D.row(0) = -b.b0 * g.transpose();
-  o.D(1, 0) = -b.b1 * p.x() * g.x();
-  o.D(1, 1) = b.b0 - b.b1 * p.x() * g.y();
-  o.D(2, 0) = -b.b0 - b.b1 * p.y() * g.x();
-  o.D(2, 1) = -b.b1 * p.y() * g.y();
+  const Place<double> p = place_of(g.x(), g.y(), x, plain(o.b));
+  o.t << p.t[0], p.t[1], p.t[2];
+  o.D << p.D[0][0], p.D[0][1], p.D[1][0], p.D[1][1], p.D[2][0], p.D[2][1];
+  return p;
 }
 
 }  // namespace
 
-BesselRatios bessel_ratios(double x) {
-  // Usual tilts (below 0.2 rad) need six terms; twelve are exact up to the chart switch at 2 rad.
-  if (x <= 0.04) return downwards(x, horner<6>(series_b2, x), horner<6>(series_b3, x));
-  if (x <= 4.0) return downwards(x, horner<12>(series_b2, x), horner<12>(series_b3, x));
-  const double g = std::sqrt(x);
-  BesselRatios r;
-  r.cosine = std::cos(g);
-  r.b0 = std::sin(g) / g;
-  r.b1 = (r.b0 - r.cosine) / x;
-  r.b2 = (3.0 * r.b1 - r.b0) / x;
-  r.b3 = (5.0 * r.b2 - r.b1) / x;
-  return r;
-}
+BesselRatios bessel_ratios(double x) { return plain(ratios_of(x)); }
 
 double one_minus_cos_ratio(double x) {
   const double b = bessel_ratios(0.25 * x).b0;
@@ -115,7 +71,7 @@ double one_minus_cos_ratio(double x) {
 }
 
 double g_minus_sin_ratio(double x) {
-  return x <= 4.0 ? horner<13>(series_gs, x) : (1.0 - bessel_ratios(x).b0) / x;
+  return x <= 4.0 ? horner<13>(series_gs.data(), x) : (1.0 - bessel_ratios(x).b0) / x;
 }
 
 Even cosine_of_square(double x) {
@@ -198,22 +154,18 @@ Mat2 Director::curvature(const Vec3& f) const {
 void director(const Vec2& gamma, Director& out) { position(gamma, out); }
 
 void director(const Vec2& gamma, const Vec2& dgamma, const Vec2& ddgamma, Director& o) {
-  position(gamma, o);
-  // Written out in scalars: this runs for every node of every evaluation. d2 d[w, .] and d2 d[gamma'', .], then d3 d[w, w, .].
+  const Place<double> at = position(gamma, o);
+  // Written out in scalars: this runs for every node of every linearisation. d2 d[w, .] and d2 d[gamma'', .], then d3 d[w, w, .].
   const double b0 = o.b.b0, b1 = o.b.b1, b2 = o.b.b2, b3 = o.b.b3;
   const double g2 = gamma.x(), g3 = gamma.y(), w2 = dgamma.x(), w3 = dgamma.y(), a2 = ddgamma.x(), a3 = ddgamma.y();
   const double alpha = g2 * w2 + g3 * w3, beta = g2 * a2 + g3 * a3, ww = w2 * w2 + w3 * w3;
   const double ba = b1 * alpha, bg2 = b1 * g2, bg3 = b1 * g3;
-  // rows (x, y, z) of D' = d2 d[w, .]; p = (g3, -g2) turns into (w3, -w2)
-  const double l3 = b2 * alpha * g3 - b1 * w3, l2 = b1 * w2 - b2 * alpha * g2;
-  const double r00 = ba * g2 - b0 * w2, r01 = ba * g3 - b0 * w3;
-  const double r10 = l3 * g2 - bg3 * w2, r11 = l3 * g3 - bg3 * w3 - ba;
-  const double r20 = l2 * g2 + bg2 * w2 + ba, r21 = l2 * g3 + bg2 * w3;
-  o.D_rate << r00, r01, r10, r11, r20, r21;
-  for (int i = 0; i < 3; ++i) {
-    o.rate[i] = o.D(i, 0) * w2 + o.D(i, 1) * w3;
-    o.accel[i] = o.D(i, 0) * a2 + o.D(i, 1) * a3 + o.D_rate(i, 0) * w2 + o.D_rate(i, 1) * w3;
-  }
+  double r[3][2], rate[3], accel[3];
+  jacobian_rate(g2, g3, w2, w3, plain(o.b), r);
+  motion_of(at, r, w2, w3, a2, a3, rate, accel);
+  o.D_rate << r[0][0], r[0][1], r[1][0], r[1][1], r[2][0], r[2][1];
+  o.rate << rate[0], rate[1], rate[2];
+  o.accel << accel[0], accel[1], accel[2];
   // d2 d[gamma'', .] + d3 d[w, w, .]: coefficients of g^T, w^T and gamma''^T, and the part that turns
   const double aa = alpha * alpha, cg = b1 * beta + b1 * ww - b2 * aa, cw = 2.0 * ba;
   const double q = b2 * (beta + ww) - b3 * aa, k = 2.0 * b2 * alpha, turning = b2 * aa - b1 * (ww + beta);

@@ -1,20 +1,10 @@
+#include <core/isa.hpp>
 #include <la/lu_kernel.hpp>
 
 namespace whirl::la::lu {
 
-namespace {
-const Kernels& choose() {
-#if defined(__x86_64__) && defined(__GNUC__)
-  __builtin_cpu_init();
-  if (avx512_kernels() && __builtin_cpu_supports("avx512f")) return *avx512_kernels();
-  if (avx2_kernels() && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return *avx2_kernels();
-#endif
-  return *base_kernels();
-}
-}  // namespace
-
 const Kernels& kernels() {
-  static const Kernels& best = choose();
+  static const Kernels& best = best_kernels(base_kernels(), avx2_kernels(), avx512_kernels());
   return best;
 }
 

@@ -2,9 +2,11 @@
 
 #include <core/error.hpp>
 #include <core/rotation.hpp>
+#include <system/node_lanes.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace whirl::system {
 
@@ -61,6 +63,7 @@ void Builder::hold(Index node, int component, LawPtr law) { holds_.push_back({6 
 System Builder::finalize() {
   System& s = system_;
   s.active_.assign(at(s.size()), 1);
+  for (const NodeDef& d : s.defs_) s.line_of_.push_back(static_cast<int>(d.line)), s.falling_.push_back(d.scalar ? 0.0 : 1.0);
   // A law outranks a plain hold of the same unknown; the last law wins.
   std::stable_sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) {
     return a.unknown != b.unknown ? a.unknown < b.unknown : !a.law && b.law;
@@ -142,29 +145,31 @@ void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<Ve
 
 bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
                             Eigen::Ref<const VecX> a) const {
+  static_assert(offsetof(NodeState, turns) == 21 * sizeof(double) && offsetof(NodeState, chart) == 22 * sizeof(double));
+  static_assert(sizeof(Mat3) == 9 * sizeof(double) && sizeof(Mat32) == 6 * sizeof(double));
   w.context.time = t;
   w.context.gravity = w.context.load * gravity_at(t);
-  w.outside = -1;
+  lanes::Motion m;
+  m.count = nodes();
+  m.q = q.data(), m.v = v.data(), m.a = a.data();
+  m.line = line_of_.data(), m.falling = falling_.data();
+  m.chart = f.chart.data()->data(), m.turns = f.turns.data();
+  for (int k = 0; k < 3; ++k) m.gravity[k] = w.context.gravity[k];
+  m.limit_squared = rotation::chart_limit * rotation::chart_limit;
+  m.state = w.nodes.data()->u.data(), m.stride = sizeof(NodeState) / sizeof(double);
+  m.D = w.D.data()->data();
+  static const lanes::Kernels& kernels = lanes::kernels();
+  w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
+  return w.outside < 0;
+}
+
+void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
   for (Index i = 0; i < nodes(); ++i) {
-    const NodeDef& def = defs_[at(i)];
-    NodeState& n = w.nodes[at(i)];
-    const Mat3& E = f.chart[at(def.line)];
-    n.chart = &E;
-    n.turns = f.turns[at(def.line)];
-    n.u = q.segment<3>(6 * i), n.du = v.segment<3>(6 * i), n.ddu = a.segment<3>(6 * i);
-    if (!def.scalar) n.ddu -= w.context.gravity;
-    n.phi = q[6 * i + 3], n.dphi = v[6 * i + 3], n.ddphi = a[6 * i + 3];
-    const Vec2 gamma = q.segment<2>(6 * i + 4);
-    if (!(gamma.squaredNorm() < rotation::chart_limit * rotation::chart_limit)) {   // also catches NaN
-      w.outside = i;
-      return false;
-    }
+    const Mat3& E = *w.nodes[at(i)].chart;
     rotation::Director& dir = w.director[at(i)];
-    rotation::director(gamma, v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4), dir);
-    n.t.noalias() = E * dir.t, n.dd.noalias() = E * dir.rate, n.ddd.noalias() = E * dir.accel;
-    w.D[at(i)].noalias() = E * dir.D, w.D_rate[at(i)].noalias() = E * dir.D_rate, w.D_accel[at(i)].noalias() = E * dir.D_accel;
+    rotation::director(q.segment<2>(6 * i + 4), v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4), dir);
+    w.D_rate[at(i)].noalias() = E * dir.D_rate, w.D_accel[at(i)].noalias() = E * dir.D_accel;
   }
-  return true;
 }
 
 void System::project_force(const Workspace& w, Eigen::Ref<VecX> r) const {
@@ -191,6 +196,7 @@ bool System::residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const 
 bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
                      Eigen::Ref<const VecX> a, la::MCK& out, Selection only) const {
   if (!evaluate_nodes(w, f, t, q, v, a)) return false;
+  evaluate_jacobians(w, q, v, a);
   for (auto& x : w.force) x.setZero();
   w.M.set_zero(), w.C.set_zero(), w.K.set_zero();
   if (only)

@@ -90,7 +90,12 @@ class System {
   void project_force(const Workspace& w, Eigen::Ref<VecX> r) const;
   Vec3 gravity_at(double t) const;
 
+  /// The derivatives of the node Jacobians, after evaluate_nodes.
+  void evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const;
+
   std::vector<NodeDef> defs_;
+  std::vector<int> line_of_;          ///< per node, as the node kernel reads it
+  std::vector<double> falling_;       ///< per node: 1, or 0 for scalar degrees of freedom
   std::vector<std::string> line_names_;
   std::vector<Mat3> charts_;
   std::vector<Hold> holds_;

@@ -1,0 +1,20 @@
+// Which of the kernels compiled once per instruction set the machine can run.
+#pragma once
+
+namespace whirl {
+
+/// The best of three tables; avx2 and avx512 may be null (not compiled in). AVX-512 means F and VL, both need FMA.
+template <class Kernels>
+const Kernels& best_kernels(const Kernels* baseline, const Kernels* avx2, const Kernels* avx512) {
+#if defined(__x86_64__) && defined(__GNUC__)
+  __builtin_cpu_init();
+  const bool fma = __builtin_cpu_supports("fma");
+  if (avx512 && fma && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) return *avx512;
+  if (avx2 && fma && __builtin_cpu_supports("avx2")) return *avx2;
+#else
+  (void)avx2, (void)avx512;
+#endif
+  return *baseline;
+}
+
+}  // namespace whirl
