@@ -28,7 +28,7 @@ namespace whirl::elements {
 template <bool Offsets>
 struct ShaftBeam {
   static constexpr int n_nodes = 2, width = 7;
-  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true;
+  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true, powerless = true;
 
   ShaftElementConstants c;
   Vec3 e0 = Vec3::UnitX();            ///< unit vector of the unstressed element, global axes

@@ -25,6 +25,8 @@ class Snapshot {
   const VecX& reactions() const;
   const system::Energy& energy() const;
   time::Problem::Power power() const;
+  /// Power supplied and dissipated alone: cheaper where the stored energy is not asked for.
+  time::Problem::Power exchange() const;
   /// phi with its whole turns, rad.
   double total_phi(Index i) const;
 

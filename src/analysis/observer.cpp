@@ -101,12 +101,14 @@ void EnergyBalance::step(StepAccess& s) {
   const double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
   const double b[3] = {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0};
   const double h = s.t1() - s.t0();
-  time::Problem::Power p;
-  for (int k = 0; k < 3; ++k) {
-    p = (k == 2 ? s.end() : s.at(s.t0() + c[k] * h)).power();
+  for (int k = 0; k < 2; ++k) {
+    const auto p = s.at(s.t0() + c[k] * h).exchange();
     supplied_ += h * b[k] * p.supplied;
     dissipated_ += h * b[k] * p.dissipated;
   }
+  const auto p = s.end().power();
+  supplied_ += h * b[2] * p.supplied;
+  dissipated_ += h * b[2] * p.dissipated;
   e1_ = p.stored;
   largest_kinetic_ = std::max(largest_kinetic_, p.kinetic);
   worst_ = std::max(worst_, std::abs(defect()));

@@ -33,6 +33,8 @@ class Term {
   virtual bool inertial() const = 0;       ///< nothing but rigid-body inertia
   /// The force is a polynomial of degree <= 2 in the rates (kernels that say quadratic_in_rates = true).
   virtual bool quadratic_in_rates() const = 0;
+  /// Neither supplies nor dissipates (kernels that say powerless = true).
+  virtual bool powerless() const = 0;
   /// Adds the inertia of an inertial() term to its nodes; false when it is not constant in time.
   virtual bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const = 0;
   virtual void add_force(Workspace& w) const = 0;
@@ -72,6 +74,10 @@ class Batch final : public Term {
   }
   bool quadratic_in_rates() const override {
     if constexpr (requires { K::quadratic_in_rates; }) return K::quadratic_in_rates;
+    else return false;
+  }
+  bool powerless() const override {
+    if constexpr (requires { K::powerless; }) return K::powerless;
     else return false;
   }
   std::vector<K>& elements() { return elements_; }

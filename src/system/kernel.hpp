@@ -12,6 +12,8 @@
 // Optional: static void add_forces(std::span<const K>, const std::array<Index, n_nodes>* nodes, const NodeState*, const Context&,
 // Vector<7>* force), the same for all elements of a batch at once, where a kernel is fast that way.
 //
+// Optional: powerless = true says that add_energy never adds to supplied or dissipated, so that a power balance skips it.
+//
 // Optional: quadratic_in_rates = true says that f is a polynomial of degree <= 2 in u', d', phi' at fixed u, d, phi, with
 // constant M: frequency-domain analyses then combine its matrices for any speed from three evaluations.
 //

@@ -23,6 +23,7 @@ SystemProblem::SystemProblem(const System& system, ProblemOptions options)
                     : c == spin_phi                        ? time::Kind::spin_angle
                                                            : time::Kind::tilt;
   }
+  for (const Hold& h : system.holds()) driven_by_law_ = driven_by_law_ || h.law;
   line_nodes_.resize(at(system.lines()));
   rechartable_.assign(at(system.lines()), 1);
   lead_.assign(at(system.lines()), -1);
@@ -78,10 +79,21 @@ std::string SystemProblem::singular_unknown() const {
 
 time::Problem::Power SystemProblem::power(double t, time::CRef q, time::CRef v, time::CRef a, time::CRef reactions) {
   system_.evaluate_nodes(workspace_, frames, t, q, v, a);
+  return power_here(v, reactions);
+}
+
+time::Problem::Power SystemProblem::power_here(time::CRef v, time::CRef reactions) {
   energy_ = system_.energy(workspace_);
   for (const Hold& h : system_.holds())
     if (h.law) energy_.supplied += reactions[h.unknown] * v[h.unknown];
   return {energy_.kinetic + energy_.elastic + energy_.gravity, energy_.kinetic, energy_.supplied, energy_.dissipated};
+}
+
+time::Problem::Power SystemProblem::exchange_here(time::CRef v, time::CRef reactions) const {
+  Energy e = system_.exchange(workspace_);
+  for (const Hold& h : system_.holds())
+    if (h.law) e.supplied += reactions[h.unknown] * v[h.unknown];
+  return {0.0, 0.0, e.supplied, e.dissipated};
 }
 
 bool SystemProblem::accept(double, time::Ref q, time::Ref v, time::Ref a) {

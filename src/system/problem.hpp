@@ -33,6 +33,13 @@ class SystemProblem final : public time::Problem {
   Power power(double t, time::CRef q, time::CRef v, time::CRef a, time::CRef reactions) override;
   bool accept(double t, time::Ref q, time::Ref v, time::Ref a) override;
 
+  /// The same for the state the nodes were last evaluated at (System::evaluate_nodes or residual).
+  Power power_here(time::CRef v, time::CRef reactions);
+  /// Only `supplied` and `dissipated` of it.
+  Power exchange_here(time::CRef v, time::CRef reactions) const;
+  /// Some unknown follows a law of time: its reaction supplies power. Otherwise `reactions` is not read above.
+  bool driven_by_law() const { return driven_by_law_; }
+
   const System& system() const { return system_; }
   const la::MCK& matrices() const { return matrices_; }
   Workspace& workspace() { return workspace_; }
@@ -59,6 +66,7 @@ class SystemProblem final : public time::Problem {
   std::unique_ptr<la::DirectSolver<double>> real_;
   std::unique_ptr<la::DirectSolver<Complex>> complex_;
   Energy energy_;
+  bool driven_by_law_ = false;
 };
 
 }  // namespace whirl::system

@@ -231,6 +231,13 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
   return true;
 }
 
+Energy System::exchange(const Workspace& w) const {
+  Energy e;
+  for (const auto& term : terms_)
+    if (!term->powerless()) term->add_energy(w, e);
+  return e;
+}
+
 Energy System::energy(const Workspace& w) const {
   Energy e;
   for (const auto& term : terms_) term->add_energy(w, e);

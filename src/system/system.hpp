@@ -84,6 +84,8 @@ class System {
                Eigen::Ref<const VecX> a, la::MCK& out, Selection only = nullptr) const;
   /// Energies and powers of the elements at the node states of the last evaluation.
   Energy energy(const Workspace& w) const;
+  /// Only what is supplied and dissipated, W: asks no element that does neither.
+  Energy exchange(const Workspace& w) const;
 
  private:
   friend class Builder;
