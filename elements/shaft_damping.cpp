@@ -1,7 +1,9 @@
 #include <elements/shaft_damping.hpp>
 
 #include <core/dual.hpp>
+#include <elements/shaft_lanes.hpp>
 #include <elements/shaft_strain.hpp>
+#include <cstddef>
 
 namespace whirl::elements {
 
@@ -9,81 +11,41 @@ using system::Context;
 using system::Energy;
 using system::ForceX;
 using system::Nodes;
+using system::NodeState;
 using system::TangentX;
 
 namespace {
 
-/// Rates the damping acts on: lambda' = r2' - r1', directors, axial angles.
+template <class X>
+struct Scalars {
+  using T = X;
+  using V = Vec3T<X>;
+};
+template <class T> T dot(const Vec3T<T>& a, const Vec3T<T>& b) { return a.dot(b); }
+template <class T> Vec3T<T> cross(const Vec3T<T>& a, const Vec3T<T>& b) { return a.cross(b); }
+template <class T> T root(const T& x) {
+  using std::sqrt;
+  return sqrt(x);
+}
+template <class T> void angle_ratio(const T& n, T& G, T& G1) {
+  const AngleRatio r(value(n));
+  G = chain(n, r.G, r.G1), G1 = chain(n, r.G1, r.G2);
+}
+#define WHIRL_INLINE inline
+#include <elements/shaft_damping.inl>
+#undef WHIRL_INLINE
+
+/// Rates as plain vectors.
 struct Rates {
   Vec3 lambda = Vec3::Zero(), d1 = Vec3::Zero(), d2 = Vec3::Zero();
   double phi1 = 0, phi2 = 0;
 };
 
-/// Force in (lambda, d1, d2, phi1, phi2), linear in the rates.
-template <class T>
-struct Force {
-  Vec3T<T> lambda, d1, d2;
-  T phi1{}, phi2{}, power{};
-};
-
-/// What of the kinematics one end contributes.
-template <class T>
-struct End {
-  Vec3T<T> delta, q, w, ad;   // d - a; d - (a.d) a; spin form; (a x d)/(1 + a.d)
-  T n, G, G1;
-  End(const Vec3T<T>& e, const Vec3T<T>& t, const Vec3T<T>& a, const Vec3T<T>& shift) : delta(t + shift) {
-    n = 0.5 * delta.dot(delta);
-    const AngleRatio r(value(n));
-    G = chain(n, r.G, r.G1), G1 = chain(n, r.G1, r.G2);
-    q = delta + n * a;
-    w = (T(1.0) / (T(2.0) + e.dot(t))) * e.cross(t);
-    ad = (T(1.0) / (T(2.0) - n)) * a.cross(delta);
-  }
-};
-
 template <bool Rotating, class T>
-Force<T> damping_force(const ShaftDamping<Rotating>& p, const Vec3& axis, const Vec3T<T>& du, const Vec3T<T>& t1,
-                       const Vec3T<T>& t2, const Rates& v) {
-  const Vec3T<T> e0(p.e0), e(axis), zero(axis - p.e0);
-  const T L(p.length);
-  const Vec3T<T> lambda = L * e0 + du;
-  using std::sqrt;
-  const T l = sqrt(lambda.dot(lambda));
-  const T stretch = (2.0 * L * e0.dot(du) + du.dot(du)) / (l + L);
-  const Vec3T<T> alpha = (T(1.0) / l) * (du - stretch * e0), a = e0 + alpha, shift = zero - alpha;
-  const End<T> e1(e, t1, a, shift), e2(e, t2, a, shift);
-  const Vec3T<T> vl(v.lambda), v1(v.d1), v2(v.d2);
-  const T ldot = a.dot(vl);
-  const Vec3T<T> adot = (T(1.0) / l) * (vl - ldot * a);
-
-  auto strain_rate = [&](const End<T>& x, const Vec3T<T>& dd) {   // p' perpendicular to a
-    const T ndot = x.delta.dot(dd - adot);
-    return (x.G1 * ndot) * x.q + x.G * (dd - a.dot(dd) * a - (T(1.0) - x.n) * adot);
-  };
-  auto spin = [&](const End<T>& x, const Vec3T<T>& dd, double phi) { return T(phi) + (x.ad - x.w).dot(dd) + x.ad.dot(adot); };
-  const T s1 = spin(e1, v1, v.phi1), s2 = spin(e2, v2, v.phi2);
-  Vec3T<T> r1 = strain_rate(e1, v1), r2 = strain_rate(e2, v2);
-  if constexpr (Rotating) {
-    const T sigma = 0.5 * (s1 + s2);
-    r1 = r1 - sigma * a.cross(e1.G * e1.q), r2 = r2 - sigma * a.cross(e2.G * e2.q);
-  }
-  const Vec3T<T> m1 = T(p.d11) * r1 + T(p.d12) * r2, m2 = T(p.d12) * r1 + T(p.d22) * r2;
-  const T torque = p.d_twist * (s2 - s1);
-  T b1 = -torque, b2 = torque;   // conjugate to sigma_1, sigma_2
-  if constexpr (Rotating) {
-    const T S = -0.5 * (m1.dot(a.cross(e1.G * e1.q)) + m2.dot(a.cross(e2.G * e2.q)));
-    b1 += S, b2 += S;
-  }
-  Force<T> f;
-  const Vec3T<T> k1 = (e1.G1 * m1.dot(e1.q)) * e1.delta, k2 = (e2.G1 * m2.dot(e2.q)) * e2.delta;
-  auto perpendicular = [&](const Vec3T<T>& x) { return x - a.dot(x) * a; };
-  f.d1 = k1 + e1.G * perpendicular(m1) + b1 * (e1.ad - e1.w);
-  f.d2 = k2 + e2.G * perpendicular(m2) + b2 * (e2.ad - e2.w);
-  const Vec3T<T> fa = b1 * e1.ad + b2 * e2.ad - k1 - k2 - (e1.G * (T(1.0) - e1.n)) * m1 - (e2.G * (T(1.0) - e2.n)) * m2;
-  f.lambda = (T(1.0) / l) * perpendicular(fa) + (p.d_axial * ldot) * a;
-  f.phi1 = b1, f.phi2 = b2;
-  f.power = m1.dot(r1) + m2.dot(r2) + torque * (s2 - s1) + p.d_axial * ldot * ldot;
-  return f;
+DampingForce<Scalars<T>> force_of(const ShaftDamping<Rotating>& p, const Vec3& e, const Vec3T<T>& du, const Vec3T<T>& t1, const Vec3T<T>& t2, const Rates& v) {
+  using V = Vec3T<T>;
+  return damping_force<Rotating, Scalars<T>>({V(p.e0), p.length, p.d11, p.d12, p.d22, p.d_twist, p.d_axial}, V(e), du, t1, t2,
+                                             {V(v.lambda), V(v.d1), V(v.d2), v.phi1, v.phi2});
 }
 
 /// (lambda, d1, d2, phi1, phi2) forces into the element's 14 entries.
@@ -116,10 +78,27 @@ ShaftDamping<Rotating>::ShaftDamping(const ShaftElementConstants& c, const Vec3&
       d_twist(bt * c.GJ_l), d_axial(ba * c.EA_l) {}
 
 template <bool Rotating>
-void ShaftDamping<Rotating>::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
-  using V = Vec3T<double>;
-  const auto r = damping_force<Rotating, double>(*this, x[0]->e(), V(du_of(*this, x)), V(x[0]->t), V(x[1]->t), rates_of(*this, x));
-  scatter(o1, o2, values(r.lambda), values(r.d1), values(r.d2), r.phi1, r.phi2, f);
+void ShaftDamping<Rotating>::add_forces(std::span<const ShaftDamping> elements, const std::array<Index, 2>* nodes, const NodeState* states,
+                                        const Context&, Vector<7>* force) {
+  if (elements.empty()) return;
+  static_assert(sizeof(ShaftDamping) % sizeof(double) == 0);
+  static_assert(offsetof(ShaftDamping, d_axial) == 10 * sizeof(double));
+  lanes::DampingElements b;
+  b.element = &elements[0].length, b.stride = sizeof(ShaftDamping) / sizeof(double), b.count = elements.size();
+  b.nodes = nodes->data();
+  b.state = states[0].u.data(), b.state_stride = sizeof(NodeState) / sizeof(double), b.chart = offsetof(NodeState, chart) / sizeof(double);
+  b.force = force->data();
+  static const lanes::Kernels& kernels = lanes::kernels();
+  (Rotating ? kernels.add_internal_damping : kernels.add_external_damping)(b);
+}
+
+template <bool Rotating>
+void ShaftDamping<Rotating>::add_force(const Nodes<2>& x, const Context& ctx, ForceX<14>& f) const {
+  const NodeState states[2] = {*x[0], *x[1]};
+  const std::array<Index, 2> nodes{0, 1};
+  Vector<7> force[2] = {f.template head<7>(), f.template tail<7>()};
+  add_forces({this, 1}, &nodes, states, ctx, force);
+  f << force[0], force[1];
 }
 
 template <bool Rotating>
@@ -135,7 +114,7 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&, Tang
     else if (k < 6) v.d1[k - 3] = 1.0;
     else if (k < 9) v.d2[k - 6] = 1.0;
     else (k == 9 ? v.phi1 : v.phi2) = 1.0;
-    const auto r = damping_force<Rotating, double>(*this, e, vdu, vt1, vt2, v);
+    const auto r = force_of<Rotating, double>(*this, e, vdu, vt1, vt2, v);
     scatter(o1, o2, values(r.lambda), values(r.d1), values(r.d2), r.phi1, r.phi2, columns.col(k));
   }
   auto& C = out.C;
@@ -148,7 +127,7 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&, Tang
   // K: nine directions at once (lambda, d1, d2)
   using D = Dual<9>;
   using W = Vec3T<D>;
-  const auto r = damping_force<Rotating, D>(*this, e, W::variable(du, 0), W::variable(x[0]->t, 3), W::variable(x[1]->t, 6), rates_of(*this, x));
+  const auto r = force_of<Rotating, D>(*this, e, W::variable(du, 0), W::variable(x[0]->t, 3), W::variable(x[1]->t, 6), rates_of(*this, x));
   Eigen::Matrix<double, 14, 9> g = Eigen::Matrix<double, 14, 9>::Zero();
   for (int k = 0; k < 9; ++k) {
     auto slope = [k](const W& v) { return Vec3(v.x.g[k], v.y.g[k], v.z.g[k]); };
@@ -164,7 +143,7 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&, Tang
 template <bool Rotating>
 void ShaftDamping<Rotating>::add_energy(const Nodes<2>& x, const Context&, Energy& e) const {
   using V = Vec3T<double>;
-  e.dissipated += damping_force<Rotating, double>(*this, x[0]->e(), V(du_of(*this, x)), V(x[0]->t), V(x[1]->t), rates_of(*this, x)).power;
+  e.dissipated += force_of<Rotating, double>(*this, x[0]->e(), V(du_of(*this, x)), V(x[0]->t), V(x[1]->t), rates_of(*this, x)).power;
 }
 
 template struct ShaftDamping<false>;

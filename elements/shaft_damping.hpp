@@ -27,6 +27,9 @@ struct ShaftDamping {
   ShaftDamping() = default;
   ShaftDamping(const ShaftElementConstants& c, const Vec3& direction, double beta_bending, double beta_torsion, double beta_axial);
   void add_force(const system::Nodes<2>& x, const system::Context& ctx, system::ForceX<14>& f) const;
+  /// All elements of a batch, several at a time (shaft_lanes.hpp).
+  static void add_forces(std::span<const ShaftDamping> elements, const std::array<Index, 2>* nodes, const system::NodeState* states,
+                         const system::Context& ctx, Vector<7>* force);
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx, system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context& ctx, system::Energy& e) const;
 };

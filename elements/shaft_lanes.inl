@@ -90,23 +90,41 @@ WHIRL_INLINE Spin spin_rate(const Node& n, V e) {
   return r;
 }
 
-template <bool Offsets>
-WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used) {
+/// Pointers of one group, the last element repeated beyond `used`, and its chart axes.
+struct Group {
   const double *element[width], *s1[width], *s2[width];
   double *f1[width], *f2[width];
   V e;
+};
+WHIRL_INLINE Group group_of(const Elements& b, std::size_t first, int used) {
+  Group g;
   for (int i = 0; i < width; ++i) {
     const std::size_t k = first + static_cast<std::size_t>(i < used ? i : used - 1);
     const std::ptrdiff_t n1 = b.nodes[2 * k], n2 = b.nodes[2 * k + 1];
-    element[i] = b.element + static_cast<std::ptrdiff_t>(k) * b.stride;
-    s1[i] = b.state + n1 * b.state_stride, s2[i] = b.state + n2 * b.state_stride;
-    f1[i] = b.force + 7 * n1, f2[i] = b.force + 7 * n2;
-    const double* const chart = *(const double* const*)(const void*)(s1[i] + b.chart);
-    e.x[i] = chart[0], e.y[i] = chart[1], e.z[i] = chart[2];
+    g.element[i] = b.element + static_cast<std::ptrdiff_t>(k) * b.stride;
+    g.s1[i] = b.state + n1 * b.state_stride, g.s2[i] = b.state + n2 * b.state_stride;
+    g.f1[i] = b.force + 7 * n1, g.f2[i] = b.force + 7 * n2;
+    const double* const chart = *(const double* const*)(const void*)(g.s1[i] + b.chart);
+    g.e.x[i] = chart[0], g.e.y[i] = chart[1], g.e.z[i] = chart[2];
   }
+  return g;
+}
+
+WHIRL_INLINE void add_to_nodes(const Group& g, int used, V u1, V d1, T phi1, V u2, V d2, T phi2) {
+  const T zero{};
+  add4(g.f1, 0, used, u1.x, u1.y, u1.z, d1.x);
+  add4(g.f1, 3, used, zero, d1.y, d1.z, phi1);
+  add4(g.f2, 0, used, u2.x, u2.y, u2.z, d2.x);
+  add4(g.f2, 3, used, zero, d2.y, d2.z, phi2);
+}
+
+template <bool Offsets>
+WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used) {
+  const Group g = group_of(b, first, used);
+  const V e = g.e;
   const double* p[width];
   auto from = [&](std::ptrdiff_t offset) {
-    for (int i = 0; i < width; ++i) p[i] = element[i] + offset;
+    for (int i = 0; i < width; ++i) p[i] = g.element[i] + offset;
   };
   T length, o1, o2, EA_l, b11, b12, b22, k11, k12, k22, GJ_l, tau_c;
   from(b.scalars);
@@ -119,7 +137,7 @@ WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used)
   const T psi0 = load(p);
   from(b.preload);
   const T preload = load(p);
-  const Node x1 = load_node(s1), x2 = load_node(s2);
+  const Node x1 = load_node(g.s1), x2 = load_node(g.s2);
 
   // strain
   V du = x2.u - x1.u;
@@ -173,25 +191,49 @@ WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used)
   const T q1 = p11 * sp1.sdot + p12 * sp2.sdot, q2 = p21 * sp1.sdot + p22 * sp2.sdot;
   f[1] = f[1] - (q1 * sp1.w + h1 * cross(d1, x1.dd));
   f[3] = f[3] - (q2 * sp2.w + h2 * cross(d2, x2.dd));
-  const T phi1 = q1 - torque, phi2 = q2 + torque, zero{};
-
-  add4(f1, 0, used, f[0].x, f[0].y, f[0].z, f[1].x);
-  add4(f1, 3, used, zero, f[1].y, f[1].z, phi1);
-  add4(f2, 0, used, f[2].x, f[2].y, f[2].z, f[3].x);
-  add4(f2, 3, used, zero, f[3].y, f[3].z, phi2);
+  add_to_nodes(g, used, f[0], f[1], q1 - torque, f[2], f[3], q2 + torque);
 }
 
-template <bool Offsets>
-void add_all(const ShaftElements& b) {
+struct Lanes {
+  using T = lanes::T;
+  using V = lanes::V;
+};
+WHIRL_INLINE void angle_ratio(T n, T& G, T& G1) {
+  const Ratio r = ratio(n);
+  G = r.G, G1 = r.G1;
+}
+#include <elements/shaft_damping.inl>
+
+template <bool Rotating>
+WHIRL_INLINE void add_group(const DampingElements& b, std::size_t first, int used) {
+  const Group g = group_of(b, first, used);
+  const double* p[width];
+  for (int i = 0; i < width; ++i) p[i] = g.element[i];
+  DampingParameters<Lanes> c;
+  T o1, o2;
+  load4(p, c.length, o1, o2, c.e0.x), advance(p, 4);
+  load4(p, c.e0.y, c.e0.z, c.d11, c.d12), advance(p, 3);
+  load4(p, c.d12, c.d22, c.d_twist, c.d_axial);   // one over the last, so as not to read beyond the element
+  const Node x1 = load_node(g.s1), x2 = load_node(g.s2);
+  const V du = x2.u - x1.u + o2 * x2.t - o1 * x1.t;
+  const DampingRates<Lanes> v{x2.du - x1.du + o2 * x2.dd - o1 * x1.dd, x1.dd, x2.dd, x1.dphi, x2.dphi};
+  const auto f = damping_force<Rotating, Lanes>(c, g.e, du, x1.t, x2.t, v);
+  add_to_nodes(g, used, V{} - f.lambda, f.d1 - o1 * f.lambda, f.phi1, f.lambda, f.d2 + o2 * f.lambda, f.phi2);
+}
+
+/// Flag: offsets of shaft elements, rotation of damping.
+template <bool Flag, class B>
+void add_all(const B& b) {
   std::size_t i = 0;
-  for (; i + width <= b.count; i += width) add_group<Offsets>(b, i, width);
-  if (i < b.count) add_group<Offsets>(b, i, static_cast<int>(b.count - i));
+  for (; i + width <= b.count; i += width) add_group<Flag>(b, i, width);
+  if (i < b.count) add_group<Flag>(b, i, static_cast<int>(b.count - i));
 }
 
 }  // namespace
 
 const Kernels* WHIRL_LANES_TABLE() {
-  static const Kernels table{WHIRL_LANES_ISA, add_all<false>, add_all<true>};
+  static const Kernels table{WHIRL_LANES_ISA, add_all<false, ShaftElements>, add_all<true, ShaftElements>, add_all<true, DampingElements>,
+                             add_all<false, DampingElements>};
   return &table;
 }
 
