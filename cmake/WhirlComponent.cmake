@@ -1,7 +1,7 @@
 # One folder is one component: a static library of its *.cpp files (or an interface, when it has none).
 # whirl_component(NAME DIR <dir> [EXCLUDE <regex>] [DEPS <targets>])
 add_library(whirl_flags INTERFACE)
-target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic -Wno-maybe-uninitialized)
+target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 # Eigen's alignment is pinned so that code built for different instruction sets shares one binary layout.
 target_compile_definitions(whirl_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=32 EIGEN_DONT_PARALLELIZE)
 target_include_directories(whirl_flags INTERFACE ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR})

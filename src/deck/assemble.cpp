@@ -67,7 +67,7 @@ Document parse_with_includes(int source, Files& files) {
     }
     FileText text = read_file(path, max_deck_bytes);
     if (!text.ok()) { files.diagnostics.error(text.code, name.spot, text.message, text.hint); continue; }
-    const TextProblem bad = check_text(text.text, true);
+    const TextProblem bad = check_text(text.text, TextKind::deck);
     const int added = files.sources.add(path.string(), path.parent_path(), std::move(text.text));
     if (!bad.ok()) { files.diagnostics.error("E03", Spot{added, bad.line, bad.column, 1}, bad.message, bad.hint); continue; }
     files.open.push_back(canonical);
@@ -110,7 +110,7 @@ void apply_overrides(Document& document, const std::vector<std::string>& argumen
       diagnostics.error("E34", spot(0, argument.size()), "a --set has the form path=value", "for example --set parameters.clearance=90um");
       continue;
     }
-    const TextProblem bad = check_text(argument, true);
+    const TextProblem bad = check_text(argument, TextKind::argument);
     if (!bad.ok()) { diagnostics.error("E34", spot(0, argument.size()), bad.message); continue; }
     const std::size_t first = argument.find_first_not_of(' ', equal + 1);
     Value value = parse_set_value(first == std::string::npos ? std::string_view() : std::string_view(argument).substr(first), spot(std::min(first, argument.size()), argument.size()));

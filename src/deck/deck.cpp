@@ -42,7 +42,7 @@ void add_builtin_materials(Value& resolved, const model::Model& m) {
 
 void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions& options) {
   Diagnostics diagnostics;
-  const TextProblem bad = check_text(deck.sources[0].text, true);
+  const TextProblem bad = check_text(deck.sources[0].text, TextKind::deck);
   if (!bad.ok()) {
     diagnostics.error("E03", Spot{0, bad.line, bad.column, 1}, bad.message, bad.hint);
   } else {

@@ -205,7 +205,7 @@ void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value&
   const std::filesystem::path path = sources_[file.spot.source].folder / name;
   FileText text = read_file(path, max_table_bytes);
   if (!text.ok()) { problem(text.code.c_str(), file.spot, text.message, text.hint); return; }
-  const TextProblem bad = check_text(text.text, false);
+  const TextProblem bad = check_text(text.text, TextKind::table);
   const int source = sources_.add(path.string(), path.parent_path(), std::move(text.text));
   const auto at = [&](int line, int column, int length) { return Spot{source, line, column, length}; };
   if (!bad.ok()) { problem("E03", at(bad.line, bad.column, 1), bad.message, bad.line ? bad.hint : ""); return; }

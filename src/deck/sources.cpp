@@ -111,7 +111,7 @@ std::size_t sequence(std::string_view s) {
 
 }  // namespace
 
-TextProblem check_text(std::string_view text, bool brackets) {
+TextProblem check_text(std::string_view text, TextKind kind) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     return {"the file is UTF-16 text", "save it as UTF-8", 0, 0};
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -126,10 +126,13 @@ TextProblem check_text(std::string_view text, bool brackets) {
       return {n == 0 ? "the file is not UTF-8 text" : "the file holds control characters: it is not a text file",
               "a deck is a UTF-8 text file", line, column};
     std::size_t advance = n;
-    if (brackets) {
+    if (kind != TextKind::table) {
       const auto triple = [&](const char* q) { return text.substr(i).starts_with(q); };
       switch (state) {
         case plain:
+          // Not TOML, and one of the parser's character tables does not cover them.
+          if (n > 1 && kind == TextKind::deck)
+            return {fmt::format("'{}' stands outside quotes", text.substr(i, n)), "put names and values with such letters in quotes", line, column};
           if (c == '#') state = comment;
           else if (triple("\"\"\"")) { state = long_basic; advance = 3; }
           else if (triple("'''")) { state = long_literal; advance = 3; }

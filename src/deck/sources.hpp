@@ -55,6 +55,8 @@ struct TextProblem {
   int line = 0, column = 0;
   bool ok() const { return message.empty(); }
 };
-TextProblem check_text(std::string_view text, bool brackets);
+/// What a text is: TOML, the argument of a --set, or a table of values.
+enum class TextKind { deck, argument, table };
+TextProblem check_text(std::string_view text, TextKind kind);
 
 }  // namespace whirl::deck

@@ -238,11 +238,13 @@ Document parse_toml(const Sources& sources, int source, Diagnostics& diagnostics
 }
 
 Value parse_set_value(std::string_view text, const Spot& spot) {
-  toml::parse_result result = toml::parse(fmt::format("v = {}\n", text));
-  Value v;
-  const toml::node* node = result ? result.table().get("v") : nullptr;
-  if (node && result.table().size() == 1 && text.find('\n') == std::string_view::npos) v = convert(*node, spot.source);
-  else v = Value::of_text(std::string(text));
+  const std::string line = fmt::format("v = {}\n", text);
+  Value v = Value::of_text(std::string(text));
+  if (check_text(line, TextKind::deck).ok() && text.find('\n') == std::string_view::npos) {   // else no TOML, such as 90 um with a Greek letter
+    toml::parse_result result = toml::parse(line);
+    const toml::node* node = result ? result.table().get("v") : nullptr;
+    if (node && result.table().size() == 1) v = convert(*node, spot.source);
+  }
   // every place inside is the argument itself
   const auto place = [&](auto&& self, Value& x) -> void {
     x.spot = spot;
