@@ -44,6 +44,9 @@ std::vector<Attached> attachments(const Model& m) {
   for (const auto& x : m.loads) out.push_back({&x.at, named("load", x)});
   for (const auto& x : m.drives) out.push_back({&x.at, named("drive", x)});
   for (const auto& x : m.probes) out.push_back({&x.at, named("probe", x)});
+  for (const auto& s : m.steps)
+    if (const auto* h = std::get_if<model::HarmonicStep>(&s.law))
+      for (const auto& x : h->forces) out.push_back({&x.at, fmt::format("force of step '{}'", s.name)});
   return out;
 }
 

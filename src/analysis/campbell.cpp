@@ -11,31 +11,32 @@ namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 }
 
-Campbell campbell(Linearizer& linear, const CampbellOptions& options) {
-  Campbell out;
-  out.speeds = options.speeds;
-  const std::size_t n = options.speeds.size();
-  ModeTracker tracker(linear, options.track);
-  std::vector<std::array<int, 3>> votes;   // kinds
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto& modes = tracker.advance(options.speeds[k]);
-    for (Index id = static_cast<Index>(out.lines.size()); id < tracker.lines(); ++id) {
-      CampbellLine line;
-      line.frequency.assign(n, nan), line.damping_ratio.assign(n, nan), line.log_decrement.assign(n, nan);
-      line.direction_at.assign(n, Direction::none), line.lambda.assign(n, Complex(nan, nan));
-      if (options.shapes) line.shape.resize(n);
-      out.lines.push_back(std::move(line));
-      votes.push_back({0, 0, 0});
-    }
-    for (const TrackedMode& m : modes) {
-      CampbellLine& line = out.lines[at(m.id)];
-      line.frequency[k] = m.now.frequency, line.damping_ratio[k] = m.now.damping_ratio, line.log_decrement[k] = m.now.log_decrement;
-      line.direction_at[k] = m.now.direction, line.lambda[k] = m.now.lambda;
-      if (options.shapes) line.shape[k] = m.now.x;
-      ++votes[at(m.id)][static_cast<std::size_t>(m.now.kind)];
-    }
+CampbellRecorder::CampbellRecorder(std::vector<double> speeds, bool shapes) : shapes_(shapes) { out_.speeds = std::move(speeds); }
+
+void CampbellRecorder::take(std::size_t k, const std::vector<TrackedMode>& modes, Index lines) {
+  const std::size_t n = out_.speeds.size();
+  for (Index id = static_cast<Index>(out_.lines.size()); id < lines; ++id) {
+    CampbellLine line;
+    line.frequency.assign(n, nan), line.damping_ratio.assign(n, nan), line.log_decrement.assign(n, nan);
+    line.direction_at.assign(n, Direction::none), line.lambda.assign(n, Complex(nan, nan));
+    if (shapes_) line.shape.resize(n);
+    out_.lines.push_back(std::move(line));
+    votes_.push_back({0, 0, 0});
   }
-  out.speeds_solved = tracker.speeds_solved();
+  for (const TrackedMode& m : modes) {
+    CampbellLine& line = out_.lines[at(m.id)];
+    line.frequency[k] = m.now.frequency, line.damping_ratio[k] = m.now.damping_ratio, line.log_decrement[k] = m.now.log_decrement;
+    line.direction_at[k] = m.now.direction, line.lambda[k] = m.now.lambda;
+    if (shapes_) line.shape[k] = m.now.x;
+    ++votes_[at(m.id)][static_cast<std::size_t>(m.now.kind)];
+  }
+}
+
+Campbell CampbellRecorder::finish(long speeds_solved) {
+  Campbell out = std::move(out_);
+  const auto& votes = votes_;
+  const std::size_t n = out.speeds.size();
+  out.speeds_solved = speeds_solved;
   // A line met only between the speeds asked for has nothing to show.
   std::vector<CampbellLine> kept;
   for (std::size_t l = 0; l < out.lines.size(); ++l) {
@@ -82,6 +83,16 @@ Campbell campbell(Linearizer& linear, const CampbellOptions& options) {
     l.label = l.kind == ModeKind::lateral ? number + " " + letter : letter + number;
   }
   return out;
+}
+
+Campbell campbell(Linearizer& linear, const CampbellOptions& options) {
+  CampbellRecorder recorder(options.speeds, options.shapes);
+  ModeTracker tracker(linear, options.track);
+  for (std::size_t k = 0; k < options.speeds.size(); ++k) {
+    const auto& modes = tracker.advance(options.speeds[k]);
+    recorder.take(k, modes, tracker.lines());
+  }
+  return recorder.finish(tracker.speeds_solved());
 }
 
 }  // namespace whirl::analysis

@@ -1,6 +1,7 @@
 // Campbell diagram: natural frequencies, damping and direction of the modes against speed, each line one mode.
 #pragma once
 #include <analysis/track.hpp>
+#include <array>
 #include <string>
 
 namespace whirl::analysis {
@@ -26,6 +27,21 @@ struct Campbell {
   std::vector<double> speeds;
   std::vector<CampbellLine> lines; ///< by frequency at the first speed they appear
   long speeds_solved = 0;          ///< with those put in to keep the lines apart
+};
+
+/// Collects the modes a tracker finds at the speeds of a diagram.
+class CampbellRecorder {
+ public:
+  explicit CampbellRecorder(std::vector<double> speeds, bool shapes = false);
+  /// Modes at speeds[k]; `lines`: number of lines the tracker has seen.
+  void take(std::size_t k, const std::vector<TrackedMode>& modes, Index lines);
+  /// Names and sorts the lines.
+  Campbell finish(long speeds_solved);
+
+ private:
+  Campbell out_;
+  bool shapes_;
+  std::vector<std::array<int, 3>> votes_;   ///< kinds, by line
 };
 
 Campbell campbell(Linearizer& linear, const CampbellOptions& options);

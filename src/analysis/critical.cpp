@@ -133,7 +133,10 @@ std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions&
     throw run_error("E77", "critical speeds need an order above zero and a range of speeds");
   // At standstill every rotor that turns freely has the frequency 0 = n x 0: that is no critical speed.
   const double low = options.min_speed > 0 ? options.min_speed : 1e-3 * options.max_speed;
-  std::vector<Critical> out = options.damped ? damped(linear, options, low) : undamped(linear, options, low);
+  CriticalOptions o = options;
+  o.max_speed = std::min(o.max_speed, o.max_frequency / o.order);
+  if (!(o.max_speed > low)) return {};
+  std::vector<Critical> out = o.damped ? damped(linear, o, low) : undamped(linear, o, low);
   std::sort(out.begin(), out.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
   return out;
 }

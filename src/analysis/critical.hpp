@@ -22,6 +22,7 @@ struct CriticalOptions {
   bool damped = false;
   Motion motion = Motion::all;
   Index grid = 40;              ///< speeds of the search
+  double max_frequency = infinity;   ///< rad/s: critical speeds beyond it are left out
   double tolerance = 1e-13;     ///< relative
 };
 

@@ -2,40 +2,28 @@
 
 namespace whirl::analysis {
 
-namespace {
+HarmonicResponder::HarmonicResponder(Linearizer& linear, FrequencyResponseOptions options)
+    : linear_(linear), options_(std::move(options)), solver_(linear, options_.motion) {
+  if (!options_.outputs.empty()) meter_ = std::make_unique<VariationMeter>(linear);
+}
 
-class Responder {
- public:
-  Responder(Linearizer& linear, const FrequencyResponseOptions& options)
-      : linear_(linear), options_(options), solver_(linear, options.motion) {
-    if (!options.outputs.empty()) meter_ = std::make_unique<VariationMeter>(linear);
-  }
-  FrequencyPoint at(double Omega, double w, double scale) {
-    FrequencyPoint p;
-    p.Omega = Omega, p.frequency = w;
-    VecXc a = VecXc::Zero(linear_.system().size());
-    for (const HarmonicForce& f : options_.forces) a[f.unknown] += scale * f.amplitude;
-    if (solver_.prepare(Omega, w)) solver_.solve(a);
-    else a.setConstant(Complex(nan, nan));   // undamped resonance met exactly
-    for (const ResponseProbe& probe : options_.probes) p.probe.push_back(amplitude_at(linear_, a, probe.point));
-    for (Index k : options_.unknowns) p.unknown.push_back(a[k]);
-    if (meter_) meter_->measure(a, w, options_.outputs, p.output);
-    if (options_.shapes) p.shape = std::move(a);
-    return p;
-  }
-
- private:
-  Linearizer& linear_;
-  const FrequencyResponseOptions& options_;
-  HarmonicSolver solver_;
-  std::unique_ptr<VariationMeter> meter_;
-};
-
-}  // namespace
+FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
+  FrequencyPoint p;
+  p.Omega = Omega, p.frequency = w;
+  VecXc a = VecXc::Zero(linear_.system().size());
+  for (const HarmonicForce& f : options_.forces) a[f.unknown] += scale * f.amplitude;
+  if (solver_.prepare(Omega, w)) solver_.solve(a);
+  else a.setConstant(Complex(nan, nan));   // undamped resonance met exactly
+  for (const ResponseProbe& probe : options_.probes) p.probe.push_back(amplitude_at(linear_, a, probe.point));
+  for (Index k : options_.unknowns) p.unknown.push_back(a[k]);
+  if (meter_) meter_->measure(a, w, options_.outputs, p.output);
+  if (options_.shapes) p.shape = std::move(a);
+  return p;
+}
 
 std::vector<FrequencyPoint> frequency_response(Linearizer& linear, double Omega, const std::vector<double>& frequencies,
                                                const FrequencyResponseOptions& options) {
-  Responder r(linear, options);
+  HarmonicResponder r(linear, options);
   std::vector<FrequencyPoint> out;
   for (double w : frequencies) out.push_back(r.at(Omega, w, 1.0));
   return out;
@@ -43,7 +31,7 @@ std::vector<FrequencyPoint> frequency_response(Linearizer& linear, double Omega,
 
 std::vector<FrequencyPoint> order_response(Linearizer& linear, double order, const std::vector<double>& speeds,
                                            const FrequencyResponseOptions& options, const std::function<double(double)>& factor) {
-  Responder r(linear, options);
+  HarmonicResponder r(linear, options);
   std::vector<FrequencyPoint> out;
   for (double Omega : speeds) out.push_back(r.at(Omega, order * Omega, factor ? factor(Omega) : 1.0));
   return out;

@@ -24,6 +24,20 @@ struct FrequencyPoint {
   VecXc shape;
 };
 
+/// Responses one by one.
+class HarmonicResponder {
+ public:
+  HarmonicResponder(Linearizer& linear, FrequencyResponseOptions options);
+  /// At speed Omega and excitation frequency w, rad/s; scale: factor on all forces. nan everywhere at an undamped resonance.
+  FrequencyPoint at(double Omega, double w, double scale = 1.0);
+
+ private:
+  Linearizer& linear_;
+  FrequencyResponseOptions options_;
+  HarmonicSolver solver_;
+  std::unique_ptr<VariationMeter> meter_;
+};
+
 /// At the speed Omega, for each excitation frequency (rad/s).
 std::vector<FrequencyPoint> frequency_response(Linearizer& linear, double Omega, const std::vector<double>& frequencies,
                                                const FrequencyResponseOptions& options);

@@ -47,7 +47,7 @@ const la::MCK& Linearizer::at(double Omega) {
     for (Index k = 0; k < r_.size(); ++k)
       if (solver_.free()[at_(k)]) equilibrium_.reactions[k] = 0.0;
   } else {
-    set_equilibrium(solver_.solve(Omega, have_ ? &equilibrium_.state : nullptr));
+    set_equilibrium(solver_.solve(Omega, have_ ? &equilibrium_.state : first_ ? &*first_ : nullptr));
   }
   have_forcing_ = false;
   if (!running_.tangent(equilibrium_.state.frames, Omega, equilibrium_.state.q, matrices_))

@@ -19,8 +19,10 @@ class Linearizer {
   const la::MCK& conservative_at(double Omega);
   double Omega() const { return equilibrium_.Omega; }
   const Equilibrium& equilibrium() const { return equilibrium_; }
-  /// Starts the next equilibrium from here.
+  /// Takes an equilibrium as found elsewhere.
   void set_equilibrium(const Equilibrium& e);
+  /// The first equilibrium is sought from this state instead of the reference configuration.
+  void start_from(const system::State& s) { first_ = s; }
   /// Forcing amplitudes at the last speed, one for each of running().orders().
   const std::vector<VecXc>& forcing();
   RunningSystem& running() { return running_; }
@@ -33,6 +35,7 @@ class Linearizer {
   RunningSystem running_;
   EquilibriumSolver solver_;
   Equilibrium equilibrium_;
+  std::optional<system::State> first_;
   bool have_ = false, have_forcing_ = false;
   Vec2 floor_ = Vec2::Zero();      ///< residual left at the last solution: force, moment
   la::MCK matrices_, conservative_;

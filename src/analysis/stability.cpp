@@ -24,6 +24,10 @@ StabilityResult sweep(Linearizer& linear, const StabilityOptions& o,
   t.modes = mode_options(o);
   ModeTracker tracker(linear, t);
   WhirlSolver follower(linear, t.modes);
+  std::vector<double> speeds = o.speeds;
+  if (speeds.empty())
+    for (Index k = 0; k <= o.grid; ++k) speeds.push_back(o.min_speed + (o.max_speed - o.min_speed) * static_cast<double>(k) / static_cast<double>(o.grid));
+  CampbellRecorder recorder(speeds);
   const auto rate = [](double, const WhirlMode& w) { return w.lambda.real(); };
   const auto visit = [&](double a, double b, const std::vector<TrackedMode>& modes) {
     for (const TrackedMode& m : modes) {
@@ -34,14 +38,15 @@ StabilityResult sweep(Linearizer& linear, const StabilityOptions& o,
         out.onsets.push_back({root->speed, root->mode.frequency, unstable(m.now), root->mode});
     }
   };
-  for (Index k = 0; k <= o.grid; ++k) {
-    const double Omega = o.min_speed + (o.max_speed - o.min_speed) * static_cast<double>(k) / static_cast<double>(o.grid);
-    const auto& modes = tracker.advance(Omega, visit);
+  for (std::size_t k = 0; k < speeds.size(); ++k) {
+    const auto& modes = tracker.advance(speeds[k], visit);
+    recorder.take(k, modes, tracker.lines());
     if (k == 0)
       for (const TrackedMode& m : modes) out.stable_at_start = out.stable_at_start && !(unstable(m.now) && m.now.frequency > 0);
-    if (each) each(static_cast<std::size_t>(k), modes);
+    if (each) each(k, modes);
     if (!each && !o.all && !out.onsets.empty()) break;
   }
+  out.diagram = recorder.finish(tracker.speeds_solved());
   std::sort(out.onsets.begin(), out.onsets.end(), [](const Onset& a, const Onset& b) { return a.speed < b.speed; });
   return out;
 }

@@ -10,6 +10,7 @@ namespace whirl::analysis {
 struct StabilityOptions {
   double min_speed = 0, max_speed = 0;   ///< rad/s
   Index grid = 40;                       ///< speeds of the search
+  std::vector<double> speeds;            ///< or these, monotonic
   Index modes = 12;                      ///< modes followed, of least frequency
   Motion motion = Motion::all;
   double tolerance = 1e-12;              ///< relative, of the speed
@@ -27,6 +28,7 @@ struct Onset {
 struct StabilityResult {
   bool stable_at_start = true;           ///< at min_speed
   std::vector<Onset> onsets;             ///< ascending
+  Campbell diagram;                      ///< of the modes followed, at the speeds of the search
 };
 
 StabilityResult find_instability(Linearizer& linear, const StabilityOptions& options);

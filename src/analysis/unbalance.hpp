@@ -15,7 +15,7 @@ struct UnbalanceOptions {
   std::vector<double> speeds;          ///< rad/s, ascending
   std::vector<ResponseProbe> probes;
   std::vector<Measurement> outputs;    ///< bearing forces and the like
-  bool refine_peaks = true;            ///< add speeds at and around peaks of the probes
+  bool refine_peaks = true;            ///< add speeds at and around the peaks of the probes to the response
   bool shapes = false;                 ///< keep the amplitudes of all unknowns
 };
 

@@ -12,7 +12,8 @@ namespace whirl::app {
 namespace {
 
 const char* kind_of(const model::StepLaw& law) {
-  static constexpr const char* names[] = {"static", "modal", "campbell", "critical_speeds", "unbalance_response", "transient"};
+  static constexpr const char* names[] = {"static", "modal", "campbell", "critical_speeds", "unbalance_response",
+                                          "stability", "critical_map", "harmonic_response", "torsional", "buckling", "transient"};
   static_assert(std::size(names) == std::variant_size_v<model::StepLaw>);
   return names[law.index()];
 }

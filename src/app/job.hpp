@@ -55,7 +55,8 @@ void add_history_figures(const Job&, const model::Step&, const std::vector<analy
 /// Each runs one step, adds its section to the report and its entry to the summary, and writes its files.
 void run_static_step(Job&, const model::Step&, const model::StaticStep&);
 void run_transient_step(Job&, const model::Step&, const model::TransientStep&);
-void run_frequency_step(Job&, const model::Step&);   ///< modal, Campbell, critical speeds, unbalance response
+/// In the frequency domain (any kind that is neither static nor transient); see frequency.hpp.
+void run_frequency_step(Job&, const model::Step&);
 
 /// Where a transient's peaks are looked for: the probes, or the disks when there are none.
 std::vector<std::pair<std::string, analysis::Point>> watched_points(const Job&);

@@ -161,6 +161,27 @@ const std::vector<CodeInfo>& error_catalogue() {
        "what stands against it: shaft elements with mass, added mass in a bearing, a body without mass or rotary inertia, a partly held node, "
        "a prescribed motion, or an unbalance that changes in time.",
        "method = \"radau5\""},
+      {"E75", "nothing resists a motion",
+       "The stiffness of the model is singular: the message names the node and the direction in which it can move without any force. Add a "
+       "support in that direction or hold it rigidly. At a high load the same message means that the structure is at a limit point or buckles there.",
+       "[[bearing]]\nname = \"thrust\"\nat = \"shaft:start\"\ntype = \"rigid\"\ndirections = [\"x\"]"},
+      {"E76", "no equilibrium found",
+       "Newton's method found no equilibrium of the spinning, loaded rotor, not even with the loads put on in steps. The message tells at which part of "
+       "the load it stopped. The load may lie beyond a limit point (a buckling step tells), or a bearing beyond its capacity or outside its table.",
+       ""},
+      {"E77", "critical speeds cannot be sought or followed",
+       "The range of speeds or the order makes no sense, or a critical speed that was counted could not be followed to its place: two modes "
+       "meet there more closely than rounding can tell apart. Narrow the range, or take a Campbell diagram of it.",
+       ""},
+      {"E78", "a shaft that shall turn cannot",
+       "The spin of the shaft is held by a rigid support, yet the step asks for a speed.",
+       "directions = [\"x\", \"y\", \"z\"]    # rx left free"},
+      {"E79", "no load that could buckle anything",
+       "Gravity and the loads of the deck do not change the stiffness of the model to first order, so no factor on them makes it singular.",
+       ""},
+      {"E80", "a critical-speed map without bearings",
+       "The step varies the stiffness of bearings; those it names must exist, and by default bearings that are not rigid are varied.",
+       ""},
       {"E90", "a plug-in is missing or does not fit",
        "VTK, HDF5 and SUNDIALS live in plug-ins that are loaded only when a deck asks for them. The message lists where the file was looked for. "
        "Install the package that holds it, set WHIRL_PLUGIN_PATH, or ask for another output or method.",

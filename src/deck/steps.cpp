@@ -63,26 +63,138 @@ void describe(Visitor& v, model::StaticStep& s) {
   v.quantity("speed", s.speed, "rpm", any, "speed at which speed-dependent bearings are taken");
 }
 
+namespace {
+
+void describe_motion(Visitor& v, model::MotionKind& motion) {
+  v.choice("motion", motion,
+           {{"all", "every motion, coupled as it is"},
+            {"lateral", "bending alone: twist and axial motion held"},
+            {"torsional", "twist alone"},
+            {"axial", "motion along the shafts alone"}},
+           "unknowns that take part");
+}
+
+void describe_damping(Visitor& v, bool& damped) {
+  int i = damped ? 0 : 1;
+  static constexpr Option kinds[] = {{"damped", "with damping, cross-coupling and circulation"}, {"undamped", "mass, gyroscopic effects and symmetric stiffness alone"}};
+  v.option("damping", i, kinds, "what the modes include");
+  damped = i == 0;
+}
+
+}  // namespace
+
+void describe(Visitor& v, model::FrequencyRange& r) {
+  v.quantity(optional("start", "\"0 Hz\""), r.start, "Hz", not_negative, "first frequency");
+  const bool stop = v.quantity(optional("stop", "values are given"), r.stop, "Hz", positive, "last frequency");
+  const bool points = v.integer(optional("points", "values are given"), r.points, between(1, 1000000), "number of frequencies, equally spaced");
+  const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "Hz", not_negative, -1, "the frequencies one by one");
+  if (!v.clean()) return;
+  if (values && (stop || points || v.given("start"))) v.error("E26", "values", "the frequencies are given by 'values' and by 'start', 'stop', 'points'", "keep one of the two");
+  else if (!values && (!stop || !points)) v.error("E05", nullptr, fmt::format("the frequencies lack '{}'", stop ? "points" : "stop"), "frequency = { start = \"0 Hz\", stop = \"200 Hz\", points = 201 }");
+  else if (values && r.values.empty()) v.error("E20", "values", "at least one frequency is needed");
+  else if (!values && r.points > 1 && !(r.stop > r.start)) v.error("E21", "stop", "the frequencies end below their start");
+  for (std::size_t k = 1; v.clean() && k < r.values.size(); ++k)
+    if (!(r.values[k] > r.values[k - 1])) v.error("E21", "values", "the frequencies do not increase");
+}
+
 void describe(Visitor& v, model::ModalStep& s) {
   v.quantity("speed", s.speed, "rpm", any, "speed of the rotor");
   v.integer("modes", s.modes, between(1, 10000), "number of modes, from the lowest frequency");
+  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "Hz", positive, "modes up to this frequency only");
+  describe_damping(v, s.damped);
+  describe_motion(v, s.motion);
+  v.integer("shapes", s.shapes, between(0, 1000), "number of mode shapes drawn, and animated where [[output.vtk]] asks for this step");
 }
 
 void describe(Visitor& v, model::CampbellStep& s) {
   v.table(required("speed"), s.speed, "the speeds");
   v.integer("modes", s.modes, between(1, 10000), "number of modes followed");
   v.quantities("orders", s.orders, "", positive, -1, orders_doc);
+  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "Hz", positive, "modes up to this frequency only");
+  describe_damping(v, s.damped);
+  describe_motion(v, s.motion);
   check_orders(v, s.orders);
 }
 
 void describe(Visitor& v, model::CriticalStep& s) {
   v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "critical speeds up to this one");
+  v.quantity(optional("min_speed", "a thousandth of max_speed"), s.min_speed, "rpm", not_negative, "critical speeds from this one on");
   v.quantities("orders", s.orders, "", positive, -1, orders_doc);
-  v.integer("modes", s.modes, between(1, 10000), "number of modes looked at");
+  v.integer("modes", s.modes, between(1, 10000), "critical speeds listed of each order, from the lowest");
+  describe_motion(v, s.motion);
+  v.integer("shapes", s.shapes, between(0, 1000), "number of mode shapes drawn");
+  check_orders(v, s.orders);
+  if (v.clean() && s.min_speed >= s.max_speed) v.error("E21", "min_speed", "min_speed is not below max_speed");
+}
+
+void describe(Visitor& v, model::UnbalanceStep& s) {
+  v.table(required("speed"), s.speed, "the speeds");
+  std::vector<double> range;
+  const bool given = v.quantities(optional("operating_speed", "no separation margins"), range, "rpm", positive, 2, "lowest and highest operating speed: separation margins as in API RP 684");
+  v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "rpm", positive, -1, "speeds at which the deflected rotor is drawn");
+  if (!v.clean() || !given) return;
+  if (range[1] < range[0]) v.error("E21", "operating_speed", "the highest operating speed is below the lowest");
+  else s.operating = {range[0], range[1]};
+}
+
+void describe(Visitor& v, model::StabilityStep& s) {
+  v.table(required("speed"), s.speed, "the speeds");
+  v.integer("modes", s.modes, between(1, 10000), "number of modes followed, from the lowest frequency");
+}
+
+void describe(Visitor& v, model::CriticalMapStep& s) {
+  v.quantity(required("stiffness_min"), s.stiffness_min, "N/m", positive, "lowest stiffness of the supports, in y and z alike");
+  v.quantity(required("stiffness_max"), s.stiffness_max, "N/m", positive, "highest stiffness");
+  v.integer("points", s.points, between(2, 10000), "number of stiffnesses, equally spaced on a logarithmic scale");
+  v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "critical speeds up to this one");
+  v.number("order", s.order, positive, "excitations a revolution");
+  v.flag("backward", s.backward, "backward critical speeds as lines of their own");
+  v.texts(optional("bearings", "all but rigid ones"), s.bearings, "names of the bearings whose stiffness is varied");
+  if (v.clean() && s.stiffness_max <= s.stiffness_min) v.error("E21", "stiffness_max", "stiffness_max is not above stiffness_min");
+}
+
+void describe(Visitor& v, model::HarmonicForce& f) {
+  v.location(required("at"), f.at, "where it acts, on which shaft");
+  v.vector("force", f.force, "N", "amplitude of the force along x, y, z");
+  v.vector("moment", f.moment, "N.m", "amplitude of the moment about x, y, z; about x it twists the shaft");
+  v.quantity("phase", f.phase, "deg", any, "lead of this force: cos(w t + phase)");
+  v.choice("whirl", f.whirl, {{"none", "along fixed directions"}, {"forward", "turning from y towards z at the frequency"}, {"backward", "turning from z towards y"}},
+           "a lateral force or moment that turns starts in the direction given");
+  if (!v.clean()) return;
+  if (!v.given("force") && !v.given("moment")) v.error("E05", nullptr, "a harmonic force has neither 'force' nor 'moment'");
+  else if (f.whirl != model::HarmonicForce::Whirl::none && (f.force.x() != 0 || f.moment.x() != 0))
+    v.error("E26", "whirl", "a force or moment along the axis cannot turn about it", "give the axial part a force of its own");
+}
+
+void describe(Visitor& v, model::HarmonicStep& s) {
+  v.list("force", s.forces, "the harmonic forces");
+  v.quantity(optional("rotor_speed", "\"0 rpm\""), s.speed, "rpm", any, "speed of the rotor while the frequency varies");
+  v.table(optional("frequency", "order times the speed"), s.frequency, "excitation frequencies at one rotor speed");
+  v.table(optional("speed", "rotor_speed"), s.speeds, "rotor speeds, with the excitation frequency order times the speed");
+  v.number("order", s.order, positive, "excitation frequency relative to the speed");
+  v.flag("speed_squared", s.speed_squared, "amplitudes grow with the square of the speed; they are given for the highest speed");
+  describe_motion(v, s.motion);
+  v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "Hz", positive, -1, "excitation frequencies at which the deflected rotor is drawn");
+  if (!v.clean()) return;
+  if (s.forces.empty()) v.error("E05", nullptr, "a harmonic response needs at least one force", "[[step.force]] with at, force or moment");
+  else if (s.frequency.has_value() == s.speeds.has_value())
+    v.error(s.frequency ? "E26" : "E05", s.frequency ? "frequency" : nullptr, s.frequency ? "'frequency' and 'speed' cannot both be varied" : "neither 'frequency' nor 'speed' is given",
+            "frequency = { start = \"0 Hz\", stop = \"200 Hz\", points = 201 }");
+  else if (s.frequency && v.given("order")) v.error("E26", "order", "'order' belongs to a range of speeds");
+  else if (s.speeds && v.given("rotor_speed")) v.error("E26", "rotor_speed", "'rotor_speed' belongs to a range of frequencies");
+}
+
+void describe(Visitor& v, model::TorsionalStep& s) {
+  v.integer("modes", s.modes, between(1, 10000), "number of torsional modes, from the lowest frequency");
+  v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "end of the interference diagram");
+  v.quantities("orders", s.orders, "", positive, -1, orders_doc);
   check_orders(v, s.orders);
 }
 
-void describe(Visitor& v, model::UnbalanceStep& s) { v.table(required("speed"), s.speed, "the speeds"); }
+void describe(Visitor& v, model::BucklingStep& s) {
+  v.integer("modes", s.modes, between(1, 10000), "number of buckling loads, from the smallest factor");
+  v.quantity("speed", s.speed, "rpm", any, "speed of the rotor");
+}
 
 void describe(Visitor& v, model::TransientStep& s) {
   v.quantity(required("duration"), s.duration, "s", positive, "length of the run; it begins at time 0, or where the step named by 'from' ended");
@@ -103,6 +215,11 @@ void describe(Visitor& v, model::Step& s) {
       Visitor::alternative<model::CampbellStep>("campbell", s.law, "whirl frequencies and damping against speed"),
       Visitor::alternative<model::CriticalStep>("critical_speeds", s.law, "critical speeds, solved for directly"),
       Visitor::alternative<model::UnbalanceStep>("unbalance_response", s.law, "steady response to the unbalances against speed"),
+      Visitor::alternative<model::StabilityStep>("stability", s.law, "log decrement against speed, and the onset speeds of instability, solved for directly"),
+      Visitor::alternative<model::CriticalMapStep>("critical_map", s.law, "undamped critical speeds against the stiffness of the supports"),
+      Visitor::alternative<model::HarmonicStep>("harmonic_response", s.law, "steady response to harmonic forces, synchronous or not"),
+      Visitor::alternative<model::TorsionalStep>("torsional", s.law, "torsional natural frequencies and where orders of the speed meet them"),
+      Visitor::alternative<model::BucklingStep>("buckling", s.law, "factors on gravity and all loads at which the rotor buckles, linearised about the unloaded state"),
       Visitor::alternative<model::TransientStep>("transient", s.law, "motion in time, nonlinear"),
   };
   v.alternatives(required("type"), kinds, "kind of analysis");

@@ -100,6 +100,9 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
   if (const auto* x = std::get_if<model::ModalStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) return range(x->speed);
   if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) return range(x->speed);
+  if (const auto* x = std::get_if<model::StabilityStep>(&s.law)) return range(x->speed);
+  if (const auto* x = std::get_if<model::HarmonicStep>(&s.law)) return x->speeds ? range(*x->speeds) : std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::BucklingStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {
     for (const auto& d : m.drives) {
       const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
@@ -155,6 +158,12 @@ void check_effects(const model::Model& m, Problems& out) {
   if (transient) return;
   if (!m.drives.empty()) warn("a drive", m.drives.front().where);
   if (!m.initial.empty()) warn("an initial motion", m.initial.front().where);
+  const bool shapes = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
+    return std::holds_alternative<model::ModalStep>(s.law) || std::holds_alternative<model::CriticalStep>(s.law) ||
+           std::holds_alternative<model::UnbalanceStep>(s.law) || std::holds_alternative<model::HarmonicStep>(s.law) ||
+           std::holds_alternative<model::BucklingStep>(s.law);
+  });
+  if (shapes) return;
   for (const auto& o : m.output.vtk)
     if (o.step.empty()) warn("a picture output", o.where);
 }

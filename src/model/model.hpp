@@ -197,10 +197,73 @@ struct IntegratorOptions {
 struct SpeedRange { double start = 0, stop = 0; int points = 2; std::vector<double> values; bool refine_peaks = false; };
 
 struct StaticStep { int load_steps = 1; double speed = 0; };
-struct ModalStep { double speed = 0; int modes = 10; };
-struct CampbellStep { SpeedRange speed; int modes = 10; std::vector<double> orders{1.0}; };
-struct CriticalStep { double max_speed = 0; std::vector<double> orders{1.0}; int modes = 10; };
-struct UnbalanceStep { SpeedRange speed; };
+/// Which unknowns of the shafts take part in a frequency-domain step; the others are held.
+enum class MotionKind { all, lateral, torsional, axial };
+/// Excitation frequencies, rad/s: equally spaced, or one by one.
+struct FrequencyRange { double start = 0, stop = 0; int points = 2; std::vector<double> values; };
+
+struct ModalStep {
+  double speed = 0;
+  int modes = 10;
+  double max_frequency = infinity;   ///< rad/s
+  bool damped = true;                ///< false: the conservative part of the matrices only
+  MotionKind motion = MotionKind::all;
+  int shapes = 6;                    ///< mode shapes drawn and animated
+};
+struct CampbellStep {
+  SpeedRange speed;
+  int modes = 10;
+  std::vector<double> orders{1.0};
+  double max_frequency = infinity;
+  bool damped = true;
+  MotionKind motion = MotionKind::all;
+};
+struct CriticalStep {
+  double max_speed = 0;
+  std::vector<double> orders{1.0};
+  int modes = 10;                    ///< critical speeds listed of each order, from the lowest
+  double min_speed = 0;
+  MotionKind motion = MotionKind::all;
+  int shapes = 4;
+};
+struct UnbalanceStep {
+  SpeedRange speed;
+  std::array<double, 2> operating{0, 0};   ///< range of operating speeds, rad/s; 0 0 = not given
+  std::vector<double> shapes_at;           ///< speeds of operating shapes, rad/s; empty = at the peaks
+};
+struct StabilityStep { SpeedRange speed; int modes = 12; };
+struct CriticalMapStep {
+  double stiffness_min = 0, stiffness_max = 0;   ///< N/m
+  int points = 31;
+  double max_speed = 0;
+  double order = 1;
+  bool backward = false;                         ///< backward criticals as lines of their own
+  std::vector<std::string> bearings;             ///< whose stiffness is varied; empty = all but rigid ones
+};
+/// Harmonic force or moment: Re(amplitude exp(i (w t + phase))), or turning at w in the lateral plane.
+struct HarmonicForce : Entity {
+  enum class Whirl { none, forward, backward };
+  Location at;
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();   ///< amplitudes, N, N m
+  double phase = 0;                                   ///< rad
+  Whirl whirl = Whirl::none;
+};
+struct HarmonicStep {
+  std::vector<HarmonicForce> forces;
+  double speed = 0;                        ///< asynchronous: rotor speed while the frequency varies
+  std::optional<FrequencyRange> frequency;
+  std::optional<SpeedRange> speeds;        ///< synchronous: frequency = order x speed
+  double order = 1;
+  bool speed_squared = false;              ///< amplitudes are those at the highest speed and grow with its square
+  MotionKind motion = MotionKind::all;
+  std::vector<double> shapes_at;           ///< frequencies of operating shapes, rad/s; empty = at the peaks
+};
+struct TorsionalStep {
+  double max_speed = 0;
+  std::vector<double> orders{1.0};
+  int modes = 6;
+};
+struct BucklingStep { int modes = 3; double speed = 0; };
 struct TransientStep {
   double duration = 0;             ///< s; from 0 unless it continues a previous step
   IntegratorOptions integrator;
@@ -211,7 +274,8 @@ struct TransientStep {
   double checkpoint = 60;          ///< wall-clock s between checkpoints; 0 = none
 };
 
-using StepLaw = std::variant<StaticStep, ModalStep, CampbellStep, CriticalStep, UnbalanceStep, TransientStep>;
+using StepLaw = std::variant<StaticStep, ModalStep, CampbellStep, CriticalStep, UnbalanceStep, StabilityStep, CriticalMapStep, HarmonicStep,
+                             TorsionalStep, BucklingStep, TransientStep>;
 struct Step : Entity {
   std::string from;                ///< earlier step whose result it starts from
   StepLaw law;

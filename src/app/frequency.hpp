@@ -1,0 +1,81 @@
+// What the steps in the frequency domain share: the linearisation a step works on, its tables, figures and pictures.
+#pragma once
+#include <analysis/campbell.hpp>
+#include <analysis/harmonic.hpp>
+#include <analysis/whirl_modes.hpp>
+#include <app/job.hpp>
+#include <io/plots.hpp>
+
+#include <chrono>
+#include <cmath>
+
+namespace whirl::app {
+
+/// Spin of every line relative to the reference speed, as the deck's speed_ratio says; casings stand.
+analysis::Running running_of(const Job& job, double top_speed);
+std::vector<double> speeds_of(const model::SpeedRange& range);
+std::vector<double> frequencies_of(const model::FrequencyRange& range);
+analysis::Motion motion_of(model::MotionKind kind);
+analysis::Point point_of(const Job& job, const model::Location& at);
+io::Whirl whirl_of(analysis::Direction d);
+inline double to_rpm(double omega) { return omega * 30.0 / pi; }
+inline double to_hz(double omega) { return omega / two_pi; }
+/// Rounding of what is zero, as zero: ratios and shares of 1 (or 100 %).
+inline double tidy(double x) { return std::abs(x) < 1e-12 ? 0.0 : x; }
+/// "lateral, forward", "torsional"
+std::string description(const analysis::WhirlMode& m);
+/// "forward", or "" where there is no lateral orbit
+std::string direction_text(const analysis::WhirlMode& m);
+/// Forces of the supports on the shaft, N, fixed axes.
+std::vector<analysis::Measurement> support_measurements(const Job& job);
+
+/// One step on its way: where it stands, and what it has to show.
+class FrequencyStep {
+ public:
+  /// top_speed: highest |speed| expected, rad/s.
+  /// title: of its section, "Campbell diagram".
+  FrequencyStep(Job& job, const model::Step& step, const std::string& type, const std::string& title, double top_speed);
+  Job& job;
+  const model::Step& step;
+  analysis::Linearizer linear;
+  io::ReportSection section;
+
+  io::Value& summary() { return job.summary["steps"][step.name]; }
+  /// Writes <step>_<name>.csv and shows the table in the report (only as a file when `shown` is false).
+  void add_table(const std::string& name, io::Table table, bool shown = true);
+  void add_figure(io::Figure f);
+  /// A name for files: <step>_<name>.
+  std::string file(const std::string& name) const;
+  /// Adds the section to the report, the run time to the summary, and a line to the terminal.
+  void finish(const std::string& line);
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// A shape (amplitudes of all unknowns) as drawings; see shapes.cpp.
+struct ShapeDrawing {
+  std::string name, title, caption;   ///< name: within the step's files
+  const VecXc* a = nullptr;
+  analysis::ModeKind kind = analysis::ModeKind::lateral;
+};
+/// Adds a figure for each line that moves: lateral shapes in space and in two planes, twist and axial motion against position.
+void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d);
+/// Frames of one period where [[output.vtk]] asks for this step. amplitude: factor on the shape; 0 = such that the largest
+/// displacement is a twentieth of the rotor's length (times deformation_scale in any case).
+void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& a, double amplitude = 0);
+
+/// Lines of a Campbell diagram as the plots take them; see campbell_step.cpp.
+std::vector<io::CampbellLine> drawn_lines(const analysis::Campbell& c);
+
+void run_modal_step(Job&, const model::Step&, const model::ModalStep&);
+void run_campbell_step(Job&, const model::Step&, const model::CampbellStep&);
+void run_critical_step(Job&, const model::Step&, const model::CriticalStep&);
+void run_unbalance_step(Job&, const model::Step&, const model::UnbalanceStep&);
+void run_stability_step(Job&, const model::Step&, const model::StabilityStep&);
+void run_critical_map_step(Job&, const model::Step&, const model::CriticalMapStep&);
+void run_harmonic_step(Job&, const model::Step&, const model::HarmonicStep&);
+void run_torsional_step(Job&, const model::Step&, const model::TorsionalStep&);
+void run_buckling_step(Job&, const model::Step&, const model::BucklingStep&);
+
+}  // namespace whirl::app
