@@ -26,11 +26,6 @@ std::vector<double> frequencies_of(const model::FrequencyRange& r) { return spee
 
 analysis::Motion motion_of(model::MotionKind kind) { return static_cast<analysis::Motion>(kind); }
 
-analysis::Point point_of(const Job& job, const model::Location& at) {
-  const meshes::Place p = job.mesh.place(at);
-  return {p.node, p.offset};
-}
-
 io::Whirl whirl_of(analysis::Direction d) {
   switch (d) {
     case analysis::Direction::forward: return io::Whirl::forward;

@@ -3,7 +3,7 @@
 #include <analysis/campbell.hpp>
 #include <analysis/harmonic.hpp>
 #include <analysis/whirl_modes.hpp>
-#include <app/job.hpp>
+#include <app/transient_outputs.hpp>
 #include <io/plots.hpp>
 
 #include <chrono>
@@ -16,7 +16,6 @@ analysis::Running running_of(const Job& job, double top_speed);
 std::vector<double> speeds_of(const model::SpeedRange& range);
 std::vector<double> frequencies_of(const model::FrequencyRange& range);
 analysis::Motion motion_of(model::MotionKind kind);
-analysis::Point point_of(const Job& job, const model::Location& at);
 io::Whirl whirl_of(analysis::Direction d);
 inline double to_rpm(double omega) { return omega * 30.0 / pi; }
 inline double to_hz(double omega) { return omega / two_pi; }

@@ -1,11 +1,75 @@
 // A modal step: whirl modes at one speed.
+#include <analysis/mode_energy.hpp>
 #include <app/frequency.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::app {
+
+namespace {
+
+/// Names of what stands at the nodes: disks for kinetic energy, bearings for strain energy.
+struct NodeNames {
+  std::vector<std::string> disk, bearing;
+  explicit NodeNames(const Job& job) : disk(job.mesh.nodes.size()), bearing(job.mesh.nodes.size()) {
+    const auto add = [](std::vector<std::string>& to, Index node, const std::string& name) {
+      if (node < 0) return;
+      std::string& s = to[static_cast<std::size_t>(node)];
+      s += (s.empty() ? "" : ", ") + name;
+    };
+    for (const model::Disk& d : job.model.disks) add(disk, job.mesh.place(d.at).node, d.name);
+    for (std::size_t i = 0; i < job.mesh.bearings.size(); ++i) {
+      const meshes::BearingNodes& b = job.mesh.bearings[i];
+      add(bearing, b.shaft.node, job.model.bearings[i].name);
+      if (b.other.node != b.shaft.node) add(bearing, b.other.node, job.model.bearings[i].name);
+      add(bearing, b.pedestal, job.model.bearings[i].name + " pedestal");
+    }
+  }
+};
+
+/// Two tables: every part of every mode (a file), and shares by shaft, disk and bearing (the report).
+void add_energy_tables(FrequencyStep& s, const std::vector<analysis::WhirlMode>& modes) {
+  const NodeNames names(s.job);
+  io::Table all, sums;
+  all.title = "Energy of the modes by element";
+  all.columns = {{"mode", "-", ""}, {"energy", "-", "strain or kinetic"}, {"part", "-", ""}, {"from", "-", "node"}, {"to", "-", "node, of an element"}, {"share", "%", ""}};
+  sums.title = "Energy of the modes by part";
+  std::vector<std::pair<std::string, std::vector<double>>> columns;   // in order of appearance
+  const auto column = [&](const std::string& name) -> std::vector<double>& {
+    for (auto& c : columns)
+      if (c.first == name) return c.second;
+    columns.emplace_back(name, std::vector<double>(modes.size(), 0.0));
+    return columns.back().second;
+  };
+  const auto at = [](Index i) { return static_cast<std::size_t>(i); };
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    const analysis::ModeEnergy e = analysis::energy_distribution(s.linear, modes[k].x);
+    const system::System& sys = s.linear.system();
+    for (const bool kinetic : {false, true})
+      for (const analysis::EnergyPart& p : kinetic ? e.kinetic : e.strain) {
+        all.add({static_cast<int>(k + 1), kinetic ? "kinetic" : "strain", p.kind, sys.node(p.node).name, p.other >= 0 ? sys.node(p.other).name : std::string(), 100 * p.share});
+        const std::vector<std::string>& own = kinetic ? names.disk : names.bearing;
+        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty() && p.kind.find("shaft") == std::string::npos && p.kind.find("beam") == std::string::npos;
+        const std::string part = known ? own[at(p.node)] : p.kind == "shaft elements" || p.kind == "general beam elements" ? "shaft" : p.kind;
+        column((kinetic ? "kinetic: " : "strain: ") + part)[k] += p.share;
+      }
+  }
+  sums.columns.push_back({"mode", "-", ""});
+  std::stable_sort(columns.begin(), columns.end(), [](const auto& a, const auto& b) { return a.first.front() > b.first.front(); });   // strain first
+  for (const auto& c : columns) sums.columns.push_back({c.first, "%", ""});
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    std::vector<io::Table::Cell> row{static_cast<int>(k + 1)};
+    for (const auto& c : columns) row.emplace_back(100 * tidy(c.second[k]));
+    sums.add(std::move(row));
+  }
+  s.add_table("energy_parts", std::move(sums));
+  s.add_table("energy", std::move(all), false);
+}
+
+}  // namespace
 
 void run_modal_step(Job& job, const model::Step& step, const model::ModalStep& law) {
   FrequencyStep s(job, step, "modal", "whirl modes", std::abs(law.speed));
@@ -51,6 +115,7 @@ void run_modal_step(Job& job, const model::Step& step, const model::ModalStep& l
   v["modes"] = list;
   v["unstable modes"] = unstable;
   s.add_table("modes", std::move(table));
+  if (!modes.empty()) add_energy_tables(s, modes);
 
   const std::size_t drawn = std::min(modes.size(), static_cast<std::size_t>(law.shapes));
   for (std::size_t k = 0; k < drawn; ++k) {

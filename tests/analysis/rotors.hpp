@@ -38,6 +38,7 @@ struct Rotor {
   std::vector<double> x;        ///< of the nodes
   std::vector<Index> node;
   std::vector<elements::ShaftElementConstants> element;
+  double preload = 0;           ///< N, tension, of the elements added next
 
   explicit Rotor(const std::string& name = "rotor") : line(b.add_line(name)) { add_node(0); }
   Index add_node(double position) {
@@ -52,7 +53,9 @@ struct Rotor {
       const elements::ElementSection part = s.constants ? s : s.part((i - 1.0) / n, (i + 0.0) / n);
       element.push_back(elements::make_shaft_constants(part, length / n, 0, 0, mass));
       add_node(x0 + length * i / n);
-      b.add(elements::ShaftBeam<false>(element.back(), Vec3::UnitX()), {node[node.size() - 2], node.back()}, "shaft elements");
+      elements::ShaftBeam<false> beam(element.back(), Vec3::UnitX());
+      beam.preload = preload;
+      b.add(beam, {node[node.size() - 2], node.back()}, "shaft elements");
     }
     return *this;
   }
@@ -104,7 +107,8 @@ struct Rotor {
 
 /// Friswell, Penny, Garvey, Lees, Dynamics of Rotating Machines (2010), example 5.9.1: two disks on a 1.5 m shaft.
 struct TwoDisk : Rotor {
-  TwoDisk(int elements, double ky = 1e6, double kz = 1e6, double c = 0, elements::MassKind mass = elements::MassKind::corrected) {
+  TwoDisk(int elements, double ky = 1e6, double kz = 1e6, double c = 0, elements::MassKind mass = elements::MassKind::corrected, double tension = 0) {
+    preload = tension;
     add_shaft(cylinder(0.05, 2.11e11, 8.12e10, 7810), 1.5, elements, mass);
     add_disk_of_size(0.5, 0.07, 0.28, 0.05, 7810).add_disk_of_size(1.0, 0.07, 0.35, 0.05, 7810);
     add_bearing(0, ky, kz, c, c).add_bearing(1.5, ky, kz, c, c);
