@@ -171,7 +171,7 @@ void describe(Visitor& v, model::HarmonicStep& s) {
   v.quantity(optional("rotor_speed", "\"0 rpm\""), s.speed, "rpm", any, "speed of the rotor while the frequency varies");
   v.table(optional("frequency", "order times the speed"), s.frequency, "excitation frequencies at one rotor speed");
   v.table(optional("speed", "rotor_speed"), s.speeds, "rotor speeds, with the excitation frequency order times the speed");
-  v.number("order", s.order, positive, "excitation frequency relative to the speed");
+  v.number(optional("order", "1"), s.order, positive, "excitation frequency relative to the speed");
   v.flag("speed_squared", s.speed_squared, "amplitudes grow with the square of the speed; they are given for the highest speed");
   describe_motion(v, s.motion);
   v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "Hz", positive, -1, "excitation frequencies at which the deflected rotor is drawn");
