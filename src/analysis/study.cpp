@@ -79,21 +79,31 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
     result.samples.push_back(std::move(s));
   }
 
-  // slope of log(worst error) by least squares over the samples still above the reference's own uncertainty
+  // Slope of log(worst error) against log(step) by least squares over equal steps from the coarsest on, as long as the slope
+  // holds: finer ones stand on another error (the mesh, motion too fast for any of these steps, the reference itself).
   double floor = 1e-13;
   for (double u : result.uncertainty)
     if (u <= resolved) floor = std::max(floor, 3.0 * u);
-  struct Fit { double n = 0, x = 0, y = 0, xx = 0, xy = 0; };
-  std::map<std::string, Fit> fits;
+  std::map<std::string, std::vector<std::pair<double, double>>> points;   // -log(steps), log(error)
   for (const StudySample& s : result.samples) {
     if (s.setting.tolerance > 0) continue;   // the steps of adaptive runs are not proportional
     if (!s.ok || !(s.worst() > floor) || !(s.worst() < 0.3) || s.steps <= 0) continue;
-    Fit& f = fits[s.setting.method];
-    const double x = -std::log(static_cast<double>(s.steps)), y = std::log(s.worst());
-    f.n += 1, f.x += x, f.y += y, f.xx += x * x, f.xy += x * y;
+    points[s.setting.method].emplace_back(-std::log(static_cast<double>(s.steps)), std::log(s.worst()));
   }
-  for (const auto& [name, f] : fits)
-    if (const double d = f.n * f.xx - f.x * f.x; f.n >= 2 && d > 1e-12) result.orders.push_back({name, (f.n * f.xy - f.x * f.y) / d});
+  for (auto& [name, p] : points) {
+    std::sort(p.rbegin(), p.rend());
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0, steepest = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (i > 0) {
+        const double slope = (p[i - 1].second - p[i].second) / (p[i - 1].first - p[i].first);
+        if (!(slope > std::max(1.0, 0.6 * steepest))) break;
+        steepest = std::max(steepest, slope);
+      }
+      n += 1, x += p[i].first, y += p[i].second, xx += p[i].first * p[i].first, xy += p[i].first * p[i].second;
+    }
+    const double d = n * xx - x * x;
+    result.orders.push_back({name, n >= 2 && d > 1e-12 ? (n * xy - x * y) / d : 0.0});
+  }
 
   for (std::size_t i = 0; i < result.samples.size(); ++i) {
     const StudySample& a = result.samples[i];

@@ -55,7 +55,8 @@ struct StudyResult {
   std::vector<double> uncertainty;             ///< of the reference, relative, one a quantity
   StudySample reference;
   std::vector<StudySample> samples;
-  struct Order { std::string method; double order; };   ///< slope of the worst error against the step, equal steps on one mesh
+  /// Slope of the worst error against the step, equal steps on one mesh; 0: none seen, the error does not fall with the step.
+  struct Order { std::string method; double order; };
   std::vector<Order> orders;
   std::vector<std::size_t> pareto;             ///< indices of samples no other beats in both error and time
   struct Advice { double target; std::size_t sample; bool found; };

@@ -194,7 +194,8 @@ int study_deck(const StudyOptions& options) {
   folder.write_table("study.csv", table);
   io::Value& u = json["uncertainty of the reference"];
   for (std::size_t i = 0; i < r.quantities.size(); ++i) u[r.quantities[i]] = r.uncertainty[i];
-  for (const auto& order : r.orders) json["observed order, equal steps"][order.method] = order.order;
+  for (const auto& order : r.orders)
+    if (order.order > 0) json["observed order, equal steps"][order.method] = order.order;
   std::string advice_text;
   for (const auto& a : r.advice) {
     const std::string target = fmt::format("{:g}", a.target);
@@ -229,7 +230,10 @@ int study_deck(const StudyOptions& options) {
     for (std::size_t i = 0; i < r.quantities.size(); ++i)
       std::printf("  %-28s %.1e%s\n", r.quantities[i].c_str(), r.uncertainty[i],
                   r.uncertainty[i] > analysis::resolved ? "   not resolved by the model itself: listed, not counted" : "");
-    for (const auto& order : r.orders) std::printf("observed order, equal steps: %s %.2f\n", order.method.c_str(), order.order);
+    for (const auto& order : r.orders) {
+      if (order.order > 0) std::printf("observed order, equal steps: %s %.2f\n", order.method.c_str(), order.order);
+      else std::printf("observed order, equal steps: %s none, its error is not that of the step\n", order.method.c_str());
+    }
     std::printf("%sresults: %s\n", advice_text.c_str(), root.string().c_str());
   }
   return static_cast<int>(Exit::ok);
