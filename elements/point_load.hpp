@@ -27,7 +27,7 @@ struct PointForce {
 /// Force and moment of fixed direction (global axes) at an offset point.
 struct FixedLoad {
   static constexpr int n_nodes = 1, width = 7;
-  static constexpr bool has_M = false, has_C = false, has_K = true;
+  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true;
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;
@@ -42,7 +42,7 @@ struct FixedLoad {
 /// Force and moment given in body axes (d, b_2, b_3): they turn with tilt and spin (follower loads).
 struct BodyLoad {
   static constexpr int n_nodes = 1, width = 7;
-  static constexpr bool has_M = false, has_C = false, has_K = true;
+  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true;
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;

@@ -27,7 +27,7 @@ void add_scaled(la::MCK& y, double s, const la::MCK& x) { add_scaled(y.M, s, x.M
 
 RunningSystem::RunningSystem(const system::System& system, Running running)
     : system_(system), running_(std::move(running)), ratio_(running_.ratio), workspace_(system.make_workspace()),
-      q_(system.size()), v_(system.size()), a_(VecX::Zero(system.size())), r_(system.size()), part_(system.make_matrices()) {
+      q_(system.size()), v_(system.size()), a_(VecX::Zero(system.size())), r_(system.size()), part_(system.make_matrices()), sample_(system.make_matrices()) {
   if (ratio_.empty()) ratio_.assign(at(system.lines()), 1.0);
   ratio_.resize(at(system.lines()), 0.0);
   std::vector<unsigned char> turnable(at(system.nodes()), 0);
@@ -138,14 +138,15 @@ void RunningSystem::sort_terms() {
   for (std::size_t k = 0; k < terms.size(); ++k) {
     all_.push_back(k);
     if (!sees[k]) blind_.push_back(k);
-    if (sees[k]) turning_.push_back(k);
+    if (sees[k]) (terms[k]->quadratic_in_rates() ? turning_smooth_ : turning_).push_back(k);
     else if (terms[k]->quadratic_in_rates()) smooth_.push_back(k);
     else other_.push_back(k);
   }
   if (!running_.mean) {
     // nothing is averaged: what turns is evaluated like the rest
     other_.insert(other_.end(), turning_.begin(), turning_.end());
-    turning_.clear();
+    smooth_.insert(smooth_.end(), turning_smooth_.begin(), turning_smooth_.end());
+    turning_.clear(), turning_smooth_.clear();
   }
 }
 
@@ -208,14 +209,60 @@ bool RunningSystem::fits_polynomial(const system::Frames& f, double Omega, const
   return polynomial_ && std::abs(Omega) <= 2.0 * scale_ && q == polynomial_q_ && f.chart == polynomial_charts_;
 }
 
+bool RunningSystem::add_mean_residual(const system::Frames& f, double Omega, const VecX& q, const Terms& only, VecX& r) {
+  if (only.empty()) return true;
+  for (std::size_t k = 0; k < theta_.size(); ++k) {
+    if (!evaluate_residual(f, Omega, q, theta_[k], r_, only)) return false;
+    r += weights_(0, static_cast<Index>(k)) * r_;
+  }
+  return true;
+}
+
+bool RunningSystem::add_mean_tangent(const system::Frames& f, double Omega, const VecX& q, const Terms& only, la::MCK& out) {
+  if (only.empty()) return true;
+  for (std::size_t k = 0; k < theta_.size(); ++k) {
+    if (!evaluate_tangent(f, Omega, q, theta_[k], sample_, only)) return false;
+    add_scaled(out, weights_(0, static_cast<Index>(k)), sample_);
+  }
+  return true;
+}
+
+bool RunningSystem::add_forcing(const system::Frames& f, double Omega, const VecX& q, const Terms& only, std::vector<VecXc>& out) {
+  if (only.empty()) return true;
+  for (std::size_t k = 0; k < theta_.size(); ++k) {
+    if (!evaluate_residual(f, Omega, q, theta_[k], r_, only)) return false;
+    // A cos + B sin = Re((A - iB) e^(i x))
+    for (std::size_t o = 0; o < orders_.size(); ++o) {
+      const Index c = 1 + 2 * static_cast<Index>(o), j = static_cast<Index>(k);
+      out[o] += r_ * Complex(weights_(c, j), -weights_(c + 1, j));
+    }
+  }
+  return true;
+}
+
+bool RunningSystem::smooth_residual(const system::Frames& f, double Omega, const VecX& q, VecX& r) {
+  return evaluate_residual(f, Omega, q, 0.0, r, smooth_) && add_mean_residual(f, Omega, q, turning_smooth_, r);
+}
+
+bool RunningSystem::smooth_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
+  return evaluate_tangent(f, Omega, q, 0.0, out, smooth_) && add_mean_tangent(f, Omega, q, turning_smooth_, out);
+}
+
 bool RunningSystem::make_polynomial(const system::Frames& f, double Omega, const VecX& q) {
   // Interpolation at -s, 0, s with s near the top speed: no digits are lost below it.
   const double s = std::max({std::abs(Omega), running_.top_speed, 1.0});
   if (p0_.M.value_count() == 0) p0_ = system_.make_matrices(), p1_ = system_.make_matrices(), k2_ = la::BlockMatrix<6>(system_.pattern());
   for (VecX* r : {&r0_, &r1_, &r2_}) r->resize(q.size());
-  if (!evaluate_tangent(f, s, q, 0.0, p1_, smooth_) || !evaluate_residual(f, s, q, 0.0, r1_, smooth_)) return false;
-  if (!evaluate_tangent(f, -s, q, 0.0, part_, smooth_) || !evaluate_residual(f, -s, q, 0.0, r2_, smooth_)) return false;
-  if (!evaluate_tangent(f, 0.0, q, 0.0, p0_, smooth_) || !evaluate_residual(f, 0.0, q, 0.0, r0_, smooth_)) return false;
+  if (!smooth_tangent(f, s, q, p1_) || !smooth_residual(f, s, q, r1_)) return false;
+  if (!smooth_tangent(f, -s, q, part_) || !smooth_residual(f, -s, q, r2_)) return false;
+  if (!smooth_tangent(f, 0.0, q, p0_) || !smooth_residual(f, 0.0, q, r0_)) return false;
+  for (auto* x : {&f0_, &f1_, &f2_}) x->assign(orders_.size(), VecXc::Zero(q.size()));
+  if (!add_forcing(f, s, q, turning_smooth_, f1_) || !add_forcing(f, -s, q, turning_smooth_, f2_) || !add_forcing(f, 0.0, q, turning_smooth_, f0_)) return false;
+  for (std::size_t o = 0; o < orders_.size(); ++o) {
+    const VecXc plus = f1_[o], minus = f2_[o];
+    f1_[o] = (0.5 / s) * (plus - minus);
+    f2_[o] = (0.5 / (s * s)) * (plus + minus - 2.0 * f0_[o]);
+  }
   set_scaled(k2_, 0.5 / (s * s), p1_.K), add_scaled(k2_, 0.5 / (s * s), part_.K), add_scaled(k2_, -1.0 / (s * s), p0_.K);
   for (auto [p, m] : {std::pair{&p1_.C, &part_.C}, std::pair{&p1_.K, &part_.K}}) {
     set_scaled(*p, 0.5 / s, *p);
@@ -233,18 +280,13 @@ bool RunningSystem::residual(const system::Frames& f, double Omega, const VecX& 
   if (fits_polynomial(f, Omega, q)) {
     r = r0_ + Omega * r1_ + (Omega * Omega) * r2_;
   } else {
-    if (!evaluate_residual(f, Omega, q, 0.0, r, smooth_)) return false;
+    if (!smooth_residual(f, Omega, q, r)) return false;
   }
   if (!other_.empty()) {
     if (!evaluate_residual(f, Omega, q, 0.0, r_, other_)) return false;
     r += r_;
   }
-  if (!turning_.empty())
-    for (std::size_t k = 0; k < theta_.size(); ++k) {
-      if (!evaluate_residual(f, Omega, q, theta_[k], r_, turning_)) return false;
-      r += weights_(0, static_cast<Index>(k)) * r_;
-    }
-  return true;
+  return add_mean_residual(f, Omega, q, turning_, r);
 }
 
 bool RunningSystem::tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
@@ -260,34 +302,24 @@ bool RunningSystem::tangent(const system::Frames& f, double Omega, const VecX& q
     Eigen::Map<VecX>(out.C.data(), n) = Eigen::Map<const VecX>(p0_.C.data(), n) + Omega * Eigen::Map<const VecX>(p1_.C.data(), n);
     Eigen::Map<VecX>(out.K.data(), n) = Eigen::Map<const VecX>(p0_.K.data(), n) + Omega * Eigen::Map<const VecX>(p1_.K.data(), n) +
                                         (Omega * Omega) * Eigen::Map<const VecX>(k2_.data(), n);
-  } else if (!evaluate_tangent(f, Omega, q, 0.0, out, smooth_)) {
+  } else if (!smooth_tangent(f, Omega, q, out)) {
     return false;
   }
   if (!other_.empty()) {
     if (!evaluate_tangent(f, Omega, q, 0.0, part_, other_)) return false;
     add_scaled(out, 1.0, part_);
   }
-  if (!turning_.empty())
-    for (std::size_t k = 0; k < theta_.size(); ++k) {
-      if (!evaluate_tangent(f, Omega, q, theta_[k], part_, turning_)) return false;
-      add_scaled(out, weights_(0, static_cast<Index>(k)), part_);
-    }
-  return true;
+  return add_mean_tangent(f, Omega, q, turning_, out);
 }
 
 bool RunningSystem::forcing(const system::Frames& f, double Omega, const VecX& q, std::vector<VecXc>& out) {
   out.resize(orders_.size());
-  for (auto& x : out) x = VecXc::Zero(q.size());
-  if (turning_.empty()) return true;
-  for (std::size_t k = 0; k < theta_.size(); ++k) {
-    if (!evaluate_residual(f, Omega, q, theta_[k], r_, turning_)) return false;
-    // A cos + B sin = Re((A - iB) e^(i x))
-    for (std::size_t o = 0; o < orders_.size(); ++o) {
-      const Index c = 1 + 2 * static_cast<Index>(o), j = static_cast<Index>(k);
-      out[o] += r_ * Complex(weights_(c, j), -weights_(c + 1, j));
-    }
+  const bool ready = fits_polynomial(f, Omega, q);
+  for (std::size_t o = 0; o < orders_.size(); ++o) {
+    if (ready) out[o] = f0_[o] + Omega * f1_[o] + (Omega * Omega) * f2_[o];
+    else out[o] = VecXc::Zero(q.size());
   }
-  return true;
+  return (ready || add_forcing(f, Omega, q, turning_smooth_, out)) && add_forcing(f, Omega, q, turning_, out);
 }
 
 }  // namespace whirl::analysis

@@ -8,8 +8,8 @@
 // fit with first and second harmonics of every speed; exact for what has no higher harmonics). No element is known by name.
 // The same averages of the tangents are the matrices M, C(Omega), K(Omega); an axisymmetric balanced rotor needs no average.
 //
-// Terms that are quadratic in the rates and do not see phi keep their matrices as polynomials in Omega (C linear, K
-// quadratic: exact), so a sweep over speeds re-evaluates bearings and the like only.
+// Terms that are quadratic in the rates keep their (mean) matrices and forcing as polynomials in Omega (C linear, K and forcing
+// quadratic: exact), so a sweep over speeds re-evaluates films and the like only.
 #pragma once
 #include <system/system.hpp>
 #include <span>
@@ -34,7 +34,7 @@ class RunningSystem {
   double ratio(Index line) const { return ratio_[static_cast<std::size_t>(line)]; }
   /// 1 where phi turns with the line.
   std::span<const unsigned char> spinning() const { return spinning_; }
-  bool phase_dependent() const { return !turning_.empty(); }
+  bool phase_dependent() const { return !turning_.empty() || !turning_smooth_.empty(); }
   /// Distinct |ratio| > 0, ascending.
   std::span<const double> orders() const { return orders_; }
 
@@ -64,6 +64,11 @@ class RunningSystem {
   using Terms = std::vector<std::size_t>;
   bool evaluate_residual(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r, const Terms& only);
   bool evaluate_tangent(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out, const Terms& only);
+  bool add_mean_residual(const system::Frames& f, double Omega, const VecX& q, const Terms& only, VecX& r);
+  bool add_mean_tangent(const system::Frames& f, double Omega, const VecX& q, const Terms& only, la::MCK& out);
+  bool add_forcing(const system::Frames& f, double Omega, const VecX& q, const Terms& only, std::vector<VecXc>& out);
+  bool smooth_residual(const system::Frames& f, double Omega, const VecX& q, VecX& r);
+  bool smooth_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
   bool make_polynomial(const system::Frames& f, double Omega, const VecX& q);
   bool fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const;
   void sort_terms();
@@ -74,13 +79,14 @@ class RunningSystem {
   std::vector<double> ratio_, orders_;
   std::vector<unsigned char> spinning_;
   std::vector<std::pair<Index, Index>> held_;   ///< line that cannot turn, and the node at which it is held
-  Terms smooth_, other_, turning_;         ///< quadratic in rates and blind to phi; blind to phi; the rest
+  Terms smooth_, other_;                   ///< blind to phi: quadratic in the rates; the rest
+  Terms turning_smooth_, turning_;         ///< that see phi: the same
   Terms blind_, all_;
   std::vector<double> theta_;              ///< samples
   MatX weights_;                           ///< rows: mean, then cos and sin of each order; columns: samples
   system::Workspace workspace_;
   VecX q_, v_, a_, r_;                     // scratch
-  la::MCK part_;
+  la::MCK part_, sample_;
   // smooth terms as polynomials at one q
   bool polynomial_ = false, seen_ = false;
   double scale_ = 0, polynomial_load_ = 1, seen_speed_ = 0;
@@ -89,6 +95,7 @@ class RunningSystem {
   la::MCK p0_, p1_;                        ///< constant part; slopes of C and K
   la::BlockMatrix<6> k2_;                  ///< curvature of K
   VecX r0_, r1_, r2_;
+  std::vector<VecXc> f0_, f1_, f2_;        ///< forcing
 };
 
 }  // namespace whirl::analysis

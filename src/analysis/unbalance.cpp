@@ -19,7 +19,7 @@ UnbalanceSolver::UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& opt
   if (!options_.outputs.empty()) meter_ = std::make_unique<VariationMeter>(linear);
 }
 
-SteadyPoint UnbalanceSolver::at(double Omega) {
+SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
   SteadyPoint p;
   p.Omega = Omega;
   const auto orders = linear_.running().orders();
@@ -38,7 +38,7 @@ SteadyPoint UnbalanceSolver::at(double Omega) {
     }
     p.probe.emplace_back();
     for (const ResponseProbe& probe : options_.probes) p.probe.back().push_back(amplitude_at(linear_, a, probe.point));
-    if (meter_) {
+    if (meter_ && with_outputs) {
       p.output.emplace_back();
       meter_->measure(a, w, options_.outputs, p.output.back());
     }
@@ -49,7 +49,7 @@ SteadyPoint UnbalanceSolver::at(double Omega) {
 
 void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe, const std::vector<SteadyPoint>& coarse, std::vector<SteadyPoint>& extra) {
   const auto size = [&](const SteadyPoint& p) { return p.probe[order][probe].orbit().major; };
-  const auto evaluate = [&](double Omega) { return size(at(Omega)); };
+  const auto evaluate = [&](double Omega) { return size(at(Omega, false)); };
   double top = 0;
   for (const SteadyPoint& p : coarse) top = std::max(top, size(p));
   for (std::size_t i = 1; i + 1 < coarse.size(); ++i) {

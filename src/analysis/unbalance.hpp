@@ -45,8 +45,8 @@ struct ResponsePeak {
 class UnbalanceSolver {
  public:
   UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& options);
-  /// Response at one speed.
-  SteadyPoint at(double Omega);
+  /// Response at one speed; with_outputs = false: probes only.
+  SteadyPoint at(double Omega, bool with_outputs = true);
   UnbalanceResponse run();
   /// Peaks of the last run, by order, probe, speed. Found to 1e-9 of the speed, half-power points too.
   const std::vector<ResponsePeak>& peaks() const { return peaks_; }

@@ -103,7 +103,7 @@ void add_shafts(Assembly& a) {
   for (const meshes::RigidPart& r : a.mesh.rigid_parts) add_rigid_part(a, a.model.shafts[static_cast<std::size_t>(r.line)], r);
   for (const model::Shaft& s : a.model.shafts)
     if (s.damping.loss_factor != 0)
-      a.built.left_out.push_back(fmt::format("hysteretic damping of shaft '{}' (loss factor {}): it has no form in time; frequency-domain steps apply it",
+      a.built.left_out.push_back(fmt::format("hysteretic damping of shaft '{}' (loss factor {}): it has no form in time and no step applies it; internal_beta = loss factor / |whirl frequency - speed| stands for it at one frequency",
                                              s.name, s.damping.loss_factor));
 }
 

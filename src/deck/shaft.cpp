@@ -52,7 +52,7 @@ void describe_damping(Visitor& v, model::ShaftDamping& d) {
   v.quantity("rayleigh_alpha", d.alpha, "1/s", not_negative, "mass-proportional damping, external (acts on the motion in fixed axes)");
   v.quantity("external_beta", d.beta_external, "s", not_negative, "stiffness-proportional damping, external: damps at every speed");
   v.quantity("internal_beta", d.beta_internal, "s", not_negative, "stiffness-proportional viscous damping of the shaft itself, in its rotating axes: destabilises forward whirl above the critical speed");
-  v.number("internal_loss_factor", d.loss_factor, fraction, "hysteretic damping of the shaft itself, in its rotating axes");
+  v.number("internal_loss_factor", d.loss_factor, fraction, "hysteretic damping of the shaft itself, in its rotating axes; recorded, but no step applies it: use internal_beta");
   v.quantity("torsion_beta", d.beta_torsion, "s", not_negative, "stiffness-proportional damping of the twist");
 }
 

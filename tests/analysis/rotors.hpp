@@ -107,8 +107,7 @@ struct Rotor {
 
 /// Friswell, Penny, Garvey, Lees, Dynamics of Rotating Machines (2010), example 5.9.1: two disks on a 1.5 m shaft.
 struct TwoDisk : Rotor {
-  TwoDisk(int elements, double ky = 1e6, double kz = 1e6, double c = 0, elements::MassKind mass = elements::MassKind::corrected, double tension = 0) {
-    preload = tension;
+  TwoDisk(int elements, double ky = 1e6, double kz = 1e6, double c = 0, elements::MassKind mass = elements::MassKind::corrected) {
     add_shaft(cylinder(0.05, 2.11e11, 8.12e10, 7810), 1.5, elements, mass);
     add_disk_of_size(0.5, 0.07, 0.28, 0.05, 7810).add_disk_of_size(1.0, 0.07, 0.35, 0.05, 7810);
     add_bearing(0, ky, kz, c, c).add_bearing(1.5, ky, kz, c, c);
