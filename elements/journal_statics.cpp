@@ -101,7 +101,7 @@ JournalEquilibrium find_journal_equilibrium(const FilmFunction& film, const Vec2
       const double a = two_pi * k / 72;
       if (b.at(0.999 * limit * Vec2(std::cos(a), std::sin(a)))) capacity = std::max(capacity, b.F.norm());
     }
-    throw run_error("E80",
+    throw run_error("E87",
                     fmt::format("no equilibrium: load {:.6g} N at {:.6g} rad/s; the film carries at most {:.6g} N at eccentricity {:.4g}; "
                                 "reached eccentricity {:.4g}",
                                 W, spin, capacity, 0.999 * options.max_eccentricity, reached),

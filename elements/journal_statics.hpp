@@ -31,7 +31,7 @@ struct EquilibriumOptions {
 };
 
 /// Solves F(r, 0, spin) + load = 0. load: force on the journal from outside, N. clearance: length scale of the film, m.
-/// Throws E80 when there is none below max_eccentricity; the message has load, capacity and eccentricity reached.
+/// Throws E87 when there is none below max_eccentricity; the message has load, capacity and eccentricity reached.
 JournalEquilibrium find_journal_equilibrium(const FilmFunction& film, const Vec2& load, double spin, double clearance,
                                             const EquilibriumOptions& options = {});
 
@@ -53,7 +53,7 @@ struct WhirlOnset {
 };
 
 /// Lowest spin in [low, high] at which a symmetric rotor loses stability: mass per bearing on a shaft of stiffness per bearing
-/// shaft_stiffness (infinite: rigid rotor), the load held. Throws E80 when some speed has no equilibrium; speed = infinity
+/// shaft_stiffness (infinite: rigid rotor), the load held. Throws E87 when some speed has no equilibrium; speed = infinity
 /// when the rotor is stable throughout. The range is scanned in `points` steps, then bisected to 1e-12.
 WhirlOnset find_whirl_onset(const FilmFunction& film, const Vec2& load, double mass, double clearance, double low, double high,
                             double shaft_stiffness = infinity, int points = 200, const EquilibriumOptions& options = {});

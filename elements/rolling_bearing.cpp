@@ -65,13 +65,14 @@ Vector<6> RollingBearing<Contact>::deflection(const Nodes<2>& x) const {
 }
 
 template <class Contact>
-void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p, bool with_hessian) const {
+void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p, bool with_hessian, int copies) const {
   p.V = 0, p.g.setZero(), p.H.setZero();
   typename Contact::Local l;
   // One turn of Z steps by the addition theorem: no trigonometry in the loop.
   double c = std::cos(q[5]), s = std::sin(q[5]);
-  const double c1 = std::cos(two_pi / elements), s1 = std::sin(two_pi / elements);
-  for (int j = 0; j < elements; ++j) {
+  const int n = copies * elements;
+  const double c1 = std::cos(two_pi / n), s1 = std::sin(two_pi / n);
+  for (int j = 0; j < n; ++j) {
     const double rho = q[1] * c + q[2] * s, t = q[3] * c + q[4] * s;
     if (contact.evaluate(q[0], rho, t, l)) {
       const double rho_psi = q[2] * c - q[1] * s, t_psi = q[4] * c - q[3] * s;
@@ -93,6 +94,16 @@ void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p,
     s = s * c1 + c * s1;
     c = next;
   }
+  if (copies > 1) p.V /= copies, p.g /= copies, p.H /= copies;
+}
+
+template <class Contact>
+void RollingBearing<Contact>::evaluate(const Nodes<2>& x, bool averaged, RollingPotential& p, bool with_hessian) const {
+  Vector<6> q = deflection(x);
+  if (!averaged) return potential(q, p, with_hessian, 1);
+  q[5] = 0.0;
+  potential(q, p, with_hessian, (smeared + elements - 1) / elements);
+  p.g[5] = 0.0, p.H.row(5).setZero(), p.H.col(5).setZero();
 }
 
 template <class Contact>
@@ -115,9 +126,9 @@ Vec3 damping_of(double c_axial, double c_radial) { return Vec3(c_axial, c_radial
 }  // namespace
 
 template <class Contact>
-void RollingBearing<Contact>::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
+void RollingBearing<Contact>::add_force(const Nodes<2>& x, const Context& context, ForceX<14>& f) const {
   RollingPotential p;
-  potential(deflection(x), p, false);
+  evaluate(x, context.averaged, p, false);
   const Vec3 drag = damping_of(c_axial, c_radial).cwiseProduct(x[0]->du - x[1]->du);
   f.template segment<3>(0) += p.g.template head<3>() + drag, f.template segment<3>(7) -= p.g.template head<3>() + drag;
   f.template segment<2>(4) += p.g.template segment<2>(3), f.template segment<2>(11) -= p.g.template segment<2>(3);
@@ -125,9 +136,9 @@ void RollingBearing<Contact>::add_force(const Nodes<2>& x, const Context&, Force
 }
 
 template <class Contact>
-void RollingBearing<Contact>::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& t) const {
+void RollingBearing<Contact>::add_tangent(const Nodes<2>& x, const Context& context, TangentX<14>& t) const {
   RollingPotential p;
-  potential(deflection(x), p, true);
+  evaluate(x, context.averaged, p, true);
   const double sign[2][6] = {{1, 1, 1, 1, 1, cage[0]}, {-1, -1, -1, -1, -1, cage[1]}};
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b)
@@ -138,9 +149,9 @@ void RollingBearing<Contact>::add_tangent(const Nodes<2>& x, const Context&, Tan
 }
 
 template <class Contact>
-void RollingBearing<Contact>::add_energy(const Nodes<2>& x, const Context&, Energy& e) const {
+void RollingBearing<Contact>::add_energy(const Nodes<2>& x, const Context& context, Energy& e) const {
   RollingPotential p;
-  potential(deflection(x), p, false);
+  evaluate(x, context.averaged, p, false);
   e.elastic += p.V;
   const Vec3 v = x[0]->du - x[1]->du;
   e.dissipated += damping_of(c_axial, c_radial).dot(v.cwiseProduct(v));

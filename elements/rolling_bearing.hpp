@@ -12,6 +12,8 @@
 //   roller:  delta = rho + s_k t - clearance over `slices` laminae at axial positions s_k, exponent 10/9, load K/slices each
 // Damping: -c_r v lateral, -c_a v axial (grease, mounting; N s/m).
 //
+// Frequency-domain analyses (Context::averaged) see the mean over the cage angle: the elements smeared round the ring.
+//
 // Limits: no centrifugal force or gyroscopic moment of the elements (ball bearings: n d_m below about 5e5 mm/min), rings round and
 // rigid, cage exactly at the rolling speed, tilts small (tau << 1). The onset of contact is C1 (3/2) or C1 with an
 // unbounded second derivative (10/9): no smoothing is used.
@@ -69,10 +71,14 @@ struct RollingBearing {
 
   /// q of the nodes; psi reduced by whole turns of the cage.
   Vector<6> deflection(const system::Nodes<2>& x) const;
-  /// with_hessian = false leaves H at zero.
-  void potential(const Vector<6>& q, RollingPotential& p, bool with_hessian) const;
+  /// with_hessian = false leaves H at zero. copies > 1: that many times the elements, each with its part of the stiffness.
+  void potential(const Vector<6>& q, RollingPotential& p, bool with_hessian, int copies = 1) const;
   /// Load of every rolling element, N.
   std::vector<double> loads(const Vector<6>& q) const;
+
+ private:
+  static constexpr int smeared = 96;         ///< at least so many elements stand for the mean over the cage angle
+  void evaluate(const system::Nodes<2>& x, bool averaged, RollingPotential& p, bool with_hessian) const;
 };
 
 using BallBearing = RollingBearing<BallContact>;

@@ -55,6 +55,7 @@ RunningSystem::RunningSystem(const system::System& system, Running running)
     if (spinning_[at(i)]) orders_.push_back(std::abs(ratio_[at(system.node(i).line)]));
   std::sort(orders_.begin(), orders_.end());
   orders_.erase(std::unique(orders_.begin(), orders_.end()), orders_.end());
+  workspace_.context.averaged = running_.mean;
   make_samples();
   sort_terms();
 }
@@ -199,10 +200,16 @@ bool RunningSystem::evaluate_tangent(const system::Frames& f, double Omega, cons
 }
 
 bool RunningSystem::residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r) {
-  return evaluate_residual(f, Omega, q, theta, r, all_);
+  workspace_.context.averaged = false;
+  const bool inside = evaluate_residual(f, Omega, q, theta, r, all_);
+  workspace_.context.averaged = running_.mean;
+  return inside;
 }
 bool RunningSystem::tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out) {
-  return evaluate_tangent(f, Omega, q, theta, out, all_);
+  workspace_.context.averaged = false;
+  const bool inside = evaluate_tangent(f, Omega, q, theta, out, all_);
+  workspace_.context.averaged = running_.mean;
+  return inside;
 }
 
 bool RunningSystem::fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const {

@@ -19,6 +19,19 @@ struct SupportForce {
   std::function<Vec3(const NodeAt&, double t, const ReactionAt&)> force;
 };
 
+/// How a support with a gap stands: films before their clearance is used up, contacts before they close.
+struct SupportCondition {
+  static constexpr double believed = 0.99;   ///< eccentricity beyond which a film is not believed
+  struct State {
+    bool film = false;
+    double gap = 0, displacement = 0;        ///< m
+    double load = 0, capacity = 0;           ///< N; capacity of a film: at the believed eccentricity
+  };
+  std::string name;
+  Where where;
+  std::function<State(const NodeAt&)> state;
+};
+
 /// Torque of a drive on its shaft, N m: of a torque curve, or the reaction of a prescribed angle.
 struct DriveTorque {
   std::string name;
@@ -36,6 +49,7 @@ struct Built {
   system::System system;
   std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors), sorted: integrator steps land on them
   std::vector<SupportForce> support_forces;
+  std::vector<SupportCondition> conditions;
   std::vector<DriveTorque> drive_torques;
   std::vector<LineSpin> spins;      ///< one a line
   Index reference = 0;              ///< node whose spin is the speed axis: the first drive's, else the first node of the first rotating line

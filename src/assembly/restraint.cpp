@@ -33,8 +33,25 @@ std::array<bool, 6> resisted(const model::Bearing& b) {
     out = rigid->held;
     for (std::size_t c = 0; c < 3 && b.pedestal; ++c)   // through the spring of its pedestal
       out[c] = out[c] && !b.pedestal->K.row(static_cast<Index>(c)).isZero(0.0);
+  } else if (const auto* spring = std::get_if<model::NonlinearSpring>(&b.law)) {
+    using Along = model::NonlinearSpring::Along;
+    static constexpr Direction of[] = {y, z, y, x, ry, rz, rx};
+    out[of[static_cast<std::size_t>(spring->along)]] = true;
+    if (spring->along == Along::radial) out[z] = true;
+  } else if (const auto* damper = std::get_if<model::SqueezeFilm>(&b.law)) {
+    out[y] = out[z] = damper->stiffness > 0;   // the film alone carries nothing at rest
+  } else if (std::holds_alternative<model::BallBearing>(b.law)) {
+    out[x] = out[y] = out[z] = out[ry] = out[rz] = true;
+  } else if (std::holds_alternative<model::RollerBearing>(b.law)) {
+    out[y] = out[z] = out[ry] = out[rz] = true;
+  } else if (const auto* coupling = std::get_if<model::Coupling>(&b.law)) {
+    for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = !coupling->K.row(c).isZero(0.0);
+  } else if (const auto* gear = std::get_if<model::GearPair>(&b.law)) {
+    out[x] = gear->helix != 0;   // one direction in space: not counted as holding y and z
+  } else if (std::holds_alternative<model::CrossCoupling>(b.law)) {
+    // circulatory: holds nothing
   } else {
-    out[y] = out[z] = true;   // a film or a clearance carries load once it is displaced
+    out[y] = out[z] = true;   // a film, a seal or a contact carries load once it is displaced
   }
   return out;
 }

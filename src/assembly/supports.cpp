@@ -1,6 +1,6 @@
 // Bearings, supports and pedestals. A bearing acts between its shaft node and the other side: ground, pedestal, or a second
 // station. Rigid supports hold unknowns of the shaft node itself; no penalty stiffness anywhere.
-#include <assembly/parts.hpp>
+#include <assembly/support_parts.hpp>
 #include <elements/linear_bearing.hpp>
 #include <elements/point_mass.hpp>
 #include <elements/spring_block.hpp>
@@ -11,14 +11,6 @@
 #include <map>
 
 namespace whirl::assembly {
-namespace {
-
-using system::NodeState;
-using Pair = std::array<Index, 2>;
-
-std::string name_of(const model::Bearing& b) { return fmt::format("bearing '{}'", b.name); }
-
-system::Nodes<2> nodes_of(const NodeAt& at, const Pair& n) { return {&at(n[0]), &at(n[1])}; }
 
 // ---------------------------------------------------------------- one function a law
 
@@ -43,6 +35,8 @@ void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
       {b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>()); }});
 }
 
+namespace {
+
 void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::SpringBlock& law) {
   if (n.other.node >= 0) {   // relative to a moving point: the linear form
     model::LinearBearing linear;
@@ -58,24 +52,6 @@ void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
       {b.name, [k, node](const NodeAt& at, double, const ReactionAt&) { return Vec3(-k.C1 * k.displacement(at(node))); }});
 }
 
-/// A lateral law between journal and housing.
-template <class Law>
-void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Law& law, const char* kind) {
-  const Pair nodes{n.shaft.node, n.other.node};
-  const auto add = [&](auto joint) {
-    joint.law = law;
-    joint.offset = {n.shaft.offset, n.other.offset};
-    a.builder.add(joint, nodes, kind);
-    a.built.support_forces.push_back({b.name, [joint, nodes](const NodeAt& at, double, const ReactionAt&) {
-      Vector<4> z;
-      joint.law.force(joint.motion_of(nodes_of(at, nodes)), z);
-      return Vec3(0, z[0], z[1]);
-    }});
-  };
-  if (n.shaft.offset == 0 && n.other.offset == 0) add(elements::LateralJoint<Law, false>{});
-  else add(elements::LateralJoint<Law, true>{});
-}
-
 void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law) {
   using Table = elements::CoefficientTable;
   const auto matrix = [](const std::array<double, 4>& c) { return (Mat2() << c[0], c[1], c[2], c[3]).finished(); };
@@ -86,14 +62,11 @@ void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     rows[i].M = i < law.M.size() ? matrix(law.M[i]) : Mat2::Zero();
   }
   std::shared_ptr<const Table> table;
-  try {
+  const bool made = guarded(a, b, [&] {
     table = std::make_shared<Table>(law.speed, std::move(rows), law.monotone_cubic ? Table::Between::monotone_cubic : Table::Between::linear,
                                     law.extrapolate_hold ? Table::Outside::hold : Table::Outside::undefined);
-  } catch (const Error& e) {
-    const Diagnostic& d = e.diagnostics().front();
-    a.error(d.code.c_str(), fmt::format("{}: {}", name_of(b), d.message), d.hint, b, name_of(b));
-    return;
-  }
+  });
+  if (!made) return;
   if (table->has_mass()) add_lateral(a, b, n, elements::TableBearingLaw<true>{table}, "tabulated bearings");
   else add_lateral(a, b, n, elements::TableBearingLaw<false>{table}, "tabulated bearings");
 }
@@ -204,7 +177,8 @@ void add_supports(Assembly& a) {
           if constexpr (std::is_same_v<Law, model::LinearBearing>) add_linear(a, b, n, law);
           else if constexpr (std::is_same_v<Law, model::SpringBlock>) add_block(a, b, n, law);
           else if constexpr (std::is_same_v<Law, model::TableBearing>) add_table(a, b, n, law);
-          else add_rigid(a, b, n, law, held);
+          else if constexpr (std::is_same_v<Law, model::RigidSupport>) add_rigid(a, b, n, law, held);
+          else add_law(a, b, n, law);
         },
         b.law);
     if (n.pedestal >= 0) add_pedestal(a, b, n);

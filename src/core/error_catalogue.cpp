@@ -145,6 +145,11 @@ const std::vector<CodeInfo>& error_catalogue() {
        "E, G and the density are positive, and Poisson's ratio lies between -1 and 0.5. G, when given, must agree with E/(2(1+nu)) for an "
        "isotropic material unless nu is left out.",
        ""},
+      {"E37", "a gear ratio that contradicts the speeds",
+       "The speeds of two geared shafts are to each other as -teeth/other_teeth (external gears turn against each other; other_teeth < 0, an "
+       "internal gear, turns the same way). speed_ratio, initial_spin and prescribed speeds of the shafts must agree with it: the message names the "
+       "ratio that fits.",
+       "[[shaft]]\nname = \"pinion\"\nspeed_ratio = -2.5\n\n[[bearing]]\ntype = \"gear\"\nat = \"wheel\"\nto = \"pinion:mid\"\nteeth = 50\nother_teeth = 20"},
       {"E71", "the split of the rotation reached its limit",
        "A section normal turned by pi from the axis of its shaft: the axial angle and the azimuth of the transverse rotation then describe the same "
        "motion. With model.chart_change = true (the default) the reference axes are moved before that happens; without, the run ends "
@@ -182,6 +187,30 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"E80", "a critical-speed map without bearings",
        "The step varies the stiffness of bearings; those it names must exist, and by default bearings that are not rigid are varied.",
        ""},
+      {"E81", "a coefficient table cannot be used",
+       "A table needs rows, finite values and speeds that increase.",
+       ""},
+      {"E82", "a force curve cannot be used",
+       "Polynomials have 1 to 8 coefficients, tables at least two points with increasing deflections; gaps and stiffnesses are not negative.",
+       ""},
+      {"E83", "a rolling bearing that cannot be",
+       "Balls or rollers must fit side by side on their pitch circle, groove radii exceed half the ball diameter, and a clearance stays within the "
+       "grooves. An axial preload needs a contact angle.",
+       ""},
+      {"E84", "a journal bearing that cannot be",
+       "Clearance positive, preload at least 0 and below 1, pads that do not overlap and leave something between the grooves, 8 to 360 grid points.",
+       ""},
+      {"E85", "a viscosity that cannot be found",
+       "ISO VG grades hold between 243 and 473 K (-30 to 200 degC), the two-point formula between 223 and 523 K.",
+       ""},
+      {"E86", "a gear pair that cannot be",
+       "Teeth, radius and pressure angle must make a gear pair; stiffness and backlash are not negative, and the harmonics of the stiffness add up to "
+       "less than 1.",
+       ""},
+      {"E87", "a journal finds no equilibrium in its bearing",
+       "The load is more than the film carries at this speed below the eccentricity it is believed to. The message gives load, capacity and the "
+       "eccentricity reached.",
+       ""},
       {"E90", "a plug-in is missing or does not fit",
        "VTK, HDF5 and SUNDIALS live in plug-ins that are loaded only when a deck asks for them. The message lists where the file was looked for. "
        "Install the package that holds it, set WHIRL_PLUGIN_PATH, or ask for another output or method.",
@@ -205,6 +234,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        ""},
       {"W02", "a setting without effect",
        "The key is understood but nothing in this deck reads it, for example a VTK output when no step is transient.",
+       ""},
+      {"W03", "outside the range of a theory",
+       "The model is computed as asked, but the formulas behind it are known to be inaccurate for these dimensions. The message says what fits "
+       "better.",
        ""},
   };
   return t;

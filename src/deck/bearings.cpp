@@ -2,8 +2,8 @@
 //
 // To add a kind:
 //   1. its parameters as a plain struct in SI in model.hpp, and the struct in the variant BearingLaw;
-//   2. a function `void describe(Visitor&, model::NewBearing&)` here (or in a file of its own, declared above the list
-//      below): one line per key with unit, range and explanation, then the checks between keys;
+//   2. a function `void describe(Visitor&, model::NewBearing&)` here or in the file of its family, declared in
+//      bearing_kinds.hpp: one line per key with unit, range and explanation, then the checks between keys;
 //   3. one line in the list in describe(Visitor&, model::Bearing&).
 // Reading, error messages, the JSON schema, the reference documentation and the resolved deck follow from these.
 //
@@ -13,7 +13,7 @@
 //     if (v.clean() && b.clearance > 0.1 * b.diameter) v.error("E14", "clearance", "the clearance is not small against the diameter");
 //   }
 #include <core/units.hpp>
-#include <deck/visitor.hpp>
+#include <deck/bearing_kinds.hpp>
 #include <fmt/format.h>
 
 namespace whirl::deck {
@@ -21,6 +21,8 @@ namespace {
 
 constexpr const char* place = "place on a shaft: \"section:mid\", \"section:end - 20 mm\", \"1.14 m\"";
 constexpr const char* axis_names[3] = {"x", "y", "z"};
+
+}  // namespace
 
 /// The nine translational entries of a 6x6 matrix: prefix "k" -> kxx, kxy, ... in rows (force) and columns (displacement).
 void describe_translation(Visitor& v, Matrix<6>& m, char prefix, const char* unit, const char* what) {
@@ -50,8 +52,6 @@ void describe_rotation(Visitor& v, Matrix<6>& m, bool damping, const char* unit)
   if (all && !y) m(4, 4) = both;
   if (all && !z) m(5, 5) = both;
 }
-
-}  // namespace
 
 void describe(Visitor& v, model::SpringBlock& b) {
   v.quantity(required("C1"), b.C1, "N/m", not_negative, "stiffness against displacement, the same in all directions: force -C1 r");
@@ -158,6 +158,17 @@ void describe(Visitor& v, model::Pedestal& p) {
   if (v.clean() && (!(p.K(1, 1) > 0) || !(p.K(2, 2) > 0))) v.error("E05", nullptr, "the support needs 'kyy' and 'kzz'", "leave 'support' out for a rigid pedestal");
 }
 
+namespace {
+
+Alternative spring(const char* word, model::BearingLaw& law, bool angular, const char* doc) {
+  return {word, doc, [&law, angular](Visitor& v) {
+            if (!std::holds_alternative<model::NonlinearSpring>(law)) law = model::NonlinearSpring{};
+            describe_spring(v, std::get<model::NonlinearSpring>(law), angular);
+          }};
+}
+
+}  // namespace
+
 void describe(Visitor& v, model::Bearing& b) {
   v.name(b, "bearing");
   v.location(required("at"), b.at, place);
@@ -168,10 +179,25 @@ void describe(Visitor& v, model::Bearing& b) {
       Visitor::alternative<model::SpringBlock>("spring_block", b.law, "isotropic spring at a point and isotropic spring against tilt"),
       Visitor::alternative<model::TableBearing>("table", b.law, "lateral stiffness and damping tabulated against speed"),
       Visitor::alternative<model::RigidSupport>("rigid", b.law, "directions held exactly"),
+      spring("nonlinear_spring", b.law, false, "spring and damper along one direction: polynomial, table, clearance, one-sided"),
+      spring("nonlinear_angular_spring", b.law, true, "the same for a tilt or the twist"),
+      Visitor::alternative<model::ShortJournal>("short_journal", b.law, "plain journal bearing, short-bearing theory, cavitated half film; nonlinear in displacement and velocity"),
+      Visitor::alternative<model::FiniteJournal>("journal", b.law, "journal bearing of finite length with cavitation: plain, with axial grooves, multi-lobe; nonlinear"),
+      Visitor::alternative<model::SqueezeFilm>("squeeze_film", b.law, "squeeze-film damper, with a centring spring or without"),
+      Visitor::alternative<model::BallBearing>("ball", b.law, "deep-groove or angular-contact ball bearing: Hertz contact, clearance or preload, varying compliance"),
+      Visitor::alternative<model::RollerBearing>("roller", b.law, "cylindrical roller bearing"),
+      Visitor::alternative<model::Rub>("rub", b.law, "rub, stop or catcher bearing: one-sided contact with friction; with 'support' the stator has mass and springs"),
+      Visitor::alternative<model::AnnularSeal>("annular_seal", b.law, "liquid annular seal, coefficients after Black and Childs that follow the speed"),
+      Visitor::alternative<model::CrossCoupling>("cross_coupling", b.law, "destabilising force of a stage: given, Alford or Wachel"),
+      Visitor::alternative<model::Coupling>("coupling", b.law, "flexible coupling between two shafts, 6x6, with misalignment; needs 'to'"),
+      Visitor::alternative<model::GearPair>("gear", b.law, "spur or helical gear pair between two shafts: mesh stiffness, backlash, transmission error; needs 'to'"),
   };
   v.alternatives(required("type"), kinds, "kind of bearing");
   v.table(optional("support", "rigid"), b.pedestal, "a pedestal: mass on springs between the bearing and the ground");
   if (v.clean() && b.to && b.to->shaft == b.at.shaft && b.to->s == b.at.s) v.error("E14", "to", "the bearing connects a station with itself");
+  const bool pair = std::holds_alternative<model::Coupling>(b.law) || std::holds_alternative<model::GearPair>(b.law);
+  if (v.clean() && pair && (!b.to || b.to->shaft == b.at.shaft))
+    v.error("E26", b.to ? "to" : nullptr, fmt::format("'{}' connects two shafts, but {}", b.name, b.to ? "both its places are on one" : "'to' is missing"), "to = \"other_shaft/section:start\"");
   if (v.clean() && b.to && b.pedestal) v.error("E26", "support", "a bearing between two shafts has no pedestal");
 }
 

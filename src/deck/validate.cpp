@@ -31,6 +31,17 @@ std::array<bool, 5> held_by(const model::BearingLaw& law) {
   if (const auto* b = std::get_if<model::SpringBlock>(&law)) return {b->C1 > 0, b->C1 > 0, b->C1 > 0, b->C2 > 0, b->C2 > 0};
   if (const auto* b = std::get_if<model::LinearBearing>(&law)) return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
   if (const auto* b = std::get_if<model::RigidSupport>(&law)) return {b->held[0], b->held[1], b->held[2], b->held[5], b->held[4]};
+  if (const auto* b = std::get_if<model::NonlinearSpring>(&law)) {
+    using Along = model::NonlinearSpring::Along;
+    const bool radial = b->along == Along::radial;
+    return {b->along == Along::x, radial || b->along == Along::y, radial || b->along == Along::z, b->along == Along::rz, b->along == Along::ry};
+  }
+  if (const auto* b = std::get_if<model::SqueezeFilm>(&law)) return {false, b->stiffness > 0, b->stiffness > 0, false, false};
+  if (std::holds_alternative<model::BallBearing>(law)) return {true, true, true, true, true};
+  if (std::holds_alternative<model::RollerBearing>(law)) return {false, true, true, true, true};
+  if (const auto* b = std::get_if<model::Coupling>(&law)) return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
+  if (const auto* b = std::get_if<model::GearPair>(&law)) return {b->helix != 0, false, false, false, false};
+  if (std::holds_alternative<model::CrossCoupling>(law)) return {};
   return {false, true, true, false, false};
 }
 
@@ -150,6 +161,44 @@ void check_drives(const model::Model& m, Problems& out) {
     }
 }
 
+/// Prescribed spin of a shaft in a step (null: none).
+const model::PrescribedSpin* prescribed(const model::Model& m, std::size_t shaft, const model::Step* s) {
+  for (const auto& d : m.drives)
+    if (d.at.shaft == shaft && (d.step.empty() || (s && d.step == s->name)))
+      if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law); p && p->angle) return p;
+  return nullptr;
+}
+
+void check_gears(const model::Model& m, Problems& out) {
+  for (const auto& b : m.bearings) {
+    const auto* g = std::get_if<model::GearPair>(&b.law);
+    if (!g || !b.to) continue;
+    const auto &here = m.shafts[b.at.shaft], &there = m.shafts[b.to->shaft];
+    const double ratio = -static_cast<double>(g->teeth) / g->other_teeth;
+    const auto wrong = [ratio](double a, double c) { return std::abs(c - ratio * a) > 1e-6 * std::max(std::abs(c), std::abs(ratio * a)); };
+    const std::string gears = fmt::format("gear pair '{}' ({} and {} teeth) turns shaft '{}' at {:.6g} times the speed of '{}'", b.name, g->teeth, g->other_teeth, there.name, ratio, here.name);
+    if (wrong(here.speed_ratio, there.speed_ratio))
+      add(out, "E37", fmt::format("{}, but their speed_ratio are {:.6g} and {:.6g}", gears, there.speed_ratio, here.speed_ratio),
+          fmt::format("speed_ratio = {:.10g} for shaft '{}'", ratio * here.speed_ratio, there.name), there.where);
+    else if (wrong(here.spin0, there.spin0))
+      add(out, "E37", fmt::format("{}, but their initial_spin are {} and {}", gears, units::display(there.spin0, "rpm"), units::display(here.spin0, "rpm")),
+          fmt::format("initial_spin = \"{}\" for shaft '{}'", units::display(ratio * here.spin0, "rpm"), there.name), there.where);
+    for (const auto& s : m.steps) {
+      const auto* t = std::get_if<model::TransientStep>(&s.law);
+      const auto *p = prescribed(m, b.at.shaft, &s), *q = prescribed(m, b.to->shaft, &s);
+      if (!t || !p || !q) continue;
+      bool said = false;
+      for (int i = 0; i <= 200 && !said; ++i) {   // enough to see a law that does not follow the other
+        const double time = t->duration * i / 200, a = p->angle->at(time).df, c = q->angle->at(time).df;
+        if (!wrong(a, c)) continue;
+        add(out, "E37", fmt::format("{}, but the drives of step '{}' prescribe {} and {} at {:.4g} s", gears, s.name, units::display(c, "rpm"), units::display(a, "rpm"), time),
+            "prescribe the speed of one of the two: the other follows through the mesh", b.where);
+        said = true;
+      }
+    }
+  }
+}
+
 void check_effects(const model::Model& m, Problems& out) {
   const bool transient = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) { return std::holds_alternative<model::TransientStep>(s.law); });
   const auto warn = [&](std::string what, const Where& w) {
@@ -175,6 +224,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_restraint(m, out);
   check_tables(m, out);
   check_drives(m, out);
+  check_gears(m, out);
   check_effects(m, out);
   return out;
 }

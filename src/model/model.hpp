@@ -4,6 +4,7 @@
 #include <core/error.hpp>
 #include <core/law.hpp>
 #include <core/types.hpp>
+#include <model/bearing_laws.hpp>
 #include <array>
 #include <map>
 #include <optional>
@@ -105,29 +106,8 @@ struct InitialMotion : Entity {
 
 // ---------------------------------------------------------------- supports and bearings
 
-/// The paper's spring block at a point: force -C1 (r - r0), moment -C2 gamma (gamma: Euler vector of the axis tilt).
-struct SpringBlock { double C1 = 0, C2 = 0; };
-
-/// Linear bearing or support between a shaft station and ground (or another station): 6x6 K, C, M in the order
-/// (x, y, z, rx, ry, rz), fixed axes; force on the shaft = preload - K (q - setpoint) - C q'.
-struct LinearBearing {
-  Matrix<6> K = Matrix<6>::Zero(), C = Matrix<6>::Zero(), M = Matrix<6>::Zero();
-  Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
-};
-
-/// K, C (and M) tabulated against speed: rows of full 2x2 lateral blocks in order yy, yz, zy, zz.
-struct TableBearing {
-  std::vector<double> speed;                      ///< rad/s, increasing
-  std::vector<std::array<double, 4>> K, C, M;     ///< same length as speed; M may be empty
-  bool monotone_cubic = true;                     ///< else linear
-  bool extrapolate_hold = false;                  ///< else outside the table is an error
-  std::string file;
-};
-
-/// Directions held rigidly (constraints, no penalty): x, y, z, rx (spin), ry, rz.
-struct RigidSupport { std::array<bool, 6> held{}; };
-
-using BearingLaw = std::variant<SpringBlock, LinearBearing, TableBearing, RigidSupport>;
+using BearingLaw = std::variant<SpringBlock, LinearBearing, TableBearing, RigidSupport, NonlinearSpring, ShortJournal, FiniteJournal, SqueezeFilm,
+                                BallBearing, RollerBearing, Rub, AnnularSeal, CrossCoupling, Coupling, GearPair>;
 
 /// A mass-spring-damper pedestal under a bearing: mass with its own y, z (and x) motion.
 struct Pedestal { double mass = 0; Mat3 K = Mat3::Zero(), C = Mat3::Zero(); };

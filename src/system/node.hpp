@@ -38,6 +38,9 @@ struct Context {
   double time = 0.0;
   Vec3 gravity = Vec3::Zero();  ///< g(t) minus base acceleration; already inside NodeState::ddu, here for energies
   double load = 1.0;            ///< factor on gravity and given loads: statics in load steps, buckling; 1 in every motion
+  /// Means over the revolution are asked for: gear meshes and rolling bearings, whose periods samples of the revolution would
+  /// alias, answer with their own mean.
+  bool averaged = false;
 };
 
 /// Force contribution in X: 3 (u) or 7 (u, d, phi) entries a node.

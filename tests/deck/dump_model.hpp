@@ -69,7 +69,44 @@ class ModelDump {
       each("how", std::array{x->monotone_cubic, x->extrapolate_hold});
     }
     if (const auto* x = std::get_if<model::RigidSupport>(&b.law)) each("held", x->held);
+    std::visit([this](const auto& x) { law(x); }, b.law);
     if (b.pedestal) { put("mass", b.pedestal->mass); matrix("K", b.pedestal->K); matrix("C", b.pedestal->C); }
+  }
+
+  template <class T> void law(const T&) {}   // those above
+  void law(const model::NonlinearSpring& x) {
+    const auto& f = x.force;
+    each("spring", std::array{double(x.along), double(f.shape), f.gap_minus, f.gap_plus, f.stiffness, f.smooth, double(f.monotone_cubic), x.damping, x.damping2});
+    each("coefficients", f.coefficients); each("q", f.q); each("F", f.F);
+  }
+  void oil(const model::Oil& o) { each("oil", std::array{o.viscosity, o.grade, o.temperature, o.density}); }
+  void law(const model::ShortJournal& x) { each("short", std::array{x.diameter, x.length, x.clearance}); oil(x.oil); }
+  void law(const model::FiniteJournal& x) {
+    each("journal", std::array{x.diameter, x.length, x.clearance, x.preload, double(x.shape), double(x.lobes), x.groove, x.groove_at, x.lobe_at, x.lobe_offset, double(x.nodes)});
+    oil(x.oil);
+  }
+  void law(const model::SqueezeFilm& x) {
+    each("squeeze", std::array{x.diameter, x.length, x.clearance, double(x.film), x.groove, x.groove_at, x.stiffness, x.damping});
+    oil(x.oil);
+  }
+  void law(const model::BallBearing& x) {
+    each("ball", std::array{double(x.balls), x.ball_diameter, x.pitch_diameter, x.contact_angle, x.clearance, x.f_inner, x.f_outer, x.stiffness, x.preload, double(x.direction), x.c_radial, x.c_axial});
+  }
+  void law(const model::RollerBearing& x) {
+    each("roller", std::array{double(x.rollers), x.roller_diameter, x.roller_length, x.pitch_diameter, x.clearance, x.stiffness, x.c_radial, x.c_axial});
+  }
+  void law(const model::Rub& x) { each("rub", std::array{x.gap, x.stiffness, x.damping, x.friction, x.diameter, x.slip_speed}); }
+  void law(const model::AnnularSeal& x) {
+    each("seal", std::array{x.diameter, x.length, x.clearance, x.pressure_drop, x.density, x.viscosity, x.inlet_loss, x.inlet_swirl});
+  }
+  void law(const model::CrossCoupling& x) {
+    each("cross", std::array{double(x.from), x.k, x.alford.beta, x.alford.torque, x.alford.diameter, x.alford.blade_height, x.wachel.power, x.wachel.speed,
+                             x.wachel.diameter, x.wachel.width, x.wachel.molar_mass, x.wachel.density_ratio});
+  }
+  void law(const model::Coupling& x) { matrix("K", x.K); matrix("C", x.C); each("hubs", std::array{x.offset_y, x.offset_z, x.angle_y, x.angle_z}); }
+  void law(const model::GearPair& x) {
+    each("gear", std::array{double(x.teeth), double(x.other_teeth), x.pitch_diameter, x.pressure_angle, x.helix, x.centre_angle, double(x.drive), x.stiffness, x.damping, x.backlash});
+    each("a", x.stiffness_harmonics); each("b", x.stiffness_phases); each("e", x.error_harmonics); each("f", x.error_phases);
   }
 
   void drive(const model::Drive& d) {

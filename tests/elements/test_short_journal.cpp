@@ -205,7 +205,7 @@ TEST(ShortJournal, NoEquilibriumSaysWhy) {
     FAIL() << "found an equilibrium at rest";
   } catch (const Error& e) {
     const auto& d = e.diagnostics().front();
-    EXPECT_EQ(d.code, "E80");
+    EXPECT_EQ(d.code, "E87");
     EXPECT_EQ(d.where.entity, "bearing 'DE'");
     EXPECT_NE(d.message.find("load 525 N"), std::string::npos);
     EXPECT_NE(d.message.find("carries at most 0 N"), std::string::npos) << d.message;

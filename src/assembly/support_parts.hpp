@@ -1,0 +1,87 @@
+// What the functions that add one kind of support share. Internal to src/assembly.
+#pragma once
+#include <assembly/parts.hpp>
+#include <elements/at_offset.hpp>
+#include <elements/lateral_joint.hpp>
+
+#include <fmt/format.h>
+
+namespace whirl::assembly {
+
+using Pair = std::array<Index, 2>;
+
+inline std::string name_of(const model::Bearing& b) { return fmt::format("bearing '{}'", b.name); }
+inline system::Nodes<2> nodes_of(const NodeAt& at, const Pair& n) { return {&at(n[0]), &at(n[1])}; }
+
+/// What a kernel's factory refuses becomes an error of the deck. Returns whether it went well.
+template <class Make>
+bool guarded(Assembly& a, const model::Bearing& b, Make make) {
+  try {
+    make();
+    return true;
+  } catch (const Error& e) {
+    const Diagnostic& d = e.diagnostics().front();
+    a.error(d.code.c_str(), fmt::format("{}: {}", name_of(b), d.message), d.hint, b, name_of(b));
+    return false;
+  }
+}
+
+/// A lateral law between journal and housing.
+template <class Law>
+void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Law& law, const char* kind) {
+  const Pair nodes{n.shaft.node, n.other.node};
+  const auto add = [&](auto joint) {
+    joint.law = law;
+    joint.offset = {n.shaft.offset, n.other.offset};
+    a.builder.add(joint, nodes, kind);
+    a.built.support_forces.push_back({b.name, [joint, nodes](const NodeAt& at, double, const ReactionAt&) {
+      Vector<4> z;
+      joint.law.force(joint.motion_of(nodes_of(at, nodes)), z);
+      return Vec3(0, z[0], z[1]);
+    }});
+  };
+  if (n.shaft.offset == 0 && n.other.offset == 0) add(elements::LateralJoint<Law, false>{});
+  else add(elements::LateralJoint<Law, true>{});
+}
+
+/// Any other two-node kernel; off the nodes through AtOffset. The force on the shaft is what stands on its node, with the sign changed.
+template <class K>
+void add_joint(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const K& kernel, const char* kind) {
+  const Pair nodes{n.shaft.node, n.other.node};
+  const auto add = [&](const auto& k) {
+    using Kernel = std::decay_t<decltype(k)>;
+    a.builder.add(k, nodes, kind);
+    a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, double t, const ReactionAt&) {
+      system::ForceX<2 * Kernel::width> f = system::ForceX<2 * Kernel::width>::Zero();
+      system::Context c;
+      c.time = t;
+      k.add_force(nodes_of(at, nodes), c, f);
+      return Vec3(-f.template head<3>());
+    }});
+  };
+  if (n.shaft.offset == 0 && n.other.offset == 0) add(kernel);
+  else add(elements::AtOffset<K>{kernel, {n.shaft.offset, n.other.offset}});
+}
+
+/// Displacement of the shaft against the other side in (y, z), m.
+inline std::function<Vec2(const NodeAt&)> displacement_of(const meshes::BearingNodes& n) {
+  return [n](const NodeAt& at) {
+    const system::NodeState &s = at(n.shaft.node), &h = at(n.other.node);
+    return Vec2((s.u + n.shaft.offset * s.t - h.u - n.other.offset * h.t).tail<2>());
+  };
+}
+
+void add_linear(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::LinearBearing&);      // supports.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::NonlinearSpring&);       // supports_contact.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::Rub&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::ShortJournal&);          // supports_film.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::FiniteJournal&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::SqueezeFilm&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::AnnularSeal&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::CrossCoupling&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::BallBearing&);           // supports_rolling.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::RollerBearing&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::Coupling&);              // supports_shafts.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::GearPair&);
+
+}  // namespace whirl::assembly

@@ -1,0 +1,62 @@
+// Squeeze-film dampers.
+#include "conformance.hpp"
+#include <elements/finite_journal.hpp>
+#include <elements/short_journal.hpp>
+#include <elements/squeeze_film.hpp>
+
+using namespace whirl;
+using namespace whirl::test;
+using namespace whirl::elements;
+
+namespace {
+constexpr double R = 0.065, L = 0.02, c = 1.2e-4, eta = 0.006;
+}
+
+TEST(SqueezeFilm, Conformance) {
+  ConformanceOptions o;
+  o.u = 0.2 * c, o.du = 0.1;
+  check_kernel(SqueezeFilm<ShortJournal>{{R, L, c, eta}}, o);
+  check_kernel(SqueezeFilm<ShortFullFilm>{{R, L, c, eta}}, o);
+  o.u = 1e-3 * c, o.du = 1e-3;   // boundaries of the finite film pass nodes: small steps
+  o.tangent_tolerance = o.power_tolerance = 1e-7;
+  o.q0.assign(12, 0.0), o.v0.assign(12, 0.0);
+  o.q0[1] = 0.5 * c, o.q0[2] = 0.2 * c, o.v0[1] = 0.02, o.v0[2] = -0.05;
+  FiniteJournal film{R, L, eta, std::make_shared<JournalSurface>(c, 0.0, std::vector<JournalPad>{})};
+  check_kernel(SqueezeFilm<FiniteJournal>{film}, o);
+  film.surface = std::make_shared<JournalSurface>(c, 0.0, std::vector<JournalPad>{{0.1, two_pi - 0.1, pi}});
+  film.seal_ends();
+  check_kernel(SqueezeFilm<FiniteJournal>{film}, o);
+}
+
+TEST(SqueezeFilm, CircularCentredOrbit) {
+  // pi film: F_r = -2 eta R L^3 w eps^2/(c^2 (1-eps^2)^2), F_t = -pi eta R L^3 w eps/(2 c^2 (1-eps^2)^1.5); 2 pi film: F_r = 0, twice F_t
+  const double w = 350;
+  for (double eps : {0.05, 0.3, 0.6, 0.9}) {
+    const FilmPoint p{Vec2(eps * c, 0), Vec2(0, w * eps * c), 0.0};
+    FilmForce half, full;
+    ShortJournal{R, L, c, eta}.evaluate(p, half);
+    ShortFullFilm{R, L, c, eta}.evaluate(p, full);
+    const double u = 1 - eps * eps, unit = eta * R * L * L * L * w / (c * c);
+    EXPECT_NEAR(half.F.x(), -2 * unit * eps * eps / (u * u), 1e-11 * unit / (u * u));
+    EXPECT_NEAR(half.F.y(), -pi * unit * eps / (2 * std::pow(u, 1.5)), 1e-11 * unit / (u * u));
+    EXPECT_NEAR(full.F.x(), 0.0, 1e-12 * unit);
+    EXPECT_NEAR(full.F.y(), -pi * unit * eps / std::pow(u, 1.5), 1e-11 * unit / (u * u));
+  }
+}
+
+TEST(SqueezeFilm, SealedEndsAgainstLongFilm) {
+  // Radial squeeze at the centre towards +y with the feed opposite: (h^3 P')' = -12 eta R^2 w cos(theta) with P = 0 at theta = pi gives
+  // P = 12 eta R^2 w/c^3 (1 + cos theta), positive all round: F = -12 pi eta R^3 L w/c^3, the long damper that does not cavitate.
+  FiniteJournal film{R, L, eta, std::make_shared<JournalSurface>(c, 0.0, std::vector<JournalPad>{{-pi + 1e-3, pi - 1e-3, 0.0}}, 144)};
+  film.seal_ends();
+  const double w = 1e-3;
+  FilmForce f;
+  film.evaluate({Vec2::Zero(), Vec2(w, 0), 0.0}, f);
+  const double exact = -12 * pi * eta * R * R * R * L * w / (c * c * c);
+  EXPECT_NEAR(f.F.x(), exact, 2e-3 * std::abs(exact));
+  EXPECT_NEAR(f.F.y(), 0.0, 1e-6 * std::abs(exact));
+  // open ends leak: far softer
+  FilmForce open;
+  FiniteJournal{R, L, eta, film.surface}.evaluate({Vec2::Zero(), Vec2(w, 0), 0.0}, open);
+  EXPECT_LT(std::abs(open.F.x()), 0.05 * std::abs(f.F.x()));
+}
