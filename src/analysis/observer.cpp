@@ -5,14 +5,15 @@
 
 namespace whirl::analysis {
 
-Recorder::Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0, double t1)
-    : channels_(std::move(channels)), sink_(std::move(sink)), ticker_(t_begin, every), every_(every), t0_(t0), t1_(t1) {
+Recorder::Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0, double t1, Gate gate)
+    : channels_(std::move(channels)), sink_(std::move(sink)), gate_(std::move(gate)), ticker_(t_begin, every), every_(every), t0_(t0), t1_(t1) {
   std::size_t n = 1;
   for (const Measurement& m : channels_) n += m.width();
   row_.resize(n);
 }
 
 void Recorder::write(const Snapshot& s) {
+  if (gate_ && !gate_(s)) return;
   row_[0] = s.t();
   double* out = row_.data() + 1;
   for (const Measurement& m : channels_) m.evaluate(s, out), out += m.width();
@@ -31,7 +32,12 @@ void Recorder::step(StepAccess& s) {
     return;
   }
   // a tick within round-off of the step's end belongs to this step
-  for (const double slack = 1e-12 * std::max(std::abs(s.t1()), every_); ticker_.next() <= s.t1() + slack; ticker_.advance())
+  const double slack = 1e-12 * std::max(std::abs(s.t1()), every_);
+  if (s.t1() < t0_ || s.t0() > t1_) {   // outside the window nothing is evaluated
+    while (ticker_.next() <= s.t1() + slack) ticker_.advance();
+    return;
+  }
+  for (; ticker_.next() <= s.t1() + slack; ticker_.advance())
     if (const double t = std::min(ticker_.next(), s.t1()); t >= t0_ && t <= t1_) write(s.at(t));
 }
 
@@ -111,15 +117,16 @@ void EnergyBalance::step(StepAccess& s) {
   dissipated_ += h * b[2] * p.dissipated;
   e1_ = p.stored;
   largest_kinetic_ = std::max(largest_kinetic_, p.kinetic);
+  largest_change_ = std::max(largest_change_, std::abs(e1_ - e0_));
   worst_ = std::max(worst_, std::abs(defect()));
 }
 
 void EnergyBalance::save(OutArchive& out) const {
-  for (double x : {e0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_}) out.put(x);
+  for (double x : {e0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_, largest_change_}) out.put(x);
 }
 
 void EnergyBalance::restore(InArchive& in) {
-  for (double* x : {&e0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_}) *x = in.number();
+  for (double* x : {&e0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_, &largest_change_}) *x = in.number();
 }
 
 void TiltWatch::save(OutArchive& out) const { out.put(tilt_), out.put(time_), out.put_count(static_cast<std::uint64_t>(node_)); }

@@ -53,7 +53,9 @@ using RowSink = std::function<void(const std::vector<double>&)>;
 /// [t0, t1]. Values are SI and unscaled.
 class Recorder final : public Observer {
  public:
-  Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0 = -infinity, double t1 = infinity);
+  /// gate: rows only where it says so (null: everywhere).
+  using Gate = std::function<bool(const Snapshot&)>;
+  Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0 = -infinity, double t1 = infinity, Gate gate = {});
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
   void save(OutArchive& out) const override;
@@ -65,6 +67,7 @@ class Recorder final : public Observer {
   void write(const Snapshot& s);
   std::vector<Measurement> channels_;
   RowSink sink_;
+  Gate gate_;
   Ticker ticker_;
   double every_, t0_, t1_;
   long rows_ = 0;
@@ -107,9 +110,11 @@ class EnergyBalance final : public Observer {
   double defect() const { return e1_ - e0_ - supplied_ + dissipated_; }
   double worst_defect() const { return worst_; }
   double largest_kinetic() const { return largest_kinetic_; }
+  /// Largest departure of the stored energy from its start.
+  double largest_change() const { return largest_change_; }
 
  private:
-  double e0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0;
+  double e0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0, largest_change_ = 0;
 };
 
 /// Largest tilt |gamma| of any node, where and when: how far the run was from the limit of the chart (pi).

@@ -154,11 +154,11 @@ void remove_checkpoints(const fs::path& results) {
 }
 
 void Parts::add(std::string key, std::function<void(OutArchive&)> save, std::function<void(InArchive&)> restore) {
-  parts_.push_back({std::move(key), std::move(save), std::move(restore), nullptr});
+  parts_.push_back({std::move(key), std::move(save), std::move(restore), nullptr, {}});
 }
 
 void Parts::add(std::string key, analysis::Observer& o) {
-  parts_.push_back({std::move(key), [&o](OutArchive& a) { o.save(a); }, [&o](InArchive& a) { o.restore(a); }, &o});
+  parts_.push_back({std::move(key), [&o](OutArchive& a) { o.save(a); }, [&o](InArchive& a) { o.restore(a); }, &o, {}});
 }
 
 void Parts::save(Checkpoint& c) const {
@@ -169,10 +169,11 @@ void Parts::save(Checkpoint& c) const {
   }
 }
 
-void Parts::restore(const Checkpoint& c) {
+void Parts::restore(const Checkpoint* c) {
   for (const Part& p : parts_) {
-    const auto it = c.parts.find(p.key);
-    if (it == c.parts.end()) {
+    const auto it = c ? c->parts.find(p.key) : decltype(c->parts.end()){};
+    if (!c || it == c->parts.end()) {
+      if (p.begin) p.begin();
       if (p.observer) fresh_.push_back(p.observer);
       continue;
     }

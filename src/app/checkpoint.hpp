@@ -48,8 +48,14 @@ class Parts {
   void add(std::string key, std::function<void(OutArchive&)> save, std::function<void(InArchive&)> restore);
   /// An observer; those restored from nothing are listed in fresh().
   void add(std::string key, analysis::Observer& o);
+  /// An output with files of its own: begin() opens them anew.
+  template <class T>
+  void add_output(std::string key, T& x) {
+    parts_.push_back({std::move(key), [&x](OutArchive& a) { x.save(a); }, [&x](InArchive& a) { x.restore(a); }, &x.observer(), [&x] { x.begin(); }});
+  }
   void save(Checkpoint& c) const;
-  void restore(const Checkpoint& c);
+  /// null: everything begins.
+  void restore(const Checkpoint* c);
   const std::vector<analysis::Observer*>& fresh() const { return fresh_; }
 
  private:
@@ -58,6 +64,7 @@ class Parts {
     std::function<void(OutArchive&)> save;
     std::function<void(InArchive&)> restore;
     analysis::Observer* observer = nullptr;
+    std::function<void()> begin;
   };
   std::vector<Part> parts_;
   std::vector<analysis::Observer*> fresh_;

@@ -1,10 +1,13 @@
 // A transient step: initial state, observers for what the deck asks for, the run, and its results.
 #include <analysis/equilibrium.hpp>
 #include <analysis/transient.hpp>
+#include <app/accuracy.hpp>
 #include <app/checkpoint.hpp>
 #include <app/interrupt.hpp>
 #include <app/job.hpp>
+#include <app/keyphasor_output.hpp>
 #include <app/plot_buffer.hpp>
+#include <app/spectra_output.hpp>
 #include <app/transient_outputs.hpp>
 #include <core/rotation.hpp>
 #include <io/plots.hpp>
@@ -13,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
 
 namespace whirl::app {
@@ -69,6 +73,18 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// When rows of the histories are wanted, or nothing when always.
+analysis::Recorder::Gate gate_of(const Job& job, const std::vector<std::pair<std::string, Point>>& watched) {
+  const model::Output& o = job.model.output;
+  const bool by_speed = o.speed_low > -infinity || o.speed_high < infinity, by_size = o.above > 0.0 && !watched.empty();
+  if (!by_speed && !by_size) return {};
+  return [&job, &o, points = watched, by_size](const analysis::Snapshot& s) {
+    const double spin = s.node(job.reference()).spin();
+    if (spin < o.speed_low || spin > o.speed_high) return false;
+    return !by_size || std::any_of(points.begin(), points.end(), [&](const auto& p) { return analysis::displacement(s, p.second).template tail<2>().norm() > o.above; });
+  };
+}
+
 /// Histories of other columns than those of the earlier part of the run: the file of that part gets a number.
 void keep_earlier_series(const Job& job, const std::string& name) {
   for (const char* extension : {".csv", ".h5"}) {
@@ -120,7 +136,7 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
         if (sink) sink->append(row);
         if (out.report) buffer.append(row);
       },
-      t0, out.every);
+      t0, out.every, out.t0, out.t1, gate_of(job, watched));
   if (channels.columns > 0 && (sink || out.report)) {
     observers.push_back(&recorder);
     parts.add(fmt::format("recorder every {} {}", out.every, series_key), recorder);
@@ -131,6 +147,8 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   observers.push_back(&energy), parts.add("energy", energy);
   analysis::TiltWatch tilt;
   observers.push_back(&tilt), parts.add("tilt", tilt);
+  analysis::StepHistogram lengths(job.reference());
+  observers.push_back(&lengths), parts.add("step lengths", lengths);
   std::vector<std::unique_ptr<Frames>> frames;
   for (const model::VtkOutput& v : out.vtk)
     if (v.step.empty() || v.step == step.name) {
@@ -142,9 +160,21 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
       parts.add(fmt::format("frames {} window {} {} every {} per revolution {} scale {} around {}{}", frames.size(), v.t0, v.t1, v.every, v.frames_per_revolution,
                             v.deformation_scale, v.points_around, content), *frames.back());
     }
+  std::unique_ptr<KeyphasorOutput> keyphasor;
+  if (out.tracking.on && !job.model.probes.empty() && (out.csv || out.report)) {
+    keyphasor = std::make_unique<KeyphasorOutput>(job, step);
+    observers.push_back(&keyphasor->observer());
+    parts.add_output(keyphasor->key(), *keyphasor);
+  }
+  std::unique_ptr<SpectraOutput> spectra;
+  if (out.spectra && !job.model.probes.empty() && (out.csv || out.report)) {
+    spectra = std::make_unique<SpectraOutput>(job, step, t0);
+    observers.push_back(&spectra->observer());
+    parts.add_output(spectra->key(), *spectra);
+  }
   double seconds_before = 0.0;
+  parts.restore(resumed ? &*resumed : nullptr);
   if (resumed) {
-    parts.restore(*resumed);
     options.new_observers = parts.fresh();
     seconds_before = resumed->seconds;
   }
@@ -172,6 +202,8 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   }();
   r.seconds += seconds_before;
   if (sink) sink->close();
+  if (keyphasor) keyphasor->close();
+  if (spectra) spectra->close();
   job.states[step.name] = {r.end, start.speed};
 
   // summary
@@ -200,17 +232,25 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   v["largest tilt"]["|gamma| [rad]"] = tilt.tilt(), v["largest tilt"]["time [s]"] = tilt.time();
   v["largest tilt"]["node"] = job.system().node(tilt.node()).name;
   v["largest tilt"]["condition of (phi', gamma') -> omega"] = rotation::chart_condition(tilt.tilt());
+  io::ReportSection section;
+  section.title = fmt::format("{}: transient", step.name);
+  section.text = fmt::format("{} at t = {:.6g} s. {} steps of {} ({} rejected), {} Newton iterations.{}", to_string(r.reason), r.end.t, s.accepted, law.integrator.method,
+                             s.rejected_error + s.rejected_newton, s.newton_iterations, r.detail.empty() ? "" : " " + r.detail + ".");
+  {
+    const PhaseTimer timer(job, "accuracy");
+    const double speed = r.end.v[6 * job.reference() + system::spin_phi];
+    for (const std::string& w : state_accuracy(job, {law, r, energy, lengths, speed}, v["accuracy"], section)) {
+      v["warnings"].push(w);
+      job.report.warnings.push_back(step.name + ": " + w);
+      if (!job.options.quiet) std::fputs(fmt::format("warning: {}: {}\n", step.name, w).c_str(), stderr);
+    }
+  }
   for (const auto& f : frames) v["frames"] = f->frames();
 
   line.done(fmt::format("{}: {} steps, {} Newton iterations, {:.3f} s, energy defect {:.2e} J", to_string(r.reason), s.accepted,
                         s.newton_iterations, r.seconds, energy.worst_defect()));
 
   if (out.report) {
-    io::ReportSection section;
-    section.title = fmt::format("{}: transient", step.name);
-    section.text = fmt::format("{} at t = {:.6g} s. {} steps of {} ({} rejected), {} Newton iterations, {:.3f} s CPU. Largest defect of the energy balance {:.3g} J.{}",
-                               to_string(r.reason), r.end.t, s.accepted, law.integrator.method, s.rejected_error + s.rejected_newton,
-                               s.newton_iterations, r.seconds, energy.worst_defect(), r.detail.empty() ? "" : " " + r.detail + ".");
     if (!peaks.peaks().empty()) {
       io::Table t;
       t.title = "Peaks";
@@ -220,6 +260,8 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
       section.tables.push_back(std::move(t));
     }
     add_history_figures(job, step, channels.all, channels.start, buffer, section);
+    if (keyphasor) keyphasor->report(job, section);
+    if (spectra) spectra->report(section);
     if (sink && out.csv) section.files.emplace_back("time history", step.name + ".csv");
     job.report.sections.push_back(std::move(section));
   }

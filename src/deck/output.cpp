@@ -42,6 +42,20 @@ void describe(Visitor& v, model::Output& o) {
   v.text("directory", o.directory, "folder of the results; ${deck} is the name of the deck");
   v.quantity(optional("every", "each accepted step"), o.every, "ms", positive, "time between rows of the histories");
   v.options("quantities", o.quantities, quantities, "columns of the histories");
+  std::vector<double> window, speeds;
+  const bool has_window = v.quantities(optional("window", "the whole run"), window, "s", any, 2, "rows of the histories only from the first to the second time");
+  const bool has_speeds = v.quantities(optional("speed_window", "all speeds"), speeds, "rpm", any, 2, "rows of the histories only while the reference spin is between these");
+  v.quantity(optional("above", "always"), o.above, "mm", positive, "rows of the histories only while a probe is displaced by more than this");
+  if (has_window && v.clean()) {
+    if (!(window[1] > window[0])) v.error("E21", "window", "the window ends before it starts");
+    o.t0 = window[0], o.t1 = window[1];
+  }
+  if (has_speeds && v.clean()) {
+    if (!(speeds[1] > speeds[0])) v.error("E21", "speed_window", "the window ends before it starts");
+    o.speed_low = speeds[0], o.speed_high = speeds[1];
+  }
+  v.table("tracking", o.tracking, "tracking filter: synchronous amplitude and phase, envelope and orbits of the probes, turn by turn");
+  v.table(optional("spectra", "none"), o.spectra, "spectra of the probes, block by block: waterfall and full spectrum");
   v.flag("csv", o.csv, "histories as CSV");
   v.flag("binary", o.binary, "histories as HDF5");
   v.flag("report", o.report, "a report in HTML with the figures");

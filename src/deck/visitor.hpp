@@ -167,6 +167,8 @@ void describe(Visitor&, model::Drive&);            // drives.cpp
 void describe(Visitor&, model::Step&);             // steps.cpp
 void describe(Visitor&, model::Output&);           // output.cpp
 void describe(Visitor&, model::VtkOutput&);
+void describe(Visitor&, model::TrackingOutput&);   // postprocess.cpp
+void describe(Visitor&, model::SpectraOutput&);
 /// A law of time given as a constant or as a table: laws.cpp. Returns whether it is given.
 bool describe_law(Visitor&, const Key&, LawPtr& target, const char* unit, const char* doc);
 

@@ -276,10 +276,31 @@ struct VtkOutput {
   Where where;
 };
 
+/// Motion seen from the keyphasor: synchronous amplitudes and phases turn by turn, orbits.
+struct TrackingOutput {
+  bool on = true;
+  int samples = 48;                 ///< a turn
+  std::vector<double> orders{1.0, 2.0};   ///< whole multiples of the speed
+  std::vector<double> orbit_speeds; ///< rad/s: orbits are kept when the spin passes these, beside the largest one
+  int orbit_turns = 3;              ///< turns an orbit shows
+};
+
+/// Spectra of the probes block by block (waterfall, full spectrum).
+struct SpectraOutput {
+  double max_frequency = 0;         ///< rad/s
+  int lines = 400;                  ///< frequencies from 0 to the highest
+  int traces = 200;                 ///< most spectra kept for the figures
+};
+
 struct Output {
   std::string directory;           ///< default results/<deck name>
   double every = 0;                ///< s between rows of time histories; 0 = every accepted step
   std::vector<std::string> quantities{"speed", "probes", "energy"};
+  double t0 = -infinity, t1 = infinity;             ///< rows only inside this window, s
+  double speed_low = -infinity, speed_high = infinity;   ///< rows only while the reference spin is within, rad/s
+  double above = 0;                ///< rows only while a probe is displaced by more than this, m; 0 = always
+  TrackingOutput tracking;
+  std::optional<SpectraOutput> spectra;
   bool csv = true, binary = false, report = true;
   bool peak_to_peak = false;
   std::vector<VtkOutput> vtk;
