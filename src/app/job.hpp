@@ -65,6 +65,12 @@ analysis::TransientOptions transient_options(const Job&, const model::TransientS
 /// The state it starts from, settled when the deck asks for the static equilibrium.
 StepState transient_start(Job&, system::SystemProblem&, const model::Step&, const model::TransientStep&);
 
+/// Moves a start into the steady response to the unbalance at its speed; adds a whirl mode (amplitude: its largest displacement, m).
+void start_in_unbalance_response(const Job&, StepState& start);
+void start_in_mode(const Job&, StepState& start, int number, double amplitude);
+/// The last state of a transient step in another results folder.
+StepState start_of_other_run(const Job&, const std::string& folder, const std::string& step);
+
 /// Adds the time since its construction to a phase of the job.
 class PhaseTimer {
  public:

@@ -1,5 +1,6 @@
 // A transient step: initial state, observers for what the deck asks for, the run, and its results.
 #include <analysis/equilibrium.hpp>
+#include <analysis/event_log.hpp>
 #include <analysis/transient.hpp>
 #include <app/accuracy.hpp>
 #include <app/checkpoint.hpp>
@@ -53,12 +54,25 @@ analysis::TransientOptions transient_options(const Job& job, const model::Transi
   if (law.stop_speed != 0.0) t.speed_stops.push_back({job.reference(), law.stop_speed});
   if (law.amplitude_limit < infinity)
     for (const auto& [name, p] : watched_points(job)) t.amplitude_stops.push_back({p, law.amplitude_limit, name});
+  for (const model::Event& e : job.model.events) {
+    if (!e.stop) continue;
+    if (e.kind == model::Event::Kind::speed) t.speed_stops.push_back({job.reference(), e.value});
+    else t.amplitude_stops.push_back({point_of(job, *e.at), e.value, e.name});
+  }
   return t;
 }
 
 StepState transient_start(Job& job, system::SystemProblem& problem, const model::Step& step, const model::TransientStep& law) {
+  using Start = model::TransientStep::Start;
+  if (!law.previous.empty()) return start_of_other_run(job, law.previous, law.previous_step);
   StepState start = job.start_of(step, law.speed0);
-  if (law.start == model::TransientStep::Start::static_equilibrium && step.from.empty()) {
+  if (step.from.empty() && (law.start == Start::unbalance_response || law.start == Start::mode)) {
+    const PhaseTimer timer(job, "equilibrium");
+    if (law.start == Start::mode) start_in_mode(job, start, law.mode, law.mode_amplitude);
+    else start_in_unbalance_response(job, start);
+    return start;
+  }
+  if (law.start == Start::static_equilibrium && step.from.empty()) {
     const PhaseTimer timer(job, "equilibrium");
     job.settle(problem, start);
   }
@@ -71,6 +85,18 @@ double cpu_seconds() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// What [[event]] names.
+std::vector<analysis::EventLog::Watch> watches_of(const Job& job) {
+  std::vector<analysis::EventLog::Watch> out;
+  for (const model::Event& e : job.model.events) {
+    if (e.kind == model::Event::Kind::speed)
+      out.push_back({e.name, [n = job.reference(), x = e.value](const analysis::Snapshot& s) { return s.node(n).spin() - x; }, e.direction});
+    else
+      out.push_back({e.name, [p = point_of(job, *e.at), x = e.value](const analysis::Snapshot& s) { return analysis::displacement(s, p).tail<2>().norm() - x; }, e.direction});
+  }
+  return out;
 }
 
 /// When rows of the histories are wanted, or nothing when always.
@@ -160,6 +186,13 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
       parts.add(fmt::format("frames {} window {} {} every {} per revolution {} scale {} around {}{}", frames.size(), v.t0, v.t1, v.every, v.frames_per_revolution,
                             v.deformation_scale, v.points_around, content), *frames.back());
     }
+  analysis::EventLog events(watches_of(job), job.reference());
+  if (!events.watches().empty()) {
+    observers.push_back(&events);
+    std::string what = "events";
+    for (const model::Event& e : job.model.events) what += fmt::format(" {} {} {}", e.name, e.value, e.direction);
+    parts.add(what, events);
+  }
   std::unique_ptr<KeyphasorOutput> keyphasor;
   if (out.tracking.on && !job.model.probes.empty() && (out.csv || out.report)) {
     keyphasor = std::make_unique<KeyphasorOutput>(job, step);
@@ -249,6 +282,18 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
 
   line.done(fmt::format("{}: {} steps, {} Newton iterations, {:.3f} s, energy defect {:.2e} J", to_string(r.reason), s.accepted,
                         s.newton_iterations, r.seconds, energy.worst_defect()));
+
+  if (!events.watches().empty()) {
+    io::Table t;
+    t.title = "Events";
+    t.columns = {{"event", "-", ""}, {"passage", "-", ""}, {"time", "s", ""}, {"speed", "rpm", ""}};
+    for (const auto& e : events.events()) t.add({events.watches()[e.watch].name, e.rising ? "rising" : "falling", e.t, e.speed * 30.0 / pi});
+    job.folder.write_table(step.name + "_events.csv", t);
+    v["events"] = events.events().size() + events.more();
+    if (t.rows.size() > 100) t.title = "Events (the first 100)", t.rows.resize(100);
+    section.tables.push_back(std::move(t));
+    section.files.emplace_back("events", step.name + "_events.csv");
+  }
 
   if (out.report) {
     if (!peaks.peaks().empty()) {

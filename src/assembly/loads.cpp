@@ -45,6 +45,8 @@ void add_load(Assembly& a, const model::PointLoad& l) {
 }  // namespace
 
 void add_loads(Assembly& a) {
+  for (int k = 0; k < 3; ++k)
+    if (const LawPtr& law = a.model.base.acceleration[static_cast<std::size_t>(k)]) a.builder.set_base_acceleration(k, law), a.take_breakpoints(law);
   for (const model::PointLoad& l : a.model.loads) add_load(a, l);
 
   for (const model::Shaft& s : a.model.shafts) {

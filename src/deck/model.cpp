@@ -49,6 +49,8 @@ void describe(Visitor& v, model::Model& m) {
   v.list(optional("unbalance", "none"), m.unbalances, "a mass times eccentricity that turns with the shaft");
   v.list(optional("load", "none"), m.loads, "forces and moments at a station");
   v.list(optional("drive", "none"), m.drives, "what turns a shaft: a prescribed speed or angle, or a torque");
+  v.table(optional("base", "at rest"), [&](Visitor& w) { describe(w, m.base); }, "motion of the base all supports stand on");
+  v.list(optional("event", "none"), m.events, "what a transient run reports or stops at, located on its dense output");
   v.list(optional("initial", "at rest, straight"), m.initial, "initial motion of a shaft line as a rigid body");
   v.list(optional("probe", "none"), m.probes, "a place whose motion is recorded");
   v.list(optional("step", "none"), m.steps, "analyses, run in this order");

@@ -198,7 +198,11 @@ void describe(Visitor& v, model::BucklingStep& s) {
 
 void describe(Visitor& v, model::TransientStep& s) {
   v.quantity(required("duration"), s.duration, "s", positive, "length of the run; it begins at time 0, or where the step named by 'from' ended");
-  v.choice("start", s.start, {{"rest", "straight and unstressed, loads applied at once"}, {"static", "in static equilibrium"}}, "state at the start, unless 'from' names a transient step");
+  v.choice("start", s.start, {{"rest", "straight and unstressed, loads applied at once"}, {"static", "in static equilibrium"}, {"unbalance_response", "in the steady response to the unbalance at the initial speed"}, {"mode", "in static equilibrium plus a whirl mode at the initial speed"}}, "state at the start, unless 'from' names a transient step");
+  v.integer("mode", s.mode, between(1, 10000), "of start = \"mode\": its number from the lowest frequency");
+  v.quantity("mode_amplitude", s.mode_amplitude, "mm", positive, "of start = \"mode\": its largest displacement");
+  v.text(optional("previous", "none"), s.previous, "results folder of an earlier run of the same rotor; this step starts from its last state (of the checkpoint written at its end)");
+  v.text(optional("previous_step", "the only one"), s.previous_step, "which of its transient steps");
   v.quantity("initial_speed", s.speed0, "rpm", any, "spin at the start of every rotating line (times its speed_ratio)");
   v.quantity(optional("stop_speed", "never"), s.stop_speed, "rpm", any, "the run ends when the reference spin passes this value");
   v.quantity(optional("amplitude_limit", "none"), s.amplitude_limit, "mm", positive, "the run ends when a probe exceeds this displacement");

@@ -247,7 +247,10 @@ struct BucklingStep { int modes = 3; double speed = 0; };
 struct TransientStep {
   double duration = 0;             ///< s; from 0 unless it continues a previous step
   IntegratorOptions integrator;
-  enum class Start { rest, static_equilibrium } start = Start::static_equilibrium;
+  enum class Start { rest, static_equilibrium, unbalance_response, mode } start = Start::static_equilibrium;
+  int mode = 1;                    ///< of start = mode: number from the lowest frequency
+  double mode_amplitude = 1e-5;    ///< its largest displacement, m
+  std::string previous, previous_step;   ///< results folder of another run (and its step) whose end this one starts from
   double speed0 = 0;               ///< rad/s, initial spin of every rotating line times its speed_ratio
   double stop_speed = 0;           ///< stop when the reference spin passes this value; 0 = never
   double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
@@ -308,6 +311,18 @@ struct Output {
 
 // ---------------------------------------------------------------- the model
 
+/// Acceleration of the base along x, y, z against time, m/s2; null = none. Displacements are relative to the base.
+struct BaseMotion { std::array<LawPtr, 3> acceleration; };
+
+/// Something that happens during a transient, located on the dense output.
+struct Event : Entity {
+  enum class Kind { speed, amplitude } kind = Kind::speed;
+  double value = 0;                ///< rad/s, m
+  std::optional<Location> at;      ///< where the amplitude is looked at
+  int direction = 0;               ///< +1 rising, -1 falling, 0 both
+  bool stop = false;               ///< ends the run
+};
+
 struct Model {
   int format = 1;
   std::string title;
@@ -327,6 +342,8 @@ struct Model {
   std::vector<Bearing> bearings;
   std::vector<PointLoad> loads;
   std::vector<Drive> drives;
+  BaseMotion base;
+  std::vector<Event> events;
   std::vector<Probe> probes;
   std::vector<Step> steps;
   Output output;

@@ -1,0 +1,94 @@
+// States a transient step can start from beside rest and static equilibrium.
+#include <analysis/harmonic.hpp>
+#include <analysis/whirl_modes.hpp>
+#include <app/checkpoint.hpp>
+#include <app/job.hpp>
+
+#include <fmt/format.h>
+
+namespace whirl::app {
+
+namespace {
+
+/// The turning model at the spins of a start.
+analysis::Linearizer linearizer_of(const Job& job, const StepState& start) {
+  analysis::Running running;
+  for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
+    const double spin = start.state.v[6 * job.mesh.lines[l].first_node + system::spin_phi];
+    running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : job.model.shafts[l].rotating ? job.model.shafts[l].speed_ratio : 0.0);
+  }
+  running.ratio.resize(static_cast<std::size_t>(job.system().lines()), 0.0);
+  running.time = start.state.t;
+  analysis::EquilibriumOptions o;
+  o.chart_change = job.model.chart_change;
+  return analysis::Linearizer(job.system(), running, o);
+}
+
+/// Axial angle of the reference at the start: what turns with the rotor stands there.
+double start_angle(const Job& job, const StepState& start) { return start.state.q[6 * job.reference() + system::spin_phi]; }
+
+/// The equilibrium has its rotor at angle zero; the start's angles are put back.
+void take_equilibrium(const Job& job, const analysis::Equilibrium& e, StepState& start) {
+  const VecX q0 = start.state.q, v0 = start.state.v;
+  const double t = start.state.t;
+  start.state = e.state;
+  start.state.t = t;
+  for (Index i = 0; i < job.system().nodes(); ++i) {
+    if (job.system().node(i).scalar) continue;
+    start.state.q[6 * i + system::spin_phi] += q0[6 * i + system::spin_phi];
+    start.state.v[6 * i + system::spin_phi] = v0[6 * i + system::spin_phi];
+  }
+  start.state.a.setZero();
+}
+
+}  // namespace
+
+void start_in_unbalance_response(const Job& job, StepState& start) {
+  analysis::Linearizer linear = linearizer_of(job, start);
+  linear.at(start.speed);
+  const std::vector<VecXc> f = linear.forcing();
+  const std::vector<double> orders(linear.running().orders().begin(), linear.running().orders().end());
+  analysis::HarmonicSolver solver(linear);
+  const double theta = start_angle(job, start);
+  VecX q = VecX::Zero(job.system().size()), v = q;
+  for (std::size_t k = 0; k < orders.size(); ++k) {
+    const double w = orders[k] * start.speed;
+    VecXc a = -f[k];
+    if (!solver.prepare(start.speed, w)) throw run_error("E76", fmt::format("no steady unbalance response at {:.6g} rpm: resonance without damping", start.speed * 30.0 / pi), "start from static equilibrium, or give the model damping");
+    solver.solve(a);
+    const Complex turn = std::polar(1.0, orders[k] * theta);
+    q += (turn * a).real(), v += (Complex(0.0, w) * turn * a).real();
+  }
+  take_equilibrium(job, linear.equilibrium(), start);
+  start.state.q += q, start.state.v += v;
+}
+
+void start_in_mode(const Job& job, StepState& start, int number, double amplitude) {
+  analysis::Linearizer linear = linearizer_of(job, start);
+  analysis::ModesOptions o;
+  o.count = number + 2;
+  const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, start.speed, o);
+  if (static_cast<int>(modes.size()) < number) throw run_error("E76", fmt::format("the rotor has {} modes, not {}", modes.size(), number), "choose a lower number");
+  const analysis::WhirlMode& m = modes[static_cast<std::size_t>(number - 1)];
+  take_equilibrium(job, linear.equilibrium(), start);
+  start.state.q += amplitude * m.x.real(), start.state.v += amplitude * (m.lambda * m.x).real();
+}
+
+StepState start_of_other_run(const Job& job, const std::string& folder, const std::string& step) {
+  namespace fs = std::filesystem;
+  fs::path file = step.empty() ? fs::path() : checkpoint_file(folder, step);
+  std::error_code ec;
+  if (step.empty())
+    for (const auto& f : fs::directory_iterator(fs::path(folder) / "checkpoint", ec))
+      if (f.path().extension() == ".whirl") {
+        if (!file.empty()) throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("{} holds checkpoints of several steps", folder), "name one with previous_step", Where{}});
+        file = f.path();
+      }
+  const std::optional<Checkpoint> c = file.empty() ? std::nullopt : read_checkpoint(file);
+  if (!c) throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("no state of an earlier run in '{}'", folder), "previous names a results folder whose transient step has run with checkpoints", Where{}});
+  if (c->state.q.size() != job.system().size() || c->state.frames.chart.size() != static_cast<std::size_t>(job.system().lines()))
+    throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94", fmt::format("the run in '{}' has {} unknowns, this model {}", folder, c->state.q.size(), job.system().size()), "both must have the same mesh", Where{job.model.deck_path, 0, 0, 0, {}}});
+  return {c->state, c->speed};
+}
+
+}  // namespace whirl::app
