@@ -84,7 +84,7 @@ struct Shape {
     const V3<T> sum = Bt[0] + Bt[1];
     y = (T(1.0) / sqrt(sum.dot(sum))) * sum;
     z = a.cross(y);
-    psi = atan2(a.dot(Bt[0].cross(Bt[1])), Bt[0].dot(Bt[1]));
+    psi = atan2(a.dot(Bt[0].cross(Bt[1])), Bt[0].dot(Bt[1])) + T(b.c.tau_c) * a.dot(p[0].cross(p[1]));
   }
   T bow(const GeneralBeamConstants& c) const {
     return 0.5 * (c.b11 * p[0].dot(p[0]) + 2.0 * c.b12 * p[0].dot(p[1]) + c.b22 * p[1].dot(p[1]));
@@ -94,6 +94,33 @@ struct Shape {
 double bow0(const GeneralBeam& b) {
   return 0.5 * (b.c.b11 * b.p01.squaredNorm() + 2.0 * b.c.b12 * b.p01.dot(b.p02) + b.c.b22 * b.p02.squaredNorm());
 }
+
+/// The three terms of the header: energy, and forces on (p1.y, p2.y), (p1.z, p2.z) and psi.
+template <class T>
+struct Coupling {
+  T V{}, my[2], mz[2], torque{};
+  Coupling(const GeneralBeam& b, const T (&ky)[2], const T (&kz)[2], const T& psi) {
+    const GeneralBeamConstants& c = b.c;
+    const double L = c.length, a12 = 0.5 * (c.ky_def11 + c.ky_def22), b12 = 0.5 * (c.kz_def11 + c.kz_def22);
+    const double EIa = 0.5 * L * (a12 - c.ky_def12), EIb = 0.5 * L * (b12 - c.kz_def12);
+    const double fa = (a12 + c.ky_def12) / EIa, fb = (b12 + c.kz_def12) / EIb;
+    const double g = c.GJ_l > 0.0 ? L * L / (24.0 * c.GJ_l) : 0.0, h = L / 12.0, il = 1.0 / L;
+    const T Ey = il * (ky[1] - ky[0]), Ez = il * (kz[1] - kz[0]), Sy = fa * (ky[0] + ky[1]), Sz = fb * (kz[0] + kz[1]);
+    const T My = Ey + T(il * (b.p02[0] - b.p01[0])), Mz = Ez + T(il * (b.p02[1] - b.p01[1]));
+    const T Ky = Sy + T(fa * (b.p01[0] + b.p02[0])), Kz = Sz + T(fb * (b.p01[1] + b.p02[1]));
+    const T t = psi - T(b.psi_r);
+    const T cc = EIa * (Mz * Ey) - EIb * (My * Ez);
+    const T slope = EIa * (Kz * Ey + Mz * Sy) - EIb * (Ky * Ez + My * Sz);
+    const T s = EIa * (Mz * Mz - My * Ey) + EIb * (My * My - Mz * Ez);
+    V = T(-g) * cc * cc + h * (t * slope + 0.5 * (t * t * s));
+    torque = h * (slope + t * s);
+    const T cy = EIa * Mz - EIb * Ez, cz = EIa * Ey - EIb * My, th = h * t, tth = 0.5 * (th * t);
+    const T gy = T(-2.0 * g) * cc * cy + th * (EIa * Kz - EIb * Sz) + tth * (2.0 * EIb * My - EIa * (Ey + My));
+    const T gz = T(-2.0 * g) * cc * cz + th * (EIa * Sy - EIb * Ky) + tth * (2.0 * EIa * Mz - EIb * (Ez + Mz));
+    const T ly = fa * (th * cy), lz = fb * (th * cz);
+    my[0] = ly - il * gy, my[1] = ly + il * gy, mz[0] = lz - il * gz, mz[1] = lz + il * gz;
+  }
+};
 
 template <class T>
 struct ForceOut {
@@ -110,8 +137,7 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   const NodeT<T>* no[2] = {&n1, &n2};
   ForceOut<T> out;
 
-  const T N = c.EA_l * (s.stretch + c.length * (s.bow(c) - T(bow0(b)))), NL = c.length * N;
-  const T torque = c.GJ_l * (s.psi - T(b.psi0));
+  const T N = T(b.preload) + c.EA_l * (s.stretch + c.length * (s.bow(c) - T(bow0(b)))), NL = c.length * N;
   T ky[2], kz[2];   // deformations along y and z
   for (int i = 0; i < 2; ++i) {
     const Vec2& p0 = i == 0 ? b.p01 : b.p02;
@@ -119,6 +145,9 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   }
   T my[2] = {c.ky_def11 * ky[0] + c.ky_def12 * ky[1], c.ky_def12 * ky[0] + c.ky_def22 * ky[1]};
   T mz[2] = {c.kz_def11 * kz[0] + c.kz_def12 * kz[1], c.kz_def12 * kz[0] + c.kz_def22 * kz[1]};
+  const Coupling<T> inner(b, ky, kz, s.psi);
+  for (int i = 0; i < 2; ++i) my[i] += inner.my[i], mz[i] += inner.mz[i];
+  const T torque = c.GJ_l * (s.psi - T(b.psi0)) + inner.torque;
   T twist = torque;
   V3<T> ad[2];
   for (int i = 0; i < 2; ++i) ad[i] = (T(1.0) / (T(2.0) - s.n[i])) * s.a.cross(s.delta[i]);
@@ -153,6 +182,9 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   V3<T> M[2];
   M[0] = my[0] * s.y + mz[0] * s.z + NL * (T(c.b11) * s.p[0] + T(c.b12) * s.p[1]);
   M[1] = my[1] * s.y + mz[1] * s.z + NL * (T(c.b12) * s.p[0] + T(c.b22) * s.p[1]);
+  // twist rate = sigma2 - sigma1 + tau_c (p1 o . (p2 x a) + p2 o . (a x p1)); the last part turns nothing
+  M[0] = M[0] + (T(c.tau_c) * torque) * s.p[1].cross(s.a);
+  M[1] = M[1] + (T(c.tau_c) * torque) * s.a.cross(s.p[0]);
   const T S = -0.5 * (M[0].dot(s.a.cross(s.p[0])) + M[1].dot(s.a.cross(s.p[1])));
   const T spin[2] = {S - twist, S + twist};
   V3<T> fa = spin[0] * ad[0] + spin[1] * ad[1];
@@ -227,6 +259,7 @@ GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chor
   const Shape<double> s(*this, n1, n2, m1, m2);
   psi0 = s.psi;
   p01 = Vec2(s.p[0].dot(s.y), s.p[0].dot(s.z)), p02 = Vec2(s.p[1].dot(s.y), s.p[1].dot(s.z));
+  if (p01.squaredNorm() + p02.squaredNorm() > 1e-20) psi_r = psi0;
 }
 
 void GeneralBeam::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
@@ -253,11 +286,12 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
   const Motion<double> m1(n1), m2(n2);
   const Shape<double> s(*this, n1, n2, m1, m2);
   const double w = s.stretch + c.length * (s.bow(c) - bow0(*this));
-  double V = 0.5 * c.EA_l * w * w + 0.5 * c.GJ_l * (s.psi - psi0) * (s.psi - psi0);
+  double V = (0.5 * c.EA_l * w + preload) * w + 0.5 * c.GJ_l * (s.psi - psi0) * (s.psi - psi0);
   const double y1 = s.p[0].dot(s.y) - p01[0], y2 = s.p[1].dot(s.y) - p02[0], z1 = s.p[0].dot(s.z) - p01[1], z2 = s.p[1].dot(s.z) - p02[1];
   V += 0.5 * (c.ky_def11 * y1 * y1 + 2 * c.ky_def12 * y1 * y2 + c.ky_def22 * y2 * y2);
   V += 0.5 * (c.kz_def11 * z1 * z1 + 2 * c.kz_def12 * z1 * z2 + c.kz_def22 * z2 * z2);
-  en.elastic += V;
+  const double ky[2] = {y1, y2}, kz[2] = {z1, z2};
+  en.elastic += V + Coupling<double>(*this, ky, kz, s.psi).V;
   auto vec = [](const V3<double>& v) { return Vec3(v.x, v.y, v.z); };
   const Vec3 w1 = vec(m1.omega), w2 = vec(m2.omega);
   const Vec3 X[4] = {vec(s.ro[0]), vec(s.D[0]), vec(s.ro[1]), vec(s.D[1])};
@@ -269,7 +303,8 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
     const Vec3 b1 = w1.cross(vec(m1.turn(body1.col(axis)))), b2 = w2.cross(vec(m2.turn(body2.col(axis))));
     en.kinetic += 0.5 * J * (5.0 / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) + b1.dot(b2) / 6.0);
   }
-  const Vec3 P[4] = {x[0]->u + X[0], X[1], x[1]->u + X[2], X[3]};
+  // Relative to the reference configuration, so that a change of chart leaves it alone.
+  const Vec3 P[4] = {x[0]->u + X[0] - offset1, X[1] - triad1.col(0), x[1]->u + X[2] - offset2, X[3] - triad2.col(0)};
   for (int j = 0; j < 4; ++j) en.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(P[j]);
   if (c.beta > 0.0) en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
 }

@@ -5,9 +5,15 @@
 // offset: r_i = x_i + R_i o_i. With the chord a = (r2 - r1)/l and the twistless transport P(a <- D_i):
 //   p_i      vector from a towards D_i, perpendicular to a, |p_i| = angle between them
 //   y, z     section axes at mid-element: bisector of the transported B1, B2, and a x y
-//   psi      angle from transported B1 to transported B2 about a, in (-pi, pi]
+//   psi      angle from transported B1 to transported B2 about a, in (-pi, pi], + tau_c a.(p1 x p2): the area between the bent element and its
+//            chord, which lifts the torsion of space curves from order 2 to 4 (shaft_beam.hpp)
 //   V = 1/2 EA_l w^2 + 1/2 sum_ij [kz_ij (p_i - p0_i).y (p_j - p0_j).y + ky_ij (p_i - p0_i).z (p_j - p0_j).z] + 1/2 GJ_l (psi - psi0)^2
-//   w = l - l0 + length/2 sum_ij b_ij (p_i.p_j - p0_i.p0_j)
+//       + P w,   w = l - l0 + length/2 sum_ij b_ij (p_i.p_j - p0_i.p0_j)
+//   V gets three terms that lift beams with unequal stiffnesses or initial curvature from order 2 to 4: inside the element the sections
+//   turn by alpha = (xi - 1/2)(psi - psi_r) against y, z, and the moments on the curvature twist it further than its ends show. With the mean
+//   curvature m = (p2 - p1)/length and its slope k = f (p1 + p2), of the whole and (e) of the deformation, EIa for y and EIb for z:
+//   c = EIa m_z m^e_y - EIb m_y m^e_z the torque per length about the tangent, c' its slope, s = EIa (m_z^2 - m_y m^e_y) + EIb (m_y^2 - m_z m^e_z),
+//   V += -length^3/(24 GJ) c^2 + length/12 [(psi - psi_r) c' + 1/2 (psi - psi_r)^2 s],  psi_r = psi0 where the element is curved at rest, else 0.
 // The force is found from the power of the stresses on objective rates, p_i o = (p_i')_perp - sigma a x p_i and psi' = sigma2 - sigma1,
 // sigma_i = (a + D_i).(omega_i - a x a')/(1 + a.D_i), which are exactly the rates of the measures above. beta damps the same rates
 // (viscous, rotating with the section).
@@ -28,6 +34,7 @@ struct GeneralBeamConstants {
   /// End stiffnesses for deflection along the section's y (bending about z: EIz) and along z (EIy), N m.
   double ky_def11 = 0, ky_def12 = 0, ky_def22 = 0, kz_def11 = 0, kz_def12 = 0, kz_def22 = 0;
   double b11 = 0, b12 = 0, b22 = 0;  ///< bowing coefficients
+  double tau_c = 0;                  ///< coefficient of a.(p1 x p2) in the twist
   Matrix<4> M4 = Matrix<4>::Zero();  ///< translational inertia on (r1, D1, r2, D2), kg, kg m, kg m^2
   double rhoIz_l = 0, rhoIy_l = 0;   ///< rho int y^2 dA length, rho int z^2 dA length, kg m^2
   double beta = 0;                   ///< stiffness-proportional rotating damping, s
@@ -43,6 +50,8 @@ struct GeneralBeam {
   Vec3 offset1 = Vec3::Zero(), offset2 = Vec3::Zero();         ///< o_i in the reference configuration, m
   Mat3 body1 = Mat3::Identity(), body2 = Mat3::Identity();     ///< the same triads and offsets in components of the nodes' charts at rest
   Vec3 arm1 = Vec3::Zero(), arm2 = Vec3::Zero();
+  double preload = 0;                ///< axial force at w = 0, N, tension positive
+  double psi_r = 0;                  ///< twist at which the section axes do not turn inside the element, rad
   // unstressed values of the measures (made by the constructor)
   double l0 = 0, psi0 = 0;
   Vec2 p01 = Vec2::Zero(), p02 = Vec2::Zero();

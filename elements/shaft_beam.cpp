@@ -311,8 +311,10 @@ void ShaftBeam<Offsets>::add_energy(const Nodes<2>& x, const Context& ctx, Energ
     for (int j = 0; j < 4; ++j) T += c.M4(k, j) * vel[k]->dot(*vel[j]);
   const Vec2 spin(x1.spin(), x2.spin());
   e.kinetic += 0.5 * T + 0.5 * spin.dot(c.polar * spin);
-  const Vec3* px[4] = {&x1.u, &x1.t, &x2.u, &x2.t};
-  for (int j = 0; j < 4; ++j) e.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(*px[j]);
+  // d - e0, not d - e: e moves with the chart, and the weight's moment on the directors of a cone does not cancel.
+  const Vec3 shift = x1.e() - e0;
+  const Vec3 p[4] = {x1.u, x1.t + shift, x2.u, x2.t + shift};
+  for (int j = 0; j < 4; ++j) e.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(p[j]);
 }
 
 template <bool Offsets>

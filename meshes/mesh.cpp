@@ -44,9 +44,12 @@ std::vector<Attached> attachments(const Model& m) {
   for (const auto& x : m.loads) out.push_back({&x.at, named("load", x)});
   for (const auto& x : m.drives) out.push_back({&x.at, named("drive", x)});
   for (const auto& x : m.probes) out.push_back({&x.at, named("probe", x)});
-  for (const auto& s : m.steps)
+  for (const auto& s : m.steps) {
     if (const auto* h = std::get_if<model::HarmonicStep>(&s.law))
       for (const auto& x : h->forces) out.push_back({&x.at, fmt::format("force of step '{}'", s.name)});
+    if (const auto* p = std::get_if<model::StaticStep>(&s.law); p && p->path && p->path->control == model::LoadPath::Control::displacement)
+      out.push_back({&p->path->at, fmt::format("control of step '{}'", s.name)});
+  }
   return out;
 }
 

@@ -87,6 +87,40 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
   }
 }
 
+std::string EquilibriumSolver::name_motion(Index singular) const {
+  // A line that K lets go as a whole, else the unknown at which elimination found nothing left.
+  const system::System& sys = running_.system();
+  const auto& start = sys.pattern().row_start();
+  const auto& cols = sys.pattern().cols();
+  constexpr const char* motion[4] = {"axial motion", "lateral motion along y", "lateral motion along z", "turning about its axis"};
+  std::string free;
+  VecX e(sys.size());
+  for (Index l = 0; l < sys.lines(); ++l)
+    for (int c = 0; c < 4; ++c) {
+      e.setZero();
+      bool any = false;
+      for (Index i = 0; i < sys.nodes(); ++i)
+        if (const Index k = 6 * i + c; sys.node(i).line == l && !sys.node(i).scalar && free_[at(k)]) e[k] = 1.0, any = true;
+      if (!any) continue;
+      bool resisted = false;
+      for (Index i = 0; i < sys.nodes() && !resisted; ++i) {
+        Vector<6> sum = Vector<6>::Zero(), size = sum;
+        for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b) {
+          const auto x = e.segment<6>(6 * cols[at(b)]);
+          sum += matrices_.K.block(b) * x, size += matrices_.K.block(b).cwiseAbs() * x;
+        }
+        // forces against forces, moments against moments: small couplings are not rounding of each other
+        const double force = size.head<3>().maxCoeff(), moment = size.tail<3>().maxCoeff();
+        for (Index k = 0; k < 6; ++k)
+          resisted = resisted || (free_[at(6 * i + k)] && std::abs(sum[k]) > 1e-9 * (k < 3 ? force : moment));
+      }
+      if (!resisted) free += fmt::format("{}{} of shaft '{}'", free.empty() ? "" : ", nor ", motion[c], sys.line_name(l));
+    }
+  if (!free.empty()) return "nothing resists " + free;
+  if (singular < 0) return "the stiffness matrix is singular";
+  return fmt::format("nothing resists a motion along {} of {}", system::component_name(static_cast<int>(singular % 6)), sys.node(singular / 6).name);
+}
+
 double EquilibriumSolver::correction_size(const VecX& d) const {
   double m = 0;
   const system::System& s = running_.system();
@@ -136,9 +170,7 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
     if (step_.isZero(0.0)) return Outcome::converged;
     running_.tangent(s.frames, Omega, s.q, matrices_);
     if (solver_->factor(matrices_, 0.0, 0.0, 1.0) != la::Status::ok) {
-      const Index k = solver_->singular_unknown();
-      why_ = k < 0 ? std::string("the stiffness matrix is singular")
-                   : fmt::format("nothing resists a motion along {} of {}", system::component_name(static_cast<int>(k % 6)), sys.node(k / 6).name);
+      why_ = name_motion(solver_->singular_unknown());
       return Outcome::singular;
     }
     solver_->solve(step_);
@@ -192,20 +224,27 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
     s.q = trial_;
     damping = alpha, last = size;
   }
-  why_ = fmt::format("no convergence in {} iterations", options_.max_iterations);
+  Index worst = 0;
+  for (Index k = 0; k < step_.size(); ++k) {
+    const auto weight = [&](Index i) { return std::abs(step_[i]) / (i % 6 < 3 && !sys.node(i / 6).scalar ? length_ : 1.0); };
+    if (weight(k) > weight(worst)) worst = k;
+  }
+  why_ = fmt::format("no convergence in {} iterations; the largest correction is that of {} of {}", options_.max_iterations,
+                     system::component_name(static_cast<int>(worst % 6)), sys.node(worst / 6).name);
   return Outcome::diverged;
 }
 
-void EquilibriumSolver::change_charts(system::State& s) {
+bool EquilibriumSolver::change_charts(system::State& s) const {
   const system::System& sys = running_.system();
   bool far = false;
   for (Index i = 0; i < sys.nodes() && !far; ++i)
     far = !sys.node(i).scalar && s.q.segment<2>(6 * i + 4).norm() > rotation::chart_switch;
-  if (!far) return;
+  if (!far) return false;
   system::SystemProblem problem(sys);
   problem.frames = s.frames;
-  problem.accept(s.t, s.q, s.v, s.a);
+  const bool moved = problem.accept(s.t, s.q, s.v, s.a);
   s.frames = problem.frames;
+  return moved;
 }
 
 std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const system::State* start) {
@@ -222,11 +261,12 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
   for (Index k : spin_holds_) s.q[k] = 0.0;
 
   const system::State begin = s;
-  Outcome o = newton(Omega, s, out.iterations);
+  Outcome o = options_.load_steps > 1 ? Outcome::diverged : newton(Omega, s, out.iterations);
   if (o != Outcome::converged) {
     // Loads in steps from the unloaded state, doubled after an easy step, halved after a failure.
     const double full = running_.load();
-    double done = 0.0, step = 0.25;
+    const double largest = options_.load_steps > 1 ? 1.0 / options_.load_steps : 1.0;
+    double done = 0.0, step = std::min(0.25, largest);
     s = sys.make_state();
     s.t = begin.t;
     running_.impose(s.frames, s.q);
@@ -245,7 +285,7 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
         if (options_.chart_change) change_charts(s);
         kept = s, done = factor;
         if (factor == 1.0) break;
-        if (!first && n <= 6) step *= 2.0;
+        if (!first && n <= 6) step = std::min(2.0 * step, largest);
         first = false;
       } else {
         step *= 0.5;

@@ -16,6 +16,7 @@ namespace whirl::analysis {
 struct EquilibriumOptions {
   double tolerance = 1e-10;    ///< relative size of the last correction (it converges quadratically: the error is far below)
   int max_iterations = 40;     ///< a load step
+  int load_steps = 1;          ///< parts in which the loads are put on; more when an equilibrium is not found otherwise
   int max_load_steps = 400;
   bool chart_change = true;    ///< move reference axes of lines that tilt beyond rotation::chart_switch (between load steps)
   la::SolverKind solver = la::SolverKind::automatic;
@@ -44,6 +45,10 @@ class EquilibriumSolver {
   std::span<const unsigned char> free() const { return free_; }
   const std::vector<Index>& spin_holds() const { return spin_holds_; }
   const la::MCK& matrices() const { return matrices_; }
+  /// Size of the model, m: what displacements are compared with.
+  double length() const { return length_; }
+  /// Moves the reference axes of lines that tilt beyond rotation::chart_switch; whether one moved.
+  bool change_charts(system::State& s) const;
 
  private:
   enum class Outcome { converged, singular, diverged };
@@ -51,7 +56,7 @@ class EquilibriumSolver {
   enum class Step { bold, careful };
   Outcome newton(double Omega, system::State& s, int& iterations);
   Outcome newton(double Omega, system::State& s, int& iterations, Step kind);
-  void change_charts(system::State& s);
+  std::string name_motion(Index singular) const;
   double correction_size(const VecX& d) const;
   bool is_small(const VecX& d, const VecX& q) const;
 

@@ -4,9 +4,14 @@
 #include <core/units.hpp>
 #include <cstdio>
 #include <fmt/format.h>
+#include <io/plots.hpp>
+#include <io/results.hpp>
+#include <io/rotor_drawing.hpp>
+#include <io/svg.hpp>
 #include <meshes/mass_properties.hpp>
 #include <meshes/mesh.hpp>
 #include <meshes/mesh_tables.hpp>
+#include <meshes/scene.hpp>
 
 namespace whirl::app {
 namespace {
@@ -69,6 +74,18 @@ io::Value summary_value(const model::Model& m, const meshes::Mesh& mesh) {
   return v;
 }
 
+void write_mesh(const model::Model& m, const meshes::Mesh& mesh, const std::filesystem::path& folder) {
+  const io::ResultsFolder out(folder);
+  out.write_text("nodes.csv", meshes::nodes_csv(mesh));
+  out.write_text("elements.csv", meshes::elements_csv(m, mesh));
+  out.write_text("stations.csv", meshes::stations_csv(mesh));
+  int k = 0;
+  for (const io::RotorDrawing& d : io::make_rotor_drawings(m, mesh, meshes::make_scene(m, mesh))) {
+    const std::string name = ++k == 1 ? std::string("rotor") : fmt::format("rotor_{}", k);
+    out.write_text(name + ".svg", io::render_svg(io::plot_rotor(name, d)));
+  }
+}
+
 }  // namespace
 
 int check_deck(const CheckOptions& o) {
@@ -85,6 +102,7 @@ int check_deck(const CheckOptions& o) {
     return static_cast<int>(deck::exit_of(d.diagnostics));
   }
   const meshes::Mesh mesh = meshes::make_mesh(d.model);
+  if (!o.mesh.empty()) write_mesh(d.model, mesh, o.mesh);
   if (o.resolved) {
     print_diagnostics(d, o.quiet);
     std::fputs(d.model.resolved.c_str(), stdout);

@@ -10,6 +10,7 @@ struct CheckOptions {
   std::filesystem::path deck;
   deck::ReadOptions read;
   bool json = false, quiet = false, resolved = false;
+  std::filesystem::path mesh;     ///< folder for the mesh as tables and the drawing of the rotor; empty: none
 };
 /// Reads a deck and prints what is wrong with it; station table, masses and summary of a good one.
 int check_deck(const CheckOptions& options);

@@ -68,7 +68,7 @@ StepState Job::start_of(const model::Step& step, double speed) const {
   return s;
 }
 
-void Job::settle(system::SystemProblem&, StepState& start) const {
+analysis::Running Job::running_of(const StepState& start) const {
   analysis::Running running;
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
     const Index n = mesh.lines[l].first_node;
@@ -77,12 +77,17 @@ void Job::settle(system::SystemProblem&, StepState& start) const {
     running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : model.shafts[l].rotating ? model.shafts[l].speed_ratio : 0.0);
   }
   running.ratio.resize(static_cast<std::size_t>(system().lines()), 0.0);
-  analysis::RunningSystem turning(system(), running);
-  analysis::EquilibriumOptions o;
-  o.chart_change = model.chart_change;
-  analysis::EquilibriumSolver solver(turning, o);
-  start.state = solver.solve(start.speed, &start.state).state;
+  return running;
+}
+
+analysis::Equilibrium Job::settle(system::SystemProblem&, StepState& start, analysis::EquilibriumOptions options) const {
+  analysis::RunningSystem turning(system(), running_of(start));
+  options.chart_change = model.chart_change;
+  analysis::EquilibriumSolver solver(turning, options);
+  analysis::Equilibrium found = solver.solve(start.speed, &start.state);
+  start.state = found.state;
   start.state.a.setZero();
+  return found;
 }
 
 ProgressLine::ProgressLine(std::string name, bool quiet) : name_(std::move(name)), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}

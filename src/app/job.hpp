@@ -1,5 +1,6 @@
 // One run of a deck: model -> mesh -> system -> the deck's steps, in order, each writing its results. The body of run_deck().
 #pragma once
+#include <analysis/equilibrium.hpp>
 #include <analysis/measurement.hpp>
 #include <analysis/transient.hpp>
 #include <app/run.hpp>
@@ -42,8 +43,10 @@ struct Job {
   void build_for(const model::Step& step);
   /// Initial state of a step: that of the step it names, else at rest with the lines' spins.
   StepState start_of(const model::Step& step, double speed) const;
-  /// Moves a start to its static equilibrium (spinning, loaded). Error R11 when none is found.
-  void settle(system::SystemProblem& problem, StepState& start) const;
+  /// How the lines turn in a state.
+  analysis::Running running_of(const StepState& start) const;
+  /// Moves a start to its static equilibrium (spinning, loaded). Errors E75, E76 when there is none.
+  analysis::Equilibrium settle(system::SystemProblem& problem, StepState& start, analysis::EquilibriumOptions options = {}) const;
 };
 
 class PlotBuffer;

@@ -51,6 +51,7 @@ int command_line(int argc, char** argv) {
   CheckOptions check;
   auto* c = app.add_subcommand("check", "read a deck; print stations, masses and everything that is wrong");
   add_deck(c, check.deck, check.read);
+  c->add_option("--mesh", check.mesh, "write nodes, elements and stations (CSV) and a drawing of the rotor (SVG) into this folder")->type_name("FOLDER");
   c->add_flag("--json", check.json, "result as JSON on standard output");
   c->add_flag("-q,--quiet", check.quiet, "errors only");
   c->add_flag("--resolved", check.resolved, "print the resolved deck: parameters put in, defaults explicit");

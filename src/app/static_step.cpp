@@ -1,77 +1,121 @@
-// A static step: the spinning, loaded equilibrium, with deflections, reactions and section forces.
-#include <analysis/equilibrium.hpp>
+// A static step: the spinning, loaded equilibrium, or the path of equilibria under a growing load, with deflections, reactions,
+// section forces and stresses.
+#include <analysis/load_path.hpp>
 #include <app/job.hpp>
+#include <app/static_results.hpp>
 
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
 
 namespace whirl::app {
+
+namespace {
+
+analysis::LoadPathOptions path_options(const Job& job, const model::LoadPath& p, const analysis::EquilibriumOptions& e) {
+  analysis::LoadPathOptions o;
+  o.equilibrium = e;
+  o.steps = p.steps, o.max_points = p.max_points;
+  if (p.control == model::LoadPath::Control::displacement) {
+    const meshes::Place at = job.mesh.place(p.at);
+    o.controlled = 6 * at.node + p.direction;
+    o.controlled_to = p.to;
+  } else {
+    o.last_load = p.last_load;
+  }
+  return o;
+}
+
+const char* text_of(analysis::LoadPathEnd e) {
+  switch (e) {
+    case analysis::LoadPathEnd::reached: return "reached its end";
+    case analysis::LoadPathEnd::stopped: return "stopped";
+    case analysis::LoadPathEnd::too_many_points: return "ended after max_points points";
+    default: return "was lost";
+  }
+}
+
+}  // namespace
 
 void run_static_step(Job& job, const model::Step& step, const model::StaticStep& law) {
   const auto wall0 = std::chrono::steady_clock::now();
   system::SystemProblem problem(job.system(), {la::SolverKind::automatic, job.model.chart_change, 2.0});
   StepState s = job.start_of(step, law.speed);
-  job.settle(problem, s);
-  VecX r(job.system().size());
-  problem.frames = s.state.frames;
-  problem.residual(s.state.t, s.state.q, s.state.v, s.state.a, r);
-  problem.power(s.state.t, s.state.q, s.state.v, s.state.a, r);   // node states and energy of this state
-  const auto node = [&](Index n) -> const system::NodeState& { return problem.workspace().nodes[static_cast<std::size_t>(n)]; };
-  const auto reaction = [&](Index k) { return r[k]; };
-
-  io::Table shape;
-  shape.title = "Deflection";
-  shape.columns = {{"shaft", "-", ""}, {"position", "m", ""}, {"station", "-", ""}, {"u_x", "m", "displacement"}, {"u_y", "m", ""},
-                   {"u_z", "m", ""}, {"slope_y", "rad", "d_y of the section normal"}, {"slope_z", "rad", ""}, {"phi", "rad", "axial angle"}};
-  std::vector<io::Series> curves;
-  io::Axes axes;
-  axes.x = io::Axis("position", "m");
-  axes.y = io::Axis("deflection", "m");
-  for (const meshes::Line& line : job.mesh.lines) {
-    io::Series y, z;
-    y.label = line.name + " y", z.label = line.name + " z";
-    for (Index k = line.first_station; k < line.first_station + line.stations; ++k) {
-      const meshes::Station& st = job.mesh.stations[static_cast<std::size_t>(k)];
-      const system::NodeState& n = node(st.at.node);
-      const Vec3 u = n.u + st.at.offset * n.t;
-      shape.add({line.name, st.position.x(), st.label(), u.x(), u.y(), u.z(), n.t.y(), n.t.z(), n.phi});
-      y.x.push_back(st.position.x()), y.y.push_back(u.y()), z.x.push_back(st.position.x()), z.y.push_back(u.z());
-    }
-    y.keep_all = z.keep_all = true;
-    axes.series.push_back(std::move(y)), axes.series.push_back(std::move(z));
-  }
-  io::Table supports;
-  supports.title = "Support forces on the shaft";
-  supports.columns = {{"support", "-", ""}, {"F_x", "N", ""}, {"F_y", "N", ""}, {"F_z", "N", ""}};
-  for (const assembly::SupportForce& f : job.built.support_forces) {
-    const Vec3 v = f.force(node, s.state.t, reaction);
-    supports.add({f.name, v.x(), v.y(), v.z()});
-  }
-  job.folder.write_table(step.name + "_deflection.csv", shape);
-  job.folder.write_table(step.name + "_supports.csv", supports);
   io::Value& v = job.summary["steps"][step.name];
   v["type"] = "static";
   v["speed [rpm]"] = s.speed * 30.0 / pi;
-  for (const assembly::SupportForce& f : job.built.support_forces) {
-    const Vec3 force = f.force(node, s.state.t, reaction);
-    io::Value& q = v["support forces [N]"][f.name];
-    q.push(force.x()), q.push(force.y()), q.push(force.z());
+  StaticFrames frames(job, step.name);
+
+  analysis::EquilibriumOptions options;
+  options.chart_change = job.model.chart_change;
+  options.load_steps = law.load_steps;
+  analysis::Equilibrium found;
+  double load = 1.0;
+  std::optional<PathRecord> path;
+  std::vector<std::string> notes;
+  if (law.path) {
+    analysis::RunningSystem running(job.system(), job.running_of(s));
+    path.emplace(job, *law.path);
+    ProgressLine progress(step.name, job.options.quiet);
+    analysis::LoadPathResult r = analysis::follow_load_path(running, s.speed, s.state, path_options(job, *law.path, options), [&](const analysis::LoadPathPoint& p) {
+      path->add(problem, *p.state, p.load, p.limit);
+      if (frames.any()) {
+        problem.workspace().context.load = p.load;
+        const auto points = assembly::calc_section_results(job.model, job.mesh, job.built, [&](Index n) -> const system::NodeState& { return problem.workspace().nodes[static_cast<std::size_t>(n)]; }, problem.workspace().context);
+        frames.write(job, problem, *p.state, p.load, points);
+      }
+      progress.update(0.0, fmt::format("load factor {:.5g}", p.load));
+      return true;
+    });
+    load = r.load;
+    notes.push_back(fmt::format("load path {} at load factor {:.6g} after {} points", text_of(r.end), r.load, r.points));
+    if (r.end == analysis::LoadPathEnd::lost) notes.back() += ": " + r.why;
+    for (double x : path->limits()) notes.push_back(fmt::format("limit point near load factor {:.5g}", x));
+    v["path"]["end"] = text_of(r.end), v["path"]["load factor"] = r.load, v["path"]["points"] = r.points;
+    for (double x : path->limits()) v["path"]["limit points near"].push(x);
+    found = std::move(r.last);
+  } else {
+    found = job.settle(problem, s, options);
   }
-  v["elastic energy [J]"] = problem.energy().elastic;
+  s.state = found.state;
+  v["Newton iterations"] = found.iterations, v["load steps"] = found.load_steps;
+
+  // node states, reactions and energy of the state found
+  VecX r(job.system().size());
+  problem.frames = s.state.frames;
+  problem.workspace().context.load = load;
+  if (!problem.residual(s.state.t, s.state.q, s.state.v, s.state.a, r)) throw run_error("R11", fmt::format("step '{}': the state found cannot be evaluated", step.name), {});
+  problem.power(s.state.t, s.state.q, s.state.v, s.state.a, r);
+  StaticResults results = make_static_results(job, step.name, problem, s.state, r, found.spin_holds, v);
+  if (!law.path && frames.any()) frames.write(job, problem, s.state, s.state.t, results.points);
+  frames.end();
+
+  job.folder.write_table(step.name + "_deflection.csv", results.deflection);
+  job.folder.write_table(step.name + "_supports.csv", results.supports);
+  job.folder.write_table(step.name + "_sections.csv", results.sections);
+  if (path) job.folder.write_table(step.name + "_path.csv", path->table());
   v["run time [s]"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall0).count();
   if (job.model.output.report) {
     io::ReportSection section;
     section.title = fmt::format("{}: static equilibrium", step.name);
-    io::Figure f;
-    f.name = step.name + "_deflection", f.title = "Deflected centre line";
-    f.axes.push_back(std::move(axes));
-    section.figures.push_back(std::move(f));
-    section.tables.push_back(std::move(supports));
-    section.files.emplace_back("deflection", step.name + "_deflection.csv");
+    section.text = fmt::format("At {:.6g} rpm, load factor {:.6g}: {} Newton iterations, {} load step{}.", s.speed * 30.0 / pi, load, found.iterations, found.load_steps,
+                               found.load_steps == 1 ? "" : "s");
+    for (const std::string& n : notes) section.text += "\n\n" + n + ".";
+    if (path) section.figures.push_back(path->figure(step.name));
+    for (io::Figure& f : results.figures) section.figures.push_back(std::move(f));
+    section.tables.push_back(std::move(results.supports));
+    section.tables.push_back(std::move(results.extremes));
+    for (const char* what : {"deflection", "supports", "sections"}) section.files.emplace_back(what, step.name + "_" + what + ".csv");
+    if (path) section.files.emplace_back("load path", step.name + "_path.csv");
     job.report.sections.push_back(std::move(section));
   }
-  ProgressLine(step.name, job.options.quiet).done(fmt::format("equilibrium at {:.0f} rpm", s.speed * 30.0 / pi));
+  ProgressLine(step.name, job.options.quiet)
+      .done(law.path ? notes.front() : fmt::format("equilibrium at {:.0f} rpm, {} Newton iterations", s.speed * 30.0 / pi, found.iterations));
+  if (!job.options.quiet && !job.options.json) {
+    for (std::size_t k = 1; k < notes.size(); ++k) std::fputs(("  " + notes[k] + "\n").c_str(), stdout);
+    for (const std::string& line : results.lines) std::fputs(("  " + line + "\n").c_str(), stdout);
+  }
   job.states[step.name] = std::move(s);
 }
 

@@ -17,6 +17,8 @@ using ReactionAt = std::function<double(Index unknown)>;
 struct SupportForce {
   std::string name;                 ///< of the bearing
   std::function<Vec3(const NodeAt&, double t, const ReactionAt&)> force;
+  /// N m, about the node; null where the support gives none.
+  std::function<Vec3(const NodeAt&, double t, const ReactionAt&)> moment{};
 };
 
 /// How a support with a gap stands: films before their clearance is used up, contacts before they close.
@@ -45,8 +47,12 @@ struct LineSpin {
   double spin0 = 0;                 ///< rad/s
 };
 
+/// What a shaft element (stiffness, inertia, damping of its material) adds to the force in X of its two nodes.
+using ElementForce = std::function<void(const system::System&, const system::Nodes<2>&, const system::Context&, system::ForceX<14>&)>;
+
 struct Built {
   system::System system;
+  std::vector<ElementForce> element_forces;   ///< one an element of the mesh
   std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors), sorted: integrator steps land on them
   std::vector<SupportForce> support_forces;
   std::vector<SupportCondition> conditions;

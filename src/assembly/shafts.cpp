@@ -19,6 +19,18 @@ namespace {
 
 using elements::ShaftElementConstants;
 
+/// Adds a kernel that carries stress, and notes it for the section forces of its element.
+template <system::Kernel K>
+void add_stressed(Assembly& a, const K& k, const std::array<Index, 2>& nodes, const char* kind) {
+  const std::size_t place = a.builder.count<K>();
+  a.builder.add(k, nodes, kind);
+  ElementForce& f = a.built.element_forces.back();
+  f = [place, before = std::move(f)](const system::System& s, const system::Nodes<2>& x, const system::Context& c, system::ForceX<14>& out) {
+    if (before) before(s, x, c, out);
+    s.batch<K>()->elements()[place].add_force(x, c, out);
+  };
+}
+
 void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConstants& c, const std::array<Index, 2>& nodes, bool internal) {
   const model::ShaftDamping& d = shaft.damping;
   const Vec3 e0 = Vec3::UnitX();
@@ -26,7 +38,7 @@ void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConst
   // The twist goes with whichever of the two exists.
   const bool rotating = internal && d.beta_internal != 0, fixed = d.beta_external != 0;
   if (rotating)
-    a.builder.add(elements::ShaftDamping<true>(c, e0, d.beta_internal, twist, d.beta_internal), nodes, "internal damping");
+    add_stressed(a, elements::ShaftDamping<true>(c, e0, d.beta_internal, twist, d.beta_internal), nodes, "internal damping");
   if (fixed || (twist != 0 && !rotating))
     a.builder.add(elements::ShaftDamping<false>(c, e0, d.beta_external, rotating ? 0.0 : twist, d.beta_external), nodes, "external damping");
   if (d.alpha != 0) {
@@ -34,6 +46,49 @@ void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConst
     m.C4 = d.alpha * c.M4;
     a.builder.add(m, nodes, "mass-proportional damping");
   }
+}
+
+/// Force at unstressed length: preload, and what keeps the element from its thermal growth.
+double preload_of(const Assembly& a, const model::Shaft& shaft, const meshes::Element& e, double EA) {
+  const model::Section& s = shaft.sections[e.section];
+  const double strain = s.constants || a.model.materials.empty() ? 0.0 : a.model.materials.at(s.material).expansion * s.temperature_rise;
+  return shaft.axial_preload - EA * strain;
+}
+
+/// Preload and the unstressed shape of a bowed shaft: the slopes of w = A sin(pi s/L) against the chord are stress-free.
+void finish_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& e, elements::GeneralBeam& beam, const std::array<Index, 2>& nodes) {
+  beam.preload = preload_of(a, shaft, e, beam.c.EA_l * beam.c.length);
+  if (shaft.bow.amount != 0) {
+    const double L = shaft.length(), k = pi / L, A = shaft.bow.amount;
+    const double chord = A * (std::sin(k * e.s2) - std::sin(k * e.s1)) / (e.s2 - e.s1);
+    // body axes of the section may be turned by an angle of their own
+    const double angle = shaft.sections[e.section].general ? shaft.sections[e.section].general->angle : 0.0;
+    const Vec2 axis(std::cos(shaft.bow.phase - angle), std::sin(shaft.bow.phase - angle));
+    beam.p01 += (A * k * std::cos(k * e.s1) - chord) * axis;
+    beam.p02 += (A * k * std::cos(k * e.s2) - chord) * axis;
+  }
+  add_stressed(a, beam, nodes, "general beam elements");
+}
+
+/// A round section whose unstressed shape is not straight.
+void add_bowed(Assembly& a, const model::Shaft& shaft, const meshes::Element& e) {
+  elements::ElementSection section = element_section(a.model, e);
+  const double l = e.s2 - e.s1;
+  const ShaftElementConstants whole = elements::make_shaft_constants(section, l);
+  section.rotary_inertia = false;   // the general beam has it on its triads
+  if (section.constants) section.given.rhoI = 0;
+  const ShaftElementConstants k = elements::make_shaft_constants(section, l);
+  elements::GeneralBeamConstants c;
+  c.length = l, c.EA_l = k.EA_l, c.GJ_l = k.GJ_l;
+  c.ky_def11 = c.kz_def11 = k.k11, c.ky_def12 = c.kz_def12 = k.k12, c.ky_def22 = c.kz_def22 = k.k22;
+  c.b11 = k.b11, c.b12 = k.b12, c.b22 = k.b22, c.tau_c = k.tau_c;
+  c.M4 = k.M4;
+  c.rhoIz_l = c.rhoIy_l = 0.5 * whole.polar.sum();
+  c.beta = shaft.damping.beta_internal;
+  const std::array<Index, 2> nodes{e.left.node, e.right.node};
+  elements::GeneralBeam beam(c, Vec3(l, 0, 0), Mat3::Identity(), Mat3::Identity(), Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0));
+  finish_general(a, shaft, e, beam, nodes);
+  add_damping(a, shaft, element_constants(a.model, e), nodes, false);
 }
 
 /// Section with unequal principal axes. Deflection along the section's y bends about its z.
@@ -56,6 +111,7 @@ void add_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& 
   c.ky_def11 = y.k11, c.ky_def12 = y.k12, c.ky_def22 = y.k22;
   c.kz_def11 = z.k11, c.kz_def12 = z.k12, c.kz_def22 = z.k22;
   c.b11 = 0.5 * (y.b11 + z.b11), c.b12 = 0.5 * (y.b12 + z.b12), c.b22 = 0.5 * (y.b22 + z.b22);
+  c.tau_c = 0.5 * (y.tau_c + z.tau_c);
   c.M4 = 0.5 * (y.M4 + z.M4);
   const double rho = s.rotary_inertia ? material.rho * l : 0.0;
   c.rhoIz_l = rho * g.Iz, c.rhoIy_l = rho * g.Iy;
@@ -63,8 +119,8 @@ void add_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& 
   Mat3 triad;
   triad << Vec3::UnitX(), Vec3(0, std::cos(g.angle), std::sin(g.angle)), Vec3(0, -std::sin(g.angle), std::cos(g.angle));
   const std::array<Index, 2> nodes{e.left.node, e.right.node};
-  a.builder.add(elements::GeneralBeam(c, Vec3(l, 0, 0), triad, triad, Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0)), nodes,
-                "general beam elements");
+  elements::GeneralBeam beam(c, Vec3(l, 0, 0), triad, triad, Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0));
+  finish_general(a, shaft, e, beam, nodes);
   // Fixed-axes damping does not turn with the section: it takes the mean of both planes.
   ShaftElementConstants mean = y;
   mean.k11 = 0.5 * (y.k11 + z.k11), mean.k12 = 0.5 * (y.k12 + z.k12), mean.k22 = 0.5 * (y.k22 + z.k22);
@@ -85,16 +141,21 @@ void add_rigid_part(Assembly& a, const model::Shaft& shaft, const meshes::RigidP
 
 void add_shafts(Assembly& a) {
   for (const meshes::Element& e : a.mesh.elements) {
+    a.built.element_forces.emplace_back();
     const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
     if (shaft.sections[e.section].general) {
       add_general(a, shaft, e);
       continue;
     }
+    if (shaft.bow.amount != 0) {
+      add_bowed(a, shaft, e);
+      continue;
+    }
     const ShaftElementConstants c = element_constants(a.model, e);
     const std::array<Index, 2> nodes{e.left.node, e.right.node};
     const auto add = [&](auto beam) {
-      beam.preload = shaft.axial_preload;
-      a.builder.add(beam, nodes, "shaft elements");
+      beam.preload = preload_of(a, shaft, e, c.EA_l * c.length);
+      add_stressed(a, beam, nodes, "shaft elements");
     };
     if (c.o1 == 0 && c.o2 == 0) add(elements::ShaftBeam<false>(c, Vec3::UnitX()));
     else add(elements::ShaftBeam<true>(c, Vec3::UnitX()));

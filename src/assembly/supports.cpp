@@ -32,7 +32,8 @@ void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
   const elements::LinearBearing k(law.K, law.C, law.M, law.setpoint, law.preload, n.shaft.offset, n.other.offset);
   a.builder.add(k, nodes, "linear bearings");
   a.built.support_forces.push_back(
-      {b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>()); }});
+      {b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>()); },
+       [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).tail<3>()); }});
 }
 
 namespace {
@@ -136,6 +137,15 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     h.second->push_back({c, unknown[c], scale[c]});
   }
   const auto others = first ? h.second : nullptr;
+  // A held angle is zero, so its generalised force is the moment itself (gamma2 about y, gamma3 about z).
+  std::function<Vec3(const NodeAt&, double, const ReactionAt&)> moment;
+  if (law.held[3] || law.held[4] || law.held[5])
+    moment = [node, turns = law.held](const NodeAt&, double, const ReactionAt& r) {
+      Vec3 M = Vec3::Zero();
+      for (Index c = 0; c < 3; ++c)
+        if (turns[static_cast<std::size_t>(3 + c)]) M[c] = r(6 * node + 3 + c);
+      return M;
+    };
   a.built.support_forces.push_back({b.name, [unknown, scale, others](const NodeAt&, double, const ReactionAt& r) {
     Vec3 F = Vec3::Zero();
     for (std::size_t c = 0; c < 3; ++c)
@@ -143,7 +153,7 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     if (others)
       for (const HeldNode::Share& o : *others) F[static_cast<Index>(o.direction)] -= o.scale * r(o.unknown);
     return F;
-  }});
+  }, moment});
 }
 
 // ---------------------------------------------------------------- pedestals

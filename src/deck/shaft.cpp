@@ -77,6 +77,7 @@ void describe(Visitor& v, model::Material& m) {
   const bool nu = v.number(optional("nu", "0.3, or from E and G"), m.nu, any, "Poisson's ratio");
   v.quantity(required("density"), m.rho, "kg/m^3", any, "density");
   v.quantity(optional("yield", "not given"), m.yield, "MPa", positive, "yield stress, for reports");
+  v.quantity("expansion", m.expansion, "1/K", any, "coefficient of thermal expansion");
   if (!v.clean() || !E) return;
   if (!(m.E > 0)) v.error("E36", "E", "Young's modulus must be positive");
   if (G && !(m.G > 0)) v.error("E36", "G", "the shear modulus must be positive");
@@ -104,6 +105,7 @@ void describe(Visitor& v, model::Section& s) {
   if (v.material(optional("material", "that of the shaft"), s.material, "name of a material") && s.material == no_material) s.material = 0;
   v.flag("rigid", s.rigid, "a rigid link: no deformation, and no mass unless it has diameters");
   describe_shear(v, s);
+  v.quantity("temperature_rise", s.temperature_rise, "K", any, "above the temperature at which the section has its length; needs the expansion of the material");
   v.quantity("added_mass", s.added_mass_per_length, "kg/m", not_negative, "distributed mass without stiffness");
   v.integer(optional("min_elements", "model.mesh"), s.min_elements, between(1, 10000), "least number of elements");
   v.quantity(optional("max_element_length", "model.mesh"), s.max_element_length, "mm", positive, "longest element");
@@ -156,6 +158,11 @@ void describe(Visitor& v, model::Shaft& s) {
   v.number("speed_ratio", s.speed_ratio, any, "speed relative to the reference speed of frequency-domain steps; negative: turns the other way");
   v.quantity("initial_spin", s.spin0, "rpm", any, "spin at the start of transients, unless the step or a drive says otherwise");
   v.quantity("axial_preload", s.axial_preload, "N", any, "axial force, tension positive");
+  v.quantity("temperature_rise", start.temperature_rise, "K", any, "of all sections that do not give another: the shaft grows, or its supports hold it back");
+  v.table(optional("bow", "straight"), [&](Visitor& w) {
+    w.quantity(required("amount"), s.bow.amount, "um", positive, "largest deviation, at mid-length");
+    w.quantity("phase", s.bow.phase, "deg", any, "angle on the shaft from e2 towards e3");
+  }, "residual bow of the unloaded shaft, half a sine from end to end; it turns with the shaft");
   v.table("damping", [&](Visitor& w) { describe_damping(w, s.damping); }, "damping of the shaft material and its surroundings");
 
   // sections, with the checks that need the one before

@@ -58,9 +58,38 @@ void check_orders(Visitor& v, const std::vector<double>& orders) {
 
 }  // namespace
 
+void describe(Visitor& v, model::LoadPath& p) {
+  v.choice("control", p.control, {{"arc_length", "steps along the path, in load and displacements together"}, {"displacement", "equal steps of one displacement or angle"}}, "what is stepped");
+  const bool load = v.number(optional("load", "1, with arc_length"), p.last_load, any, "arc_length: load factor at which the path ends (1 = the loads of the deck)");
+  const bool at = v.location(optional("at", "control = \"arc_length\""), p.at, "displacement: where the controlled displacement is");
+  const bool which = v.choice(optional("direction", "y"), p.direction, {{"x", "along the shaft"}, {"y", "along y"}, {"z", "along z"}, {"rx", "turn about the axis"}}, "displacement: which one");
+  const bool along = v.quantity(optional("to", "control = \"arc_length\", or an angle"), p.to, "mm", any, "displacement: its last value");
+  const bool turn = v.quantity(optional("to_angle", "control = \"arc_length\", or a displacement"), p.to, "deg", any, "displacement with direction = \"rx\": its last value");
+  v.integer("steps", p.steps, between(1, 100000), "displacement: number of steps; arc_length: about as many for a straight path");
+  v.integer("max_points", p.max_points, between(2, 1000000), "the path ends here at the latest");
+  if (!v.clean()) return;
+  const bool control = p.control == model::LoadPath::Control::displacement;
+  const auto odd = [&](const char* key, const char* other) { v.error("E26", key, fmt::format("'{}' belongs to control = \"{}\"", key, other)); };
+  if (control && load) odd("load", "arc_length");
+  if (!control)
+    for (const auto& [given, key] : {std::pair{at, "at"}, {which, "direction"}, {along, "to"}, {turn, "to_angle"}})
+      if (given) return odd(key, "displacement");
+  if (!control) {
+    if (p.last_load == 0) v.error("E14", "load", "a path to load factor 0 is no path");
+    return;
+  }
+  const bool angle = p.direction == 3;
+  if (!at) v.error("E05", nullptr, "displacement control lacks 'at'", "at = \"disk\", direction = \"y\", to = \"-5 mm\"");
+  else if (angle ? !turn || along : !along || turn)
+    v.error("E05", nullptr, fmt::format("displacement control with direction = \"{}\" needs '{}'", angle ? "rx" : p.direction == 0 ? "x" : p.direction == 1 ? "y" : "z", angle ? "to_angle" : "to"));
+  else if (p.to == 0) v.error("E14", angle ? "to_angle" : "to", "a path to displacement 0 is no path");
+}
+
 void describe(Visitor& v, model::StaticStep& s) {
-  v.integer("load_steps", s.load_steps, between(1, 100000), "number of parts in which the loads are applied");
-  v.quantity("speed", s.speed, "rpm", any, "speed at which speed-dependent bearings are taken");
+  v.integer("load_steps", s.load_steps, between(1, 100000), "number of parts in which gravity and the loads are put on (more where needed)");
+  v.quantity("speed", s.speed, "rpm", any, "speed of the rotor");
+  v.table(optional("path", "one equilibrium, at the full load"), s.path, "follow the equilibria from no load past limit points (buckling, snap-through)");
+  if (v.clean() && s.path && v.given("load_steps")) v.error("E26", "load_steps", "a path has its own steps", "use path.steps");
 }
 
 namespace {

@@ -204,11 +204,22 @@ void check_effects(const model::Model& m, Problems& out) {
   const auto warn = [&](std::string what, const Where& w) {
     add(out, "W02", fmt::format("{} without effect: the deck has no transient step", what), "", w, Diagnostic::Severity::warning);
   };
+  for (const auto& s : m.shafts) {
+    if (transient && s.damping.loss_factor != 0)
+      add(out, "W02", fmt::format("internal_loss_factor of shaft '{}' has no effect on transient steps: hysteretic damping has no form in time", s.name),
+          "give internal_beta as well for them: loss factor / (angular frequency of the whirl)", s.where, Diagnostic::Severity::warning);
+    for (const auto& x : s.sections)
+      if (x.temperature_rise != 0 && (x.constants || m.materials.empty() || m.materials.at(x.material).expansion == 0)) {
+        add(out, "W02", fmt::format("temperature_rise of section '{}' has no effect: {}", x.name, x.constants ? "its constants have no thermal expansion" : "its material has no 'expansion'"),
+            "expansion = \"12e-6 1/K\" for steel", x.where, Diagnostic::Severity::warning);
+        break;
+      }
+  }
   if (transient) return;
   if (!m.drives.empty()) warn("a drive", m.drives.front().where);
   if (!m.initial.empty()) warn("an initial motion", m.initial.front().where);
   const bool shapes = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
-    return std::holds_alternative<model::ModalStep>(s.law) || std::holds_alternative<model::CriticalStep>(s.law) ||
+    return std::holds_alternative<model::StaticStep>(s.law) || std::holds_alternative<model::ModalStep>(s.law) || std::holds_alternative<model::CriticalStep>(s.law) ||
            std::holds_alternative<model::UnbalanceStep>(s.law) || std::holds_alternative<model::HarmonicStep>(s.law) ||
            std::holds_alternative<model::BucklingStep>(s.law);
   });

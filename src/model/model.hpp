@@ -24,6 +24,7 @@ struct Entity {
 struct Material : Entity {
   double E = 0, G = 0, nu = 0.3, rho = 0;  ///< Pa, Pa, -, kg/m3 (G = E/(2(1+nu)) unless given)
   double yield = 0;                        ///< Pa, 0 = not given
+  double expansion = 0;                    ///< coefficient of thermal expansion, 1/K
 };
 
 enum class ShearFactor { cowper, hutchinson, none /* Euler-Bernoulli or Rayleigh */, given };
@@ -39,6 +40,7 @@ struct Section : Entity {
   double kappa = 0;                               ///< for ShearFactor::given
   bool rotary_inertia = true;                     ///< false: Euler-Bernoulli mass
   double added_mass_per_length = 0;               ///< kg/m without stiffness
+  double temperature_rise = 0;                    ///< K above the state in which the shaft has its lengths
   int min_elements = 1;
   double max_element_length = infinity;
   /// General sections (not axisymmetric): stiffnesses given directly; I about the section's own y and z axes.
@@ -58,6 +60,9 @@ struct ShaftDamping {
   double beta_torsion = 0;      ///< torsional viscous, s
 };
 
+/// Residual bow of an unloaded shaft: half a sine from end to end, in a plane that turns with the shaft.
+struct Bow { double amount = 0, phase = 0; };   ///< m at mid-length; rad, body angle from e2 towards e3
+
 struct Shaft : Entity {
   Vec3 origin = Vec3::Zero();   ///< position of station 0, m; the line runs along +x
   std::vector<Section> sections;
@@ -66,6 +71,7 @@ struct Shaft : Entity {
   double speed_ratio = 1;       ///< speed of this line relative to the reference speed of frequency-domain steps
   double spin0 = 0;             ///< initial spin of transients unless a drive says otherwise, rad/s
   double axial_preload = 0;     ///< N, tension positive
+  Bow bow;
   double length() const { double s = 0; for (const auto& x : sections) s += x.length; return s; }
 };
 
@@ -176,7 +182,20 @@ struct IntegratorOptions {
 
 struct SpeedRange { double start = 0, stop = 0; int points = 2; std::vector<double> values; bool refine_peaks = false; };
 
-struct StaticStep { int load_steps = 1; double speed = 0; };
+/// Static equilibria followed past limit points, the load factor (on gravity and loads) an unknown.
+struct LoadPath {
+  enum class Control { arc_length, displacement } control = Control::arc_length;
+  double last_load = 1;         ///< arc length: load factor at which the path ends
+  Location at;                  ///< displacement control: where,
+  int direction = 1;            ///< 0 .. 2: x, y, z; 3: angle about the axis,
+  double to = 0;                ///< m or rad
+  int steps = 20, max_points = 400;
+};
+struct StaticStep {
+  int load_steps = 1;
+  double speed = 0;
+  std::optional<LoadPath> path;
+};
 /// Which unknowns of the shafts take part in a frequency-domain step; the others are held.
 enum class MotionKind { all, lateral, torsional, axial };
 /// Excitation frequencies, rad/s: equally spaced, or one by one.

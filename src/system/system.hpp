@@ -131,6 +131,11 @@ class Builder {
     }
     static_cast<Batch<K>&>(*system_.terms_[it->second]).add(k, nodes);
   }
+  /// Elements of a kernel type so far: the next one's place in its batch.
+  template <Kernel K> std::size_t count() const {
+    const Batch<K>* b = system_.batch<K>();
+    return b ? b->count() : 0;
+  }
   const NodeDef& node(Index i) const { return system_.defs_[static_cast<std::size_t>(i)]; }
   Index nodes() const { return static_cast<Index>(system_.defs_.size()); }
   /// Holds every rotational unknown no element resists or loads, then freezes pattern and slots.

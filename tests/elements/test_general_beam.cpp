@@ -21,7 +21,7 @@ GeneralBeamConstants constants(double beta = 0.0) {
   c.length = L, c.EA_l = 4e4 / L, c.GJ_l = 90 / L;
   c.ky_def11 = c.ky_def22 = 4 * 120 / L, c.ky_def12 = 2 * 120 / L;
   c.kz_def11 = c.kz_def22 = 4 * 70 / L, c.kz_def12 = 2 * 70 / L;
-  c.b11 = c.b22 = 2.0 / 15, c.b12 = -1.0 / 30;
+  c.b11 = c.b22 = 2.0 / 15, c.b12 = -1.0 / 30, c.tau_c = 0.3;
   c.M4 << 156, 22 * L, 54, -13 * L, 22 * L, 4 * L * L, 13 * L, -3 * L * L, 54, 13 * L, 156, -22 * L, -13 * L, -3 * L * L,
       -22 * L, 4 * L * L;
   c.M4 *= 2.0 * L / 420;

@@ -1,0 +1,51 @@
+// Tables and figures of a static state: deflection, supports, section forces, stresses.
+#pragma once
+#include <app/job.hpp>
+#include <assembly/section_results.hpp>
+#include <string>
+#include <vector>
+
+namespace whirl::app {
+
+struct StaticResults {
+  io::Table deflection, supports, sections, extremes;
+  std::vector<io::Figure> figures;
+  std::vector<assembly::SectionPoint> points;
+  std::vector<std::string> lines;   ///< for the terminal
+};
+
+/// `problem` has evaluated the state (power()); reactions: residual at held unknowns, and at spin holds.
+StaticResults make_static_results(Job& job, const std::string& step, system::SystemProblem& problem, const system::State& state, const VecX& reactions,
+                                  std::span<const Index> spin_holds, io::Value& summary);
+
+/// Load path: factor and displacements (of probes, else disks) point by point.
+class PathRecord {
+ public:
+  PathRecord(const Job& job, const model::LoadPath& law);
+  void add(system::SystemProblem& problem, const system::State& s, double load, bool limit);
+  const io::Table& table() const { return table_; }
+  io::Figure figure(const std::string& step) const;
+  /// Load factors at which the path turned.
+  const std::vector<double>& limits() const { return limits_; }
+
+ private:
+  struct Watched { std::string name; meshes::Place at; };
+  std::vector<Watched> watched_;
+  io::Table table_;
+  std::vector<double> load_, limits_;
+  std::vector<std::vector<double>> u_;   ///< y, z, x of each watched, flat
+};
+
+/// One frame of the state in the files the deck asks for (none: null functions).
+class StaticFrames {
+ public:
+  StaticFrames(const Job& job, const std::string& step);
+  void write(const Job& job, system::SystemProblem& problem, const system::State& s, double time, const std::vector<assembly::SectionPoint>& points);
+  bool any() const { return !writers_.empty(); }
+  void end();
+
+ private:
+  std::vector<std::unique_ptr<io::FrameWriter>> writers_;
+};
+
+}  // namespace whirl::app

@@ -1,0 +1,76 @@
+#include <assembly/section_results.hpp>
+
+#include <assembly/element_section.hpp>
+#include <core/rotation.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::assembly {
+namespace {
+
+using system::NodeState;
+
+struct End { Vec3 r, d, F, M; };
+
+/// Moment of a force in X: virtual work on delta d = theta x d, delta phi = theta.(e + d)/(1 + e.d).
+Vec3 moment_of(const NodeState& n, const Vec3& f_d, double f_phi) {
+  const Vec3 d = n.d();
+  return d.cross(f_d) + f_phi / (2.0 + n.e().dot(n.t)) * (n.e() + d);
+}
+
+void add_stress(const elements::ElementSection& s, double xi, SectionPoint& p) {
+  if (s.constants) return;
+  const double od = s.od1 + xi * (s.od2 - s.od1), id = s.id1 + xi * (s.id2 - s.id1);
+  if (!(od > 0)) return;
+  const double A = elements::annulus_area(od, id), I = elements::annulus_I(od, id), J = elements::annulus_J(od, id), c = 0.5 * od, ri = 0.5 * id;
+  const double shear = 4.0 * p.V.norm() * (c * c + c * ri + ri * ri) / (3.0 * A * (c * c + ri * ri));
+  p.has_stress = true;
+  p.axial = p.N / A, p.bending = p.M.norm() * c / I, p.torsion = std::abs(p.T) * c / J;
+  const double surface = std::hypot(std::abs(p.axial) + p.bending, std::sqrt(3.0) * p.torsion);
+  p.von_mises = std::max(surface, std::hypot(p.axial, std::sqrt(3.0) * (p.torsion + shear)));
+}
+
+}  // namespace
+
+std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh, const Built& built, const NodeAt& at,
+                                               const system::Context& context, int inner) {
+  std::vector<SectionPoint> out;
+  out.reserve(mesh.elements.size() * static_cast<std::size_t>(inner + 2));
+  for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
+    const meshes::Element& e = mesh.elements[k];
+    const NodeState &n1 = at(e.left.node), &n2 = at(e.right.node);
+    system::ForceX<14> f = system::ForceX<14>::Zero();
+    built.element_forces.at(k)(built.system, {&n1, &n2}, context, f);
+    const double L = e.s2 - e.s1;
+    End a, b;
+    a.d = n1.d(), b.d = n2.d();
+    a.r = mesh.nodes[static_cast<std::size_t>(e.left.node)].position + n1.u + e.left.offset * a.d;
+    b.r = mesh.nodes[static_cast<std::size_t>(e.right.node)].position + n2.u + e.right.offset * b.d;
+    a.F = -f.segment<3>(0), b.F = f.segment<3>(7);
+    a.M = -moment_of(n1, f.segment<3>(3), f[6]) - e.left.offset * a.d.cross(a.F);
+    b.M = moment_of(n2, f.segment<3>(10), f[13]) - e.right.offset * b.d.cross(b.F);
+    const Vec3 chord = (b.r - a.r) / L;
+    const Vec3 dM1 = -L * chord.cross(a.F), dM2 = -L * chord.cross(b.F);
+    const model::Section& section = m.shafts[static_cast<std::size_t>(e.line)].sections[e.section];
+    const elements::ElementSection shape = element_section(m, e);
+    for (int j = 0; j <= inner + 1; ++j) {
+      const double x = static_cast<double>(j) / (inner + 1), y = 1.0 - x;
+      SectionPoint p;
+      p.line = e.line, p.element = static_cast<Index>(k), p.s = j == 0 ? e.s1 : j == inner + 1 ? e.s2 : e.s1 + x * L, p.xi = x;
+      p.force = y * a.F + x * b.F;
+      p.moment = y * y * (1.0 + 2.0 * x) * a.M + x * x * (3.0 - 2.0 * x) * b.M + x * y * (y * dM1 - x * dM2);
+      const Vec3 d = (y * a.d + x * b.d).normalized();
+      const Mat3& chart = *n1.chart;
+      const Mat3 axes = rotation::minimal_rotation(chart.col(0), d);
+      const Vec3 ey = axes * chart.col(1), ez = axes * chart.col(2);
+      p.N = p.force.dot(d), p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
+      p.T = p.moment.dot(d), p.M = Vec2(p.moment.dot(ey), p.moment.dot(ez));
+      if (!section.general) add_stress(shape, x, p);
+      out.push_back(p);
+    }
+  }
+  return out;
+}
+
+}  // namespace whirl::assembly
