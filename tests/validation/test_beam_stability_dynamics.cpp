@@ -9,6 +9,8 @@
 #include <analysis/transient.hpp>
 #include <elements/shaft_beam.hpp>
 
+#include <la/eigen.hpp>
+
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
@@ -167,6 +169,43 @@ TEST(BeamBuckling, LateralTorsional) {
   b.add(elements::FixedLoad{Vec3::Zero(), Vec3(0, 1, 0), 0, nullptr}, {right}, "loads");
   const double M = critical_load(b.finalize(), 2.5, 3.8);
   EXPECT_NEAR(M / pi, 1.0, 1e-5);   // 16 elements of order 4
+}
+
+TEST(BeamTheories, EulerBernoulliRayleighAndTimoshenko) {
+  // Pinned shaft, k = n pi/L: Euler-Bernoulli w^2 = EI k^4/(rho A); Rayleigh: divided by 1 + k^2 I/A (Lord Rayleigh, Theory of Sound, 162);
+  // Timoshenko: the lower root of (rho/kG) r w^4 - (1 + r k^2 (1 + E/kG)) w^2 + EI k^4/(rho A) = 0, r = I/A (Phil. Mag. 41 (1921) 744).
+  const double d = 0.05, L = 0.5, E = 2.1e11, G = 8.1e10, rho = 7800, A = pi / 4 * d * d, r = d * d / 16;
+  for (int theory = 0; theory < 3; ++theory) {
+    elements::ElementSection e;
+    e.od1 = e.od2 = e.mass_od1 = e.mass_od2 = d, e.E = E, e.G = G, e.rho = rho;
+    e.shear = theory < 2 ? elements::ShearRule::rigid : elements::ShearRule::cowper;
+    e.rotary_inertia = theory > 0;
+    const int n = 16;
+    const auto c = elements::make_shaft_constants(e, L / n);
+    system::Builder b;
+    b.add_line("shaft");
+    for (int i = 0; i <= n; ++i) b.add_node({Vec3(L * i / n, 0, 0), 0, "node " + std::to_string(i), false});
+    for (int i = 0; i < n; ++i) b.add(elements::ShaftBeam<false>(c, Vec3::UnitX()), {i, i + 1}, "shaft elements");
+    for (int i = 0; i <= n; ++i) b.hold(i, 0), b.hold(i, 2), b.hold(i, 3), b.hold(i, 4);   // in the plane x-y
+    b.hold(0, 1), b.hold(n, 1);
+    const system::System s = b.finalize();
+    system::Workspace w = s.make_workspace();
+    la::MCK m = s.make_matrices();
+    const system::State x = s.make_state();
+    ASSERT_TRUE(s.tangent(w, x.frames, 0, x.q, x.v, x.a, m));
+    const auto modes = la::symmetric_modes(m, s.active(), 3);
+    for (int k = 1; k <= 3; ++k) {
+      const double K = k * pi / L, slow = E * r * std::pow(K, 4) / rho;
+      double exact = slow;
+      if (theory == 1) exact /= 1 + K * K * r;
+      if (theory == 2) {
+        const double kG = elements::cowper_factor(0.0, E / (2 * G) - 1) * G, q = rho / kG * r, p = 1 + r * K * K * (1 + E / kG);
+        exact = 2 * slow / (p + std::sqrt(p * p - 4 * q * slow));
+      }
+      // 16 elements, the third mode of a thick shaft: order 4 and more
+      EXPECT_NEAR(std::sqrt(modes[static_cast<std::size_t>(k - 1)].omega2 / exact), 1.0, 2e-5) << "theory " << theory << " mode " << k;
+    }
+  }
 }
 
 TEST(WindUp, TenAndAHundredTurnsAndTheirEnergy) {
