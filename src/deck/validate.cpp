@@ -205,7 +205,7 @@ void check_effects(const model::Model& m, Problems& out) {
     add(out, "W02", fmt::format("{} without effect: the deck has no transient step", what), "", w, Diagnostic::Severity::warning);
   };
   for (const auto& s : m.shafts) {
-    if (transient && s.damping.loss_factor != 0)
+    if (transient && s.damping.loss_factor != 0 && s.damping.beta_internal == 0)
       add(out, "W02", fmt::format("internal_loss_factor of shaft '{}' has no effect on transient steps: hysteretic damping has no form in time", s.name),
           "give internal_beta as well for them: loss factor / (angular frequency of the whirl)", s.where, Diagnostic::Severity::warning);
     for (const auto& x : s.sections)
