@@ -157,13 +157,12 @@ TEST(GeneralBeam, RigidMotionKeepsEnergyAndLosesNone) {
 }
 
 TEST(GeneralBeam, AgreesWithTheAxisymmetricElement) {
-  // Same constants, small bend and any twist below pi: forces agree up to the torsion term tau_c (left out there) and the place
-  // of rotary inertia (none here).
+  // Same constants, small bend and any twist below pi: forces agree; the rotary inertia stands elsewhere (none here).
   elements::ShaftElementConstants a;
   GeneralBeamConstants g = constants();
   g.kz_def11 = g.ky_def11, g.kz_def12 = g.ky_def12, g.kz_def22 = g.ky_def22, g.rhoIz_l = g.rhoIy_l = 0;
   a.length = g.length, a.EA_l = g.EA_l, a.GJ_l = g.GJ_l, a.b11 = g.b11, a.b12 = g.b12, a.b22 = g.b22;
-  a.k11 = g.ky_def11, a.k12 = g.ky_def12, a.k22 = g.ky_def22, a.M4 = g.M4;
+  a.k11 = g.ky_def11, a.k12 = g.ky_def12, a.k22 = g.ky_def22, a.tau_c = g.tau_c, a.M4 = g.M4;
   auto build = [&](bool general) {
     Builder b;
     b.add_line("beam");

@@ -174,7 +174,7 @@ TEST(BeamBuckling, LateralTorsional) {
 TEST(BeamTheories, EulerBernoulliRayleighAndTimoshenko) {
   // Pinned shaft, k = n pi/L: Euler-Bernoulli w^2 = EI k^4/(rho A); Rayleigh: divided by 1 + k^2 I/A (Lord Rayleigh, Theory of Sound, 162);
   // Timoshenko: the lower root of (rho/kG) r w^4 - (1 + r k^2 (1 + E/kG)) w^2 + EI k^4/(rho A) = 0, r = I/A (Phil. Mag. 41 (1921) 744).
-  const double d = 0.05, L = 0.5, E = 2.1e11, G = 8.1e10, rho = 7800, A = pi / 4 * d * d, r = d * d / 16;
+  const double d = 0.05, L = 0.5, E = 2.1e11, G = 8.1e10, rho = 7800, r = d * d / 16;
   for (int theory = 0; theory < 3; ++theory) {
     elements::ElementSection e;
     e.od1 = e.od2 = e.mass_od1 = e.mass_od2 = d, e.E = E, e.G = G, e.rho = rho;
