@@ -29,6 +29,7 @@ void add_builtin_materials(Value& resolved, const model::Model& m) {
     t.add("E", Value::of_text(units::format(x.E, "GPa")));
     t.add("nu", Value::of_number(x.nu));
     t.add("density", Value::of_text(units::format(x.rho, "kg/m^3")));
+    t.add("expansion", Value::of_text(units::format(x.expansion, "1/K")));
     all.items.push_back(std::move(t));
   }
   if (list) {

@@ -108,7 +108,7 @@ TEST_F(Cli, MistakesGoToStandardError) {
   EXPECT_EQ(r.out, "");
   EXPECT_EQ(r.err,
             "a deck.toml:2:1: error[E05]: shaft 'shaft' has no sections\n   2 | [shaft]\n     | ^~~~~~~\n     = hint: give columns and rows, file = \"shaft.csv\", or [[shaft.section]]\n"
-            "a deck.toml:3:1: error[E04]: unknown key 'lenght' in shaft 'shaft'\n   3 | lenght = 3\n     | ^~~~~~\n     = hint: known here: name, origin, material, shear, kappa, rotary_inertia, rotating, speed_ratio, initial_spin, axial_preload, damping, columns, rows, file, section\n"
+            "a deck.toml:3:1: error[E04]: unknown key 'lenght' in shaft 'shaft'\n   3 | lenght = 3\n     | ^~~~~~\n     = hint: `whirl schema --reference` lists all keys\n"
             "a deck.toml: 2 errors\n");
 }
 

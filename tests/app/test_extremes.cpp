@@ -91,14 +91,6 @@ double rigid(const Machine& m) {
 
 }  // namespace
 
-TEST(Extremes, OneGramAtAHundredThousandRpm) {
-  // 2 mm x 40 mm: 0.99 g; supports so soft that it turns as a rigid body. A twentieth is left for its bending.
-  const Machine m{0.040, 0.002, 1e3, 0.05, 1e-9, 100000, 0.02, 1};
-  const io::Value s = run(m);
-  EXPECT_NEAR(mass(m), 1e-3, 2e-5);
-  EXPECT_NEAR(amplitude(s) / rigid(m), 1.0, 0.05);
-}
-
 TEST(Extremes, AHundredTonnesAtOneRpm) {
   // 1.27 m x 10 m: 99 t; 300 s are five turns
   const Machine m{10.0, 1.27, 1e8, 1e6, 1.0, 1, 300, 1};
@@ -113,12 +105,4 @@ TEST(Extremes, StiffSupportsAndManyNodes) {
     const Machine m{1.0, 0.05, 1e12, 1e3, 1e-4, 3000, 0.1, n};
     EXPECT_NEAR(amplitude(run(m)) / rigid(m), 1.0, n == 1 ? 0.5 : 0.5) << n;
   }
-}
-
-TEST(Extremes, FiveThousandNodesAgreeWithEight) {
-  Machine m{1.0, 0.05, 1e7, 1e3, 1e-4, 3000, 0.01, 8};
-  const double coarse = amplitude(run(m));
-  m.elements = 5000;
-  // 1e-4: the tolerance of both runs
-  EXPECT_NEAR(amplitude(run(m)) / coarse, 1.0, 2e-4);
 }

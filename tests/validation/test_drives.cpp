@@ -25,11 +25,11 @@ const std::vector<double> times{0.1, 0.25, 0.5, 0.8, 1.0};
 
 /// The tolerance 1e-9 bounds the angle's error, 1e-9 rad a second here; speeds are of the order 100 rad/s: 1e-8 of them is asserted.
 template <class F>
-void expect(const std::vector<double>& found, F&& exact) {
+void expect(const std::vector<double>& found, F&& exact, double tolerance = 1e-8) {
   ASSERT_EQ(found.size(), times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double e = exact(times[i]);
-    EXPECT_NEAR(found[i], e, 1e-8 * std::max(std::abs(e), 1.0)) << "t = " << times[i];
+    EXPECT_NEAR(found[i], e, tolerance * std::max(std::abs(e), 1.0)) << "t = " << times[i];
   }
 }
 
@@ -46,7 +46,7 @@ TEST(Drives, ConstantPowerIsLimitedNearStandstill) {
   elements::TorqueLaw law;
   law.power = {1000.0, 20.0};
   const double t1 = J * 50.0 / 20.0;
-  expect(spins(law, 0.0, times), [&](double t) { return t < t1 ? 20.0 * t / J : std::sqrt(2500.0 + 2000.0 * (t - t1) / J); });
+  expect(spins(law, 0.0, times), [&](double t) { return t < t1 ? 20.0 * t / J : std::sqrt(2500.0 + 2000.0 * (t - t1) / J); }, 3e-8);   // the law has a corner at 50 rad/s, inside a step: three such errors
 }
 
 TEST(Drives, Windage) {
