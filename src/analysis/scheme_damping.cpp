@@ -53,10 +53,14 @@ void StepHistogram::step(StepAccess& s) {
 }
 
 double StepHistogram::mean_decay(std::string_view method, double rho_inf, Complex lambda) const {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < time_.size(); ++k)
-    if (time_[k] > 0.0) sum += time_[k] * numerical_decay(method, rho_inf, lambda, shortest * std::exp2((static_cast<double>(k) + 0.5) / per_octave));
-  return seconds_ > 0.0 ? sum / seconds_ : 0.0;
+  double sum = 0.0, counted = 0.0;
+  for (std::size_t k = 0; k < time_.size() && counted < 0.5 * seconds_; ++k) {
+    const double part = std::min(time_[k], 0.5 * seconds_ - counted);
+    if (!(part > 0.0)) continue;
+    sum += part * numerical_decay(method, rho_inf, lambda, shortest * std::exp2((static_cast<double>(k) + 0.5) / per_octave));
+    counted += part;
+  }
+  return counted > 0.0 ? sum / counted : 0.0;
 }
 
 void StepHistogram::save(OutArchive& out) const { out.put(spin_), out.put(seconds_), out.put(time_); }

@@ -28,7 +28,8 @@ class StepHistogram final : public Observer {
   void restore(InArchive& in) override;
   double largest_spin() const { return spin_; }   ///< |rad/s|
   double seconds() const { return seconds_; }
-  /// Mean of numerical_decay over the run, 1/s.
+  /// Mean of numerical_decay, 1/s, over the half of the run with the shortest steps: step control lengthens steps only while nothing
+  /// that fast moves beyond the tolerance, and damps what is not there; at equal steps it is the mean over the run.
   double mean_decay(std::string_view method, double rho_inf, Complex lambda) const;
 
  private:

@@ -66,7 +66,7 @@ std::vector<std::string> state_accuracy(Job& job, const AccuracyInputs& in, io::
   }
   io::Table t;
   t.title = fmt::format("Damping of the modes at {:.0f} rpm: physical, and what the steps add", in.speed * 30.0 / pi);
-  t.columns = {{"frequency", "Hz", ""}, {"motion", "-", ""}, {"physical damping ratio", "-", ""}, {"numerical damping ratio", "-", "mean over the run"}, {"amplitude lost to it over the run", "-", ""}};
+  t.columns = {{"frequency", "Hz", ""}, {"motion", "-", ""}, {"physical damping ratio", "-", ""}, {"numerical damping ratio", "-", "mean over the half of the run with the shortest steps"}, {"amplitude lost to it over the run", "-", ""}};
   for (const analysis::WhirlMode& m : modes) {
     // the mode's own damping is left out where it would not last: of a growing or heavily damped mode only the frequency counts
     const double physical = m.damping_ratio, decay = in.steps.mean_decay(scheme.method, scheme.rho_inf, Complex(0.0, m.frequency));
