@@ -51,9 +51,7 @@ Rotor nelson_mcvaugh(int n, elements::ShearRule shear, elements::MassKind mass, 
   const double id[] = {0, 0, 0, 0, 0, 0, 0.0304, 0.0356, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0304};
   Rotor r;
   for (int k = 0; k < 18; ++k) {
-    elements::ElementSection c = cylinder(od[k], 2.078e11, 2.078e11 / 2.6, 7806, id[k], shear);
-    c.kappa = 0.8863;   // read with ShearRule::given
-    r.add_shaft(c, z[k + 1] - z[k], n, mass);
+    r.add_shaft(cylinder(od[k], 2.078e11, 2.078e11 / 2.6, 7806, id[k], shear), z[k + 1] - z[k], n, mass);
   }
   r.add_disk(0.0889, 1.401, 0.00136, 0.002);
   r.add_bearing(0.1651, 4.378e7, 4.378e7).add_bearing(0.287, 4.378e7, 4.378e7);
@@ -80,6 +78,24 @@ TEST(NelsonMcVaugh, WhirlSpeedsOfEveryRatio) {
     // stations are rounded to 0.1 mm in both; 1e-6 covers the digits printed
     for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(c[k].frequency / rpm, expected[k], 1e-6 * expected[k]) << ratio << ' ' << k;
   }
+}
+
+TEST(NelsonMcVaugh, ConvergedCriticalSpeeds) {
+  Rotor rayleigh = nelson_mcvaugh(1, elements::ShearRule::rigid, elements::MassKind::corrected);
+  const auto c = criticals(rayleigh.b.finalize(), 100000);
+  const double expected[] = {15486.31873, 17148.04383, 46749.30138, 50127.47483, 64856.62466, 95870.89051};   // four times the elements
+  ASSERT_EQ(c.size(), 6u);
+  // 18 elements leave 1e-6 to 1e-5; the sixth mode, the shortest wave, 7e-5
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(c[k].speed / rpm, expected[k], (k < 5 ? 2e-5 : 1e-4) * expected[k]) << k;
+    EXPECT_EQ(c[k].mode.direction, k % 2 == 0 ? Direction::backward : Direction::forward) << k;
+  }
+  Rotor timoshenko = nelson_mcvaugh(1, elements::ShearRule::cowper, elements::MassKind::consistent);
+  const auto t = criticals(timoshenko.b.finalize(), 100000);
+  const double shear[] = {15370.40975, 16999.33305, 46508.55211, 49815.32926, 64286.08604, 94695.64637};
+  ASSERT_EQ(t.size(), 6u);
+  // one element a section, as in the reference
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(t[k].speed / rpm, shear[k], 3e-5 * shear[k]) << k;
 }
 
 TEST(NelsonMcVaugh, UnbalanceResponseAtTheDisk) {
@@ -151,6 +167,40 @@ TEST(Friswell, TwoDisks_5_9_1) {
   const double expected[] = {825.1338134, 829.8744571, 2487.758843, 2756.087555, 5379.458644, 8840.565471};
   ASSERT_EQ(c.size(), 6u);
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(c[k].speed / rpm, expected[k], 1e-6 * expected[k]) << k;
+}
+
+TEST(Friswell, AxialForce_5_9_7) {
+  struct Row { double force; std::vector<double> rest, turning; };
+  for (const Row& row : {Row{1e4, {13.935788, 13.935788, 43.91315, 43.91315, 114.759565}, {13.739728, 14.111493, 40.330147, 47.154123, 96.087639, 132.403364}},
+                         Row{1e5, {15.02044, 15.02044, 46.132265, 46.132265, 120.620287}, {14.867629, 15.156882, 42.570013, 49.325073, 100.969101, 139.063735}},
+                         Row{-1e4, {13.642635, 13.642635, 43.401542, 43.401542, 113.394556}, {13.434622, 13.829336, 39.813547, 46.654356, 94.950323, 130.856441}}}) {
+    // The book's element does not stretch; a real shaft grows longer by P/EA = 2.4e-4 at the largest force, which lowers frequencies by 1e-4.
+    const double d = 0.05, A = pi * d * d / 4, I = pi * std::pow(d, 4) / 64, E = 2.11e11, G = 8.12e10, nu = E / (2 * G) - 1;
+    Rotor rotor;
+    rotor.add_shaft(constants(1e15, 6 * (1 + nu) / (7 + 6 * nu) * G * A, G * 2 * I, E * I, 7810 * A, 7810 * I, 7810 * 2 * I), 1.5, 6, elements::MassKind::consistent);
+    rotor.add_disk_of_size(0.5, 0.07, 0.28, 0.05, 7810).add_disk_of_size(1.0, 0.07, 0.35, 0.05, 7810);
+    rotor.add_bearing(0, 1e6, 1e6).add_bearing(1.5, 1e6, 1e6).hold_axially(0);
+    rotor.b.add(elements::FixedLoad{Vec3(row.force, 0, 0), Vec3::Zero(), 0, nullptr}, {rotor.at(1.5)}, "axial force");
+    const system::System s = rotor.b.finalize();
+    // every printed digit
+    expect_hz(lateral_hz(s, 0, 5), row.rest, 2e-6);
+    expect_hz(lateral_hz(s, 4000 * rpm, 6), row.turning, 2e-6);
+  }
+}
+
+TEST(Friswell, OverhungDisk_5_9_9) {
+  Rotor r;
+  r.add_shaft(cylinder(0.05, 2.11e11, 8.12e10, 7810), 1.5, 24);
+  r.add_disk_of_size(1.5, 0.07, 0.35, 0.05, 7810);
+  r.add_bearing(0, 1e7, 1e7).add_bearing(1.0, 1e7, 1e7).hold_axially(0);
+  const system::System s = r.b.finalize();
+  // 96 consistent elements, good to 1e-5
+  expect_hz(lateral_hz(s, 0, 6), {14.3467058, 14.34670581, 100.3474976, 100.3474976, 132.1481956, 132.1481956}, 1e-5);
+  expect_hz(lateral_hz(s, 4000 * rpm, 6), {12.12602306, 16.53754988, 90.07331273, 100.9044317, 103.0575436, 186.7824495}, 1e-5);
+  const auto c = criticals(s, 6100);
+  ASSERT_EQ(c.size(), 4u);
+  const double expected[] = {832.6947641, 890.7709393, 5025.659122, 6061.073637};
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(c[k].speed / rpm, expected[k], 1e-5 * expected[k]) << k;
 }
 
 // Example 6.3.1: unbalance of 0.001 kg m on the left disk; amplitudes along both axes at both disks, m.
