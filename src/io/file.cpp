@@ -1,17 +1,24 @@
 #include <core/error.hpp>
 #include <fcntl.h>
 #include <io/file.hpp>
+#include <signal.h>
 #include <unistd.h>
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 namespace whirl::io {
 
 namespace fs = std::filesystem;
+
+namespace {
+constexpr std::string_view part_extension = ".part";
+}
 
 void io_failure(const fs::path& file, const std::string& what, int error_number) {
   std::string m = what + " '" + file.string() + "'";
@@ -30,7 +37,48 @@ fs::path temporary_beside(const fs::path& file) {
   name += std::to_string(::getpid());
   name += '.';
   name += std::to_string(count++);
+  name += part_extension;
   return file.parent_path() / name;
+}
+
+namespace {
+
+// The process that was writing `name`, or 0 when no process of ours makes such names.
+long writer_of(std::string_view name) {
+  if (name.size() < 2 || name.front() != '.' || !name.ends_with(part_extension)) return 0;
+  name.remove_suffix(part_extension.size());
+  const auto number = [&name]() -> long {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string_view::npos || dot + 1 == name.size()) return -1;
+    long n = 0;
+    const std::string_view digits = name.substr(dot + 1);
+    const auto [end, bad] = std::from_chars(digits.data(), digits.data() + digits.size(), n);
+    name = name.substr(0, dot);
+    return bad == std::errc() && end == digits.data() + digits.size() ? n : -1;
+  };
+  if (number() < 0) return 0;
+  return std::max(number(), 0L);
+}
+
+void remove_leftovers_of(const fs::path& folder) {
+  std::error_code ec;
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    const long pid = writer_of(it->path().filename().native());
+    if (pid == 0 || (pid != ::getpid() && (::kill(static_cast<pid_t>(pid), 0) == 0 || errno != ESRCH))) continue;
+    std::error_code ignored;   // somebody else may have removed it
+    fs::remove(it->path(), ignored);
+  }
+}
+
+}  // namespace
+
+void remove_leftovers(const fs::path& folder) {
+  std::error_code ec;
+  remove_leftovers_of(folder);
+  for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
+    std::error_code unknown;
+    if (it->is_directory(unknown) && !it->is_symlink(unknown)) remove_leftovers_of(it->path());
+  }
 }
 
 void rename_into_place(const fs::path& from, const fs::path& to) {

@@ -12,6 +12,9 @@ namespace whirl::io {
 void write_atomic(const std::filesystem::path& file, std::string_view content);
 /// Name of the file that write_atomic and others use before renaming: same folder, hidden, unique to this process.
 std::filesystem::path temporary_beside(const std::filesystem::path& file);
+/// Removes from `folder` and the folders in it what a killed process left before renaming; files of other processes that live stay.
+/// Call it before this process writes there: a name with its own number is taken for a dead predecessor's.
+void remove_leftovers(const std::filesystem::path& folder);
 /// Renames; removes `from` and throws on failure.
 void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
 std::string read_text(const std::filesystem::path& file);

@@ -44,6 +44,7 @@ ResultsFolder::ResultsFolder(fs::path root) : root_(std::move(root)) {
   std::error_code ec;
   fs::create_directories(root_, ec);
   if (ec) io_failure(root_, "cannot make the folder", ec.value());
+  remove_leftovers(root_);
 }
 
 fs::path ResultsFolder::path(std::string_view name) const {

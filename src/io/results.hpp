@@ -104,7 +104,7 @@ class Table {
 /// CSV, header "name [unit]", written atomically.
 void write_csv(const std::filesystem::path& file, const Table& table);
 
-/// A folder of results. Made on construction (with parents). All names are relative to it.
+/// A folder of results. Made on construction (with parents), and rid of half-written files of killed runs. All names are relative to it.
 class ResultsFolder {
  public:
   explicit ResultsFolder(std::filesystem::path root);

@@ -34,6 +34,23 @@ std::array<double, 4> row_of(std::uint64_t k) {
   return {1e-4 * static_cast<double>(k), u(rng) * 1e-6, std::ldexp(u(rng), static_cast<int>(k % 2000) - 1000), 1000 * u(rng)};
 }
 
+TEST(ResultsFolder, HalfWrittenFilesOfKilledRunsGo) {
+  TempFolder dir;
+  const pid_t dead = ::fork();
+  if (dead == 0) ::_exit(0);
+  ::waitpid(dead, nullptr, 0);
+  const auto make = [&](const std::string& name) { std::ofstream(dir / name) << "x"; };
+  fs::create_directory(dir / "vtk");
+  const std::string gone = "." + std::string("run.csv.") + std::to_string(dead) + ".3.part";
+  make(gone), make("vtk/" + gone);
+  const std::string living = ".run.csv." + std::to_string(::getppid()) + ".0.part";
+  for (const std::string& name : {living, std::string("run.csv"), std::string(".hidden"), std::string(".a.part"), std::string(".part"), "a.csv." + std::to_string(dead) + ".3.part"}) make(name);
+  const ResultsFolder folder(dir.path());
+  EXPECT_FALSE(fs::exists(dir / gone));
+  EXPECT_FALSE(fs::exists(dir / ("vtk/" + gone)));
+  EXPECT_EQ(file_count(dir.path()), 6u);
+}
+
 TEST(Csv, EveryDoubleComesBackBitForBit) {
   TempFolder dir;
   const auto channels = some_channels();
