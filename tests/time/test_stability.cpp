@@ -1,20 +1,16 @@
 // Spectral radius of every scheme on q'' + 2 zeta w q' + w^2 q = 0 against theory, numerical damping over 1e5 revolutions,
 // and orders that do not collapse on stiff systems.
 #include "toys.hpp"
+#include <core/error.hpp>
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <time/stability.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace whirl::time::test {
 namespace {
-
-/// Stability functions: Pade approximants of exp.
-Complex pade(std::string_view name, Complex z) {
-  if (name == "radau5")
-    return (1.0 + z * 2.0 / 5.0 + z * z / 20.0) / (1.0 - z * 3.0 / 5.0 + z * z * 3.0 / 20.0 - z * z * z / 60.0);
-  if (name == "gauss4") return (1.0 + z / 2.0 + z * z / 12.0) / (1.0 - z / 2.0 + z * z / 12.0);
-  return (1.0 + z / 2.0 + z * z / 10.0 + z * z * z / 120.0) / (1.0 - z / 2.0 + z * z / 10.0 - z * z * z / 120.0);
-}
 
 /// The map (q, v/w) -> one step.
 Mat2 one_step(const char* name, double wh, double zeta) {
@@ -39,7 +35,7 @@ TEST(Stability, CollocationIsItsStabilityFunction) {
       for (double wh : {1e-3, 0.1, 1.0, 3.0, 10.0, 1e3, 1e6}) {
         const Mat2 map = one_step(name, wh, zeta);
         const Complex lambda = wh * Complex(-zeta, std::sqrt(1.0 - zeta * zeta));
-        const Complex r = pade(name, lambda);
+        const Complex r = stability_function(name, lambda);
         // Trace and determinant of the map: 2 Re R and |R|^2. h v0 = wh is added to q0 = 1 and removed again.
         EXPECT_NEAR(map.trace(), 2.0 * r.real(), 1e-14 * (10.0 + wh)) << name << " " << wh;
         EXPECT_NEAR(map.determinant(), std::norm(r), 1e-14 * (10.0 + wh)) << name << " " << wh;
@@ -69,11 +65,46 @@ TEST(Stability, GeneralizedAlphaIsItsAmplificationMatrix) {
         x = A * x;
         EXPECT_NEAR(integrator->q()[0], x[0], 1e-12 + 1e-15 * k) << rho << " " << wh << " " << n;
       }
+      EXPECT_NEAR(mode_response("generalized_alpha", 1.0, 0.0, wh, rho).radius, radius, 1e-6);   // double roots: sqrt(1e-16)
       EXPECT_LE(radius, 1.0 + 1e-7);   // double eigenvalues at rho_inf = 1: root of round-off
       if (wh > 1e3 && rho > 0.0) {
         EXPECT_NEAR(radius, rho, 3e-3);   // approached as 1/wh
       }
     }
+}
+
+// The damping and the frequency that mode_response() states, against a run.
+TEST(Stability, ModeResponseIsWhatARunShows) {
+  for (const char* name : {"radau5", "gauss4", "gauss6", "generalized_alpha"})
+    for (double zeta : {0.0, 0.02})
+      for (double wh : {0.1, 0.7, 1.5}) {
+        const ModeResponse m = mode_response(name, 1.0, zeta, wh, 0.8);
+        auto p = oscillator(1.0, zeta);
+        Options o;
+        o.dt_fixed = wh;
+        o.rho_inf = 0.8;
+        auto integrator = make_integrator(name, p, o);
+        integrator->start(0.0, VecX::Constant(1, 1.0), VecX::Zero(1));
+        // A complex root r: q_{n+2} - 2 Re r q_{n+1} + |r|^2 q_n = 0, once the spurious root of generalized-alpha is gone.
+        for (int n = 0; n < 60; ++n) ASSERT_TRUE(integrator->advance().ok());
+        std::array<double, 4> q{};
+        for (double& x : q) {
+          x = integrator->q()[0];
+          ASSERT_TRUE(integrator->advance().ok());
+        }
+        const double det = q[1] * q[1] - q[0] * q[2];
+        const double twice_re = (q[1] * q[2] - q[0] * q[3]) / det, modulus2 = (q[2] * q[2] - q[1] * q[3]) / det;
+        const double modulus = std::sqrt(modulus2), angle = std::acos(std::clamp(twice_re / (2.0 * modulus), -1.0, 1.0));
+        EXPECT_NEAR(modulus, m.amplification, 1e-9) << name << " " << wh;
+        EXPECT_NEAR(angle / (wh * std::sqrt(1.0 - zeta * zeta)) - 1.0, m.frequency_error, 1e-7) << name << " " << wh;
+        EXPECT_NEAR(-std::log(modulus) / std::hypot(angle, std::log(modulus)), m.damping + zeta, 1e-8) << name << " " << wh;
+      }
+  // known leading terms: Radau damps by (w h)^5/7200, BDF2 by (w h)^3/4; Gauss not at all
+  EXPECT_NEAR(mode_response("radau5", 1.0, 0.0, 0.2).damping / (std::pow(0.2, 5) / 7200.0), 1.0, 0.02);
+  EXPECT_NEAR(mode_response("ida", 1.0, 0.0, 0.02).damping / (std::pow(0.02, 3) / 4.0), 1.0, 0.02);
+  EXPECT_NEAR(mode_response("gauss6", 1.0, 0.0, 2.0).damping, 0.0, 1e-15);
+  EXPECT_NEAR(mode_response("generalized_alpha", 1.0, 0.0, 1e5, 0.6).radius, 0.6, 1e-3);
+  EXPECT_THROW(mode_response("euler", 1.0, 0.0, 1.0), Error);
 }
 
 // Amplitude after 1e5 revolutions of an undamped mode: |R(i w h)|^steps.
