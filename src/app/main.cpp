@@ -62,7 +62,7 @@ int command_line(int argc, char** argv) {
   add_run(c, run.run);
   c->add_flag("--resume", run.run.resume, "continue from the last checkpoint");
   bool keep_everything = false;
-  c->add_flag("--keep-everything", keep_everything, "keep the parts of the model that no load reaches");
+  c->add_flag("--keep-everything", keep_everything, "build the general model instead of leaving out what the deck does not need");
 
 #ifdef WHIRL_HAVE_REPORT
   ReportOptions report;

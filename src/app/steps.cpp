@@ -1,13 +1,16 @@
 // Runs the steps of a deck in order and writes summary and report, complete or not: a failed step keeps what came before it.
 #include <app/interrupt.hpp>
 #include <app/job.hpp>
+#include <app/savings.hpp>
 #include <app/steps.hpp>
 #include <io/rotor_drawing.hpp>
 #include <io/svg.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 #include <type_traits>
 
@@ -29,7 +32,21 @@ void describe_model(Job& job) {
   v["batches"] = parts;
   io::Value left = io::Value::array();
   for (const std::string& s : job.built.left_out) left.push(s);
+  for (const std::string& s : job.built.simpler) left.push(s);
   v["left out"] = left;
+}
+
+/// What leaving out saved: only for runs long enough that measuring it costs nothing in comparison.
+void describe_savings(Job& job, double seconds) {
+  if (job.model.keep_everything || seconds < 0.2 || interrupted()) return;
+  const Savings s = measure_savings(job);
+  if (!(s.everything > 0.0)) return;
+  io::Value& v = job.summary["model"]["cost of one evaluation of forces and tangents"];
+  v["of this model [us]"] = 1e6 * s.pruned, v["of the general model [us]"] = 1e6 * s.everything;
+  v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
+  if (!job.options.quiet && !job.built.simpler.empty())
+    std::fputs(fmt::format("left out: {} kinds of physics this deck does not need (summary.json); an evaluation takes {:.0f} us instead of {:.0f} us\n",
+                           job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned, 1e6 * s.everything).c_str(), stderr);
 }
 
 }  // namespace
@@ -80,6 +97,7 @@ void run_steps(Job& job) {
     finish();
     throw;
   }
+  describe_savings(job, wall() - t0);
   finish();
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::assembly {
@@ -13,7 +14,7 @@ namespace {
 /// Id may fall below Ip/2 by rounding of printed data.
 constexpr double printed_digits = 1e-6;
 
-void add_disk(Assembly& a, const model::Disk& d) {
+void add_disk(Assembly& a, const model::Disk& d, int& symmetric) {
   const std::string who = fmt::format("disk '{}'", d.name);
   const meshes::Place at = a.mesh.place(d.at);
   if (!(d.mass >= 0) || d.Ip < 0 || d.Id < 0) {
@@ -26,12 +27,13 @@ void add_disk(Assembly& a, const model::Disk& d) {
     return;
   }
   const Vec3 offset = d.offset + Vec3(at.offset, 0, 0);
-  if (!d.inertia && d.skew == 0 && offset.y() == 0 && offset.z() == 0) {
+  if (!a.model.keep_everything && !d.inertia && d.skew == 0 && offset.y() == 0 && offset.z() == 0) {
+    ++symmetric;
     if (d.Ip == 0 && d.Id == 0 && offset.x() == 0) a.builder.add(elements::PointMass{d.mass}, {at.node}, "point masses");
     else a.builder.add(elements::RigidDisk{d.mass, d.Id, d.Ip, offset.x()}, {at.node}, "rigid disks");
     return;
   }
-  Mat3 J = d.inertia ? *d.inertia : elements::skewed_inertia(d.Ip, d.Id, d.skew, d.skew_phase);
+  Mat3 J = d.inertia ? *d.inertia : elements::skewed_inertia(d.Ip, std::max(d.Id, 0.5 * d.Ip), d.skew, d.skew_phase);
   if (d.inertia && d.skew != 0) {
     a.error("E26", fmt::format("{}: skew and a full inertia tensor are two ways to say the same", who), "give one of them", d, who);
     return;
@@ -46,7 +48,10 @@ void add_disk(Assembly& a, const model::Disk& d) {
 }  // namespace
 
 void add_bodies(Assembly& a) {
-  for (const model::Disk& d : a.model.disks) add_disk(a, d);
+  int symmetric = 0;
+  for (const model::Disk& d : a.model.disks) add_disk(a, d, symmetric);
+  if (symmetric > 0)
+    a.built.simpler.push_back(fmt::format("inertia that turns with the angle of {} disk{}: balanced and symmetric", symmetric, symmetric > 1 ? "s" : ""));
   for (const model::Unbalance& u : a.model.unbalances) {
     const meshes::Place at = a.mesh.place(u.at);
     a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node}, "unbalances");

@@ -11,6 +11,7 @@ struct Assembly {
   system::Builder builder;
   Built built;
   std::vector<Diagnostic> errors;
+  int translational = 0;   ///< linear bearings without moments
 
   bool acts(const model::Drive& d) const { return d.step.empty() || d.step == step; }
   void error(const char* code, std::string message, std::string hint, const model::Entity& e, std::string entity);

@@ -5,6 +5,7 @@
 // Each support is a row: relative motion of its two sides. What the rows leave free is their null space, found for each group
 // of connected lines on its own.
 #include <assembly/parts.hpp>
+#include <elements/linear_bearing.hpp>
 #include <meshes/mass_properties.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -83,6 +84,10 @@ class Restraint {
         complain(lines, "axial motion of {}", "add a thrust bearing (kxx), or a bearing of type \"rigid\" with directions = [\"x\"]");
       } else if (equilibrium_ || frequency_) {
         const Index node = a_.mesh.lines[lines.front()].first_node;
+        if (a_.model.keep_everything) {
+          keep_axial(lines, node);
+          continue;
+        }
         a_.builder.hold(node, x);
         a_.built.left_out.push_back(fmt::format("axial motion of {} as a whole: nothing resists or loads it; held at the {}", named(lines),
                                                 a_.builder.node(node).name));
@@ -135,6 +140,14 @@ class Restraint {
   }
 
  private:
+  /// The axial motion stays an unknown: a spring that gives it a natural frequency of 1 rad/s makes its equilibrium unique.
+  void keep_axial(const std::vector<std::size_t>& lines, Index node) {
+    double mass = 0.0;
+    for (std::size_t l : lines) mass += meshes::shaft_mass(a_.model, l).mass;
+    elements::TranslationalBearing spring{};
+    spring.K(0, 0) = mass > 0.0 ? mass : 1.0;
+    a_.builder.add(spring, {node, a_.builder.add_ground(a_.builder.node(node).position, "ground of the axial motion")}, "linear bearings");
+  }
   struct Link { End a, b; std::array<bool, 6> in; };
 
   /// Groups of lines connected by links that act in one of the directions.

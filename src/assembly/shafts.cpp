@@ -5,6 +5,7 @@
 #include <assembly/parts.hpp>
 #include <elements/general_beam.hpp>
 #include <elements/point_mass.hpp>
+#include <elements/rigid_body.hpp>
 #include <elements/rigid_disk.hpp>
 #include <elements/shaft_beam.hpp>
 #include <elements/shaft_damping.hpp>
@@ -36,12 +37,13 @@ void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConst
   const Vec3 e0 = Vec3::UnitX();
   const double twist = d.beta_internal + d.beta_external + d.beta_torsion;
   // The twist goes with whichever of the two exists.
-  const bool rotating = internal && d.beta_internal != 0, fixed = d.beta_external != 0;
+  const bool all = a.model.keep_everything;
+  const bool rotating = internal && (all || d.beta_internal != 0), fixed = all || d.beta_external != 0;
   if (rotating)
     add_stressed(a, elements::ShaftDamping<true>(c, e0, d.beta_internal, twist, d.beta_internal), nodes, "internal damping");
   if (fixed || (twist != 0 && !rotating))
     a.builder.add(elements::ShaftDamping<false>(c, e0, d.beta_external, rotating ? 0.0 : twist, d.beta_external), nodes, "external damping");
-  if (d.alpha != 0) {
+  if (all || d.alpha != 0) {
     elements::ShaftMassDamping m;
     m.C4 = d.alpha * c.M4;
     a.builder.add(m, nodes, "mass-proportional damping");
@@ -134,12 +136,38 @@ void add_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& 
 void add_rigid_part(Assembly& a, const model::Shaft& shaft, const meshes::RigidPart& r) {
   const meshes::MassProperties p = meshes::section_mass(a.model, shaft.sections[r.section], Vec3(r.o1, 0, 0));   // from the node
   if (!(p.mass > 0)) return;
-  a.builder.add(elements::RigidDisk{p.mass, p.Id(), p.Ip(), p.centre().x()}, {r.node}, "rigid disks");
+  if (a.model.keep_everything)
+    a.builder.add(elements::RigidBody(p.mass, p.centre(), Vec3(p.Ip(), p.Id(), p.Id()).asDiagonal()), {r.node}, "rigid bodies");
+  else
+    a.builder.add(elements::RigidDisk{p.mass, p.Id(), p.Ip(), p.centre().x()}, {r.node}, "rigid disks");
+}
+
+/// What the elements of a line do without.
+void list_absent(Assembly& a, const model::Shaft& shaft, Index line) {
+  int elements = 0, joined = 0;
+  for (const meshes::Element& e : a.mesh.elements)
+    if (e.line == line && !shaft.sections[e.section].general) ++elements, joined += e.left.offset == 0 && e.right.offset == 0;
+  if (elements == 0) return;
+  std::string absent;
+  const auto list = [&](bool is_absent, const char* what) {
+    if (is_absent) absent += (absent.empty() ? "" : ", ") + std::string(what);
+  };
+  const model::ShaftDamping& d = shaft.damping;
+  list(d.beta_internal == 0, "internal damping");
+  list(d.beta_external == 0, "external damping");
+  list(d.alpha == 0, "mass-proportional damping");
+  if (!absent.empty()) a.built.simpler.push_back(fmt::format("{} of shaft '{}': its {} elements have none", absent, shaft.name, elements));
+  if (joined > 0) a.built.simpler.push_back(fmt::format("rigid end offsets of {} of {} elements of shaft '{}': zero", joined, elements, shaft.name));
+}
+
+void list_absent(Assembly& a) {
+  for (std::size_t i = 0; i < a.model.shafts.size(); ++i) list_absent(a, a.model.shafts[i], static_cast<Index>(i));
 }
 
 }  // namespace
 
 void add_shafts(Assembly& a) {
+  if (!a.model.keep_everything) list_absent(a);
   for (const meshes::Element& e : a.mesh.elements) {
     a.built.element_forces.emplace_back();
     const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
@@ -157,7 +185,7 @@ void add_shafts(Assembly& a) {
       beam.preload = preload_of(a, shaft, e, c.EA_l * c.length);
       add_stressed(a, beam, nodes, "shaft elements");
     };
-    if (c.o1 == 0 && c.o2 == 0) add(elements::ShaftBeam<false>(c, Vec3::UnitX()));
+    if (!a.model.keep_everything && c.o1 == 0 && c.o2 == 0) add(elements::ShaftBeam<false>(c, Vec3::UnitX()));
     else add(elements::ShaftBeam<true>(c, Vec3::UnitX()));
     add_damping(a, shaft, c, nodes, true);
   }

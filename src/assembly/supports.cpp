@@ -19,9 +19,10 @@ void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
   const auto translations_only = [](const Matrix<6>& m) {
     return m.bottomRows<3>().isZero(0.0) && m.topRightCorner<3, 3>().isZero(0.0);
   };
-  const bool small = n.shaft.offset == 0 && n.other.offset == 0 && translations_only(law.K) && translations_only(law.C) &&
+  const bool small = !a.model.keep_everything && n.shaft.offset == 0 && n.other.offset == 0 && translations_only(law.K) && translations_only(law.C) &&
                      translations_only(law.M) && law.preload.tail<3>().isZero(0.0);
   if (small) {
+    ++a.translational;
     const elements::TranslationalBearing k{law.K.topLeftCorner<3, 3>(), law.C.topLeftCorner<3, 3>(), law.M.topLeftCorner<3, 3>(),
                                            law.setpoint.head<3>(), law.preload.head<3>()};
     a.builder.add(k, nodes, "linear bearings");
@@ -193,6 +194,8 @@ void add_supports(Assembly& a) {
         b.law);
     if (n.pedestal >= 0) add_pedestal(a, b, n);
   }
+  if (a.translational > 0)
+    a.built.simpler.push_back(fmt::format("moments and tilts of {} linear bearing{}: without coefficients", a.translational, a.translational > 1 ? "s" : ""));
 }
 
 }  // namespace whirl::assembly

@@ -23,7 +23,7 @@ void describe_settings(Visitor& v, model::Model& m) {
   v.flag("chart_change", m.chart_change,
          "move the reference axes of a shaft line before its tilt reaches the limit of the split rotation (pi); only tumbling bodies need it");
   v.flag("keep_everything", m.keep_everything,
-         "keep the parts of the model that no load reaches (torsion, axial motion, a second plane) instead of leaving them out");
+         "build the general model: kernels, damping and unknowns that this deck does not need are kept instead of left out; slower, with the same results");
   v.table("mesh", [&](Visitor& w) {
     w.quantity(optional("max_element_length", "no limit"), m.max_element_length, "mm", positive, "longest shaft element");
     w.integer("min_elements_per_section", m.min_elements, between(1, 10000), "least number of elements of each section");
