@@ -84,7 +84,7 @@ class Restraint {
         complain(lines, "axial motion of {}", "add a thrust bearing (kxx), or a bearing of type \"rigid\" with directions = [\"x\"]");
       } else if (equilibrium_ || frequency_) {
         const Index node = a_.mesh.lines[lines.front()].first_node;
-        if (a_.model.keep_everything) {
+        if (a_.model.keep_everything && !frequency_) {   // there it would be one more mode
           keep_axial(lines, node);
           continue;
         }

@@ -1,0 +1,141 @@
+// Every example as the program prunes it against the general model of --keep-everything: all numbers it writes, to the accuracy asked
+// for. Transients run for at most `longest` seconds of their time.
+#include <app/run.hpp>
+#include <deck/deck.hpp>
+#include <gtest/gtest.h>
+#include <io/value.hpp>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace fs = std::filesystem;
+using namespace whirl;
+
+namespace {
+
+constexpr double longest = 2.5;   // s
+
+std::vector<std::string> examples() {
+  std::vector<std::string> out;
+  for (const auto& e : fs::directory_iterator(fs::path(WHIRL_SOURCE) / "examples"))
+    if (fs::exists(e.path() / "deck.toml")) out.push_back(e.path().filename().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+struct Csv {
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;   // nan: not a number in the file
+};
+
+Csv read_csv(const fs::path& p) {
+  std::ifstream in(p);
+  Csv out;
+  std::string line;
+  const auto split = [](const std::string& text) {
+    std::vector<std::string> cells;
+    std::istringstream s(text);
+    for (std::string c; std::getline(s, c, ',');) cells.push_back(c);
+    return cells;
+  };
+  while (std::getline(in, line)) {
+    if (line.empty() || line[0] == '#') continue;
+    const auto cells = split(line);
+    if (out.columns.empty()) {
+      out.columns = cells;
+      continue;
+    }
+    std::vector<double> row;
+    for (const std::string& c : cells) {
+      double x = nan;
+      if (const auto [end, ec] = std::from_chars(c.data(), c.data() + c.size(), x); ec != std::errc() || end != c.data() + c.size()) x = nan;
+      row.push_back(x);
+    }
+    row.resize(out.columns.size(), nan);
+    out.rows.push_back(std::move(row));
+  }
+  return out;
+}
+
+/// Components of one thing share a scale: "disk.y [m]" and "disk.z [m]" -> "disk".
+std::string group(const std::string& column) { return column.substr(0, column.find_last_of('.', column.find('['))); }
+
+class KeepEverything : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("whirl_keep_" + std::to_string(::getpid()) + "_" + GetParam());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+TEST_P(KeepEverything, GivesTheSame) {
+  const fs::path deck = fs::path(WHIRL_SOURCE) / "examples" / GetParam() / "deck.toml";
+  double tolerance = 0.0;
+  std::size_t pruned_kernels = 0;
+  for (const bool all : {false, true}) {
+    model::Model m = deck::load_model(deck, {});
+    m.keep_everything = all;
+    m.output.report = false, m.output.binary = false, m.output.csv = true;
+    m.output.vtk.clear();
+    for (model::Step& s : m.steps)
+      if (auto* t = std::get_if<model::TransientStep>(&s.law)) {
+        t->duration = std::min(t->duration, longest);
+        t->checkpoint = 0;
+        m.output.every = std::max(m.output.every, t->duration / 500.0);   // equal rows in both runs
+        tolerance = std::max(tolerance, t->integrator.tolerance);
+      }
+    app::RunOptions o;
+    o.quiet = true;
+    o.output = folder_ / (all ? "all" : "pruned");
+    ASSERT_EQ(app::run_deck(m, o), 0);
+  }
+  // Each run aims at `tolerance` of the largest value; aim and hit differ by a factor of up to 2.5, and there are two of them.
+  // Without a transient the two solve the same equations by iterations converged to 1e-9 or better.
+  const double allowed = tolerance > 0.0 ? 5.0 * tolerance : 1e-7;
+  int files = 0;
+  for (const auto& e : fs::directory_iterator(folder_ / "pruned")) {
+    if (e.path().extension() != ".csv") continue;
+    ++files;
+    const Csv a = read_csv(e.path()), b = read_csv(folder_ / "all" / e.path().filename());
+    ASSERT_EQ(a.columns, b.columns) << e.path().filename();
+    ASSERT_EQ(a.rows.size(), b.rows.size()) << e.path().filename();
+    std::map<std::string, double> scale;
+    for (std::size_t c = 0; c < a.columns.size(); ++c)
+      for (const auto& row : a.rows)
+        if (std::isfinite(row[c])) scale[group(a.columns[c])] = std::max(scale[group(a.columns[c])], std::abs(row[c]));
+    for (std::size_t c = 0; c < a.columns.size(); ++c) {
+      // the instant of a peak is known to the square root of the peak's own accuracy
+      const bool instant = e.path().stem().string().ends_with("_peaks") && a.columns[c].find("amplitude") == std::string::npos;
+      double worst = 0.0;
+      for (std::size_t r = 0; r < a.rows.size(); ++r) {
+        if (!std::isfinite(a.rows[r][c]) && !std::isfinite(b.rows[r][c])) continue;
+        ASSERT_EQ(std::isfinite(a.rows[r][c]), std::isfinite(b.rows[r][c])) << e.path().filename() << " " << a.columns[c];
+        worst = std::max(worst, std::abs(a.rows[r][c] - b.rows[r][c]));
+      }
+      EXPECT_LE(worst, (instant ? std::sqrt(allowed) : allowed) * scale[group(a.columns[c])]) << e.path().filename() << " " << a.columns[c];
+    }
+  }
+  EXPECT_GT(files, 0);
+  // the summary names what was left out, and the general model leaves out none of it
+  for (const bool all : {false, true}) {
+    std::ifstream in(folder_ / (all ? "all" : "pruned") / "summary.json");
+    const std::string text((std::istreambuf_iterator<char>(in)), {});
+    const std::size_t from = text.find("\"left out\": ["), to = text.find(']', from);
+    ASSERT_NE(from, std::string::npos);
+    const std::size_t entries = static_cast<std::size_t>(std::count(text.begin() + static_cast<long>(from), text.begin() + static_cast<long>(to), '\n'));
+    if (all) EXPECT_LT(entries, pruned_kernels) << "nothing was pruned, or --keep-everything keeps nothing";
+    else pruned_kernels = entries;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, KeepEverything, testing::ValuesIn(examples()), [](const auto& x) { return x.param; });
+
+}  // namespace
