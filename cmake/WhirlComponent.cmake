@@ -26,12 +26,16 @@ endfunction()
 
 # A test program of all test_*.cpp in a folder; each GoogleTest case becomes a CTest test.
 function(whirl_tests NAME)
-  cmake_parse_arguments(A "" "DIR;LABEL" "DEPS" ${ARGN})
+  cmake_parse_arguments(A "" "DIR;LABEL;TIMEOUT" "DEPS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${A_DIR}/test_*.cpp)
   if(sources)
     add_executable(test_${NAME} ${sources})
     target_link_libraries(test_${NAME} PRIVATE ${A_DEPS} GTest::gtest_main)
+    set(timeout)
+    if(A_TIMEOUT)
+      set(timeout TIMEOUT ${A_TIMEOUT})   # seconds: a test that never ends fails
+    endif()
     gtest_discover_tests(test_${NAME} TEST_PREFIX "${NAME}." DISCOVERY_TIMEOUT 60
-                         PROPERTIES LABELS "${A_LABEL}" WORKING_DIRECTORY ${A_DIR})
+                         PROPERTIES LABELS "${A_LABEL}" WORKING_DIRECTORY ${A_DIR} ${timeout})
   endif()
 endfunction()
