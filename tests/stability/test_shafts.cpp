@@ -112,7 +112,9 @@ TEST(Shafts, BeyondBucklingIsTheElastica) {
   constexpr int n = 32;
   for (double alpha : {0.35, 60.0 * pi / 180.0, 100.0 * pi / 180.0}) {
     const double k = std::sin(0.5 * alpha), K = elliptic_K(k), P = K * K * EI / (L * L), sideways = 2.0 * k * L / K;
-    if (std::abs(alpha - 60.0 * pi / 180.0) < 1e-12) EXPECT_NEAR(sideways, 0.593, 5e-4);   // the book
+    if (std::abs(alpha - 60.0 * pi / 180.0) < 1e-12) {
+      EXPECT_NEAR(sideways, 0.593, 5e-4);   // the book
+    }
     system::Builder b;
     b.add_line("shaft");
     add_shaft(b, wire(EI), std::vector<double>(n, L / n));
