@@ -36,15 +36,15 @@ void describe_model(Job& job) {
   v["left out"] = left;
 }
 
-/// What leaving out saved: only for runs long enough that measuring it costs nothing in comparison.
+/// What leaving out saved. Printed only for runs long enough that somebody waits for them.
 void describe_savings(Job& job, double seconds) {
-  if (job.model.keep_everything || seconds < 0.2 || interrupted()) return;
+  if (job.model.keep_everything || job.built_for.empty() || interrupted()) return;
   const Savings s = measure_savings(job);
   if (!(s.everything > 0.0)) return;
   io::Value& v = job.summary["model"]["cost of one evaluation of forces and tangents"];
   v["of this model [us]"] = 1e6 * s.pruned, v["of the general model [us]"] = 1e6 * s.everything;
   v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
-  if (!job.options.quiet && !job.built.simpler.empty())
+  if (!job.options.quiet && seconds > 0.5 && s.everything > 1.05 * s.pruned)
     std::fputs(fmt::format("left out: {} kinds of physics this deck does not need (summary.json); an evaluation takes {:.0f} us instead of {:.0f} us\n",
                            job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned, 1e6 * s.everything).c_str(), stderr);
 }

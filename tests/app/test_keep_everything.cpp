@@ -31,7 +31,7 @@ std::vector<std::string> examples() {
 
 struct Csv {
   std::vector<std::string> columns;
-  std::vector<std::vector<double>> rows;   // nan: not a number in the file
+  std::vector<std::vector<double>> rows;   // whirl::NaN: not a number in the file
 };
 
 Csv read_csv(const fs::path& p) {
@@ -53,11 +53,11 @@ Csv read_csv(const fs::path& p) {
     }
     std::vector<double> row;
     for (const std::string& c : cells) {
-      double x = nan;
-      if (const auto [end, ec] = std::from_chars(c.data(), c.data() + c.size(), x); ec != std::errc() || end != c.data() + c.size()) x = nan;
+      double x = whirl::nan;
+      if (const auto [end, ec] = std::from_chars(c.data(), c.data() + c.size(), x); ec != std::errc() || end != c.data() + c.size()) x = whirl::nan;
       row.push_back(x);
     }
-    row.resize(out.columns.size(), nan);
+    row.resize(out.columns.size(), whirl::nan);
     out.rows.push_back(std::move(row));
   }
   return out;
