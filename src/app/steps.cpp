@@ -34,6 +34,10 @@ void describe_model(Job& job) {
   for (const std::string& s : job.built.left_out) left.push(s);
   for (const std::string& s : job.built.simpler) left.push(s);
   v["left out"] = left;
+  if (job.built.notes.empty()) return;
+  io::Value notes = io::Value::array();
+  for (const std::string& s : job.built.notes) notes.push(s);
+  v["notes"] = notes;
 }
 
 /// What leaving out saved. Printed only for runs long enough that somebody waits for them.

@@ -1,7 +1,6 @@
 #include <assembly/parts.hpp>
 #include <elements/point_mass.hpp>
 #include <elements/rigid_body.hpp>
-#include <elements/unbalance.hpp>
 
 #include <fmt/format.h>
 
@@ -52,11 +51,6 @@ void add_bodies(Assembly& a) {
   for (const model::Disk& d : a.model.disks) add_disk(a, d, symmetric);
   if (symmetric > 0)
     a.built.simpler.push_back(fmt::format("inertia that turns with the angle of {} disk{}: balanced and symmetric", symmetric, symmetric > 1 ? "s" : ""));
-  for (const model::Unbalance& u : a.model.unbalances) {
-    const meshes::Place at = a.mesh.place(u.at);
-    a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node}, "unbalances");
-    a.take_breakpoints(u.factor);
-  }
 }
 
 }  // namespace whirl::assembly

@@ -32,6 +32,7 @@ Built build_system(const model::Model& model, const meshes::Mesh& mesh, const st
   a.builder.set_gravity(model.gravity);
   add_shafts(a);
   add_bodies(a);
+  add_unbalances(a);
   add_supports(a);
   add_loads(a);
   check_restraint(a);

@@ -59,6 +59,7 @@ struct Built {
   std::vector<DriveTorque> drive_torques;
   std::vector<LineSpin> spins;      ///< one a line
   Index reference = 0;              ///< node whose spin is the speed axis: the first drive's, else the first node of the first rotating line
+  std::vector<std::string> notes;      ///< what was idealised otherwise than the deck says it, one line each, for the summary
   std::vector<std::string> left_out;   ///< physics this scene does not need, one line each, for the summary
   std::vector<std::string> simpler;    ///< general kernels that simpler ones stand for here; Model::keep_everything keeps them
 };

@@ -21,8 +21,10 @@ struct Assembly {
 
 /// Shaft and casing elements with their damping, and rigid sections as bodies.
 void add_shafts(Assembly& a);
-/// Disks and unbalances.
+/// Disks.
 void add_bodies(Assembly& a);
+/// Unbalances, on as many nodes as can carry them.
+void add_unbalances(Assembly& a);
 /// Bearings, rigid supports, pedestals.
 void add_supports(Assembly& a);
 /// Loads and drives, and what each line spins with.

@@ -150,6 +150,11 @@ const std::vector<CodeInfo>& error_catalogue() {
        "internal gear, turns the same way). speed_ratio, initial_spin and prescribed speeds of the shafts must agree with it: the message names the "
        "ratio that fits.",
        "[[shaft]]\nname = \"pinion\"\nspeed_ratio = -2.5\n\n[[bearing]]\ntype = \"gear\"\nat = \"wheel\"\nto = \"pinion:mid\"\nteeth = 50\nother_teeth = 20"},
+      {"E38", "an unbalance that its shaft cannot have",
+       "An unbalance is mass times eccentricity of the bodies it turns with. It is shared among neighbouring nodes until each carries no more than a "
+       "tenth of sqrt(mass x inertia); here even the whole line is too light, so that the kinetic energy would not be positive and every run would grow "
+       "without bound. Usually a unit slipped, or the disk that has the unbalance is missing or has no inertia.",
+       "amount = \"100 kg.mm\"   # wrong on a 1 kg rotor\namount = \"100 g.mm\"    # right: 1 g at 100 mm"},
       {"E71", "the split of the rotation reached its limit",
        "A section normal turned by pi from the axis of its shaft: the axial angle and the azimuth of the transverse rotation then describe the same "
        "motion. With model.chart_change = true (the default) the reference axes are moved before that happens; without, the run ends "

@@ -1,0 +1,157 @@
+// Unbalances. A static moment U at one section has no limit in a beam: with the section's mass m and inertia J (per length h both
+// ~ h) the kinetic energy m u'^2/2 + U u'.b' + J omega^2/2 is positive only while U^2 < m J, so that on short elements a run with
+// a perfectly ordinary unbalance grows without bound at the highest frequencies of the mesh. A real unbalance sits on a length of
+// shaft. So U is shared among as many neighbouring nodes as are needed for each to carry its share, with the same sum and
+// the same place of the resultant: w_j = c_j (a + b (x_j - x0)), c_j = m_j J_j, which is the least squares of U_j^2/c_j.
+#include <assembly/element_section.hpp>
+#include <assembly/parts.hpp>
+#include <elements/unbalance.hpp>
+#include <meshes/mass_properties.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::assembly {
+namespace {
+
+/// Largest U_j^2/(m_j J_j), squared root of it: what the unbalance may change of the inertia of its nodes is a hundredth.
+constexpr double fine = 0.1;
+/// Where no more nodes are to be had. The consistent masses of neighbours are at least a third of the lumped ones counted here.
+constexpr double impossible = 1.0 / 3.0;
+
+/// What a node's bodies and half its elements have.
+struct NodeInertia {
+  double mass = 0, Id = 0, Ip = 0;
+  double carries() const { return std::sqrt(mass * std::min(Id, Ip)); }   // kg m
+};
+
+/// Of the nodes of one line. Sums over the model: only for lines with an unbalance.
+std::vector<NodeInertia> node_inertias(const Assembly& a, const meshes::Line& line) {
+  std::vector<NodeInertia> out(static_cast<std::size_t>(line.nodes));
+  const auto at = [&](Index node) -> NodeInertia* {
+    const Index k = node - line.first_node;
+    return k >= 0 && k < line.nodes ? &out[static_cast<std::size_t>(k)] : nullptr;
+  };
+  for (Index i = line.first_element; i < line.first_element + line.elements; ++i) {
+    const meshes::Element& e = a.mesh.elements[static_cast<std::size_t>(i)];
+    const double h = 0.5 * (e.s2 - e.s1);
+    NodeInertia half;
+    const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
+    const model::Section& section = shaft.sections[e.section];
+    if (const auto& g = section.general) {
+      const double rho = a.model.materials.at(section.material).rho;
+      half.mass = h * (rho * g->A + section.added_mass_per_length);
+      half.Ip = h * rho * (g->Iy + g->Iz);
+      half.Id = section.rotary_inertia ? h * rho * std::min(g->Iy, g->Iz) : 0.0;
+    } else {
+      const elements::SectionProperties p = element_section(a.model, e).at(0.5);
+      half = {h * p.rhoA, h * p.rhoI, h * p.rhoIp};
+    }
+    half.Id += half.mass * h * h / 13.0;   // of the translation shapes: rhoA l^3/105 an end
+    for (const Index node : {e.left.node, e.right.node}) {
+      NodeInertia& n = *at(node);
+      n.mass += half.mass, n.Id += half.Id, n.Ip += half.Ip;
+    }
+  }
+  for (const meshes::RigidPart& r : a.mesh.rigid_parts)
+    if (NodeInertia* n = at(r.node)) {
+      const meshes::MassProperties p = meshes::section_mass(a.model, a.model.shafts[static_cast<std::size_t>(r.line)].sections[r.section], Vec3(r.o1, 0, 0));
+      n->mass += p.mass, n->Id += p.Id(), n->Ip += p.Ip();
+    }
+  for (const model::Disk& d : a.model.disks)
+    if (NodeInertia* n = at(a.mesh.place(d.at).node)) {
+      n->mass += d.mass;
+      n->Ip += d.inertia ? (*d.inertia)(0, 0) : d.Ip;
+      n->Id += d.inertia ? std::min((*d.inertia)(1, 1), (*d.inertia)(2, 2)) : d.Id;
+    }
+  return out;
+}
+
+double largest_factor(const model::Unbalance& u) {
+  if (!u.factor) return 1.0;
+  double most = std::abs(u.factor->at(0.0).f);
+  for (const double t : u.factor->breakpoints())
+    for (const double s : {t, std::nextafter(t, -infinity)}) most = std::max(most, std::abs(u.factor->at(s).f));
+  return most;
+}
+
+/// Shares of nodes first, first + 1, .. of a line.
+struct Shares {
+  Index first = 0;
+  std::vector<double> w;
+  double worst = infinity;   ///< largest |w_j| / carries_j, 1/(kg m)
+};
+
+/// The fewest neighbours of node k (positions x, increasing) that keep |U w_j| below `fine` of what each carries, or the best there are.
+Shares share(double U, double x0, Index k, const std::vector<double>& x, const std::vector<NodeInertia>& nodes) {
+  const auto n = static_cast<Index>(x.size());
+  Shares best;
+  for (Index lo = k, hi = k;;) {
+    double s0 = 0, s1 = 0, s2 = 0;
+    const double scale = std::max(x[static_cast<std::size_t>(hi)] - x[static_cast<std::size_t>(lo)], 1e-300);
+    for (Index j = lo; j <= hi; ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      const double c = nodes[i].carries() * nodes[i].carries(), xi = (x[i] - x0) / scale;
+      s0 += c, s1 += c * xi, s2 += c * xi * xi;
+    }
+    const double det = s0 * s2 - s1 * s1;
+    if (hi > lo && det > 0) {
+      Shares now{lo, {}, 0};
+      for (Index j = lo; j <= hi; ++j) {
+        const auto i = static_cast<std::size_t>(j);
+        const double w = nodes[i].carries() * nodes[i].carries() * (s2 - s1 * (x[i] - x0) / scale) / det;
+        now.w.push_back(w);
+        if (w != 0) now.worst = std::max(now.worst, std::abs(w) / nodes[i].carries());
+      }
+      if (now.worst < best.worst) best = now;
+      if (U * best.worst <= fine) return best;
+    }
+    const bool left = lo > 0, right = hi + 1 < n;
+    if (!left && !right) return best;
+    if (right && (!left || x[static_cast<std::size_t>(hi + 1)] - x0 <= x0 - x[static_cast<std::size_t>(lo - 1)])) ++hi;
+    else --lo;
+  }
+}
+
+}  // namespace
+
+void add_unbalances(Assembly& a) {
+  std::vector<std::vector<NodeInertia>> known(a.mesh.lines.size());
+  for (const model::Unbalance& u : a.model.unbalances) {
+    const meshes::Place at = a.mesh.place(u.at);
+    a.take_breakpoints(u.factor);
+    const Index line_index = a.mesh.nodes[static_cast<std::size_t>(at.node)].line;
+    const meshes::Line& line = a.mesh.lines[static_cast<std::size_t>(line_index)];
+    std::vector<NodeInertia>& nodes = known[static_cast<std::size_t>(line_index)];
+    if (nodes.empty()) nodes = node_inertias(a, line);
+    const Index k = at.node - line.first_node;
+    const double U = std::abs(u.amount) * largest_factor(u), own = nodes[static_cast<std::size_t>(k)].carries();
+    // A node without any inertia is a mass point on a massless shaft; whether it may turn is for the scene to say.
+    if (U <= fine * own || own == 0) {
+      a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node}, "unbalances");
+      continue;
+    }
+    std::vector<double> x;
+    for (Index i = 0; i < line.nodes; ++i) x.push_back(a.mesh.nodes[static_cast<std::size_t>(line.first_node + i)].s);
+    const double x0 = x[static_cast<std::size_t>(k)] + at.offset;
+    Shares s = share(U, x0, k, x, nodes);
+    if (!(s.worst < 1 / own)) s = {k, {1.0}, 1 / own};
+    if (U * s.worst > impossible) {
+      a.error("E38", fmt::format("an unbalance of {:.4g} kg m is more than its shaft can have: its mass centre would lie {:.3g} mm from the axis, with a radius of inertia of {:.3g} mm", U,
+                                 1e3 * U / nodes[static_cast<std::size_t>(k)].mass, 1e3 * std::sqrt(std::min(nodes[static_cast<std::size_t>(k)].Id, nodes[static_cast<std::size_t>(k)].Ip) / nodes[static_cast<std::size_t>(k)].mass)),
+              "an amount is mass times eccentricity: 1 g at 100 mm is \"100 g.mm\" = \"1e-4 kg.m\"; give the disk that has it its mass, Ip and Id", u, u.name.empty() ? "unbalance" : u.name);
+      continue;
+    }
+    if (s.w.size() == 1) {
+      a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node}, "unbalances");
+      continue;
+    }
+    for (std::size_t j = 0; j < s.w.size(); ++j)
+      if (s.w[j] != 0) a.builder.add(elements::UnbalanceMass(s.w[j] * u.amount, u.phase, u.factor), {line.first_node + s.first + static_cast<Index>(j)}, "unbalances");
+    a.built.notes.push_back(fmt::format("{} ({:.4g} kg m): spread over {:.3g} mm of the shaft, as the slice of one node is too light to carry it", u.name.empty() ? "unbalance" : u.name, u.amount,
+                                        1e3 * (x[static_cast<std::size_t>(s.first) + s.w.size() - 1] - x[static_cast<std::size_t>(s.first)])));
+  }
+}
+
+}  // namespace whirl::assembly
