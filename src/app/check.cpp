@@ -1,6 +1,7 @@
 #include <app/commands.hpp>
 #include <app/diagnose.hpp>
 #include <app/results_folder.hpp>
+#include <assembly/build_system.hpp>
 #include <core/units.hpp>
 #include <cstdio>
 #include <fmt/format.h>
@@ -12,6 +13,8 @@
 #include <meshes/mesh.hpp>
 #include <meshes/mesh_tables.hpp>
 #include <meshes/scene.hpp>
+#include <set>
+#include <string>
 
 namespace whirl::app {
 namespace {
@@ -86,6 +89,14 @@ void write_mesh(const model::Model& m, const meshes::Mesh& mesh, const std::file
   }
 }
 
+/// What only shows when the equations are put together: impossible bodies, unrestrained motion.
+void try_assembly(const model::Model& m, const meshes::Mesh& mesh) {
+  std::set<std::string> keys{""};   // steps with drives of their own have a system of their own
+  for (const model::Drive& d : m.drives)
+    if (!d.step.empty()) keys.insert(d.step);
+  for (const std::string& step : keys) assembly::build_system(m, mesh, step);
+}
+
 }  // namespace
 
 int check_deck(const CheckOptions& o) {
@@ -102,6 +113,16 @@ int check_deck(const CheckOptions& o) {
     return static_cast<int>(deck::exit_of(d.diagnostics));
   }
   const meshes::Mesh mesh = meshes::make_mesh(d.model);
+  try {
+    if (!d.model.steps.empty()) try_assembly(d.model, mesh);
+  } catch (const Error& e) {
+    if (!o.json) throw;
+    io::Value v = io::Value::object();
+    v["ok"] = false;
+    v["diagnostics"] = to_value(e.diagnostics());
+    std::fputs(io::to_json(v).c_str(), stdout);
+    return static_cast<int>(e.exit());
+  }
   if (!o.mesh.empty()) write_mesh(d.model, mesh, o.mesh);
   if (o.resolved) {
     print_diagnostics(d, o.quiet);

@@ -138,8 +138,10 @@ void add_unbalances(Assembly& a) {
     Shares s = share(U, x0, k, x, nodes);
     if (!(s.worst < 1 / own)) s = {k, {1.0}, 1 / own};
     if (U * s.worst > impossible) {
-      a.error("E38", fmt::format("an unbalance of {:.4g} kg m is more than its shaft can have: its mass centre would lie {:.3g} mm from the axis, with a radius of inertia of {:.3g} mm", U,
-                                 1e3 * U / nodes[static_cast<std::size_t>(k)].mass, 1e3 * std::sqrt(std::min(nodes[static_cast<std::size_t>(k)].Id, nodes[static_cast<std::size_t>(k)].Ip) / nodes[static_cast<std::size_t>(k)].mass)),
+      NodeInertia whole;
+      for (const NodeInertia& n : nodes) whole.mass += n.mass, whole.Ip += n.Ip;
+      a.error("E38", fmt::format("an unbalance of {:.4g} kg m is more than its shaft can have: {:.4g} kg with a radius of inertia of {:.3g} mm about the axis, the mass centre {:.3g} mm beside it", U, whole.mass,
+                                 1e3 * std::sqrt(whole.Ip / whole.mass), 1e3 * U / whole.mass),
               "an amount is mass times eccentricity: 1 g at 100 mm is \"100 g.mm\" = \"1e-4 kg.m\"; give the disk that has it its mass, Ip and Id", u, u.name.empty() ? "unbalance" : u.name);
       continue;
     }
