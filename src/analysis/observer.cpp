@@ -112,21 +112,28 @@ void EnergyBalance::step(StepAccess& s) {
     supplied_ += h * b[k] * p.supplied;
     dissipated_ += h * b[k] * p.dissipated;
   }
-  const auto p = s.end().power();
+  // Where laws jump, the end of the step sees them from the left.
+  const bool jump = std::binary_search(jumps_.begin(), jumps_.end(), s.t1());
+  const auto p = jump ? s.at(std::nextafter(s.t1(), -infinity)).power() : s.end().power();
   supplied_ += h * b[2] * p.supplied;
   dissipated_ += h * b[2] * p.dissipated;
   e1_ = p.stored;
+  rounding_ += 2.2e-16 * std::max(std::abs(p.stored), p.kinetic);
   largest_kinetic_ = std::max(largest_kinetic_, p.kinetic);
   largest_change_ = std::max(largest_change_, std::abs(e1_ - e0_));
   worst_ = std::max(worst_, std::abs(defect()));
+  if (!jump) return;
+  const double after = s.end().power().stored;
+  supplied_ += after - e1_;
+  e1_ = after;
 }
 
 void EnergyBalance::save(OutArchive& out) const {
-  for (double x : {e0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_, largest_change_}) out.put(x);
+  for (double x : {e0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_, largest_change_, rounding_}) out.put(x);
 }
 
 void EnergyBalance::restore(InArchive& in) {
-  for (double* x : {&e0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_, &largest_change_}) *x = in.number();
+  for (double* x : {&e0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_, &largest_change_, &rounding_}) *x = in.number();
 }
 
 void TiltWatch::save(OutArchive& out) const { out.put(tilt_), out.put(time_), out.put_count(static_cast<std::uint64_t>(node_)); }

@@ -97,8 +97,11 @@ class PeakTracker final : public Observer {
 };
 
 /// Work and energy: E(t) - E(0) = work supplied - energy dissipated; the defect is the run's own measure of accuracy.
+/// Where a law jumps, mass may come or go at an instant (blade loss): the energy it brings counts as supplied.
 class EnergyBalance final : public Observer {
  public:
+  /// jumps: times, increasing, at which laws jump and steps end.
+  explicit EnergyBalance(std::vector<double> jumps = {}) : jumps_(std::move(jumps)) {}
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
   void save(OutArchive& out) const override;
@@ -112,8 +115,12 @@ class EnergyBalance final : public Observer {
   double largest_kinetic() const { return largest_kinetic_; }
   /// Largest departure of the stored energy from its start.
   double largest_change() const { return largest_change_; }
+  /// What the defect may reach by rounding alone: the stored energy's last digit, once a step.
+  double rounding() const { return rounding_; }
 
  private:
+  std::vector<double> jumps_;
+  double rounding_ = 0;
   double e0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0, largest_change_ = 0;
 };
 

@@ -49,7 +49,7 @@ std::vector<std::string> state_accuracy(Job& job, const AccuracyInputs& in, io::
       "(stored - supplied + dissipated) is off by {:.2g} J at most, {:.2g} of the energy turned over.",
       scheme.tolerance, in.result.seconds, s.error_mean(), s.error_max, in.energy.worst_defect(), defect);
   // an amplitude error of a percent is an energy error of two
-  if (defect > 0.02)
+  if (defect > 0.02 && in.energy.worst_defect() > in.energy.rounding())
     warnings.push_back(fmt::format("the energy balance is off by {:.2g} of the energy turned over: do not trust the amplitudes; try a smaller tolerance", defect));
   if (scheme.dt > 0.0 && s.error_max > 1.0)
     warnings.push_back(fmt::format("the fixed step is too long for the accuracy asked for: local errors up to {:.2g} times the allowance for {:.2g} of the peak", s.error_max, scheme.tolerance));

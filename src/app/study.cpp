@@ -76,7 +76,7 @@ struct Bench {
     const auto points = watched_points(job);
     Sampler sampler(points, start.state.t, o.integrator.t_end, 200);
     analysis::PeakTracker peaks(points, job.reference());
-    analysis::EnergyBalance energy;
+    analysis::EnergyBalance energy(o.integrator.breakpoints);
     analysis::StudySample s;
     s.setting = c;
     try {

@@ -169,7 +169,7 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   }
   analysis::PeakTracker peaks(watched, job.reference());
   if (!watched.empty()) observers.push_back(&peaks), parts.add("peaks " + watching, peaks);
-  analysis::EnergyBalance energy;
+  analysis::EnergyBalance energy(options.integrator.breakpoints);
   observers.push_back(&energy), parts.add("energy", energy);
   analysis::TiltWatch tilt;
   observers.push_back(&tilt), parts.add("tilt", tilt);

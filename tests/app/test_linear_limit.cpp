@@ -1,0 +1,110 @@
+// At constant speed and with a small unbalance a transient of the full nonlinear model settles to the linear unbalance response.
+#include <gtest/gtest.h>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Anisotropic, cross-coupled bearings at 0.7 of the shaft's bending critical speed; the slowest mode decays by e^-20 in the run.
+constexpr const char* deck = R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[shaft]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["left", 300, 30, 3], ["right", 400, 30, 4]]
+[[disk]]
+name = "disk"
+at = "left:end"
+mass = "5 kg"
+Ip = "0.03 kg.m^2"
+Id = "0.016 kg.m^2"
+[[unbalance]]
+at = "disk"
+amount = "1e-9 kg.m"
+phase = "30 deg"
+[[bearing]]
+name = "A"
+at = "left:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "2e6 N/m"
+kzz = "1e6 N/m"
+cyy = "2000 N.s/m"
+czz = "2000 N.s/m"
+[[bearing]]
+name = "B"
+at = "right:end"
+type = "linear"
+kyy = "2e6 N/m"
+kzz = "1e6 N/m"
+kyz = "1e5 N/m"
+kzy = "-1e5 N/m"
+cyy = "2000 N.s/m"
+czz = "2000 N.s/m"
+[[drive]]
+at = "left:start"
+type = "speed"
+speed = "3600 rpm"
+[[probe]]
+name = "disk"
+at = "disk"
+[[step]]
+name = "steady"
+type = "unbalance_response"
+speed = { values = ["3600 rpm"] }
+[[step]]
+name = "run"
+type = "transient"
+start = "rest"
+initial_speed = "3600 rpm"
+duration = "1 s"
+integrator = { tolerance = 1e-8 }
+[output]
+directory = "r"
+report = false
+every = "1 ms"
+)";
+
+/// Column name to value, of the last row.
+std::map<std::string, double> last_row(const fs::path& csv) {
+  std::ifstream in(csv);
+  std::string head, line, last;
+  std::getline(in, head);
+  while (std::getline(in, line)) last = line;
+  std::map<std::string, double> out;
+  std::istringstream names(head), values(last);
+  for (std::string name, value; std::getline(names, name, ',') && std::getline(values, value, ',');) out[name] = std::stod(value);
+  return out;
+}
+
+}  // namespace
+
+TEST(LinearLimit, TransientSettlesToTheUnbalanceResponse) {
+  const fs::path folder = fs::temp_directory_path() / ("whirl_linear_limit_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "d.toml") << deck;
+  const int status = std::system(("cd '" + folder.string() + "' && '" WHIRL_EXE "' run d.toml >log.txt 2>&1 </dev/null").c_str());
+  std::ostringstream log;
+  log << std::ifstream(folder / "log.txt").rdbuf();
+  ASSERT_EQ(WEXITSTATUS(status), 0) << log.str();
+  EXPECT_EQ(log.str().find("warning"), std::string::npos) << log.str();
+  const auto run = last_row(folder / "r/run.csv"), steady = last_row(folder / "r/steady_response.csv");
+  // The angle of the rotor at the end, a row's last: u = A cos(phi - lag). 1e-6 of the amplitude; the run was asked for 1e-8.
+  const double phi = run.at("phi [rad]"), major = steady.at("disk major [m]");
+  for (const std::string axis : {"y", "z"}) {
+    const double lag = steady.at("disk " + axis + " phase lag [deg]") * std::acos(-1.0) / 180;
+    EXPECT_NEAR(run.at("disk." + axis + " [m]"), steady.at("disk " + axis + " amplitude [m]") * std::cos(phi - lag), 1e-6 * major) << axis;
+  }
+  fs::remove_all(folder);
+}
