@@ -35,6 +35,7 @@ Built build_system(const model::Model& model, const meshes::Mesh& mesh, const st
   add_unbalances(a);
   add_supports(a);
   add_loads(a);
+  add_turning_base(a);
   check_restraint(a);
   if (!a.errors.empty()) {
     std::stable_sort(a.errors.begin(), a.errors.end(), [](const auto& x, const auto& y) { return x.where.line < y.where.line; });

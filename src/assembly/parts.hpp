@@ -29,6 +29,8 @@ void add_unbalances(Assembly& a);
 void add_supports(Assembly& a);
 /// Loads and drives, and what each line spins with.
 void add_loads(Assembly& a);
+/// What turning of the base adds to every inertia there is by now.
+void add_turning_base(Assembly& a);
 /// Unrestrained motion: left out where nothing excites it, else an error.
 void check_restraint(Assembly& a);
 

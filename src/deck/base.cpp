@@ -7,6 +7,16 @@ void describe(Visitor& v, model::BaseMotion& b) {
   static constexpr const char* keys[] = {"x", "y", "z"};
   static constexpr const char* docs[] = {"acceleration of the base along the shaft, constant or a law of time; displacements are relative to the base", "acceleration across, horizontally", "acceleration upwards"};
   for (std::size_t k = 0; k < 3; ++k) describe_law(v, optional(keys[k], "0"), b.acceleration[k], "m/s^2", docs[k]);
+  v.table(optional("turn", "none"), b.turn, "turning of the base, a manoeuvre: every inertia gets its Coriolis, centrifugal, Euler and gyroscopic forces, and the weight turns against the base");
+}
+
+void describe(Visitor& v, model::BaseTurn& t) {
+  v.vector(required("axis"), t.axis, "", "direction it turns about, x along the shaft, z up; fixed in the base and in space; of any length");
+  v.vector(optional("about", "[0, 0, 0]"), t.about, "m", "a point of the axis; far away for a curve");
+  describe_law(v, required("rate"), t.rate, "deg/s", "angular speed, constant or a law of time");
+  if (!v.clean()) return;
+  if (!(t.axis.norm() > 0)) v.error("E14", "axis", "the axis of turning has no direction", "for example axis = [0, 0, 1]: yaw");
+  else t.axis.normalize();
 }
 
 void describe(Visitor& v, model::Event& e) {

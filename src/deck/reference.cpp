@@ -30,9 +30,13 @@ std::string type_of(const KeyInfo& k) {
 }
 
 /// '|' separates the cells of a Markdown table.
-std::string cell(std::string s) {
-  for (std::size_t i = 0; (i = s.find('|', i)) != std::string::npos; i += 2) s.insert(i, "\\");
-  return s;
+std::string cell(const std::string& s) {
+  std::string out;
+  for (const char c : s) {
+    if (c == '|') out.push_back('\\');
+    out.push_back(c);
+  }
+  return out;
 }
 
 std::string range_of(const Range& r) {

@@ -170,6 +170,7 @@ void describe(Visitor&, model::VtkOutput&);
 void describe(Visitor&, model::TrackingOutput&);   // postprocess.cpp
 void describe(Visitor&, model::SpectraOutput&);
 void describe(Visitor&, model::BaseMotion&);       // base.cpp
+void describe(Visitor&, model::BaseTurn&);
 void describe(Visitor&, model::Event&);
 /// A law of time given as a constant or as a table: laws.cpp. Returns whether it is given.
 bool describe_law(Visitor&, const Key&, LawPtr& target, const char* unit, const char* doc);

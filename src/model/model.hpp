@@ -330,8 +330,18 @@ struct Output {
 
 // ---------------------------------------------------------------- the model
 
-/// Acceleration of the base along x, y, z against time, m/s2; null = none. Displacements are relative to the base.
-struct BaseMotion { std::array<LawPtr, 3> acceleration; };
+/// Turning of the base about an axis fixed in it and in space: a manoeuvre.
+struct BaseTurn {
+  Vec3 axis = Vec3::UnitY();       ///< unit vector
+  Vec3 about = Vec3::Zero();       ///< a point of the axis, m
+  LawPtr rate;                     ///< rad/s
+};
+
+/// Motion of the base: displacements are relative to it.
+struct BaseMotion {
+  std::array<LawPtr, 3> acceleration;   ///< along its axes x, y, z, m/s2; null = none
+  std::optional<BaseTurn> turn;
+};
 
 /// Something that happens during a transient, located on the dense output.
 struct Event : Entity {

@@ -39,7 +39,8 @@ class Term {
   virtual bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const = 0;
   virtual void add_force(Workspace& w) const = 0;
   virtual void add_tangent(Workspace& w) const = 0;
-  virtual void add_energy(const Workspace& w, Energy& e) const = 0;
+  /// In the given context, which need not be that of the workspace.
+  virtual void add_energy(const Workspace& w, const Context& c, Energy& e) const = 0;
   virtual void list_couplings(std::vector<std::pair<Index, Index>>& out) const = 0;
   virtual void list_nodes(std::vector<Index>& out) const = 0;
   /// Appends the breakpoints of the time laws in the elements (kernels that have a breakpoints()).
@@ -115,8 +116,8 @@ class Batch final : public Term {
       }
     }
   }
-  void add_energy(const Workspace& w, Energy& e) const override {
-    for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i].add_energy(gather(w, i), w.context, e);
+  void add_energy(const Workspace& w, const Context& c, Energy& e) const override {
+    for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i].add_energy(gather(w, i), c, e);
   }
   void list_couplings(std::vector<std::pair<Index, Index>>& out) const override {
     if constexpr (N > 1)

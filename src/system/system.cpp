@@ -234,14 +234,27 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
 Energy System::exchange(const Workspace& w) const {
   Energy e;
   for (const auto& term : terms_)
-    if (!term->powerless()) term->add_energy(w, e);
+    if (!term->powerless()) term->add_energy(w, w.context, e);
+  e.supplied += field_power(w);
   return e;
 }
 
 Energy System::energy(const Workspace& w) const {
   Energy e;
-  for (const auto& term : terms_) term->add_energy(w, e);
+  for (const auto& term : terms_) term->add_energy(w, w.context, e);
+  e.supplied += field_power(w);
   return e;
+}
+
+double System::field_power(const Workspace& w) const {
+  if (!base_[0] && !base_[1] && !base_[2]) return 0.0;
+  Context c = w.context;
+  c.gravity.setZero();
+  for (int k = 0; k < 3; ++k)
+    if (base_[at(k)]) c.gravity[k] = -c.load * base_[at(k)]->at(c.time).df;
+  Energy e;   // the potential is linear in gravity
+  for (const auto& term : terms_) term->add_energy(w, c, e);
+  return e.gravity;
 }
 
 }  // namespace whirl::system

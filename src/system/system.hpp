@@ -91,6 +91,8 @@ class System {
   friend class Builder;
   void project_force(const Workspace& w, Eigen::Ref<VecX> r) const;
   Vec3 gravity_at(double t) const;
+  /// W, what the change of the base's acceleration adds to the potential of the weight in it.
+  double field_power(const Workspace& w) const;
 
   /// The derivatives of the node Jacobians, after evaluate_nodes.
   void evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const;
@@ -136,6 +138,8 @@ class Builder {
     const Batch<K>* b = system_.batch<K>();
     return b ? b->count() : 0;
   }
+  /// What was added so far of a kernel type, or null.
+  template <Kernel K> const Batch<K>* batch() const { return system_.batch<K>(); }
   const NodeDef& node(Index i) const { return system_.defs_[static_cast<std::size_t>(i)]; }
   Index nodes() const { return static_cast<Index>(system_.defs_.size()); }
   /// Holds every rotational unknown no element resists or loads, then freezes pattern and slots.

@@ -169,6 +169,8 @@ class ModelDump {
       matrix("displacement", i.displacement); matrix("velocity", i.velocity); matrix("omega", i.omega); matrix("gamma", i.gamma); matrix("about", i.about);
     }
     for (const auto& b : m.bearings) bearing(b);
+    for (const auto& l : m.base.acceleration) law("base", l);
+    if (m.base.turn) { matrix("axis", m.base.turn->axis); matrix("about", m.base.turn->about); law("rate", m.base.turn->rate); }
     for (const auto& l : m.loads) { head("load", l); at("at", l.at); put("frame", double(l.frame)); matrix("force", l.force); matrix("moment", l.moment); law("factor", l.factor); }
     for (const auto& d : m.drives) drive(d);
     for (const auto& p : m.probes) { head("probe", p); at("at", p.at); each("angles", p.angles); }
