@@ -129,6 +129,8 @@ TEST(PaperRotor, MomentumFormByExplicitRungeKutta) {
   ASSERT_EQ(o.result.reason, StopReason::end_time) << o.result.detail;
   compare(o.watch, 1e-7);
   EXPECT_LT(o.energy.worst_defect(), 2e-6);
+  // omega . d is a momentum over Jp there, which nothing changes: round-off, a hundred last digits of the way back through phi'
+  EXPECT_LT(o.watch.invariant, 2.2e-14 * Omega0);
 }
 
 TEST(PaperRotor, EnergyToOneNanojoule) {
@@ -137,6 +139,7 @@ TEST(PaperRotor, EnergyToOneNanojoule) {
   run("gauss6", 1e-13, 1e-3, o);
   ASSERT_EQ(o.result.reason, StopReason::end_time) << o.result.detail;
   EXPECT_LT(o.energy.worst_defect(), 1e-9);
+  EXPECT_LT(o.watch.invariant, 1e-12 * Omega0);   // ten times what Newton is asked for
 }
 
 TEST(PaperRotor, HundredThousandRevolutionsAtHighSpeed) {

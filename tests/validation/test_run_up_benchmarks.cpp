@@ -109,12 +109,13 @@ TEST(K2TorqueRunUp, WithoutGravity) {
 }
 
 TEST(K2TorqueRunUp, EqualStepsOfAMillisecond) {
-  // Where another code's Newton iteration fails (0.2 rad of spin a step): runs through, and Radau 5 is still within 1 %.
+  // Where another code's Newton iteration fails (0.2 rad of spin a step). The step is too long for the torsional ringing, not for the peak: as
+  // accurate as the mesh and the reference.
   Peak p;
   double spin, defect;
   const TransientResult r = run_K2(10, 1e-4, "radau5", 1e-3, p, spin, defect);
   ASSERT_EQ(r.reason, StopReason::end_time) << r.detail;
-  EXPECT_NEAR(p.amplitude, 1.6911e-3, 0.01 * 1.6911e-3);
+  EXPECT_NEAR(p.amplitude, 1.6911e-3, 1.2e-4 * 1.6911e-3);
 }
 
 TEST(K2TorqueRunUp, GaussKeepsTheEnergy) {
