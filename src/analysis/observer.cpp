@@ -118,7 +118,7 @@ void EnergyBalance::step(StepAccess& s) {
   supplied_ += h * b[2] * p.supplied;
   dissipated_ += h * b[2] * p.dissipated;
   e1_ = p.stored;
-  rounding_ += 2.2e-16 * std::max(std::abs(p.stored), p.kinetic);
+  rounding_ += 20 * 2.2e-16 * std::max(std::abs(p.stored), p.kinetic);
   largest_kinetic_ = std::max(largest_kinetic_, p.kinetic);
   largest_change_ = std::max(largest_change_, std::abs(e1_ - e0_));
   worst_ = std::max(worst_, std::abs(defect()));

@@ -115,7 +115,7 @@ class EnergyBalance final : public Observer {
   double largest_kinetic() const { return largest_kinetic_; }
   /// Largest departure of the stored energy from its start.
   double largest_change() const { return largest_change_; }
-  /// What the defect may reach by rounding alone: the stored energy's last digit, once a step.
+  /// What the defect may reach by rounding alone: twenty last digits of the stored energy, a sum over elements, a step.
   double rounding() const { return rounding_; }
 
  private:
