@@ -69,6 +69,12 @@ Measurement measure_velocity(std::string name, Point p) {
           }};
 }
 
+Measurement measure_acceleration(std::string name, Point p) {
+  return {std::move(name), "m/s^2", "acceleration relative to the base, global axes", {"x", "y", "z"}, 1.0, [p](const Snapshot& s, double* out) {
+            Eigen::Map<Vec3>{out} = acceleration(s, p);
+          }};
+}
+
 Measurement measure_position(std::string name, Point p) {
   return {std::move(name), "m", "position, global axes", {"x", "y", "z"}, 1.0, [p](const Snapshot& s, double* out) {
             Eigen::Map<Vec3>{out} = s.system().node(p.node).position + s.node(p.node).u + p.offset * s.node(p.node).d();

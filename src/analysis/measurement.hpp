@@ -57,6 +57,7 @@ Vec3 acceleration(const Snapshot& s, const Point& p);   ///< gravity-free (true)
 /// Displacement along directions in the lateral plane, angle from +y towards +z; empty angles: y and z.
 Measurement measure_displacement(std::string name, Point p, const std::vector<double>& angles = {});
 Measurement measure_velocity(std::string name, Point p);
+Measurement measure_acceleration(std::string name, Point p);
 Measurement measure_position(std::string name, Point p);             ///< x, y, z, m, global
 Measurement measure_spin(std::string name, Index node);              ///< s = omega . d, written in rpm
 Measurement measure_phi(std::string name, Index node);               ///< total axial angle, rad

@@ -39,6 +39,8 @@ Channels make_channels(const Job& job) {
     for (const model::Probe& p : m.probes) c.add(analysis::measure_position(p.name + " position", point_of(job, p.at)));
   if (wants(m.output, "velocity"))
     for (const model::Probe& p : m.probes) c.add(analysis::measure_velocity(p.name + " velocity", point_of(job, p.at)));
+  if (wants(m.output, "acceleration"))
+    for (const model::Probe& p : m.probes) c.add(analysis::measure_acceleration(p.name + " acceleration", point_of(job, p.at)));
   if (wants(m.output, "rotation"))
     for (const model::Probe& p : m.probes) {
       const Point at = point_of(job, p.at);

@@ -74,6 +74,7 @@ integrator = { tolerance = 1e-8 }
 directory = "r"
 report = false
 every = "1 ms"
+quantities = ["probes", "velocity", "acceleration", "rotation"]
 )";
 
 /// Column name to value, of the last row.
@@ -101,10 +102,13 @@ TEST(LinearLimit, TransientSettlesToTheUnbalanceResponse) {
   EXPECT_EQ(log.str().find("warning"), std::string::npos) << log.str();
   const auto run = last_row(folder / "r/run.csv"), steady = last_row(folder / "r/steady_response.csv");
   // The angle of the rotor at the end, a row's last: u = A cos(phi - lag). 1e-6 of the amplitude; the run was asked for 1e-8.
-  const double phi = run.at("phi [rad]"), major = steady.at("disk major [m]");
+  const double Omega = 3600 * std::acos(-1.0) / 30, phi = run.at("disk phi [rad]"), major = steady.at("disk major [m]");
   for (const std::string axis : {"y", "z"}) {
     const double lag = steady.at("disk " + axis + " phase lag [deg]") * std::acos(-1.0) / 180;
-    EXPECT_NEAR(run.at("disk." + axis + " [m]"), steady.at("disk " + axis + " amplitude [m]") * std::cos(phi - lag), 1e-6 * major) << axis;
+    const double amplitude = steady.at("disk " + axis + " amplitude [m]");
+    EXPECT_NEAR(run.at("disk." + axis + " [m]"), amplitude * std::cos(phi - lag), 1e-6 * major) << axis;
+    EXPECT_NEAR(run.at("disk velocity." + axis + " [m/s]"), -Omega * amplitude * std::sin(phi - lag), 1e-6 * Omega * major) << axis;
+    EXPECT_NEAR(run.at("disk acceleration." + axis + " [m/s^2]"), -Omega * Omega * amplitude * std::cos(phi - lag), 1e-6 * Omega * Omega * major) << axis;
   }
   fs::remove_all(folder);
 }
