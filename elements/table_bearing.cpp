@@ -1,6 +1,8 @@
 #include <elements/table_bearing.hpp>
 
 #include <core/error.hpp>
+#include <elements/coefficient_grid.hpp>
+#include <elements/monotone_slopes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,30 +24,8 @@ CoefficientTable::CoefficientTable(std::vector<double> spin, std::vector<Values>
     has_mass_ = has_mass_ || (r.tail<4>() != 0.0).any();
     value_.push_back(r);
   }
-  const std::size_t n = spin_.size();
-  slope_.assign(n, Row::Zero());
-  if (between_ == Between::linear || n < 2) return;
-  // Fritsch-Carlson: weighted harmonic mean of the chords inside, three-point one-sided slopes at the ends, limited.
-  const auto chord = [&](std::size_t i) { return Row((value_[i + 1] - value_[i]) / (spin_[i + 1] - spin_[i])); };
-  if (n == 2) {
-    slope_[0] = slope_[1] = chord(0);
-    return;
-  }
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double h0 = spin_[i] - spin_[i - 1], h1 = spin_[i + 1] - spin_[i], w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
-    const Row d0 = chord(i - 1), d1 = chord(i);
-    for (int k = 0; k < 12; ++k) slope_[i][k] = d0[k] * d1[k] > 0 ? (w0 + w1) / (w0 / d0[k] + w1 / d1[k]) : 0.0;
-  }
-  const auto end = [&](double h0, double h1, const Row& d0, const Row& d1) {
-    Row s = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
-    for (int k = 0; k < 12; ++k) {
-      if (s[k] * d0[k] <= 0) s[k] = 0;
-      else if (d0[k] * d1[k] < 0 && std::abs(s[k]) > 3 * std::abs(d0[k])) s[k] = 3 * d0[k];
-    }
-    return s;
-  };
-  slope_[0] = end(spin_[1] - spin_[0], spin_[2] - spin_[1], chord(0), chord(1));
-  slope_[n - 1] = end(spin_[n - 1] - spin_[n - 2], spin_[n - 2] - spin_[n - 3], chord(n - 2), chord(n - 3));
+  if (between_ == Between::monotone_cubic) slope_ = monotone_slopes(spin_, value_);
+  else slope_.assign(spin_.size(), Row::Zero());
 }
 
 void CoefficientTable::at(double s, Values& v, Values& dv) const {
@@ -74,18 +54,18 @@ void CoefficientTable::at(double s, Values& v, Values& dv) const {
   }
 }
 
-template <bool Mass>
-void TableBearingLaw<Mass>::force(const LateralMotion& m, Vector<4>& z) const {
-  CoefficientTable::Values v, dv;
+template <bool Mass, class Table>
+void TableBearingLaw<Mass, Table>::force(const LateralMotion& m, Vector<4>& z) const {
+  CoefficientValues v, dv;
   table->at(m.spin, v, dv);
   Vec2 F = -(v.K * m.r + v.C * m.v);
   if constexpr (Mass) F -= v.M * m.a;
   z << F, 0.0, 0.0;
 }
 
-template <bool Mass>
-void TableBearingLaw<Mass>::tangent(const LateralMotion& m, Vector<4>& z, LateralTangent& t) const {
-  CoefficientTable::Values v, dv;
+template <bool Mass, class Table>
+void TableBearingLaw<Mass, Table>::tangent(const LateralMotion& m, Vector<4>& z, LateralTangent& t) const {
+  CoefficientValues v, dv;
   table->at(m.spin, v, dv);
   Vec2 F = -(v.K * m.r + v.C * m.v), F_s = -(dv.K * m.r + dv.C * m.v);
   t.set_zero();
@@ -98,9 +78,9 @@ void TableBearingLaw<Mass>::tangent(const LateralMotion& m, Vector<4>& z, Latera
   z << F, 0.0, 0.0;
 }
 
-template <bool Mass>
-void TableBearingLaw<Mass>::energy(const LateralMotion& m, system::Energy& e) const {
-  CoefficientTable::Values v, dv;
+template <bool Mass, class Table>
+void TableBearingLaw<Mass, Table>::energy(const LateralMotion& m, system::Energy& e) const {
+  CoefficientValues v, dv;
   table->at(m.spin, v, dv);
   e.elastic += 0.5 * m.r.dot(v.K * m.r);
   e.dissipated += m.v.dot(v.C * m.v);
@@ -113,7 +93,9 @@ void TableBearingLaw<Mass>::energy(const LateralMotion& m, system::Energy& e) co
   }
 }
 
-template struct TableBearingLaw<false>;
-template struct TableBearingLaw<true>;
+template struct TableBearingLaw<false, CoefficientTable>;
+template struct TableBearingLaw<true, CoefficientTable>;
+template struct TableBearingLaw<false, CoefficientGrid>;
+template struct TableBearingLaw<true, CoefficientGrid>;
 
 }  // namespace whirl::elements

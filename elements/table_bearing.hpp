@@ -12,10 +12,13 @@
 
 namespace whirl::elements {
 
-/// 2x2 coefficient matrices (rows and columns y, z) against spin.
+/// 2x2 coefficient matrices, rows (force) and columns (motion) y, z; N/m, N s/m, kg.
+struct CoefficientValues { Mat2 K, C, M; };
+
+/// Coefficients against spin.
 class CoefficientTable {
  public:
-  struct Values { Mat2 K, C, M; };
+  using Values = CoefficientValues;
   enum class Between { linear, monotone_cubic };
   enum class Outside { undefined, hold };
   /// spin: rad/s, strictly increasing. Errors (E81): no rows, lengths that differ, spin not increasing, a value not finite.
@@ -36,18 +39,22 @@ class CoefficientTable {
   bool has_mass_ = false;
 };
 
-/// Mass: the table has M columns that are not all zero.
-template <bool Mass>
+class CoefficientGrid;   // coefficient_grid.hpp: against spin and frequency
+
+/// Mass: the table has M columns that are not all zero. Table: CoefficientTable, CoefficientGrid.
+template <bool Mass, class Table = CoefficientTable>
 struct TableBearingLaw {
   static constexpr bool inertia = Mass;
-  std::shared_ptr<const CoefficientTable> table;
+  std::shared_ptr<const Table> table;
 
   void force(const LateralMotion& m, Vector<4>& z) const;
   void tangent(const LateralMotion& m, Vector<4>& z, LateralTangent& t) const;
   void energy(const LateralMotion& m, system::Energy& e) const;
 };
 
-extern template struct TableBearingLaw<false>;
-extern template struct TableBearingLaw<true>;
+extern template struct TableBearingLaw<false, CoefficientTable>;
+extern template struct TableBearingLaw<true, CoefficientTable>;
+extern template struct TableBearingLaw<false, CoefficientGrid>;
+extern template struct TableBearingLaw<true, CoefficientGrid>;
 
 }  // namespace whirl::elements

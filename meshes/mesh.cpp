@@ -310,13 +310,14 @@ Index add_fixed(Mesh& mesh, const Vec3& position, NodeKind kind, std::string nam
 }
 
 void add_supports(const Model& m, Mesh& mesh) {
-  for (const auto& b : m.bearings) {
+  for (std::size_t k = 0; k < m.bearings.size(); ++k) {
+    const auto& b = m.bearings[k];
     BearingNodes x;
     x.shaft = mesh.place(b.at);
     x.other.node = -1;
     const bool rigid = std::holds_alternative<model::RigidSupport>(b.law);
     if (b.to) x.other = mesh.place(*b.to);
-    else if (b.pedestal && !rigid) {
+    else if ((b.pedestal || m.foundation_of(k) >= 0) && !rigid) {
       x.pedestal = add_fixed(mesh, mesh.station(b.at).position, NodeKind::pedestal, fmt::format("pedestal of {}", named("bearing", b)));
       x.other = {x.pedestal, 0.0};
     }

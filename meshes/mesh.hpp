@@ -77,7 +77,10 @@ struct Mesh {
 
   /// The station at a location of the model. Every location of the model is a station.
   const Station& station(const model::Location& at) const;
-  Place place(const model::Location& at) const { return station(at).at; }
+  /// On the shaft, or on the support of the bearing the location names.
+  Place place(const model::Location& at) const {
+    return at.housing >= 0 ? Place{bearings[static_cast<std::size_t>(at.housing)].pedestal, 0.0} : station(at).at;
+  }
   /// Outer radius of the shaft at a place of a line (the larger of both sides at a step), m; 0 where it has no diameter.
   double radius(const model::Model& m, std::size_t line, double s) const;
 };

@@ -19,7 +19,7 @@ class Counter {
         lu_(linear.system().pattern(), active_) {}
   Index count(double Omega) {
     const double w = options_.order * Omega;
-    const la::MCK& m = linear_.conservative_at(Omega);
+    const la::MCK& m = linear_.conservative_at(Omega, w);
     // exactly on an eigenvalue: look beside it
     if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) != la::Status::ok) return count(Omega * (1 + 1e-12));
     return lu_.negative_eigenvalues();
@@ -70,7 +70,7 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     const double middle = 0.5 * (k.a + k.b);
     const Index wanted = std::abs(k.nb - k.na);
     // The modes of the bracket's middle nearest to i n Omega.
-    const la::MCK& m = linear.conservative_at(middle);
+    const la::MCK& m = linear.conservative_at(middle, o.order * middle);
     la::ModeOptions lo;
     lo.count = wanted + 2;
     lo.shift = Complex(0, o.order * middle);
@@ -82,7 +82,7 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     for (Index j = 0; j < wanted; ++j) {
       // Newton's method on Omega: the frequency of the mode less n Omega, by secant from two neighbouring speeds.
       const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
-      WhirlMode mode = describe_mode(near[at(j)], linear.conservative_at(middle), linear);
+      WhirlMode mode = describe_mode(near[at(j)], linear.conservative_at(middle, o.order * middle), linear);
       double x0 = middle, f0 = gap(x0, mode);
       double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
       for (int it = 0; it < 40 && f1 != 0.0; ++it) {

@@ -262,6 +262,7 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
 
   const system::State begin = s;
   Outcome o = options_.load_steps > 1 ? Outcome::diverged : newton(Omega, s, out.iterations);
+  if (o == Outcome::singular) s = begin, o = close_gaps(Omega, s, out.iterations);
   if (o != Outcome::converged) {
     // Loads in steps from the unloaded state, doubled after an easy step, halved after a failure.
     const double full = running_.load();

@@ -57,6 +57,8 @@ class EquilibriumSolver {
   Outcome newton(double Omega, system::State& s, int& iterations);
   Outcome newton(double Omega, system::State& s, int& iterations, Step kind);
   std::string name_motion(Index singular) const;
+  /// Where supports have gaps nothing resists at first: each line is moved along the force on it until something does.
+  Outcome close_gaps(double Omega, system::State& s, int& iterations);
   double correction_size(const VecX& d) const;
   bool is_small(const VecX& d, const VecX& q) const;
 

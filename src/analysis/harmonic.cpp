@@ -1,5 +1,7 @@
 #include <analysis/harmonic.hpp>
 
+#include <system/frequency.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +22,7 @@ HarmonicSolver::HarmonicSolver(Linearizer& linear, Motion motion)
       solver_(la::make_direct_solver<Complex>(linear.system().pattern(), active_)) {}
 
 bool HarmonicSolver::prepare(double Omega, double w) {
-  const la::MCK& m = linear_.at(Omega);
+  const la::MCK& m = linear_.at(Omega, w);
   return solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok;
 }
 
@@ -46,6 +48,7 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
   for (std::size_t m = 0; m < what.size(); ++m) out[m].assign(what[m].width(), Complex(0, 0));
   const double eps = variation_step(a);
   if (eps == 0.0) return;
+  const system::FrequencyScope ask(w);
   std::vector<double> value;
   for (int part = 0; part < 2; ++part) {
     // the motion at phase 0 and a quarter period earlier: Re and Im of the amplitude
@@ -74,6 +77,7 @@ VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const Ve
   VecXc out = VecXc::Zero(a.size());
   const double eps = variation_step(a);
   VecX r(a.size());
+  const system::FrequencyScope ask(w);
   if (eps > 0)
     for (int part = 0; part < 2; ++part) {
       const Complex turn = part == 0 ? Complex(1, 0) : Complex(0, -1);

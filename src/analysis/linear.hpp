@@ -14,9 +14,12 @@ class Linearizer {
 
   /// Moves the equilibrium to Omega (rad/s, from the last one) and returns the matrices there; valid until the next call.
   /// Errors: as EquilibriumSolver::solve.
-  const la::MCK& at(double Omega);
+  const la::MCK& at(double Omega) { return at(Omega, nan); }
+  /// The same for motions of frequency w (rad/s), where supports answer differently to different frequencies (Running::
+  /// frequency_dependent); NaN: their synchronous values. The equilibrium is the same. Errors: E81, a table does not cover w.
+  const la::MCK& at(double Omega, double w);
   /// The part of them that keeps energy: M, skew part of C (gyroscopic), symmetric part of K. For "undamped" results.
-  const la::MCK& conservative_at(double Omega);
+  const la::MCK& conservative_at(double Omega, double w = nan);
   double Omega() const { return equilibrium_.Omega; }
   const Equilibrium& equilibrium() const { return equilibrium_; }
   /// Takes an equilibrium as found elsewhere.

@@ -23,6 +23,7 @@ struct Running {
   double time = 0;             ///< laws of time are read here
   bool mean = true;            ///< average over the revolution; false: rotor angles as they stand (statics)
   double top_speed = 0;        ///< highest |Omega| expected, rad/s (keeps the polynomials from being made twice); 0 = unknown
+  bool frequency_dependent = false;   ///< something in the system answers differently to motions of different frequency (system/frequency.hpp)
 };
 
 class RunningSystem {

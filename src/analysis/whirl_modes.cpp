@@ -145,25 +145,60 @@ WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
     : linear_(linear), options_(options), active_(select_motion(linear.system(), options.motion)),
       solver_(linear.system().pattern(), active_, la_options(options)) {}
 
-const la::MCK& WhirlSolver::matrices_at(double Omega) {
-  matrices_ = options_.damped ? &linear_.at(Omega) : &linear_.conservative_at(Omega);
+const la::MCK& WhirlSolver::matrices_at(double Omega, double w) {
+  matrices_ = options_.damped ? &linear_.at(Omega, w) : &linear_.conservative_at(Omega, w);
   return *matrices_;
 }
 
+std::optional<la::Mode> WhirlSolver::at_own_frequency(double Omega, la::Mode mode) {
+  // The root of g(w) = Im lambda(w) - w, lambda(w) followed in the matrices for w: by secant, which does not mind |d Im lambda/dw| > 1.
+  double w0 = nan, g0 = nan, w = std::abs(mode.lambda.imag());
+  for (int it = 0; it < 50; ++it) {
+    const auto found = solver_.follow(matrices_at(Omega, w), mode);
+    if (!found) return std::nullopt;
+    mode = *found;
+    const double frequency = std::abs(mode.lambda.imag()), g = frequency - w;
+    if (std::abs(g) <= 1e-11 * std::abs(mode.lambda) || w == w0) return mode;   // the eigenvalue itself is known to 1e-12
+    double next = std::isnan(g0) || g == g0 ? frequency : w - g * (w - w0) / (g - g0);
+    if (!(next > 0.5 * w && next < 2.0 * w)) next = frequency;
+    w0 = w, g0 = g, w = next;
+  }
+  return std::nullopt;
+}
+
 const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
-  const la::MCK& m = matrices_at(Omega);
+  const la::MCK& m = matrices_at(Omega, nan);
   modes_.clear();
-  for (const la::Mode& mode : solver_.solve(m)) modes_.push_back(describe_mode(mode, m, linear_));
+  if (!linear_.running().running().frequency_dependent) {
+    for (const la::Mode& mode : solver_.solve(m)) modes_.push_back(describe_mode(mode, m, linear_));
+    return modes_;
+  }
+  // Synchronous coefficients give the starts; each mode is then led to the coefficients at its own frequency. Two that meet are one.
+  const std::vector<la::Mode> starts = solver_.solve(m);
+  for (const la::Mode& start : starts) {
+    const bool whirls = start.lambda.imag() != 0.0;
+    const auto mode = whirls ? at_own_frequency(Omega, start) : std::optional(start);
+    if (!mode) continue;
+    const la::MCK& own = whirls ? *matrices_ : matrices_at(Omega, nan);
+    const bool known = std::any_of(modes_.begin(), modes_.end(), [&](const WhirlMode& k) {
+      return std::abs(k.lambda - mode->lambda) < 1e-8 * std::abs(k.lambda) && likeness(own, k.x, mode->x) > 0.999;
+    });
+    if (known) continue;
+    modes_.push_back(describe_mode(*mode, own, linear_));
+    modes_.back().from = start.from;
+  }
+  std::stable_sort(modes_.begin(), modes_.end(), [](const WhirlMode& a, const WhirlMode& b) { return a.frequency < b.frequency; });
   return modes_;
 }
 
 std::optional<WhirlMode> WhirlSolver::follow(double Omega, const WhirlMode& start) {
-  const la::MCK& m = matrices_at(Omega);
   la::Mode from;
   from.lambda = start.lambda, from.x = start.x;
-  const auto found = solver_.follow(m, from);
-  if (!found || likeness(m, found->x, start.x) < 0.3) return std::nullopt;   // a planar start and the circle it becomes are 0.5 alike
-  return describe_mode(*found, m, linear_);
+  std::optional<la::Mode> found;
+  if (linear_.running().running().frequency_dependent && start.frequency > 0) found = at_own_frequency(Omega, from);
+  else found = solver_.follow(matrices_at(Omega, nan), from);
+  if (!found || likeness(*matrices_, found->x, start.x) < 0.3) return std::nullopt;   // a planar start and the circle it becomes are 0.5 alike
+  return describe_mode(*found, *matrices_, linear_);
 }
 
 std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const ModesOptions& options) {

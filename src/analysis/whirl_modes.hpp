@@ -40,7 +40,9 @@ struct ModesOptions {
 /// Modes at one speed, least frequency first.
 std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const ModesOptions& options = {});
 
-/// Modes at a series of speeds; each call starts from what the last one found.
+/// Modes at a series of speeds; each call starts from what the last one found. Supports tabulated against frequency (Running::
+/// frequency_dependent): every whirling mode satisfies Q(lambda; Im lambda) x = 0, its coefficients being those at its own frequency, found
+/// from the modes with synchronous coefficients; overdamped roots keep the latter.
 class WhirlSolver {
  public:
   explicit WhirlSolver(Linearizer& linear, const ModesOptions& options = {});
@@ -54,7 +56,9 @@ class WhirlSolver {
   la::ModeSolver::Work work() const { return solver_.work(); }
 
  private:
-  const la::MCK& matrices_at(double Omega);
+  const la::MCK& matrices_at(double Omega, double w);
+  /// Where supports answer by frequency: the mode in the matrices for its own frequency, from a mode in others; nullopt: lost.
+  std::optional<la::Mode> at_own_frequency(double Omega, la::Mode mode);
   Linearizer& linear_;
   ModesOptions options_;
   std::vector<unsigned char> active_;

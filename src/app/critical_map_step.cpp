@@ -41,8 +41,17 @@ void add_own_curves(const model::Bearing& b, double max_speed, std::vector<io::C
   } else if (const auto* table = std::get_if<model::TableBearing>(&b.law)) {
     for (const auto& [entry, name] : {std::pair{0u, " kyy"}, std::pair{3u, " kzz"}}) {
       io::Curve c{b.name + name, {}, {}};
-      for (std::size_t i = 0; i < table->speed.size(); ++i)
-        if (table->speed[i] > 0 && table->K[i][entry] > 0) c.x.push_back(table->K[i][entry]), c.y.push_back(table->speed[i]);
+      const auto& f = table->frequency;
+      for (std::size_t i = 0; i < table->speed.size(); ++i) {
+        std::size_t row = i;
+        if (!f.empty()) {   // of a grid the synchronous values: the frequency nearest to the speed
+          std::size_t j = 0;
+          for (std::size_t k = 1; k < f.size(); ++k)
+            if (std::abs(f[k] - table->speed[i]) < std::abs(f[j] - table->speed[i])) j = k;
+          row = i * f.size() + j;
+        }
+        if (table->speed[i] > 0 && table->K[row][entry] > 0) c.x.push_back(table->K[row][entry]), c.y.push_back(table->speed[i]);
+      }
       if (!c.x.empty()) out.push_back(std::move(c));
     }
   }

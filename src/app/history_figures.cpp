@@ -87,8 +87,9 @@ void add_history_figures(const Job& job, const model::Step& step, const std::vec
     const double scale = all[static_cast<std::size_t>(speed)].scale;
     for (const auto& r : rows) rpm.push_back(r[1 + start[static_cast<std::size_t>(speed)]] * scale);
     std::vector<io::Axes> axes{time_axes("spin", "rpm")};
+    const bool several = std::any_of(all.begin(), all.end(), [](const Measurement& m) { return m.name.rfind("speed ", 0) == 0; });   // "speed" is one of them
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (all[i].name.rfind("speed", 0) == 0) axes[0].series.push_back(series(all[i].name, src.column(i, 0, all[i].scale)));
+      if (all[i].name.rfind("speed", 0) == 0 && !(all[i].name == "speed" && several)) axes[0].series.push_back(series(all[i].name, src.column(i, 0, all[i].scale)));
     add(figure(step, "speed", "Spin", std::move(axes)));
   }
   const bool speed_varies = !rpm.empty() && *std::max_element(rpm.begin(), rpm.end()) - *std::min_element(rpm.begin(), rpm.end()) >
@@ -124,7 +125,8 @@ void add_history_figures(const Job& job, const model::Step& step, const std::vec
           a.y = io::Axis(fmt::format("orbit radius about the place at the start, {}", convention), unit.name);
           a.y.include_zero = true;
           // up and down apart: they differ by the beat of the passage
-          const std::size_t top = static_cast<std::size_t>(std::max_element(rpm.begin(), rpm.end()) - rpm.begin());
+          std::size_t top = static_cast<std::size_t>(std::max_element(rpm.begin(), rpm.end()) - rpm.begin());
+          if (rpm[top] - *std::min_element(rpm.begin() + static_cast<std::ptrdiff_t>(top), rpm.end()) < 1e-3 * rpm[top]) top = rpm.size() - 1;   // it stays up
           io::Series up, down;
           up.label = top + 1 < rows.size() ? "speed rising" : "", down.label = "speed falling";
           up.style.width = down.style.width = 1.0;
@@ -194,6 +196,7 @@ void add_history_figures(const Job& job, const model::Step& step, const std::vec
     if (!ends_with(m.name, " force") && !ends_with(m.name, " torque")) continue;
     double size = 0.0;
     for (std::size_t c = 0; c < m.width(); ++c) size = std::max(size, largest(src.column(i, c).y));
+    if (size == 0.0) continue;   // a guide that nothing loads: the CSV says so
     const io::DisplayUnit unit = io::unit_for(m.unit, size);
     io::Axes a = time_axes(ends_with(m.name, " force") ? "force on the shaft" : "torque on the shaft", unit.name);
     for (std::size_t c = 0; c < m.width(); ++c) {

@@ -1,4 +1,5 @@
 #include <app/job.hpp>
+#include <app/support_diagnosis.hpp>
 
 #include <analysis/equilibrium.hpp>
 #include <core/rotation.hpp>
@@ -77,6 +78,7 @@ analysis::Running Job::running_of(const StepState& start) const {
     running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : model.shafts[l].rotating ? model.shafts[l].speed_ratio : 0.0);
   }
   running.ratio.resize(static_cast<std::size_t>(system().lines()), 0.0);
+  running.mean = start.speed != 0.0;   // at rest every part stands where it stands: no mean over a revolution that nobody makes
   return running;
 }
 
@@ -84,7 +86,12 @@ analysis::Equilibrium Job::settle(system::SystemProblem&, StepState& start, anal
   analysis::RunningSystem turning(system(), running_of(start));
   options.chart_change = model.chart_change;
   analysis::EquilibriumSolver solver(turning, options);
-  analysis::Equilibrium found = solver.solve(start.speed, &start.state);
+  analysis::Equilibrium found;
+  try {
+    found = solver.solve(start.speed, &start.state);
+  } catch (const Error& e) {
+    throw explain_no_equilibrium(*this, turning, start, e);
+  }
   start.state = found.state;
   start.state.a.setZero();
   return found;

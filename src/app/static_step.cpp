@@ -3,6 +3,8 @@
 #include <analysis/load_path.hpp>
 #include <app/job.hpp>
 #include <app/static_results.hpp>
+#include <app/support_coefficients.hpp>
+#include <app/support_diagnosis.hpp>
 
 #include <fmt/format.h>
 
@@ -77,6 +79,7 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
     found = std::move(r.last);
   } else {
     found = job.settle(problem, s, options);
+    warn_of_closed_contacts(job, step, s);
   }
   s.state = found.state;
   v["Newton iterations"] = found.iterations, v["load steps"] = found.load_steps;
@@ -95,6 +98,9 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
   job.folder.write_table(step.name + "_supports.csv", results.supports);
   job.folder.write_table(step.name + "_sections.csv", results.sections);
   if (path) job.folder.write_table(step.name + "_path.csv", path->table());
+  io::Table coefficients = support_coefficients(job, s);
+  const bool linearised = !coefficients.rows.empty();
+  if (linearised) job.folder.write_table(step.name + "_coefficients.csv", coefficients);
   v["run time [s]"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall0).count();
   if (job.model.output.report) {
     io::ReportSection section;
@@ -106,6 +112,7 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
     for (io::Figure& f : results.figures) section.figures.push_back(std::move(f));
     section.tables.push_back(std::move(results.supports));
     section.tables.push_back(std::move(results.extremes));
+    if (linearised) section.tables.push_back(std::move(coefficients)), section.files.emplace_back("bearing coefficients", step.name + "_coefficients.csv");
     for (const char* what : {"deflection", "supports", "sections"}) section.files.emplace_back(what, step.name + "_" + what + ".csv");
     if (path) section.files.emplace_back("load path", step.name + "_path.csv");
     job.report.sections.push_back(std::move(section));

@@ -9,6 +9,7 @@
 #include <app/keyphasor_output.hpp>
 #include <app/plot_buffer.hpp>
 #include <app/spectra_output.hpp>
+#include <app/support_diagnosis.hpp>
 #include <app/transient_outputs.hpp>
 #include <core/rotation.hpp>
 #include <io/plots.hpp>
@@ -76,6 +77,7 @@ StepState transient_start(Job& job, system::SystemProblem& problem, const model:
     const PhaseTimer timer(job, "equilibrium");
     job.settle(problem, start);
   }
+  warn_of_closed_contacts(job, step, start);
   return start;
 }
 

@@ -27,6 +27,8 @@ void add_bodies(Assembly& a);
 void add_unbalances(Assembly& a);
 /// Bearings, rigid supports, pedestals.
 void add_supports(Assembly& a);
+/// Reduced foundations under bearings.
+void add_foundations(Assembly& a);
 /// Loads and drives, and what each line spins with.
 void add_loads(Assembly& a);
 /// What turning of the base adds to every inertia there is by now.

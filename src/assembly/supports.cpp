@@ -1,6 +1,7 @@
 // Bearings, supports and pedestals. A bearing acts between its shaft node and the other side: ground, pedestal, or a second
 // station. Rigid supports hold unknowns of the shaft node itself; no penalty stiffness anywhere.
 #include <assembly/support_parts.hpp>
+#include <elements/coefficient_grid.hpp>
 #include <elements/linear_bearing.hpp>
 #include <elements/point_mass.hpp>
 #include <elements/spring_block.hpp>
@@ -57,16 +58,26 @@ void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
 void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law) {
   using Table = elements::CoefficientTable;
   const auto matrix = [](const std::array<double, 4>& c) { return (Mat2() << c[0], c[1], c[2], c[3]).finished(); };
-  std::vector<Table::Values> rows(law.speed.size());
+  std::vector<Table::Values> rows(law.K.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i].K = i < law.K.size() ? matrix(law.K[i]) : Mat2::Zero();
     rows[i].C = i < law.C.size() ? matrix(law.C[i]) : Mat2::Zero();
     rows[i].M = i < law.M.size() ? matrix(law.M[i]) : Mat2::Zero();
   }
+  const auto between = law.monotone_cubic ? Table::Between::monotone_cubic : Table::Between::linear;
+  const auto outside = law.extrapolate_hold ? Table::Outside::hold : Table::Outside::undefined;
+  if (!law.frequency.empty()) {
+    using Grid = elements::CoefficientGrid;
+    std::shared_ptr<const Grid> grid;
+    if (!guarded(a, b, [&] { grid = std::make_shared<Grid>(law.speed, law.frequency, rows, between, outside); })) return;
+    a.built.frequency_dependent = true;
+    if (grid->has_mass()) add_lateral(a, b, n, elements::TableBearingLaw<true, Grid>{grid}, "bearings tabulated against frequency");
+    else add_lateral(a, b, n, elements::TableBearingLaw<false, Grid>{grid}, "bearings tabulated against frequency");
+    return;
+  }
   std::shared_ptr<const Table> table;
   const bool made = guarded(a, b, [&] {
-    table = std::make_shared<Table>(law.speed, std::move(rows), law.monotone_cubic ? Table::Between::monotone_cubic : Table::Between::linear,
-                                    law.extrapolate_hold ? Table::Outside::hold : Table::Outside::undefined);
+    table = std::make_shared<Table>(law.speed, std::move(rows), between, outside);
   });
   if (!made) return;
   if (table->has_mass()) add_lateral(a, b, n, elements::TableBearingLaw<true>{table}, "tabulated bearings");
@@ -192,7 +203,7 @@ void add_supports(Assembly& a) {
           else add_law(a, b, n, law);
         },
         b.law);
-    if (n.pedestal >= 0) add_pedestal(a, b, n);
+    if (n.pedestal >= 0 && b.pedestal) add_pedestal(a, b, n);
   }
   if (a.translational > 0)
     a.built.simpler.push_back(fmt::format("moments and tilts of {} linear bearing{}: without coefficients", a.translational, a.translational > 1 ? "s" : ""));

@@ -244,6 +244,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        "The model is computed as asked, but the formulas behind it are known to be inaccurate for these dimensions. The message says what fits "
        "better.",
        ""},
+      {"W04", "a contact is closed at rest",
+       "A rub, stop or catcher bearing touches already in the state a step starts from, because the weight or an initial displacement uses up its "
+       "gap. That may be meant (a shaft resting in its catcher bearing); else the gap is too small or the support too soft.",
+       ""},
   };
   return t;
 }

@@ -14,12 +14,14 @@
 //   }
 #include <core/units.hpp>
 #include <deck/bearing_kinds.hpp>
+#include <cmath>
 #include <fmt/format.h>
 
 namespace whirl::deck {
 namespace {
 
 constexpr const char* place = "place on a shaft: \"section:mid\", \"section:end - 20 mm\", \"1.14 m\"";
+std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
 constexpr const char* axis_names[3] = {"x", "y", "z"};
 
 }  // namespace
@@ -96,7 +98,7 @@ void describe(Visitor& v, model::LinearBearing& b) {
 namespace {
 
 struct TableRow {
-  double speed = 0;
+  double speed = 0, frequency = nan;
   std::array<double, 4> K{}, C{}, M{};
 };
 
@@ -105,6 +107,8 @@ void describe(Visitor& v, TableRow& r) {
   static constexpr const char* what[3] = {"stiffness", "damping", "mass"};
   static constexpr const char* unit[3] = {"N/m", "N.s/m", "kg"};
   v.quantity(required("speed"), r.speed, "rpm", any, "speed of the shaft");
+  v.quantity(Key("frequency"), r.frequency, "rad/s", not_negative,
+             "frequency of the motion (Hz, rpm or rad/s): the rows are then a grid, speed by speed, with the same frequencies for every speed");
   std::array<double, 4>* values[3] = {&r.K, &r.C, &r.M};
   for (std::size_t p = 0; p < 3; ++p)
     for (std::size_t i = 0; i < 4; ++i) {
@@ -117,27 +121,53 @@ void describe(Visitor& v, TableRow& r) {
 
 void describe(Visitor& v, model::TableBearing& b) {
   static constexpr Option interpolations[] = {{"pchip", "monotone cubic"}, {"linear", "straight lines"}};
-  static constexpr Option ends[] = {{"error", "a speed outside the table is a mistake"}, {"hold", "the first and last rows hold outside"}};
+  static constexpr Option ends[] = {{"error", "a speed or frequency outside the table is a mistake"}, {"hold", "the coefficients at the edge hold outside"}};
   int interpolation = 0, outside = 0;
   v.option("interpolation", interpolation, interpolations, "between the rows");
   v.option("extrapolate", outside, ends, "outside the table");
   b.monotone_cubic = interpolation == 0;
   b.extrapolate_hold = outside == 1;
   bool mass = false;
-  double before = -infinity;
+  int rows = 0;
+  std::size_t column = 0;   // place of the next row in its speed's frequencies
   const auto add = [&](Visitor& w) {
     TableRow r;
     describe(w, r);
-    if (w.clean() && !(r.speed > before))
-      w.error("E21", "speed", fmt::format("the speeds do not increase: {} after {}", units::display(r.speed, "rpm"), units::display(before, "rpm")));
-    before = r.speed;
-    b.speed.push_back(r.speed);
+    if (!w.clean()) return;
+    const bool by_frequency = !std::isnan(r.frequency);
+    if (rows++ > 0 && by_frequency != !b.frequency.empty()) {
+      w.error("E05", "frequency", "rows with and without a frequency");
+      return;
+    }
+    const bool same_speed = by_frequency && !b.speed.empty() && r.speed == b.speed.back();
+    if (!same_speed) {
+      if (!b.speed.empty() && !(r.speed > b.speed.back()))
+        w.error("E21", "speed", fmt::format("the speeds do not increase: {} after {}", units::display(r.speed, "rpm"), units::display(b.speed.back(), "rpm")));
+      if (column < b.frequency.size() && !b.speed.empty())
+        w.error("E26", "frequency", fmt::format("{} has {} frequencies, the first speed has {}", units::display(b.speed.back(), "rpm"), column, b.frequency.size()), "every speed needs the same frequencies");
+      b.speed.push_back(r.speed);
+      column = 0;
+    }
+    if (by_frequency) {
+      if (b.speed.size() == 1) {
+        if (!b.frequency.empty() && !(r.frequency > b.frequency.back()))
+          w.error("E21", "frequency", fmt::format("the frequencies do not increase: {} after {}", hertz(r.frequency), hertz(b.frequency.back())));
+        b.frequency.push_back(r.frequency);
+      } else if (column >= b.frequency.size() || std::abs(b.frequency[column] - r.frequency) > 1e-9 * r.frequency) {
+        w.error("E26", "frequency", column >= b.frequency.size() ? fmt::format("{} has more frequencies than the first speed", units::display(r.speed, "rpm"))
+                                                                : fmt::format("the frequencies differ from those of the first speed: {} for {}", hertz(r.frequency), hertz(b.frequency[column])),
+                "every speed needs the same frequencies, in the same order");
+      }
+      ++column;
+    }
     b.K.push_back(r.K);
     b.C.push_back(r.C);
     b.M.push_back(r.M);
     for (double m : r.M) mass = mass || m != 0;
   };
-  v.rows({add, [](Visitor& w) { TableRow r; describe(w, r); }}, true, "coefficients against speed, one row per speed");
+  v.rows({add, [](Visitor& w) { TableRow r; describe(w, r); }}, true, "coefficients against speed (and frequency), one row per speed (and frequency)");
+  if (v.clean() && b.K.size() != b.speed.size() * std::max<std::size_t>(b.frequency.size(), 1))
+    v.error("E26", nullptr, fmt::format("the table has {} rows for {} speeds and {} frequencies", b.K.size(), b.speed.size(), b.frequency.size()), "every speed needs the same frequencies");
   if (!mass) b.M.clear();
 }
 
@@ -177,7 +207,7 @@ void describe(Visitor& v, model::Bearing& b) {
   const Alternative kinds[] = {
       Visitor::alternative<model::LinearBearing>("linear", b.law, "constant stiffness, damping and mass, up to 6x6, fixed axes; force on the shaft = preload - K (q - setpoint) - C q'"),
       Visitor::alternative<model::SpringBlock>("spring_block", b.law, "isotropic spring at a point and isotropic spring against tilt"),
-      Visitor::alternative<model::TableBearing>("table", b.law, "lateral stiffness and damping tabulated against speed"),
+      Visitor::alternative<model::TableBearing>("table", b.law, "lateral stiffness, damping and mass tabulated against speed, and where given against the frequency of the motion: modes take them at their own frequency, responses at that of the excitation, statics and transients at that of the spin (synchronous, held at the table's ends)"),
       Visitor::alternative<model::RigidSupport>("rigid", b.law, "directions held exactly"),
       spring("nonlinear_spring", b.law, false, "spring and damper along one direction: polynomial, table, clearance, one-sided"),
       spring("nonlinear_angular_spring", b.law, true, "the same for a tilt or the twist"),

@@ -125,6 +125,15 @@ Located locate(const model::Model& m, std::string_view given) {
     if (word == "start") s = best->start;
     else if (word == "mid") s = 0.5 * (best->start + best->end);
     else if (word == "end") s = best->end;
+    else if (word == "support" && best->rank == 2) {
+      const auto bearing = std::find_if(m.bearings.begin(), m.bearings.end(), [&](const auto& b) { return b.name == best->name; });
+      const std::size_t k = static_cast<std::size_t>(bearing - m.bearings.begin());
+      if (bearing == m.bearings.end() || std::holds_alternative<model::RigidSupport>(bearing->law) || (!bearing->pedestal && m.foundation_of(k) < 0))
+        return fail("E18", fmt::format("'{}' has no support that moves", best->name), "give the bearing support = { mass = ..., kyy = ..., kzz = ... }", static_cast<std::size_t>(word.data() - given.data()), word.size());
+      Located r = check(m, best->shaft, s, text);
+      if (r.at) r.at->housing = static_cast<int>(k);
+      return r;
+    }
     else {
       const auto near = nearest(word, {"start", "mid", "end"});
       return fail("E18", fmt::format("':{}' is not a place in a section", word), near.empty() ? "it is :start, :mid or :end" : fmt::format("did you mean ':{}'? It is :start, :mid or :end", near.front()),

@@ -46,6 +46,7 @@ void describe(Visitor& v, model::Model& m) {
   v.list(required("shaft"), m.shafts, "a shaft line: sections from left to right along +x");
   v.list(optional("disk", "none"), m.disks, "a rigid disk or body fixed to a shaft, by mass and inertia or by its shape");
   v.list(optional("bearing", "none"), m.bearings, "whatever connects a shaft with the ground or another shaft");
+  v.list(optional("foundation", "none"), m.foundations, "a foundation or casing as reduced stiffness, damping and mass matrices, under one or more bearings");
   v.list(optional("unbalance", "none"), m.unbalances, "a mass times eccentricity that turns with the shaft");
   v.list(optional("load", "none"), m.loads, "forces and moments at a station");
   v.list(optional("drive", "none"), m.drives, "what turns a shaft: a prescribed speed or angle, or a torque");

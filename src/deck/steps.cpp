@@ -113,10 +113,10 @@ void describe_damping(Visitor& v, bool& damped) {
 }  // namespace
 
 void describe(Visitor& v, model::FrequencyRange& r) {
-  v.quantity(optional("start", "\"0 Hz\""), r.start, "Hz", not_negative, "first frequency");
-  const bool stop = v.quantity(optional("stop", "values are given"), r.stop, "Hz", positive, "last frequency");
+  v.quantity(optional("start", "\"0 Hz\""), r.start, "rad/s", not_negative, "first frequency (Hz, rpm or rad/s)");
+  const bool stop = v.quantity(optional("stop", "values are given"), r.stop, "rad/s", positive, "last frequency (Hz, rpm or rad/s)");
   const bool points = v.integer(optional("points", "values are given"), r.points, between(1, 1000000), "number of frequencies, equally spaced");
-  const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "Hz", not_negative, -1, "the frequencies one by one");
+  const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "rad/s", not_negative, -1, "the frequencies one by one (Hz, rpm or rad/s)");
   if (!v.clean()) return;
   if (values && (stop || points || v.given("start"))) v.error("E26", "values", "the frequencies are given by 'values' and by 'start', 'stop', 'points'", "keep one of the two");
   else if (!values && (!stop || !points)) v.error("E05", nullptr, fmt::format("the frequencies lack '{}'", stop ? "points" : "stop"), "frequency = { start = \"0 Hz\", stop = \"200 Hz\", points = 201 }");
@@ -129,7 +129,7 @@ void describe(Visitor& v, model::FrequencyRange& r) {
 void describe(Visitor& v, model::ModalStep& s) {
   v.quantity("speed", s.speed, "rpm", any, "speed of the rotor");
   v.integer("modes", s.modes, between(1, 10000), "number of modes, from the lowest frequency");
-  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "Hz", positive, "modes up to this frequency only");
+  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "rad/s", positive, "modes up to this frequency only (Hz, rpm or rad/s)");
   describe_damping(v, s.damped);
   describe_motion(v, s.motion);
   v.integer("shapes", s.shapes, between(0, 1000), "number of mode shapes drawn, and animated where [[output.vtk]] asks for this step");
@@ -139,7 +139,7 @@ void describe(Visitor& v, model::CampbellStep& s) {
   v.table(required("speed"), s.speed, "the speeds");
   v.integer("modes", s.modes, between(1, 10000), "number of modes followed");
   v.quantities("orders", s.orders, "", positive, -1, orders_doc);
-  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "Hz", positive, "modes up to this frequency only");
+  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "rad/s", positive, "modes up to this frequency only (Hz, rpm or rad/s)");
   describe_damping(v, s.damped);
   describe_motion(v, s.motion);
   check_orders(v, s.orders);
@@ -203,7 +203,7 @@ void describe(Visitor& v, model::HarmonicStep& s) {
   v.number(optional("order", "1"), s.order, positive, "excitation frequency relative to the speed");
   v.flag("speed_squared", s.speed_squared, "amplitudes grow with the square of the speed; they are given for the highest speed");
   describe_motion(v, s.motion);
-  v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "Hz", positive, -1, "excitation frequencies at which the deflected rotor is drawn");
+  v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "rad/s", positive, -1, "excitation frequencies at which the deflected rotor is drawn");
   if (!v.clean()) return;
   if (s.forces.empty()) v.error("E05", nullptr, "a harmonic response needs at least one force", "[[step.force]] with at, force or moment");
   else if (s.frequency.has_value() == s.speeds.has_value())

@@ -134,11 +134,48 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
   return {};   // critical speeds look inside the table only; a free spin is not known beforehand
 }
 
+std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
+
+/// Frequencies of excitation of a step, rad/s: least and largest, or nothing.
+std::optional<std::pair<double, double>> frequencies_of(const model::Model& m, const model::Step& s) {
+  const auto speeds = [](const model::SpeedRange& r, double order) {
+    const double a = order * std::abs(r.values.empty() ? r.start : r.values.front()), b = order * std::abs(r.values.empty() ? r.stop : r.values.back());
+    return std::pair(std::min(a, b), std::max(a, b));
+  };
+  if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) {
+    std::pair<double, double> all{infinity, 0.0};   // of all shafts that turn
+    for (const auto& shaft : m.shafts) {
+      if (!shaft.rotating || shaft.speed_ratio == 0) continue;
+      const auto own = speeds(x->speed, std::abs(shaft.speed_ratio));
+      if (own.first > 0 || own.second > 0) all = {std::min(all.first, own.first), std::max(all.second, own.second)};
+    }
+    return all.second > 0 ? std::optional(all) : std::nullopt;
+  }
+  if (const auto* x = std::get_if<model::HarmonicStep>(&s.law)) {
+    if (x->speeds) return speeds(*x->speeds, x->order);
+    if (!x->frequency) return std::nullopt;
+    const auto& f = *x->frequency;
+    return f.values.empty() ? std::pair(f.start, f.stop) : std::pair(f.values.front(), f.values.back());
+  }
+  return std::nullopt;
+}
+
 void check_tables(const model::Model& m, Problems& out) {
   for (const auto& b : m.bearings) {
     const auto* table = std::get_if<model::TableBearing>(&b.law);
-    if (!table || table->extrapolate_hold || table->speed.empty()) continue;
+    if (!table || table->speed.empty()) continue;
+    for (const auto& s : m.steps)
+      if (!table->frequency.empty() && std::holds_alternative<model::TransientStep>(s.law))
+        add(out, "W03", fmt::format("the table of bearing '{}' depends on frequency: step '{}' is a motion in time and takes its values at the frequency of the spin", b.name, s.name),
+            "true for synchronous motion; a motion at another frequency (subsynchronous whirl) sees other coefficients", b.where, Diagnostic::Severity::warning);
+    if (table->extrapolate_hold) continue;
     for (const auto& s : m.steps) {
+      if (const auto w = frequencies_of(m, s); w && !table->frequency.empty()) {
+        const double least = table->frequency.front(), most = table->frequency.back();
+        if (w->first < least - 1e-9 * most || w->second > most + 1e-9 * most)
+          add(out, "E22", fmt::format("the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}", b.name, hertz(least), hertz(most), s.name, hertz(w->first), hertz(w->second)),
+              "extend the table, narrow the step, or write extrapolate = \"hold\"", b.where);
+      }
       const auto range = speeds_of(m, s, b.at.shaft);
       if (!range) continue;
       // rounding of rpm to rad/s and back
@@ -199,6 +236,19 @@ void check_gears(const model::Model& m, Problems& out) {
   }
 }
 
+void check_places(const model::Model& m, Problems& out) {
+  const auto on_shaft = [&](const model::Location& at, const char* what) {
+    if (at.housing >= 0) add(out, "E26", fmt::format("a {} cannot stand on the support of a bearing", what), "only probes and loads can", at.where);
+  };
+  for (const auto& d : m.disks) on_shaft(d.at, "disk");
+  for (const auto& u : m.unbalances) on_shaft(u.at, "unbalance");
+  for (const auto& d : m.drives) on_shaft(d.at, "drive");
+  for (const auto& b : m.bearings) {
+    on_shaft(b.at, "bearing");
+    if (b.to) on_shaft(*b.to, "bearing");
+  }
+}
+
 void check_effects(const model::Model& m, Problems& out) {
   const bool transient = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) { return std::holds_alternative<model::TransientStep>(s.law); });
   const auto warn = [&](std::string what, const Where& w) {
@@ -236,6 +286,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_tables(m, out);
   check_drives(m, out);
   check_gears(m, out);
+  check_places(m, out);
   check_effects(m, out);
   return out;
 }

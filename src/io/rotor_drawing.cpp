@@ -34,7 +34,13 @@ std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const m
     for (const auto& k : scene.lines[l].disks) d.disks.push_back({s_of(k.at), k.outer, k.inner, k.width, k.name});
     for (const auto& b : scene.supports)
       for (const auto* p : {&b.at, b.to_node ? &b.to : nullptr})
-        if (p && on_line(*p)) d.bearings.push_back({s_of(*p), radius(s_of(*p)), b.name});
+        if (p && on_line(*p)) {
+          // several at one place are one mark with all their names
+          const double at = s_of(*p);
+          const auto same = std::find_if(d.bearings.begin(), d.bearings.end(), [at](const auto& x) { return std::abs(x.s - at) < 1e-9; });
+          if (same != d.bearings.end()) same->name += ", " + b.name;
+          else d.bearings.push_back({at, radius(at), b.name});
+        }
     for (const auto& p : model.probes) {
       if (p.at.shaft != l) continue;
       double r = radius(p.at.s);   // a probe at a disk is drawn at its rim

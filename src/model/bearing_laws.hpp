@@ -17,10 +17,12 @@ struct LinearBearing {
   Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
 };
 
-/// K, C (and M) tabulated against speed: rows of full 2x2 lateral blocks in order yy, yz, zy, zz.
+/// K, C (and M) tabulated against speed, and where given against the frequency of the motion: rows of full 2x2 lateral blocks in
+/// order yy, yz, zy, zz. With frequencies the rows are a grid, speed by speed: row i f + j belongs to speed i, frequency j.
 struct TableBearing {
   std::vector<double> speed;                      ///< rad/s, increasing
-  std::vector<std::array<double, 4>> K, C, M;     ///< same length as speed; M may be empty
+  std::vector<double> frequency;                  ///< rad/s, increasing; empty: against speed alone
+  std::vector<std::array<double, 4>> K, C, M;     ///< as many as speeds (times frequencies); M may be empty
   bool monotone_cubic = true;                     ///< else linear
   bool extrapolate_hold = false;                  ///< else outside the table is an error
   std::string file;

@@ -80,7 +80,8 @@ struct Location {
   std::size_t shaft = 0;
   double s = 0;        ///< m
   std::string text;    ///< as written in the deck ("body2:mid")
-  Where where;
+  Where where{};
+  int housing = -1;    ///< bearing (index) whose support is meant instead of the shaft ("DE:support")
 };
 
 // ---------------------------------------------------------------- what sits on a shaft
@@ -123,6 +124,13 @@ struct Bearing : Entity {
   std::optional<Location> to;          ///< second shaft station (intershaft bearing or coupling); absent = ground
   BearingLaw law;
   std::optional<Pedestal> pedestal;
+};
+
+/// A foundation or casing as reduced matrices: its coordinates are support points of bearings and internal ones.
+struct Foundation : Entity {
+  struct Coordinate { std::string name; int bearing = -1; int direction = 0; };   ///< bearing -1: internal; direction 0 x, 1 y, 2 z
+  std::vector<Coordinate> coordinates;
+  MatX K, C, M;                        ///< symmetric, one row and column a coordinate
 };
 
 // ---------------------------------------------------------------- loads and drives
@@ -369,6 +377,14 @@ struct Model {
   std::vector<Unbalance> unbalances;
   std::vector<InitialMotion> initial;
   std::vector<Bearing> bearings;
+  std::vector<Foundation> foundations;
+  /// Foundation a bearing stands on, or -1.
+  int foundation_of(std::size_t bearing) const {
+    for (std::size_t f = 0; f < foundations.size(); ++f)
+      for (const auto& c : foundations[f].coordinates)
+        if (c.bearing == static_cast<int>(bearing)) return static_cast<int>(f);
+    return -1;
+  }
   std::vector<PointLoad> loads;
   std::vector<Drive> drives;
   BaseMotion base;

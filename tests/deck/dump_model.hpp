@@ -34,7 +34,7 @@ class ModelDump {
     }
     each("breaks", l->breakpoints());
   }
-  void at(const char* key, const model::Location& l) { out_ += fmt::format("{}=({} {:a} '{}') ", key, l.shaft, l.s, l.text); }
+  void at(const char* key, const model::Location& l) { out_ += fmt::format("{}=({} {:a} '{}' {}) ", key, l.shaft, l.s, l.text, l.housing); }
   void head(const char* kind, const model::Entity& e) { out_ += fmt::format("\n{} '{}' ", kind, e.name); }
 
   void shaft(const model::Shaft& s) {
@@ -171,6 +171,11 @@ class ModelDump {
     for (const auto& b : m.bearings) bearing(b);
     for (const auto& l : m.base.acceleration) law("base", l);
     if (m.base.turn) { matrix("axis", m.base.turn->axis); matrix("about", m.base.turn->about); law("rate", m.base.turn->rate); }
+    for (const auto& f : m.foundations) {
+      head("foundation", f);
+      for (const auto& c : f.coordinates) out_ += fmt::format("('{}' {} {}) ", c.name, c.bearing, c.direction);
+      matrix("K", f.K); matrix("C", f.C); matrix("M", f.M);
+    }
     for (const auto& l : m.loads) { head("load", l); at("at", l.at); put("frame", double(l.frame)); matrix("force", l.force); matrix("moment", l.moment); law("factor", l.factor); }
     for (const auto& d : m.drives) drive(d);
     for (const auto& p : m.probes) { head("probe", p); at("at", p.at); each("angles", p.angles); }

@@ -33,6 +33,54 @@ std::vector<fs::path> good_decks() {
 
 }  // namespace
 
+// Hz, rpm and rad/s say the same thing wherever a frequency is asked for; the model keeps rad/s.
+TEST(Reader, FrequenciesAreAngular) {
+  const char* text = R"(format = 1
+[shaft]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 300, 40]]
+[[bearing]]
+name = "by frequency"
+at = "a:start"
+type = "table"
+extrapolate = "hold"
+columns = ["speed[rpm]", "frequency[Hz]", "kyy[N/m]", "kzz[N/m]"]
+rows = [[0, 10, 1e7, 1e7], [0, 20, 2e7, 2e7]]
+[[bearing]]
+name = "other"
+at = "a:end"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "1e8 N/m"
+kzz = "1e8 N/m"
+[[step]]
+name = "modes"
+type = "modal"
+max_frequency = "300 Hz"
+[[step]]
+name = "shaken"
+type = "harmonic_response"
+frequency = { start = "10 Hz", stop = "12000 rpm", points = 5 }
+shapes_at = ["50 Hz"]
+[[step.force]]
+at = "a:end"
+force = ["0 N", "1 N", "0 N"]
+)";
+  const auto d = read(text);
+  ASSERT_TRUE(d.ok()) << d.report();
+  const auto& table = std::get<model::TableBearing>(d.model.bearings[0].law);
+  ASSERT_EQ(table.frequency.size(), 2u);
+  EXPECT_DOUBLE_EQ(table.frequency[0], 10 * two_pi);
+  EXPECT_DOUBLE_EQ(table.frequency[1], 20 * two_pi);
+  EXPECT_EQ(table.speed.size(), 1u);
+  EXPECT_DOUBLE_EQ(std::get<model::ModalStep>(d.model.steps[0].law).max_frequency, 300 * two_pi);
+  const auto& shaken = std::get<model::HarmonicStep>(d.model.steps[1].law);
+  EXPECT_DOUBLE_EQ(shaken.frequency->start, 10 * two_pi);
+  EXPECT_DOUBLE_EQ(shaken.frequency->stop, 200 * two_pi);
+  EXPECT_DOUBLE_EQ(shaken.shapes_at.at(0), 50 * two_pi);
+}
+
 TEST(Reader, PaperRotor) {
   const auto d = deck::read_deck("../../examples/01_paper_rotor/deck.toml");
   ASSERT_TRUE(d.ok()) << d.report();

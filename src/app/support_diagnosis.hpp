@@ -1,0 +1,15 @@
+// What supports with a gap say about an equilibrium: how far a film was pressed when none was found, contacts that are closed at rest.
+#pragma once
+#include <app/job.hpp>
+
+namespace whirl::analysis { class RunningSystem; }
+
+namespace whirl::app {
+
+/// `failed` with what the films say at the largest load that still has an equilibrium: load, capacity, eccentricity reached.
+Error explain_no_equilibrium(const Job& job, const analysis::RunningSystem& running, const StepState& start, const Error& failed);
+
+/// Contacts that are closed in the state a step starts from, as warnings of the run (terminal, report and summary).
+void warn_of_closed_contacts(Job& job, const model::Step& step, const StepState& start);
+
+}  // namespace whirl::app

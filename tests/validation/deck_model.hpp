@@ -1,0 +1,82 @@
+// A deck given as text, built; and an observer of how far a node goes.
+#pragma once
+#include <analysis/transient.hpp>
+#include <assembly/build_system.hpp>
+#include <deck/deck.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace whirl::test {
+
+constexpr double rpm = pi / 30;
+
+struct DeckModel {
+  deck::Deck deck;
+  meshes::Mesh mesh;
+  assembly::Built built;
+  explicit DeckModel(const std::string& text) : deck(deck::read_deck_text(text, "deck.toml")) {
+    if (!deck.ok()) throw std::runtime_error(deck.report());
+    mesh = meshes::make_mesh(deck.model);
+    built = assembly::build_system(deck.model, mesh);
+  }
+  analysis::Running running() const {
+    analysis::Running r;
+    for (const auto& s : deck.model.shafts) r.ratio.push_back(s.speed_ratio);
+    r.frequency_dependent = built.frequency_dependent;
+    return r;
+  }
+  /// Node of the first disk.
+  Index disk() const { return mesh.place(deck.model.disks[0].at).node; }
+};
+
+/// A mass that only moves sideways, on what `bearings` says ("at = mass"): half a symmetric rigid rotor.
+inline std::string lateral_mass(double kg, const std::string& gravity, const std::string& bearings) {
+  return "format = 1\n[model]\ngravity = \"" + gravity + R"("
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "rigid"]
+rows = [["left", 100, true], ["right", 100, true]]
+[[disk]]
+name = "mass"
+at = "left:end"
+mass = ")" + fmt::format("{:.17g}", kg) + R"( kg"
+Ip = "0.1 kg.m^2"
+Id = "0.06 kg.m^2"
+[[bearing]]
+name = "guide"
+at = "mass"
+type = "rigid"
+directions = ["x", "ry", "rz"]
+)" + bearings;
+}
+
+/// Largest distance of a node from `centre` in each window of time, with the extremes of its (y, z) there.
+struct Windows final : analysis::Observer {
+  Index node;
+  Vec2 centre;
+  std::vector<std::array<double, 2>> windows;
+  std::vector<double> peak;
+  std::vector<Vec2> least, most;
+  double dissipated_least = infinity;
+  Windows(Index n, Vec2 c, std::vector<std::array<double, 2>> w)
+      : node(n), centre(c), windows(std::move(w)), peak(windows.size(), 0.0), least(windows.size(), Vec2::Constant(infinity)), most(windows.size(), Vec2::Constant(-infinity)) {}
+  void look(const analysis::Snapshot& s) {
+    const Vec2 u = s.node(node).u.tail<2>();
+    for (std::size_t k = 0; k < windows.size(); ++k)
+      if (s.t() >= windows[k][0] && s.t() <= windows[k][1]) peak[k] = std::max(peak[k], (u - centre).norm()), least[k] = least[k].cwiseMin(u), most[k] = most[k].cwiseMax(u);
+    dissipated_least = std::min(dissipated_least, s.energy().dissipated);
+  }
+  void begin(const analysis::Snapshot& s) override { look(s); }
+  void step(analysis::StepAccess& s) override {
+    for (int k = 1; k <= 8; ++k) look(s.at(s.t0() + (s.t1() - s.t0()) * k / 8));   // peaks of a smooth orbit to 1e-3 of the step's arc
+  }
+};
+
+}  // namespace whirl::test

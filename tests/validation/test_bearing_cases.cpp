@@ -1,0 +1,244 @@
+// Published and closed-form bearing cases from the deck: what a user writes, and the equilibrium, coefficients, stability and motion that
+// come out.
+#include <analysis/whirl_modes.hpp>
+#include <system/problem.hpp>
+
+#include "deck_model.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace whirl;
+using test::DeckModel;
+using test::lateral_mass;
+using test::Windows;
+
+namespace {
+
+/// K or C of (y, z) at a node, rows the forces.
+Mat2 lateral(const la::BlockMatrix<6>& m, Index node) { return m.block(m.pattern().slot(node, node)).block<2, 2>(1, 1); }
+
+std::string load(const Vec2& F) { return fmt::format("[[load]]\nat = \"mass\"\nforce = [\"0 N\", \"{:.17g} N\", \"{:.17g} N\"]\n", F.x(), F.y()); }
+
+std::string at_speed(double Omega) { return fmt::format("[[drive]]\nname = \"motor\"\nat = \"mass\"\ntype = \"speed\"\nspeed = \"{:.17g} rad/s\"\n", Omega); }
+
+}  // namespace
+
+// Short bearing (Ocvirk, pi film), closed forms: eccentricity, attitude, whirl ratio and p^2 = M c Omega^2/W at the threshold of stability,
+// per bearing. Load for the eccentricity, mass for the threshold: the equilibrium must come back, one pair of eigenvalues must stand on
+// the imaginary axis. Numbers to 10 digits, asserted to 1e-7 (locus) and 1e-6 (threshold: p^2 from differences of coefficients).
+TEST(ShortJournalDeck, LocusAndStabilityTable) {
+  struct Row { double eps, attitude, whirl, p2; };
+  const Row table[] = {{0.05, 86.35280355, 0.5007535547, 7.607388454}, {0.1, 82.7077548, 0.5029383929, 7.514608561},  {0.2, 75.43120794, 0.5105623209, 7.189965413},
+                       {0.3, 68.17807996, 0.5194173871, 6.790119781},  {0.4, 60.93962835, 0.523805785, 6.474832122},   {0.5, 53.6802006, 0.5146401448, 6.460395752},
+                       {0.6, 46.32070377, 0.4739550818, 7.2952724},    {0.7, 38.70402431, 0.3445663369, 13.16109701}, {0.75, 34.70864481, 0.1266843431, 94.94812246}};
+  const double D = 0.1, L = 0.03, c = 1e-4, eta = 0.02, Omega = 500;
+  for (const Row& t : table) {
+    const double e2 = t.eps * t.eps;
+    const double W = eta * Omega * D * L * L * L * t.eps * std::sqrt(pi * pi * (1 - e2) + 16 * e2) / (8 * c * c * (1 - e2) * (1 - e2));
+    const double M = t.p2 * W / (c * Omega * Omega);
+    const DeckModel m(lateral_mass(M, "0 m/s^2", "[[bearing]]\nname = \"film\"\nat = \"mass\"\ntype = \"short_journal\"\ndiameter = \"100 mm\"\nlength = \"30 mm\"\n"
+                                                  "clearance = \"100 um\"\nviscosity = \"20 mPa.s\"\n" + load(Vec2(0, -W))));
+    analysis::Linearizer linear(m.built.system, m.running());
+    linear.at(Omega);
+    const Vec2 r = linear.equilibrium().state.q.segment<2>(6 * m.disk() + 1);
+    EXPECT_NEAR(r.norm() / c, t.eps, 1e-7 * t.eps);
+    EXPECT_NEAR(std::atan2(r.x(), -r.y()) * 180 / pi, t.attitude, 1e-7 * t.attitude) << "from the load (-z) in the sense of rotation (y -> z: to +y)";
+    analysis::ModesOptions o;
+    o.count = 4, o.motion = analysis::Motion::lateral;
+    const double given = m.deck.model.disks[0].mass;   // as rounded in the deck
+    double nearest = infinity, frequency = 0;
+    for (const auto& mode : analysis::whirl_modes(linear, Omega, o))
+      if (mode.frequency > 0 && std::abs(mode.lambda.real()) < nearest) nearest = std::abs(mode.lambda.real()), frequency = mode.frequency;
+    EXPECT_LT(nearest, 1e-6 * Omega + std::abs(given / M - 1) * Omega) << t.eps;
+    EXPECT_NEAR(frequency, t.whirl * Omega, 1e-6 * Omega) << t.eps;
+  }
+}
+
+// Above an eccentricity of 0.7560303865 no mass is unstable.
+TEST(ShortJournalDeck, StableAtAnySpeedBeyondAnEccentricity) {
+  const double D = 0.1, L = 0.03, c = 1e-4, eta = 0.02, Omega = 500;
+  for (const auto& [eps, stable] : {std::pair{0.757, true}, std::pair{0.755, false}}) {
+    const double e2 = eps * eps, W = eta * Omega * D * L * L * L * eps * std::sqrt(pi * pi * (1 - e2) + 16 * e2) / (8 * c * c * (1 - e2) * (1 - e2));
+    const DeckModel m(lateral_mass(1e4 * W / (c * Omega * Omega), "0 m/s^2",
+                                   "[[bearing]]\nname = \"film\"\nat = \"mass\"\ntype = \"short_journal\"\ndiameter = \"100 mm\"\nlength = \"30 mm\"\nclearance = \"100 um\"\n"
+                                   "viscosity = \"20 mPa.s\"\n" + load(Vec2(0, -W))));
+    analysis::Linearizer linear(m.built.system, m.running());
+    analysis::ModesOptions o;
+    o.count = 4, o.motion = analysis::Motion::lateral;
+    bool all = true;
+    for (const auto& mode : analysis::whirl_modes(linear, Omega, o)) all = all && !(mode.lambda.real() > 0);
+    EXPECT_EQ(all, stable) << eps;
+  }
+}
+
+// Lund & Thomsen (ASME 1978): two pads of 160 deg, grooves of 20 deg at the horizontal split, load between them. L/D, S = eta N L D (R/c)^2/W,
+// eccentricity, attitude, K c/W and B c Omega/W with x along the load. Table of three digits: 6 % or 0.06; the locus 0.5 %.
+TEST(FiniteJournalDeck, LundThomsenTwoAxialGrooves) {
+  const double table[][11] = {
+      {0.5, 1.656, 0.244, 65.85, 1.69, 5.06, -2.2, 1.95, 9.93, 2.15, 4.8},   {0.5, 0.917, 0.372, 57.45, 2.12, 4.01, -1.3, 1.85, 7.7, 2.06, 3.23},
+      {0.5, 0.58, 0.477, 51.01, 2.67, 3.7, -0.78, 1.75, 6.96, 1.94, 2.4},    {0.5, 0.379, 0.57, 45.43, 3.33, 3.64, -0.43, 1.68, 6.76, 1.87, 1.89},
+      {0.5, 0.244, 0.655, 40.25, 4.21, 3.74, -0.13, 1.64, 6.87, 1.82, 1.54}, {1, 0.991, 0.15, 70.58, 1.56, 7.29, -2.16, 1.52, 14.66, 1.58, 4.49},
+      {1, 0.635, 0.224, 63.54, 1.62, 5.33, -1.57, 1.56, 10.8, 1.7, 3.41},    {1, 0.235, 0.46, 49.27, 2.19, 3.57, -0.8, 1.55, 7.36, 1.89, 2.19},
+      {1, 0.159, 0.559, 44.33, 2.73, 3.36, -0.48, 1.48, 6.94, 1.78, 1.74},   {1, 0.108, 0.65, 39.72, 3.45, 3.34, -0.23, 1.44, 6.89, 1.72, 1.43}};
+  const double D = 0.1, c = 1e-4, eta = 0.02, Omega = 300;
+  for (const auto& t : table) {
+    const double L = t[0] * D, W = eta * Omega / two_pi * L * D * (0.5 * D / c) * (0.5 * D / c) / t[1];
+    const DeckModel m(lateral_mass(100, "0 m/s^2", fmt::format("[[bearing]]\nname = \"film\"\nat = \"mass\"\ntype = \"journal\"\nshape = \"two_grooves\"\ngroove = \"20 deg\"\ndiameter = \"100 mm\"\n"
+                                                               "length = \"{:.17g} mm\"\nclearance = \"100 um\"\nviscosity = \"20 mPa.s\"\n", 1e3 * L) + load(Vec2(0, -W))));
+    analysis::Linearizer linear(m.built.system, m.running());
+    const la::MCK& mck = linear.at(Omega);
+    const Vec2 r = linear.equilibrium().state.q.segment<2>(6 * m.disk() + 1);
+    const Mat2 K = lateral(mck.K, m.disk()) * c / W, B = lateral(mck.C, m.disk()) * c * Omega / W;
+    // load along -z, spin y -> z: their x is -z, their y is +y
+    const double got[] = {r.norm() / c, std::atan2(r.x(), -r.y()) * 180 / pi, K(1, 1), -K(1, 0), -K(0, 1), K(0, 0), B(1, 1), -B(1, 0), B(0, 0)};
+    for (int i = 0; i < 9; ++i) EXPECT_NEAR(got[i], t[i + 2], std::max(0.06, 0.06 * std::abs(t[i + 2]))) << "S " << t[1] << " column " << i;
+    EXPECT_NEAR(got[0], t[2], 0.005 * t[2]);
+    EXPECT_NEAR(got[1], t[3], 0.005 * t[3]);
+  }
+}
+
+namespace {
+
+/// Jeffcott rotor in an elastic stator ring: m 10 kg, k 1e6 N/m, c 400 N s/m, e 0.1 mm, gap 0.3 mm, stator 4e6 N/m.
+constexpr double rub_m = 10, rub_k = 1e6, rub_c = 400, rub_e = 1e-4, rub_kc = 4e6, rub_gap = 3e-4;
+
+std::string rub_rotor(double friction, double Omega) {
+  return lateral_mass(rub_m, "0 m/s^2", fmt::format(R"([[unbalance]]
+at = "mass"
+amount = "1 kg.mm"
+[[bearing]]
+name = "shaft"
+at = "mass"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+cyy = "400 N.s/m"
+czz = "400 N.s/m"
+[[bearing]]
+name = "stator"
+at = "mass"
+type = "rub"
+gap = "0.3 mm"
+stiffness = "4e6 N/m"
+friction = {}
+diameter = "300 mm"
+)", friction)) + at_speed(Omega);
+}
+
+/// Radius of full annular rub, the largest root R of |k - m O^2 + i O c + kc (1 + i mu)(1 - gap/R)| R = m e O^2.
+double branch(double friction, double ratio) {
+  const double O = ratio * std::sqrt(rub_k / rub_m);
+  const auto excess = [&](double R) {
+    return std::abs(Complex(rub_k - rub_m * O * O, O * rub_c) + rub_kc * (1 - rub_gap / R) * Complex(1, friction)) * R - rub_m * rub_e * O * O;
+  };
+  double R = 3e-3;
+  while (R > rub_gap && excess(R) > 0) R -= 1e-7;
+  double low = R, high = R + 1e-7;
+  for (int i = 0; i < 60; ++i) (excess(0.5 * (low + high)) > 0 ? high : low) = 0.5 * (low + high);
+  return R > rub_gap ? low : whirl::nan;
+}
+
+/// Radius after `turns`, started at rest in the middle or on the circle of radius R (phase of the steady motion).
+double rub_radius(double friction, double ratio, double R, double turns, double& least_power) {
+  const double Omega = ratio * std::sqrt(rub_k / rub_m), end = turns * two_pi / Omega;
+  const DeckModel m(rub_rotor(friction, Omega));
+  system::SystemProblem problem(m.built.system);
+  system::State s = m.built.system.make_state();
+  const Index n = 6 * m.disk();
+  if (R > 0) {
+    const Complex D = Complex(rub_k - rub_m * Omega * Omega, Omega * rub_c) + rub_kc * (1 - rub_gap / R) * Complex(1, friction);
+    const Complex r = R * std::exp(Complex(0, -std::arg(D)));
+    s.q[n + 1] = r.real(), s.q[n + 2] = r.imag(), s.v[n + 1] = -Omega * r.imag(), s.v[n + 2] = Omega * r.real();
+  }
+  problem.impose(0.0, s.q, s.v, s.a);
+  analysis::TransientOptions o;
+  o.integrator.tolerance = 1e-7, o.integrator.t_end = end;
+  Windows w(m.disk(), Vec2::Zero(), {{end * (1 - 1 / turns), end}});
+  const auto r = analysis::run_transient(problem, s, o, {&w});
+  EXPECT_EQ(r.reason, analysis::StopReason::end_time) << r.detail;
+  least_power = std::min(least_power, w.dissipated_least);
+  return w.peak[0];
+}
+
+}  // namespace
+
+// Full annular rub of a Jeffcott rotor (Black, J. Mech. Eng. Sci. 10, 1968, closed form): radii on the branches, by transients from rest and
+// from the branch. zeta = 0.063: after 40 turns e^-16. Tolerance: eight samples a step see the circle to 1e-6.
+TEST(AnnularRubDeck, RadiiOnTheBranches) {
+  double power = infinity;
+  EXPECT_NEAR(rub_radius(0.05, 0.9, 0, 60, power), 0.000303790679, 2e-6 * 3e-4);
+  EXPECT_NEAR(rub_radius(0.05, 1.1, 0, 60, power), 0.000344793882, 2e-6 * 3e-4);
+  EXPECT_NEAR(rub_radius(0.0, 1.1, 0, 60, power), 0.000345914385, 2e-6 * 3e-4);
+  // two motions at 1.5: free from rest, in contact when it was in contact
+  EXPECT_NEAR(rub_radius(0.05, 1.5, 0, 80, power), 0.000177961557, 2e-6 * 2e-4);
+  EXPECT_NEAR(branch(0.05, 1.5), 0.000501675563, 1e-8 * 5e-4);
+  EXPECT_NEAR(rub_radius(0.05, 1.5, 0.0005, 100, power), 0.000501675563, 2e-6 * 5e-4);
+  EXPECT_NEAR(rub_radius(0.01, 1.5, 0.0005, 100, power), 0.000508749664, 2e-6 * 5e-4);
+  // friction and dampers take power at every instant
+  EXPECT_GE(power, 0.0);
+}
+
+// The branch of contact ends at 1.967031 (mu = 0.05) and 2.055764 (0.01): started on its end, the motion stays in contact a little below
+// that speed and falls back into the clearance a little above.
+TEST(AnnularRubDeck, JumpAtTheEndOfTheBranch) {
+  double power = infinity;
+  for (const auto& [mu, fold] : {std::pair{0.05, 1.967031}, std::pair{0.01, 2.055764}}) {
+    EXPECT_TRUE(std::isnan(branch(mu, 1.0001 * fold)));
+    const double R = branch(mu, 0.99 * fold);
+    EXPECT_NEAR(rub_radius(mu, 0.99 * fold, R, 100, power), R, 1e-4 * R) << mu;
+    EXPECT_LT(rub_radius(mu, 1.01 * fold, R, 150, power), rub_gap) << mu;
+  }
+  EXPECT_GE(power, 0.0);
+}
+
+// Ball bearing of eight balls, K 1.334e10 N/m^1.5: displacement and stiffness under a load, a ball under it or between two. Roots of the
+// eight-ball sum.
+TEST(BallBearingDeck, LoadSharing) {
+  struct Row { double clearance, W; bool between; double x, k; };
+  const Row table[] = {{0, 58.8, false, 1.789759857e-06, 49280354.37},     {0, 196, false, 3.993747404e-06, 73615071.33},    {0, 58.8, true, 1.802089581e-06, 48943182.92},
+                       {1, 58.8, false, 2.97298009e-06, 49114386.5},       {1, 196, true, 5.242020287e-06, 72842652},        {5, 58.8, false, 7.567395999e-06, 43916464.13},
+                       {5, 196, false, 9.87145827e-06, 72322642.58},       {5, 196, true, 9.724052036e-06, 68180378.76},     {10, 58.8, false, 1.268832021e-05, 32808591.6},
+                       {10, 58.8, true, 1.275634453e-05, 45642192.09},     {10, 196, false, 1.559219672e-05, 67581319.78},   {10, 196, true, 1.513601304e-05, 68180378.76}};
+  for (const Row& t : table) {
+    const double angle = -0.5 * pi + (t.between ? pi / 8 : 0.0);
+    const Vec2 along(std::cos(angle), std::sin(angle));
+    const DeckModel m(lateral_mass(20, "0 m/s^2", fmt::format("[[bearing]]\nname = \"balls\"\nat = \"mass\"\ntype = \"ball\"\nballs = 8\nball_diameter = \"11.9 mm\"\n"
+                                                              "pitch_diameter = \"52 mm\"\nclearance = \"{} um\"\nstiffness = \"1.334e10 N/m^1.5\"\n", t.clearance) + load(t.W * along) +
+                                       // one ball alone carries nothing across
+                                       (t.clearance == 10 && t.W < 100 && !t.between ? "[[bearing]]\nname = \"across\"\nat = \"mass\"\ntype = \"linear\"\nkyy = \"1e3 N/m\"\n" : "")));
+    analysis::Running turning = m.running();
+    turning.mean = false;
+    analysis::RunningSystem running(m.built.system, turning);
+    const auto e = analysis::EquilibriumSolver(running).solve(0.0);
+    const Vec2 r = e.state.q.segment<2>(6 * m.disk() + 1);
+    EXPECT_NEAR(r.dot(along), t.x, 1e-8 * t.x) << t.clearance << " um, " << t.W << " N";
+    la::MCK mck = m.built.system.make_matrices();
+    ASSERT_TRUE(running.tangent(e.state.frames, 0.0, e.state.q, mck));
+    EXPECT_NEAR(along.dot(lateral(mck.K, m.disk()) * along), t.k, 1e-7 * t.k);
+  }
+}
+
+// Varying compliance: 20 kg, 2000 N s/m, 5 um, 10 turns a second: limit cycle by an independent run (DOP853, 1e-10). The balls pass 3.084615385
+// times a turn.
+TEST(BallBearingDeck, VaryingComplianceCycle) {
+  const DeckModel m(lateral_mass(20, "9.8 m/s^2", "[[bearing]]\nname = \"balls\"\nat = \"mass\"\ntype = \"ball\"\nballs = 8\nball_diameter = \"11.9 mm\"\npitch_diameter = \"52 mm\"\n"
+                                                  "clearance = \"5 um\"\nstiffness = \"1.334e10 N/m^1.5\"\nc_radial = \"2000 N.s/m\"\n") + at_speed(20 * pi));
+  system::SystemProblem problem(m.built.system);
+  system::State s = m.built.system.make_state();
+  s.q[6 * m.disk() + 2] = -9.8e-6;
+  problem.impose(0.0, s.q, s.v, s.a);
+  const double period = 1 / (10 * 3.084615385);
+  analysis::TransientOptions o;
+  o.integrator.tolerance = 1e-7, o.integrator.t_end = 21 * period;
+  Windows w(m.disk(), Vec2::Zero(), {{20 * period, 21 * period}});
+  const auto r = analysis::run_transient(problem, s, o, {&w});
+  ASSERT_EQ(r.reason, analysis::StopReason::end_time) << r.detail;
+  // their x is -z, their y is +y; given to nine digits
+  EXPECT_NEAR(-w.most[0].y(), 9.71753874e-06, 1e-4 * 1e-5);
+  EXPECT_NEAR(-w.least[0].y(), 9.87555871e-06, 1e-4 * 1e-5);
+  EXPECT_NEAR(std::max(-w.least[0].x(), w.most[0].x()), 7.17400478e-07, 1e-3 * 7e-7);
+  EXPECT_NEAR(std::min(-w.least[0].x(), w.most[0].x()), 6.63437104e-07, 1e-3 * 7e-7);
+}
