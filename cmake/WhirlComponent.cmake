@@ -26,7 +26,7 @@ endfunction()
 
 # A test program of all test_*.cpp in a folder; each GoogleTest case becomes a CTest test.
 function(whirl_tests NAME)
-  cmake_parse_arguments(A "" "DIR;LABEL;TIMEOUT" "DEPS" ${ARGN})
+  cmake_parse_arguments(A "" "DIR;LABEL;TIMEOUT" "DEPS;PROPERTIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${A_DIR}/test_*.cpp)
   if(sources)
     add_executable(test_${NAME} ${sources})
@@ -36,6 +36,6 @@ function(whirl_tests NAME)
       set(timeout TIMEOUT ${A_TIMEOUT})   # seconds: a test that never ends fails
     endif()
     gtest_discover_tests(test_${NAME} TEST_PREFIX "${NAME}." DISCOVERY_TIMEOUT 60
-                         PROPERTIES LABELS "${A_LABEL}" WORKING_DIRECTORY ${A_DIR} ${timeout})
+                         PROPERTIES LABELS "${A_LABEL}" WORKING_DIRECTORY ${A_DIR} ${timeout} ${A_PROPERTIES})
   endif()
 endfunction()

@@ -17,6 +17,12 @@ double energy_of(const std::array<double, 8>& c, double u) {
   return V * u;
 }
 
+double slope_of(const std::array<double, 8>& c, double u) {
+  double d = 0;
+  for (int k = 7; k >= 1; --k) d = d * u + k * c[static_cast<std::size_t>(k)];
+  return d;
+}
+
 }  // namespace
 
 const ForceCurve::Piece& ForceCurve::piece(double x) const {
@@ -38,7 +44,14 @@ void ForceCurve::integrate() {
   }
   const double V = at(0.0).energy;
   for (Piece& p : pieces_) p.V0 -= V;
+  corners_.clear();
+  for (std::size_t i = 0; i < breaks_.size(); ++i) {
+    const double left = slope_of(pieces_[i].c, breaks_[i] - pieces_[i].x0), right = slope_of(pieces_[i + 1].c, breaks_[i] - pieces_[i + 1].x0);
+    if (std::abs(right - left) > 0.5 * std::max(std::abs(left), std::abs(right))) corners_.push_back(breaks_[i]);
+  }
 }
+
+int ForceCurve::region(double x) const { return static_cast<int>(std::upper_bound(corners_.begin(), corners_.end(), x) - corners_.begin()); }
 
 ForceCurve ForceCurve::polynomial(const std::vector<double>& c) {
   if (c.empty() || c.size() > 8) fail("a polynomial has 1 to 8 coefficients");

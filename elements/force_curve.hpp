@@ -11,6 +11,9 @@ class ForceCurve {
   struct Value { double F, slope, energy; };   ///< F(x), dF/dx, integral of F from 0 to x
   Value at(double x) const;
   double operator()(double x) const { return at(x).F; }
+  /// Number of corners below x: places where the slope changes by more than half of the larger one, as where a gap closes.
+  int region(double x) const;
+  bool cornered() const { return !corners_.empty(); }
 
   /// F = sum c_k x^k, at most degree 7. Errors E82: more than 8 coefficients, a coefficient not finite.
   static ForceCurve polynomial(const std::vector<double>& c);
@@ -29,10 +32,11 @@ class ForceCurve {
     std::array<double, 8> c{};     ///< F = sum c_k (x - x0)^k
     double V0 = 0;                 ///< energy at x0
   };
-  void integrate();                ///< fixes V0 so that the energy is continuous and zero at x = 0
+  void integrate();                ///< fixes V0 so that the energy is continuous and zero at x = 0; finds the corners
   const Piece& piece(double x) const;
   std::vector<double> breaks_;     ///< piece k holds for breaks_[k-1] <= x < breaks_[k]
   std::vector<Piece> pieces_;
+  std::vector<double> corners_;
 };
 
 using ForceCurvePtr = std::shared_ptr<const ForceCurve>;

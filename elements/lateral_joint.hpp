@@ -14,6 +14,7 @@
 //     void force(const LateralMotion&, Vector<4>& z) const;            // sets z
 //     void tangent(const LateralMotion&, Vector<4>& z, LateralTangent& t) const;   // sets z and t
 //     void energy(const LateralMotion&, Energy&) const;                // adds
+//     int region(const LateralMotion&) const;                          // optional: smooth piece of a force with corners
 //   };
 #pragma once
 #include <system/kernel.hpp>
@@ -85,6 +86,9 @@ struct LateralJoint {
     m.spin = s0.s, m.housing_spin = s1.s, m.spin_rate = s0.sdot, m.housing_spin_rate = s1.sdot;
     law.energy(m, e);
   }
+
+  bool cornered() const requires requires(const Law& l, const LateralMotion& m) { l.region(m); } { return true; }
+  int region(const system::Nodes<2>& x) const requires requires(const Law& l, const LateralMotion& m) { l.region(m); } { return law.region(motion(x)); }
 
   /// Relative motion with spins, for results.
   LateralMotion motion_of(const system::Nodes<2>& x) const {

@@ -16,7 +16,7 @@ namespace whirl::elements {
 
 struct TranslationalBearing {
   static constexpr int n_nodes = 2, width = 3;
-  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true;
+  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true, linear_in_displacements = true;
 
   Mat3 K = Mat3::Zero(), C = Mat3::Zero(), M = Mat3::Zero();   ///< global axes
   Vec3 setpoint = Vec3::Zero(), preload = Vec3::Zero();
@@ -30,7 +30,7 @@ struct TranslationalBearing {
 
 struct LinearBearing {
   static constexpr int n_nodes = 2, width = 7;
-  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true;
+  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true, linear_in_displacements = true;
 
   LinearBearing() = default;
   /// s1, s2: points from the nodes along their directors, m; axes: columns e0, e2, e3, orthonormal, global axes.

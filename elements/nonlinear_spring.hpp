@@ -30,6 +30,8 @@ struct ScalarSpring {
 
   struct Deflection { double q, dq; };
   Deflection deflection(const system::Nodes<2>& x) const;
+  bool cornered() const { return force->cornered(); }
+  int region(const system::Nodes<2>& x) const { return force->region(deflection(x).q); }
   void add_force(const system::Nodes<2>& x, const system::Context&, system::ForceX<2 * W>& f) const;
   void add_tangent(const system::Nodes<2>& x, const system::Context&, system::TangentX<2 * W>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const;
@@ -41,6 +43,8 @@ struct RadialSpring {
 
   ForceCurvePtr force, damping;   ///< neither null; force(0) = 0
 
+  bool cornered() const { return force->cornered(); }
+  int region(const system::Nodes<2>& x) const { return force->region((x[0]->u - x[1]->u).tail<2>().norm()); }
   void add_force(const system::Nodes<2>& x, const system::Context&, system::ForceX<6>& f) const;
   void add_tangent(const system::Nodes<2>& x, const system::Context&, system::TangentX<6>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const;

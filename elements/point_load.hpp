@@ -13,7 +13,7 @@ namespace whirl::elements {
 /// Force of fixed direction at the node itself: translations only, no tangent.
 struct PointForce {
   static constexpr int n_nodes = 1, width = 3;
-  static constexpr bool has_M = false, has_C = false, has_K = false;
+  static constexpr bool has_M = false, has_C = false, has_K = false, linear_in_displacements = true;
 
   Vec3 force = Vec3::Zero();
   LawPtr factor;
@@ -27,7 +27,7 @@ struct PointForce {
 /// Force and moment of fixed direction (global axes) at an offset point.
 struct FixedLoad {
   static constexpr int n_nodes = 1, width = 7;
-  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true;
+  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true, linear_in_displacements = true;
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;
@@ -42,7 +42,7 @@ struct FixedLoad {
 /// Force and moment given in body axes (d, b_2, b_3): they turn with tilt and spin (follower loads).
 struct BodyLoad {
   static constexpr int n_nodes = 1, width = 7;
-  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true;
+  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true, linear_in_displacements = true;
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;

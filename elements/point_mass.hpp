@@ -7,7 +7,7 @@ namespace whirl::elements {
 
 struct PointMass {
   static constexpr int n_nodes = 1, width = 3;
-  static constexpr bool has_M = true, has_C = false, has_K = false, quadratic_in_rates = true, inertial = true, powerless = true;
+  static constexpr bool has_M = true, has_C = false, has_K = false, quadratic_in_rates = true, inertial = true, powerless = true, linear_in_displacements = true;
 
   double mass = 0;
 

@@ -12,7 +12,7 @@ namespace whirl::elements {
 
 struct RigidDisk {
   static constexpr int n_nodes = 1, width = 7;
-  static constexpr bool has_M = true, has_C = true, has_K = true, inertial = true, quadratic_in_rates = true, powerless = true;
+  static constexpr bool has_M = true, has_C = true, has_K = true, inertial = true, quadratic_in_rates = true, powerless = true, linear_in_displacements = true;
 
   double mass = 0, Jt = 0, Jp = 0, offset = 0;
 

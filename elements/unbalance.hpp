@@ -14,7 +14,7 @@ namespace whirl::elements {
 
 struct UnbalanceMass {
   static constexpr int n_nodes = 1, width = 7;
-  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true, inertial = true;
+  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true, inertial = true, linear_in_displacements = true;
 
   double amount = 0, cos_beta = 1, sin_beta = 0;
   LawPtr factor;

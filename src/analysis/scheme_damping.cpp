@@ -1,5 +1,7 @@
 #include <analysis/scheme_damping.hpp>
 
+#include <time/stability.hpp>
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -31,10 +33,7 @@ Complex generalized_alpha(double rho, Complex lambda, double h) {
 }  // namespace
 
 Complex amplification(std::string_view method, double rho_inf, Complex lambda, double h) {
-  const Complex z = lambda * h, z2 = z * z, z3 = z2 * z;
-  if (method == "radau5") return (1.0 + 0.4 * z + 0.05 * z2) / (1.0 - 0.6 * z + 0.15 * z2 - z3 / 60.0);
-  if (method == "gauss4") return (1.0 + 0.5 * z + z2 / 12.0) / (1.0 - 0.5 * z + z2 / 12.0);
-  if (method == "gauss6") return (1.0 + 0.5 * z + 0.1 * z2 + z3 / 120.0) / (1.0 - 0.5 * z + 0.1 * z2 - z3 / 120.0);
+  if (method == "radau5" || method == "gauss4" || method == "gauss6") return time::stability_function(method, lambda * h);
   if (method == "generalized_alpha") return generalized_alpha(rho_inf, lambda, h);
   return {nan, nan};
 }

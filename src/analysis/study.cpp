@@ -74,7 +74,8 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
   for (const StudyCase& c : options.ladder) {
     StudySample s = timed(run, c, options.repeats);
     if (s.ok) s.errors = errors_of(s.quantities, result.reference.quantities);
-    for (double u : result.uncertainty) s.counted.push_back(u <= resolved);
+    for (std::size_t i = 0; i < result.uncertainty.size(); ++i)
+      s.counted.push_back(result.uncertainty[i] <= resolved && result.reference.quantities[i].counts);
     if (options.progress) options.progress(s);
     result.samples.push_back(std::move(s));
   }
@@ -82,8 +83,8 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
   // Slope of log(worst error) against log(step) by least squares over equal steps from the coarsest on, as long as the slope
   // holds: finer ones stand on another error (the mesh, motion too fast for any of these steps, the reference itself).
   double floor = 1e-13;
-  for (double u : result.uncertainty)
-    if (u <= resolved) floor = std::max(floor, 3.0 * u);
+  for (std::size_t i = 0; i < result.uncertainty.size(); ++i)
+    if (const double u = result.uncertainty[i]; u <= resolved && result.reference.quantities[i].counts) floor = std::max(floor, 3.0 * u);
   std::map<std::string, std::vector<std::pair<double, double>>> points;   // -log(steps), log(error)
   for (const StudySample& s : result.samples) {
     if (s.setting.tolerance > 0) continue;   // the steps of adaptive runs are not proportional

@@ -20,6 +20,7 @@ struct Quantity {
   std::string name, unit;
   std::vector<double> values;
   double scale = 0;             ///< 0: the largest |value| of the reference
+  bool counts = true;           ///< in worst(); false: listed only (the instant of a flat peak is known to the root of its height)
 };
 
 /// A quantity whose reference and cross-check differ by more than this is not a number of the model (undamped ringing sampled at an

@@ -1,3 +1,4 @@
+#include <analysis/corners.hpp>
 #include <analysis/momentum_route.hpp>
 #include <analysis/transient.hpp>
 
@@ -112,9 +113,14 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
   for (std::size_t i = 0; i < speed_before.size(); ++i)
     speed_before[i] = step.end().node(options.speed_stops[i].node).spin() - options.speed_stops[i].speed;
 
+  const double t_end = options.integrator.t_end;
+  // equal steps are the user's own choice, and the momentum form knows no contacts
+  Corners corners(problem);
+  bool passed = false;
+  const bool land_on_corners = corners.any() && options.integrator.dt_fixed <= 0.0 && options.method != "momentum_rk";
+
   using Clock = std::chrono::steady_clock;
   auto last_checkpoint = Clock::now();
-  const double t_end = options.integrator.t_end;
   const auto interrupted = [&] { return options.interrupt && options.interrupt->load(std::memory_order_relaxed); };
   Progress progress{integrator->time(), t_end, 0, 0, 0, 0};
   bool stop = false;
@@ -123,6 +129,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
       result.reason = StopReason::interrupted;
       break;
     }
+    if (land_on_corners) step.end(), corners.begin();
     time::StepReport report = integrator->advance();
     if (!report.ok()) {
       result.reason = StopReason::failed;
@@ -130,6 +137,32 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
       break;
     }
     step.set(report.t0, report.t1);
+    bool corner = false;
+    if (land_on_corners) {
+      // A step that straddles a corner is wrong before it too: made again to the passage, and if it still passes inside, ever
+      // shorter, until it is smooth. The next one then begins closer.
+      for (int again = 0; again < 60; ++again) {
+        const double passage = corners.find(step);
+        if (passage < 0.0) break;
+        corner = again == 0;
+        if (passage >= report.t1) break;
+        const double t = corner ? passage : report.t0 + 0.7 * (passage - report.t0);
+        report = integrator->shorten_to(t);
+        if (!report.ok()) {
+          // as far towards it as Newton's iteration goes
+          integrator->set_end(t);
+          report = integrator->advance();
+          integrator->set_end(t_end);
+          corner = false;
+          if (!report.ok()) break;
+        }
+        step.set(report.t0, report.t1);
+      }
+      if (!report.ok()) {
+        result.reason = StopReason::failed, result.detail = failure(problem, report);
+        break;
+      }
+    }
 
     double t_stop = infinity;
     for (std::size_t i = 0; i < options.speed_stops.size(); ++i) {
@@ -163,6 +196,14 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
     }
 
     for (Observer* o : observers) o->step(step);
+    // the state after a corner stands just before it: the matrices of the other side are taken a step later
+    if (passed) integrator->refresh();
+    passed = corner;
+    if (corner) {
+      // what was smooth before says nothing about what comes
+      integrator->restart(VecX(integrator->q()), VecX(integrator->v()));
+      step.set(report.t1, report.t1);
+    }
     if (options.progress) {
       progress.t = report.t1, progress.dt = report.t1 - report.t0, ++progress.steps;
       progress.newton = integrator->statistics().newton_iterations;

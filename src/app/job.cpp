@@ -82,7 +82,7 @@ analysis::Running Job::running_of(const StepState& start) const {
   return running;
 }
 
-analysis::Equilibrium Job::settle(system::SystemProblem&, StepState& start, analysis::EquilibriumOptions options) const {
+analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions options) const {
   analysis::RunningSystem turning(system(), running_of(start));
   options.chart_change = model.chart_change;
   analysis::EquilibriumSolver solver(turning, options);

@@ -12,6 +12,7 @@
 #include <model/model.hpp>
 #include <system/system.hpp>
 #include <map>
+#include <memory>
 #include <string>
 
 namespace whirl::app {
@@ -46,7 +47,7 @@ struct Job {
   /// How the lines turn in a state.
   analysis::Running running_of(const StepState& start) const;
   /// Moves a start to its static equilibrium (spinning, loaded). Errors E75, E76 when there is none.
-  analysis::Equilibrium settle(system::SystemProblem& problem, StepState& start, analysis::EquilibriumOptions options = {}) const;
+  analysis::Equilibrium settle(StepState& start, analysis::EquilibriumOptions options = {}) const;
 };
 
 class PlotBuffer;
@@ -66,7 +67,10 @@ std::vector<std::pair<std::string, analysis::Point>> watched_points(const Job&);
 /// Scheme, accuracy, breakpoints and stops of a transient step.
 analysis::TransientOptions transient_options(const Job&, const model::TransientStep&, double t0);
 /// The state it starts from, settled when the deck asks for the static equilibrium.
-StepState transient_start(Job&, system::SystemProblem&, const model::Step&, const model::TransientStep&);
+StepState transient_start(Job&, const model::Step&, const model::TransientStep&);
+
+/// The equations a transient step integrates from `start`: the general ones, or those of small motions.
+std::unique_ptr<system::SystemProblem> transient_problem(const Job&, const model::TransientStep&, const StepState& start);
 
 /// Moves a start into the steady response to the unbalance at its speed; adds a whirl mode (amplitude: its largest displacement, m).
 void start_in_unbalance_response(const Job&, StepState& start);

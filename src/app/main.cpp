@@ -75,6 +75,8 @@ int command_line(int argc, char** argv) {
   c = app.add_subcommand("study", "error against run time of a deck over tolerances, steps, integrators and meshes");
   add_deck(c, study.deck, study.read);
   add_run(c, study.run);
+  bool stability = false;
+  c->add_flag("--stability", stability, "instead: spectral radius, numerical damping and energy over 1e5 steps of every integrator on this rotor");
 #endif
 
   bool reference = false, unit_list = false;
@@ -117,7 +119,7 @@ int command_line(int argc, char** argv) {
 #ifdef WHIRL_HAVE_STUDY
   if (given("study")) {
     study.run.terminal = is_terminal(2);
-    return study_deck(study);
+    return stability ? study_stability(study) : study_deck(study);
   }
 #endif
   if (given("schema")) return print_schema(reference ? SchemaForm::reference : unit_list ? SchemaForm::units : SchemaForm::json);

@@ -35,5 +35,7 @@ struct StudyOptions {
 };
 /// Error against run time of a deck over a ladder of tolerances, steps, integrators and meshes.
 int study_deck(const StudyOptions& options);
+/// Spectral radius, numerical damping and energy over very many steps of every integrator on the deck's rotor.
+int study_stability(const StudyOptions& options);
 
 }  // namespace whirl::app

@@ -78,7 +78,7 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
     for (double x : path->limits()) v["path"]["limit points near"].push(x);
     found = std::move(r.last);
   } else {
-    found = job.settle(problem, s, options);
+    found = job.settle(s, options);
     warn_of_closed_contacts(job, step, s);
   }
   s.state = found.state;

@@ -49,7 +49,7 @@ void describe_savings(Job& job, double seconds) {
   v["of this model [us]"] = 1e6 * s.pruned, v["of the general model [us]"] = 1e6 * s.everything;
   v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
   if (!job.options.quiet && seconds > 0.5 && s.everything > 1.05 * s.pruned)
-    std::fputs(fmt::format("left out: {} kinds of physics this deck does not need (summary.json); an evaluation takes {:.0f} us instead of {:.0f} us\n",
+    std::fputs(fmt::format("left out: {} parts of the general model this deck does not need (summary.json); an evaluation takes {:.0f} us instead of {:.0f} us\n",
                            job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned, 1e6 * s.everything).c_str(), stderr);
 }
 

@@ -19,26 +19,38 @@ namespace whirl::app {
 
 namespace {
 
-/// Displacements of the watched points at equal intervals.
+/// Displacements of the watched points, forces of the supports, spin and stored energy at equal intervals.
 class Sampler final : public analysis::Observer {
  public:
-  Sampler(const std::vector<std::pair<std::string, analysis::Point>>& points, double t0, double t1, int n)
-      : points_(points), ticker_(t0, (t1 - t0) / n), values_(points.size()) { ticker_.advance(); }
+  Sampler(const Job& job, const std::vector<std::pair<std::string, analysis::Point>>& points, double t0, double t1, int n)
+      : job_(job), points_(points), ticker_(t0, (t1 - t0) / n), displacement_(points.size()), force_(job.built.support_forces.size()) { ticker_.advance(); }
   void step(analysis::StepAccess& s) override {
     for (; ticker_.next() <= s.t1() * (1.0 + 1e-13); ticker_.advance()) {
       const analysis::Snapshot& x = s.at(std::min(ticker_.next(), s.t1()));
       for (std::size_t i = 0; i < points_.size(); ++i) {
         const Vec3 u = analysis::displacement(x, points_[i].second);
-        values_[i].push_back(u.y()), values_[i].push_back(u.z());
+        displacement_[i].push_back(u.y()), displacement_[i].push_back(u.z());
+      }
+      spin_.push_back(x.node(job_.reference()).spin());
+      const system::Energy& e = x.energy();
+      energy_.push_back(e.kinetic + e.elastic + e.gravity);
+      for (std::size_t i = 0; i < force_.size(); ++i) {
+        const Vec3 f = job_.built.support_forces[i].force([&x](Index n) -> const system::NodeState& { return x.node(n); }, x.t(), [&x](Index k) { return x.reactions()[k]; });
+        force_[i].push_back(f.y()), force_[i].push_back(f.z());
       }
     }
   }
-  const std::vector<double>& values(std::size_t i) const { return values_[i]; }
+  const std::vector<double>& displacement(std::size_t i) const { return displacement_[i]; }
+  const std::vector<std::vector<double>>& forces() const { return force_; }
+  const std::vector<double>& spin() const { return spin_; }
+  const std::vector<double>& energy() const { return energy_; }
 
  private:
+  const Job& job_;
   const std::vector<std::pair<std::string, analysis::Point>>& points_;
   analysis::Ticker ticker_;
-  std::vector<std::vector<double>> values_;
+  std::vector<std::vector<double>> displacement_, force_;
+  std::vector<double> spin_, energy_;
 };
 
 /// The model with every flexible section split into `factor` times as many elements.
@@ -64,19 +76,18 @@ struct Bench {
       : model(std::move(m)), job(model, options, root), step(model.steps[which]),
         law(std::get<model::TransientStep>(model.steps[which].law)) {
     job.build_for(step);
-    system::SystemProblem problem(job.system(), {la::SolverKind::automatic, model.chart_change, 2.0});
-    start = transient_start(job, problem, step, law);
+    start = transient_start(job, step, law);
   }
   analysis::StudySample run(const analysis::StudyCase& c) {
-    system::SystemProblem problem(job.system(), {la::SolverKind::automatic, model.chart_change, 2.0});
+    const std::unique_ptr<system::SystemProblem> equations = transient_problem(job, law, start);
+    system::SystemProblem& problem = *equations;
     analysis::TransientOptions o = transient_options(job, law, start.state.t);
     o.method = c.method;
     o.integrator.tolerance = c.tolerance > 0 ? c.tolerance : 1e-8;   // fixed steps: Newton well below the step's error
     o.integrator.dt_fixed = c.dt;
     const auto points = watched_points(job);
-    Sampler sampler(points, start.state.t, o.integrator.t_end, 200);
+    Sampler sampler(job, points, start.state.t, o.integrator.t_end, 200);
     analysis::PeakTracker peaks(points, job.reference());
-    analysis::EnergyBalance energy(o.integrator.breakpoints);
     analysis::StudySample s;
     s.setting = c;
     try {
@@ -86,14 +97,18 @@ struct Bench {
       s.seconds = r.seconds, s.steps = r.statistics.accepted, s.newton = r.statistics.newton_iterations;
       s.factorizations = r.statistics.factorizations_real + r.statistics.factorizations_complex;
       for (std::size_t i = 0; i < points.size(); ++i) {
-        s.quantities.push_back({points[i].first + ": displacement", "m", sampler.values(i), 0.0});
+        s.quantities.push_back({points[i].first + ": displacement", "m", sampler.displacement(i), 0.0});
         s.quantities.push_back({points[i].first + ": peak", "m", {peaks.peaks()[i].amplitude}, 0.0});
+        s.quantities.push_back({points[i].first + ": speed at peak", "rad/s", {peaks.peaks()[i].speed}, 0.0, false});
       }
+      for (std::size_t i = 0; i < sampler.forces().size(); ++i)
+        s.quantities.push_back({"bearing " + job.built.support_forces[i].name + ": force", "N", sampler.forces()[i], 0.0});
+      s.quantities.push_back({"spin", "rad/s", sampler.spin(), 0.0});
+      s.quantities.push_back({"stored energy", "J", sampler.energy(), 0.0});
       const Index n = job.reference();
       problem.frames = r.end.frames;
       analysis::Snapshot end(problem);
       end.set(r.end.t, r.end.q, r.end.v, r.end.a);
-      s.quantities.push_back({"end spin", "rad/s", {end.node(n).spin()}, 0.0});
       s.quantities.push_back({"end angle", "rad", {end.total_phi(n)}, 0.0});
     } catch (const Error& e) {
       s.ok = false, s.note = e.what();
@@ -177,15 +192,22 @@ int study_deck(const StudyOptions& options) {
   io::Table table;
   table.title = "Error against run time";
   table.columns = {{"method", "-", ""}, {"tolerance", "-", ""}, {"dt", "s", ""}, {"mesh factor", "-", ""}, {"CPU", "s", ""},
-                   {"steps", "-", ""}, {"Newton", "-", ""}, {"factorisations", "-", ""}};
+                   {"steps", "-", ""}, {"Newton", "-", ""}, {"factorisations", "-", ""}, {"Pareto", "-", "1: no other setting is both faster and more accurate"},
+                   {"largest error", "-", "of the quantities that count"}};
   for (const std::string& q : r.quantities) table.columns.push_back({"error of " + q, "-", "relative to its largest value"});
   io::Value json = io::Value::object();
   std::map<std::string, io::StudyCurve> curves;
-  for (const analysis::StudySample& s : r.samples) {
+  for (std::size_t k = 0; k < r.samples.size(); ++k) {
+    const analysis::StudySample& s = r.samples[k];
     if (!s.ok) continue;
+    const double front = std::find(r.pareto.begin(), r.pareto.end(), k) != r.pareto.end() ? 1.0 : 0.0;
     std::vector<io::Table::Cell> row{s.setting.method, s.setting.tolerance, s.setting.dt, s.setting.mesh_factor, s.seconds,
-                                     static_cast<double>(s.steps), static_cast<double>(s.newton), static_cast<double>(s.factorizations)};
+                                     static_cast<double>(s.steps), static_cast<double>(s.newton), static_cast<double>(s.factorizations), front, s.worst()};
     for (double e : s.errors) row.emplace_back(e);
+    io::Value sample;
+    sample["setting"] = s.setting.label(), sample["CPU [s]"] = s.seconds, sample["Pareto"] = front > 0.0, sample["largest error"] = s.worst();
+    for (std::size_t i = 0; i < r.quantities.size(); ++i) sample["errors"][r.quantities[i]] = s.errors[i];
+    json["settings"].push(sample);
     table.add(std::move(row));
     const std::string key = s.setting.method + (s.setting.tolerance > 0 ? "" : ", equal steps") + (s.setting.mesh_factor > 1 ? ", finer mesh" : "");
     curves[key].label = key;

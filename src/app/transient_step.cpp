@@ -1,6 +1,7 @@
 // A transient step: initial state, observers for what the deck asks for, the run, and its results.
 #include <analysis/equilibrium.hpp>
 #include <analysis/event_log.hpp>
+#include <analysis/linear_motion.hpp>
 #include <analysis/transient.hpp>
 #include <app/accuracy.hpp>
 #include <app/checkpoint.hpp>
@@ -63,7 +64,7 @@ analysis::TransientOptions transient_options(const Job& job, const model::Transi
   return t;
 }
 
-StepState transient_start(Job& job, system::SystemProblem& problem, const model::Step& step, const model::TransientStep& law) {
+StepState transient_start(Job& job, const model::Step& step, const model::TransientStep& law) {
   using Start = model::TransientStep::Start;
   if (!law.previous.empty()) return start_of_other_run(job, law.previous, law.previous_step);
   StepState start = job.start_of(step, law.speed0);
@@ -75,10 +76,17 @@ StepState transient_start(Job& job, system::SystemProblem& problem, const model:
   }
   if (law.start == Start::static_equilibrium && step.from.empty()) {
     const PhaseTimer timer(job, "equilibrium");
-    job.settle(problem, start);
+    job.settle(start);
   }
   warn_of_closed_contacts(job, step, start);
   return start;
+}
+
+std::unique_ptr<system::SystemProblem> transient_problem(const Job& job, const model::TransientStep& law, const StepState& start) {
+  if (!law.linear) return std::make_unique<system::SystemProblem>(job.system(), system::ProblemOptions{la::SolverKind::automatic, job.model.chart_change, 2.0});
+  analysis::Running running = job.running_of(start);
+  running.time = start.state.t;
+  return std::make_unique<analysis::LinearMotion>(job.system(), running, start.speed, start.state);
 }
 
 namespace {
@@ -129,10 +137,11 @@ void keep_earlier_series(const Job& job, const std::string& name) {
 
 void run_transient_step(Job& job, const model::Step& step, const model::TransientStep& law) {
   job.build_for(step);
-  system::SystemProblem problem(job.system(), {la::SolverKind::automatic, job.model.chart_change, 2.0});
   const std::filesystem::path checkpoint_path = checkpoint_file(job.folder.root(), step.name);
   const std::optional<Checkpoint> resumed = job.options.resume ? read_checkpoint(checkpoint_path) : std::nullopt;
-  StepState start = resumed ? StepState{resumed->state, resumed->speed} : transient_start(job, problem, step, law);
+  StepState start = resumed ? StepState{resumed->state, resumed->speed} : transient_start(job, step, law);
+  const std::unique_ptr<system::SystemProblem> equations = transient_problem(job, law, start);
+  system::SystemProblem& problem = *equations;
   const double t0 = resumed ? resumed->t_begin : start.state.t;
   analysis::TransientOptions options = transient_options(job, law, t0);
   const std::vector<std::pair<std::string, Point>> watched = watched_points(job);
@@ -207,6 +216,8 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
     observers.push_back(&spectra->observer());
     parts.add_output(spectra->key(), *spectra);
   }
+  if (auto* small = dynamic_cast<analysis::LinearMotion*>(equations.get()))
+    parts.add("steady motion", [small](OutArchive& a) { small->save(a); }, [small](InArchive& a) { small->restore(a); });
   double seconds_before = 0.0;
   parts.restore(resumed ? &*resumed : nullptr);
   if (resumed) {
@@ -251,6 +262,7 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   v["integrator"]["method"] = law.integrator.method, v["integrator"]["tolerance"] = law.integrator.tolerance;
   v["integrator"]["steps"] = s.accepted, v["integrator"]["rejected by error"] = s.rejected_error;
   v["integrator"]["rejected by Newton"] = s.rejected_newton, v["integrator"]["Newton iterations"] = s.newton_iterations;
+  if (problem.is_linear()) v["equations"] = law.linear ? "linear: small motions about the steadily turning equilibrium" : "linear: constant matrices";
   v["integrator"]["linearisations"] = s.linearizations;
   v["integrator"]["factorisations real"] = s.factorizations_real, v["integrator"]["factorisations complex"] = s.factorizations_complex;
   v["integrator"]["residual evaluations"] = s.residuals;
@@ -279,6 +291,13 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
       job.report.warnings.push_back(step.name + ": " + w);
       if (!job.options.quiet) std::fputs(fmt::format("warning: {}: {}\n", step.name, w).c_str(), stderr);
     }
+  }
+  // second-order terms: the square of the tilt
+  if (law.linear && tilt.tilt() * tilt.tilt() > 0.01) {
+    const std::string w = fmt::format("linear = true, but {} tilts by {:.2g} rad: the terms left out are {:.2g} of those kept", job.system().node(tilt.node()).name, tilt.tilt(), tilt.tilt() * tilt.tilt());
+    v["warnings"].push(w);
+    job.report.warnings.push_back(step.name + ": " + w);
+    if (!job.options.quiet) std::fputs(fmt::format("warning: {}: {}\n", step.name, w).c_str(), stderr);
   }
   for (const auto& f : frames) v["frames"] = f->frames();
 

@@ -155,6 +155,11 @@ const std::vector<CodeInfo>& error_catalogue() {
        "tenth of sqrt(mass x inertia); here even the whole line is too light, so that the kinetic energy would not be positive and every run would grow "
        "without bound. Usually a unit slipped, or the disk that has the unbalance is missing or has no inertia.",
        "amount = \"100 kg.mm\"   # wrong on a 1 kg rotor\namount = \"100 g.mm\"    # right: 1 g at 100 mm"},
+      {"E39", "a linear transient that is not linear",
+       "linear = true computes small motions about a rotor that turns at constant speed: a torque drive, or a prescribed speed that changes, "
+       "contradict it, and so does the integrator momentum_rk. Unequal stiffness or inertia of a shaft that turns makes its matrices turn too; "
+       "the message then says so. Leave linear out: the general model does all of these.",
+       "[[step]]\nname = \"release\"\ntype = \"transient\"\nlinear = true\ninitial_speed = \"3000 rpm\""},
       {"E71", "the split of the rotation reached its limit",
        "A section normal turned by pi from the axis of its shaft: the axial angle and the azimuth of the transverse rotation then describe the same "
        "motion. With model.chart_change = true (the default) the reference axes are moved before that happens; without, the run ends "
@@ -234,6 +239,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        "A resumed run continues the motion bit for bit, so everything the motion depends on must be what it was: model, laws, integrator, earlier steps. "
        "Outputs, probes, titles, the duration, stop conditions and later steps may change. The message shows the first line of the resolved deck that differs.",
        "whirl run deck.toml            # anew\nwhirl run deck.toml --resume   # with duration = \"30 s\" instead of \"20 s\": goes on"},
+      {"E95", "nothing to study",
+       "whirl study compares integrators on the first transient step of a deck, which must start by itself; whirl study --stability needs a step "
+       "that names a speed and a rotor with a mode that oscillates.",
+       ""},
       {"W01", "unused parameter",
        "A key of [parameters] is used nowhere: probably a misspelt ${name}, or a leftover.",
        ""},

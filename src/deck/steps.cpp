@@ -235,6 +235,7 @@ void describe(Visitor& v, model::TransientStep& s) {
   v.quantity("initial_speed", s.speed0, "rpm", any, "spin at the start of every rotating line (times its speed_ratio)");
   v.quantity(optional("stop_speed", "never"), s.stop_speed, "rpm", any, "the run ends when the reference spin passes this value");
   v.quantity(optional("amplitude_limit", "none"), s.amplitude_limit, "mm", positive, "the run ends when a probe exceeds this displacement");
+  v.flag("linear", s.linear, "small motions about the rotor that turns at constant speed in static equilibrium: constant matrices, one factorisation for each length of step; loads and unbalance act as they are");
   v.quantity("checkpoint", s.checkpoint, "s", not_negative, "wall-clock time between checkpoints, from which --resume continues; 0 s: none");
   v.table("integrator", s.integrator, "time integration");
 }

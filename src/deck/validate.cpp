@@ -160,6 +160,24 @@ std::optional<std::pair<double, double>> frequencies_of(const model::Model& m, c
   return std::nullopt;
 }
 
+void check_linear(const model::Model& m, Problems& out) {
+  for (const auto& s : m.steps) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    if (!t || !t->linear) continue;
+    const auto say = [&](std::string what, const char* hint) { add(out, "E39", fmt::format("step '{}' is linear, but {}", s.name, what), hint, s.where); };
+    if (t->integrator.method == "momentum_rk") say("momentum_rk integrates the general motion of rigid bodies", "another method, or linear = false");
+    for (const auto& d : m.drives) {
+      if (!d.step.empty() && d.step != s.name) continue;
+      if (std::holds_alternative<model::TorqueCurve>(d.law)) {
+        say(fmt::format("drive '{}' is a torque: it changes the speed", d.name), "give it another step, or leave linear out");
+      } else if (const auto range = speeds_of(m, s, d.at.shaft); range && range->second - range->first > 1e-9 * std::max(std::abs(range->first), std::abs(range->second))) {
+        say(fmt::format("drive '{}' changes the speed from {} to {}", d.name, units::display(range->first, "rpm"), units::display(range->second, "rpm")),
+            "a constant speed, or leave linear out");
+      }
+    }
+  }
+}
+
 void check_tables(const model::Model& m, Problems& out) {
   for (const auto& b : m.bearings) {
     const auto* table = std::get_if<model::TableBearing>(&b.law);
@@ -284,6 +302,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   Problems out;
   check_restraint(m, out);
   check_tables(m, out);
+  check_linear(m, out);
   check_drives(m, out);
   check_gears(m, out);
   check_places(m, out);

@@ -282,6 +282,7 @@ struct TransientStep {
   double stop_speed = 0;           ///< stop when the reference spin passes this value; 0 = never
   double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
   double checkpoint = 60;          ///< wall-clock s between checkpoints; 0 = none
+  bool linear = false;             ///< small motions about the steadily turning equilibrium: constant matrices
 };
 
 using StepLaw = std::variant<StaticStep, ModalStep, CampbellStep, CriticalStep, UnbalanceStep, StabilityStep, CriticalMapStep, HarmonicStep,

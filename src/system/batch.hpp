@@ -35,6 +35,13 @@ class Term {
   virtual bool quadratic_in_rates() const = 0;
   /// Neither supplies nor dissipates (kernels that say powerless = true).
   virtual bool powerless() const = 0;
+  /// At given directors and angles of its nodes the force is affine in u, u', u'' with constant coefficients (kernels that say
+  /// linear_in_displacements = true).
+  virtual bool linear_in_displacements() const = 0;
+  /// The force has corners (kernels that have a region()).
+  virtual bool cornered() const = 0;
+  /// Appends, for every element of a cornered() term, on which smooth piece of its force it stands.
+  virtual void list_regions(const Workspace& w, std::vector<int>& out) const = 0;
   /// Adds the inertia of an inertial() term to its nodes; false when it is not constant in time.
   virtual bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const = 0;
   virtual void add_force(Workspace& w) const = 0;
@@ -80,6 +87,22 @@ class Batch final : public Term {
   bool powerless() const override {
     if constexpr (requires { K::powerless; }) return K::powerless;
     else return false;
+  }
+  bool linear_in_displacements() const override {
+    if constexpr (requires { K::linear_in_displacements; }) return K::linear_in_displacements;
+    else return false;
+  }
+  bool cornered() const override {
+    if constexpr (has_regions)
+      for (const K& k : elements_)
+        if (k.cornered()) return true;
+    return false;
+  }
+  void list_regions(const Workspace& w, std::vector<int>& out) const override {
+    if constexpr (has_regions)
+      for (std::size_t i = 0; i < elements_.size(); ++i) out.push_back(elements_[i].region(gather(w, i)));
+    else
+      (void)w, (void)out;
   }
   std::vector<K>& elements() { return elements_; }
   const std::vector<K>& elements() const { return elements_; }
@@ -146,6 +169,7 @@ class Batch final : public Term {
   }
 
  private:
+  static constexpr bool has_regions = requires(const K& k, const Nodes<K::n_nodes>& x) { k.region(x); };
   Nodes<N> gather(const Workspace& w, std::size_t i) const {
     Nodes<N> x;
     for (int a = 0; a < N; ++a) x[a] = &w.nodes[static_cast<std::size_t>(nodes_[i][a])];

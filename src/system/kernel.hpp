@@ -17,6 +17,12 @@
 // Optional: quadratic_in_rates = true says that f is a polynomial of degree <= 2 in u', d', phi' at fixed u, d, phi, with
 // constant M: frequency-domain analyses then combine its matrices for any speed from three evaluations.
 //
+// Optional: linear_in_displacements = true says that at given d(t), phi(t) f is affine in u, u', u'' with constant coefficients: a
+// scene of such kernels in which nothing tilts or turns freely is integrated with one linearisation.
+//
+// Optional: int region(const Nodes<>&) const numbers the smooth pieces of a force that has corners (a gap closes), and bool
+// cornered() const says whether this element has any: a transient puts the ends of its steps on the corners.
+//
 // Sign: f is what stands on the LEFT: inertia + internal force - external force. Absent tangents (has_* false) are never
 // touched. Kernels do not allocate, throw, or branch on physics that the deck could have left out: that is another kernel.
 #pragma once

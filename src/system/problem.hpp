@@ -14,12 +14,13 @@ struct ProblemOptions {
 };
 
 /// Owns frames, workspace, matrices and factorisations; borrows the System.
-class SystemProblem final : public time::Problem {
+class SystemProblem : public time::Problem {
  public:
   SystemProblem(const System& system, ProblemOptions options = {});
 
   Index size() const override { return system_.size(); }
   std::span<const time::Kind> kinds() const override { return kinds_; }
+  bool is_linear() const override { return system_.linear(); }
   void impose(double t, time::Ref q, time::Ref v, time::Ref a) const override { system_.impose(frames, t, q, v, a); }
   bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
   void linearize(double t, time::CRef q, time::CRef v, time::CRef a) override;
@@ -51,6 +52,10 @@ class SystemProblem final : public time::Problem {
   std::string singular_unknown() const;
 
   Frames frames;   ///< current charts and turns; copy into State to checkpoint
+
+ protected:
+  /// For problems that keep matrices of their own making.
+  la::MCK& kept_matrices() { return matrices_; }
 
  private:
   bool rechart(Index line, time::Ref q, time::Ref v, time::Ref a);

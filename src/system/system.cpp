@@ -92,7 +92,18 @@ System Builder::finalize() {
     if (row[at(i)] >= 0 && row[at(j)] >= 0) kept.emplace_back(i, j);
   s.pattern_ = std::make_unique<la::BlockPattern>(s.nodes(), kept);
   for (auto& term : s.terms_) term->bind(*s.pattern_, row);
+  s.linear_ = true;
+  for (const auto& term : s.terms_) s.linear_ = s.linear_ && term->linear_in_displacements();
+  for (Index k = 0; k < s.size(); ++k)
+    if (k % 6 >= 3 && s.active_[at(k)]) s.linear_ = false;
+  for (std::size_t i = 0; i < s.terms_.size(); ++i)
+    if (s.terms_[i]->cornered()) s.cornered_.push_back(i);
   return std::move(system_);
+}
+
+void System::list_regions(const Workspace& w, std::vector<int>& out) const {
+  out.clear();
+  for (std::size_t i : cornered_) terms_[i]->list_regions(w, out);
 }
 
 std::vector<double> System::breakpoints() const {

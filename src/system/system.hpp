@@ -56,6 +56,12 @@ class System {
   const std::vector<Hold>& holds() const { return holds_; }
   const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
   const Vec3& gravity() const { return gravity_; }
+  /// The equations are affine in the unknowns with constant M, C, K: no rotation is unknown, and every kernel says so.
+  bool linear() const { return linear_; }
+  /// Terms whose force has corners (a gap closes): most scenes have none.
+  bool cornered() const { return !cornered_.empty(); }
+  /// The smooth piece on which every element of theirs stands, at the node states of the last evaluation.
+  void list_regions(const Workspace& w, std::vector<int>& out) const;
   /// The batch of kernel type K, or null when the scene has none.
   template <Kernel K> const Batch<K>* batch() const {
     auto it = by_type_.find(std::type_index(typeid(K)));
@@ -107,6 +113,8 @@ class System {
   std::unique_ptr<la::BlockPattern> pattern_;
   std::vector<std::unique_ptr<Term>> terms_;
   std::unordered_map<std::type_index, std::size_t> by_type_;
+  std::vector<std::size_t> cornered_;
+  bool linear_ = false;
   Vec3 gravity_ = Vec3::Zero();
   std::array<LawPtr, 3> base_;   ///< base acceleration along x, y, z; null = none
 };

@@ -56,6 +56,12 @@ Complex stability_function(std::string_view name, Complex z) {
   unknown(name);
 }
 
+double bdf2_radius(Complex z) {
+  double radius = 0.0;
+  for (const Complex& r : roots(0.5, -2.0, 1.5 - z, 0.0)) radius = std::max(radius, std::abs(r));
+  return radius;
+}
+
 ModeResponse mode_response(std::string_view name, double omega, double zeta, double h, double rho_inf) {
   const double wd = omega * std::sqrt(1.0 - zeta * zeta);
   const Complex lambda(-zeta * omega, wd), z = h * lambda, exact = std::exp(z);

@@ -22,4 +22,7 @@ ModeResponse mode_response(std::string_view name, double omega, double zeta, dou
 /// Stability function of a collocation method (Pade approximants of exp), z = h lambda. Throws Error for other names.
 Complex stability_function(std::string_view name, Complex z);
 
+/// Larger root of BDF of order 2 at equal steps, (3/2 - z) r^2 - 2 r + 1/2 = 0.
+double bdf2_radius(Complex z);
+
 }  // namespace whirl::time

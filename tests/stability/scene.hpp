@@ -5,6 +5,7 @@
 #include <elements/linear_bearing.hpp>
 #include <elements/point_load.hpp>
 #include <elements/point_mass.hpp>
+#include <elements/rigid_body.hpp>
 #include <elements/rigid_disk.hpp>
 #include <elements/shaft_beam.hpp>
 #include <elements/spring_block.hpp>

@@ -1,5 +1,6 @@
 // Linearised buckling against Euler and Greenhill.
 #include "../analysis/rotors.hpp"
+#include "record.hpp"
 
 #include <analysis/buckling.hpp>
 #include <core/error.hpp>
@@ -25,6 +26,7 @@ std::vector<BucklingMode> factors(const system::System& s, Index count = 2) {
 
 // Pinned column under an axial force of 1 N: pi^2 EI/L^2, twice (both planes).
 TEST(Buckling, EulerColumn) {
+  test::Record record("Pinned column", "L. Euler: P = pi^2 EI/L^2; 8 elements");
   Rotor r;
   r.add_shaft(constants(1e12, 0, GJ, EI, 1), L, 8).pin(0, true).pin(L);
   r.b.hold(r.at(0), 3);
@@ -32,17 +34,18 @@ TEST(Buckling, EulerColumn) {
   const auto m = factors(r.b.finalize());
   ASSERT_EQ(m.size(), 2u);
   // cubic bowing of eight elements: (pi/8)^4/720 = 3.3e-5
-  for (const BucklingMode& k : m) EXPECT_NEAR(k.factor.real() * L * L / (EI * pi * pi), 1.0, 3.5e-5);
+  for (const BucklingMode& k : m) record.check("buckling load over pi^2 EI/L^2", "-", k.factor.real() * L * L / (EI * pi * pi), 1.0, 3.5e-5);
 }
 
 // With shear: Engesser's P = Pe/(1 + Pe/kGA).
 TEST(Buckling, ColumnSoftInShear) {
+  test::Record record("Pinned column soft in shear", "F. Engesser 1889: P = Pe/(1 + Pe/kGA); 32 elements");
   const double kGA = 1e5, Pe = EI * pi * pi / (L * L);
   Rotor r;
   r.add_shaft(constants(1e9, kGA, GJ, EI, 1), L, 32).pin(0, true).pin(L);
   r.b.hold(r.at(0), 3);
   r.b.add(elements::FixedLoad{Vec3(-1, 0, 0), Vec3::Zero(), 0, nullptr}, {r.at(L)}, "thrust");
-  EXPECT_NEAR(factors(r.b.finalize())[0].factor.real(), Pe / (1 + Pe / kGA), 2e-4 * Pe);
+  record.check("buckling load", "N", factors(r.b.finalize())[0].factor.real(), Pe / (1 + Pe / kGA), 2e-4 * Pe);
 }
 
 // A. G. Greenhill 1883: a shaft under an end torque of fixed direction buckles at M L/EI = 2 pi between pins, at 8.986818916 between clamps

@@ -1,5 +1,6 @@
 // Jeffcott rotor: run-up with constant acceleration, limited torque (Sommerfeld effect), sudden unbalance, moving base.
 #include "jeffcott.hpp"
+#include "record.hpp"
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -12,6 +13,7 @@ using namespace whirl::test;
 // complex argument, evaluated with 30 digits and checked against an explicit eighth-order integration to 4e-9. Columns: angular
 // acceleration / omega_n^2, damping ratio, largest |r|/e, speed there / omega_n.
 TEST(JeffcottRunUp, ConstantAccelerationAgainstExactSolution) {
+  Record record("Jeffcott rotor, constant acceleration", "F. M. Lewis, J. Appl. Mech. 54 (1932) APM-54-24; closed form with error functions of complex argument");
   struct Row { double alpha, zeta, peak, ratio; };
   const Row rows[] = {{0.0005, 0, 66.37106764, 1.04825386},    {0.0005, 0.02, 22.34498196, 1.030923264}, {0.002, 0, 33.56914455, 1.096416411},
                       {0.002, 0.01, 23.5842911, 1.084738806},  {0.005, 0.05, 8.692021788, 1.111174319},   {0.01, 0.02, 11.3084098, 1.194953228},
@@ -24,7 +26,9 @@ TEST(JeffcottRunUp, ConstantAccelerationAgainstExactSolution) {
     const double t_end = (row.ratio + 0.05) / row.alpha / omega;
     const JeffcottRun r = run(j, t_end, 1e-7);
     // 1e-6 of the peak is ten times the tolerance; a peak is flat, so its speed is known to the square root of that
-    EXPECT_NEAR(r.peak.amplitude / j.e, row.peak, 1e-6 * row.peak) << row.alpha << " " << row.zeta;
+    char what[80];
+    std::snprintf(what, sizeof what, "alpha/omega_n^2 = %g, zeta = %g, largest ", row.alpha, row.zeta);
+    record.check(std::string(what) + "r/e", "-", r.peak.amplitude / j.e, row.peak, 1e-6 * row.peak);
     EXPECT_NEAR(r.peak.speed / omega, row.ratio, 1e-4) << row.alpha << " " << row.zeta;
   }
 }
@@ -57,17 +61,19 @@ Jeffcott sommerfeld(double torque) {
 }  // namespace
 
 TEST(Sommerfeld, PassageUnderLimitedTorque) {
+  Record record("Sommerfeld effect: passage under limited torque", "explicit eighth-order integration of the three equations, rtol 1e-10");
   struct Row { double torque, peak, ratio, t1, t15; };
   for (const Row& row : {Row{5, 0.01374522, 1.18602, 1.00812, 1.533119}, {6, 0.01264678, 1.2097, 0.838843, 1.273568}, {8, 0.01113032, 1.25064, 0.627992, 0.951763}}) {
     const JeffcottRun r = run(sommerfeld(row.torque), 4.0, 1e-6, 0.0, {}, "radau5", {{0, 150.0}});
     EXPECT_EQ(r.result.reason, analysis::StopReason::speed_reached);
     // the table has six digits
-    EXPECT_NEAR(r.peak.amplitude, row.peak, 1e-6 * row.peak + 5e-9) << row.torque;
+    const std::string torque = std::to_string(static_cast<int>(row.torque)) + " N m, ";
+    record.check(torque + "peak amplitude", "m", r.peak.amplitude, row.peak, 1e-6 * row.peak + 5e-9);
     // the amplitude is flat there: 1e-6 of it is 1e-3 of the way through the resonance; the reference states the speed to 5e-4
     EXPECT_NEAR(r.peak.speed / 100.0, row.ratio, 5e-4) << row.torque;
-    EXPECT_NEAR(r.result.end.t, row.t15, 1e-6) << row.torque;
+    record.check(torque + "time to 1.5 omega_n", "s", r.result.end.t, row.t15, 1e-6);
     const JeffcottRun first = run(sommerfeld(row.torque), 4.0, 1e-6, 0.0, {}, "radau5", {{0, 100.0}});
-    EXPECT_NEAR(first.result.end.t, row.t1, 1e-5) << row.torque;   // five digits after the point
+    record.check(torque + "time to omega_n", "s", first.result.end.t, row.t1, 1e-5);   // five digits after the point
   }
 }
 

@@ -1,5 +1,6 @@
 // Statics of shafts in their bearings against closed forms: sag, reactions, section forces, stresses, preload, thermal offset, torque.
 #include "../meshes/models.hpp"
+#include "record.hpp"
 #include "static_model.hpp"
 
 #include <core/rotation.hpp>
@@ -35,19 +36,21 @@ model::Model two_disks(int elements) {
 }  // namespace
 
 TEST(StaticRotor, SagReactionsAndSlopesOfTwoDisks) {
+  Record record("Static sag of the two-disk rotor", "closed form of the Timoshenko beam (Cowper 1966); load divided by 1000, values multiplied");
   // The closed form is that of the linear Timoshenko beam; large rotation enters with the square of the slope, 2e-3: the load is
   // divided by 1000, which leaves 4e-12.
   const double f = 1e-3;
   for (int n : {1, 2, 8}) {
+    const std::string elements = std::to_string(n) + " elements a section";
     const model::Model m = two_disks(n);
     EXPECT_NEAR(m.disks[0].mass, 32.58972765, 1e-8);
     EXPECT_NEAR(m.disks[1].mass, 51.52526111, 1e-8);
     const Solved s = solve(m, 0.0, f);
     const double expected[4] = {-0.0004944509431, -0.001303792929, -0.0013445792, -0.0005563701375};
-    for (int k = 0; k < 4; ++k) EXPECT_NEAR(s.node_at(place(0.5 * k)).u.y() / f, expected[k], 1e-9 * 1.4e-3) << n;
-    EXPECT_NEAR(s.support(0).y() / f, 494.4509431, 1e-9 * 495);
-    EXPECT_NEAR(s.support(1).y() / f, 556.3701375, 1e-9 * 557);
-    EXPECT_NEAR(s.node_at(place(0)).t.y() / f, -0.001921605587, 1e-9 * 2e-3);
+    for (int k = 0; k < 4; ++k) record.check(elements + ", sag at " + std::to_string(500 * k) + " mm", "m", s.node_at(place(0.5 * k)).u.y() / f, expected[k], 1e-9 * 1.4e-3);
+    record.check(elements + ", left reaction", "N", s.support(0).y() / f, 494.4509431, 1e-9 * 495);
+    record.check(elements + ", right reaction", "N", s.support(1).y() / f, 556.3701375, 1e-9 * 557);
+    record.check(elements + ", slope at the left end", "rad", s.node_at(place(0)).t.y() / f, -0.001921605587, 1e-9 * 2e-3);
     EXPECT_NEAR(s.node_at(place(1.5)).t.y() / f, 0.001918756454, 1e-9 * 2e-3);
   }
 }

@@ -1,5 +1,6 @@
 // Onset of instability: internal damping and oil films, against closed forms.
 #include "../analysis/rotors.hpp"
+#include "record.hpp"
 
 #include <analysis/stability.hpp>
 #include <elements/short_journal.hpp>
@@ -35,12 +36,13 @@ StabilityResult onsets(const system::System& s, double from, double to, Index mo
 
 // A. L. Kimball 1924, D. M. Smith 1933: onset at omega_n (1 + ce/ci), whirling at omega_n.
 TEST(InternalDamping, OnsetOfAJeffcottRotor) {
+  test::Record record("Internal damping: onset of instability", "A. L. Kimball 1924, D. M. Smith 1933: omega_n (1 + ce/ci)");
   const system::System s = jeffcott(0).b.finalize();
   const auto r = onsets(s, 10, 900);
   EXPECT_TRUE(r.stable_at_start);
   ASSERT_EQ(r.onsets.size(), 1u);
-  EXPECT_NEAR(r.onsets[0].speed, 474.341649025, 1e-9 * 474.34);
-  EXPECT_NEAR(r.onsets[0].frequency, 316.227766017, 1e-9 * 316.2);
+  record.check("onset speed", "rad/s", r.onsets[0].speed, 474.341649025, 1e-9 * 474.34);
+  record.check("whirl frequency there", "rad/s", r.onsets[0].frequency, 316.227766017, 1e-9 * 316.2);
   EXPECT_TRUE(r.onsets[0].gains);
   EXPECT_EQ(r.onsets[0].mode.direction, Direction::forward);
   // growth on both sides, 1/s
@@ -54,15 +56,17 @@ TEST(InternalDamping, OnsetOfAJeffcottRotor) {
 
 // Unequal supports raise it: Omega = sqrt(d^2 + c^2 k/m)/ci, d half the difference and k the mean of the stiffnesses, c = ci + ce.
 TEST(InternalDamping, OnsetOnUnequalSupports) {
+  test::Record record("Internal damping on unequal supports", "Omega = sqrt(d^2 + c^2 k/m)/ci, d half the difference and k the mean of the stiffnesses, c = ci + ce");
   const auto r = onsets(jeffcott(2e5).b.finalize(), 10, 2000);
   ASSERT_EQ(r.onsets.size(), 1u);
-  EXPECT_NEAR(r.onsets[0].speed, 1116.915395, 1e-9 * 1116.9);
-  EXPECT_NEAR(r.onsets[0].frequency, 331.662479, 2e-9 * 331.7);
+  record.check("onset speed", "rad/s", r.onsets[0].speed, 1116.915395, 1e-9 * 1116.9);
+  record.check("whirl frequency there", "rad/s", r.onsets[0].frequency, 331.662479, 2e-9 * 331.7);
 }
 
 // Short plain journal bearings, pi film (Friswell et al. 2010, example 5.5.1: D = 100 mm, L = 30 mm, c = 0.1 mm, 0.1 Pa s, 525 N): equilibrium in
 // the film, its coefficients and the onset solved for together, from the nonlinear film element.
 TEST(OilFilm, OnsetOfARigidRotor) {
+  test::Record record("Oil whirl of a rigid rotor in short bearings", "M. I. Friswell et al. 2010, example 5.5.1; characteristic equation of the linear film coefficients");
   system::Builder b;
   const Index line = b.add_line("rotor"), node = b.add_node({Vec3::Zero(), line, "journal"});
   b.add(elements::RigidDisk{525 / 9.81, 1, 2, 0}, {node}, "disks");
@@ -71,13 +75,14 @@ TEST(OilFilm, OnsetOfARigidRotor) {
   for (int c : {0, 4, 5}) b.hold(node, c);
   const auto r = onsets(b.finalize(), 3000 * rpm, 12000 * rpm);
   ASSERT_GE(r.onsets.size(), 1u);
-  EXPECT_NEAR(r.onsets[0].speed / rpm, 8244.3368, 1e-7 * 8244.3);
-  EXPECT_NEAR(r.onsets[0].frequency, 432.5136, 2e-7 * 432.5);
-  EXPECT_NEAR(r.onsets[0].ratio(), 0.500974, 1e-6);
+  record.check("onset speed", "rpm", r.onsets[0].speed / rpm, 8244.3368, 1e-7 * 8244.3);
+  record.check("whirl frequency", "rad/s", r.onsets[0].frequency, 432.5136, 2e-7 * 432.5);
+  record.check("whirl / spin", "-", r.onsets[0].ratio(), 0.500974, 1e-6);
 }
 
 // A mass on a flexible shaft between massless journals: Omega = sqrt(keq ks/((keq + ks) M))/WFR.
 TEST(OilFilm, OnsetOfAFlexibleRotor) {
+  test::Record record("Oil whirl of a flexible rotor", "Omega = sqrt(keq ks/((keq + ks) M))/WFR, short bearings as above");
   for (const auto& [natural, speed, whirl] : {std::tuple{100.0, 1811.3617, 97.37152}, {200.0, 3430.5272, 181.42303}, {300.0, 4678.6899, 246.38206}}) {
     system::Builder b;
     const Index line = b.add_line("rotor");
@@ -97,13 +102,14 @@ TEST(OilFilm, OnsetOfAFlexibleRotor) {
     b.hold(mass, 3, make_angle_of_speed(make_constant(0.0), 0.0));
     const auto r = onsets(b.finalize(), 0.5 * speed * rpm, 1.5 * speed * rpm);
     ASSERT_GE(r.onsets.size(), 1u) << natural;
-    EXPECT_NEAR(r.onsets[0].speed / rpm, speed, 1e-7 * speed);
+    record.check("onset speed, shaft alone " + std::to_string(static_cast<int>(natural)) + " rad/s", "rpm", r.onsets[0].speed / rpm, speed, 1e-7 * speed);
     EXPECT_NEAR(r.onsets[0].frequency, whirl, 1e-7 * whirl);
   }
 }
 
 // Friswell example 5.9.6: the two-disk rotor on two of these bearings, each carrying 525 N. Six elements.
 TEST(OilFilm, OnsetOfTheTwoDiskRotor) {
+  test::Record record("Oil whirl of the two-disk rotor, example 5.9.6", "M. I. Friswell et al. 2010; six elements, each bearing carries 525 N");
   Rotor rotor;
   rotor.add_shaft(cylinder(0.05, 2.11e11, 8.12e10, 7810), 1.5, 6, elements::MassKind::consistent);
   rotor.add_disk_of_size(0.5, 0.07, 0.28, 0.05, 7810).add_disk_of_size(1.0, 0.07, 0.35, 0.05, 7810).hold_axially(0);
@@ -114,7 +120,7 @@ TEST(OilFilm, OnsetOfTheTwoDiskRotor) {
   const auto r = onsets(rotor.b.finalize(), 500 * rpm, 3000 * rpm, 8);
   ASSERT_GE(r.onsets.size(), 1u);
   // the reference is stated to 2e-4
-  EXPECT_NEAR(r.onsets[0].speed / rpm, 2075.4209, 2e-4 * 2075.4);
-  EXPECT_NEAR(r.onsets[0].frequency / two_pi, 17.418836, 1e-5 * 17.4);
+  record.check("onset speed", "rpm", r.onsets[0].speed / rpm, 2075.4209, 2e-4 * 2075.4);
+  record.check("whirl frequency", "Hz", r.onsets[0].frequency / two_pi, 17.418836, 1e-5 * 17.4);
   EXPECT_NEAR(r.onsets[0].ratio(), 0.50357504, 2e-4);
 }

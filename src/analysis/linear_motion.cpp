@@ -1,0 +1,100 @@
+#include <analysis/linear_motion.hpp>
+
+#include <core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::analysis {
+
+namespace {
+
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Largest difference of the lateral entries of two matrices, relative to the diagonals they stand between.
+double difference(const la::BlockMatrix<6>& x, const la::BlockMatrix<6>& y, const VecX& diagonal) {
+  const la::BlockPattern& p = x.pattern();
+  double worst = 0.0;
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index s = p.row_start()[at(i)]; s < p.row_start()[at(i) + 1]; ++s) {
+      const Index j = p.cols()[at(s)];
+      for (int a = 0; a < 6; ++a)
+        for (int b = 0; b < 6; ++b) {
+          if (a == system::spin_phi || b == system::spin_phi) continue;
+          const double size = std::sqrt(diagonal[6 * i + a] * diagonal[6 * j + b]);
+          if (size > 0.0) worst = std::max(worst, std::abs(x.block(s)(a, b) - y.block(s)(a, b)) / size);
+        }
+    }
+  return worst;
+}
+
+VecX diagonal_of(const la::BlockMatrix<6>& x) {
+  const la::BlockPattern& p = x.pattern();
+  VecX d = VecX::Zero(6 * p.size());
+  for (Index i = 0; i < p.size(); ++i) d.segment<6>(6 * i) = x.block(p.slot(i, i)).diagonal().cwiseAbs();
+  return d;
+}
+
+/// An unbalance moves the mass of a station by a share of 1e-6 or so; a key way or a second moment of area shows more.
+constexpr double turning_share = 1e-3;
+
+}  // namespace
+
+LinearMotion::LinearMotion(const system::System& system, const Running& running, double Omega, const system::State& start, EquilibriumOptions options)
+    : SystemProblem(system, {la::SolverKind::automatic, false, 2.0}), q_(system.size()), v_(system.size()), a_(VecX::Zero(system.size())),
+      steady_(system.make_workspace()) {
+  Linearizer linear(system, running, options);
+  linear.start_from(start);
+  const la::MCK& m = linear.at(Omega);
+  const system::State& e = linear.equilibrium().state;
+  for (std::size_t l = 0; l < e.frames.chart.size(); ++l)
+    if (!e.frames.chart[l].isApprox(start.frames.chart[l], 1e-12))
+      throw run_error("E39", "the rotor tilts too far for small motions", "leave linear out of the step");
+  if (linear.running().phase_dependent()) {
+    la::MCK turned = system.make_matrices();
+    const VecX K = diagonal_of(m.K), M = diagonal_of(m.M);
+    double worst = 0.0;
+    for (double theta : {0.4, 1.9}) {
+      linear.running().tangent_at(e.frames, Omega, e.q, theta, turned);
+      worst = std::max({worst, difference(turned.K, m.K, K), difference(turned.M, m.M, M)});
+    }
+    if (worst > turning_share)
+      throw run_error("E39", "the matrices turn with the rotor: its stiffness or inertia is not the same in all directions",
+                      "leave linear out of the step");
+  }
+  la::MCK& kept = kept_matrices();
+  for (auto [to, from] : {std::pair(&kept.M, &m.M), std::pair(&kept.C, &m.C), std::pair(&kept.K, &m.K)})
+    std::copy_n(from->data(), from->value_count(), to->data());
+
+  q0_ = e.q, v0_ = e.v;
+  const auto spinning = linear.running().spinning();
+  turns_.assign(spinning.begin(), spinning.end());
+  angle_ = VecX::Zero(system.lines());
+  std::vector<unsigned char> seen(at(system.lines()), 0);
+  for (Index l = 0; l < system.lines(); ++l) rate_.push_back(Omega * linear.running().ratio(l));
+  for (Index i = 0; i < system.nodes(); ++i) {
+    const Index l = system.node(i).line;
+    if (!turns_[at(i)] || seen[at(l)]) continue;
+    seen[at(l)] = 1;
+    angle_[l] = start.total_phi(i, l) - q0_[6 * i + system::spin_phi] - rate_[at(l)] * start.t;
+  }
+  frames = start.frames;
+}
+
+bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
+  q_ = q0_, v_ = v0_;
+  for (Index i = 0; i < system().nodes(); ++i)
+    if (turns_[at(i)]) {
+      const Index l = system().node(i).line;
+      q_[6 * i + system::spin_phi] += (angle_[l] - two_pi * frames.turns[at(l)]) + rate_[at(l)] * t;
+    }
+  if (!system().residual(steady_, frames, t, q_, v_, a_, r)) return false;
+  q_ = q - q_, v_ = v - v_;
+  const la::MCK& m = matrices();
+  m.M.add_multiply(1.0, a, r);
+  m.C.add_multiply(1.0, v_, r);
+  m.K.add_multiply(1.0, q_, r);
+  return true;
+}
+
+}  // namespace whirl::analysis

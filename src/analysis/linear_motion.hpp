@@ -1,0 +1,40 @@
+// Small motions in time about a rotor that turns at constant speed in its static equilibrium:
+//   R(steady motion, t) + M (a - a0) + C (v - v0) + K (q - q0(t)) = 0
+// with the residual of the general model along the steady motion (unbalance, gravity, given forces as they act at t) and the
+// constant matrices of the Linearizer. One linearisation serves the run, one factorisation each length of step, and Newton's
+// first iteration is exact. Held unknowns follow their laws. What is left out is of second order in the motion: with tilts of
+// 1e-3 the response is right to about 1e-6.
+//
+// q is the whole state, not the deviation: whatever reads a SystemProblem reads this one.
+#pragma once
+#include <analysis/linear.hpp>
+#include <core/archive.hpp>
+#include <system/problem.hpp>
+
+namespace whirl::analysis {
+
+class LinearMotion final : public system::SystemProblem {
+ public:
+  /// Omega: rad/s of the lines with ratio 1. start: state the run begins with; its angles say where the lines stand at start.t.
+  /// Errors: as Linearizer::at; E39 when the matrices turn with a rotor.
+  LinearMotion(const system::System& system, const Running& running, double Omega, const system::State& start, EquilibriumOptions options = {});
+
+  bool is_linear() const override { return true; }
+  bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
+  /// Keeps the matrices it has.
+  void linearize(double, time::CRef, time::CRef, time::CRef) override {}
+
+  /// The steady motion, for checkpoints.
+  void save(OutArchive& out) const { out.put(q0_), out.put(v0_), out.put(angle_); }
+  void restore(InArchive& in) { q0_ = in.vector(), v0_ = in.vector(), angle_ = in.vector(); }
+
+ private:
+  VecX q0_, v0_;       ///< equilibrium; steady rates
+  VecX angle_;         ///< per line: angle of the steady motion at t = 0 over that of q0_, rad, whole turns included
+  std::vector<double> rate_;            ///< per line, rad/s
+  std::vector<unsigned char> turns_;    ///< per node: its phi turns
+  VecX q_, v_, a_;                      // scratch
+  system::Workspace steady_;
+};
+
+}  // namespace whirl::analysis
