@@ -98,7 +98,8 @@ ReducedRotor ReducedRotor::conservative() const {
 
 ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count) {
   ModesOptions options;
-  options.count = count + 6;   // rigid motions are left out afterwards
+  const auto active = linear.active();
+  options.count = std::min<Index>(count + 6, std::count(active.begin(), active.end(), 1));   // rigid motions are left out afterwards
   const std::vector<WhirlMode> modes = whirl_modes(linear, Omega, options);
   const la::MCK& m = linear.at(Omega);
   double largest = 0.0;
@@ -119,6 +120,12 @@ ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count) {
       if (!(s.norm() > 1e-8 * before) || !(before > 0.0)) continue;
       V.col(columns++) = s.normalized();
     }
+  }
+  if (columns == 0 && options.count <= 12) {
+    // a single body: all of its unknowns but the spin
+    V.resize(n, options.count);
+    for (Index k = 0; k < n; ++k)
+      if (active[static_cast<std::size_t>(k)] && k % 6 != system::spin_phi && columns < options.count) V.col(columns++) = VecX::Unit(n, k);
   }
   if (columns == 0) throw run_error("E95", "the rotor has no mode that oscillates", "a stability study needs elastic supports or shafts");
   V.conservativeResize(n, columns);
@@ -154,8 +161,9 @@ double energy_ratio(const ReducedRotor& rotor, std::string_view method, double h
   // unit energy in every natural motion of the rotor at rest
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> shapes(rotor.K, rotor.M);
   VecX q = VecX::Zero(rotor.M.rows());
+  const double stiffest = shapes.eigenvalues().maxCoeff();
   for (Index k = 0; k < q.size(); ++k)
-    if (shapes.eigenvalues()[k] > 0.0) q += shapes.eigenvectors().col(k) / std::sqrt(shapes.eigenvalues()[k]);
+    if (shapes.eigenvalues()[k] > 1e-14 * stiffest) q += shapes.eigenvectors().col(k) / std::sqrt(shapes.eigenvalues()[k]);
   integrator->start(0.0, q, VecX::Zero(q.size()));
   const auto energy = [&] { return problem.power(0.0, integrator->q(), integrator->v(), integrator->a(), q).stored; };
   const double before = energy();

@@ -294,9 +294,7 @@ StepReport Stepper::advance() {
     if (target.landing) segment_k_ += 1.0;
     h_next_ = inside_part_ ? target.h : segment_step_;
   } else {
-    double proposal = control_.accepted(target.h, result.error, result.iterations, options_.max_newton);
-    // constant matrices: a step costs next to nothing beside a factorisation, so its length changes by whole octaves
-    if (problem_.is_linear() && proposal > target.h) proposal = target.h * std::exp2(std::floor(std::log2(proposal / target.h) + 1e-9));
+    const double proposal = control_.accepted(target.h, result.error, result.iterations, options_.max_newton);
     // a step cut short by a stop says nothing against the length wanted before
     h_next_ = target.clipped && smooth ? std::max(proposal, h_wanted) : proposal;
   }
