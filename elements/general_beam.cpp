@@ -111,12 +111,13 @@ struct Coupling {
     const T t = psi - T(b.psi_r);
     const T cc = EIa * (Mz * Ey) - EIb * (My * Ez);
     const T slope = EIa * (Kz * Ey + Mz * Sy) - EIb * (Ky * Ez + My * Sz);
-    const T s = EIa * (Mz * Mz - My * Ey) + EIb * (My * My - Mz * Ez);
+    const double ra = fa * L / 6.0, rb = fb * L / 6.0;   // 1/(1 + Phi): shear takes its part of a slope of the curvature
+    const T s = EIa * (ra * (Mz * Mz) - My * Ey) + EIb * (rb * (My * My) - Mz * Ez);
     V = T(-g) * cc * cc + h * (t * slope + 0.5 * (t * t * s));
     torque = h * (slope + t * s);
     const T cy = EIa * Mz - EIb * Ez, cz = EIa * Ey - EIb * My, th = h * t, tth = 0.5 * (th * t);
-    const T gy = T(-2.0 * g) * cc * cy + th * (EIa * Kz - EIb * Sz) + tth * (2.0 * EIb * My - EIa * (Ey + My));
-    const T gz = T(-2.0 * g) * cc * cz + th * (EIa * Sy - EIb * Ky) + tth * (2.0 * EIa * Mz - EIb * (Ez + Mz));
+    const T gy = T(-2.0 * g) * cc * cy + th * (EIa * Kz - EIb * Sz) + tth * (2.0 * EIb * rb * My - EIa * (Ey + My));
+    const T gz = T(-2.0 * g) * cc * cz + th * (EIa * Sy - EIb * Ky) + tth * (2.0 * EIa * ra * Mz - EIb * (Ez + Mz));
     const T ly = fa * (th * cy), lz = fb * (th * cz);
     my[0] = ly - il * gy, my[1] = ly + il * gy, mz[0] = lz - il * gz, mz[1] = lz + il * gz;
   }

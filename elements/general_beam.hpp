@@ -12,7 +12,8 @@
 //   V gets three terms that lift beams with unequal stiffnesses or initial curvature from order 2 to 4: inside the element the sections
 //   turn by alpha = (xi - 1/2)(psi - psi_r) against y, z, and the moments on the curvature twist it further than its ends show. With the mean
 //   curvature m = (p2 - p1)/length and its slope k = f (p1 + p2), of the whole and (e) of the deformation, EIa for y and EIb for z:
-//   c = EIa m_z m^e_y - EIb m_y m^e_z the torque per length about the tangent, c' its slope, s = EIa (m_z^2 - m_y m^e_y) + EIb (m_y^2 - m_z m^e_z),
+//   c = EIa m_z m^e_y - EIb m_y m^e_z the torque per length about the tangent, c' its slope, s = EIa (ra m_z^2 - m_y m^e_y) + EIb (rb m_y^2 - m_z m^e_z),
+//   r = 1/(1 + Phi) of each plane (a slope of the curvature is shared between bending and shear),
 //   V += -length^3/(24 GJ) c^2 + length/12 [(psi - psi_r) c' + 1/2 (psi - psi_r)^2 s],  psi_r = psi0 where the element is curved at rest, else 0.
 // The force is found from the power of the stresses on objective rates, p_i o = (p_i')_perp - sigma a x p_i and psi' = sigma2 - sigma1,
 // sigma_i = (a + D_i).(omega_i - a x a')/(1 + a.D_i), which are exactly the rates of the measures above. beta damps the same rates

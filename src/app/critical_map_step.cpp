@@ -88,7 +88,7 @@ void run_critical_map_step(Job& job, const model::Step& step, const model::Criti
   int forward = 0, backward = 0;
   for (const analysis::CriticalMapLine& l : map.lines) {
     const bool back = l.direction == analysis::Direction::backward;
-    const std::string label = fmt::format("{} {}", back ? ++backward : ++forward, back ? "backward" : law.backward ? "forward" : "critical");
+    const std::string label = fmt::format("{} {}", back ? "backward" : law.backward ? "forward" : "critical", back ? ++backward : ++forward);
     table.columns.push_back({label, "rpm", ""});
     curves.push_back({label, map.stiffness, l.speed});
   }

@@ -73,6 +73,7 @@ FrequencyStep::FrequencyStep(Job& j, const model::Step& s, const std::string& ty
     : job(j), step(s), linear((j.build_for(s), j.system()), running_of(j, top_speed), equilibrium_options(j)),
       start_(std::chrono::steady_clock::now()) {
   if (!s.from.empty()) linear.start_from(j.states.at(s.from).state);
+  type_ = type;
   summary()["type"] = type;
   section.title = fmt::format("{}: {}", s.name, title);
 }
@@ -98,6 +99,8 @@ void FrequencyStep::add_figure(io::Figure f) {
 void FrequencyStep::finish(const std::string& line) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   summary()["run time [s]"] = seconds;
+  if (turns_with_stiffness(job.model) && type_ != "stability")
+    section.text += " The stiffness of the asymmetric shaft enters as its mean over a revolution; a stability step shows where its turning makes the rotor unstable.";
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
   ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {:.3f} s", line, seconds));
 }

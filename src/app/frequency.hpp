@@ -49,6 +49,7 @@ class FrequencyStep {
   void finish(const std::string& line);
 
  private:
+  std::string type_;
   std::chrono::steady_clock::time_point start_;
 };
 
@@ -72,6 +73,10 @@ void run_campbell_step(Job&, const model::Step&, const model::CampbellStep&);
 void run_critical_step(Job&, const model::Step&, const model::CriticalStep&);
 void run_unbalance_step(Job&, const model::Step&, const model::UnbalanceStep&);
 void run_stability_step(Job&, const model::Step&, const model::StabilityStep&);
+/// A rotating shaft has unequal principal stiffnesses: matrices in fixed axes are means over the revolution, and stability is another matter.
+bool turns_with_stiffness(const model::Model& m);
+/// A stability step of such a rotor, in axes that turn with it.
+void run_instability_bands(Job&, const model::Step&, const model::StabilityStep&);
 void run_critical_map_step(Job&, const model::Step&, const model::CriticalMapStep&);
 void run_harmonic_step(Job&, const model::Step&, const model::HarmonicStep&);
 void run_torsional_step(Job&, const model::Step&, const model::TorsionalStep&);

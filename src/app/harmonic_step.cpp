@@ -190,7 +190,8 @@ void run_harmonic_step(Job& job, const model::Step& step, const model::HarmonicS
     if (asynchronous) use_frequency_axis(bode), use_frequency_axis(polar);
     s.add_figure(std::move(bode)), s.add_figure(std::move(polar));
   }
-  if (largest_twist > 0) {
+  // twist of the rounding of the lateral motion is no response: the arm that would make it visible is longer than any rotor
+  if (largest_twist > 1e-9 * largest) {
     std::vector<io::Axes> axes(2);
     axes[0].y = io::Axis("twist amplitude, 0-peak", "rad"), axes[1].y = io::Axis("largest vibratory torque, 0-peak", "N.m");
     for (io::Axes& a : axes) a.x = asynchronous ? io::Axis("excitation frequency", "Hz") : io::Axis("speed", "rpm"), a.y.include_zero = true;

@@ -12,6 +12,7 @@ namespace whirl::app {
 void run_stability_step(Job& job, const model::Step& step, const model::StabilityStep& law) {
   analysis::StabilityOptions o;
   const std::vector<double> speeds = speeds_of(law.speed);
+  if (turns_with_stiffness(job.model)) return run_instability_bands(job, step, law);
   FrequencyStep s(job, step, "stability", "stability", std::max(std::abs(speeds.front()), std::abs(speeds.back())));
   o.speeds = speeds, o.modes = law.modes, o.all = true;
   const PhaseTimer timer(job, "stability");

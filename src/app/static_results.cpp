@@ -138,9 +138,11 @@ StaticResults make_static_results(Job& job, const std::string& step, system::Sys
         return meshes::Pose{job.mesh.nodes[at(p.node)].position + n.u + p.offset * n.d(), n.d(), n.phi};
       };
       const meshes::Pose a = pose(e.left), b = pose(e.right);
+      // end slopes for the stretched length (thermal growth): chord, and the arc over it
+      const double arc = (b.r - a.r).norm() * (1.0 + (b.d - a.d).squaredNorm() / 24.0);
       for (int i = k == line.first_element ? 0 : 1; i <= 8; ++i) {
         const double xi = i / 8.0, s = e.s1 + xi * (e.s2 - e.s1);
-        const Vec3 u = meshes::interpolate(a, b, e.s2 - e.s1, xi).r - (line.origin + Vec3(s, 0, 0));
+        const Vec3 u = meshes::interpolate(a, b, arc, xi).r - (line.origin + Vec3(s, 0, 0));
         x.x.push_back(s), x.y.push_back(u.x()), y.x.push_back(s), y.y.push_back(u.y()), z.x.push_back(s), z.y.push_back(u.z());
         if (const double w = std::hypot(u.y(), u.z()); w > worst * (1 + 1e-9)) worst = w, where = s, worst_at = nullptr;
       }

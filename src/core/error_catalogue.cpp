@@ -221,6 +221,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        "The load is more than the film carries at this speed below the eccentricity it is believed to. The message gives load, capacity and the "
        "eccentricity reached.",
        ""},
+      {"E88", "no axes in which an asymmetric rotor is simple",
+       "Motions of a shaft with unequal principal stiffnesses are looked at in axes that turn with it. With shafts of different speeds there are none "
+       "in which the matrices are constant or periodic.",
+       "method: a transient step with a small initial disturbance"},
       {"E90", "a plug-in is missing or does not fit",
        "VTK, HDF5 and SUNDIALS live in plug-ins that are loaded only when a deck asks for them. The message lists where the file was looked for. "
        "Install the package that holds it, set WHIRL_PLUGIN_PATH, or ask for another output or method.",

@@ -1,0 +1,138 @@
+#include <la/eigenpairs.hpp>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+
+namespace whirl::la {
+
+void Eigenpairs::suggest(std::vector<Pair>& found, Complex lambda, const VecXc& z, bool real_problem, std::vector<VecXc>* vectors) const {
+  const auto push = [&](Complex l, VecXc v) {
+    Pair p;
+    p.lambda = l;
+    p.x = full_vector(v);
+    if (vectors) p.from = static_cast<Index>(vectors->size()), vectors->push_back(std::move(v));
+    found.push_back(std::move(p));
+  };
+  if (!real_problem || std::abs(lambda.imag()) > 1e-6 * std::abs(lambda)) return push(lambda, z);
+  push(lambda.real(), z.real().cast<Complex>());
+  if (lambda.imag() != 0.0) push(lambda.real(), z.imag().cast<Complex>());
+}
+
+bool Eigenpairs::add(Pair&& p) {
+  if (p.lambda.imag() < 0.0) {
+    p.lambda = std::conj(p.lambda);
+    p.x = p.x.conjugate().eval();
+    p.Mx = p.Mx.conjugate().eval(), p.Cx = p.Cx.conjugate().eval(), p.Kx = p.Kx.conjugate().eval();
+  }
+  polisher.assess(p);
+  std::vector<const Pair*> close;
+  for (const Pair& k : known)
+    if (std::abs(k.lambda - p.lambda) <= 1e-7 * std::abs(p.lambda) + 10.0 * (k.uncertainty + p.uncertainty)) close.push_back(&k);
+  if (!close.empty()) {
+    MatXc a(p.x.size(), static_cast<Index>(close.size()));
+    for (std::size_t j = 0; j < close.size(); ++j) a.col(static_cast<Index>(j)) = close[j]->x;
+    const VecXc rest = p.x - a * a.colPivHouseholderQr().solve(p.x);
+    if (rest.norm() < 0.05 * p.x.norm()) return false;
+  }
+  known.push_back(std::move(p));
+  return true;
+}
+
+bool Eigenpairs::add_rigid(const std::vector<Pair>& candidates) {
+  if (candidates.empty()) return false;
+  const Index before = std::count_if(known.begin(), known.end(), [](const Pair& p) { return p.rigid; });
+  std::vector<VecX> columns;
+  const auto take = [&](VecX v) {
+    const double size = v.norm();
+    if (!(size > 0.0)) return;
+    v /= size;
+    if (!complex_shift() && sigma != 0.0) purify(v);
+    columns.push_back(v / v.norm());
+  };
+  for (const Pair& p : known)
+    if (p.rigid) take(p.x.real());
+  for (const Pair& p : candidates) {
+    take(p.x.real());
+    if (p.x.imag().norm() > 1e-6 * p.x.real().norm()) take(p.x.imag());
+  }
+  MatX a(6 * pattern.size(), static_cast<Index>(columns.size()));
+  for (Index j = 0; j < a.cols(); ++j) a.col(j) = columns[at(j)];
+  const Eigen::JacobiSVD<MatX> svd(a, Eigen::ComputeThinU);
+  std::erase_if(known, [](const Pair& p) { return p.rigid; });
+  Index after = 0;
+  for (Index j = 0; j < a.cols() && svd.singularValues()(j) > 1e-5 * svd.singularValues()(0); ++j) {
+    Pair p;
+    p.lambda = 0.0;
+    p.x = svd.matrixU().col(j);
+    p.rigid = true;
+    if (!polisher.evaluate(p) || !polisher.is_unresisted(p)) continue;
+    known.push_back(std::move(p));
+    ++after;
+  }
+  return after > before;
+}
+
+bool Eigenpairs::take(std::vector<Pair>& found, bool near) {
+  bool any = false;
+  std::vector<Pair> rest, rigid;
+  for (Pair& p : found) {
+    // Rounding of a double zero eigenvalue shows up as far as 1e-3 of the shift.
+    if (!first_order && std::abs(p.lambda) < 1e-3 * std::abs(shift) && polisher.evaluate(p) && polisher.is_unresisted(p)) {
+      rigid.push_back(std::move(p));
+      continue;
+    }
+    Pair q = p;
+    if (near) q.from = -1;
+    if (polisher.polish(q, opt.tolerance, near) && add(std::move(q))) any = true;
+    else rest.push_back(std::move(p));
+  }
+  if (add_rigid(rigid)) any = true;
+  else rest.insert(rest.end(), std::make_move_iterator(rigid.begin()), std::make_move_iterator(rigid.end()));
+  found = std::move(rest);
+  return any;
+}
+
+void Eigenpairs::sort_known() {
+  std::stable_sort(known.begin(), known.end(), [&](const Pair& a, const Pair& b) { return key(a.lambda) < key(b.lambda); });
+}
+
+double Eigenpairs::wanted_radius() const {
+  if (opt.count <= 0) return opt.max_frequency;
+  Index c = 0;
+  for (const Pair& p : known)
+    if (counts(p) && ++c == opt.count) return std::min(key(p.lambda), opt.max_frequency);
+  return opt.max_frequency;
+}
+
+Index Eigenpairs::missing() const {
+  if (opt.count <= 0) return 0;
+  return opt.count + opt.guard - std::count_if(known.begin(), known.end(), [&](const Pair& p) { return counts(p); });
+}
+
+void Eigenpairs::separate_close() {
+  std::vector<Pair> all = std::move(known);
+  known.clear();
+  std::vector<Pair*> group;
+  std::vector<std::size_t> rest;
+  std::vector<bool> done(all.size(), false);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (done[i] || all[i].rigid) continue;
+    group.assign(1, &all[i]);
+    for (std::size_t j = i + 1; j < all.size(); ++j)
+      if (!done[j] && !all[j].rigid && std::abs(all[j].lambda - all[i].lambda) < 1e-4 * std::abs(all[i].lambda)) {
+        group.push_back(&all[j]);
+        done[j] = true;
+      }
+    if (group.size() == 1) continue;
+    polisher.separate(group);
+    for (Pair* p : group) polisher.evaluate(*p);
+  }
+  for (Pair& p : all) {
+    if (p.rigid) known.push_back(std::move(p));
+    else add(std::move(p));
+  }
+  sort_known();
+}
+
+}  // namespace whirl::la

@@ -1,0 +1,127 @@
+#include <la/shifted_operator.hpp>
+
+#include <la/ritz.hpp>
+
+namespace whirl::la {
+
+double ShiftedOperator::crude_frequency() const {
+  double best = infinity;
+  for (Index i = 0; i < pattern.size(); ++i) {
+    const Index s = pattern.diagonal(i);
+    for (int c = 0; c < 6; ++c) {
+      if (!active[at(6 * i + c)]) continue;
+      const double k = std::abs(m->K.block(s)(c, c)), mm = std::abs(m->M.block(s)(c, c)), cc = std::abs(m->C.block(s)(c, c));
+      if (k <= 0.0) continue;
+      if (!first_order && mm > 0.0) best = std::min(best, std::sqrt(k / mm));
+      if (first_order && cc > 0.0) best = std::min(best, k / cc);
+    }
+  }
+  return best < infinity && best > 0.0 ? best : 1.0;
+}
+
+void ShiftedOperator::find_shift() {
+  double s = 1e-3 * crude_frequency(), good = 0.0;
+  for (int round = 0; round < 12; ++round) {
+    if (!factor_real(s)) {
+      // An eigenvalue, or too small to lift rigid-body modes above rounding.
+      if (good > 0.0) break;
+      s *= 1.37 * (1 << round);
+      continue;
+    }
+    good = sigma = alpha = s;
+    shift = s;
+    krylov.reset(dimension(), 11);
+    for (int k = 0; k < 14; ++k)
+      if (!krylov.step(operation<double>())) break;
+    const Ritz r = look(krylov);
+    double least = infinity;
+    for (std::size_t j = 0; j < r.theta.size(); ++j) {
+      if (!(std::abs(r.theta[j]) > 0.0)) continue;
+      const Complex lambda = s + 1.0 / r.theta[j];
+      // Rigid-body motions do not set the scale; rounding moves their double zero to about 1e-8 of the highest frequency.
+      if (std::abs(lambda) < 0.1 * s) {
+        Pair p;
+        p.x = full_vector(krylov.searched_basis().topRows(n) * r.y.col(static_cast<Index>(j)));
+        VecX v = p.x.real();
+        purify(v);
+        p.x = v;
+        if (!polisher.evaluate(p) || polisher.is_unresisted(p)) continue;
+      }
+      least = std::min(least, std::abs(lambda));
+    }
+    if (!(least < infinity) || (least > 0.3 * s && least < 30.0 * s)) return;
+    s = 0.5 * least;
+  }
+  sigma = alpha = good;
+  shift = good;
+  if (!(good > 0.0) || !factor_real(good)) throw singular_problem();
+}
+
+Error ShiftedOperator::singular_problem() const {
+  const Index u = real ? real->singular_unknown() : complex->singular_unknown();
+  return run_error("E61", "the eigenvalue problem cannot be factored: unknown " + std::to_string(u % 6) + " of node " + std::to_string(u / 6) +
+                              " has neither stiffness nor mass",
+                   "give the node mass or stiffness in this direction, or hold it", "node " + std::to_string(u / 6));
+}
+
+void ShiftedOperator::prepare_operator(bool fresh) {
+  factor_operator(fresh);
+  if (complex_shift()) measure_accuracy<Complex>(*complex, shift);
+  else measure_accuracy<double>(*real, sigma);
+}
+
+void ShiftedOperator::factor_operator(bool fresh) {
+  refinements = 0;
+  if (complex_shift()) {
+    shift = *opt.shift;
+    alpha = std::max(std::abs(shift), 1e-300);
+    if (!complex) complex = make_direct_solver<Complex>(pattern, active);
+    for (int tries = 0; tries < 4; ++tries) {
+      ++work.factorizations;
+      if (complex->factor(*m, shift * shift, shift, 1.0) == Status::ok) return;
+      shift *= Complex(1.0 + 1e-3, 1e-3);
+    }
+    throw singular_problem();
+  }
+  if (opt.shift) {
+    sigma = opt.shift->real();
+    if (sigma == 0.0 && fresh) {
+      // Zero is fine unless something moves freely; alpha only balances the two halves of z.
+      alpha = crude_frequency() * 1e-2;
+    } else if (sigma != 0.0) {
+      alpha = std::abs(sigma);
+    }
+    for (int tries = 0; tries < 4; ++tries) {
+      if (factor_real(sigma)) {
+        shift = sigma;
+        return;
+      }
+      sigma += 1e-3 * alpha;
+    }
+    throw singular_problem();
+  }
+  if (sigma > 0.0 && factor_real(sigma)) {
+    shift = sigma;
+    return;
+  }
+  find_shift();
+}
+
+VecXc ShiftedOperator::full_vector(const VecXc& z) const {
+  VecXc x = VecXc::Zero(6 * pattern.size());
+  for (Index i = 0; i < n; ++i) x(unknown[at(i)]) = z(i);
+  return x;
+}
+
+void ShiftedOperator::purify(VecX& v) {
+  for (int k = 0; k < 4; ++k) {
+    multiply(m->M, v, t_);
+    multiply(m->C, v, y_);
+    y_ = sigma * (sigma * t_ + y_);
+    v.setZero();
+    for (const Index u : unknown) v(u) = y_(u);
+    real->solve(v);
+  }
+}
+
+}  // namespace whirl::la
