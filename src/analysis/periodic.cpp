@@ -245,7 +245,8 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
   }
   // At an edge the growth crosses zero, or, without damping, two frequencies merge and it rises as a square root from the rounding of a double
   // eigenvalue. Neutral motions (growth zero at every speed) hide the crossing, so it is extrapolated from within the band.
-  const auto noise = [](double Omega) { return 1e-6 * std::abs(Omega); };
+  // Harmonics left out of Hill's equations leave a false growth of some 1e-5 of the speed.
+  const auto noise = [&](double Omega) { return (axes.constant() ? 1e-6 : 3e-5) * std::abs(Omega); };
   const auto grows = [&](std::size_t k) { return out.growth[k] > noise(speeds[k]); };
   const auto edge = [&](std::size_t stable, std::size_t unstable) {
     const auto where = [&](double s, double u, double level) {   // the growth passes this level
@@ -271,7 +272,7 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
       const int p = (k + 1) % 3, q = (k + 2) % 3;
       zero += x[k] * r[p] * r[q] / ((r[k] - r[p]) * (r[k] - r[q]));
     }
-    return zero;
+    return std::abs(zero - a) < std::abs(b - a) + 1e-6 * std::abs(a) ? zero : a;
   };
   for (std::size_t k = 0; k < speeds.size(); ++k) {
     if (!grows(k)) continue;

@@ -19,7 +19,7 @@ class RotatingAxes {
  public:
   /// harmonics: H where the matrices are periodic; 0 is enough on isotropic supports and is chosen then whatever is asked for.
   /// Errors: E88, the lines turn at different speeds.
-  RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 2, Motion motion = Motion::lateral);
+  RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3, Motion motion = Motion::lateral);
 
   /// Matrices at Omega on pattern(); valid until the next call.
   const la::MCK& at(double Omega);

@@ -184,7 +184,7 @@ force = ["0 N", "1 N", "0 N"]
   const auto at = [&](const char* line) {
     for (const meshes::Station& s : d.mesh.stations)
       if (d.mesh.lines[static_cast<std::size_t>(s.line)].name == line && std::abs(s.s - 0.5) < 1e-9) return e.state.q[6 * s.at.node + 1];
-    return nan;
+    return whirl::nan;
   };
   EXPECT_NEAR(at("shaft"), exact, 1e-9 * exact);
   EXPECT_NEAR(at("casing"), exact - 1e-6, 1e-9 * exact);
