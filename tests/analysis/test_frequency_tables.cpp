@@ -119,7 +119,7 @@ TEST(FrequencyTable, UnbalanceAtTheFrequencyOfTheSpin) {
   const Assembled a(deck_text(damped, grid(600, 12)));
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::UnbalanceOptions o;
-  o.probes = {{"mass", {a.node(), 0.0}}};
+  o.probes = {{"mass", {a.node(), 0.0}, {}}};
   analysis::UnbalanceSolver solver(linear, o);
   for (double Omega : {150.0, 400.0, 600.0}) {
     const double x = std::abs(m * e * Omega * Omega / (damped.D(Omega) - m * Omega * Omega));
