@@ -35,7 +35,7 @@ function(whirl_tests NAME)
     if(A_TIMEOUT)
       set(timeout TIMEOUT ${A_TIMEOUT})   # seconds: a test that never ends fails
     endif()
-    gtest_discover_tests(test_${NAME} TEST_PREFIX "${NAME}." DISCOVERY_TIMEOUT 60
-                         PROPERTIES LABELS "${A_LABEL}" WORKING_DIRECTORY ${A_DIR} ${timeout} ${A_PROPERTIES})
+    gtest_discover_tests(test_${NAME} TEST_PREFIX "${NAME}." DISCOVERY_TIMEOUT 60 WORKING_DIRECTORY ${A_DIR}
+                         PROPERTIES LABELS "${A_LABEL}" ${timeout} ${A_PROPERTIES})
   endif()
 endfunction()

@@ -4,9 +4,15 @@
 
 namespace whirl::app {
 
+struct ExampleFile {
+  const char* name;
+  const char* text;
+};
+
 struct Example {
   const char* folder;   ///< "01_paper_rotor"
   const char* deck;     ///< text of its deck.toml
+  std::vector<ExampleFile> files;   ///< tables it reads from its folder
 };
 /// In the order of their numbers.
 const std::vector<Example>& examples();

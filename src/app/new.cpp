@@ -3,7 +3,10 @@
 #include <cstdio>
 #include <deck/document.hpp>
 #include <fmt/format.h>
+#include <filesystem>
 #include <io/file.hpp>
+#include <utility>
+#include <vector>
 
 namespace whirl::app {
 namespace {
@@ -43,17 +46,21 @@ int new_deck(const NewOptions& o) {
   }
   if (o.file.empty()) {
     std::fputs(found->deck, stdout);
+    for (const ExampleFile& f : found->files) std::fputs(fmt::format("note: the deck reads '{}' from its folder; give `whirl new` a file name and both are written\n", f.name).c_str(), stderr);
     return static_cast<int>(Exit::ok);
   }
+  std::vector<std::pair<std::filesystem::path, const char*>> files{{o.file, found->deck}};
+  for (const ExampleFile& f : found->files) files.emplace_back(o.file.parent_path() / f.name, f.text);
   std::error_code ec;
-  if (!o.force && std::filesystem::exists(o.file, ec)) {
+  for (const auto& [file, text] : files) {
+    if (o.force || !std::filesystem::exists(file, ec)) continue;
     Diagnostic d;
     d.code = "E91";
-    d.message = fmt::format("'{}' exists already", o.file.string());
-    d.hint = "choose another name, or --force to replace it";
+    d.message = fmt::format("'{}' exists already", file.string());
+    d.hint = "choose another name or folder, or --force to replace it";
     throw Error(Exit::io, std::move(d));
   }
-  io::write_atomic(o.file, found->deck);
+  for (const auto& [file, text] : files) io::write_atomic(file, text);
   std::fputs(fmt::format("wrote {}; next: whirl check '{}'\n", o.file.string(), o.file.string()).c_str(), stderr);
   return static_cast<int>(Exit::ok);
 }
