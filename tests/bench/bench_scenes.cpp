@@ -56,6 +56,7 @@ Process run(const std::vector<std::string>& arguments, int repeats) {
   Process best;
   for (int k = 0; k < repeats; ++k) {
     const auto t0 = std::chrono::steady_clock::now();
+    std::fflush(stdout);   // or the child writes it again
     const pid_t child = fork();
     if (child == 0) {
       std::vector<char*> argv;
