@@ -67,16 +67,16 @@ std::vector<double> panels(const ElementSection& s, const std::vector<double>& c
   const auto ratio = [](double a, double b) { return std::max(a / b, b / a); };
   std::vector<double> out{0.0};
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-    std::vector<double> todo{ends[k + 1]};  // right ends still to be reached, nearest last
-    while (!todo.empty()) {
-      const double a = out.back(), b = todo.back();
+    std::vector<double> right{ends[k + 1]};  // ends still to be reached, nearest last
+    while (!right.empty()) {
+      const double a = out.back(), b = right.back();
       const ElementSection p = s.part(a, b);
       const bool fine = ratio(p.od1, p.od2) <= panel_ratio && ratio(p.od1 - p.id1, p.od2 - p.id2) <= panel_ratio;
-      if (fine || todo.size() > 60) {
+      if (fine || right.size() > 60) {
         out.push_back(b);
-        todo.pop_back();
+        right.pop_back();
       } else {
-        todo.push_back(0.5 * (a + b));
+        right.push_back(0.5 * (a + b));
       }
     }
   }

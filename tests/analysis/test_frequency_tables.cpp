@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include "../validation/deck_model.hpp"
 
 #include <stdexcept>
 
@@ -35,28 +36,9 @@ std::string deck_text(const Support& s, const std::vector<double>& w, const char
       const double C = x > 0 ? d.imag() / x : (s.c1 * k2 * k2 + s.c2 * k1 * k1) / ((k1 + k2) * (k1 + k2));
       rows += fmt::format("[{}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}],\n", rpm, x / two_pi, d.real(), d.real(), C, C);
     }
-  return fmt::format(R"(format = 1
-[model]
-gravity = "0 m/s^2"
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "rigid"]
-rows = [["left", 100, true], ["right", 100, true]]
-[[disk]]
-name = "mass"
-at = "left:end"
-mass = "{} kg"
-Ip = "1 kg.m^2"
-Id = "0.6 kg.m^2"
-[[unbalance]]
+  return test::lateral_mass(m, "0 m/s^2", fmt::format(R"([[unbalance]]
 at = "mass"
 amount = "{:.17g} kg.m"
-[[bearing]]
-name = "guide"
-at = "mass"
-type = "rigid"
-directions = ["x", "ry", "rz"]
 [[bearing]]
 name = "shaken"
 at = "mass"
@@ -65,26 +47,8 @@ extrapolate = "{}"
 columns = ["speed[rpm]", "frequency[Hz]", "kyy[N/m]", "kzz[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
 rows = [
 {}]
-)", m, m * e, extrapolate, rows);
+)", m * e, extrapolate, rows));
 }
-
-struct Assembled {
-  deck::Deck deck;
-  meshes::Mesh mesh;
-  assembly::Built built;
-  explicit Assembled(const std::string& text) : deck(deck::read_deck_text(text, "deck.toml")) {
-    if (!deck.ok()) throw std::runtime_error(deck.report());
-    mesh = meshes::make_mesh(deck.model);
-    built = assembly::build_system(deck.model, mesh);
-  }
-  analysis::Running running() const {
-    analysis::Running r;
-    r.ratio = {1.0};
-    r.frequency_dependent = built.frequency_dependent;
-    return r;
-  }
-  Index node() const { return mesh.place(deck.model.disks[0].at).node; }
-};
 
 std::vector<double> grid(double last, int n) {
   std::vector<double> w;
@@ -99,10 +63,10 @@ constexpr Support damped{2e3, 5e3}, undamped{0, 0};
 // On the grid's frequencies the table is exact, and so is the response, at any speed.
 TEST(FrequencyTable, ResponseAtTheFrequencyOfExcitation) {
   const std::vector<double> w = grid(600, 12);
-  const Assembled a(deck_text(damped, w));
+  const test::DeckModel a(deck_text(damped, w));
   ASSERT_TRUE(a.built.frequency_dependent);
   analysis::Linearizer linear(a.built.system, a.running());
-  const Index y = 6 * a.node() + 1;
+  const Index y = 6 * a.disk() + 1;
   analysis::FrequencyResponseOptions o;
   o.forces = {{y, Complex(100, 0)}};
   o.unknowns = {y};
@@ -116,10 +80,10 @@ TEST(FrequencyTable, ResponseAtTheFrequencyOfExcitation) {
 }
 
 TEST(FrequencyTable, UnbalanceAtTheFrequencyOfTheSpin) {
-  const Assembled a(deck_text(damped, grid(600, 12)));
+  const test::DeckModel a(deck_text(damped, grid(600, 12)));
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::UnbalanceOptions o;
-  o.probes = {{"mass", {a.node(), 0.0}, {}}};
+  o.probes = {{"mass", {a.disk(), 0.0}, {}}};
   analysis::UnbalanceSolver solver(linear, o);
   for (double Omega : {150.0, 400.0, 600.0}) {
     const double x = std::abs(m * e * Omega * Omega / (damped.D(Omega) - m * Omega * Omega));
@@ -130,7 +94,7 @@ TEST(FrequencyTable, UnbalanceAtTheFrequencyOfTheSpin) {
 // Undamped: the root of m w^2 = D(w), found by bisection; the cubic through a grid of 5 rad/s is exact to 1e-8 there. Coefficients
 // at the frequency of the spin would put it more than 1 % off.
 TEST(FrequencyTable, ModesAtTheirOwnFrequency) {
-  const Assembled a(deck_text(undamped, grid(600, 120)));
+  const test::DeckModel a(deck_text(undamped, grid(600, 120)));
   double low = 100, high = 600;
   for (int i = 0; i < 100; ++i) {
     const double mid = 0.5 * (low + high);
@@ -150,7 +114,7 @@ TEST(FrequencyTable, ModesAtTheirOwnFrequency) {
 
 // Damped: lambda^2 m + lambda C(w) + K(w) = 0 at w = Im lambda, solved here by iteration on the exact coefficients.
 TEST(FrequencyTable, DampedModesAtTheirOwnFrequency) {
-  const Assembled a(deck_text(damped, grid(600, 120)));
+  const test::DeckModel a(deck_text(damped, grid(600, 120)));
   double w = 300;
   Complex lambda;
   for (int i = 0; i < 200; ++i) {
@@ -165,10 +129,10 @@ TEST(FrequencyTable, DampedModesAtTheirOwnFrequency) {
 }
 
 TEST(FrequencyTable, StaticsAndMotionsTakeTheSynchronousValues) {
-  const Assembled a(deck_text(damped, grid(600, 12)));
+  const test::DeckModel a(deck_text(damped, grid(600, 12)));
   system::SystemProblem p(a.built.system);
   system::State s = a.built.system.make_state();
-  const Index k = 6 * a.node();
+  const Index k = 6 * a.disk();
   s.q[k + 1] = 1e-5;
   for (double spin : {0.0, 250.0, 600.0}) {
     s.v[k + 3] = spin;
@@ -179,7 +143,7 @@ TEST(FrequencyTable, StaticsAndMotionsTakeTheSynchronousValues) {
 }
 
 TEST(FrequencyTable, UncoveredFrequencyIsAnError) {
-  const Assembled a(deck_text(undamped, grid(200, 4)));
+  const test::DeckModel a(deck_text(undamped, grid(200, 4)));
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::ModesOptions o;
   o.count = 6, o.motion = analysis::Motion::lateral;
@@ -190,7 +154,7 @@ TEST(FrequencyTable, UncoveredFrequencyIsAnError) {
     EXPECT_EQ(error.diagnostics().front().code, "E81");
     EXPECT_NE(std::string(error.what()).find("does not cover the frequency"), std::string::npos);
   }
-  const Assembled held(deck_text(undamped, grid(200, 4), "hold"));
+  const test::DeckModel held(deck_text(undamped, grid(200, 4), "hold"));
   analysis::Linearizer other(held.built.system, held.running());
   EXPECT_EQ(analysis::whirl_modes(other, 40.0, o).size(), 2u);
 }

@@ -1,17 +1,8 @@
 // At constant speed and with a small unbalance a transient of the full nonlinear model settles to the linear unbalance response.
+#include "deck_run.hpp"
 #include <gtest/gtest.h>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <sstream>
 #include <string>
-
-#include <sys/wait.h>
-#include <unistd.h>
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -71,36 +62,18 @@ initial_speed = "3600 rpm"
 duration = "1 s"
 integrator = { tolerance = 1e-8 }
 [output]
-directory = "r"
 report = false
 every = "1 ms"
 quantities = ["probes", "velocity", "acceleration", "rotation"]
 )";
 
-/// Column name to value, of the last row.
-std::map<std::string, double> last_row(const fs::path& csv) {
-  std::ifstream in(csv);
-  std::string head, line, last;
-  std::getline(in, head);
-  while (std::getline(in, line)) last = line;
-  std::map<std::string, double> out;
-  std::istringstream names(head), values(last);
-  for (std::string name, value; std::getline(names, name, ',') && std::getline(values, value, ',');) out[name] = std::stod(value);
-  return out;
-}
-
 }  // namespace
 
 TEST(LinearLimit, TransientSettlesToTheUnbalanceResponse) {
-  const fs::path folder = fs::temp_directory_path() / ("whirl_linear_limit_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
-  std::ofstream(folder / "d.toml") << deck;
-  const int status = std::system(("cd '" + folder.string() + "' && '" WHIRL_EXE "' run d.toml >log.txt 2>&1 </dev/null").c_str());
-  std::ostringstream log;
-  log << std::ifstream(folder / "log.txt").rdbuf();
-  ASSERT_EQ(WEXITSTATUS(status), 0) << log.str();
-  EXPECT_EQ(log.str().find("warning"), std::string::npos) << log.str();
-  const auto run = last_row(folder / "r/run.csv"), steady = last_row(folder / "r/steady_response.csv");
+  const whirl::test::DeckRun r(deck);
+  ASSERT_EQ(r.exit, 0) << r.log;
+  EXPECT_FALSE(r.says("warning")) << r.log;
+  const auto run = r.csv("run.csv").last(), steady = r.csv("steady_response.csv").last();
   // The angle of the rotor at the end, a row's last: u = A cos(phi - lag). 1e-6 of the amplitude; the run was asked for 1e-8.
   const double Omega = 3600 * std::acos(-1.0) / 30, phi = run.at("disk phi [rad]"), major = steady.at("disk major [m]");
   for (const std::string axis : {"y", "z"}) {
@@ -110,5 +83,4 @@ TEST(LinearLimit, TransientSettlesToTheUnbalanceResponse) {
     EXPECT_NEAR(run.at("disk velocity." + axis + " [m/s]"), -Omega * amplitude * std::sin(phi - lag), 1e-6 * Omega * major) << axis;
     EXPECT_NEAR(run.at("disk acceleration." + axis + " [m/s^2]"), -Omega * Omega * amplitude * std::cos(phi - lag), 1e-6 * Omega * Omega * major) << axis;
   }
-  fs::remove_all(folder);
 }

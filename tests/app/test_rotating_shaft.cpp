@@ -1,18 +1,13 @@
 // The deck of examples/03_rotating_shaft_benchmark: sag, three peaks and the table of positions, at the default accuracy with its 8 elements and
 // converged. O. Bauchau et al., Multibody Syst Dyn 37 (2016) 29-48, doi 10.1007/s11044-016-9514-y; definition as in MBDyn's test suite.
+#include "deck_run.hpp"
 #include <gtest/gtest.h>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -51,22 +46,13 @@ History run(int elements, const std::string& integrator) {
     text << line << '\n';
     if (line.rfind("duration", 0) == 0 && !integrator.empty()) text << "integrator = { " << integrator << " }\n";
   }
-  text << "[output]\ndirectory = \"r\"\nreport = false\nevery = \"0.1 ms\"\nquantities = [\"probes\"]\n";
-  const fs::path folder = fs::temp_directory_path() / ("whirl_rotating_shaft_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
-  std::ofstream(folder / "d.toml") << text.str();
-  const int status = std::system(("cd '" + folder.string() + "' && '" WHIRL_EXE "' run d.toml >log.txt 2>&1 </dev/null").c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 0) << std::ifstream(folder / "log.txt").rdbuf();
+  text << "[output]\nreport = false\nevery = \"0.1 ms\"\nquantities = [\"probes\"]\n";
+  const whirl::test::DeckRun r(text.str());
+  EXPECT_EQ(r.exit, 0) << r.log;
+  const whirl::test::Columns csv = r.csv("passage.csv");
+  EXPECT_EQ(csv.names, (std::vector<std::string>{"t [s]", "disk.y [m]", "disk.z [m]"}));
   History h;
-  std::ifstream csv(folder / "r/passage.csv");
-  std::string line;
-  std::getline(csv, line);
-  EXPECT_EQ(line, "t [s],disk.y [m],disk.z [m]");
-  while (std::getline(csv, line)) {
-    Row r{};
-    if (std::sscanf(line.c_str(), "%lf,%lf,%lf", &r.t, &r.y, &r.z) == 3) h.rows.push_back(r);
-  }
-  fs::remove_all(folder);
+  for (const auto& row : csv.rows) h.rows.push_back({row.at(0), row.at(1), row.at(2)});
   return h;
 }
 

@@ -30,31 +30,7 @@ viscosity = "100 mPa.s"
 )";
 
 /// One mass on one bearing: half a symmetric rigid rotor. It translates only.
-std::string rigid_rotor() {
-  return std::string(R"(format = 1
-[model]
-gravity = "9.81 m/s^2"
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "rigid"]
-rows = [["left", 100, true], ["right", 100, true]]
-[[disk]]
-name = "mass"
-at = "left:end"
-mass = "53.51681957 kg"
-Ip = "1 kg.m^2"
-Id = "0.6 kg.m^2"
-[[bearing]]
-name = "guide"
-at = "mass"
-type = "rigid"
-directions = ["x", "ry", "rz"]
-[[bearing]]
-name = "film"
-at = "mass"
-)") + journal;
-}
+std::string rigid_rotor() { return test::lateral_mass(53.51681957, "9.81 m/s^2", std::string("[[bearing]]\nname = \"film\"\nat = \"mass\"\n") + journal); }
 
 std::string flexible_rotor() {
   const std::string film = journal;
@@ -158,26 +134,7 @@ TEST(OilWhirl, NonlinearRunsDecayBelowAndGrowAbove) {
 // A ball bearing with clearance carries nothing in the reference configuration: the mass is let down on it. Root of the eight-ball sum,
 // ball under the load, 196 N, 5 um.
 TEST(Gaps, MassSettlesInABallBearingWithClearance) {
-  const DeckModel m(R"(format = 1
-[model]
-gravity = "9.8 m/s^2"
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "rigid"]
-rows = [["left", 100, true], ["right", 100, true]]
-[[disk]]
-name = "mass"
-at = "left:end"
-mass = "20 kg"
-Ip = "0.1 kg.m^2"
-Id = "0.06 kg.m^2"
-[[bearing]]
-name = "guide"
-at = "mass"
-type = "rigid"
-directions = ["x", "ry", "rz"]
-[[bearing]]
+  const DeckModel m(test::lateral_mass(20, "9.8 m/s^2", R"([[bearing]]
 name = "ball bearing"
 at = "mass"
 type = "ball"
@@ -186,7 +143,7 @@ ball_diameter = "11.9 mm"
 pitch_diameter = "52 mm"
 clearance = "5 um"
 stiffness = "1.334e10 N/m^1.5"
-)");
+)"));
   analysis::Running turning = m.running();
   turning.mean = false;
   analysis::RunningSystem running(m.built.system, turning);
@@ -309,42 +266,23 @@ TEST(BladeLoss, TransientMaximumAndSteadyRadius) {
   const double table[][3] = {{0.5, 0.3325950526, 0.5754267293}, {0.9, 3.852777103, 4.76700133}, {1.2, 3.15740887, 4.99282775}, {2.0, 1.33038021, 3.236627822}};
   const double mass = 10, k = 1e6, wn = std::sqrt(k / mass), lost = 0.05, e = 1e-4;
   for (const auto& row : table) {
-    const std::string deck = R"(format = 1
-[model]
-gravity = "0 m/s^2"
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "rigid"]
-rows = [["left", 100, true], ["right", 100, true]]
-[[disk]]
-name = "disk"
-at = "left:end"
-mass = "10 kg"
-Ip = "0.1 kg.m^2"
-Id = "0.06 kg.m^2"
-[[bearing]]
-name = "guide"
-at = "disk"
-type = "rigid"
-directions = ["x", "ry", "rz"]
-[[bearing]]
+    const std::string deck = test::lateral_mass(10, "0 m/s^2", R"([[bearing]]
 name = "spring"
-at = "disk"
+at = "mass"
 type = "linear"
 kyy = "1e6 N/m"
 kzz = "1e6 N/m"
 cyy = "316.22776601683796 N.s/m"
 czz = "316.22776601683796 N.s/m"
 [[unbalance]]
-at = "disk"
+at = "mass"
 amount = "1 kg.mm"
 factor = { type = "piecewise", pieces = [{ start = "0 s", law = 0 }, { start = "0.05 s", law = 1 }] }
 [[drive]]
 name = "motor"
-at = "disk"
+at = "mass"
 type = "speed"
-speed = ")" + std::to_string(row[0] * wn) + " rad/s\"\n";
+speed = ")" + std::to_string(row[0] * wn) + " rad/s\"\n");
     const DeckModel m(deck);
     const system::System& s = m.built.system;
     system::SystemProblem problem(s);

@@ -1,0 +1,79 @@
+// A deck run by the program as a user would, in a folder of its own that goes with the object.
+#pragma once
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace whirl::test {
+
+/// Numbers of a CSV file with one header line.
+struct Columns {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> rows;
+  explicit Columns(const std::filesystem::path& csv) {
+    std::ifstream in(csv);
+    std::string line;
+    std::getline(in, line);
+    std::istringstream head(line);
+    for (std::string name; std::getline(head, name, ',');) names.push_back(name);
+    while (std::getline(in, line)) {
+      std::istringstream cells(line);
+      rows.emplace_back();
+      for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(std::stod(cell));
+    }
+  }
+  std::map<std::string, double> named(const std::vector<double>& row) const {
+    std::map<std::string, double> out;
+    for (std::size_t k = 0; k < names.size() && k < row.size(); ++k) out[names[k]] = row[k];
+    return out;
+  }
+  std::map<std::string, double> last() const { return rows.empty() ? std::map<std::string, double>{} : named(rows.back()); }
+  /// Mean of each column over the rows whose first cell is in [from, to).
+  std::map<std::string, double> means(double from, double to) const {
+    std::vector<double> sum(names.size(), 0.0);
+    double count = 0;
+    for (const auto& row : rows) {
+      if (row.size() != names.size() || row[0] < from - 1e-9 || row[0] >= to - 1e-9) continue;
+      ++count;
+      for (std::size_t k = 0; k < row.size(); ++k) sum[k] += row[k];
+    }
+    for (double& x : sum) x /= count;
+    return named(sum);
+  }
+};
+
+/// `whirl run` on a deck given as text; results are in folder/r.
+struct DeckRun {
+  std::filesystem::path folder;
+  int exit = -1;
+  std::string log;
+  explicit DeckRun(const std::string& deck) {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder = std::filesystem::temp_directory_path() / ("whirl_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "d.toml") << deck;
+    const int status = std::system(("cd '" + folder.string() + "' && '" WHIRL_EXE "' run d.toml -o r >log.txt 2>&1 </dev/null").c_str());
+    exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    std::ostringstream text;
+    text << std::ifstream(folder / "log.txt").rdbuf();
+    log = text.str();
+  }
+  DeckRun(const DeckRun&) = delete;
+  DeckRun& operator=(const DeckRun&) = delete;
+  ~DeckRun() {
+    std::error_code ec;
+    std::filesystem::remove_all(folder, ec);
+  }
+  Columns csv(const std::string& name) const { return Columns(folder / "r" / name); }
+  bool says(const std::string& text) const { return log.find(text) != std::string::npos; }
+};
+
+}  // namespace whirl::test
