@@ -225,10 +225,10 @@ template <class F> double rotation_softness(const Sampled& sp, const Mat2& k, F 
   return clamped_energy(sp, k, M, std::vector<double>(M.size(), 0.0)) / total;
 }
 
-/// (c_i + c_j)/2 K_ij with c = (cr, cd, cr, cd).
-Matrix<4> weighted(const Matrix<4>& K, double cr, double cd) {
-  const Vector<4> c(cr, cd, cr, cd);
-  return 0.5 * (c.asDiagonal() * K + K * c.asDiagonal());
+/// (w_i c_i K_ij + K_ij c_j w_j)/2 at the nodes (x1, d1, x2, d2), with c = (cr, cd, cr, cd) and K at the end points.
+Matrix<4> weighted(const Matrix<4>& K, double cr, double cd, const Matrix<4>& T, const Vector<4>& share) {
+  const Matrix<4> a = share.asDiagonal() * (T.transpose() * Vector<4>(cr, cd, cr, cd).asDiagonal() * K * T);
+  return 0.5 * (a + a.transpose());
 }
 
 /// (L1, L2): the exact static twist, and the polar mass built on it.
@@ -256,7 +256,7 @@ Mat2 polar_mass(const Sampled& sp, MassKind kind) {
 
 }  // namespace
 
-ShaftElementConstants make_shaft_constants(const ElementSection& section, double l, double o1, double o2, MassKind kind) {
+ShaftElementConstants make_shaft_constants(const ElementSection& section, double l, double o1, double o2, MassKind kind, const Vector<4>& share) {
   const Sampled sp(section, l, {});
   ShaftElementConstants c;
   c.length = l;
@@ -288,18 +288,18 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
     area += q.ds * 0.5 * (g1 * dg2 - g2 * dg1);
   }
   c.tau_c = -area;
+  const Matrix<4> T = offset_map(o1, o2);
+  c.M4 = T.transpose() * M * T;
+  c.G4 = T.transpose() * G4 * T;
   if (kind == MassKind::corrected) {
     const auto rhoI = [](const auto& q) { return q.p.rhoI; };
     const auto rhoIp = [](const auto& q) { return q.p.rhoIp; };
     const Matrix<4> K = end_point_stiffness(k, l);
-    const double I = sp.integral(rhoI), share = I > 0 ? 15 * I / (15 * I + c.mass * l * l) : 0.0;
+    const double I = sp.integral(rhoI), rotary = I > 0 ? 15 * I / (15 * I + c.mass * l * l) : 0.0;
     const double cw = translation_softness(sp, k, c.mass), cd = rotation_softness(sp, k, rhoI);
-    M += weighted(K, cw, cw - share * (cw - cd));
-    G4 += weighted(K, 0.0, rotation_softness(sp, k, rhoIp));
+    c.M4 += weighted(K, cw, cw - rotary * (cw - cd), T, share);
+    c.G4 += weighted(K, 0.0, rotation_softness(sp, k, rhoIp), T, share);
   }
-  const Matrix<4> T = offset_map(o1, o2);
-  c.M4 = T.transpose() * M * T;
-  c.G4 = T.transpose() * G4 * T;
   c.polar = polar_mass(sp, kind);
   return c;
 }

@@ -3,10 +3,9 @@
 // a perfectly ordinary unbalance grows without bound at the highest frequencies of the mesh. A real unbalance sits on a length of
 // shaft. So U is shared among as many neighbouring nodes as are needed for each to carry its share, with the same sum and
 // the same place of the resultant: w_j = c_j (a + b (x_j - x0)), c_j = m_j J_j, which is the least squares of U_j^2/c_j.
-#include <assembly/element_section.hpp>
+#include <assembly/node_inertia.hpp>
 #include <assembly/parts.hpp>
 #include <elements/unbalance.hpp>
-#include <meshes/mass_properties.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,54 +18,6 @@ namespace {
 constexpr double fine = 0.1;
 /// Where no more nodes are to be had. The consistent masses of neighbours are at least a third of the lumped ones counted here.
 constexpr double impossible = 1.0 / 3.0;
-
-/// What a node's bodies and half its elements have.
-struct NodeInertia {
-  double mass = 0, Id = 0, Ip = 0;
-  double carries() const { return std::sqrt(mass * std::min(Id, Ip)); }   // kg m
-};
-
-/// Of the nodes of one line. Sums over the model: only for lines with an unbalance.
-std::vector<NodeInertia> node_inertias(const Assembly& a, const meshes::Line& line) {
-  std::vector<NodeInertia> out(static_cast<std::size_t>(line.nodes));
-  const auto at = [&](Index node) -> NodeInertia* {
-    const Index k = node - line.first_node;
-    return k >= 0 && k < line.nodes ? &out[static_cast<std::size_t>(k)] : nullptr;
-  };
-  for (Index i = line.first_element; i < line.first_element + line.elements; ++i) {
-    const meshes::Element& e = a.mesh.elements[static_cast<std::size_t>(i)];
-    const double h = 0.5 * (e.s2 - e.s1);
-    NodeInertia half;
-    const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
-    const model::Section& section = shaft.sections[e.section];
-    if (const auto& g = section.general) {
-      const double rho = a.model.materials.at(section.material).rho;
-      half.mass = h * (rho * g->A + section.added_mass_per_length);
-      half.Ip = h * rho * (g->Iy + g->Iz);
-      half.Id = section.rotary_inertia ? h * rho * std::min(g->Iy, g->Iz) : 0.0;
-    } else {
-      const elements::SectionProperties p = element_section(a.model, e).at(0.5);
-      half = {h * p.rhoA, h * p.rhoI, h * p.rhoIp};
-    }
-    half.Id += half.mass * h * h / 13.0;   // of the translation shapes: rhoA l^3/105 an end
-    for (const Index node : {e.left.node, e.right.node}) {
-      NodeInertia& n = *at(node);
-      n.mass += half.mass, n.Id += half.Id, n.Ip += half.Ip;
-    }
-  }
-  for (const meshes::RigidPart& r : a.mesh.rigid_parts)
-    if (NodeInertia* n = at(r.node)) {
-      const meshes::MassProperties p = meshes::section_mass(a.model, a.model.shafts[static_cast<std::size_t>(r.line)].sections[r.section], Vec3(r.o1, 0, 0));
-      n->mass += p.mass, n->Id += p.Id(), n->Ip += p.Ip();
-    }
-  for (const model::Disk& d : a.model.disks)
-    if (NodeInertia* n = at(a.mesh.place(d.at).node)) {
-      n->mass += d.mass;
-      n->Ip += d.inertia ? (*d.inertia)(0, 0) : d.Ip;
-      n->Id += d.inertia ? std::min((*d.inertia)(1, 1), (*d.inertia)(2, 2)) : d.Id;
-    }
-  return out;
-}
 
 double largest_factor(const model::Unbalance& u) {
   if (!u.factor) return 1.0;
@@ -124,7 +75,7 @@ void add_unbalances(Assembly& a) {
     const Index line_index = a.mesh.nodes[static_cast<std::size_t>(at.node)].line;
     const meshes::Line& line = a.mesh.lines[static_cast<std::size_t>(line_index)];
     std::vector<NodeInertia>& nodes = known[static_cast<std::size_t>(line_index)];
-    if (nodes.empty()) nodes = node_inertias(a, line);
+    if (nodes.empty()) nodes = node_inertias(a.model, a.mesh, line);
     const Index k = at.node - line.first_node;
     const double U = std::abs(u.amount) * largest_factor(u), own = nodes[static_cast<std::size_t>(k)].carries();
     // A node without any inertia is a mass point on a massless shaft; whether it may turn is for the scene to say.
