@@ -152,7 +152,7 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   T twist = torque;
   V3<T> ad[2];
   for (int i = 0; i < 2; ++i) ad[i] = (T(1.0) / (T(2.0) - s.n[i])) * s.a.cross(s.delta[i]);
-  if (c.beta > 0.0) {
+  if (c.beta > 0.0 || c.beta_twist > 0.0) {
     // objective rates of the same measures
     const V3<T> rdot = n2.du + m2.omega.cross(s.ro[1]) - n1.du - m1.omega.cross(s.ro[0]);
     const T ldot = s.a.dot(rdot);
@@ -173,7 +173,7 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
     }
     const T dy[2] = {c.beta * (c.ky_def11 * ry[0] + c.ky_def12 * ry[1]), c.beta * (c.ky_def12 * ry[0] + c.ky_def22 * ry[1])};
     const T dz[2] = {c.beta * (c.kz_def11 * rz[0] + c.kz_def12 * rz[1]), c.beta * (c.kz_def12 * rz[0] + c.kz_def22 * rz[1])};
-    const T psidot = sigma[1] - sigma[0], dt = (c.beta * c.GJ_l) * psidot;
+    const T psidot = sigma[1] - sigma[0], dt = (c.beta_twist * c.GJ_l) * psidot;
     twist += dt;
     out.dissipated = dt * psidot;
     for (int i = 0; i < 2; ++i) my[i] += dy[i], mz[i] += dz[i], out.dissipated += dy[i] * ry[i] + dz[i] * rz[i];
@@ -307,7 +307,7 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
   // Relative to the reference configuration, so that a change of chart leaves it alone.
   const Vec3 P[4] = {x[0]->u + X[0] - offset1, X[1] - triad1.col(0), x[1]->u + X[2] - offset2, X[3] - triad2.col(0)};
   for (int j = 0; j < 4; ++j) en.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(P[j]);
-  if (c.beta > 0.0) en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
+  if (c.beta > 0.0 || c.beta_twist > 0.0) en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
 }
 
 }  // namespace whirl::elements

@@ -16,8 +16,8 @@
 //   r = 1/(1 + Phi) of each plane (a slope of the curvature is shared between bending and shear),
 //   V += -length^3/(24 GJ) c^2 + length/12 [(psi - psi_r) c' + 1/2 (psi - psi_r)^2 s],  psi_r = psi0 where the element is curved at rest, else 0.
 // The force is found from the power of the stresses on objective rates, p_i o = (p_i')_perp - sigma a x p_i and psi' = sigma2 - sigma1,
-// sigma_i = (a + D_i).(omega_i - a x a')/(1 + a.D_i), which are exactly the rates of the measures above. beta damps the same rates
-// (viscous, rotating with the section).
+// sigma_i = (a + D_i).(omega_i - a x a')/(1 + a.D_i), which are exactly the rates of the measures above. beta and beta_twist damp the
+// same rates (viscous, rotating with the section).
 // Inertia: M4 (x) 1 on (r1, D1, r2, D2), rotary inertia on the triads, 1/2 sum_ij m_ij (rhoI_z B_i'.B_j' + rhoI_y C_i'.C_j'), m the mean of
 // consistent and lumped: exact for every rigid motion.
 //
@@ -38,7 +38,8 @@ struct GeneralBeamConstants {
   double tau_c = 0;                  ///< coefficient of a.(p1 x p2) in the twist
   Matrix<4> M4 = Matrix<4>::Zero();  ///< translational inertia on (r1, D1, r2, D2), kg, kg m, kg m^2
   double rhoIz_l = 0, rhoIy_l = 0;   ///< rho int y^2 dA length, rho int z^2 dA length, kg m^2
-  double beta = 0;                   ///< stiffness-proportional rotating damping, s
+  double beta = 0;                   ///< stiffness-proportional damping of bending, rotating, s
+  double beta_twist = 0;             ///< the same of the twist, s
 };
 
 struct GeneralBeam {

@@ -22,7 +22,7 @@ HarmonicSolver::HarmonicSolver(Linearizer& linear, Motion motion)
       solver_(la::make_direct_solver<Complex>(linear.system().pattern(), active_)) {}
 
 bool HarmonicSolver::prepare(double Omega, double w) {
-  const la::MCK& m = linear_.at(Omega, w);
+  const la::MCK& m = linear_.at(Omega, Complex(0, w));
   return solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok;
 }
 
@@ -44,6 +44,8 @@ VariationMeter::VariationMeter(Linearizer& linear) : linear_(linear), problem_(l
 void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measurement>& what, std::vector<std::vector<Complex>>& out) {
   const system::State& s = linear_.equilibrium().state;
   problem_.frames = s.frames;
+  system::Context& context = problem_.workspace().context;
+  context.hysteretic = linear_.hysteretic(), context.whirl = context.whirl_side = w;
   out.resize(what.size());
   for (std::size_t m = 0; m < what.size(); ++m) out[m].assign(what[m].width(), Complex(0, 0));
   const double eps = variation_step(a);
@@ -74,6 +76,7 @@ VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const Ve
   const system::System& system = linear.system();
   const system::State& s = linear.equilibrium().state;
   system::Workspace workspace = system.make_workspace();
+  workspace.context.hysteretic = linear.hysteretic(), workspace.context.whirl = workspace.context.whirl_side = w;
   VecXc out = VecXc::Zero(a.size());
   const double eps = variation_step(a);
   VecX r(a.size());

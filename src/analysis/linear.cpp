@@ -42,7 +42,8 @@ bool Linearizer::still_balanced(double Omega) {
   return now[0] <= 4.0 * floor_[0] && now[1] <= 4.0 * floor_[1];
 }
 
-const la::MCK& Linearizer::at(double Omega, double w) {
+const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
+  running_.set_whirl(0.0);
   if (still_balanced(Omega)) {
     equilibrium_.Omega = Omega;
     running_.set_rates(Omega, equilibrium_.state.v);
@@ -54,24 +55,26 @@ const la::MCK& Linearizer::at(double Omega, double w) {
   }
   have_forcing_ = false;
   const auto linearise = [&] {
-    if (!running_.tangent(equilibrium_.state.frames, Omega, equilibrium_.state.q, matrices_))
-      throw run_error("E76", "no linearisation: the state lies outside the range of an element");
+    running_.set_whirl(std::isnan(lambda.imag()) ? Complex(0) : lambda, false, side);
+    const bool inside = running_.tangent(equilibrium_.state.frames, Omega, equilibrium_.state.q, matrices_);
+    running_.set_whirl(0.0);
+    if (!inside) throw run_error("E76", "no linearisation: the state lies outside the range of an element");
   };
-  if (!running_.running().frequency_dependent || std::isnan(w)) {
+  if (!running_.running().frequency_dependent || !std::isfinite(tables)) {
     linearise();
     return matrices_;
   }
-  const system::FrequencyScope ask(w);
+  const system::FrequencyScope ask(tables);
   linearise();
   const auto finite = [](const la::BlockMatrix<6>& x) { return Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count())).allFinite(); };
   if (!finite(matrices_.K) || !finite(matrices_.C) || !finite(matrices_.M))
-    throw run_error("E81", fmt::format("a bearing table does not cover the frequency {:.6g} Hz at {:.6g} rpm", std::abs(w) / two_pi, Omega * 30.0 / pi),
+    throw run_error("E81", fmt::format("a bearing table does not cover the frequency {:.6g} Hz at {:.6g} rpm", std::abs(tables) / two_pi, Omega * 30.0 / pi),
                     "extend its frequencies, narrow the step (max_frequency, modes), or write extrapolate = \"hold\"");
   return matrices_;
 }
 
 const la::MCK& Linearizer::conservative_at(double Omega, double w) {
-  at(Omega, w);
+  at(Omega, Complex(0, infinity), nan, w);
   if (conservative_.M.value_count() == 0) conservative_ = system().make_matrices();
   take_conservative_part(matrices_, conservative_);
   return conservative_;

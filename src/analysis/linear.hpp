@@ -14,10 +14,13 @@ class Linearizer {
 
   /// Moves the equilibrium to Omega (rad/s, from the last one) and returns the matrices there; valid until the next call.
   /// Errors: as EquilibriumSolver::solve.
-  const la::MCK& at(double Omega) { return at(Omega, nan); }
-  /// The same for motions of frequency w (rad/s), where supports answer differently to different frequencies (Running::
-  /// frequency_dependent); NaN: their synchronous values. The equilibrium is the same. Errors: E81, a table does not cover w.
-  const la::MCK& at(double Omega, double w);
+  const la::MCK& at(double Omega) { return at(Omega, Complex(0, nan)); }
+  /// The same as a motion x exp(lambda t) meets them, lambda = g + i w: supports that answer by frequency (Running::frequency_dependent) and
+  /// hysteretic damping give real matrices that are exact for it alone. w NaN: synchronous values of tables, hysteretic damping of the steady
+  /// state only; infinite: synchronous values, no hysteretic damping. The equilibrium is the same at every lambda.
+  /// side: frequency that decides whether the whirl is faster than the spin; w unless given. Errors: E81, a table does not cover w.
+  const la::MCK& at(double Omega, Complex lambda, double side = nan) { return at(Omega, lambda, side, lambda.imag()); }
+  const la::MCK& at(double Omega, double) = delete;   // a real lambda is rarely meant
   /// The part of them that keeps energy: M, skew part of C (gyroscopic), symmetric part of K. For "undamped" results.
   const la::MCK& conservative_at(double Omega, double w = nan);
   double Omega() const { return equilibrium_.Omega; }
@@ -29,11 +32,14 @@ class Linearizer {
   /// Forcing amplitudes at the last speed, one for each of running().orders().
   const std::vector<VecXc>& forcing();
   RunningSystem& running() { return running_; }
+  bool hysteretic() const { return running_.hysteretic(); }
   const system::System& system() const { return running_.system(); }
   /// Unknowns of small motions: what is not held by a support. A free rotor may turn.
   std::span<const unsigned char> active() const { return running_.system().active(); }
 
  private:
+  /// tables: the frequency that supports answer to, where it is not Im lambda.
+  const la::MCK& at(double Omega, Complex lambda, double side, double tables);
   bool still_balanced(double Omega);
   RunningSystem running_;
   EquilibriumSolver solver_;

@@ -54,16 +54,16 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
     throw run_error("E88", "an asymmetric shaft among shafts of different speeds: no axes exist in which the matrices are constant or have one period",
                     "give the shafts one speed_ratio, or use a transient step");
   // What varies: in fixed axes (then there is something to do), and in rotating ones, over one and half a revolution.
-  sample(Omega, 0.0);
+  sample(Omega, 0.0, {});
   const la::MCK first = turned_;
   const la::MCK fixed = raw_;
   double varies = 0, half = 0;
   for (const double theta : {0.7, 1.9, 2.6}) {
-    sample(Omega, theta);
+    sample(Omega, theta, {});
     varies = std::max({varies, difference(first.M, turned_.M), difference(first.K, turned_.K)});
     turning_ = turning_ || difference(fixed.K, raw_.K) > steady || difference(fixed.M, raw_.M) > steady;
     const la::MCK here = turned_;
-    sample(Omega, theta + pi);
+    sample(Omega, theta + pi, {});
     half = std::max({half, difference(here.M, turned_.M), difference(here.K, turned_.K)});
   }
   harmonics_ = varies > steady ? std::max<Index>(harmonics, 1) : 0;
@@ -88,11 +88,13 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
       for (int c = 0; c < 6; ++c) active_.push_back(base_active_[idx(6 * i + c)]);
 }
 
-void RotatingAxes::sample(double Omega, double theta) {
+void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   if (linear_.Omega() != Omega || Omega == 0.0) linear_.at(Omega);   // the equilibrium
   const Equilibrium& e = linear_.equilibrium();
   RunningSystem& running = linear_.running();
+  running.set_whirl(lambda, true);
   const bool inside = running.tangent_at(e.state.frames, Omega, e.state.q, theta, raw_);
+  running.set_whirl(0.0);
   if (!inside) throw run_error("E76", "no linearisation: the state lies outside the range of an element");
   const system::System& s = linear_.system();
   const la::BlockPattern& p = s.pattern();
@@ -113,9 +115,9 @@ void RotatingAxes::sample(double Omega, double theta) {
     }
 }
 
-const la::MCK& RotatingAxes::at(double Omega) {
+const la::MCK& RotatingAxes::at(double Omega, Complex lambda) {
   if (harmonics_ == 0) {
-    sample(Omega, 0.0);
+    sample(Omega, 0.0, lambda);
     return turned_;
   }
   // Galerkin in 1, cos h b theta, sin h b theta, by the trapezoidal rule: exact up to the harmonic of its points less those of the product.
@@ -125,7 +127,7 @@ const la::MCK& RotatingAxes::at(double Omega) {
   VecX f(parts), g(parts), gg(parts);
   for (Index n = 0; n < points; ++n) {
     const double theta = two_pi / static_cast<double>(step_ * points) * static_cast<double>(n);
-    sample(Omega, theta);
+    sample(Omega, theta, lambda);
     f[0] = 1.0, g[0] = gg[0] = 0.0;
     for (Index h = 1; h <= harmonics_; ++h) {
       const double w = static_cast<double>(step_ * h), c = std::cos(w * theta), s = std::sin(w * theta);
@@ -171,11 +173,11 @@ double RotatingAxes::constant_share(const VecXc& x) const {
 }
 
 Index RotatingAxes::negative_stiffnesses(double Omega) {
-  sample(Omega, 0.0);
+  sample(Omega, 0.0, Complex(0, infinity));
   la::MCK symmetric = linear_.system().make_matrices();
   if (harmonics_ > 0) {   // mean of the two principal positions of the supports
     const la::MCK one = turned_;
-    sample(Omega, 0.5 * pi);
+    sample(Omega, 0.5 * pi, Complex(0, infinity));
     for (std::size_t i = 0; i < turned_.K.value_count(); ++i) turned_.K.data()[i] = 0.5 * (turned_.K.data()[i] + one.K.data()[i]);
   }
   take_conservative_part(turned_, symmetric);
@@ -193,10 +195,17 @@ class BandSearch {
   BandSearch(RotatingAxes& axes, const BandOptions& o) : axes_(axes), solver_(axes.pattern(), axes.active(), options(axes, o)) {}
 
   Growth at(double Omega) {
-    const la::MCK& m = axes_.at(Omega);
+    const la::MCK& m = axes_.at(Omega, Complex(0, infinity));
     Growth best{-infinity, 0};
-    for (const la::Mode& x : solver_.solve(m)) {
+    for (la::Mode x : solver_.solve(m)) {
       if (axes_.constant_share(x.x) < 0.2 || std::abs(x.lambda) == 0.0) continue;   // a copy; a rigid motion
+      // hysteretic damping at the rate of the motion itself; a motion that stands in the rotor loses nothing
+      for (int round = 0; round < 40 && axes_.hysteretic() && x.lambda.imag() != 0.0; ++round) {
+        const Complex rate = x.lambda;
+        if (const auto next = solver_.follow(axes_.at(Omega, rate), x)) x = *next;
+        else break;
+        if (std::abs(x.lambda - rate) <= 1e-12 * std::abs(rate)) break;
+      }
       if (x.lambda.real() > best.rate) best = {x.lambda.real(), std::abs(x.lambda.imag())};
     }
     return best;

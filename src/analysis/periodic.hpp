@@ -21,13 +21,14 @@ class RotatingAxes {
   /// Errors: E88, the lines turn at different speeds.
   RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3, Motion motion = Motion::lateral);
 
-  /// Matrices at Omega on pattern(); valid until the next call.
-  const la::MCK& at(double Omega);
+  /// Matrices at Omega on pattern(); valid until the next call. lambda: rate in rotating axes, for hysteretic damping.
+  const la::MCK& at(double Omega, Complex lambda = {});
   const la::BlockPattern& pattern() const { return *pattern_; }
   std::span<const unsigned char> active() const { return active_; }
   /// Constant in rotating axes.
   bool constant() const { return harmonics_ == 0; }
   Index harmonics() const { return harmonics_; }
+  bool hysteretic() const { return linear_.hysteretic(); }
   /// Something does turn with the rotor: the matrices in fixed axes are not constant.
   bool turning() const { return turning_; }
   /// Share of the constant part of a motion, 0 .. 1 (1 when constant()).
@@ -39,7 +40,7 @@ class RotatingAxes {
 
  private:
   /// Matrices in rotating axes at one angle, on the system's pattern, into turned_.
-  void sample(double Omega, double theta);
+  void sample(double Omega, double theta, Complex lambda);
   Linearizer& linear_;
   Motion motion_;
   bool turning_ = false;

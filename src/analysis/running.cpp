@@ -56,12 +56,20 @@ RunningSystem::RunningSystem(const system::System& system, Running running)
   std::sort(orders_.begin(), orders_.end());
   orders_.erase(std::unique(orders_.begin(), orders_.end()), orders_.end());
   workspace_.context.averaged = running_.mean;
+  workspace_.context.hysteretic = running_.hysteretic;
+  for (const auto& term : system.terms()) hysteretic_ = hysteretic_ || (running_.hysteretic && term->hysteretic());
   make_samples();
   sort_terms();
 }
 
 void RunningSystem::set_load(double factor) {
   if (workspace_.context.load != factor) workspace_.context.load = factor, polynomial_ = seen_ = false;
+}
+
+void RunningSystem::set_whirl(Complex lambda, bool rotates, double side) {
+  system::Context& c = workspace_.context;
+  c.whirl = std::abs(lambda.imag()), c.growth = lambda.real(), c.whirl_rotates = rotates;
+  c.whirl_side = std::isnan(side) ? c.whirl : side;
 }
 
 void RunningSystem::make_samples() {

@@ -21,6 +21,7 @@ struct Running {
   std::vector<double> ratio;   ///< spin of each line relative to the reference speed (negative: the other way); empty = all 1;
                                ///< shorter than the lines: the rest (ground) stand still
   double time = 0;             ///< laws of time are read here
+  bool hysteretic = true;      ///< hysteretic damping in its own form; false: as its stand-in in motions
   bool mean = true;            ///< average over the revolution; false: rotor angles as they stand (statics)
   double top_speed = 0;        ///< highest |Omega| expected, rad/s (keeps the polynomials from being made twice); 0 = unknown
   bool frequency_dependent = false;   ///< something in the system answers differently to motions of different frequency (system/frequency.hpp)
@@ -41,6 +42,12 @@ class RunningSystem {
 
   /// Factor on gravity and given loads.
   void set_load(double factor);
+  /// How hysteretic damping (elements that depend on the rate of the motion) enters the matrices: at the rate lambda, 1/s, of a small motion;
+  /// infinite Im: not at all; 0: as for the steady state. rotates: lambda is seen in axes turning with the shaft.
+  /// side: the frequency that decides whether the whirl is faster than the spin, Im lambda unless given.
+  void set_whirl(Complex lambda, bool rotates = false, double side = nan);
+  /// Something in the system depends on it.
+  bool hysteretic() const { return hysteretic_; }
   double load() const { return workspace_.context.load; }
 
   /// v of the steady motion: Omega ratio at spinning phi, else zero. Errors: E78, a line that shall turn is held against it.
@@ -85,6 +92,7 @@ class RunningSystem {
   Terms blind_, all_;
   std::vector<double> theta_;              ///< samples
   MatX weights_;                           ///< rows: mean, then cos and sin of each order; columns: samples
+  bool hysteretic_ = false;
   system::Workspace workspace_;
   VecX q_, v_, a_, r_;                     // scratch
   la::MCK part_, sample_;

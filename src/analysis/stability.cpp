@@ -59,12 +59,13 @@ StabilityMap stability_map(const std::function<system::System(double)>& build, c
                            const std::vector<double>& parameter, const StabilityOptions& options) {
   StabilityMap map;
   map.parameter = parameter;
-  for (Index k = 0; k <= options.grid; ++k)
+  map.speeds = options.speeds;
+  for (Index k = 0; options.speeds.empty() && k <= options.grid; ++k)
     map.speeds.push_back(options.min_speed + (options.max_speed - options.min_speed) * static_cast<double>(k) / static_cast<double>(options.grid));
   for (double p : parameter) {
     const system::System system = build(p);
     Running r = running;
-    r.top_speed = std::max(r.top_speed, options.max_speed);
+    for (const double Omega : map.speeds) r.top_speed = std::max(r.top_speed, std::abs(Omega));
     Linearizer linear(system, r);
     std::vector<double> least(map.speeds.size(), nan);
     const StabilityResult result = sweep(linear, options, [&](std::size_t k, const std::vector<TrackedMode>& modes) {
@@ -72,10 +73,11 @@ StabilityMap stability_map(const std::function<system::System(double)>& build, c
         if (m.now.kind == ModeKind::lateral && m.now.frequency > 0 && !(least[k] <= m.now.log_decrement)) least[k] = m.now.log_decrement;
     });
     map.least_log_decrement.push_back(std::move(least));
-    map.onset.push_back(nan);
+    map.onset.push_back(result.stable_at_start ? nan : -infinity);
+    map.frequency.push_back(nan);
     for (const Onset& o : result.onsets)
-      if (o.gains) {
-        map.onset.back() = o.speed;
+      if (o.gains && result.stable_at_start) {
+        map.onset.back() = o.speed, map.frequency.back() = o.frequency;
         break;
       }
   }

@@ -37,7 +37,9 @@ StabilityResult find_instability(Linearizer& linear, const StabilityOptions& opt
 struct StabilityMap {
   std::vector<double> speeds, parameter;
   std::vector<std::vector<double>> least_log_decrement;   ///< [parameter][speed], of oscillating lateral modes
-  std::vector<double> onset;                              ///< [parameter]: first onset within the speeds, nan: none
+  /// [parameter]: first onset within the speeds, solved for, rad/s; nan: stable at all of them; -inf: unstable at the first one already.
+  std::vector<double> onset;
+  std::vector<double> frequency;                          ///< of the whirl there, rad/s; nan without
 };
 StabilityMap stability_map(const std::function<system::System(double)>& build, const Running& running,
                            const std::vector<double>& parameter, const StabilityOptions& options);

@@ -1,6 +1,10 @@
 #include <analysis/whirl_modes.hpp>
 
+#include <core/error.hpp>
 #include <la/multiply.hpp>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +14,9 @@ namespace whirl::analysis {
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-la::ModeOptions la_options(const ModesOptions& o) {
+la::ModeOptions la_options(const ModesOptions& o, bool hysteretic) {
   la::ModeOptions l;
-  l.count = o.count;
+  l.count = o.count > 0 && hysteretic ? o.count + 2 : o.count;   // partners of modes that hysteretic damping will tell apart
   l.max_frequency = o.max_frequency;
   l.real_roots = o.real_roots;
   return l;
@@ -143,10 +147,10 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
 
 WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
     : linear_(linear), options_(options), active_(select_motion(linear.system(), options.motion)),
-      solver_(linear.system().pattern(), active_, la_options(options)) {}
+      solver_(linear.system().pattern(), active_, la_options(options, options.damped && linear.hysteretic())) {}
 
-const la::MCK& WhirlSolver::matrices_at(double Omega, double w) {
-  matrices_ = options_.damped ? &linear_.at(Omega, w) : &linear_.conservative_at(Omega, w);
+const la::MCK& WhirlSolver::matrices_at(double Omega, Complex lambda, double side) {
+  matrices_ = options_.damped ? &linear_.at(Omega, lambda, side) : &linear_.conservative_at(Omega, lambda.imag());
   return *matrices_;
 }
 
@@ -154,7 +158,7 @@ std::optional<la::Mode> WhirlSolver::at_own_frequency(double Omega, la::Mode mod
   // The root of g(w) = Im lambda(w) - w, lambda(w) followed in the matrices for w: by secant, which does not mind |d Im lambda/dw| > 1.
   double w0 = nan, g0 = nan, w = std::abs(mode.lambda.imag());
   for (int it = 0; it < 50; ++it) {
-    const auto found = solver_.follow(matrices_at(Omega, w), mode);
+    const auto found = solver_.follow(matrices_at(Omega, Complex(0, w)), mode);
     if (!found) return std::nullopt;
     mode = *found;
     const double frequency = std::abs(mode.lambda.imag()), g = frequency - w;
@@ -166,20 +170,70 @@ std::optional<la::Mode> WhirlSolver::at_own_frequency(double Omega, la::Mode mod
   return std::nullopt;
 }
 
-const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
-  const la::MCK& m = matrices_at(Omega, nan);
-  modes_.clear();
-  if (!linear_.running().running().frequency_dependent) {
-    for (const la::Mode& mode : solver_.solve(m)) modes_.push_back(describe_mode(mode, m, linear_));
-    return modes_;
+std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
+  const Index from = mode.from;
+  // Where forward whirl passes the speed its damping changes sign. The side is settled in an outer loop; where the frequency jumps from one side to
+  // the other with it (planes mixed by unequal supports), the last one found stands.
+  for (int sides = 0; sides < 6 && mode.lambda.imag() != 0.0; ++sides) {
+    const double side = std::abs(mode.lambda.imag());
+    bool steady = false;
+    for (int round = 0; round < 40 && !steady && mode.lambda.imag() != 0.0; ++round) {
+      const Complex rate = mode.lambda;
+      auto next = solver_.follow(matrices_at(Omega, rate, side), mode);
+      if (!next) return std::nullopt;
+      steady = std::abs(next->lambda - rate) <= 1e-13 * std::abs(rate);
+      if (steady && round == 0 && sides > 0) {   // the new side changes nothing
+        mode = std::move(*next);
+        mode.from = from;
+        return mode;
+      }
+      mode = std::move(*next);
+    }
+    if (!steady && mode.lambda.imag() != 0.0) return std::nullopt;
   }
+  mode.from = from;
+  return mode;
+}
+
+void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
+  const Index k = static_cast<Index>(group.size()), n = group.front().x.size();
+  Complex rate = 0.0;
+  for (const la::Mode& m : group) rate += m.lambda / static_cast<double>(k);
+  const la::MCK& m = matrices_at(Omega, rate);
+  MatXc X(n, k), Y(n, k);
+  for (Index j = 0; j < k; ++j) X.col(j) = group[at(j)].x.normalized();
+  const auto project = [&](const la::BlockMatrix<6>& a) {
+    VecXc y;
+    for (Index j = 0; j < k; ++j) {
+      la::multiply(a, VecXc(X.col(j)), y);
+      Y.col(j) = y;
+    }
+    return MatXc(X.adjoint() * Y);
+  };
+  const Eigen::PartialPivLU<MatXc> mass(project(m.M));
+  MatXc companion = MatXc::Zero(2 * k, 2 * k);
+  companion.topRightCorner(k, k).setIdentity();
+  companion.bottomLeftCorner(k, k) = -mass.solve(project(m.K));
+  companion.bottomRightCorner(k, k) = -mass.solve(project(m.C));
+  const Eigen::ComplexEigenSolver<MatXc> eig(companion);
+  std::vector<Index> order(at(2 * k));
+  for (Index j = 0; j < 2 * k; ++j) order[at(j)] = j;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::abs(eig.eigenvalues()(a) - rate) < std::abs(eig.eigenvalues()(b) - rate); });
+  for (Index j = 0; j < k; ++j) {
+    const VecXc y = eig.eigenvectors().col(order[at(j)]).head(k);
+    group[at(j)].x = X * y;
+    group[at(j)].lambda = eig.eigenvalues()(order[at(j)]);
+  }
+}
+
+void WhirlSolver::solve_by_frequency(double Omega) {
   // Synchronous coefficients give the starts; each mode is then led to the coefficients at its own frequency. Two that meet are one.
-  const std::vector<la::Mode> starts = solver_.solve(m);
+  const std::vector<la::Mode> starts = solver_.solve(matrices_at(Omega, Complex(0, nan)));
   for (const la::Mode& start : starts) {
     const bool whirls = start.lambda.imag() != 0.0;
     const auto mode = whirls ? at_own_frequency(Omega, start) : std::optional(start);
     if (!mode) continue;
-    const la::MCK& own = whirls ? *matrices_ : matrices_at(Omega, nan);
+    const la::MCK& own = whirls ? *matrices_ : matrices_at(Omega, Complex(0, nan));
     const bool known = std::any_of(modes_.begin(), modes_.end(), [&](const WhirlMode& k) {
       return std::abs(k.lambda - mode->lambda) < 1e-8 * std::abs(k.lambda) && likeness(own, k.x, mode->x) > 0.999;
     });
@@ -188,6 +242,36 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
     modes_.back().from = start.from;
   }
   std::stable_sort(modes_.begin(), modes_.end(), [](const WhirlMode& a, const WhirlMode& b) { return a.frequency < b.frequency; });
+}
+
+void WhirlSolver::solve_hysteretic(double Omega) {
+  // Forward and backward whirl of one frequency are any two motions of their plane until the damping tells them apart.
+  std::vector<la::Mode> known = solver_.solve(matrices_at(Omega, Complex(0, infinity))), group;
+  for (std::size_t i = 0; i < known.size();) {
+    group.clear();
+    do group.push_back(known[i++]);
+    while (i < known.size() && group.size() < 6 && std::abs(known[i].lambda - known[i - 1].lambda) < 0.05 * std::abs(known[i].lambda));
+    if (group.size() > 1) separate(Omega, group);
+    for (const la::Mode& mode : group) {
+      const auto settled = settle_rate(Omega, mode);
+      if (!settled) throw run_error("E77", "hysteretic damping: a whirl mode was lost on the way to its own frequency", "use a smaller internal_loss_factor, or internal_beta");
+      modes_.push_back(describe_mode(*settled, *matrices_, linear_));
+    }
+  }
+  std::stable_sort(modes_.begin(), modes_.end(), [](const WhirlMode& a, const WhirlMode& b) { return a.frequency < b.frequency; });
+  if (options_.count > 0 && static_cast<Index>(modes_.size()) > options_.count) modes_.resize(at(options_.count));
+}
+
+const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
+  modes_.clear();
+  if (options_.damped && linear_.hysteretic()) {
+    solve_hysteretic(Omega);
+  } else if (linear_.running().running().frequency_dependent) {
+    solve_by_frequency(Omega);
+  } else {
+    const la::MCK& m = matrices_at(Omega, Complex(0, nan));
+    for (const la::Mode& mode : solver_.solve(m)) modes_.push_back(describe_mode(mode, m, linear_));
+  }
   return modes_;
 }
 
@@ -195,8 +279,9 @@ std::optional<WhirlMode> WhirlSolver::follow(double Omega, const WhirlMode& star
   la::Mode from;
   from.lambda = start.lambda, from.x = start.x;
   std::optional<la::Mode> found;
-  if (linear_.running().running().frequency_dependent && start.frequency > 0) found = at_own_frequency(Omega, from);
-  else found = solver_.follow(matrices_at(Omega, nan), from);
+  if (options_.damped && linear_.hysteretic()) found = settle_rate(Omega, from);
+  else if (linear_.running().running().frequency_dependent && start.frequency > 0) found = at_own_frequency(Omega, from);
+  else found = solver_.follow(matrices_at(Omega, Complex(0, nan)), from);
   if (!found || likeness(*matrices_, found->x, start.x) < 0.3) return std::nullopt;   // a planar start and the circle it becomes are 0.5 alike
   return describe_mode(*found, *matrices_, linear_);
 }

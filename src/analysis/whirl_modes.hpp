@@ -42,7 +42,9 @@ std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const Modes
 
 /// Modes at a series of speeds; each call starts from what the last one found. Supports tabulated against frequency (Running::
 /// frequency_dependent): every whirling mode satisfies Q(lambda; Im lambda) x = 0, its coefficients being those at its own frequency, found
-/// from the modes with synchronous coefficients; overdamped roots keep the latter.
+/// from the modes with synchronous coefficients; overdamped roots keep the latter. Hysteretic damping makes the problem depend on lambda
+/// likewise: each mode is solved for in turn until it agrees with the rate its matrices are for (contraction about half the loss factor a
+/// round).
 class WhirlSolver {
  public:
   explicit WhirlSolver(Linearizer& linear, const ModesOptions& options = {});
@@ -56,9 +58,15 @@ class WhirlSolver {
   la::ModeSolver::Work work() const { return solver_.work(); }
 
  private:
-  const la::MCK& matrices_at(double Omega, double w);
+  const la::MCK& matrices_at(double Omega, Complex lambda, double side = nan);
   /// Where supports answer by frequency: the mode in the matrices for its own frequency, from a mode in others; nullopt: lost.
   std::optional<la::Mode> at_own_frequency(double Omega, la::Mode mode);
+  /// The mode that `start` (an eigenpair at its own rate) becomes when hysteretic damping acts at the rate of the mode itself.
+  std::optional<la::Mode> settle_rate(double Omega, la::Mode start);
+  void solve_by_frequency(double Omega);
+  void solve_hysteretic(double Omega);
+  /// Better vectors of modes of nearly equal frequency, within the space they span, under the damping at their mean rate.
+  void separate(double Omega, std::vector<la::Mode>& group);
   Linearizer& linear_;
   ModesOptions options_;
   std::vector<unsigned char> active_;

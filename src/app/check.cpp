@@ -160,7 +160,13 @@ int run_command(const RunCommand& o) {
     e.where.file = d.model.deck_path;
     throw Error(Exit::deck, std::move(e));
   }
-  return run_deck(d.model, o.run);
+  RunOptions run = o.run;
+  run.variant = [&o](const std::string& setting) {
+    deck::ReadOptions read = o.read;
+    read.set.push_back(setting);
+    return deck::load_model(o.deck, read);
+  };
+  return run_deck(d.model, run);
 }
 
 }  // namespace whirl::app

@@ -2,6 +2,7 @@
 #pragma once
 #include <analysis/campbell.hpp>
 #include <analysis/harmonic.hpp>
+#include <analysis/stability.hpp>
 #include <analysis/whirl_modes.hpp>
 #include <app/transient_outputs.hpp>
 #include <io/plots.hpp>
@@ -77,6 +78,8 @@ void run_stability_step(Job&, const model::Step&, const model::StabilityStep&);
 bool turns_with_stiffness(const model::Model& m);
 /// A stability step of such a rotor, in axes that turn with it.
 void run_instability_bands(Job&, const model::Step&, const model::StabilityStep&);
+/// Figures and tables of the stability over a parameter; returns what to add to the step's line.
+std::string add_stability_map(FrequencyStep& s, const model::StabilityMap& map, const analysis::StabilityOptions& options);
 void run_critical_map_step(Job&, const model::Step&, const model::CriticalMapStep&);
 void run_harmonic_step(Job&, const model::Step&, const model::HarmonicStep&);
 void run_torsional_step(Job&, const model::Step&, const model::TorsionalStep&);

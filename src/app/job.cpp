@@ -82,8 +82,10 @@ analysis::Running Job::running_of(const StepState& start) const {
   return running;
 }
 
-analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions options) const {
-  analysis::RunningSystem turning(system(), running_of(start));
+analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions options, bool in_time) const {
+  analysis::Running running = running_of(start);
+  running.hysteretic = !in_time;
+  analysis::RunningSystem turning(system(), running);
   options.chart_change = model.chart_change;
   analysis::EquilibriumSolver solver(turning, options);
   analysis::Equilibrium found;

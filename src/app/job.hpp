@@ -46,8 +46,8 @@ struct Job {
   StepState start_of(const model::Step& step, double speed) const;
   /// How the lines turn in a state.
   analysis::Running running_of(const StepState& start) const;
-  /// Moves a start to its static equilibrium (spinning, loaded). Errors E75, E76 when there is none.
-  analysis::Equilibrium settle(StepState& start, analysis::EquilibriumOptions options = {}) const;
+  /// Moves a start to its static equilibrium (spinning, loaded; in_time: where a transient starts, hysteretic damping as it acts there). Errors E75, E76 when there is none.
+  analysis::Equilibrium settle(StepState& start, analysis::EquilibriumOptions options = {}, bool in_time = false) const;
 };
 
 class PlotBuffer;

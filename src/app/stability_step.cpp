@@ -67,6 +67,7 @@ void run_stability_step(Job& job, const model::Step& step, const model::Stabilit
       line += fmt::format("{}instability above {:.8g} rpm, whirling at {:.5g} Hz", line.empty() ? "" : "; ", to_rpm(x.speed), to_hz(x.frequency));
       break;
     }
+  if (law.map) line += add_stability_map(s, *law.map, o);
   s.section.text = line + ".";
   s.section.text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(s.section.text[0])));
   s.finish(line);

@@ -76,7 +76,7 @@ StepState transient_start(Job& job, const model::Step& step, const model::Transi
   }
   if (law.start == Start::static_equilibrium && step.from.empty()) {
     const PhaseTimer timer(job, "equilibrium");
-    job.settle(start);
+    job.settle(start, {}, true);
   }
   warn_of_closed_contacts(job, step, start);
   return start;

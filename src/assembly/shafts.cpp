@@ -1,14 +1,18 @@
 // Shaft elements. Damping of a line: beta_internal acts on bending and axial strain rates seen turning with the shaft,
 // beta_external on those seen in fixed axes; the twist rate is the same in both, so torsion gets
 // beta_internal + beta_external + beta_torsion. alpha acts on the velocities of the shaft's own mass.
+// The loss factor acts on all strain rates seen turning with the shaft (hysteretic_damping.hpp).
 #include <assembly/element_section.hpp>
+#include <assembly/node_inertia.hpp>
 #include <assembly/parts.hpp>
 #include <elements/general_beam.hpp>
+#include <elements/hysteretic_damping.hpp>
 #include <elements/point_mass.hpp>
 #include <elements/rigid_body.hpp>
 #include <elements/rigid_disk.hpp>
 #include <elements/shaft_beam.hpp>
 #include <elements/shaft_damping.hpp>
+#include <elements/weight_rest.hpp>
 #include <meshes/mass_properties.hpp>
 
 #include <fmt/format.h>
@@ -32,6 +36,41 @@ void add_stressed(Assembly& a, const K& k, const std::array<Index, 2>& nodes, co
   };
 }
 
+/// How much of what moves at the nodes is the elements' own: the share of timoshenko_matrices.hpp.
+class MassShares {
+ public:
+  explicit MassShares(const Assembly& a) : of_(a.mesh.nodes.size(), Vec2(1, 1)) {
+    if (a.model.disks.empty() && a.mesh.rigid_parts.empty()) return;
+    for (const meshes::Line& line : a.mesh.lines) {
+      const auto elements = element_inertias(a.model, a.mesh, line), bodies = body_inertias(a.model, a.mesh, line);
+      const auto part = [](double own, double other) { return other > 0 ? own / (own + other) : 1.0; };
+      for (std::size_t i = 0; i < elements.size(); ++i)
+        of_[static_cast<std::size_t>(line.first_node) + i] = Vec2(part(elements[i].mass, bodies[i].mass), part(elements[i].Id, bodies[i].Id));
+    }
+  }
+  Vector<4> of(const meshes::Element& e) const { return (Vector<4>() << node(e.left), node(e.right)).finished(); }
+
+ private:
+  const Vec2& node(const meshes::Place& p) const { return of_[static_cast<std::size_t>(p.node)]; }
+  std::vector<Vec2> of_;   ///< (translation, rotation) of each node
+};
+
+bool has_weight(const model::Model& m) {
+  const auto& base = m.base.acceleration;
+  return m.gravity != Vec3::Zero() || base[0] || base[1] || base[2];
+}
+
+/// Constants of an element, make(share), and the part of its weight that its share of the mass leaves out. part: of their mass that is used.
+template <class Make>
+ShaftElementConstants shared_constants(Assembly& a, const MassShares& shares, const meshes::Element& e, Make make, double part = 1.0) {
+  const Vector<4> share = shares.of(e);
+  if ((share.array() == 1).all()) return make(share);
+  const ShaftElementConstants c = make(share);
+  const Vector<4> rest = part * (make(Vector<4>::Ones()).M4 - c.M4) * Vector<4>(1, 0, 1, 0);
+  if (has_weight(a.model)) add_stressed(a, elements::WeightRest{rest}, {e.left.node, e.right.node}, "weights beside bodies");
+  return c;
+}
+
 void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConstants& c, const std::array<Index, 2>& nodes, bool internal) {
   const model::ShaftDamping& d = shaft.damping;
   const Vec3 e0 = Vec3::UnitX();
@@ -48,6 +87,23 @@ void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConst
     m.C4 = d.alpha * c.M4;
     a.builder.add(m, nodes, "mass-proportional damping");
   }
+}
+
+double stand_in_of(const model::ShaftDamping& d) { return d.loss_frequency > 0 ? 1.0 / d.loss_frequency : 0.0; }
+
+void add_hysteresis(Assembly& a, const model::Shaft& shaft, const ShaftElementConstants& c, const std::array<Index, 2>& nodes) {
+  const model::ShaftDamping& d = shaft.damping;
+  if (d.loss_factor == 0) return;
+  using Viscous = elements::ShaftDamping<true>;
+  add_stressed(a, elements::HystereticDamping<Viscous>{Viscous(c, Vec3::UnitX(), d.loss_factor, 0.0, 0.0), Viscous(c, Vec3::UnitX(), 0.0, d.loss_factor, d.loss_factor), stand_in_of(d)},
+               nodes, "hysteretic damping");
+}
+
+void add_hysteresis(Assembly& a, const model::Shaft& shaft, const elements::GeneralBeam& beam, const std::array<Index, 2>& nodes) {
+  const model::ShaftDamping& d = shaft.damping;
+  if (d.loss_factor == 0) return;
+  using Viscous = elements::GeneralBeamDamping;
+  add_stressed(a, elements::HystereticDamping<Viscous>{Viscous(beam, d.loss_factor, 0.0), Viscous(beam, 0.0, d.loss_factor), stand_in_of(d)}, nodes, "hysteretic damping");
 }
 
 /// Force at unstressed length: preload, and what keeps the element from its thermal growth.
@@ -70,16 +126,23 @@ void finish_general(Assembly& a, const model::Shaft& shaft, const meshes::Elemen
     beam.p02 += (A * k * std::cos(k * e.s2) - chord) * axis;
   }
   add_stressed(a, beam, nodes, "general beam elements");
+  add_hysteresis(a, shaft, beam, nodes);
+}
+
+/// Constants for a general beam, which has the offsets of its ends itself; the shares are those of nodes, so only without offsets.
+ShaftElementConstants between_nodes(Assembly& a, const MassShares& shares, const meshes::Element& e, const elements::ElementSection& section, double part) {
+  const auto make = [&](const Vector<4>& share) { return elements::make_shaft_constants(section, e.s2 - e.s1, 0, 0, elements::MassKind::corrected, share); };
+  return e.left.offset == 0 && e.right.offset == 0 ? shared_constants(a, shares, e, make, part) : make(Vector<4>::Ones());
 }
 
 /// A round section whose unstressed shape is not straight.
-void add_bowed(Assembly& a, const model::Shaft& shaft, const meshes::Element& e) {
+void add_bowed(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
   elements::ElementSection section = element_section(a.model, e);
   const double l = e.s2 - e.s1;
   const ShaftElementConstants whole = elements::make_shaft_constants(section, l);
   section.rotary_inertia = false;   // the general beam has it on its triads
   if (section.constants) section.given.rhoI = 0;
-  const ShaftElementConstants k = elements::make_shaft_constants(section, l);
+  const ShaftElementConstants k = between_nodes(a, shares, e, section, 1.0);
   elements::GeneralBeamConstants c;
   c.length = l, c.EA_l = k.EA_l, c.GJ_l = k.GJ_l;
   c.ky_def11 = c.kz_def11 = k.k11, c.ky_def12 = c.kz_def12 = k.k12, c.ky_def22 = c.kz_def22 = k.k22;
@@ -94,7 +157,7 @@ void add_bowed(Assembly& a, const model::Shaft& shaft, const meshes::Element& e)
 }
 
 /// Section with unequal principal axes. Deflection along the section's y bends about its z.
-void add_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& e) {
+void add_general(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
   const model::Section& s = shaft.sections[e.section];
   const model::Section::General& g = *s.general;
   const model::Material& material = a.model.materials.at(s.material);
@@ -104,7 +167,7 @@ void add_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& 
   const auto constants = [&](double I, double kappa) {
     plane.given = {material.E * g.A, kappa > 0 ? kappa * material.G * g.A : 0.0, material.G * g.J, material.E * I,
                    material.rho * g.A + s.added_mass_per_length, 0, 0};
-    return elements::make_shaft_constants(plane, l);
+    return between_nodes(a, shares, e, plane, 0.5);
   };
   const ShaftElementConstants y = constants(g.Iz, g.kappa_y), z = constants(g.Iy, g.kappa_z);
   elements::GeneralBeamConstants c;
@@ -168,18 +231,19 @@ void list_absent(Assembly& a) {
 
 void add_shafts(Assembly& a) {
   if (!a.model.keep_everything) list_absent(a);
+  const MassShares shares(a);
   for (const meshes::Element& e : a.mesh.elements) {
     a.built.element_forces.emplace_back();
     const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
     if (shaft.sections[e.section].general) {
-      add_general(a, shaft, e);
+      add_general(a, shares, shaft, e);
       continue;
     }
     if (shaft.bow.amount != 0) {
-      add_bowed(a, shaft, e);
+      add_bowed(a, shares, shaft, e);
       continue;
     }
-    const ShaftElementConstants c = element_constants(a.model, e);
+    const ShaftElementConstants c = shared_constants(a, shares, e, [&](const Vector<4>& share) { return element_constants(a.model, e, share); });
     const std::array<Index, 2> nodes{e.left.node, e.right.node};
     const auto add = [&](auto beam) {
       beam.preload = preload_of(a, shaft, e, c.EA_l * c.length);
@@ -188,12 +252,9 @@ void add_shafts(Assembly& a) {
     if (!a.model.keep_everything && c.o1 == 0 && c.o2 == 0) add(elements::ShaftBeam<false>(c, Vec3::UnitX()));
     else add(elements::ShaftBeam<true>(c, Vec3::UnitX()));
     add_damping(a, shaft, c, nodes, true);
+    add_hysteresis(a, shaft, c, nodes);
   }
   for (const meshes::RigidPart& r : a.mesh.rigid_parts) add_rigid_part(a, a.model.shafts[static_cast<std::size_t>(r.line)], r);
-  for (const model::Shaft& s : a.model.shafts)
-    if (s.damping.loss_factor != 0)
-      a.built.left_out.push_back(fmt::format("hysteretic damping of shaft '{}' (loss factor {}): it has no form in time and no step applies it; internal_beta = loss factor / |whirl frequency - speed| stands for it at one frequency",
-                                             s.name, s.damping.loss_factor));
 }
 
 }  // namespace whirl::assembly

@@ -225,6 +225,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "Motions of a shaft with unequal principal stiffnesses are looked at in axes that turn with it. With shafts of different speeds there are none "
        "in which the matrices are constant or periodic.",
        "method: a transient step with a small initial disturbance"},
+      {"E89", "no map over this parameter",
+       "A stability map reads the deck again for each value of one of its [parameters]; it is drawn for rotors whose matrices are constant in fixed axes.",
+       "[parameters]\nclearance = \"75 um\"\n\n[[step]]\ntype = \"stability\"\nmap = { parameter = \"clearance\", values = [\"60 um\", \"75 um\", \"90 um\"] }"},
       {"E90", "a plug-in is missing or does not fit",
        "VTK, HDF5 and SUNDIALS live in plug-ins that are loaded only when a deck asks for them. The message lists where the file was looked for. "
        "Install the package that holds it, set WHIRL_PLUGIN_PATH, or ask for another output or method.",

@@ -52,7 +52,10 @@ void describe_damping(Visitor& v, model::ShaftDamping& d) {
   v.quantity("rayleigh_alpha", d.alpha, "1/s", not_negative, "mass-proportional damping, external (acts on the motion in fixed axes)");
   v.quantity("external_beta", d.beta_external, "s", not_negative, "stiffness-proportional damping, external: damps at every speed");
   v.quantity("internal_beta", d.beta_internal, "s", not_negative, "stiffness-proportional viscous damping of the shaft itself, in its rotating axes: destabilises forward whirl above the critical speed");
-  v.number("internal_loss_factor", d.loss_factor, fraction, "hysteretic damping of the shaft itself, in its rotating axes; recorded, but no step applies it: use internal_beta");
+  v.number("internal_loss_factor", d.loss_factor, fraction, "hysteretic damping of the shaft itself, in its rotating axes: the same loss a cycle at every frequency. Steps in the frequency domain apply it as a complex stiffness; it drives forward whirl above the critical speed");
+  const bool stand_in = v.quantity(optional("internal_loss_frequency", "no hysteretic damping in transients"), d.loss_frequency, "rad/s", positive,
+                                   "transients, where hysteretic damping has no form: viscous damping stands for it that loses as much a cycle at this frequency (Hz, rpm or rad/s), seen in rotating axes: |whirl frequency - spin|");
+  if (v.clean() && stand_in && d.loss_factor == 0) v.error("E26", "internal_loss_frequency", "'internal_loss_frequency' belongs to an internal_loss_factor");
   v.quantity("torsion_beta", d.beta_torsion, "s", not_negative, "stiffness-proportional damping of the twist");
 }
 

@@ -3,6 +3,8 @@
 #include <deck/visitor.hpp>
 #include <fmt/format.h>
 
+#include <cstdlib>
+
 namespace whirl::deck {
 
 void describe(Visitor& v, model::SpeedRange& r) {
@@ -166,9 +168,28 @@ void describe(Visitor& v, model::UnbalanceStep& s) {
   else s.operating = {range[0], range[1]};
 }
 
+void describe(Visitor& v, model::StabilityMap& m) {
+  v.text(required("parameter"), m.parameter, "name of the parameter, as in [parameters]");
+  v.texts(required("values"), m.values, "its values, each with its unit as in [parameters], ascending: \"60 um\", \"75 um\", ...");
+  if (!v.clean()) return;
+  if (m.values.size() < 2) v.error("E20", "values", "a map needs at least two values");
+  double last = -infinity;
+  std::string unit;
+  for (const std::string& text : m.values) {
+    char* end = nullptr;
+    const double x = std::strtod(text.c_str(), &end);
+    const std::string rest = *end == ' ' ? end + 1 : end;
+    if (end == text.c_str()) return v.error("E20", "values", fmt::format("'{}' is not a number with a unit", text), "values = [\"60 um\", \"75 um\"]");
+    if (last != -infinity && rest != unit) return v.error("E26", "values", fmt::format("the values have different units: '{}' and '{}'", unit, rest), "write all of them in one unit");
+    if (!(x > last)) return v.error("E21", "values", fmt::format("the values do not increase: '{}'", text));
+    last = x, unit = rest;
+  }
+}
+
 void describe(Visitor& v, model::StabilityStep& s) {
   v.table(required("speed"), s.speed, "the speeds");
   v.integer("modes", s.modes, between(1, 10000), "number of modes followed, from the lowest frequency");
+  v.table(optional("map", "the deck as it is"), s.map, "stability over a parameter of the deck as well: onset speed and log decrement at each of its values");
 }
 
 void describe(Visitor& v, model::CriticalMapStep& s) {

@@ -273,9 +273,9 @@ void check_effects(const model::Model& m, Problems& out) {
     add(out, "W02", fmt::format("{} without effect: the deck has no transient step", what), "", w, Diagnostic::Severity::warning);
   };
   for (const auto& s : m.shafts) {
-    if (transient && s.damping.loss_factor != 0 && s.damping.beta_internal == 0)
+    if (transient && s.damping.loss_factor != 0 && s.damping.loss_frequency == 0)
       add(out, "W02", fmt::format("internal_loss_factor of shaft '{}' has no effect on transient steps: hysteretic damping has no form in time", s.name),
-          "give internal_beta as well for them: loss factor / (angular frequency of the whirl)", s.where, Diagnostic::Severity::warning);
+          "internal_loss_frequency = \"30 Hz\": viscous damping stands for it then that loses as much at this frequency, seen in rotating axes", s.where, Diagnostic::Severity::warning);
     for (const auto& x : s.sections)
       if (x.temperature_rise != 0 && (x.constants || m.materials.empty() || m.materials.at(x.material).expansion == 0)) {
         add(out, "W02", fmt::format("temperature_rise of section '{}' has no effect: {}", x.name, x.constants ? "its constants have no thermal expansion" : "its material has no 'expansion'"),

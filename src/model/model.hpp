@@ -57,6 +57,7 @@ struct ShaftDamping {
   double beta_external = 0;     ///< stiffness-proportional, non-rotating, s
   double beta_internal = 0;     ///< stiffness-proportional, rotating (viscous), s
   double loss_factor = 0;       ///< hysteretic, rotating
+  double loss_frequency = 0;    ///< rad/s in rotating axes, at which a viscous stand-in loses as much in transients; 0: none
   double beta_torsion = 0;      ///< torsional viscous, s
 };
 
@@ -238,7 +239,9 @@ struct UnbalanceStep {
   std::array<double, 2> operating{0, 0};   ///< range of operating speeds, rad/s; 0 0 = not given
   std::vector<double> shapes_at;           ///< speeds of operating shapes, rad/s; empty = at the peaks
 };
-struct StabilityStep { SpeedRange speed; int modes = 12; };
+/// The stability at several values of a parameter of the deck, as written there ("75 um").
+struct StabilityMap { std::string parameter; std::vector<std::string> values; };
+struct StabilityStep { SpeedRange speed; int modes = 12; std::optional<StabilityMap> map; };
 struct CriticalMapStep {
   double stiffness_min = 0, stiffness_max = 0;   ///< N/m
   int points = 31;

@@ -42,6 +42,8 @@ class Term {
   virtual bool cornered() const = 0;
   /// Appends, for every element of a cornered() term, on which smooth piece of its force it stands.
   virtual void list_regions(const Workspace& w, std::vector<int>& out) const = 0;
+  /// Tangents depend on the rate of the small motion, Context::whirl (kernels that say hysteretic = true).
+  virtual bool hysteretic() const = 0;
   /// Adds the inertia of an inertial() term to its nodes; false when it is not constant in time.
   virtual bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const = 0;
   virtual void add_force(Workspace& w) const = 0;
@@ -103,6 +105,10 @@ class Batch final : public Term {
       for (std::size_t i = 0; i < elements_.size(); ++i) out.push_back(elements_[i].region(gather(w, i)));
     else
       (void)w, (void)out;
+  }
+  bool hysteretic() const override {
+    if constexpr (requires { K::hysteretic; }) return K::hysteretic;
+    else return false;
   }
   std::vector<K>& elements() { return elements_; }
   const std::vector<K>& elements() const { return elements_; }

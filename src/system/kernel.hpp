@@ -14,6 +14,8 @@
 //
 // Optional: powerless = true says that add_energy never adds to supplied or dissipated, so that a power balance skips it.
 //
+// Optional: hysteretic = true says that the tangents depend on Context::whirl.
+//
 // Optional: quadratic_in_rates = true says that f is a polynomial of degree <= 2 in u', d', phi' at fixed u, d, phi, with
 // constant M: frequency-domain analyses then combine its matrices for any speed from three evaluations.
 //

@@ -41,6 +41,12 @@ struct Context {
   /// Means over the revolution are asked for: gear meshes and rolling bearings, whose periods samples of the revolution would
   /// alias, answer with their own mean.
   bool averaged = false;
+  /// Hysteretic damping has no form in time: in motions a viscous stand-in acts (false); in steady states and in small motions about them,
+  /// at the rate growth + i whirl (1/s), a complex stiffness (true). whirl: 0 for the steady state itself, infinity to leave it out.
+  bool hysteretic = false;
+  bool whirl_rotates = false;   ///< whirl is seen in axes that turn with the shaft
+  double whirl = 0.0, growth = 0.0;
+  double whirl_side = 0.0;      ///< compared with the spin in place of whirl (which may still be an iterate)
 };
 
 /// Force contribution in X: 3 (u) or 7 (u, d, phi) entries a node.

@@ -95,6 +95,13 @@ TEST_P(KeepEverything, GivesTheSame) {
       }
     app::RunOptions o;
     o.quiet = true;
+    o.variant = [&](const std::string& setting) {
+      deck::ReadOptions read;
+      read.set.push_back(setting);
+      model::Model other = deck::load_model(deck, read);
+      other.keep_everything = all;
+      return other;
+    };
     o.output = folder_ / (all ? "all" : "pruned");
     ASSERT_EQ(app::run_deck(m, o), 0);
   }

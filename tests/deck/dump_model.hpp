@@ -40,7 +40,7 @@ class ModelDump {
   void shaft(const model::Shaft& s) {
     head("shaft", s);
     matrix("origin", s.origin);
-    each("damping", std::array{s.damping.alpha, s.damping.beta_external, s.damping.beta_internal, s.damping.loss_factor, s.damping.beta_torsion});
+    each("damping", std::array{s.damping.alpha, s.damping.beta_external, s.damping.beta_internal, s.damping.loss_factor, s.damping.loss_frequency, s.damping.beta_torsion});
     each("state", std::array{double(s.rotating), s.speed_ratio, s.spin0, s.axial_preload});
     for (const auto& x : s.sections) {
       head(" section", x);

@@ -25,7 +25,7 @@ GeneralBeamConstants constants(double beta = 0.0) {
   c.M4 << 156, 22 * L, 54, -13 * L, 22 * L, 4 * L * L, 13 * L, -3 * L * L, 54, 13 * L, 156, -22 * L, -13 * L, -3 * L * L,
       -22 * L, 4 * L * L;
   c.M4 *= 2.0 * L / 420;
-  c.rhoIz_l = 0.03, c.rhoIy_l = 0.05, c.beta = beta;
+  c.rhoIz_l = 0.03, c.rhoIy_l = 0.05, c.beta = c.beta_twist = beta;
   return c;
 }
 

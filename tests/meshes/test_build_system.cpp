@@ -98,7 +98,7 @@ TEST(BuildSystem, AbsentPhysicsIsAnAbsentBatch) {
   EXPECT_EQ(count<elements::TranslationalBearing>(plain), 2u);
   EXPECT_TRUE(plain.breakpoints.empty());
 
-  m.shafts[0].damping = {1.5, 2e-5, 1e-5, 0, 3e-6};
+  m.shafts[0].damping = {.alpha = 1.5, .beta_external = 2e-5, .beta_internal = 1e-5, .beta_torsion = 3e-6};
   m.disks = {disk("balanced", 0.1, 3, 0.02, 0.01), disk("point", 0.2, 1, 0, 0), disk("eccentric", 0.3, 3, 0.02, 0.01)};
   m.disks[2].offset = Vec3(0, 1e-4, 0);
   auto u = named<model::Unbalance>("u", 0.2);
