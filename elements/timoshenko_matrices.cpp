@@ -232,7 +232,7 @@ Matrix<4> weighted(const Matrix<4>& K, double cr, double cd, const Matrix<4>& T,
 }
 
 /// (L1, L2): the exact static twist, and the polar mass built on it.
-Mat2 polar_mass(const Sampled& sp, MassKind kind) {
+Mat2 polar_mass(const Sampled& sp, MassKind kind, const Vec2& share) {
   const double soft = sp.integral([](const auto& q) { return q.soft_t; });
   const double total = sp.integral([](const auto& q) { return q.p.rhoIp; });
   if (!(total > 0)) return Mat2::Zero();
@@ -249,14 +249,15 @@ Mat2 polar_mass(const Sampled& sp, MassKind kind) {
   }
   if (kind == MassKind::corrected) {
     const double c = (vv - v * v / soft) / total / soft;  // c_t times the torsional stiffness
-    m += c * (Mat2() << 1, -1, -1, 1).finished();
+    const Mat2 a = c * share.asDiagonal() * (Mat2() << 1, -1, -1, 1).finished();
+    m += 0.5 * (a + a.transpose());
   }
   return m;
 }
 
 }  // namespace
 
-ShaftElementConstants make_shaft_constants(const ElementSection& section, double l, double o1, double o2, MassKind kind, const Vector<4>& share) {
+ShaftElementConstants make_shaft_constants(const ElementSection& section, double l, double o1, double o2, MassKind kind, const MassShare& share) {
   const Sampled sp(section, l, {});
   ShaftElementConstants c;
   c.length = l;
@@ -297,10 +298,10 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
     const Matrix<4> K = end_point_stiffness(k, l);
     const double I = sp.integral(rhoI), rotary = I > 0 ? 15 * I / (15 * I + c.mass * l * l) : 0.0;
     const double cw = translation_softness(sp, k, c.mass), cd = rotation_softness(sp, k, rhoI);
-    c.M4 += weighted(K, cw, cw - rotary * (cw - cd), T, share);
-    c.G4 += weighted(K, 0.0, rotation_softness(sp, k, rhoIp), T, share);
+    c.M4 += weighted(K, cw, cw - rotary * (cw - cd), T, share.bending);
+    c.G4 += weighted(K, 0.0, rotation_softness(sp, k, rhoIp), T, share.bending);
   }
-  c.polar = polar_mass(sp, kind);
+  c.polar = polar_mass(sp, kind, share.spin);
   return c;
 }
 

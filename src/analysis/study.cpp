@@ -11,6 +11,7 @@
 namespace whirl::analysis {
 
 std::string StudyCase::label() const {
+  if (method.empty()) return mesh_factor == 1 ? "the deck's mesh" : fmt::format("{} times the elements", mesh_factor);
   std::string s = tolerance > 0 ? fmt::format("{} tol {:.0e}", method, tolerance) : fmt::format("{} dt {:.3g} s", method, dt);
   if (mesh_factor != 1) s += fmt::format(" mesh x{}", mesh_factor);
   return s;

@@ -9,7 +9,7 @@ namespace whirl::analysis {
 
 /// One setting of the ladder. tolerance > 0: adaptive; else fixed step dt.
 struct StudyCase {
-  std::string method;
+  std::string method;           ///< empty: no integrator, meshes alone are compared (StudySample::steps: elements)
   double tolerance = 0, dt = 0;
   int mesh_factor = 1;          ///< elements of the deck's mesh split into this many
   std::string label() const;

@@ -75,6 +75,7 @@ int command_line(int argc, char** argv) {
   c = app.add_subcommand("study", "error against run time of a deck over tolerances, steps, integrators and meshes");
   add_deck(c, study.deck, study.read);
   add_run(c, study.run);
+  c->add_option("--exact", study.exact, "exact displacements of probes to measure against as well: CSV with columns \"t [s]\", \"PROBE.y [m]\", ..")->type_name("FILE");
   bool stability = false;
   c->add_flag("--stability", stability, "instead: spectral radius, numerical damping and energy over 1e5 steps of every integrator on this rotor");
 #endif

@@ -35,6 +35,7 @@ struct StudyOptions {
   std::filesystem::path deck;
   deck::ReadOptions read;
   RunOptions run;
+  std::filesystem::path exact;   ///< CSV of the exact displacements of probes; empty: none
 };
 /// Error against run time of a deck over a ladder of tolerances, steps, integrators and meshes.
 int study_deck(const StudyOptions& options);

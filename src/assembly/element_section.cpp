@@ -33,7 +33,7 @@ elements::ElementSection element_section(const model::Model& m, const meshes::El
   return out.part(e.xi1, e.xi2);
 }
 
-elements::ShaftElementConstants element_constants(const model::Model& m, const meshes::Element& e, const Vector<4>& share) {
+elements::ShaftElementConstants element_constants(const model::Model& m, const meshes::Element& e, const elements::MassShare& share) {
   return elements::make_shaft_constants(element_section(m, e), e.s2 - e.s1, e.left.offset, e.right.offset, elements::MassKind::corrected, share);
 }
 

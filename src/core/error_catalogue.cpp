@@ -247,9 +247,12 @@ const std::vector<CodeInfo>& error_catalogue() {
        "Outputs, probes, titles, the duration, stop conditions and later steps may change. The message shows the first line of the resolved deck that differs.",
        "whirl run deck.toml            # anew\nwhirl run deck.toml --resume   # with duration = \"30 s\" instead of \"20 s\": goes on"},
       {"E95", "nothing to study",
-       "whirl study compares integrators on the first transient step of a deck, which must start by itself; whirl study --stability needs a step "
-       "that names a speed and a rotor with a mode that oscillates.",
+       "whirl study compares integrators on the first transient step of a deck that starts by itself, and meshes on the steps that are no transients; "
+       "whirl study --stability needs a step that names a speed and a rotor with a mode that oscillates.",
        ""},
+      {"E96", "not an exact solution of this deck",
+       "whirl study --exact FILE wants the displacements of probes at instants of the first transient step, in the columns that whirl run writes.",
+       "t [s],disk.y [m],disk.z [m]\n0.5,1.2e-05,-3.4e-06"},
       {"W01", "unused parameter",
        "A key of [parameters] is used nowhere: probably a misspelt ${name}, or a leftover.",
        ""},

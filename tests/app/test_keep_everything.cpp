@@ -64,8 +64,11 @@ Csv read_csv(const fs::path& p) {
   return out;
 }
 
-/// Components of one thing share a scale: "disk.y [m]" and "disk.z [m]" -> "disk".
-std::string group(const std::string& column) { return column.substr(0, column.find_last_of('.', column.find('['))); }
+/// Components of one thing share a scale: "disk.y [m]" and "disk.z [m]" -> "disk"; so do the lines of a spectrum: "-139.5 Hz [m]" -> "Hz".
+std::string group(const std::string& column) {
+  if (column.ends_with(" Hz [m]")) return "Hz";
+  return column.substr(0, column.find_last_of('.', column.find('[')));
+}
 
 class KeepEverything : public testing::TestWithParam<std::string> {
  protected:

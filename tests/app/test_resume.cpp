@@ -178,17 +178,23 @@ TEST_F(Resume, LaterEndAndOtherOutputs) {
   EXPECT_TRUE(fs::exists("r/vtk/run_up_2_bearings.pvd"));
   // and it stays on the track of a run that was meant to last so long: the end of the first part changed some steps
   ASSERT_EQ(run("long.toml", "whole", false), 0);
-  const auto last = [](const std::string& csv) {
-    const std::string line = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
-    std::istringstream in(line);
-    std::vector<double> x;
-    for (std::string cell; std::getline(in, cell, ',');) x.push_back(std::stod(cell));
-    return x;
+  // (undamped torsion rings in the spin of a node, as soon out of step as the steps differ: its mean over the last tenth of a second)
+  const auto mean_spin = [](const std::string& csv) {
+    std::istringstream in(csv);
+    double sum = 0, last = 0;
+    int count = 0;
+    std::string line;
+    for (std::getline(in, line); std::getline(in, line);) {
+      const std::size_t comma = line.find(',');
+      last = std::stod(line);
+      if (last > 0.3) sum += std::stod(line.substr(comma + 1)), ++count;
+    }
+    EXPECT_EQ(last, 0.4);
+    EXPECT_NEAR(count, 1000, 1);
+    return sum / count;
   };
-  const auto a = last(after), b = last(read("whole/run_up.csv"));
-  ASSERT_EQ(a.size(), b.size());
-  EXPECT_EQ(a[0], 0.4);
-  EXPECT_NEAR(a[1], b[1], 1e-3 * b[1]);   // spin: ten times the tolerance, 1e-4
+  const double a = mean_spin(after), b = mean_spin(read("whole/run_up.csv"));
+  EXPECT_NEAR(a, b, 1e-4 * b);   // the tolerance
 }
 
 TEST_F(Resume, OtherColumnsKeepTheEarlierFile) {

@@ -33,10 +33,10 @@ double exact_beta(double mu, int n) {
 double frequency(double mu, int n, int m, bool shared) {
   MatX K = MatX::Zero(2 * n + 2, 2 * n + 2), M = K;
   for (int e = 0; e < n; ++e) {
-    Vector<4> share = Vector<4>::Ones();
+    MassShare share;
     const double w = 1.0 / n / (1.0 / n + mu);
-    if (shared && e + 1 == n / 2) share[2] = w;
-    if (shared && e == n / 2) share[0] = w;
+    if (shared && e + 1 == n / 2) share.bending[2] = w;
+    if (shared && e == n / 2) share.bending[0] = w;
     const ShaftElementConstants c = make_shaft_constants(slender(), 1.0 / n, 0, 0, MassKind::corrected, share);
     K.block<4, 4>(2 * e, 2 * e) += bending_stiffness(c);
     M.block<4, 4>(2 * e, 2 * e) += c.M4;
@@ -69,7 +69,7 @@ TEST(MassShare, FrequenciesWithABodyConvergeWithOrderSix) {
 }
 
 TEST(MassShare, RigidMotionKeepsItsEnergyAndTheLineItsWeight) {
-  const Vector<4> share(0.3, 0.8, 0.05, 0.6);
+  const MassShare share{Vector<4>(0.3, 0.8, 0.05, 0.6), Vec2(0.1, 0.9)};
   const double o1 = 0.03, o2 = -0.02, l = 0.4;
   const ShaftElementConstants a = make_shaft_constants(slender(), l, o1, o2), b = make_shaft_constants(slender(), l, o1, o2, MassKind::corrected, share);
   const Vector<4> t(1, 0, 1, 0), r(0, 1, l + o1 - o2, 1);   // node 2 at node 1 + (l + o1 - o2) d
