@@ -4,6 +4,8 @@
 // rest kg, kg m, kg, kg m: differences of order l^4; rest_1 + rest_3 = 0.
 #pragma once
 #include <system/kernel.hpp>
+#include <array>
+#include <span>
 
 namespace whirl::elements {
 
@@ -15,6 +17,15 @@ struct WeightRest {
 
   void add_force(const system::Nodes<2>&, const system::Context& c, system::ForceX<14>& f) const {
     for (int k = 0; k < 4; ++k) f.segment<3>(k < 2 ? 3 * k : 1 + 3 * k) -= rest[k] * c.gravity;
+  }
+  /// The same for all elements at once: no state is needed.
+  static void add_forces(std::span<const WeightRest> elements, const std::array<Index, 2>* nodes, const system::NodeState*, const system::Context& c, Vector<7>* force) {
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      for (std::size_t k = 0; k < 2; ++k) {
+        Vector<7>& f = force[nodes[i][k]];
+        f.head<3>() -= elements[i].rest[static_cast<Index>(2 * k)] * c.gravity;
+        f.segment<3>(3) -= elements[i].rest[static_cast<Index>(2 * k + 1)] * c.gravity;
+      }
   }
   void add_tangent(const system::Nodes<2>&, const system::Context&, system::TangentX<14>&) const {}
   void add_energy(const system::Nodes<2>& x, const system::Context& c, system::Energy& e) const {

@@ -26,7 +26,7 @@ double widest_label(const Ticks& t) {
 
 namespace {
 
-constexpr double colorbar = 78, tick_length = 4;
+constexpr double colorbar = 100, tick_length = 4;
 
 struct Range {
   double lo = infinity, hi = -infinity;

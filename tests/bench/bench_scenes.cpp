@@ -116,6 +116,18 @@ int main(int argc, char** argv) {
   m.drives.clear();
   law(m).speed0 = 0;
   row("balanced, at rest", measure(m));
+  // A force steps up at 10 ms; what it does not excite is held.
+  model::PointLoad step_load;
+  step_load.name = "step";
+  step_load.at = m.disks.at(1).at;
+  step_load.force[1] = 1000.0;
+  step_load.factor = make_table({0.0, 0.01, 0.0101}, {0.0, 0.0, 1.0});
+  m.gravity = Vec3::Zero();
+  m.loads = {step_load};
+  row("at rest, a step force in one plane: the other plane, torsion and axial motion are held", measure(m));
+  step_load.force[2] = 1000.0;
+  m.loads = {step_load};
+  row("at rest, a step force in both planes", measure(m));
   row("one disk on a spring, prescribed angle (example 09, 6 s at 1e-7): constant matrices", measure(deck::load_model(source / "examples/09_jeffcott_run_up/deck.toml", {})));
   row("one rigid body (example 01, 10 s)", measure(deck::load_model(source / "examples/01_paper_rotor/deck.toml", {})));
 
