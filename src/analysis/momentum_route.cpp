@@ -22,7 +22,7 @@ class MomentumIntegrator final : public time::Integrator {
     total_ = {};
     begin(t, q, v);
   }
-  void restart(time::CRef q, time::CRef v) override { begin(now_.t, q, v); }
+  void restart(time::CRef q, time::CRef v, bool) override { begin(now_.t, q, v); }
 
   time::StepReport advance() override {
     if (momentum_.accept(y_)) {

@@ -201,7 +201,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
     passed = corner;
     if (corner) {
       // what was smooth before says nothing about what comes
-      integrator->restart(VecX(integrator->q()), VecX(integrator->v()));
+      integrator->restart(VecX(integrator->q()), VecX(integrator->v()), true);
       step.set(report.t1, report.t1);
     }
     if (options.progress) {

@@ -28,7 +28,7 @@
 // residual a step (which also shows whether the model holds at the step's end). Gauss 4: the same with mu = |lambda| and a real factorisation of its own. The error is O(h^(s+1)) with
 // s = 3, 3, 2. Where it exceeds its allowance on a first or repeated attempt, the defect is taken again at the filtered
 // point (q0 + e_q, v0 + e_v): on stiff transients the first estimate is far too large (Hairer & Wanner, IV.8 (8.20)).
-// Tested are e_q and h e_v in the scale of q.
+// Tested are e_q and h e_v in the scale of q; after a corner of the force the time for e_v is longer (Integrator::restart).
 //
 // Tolerance. The estimate is of order s + 1, the step itself of local order p + 1, p = 5, 6, 4. To make the global error
 // proportional to Options::tolerance the local allowance is c tolerance^((s+1)/p). c is set so that a hundred periods of an
@@ -244,7 +244,7 @@ double Collocation::estimate(double h) {
     ++statistics_.solves_real;
     u_ = tab_.mu * e_ - h * rho_q_;                  // h e_v
     dq_ = u_.cwiseProduct(initial_.dynamic());       // rates of massless unknowns are results, not states
-    return std::max(scale_.error_norm(e_), scale_.error_norm(dq_)) / allowance_;
+    return std::max(scale_.error_norm(e_), scale_.error_norm(dq_) * std::max(1.0, rate_span_ / h)) / allowance_;
   };
 
   const bool consistent = tab_.stiffly_accurate || first_;   // a0 solves the equations at the start

@@ -103,8 +103,10 @@ class Integrator {
   /// Statistics and scales start anew. Throws Error when the initial acceleration cannot be found.
   virtual void start(double t, CRef q, CRef v) = 0;
   /// The problem changed its equations, or the caller the state, at the present time: continues from (q, v) without
-  /// history. Scales and statistics go on.
-  virtual void restart(CRef q, CRef v) = 0;
+  /// history. Scales and statistics go on. corner: the force has one here (a gap closes). What begins may be far faster than
+  /// what was, and leave again with rates that act for as long as the steps were before: until steps are as long again, errors
+  /// of rates count as displacements after that time. (Position errors alone let a contact of microseconds rebound as it likes.)
+  virtual void restart(CRef q, CRef v, bool corner = false) = 0;
   /// One accepted step (or the reason why none is possible; the state is then that before the step).
   virtual StepReport advance() = 0;
   /// Makes the last step again so that it ends at t, t0 < t < t1 of that step (to land on an event), before any other

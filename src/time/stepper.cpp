@@ -28,6 +28,7 @@ Stepper::Stepper(Problem& problem, const Options& options) : problem_(problem), 
 
 void Stepper::start(double t, CRef q, CRef v) {
   statistics_ = {};
+  longest_ = rate_span_ = rate_steps_ = 0.0;
   t_ = t0_ = t1_eval_ = t;
   t_low_ = t0_low_ = 0.0;
   h_ = h_next_ = 0.0;
@@ -48,7 +49,8 @@ void Stepper::start(double t, CRef q, CRef v) {
   choose_first_step();
 }
 
-void Stepper::restart(CRef q, CRef v) {
+void Stepper::restart(CRef q, CRef v, bool corner) {
+  if (corner) rate_span_ = std::max(rate_span_, longest_), longest_ = rate_steps_ = 0.0;   // an approach may take more than one
   q_ = q, v_ = v;
   q_low_.setZero(), v_low_.setZero();
   accept_pending_ = at_break_ = have_step_ = false;
@@ -285,6 +287,10 @@ StepReport Stepper::advance() {
   statistics_.step_min = std::min(statistics_.step_min, target.h);
   statistics_.step_max = std::max(statistics_.step_max, target.h);
   statistics_.step_sum += target.h;
+  longest_ = std::max(longest_, target.h);
+  // a rotor at rest in a contact that rings without damping would be followed for ever
+  constexpr double ringing = 1000.0;
+  if (rate_span_ > 0.0 && (target.h >= rate_span_ || ++rate_steps_ >= ringing)) rate_span_ = 0.0;
   statistics_.error_max = std::max(statistics_.error_max, result.error);
   statistics_.error_sum += result.error;
 
@@ -375,7 +381,7 @@ IntegratorState Stepper::save() {
                  k.factorizations_complex, k.residuals, k.solves_real, k.solves_complex})
     out.push_back(static_cast<double>(c));
   out.insert(out.end(), {k.step_min, k.step_max, k.step_sum, k.error_max, k.error_sum});
-  out.insert(out.end(), {t_low_, h_next_, first_ ? 1.0 : 0.0, accept_pending_ ? 1.0 : 0.0, at_break_ ? 1.0 : 0.0});
+  out.insert(out.end(), {longest_, rate_span_, rate_steps_, t_low_, h_next_, first_ ? 1.0 : 0.0, accept_pending_ ? 1.0 : 0.0, at_break_ ? 1.0 : 0.0});
   out.insert(out.end(), {segment_start_, segment_end_, segment_count_, segment_step_, segment_k_, segment_valid_ ? 1.0 : 0.0,
                          inside_part_ ? 1.0 : 0.0});
   for (const VecX* x : {&q_low_, &v_low_}) out.insert(out.end(), x->data(), x->data() + n_);
@@ -398,6 +404,7 @@ void Stepper::restore(const IntegratorState& s) {
   for (double* c : {&k.step_min, &k.step_max, &k.step_sum, &k.error_max, &k.error_sum}) *c = *in++;
   auto flag = [&in] { return *in++ != 0.0; };
   t_ = s.t;
+  longest_ = *in++, rate_span_ = *in++, rate_steps_ = *in++;
   t_low_ = *in++;
   h_next_ = *in++;
   first_ = flag(), accept_pending_ = flag(), at_break_ = flag();

@@ -13,7 +13,7 @@ class Stepper : public Integrator {
   Stepper(Problem& problem, const Options& options);
 
   void start(double t, CRef q, CRef v) final;
-  void restart(CRef q, CRef v) final;
+  void restart(CRef q, CRef v, bool corner = false) final;
   StepReport advance() final;
   StepReport shorten_to(double t) final;
   double time() const final { return t_; }
@@ -83,6 +83,7 @@ class Stepper : public Integrator {
   VecX q0_, v0_, a0_, q_, v_, a_;
   VecX q0_low_, v0_low_, q_low_, v_low_;
   bool first_ = true;            ///< no step since start, restart or a breakpoint: a0_ solves the equations at t0_
+  double rate_span_ = 0.0;       ///< errors of rates count as displacements after this time at least, s
   bool retrying_ = false;        ///< the previous attempt of this step failed the error test
 
  private:
@@ -98,6 +99,8 @@ class Stepper : public Integrator {
   std::vector<double> breaks_;
   bool have_step_ = false, accept_pending_ = false, at_break_ = false;
   double h_next_ = 0.0;
+  double longest_ = 0.0;         ///< step since the last corner
+  double rate_steps_ = 0.0;      ///< steps made with rate_span_
   bool fresh_ = false;           ///< matrices are of the present step's start
   // fixed step: the segment between two stops in equal parts; a failed part is halved until its end is reached
   double segment_start_ = 0.0, segment_end_ = 0.0, segment_count_ = 0.0, segment_step_ = 0.0, segment_k_ = 0.0;

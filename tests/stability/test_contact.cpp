@@ -50,15 +50,11 @@ TEST(Contact, BouncesOnAStop) {
         ASSERT_EQ(r.reason, analysis::StopReason::end_time) << what << ": " << r.detail;
         const system::State& end = r.end;
         const double peak = gap + 2.0 * g / k + g * fall / w;
-        if (contact > 1e-3 * cycle) {
-          // three contacts, each with the aimed error in its phase: 10 aims of the height
-          EXPECT_NEAR(-end.q[2], bouncing(gap, k, g, t), 10.0 * aimed * (peak + 1e-13)) << what;
-        } else {
-          // A step's error counts its velocity times its length. Contacts of 31 and 3 us between flights of 29 ms give the flights what that
-          // leaves in the rebound's velocity: 1e-4 of it each at 1e8 N/m and 1e-3 at 1e12, ten and a hundred aims after three of them.
-          EXPECT_NEAR(-end.q[2], bouncing(gap, k, g, t), (k > 1e10 ? 500.0 : 10.0) * aimed * peak) << what;
-          EXPECT_LT(energy.worst_defect(), (k > 1e10 ? 0.03 : 1e-3) * g * gap) << what;
-        }
+        // Three contacts, each with the aimed error in its phase and its rebound: 10 aims of the height. Generalized-alpha takes the acceleration
+        // it has at the end of a contact of 3 us along into flights of 29 ms: a tenth of a percent of the rebound's speed each.
+        const bool carried = std::string(method) == "generalized_alpha" && k > 1e10 && gap > 1e-6;
+        EXPECT_NEAR(-end.q[2], bouncing(gap, k, g, t), (carried ? 500.0 : 10.0) * aimed * (peak + 1e-13)) << what;
+        if (gap > 1e-6) { EXPECT_LT(energy.worst_defect(), (carried ? 0.03 : 10.0 * aimed) * g * gap) << what; }
       }
 }
 

@@ -37,7 +37,7 @@ class Ida final : public Integrator {
   std::string_view name() const override { return "ida"; }
   int order() const override { return options_.max_order; }
   void start(double t, CRef q, CRef v) override;
-  void restart(CRef q, CRef v) override;
+  void restart(CRef q, CRef v, bool corner = false) override;
   StepReport advance() override;
   StepReport shorten_to(double t) override;
   double time() const override { return t_; }
@@ -240,7 +240,7 @@ void Ida::start(double t, CRef q, CRef v) {
   q0_ = q_, v0_ = v_, a0_ = a_;
 }
 
-void Ida::restart(CRef q, CRef v) {
+void Ida::restart(CRef q, CRef v, bool) {
   q_ = q, v_ = v;
   accept_pending_ = at_break_ = have_step_ = false;
   problem_.impose(t_, q_, v_, a_);
