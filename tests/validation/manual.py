@@ -2,8 +2,8 @@
 """Puts the files that validation tests wrote together as docs/validation.md.
 
 manual.py FOLDER            prints the manual
-manual.py FOLDER FILE       compares it with FILE: texts, references and tolerances must be equal, computed values equal but for
-                            one unit of the last digit printed; exit code 1 and the differing rows otherwise
+manual.py FOLDER FILE       compares it with FILE: texts and tolerances must be equal, references and computed values equal
+                            but for one unit of the last digit printed (closed forms are evaluated in the run, too); exit code 1 and the differing rows otherwise
 """
 import glob
 import os
@@ -56,7 +56,8 @@ def main():
         if a == b:
             continue
         p, q = a.split(" | "), b.split(" | ")
-        if len(p) != 5 or len(q) != 5 or any(p[i] != q[i] for i in (0, 1, 2, 4)) or not same_number(p[3], q[3]):
+        same = len(p) == 5 and len(q) == 5 and all(p[i] == q[i] for i in (0, 1, 4)) and all(p[i] == q[i] or same_number(p[i], q[i]) for i in (2, 3))
+        if not same:
             bad += ["- " + a, "+ " + b]
     if bad:
         print("\n".join(bad))

@@ -2,6 +2,7 @@
 // A. Tondl, Some Problems of Rotor Dynamics, 1965; Friswell et al., Dynamics of Rotating Machines, 2010, ch. 7) and, where the supports are unequal too, against
 // Floquet's multipliers of the two-degree-of-freedom rotor found by integrating over a period.
 #include "beam_line.hpp"
+#include "record.hpp"
 
 #include <analysis/periodic.hpp>
 #include <elements/linear_bearing.hpp>
@@ -68,16 +69,18 @@ double floquet(double Omega, double c, double ky, double kz, int steps = 300) {
 }  // namespace
 
 TEST(AsymmetricShaft, BandOnEqualSupports) {
+  test::Record record("Asymmetric shaft on equal supports: band of instability", "closed form (k1 - m W^2)(k2 - m W^2) + c^2 W^2 = 0 of a disk on a shaft with two stiffnesses");
   struct Case { double c, low, high; };
   // m^2 O^4 - .. : (k1 - m O^2)(k2 - m O^2) + c^2 O^2 = 0; undamped: sqrt(k1/m), sqrt(k2/m)
   for (const Case& x : {Case{0, 300, 331.662479036}, Case{50, 300.1887461, 331.4539436}, Case{100, 300.7707354, 330.8125825}, Case{200, 303.3998216, 327.9459532}, Case{300, 310.4124108, 320.5372603}}) {
     const BandResult r = bands(jeffcott(x.c), 20, 1000, 15);   // 70 rad/s apart: the band, 32 wide or less, lies between two of them
     ASSERT_EQ(r.bands.size(), 1u) << x.c;
-    EXPECT_NEAR(r.bands[0].low, x.low, 1e-9 * x.low) << x.c;   // as stated, ten digits
-    EXPECT_NEAR(r.bands[0].high, x.high, 1e-9 * x.high) << x.c;
+    const std::string damping = "c = " + std::to_string(static_cast<int>(x.c)) + " N s/m, ";
+    record.check(damping + "from", "rad/s", r.bands[0].low, x.low, 1e-9 * x.low);   // as stated, ten digits
+    record.check(damping + "to", "rad/s", r.bands[0].high, x.high, 1e-9 * x.high);
     EXPECT_NEAR(r.bands[0].frequency, 0.0, 1e-9);
     if (x.c == 0) {
-      EXPECT_NEAR(r.bands[0].growth, 15.811388300842, 1e-10 * 15.8);
+      record.check(damping + "largest growth", "1/s", r.bands[0].growth, 15.811388300842, 1e-10 * 15.8);
       EXPECT_NEAR(r.bands[0].speed, 315.832233947, 1e-7 * 315.8);   // a flat maximum
     }
   }

@@ -4,6 +4,7 @@
 #include <system/problem.hpp>
 
 #include "deck_model.hpp"
+#include "record.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -35,6 +36,7 @@ TEST(ShortJournalDeck, LocusAndStabilityTable) {
                        {0.3, 68.17807996, 0.5194173871, 6.790119781},  {0.4, 60.93962835, 0.523805785, 6.474832122},   {0.5, 53.6802006, 0.5146401448, 6.460395752},
                        {0.6, 46.32070377, 0.4739550818, 7.2952724},    {0.7, 38.70402431, 0.3445663369, 13.16109701}, {0.75, 34.70864481, 0.1266843431, 94.94812246}};
   const double D = 0.1, L = 0.03, c = 1e-4, eta = 0.02, Omega = 500;
+  test::Record record("Short journal bearing: locus and stability", "F. W. Ocvirk, NACA TN 2808 (1952), pi film, in closed form; eigenvalues of a mass on its linearisation");
   for (const Row& t : table) {
     const double e2 = t.eps * t.eps;
     const double W = eta * Omega * D * L * L * L * t.eps * std::sqrt(pi * pi * (1 - e2) + 16 * e2) / (8 * c * c * (1 - e2) * (1 - e2));
@@ -44,8 +46,9 @@ TEST(ShortJournalDeck, LocusAndStabilityTable) {
     analysis::Linearizer linear(m.built.system, m.running());
     linear.at(Omega);
     const Vec2 r = linear.equilibrium().state.q.segment<2>(6 * m.disk() + 1);
-    EXPECT_NEAR(r.norm() / c, t.eps, 1e-7 * t.eps);
-    EXPECT_NEAR(std::atan2(r.x(), -r.y()) * 180 / pi, t.attitude, 1e-7 * t.attitude) << "from the load (-z) in the sense of rotation (y -> z: to +y)";
+    const std::string at = fmt::format("eccentricity {:g}: ", t.eps);
+    record.check(at + "eccentricity", "-", r.norm() / c, t.eps, 1e-7 * t.eps);
+    record.check(at + "attitude", "deg", std::atan2(r.x(), -r.y()) * 180 / pi, t.attitude, 1e-7 * t.attitude);   // from the load (-z) in the sense of rotation (y -> z: to +y)
     analysis::ModesOptions o;
     o.count = 4, o.motion = analysis::Motion::lateral;
     const double given = m.deck.model.disks[0].mass;   // as rounded in the deck
@@ -53,7 +56,7 @@ TEST(ShortJournalDeck, LocusAndStabilityTable) {
     for (const auto& mode : analysis::whirl_modes(linear, Omega, o))
       if (mode.frequency > 0 && std::abs(mode.lambda.real()) < nearest) nearest = std::abs(mode.lambda.real()), frequency = mode.frequency;
     EXPECT_LT(nearest, 1e-6 * Omega + std::abs(given / M - 1) * Omega) << t.eps;
-    EXPECT_NEAR(frequency, t.whirl * Omega, 1e-6 * Omega) << t.eps;
+    record.check(at + "whirl at the onset over speed", "-", frequency / Omega, t.whirl, 1e-6);
   }
 }
 
@@ -84,6 +87,7 @@ TEST(FiniteJournalDeck, LundThomsenTwoAxialGrooves) {
       {1, 0.635, 0.224, 63.54, 1.62, 5.33, -1.57, 1.56, 10.8, 1.7, 3.41},    {1, 0.235, 0.46, 49.27, 2.19, 3.57, -0.8, 1.55, 7.36, 1.89, 2.19},
       {1, 0.159, 0.559, 44.33, 2.73, 3.36, -0.48, 1.48, 6.94, 1.78, 1.74},   {1, 0.108, 0.65, 39.72, 3.45, 3.34, -0.23, 1.44, 6.89, 1.72, 1.43}};
   const double D = 0.1, c = 1e-4, eta = 0.02, Omega = 300;
+  test::Record record("Journal bearing with two axial grooves", "J. W. Lund, K. K. Thomsen, in Topics in Fluid Film Bearing and Rotor Bearing System Design, ASME (1978) 1");
   for (const auto& t : table) {
     const double L = t[0] * D, W = eta * Omega / two_pi * L * D * (0.5 * D / c) * (0.5 * D / c) / t[1];
     const DeckModel m(lateral_mass(100, "0 m/s^2", fmt::format("[[bearing]]\nname = \"film\"\nat = \"mass\"\ntype = \"journal\"\nshape = \"two_grooves\"\ngroove = \"20 deg\"\ndiameter = \"100 mm\"\n"
@@ -95,8 +99,10 @@ TEST(FiniteJournalDeck, LundThomsenTwoAxialGrooves) {
     // load along -z, spin y -> z: their x is -z, their y is +y
     const double got[] = {r.norm() / c, std::atan2(r.x(), -r.y()) * 180 / pi, K(1, 1), -K(1, 0), -K(0, 1), K(0, 0), B(1, 1), -B(1, 0), B(0, 0)};
     for (int i = 0; i < 9; ++i) EXPECT_NEAR(got[i], t[i + 2], std::max(0.06, 0.06 * std::abs(t[i + 2]))) << "S " << t[1] << " column " << i;
-    EXPECT_NEAR(got[0], t[2], 0.005 * t[2]);
-    EXPECT_NEAR(got[1], t[3], 0.005 * t[3]);
+    const std::string at = fmt::format("L/D {:g}, S {:g}: ", t[0], t[1]);
+    record.check(at + "eccentricity", "-", got[0], t[2], 0.005 * t[2]);
+    record.check(at + "attitude", "deg", got[1], t[3], 0.005 * t[3]);
+    for (const auto& [name, i] : {std::pair{"Kxx", 2}, {"Kyy", 5}, {"Bxx", 6}, {"Byy", 8}}) record.check(at + name, "W/c", got[i], t[i + 2], std::max(0.06, 0.06 * std::abs(t[i + 2])));
   }
 }
 
@@ -169,14 +175,15 @@ double rub_radius(double friction, double ratio, double R, double turns, double&
 // from the branch. zeta = 0.063: after 40 turns e^-16. Tolerance: eight samples a step see the circle to 1e-6.
 TEST(AnnularRubDeck, RadiiOnTheBranches) {
   double power = infinity;
-  EXPECT_NEAR(rub_radius(0.05, 0.9, 0, 60, power), 0.000303790679, 2e-6 * 3e-4);
-  EXPECT_NEAR(rub_radius(0.05, 1.1, 0, 60, power), 0.000344793882, 2e-6 * 3e-4);
-  EXPECT_NEAR(rub_radius(0.0, 1.1, 0, 60, power), 0.000345914385, 2e-6 * 3e-4);
+  test::Record record("Full annular rub of a Jeffcott rotor", "steady motion in closed form; mu friction, W speed over natural frequency");
+  record.check("mu 0.05, W 0.9: radius", "m", rub_radius(0.05, 0.9, 0, 60, power), 0.000303790679, 2e-6 * 3e-4);
+  record.check("mu 0.05, W 1.1: radius", "m", rub_radius(0.05, 1.1, 0, 60, power), 0.000344793882, 2e-6 * 3e-4);
+  record.check("mu 0, W 1.1: radius", "m", rub_radius(0.0, 1.1, 0, 60, power), 0.000345914385, 2e-6 * 3e-4);
   // two motions at 1.5: free from rest, in contact when it was in contact
-  EXPECT_NEAR(rub_radius(0.05, 1.5, 0, 80, power), 0.000177961557, 2e-6 * 2e-4);
+  record.check("mu 0.05, W 1.5, from rest: radius", "m", rub_radius(0.05, 1.5, 0, 80, power), 0.000177961557, 2e-6 * 2e-4);
   EXPECT_NEAR(branch(0.05, 1.5), 0.000501675563, 1e-8 * 5e-4);
-  EXPECT_NEAR(rub_radius(0.05, 1.5, 0.0005, 100, power), 0.000501675563, 2e-6 * 5e-4);
-  EXPECT_NEAR(rub_radius(0.01, 1.5, 0.0005, 100, power), 0.000508749664, 2e-6 * 5e-4);
+  record.check("mu 0.05, W 1.5, in contact: radius", "m", rub_radius(0.05, 1.5, 0.0005, 100, power), 0.000501675563, 2e-6 * 5e-4);
+  record.check("mu 0.01, W 1.5, in contact: radius", "m", rub_radius(0.01, 1.5, 0.0005, 100, power), 0.000508749664, 2e-6 * 5e-4);
   // friction and dampers take power at every instant
   EXPECT_GE(power, 0.0);
 }
@@ -202,6 +209,7 @@ TEST(BallBearingDeck, LoadSharing) {
                        {1, 58.8, false, 2.97298009e-06, 49114386.5},       {1, 196, true, 5.242020287e-06, 72842652},        {5, 58.8, false, 7.567395999e-06, 43916464.13},
                        {5, 196, false, 9.87145827e-06, 72322642.58},       {5, 196, true, 9.724052036e-06, 68180378.76},     {10, 58.8, false, 1.268832021e-05, 32808591.6},
                        {10, 58.8, true, 1.275634453e-05, 45642192.09},     {10, 196, false, 1.559219672e-05, 67581319.78},   {10, 196, true, 1.513601304e-05, 68180378.76}};
+  test::Record record("Ball bearing with eight balls: displacement and stiffness under load", "Hertzian balls, equilibrium by bisection; geometry common in papers on varying compliance (S. Fukata et al., Bull. JSME 28 (1985) 899)");
   for (const Row& t : table) {
     const double angle = -0.5 * pi + (t.between ? pi / 8 : 0.0);
     const Vec2 along(std::cos(angle), std::sin(angle));
@@ -214,10 +222,11 @@ TEST(BallBearingDeck, LoadSharing) {
     analysis::RunningSystem running(m.built.system, turning);
     const auto e = analysis::EquilibriumSolver(running).solve(0.0);
     const Vec2 r = e.state.q.segment<2>(6 * m.disk() + 1);
-    EXPECT_NEAR(r.dot(along), t.x, 1e-8 * t.x) << t.clearance << " um, " << t.W << " N";
+    const std::string at = fmt::format("clearance {:g} um, {:g} N, {}: ", t.clearance, t.W, t.between ? "between balls" : "on a ball");
+    record.check(at + "displacement", "m", r.dot(along), t.x, 1e-8 * t.x);
     la::MCK mck = m.built.system.make_matrices();
     ASSERT_TRUE(running.tangent(e.state.frames, 0.0, e.state.q, mck));
-    EXPECT_NEAR(along.dot(lateral(mck.K, m.disk()) * along), t.k, 1e-7 * t.k);
+    record.check(at + "stiffness", "N/m", along.dot(lateral(mck.K, m.disk()) * along), t.k, 1e-7 * t.k);
   }
 }
 

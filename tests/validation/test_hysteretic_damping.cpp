@@ -2,6 +2,7 @@
 // Systems, 2005, ch. 3; the law in fixed axes: E. S. Zorzi, H. D. Nelson 1977, doi 10.1115/1.3446254).
 //   z = y + i z, forward z ~ exp(lambda t):  m lambda^2 + c lambda + k (1 + i eta sign(w - Omega)) = 0,   backward: sign = -1.
 #include "../analysis/rotors.hpp"
+#include "record.hpp"
 
 #include <analysis/frequency_response.hpp>
 #include <analysis/stability.hpp>
@@ -64,6 +65,7 @@ TEST(HystereticDamping, EigenvaluesOfAJeffcottRotor) {
 
 // Without external damping forward whirl becomes unstable where the speed passes its frequency; with c < eta sqrt(k m) too; with more, never.
 TEST(HystereticDamping, OnsetAtTheCriticalSpeed) {
+  test::Record record("Hysteretic internal damping: onset of instability", "closed form: the undamped critical speed while c < eta sqrt(k m); G. Genta, Dynamics of Rotating Systems (2005), doi 10.1007/0-387-28687-X");
   for (const double c : {0.0, 50.0, 100.0}) {
     const system::System s = jeffcott(c).b.finalize();
     Linearizer linear(s);
@@ -76,7 +78,7 @@ TEST(HystereticDamping, OnsetAtTheCriticalSpeed) {
       continue;
     }
     ASSERT_EQ(r.onsets.size(), 1u) << c;
-    EXPECT_NEAR(r.onsets[0].speed, root(c, 1).imag(), 1e-9 * 316);
+    record.check("external damping " + std::to_string(static_cast<int>(c)) + " N s/m: onset", "rad/s", r.onsets[0].speed, root(c, 1).imag(), 1e-9 * 316);
     EXPECT_TRUE(r.onsets[0].gains);
     EXPECT_EQ(r.onsets[0].mode.direction, Direction::forward);
   }

@@ -1,4 +1,5 @@
 // Load paths past limit points: the column beyond its Euler load against the elastica, the snap-through of two bars against its closed form.
+#include "record.hpp"
 #include <analysis/load_path.hpp>
 #include <elements/point_load.hpp>
 #include <elements/shaft_beam.hpp>
@@ -39,6 +40,8 @@ TEST(LoadPath, ColumnFollowsTheElastica) {
   // S. Timoshenko, J. Gere, Theory of Elastic Stability, 2nd ed., 2.7: with k = sin(alpha/2), alpha the end slope,
   // P L^2/EI = K(k)^2, x_a = 2 E(k)/K(k) - 1, y_a = 2 k/K(k). With the load inclined by beta the same elastica ends at another slope:
   // P L^2/EI = (K(k) - F(phi0, k))^2, k = sin((alpha + beta)/2), sin phi0 = sin(beta/2)/k.
+  test::Record record("Column beyond buckling: the elastica", "S. Timoshenko, J. Gere, Theory of Elastic Stability, 2nd ed., 2.7");
+  double worst_load = 0, worst_tip = 0;
   for (const bool by_arc : {true, false}) {
     const double beta = by_arc ? 2e-3 : 1e-6;
     const system::System s = column(20, pi * pi / 4, std::tan(beta));
@@ -61,11 +64,9 @@ TEST(LoadPath, ColumnFollowsTheElastica) {
       const double k = std::sin(0.5 * (alpha + beta)), K = std::comp_ellint_1(k), E = std::comp_ellint_2(k);
       const double root = K - std::ellint_1(k, std::asin(std::sin(0.5 * beta) / k));
       // 20 elements, 1/EA = 1e-8
-      EXPECT_NEAR(p.load * pi * pi / 4 / std::cos(beta), root * root, 5e-5 * K * K) << alpha;
-      if (!by_arc) {   // the inclination of 1e-6 shows below
-        EXPECT_NEAR(1.0 + q[tip], 2.0 * E / K - 1.0, 5e-5);
-        EXPECT_NEAR(q[tip + 1], 2.0 * k / K, 5e-5);
-      }
+      worst_load = std::max(worst_load, std::abs(p.load * pi * pi / 4 / std::cos(beta) - root * root) / (K * K));
+      if (!by_arc)   // the inclination of 1e-6 shows below
+        worst_tip = std::max({worst_tip, std::abs(1.0 + q[tip] - (2.0 * E / K - 1.0)), std::abs(q[tip + 1] - 2.0 * k / K)});
       ++checked;
       return true;
     });
@@ -79,6 +80,8 @@ TEST(LoadPath, ColumnFollowsTheElastica) {
       EXPECT_EQ(r.last.state.q[6 * 20 + 1], 0.78);
     }
   }
+  record.below("20 elements, to three times the buckling load: error of the load", "of it", worst_load, 5e-5);
+  record.below("the same: error of the tip's place", "of the length", worst_tip, 5e-5);
 }
 
 TEST(LoadPath, BarSnapsThrough) {

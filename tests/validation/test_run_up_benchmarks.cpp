@@ -118,7 +118,8 @@ TEST(K2TorqueRunUp, EqualStepsOfAMillisecond) {
   double spin, defect;
   const TransientResult r = run_K2(10, 1e-4, "radau5", 1e-3, p, spin, defect);
   ASSERT_EQ(r.reason, StopReason::end_time) << r.detail;
-  EXPECT_NEAR(p.amplitude, 1.6911e-3, 1.2e-4 * 1.6911e-3);
+  test::Record record("Run-up under a torque, equal steps of 1 ms", "converged value of the case; the Newton iteration of another code fails with this step");
+  record.check("peak amplitude", "m", p.amplitude, 1.6911e-3, 1.2e-4 * 1.6911e-3);
 }
 
 TEST(K2TorqueRunUp, GaussKeepsTheEnergy) {

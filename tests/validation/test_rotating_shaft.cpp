@@ -1,6 +1,7 @@
 // The deck of examples/03_rotating_shaft_benchmark: sag, three peaks and the table of positions, at the default accuracy with its 8 elements and
 // converged. O. Bauchau et al., Multibody Syst Dyn 37 (2016) 29-48, doi 10.1007/s11044-016-9514-y; definition as in MBDyn's test suite.
-#include "deck_run.hpp"
+#include "../app/deck_run.hpp"
+#include "record.hpp"
 #include <gtest/gtest.h>
 #include <cmath>
 #include <fstream>
@@ -71,21 +72,25 @@ constexpr double first_peak = 0.269760, last_y = -0.095357, last_z = 0.192712;
 }  // namespace
 
 TEST(RotatingShaft, EightElementsAtTheDefaultAccuracy) {
+  whirl::test::Record record("Rotating shaft through its critical speed, 8 elements at the default accuracy", "O. Bauchau et al., Multibody Syst Dyn 37 (2016) 29, doi 10.1007/s11044-016-9514-y; sag in closed form; last positions: Radau 5 to 1e-8 on 128 elements");
   const History h = run(4, "");
-  EXPECT_NEAR(h.rows.front().z, -sag, 1e-5 * sag);   // six printed digits; 8 elements are exact at their nodes
+  record.check("sag", "m", h.rows.front().z, -sag, 1e-5 * sag);   // six printed digits; 8 elements are exact at their nodes
   const auto tops = h.tops();
   ASSERT_EQ(tops.size(), 3u);
   const double allowed = 5e-4 * first_peak;   // 0.05 % of the peak: what is asked of 8 elements
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(tops[i].radius, published_tops[i].radius, allowed);
-    EXPECT_NEAR(tops[i].t, published_tops[i].t, 1.5e-4);   // of 1.3 s and more in a whirl whose phase is known to 2e-4 rad
+    const std::string peak = "peak " + std::to_string(i + 1);
+    record.check(peak, "m", tops[i].radius, published_tops[i].radius, allowed);
+    record.check(peak + ": time", "s", tops[i].t, published_tops[i].t, 1.5e-4);   // of 1.3 s and more in a whirl whose phase is known to 2e-4 rad
   }
   for (const Row& p : published) {
-    EXPECT_NEAR(h.at(p.t).y, p.y, allowed + bar) << p.t;
-    EXPECT_NEAR(h.at(p.t).z, p.z, allowed + bar) << p.t;
+    char at[40];
+    std::snprintf(at, sizeof at, "t = %g s: ", p.t);
+    record.check(std::string(at) + "y", "m", h.at(p.t).y, p.y, allowed + bar);
+    record.check(std::string(at) + "z", "m", h.at(p.t).z, p.z, allowed + bar);
   }
-  EXPECT_NEAR(h.at(2.5).y, last_y, allowed);   // after 22 turns
-  EXPECT_NEAR(h.at(2.5).z, last_z, allowed);
+  record.check("t = 2.5 s, after 22 turns: y", "m", h.at(2.5).y, last_y, allowed);
+  record.check("t = 2.5 s, after 22 turns: z", "m", h.at(2.5).z, last_z, allowed);
 }
 
 TEST(RotatingShaft, ConvergedValue) {

@@ -1,5 +1,6 @@
 // At constant speed and with a small unbalance a transient of the full nonlinear model settles to the linear unbalance response.
-#include "deck_run.hpp"
+#include "../app/deck_run.hpp"
+#include "record.hpp"
 #include <gtest/gtest.h>
 #include <cmath>
 #include <string>
@@ -70,6 +71,7 @@ quantities = ["probes", "velocity", "acceleration", "rotation"]
 }  // namespace
 
 TEST(LinearLimit, TransientSettlesToTheUnbalanceResponse) {
+  whirl::test::Record record("Linear limit of the nonlinear transient", "the unbalance response of the same deck");
   const whirl::test::DeckRun r(deck);
   ASSERT_EQ(r.exit, 0) << r.log;
   EXPECT_FALSE(r.says("warning")) << r.log;
@@ -79,7 +81,7 @@ TEST(LinearLimit, TransientSettlesToTheUnbalanceResponse) {
   for (const std::string axis : {"y", "z"}) {
     const double lag = steady.at("disk " + axis + " phase lag [deg]") * std::acos(-1.0) / 180;
     const double amplitude = steady.at("disk " + axis + " amplitude [m]");
-    EXPECT_NEAR(run.at("disk." + axis + " [m]"), amplitude * std::cos(phi - lag), 1e-6 * major) << axis;
+    record.check("displacement " + axis, "m", run.at("disk." + axis + " [m]"), amplitude * std::cos(phi - lag), 1e-6 * major);
     EXPECT_NEAR(run.at("disk velocity." + axis + " [m/s]"), -Omega * amplitude * std::sin(phi - lag), 1e-6 * Omega * major) << axis;
     EXPECT_NEAR(run.at("disk acceleration." + axis + " [m/s^2]"), -Omega * Omega * amplitude * std::cos(phi - lag), 1e-6 * Omega * Omega * major) << axis;
   }
