@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace whirl::analysis {
 
@@ -79,6 +80,54 @@ LinearMotion::LinearMotion(const system::System& system, const Running& running,
     angle_[l] = start.total_phi(i, l) - q0_[6 * i + system::spin_phi] - rate_[at(l)] * start.t;
   }
   frames = start.frames;
+  find_changing(start.t);
+}
+
+void LinearMotion::find_changing(double t) {
+  // A term is constant when its force is the same at all angles of the rotor and all times: at the breakpoints of the laws there are, between
+  // them, and at times from microseconds to weeks. Small generic motions about the steady one show what cancels in it.
+  std::vector<double> times = system().breakpoints();
+  for (std::size_t k = times.size(); k-- > 1;) times.push_back(0.5 * (times[k] + times[k - 1]));
+  for (double x = 1e-6; x < 1e7; x *= 3.7) times.push_back(t + x);
+  std::mt19937 rng(7);
+  std::normal_distribution<double> normal;
+  VecX q = q0_, v = v0_, a(q0_.size());
+  for (Index k = 0; k < q.size(); ++k) q[k] += 1e-6 * normal(rng), v[k] += 1e-4 * normal(rng), a[k] = normal(rng);
+  const auto& terms = system().terms();
+  std::vector<std::vector<Vector<7>>> base(terms.size());
+  std::vector<unsigned char> changes(terms.size(), 0);
+  times.insert(times.begin(), t);
+  VecX turned = q;
+  for (std::size_t sample = 0; sample < times.size(); ++sample) {
+    const double theta = std::fmod(1.3 * static_cast<double>(sample), two_pi);   // small angles: rounding of their differences stays small
+    for (Index i = 0; i < system().nodes(); ++i)
+      if (turns_[at(i)]) turned[6 * i + system::spin_phi] = q[6 * i + system::spin_phi] + theta * (rate_[at(system().node(i).line)] < 0 ? -1.0 : 1.0);
+    if (!system().evaluate_nodes(steady_, frames, times[sample], turned, v, a)) continue;
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      if (changes[k]) continue;
+      for (auto& x : steady_.force) x.setZero();
+      terms[k]->add_force(steady_);
+      if (sample == 0) {
+        base[k] = steady_.force;
+        continue;
+      }
+      Vec3 size = Vec3::Zero(), change = Vec3::Zero();   // forces, director forces, torques
+      for (std::size_t i = 0; i < base[k].size(); ++i) {
+        const Vector<7>&f = base[k][i], g = steady_.force[i] - f;
+        size = size.cwiseMax(Vec3(f.head<3>().cwiseAbs().maxCoeff(), f.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(f[6])));
+        change = change.cwiseMax(Vec3(g.head<3>().cwiseAbs().maxCoeff(), g.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(g[6])));
+      }
+      for (int c = 0; c < 3; ++c)
+        if (!(change[c] <= 1e-8 * size[c])) changes[k] = 1;
+    }
+  }
+  std::vector<std::size_t> still;
+  for (std::size_t k = 0; k < terms.size(); ++k) (changes[k] ? changing_ : still).push_back(k);
+  constant_ = VecX::Zero(system().size());
+  if (!system().residual(steady_, frames, t, q0_, v0_, a_, constant_, &still)) {   // leave it to residual() to say so
+    changing_.insert(changing_.end(), still.begin(), still.end());
+    constant_.setZero();
+  }
 }
 
 bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
@@ -88,7 +137,8 @@ bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, 
       const Index l = system().node(i).line;
       q_[6 * i + system::spin_phi] += (angle_[l] - two_pi * frames.turns[at(l)]) + rate_[at(l)] * t;
     }
-  if (!system().residual(steady_, frames, t, q_, v_, a_, r)) return false;
+  if (!system().residual(steady_, frames, t, q_, v_, a_, r, &changing_)) return false;
+  r += constant_;
   q_ = q - q_, v_ = v - v_;
   const la::MCK& m = matrices();
   m.M.add_multiply(1.0, a, r);
