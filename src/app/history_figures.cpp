@@ -97,11 +97,12 @@ void add_history_figures(const Job& job, const model::Step& step, const std::vec
 
   for (const model::Probe& probe : job.model.probes) {
     const std::ptrdiff_t i = src.find(probe.name);
-    if (i >= 0) {
+    double size = 0.0;
+    if (i >= 0)
+      for (std::size_t c = 0; c < all[static_cast<std::size_t>(i)].width(); ++c) size = std::max(size, largest(src.column(static_cast<std::size_t>(i), c).y));
+    if (size > 0.0) {   // a rotor that only twists has no picture of it
       const auto k = static_cast<std::size_t>(i);
       const Measurement& m = all[k];
-      double size = 0.0;
-      for (std::size_t c = 0; c < m.width(); ++c) size = std::max(size, largest(src.column(k, c).y));
       const io::DisplayUnit unit = io::length_unit(size);
       std::vector<io::Axes> axes;
       for (std::size_t c = 0; c < m.width(); ++c) {
@@ -193,15 +194,15 @@ void add_history_figures(const Job& job, const model::Step& step, const std::vec
 
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Measurement& m = all[i];
-    if (!ends_with(m.name, " force") && !ends_with(m.name, " torque")) continue;
+    if (!ends_with(m.name, " force") && !ends_with(m.name, " torque") && !ends_with(m.name, " moment")) continue;
     double size = 0.0;
     for (std::size_t c = 0; c < m.width(); ++c) size = std::max(size, largest(src.column(i, c).y));
     if (size == 0.0) continue;   // a guide that nothing loads: the CSV says so
     const io::DisplayUnit unit = io::unit_for(m.unit, size);
-    io::Axes a = time_axes(ends_with(m.name, " force") ? "force on the shaft" : "torque on the shaft", unit.name);
+    io::Axes a = time_axes(ends_with(m.name, " force") ? "force on the shaft" : ends_with(m.name, " moment") ? "moment on the shaft (x: torque)" : "torque on the shaft", unit.name);
     for (std::size_t c = 0; c < m.width(); ++c) {
-      const bool lateral_only = m.width() == 3 && c == 0 && largest(src.column(i, 0).y) == 0.0;
-      if (!lateral_only) a.series.push_back(series(m.components.empty() ? "" : m.components[c], src.column(i, c), unit.factor));
+      const bool absent = m.width() == 3 && (c == 0 || ends_with(m.name, " moment")) && largest(src.column(i, c).y) == 0.0;
+      if (!absent) a.series.push_back(series(m.components.empty() ? "" : m.components[c], src.column(i, c), unit.factor));
     }
     add(figure(step, m.name, m.name, {std::move(a)}));
   }

@@ -233,11 +233,12 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p) const 
   const std::string id = step_ + "_" + io::safe_name(probe.name);
   const std::size_t top = turning_row(rows);
   const bool varies = speed_changes(rows);
+  double size = 0.0;
+  for (std::size_t d = 0; d < probe.directions.size(); ++d)
+    for (const auto& r : rows) size = std::max(size, r[column(p, d, per_direction_ - 2)]);
+  if (size == 0.0) return;   // torsion alone: nothing to see here
   if (!varies) {
     // constant speed: amplitude and envelope against time
-    double size = 0.0;
-    for (std::size_t d = 0; d < probe.directions.size(); ++d)
-      for (const auto& r : rows) size = std::max(size, r[column(p, d, per_direction_ - 2)]);
     const io::DisplayUnit unit = io::length_unit(size);
     io::Figure f;
     f.name = id + "_synchronous", f.title = probe.name + ": synchronous amplitude and envelope, turn by turn";
@@ -267,7 +268,9 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p) const 
       c.label = probe.directions[d].name + (both ? rising ? " rising" : " falling" : "");
       io::ResponseCurve e = c;
       for (std::size_t r = from; r < to; ++r) {
-        c.speed.push_back(rows[r][1]), c.amplitude.push_back(rows[r][column(p, d, 0)]), c.phase_lag.push_back(rows[r][column(p, d, 1)]);
+        const double amplitude = rows[r][column(p, d, 0)];
+        // below a billionth of the largest motion the phase is that of rounding
+        c.speed.push_back(rows[r][1]), c.amplitude.push_back(amplitude), c.phase_lag.push_back(amplitude > 1e-9 * size ? rows[r][column(p, d, 1)] : nan);
         e.speed.push_back(rows[r][1]), e.amplitude.push_back(rows[r][column(p, d, per_direction_ - 2)]), e.phase_lag.push_back(nan);
       }
       curves.push_back(std::move(c)), envelope.push_back(std::move(e));
@@ -326,7 +329,9 @@ void KeyphasorOutput::add_orbits(Job& job, io::ReportSection& section) const {
   };
   for (std::size_t p = 0; p < probes_.size(); ++p) {
     const std::string id = step_ + "_" + io::safe_name(probes_[p].name);
-    if (const Orbit& o = largest_[p]; !o.y.empty()) {
+    const Orbit& o = largest_[p];
+    const bool moves = std::any_of(o.y.begin(), o.y.end(), [](double x) { return x != 0.0; }) || std::any_of(o.z.begin(), o.z.end(), [](double x) { return x != 0.0; });
+    if (moves) {
       const io::Orbit d = drawn(o, fmt::format("{:.0f} rpm", o.speed * 30.0 / pi));
       io::Figure f = io::plot_orbit(id + "_orbit", fmt::format("{}: largest orbit, t = {:.4g} s", probes_[p].name, o.t), std::span(&d, 1));
       f.caption = "Displacement about its mean; a dot where the keyphasor fires.";

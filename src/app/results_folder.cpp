@@ -25,6 +25,10 @@ std::filesystem::path prepare_results(const model::Model& model, const RunOption
       throw Error(Exit::deck, std::move(problems));
     }
   }
+  // pictures of an earlier run with other steps or probes would stand among those of this one
+  if (!options.resume && std::filesystem::is_directory(folder / "plots", ec))
+    for (const auto& f : std::filesystem::directory_iterator(folder / "plots", ec))
+      if (f.path().extension() == ".svg") std::filesystem::remove(f.path(), ec);
   io::write_atomic(folder / "resolved.toml", model.resolved);
   io::Value run = io::Value::object();
   run["program"] = "whirl " + version();

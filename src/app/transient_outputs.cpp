@@ -57,6 +57,15 @@ Channels make_channels(const Job& job) {
       };
       c.add(std::move(x));
     }
+  if (wants(m.output, "bearing_moment"))
+    for (const assembly::SupportForce& f : job.built.support_forces) {
+      if (!f.moment) continue;
+      Measurement x{"bearing " + f.name + " moment", "N.m", "moment of the support on the shaft about its node, fixed axes; about x: torque", {"x", "y", "z"}, 1.0, {}};
+      x.evaluate = [&f](const Snapshot& s, double* out) {
+        Eigen::Map<Vec3>{out} = f.moment([&s](Index n) -> const system::NodeState& { return s.node(n); }, s.t(), [&s](Index k) { return s.reactions()[k]; });
+      };
+      c.add(std::move(x));
+    }
   if (wants(m.output, "torque"))
     for (const assembly::DriveTorque& d : job.built.drive_torques) {
       Measurement x{"drive " + d.name + " torque", "N.m", "torque of the drive on the shaft", {}, 1.0, {}};

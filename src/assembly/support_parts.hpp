@@ -51,13 +51,21 @@ void add_joint(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
   const auto add = [&](const auto& k) {
     using Kernel = std::decay_t<decltype(k)>;
     a.builder.add(k, nodes, kind);
-    a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, double t, const ReactionAt&) {
+    const auto left_side = [k, nodes](const NodeAt& at, double t) {
       system::ForceX<2 * Kernel::width> f = system::ForceX<2 * Kernel::width>::Zero();
       system::Context c;
       c.time = t;
       k.add_force(nodes_of(at, nodes), c, f);
-      return Vec3(-f.template head<3>());
-    }});
+      return f;
+    };
+    a.built.support_forces.push_back({b.name, [left_side](const NodeAt& at, double t, const ReactionAt&) { return Vec3(-left_side(at, t).template head<3>()); }});
+    // what stands on the director tilts it, what stands on phi twists
+    if constexpr (Kernel::width == 7)
+      a.built.support_forces.back().moment = [left_side, node = n.shaft.node](const NodeAt& at, double t, const ReactionAt&) {
+        const auto f = left_side(at, t);
+        const Vec3 d = at(node).d();
+        return Vec3(-d.cross(Vec3(f.template segment<3>(3))) - f[6] * d);
+      };
   };
   if (n.shaft.offset == 0 && n.other.offset == 0) add(kernel);
   else add(elements::AtOffset<K>{kernel, {n.shaft.offset, n.other.offset}});

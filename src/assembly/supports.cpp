@@ -20,9 +20,9 @@ void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
   const auto translations_only = [](const Matrix<6>& m) {
     return m.bottomRows<3>().isZero(0.0) && m.topRightCorner<3, 3>().isZero(0.0);
   };
-  const bool small = !a.model.keep_everything && n.shaft.offset == 0 && n.other.offset == 0 && translations_only(law.K) && translations_only(law.C) &&
-                     translations_only(law.M) && law.preload.tail<3>().isZero(0.0);
-  if (small) {
+  const bool small = n.shaft.offset == 0 && n.other.offset == 0 && translations_only(law.K) && translations_only(law.C) && translations_only(law.M) &&
+                     law.preload.tail<3>().isZero(0.0);
+  if (small && !a.model.keep_everything) {
     ++a.translational;
     const elements::TranslationalBearing k{law.K.topLeftCorner<3, 3>(), law.C.topLeftCorner<3, 3>(), law.M.topLeftCorner<3, 3>(),
                                            law.setpoint.head<3>(), law.preload.head<3>()};
@@ -33,9 +33,8 @@ void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
   }
   const elements::LinearBearing k(law.K, law.C, law.M, law.setpoint, law.preload, n.shaft.offset, n.other.offset);
   a.builder.add(k, nodes, "linear bearings");
-  a.built.support_forces.push_back(
-      {b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>()); },
-       [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).tail<3>()); }});
+  a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>()); }});
+  if (!small) a.built.support_forces.back().moment = [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).tail<3>()); };
 }
 
 namespace {
