@@ -2,6 +2,7 @@
 """The fastest settings of a study as the table of an example's README.
 
     whirl study examples/NAME/deck.toml && examples/study_table.py results/NAME/study.csv
+    examples/study_table.py results/NAME/study_mesh.csv
 """
 import csv
 import sys
@@ -19,6 +20,13 @@ def main():
     titles, rows = rows[0], rows[1:]
     tolerance, dt, mesh, cpu, steps, front, error = (column(titles, x) for x in ("tolerance", "dt", "mesh factor", "CPU", "steps", "Pareto", "largest error"))
     front_rows = sorted((r for r in rows if float(r[front]) > 0 and float(r[error]) < 0.5), key=lambda r: float(r[cpu]))
+    if not rows[0][0]:   # meshes alone
+        print("| mesh | elements | CPU s | largest error |\n|---|---|---|---|")
+        for r in rows:
+            factor = int(float(r[mesh]))
+            name = "the deck's" if factor == 1 else f"{factor} times as fine"
+            print(f"| {name} | {int(float(r[steps]))} | {float(r[cpu]):.2g} | {float(r[error]):.1e} |".replace("e-0", "e-"))
+        return
     # one row a decade of error is enough
     chosen, last = [], None
     for r in front_rows:

@@ -111,14 +111,7 @@ void LinearMotion::find_changing(double t) {
         base[k] = steady_.force;
         continue;
       }
-      Vec3 size = Vec3::Zero(), change = Vec3::Zero();   // forces, director forces, torques
-      for (std::size_t i = 0; i < base[k].size(); ++i) {
-        const Vector<7>&f = base[k][i], g = steady_.force[i] - f;
-        size = size.cwiseMax(Vec3(f.head<3>().cwiseAbs().maxCoeff(), f.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(f[6])));
-        change = change.cwiseMax(Vec3(g.head<3>().cwiseAbs().maxCoeff(), g.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(g[6])));
-      }
-      for (int c = 0; c < 3; ++c)
-        if (!(change[c] <= 1e-8 * size[c])) changes[k] = 1;
+      if (!same_forces(base[k], steady_.force)) changes[k] = 1;
     }
   }
   std::vector<std::size_t> still;

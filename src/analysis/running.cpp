@@ -109,6 +109,13 @@ void RunningSystem::make_samples() {
   }
 }
 
+bool same_forces(const std::vector<Vector<7>>& f, const std::vector<Vector<7>>& g) {
+  Vec3 size = Vec3::Zero(), change = Vec3::Zero();
+  const auto largest = [](const Vector<7>& x) { return Vec3(x.head<3>().cwiseAbs().maxCoeff(), x.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(x[6])); };
+  for (std::size_t i = 0; i < f.size(); ++i) size = size.cwiseMax(largest(f[i])), change = change.cwiseMax(largest(g[i] - f[i]));
+  return (change.array() <= 1e-8 * size.array()).all();   // rounding of phi differences stays below
+}
+
 void RunningSystem::sort_terms() {
   // A term sees phi when its force changes as all lines turn on together. Small generic motions, equal for all angles.
   std::mt19937 rng(7);
@@ -133,15 +140,7 @@ void RunningSystem::sort_terms() {
         base[k] = workspace_.force;
         continue;
       }
-      Vec3 size = Vec3::Zero(), change = Vec3::Zero();   // forces, director forces, torques
-      for (std::size_t i = 0; i < base[k].size(); ++i) {
-        const Vector<7>&f = base[k][i], g = workspace_.force[i] - f;
-        const Vec3 s(f.head<3>().cwiseAbs().maxCoeff(), f.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(f[6]));
-        const Vec3 c(g.head<3>().cwiseAbs().maxCoeff(), g.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(g[6]));
-        size = size.cwiseMax(s), change = change.cwiseMax(c);
-      }
-      for (int c = 0; c < 3; ++c)
-        if (!(change[c] <= 1e-8 * size[c])) sees[k] = 1;   // rounding of phi differences stays below
+      if (!same_forces(base[k], workspace_.force)) sees[k] = 1;
     }
   }
   for (std::size_t k = 0; k < terms.size(); ++k) {

@@ -107,4 +107,7 @@ class RunningSystem {
   std::vector<VecXc> f0_, f1_, f2_;        ///< forcing
 };
 
+/// Node forces f and g of one term are equal but for rounding: to 1e-8 of its largest force, director force and torque.
+bool same_forces(const std::vector<Vector<7>>& f, const std::vector<Vector<7>>& g);
+
 }  // namespace whirl::analysis

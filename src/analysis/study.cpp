@@ -98,8 +98,12 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
     for (std::size_t i = 0; i < p.size(); ++i) {
       if (i > 0) {
         const double slope = (p[i - 1].second - p[i].second) / (p[i - 1].first - p[i].first);
-        if (!(slope > std::max(1.0, 0.6 * steepest))) break;
-        steepest = std::max(steepest, slope);
+        if (slope > 8.0) {   // no scheme has it: the coarser step was too long to be anything
+          n = x = y = xx = xy = steepest = 0;
+        } else {
+          if (!(slope > std::max(1.0, 0.6 * steepest))) break;
+          steepest = std::max(steepest, slope);
+        }
       }
       n += 1, x += p[i].first, y += p[i].second, xx += p[i].first * p[i].first, xy += p[i].first * p[i].second;
     }
