@@ -54,11 +54,30 @@ struct Motion {
   V3<T> accel(const V3<T>& r) const { return alpha.cross(r) + omega.cross(omega.cross(r)); }
 };
 
+/// Bending stiffness of each plane and what shear takes of it: 1/(1 + Phi) = 1 - phi, slope of the curvature per p1 + p2, 1/kGA.
+struct Planes {
+  double EIa, EIb, fa, fb, phia, phib, softa, softb;
+  explicit Planes(const GeneralBeamConstants& c) {
+    const auto plane = [&c](double k11, double k12, double k22, double& EI, double& f, double& phi, double& soft) {
+      const double mean = 0.5 * (k11 + k22), L = c.length;
+      EI = 0.5 * L * (mean - k12);
+      // a cone without shear gives a little more or less than one
+      const double stiff = std::min((mean + k12) / (3.0 * (mean - k12)), 1.0);
+      f = 6.0 / L * stiff, phi = 1.0 - stiff, soft = phi / stiff * L * L / (12.0 * EI);
+    };
+    plane(c.ky_def11, c.ky_def12, c.ky_def22, EIa, fa, phia, softa);
+    plane(c.kz_def11, c.kz_def12, c.kz_def22, EIb, fb, phib, softb);
+  }
+};
+
 /// Deformation at a configuration and the rates that go with it.
 template <class T>
 struct Shape {
   V3<T> a, D[2], delta[2], q[2], p[2], y, z, ro[2];
   T l, stretch, n[2], G[2], G1[2], psi;
+  struct Components { T y, z; };
+  Components P[2];        // of p
+  T My, Mz, Ky, Kz;       // mean curvature, and how much it changes from end to end
   AngleRatio ratio[2];
   Shape(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1, const Motion<T>& m2) {
     using std::atan2;
@@ -84,7 +103,14 @@ struct Shape {
     const V3<T> sum = Bt[0] + Bt[1];
     y = (T(1.0) / sqrt(sum.dot(sum))) * sum;
     z = a.cross(y);
-    psi = atan2(a.dot(Bt[0].cross(Bt[1])), Bt[0].dot(Bt[1])) + T(b.c.tau_c) * a.dot(p[0].cross(p[1]));
+    for (int i = 0; i < 2; ++i) P[i] = {p[i].dot(y), p[i].dot(z)};
+    const Planes plane(b.c);
+    const double il = 1.0 / b.c.length;
+    My = il * (P[1].y - P[0].y), Mz = il * (P[1].z - P[0].z);
+    const Vec2 rest = b.p01 + b.p02;   // the unstressed shape has no shear
+    Ky = plane.fa * (P[0].y + P[1].y - T(rest[0])) + T(6.0 * il * rest[0]);
+    Kz = plane.fb * (P[0].z + P[1].z - T(rest[1])) + T(6.0 * il * rest[1]);
+    psi = atan2(a.dot(Bt[0].cross(Bt[1])), Bt[0].dot(Bt[1])) - 0.5 * (P[0].y * P[1].z - P[0].z * P[1].y) - (b.c.length * b.c.length / 12.0) * (My * Kz - Mz * Ky);
   }
   T bow(const GeneralBeamConstants& c) const {
     return 0.5 * (c.b11 * p[0].dot(p[0]) + 2.0 * c.b12 * p[0].dot(p[1]) + c.b22 * p[1].dot(p[1]));
@@ -95,31 +121,54 @@ double bow0(const GeneralBeam& b) {
   return 0.5 * (b.c.b11 * b.p01.squaredNorm() + 2.0 * b.c.b12 * b.p01.dot(b.p02) + b.c.b22 * b.p02.squaredNorm());
 }
 
-/// The three terms of the header: energy, and forces on (p1.y, p2.y), (p1.z, p2.z) and psi.
+/// g = N^2/(1 + N/kGA) and half its derivative; its parabola below N = -kGA/2. As in shaft_beam.cpp.
 template <class T>
-struct Coupling {
-  T V{}, my[2], mz[2], torque{};
-  Coupling(const GeneralBeam& b, const T (&ky)[2], const T (&kz)[2], const T& psi) {
+struct Give {
+  T g, g1;
+  Give(double soft, const T& N) {
+    const bool usual = soft * value(N) > -0.5;
+    const T n = usual ? N : T(-0.5 / soft), d = N - n, rho = T(1.0) / (T(1.0) + soft * n), slope = 0.5 * (n * rho * (T(1.0) + rho));
+    g1 = slope + rho * rho * rho * d, g = n * n * rho + (slope + g1) * d;
+  }
+};
+
+/// What the element does inside (general_beam.hpp): energy, and forces on (p1.y, p2.y), (p1.z, p2.z); the torque and axial force that act on the
+/// rates of psi and w. ky, kz: deformations.
+template <class T>
+struct Inner {
+  T V{}, my[2], mz[2], torque{}, axial{};
+  Inner(const GeneralBeam& b, const Shape<T>& p, const T (&ky)[2], const T (&kz)[2], const T& N) {
     const GeneralBeamConstants& c = b.c;
-    const double L = c.length, a12 = 0.5 * (c.ky_def11 + c.ky_def22), b12 = 0.5 * (c.kz_def11 + c.kz_def22);
-    const double EIa = 0.5 * L * (a12 - c.ky_def12), EIb = 0.5 * L * (b12 - c.kz_def12);
-    const double fa = (a12 + c.ky_def12) / EIa, fb = (b12 + c.kz_def12) / EIb;
-    const double g = c.GJ_l > 0.0 ? L * L / (24.0 * c.GJ_l) : 0.0, h = L / 12.0, il = 1.0 / L;
-    const T Ey = il * (ky[1] - ky[0]), Ez = il * (kz[1] - kz[0]), Sy = fa * (ky[0] + ky[1]), Sz = fb * (kz[0] + kz[1]);
-    const T My = Ey + T(il * (b.p02[0] - b.p01[0])), Mz = Ez + T(il * (b.p02[1] - b.p01[1]));
-    const T Ky = Sy + T(fa * (b.p01[0] + b.p02[0])), Kz = Sz + T(fb * (b.p01[1] + b.p02[1]));
-    const T t = psi - T(b.psi_r);
-    const T cc = EIa * (Mz * Ey) - EIb * (My * Ez);
-    const T slope = EIa * (Kz * Ey + Mz * Sy) - EIb * (Ky * Ez + My * Sz);
-    const double ra = fa * L / 6.0, rb = fb * L / 6.0;   // 1/(1 + Phi): shear takes its part of a slope of the curvature
-    const T s = EIa * (ra * (Mz * Mz) - My * Ey) + EIb * (rb * (My * My) - Mz * Ez);
-    V = T(-g) * cc * cc + h * (t * slope + 0.5 * (t * t * s));
-    torque = h * (slope + t * s);
-    const T cy = EIa * Mz - EIb * Ez, cz = EIa * Ey - EIb * My, th = h * t, tth = 0.5 * (th * t);
-    const T gy = T(-2.0 * g) * cc * cy + th * (EIa * Kz - EIb * Sz) + tth * (2.0 * EIb * rb * My - EIa * (Ey + My));
-    const T gz = T(-2.0 * g) * cc * cz + th * (EIa * Sy - EIb * Ky) + tth * (2.0 * EIa * ra * Mz - EIb * (Ez + Mz));
-    const T ly = fa * (th * cy), lz = fb * (th * cz);
-    my[0] = ly - il * gy, my[1] = ly + il * gy, mz[0] = lz - il * gz, mz[1] = lz + il * gz;
+    const Planes n(c);
+    const double L = c.length, il = 1.0 / L, h = L / 12.0, GJ = c.GJ_l * L, g = GJ > 0.0 ? L * L * L / (24.0 * GJ) : 0.0;
+    const T Ey = il * (ky[1] - ky[0]), Ez = il * (kz[1] - kz[0]), Sy = n.fa * (ky[0] + ky[1]), Sz = n.fb * (kz[0] + kz[1]);
+    const T &My = p.My, &Mz = p.Mz, &Ky = p.Ky, &Kz = p.Kz;
+    const T t = p.psi - T(b.psi_r), twist = p.psi - T(b.psi0);
+    // twist inside the element
+    const T cc = n.EIa * (Mz * Ey) - n.EIb * (My * Ez);
+    const T slope = n.EIa * (Kz * Ey + Mz * Sy) - n.EIb * (Ky * Ez + My * Sz);
+    const T s = n.EIa * (Mz * Mz - My * Ey) + n.EIb * (My * My - Mz * Ez);
+    // slopes of curvature and shear that the end moments do not make
+    const T xy = t * (n.EIa * Mz - n.EIb * Ez) + GJ * (twist * Mz), xz = t * (n.EIa * Ey - n.EIb * My) - GJ * (twist * My);
+    const double qa = L / 12.0 * n.phia / n.EIa, qb = L / 12.0 * n.phib / n.EIb;   // L^3/kGA/144 (1 - phi)
+    const double na = L * L * L / 12.0 * n.softa, nb = L * L * L / 12.0 * n.softb;
+    const Give<T> ga(n.softa, N), gb(n.softb, N);   // the slope of the shear lengthens the line too: kGA + N
+    V = T(-g) * cc * cc + h * (t * slope + 0.5 * (t * t * s)) - 0.5 * (qa * (xy * xy) + qb * (xz * xz)) - 0.5 * (na * ga.g * (My * My) + nb * gb.g * (Mz * Mz));
+    axial = N - c.EA_l * (na * ga.g1 * (My * My) + nb * gb.g1 * (Mz * Mz));
+    const T ax = qa * xy, az = qb * xz;
+    torque = T(c.GJ_l) * twist + h * (slope + t * s) - ax * ((n.EIa + GJ) * Mz - n.EIb * Ez) - az * (n.EIa * Ey - (n.EIb + GJ) * My);
+    // derivatives in (My, Ey) together, in (Ky, Sy) together
+    const T cy = n.EIa * Mz - n.EIb * Ez, cz = n.EIa * Ey - n.EIb * My, th = h * t, tth = 0.5 * (th * t);
+    T gy = T(-2.0 * g) * cc * cy + th * (n.EIa * Kz - n.EIb * Sz) + tth * (2.0 * n.EIb * My - n.EIa * (Ey + My));
+    T gz = T(-2.0 * g) * cc * cz + th * (n.EIa * Sy - n.EIb * Ky) + tth * (2.0 * n.EIa * Mz - n.EIb * (Ez + Mz));
+    gy = gy - az * (t * (n.EIa - n.EIb) - GJ * twist) - na * ga.g * My;
+    gz = gz - ax * (t * (n.EIa - n.EIb) + GJ * twist) - nb * gb.g * Mz;
+    T ly = th * cy, lz = th * cz;
+    // and of the area in psi
+    const T area = (L * L / 12.0) * torque, half = 0.5 * torque;
+    gy = gy - area * Kz, gz = gz + area * Ky, ly = ly + area * Mz, lz = lz - area * My;
+    my[0] = n.fa * ly - il * gy - half * p.P[1].z, my[1] = n.fa * ly + il * gy + half * p.P[0].z;
+    mz[0] = n.fb * lz - il * gz + half * p.P[1].y, mz[1] = n.fb * lz + il * gz - half * p.P[0].y;
   }
 };
 
@@ -138,18 +187,18 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   const NodeT<T>* no[2] = {&n1, &n2};
   ForceOut<T> out;
 
-  const T N = T(b.preload) + c.EA_l * (s.stretch + c.length * (s.bow(c) - T(bow0(b)))), NL = c.length * N;
+  const T N0 = T(b.preload) + c.EA_l * (s.stretch + c.length * (s.bow(c) - T(bow0(b))));
   T ky[2], kz[2];   // deformations along y and z
   for (int i = 0; i < 2; ++i) {
     const Vec2& p0 = i == 0 ? b.p01 : b.p02;
-    ky[i] = s.p[i].dot(s.y) - T(p0[0]), kz[i] = s.p[i].dot(s.z) - T(p0[1]);
+    ky[i] = s.P[i].y - T(p0[0]), kz[i] = s.P[i].z - T(p0[1]);
   }
   T my[2] = {c.ky_def11 * ky[0] + c.ky_def12 * ky[1], c.ky_def12 * ky[0] + c.ky_def22 * ky[1]};
   T mz[2] = {c.kz_def11 * kz[0] + c.kz_def12 * kz[1], c.kz_def12 * kz[0] + c.kz_def22 * kz[1]};
-  const Coupling<T> inner(b, ky, kz, s.psi);
+  const Inner<T> inner(b, s, ky, kz, N0);
   for (int i = 0; i < 2; ++i) my[i] += inner.my[i], mz[i] += inner.mz[i];
-  const T torque = c.GJ_l * (s.psi - T(b.psi0)) + inner.torque;
-  T twist = torque;
+  const T N = inner.axial, NL = c.length * N;
+  T twist = inner.torque;
   V3<T> ad[2];
   for (int i = 0; i < 2; ++i) ad[i] = (T(1.0) / (T(2.0) - s.n[i])) * s.a.cross(s.delta[i]);
   if (c.beta > 0.0 || c.beta_twist > 0.0) {
@@ -183,9 +232,6 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   V3<T> M[2];
   M[0] = my[0] * s.y + mz[0] * s.z + NL * (T(c.b11) * s.p[0] + T(c.b12) * s.p[1]);
   M[1] = my[1] * s.y + mz[1] * s.z + NL * (T(c.b12) * s.p[0] + T(c.b22) * s.p[1]);
-  // twist rate = sigma2 - sigma1 + tau_c (p1 o . (p2 x a) + p2 o . (a x p1)); the last part turns nothing
-  M[0] = M[0] + (T(c.tau_c) * torque) * s.p[1].cross(s.a);
-  M[1] = M[1] + (T(c.tau_c) * torque) * s.a.cross(s.p[0]);
   const T S = -0.5 * (M[0].dot(s.a.cross(s.p[0])) + M[1].dot(s.a.cross(s.p[1])));
   const T spin[2] = {S - twist, S + twist};
   V3<T> fa = spin[0] * ad[0] + spin[1] * ad[1];
@@ -200,15 +246,22 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
 
   // inertia
   V3<T> acc[4], g[4];
-  for (int i = 0; i < 2; ++i) acc[2 * i] = no[i]->ddu + mo[i]->accel(s.ro[i]), acc[2 * i + 1] = mo[i]->accel(s.D[i]);
+  for (int i = 0; i < 2; ++i) {
+    acc[2 * i] = no[i]->ddu + mo[i]->accel(s.ro[i]), acc[2 * i + 1] = mo[i]->accel(s.D[i]);
+    if (c.alpha > 0.0) {
+      acc[2 * i] = acc[2 * i] + T(c.alpha) * (no[i]->du + mo[i]->omega.cross(s.ro[i]));
+      acc[2 * i + 1] = acc[2 * i + 1] + T(c.alpha) * mo[i]->omega.cross(s.D[i]);
+    }
+  }
   for (int k = 0; k < 4; ++k) {
     g[k] = T(c.M4(k, 0)) * acc[0];
     for (int j = 1; j < 4; ++j) g[k] = g[k] + T(c.M4(k, j)) * acc[j];
   }
-  for (int axis = 1; axis <= 2; ++axis) {
-    const double J = axis == 1 ? c.rhoIz_l : c.rhoIy_l;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double J = axis == 0 ? -c.rhoI_l : axis == 1 ? c.rhoIz_l : c.rhoIy_l;
     const V3<T> b1 = m1.turn(b.body1.col(axis)), b2 = m2.turn(b.body2.col(axis));
-    const V3<T> a1 = m1.accel(b1), a2 = m2.accel(b2);
+    V3<T> a1 = m1.accel(b1), a2 = m2.accel(b2);
+    if (c.alpha > 0.0) a1 = a1 + T(c.alpha) * m1.omega.cross(b1), a2 = a2 + T(c.alpha) * m2.omega.cross(b2);
     out.m[0] = out.m[0] + b1.cross(T(J * 5.0 / 12.0) * a1 + T(J / 12.0) * a2);
     out.m[1] = out.m[1] + b2.cross(T(J / 12.0) * a1 + T(J * 5.0 / 12.0) * a2);
   }
@@ -258,8 +311,8 @@ GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chor
   const NodeT<double> n1(rest1), n2(rest2);
   const Motion<double> m1(n1), m2(n2);
   const Shape<double> s(*this, n1, n2, m1, m2);
-  psi0 = s.psi;
-  p01 = Vec2(s.p[0].dot(s.y), s.p[0].dot(s.z)), p02 = Vec2(s.p[1].dot(s.y), s.p[1].dot(s.z));
+  p01 = Vec2(s.P[0].y, s.P[0].z), p02 = Vec2(s.P[1].y, s.P[1].z);
+  psi0 = Shape<double>(*this, n1, n2, m1, m2).psi;   // with the area of the unstressed shape
   if (p01.squaredNorm() + p02.squaredNorm() > 1e-20) psi_r = psi0;
 }
 
@@ -287,20 +340,22 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
   const Motion<double> m1(n1), m2(n2);
   const Shape<double> s(*this, n1, n2, m1, m2);
   const double w = s.stretch + c.length * (s.bow(c) - bow0(*this));
+  const double N = preload + c.EA_l * w;
   double V = (0.5 * c.EA_l * w + preload) * w + 0.5 * c.GJ_l * (s.psi - psi0) * (s.psi - psi0);
-  const double y1 = s.p[0].dot(s.y) - p01[0], y2 = s.p[1].dot(s.y) - p02[0], z1 = s.p[0].dot(s.z) - p01[1], z2 = s.p[1].dot(s.z) - p02[1];
+  const double y1 = s.P[0].y - p01[0], y2 = s.P[1].y - p02[0], z1 = s.P[0].z - p01[1], z2 = s.P[1].z - p02[1];
   V += 0.5 * (c.ky_def11 * y1 * y1 + 2 * c.ky_def12 * y1 * y2 + c.ky_def22 * y2 * y2);
   V += 0.5 * (c.kz_def11 * z1 * z1 + 2 * c.kz_def12 * z1 * z2 + c.kz_def22 * z2 * z2);
   const double ky[2] = {y1, y2}, kz[2] = {z1, z2};
-  en.elastic += V + Coupling<double>(*this, ky, kz, s.psi).V;
+  en.elastic += V + Inner<double>(*this, s, ky, kz, N).V;
+  const double kinetic_before = en.kinetic;
   auto vec = [](const V3<double>& v) { return Vec3(v.x, v.y, v.z); };
   const Vec3 w1 = vec(m1.omega), w2 = vec(m2.omega);
   const Vec3 X[4] = {vec(s.ro[0]), vec(s.D[0]), vec(s.ro[1]), vec(s.D[1])};
   const Vec3 v[4] = {x[0]->du + w1.cross(X[0]), w1.cross(X[1]), x[1]->du + w2.cross(X[2]), w2.cross(X[3])};
   for (int k = 0; k < 4; ++k)
     for (int j = 0; j < 4; ++j) en.kinetic += 0.5 * c.M4(k, j) * v[k].dot(v[j]);
-  for (int axis = 1; axis <= 2; ++axis) {
-    const double J = axis == 1 ? c.rhoIz_l : c.rhoIy_l;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double J = axis == 0 ? -c.rhoI_l : axis == 1 ? c.rhoIz_l : c.rhoIy_l;
     const Vec3 b1 = w1.cross(vec(m1.turn(body1.col(axis)))), b2 = w2.cross(vec(m2.turn(body2.col(axis))));
     en.kinetic += 0.5 * J * (5.0 / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) + b1.dot(b2) / 6.0);
   }
@@ -308,6 +363,7 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
   const Vec3 P[4] = {x[0]->u + X[0] - offset1, X[1] - triad1.col(0), x[1]->u + X[2] - offset2, X[3] - triad2.col(0)};
   for (int j = 0; j < 4; ++j) en.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(P[j]);
   if (c.beta > 0.0 || c.beta_twist > 0.0) en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
+  if (c.alpha > 0.0) en.dissipated += 2.0 * c.alpha * (en.kinetic - kinetic_before);
 }
 
 }  // namespace whirl::elements

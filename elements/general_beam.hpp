@@ -5,21 +5,26 @@
 // offset: r_i = x_i + R_i o_i. With the chord a = (r2 - r1)/l and the twistless transport P(a <- D_i):
 //   p_i      vector from a towards D_i, perpendicular to a, |p_i| = angle between them
 //   y, z     section axes at mid-element: bisector of the transported B1, B2, and a x y
-//   psi      angle from transported B1 to transported B2 about a, in (-pi, pi], + tau_c a.(p1 x p2): the area between the bent element and its
-//            chord, which lifts the torsion of space curves from order 2 to 4 (shaft_beam.hpp)
+//   psi      angle from transported B1 to transported B2 about a, in (-pi, pi], and the area between the bent element and its chord, which lifts
+//            the torsion of space curves from order 2 to 4: - 1/2 a.(p1 x p2) - length^2/12 a.(m x k)
 //   V = 1/2 EA_l w^2 + 1/2 sum_ij [kz_ij (p_i - p0_i).y (p_j - p0_j).y + ky_ij (p_i - p0_i).z (p_j - p0_j).z] + 1/2 GJ_l (psi - psi0)^2
-//       + P w,   w = l - l0 + length/2 sum_ij b_ij (p_i.p_j - p0_i.p0_j)
-//   V gets three terms that lift beams with unequal stiffnesses or initial curvature from order 2 to 4: inside the element the sections
-//   turn by alpha = (xi - 1/2)(psi - psi_r) against y, z, and the moments on the curvature twist it further than its ends show. With the mean
-//   curvature m = (p2 - p1)/length and its slope k = f (p1 + p2), of the whole and (e) of the deformation, EIa for y and EIb for z:
-//   c = EIa m_z m^e_y - EIb m_y m^e_z the torque per length about the tangent, c' its slope, s = EIa (ra m_z^2 - m_y m^e_y) + EIb (rb m_y^2 - m_z m^e_z),
-//   r = 1/(1 + Phi) of each plane (a slope of the curvature is shared between bending and shear),
-//   V += -length^3/(24 GJ) c^2 + length/12 [(psi - psi_r) c' + 1/2 (psi - psi_r)^2 s],  psi_r = psi0 where the element is curved at rest, else 0.
+//       + P w,   w = l - l0 + length/2 sum_ij b_ij (p_i.p_j - p0_i.p0_j),   N = P + EA_l w
+// with the mean curvature m = (p2 - p1)/length and its change from end to end k = 6/((1 + Phi) length) (p1 + p2), each plane with its own Phi.
+// Inside the element stresses vary: Q' = -m N, and with T the torque and the sections turning by alpha = (xi - 1/2) t, t = psi - psi_r, against y, z
+//   T' = -c,   c = EIa m_z m^e_y - EIb m_y m^e_z      (e: of the deformation; EIa for bending along y, EIb along z)
+//   M_y' = Q_y - x_y,   x_y = t/length (EIa m_z - EIb m^e_z) + T m_z,   x_z = t/length (EIa m^e_y - EIb m_y) - T m_y
+// to first order. Terms that keep order 4 for unequal stiffnesses, initial curvature, and shear:
+//   V += length/12 [t c' + 1/2 t^2 (EIa (m_z^2 - m_y m^e_y) + EIb (m_y^2 - m_z m^e_z))]     c': change of c, by k
+//      - length^3/24 [c^2/GJ + phi_a x_y^2/EIa + phi_b x_z^2/EIb + g_a m_y^2/kGA_a + g_b m_z^2/kGA_b],   g = N^2/(1 + N/kGA),   phi = Phi/(1 + Phi)
+// psi_r = psi0 where the element is curved at rest, else 0. (What the inside gains: each slope costs 1/24 length^3 stiffness slope^2; a slope of the
+// curvature that no end moment makes is held back by its own shear, which leaves Phi/(1 + Phi). Without shear in it the last line leaves an error of
+// 1/2 T^2 m^2/kGA per length on all meshes.)
 // The force is found from the power of the stresses on objective rates, p_i o = (p_i')_perp - sigma a x p_i and psi' = sigma2 - sigma1,
 // sigma_i = (a + D_i).(omega_i - a x a')/(1 + a.D_i), which are exactly the rates of the measures above. beta and beta_twist damp the
 // same rates (viscous, rotating with the section).
-// Inertia: M4 (x) 1 on (r1, D1, r2, D2), rotary inertia on the triads, 1/2 sum_ij m_ij (rhoI_z B_i'.B_j' + rhoI_y C_i'.C_j'), m the mean of
-// consistent and lumped: exact for every rigid motion.
+// Inertia: M4 (x) 1 on (r1, D1, r2, D2), with the mean rotary inertia on the static shape (timoshenko_matrices.hpp); what is left of the rotary and the
+// polar inertia on the triads, 1/2 sum_ij m_ij (rhoI_z B_i'.B_j' + rhoI_y C_i'.C_j' - rhoI D_i'.D_j'), m the mean of consistent and lumped. Exact for every
+// rigid motion.
 //
 // The tangent is by forward differentiation (core/dual.hpp): exact, about ten times the cost of the axisymmetric element.
 // Units SI. Limits: relative twist of one element below pi; angle between chord and D below pi; small strain.
@@ -35,11 +40,12 @@ struct GeneralBeamConstants {
   /// End stiffnesses for deflection along the section's y (bending about z: EIz) and along z (EIy), N m.
   double ky_def11 = 0, ky_def12 = 0, ky_def22 = 0, kz_def11 = 0, kz_def12 = 0, kz_def22 = 0;
   double b11 = 0, b12 = 0, b22 = 0;  ///< bowing coefficients
-  double tau_c = 0;                  ///< coefficient of a.(p1 x p2) in the twist
-  Matrix<4> M4 = Matrix<4>::Zero();  ///< translational inertia on (r1, D1, r2, D2), kg, kg m, kg m^2
+  Matrix<4> M4 = Matrix<4>::Zero();  ///< inertia on (r1, D1, r2, D2): translation, and rotary inertia rhoI_l/length; kg, kg m, kg m^2
+  double rhoI_l = 0;                 ///< what of the rotary inertia below M4 contains, kg m^2
   double rhoIz_l = 0, rhoIy_l = 0;   ///< rho int y^2 dA length, rho int z^2 dA length, kg m^2
   double beta = 0;                   ///< stiffness-proportional damping of bending, rotating, s
   double beta_twist = 0;             ///< the same of the twist, s
+  double alpha = 0;                  ///< mass-proportional damping, 1/s: of the velocities of the beam's own mass
 };
 
 struct GeneralBeam {

@@ -13,6 +13,7 @@ using system::TangentX;
 GeneralBeamDamping::GeneralBeamDamping(const GeneralBeam& beam, double beta, double beta_twist) : with(beam), without(beam) {
   with.c.beta = beta, with.c.beta_twist = beta_twist;
   without.c.beta = without.c.beta_twist = 0.0;
+  with.c.alpha = without.c.alpha = 0.0;
 }
 
 void GeneralBeamDamping::add_force(const Nodes<2>& x, const Context& ctx, ForceX<14>& f) const {

@@ -3,6 +3,7 @@
 #include <elements/shaft_lanes.hpp>
 #include <elements/shaft_strain.hpp>
 #include <system/spin.hpp>
+#include <algorithm>
 #include <cstddef>
 
 namespace whirl::elements {
@@ -59,6 +60,28 @@ struct Form {
   }
 };
 
+/// g(N) of the header and half its derivative, and half its second one.
+struct Give {
+  double g, g1, g2;
+  template <class Beam>
+  Give(const Beam& b, double N) {
+    const double n = std::max(N, b.soft_limit), d = N - n, rho = 1.0 / (1.0 + b.soft_shear * n), slope = 0.5 * n * rho * (1.0 + rho);
+    g2 = rho * rho * rho, g1 = slope + g2 * d, g = n * n * rho + (slope + g1) * d;
+  }
+};
+
+/// What acts on the rates of w, psi and |th2 - th1|^2/2 once the inside has given way: V = .. - B/2 (q psi^2 + r g), B = |th2 - th1|^2.
+struct Inside {
+  double psi, B, N, torque, Q;
+  Give give;
+  template <class Beam>
+  Inside(const Beam& b, const Strain& s, double N0, double twist)
+      : psi(twist), B(s.r1.F + s.r2.F - 2.0 * s.S), torque((b.c.GJ_l - b.soft_torque * B) * twist), give(b, N0) {
+    N = N0 - b.c.EA_l * b.soft_axial * B * give.g1;
+    Q = b.soft_torque * twist * twist + b.soft_axial * give.g;
+  }
+};
+
 using Vector9 = Vector<9>;   // (a, d1, d2)
 
 /// Gradient of a Form in (a, d1, d2).
@@ -109,6 +132,13 @@ ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3
   G4c = c.G4;
   G4c(1, 1) -= c.polar.row(0).sum();
   G4c(3, 3) -= c.polar.row(1).sum();
+  const double mean = 0.5 * (c.k11 + c.k22), EI = 0.5 * c.length * (mean - c.k12);
+  if (!(EI > 0)) return;
+  const double stiff = std::min((mean + c.k12) / (3.0 * (mean - c.k12)), 1.0);   // 1/(1 + Phi); a cone without shear gives a little more or less than one
+  soft_torque = c.GJ_l * c.GJ_l * c.length * (1.0 - stiff) / (12.0 * EI);
+  soft_shear = (1.0 - stiff) / stiff * c.length * c.length / (12.0 * EI);
+  soft_axial = soft_shear * c.length / 12.0;
+  soft_limit = -0.5 / soft_shear;   // -infinity without shear
 }
 
 template <bool Offsets>
@@ -122,7 +152,7 @@ void ShaftBeam<Offsets>::add_forces(std::span<const ShaftBeam> elements, const s
   lanes::ShaftElements b;
   b.element = start, b.stride = sizeof(ShaftBeam) / sizeof(double), b.count = elements.size();
   b.scalars = &k.c.length - start, b.M4 = k.c.M4.data() - start, b.G4c = k.G4c.data() - start, b.polar = k.c.polar.data() - start;
-  b.e0 = k.e0.data() - start, b.psi0 = &k.psi0 - start, b.preload = &k.preload - start;
+  b.e0 = k.e0.data() - start, b.psi0 = &k.psi0 - start, b.preload = &k.preload - start, b.soft = &k.soft_torque - start;
   b.nodes = nodes->data();
   b.state = states[0].u.data(), b.state_stride = sizeof(NodeState) / sizeof(double), b.chart = offsetof(NodeState, chart) / sizeof(double);
   b.force = force->data();
@@ -143,12 +173,20 @@ template <bool Offsets>
 void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& out) const {
   const NodeState &x1 = *x[0], &x2 = *x[1];
   const Strain s(*this, x1, x2);
-  const double L = c.length, N = preload + c.EA_l * (s.stretch + L * s.bow(c)), NL = N * L;
-  const Form bend(c.k11 + NL * c.b11, c.k12 + NL * c.b12, c.k22 + NL * c.b22, s);
-  const Vector9 gw = L * gradient(Form(c.b11, c.b12, c.b22, s), s);   // dw = dl + gw . d(a, d1, d2)
-  const Twist t(x1.e(), s, c.tau_c);
-  const double T = c.GJ_l * (x2.phi - x1.phi + t.geometric - psi0);
+  const double L = c.length, N0 = preload + c.EA_l * (s.stretch + L * s.bow(c));
+  Twist t(x1.e(), s, c.tau_c);
+  const Inside in(*this, s, N0, x2.phi - x1.phi + t.geometric - psi0);
+  const double N = in.N, NL = N * L, T = in.torque;
+  const Form bend(c.k11 + NL * c.b11 - in.Q, c.k12 + NL * c.b12 + in.Q, c.k22 + NL * c.b22 - in.Q, s);
+  Vector9 gw = L * gradient(Form(c.b11, c.b12, c.b22, s), s);   // dw = dl + gw . d(a, d1, d2)
   const Vector9 ga = gradient(bend, s) + T * t.g;
+  // Second derivatives of V in (w, psi, beta), beta = |th2 - th1|^2/2: squares of gw and t.g shifted along the gradient of beta, and one of that.
+  const Vector9 gb = gradient(Form(1.0, -1.0, 1.0, s), s);
+  const double EA_l = c.EA_l * (1.0 - in.B * soft_axial * c.EA_l * in.give.g2), GJ_l = c.GJ_l - in.B * soft_torque;
+  const double shift_w = 2.0 * soft_axial * in.give.g1 * c.EA_l / EA_l, shift_t = GJ_l > 0.0 ? 2.0 * soft_torque * in.psi / GJ_l : 0.0;
+  const double bb = -(EA_l * shift_w * shift_w + GJ_l * shift_t * shift_t);
+  gw -= shift_w * gb;
+  t.g -= shift_t * gb;
 
   // Hessian in (a, d1, d2), by blocks: rank-one parts of w and psi, the form in (n1, n2, m, tau), the curvature of these scalars.
   // Outer products are spelled out (add_outer): small fixed sizes that general product code would not unroll.
@@ -167,15 +205,17 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   const Vec3 yam = -bend.h1m * p1 - bend.h2m * p2, yat = -h1t * p1 - h2t * p2;
   const Vec3 wa = gw.head<3>(), wd1 = gw.segment<3>(3), wd2 = gw.tail<3>();
   const Vec3 ta = t.g.head<3>(), td1 = t.g.segment<3>(3), td2 = t.g.tail<3>();
-  auto start = [&](const Vec3& wx, const Vec3& tx, const Vec3& wy, const Vec3& ty) {
+  const Vec3 ba = gb.head<3>(), b1 = gb.segment<3>(3), b2 = gb.tail<3>();
+  auto start = [&](const Vec3& wx, const Vec3& tx, const Vec3& bx, const Vec3& wy, const Vec3& ty, const Vec3& by) {
     Mat3 m = Mat3::Zero();
-    add_outer(m, c.EA_l * wx, wy);
-    add_outer(m, c.GJ_l * tx, ty);
+    add_outer(m, EA_l * wx, wy);
+    add_outer(m, GJ_l * tx, ty);
+    if (bb != 0.0) add_outer(m, bb * bx, by);
     return m;
   };
   const Vec3 e = x1.e();
-  Mat3 H11 = start(wd1, td1, wd1, td1), H12 = start(wd1, td1, wd2, td2), H22 = start(wd2, td2, wd2, td2);
-  Mat3 H1a = start(wd1, td1, wa, ta), H2a = start(wd2, td2, wa, ta), Haa = start(wa, ta, wa, ta);
+  Mat3 H11 = start(wd1, td1, b1, wd1, td1, b1), H12 = start(wd1, td1, b1, wd2, td2, b2), H22 = start(wd2, td2, b2, wd2, td2, b2);
+  Mat3 H1a = start(wd1, td1, b1, wa, ta, ba), H2a = start(wd2, td2, b2, wa, ta, ba), Haa = start(wa, ta, ba, wa, ta, ba);
   add_outer(H11, y11, p1), add_outer(H11, y1m, p2), add_outer(H11, y1t, t.tau_1);
   add_outer(H12, y12, p2), add_outer(H12, y1m, p1), add_outer(H12, y1t, t.tau_2);
   add_outer(H22, y22, p2), add_outer(H22, y2m, p1), add_outer(H22, y2t, t.tau_2);
@@ -190,18 +230,18 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   add_skew(H1a, wt, s.d2), add_skew(H2a, -wt, s.d1), add_skew(H12, -wt, s.a);
 
   // from (a, l) to lambda: da = P dlambda, P = (1 - a a^T)/l
-  const Vec3 va = ga.head<3>(), Pva = (va - s.a.dot(va) * s.a) / s.l, Pcw = (c.EA_l / s.l) * (wa - s.a.dot(wa) * s.a);
+  const Vec3 va = ga.head<3>(), Pva = (va - s.a.dot(va) * s.a) / s.l, Pcw = (EA_l / s.l) * (wa - s.a.dot(wa) * s.a);
   // P Haa P = (Haa - a (a^T Haa) - (Haa a) a^T + (a^T Haa a) a a^T)/l^2
   const Vec3 Ha = Haa * s.a;
   const double il = 1.0 / s.l, il2 = il * il, aHa = s.a.dot(Ha), tension = (N - s.a.dot(va) * il) * il;
   Mat3 Hll = il2 * Haa;
   Hll.diagonal().array() += tension;
   const Vec3 side = Pcw - il2 * Ha - il * Pva;
-  add_outer(Hll, s.a, side), add_outer(Hll, side + (il2 * aHa + c.EA_l - tension) * s.a, s.a);
+  add_outer(Hll, s.a, side), add_outer(Hll, side + (il2 * aHa + EA_l - tension) * s.a, s.a);
   // Hl_i = P Haa_i + EA a gw_i^T, i = 1, 2
   auto lambda_d = [&](const Mat3& Hda, const Vec3& wd) {
     Mat3 m = il * Hda.transpose();
-    add_outer(m, s.a, c.EA_l * wd - il * (Hda * s.a));
+    add_outer(m, s.a, EA_l * wd - il * (Hda * s.a));
     return m;
   };
   Mat3 H1 = lambda_d(H1a, wd1), H2 = lambda_d(H2a, wd2);
@@ -227,13 +267,13 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
       K(3 + i, 3 + j) += H11(i, j), K(10 + i, 10 + j) += H22(i, j), K(3 + i, 10 + j) += m12, K(10 + j, 3 + i) += m12;
     }
   for (int i = 0; i < 3; ++i) {   // torque against phi
-    const double l = c.GJ_l * tg[i], d1 = c.GJ_l * tg1[i], d2 = c.GJ_l * tg2[i];
+    const double l = GJ_l * tg[i], d1 = GJ_l * tg1[i], d2 = GJ_l * tg2[i];
     K(13, i) -= l, K(i, 13) -= l, K(6, i) += l, K(i, 6) += l;
     K(13, 7 + i) += l, K(7 + i, 13) += l, K(6, 7 + i) -= l, K(7 + i, 6) -= l;
     K(13, 3 + i) += d1, K(3 + i, 13) += d1, K(6, 3 + i) -= d1, K(3 + i, 6) -= d1;
     K(13, 10 + i) += d2, K(10 + i, 13) += d2, K(6, 10 + i) -= d2, K(10 + i, 6) -= d2;
   }
-  K(6, 6) += c.GJ_l, K(13, 13) += c.GJ_l, K(6, 13) -= c.GJ_l, K(13, 6) -= c.GJ_l;
+  K(6, 6) += GJ_l, K(13, 13) += GJ_l, K(6, 13) -= GJ_l, K(13, 6) -= GJ_l;
 
   // inertia
   const NodeState* n[2] = {&x1, &x2};
@@ -305,6 +345,8 @@ void ShaftBeam<Offsets>::add_energy(const Nodes<2>& x, const Context& ctx, Energ
   const double psi = x2.phi - x1.phi + t.geometric - psi0;
   e.elastic += 0.5 * c.EA_l * w * w + preload * w + 0.5 * (c.k11 * s.r1.F + 2.0 * c.k12 * s.S + c.k22 * s.r2.F) +
                0.5 * c.GJ_l * psi * psi;
+  const double N = preload + c.EA_l * w;
+  e.elastic -= 0.5 * (soft_torque * psi * psi + soft_axial * Give(*this, N).g) * (s.r1.F + s.r2.F - 2.0 * s.S);
   const Vec3* vel[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
   double T = 0.0;
   for (int k = 0; k < 4; ++k)
@@ -322,12 +364,12 @@ typename ShaftBeam<Offsets>::Internal ShaftBeam<Offsets>::internal(const Nodes<2
   const NodeState &x1 = *x[0], &x2 = *x[1];
   const Strain s(*this, x1, x2);
   Internal r;
-  r.N = preload + c.EA_l * (s.stretch + c.length * s.bow(c));
   const Twist t(x1.e(), s, c.tau_c);
-  r.torque = c.GJ_l * (x2.phi - x1.phi + t.geometric - psi0);
+  const Inside in(*this, s, preload + c.EA_l * (s.stretch + c.length * s.bow(c)), x2.phi - x1.phi + t.geometric - psi0);
+  r.N = in.N, r.torque = in.torque;
   const Vec3 th1 = s.r1.G * s.a.cross(s.d1), th2 = s.r2.G * s.a.cross(s.d2);   // rotation vectors from chord to normal
-  r.moment1 = c.k11 * th1 + c.k12 * th2;
-  r.moment2 = c.k12 * th1 + c.k22 * th2;
+  r.moment1 = (c.k11 - in.Q) * th1 + (c.k12 + in.Q) * th2;
+  r.moment2 = (c.k12 + in.Q) * th1 + (c.k22 - in.Q) * th2;
   r.shear = s.a.cross(r.moment1 + r.moment2) / s.l;
   return r;
 }

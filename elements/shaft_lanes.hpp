@@ -21,9 +21,9 @@ struct Elements {
 };
 
 /// Where in a shaft element: the twelve scalars of ShaftElementConstants from `length` to `tau_c`; M4 and G4c (4x4,
-/// column-major); polar (2x2); e0; psi0; preload.
+/// column-major); polar (2x2); e0; psi0; preload; soft (q, r, 1/kGA, -kGA/2).
 struct ShaftElements : Elements {
-  std::ptrdiff_t scalars = 0, M4 = 0, G4c = 0, polar = 0, e0 = 0, psi0 = 0, preload = 0;
+  std::ptrdiff_t scalars = 0, M4 = 0, G4c = 0, polar = 0, e0 = 0, psi0 = 0, preload = 0, soft = 0;
 };
 
 /// `element` points to eleven doubles: length, o1, o2, e0, d11, d12, d22, d_twist, d_axial.

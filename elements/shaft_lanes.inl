@@ -137,6 +137,9 @@ WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used)
   const T psi0 = load(p);
   from(b.preload);
   const T preload = load(p);
+  from(b.soft);
+  T soft_torque, soft_axial, soft_shear, soft_limit;
+  load4(p, soft_torque, soft_axial, soft_shear, soft_limit);
   const Node x1 = load_node(g.s1), x2 = load_node(g.s2);
 
   // strain
@@ -153,15 +156,19 @@ WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used)
   const Ratio r1 = ratio(n1), r2 = ratio(n2);
   const T GG = r1.G * r2.G, P = m - n1 * n2, S = GG * P;
 
-  // bending with the axial force it carries
-  const T N = preload + EA_l * (stretch + length * (0.5 * (b11 * r1.F + 2.0 * b12 * S + b22 * r2.F)));
-  const T NL = N * length, c11 = k11 + NL * b11, c12 = k12 + NL * b12, c22 = k22 + NL * b22;
+  // twist
+  const Solid w1 = solid_angle(e, d1, a), w2 = solid_angle(e, a, d2);
+  const T psi = x2.phi - x1.phi + (tau_c * GG * tau - (w1.value + w2.value)) - psi0;
+
+  // bending with the axial force and the torque it carries
+  const T N0 = preload + EA_l * (stretch + length * (0.5 * (b11 * r1.F + 2.0 * b12 * S + b22 * r2.F)));
+  const T B = r1.F + r2.F - 2.0 * S, n = N0 > soft_limit ? N0 : soft_limit, beyond = N0 - n, rho = 1.0 / (1.0 + soft_shear * n);
+  const T slope = 0.5 * n * rho * (1.0 + rho), give1 = slope + rho * rho * rho * beyond, Q = soft_torque * psi * psi + soft_axial * (n * n * rho + (slope + give1) * beyond);
+  const T N = N0 - EA_l * soft_axial * B * give1, torque = (GJ_l - soft_torque * B) * psi;
+  const T NL = N * length, c11 = k11 + NL * b11 - Q, c12 = k12 + NL * b12 + Q, c22 = k22 + NL * b22 - Q;
   const T g1 = c11 * r1.G + c12 * (r1.G1 * r2.G * P - GG * n2), g2 = c22 * r2.G + c12 * (r1.G * r2.G1 * P - GG * n1), gm = c12 * GG;
   V gd1 = g1 * delta1 + gm * delta2, gd2 = g2 * delta2 + gm * delta1, ga = V{} - gd1 - gd2;
 
-  // twist
-  const Solid w1 = solid_angle(e, d1, a), w2 = solid_angle(e, a, d2);
-  const T torque = GJ_l * (x2.phi - x1.phi + (tau_c * GG * tau - (w1.value + w2.value)) - psi0);
   const T tG = tau_c * GG, t1 = tau_c * r1.G1 * r2.G * tau, t2 = tau_c * r1.G * r2.G1 * tau;
   add(ga, torque * (tG * (cross(a, delta2 - delta1) + cross12) - t1 * delta1 - t2 * delta2 - w1.grad_w - w2.grad_v));
   add(gd1, torque * (tG * cross(delta2, a) + t1 * delta1 - w1.grad_v));

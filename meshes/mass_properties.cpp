@@ -66,6 +66,38 @@ MassProperties section_mass(const model::Model& m, const model::Section& s, cons
   return p;
 }
 
+namespace {
+
+/// A section from s0 on of a line along a path: Gauss points on slices of a quarter of a radian, exact to 1e-12 for an arc.
+MassProperties mass_along(const model::Model& m, const model::Shaft& shaft, const model::Section& section, double s0) {
+  static constexpr double x[] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+  static constexpr double w[] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
+  std::vector<double> ends{s0};
+  for (const double s : shaft.path.joints())
+    if (s > ends.back() && s < s0 + section.length) ends.push_back(s);
+  ends.push_back(s0 + section.length);
+  MassProperties p;
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    const double whole = ends[k + 1] - ends[k];
+    const Vec3 t0 = shaft.path.after(ends[k]).triad.col(0), half = shaft.path.after(ends[k] + 0.5 * whole).triad.col(0);
+    const int n = 1 + static_cast<int>(8.0 * std::atan2(t0.cross(half).norm(), t0.dot(half)));
+    for (int i = 0; i < 4 * n; ++i) {
+      const double h = whole / n, s = ends[k] + (i / 4 + x[i % 4]) * h, xi = (s - s0) / section.length;
+      model::Section slice = section;   // one metre of what stands there
+      slice.od_l = slice.od_r = section.od_l + xi * (section.od_r - section.od_l);
+      slice.id_l = slice.id_r = section.id_l + xi * (section.id_r - section.id_l);
+      slice.length = 1.0;
+      const MassProperties unit = section_mass(m, slice, Vec3(-0.5, 0, 0));
+      const Path::Point at = shaft.path.after(s);
+      const Mat3 own = unit.about_origin - unit.mass / 12.0 * Mat3(Vec3(0, 1, 1).asDiagonal());
+      p.add(w[i % 4] * h * unit.mass, at.r, w[i % 4] * h * (at.triad * own * at.triad.transpose()));
+    }
+  }
+  return p;
+}
+
+}  // namespace
+
 MassProperties disk_mass(const model::Disk& d, const Vec3& station) {
   Mat3 J = d.inertia ? *d.inertia : Mat3(Vec3(d.Ip, d.Id, d.Id).asDiagonal());
   if (d.skew != 0) {   // the principal axis leans towards the body angle skew_phase
@@ -80,17 +112,25 @@ MassProperties disk_mass(const model::Disk& d, const Vec3& station) {
 MassProperties shaft_mass(const model::Model& m, std::size_t shaft) {
   const model::Shaft& s = m.shafts.at(shaft);
   MassProperties p;
-  Vec3 x = s.origin;
+  double x = 0;
   for (const auto& k : s.sections) {
-    p += section_mass(m, k, x);
-    x.x() += k.length;
+    p += s.path.empty() ? section_mass(m, k, s.origin + Vec3(x, 0, 0)) : mass_along(m, s, k, x);
+    x += k.length;
   }
-  for (const auto& d : m.disks)
-    if (d.at.shaft == shaft) p += disk_mass(d, s.origin + Vec3(d.at.s, 0, 0));
+  for (const auto& d : m.disks) {
+    if (d.at.shaft != shaft) continue;
+    if (s.path.empty()) {
+      p += disk_mass(d, s.origin + Vec3(d.at.s, 0, 0));
+      continue;
+    }
+    const Path::Point at = s.path.after(d.at.s);
+    const MassProperties own = disk_mass(d, Vec3::Zero());   // in the axes of the line there
+    p.add(own.mass, at.r + at.triad * own.centre(), at.triad * own.about_centre() * at.triad.transpose());
+  }
   for (const auto& u : m.unbalances)
     if (u.at.shaft == shaft) {
       const double now = u.factor ? u.amount * u.factor->at(0).f : u.amount;
-      const Vec3 at = s.origin + Vec3(u.at.s, 0, 0), arm = now * Vec3(0, std::cos(u.phase), std::sin(u.phase));
+      const Vec3 at = s.position(u.at.s), arm = now * Vec3(0, std::cos(u.phase), std::sin(u.phase));
       p.moment += arm;
       p.about_origin += 2 * at.dot(arm) * Mat3::Identity() - at * arm.transpose() - arm * at.transpose();
     }

@@ -171,7 +171,7 @@ class LineMesher {
  private:
   Index add_node(double s) {
     Node n;
-    n.position = shaft_.origin + Vec3(s, 0, 0);
+    n.position = shaft_.position(s);
     n.line = index_;
     n.s = s;
     n.name = fmt::format("node at {:.6g} m of {} '{}'", s, shaft_.rotating ? "shaft" : "casing", shaft_.name);
@@ -205,8 +205,11 @@ class LineMesher {
     const Section& s = shaft_.sections[k];
     const double a = ends_[k], b = ends_[k + 1];
     std::vector<double> cuts{a};
-    for (const Attached* x : attached_)
-      if (x->where->s > cuts.back() + tolerance_ && x->where->s < b - tolerance_) cuts.push_back(x->where->s);
+    std::vector<double> inside = shaft_.path.joints();
+    for (const Attached* x : attached_) inside.push_back(x->where->s);
+    std::sort(inside.begin(), inside.end());
+    for (const double s : inside)
+      if (s > cuts.back() + tolerance_ && s < b - tolerance_) cuts.push_back(s);
     cuts.push_back(b);
     const std::vector<int> n = element_counts(cuts, std::min(s.max_element_length, model_.max_element_length),
                                               std::max(s.min_elements, model_.min_elements));
@@ -260,7 +263,7 @@ class LineMesher {
             merged.back().labels.push_back(std::move(l));
     }
     for (Station& x : merged) {
-      x.position = shaft_.origin + Vec3(x.s, 0, 0);
+      x.position = shaft_.position(x.s);
       resolve(x);
       mesh_.stations.push_back(std::move(x));
     }

@@ -59,10 +59,24 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
     const model::Shaft& shaft = m.shafts[l];
     Scene::Line out;
     out.name = line.name;
+    // axes of a line along a path; the same on both sides of a smooth joint
+    const auto bends = [&](double s) {
+      const Mat3 before = shaft.path.before(s).triad, after = shaft.path.after(s).triad;
+      const auto add = [&](const Mat3& m) {
+        scene.bends.push_back(m);
+        return static_cast<Index>(scene.bends.size()) - 1;
+      };
+      const Index b = add(before);
+      return std::pair(b, (after - before).norm() < 1e-6 ? b : add(after));
+    };
+    const bool bent = !shaft.path.empty();
     for (Index k = line.first_station; k < line.first_station + line.stations; ++k) {
       const Station& s = mesh.stations[static_cast<std::size_t>(k)];
       out.points.push_back(s.at);
       out.radius.push_back(radius_at(shaft, line.length, s.s));
+      if (!bent) continue;
+      const auto [before, after] = bends(s.s);
+      out.bend_before.push_back(before), out.bend_after.push_back(after);
     }
     // Elements and rigid parts in order of their left ends.
     struct Piece { double s; ShaftPiece shape; };
@@ -74,6 +88,12 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
     for (Index k = line.first_element; k < line.first_element + line.elements; ++k) {
       const Element& e = mesh.elements[static_cast<std::size_t>(k)];
       add(e.section, e.s1, e.left, e.right, e.xi1, e.xi2);
+      if (!bent) continue;
+      ShaftPiece& p = pieces.back().shape;
+      const Index last = pieces.size() > 1 ? pieces[pieces.size() - 2].shape.bend_right : -1;
+      const Mat3 from = shaft.path.after(e.s1).triad;
+      p.bend_left = last >= 0 && (scene.bends[static_cast<std::size_t>(last)] - from).norm() < 1e-6 ? last : bends(e.s1).second;
+      p.bend_right = bends(e.s2).first;
     }
     for (const RigidPart& r : mesh.rigid_parts)
       if (r.line == static_cast<Index>(l))
@@ -81,7 +101,10 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
     std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.s < b.s; });
     for (Piece& p : pieces) out.pieces.push_back(p.shape);
     for (const auto& d : m.disks)
-      if (d.at.shaft == l) out.disks.push_back(disk_shape(d, mesh.place(d.at), radius_at(shaft, line.length, d.at.s)));
+      if (d.at.shaft == l) {
+        out.disks.push_back(disk_shape(d, mesh.place(d.at), radius_at(shaft, line.length, d.at.s)));
+        if (bent && d.at.housing < 0) out.disks.back().bend = bends(d.at.s).second;
+      }
     scene.lines.push_back(std::move(out));
   }
   for (std::size_t i = 0; i < m.bearings.size(); ++i) {
@@ -94,6 +117,10 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
     s.to_node = n.other.node >= 0 && n.other.node != n.ground;
     if (s.to_node) s.to = n.other;
     s.radius = radius_at(m.shafts[b.at.shaft], mesh.lines[b.at.shaft].length, b.at.s);
+    if (const Path& path = m.shafts[b.at.shaft].path; !path.empty()) {
+      s.bend = static_cast<Index>(scene.bends.size());
+      scene.bends.push_back(path.after(b.at.s).triad);
+    }
     scene.supports.push_back(std::move(s));
   }
   for (const auto& p : m.probes) scene.trails.push_back({p.name, mesh.place(p.at)});

@@ -59,6 +59,38 @@ Mat3 section_axes(const Mat3& triad, const Vec3& d, double phi) {
   return axes;
 }
 
+Spot make_spot(const Scene& scene, Index line, const Place& a, const Place& b, double xi, Index bend_a, Index bend_b) {
+  const Mat3& triad = scene.lines[static_cast<std::size_t>(line)].triad;
+  Spot s;
+  s.line = line, s.a = a, s.b = b, s.xi = xi;
+  s.bent = bend_a >= 0 && bend_b >= 0;
+  if (s.bent) s.bend_a = scene.bends[static_cast<std::size_t>(bend_a)], s.bend_b = scene.bends[static_cast<std::size_t>(bend_b)];
+  const Vec3 ta = triad * s.bend_a.col(0), tb = triad * s.bend_b.col(0);
+  const Vec3 ra = scene.nodes[static_cast<std::size_t>(a.node)] + a.offset * ta;
+  const Vec3 rb = scene.nodes[static_cast<std::size_t>(b.node)] + b.offset * tb;
+  s.length = distance(ra, rb) * (1.0 + (tb - ta).squaredNorm() / 24.0);   // arc over its chord
+  s.reference = s.bent ? interpolate({ra, ta, 0.0}, {rb, tb, 0.0}, s.length, xi).r : Vec3((1 - xi) * ra + xi * rb);
+  return s;
+}
+
+Frame frame_of(std::span<const Pose> nodes, const Mat3& triad, const Spot& s) {
+  if (!s.bent) {
+    Pose p = pose_at(nodes, s.a);
+    if (s.xi > 0.0) p = interpolate(p, pose_at(nodes, s.b), s.length, s.xi);
+    return {p.r, section_axes(triad, p.d, p.phi), p.phi};
+  }
+  Pose a = nodes[static_cast<std::size_t>(s.a.node)], b = nodes[static_cast<std::size_t>(s.b.node)];
+  Mat3 ta = section_axes(triad, a.d, a.phi) * s.bend_a;
+  const Mat3 tb = section_axes(triad, b.d, b.phi) * s.bend_b;
+  a.d = ta.col(0), b.d = tb.col(0);
+  a.r += s.a.offset * a.d, b.r += s.b.offset * b.d;
+  if (s.xi <= 0.0) return {a.r, ta, a.phi};
+  const Pose p = interpolate(a, b, s.length, s.xi);
+  const Vec3 y = (1 - s.xi) * ta.col(1) + s.xi * tb.col(1);
+  ta.col(0) = p.d, ta.col(1) = unit(y - p.d.dot(y) * p.d), ta.col(2) = p.d.cross(ta.col(1));
+  return {p.r, ta, p.phi};
+}
+
 Skin::Skin(const Scene& scene, int points_around) : around_(points_around) {
   if (points_around < 3) throw std::invalid_argument("Skin: at least 3 points around");
   for (Index k = 0; k < around_; ++k) {
@@ -73,18 +105,15 @@ Skin::Skin(const Scene& scene, int points_around) : around_(points_around) {
   }
 }
 
-std::size_t Skin::add_station(const Scene& scene, Index line, const Place& a, const Place& b, double xi) {
-  const Vec3 e = triads_[static_cast<std::size_t>(line)].col(0);
-  const Vec3 ra = scene.nodes[static_cast<std::size_t>(a.node)] + a.offset * e;
-  const Vec3 rb = scene.nodes[static_cast<std::size_t>(b.node)] + b.offset * e;
-  stations_.push_back({line, a, b, distance(ra, rb), xi, (1 - xi) * ra + xi * rb});
+std::size_t Skin::add_station(Spot s) {
+  stations_.push_back(std::move(s));
   return stations_.size() - 1;
 }
 
 void Skin::add_shaft(const Scene& scene, Index line) {
   const auto& pieces = scene.lines[static_cast<std::size_t>(line)].pieces;
-  const Vec3 e = triads_[static_cast<std::size_t>(line)].col(0);
   std::size_t k = 0;
+  double start = 0;   // along the line, from its first piece
   while (k < pieces.size()) {
     // One run of pieces that join end to end: outside left to right, then the bore back.
     std::vector<Vertex> outside, bore;
@@ -92,15 +121,17 @@ void Skin::add_shaft(const Scene& scene, Index line) {
       const auto& p = pieces[k];
       const bool rigid = p.left.node == p.right.node;
       const int n = rigid ? 1 : rings_per_piece;
+      const double length = rigid ? p.right.offset - p.left.offset : make_spot(scene, line, p.left, p.right, 0.0, p.bend_left, p.bend_right).length;
       for (int j = 0; j <= n; ++j) {
         const double xi = static_cast<double>(j) / n;
         std::size_t station;
-        if (j == 0 && !outside.empty()) station = outside.back().station;
-        else station = add_station(scene, line, p.left, p.right, xi);
-        const double s = e.dot(stations_[station].reference);
+        if (j == 0 && !outside.empty() && pieces[k - 1].bend_right == p.bend_left) station = outside.back().station;
+        else station = add_station(make_spot(scene, line, p.left, p.right, xi, p.bend_left, p.bend_right));
+        const double s = start + xi * length;
         outside.push_back({station, s, p.outer_left + xi * (p.outer_right - p.outer_left)});
         bore.push_back({station, s, p.inner_left + xi * (p.inner_right - p.inner_left)});
       }
+      start += length;
       ++k;
     } while (k < pieces.size() && pieces[k].left.node == pieces[k - 1].right.node &&
              pieces[k].left.offset == pieces[k - 1].right.offset);
@@ -110,11 +141,10 @@ void Skin::add_shaft(const Scene& scene, Index line) {
 }
 
 void Skin::add_disk(const Scene& scene, Index line, const DiskShape& disk, int part) {
-  const double s0 = triads_[static_cast<std::size_t>(line)].col(0).dot(scene.nodes[static_cast<std::size_t>(disk.at.node)]);
   Place left = disk.at, right = disk.at;
   left.offset -= disk.width / 2, right.offset += disk.width / 2;
-  const std::size_t a = add_station(scene, line, left, left, 0.0), b = add_station(scene, line, right, right, 0.0);
-  const double sa = s0 + left.offset, sb = s0 + right.offset;
+  const std::size_t a = add_station(make_spot(scene, line, left, left, 0.0, disk.bend, disk.bend)), b = add_station(make_spot(scene, line, right, right, 0.0, disk.bend, disk.bend));
+  const double sa = left.offset, sb = right.offset;
   revolve({{a, sa, disk.outer}, {b, sb, disk.outer}, {b, sb, disk.inner}, {a, sa, disk.inner}}, part);
 }
 
@@ -147,28 +177,21 @@ void Skin::revolve(const std::vector<Vertex>& profile, int part) {
   }
 }
 
-Pose Skin::pose(std::span<const Pose> nodes, const Station& s) const {
-  const Pose a = pose_at(nodes, s.a);
-  return s.xi <= 0.0 ? a : interpolate(a, pose_at(nodes, s.b), s.length, s.xi);
-}
-
 void Skin::update(std::span<const Pose> nodes, std::vector<float>& points, std::vector<float>& normals) const {
   points.resize(static_cast<std::size_t>(3 * point_count()));
   normals.resize(points.size());
   float* p = points.data();
   float* n = normals.data();
   std::size_t station = stations_.size();
-  Pose at;
-  Mat3 axes = Mat3::Identity();
+  Frame at;
   for (const auto& ring : rings_) {
     if (ring.station != station) {
       station = ring.station;
-      at = pose(nodes, stations_[station]);
-      axes = section_axes(triads_[static_cast<std::size_t>(stations_[station].line)], at.d, at.phi);
+      at = frame_of(nodes, triads_[static_cast<std::size_t>(stations_[station].line)], stations_[station]);
     }
     for (std::size_t k = 0; k < static_cast<std::size_t>(around_); ++k) {
-      const Vec3 radial = cos_[k] * axes.col(1) + sin_[k] * axes.col(2);
-      const Vec3 x = at.r + ring.radius * radial, m = ring.n_axial * axes.col(0) + ring.n_radial * radial;
+      const Vec3 radial = cos_[k] * at.axes.col(1) + sin_[k] * at.axes.col(2);
+      const Vec3 x = at.r + ring.radius * radial, m = ring.n_axial * at.axes.col(0) + ring.n_radial * radial;
       for (int c = 0; c < 3; ++c) *p++ = static_cast<float>(x[c]), *n++ = static_cast<float>(m[c]);
     }
   }
@@ -179,7 +202,7 @@ void Skin::centre_displacement(std::span<const Pose> nodes, std::vector<float>& 
   float* p = displacement.data();
   for (const auto& ring : rings_) {
     const auto& s = stations_[ring.station];
-    const Vec3 u = pose(nodes, s).r - s.reference;
+    const Vec3 u = frame_of(nodes, triads_[static_cast<std::size_t>(s.line)], s).r - s.reference;
     for (Index k = 0; k < around_; ++k)
       for (int c = 0; c < 3; ++c) *p++ = static_cast<float>(u[c]);
   }

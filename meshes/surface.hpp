@@ -28,6 +28,7 @@ struct Place {
 struct ShaftPiece {
   Place left, right;
   double outer_left = 0, outer_right = 0, inner_left = 0, inner_right = 0;
+  Index bend_left = -1, bend_right = -1;   ///< axes of the line at its ends, into Scene::bends; -1: those of the line's triad
 };
 
 /// A disk, centred on its place. inner: the bore, usually the shaft radius.
@@ -35,6 +36,7 @@ struct DiskShape {
   std::string name;
   Place at;
   double outer = 0, inner = 0, width = 0;   ///< m
+  Index bend = -1;
 };
 
 /// A spring, bearing or support glyph.
@@ -46,6 +48,7 @@ struct SupportShape {
   bool to_node = false;            ///< the far end is a place too (intershaft bearing, coupling, pedestal); else the ground
   Place to;
   double radius = 0;               ///< shaft radius there, m
+  Index bend = -1;                 ///< of the line at `at`
 };
 
 /// What there is to draw, in the reference state. Plain data, independent of how it is written.
@@ -55,6 +58,7 @@ struct Scene {
     Mat3 triad = Mat3::Identity();          ///< columns e, e2, e3
     std::vector<Place> points;              ///< along the centre line, left to right
     std::vector<double> radius;             ///< outer radius at each point, m (may be empty)
+    std::vector<Index> bend_after, bend_before;   ///< axes there looking right and looking left; empty: straight along e
     std::vector<ShaftPiece> pieces;         ///< left to right
     std::vector<DiskShape> disks;
   };
@@ -65,6 +69,9 @@ struct Scene {
   std::vector<Line> lines;
   std::vector<SupportShape> supports;
   std::vector<Trail> trails;
+  std::vector<Mat3> bends;                  ///< columns tangent, y, z of a line that is not straight along e, in its triad's components
+
+  bool bent(Index line) const { return !lines[static_cast<std::size_t>(line)].bend_after.empty(); }
 };
 
 /// Displacement and tilt magnified, spin not: r0 + s (r - r0), and d from e + s (d - e). s = 1 returns the pose itself.
@@ -79,6 +86,26 @@ Pose interpolate(const Pose& a, const Pose& b, double length, double xi);
 /// Rotation of the section, P(d<-e) L(phi e) applied to the triad: columns d, R e2, R e3. e + d = 0 is not reached:
 /// there the azimuth of P is undefined and any is returned.
 Mat3 section_axes(const Mat3& triad, const Vec3& d, double phi);
+
+/// A place between two nodes, where a section stands in a picture.
+struct Spot {
+  Index line = 0;
+  Place a, b;
+  double length = 0, xi = 0;              ///< of the centre line from a to b at rest, m; fraction
+  Vec3 reference = Vec3::Zero();          ///< centre of the section at rest, m
+  Mat3 bend_a = Mat3::Identity(), bend_b = Mat3::Identity();
+  bool bent = false;
+};
+Spot make_spot(const Scene& scene, Index line, const Place& a, const Place& b, double xi, Index bend_a = -1, Index bend_b = -1);
+
+/// A section as it stands: centre, columns tangent, y, z of its axes, axial angle.
+struct Frame {
+  Vec3 r = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();
+  double phi = 0.0;
+};
+/// triad: of the line, that the poses refer to.
+Frame frame_of(std::span<const Pose> nodes, const Mat3& triad, const Spot& s);
 
 /// Quadrilateral skin of all shafts and disks of a scene. Topology is fixed; positions and normals follow the poses.
 /// Rings are duplicated where the surface has an edge (diameter steps, end faces), shared where it is smooth.
@@ -106,11 +133,9 @@ class Skin {
   void centre_displacement(std::span<const Pose> nodes, std::vector<float>& displacement) const;
 
  private:
-  struct Station { Index line; Place a, b; double length, xi; Vec3 reference; };   ///< where on the line a ring stands
   struct Ring { std::size_t station; double radius, n_axial, n_radial; };
   struct Vertex { std::size_t station; double s, radius; };
-  std::size_t add_station(const Scene& scene, Index line, const Place& a, const Place& b, double xi);
-  Pose pose(std::span<const Pose> nodes, const Station& s) const;
+  std::size_t add_station(Spot s);
   void add_shaft(const Scene& scene, Index line);
   void add_disk(const Scene& scene, Index line, const DiskShape& disk, int part);
   /// Revolves a closed polyline; the outside is on its left. Corners get two rings.
@@ -118,7 +143,7 @@ class Skin {
   std::vector<Mat3> triads_;
   std::vector<double> cos_, sin_;
   Index around_ = 0;
-  std::vector<Station> stations_;
+  std::vector<Spot> stations_;   ///< where the rings stand
   std::vector<Ring> rings_;
   std::vector<Index> quads_;
   std::vector<unsigned char> stripe_;

@@ -82,11 +82,7 @@ void write_mesh(const model::Model& m, const meshes::Mesh& mesh, const std::file
   out.write_text("nodes.csv", meshes::nodes_csv(mesh));
   out.write_text("elements.csv", meshes::elements_csv(m, mesh));
   out.write_text("stations.csv", meshes::stations_csv(mesh));
-  int k = 0;
-  for (const io::RotorDrawing& d : io::make_rotor_drawings(m, mesh, meshes::make_scene(m, mesh))) {
-    const std::string name = ++k == 1 ? std::string("rotor") : fmt::format("rotor_{}", k);
-    out.write_text(name + ".svg", io::render_svg(io::plot_rotor(name, d)));
-  }
+  for (const io::Figure& f : io::draw_model(m, mesh, meshes::make_scene(m, mesh))) out.write_text(f.name + ".svg", io::render_svg(f));
 }
 
 /// What only shows when the equations are put together: impossible bodies, unrestrained motion.

@@ -120,14 +120,19 @@ StaticResults make_static_results(Job& job, const std::string& step, system::Sys
     double worst = 0, where = 0;
     const meshes::Station* worst_at = nullptr;
     const double phi0 = node(line.first_node).phi;
+    const Path& path = job.model.shafts[l].path;
+    const auto size_of = [&](const Vec3& u) { return path.empty() ? std::hypot(u.y(), u.z()) : u.norm(); };
+    // direction of a line along a path, now
+    const auto tangent = [&](const system::NodeState& n, const Path::Point& p) { return Vec3(meshes::section_axes(*n.chart, n.d(), n.phi) * p.triad.col(0)); };
     for (Index k = line.first_station; k < line.first_station + line.stations; ++k) {
       const meshes::Station& st = job.mesh.stations[at(k)];
       const system::NodeState& n = node(st.at.node);
       const Vec3 u = n.u + st.at.offset * (n.d() - Vec3::UnitX());
-      out.deflection.add({line.name, st.s, st.label(), u.x(), u.y(), u.z(), n.d().y(), n.d().z(), n.phi});
+      const Vec3 d = path.empty() ? n.d() : tangent(n, path.after(st.s));
+      out.deflection.add({line.name, st.s, st.label(), u.x(), u.y(), u.z(), d.y(), d.z(), n.phi});
       x.x.push_back(st.s), x.y.push_back(u.x()), y.x.push_back(st.s), y.y.push_back(u.y()), z.x.push_back(st.s), z.y.push_back(u.z());
       phi.x.push_back(st.s), phi.y.push_back(n.phi - phi0);
-      if (const double a = std::hypot(u.y(), u.z()); a > worst) worst = a, where = st.s, worst_at = &st;
+      if (const double a = size_of(u); a > worst) worst = a, where = st.s, worst_at = &st;
     }
     // between nodes: the cubic with the directors as end slopes
     for (io::Series* c : {&x, &y, &z}) c->x.clear(), c->y.clear();
@@ -137,14 +142,15 @@ StaticResults make_static_results(Job& job, const std::string& step, system::Sys
         const system::NodeState& n = node(p.node);
         return meshes::Pose{job.mesh.nodes[at(p.node)].position + n.u + p.offset * n.d(), n.d(), n.phi};
       };
-      const meshes::Pose a = pose(e.left), b = pose(e.right);
+      meshes::Pose a = pose(e.left), b = pose(e.right);
+      if (!path.empty()) a.d = tangent(node(e.left.node), path.after(e.s1)), b.d = tangent(node(e.right.node), path.before(e.s2));
       // end slopes for the stretched length (thermal growth): chord, and the arc over it
       const double arc = (b.r - a.r).norm() * (1.0 + (b.d - a.d).squaredNorm() / 24.0);
       for (int i = k == line.first_element ? 0 : 1; i <= 8; ++i) {
         const double xi = i / 8.0, s = e.s1 + xi * (e.s2 - e.s1);
-        const Vec3 u = meshes::interpolate(a, b, arc, xi).r - (line.origin + Vec3(s, 0, 0));
+        const Vec3 u = meshes::interpolate(a, b, arc, xi).r - job.model.shafts[l].position(s);
         x.x.push_back(s), x.y.push_back(u.x()), y.x.push_back(s), y.y.push_back(u.y()), z.x.push_back(s), z.y.push_back(u.z());
-        if (const double w = std::hypot(u.y(), u.z()); w > worst * (1 + 1e-9)) worst = w, where = s, worst_at = nullptr;
+        if (const double w = size_of(u); w > worst * (1 + 1e-9)) worst = w, where = s, worst_at = nullptr;
       }
     }
     io::Figure f;

@@ -71,8 +71,7 @@ void run_steps(Job& job) {
       job.report.summary = job.summary;
       io::ReportSection rotor;
       rotor.title = "Rotor";
-      for (const io::RotorDrawing& d : io::make_rotor_drawings(job.model, job.mesh, job.scene))
-        rotor.figures.push_back(io::plot_rotor(rotor.figures.empty() ? "rotor" : fmt::format("rotor_{}", rotor.figures.size() + 1), d));
+      rotor.figures = io::draw_model(job.model, job.mesh, job.scene);
       job.report.sections.insert(job.report.sections.begin(), std::move(rotor));
       io::write_report(job.folder.path("report.html"), job.report);
       for (const io::ReportSection& s : job.report.sections)

@@ -25,8 +25,11 @@ void add_disk(Assembly& a, const model::Disk& d, int& symmetric) {
             "Ip is about the shaft axis, Id about a diameter; are they interchanged?", d, who);
     return;
   }
-  const Vec3 offset = d.offset + Vec3(at.offset, 0, 0);
-  if (!a.model.keep_everything && !d.inertia && d.skew == 0 && offset.y() == 0 && offset.z() == 0) {
+  const model::Shaft& shaft = a.model.shafts[d.at.shaft];
+  const bool bent = !shaft.path.empty() && d.at.housing < 0;   // the axes of the disk are those of the line where it stands
+  const Mat3 axes = bent ? shaft.path.after(d.at.s).triad : Mat3(Mat3::Identity());
+  const Vec3 offset = axes * d.offset + Vec3(at.offset, 0, 0);
+  if (!a.model.keep_everything && !bent && !d.inertia && d.skew == 0 && offset.y() == 0 && offset.z() == 0) {
     ++symmetric;
     if (d.Ip == 0 && d.Id == 0 && offset.x() == 0) a.builder.add(elements::PointMass{d.mass}, {at.node}, "point masses");
     else a.builder.add(elements::RigidDisk{d.mass, d.Id, d.Ip, offset.x()}, {at.node}, "rigid disks");
@@ -38,7 +41,7 @@ void add_disk(Assembly& a, const model::Disk& d, int& symmetric) {
     return;
   }
   try {
-    a.builder.add(elements::RigidBody(d.mass, offset, J), {at.node}, "rigid bodies");
+    a.builder.add(elements::RigidBody(d.mass, offset, axes * J * axes.transpose()), {at.node}, "rigid bodies");
   } catch (const Error& e) {
     a.error("E24", fmt::format("{}: {}", who, e.what()), {}, d, who);
   }

@@ -51,7 +51,14 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
     a.M = -moment_of(n1, f.segment<3>(3), f[6]) - e.left.offset * a.d.cross(a.F);
     b.M = moment_of(n2, f.segment<3>(10), f[13]) - e.right.offset * b.d.cross(b.F);
     const Vec3 chord = (b.r - a.r) / L;
-    const Vec3 dM1 = -L * chord.cross(a.F), dM2 = -L * chord.cross(b.F);
+    const model::Shaft& shaft = m.shafts[static_cast<std::size_t>(e.line)];
+    const bool bent = !shaft.path.empty();
+    Mat3 t1, t2;   // axes of a line along a path now
+    if (bent) {
+      t1 = meshes::section_axes(*n1.chart, a.d, n1.phi) * shaft.path.after(e.s1).triad;
+      t2 = meshes::section_axes(*n2.chart, b.d, n2.phi) * shaft.path.before(e.s2).triad;
+    }
+    const Vec3 dM1 = -L * (bent ? Vec3(t1.col(0)) : chord).cross(a.F), dM2 = -L * (bent ? Vec3(t2.col(0)) : chord).cross(b.F);
     const model::Section& section = m.shafts[static_cast<std::size_t>(e.line)].sections[e.section];
     const elements::ElementSection shape = element_section(m, e);
     for (int j = 0; j <= inner + 1; ++j) {
@@ -60,10 +67,16 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
       p.line = e.line, p.element = static_cast<Index>(k), p.s = j == 0 ? e.s1 : j == inner + 1 ? e.s2 : e.s1 + x * L, p.xi = x;
       p.force = y * a.F + x * b.F;
       p.moment = y * y * (1.0 + 2.0 * x) * a.M + x * x * (3.0 - 2.0 * x) * b.M + x * y * (y * dM1 - x * dM2);
-      const Vec3 d = (y * a.d + x * b.d).normalized();
+      const Vec3 d = (bent ? Vec3(y * t1.col(0) + x * t2.col(0)) : Vec3(y * a.d + x * b.d)).normalized();
       const Mat3& chart = *n1.chart;
-      const Mat3 axes = rotation::minimal_rotation(chart.col(0), d);
-      const Vec3 ey = axes * chart.col(1), ez = axes * chart.col(2);
+      Vec3 ey, ez;
+      if (bent) {   // turning with the twist from end to end
+        const Vec3 mean = y * t1.col(1) + x * t2.col(1);
+        ey = (mean - d.dot(mean) * d).normalized(), ez = d.cross(ey);
+      } else {
+        const Mat3 axes = rotation::minimal_rotation(chart.col(0), d);
+        ey = axes * chart.col(1), ez = axes * chart.col(2);
+      }
       p.N = p.force.dot(d), p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
       p.T = p.moment.dot(d), p.M = Vec2(p.moment.dot(ey), p.moment.dot(ez));
       if (!section.general) add_stress(shape, x, p);

@@ -3,7 +3,7 @@
 // Resultants are those of the part to the right (larger s) on the part to the left, in section axes: t along the section normal d,
 // y and z the shaft's lateral axes carried to d by the minimal rotation (they do not turn with the spin).
 //   N = F.t (tension positive), V = (F.y, F.z), T = M.t, M = (M.y, M.z); on a straight shaft dM_z/ds = -V_y, dM_y/ds = V_z,
-// and M_z > 0 bends it hollow towards +y.
+// and M_z > 0 bends it hollow towards +y. On a line along a path y and z are the axes carried along it, as they now stand.
 // At element ends they are what the element puts on its nodes, loads and inertia spread over it included: exact with respect to
 // equilibrium for any mesh. Between them F is linear and M the cubic with dM/ds = -t x F at the ends (exact for constant weight).
 //

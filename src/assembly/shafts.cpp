@@ -167,32 +167,37 @@ void finish_general(Assembly& a, const model::Shaft& shaft, const meshes::Elemen
 /// Constants for a general beam, which has the offsets of its ends itself; the shares are those of nodes, so only without offsets.
 ShaftElementConstants between_nodes(Assembly& a, const MassShares& shares, const meshes::Element& e, const elements::ElementSection& section, double part) {
   const auto make = [&](const elements::MassShare& share) { return elements::make_shaft_constants(section, e.s2 - e.s1, 0, 0, elements::MassKind::corrected, share); };
-  return e.left.offset == 0 && e.right.offset == 0 ? shared_constants(a, shares, e, make, part) : make({});
+  const bool straight = a.model.shafts[static_cast<std::size_t>(e.line)].path.empty();   // what is left of the weight acts on the directors of straight lines
+  return straight && e.left.offset == 0 && e.right.offset == 0 ? shared_constants(a, shares, e, make, part) : make({});
 }
 
-/// A round section whose unstressed shape is not straight.
-void add_bowed(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
-  elements::ElementSection section = element_section(a.model, e);
+/// A round section, or one given by constants, as a general beam.
+elements::GeneralBeamConstants round_constants(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
+  const elements::ElementSection section = element_section(a.model, e);
   const double l = e.s2 - e.s1;
-  const ShaftElementConstants whole = elements::make_shaft_constants(section, l);
-  section.rotary_inertia = false;   // the general beam has it on its triads
-  if (section.constants) section.given.rhoI = 0;
   const ShaftElementConstants k = between_nodes(a, shares, e, section, 1.0);
   elements::GeneralBeamConstants c;
   c.length = l, c.EA_l = k.EA_l, c.GJ_l = k.GJ_l;
   c.ky_def11 = c.kz_def11 = k.k11, c.ky_def12 = c.kz_def12 = k.k12, c.ky_def22 = c.kz_def22 = k.k22;
-  c.b11 = k.b11, c.b12 = k.b12, c.b22 = k.b22, c.tau_c = k.tau_c;
+  c.b11 = k.b11, c.b12 = k.b12, c.b22 = k.b22;
   c.M4 = k.M4;
-  c.rhoIz_l = c.rhoIy_l = 0.5 * whole.polar.sum();
+  c.rhoIz_l = c.rhoIy_l = c.rhoI_l = 0.5 * k.polar.sum();
   c.beta = shaft.damping.beta_internal;
+  return c;
+}
+
+/// A round section whose unstressed shape is not straight.
+void add_bowed(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
+  const elements::GeneralBeamConstants c = round_constants(a, shares, shaft, e);
   const std::array<Index, 2> nodes{e.left.node, e.right.node};
-  elements::GeneralBeam beam(c, Vec3(l, 0, 0), Mat3::Identity(), Mat3::Identity(), Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0));
+  elements::GeneralBeam beam(c, Vec3(c.length, 0, 0), Mat3::Identity(), Mat3::Identity(), Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0));
   finish_general(a, shaft, e, beam, nodes);
   add_damping(a, shaft, element_constants(a.model, e), nodes, false);
 }
 
-/// Section with unequal principal axes. Deflection along the section's y bends about its z.
-void add_general(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
+/// Section with unequal principal axes; y, z: each plane by itself. Deflection along the section's y bends about its z.
+elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e,
+                                                 ShaftElementConstants& y, ShaftElementConstants& z) {
   const model::Section& s = shaft.sections[e.section];
   const model::Section::General& g = *s.general;
   const model::Material& material = a.model.materials.at(s.material);
@@ -201,25 +206,37 @@ void add_general(Assembly& a, const MassShares& shares, const model::Shaft& shaf
   plane.constants = true;
   const auto constants = [&](double I, double kappa) {
     plane.given = {material.E * g.A, kappa > 0 ? kappa * material.G * g.A : 0.0, material.G * g.J, material.E * I,
-                   material.rho * g.A + s.added_mass_per_length, 0, 0};
+                   material.rho * g.A + s.added_mass_per_length, s.rotary_inertia ? 0.5 * material.rho * (g.Iy + g.Iz) : 0.0, 0};
     return between_nodes(a, shares, e, plane, 0.5);
   };
-  const ShaftElementConstants y = constants(g.Iz, g.kappa_y), z = constants(g.Iy, g.kappa_z);
+  y = constants(g.Iz, g.kappa_y), z = constants(g.Iy, g.kappa_z);
   elements::GeneralBeamConstants c;
   c.length = l;
   c.EA_l = y.EA_l, c.GJ_l = y.GJ_l;
   c.ky_def11 = y.k11, c.ky_def12 = y.k12, c.ky_def22 = y.k22;
   c.kz_def11 = z.k11, c.kz_def12 = z.k12, c.kz_def22 = z.k22;
   c.b11 = 0.5 * (y.b11 + z.b11), c.b12 = 0.5 * (y.b12 + z.b12), c.b22 = 0.5 * (y.b22 + z.b22);
-  c.tau_c = 0.5 * (y.tau_c + z.tau_c);
   c.M4 = 0.5 * (y.M4 + z.M4);
   const double rho = s.rotary_inertia ? material.rho * l : 0.0;
-  c.rhoIz_l = rho * g.Iz, c.rhoIy_l = rho * g.Iy;
+  c.rhoIz_l = rho * g.Iz, c.rhoIy_l = rho * g.Iy, c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
   c.beta = shaft.damping.beta_internal;
-  Mat3 triad;
-  triad << Vec3::UnitX(), Vec3(0, std::cos(g.angle), std::sin(g.angle)), Vec3(0, -std::sin(g.angle), std::cos(g.angle));
+  return c;
+}
+
+/// Axes of a section against those of the line.
+Mat3 section_axes(const model::Section& s) {
+  const double angle = s.general ? s.general->angle : 0.0;
+  Mat3 axes;
+  axes << Vec3::UnitX(), Vec3(0, std::cos(angle), std::sin(angle)), Vec3(0, -std::sin(angle), std::cos(angle));
+  return axes;
+}
+
+void add_general(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
+  ShaftElementConstants y, z;
+  const elements::GeneralBeamConstants c = unequal_constants(a, shares, shaft, e, y, z);
+  const Mat3 triad = section_axes(shaft.sections[e.section]);
   const std::array<Index, 2> nodes{e.left.node, e.right.node};
-  elements::GeneralBeam beam(c, Vec3(l, 0, 0), triad, triad, Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0));
+  elements::GeneralBeam beam(c, Vec3(c.length, 0, 0), triad, triad, Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0));
   finish_general(a, shaft, e, beam, nodes);
   // Fixed-axes damping does not turn with the section: it takes the mean of both planes.
   ShaftElementConstants mean = y;
@@ -229,6 +246,22 @@ void add_general(Assembly& a, const MassShares& shares, const model::Shaft& shaf
   T(0, 1) = mean.o1, T(2, 3) = mean.o2;
   mean.M4 = T.transpose() * c.M4 * T;
   add_damping(a, shaft, mean, nodes, false);
+}
+
+/// An element of a line along a path: its ends keep their angles to the chord. Nodes have global axes. A line that does not turn has one kind of
+/// stiffness-proportional damping: internal and external together.
+void add_curved(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
+  const model::Section& s = shaft.sections[e.section];
+  const model::ShaftDamping& d = shaft.damping;
+  ShaftElementConstants y, z;
+  elements::GeneralBeamConstants c = s.general ? unequal_constants(a, shares, shaft, e, y, z) : round_constants(a, shares, shaft, e);
+  c.beta = d.beta_internal + d.beta_external, c.beta_twist = c.beta + d.beta_torsion, c.alpha = d.alpha;
+  const Path::Point p = shaft.path.after(e.s1), q = shaft.path.before(e.s2);
+  elements::GeneralBeam beam(c, q.r - p.r, p.triad * section_axes(s), q.triad * section_axes(s));
+  beam.preload = preload_of(a, shaft, e, c.EA_l * c.length);
+  const std::array<Index, 2> nodes{e.left.node, e.right.node};
+  add_stressed(a, beam, nodes, "general beam elements");
+  add_hysteresis(a, shaft, beam, nodes);
 }
 
 void add_rigid_part(Assembly& a, const model::Shaft& shaft, const meshes::RigidPart& r) {
@@ -244,7 +277,7 @@ void add_rigid_part(Assembly& a, const model::Shaft& shaft, const meshes::RigidP
 void list_absent(Assembly& a, const model::Shaft& shaft, Index line) {
   int elements = 0, joined = 0;
   for (const meshes::Element& e : a.mesh.elements)
-    if (e.line == line && !shaft.sections[e.section].general) ++elements, joined += e.left.offset == 0 && e.right.offset == 0;
+    if (e.line == line && shaft.path.empty() && !shaft.sections[e.section].general) ++elements, joined += e.left.offset == 0 && e.right.offset == 0;
   if (elements == 0) return;
   std::string absent;
   const auto list = [&](bool is_absent, const char* what) {
@@ -270,6 +303,10 @@ void add_shafts(Assembly& a) {
   for (const meshes::Element& e : a.mesh.elements) {
     a.built.element_forces.emplace_back();
     const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
+    if (!shaft.path.empty()) {
+      add_curved(a, shares, shaft, e);
+      continue;
+    }
     if (shaft.sections[e.section].general) {
       add_general(a, shares, shaft, e);
       continue;

@@ -71,6 +71,42 @@ void describe_shear(Visitor& v, model::Section& s) {
   if (wanted && s.kappa == 0) v.error("E26", "shear", "shear = \"given\" needs 'kappa'");
 }
 
+void describe_piece(Visitor& v, Path& path) {
+  Vec3 to = Vec3::Zero(), through = Vec3::Zero(), centre = Vec3::Zero(), axis = Vec3::UnitZ();
+  double angle = 0;
+  const bool has_to = v.vector(optional("to", "an arc of an angle about a centre"), to, "mm", "end of the piece: a straight one unless 'through' is given");
+  const bool has_through = v.vector(optional("through", "straight"), through, "mm", "a point on the way: a circular arc through it");
+  const bool has_centre = v.vector(optional("centre", "not used"), centre, "mm", "a point on the axis of an arc that begins where the piece before ends");
+  v.vector(optional("axis", "[0, 0, 1]"), axis, "", "direction of that axis; the arc turns about it by the right-hand rule");
+  const bool has_angle = v.quantity(optional("angle", "not used"), angle, "deg", any, "of the arc about that axis");
+  if (!v.clean()) return;
+  if (has_to == has_centre) v.error("E26", has_to ? "centre" : nullptr, has_to ? "the piece has an end and a centre" : "the piece has neither an end nor a centre", "give 'to' (and 'through' for an arc), or 'centre' and 'angle'");
+  else if (has_centre != has_angle) v.error("E26", has_angle ? "angle" : "centre", "an arc about a centre needs 'centre' and 'angle'");
+  else if (has_through && has_centre) v.error("E26", "through", "'through' goes with 'to', not with 'centre'");
+  if (!v.clean()) return;
+  if (has_centre) {
+    if (!path.add_arc_about(centre, axis, angle)) v.error("E26", "centre", "there is no such arc: the axis goes through its start, or has no direction, or the angle is zero or more than two turns");
+  } else if (has_through) {
+    if (!path.add_arc_through(through, to)) v.error("E26", "through", "there is no such arc: its three points are in one line, or two of them are one", "leave 'through' out for a straight piece");
+  } else if (!path.add_line(to)) {
+    v.error("E26", "to", "the piece ends where it starts");
+  }
+}
+
+/// Written lengths agree with that of a path to this part of it.
+constexpr double length_digits = 1e-6;
+
+void check_path(Visitor& v, const model::Shaft& s) {
+  const std::string who = s.name.empty() ? std::string("the shaft") : fmt::format("shaft '{}'", s.name);
+  if (s.rotating) v.error("E26", "path", fmt::format("{} has a path: a line that is not straight cannot turn about itself", who), "write rotating = false");
+  if (s.bow.amount != 0) v.error("E26", "bow", fmt::format("{} has a path and a bow", who), "put the bow into the path");
+  for (const auto& x : s.sections)
+    if (x.rigid) v.error("E26", "path", fmt::format("section '{}' is rigid: on a path every section is elastic", x.name), "give it a large stiffness by constants");
+  const double have = s.length(), want = s.path.length();
+  if (v.clean() && std::abs(have - want) > length_digits * want)
+    v.error("E25", "path", fmt::format("the path is {:.10g} m long, the sections together {:.10g} m", want, have), "lengths of sections are measured along the path");
+}
+
 }  // namespace
 
 void describe(Visitor& v, model::Material& m) {
@@ -156,6 +192,10 @@ void describe(Visitor& v, model::Shaft& s) {
   v.vector("origin", s.origin, "mm", "position of the left end");
   if (v.material(optional("material", "given by each section"), start.material, "material of all sections that do not name another") && start.material == no_material)
     start.material = 0;   // unknown, and reported: not to be reported again for each section
+  const auto piece = [&](Visitor& w) { describe_piece(w, s.path); };
+  const auto piece_prototype = [](Visitor& w) { Path p; describe_piece(w, p); };
+  s.path = Path(s.origin);
+  v.list(optional("path", "straight along x"), {piece, piece_prototype}, "the line of a casing, frame or pipe that is not straight, piece by piece from the origin; needs rotating = false. Section axes y, z are carried along it without twist from the global axes turned to its first direction; supports, loads and probes act in global axes");
   describe_shear(v, start);
   v.flag("rotating", s.rotating, "false: a casing or foundation beam that does not turn");
   v.number("speed_ratio", s.speed_ratio, any, "speed relative to the reference speed of frequency-domain steps; negative: turns the other way");
@@ -190,6 +230,7 @@ void describe(Visitor& v, model::Shaft& s) {
   if (rows && tables && v.clean()) v.error("E26", "section", "the sections are given by rows and by [[shaft.section]]", "keep one of the two");
   v.list(optional("section", "the rows"), {add, prototype}, "the sections one by one, from left to right; needed for rigid links, general sections and constants");
   if (v.clean() && s.sections.empty()) v.error("E05", nullptr, fmt::format("shaft '{}' has no sections", s.name), "give columns and rows, file = \"shaft.csv\", or [[shaft.section]]");
+  if (v.clean() && !s.path.empty()) check_path(v, s);
 }
 
 }  // namespace whirl::deck

@@ -7,7 +7,6 @@
 namespace whirl::io {
 namespace {
 
-using meshes::interpolate;
 using meshes::Place;
 using meshes::pose_at;
 using meshes::section_axes;
@@ -41,7 +40,9 @@ class LineSet final : public FrameSet {
         for (int j = 0; j < n; ++j) {
           const double xi = static_cast<double>(j) / n;
           ids.push_back(static_cast<std::int64_t>(places_.size()));
-          places_.push_back({static_cast<Index>(l), a, b, length(line, a, b), xi, reference(line, a, b, xi)});
+          const bool bent = scene_.bent(static_cast<Index>(l));
+          const Index from = bent ? (last ? line.bend_before[k] : line.bend_after[k]) : -1, to = bent ? line.bend_before[std::min(k + 1, line.points.size() - 1)] : -1;
+          places_.push_back(meshes::make_spot(scene_, static_cast<Index>(l), a, b, xi, from, to));
           radius_.push_back(static_cast<float>(ra + xi * (rb - ra)));
         }
       }
@@ -64,16 +65,16 @@ class LineSet final : public FrameSet {
     for (std::size_t i = 0; i < n; ++i) {
       const auto& p = places_[i];
       const Mat3& triad = f.state->charts.empty() ? scene_.lines[at(p.line)].triad : f.state->charts[at(p.line)];
-      const Pose x = pose(f.true_poses, p);
-      put(data_.points, i, pose(f.drawn, p).r);
-      const Vec3 e = triad.col(0), axis = e.cross(x.d);
-      const double s = std::sqrt(axis.squaredNorm()), g = std::atan2(s, e.dot(x.d));
-      const Mat3 axes = section_axes(triad, x.d, x.phi);
+      const meshes::Frame x = meshes::frame_of(f.true_poses, triad, p);
+      put(data_.points, i, meshes::frame_of(f.drawn, triad, p).r);
+      // tilt: of the node's axis from e; on a line along a path that of the nearer node to its left
+      const Vec3 e = triad.col(0), d = p.bent ? f.true_poses[at(p.a.node)].d : Vec3(x.axes.col(0)), axis = e.cross(d);
+      const double s = std::sqrt(axis.squaredNorm()), g = std::atan2(s, e.dot(d));
       put(arrays[0].floats(), i, x.r - p.reference);
       put(arrays[1].floats(), i, s > 0 ? Vec3(g / s * axis) : Vec3(Vec3::Zero()));
-      put(arrays[2].floats(), i, x.d);
-      put(arrays[3].floats(), i, axes.col(1));
-      put(arrays[4].floats(), i, axes.col(2));
+      put(arrays[2].floats(), i, x.axes.col(0));
+      put(arrays[3].floats(), i, x.axes.col(1));
+      put(arrays[4].floats(), i, x.axes.col(2));
       arrays[5].floats()[i] = static_cast<float>(x.phi);
     }
     add("velocity", f.state->velocity);
@@ -84,19 +85,6 @@ class LineSet final : public FrameSet {
   }
 
  private:
-  struct Spot { Index line; Place a, b; double length, xi; Vec3 reference; };
-
-  Vec3 reference(const Scene::Line& line, const Place& a, const Place& b, double xi) const {
-    const Vec3 e = line.triad.col(0);
-    return (1 - xi) * (scene_.nodes[at(a.node)] + a.offset * e) + xi * (scene_.nodes[at(b.node)] + b.offset * e);
-  }
-  double length(const Scene::Line& line, const Place& a, const Place& b) const {
-    return std::sqrt((reference(line, a, b, 1) - reference(line, a, b, 0)).squaredNorm());
-  }
-  static Pose pose(std::span<const Pose> nodes, const Spot& s) {
-    const Pose a = pose_at(nodes, s.a);
-    return s.xi <= 0.0 ? a : interpolate(a, pose_at(nodes, s.b), s.length, s.xi);
-  }
   // Node values, linear between nodes.
   template <class T>
   void add(const char* name, std::span<const T> values) {
@@ -113,7 +101,7 @@ class LineSet final : public FrameSet {
   }
 
   Scene scene_;
-  std::vector<Spot> places_;
+  std::vector<meshes::Spot> places_;
   std::vector<float> radius_;
 };
 
@@ -174,8 +162,9 @@ class SupportSet final : public FrameSet {
       const auto& s = scene_.supports[k];
       const Mat3& triad = scene_.lines[at(line_of(scene_, s.at))].triad;
       const Pose journal = pose_at(f.drawn, s.at);
+      const Mat3 bend = s.bend >= 0 ? scene_.bends[at(s.bend)] : Mat3(Mat3::Identity());
       Vec3 far = scene_.nodes[at(s.at.node)] + s.at.offset * triad.col(0);
-      Mat3 far_axes = triad;
+      Mat3 far_axes = triad * bend;
       if (s.to_node) {
         const Pose other = pose_at(f.drawn, s.to);
         far = other.r;
@@ -185,17 +174,17 @@ class SupportSet final : public FrameSet {
       if (!f.state->support_force.empty()) put(force, i, f.state->support_force[k]);
       put(data_.points, i++, journal.r);
       // Springs do not turn with the shaft: axes at phi = 0.
-      const Mat3 axes = section_axes(triad, journal.d, 0.0);
+      const Mat3 axes = section_axes(triad, journal.d, 0.0) * bend;
       if (s.kind == meshes::SupportShape::Kind::bearing) {
         circle(journal.r, axes, 1.12 * r, i);
         circle(far, far_axes, 1.9 * r, i);
         for (int q = 0; q < 4; ++q) {
           const double a = pi / 4 + q * pi / 2;
           helix(far + 1.9 * r * (std::cos(a) * far_axes.col(1) + std::sin(a) * far_axes.col(2)),
-                journal.r + 1.12 * r * (std::cos(a) * axes.col(1) + std::sin(a) * axes.col(2)), triad.col(0), 0.12 * r, i);
+                journal.r + 1.12 * r * (std::cos(a) * axes.col(1) + std::sin(a) * axes.col(2)), triad * bend.col(0), 0.12 * r, i);
         }
       } else {
-        for (int q = 1; q < 3; ++q) helix(far - 5.0 * r * far_axes.col(q), journal.r, triad.col(0), 0.5 * r, i);
+        for (int q = 1; q < 3; ++q) helix(far - 5.0 * r * far_axes.col(q), journal.r, triad * bend.col(0), 0.5 * r, i);
       }
     }
   }

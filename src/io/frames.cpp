@@ -165,6 +165,7 @@ class VtkFrames final : public FrameWriter {
       const auto line = static_cast<std::size_t>(scene_.node_line[i]);
       const Vec3 e = scene_.lines[line].triad.col(0);
       drawn_[i] = meshes::magnified(state.nodes[i], scene_.nodes[i], e, options_.deformation_scale);
+      if (scene_.bent(scene_.node_line[i])) drawn_[i].phi *= options_.deformation_scale;   // it does not spin: its angle is deformation too
     }
     const FramePoses poses{state.nodes, drawn_, &state};
     for (auto& s : sets_) {

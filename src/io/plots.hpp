@@ -96,5 +96,13 @@ struct RotorDrawing {
   std::vector<double> nodes;             ///< mesh nodes, small ticks on the centre line
 };
 Figure plot_rotor(std::string name, const RotorDrawing& rotor);
+/// A line that is not straight, in space; lengths in m.
+struct DrawnPoint { Vec3 r = Vec3::Zero(); std::string name; };
+struct LineDrawing {
+  std::string title;
+  std::vector<Vec3> line, nodes;
+  std::vector<DrawnPoint> supports, disks, probes;
+};
+Figure plot_line(std::string name, const LineDrawing& line);
 
 }  // namespace whirl::io

@@ -65,6 +65,36 @@ Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mod
   return f;
 }
 
+Figure plot_line(std::string name, const LineDrawing& line) {
+  Figure f;
+  f.name = std::move(name), f.title = line.title;
+  f.height = 500;
+  Axes a;
+  a.kind = AxesKind::space;
+  a.equal_aspect = true;
+  double size = 0;
+  for (const Vec3& r : line.line) size = std::max(size, r.cwiseAbs().maxCoeff());
+  const DisplayUnit u = length_unit(size);
+  a.x = Axis("x", u.name), a.y = Axis("y", u.name), a.z = Axis("z", u.name);
+  const auto put = [&u](SpaceSeries& s, const Vec3& r) { s.x.push_back(u.factor * r.x()), s.y.push_back(u.factor * r.y()), s.z.push_back(u.factor * r.z()); };
+  SpaceSeries centre{"centre line", {}, {}, {}, Style{0, Dash::solid, 2.2}}, nodes{"nodes", {}, {}, {}, {}};
+  nodes.style = {0, Dash::solid, 0, Marker::circle, 3.5};
+  for (const Vec3& r : line.line) put(centre, r);
+  for (const Vec3& r : line.nodes) put(nodes, r);
+  a.space = {std::move(centre), std::move(nodes)};
+  const auto marks = [&](const std::vector<DrawnPoint>& points, int color, Marker marker) {
+    for (const DrawnPoint& p : points) {
+      SpaceSeries s{p.name, {}, {}, {}, {}};
+      put(s, p.r);
+      s.style = {color, Dash::solid, 0, marker, 9};
+      a.space.push_back(std::move(s));
+    }
+  };
+  marks(line.supports, 1, Marker::square), marks(line.disks, 2, Marker::circle), marks(line.probes, 3, Marker::diamond);
+  f.axes.push_back(std::move(a));
+  return f;
+}
+
 Figure plot_rotor(std::string name, const RotorDrawing& rotor) {
   Figure f;
   f.name = std::move(name);

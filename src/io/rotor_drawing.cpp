@@ -12,7 +12,7 @@ std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const m
     const auto s_of = [&](const meshes::Place& p) { return mesh.nodes[static_cast<std::size_t>(p.node)].s + p.offset; };
     const auto on_line = [&](const meshes::Place& p) { return mesh.nodes[static_cast<std::size_t>(p.node)].line == static_cast<Index>(l); };
     RotorDrawing d;
-    d.title = "Shaft ‘" + line.name + "’";
+    d.title = model.shafts[l].path.empty() ? "Shaft ‘" + line.name + "’" : "Line ‘" + line.name + "’, laid out straight";
     double s = 0;
     for (const auto& section : model.shafts[l].sections) {
       DrawnSection x{s, s + section.length, section.od_l / 2, section.od_r / 2, section.id_l / 2, section.id_r / 2, section.name};
@@ -51,6 +51,43 @@ std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const m
     for (Index k = line.first_node; k < line.first_node + line.nodes; ++k) d.nodes.push_back(mesh.nodes[static_cast<std::size_t>(k)].s);
     all.push_back(std::move(d));
   }
+  return all;
+}
+
+std::vector<LineDrawing> make_line_drawings(const model::Model& model, const meshes::Mesh& mesh) {
+  std::vector<LineDrawing> all;
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    const model::Shaft& shaft = model.shafts[l];
+    if (shaft.path.empty()) continue;
+    const meshes::Line& line = mesh.lines[l];
+    LineDrawing d;
+    d.title = "Line ‘" + line.name + "’ in space";
+    for (Index k = line.first_element; k < line.first_element + line.elements; ++k) {
+      const meshes::Element& e = mesh.elements[static_cast<std::size_t>(k)];
+      for (int i = d.line.empty() ? 0 : 1; i <= 8; ++i) d.line.push_back(shaft.position(e.s1 + (e.s2 - e.s1) * i / 8.0));
+    }
+    for (Index k = line.first_node; k < line.first_node + line.nodes; ++k) d.nodes.push_back(mesh.nodes[static_cast<std::size_t>(k)].position);
+    const auto add = [&](std::vector<DrawnPoint>& to, const model::Location& at, const std::string& name) {
+      if (at.shaft == l && at.housing < 0) to.push_back({shaft.position(at.s), name});
+    };
+    for (const auto& x : model.bearings) {
+      add(d.supports, x.at, x.name);
+      if (x.to) add(d.supports, *x.to, x.name);
+    }
+    for (const auto& x : model.disks) add(d.disks, x.at, x.name);
+    for (const auto& x : model.probes) add(d.probes, x.at, x.name);
+    all.push_back(std::move(d));
+  }
+  return all;
+}
+
+std::vector<Figure> draw_model(const model::Model& model, const meshes::Mesh& mesh, const meshes::Scene& scene) {
+  std::vector<Figure> all;
+  const auto numbered = [](const char* name, int k) { return k == 1 ? std::string(name) : name + ("_" + std::to_string(k)); };
+  int k = 0;
+  for (const RotorDrawing& d : make_rotor_drawings(model, mesh, scene)) all.push_back(plot_rotor(numbered("rotor", ++k), d));
+  k = 0;
+  for (const LineDrawing& d : make_line_drawings(model, mesh)) all.push_back(plot_line(numbered("line", ++k), d));
   return all;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <core/error.hpp>
 #include <core/law.hpp>
+#include <core/path.hpp>
 #include <core/types.hpp>
 #include <model/bearing_laws.hpp>
 #include <array>
@@ -65,7 +66,8 @@ struct ShaftDamping {
 struct Bow { double amount = 0, phase = 0; };   ///< m at mid-length; rad, body angle from e2 towards e3
 
 struct Shaft : Entity {
-  Vec3 origin = Vec3::Zero();   ///< position of station 0, m; the line runs along +x
+  Vec3 origin = Vec3::Zero();   ///< position of station 0, m; the line runs along +x, or along `path`
+  Path path;                    ///< of a line that is not straight; it starts at the origin
   std::vector<Section> sections;
   ShaftDamping damping;
   bool rotating = true;         ///< false: a casing or foundation beam
@@ -74,6 +76,7 @@ struct Shaft : Entity {
   double axial_preload = 0;     ///< N, tension positive
   Bow bow;
   double length() const { double s = 0; for (const auto& x : sections) s += x.length; return s; }
+  Vec3 position(double s) const { return path.empty() ? Vec3(origin + Vec3(s, 0, 0)) : path.after(s).r; }
 };
 
 /// A place on a shaft line: distance from station 0.

@@ -21,7 +21,7 @@ inline elements::GeneralBeamConstants general_constants(const BeamSection& s, do
   const auto plane = [&](double EI, double kGA) {
     elements::ElementSection e;
     e.constants = true;
-    e.given = {s.EA, kGA, s.GJ, EI, s.rhoA, 0, 0};
+    e.given = {s.EA, kGA, s.GJ, EI, s.rhoA, 0.5 * (s.rhoI_B + s.rhoI_C), 0};
     return elements::make_shaft_constants(e, l);
   };
   const auto y = plane(s.EI_C, s.kGA_B), z = plane(s.EI_B, s.kGA_C);
@@ -30,9 +30,8 @@ inline elements::GeneralBeamConstants general_constants(const BeamSection& s, do
   c.ky_def11 = y.k11, c.ky_def12 = y.k12, c.ky_def22 = y.k22;
   c.kz_def11 = z.k11, c.kz_def12 = z.k12, c.kz_def22 = z.k22;
   c.b11 = 0.5 * (y.b11 + z.b11), c.b12 = 0.5 * (y.b12 + z.b12), c.b22 = 0.5 * (y.b22 + z.b22);
-  c.tau_c = 0.5 * (y.tau_c + z.tau_c);
   c.M4 = 0.5 * (y.M4 + z.M4);
-  c.rhoIz_l = s.rhoI_C * l, c.rhoIy_l = s.rhoI_B * l;
+  c.rhoIz_l = s.rhoI_C * l, c.rhoIy_l = s.rhoI_B * l, c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
   return c;
 }
 

@@ -1,5 +1,6 @@
 // A deck given as text, built; and an observer of how far a node goes.
 #pragma once
+#include <analysis/running.hpp>
 #include <analysis/transient.hpp>
 #include <assembly/build_system.hpp>
 #include <deck/deck.hpp>

@@ -1,6 +1,7 @@
 // Shafts with unequal principal stiffnesses: bands of parametric instability of a Jeffcott rotor, against closed forms (F. M. Dimentberg 1961;
 // A. Tondl, Some Problems of Rotor Dynamics, 1965; Friswell et al., Dynamics of Rotating Machines, 2010, ch. 7) and, where the supports are unequal too, against
 // Floquet's multipliers of the two-degree-of-freedom rotor found by integrating over a period.
+#include "../app/deck_run.hpp"
 #include "beam_line.hpp"
 #include "record.hpp"
 
@@ -117,4 +118,32 @@ TEST(AsymmetricShaft, BandsOnUnequalSupports) {
     for (std::size_t k = 0; k < r.speeds.size(); ++k)
       if (r.growth[k] > 1e-3 || floquet(r.speeds[k], c, ky, kz) > 1e-3) { EXPECT_NEAR(r.growth[k], floquet(r.speeds[k], c, ky, kz), 1e-4 * std::abs(r.growth[k]) + 1e-4) << r.speeds[k]; }
   }
+}
+
+// Weight on an asymmetric shaft at half its critical speed, through the deck of an example: with w = y + i z
+//   m w'' + c w' + kb w + d exp(2 i Omega t) conj(w) = -i m g
+// has the exact steady solution w = W0 + W2 exp(2 i Omega t).
+TEST(AsymmetricShaft, TwicePerTurnUnderGravity) {
+  Record record("Asymmetric shaft under gravity at half its critical speed", "exact solution of the Jeffcott rotor: steady sag and motion at twice the speed");
+  std::ifstream file(WHIRL_SOURCE "/examples/15_twice_per_turn/deck.toml");
+  std::stringstream text;
+  text << file.rdbuf();
+  const DeckRun r(text.str());
+  ASSERT_EQ(r.exit, 0) << r.log;
+  const double Omega = 158, c = 100, g = 9.81, kb = 0.5 * (k1 + k2), d = 0.5 * (k2 - k1);
+  const Complex D(kb - 4 * m * Omega * Omega, 2 * Omega * c), W0 = Complex(0, -m * g) / (kb - d * d / std::conj(D)), W2 = -d * std::conj(W0) / D;
+  // least squares on the last tenth of a second
+  Complex E = 0, S0 = 0, S2 = 0;
+  const auto rows = r.csv("run.csv").rows;
+  ASSERT_GT(rows.size(), 90u);
+  const double n = static_cast<double>(rows.size());
+  for (const auto& x : rows) {
+    const Complex e = std::polar(1.0, 2 * Omega * x[0]), w(x[1], x[2]);
+    E += e / n, S0 += w / n, S2 += std::conj(e) * w / n;
+  }
+  const Complex X0 = (S0 - E * S2) / (1 - std::norm(E)), X2 = (S2 - std::conj(E) * S0) / (1 - std::norm(E));
+  // 158 rad/s is so near half the critical speed that 1e-7 of the stiffness is 3e-6 of the motion: what large rotation and the step leave
+  record.check("motion at twice the speed", "m", std::abs(X2), std::abs(W2), 1e-5 * std::abs(W2));
+  record.check("steady y", "m", X0.real(), W0.real(), 1e-5 * std::abs(W0));
+  record.check("steady z", "m", X0.imag(), W0.imag(), 1e-5 * std::abs(W0));
 }
