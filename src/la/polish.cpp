@@ -185,7 +185,14 @@ void Polisher::assess(Pair& p) {
 bool Polisher::is_unresisted(const Pair& p) {
   sizes(p, 0.0, 0.0, 1.0);
   // Rounding of n products of random sign; 16 eps is far below any support that could be told from none.
-  return std::abs(p.x.dot(p.Kx)) <= 16.0 * eps * abs_x_.dot(size_);
+  double rounding = 16.0 * eps * abs_x_.dot(size_);
+  // Components below eps are rounding of the largest, which is 1: what K makes of them is none either.
+  abs_x_.setConstant(eps);
+  for (const Index u : held_) abs_x_(u) = 0.0;
+  size_.setZero();
+  add_multiply_size(m_->K, 1.0, abs_x_, size_);
+  rounding += abs_x_.dot(size_);
+  return std::abs(p.x.dot(p.Kx)) <= rounding;
 }
 
 void Polisher::separate(std::span<Pair*> group) {
