@@ -155,6 +155,16 @@ const la::MCK& WhirlSolver::matrices_at(double Omega, Complex lambda, double sid
 }
 
 std::optional<la::Mode> WhirlSolver::at_own_frequency(double Omega, la::Mode mode) {
+  if (mode.lambda.imag() == 0.0) {
+    try {
+      auto found = solver_.follow(matrices_at(Omega, Complex(0, 0.0)), mode);
+      if (found && found->lambda.imag() == 0.0) return found;
+    } catch (const Error& e) {
+      if (e.diagnostics().front().code != "E81") throw;
+    }
+    matrices_at(Omega, Complex(0, nan));
+    return mode;
+  }
   // The root of g(w) = Im lambda(w) - w, lambda(w) followed in the matrices for w: by secant, which does not mind |d Im lambda/dw| > 1.
   double w0 = nan, g0 = nan, w = std::abs(mode.lambda.imag());
   for (int it = 0; it < 50; ++it) {
@@ -230,10 +240,9 @@ void WhirlSolver::solve_by_frequency(double Omega) {
   // Synchronous coefficients give the starts; each mode is then led to the coefficients at its own frequency. Two that meet are one.
   const std::vector<la::Mode> starts = solver_.solve(matrices_at(Omega, Complex(0, nan)));
   for (const la::Mode& start : starts) {
-    const bool whirls = start.lambda.imag() != 0.0;
-    const auto mode = whirls ? at_own_frequency(Omega, start) : std::optional(start);
+    const auto mode = at_own_frequency(Omega, start);
     if (!mode) continue;
-    const la::MCK& own = whirls ? *matrices_ : matrices_at(Omega, Complex(0, nan));
+    const la::MCK& own = *matrices_;
     const bool known = std::any_of(modes_.begin(), modes_.end(), [&](const WhirlMode& k) {
       return std::abs(k.lambda - mode->lambda) < 1e-8 * std::abs(k.lambda) && likeness(own, k.x, mode->x) > 0.999;
     });
@@ -280,7 +289,7 @@ std::optional<WhirlMode> WhirlSolver::follow(double Omega, const WhirlMode& star
   from.lambda = start.lambda, from.x = start.x;
   std::optional<la::Mode> found;
   if (options_.damped && linear_.hysteretic()) found = settle_rate(Omega, from);
-  else if (linear_.running().running().frequency_dependent && start.frequency > 0) found = at_own_frequency(Omega, from);
+  else if (linear_.running().running().frequency_dependent) found = at_own_frequency(Omega, from);
   else found = solver_.follow(matrices_at(Omega, Complex(0, nan)), from);
   if (!found || likeness(*matrices_, found->x, start.x) < 0.3) return std::nullopt;   // a planar start and the circle it becomes are 0.5 alike
   return describe_mode(*found, *matrices_, linear_);

@@ -42,7 +42,8 @@ std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const Modes
 
 /// Modes at a series of speeds; each call starts from what the last one found. Supports tabulated against frequency (Running::
 /// frequency_dependent): every whirling mode satisfies Q(lambda; Im lambda) x = 0, its coefficients being those at its own frequency, found
-/// from the modes with synchronous coefficients; overdamped roots keep the latter. Hysteretic damping makes the problem depend on lambda
+/// from the modes with synchronous coefficients; real roots take those at zero frequency, or keep the synchronous ones where the tables do not
+/// reach down to it. Not found: modes that no synchronous mode leads to. Hysteretic damping makes the problem depend on lambda
 /// likewise: each mode is solved for in turn until it agrees with the rate its matrices are for (contraction about half the loss factor a
 /// round).
 class WhirlSolver {

@@ -112,6 +112,29 @@ TEST(FrequencyTable, ModesAtTheirOwnFrequency) {
   }
 }
 
+// Overdamped: the roots of m l^2 + C(0) l + K(0), C(0) and K(0) those at zero frequency; a table that begins at 5 rad/s leaves those at the spin.
+TEST(FrequencyTable, RealRootsAtZeroFrequency) {
+  constexpr Support heavy{3e5, 4e5};
+  for (const bool covered : {true, false}) {
+    std::vector<double> w = grid(600, 120);
+    if (!covered) w.erase(w.begin());
+    const test::DeckModel a(deck_text(heavy, w));
+    const double Omega = 300.0, at = covered ? 0.0 : Omega;
+    const double K = heavy.D(at).real(), C = covered ? (heavy.c1 * k2 * k2 + heavy.c2 * k1 * k1) / ((k1 + k2) * (k1 + k2)) : heavy.D(Omega).imag() / Omega;
+    const double root = std::sqrt(C * C - 4 * m * K);
+    ASSERT_GT(root, 0.0);
+    analysis::Linearizer linear(a.built.system, a.running());
+    analysis::ModesOptions o;
+    o.count = 8, o.motion = analysis::Motion::lateral, o.real_roots = true;
+    const auto modes = analysis::whirl_modes(linear, Omega, o);
+    for (const double exact : {(-C + root) / (2 * m), (-C - root) / (2 * m)}) {
+      int found = 0;
+      for (const auto& mode : modes) found += std::abs(mode.lambda - exact) < 1e-9 * std::abs(exact) ? 1 : 0;
+      EXPECT_EQ(found, 2) << exact;   // one a plane
+    }
+  }
+}
+
 // Damped: lambda^2 m + lambda C(w) + K(w) = 0 at w = Im lambda, solved here by iteration on the exact coefficients.
 TEST(FrequencyTable, DampedModesAtTheirOwnFrequency) {
   const test::DeckModel a(deck_text(damped, grid(600, 120)));
