@@ -143,6 +143,11 @@ bool Reader::quantity(const Key& k, double& target, const char* unit, Range rang
     if (std::isfinite(target)) put_default(k, *unit ? Value::of_text(units::format(target, unit)) : Value::of_number(target));
     return false;
   }
+  if (k.plain_zero && m->value.is_number() && m->value.number() == 0 && inside(range, 0)) {
+    target = 0;
+    put(k, m->value);
+    return true;
+  }
   Value shown;
   if (read_quantity(k.name, m->value, unit, range, target, shown)) put(k, shown);
   return true;

@@ -26,9 +26,15 @@ struct Key {
   const char* name;
   bool required = false;
   const char* absent = nullptr;     ///< what holds when the key is left out, where the default value does not say it
+  bool plain_zero = false;          ///< a quantity: 0 needs no unit, nor the right one
 };
 inline Key required(const char* name) { return {name, true, nullptr}; }
 inline Key optional(const char* name, const char* absent) { return {name, false, absent}; }
+inline Key zero_without_unit(const char* name) {
+  Key k(name);
+  k.plain_zero = true;
+  return k;
+}
 
 struct Range {
   double min = -infinity, max = infinity;

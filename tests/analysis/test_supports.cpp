@@ -154,6 +154,27 @@ columns = ["row", "column", "K[N/m]", "C[N.s/m]", "M[kg]"]
 rows = [[1, 1, 2e8, 1e4, 50], [2, 2, 2e8, 1e4, 50], [1, 2, -1e8, 0, 10], [3, 3, 1e7, 100, 1], [3, 1, 0, 0, 2], [2, 3, 0, 0, 2],
         [4, 4, 1e8, 0, 20], [5, 5, 1e8, 0, 20], [6, 6, 1e8, 0, 20], [7, 7, 1e8, 0, 20], [8, 8, 1e8, 0, 20]]
 )"), 8e-6});
+  // support points that turn, circulatory and gyroscopic parts, masses that couple displacement and rotation
+  c.push_back({"foundation with rotations", shaft_deck(R"([[bearing]]
+name = "tested"
+at = "rotor/a:end"
+type = "linear"
+kyy = "5e6 N/m"
+kzz = "5e6 N/m"
+krr = "2e4 N.m/rad"
+krxx = "3e4 N.m/rad"
+cryy = "5 N.m.s/rad"
+[[foundation]]
+name = "table"
+symmetric = false
+coordinates = ["tested.y", "tested.z", "tested.rx", "tested.ry", "tested.rz", "tested.x", "left.y", "left.z", "left.rz", "mode"]
+columns = ["row", "column", "K", "C", "M"]
+rows = [[1, 1, "2e8 N/m", "1e4 N.s/m", "50 kg"], [2, 2, "3e8 N/m", "2e4 N.s/m", "50 kg"], [1, 2, "4e7 N/m", "3e3 N.s/m", 0], [2, 1, "-2e7 N/m", "-3e3 N.s/m", 0],
+        [3, 3, "2e6 N.m/rad", "20 N.m.s/rad", "2 kg.m^2"], [4, 4, "3e6 N.m/rad", "30 N.m.s/rad", "3 kg.m^2"], [5, 5, "1e6 N.m/rad", 0, "3 kg.m^2"],
+        [4, 5, "2e5 N.m/rad", "40 N.m.s/rad", 0], [5, 4, 0, "-40 N.m.s/rad", 0], [1, 5, "5e6 N/rad", "100 N.s/rad", "3 kg.m"], [5, 1, "3e6 N/rad", 0, "3 kg.m"],
+        [6, 6, "2e8 N/m", 0, "50 kg"], [7, 7, "2e8 N/m", 0, "50 kg"], [8, 8, "2e8 N/m", 0, "50 kg"], [9, 9, "1e6 N.m/rad", 0, 0], [7, 1, "1e7 N/m", 0, "2 kg"], [1, 7, 0, 0, "2 kg"],
+        [9, 4, "1e5 N.m/rad", 0, 0], [10, 10, "1e7 N/m", "100 N.s/m", "1 kg"], [10, 5, "1e5 N/rad", 0, "0.2 kg.m"], [5, 10, "1e5 N/rad", 0, "0.2 kg.m"]]
+)"), 8e-6});
   c.push_back({"intershaft", shaft_deck(second_shaft("[\"50 mm\", \"0 mm\", \"0 mm\"]", "1.5") + R"([[bearing]]
 name = "tested"
 at = "rotor/a:end"

@@ -1,6 +1,7 @@
 // Spring block and linear bearings.
 #include "conformance.hpp"
 #include <elements/linear_bearing.hpp>
+#include <elements/matrix_part.hpp>
 #include <elements/moment.hpp>
 #include <elements/spring_block.hpp>
 
@@ -106,4 +107,27 @@ TEST(LinearBearing, TiltsAndWholeTurns) {
   EXPECT_NEAR(F[3], -10 * (0.5 + 3 * two_pi), 1e-12);
   EXPECT_NEAR(F[4], -20 * 1e-4, 20 * 1e-4 * 1e-8);   // sin of the tilt
   EXPECT_NEAR(F[5], 30 * 2e-4, 30 * 2e-4 * 1e-8);
+}
+
+// Constant matrices at one and two support points with rotations. (An internal coordinate does not fall; the system sees to that, not the kernel.)
+TEST(MatrixPart, Conformance) {
+  Random r(13);
+  const auto matrix = [&](int n, double size) {
+    MatX m(n, n);
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; i += 6) m.block<6, 1>(i, j) = size * r.vector<6>();
+    return m;
+  };
+  ConformanceOptions o;
+  o.chart = tilted_chart();
+  o.symmetric_K = true;
+  const auto square = [](const MatX& m) { return MatX(m * m.transpose()); };
+  check_kernel(with_rotations<1>(square(matrix(6, 30)), square(matrix(6, 3)), square(matrix(6, 1)), {false}), o);
+  check_kernel(with_rotations<2>(square(matrix(12, 30)), square(matrix(12, 3)), square(matrix(12, 1)), {false, false}), o);
+  // circulatory and gyroscopic parts: their power counts
+  o.symmetric_K = o.passive = false;
+  check_kernel(with_rotations<2>(matrix(12, 30), matrix(12, 3), square(matrix(12, 1)), {false, false}), o);
+  MatrixPart<2> plain;
+  plain.K = matrix(6, 30), plain.C = matrix(6, 3), plain.M = square(matrix(6, 1));
+  check_kernel(plain, o);
 }
