@@ -59,6 +59,8 @@ class EquilibriumSolver {
   std::string name_motion(Index singular) const;
   /// Where supports have gaps nothing resists at first: each line is moved along the force on it until something does.
   Outcome close_gaps(double Omega, system::State& s, int& iterations);
+  /// The same for what that does not close: couples, mechanisms, gaps one after another.
+  Outcome let_down(double Omega, system::State& s, int& iterations);
   double correction_size(const VecX& d) const;
   bool is_small(const VecX& d, const VecX& q) const;
 

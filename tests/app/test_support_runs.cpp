@@ -93,16 +93,24 @@ TEST_F(SupportRuns, GapThatNoLoadCloses) {
   const auto stop = [](const char* name, const char* at) {
     return std::string("[[bearing]]\nname = \"") + name + "\"\nat = \"" + at + "\"\ntype = \"rub\"\ngap = \"0.2 mm\"\nstiffness = \"1e7 N/m\"\nfriction = 0.1\n";
   };
+  const auto above = [](const char* name, const char* at) {   // the weight moves the shaft away from it
+    return std::string("[[bearing]]\nname = \"") + name + "\"\nat = \"" + at +
+           "\"\ntype = \"nonlinear_spring\"\ndirection = \"z\"\nshape = \"one_sided\"\ngap = \"0.2 mm\"\nstiffness = \"1e7 N/m\"\n[[bearing]]\nat = \"" + at +
+           "\"\ntype = \"linear\"\nkyy = \"1e6 N/m\"\n";
+  };
   const std::string step = "[[step]]\nname = \"weight\"\ntype = \"static\"\nspeed = \"0 rpm\"\n";
-  write("d.toml", std::string(rotor) + "[model]\ngravity = \"0 m/s^2\"\n" + stop("near", "a:start") + stop("far", "b:end") +
-                      "[[load]]\nat = \"a:end\"\nmoment = [\"0 N.m\", \"0 N.m\", \"1 N.m\"]\n" + step);   // a couple moves it nowhere
+  write("d.toml", std::string(rotor) + above("near", "a:start") + above("far", "b:end") + step);
   EXPECT_EQ(whirl("run d.toml"), 4) << said_;
   EXPECT_TRUE(says("E75")) << said_;
   EXPECT_TRUE(says("'near', 'far' have a gap, and moving the shaft along its load finds nothing that holds it")) << said_;
-  // with its weight it lies in the stops, and that is said too
+  // with its weight it lies in the stops, and that is said too; a couple without weight turns it into them
   write("g.toml", std::string(rotor) + stop("near", "a:start") + stop("far", "b:end") + step);
   EXPECT_EQ(whirl("run g.toml"), 0) << said_;
   EXPECT_TRUE(says("warning[W04]: contact 'far' is closed at the start of step 'weight'")) << said_;
+  write("c.toml", std::string(rotor) + "[model]\ngravity = \"0 m/s^2\"\n" + stop("near", "a:start") + stop("far", "b:end") +
+                      "[[load]]\nat = \"a:end\"\nmoment = [\"0 N.m\", \"0 N.m\", \"1 N.m\"]\n" + step);
+  EXPECT_EQ(whirl("run c.toml"), 0) << said_;
+  EXPECT_TRUE(says("warning[W04]: contact 'near' is closed at the start of step 'weight'")) << said_;
 }
 
 TEST_F(SupportRuns, ContactClosedAtRestIsAWarning) {

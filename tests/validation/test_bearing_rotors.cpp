@@ -214,6 +214,89 @@ stiffness = "1e7 N/m"
   EXPECT_NEAR(e.state.q[6 * m.disk() + 2], -2e-3 - 196 / 1e7, 1e-12);
 }
 
+// A rigid shaft in two stops, without weight: a couple has no resultant, and turns the shaft until both are closed on opposite sides.
+TEST(Gaps, CoupleTurnsAShaftIntoItsStops) {
+  const auto stop = [](const char* name, const char* at) {
+    return std::string("[[bearing]]\nname = \"") + name + "\"\nat = \"" + at + "\"\ntype = \"rub\"\ngap = \"0.1 mm\"\nstiffness = \"1e7 N/m\"\nfriction = 0\n";
+  };
+  const DeckModel m(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "rigid"]
+rows = [["left", 300, true], ["right", 700, true]]
+[[disk]]
+name = "mass"
+at = "left:end"
+mass = "10 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.06 kg.m^2"
+[[bearing]]
+name = "guide"
+at = "mass"
+type = "rigid"
+directions = ["x"]
+[[load]]
+at = "mass"
+moment = ["0 N.m", "0 N.m", "50 N.m"]
+)" + stop("near", "left:start") + stop("far", "right:end"));
+  analysis::RunningSystem running(m.built.system, m.running());
+  const auto e = analysis::EquilibriumSolver(running).solve(0.0);
+  system::Workspace w = m.built.system.make_workspace();
+  ASSERT_TRUE(m.built.system.evaluate_nodes(w, e.state.frames, 0.0, e.state.q, e.state.v, e.state.a));
+  // 50 N at each end; the tilt of 2e-4 shortens the arms by 2e-8
+  for (const std::size_t k : {1u, 2u}) {
+    const meshes::Place at = m.mesh.bearings[k].shaft;
+    const system::NodeState& n = w.nodes[static_cast<std::size_t>(at.node)];
+    const Vec3 u = n.u + at.offset * n.t;
+    EXPECT_NEAR(u.y(), (k == 1 ? -1 : 1) * (1e-4 + 50 / 1e7), 1e-6 * 1e-4);
+    EXPECT_NEAR(u.z(), 0.0, 1e-12);
+  }
+}
+
+// The load stands right over one ball of a bearing with so much play that its neighbours stay clear: sideways nothing resists and nothing loads, and the ball
+// carries the weight alone, (W/K)^(2/3) into the contact.
+TEST(Gaps, OneBallCarriesAlone) {
+  const DeckModel m(test::lateral_mass(20, "9.8 m/s^2", R"([[bearing]]
+name = "ball bearing"
+at = "mass"
+type = "ball"
+balls = 8
+ball_diameter = "11.9 mm"
+pitch_diameter = "52 mm"
+clearance = "40 um"
+stiffness = "1.334e10 N/m^1.5"
+)"));
+  analysis::Running still = m.running();
+  still.mean = false;
+  analysis::RunningSystem running(m.built.system, still);
+  const auto e = analysis::EquilibriumSolver(running).solve(0.0);
+  EXPECT_NEAR(e.state.q[6 * m.disk() + 2], -4e-5 - std::pow(196 / 1.334e10, 2.0 / 3), 1e-10 * 4e-5);
+  EXPECT_NEAR(e.state.q[6 * m.disk() + 1], 0.0, 1e-12);
+}
+
+// What no play excuses stays an error: a motion that a load drives on and on, and one that nothing resists beside a support without play.
+TEST(Gaps, NothingToFind) {
+  const DeckModel away(test::lateral_mass(20, "9.8 m/s^2", R"([[bearing]]
+name = "sideways"
+at = "mass"
+type = "linear"
+kyy = "1e3 N/m"
+[[bearing]]
+name = "stop"
+at = "mass"
+type = "nonlinear_spring"
+direction = "z"
+shape = "one_sided"
+gap = "2 mm"
+stiffness = "1e7 N/m"
+)"));
+  analysis::RunningSystem running(away.built.system, away.running());
+  EXPECT_THROW(analysis::EquilibriumSolver(running).solve(0.0), Error);
+}
+
 // A foundation whose matrices are diagonal is a set of pedestals.
 TEST(Foundation, DiagonalMatricesArePedestals) {
   const std::string rotor = R"(format = 1
