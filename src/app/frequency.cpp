@@ -58,8 +58,9 @@ std::vector<analysis::Measurement> support_measurements(const Job& job) {
 }
 
 namespace {
-analysis::EquilibriumOptions equilibrium_options(const Job& job) {
+analysis::EquilibriumOptions equilibrium_options(const Job& job, int load_steps) {
   analysis::EquilibriumOptions o;
+  o.load_steps = load_steps;
   o.chart_change = job.model.chart_change;
   return o;
 }
@@ -69,8 +70,8 @@ std::string direction_text(const analysis::WhirlMode& m) {
   return m.direction == analysis::Direction::none ? std::string() : std::string(to_string(m.direction));
 }
 
-FrequencyStep::FrequencyStep(Job& j, const model::Step& s, const std::string& type, const std::string& title, double top_speed)
-    : job(j), step(s), linear((j.build_for(s), j.system()), running_of(j, top_speed), equilibrium_options(j)),
+FrequencyStep::FrequencyStep(Job& j, const model::Step& s, const std::string& type, const std::string& title, double top_speed, int load_steps)
+    : job(j), step(s), linear((j.build_for(s), j.system()), running_of(j, top_speed), equilibrium_options(j, load_steps)),
       start_(std::chrono::steady_clock::now()) {
   if (!s.from.empty()) linear.start_from(j.states.at(s.from).state);
   type_ = type;

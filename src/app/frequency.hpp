@@ -34,7 +34,7 @@ class FrequencyStep {
  public:
   /// top_speed: highest |speed| expected, rad/s.
   /// title: of its section, "Campbell diagram".
-  FrequencyStep(Job& job, const model::Step& step, const std::string& type, const std::string& title, double top_speed);
+  FrequencyStep(Job& job, const model::Step& step, const std::string& type, const std::string& title, double top_speed, int load_steps = 1);
   Job& job;
   const model::Step& step;
   analysis::Linearizer linear;

@@ -58,6 +58,7 @@ void add_history_figures(const Job&, const model::Step&, const std::vector<analy
 
 /// Each runs one step, adds its section to the report and its entry to the summary, and writes its files.
 void run_static_step(Job&, const model::Step&, const model::StaticStep&);
+void run_static_speeds(Job&, const model::Step&, const std::vector<double>& speeds, int load_steps);
 void run_transient_step(Job&, const model::Step&, const model::TransientStep&);
 /// In the frequency domain (any kind that is neither static nor transient); see frequency.hpp.
 void run_frequency_step(Job&, const model::Step&);

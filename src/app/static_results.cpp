@@ -190,6 +190,20 @@ StaticResults make_static_results(Job& job, const std::string& step, system::Sys
     }
   }
 
+  // ---- rolling elements
+  out.rolling.title = "Loads of the rolling elements";
+  out.rolling.columns = {{"bearing", "-", ""}, {"element", "-", ""}, {"angle", "deg", "from +y towards +z"}, {"load", "N", ""}};
+  for (const assembly::RollingLoads& b : job.built.rolling_loads) {
+    double most = 0;
+    int number = 0, loaded = 0;
+    for (const auto& e : b.loads(node)) {
+      out.rolling.add({b.name, static_cast<double>(++number), e.angle * 180.0 / pi, e.load});
+      most = std::max(most, e.load), loaded += e.load > 0 ? 1 : 0;
+    }
+    summary["rolling elements"][b.name]["largest load [N]"] = most;
+    summary["rolling elements"][b.name]["loaded"] = loaded;
+  }
+
   // ---- supports
   out.supports.title = "Supports: force and moment on the shaft";
   out.supports.columns = {{"support", "-", ""}, {"F_x", "N", ""}, {"F_y", "N", ""}, {"F_z", "N", ""}, {"M_x", "N m", "of rigid supports: about the node they hold"},

@@ -9,6 +9,7 @@ namespace whirl::app {
 
 struct StaticResults {
   io::Table deflection, supports, sections, extremes;
+  io::Table rolling;                ///< load of every ball and roller; no rows without such bearings
   std::vector<io::Figure> figures;
   std::vector<assembly::SectionPoint> points;
   std::vector<std::string> lines;   ///< for the terminal

@@ -1,7 +1,7 @@
 // A static step: the spinning, loaded equilibrium, or the path of equilibria under a growing load, with deflections, reactions,
 // section forces and stresses.
 #include <analysis/load_path.hpp>
-#include <app/job.hpp>
+#include <app/frequency.hpp>
 #include <app/static_results.hpp>
 #include <app/support_coefficients.hpp>
 #include <app/support_diagnosis.hpp>
@@ -41,6 +41,7 @@ const char* text_of(analysis::LoadPathEnd e) {
 }  // namespace
 
 void run_static_step(Job& job, const model::Step& step, const model::StaticStep& law) {
+  if (law.speeds) return run_static_speeds(job, step, speeds_of(*law.speeds), law.load_steps);
   const auto wall0 = std::chrono::steady_clock::now();
   system::SystemProblem problem(job.system(), {la::SolverKind::automatic, job.model.chart_change, 2.0});
   StepState s = job.start_of(step, law.speed);
@@ -97,8 +98,10 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
   job.folder.write_table(step.name + "_deflection.csv", results.deflection);
   job.folder.write_table(step.name + "_supports.csv", results.supports);
   job.folder.write_table(step.name + "_sections.csv", results.sections);
+  const bool rolling = !results.rolling.rows.empty();
+  if (rolling) job.folder.write_table(step.name + "_rolling.csv", results.rolling);
   if (path) job.folder.write_table(step.name + "_path.csv", path->table());
-  io::Table coefficients = support_coefficients(job, s);
+  io::Table coefficients = support_table(calc_support_coefficients(job, s));
   const bool linearised = !coefficients.rows.empty();
   if (linearised) job.folder.write_table(step.name + "_coefficients.csv", coefficients);
   v["run time [s]"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall0).count();
@@ -114,6 +117,7 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
     section.tables.push_back(std::move(results.extremes));
     if (linearised) section.tables.push_back(std::move(coefficients)), section.files.emplace_back("bearing coefficients", step.name + "_coefficients.csv");
     for (const char* what : {"deflection", "supports", "sections"}) section.files.emplace_back(what, step.name + "_" + what + ".csv");
+    if (rolling) section.tables.push_back(std::move(results.rolling)), section.files.emplace_back("rolling elements", step.name + "_rolling.csv");
     if (path) section.files.emplace_back("load path", step.name + "_path.csv");
     job.report.sections.push_back(std::move(section));
   }

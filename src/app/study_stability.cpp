@@ -1,5 +1,6 @@
 // `whirl study DECK --stability`: what the integrators do to the modes of this rotor, at which steps.
 #include <analysis/scheme_stability.hpp>
+#include <app/frequency.hpp>
 #include <app/job.hpp>
 #include <app/results_folder.hpp>
 #include <app/run.hpp>
@@ -64,7 +65,7 @@ double speed_of(Job& job) {
     job.build_for(step);
     if (const auto* t = std::get_if<model::TransientStep>(&step.law)) return step.from.empty() ? job.start_of(step, t->speed0).speed : t->speed0;
     if (const auto* m = std::get_if<model::ModalStep>(&step.law)) return m->speed;
-    if (const auto* m = std::get_if<model::StaticStep>(&step.law)) return m->speed;
+    if (const auto* m = std::get_if<model::StaticStep>(&step.law)) return m->speeds ? speeds_of(*m->speeds).back() : m->speed;
     if (const auto* m = std::get_if<model::UnbalanceStep>(&step.law)) return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
     if (const auto* m = std::get_if<model::CampbellStep>(&step.law)) return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
     if (const auto* m = std::get_if<model::StabilityStep>(&step.law)) return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();

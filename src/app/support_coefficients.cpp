@@ -21,16 +21,20 @@ const char* kind_of(const model::BearingLaw& law) {
   return nullptr;
 }
 
+/// Threshold of a rigid rotor in translation on K, C: at the onset (m l^2 + C l + K) x = 0 has l = i w. With k = m w^2 the real and imaginary parts of
+/// det(K - k + i w C) are k = (Kyy Czz + Kzz Cyy - Kyz Czy - Kzy Cyz)/(Cyy + Czz) and w^2 = ((k - Kyy)(k - Kzz) - Kyz Kzy)/(Cyy Czz - Cyz Czy).
+void find_threshold(SupportCoefficients& b) {
+  const Mat2 &K = b.K, &C = b.C;
+  const double k = (K(0, 0) * C(1, 1) + K(1, 1) * C(0, 0) - K(0, 1) * C(1, 0) - K(1, 0) * C(0, 1)) / C.trace();
+  const double w2 = ((k - K(0, 0)) * (k - K(1, 1)) - K(0, 1) * K(1, 0)) / C.determinant();
+  if (!(C.trace() > 0) || !(C.determinant() > 0) || !(k > 0) || !(w2 > 0) || b.spin == 0) return;
+  b.threshold_mass = k / w2, b.whirl_ratio = std::sqrt(w2) / std::abs(b.spin);
+}
+
 }  // namespace
 
-io::Table support_coefficients(const Job& job, const StepState& s) {
-  io::Table t;
-  t.title = "Bearings about the equilibrium";
-  t.columns = {{"bearing", "-", ""}, {"speed", "rpm", ""}, {"load", "N", "on the bearing, lateral"}, {"y", "m", "shaft against housing"}, {"z", "m", ""},
-               {"eccentricity", "m", ""}, {"eccentricity / clearance", "-", ""}, {"attitude", "deg", "from the load in the sense y to z"}};
-  for (const char* m : {"k", "c"})
-    for (const char* e : {"yy", "yz", "zy", "zz"}) t.columns.push_back({std::string(m) + e, m[0] == 'k' ? "N/m" : "N s/m", ""});
-
+std::vector<SupportCoefficients> calc_support_coefficients(const Job& job, const StepState& s) {
+  std::vector<SupportCoefficients> out;
   const system::System& system = job.system();
   system::Workspace w = system.make_workspace();
   w.context.averaged = s.speed != 0.0;
@@ -58,19 +62,40 @@ io::Table support_coefficients(const Job& job, const StepState& s) {
     const auto node = [&](Index k) -> const system::NodeState& { return w.nodes[static_cast<std::size_t>(k)]; };
     const auto place = [&](const meshes::Place& p) { return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>()); };
     const Vec2 r = place(n.shaft) - place(n.other);
-    double clearance = nan;
-    for (const assembly::SupportCondition& c : job.built.conditions)
-      if (c.name == b.name) clearance = c.state(node).gap;
+    SupportCoefficients c;
+    c.name = b.name, c.spin = node(n.shaft.node).spin(), c.place = r, c.K = K, c.C = C;
     const auto force = std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(), [&](const auto& f) { return f.name == b.name; });
     const Vec2 F = force != job.built.support_forces.end() ? Vec2(force->force(node, x.t, [](Index) { return 0.0; }).tail<2>()) : Vec2::Zero();
-    double attitude = nan;
-    if (F.norm() > 0 && r.norm() > 0) {
-      attitude = (std::atan2(r.y(), r.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
-      attitude -= 360.0 * std::floor(attitude / 360.0);
-      if (attitude > 360.0 - 1e-9) attitude = 0.0;
+    c.load = F.norm();
+    if (c.load > 0 && r.norm() > 0) {
+      c.attitude = (std::atan2(r.y(), r.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
+      c.attitude -= 360.0 * std::floor(c.attitude / 360.0);
+      if (c.attitude > 360.0 - 1e-9) c.attitude = 0.0;
     }
-    t.add({b.name, node(n.shaft.node).spin() * 30.0 / pi, F.norm(), r.x(), r.y(), r.norm(), r.norm() / clearance, attitude, K(0, 0), K(0, 1), K(1, 0), K(1, 1), C(0, 0), C(0, 1), C(1, 0), C(1, 1)});
+    for (const assembly::SupportCondition& x : job.built.conditions)
+      if (x.name == b.name) {
+        c.clearance = x.state(node).gap;
+        if (x.sommerfeld > 0 && c.load > 0) c.sommerfeld = x.sommerfeld * std::abs(c.spin) / two_pi / c.load;
+      }
+    find_threshold(c);
+    out.push_back(std::move(c));
   }
+  return out;
+}
+
+io::Table support_table(std::span<const SupportCoefficients> list) {
+  io::Table t;
+  t.title = "Bearings about the equilibrium";
+  t.columns = {{"bearing", "-", ""}, {"speed", "rpm", ""}, {"load", "N", "on the bearing, lateral"}, {"y", "m", "shaft against housing"}, {"z", "m", ""},
+               {"eccentricity", "m", ""}, {"eccentricity / clearance", "-", ""}, {"attitude", "deg", "from the load in the sense y to z"}};
+  for (const char* m : {"k", "c"})
+    for (const char* e : {"yy", "yz", "zy", "zz"}) t.columns.push_back({std::string(m) + e, m[0] == 'k' ? "N/m" : "N s/m", ""});
+  t.columns.push_back({"Sommerfeld number", "-", "eta N L D (R/c)^2/W, N in rev/s"});
+  t.columns.push_back({"threshold mass", "kg", "share of a rigid rotor's mass on this bearing beyond which it is unstable at this speed; empty: never"});
+  t.columns.push_back({"whirl / speed", "-", "whirl frequency over speed at that threshold"});
+  for (const SupportCoefficients& c : list)
+    t.add({c.name, c.spin * 30.0 / pi, c.load, c.place.x(), c.place.y(), c.place.norm(), c.place.norm() / c.clearance, c.attitude, c.K(0, 0), c.K(0, 1), c.K(1, 0), c.K(1, 1), c.C(0, 0),
+           c.C(0, 1), c.C(1, 0), c.C(1, 1), c.sommerfeld, c.threshold_mass, c.whirl_ratio});
   return t;
 }
 

@@ -2,11 +2,30 @@
 #pragma once
 #include <app/job.hpp>
 
+#include <span>
+
 namespace whirl::app {
 
-/// One row a bearing whose coefficients depend on where the shaft runs; empty when there is none. F = -K r - C r' on the shaft, (y, z),
-/// N/m and N s/m, at the equilibrium `s`. Eccentricity and attitude are measured from the middle of the bearing, the attitude from
-/// the direction of the load (opposite to the force on the shaft) in the sense y -> z, 0 to 360 deg. Rolling bearings in a turning rotor: means over a pass.
-io::Table support_coefficients(const Job& job, const StepState& s);
+/// One bearing whose coefficients depend on where the shaft runs: F = -K r - C r' on the shaft, (y, z), at an equilibrium. Place and attitude are measured
+/// from the middle of the bearing, the attitude from the direction of the load (opposite to the force on the shaft) in the sense y -> z. Rolling bearings in
+/// a turning rotor: means over a pass.
+struct SupportCoefficients {
+  std::string name;
+  double spin = 0;                 ///< of the shaft, rad/s
+  double load = 0;                 ///< on the bearing, lateral, N
+  Vec2 place = Vec2::Zero();       ///< shaft against housing, m
+  double clearance = nan;          ///< m; NaN where there is none
+  double attitude = nan;           ///< deg, 0 to 360; NaN without load or displacement
+  double sommerfeld = nan;         ///< films: eta N L D (R/c)^2/W, N in rev/s
+  Mat2 K = Mat2::Zero(), C = Mat2::Zero();   ///< N/m, N s/m
+  /// Of a rigid rotor on bearings like this one alone (Lund; Routh's criterion): the share of its mass on this bearing beyond which the equilibrium is unstable at
+  /// this speed, kg, and whirl frequency over speed there. NaN: no mass makes it unstable.
+  double threshold_mass = nan, whirl_ratio = nan;
+};
+
+/// In the order of the deck; empty when there is none. Two of a kind on one node cannot be told apart and are left out.
+std::vector<SupportCoefficients> calc_support_coefficients(const Job& job, const StepState& s);
+/// A row each; empty title and no rows when there is none.
+io::Table support_table(std::span<const SupportCoefficients> list);
 
 }  // namespace whirl::app

@@ -32,6 +32,14 @@ struct SupportCondition {
   std::string name;
   Where where;
   std::function<State(const NodeAt&)> state;
+  double sommerfeld = 0;            ///< of a film: eta L D (R/c)^2, N s; times the speed in rev/s over the load it is the Sommerfeld number
+};
+
+/// Load of every element of a rolling bearing.
+struct RollingLoads {
+  struct Element { double angle, load; };    ///< rad from +y towards +z, 0 to 2 pi; N
+  std::string name;
+  std::function<std::vector<Element>(const NodeAt&)> loads;
 };
 
 /// Torque of a drive on its shaft, N m: of a torque curve, or the reaction of a prescribed angle.
@@ -56,6 +64,7 @@ struct Built {
   std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors), sorted: integrator steps land on them
   std::vector<SupportForce> support_forces;
   std::vector<SupportCondition> conditions;
+  std::vector<RollingLoads> rolling_loads;
   std::vector<DriveTorque> drive_torques;
   std::vector<LineSpin> spins;      ///< one a line
   Index reference = 0;              ///< node whose spin is the speed axis: the first drive's, else the first node of the first rotating line

@@ -16,6 +16,7 @@ double viscosity_of(const model::Oil& o) {
 /// Films: clearance, and the load they carry near it at the present spin in the direction of the displacement.
 template <class Film>
 void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Film& film, double clearance) {
+  const double sommerfeld = 2.0 * film.viscosity * film.length * film.radius * (film.radius / clearance) * (film.radius / clearance);
   using Law = elements::FilmLaw<Film>;
   const Law law{film};
   add_lateral(a, b, n, law, "journal bearings");
@@ -32,7 +33,7 @@ void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
     law.force(m, z);
     s.capacity = z.head<2>().norm();
     return s;
-  }});
+  }, sommerfeld});
 }
 
 std::vector<elements::JournalPad> pads_of(const model::FiniteJournal& law) {

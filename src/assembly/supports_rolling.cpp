@@ -2,7 +2,30 @@
 #include <assembly/support_parts.hpp>
 #include <elements/rolling_bearing.hpp>
 
+#include <cmath>
+
 namespace whirl::assembly {
+namespace {
+
+template <class Bearing>
+void add_rolling(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Bearing& k, const char* kind) {
+  add_joint(a, b, n, k, kind);
+  const Pair nodes{n.shaft.node, n.other.node};
+  a.built.rolling_loads.push_back({b.name, [k, nodes, off = std::array{n.shaft.offset, n.other.offset}](const NodeAt& at) {
+    const elements::AtOffset<Bearing> shift{k, off};
+    const typename elements::AtOffset<Bearing>::Shifted x(shift, nodes_of(at, nodes));
+    const Vector<6> q = k.deflection(x.nodes);
+    const std::vector<double> loads = k.loads(q);
+    std::vector<RollingLoads::Element> out;
+    for (std::size_t j = 0; j < loads.size(); ++j) {
+      const double angle = q[5] + two_pi * static_cast<double>(j) / static_cast<double>(loads.size());
+      out.push_back({angle - two_pi * std::floor(angle / two_pi), loads[j]});
+    }
+    return out;
+  }});
+}
+
+}  // namespace
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::BallBearing& law) {
   guarded(a, b, [&] {
@@ -12,7 +35,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     elements::BallBearing k = elements::make_ball_bearing(g);
     if (law.preload > 0) elements::set_axial_preload(k, law.preload);
     k.c_radial = law.c_radial, k.c_axial = law.c_axial;
-    add_joint(a, b, n, k, "ball bearings");
+    add_rolling(a, b, n, k, "ball bearings");
   });
 }
 
@@ -20,7 +43,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
   guarded(a, b, [&] {
     elements::RollerBearing k = elements::make_roller_bearing({law.rollers, law.roller_diameter, law.roller_length, law.pitch_diameter, law.clearance, law.stiffness});
     k.c_radial = law.c_radial, k.c_axial = law.c_axial;
-    add_joint(a, b, n, k, "roller bearings");
+    add_rolling(a, b, n, k, "roller bearings");
   });
 }
 

@@ -107,7 +107,7 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
     const double a = r.values.empty() ? r.start : r.values.front(), b = r.values.empty() ? r.stop : r.values.back();
     return std::pair(std::min(a * ratio, b * ratio), std::max(a * ratio, b * ratio));
   };
-  if (const auto* x = std::get_if<model::StaticStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::StaticStep>(&s.law)) return x->speeds ? range(*x->speeds) : std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::ModalStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) return range(x->speed);
   if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) return range(x->speed);

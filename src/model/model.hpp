@@ -132,9 +132,9 @@ struct Bearing : Entity {
 
 /// A foundation or casing as reduced matrices: its coordinates are support points of bearings and internal ones.
 struct Foundation : Entity {
-  struct Coordinate { std::string name; int bearing = -1; int direction = 0; };   ///< bearing -1: internal; direction 0 x, 1 y, 2 z
+  struct Coordinate { std::string name; int bearing = -1; int direction = 0; };   ///< bearing -1: internal; direction 0 .. 2 x, y, z, 3 .. 5 rotations about them
   std::vector<Coordinate> coordinates;
-  MatX K, C, M;                        ///< symmetric, one row and column a coordinate
+  MatX K, C, M;                        ///< one row and column a coordinate; M symmetric
 };
 
 // ---------------------------------------------------------------- loads and drives
@@ -206,6 +206,7 @@ struct LoadPath {
 struct StaticStep {
   int load_steps = 1;
   double speed = 0;
+  std::optional<SpeedRange> speeds; ///< equilibria one after another; the last one is the step's result
   std::optional<LoadPath> path;
 };
 /// Which unknowns of the shafts take part in a frequency-domain step; the others are held.

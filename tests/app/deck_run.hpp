@@ -4,17 +4,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace whirl::test {
 
-/// Numbers of a CSV file with one header line.
+/// Numbers of a CSV file with one header line; words are nan.
 struct Columns {
   std::vector<std::string> names;
   std::vector<std::vector<double>> rows;
@@ -27,8 +29,18 @@ struct Columns {
     while (std::getline(in, line)) {
       std::istringstream cells(line);
       rows.emplace_back();
-      for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(std::stod(cell));
+      for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(number(cell));
     }
+  }
+  static double number(const std::string& cell) {
+    char* end = nullptr;
+    const double x = std::strtod(cell.c_str(), &end);
+    return end == cell.c_str() ? std::nan("") : x;
+  }
+  std::size_t column(const std::string& name) const {
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (names[k] == name) return k;
+    throw std::runtime_error("no column '" + name + "'");
   }
   std::map<std::string, double> named(const std::vector<double>& row) const {
     std::map<std::string, double> out;
@@ -56,15 +68,14 @@ struct DeckRun {
   int exit = -1;
   std::string log;
   explicit DeckRun(const std::string& deck) {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::temp_directory_path() / ("whirl_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder);
+    make_folder();
     std::ofstream(folder / "d.toml") << deck;
-    const int status = std::system(("cd '" + folder.string() + "' && '" WHIRL_EXE "' run d.toml -o r >log.txt 2>&1 </dev/null").c_str());
-    exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    std::ostringstream text;
-    text << std::ifstream(folder / "log.txt").rdbuf();
-    log = text.str();
+    run("d.toml");
+  }
+  /// A deck where it stands, with the tables beside it.
+  explicit DeckRun(const std::filesystem::path& deck) {
+    make_folder();
+    run(deck.string());
   }
   DeckRun(const DeckRun&) = delete;
   DeckRun& operator=(const DeckRun&) = delete;
@@ -74,6 +85,20 @@ struct DeckRun {
   }
   Columns csv(const std::string& name) const { return Columns(folder / "r" / name); }
   bool says(const std::string& text) const { return log.find(text) != std::string::npos; }
+
+ private:
+  void make_folder() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder = std::filesystem::temp_directory_path() / ("whirl_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+  }
+  void run(const std::string& deck) {
+    const int status = std::system(("cd '" + folder.string() + "' && '" WHIRL_EXE "' run '" + deck + "' -o r >log.txt 2>&1 </dev/null").c_str());
+    exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    std::ostringstream text;
+    text << std::ifstream(folder / "log.txt").rdbuf();
+    log = text.str();
+  }
 };
 
 }  // namespace whirl::test

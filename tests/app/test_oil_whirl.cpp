@@ -1,0 +1,164 @@
+// Oil whirl of the flexible rotor, from the deck to the results: the onset of the eigenvalues, nonlinear runs on both sides of it.
+#include "deck_run.hpp"
+
+#include <core/types.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace whirl;
+using test::Columns;
+using test::DeckRun;
+
+namespace {
+
+/// Rotor of Friswell, Penny, Garvey & Lees, Dynamics of Rotating Machines, 2010, example 5.9.6: two disks, two short bearings with 525 N each.
+std::string rotor(const std::string& steps) {
+  const std::string film = R"(type = "short_journal"
+diameter = "100 mm"
+length = "30 mm"
+clearance = "100 um"
+viscosity = "100 mPa.s"
+)";
+  return R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "given"
+E = "211 GPa"
+G = "81.2 GPa"
+density = "7810 kg/m^3"
+[shaft]
+name = "rotor"
+material = "given"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 500, 50, 2], ["b", 500, 50, 2], ["c", 500, 50, 2]]
+[[disk]]
+name = "disk1"
+at = "a:end"
+od = "280 mm"
+id = "50 mm"
+width = "70 mm"
+material = "given"
+[[disk]]
+name = "disk2"
+at = "b:end"
+od = "350 mm"
+id = "50 mm"
+width = "70 mm"
+material = "given"
+[[bearing]]
+name = "thrust"
+at = "a:start"
+type = "rigid"
+directions = ["x"]
+[[load]]
+at = "a:start"
+force = ["0 N", "0 N", "-525 N"]
+[[load]]
+at = "c:end"
+force = ["0 N", "0 N", "-525 N"]
+[[probe]]
+name = "journal"
+at = "a:start"
+[[bearing]]
+name = "DE"
+at = "a:start"
+)" + film + "[[bearing]]\nname = \"NDE\"\nat = \"c:end\"\n" + film + steps;
+}
+
+/// Modes at `rpm`, then a nonlinear run at that speed that starts in the mode on the verge.
+std::string run_in_mode(double rpm, double seconds, const char* amplitude, double tolerance) {
+  return rotor(fmt::format(R"([[drive]]
+name = "motor"
+at = "a:start"
+type = "speed"
+speed = "{0:.9g} rpm"
+step = "run"
+[[step]]
+name = "modes"
+type = "modal"
+speed = "{0:.9g} rpm"
+modes = 4
+[[step]]
+name = "run"
+type = "transient"
+start = "mode"
+mode = 2
+mode_amplitude = "{2}"
+duration = "{1:.6g} s"
+integrator = {{ tolerance = {3:.1g} }}
+[output]
+every = "1 ms"
+quantities = ["probes", "energy"]
+report = false
+)", rpm, seconds, amplitude, tolerance));
+}
+
+/// Root of the mean square of the journal's distance from its mean place in [from, from + length), m.
+double whirl_in(const Columns& run, double from, double length) {
+  const std::size_t t = run.column("t [s]"), y = run.column("journal.y [m]"), z = run.column("journal.z [m]");
+  double count = 0, Y = 0, Z = 0, sum = 0;
+  for (const auto& row : run.rows)
+    if (row[t] >= from && row[t] < from + length) ++count, Y += row[y], Z += row[z];
+  for (const auto& row : run.rows)
+    if (row[t] >= from && row[t] < from + length) sum += std::pow(row[y] - Y / count, 2) + std::pow(row[z] - Z / count, 2);
+  return std::sqrt(sum / count);
+}
+
+/// 2075.4209 rpm by another code's elements, given to 2e-4.
+constexpr double onset = 2075.4209;
+
+}  // namespace
+
+TEST(OilWhirlRuns, OnsetOfTheFlexibleRotor) {
+  const DeckRun d(rotor(R"([[step]]
+name = "stability"
+type = "stability"
+speed = { start = "1000 rpm", stop = "3000 rpm", points = 11 }
+[output]
+report = false
+)"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_NEAR(d.csv("stability_onset.csv").rows.at(0).at(0), onset, 2e-4 * onset);
+}
+
+// 0.1 um in a clearance of 100 um is a small motion: it decays below the onset and grows above at the rate of the eigenvalue. What is left is the second
+// order in amplitude over clearance, and the whole whirl periods that the windows hold to one sample in a thousand.
+TEST(OilWhirlRuns, SmallMotionsFollowTheEigenvalue) {
+  for (const double factor : {0.98, 1.02}) {
+    SCOPED_TRACE(factor);
+    const DeckRun d(run_in_mode(factor * onset, 12.0, "2 um", 1e-7));
+    ASSERT_EQ(d.exit, 0) << d.log;
+    const Columns modes = d.csv("modes_modes.csv");
+    const auto mode = modes.named(modes.rows.at(1));
+    const double f = mode.at("frequency [Hz]"), rate = -f * mode.at("log decrement [-]");
+    EXPECT_NEAR(f, 17.418836, 0.01 * f);   // that of the onset, nearly
+    const Columns run = d.csv("run.csv");
+    const double window = 34 / f;
+    const double found = std::log(whirl_in(run, 10.0, window) / whirl_in(run, 0.0, window)) / 10.0;
+    EXPECT_NEAR(found, rate, 3e-3 * std::abs(rate));
+    EXPECT_EQ(found > 0, factor > 1);
+  }
+}
+
+// From some hundredths of the clearance: below the onset back to the equilibrium, above it out to a limit cycle near the bearing wall, which stays.
+TEST(OilWhirlRuns, ReturnsBelowAndSettlesInAWhipAbove) {
+  {
+    const DeckRun d(run_in_mode(0.98 * onset, 30.0, "50 um", 1e-4));
+    ASSERT_EQ(d.exit, 0) << d.log;
+    const Columns run = d.csv("run.csv");
+    EXPECT_LT(whirl_in(run, 28.9, 1.0), 0.02 * whirl_in(run, 0.0, 1.0));
+  }
+  {
+    const DeckRun d(run_in_mode(1.02 * onset, 26.0, "100 um", 1e-6));
+    ASSERT_EQ(d.exit, 0) << d.log;
+    const Columns run = d.csv("run.csv");
+    const double before = whirl_in(run, 22.0, 1.0), after = whirl_in(run, 24.9, 1.0);
+    EXPECT_GT(after, 80e-6);
+    EXPECT_LT(after, 100e-6);
+    EXPECT_NEAR(after, before, 0.01 * after);
+  }
+}

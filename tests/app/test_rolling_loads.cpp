@@ -1,0 +1,75 @@
+// Load of every ball and roller, from the deck to the table of the results.
+#include "deck_run.hpp"
+
+#include <core/types.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace whirl;
+using test::Columns;
+using test::DeckRun;
+
+namespace {
+
+std::string deck(const std::string& held, const std::string& force, const std::string& bearing) {
+  return R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "rigid"]
+rows = [["left", 100, true], ["right", 100, true]]
+[[disk]]
+name = "mass"
+at = "left:end"
+mass = "20 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.06 kg.m^2"
+[[bearing]]
+name = "guide"
+at = "mass"
+type = "rigid"
+directions = [)" + held + "]\n[[load]]\nat = \"mass\"\nforce = [" + force + "]\n[[bearing]]\nname = \"tested\"\nat = \"mass\"\n" + bearing +
+         "[[step]]\nname = \"load\"\ntype = \"static\"\n[output]\nreport = false\n";
+}
+
+}  // namespace
+
+// Stribeck: Z Qmax/F without clearance, the load over one element: 4.345708935, 4.364492313, 4.368085065 for 8, 12, 16 balls, 4.077006838, .. for rollers.
+TEST(RollingLoads, StribeckNumber) {
+  const int Z[] = {8, 12, 16};
+  const double ball[] = {4.345708935, 4.364492313, 4.368085065}, roller[] = {4.077006838, 4.082806932, 4.084109416};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const bool balls : {true, false}) {
+      const DeckRun d(deck(R"("x", "ry", "rz")", R"("0 N", "0 N", "-1000 N")",
+                           balls ? fmt::format("type = \"ball\"\nballs = {}\nball_diameter = \"8 mm\"\npitch_diameter = \"60 mm\"\n", Z[i])
+                                 : fmt::format("type = \"roller\"\nrollers = {}\nroller_diameter = \"8 mm\"\nroller_length = \"10 mm\"\npitch_diameter = \"60 mm\"\n", Z[i])));
+      ASSERT_EQ(d.exit, 0) << d.log;
+      const Columns t = d.csv("load_rolling.csv");
+      ASSERT_EQ(t.rows.size(), static_cast<std::size_t>(Z[i]));
+      double most = 0, z = 0;
+      for (const auto& row : t.rows) {
+        const auto e = t.named(row);
+        most = std::max(most, e.at("load [N]")), z += e.at("load [N]") * std::sin(e.at("angle [deg]") * pi / 180);
+      }
+      EXPECT_NEAR(z, -1000, 1e-6);   // they carry it: the shaft presses down
+      EXPECT_NEAR(Z[i] * most / 1000, balls ? ball[i] : roller[i], 1e-8) << (balls ? "balls " : "rollers ") << Z[i];
+    }
+}
+
+// 218 angular-contact bearing under a thrust of 17,800 N (Harris & Kotzalas): Z = 16, D = 22.23 mm, 40 deg, B = 0.0464, axial constant 896.7 N/mm^2. Exact root of
+// sin a (cos 40/cos a - 1)^1.5 = Fa/(Z D^2 K): 41.59207702 deg and 0.03831822 mm, every ball alike.
+TEST(RollingLoads, AngularContact218UnderThrust) {
+  const double D = 0.02223, K = 896.7e6 * D * D / std::pow(0.0464 * D, 1.5);
+  const DeckRun d(deck(R"("y", "z", "ry", "rz")", R"("17800 N", "0 N", "0 N")",
+                       fmt::format("type = \"ball\"\nballs = 16\nball_diameter = \"22.23 mm\"\npitch_diameter = \"125.27 mm\"\ncontact_angle = \"40 deg\"\nf_inner = 0.5232\nf_outer = 0.5232\nstiffness = \"{:.15g} N/m^1.5\"\n", K)));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns balls = d.csv("load_rolling.csv"), shape = d.csv("load_deflection.csv");
+  ASSERT_EQ(balls.rows.size(), 16u);
+  for (const auto& row : balls.rows) EXPECT_NEAR(row[balls.column("load [N]")], 17800 / (16 * std::sin(41.59207702 * pi / 180)), 1e-7 * 1700);
+  EXPECT_NEAR(shape.rows[0][shape.column("u_x [m]")], 0.03831822e-3, 1e-7 * 3.8e-5);
+}
