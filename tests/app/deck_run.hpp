@@ -72,6 +72,7 @@ struct DeckRun {
     std::ofstream(folder / "d.toml") << deck;
     run("d.toml");
   }
+  explicit DeckRun(const char* deck) : DeckRun(std::string(deck)) {}
   /// A deck where it stands, with the tables beside it.
   explicit DeckRun(const std::filesystem::path& deck) {
     make_folder();
