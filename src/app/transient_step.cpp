@@ -333,7 +333,9 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   }
   if (r.reason == analysis::StopReason::failed)
     throw run_error("R10", fmt::format("step '{}' stopped {}", step.name, r.detail),
-                    "results up to that time are complete; try a smaller tolerance, or look at the state before it in the frames", step.name);
+                    law.integrator.tolerance < 1e-7 ? "results up to that time are complete; a tolerance of 1e-7 or more may be above the rounding of this model"
+                                                    : "results up to that time are complete; try a smaller tolerance, or look at the state before it in the frames",
+                    step.name);
 }
 
 }  // namespace whirl::app
