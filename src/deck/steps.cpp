@@ -89,7 +89,7 @@ void describe(Visitor& v, model::LoadPath& p) {
 
 void describe(Visitor& v, model::StaticStep& s) {
   v.integer("load_steps", s.load_steps, between(1, 100000), "number of parts in which gravity and the loads are put on (more where needed)");
-  v.quantity("speed", s.speed, "rpm", any, "speed of the rotor");
+  v.quantity(optional("speed", "0 rpm"), s.speed, "rpm", any, "speed of the rotor");
   v.table(optional("speeds", "speed alone"), s.speeds, "equilibria at these speeds instead, one after another: locus, eccentricity, load and the eight coefficients of each bearing against speed; later steps start from the last one");
   v.table(optional("path", "one equilibrium, at the full load"), s.path, "follow the equilibria from no load past limit points (buckling, snap-through)");
   if (v.clean() && s.path && s.load_steps > 1) v.error("E26", "load_steps", "a path has its own steps", "use path.steps");
