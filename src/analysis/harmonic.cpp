@@ -48,6 +48,10 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
   context.hysteretic = linear_.hysteretic(), context.whirl = context.whirl_side = w;
   out.resize(what.size());
   for (std::size_t m = 0; m < what.size(); ++m) out[m].assign(what[m].width(), Complex(0, 0));
+  if (!a.allFinite()) {   // no response: an undamped resonance, or a motion that nothing resists at 0 Hz
+    for (auto& values : out) std::fill(values.begin(), values.end(), Complex(nan, nan));
+    return;
+  }
   const double eps = variation_step(a);
   if (eps == 0.0) return;
   const system::FrequencyScope ask(w);

@@ -48,8 +48,10 @@ std::vector<double> line_torques(const FrequencyStep& s, const la::MCK& m, const
   for (const meshes::Line& l : s.job.mesh.lines) {
     double most = 0;
     for (Index n = l.first_node; n + 1 < l.first_node + l.nodes; ++n)
-      if (const Index slot = m.K.pattern().slot(n, n + 1); slot >= 0)   // the coupling of neighbours is the element's GJ/l
-        most = std::max(most, std::abs(m.K.block(slot)(3, 3)) * std::abs(a[6 * (n + 1) + 3] - a[6 * n + 3]));
+      if (const Index slot = m.K.pattern().slot(n, n + 1); slot >= 0) {   // the coupling of neighbours is the element's GJ/l
+        const double torque = std::abs(m.K.block(slot)(3, 3)) * std::abs(a[6 * (n + 1) + 3] - a[6 * n + 3]);
+        most = std::isnan(torque) ? torque : std::max(most, torque);
+      }
     out.push_back(most);
   }
   return out;

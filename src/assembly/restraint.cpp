@@ -219,6 +219,10 @@ class Restraint {
     for (const model::Bearing& b : a_.model.bearings)
       if (const auto* k = std::get_if<model::LinearBearing>(&b.law))
         if (contains(lines, static_cast<Index>(b.at.shaft)) && acts(k->preload.head<3>())) return true;
+    for (const model::Step& s : a_.model.steps)
+      if (const auto* h = std::get_if<model::HarmonicStep>(&s.law))
+        for (const model::HarmonicForce& f : h->forces)
+          if (contains(lines, static_cast<Index>(f.at.shaft)) && acts(f.force)) return true;
     return acts(a_.model.gravity);
   }
 
