@@ -130,7 +130,7 @@ MassProperties shaft_mass(const model::Model& m, std::size_t shaft) {
   for (const auto& u : m.unbalances)
     if (u.at.shaft == shaft) {
       const double now = u.factor ? u.amount * u.factor->at(0).f : u.amount;
-      const Vec3 at = s.position(u.at.s), arm = now * Vec3(0, std::cos(u.phase), std::sin(u.phase));
+      const Vec3 at = u.to ? Vec3(0.5 * (s.position(u.at.s) + s.position(u.to->s))) : s.position(u.at.s), arm = now * Vec3(0, std::cos(u.phase), std::sin(u.phase));
       p.moment += arm;
       p.about_origin += 2 * at.dot(arm) * Mat3::Identity() - at * arm.transpose() - arm * at.transpose();
     }

@@ -35,7 +35,10 @@ std::string named(const char* kind, const model::Entity& e) {
 std::vector<Attached> attachments(const Model& m) {
   std::vector<Attached> out;
   for (const auto& x : m.disks) out.push_back({&x.at, named("disk", x), x.mass});
-  for (const auto& x : m.unbalances) out.push_back({&x.at, named("unbalance", x)});
+  for (const auto& x : m.unbalances) {
+    out.push_back({&x.at, named("unbalance", x)});
+    if (x.to) out.push_back({&*x.to, named("unbalance", x)});
+  }
   for (const auto& x : m.bearings) {
     const bool held = std::holds_alternative<model::RigidSupport>(x.law) && !x.to && !x.pedestal;
     out.push_back({&x.at, named("bearing", x), 0.0, held});

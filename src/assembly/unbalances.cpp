@@ -65,6 +65,40 @@ Shares share(double U, double x0, Index k, const std::vector<double>& x, const s
   }
 }
 
+void too_much(Assembly& a, const model::Unbalance& u, double U, const std::vector<NodeInertia>& nodes) {
+  NodeInertia whole;
+  for (const NodeInertia& n : nodes) whole.mass += n.mass, whole.Ip += n.Ip;
+  a.error("E38", fmt::format("an unbalance of {:.4g} kg m is more than its shaft can have: {:.4g} kg with a radius of inertia of {:.3g} mm about the axis, the mass centre {:.3g} mm beside it", U, whole.mass,
+                             1e3 * std::sqrt(whole.Ip / whole.mass), 1e3 * U / whole.mass),
+          "an amount is mass times eccentricity: 1 g at 100 mm is \"100 g.mm\" = \"1e-4 kg.m\"; give the disk that has it its mass, Ip and Id", u, u.name.empty() ? "unbalance" : u.name);
+}
+
+/// Spread evenly over elements and rigid sections: with the cubic shapes of an element, int N ds = l/2 on the displacement and +-l^2/12 on
+/// the director of each end, which the offset of a node's share stands for.
+void add_spread(Assembly& a, const model::Unbalance& u, const meshes::Line& line, const std::vector<NodeInertia>& nodes) {
+  const double from = u.at.s, to = u.to->s, per_length = u.amount / (to - from), tiny = 1e-9 * (to - from);
+  std::vector<Vec2> share(nodes.size(), Vec2::Zero());   // kg m, kg m2 along the axis from the node
+  const auto add = [&](Index node, double amount, double moment) { share[static_cast<std::size_t>(node - line.first_node)] += Vec2(amount, moment); };
+  for (Index i = line.first_element; i < line.first_element + line.elements; ++i) {
+    const meshes::Element& e = a.mesh.elements[static_cast<std::size_t>(i)];
+    if (e.s1 < from - tiny || e.s2 > to + tiny) continue;   // its ends are nodes
+    const double l = e.s2 - e.s1, half = 0.5 * per_length * l, moment = per_length * l * l / 12;
+    add(e.left.node, half, half * e.left.offset + moment);
+    add(e.right.node, half, half * e.right.offset - moment);
+  }
+  for (const meshes::RigidPart& r : a.mesh.rigid_parts) {
+    if (r.node < line.first_node || r.node >= line.first_node + line.nodes) continue;
+    const double s = a.mesh.nodes[static_cast<std::size_t>(r.node)].s, o1 = std::max(r.o1, from - s), o2 = std::min(r.o2, to - s);
+    if (o2 > o1) add(r.node, per_length * (o2 - o1), per_length * (o2 - o1) * 0.5 * (o1 + o2));
+  }
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    if (share[i][0] == 0) continue;
+    const double U = std::abs(share[i][0]) * largest_factor(u), own = nodes[i].carries();
+    if (own > 0 && U > impossible * own) return too_much(a, u, std::abs(u.amount) * largest_factor(u), nodes);
+    a.builder.add(elements::UnbalanceMass(share[i][0], u.phase, u.factor, share[i][1] / share[i][0]), {line.first_node + static_cast<Index>(i)}, "unbalances");
+  }
+}
+
 }  // namespace
 
 void add_unbalances(Assembly& a) {
@@ -76,6 +110,10 @@ void add_unbalances(Assembly& a) {
     const meshes::Line& line = a.mesh.lines[static_cast<std::size_t>(line_index)];
     std::vector<NodeInertia>& nodes = known[static_cast<std::size_t>(line_index)];
     if (nodes.empty()) nodes = node_inertias(a.model, a.mesh, line);
+    if (u.to) {
+      add_spread(a, u, line, nodes);
+      continue;
+    }
     const Index k = at.node - line.first_node;
     const double U = std::abs(u.amount) * largest_factor(u), own = nodes[static_cast<std::size_t>(k)].carries();
     // A node without any inertia is a mass point on a massless shaft; whether it may turn is for the scene to say.
@@ -89,11 +127,7 @@ void add_unbalances(Assembly& a) {
     Shares s = share(U, x0, k, x, nodes);
     if (!(s.worst < 1 / own)) s = {k, {1.0}, 1 / own};
     if (U * s.worst > impossible) {
-      NodeInertia whole;
-      for (const NodeInertia& n : nodes) whole.mass += n.mass, whole.Ip += n.Ip;
-      a.error("E38", fmt::format("an unbalance of {:.4g} kg m is more than its shaft can have: {:.4g} kg with a radius of inertia of {:.3g} mm about the axis, the mass centre {:.3g} mm beside it", U, whole.mass,
-                                 1e3 * std::sqrt(whole.Ip / whole.mass), 1e3 * U / whole.mass),
-              "an amount is mass times eccentricity: 1 g at 100 mm is \"100 g.mm\" = \"1e-4 kg.m\"; give the disk that has it its mass, Ip and Id", u, u.name.empty() ? "unbalance" : u.name);
+      too_much(a, u, U, nodes);
       continue;
     }
     if (s.w.size() == 1) {

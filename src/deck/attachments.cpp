@@ -86,7 +86,9 @@ void describe(Visitor& v, model::Disk& d) {
 void describe(Visitor& v, model::Unbalance& u) {
   v.name(u, "unbalance");
   v.location(required("at"), u.at, place);
-  const bool amount = v.quantity(optional("amount", "from the grade"), u.amount, "g.mm", not_negative, "mass times eccentricity");
+  model::Location to;
+  if (v.location(optional("to", "at one place"), to, "the amount is spread evenly from 'at' to here, on the same shaft")) u.to = to;
+  const bool amount = v.quantity(optional("amount", "from the grade"), u.amount, "g.mm", not_negative, "mass times eccentricity, in all");
   std::string grade;
   double speed = 0, mass = 0;
   const bool has_grade = v.text(optional("grade", "amount is given"), grade, "balance quality grade after ISO 21940-11, \"G2.5\": eccentricity times speed in mm/s at grade_speed");

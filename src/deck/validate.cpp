@@ -259,7 +259,13 @@ void check_places(const model::Model& m, Problems& out) {
     if (at.housing >= 0) add(out, "E26", fmt::format("a {} cannot stand on the support of a bearing", what), "only probes and loads can", at.where);
   };
   for (const auto& d : m.disks) on_shaft(d.at, "disk");
-  for (const auto& u : m.unbalances) on_shaft(u.at, "unbalance");
+  for (const auto& u : m.unbalances) {
+    on_shaft(u.at, "unbalance");
+    if (!u.to) continue;
+    on_shaft(*u.to, "unbalance");
+    if (u.to->shaft != u.at.shaft || !(u.to->s > u.at.s))
+      add(out, "E26", "the end of an unbalance lies on another shaft or not to the right of its beginning", "'to' is a place further right on the shaft of 'at'", u.to->where);
+  }
   for (const auto& d : m.drives) on_shaft(d.at, "drive");
   for (const auto& b : m.bearings) {
     on_shaft(b.at, "bearing");

@@ -102,6 +102,7 @@ struct Disk : Entity {
 
 struct Unbalance : Entity {
   Location at;
+  std::optional<Location> to;   ///< of the same shaft, to the right: evenly over the length between; absent = at one place
   double amount = 0;   ///< kg m
   double phase = 0;    ///< rad, body angle from e2 towards e3
   LawPtr factor;       ///< time law multiplying amount (blade loss, thermal growth); null = 1
