@@ -1,5 +1,6 @@
 // Oil whirl of the flexible rotor, from the deck to the results: the onset of the eigenvalues, nonlinear runs on both sides of it.
 #include "deck_run.hpp"
+#include "oil_whirl_rotor.hpp"
 
 #include <core/types.hpp>
 
@@ -14,64 +15,9 @@ using test::DeckRun;
 
 namespace {
 
-/// Rotor of Friswell, Penny, Garvey & Lees, Dynamics of Rotating Machines, 2010, example 5.9.6: two disks, two short bearings with 525 N each.
-std::string rotor(const std::string& steps) {
-  const std::string film = R"(type = "short_journal"
-diameter = "100 mm"
-length = "30 mm"
-clearance = "100 um"
-viscosity = "100 mPa.s"
-)";
-  return R"(format = 1
-[model]
-gravity = "0 m/s^2"
-[[material]]
-name = "given"
-E = "211 GPa"
-G = "81.2 GPa"
-density = "7810 kg/m^3"
-[shaft]
-name = "rotor"
-material = "given"
-columns = ["name", "length[mm]", "od[mm]", "min_elements"]
-rows = [["a", 500, 50, 2], ["b", 500, 50, 2], ["c", 500, 50, 2]]
-[[disk]]
-name = "disk1"
-at = "a:end"
-od = "280 mm"
-id = "50 mm"
-width = "70 mm"
-material = "given"
-[[disk]]
-name = "disk2"
-at = "b:end"
-od = "350 mm"
-id = "50 mm"
-width = "70 mm"
-material = "given"
-[[bearing]]
-name = "thrust"
-at = "a:start"
-type = "rigid"
-directions = ["x"]
-[[load]]
-at = "a:start"
-force = ["0 N", "0 N", "-525 N"]
-[[load]]
-at = "c:end"
-force = ["0 N", "0 N", "-525 N"]
-[[probe]]
-name = "journal"
-at = "a:start"
-[[bearing]]
-name = "DE"
-at = "a:start"
-)" + film + "[[bearing]]\nname = \"NDE\"\nat = \"c:end\"\n" + film + steps;
-}
-
 /// Modes at `rpm`, then a nonlinear run at that speed that starts in the mode on the verge.
 std::string run_in_mode(double rpm, double seconds, const char* amplitude, double tolerance) {
-  return rotor(fmt::format(R"([[drive]]
+  return test::oil_whirl_rotor(fmt::format(R"([[drive]]
 name = "motor"
 at = "a:start"
 type = "speed"
@@ -114,7 +60,7 @@ constexpr double onset = 2075.4209;
 }  // namespace
 
 TEST(OilWhirlRuns, OnsetOfTheFlexibleRotor) {
-  const DeckRun d(rotor(R"([[step]]
+  const DeckRun d(test::oil_whirl_rotor(R"([[step]]
 name = "stability"
 type = "stability"
 speed = { start = "1000 rpm", stop = "3000 rpm", points = 11 }

@@ -9,6 +9,7 @@
 #include <analysis/whirl_modes.hpp>
 #include "deck_model.hpp"
 #include "record.hpp"
+#include "../app/oil_whirl_rotor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,52 +34,6 @@ viscosity = "100 mPa.s"
 /// One mass on one bearing: half a symmetric rigid rotor. It translates only.
 std::string rigid_rotor() { return test::lateral_mass(53.51681957, "9.81 m/s^2", std::string("[[bearing]]\nname = \"film\"\nat = \"mass\"\n") + journal); }
 
-std::string flexible_rotor() {
-  const std::string film = journal;
-  return R"(format = 1
-[model]
-gravity = "0 m/s^2"
-[[material]]
-name = "given"
-E = "211 GPa"
-G = "81.2 GPa"
-density = "7810 kg/m^3"
-[shaft]
-name = "rotor"
-material = "given"
-columns = ["name", "length[mm]", "od[mm]", "min_elements"]
-rows = [["a", 500, 50, 2], ["b", 500, 50, 2], ["c", 500, 50, 2]]
-[[disk]]
-name = "disk1"
-at = "a:end"
-od = "280 mm"
-id = "50 mm"
-width = "70 mm"
-material = "given"
-[[disk]]
-name = "disk2"
-at = "b:end"
-od = "350 mm"
-id = "50 mm"
-width = "70 mm"
-material = "given"
-[[bearing]]
-name = "thrust"
-at = "a:start"
-type = "rigid"
-directions = ["x"]
-[[load]]
-at = "a:start"
-force = ["0 N", "0 N", "-525 N"]
-[[load]]
-at = "c:end"
-force = ["0 N", "0 N", "-525 N"]
-[[bearing]]
-name = "DE"
-at = "a:start"
-)" + film + "[[bearing]]\nname = \"NDE\"\nat = \"c:end\"\n" + film;
-}
-
 analysis::Onset onset(const DeckModel& m, double low, double high) {
   analysis::Linearizer linear(m.built.system, m.running());
   analysis::StabilityOptions o;
@@ -101,7 +56,7 @@ TEST(OilWhirl, OnsetOfTheRigidRotor) {
 
 // Reference: another code's two-node Timoshenko elements, given to 2e-4.
 TEST(OilWhirl, OnsetOfTheFlexibleRotor) {
-  const auto o = onset(DeckModel(flexible_rotor()), 1000 * rpm, 3000 * rpm);
+  const auto o = onset(DeckModel(test::oil_whirl_rotor()), 1000 * rpm, 3000 * rpm);
   EXPECT_NEAR(o.speed / rpm, 2075.4209, 2e-4 * 2075);
   EXPECT_NEAR(o.frequency / two_pi, 17.418836, 2e-4 * 17.4);
 }
