@@ -47,7 +47,8 @@ std::vector<Row> differences(const std::vector<double>& x, const std::vector<Row
 
 }  // namespace
 
-CoefficientGrid::CoefficientGrid(std::vector<double> spin, std::vector<double> frequency, const std::vector<Values>& rows, Between between, Outside outside)
+template <int N>
+CoefficientGrid<N>::CoefficientGrid(std::vector<double> spin, std::vector<double> frequency, const std::vector<Values>& rows, Between between, Outside outside)
     : spin_(std::move(spin)), frequency_(std::move(frequency)), between_(between), outside_(outside) {
   const auto fail = [](const char* what) { throw run_error("E81", std::string("bearing table: ") + what); };
   if (spin_.empty() || frequency_.empty()) fail("it has no rows");
@@ -57,12 +58,11 @@ CoefficientGrid::CoefficientGrid(std::vector<double> spin, std::vector<double> f
   for (std::size_t i = 0; i < frequency_.size(); ++i)
     if (!(frequency_[i] > (i ? frequency_[i - 1] : -1e-300))) fail("frequencies must increase from row to row and not be negative");
   for (const Values& v : rows) {
-    Node n;
-    const Mat2* m[] = {&v.K, &v.C, &v.M};
-    for (int k = 0; k < 3; ++k) n.f.segment<4>(4 * k) << (*m[k])(0, 0), (*m[k])(0, 1), (*m[k])(1, 0), (*m[k])(1, 1);
+    Node n{};
+    n.f = v.row();
     if (!n.f.isFinite().all()) fail("a coefficient is not finite");
     n.f_s = n.f_w = n.f_sw = Row::Zero();
-    has_mass_ = has_mass_ || (n.f.tail<4>() != 0.0).any();
+    has_mass_ = has_mass_ || !v.M.isZero(0.0);
     nodes_.push_back(n);
   }
   if (between_ == Between::linear) return;
@@ -87,7 +87,8 @@ CoefficientGrid::CoefficientGrid(std::vector<double> spin, std::vector<double> f
   for (std::size_t j = 0; j < W; ++j) along_spin(j, [](const Node& n) { return n.f_w; }, differences<Row>, [](Node& n, const Row& d) { n.f_sw += 0.5 * d; });
 }
 
-void CoefficientGrid::at(double s, double w, Values& v, Values& ds, Values& dw) const {
+template <int N>
+void CoefficientGrid<N>::at(double s, double w, Values& v, Values& ds, Values& dw) const {
   const double s_in = std::clamp(s, spin_.front(), spin_.back()), w_in = std::clamp(w, frequency_.front(), frequency_.back());
   const bool cubic = between_ == Between::monotone_cubic;
   const Hermite a(spin_, s_in, cubic), b(frequency_, w_in, cubic);
@@ -104,15 +105,11 @@ void CoefficientGrid::at(double s, double w, Values& v, Values& ds, Values& dw) 
   if (w != w_in) x[2].setZero();
   if (outside_ == Outside::undefined && (s != s_in || w != w_in))
     for (Row& r : x) r.setConstant(nan);
-  Mat2* out[] = {&v.K, &v.C, &v.M, &ds.K, &ds.C, &ds.M, &dw.K, &dw.C, &dw.M};
-  for (int k = 0; k < 9; ++k) {
-    const Row& r = x[k / 3];
-    const int o = 4 * (k % 3);
-    *out[k] << r[o], r[o + 1], r[o + 2], r[o + 3];
-  }
+  v.set(x[0]), ds.set(x[1]), dw.set(x[2]);
 }
 
-void CoefficientGrid::at(double s, Values& v, Values& dv) const {
+template <int N>
+void CoefficientGrid<N>::at(double s, Values& v, Values& dv) const {
   Values dw;
   if (const double asked = system::asked_frequency(); !std::isnan(asked)) return at(s, asked, v, dv, dw);
   const double w = std::clamp(std::abs(s), frequency_.front(), frequency_.back());
@@ -121,5 +118,8 @@ void CoefficientGrid::at(double s, Values& v, Values& dv) const {
   const double along = s < 0 ? -1.0 : 1.0;
   dv.K += along * dw.K, dv.C += along * dw.C, dv.M += along * dw.M;
 }
+
+template class CoefficientGrid<2>;
+template class CoefficientGrid<6>;
 
 }  // namespace whirl::elements

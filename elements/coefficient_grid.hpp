@@ -1,4 +1,4 @@
-// Lateral coefficients tabulated against spin s and the frequency w of the motion, on a grid: K(s, w), C(s, w), M(s, w) of
+// Coefficients (2x2 lateral, or 6x6) tabulated against spin s and the frequency w of the motion, on a grid: K(s, w), C(s, w), M(s, w) of
 //   F = -K r - C v - M a   for motions r exp(i w t),
 // as computed for tilting pads, gas seals and other supports with internal motion of their own.
 //
@@ -13,11 +13,13 @@
 
 namespace whirl::elements {
 
+template <int N>
 class CoefficientGrid {
  public:
-  using Values = CoefficientValues;
-  using Between = CoefficientTable::Between;
-  using Outside = CoefficientTable::Outside;
+  static constexpr int size = N;
+  using Values = CoefficientValues<N>;
+  using Between = typename CoefficientTable<N>::Between;
+  using Outside = typename CoefficientTable<N>::Outside;
   /// spin, frequency: rad/s, strictly increasing, frequency not negative; rows: spin by spin, frequencies within.
   /// Errors (E81): no rows, lengths that differ, not increasing, a value not finite.
   CoefficientGrid(std::vector<double> spin, std::vector<double> frequency, const std::vector<Values>& rows, Between between, Outside outside);
@@ -28,7 +30,7 @@ class CoefficientGrid {
   bool has_mass() const { return has_mass_; }
 
  private:
-  using Row = Eigen::Array<double, 12, 1>;
+  using Row = typename Values::Row;
   struct Node { Row f, f_s, f_w, f_sw; };
   const Node& node(std::size_t i, std::size_t j) const { return nodes_[i * frequency_.size() + j]; }
 
@@ -38,5 +40,8 @@ class CoefficientGrid {
   Outside outside_;
   bool has_mass_ = false;
 };
+
+extern template class CoefficientGrid<2>;
+extern template class CoefficientGrid<6>;
 
 }  // namespace whirl::elements

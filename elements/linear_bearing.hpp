@@ -3,14 +3,13 @@
 //
 // Two kernels:
 //   TranslationalBearing: q = u, 3 x 3 matrices (the usual case);
-//   LinearBearing: q = (u + s (d - e0), phi, e0 x d along e2, e3) at points s from the nodes along their axes, 6 x 6 in the
-//     order (x, y, z, rx, ry, rz). The tilts are the director components (sin of the tilt angle, equal to gamma2 and gamma3 in
-//     first order), so the element is linear in X and its tangents are constant; spring_block.hpp has the exact angle.
+//   LinearBearing: q = (x, y, z, rx, ry, rz) of six_motion.hpp at points off the nodes, 6 x 6 matrices; linear in X, so its tangents
+//     are constant.
 //
-// x, y, z are the columns of `axes` (e0, e2, e3; usually the global axes). Matrices need not be symmetric: the skew parts of K
+// Matrices need not be symmetric: the skew parts of K
 // and M exchange energy and count as supplied power, as does the preload. SI units.
 #pragma once
-#include <system/kernel.hpp>
+#include <elements/six_motion.hpp>
 
 namespace whirl::elements {
 
@@ -44,15 +43,9 @@ struct LinearBearing {
   Vector<6> load_on_first(const system::Nodes<2>& x) const;
 
  private:
-  using S = Matrix<6, 7>;                 ///< dq_i/dX_i
-  struct Relative { Vector<6> q, v, a; }; ///< q less the setpoint
-  Relative relative(const system::Nodes<2>& x) const;
-  S map(double s) const;
-
   Matrix<6> K_ = Matrix<6>::Zero(), C_ = K_, M_ = K_;
   Vector<6> setpoint_ = Vector<6>::Zero(), preload_ = Vector<6>::Zero();
-  Mat3 axes_ = Mat3::Identity();
-  S S1_ = S::Zero(), S2_ = S::Zero();
+  SixMotion between_;
   Matrix<14> K14_ = Matrix<14>::Zero(), C14_ = K14_, M14_ = K14_;
 };
 

@@ -9,7 +9,22 @@
 
 namespace whirl::elements {
 
-CoefficientTable::CoefficientTable(std::vector<double> spin, std::vector<Values> rows, Between between, Outside outside)
+using namespace system;
+
+template <int N>
+typename CoefficientValues<N>::Row CoefficientValues<N>::row() const {
+  Row r;
+  r << K.reshaped(), C.reshaped(), M.reshaped();
+  return r;
+}
+
+template <int N>
+void CoefficientValues<N>::set(const Row& r) {
+  K.reshaped() = r.template head<entries>(), C.reshaped() = r.template segment<entries>(entries), M.reshaped() = r.template tail<entries>();
+}
+
+template <int N>
+CoefficientTable<N>::CoefficientTable(std::vector<double> spin, std::vector<Values> rows, Between between, Outside outside)
     : spin_(std::move(spin)), between_(between), outside_(outside) {
   const auto fail = [](const char* what) { throw run_error("E81", std::string("bearing table: ") + what); };
   if (spin_.empty()) fail("it has no rows");
@@ -17,18 +32,16 @@ CoefficientTable::CoefficientTable(std::vector<double> spin, std::vector<Values>
   for (std::size_t i = 1; i < spin_.size(); ++i)
     if (!(spin_[i] > spin_[i - 1])) fail("speeds must increase from row to row");
   for (const Values& v : rows) {
-    Row r;
-    const Mat2* m[] = {&v.K, &v.C, &v.M};
-    for (int k = 0; k < 3; ++k) r.segment<4>(4 * k) << (*m[k])(0, 0), (*m[k])(0, 1), (*m[k])(1, 0), (*m[k])(1, 1);
-    if (!r.isFinite().all()) fail("a coefficient is not finite");
-    has_mass_ = has_mass_ || (r.tail<4>() != 0.0).any();
-    value_.push_back(r);
+    value_.push_back(v.row());
+    if (!value_.back().isFinite().all()) fail("a coefficient is not finite");
+    has_mass_ = has_mass_ || !v.M.isZero(0.0);
   }
   if (between_ == Between::monotone_cubic) slope_ = monotone_slopes(spin_, value_);
   else slope_.assign(spin_.size(), Row::Zero());
 }
 
-void CoefficientTable::at(double s, Values& v, Values& dv) const {
+template <int N>
+void CoefficientTable<N>::at(double s, Values& v, Values& dv) const {
   Row x = Row::Zero(), dx = Row::Zero();
   if (!covers(s)) x.setConstant(nan), dx.setConstant(nan);
   else if (s <= spin_.front() || spin_.size() == 1) x = value_.front();
@@ -46,17 +59,12 @@ void CoefficientTable::at(double s, Values& v, Values& dv) const {
       dx = chord + ((1 - u) * (1 - 3 * u) * a - u * (2 - 3 * u) * b) / h;
     }
   }
-  Mat2* out[] = {&v.K, &v.C, &v.M, &dv.K, &dv.C, &dv.M};
-  for (int k = 0; k < 6; ++k) {
-    const Row& r = k < 3 ? x : dx;
-    const int o = 4 * (k % 3);
-    *out[k] << r[o], r[o + 1], r[o + 2], r[o + 3];
-  }
+  v.set(x), dv.set(dx);
 }
 
 template <bool Mass, class Table>
 void TableBearingLaw<Mass, Table>::force(const LateralMotion& m, Vector<4>& z) const {
-  CoefficientValues v, dv;
+  CoefficientValues<2> v, dv;
   table->at(m.spin, v, dv);
   Vec2 F = -(v.K * m.r + v.C * m.v);
   if constexpr (Mass) F -= v.M * m.a;
@@ -65,7 +73,7 @@ void TableBearingLaw<Mass, Table>::force(const LateralMotion& m, Vector<4>& z) c
 
 template <bool Mass, class Table>
 void TableBearingLaw<Mass, Table>::tangent(const LateralMotion& m, Vector<4>& z, LateralTangent& t) const {
-  CoefficientValues v, dv;
+  CoefficientValues<2> v, dv;
   table->at(m.spin, v, dv);
   Vec2 F = -(v.K * m.r + v.C * m.v), F_s = -(dv.K * m.r + dv.C * m.v);
   t.set_zero();
@@ -80,7 +88,7 @@ void TableBearingLaw<Mass, Table>::tangent(const LateralMotion& m, Vector<4>& z,
 
 template <bool Mass, class Table>
 void TableBearingLaw<Mass, Table>::energy(const LateralMotion& m, system::Energy& e) const {
-  CoefficientValues v, dv;
+  CoefficientValues<2> v, dv;
   table->at(m.spin, v, dv);
   e.elastic += 0.5 * m.r.dot(v.K * m.r);
   e.dissipated += m.v.dot(v.C * m.v);
@@ -93,9 +101,63 @@ void TableBearingLaw<Mass, Table>::energy(const LateralMotion& m, system::Energy
   }
 }
 
-template struct TableBearingLaw<false, CoefficientTable>;
-template struct TableBearingLaw<true, CoefficientTable>;
-template struct TableBearingLaw<false, CoefficientGrid>;
-template struct TableBearingLaw<true, CoefficientGrid>;
+template <bool Mass, class Table>
+Vector<6> SpatialTableBearing<Mass, Table>::load_on_first(const Nodes<2>& x) const {
+  CoefficientValues<6> v, dv;
+  table->at(Spin(*x[0]).s, v, dv);
+  const SixMotion::Relative r = between.relative(x, setpoint);
+  Vector<6> F = preload - v.K * r.q - v.C * r.v;
+  if constexpr (Mass) F -= v.M * r.a;
+  return F;
+}
+
+template <bool Mass, class Table>
+void SpatialTableBearing<Mass, Table>::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
+  between.add_load(load_on_first(x), f);
+}
+
+template <bool Mass, class Table>
+void SpatialTableBearing<Mass, Table>::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& t) const {
+  const Spin s(*x[0]);
+  CoefficientValues<6> v, dv;
+  table->at(s.s, v, dv);
+  const SixMotion::Relative r = between.relative(x, setpoint);
+  const Matrix<6, 14> B = between.B();
+  Vector<6> F_s = -(dv.K * r.q + dv.C * r.v);
+  t.K.noalias() += B.transpose() * v.K * B;
+  t.C.noalias() += B.transpose() * v.C * B;
+  if constexpr (Mass) {
+    F_s -= dv.M * r.a;
+    t.M.noalias() += B.transpose() * v.M * B;
+  }
+  // the left side is -B^T F; ds/dphi' = 1, ds/dd' = -w
+  const Vector<14> f_s = -(B.transpose() * F_s);
+  t.C.col(6) += f_s;
+  t.C.template middleCols<3>(3).noalias() -= f_s * s.w.transpose();
+  t.K.template middleCols<3>(3).noalias() += f_s * s.s_d.transpose();
+}
+
+template <bool Mass, class Table>
+void SpatialTableBearing<Mass, Table>::add_energy(const Nodes<2>& x, const Context&, Energy& e) const {
+  const SpinRate s(*x[0]);
+  CoefficientValues<6> v, dv;
+  table->at(s.s, v, dv);
+  const SixMotion::Relative r = between.relative(x, setpoint);
+  add_linear_energy<6>(v.K, v.C, v.M, preload, r.q, r.v, r.a, e);
+  e.supplied += 0.5 * s.sdot * (r.q.dot(dv.K * r.q) + r.v.dot(dv.M * r.v));
+}
+
+template struct CoefficientValues<2>;
+template struct CoefficientValues<6>;
+template class CoefficientTable<2>;
+template class CoefficientTable<6>;
+template struct TableBearingLaw<false, CoefficientTable<2>>;
+template struct TableBearingLaw<true, CoefficientTable<2>>;
+template struct TableBearingLaw<false, CoefficientGrid<2>>;
+template struct TableBearingLaw<true, CoefficientGrid<2>>;
+template struct SpatialTableBearing<false, CoefficientTable<6>>;
+template struct SpatialTableBearing<true, CoefficientTable<6>>;
+template struct SpatialTableBearing<false, CoefficientGrid<6>>;
+template struct SpatialTableBearing<true, CoefficientGrid<6>>;
 
 }  // namespace whirl::elements

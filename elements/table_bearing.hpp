@@ -1,5 +1,6 @@
-// Bearing or seal with lateral coefficients tabulated against spin:
-//   F = -K(s) r - C(s) v - M(s) a,  F on the journal, (r, v, a) relative to the housing, (y, z), s the journal's spin.
+// Bearing or seal with coefficients tabulated against spin. The usual case are the lateral ones (TableBearingLaw):
+//   F = -K(s) r - C(s) v - M(s) a,  F on the journal, (r, v, a) relative to the housing, (y, z), s the journal's spin;
+// 6x6 matrices, a set point or a preload take SpatialTableBearing.
 // The tangents contain dK/ds, dC/ds and dM/ds: a run-up with free spin sees them. A table gives no torque on the shaft, so what
 // its cross coupling (skew K) feeds into whirl counts as supplied power; symmetric K and M store energy, symmetric C dissipates.
 //
@@ -7,18 +8,29 @@
 // coefficient. Outside the table: held at its ends, or not defined (NaN: the step is rejected and the run says so).
 #pragma once
 #include <elements/lateral_joint.hpp>
+#include <elements/six_motion.hpp>
 #include <memory>
 #include <vector>
 
 namespace whirl::elements {
 
-/// 2x2 coefficient matrices, rows (force) and columns (motion) y, z; N/m, N s/m, kg.
-struct CoefficientValues { Mat2 K, C, M; };
+/// Coefficient matrices, rows (force) and columns (motion); N/m, N s/m, kg, and N m/rad, .. where a rotation takes part.
+/// N = 2: y, z. N = 6: x, y, z, rx, ry, rz.
+template <int N>
+struct CoefficientValues {
+  static constexpr int entries = N * N;
+  using Row = Eigen::Array<double, 3 * entries, 1>;   ///< K, C, M one after another
+  Matrix<N> K, C, M;
+  Row row() const;
+  void set(const Row& r);
+};
 
 /// Coefficients against spin.
+template <int N>
 class CoefficientTable {
  public:
-  using Values = CoefficientValues;
+  static constexpr int size = N;
+  using Values = CoefficientValues<N>;
   enum class Between { linear, monotone_cubic };
   enum class Outside { undefined, hold };
   /// spin: rad/s, strictly increasing. Errors (E81): no rows, lengths that differ, spin not increasing, a value not finite.
@@ -31,7 +43,7 @@ class CoefficientTable {
   bool has_mass() const { return has_mass_; }
 
  private:
-  using Row = Eigen::Array<double, 12, 1>;
+  using Row = typename Values::Row;
   std::vector<double> spin_;
   std::vector<Row> value_, slope_;
   Between between_;
@@ -39,10 +51,11 @@ class CoefficientTable {
   bool has_mass_ = false;
 };
 
+template <int N>
 class CoefficientGrid;   // coefficient_grid.hpp: against spin and frequency
 
 /// Mass: the table has M columns that are not all zero. Table: CoefficientTable, CoefficientGrid.
-template <bool Mass, class Table = CoefficientTable>
+template <bool Mass, class Table = CoefficientTable<2>>
 struct TableBearingLaw {
   static constexpr bool inertia = Mass;
   std::shared_ptr<const Table> table;
@@ -52,9 +65,37 @@ struct TableBearingLaw {
   void energy(const LateralMotion& m, system::Energy& e) const;
 };
 
-extern template struct TableBearingLaw<false, CoefficientTable>;
-extern template struct TableBearingLaw<true, CoefficientTable>;
-extern template struct TableBearingLaw<false, CoefficientGrid>;
-extern template struct TableBearingLaw<true, CoefficientGrid>;
+/// The same for all six motions of the journal against its housing, with set point and preload: the linear bearing (linear_bearing.hpp)
+/// with coefficients that follow the spin s of node 0,
+///   force on node 0 = preload - K(s) (q - setpoint) - C(s) q' - M(s) q''.
+/// Stiffness that changes with s does work on what is deflected; the shaft's spin gets no torque for it, so it counts as supplied.
+template <bool Mass, class Table>
+struct SpatialTableBearing {
+  static constexpr int n_nodes = 2, width = 7;
+  static constexpr bool has_M = Mass, has_C = true, has_K = true;
+
+  std::shared_ptr<const Table> table;
+  SixMotion between;
+  Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
+
+  void add_force(const system::Nodes<2>& x, const system::Context& c, system::ForceX<14>& f) const;
+  void add_tangent(const system::Nodes<2>& x, const system::Context& c, system::TangentX<14>& t) const;
+  void add_energy(const system::Nodes<2>& x, const system::Context& c, system::Energy& e) const;
+  /// Force and moment on node 0's point, N, N m.
+  Vector<6> load_on_first(const system::Nodes<2>& x) const;
+};
+
+extern template struct CoefficientValues<2>;
+extern template struct CoefficientValues<6>;
+extern template class CoefficientTable<2>;
+extern template class CoefficientTable<6>;
+extern template struct TableBearingLaw<false, CoefficientTable<2>>;
+extern template struct TableBearingLaw<true, CoefficientTable<2>>;
+extern template struct TableBearingLaw<false, CoefficientGrid<2>>;
+extern template struct TableBearingLaw<true, CoefficientGrid<2>>;
+extern template struct SpatialTableBearing<false, CoefficientTable<6>>;
+extern template struct SpatialTableBearing<true, CoefficientTable<6>>;
+extern template struct SpatialTableBearing<false, CoefficientGrid<6>>;
+extern template struct SpatialTableBearing<true, CoefficientGrid<6>>;
 
 }  // namespace whirl::elements

@@ -1,6 +1,7 @@
 // A critical-map step: undamped critical speeds against the stiffness of the supports.
 #include <analysis/critical.hpp>
 #include <app/frequency.hpp>
+#include <elements/hertz.hpp>
 
 #include <fmt/format.h>
 
@@ -38,8 +39,13 @@ void add_own_curves(const model::Bearing& b, double max_speed, std::vector<io::C
     if (linear->K(2, 2) != linear->K(1, 1)) out.push_back({b.name + " kzz", {linear->K(2, 2), linear->K(2, 2)}, {low, max_speed}});
   } else if (const auto* block = std::get_if<model::SpringBlock>(&b.law)) {
     out.push_back({b.name, {block->C1, block->C1}, {low, max_speed}});
+  } else if (const auto* rolling = std::get_if<model::RollingEstimate>(&b.law)) {
+    const elements::BearingEstimate k = rolling->roller ? elements::estimate_roller_bearing(rolling->elements, rolling->size, rolling->load, rolling->contact_angle)
+                                                        : elements::estimate_ball_bearing(rolling->elements, rolling->size, rolling->load, rolling->contact_angle);
+    out.push_back({b.name + " along its load", {k.along, k.along}, {low, max_speed}});
+    out.push_back({b.name + " across", {k.across, k.across}, {low, max_speed}});
   } else if (const auto* table = std::get_if<model::TableBearing>(&b.law)) {
-    for (const auto& [entry, name] : {std::pair{0u, " kyy"}, std::pair{3u, " kzz"}}) {
+    for (const auto& [entry, name] : {std::pair{1, " kyy"}, std::pair{2, " kzz"}}) {
       io::Curve c{b.name + name, {}, {}};
       const auto& f = table->frequency;
       for (std::size_t i = 0; i < table->speed.size(); ++i) {
@@ -50,7 +56,7 @@ void add_own_curves(const model::Bearing& b, double max_speed, std::vector<io::C
             if (std::abs(f[k] - table->speed[i]) < std::abs(f[j] - table->speed[i])) j = k;
           row = i * f.size() + j;
         }
-        if (table->speed[i] > 0 && table->K[row][entry] > 0) c.x.push_back(table->K[row][entry]), c.y.push_back(table->speed[i]);
+        if (table->speed[i] > 0 && table->K[row](entry, entry) > 0) c.x.push_back(table->K[row](entry, entry)), c.y.push_back(table->speed[i]);
       }
       if (!c.x.empty()) out.push_back(std::move(c));
     }

@@ -26,7 +26,8 @@ std::array<bool, 6> resisted(const model::Bearing& b) {
   if (const auto* linear = std::get_if<model::LinearBearing>(&b.law)) {
     for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = !linear->K.row(c).isZero(0.0);
   } else if (const auto* table = std::get_if<model::TableBearing>(&b.law)) {
-    for (const auto& k : table->K) out[y] = out[y] || k[0] != 0 || k[1] != 0, out[z] = out[z] || k[2] != 0 || k[3] != 0;
+    for (const auto& k : table->K)
+      for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] |= !k.row(c).isZero(0.0);
   } else if (const auto* block = std::get_if<model::SpringBlock>(&b.law)) {
     out[x] = out[y] = out[z] = block->C1 != 0;
     out[ry] = out[rz] = block->C2 != 0;
@@ -43,6 +44,8 @@ std::array<bool, 6> resisted(const model::Bearing& b) {
     out[y] = out[z] = damper->stiffness > 0;   // the film alone carries nothing at rest
   } else if (std::holds_alternative<model::BallBearing>(b.law)) {
     out[x] = out[y] = out[z] = out[ry] = out[rz] = true;
+  } else if (const auto* estimate = std::get_if<model::RollingEstimate>(&b.law)) {
+    out[x] = estimate->kxx > 0, out[y] = out[z] = true;
   } else if (std::holds_alternative<model::RollerBearing>(b.law)) {
     out[y] = out[z] = out[ry] = out[rz] = true;
   } else if (const auto* coupling = std::get_if<model::Coupling>(&b.law)) {
@@ -216,9 +219,12 @@ class Restraint {
     const auto acts = [axial](const Vec3& f) { return axial ? f.x() != 0 : f.y() != 0 || f.z() != 0; };
     for (const model::PointLoad& l : a_.model.loads)
       if (contains(lines, static_cast<Index>(l.at.shaft)) && acts(l.force)) return true;
-    for (const model::Bearing& b : a_.model.bearings)
-      if (const auto* k = std::get_if<model::LinearBearing>(&b.law))
-        if (contains(lines, static_cast<Index>(b.at.shaft)) && acts(k->preload.head<3>())) return true;
+    for (const model::Bearing& b : a_.model.bearings) {
+      const auto* linear = std::get_if<model::LinearBearing>(&b.law);
+      const auto* table = std::get_if<model::TableBearing>(&b.law);
+      const Vec3 preload = linear ? Vec3(linear->preload.head<3>()) : table ? Vec3(table->preload.head<3>()) : Vec3(Vec3::Zero());
+      if (contains(lines, static_cast<Index>(b.at.shaft)) && acts(preload)) return true;
+    }
     for (const model::Step& s : a_.model.steps)
       if (const auto* h = std::get_if<model::HarmonicStep>(&s.law))
         for (const model::HarmonicForce& f : h->forces)

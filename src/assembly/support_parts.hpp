@@ -89,6 +89,7 @@ void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, cons
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::CrossCoupling&);
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::BallBearing&);           // supports_rolling.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::RollerBearing&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::RollingEstimate&);
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::Coupling&);              // supports_shafts.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::GearPair&);
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 namespace whirl::assembly {
@@ -54,33 +55,61 @@ void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
       {b.name, [k, node](const NodeAt& at, double, const ReactionAt&) { return Vec3(-k.C1 * k.displacement(at(node))); }});
 }
 
-void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law) {
-  using Table = elements::CoefficientTable;
-  const auto matrix = [](const std::array<double, 4>& c) { return (Mat2() << c[0], c[1], c[2], c[3]).finished(); };
-  std::vector<Table::Values> rows(law.K.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i].K = i < law.K.size() ? matrix(law.K[i]) : Mat2::Zero();
-    rows[i].C = i < law.C.size() ? matrix(law.C[i]) : Mat2::Zero();
-    rows[i].M = i < law.M.size() ? matrix(law.M[i]) : Mat2::Zero();
-  }
+template <int N>
+std::vector<elements::CoefficientValues<N>> table_rows(const model::TableBearing& law) {
+  const auto part = [](const std::vector<Matrix<6>>& m, std::size_t i) -> Matrix<N> {
+    constexpr int first = N == 2 ? 1 : 0;
+    return i < m.size() ? Matrix<N>(m[i].block<N, N>(first, first)) : Matrix<N>::Zero();
+  };
+  std::vector<elements::CoefficientValues<N>> rows(law.K.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = {part(law.K, i), part(law.C, i), part(law.M, i)};
+  return rows;
+}
+
+/// Adds the kernel of a table: the lateral one where nothing else is given, else the one in all six motions.
+template <class Table>
+void add_table_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law, std::shared_ptr<const Table> table, const char* kind) {
+  const auto add = [&](auto mass) {
+    if constexpr (Table::size == 2) {
+      add_lateral(a, b, n, elements::TableBearingLaw<mass.value, Table>{table}, kind);
+    } else {
+      const Pair nodes{n.shaft.node, n.other.node};
+      const elements::SpatialTableBearing<mass.value, Table> k{table, {n.shaft.offset, n.other.offset}, law.setpoint, law.preload};
+      a.builder.add(k, nodes, kind);
+      a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).template head<3>()); },
+                                        [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).template tail<3>()); }});
+    }
+  };
+  if (table->has_mass()) add(std::true_type{});
+  else add(std::false_type{});
+}
+
+template <int N>
+void add_table_of(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law) {
+  using Table = elements::CoefficientTable<N>;
+  using Grid = elements::CoefficientGrid<N>;
   const auto between = law.monotone_cubic ? Table::Between::monotone_cubic : Table::Between::linear;
   const auto outside = law.extrapolate_hold ? Table::Outside::hold : Table::Outside::undefined;
-  if (!law.frequency.empty()) {
-    using Grid = elements::CoefficientGrid;
-    std::shared_ptr<const Grid> grid;
-    if (!guarded(a, b, [&] { grid = std::make_shared<Grid>(law.speed, law.frequency, rows, between, outside); })) return;
-    a.built.frequency_dependent = true;
-    if (grid->has_mass()) add_lateral(a, b, n, elements::TableBearingLaw<true, Grid>{grid}, "bearings tabulated against frequency");
-    else add_lateral(a, b, n, elements::TableBearingLaw<false, Grid>{grid}, "bearings tabulated against frequency");
-    return;
-  }
-  std::shared_ptr<const Table> table;
-  const bool made = guarded(a, b, [&] {
-    table = std::make_shared<Table>(law.speed, std::move(rows), between, outside);
+  guarded(a, b, [&] {
+    if (law.frequency.empty()) {
+      add_table_law<Table>(a, b, n, law, std::make_shared<Table>(law.speed, table_rows<N>(law), between, outside), "tabulated bearings");
+    } else {
+      a.built.frequency_dependent = true;
+      add_table_law<Grid>(a, b, n, law, std::make_shared<Grid>(law.speed, law.frequency, table_rows<N>(law), between, outside), "bearings tabulated against frequency");
+    }
   });
-  if (!made) return;
-  if (table->has_mass()) add_lateral(a, b, n, elements::TableBearingLaw<true>{table}, "tabulated bearings");
-  else add_lateral(a, b, n, elements::TableBearingLaw<false>{table}, "tabulated bearings");
+}
+
+void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law) {
+  const auto lateral = [](const std::vector<Matrix<6>>& list) {
+    return std::all_of(list.begin(), list.end(), [](Matrix<6> m) {
+      m.block<2, 2>(1, 1).setZero();
+      return m.isZero(0.0);
+    });
+  };
+  const bool small = lateral(law.K) && lateral(law.C) && lateral(law.M) && law.setpoint.isZero(0.0) && law.preload.isZero(0.0);
+  if (small && !a.model.keep_everything) add_table_of<2>(a, b, n, law);
+  else add_table_of<6>(a, b, n, law);
 }
 
 // ---------------------------------------------------------------- rigid supports

@@ -1,6 +1,9 @@
 // Ball and roller bearings.
 #include <assembly/support_parts.hpp>
+#include <elements/hertz.hpp>
 #include <elements/rolling_bearing.hpp>
+
+#include <Eigen/Geometry>
 
 #include <cmath>
 
@@ -45,6 +48,17 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     k.c_radial = law.c_radial, k.c_axial = law.c_axial;
     add_rolling(a, b, n, k, "roller bearings");
   });
+}
+
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::RollingEstimate& law) {
+  const elements::BearingEstimate k = law.roller ? elements::estimate_roller_bearing(law.elements, law.size, law.load, law.contact_angle)
+                                                 : elements::estimate_ball_bearing(law.elements, law.size, law.load, law.contact_angle);
+  const Mat2 turn = Eigen::Rotation2Dd(law.load_angle).toRotationMatrix();
+  model::LinearBearing linear;
+  linear.K.block<2, 2>(1, 1) = turn * Vec2(k.along, k.across).asDiagonal() * turn.transpose();
+  linear.K(0, 0) = law.kxx;
+  linear.C(1, 1) = linear.C(2, 2) = law.c_radial;
+  add_linear(a, b, n, linear);
 }
 
 }  // namespace whirl::assembly

@@ -17,11 +17,13 @@ void describe(Visitor&, model::AnnularSeal&);
 void describe(Visitor&, model::CrossCoupling&);
 void describe(Visitor&, model::BallBearing&);      // bearings_rolling.cpp
 void describe(Visitor&, model::RollerBearing&);
+void describe_rolling_estimate(Visitor&, model::RollingEstimate&);
 void describe(Visitor&, model::Coupling&);         // bearings_shafts.cpp
 void describe(Visitor&, model::GearPair&);
 
-/// Entries kxx, kyy, ... of a 6x6 matrix: prefix 'k', 'c' or 'm'.
-void describe_translation(Visitor&, Matrix<6>& m, char prefix, const char* unit, const char* what);
-void describe_rotation(Visitor&, Matrix<6>& m, bool damping, const char* unit);
+/// Entries kxx, kyy, ... of a 6x6 matrix: prefix 'k', 'c' or 'm'; rows force, columns motion.
+void describe_entries(Visitor&, Matrix<6>& m, char prefix);
+/// The full matrix is given: an error, and false, when an entry is given beside it.
+bool only_matrix(Visitor&, char prefix);
 
 }  // namespace whirl::deck

@@ -52,4 +52,18 @@ void describe(Visitor& v, model::RollerBearing& b) {
   fit(v, b.rollers, b.roller_diameter, b.pitch_diameter, "roller_diameter", "rollers");
 }
 
+void describe_rolling_estimate(Visitor& v, model::RollingEstimate& b) {
+  const char* elements = b.roller ? "rollers" : "balls";
+  v.integer(required(elements), b.elements, between(2, 200), b.roller ? "number of rollers" : "number of balls");
+  v.quantity(required(b.roller ? "roller_length" : "ball_diameter"), b.size, "mm", positive, b.roller ? "effective length of a roller" : "ball diameter");
+  v.quantity(required("load"), b.load, "N", positive, "static load of the bearing: the estimate holds about it");
+  v.quantity("load_angle", b.load_angle, "deg", any, "line of the load, from +y towards +z");
+  v.quantity("contact_angle", b.contact_angle, "deg", Range{0, 80 * pi / 180, false, true}, "contact angle; 0: radial bearing");
+  v.quantity("c_radial", b.c_radial, "N.s/m", not_negative, "damping of lateral motion");
+  v.quantity("kxx", b.kxx, "N/m", not_negative, "axial stiffness (not estimated)");
+  if (v.clean() && (b.elements < 8 || b.elements > 16))
+    v.warning("W03", elements, fmt::format("the ratio of the stiffnesses across and along the load is known for 8 to 16 elements, not for {}", b.elements),
+              fmt::format("taken for {}; type = \"{}\" follows the contacts one by one", b.elements < 8 ? 8 : 16, b.roller ? "roller" : "ball"));
+}
+
 }  // namespace whirl::deck

@@ -8,17 +8,17 @@
 namespace whirl::deck {
 
 void describe(Visitor& v, model::Coupling& b) {
-  describe_translation(v, b.K, 'k', "N/m", "stiffness, in axes that turn with the coupling");
-  describe_rotation(v, b.K, false, "N.m/rad");
-  describe_translation(v, b.C, 'c', "N.s/m", "damping, in axes that turn with the coupling");
-  describe_rotation(v, b.C, true, "N.m.s/rad");
+  describe_entries(v, b.K, 'k');
+  describe_entries(v, b.C, 'c');
   const bool K = v.matrix(optional("K", "the entries"), b.K, "N/m", "N/rad", "N.m/rad", "full stiffness in the order x, y, z, rx, ry, rz, instead of the entries");
-  v.matrix(optional("C", "the entries"), b.C, "N.s/m", "N.s/rad", "N.m.s/rad", "full damping");
+  const bool C = v.matrix(optional("C", "the entries"), b.C, "N.s/m", "N.s/rad", "N.m.s/rad", "full damping");
   v.quantity("offset_y", b.offset_y, "mm", any, "parallel misalignment: hub of this shaft against the other hub, along y");
   v.quantity("offset_z", b.offset_z, "mm", any, "the same along z");
   v.quantity("angle_y", b.angle_y, "deg", between(-0.5, 0.5), "angular misalignment: slope of this hub's axis against the other's, towards y");
   v.quantity("angle_z", b.angle_z, "deg", between(-0.5, 0.5), "the same towards z");
   if (!v.clean()) return;
+  for (const auto& [matrix, letter] : {std::pair(K, 'k'), std::pair(C, 'c')})
+    if (matrix && !only_matrix(v, letter)) return;
   if (b.K.isZero(0)) v.error("E05", nullptr, "the coupling has no stiffness", "give kyy, kzz, krr (tilting), krxx (torsion) and kxx");
   else if ((b.K - b.K.transpose()).cwiseAbs().maxCoeff() > 1e-12 * b.K.cwiseAbs().maxCoeff() || (b.C - b.C.transpose()).cwiseAbs().maxCoeff() > 1e-12 * b.C.cwiseAbs().maxCoeff())
     v.error("E26", K ? "K" : nullptr, "the matrices of a coupling are symmetric", "cross-coupled terms belong to a bearing of type \"linear\"");

@@ -11,6 +11,7 @@ KeyInfo& Describer::add(const Key& k, KeyInfo::Kind kind, const char* doc) {
   i.kind = kind;
   i.doc = doc;
   i.required = k.required;
+  i.listed = k.listed;
   if (k.absent) i.absent = k.absent;
   tables_.back()->keys.push_back(std::move(i));
   return tables_.back()->keys.back();

@@ -15,6 +15,7 @@ struct KeyInfo {
   std::string doc;
   std::string unit;                    ///< of quantities; "" = plain number
   bool required = false;
+  bool listed = true;                  ///< in the reference; see Key
   std::string default_text;            ///< as written in a deck; empty when there is none
   std::string absent;                  ///< what holds when left out, where the default does not say it
   Range range;

@@ -50,6 +50,7 @@ std::string range_of(const Range& r) {
 void write_keys(std::string& out, const std::vector<KeyInfo>& keys) {
   out += "| key | value | default | range | meaning |\n|---|---|---|---|---|\n";
   for (const auto& k : keys) {
+    if (!k.listed) continue;
     std::string doc = k.doc;
     for (const auto& w : k.words) doc += fmt::format("{} `\"{}\"`{}", &w == k.words.data() ? ":" : ",", w.name, *w.doc ? fmt::format(" {}", w.doc) : "");
     out += fmt::format("| `{}` | {} | {} | {} | {} |\n", k.name, cell(type_of(k)), k.required || k.kind == KeyInfo::Kind::alternatives ? "**required**" : cell(k.default_text.empty() ? k.absent : '`' + k.default_text + '`'), range_of(k.range), cell(doc));

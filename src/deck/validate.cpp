@@ -30,6 +30,11 @@ struct Restraint {
 std::array<bool, 5> held_by(const model::BearingLaw& law) {
   if (const auto* b = std::get_if<model::SpringBlock>(&law)) return {b->C1 > 0, b->C1 > 0, b->C1 > 0, b->C2 > 0, b->C2 > 0};
   if (const auto* b = std::get_if<model::LinearBearing>(&law)) return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
+  if (const auto* b = std::get_if<model::TableBearing>(&law)) {
+    const auto entry = [b](Index c) { return std::any_of(b->K.begin(), b->K.end(), [c](const Matrix<6>& k) { return k(c, c) != 0; }); };
+    return {entry(0), entry(1), entry(2), entry(5), entry(4)};
+  }
+  if (const auto* b = std::get_if<model::RollingEstimate>(&law)) return {b->kxx > 0, true, true, false, false};
   if (const auto* b = std::get_if<model::RigidSupport>(&law)) return {b->held[0], b->held[1], b->held[2], b->held[5], b->held[4]};
   if (const auto* b = std::get_if<model::NonlinearSpring>(&law)) {
     using Along = model::NonlinearSpring::Along;

@@ -27,6 +27,7 @@ struct Key {
   bool required = false;
   const char* absent = nullptr;     ///< what holds when the key is left out, where the default value does not say it
   bool plain_zero = false;          ///< a quantity: 0 needs no unit, nor the right one
+  bool listed = true;               ///< false: one of a family that the reference explains as a whole
 };
 inline Key required(const char* name) { return {name, true, nullptr}; }
 inline Key optional(const char* name, const char* absent) { return {name, false, absent}; }

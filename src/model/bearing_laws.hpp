@@ -17,12 +17,13 @@ struct LinearBearing {
   Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
 };
 
-/// K, C (and M) tabulated against speed, and where given against the frequency of the motion: rows of full 2x2 lateral blocks in
-/// order yy, yz, zy, zz. With frequencies the rows are a grid, speed by speed: row i f + j belongs to speed i, frequency j.
+/// The linear bearing with K, C (and M) tabulated against speed, and where given against the frequency of the motion. With
+/// frequencies the rows are a grid, speed by speed: row i f + j belongs to speed i, frequency j.
 struct TableBearing {
   std::vector<double> speed;                      ///< rad/s, increasing
   std::vector<double> frequency;                  ///< rad/s, increasing; empty: against speed alone
-  std::vector<std::array<double, 4>> K, C, M;     ///< as many as speeds (times frequencies); M may be empty
+  std::vector<Matrix<6>> K, C, M;                 ///< as many as speeds (times frequencies); M may be empty
+  Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
   bool monotone_cubic = true;                     ///< else linear
   bool extrapolate_hold = false;                  ///< else outside the table is an error
   std::string file;
@@ -92,6 +93,16 @@ struct RollerBearing {
   int rollers = 0;
   double roller_diameter = 0, roller_length = 0, pitch_diameter = 0, clearance = 0, stiffness = 0;
   double c_radial = 0, c_axial = 0;
+};
+
+/// Ball or cylindrical roller bearing as the linear spring estimated for its static load.
+struct RollingEstimate {
+  bool roller = false;
+  int elements = 0;
+  double size = 0;                                ///< ball diameter or roller length, m
+  double load = 0, load_angle = 0;                ///< N; rad, from +y towards +z
+  double contact_angle = 0;                       ///< rad
+  double kxx = 0, c_radial = 0;                   ///< given: axial stiffness, N/m; lateral damping, N s/m
 };
 
 /// One-sided contact with friction: rub, stop, catcher bearing. The stator is the pedestal.

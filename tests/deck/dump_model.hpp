@@ -63,9 +63,10 @@ class ModelDump {
     }
     if (const auto* x = std::get_if<model::TableBearing>(&b.law)) {
       each("speed", x->speed);
-      for (const auto& r : x->K) each("K", r);
-      for (const auto& r : x->C) each("C", r);
-      for (const auto& r : x->M) each("M", r);
+      for (const auto& r : x->K) matrix("K", r);
+      for (const auto& r : x->C) matrix("C", r);
+      for (const auto& r : x->M) matrix("M", r);
+      matrix("setpoint", x->setpoint); matrix("preload", x->preload);
       each("how", std::array{x->monotone_cubic, x->extrapolate_hold});
     }
     if (const auto* x = std::get_if<model::RigidSupport>(&b.law)) each("held", x->held);

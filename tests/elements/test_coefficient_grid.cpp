@@ -10,10 +10,10 @@ using namespace whirl::elements;
 
 namespace {
 
-using Grid = CoefficientGrid;
+using Grid = CoefficientGrid<2>;
 const std::vector<double> spins{0, 100, 250, 400, 700}, frequencies{0, 50, 150, 300, 450, 800};
 
-CoefficientValues smooth(double s, double w) {
+CoefficientValues<2> smooth(double s, double w) {
   const auto mat = [](double a, double b, double c, double d) { return (Mat2() << a, b, c, d).finished(); };
   s /= 100, w /= 100;
   return {mat(100 + 10 * s + 3 * w, 5 + s * s + 0.4 * w * w, -8 - 3 * s * w, 120 - s + w), mat(4 + s + 2 * w + 0.5 * s * w, 0.3, 0.2 * s, 5 - 0.1 * w * w),
@@ -21,7 +21,7 @@ CoefficientValues smooth(double s, double w) {
 }
 
 Grid grid(Grid::Between between, Grid::Outside outside, const std::vector<double>& s = spins, const std::vector<double>& w = frequencies) {
-  std::vector<CoefficientValues> rows;
+  std::vector<CoefficientValues<2>> rows;
   for (double x : s)
     for (double y : w) rows.push_back(smooth(x, y));
   return {s, w, rows, between, outside};
@@ -32,7 +32,7 @@ Grid grid(Grid::Between between, Grid::Outside outside, const std::vector<double
 TEST(CoefficientGrid, ValuesAndDerivatives) {
   for (const auto between : {Grid::Between::linear, Grid::Between::monotone_cubic}) {
     const Grid g = grid(between, Grid::Outside::hold);
-    CoefficientValues v, ds, dw, p, m, x, y;
+    CoefficientValues<2> v, ds, dw, p, m, x, y;
     for (double s : spins)
       for (double w : frequencies) {
         g.at(s, w, v, ds, dw);
@@ -59,13 +59,13 @@ TEST(CoefficientGrid, OrderOfTheError) {
     double error[2];
     for (int k = 0; k < 2; ++k) {
       std::vector<double> s, w;
-      std::vector<CoefficientValues> rows;
+      std::vector<CoefficientValues<2>> rows;
       const int n = k ? 20 : 10;
       for (int i = 0; i <= n; ++i) s.push_back(i / double(n)), w.push_back(i / double(n));
       for (double x : s)
         for (double y : w) rows.push_back({Mat2::Constant(std::exp(x + 0.7 * y)), Mat2::Zero(), Mat2::Zero()});
       const Grid g(s, w, rows, between, Grid::Outside::undefined);
-      CoefficientValues v, ds, dw;
+      CoefficientValues<2> v, ds, dw;
       error[k] = 0;
       for (double x = 0.21; x < 0.8; x += 0.0137)
         for (double y = 0.21; y < 0.8; y += 0.0171) g.at(x, y, v, ds, dw), error[k] = std::max(error[k], std::abs(v.K(0, 0) - std::exp(x + 0.7 * y)));
@@ -77,7 +77,7 @@ TEST(CoefficientGrid, OrderOfTheError) {
 
 TEST(CoefficientGrid, AskedAndSynchronous) {
   const Grid g = grid(Grid::Between::monotone_cubic, Grid::Outside::undefined, spins, {100, 200, 300, 450, 800});
-  CoefficientValues v, dv, x, ds, dw;
+  CoefficientValues<2> v, dv, x, ds, dw;
   g.at(320.0, v, dv);
   g.at(320.0, 320.0, x, ds, dw);
   EXPECT_EQ(v.K, x.K);
@@ -121,8 +121,8 @@ TEST(CoefficientGrid, Conformance) {
 }
 
 TEST(CoefficientGrid, BadTables) {
-  const std::vector<CoefficientValues> two(2, smooth(1, 1));
-  const auto make = [&](std::vector<double> s, std::vector<double> w, std::vector<CoefficientValues> r) {
+  const std::vector<CoefficientValues<2>> two(2, smooth(1, 1));
+  const auto make = [&](std::vector<double> s, std::vector<double> w, std::vector<CoefficientValues<2>> r) {
     Grid g(std::move(s), std::move(w), r, Grid::Between::linear, Grid::Outside::hold);
   };
   EXPECT_THROW(make({}, {}, {}), Error);

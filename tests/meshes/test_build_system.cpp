@@ -119,8 +119,9 @@ TEST(BuildSystem, AbsentPhysicsIsAnAbsentBatch) {
   auto table = named<model::Bearing>("table", 0.3);
   model::TableBearing law;
   law.speed = {0, 100};
-  law.K = {{1e6, 0, 0, 1e6}, {2e6, 0, 0, 2e6}};
-  law.C = {{1e3, 0, 0, 1e3}, {1e3, 0, 0, 1e3}};
+  const auto lateral = [](double k) { return Matrix<6>(Vector<6>(0, k, k, 0, 0, 0).asDiagonal()); };
+  law.K = {lateral(1e6), lateral(2e6)};
+  law.C = {lateral(1e3), lateral(1e3)};
   table.law = law;
   m.bearings.push_back(table);
   auto torque = named<model::Drive>("motor", 0.0);
