@@ -53,6 +53,8 @@ analysis::TransientOptions transient_options(const Job& job, const model::Transi
   double length = 0.0;
   for (const meshes::Line& l : job.mesh.lines) length = std::max(length, l.length);
   if (length > 0.0) o.scales.length = length;
+  for (const auto& f : job.built.fine)
+    for (const Index c : {1, 2}) o.scales.limits.push_back({6 * f.node + c, f.length});
   if (law.stop_speed != 0.0) t.speed_stops.push_back({job.reference(), law.stop_speed});
   if (law.amplitude_limit < infinity)
     for (const auto& [name, p] : watched_points(job)) t.amplitude_stops.push_back({p, law.amplitude_limit, name});

@@ -64,6 +64,8 @@ struct Built {
   std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors), sorted: integrator steps land on them
   std::vector<SupportForce> support_forces;
   std::vector<SupportCondition> conditions;
+  struct Fine { Index node; double length; };
+  std::vector<Fine> fine;           ///< nodes whose lateral motion must be right to a small part of a length: journals, to their clearance, m
   std::vector<RollingLoads> rolling_loads;
   std::vector<DriveTorque> drive_torques;
   std::vector<LineSpin> spins;      ///< one a line

@@ -13,6 +13,12 @@ double viscosity_of(const model::Oil& o) {
   return o.viscosity > 0 ? o.viscosity : elements::iso_vg_viscosity(o.grade, o.temperature, o.density);
 }
 
+/// What a film does depends on the motion of both its sides against the clearance.
+void follow_closely(Assembly& a, const meshes::BearingNodes& n, double clearance) {
+  for (const Index node : {n.shaft.node, n.other.node})
+    if (node >= 0) a.built.fine.push_back({node, clearance});
+}
+
 /// Films: clearance, and the load they carry near it at the present spin in the direction of the displacement.
 template <class Film>
 void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Film& film, double clearance) {
@@ -20,6 +26,7 @@ void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   using Law = elements::FilmLaw<Film>;
   const Law law{film};
   add_lateral(a, b, n, law, "journal bearings");
+  follow_closely(a, n, clearance);
   const Pair nodes{n.shaft.node, n.other.node};
   a.built.conditions.push_back({b.name, b.where, [r = displacement_of(n), law, clearance, nodes](const NodeAt& at) {
     elements::LateralMotion m;
@@ -82,6 +89,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
       film.surface = std::make_shared<elements::JournalSurface>(law.clearance, 0.0, pads);
       add_damper(a, b, n, film);
     }
+    follow_closely(a, n, law.clearance);
     a.built.conditions.push_back({b.name, b.where, [r = displacement_of(n), law](const NodeAt& at) {
       SupportCondition::State s;
       s.film = true, s.gap = law.clearance, s.displacement = r(at).norm();

@@ -40,7 +40,7 @@ void describe(Visitor& v, model::IntegratorOptions& o) {
     if (o.method == methods[k].name) i = static_cast<int>(k);
   v.option("method", i, methods, "integration scheme");
   o.method = methods[i].name;
-  v.number("tolerance", o.tolerance, Range{0, 1, true, true}, "accuracy wanted, relative to the peak response of each kind of quantity");
+  v.number("tolerance", o.tolerance, Range{0, 1, true, true}, "accuracy wanted, relative to the peak response of each kind of quantity; in films, to the clearance where that is less");
   v.number("rho_inf", o.rho_inf, fraction, "spectral radius at infinite frequency, of generalized_alpha");
   const bool fixed = v.quantity(optional("dt", "adaptive"), o.dt, "ms", positive, "fixed time step");
   const bool max = v.quantity(optional("dt_max", "no limit"), o.dt_max, "ms", positive, "largest adaptive step");

@@ -50,7 +50,7 @@ namespace {
 double allowance_factor(const Tableau& t) { return t.stiffly_accurate ? 0.014 : t.stages == 3 ? 0.05 : 0.026; }
 /// Largest Newton error of a step: this times tolerance^(1 + 1/p). It leaves a momentum error that a free spin sums up over
 /// the run, and the number of steps grows as tolerance^(-1/p). Gauss takes longer steps (6) or more of them (4).
-double newton_share(const Tableau& t) { return t.stiffly_accurate ? 5e-4 : 5e-5; }
+double newton_share(const Tableau& t) { return t.stiffly_accurate ? 3e-4 : 5e-5; }
 
 }  // namespace
 

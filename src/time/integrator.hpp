@@ -34,6 +34,10 @@ struct Scales {
   double floor_internal = 1e-9;        ///< own units
   double length = 1.0;          ///< a length of the model, m: converts tilt to displacement
   double cross_floor = 1e-6;
+  /// Unknowns that something finer than the response of their kind depends on (the journal in a film: the clearance), and the
+  /// largest scale they may have.
+  struct Limit { Index unknown; double scale; };
+  std::vector<Limit> limits;
 };
 
 struct Options {

@@ -38,9 +38,9 @@ class NewtonMonitor {
           eta_ = 1.0;
           return Verdict::converged;
         }
-        if (rate_ >= 0.99 && 10.0 * change > acceptable_) return Verdict::failed;
+        if (rate_ >= 0.99 && 10.0 * change > acceptable_ && (count_ > 2 || ratio >= 2.0)) return Verdict::failed;
         // hopeless within the iterations left: say so now
-        if (eta_ * change * std::pow(rate_, limit_ - count_) > 10.0 * acceptable_) return Verdict::failed;
+        if (rate_ < 0.99 && eta_ * change * std::pow(rate_, limit_ - count_) > 10.0 * acceptable_) return Verdict::failed;
       }
     }
     if (eta_ * change <= allowance_ || change <= noise_) return Verdict::converged;

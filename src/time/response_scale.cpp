@@ -71,6 +71,8 @@ void ResponseScale::begin_step(CRef dq) {
   if (s != used_) {
     used_ = s;
     for (Index i = 0; i < weight_.size(); ++i) weight_[i] = 1.0 / s[of(kinds_[at(i)])];
+    for (const Scales::Limit& l : o.limits)
+      if (kinds_[at(l.unknown)] != Kind::held) weight_[l.unknown] = std::max(weight_[l.unknown], 1.0 / l.scale);
   }
   const double floor = std::max(o.internal, o.floor_internal);
   for (Index i : internal_)

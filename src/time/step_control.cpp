@@ -11,6 +11,7 @@ constexpr double dead_band = 1.2;    // growth below this is not worth a factori
 constexpr double hold = 0.95;        // nor is a reduction above this, while the safety factor covers it;
 constexpr double notch = 0.85;       // a smaller one is made large enough to last
 constexpr double prompt = 2.0;       // growth beyond this is taken at once, else it must last
+constexpr double newton_back = 0.8, newton_relax = 1.15;   // after a failure at h: the next proposals stay below 0.8 h, 0.92 h, ..
 constexpr double error_floor = 1e-8; // of the allowance; keeps the ratio of two round-off errors out of the prediction
 }  // namespace
 
@@ -25,6 +26,11 @@ double StepControl::accepted(double h, double error, int iterations, int limit) 
   }
   ratio = std::clamp(ratio, shrink_limit, grow_limit);
   if (rejected_) ratio = std::min(ratio, 1.0);
+  if (newton_limit_ < large) {
+    ratio = std::clamp(newton_limit_ / h, std::min(ratio, 1.0), ratio);
+    newton_limit_ *= newton_relax;
+    if (newton_limit_ > large) newton_limit_ = large;
+  }
   rejected_ = false;
   h_previous_ = h;
   error_previous_ = std::max(error, 1e-2);
@@ -35,7 +41,7 @@ double StepControl::accepted(double h, double error, int iterations, int limit) 
   if (ratio > 1.0 && ratio < prompt) {
     double lasting = ratio;
     for (double r : recent_) lasting = std::min(lasting, r == large ? ratio : r);
-    ratio = lasting;
+    ratio = std::max(lasting, 1.0);   // one of them was a recovery from something: no growth, yet no reason to shrink
   }
   if (ratio >= hold && ratio < dead_band) return h;
   if (ratio < 1.0) ratio = std::min(ratio, notch);
@@ -43,6 +49,11 @@ double StepControl::accepted(double h, double error, int iterations, int limit) 
   for (double& r : recent_)
     if (r != large) r /= ratio;
   return h * ratio;
+}
+
+void StepControl::newton_failed(double h) {
+  rejected_ = true;
+  newton_limit_ = newton_back * h;
 }
 
 double StepControl::rejected(double h, double error) {
@@ -53,7 +64,7 @@ double StepControl::rejected(double h, double error) {
 }
 
 void StepControl::save(std::vector<double>& out) const {
-  out.insert(out.end(), {h_previous_, error_previous_, have_previous_ ? 1.0 : 0.0, rejected_ ? 1.0 : 0.0});
+  out.insert(out.end(), {h_previous_, error_previous_, have_previous_ ? 1.0 : 0.0, rejected_ ? 1.0 : 0.0, newton_limit_});
   out.insert(out.end(), recent_.begin(), recent_.end());
 }
 
@@ -62,6 +73,7 @@ const double* StepControl::restore(const double* in) {
   error_previous_ = *in++;
   have_previous_ = *in++ != 0.0;
   rejected_ = *in++ != 0.0;
+  newton_limit_ = *in++;
   for (double& r : recent_) r = *in++;
   return in;
 }

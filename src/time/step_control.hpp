@@ -12,13 +12,13 @@ class StepControl {
   StepControl() { reset(); }
   void configure(double exponent) { exponent_ = exponent; }
   /// Forgets the previous step (start, discontinuity).
-  void reset() { have_previous_ = false, recent_.fill(large), rejected_ = false; }
+  void reset() { have_previous_ = false, recent_.fill(large), rejected_ = false, newton_limit_ = large; }
   /// Next step after an accepted one. iterations: Newton iterations spent, of `limit`.
   double accepted(double h, double error, int iterations, int limit);
   /// Step to try after one that failed the error test.
   double rejected(double h, double error);
-  /// Newton failed at h: the next accepted step must not grow at once.
-  void newton_failed() { rejected_ = true; }
+  /// Newton failed at h: the next accepted step must not grow at once, nor those after it to where it failed, for a while.
+  void newton_failed(double h);
 
   void save(std::vector<double>& out) const;
   const double* restore(const double* in);
@@ -28,6 +28,7 @@ class StepControl {
   double exponent_ = 4.0;
   double h_previous_ = 0.0, error_previous_ = 0.0;
   bool have_previous_ = false, rejected_ = false;
+  double newton_limit_ = 1e300;   ///< longest step to propose, s; relaxes with each accepted one
   /// Ratios the last steps proposed: in an oscillation the error has valleys twice a period, and growing into each only
   /// to be rejected at the next peak costs two factorisations.
   std::array<double, 8> recent_{};

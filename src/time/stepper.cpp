@@ -262,7 +262,7 @@ StepReport Stepper::advance() {
     } else {
       ++report.rejected_newton, ++statistics_.rejected_newton;
       h_wanted = target.h * (result.status == StepStatus::domain ? 0.25 : 0.5);
-      control_.newton_failed();
+      control_.newton_failed(target.h);
     }
     if (h_wanted < dt_min || tries + 1 >= options_.max_attempts) {
       q_ = q0_, v_ = v0_, a_ = a0_;

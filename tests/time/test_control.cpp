@@ -1,6 +1,7 @@
 // The loop around one step: stops hit exactly, rejections of every kind, discontinuities, chart changes, failures.
 #include "toys.hpp"
 #include <core/error.hpp>
+#include <time/step_control.hpp>
 #include <gtest/gtest.h>
 #include <cmath>
 
@@ -38,6 +39,39 @@ TEST(Control, BreakpointsAndEndAreHitExactly) {
       EXPECT_EQ(integrator->advance().status, StepStatus::finished);
       EXPECT_NEAR(integrator->q()[0], std::cos(3.3), dt > 0.0 ? 2e-2 : 2e-3) << name;
     }
+}
+
+// Steps that grow back from a short one leave proposals behind that are short against the steps that follow: those must not take a step back whose
+// own error asks for a longer one.
+TEST(Control, GrowingStepsAreNotTakenBack) {
+  StepControl c;
+  c.configure(4);
+  double h = 1e-6;
+  for (int k = 0; k < 8; ++k) h = c.accepted(h, 1e-8, 2, 10);
+  for (double error : {0.3, 0.05, 0.2, 0.3}) {   // proposals of 1.2 to 1.9
+    const double next = c.accepted(h, error, 2, 10);
+    EXPECT_GE(next, h) << error;
+    h = next;
+  }
+  EXPECT_LT(c.accepted(h, 0.98, 2, 10), h);
+}
+
+// Newton failed at h: for some steps nothing as long as h is proposed, however small the error; then it is tried again.
+TEST(Control, NewtonFailuresAreRemembered) {
+  StepControl c;
+  c.configure(4);
+  c.accepted(1.0, 0.1, 2, 10);
+  c.newton_failed(1.0);
+  double h = 0.5;
+  int steps = 0;
+  for (; h < 1.0 && steps < 50; ++steps) {
+    const double next = c.accepted(h, 1e-4, 2, 10);
+    EXPECT_GE(next, h);
+    EXPECT_TRUE(steps > 0 || next == h) << "at once";
+    h = next;
+  }
+  EXPECT_GE(steps, 3);
+  EXPECT_LE(steps, 10);
 }
 
 // A force that switches on and off: with breakpoints the order is kept although the law is right-continuous (the step that
