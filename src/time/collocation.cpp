@@ -59,6 +59,7 @@ Collocation::Collocation(std::string_view name, const Tableau& tableau, Problem&
   const double exponent = static_cast<double>(s_ + 1) / tab_.order;
   allowance_ = allowance_factor(tab_) * std::pow(options.tolerance, exponent);
   newton_.configure(options.max_newton, newton_share(tab_) * std::pow(options.tolerance, 1.0 + 1.0 / tab_.order), 0.03 * allowance_);
+  scale_.resolve(NewtonMonitor::rounding_share * 0.03 * allowance_);
   control_.configure(s_ + 1);
   for (MatX* m : {&y_, &a_stage_, &r_, &a_last_}) *m = MatX::Zero(n_, s_);
   for (VecX* x : {&qs_, &vs_, &as_, &dq_, &u_, &e_, &rho_q_, &rho_v_, &start_residual_, &end_residual_, &start_before_}) *x = VecX::Zero(n_);
@@ -159,7 +160,7 @@ void Collocation::newton(double h, Attempt& out) {
       scale_.begin_step(dq_);
     }
     if (problem_.is_linear()) {
-      newton_.update(0.0);
+      newton_.update(0.0, 0.0);
       out.status = finite ? StepStatus::ok : StepStatus::newton;
       return;
     }
@@ -168,7 +169,7 @@ void Collocation::newton(double h, Attempt& out) {
       change = 0.0;
       for (int i = 0; i < s_; ++i) change = std::max(change, scale_.norm(r_.col(i)));
     }
-    switch (newton_.update(change)) {
+    switch (newton_.update(change, scale_.rounding())) {
       case NewtonMonitor::Verdict::converged:
         out.status = StepStatus::ok;
         if (newton_.slow()) linearize_ = true;

@@ -37,6 +37,7 @@ GeneralizedAlpha::GeneralizedAlpha(Problem& problem, const Options& options) : S
   error_constant_ = beta_ - 1.0 / 6.0 + 0.5 * (alpha_m_ - alpha_f_);
   allowance_ = allowance_factor * std::pow(options.tolerance, 1.5);
   newton_.configure(options.max_newton, newton_share * allowance_, 0.03 * allowance_);
+  scale_.resolve(NewtonMonitor::rounding_share * 0.03 * allowance_);
   control_.configure(3);
   for (VecX* x : {&algorithmic0_, &algorithmic_, &algorithmic_before_, &difference_, &difference_before_, &r_, &dq_, &dv_, &e_})
     *x = VecX::Zero(n_);
@@ -81,14 +82,14 @@ Stepper::Attempt GeneralizedAlpha::attempt(double h) {
     if (out.iterations == 1) scale_.begin_step(dq_);
     const bool finite = std::isfinite(r_.sum());
     if (problem_.is_linear()) {
-      newton_.update(0.0);
+      newton_.update(0.0, 0.0);
       if (!finite) {
         out.status = StepStatus::newton;
         return out;
       }
       break;
     }
-    const auto verdict = newton_.update(finite ? scale_.norm(r_) : infinity);
+    const auto verdict = newton_.update(finite ? scale_.norm(r_) : infinity, scale_.rounding());
     if (verdict == NewtonMonitor::Verdict::converged) break;
     if (verdict == NewtonMonitor::Verdict::failed) {
       out.status = StepStatus::newton;

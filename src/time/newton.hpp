@@ -14,6 +14,8 @@ class NewtonMonitor {
   enum class Verdict { iterate, converged, failed };
   /// limit: largest number of iterations; allowance: largest iteration error of a step; acceptable: what is still taken
   /// when round-off stops the iteration before the allowance is reached.
+  /// Part of `acceptable` that rounding may reach.
+  static constexpr double rounding_share = 3.0;
   void configure(int limit, double allowance, double acceptable) {
     limit_ = limit, allowance_ = allowance, acceptable_ = std::max(acceptable, allowance);
   }
@@ -24,14 +26,17 @@ class NewtonMonitor {
     eta_ = std::max(std::pow(eta_, 0.8), eta_floor);
     noise_ *= 0.9;
   }
-  Verdict update(double change) {
+  /// rounding: size of corrections that are the rounding of the coordinates themselves; nothing smaller can be asked for, while the error
+  /// test sees more than that.
+  Verdict update(double change, double rounding) {
     ++count_;
     if (!std::isfinite(change)) return Verdict::failed;
+    const double floor = std::max(noise_, std::min(rounding, rounding_share * acceptable_));
     if (count_ > 1) {
       const double ratio = previous_ > 0.0 ? change / previous_ : 0.0;
       rate_ = count_ == 2 ? ratio : std::sqrt(ratio * rate_);
       eta_ = rate_ < 0.99 ? rate_ / (1.0 - rate_) : 100.0;
-      if (eta_ * change > allowance_) {
+      if (eta_ * change > allowance_ && change > floor) {
         // stagnation at round-off: corrections that no longer shrink, yet far below what the error test sees
         if (count_ > 2 && ratio > stagnant && ratio < 1.2 && 10.0 * change <= acceptable_) {
           noise_ = std::max(noise_, change);
@@ -43,7 +48,7 @@ class NewtonMonitor {
         if (rate_ < 0.99 && eta_ * change * std::pow(rate_, limit_ - count_) > 10.0 * acceptable_) return Verdict::failed;
       }
     }
-    if (eta_ * change <= allowance_ || change <= noise_) return Verdict::converged;
+    if (eta_ * change <= allowance_ || change <= floor) return Verdict::converged;
     previous_ = change;
     if (count_ < limit_) return Verdict::iterate;
     return eta_ * change <= acceptable_ ? Verdict::converged : Verdict::failed;

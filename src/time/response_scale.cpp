@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace whirl::time {
 namespace {
 constexpr std::size_t of(Kind k) { return static_cast<std::size_t>(k); }
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 /// Motion below this share of a coordinate's size (a sag, a pre-deflection) is at rest: round-off of the size is near.
-constexpr double offset_share = 1e-6;
+constexpr double least_share = 1e-6;
+/// Rounding of the coordinates a correction carries, in units of the last place: sums over a row of matrices.
+constexpr double rounding_units = 4.0 * std::numeric_limits<double>::epsilon();
 }  // namespace
 
 void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
@@ -24,6 +27,8 @@ void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
   }
   set_spin_inertia(VecX::Zero(n));
 }
+
+void ResponseScale::resolve(double smallest) { offset_share_ = std::max(least_share, rounding_units / smallest); }
 
 void ResponseScale::reset(CRef q) {
   low_ = high_ = q;
@@ -61,8 +66,8 @@ void ResponseScale::begin_step(CRef dq) {
   const Scales& o = options_;
   double& u = s[of(Kind::displacement)];
   double& g = s[of(Kind::tilt)];
-  u = std::max({u, o.displacement, o.floor_displacement, offset_share * size_[of(Kind::displacement)]});
-  g = std::max({g, o.tilt, o.floor_tilt, offset_share * size_[of(Kind::tilt)]});
+  u = std::max({u, o.displacement, o.floor_displacement, offset_share_ * size_[of(Kind::displacement)]});
+  g = std::max({g, o.tilt, o.floor_tilt, offset_share_ * size_[of(Kind::tilt)]});
   const double u0 = u;
   u = std::max(u, o.cross_floor * o.length * g);
   g = std::max(g, o.cross_floor * u0 / o.length);
@@ -72,7 +77,7 @@ void ResponseScale::begin_step(CRef dq) {
     used_ = s;
     for (Index i = 0; i < weight_.size(); ++i) weight_[i] = 1.0 / s[of(kinds_[at(i)])];
     for (const Scales::Limit& l : o.limits)
-      if (kinds_[at(l.unknown)] != Kind::held) weight_[l.unknown] = std::max(weight_[l.unknown], 1.0 / l.scale);
+      if (kinds_[at(l.unknown)] != Kind::held) weight_[l.unknown] = std::max(weight_[l.unknown], 1.0 / std::max(l.scale, offset_share_ * size_[of(Kind::displacement)]));
   }
   const double floor = std::max(o.internal, o.floor_internal);
   for (Index i : internal_)
@@ -80,6 +85,14 @@ void ResponseScale::begin_step(CRef dq) {
 }
 
 double ResponseScale::norm(CRef x) const { return x.cwiseProduct(weight_).lpNorm<Eigen::Infinity>(); }
+
+double ResponseScale::rounding() const {
+  double largest = 0.0;
+  for (const Kind k : {Kind::displacement, Kind::tilt})
+    if (used_[of(k)] > 0.0) largest = std::max(largest, size_[of(k)] / used_[of(k)]);
+  for (const Scales::Limit& l : options_.limits) largest = std::max(largest, size_[of(Kind::displacement)] / l.scale);
+  return rounding_units * largest;
+}
 
 double ResponseScale::error_norm(CRef x) const {
   double largest = 0.0, spin = 0.0;

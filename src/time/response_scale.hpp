@@ -12,6 +12,8 @@ namespace whirl::time {
 class ResponseScale {
  public:
   void resize(std::span<const Kind> kinds, const Scales& options);
+  /// The smallest part of a scale that anything is asked to be right to: scales are then so large that this is above rounding.
+  void resolve(double smallest);
   /// Forgets everything; ranges start at q.
   void reset(CRef q);
   /// Row sums of the spin columns of M (any non-negative numbers): weights of the spin_angle mean square.
@@ -24,6 +26,8 @@ class ResponseScale {
   void begin_step(CRef dq);
   /// max_i |x_i| / scale_i of the weights set last.
   double norm(CRef x) const;
+  /// Rounding of the coordinates in the same measure: below this no correction means anything.
+  double rounding() const;
   /// The same with the inertia-weighted mean of spin_angle.
   double error_norm(CRef x) const;
   /// 1 / scale_i, 0 for held entries.
@@ -37,6 +41,7 @@ class ResponseScale {
   static constexpr std::size_t kinds_count = 5;
   std::vector<Kind> kinds_;
   Scales options_;
+  double offset_share_ = 1e-6;
   std::array<double, kinds_count> swept_{}, size_{}, used_{};   ///< range and size of the run so far; of the weights
   VecX low_, high_, weight_, inertia_;
   std::vector<Index> internal_, spin_;
