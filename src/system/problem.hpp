@@ -21,6 +21,7 @@ class SystemProblem : public time::Problem {
   Index size() const override { return system_.size(); }
   std::span<const time::Kind> kinds() const override { return kinds_; }
   bool is_linear() const override { return system_.linear(); }
+  bool has_corners() const override { return system_.cornered(); }
   void impose(double t, time::Ref q, time::Ref v, time::Ref a) const override { system_.impose(frames, t, q, v, a); }
   bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
   void linearize(double t, time::CRef q, time::CRef v, time::CRef a) override;

@@ -13,7 +13,9 @@
 //     [ (lambda_k/h)^2 M + (lambda_k/h) C + K ] u_k = - sum_i w_k,i R_i.
 // One real and one complex N x N system (Gauss 4: complex only) instead of one of 6N. (E. Hairer, G. Wanner, Solving ODEs
 // II, IV.8; J. C. Butcher, BIT 16 (1976) 237, doi 10.1007/BF01932265.) Iteration ends when rate/(1-rate) times the last
-// correction is below the Newton allowance, with the rate of earlier steps standing in after the first correction.
+// correction is below the Newton allowance, with the rate of earlier steps standing in after the first correction. New matrices are taken in the
+// middle of the step, and where the iteration still fails, at the middle stage of where it has come to: a film whose wedge all but
+// vanishes changes its tangent within a correction. Not with contacts (Problem::has_corners).
 //
 // Predictor: the acceleration polynomial of the last step, extrapolated and integrated twice.
 //
@@ -94,24 +96,40 @@ void Collocation::predict(double h, bool extrapolate) {
   }
 }
 
-bool Collocation::evaluate_stages(double h) {
+double Collocation::set_stage(int i, double h) {
   const double h1 = 1.0 / h, h2 = h1 * h1;
+  const auto u = static_cast<std::size_t>(i);
+  const auto& b = tab_.Ainv[u];
+  const auto& d = tab_.Ainv2[u];
+  qs_ = q0_ + ((tab_.c[u] * h) * v0_ + y_.col(i));
+  if (s_ == 3) {
+    vs_ = v0_ + ((h1 * b[0]) * y_.col(0) + (h1 * b[1]) * y_.col(1) + (h1 * b[2]) * y_.col(2));
+    as_ = (h2 * d[0]) * y_.col(0) + (h2 * d[1]) * y_.col(1) + (h2 * d[2]) * y_.col(2);
+  } else {
+    vs_ = v0_ + ((h1 * b[0]) * y_.col(0) + (h1 * b[1]) * y_.col(1));
+    as_ = (h2 * d[0]) * y_.col(0) + (h2 * d[1]) * y_.col(1);
+  }
+  const double t = stage_time(tab_.c[u], h);
+  problem_.impose(t, qs_, vs_, as_);
+  return t;
+}
+
+bool Collocation::evaluate_stages(double h) {
   for (int i = 0; i < s_; ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    const auto& b = tab_.Ainv[u];
-    const auto& d = tab_.Ainv2[u];
-    qs_ = q0_ + ((tab_.c[u] * h) * v0_ + y_.col(i));
-    if (s_ == 3) {
-      vs_ = v0_ + ((h1 * b[0]) * y_.col(0) + (h1 * b[1]) * y_.col(1) + (h1 * b[2]) * y_.col(2));
-      as_ = (h2 * d[0]) * y_.col(0) + (h2 * d[1]) * y_.col(1) + (h2 * d[2]) * y_.col(2);
-    } else {
-      vs_ = v0_ + ((h1 * b[0]) * y_.col(0) + (h1 * b[1]) * y_.col(1));
-      as_ = (h2 * d[0]) * y_.col(0) + (h2 * d[1]) * y_.col(1);
-    }
-    const double t = stage_time(tab_.c[u], h);
-    problem_.impose(t, qs_, vs_, as_);
+    const double t = set_stage(i, h);
     if (!residual(t, qs_, vs_, as_, r_.col(i))) return false;
   }
+  return true;
+}
+
+bool Collocation::linearize_inside(double h) {
+  y_ += r_;   // the correction that showed it makes nothing better
+  const double t = set_stage(1, h);
+  problem_.linearize(t, qs_, vs_, as_);
+  ++statistics_.linearizations;
+  h_factored_ = 0.0;
+  if (!factor(h)) return false;
+  h_factored_ = h;
   return true;
 }
 
@@ -152,9 +170,10 @@ void Collocation::newton(double h, Attempt& out) {
     if (!evaluate_stages(h)) return;
   }
   newton_.begin();
-  for (;;) {
+  constexpr int most_linearizations = 4;
+  for (int again = 0;;) {
     const bool finite = correct();
-    out.iterations = newton_.count() + 1;
+    ++out.iterations;
     if (out.iterations == 1) {
       dq_ = h * v0_ + y_.col(s_ - 1);
       scale_.begin_step(dq_);
@@ -175,8 +194,13 @@ void Collocation::newton(double h, Attempt& out) {
         if (newton_.slow()) linearize_ = true;
         return;
       case NewtonMonitor::Verdict::failed:
-        out.status = StepStatus::newton;
         newton_.forget();
+        if (finite && smooth() && again++ < most_linearizations && linearize_inside(h)) {
+          newton_.begin();
+          break;
+        }
+        out.status = StepStatus::newton;
+        linearize_ = true;
         return;
       case NewtonMonitor::Verdict::iterate:
         break;

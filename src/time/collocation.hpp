@@ -23,6 +23,10 @@ class Collocation final : public Stepper {
   const double* restore_history(const double* in) override;
 
   void predict(double h, bool extrapolate);
+  /// State of stage i at the present increments into qs_, vs_, as_; its time.
+  double set_stage(int i, double h);
+  /// Matrices at the middle stage of the present iterate: where those of the start do not lead to the solution. false: singular.
+  bool linearize_inside(double h);
   /// Residuals of all stages at the present increments into r_; false: outside the model's domain.
   bool evaluate_stages(double h);
   /// Newton on the stages; iterations and status into `out`.

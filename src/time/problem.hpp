@@ -23,6 +23,9 @@ class Problem {
   /// True when M, C, K are constant and R is affine in (q, v, a): one linearisation serves the run and Newton's first
   /// iteration is exact.
   virtual bool is_linear() const { return false; }
+  /// True when forces have corners (contacts, gaps): matrices are then those of the start of a step, so that one that would jump over a
+  /// contact fails and is shortened.
+  virtual bool has_corners() const { return false; }
   /// Sets the held entries of q, v, a at time t (exactly, from their laws).
   virtual void impose(double t, Ref q, Ref v, Ref a) const = 0;
   /// r = R(t, q, v, a); entries of held unknowns are the reactions. Returns false when the configuration is outside

@@ -57,6 +57,8 @@ class Stepper : public Integrator {
     ++statistics_.residuals;
     return problem_.residual(t, q, v, a, r);
   }
+  /// Matrices may be taken inside the step, where Newton's iteration converges best.
+  bool smooth() const { return !first_ && !problem_.has_corners() && !problem_.is_linear(); }
   bool factor_real(double cm, double cc, double ck) {
     ++statistics_.factorizations_real;
     return problem_.factor(cm, cc, ck);
@@ -88,6 +90,7 @@ class Stepper : public Integrator {
 
  private:
   struct Target { double h, t1; bool landing, clipped; };
+  void linearize(double h, bool inside);
   Attempt attempt_with_recovery(double h);
   void begin_step();
   void after_discontinuity(bool impulse);
