@@ -89,6 +89,28 @@ TEST(BuildSystem, NodesAreThoseOfTheMesh) {
   EXPECT_EQ(built.system.line_name(0), "rotor");
 }
 
+// The correction of the shaft's mass counts what else acts on a node laterally (src/assembly/mass_shares.hpp): a thrust bearing does not, be its stiffness
+// constant or tabulated; a table with lateral entries does.
+TEST(BuildSystem, ThrustBearingsLeaveTheLateralMassAlone) {
+  model::Model m = one_shaft({cylinder("a", 0.4, 0.04, 0, 4)});
+  m.bearings = {spring("b", 0.0, 1e7), spring("c", 0.4, 1e7)};
+  const auto mass = [&] { return build(m).system.batch<elements::ShaftBeam<false>>()->elements()[1].c.M4; };
+  const Matrix<4> plain = mass();
+  auto thrust = named<model::Bearing>("thrust", 0.2);
+  model::LinearBearing linear;
+  linear.K(0, 0) = 1e8, linear.C(0, 0) = 1e3;
+  thrust.law = linear;
+  m.bearings.push_back(thrust);
+  EXPECT_EQ(mass(), plain);
+  model::TableBearing table;
+  table.speed = {0, 100}, table.K = {linear.K, 2 * linear.K}, table.C = {linear.C, linear.C};
+  m.bearings.back().law = table;
+  EXPECT_EQ(mass(), plain);
+  table.K[1](1, 1) = table.K[1](2, 2) = 1e7;
+  m.bearings.back().law = table;
+  EXPECT_NE(mass(), plain);
+}
+
 TEST(BuildSystem, AbsentPhysicsIsAnAbsentBatch) {
   model::Model m = one_shaft({cylinder("a", 0.4, 0.04, 0, 4)});
   m.bearings = {spring("b", 0.0, 1e7), spring("c", 0.4, 1e7)};
