@@ -9,7 +9,7 @@ with open("bearing.csv", "w") as out:
     out.write("speed[rpm],frequency[Hz],kyy[N/m],kzz[N/m],cyy[N.s/m],czz[N.s/m]\n")
     for rpm in (3000, 6000, 9000, 12000):
         k1, c1 = 6e7 + 6e3 * rpm, 8e4 - 2.0 * rpm
-        for hz in range(10, 251, 10):
+        for hz in range(10, 601, 10):
             w = 2 * 3.141592653589793 * hz
             d = 1 / (1 / complex(k1, w * c1) + 1 / complex(k2 - w * w * m2, w * c2))
             out.write(f"{rpm},{hz},{d.real:.10g},{d.real:.10g},{d.imag / w:.10g},{d.imag / w:.10g}\n")

@@ -17,11 +17,13 @@ class Counter {
   Counter(Linearizer& linear, const CriticalOptions& o)
       : linear_(linear), options_(o), active_(select_motion(linear.system(), o.motion)),
         lu_(linear.system().pattern(), active_) {}
-  Index count(double Omega) {
+  Index count(double Omega) { return count(Omega, options_.order * Omega); }
+  /// tables: frequency of supports tabulated against it.
+  Index count(double Omega, double tables) {
     const double w = options_.order * Omega;
-    const la::MCK& m = linear_.conservative_at(Omega, w);
+    const la::MCK& m = linear_.conservative_at(Omega, tables);
     // exactly on an eigenvalue: look beside it
-    if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) != la::Status::ok) return count(Omega * (1 + 1e-12));
+    if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) != la::Status::ok) return count(Omega * (1 + 1e-12), tables);
     return lu_.negative_eigenvalues();
   }
   const std::vector<unsigned char>& active() const { return active_; }
@@ -56,8 +58,14 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
   std::vector<Bracket> brackets;
   double a = low;
   Index na = counter.count(a);
-  for (Index k = 1; k <= o.grid; ++k) {
-    const double b = low + (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid);
+  std::vector<double> grid;
+  for (Index k = 1; k <= o.grid; ++k) grid.push_back(low + (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid));
+  // Coefficients against frequency can raise a mode through n Omega (own_frequency.hpp: left out) near where it comes down: apart at the rows.
+  const std::vector<double>& rows = linear.running().running().table_frequencies;
+  for (const double w : rows)
+    if (w > o.order * low && w < o.order * o.max_speed) grid.push_back(w / o.order);
+  std::sort(grid.begin(), grid.end());
+  for (const double b : grid) {
     const Index nb = counter.count(b);
     isolate(counter, {a, b, na, nb}, o.max_speed, brackets);
     a = b, na = nb;
@@ -68,6 +76,7 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
   std::vector<Critical> out;
   for (const Bracket& k : brackets) {
     const double middle = 0.5 * (k.a + k.b);
+    if (!rows.empty() && k.nb < k.na && counter.count(k.b, o.order * middle) >= counter.count(k.a, o.order * middle)) continue;   // the table raised it
     const Index wanted = std::abs(k.nb - k.na);
     // The modes of the bracket's middle nearest to i n Omega.
     const la::MCK& m = linear.conservative_at(middle, o.order * middle);

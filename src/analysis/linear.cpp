@@ -44,7 +44,9 @@ bool Linearizer::still_balanced(double Omega) {
 
 const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
   running_.set_whirl(0.0);
-  if (still_balanced(Omega)) {
+  if (have_ && Omega == equilibrium_.Omega && running_.running().frequency_dependent()) {
+    // One equilibrium at every frequency asked about.
+  } else if (still_balanced(Omega)) {
     equilibrium_.Omega = Omega;
     running_.set_rates(Omega, equilibrium_.state.v);
     equilibrium_.reactions = r_;
@@ -60,7 +62,7 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
     running_.set_whirl(0.0);
     if (!inside) throw run_error("E76", "no linearisation: the state lies outside the range of an element");
   };
-  if (!running_.running().frequency_dependent || !std::isfinite(tables)) {
+  if (!running_.running().frequency_dependent() || !std::isfinite(tables)) {
     linearise();
     return matrices_;
   }

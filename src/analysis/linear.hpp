@@ -15,12 +15,14 @@ class Linearizer {
   /// Moves the equilibrium to Omega (rad/s, from the last one) and returns the matrices there; valid until the next call.
   /// Errors: as EquilibriumSolver::solve.
   const la::MCK& at(double Omega) { return at(Omega, Complex(0, nan)); }
-  /// The same as a motion x exp(lambda t) meets them, lambda = g + i w: supports that answer by frequency (Running::frequency_dependent) and
+  /// The same as a motion x exp(lambda t) meets them, lambda = g + i w: supports that answer by frequency (Running::table_frequencies) and
   /// hysteretic damping give real matrices that are exact for it alone. w NaN: synchronous values of tables, hysteretic damping of the steady
   /// state only; infinite: synchronous values, no hysteretic damping. The equilibrium is the same at every lambda.
   /// side: frequency that decides whether the whirl is faster than the spin; w unless given. Errors: E81, a table does not cover w.
   const la::MCK& at(double Omega, Complex lambda, double side = nan) { return at(Omega, lambda, side, lambda.imag()); }
   const la::MCK& at(double Omega, double) = delete;   // a real lambda is rarely meant
+  /// Tables at the frequency w, no hysteretic damping beside that of the steady state.
+  const la::MCK& at_frequency(double Omega, double w) { return at(Omega, Complex(0, infinity), nan, w); }
   /// The part of them that keeps energy: M, skew part of C (gyroscopic), symmetric part of K. For "undamped" results.
   const la::MCK& conservative_at(double Omega, double w = nan);
   double Omega() const { return equilibrium_.Omega; }

@@ -1,6 +1,7 @@
 #include <analysis/running.hpp>
 
 #include <core/error.hpp>
+#include <system/frequency.hpp>
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -156,6 +157,29 @@ void RunningSystem::sort_terms() {
     smooth_.insert(smooth_.end(), turning_smooth_.begin(), turning_smooth_.end());
     turning_.clear(), turning_smooth_.clear();
   }
+  find_frequency_terms();
+}
+
+void RunningSystem::find_frequency_terms() {
+  steady_ = other_;
+  if (!running_.frequency_dependent()) return;
+  // The motion of sort_terms, at every frequency a table has. Whatever is not equal to the last bit may depend on it, NaN included: a
+  // table that does not reach so far.
+  std::vector<std::vector<Vector<7>>> base;
+  std::vector<unsigned char> differs(other_.size(), 0);
+  for (const double w : running_.table_frequencies) {
+    const system::FrequencyScope ask(w);
+    for (std::size_t k = 0; k < other_.size(); ++k) {
+      if (differs[k]) continue;
+      for (auto& x : workspace_.force) x.setZero();
+      system_.terms()[other_[k]]->add_force(workspace_);
+      if (base.size() <= k) base.push_back(workspace_.force);
+      for (std::size_t i = 0; i < base[k].size(); ++i)
+        if (base[k][i] != workspace_.force[i] || !workspace_.force[i].allFinite()) differs[k] = 1;
+    }
+  }
+  steady_.clear();
+  for (std::size_t k = 0; k < other_.size(); ++k) (differs[k] ? by_frequency_ : steady_).push_back(other_[k]);
 }
 
 void RunningSystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
@@ -304,6 +328,21 @@ bool RunningSystem::residual(const system::Frames& f, double Omega, const VecX& 
 }
 
 bool RunningSystem::tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
+  if (by_frequency_.empty()) return fixed_tangent(f, Omega, q, out);
+  const system::Context& c = workspace_.context;
+  const std::array<double, 4> whirl{c.whirl, c.growth, c.whirl_side, c.whirl_rotates ? 1.0 : 0.0};
+  if (!have_fixed_ || fixed_speed_ != Omega || fixed_load_ != c.load || fixed_whirl_ != whirl || fixed_q_ != q || fixed_charts_ != f.chart) {
+    if (fixed_.M.value_count() == 0) fixed_ = system_.make_matrices();
+    have_fixed_ = fixed_tangent(f, Omega, q, fixed_);
+    if (!have_fixed_) return false;
+    fixed_speed_ = Omega, fixed_load_ = c.load, fixed_whirl_ = whirl, fixed_q_ = q, fixed_charts_ = f.chart;
+  }
+  if (!evaluate_tangent(f, Omega, q, 0.0, out, by_frequency_)) return false;
+  add_scaled(out, 1.0, fixed_);
+  return true;
+}
+
+bool RunningSystem::fixed_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
   if (!fits_polynomial(f, Omega, q)) {
     // A second speed at the same equilibrium: a sweep, in which the polynomials pay.
     const bool sweep = seen_ && seen_speed_ != Omega && seen_q_ == q;
@@ -319,8 +358,8 @@ bool RunningSystem::tangent(const system::Frames& f, double Omega, const VecX& q
   } else if (!smooth_tangent(f, Omega, q, out)) {
     return false;
   }
-  if (!other_.empty()) {
-    if (!evaluate_tangent(f, Omega, q, 0.0, part_, other_)) return false;
+  if (other_.size() > by_frequency_.size()) {
+    if (!evaluate_tangent(f, Omega, q, 0.0, part_, steady_)) return false;
     add_scaled(out, 1.0, part_);
   }
   return add_mean_tangent(f, Omega, q, turning_, out);

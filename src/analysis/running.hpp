@@ -12,6 +12,7 @@
 // quadratic: exact), so a sweep over speeds re-evaluates films and the like only.
 #pragma once
 #include <system/system.hpp>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -24,7 +25,10 @@ struct Running {
   bool hysteretic = true;      ///< hysteretic damping in its own form; false: as its stand-in in motions
   bool mean = true;            ///< average over the revolution; false: rotor angles as they stand (statics)
   double top_speed = 0;        ///< highest |Omega| expected, rad/s (keeps the polynomials from being made twice); 0 = unknown
-  bool frequency_dependent = false;   ///< something in the system answers differently to motions of different frequency (system/frequency.hpp)
+  /// rad/s, in any order: frequencies at which coefficients are given of supports that answer differently to motions of different frequency
+  /// (system/frequency.hpp); between neighbours they change smoothly. Empty: there are none.
+  std::vector<double> table_frequencies;
+  bool frequency_dependent() const { return !table_frequencies.empty(); }
 };
 
 class RunningSystem {
@@ -77,9 +81,12 @@ class RunningSystem {
   bool add_forcing(const system::Frames& f, double Omega, const VecX& q, const Terms& only, std::vector<VecXc>& out);
   bool smooth_residual(const system::Frames& f, double Omega, const VecX& q, VecX& r);
   bool smooth_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
+  /// All but by_frequency_.
+  bool fixed_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
   bool make_polynomial(const system::Frames& f, double Omega, const VecX& q);
   bool fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const;
   void sort_terms();
+  void find_frequency_terms();
   void make_samples();
 
   const system::System& system_;
@@ -90,12 +97,20 @@ class RunningSystem {
   Terms smooth_, other_;                   ///< blind to phi: quadratic in the rates; the rest
   Terms turning_smooth_, turning_;         ///< that see phi: the same
   Terms blind_, all_;
+  Terms by_frequency_, steady_;            ///< of other_: those that answer differently to motions of different frequency; the rest
   std::vector<double> theta_;              ///< samples
   MatX weights_;                           ///< rows: mean, then cos and sin of each order; columns: samples
   bool hysteretic_ = false;
   system::Workspace workspace_;
   VecX q_, v_, a_, r_;                     // scratch
   la::MCK part_, sample_;
+  // What does not depend on the frequency asked about, kept while the state stays: supports tabulated against it alone are evaluated again
+  la::MCK fixed_;
+  bool have_fixed_ = false;
+  double fixed_speed_ = 0, fixed_load_ = 1;
+  std::array<double, 4> fixed_whirl_{};    ///< rate of hysteretic damping
+  VecX fixed_q_;
+  std::vector<Mat3> fixed_charts_;
   // smooth terms as polynomials at one q
   bool polynomial_ = false, seen_ = false;
   double scale_ = 0, polynomial_load_ = 1, seen_speed_ = 0;

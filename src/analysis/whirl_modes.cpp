@@ -56,7 +56,7 @@ double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
 WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer& linear) {
   const system::System& s = linear.system();
   WhirlMode w;
-  w.lambda = mode.lambda, w.x = mode.x, w.residual = mode.residual, w.from = mode.from;
+  w.lambda = w.continued = mode.lambda, w.x = mode.x, w.residual = mode.residual, w.from = mode.from;
   w.frequency = std::abs(mode.lambda.imag());
   const double size = std::abs(mode.lambda);
   w.damping_ratio = size > 0 ? -mode.lambda.real() / size : 0.0;
@@ -147,37 +147,21 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
 
 WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
     : linear_(linear), options_(options), active_(select_motion(linear.system(), options.motion)),
-      solver_(linear.system().pattern(), active_, la_options(options, options.damped && linear.hysteretic())) {}
+      solver_(linear.system().pattern(), active_, la_options(options, options.damped && linear.hysteretic())) {
+  const Running& r = linear.running().running();
+  if (r.frequency_dependent()) own_.emplace(linear.system().pattern(), active_, la_options(options, options.damped && linear.hysteretic()), r.table_frequencies);
+}
 
 const la::MCK& WhirlSolver::matrices_at(double Omega, Complex lambda, double side) {
   matrices_ = options_.damped ? &linear_.at(Omega, lambda, side) : &linear_.conservative_at(Omega, lambda.imag());
   return *matrices_;
 }
 
-std::optional<la::Mode> WhirlSolver::at_own_frequency(double Omega, la::Mode mode) {
-  if (mode.lambda.imag() == 0.0) {
-    try {
-      auto found = solver_.follow(matrices_at(Omega, Complex(0, 0.0)), mode);
-      if (found && found->lambda.imag() == 0.0) return found;
-    } catch (const Error& e) {
-      if (e.diagnostics().front().code != "E81") throw;
-    }
-    matrices_at(Omega, Complex(0, nan));
-    return mode;
-  }
-  // The root of g(w) = Im lambda(w) - w, lambda(w) followed in the matrices for w: by secant, which does not mind |d Im lambda/dw| > 1.
-  double w0 = nan, g0 = nan, w = std::abs(mode.lambda.imag());
-  for (int it = 0; it < 50; ++it) {
-    const auto found = solver_.follow(matrices_at(Omega, Complex(0, w)), mode);
-    if (!found) return std::nullopt;
-    mode = *found;
-    const double frequency = std::abs(mode.lambda.imag()), g = frequency - w;
-    if (std::abs(g) <= 1e-11 * std::abs(mode.lambda) || w == w0) return mode;   // the eigenvalue itself is known to 1e-12
-    double next = std::isnan(g0) || g == g0 ? frequency : w - g * (w - w0) / (g - g0);
-    if (!(next > 0.5 * w && next < 2.0 * w)) next = frequency;
-    w0 = w, g0 = g, w = next;
-  }
-  return std::nullopt;
+OwnFrequency::Matrices WhirlSolver::at_frequency(double Omega) {
+  return [this, Omega](double w) -> const la::MCK& {
+    matrices_ = options_.damped ? &linear_.at_frequency(Omega, w) : &linear_.conservative_at(Omega, w);
+    return *matrices_;
+  };
 }
 
 std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
@@ -237,25 +221,30 @@ void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
 }
 
 void WhirlSolver::solve_by_frequency(double Omega) {
-  // Synchronous coefficients give the starts; each mode is then led to the coefficients at its own frequency. Two that meet are one.
-  const std::vector<la::Mode> starts = solver_.solve(matrices_at(Omega, Complex(0, nan)));
-  for (const la::Mode& start : starts) {
-    const auto mode = at_own_frequency(Omega, start);
-    if (!mode) continue;
-    const la::MCK& own = *matrices_;
-    const bool known = std::any_of(modes_.begin(), modes_.end(), [&](const WhirlMode& k) {
-      return std::abs(k.lambda - mode->lambda) < 1e-8 * std::abs(k.lambda) && likeness(own, k.x, mode->x) > 0.999;
-    });
-    if (known) continue;
-    modes_.push_back(describe_mode(*mode, own, linear_));
-    modes_.back().from = start.from;
+  const OwnFrequency::Matrices at = at_frequency(Omega);
+  const auto own = [&](const la::Mode& m) -> const la::MCK& {
+    return m.lambda.imag() != 0.0 ? at(m.lambda.imag()) : own_->reaches_zero(at) ? at(0.0) : matrices_at(Omega, Complex(0, nan));
+  };
+  std::vector<la::Mode> modes = own_->solve(at);
+  if (options_.real_roots) {
+    const la::Mode at_rest;
+    for (const la::Mode& m : solver_.solve(own(at_rest)))
+      if (m.lambda.imag() == 0.0) modes.push_back(m);
+    const auto by_size = [](const la::Mode& a, const la::Mode& b) { return std::abs(a.lambda) < std::abs(b.lambda); };
+    std::stable_sort(modes.begin(), modes.end(), by_size);
+    if (options_.count > 0 && static_cast<Index>(modes.size()) > options_.count) modes.resize(static_cast<std::size_t>(options_.count));
+    std::stable_sort(modes.begin(), modes.end(), [](const la::Mode& a, const la::Mode& b) { return a.lambda.imag() < b.lambda.imag(); });
   }
-  std::stable_sort(modes_.begin(), modes_.end(), [](const WhirlMode& a, const WhirlMode& b) { return a.frequency < b.frequency; });
+  for (const la::Mode& m : modes) {
+    modes_.push_back(describe_mode(m, own(m), linear_));
+    modes_.back().from = -1;
+    if (options_.continued && options_.damped && m.lambda.imag() != 0.0) modes_.back().continued = own_->continued(at, m);
+  }
 }
 
 void WhirlSolver::solve_hysteretic(double Omega) {
   // Forward and backward whirl of one frequency are any two motions of their plane until the damping tells them apart.
-  std::vector<la::Mode> known = solver_.solve(matrices_at(Omega, Complex(0, infinity))), group;
+  std::vector<la::Mode> known = by_frequency() ? own_->solve(at_frequency(Omega)) : solver_.solve(matrices_at(Omega, Complex(0, infinity))), group;
   for (std::size_t i = 0; i < known.size();) {
     group.clear();
     do group.push_back(known[i++]);
@@ -275,7 +264,7 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
   modes_.clear();
   if (options_.damped && linear_.hysteretic()) {
     solve_hysteretic(Omega);
-  } else if (linear_.running().running().frequency_dependent) {
+  } else if (by_frequency()) {
     solve_by_frequency(Omega);
   } else {
     const la::MCK& m = matrices_at(Omega, Complex(0, nan));
@@ -289,7 +278,8 @@ std::optional<WhirlMode> WhirlSolver::follow(double Omega, const WhirlMode& star
   from.lambda = start.lambda, from.x = start.x;
   std::optional<la::Mode> found;
   if (options_.damped && linear_.hysteretic()) found = settle_rate(Omega, from);
-  else if (linear_.running().running().frequency_dependent) found = at_own_frequency(Omega, from);
+  else if (by_frequency() && from.lambda.imag() != 0.0) found = own_->settle(at_frequency(Omega), from);
+  else if (by_frequency()) found = solver_.follow(own_->reaches_zero(at_frequency(Omega)) ? at_frequency(Omega)(0.0) : matrices_at(Omega, Complex(0, nan)), from);
   else found = solver_.follow(matrices_at(Omega, Complex(0, nan)), from);
   if (!found || likeness(*matrices_, found->x, start.x) < 0.3) return std::nullopt;   // a planar start and the circle it becomes are 0.5 alike
   return describe_mode(*found, *matrices_, linear_);

@@ -5,6 +5,7 @@
 // (kinetic and strain) among lateral, torsional and axial motion.
 #pragma once
 #include <analysis/linear.hpp>
+#include <analysis/own_frequency.hpp>
 #include <la/eigen.hpp>
 #include <string_view>
 
@@ -26,6 +27,9 @@ struct WhirlMode {
   double lateral = 0, torsional = 0, axial = 0;   ///< shares of energy
   VecXc x;                     ///< (u, phi, gamma) a node; largest displacement (twist, when torsional) is 1 and real
   double residual = 0;         ///< backward error of the eigenpair
+  /// 1/s: lambda to first order with coefficients that depend on frequency continued to the complex frequency -i lambda of the motion itself
+  /// (OwnFrequency::continued); equal to lambda where nothing depends on it.
+  Complex continued;
   Index from = -1;             ///< mode of the last speed it continues, -1: none
 };
 
@@ -35,17 +39,17 @@ struct ModesOptions {
   Motion motion = Motion::all;
   bool damped = true;                      ///< false: conservative part of the matrices only
   bool real_roots = false;                 ///< also motions that do not oscillate
+  bool continued = false;                  ///< also WhirlMode::continued
 };
 
 /// Modes at one speed, least frequency first.
 std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const ModesOptions& options = {});
 
 /// Modes at a series of speeds; each call starts from what the last one found. Supports tabulated against frequency (Running::
-/// frequency_dependent): every whirling mode satisfies Q(lambda; Im lambda) x = 0, its coefficients being those at its own frequency, found
-/// from the modes with synchronous coefficients; real roots take those at zero frequency, or keep the synchronous ones where the tables do not
-/// reach down to it. Not found: modes that no synchronous mode leads to. Hysteretic damping makes the problem depend on lambda
-/// likewise: each mode is solved for in turn until it agrees with the rate its matrices are for (contraction about half the loss factor a
-/// round).
+/// table_frequencies): every whirling mode satisfies Q(lambda; Im lambda) x = 0, its coefficients being those at its own frequency
+/// (own_frequency.hpp: all of them); real roots take those at zero frequency, or the synchronous ones where the tables do not reach
+/// down to it. Hysteretic damping makes the problem depend on lambda likewise: each mode is solved for in turn until it agrees with the
+/// rate its matrices are for (contraction about half the loss factor a round).
 class WhirlSolver {
  public:
   explicit WhirlSolver(Linearizer& linear, const ModesOptions& options = {});
@@ -60,8 +64,9 @@ class WhirlSolver {
 
  private:
   const la::MCK& matrices_at(double Omega, Complex lambda, double side = nan);
-  /// Where supports answer by frequency: the mode in the matrices for its own frequency, from a mode in others; nullopt: lost.
-  std::optional<la::Mode> at_own_frequency(double Omega, la::Mode mode);
+  bool by_frequency() const { return own_.has_value(); }
+  /// Matrices with the tables at a frequency, hysteretic damping left to settle_rate.
+  OwnFrequency::Matrices at_frequency(double Omega);
   /// The mode that `start` (an eigenpair at its own rate) becomes when hysteretic damping acts at the rate of the mode itself.
   std::optional<la::Mode> settle_rate(double Omega, la::Mode start);
   void solve_by_frequency(double Omega);
@@ -72,6 +77,7 @@ class WhirlSolver {
   ModesOptions options_;
   std::vector<unsigned char> active_;
   la::ModeSolver solver_;
+  std::optional<OwnFrequency> own_;   ///< where supports answer by frequency
   const la::MCK* matrices_ = nullptr;
   std::vector<WhirlMode> modes_;
 };

@@ -12,7 +12,7 @@ analysis::Running running_of(const Job& job, double top_speed) {
     r.ratio.push_back(job.mesh.lines[l].rotating ? job.model.shafts[l].speed_ratio : 0.0);
   r.ratio.resize(static_cast<std::size_t>(job.system().lines()), 0.0);
   r.top_speed = top_speed;
-  r.frequency_dependent = job.built.frequency_dependent;
+  r.table_frequencies = job.built.table_frequencies;
   return r;
 }
 

@@ -79,6 +79,7 @@ void run_modal_step(Job& job, const model::Step& step, const model::ModalStep& l
   o.motion = motion_of(law.motion);
   o.damped = law.damped;
   o.real_roots = false;
+  o.continued = law.damped && !job.built.table_frequencies.empty();
   const std::vector<analysis::WhirlMode> modes = [&] {
     const PhaseTimer timer(job, "modes");
     return analysis::whirl_modes(s.linear, law.speed, o);
@@ -97,17 +98,22 @@ void run_modal_step(Job& job, const model::Step& step, const model::ModalStep& l
                    {"torsional", "%", ""},
                    {"axial", "%", ""},
                    {"forwardness", "-", "1: forward circles, -1: backward circles"}};
+  if (o.continued) table.columns.push_back({"continued log decrement", "-", "with coefficients continued from the frequency to the decay of the motion, first order"});
   io::Value& v = s.summary();
   v["speed [rpm]"] = to_rpm(law.speed);
   io::Value list = io::Value::array();
   int unstable = 0;
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::WhirlMode& m = modes[k];
-    table.add({static_cast<int>(k + 1), std::string(to_string(m.kind)), direction_text(m), to_hz(m.frequency), to_rpm(m.frequency),
-               tidy(m.log_decrement), tidy(m.damping_ratio), 100 * tidy(m.lateral), 100 * tidy(m.torsional), 100 * tidy(m.axial), tidy(m.forwardness)});
+    std::vector<io::Table::Cell> row{static_cast<int>(k + 1), std::string(to_string(m.kind)), direction_text(m), to_hz(m.frequency), to_rpm(m.frequency),
+                                     tidy(m.log_decrement), tidy(m.damping_ratio), 100 * tidy(m.lateral), 100 * tidy(m.torsional), 100 * tidy(m.axial), tidy(m.forwardness)};
+    const double continued = -two_pi * m.continued.real() / m.continued.imag();
+    if (o.continued) row.emplace_back(tidy(continued));
+    table.add(std::move(row));
     io::Value e = io::Value::object();
     e["frequency [Hz]"] = to_hz(m.frequency);
     e["log decrement"] = tidy(m.log_decrement);
+    if (o.continued) e["continued log decrement"] = tidy(continued);
     e["kind"] = std::string(to_string(m.kind)), e["direction"] = direction_text(m);
     list.push(std::move(e));
     unstable += m.damping_ratio < -1e-12;   // below the rounding of the eigenvalue

@@ -71,7 +71,7 @@ struct Built {
   std::vector<LineSpin> spins;      ///< one a line
   Index reference = 0;              ///< node whose spin is the speed axis: the first drive's, else the first node of the first rotating line
   std::vector<std::string> notes;      ///< what was idealised otherwise than the deck says it, one line each, for the summary
-  bool frequency_dependent = false; ///< a support has coefficients against the frequency of the motion (system/frequency.hpp)
+  std::vector<double> table_frequencies;   ///< rad/s, in no order: of supports with coefficients against the frequency of the motion (system/frequency.hpp)
   std::vector<std::string> left_out;   ///< physics this scene does not need, one line each, for the summary
   std::vector<std::string> simpler;    ///< general kernels that simpler ones stand for here; Model::keep_everything keeps them
 };

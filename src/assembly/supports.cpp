@@ -94,7 +94,7 @@ void add_table_of(Assembly& a, const model::Bearing& b, const meshes::BearingNod
     if (law.frequency.empty()) {
       add_table_law<Table>(a, b, n, law, std::make_shared<Table>(law.speed, table_rows<N>(law), between, outside), "tabulated bearings");
     } else {
-      a.built.frequency_dependent = true;
+      a.built.table_frequencies.insert(a.built.table_frequencies.end(), law.frequency.begin(), law.frequency.end());
       add_table_law<Grid>(a, b, n, law, std::make_shared<Grid>(law.speed, law.frequency, table_rows<N>(law), between, outside), "bearings tabulated against frequency");
     }
   });

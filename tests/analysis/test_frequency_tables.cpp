@@ -64,7 +64,7 @@ constexpr Support damped{2e3, 5e3}, undamped{0, 0};
 TEST(FrequencyTable, ResponseAtTheFrequencyOfExcitation) {
   const std::vector<double> w = grid(600, 12);
   const test::DeckModel a(deck_text(damped, w));
-  ASSERT_TRUE(a.built.frequency_dependent);
+  ASSERT_FALSE(a.built.table_frequencies.empty());
   analysis::Linearizer linear(a.built.system, a.running());
   const Index y = 6 * a.disk() + 1;
   analysis::FrequencyResponseOptions o;

@@ -29,7 +29,7 @@ struct DeckModel {
   analysis::Running running() const {
     analysis::Running r;
     for (const auto& s : deck.model.shafts) r.ratio.push_back(s.rotating ? s.speed_ratio : 0.0);
-    r.frequency_dependent = built.frequency_dependent;
+    r.table_frequencies = built.table_frequencies;
     return r;
   }
   /// Node of the first disk.
