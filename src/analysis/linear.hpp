@@ -21,6 +21,8 @@ class Linearizer {
   /// side: frequency that decides whether the whirl is faster than the spin; w unless given. Errors: E81, a table does not cover w.
   const la::MCK& at(double Omega, Complex lambda, double side = nan) { return at(Omega, lambda, side, lambda.imag()); }
   const la::MCK& at(double Omega, double) = delete;   // a real lambda is rarely meant
+  /// tables: the frequency that supports answer to, where it is not Im lambda.
+  const la::MCK& at(double Omega, Complex lambda, double side, double tables);
   /// Tables at the frequency w, no hysteretic damping beside that of the steady state.
   const la::MCK& at_frequency(double Omega, double w) { return at(Omega, Complex(0, infinity), nan, w); }
   /// The part of them that keeps energy: M, skew part of C (gyroscopic), symmetric part of K. For "undamped" results.
@@ -40,8 +42,6 @@ class Linearizer {
   std::span<const unsigned char> active() const { return running_.system().active(); }
 
  private:
-  /// tables: the frequency that supports answer to, where it is not Im lambda.
-  const la::MCK& at(double Omega, Complex lambda, double side, double tables);
   bool still_balanced(double Omega);
   RunningSystem running_;
   EquilibriumSolver solver_;

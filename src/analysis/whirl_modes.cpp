@@ -166,6 +166,11 @@ OwnFrequency::Matrices WhirlSolver::at_frequency(double Omega) {
 
 std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
   const Index from = mode.from;
+  // Supports that answer by frequency do so within each round.
+  const auto follow = [&](Complex rate, double side, const la::Mode& start) {
+    if (!by_frequency() || start.lambda.imag() == 0.0) return solver_.follow(matrices_at(Omega, rate, side), start);
+    return own_->settle([&](double w) -> const la::MCK& { return *(matrices_ = &linear_.at(Omega, rate, side, w)); }, start);
+  };
   // Where forward whirl passes the speed its damping changes sign. The side is settled in an outer loop; where the frequency jumps from one side to
   // the other with it (planes mixed by unequal supports), the last one found stands.
   for (int sides = 0; sides < 6 && mode.lambda.imag() != 0.0; ++sides) {
@@ -173,9 +178,9 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
     bool steady = false;
     for (int round = 0; round < 40 && !steady && mode.lambda.imag() != 0.0; ++round) {
       const Complex rate = mode.lambda;
-      auto next = solver_.follow(matrices_at(Omega, rate, side), mode);
+      auto next = follow(rate, side, mode);
       if (!next) return std::nullopt;
-      steady = std::abs(next->lambda - rate) <= 1e-13 * std::abs(rate);
+      steady = std::abs(next->lambda - rate) <= (by_frequency() ? 1e-10 : 1e-13) * std::abs(rate);   // own frequencies are known to 1e-11
       if (steady && round == 0 && sides > 0) {   // the new side changes nothing
         mode = std::move(*next);
         mode.from = from;
@@ -245,10 +250,12 @@ void WhirlSolver::solve_by_frequency(double Omega) {
 void WhirlSolver::solve_hysteretic(double Omega) {
   // Forward and backward whirl of one frequency are any two motions of their plane until the damping tells them apart.
   std::vector<la::Mode> known = by_frequency() ? own_->solve(at_frequency(Omega)) : solver_.solve(matrices_at(Omega, Complex(0, infinity))), group;
+  // Coefficients against frequency keep modes apart that are not of one frequency, and may change much between them.
+  const double close = by_frequency() ? 1e-4 : 0.05;
   for (std::size_t i = 0; i < known.size();) {
     group.clear();
     do group.push_back(known[i++]);
-    while (i < known.size() && group.size() < 6 && std::abs(known[i].lambda - known[i - 1].lambda) < 0.05 * std::abs(known[i].lambda));
+    while (i < known.size() && group.size() < 6 && std::abs(known[i].lambda - known[i - 1].lambda) < close * std::abs(known[i].lambda));
     if (group.size() > 1) separate(Omega, group);
     for (const la::Mode& mode : group) {
       const auto settled = settle_rate(Omega, mode);

@@ -238,13 +238,14 @@ TEST(FrequencyModes, InstabilityAtItsOwnFrequencyOnly) {
 namespace {
 constexpr Chain pedestal{0, 1e8, 30, 60, 1.5e8, 15};   // m1: the rotor's
 
-std::string overhung(const std::string& bearings) {
-  return R"(format = 1
+std::string overhung(const std::string& bearings, double loss = 0) {
+  return fmt::format(R"(format = 1
 [model]
 gravity = "0 m/s^2"
 [shaft]
 name = "rotor"
 material = "steel"
+damping = {{ internal_loss_factor = {} }}
 columns = ["name", "length[mm]", "od[mm]", "min_elements"]
 rows = [["de", 300, 90, 2], ["span", 700, 110, 3], ["nose", 250, 90, 2]]
 [[disk]]
@@ -257,15 +258,13 @@ name = "thrust"
 at = "de:start"
 type = "rigid"
 directions = ["x"]
-)" + bearings;
+)", loss) + bearings;
 }
-}  // namespace
 
-// A gyroscopic rotor on two bearings with pedestals, once with the pedestals as masses, once within tables: the same Campbell diagram and
-// the same damped critical speeds.
-TEST(FrequencyModes, RotorOnPedestalsInTablesIsTheRotorOnPedestals) {
+/// Bearings of the rotor above on pedestals that are masses (first), or in tables (second).
+std::pair<std::string, std::string> on_pedestals() {
   std::string masses, tables;
-  // Most that is seen below 350 Hz; the pole at 2041 rad/s lies inside.
+  // The pole at 2041 rad/s lies inside.
   std::vector<double> w = grid(3000, 100);
   const double pole = std::sqrt((pedestal.k1 + pedestal.k2) / pedestal.m2);
   for (int k = -66; k <= 66; ++k) insert(w, pole + 0.4 * std::sinh(0.12 * k));
@@ -282,6 +281,14 @@ support = {{ mass = "{3} kg", kyy = "{4} N/m", kzz = "{4} N/m", cyy = "{5} N.s/m
 )", name, pedestal.k1, pedestal.c1, pedestal.m2, pedestal.k2, pedestal.c2, at);
     tables += table(name, at, {0.0, 1000.0}, w, [](double, double x) { return pedestal.at(x); });
   }
+  return {masses, tables};
+}
+}  // namespace
+
+// A gyroscopic rotor on two bearings with pedestals, once with the pedestals as masses, once within tables: the same Campbell diagram and
+// the same damped critical speeds.
+TEST(FrequencyModes, RotorOnPedestalsInTablesIsTheRotorOnPedestals) {
+  const auto [masses, tables] = on_pedestals();
   const test::DeckModel a(overhung(masses)), b(overhung(tables));
   analysis::Linearizer exact(a.built.system, a.running()), reduced(b.built.system, b.running());
   analysis::CampbellOptions o;
@@ -305,4 +312,22 @@ support = {{ mass = "{3} kg", kyy = "{4} N/m", kzz = "{4} N/m", cyy = "{5} N.s/m
     EXPECT_NEAR(same[k].speed, speeds[k].speed, 1e-4 * speeds[k].speed);
     EXPECT_EQ(same[k].mode.direction, speeds[k].mode.direction);
   }
+}
+
+// Hysteretic damping asks for the rate of the motion beside.
+TEST(FrequencyModes, HystereticShaftOnPedestalsInTables) {
+  const auto [masses, tables] = on_pedestals();
+  const test::DeckModel a(overhung(masses, 0.01)), b(overhung(tables, 0.01));
+  analysis::Linearizer exact(a.built.system, a.running()), reduced(b.built.system, b.running());
+  analysis::ModesOptions o = lateral(0);
+  o.max_frequency = 2900;
+  const auto modes = analysis::whirl_modes(exact, 400.0, o), found = analysis::whirl_modes(reduced, 400.0, o);
+  ASSERT_GE(modes.size(), 10u);
+  ASSERT_EQ(found.size(), modes.size());
+  for (std::size_t k = 0; k < modes.size(); ++k) EXPECT_NEAR(found[k].frequency, modes[k].frequency, 2e-4 * modes[k].frequency);   // the square of the damping, which is larger here
+  // The first two bend the shaft most: the loss factor is in their damping.
+  const test::DeckModel without(overhung(tables));
+  analysis::Linearizer free(without.built.system, without.running());
+  const auto plain = analysis::whirl_modes(free, 400.0, o);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(found[k].damping_ratio - plain[k].damping_ratio, modes[k].damping_ratio, 0.1 * modes[k].damping_ratio);
 }
