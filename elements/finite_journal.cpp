@@ -81,6 +81,20 @@ void FiniteJournal::pressure(const FilmPoint& p, Pressure& out) const {
   out.passes = s.passes();
 }
 
+Mat2 FiniteJournal::mean_damping(const FilmPoint& p) const {
+  constexpr int directions = 16;   // more change it by less than 2e-3
+  Mat2 C = Mat2::Zero();
+  for (int k = 0; k < directions; ++k) {
+    const double angle = two_pi * (k + 0.5) / directions;
+    FilmPoint moving = p;
+    moving.w = Vec2(std::cos(angle), std::sin(angle)), moving.slip = 0.0;
+    FilmForce f;
+    evaluate(moving, f);
+    C += 2.0 / directions * f.F * moving.w.transpose();
+  }
+  return C;
+}
+
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
   ReynoldsLine s(*this, p);
   if (!s.inside()) {
@@ -137,6 +151,8 @@ void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) c
     shear_r += q.weight * inv * inv / c * q.n;   // d(c/h)/dr = c n/h^2
   }
   f.T = -drag * shear * p.slip, t.T_r = -drag * p.slip * shear_r, t.T_w.setZero(), t.T_slip = -drag * shear;
+  // 1e-9: a journal centred but for rounding
+  if (p.w.norm() <= 1e-9 * std::abs(p.slip) * c && (p.slip == 0.0 || !surface->lobed())) t.F_w = mean_damping(p);
   if (surface->lobed()) {
     const auto [sum, d] = derive([](const auto& q) { return q.dh0; });
     f.T += 0.5 * unit * sum, t.T_r += 0.5 * unit * d.r, t.T_w += 0.5 * unit * d.w, t.T_slip += 0.5 * unit * d.slip;

@@ -10,6 +10,8 @@
 //
 // Pads: h0 = c_p - (c_p - c_b) cos(theta - theta_k); c_p: pad clearance (radius of the pad less that of the journal), c_b: assembled clearance,
 // theta_k where the film of a centred journal is thinnest; preload m = 1 - c_b/c_p. Angles from +y towards +z.
+// At w = 0 a cylinder carries nothing, and its force is homogeneous in w with another derivative in each direction (a film that cavitates). The
+// tangent there is the linear law nearest to it in all directions, C = 1/pi int F(n) n^T dphi: of a short film the half of the full one.
 // Torque: shear of a full film between the grooves, -eta R^3 L s int dtheta/h, and the pressure on lobes, R/2 int p h0'.
 //
 // Error against a two-dimensional Reynolds solution (test FiniteJournal.AgainstTwoDimensionalReynolds), from the axial profile and
@@ -73,6 +75,8 @@ struct FiniteJournal {
   void evaluate(const FilmPoint& p, FilmForce& f) const;
   void evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
 
+  /// dF/dw at w = 0 in the mean over the directions n of w: 1/pi int F(w = n) n^T dphi.
+  Mat2 mean_damping(const FilmPoint& p) const;
   /// Axial-mean pressure at the grid nodes, Pa; passes: active-set passes it took.
   struct Pressure { std::array<double, JournalSurface::max_nodes> P; int passes; bool inside; };
   void pressure(const FilmPoint& p, Pressure& out) const;

@@ -10,6 +10,8 @@
 //   force on node 0 = -(F(rho)/rho) r - D(rho) v,  F(0) = 0: no direction is preferred at the centre.
 //
 // Dissipated power D q'^2 >= 0 for D >= 0; F is conservative. A corner in a curve is legal: adaptive steps find it.
+// Limits: directions fixed in space, tilts by their sine, no friction. Source: Ishida & Yamamoto, Linear and Nonlinear
+// Rotordynamics, 2nd ed., 2012, doi 10.1002/9783527651894.
 #pragma once
 #include <elements/force_curve.hpp>
 #include <system/kernel.hpp>

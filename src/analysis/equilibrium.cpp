@@ -85,6 +85,8 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
       resisted = resisted || (free_[at(k)] && std::abs(sum[k]) > 1e-9 * std::max(scale[k], k % 6 < 3 ? torque / length_ : torque));
     if (!resisted) spin_holds_.push_back(lead), free_[at(lead)] = 0;
   }
+  group_.resize(at(L));
+  for (Index l = 0; l < L; ++l) group_[at(l)] = root(l);
 }
 
 std::string EquilibriumSolver::name_motion(Index singular) const {
@@ -300,6 +302,7 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
     running_.set_load(full);
     running_.residual(s.frames, Omega, s.q, r_);
   }
+  if (!spin_holds_.empty()) close_backlash(Omega, s, out.iterations);
   if (options_.chart_change) change_charts(s);
   out.reactions = r_;
   for (Index k = 0; k < r_.size(); ++k)

@@ -3,7 +3,8 @@
 // (P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, ch. 3); when that fails too, the loads are put on in steps.
 //
 // A rotor that is free to turn needs one more condition a rotor: the axial angle of its first node is held, and the torque
-// that keeps it at its speed comes out as a reaction. Geared lines that turn together count as one rotor.
+// that keeps it at its speed comes out as a reaction. Geared lines that turn together count as one rotor; gears with backlash, which do not
+// touch at first, are turned by the torque on them until their flanks meet.
 #pragma once
 #include <analysis/running.hpp>
 #include <la/direct.hpp>
@@ -53,6 +54,11 @@ class EquilibriumSolver {
  private:
   enum class Outcome { converged, singular, diverged };
   void find_spin_holds(const system::State& s, double Omega);
+  /// All phi of the lines that turn with line `group`, by their ratio.
+  VecX spin_of(Index group) const;
+  /// A rotor held at its angle against a torque, with play towards another one (backlash): turned on by its torque until they meet, which then
+  /// holds it. s: in balance, r_ its residual; both are so again afterwards.
+  void close_backlash(double Omega, system::State& s, int& iterations);
   enum class Step { bold, careful };
   Outcome newton(double Omega, system::State& s, int& iterations);
   Outcome newton(double Omega, system::State& s, int& iterations, Step kind);
@@ -70,6 +76,7 @@ class EquilibriumSolver {
   double length_ = 1;                       ///< size of the model, m
   std::vector<unsigned char> free_;
   std::vector<Index> spin_holds_;
+  std::vector<Index> group_;                ///< of each line: the first of those it turns with
   std::unique_ptr<la::DirectSolver<double>> solver_;
   la::MCK matrices_;
   VecX r_, step_, trial_, next_;

@@ -40,6 +40,67 @@ EquilibriumSolver::Outcome EquilibriumSolver::close_gaps(double Omega, system::S
   return o;
 }
 
+VecX EquilibriumSolver::spin_of(Index group) const {
+  const system::System& sys = running_.system();
+  VecX e = VecX::Zero(sys.size());
+  for (Index i = 0; i < sys.nodes(); ++i)
+    if (const Index l = sys.node(i).line; running_.spinning()[static_cast<std::size_t>(i)] && group_[static_cast<std::size_t>(l)] == group)
+      e[6 * i + system::spin_phi] = running_.ratio(l);
+  return e;
+}
+
+void EquilibriumSolver::close_backlash(double Omega, system::State& s, int& iterations) {
+  const system::System& sys = running_.system();
+  const auto line_of = [&](Index k) { return static_cast<std::size_t>(sys.node(k / 6).line); };
+  Index groups = 0;
+  for (std::size_t l = 0; l < group_.size(); ++l) groups += group_[l] == static_cast<Index>(l) && running_.ratio(static_cast<Index>(l)) != 0.0;
+  if (groups < 2) return;
+  const double rounding = 1e-12 * length_ * r_.cwiseAbs().maxCoeff();
+  const auto& start = sys.pattern().row_start();
+  const auto& cols = sys.pattern().cols();
+  // The first rotor keeps its hold, as that of a geared pair without backlash does.
+  for (std::size_t n = spin_holds_.size(); n-- > 0;) {
+    const Index held = spin_holds_[n];
+    if (n == 0 && groups == static_cast<Index>(spin_holds_.size())) continue;
+    if (!(std::abs(r_[held]) > rounding)) continue;
+    const Index group = group_[line_of(held)];
+    const VecX e = spin_of(group);
+    const double way = (r_[held] < 0 ? 1.0 : -1.0) / e[held];
+    const system::State open = s;
+    const VecX residual = r_;
+    for (double turn = 1e-9; turn < 0.5; turn *= 2.0) {   // rad; a flank that is met is pressed by at most the way it took to find it
+      s.q = open.q + turn * way * e;
+      if (!running_.blind_tangent(s.frames, Omega, s.q, matrices_)) break;
+      Index other = -1;
+      for (Index i = 0; i < sys.nodes() && other < 0; ++i) {
+        if (!running_.spinning()[static_cast<std::size_t>(i)] || group_[static_cast<std::size_t>(sys.node(i).line)] == group) continue;
+        double torque = 0, size = 0;
+        for (Index b = start[static_cast<std::size_t>(i)]; b < start[static_cast<std::size_t>(i + 1)]; ++b) {
+          const auto row = matrices_.K.block(b).row(system::spin_phi);
+          const auto x = e.segment<6>(6 * cols[static_cast<std::size_t>(b)]);
+          torque += row.dot(x), size += row.cwiseAbs().dot(x.cwiseAbs());
+        }
+        if (std::abs(torque) > 1e-9 * size) other = group_[static_cast<std::size_t>(sys.node(i).line)];
+      }
+      if (other < 0) continue;
+      free_[static_cast<std::size_t>(held)] = 1;
+      solver_.reset();
+      if (newton(Omega, s, iterations) == Outcome::converged) {
+        spin_holds_.erase(spin_holds_.begin() + static_cast<std::ptrdiff_t>(n));
+        for (Index& g : group_)
+          if (g == group) g = other;
+        --groups;
+      } else {
+        free_[static_cast<std::size_t>(held)] = 0;
+        solver_.reset();
+        s = open;
+      }
+      break;
+    }
+    if (!free_[static_cast<std::size_t>(held)]) s = open, r_ = residual;
+  }
+}
+
 // Pseudo-transient continuation (C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35, 1998, doi 10.1137/S0036142996304796): the implicit Euler
 // steps (D/tau + K) d = -r of the motion D q' = -r, in which everything moves along the generalised force on it (moments too), stiff parts as a whole. D is
 // 1 for displacements and the square of a tenth of the model for rotations. tau grows while the way of a step at most doubles the way so far, and shrinks where a

@@ -130,6 +130,7 @@ void RunningSystem::sort_terms() {
   const auto& terms = system_.terms();
   std::vector<std::vector<Vector<7>>> base(terms.size());
   std::vector<unsigned char> sees(terms.size(), 0);
+  workspace_.context.averaged = true;
   for (double theta : {0.0, 1.0, 2.3}) {
     for (Index i = 0; i < system_.nodes(); ++i)
       if (spinning_[at(i)]) turned[6 * i + 3] = q[6 * i + 3] + theta * ratio_[at(system_.node(i).line)];
@@ -144,6 +145,7 @@ void RunningSystem::sort_terms() {
       if (!same_forces(base[k], workspace_.force)) sees[k] = 1;
     }
   }
+  workspace_.context.averaged = running_.mean;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     all_.push_back(k);
     if (!sees[k]) blind_.push_back(k);
@@ -228,6 +230,19 @@ bool RunningSystem::evaluate_tangent(const system::Frames& f, double Omega, cons
   for (Index i = 0; i < system_.nodes(); ++i)
     if (spinning_[at(i)]) q_[6 * i + 3] += theta * ratio_[at(system_.node(i).line)];
   return system_.tangent(workspace_, f, running_.time, q_, v_, a_, out, &only);
+}
+
+bool RunningSystem::visit_revolution(const system::Frames& f, double Omega, const VecX& q, const std::function<void(double, const system::Workspace&)>& visit) {
+  const std::size_t visits = phase_dependent() ? theta_.size() : 1;
+  for (std::size_t k = 0; k < visits; ++k) {
+    set_rates(Omega, v_);
+    q_ = q;
+    for (Index i = 0; i < system_.nodes(); ++i)
+      if (visits > 1 && spinning_[at(i)]) q_[6 * i + 3] += theta_[k] * ratio_[at(system_.node(i).line)];
+    if (!system_.evaluate_nodes(workspace_, f, running_.time, q_, v_, a_)) return false;
+    visit(visits > 1 ? weights_(0, static_cast<Index>(k)) : 1.0, workspace_);
+  }
+  return true;
 }
 
 bool RunningSystem::residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r) {

@@ -13,6 +13,7 @@
 #pragma once
 #include <system/system.hpp>
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -64,10 +65,16 @@ class RunningSystem {
   bool tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
   /// K of all terms that do not see phi: what can hold a rotor's angle.
   bool blind_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
-    return evaluate_tangent(f, Omega, q, 0.0, out, blind_);
+    workspace_.context.averaged = true;   // a mesh whose stiffness varies joins its shafts all the same
+    const bool inside = evaluate_tangent(f, Omega, q, 0.0, out, blind_);
+    workspace_.context.averaged = running_.mean;
+    return inside;
   }
   /// f_k of orders(): complex amplitudes of what stands in the residual; the response solves S a = -f.
   bool forcing(const system::Frames& f, double Omega, const VecX& q, std::vector<VecXc>& out);
+  /// Visits the states of the nodes over the revolution with the weights of the mean (once where nothing that was built sees the angle): the mean of
+  /// any result is the weighted sum of what it is at the visits. False outside the domain.
+  bool visit_revolution(const system::Frames& f, double Omega, const VecX& q, const std::function<void(double weight, const system::Workspace&)>& visit);
   /// Samples of tangents over the revolution, for periodic systems: f(theta) with theta = 2 pi k/n, k = 0 .. n-1.
   bool tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out);
   bool residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r);

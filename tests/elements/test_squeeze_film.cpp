@@ -60,3 +60,37 @@ TEST(SqueezeFilm, SealedEndsAgainstLongFilm) {
   FiniteJournal{R, L, eta, film.surface}.evaluate({Vec2::Zero(), Vec2(w, 0), 0.0}, open);
   EXPECT_LT(std::abs(open.F.x()), 0.05 * std::abs(f.F.x()));
 }
+
+// At rest a cavitated film has another derivative in each direction; the tangent is the linear law nearest to it in all of them. The short film gives half of the
+// full one in closed form; a finite film that is short comes near it, and any finite one is the mean of its forces over many directions.
+TEST(SqueezeFilm, TangentOfAFilmAtRestIsTheMeanOverDirections) {
+  const auto plain = std::make_shared<JournalSurface>(c, 0.0, std::vector<JournalPad>{});
+  const auto fed = std::make_shared<JournalSurface>(c, 0.0, std::vector<JournalPad>{{0.1, two_pi - 0.1, pi}});
+  FiniteJournal sealed{R, L, eta, fed};
+  sealed.seal_ends();
+  for (const Vec2& r : {Vec2(0, 0), Vec2(0.2 * c, -0.3 * c)}) {
+    const FilmPoint rest{r, Vec2::Zero(), 0.0};
+    FilmForce f;
+    FilmTangent half, full;
+    ShortJournal{R, 0.1 * R, c, eta}.evaluate(rest, f, half);
+    ShortFullFilm{R, 0.1 * R, c, eta}.evaluate(rest, f, full);
+    EXPECT_LT((half.F_w - 0.5 * full.F_w).norm(), 1e-12 * full.F_w.norm());
+    FilmTangent t;
+    FiniteJournal{R, 0.1 * R, eta, plain}.evaluate(rest, f, t);
+    EXPECT_LT((t.F_w - half.F_w).norm(), 0.02 * half.F_w.norm());   // L/D = 0.05, parabola along the axis, 72 nodes
+    EXPECT_EQ(f.F.norm(), 0.0);
+    for (const FiniteJournal& film : {FiniteJournal{R, L, eta, plain}, sealed}) {
+      film.evaluate(rest, f, t);
+      Mat2 mean = Mat2::Zero();
+      constexpr int n = 500;
+      for (int k = 0; k < n; ++k) {
+        const Vec2 w(std::cos(two_pi * k / n), std::sin(two_pi * k / n));
+        film.evaluate({r, w, 0.0}, f);
+        mean += 2.0 / n * f.F * w.transpose();
+      }
+      EXPECT_LT((t.F_w - mean).norm(), 2e-3 * mean.norm());   // 16 directions against many
+      EXPECT_LT(t.F_w(0, 0), 0.0);
+      EXPECT_LT(t.F_w.determinant() * -1.0, 0.0);   // damps motion in every direction
+    }
+  }
+}
