@@ -85,7 +85,10 @@ void run_critical_map_step(Job& job, const model::Step& step, const model::Criti
     o.stiffness.push_back(law.stiffness_min * std::pow(law.stiffness_max / law.stiffness_min, static_cast<double>(k) / (law.points - 1)));
   const PhaseTimer timer(job, "critical-speed map");
   const analysis::CriticalMap map = analysis::critical_map(
-      [&](double k) { return std::move(assembly::build_system(with_stiffness(job.model, chosen, k), job.mesh).system); }, o);
+      [&](double k) {   // a mesh of its own: the pedestals are not there
+        const model::Model m = with_stiffness(job.model, chosen, k);
+        return std::move(assembly::build_system(m, meshes::make_mesh(m)).system);
+      }, o);
 
   io::Table table;
   table.title = "Critical speeds against support stiffness";

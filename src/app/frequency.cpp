@@ -49,7 +49,9 @@ std::vector<analysis::Measurement> support_measurements(const Job& job) {
   for (const assembly::SupportForce& f : job.built.support_forces) {
     analysis::Measurement m{"bearing " + f.name + " force", "N", "force of the support on the shaft, fixed axes", {"x", "y", "z"}, 1.0, {}};
     m.evaluate = [&f](const analysis::Snapshot& s, double* v) {
-      Eigen::Map<Vec3>{v} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); }, s.t(),
+      system::Context mean;
+      mean.time = s.t(), mean.averaged = true;
+      Eigen::Map<Vec3>{v} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); }, mean,
                                     [&s](Index k) { return s.reactions()[k]; });
     };
     out.push_back(std::move(m));

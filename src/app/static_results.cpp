@@ -103,11 +103,25 @@ io::Table::Cell cell(const SectionPoint& p, double x) { return p.has_stress ? io
 
 }  // namespace
 
-StaticResults make_static_results(Job& job, const std::string& step, system::SystemProblem& problem, const system::State& state, const VecX& reactions,
+std::vector<SupportLoad> calc_support_loads(const Job& job, analysis::RunningSystem& running, const system::State& state, double Omega, const VecX& reactions) {
+  const auto& supports = job.built.support_forces;
+  std::vector<SupportLoad> out(supports.size());
+  const auto reaction = [&](Index k) { return reactions[k]; };
+  const bool inside = running.visit_revolution(state.frames, Omega, state.q, [&](double weight, const system::Workspace& w) {
+    const auto node = [&](Index n) -> const system::NodeState& { return w.nodes[at(n)]; };
+    for (std::size_t i = 0; i < supports.size(); ++i) {
+      out[i].force += weight * supports[i].force(node, w.context, reaction);
+      if (supports[i].moment) out[i].moment += weight * supports[i].moment(node, w.context, reaction);
+    }
+  });
+  if (!inside) throw run_error("R11", "the state found cannot be evaluated", {});
+  return out;
+}
+
+StaticResults make_static_results(Job& job, const std::string& step, system::SystemProblem& problem, const std::vector<SupportLoad>& loads, const VecX& reactions,
                                   std::span<const Index> spin_holds, io::Value& summary) {
   StaticResults out;
   const auto node = [&](Index n) -> const system::NodeState& { return problem.workspace().nodes[at(n)]; };
-  const auto reaction = [&](Index k) { return reactions[k]; };
 
   // ---- deflection
   out.deflection.title = "Deflection";
@@ -210,11 +224,11 @@ StaticResults make_static_results(Job& job, const std::string& step, system::Sys
                           {"M_y", "N m", ""}, {"M_z", "N m", ""}};
   // What is below 1e-14 of the largest force is rounding of springs without load.
   double largest_force = 0;
-  for (const assembly::SupportForce& f : job.built.support_forces) largest_force = std::max(largest_force, f.force(node, state.t, reaction).norm());
+  for (const SupportLoad& f : loads) largest_force = std::max(largest_force, f.force.norm());
   const auto clean = [&](Vec3 v) { return Vec3((v.array().abs() < 1e-14 * largest_force).select(0.0, v)); };
-  for (const assembly::SupportForce& f : job.built.support_forces) {
-    const Vec3 v = clean(f.force(node, state.t, reaction));
-    const Vec3 m = f.moment ? clean(f.moment(node, state.t, reaction)) : Vec3(Vec3::Zero());
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const assembly::SupportForce& f = job.built.support_forces[i];
+    const Vec3 v = clean(loads[i].force), m = clean(loads[i].moment);
     out.supports.add({f.name, v.x(), v.y(), v.z(), m.x(), m.y(), m.z()});
     io::Value& q = summary["support forces [N]"][f.name];
     q.push(v.x()), q.push(v.y()), q.push(v.z());
@@ -415,7 +429,7 @@ void StaticFrames::write(const Job& job, system::SystemProblem& problem, const s
   for (const model::Bearing& b : job.model.bearings) {
     supports.emplace_back(Vec3::Zero());
     for (const assembly::SupportForce& f : job.built.support_forces)
-      if (f.name == b.name) supports.back() = f.force(node, s.t, [&](Index k) { return r[k]; });
+      if (f.name == b.name) supports.back() = f.force(node, problem.workspace().context, [&](Index k) { return r[k]; });
   }
   io::FrameState frame;
   frame.time = time;

@@ -1,5 +1,6 @@
 // Tables and figures of a static state: deflection, supports, section forces, stresses.
 #pragma once
+#include <analysis/running.hpp>
 #include <app/job.hpp>
 #include <assembly/section_results.hpp>
 #include <string>
@@ -15,8 +16,14 @@ struct StaticResults {
   std::vector<std::string> lines;   ///< for the terminal
 };
 
+/// Force and moment of each support on the shaft, in the order of Built::support_forces, N and N m.
+struct SupportLoad { Vec3 force = Vec3::Zero(), moment = Vec3::Zero(); };
+
+/// Of an equilibrium at speed the mean over the revolution, which is what is in balance. reactions: mean residual at held unknowns.
+std::vector<SupportLoad> calc_support_loads(const Job& job, analysis::RunningSystem& running, const system::State& state, double Omega, const VecX& reactions);
+
 /// `problem` has evaluated the state (power()); reactions: residual at held unknowns, and at spin holds.
-StaticResults make_static_results(Job& job, const std::string& step, system::SystemProblem& problem, const system::State& state, const VecX& reactions,
+StaticResults make_static_results(Job& job, const std::string& step, system::SystemProblem& problem, const std::vector<SupportLoad>& loads, const VecX& reactions,
                                   std::span<const Index> spin_holds, io::Value& summary);
 
 /// Load path: factor and displacements (of probes, else disks) point by point.

@@ -138,8 +138,8 @@ void run_static_speeds(Job& job, const model::Step& step, const std::vector<doub
       missing += fmt::format("{}{:.6g}", missing.empty() ? "" : ", ", to_rpm(Omega));
       continue;
     }
-    ++found;
     StepState at{s.linear.equilibrium().state, Omega};
+    if (found++ == 0) warn_of_closed_contacts(job, step, at);
     for (SupportCoefficients& c : calc_support_coefficients(job, at)) {
       auto b = std::find_if(bearings.begin(), bearings.end(), [&](const Sweep& x) { return x.name == c.name; });
       if (b == bearings.end()) b = bearings.insert(b, Sweep{c.name, {}});

@@ -91,7 +91,10 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
   problem.workspace().context.load = load;
   if (!problem.residual(s.state.t, s.state.q, s.state.v, s.state.a, r)) throw run_error("R11", fmt::format("step '{}': the state found cannot be evaluated", step.name), {});
   problem.power(s.state.t, s.state.q, s.state.v, s.state.a, r);
-  StaticResults results = make_static_results(job, step.name, problem, s.state, r, found.spin_holds, v);
+  analysis::RunningSystem turning(job.system(), job.running_of(s));
+  turning.set_load(load);
+  const std::vector<SupportLoad> loads = calc_support_loads(job, turning, s.state, s.speed, found.reactions);
+  StaticResults results = make_static_results(job, step.name, problem, loads, found.reactions, found.spin_holds, v);
   if (!law.path && frames.any()) frames.write(job, problem, s.state, s.state.t, results.points);
   frames.end();
 
@@ -101,7 +104,10 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
   const bool rolling = !results.rolling.rows.empty();
   if (rolling) job.folder.write_table(step.name + "_rolling.csv", results.rolling);
   if (path) job.folder.write_table(step.name + "_path.csv", path->table());
-  io::Table coefficients = support_table(calc_support_coefficients(job, s));
+  const std::vector<SupportCoefficients> linear = calc_support_coefficients(job, s);
+  io::Table coefficients = support_table(linear), five = rolling_stiffness_table(linear);
+  const bool has_five = !five.rows.empty();
+  if (has_five) job.folder.write_table(step.name + "_rolling_stiffness.csv", five);
   const bool linearised = !coefficients.rows.empty();
   if (linearised) job.folder.write_table(step.name + "_coefficients.csv", coefficients);
   v["run time [s]"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall0).count();
@@ -117,6 +123,7 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
     section.tables.push_back(std::move(results.extremes));
     if (linearised) section.tables.push_back(std::move(coefficients)), section.files.emplace_back("bearing coefficients", step.name + "_coefficients.csv");
     for (const char* what : {"deflection", "supports", "sections"}) section.files.emplace_back(what, step.name + "_" + what + ".csv");
+    if (has_five) section.tables.push_back(std::move(five)), section.files.emplace_back("stiffness of rolling bearings", step.name + "_rolling_stiffness.csv");
     if (rolling) section.tables.push_back(std::move(results.rolling)), section.files.emplace_back("rolling elements", step.name + "_rolling.csv");
     if (path) section.files.emplace_back("load path", step.name + "_path.csv");
     job.report.sections.push_back(std::move(section));

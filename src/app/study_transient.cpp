@@ -82,8 +82,10 @@ class Sampler final : public analysis::Observer {
       spin_.push_back(x.node(job_.reference()).spin());
       const system::Energy& e = x.energy();
       energy_.push_back(e.kinetic + e.elastic + e.gravity);
+      system::Context now;
+      now.time = x.t();
       for (std::size_t i = 0; i < force_.size(); ++i) {
-        const Vec3 f = job_.built.support_forces[i].force([&x](Index n) -> const system::NodeState& { return x.node(n); }, x.t(), [&x](Index k) { return x.reactions()[k]; });
+        const Vec3 f = job_.built.support_forces[i].force([&x](Index n) -> const system::NodeState& { return x.node(n); }, now, [&x](Index k) { return x.reactions()[k]; });
         force_[i].push_back(f.y()), force_[i].push_back(f.z());
       }
     }

@@ -17,8 +17,36 @@ const char* kind_of(const model::BearingLaw& law) {
   if (std::holds_alternative<model::BallBearing>(law)) return "ball bearings";
   if (std::holds_alternative<model::RollerBearing>(law)) return "roller bearings";
   if (std::holds_alternative<model::Rub>(law)) return "contacts";
+  if (const auto* spring = std::get_if<model::NonlinearSpring>(&law)) {
+    using Along = model::NonlinearSpring::Along;
+    return spring->along == Along::y || spring->along == Along::z || spring->along == Along::radial ? "nonlinear springs" : nullptr;
+  }
   if (const auto* table = std::get_if<model::TableBearing>(&law)) return table->frequency.empty() ? "tabulated bearings" : "bearings tabulated against frequency";
   return nullptr;
+}
+
+/// -dF/dr or -dF/dr' of a support's force on the shaft, by differences of fourth order. The steps, 1e-9 m and 1e-6 m/s, are small against every clearance and film, and
+/// what they change in the force is 1e-10 of it and more: good to 1e-6 where the exact tangent cannot be had.
+Mat2 differences(const assembly::SupportForce& f, const system::Workspace& w, Index shaft, Vec3 system::NodeState::*motion, double step) {
+  Mat2 out;
+  for (Index j = 0; j < 2; ++j) {
+    const auto at = [&](double x) {
+      system::NodeState moved = w.nodes[static_cast<std::size_t>(shaft)];
+      (moved.*motion)[1 + j] += x;
+      return Vec2(f.force([&](Index k) -> const system::NodeState& { return k == shaft ? moved : w.nodes[static_cast<std::size_t>(k)]; }, w.context, [](Index) { return 0.0; }).tail<2>());
+    };
+    out.col(j) = -(8.0 * (at(step) - at(-step)) - (at(2 * step) - at(-2 * step))) / (12.0 * step);
+  }
+  return out;
+}
+
+/// Stiffness in (x, y, z, ry, rz) of the point o along the axis from the node, from that of the node in (x, y, z, phi, ry, rz).
+Matrix<5> at_point(const Matrix<6>& node, double o) {
+  // of a shift and a turn of the point: u_y at the node = u_y - o rz, u_z = u_z + o ry
+  Matrix<6, 5> A = Matrix<6, 5>::Zero();
+  A(0, 0) = A(1, 1) = A(2, 2) = A(4, 3) = A(5, 4) = 1.0;
+  A(1, 4) = -o, A(2, 3) = o;
+  return A.transpose() * node * A;
 }
 
 /// Threshold of a rigid rotor in translation on K, C: at the onset (m l^2 + C l + K) x = 0 has l = i w. With k = m w^2 the real and imaginary parts of
@@ -53,19 +81,23 @@ std::vector<SupportCoefficients> calc_support_coefficients(const Job& job, const
                          const char* k = kind_of(other.law);
                          return k && std::string_view(k) == kind && (o.shaft.node == n.shaft.node || o.other.node == n.shaft.node);
                        }) == 1;
-    if (only.empty() || !alone) continue;   // two of a kind on one node cannot be told apart
+    const auto force = std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(), [&](const auto& f) { return f.name == b.name; });
+    if (only.empty() || force == job.built.support_forces.end()) continue;
     if (!system.tangent(w, x.frames, x.t, x.q, x.v, x.a, matrices, &only)) continue;
-    const la::BlockPattern& pattern = matrices.K.pattern();
-    const Index slot = pattern.slot(n.shaft.node, n.shaft.node);
+    const Index slot = matrices.K.pattern().slot(n.shaft.node, n.shaft.node);
     if (slot < 0) continue;
-    const Mat2 K = matrices.K.block(slot).block<2, 2>(1, 1), C = matrices.C.block(slot).block<2, 2>(1, 1);
+    SupportCoefficients c;
+    if (alone) {
+      c.K = matrices.K.block(slot).block<2, 2>(1, 1), c.C = matrices.C.block(slot).block<2, 2>(1, 1);
+      if (std::holds_alternative<model::BallBearing>(b.law) || std::holds_alternative<model::RollerBearing>(b.law)) c.K5 = at_point(matrices.K.block(slot), n.shaft.offset);
+    } else {   // two of a kind on one node stand in one block
+      c.K = differences(*force, w, n.shaft.node, &system::NodeState::u, 1e-9), c.C = differences(*force, w, n.shaft.node, &system::NodeState::du, 1e-6);
+    }
     const auto node = [&](Index k) -> const system::NodeState& { return w.nodes[static_cast<std::size_t>(k)]; };
     const auto place = [&](const meshes::Place& p) { return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>()); };
     const Vec2 r = place(n.shaft) - place(n.other);
-    SupportCoefficients c;
-    c.name = b.name, c.spin = node(n.shaft.node).spin(), c.place = r, c.K = K, c.C = C;
-    const auto force = std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(), [&](const auto& f) { return f.name == b.name; });
-    const Vec2 F = force != job.built.support_forces.end() ? Vec2(force->force(node, x.t, [](Index) { return 0.0; }).tail<2>()) : Vec2::Zero();
+    c.name = b.name, c.spin = node(n.shaft.node).spin(), c.place = r;
+    const Vec2 F = force->force(node, w.context, [](Index) { return 0.0; }).tail<2>();
     c.load = F.norm();
     if (c.load > 0 && r.norm() > 0) {
       c.attitude = (std::atan2(r.y(), r.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
@@ -81,6 +113,18 @@ std::vector<SupportCoefficients> calc_support_coefficients(const Job& job, const
     out.push_back(std::move(c));
   }
   return out;
+}
+
+io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list) {
+  io::Table t;
+  t.title = "Stiffness of the rolling bearings in five motions";
+  t.columns = {{"bearing", "-", ""}, {"force or moment", "-", "on the bearing, rows of the matrix"}};
+  const char* motions[] = {"x", "y", "z", "ry", "rz"};
+  for (int j = 0; j < 5; ++j)
+    t.columns.push_back({std::string("per ") + motions[j], j < 3 ? "N/m, N" : "N/rad, N m/rad", j < 3 ? "forces N/m, moments N" : "forces N/rad, moments N m/rad"});
+  for (const SupportCoefficients& c : list)
+    for (Index i = 0; i < 5 && c.K5; ++i) t.add({c.name, motions[i], (*c.K5)(i, 0), (*c.K5)(i, 1), (*c.K5)(i, 2), (*c.K5)(i, 3), (*c.K5)(i, 4)});
+  return t;
 }
 
 io::Table support_table(std::span<const SupportCoefficients> list) {

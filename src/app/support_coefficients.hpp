@@ -1,7 +1,8 @@
-// The linearised bearings of a state: eccentricity, attitude, K and C of every film, seal, table, contact and rolling bearing.
+// The linearised bearings of a state: eccentricity, attitude, K and C of every film, seal, table, contact, nonlinear spring and rolling bearing.
 #pragma once
 #include <app/job.hpp>
 
+#include <optional>
 #include <span>
 
 namespace whirl::app {
@@ -18,14 +19,17 @@ struct SupportCoefficients {
   double attitude = nan;           ///< deg, 0 to 360; NaN without load or displacement
   double sommerfeld = nan;         ///< films: eta N L D (R/c)^2/W, N in rev/s
   Mat2 K = Mat2::Zero(), C = Mat2::Zero();   ///< N/m, N s/m
+  std::optional<Matrix<5>> K5;     ///< rolling bearings: in x, y, z, ry, rz at the place of the bearing; N, m, rad
   /// Of a rigid rotor on bearings like this one alone (Lund; Routh's criterion): the share of its mass on this bearing beyond which the equilibrium is unstable at
   /// this speed, kg, and whirl frequency over speed there. NaN: no mass makes it unstable.
   double threshold_mass = nan, whirl_ratio = nan;
 };
 
-/// In the order of the deck; empty when there is none. Two of a kind on one node cannot be told apart and are left out.
+/// In the order of the deck; empty when there is none.
 std::vector<SupportCoefficients> calc_support_coefficients(const Job& job, const StepState& s);
 /// A row each; empty title and no rows when there is none.
 io::Table support_table(std::span<const SupportCoefficients> list);
+/// Five rows a rolling bearing.
+io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list);
 
 }  // namespace whirl::app

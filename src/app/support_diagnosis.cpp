@@ -85,6 +85,27 @@ Error explain_no_equilibrium(const Job& job, const analysis::RunningSystem& runn
   return Error(failed.exit(), std::move(d));
 }
 
+std::string supports_at_their_limit(const Job& job, const system::State& s) {
+  std::string out;
+  system::Workspace w = job.system().make_workspace();
+  job.system().evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a);
+  constexpr double near = 1e-4;   // the steps before it shrink towards the end of the range
+  for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
+    const model::Bearing& b = job.model.bearings[i];
+    const auto* table = std::get_if<model::TableBearing>(&b.law);
+    if (!table || table->extrapolate_hold || table->speed.empty()) continue;
+    const double spin = w.nodes[static_cast<std::size_t>(job.mesh.bearings[i].shaft.node)].spin(), low = table->speed.front(), high = table->speed.back();
+    const double slack = near * std::max(std::abs(low), std::abs(high));
+    if (spin < high - slack && spin > low + slack) continue;
+    out += fmt::format("; the table of bearing '{}' covers {:.6g} to {:.6g} rpm, and its shaft turns at {:.6g} rpm", b.name, low * 30 / pi, high * 30 / pi, spin * 30 / pi);
+  }
+  const Conditions now(job, s);
+  for (const SupportCondition& c : job.built.conditions)
+    if (const SupportCondition::State x = now.of(c); x.film && x.displacement > (1 - near) * x.gap)
+      out += fmt::format("; the journal of bearing '{}' is at the wall (eccentricity {:.6f})", c.name, x.displacement / x.gap);
+  return out;
+}
+
 void warn_of_closed_contacts(Job& job, const model::Step& step, const StepState& start) {
   if (job.built.conditions.empty()) return;
   const Conditions now(job, start.state);

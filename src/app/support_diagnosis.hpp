@@ -12,4 +12,8 @@ Error explain_no_equilibrium(const Job& job, const analysis::RunningSystem& runn
 /// Contacts that are closed in the state a step starts from, as warnings of the run (terminal, report and summary).
 void warn_of_closed_contacts(Job& job, const model::Step& step, const StepState& start);
 
+/// Which supports stand at the end of their range in a state (a table at the speed where it ends, a journal at the wall): "; ..." for the message of a motion
+/// that could not go on, empty when none does.
+std::string supports_at_their_limit(const Job& job, const system::State& s);
+
 }  // namespace whirl::app

@@ -15,6 +15,12 @@ bool wants(const model::Output& o, std::string_view quantity) {
   return std::find(o.quantities.begin(), o.quantities.end(), quantity) != o.quantities.end();
 }
 
+system::Context context_at(double t) {
+  system::Context c;
+  c.time = t;
+  return c;
+}
+
 }  // namespace
 
 Point point_of(const Job& job, const model::Location& at) {
@@ -52,7 +58,7 @@ Channels make_channels(const Job& job) {
     for (const assembly::SupportForce& f : job.built.support_forces) {
       Measurement x{"bearing " + f.name + " force", "N", "force of the support on the shaft, fixed axes", {"x", "y", "z"}, 1.0, {}};
       x.evaluate = [&f](const Snapshot& s, double* out) {
-        Eigen::Map<Vec3>{out} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); }, s.t(),
+        Eigen::Map<Vec3>{out} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); }, context_at(s.t()),
                                         [&s](Index k) { return s.reactions()[k]; });
       };
       c.add(std::move(x));
@@ -62,7 +68,7 @@ Channels make_channels(const Job& job) {
       if (!f.moment) continue;
       Measurement x{"bearing " + f.name + " moment", "N.m", "moment of the support on the shaft about its node, fixed axes; about x: torque", {"x", "y", "z"}, 1.0, {}};
       x.evaluate = [&f](const Snapshot& s, double* out) {
-        Eigen::Map<Vec3>{out} = f.moment([&s](Index n) -> const system::NodeState& { return s.node(n); }, s.t(), [&s](Index k) { return s.reactions()[k]; });
+        Eigen::Map<Vec3>{out} = f.moment([&s](Index n) -> const system::NodeState& { return s.node(n); }, context_at(s.t()), [&s](Index k) { return s.reactions()[k]; });
       };
       c.add(std::move(x));
     }

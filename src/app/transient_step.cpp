@@ -333,11 +333,14 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
     if (sink && out.csv) section.files.emplace_back("time history", step.name + ".csv");
     job.report.sections.push_back(std::move(section));
   }
-  if (r.reason == analysis::StopReason::failed)
-    throw run_error("R10", fmt::format("step '{}' stopped {}", step.name, r.detail),
-                    law.integrator.tolerance < 1e-7 ? "results up to that time are complete; a tolerance of 1e-7 or more may be above the rounding of this model"
+  if (r.reason == analysis::StopReason::failed) {
+    const std::string limits = supports_at_their_limit(job, r.end);
+    throw run_error("R10", fmt::format("step '{}' stopped {}{}", step.name, r.detail, limits),
+                    !limits.empty() ? "results up to that time are complete; extend the table or write extrapolate = \"hold\", or give the film more to carry with"
+                    : law.integrator.tolerance < 1e-7 ? "results up to that time are complete; a tolerance of 1e-7 or more may be above the rounding of this model"
                                                     : "results up to that time are complete; try a smaller tolerance, or look at the state before it in the frames",
                     step.name);
+  }
 }
 
 }  // namespace whirl::app

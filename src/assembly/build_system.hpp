@@ -13,12 +13,13 @@ namespace whirl::assembly {
 using NodeAt = std::function<const system::NodeState&(Index)>;
 using ReactionAt = std::function<double(Index unknown)>;
 
-/// Force of a support on the shaft, N, global axes (and moment, N m, where it has one).
+/// Force of a support on the shaft, N, global axes (and moment, N m, where it has one). Of the context the time and whether the mean over the
+/// revolution is asked for.
 struct SupportForce {
+  using Law = std::function<Vec3(const NodeAt&, const system::Context&, const ReactionAt&)>;
   std::string name;                 ///< of the bearing
-  std::function<Vec3(const NodeAt&, double t, const ReactionAt&)> force;
-  /// N m, about the node; null where the support gives none.
-  std::function<Vec3(const NodeAt&, double t, const ReactionAt&)> moment{};
+  Law force;
+  Law moment{};                     ///< N m, about the node; null where the support gives none
 };
 
 /// How a support with a gap stands: films before their clearance is used up, contacts before they close.

@@ -34,7 +34,7 @@ void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNode
     joint.law = law;
     joint.offset = {n.shaft.offset, n.other.offset};
     a.builder.add(joint, nodes, kind);
-    a.built.support_forces.push_back({b.name, [joint, nodes](const NodeAt& at, double, const ReactionAt&) {
+    a.built.support_forces.push_back({b.name, [joint, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
       Vector<4> z;
       joint.law.force(joint.motion_of(nodes_of(at, nodes)), z);
       return Vec3(0, z[0], z[1]);
@@ -51,18 +51,16 @@ void add_joint(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
   const auto add = [&](const auto& k) {
     using Kernel = std::decay_t<decltype(k)>;
     a.builder.add(k, nodes, kind);
-    const auto left_side = [k, nodes](const NodeAt& at, double t) {
+    const auto left_side = [k, nodes](const NodeAt& at, const system::Context& c) {
       system::ForceX<2 * Kernel::width> f = system::ForceX<2 * Kernel::width>::Zero();
-      system::Context c;
-      c.time = t;
       k.add_force(nodes_of(at, nodes), c, f);
       return f;
     };
-    a.built.support_forces.push_back({b.name, [left_side](const NodeAt& at, double t, const ReactionAt&) { return Vec3(-left_side(at, t).template head<3>()); }});
+    a.built.support_forces.push_back({b.name, [left_side](const NodeAt& at, const system::Context& c, const ReactionAt&) { return Vec3(-left_side(at, c).template head<3>()); }});
     // what stands on the director tilts it, what stands on phi twists
     if constexpr (Kernel::width == 7)
-      a.built.support_forces.back().moment = [left_side, node = n.shaft.node](const NodeAt& at, double t, const ReactionAt&) {
-        const auto f = left_side(at, t);
+      a.built.support_forces.back().moment = [left_side, node = n.shaft.node](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+        const auto f = left_side(at, c);
         const Vec3 d = at(node).d();
         return Vec3(-d.cross(Vec3(f.template segment<3>(3))) - f[6] * d);
       };

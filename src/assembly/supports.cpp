@@ -29,13 +29,13 @@ void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
                                            law.setpoint.head<3>(), law.preload.head<3>()};
     a.builder.add(k, nodes, "linear bearings");
     a.built.support_forces.push_back(
-        {b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return k.force_on_first(nodes_of(at, nodes)); }});
+        {b.name, [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return k.force_on_first(nodes_of(at, nodes)); }});
     return;
   }
   const elements::LinearBearing k(law.K, law.C, law.M, law.setpoint, law.preload, n.shaft.offset, n.other.offset);
   a.builder.add(k, nodes, "linear bearings");
-  a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>()); }});
-  if (!small) a.built.support_forces.back().moment = [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).tail<3>()); };
+  a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>()); }});
+  if (!small) a.built.support_forces.back().moment = [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).tail<3>()); };
 }
 
 namespace {
@@ -52,7 +52,7 @@ void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
   const Index node = n.shaft.node;
   a.builder.add(k, {node}, "spring blocks");
   a.built.support_forces.push_back(
-      {b.name, [k, node](const NodeAt& at, double, const ReactionAt&) { return Vec3(-k.C1 * k.displacement(at(node))); }});
+      {b.name, [k, node](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(-k.C1 * k.displacement(at(node))); }});
 }
 
 template <int N>
@@ -76,8 +76,8 @@ void add_table_law(Assembly& a, const model::Bearing& b, const meshes::BearingNo
       const Pair nodes{n.shaft.node, n.other.node};
       const elements::SpatialTableBearing<mass.value, Table> k{table, {n.shaft.offset, n.other.offset}, law.setpoint, law.preload};
       a.builder.add(k, nodes, kind);
-      a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).template head<3>()); },
-                                        [k, nodes](const NodeAt& at, double, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).template tail<3>()); }});
+      a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).template head<3>()); },
+                                        [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).template tail<3>()); }});
     }
   };
   if (table->has_mass()) add(std::true_type{});
@@ -178,15 +178,15 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
   }
   const auto others = first ? h.second : nullptr;
   // A held angle is zero, so its generalised force is the moment itself (gamma2 about y, gamma3 about z).
-  std::function<Vec3(const NodeAt&, double, const ReactionAt&)> moment;
+  SupportForce::Law moment;
   if (law.held[3] || law.held[4] || law.held[5])
-    moment = [node, turns = law.held](const NodeAt&, double, const ReactionAt& r) {
+    moment = [node, turns = law.held](const NodeAt&, const system::Context&, const ReactionAt& r) {
       Vec3 M = Vec3::Zero();
       for (Index c = 0; c < 3; ++c)
         if (turns[static_cast<std::size_t>(3 + c)]) M[c] = r(6 * node + 3 + c);
       return M;
     };
-  a.built.support_forces.push_back({b.name, [unknown, scale, others](const NodeAt&, double, const ReactionAt& r) {
+  a.built.support_forces.push_back({b.name, [unknown, scale, others](const NodeAt&, const system::Context&, const ReactionAt& r) {
     Vec3 F = Vec3::Zero();
     for (std::size_t c = 0; c < 3; ++c)
       if (unknown[c] >= 0) F[static_cast<Index>(c)] = scale[c] * r(unknown[c]);

@@ -104,8 +104,8 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     add_linear(a, b, n, spring);
     auto centring = a.built.support_forces.back().force;
     a.built.support_forces.pop_back();
-    a.built.support_forces.back().force = [film, centring](const NodeAt& at, double t, const ReactionAt& r) {
-      return Vec3(film(at, t, r) + centring(at, t, r));
+    a.built.support_forces.back().force = [film, centring](const NodeAt& at, const system::Context& c, const ReactionAt& r) {
+      return Vec3(film(at, c, r) + centring(at, c, r));
     };
   });
 }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <tuple>
 
 using namespace whirl;
 using test::Columns;
@@ -71,6 +72,62 @@ report = false
 )"));
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_NEAR(d.csv("stability_onset.csv").rows.at(0).at(0), onset, 2e-4 * onset);
+}
+
+// A mass on a light shaft (a spring of natural frequency 100, 200, 300 rad/s) between journals without mass: Omega = sqrt(keq ks/((keq + ks) M))/WFR, in closed form to
+// eight digits. Shaft and journals are lines of their own, so that no torque of the films runs through what bends.
+TEST(OilWhirlRuns, OnsetOfAMassOnALightShaft) {
+  const double M = 525 / 9.81;
+  const auto body = [](const char* name, double kg) {
+    return fmt::format(R"([[shaft]]
+name = "{0}"
+material = "steel"
+columns = ["name", "length[mm]", "rigid"]
+rows = [["{0} left", 100, true], ["{0} right", 100, true]]
+[[disk]]
+name = "{0} mass"
+at = "{0}/{0} left:end"
+mass = "{1:.17g} kg"
+Ip = "10 kg.m^2"
+Id = "6 kg.m^2"
+[[bearing]]
+name = "{0} guide"
+at = "{0} mass"
+type = "rigid"
+directions = ["x", "ry", "rz"]
+)", name, kg);
+  };
+  for (const auto& [natural, speed, whirl] : {std::tuple{100.0, 1811.3617, 97.37152}, {200.0, 3430.5272, 181.42303}, {300.0, 4678.6899, 246.38206}}) {
+    SCOPED_TRACE(natural);
+    const DeckRun d("format = 1\n[model]\ngravity = \"9.81 m/s^2\"\n" + body("rotor", M) + body("journal", 0) + fmt::format(R"([[bearing]]
+name = "shaft"
+at = "rotor mass"
+to = "journal mass"
+type = "linear"
+kyy = "{0:.17g} N/m"
+kzz = "{0:.17g} N/m"
+[[bearing]]
+name = "film"
+at = "journal mass"
+type = "short_journal"
+diameter = "100 mm"
+length = "30 mm"
+clearance = "100 um"
+viscosity = "100 mPa.s"
+[[step]]
+name = "stability"
+type = "stability"
+speed = {{ start = "{1:.6g} rpm", stop = "{2:.6g} rpm", points = 11 }}
+modes = 4
+[output]
+report = false
+)", M * natural * natural, 0.5 * speed, 1.5 * speed));
+    ASSERT_EQ(d.exit, 0) << d.log;
+    const Columns t = d.csv("stability_onset.csv");
+    const auto onset = t.named(t.rows.at(0));
+    EXPECT_NEAR(onset.at("speed [rpm]"), speed, 2e-7 * speed);
+    EXPECT_NEAR(onset.at("whirl frequency [Hz]") * two_pi, whirl, 2e-7 * whirl);
+  }
 }
 
 // 0.1 um in a clearance of 100 um is a small motion: it decays below the onset and grows above at the rate of the eigenvalue. What is left is the second

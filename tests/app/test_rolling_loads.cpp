@@ -72,4 +72,16 @@ TEST(RollingLoads, AngularContact218UnderThrust) {
   ASSERT_EQ(balls.rows.size(), 16u);
   for (const auto& row : balls.rows) EXPECT_NEAR(row[balls.column("load [N]")], 17800 / (16 * std::sin(41.59207702 * pi / 180)), 1e-7 * 1700);
   EXPECT_NEAR(shape.rows[0][shape.column("u_x [m]")], 0.03831822e-3, 1e-7 * 3.8e-5);
+
+  // stiffness in five motions: with s = (A sin 40 + x, A cos 40) between the groove centres, d = |s| - A, every ball alike
+  const Columns stiffness = d.csv("load_rolling_stiffness.csv");
+  ASSERT_EQ(stiffness.rows.size(), 5u);
+  const double A = 0.0464 * D, sa = A * std::sin(2 * pi / 9) + shape.rows[0][shape.column("u_x [m]")], sr = A * std::cos(2 * pi / 9), s = std::hypot(sa, sr), q = s - A;
+  const double along = 1.5 * K * std::sqrt(q), across = K * std::pow(q, 1.5) / s;   // of one ball, along and across its load
+  const auto k = [&](std::size_t i, std::size_t j) { return stiffness.rows[i][2 + j]; };
+  EXPECT_NEAR(k(0, 0), 16 * (along * sa * sa + across * sr * sr) / (s * s), 1e-5 * k(0, 0));   // f - 0.5 to four digits makes A
+  for (const std::size_t i : {1u, 2u}) EXPECT_NEAR(k(i, i), 8 * (along * sr * sr + across * sa * sa) / (s * s), 1e-5 * k(i, i));
+  for (std::size_t i = 0; i < 5; ++i)
+    for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(k(i, j), k(j, i), 1e-9 * std::sqrt(k(i, i) * k(j, j)));
+  EXPECT_GT(k(1, 4) * k(1, 4), 0.1 * k(1, 1) * k(4, 4));   // lateral motion and tilt belong together under thrust
 }
