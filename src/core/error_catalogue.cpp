@@ -267,6 +267,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        "A rub, stop or catcher bearing touches already in the state a step starts from, because the weight or an initial displacement uses up its "
        "gap. That may be meant (a shaft resting in its catcher bearing); else the gap is too small or the support too soft.",
        ""},
+      {"W05", "the two sides of a connection are apart",
+       "A bearing or coupling between two shafts acts at one point: its force on one shaft is the opposite of that on the other. Where the two places do not "
+       "coincide, the couple of the two forces is missing from the balance. Gears are apart across the shafts, never along them.",
+       "origin = [\"400 mm\", \"0 mm\", \"0 mm\"]   # the second shaft begins where the first one ends"},
   };
   return t;
 }

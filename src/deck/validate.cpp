@@ -135,8 +135,11 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
       }
       return std::pair(low, high);
     }
+    // a free spin is known at its start only
+    const double start = x->speed0 != 0 ? x->speed0 * ratio : m.shafts[shaft].spin0;
+    if (s.from.empty() && x->previous.empty()) return std::pair(start, start);
   }
-  return {};   // critical speeds look inside the table only; a free spin is not known beforehand
+  return {};   // critical speeds look inside the table only
 }
 
 std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
@@ -229,20 +232,27 @@ const model::PrescribedSpin* prescribed(const model::Model& m, std::size_t shaft
   return nullptr;
 }
 
-void check_gears(const model::Model& m, Problems& out) {
+/// Gears and couplings tie the speeds of two shafts together.
+void check_speeds_of_pairs(const model::Model& m, Problems& out) {
   for (const auto& b : m.bearings) {
     const auto* g = std::get_if<model::GearPair>(&b.law);
-    if (!g || !b.to) continue;
+    if ((!g && !std::holds_alternative<model::Coupling>(b.law)) || !b.to) continue;
     const auto &here = m.shafts[b.at.shaft], &there = m.shafts[b.to->shaft];
-    const double ratio = -static_cast<double>(g->teeth) / g->other_teeth;
+    const double ratio = g ? -static_cast<double>(g->teeth) / g->other_teeth : 1.0;
     const auto wrong = [ratio](double a, double c) { return std::abs(c - ratio * a) > 1e-6 * std::max(std::abs(c), std::abs(ratio * a)); };
-    const std::string gears = fmt::format("gear pair '{}' ({} and {} teeth) turns shaft '{}' at {:.6g} times the speed of '{}'", b.name, g->teeth, g->other_teeth, there.name, ratio, here.name);
+    const std::string gears = g ? fmt::format("gear pair '{}' ({} and {} teeth) turns shaft '{}' at {:.6g} times the speed of '{}'", b.name, g->teeth, g->other_teeth, there.name, ratio, here.name)
+                                : fmt::format("coupling '{}' turns shaft '{}' at the speed of '{}'", b.name, there.name, here.name);
+    if (!here.rotating || !there.rotating) {
+      add(out, "E37", fmt::format("{} '{}' turns with its shafts, but shaft '{}' does not rotate", g ? "gear pair" : "coupling", b.name, here.rotating ? there.name : here.name),
+          "rotating = true for that shaft, or a bearing of type \"linear\" between the two", b.where);
+      continue;
+    }
     if (wrong(here.speed_ratio, there.speed_ratio))
       add(out, "E37", fmt::format("{}, but their speed_ratio are {:.6g} and {:.6g}", gears, there.speed_ratio, here.speed_ratio),
-          fmt::format("speed_ratio = {:.10g} for shaft '{}'", ratio * here.speed_ratio, there.name), there.where);
+          fmt::format("speed_ratio = {:.10g} for shaft '{}'", ratio * here.speed_ratio + 0.0, there.name), there.where);
     else if (wrong(here.spin0, there.spin0))
       add(out, "E37", fmt::format("{}, but their initial_spin are {} and {}", gears, units::display(there.spin0, "rpm"), units::display(here.spin0, "rpm")),
-          fmt::format("initial_spin = \"{}\" for shaft '{}'", units::display(ratio * here.spin0, "rpm"), there.name), there.where);
+          fmt::format("initial_spin = \"{}\" for shaft '{}'", units::display(ratio * here.spin0 + 0.0, "rpm"), there.name), there.where);
     for (const auto& s : m.steps) {
       const auto* t = std::get_if<model::TransientStep>(&s.law);
       const auto *p = prescribed(m, b.at.shaft, &s), *q = prescribed(m, b.to->shaft, &s);
@@ -252,7 +262,7 @@ void check_gears(const model::Model& m, Problems& out) {
         const double time = t->duration * i / 200, a = p->angle->at(time).df, c = q->angle->at(time).df;
         if (!wrong(a, c)) continue;
         add(out, "E37", fmt::format("{}, but the drives of step '{}' prescribe {} and {} at {:.4g} s", gears, s.name, units::display(c, "rpm"), units::display(a, "rpm"), time),
-            "prescribe the speed of one of the two: the other follows through the mesh", b.where);
+            g ? "prescribe the speed of one of the two: the other follows through the mesh" : "prescribe the speed of one of the two: the other follows", b.where);
         said = true;
       }
     }
@@ -274,7 +284,20 @@ void check_places(const model::Model& m, Problems& out) {
   for (const auto& d : m.drives) on_shaft(d.at, "drive");
   for (const auto& b : m.bearings) {
     on_shaft(b.at, "bearing");
-    if (b.to) on_shaft(*b.to, "bearing");
+    if (!b.to) continue;
+    on_shaft(*b.to, "bearing");
+    // forces on both sides are taken to meet in one point (gears: in one plane)
+    const bool gears = std::holds_alternative<model::GearPair>(b.law);
+    if (b.at.housing >= 0 || b.to->housing >= 0) continue;
+    const Vec3 apart = m.shafts[b.to->shaft].position(b.to->s) - m.shafts[b.at.shaft].position(b.at.s);
+    const double along = std::abs(apart.x()), across = gears ? 0.0 : apart.tail<2>().norm();
+    if (along > 1e-3)
+      add(out, "W05", fmt::format("the two places of '{}' are {:.5g} mm apart along x: its forces on both shafts are not in line, and their couple is missing", b.name, 1e3 * along),
+          "check the origins of the shafts and the two places; a spacer is a section of one of the shafts", b.where, Diagnostic::Severity::warning);
+    if (across > 1e-6)
+      add(out, "W05", fmt::format("the two places of '{}' are {:.5g} mm apart across the shafts: that distance has no effect", b.name, 1e3 * across),
+          std::holds_alternative<model::Coupling>(b.law) ? "a misalignment is given by offset_y, offset_z, angle_y, angle_z" : "a set point of the springs is given by 'setpoint'", b.where,
+          Diagnostic::Severity::warning);
   }
 }
 
@@ -315,7 +338,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_tables(m, out);
   check_linear(m, out);
   check_drives(m, out);
-  check_gears(m, out);
+  check_speeds_of_pairs(m, out);
   check_places(m, out);
   check_effects(m, out);
   return out;
