@@ -53,15 +53,6 @@ void isolate(Counter& counter, const Bracket& k, double scale, std::vector<Brack
   isolate(counter, {middle, k.b, n, k.nb}, scale, out);
 }
 
-/// The speed in a bracket at which the count changes.
-double bisect(Counter& counter, Bracket k, double tolerance) {
-  for (int i = 0; i < 60 && k.b - k.a > tolerance * k.b; ++i) {
-    const double middle = 0.5 * (k.a + k.b);
-    (counter.count(middle) == k.na ? k.a : k.b) = middle;
-  }
-  return 0.5 * (k.a + k.b);
-}
-
 std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, double low) {
   Counter counter(linear, o);
   std::vector<Bracket> brackets;
@@ -100,16 +91,12 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     for (Index j = 0; j < wanted; ++j) {
       // Newton's method on Omega: the frequency of the mode less n Omega, by secant from two neighbouring speeds.
       const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
-      const WhirlMode isolated = describe_mode(near[at(j)], linear.conservative_at(middle, o.order * middle), linear);
-      WhirlMode mode = isolated;
+      WhirlMode mode = describe_mode(near[at(j)], linear.conservative_at(middle, o.order * middle), linear);
       double x0 = middle, f0 = gap(x0, mode);
       double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
       for (int it = 0; it < 40 && f1 != 0.0; ++it) {
         const auto next = follower.follow(x1, mode);
-        if (!next) {   // a mode that cannot be followed from speed to speed (supports that change abruptly): the count alone finds its speed
-          mode = isolated, x1 = bisect(counter, k, o.tolerance);
-          break;
-        }
+        if (!next) throw run_error("E77", "a critical speed was isolated but its mode was lost on the way");
         mode = *next, f1 = gap(x1, mode);
         if (f1 == f0 || x1 == x0) break;
         const double x2 = x1 - f1 * (x1 - x0) / (f1 - f0);

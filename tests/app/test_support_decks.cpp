@@ -103,6 +103,8 @@ const Kind kinds[] = {
     // centred: a circle, on which the film that cavitates is linear too; the springs of the three others are what lets gravity off
     {"cavitated_squeeze_film", both("type = \"squeeze_film\"\nfilm = \"cavitated\"\nstiffness = \"1e7 N/m\"\n" + film), 1e-3, "0 m/s^2"},
     {"finite_squeeze_film", both("type = \"squeeze_film\"\nfilm = \"finite\"\nstiffness = \"1e7 N/m\"\n" + film), 1e-3, "0 m/s^2"},
+    // in the middle of the bearing too; what its boundary of cavitation leaves is 1e-3 where it passes a node of the grid
+    {"centred_journal", both("type = \"journal\"\nshape = \"plain\"\n" + film), 3e-3, "0 m/s^2"},
     {"deep_groove", both(balls + "clearance = \"-3 um\"\n")},
     {"angular_contact", bearing("DE", "rotor/a:start", balls + "contact_angle = \"25 deg\"\npreload = \"300 N\"\n") + bearing("NDE", "rotor/b:end", balls + "contact_angle = \"25 deg\"\npreload = \"300 N\"\ndirection = \"-x\"\n")},
     {"roller", both(rollers + "clearance = \"-2 um\"\n")},
@@ -178,6 +180,44 @@ report = false
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, SupportDecks, testing::ValuesIn(kinds), [](const auto& info) { return std::string(info.param.name); });
+
+// Without load a journal runs in the middle, where its film has no stiffness but cross coupling; undamped modes and critical speeds are those of a free rotor.
+TEST(SupportSteps, CentredJournalsInEveryFrequencyStep) {
+  const DeckRun d(rotor + "[model]\ngravity = \"0 m/s^2\"\n" + both("type = \"journal\"\nshape = \"plain\"\n" + film) + R"([[step]]
+name = "critical"
+type = "critical_speeds"
+max_speed = "15000 rpm"
+[[step]]
+name = "campbell"
+type = "campbell"
+damping = "undamped"
+speed = { start = "1000 rpm", stop = "9000 rpm", points = 5 }
+[[step]]
+name = "stability"
+type = "stability"
+speed = { start = "1000 rpm", stop = "9000 rpm", points = 5 }
+[output]
+report = false
+)");
+  EXPECT_EQ(d.exit, 0) << d.log;
+}
+
+// The map varies the bearings and leaves their pedestals out: it is the map of the same rotor without them.
+TEST(SupportSteps, CriticalMapLeavesPedestalsOut) {
+  const auto map = [](const std::string& more) {
+    const DeckRun d(rotor + "[model]\ngravity = \"9.81 m/s^2\"\n" + both(linear + more) +
+                    "[[step]]\nname = \"m\"\ntype = \"critical_map\"\nmax_speed = \"15000 rpm\"\nstiffness_min = \"1e6 N/m\"\nstiffness_max = \"1e8 N/m\"\npoints = 3\n[output]\nreport = false\n");
+    EXPECT_EQ(d.exit, 0) << d.log;
+    return d.csv("m_critical_map.csv").rows;
+  };
+  const auto with_them = map(pedestal), without = map("");
+  ASSERT_EQ(with_them.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_EQ(with_them[i].size(), without[i].size());
+    EXPECT_GT(without[i][1], 0);
+    EXPECT_NEAR(with_them[i][1], without[i][1], 1e-9 * without[i][1]);
+  }
+}
 
 // What a static step at speed tells of its supports is the mean over the revolution, which is in balance: not one position of a cage, a mesh or a coupling.
 namespace {
