@@ -66,7 +66,7 @@ struct Rest {
     EXPECT_TRUE(problem.residual(0.0, q, zero, zero, r));
   }
   Vec3 force(const Built& b, std::size_t support) {
-    return b.support_forces[support].force([&](Index i) -> const system::NodeState& { return problem.workspace().nodes[S(i)]; }, 0.0,
+    return b.support_forces[support].force([&](Index i) -> const system::NodeState& { return problem.workspace().nodes[S(i)]; }, system::Context{},
                                            [&](Index k) { return r[k]; });
   }
 };

@@ -17,7 +17,7 @@ struct Solved {
   const system::NodeState& node(Index n) const { return problem->workspace().nodes[static_cast<std::size_t>(n)]; }
   const system::NodeState& node_at(const model::Location& l) const { return node(mesh.place(l).node); }
   Vec3 support(std::size_t i) const {
-    return built.support_forces[i].force([this](Index n) -> const system::NodeState& { return node(n); }, 0.0, [this](Index k) { return r[k]; });
+    return built.support_forces[i].force([this](Index n) -> const system::NodeState& { return node(n); }, system::Context{}, [this](Index k) { return r[k]; });
   }
   VecX r;
 };

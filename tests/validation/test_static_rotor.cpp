@@ -120,7 +120,7 @@ TEST(StaticRotor, TorqueTensionAndBendingTogether) {
   const double axial = 3.0 / A, bending = std::hypot(0.016, 0.008) * 0.02 / I, torsion = 0.5 * 0.02 / (2 * I);
   EXPECT_NEAR(p.von_mises, std::sqrt(std::pow(axial + bending, 2) + 3 * torsion * torsion), 1e-3 * p.von_mises);
   // reaction moment of the wall balances the load
-  const Vec3 M = s.built.support_forces[0].moment([&](Index n) -> const system::NodeState& { return s.node(n); }, 0.0, [&](Index k) { return s.r[k]; });
+  const Vec3 M = s.built.support_forces[0].moment([&](Index n) -> const system::NodeState& { return s.node(n); }, system::Context{}, [&](Index k) { return s.r[k]; });
   EXPECT_NEAR((M - Vec3(-0.5, 0.008, 0.016)).norm(), 0.0, 1e-5);
 }
 
