@@ -1,5 +1,6 @@
 // Linearisation, whirl modes, Campbell diagram and critical speeds on rotors with known answers.
 #include "rotors.hpp"
+#include "../validation/deck_model.hpp"
 
 #include <analysis/campbell.hpp>
 #include <analysis/critical.hpp>
@@ -221,5 +222,51 @@ TEST(Critical, OrdersAndDampedLimit) {
       EXPECT_NEAR(a[k].mode.frequency, order * a[k].speed, 1e-9 * a[k].frequency);
       EXPECT_NEAR(b[k].mode.frequency, order * b[k].speed, 1e-9 * b[k].frequency);
     }
+  }
+}
+
+// A shaft made rigid by its modulus, as engineers do: the five modes of the rigid body on its springs are all there, to what is left of the shaft's
+// compliance and the rounding of springs a billion times softer than the elements they hold.
+TEST(WhirlModes, RigidByItsModulus) {
+  const double kx = 1e7, ky = 2e7, kz = 3e7;
+  for (const double E : {2.1e5, 2.1e7, 2.1e8, 2.1e10}) {   // GPa
+    const test::DeckModel m(fmt::format(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "stiff"
+E = "{} GPa"
+density = "0 kg/m^3"
+[shaft]
+material = "stiff"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 500, 50, 4], ["b", 500, 50, 4]]
+[[disk]]
+name = "mass"
+at = "a:end"
+mass = "20 kg"
+Ip = "0.2 kg.m^2"
+Id = "0.1 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "2e7 N/m"
+kzz = "3e7 N/m"
+[[bearing]]
+at = "b:end"
+type = "linear"
+kyy = "2e7 N/m"
+kzz = "3e7 N/m"
+)", E));
+    Linearizer linear(m.built.system, m.running());
+    ModesOptions o;
+    o.count = 5;
+    const auto modes = whirl_modes(linear, 0.0, o);
+    ASSERT_EQ(modes.size(), 5u) << E;
+    const double exact[5] = {std::sqrt(kx / 20), std::sqrt(2 * ky / 20), std::sqrt(2 * kz / 20), std::sqrt(0.5 * ky / 0.1), std::sqrt(0.5 * kz / 0.1)};
+    // compliance of the shaft, 1/(48 EI/L^3) = 1/(3.1e6 N/m) at 210 GPa, against springs of 6e7 N/m: half of it in the frequency; rounding: 1e-16 of EA/l
+    const double tolerance = 10.0 * 210 / E + 1e-16 * (E * 1e9 * 1.96e-3 / 0.125) / kx;
+    for (int k = 0; k < 5; ++k) EXPECT_NEAR(modes[static_cast<std::size_t>(k)].frequency, exact[k], tolerance * exact[k]) << E << " " << k;
   }
 }
