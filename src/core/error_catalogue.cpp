@@ -145,10 +145,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        "E, G and the density are positive, and Poisson's ratio lies between -1 and 0.5. G, when given, must agree with E/(2(1+nu)) for an "
        "isotropic material unless nu is left out.",
        ""},
-      {"E37", "a gear ratio that contradicts the speeds",
+      {"E37", "a gear ratio or coupling that contradicts the speeds",
        "The speeds of two geared shafts are to each other as -teeth/other_teeth (external gears turn against each other; other_teeth < 0, an "
        "internal gear, turns the same way). speed_ratio, initial_spin and prescribed speeds of the shafts must agree with it: the message names the "
-       "ratio that fits.",
+       "ratio that fits. Shafts joined by a coupling turn at one speed, and both turn.",
        "[[shaft]]\nname = \"pinion\"\nspeed_ratio = -2.5\n\n[[bearing]]\ntype = \"gear\"\nat = \"wheel\"\nto = \"pinion:mid\"\nteeth = 50\nother_teeth = 20"},
       {"E38", "an unbalance that its shaft cannot have",
        "An unbalance is mass times eccentricity of the bodies it turns with. It is shared among neighbouring nodes until each carries no more than a "
