@@ -35,6 +35,15 @@ std::vector<std::pair<std::string, Point>> watched_points(const Job& job) {
   return watched;
 }
 
+/// Films, and nothing else whose stiffness comes and goes within a step.
+bool only_films(const Job& job) {
+  const auto gap = [](const model::Bearing& b) {
+    const auto* gear = std::get_if<model::GearPair>(&b.law);
+    return std::holds_alternative<model::BallBearing>(b.law) || std::holds_alternative<model::RollerBearing>(b.law) || (gear && gear->backlash >= 0);
+  };
+  return !job.built.fine.empty() && std::none_of(job.model.bearings.begin(), job.model.bearings.end(), gap);
+}
+
 analysis::TransientOptions transient_options(const Job& job, const model::TransientStep& law, double t0) {
   analysis::TransientOptions t;
   t.method = law.integrator.method;
@@ -53,6 +62,7 @@ analysis::TransientOptions transient_options(const Job& job, const model::Transi
   double length = 0.0;
   for (const meshes::Line& l : job.mesh.lines) length = std::max(length, l.length);
   if (length > 0.0) o.scales.length = length;
+  o.linearize_inside = only_films(job);
   for (const auto& f : job.built.fine)
     for (const Index c : {1, 2}) o.scales.limits.push_back({6 * f.node + c, f.length});
   if (law.stop_speed != 0.0) t.speed_stops.push_back({job.reference(), law.stop_speed});

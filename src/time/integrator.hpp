@@ -51,6 +51,8 @@ struct Options {
   Scales scales;
   double rho_inf = 0.9;         ///< generalized-alpha: spectral radius at infinite step, 0..1
   int max_newton = 10;          ///< iterations a step
+  bool linearize_inside = false;   ///< matrices inside the steps, where Newton's iteration converges best: for films. Not where gaps may close: the
+                                   ///< error test passes over what the matrices make stiff, so a step would pass over a whole impact
   int max_attempts = 60;        ///< tries of one step before it is given up
   int max_order = 2;            ///< IDA only: BDF above 2 is unstable on lightly damped modes
 };

@@ -202,7 +202,7 @@ void Stepper::begin_step() {
 }
 
 void Stepper::linearize(double h, bool inside) {
-  // In films and contacts the stages differ from the start as much as from each other: the middle of the step, as far as the
+  // In films the stages differ from the start as much as from each other: the middle of the step, as far as the
   // present acceleration tells it, is nearer to all of them.
   if (inside) {
     const double m = 0.5 * h;

@@ -58,7 +58,7 @@ class Stepper : public Integrator {
     return problem_.residual(t, q, v, a, r);
   }
   /// Matrices may be taken inside the step, where Newton's iteration converges best.
-  bool smooth() const { return !first_ && !problem_.has_corners() && !problem_.is_linear(); }
+  bool smooth() const { return options_.linearize_inside && !first_ && !problem_.has_corners() && !problem_.is_linear(); }
   bool factor_real(double cm, double cc, double ck) {
     ++statistics_.factorizations_real;
     return problem_.factor(cm, cc, ck);

@@ -1,5 +1,6 @@
 // Load of every ball and roller, from the deck to the table of the results.
 #include "deck_run.hpp"
+#include "lateral_mass.hpp"
 
 #include <core/types.hpp>
 
@@ -15,26 +16,8 @@ using test::DeckRun;
 namespace {
 
 std::string deck(const std::string& held, const std::string& force, const std::string& bearing) {
-  return R"(format = 1
-[model]
-gravity = "0 m/s^2"
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "rigid"]
-rows = [["left", 100, true], ["right", 100, true]]
-[[disk]]
-name = "mass"
-at = "left:end"
-mass = "20 kg"
-Ip = "0.1 kg.m^2"
-Id = "0.06 kg.m^2"
-[[bearing]]
-name = "guide"
-at = "mass"
-type = "rigid"
-directions = [)" + held + "]\n[[load]]\nat = \"mass\"\nforce = [" + force + "]\n[[bearing]]\nname = \"tested\"\nat = \"mass\"\n" + bearing +
-         "[[step]]\nname = \"load\"\ntype = \"static\"\n[output]\nreport = false\n";
+  return test::lateral_mass(20, "0 m/s^2", "[[load]]\nat = \"mass\"\nforce = [" + force + "]\n[[bearing]]\nname = \"tested\"\nat = \"mass\"\n" + bearing +
+         "[[step]]\nname = \"load\"\ntype = \"static\"\n[output]\nreport = false\n", held);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Equilibria against speed, as a user asks for them: closed forms and a published table.
 #include "deck_run.hpp"
+#include "lateral_mass.hpp"
 
 #include <core/types.hpp>
 
@@ -16,26 +17,7 @@ namespace {
 
 /// 525 N on a journal of 100 mm, c = 0.1 mm, over the speeds.
 std::string deck(const std::string& film, const std::string& speeds) {
-  return R"(format = 1
-[model]
-gravity = "0 m/s^2"
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "rigid"]
-rows = [["left", 100, true], ["right", 100, true]]
-[[disk]]
-name = "mass"
-at = "left:end"
-mass = "53.5 kg"
-Ip = "0.1 kg.m^2"
-Id = "0.06 kg.m^2"
-[[bearing]]
-name = "guide"
-at = "mass"
-type = "rigid"
-directions = ["x", "ry", "rz"]
-[[load]]
+  return test::lateral_mass(53.5, "0 m/s^2", R"([[load]]
 at = "mass"
 force = ["0 N", "0 N", "-525 N"]
 [[bearing]]
@@ -43,7 +25,7 @@ name = "film"
 at = "mass"
 diameter = "100 mm"
 clearance = "100 um"
-)" + film + "[[step]]\nname = \"films\"\ntype = \"static\"\nspeeds = { values = [" + speeds + "] }\n";
+)" + film + "[[step]]\nname = \"films\"\ntype = \"static\"\nspeeds = { values = [" + speeds + "] }\n");
 }
 
 }  // namespace

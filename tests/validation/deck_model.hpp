@@ -5,6 +5,8 @@
 #include <assembly/build_system.hpp>
 #include <deck/deck.hpp>
 
+#include "../app/lateral_mass.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,28 +37,6 @@ struct DeckModel {
   /// Node of the first disk.
   Index disk() const { return mesh.place(deck.model.disks[0].at).node; }
 };
-
-/// A mass that only moves sideways, on what `bearings` says ("at = mass"): half a symmetric rigid rotor.
-inline std::string lateral_mass(double kg, const std::string& gravity, const std::string& bearings) {
-  return "format = 1\n[model]\ngravity = \"" + gravity + R"("
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "rigid"]
-rows = [["left", 100, true], ["right", 100, true]]
-[[disk]]
-name = "mass"
-at = "left:end"
-mass = ")" + fmt::format("{:.17g}", kg) + R"( kg"
-Ip = "0.1 kg.m^2"
-Id = "0.06 kg.m^2"
-[[bearing]]
-name = "guide"
-at = "mass"
-type = "rigid"
-directions = ["x", "ry", "rz"]
-)" + bearings;
-}
 
 /// Largest distance of a node from `centre` in each window of time and when it was first reached, with extremes and mean of its (y, z) there (the mean of
 /// steps that lie wholly in the window).

@@ -35,6 +35,23 @@ viscosity = "100 mPa.s"
 /// One mass on one bearing: half a symmetric rigid rotor. It translates only.
 std::string rigid_rotor() { return test::lateral_mass(53.51681957, "9.81 m/s^2", std::string("[[bearing]]\nname = \"film\"\nat = \"mass\"\n") + journal); }
 
+/// 20 kg under its weight, guided sideways by a soft spring, in a nonlinear spring of this shape along z.
+std::string mass_in_a_stop(const std::string& shape) {
+  return test::lateral_mass(20, "9.8 m/s^2", R"([[bearing]]
+name = "sideways"
+at = "mass"
+type = "linear"
+kyy = "1e3 N/m"
+[[bearing]]
+name = "stop"
+at = "mass"
+type = "nonlinear_spring"
+direction = "z"
+gap = "2 mm"
+stiffness = "1e7 N/m"
+shape = ")" + shape + "\"\n");
+}
+
 analysis::Onset onset(const DeckModel& m, double low, double high) {
   analysis::Linearizer linear(m.built.system, m.running());
   analysis::StabilityOptions o;
@@ -168,20 +185,7 @@ friction = 0.2
 
 // A one-sided stop under a mass that is guided sideways by a soft spring: the gap, and the weight over the stiffness.
 TEST(Gaps, MassSettlesOnAOneSidedStop) {
-  const DeckModel m(test::lateral_mass(20, "9.8 m/s^2", R"([[bearing]]
-name = "sideways"
-at = "mass"
-type = "linear"
-kyy = "1e3 N/m"
-[[bearing]]
-name = "stop"
-at = "mass"
-type = "nonlinear_spring"
-direction = "z"
-shape = "clearance"
-gap = "2 mm"
-stiffness = "1e7 N/m"
-)"));
+  const DeckModel m(mass_in_a_stop("clearance"));
   analysis::RunningSystem running(m.built.system, m.running());
   const auto e = analysis::EquilibriumSolver(running).solve(0.0);
   EXPECT_NEAR(e.state.q[6 * m.disk() + 2], -2e-3 - 196 / 1e7, 1e-12);
@@ -252,20 +256,7 @@ stiffness = "1.334e10 N/m^1.5"
 
 // What no play excuses stays an error: a motion that a load drives on and on, and one that nothing resists beside a support without play.
 TEST(Gaps, NothingToFind) {
-  const DeckModel away(test::lateral_mass(20, "9.8 m/s^2", R"([[bearing]]
-name = "sideways"
-at = "mass"
-type = "linear"
-kyy = "1e3 N/m"
-[[bearing]]
-name = "stop"
-at = "mass"
-type = "nonlinear_spring"
-direction = "z"
-shape = "one_sided"
-gap = "2 mm"
-stiffness = "1e7 N/m"
-)"));
+  const DeckModel away(mass_in_a_stop("one_sided"));
   analysis::RunningSystem running(away.built.system, away.running());
   EXPECT_THROW(analysis::EquilibriumSolver(running).solve(0.0), Error);
 }
