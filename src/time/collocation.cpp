@@ -13,9 +13,9 @@
 //     [ (lambda_k/h)^2 M + (lambda_k/h) C + K ] u_k = - sum_i w_k,i R_i.
 // One real and one complex N x N system (Gauss 4: complex only) instead of one of 6N. (E. Hairer, G. Wanner, Solving ODEs
 // II, IV.8; J. C. Butcher, BIT 16 (1976) 237, doi 10.1007/BF01932265.) Iteration ends when rate/(1-rate) times the last
-// correction is below the Newton allowance, with the rate of earlier steps standing in after the first correction. New matrices are taken in the
-// middle of the step, and where the iteration still fails, at the middle stage of where it has come to: a film whose wedge all but
-// vanishes changes its tangent within a correction. Not with contacts (Problem::has_corners).
+// correction is below the Newton allowance, with the rate of earlier steps standing in after the first correction. With Options::
+// linearize_inside new matrices are taken in the middle of the step, and where the iteration still fails, at the middle stage of where it has
+// come to: a film whose wedge all but vanishes changes its tangent within a correction.
 //
 // Predictor: the acceleration polynomial of the last step, extrapolated and integrated twice.
 //
