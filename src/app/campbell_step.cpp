@@ -99,6 +99,11 @@ void run_campbell_step(Job& job, const model::Step& step, const model::CampbellS
   });
   if (any) s.add_figure(io::plot_stability(s.file("log_decrement"), "Log decrement of the modes", lines));
   s.section.text = fmt::format("{} modes followed over {} speeds. Critical speeds are solved for, not read off the diagram.", c.lines.size(), c.speeds.size());
+  std::size_t weakest = 0;
+  for (std::size_t k = 1; k < c.certificates.size(); ++k)
+    if (!c.certificates[k].complete() && c.certificates[weakest].complete()) weakest = k;
+  s.certify(c.certificates[weakest], fmt::format("at {:.6g} rpm", to_rpm(c.speeds[weakest])));
+  s.section.text += c.certificates[weakest].complete() ? " At every speed the roots were counted: the list of modes is complete." : " " + capital(c.certificates[weakest].text()) + ".";
   s.finish(fmt::format("{} modes at {} speeds, {} critical speeds", c.lines.size(), c.speeds.size(), found));
 }
 

@@ -1,8 +1,10 @@
+#include <app/diagnose.hpp>
 #include <app/frequency.hpp>
 
 #include <fmt/format.h>
 
 #include <cctype>
+#include <cmath>
 
 namespace whirl::app {
 
@@ -97,6 +99,64 @@ void FrequencyStep::add_table(const std::string& name, io::Table table, bool sho
 
 void FrequencyStep::add_figure(io::Figure f) {
   if (job.model.output.report) section.figures.push_back(std::move(f));
+}
+
+std::string capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::string stability_text(const analysis::SpectrumCertificate& c) {
+  if (c.stability_certain()) return fmt::format("no motion grows at any frequency: all roots up to {:.5g} Hz counted, above it energy forbids growth by more than {:.0e} of the frequency", to_hz(c.list.radius), c.quiet_ratio);
+  if (c.complete()) return fmt::format("no motion grows below {:.5g} Hz; above it growth is not excluded (forces without damping of their own act across the modes)", to_hz(c.list.radius));
+  return "no growing motion found; that there is none is not certified";
+}
+
+io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes) {
+  io::Table t;
+  t.title = "Motions that do not oscillate, or hardly (damping ratio above 0.949)";
+  t.columns = {{"rate", "1/s", "of exp(rate t); positive: grows"}, {"frequency", "Hz", "of what is left of an oscillation"}, {"damping ratio", "-", ""}, {"time", "s", "to 1/e, or to e"}, {"kind", "-", "by the largest share of energy"},
+               {"motion", "-", "decays, free (neither resisted nor driven), diverges"}};
+  for (const analysis::WhirlMode& m : modes) {
+    if (m.oscillates()) continue;
+    const double rate = m.growth() == 0 ? 0.0 : m.lambda.real();
+    const char* word = m.growth() > 0 ? "diverges" : m.growth() < 0 ? "decays" : "free";
+    io::Table::Cell time = std::string();
+    if (rate != 0.0) time = 1.0 / std::abs(rate);
+    t.add({rate, to_hz(m.frequency), tidy(m.damping_ratio), std::move(time), std::string(to_string(m.kind)), std::string(word)});
+  }
+  return t;
+}
+
+void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::string& where) {
+  io::Value& v = summary()["certificate"];
+  if (v.is_null()) v = io::Value::array();
+  io::Value e = io::Value::object();
+  if (!where.empty()) e["at"] = where;
+  e["complete"] = c.complete();
+  e["text"] = c.text();
+  if (c.open.empty()) {
+    e["up to [Hz]"] = to_hz(c.list.radius);
+    e["damping ratio up to"] = c.list.damping_ratio();
+    e["roots not found"] = static_cast<int>(c.list.missing);
+    e["factorizations"] = static_cast<int>(c.list.factorizations);
+  }
+  if (!std::isnan(c.quiet_above)) {
+    e["nothing grows above [Hz]"] = to_hz(c.quiet_above);
+    e["by more than, of its frequency"] = c.quiet_ratio;
+  }
+  v.push(std::move(e));
+  if (c.complete() || !c.open.empty()) return;
+  const std::string message = fmt::format("step '{}'{}{}: {}", step.name, where.empty() ? "" : " ", where, c.text());
+  job.uncertified.push_back(message);
+  Diagnostic w;
+  w.severity = Diagnostic::Severity::warning;
+  w.code = "W07";
+  w.message = message;
+  w.hint = "ask for more or fewer modes, or for another max_frequency; the list is not to be relied on as it is";
+  job.report.warnings.push_back(message);
+  job.summary["warnings"].push(w.code + ": " + message);
+  if (!job.options.quiet) print_diagnostics({w});
 }
 
 void FrequencyStep::finish(const std::string& line) {

@@ -26,6 +26,12 @@ inline double tidy(double x) { return std::abs(x) < 1e-12 ? 0.0 : x; }
 std::string description(const analysis::WhirlMode& m);
 /// "forward", or "" where there is no lateral orbit
 std::string direction_text(const analysis::WhirlMode& m);
+/// "No growing motion at any frequency" or up to which one that is known, where none was found.
+std::string stability_text(const analysis::SpectrumCertificate& c);
+/// With a capital letter.
+std::string capital(std::string text);
+/// Motions that do not oscillate: overdamped, free and diverging ones, by their rates.
+io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes);
 /// Forces of the supports on the shaft, N, fixed axes.
 std::vector<analysis::Measurement> support_measurements(const Job& job);
 
@@ -46,6 +52,9 @@ class FrequencyStep {
   void add_figure(io::Figure f);
   /// A name for files: <step>_<name>.
   std::string file(const std::string& name) const;
+  /// Puts what is known of a list of modes into the summary and the section; what is missing also into the terminal and the exit code.
+  /// where: "at 3000 rpm", or empty.
+  void certify(const analysis::SpectrumCertificate& certificate, const std::string& where = {});
   /// Adds the section to the report, the run time to the summary, and a line to the terminal.
   void finish(const std::string& line);
 

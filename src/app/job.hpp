@@ -35,6 +35,9 @@ struct Job {
   std::map<std::string, StepState> states;
   std::vector<std::pair<std::string, double>> phases;   ///< wall-clock seconds by phase, for the summary
 
+  /// Steps whose lists or verdicts could not be certified although they should be: the run ends with Exit::no_convergence.
+  std::vector<std::string> uncertified;
+
   std::string built_for;
 
   Job(const model::Model& m, const RunOptions& o, const std::filesystem::path& root);

@@ -25,7 +25,8 @@ int run_deck(const model::Model& model, const RunOptions& options) {
   run_steps(job);
   if (options.json) std::fputs(io::to_json(job.summary).c_str(), stdout);
   else if (!options.quiet) std::fputs(fmt::format("results: {}\n", root.string()).c_str(), stdout);
-  return static_cast<int>(interrupted() ? Exit::interrupted : Exit::ok);
+  if (interrupted()) return static_cast<int>(Exit::interrupted);
+  return static_cast<int>(job.uncertified.empty() ? Exit::ok : Exit::no_convergence);
 }
 
 }  // namespace whirl::app

@@ -271,6 +271,11 @@ const std::vector<CodeInfo>& error_catalogue() {
        "A bearing or coupling between two shafts acts at one point: its force on one shaft is the opposite of that on the other. Where the two places do not "
        "coincide, the couple of the two forces is missing from the balance. Gears are apart across the shafts, never along them.",
        "origin = [\"400 mm\", \"0 mm\", \"0 mm\"]   # the second shaft begins where the first one ends"},
+      {"W07", "a list of modes that is not complete",
+       "The roots of the eigenvalue problem were counted by the argument principle (docs/numerics.md), and the list does not hold all of them, or the count did "
+       "not settle. The message says how many are missing and about where. The run goes on and ends with exit code 4: neither the list nor a verdict "
+       "of stability drawn from it is to be relied on.",
+       ""},
   };
   return t;
 }
