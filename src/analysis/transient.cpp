@@ -26,7 +26,8 @@ std::string_view to_string(StopReason r) {
 
 namespace {
 
-constexpr double longest_wait = 0.5;   // seconds an interruption waits for the next mark
+constexpr double least_wait = 0.5;     // seconds an interruption waits for the next mark in any case
+constexpr double longest_wait = 3.0;   // and at most
 constexpr double keep_every = 2.0;     // seconds at least between states that are kept
 
 double cpu_seconds() {
@@ -115,8 +116,14 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
   const auto seconds_since = [](Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); };
   auto last_checkpoint = Clock::now(), last_mark = last_checkpoint, last_kept = last_checkpoint;
   const auto interrupted = [&] { return options.interrupt && options.interrupt->load(std::memory_order_relaxed); };
+  // Seconds to the next mark, were the steps to it like those since the last one.
+  const auto seconds_to_mark = [&] {
+    const double between = static_cast<double>(std::max(options.steps_between_marks, 1L));
+    const double made = std::fmod(static_cast<double>(integrator->statistics().accepted), between);
+    return seconds_since(last_mark) / std::max(made, 0.5) * (between - made);
+  };
   Dense step(problem, *integrator, [&] {
-    if (interrupted() && seconds_since(last_mark) > longest_wait) throw Interrupted();
+    if (interrupted() && seconds_since(last_mark) > least_wait && seconds_to_mark() > longest_wait) throw Interrupted();
   });
 
   auto state_now = [&] {

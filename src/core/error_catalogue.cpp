@@ -160,6 +160,14 @@ const std::vector<CodeInfo>& error_catalogue() {
        "contradict it, and so does the integrator momentum_rk. Unequal stiffness or inertia of a shaft that turns makes its matrices turn too; "
        "the message then says so. Leave linear out: the general model does all of these.",
        "[[step]]\nname = \"release\"\ntype = \"transient\"\nlinear = true\ninitial_speed = \"3000 rpm\""},
+      {"E61", "an unknown with neither stiffness nor mass",
+       "The eigenvalue problem cannot be factored at any shift: nothing in the model resists or carries the motion that the message names. Hold it, or give "
+       "the node mass or stiffness in this direction.",
+       ""},
+      {"E62", "modes that do not agree with their count",
+       "The number of modes found differs from the number that the inertia of K - s M promises. The matrices are not those of a vibrating structure: M is "
+       "indefinite, or K or M is not symmetric.",
+       ""},
       {"E71", "the split of the rotation reached its limit",
        "A section normal turned by pi from the axis of its shaft: the axial angle and the azimuth of the transverse rotation then describe the same "
        "motion. With model.chart_change = true (the default) the reference axes are moved before that happens; without, the run ends "

@@ -285,6 +285,6 @@ TEST_F(Cli, TooMuchOutputIsSaidWithItsLine) {
   write("long.toml", good + step);
   const Result r = whirl("run long.toml -o r");
   EXPECT_EQ(r.code, 3);
-  EXPECT_NE(r.err.find("long.toml:12:"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("long.toml:13:"), std::string::npos) << r.err;
   EXPECT_NE(r.err.find("error[E33]: the output would take"), std::string::npos) << r.err;
 }
