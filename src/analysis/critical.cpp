@@ -3,6 +3,8 @@
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,11 +22,15 @@ class Counter {
   Index count(double Omega) { return count(Omega, options_.order * Omega); }
   /// tables: frequency of supports tabulated against it.
   Index count(double Omega, double tables) {
-    const double w = options_.order * Omega;
-    const la::MCK& m = linear_.conservative_at(Omega, tables);
-    // exactly on an eigenvalue: look beside it
-    if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) != la::Status::ok) return count(Omega * (1 + 1e-12), tables);
-    return lu_.negative_eigenvalues();
+    // exactly on an eigenvalue: look beside it, ever farther
+    for (double beside = 1e-12; beside < 1e-6; beside *= 2) {
+      const double w = options_.order * Omega;
+      const la::MCK& m = linear_.conservative_at(Omega, tables);
+      if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok) return lu_.negative_eigenvalues();
+      Omega *= 1 + beside;
+    }
+    throw run_error("E77", fmt::format("critical speeds cannot be counted near {:.6g} rpm: the matrix is singular at every speed tried", Omega * 30.0 / pi),
+                    "parts without mass, or stiffnesses too far apart for the digits of the computer");
   }
   const std::vector<unsigned char>& active() const { return active_; }
 

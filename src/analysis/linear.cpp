@@ -1,6 +1,7 @@
 #include <analysis/linear.hpp>
 
 #include <core/error.hpp>
+#include <core/interrupt.hpp>
 #include <system/frequency.hpp>
 
 #include <fmt/format.h>
@@ -43,6 +44,7 @@ bool Linearizer::still_balanced(double Omega) {
 }
 
 const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
+  throw_if_interrupted();
   running_.set_whirl(0.0);
   if (have_ && Omega == equilibrium_.Omega && running_.running().frequency_dependent()) {
     // One equilibrium at every frequency asked about.

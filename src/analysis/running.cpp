@@ -1,6 +1,7 @@
 #include <analysis/running.hpp>
 
 #include <core/error.hpp>
+#include <core/interrupt.hpp>
 #include <system/frequency.hpp>
 
 #include <Eigen/QR>
@@ -215,6 +216,7 @@ void RunningSystem::impose(const system::Frames& f, Eigen::Ref<VecX> q) const {
 }
 
 bool RunningSystem::evaluate_residual(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r, const Terms& only) {
+  throw_if_interrupted();
   set_rates(Omega, v_);
   if (theta == 0.0) return system_.residual(workspace_, f, running_.time, q, v_, a_, r, &only);
   q_ = q;
@@ -224,6 +226,7 @@ bool RunningSystem::evaluate_residual(const system::Frames& f, double Omega, con
 }
 
 bool RunningSystem::evaluate_tangent(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out, const Terms& only) {
+  throw_if_interrupted();
   set_rates(Omega, v_);
   if (theta == 0.0) return system_.tangent(workspace_, f, running_.time, q, v_, a_, out, &only);
   q_ = q;

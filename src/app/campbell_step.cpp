@@ -15,6 +15,7 @@ namespace {
 io::Table make_table(const analysis::Campbell& c) {
   io::Table t;
   t.title = "Campbell diagram";
+  t.nan_means = "the mode is not there at this speed";
   t.columns.push_back({"speed", "rpm", ""});
   for (const analysis::CampbellLine& l : c.lines) {
     t.columns.push_back({l.label + " frequency", "Hz", "damped natural frequency"});

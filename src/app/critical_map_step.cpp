@@ -92,6 +92,7 @@ void run_critical_map_step(Job& job, const model::Step& step, const model::Criti
 
   io::Table table;
   table.title = "Critical speeds against support stiffness";
+  table.nan_means = "no such critical speed at this stiffness";
   table.columns.push_back({"stiffness", "N/m", "of each support, in y and z"});
   std::vector<io::Curve> curves, own;
   int forward = 0, backward = 0;

@@ -161,7 +161,7 @@ void run_harmonic_step(Job& job, const model::Step& step, const model::HarmonicS
     v[twists ? "largest twist 0-peak [rad]" : "largest amplitude 0-peak [m]"][o.probes[p].name] = most;
     for (std::size_t k = 1; k + 1 < points.size(); ++k) {
       const double f0 = size(points[k - 1]), f1 = size(points[k]), f2 = size(points[k + 1]);
-      if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-9 * most) continue;   // a peak of rounding is none
+      if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-7 * most) continue;   // a peak of rounding is none
       const double x = analysis::find_maximum(grid[k - 1], grid[k], f1, grid[k + 1], 3e-9, [&](double y) { return size(respond(y)); });
       const FrequencyPoint peak = respond(x);
       peaks.add({o.probes[p].name, to_rpm(peak.Omega), to_hz(peak.frequency), size(peak)});

@@ -30,6 +30,7 @@ void run_instability_bands(Job& job, const model::Step& step, const model::Stabi
 
   io::Table table;
   table.title = "Bands of instability";
+  table.nan_means = "the band goes on beyond the speeds";
   table.columns = {{"from", "rpm", ""}, {"to", "rpm", ""}, {"largest growth", "1/s", "real part of the eigenvalue"}, {"at", "rpm", ""},
                    {"frequency there", "Hz", "in axes turning with the rotor; 0: the rotor bends out at its own speed"}};
   io::Value& v = s.summary();

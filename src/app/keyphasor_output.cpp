@@ -210,11 +210,14 @@ io::Series within_a_turn(const io::Series& in) {
   return out;
 }
 
-/// Where the speed turns back for good: rows up to it rise, later ones fall (or the other way round).
+/// Where the speed turns back for good: rows up to it rise, later ones fall (or the other way round). While the speed is held it neither
+/// rises nor falls but for rounding: its end counts.
 std::size_t turning_row(const std::vector<std::vector<double>>& rows) {
+  double most = 0;
+  for (const auto& r : rows) most = std::max(most, std::abs(r[1]));
   std::size_t top = 0;
   for (std::size_t r = 0; r < rows.size(); ++r)
-    if (std::abs(rows[r][1]) > std::abs(rows[top][1])) top = r;
+    if (std::abs(rows[r][1]) >= (1 - 1e-6) * most) top = r;
   return top;
 }
 

@@ -52,6 +52,7 @@ std::string add_stability_map(FrequencyStep& s, const model::StabilityMap& law, 
   const std::string unit = values.unit;
   io::Table onset, rates;
   onset.title = "Onset of instability against " + law.parameter;
+  onset.nan_means = "there is no onset: see the remark";
   onset.columns = {{law.parameter, unit, ""}, {"onset speed", "rpm", "lowest at which a mode becomes unstable"}, {"whirl frequency", "Hz", ""}, {"remark", "-", ""}};
   rates.title = "Least log decrement against speed and " + law.parameter;
   rates.columns.push_back({"speed", "rpm", ""});

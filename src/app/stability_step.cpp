@@ -89,6 +89,7 @@ void run_stability_step(Job& job, const model::Step& step, const model::Stabilit
   std::vector<io::CampbellLine> shown;
   io::Table rates;
   rates.title = "Log decrement against speed";
+  rates.nan_means = "the mode is not there at this speed";
   rates.columns.push_back({"speed", "rpm", ""});
   for (std::size_t l = 0; l < lines.size(); ++l) {
     rates.columns.push_back({lines[l].label + " log decrement", "-", ""});

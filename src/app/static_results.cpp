@@ -394,7 +394,7 @@ StaticFrames::StaticFrames(const Job& job, const std::string& step) {
   for (const model::VtkOutput& o : job.model.output.vtk) {
     if (!o.step.empty() && o.step != step) continue;
     io::VtkFrameOptions options;
-    options.directory = job.folder.path("vtk");
+    options.directory = job.folder.subfolder("vtk");
     options.name = step;
     io::set_content(options, o.content);
     options.deformation_scale = o.deformation_scale;

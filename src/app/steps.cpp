@@ -3,6 +3,8 @@
 #include <app/job.hpp>
 #include <app/savings.hpp>
 #include <app/steps.hpp>
+#include <core/interrupt.hpp>
+#include <io/nonfinite.hpp>
 #include <io/rotor_drawing.hpp>
 #include <io/svg.hpp>
 
@@ -40,6 +42,17 @@ void describe_model(Job& job) {
   v["notes"] = notes;
 }
 
+/// Numbers that are none and that nothing accounts for: the results are not to be trusted there, and that is said.
+void report_nonfinite(Job& job) {
+  for (const io::NonFinite& n : io::take_nonfinite()) {
+    const std::string text = fmt::format("{} in {} are not finite (first in the column '{}'): what should stand there was not found", n.count == 1 ? "1 number" : fmt::format("{} numbers", n.count),
+                                         n.file, n.column);
+    job.summary["warnings"].push(text);
+    job.report.warnings.push_back(text);
+    if (!job.options.quiet) std::fputs(fmt::format("warning: {}\n", text).c_str(), stderr);
+  }
+}
+
 /// What leaving out saved. Printed only for runs long enough that somebody waits for them.
 void describe_savings(Job& job, double seconds) {
   if (job.model.keep_everything || job.built_for.empty() || interrupted()) return;
@@ -61,6 +74,7 @@ void run_steps(Job& job) {
   job.report.deck = job.model.resolved;
   for (const Diagnostic& w : job.model.warnings) job.report.warnings.push_back(w.message);
   auto finish = [&] {
+    report_nonfinite(job);
     auto take_times = [&] {
       for (const auto& [name, seconds] : job.phases) job.summary["run time by phase, wall [s]"][name] = seconds;
       job.summary["run time, wall [s]"] = wall() - t0;
@@ -80,8 +94,10 @@ void run_steps(Job& job) {
     take_times();
     job.folder.write_json("summary.json", job.summary);
   };
+  std::string running;
   try {
     for (const model::Step& step : job.model.steps) {
+      running = step.name;
       if (interrupted()) break;
       job.build_for(step);
       if (!job.summary.is_object() || job.summary.at("model").is_null()) describe_model(job);
@@ -94,6 +110,10 @@ void run_steps(Job& job) {
           },
           step.law);
     }
+  } catch (const Interrupted&) {
+    // steps before it are complete; of this one nothing is
+    job.summary["steps"][running]["outcome"] = "interrupted";
+    if (!job.options.quiet) std::fputs(fmt::format("{}: interrupted\n", running).c_str(), stderr);
   } catch (const Error& e) {
     io::Value& v = job.summary["error"];
     for (const Diagnostic& d : e.diagnostics()) v.push(d.code + ": " + d.message);

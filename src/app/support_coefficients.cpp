@@ -130,6 +130,7 @@ io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list) {
 io::Table support_table(std::span<const SupportCoefficients> list) {
   io::Table t;
   t.title = "Bearings about the equilibrium";
+  t.nan_means = "the bearing has no such number, or is never unstable";
   t.columns = {{"bearing", "-", ""}, {"speed", "rpm", ""}, {"load", "N", "on the bearing, lateral"}, {"y", "m", "shaft against housing"}, {"z", "m", ""},
                {"eccentricity", "m", ""}, {"eccentricity / clearance", "-", ""}, {"attitude", "deg", "from the load in the sense y to z"}};
   for (const char* m : {"k", "c"})

@@ -93,7 +93,7 @@ std::vector<io::Channel> io_channels(const Channels& c) {
 Frames::Frames(const Job& job, const model::VtkOutput& o, const std::string& step, double t0, double t1)
     : job_(job), schedule_({o.t0, o.t1, o.every, o.frames_per_revolution, o.frames, o.max_frames}, t0, t1) {
   io::VtkFrameOptions options;
-  options.directory = job.folder.path("vtk");
+  options.directory = job.folder.subfolder("vtk");
   options.name = step;
   io::set_content(options, o.content);
   options.deformation_scale = o.deformation_scale;

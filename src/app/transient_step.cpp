@@ -12,6 +12,7 @@
 #include <app/spectra_output.hpp>
 #include <app/support_diagnosis.hpp>
 #include <app/transient_outputs.hpp>
+#include <core/interrupt.hpp>
 #include <core/rotation.hpp>
 #include <io/plots.hpp>
 
@@ -149,7 +150,7 @@ void keep_earlier_series(const Job& job, const std::string& name) {
 
 void run_transient_step(Job& job, const model::Step& step, const model::TransientStep& law) {
   job.build_for(step);
-  const std::filesystem::path checkpoint_path = checkpoint_file(job.folder.root(), step.name);
+  const std::filesystem::path checkpoint_path = job.folder.path(checkpoint_name(step.name));
   const std::optional<Checkpoint> resumed = job.options.resume ? read_checkpoint(checkpoint_path) : std::nullopt;
   StepState start = resumed ? StepState{resumed->state, resumed->speed} : transient_start(job, step, law);
   const std::unique_ptr<system::SystemProblem> equations = transient_problem(job, law, start);
@@ -242,12 +243,21 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   }
   const std::string deck = what_moves(job.model, step.name);
   const double cpu0 = cpu_seconds();
-  if (law.checkpoint > 0.0)
+  std::optional<Checkpoint> kept;
+  const auto checkpoint_of = [&](const system::State& state, const time::IntegratorState& integrator) {
+    Checkpoint c{deck, t0, start.speed, seconds_before + cpu_seconds() - cpu0, {}, state, integrator, {}};
+    parts.save(c);
+    return c;
+  };
+  if (law.checkpoint > 0.0) {
     options.checkpoint = [&](const system::State& state, const time::IntegratorState& integrator) {
-      Checkpoint c{deck, t0, start.speed, seconds_before + cpu_seconds() - cpu0, {}, state, integrator, {}};
-      parts.save(c);
-      write_checkpoint(checkpoint_path, c);
+      write_checkpoint(checkpoint_path, checkpoint_of(state, integrator));
     };
+    options.keep = [&](const system::State& state, const time::IntegratorState& integrator) { kept = checkpoint_of(state, integrator); };
+    options.fall_back = [&] {
+      if (kept) write_checkpoint(checkpoint_path, *kept);
+    };
+  }
 
   ProgressLine line(step.name, job.options.quiet);
   options.progress = [&](const analysis::Progress& p) {
@@ -258,6 +268,7 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
     const PhaseTimer timer(job, "stepping and histories");
     return analysis::run_transient(problem, start.state, options, observers, resumed ? &resumed->integrator : nullptr);
   }();
+  const interrupt::Shield shield;   // an interrupted step too is written to its end
   r.seconds += seconds_before;
   if (sink) sink->close();
   if (keyphasor) keyphasor->close();

@@ -19,7 +19,18 @@ bool Reader::name(model::Entity& entity, const char* kind) {
   }
   const Spot spot = m ? m->value.spot : scope().table->spot;
   scope().entity = fmt::format("{} '{}'", kind, name);
-  if (given && (name.empty() || name.find_first_of(":/+\"\\\n") != std::string::npos || name.size() > 100))
+  const auto control = [](char c) {
+    const auto u = static_cast<unsigned char>(c);
+    return u < 0x20 || u == 0x7F;
+  };
+  if (given && !name.empty() && (name.front() == '=' || name.front() == '-' || name.front() == '@'))
+    problem("E14", spot, fmt::format("the name \"{}\" begins with '{}'", name, name.front()),
+            "names stand in the titles and cells of result tables, where spreadsheets would take this one for a formula");
+  else if (given && !name.empty() && name.front() == '.')
+    problem("E14", spot, fmt::format("the name \"{}\" begins with '.'", name), "names stand in names of files, which would be hidden ones");
+  else if (given && std::any_of(name.begin(), name.end(), control))
+    problem("E14", spot, fmt::format("the name \"{}\" has a control character", name), "a name is one line of letters, digits and signs");
+  else if (given && (name.empty() || name.find_first_of(":/+\"\\") != std::string::npos || name.size() > 100))
     problem("E14", spot, name.empty() ? std::string("the name is empty") : fmt::format("the name \"{}\" has a character that places are written with", name), "a name may not contain : / + \" or \\");
   const auto [it, fresh] = names.emplace(name, spot);
   if (!fresh) problem("E16", spot, fmt::format("a {} '{}' exists already", kind, name), fmt::format("the first is in line {}", it->second.line));
@@ -37,11 +48,15 @@ bool Reader::location(const Key& k, model::Location& target, const char*) {
     wrong_type(k.name, v, "a place on a shaft", fmt::format("for example {} = \"section:mid\" or \"1.14 m\"", k.name));
     return true;
   }
-  // where the shafts themselves are wrong, places on them cannot be judged
+  // where the shafts themselves are wrong or missing, places on them cannot be judged
+  if (model_.shafts.empty()) {
+    scope().dirty = true;
+    return true;
+  }
   const auto unplaced = [&](const auto& list) {   // a disk or bearing whose own place was reported
     return std::any_of(list.begin(), list.end(), [&](const auto& x) { return x.at.text.empty() && v.text.starts_with(x.name); });
   };
-  const bool shafts_bad = shafts_bad_ || model_.shafts.empty() || unplaced(model_.disks) || unplaced(model_.bearings);
+  const bool shafts_bad = shafts_bad_ || unplaced(model_.disks) || unplaced(model_.bearings);
   const Located found = locate(model_, v.text);
   if (!found.at) {
     if (shafts_bad) { scope().dirty = true; return true; }

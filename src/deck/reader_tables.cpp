@@ -1,5 +1,6 @@
 // Tables in tables, lists, rows with column titles (in the deck or a CSV file), and keys chosen by a "type".
 #include <core/table.hpp>
+#include <deck/assemble.hpp>
 #include <deck/describer.hpp>
 #include <deck/reader.hpp>
 #include <algorithm>
@@ -34,6 +35,7 @@ void Reader::close_table() {
   if (s.any_key || s.header) return;
   for (const auto& m : s.table->members) {
     if (std::find(s.known.begin(), s.known.end(), m.key) != s.known.end()) continue;
+    if (diagnostics_.full()) break;
     std::string hint;
     for (const auto& other : s.others) {
       const auto keys = key_names(other.body);
@@ -96,7 +98,11 @@ void Reader::list(const Key& k, const ListBody& body, const char*) {
     all.items.push_back(std::move(resolved));
   };
   if (v.is_table()) one(v);
-  else for (const auto& item : v.items) one(item);
+  else
+    for (const auto& item : v.items) {
+      if (diagnostics_.full()) break;
+      one(item);
+    }
   if (scopes_.size() == 1 && std::string_view(k.name) == "shaft") shafts_bad_ = scope().dirty;
   scope().dirty = scope().dirty || dirty_before;
   if (!all.items.empty()) put(k, std::move(all));
@@ -185,6 +191,7 @@ void Reader::read_rows_from_deck(const Value& titles, const Value& rows, const L
   for (const auto& t : titles.items) out_columns.items.push_back(expand(t));
   if (rows.items.empty()) problem("E35", rows.spot, "the table has no rows");
   for (const auto& r : rows.items) {
+    if (diagnostics_.full()) break;   // a wholly wrong table need not be shown line by line
     const Value row = expand(r);
     if (!row.is_array()) { wrong_type("rows", row, "a list of lists"); continue; }
     std::vector<Value> cells;
@@ -203,6 +210,11 @@ void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value&
   if (!read_text("file", file, name)) return;
   if (!files_allowed) { problem("E02", file.spot, fmt::format("cannot read '{}': files are not allowed here", name)); return; }
   const std::filesystem::path path = sources_[file.spot.source].folder / name;
+  if (!may_be_read(sources_, path, {".csv", ".tsv", ".txt", ".dat"})) {
+    problem("E02", file.spot, fmt::format("cannot read '{}': it lies outside the deck's folder and is not named *.csv, *.tsv, *.txt or *.dat", name),
+            "move it beside the deck, or give it the name of a table");
+    return;
+  }
   FileText text = read_file(path, max_table_bytes);
   if (!text.ok()) { problem(text.code.c_str(), file.spot, text.message, text.hint); return; }
   const TextProblem bad = check_text(text.text, TextKind::table);
@@ -242,7 +254,7 @@ void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value&
     out_rows.items.push_back(std::move(shown));
     const Spot row = at(r.front().line, r.front().column, std::max(1, r.back().column + r.back().length - r.front().column));
     read_row(columns, keys, std::move(values), row, header, body);
-    if (diagnostics_.errors() > 1000) break;   // a wholly wrong table need not be shown line by line
+    if (diagnostics_.full()) break;   // a wholly wrong table need not be shown line by line
   }
 }
 
