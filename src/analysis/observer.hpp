@@ -113,15 +113,21 @@ class EnergyBalance final : public Observer {
   double defect() const { return e1_ - e0_ - supplied_ + dissipated_; }
   double worst_defect() const { return worst_; }
   double largest_kinetic() const { return largest_kinetic_; }
-  /// Largest departure of the stored energy from its start.
-  double largest_change() const { return largest_change_; }
+  /// Energy that changed its place, J: the largest of what was supplied, what was dissipated, and how far the kinetic, the potential
+  /// and the stored energy departed from their starts. What a defect is measured by: in a conservative motion nothing but the
+  /// exchange between kinetic and potential energy.
+  double exchanged() const { return exchanged_; }
+  /// False when the motion left the range in which the energies of its elements are defined (a film's clearance).
+  bool known() const { return known_; }
   /// What the defect may reach by rounding alone: twenty last digits of the stored energy, a sum over elements, a step.
   double rounding() const { return rounding_; }
 
  private:
   std::vector<double> jumps_;
+  void look(const time::Problem::Power& p);
   double rounding_ = 0;
-  double e0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0, largest_change_ = 0;
+  double e0_ = 0, kinetic0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0, exchanged_ = 0;
+  bool known_ = true;
 };
 
 /// Largest tilt |gamma| of any node, where and when: how far the run was from the limit of the chart (pi).
