@@ -220,7 +220,7 @@ StaticResults make_static_results(Job& job, const std::string& step, system::Sys
 
   // ---- supports
   out.supports.title = "Supports: force and moment on the shaft";
-  out.supports.columns = {{"support", "-", ""}, {"F_x", "N", ""}, {"F_y", "N", ""}, {"F_z", "N", ""}, {"M_x", "N m", "of rigid supports: about the node they hold"},
+  out.supports.columns = {{"support", "-", ""}, {"F_x", "N", ""}, {"F_y", "N", ""}, {"F_z", "N", ""}, {"M_x", "N m", "about the place of the support"},
                           {"M_y", "N m", ""}, {"M_z", "N m", ""}};
   // What is below 1e-14 of the largest force is rounding of springs without load.
   double largest_force = 0;

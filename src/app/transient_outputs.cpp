@@ -66,9 +66,9 @@ Channels make_channels(const Job& job) {
   if (wants(m.output, "bearing_moment"))
     for (const assembly::SupportForce& f : job.built.support_forces) {
       if (!f.moment) continue;
-      Measurement x{"bearing " + f.name + " moment", "N.m", "moment of the support on the shaft about its node, fixed axes; about x: torque", {"x", "y", "z"}, 1.0, {}};
+      Measurement x{"bearing " + f.name + " moment", "N.m", "moment of the support on the shaft about its place, fixed axes; about x: torque", {"x", "y", "z"}, 1.0, {}};
       x.evaluate = [&f](const Snapshot& s, double* out) {
-        Eigen::Map<Vec3>{out} = f.moment([&s](Index n) -> const system::NodeState& { return s.node(n); }, context_at(s.t()), [&s](Index k) { return s.reactions()[k]; });
+        Eigen::Map<Vec3>{out} = f.moment([&s](Index n) -> const system::NodeState& { return s.node(n); }, s.context(), [&s](Index k) { return s.reactions()[k]; });
       };
       c.add(std::move(x));
     }
