@@ -18,7 +18,7 @@ elements::TorqueLaw torque_law(const model::TorqueCurve& c) {
   if (c.power) t.power = {c.power->power, c.power->max_torque};
   if (c.dc) t.dc = {c.dc->stall, c.dc->no_load_speed};
   t.brake = c.brake;
-  if (c.governor) t.governor = {c.governor->target, c.governor->kp, c.governor->ki, c.governor->max_torque, 0.0};
+  if (c.governor) t.governor = {c.governor->target, c.governor->kp, c.governor->ki, c.governor->max_torque};
   return t;
 }
 
@@ -26,6 +26,11 @@ template <elements::TorqueAction A>
 void add_torque(Assembly& a, const model::Drive& d, Index node) {
   elements::SpinTorque<A> k;
   k.law = torque_law(std::get<model::TorqueCurve>(d.law));
+  if (k.law.governor) {
+    const auto start = std::make_shared<elements::TorqueLaw::Start>();
+    k.law.governor->start = start;
+    a.built.governors.push_back({d.name, node, [start](double time, double angle) { *start = {time, angle}; }});
+  }
   a.take_breakpoints(k.breakpoints());
   a.builder.add(k, {node}, "drives");
   a.built.drive_torques.push_back({d.name, [k, node](const NodeAt& at, double t, const ReactionAt&) { return k.working(at(node), t).torque; }});
