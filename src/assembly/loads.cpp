@@ -47,12 +47,28 @@ void add_load(Assembly& a, const model::PointLoad& l) {
     a.builder.add(elements::FixedLoad{l.force, l.moment, at.offset, l.factor}, {at.node}, "loads");
 }
 
+/// The pair of forces that pulls at the ends of a shaft.
+void add_axial_force(Assembly& a, std::size_t shaft) {
+  const model::Shaft& s = a.model.shafts[shaft];
+  if (s.axial_force == 0) return;
+  const double length = s.length();
+  for (const bool right : {false, true}) {
+    model::PointLoad pull;
+    pull.at.shaft = shaft;
+    pull.at.s = right ? length : 0.0;
+    const Vec3 outwards = s.path.empty() ? Vec3(Vec3::UnitX()) : right ? Vec3(s.path.before(length).triad.col(0)) : Vec3(s.path.after(0.0).triad.col(0));
+    pull.force = (right ? s.axial_force : -s.axial_force) * outwards;
+    add_load(a, pull);
+  }
+}
+
 }  // namespace
 
 void add_loads(Assembly& a) {
   for (int k = 0; k < 3; ++k)
     if (const LawPtr& law = a.model.base.acceleration[static_cast<std::size_t>(k)]) a.builder.set_base_acceleration(k, law), a.take_breakpoints(law);
   for (const model::PointLoad& l : a.model.loads) add_load(a, l);
+  for (std::size_t k = 0; k < a.model.shafts.size(); ++k) add_axial_force(a, k);
 
   for (const model::Shaft& s : a.model.shafts) {
     LineSpin spin;
