@@ -171,8 +171,9 @@ void PeakTracker::restore(InArchive& in) {
 void EnergyBalance::begin(const Snapshot& s) {
   const auto p = s.power();
   e0_ = e1_ = p.stored;
+  kinetic0_ = p.kinetic;
   largest_kinetic_ = p.kinetic;
-  potential_low_ = potential_high_ = p.stored - p.kinetic;
+  largest_potential_ = std::abs(p.stored - p.kinetic);
 }
 
 void EnergyBalance::step(StepAccess& s) {
@@ -193,23 +194,31 @@ void EnergyBalance::step(StepAccess& s) {
   dissipated_ += h * b[2] * p.dissipated;
   e1_ = p.stored;
   rounding_ += 20 * 2.2e-16 * std::max(std::abs(p.stored), p.kinetic);
-  largest_kinetic_ = std::max(largest_kinetic_, p.kinetic);
-  exchanged_ = std::max({exchanged_, std::abs(supplied_), std::abs(dissipated_), std::abs(supplied_ - dissipated_)});
-  potential_low_ = std::min(potential_low_, p.stored - p.kinetic);
-  potential_high_ = std::max(potential_high_, p.stored - p.kinetic);
-  worst_ = std::max(worst_, std::abs(defect()));
+  look(p);
   if (!jump) return;
   const double after = s.end().power().stored;
   supplied_ += after - e1_;
   e1_ = after;
 }
 
+void EnergyBalance::look(const time::Problem::Power& p) {
+  known_ = known_ && std::isfinite(defect());
+  largest_kinetic_ = std::max(largest_kinetic_, p.kinetic);
+  largest_potential_ = std::max(largest_potential_, std::abs(p.stored - p.kinetic));
+  const double kinetic = p.kinetic - kinetic0_;
+  const double stored = p.stored - e0_;
+  for (const double x : {kinetic, stored - kinetic, stored, supplied_, dissipated_}) exchanged_ = std::max(exchanged_, std::abs(x));
+  worst_ = std::max(worst_, std::abs(defect()));
+}
+
 void EnergyBalance::save(OutArchive& out) const {
-  for (double x : {e0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_, exchanged_, potential_low_, potential_high_, rounding_}) out.put(x);
+  for (double x : {e0_, kinetic0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_, largest_potential_, exchanged_, rounding_}) out.put(x);
+  out.put_count(known_ ? 1 : 0);
 }
 
 void EnergyBalance::restore(InArchive& in) {
-  for (double* x : {&e0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_, &exchanged_, &potential_low_, &potential_high_, &rounding_}) *x = in.number();
+  for (double* x : {&e0_, &kinetic0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_, &largest_potential_, &exchanged_, &rounding_}) *x = in.number();
+  known_ = in.count() != 0;
 }
 
 void TiltWatch::save(OutArchive& out) const { out.put(tilt_), out.put(time_), out.put_count(static_cast<std::uint64_t>(node_)); }

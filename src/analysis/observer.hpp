@@ -129,19 +129,23 @@ class EnergyBalance final : public Observer {
   double defect() const { return e1_ - e0_ - supplied_ + dissipated_; }
   double worst_defect() const { return worst_; }
   double largest_kinetic() const { return largest_kinetic_; }
-  /// Energy that was turned over, J: what came in, went out or was both, at most at any time, and the range of the potential energy, which
-  /// is all that a motion without supply and loss exchanges. The defect itself is no part of it.
-  double turned_over() const { return std::max(exchanged_, potential_high_ - potential_low_); }
+  /// Energy that changed its place, J: the largest of what was supplied, what was dissipated, and how far the kinetic, the potential
+  /// and the stored energy departed from their starts. What a defect is measured by: in a conservative motion nothing but the
+  /// exchange between kinetic and potential energy. The defect itself is no part of it.
+  double exchanged() const { return exchanged_; }
   /// Largest kinetic or potential energy, J: the measure of a motion that turns over nothing (a steady whirl without damping).
-  double largest_energy() const { return std::max({largest_kinetic_, std::abs(potential_high_), std::abs(potential_low_)}); }
+  double largest_energy() const { return std::max(largest_kinetic_, largest_potential_); }
+  /// False when the motion left the range in which the energies of its elements are defined (a film's clearance).
+  bool known() const { return known_; }
   /// What the defect may reach by rounding alone: twenty last digits of the stored energy, a sum over elements, a step.
   double rounding() const { return rounding_; }
 
  private:
   std::vector<double> jumps_;
+  void look(const time::Problem::Power& p);
   double rounding_ = 0;
-  double e0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0;
-  double exchanged_ = 0, potential_low_ = 0, potential_high_ = 0;
+  double e0_ = 0, kinetic0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0, largest_potential_ = 0, exchanged_ = 0;
+  bool known_ = true;
 };
 
 /// Largest tilt |gamma| of any node, where and when: how far the run was from the limit of the chart (pi).

@@ -149,7 +149,10 @@ void RunningSystem::sort_terms() {
   workspace_.context.averaged = running_.mean;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     all_.push_back(k);
-    if (!sees[k]) blind_.push_back(k);
+    // what acts on one node alone (the integral of a governor) holds no angle against anything
+    std::vector<Index> touched;
+    terms[k]->list_nodes(touched);
+    if (!sees[k] && touched.size() > terms[k]->count()) blind_.push_back(k);
     if (sees[k]) (terms[k]->quadratic_in_rates() ? turning_smooth_ : turning_).push_back(k);
     else if (terms[k]->quadratic_in_rates()) smooth_.push_back(k);
     else other_.push_back(k);

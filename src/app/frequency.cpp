@@ -1,5 +1,6 @@
 #include <app/diagnose.hpp>
 #include <app/frequency.hpp>
+#include <app/held.hpp>
 
 #include <fmt/format.h>
 
@@ -75,8 +76,7 @@ std::string direction_text(const analysis::WhirlMode& m) {
 }
 
 FrequencyStep::FrequencyStep(Job& j, const model::Step& s, const std::string& type, const std::string& title, double top_speed, int load_steps)
-    : job(j), step(s), linear((j.build_for(s), j.system()), running_of(j, top_speed), equilibrium_options(j, load_steps)),
-      start_(std::chrono::steady_clock::now()) {
+    : job(j), step(s), linear((j.build_for(s), j.system()), running_of(j, top_speed), equilibrium_options(j, load_steps)) {
   if (!s.from.empty()) linear.start_from(j.states.at(s.from).state);
   type_ = type;
   summary()["type"] = type;
@@ -160,12 +160,13 @@ void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::s
 }
 
 void FrequencyStep::finish(const std::string& line) {
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  summary()["run time [s]"] = seconds;
+  const RunTime time = watch_.elapsed();
+  put_run_time(summary(), time);
   if (turns_with_stiffness(job.model) && type_ != "stability")
     section.text += " The stiffness of the asymmetric shaft enters as its mean over a revolution; a stability step shows where its turning makes the rotor unstable.";
+  ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}", line, time.text()));
+  say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
-  ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {:.3f} s", line, seconds));
 }
 
 }  // namespace whirl::app

@@ -7,7 +7,6 @@
 #include <app/transient_outputs.hpp>
 #include <io/plots.hpp>
 
-#include <chrono>
 #include <cmath>
 
 namespace whirl::app {
@@ -60,7 +59,7 @@ class FrequencyStep {
 
  private:
   std::string type_;
-  std::chrono::steady_clock::time_point start_;
+  Stopwatch watch_;
 };
 
 /// A shape (amplitudes of all unknowns) as drawings; see shapes.cpp.
@@ -88,6 +87,10 @@ bool turns_with_stiffness(const model::Model& m);
 /// A stability step of such a rotor, in axes that turn with it.
 void run_instability_bands(Job&, const model::Step&, const model::StabilityStep&);
 /// Figures and tables of the stability over a parameter; returns what to add to the step's line.
+/// The deck of a run with another value of a map's parameter. E89: nothing depends on it.
+model::Model variant_of(const RunOptions& options, const model::Step& step, const model::StabilityMap& map, const std::string& value);
+/// E89: such a rotor has bands of instability, over which no map is drawn.
+Error no_map_of_bands(const model::Step& step);
 std::string add_stability_map(FrequencyStep& s, const model::StabilityMap& map, const analysis::StabilityOptions& options);
 void run_critical_map_step(Job&, const model::Step&, const model::CriticalMapStep&);
 void run_harmonic_step(Job&, const model::Step&, const model::HarmonicStep&);

@@ -16,11 +16,16 @@ bool turns_with_stiffness(const model::Model& m) {
   return false;
 }
 
+Error no_map_of_bands(const model::Step& step) {
+  return run_error("E89", fmt::format("step '{}': a map over a parameter is not drawn for asymmetric shafts, whose instabilities are bands", step.name),
+                   "leave 'map' out, or give the shaft equal stiffnesses", step.name);
+}
+
 void run_instability_bands(Job& job, const model::Step& step, const model::StabilityStep& law) {
   const std::vector<double> speeds = speeds_of(law.speed);
   FrequencyStep s(job, step, "stability", "instability bands of the asymmetric shaft", std::max(std::abs(speeds.front()), std::abs(speeds.back())));
   const PhaseTimer timer(job, "stability");
-  if (law.map) throw run_error("E89", fmt::format("step '{}': a map over a parameter is not drawn for asymmetric shafts, whose instabilities are bands", step.name), "leave 'map' out, or give the shaft equal stiffnesses", step.name);
+  if (law.map) throw no_map_of_bands(step);
   analysis::RotatingAxes axes(s.linear, speeds.back());
   analysis::BandOptions o;
   o.modes = law.modes;

@@ -17,8 +17,18 @@ namespace {
 
 constexpr double worth_saying = 1e9;   // bytes of output
 
-void check_space(const model::Model& model, const RunOptions& options, const std::filesystem::path& folder) {
+/// Pictures of an earlier run with other steps or probes would stand among those of this one; its checkpoints would be resumed.
+bool is_of_one_run(const std::string& name) {
+  return (name.starts_with("plots/") && name.ends_with(".svg")) || (name.starts_with("checkpoint/") && name.ends_with(".whirl"));
+}
+
+}  // namespace
+
+void check_space(const model::Model& model, const RunOptions& options) {
+  std::filesystem::path folder = options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
   std::error_code ec;
+  folder = std::filesystem::absolute(folder, ec);
+  while (!std::filesystem::exists(folder, ec) && folder.has_relative_path()) folder = folder.parent_path();
   const auto space = std::filesystem::space(folder, ec);
   if (ec) return;
   const double available = static_cast<double>(space.available);
@@ -33,17 +43,10 @@ void check_space(const model::Model& model, const RunOptions& options, const std
                          deck::size_text(e.histories), deck::size_text(e.pictures), deck::size_text(available)).c_str(), stderr);
 }
 
-/// Pictures of an earlier run with other steps or probes would stand among those of this one; its checkpoints would be resumed.
-bool is_of_one_run(const std::string& name) {
-  return (name.starts_with("plots/") && name.ends_with(".svg")) || (name.starts_with("checkpoint/") && name.ends_with(".whirl"));
-}
-
-}  // namespace
-
 std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options) {
   const std::filesystem::path root = options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
   const io::ResultsFolder folder(root);
-  check_space(model, options, root);
+  check_space(model, options);
   if (!options.resume) folder.remove(is_of_one_run);
   folder.write_text("resolved.toml", model.resolved);
   io::Value run = io::Value::object();

@@ -13,6 +13,9 @@ namespace whirl::app {
 /// A large output is announced with its size. Error (Exit::io) when writing fails; Error (Exit::deck, E33) when the output would not fit on its disk.
 std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options);
 
+/// Error (Exit::deck, E33): the output would not fit on the disk of the folder, which need not be there yet.
+void check_space(const model::Model& model, const RunOptions& options);
+
 /// SHA-256 of the resolved deck, in hexadecimal: `sha256sum resolved.toml` gives the same.
 std::string deck_hash(const model::Model& model);
 

@@ -11,16 +11,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <type_traits>
 
 namespace whirl::app {
 
 namespace {
-
-double wall() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void describe_model(Job& job) {
   io::Value& v = job.summary["model"];
@@ -62,27 +58,33 @@ void describe_savings(Job& job, double seconds) {
   v["of this model [us]"] = 1e6 * s.pruned, v["of the general model [us]"] = 1e6 * s.everything;
   v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
   if (!job.options.quiet && seconds > 0.5 && s.everything > 1.05 * s.pruned)
-    std::fputs(fmt::format("left out: {} parts of the general model this deck does not need (summary.json); an evaluation takes {:.0f} us instead of {:.0f} us\n",
+    std::fputs(fmt::format("left out: {} parts of the general model this deck does not need (summary.json); an evaluation takes {:.0f} us CPU instead of {:.0f} us\n",
                            job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned, 1e6 * s.everything).c_str(), stderr);
 }
 
 }  // namespace
 
 void run_steps(Job& job) {
-  const double t0 = wall();
+  const Stopwatch watch;
   job.report.title = job.model.title.empty() ? job.model.deck_name : job.model.title;
   job.report.deck = job.model.resolved;
   for (const Diagnostic& w : job.model.warnings) job.report.warnings.push_back(w.message);
   auto finish = [&] {
     report_nonfinite(job);
     auto take_times = [&] {
-      for (const auto& [name, seconds] : job.phases) job.summary["run time by phase, wall [s]"][name] = seconds;
-      job.summary["run time, wall [s]"] = wall() - t0;
+      for (const auto& [name, time] : job.phases) {
+        job.summary["run time by phase, CPU [s]"][name] = time.cpu;
+        job.summary["run time by phase, wall [s]"][name] = time.wall;
+      }
+      put_run_time(job.summary, watch.elapsed());
     };
     take_times();
     if (job.model.output.report) {
       const PhaseTimer timer(job, "report");
       job.report.summary = job.summary;
+      const RunTime time = watch.elapsed();
+      job.report.facts.emplace_back("run time, CPU", fmt::format("{:.3f} s", time.cpu));
+      job.report.facts.emplace_back("run time, wall", fmt::format("{:.3f} s", time.wall));
       io::ReportSection rotor;
       rotor.title = "Rotor";
       rotor.figures = io::draw_model(job.model, job.mesh, job.scene);
@@ -120,7 +122,7 @@ void run_steps(Job& job) {
     finish();
     throw;
   }
-  describe_savings(job, wall() - t0);
+  describe_savings(job, watch.elapsed().wall);
   finish();
 }
 

@@ -319,6 +319,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        "A bearing or coupling between two shafts acts at one point: its force on one shaft is the opposite of that on the other. Where the two places do not "
        "coincide, the couple of the two forces is missing from the balance. Gears are apart across the shafts, never along them.",
        "origin = [\"400 mm\", \"0 mm\", \"0 mm\"]   # the second shaft begins where the first one ends"},
+      {"W06", "a drive clamps the shaft in small motions",
+       "A drive that prescribes speed or angle holds the axial angle at its place exactly. In modes, responses and stability that end does not twist, as if "
+       "clamped to an infinite inertia, and the shaft's free spin is no motion. The speed of such a step is its own, whatever the drive prescribes.",
+       "step = \"run up\"   # of the drive: it acts in that transient alone"},
       {"W07", "a list of modes that is not complete",
        "The roots of the eigenvalue problem were counted by the argument principle (docs/numerics.md), and the list does not hold all of them, or the count did "
        "not settle. The message says how many are missing and about where. The run goes on and ends with exit code 4: neither the list nor a verdict "

@@ -8,6 +8,7 @@
 namespace whirl::deck {
 
 bool Reader::name(model::Entity& entity, const char* kind) {
+  note_shape("name", KeyShape::Kind::text);
   const Member* m = find(optional("name", ""));
   Scope* parent = scopes_.size() > 1 ? &scopes_[scopes_.size() - 2] : nullptr;
   auto& names = parent ? parent->names[kind] : scope().names[kind];
@@ -41,6 +42,7 @@ bool Reader::name(model::Entity& entity, const char* kind) {
 }
 
 bool Reader::location(const Key& k, model::Location& target, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) return false;
   const Value v = expand(m->value, Parameters::Use::quantity);
@@ -75,6 +77,7 @@ bool Reader::location(const Key& k, model::Location& target, const char*) {
 }
 
 bool Reader::material(const Key& k, std::size_t& index, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) return false;
   std::string name;
@@ -99,6 +102,7 @@ bool Reader::material(const Key& k, std::size_t& index, const char*) {
 }
 
 bool Reader::shaft(const Key& k, std::size_t& index, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) {
     if (model_.shafts.size() > 1) problem("E05", scope().table->spot, fmt::format("the key '{}' is missing", k.name), "the deck has several shafts: say which");
@@ -122,6 +126,7 @@ bool Reader::shaft(const Key& k, std::size_t& index, const char*) {
 }
 
 bool Reader::step(const Key& k, std::string& target, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) return false;
   if (!read_text(k.name, m->value, target)) return true;

@@ -44,9 +44,15 @@ void Reader::close_table() {
       break;
     }
     if (hint.empty()) {
-      const auto near = nearest(m.key, s.known);
-      if (!near.empty()) hint = fmt::format("did you mean '{}'?", near.front());
-      else if (s.known.size() <= 16) hint = fmt::format("known here: {}", fmt::join(s.known, ", "));
+      std::vector<KeyShape> free;   // a choice of keys ("type") is none of them, nor is what is given already
+      for (const auto& k : s.shapes)
+        if (!s.table->find(k.name)) free.push_back(k);
+      hint = suggest(m.key, shape_of(m.value), free);
+      const auto given = nearest(m.key, s.known);   // one that is written right elsewhere in the table
+      if (hint.empty() && !given.empty()) hint = fmt::format("did you mean '{}'?", given.front());
+    }
+    if (hint.empty()) {
+      if (s.known.size() <= 16) hint = fmt::format("known here: {}", fmt::join(s.known, ", "));
       else hint = "`whirl schema --reference` lists all keys";
     }
     problem("E04", m.spot, fmt::format("unknown key '{}'{}", m.key, s.entity.empty() ? "" : " in " + s.entity), std::move(hint));
@@ -54,11 +60,13 @@ void Reader::close_table() {
 }
 
 void Reader::free_table(const Key& k, const char*) {
+  note_shape(k, KeyShape::Kind::table);
   const Member* m = find(k);
   if (m && !m->value.is_table()) wrong_type(k.name, m->value, "a table");
 }
 
 bool Reader::table(const Key& k, const std::function<void(Visitor&)>& body, const char*) {
+  note_shape(k, KeyShape::Kind::table);
   const Member* m = find(k);
   Value resolved = Value::make_table();
   if (!m) {
@@ -80,6 +88,7 @@ bool Reader::table(const Key& k, const std::function<void(Visitor&)>& body, cons
 }
 
 void Reader::list(const Key& k, const ListBody& body, const char*) {
+  note_shape(k, KeyShape::Kind::list);
   const Member* m = find(k);
   if (!m) return;
   expanded_.push_back(expand(m->value));
@@ -127,6 +136,8 @@ void Reader::alternatives(const Key& k, std::span<const Alternative> list, const
 }
 
 bool Reader::either(const Key& k, double& simple, const char* unit, bool& is_simple, const std::function<void(Visitor&)>& body, const char*) {
+  note_shape(k, KeyShape::Kind::quantity, unit);
+  note_shape(k, KeyShape::Kind::table);
   const Member* m = find(k);
   if (!m) return false;
   expanded_.push_back(expand(m->value, Parameters::Use::quantity));
@@ -147,7 +158,9 @@ bool Reader::either(const Key& k, double& simple, const char* unit, bool& is_sim
 // ---------------------------------------------------------------- rows
 
 bool Reader::read_titles(const std::vector<Value>& titles, const ListBody& body, std::vector<ColumnUnit*>& columns, std::vector<std::string>& keys) {
-  const auto known = column_names(body.prototype);
+  const auto shapes = column_shapes(body.prototype);
+  std::vector<std::string> known;
+  for (const auto& k : shapes) known.push_back(k.name);
   bool good = true;
   for (const auto& given : titles) {
     const Value t = expand(given);
@@ -156,9 +169,10 @@ bool Reader::read_titles(const std::vector<Value>& titles, const ListBody& body,
     columns_.push_back({title.unit, title.has_unit, t.spot});
     columns.push_back(&columns_.back());
     if (std::find(known.begin(), known.end(), title.name) == known.end()) {
-      const auto near = nearest(title.name, known);
-      problem("E04", t.spot, fmt::format("unknown column '{}'", title.name),
-              near.empty() ? fmt::format("known here: {}", fmt::join(known, ", ")) : fmt::format("did you mean '{}'?", near.front()));
+      std::vector<KeyShape> free;
+      std::copy_if(shapes.begin(), shapes.end(), std::back_inserter(free), [&](const KeyShape& k) { return std::find(keys.begin(), keys.end(), k.name) == keys.end(); });
+      const std::string hint = suggest(title.name, shape_of_column(title.unit), free);
+      problem("E04", t.spot, fmt::format("unknown column '{}'", title.name), hint.empty() ? fmt::format("known here: {}", fmt::join(known, ", ")) : hint);
       good = false;
     } else if (std::find(keys.begin(), keys.end(), title.name) != keys.end()) {
       problem("E29", t.spot, fmt::format("the column '{}' stands twice in the table", title.name));
@@ -259,6 +273,8 @@ void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value&
 }
 
 bool Reader::rows(const ListBody& body, bool must, const char*) {
+  for (const char* part : {"columns", "rows"}) note_shape(part, KeyShape::Kind::list);
+  note_shape("file", KeyShape::Kind::text);
   const Member* columns = find(optional("columns", ""));
   const Member* rows = find(optional("rows", ""));
   const Member* file = find(optional("file", ""));

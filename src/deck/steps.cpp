@@ -89,7 +89,8 @@ void describe(Visitor& v, model::LoadPath& p) {
 
 void describe(Visitor& v, model::StaticStep& s) {
   v.integer("load_steps", s.load_steps, between(1, 100000), "number of parts in which gravity and the loads are put on (more where needed)");
-  v.quantity(optional("speed", "0 rpm"), s.speed, "rpm", any, "speed of the rotor");
+  s.speed_given = v.quantity(optional("speed", "what the drives prescribe at time 0, else the shafts' initial_spin"), s.speed, "rpm", any,
+                             "speed of the rotor, whatever drives prescribe: every shaft at its speed_ratio");
   v.table(optional("speeds", "speed alone"), s.speeds, "equilibria at these speeds instead, one after another: locus, eccentricity, load and the eight coefficients of each bearing against speed; later steps start from the last one");
   v.table(optional("path", "one equilibrium, at the full load"), s.path, "follow the equilibria from no load past limit points (buckling, snap-through)");
   if (v.clean() && s.path && s.load_steps > 1) v.error("E26", "load_steps", "a path has its own steps", "use path.steps");
@@ -255,7 +256,8 @@ void describe(Visitor& v, model::TransientStep& s) {
   v.quantity("mode_amplitude", s.mode_amplitude, "mm", positive, "of start = \"mode\": its largest displacement");
   v.text(optional("previous", "none"), s.previous, "results folder of an earlier run of the same rotor; this step starts from its last state (of the checkpoint written at its end)");
   v.text(optional("previous_step", "the only one"), s.previous_step, "which of its transient steps");
-  v.quantity("initial_speed", s.speed0, "rpm", any, "spin at the start of every rotating line (times its speed_ratio)");
+  s.speed0_given = v.quantity(optional("initial_speed", "what the drives prescribe, else the shafts' initial_spin"), s.speed0, "rpm", any,
+                              "spin at the start of every rotating line (times its speed_ratio)");
   v.quantity(optional("stop_speed", "never"), s.stop_speed, "rpm", any, "the run ends when the reference spin passes this value");
   v.quantity(optional("amplitude_limit", "none"), s.amplitude_limit, "mm", positive, "the run ends when a probe exceeds this displacement");
   v.flag("linear", s.linear, "small motions about the rotor that turns at constant speed in static equilibrium: constant matrices, one factorisation for each length of step; loads and unbalance act as they are");

@@ -106,6 +106,22 @@ void check_restraint(const model::Model& m, Problems& out) {
   }
 }
 
+/// Prescribed spin of a shaft in a step (null: none).
+const model::PrescribedSpin* prescribed(const model::Model& m, std::size_t shaft, const model::Step* s) {
+  for (const auto& d : m.drives)
+    if (d.at.shaft == shaft && (d.step.empty() || (s && d.step == s->name)))
+      if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law); p && p->angle) return p;
+  return nullptr;
+}
+
+/// Spin of a shaft, rad/s, where a step without a state to start from begins. own: speed of the reference the step gives.
+double spin_at_start(const model::Model& m, const model::Step& s, std::size_t shaft, std::optional<double> own) {
+  if (!m.shafts[shaft].rotating) return 0.0;
+  if (own) return *own * m.shafts[shaft].speed_ratio;
+  const auto* p = prescribed(m, shaft, &s);
+  return p ? p->angle->at(0.0).df : m.shafts[shaft].spin0;
+}
+
 /// Speeds a step goes through: least and largest of the reference shaft, or nothing.
 std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const model::Step& s, std::size_t shaft) {
   const double ratio = m.shafts[shaft].speed_ratio;
@@ -113,7 +129,12 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
     const double a = r.values.empty() ? r.start : r.values.front(), b = r.values.empty() ? r.stop : r.values.back();
     return std::pair(std::min(a * ratio, b * ratio), std::max(a * ratio, b * ratio));
   };
-  if (const auto* x = std::get_if<model::StaticStep>(&s.law)) return x->speeds ? range(*x->speeds) : std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::StaticStep>(&s.law)) {
+    if (x->speeds) return range(*x->speeds);
+    if (!s.from.empty() && !x->own_speed()) return std::nullopt;   // that of the step it starts from
+    const double spin = spin_at_start(m, s, shaft, x->own_speed());
+    return std::pair(spin, spin);
+  }
   if (const auto* x = std::get_if<model::ModalStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) return range(x->speed);
   if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) return range(x->speed);
@@ -137,7 +158,7 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
       return std::pair(low, high);
     }
     // a free spin is known at its start only
-    const double start = x->speed0 != 0 ? x->speed0 * ratio : m.shafts[shaft].spin0;
+    const double start = spin_at_start(m, s, shaft, x->own_speed());
     if (s.from.empty() && x->previous.empty()) return std::pair(start, start);
   }
   return {};   // critical speeds look inside the table only
@@ -169,11 +190,30 @@ std::optional<std::pair<double, double>> frequencies_of(const model::Model& m, c
   return std::nullopt;
 }
 
+/// A shaft whose bending stiffnesses differ by more than rounding of its data turns its matrices with it.
+bool turns_with_stiffness(const model::Shaft& s) {
+  constexpr double share = 0.02;
+  if (!s.rotating || s.speed_ratio == 0) return false;
+  return std::any_of(s.sections.begin(), s.sections.end(), [](const model::Section& x) { return x.general && std::abs(x.general->Iy - x.general->Iz) > share * std::max(x.general->Iy, x.general->Iz); });
+}
+
+/// A law has one value from 0 to `duration`, s: looked at where it may change and 1000 times between.
+bool is_constant(const Law& law, double duration) {
+  std::vector<double> times = law.breakpoints();
+  for (int i = 0; i <= 1000; ++i) times.push_back(duration * i / 1000);
+  const double first = law.at(0.0).f;
+  return std::none_of(times.begin(), times.end(), [&](double t) { return t >= 0 && t <= duration && std::abs(law.at(t).f - first) > 1e-9 * std::abs(first); });
+}
+
 void check_linear(const model::Model& m, Problems& out) {
   for (const auto& s : m.steps) {
     const auto* t = std::get_if<model::TransientStep>(&s.law);
     if (!t || !t->linear) continue;
     const auto say = [&](std::string what, const char* hint) { add(out, "E39", fmt::format("step '{}' is linear, but {}", s.name, what), hint, s.where); };
+    for (const auto& shaft : m.shafts)
+      if (turns_with_stiffness(shaft)) say(fmt::format("the stiffness of shaft '{}' turns with it", shaft.name), "leave linear out of the step");
+    if (m.base.turn && m.base.turn->rate && !is_constant(*m.base.turn->rate, t->duration))
+      say("the base turns at a rate that changes, and the matrices with it", "a constant rate, or leave linear out");
     if (t->integrator.method == "momentum_rk") say("momentum_rk integrates the general motion of rigid bodies", "another method, or linear = false");
     for (const auto& d : m.drives) {
       if (!d.step.empty() && d.step != s.name) continue;
@@ -184,6 +224,18 @@ void check_linear(const model::Model& m, Problems& out) {
             "a constant speed, or leave linear out");
       }
     }
+  }
+}
+
+void check_maps(const model::Model& m, Problems& out) {
+  for (const auto& s : m.steps) {
+    const auto* map = std::get_if<model::CriticalMapStep>(&s.law);
+    if (!map) continue;
+    for (const std::string& name : map->bearings)
+      if (std::none_of(m.bearings.begin(), m.bearings.end(), [&](const model::Bearing& b) { return b.name == name; }))
+        add(out, "E80", fmt::format("step '{}' names bearing '{}', which the deck does not have", s.name, name), "", s.where);
+    const bool any = std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) { return !std::holds_alternative<model::RigidSupport>(b.law) && !b.to; });
+    if (map->bearings.empty() && !any) add(out, "E80", fmt::format("step '{}' has no bearing to vary: all are rigid", s.name), "give the bearing a stiffness (type \"linear\")", s.where);
   }
 }
 
@@ -225,12 +277,21 @@ void check_drives(const model::Model& m, Problems& out) {
     }
 }
 
-/// Prescribed spin of a shaft in a step (null: none).
-const model::PrescribedSpin* prescribed(const model::Model& m, std::size_t shaft, const model::Step* s) {
-  for (const auto& d : m.drives)
-    if (d.at.shaft == shaft && (d.step.empty() || (s && d.step == s->name)))
-      if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law); p && p->angle) return p;
-  return nullptr;
+/// A transient begins at the speed its drives prescribe: another one given for it contradicts. (Where it goes on from another step the run says
+/// what jumps.)
+void check_start_speeds(const model::Model& m, Problems& out) {
+  for (const auto& s : m.steps) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    if (!t || !t->own_speed() || !s.from.empty() || !t->previous.empty()) continue;
+    for (const auto& d : m.drives) {
+      const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
+      if (!p || !p->angle || (!d.step.empty() && d.step != s.name) || !m.shafts[d.at.shaft].rotating) continue;
+      const double driven = p->angle->at(0.0).df, wanted = *t->own_speed() * m.shafts[d.at.shaft].speed_ratio;
+      if (std::abs(driven - wanted) <= 1e-6 * std::max(std::abs(driven), std::abs(wanted))) continue;
+      add(out, "E26", fmt::format("step '{}' begins at {}, but drive '{}' prescribes {} at time 0", s.name, units::display(wanted, "rpm"), d.name, units::display(driven, "rpm")),
+          "leave initial_speed out, or let the drive's law begin at it", d.where);
+    }
+  }
 }
 
 /// Gears and couplings tie the speeds of two shafts together.
@@ -302,6 +363,48 @@ void check_places(const model::Model& m, Problems& out) {
   }
 }
 
+/// Torsion takes part in a step of small motions.
+bool twists(const model::StepLaw& law) {
+  return std::visit(
+      [](const auto& s) {
+        using T = std::decay_t<decltype(s)>;
+        if constexpr (std::is_same_v<T, model::StaticStep> || std::is_same_v<T, model::TransientStep> || std::is_same_v<T, model::CriticalMapStep>) return false;
+        else if constexpr (requires { s.motion; }) return s.motion == model::MotionKind::all || s.motion == model::MotionKind::torsional;
+        else return true;
+      },
+      law);
+}
+
+/// A prescribed angle is held in small motions: the shaft is clamped there.
+void check_clamps(const model::Model& m, Problems& out) {
+  for (const auto& d : m.drives) {
+    if (!std::holds_alternative<model::PrescribedSpin>(d.law)) continue;
+    std::string steps;
+    for (const auto& s : m.steps)
+      if (twists(s.law) && (d.step.empty() || d.step == s.name)) steps += fmt::format("{}'{}'", steps.empty() ? "" : ", ", s.name);
+    if (steps.empty()) continue;
+    add(out, "W06", fmt::format("drive '{}' holds the twist of shaft '{}' at {} in step{} {}: torsional motions are those of a shaft clamped there; the speed is that of the step",
+                                d.name, m.shafts[d.at.shaft].name, d.at.text, steps.find(',') == std::string::npos ? "" : "s", steps),
+        "name the transient step it drives (step = \"..\") to leave the shaft free in the others", d.where, Diagnostic::Severity::warning);
+  }
+}
+
+/// An axial preload is a force only between two places that hold the shaft along its axis.
+void check_preloads(const model::Model& m, Problems& out) {
+  for (std::size_t k = 0; k < m.shafts.size(); ++k) {
+    if (m.shafts[k].axial_preload == 0) continue;
+    std::set<double> places;
+    for (const auto& b : m.bearings) {
+      if (!held_by(b.law)[0]) continue;
+      if (b.at.shaft == k) places.insert(b.at.s);
+      if (b.to && b.to->shaft == k) places.insert(b.to->s);
+    }
+    if (places.size() > 1) continue;
+    add(out, "W02", fmt::format("axial_preload of shaft '{}' has no effect but its length: it relaxes, because nothing holds the shaft along its axis at two places", m.shafts[k].name),
+        "axial_force is a force that pulls at the ends and stays", m.shafts[k].where, Diagnostic::Severity::warning);
+  }
+}
+
 void check_effects(const model::Model& m, Problems& out) {
   const bool transient = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) { return std::holds_alternative<model::TransientStep>(s.law); });
   const auto warn = [&](std::string what, const Where& w) {
@@ -319,7 +422,6 @@ void check_effects(const model::Model& m, Problems& out) {
       }
   }
   if (transient) return;
-  if (!m.drives.empty()) warn("a drive", m.drives.front().where);
   if (!m.initial.empty()) warn("an initial motion", m.initial.front().where);
   const bool shapes = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
     return std::holds_alternative<model::StaticStep>(s.law) || std::holds_alternative<model::ModalStep>(s.law) || std::holds_alternative<model::CriticalStep>(s.law) ||
@@ -338,9 +440,13 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_restraint(m, out);
   check_tables(m, out);
   check_linear(m, out);
+  check_maps(m, out);
   check_drives(m, out);
+  check_start_speeds(m, out);
   check_speeds_of_pairs(m, out);
   check_places(m, out);
+  check_clamps(m, out);
+  check_preloads(m, out);
   check_effects(m, out);
   return out;
 }

@@ -73,7 +73,8 @@ struct Shaft : Entity {
   bool rotating = true;         ///< false: a casing or foundation beam
   double speed_ratio = 1;       ///< speed of this line relative to the reference speed of frequency-domain steps
   double spin0 = 0;             ///< initial spin of transients unless a drive says otherwise, rad/s
-  double axial_preload = 0;     ///< N, tension positive
+  double axial_preload = 0;     ///< N, tension positive: before anything deforms; relaxes where the ends are free along the axis
+  double axial_force = 0;       ///< N, tension positive: pulls at both ends, a load
   Bow bow;
   double length() const { double s = 0; for (const auto& x : sections) s += x.length; return s; }
   Vec3 position(double s) const { return path.empty() ? Vec3(origin + Vec3(s, 0, 0)) : path.after(s).r; }
@@ -207,6 +208,9 @@ struct LoadPath {
 struct StaticStep {
   int load_steps = 1;
   double speed = 0;
+  bool speed_given = false;         ///< 0 may be meant
+  /// rad/s; nothing where the deck leaves the speed to the drives and initial spins.
+  std::optional<double> own_speed() const { return speed_given || speed != 0 ? std::optional(speed) : std::nullopt; }
   std::optional<SpeedRange> speeds; ///< equilibria one after another; the last one is the step's result
   std::optional<LoadPath> path;
 };
@@ -287,6 +291,8 @@ struct TransientStep {
   double mode_amplitude = 1e-5;    ///< its largest displacement, m
   std::string previous, previous_step;   ///< results folder of another run (and its step) whose end this one starts from
   double speed0 = 0;               ///< rad/s, initial spin of every rotating line times its speed_ratio
+  bool speed0_given = false;       ///< 0 may be meant
+  std::optional<double> own_speed() const { return speed0_given || speed0 != 0 ? std::optional(speed0) : std::nullopt; }
   double stop_speed = 0;           ///< stop when the reference spin passes this value; 0 = never
   double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
   double checkpoint = 60;          ///< wall-clock s between checkpoints; 0 = none
