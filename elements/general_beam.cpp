@@ -1,9 +1,12 @@
 #include <elements/general_beam.hpp>
 
 #include <core/dual.hpp>
+#include <core/dual_rate.hpp>
 #include <elements/shaft_strain.hpp>
+#include <system/stiffness_rate.hpp>
 
 #include <array>
+#include <type_traits>
 
 namespace whirl::elements {
 
@@ -54,6 +57,19 @@ struct Motion {
   V3<T> accel(const V3<T>& r) const { return alpha.cross(r) + omega.cross(omega.cross(r)); }
 };
 
+/// Third derivative of theta/sin theta in n = 1 - cos theta: n (2 - n) G''' = 4 G' - 5 (1 - n) G'' (see AngleRatio).
+double third_of_angle_ratio(double n, const AngleRatio& r) {
+  if (n >= 0.02) return (4.0 * r.G1 - 5.0 * (1.0 - n) * r.G2) / (n * (2.0 - n));
+  double g = 1.0, power = 1.0, sum = 0.0;   // power = n^(k-3)
+  for (int k = 1; k <= 11; ++k) {
+    g *= k / (2.0 * k + 1.0);
+    if (k < 3) continue;
+    sum += k * (k - 1.0) * (k - 2.0) * g * power;
+    power *= n;
+  }
+  return sum;
+}
+
 /// Bending stiffness of each plane and what shear takes of it: 1/(1 + Phi) = 1 - phi, slope of the curvature per p1 + p2, 1/kGA.
 struct Planes {
   double EIa, EIb, fa, fb, phia, phib, softa, softb;
@@ -95,7 +111,13 @@ struct Shape {
       delta[i] = D[i] - a;
       n[i] = 0.5 * delta[i].dot(delta[i]);
       ratio[i] = AngleRatio(value(n[i]));
-      G[i] = chain(n[i], ratio[i].G, ratio[i].G1), G1[i] = chain(n[i], ratio[i].G1, ratio[i].G2);
+      if constexpr (std::is_same_v<T, DualRate<14>>) {
+        G[i] = chain(n[i], ratio[i].G, ratio[i].G1, ratio[i].G2);
+        G1[i] = chain(n[i], ratio[i].G1, ratio[i].G2, third_of_angle_ratio(n[i].v, ratio[i]));
+      } else {
+        G[i] = chain(n[i], ratio[i].G, ratio[i].G1);
+        G1[i] = chain(n[i], ratio[i].G1, ratio[i].G2);
+      }
       q[i] = delta[i] + n[i] * a;
       p[i] = G[i] * q[i];
       Bt[i] = B[i] - (a.dot(B[i]) / (T(2.0) - n[i])) * (a + D[i]);
@@ -381,6 +403,29 @@ void GeneralBeam::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& o
   });
 }
 
+void GeneralBeam::add_stiffness_rate(const Nodes<2>& x, const Nodes<2>& rate, const Context&, system::StiffnessRateX<14>& out) const {
+  using D = DualRate<14>;
+  const auto moving = [](const Vec3& v, const Vec3& dv, int k) {
+    return V3<D>(D::variable(v.x(), dv.x(), k), D::variable(v.y(), dv.y(), k + 1), D::variable(v.z(), dv.z(), k + 2));
+  };
+  NodeT<D> n[2] = {NodeT<D>(*x[0]), NodeT<D>(*x[1])};
+  for (int i = 0; i < 2; ++i) {
+    const auto a = static_cast<std::size_t>(i);
+    n[i].u = moving(x[a]->u, rate[a]->u, 7 * i);
+    n[i].t = moving(x[a]->t, rate[a]->t, 7 * i + 3);
+    n[i].phi = D::variable(x[a]->phi, rate[a]->phi, 7 * i + 6);
+  }
+  const Motion<D> m1(n[0]), m2(n[1]);
+  const auto f = to_X(beam_force(*this, n[0], n[1], m1, m2), m1, m2);
+  for (int k = 0; k < 14; ++k) {
+    const D& r = f[static_cast<std::size_t>(k)];
+    out.f[k] += r.v;
+    out.df[k] += r.e;
+    out.K.row(k) += r.g.transpose();
+    out.dK.row(k) += r.h.transpose();
+  }
+}
+
 void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) const {
   const NodeT<double> n1(*x[0]), n2(*x[1]);
   const Motion<double> m1(n1), m2(n2);
@@ -411,5 +456,9 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
   if (c.beta > 0.0 || c.beta_twist > 0.0) en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
   if (c.alpha > 0.0) en.dissipated += 2.0 * c.alpha * (en.kinetic - kinetic_before);
 }
+
+namespace {
+[[maybe_unused]] const bool known = system::know_stiffness_rate<GeneralBeam>();
+}  // namespace
 
 }  // namespace whirl::elements

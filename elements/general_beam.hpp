@@ -36,6 +36,10 @@
 #pragma once
 #include <system/kernel.hpp>
 
+namespace whirl::system {
+template <int W> struct StiffnessRateX;
+}
+
 namespace whirl::elements {
 
 struct GeneralBeamConstants {
@@ -78,6 +82,8 @@ struct GeneralBeam {
   void add_force(const system::Nodes<2>& x, const system::Context& ctx, system::ForceX<14>& f) const;
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx, system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context& ctx, system::Energy& e) const;
+  /// Force and stiffness and their derivatives along a motion (system/stiffness_rate.hpp), exact.
+  void add_stiffness_rate(const system::Nodes<2>& x, const system::Nodes<2>& rate, const system::Context& ctx, system::StiffnessRateX<14>& out) const;
 };
 
 }  // namespace whirl::elements
