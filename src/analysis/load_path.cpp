@@ -17,9 +17,10 @@ constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 /// R(q, lambda) for la::Continuation. Loads are linear in lambda, so dR/dlambda is a difference of two residuals, exactly.
 class Loaded final : public la::ContinuationProblem {
  public:
-  Loaded(RunningSystem& running, EquilibriumSolver& solver, double Omega, const system::State& s, const LoadPathOptions& o)
-      : running_(running), solver_(solver), Omega_(Omega), frames_(s.frames), scale_(s.q.size()), r1_(s.q.size()), matrices_(running.system().make_matrices()),
-        direct_(la::make_direct_solver<double>(running.system().pattern(), solver.free(), o.equilibrium.solver)) {
+  /// free: unknowns of the path (those of the solver, but for what a branch holds).
+  Loaded(RunningSystem& running, EquilibriumSolver& solver, std::span<const unsigned char> free, double Omega, const system::State& s, const LoadPathOptions& o)
+      : running_(running), free_(free), Omega_(Omega), frames_(s.frames), scale_(s.q.size()), r1_(s.q.size()), matrices_(running.system().make_matrices()),
+        direct_(la::make_direct_solver<double>(running.system().pattern(), free, o.equilibrium.solver)) {
     const system::System& sys = running.system();
     // Root mean square of displacements over the model's length, and of angles: 1 is as far as things can go.
     double unknowns = 0;
@@ -75,12 +76,11 @@ class Loaded final : public la::ContinuationProblem {
     return "the next state lies outside the range of an element";
   }
   void mask(VecX& x) const {
-    const auto free = solver_.free();
     for (Index k = 0; k < x.size(); ++k)
-      if (!free[at(k)]) x[k] = 0.0;
+      if (!free_[at(k)]) x[k] = 0.0;
   }
   RunningSystem& running_;
-  EquilibriumSolver& solver_;
+  std::span<const unsigned char> free_;
   double Omega_;
   system::Frames frames_;
   VecX scale_, r1_;
@@ -97,6 +97,7 @@ class Follower {
       : running_(running), Omega_(Omega), o_(o), accept_(accept), solver_(running, o.equilibrium) {
     running.set_load(0.0);
     out_.last = solver_.solve(Omega, &start);
+    free_.assign(solver_.free().begin(), solver_.free().end());
     c_.tolerance = o.equilibrium.tolerance;
     c_.first_step = 1.0 / std::max(o.steps, 1);
     c_.max_step = std::max(c_.first_step, 0.05);
@@ -133,7 +134,7 @@ class Follower {
   /// Continues while the charts stay; whether there is more to follow.
   bool follow_on_one_chart() {
     system::State& s = out_.last.state;
-    Loaded problem(running_, solver_, Omega_, s, o_);
+    Loaded problem(running_, solver_, free_, Omega_, s, o_);
     if (o_.controlled < 0) {
       c_.last_mu = o_.last_load;
       c_.direction = sign_;
@@ -212,7 +213,7 @@ class Follower {
 
   /// Bifurcations between the last point kept and the one just found; true when the path shall leave at one of them, which is then the state.
   bool locate(Index counted) {
-    Loaded problem(running_, solver_, Omega_, kept_, o_);
+    Loaded problem(running_, solver_, free_, Omega_, kept_, o_);
     const VecX end = out_.last.state.q;
     const double end_load = load_;
     la::Continuation chord;
@@ -283,8 +284,28 @@ class Follower {
     kept_ = here.state;
     kept_slope_ = 0.0;
     now_ = near.tangent;
-    leave_along_ = o_.branch < 0 ? VecX(-here.direction) : here.direction;
+    VecX along = here.direction;
+    const Index together = std::abs(here.after - here.before);
+    for (Index k = 1; k < together; ++k) hold_one(along, problem);
+    leave_along_ = o_.branch < 0 ? VecX(-along) : along;
     return true;
+  }
+
+  /// Where two eigenvalues vanish together the branch may be a family (a round column bends in any plane), along which nothing is resisted. One
+  /// displacement is held where it is: `along` becomes the motion that leaves it alone. finish() checks that nothing is held by force.
+  void hold_one(VecX& along, Loaded& problem) {
+    Index largest = -1;
+    for (Index k = 0; k < along.size(); ++k) {
+      const bool displacement = k % 6 < 3 && free_[at(k)];
+      if (displacement && (largest < 0 || std::abs(along[k]) > std::abs(along[largest]))) largest = k;
+    }
+    if (largest < 0) return;
+    free_[at(largest)] = 0;
+    held_.push_back(largest);
+    VecX other;
+    eigenvalue_near_zero(problem.tangent(), free_, running_.system(), solver_.length(), other);
+    scale_shape(other, running_.system());
+    along = other;
   }
 
   LoadPathResult finish() {
@@ -293,6 +314,12 @@ class Follower {
     out_.last.load_steps = out_.points;
     running_.set_load(load_);
     running_.residual(s.frames, Omega_, s.q, out_.last.reactions);
+    const double largest = out_.last.reactions.cwiseAbs().maxCoeff();
+    for (Index k : held_) {
+      if (std::abs(out_.last.reactions[k]) <= 1e-6 * largest || out_.end != LoadPathEnd::reached) continue;
+      out_.end = LoadPathEnd::lost;
+      out_.why = fmt::format("several branches leave at the bifurcation, and none along {} of {} = 0", system::component_name(static_cast<int>(k % 6)), running_.system().node(k / 6).name);
+    }
     for (Index k = 0; k < out_.last.reactions.size(); ++k)
       if (solver_.free()[at(k)]) out_.last.reactions[k] = 0.0;
     out_.tangent = now_;
@@ -312,6 +339,8 @@ class Follower {
   double kept_load_ = 0, kept_slope_ = 0, kept_arc_ = 0;
   double load_ = 0, sign_ = 1;
   int bifurcations_ = 0;
+  std::vector<unsigned char> free_; ///< unknowns of the path
+  std::vector<Index> held_;         ///< displacements held to choose one of a family of branches
   VecX leave_along_;                ///< the next stretch starts this way
 };
 
