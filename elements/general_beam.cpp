@@ -1,9 +1,12 @@
 #include <elements/general_beam.hpp>
 
 #include <core/dual.hpp>
+#include <core/dual_rate.hpp>
 #include <elements/shaft_strain.hpp>
+#include <system/stiffness_rate.hpp>
 
 #include <array>
+#include <type_traits>
 
 namespace whirl::elements {
 
@@ -54,6 +57,19 @@ struct Motion {
   V3<T> accel(const V3<T>& r) const { return alpha.cross(r) + omega.cross(omega.cross(r)); }
 };
 
+/// Third derivative of theta/sin theta in n = 1 - cos theta: n (2 - n) G''' = 4 G' - 5 (1 - n) G'' (see AngleRatio).
+double third_of_angle_ratio(double n, const AngleRatio& r) {
+  if (n >= 0.02) return (4.0 * r.G1 - 5.0 * (1.0 - n) * r.G2) / (n * (2.0 - n));
+  double g = 1.0, power = 1.0, sum = 0.0;   // power = n^(k-3)
+  for (int k = 1; k <= 11; ++k) {
+    g *= k / (2.0 * k + 1.0);
+    if (k < 3) continue;
+    sum += k * (k - 1.0) * (k - 2.0) * g * power;
+    power *= n;
+  }
+  return sum;
+}
+
 /// Bending stiffness of each plane and what shear takes of it: 1/(1 + Phi) = 1 - phi, slope of the curvature per p1 + p2, 1/kGA.
 struct Planes {
   double EIa, EIb, fa, fb, phia, phib, softa, softb;
@@ -95,7 +111,13 @@ struct Shape {
       delta[i] = D[i] - a;
       n[i] = 0.5 * delta[i].dot(delta[i]);
       ratio[i] = AngleRatio(value(n[i]));
-      G[i] = chain(n[i], ratio[i].G, ratio[i].G1), G1[i] = chain(n[i], ratio[i].G1, ratio[i].G2);
+      if constexpr (std::is_same_v<T, DualRate<14>>) {
+        G[i] = chain(n[i], ratio[i].G, ratio[i].G1, ratio[i].G2);
+        G1[i] = chain(n[i], ratio[i].G1, ratio[i].G2, third_of_angle_ratio(n[i].v, ratio[i]));
+      } else {
+        G[i] = chain(n[i], ratio[i].G, ratio[i].G1);
+        G1[i] = chain(n[i], ratio[i].G1, ratio[i].G2);
+      }
       q[i] = delta[i] + n[i] * a;
       p[i] = G[i] * q[i];
       Bt[i] = B[i] - (a.dot(B[i]) / (T(2.0) - n[i])) * (a + D[i]);
@@ -132,6 +154,24 @@ struct Give {
   }
 };
 
+/// 1/(GJ + more) and its derivative in `more`; its parabola below more = -GJ/2.
+template <class T>
+struct TwistGive {
+  T g, slope;
+  TwistGive(double GJ, const T& more) {
+    const T x = (1.0 / GJ) * more;
+    if (value(x) > -0.5) {
+      const T rho = T(1.0) / (T(1.0) + x);
+      g = (1.0 / GJ) * rho;
+      slope = (-1.0 / (GJ * GJ)) * (rho * rho);
+    } else {
+      const T below = x + T(0.5);
+      g = (1.0 / GJ) * (T(2.0) - 4.0 * below + 8.0 * (below * below));
+      slope = (1.0 / (GJ * GJ)) * (T(-4.0) + 16.0 * below);
+    }
+  }
+};
+
 /// What the element does inside (general_beam.hpp): energy, and forces on (p1.y, p2.y), (p1.z, p2.z); the torque and axial force that act on the
 /// rates of psi and w. ky, kz: deformations.
 template <class T>
@@ -140,30 +180,58 @@ struct Inner {
   Inner(const GeneralBeam& b, const Shape<T>& p, const T (&ky)[2], const T (&kz)[2], const T& N) {
     const GeneralBeamConstants& c = b.c;
     const Planes n(c);
-    const double L = c.length, il = 1.0 / L, h = L / 12.0, GJ = c.GJ_l * L, g = GJ > 0.0 ? L * L * L / (24.0 * GJ) : 0.0;
+    const double L = c.length, il = 1.0 / L, h = L / 12.0, GJ = c.GJ_l * L, EIa = n.EIa, EIb = n.EIb;
     const T Ey = il * (ky[1] - ky[0]), Ez = il * (kz[1] - kz[0]), Sy = n.fa * (ky[0] + ky[1]), Sz = n.fb * (kz[0] + kz[1]);
     const T &My = p.My, &Mz = p.Mz, &Ky = p.Ky, &Kz = p.Kz;
     const T t = p.psi - T(b.psi_r), twist = p.psi - T(b.psi0);
-    // twist inside the element
-    const T cc = n.EIa * (Mz * Ey) - n.EIb * (My * Ez);
-    const T slope = n.EIa * (Kz * Ey + Mz * Sy) - n.EIb * (Ky * Ez + My * Sz);
-    const T s = n.EIa * (Mz * Mz - My * Ey) + n.EIb * (My * My - Mz * Ez);
+    const T th = h * t;
+
+    // c(x) = c0 + c1 x + c2 x^2 and s(x) = s0 + s1 x + s2 x^2 over x = xi - 1/2
+    const T c0 = EIa * (Mz * Ey) - EIb * (My * Ez);
+    const T c1 = EIa * (Kz * Ey + Mz * Sy) - EIb * (Ky * Ez + My * Sz);
+    const T c2 = EIa * (Kz * Sy) - EIb * (Ky * Sz);
+    const T s0 = EIa * (Mz * Mz - My * Ey) + EIb * (My * My - Mz * Ez);
+    const T s1 = EIa * (2.0 * (Mz * Kz) - My * Sy - Ky * Ey) + EIb * (2.0 * (My * Ky) - Mz * Sz - Kz * Ez);
+    const T s2 = EIa * (Kz * Kz - Ky * Sy) + EIb * (Ky * Ky - Kz * Sz);
+    // derivatives in (My, Ey) together and in (Ky, Sy) together; c1 has those of c0 and c2 crossed, s1 those of s0 and s2
+    const T c0y = EIa * Mz - EIb * Ez, c0z = EIa * Ey - EIb * My;
+    const T c2y = EIa * Kz - EIb * Sz, c2z = EIa * Sy - EIb * Ky;
+    const T s0y = 2.0 * EIb * My - EIa * (Ey + My), s0z = 2.0 * EIa * Mz - EIb * (Ez + Mz);
+    const T s2y = 2.0 * EIb * Ky - EIa * (Sy + Ky), s2z = 2.0 * EIa * Kz - EIb * (Sz + Kz);
+
+    // the sections inside turn by t x, and by a parabola out of the way of c, against GJ and against s
+    T on_c0{}, on_parabola{}, on_s0 = 0.5 * (th * t), on_s2 = (L / 160.0) * (t * t);
+    V = th * c1 + on_s0 * s0 + on_s2 * s2;
+    if (GJ > 0.0) {
+      const TwistGive<T> give(GJ, (L * L) * (0.1 * s0 + (1.0 / 280.0) * s2));
+      const T load = (2.0 / 3.0) * c0 + (1.0 / 30.0) * (c2 + t * s1);
+      const double scale = 3.0 / 16.0 * L * L * L;
+      const T on_load = -scale * (load * give.g);
+      const T on_more = (-0.5 * scale * L * L) * (load * load * give.slope);
+      V += 0.5 * (load * on_load);
+      on_c0 = (2.0 / 3.0) * on_load;
+      on_parabola = (1.0 / 30.0) * on_load;   // on c2, and on t s1
+      on_s0 += 0.1 * on_more;
+      on_s2 += (1.0 / 280.0) * on_more;
+    }
+    const T on_s1 = on_parabola * t;
+
     // slopes of curvature and shear that the end moments do not make
-    const T xy = t * (n.EIa * Mz - n.EIb * Ez) + GJ * (twist * Mz), xz = t * (n.EIa * Ey - n.EIb * My) - GJ * (twist * My);
+    const T xy = t * c0y + GJ * (twist * Mz), xz = t * c0z - GJ * (twist * My);
     const double qa = L / 12.0 * n.phia / n.EIa, qb = L / 12.0 * n.phib / n.EIb;   // L^3/kGA/144 (1 - phi)
     const double na = L * L * L / 12.0 * n.softa, nb = L * L * L / 12.0 * n.softb;
     const Give<T> ga(n.softa, N), gb(n.softb, N);   // the slope of the shear lengthens the line too: kGA + N
-    V = T(-g) * cc * cc + h * (t * slope + 0.5 * (t * t * s)) - 0.5 * (qa * (xy * xy) + qb * (xz * xz)) - 0.5 * (na * ga.g * (My * My) + nb * gb.g * (Mz * Mz));
+    V -= 0.5 * (qa * (xy * xy) + qb * (xz * xz)) + 0.5 * (na * ga.g * (My * My) + nb * gb.g * (Mz * Mz));
     axial = N - c.EA_l * (na * ga.g1 * (My * My) + nb * gb.g1 * (Mz * Mz));
     const T ax = qa * xy, az = qb * xz;
-    torque = T(c.GJ_l) * twist + h * (slope + t * s) - ax * ((n.EIa + GJ) * Mz - n.EIb * Ez) - az * (n.EIa * Ey - (n.EIb + GJ) * My);
-    // derivatives in (My, Ey) together, in (Ky, Sy) together
-    const T cy = n.EIa * Mz - n.EIb * Ez, cz = n.EIa * Ey - n.EIb * My, th = h * t, tth = 0.5 * (th * t);
-    T gy = T(-2.0 * g) * cc * cy + th * (n.EIa * Kz - n.EIb * Sz) + tth * (2.0 * n.EIb * My - n.EIa * (Ey + My));
-    T gz = T(-2.0 * g) * cc * cz + th * (n.EIa * Sy - n.EIb * Ky) + tth * (2.0 * n.EIa * Mz - n.EIb * (Ez + Mz));
+    torque = T(c.GJ_l) * twist + h * (c1 + t * s0) + (L / 80.0) * (t * s2) + on_parabola * s1;
+    torque = torque - ax * ((n.EIa + GJ) * Mz - n.EIb * Ez) - az * (n.EIa * Ey - (n.EIb + GJ) * My);
+    T gy = on_c0 * c0y + th * c2y + on_s0 * s0y + on_s1 * s2y;
+    T gz = on_c0 * c0z + th * c2z + on_s0 * s0z + on_s1 * s2z;
     gy = gy - az * (t * (n.EIa - n.EIb) - GJ * twist) - na * ga.g * My;
     gz = gz - ax * (t * (n.EIa - n.EIb) + GJ * twist) - nb * gb.g * Mz;
-    T ly = th * cy, lz = th * cz;
+    T ly = th * c0y + on_parabola * c2y + on_s1 * s0y + on_s2 * s2y;
+    T lz = th * c0z + on_parabola * c2z + on_s1 * s0z + on_s2 * s2z;
     // and of the area in psi
     const T area = (L * L / 12.0) * torque, half = 0.5 * torque;
     gy = gy - area * Kz, gz = gz + area * Ky, ly = ly + area * Mz, lz = lz - area * My;
@@ -335,6 +403,29 @@ void GeneralBeam::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& o
   });
 }
 
+void GeneralBeam::add_stiffness_rate(const Nodes<2>& x, const Nodes<2>& rate, const Context&, system::StiffnessRateX<14>& out) const {
+  using D = DualRate<14>;
+  const auto moving = [](const Vec3& v, const Vec3& dv, int k) {
+    return V3<D>(D::variable(v.x(), dv.x(), k), D::variable(v.y(), dv.y(), k + 1), D::variable(v.z(), dv.z(), k + 2));
+  };
+  NodeT<D> n[2] = {NodeT<D>(*x[0]), NodeT<D>(*x[1])};
+  for (int i = 0; i < 2; ++i) {
+    const auto a = static_cast<std::size_t>(i);
+    n[i].u = moving(x[a]->u, rate[a]->u, 7 * i);
+    n[i].t = moving(x[a]->t, rate[a]->t, 7 * i + 3);
+    n[i].phi = D::variable(x[a]->phi, rate[a]->phi, 7 * i + 6);
+  }
+  const Motion<D> m1(n[0]), m2(n[1]);
+  const auto f = to_X(beam_force(*this, n[0], n[1], m1, m2), m1, m2);
+  for (int k = 0; k < 14; ++k) {
+    const D& r = f[static_cast<std::size_t>(k)];
+    out.f[k] += r.v;
+    out.df[k] += r.e;
+    out.K.row(k) += r.g.transpose();
+    out.dK.row(k) += r.h.transpose();
+  }
+}
+
 void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) const {
   const NodeT<double> n1(*x[0]), n2(*x[1]);
   const Motion<double> m1(n1), m2(n2);
@@ -365,5 +456,9 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
   if (c.beta > 0.0 || c.beta_twist > 0.0) en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
   if (c.alpha > 0.0) en.dissipated += 2.0 * c.alpha * (en.kinetic - kinetic_before);
 }
+
+namespace {
+[[maybe_unused]] const bool known = system::know_stiffness_rate<GeneralBeam>();
+}  // namespace
 
 }  // namespace whirl::elements

@@ -10,12 +10,16 @@
 //   V = 1/2 EA_l w^2 + 1/2 sum_ij [kz_ij (p_i - p0_i).y (p_j - p0_j).y + ky_ij (p_i - p0_i).z (p_j - p0_j).z] + 1/2 GJ_l (psi - psi0)^2
 //       + P w,   w = l - l0 + length/2 sum_ij b_ij (p_i.p_j - p0_i.p0_j),   N = P + EA_l w
 // with the mean curvature m = (p2 - p1)/length and its change from end to end k = 6/((1 + Phi) length) (p1 + p2), each plane with its own Phi.
-// Inside the element stresses vary: Q' = -m N, and with T the torque and the sections turning by alpha = (xi - 1/2) t, t = psi - psi_r, against y, z
-//   T' = -c,   c = EIa m_z m^e_y - EIb m_y m^e_z      (e: of the deformation; EIa for bending along y, EIb along z)
-//   M_y' = Q_y - x_y,   x_y = t/length (EIa m_z - EIb m^e_z) + T m_z,   x_z = t/length (EIa m^e_y - EIb m_y) - T m_y
-// to first order. Terms that keep order 4 for unequal stiffnesses, initial curvature, and shear:
-//   V += length/12 [t c' + 1/2 t^2 (EIa (m_z^2 - m_y m^e_y) + EIb (m_y^2 - m_z m^e_z))]     c': change of c, by k
-//      - length^3/24 [c^2/GJ + phi_a x_y^2/EIa + phi_b x_z^2/EIb + g_a m_y^2/kGA_a + g_b m_z^2/kGA_b],   g = N^2/(1 + N/kGA),   phi = Phi/(1 + Phi)
+// Inside the element, x = xi - 1/2, curvatures are m + k x (m^e + k^e x those of the deformation; EIa for bending along y, EIb along z), and the sections turn
+// by alpha against y, z. That costs alpha c + 1/2 alpha^2 s per length, with
+//   c(x) = EIa k_z k^e_y - EIb k_y k^e_z = c0 + c1 x + c2 x^2,   s(x) = EIa (k_z^2 - k_y k^e_y) + EIb (k_y^2 - k_z k^e_z) = s0 + s1 x + s2 x^2
+// and torque and shear: T' = -c, M_y' = Q_y - x_y, x_y = t/length (EIa m_z - EIb m^e_z) + T m_z, x_z = t/length (EIa m^e_y - EIb m_y) - T m_y, Q' = -m N.
+// alpha is t x, t = psi - psi_r, and a parabola 1 - 4 x^2 by as much as makes the energy least. Terms that keep order 4 for unequal stiffnesses, initial
+// curvature, and shear:
+//   V += length/12 [t c1 + 1/2 t^2 (s0 + 3/20 s2)] - 3/32 length^3 (2/3 c0 + 1/30 (c2 + t s1))^2/(GJ + length^2 (s0/10 + s2/280))
+//      - length^3/24 [phi_a x_y^2/EIa + phi_b x_z^2/EIb + g_a m_y^2/kGA_a + g_b m_z^2/kGA_b],   g = N^2/(1 + N/kGA),   phi = Phi/(1 + Phi)
+// The first line is the integral of a square, 1/2 EIa (k^e_y + alpha k_z)^2 + .., with alpha condensed: it never takes more than bending and torsion hold. To
+// leading order it is c0^2/GJ and t^2 s0 alone, but in a strip bent the soft way length^2 s is far above GJ, and these would make the stiff plane negative.
 // psi_r = psi0 where the element is curved at rest, else 0. (What the inside gains: each slope costs 1/24 length^3 stiffness slope^2; a slope of the
 // curvature that no end moment makes is held back by its own shear, which leaves Phi/(1 + Phi). Without shear in it the last line leaves an error of
 // 1/2 T^2 m^2/kGA per length on all meshes.)
@@ -31,6 +35,10 @@
 // Source of the corotational idea with transported triads: Battini & Pacoste 2002, doi 10.1016/S0045-7825(01)00352-8.
 #pragma once
 #include <system/kernel.hpp>
+
+namespace whirl::system {
+template <int W> struct StiffnessRateX;
+}
 
 namespace whirl::elements {
 
@@ -74,6 +82,8 @@ struct GeneralBeam {
   void add_force(const system::Nodes<2>& x, const system::Context& ctx, system::ForceX<14>& f) const;
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx, system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context& ctx, system::Energy& e) const;
+  /// Force and stiffness and their derivatives along a motion (system/stiffness_rate.hpp), exact.
+  void add_stiffness_rate(const system::Nodes<2>& x, const system::Nodes<2>& rate, const system::Context& ctx, system::StiffnessRateX<14>& out) const;
 };
 
 }  // namespace whirl::elements

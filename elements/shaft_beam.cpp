@@ -1,8 +1,10 @@
 #include <elements/shaft_beam.hpp>
 
+#include <elements/general_beam.hpp>
 #include <elements/shaft_lanes.hpp>
 #include <elements/shaft_strain.hpp>
 #include <system/spin.hpp>
+#include <system/stiffness_rate.hpp>
 #include <algorithm>
 #include <cstddef>
 
@@ -374,7 +376,34 @@ typename ShaftBeam<Offsets>::Internal ShaftBeam<Offsets>::internal(const Nodes<2
   return r;
 }
 
+template <bool Offsets>
+void ShaftBeam<Offsets>::add_stiffness_rate(const Nodes<2>& x, const Nodes<2>& rate, const Context& ctx, system::StiffnessRateX<14>& out) const {
+  GeneralBeamConstants g;
+  g.length = c.length;
+  g.EA_l = c.EA_l;
+  g.GJ_l = c.GJ_l;
+  g.ky_def11 = g.kz_def11 = c.k11;
+  g.ky_def12 = g.kz_def12 = c.k12;
+  g.ky_def22 = g.kz_def22 = c.k22;
+  g.b11 = c.b11;
+  g.b12 = c.b12;
+  g.b22 = c.b22;
+  const Vec3 side = e0.unitOrthogonal();
+  Mat3 triad;
+  triad << e0, side, e0.cross(side);
+  // its normals are the directors, whatever the chart
+  const double o1 = Offsets ? c.o1 : 0.0, o2 = Offsets ? c.o2 : 0.0;
+  GeneralBeam beam(g, c.length * e0, triad, triad, o1 * e0, o2 * e0, triad, triad);
+  beam.preload = preload;
+  beam.add_stiffness_rate(x, rate, ctx, out);
+}
+
 template struct ShaftBeam<false>;
 template struct ShaftBeam<true>;
+
+namespace {
+[[maybe_unused]] const bool known_plain = system::know_stiffness_rate<ShaftBeam<false>>();
+[[maybe_unused]] const bool known_offset = system::know_stiffness_rate<ShaftBeam<true>>();
+}  // namespace
 
 }  // namespace whirl::elements

@@ -27,6 +27,10 @@
 #include <system/kernel.hpp>
 #include <span>
 
+namespace whirl::system {
+template <int W> struct StiffnessRateX;
+}
+
 namespace whirl::elements {
 
 /// One element. Offsets: o1 or o2 differ from zero (rigid lengths at its ends).
@@ -54,6 +58,8 @@ struct ShaftBeam {
                          const system::Context& ctx, Vector<7>* force);
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx, system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context& ctx, system::Energy& e) const;
+  /// Force and stiffness and their derivatives along a motion (system/stiffness_rate.hpp): that of the general beam with these constants.
+  void add_stiffness_rate(const system::Nodes<2>& x, const system::Nodes<2>& rate, const system::Context& ctx, system::StiffnessRateX<14>& out) const;
 
   /// Section resultants for results: axial force N (tension positive), torque, end moments (acting on the element at ends
   /// 1 and 2, global axes, N m) and the shear force it carries.

@@ -343,16 +343,20 @@ PathRecord::PathRecord(const Job& job, const model::LoadPath& law) {
   if (watched_.empty())
     for (const meshes::Line& l : job.mesh.lines) watched_.push_back({"right end of " + l.name, job.mesh.stations[at(l.first_station + l.stations - 1)].at});
   table_.title = "Load path";
-  table_.columns = {{"load factor", "-", "on gravity and loads"}, {"limit point", "-", "1: passed since the row before"}};
+  table_.columns = {{"load factor", "-", "on gravity and loads"},
+                    {"limit point", "-", "1: passed since the row before"},
+                    {"bifurcation", "-", "1: other equilibria branch off here"},
+                    {"unstable directions", "-", "negative eigenvalues of the static tangent"}};
   for (const Watched& w : watched_)
     for (const char* c : {"u_x", "u_y", "u_z"}) table_.columns.push_back({w.name + " " + c, "m", ""});
   for (const Watched& w : watched_) table_.columns.push_back({w.name + " phi", "rad", ""});
 }
 
-void PathRecord::add(system::SystemProblem& problem, const system::State& s, double load, bool limit) {
+void PathRecord::add(system::SystemProblem& problem, const analysis::LoadPathPoint& p) {
+  const system::State& s = *p.state;
   problem.frames = s.frames;
   problem.system().evaluate_nodes(problem.workspace(), s.frames, s.t, s.q, s.v, s.a);
-  std::vector<io::Table::Cell> row{load, limit ? 1 : 0};
+  std::vector<io::Table::Cell> row{p.load, p.limit ? 1 : 0, p.bifurcation ? 1 : 0, static_cast<int>(p.tangent.negative)};
   std::vector<double> u;
   for (const Watched& w : watched_) {
     const system::NodeState& n = problem.workspace().nodes[at(w.at.node)];
@@ -360,9 +364,9 @@ void PathRecord::add(system::SystemProblem& problem, const system::State& s, dou
     for (double v : x) row.emplace_back(v), u.push_back(v);
   }
   for (const Watched& w : watched_) row.emplace_back(problem.workspace().nodes[at(w.at.node)].phi);
-  if (limit) limits_.push_back(load_.empty() ? load : 0.5 * (load_.back() + load));
   table_.add(std::move(row));
-  load_.push_back(load), u_.push_back(std::move(u));
+  load_.push_back(p.load);
+  u_.push_back(std::move(u));
 }
 
 io::Figure PathRecord::figure(const std::string& step) const {

@@ -1,6 +1,6 @@
 // Tables and figures of a static state: deflection, supports, section forces, stresses.
 #pragma once
-#include <analysis/running.hpp>
+#include <analysis/load_path.hpp>
 #include <app/job.hpp>
 #include <assembly/section_results.hpp>
 #include <string>
@@ -30,17 +30,15 @@ StaticResults make_static_results(Job& job, const std::string& step, system::Sys
 class PathRecord {
  public:
   PathRecord(const Job& job, const model::LoadPath& law);
-  void add(system::SystemProblem& problem, const system::State& s, double load, bool limit);
+  void add(system::SystemProblem& problem, const analysis::LoadPathPoint& p);
   const io::Table& table() const { return table_; }
   io::Figure figure(const std::string& step) const;
-  /// Load factors at which the path turned.
-  const std::vector<double>& limits() const { return limits_; }
 
  private:
   struct Watched { std::string name; meshes::Place at; };
   std::vector<Watched> watched_;
   io::Table table_;
-  std::vector<double> load_, limits_;
+  std::vector<double> load_;
   std::vector<std::vector<double>> u_;   ///< y, z, x of each watched, flat
 };
 

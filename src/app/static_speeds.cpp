@@ -1,5 +1,6 @@
 // A static step at a series of speeds: where each journal runs in its bearing, and the coefficients of the bearings against speed.
 #include <app/frequency.hpp>
+#include <app/stability_results.hpp>
 #include <app/static_results.hpp>
 #include <app/support_coefficients.hpp>
 #include <app/support_diagnosis.hpp>
@@ -115,11 +116,22 @@ io::Figure draw_coefficients(const std::string& name, const char* what, const ch
   return f;
 }
 
+/// Which speeds have an equilibrium, and whether it is stable.
+io::Table speeds_table() {
+  io::Table t;
+  t.title = "Equilibria against speed";
+  t.columns = {{"speed", "rpm", ""}, {"equilibrium", "-", "1: found"}, {"unstable directions", "-", "negative eigenvalues of the static tangent"},
+               {"symmetric tangent", "-", "0: negative real eigenvalues are counted (divergence)"}, {"proved", "-", "0: counted among the eigenvalues of least size"}};
+  return t;
+}
+
 }  // namespace
 
 void run_static_speeds(Job& job, const model::Step& step, const std::vector<double>& speeds, int load_steps) {
   FrequencyStep s(job, step, "static", "equilibria against speed", std::max(std::abs(speeds.front()), std::abs(speeds.back())), load_steps);
   std::vector<SupportCoefficients> rows;
+  io::Table judged = speeds_table();
+  int unstable = 0;
   std::vector<Sweep> bearings;
   std::string missing;
   std::optional<Error> first_error;
@@ -135,10 +147,19 @@ void run_static_speeds(Job& job, const model::Step& step, const std::vector<doub
         s.linear.running().set_rates(Omega, start.state.v);
         first_error = explain_no_equilibrium(job, s.linear.running(), start, e);
       }
+      judged.add({to_rpm(Omega), 0, "", "", ""});
       missing += fmt::format("{}{:.6g}", missing.empty() ? "" : ", ", to_rpm(Omega));
       continue;
     }
     StepState at{s.linear.equilibrium().state, Omega};
+    const analysis::Definiteness tangent = judge_state(s.linear.running(), at.state, Omega, s.linear.equilibrium().spin_holds, unstable == 0);
+    judged.add({to_rpm(Omega), 1, static_cast<int>(tangent.negative), tangent.symmetric ? 1 : 0, tangent.certain ? 1 : 0});
+    if (!tangent.stable() && unstable++ == 0) {
+      add_stability(s.summary(), tangent, Omega);
+      warn_of_unstable(job, fmt::format("{}, {:.6g} rpm", step.name, to_rpm(Omega)), tangent, Omega);
+      if (tangent.shape.size() > 0)
+        s.add_table("unstable_direction", shape_table(job, fmt::format("Direction in which the equilibrium at {:.6g} rpm is left", to_rpm(Omega)), at.state.frames, at.state.q, tangent.shape), false);
+    }
     if (found++ == 0) warn_of_closed_contacts(job, step, at);
     for (SupportCoefficients& c : calc_support_coefficients(job, at)) {
       auto b = std::find_if(bearings.begin(), bearings.end(), [&](const Sweep& x) { return x.name == c.name; });
@@ -151,6 +172,9 @@ void run_static_speeds(Job& job, const model::Step& step, const std::vector<doub
   if (found == 0) throw *first_error;
 
   io::Value& v = s.summary();
+  if (unstable == 0) v["stability"]["stable"] = true;
+  v["unstable equilibria"] = unstable;
+  s.add_table("equilibria", std::move(judged), unstable > 0);
   v["speeds"] = static_cast<int>(speeds.size()), v["equilibria"] = static_cast<int>(found);
   s.section.text = fmt::format("Equilibria at {} of {} speeds from {:.6g} to {:.6g} rpm, each started from the one before.", found, speeds.size(), to_rpm(speeds.front()), to_rpm(speeds.back()));
   if (!missing.empty()) s.section.text += fmt::format(" None at {} rpm: {}.", missing, first_error->diagnostics().front().message);
@@ -172,7 +196,8 @@ void run_static_speeds(Job& job, const model::Step& step, const std::vector<doub
       v["bearings"].push(std::move(e));
     }
   }
-  s.finish(fmt::format("equilibria at {} speeds{}", found, missing.empty() ? "" : fmt::format(", none at {} rpm", missing)));
+  const std::string judgement = unstable == 0 ? "" : fmt::format(", {} of them unstable", unstable);
+  s.finish(fmt::format("equilibria at {} speeds{}{}", found, judgement, missing.empty() ? "" : fmt::format(", none at {} rpm", missing)));
 }
 
 }  // namespace whirl::app

@@ -3,9 +3,12 @@
 #include <analysis/load_path.hpp>
 #include <app/frequency.hpp>
 #include <app/held.hpp>
+#include <app/stability_results.hpp>
 #include <app/static_results.hpp>
 #include <app/support_coefficients.hpp>
 #include <app/support_diagnosis.hpp>
+
+#include <core/error.hpp>
 
 #include <fmt/format.h>
 
@@ -29,13 +32,56 @@ analysis::LoadPathOptions path_options(const Job& job, const model::LoadPath& p,
   return o;
 }
 
-const char* text_of(analysis::LoadPathEnd e) {
-  switch (e) {
-    case analysis::LoadPathEnd::reached: return "reached its end";
-    case analysis::LoadPathEnd::stopped: return "stopped";
-    case analysis::LoadPathEnd::too_many_points: return "ended after max_points points";
-    default: return "was lost";
+/// What is to be said about a path: its end, limit points and bifurcations; and the same into the summary.
+std::vector<std::string> describe_path(const analysis::LoadPathResult& r, io::Value& v) {
+  std::vector<std::string> notes{"load path " + analysis::describe(r)};
+  v["end"] = analysis::describe(r);
+  v["reached"] = r.end == analysis::LoadPathEnd::reached;
+  v["load factor"] = r.load;
+  v["points"] = r.points;
+  int number = 0;
+  for (std::size_t k = 0; k < r.critical.size(); ++k) {
+    const analysis::CriticalPoint& c = r.critical[k];
+    if (c.limit) {
+      notes.push_back(fmt::format("limit point near load factor {:.6g}: {} unstable directions before, {} after", c.load, c.before, c.after));
+      v["limit points near"].push(c.load);
+      continue;
+    }
+    ++number;
+    const bool followed = r.branched_at == static_cast<int>(k);
+    notes.push_back(fmt::format("bifurcation {} at load factor {:.8g}: {} unstable directions before, {} after{}", number, c.load, c.before, c.after,
+                                followed ? "; the path went on along its branch" : fmt::format("; 'branch = {}' follows what branches off", number)));
+    io::Value b = io::Value::object();
+    b["number"] = number;
+    b["load factor"] = c.load;
+    b["unstable directions before"] = static_cast<int>(c.before);
+    b["unstable directions after"] = static_cast<int>(c.after);
+    b["followed"] = followed;
+    v["bifurcations"].push(std::move(b));
   }
+  return notes;
+}
+
+/// Tables of critical points and of the directions in which a path branches.
+void write_critical_points(Job& job, const std::string& step, const analysis::LoadPathResult& r) {
+  if (r.critical.empty()) return;
+  job.folder.write_table(step + "_critical_points.csv", critical_table(r));
+  int number = 0;
+  for (const analysis::CriticalPoint& c : r.critical) {
+    if (c.limit) continue;
+    ++number;
+    const std::string title = fmt::format("Direction of bifurcation {} at load factor {:.8g}", number, c.load);
+    job.folder.write_table(fmt::format("{}_bifurcation_{}.csv", step, number), shape_table(job, title, c.state.frames, c.state.q, c.direction));
+  }
+}
+
+/// A path that did not get where the deck wants it is a failure of the step, once its results are written.
+void check_end(const std::string& step, const analysis::LoadPathResult& r) {
+  if (r.end == analysis::LoadPathEnd::reached || r.end == analysis::LoadPathEnd::stopped) return;
+  const char* hint = "path.csv shows how far it came; beyond a limit point equilibria under this load may not exist, or lie on another branch";
+  if (r.end == analysis::LoadPathEnd::too_many_points) hint = "give path.max_points more points, or path.steps fewer steps; a path that turned back may never reach its load";
+  if (r.end == analysis::LoadPathEnd::no_branch) hint = "a path without bifurcations has no branch; an imperfection turns them into limit points or bends";
+  throw run_error("E69", fmt::format("step '{}': the load path {}", step, analysis::describe(r)), hint);
 }
 
 }  // namespace
@@ -56,28 +102,28 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
   analysis::Equilibrium found;
   double load = 1.0;
   std::optional<PathRecord> path;
+  std::optional<analysis::LoadPathResult> followed;
   std::vector<std::string> notes;
   if (law.path) {
     analysis::RunningSystem running(job.system(), job.running_of(s));
     path.emplace(job, *law.path);
     ProgressLine progress(step.name, job.options.quiet);
-    analysis::LoadPathResult r = analysis::follow_load_path(running, s.speed, s.state, path_options(job, *law.path, options), [&](const analysis::LoadPathPoint& p) {
-      path->add(problem, *p.state, p.load, p.limit);
+    const auto accept = [&](const analysis::LoadPathPoint& p) {
+      path->add(problem, p);
       if (frames.any()) {
         problem.workspace().context.load = p.load;
-        const auto points = assembly::calc_section_results(job.model, job.mesh, job.built, [&](Index n) -> const system::NodeState& { return problem.workspace().nodes[static_cast<std::size_t>(n)]; }, problem.workspace().context);
+        const auto node = [&](Index n) -> const system::NodeState& { return problem.workspace().nodes[static_cast<std::size_t>(n)]; };
+        const auto points = assembly::calc_section_results(job.model, job.mesh, job.built, node, problem.workspace().context);
         frames.write(job, problem, *p.state, p.load, points);
       }
       progress.update(0.0, fmt::format("load factor {:.5g}", p.load));
       return true;
-    });
-    load = r.load;
-    notes.push_back(fmt::format("load path {} at load factor {:.6g} after {} points", text_of(r.end), r.load, r.points));
-    if (r.end == analysis::LoadPathEnd::lost) notes.back() += ": " + r.why;
-    for (double x : path->limits()) notes.push_back(fmt::format("limit point near load factor {:.5g}", x));
-    v["path"]["end"] = text_of(r.end), v["path"]["load factor"] = r.load, v["path"]["points"] = r.points;
-    for (double x : path->limits()) v["path"]["limit points near"].push(x);
-    found = std::move(r.last);
+    };
+    followed = analysis::follow_load_path(running, s.speed, s.state, path_options(job, *law.path, options), accept);
+    load = followed->load;
+    notes = describe_path(*followed, v["path"]);
+    write_critical_points(job, step.name, *followed);
+    found = followed->last;
   } else {
     found = job.settle(s, options);
     warn_of_closed_contacts(job, step, s);
@@ -94,6 +140,11 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
   analysis::RunningSystem turning(job.system(), job.running_of(s));
   turning.set_load(load);
   const std::vector<SupportLoad> loads = calc_support_loads(job, turning, s.state, s.speed, found.reactions);
+  const analysis::Definiteness tangent = judge_state(turning, s.state, s.speed, found.spin_holds, true);
+  add_stability(v, tangent, s.speed);
+  warn_of_unstable(job, step.name, tangent, s.speed);
+  if (!tangent.stable() && tangent.shape.size() > 0)
+    job.folder.write_table(step.name + "_unstable_direction.csv", shape_table(job, "Direction in which the equilibrium is left", s.state.frames, s.state.q, tangent.shape));
   StaticResults results = make_static_results(job, step.name, problem, loads, found.reactions, found.spin_holds, v);
   if (!law.path && frames.any()) frames.write(job, problem, s.state, s.state.t, results.points);
   frames.end();
@@ -112,9 +163,9 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
   if (linearised) job.folder.write_table(step.name + "_coefficients.csv", coefficients);
   const RunTime time = watch.elapsed();
   put_run_time(v, time);
-  ProgressLine(step.name, job.options.quiet)
-      .done(fmt::format("{}, {}", law.path ? notes.front() : fmt::format("equilibrium at {:.0f} rpm, {} Newton iterations", s.speed * 30.0 / pi, found.iterations),
-                        time.text()));
+  const std::string kind = tangent.stable() ? "equilibrium" : stability_line(tangent, 0.0);
+  const std::string ended = law.path ? notes.front() : fmt::format("{} at {:.0f} rpm, {} Newton iterations", kind, s.speed * 30.0 / pi, found.iterations);
+  ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}", ended, time.text()));
   io::ReportSection section;
   say_held(job, step, held_in_step(job, step, found.spin_holds), section);
   if (job.model.output.report) {
@@ -122,8 +173,10 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
     section.title = fmt::format("{}: static equilibrium", step.name);
     section.text = fmt::format("At {:.6g} rpm, load factor {:.6g}: {} Newton iterations, {} load step{}.", s.speed * 30.0 / pi, load, found.iterations, found.load_steps,
                                found.load_steps == 1 ? "" : "s");
+    if (!tangent.stable()) section.text += fmt::format("\n\nIt is an {}.", stability_line(tangent, s.speed));
     for (const std::string& n : notes) section.text += "\n\n" + n + ".";
     section.text += held;
+    if (followed && !followed->critical.empty()) section.tables.push_back(critical_table(*followed));
     if (path) section.figures.push_back(path->figure(step.name));
     for (io::Figure& f : results.figures) section.figures.push_back(std::move(f));
     section.tables.push_back(std::move(results.supports));
@@ -141,6 +194,7 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
   }
   s.governors.clear();   // an equilibrium: none of them has begun
   job.states[step.name] = std::move(s);
+  if (followed) check_end(step.name, *followed);
 }
 
 }  // namespace whirl::app

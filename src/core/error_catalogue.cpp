@@ -168,6 +168,12 @@ const std::vector<CodeInfo>& error_catalogue() {
        "The number of modes found differs from the number that the inertia of K - s M promises. The matrices are not those of a vibrating structure: M is "
        "indefinite, or K or M is not symmetric.",
        ""},
+      {"E69", "a load path that did not reach its load",
+       "The path of equilibria was followed from no load, but not to the load factor or displacement it should end at: it ran out of points "
+       "(max_points), perhaps because it turned back at a limit point; Newton's method did not converge even in the shortest steps; a section was "
+       "tilted by pi from its axis; or the bifurcation at which it should branch does not exist. The message says which and where. What was found "
+       "is written.",
+       "path = { load = 5, steps = 40, max_points = 2000 }"},
       {"E71", "the split of the rotation reached its limit",
        "A section normal turned by pi from the axis of its shaft: the axial angle and the azimuth of the transverse rotation then describe the same "
        "motion. With model.chart_change = true (the default) the reference axes are moved before that happens; without, the run ends "
@@ -328,6 +334,18 @@ const std::vector<CodeInfo>& error_catalogue() {
        "not settle. The message says how many are missing and about where. The run goes on and ends with exit code 4: neither the list nor a verdict "
        "of stability drawn from it is to be relied on.",
        ""},
+      {"W08", "an unstable equilibrium",
+       "The state found is in balance, but its static tangent has directions in which a small displacement grows: a column beyond its buckling load, a "
+       "shaft on a support of negative stiffness, a path beyond a limit point. The number of directions is that of the negative eigenvalues (inertia of the "
+       "factorisation) of a symmetric tangent; of an unsymmetric one (films, cross-coupling) it is that of the negative real eigenvalues, odd for certain where "
+       "the determinant is negative. STEP_unstable_direction.csv holds the lowest one. Gyroscopic moments, which may hold an even number of directions in a rotor "
+       "that spins, are not counted: a modal or stability step judges those.",
+       ""},
+      {"W09", "a buckling load that the path does not confirm",
+       "Linearised buckling supposes that the structure hardly deforms before it buckles. The equilibria under growing loads were followed to 1.25 times the first "
+       "factor; their tangent loses definiteness at another load (more than 2 % away), or not at all, because the load bends the structure on the way (a shallow "
+       "arch, a column that is not straight, a force across the plane). The path is right.",
+       "[[step]]\nname = \"path\"\ntype = \"static\"\npath = { load = 2 }"},
   };
   return t;
 }

@@ -70,14 +70,41 @@ int Continuation::correct(ContinuationProblem& problem, const VecX& q, double mu
   return -1;
 }
 
-ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, double& mu, const ContinuationOptions& o, const Accept& accept) {
-  ContinuationResult result;
-  const Index n = q.size();
+void Continuation::prepare(ContinuationProblem& problem, Index n) {
   for (VecX* v : {&f_, &load_, &a_, &b_, &trial_, &direction_, &last_}) v->resize(n);
   weight_ = problem.scale().cwiseInverse();
   mu_weight_ = problem.mu_scale();
+}
+
+bool Continuation::between(ContinuationProblem& problem, const VecX& qa, double mua, const VecX& qb, double mub, double part,
+                           const ContinuationOptions& o, VecX& q, double& mu) {
+  prepare(problem, qa.size());
+  direction_ = qb - qa;
+  mu_direction_ = mub - mua;
+  const double in_mu = mu_direction_ / mu_weight_;
+  const double length = std::sqrt(direction_.cwiseProduct(weight_).squaredNorm() + in_mu * in_mu);
+  if (!(length > 0.0)) return false;
+  direction_ /= length;
+  mu_direction_ /= length;
+  ContinuationOptions by_arc = o;
+  by_arc.controlled = -1;
+  if (correct(problem, qa, mua, part * length, by_arc, false) < 0) return false;
+  q = trial_;
+  mu = trial_mu_;
+  return true;
+}
+
+ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, double& mu, const ContinuationOptions& o, const Accept& accept) {
+  ContinuationResult result;
+  prepare(problem, q.size());
   double ds = std::abs(o.first_step), arc = 0.0;
-  if (!tangent(problem, q, mu, o, true)) return {ContinuationStatus::singular_start, 0};
+  bool leaving = o.start_direction != nullptr;
+  if (leaving) {
+    direction_ = *o.start_direction / o.start_direction->cwiseProduct(weight_).norm();
+    mu_direction_ = 0.0;
+  } else if (!tangent(problem, q, mu, o, true)) {
+    return {ContinuationStatus::singular_start, 0};
+  }
   while (result.steps < o.max_steps) {
     bool landing = false;
     if (o.controlled >= 0 && std::isfinite(o.last_controlled)) {
@@ -91,7 +118,7 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
       continue;
     }
     int used = iterations;
-    const bool passed = (trial_mu_ - o.last_mu) * (mu - o.last_mu) <= 0.0 && std::isfinite(o.last_mu);
+    const bool passed = !leaving && (trial_mu_ - o.last_mu) * (mu - o.last_mu) <= 0.0 && std::isfinite(o.last_mu);
     if (passed) {
       // Land on the last value: the step in proportion, then Newton at that mu.
       const double part = (o.last_mu - mu) / (trial_mu_ - mu);
@@ -107,7 +134,7 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
     last_ = direction_;
     // At a limit point K is singular to rounding: the old tangent serves for one more step.
     if (!tangent(problem, trial_, trial_mu_, o, false)) direction_ = last_, mu_direction_ = before;
-    if (o.controlled < 0 && ds > 1e3 * o.min_step) {
+    if (o.controlled < 0 && !leaving && ds > 1e3 * o.min_step) {
       // A turn of more than 45 degrees in one step may have jumped to another part of the path, or back.
       const double turn = direction_.cwiseProduct(weight_).dot(last_.cwiseProduct(weight_)) + mu_direction_ * before / (mu_weight_ * mu_weight_);
       if (turn < 0.7) {
@@ -123,10 +150,12 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
     q = trial_;
     mu = trial_mu_;
     const ContinuationPoint point{mu, arc, mu_direction_, used, before * mu_direction_ < 0.0};
+    leaving = false;
     if (!accept(q, point)) return result.status = ContinuationStatus::stopped, result;
     if (passed || landing) return result;
     ds = std::clamp(ds * std::clamp(static_cast<double>(o.wanted_iterations) / used, 0.5, 2.0), o.min_step, o.max_step);
   }
+  result.status = ContinuationStatus::too_many_steps;
   return result;
 }
 

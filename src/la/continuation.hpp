@@ -30,6 +30,9 @@ struct ContinuationOptions {
   double direction = 1.0;       ///< arc length: sign of the first change of mu
   double last_mu = infinity;    ///< stop when mu passes this value, exactly there
   double last_controlled = infinity;   ///< displacement control: stop when the controlled unknown reaches this value, exactly there
+  /// Arc length: the first step goes this way (scaled to length 1 by the run) with mu as it is, instead of along the tangent. It leaves
+  /// a point where K is singular for another branch.
+  const VecX* start_direction = nullptr;
 };
 
 struct ContinuationPoint {
@@ -40,7 +43,7 @@ struct ContinuationPoint {
   bool limit_point = false;     ///< dmu/ds has changed sign since the last point
 };
 
-enum class ContinuationStatus { finished, stopped, step_too_small, singular_start };
+enum class ContinuationStatus { finished, stopped, step_too_small, singular_start, too_many_steps };
 
 struct ContinuationResult {
   ContinuationStatus status = ContinuationStatus::finished;
@@ -53,8 +56,11 @@ class Continuation {
  public:
   using Accept = std::function<bool(const VecX& q, const ContinuationPoint&)>;
   ContinuationResult run(ContinuationProblem& problem, VecX& q, double& mu, const ContinuationOptions& options, const Accept& accept);
+  /// The point of the path at `part` (0 .. 1) of the chord from (qa, mua) to (qb, mub), in the plane across it; false: none found.
+  bool between(ContinuationProblem& problem, const VecX& qa, double mua, const VecX& qb, double mub, double part, const ContinuationOptions& options, VecX& q, double& mu);
 
  private:
+  void prepare(ContinuationProblem& problem, Index n);
   bool tangent(ContinuationProblem& problem, const VecX& q, double mu, const ContinuationOptions& options, bool first);
   int correct(ContinuationProblem& problem, const VecX& q, double mu, double ds, const ContinuationOptions& options, bool fixed_mu);
 
