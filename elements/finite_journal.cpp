@@ -69,6 +69,7 @@ FiniteJournal::PadPlace FiniteJournal::place(std::size_t k, const FilmPoint& p) 
 }
 
 bool FiniteJournal::inside(const FilmPoint& p) const {
+  if (!p.r.allFinite() || !p.w.allFinite() || !std::isfinite(p.slip)) return false;
   for (std::size_t k = 0; k < surface->arcs().size(); ++k)
     if (!(pad(k).smallest_clearance(place(k, p).e) > 0.0)) return false;
   return true;
