@@ -34,9 +34,10 @@ void HarmonicSolver::solve(VecXc& x) {
 
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p) {
   const Eigen::Vector3cd u = local_displacement(linear, a, p.node);
-  if (p.offset == 0.0) return {u[1], u[2]};
+  const double sense = linear.sense(p.node);
+  if (p.offset == 0.0) return {u[1], u[2], sense};
   // d = e + gamma x e about a nearly straight equilibrium: gamma3 along e2, -gamma2 along e3
-  return {u[1] + p.offset * a[6 * p.node + 5], u[2] - p.offset * a[6 * p.node + 4]};
+  return {u[1] + p.offset * a[6 * p.node + 5], u[2] - p.offset * a[6 * p.node + 4], sense};
 }
 
 VariationMeter::VariationMeter(Linearizer& linear) : linear_(linear), problem_(linear.system()), snapshot_(problem_) {}

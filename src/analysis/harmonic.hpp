@@ -23,12 +23,15 @@ class HarmonicSolver {
   std::unique_ptr<la::DirectSolver<Complex>> solver_;
 };
 
-/// Amplitudes (Y, Z) along e2, e3 of a point of a shaft.
+/// Amplitudes (Y, Z) along e2, e3 of a point of a shaft. sense: +1 where the spin there is from e2 to e3, else -1.
 struct PointAmplitude {
   Complex y, z;
   /// Along a direction at `angle` from e2 towards e3.
+  double sense = 1;
   Complex along(double angle) const { return std::cos(angle) * y + std::sin(angle) * z; }
-  Orbit orbit() const { return orbit_of(y, z); }
+  Orbit orbit() const { return orbit_of(y, z, sense); }
+  /// Of the circle that turns with the spin.
+  Complex forward() const { return 0.5 * (y + Complex(0, sense) * z); }
 };
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p);
 

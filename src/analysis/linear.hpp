@@ -42,6 +42,8 @@ class Linearizer {
   std::span<const unsigned char> active() const { return running_.system().active(); }
 
  private:
+  /// +1 or -1: sense of the spin that whirl at a node is measured against, at the last speed; at rest that of a positive one.
+  double sense(Index node) const { return (Omega() < 0 ? -1.0 : 1.0) * running_.sense(node); }
   bool still_balanced(double Omega);
   RunningSystem running_;
   EquilibriumSolver solver_;

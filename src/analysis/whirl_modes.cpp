@@ -32,11 +32,16 @@ std::string_view to_string(ModeKind k) {
   return names[static_cast<int>(k)];
 }
 
-Orbit orbit_of(Complex Y, Complex Z) {
-  const Complex i(0, 1), f = 0.5 * (Y + i * Z), b = 0.5 * std::conj(Y - i * Z);   // y + i z = f e^(i w t) + b e^(-i w t)
+Orbit orbit_of(Complex Y, Complex Z, double sense) {
+  // y + i z = f e^(i w t) + b e^(-i w t)
+  const Complex i(0, 1);
+  const Complex f = 0.5 * (Y + i * Z);
+  const Complex b = 0.5 * std::conj(Y - i * Z);
   Orbit o;
-  o.forward = std::abs(f), o.backward = std::abs(b);
-  o.major = o.forward + o.backward, o.minor = o.forward - o.backward;
+  o.forward = std::abs(sense < 0 ? b : f);
+  o.backward = std::abs(sense < 0 ? f : b);
+  o.major = o.forward + o.backward;
+  o.minor = o.forward - o.backward;
   o.angle = o.forward > 0 && o.backward > 0 ? 0.5 * (std::arg(f) + std::arg(b)) : 0.0;
   return o;
 }
@@ -119,10 +124,10 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   for (Index i = 0; i < s.nodes(); ++i) {
     if (s.node(i).scalar) continue;
     const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
-    const Orbit o[2] = {orbit_of(u[1], u[2]), orbit_of(w.x[6 * i + 5], -w.x[6 * i + 4])};
-    const bool against = linear.equilibrium().state.v[6 * i + 3] < 0;
+    const double sense = linear.sense(i);
+    const Orbit o[2] = {orbit_of(u[1], u[2], sense), orbit_of(w.x[6 * i + 5], -w.x[6 * i + 4], sense)};
     for (int k = 0; k < 2; ++k) {
-      radius[at(i)][k] = against ? Vec2(o[k].backward, o[k].forward) : Vec2(o[k].forward, o[k].backward);
+      radius[at(i)][k] = Vec2(o[k].forward, o[k].backward);
       top[k] = std::max(top[k], o[k].major);
     }
   }

@@ -218,13 +218,13 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   }
   std::unique_ptr<KeyphasorOutput> keyphasor;
   if (out.tracking.on && !job.model.probes.empty() && (out.csv || out.report)) {
-    keyphasor = std::make_unique<KeyphasorOutput>(job, step);
+    keyphasor = std::make_unique<KeyphasorOutput>(job, step, probe_senses(job, start));
     observers.push_back(&keyphasor->observer());
     parts.add_output(keyphasor->key(), *keyphasor);
   }
   std::unique_ptr<SpectraOutput> spectra;
   if (out.spectra && !job.model.probes.empty() && (out.csv || out.report)) {
-    spectra = std::make_unique<SpectraOutput>(job, step, t0);
+    spectra = std::make_unique<SpectraOutput>(job, step, t0, probe_senses(job, start));
     observers.push_back(&spectra->observer());
     parts.add_output(spectra->key(), *spectra);
   }

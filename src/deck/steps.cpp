@@ -210,7 +210,7 @@ void describe(Visitor& v, model::HarmonicForce& f) {
   v.vector("force", f.force, "N", "amplitude of the force along x, y, z");
   v.vector("moment", f.moment, "N.m", "amplitude of the moment about x, y, z; about x it twists the shaft");
   v.quantity("phase", f.phase, "deg", any, "lead of this force: cos(w t + phase)");
-  v.choice("whirl", f.whirl, {{"none", "along fixed directions"}, {"forward", "turning from y towards z at the frequency"}, {"backward", "turning from z towards y"}},
+  v.choice("whirl", f.whirl, {{"none", "along fixed directions"}, {"forward", "turning at the frequency as the shaft spins (from y towards z where its spin is positive)"}, {"backward", "turning against the spin"}},
            "a lateral force or moment that turns starts in the direction given");
   if (!v.clean()) return;
   if (!v.given("force") && !v.given("moment")) v.error("E05", nullptr, "a harmonic force has neither 'force' nor 'moment'");
