@@ -15,23 +15,24 @@ constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 class Counter {
  public:
   Counter(Linearizer& linear, const CriticalOptions& o)
-      : linear_(linear), options_(o), active_(select_motion(linear.system(), o.motion)),
-        lu_(linear.system().pattern(), active_) {}
+      : linear_(linear), options_(o), motion_(linear.system(), o.motion),
+        lu_(linear.system().pattern(), motion_.active()) {}
   Index count(double Omega) { return count(Omega, options_.order * Omega); }
   /// tables: frequency of supports tabulated against it.
   Index count(double Omega, double tables) {
     const double w = options_.order * Omega;
-    const la::MCK& m = linear_.conservative_at(Omega, tables);
+    const la::MCK& m = matrices(Omega, tables);
     // exactly on an eigenvalue: look beside it
     if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) != la::Status::ok) return count(Omega * (1 + 1e-12), tables);
     return lu_.negative_eigenvalues();
   }
-  const std::vector<unsigned char>& active() const { return active_; }
+  std::span<const unsigned char> active() const { return motion_.active(); }
+  const la::MCK& matrices(double Omega, double tables) { return motion_.reduce(linear_.conservative_at(Omega, tables)); }
 
  private:
   Linearizer& linear_;
   CriticalOptions options_;
-  std::vector<unsigned char> active_;
+  MotionReduction motion_;
   la::BlockLu<Complex> lu_;
 };
 
@@ -79,7 +80,7 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     if (!rows.empty() && k.nb < k.na && counter.count(k.b, o.order * middle) >= counter.count(k.a, o.order * middle)) continue;   // the table raised it
     const Index wanted = std::abs(k.nb - k.na);
     // The modes of the bracket's middle nearest to i n Omega.
-    const la::MCK& m = linear.conservative_at(middle, o.order * middle);
+    const la::MCK& m = counter.matrices(middle, o.order * middle);
     la::ModeOptions lo;
     lo.count = wanted + 2;
     lo.shift = Complex(0, o.order * middle);
@@ -91,7 +92,7 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     for (Index j = 0; j < wanted; ++j) {
       // Newton's method on Omega: the frequency of the mode less n Omega, by secant from two neighbouring speeds.
       const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
-      WhirlMode mode = describe_mode(near[at(j)], linear.conservative_at(middle, o.order * middle), linear);
+      WhirlMode mode = describe_mode(near[at(j)], counter.matrices(middle, o.order * middle), linear);
       double x0 = middle, f0 = gap(x0, mode);
       double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
       for (int it = 0; it < 40 && f1 != 0.0; ++it) {

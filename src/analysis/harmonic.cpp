@@ -18,17 +18,17 @@ double variation_step(const VecXc& a) {
 }  // namespace
 
 HarmonicSolver::HarmonicSolver(Linearizer& linear, Motion motion)
-    : linear_(linear), active_(select_motion(linear.system(), motion)),
-      solver_(la::make_direct_solver<Complex>(linear.system().pattern(), active_)) {}
+    : linear_(linear), motion_(linear.system(), motion),
+      solver_(la::make_direct_solver<Complex>(linear.system().pattern(), motion_.active())) {}
 
 bool HarmonicSolver::prepare(double Omega, double w) {
-  const la::MCK& m = linear_.at(Omega, Complex(0, w));
+  const la::MCK& m = motion_.reduce(linear_.at(Omega, Complex(0, w)));
   return solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok;
 }
 
 void HarmonicSolver::solve(VecXc& x) {
   for (Index k = 0; k < x.size(); ++k)
-    if (!active_[at(k)]) x[k] = 0;
+    if (!motion_.takes_part(k)) x[k] = 0;
   solver_->solve(x);
 }
 

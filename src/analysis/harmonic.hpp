@@ -10,24 +10,25 @@ namespace whirl::analysis {
 
 class HarmonicSolver {
  public:
+  /// Forces on what does not take part in the motion are left out.
   explicit HarmonicSolver(Linearizer& linear, Motion motion = Motion::all);
   /// Equilibrium, matrices and factorisation at speed Omega and excitation frequency w, rad/s. False: resonance without damping.
   bool prepare(double Omega, double w);
-  /// x := S^-1 x; entries of held unknowns become zero.
+  /// x := S^-1 x; entries of x at unknowns that take no part are not looked at, those of held ones become zero.
   void solve(VecXc& x);
   Linearizer& linear() { return linear_; }
 
  private:
   Linearizer& linear_;
-  std::vector<unsigned char> active_;
+  MotionReduction motion_;
   std::unique_ptr<la::DirectSolver<Complex>> solver_;
 };
 
 /// Amplitudes (Y, Z) along e2, e3 of a point of a shaft. sense: +1 where the spin there is from e2 to e3, else -1.
 struct PointAmplitude {
   Complex y, z;
-  /// Along a direction at `angle` from e2 towards e3.
   double sense = 1;
+  /// Along a direction at `angle` from e2 towards e3.
   Complex along(double angle) const { return std::cos(angle) * y + std::sin(angle) * z; }
   Orbit orbit() const { return orbit_of(y, z, sense); }
   /// Of the circle that turns with the spin.

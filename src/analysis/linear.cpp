@@ -101,18 +101,4 @@ void take_conservative_part(const la::MCK& m, la::MCK& out) {
     }
 }
 
-std::vector<unsigned char> select_motion(const system::System& system, Motion kind) {
-  std::vector<unsigned char> out(system.active().begin(), system.active().end());
-  if (kind == Motion::all) return out;
-  for (Index i = 0; i < system.nodes(); ++i) {
-    // components along the axis of the line are axial, spin is torsional, the rest lateral
-    const bool rotates = !system.node(i).scalar;
-    for (int c = 0; c < 6; ++c) {
-      const Motion m = !rotates ? Motion::lateral : c == system::spin_phi ? Motion::torsional : c == system::ux ? Motion::axial : Motion::lateral;
-      if (m != kind) out[at_(6 * i + c)] = 0;
-    }
-  }
-  return out;
-}
-
 }  // namespace whirl::analysis

@@ -5,6 +5,7 @@
 // of the nonlinear model, averaged over the revolution where something turns (running.hpp).
 #pragma once
 #include <analysis/equilibrium.hpp>
+#include <analysis/motion.hpp>
 
 namespace whirl::analysis {
 
@@ -58,9 +59,5 @@ class Linearizer {
 
 /// M, (C - C^T)/2, (K + K^T)/2.
 void take_conservative_part(const la::MCK& m, la::MCK& out);
-
-/// Active flags restricted to a kind of motion (others held): for models in which the kinds do not couple.
-enum class Motion { all, lateral, torsional, axial };
-std::vector<unsigned char> select_motion(const system::System& system, Motion kind);
 
 }  // namespace whirl::analysis

@@ -151,20 +151,21 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
 }
 
 WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
-    : linear_(linear), options_(options), active_(select_motion(linear.system(), options.motion)),
-      solver_(linear.system().pattern(), active_, la_options(options, options.damped && linear.hysteretic())) {
+    : linear_(linear), options_(options), motion_(linear.system(), options.motion),
+      solver_(linear.system().pattern(), motion_.active(), la_options(options, options.damped && linear.hysteretic())) {
   const Running& r = linear.running().running();
-  if (r.frequency_dependent()) own_.emplace(linear.system().pattern(), active_, la_options(options, options.damped && linear.hysteretic()), r.table_frequencies);
+  if (!r.frequency_dependent()) return;
+  own_.emplace(linear.system().pattern(), motion_.active(), la_options(options, options.damped && linear.hysteretic()), r.table_frequencies);
 }
 
 const la::MCK& WhirlSolver::matrices_at(double Omega, Complex lambda, double side) {
-  matrices_ = options_.damped ? &linear_.at(Omega, lambda, side) : &linear_.conservative_at(Omega, lambda.imag());
+  matrices_ = &motion_.reduce(options_.damped ? linear_.at(Omega, lambda, side) : linear_.conservative_at(Omega, lambda.imag()));
   return *matrices_;
 }
 
 OwnFrequency::Matrices WhirlSolver::at_frequency(double Omega) {
   return [this, Omega](double w) -> const la::MCK& {
-    matrices_ = options_.damped ? &linear_.at_frequency(Omega, w) : &linear_.conservative_at(Omega, w);
+    matrices_ = &motion_.reduce(options_.damped ? linear_.at_frequency(Omega, w) : linear_.conservative_at(Omega, w));
     return *matrices_;
   };
 }
@@ -174,7 +175,11 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
   // Supports that answer by frequency do so within each round.
   const auto follow = [&](Complex rate, double side, const la::Mode& start) {
     if (!by_frequency() || start.lambda.imag() == 0.0) return solver_.follow(matrices_at(Omega, rate, side), start);
-    return own_->settle([&](double w) -> const la::MCK& { return *(matrices_ = &linear_.at(Omega, rate, side, w)); }, start);
+    const auto at_rate = [&](double w) -> const la::MCK& {
+      matrices_ = &motion_.reduce(linear_.at(Omega, rate, side, w));
+      return *matrices_;
+    };
+    return own_->settle(at_rate, start);
   };
   // Where forward whirl passes the speed its damping changes sign. The side is settled in an outer loop; where the frequency jumps from one side to
   // the other with it (planes mixed by unequal supports), the last one found stands.

@@ -76,7 +76,7 @@ class WhirlSolver {
   void separate(double Omega, std::vector<la::Mode>& group);
   Linearizer& linear_;
   ModesOptions options_;
-  std::vector<unsigned char> active_;
+  MotionReduction motion_;
   la::ModeSolver solver_;
   std::optional<OwnFrequency> own_;   ///< where supports answer by frequency
   const la::MCK* matrices_ = nullptr;

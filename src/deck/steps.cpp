@@ -101,9 +101,9 @@ namespace {
 void describe_motion(Visitor& v, model::MotionKind& motion) {
   v.choice("motion", motion,
            {{"all", "every motion, coupled as it is"},
-            {"lateral", "bending alone: twist and axial motion held"},
-            {"torsional", "twist alone"},
-            {"axial", "motion along the shafts alone"}},
+            {"lateral", "bending: axial motion and twist follow without inertia"},
+            {"torsional", "twist alone: bending and axial motion held"},
+            {"axial", "motion along the shafts alone: bending and twist held"}},
            "unknowns that take part");
 }
 
