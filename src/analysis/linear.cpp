@@ -35,6 +35,25 @@ void Linearizer::set_equilibrium(const Equilibrium& e) {
   floor_ = largest(r_, solver_.free());
 }
 
+void Linearizer::stay_undeformed() {
+  undeformed_ = true;
+  have_ = false;
+  running_.set_load(0.0);
+}
+
+void Linearizer::take_undeformed(double Omega) {
+  equilibrium_ = Equilibrium();
+  equilibrium_.Omega = Omega;
+  equilibrium_.state = system().make_state();
+  system::State& s = equilibrium_.state;
+  s.t = running_.running().time;
+  running_.impose(s.frames, s.q);
+  running_.set_rates(Omega, s.v);
+  s.a.setZero();
+  equilibrium_.reactions = VecX::Zero(system().size());
+  have_ = true;
+}
+
 bool Linearizer::still_balanced(double Omega) {
   // A rotor in linear bearings keeps its equilibrium at every speed: then the residual stays at its rounding level.
   if (!have_ || !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_)) return false;
@@ -46,6 +65,8 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
   running_.set_whirl(0.0);
   if (have_ && Omega == equilibrium_.Omega && running_.running().frequency_dependent()) {
     // One equilibrium at every frequency asked about.
+  } else if (undeformed_) {
+    take_undeformed(Omega);
   } else if (still_balanced(Omega)) {
     equilibrium_.Omega = Omega;
     running_.set_rates(Omega, equilibrium_.state.v);

@@ -28,7 +28,7 @@ void run_buckling_step(Job& job, const model::Step& step, const model::BucklingS
     write_shape_frames(s, name, m.x);
   }
   s.add_table("buckling", std::move(table));
-  s.section.text = "Factors on gravity and all loads at which the stiffness of the rotor vanishes, from its derivative with the loads at the unloaded state.";
+  s.section.text = "Factors on gravity and all loads at which the stiffness of the rotor vanishes, from its derivative with the loads.";
   s.finish(modes.empty() ? "no buckling load" : fmt::format("smallest load factor {:.6g}", std::isnan(first) ? modes.front().factor.real() : first));
 }
 

@@ -82,7 +82,7 @@ StepState transient_start(Job& job, const model::Step& step, const model::Transi
   StepState start = job.start_of(step, law.speed0);
   if (step.from.empty() && (law.start == Start::unbalance_response || law.start == Start::mode)) {
     const PhaseTimer timer(job, "equilibrium");
-    if (law.start == Start::mode) start_in_mode(job, start, law.mode, law.mode_amplitude);
+    if (law.start == Start::mode) start_in_mode(job, start, law);
     else start_in_unbalance_response(job, start);
     return start;
   }
