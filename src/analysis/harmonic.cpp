@@ -26,7 +26,7 @@ VecXc times(const la::BlockMatrix<6>& matrix, const VecXc& x) {
 }
 
 /// The last unknown phi of the line that `first` stands on.
-Index last_of_line(const system::System& s, const std::vector<unsigned char>& active, Index first) {
+Index last_of_line(const system::System& s, std::span<const unsigned char> active, Index first) {
   const Index line = s.node(first / 6).line;
   Index last = first;
   for (Index i = first / 6; i < s.nodes(); ++i) {
@@ -55,20 +55,20 @@ double torque_size(const system::System& s, const la::MCK& m, const VecXc& x, co
 }  // namespace
 
 HarmonicSolver::HarmonicSolver(Linearizer& linear, Motion motion)
-    : linear_(linear), active_(select_motion(linear.system(), motion)),
-      solver_(la::make_direct_solver<Complex>(linear.system().pattern(), active_)) {}
+    : linear_(linear), motion_(linear.system(), motion),
+      solver_(la::make_direct_solver<Complex>(linear.system().pattern(), motion_.active())) {}
 
 bool HarmonicSolver::prepare(double Omega, double w) {
-  const la::MCK& m = linear_.at(Omega, Complex(0, w));
+  const la::MCK& m = motion_.reduce(linear_.at(Omega, Complex(0, w)));
   matrices_ = &m;
   w_ = w;
   spin_free_ = false;
   if (w != 0.0 && solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok) return true;
   std::vector<Index> first, last;
   for (const Index k : linear_.equilibrium().spin_holds) {
-    if (!active_[at(k)]) continue;
+    if (!motion_.takes_part(k)) continue;
     first.push_back(k);
-    last.push_back(last_of_line(linear_.system(), active_, k));
+    last.push_back(last_of_line(linear_.system(), motion_.active(), k));
   }
   if (first.empty()) return w == 0.0 && solver_->factor(m, Complex(0, 0), Complex(0, 0), Complex(1, 0)) == la::Status::ok;
   spin_free_ = hold(m, w, std::move(first), first_) && hold(m, w, std::move(last), last_);
@@ -78,7 +78,7 @@ bool HarmonicSolver::prepare(double Omega, double w) {
 bool HarmonicSolver::hold(const la::MCK& m, double w, std::vector<Index> unknowns, Held& held) {
   if (held.at != unknowns || !held.solver) {
     held.at = std::move(unknowns);
-    held.active = active_;
+    held.active.assign(motion_.active().begin(), motion_.active().end());
     for (const Index k : held.at) held.active[at(k)] = 0;
     held.solver = la::make_direct_solver<Complex>(linear_.system().pattern(), held.active);
   }
@@ -87,7 +87,7 @@ bool HarmonicSolver::hold(const la::MCK& m, double w, std::vector<Index> unknown
 
 void HarmonicSolver::solve(VecXc& x) {
   for (Index k = 0; k < x.size(); ++k)
-    if (!active_[at(k)]) x[k] = 0;
+    if (!motion_.takes_part(k)) x[k] = 0;
   if (spin_free_) solve_held(x);
   else solver_->solve(x);
 }
@@ -189,9 +189,10 @@ void HarmonicSolver::add_free_spin(VecXc& x) const {
 
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p) {
   const Eigen::Vector3cd u = local_displacement(linear, a, p.node);
-  if (p.offset == 0.0) return {u[1], u[2]};
+  const double sense = linear.sense(p.node);
+  if (p.offset == 0.0) return {u[1], u[2], sense};
   // d = e + gamma x e about a nearly straight equilibrium: gamma3 along e2, -gamma2 along e3
-  return {u[1] + p.offset * a[6 * p.node + 5], u[2] - p.offset * a[6 * p.node + 4]};
+  return {u[1] + p.offset * a[6 * p.node + 5], u[2] - p.offset * a[6 * p.node + 4], sense};
 }
 
 VariationMeter::VariationMeter(Linearizer& linear) : linear_(linear), problem_(linear.system()), snapshot_(problem_) {}

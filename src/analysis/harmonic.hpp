@@ -12,12 +12,13 @@ namespace whirl::analysis {
 
 class HarmonicSolver {
  public:
+  /// Forces on what does not take part in the motion are left out.
   explicit HarmonicSolver(Linearizer& linear, Motion motion = Motion::all);
   /// Equilibrium, matrices and factorisation at speed Omega and excitation frequency w, rad/s. False: resonance without damping, or a
   /// motion other than the spin of a rotor that nothing resists.
   bool prepare(double Omega, double w);
-  /// x := S^-1 x; entries of held unknowns become zero. At w = 0 a force that turns a free rotor has no finite answer: the entries that it
-  /// moves without bound become NaN, the others are right.
+  /// x := S^-1 x; entries of x at unknowns that take no part are not looked at, those of held ones become zero. At w = 0 a force that
+  /// turns a free rotor has no finite answer: the entries that it moves without bound become NaN, the others are right.
   void solve(VecXc& x);
   Linearizer& linear() { return linear_; }
 
@@ -41,7 +42,7 @@ class HarmonicSolver {
   void add_free_spin(VecXc& x) const;
 
   Linearizer& linear_;
-  std::vector<unsigned char> active_;
+  MotionReduction motion_;
   std::unique_ptr<la::DirectSolver<Complex>> solver_;
   bool spin_free_ = false;       ///< prepared without inertia: `first_` and `last_` are used
   double w_ = 0;
@@ -49,12 +50,15 @@ class HarmonicSolver {
   Held first_, last_;            ///< free spins held at the first and at the last node of their lines
 };
 
-/// Amplitudes (Y, Z) along e2, e3 of a point of a shaft.
+/// Amplitudes (Y, Z) along e2, e3 of a point of a shaft. sense: +1 where the spin there is from e2 to e3, else -1.
 struct PointAmplitude {
   Complex y, z;
+  double sense = 1;
   /// Along a direction at `angle` from e2 towards e3.
   Complex along(double angle) const { return std::cos(angle) * y + std::sin(angle) * z; }
-  Orbit orbit() const { return orbit_of(y, z); }
+  Orbit orbit() const { return orbit_of(y, z, sense); }
+  /// Of the circle that turns with the spin.
+  Complex forward() const { return 0.5 * (y + Complex(0, sense) * z); }
 };
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p);
 

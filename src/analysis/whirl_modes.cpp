@@ -47,11 +47,16 @@ std::string_view to_string(ModeKind k) {
   return names[static_cast<int>(k)];
 }
 
-Orbit orbit_of(Complex Y, Complex Z) {
-  const Complex i(0, 1), f = 0.5 * (Y + i * Z), b = 0.5 * std::conj(Y - i * Z);   // y + i z = f e^(i w t) + b e^(-i w t)
+Orbit orbit_of(Complex Y, Complex Z, double sense) {
+  // y + i z = f e^(i w t) + b e^(-i w t)
+  const Complex i(0, 1);
+  const Complex f = 0.5 * (Y + i * Z);
+  const Complex b = 0.5 * std::conj(Y - i * Z);
   Orbit o;
-  o.forward = std::abs(f), o.backward = std::abs(b);
-  o.major = o.forward + o.backward, o.minor = o.forward - o.backward;
+  o.forward = std::abs(sense < 0 ? b : f);
+  o.backward = std::abs(sense < 0 ? f : b);
+  o.major = o.forward + o.backward;
+  o.minor = o.forward - o.backward;
   o.angle = o.forward > 0 && o.backward > 0 ? 0.5 * (std::arg(f) + std::arg(b)) : 0.0;
   return o;
 }
@@ -137,10 +142,10 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   for (Index i = 0; i < s.nodes(); ++i) {
     if (s.node(i).scalar) continue;
     const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
-    const Orbit o[2] = {orbit_of(u[1], u[2]), orbit_of(w.x[6 * i + 5], -w.x[6 * i + 4])};
-    const bool against = linear.equilibrium().state.v[6 * i + 3] < 0;
+    const double sense = linear.sense(i);
+    const Orbit o[2] = {orbit_of(u[1], u[2], sense), orbit_of(w.x[6 * i + 5], -w.x[6 * i + 4], sense)};
     for (int k = 0; k < 2; ++k) {
-      radius[at(i)][k] = against ? Vec2(o[k].backward, o[k].forward) : Vec2(o[k].forward, o[k].backward);
+      radius[at(i)][k] = Vec2(o[k].forward, o[k].backward);
       top[k] = std::max(top[k], o[k].major);
     }
   }
@@ -164,23 +169,23 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
 }
 
 WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
-    : linear_(linear), options_(options), active_(select_motion(linear.system(), options.motion)),
-      solver_(linear.system().pattern(), active_, la_options(options, options.damped && linear.hysteretic())) {
+    : linear_(linear), options_(options), motion_(linear.system(), options.motion),
+      solver_(linear.system().pattern(), motion_.active(), la_options(options, options.damped && linear.hysteretic())) {
   const Running& r = linear.running().running();
   if (!r.frequency_dependent()) return;
   la::ModeOptions by_size = la_options(options, options.damped && linear.hysteretic());
   by_size.certify = by_size.growing = false;   // its search goes by |lambda|
-  own_.emplace(linear.system().pattern(), active_, by_size, r.table_frequencies);
+  own_.emplace(linear.system().pattern(), motion_.active(), by_size, r.table_frequencies);
 }
 
 const la::MCK& WhirlSolver::matrices_at(double Omega, Complex lambda, double side) {
-  matrices_ = options_.damped ? &linear_.at(Omega, lambda, side) : &linear_.conservative_at(Omega, lambda.imag());
+  matrices_ = &motion_.reduce(options_.damped ? linear_.at(Omega, lambda, side) : linear_.conservative_at(Omega, lambda.imag()));
   return *matrices_;
 }
 
 OwnFrequency::Matrices WhirlSolver::at_frequency(double Omega) {
   return [this, Omega](double w) -> const la::MCK& {
-    matrices_ = options_.damped ? &linear_.at_frequency(Omega, w) : &linear_.conservative_at(Omega, w);
+    matrices_ = &motion_.reduce(options_.damped ? linear_.at_frequency(Omega, w) : linear_.conservative_at(Omega, w));
     return *matrices_;
   };
 }
@@ -190,7 +195,11 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
   // Supports that answer by frequency do so within each round.
   const auto follow = [&](Complex rate, double side, const la::Mode& start) {
     if (!by_frequency() || start.lambda.imag() == 0.0) return solver_.follow(matrices_at(Omega, rate, side), start);
-    return own_->settle([&](double w) -> const la::MCK& { return *(matrices_ = &linear_.at(Omega, rate, side, w)); }, start);
+    const auto at_rate = [&](double w) -> const la::MCK& {
+      matrices_ = &motion_.reduce(linear_.at(Omega, rate, side, w));
+      return *matrices_;
+    };
+    return own_->settle(at_rate, start);
   };
   // Where forward whirl passes the speed its damping changes sign. The side is settled in an outer loop; where the frequency jumps from one side to
   // the other with it (planes mixed by unequal supports), the last one found stands.
@@ -298,7 +307,7 @@ void WhirlSolver::solve_counted(double Omega) {
   const std::vector<la::Mode>* modes = &solver_.solve(m);
   certificate_.list = solver_.certificate();
   if (options_.judge && options_.damped) {
-    if (!bound_) bound_.emplace(linear_.system().pattern(), active_);
+    if (!bound_) bound_.emplace(linear_.system().pattern(), motion_.active());
     const double reached = certificate_.list.radius;
     const auto quiet = bound_->first(m, reached, furthest_search * reached);
     if (quiet) {

@@ -1,7 +1,8 @@
 // Whirl modes of the spinning rotor: frequency, damping, direction, kind, shape.
 //
 // x(t) = Re(x exp(lambda t)). Direction: the orbit of a node in the plane across its shaft is the sum of a part that turns with
-// the spin, |Y + iZ|/2, and one against it, |Y - iZ|/2 (Y, Z amplitudes along e2, e3). Kind: the largest share of the energy
+// the spin, |Y + i s Z|/2, and one against it, |Y - i s Z|/2 (Y, Z amplitudes along e2, e3; s = +1 where the shaft turns from
+// e2 to e3, else -1). Whose spin that is for what stands still: spin_senses() in running.hpp. Kind: the largest share of the energy
 // (kinetic and strain) among lateral, torsional and axial motion.
 #pragma once
 #include <analysis/growth_bound.hpp>
@@ -103,7 +104,7 @@ class WhirlSolver {
   void solve_counted(double Omega);
   Linearizer& linear_;
   ModesOptions options_;
-  std::vector<unsigned char> active_;
+  MotionReduction motion_;
   la::ModeSolver solver_;
   std::optional<GrowthBound> bound_;  ///< where stability is judged
   SpectrumCertificate certificate_;
@@ -120,11 +121,12 @@ double likeness(const la::MCK& m, const VecXc& x, const VecXc& y);
 
 /// The elliptic orbit Re((Y, Z) exp(i omega t)) of a point.
 struct Orbit {
-  double forward = 0, backward = 0;   ///< radii of the two circles
-  double major = 0, minor = 0;        ///< half axes; minor < 0: backward
+  double forward = 0, backward = 0;   ///< radii of the two circles, with the spin and against it
+  double major = 0, minor = 0;        ///< half axes; minor < 0: run against the spin
   double angle = 0;                   ///< of the major axis, from e2 towards e3, rad
 };
-Orbit orbit_of(Complex Y, Complex Z);
+/// sense: +1 where the spin is from e2 to e3, -1 where it is the other way.
+Orbit orbit_of(Complex Y, Complex Z, double sense = 1.0);
 
 /// Displacement amplitude of a node along the axes (e, e2, e3) of its line.
 Eigen::Vector3cd local_displacement(const Linearizer& linear, const VecXc& x, Index node);

@@ -20,12 +20,15 @@ io::Table make_table(const analysis::Campbell& c) {
   for (const analysis::CampbellLine& l : c.lines) {
     t.columns.push_back({l.label + " frequency", "Hz", "damped natural frequency"});
     t.columns.push_back({l.label + " log decrement", "-", ""});
+    t.columns.push_back({l.label + " damping ratio", "-", ""});
     t.columns.push_back({l.label + " direction", "-", ""});
   }
   for (std::size_t k = 0; k < c.speeds.size(); ++k) {
     std::vector<io::Table::Cell> row{to_rpm(c.speeds[k])};
     for (const analysis::CampbellLine& l : c.lines) {
-      row.emplace_back(to_hz(l.frequency[k])), row.emplace_back(tidy(l.log_decrement[k]));
+      row.emplace_back(to_hz(l.frequency[k]));
+      row.emplace_back(tidy(l.log_decrement[k]));
+      row.emplace_back(tidy(l.damping_ratio[k]));
       row.emplace_back(std::isnan(l.frequency[k]) ? std::string() : std::string(to_string(l.direction_at[k])));
     }
     t.add(std::move(row));
@@ -68,7 +71,7 @@ void run_campbell_step(Job& job, const model::Step& step, const model::CampbellS
   io::Table criticals;
   criticals.title = "Critical speeds";
   criticals.columns = {{"order", "-", "excitations a revolution"}, {"speed", "rpm", ""}, {"frequency", "Hz", ""}, {"kind", "-", ""},
-                       {"direction", "-", ""}, {"log decrement", "-", ""}};
+                       {"direction", "-", ""}, {"log decrement", "-", ""}, {"damping ratio", "-", ""}};
   if (top > 0 && o.speeds.front() >= 0) {
     const PhaseTimer timer(job, "critical speeds");
     for (const double order : law.orders) {
@@ -82,7 +85,7 @@ void run_campbell_step(Job& job, const model::Step& step, const model::CampbellS
       for (const analysis::Critical& k : analysis::critical_speeds(s.linear, q)) {
         marks.push_back({k.speed, k.frequency, order, {}});
         criticals.add({order, to_rpm(k.speed), to_hz(k.frequency), std::string(to_string(k.mode.kind)), direction_text(k.mode),
-                       tidy(k.mode.log_decrement)});
+                       tidy(k.mode.log_decrement), tidy(k.mode.damping_ratio)});
       }
     }
   }

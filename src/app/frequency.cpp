@@ -6,6 +6,8 @@
 
 #include <cctype>
 #include <cmath>
+#include <map>
+#include <optional>
 
 namespace whirl::app {
 
@@ -69,7 +71,67 @@ analysis::EquilibriumOptions equilibrium_options(const Job& job, int load_steps)
   o.chart_change = job.model.chart_change;
   return o;
 }
+
+/// The one speed of a step's equilibrium, rad/s; null where there are several.
+std::optional<double> speed_of(const model::StepLaw& law) {
+  if (const auto* x = std::get_if<model::ModalStep>(&law)) return x->speed;
+  if (const auto* x = std::get_if<model::TorsionalStep>(&law)) return x->max_speed;
+  if (const auto* x = std::get_if<model::BucklingStep>(&law)) return x->speed;
+  if (const auto* x = std::get_if<model::HarmonicStep>(&law); x && x->frequency) return x->speed;
+  return std::nullopt;
+}
+
+bool about_undeformed(const model::StepLaw& law) {
+  return std::visit(
+      [](const auto& x) {
+        if constexpr (requires { x.about; }) return x.about == model::About::undeformed;
+        else return false;
+      },
+      law);
+}
+
+std::string about_of(const model::StepLaw& law) {
+  if (about_undeformed(law)) return "about the undeformed rotor";
+  const std::optional<double> speed = speed_of(law);
+  const std::string at = speed ? fmt::format("at {:.6g} rpm", to_rpm(*speed)) : "at each speed";
+  if (std::holds_alternative<model::BucklingStep>(law)) return "about the unloaded equilibrium " + at;
+  if (std::holds_alternative<model::CriticalMapStep>(law)) return "about the static equilibrium " + at + " and stiffness";
+  return "about the static equilibrium " + at;
+}
+
+std::optional<model::MotionKind> motion_asked(const model::StepLaw& law) {
+  if (std::holds_alternative<model::TorsionalStep>(law)) return model::MotionKind::torsional;
+  return std::visit(
+      [](const auto& x) -> std::optional<model::MotionKind> {
+        if constexpr (requires { x.motion; }) return x.motion;
+        else return std::nullopt;
+      },
+      law);
+}
+
+/// What a kind of motion leaves out.
+std::string motion_text(model::MotionKind kind) {
+  switch (kind) {
+    case model::MotionKind::lateral: return "Lateral motion: axial motion and twist follow without inertia or damping.";
+    case model::MotionKind::torsional: return "Torsional motion: bending and axial motion are held.";
+    case model::MotionKind::axial: return "Axial motion: bending and twist are held.";
+    case model::MotionKind::all: break;
+  }
+  return {};
+}
+
+std::string_view motion_name(model::MotionKind kind) {
+  constexpr std::string_view names[] = {"all", "lateral", "torsional", "axial"};
+  return names[static_cast<int>(kind)];
+}
 }  // namespace
+
+std::vector<std::string> labels_of(std::span<const analysis::WhirlMode> modes) {
+  std::map<analysis::ModeKind, int> count;
+  std::vector<std::string> out;
+  for (const analysis::WhirlMode& m : modes) out.push_back(fmt::format("{} {}", to_string(m.kind), ++count[m.kind]));
+  return out;
+}
 
 std::string direction_text(const analysis::WhirlMode& m) {
   return m.direction == analysis::Direction::none ? std::string() : std::string(to_string(m.direction));
@@ -78,8 +140,12 @@ std::string direction_text(const analysis::WhirlMode& m) {
 FrequencyStep::FrequencyStep(Job& j, const model::Step& s, const std::string& type, const std::string& title, double top_speed, int load_steps)
     : job(j), step(s), linear((j.build_for(s), j.system()), running_of(j, top_speed), equilibrium_options(j, load_steps)) {
   if (!s.from.empty()) linear.start_from(j.states.at(s.from).state);
+  if (about_undeformed(s.law)) linear.stay_undeformed();
   type_ = type;
+  about_ = about_of(s.law);
   summary()["type"] = type;
+  summary()["linearised"] = about_;
+  if (const auto motion = motion_asked(s.law)) summary()["motion"] = std::string(motion_name(*motion));
   section.title = fmt::format("{}: {}", s.name, title);
 }
 
@@ -94,7 +160,9 @@ void FrequencyStep::add_table(const std::string& name, io::Table table, bool sho
   const std::string path = file(name) + ".csv";
   job.folder.write_table(path, table);
   section.files.emplace_back(table.title.empty() ? name : table.title, path);
-  if (shown) section.tables.push_back(std::move(table));
+  if (!shown) return;
+  if (!table.title.empty()) table.title += ", " + about_;
+  section.tables.push_back(std::move(table));
 }
 
 void FrequencyStep::add_figure(io::Figure f) {
@@ -162,9 +230,11 @@ void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::s
 void FrequencyStep::finish(const std::string& line) {
   const RunTime time = watch_.elapsed();
   put_run_time(summary(), time);
+  if (const auto motion = motion_asked(step.law); motion && *motion != model::MotionKind::all) section.text += " " + motion_text(*motion);
+  section.text += fmt::format(" Linearised {}.", about_);
   if (turns_with_stiffness(job.model) && type_ != "stability")
     section.text += " The stiffness of the asymmetric shaft enters as its mean over a revolution; a stability step shows where its turning makes the rotor unstable.";
-  ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}", line, time.text()));
+  ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}, {}", line, about_, time.text()));
   say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
 }

@@ -8,6 +8,7 @@
 #include <io/plots.hpp>
 
 #include <cmath>
+#include <span>
 
 namespace whirl::app {
 
@@ -23,6 +24,8 @@ inline double to_hz(double omega) { return omega / two_pi; }
 inline double tidy(double x) { return std::abs(x) < 1e-12 ? 0.0 : x; }
 /// "lateral, forward", "torsional"
 std::string description(const analysis::WhirlMode& m);
+/// "lateral 1", "torsional 1", .. of a list: numbers within each kind.
+std::vector<std::string> labels_of(std::span<const analysis::WhirlMode> modes);
 /// "forward", or "" where there is no lateral orbit
 std::string direction_text(const analysis::WhirlMode& m);
 /// "No growing motion at any frequency" or up to which one that is known, where none was found.
@@ -46,19 +49,22 @@ class FrequencyStep {
   io::ReportSection section;
 
   io::Value& summary() { return job.summary["steps"][step.name]; }
-  /// Writes <step>_<name>.csv and shows the table in the report (only as a file when `shown` is false).
+  /// Writes <step>_<name>.csv and shows the table in the report, its title with about() (only as a file when `shown` is false).
   void add_table(const std::string& name, io::Table table, bool shown = true);
   void add_figure(io::Figure f);
+  /// "about the static equilibrium at 3000 rpm": the state that everything here is linearised about.
+  const std::string& about() const { return about_; }
   /// A name for files: <step>_<name>.
   std::string file(const std::string& name) const;
   /// Puts what is known of a list of modes into the summary and the section; what is missing also into the terminal and the exit code.
   /// where: "at 3000 rpm", or empty.
   void certify(const analysis::SpectrumCertificate& certificate, const std::string& where = {});
-  /// Adds the section to the report, the run time to the summary, and a line to the terminal.
+  /// Adds the section to the report, the run time to the summary, and a line to the terminal; each says about() and what the motion
+  /// asked for leaves out.
   void finish(const std::string& line);
 
  private:
-  std::string type_;
+  std::string type_, about_;
   Stopwatch watch_;
 };
 

@@ -83,9 +83,9 @@ StepState transient_start(Job&, const model::Step&, const model::TransientStep&)
 /// The equations a transient step integrates from `start`: the general ones, or those of small motions.
 std::unique_ptr<system::SystemProblem> transient_problem(const Job&, const model::TransientStep&, const StepState& start);
 
-/// Moves a start into the steady response to the unbalance at its speed; adds a whirl mode (amplitude: its largest displacement, m).
+/// Moves a start into the steady response to the unbalance at its speed; adds the whirl mode that the step names.
 void start_in_unbalance_response(const Job&, StepState& start);
-void start_in_mode(const Job&, StepState& start, int number, double amplitude);
+void start_in_mode(const Job&, StepState& start, const model::TransientStep&);
 /// Lets the governors of the step begin: where those of the start did that acted before, the others here, without a jump of their torque.
 void begin_governors(const Job&, StepState& start);
 /// The part of a checkpoint that says where they began.

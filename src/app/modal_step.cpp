@@ -92,12 +92,13 @@ void run_modal_step(Job& job, const model::Step& step, const model::ModalStep& l
   io::Table table;
   table.title = "Modes";
   table.columns = {{"mode", "-", ""},
+                   {"label", "-", "number within its kind"},
                    {"kind", "-", "by the largest share of energy"},
                    {"direction", "-", "of the orbits, seen along the spin"},
                    {"frequency", "Hz", "damped natural frequency"},
                    {"frequency", "rpm", ""},
                    {"log decrement", "-", "per cycle; negative: unstable"},
-                   {"damping ratio", "-", ""},
+                   {"damping ratio", "-", "of the critical damping of the mode"},
                    {"lateral", "%", "share of the energy"},
                    {"torsional", "%", ""},
                    {"axial", "%", ""},
@@ -107,16 +108,19 @@ void run_modal_step(Job& job, const model::Step& step, const model::ModalStep& l
   v["speed [rpm]"] = to_rpm(law.speed);
   io::Value list = io::Value::array();
   int unstable = 0;
+  const std::vector<std::string> labels = labels_of(modes);
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::WhirlMode& m = modes[k];
-    std::vector<io::Table::Cell> row{static_cast<int>(k + 1), std::string(to_string(m.kind)), direction_text(m), to_hz(m.frequency), to_rpm(m.frequency),
+    std::vector<io::Table::Cell> row{static_cast<int>(k + 1), labels[k], std::string(to_string(m.kind)), direction_text(m), to_hz(m.frequency), to_rpm(m.frequency),
                                      tidy(m.log_decrement), tidy(m.damping_ratio), 100 * tidy(m.lateral), 100 * tidy(m.torsional), 100 * tidy(m.axial), tidy(m.forwardness)};
     const double continued = -two_pi * m.continued.real() / m.continued.imag();
     if (o.continued) row.emplace_back(tidy(continued));
     table.add(std::move(row));
     io::Value e = io::Value::object();
+    e["label"] = labels[k];
     e["frequency [Hz]"] = to_hz(m.frequency);
     e["log decrement"] = tidy(m.log_decrement);
+    e["damping ratio"] = tidy(m.damping_ratio);
     if (o.continued) e["continued log decrement"] = tidy(continued);
     e["kind"] = std::string(to_string(m.kind)), e["direction"] = direction_text(m);
     list.push(std::move(e));
@@ -143,12 +147,12 @@ void run_modal_step(Job& job, const model::Step& step, const model::ModalStep& l
   for (std::size_t k = 0; k < drawn; ++k) {
     const analysis::WhirlMode& m = modes[k];
     const std::string name = fmt::format("mode_{}", k + 1);
-    ShapeDrawing d{name, fmt::format("Mode {}: {:.5g} Hz, {}", k + 1, to_hz(m.frequency), description(m)), {}, &m.x, m.kind};
-    if (std::abs(m.log_decrement) > 1e-9) d.caption = fmt::format("Log decrement {:.4g}.", m.log_decrement);
+    ShapeDrawing d{name, fmt::format("Mode {} ({}): {:.5g} Hz, {}", k + 1, labels[k], to_hz(m.frequency), description(m)), {}, &m.x, m.kind};
+    if (std::abs(m.log_decrement) > 1e-9) d.caption = fmt::format("Log decrement {:.4g}, damping ratio {:.4g}.", m.log_decrement, m.damping_ratio);
     add_shape_figures(s, d);
     write_shape_frames(s, name, m.x);
   }
-  s.section.text = fmt::format("{} whirl modes at {:.6g} rpm, {}, about the spinning, loaded equilibrium.", modes.size(), to_rpm(law.speed),
+  s.section.text = fmt::format("{} whirl modes at {:.6g} rpm, {}.", modes.size(), to_rpm(law.speed),
                                law.damped ? "damped" : "undamped");
   if (unstable > 0) s.section.text += fmt::format(" {} of them unstable.", unstable);
   if (diverging > 0) s.section.text += fmt::format(" {} motion{} without oscillating.", diverging, diverging == 1 ? " diverges" : "s diverge");

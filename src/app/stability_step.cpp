@@ -93,11 +93,16 @@ void run_stability_step(Job& job, const model::Step& step, const model::Stabilit
   rates.columns.push_back({"speed", "rpm", ""});
   for (std::size_t l = 0; l < lines.size(); ++l) {
     rates.columns.push_back({lines[l].label + " log decrement", "-", ""});
+    rates.columns.push_back({lines[l].label + " damping ratio", "-", ""});
     rates.columns.push_back({lines[l].label + " frequency", "Hz", ""});
   }
   for (std::size_t k = 0; k < r.diagram.speeds.size(); ++k) {
     std::vector<io::Table::Cell> row{to_rpm(r.diagram.speeds[k])};
-    for (const io::CampbellLine& l : lines) row.emplace_back(l.log_decrement[k]), row.emplace_back(to_hz(l.frequency[k]));
+    for (const analysis::CampbellLine& l : r.diagram.lines) {
+      row.emplace_back(l.log_decrement[k]);
+      row.emplace_back(l.damping_ratio[k]);
+      row.emplace_back(to_hz(l.frequency[k]));
+    }
     rates.add(std::move(row));
   }
   s.add_table("onset", std::move(table));

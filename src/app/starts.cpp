@@ -63,15 +63,45 @@ void start_in_unbalance_response(const Job& job, StepState& start) {
   start.state.q += q, start.state.v += v;
 }
 
-void start_in_mode(const Job& job, StepState& start, int number, double amplitude) {
+namespace {
+
+bool is_of(const analysis::WhirlMode& m, model::MotionKind kind) {
+  using Kind = analysis::ModeKind;
+  switch (kind) {
+    case model::MotionKind::lateral: return m.kind == Kind::lateral;
+    case model::MotionKind::torsional: return m.kind == Kind::torsional;
+    case model::MotionKind::axial: return m.kind == Kind::axial;
+    case model::MotionKind::all: break;
+  }
+  return true;
+}
+
+}  // namespace
+
+void start_in_mode(const Job& job, StepState& start, const model::TransientStep& law) {
   analysis::Linearizer linear = linearizer_of(job, start);
-  analysis::ModesOptions o;
-  o.count = number + 2;
-  const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, start.speed, o);
-  if (static_cast<int>(modes.size()) < number) throw run_error("E76", fmt::format("the rotor has {} modes, not {}", modes.size(), number), "choose a lower number");
-  const analysis::WhirlMode& m = modes[static_cast<std::size_t>(number - 1)];
+  std::optional<analysis::WhirlMode> found;
+  int of_kind = 0;
+  std::size_t all = 0;
+  // more modes until there are enough of the kind, or no more
+  for (Index count = law.mode + 2; !found; count *= 2) {
+    analysis::ModesOptions o;
+    o.count = count;
+    const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, start.speed, o);
+    of_kind = 0;
+    all = modes.size();
+    for (const analysis::WhirlMode& m : modes)
+      if (is_of(m, law.mode_kind) && ++of_kind == law.mode) found = m;
+    if (static_cast<Index>(modes.size()) < count || count > 2 * job.system().size()) break;
+  }
+  if (!found) {
+    constexpr std::string_view names[] = {"", "lateral ", "torsional ", "axial "};
+    throw run_error("E76", fmt::format("the rotor has {} {}modes, not {}", law.mode_kind == model::MotionKind::all ? static_cast<int>(all) : of_kind,
+                                       names[static_cast<int>(law.mode_kind)], law.mode), "choose a lower number");
+  }
   take_equilibrium(job, linear.equilibrium(), start);
-  start.state.q += amplitude * m.x.real(), start.state.v += amplitude * (m.lambda * m.x).real();
+  start.state.q += law.mode_amplitude * found->x.real();
+  start.state.v += law.mode_amplitude * (found->lambda * found->x).real();
 }
 
 void begin_governors(const Job& job, StepState& start) {

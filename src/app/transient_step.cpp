@@ -85,7 +85,7 @@ void settle_start(Job& job, StepState& start, const model::TransientStep& law) {
   using Start = model::TransientStep::Start;
   if (law.start == Start::rest) return;
   const PhaseTimer timer(job, "equilibrium");
-  if (law.start == Start::mode) start_in_mode(job, start, law.mode, law.mode_amplitude);
+  if (law.start == Start::mode) start_in_mode(job, start, law);
   else if (law.start == Start::unbalance_response) start_in_unbalance_response(job, start);
   else job.settle(start, {}, true);
 }
@@ -263,13 +263,13 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   }
   std::unique_ptr<KeyphasorOutput> keyphasor;
   if (out.tracking.on && !job.model.probes.empty() && (out.csv || out.report)) {
-    keyphasor = std::make_unique<KeyphasorOutput>(job, step);
+    keyphasor = std::make_unique<KeyphasorOutput>(job, step, probe_senses(job, start));
     observers.push_back(&keyphasor->observer());
     parts.add_output(keyphasor->key(), *keyphasor);
   }
   std::unique_ptr<SpectraOutput> spectra;
   if (out.spectra && !job.model.probes.empty() && (out.csv || out.report)) {
-    spectra = std::make_unique<SpectraOutput>(job, step, t0);
+    spectra = std::make_unique<SpectraOutput>(job, step, t0, probe_senses(job, start));
     observers.push_back(&spectra->observer());
     parts.add_output(spectra->key(), *spectra);
   }

@@ -433,6 +433,35 @@ void check_effects(const model::Model& m, Problems& out) {
     if (o.step.empty()) warn("a picture output", o.where);
 }
 
+/// Supports that have no coefficients without their load.
+bool needs_its_load(const model::BearingLaw& law) {
+  if (std::holds_alternative<model::ShortJournal>(law) || std::holds_alternative<model::FiniteJournal>(law)) return true;
+  if (const auto* b = std::get_if<model::BallBearing>(&law)) return b->preload == 0 && b->clearance >= 0;
+  if (const auto* b = std::get_if<model::RollerBearing>(&law)) return b->clearance >= 0;
+  return false;
+}
+
+/// Steps linearised about the rotor as drawn.
+void check_undeformed(const model::Model& m, Problems& out) {
+  for (const model::Step& s : m.steps) {
+    const bool undeformed = std::visit(
+        [](const auto& law) {
+          if constexpr (requires { law.about; }) return law.about == model::About::undeformed;
+          else return false;
+        },
+        s.law);
+    if (!undeformed) continue;
+    if (!s.from.empty())
+      add(out, "E26", fmt::format("step '{}' starts from step '{}', but is linearised about the undeformed rotor", s.name, s.from), "leave out 'from', or about = \"equilibrium\"", s.where);
+    if (const auto* stability = std::get_if<model::StabilityStep>(&s.law); stability && stability->map)
+      add(out, "E26", fmt::format("step '{}': a map of the stability over a parameter is about the equilibrium of each of its rotors", s.name), "leave out 'map', or about = \"equilibrium\"", s.where);
+    for (const model::Bearing& b : m.bearings)
+      if (needs_its_load(b.law))
+        add(out, "E26", fmt::format("step '{}' is linearised about the undeformed rotor, where bearing '{}' carries no load: its stiffness is that of its load", s.name, b.name),
+            "about = \"equilibrium\", or a bearing of type \"linear\" or \"table\" in its place", s.where);
+  }
+}
+
 }  // namespace
 
 std::vector<WholeModelProblem> check_model(const model::Model& m) {
@@ -447,6 +476,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_places(m, out);
   check_clamps(m, out);
   check_preloads(m, out);
+  check_undeformed(m, out);
   check_effects(m, out);
   return out;
 }

@@ -48,7 +48,7 @@ void check_machine(const DeckModel& d, double Omega, Index count, const std::str
   tally.certain += certificate.stability_certain();
   tally.recovered += certificate.list.recovered > 0;
   EXPECT_TRUE(certificate.complete()) << name << ": " << certificate.text();
-  const std::vector<Complex> all = all_roots(linear.at(Omega), select_motion(d.built.system, Motion::all), 0.37 * certificate.list.radius);
+  const std::vector<Complex> all = all_roots(linear.at(Omega), linear.active(), 0.37 * certificate.list.radius);
   double largest = 0;
   for (const Complex s : all) largest = std::max(largest, std::abs(s));
   const double rounding = 1e-13 * largest;   // what the dense method leaves of a simple root
