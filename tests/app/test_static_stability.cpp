@@ -54,7 +54,7 @@ TEST(StaticStability, ColumnBeyondItsBucklingLoad) {
   EXPECT_FALSE(below.says("unstable")) << below.log;
   const DeckRun above(column(1.2, step));
   EXPECT_EQ(above.exit, 0) << above.log;
-  EXPECT_TRUE(above.says("warning[W06]")) << above.log;
+  EXPECT_TRUE(above.says("warning[W08]")) << above.log;
   EXPECT_TRUE(above.says("unstable equilibrium, 2 directions")) << above.log;
   const std::string summary = text_of(above.folder / "r" / "summary.json");
   EXPECT_NE(summary.find("\"unstable directions\": 2"), std::string::npos) << summary;
