@@ -85,7 +85,8 @@ std::string trouble(const std::string& text, const fs::path& folder) {
   for (const Diagnostic& x : d.diagnostics) {
     if (x.severity == Diagnostic::Severity::note) continue;
     if (!find_code(x.code)) return "unknown code '" + x.code + "': " + x.message;
-    if (x.message.empty() || x.where.line == 0) return "no message or no line: " + format(x);
+    const bool nowhere = x.where.line == 0 && x.code != "E03";   // an empty file has no lines
+    if (x.message.empty() || nowhere) return "no message or no line: " + format(x);
   }
   if (!d.ok()) return d.diagnostics.empty() ? "refused without a word" : "";
   double elements = 0;   // a mistake may ask for a billion of them, which is refused when memory is
