@@ -94,13 +94,20 @@ std::function<model::Model(const std::string&)> variants_of(const std::filesyste
   };
 }
 
+/// A resolved deck has its parameters put in: what a map would vary there is gone, and no mistake of its writer.
+bool has_parameters(const deck::Deck& d) {
+  for (int k = 0; k < d.sources.size(); ++k)
+    if (d.sources[k].text.find("parameters") != std::string::npos) return true;
+  return false;
+}
+
 /// Mesh and whatever else a run would refuse. Error: what it would.
-meshes::Mesh prepare(const model::Model& m, const CheckOptions& o) {
-  meshes::Mesh mesh = meshes::make_mesh(m);
-  if (m.steps.empty()) return mesh;
+meshes::Mesh prepare(const deck::Deck& d, const CheckOptions& o) {
+  meshes::Mesh mesh = meshes::make_mesh(d.model);
+  if (d.model.steps.empty()) return mesh;
   RunOptions run;
-  run.variant = variants_of(o.deck, o.read);
-  check_steps(m, mesh, run);
+  if (has_parameters(d)) run.variant = variants_of(o.deck, o.read);
+  check_steps(d.model, mesh, run);
   return mesh;
 }
 
@@ -121,7 +128,7 @@ int check_deck(const CheckOptions& o) {
   }
   meshes::Mesh mesh;
   try {
-    mesh = prepare(d.model, o);
+    mesh = prepare(d, o);
   } catch (const Error& e) {
     if (!o.json) throw;
     io::Value v = io::Value::object();

@@ -76,6 +76,21 @@ TEST(StepSpeeds, OfAnEquilibriumUnderEveryDrive) {
   }
 }
 
+TEST(StepSpeeds, OfModesUnderADrive) {
+  // The whirl frequencies at 9000 rpm hang on the films there: the same without a drive and under one that would turn at 1000 rpm.
+  const std::string modes = "[[step]]\nname = \"m\"\ntype = \"modal\"\nmodes = 4\nspeed = \"9000 rpm\"\nmotion = \"lateral\"\n";
+  std::vector<double> frequencies[2];
+  for (int k = 0; k < 2; ++k) {
+    const DeckRun d(rotor(k == 0 ? "" : smooth, modes));
+    ASSERT_EQ(d.exit, 0) << d.log;
+    const Columns c = d.csv("m_modes.csv");
+    for (const auto& row : c.rows) frequencies[k].push_back(row.at(c.column("frequency [Hz]")));
+  }
+  ASSERT_EQ(frequencies[0].size(), 4u);
+  ASSERT_EQ(frequencies[1].size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(frequencies[1][k], frequencies[0][k], 1e-6 * frequencies[0][k]) << k;
+}
+
 TEST(StepSpeeds, NoneGivenIsThatOfTheDrive) {
   const DeckRun d(rotor(smooth, "[[step]]\nname = \"sag\"\ntype = \"static\"\n"));
   ASSERT_EQ(d.exit, 0) << d.log;
