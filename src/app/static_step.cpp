@@ -28,6 +28,7 @@ analysis::LoadPathOptions path_options(const Job& job, const model::LoadPath& p,
     o.controlled_to = p.to;
   } else {
     o.last_load = p.last_load;
+    o.branch = p.branch;
   }
   return o;
 }

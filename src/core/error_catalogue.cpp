@@ -1,4 +1,4 @@
-// The long explanations behind `whirl explain CODE`. Codes never change their meaning. E01-E39: the deck; E70-E89: while
+// The long explanations behind `whirl explain CODE`. Codes never change their meaning. E01-E39: the deck; E60-E89: while
 // running; E90-E99: files and plug-ins; W..: warnings. A new code is one more row, kept in order.
 #include <core/error.hpp>
 

@@ -69,10 +69,13 @@ void describe(Visitor& v, model::LoadPath& p) {
   const bool turn = v.quantity(optional("to_angle", "control = \"arc_length\", or a displacement"), p.to, "deg", any, "displacement with direction = \"rx\": its last value");
   v.integer("steps", p.steps, between(1, 100000), "displacement: number of steps; arc_length: about as many for a straight path");
   v.integer("max_points", p.max_points, between(2, 1000000), "the path ends here at the latest");
+  const bool branch = v.integer(optional("branch", "the primary path"), p.branch, between(-100, 100), "arc_length: follow what branches off at the bifurcation of this number on the path (1 the first), negative: to its other side");
   if (!v.clean()) return;
   const bool control = p.control == model::LoadPath::Control::displacement;
   const auto odd = [&](const char* key, const char* other) { v.error("E26", key, fmt::format("'{}' belongs to control = \"{}\"", key, other)); };
   if (control && load) odd("load", "arc_length");
+  if (control && branch) return odd("branch", "arc_length");
+  if (branch && p.branch == 0) return v.error("E14", "branch", "bifurcations are numbered from 1", "branch = 1, or branch = -1 for the other side");
   if (!control)
     for (const auto& [given, key] : {std::pair{at, "at"}, {which, "direction"}, {along, "to"}, {turn, "to_angle"}})
       if (given) return odd(key, "displacement");
@@ -92,7 +95,7 @@ void describe(Visitor& v, model::StaticStep& s) {
   s.speed_given = v.quantity(optional("speed", "what the drives prescribe at time 0, else the shafts' initial_spin"), s.speed, "rpm", any,
                              "speed of the rotor, whatever drives prescribe: every shaft at its speed_ratio");
   v.table(optional("speeds", "speed alone"), s.speeds, "equilibria at these speeds instead, one after another: locus, eccentricity, load and the eight coefficients of each bearing against speed; later steps start from the last one");
-  v.table(optional("path", "one equilibrium, at the full load"), s.path, "follow the equilibria from no load past limit points (buckling, snap-through)");
+  v.table(optional("path", "one equilibrium, at the full load"), s.path, "follow the equilibria from no load past limit points (snap-through) and, with branch, off bifurcations (buckling); a path that does not reach its load is an error");
   if (v.clean() && s.path && s.load_steps > 1) v.error("E26", "load_steps", "a path has its own steps", "use path.steps");
   if (v.clean() && s.speeds && (s.path || v.given("speed"))) v.error("E26", "speeds", s.path ? "a path is followed at one speed" : "the speed is given by 'speed' and by 'speeds'", "keep one of the two");
 }

@@ -199,6 +199,7 @@ struct SpeedRange { double start = 0, stop = 0; int points = 2; std::vector<doub
 /// Static equilibria followed past limit points, the load factor (on gravity and loads) an unknown.
 struct LoadPath {
   enum class Control { arc_length, displacement } control = Control::arc_length;
+  int branch = 0;               ///< arc length: bifurcation at which the path leaves on the branch, 1 the first; negative: to its other side; 0: none
   double last_load = 1;         ///< arc length: load factor at which the path ends
   Location at;                  ///< displacement control: where,
   int direction = 1;            ///< 0 .. 2: x, y, z; 3: angle about the axis,

@@ -158,6 +158,22 @@ TEST(StaticStability, BifurcationOfTheColumn) {
   ASSERT_EQ(c.rows.size(), 1u);
   EXPECT_NEAR(c.rows[0][c.column("load factor [-]")], 1.0, 2e-5);   // 20 elements; shear and shortening 4e-6
   EXPECT_TRUE(std::filesystem::exists(straight.folder / "r" / "st_bifurcation_1.csv"));
+  // the branch is the elastica: at 1.2 of the Euler load, k = sin(alpha/2), K(k)^2 = 1.2 pi^2/4
+  const DeckRun bent(column(1.0, path + ", branch = 1 }\n[[probe]]\nname = \"tip\"\nat = \"column:end\"\n"));
+  EXPECT_EQ(bent.exit, 0) << bent.log;
+  double k = 0.5;
+  for (int i = 0; i < 60; ++i) {
+    const double K = std::comp_ellint_1(k), E = std::comp_ellint_2(k);
+    k -= (K - std::sqrt(1.2) * M_PI / 2) / ((E / (1 - k * k) - K) / k);
+  }
+  const double K = std::comp_ellint_1(k);
+  const auto end = bent.csv("st_path.csv").last();
+  EXPECT_EQ(end.at("load factor [-]"), 1.2);
+  EXPECT_NEAR(std::hypot(end.at("tip u_y [m]"), end.at("tip u_z [m]")), 2 * k / K, 2e-4);
+  EXPECT_EQ(end.at("unstable directions [-]"), 0);
+  const DeckRun none(column(0.5, path + ", branch = 1 }\n"));
+  EXPECT_EQ(none.exit, 4) << none.log;
+  EXPECT_TRUE(none.says("without the bifurcation")) << none.log;
 }
 
 TEST(StaticStability, BucklingAndItsPath) {
