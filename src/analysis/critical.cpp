@@ -121,7 +121,7 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
   return out;
 }
 
-std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, double low) {
+std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, double low, SpectrumCertificate* certificate) {
   TrackOptions t;
   t.modes.motion = o.motion;
   t.modes.count = 0;
@@ -142,13 +142,16 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
         out.push_back({root->speed, o.order * root->speed, o.order, root->mode});
     }
   };
-  for (Index k = 0; k <= o.grid; ++k)
+  for (Index k = 0; k <= o.grid; ++k) {
     tracker.advance(low + (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid), visit);
+    const SpectrumCertificate& now = tracker.solver().certificate();
+    if (certificate && (k == 0 || (certificate->complete() && !now.complete()))) *certificate = now;
+  }
   return out;
 }
 }  // namespace
 
-std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options) {
+std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options, SpectrumCertificate* certificate) {
   if (!(options.max_speed > options.min_speed) || !(options.order > 0))
     throw run_error("E77", "critical speeds need an order above zero and a range of speeds");
   // At standstill every rotor that turns freely has the frequency 0 = n x 0: that is no critical speed.
@@ -156,7 +159,7 @@ std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions&
   CriticalOptions o = options;
   o.max_speed = std::min(o.max_speed, o.max_frequency / o.order);
   if (!(o.max_speed > low)) return {};
-  std::vector<Critical> out = o.damped ? damped(linear, o, low) : undamped(linear, o, low);
+  std::vector<Critical> out = o.damped ? damped(linear, o, low, certificate) : undamped(linear, o, low);
   std::sort(out.begin(), out.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
   return out;
 }

@@ -35,8 +35,9 @@ struct Critical {
   double amplification() const { return mode.damping_ratio > 0 ? 0.5 / mode.damping_ratio : infinity; }
 };
 
-/// In ascending order.
-std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options);
+/// In ascending order. certificate: of the damped modes they are crossings of, at the speed of the search where least is known (undamped ones are
+/// counted by inertia: none is missed).
+std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options, SpectrumCertificate* certificate = nullptr);
 
 /// Undamped critical speeds against the stiffness of the supports. build: the system with that stiffness (N/m) in its supports,
 /// the same nodes at every stiffness.

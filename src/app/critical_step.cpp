@@ -50,7 +50,9 @@ void run_critical_step(Job& job, const model::Step& step, const model::CriticalS
     for (const double order : law.orders) {
       analysis::CriticalOptions o;
       o.order = order, o.min_speed = law.min_speed, o.max_speed = law.max_speed, o.damped = damped, o.motion = motion_of(law.motion);
-      std::vector<analysis::Critical> list = analysis::critical_speeds(s.linear, o);
+      analysis::SpectrumCertificate certificate;
+      std::vector<analysis::Critical> list = analysis::critical_speeds(s.linear, o, &certificate);
+      if (damped) s.certify(certificate, fmt::format("damped, order {:g}", order));
       if (list.size() > static_cast<std::size_t>(law.modes)) list.resize(static_cast<std::size_t>(law.modes));
       found += list.size();
       io::Value& speeds = v[fmt::format("{} critical speeds [rpm]", word)][fmt::format("{:g}x", order)];

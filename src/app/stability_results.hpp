@@ -11,7 +11,7 @@ analysis::Definiteness judge_state(analysis::RunningSystem& running, const syste
 /// "unstable equilibrium, 2 directions"; empty when it is stable. At a speed: what that means there.
 std::string stability_line(const analysis::Definiteness& d, double Omega);
 
-/// The same as a warning (W06) on the terminal, in the report and in the summary.
+/// The same as a warning (W08) on the terminal, in the report and in the summary.
 void warn_of_unstable(Job& job, const std::string& step, const analysis::Definiteness& d, double Omega);
 
 /// Into the summary of a step: stable or not, directions, what is claimed.

@@ -14,7 +14,9 @@ void run_torsional_step(Job& job, const model::Step& step, const model::Torsiona
   const PhaseTimer timer(job, "modes");
   analysis::ModesOptions o;
   o.count = law.modes, o.motion = analysis::Motion::torsional;
-  const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(s.linear, law.max_speed, o);
+  analysis::SpectrumCertificate certificate;
+  const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(s.linear, law.max_speed, o, &certificate);
+  s.certify(certificate);
   io::Table table;
   table.title = "Torsional natural frequencies";
   table.columns = {{"mode", "-", ""}, {"frequency", "Hz", ""}, {"frequency", "rpm", ""}, {"log decrement", "-", ""}, {"damping ratio", "-", ""}};

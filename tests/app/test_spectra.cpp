@@ -1,0 +1,224 @@
+// What lists of modes and verdicts of stability say, through the program: complete beside a free spin, real roots judged, rounding no instability.
+#include "deck_run.hpp"
+
+#include <algorithm>
+
+using whirl::test::Columns;
+using whirl::test::DeckRun;
+
+namespace {
+
+std::vector<double> column(const Columns& table, const std::string& name) {
+  std::vector<double> out;
+  for (const auto& row : table.rows) out.push_back(row[table.column(name)]);
+  return out;
+}
+
+/// A small shaft on two films, free to turn: the drag of the films slows its spin at 0.02 1/s.
+std::string on_films(const std::string& extra) {
+  return R"(format = 1
+[output]
+report = false
+[[shaft]]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 35, 5, 4], ["b", 35, 5, 4]]
+[[disk]]
+at = "a:end"
+od = "20 mm"
+id = "5 mm"
+width = "5 mm"
+material = "steel"
+[[bearing]]
+name = "thrust"
+at = "a:mid"
+type = "linear"
+kxx = "1e6 N/m"
+cxx = "1 N.s/m"
+[[bearing]]
+name = "A"
+at = "a:start"
+type = "short_journal"
+diameter = "5 mm"
+length = "2.5 mm"
+clearance = "7.5 um"
+viscosity = "0.2 mPa.s"
+[[bearing]]
+name = "B"
+at = "b:end"
+type = "short_journal"
+diameter = "5 mm"
+length = "2.5 mm"
+clearance = "7.5 um"
+viscosity = "0.2 mPa.s"
+[[step]]
+name = "m"
+type = "modal"
+speed = "60000 rpm"
+modes = 14
+shapes = 0
+)" + extra;
+}
+
+std::string column_under(const std::string& force) {
+  return R"(format = 1
+[output]
+report = false
+[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "steel"
+E = "210 GPa"
+nu = 0.3
+density = "7850 kg/m^3"
+[shaft]
+name = "column"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["column", 1000, 4, 20]]
+[[bearing]]
+at = "column:start"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+[[load]]
+at = "column:end"
+force = [")" + force + R"(", "0 N", "0 N"]
+[[step]]
+name = "m"
+type = "modal"
+modes = 4
+shapes = 0
+[[step]]
+name = "s"
+type = "stability"
+speed = { start = "0 rpm", stop = "100 rpm", points = 3 }
+)";
+}
+
+}  // namespace
+
+TEST(Spectra, FilmsBesideAFreeSpinLoseNoMode) {
+  // The same small motions without the free root: a soft spring holds the spin. Its lateral modes are those of the free rotor to 1e-8, for the spring
+  // feels them only through the drag of the films.
+  const DeckRun free(on_films("")), held(on_films(R"([[bearing]]
+name = "hold"
+at = "a:start"
+type = "linear"
+krxx = "10 N.m/rad"
+)"));
+  ASSERT_EQ(free.exit, 0) << free.log;
+  ASSERT_EQ(held.exit, 0) << held.log;
+  EXPECT_TRUE(free.says("complete")) << free.log;
+  const std::vector<double> a = column(free.csv("m_modes.csv"), "frequency [Hz]");
+  std::vector<double> b = column(held.csv("m_modes.csv"), "frequency [Hz]");
+  ASSERT_EQ(a.size(), 14u);
+  EXPECT_TRUE(std::is_sorted(a.begin(), a.end()));
+  // Lateral and axial ones; torsion itself the spring changes.
+  for (const double f : {332.8758, 494.1965, 530.2474, 1062.984, 2561.617, 3117.252, 8234.979, 9301.024, 17953.80, 18247.34, 19802.66, 20473.17}) {
+    const auto near = [f](double x) { return std::abs(x - f) < 1e-5 * f; };
+    EXPECT_TRUE(std::any_of(a.begin(), a.end(), near)) << f;
+    EXPECT_TRUE(std::any_of(b.begin(), b.end(), near)) << f;
+  }
+}
+
+TEST(Spectra, ColumnBeyondItsEulerLoadDiverges) {
+  // 1.2 times the Euler load: EI w'''' + P w'' + rho A s^2 w = 0, clamped and free under a dead load, has one growing root, 8.556874 1/s, in each plane (the
+  // determinant of its four conditions). Twenty elements and shear leave 1e-5.
+  const DeckRun above(column_under("-7.8135816 N"));
+  ASSERT_EQ(above.exit, 0) << above.log;
+  const std::vector<double> rates = column(above.csv("m_real_roots.csv"), "rate [1/s]");
+  const auto grows = [](double x) { return x > 0; };
+  ASSERT_EQ(std::count_if(rates.begin(), rates.end(), grows), 2) << above.log;
+  for (const double x : rates)
+    if (grows(x)) {
+      EXPECT_NEAR(x, 8.556874248, 2e-5 * 8.557);
+    }
+  EXPECT_TRUE(above.says("2 diverging")) << above.log;
+  EXPECT_TRUE(above.says("unstable at 0 rpm already (a motion diverges")) << above.log;
+  const DeckRun below(column_under("-5 N"));
+  EXPECT_TRUE(below.says("stable from 0 to 100 rpm (certified")) << below.log;
+}
+
+TEST(Spectra, OnsetOfDivergenceIsLocated) {
+  // A disk of 10 kg on springs of 1e6 N/m and a table that falls from 0 to -4e6 N/m between 0 and 4000 rpm in z: K vanishes at 1000 rpm. Rigid,
+  // so the closed form is the table's own.
+  const DeckRun d(R"(format = 1
+[output]
+report = false
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 50, 100], ["b", 50, 100]]
+[[bearing]]
+name = "springs"
+at = "a:end"
+type = "linear"
+kxx = "1e6 N/m"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+krr = "1e5 N.m/rad"
+cyy = "100 N.s/m"
+czz = "100 N.s/m"
+[[bearing]]
+name = "pull"
+at = "a:end"
+type = "table"
+columns = ["speed[rpm]", "kzz[N/m]"]
+rows = [[0, 0], [4000, -4e6]]
+[[step]]
+name = "s"
+type = "stability"
+speed = { start = "100 rpm", stop = "3900 rpm", points = 12 }
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns onset = d.csv("s_onset.csv");
+  ASSERT_EQ(onset.rows.size(), 1u) << d.log;
+  EXPECT_NEAR(onset.rows[0][onset.column("speed [rpm]")], 1000.0, 1e-5);
+  EXPECT_EQ(onset.rows[0][onset.column("whirl frequency [Hz]")], 0.0);
+  EXPECT_TRUE(d.says("diverging without whirl")) << d.log;
+}
+
+TEST(Spectra, RoundingIsNoInstability) {
+  // An undamped shaft on undamped springs, turning: nothing dissipates, nothing grows, whatever the last digits say.
+  const DeckRun d(R"(format = 1
+[output]
+report = false
+[[shaft]]
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 500, 50, 20], ["b", 500, 60, 20]]
+[[disk]]
+at = "a:end"
+mass = "40 kg"
+Ip = "0.5 kg.m^2"
+Id = "0.3 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "1e7 N/m"
+kzz = "2e7 N/m"
+[[bearing]]
+at = "b:end"
+type = "linear"
+kyy = "1e7 N/m"
+kzz = "2e7 N/m"
+krxx = "1e3 N.m/rad"
+[[step]]
+name = "m"
+type = "modal"
+speed = "9000 rpm"
+modes = 20
+shapes = 0
+[[step]]
+name = "s"
+type = "stability"
+speed = { start = "0 rpm", stop = "12000 rpm", points = 13 }
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_FALSE(d.says("unstable")) << d.log;
+  EXPECT_TRUE(d.says("stable from 0 to 12000 rpm (certified at 13 speeds: all roots accounted for)")) << d.log;
+  EXPECT_TRUE(d.csv("s_onset.csv").rows.empty());
+}
