@@ -36,8 +36,10 @@ Index last_of_line(const system::System& s, std::span<const unsigned char> activ
   return last;
 }
 
-/// Size of the single torques whose sum in row k is zero but for rounding when nothing drives the rotor round.
-double torque_size(const system::System& s, const la::MCK& m, const VecXc& x, const VecXc& f, Index k) {
+/// Size of the single torques whose sum in row k is zero but for rounding when nothing drives the
+/// rotor round.
+double torque_size(const system::System& s, const la::MCK& m, const VecXc& x, const VecXc& f,
+                   Index k) {
   const Index node = k / 6, line = s.node(node).line;
   double size = 0;
   for (Index i = 0; i < s.nodes(); ++i)
@@ -47,7 +49,9 @@ double torque_size(const system::System& s, const la::MCK& m, const VecXc& x, co
     if (s.node(i).line != line) continue;
     for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b) {
       const Index j = s.pattern().cols()[at(b)];
-      size = std::max(size, (m.K.block(b).row(system::spin_phi).cwiseAbs() * x.segment<6>(6 * j).cwiseAbs()).value());
+      size = std::max(
+          size,
+          (m.K.block(b).row(system::spin_phi).cwiseAbs() * x.segment<6>(6 * j).cwiseAbs()).value());
     }
   }
   return size;
@@ -55,7 +59,8 @@ double torque_size(const system::System& s, const la::MCK& m, const VecXc& x, co
 }  // namespace
 
 HarmonicSolver::HarmonicSolver(Linearizer& linear, Motion motion)
-    : linear_(linear), motion_(linear.system(), motion),
+    : linear_(linear),
+      motion_(linear.system(), motion),
       solver_(la::make_direct_solver<Complex>(linear.system().pattern(), motion_.active())) {}
 
 bool HarmonicSolver::prepare(double Omega, double w) {
@@ -63,14 +68,18 @@ bool HarmonicSolver::prepare(double Omega, double w) {
   matrices_ = &m;
   w_ = w;
   spin_free_ = false;
-  if (w != 0.0 && solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok) return true;
+  if (w != 0.0 &&
+      solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok)
+    return true;
   std::vector<Index> first, last;
   for (const Index k : linear_.equilibrium().spin_holds) {
     if (!motion_.takes_part(k)) continue;
     first.push_back(k);
     last.push_back(last_of_line(linear_.system(), motion_.active(), k));
   }
-  if (first.empty()) return w == 0.0 && solver_->factor(m, Complex(0, 0), Complex(0, 0), Complex(1, 0)) == la::Status::ok;
+  if (first.empty())
+    return w == 0.0 &&
+           solver_->factor(m, Complex(0, 0), Complex(0, 0), Complex(1, 0)) == la::Status::ok;
   spin_free_ = hold(m, w, std::move(first), first_) && hold(m, w, std::move(last), last_);
   return spin_free_;
 }
@@ -88,8 +97,10 @@ bool HarmonicSolver::hold(const la::MCK& m, double w, std::vector<Index> unknown
 void HarmonicSolver::solve(VecXc& x) {
   for (Index k = 0; k < x.size(); ++k)
     if (!motion_.takes_part(k)) x[k] = 0;
-  if (spin_free_) solve_held(x);
-  else solver_->solve(x);
+  if (spin_free_)
+    solve_held(x);
+  else
+    solver_->solve(x);
 }
 
 VecXc HarmonicSolver::multiply(const VecXc& x) const {
@@ -107,11 +118,14 @@ void HarmonicSolver::solve_held(VecXc& x) {
     return y;
   };
   x = answer(first_);
-  const VecXc rest = f - multiply(x);   // what the holds must exert: the torques that drive the rotors round
+  const VecXc rest =
+      f - multiply(x);  // what the holds must exert: the torques that drive the rotors round
   if (w_ != 0.0) {
     // Their inertia and damping take the torque up: turning by c, then what that does to the twist.
     const MatX spins = free_spins();
-    const VecXc c = spin_matrix(spins, matrices_->M, matrices_->C).fullPivLu().solve(spins.transpose().cast<Complex>() * rest);
+    const VecXc c = spin_matrix(spins, matrices_->M, matrices_->C)
+                        .fullPivLu()
+                        .solve(spins.transpose().cast<Complex>() * rest);
     VecXc turned = spins.cast<Complex>() * c;
     VecXc left = rest - inertia_and_damping(turned);
     for (const Index k : first_.at) left[k] = 0;
@@ -121,15 +135,19 @@ void HarmonicSolver::solve_held(VecXc& x) {
   }
   // Rounding leaves some torque where there is none.
   bool driven = false;
-  for (const Index k : first_.at) driven = driven || std::abs(rest[k]) > 1e-9 * torque_size(linear_.system(), *matrices_, x, f, k);
+  for (const Index k : first_.at)
+    driven =
+        driven || std::abs(rest[k]) > 1e-9 * torque_size(linear_.system(), *matrices_, x, f, k);
   if (!driven) {
     add_free_spin(x);
     return;
   }
-  // What depends on where the rotor is held has no answer; displacements and angles are compared with the largest of their kind.
+  // What depends on where the rotor is held has no answer; displacements and angles are compared
+  // with the largest of their kind.
   const VecXc other = answer(last_);
   double largest[2] = {0, 0};
-  for (Index k = 0; k < x.size(); ++k) largest[k % 6 < 3 ? 0 : 1] = std::max(largest[k % 6 < 3 ? 0 : 1], std::abs(x[k]));
+  for (Index k = 0; k < x.size(); ++k)
+    largest[k % 6 < 3 ? 0 : 1] = std::max(largest[k % 6 < 3 ? 0 : 1], std::abs(x[k]));
   for (Index k = 0; k < x.size(); ++k)
     if (!(std::abs(x[k] - other[k]) <= 1e-9 * largest[k % 6 < 3 ? 0 : 1])) x[k] = Complex(nan, nan);
   for (const Index k : first_.at) x[k] = Complex(nan, nan);
@@ -139,13 +157,15 @@ VecXc HarmonicSolver::inertia_and_damping(const VecXc& x) const {
   return Complex(0, w_) * times(matrices_->C, x) - w_ * w_ * times(matrices_->M, x);
 }
 
-MatXc HarmonicSolver::spin_matrix(const MatX& spins, const la::BlockMatrix<6>& M, const la::BlockMatrix<6>& C) const {
+MatXc HarmonicSolver::spin_matrix(const MatX& spins, const la::BlockMatrix<6>& M,
+                                  const la::BlockMatrix<6>& C) const {
   MatXc out(spins.cols(), spins.cols());
   for (Index j = 0; j < spins.cols(); ++j) {
     VecX mass = VecX::Zero(spins.rows()), damping = mass;
     M.add_multiply(1.0, spins.col(j), mass);
     C.add_multiply(1.0, spins.col(j), damping);
-    out.col(j) = spins.transpose().cast<Complex>() * (Complex(0, w_) * damping.cast<Complex>() - w_ * w_ * mass.cast<Complex>());
+    out.col(j) = spins.transpose().cast<Complex>() *
+                 (Complex(0, w_) * damping.cast<Complex>() - w_ * w_ * mass.cast<Complex>());
   }
   return out;
 }
@@ -168,7 +188,8 @@ MatX HarmonicSolver::free_spins() const {
 
 void HarmonicSolver::add_free_spin(VecXc& x) const {
   const MatX spins = free_spins();
-  // As w goes to 0 the torques of damping on the free spins vanish, and where there is no damping those of inertia.
+  // As w goes to 0 the torques of damping on the free spins vanish, and where there is no damping
+  // those of inertia.
   for (const la::BlockMatrix<6>* matrix : {&matrices_->C, &matrices_->M}) {
     MatX on_spins(spins.cols(), spins.cols());
     double size = 0;
@@ -181,7 +202,8 @@ void HarmonicSolver::add_free_spin(VecXc& x) const {
     const VecXc on_x = spins.transpose().cast<Complex>() * times(*matrix, x);
     const Eigen::FullPivLU<MatX> lu(on_spins);
     if (!(size > 0) || !(lu.maxPivot() > 1e-9 * size) || !lu.isInvertible()) continue;
-    const VecXc turn = lu.solve(MatX(on_x.real())).cast<Complex>() + Complex(0, 1) * lu.solve(MatX(on_x.imag())).cast<Complex>();
+    const VecXc turn = lu.solve(MatX(on_x.real())).cast<Complex>() +
+                       Complex(0, 1) * lu.solve(MatX(on_x.imag())).cast<Complex>();
     x -= spins.cast<Complex>() * turn;
     return;
   }

@@ -64,10 +64,9 @@ void PeakTracker::begin(const Snapshot& s) {
 
 namespace {
 
-/// Weights of the polynomial through n + 1 equally spaced values at x in [0, n] (barycentric form: J.-P. Berrut and L. N. Trefethen,
-/// SIAM Review 46, 2004).
-template <std::size_t N>
-std::array<double, N> lagrange(double x) {
+/// Weights of the polynomial through n + 1 equally spaced values at x in [0, n] (barycentric form:
+/// J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 2004).
+template <std::size_t N> std::array<double, N> lagrange(double x) {
   static const auto signed_binomials = [] {
     std::array<double, N> w{};
     double c = 1;
@@ -100,7 +99,8 @@ void PeakTracker::look(StepAccess& s, int k) {
   const Snapshot& now = s.at(t);
   std::vector<Vec2>& seen = seen_[static_cast<std::size_t>(k)];
   seen.resize(points_.size());
-  for (std::size_t i = 0; i < points_.size(); ++i) seen[i] = displacement(now, points_[i].second).tail<2>();
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    seen[i] = displacement(now, points_[i].second).tail<2>();
   spin_[static_cast<std::size_t>(k)] = now.node(reference_).spin();
 }
 

@@ -7,11 +7,12 @@ namespace whirl::app {
 
 namespace {
 
-volatile std::sig_atomic_t asked_by = 0;   // the first signal that asked to stop
+volatile std::sig_atomic_t asked_by = 0;  // the first signal that asked to stop
 
 extern "C" void on_signal(int sig) {
   interrupt::flag.store(true, std::memory_order_relaxed);
-  // Ctrl-C twice ends it at once. A terminal that closes sends SIGHUP more than once, and other signals with it.
+  // Ctrl-C twice ends it at once. A terminal that closes sends SIGHUP more than once, and other
+  // signals with it.
   if (asked_by == sig && sig != SIGHUP) {
     std::signal(sig, SIG_DFL);
     std::raise(sig);
@@ -22,7 +23,7 @@ extern "C" void on_signal(int sig) {
 void handle(int sig) {
   struct sigaction before {};
   ::sigaction(sig, nullptr, &before);
-  if (before.sa_handler == SIG_IGN) return;   // nohup, or a job in the background
+  if (before.sa_handler == SIG_IGN) return;  // nohup, or a job in the background
   struct sigaction action {};
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;

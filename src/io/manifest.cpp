@@ -17,7 +17,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view head = "# Files in this folder that whirl made. Later runs replace these and leave all others alone.\n";
+constexpr std::string_view head =
+    "# Files in this folder that whirl made. Later runs replace these and leave all others "
+    "alone.\n";
 
 bool is_there(const fs::path& p) {
   std::error_code ec;
@@ -53,7 +55,10 @@ void move_aside(const fs::path& file) {
   std::error_code ec;
   fs::rename(file, kept, ec);
   if (ec) io_failure(file, "cannot move aside", ec.value());
-  std::fputs(fmt::format("note: '{}' was made by no run of whirl: it is kept as '{}'\n", file.string(), kept.filename().string()).c_str(), stderr);
+  std::fputs(fmt::format("note: '{}' was made by no run of whirl: it is kept as '{}'\n",
+                         file.string(), kept.filename().string())
+                 .c_str(),
+             stderr);
 }
 
 }  // namespace
@@ -65,7 +70,7 @@ Manifest::Manifest(fs::path root) : root_(std::move(root)) {
     return;
   }
   const std::string text = regular(list) ? read_text(list) : std::string();
-  if (!text.starts_with(head)) {   // the user's own
+  if (!text.starts_with(head)) {  // the user's own
     move_aside(list);
     return;
   }
@@ -94,7 +99,8 @@ void Manifest::append(const std::string& line) {
   const fs::path list = root_ / file_name;
   const int fd = ::open(list.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (fd < 0) io_failure(list, "cannot write", errno);
-  const std::string text = (::lseek(fd, 0, SEEK_END) == 0 ? std::string(head) : std::string()) + line + "\n";
+  const std::string text =
+      (::lseek(fd, 0, SEEK_END) == 0 ? std::string(head) : std::string()) + line + "\n";
   const ssize_t n = ::write(fd, text.data(), text.size());
   const int e = errno;
   ::close(fd);
@@ -104,7 +110,8 @@ void Manifest::append(const std::string& line) {
 void Manifest::claim(std::string_view given) {
   const std::string name(given);
   if (!inside(name))
-    io_failure(root_ / name, "nothing is written through a symbolic link, or outside the results folder:");
+    io_failure(root_ / name,
+               "nothing is written through a symbolic link, or outside the results folder:");
   if (names_.count(name)) return;
   const fs::path file = root_ / name;
   const bool folder = [&] {

@@ -1,5 +1,6 @@
-// Numbers that are none. A NaN or an infinity in a results file is right only where the file says what it means (a mode that is not
-// there at a speed: Table::nan_means). Every other one is counted by the writers, and the run says so at its end.
+// Numbers that are none. A NaN or an infinity in a results file is right only where the file says
+// what it means (a mode that is not there at a speed: Table::nan_means). Every other one is counted
+// by the writers, and the run says so at its end.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -9,8 +10,8 @@
 namespace whirl::io {
 
 struct NonFinite {
-  std::string file;          ///< name of the file, without folders
-  std::string column;        ///< the first one that has some
+  std::string file;    ///< name of the file, without folders
+  std::string column;  ///< the first one that has some
   std::size_t count = 0;
 };
 

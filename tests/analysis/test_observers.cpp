@@ -1,4 +1,5 @@
-// Observers: peaks found between steps, at a cost that hardly grows with the number of points; the energy that a motion turns over.
+// Observers: peaks found between steps, at a cost that hardly grows with the number of points; the
+// energy that a motion turns over.
 #include "rotors.hpp"
 #include <analysis/observer.hpp>
 #include <analysis/transient.hpp>
@@ -29,7 +30,8 @@ class Counted final : public analysis::StepAccess {
 };
 
 struct CountedPeaks final : analysis::Observer {
-  explicit CountedPeaks(std::vector<std::pair<std::string, analysis::Point>> points) : tracker(std::move(points), 0) {}
+  explicit CountedPeaks(std::vector<std::pair<std::string, analysis::Point>> points)
+      : tracker(std::move(points), 0) {}
   void begin(const analysis::Snapshot& s) override { tracker.begin(s); }
   void step(analysis::StepAccess& s) override {
     Counted counted(s);
@@ -42,12 +44,14 @@ struct CountedPeaks final : analysis::Observer {
 
 /// The largest amplitude of the dense output itself, looked at 100 times a step.
 struct DenseSearch final : analysis::Observer {
-  explicit DenseSearch(std::vector<analysis::Point> p) : points(std::move(p)), amplitude(points.size()), spin(points.size()) {}
+  explicit DenseSearch(std::vector<analysis::Point> p)
+      : points(std::move(p)), amplitude(points.size()), spin(points.size()) {}
   void step(analysis::StepAccess& s) override {
     for (int k = 0; k <= 100; ++k) {
       const analysis::Snapshot& now = s.at(s.t0() + (s.t1() - s.t0()) * k / 100);
       for (std::size_t i = 0; i < points.size(); ++i)
-        if (const double r = analysis::displacement(now, points[i]).tail<2>().norm(); r > amplitude[i]) {
+        if (const double r = analysis::displacement(now, points[i]).tail<2>().norm();
+            r > amplitude[i]) {
           amplitude[i] = r;
           spin[i] = now.node(0).spin();
         }
@@ -71,7 +75,8 @@ struct Released {
     start = system->make_state();
     for (std::size_t i = 0; i < rotor.node.size(); ++i) {
       start.q[6 * rotor.node[i] + 1] = 1e-4 * std::sin(pi * rotor.x[i] / 0.6);
-      start.q[6 * rotor.node[i] + 5] = 1e-4 * pi / 0.6 * std::cos(pi * rotor.x[i] / 0.6);   // bent, not sheared
+      start.q[6 * rotor.node[i] + 5] =
+          1e-4 * pi / 0.6 * std::cos(pi * rotor.x[i] / 0.6);  // bent, not sheared
       start.q[6 * rotor.node[i] + 2] = 2e-5;
       start.v[6 * rotor.node[i] + whirl::system::spin_phi] = 100.0;
     }
@@ -98,12 +103,14 @@ TEST(Observers, PeaksOfManyPointsShareTheirLooks) {
   }
   CountedPeaks peaks(named);
   DenseSearch dense(points);
-  const auto result = analysis::run_transient(problem, r.start, options_of(0.003, 1e-3), {&peaks, &dense});
+  const auto result =
+      analysis::run_transient(problem, r.start, options_of(0.003, 1e-3), {&peaks, &dense});
   ASSERT_EQ(result.reason, analysis::StopReason::end_time);
-  EXPECT_LE(peaks.most, 9);   // once some thirty a point
+  EXPECT_LE(peaks.most, 9);  // once some thirty a point
   for (std::size_t i = 0; i < points.size(); ++i) {
     const analysis::Peak& p = peaks.tracker.peaks()[i];
-    // a maximum is flat: looks at h/100 miss it by (w h/200)^2/2, which is 1e-5 for steps of a radian; the polynomial of order 8 adds 1e-9
+    // a maximum is flat: looks at h/100 miss it by (w h/200)^2/2, which is 1e-5 for steps of a
+    // radian; the polynomial of order 8 adds 1e-9
     EXPECT_NEAR(p.amplitude, dense.amplitude[i], 1e-5 * p.amplitude) << i;
     EXPECT_GE(p.amplitude, dense.amplitude[i] * (1 - 1e-9)) << i;
   }
@@ -114,7 +121,8 @@ TEST(Observers, ConservativeMotionTurnsOverItsPotentialEnergy) {
   system::SystemProblem problem(*r.system);
   analysis::EnergyBalance energy;
   analysis::run_transient(problem, r.start, options_of(0.005, 1e-3), {&energy});
-  // nothing comes in or goes out, so that all that changes in the balance is its defect: it cannot be its own measure
+  // nothing comes in or goes out, so that all that changes in the balance is its defect: it cannot
+  // be its own measure
   EXPECT_EQ(energy.supplied(), 0.0);
   EXPECT_EQ(energy.dissipated(), 0.0);
   EXPECT_GT(energy.worst_defect(), 0.0);
@@ -135,6 +143,6 @@ TEST(Observers, RowsOutsideTheWindowCostNothing) {
   while (slow.next() <= 7.05) slow.advance();
   fast.pass(7.05);
   EXPECT_EQ(slow.count(), fast.count());
-  fast.pass(3.0);   // never back
+  fast.pass(3.0);  // never back
   EXPECT_EQ(slow.count(), fast.count());
 }

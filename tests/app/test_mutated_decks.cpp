@@ -1,6 +1,7 @@
-// Decks that went wrong in the writing: lines deleted, tables deleted, values blanked, torn off. Reading, meshing and assembling such a
-// deck ends in a clean error (code known to `whirl explain`, a message, the line) or in a model whose forces can be evaluated, never
-// in a crash. A seeded sample of the examples' decks; WHIRL_MUTANTS=N tries N of each deck.
+// Decks that went wrong in the writing: lines deleted, tables deleted, values blanked, torn off.
+// Reading, meshing and assembling such a deck ends in a clean error (code known to `whirl explain`,
+// a message, the line) or in a model whose forces can be evaluated, never in a crash. A seeded
+// sample of the examples' decks; WHIRL_MUTANTS=N tries N of each deck.
 #include <assembly/build_system.hpp>
 #include <core/error.hpp>
 #include <deck/deck.hpp>
@@ -51,26 +52,36 @@ std::pair<std::size_t, std::size_t> table_of(const Lines& lines, std::size_t at)
 Lines with_mistake(Lines lines, std::size_t at, unsigned kind, std::mt19937& random) {
   const auto from = lines.begin() + static_cast<std::ptrdiff_t>(at);
   const std::size_t equal = lines[at].find('=');
-  const char* values[] = {" \"\"", " []", " {}", " 0", " -1", " \"x\"", " 1e300", " true", " [[]]", " \"nan\"", ""};
+  const char* values[] = {" \"\"",  " []",   " {}",   " 0",       " -1", " \"x\"",
+                          " 1e300", " true", " [[]]", " \"nan\"", ""};
   switch (kind) {
-    case 0: lines.erase(from); break;
+    case 0:
+      lines.erase(from);
+      break;
     case 1: {
       const auto [begin, end] = table_of(lines, at);
-      lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(begin), lines.begin() + static_cast<std::ptrdiff_t>(end));
+      lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(begin),
+                  lines.begin() + static_cast<std::ptrdiff_t>(end));
       break;
     }
     case 2:
-      if (equal != std::string::npos) lines[at] = lines[at].substr(0, equal + 1) + values[random() % std::size(values)];
-      else lines.erase(from);
+      if (equal != std::string::npos)
+        lines[at] = lines[at].substr(0, equal + 1) + values[random() % std::size(values)];
+      else
+        lines.erase(from);
       break;
-    case 3: lines.insert(from, lines[at]); break;
-    case 4: lines.resize(at); break;
-    case 5: {   // a letter lost
+    case 3:
+      lines.insert(from, lines[at]);
+      break;
+    case 4:
+      lines.resize(at);
+      break;
+    case 5: {  // a letter lost
       std::string& l = lines[at];
       if (!l.empty()) l.erase(random() % l.size(), 1);
       break;
     }
-    default: {   // a digit more or less
+    default: {  // a digit more or less
       std::string& l = lines[at];
       const std::size_t digit = l.find_first_of("123456789");
       if (digit != std::string::npos) l.replace(digit, 1, random() % 2 ? "0" : "9000");
@@ -85,13 +96,14 @@ std::string trouble(const std::string& text, const fs::path& folder) {
   for (const Diagnostic& x : d.diagnostics) {
     if (x.severity == Diagnostic::Severity::note) continue;
     if (!find_code(x.code)) return "unknown code '" + x.code + "': " + x.message;
-    const bool nowhere = x.where.line == 0 && x.code != "E03";   // an empty file has no lines
+    const bool nowhere = x.where.line == 0 && x.code != "E03";  // an empty file has no lines
     if (x.message.empty() || nowhere) return "no message or no line: " + format(x);
   }
   if (!d.ok()) return d.diagnostics.empty() ? "refused without a word" : "";
-  double elements = 0;   // a mistake may ask for a billion of them, which is refused when memory is
+  double elements = 0;  // a mistake may ask for a billion of them, which is refused when memory is
   for (const auto& s : d.model.shafts)
-    for (const auto& x : s.sections) elements += std::max<double>(x.min_elements, x.length / x.max_element_length);
+    for (const auto& x : s.sections)
+      elements += std::max<double>(x.min_elements, x.length / x.max_element_length);
   if (!(elements < 1e5)) return "";
   try {
     const meshes::Mesh mesh = meshes::make_mesh(d.model);
@@ -136,7 +148,8 @@ TEST(MutatedDecks, AreRefusedCleanlyOrRead) {
         what += " kind " + std::to_string(kind) + " at line " + std::to_string(at + 1);
         changed = with_mistake(std::move(changed), at, kind, random);
       }
-      if (wanted) std::ofstream("/tmp/whirl_mutant.toml") << text_of(changed);   // what it was when it crashes
+      if (wanted)
+        std::ofstream("/tmp/whirl_mutant.toml") << text_of(changed);  // what it was when it crashes
       const std::string bad = trouble(text_of(changed), decks[k].parent_path());
       EXPECT_TRUE(bad.empty()) << decks[k] << what << "\n" << bad << "\n" << text_of(changed);
       ++tried;
@@ -151,7 +164,8 @@ TEST(MutatedDecks, WithoutAReadableShaft) {
     const std::string text = text_of(lines_of(e.path() / "deck.toml"));
     // the typo that destroys every shaft; a list of none; and none at all
     std::string typo = text, none;
-    for (std::size_t p; (p = typo.find("[shaft")) != std::string::npos;) typo.replace(p, 6, "[shft");
+    for (std::size_t p; (p = typo.find("[shaft")) != std::string::npos;)
+      typo.replace(p, 6, "[shft");
     bool inside = false;
     std::istringstream in(text);
     for (std::string line; std::getline(in, line);) {

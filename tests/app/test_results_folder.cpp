@@ -1,4 +1,5 @@
-// A results folder belongs to its user: runs replace and remove what runs made and leave everything else alone; one run at a time.
+// A results folder belongs to its user: runs replace and remove what runs made and leave everything
+// else alone; one run at a time.
 #include <gtest/gtest.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -72,8 +73,12 @@ std::string deck(const std::string& rest, const std::string& probe = "P") {
   return text + rest;
 }
 
-constexpr const char* response = "[[step]]\nname = \"r\"\ntype = \"unbalance_response\"\nspeed = { start = \"500 rpm\", stop = \"1500 rpm\", points = 3 }\n";
-constexpr const char* motion = "[[step]]\nname = \"m\"\ntype = \"transient\"\nstart = \"rest\"\ninitial_speed = \"1000 rpm\"\nduration = \"DURATION\"\n";
+constexpr const char* response =
+    "[[step]]\nname = \"r\"\ntype = \"unbalance_response\"\nspeed = { start = \"500 rpm\", stop = "
+    "\"1500 rpm\", points = 3 }\n";
+constexpr const char* motion =
+    "[[step]]\nname = \"m\"\ntype = \"transient\"\nstart = \"rest\"\ninitial_speed = \"1000 "
+    "rpm\"\nduration = \"DURATION\"\n";
 
 std::string moving(const std::string& duration, const std::string& more = "") {
   std::string text = motion;
@@ -84,7 +89,9 @@ std::string moving(const std::string& duration, const std::string& more = "") {
 class ResultsFolder : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("whirl_folder_" + std::to_string(::getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ =
+        fs::temp_directory_path() / ("whirl_folder_" + std::to_string(::getpid()) + "_" +
+                                     testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
     fs::current_path(folder_);
   }
@@ -92,7 +99,8 @@ class ResultsFolder : public testing::Test {
     fs::current_path("/");
     fs::remove_all(folder_);
   }
-  /// Starts `whirl run` with these arguments, its output in log.txt (or into a pipe that nobody reads).
+  /// Starts `whirl run` with these arguments, its output in log.txt (or into a pipe that nobody
+  /// reads).
   pid_t start(const std::vector<std::string>& arguments, bool closed_pipe = false) {
     int ends[2] = {-1, -1};
     if (closed_pipe && ::pipe(ends) != 0) return -1;
@@ -118,7 +126,8 @@ class ResultsFolder : public testing::Test {
   }
   int run(const std::vector<std::string>& arguments) { return wait(start(arguments)); }
   static bool appears(const fs::path& p, double seconds = 20) {
-    for (double t = 0; t < seconds && !fs::exists(p); t += 0.02) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (double t = 0; t < seconds && !fs::exists(p); t += 0.02)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
     return fs::exists(p);
   }
   fs::path folder_;
@@ -128,11 +137,15 @@ class ResultsFolder : public testing::Test {
 
 TEST_F(ResultsFolder, TheUsersOwnFilesStay) {
   write("d.toml", deck(response));
-  for (const char* own : {"plots/mine.svg", "plots/r_P_bode.svg", "checkpoint/mine.whirl", "summary.json", "r_response.csv", "manifest.txt", "vtk/m/frame_notes.txt"}) write(own, own);
+  for (const char* own :
+       {"plots/mine.svg", "plots/r_P_bode.svg", "checkpoint/mine.whirl", "summary.json",
+        "r_response.csv", "manifest.txt", "vtk/m/frame_notes.txt"})
+    write(own, own);
   ASSERT_EQ(run({"d.toml", "-o", "."}), 0) << read("log.txt");
   // twice: the second run knows what the first one made
   ASSERT_EQ(run({"d.toml", "-o", "."}), 0) << read("log.txt");
-  for (const char* own : {"plots/mine.svg", "checkpoint/mine.whirl", "vtk/m/frame_notes.txt"}) EXPECT_EQ(read(own), own);
+  for (const char* own : {"plots/mine.svg", "checkpoint/mine.whirl", "vtk/m/frame_notes.txt"})
+    EXPECT_EQ(read(own), own);
   // where a result has the same name, the user's file is moved aside
   for (const char* own : {"plots/r_P_bode.svg", "summary.json", "r_response.csv", "manifest.txt"}) {
     EXPECT_EQ(read(std::string(own) + ".kept"), own);
@@ -178,7 +191,10 @@ TEST_F(ResultsFolder, OneRunAtATime) {
   ASSERT_EQ(::write(held, "4711\n", 5), 5);
   ASSERT_EQ(::flock(held, LOCK_EX | LOCK_NB), 0);
   EXPECT_EQ(run({"d.toml", "-o", "r"}), 5);
-  EXPECT_NE(read("log.txt").find("error[E97]: another run (process 4711) is writing into the results folder 'r'"), std::string::npos) << read("log.txt");
+  EXPECT_NE(read("log.txt").find(
+                "error[E97]: another run (process 4711) is writing into the results folder 'r'"),
+            std::string::npos)
+      << read("log.txt");
   EXPECT_FALSE(fs::exists("r/run.json"));
   // its process ends, however: the file alone is no lock
   ::close(held);
@@ -195,7 +211,8 @@ TEST_F(ResultsFolder, TwoDecksInOneFolder) {
   EXPECT_NE(read("log.txt").find("E97"), std::string::npos) << read("log.txt");
   ::kill(first, SIGKILL);
   EXPECT_EQ(wait(first), -SIGKILL);
-  EXPECT_EQ(run({"d.toml", "-o", "r"}), 0) << read("log.txt");   // the lock of a dead process does not count
+  EXPECT_EQ(run({"d.toml", "-o", "r"}), 0)
+      << read("log.txt");  // the lock of a dead process does not count
 }
 
 TEST_F(ResultsFolder, AClosedTerminalLeavesACheckpoint) {
@@ -204,7 +221,7 @@ TEST_F(ResultsFolder, AClosedTerminalLeavesACheckpoint) {
   ASSERT_TRUE(appears("r/m.csv"));
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   ::kill(pid, SIGHUP);
-  ::kill(pid, SIGHUP);   // a shell and the terminal both send it
+  ::kill(pid, SIGHUP);  // a shell and the terminal both send it
   EXPECT_EQ(wait(pid), 130) << read("log.txt");
   EXPECT_TRUE(fs::exists("r/checkpoint/m.whirl"));
   EXPECT_NE(read("r/summary.json").find("interrupted"), std::string::npos);
@@ -213,7 +230,7 @@ TEST_F(ResultsFolder, AClosedTerminalLeavesACheckpoint) {
 TEST_F(ResultsFolder, NobodyWhoReadsTheProgressIsNoReasonToStop) {
   write("d.toml", moving("0.2 s"));
   const int code = wait(start({"d.toml", "-o", "r"}, true));
-  EXPECT_EQ(code, 5);   // what it had to say was lost, and only that
+  EXPECT_EQ(code, 5);  // what it had to say was lost, and only that
   EXPECT_TRUE(fs::exists("r/checkpoint/m.whirl"));
   EXPECT_TRUE(fs::exists("r/report.html"));
   EXPECT_NE(read("r/summary.json").find("end time reached"), std::string::npos);
@@ -233,11 +250,17 @@ modes = 12
 TEST_F(ResultsFolder, InterruptsAreHeardInSweeps) {
   const std::vector<std::string> steps{
       many_modes,
-      "[[step]]\nname = \"slow\"\ntype = \"unbalance_response\"\nspeed = { start = \"1 rpm\", stop = \"30000 rpm\", points = 1000000 }\n",
-      "[[step]]\nname = \"slow\"\ntype = \"critical_map\"\nstiffness_min = \"1e4 N/m\"\nstiffness_max = \"1e9 N/m\"\npoints = 10000\nmax_speed = \"30000 rpm\"\n",
-      "[[step]]\nname = \"slow\"\ntype = \"stability\"\nspeed = { start = \"1 rpm\", stop = \"30000 rpm\", points = 20000 }\n",
-      "[[step]]\nname = \"slow\"\ntype = \"static\"\nspeeds = { start = \"1 rpm\", stop = \"30000 rpm\", points = 1000000 }\n",
-      "[[step]]\nname = \"slow\"\ntype = \"transient\"\nstart = \"rest\"\ninitial_speed = \"1000 rpm\"\nduration = \"1000 s\"\n[output]\nevery = \"1 ns\"\nspeed_window = [\"5000 rpm\", \"6000 rpm\"]\n",
+      "[[step]]\nname = \"slow\"\ntype = \"unbalance_response\"\nspeed = { start = \"1 rpm\", stop "
+      "= \"30000 rpm\", points = 1000000 }\n",
+      "[[step]]\nname = \"slow\"\ntype = \"critical_map\"\nstiffness_min = \"1e4 "
+      "N/m\"\nstiffness_max = \"1e9 N/m\"\npoints = 10000\nmax_speed = \"30000 rpm\"\n",
+      "[[step]]\nname = \"slow\"\ntype = \"stability\"\nspeed = { start = \"1 rpm\", stop = "
+      "\"30000 rpm\", points = 20000 }\n",
+      "[[step]]\nname = \"slow\"\ntype = \"static\"\nspeeds = { start = \"1 rpm\", stop = \"30000 "
+      "rpm\", points = 1000000 }\n",
+      "[[step]]\nname = \"slow\"\ntype = \"transient\"\nstart = \"rest\"\ninitial_speed = \"1000 "
+      "rpm\"\nduration = \"1000 s\"\n[output]\nevery = \"1 ns\"\nspeed_window = [\"5000 rpm\", "
+      "\"6000 rpm\"]\n",
   };
   for (const auto& step : steps) {
     write("d.toml", deck(step));
@@ -248,7 +271,8 @@ TEST_F(ResultsFolder, InterruptsAreHeardInSweeps) {
     ::kill(pid, SIGINT);
     EXPECT_EQ(wait(pid), 130) << step << read("log.txt");
     // half a second at most, and then the report; a busy machine is allowed for
-    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count(), 5.0) << step;
+    EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count(), 5.0)
+        << step;
     EXPECT_NE(read("r/summary.json").find("interrupted"), std::string::npos) << step;
     fs::remove_all("r");
   }

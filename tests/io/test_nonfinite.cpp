@@ -1,4 +1,5 @@
-// Numbers that are none are counted on their way into a file, except where the table says what they mean.
+// Numbers that are none are counted on their way into a file, except where the table says what they
+// mean.
 #include "temp_folder.hpp"
 #include <core/types.hpp>
 #include <gtest/gtest.h>
@@ -27,16 +28,17 @@ TEST(NonFinite, InTablesUnlessTheyMeanSomething) {
   EXPECT_EQ(noted[0].file, "b.csv");
   EXPECT_EQ(noted[0].column, "speed");
   EXPECT_EQ(noted[0].count, 3u);
-  EXPECT_TRUE(take_nonfinite().empty());   // said once
+  EXPECT_TRUE(take_nonfinite().empty());  // said once
   t.nan_means = "none";
-  folder.write_table("c.csv", t);   // an infinity means nothing anywhere
+  folder.write_table("c.csv", t);  // an infinity means nothing anywhere
   ASSERT_EQ(take_nonfinite().size(), 1u);
 }
 
 TEST(NonFinite, InTimeHistories) {
   TempFolder dir;
   take_nonfinite();
-  const std::vector<Channel> channels{{"t", "s", "", {}, 1.0, ""}, {"P", "m", "", {"y", "z"}, 1.0, ""}};
+  const std::vector<Channel> channels{{"t", "s", "", {}, 1.0, ""},
+                                      {"P", "m", "", {"y", "z"}, 1.0, ""}};
   auto series = make_csv_series(dir.path() / "m.csv");
   series->begin(channels);
   series->append(std::vector<double>{0, 1, 2});
