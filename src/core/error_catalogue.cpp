@@ -277,14 +277,14 @@ const std::vector<CodeInfo>& error_catalogue() {
        "A bearing or coupling between two shafts acts at one point: its force on one shaft is the opposite of that on the other. Where the two places do not "
        "coincide, the couple of the two forces is missing from the balance. Gears are apart across the shafts, never along them.",
        "origin = [\"400 mm\", \"0 mm\", \"0 mm\"]   # the second shaft begins where the first one ends"},
-      {"W06", "an unstable equilibrium",
+      {"W08", "an unstable equilibrium",
        "The state found is in balance, but its static tangent has directions in which a small displacement grows: a column beyond its buckling load, a "
        "shaft on a support of negative stiffness, a path beyond a limit point. The number of directions is that of the negative eigenvalues (inertia of the "
        "factorisation) of a symmetric tangent; of an unsymmetric one (films, cross-coupling) it is that of the negative real eigenvalues, odd for certain where "
        "the determinant is negative. STEP_unstable_direction.csv holds the lowest one. Gyroscopic moments, which may hold an even number of directions in a rotor "
        "that spins, are not counted: a modal or stability step judges those.",
        ""},
-      {"W07", "a buckling load that the path does not confirm",
+      {"W09", "a buckling load that the path does not confirm",
        "Linearised buckling supposes that the structure hardly deforms before it buckles. The equilibria under growing loads were followed to 1.25 times the first "
        "factor; their tangent loses definiteness at another load (more than 2 % away), or not at all, because the load bends the structure on the way (a shallow "
        "arch, a column that is not straight, a force across the plane). The path is right.",
