@@ -101,10 +101,17 @@ void CoefficientGrid<N>::at(double s, double w, Values& v, Values& ds, Values& d
       };
       x[0] += sum(a.value, b.value), x[1] += sum(a.rate, b.value), x[2] += sum(a.value, b.rate);
     }
-  if (s != s_in) x[1].setZero();   // held
-  if (w != w_in) x[2].setZero();
-  if (outside_ == Outside::undefined && (s != s_in || w != w_in))
-    for (Row& r : x) r.setConstant(nan);
+  if (outside_ == Outside::undefined) {
+    // beyond the end by rounding is at the end, as in CoefficientTable
+    const auto beyond = [](double asked, double inside, const std::vector<double>& grid) {
+      return std::abs(asked - inside) > 1e-9 * std::max(std::abs(grid.front()), std::abs(grid.back()));
+    };
+    if (beyond(s, s_in, spin_) || beyond(w, w_in, frequency_))
+      for (Row& r : x) r.setConstant(nan);
+  } else {
+    if (s != s_in) x[1].setZero();   // held
+    if (w != w_in) x[2].setZero();
+  }
   v.set(x[0]), ds.set(x[1]), dw.set(x[2]);
 }
 

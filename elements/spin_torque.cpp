@@ -7,7 +7,7 @@ namespace whirl::elements {
 
 using namespace system;
 
-TorqueLaw::Value TorqueLaw::at(double t, double x, double phi) const {
+TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) const {
   Value v;
   if (of_time) v.T += of_time->at(t).f;
   if (!speed.empty()) {
@@ -33,7 +33,9 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi) const {
   if (dc) v.T += dc->stall * (1.0 - x / dc->no_load_speed), v.dx -= dc->stall / dc->no_load_speed;
   if (governor) {
     const Governor& g = *governor;
-    const double T = g.kp * (g.target - x) + g.ki * (g.target * t - (phi - g.phi0));
+    const Start from = g.start ? *g.start : Start{};
+    const double integral = settled ? 0.0 : g.target * (t - from.time) - (phi - from.angle - g.phi0);
+    const double T = g.kp * (g.target - x) + g.ki * integral;
     if (std::abs(T) < g.max_torque) v.T += T, v.dx -= g.kp, v.dphi -= g.ki;
     else v.T += std::copysign(g.max_torque, T);
   }
@@ -67,9 +69,14 @@ double angle_of(const NodeState& n) { return n.phi + two_pi * n.turns; }
 }  // namespace
 
 template <TorqueAction A>
+TorqueLaw::Value SpinTorque<A>::value(const NodeState& n, const Context& c) const {
+  return law.at(c.time, speed_of<A>(n, e0), angle_of(n), c.averaged);
+}
+
+template <TorqueAction A>
 void SpinTorque<A>::add_force(const Nodes<1>& x, const Context& c, ForceX<7>& f) const {
   const NodeState& n = *x[0];
-  const double T = law.at(c.time, speed_of<A>(n, e0), angle_of(n)).T;
+  const double T = value(n, c).T;
   if constexpr (A == TorqueAction::joint) {
     f[6] -= T;
   } else if constexpr (A == TorqueAction::normal) {
@@ -83,7 +90,7 @@ void SpinTorque<A>::add_force(const Nodes<1>& x, const Context& c, ForceX<7>& f)
 template <TorqueAction A>
 void SpinTorque<A>::add_tangent(const Nodes<1>& x, const Context& c, TangentX<7>& t) const {
   const NodeState& n = *x[0];
-  const TorqueLaw::Value v = law.at(c.time, speed_of<A>(n, e0), angle_of(n));
+  const TorqueLaw::Value v = value(n, c);
   if constexpr (A == TorqueAction::joint) {
     t.C(6, 6) -= v.dx;
     t.K(6, 6) -= v.dphi;
@@ -112,7 +119,7 @@ void SpinTorque<A>::add_tangent(const Nodes<1>& x, const Context& c, TangentX<7>
 template <TorqueAction A>
 void SpinTorque<A>::add_energy(const Nodes<1>& x, const Context& c, Energy& e) const {
   const double speed = speed_of<A>(*x[0], e0);
-  const TorqueLaw::Value v = law.at(c.time, speed, angle_of(*x[0]));
+  const TorqueLaw::Value v = value(*x[0], c);
   e.supplied += (v.T - v.loss) * speed;
   e.dissipated -= v.loss * speed;
 }

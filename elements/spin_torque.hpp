@@ -7,6 +7,7 @@
 #pragma once
 #include <core/law.hpp>
 #include <system/kernel.hpp>
+#include <memory>
 #include <optional>
 
 namespace whirl::elements {
@@ -28,14 +29,19 @@ struct TorqueLaw {
   struct DcLine { double stall = 0, no_load_speed = 0; };
   std::optional<DcLine> dc;
   LawPtr brake;                                   ///< dry torque against the motion, N m, >= 0; null = 0
-  /// kp (target - x) + ki (target t - angle turned), limited to +-max_torque. For a torque on phi the integral of the speed
-  /// error is exactly target t - (phi - phi(0)), with no extra state; ki is used there only.
-  struct Governor { double target = 0, kp = 0, ki = 0, max_torque = infinity, phi0 = 0; };
+  /// Where an integral begins: time, s, and angle, rad, whole turns included. All copies of a law share it.
+  struct Start { double time = 0, angle = 0; };
+  /// kp (target - x) + ki (target (t - t0) - (angle - angle0)), limited to +-max_torque. For a torque on phi the integral of the speed
+  /// error from t0 on is exactly target (t - t0) - (phi - phi(t0)), with no extra state.
+  /// angle0 = phi0, t0 = 0; with `start` t0 = start->time, angle0 = phi0 + start->angle.
+  struct Governor { double target = 0, kp = 0, ki = 0, max_torque = infinity, phi0 = 0; std::shared_ptr<const Start> start{}; };
   std::optional<Governor> governor;
 
   /// Torque, its derivatives in x and in the angle, and the part of it that is loss (<= 0 against x).
   struct Value { double T = 0, dx = 0, dphi = 0, loss = 0; };
-  Value at(double t, double x, double phi) const;
+  /// settled: a steady state, in which no time passes: the integral is what the steady state needs, which is not for this law to say; it
+  /// counts as zero here, and with its slope for small motions about the state.
+  Value at(double t, double x, double phi, bool settled = false) const;
   std::vector<double> breakpoints() const;
 };
 
@@ -56,6 +62,9 @@ struct SpinTorque {
   /// Torque at a state, N m, and the speed it works on, rad/s.
   struct Working { double torque, speed; };
   Working working(const system::NodeState& n, double time) const;
+
+ private:
+  TorqueLaw::Value value(const system::NodeState& n, const system::Context& c) const;
 };
 
 using JointTorque = SpinTorque<TorqueAction::joint>;

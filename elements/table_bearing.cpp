@@ -43,6 +43,7 @@ CoefficientTable<N>::CoefficientTable(std::vector<double> spin, std::vector<Valu
 template <int N>
 void CoefficientTable<N>::at(double s, Values& v, Values& dv) const {
   Row x = Row::Zero(), dx = Row::Zero();
+  if (outside_ == Outside::undefined && covers(s)) s = std::clamp(s, spin_.front(), spin_.back());
   if (!covers(s)) x.setConstant(nan), dx.setConstant(nan);
   else if (s <= spin_.front() || spin_.size() == 1) x = value_.front();
   else if (s >= spin_.back()) x = value_.back();

@@ -9,6 +9,8 @@
 #pragma once
 #include <elements/lateral_joint.hpp>
 #include <elements/six_motion.hpp>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -37,13 +39,15 @@ class CoefficientTable {
   CoefficientTable(std::vector<double> spin, std::vector<Values> rows, Between between, Outside outside);
   /// Values at spin s with their derivatives in s; NaN outside an undefined range.
   void at(double s, Values& v, Values& dv) const;
-  bool covers(double s) const { return outside_ == Outside::hold || (s >= spin_.front() && s <= spin_.back()); }
+  /// A speed beyond the end by rounding (rpm to rad/s and back, a variation about the end) is that of the end.
+  bool covers(double s) const { return outside_ == Outside::hold || (s >= spin_.front() - slack() && s <= spin_.back() + slack()); }
   double first() const { return spin_.front(); }
   double last() const { return spin_.back(); }
   bool has_mass() const { return has_mass_; }
 
  private:
   using Row = typename Values::Row;
+  double slack() const { return 1e-9 * std::max(std::abs(spin_.front()), std::abs(spin_.back())); }
   std::vector<double> spin_;
   std::vector<Row> value_, slope_;
   Between between_;

@@ -88,11 +88,15 @@ Campbell CampbellRecorder::finish(long speeds_solved) {
 Campbell campbell(Linearizer& linear, const CampbellOptions& options) {
   CampbellRecorder recorder(options.speeds, options.shapes);
   ModeTracker tracker(linear, options.track);
+  std::vector<SpectrumCertificate> certificates;
   for (std::size_t k = 0; k < options.speeds.size(); ++k) {
     const auto& modes = tracker.advance(options.speeds[k]);
     recorder.take(k, modes, tracker.lines());
+    certificates.push_back(tracker.solver().certificate());
   }
-  return recorder.finish(tracker.speeds_solved());
+  Campbell out = recorder.finish(tracker.speeds_solved());
+  out.certificates = std::move(certificates);
+  return out;
 }
 
 }  // namespace whirl::analysis

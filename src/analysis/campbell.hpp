@@ -27,6 +27,7 @@ struct Campbell {
   std::vector<double> speeds;
   std::vector<CampbellLine> lines; ///< by frequency at the first speed they appear
   long speeds_solved = 0;          ///< with those put in to keep the lines apart
+  std::vector<SpectrumCertificate> certificates;   ///< one a speed
 };
 
 /// Collects the modes a tracker finds at the speeds of a diagram.

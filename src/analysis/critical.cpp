@@ -2,9 +2,15 @@
 
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
+#include <la/multiply.hpp>
+
+#include <Eigen/QR>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace whirl::analysis {
 
@@ -15,23 +21,28 @@ constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 class Counter {
  public:
   Counter(Linearizer& linear, const CriticalOptions& o)
-      : linear_(linear), options_(o), active_(select_motion(linear.system(), o.motion)),
-        lu_(linear.system().pattern(), active_) {}
+      : linear_(linear), options_(o), motion_(linear.system(), o.motion),
+        lu_(linear.system().pattern(), motion_.active()) {}
   Index count(double Omega) { return count(Omega, options_.order * Omega); }
   /// tables: frequency of supports tabulated against it.
   Index count(double Omega, double tables) {
-    const double w = options_.order * Omega;
-    const la::MCK& m = linear_.conservative_at(Omega, tables);
-    // exactly on an eigenvalue: look beside it
-    if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) != la::Status::ok) return count(Omega * (1 + 1e-12), tables);
-    return lu_.negative_eigenvalues();
+    // exactly on an eigenvalue: look beside it, ever farther
+    for (double beside = 1e-12; beside < 1e-6; beside *= 2) {
+      const double w = options_.order * Omega;
+      const la::MCK& m = matrices(Omega, tables);
+      if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok) return lu_.negative_eigenvalues();
+      Omega *= 1 + beside;
+    }
+    throw run_error("E77", fmt::format("critical speeds cannot be counted near {:.6g} rpm: the matrix is singular at every speed tried", Omega * 30.0 / pi),
+                    "parts without mass, or stiffnesses too far apart for the digits of the computer");
   }
-  const std::vector<unsigned char>& active() const { return active_; }
+  std::span<const unsigned char> active() const { return motion_.active(); }
+  const la::MCK& matrices(double Omega, double tables) { return motion_.reduce(linear_.conservative_at(Omega, tables)); }
 
  private:
   Linearizer& linear_;
   CriticalOptions options_;
-  std::vector<unsigned char> active_;
+  MotionReduction motion_;
   la::BlockLu<Complex> lu_;
 };
 
@@ -79,7 +90,7 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     if (!rows.empty() && k.nb < k.na && counter.count(k.b, o.order * middle) >= counter.count(k.a, o.order * middle)) continue;   // the table raised it
     const Index wanted = std::abs(k.nb - k.na);
     // The modes of the bracket's middle nearest to i n Omega.
-    const la::MCK& m = linear.conservative_at(middle, o.order * middle);
+    const la::MCK& m = counter.matrices(middle, o.order * middle);
     la::ModeOptions lo;
     lo.count = wanted + 2;
     lo.shift = Complex(0, o.order * middle);
@@ -91,7 +102,7 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     for (Index j = 0; j < wanted; ++j) {
       // Newton's method on Omega: the frequency of the mode less n Omega, by secant from two neighbouring speeds.
       const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
-      WhirlMode mode = describe_mode(near[at(j)], linear.conservative_at(middle, o.order * middle), linear);
+      WhirlMode mode = describe_mode(near[at(j)], counter.matrices(middle, o.order * middle), linear);
       double x0 = middle, f0 = gap(x0, mode);
       double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
       for (int it = 0; it < 40 && f1 != 0.0; ++it) {
@@ -150,38 +161,168 @@ std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions&
   return out;
 }
 
-CriticalMap critical_map(const std::function<system::System(double)>& build, const CriticalMapOptions& options) {
-  CriticalMap map;
-  map.stiffness = options.stiffness;
-  for (std::size_t i = 0; i < options.stiffness.size(); ++i) {
-    const system::System system = build(options.stiffness[i]);
-    Running running = options.running;
-    running.top_speed = std::max(running.top_speed, options.critical.max_speed);
-    Linearizer linear(system, running);
-    std::size_t forward = 0, backward = 0;
-    double last_planar = -1;
-    for (const Critical& c : critical_speeds(linear, options.critical)) {
-      if (c.mode.kind != ModeKind::lateral) continue;
-      const bool back = c.mode.direction == Direction::backward;
-      if (back && options.forward_only) continue;
-      if (c.mode.direction == Direction::planar) {   // without gyroscopic effect both planes have the same speed: one line
-        if (options.forward_only && std::abs(c.speed - last_planar) < 1e-9 * c.speed) continue;
-        last_planar = c.speed;
+namespace {
+
+/// Critical speeds at one stiffness. Those at one speed (1e-9) share their space of shapes.
+struct MapPoint {
+  struct Entry {
+    Critical critical;
+    MatXc space;      ///< shapes of all critical speeds here, this one first
+    Index line = -1;
+  };
+  std::unique_ptr<system::System> system;
+  la::MCK matrices;   ///< mass: the metric
+  std::vector<Entry> entries;
+};
+
+bool same_speed(const Critical& a, const Critical& b) { return std::abs(a.speed - b.speed) <= 1e-9 * b.speed; }
+
+/// Share of x within the space, 0 .. 1, in the metric of the mass.
+double share_in(const la::MCK& m, const VecXc& x, const MatXc& space) {
+  MatXc mass_space(space.rows(), space.cols());
+  VecXc column;
+  for (Index k = 0; k < space.cols(); ++k) {
+    la::multiply(m.M, VecXc(space.col(k)), column);
+    mass_space.col(k) = column;
+  }
+  la::multiply(m.M, x, column);
+  const double size = std::abs(x.dot(column));
+  if (!(size > 0)) return 0.0;
+  const VecXc product = mass_space.adjoint() * x;
+  const MatXc gram = space.adjoint() * mass_space;
+  return std::abs(product.dot(gram.completeOrthogonalDecomposition().solve(product))) / size;
+}
+
+class MapTracker {
+ public:
+  MapTracker(const std::function<system::System(double)>& build, const CriticalMapOptions& options) : build_(build), options_(options) {}
+
+  CriticalMap run() {
+    const std::vector<double>& k = options_.stiffness;
+    for (std::size_t i = 0; i < k.size(); ++i) {
+      MapPoint next = solve(k[i]);
+      if (i > 0) advance(k[i - 1], k[i], next, 4);
+      number(next);
+      for (const MapPoint::Entry& e : next.entries) lines_[static_cast<std::size_t>(e.line)].speed[i] = e.critical.speed;
+      last_ = std::move(next);
+    }
+    return finish();
+  }
+
+ private:
+  struct Pair { double score, like; std::size_t old, now; };
+
+  MapPoint solve(double stiffness) const {
+    MapPoint p;
+    p.system = std::make_unique<system::System>(build_(stiffness));
+    Running running = options_.running;
+    running.top_speed = std::max(running.top_speed, options_.critical.max_speed);
+    Linearizer linear(*p.system, running);
+    if (options_.undeformed) linear.stay_undeformed();
+    const std::vector<Critical> all = critical_speeds(linear, options_.critical);
+    MotionReduction motion(*p.system, options_.critical.motion);
+    p.matrices = motion.reduce(linear.conservative_at(options_.critical.max_speed));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!wanted(all, i)) continue;
+      MapPoint::Entry e;
+      e.critical = all[i];
+      std::vector<std::size_t> group{i};
+      for (std::size_t j = 0; j < all.size(); ++j)
+        if (j != i && same_speed(all[i], all[j])) group.push_back(j);
+      e.space.resize(all[i].mode.x.size(), static_cast<Index>(group.size()));
+      for (std::size_t j = 0; j < group.size(); ++j) e.space.col(static_cast<Index>(j)) = all[group[j]].mode.x;
+      p.entries.push_back(std::move(e));
+    }
+    return p;
+  }
+
+  bool wanted(const std::vector<Critical>& all, std::size_t i) const {
+    const WhirlMode& m = all[i].mode;
+    const Motion motion = options_.critical.motion;
+    if (motion == Motion::lateral && m.kind != ModeKind::lateral) return false;
+    if (motion == Motion::torsional && m.kind != ModeKind::torsional) return false;
+    if (motion == Motion::axial && m.kind != ModeKind::axial) return false;
+    if (!options_.forward_only || m.kind != ModeKind::lateral) return true;
+    if (m.direction == Direction::backward) return false;
+    // without gyroscopic effect both planes have the same speed: one line
+    for (std::size_t j = 0; j < i; ++j)
+      if (same_speed(all[j], all[i]) && all[j].mode.kind == ModeKind::lateral && all[j].mode.direction != Direction::backward) return false;
+    return true;
+  }
+
+  /// Pairs of the last point with the next; whether every one of them is sure.
+  bool pair(const MapPoint& next, std::vector<Pair>& taken) const {
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < last_.entries.size(); ++i)
+      for (std::size_t j = 0; j < next.entries.size(); ++j) {
+        const Critical& a = last_.entries[i].critical;
+        const Critical& b = next.entries[j].critical;
+        if ((a.mode.direction == Direction::backward) != (b.mode.direction == Direction::backward)) continue;
+        const double like = share_in(next.matrices, a.mode.x, next.entries[j].space);
+        const double apart = std::abs(a.speed - b.speed) / (a.speed + b.speed);
+        if (like >= 0.05) pairs.push_back({like - 0.5 * apart, like, i, j});
       }
-      // the n-th of its direction continues the n-th line of that direction
-      const std::size_t number = back ? backward++ : forward++;
-      std::size_t seen = 0;
-      CriticalMapLine* line = nullptr;
-      for (CriticalMapLine& l : map.lines)
-        if ((l.direction == Direction::backward) == back && seen++ == number) line = &l;
-      if (!line) {
-        map.lines.push_back({back ? Direction::backward : Direction::forward, std::vector<double>(options.stiffness.size(), nan)});
-        line = &map.lines.back();
-      }
-      line->speed[i] = c.speed;
+    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.score > b.score; });
+    std::vector<unsigned char> old_taken(last_.entries.size(), 0), now_taken(next.entries.size(), 0);
+    bool sure = true;
+    for (const Pair& p : pairs) {
+      if (old_taken[p.old] || now_taken[p.now]) continue;
+      old_taken[p.old] = now_taken[p.now] = 1;
+      taken.push_back(p);
+      sure = sure && p.like >= 0.6;
+    }
+    return sure;
+  }
+
+  /// Hands the lines of last_, at stiffness a, on to `next`, at b.
+  void advance(double a, double b, MapPoint& next, int halvings) {
+    std::vector<Pair> pairs;
+    if (!pair(next, pairs) && halvings > 0) {
+      const double middle = std::sqrt(a * b);
+      MapPoint between = solve(middle);
+      advance(a, middle, between, halvings - 1);
+      number(between);
+      last_ = std::move(between);
+      advance(middle, b, next, halvings - 1);
+      return;
+    }
+    for (const Pair& p : pairs) next.entries[p.now].line = last_.entries[p.old].line;
+  }
+
+  /// New lines for what continues none.
+  void number(MapPoint& p) {
+    for (MapPoint::Entry& e : p.entries) {
+      if (e.line >= 0) continue;
+      e.line = static_cast<Index>(lines_.size());
+      lines_.push_back({e.critical.mode.kind, e.critical.mode.direction, std::vector<double>(options_.stiffness.size(), nan)});
     }
   }
-  return map;
+
+  CriticalMap finish() {
+    CriticalMap map;
+    map.stiffness = options_.stiffness;
+    const auto first = [](const CriticalMapLine& l) {
+      return std::find_if(l.speed.begin(), l.speed.end(), [](double x) { return !std::isnan(x); }) - l.speed.begin();
+    };
+    for (CriticalMapLine& l : lines_)   // met between the stiffnesses asked for alone: nothing to show
+      if (first(l) < static_cast<std::ptrdiff_t>(l.speed.size())) map.lines.push_back(std::move(l));
+    std::stable_sort(map.lines.begin(), map.lines.end(), [&](const CriticalMapLine& a, const CriticalMapLine& b) {
+      const auto i = first(a), j = first(b);
+      return i != j ? i < j : a.speed[static_cast<std::size_t>(i)] < b.speed[static_cast<std::size_t>(j)];
+    });
+    return map;
+  }
+
+  const std::function<system::System(double)>& build_;
+  const CriticalMapOptions& options_;
+  MapPoint last_;
+  std::vector<CriticalMapLine> lines_;
+};
+
+}  // namespace
+
+CriticalMap critical_map(const std::function<system::System(double)>& build, const CriticalMapOptions& options) {
+  return MapTracker(build, options).run();
 }
 
 }  // namespace whirl::analysis

@@ -13,6 +13,35 @@ namespace whirl::analysis {
 
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Whether the residual r at s is small against the load. Pressed against its wall a film is so stiff that corrections vanish long
+/// before the forces balance.
+bool balanced(RunningSystem& running, double Omega, const system::State& s, const VecX& r, const la::MCK& matrices,
+              std::span<const unsigned char> free) {
+  const system::System& sys = running.system();
+  const double factor = running.load();
+  VecX unloaded(r.size());
+  running.set_load(0.0);
+  const bool inside = running.residual(s.frames, Omega, s.q, unloaded);
+  running.set_load(factor);
+  if (!inside) return true;
+  const auto& start = sys.pattern().row_start();
+  const auto& cols = sys.pattern().cols();
+  double load = 0.0;
+  for (Index k = 0; k < r.size(); ++k)
+    if (k % 6 < 3) load = std::max(load, std::abs(r[k] - unloaded[k]));
+  for (Index i = 0; i < sys.nodes() && load > 0.0; ++i) {
+    if (sys.node(i).scalar) continue;
+    for (Index k = 6 * i; k < 6 * i + 3; ++k) {
+      if (!free[at(k)] || std::abs(r[k]) <= 1e-3 * load) continue;
+      double products = 0.0;   // rounding of the forces that cancel here
+      for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b)
+        products += matrices.K.block(b).row(k % 6).cwiseAbs().dot(s.q.segment<6>(6 * cols[at(b)]).cwiseAbs());
+      if (std::abs(r[k]) > 1e-3 * load + std::min(1e-15 * products, 1e-2 * load)) return false;
+    }
+  }
+  return true;
+}
 }  // namespace
 
 EquilibriumSolver::EquilibriumSolver(RunningSystem& running, EquilibriumOptions options)
@@ -184,12 +213,14 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
       return Outcome::diverged;
     }
     // A start that needs no correction stays what it is to the last bit: sweeps over speed rely on it.
-    if (it == 0 && is_small(step_, s.q)) return Outcome::converged;
+    if (it == 0 && is_small(step_, s.q) && balanced(running_, Omega, s, r_, matrices_, free_)) return Outcome::converged;
     // Converged, or as small as rounding lets it become.
     if (is_small(step_, s.q) || (damping == 1.0 && size < 1e-8 && size > 0.25 * last)) {
       s.q += step_;
       if (!running_.residual(s.frames, Omega, s.q, r_)) s.q -= step_, running_.residual(s.frames, Omega, s.q, r_);
-      return Outcome::converged;
+      if (balanced(running_, Omega, s, r_, matrices_, free_)) return Outcome::converged;
+      last = size;
+      continue;
     }
     double alpha;
     bool taken = false;

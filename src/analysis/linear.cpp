@@ -1,6 +1,7 @@
 #include <analysis/linear.hpp>
 
 #include <core/error.hpp>
+#include <core/interrupt.hpp>
 #include <system/frequency.hpp>
 
 #include <fmt/format.h>
@@ -35,6 +36,25 @@ void Linearizer::set_equilibrium(const Equilibrium& e) {
   floor_ = largest(r_, solver_.free());
 }
 
+void Linearizer::stay_undeformed() {
+  undeformed_ = true;
+  have_ = false;
+  running_.set_load(0.0);
+}
+
+void Linearizer::take_undeformed(double Omega) {
+  equilibrium_ = Equilibrium();
+  equilibrium_.Omega = Omega;
+  equilibrium_.state = system().make_state();
+  system::State& s = equilibrium_.state;
+  s.t = running_.running().time;
+  running_.impose(s.frames, s.q);
+  running_.set_rates(Omega, s.v);
+  s.a.setZero();
+  equilibrium_.reactions = VecX::Zero(system().size());
+  have_ = true;
+}
+
 bool Linearizer::still_balanced(double Omega) {
   // A rotor in linear bearings keeps its equilibrium at every speed: then the residual stays at its rounding level.
   if (!have_ || !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_)) return false;
@@ -43,9 +63,12 @@ bool Linearizer::still_balanced(double Omega) {
 }
 
 const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
+  throw_if_interrupted();
   running_.set_whirl(0.0);
   if (have_ && Omega == equilibrium_.Omega && running_.running().frequency_dependent()) {
     // One equilibrium at every frequency asked about.
+  } else if (undeformed_) {
+    take_undeformed(Omega);
   } else if (still_balanced(Omega)) {
     equilibrium_.Omega = Omega;
     running_.set_rates(Omega, equilibrium_.state.v);
@@ -99,20 +122,6 @@ void take_conservative_part(const la::MCK& m, la::MCK& out) {
       out.C.block(s) = 0.5 * (m.C.block(s) - m.C.block(t).transpose());
       out.K.block(s) = 0.5 * (m.K.block(s) + m.K.block(t).transpose());
     }
-}
-
-std::vector<unsigned char> select_motion(const system::System& system, Motion kind) {
-  std::vector<unsigned char> out(system.active().begin(), system.active().end());
-  if (kind == Motion::all) return out;
-  for (Index i = 0; i < system.nodes(); ++i) {
-    // components along the axis of the line are axial, spin is torsional, the rest lateral
-    const bool rotates = !system.node(i).scalar;
-    for (int c = 0; c < 6; ++c) {
-      const Motion m = !rotates ? Motion::lateral : c == system::spin_phi ? Motion::torsional : c == system::ux ? Motion::axial : Motion::lateral;
-      if (m != kind) out[at_(6 * i + c)] = 0;
-    }
-  }
-  return out;
 }
 
 }  // namespace whirl::analysis

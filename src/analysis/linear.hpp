@@ -5,6 +5,7 @@
 // of the nonlinear model, averaged over the revolution where something turns (running.hpp).
 #pragma once
 #include <analysis/equilibrium.hpp>
+#include <analysis/motion.hpp>
 
 namespace whirl::analysis {
 
@@ -33,21 +34,27 @@ class Linearizer {
   void set_equilibrium(const Equilibrium& e);
   /// The first equilibrium is sought from this state instead of the reference configuration.
   void start_from(const system::State& s) { first_ = s; }
+  /// From now on everything is about the reference configuration, turning, without gravity and loads. Held unknowns stand at
+  /// their laws; supports answer as they do there.
+  void stay_undeformed();
   /// Forcing amplitudes at the last speed, one for each of running().orders().
   const std::vector<VecXc>& forcing();
   RunningSystem& running() { return running_; }
   bool hysteretic() const { return running_.hysteretic(); }
   const system::System& system() const { return running_.system(); }
+  /// +1 or -1: sense of the spin that whirl at a node is measured against, at the last speed; at rest that of a positive one.
+  double sense(Index node) const { return (Omega() < 0 ? -1.0 : 1.0) * running_.sense(node); }
   /// Unknowns of small motions: what is not held by a support. A free rotor may turn.
   std::span<const unsigned char> active() const { return running_.system().active(); }
 
  private:
   bool still_balanced(double Omega);
+  void take_undeformed(double Omega);
   RunningSystem running_;
   EquilibriumSolver solver_;
   Equilibrium equilibrium_;
   std::optional<system::State> first_;
-  bool have_ = false, have_forcing_ = false;
+  bool have_ = false, have_forcing_ = false, undeformed_ = false;
   Vec2 floor_ = Vec2::Zero();      ///< residual left at the last solution: force, moment
   la::MCK matrices_, conservative_;
   std::vector<VecXc> forcing_;
@@ -56,9 +63,5 @@ class Linearizer {
 
 /// M, (C - C^T)/2, (K + K^T)/2.
 void take_conservative_part(const la::MCK& m, la::MCK& out);
-
-/// Active flags restricted to a kind of motion (others held): for models in which the kinds do not couple.
-enum class Motion { all, lateral, torsional, axial };
-std::vector<unsigned char> select_motion(const system::System& system, Motion kind);
 
 }  // namespace whirl::analysis

@@ -123,6 +123,34 @@ void LinearMotion::find_changing(double t) {
   }
 }
 
+double LinearMotion::power_beside(time::CRef v, time::CRef residual) {
+  // the general residual at the node states of the last evaluation
+  system::Workspace& w = workspace();
+  for (auto& x : w.force) x.setZero();
+  for (const auto& term : system().terms()) term->add_force(w);
+  general_.resize(v.size());
+  for (Index i = 0; i < system().nodes(); ++i) {
+    const Vector<7>& f = w.force[at(i)];
+    general_.segment<3>(6 * i) = f.head<3>();
+    general_[6 * i + system::spin_phi] = f[6];
+    general_.segment<2>(6 * i + 4) = w.D[at(i)].transpose() * f.segment<3>(3);
+  }
+  const double power = v.dot(general_ - residual);
+  return std::isfinite(power) ? power : nan;
+}
+
+time::Problem::Power LinearMotion::power_here(time::CRef v, time::CRef reactions) {
+  Power p = SystemProblem::power_here(v, reactions);
+  p.supplied += power_beside(v, reactions);
+  return p;
+}
+
+time::Problem::Power LinearMotion::exchange_here(time::CRef v, time::CRef reactions) {
+  Power p = SystemProblem::exchange_here(v, reactions);
+  p.supplied += power_beside(v, reactions);
+  return p;
+}
+
 bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
   q_ = q0_, v_ = v0_;
   for (Index i = 0; i < system().nodes(); ++i)

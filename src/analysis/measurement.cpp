@@ -20,14 +20,14 @@ const VecX& Snapshot::reactions() const {
 
 time::Problem::Power Snapshot::power() const {
   if (!have_energy_) {
-    power_ = problem_.power_here(*v_, problem_.driven_by_law() ? reactions() : reactions_);
+    power_ = problem_.power_here(*v_, problem_.power_needs_reactions() ? reactions() : reactions_);
     have_energy_ = true;
   }
   return power_;
 }
 
 time::Problem::Power Snapshot::exchange() const {
-  return have_energy_ ? power_ : problem_.exchange_here(*v_, problem_.driven_by_law() ? reactions() : reactions_);
+  return have_energy_ ? power_ : problem_.exchange_here(*v_, problem_.power_needs_reactions() ? reactions() : reactions_);
 }
 
 const system::Energy& Snapshot::energy() const {

@@ -20,6 +20,8 @@ class Snapshot {
   const system::System& system() const { return problem_.system(); }
   const system::Frames& frames() const { return problem_.frames; }
   const system::NodeState& node(Index i) const { return problem_.workspace().nodes[static_cast<std::size_t>(i)]; }
+  /// Time, gravity and load factor as elements see them.
+  const system::Context& context() const { return problem_.workspace().context; }
   const Vec2 gamma(Index i) const { return q_->segment<2>(6 * i + 4); }
   /// Residual of the state: its held entries are the forces the supports exert, N and N m.
   const VecX& reactions() const;

@@ -3,6 +3,9 @@
 #pragma once
 #include <analysis/measurement.hpp>
 #include <core/archive.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +41,12 @@ class Ticker {
   Ticker(double t_begin, double every) : t0_(t_begin), every_(every) {}
   double next() const { return t0_ + static_cast<double>(k_) * every_; }
   void advance() { ++k_; }
+  /// To the first time beyond t, as if by advance() alone.
+  void pass(double t) {
+    const double turns = every_ > 0 ? std::floor((t - t0_) / every_) - 1 : 0;
+    if (turns > static_cast<double>(k_) && turns < 9e18) k_ = static_cast<long>(turns);
+    while (next() <= t) advance();
+  }
   long count() const { return k_; }
   void set_count(long k) { k_ = k; }
 
@@ -81,7 +90,8 @@ struct Peak {
 };
 class PeakTracker final : public Observer {
  public:
-  /// reference: node whose spin is the speed axis. samples: dense-output evaluations a step (a step may span a large part of a whirl).
+  /// reference: node whose spin is the speed axis. All points share the looks at the dense output of a step, four of them and nine where
+  /// one comes near its peak; between looks each point moves by the polynomial through them (a thousand points cost little more than one).
   PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from = -infinity);
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
@@ -90,10 +100,16 @@ class PeakTracker final : public Observer {
   const std::vector<Peak>& peaks() const { return peaks_; }
 
  private:
+  static constexpr int looks = 9;   ///< at k/8 of the step, k = 0 .. 8
+  void look(StepAccess& s, int k);
+  void refine(StepAccess& s, std::size_t point, double best, double where);
+
   std::vector<std::pair<std::string, Point>> points_;
   std::vector<Peak> peaks_;
   Index reference_;
   double t_from_;
+  std::array<std::vector<Vec2>, looks> seen_;   ///< lateral displacements of all points
+  std::array<double, looks> spin_{};
 };
 
 /// Work and energy: E(t) - E(0) = work supplied - energy dissipated; the defect is the run's own measure of accuracy.
@@ -113,15 +129,23 @@ class EnergyBalance final : public Observer {
   double defect() const { return e1_ - e0_ - supplied_ + dissipated_; }
   double worst_defect() const { return worst_; }
   double largest_kinetic() const { return largest_kinetic_; }
-  /// Largest departure of the stored energy from its start.
-  double largest_change() const { return largest_change_; }
+  /// Energy that changed its place, J: the largest of what was supplied, what was dissipated, and how far the kinetic, the potential
+  /// and the stored energy departed from their starts. What a defect is measured by: in a conservative motion nothing but the
+  /// exchange between kinetic and potential energy. The defect itself is no part of it.
+  double exchanged() const { return exchanged_; }
+  /// Largest kinetic or potential energy, J: the measure of a motion that turns over nothing (a steady whirl without damping).
+  double largest_energy() const { return std::max(largest_kinetic_, largest_potential_); }
+  /// False when the motion left the range in which the energies of its elements are defined (a film's clearance).
+  bool known() const { return known_; }
   /// What the defect may reach by rounding alone: twenty last digits of the stored energy, a sum over elements, a step.
   double rounding() const { return rounding_; }
 
  private:
   std::vector<double> jumps_;
+  void look(const time::Problem::Power& p);
   double rounding_ = 0;
-  double e0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0, largest_change_ = 0;
+  double e0_ = 0, kinetic0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0, largest_potential_ = 0, exchanged_ = 0;
+  bool known_ = true;
 };
 
 /// Largest tilt |gamma| of any node, where and when: how far the run was from the limit of the chart (pi).

@@ -48,7 +48,7 @@ constexpr double steady = 1e-6;
 }  // namespace
 
 RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Motion motion)
-    : linear_(linear), motion_(motion), base_active_(select_motion(linear.system(), motion)), turned_(linear.system().make_matrices()),
+    : linear_(linear), motion_(linear.system(), motion, MotionReduction::Twist::held), turned_(linear.system().make_matrices()),
       raw_(linear.system().make_matrices()) {
   if (linear.running().orders().size() > 1)
     throw run_error("E88", "an asymmetric shaft among shafts of different speeds: no axes exist in which the matrices are constant or have one period",
@@ -70,7 +70,8 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
   step_ = half > steady ? 1 : 2;
   const la::BlockPattern& p = linear.system().pattern();
   if (harmonics_ == 0) {
-    pattern_ = &p, active_ = base_active_;
+    pattern_ = &p;
+    active_.assign(motion_.active().begin(), motion_.active().end());
     return;
   }
   // Node i, harmonic part j -> node (2H+1) i + j: neighbours stay neighbours.
@@ -85,7 +86,7 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
   hill_ = la::MCK(*own_pattern_);
   for (Index i = 0; i < p.size(); ++i)
     for (Index a = 0; a < parts; ++a)
-      for (int c = 0; c < 6; ++c) active_.push_back(base_active_[idx(6 * i + c)]);
+      for (int c = 0; c < 6; ++c) active_.push_back(motion_.active()[idx(6 * i + c)]);
 }
 
 void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
@@ -98,6 +99,7 @@ void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   if (!inside) throw run_error("E76", "no linearisation: the state lies outside the range of an element");
   const system::System& s = linear_.system();
   const la::BlockPattern& p = s.pattern();
+  const la::MCK& fixed = motion_.reduce(raw_);
   std::vector<Matrix<6>> T(idx(s.nodes())), D(idx(s.nodes()));
   for (Index i = 0; i < s.nodes(); ++i) {
     const Mat3& chart = e.state.frames.chart[idx(s.node(i).line)];
@@ -107,11 +109,11 @@ void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   for (Index i = 0; i < p.size(); ++i)
     for (Index k = p.row_start()[idx(i)]; k < p.row_start()[idx(i) + 1]; ++k) {
       const Index j = p.cols()[idx(k)];
-      const Matrix<6> M = T[idx(i)].transpose() * raw_.M.block(k) * T[idx(j)], C = T[idx(i)].transpose() * raw_.C.block(k) * T[idx(j)];
+      const Matrix<6> M = T[idx(i)].transpose() * fixed.M.block(k) * T[idx(j)], C = T[idx(i)].transpose() * fixed.C.block(k) * T[idx(j)];
       const Matrix<6> MJ = M * D[idx(j)];
       turned_.M.block(k) = M;
       turned_.C.block(k) = C + 2.0 * Omega * MJ;
-      turned_.K.block(k) = T[idx(i)].transpose() * raw_.K.block(k) * T[idx(j)] + Omega * C * D[idx(j)] + Omega * Omega * MJ * D[idx(j)];
+      turned_.K.block(k) = T[idx(i)].transpose() * fixed.K.block(k) * T[idx(j)] + Omega * C * D[idx(j)] + Omega * Omega * MJ * D[idx(j)];
     }
 }
 
@@ -181,7 +183,7 @@ Index RotatingAxes::negative_stiffnesses(double Omega) {
     for (std::size_t i = 0; i < turned_.K.value_count(); ++i) turned_.K.data()[i] = 0.5 * (turned_.K.data()[i] + one.K.data()[i]);
   }
   take_conservative_part(turned_, symmetric);
-  la::BlockLu<double> lu(linear_.system().pattern(), base_active_);
+  la::BlockLu<double> lu(linear_.system().pattern(), motion_.active());
   if (lu.factor(symmetric, 0.0, 0.0, 1.0) != la::Status::ok) return negative_stiffnesses(Omega * (1 + 1e-12));
   return lu.negative_eigenvalues();
 }

@@ -42,12 +42,12 @@ class RotatingAxes {
   /// Matrices in rotating axes at one angle, on the system's pattern, into turned_.
   void sample(double Omega, double theta, Complex lambda);
   Linearizer& linear_;
-  Motion motion_;
+  MotionReduction motion_;
   bool turning_ = false;
   Index harmonics_ = 0, step_ = 2;
   const la::BlockPattern* pattern_ = nullptr;
   std::unique_ptr<la::BlockPattern> own_pattern_;
-  std::vector<unsigned char> active_, base_active_;
+  std::vector<unsigned char> active_;
   la::MCK turned_, raw_, hill_;
 };
 

@@ -15,6 +15,11 @@ Complex synchronous(const Turn& turn, std::span<const double> x, int order) {
   return sum * ((order == 0 ? 1.0 : 2.0) / turn.n);
 }
 
+double lag_of(const Turn& turn, Complex amplitude) {
+  const double lag = turn.backward ? std::arg(amplitude) : -std::arg(amplitude);
+  return lag < 0.0 ? lag + two_pi : lag;
+}
+
 Range range_of(std::span<const double> x) {
   Range r{x[0], x[0], 0.0};
   for (std::size_t j = 0; j < x.size(); ++j) {

@@ -5,7 +5,8 @@
 // spaced angles on the dense output; the order-k amplitude of x is
 //   X_k = (1/pi) int_0^{2 pi} x exp(-i k phi) dphi,      x(phi) = mean + sum_k Re(X_k exp(i k phi)),
 // by the trapezoidal rule, which is exact for orders below N - k when x repeats. |X_k| is 0-peak; the phase lag behind the
-// keyphasor is -arg X_k. While the speed changes within a turn the filter is as sharp as one turn allows.
+// keyphasor is -arg X_k where phi rises and arg X_k where it falls: later in time, whichever way the rotor turns. While the
+// speed changes within a turn the filter is as sharp as one turn allows.
 #pragma once
 #include <analysis/observer.hpp>
 #include <functional>
@@ -28,6 +29,8 @@ struct Turn {
 
 /// Order-k amplitude of samples of a turn (see above).
 Complex synchronous(const Turn& turn, std::span<const double> x, int order);
+/// Phase lag of an order behind the keyphasor, rad, 0 to 2 pi.
+double lag_of(const Turn& turn, Complex amplitude);
 struct Range { double low = 0, high = 0, mean = 0; };
 Range range_of(std::span<const double> x);
 

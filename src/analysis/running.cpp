@@ -1,11 +1,13 @@
 #include <analysis/running.hpp>
 
 #include <core/error.hpp>
+#include <core/interrupt.hpp>
 #include <system/frequency.hpp>
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <queue>
 #include <random>
 
 namespace whirl::analysis {
@@ -22,9 +24,61 @@ void set_scaled(la::BlockMatrix<6>& y, double s, const la::BlockMatrix<6>& x) {
   Eigen::Map<VecX>(y.data(), static_cast<Index>(y.value_count())) =
       s * Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count()));
 }
+/// Shortest way from every node to a turning shaft whose spin has this sign, m, along what stands and moves; infinity: none.
+std::vector<double> distance_to_spin(const system::System& s, std::span<const double> ratio, double sign) {
+  const auto ratio_of = [&](Index node) {
+    const std::size_t line = at(s.node(node).line);
+    return line < ratio.size() ? ratio[line] : 0.0;
+  };
+  const auto moves = [&](Index node) {
+    const auto flags = s.active().subspan(at(6 * node), 6);
+    return std::find(flags.begin(), flags.end(), 1) != flags.end();
+  };
+  std::vector<double> distance(at(s.nodes()), infinity);
+  using Place = std::pair<double, Index>;
+  std::priority_queue<Place, std::vector<Place>, std::greater<>> queue;
+  for (Index i = 0; i < s.nodes(); ++i) {
+    if (s.node(i).scalar || !(ratio_of(i) * sign > 0)) continue;
+    distance[at(i)] = 0.0;
+    queue.emplace(0.0, i);
+  }
+  const auto& start = s.pattern().row_start();
+  const auto& cols = s.pattern().cols();
+  while (!queue.empty()) {
+    const auto [d, i] = queue.top();
+    queue.pop();
+    if (d > distance[at(i)]) continue;
+    for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b) {
+      const Index j = cols[at(b)];
+      if (ratio_of(j) != 0.0 || !moves(j)) continue;   // other shafts and the ground lead nowhere
+      // generalised coordinates have no place
+      const bool placed = !s.node(i).scalar && !s.node(j).scalar;
+      const double next = d + (placed ? (s.node(i).position - s.node(j).position).norm() : 0.0);
+      if (next >= distance[at(j)]) continue;
+      distance[at(j)] = next;
+      queue.emplace(next, j);
+    }
+  }
+  return distance;
+}
+
 void add_scaled(la::MCK& y, double s, const la::MCK& x) { add_scaled(y.M, s, x.M), add_scaled(y.C, s, x.C), add_scaled(y.K, s, x.K); }
 
 }  // namespace
+
+std::vector<double> spin_senses(const system::System& system, std::span<const double> ratio) {
+  const std::vector<double> with = distance_to_spin(system, ratio, 1.0);
+  const std::vector<double> against = distance_to_spin(system, ratio, -1.0);
+  const auto first = std::find_if(ratio.begin(), ratio.end(), [](double r) { return r != 0.0; });
+  const double of_first = first != ratio.end() && *first < 0 ? -1.0 : 1.0;
+  std::vector<double> out(at(system.nodes()), of_first);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    // ways of one length differ by rounding
+    if (with[i] < against[i] * (1.0 - 1e-9)) out[i] = 1.0;
+    if (against[i] < with[i] * (1.0 - 1e-9)) out[i] = -1.0;
+  }
+  return out;
+}
 
 RunningSystem::RunningSystem(const system::System& system, Running running)
     : system_(system), running_(std::move(running)), ratio_(running_.ratio), workspace_(system.make_workspace()),
@@ -56,6 +110,7 @@ RunningSystem::RunningSystem(const system::System& system, Running running)
     if (spinning_[at(i)]) orders_.push_back(std::abs(ratio_[at(system.node(i).line)]));
   std::sort(orders_.begin(), orders_.end());
   orders_.erase(std::unique(orders_.begin(), orders_.end()), orders_.end());
+  sense_ = spin_senses(system, ratio_);
   workspace_.context.averaged = running_.mean;
   workspace_.context.hysteretic = running_.hysteretic;
   for (const auto& term : system.terms()) hysteretic_ = hysteretic_ || (running_.hysteretic && term->hysteretic());
@@ -148,7 +203,10 @@ void RunningSystem::sort_terms() {
   workspace_.context.averaged = running_.mean;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     all_.push_back(k);
-    if (!sees[k]) blind_.push_back(k);
+    // what acts on one node alone (the integral of a governor) holds no angle against anything
+    std::vector<Index> touched;
+    terms[k]->list_nodes(touched);
+    if (!sees[k] && touched.size() > terms[k]->count()) blind_.push_back(k);
     if (sees[k]) (terms[k]->quadratic_in_rates() ? turning_smooth_ : turning_).push_back(k);
     else if (terms[k]->quadratic_in_rates()) smooth_.push_back(k);
     else other_.push_back(k);
@@ -215,6 +273,7 @@ void RunningSystem::impose(const system::Frames& f, Eigen::Ref<VecX> q) const {
 }
 
 bool RunningSystem::evaluate_residual(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r, const Terms& only) {
+  throw_if_interrupted();
   set_rates(Omega, v_);
   if (theta == 0.0) return system_.residual(workspace_, f, running_.time, q, v_, a_, r, &only);
   q_ = q;
@@ -224,6 +283,7 @@ bool RunningSystem::evaluate_residual(const system::Frames& f, double Omega, con
 }
 
 bool RunningSystem::evaluate_tangent(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out, const Terms& only) {
+  throw_if_interrupted();
   set_rates(Omega, v_);
   if (theta == 0.0) return system_.tangent(workspace_, f, running_.time, q, v_, a_, out, &only);
   q_ = q;

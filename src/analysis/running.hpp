@@ -44,6 +44,8 @@ class RunningSystem {
   bool phase_dependent() const { return !turning_.empty() || !turning_smooth_.empty(); }
   /// Distinct |ratio| > 0, ascending.
   std::span<const double> orders() const { return orders_; }
+  /// +1 or -1: sign of the spin (at a positive reference speed) that whirl at a node is measured against; see spin_senses().
+  double sense(Index node) const { return sense_[static_cast<std::size_t>(node)]; }
 
   /// Factor on gravity and given loads.
   void set_load(double factor);
@@ -99,6 +101,7 @@ class RunningSystem {
   const system::System& system_;
   Running running_;
   std::vector<double> ratio_, orders_;
+  std::vector<double> sense_;              ///< of the nodes
   std::vector<unsigned char> spinning_;
   std::vector<std::pair<Index, Index>> held_;   ///< line that cannot turn, and the node at which it is held
   Terms smooth_, other_;                   ///< blind to phi: quadratic in the rates; the rest
@@ -128,6 +131,13 @@ class RunningSystem {
   VecX r0_, r1_, r2_;
   std::vector<VecXc> f0_, f1_, f2_;        ///< forcing
 };
+
+/// Sign of the spin that whirl at each node is measured against, +1 or -1, one a node, at a positive reference speed.
+/// ratio: spin of each line relative to the reference (lines beyond its end stand still). A node of a shaft that turns has
+/// the sign of that shaft. What stands (casing, pedestal, foundation) follows the shaft it carries: the nearest one along its
+/// own elements and supports; where shafts that turn either way are equally near, the first turning shaft decides. So it does
+/// for parts that carry no shaft. Without any turning shaft all are +1. A mirrored machine has the opposite signs throughout.
+std::vector<double> spin_senses(const system::System& system, std::span<const double> ratio);
 
 /// Node forces f and g of one term are equal but for rounding: to 1e-8 of its largest force, director force and torque.
 bool same_forces(const std::vector<Vector<7>>& f, const std::vector<Vector<7>>& g);

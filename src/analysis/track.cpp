@@ -52,7 +52,9 @@ bool ModeTracker::step(double Omega, bool last_chance) {
     if (of_old[at(k.old)] >= 0 || of_new[at(k.now)] >= 0) continue;
     // A planar pair at rest splits into two circles, each 0.5 like both: no doubt, whichever way they are paired.
     const bool split = modes_[at(k.old)].now.direction == Direction::planar;
-    if (k.like < options_.doubt && !(split && k.like > 0.45)) sure = false;
+    // What does not oscillate is followed as well as may be, not at the price of more speeds.
+    const bool matters = modes_[at(k.old)].now.oscillates() && found[at(k.now)].oscillates();
+    if (matters && k.like < options_.doubt && !(split && k.like > 0.45)) sure = false;
     of_old[at(k.old)] = k.now, of_new[at(k.now)] = k.old;
   }
   if (!sure && !last_chance) return false;

@@ -34,6 +34,11 @@ struct TransientOptions {
   double checkpoint_seconds = infinity;                     ///< wall clock between checkpoints
   /// Called at a mark when it is time, when interrupted, and at the end of the run (not after a failure).
   std::function<void(const system::State&, const time::IntegratorState&)> checkpoint;
+  /// Called at marks two seconds and more apart: what a checkpoint would hold is kept in memory. Where the next mark is more than
+  /// three seconds away (a thousand rows a step) an interruption does not wait for it: the run stops at once and calls fall_back, which writes
+  /// what was kept; the time since then is computed again when the run is resumed.
+  std::function<void(const system::State&, const time::IntegratorState&)> keep;
+  std::function<void()> fall_back;
   std::vector<Observer*> new_observers;                     ///< of a resumed run: those that begin at its start
 };
 

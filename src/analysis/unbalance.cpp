@@ -55,14 +55,13 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe, const std
   for (std::size_t i = 1; i + 1 < coarse.size(); ++i) {
     const double f0 = size(coarse[i - 1]), f1 = size(coarse[i]), f2 = size(coarse[i + 1]);
     // a peak of rounding on a plateau is none
-    if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-9 * top) continue;
+    if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-7 * top) continue;
     ResponsePeak peak;
     peak.order = order, peak.probe = probe;
     peak.speed = find_maximum(coarse[i - 1].Omega, coarse[i].Omega, f1, coarse[i + 1].Omega, 3e-9, evaluate);
     const SteadyPoint top_point = at(peak.speed);
     peak.amplitude = size(top_point);
-    const PointAmplitude& a = top_point.probe[order][probe];
-    peak.phase_lag = -std::arg(0.5 * (a.y + Complex(0, 1) * a.z));
+    peak.phase_lag = -std::arg(top_point.probe[order][probe].forward());
     const double half = peak.amplitude / std::sqrt(2.0);
     const auto excess = [&](double Omega) { return evaluate(Omega) - half; };
     double inner = peak.speed, f_inner = peak.amplitude - half;

@@ -3,6 +3,8 @@
 #include <core/error.hpp>
 #include <la/multiply.hpp>
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -14,11 +16,24 @@ namespace whirl::analysis {
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+/// How far beyond the modes asked for the search goes on to where nothing can grow.
+constexpr double furthest_search = 16.0;
+constexpr double whirl_of_speed = 2.0;   ///< and at least to this multiple of the speed
+
+
+/// Entries of the matrices are sums of some dozen rounded terms, and the equilibrium they are taken at is known to a multiple of eps.
+constexpr double roundings_an_entry = 64.0;
+
+/// Growth that rounding can cause: what it does to lambda, and what the eigenvector's own error leaves.
+double rounding_of(const la::Mode& m) { return roundings_an_entry * m.uncertainty + 1e-13 * std::abs(m.lambda); }
+
 la::ModeOptions la_options(const ModesOptions& o, bool hysteretic) {
   la::ModeOptions l;
+  l.certify = o.certify;
   l.count = o.count > 0 && hysteretic ? o.count + 2 : o.count;   // partners of modes that hysteretic damping will tell apart
   l.max_frequency = o.max_frequency;
   l.real_roots = o.real_roots;
+  l.growing = o.judge;
   return l;
 }
 }  // namespace
@@ -32,11 +47,16 @@ std::string_view to_string(ModeKind k) {
   return names[static_cast<int>(k)];
 }
 
-Orbit orbit_of(Complex Y, Complex Z) {
-  const Complex i(0, 1), f = 0.5 * (Y + i * Z), b = 0.5 * std::conj(Y - i * Z);   // y + i z = f e^(i w t) + b e^(-i w t)
+Orbit orbit_of(Complex Y, Complex Z, double sense) {
+  // y + i z = f e^(i w t) + b e^(-i w t)
+  const Complex i(0, 1);
+  const Complex f = 0.5 * (Y + i * Z);
+  const Complex b = 0.5 * std::conj(Y - i * Z);
   Orbit o;
-  o.forward = std::abs(f), o.backward = std::abs(b);
-  o.major = o.forward + o.backward, o.minor = o.forward - o.backward;
+  o.forward = std::abs(sense < 0 ? b : f);
+  o.backward = std::abs(sense < 0 ? f : b);
+  o.major = o.forward + o.backward;
+  o.minor = o.forward - o.backward;
   o.angle = o.forward > 0 && o.backward > 0 ? 0.5 * (std::arg(f) + std::arg(b)) : 0.0;
   return o;
 }
@@ -57,6 +77,7 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   const system::System& s = linear.system();
   WhirlMode w;
   w.lambda = w.continued = mode.lambda, w.x = mode.x, w.residual = mode.residual, w.from = mode.from;
+  w.rounding = rounding_of(mode);
   w.frequency = std::abs(mode.lambda.imag());
   const double size = std::abs(mode.lambda);
   w.damping_ratio = size > 0 ? -mode.lambda.real() / size : 0.0;
@@ -73,7 +94,9 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   for (Index i = 0; i < s.nodes(); ++i) {
     const auto x = w.x.segment<6>(6 * i);
     if (x.isZero(0.0)) continue;
-    const Eigen::Matrix<Complex, 6, 1> f = w2 * mx.segment<6>(6 * i) + kx.segment<6>(6 * i);
+    // Where nothing oscillates potential and kinetic energy cancel: by the kinetic energy alone.
+    Eigen::Matrix<Complex, 6, 1> f = w2 * mx.segment<6>(6 * i);
+    if (w.oscillates()) f += kx.segment<6>(6 * i);
     const auto share = [](Complex a, Complex b) { return (std::conj(a) * b).real(); };
     if (s.node(i).scalar) continue;
     const Mat3& E = linear.equilibrium().state.frames.chart[at(s.node(i).line)];
@@ -88,7 +111,7 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   w.kind = w.torsional > w.lateral && w.torsional >= w.axial ? ModeKind::torsional
            : w.axial > w.lateral                             ? ModeKind::axial
                                                              : ModeKind::lateral;
-  if (total == 0.0) {   // a rigid motion without stiffness: by its largest part
+  if (total == 0.0 || w.lambda == 0.0) {   // a rigid motion without stiffness: by its largest part
     double twist = 0, along = 0, across = 0;
     for (Index i = 0; i < s.nodes(); ++i) {
       const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
@@ -119,10 +142,10 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   for (Index i = 0; i < s.nodes(); ++i) {
     if (s.node(i).scalar) continue;
     const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
-    const Orbit o[2] = {orbit_of(u[1], u[2]), orbit_of(w.x[6 * i + 5], -w.x[6 * i + 4])};
-    const bool against = linear.equilibrium().state.v[6 * i + 3] < 0;
+    const double sense = linear.sense(i);
+    const Orbit o[2] = {orbit_of(u[1], u[2], sense), orbit_of(w.x[6 * i + 5], -w.x[6 * i + 4], sense)};
     for (int k = 0; k < 2; ++k) {
-      radius[at(i)][k] = against ? Vec2(o[k].backward, o[k].forward) : Vec2(o[k].forward, o[k].backward);
+      radius[at(i)][k] = Vec2(o[k].forward, o[k].backward);
       top[k] = std::max(top[k], o[k].major);
     }
   }
@@ -146,20 +169,23 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
 }
 
 WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
-    : linear_(linear), options_(options), active_(select_motion(linear.system(), options.motion)),
-      solver_(linear.system().pattern(), active_, la_options(options, options.damped && linear.hysteretic())) {
+    : linear_(linear), options_(options), motion_(linear.system(), options.motion),
+      solver_(linear.system().pattern(), motion_.active(), la_options(options, options.damped && linear.hysteretic())) {
   const Running& r = linear.running().running();
-  if (r.frequency_dependent()) own_.emplace(linear.system().pattern(), active_, la_options(options, options.damped && linear.hysteretic()), r.table_frequencies);
+  if (!r.frequency_dependent()) return;
+  la::ModeOptions by_size = la_options(options, options.damped && linear.hysteretic());
+  by_size.certify = by_size.growing = false;   // its search goes by |lambda|
+  own_.emplace(linear.system().pattern(), motion_.active(), by_size, r.table_frequencies);
 }
 
 const la::MCK& WhirlSolver::matrices_at(double Omega, Complex lambda, double side) {
-  matrices_ = options_.damped ? &linear_.at(Omega, lambda, side) : &linear_.conservative_at(Omega, lambda.imag());
+  matrices_ = &motion_.reduce(options_.damped ? linear_.at(Omega, lambda, side) : linear_.conservative_at(Omega, lambda.imag()));
   return *matrices_;
 }
 
 OwnFrequency::Matrices WhirlSolver::at_frequency(double Omega) {
   return [this, Omega](double w) -> const la::MCK& {
-    matrices_ = options_.damped ? &linear_.at_frequency(Omega, w) : &linear_.conservative_at(Omega, w);
+    matrices_ = &motion_.reduce(options_.damped ? linear_.at_frequency(Omega, w) : linear_.conservative_at(Omega, w));
     return *matrices_;
   };
 }
@@ -169,7 +195,11 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
   // Supports that answer by frequency do so within each round.
   const auto follow = [&](Complex rate, double side, const la::Mode& start) {
     if (!by_frequency() || start.lambda.imag() == 0.0) return solver_.follow(matrices_at(Omega, rate, side), start);
-    return own_->settle([&](double w) -> const la::MCK& { return *(matrices_ = &linear_.at(Omega, rate, side, w)); }, start);
+    const auto at_rate = [&](double w) -> const la::MCK& {
+      matrices_ = &motion_.reduce(linear_.at(Omega, rate, side, w));
+      return *matrices_;
+    };
+    return own_->settle(at_rate, start);
   };
   // Where forward whirl passes the speed its damping changes sign. The side is settled in an outer loop; where the frequency jumps from one side to
   // the other with it (planes mixed by unequal supports), the last one found stands.
@@ -237,7 +267,8 @@ void WhirlSolver::solve_by_frequency(double Omega) {
       if (m.lambda.imag() == 0.0) modes.push_back(m);
     const auto by_size = [](const la::Mode& a, const la::Mode& b) { return std::abs(a.lambda) < std::abs(b.lambda); };
     std::stable_sort(modes.begin(), modes.end(), by_size);
-    if (options_.count > 0 && static_cast<Index>(modes.size()) > options_.count) modes.resize(static_cast<std::size_t>(options_.count));
+    Index oscillating = 0;
+    std::erase_if(modes, [&](const la::Mode& m) { return options_.count > 0 && m.lambda.imag() != 0.0 && ++oscillating > options_.count; });
     std::stable_sort(modes.begin(), modes.end(), [](const la::Mode& a, const la::Mode& b) { return a.lambda.imag() < b.lambda.imag(); });
   }
   for (const la::Mode& m : modes) {
@@ -250,6 +281,9 @@ void WhirlSolver::solve_by_frequency(double Omega) {
 void WhirlSolver::solve_hysteretic(double Omega) {
   // Forward and backward whirl of one frequency are any two motions of their plane until the damping tells them apart.
   std::vector<la::Mode> known = by_frequency() ? own_->solve(at_frequency(Omega)) : solver_.solve(matrices_at(Omega, Complex(0, infinity))), group;
+  for (const la::Mode& mode : known)
+    if (mode.lambda.imag() == 0.0) modes_.push_back(describe_mode(mode, *matrices_, linear_));
+  std::erase_if(known, [](const la::Mode& mode) { return mode.lambda.imag() == 0.0; });
   // Coefficients against frequency keep modes apart that are not of one frequency, and may change much between them.
   const double close = by_frequency() ? 1e-4 : 0.05;
   for (std::size_t i = 0; i < known.size();) {
@@ -264,20 +298,57 @@ void WhirlSolver::solve_hysteretic(double Omega) {
     }
   }
   std::stable_sort(modes_.begin(), modes_.end(), [](const WhirlMode& a, const WhirlMode& b) { return a.frequency < b.frequency; });
-  if (options_.count > 0 && static_cast<Index>(modes_.size()) > options_.count) modes_.resize(at(options_.count));
+  Index oscillating = 0;
+  std::erase_if(modes_, [&](const WhirlMode& m) { return options_.count > 0 && m.oscillates() && ++oscillating > options_.count; });
+}
+
+void WhirlSolver::solve_counted(double Omega) {
+  const la::MCK& m = matrices_at(Omega, Complex(0, nan));
+  const std::vector<la::Mode>* modes = &solver_.solve(m);
+  certificate_.list = solver_.certificate();
+  if (options_.judge && options_.damped) {
+    if (!bound_) bound_.emplace(linear_.system().pattern(), motion_.active());
+    const double reached = certificate_.list.radius;
+    const auto quiet = bound_->first(m, reached, furthest_search * reached);
+    if (quiet) {
+      certificate_.quiet_above = quiet->above;
+      certificate_.quiet_ratio = quiet->ratio;
+    }
+    // Where nothing excludes growth at high frequencies, at least those that rotors whirl at are searched.
+    const double wanted = quiet ? quiet->above : whirl_of_speed * std::abs(Omega);
+    if (wanted > reached) {
+      modes = &solver_.solve_to(m, wanted);
+      certificate_.list = solver_.certificate();
+    }
+  }
+  for (const la::Mode& mode : *modes) modes_.push_back(describe_mode(mode, m, linear_));
 }
 
 const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
   modes_.clear();
+  certificate_ = {};
   if (options_.damped && linear_.hysteretic()) {
+    certificate_.open = "hysteretic damping depends on the frequency of each mode (counted without it, each then followed to its own frequency)";
     solve_hysteretic(Omega);
   } else if (by_frequency()) {
+    certificate_.open = "supports depend on the frequency of each mode";
     solve_by_frequency(Omega);
   } else {
-    const la::MCK& m = matrices_at(Omega, Complex(0, nan));
-    for (const la::Mode& mode : solver_.solve(m)) modes_.push_back(describe_mode(mode, m, linear_));
+    if (!options_.certify) certificate_.open = "not asked for";
+    solve_counted(Omega);
   }
   return modes_;
+}
+
+std::string SpectrumCertificate::text() const {
+  if (!open.empty()) return "completeness not certified: " + open;
+  const double top = list.radius / two_pi;
+  if (!list.counted) return fmt::format("completeness not certified: the roots up to {:.5g} Hz could not be counted", top);
+  const std::string band = fmt::format("all roots up to {:.5g} Hz and damping ratio {:.2g}", top, list.damping_ratio());
+  if (list.missing == 0) return band + " counted and found";
+  std::string out = fmt::format("INCOMPLETE: {} of {} not found", list.missing, band);
+  for (const Complex z : list.where) out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", z.imag() / two_pi, z.real());
+  return out;
 }
 
 std::optional<WhirlMode> WhirlSolver::follow(double Omega, const WhirlMode& start) {
@@ -292,9 +363,11 @@ std::optional<WhirlMode> WhirlSolver::follow(double Omega, const WhirlMode& star
   return describe_mode(*found, *matrices_, linear_);
 }
 
-std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const ModesOptions& options) {
+std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const ModesOptions& options, SpectrumCertificate* certificate) {
   WhirlSolver solver(linear, options);
-  return solver.solve(Omega);
+  std::vector<WhirlMode> modes = solver.solve(Omega);
+  if (certificate) *certificate = solver.certificate();
+  return modes;
 }
 
 }  // namespace whirl::analysis

@@ -38,19 +38,24 @@ std::vector<std::string> state_accuracy(Job& job, const AccuracyInputs& in, io::
   std::vector<std::string> warnings;
   const model::IntegratorOptions& scheme = in.law.integrator;
   const time::Statistics& s = in.result.statistics;
-  const double turned = std::max({in.energy.largest_change(), std::abs(in.energy.supplied()), in.energy.dissipated()});
+  // a motion that turns over next to nothing (a steady whirl without damping) is measured by the energy it has
+  const bool exchanges = in.energy.exchanged() > in.energy.worst_defect();
+  const double turned = exchanges ? in.energy.exchanged() : in.energy.largest_energy();
   const double defect = turned > 0.0 ? in.energy.worst_defect() / turned : 0.0;
+  const char* measure = exchanges ? "turned over" : "of the motion, which turns over none";
   v["aimed at, of the peak response"] = scheme.tolerance;
   v["energy defect / energy turned over"] = defect;
   v["local error / allowance, mean"] = s.error_mean();
   v["local error / allowance, max"] = s.error_max;
   section.text += fmt::format(
-      "\n\nAccuracy: aimed at {:.2g} of the peak response with {:.3f} s of computing; local errors {:.2g} of what they may be on average, {:.2g} at most. The energy balance "
-      "(stored - supplied + dissipated) is off by {:.2g} J at most, {:.2g} of the energy turned over.",
-      scheme.tolerance, in.result.seconds, s.error_mean(), s.error_max, in.energy.worst_defect(), defect);
+      "\n\nAccuracy: aimed at {:.2g} of the peak response with {:.3f} s CPU; local errors {:.2g} of what they may be on average, {:.2g} at most. The energy balance "
+      "(stored - supplied + dissipated) is off by {:.2g} J at most, {:.2g} of the energy {}.",
+      scheme.tolerance, in.result.seconds, s.error_mean(), s.error_max, in.energy.worst_defect(), defect, measure);
   // an amplitude error of a percent is an energy error of two
-  if (defect > 0.02 && in.energy.worst_defect() > in.energy.rounding())
-    warnings.push_back(fmt::format("the energy balance is off by {:.2g} of the energy turned over: do not trust the amplitudes; try a smaller tolerance", defect));
+  if (!in.energy.known())
+    warnings.push_back("the motion leaves the range in which the energies of its supports are defined (a film's clearance, a table): its energy balance is not known");
+  else if (defect > 0.02 && in.energy.worst_defect() > in.energy.rounding())
+    warnings.push_back(fmt::format("the energy balance is off by {:.2g} of the energy {}: do not trust the amplitudes; try a smaller tolerance", defect, measure));
   if (scheme.dt > 0.0 && s.error_max > 1.0)
     warnings.push_back(fmt::format("the fixed step is too long for the accuracy asked for: local errors up to {:.2g} times the allowance for {:.2g} of the peak", s.error_max, scheme.tolerance));
   if (const double all = static_cast<double>(s.accepted + s.rejected_error + s.rejected_newton); s.accepted > 100 && static_cast<double>(s.accepted) < 0.7 * all)

@@ -15,16 +15,20 @@ namespace {
 io::Table make_table(const analysis::Campbell& c) {
   io::Table t;
   t.title = "Campbell diagram";
+  t.nan_means = "the mode is not there at this speed";
   t.columns.push_back({"speed", "rpm", ""});
   for (const analysis::CampbellLine& l : c.lines) {
     t.columns.push_back({l.label + " frequency", "Hz", "damped natural frequency"});
     t.columns.push_back({l.label + " log decrement", "-", ""});
+    t.columns.push_back({l.label + " damping ratio", "-", ""});
     t.columns.push_back({l.label + " direction", "-", ""});
   }
   for (std::size_t k = 0; k < c.speeds.size(); ++k) {
     std::vector<io::Table::Cell> row{to_rpm(c.speeds[k])};
     for (const analysis::CampbellLine& l : c.lines) {
-      row.emplace_back(to_hz(l.frequency[k])), row.emplace_back(tidy(l.log_decrement[k]));
+      row.emplace_back(to_hz(l.frequency[k]));
+      row.emplace_back(tidy(l.log_decrement[k]));
+      row.emplace_back(tidy(l.damping_ratio[k]));
       row.emplace_back(std::isnan(l.frequency[k]) ? std::string() : std::string(to_string(l.direction_at[k])));
     }
     t.add(std::move(row));
@@ -67,7 +71,7 @@ void run_campbell_step(Job& job, const model::Step& step, const model::CampbellS
   io::Table criticals;
   criticals.title = "Critical speeds";
   criticals.columns = {{"order", "-", "excitations a revolution"}, {"speed", "rpm", ""}, {"frequency", "Hz", ""}, {"kind", "-", ""},
-                       {"direction", "-", ""}, {"log decrement", "-", ""}};
+                       {"direction", "-", ""}, {"log decrement", "-", ""}, {"damping ratio", "-", ""}};
   if (top > 0 && o.speeds.front() >= 0) {
     const PhaseTimer timer(job, "critical speeds");
     for (const double order : law.orders) {
@@ -81,7 +85,7 @@ void run_campbell_step(Job& job, const model::Step& step, const model::CampbellS
       for (const analysis::Critical& k : analysis::critical_speeds(s.linear, q)) {
         marks.push_back({k.speed, k.frequency, order, {}});
         criticals.add({order, to_rpm(k.speed), to_hz(k.frequency), std::string(to_string(k.mode.kind)), direction_text(k.mode),
-                       tidy(k.mode.log_decrement)});
+                       tidy(k.mode.log_decrement), tidy(k.mode.damping_ratio)});
       }
     }
   }
@@ -99,6 +103,11 @@ void run_campbell_step(Job& job, const model::Step& step, const model::CampbellS
   });
   if (any) s.add_figure(io::plot_stability(s.file("log_decrement"), "Log decrement of the modes", lines));
   s.section.text = fmt::format("{} modes followed over {} speeds. Critical speeds are solved for, not read off the diagram.", c.lines.size(), c.speeds.size());
+  std::size_t weakest = 0;
+  for (std::size_t k = 1; k < c.certificates.size(); ++k)
+    if (!c.certificates[k].complete() && c.certificates[weakest].complete()) weakest = k;
+  s.certify(c.certificates[weakest], fmt::format("at {:.6g} rpm", to_rpm(c.speeds[weakest])));
+  s.section.text += c.certificates[weakest].complete() ? " At every speed the roots were counted: the list of modes is complete." : " " + capital(c.certificates[weakest].text()) + ".";
   s.finish(fmt::format("{} modes at {} speeds, {} critical speeds", c.lines.size(), c.speeds.size(), found));
 }
 

@@ -1,7 +1,7 @@
 #include <app/commands.hpp>
 #include <app/diagnose.hpp>
+#include <app/prepare.hpp>
 #include <app/results_folder.hpp>
-#include <assembly/build_system.hpp>
 #include <core/units.hpp>
 #include <cstdio>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include <meshes/mesh.hpp>
 #include <meshes/mesh_tables.hpp>
 #include <meshes/scene.hpp>
-#include <set>
+#include <functional>
 #include <string>
 
 namespace whirl::app {
@@ -85,12 +85,30 @@ void write_mesh(const model::Model& m, const meshes::Mesh& mesh, const std::file
   for (const io::Figure& f : io::draw_model(m, mesh, meshes::make_scene(m, mesh))) out.write_text(f.name + ".svg", io::render_svg(f));
 }
 
-/// What only shows when the equations are put together: impossible bodies, unrestrained motion.
-void try_assembly(const model::Model& m, const meshes::Mesh& mesh) {
-  std::set<std::string> keys{""};   // steps with drives of their own have a system of their own
-  for (const model::Drive& d : m.drives)
-    if (!d.step.empty()) keys.insert(d.step);
-  for (const std::string& step : keys) assembly::build_system(m, mesh, step);
+/// The same deck with a key set otherwise.
+std::function<model::Model(const std::string&)> variants_of(const std::filesystem::path& deck, const deck::ReadOptions& options) {
+  return [deck, options](const std::string& setting) {
+    deck::ReadOptions read = options;
+    read.set.push_back(setting);
+    return deck::load_model(deck, read);
+  };
+}
+
+/// A resolved deck has its parameters put in: what a map would vary there is gone, and no mistake of its writer.
+bool has_parameters(const deck::Deck& d) {
+  for (int k = 0; k < d.sources.size(); ++k)
+    if (d.sources[k].text.find("parameters") != std::string::npos) return true;
+  return false;
+}
+
+/// Mesh and whatever else a run would refuse. Error: what it would.
+meshes::Mesh prepare(const deck::Deck& d, const CheckOptions& o) {
+  meshes::Mesh mesh = meshes::make_mesh(d.model);
+  if (d.model.steps.empty()) return mesh;
+  RunOptions run;
+  if (has_parameters(d)) run.variant = variants_of(o.deck, o.read);
+  check_steps(d.model, mesh, run);
+  return mesh;
 }
 
 }  // namespace
@@ -108,9 +126,9 @@ int check_deck(const CheckOptions& o) {
     }
     return static_cast<int>(deck::exit_of(d.diagnostics));
   }
-  const meshes::Mesh mesh = meshes::make_mesh(d.model);
+  meshes::Mesh mesh;
   try {
-    if (!d.model.steps.empty()) try_assembly(d.model, mesh);
+    mesh = prepare(d, o);
   } catch (const Error& e) {
     if (!o.json) throw;
     io::Value v = io::Value::object();
@@ -157,11 +175,7 @@ int run_command(const RunCommand& o) {
     throw Error(Exit::deck, std::move(e));
   }
   RunOptions run = o.run;
-  run.variant = [&o](const std::string& setting) {
-    deck::ReadOptions read = o.read;
-    read.set.push_back(setting);
-    return deck::load_model(o.deck, read);
-  };
+  run.variant = variants_of(o.deck, o.read);
   return run_deck(d.model, run);
 }
 

@@ -91,7 +91,9 @@ std::string what_moves(const model::Model& model, const std::string& step) {
   return out;
 }
 
-fs::path checkpoint_file(const fs::path& results, const std::string& step) { return results / "checkpoint" / (io::safe_name(step) + ".whirl"); }
+std::string checkpoint_name(const std::string& step) { return "checkpoint/" + io::safe_name(step) + ".whirl"; }
+
+fs::path checkpoint_file(const fs::path& results, const std::string& step) { return results / checkpoint_name(step); }
 
 void write_checkpoint(const fs::path& file, const Checkpoint& c) {
   std::string data(magic);
@@ -145,12 +147,6 @@ void check_checkpoints(const fs::path& results, const model::Model& model) {
 bool has_checkpoint(const fs::path& results, const model::Model& model) {
   std::error_code ec;
   return std::any_of(model.steps.begin(), model.steps.end(), [&](const model::Step& s) { return fs::exists(checkpoint_file(results, s.name), ec); });
-}
-
-void remove_checkpoints(const fs::path& results) {
-  std::error_code ec;
-  for (const auto& f : fs::directory_iterator(results / "checkpoint", ec))
-    if (f.path().extension() == ".whirl") fs::remove(f.path(), ec);
 }
 
 void Parts::add(std::string key, std::function<void(OutArchive&)> save, std::function<void(InArchive&)> restore) {

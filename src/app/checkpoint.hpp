@@ -30,16 +30,20 @@ struct Checkpoint {
 /// step's own duration and stop conditions.
 std::string what_moves(const model::Model& model, const std::string& step);
 
+/// Name of a step's checkpoint in the results folder.
+std::string checkpoint_name(const std::string& step);
 std::filesystem::path checkpoint_file(const std::filesystem::path& results, const std::string& step);
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& c);
 /// Nothing when there is no file. Error E91 when it is damaged or of another version.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);
+/// The state in which a transient step of another results folder ended (step: "" = its only one). Error E91: there is none, or several.
+Checkpoint last_state_of(const std::string& folder, const std::string& step);
+/// Error E94: the state is one of another mesh. deck: for the message.
+void check_state_fits(const Checkpoint& c, const std::string& folder, const system::System& system, const std::string& deck);
 /// Error E94 with the first differing line when a checkpoint in the results folder is of another model.
 void check_checkpoints(const std::filesystem::path& results, const model::Model& model);
 /// True when there is a checkpoint of any step.
 bool has_checkpoint(const std::filesystem::path& results, const model::Model& model);
-/// Removes the checkpoints of an earlier run.
-void remove_checkpoints(const std::filesystem::path& results);
 
 /// Things that are saved and restored together, each under a key that says what it is: one whose key the checkpoint does not
 /// have is new and begins where the run continues.

@@ -41,7 +41,11 @@ void run_critical_step(Job& job, const model::Step& step, const model::CriticalS
     table.title = damped ? "Damped critical speeds" : "Undamped critical speeds";
     table.columns = {{"order", "-", "excitations a revolution"}, {"number", "-", ""}, {"speed", "rpm", ""}, {"frequency", "Hz", ""}, {"kind", "-", ""},
                      {"direction", "-", ""}};
-    if (damped) table.columns.push_back({"log decrement", "-", ""}), table.columns.push_back({"amplification", "-", "1/(2 damping ratio) of the mode"});
+    if (damped) {
+      table.columns.push_back({"log decrement", "-", ""});
+      table.columns.push_back({"damping ratio", "-", "of the mode"});
+      table.columns.push_back({"amplification", "-", "1/(2 damping ratio)"});
+    }
     std::size_t found = 0;
     for (const double order : law.orders) {
       analysis::CriticalOptions o;
@@ -55,7 +59,11 @@ void run_critical_step(Job& job, const model::Step& step, const model::CriticalS
         const analysis::Critical& c = list[k];
         std::vector<io::Table::Cell> row{order, static_cast<int>(k + 1), to_rpm(c.speed), to_hz(c.frequency), std::string(to_string(c.mode.kind)),
                                          direction_text(c.mode)};
-        if (damped) row.emplace_back(tidy(c.mode.log_decrement)), row.emplace_back(c.amplification());
+        if (damped) {
+          row.emplace_back(tidy(c.mode.log_decrement));
+          row.emplace_back(tidy(c.mode.damping_ratio));
+          row.emplace_back(c.amplification());
+        }
         table.add(std::move(row));
         speeds.push(to_rpm(c.speed));
         if (damped != damping || drawn >= law.shapes) continue;   // shapes once: with damping where there is any

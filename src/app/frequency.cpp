@@ -1,8 +1,13 @@
+#include <app/diagnose.hpp>
 #include <app/frequency.hpp>
+#include <app/held.hpp>
 
 #include <fmt/format.h>
 
 #include <cctype>
+#include <cmath>
+#include <map>
+#include <optional>
 
 namespace whirl::app {
 
@@ -66,18 +71,81 @@ analysis::EquilibriumOptions equilibrium_options(const Job& job, int load_steps)
   o.chart_change = job.model.chart_change;
   return o;
 }
+
+/// The one speed of a step's equilibrium, rad/s; null where there are several.
+std::optional<double> speed_of(const model::StepLaw& law) {
+  if (const auto* x = std::get_if<model::ModalStep>(&law)) return x->speed;
+  if (const auto* x = std::get_if<model::TorsionalStep>(&law)) return x->max_speed;
+  if (const auto* x = std::get_if<model::BucklingStep>(&law)) return x->speed;
+  if (const auto* x = std::get_if<model::HarmonicStep>(&law); x && x->frequency) return x->speed;
+  return std::nullopt;
+}
+
+bool about_undeformed(const model::StepLaw& law) {
+  return std::visit(
+      [](const auto& x) {
+        if constexpr (requires { x.about; }) return x.about == model::About::undeformed;
+        else return false;
+      },
+      law);
+}
+
+std::string about_of(const model::StepLaw& law) {
+  if (about_undeformed(law)) return "about the undeformed rotor";
+  const std::optional<double> speed = speed_of(law);
+  const std::string at = speed ? fmt::format("at {:.6g} rpm", to_rpm(*speed)) : "at each speed";
+  if (std::holds_alternative<model::BucklingStep>(law)) return "about the unloaded equilibrium " + at;
+  if (std::holds_alternative<model::CriticalMapStep>(law)) return "about the static equilibrium " + at + " and stiffness";
+  return "about the static equilibrium " + at;
+}
+
+std::optional<model::MotionKind> motion_asked(const model::StepLaw& law) {
+  if (std::holds_alternative<model::TorsionalStep>(law)) return model::MotionKind::torsional;
+  return std::visit(
+      [](const auto& x) -> std::optional<model::MotionKind> {
+        if constexpr (requires { x.motion; }) return x.motion;
+        else return std::nullopt;
+      },
+      law);
+}
+
+/// What a kind of motion leaves out.
+std::string motion_text(model::MotionKind kind) {
+  switch (kind) {
+    case model::MotionKind::lateral: return "Lateral motion: axial motion and twist follow without inertia or damping.";
+    case model::MotionKind::torsional: return "Torsional motion: bending and axial motion are held.";
+    case model::MotionKind::axial: return "Axial motion: bending and twist are held.";
+    case model::MotionKind::all: break;
+  }
+  return {};
+}
+
+std::string_view motion_name(model::MotionKind kind) {
+  constexpr std::string_view names[] = {"all", "lateral", "torsional", "axial"};
+  return names[static_cast<int>(kind)];
+}
 }  // namespace
+
+std::vector<std::string> labels_of(std::span<const analysis::WhirlMode> modes) {
+  std::map<analysis::ModeKind, int> count;
+  std::vector<std::string> out;
+  for (const analysis::WhirlMode& m : modes) out.push_back(fmt::format("{} {}", to_string(m.kind), ++count[m.kind]));
+  return out;
+}
 
 std::string direction_text(const analysis::WhirlMode& m) {
   return m.direction == analysis::Direction::none ? std::string() : std::string(to_string(m.direction));
 }
 
 FrequencyStep::FrequencyStep(Job& j, const model::Step& s, const std::string& type, const std::string& title, double top_speed, int load_steps)
-    : job(j), step(s), linear((j.build_for(s), j.system()), running_of(j, top_speed), equilibrium_options(j, load_steps)),
-      start_(std::chrono::steady_clock::now()) {
+    : job(j), step(s), linear((j.build_for(s), j.system()), running_of(j, top_speed), equilibrium_options(j, load_steps)) {
   if (!s.from.empty()) linear.start_from(j.states.at(s.from).state);
+  if (about_undeformed(s.law)) linear.stay_undeformed();
   type_ = type;
+  about_ = about_of(s.law);
   summary()["type"] = type;
+  summary()["linearised"] = about_;
+  if (const auto motion = motion_asked(s.law)) summary()["motion"] = std::string(motion_name(*motion));
   section.title = fmt::format("{}: {}", s.name, title);
 }
 
@@ -92,20 +160,83 @@ void FrequencyStep::add_table(const std::string& name, io::Table table, bool sho
   const std::string path = file(name) + ".csv";
   job.folder.write_table(path, table);
   section.files.emplace_back(table.title.empty() ? name : table.title, path);
-  if (shown) section.tables.push_back(std::move(table));
+  if (!shown) return;
+  if (!table.title.empty()) table.title += ", " + about_;
+  section.tables.push_back(std::move(table));
 }
 
 void FrequencyStep::add_figure(io::Figure f) {
   if (job.model.output.report) section.figures.push_back(std::move(f));
 }
 
+std::string capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::string stability_text(const analysis::SpectrumCertificate& c) {
+  if (c.stability_certain()) return fmt::format("no motion grows at any frequency: all roots up to {:.5g} Hz counted, above it energy forbids growth by more than {:.0e} of the frequency", to_hz(c.list.radius), c.quiet_ratio);
+  if (c.complete()) return fmt::format("no motion grows below {:.5g} Hz; above it growth is not excluded (forces without damping of their own act across the modes)", to_hz(c.list.radius));
+  return "no growing motion found; that there is none is not certified";
+}
+
+io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes) {
+  io::Table t;
+  t.title = "Motions that do not oscillate, or hardly (damping ratio above 0.949)";
+  t.columns = {{"rate", "1/s", "of exp(rate t); positive: grows"}, {"frequency", "Hz", "of what is left of an oscillation"}, {"damping ratio", "-", ""}, {"time", "s", "to 1/e, or to e"}, {"kind", "-", "by the largest share of energy"},
+               {"motion", "-", "decays, free (neither resisted nor driven), diverges"}};
+  for (const analysis::WhirlMode& m : modes) {
+    if (m.oscillates()) continue;
+    const double rate = m.growth() == 0 ? 0.0 : m.lambda.real();
+    const char* word = m.growth() > 0 ? "diverges" : m.growth() < 0 ? "decays" : "free";
+    io::Table::Cell time = std::string();
+    if (rate != 0.0) time = 1.0 / std::abs(rate);
+    t.add({rate, to_hz(m.frequency), tidy(m.damping_ratio), std::move(time), std::string(to_string(m.kind)), std::string(word)});
+  }
+  return t;
+}
+
+void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::string& where) {
+  io::Value& v = summary()["certificate"];
+  if (v.is_null()) v = io::Value::array();
+  io::Value e = io::Value::object();
+  if (!where.empty()) e["at"] = where;
+  e["complete"] = c.complete();
+  e["text"] = c.text();
+  if (c.open.empty()) {
+    e["up to [Hz]"] = to_hz(c.list.radius);
+    e["damping ratio up to"] = c.list.damping_ratio();
+    e["roots not found"] = static_cast<int>(c.list.missing);
+    e["factorizations"] = static_cast<int>(c.list.factorizations);
+  }
+  if (!std::isnan(c.quiet_above)) {
+    e["nothing grows above [Hz]"] = to_hz(c.quiet_above);
+    e["by more than, of its frequency"] = c.quiet_ratio;
+  }
+  v.push(std::move(e));
+  if (c.complete() || !c.open.empty()) return;
+  const std::string message = fmt::format("step '{}'{}{}: {}", step.name, where.empty() ? "" : " ", where, c.text());
+  job.uncertified.push_back(message);
+  Diagnostic w;
+  w.severity = Diagnostic::Severity::warning;
+  w.code = "W07";
+  w.message = message;
+  w.hint = "ask for more or fewer modes, or for another max_frequency; the list is not to be relied on as it is";
+  job.report.warnings.push_back(message);
+  job.summary["warnings"].push(w.code + ": " + message);
+  if (!job.options.quiet) print_diagnostics({w});
+}
+
 void FrequencyStep::finish(const std::string& line) {
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  summary()["run time [s]"] = seconds;
+  const RunTime time = watch_.elapsed();
+  put_run_time(summary(), time);
+  if (const auto motion = motion_asked(step.law); motion && *motion != model::MotionKind::all) section.text += " " + motion_text(*motion);
+  section.text += fmt::format(" Linearised {}.", about_);
   if (turns_with_stiffness(job.model) && type_ != "stability")
     section.text += " The stiffness of the asymmetric shaft enters as its mean over a revolution; a stability step shows where its turning makes the rotor unstable.";
+  ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}, {}", line, about_, time.text()));
+  say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
-  ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {:.3f} s", line, seconds));
 }
 
 }  // namespace whirl::app

@@ -7,8 +7,8 @@
 #include <app/transient_outputs.hpp>
 #include <io/plots.hpp>
 
-#include <chrono>
 #include <cmath>
+#include <span>
 
 namespace whirl::app {
 
@@ -24,8 +24,16 @@ inline double to_hz(double omega) { return omega / two_pi; }
 inline double tidy(double x) { return std::abs(x) < 1e-12 ? 0.0 : x; }
 /// "lateral, forward", "torsional"
 std::string description(const analysis::WhirlMode& m);
+/// "lateral 1", "torsional 1", .. of a list: numbers within each kind.
+std::vector<std::string> labels_of(std::span<const analysis::WhirlMode> modes);
 /// "forward", or "" where there is no lateral orbit
 std::string direction_text(const analysis::WhirlMode& m);
+/// "No growing motion at any frequency" or up to which one that is known, where none was found.
+std::string stability_text(const analysis::SpectrumCertificate& c);
+/// With a capital letter.
+std::string capital(std::string text);
+/// Motions that do not oscillate: overdamped, free and diverging ones, by their rates.
+io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes);
 /// Forces of the supports on the shaft, N, fixed axes.
 std::vector<analysis::Measurement> support_measurements(const Job& job);
 
@@ -41,17 +49,23 @@ class FrequencyStep {
   io::ReportSection section;
 
   io::Value& summary() { return job.summary["steps"][step.name]; }
-  /// Writes <step>_<name>.csv and shows the table in the report (only as a file when `shown` is false).
+  /// Writes <step>_<name>.csv and shows the table in the report, its title with about() (only as a file when `shown` is false).
   void add_table(const std::string& name, io::Table table, bool shown = true);
   void add_figure(io::Figure f);
+  /// "about the static equilibrium at 3000 rpm": the state that everything here is linearised about.
+  const std::string& about() const { return about_; }
   /// A name for files: <step>_<name>.
   std::string file(const std::string& name) const;
-  /// Adds the section to the report, the run time to the summary, and a line to the terminal.
+  /// Puts what is known of a list of modes into the summary and the section; what is missing also into the terminal and the exit code.
+  /// where: "at 3000 rpm", or empty.
+  void certify(const analysis::SpectrumCertificate& certificate, const std::string& where = {});
+  /// Adds the section to the report, the run time to the summary, and a line to the terminal; each says about() and what the motion
+  /// asked for leaves out.
   void finish(const std::string& line);
 
  private:
-  std::string type_;
-  std::chrono::steady_clock::time_point start_;
+  std::string type_, about_;
+  Stopwatch watch_;
 };
 
 /// A shape (amplitudes of all unknowns) as drawings; see shapes.cpp.
@@ -79,6 +93,10 @@ bool turns_with_stiffness(const model::Model& m);
 /// A stability step of such a rotor, in axes that turn with it.
 void run_instability_bands(Job&, const model::Step&, const model::StabilityStep&);
 /// Figures and tables of the stability over a parameter; returns what to add to the step's line.
+/// The deck of a run with another value of a map's parameter. E89: nothing depends on it.
+model::Model variant_of(const RunOptions& options, const model::Step& step, const model::StabilityMap& map, const std::string& value);
+/// E89: such a rotor has bands of instability, over which no map is drawn.
+Error no_map_of_bands(const model::Step& step);
 std::string add_stability_map(FrequencyStep& s, const model::StabilityMap& map, const analysis::StabilityOptions& options);
 void run_critical_map_step(Job&, const model::Step&, const model::CriticalMapStep&);
 void run_harmonic_step(Job&, const model::Step&, const model::HarmonicStep&);

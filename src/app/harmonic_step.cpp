@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace whirl::app {
 
@@ -16,8 +17,8 @@ namespace {
 
 using analysis::FrequencyPoint;
 
-/// The work of a force and a moment in the unknowns of its node: exact at the equilibrium.
-void add_force(const FrequencyStep& s, const model::HarmonicForce& f, std::vector<analysis::HarmonicForce>& out) {
+/// The work of a force and a moment in the unknowns of its node: exact at the equilibrium. spin: +1 or -1, sign of the reference speed.
+void add_force(FrequencyStep& s, const model::HarmonicForce& f, double spin, std::vector<analysis::HarmonicForce>& out) {
   const analysis::Point p = point_of(s.job, f.at);
   const system::State& state = s.linear.equilibrium().state;
   const Mat3& chart = state.frames.chart[static_cast<std::size_t>(s.linear.system().node(p.node).line)];
@@ -25,9 +26,10 @@ void add_force(const FrequencyStep& s, const model::HarmonicForce& f, std::vecto
   rotation::Director d;
   rotation::director(gamma, d);
   const auto amplitude = [&](const Vec3& v) -> Eigen::Vector3cd {
-    // along v at phase 0, a quarter period later along e x v (forward) or against it
-    const Vec3 aside = chart.col(0).cross(v);
-    const double sign = f.whirl == model::HarmonicForce::Whirl::forward ? -1.0 : f.whirl == model::HarmonicForce::Whirl::backward ? 1.0 : 0.0;
+    // along v at phase 0, a quarter period later where the spin turns it (forward) or against that
+    using Whirl = model::HarmonicForce::Whirl;
+    const Vec3 aside = spin * s.linear.running().sense(p.node) * chart.col(0).cross(v);
+    const double sign = f.whirl == Whirl::forward ? -1.0 : f.whirl == Whirl::backward ? 1.0 : 0.0;
     return std::polar(1.0, f.phase) * (v.cast<Complex>() + Complex(0, sign) * aside.cast<Complex>());
   };
   const Eigen::Vector3cd force = amplitude(f.force), moment = chart.transpose() * amplitude(f.moment), local = chart.transpose() * force;
@@ -88,16 +90,24 @@ void run_harmonic_step(Job& job, const model::Step& step, const model::HarmonicS
   FrequencyStep s(job, step, "harmonic_response", "harmonic response", top);
   s.linear.at(asynchronous ? law.speed : grid.front());
   analysis::FrequencyResponseOptions o;
-  for (const model::HarmonicForce& f : law.forces) add_force(s, f, o.forces);
   o.probes = response_probes(job);
   for (const analysis::ResponseProbe& p : o.probes) o.unknowns.push_back(6 * p.point.node + system::spin_phi);
   o.outputs = support_measurements(job);
   o.motion = motion_of(law.motion);
   o.shapes = true;
-  analysis::HarmonicResponder responder(s.linear, o);
+  // Forces that whirl do so with the spin, whichever way that is.
+  std::map<bool, analysis::HarmonicResponder> responders;
+  const auto responder_at = [&](double Omega) -> analysis::HarmonicResponder& {
+    const bool reversed = Omega < 0;
+    if (const auto known = responders.find(reversed); known != responders.end()) return known->second;
+    o.forces.clear();
+    for (const model::HarmonicForce& f : law.forces) add_force(s, f, reversed ? -1.0 : 1.0, o.forces);
+    return responders.try_emplace(reversed, s.linear, o).first->second;
+  };
   const auto respond = [&](double x) {
     const double scale = law.speed_squared && !asynchronous ? x * x / (top * top) : 1.0;
-    return asynchronous ? responder.at(law.speed, x) : responder.at(x, law.order * std::abs(x), scale);
+    if (asynchronous) return responder_at(law.speed).at(law.speed, x);
+    return responder_at(x).at(x, law.order * std::abs(x), scale);
   };
   std::vector<FrequencyPoint> points;
   std::vector<std::vector<double>> torques;
@@ -161,7 +171,7 @@ void run_harmonic_step(Job& job, const model::Step& step, const model::HarmonicS
     v[twists ? "largest twist 0-peak [rad]" : "largest amplitude 0-peak [m]"][o.probes[p].name] = most;
     for (std::size_t k = 1; k + 1 < points.size(); ++k) {
       const double f0 = size(points[k - 1]), f1 = size(points[k]), f2 = size(points[k + 1]);
-      if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-9 * most) continue;   // a peak of rounding is none
+      if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-7 * most) continue;   // a peak of rounding is none
       const double x = analysis::find_maximum(grid[k - 1], grid[k], f1, grid[k + 1], 3e-9, [&](double y) { return size(respond(y)); });
       const FrequencyPoint peak = respond(x);
       peaks.add({o.probes[p].name, to_rpm(peak.Omega), to_hz(peak.frequency), size(peak)});

@@ -16,11 +16,16 @@ bool turns_with_stiffness(const model::Model& m) {
   return false;
 }
 
+Error no_map_of_bands(const model::Step& step) {
+  return run_error("E89", fmt::format("step '{}': a map over a parameter is not drawn for asymmetric shafts, whose instabilities are bands", step.name),
+                   "leave 'map' out, or give the shaft equal stiffnesses", step.name);
+}
+
 void run_instability_bands(Job& job, const model::Step& step, const model::StabilityStep& law) {
   const std::vector<double> speeds = speeds_of(law.speed);
   FrequencyStep s(job, step, "stability", "instability bands of the asymmetric shaft", std::max(std::abs(speeds.front()), std::abs(speeds.back())));
   const PhaseTimer timer(job, "stability");
-  if (law.map) throw run_error("E89", fmt::format("step '{}': a map over a parameter is not drawn for asymmetric shafts, whose instabilities are bands", step.name), "leave 'map' out, or give the shaft equal stiffnesses", step.name);
+  if (law.map) throw no_map_of_bands(step);
   analysis::RotatingAxes axes(s.linear, speeds.back());
   analysis::BandOptions o;
   o.modes = law.modes;
@@ -30,6 +35,7 @@ void run_instability_bands(Job& job, const model::Step& step, const model::Stabi
 
   io::Table table;
   table.title = "Bands of instability";
+  table.nan_means = "the band goes on beyond the speeds";
   table.columns = {{"from", "rpm", ""}, {"to", "rpm", ""}, {"largest growth", "1/s", "real part of the eigenvalue"}, {"at", "rpm", ""},
                    {"frequency there", "Hz", "in axes turning with the rotor; 0: the rotor bends out at its own speed"}};
   io::Value& v = s.summary();

@@ -1,5 +1,5 @@
-// Ctrl-C and SIGTERM ask the running step to stop at its next mark (transient.hpp), within a fraction of
-// a second; results and a checkpoint are then complete.
+// Ctrl-C, SIGTERM and SIGHUP ask the running step to stop (core/interrupt.hpp), which it does within a fraction of a second; what is
+// finished is then written, and of a transient a checkpoint. A closed standard output or error does not end a run.
 #pragma once
 #include <atomic>
 
@@ -7,7 +7,7 @@ namespace whirl::app {
 
 /// Set by the signal handler.
 const std::atomic<bool>& interrupted();
-/// Installs the handlers; a second signal ends the program at once.
+/// Installs the handlers; Ctrl-C or SIGTERM a second time ends the program at once. Signals that are ignored stay ignored (nohup).
 void install_interrupt_handlers();
 
 }  // namespace whirl::app

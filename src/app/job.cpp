@@ -26,30 +26,40 @@ void Job::build_for(const model::Step& step) {
   built_for = "<" + key;
 }
 
-StepState Job::start_of(const model::Step& step, double speed) const {
+StepState Job::start_of(const model::Step& step, std::optional<double> speed) const {
   if (!step.from.empty()) {
     StepState s = states.at(step.from);
-    if (speed != 0.0) s.speed = speed;
+    if (!speed) return s;
+    s.speed = *speed;
+    for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+      const meshes::Line& line = mesh.lines[l];
+      const double spin = model.shafts[l].rotating ? *speed * model.shafts[l].speed_ratio : 0.0;
+      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) s.state.v[6 * n + system::spin_phi] = spin;
+    }
     return s;
   }
-  StepState s{system().make_state(), speed};
+  const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
+  StepState s{system().make_state(), 0.0, {}};
   system::State& x = s.state;
+  double reference_spin = 0.0, some_spin = 0.0;
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
     const meshes::Line& line = mesh.lines[l];
     const model::Shaft& shaft = model.shafts[l];
     const assembly::LineSpin& law = built.spins[l];
-    double phi = 0.0, spin = speed != 0.0 ? speed * shaft.speed_ratio : law.spin0;
-    if (law.prescribed) {
-      const LawValue v = law.angle->at(0.0);
-      phi = v.f, spin = v.df;
-    }
+    const LawValue drive = law.prescribed ? law.angle->at(0.0) : LawValue{0.0, law.spin0, 0.0};
+    const double phi = drive.f;
+    const bool follows_drive = law.prescribed && in_time;
+    double spin = speed && !follows_drive ? *speed * shaft.speed_ratio : drive.df;
     if (!shaft.rotating) spin = 0.0;
-    if (static_cast<Index>(l) == mesh.nodes[static_cast<std::size_t>(built.reference)].line) s.speed = spin;
+    if (static_cast<Index>(l) == mesh.nodes[static_cast<std::size_t>(built.reference)].line) reference_spin = spin;
+    if (some_spin == 0.0) some_spin = spin;
     for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
       x.q[6 * n + system::spin_phi] = phi;
       x.v[6 * n + system::spin_phi] = spin;
     }
   }
+  // a reference that stands still while another line turns cannot measure the speeds
+  s.speed = speed ? *speed : reference_spin != 0.0 ? reference_spin : some_spin;
   for (const model::InitialMotion& i : model.initial) {
     const meshes::Line& line = mesh.lines[i.shaft];
     for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
@@ -105,13 +115,18 @@ namespace {
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 }  // namespace
 
-PhaseTimer::PhaseTimer(Job& job, std::string phase) : job_(job), phase_(std::move(phase)), start_(now()) {}
+PhaseTimer::PhaseTimer(Job& job, std::string phase) : job_(job), phase_(std::move(phase)) {}
+
+void put_run_time(io::Value& summary, const RunTime& time) {
+  summary["run time, CPU [s]"] = time.cpu;
+  summary["run time, wall [s]"] = time.wall;
+}
 
 PhaseTimer::~PhaseTimer() {
-  const double spent = now() - start_;
-  for (auto& [name, seconds] : job_.phases)
+  const RunTime spent = watch_.elapsed();
+  for (auto& [name, time] : job_.phases)
     if (name == phase_) {
-      seconds += spent;
+      time += spent;
       return;
     }
   job_.phases.emplace_back(phase_, spent);

@@ -5,6 +5,8 @@
 #include <analysis/transient.hpp>
 #include <app/run.hpp>
 #include <assembly/build_system.hpp>
+#include <core/archive.hpp>
+#include <core/stopwatch.hpp>
 #include <io/frames.hpp>
 #include <io/report.hpp>
 #include <io/results.hpp>
@@ -13,6 +15,7 @@
 #include <system/system.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace whirl::app {
@@ -21,6 +24,9 @@ namespace whirl::app {
 struct StepState {
   system::State state;
   double speed = 0;   ///< rad/s of the reference line
+  /// Where the integrals of the governors that acted began, by drive: a later step in which they act as well goes on with them.
+  struct Began { double time = 0, angle = 0; };
+  std::map<std::string, Began> governors;
 };
 
 struct Job {
@@ -33,7 +39,10 @@ struct Job {
   io::Report report;
   io::Value summary;
   std::map<std::string, StepState> states;
-  std::vector<std::pair<std::string, double>> phases;   ///< wall-clock seconds by phase, for the summary
+  std::vector<std::pair<std::string, RunTime>> phases;   ///< for the summary
+
+  /// Steps whose lists or verdicts could not be certified although they should be: the run ends with Exit::no_convergence.
+  std::vector<std::string> uncertified;
 
   std::string built_for;
 
@@ -42,8 +51,9 @@ struct Job {
   Index reference() const { return built.reference; }
   /// Builds the system with the drives of a step (the same one again costs nothing).
   void build_for(const model::Step& step);
-  /// Initial state of a step: that of the step it names, else at rest with the lines' spins.
-  StepState start_of(const model::Step& step, double speed) const;
+  /// Initial state of a step: that of the step it names, else straight, with the lines' spins. speed: of the reference, rad/s, every line at
+  /// its speed_ratio whatever drives prescribe; without it lines turn as their drives prescribe at time 0, else with their initial spins.
+  StepState start_of(const model::Step& step, std::optional<double> speed) const;
   /// How the lines turn in a state.
   analysis::Running running_of(const StepState& start) const;
   /// Moves a start to its static equilibrium (spinning, loaded; in_time: where a transient starts, hysteretic damping as it acts there). Errors E75, E76 when there is none.
@@ -73,11 +83,20 @@ StepState transient_start(Job&, const model::Step&, const model::TransientStep&)
 /// The equations a transient step integrates from `start`: the general ones, or those of small motions.
 std::unique_ptr<system::SystemProblem> transient_problem(const Job&, const model::TransientStep&, const StepState& start);
 
-/// Moves a start into the steady response to the unbalance at its speed; adds a whirl mode (amplitude: its largest displacement, m).
+/// Moves a start into the steady response to the unbalance at its speed; adds the whirl mode that the step names.
 void start_in_unbalance_response(const Job&, StepState& start);
-void start_in_mode(const Job&, StepState& start, int number, double amplitude);
+void start_in_mode(const Job&, StepState& start, const model::TransientStep&);
+/// Lets the governors of the step begin: where those of the start did that acted before, the others here, without a jump of their torque.
+void begin_governors(const Job&, StepState& start);
+/// The part of a checkpoint that says where they began.
+inline constexpr const char* governors_part = "governors";
+void save_governors(OutArchive& out, const StepState& start);
+void restore_governors(InArchive& in, StepState& start);
 /// The last state of a transient step in another results folder.
 StepState start_of_other_run(const Job&, const std::string& folder, const std::string& step);
+
+/// "run time, CPU [s]" and "run time, wall [s]" of a summary.
+void put_run_time(io::Value& summary, const RunTime& time);
 
 /// Adds the time since its construction to a phase of the job.
 class PhaseTimer {
@@ -90,7 +109,7 @@ class PhaseTimer {
  private:
   Job& job_;
   std::string phase_;
-  double start_;
+  Stopwatch watch_;
 };
 
 /// Progress on a terminal (one line, rewritten) or one line per 10 %.

@@ -1,5 +1,6 @@
 #include <app/keyphasor_output.hpp>
 
+#include <analysis/whirl_modes.hpp>
 #include <io/plots.hpp>
 #include <io/text.hpp>
 
@@ -19,11 +20,6 @@ std::vector<analysis::Point> points_of(const Job& job) {
     p.push_back({at.node, at.offset});
   }
   return p;
-}
-
-double wrapped(double lag) {
-  lag = std::fmod(lag, two_pi);
-  return lag < 0.0 ? lag + two_pi : lag;
 }
 
 /// Local maxima of y that stand above both sides by `share` of the largest value.
@@ -53,7 +49,20 @@ std::vector<std::size_t> peaks_of(const std::vector<double>& y, double share) {
 
 }  // namespace
 
-KeyphasorOutput::KeyphasorOutput(const Job& job, const model::Step& step)
+std::vector<double> probe_senses(const Job& job, const StepState& start) {
+  std::vector<double> ratio = job.running_of(start).ratio;
+  const Index line = job.mesh.nodes[static_cast<std::size_t>(job.reference())].line;
+  const double of_reference = job.model.shafts[static_cast<std::size_t>(line)].speed_ratio;
+  for (std::size_t l = 0; l < job.model.shafts.size(); ++l)
+    if (ratio[l] == 0.0 && job.model.shafts[l].rotating) ratio[l] = job.model.shafts[l].speed_ratio * of_reference;
+  const std::vector<double> all = analysis::spin_senses(job.system(), ratio);
+  std::vector<double> out;
+  for (const analysis::Point& p : points_of(job))
+    out.push_back(all[static_cast<std::size_t>(p.node)] * all[static_cast<std::size_t>(job.reference())]);
+  return out;
+}
+
+KeyphasorOutput::KeyphasorOutput(const Job& job, const model::Step& step, std::span<const double> senses)
     : out_(job.model.output), step_(step.name), rows_(0), revolutions_(points_of(job), job.reference(), out_.tracking.samples, [this](const analysis::Turn& t) { take(t); }) {
   per_direction_ = 2 * out_.tracking.orders.size() + 2;
   columns_ = 2;   // t, speed
@@ -64,6 +73,7 @@ KeyphasorOutput::KeyphasorOutput(const Job& job, const model::Step& step)
   for (const model::Probe& p : job.model.probes) {
     Tracked t;
     t.name = p.name;
+    t.sense = senses[probes_.size()];
     if (p.angles.empty()) t.directions = {{"y", 1.0, 0.0}, {"z", 0.0, 1.0}};
     for (double a : p.angles) t.directions.push_back({fmt::format("{:.0f}deg", a * 180.0 / pi), std::cos(a), std::sin(a)});
     t.column = columns_;
@@ -94,7 +104,7 @@ std::vector<io::Channel> KeyphasorOutput::channels() const {
       c.push_back({name + " envelope", "m", "half the peak-to-peak value of the turn", {}, 1.0, {}});
       c.push_back({name + " mean", "m", "mean of the turn", {}, 1.0, {}});
     }
-    c.push_back({p.name + " 1X forward", "m", "radius of the circle that turns with the spin", {}, 1.0, {}});
+    c.push_back({p.name + " 1X forward", "m", "radius of the circle that turns with the spin of the shaft there", {}, 1.0, {}});
     c.push_back({p.name + " 1X backward", "m", "radius of the circle that turns against it", {}, 1.0, {}});
   }
   return c;
@@ -115,15 +125,16 @@ void KeyphasorOutput::take(const analysis::Turn& turn) {
       for (std::size_t j = 0; j < y.size(); ++j) direction_values_[j] = d.c * y[j] + d.s * z[j];
       for (double k : out_.tracking.orders) {
         const Complex x = analysis::synchronous(turn, direction_values_, static_cast<int>(k));
-        *out++ = std::abs(x), *out++ = wrapped(-std::arg(x));
+        *out++ = std::abs(x);
+        *out++ = analysis::lag_of(turn, x);
       }
       const analysis::Range r = analysis::range_of(direction_values_);
       *out++ = 0.5 * (r.high - r.low), *out++ = r.mean;
     }
-    const Complex Y = analysis::synchronous(turn, y, 1), Z = analysis::synchronous(turn, z, 1), i(0.0, 1.0);
-    double forward = 0.5 * std::abs(Y + i * Z), backward = 0.5 * std::abs(std::conj(Y) + i * std::conj(Z));
-    if (turn.backward) std::swap(forward, backward);
-    *out++ = forward, *out++ = backward;
+    // against the angle of the reference, so that a rotor may turn either way
+    const analysis::Orbit circles = analysis::orbit_of(analysis::synchronous(turn, y, 1), analysis::synchronous(turn, z, 1), probes_[p].sense);
+    *out++ = circles.forward;
+    *out++ = circles.backward;
 
     // orbits: about the mean of the turn, the last few turns
     const analysis::Range ry = analysis::range_of(y), rz = analysis::range_of(z);
@@ -210,11 +221,14 @@ io::Series within_a_turn(const io::Series& in) {
   return out;
 }
 
-/// Where the speed turns back for good: rows up to it rise, later ones fall (or the other way round).
+/// Where the speed turns back for good: rows up to it rise, later ones fall (or the other way round). While the speed is held it neither
+/// rises nor falls but for rounding: its end counts.
 std::size_t turning_row(const std::vector<std::vector<double>>& rows) {
+  double most = 0;
+  for (const auto& r : rows) most = std::max(most, std::abs(r[1]));
   std::size_t top = 0;
   for (std::size_t r = 0; r < rows.size(); ++r)
-    if (std::abs(rows[r][1]) > std::abs(rows[top][1])) top = r;
+    if (std::abs(rows[r][1]) >= (1 - 1e-6) * most) top = r;
   return top;
 }
 

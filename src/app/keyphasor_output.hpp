@@ -5,12 +5,18 @@
 #include <app/job.hpp>
 #include <app/plot_buffer.hpp>
 
+#include <span>
+
 namespace whirl::app {
+
+/// Of each probe of the deck: +1 where the shaft there turns as the reference does, -1 the other way, by the spins at the start
+/// of a step (a shaft that does not turn yet: by its speed_ratio).
+std::vector<double> probe_senses(const Job& job, const StepState& start);
 
 class KeyphasorOutput {
  public:
-  /// resume_rows: rows of the CSV to keep, see Parts.
-  KeyphasorOutput(const Job& job, const model::Step& step);
+  /// senses: of probe_senses().
+  KeyphasorOutput(const Job& job, const model::Step& step, std::span<const double> senses);
   analysis::Observer& observer() { return revolutions_; }
   void begin();
   void save(OutArchive& out);
@@ -23,7 +29,12 @@ class KeyphasorOutput {
 
  private:
   struct Direction { std::string name; double c = 1, s = 0; };
-  struct Tracked { std::string name; std::vector<Direction> directions; std::size_t column = 0; };
+  struct Tracked {
+    std::string name;
+    std::vector<Direction> directions;
+    std::size_t column = 0;
+    double sense = 1;   ///< -1: the shaft there turns against the reference
+  };
   /// Some turns of one probe.
   struct Orbit { std::size_t probe = 0; double t = 0, speed = 0, size = 0; std::vector<double> y, z; };
   void take(const analysis::Turn& turn);

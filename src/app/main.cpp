@@ -5,7 +5,10 @@
 #include <app/diagnose.hpp>
 #include <app/terminal.hpp>
 #include <app/version.hpp>
+#include <core/interrupt.hpp>
+#include <core/isa.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <fmt/format.h>
 
@@ -15,7 +18,7 @@ using namespace whirl;
 using namespace whirl::app;
 
 void add_deck(CLI::App* c, std::filesystem::path& deck, deck::ReadOptions& read) {
-  c->add_option("deck", deck, "deck file (TOML)")->required();
+  c->add_option("deck", deck, "deck file (TOML); - is standard input")->required();
   c->add_option("--set", read.set, "override a key: --set step.run_up.duration='5 s' (may be repeated)")->type_name("PATH=VALUE")->take_all()->allow_extra_args(false);
 }
 
@@ -39,7 +42,15 @@ std::vector<CommandInfo> commands_of(const CLI::App& app) {
   return r;
 }
 
+void check_environment() {
+  const char* isa = std::getenv("WHIRL_ISA");
+  if (!isa || known_isa(isa)) return;
+  throw Error(Exit::usage, Diagnostic{Diagnostic::Severity::error, "E98", fmt::format("WHIRL_ISA = '{}' is no instruction set", isa),
+                                      "it is baseline, avx2 or avx512; leave it out for the best one", Where{}});
+}
+
 int command_line(int argc, char** argv) {
+  check_environment();
   CLI::App app{"Whirl: dynamics of rotor-shaft systems, exact in large rotation", "whirl"};
   app.require_subcommand(1);
   app.set_version_flag("--version", [] { return "whirl " + version(); });
@@ -142,12 +153,14 @@ int main(int argc, char** argv) {
     // a full disk or a closed pipe shows only here
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
       std::fputs("error: cannot write to standard output\n", stderr);
-      return static_cast<int>(whirl::Exit::io);
+      return code == 0 ? static_cast<int>(whirl::Exit::io) : code;
     }
     return code;
   } catch (const whirl::Error& e) {
     print_diagnostics(e.diagnostics());
     return static_cast<int>(e.exit());
+  } catch (const whirl::Interrupted&) {
+    return static_cast<int>(whirl::Exit::interrupted);
   } catch (const std::bad_alloc&) {
     std::fputs("internal error: out of memory\n", stderr);
   } catch (const std::exception& e) {

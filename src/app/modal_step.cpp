@@ -78,22 +78,27 @@ void run_modal_step(Job& job, const model::Step& step, const model::ModalStep& l
   o.max_frequency = law.max_frequency;
   o.motion = motion_of(law.motion);
   o.damped = law.damped;
-  o.real_roots = false;
+  o.real_roots = true;
+  o.judge = law.damped;
   o.continued = law.damped && !job.built.table_frequencies.empty();
-  const std::vector<analysis::WhirlMode> modes = [&] {
+  analysis::SpectrumCertificate certificate;
+  const std::vector<analysis::WhirlMode> all = [&] {
     const PhaseTimer timer(job, "modes");
-    return analysis::whirl_modes(s.linear, law.speed, o);
+    return analysis::whirl_modes(s.linear, law.speed, o, &certificate);
   }();
+  std::vector<analysis::WhirlMode> modes;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(modes), [](const analysis::WhirlMode& m) { return m.oscillates(); });
 
   io::Table table;
   table.title = "Modes";
   table.columns = {{"mode", "-", ""},
+                   {"label", "-", "number within its kind"},
                    {"kind", "-", "by the largest share of energy"},
                    {"direction", "-", "of the orbits, seen along the spin"},
                    {"frequency", "Hz", "damped natural frequency"},
                    {"frequency", "rpm", ""},
                    {"log decrement", "-", "per cycle; negative: unstable"},
-                   {"damping ratio", "-", ""},
+                   {"damping ratio", "-", "of the critical damping of the mode"},
                    {"lateral", "%", "share of the energy"},
                    {"torsional", "%", ""},
                    {"axial", "%", ""},
@@ -103,41 +108,60 @@ void run_modal_step(Job& job, const model::Step& step, const model::ModalStep& l
   v["speed [rpm]"] = to_rpm(law.speed);
   io::Value list = io::Value::array();
   int unstable = 0;
+  const std::vector<std::string> labels = labels_of(modes);
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::WhirlMode& m = modes[k];
-    std::vector<io::Table::Cell> row{static_cast<int>(k + 1), std::string(to_string(m.kind)), direction_text(m), to_hz(m.frequency), to_rpm(m.frequency),
+    std::vector<io::Table::Cell> row{static_cast<int>(k + 1), labels[k], std::string(to_string(m.kind)), direction_text(m), to_hz(m.frequency), to_rpm(m.frequency),
                                      tidy(m.log_decrement), tidy(m.damping_ratio), 100 * tidy(m.lateral), 100 * tidy(m.torsional), 100 * tidy(m.axial), tidy(m.forwardness)};
     const double continued = -two_pi * m.continued.real() / m.continued.imag();
     if (o.continued) row.emplace_back(tidy(continued));
     table.add(std::move(row));
     io::Value e = io::Value::object();
+    e["label"] = labels[k];
     e["frequency [Hz]"] = to_hz(m.frequency);
     e["log decrement"] = tidy(m.log_decrement);
+    e["damping ratio"] = tidy(m.damping_ratio);
     if (o.continued) e["continued log decrement"] = tidy(continued);
     e["kind"] = std::string(to_string(m.kind)), e["direction"] = direction_text(m);
     list.push(std::move(e));
-    unstable += m.damping_ratio < -1e-12;   // below the rounding of the eigenvalue
+    unstable += m.growth() > 0;
+  }
+  int diverging = 0;
+  io::Value rates = io::Value::array();
+  for (const analysis::WhirlMode& m : all) {
+    if (m.oscillates()) continue;
+    diverging += m.growth() > 0;
+    rates.push(m.growth() == 0 ? 0.0 : m.lambda.real());
   }
   v["modes"] = list;
+  v["rates of motions that do not oscillate [1/s]"] = rates;
   v["unstable modes"] = unstable;
+  v["diverging motions"] = diverging;
   s.add_table("modes", std::move(table));
+  io::Table real_roots = real_root_table(all);
+  if (!real_roots.rows.empty()) s.add_table("real_roots", std::move(real_roots));
+  s.certify(certificate);
   if (!modes.empty()) add_energy_tables(s, modes);
 
   const std::size_t drawn = std::min(modes.size(), static_cast<std::size_t>(law.shapes));
   for (std::size_t k = 0; k < drawn; ++k) {
     const analysis::WhirlMode& m = modes[k];
     const std::string name = fmt::format("mode_{}", k + 1);
-    ShapeDrawing d{name, fmt::format("Mode {}: {:.5g} Hz, {}", k + 1, to_hz(m.frequency), description(m)), {}, &m.x, m.kind};
-    if (std::abs(m.log_decrement) > 1e-9) d.caption = fmt::format("Log decrement {:.4g}.", m.log_decrement);
+    ShapeDrawing d{name, fmt::format("Mode {} ({}): {:.5g} Hz, {}", k + 1, labels[k], to_hz(m.frequency), description(m)), {}, &m.x, m.kind};
+    if (std::abs(m.log_decrement) > 1e-9) d.caption = fmt::format("Log decrement {:.4g}, damping ratio {:.4g}.", m.log_decrement, m.damping_ratio);
     add_shape_figures(s, d);
     write_shape_frames(s, name, m.x);
   }
-  s.section.text = fmt::format("{} whirl modes at {:.6g} rpm, {}, about the spinning, loaded equilibrium.", modes.size(), to_rpm(law.speed),
+  s.section.text = fmt::format("{} whirl modes at {:.6g} rpm, {}.", modes.size(), to_rpm(law.speed),
                                law.damped ? "damped" : "undamped");
   if (unstable > 0) s.section.text += fmt::format(" {} of them unstable.", unstable);
+  if (diverging > 0) s.section.text += fmt::format(" {} motion{} without oscillating.", diverging, diverging == 1 ? " diverges" : "s diverge");
+  s.section.text += " " + capital(certificate.text()) + ".";
+  if (law.damped && unstable + diverging == 0) s.section.text += " " + capital(stability_text(certificate)) + ".";
   std::string line = fmt::format("{} modes at {:.0f} rpm", modes.size(), to_rpm(law.speed));
   for (std::size_t k = 0; k < std::min<std::size_t>(modes.size(), 4); ++k) line += fmt::format("{}{:.4g}", k ? ", " : ": ", to_hz(modes[k].frequency));
-  s.finish(line + (modes.empty() ? "" : modes.size() > 4 ? " ... Hz" : " Hz") + (unstable ? fmt::format(", {} unstable", unstable) : ""));
+  s.finish(line + (modes.empty() ? "" : modes.size() > 4 ? " ... Hz" : " Hz") + (unstable ? fmt::format(", {} unstable", unstable) : "") +
+           (diverging ? fmt::format(", {} diverging", diverging) : "") + (certificate.complete() ? ", complete" : ", not certified"));
 }
 
 }  // namespace whirl::app

@@ -35,7 +35,7 @@ void add_probe_columns(io::Table& t, const std::string& name) {
   t.columns.push_back({name + " z amplitude", "m", "0-peak"});
   t.columns.push_back({name + " z phase lag", "deg", ""});
   t.columns.push_back({name + " major", "m", "half axis of the orbit"});
-  t.columns.push_back({name + " minor", "m", "negative: the orbit is run backward"});
+  t.columns.push_back({name + " minor", "m", "negative: the orbit is run against the spin"});
 }
 
 void add_probe_cells(std::vector<io::Table::Cell>& row, const analysis::PointAmplitude& a) {

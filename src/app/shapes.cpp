@@ -127,7 +127,7 @@ void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& 
   for (const model::VtkOutput& v : out.vtk) {
     if (!v.step.empty() && v.step != s.step.name) continue;
     io::VtkFrameOptions options;
-    options.directory = s.job.folder.path("vtk");
+    options.directory = s.job.folder.subfolder("vtk");
     options.name = s.file(name);
     io::set_content(options, v.content);
     options.deformation_scale = 1.0;   // in the amplitude

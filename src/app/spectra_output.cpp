@@ -23,8 +23,8 @@ std::vector<analysis::Point> points_of(const Job& job) {
 
 }  // namespace
 
-SpectraOutput::SpectraOutput(const Job& job, const model::Step& step, double t_begin)
-    : out_(job.model.output), options_(*job.model.output.spectra), step_(step.name),
+SpectraOutput::SpectraOutput(const Job& job, const model::Step& step, double t_begin, std::vector<double> senses)
+    : out_(job.model.output), options_(*job.model.output.spectra), step_(step.name), senses_(std::move(senses)),
       spectra_(points_of(job), job.reference(), t_begin, {options_.max_frequency, options_.lines}, [this](const analysis::SpectrumBlock& b) { take(b); }) {
   key_ = fmt::format("spectra {} {} {}", options_.max_frequency, options_.lines, options_.traces);
   for (const model::Probe& p : job.model.probes) {
@@ -37,7 +37,7 @@ SpectraOutput::SpectraOutput(const Job& job, const model::Step& step, double t_b
 std::vector<io::Channel> SpectraOutput::channels() const {
   std::vector<io::Channel> c{{"t", "s", "middle of the block", {}, 1.0, {}}, {"speed", "rpm", "mean spin of the block", {}, 30.0 / pi, {}}};
   for (int k = -options_.lines; k <= options_.lines; ++k)
-    c.push_back({fmt::format("{:.6g} Hz", k * options_.max_frequency / options_.lines / two_pi), "m", "amplitude of y + iz, 0-peak; negative: against the sense from y to z", {}, 1.0, {}});
+    c.push_back({fmt::format("{:.6g} Hz", k * options_.max_frequency / options_.lines / two_pi), "m", "amplitude of y + iz, 0-peak; negative: against the spin", {}, 1.0, {}});
   return c;
 }
 
@@ -49,7 +49,10 @@ void SpectraOutput::close() {
   for (auto& s : sinks_) s->close();
 }
 
-void SpectraOutput::take(const analysis::SpectrumBlock& b) {
+void SpectraOutput::take(analysis::SpectrumBlock b) {
+  // positive frequencies: with the spin of the shaft there
+  for (std::size_t p = 0; p < b.full.size(); ++p)
+    if ((b.speed < 0 ? -1.0 : 1.0) * senses_[p] < 0) std::reverse(b.full[p].begin(), b.full[p].end());
   for (std::size_t p = 0; p < sinks_.size(); ++p) {
     row_[0] = b.t, row_[1] = b.speed;
     std::copy(b.full[p].begin(), b.full[p].end(), row_.begin() + 2);
@@ -113,7 +116,7 @@ void SpectraOutput::report(io::ReportSection& section) const {
     io::Figure f;
     f.name = id + "_full_spectrum";
     f.title = fmt::format("{}: full spectrum of the largest block, {:.0f} rpm, t = {:.4g} s", probes_[p], traces_[best].speed * 30.0 / pi, traces_[best].t);
-    f.caption = "Spectrum of y + iz: positive frequencies whirl from y to z (forward for a positive spin), negative ones against it.";
+    f.caption = "Spectrum of y + iz: positive frequencies whirl with the spin of the shaft there, negative ones against it.";
     io::Axes a;
     a.x = io::Axis("frequency, backward < 0 < forward", "Hz"), a.y = io::Axis(std::string("amplitude, ") + io::to_string(convention), unit.name);
     a.y.include_zero = true;
@@ -124,7 +127,7 @@ void SpectraOutput::report(io::ReportSection& section) const {
       s.y.push_back(unit.factor * factor * traces_[best].full[p][k]);
     }
     a.series.push_back(std::move(s));
-    const double spin = traces_[best].speed / two_pi;
+    const double spin = std::abs(traces_[best].speed) / two_pi;
     for (const double k : {-1.0, 1.0})
       if (std::abs(k * spin) <= options_.max_frequency / two_pi) a.rules.push_back({true, k * spin, k > 0 ? "1X" : "-1X", {io::ink, io::Dash::dotted, 1.0}});
     f.axes.push_back(std::move(a));

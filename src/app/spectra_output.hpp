@@ -7,7 +7,8 @@ namespace whirl::app {
 
 class SpectraOutput {
  public:
-  SpectraOutput(const Job& job, const model::Step& step, double t_begin);
+  /// senses: of the shafts at the probes, +1 or -1 relative to the reference; see probe_senses().
+  SpectraOutput(const Job& job, const model::Step& step, double t_begin, std::vector<double> senses);
   analysis::Observer& observer() { return spectra_; }
   void begin();
   void save(OutArchive& out);
@@ -18,12 +19,13 @@ class SpectraOutput {
 
  private:
   struct Trace { double t = 0, speed = 0; std::vector<std::vector<double>> full, y; };   ///< [probe][line]
-  void take(const analysis::SpectrumBlock& block);
+  void take(analysis::SpectrumBlock block);
   std::vector<io::Channel> channels() const;
   const model::Output& out_;
   model::SpectraOutput options_;
   std::string step_, key_;
   std::vector<std::string> probes_;
+  std::vector<double> senses_;
   std::vector<io::TimeSeriesPtr> sinks_;   ///< one a probe
   std::vector<Trace> traces_;
   std::size_t blocks_ = 0, stride_ = 1;

@@ -34,6 +34,15 @@ bool equally_spaced(const std::vector<double>& x) {
 
 }  // namespace
 
+model::Model variant_of(const RunOptions& options, const model::Step& step, const model::StabilityMap& map, const std::string& value) {
+  model::Model m = options.variant(fmt::format("parameters.{}={}", map.parameter, value));
+  for (const Diagnostic& w : m.warnings)
+    if (w.code == "W01" && w.message.find("'" + map.parameter + "'") != std::string::npos)
+      throw run_error("E89", fmt::format("step '{}': nothing in the deck depends on the parameter '{}'", step.name, map.parameter),
+                      fmt::format("write \"${{{}}}\" where it belongs", map.parameter), step.name);
+  return m;
+}
+
 std::string add_stability_map(FrequencyStep& s, const model::StabilityMap& law, const analysis::StabilityOptions& options) {
   if (!s.job.options.variant) throw run_error("E89", fmt::format("step '{}': the deck of this run cannot be read again with another value of '{}'", s.step.name, law.parameter), "", s.step.name);
   const Values values = values_of(law);
@@ -41,10 +50,7 @@ std::string add_stability_map(FrequencyStep& s, const model::StabilityMap& law, 
   for (std::size_t k = 0; k < place.size(); ++k) place[k] = static_cast<double>(k);
   const analysis::StabilityMap map = analysis::stability_map(
       [&](double k) {
-        const model::Model m = s.job.options.variant(fmt::format("parameters.{}={}", law.parameter, law.values[static_cast<std::size_t>(k)]));
-        for (const Diagnostic& w : m.warnings)
-          if (w.code == "W01" && w.message.find("'" + law.parameter + "'") != std::string::npos)
-            throw run_error("E89", fmt::format("step '{}': nothing in the deck depends on the parameter '{}'", s.step.name, law.parameter), fmt::format("write \"${{{}}}\" where it belongs", law.parameter), s.step.name);
+        const model::Model m = variant_of(s.job.options, s.step, law, law.values[static_cast<std::size_t>(k)]);
         return std::move(assembly::build_system(m, meshes::make_mesh(m), s.step.name).system);
       },
       s.linear.running().running(), place, options);
@@ -52,6 +58,7 @@ std::string add_stability_map(FrequencyStep& s, const model::StabilityMap& law, 
   const std::string unit = values.unit;
   io::Table onset, rates;
   onset.title = "Onset of instability against " + law.parameter;
+  onset.nan_means = "there is no onset: see the remark";
   onset.columns = {{law.parameter, unit, ""}, {"onset speed", "rpm", "lowest at which a mode becomes unstable"}, {"whirl frequency", "Hz", ""}, {"remark", "-", ""}};
   rates.title = "Least log decrement against speed and " + law.parameter;
   rates.columns.push_back({"speed", "rpm", ""});

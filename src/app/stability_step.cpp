@@ -9,6 +9,51 @@
 
 namespace whirl::app {
 
+namespace {
+
+/// The speed of which least is known: not counted, then not complete, then not excluded above.
+const analysis::SpeedVerdict& weakest(const analysis::StabilityResult& r) {
+  const auto grade = [](const analysis::SpeedVerdict& v) { return v.certificate.stability_certain() ? 2 : v.certificate.complete() ? 1 : 0; };
+  return *std::min_element(r.verdicts.begin(), r.verdicts.end(), [&](const auto& a, const auto& b) { return grade(a) < grade(b); });
+}
+
+io::Table verdict_table(const analysis::StabilityResult& r) {
+  io::Table t;
+  t.title = "Verdict at each speed";
+  t.columns = {{"speed", "rpm", ""}, {"growing whirl modes", "-", ""}, {"diverging motions", "-", ""}, {"fastest growth", "1/s", ""},
+               {"roots counted up to", "Hz", ""}, {"roots not found", "-", ""}, {"certified", "-", "all: at all frequencies; band: up to the frequency counted to; no"}};
+  for (const analysis::SpeedVerdict& v : r.verdicts) {
+    const analysis::SpectrumCertificate& c = v.certificate;
+    const char* word = c.stability_certain() ? "all" : c.complete() ? "band" : "no";
+    io::Table::Cell top = std::string(), missing = std::string();
+    if (c.open.empty()) top = to_hz(c.list.radius), missing = static_cast<int>(c.list.missing);
+    t.add({to_rpm(v.speed), static_cast<int>(v.whirling), static_cast<int>(v.diverging), v.fastest, std::move(top), std::move(missing), std::string(word)});
+  }
+  return t;
+}
+
+/// "stable from .. to .. rpm", "instability above .."; and on what authority.
+std::string verdict_line(const analysis::StabilityResult& r, const std::vector<double>& speeds) {
+  std::string line;
+  const analysis::SpeedVerdict& first = r.verdicts.front();
+  if (!r.stable_at_start)
+    line = fmt::format("unstable at {:.6g} rpm already ({})", to_rpm(speeds.front()),
+                       first.diverging > 0 ? fmt::format("a motion diverges at {:.4g} 1/s", first.fastest) : fmt::format("growth {:.4g} 1/s", first.fastest));
+  else if (r.onsets.empty()) line = fmt::format("stable from {:.6g} to {:.6g} rpm", to_rpm(speeds.front()), to_rpm(speeds.back()));
+  for (const analysis::Onset& x : r.onsets) {
+    if (!x.gains) continue;
+    const std::string what = x.divergence() ? "diverging without whirl" : fmt::format("whirling at {:.5g} Hz", to_hz(x.frequency));
+    line += fmt::format("{}instability above {:.8g} rpm, {}", line.empty() ? "" : "; ", to_rpm(x.speed), what);
+    break;
+  }
+  const analysis::SpectrumCertificate& c = weakest(r).certificate;
+  if (r.certain()) return line + fmt::format(" (certified at {} speeds: all roots accounted for)", r.verdicts.size());
+  if (r.complete()) return line + fmt::format(" (certified up to {:.5g} Hz; above it growth is not excluded)", to_hz(c.list.radius));
+  return line + " (not certified: " + c.text() + ")";
+}
+
+}  // namespace
+
 void run_stability_step(Job& job, const model::Step& step, const model::StabilityStep& law) {
   analysis::StabilityOptions o;
   const std::vector<double> speeds = speeds_of(law.speed);
@@ -20,6 +65,11 @@ void run_stability_step(Job& job, const model::Step& step, const model::Stabilit
 
   io::Value& v = s.summary();
   v["stable at the first speed"] = r.stable_at_start;
+  v["certified"] = r.certain();
+  v["list complete"] = r.complete();
+  const analysis::SpeedVerdict& judged = weakest(r);
+  s.certify(judged.certificate, fmt::format("at {:.6g} rpm", to_rpm(judged.speed)));
+  s.add_table("verdicts", verdict_table(r), false);
   v["onsets"] = io::Value::array();
   io::Table table;
   table.title = "Onset of instability";
@@ -28,9 +78,10 @@ void run_stability_step(Job& job, const model::Step& step, const model::Stabilit
   std::vector<double> thresholds;
   for (const analysis::Onset& x : r.onsets) {
     table.add({to_rpm(x.speed), to_hz(x.frequency), x.ratio(), std::string(to_string(x.mode.kind)), direction_text(x.mode),
-               x.gains ? "unstable" : "stable again"});
+               x.divergence() ? (x.gains ? "diverges" : "no longer diverges") : x.gains ? "unstable" : "stable again"});
     io::Value e = io::Value::object();
     e["speed [rpm]"] = to_rpm(x.speed), e["whirl frequency [Hz]"] = to_hz(x.frequency), e["becomes unstable"] = x.gains;
+    e["divergence"] = x.divergence();
     v["onsets"].push(std::move(e));
     thresholds.push_back(x.speed);
   }
@@ -38,14 +89,20 @@ void run_stability_step(Job& job, const model::Step& step, const model::Stabilit
   std::vector<io::CampbellLine> shown;
   io::Table rates;
   rates.title = "Log decrement against speed";
+  rates.nan_means = "the mode is not there at this speed";
   rates.columns.push_back({"speed", "rpm", ""});
   for (std::size_t l = 0; l < lines.size(); ++l) {
     rates.columns.push_back({lines[l].label + " log decrement", "-", ""});
+    rates.columns.push_back({lines[l].label + " damping ratio", "-", ""});
     rates.columns.push_back({lines[l].label + " frequency", "Hz", ""});
   }
   for (std::size_t k = 0; k < r.diagram.speeds.size(); ++k) {
     std::vector<io::Table::Cell> row{to_rpm(r.diagram.speeds[k])};
-    for (const io::CampbellLine& l : lines) row.emplace_back(l.log_decrement[k]), row.emplace_back(to_hz(l.frequency[k]));
+    for (const analysis::CampbellLine& l : r.diagram.lines) {
+      row.emplace_back(l.log_decrement[k]);
+      row.emplace_back(l.damping_ratio[k]);
+      row.emplace_back(to_hz(l.frequency[k]));
+    }
     rates.add(std::move(row));
   }
   s.add_table("onset", std::move(table));
@@ -59,17 +116,9 @@ void run_stability_step(Job& job, const model::Step& step, const model::Stabilit
                           &x.mode.x, x.mode.kind});
     write_shape_frames(s, fmt::format("onset_{}", k + 1), x.mode.x);
   }
-  std::string line;
-  if (!r.stable_at_start) line = fmt::format("unstable at {:.6g} rpm already", to_rpm(speeds.front()));
-  else if (r.onsets.empty()) line = fmt::format("stable from {:.6g} to {:.6g} rpm", to_rpm(speeds.front()), to_rpm(speeds.back()));
-  for (const analysis::Onset& x : r.onsets)
-    if (x.gains) {
-      line += fmt::format("{}instability above {:.8g} rpm, whirling at {:.5g} Hz", line.empty() ? "" : "; ", to_rpm(x.speed), to_hz(x.frequency));
-      break;
-    }
+  std::string line = verdict_line(r, speeds);
   if (law.map) line += add_stability_map(s, *law.map, o);
-  s.section.text = line + ".";
-  s.section.text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(s.section.text[0])));
+  s.section.text = capital(line) + ".";
   s.finish(line);
 }
 

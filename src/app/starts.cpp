@@ -63,32 +63,111 @@ void start_in_unbalance_response(const Job& job, StepState& start) {
   start.state.q += q, start.state.v += v;
 }
 
-void start_in_mode(const Job& job, StepState& start, int number, double amplitude) {
-  analysis::Linearizer linear = linearizer_of(job, start);
-  analysis::ModesOptions o;
-  o.count = number + 2;
-  const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, start.speed, o);
-  if (static_cast<int>(modes.size()) < number) throw run_error("E76", fmt::format("the rotor has {} modes, not {}", modes.size(), number), "choose a lower number");
-  const analysis::WhirlMode& m = modes[static_cast<std::size_t>(number - 1)];
-  take_equilibrium(job, linear.equilibrium(), start);
-  start.state.q += amplitude * m.x.real(), start.state.v += amplitude * (m.lambda * m.x).real();
+namespace {
+
+bool is_of(const analysis::WhirlMode& m, model::MotionKind kind) {
+  using Kind = analysis::ModeKind;
+  switch (kind) {
+    case model::MotionKind::lateral: return m.kind == Kind::lateral;
+    case model::MotionKind::torsional: return m.kind == Kind::torsional;
+    case model::MotionKind::axial: return m.kind == Kind::axial;
+    case model::MotionKind::all: break;
+  }
+  return true;
 }
 
-StepState start_of_other_run(const Job& job, const std::string& folder, const std::string& step) {
+}  // namespace
+
+void start_in_mode(const Job& job, StepState& start, const model::TransientStep& law) {
+  analysis::Linearizer linear = linearizer_of(job, start);
+  std::optional<analysis::WhirlMode> found;
+  int of_kind = 0;
+  std::size_t all = 0;
+  // more modes until there are enough of the kind, or no more
+  for (Index count = law.mode + 2; !found; count *= 2) {
+    analysis::ModesOptions o;
+    o.count = count;
+    const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, start.speed, o);
+    of_kind = 0;
+    all = modes.size();
+    for (const analysis::WhirlMode& m : modes)
+      if (is_of(m, law.mode_kind) && ++of_kind == law.mode) found = m;
+    if (static_cast<Index>(modes.size()) < count || count > 2 * job.system().size()) break;
+  }
+  if (!found) {
+    constexpr std::string_view names[] = {"", "lateral ", "torsional ", "axial "};
+    throw run_error("E76", fmt::format("the rotor has {} {}modes, not {}", law.mode_kind == model::MotionKind::all ? static_cast<int>(all) : of_kind,
+                                       names[static_cast<int>(law.mode_kind)], law.mode), "choose a lower number");
+  }
+  take_equilibrium(job, linear.equilibrium(), start);
+  start.state.q += law.mode_amplitude * found->x.real();
+  start.state.v += law.mode_amplitude * (found->lambda * found->x).real();
+}
+
+void begin_governors(const Job& job, StepState& start) {
+  std::map<std::string, StepState::Began> acting;
+  for (const assembly::Governor& g : job.built.governors) {
+    const auto before = start.governors.find(g.drive);
+    const double angle = start.state.total_phi(g.node, job.system().node(g.node).line);
+    const StepState::Began began = before != start.governors.end() ? before->second : StepState::Began{start.state.t, angle};
+    g.begin(began.time, began.angle);
+    acting[g.drive] = began;
+  }
+  start.governors = std::move(acting);
+}
+
+void save_governors(OutArchive& out, const StepState& start) {
+  out.put_count(start.governors.size());
+  for (const auto& [drive, began] : start.governors) {
+    out.put(drive);
+    out.put(began.time);
+    out.put(began.angle);
+  }
+}
+
+void restore_governors(InArchive& in, StepState& start) {
+  start.governors.clear();
+  for (std::uint64_t n = in.count(); n > 0; --n) {
+    const std::string drive = in.text();
+    StepState::Began& began = start.governors[drive];
+    began.time = in.number();
+    began.angle = in.number();
+  }
+}
+
+Checkpoint last_state_of(const std::string& folder, const std::string& step) {
   namespace fs = std::filesystem;
   fs::path file = step.empty() ? fs::path() : checkpoint_file(folder, step);
   std::error_code ec;
   if (step.empty())
     for (const auto& f : fs::directory_iterator(fs::path(folder) / "checkpoint", ec))
       if (f.path().extension() == ".whirl") {
-        if (!file.empty()) throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("{} holds checkpoints of several steps", folder), "name one with previous_step", Where{}});
+        if (!file.empty())
+          throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("{} holds checkpoints of several steps", folder), "name one with previous_step", Where{}});
         file = f.path();
       }
-  const std::optional<Checkpoint> c = file.empty() ? std::nullopt : read_checkpoint(file);
-  if (!c) throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("no state of an earlier run in '{}'", folder), "previous names a results folder whose transient step has run with checkpoints", Where{}});
-  if (c->state.q.size() != job.system().size() || c->state.frames.chart.size() != static_cast<std::size_t>(job.system().lines()))
-    throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94", fmt::format("the run in '{}' has {} unknowns, this model {}", folder, c->state.q.size(), job.system().size()), "both must have the same mesh", Where{job.model.deck_path, 0, 0, 0, {}}});
-  return {c->state, c->speed};
+  std::optional<Checkpoint> c = file.empty() ? std::nullopt : read_checkpoint(file);
+  if (!c)
+    throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("no state of an earlier run in '{}'", folder),
+                                     "previous names a results folder whose transient step has run with checkpoints", Where{}});
+  return std::move(*c);
+}
+
+void check_state_fits(const Checkpoint& c, const std::string& folder, const system::System& system, const std::string& deck) {
+  if (c.state.q.size() == system.size() && c.state.frames.chart.size() == static_cast<std::size_t>(system.lines())) return;
+  throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94", fmt::format("the run in '{}' has {} unknowns, this model {}", folder, c.state.q.size(), system.size()),
+                                     "both must have the same mesh", Where{deck, 0, 0, 0, {}}});
+}
+
+StepState start_of_other_run(const Job& job, const std::string& folder, const std::string& step) {
+  const Checkpoint c = last_state_of(folder, step);
+  check_state_fits(c, folder, job.system(), job.model.deck_path);
+  StepState start{c.state, c.speed, {}};
+  if (const auto governors = c.parts.find(governors_part); governors != c.parts.end()) {
+    InArchive in(governors->second);
+    restore_governors(in, start);
+  }
+  return start;
 }
 
 }  // namespace whirl::app

@@ -1,3 +1,4 @@
+#include <app/frame_arrays.hpp>
 #include <app/static_results.hpp>
 
 #include <io/plots.hpp>
@@ -220,7 +221,7 @@ StaticResults make_static_results(Job& job, const std::string& step, system::Sys
 
   // ---- supports
   out.supports.title = "Supports: force and moment on the shaft";
-  out.supports.columns = {{"support", "-", ""}, {"F_x", "N", ""}, {"F_y", "N", ""}, {"F_z", "N", ""}, {"M_x", "N m", "of rigid supports: about the node they hold"},
+  out.supports.columns = {{"support", "-", ""}, {"F_x", "N", ""}, {"F_y", "N", ""}, {"F_z", "N", ""}, {"M_x", "N m", "about the place of the support"},
                           {"M_y", "N m", ""}, {"M_z", "N m", ""}};
   // What is below 1e-14 of the largest force is rounding of springs without load.
   double largest_force = 0;
@@ -398,7 +399,7 @@ StaticFrames::StaticFrames(const Job& job, const std::string& step) {
   for (const model::VtkOutput& o : job.model.output.vtk) {
     if (!o.step.empty() && o.step != step) continue;
     io::VtkFrameOptions options;
-    options.directory = job.folder.path("vtk");
+    options.directory = job.folder.subfolder("vtk");
     options.name = step;
     io::set_content(options, o.content);
     options.deformation_scale = o.deformation_scale;
@@ -410,35 +411,14 @@ StaticFrames::StaticFrames(const Job& job, const std::string& step) {
 }
 
 void StaticFrames::write(const Job& job, system::SystemProblem& problem, const system::State& s, double time, const std::vector<SectionPoint>& points) {
-  const std::size_t n = job.mesh.nodes.size();
-  std::vector<io::Pose> poses(n);
-  std::vector<Vec3> force(n, Vec3::Zero()), moment(n, Vec3::Zero()), supports;
-  std::vector<double> stress(n, 0.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    const system::NodeState& x = problem.workspace().nodes[i];
-    poses[i] = {job.mesh.nodes[i].position + x.u, x.d(), x.phi};
-  }
-  // where two elements meet: the larger stress, the section forces of the element on the left
-  for (const SectionPoint& p : points) {
-    if (p.xi != 0.0 && p.xi != 1.0) continue;
-    const meshes::Element& e = job.mesh.elements[at(p.element)];
-    const std::size_t i = at(p.xi == 0.0 ? e.left.node : e.right.node);
-    const bool first = p.xi == 0.0 && p.element == job.mesh.lines[at(p.line)].first_element;
-    if (p.xi == 1.0 || first) force[i] = p.force, moment[i] = p.moment;
-    stress[i] = std::max(stress[i], p.von_mises);
-  }
   const auto node = [&](Index k) -> const system::NodeState& { return problem.workspace().nodes[at(k)]; };
   VecX r(job.system().size());
   job.system().residual(problem.workspace(), s.frames, s.t, s.q, s.v, s.a, r);
-  for (const model::Bearing& b : job.model.bearings) {
-    supports.emplace_back(Vec3::Zero());
-    for (const assembly::SupportForce& f : job.built.support_forces)
-      if (f.name == b.name) supports.back() = f.force(node, problem.workspace().context, [&](Index k) { return r[k]; });
-  }
-  io::FrameState frame;
-  frame.time = time;
-  frame.nodes = poses, frame.force = force, frame.moment = moment, frame.stress = stress, frame.support_force = supports;
-  frame.charts = std::span<const Mat3>(s.frames.chart).first(job.mesh.lines.size());
+  FrameArrays arrays(job);
+  arrays.take_nodes(node);
+  arrays.take_sections(points);
+  arrays.take_supports(node, problem.workspace().context, [&](Index k) { return r[k]; });
+  const io::FrameState frame = arrays.state(time, s.frames, false);
   for (auto& w : writers_) w->frame(frame);
 }
 

@@ -2,6 +2,7 @@
 // section forces and stresses.
 #include <analysis/load_path.hpp>
 #include <app/frequency.hpp>
+#include <app/held.hpp>
 #include <app/stability_results.hpp>
 #include <app/static_results.hpp>
 #include <app/support_coefficients.hpp>
@@ -11,7 +12,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdio>
 
 namespace whirl::app {
@@ -89,9 +89,9 @@ void check_end(const std::string& step, const analysis::LoadPathResult& r) {
 
 void run_static_step(Job& job, const model::Step& step, const model::StaticStep& law) {
   if (law.speeds) return run_static_speeds(job, step, speeds_of(*law.speeds), law.load_steps);
-  const auto wall0 = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   system::SystemProblem problem(job.system(), {la::SolverKind::automatic, job.model.chart_change, 2.0});
-  StepState s = job.start_of(step, law.speed);
+  StepState s = job.start_of(step, law.own_speed());
   io::Value& v = job.summary["steps"][step.name];
   v["type"] = "static";
   v["speed [rpm]"] = s.speed * 30.0 / pi;
@@ -162,14 +162,21 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
   if (has_five) job.folder.write_table(step.name + "_rolling_stiffness.csv", five);
   const bool linearised = !coefficients.rows.empty();
   if (linearised) job.folder.write_table(step.name + "_coefficients.csv", coefficients);
-  v["run time [s]"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall0).count();
+  const RunTime time = watch.elapsed();
+  put_run_time(v, time);
+  const std::string kind = tangent.stable() ? "equilibrium" : stability_line(tangent, 0.0);
+  const std::string ended = law.path ? notes.front() : fmt::format("{} at {:.0f} rpm, {} Newton iterations", kind, s.speed * 30.0 / pi, found.iterations);
+  ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}", ended, time.text()));
+  io::ReportSection section;
+  say_held(job, step, held_in_step(job, step, found.spin_holds), section);
   if (job.model.output.report) {
-    io::ReportSection section;
+    const std::string held = std::move(section.text);
     section.title = fmt::format("{}: static equilibrium", step.name);
     section.text = fmt::format("At {:.6g} rpm, load factor {:.6g}: {} Newton iterations, {} load step{}.", s.speed * 30.0 / pi, load, found.iterations, found.load_steps,
                                found.load_steps == 1 ? "" : "s");
     if (!tangent.stable()) section.text += fmt::format("\n\nIt is an {}.", stability_line(tangent, s.speed));
     for (const std::string& n : notes) section.text += "\n\n" + n + ".";
+    section.text += held;
     if (followed && !followed->critical.empty()) section.tables.push_back(critical_table(*followed));
     if (path) section.figures.push_back(path->figure(step.name));
     for (io::Figure& f : results.figures) section.figures.push_back(std::move(f));
@@ -182,13 +189,11 @@ void run_static_step(Job& job, const model::Step& step, const model::StaticStep&
     if (path) section.files.emplace_back("load path", step.name + "_path.csv");
     job.report.sections.push_back(std::move(section));
   }
-  const std::string kind = tangent.stable() ? "equilibrium" : stability_line(tangent, 0.0);
-  const std::string ended = law.path ? notes.front() : fmt::format("{} at {:.0f} rpm, {} Newton iterations", kind, s.speed * 30.0 / pi, found.iterations);
-  ProgressLine(step.name, job.options.quiet).done(ended);
   if (!job.options.quiet && !job.options.json) {
     for (std::size_t k = 1; k < notes.size(); ++k) std::fputs(("  " + notes[k] + "\n").c_str(), stdout);
     for (const std::string& line : results.lines) std::fputs(("  " + line + "\n").c_str(), stdout);
   }
+  s.governors.clear();   // an equilibrium: none of them has begun
   job.states[step.name] = std::move(s);
   if (followed) check_end(step.name, *followed);
 }

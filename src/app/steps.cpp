@@ -3,22 +3,20 @@
 #include <app/job.hpp>
 #include <app/savings.hpp>
 #include <app/steps.hpp>
+#include <core/interrupt.hpp>
+#include <io/nonfinite.hpp>
 #include <io/rotor_drawing.hpp>
 #include <io/svg.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <type_traits>
 
 namespace whirl::app {
 
 namespace {
-
-double wall() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void describe_model(Job& job) {
   io::Value& v = job.summary["model"];
@@ -40,6 +38,17 @@ void describe_model(Job& job) {
   v["notes"] = notes;
 }
 
+/// Numbers that are none and that nothing accounts for: the results are not to be trusted there, and that is said.
+void report_nonfinite(Job& job) {
+  for (const io::NonFinite& n : io::take_nonfinite()) {
+    const std::string text = fmt::format("{} in {} are not finite (first in the column '{}'): what should stand there was not found", n.count == 1 ? "1 number" : fmt::format("{} numbers", n.count),
+                                         n.file, n.column);
+    job.summary["warnings"].push(text);
+    job.report.warnings.push_back(text);
+    if (!job.options.quiet) std::fputs(fmt::format("warning: {}\n", text).c_str(), stderr);
+  }
+}
+
 /// What leaving out saved. Printed only for runs long enough that somebody waits for them.
 void describe_savings(Job& job, double seconds) {
   if (job.model.keep_everything || job.built_for.empty() || interrupted()) return;
@@ -49,26 +58,33 @@ void describe_savings(Job& job, double seconds) {
   v["of this model [us]"] = 1e6 * s.pruned, v["of the general model [us]"] = 1e6 * s.everything;
   v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
   if (!job.options.quiet && seconds > 0.5 && s.everything > 1.05 * s.pruned)
-    std::fputs(fmt::format("left out: {} parts of the general model this deck does not need (summary.json); an evaluation takes {:.0f} us instead of {:.0f} us\n",
+    std::fputs(fmt::format("left out: {} parts of the general model this deck does not need (summary.json); an evaluation takes {:.0f} us CPU instead of {:.0f} us\n",
                            job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned, 1e6 * s.everything).c_str(), stderr);
 }
 
 }  // namespace
 
 void run_steps(Job& job) {
-  const double t0 = wall();
+  const Stopwatch watch;
   job.report.title = job.model.title.empty() ? job.model.deck_name : job.model.title;
   job.report.deck = job.model.resolved;
   for (const Diagnostic& w : job.model.warnings) job.report.warnings.push_back(w.message);
   auto finish = [&] {
+    report_nonfinite(job);
     auto take_times = [&] {
-      for (const auto& [name, seconds] : job.phases) job.summary["run time by phase, wall [s]"][name] = seconds;
-      job.summary["run time, wall [s]"] = wall() - t0;
+      for (const auto& [name, time] : job.phases) {
+        job.summary["run time by phase, CPU [s]"][name] = time.cpu;
+        job.summary["run time by phase, wall [s]"][name] = time.wall;
+      }
+      put_run_time(job.summary, watch.elapsed());
     };
     take_times();
     if (job.model.output.report) {
       const PhaseTimer timer(job, "report");
       job.report.summary = job.summary;
+      const RunTime time = watch.elapsed();
+      job.report.facts.emplace_back("run time, CPU", fmt::format("{:.3f} s", time.cpu));
+      job.report.facts.emplace_back("run time, wall", fmt::format("{:.3f} s", time.wall));
       io::ReportSection rotor;
       rotor.title = "Rotor";
       rotor.figures = io::draw_model(job.model, job.mesh, job.scene);
@@ -80,8 +96,10 @@ void run_steps(Job& job) {
     take_times();
     job.folder.write_json("summary.json", job.summary);
   };
+  std::string running;
   try {
     for (const model::Step& step : job.model.steps) {
+      running = step.name;
       if (interrupted()) break;
       job.build_for(step);
       if (!job.summary.is_object() || job.summary.at("model").is_null()) describe_model(job);
@@ -94,13 +112,17 @@ void run_steps(Job& job) {
           },
           step.law);
     }
+  } catch (const Interrupted&) {
+    // steps before it are complete; of this one nothing is
+    job.summary["steps"][running]["outcome"] = "interrupted";
+    if (!job.options.quiet) std::fputs(fmt::format("{}: interrupted\n", running).c_str(), stderr);
   } catch (const Error& e) {
     io::Value& v = job.summary["error"];
     for (const Diagnostic& d : e.diagnostics()) v.push(d.code + ": " + d.message);
     finish();
     throw;
   }
-  describe_savings(job, wall() - t0);
+  describe_savings(job, watch.elapsed().wall);
   finish();
 }
 

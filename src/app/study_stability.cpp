@@ -63,9 +63,9 @@ Scheme examine(const analysis::ReducedRotor& rotor, const char* name, double rho
 double speed_of(Job& job) {
   for (const model::Step& step : job.model.steps) {
     job.build_for(step);
-    if (const auto* t = std::get_if<model::TransientStep>(&step.law)) return step.from.empty() ? job.start_of(step, t->speed0).speed : t->speed0;
+    if (const auto* t = std::get_if<model::TransientStep>(&step.law)) return step.from.empty() ? job.start_of(step, t->own_speed()).speed : t->speed0;
     if (const auto* m = std::get_if<model::ModalStep>(&step.law)) return m->speed;
-    if (const auto* m = std::get_if<model::StaticStep>(&step.law)) return m->speeds ? speeds_of(*m->speeds).back() : m->speed;
+    if (const auto* m = std::get_if<model::StaticStep>(&step.law)) return m->speeds ? speeds_of(*m->speeds).back() : job.start_of(step, m->own_speed()).speed;
     if (const auto* m = std::get_if<model::UnbalanceStep>(&step.law)) return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
     if (const auto* m = std::get_if<model::CampbellStep>(&step.law)) return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
     if (const auto* m = std::get_if<model::StabilityStep>(&step.law)) return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
@@ -87,7 +87,7 @@ int study_stability(const StudyOptions& options) {
   for (const model::Step& step : model.steps)
     if (const auto* t = std::get_if<model::TransientStep>(&step.law)) rho = t->integrator.rho_inf;
 
-  StepState standing = job.start_of(model.steps.front(), Omega);
+  StepState standing = job.start_of(model.steps.front(), Omega != 0.0 ? std::optional(Omega) : std::nullopt);
   analysis::EquilibriumOptions equilibrium;
   equilibrium.chart_change = model.chart_change;
   analysis::Running running = job.running_of(standing);

@@ -115,6 +115,41 @@ std::vector<SupportCoefficients> calc_support_coefficients(const Job& job, const
   return out;
 }
 
+Matrix<6> support_stiffness(const Job& job, const StepState& s, std::size_t bearing) {
+  const std::string& name = job.model.bearings[bearing].name;
+  const auto support = std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(), [&](const auto& f) { return f.name == name; });
+  const meshes::Place at = job.mesh.bearings[bearing].shaft;
+  const system::System& system = job.system();
+  system::Workspace w = system.make_workspace();
+  w.context.averaged = s.speed != 0.0;
+  const system::State& x = s.state;
+  system.evaluate_nodes(w, x.frames, x.t, x.q, x.v, x.a);
+  // Force and moment on the shaft at the bearing's place, with the shaft moved (e, e2, e3) or tilted there about it.
+  const auto load = [&](Index motion, double by) {
+    system::NodeState moved = w.nodes[static_cast<std::size_t>(at.node)];
+    if (motion < 3) moved.u[motion] += by;
+    // a turn by ry takes the axis to -z, one by rz to +y; the place of the bearing stays where it is
+    const Vec3 turn = motion == 4 ? Vec3(0, 0, -by) : motion == 5 ? Vec3(0, by, 0) : Vec3(0, 0, 0);
+    moved.t += turn;
+    moved.u -= at.offset * turn;
+    const auto node = [&](Index k) -> const system::NodeState& { return k == at.node ? moved : w.nodes[static_cast<std::size_t>(k)]; };
+    const auto no_reaction = [](Index) { return 0.0; };
+    Vector<6> out = Vector<6>::Zero();
+    out.head<3>() = support->force(node, w.context, no_reaction);
+    if (support->moment) out.tail<3>() = support->moment(node, w.context, no_reaction);
+    // from the node to the place
+    out.tail<3>() -= (at.offset * moved.d()).cross(Vec3(out.head<3>()));
+    return out;
+  };
+  Matrix<6> K = Matrix<6>::Zero();
+  for (const Index j : {0, 1, 2, 4, 5}) {
+    const double h = j < 3 ? 1e-9 : 1e-7;
+    K.col(j) = -(8.0 * (load(j, h) - load(j, -h)) - (load(j, 2 * h) - load(j, -2 * h))) / (12.0 * h);
+  }
+  K.row(3).setZero();   // the axial moment of a tilted load: friction-free bearings have none about their own axis
+  return K;
+}
+
 io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list) {
   io::Table t;
   t.title = "Stiffness of the rolling bearings in five motions";
@@ -130,6 +165,7 @@ io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list) {
 io::Table support_table(std::span<const SupportCoefficients> list) {
   io::Table t;
   t.title = "Bearings about the equilibrium";
+  t.nan_means = "the bearing has no such number, or is never unstable";
   t.columns = {{"bearing", "-", ""}, {"speed", "rpm", ""}, {"load", "N", "on the bearing, lateral"}, {"y", "m", "shaft against housing"}, {"z", "m", ""},
                {"eccentricity", "m", ""}, {"eccentricity / clearance", "-", ""}, {"attitude", "deg", "from the load in the sense y to z"}};
   for (const char* m : {"k", "c"})

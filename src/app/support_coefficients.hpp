@@ -27,6 +27,9 @@ struct SupportCoefficients {
 
 /// In the order of the deck; empty when there is none.
 std::vector<SupportCoefficients> calc_support_coefficients(const Job& job, const StepState& s);
+/// Stiffness of one support at a state in (x, y, z, rx, ry, rz), -d(force, moment)/d(displacement, tilt) on the shaft at the place
+/// of the bearing, N/m, N, N m, rad; the spin (rx) resists nothing. By differences of fourth order.
+Matrix<6> support_stiffness(const Job& job, const StepState& s, std::size_t bearing);
 /// A row each; empty title and no rows when there is none.
 io::Table support_table(std::span<const SupportCoefficients> list);
 /// Five rows a rolling bearing.

@@ -17,13 +17,13 @@ void run_torsional_step(Job& job, const model::Step& step, const model::Torsiona
   const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(s.linear, law.max_speed, o);
   io::Table table;
   table.title = "Torsional natural frequencies";
-  table.columns = {{"mode", "-", ""}, {"frequency", "Hz", ""}, {"frequency", "rpm", ""}, {"log decrement", "-", ""}};
+  table.columns = {{"mode", "-", ""}, {"frequency", "Hz", ""}, {"frequency", "rpm", ""}, {"log decrement", "-", ""}, {"damping ratio", "-", ""}};
   io::Value& v = s.summary();
   std::vector<io::CampbellLine> lines;
   double highest = 0;
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::WhirlMode& m = modes[k];
-    table.add({static_cast<int>(k + 1), to_hz(m.frequency), to_rpm(m.frequency), tidy(m.log_decrement)});
+    table.add({static_cast<int>(k + 1), to_hz(m.frequency), to_rpm(m.frequency), tidy(m.log_decrement), tidy(m.damping_ratio)});
     v["frequencies [Hz]"].push(to_hz(m.frequency));
     highest = std::max(highest, m.frequency);
     io::CampbellLine l;
@@ -50,7 +50,7 @@ void run_torsional_step(Job& job, const model::Step& step, const model::Torsiona
   }
   s.add_table("critical_speeds", std::move(criticals));
   if (!lines.empty()) s.add_figure(io::plot_campbell(s.file("interference"), "Torsional interference diagram", lines, law.orders, marks));
-  s.section.text = modes.empty() ? "The model has no torsional mode: no inertia twists against another." : "Lateral and axial motion are held.";
+  s.section.text = modes.empty() ? "The model has no torsional mode: no inertia twists against another." : fmt::format("{} torsional modes.", modes.size());
   s.finish(fmt::format("{} torsional modes, {} critical speeds", modes.size(), marks.size()));
 }
 

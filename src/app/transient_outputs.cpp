@@ -15,12 +15,6 @@ bool wants(const model::Output& o, std::string_view quantity) {
   return std::find(o.quantities.begin(), o.quantities.end(), quantity) != o.quantities.end();
 }
 
-system::Context context_at(double t) {
-  system::Context c;
-  c.time = t;
-  return c;
-}
-
 }  // namespace
 
 Point point_of(const Job& job, const model::Location& at) {
@@ -58,7 +52,7 @@ Channels make_channels(const Job& job) {
     for (const assembly::SupportForce& f : job.built.support_forces) {
       Measurement x{"bearing " + f.name + " force", "N", "force of the support on the shaft, fixed axes", {"x", "y", "z"}, 1.0, {}};
       x.evaluate = [&f](const Snapshot& s, double* out) {
-        Eigen::Map<Vec3>{out} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); }, context_at(s.t()),
+        Eigen::Map<Vec3>{out} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); }, s.context(),
                                         [&s](Index k) { return s.reactions()[k]; });
       };
       c.add(std::move(x));
@@ -66,9 +60,9 @@ Channels make_channels(const Job& job) {
   if (wants(m.output, "bearing_moment"))
     for (const assembly::SupportForce& f : job.built.support_forces) {
       if (!f.moment) continue;
-      Measurement x{"bearing " + f.name + " moment", "N.m", "moment of the support on the shaft about its node, fixed axes; about x: torque", {"x", "y", "z"}, 1.0, {}};
+      Measurement x{"bearing " + f.name + " moment", "N.m", "moment of the support on the shaft about its place, fixed axes; about x: torque", {"x", "y", "z"}, 1.0, {}};
       x.evaluate = [&f](const Snapshot& s, double* out) {
-        Eigen::Map<Vec3>{out} = f.moment([&s](Index n) -> const system::NodeState& { return s.node(n); }, context_at(s.t()), [&s](Index k) { return s.reactions()[k]; });
+        Eigen::Map<Vec3>{out} = f.moment([&s](Index n) -> const system::NodeState& { return s.node(n); }, s.context(), [&s](Index k) { return s.reactions()[k]; });
       };
       c.add(std::move(x));
     }
@@ -91,17 +85,17 @@ std::vector<io::Channel> io_channels(const Channels& c) {
 }
 
 Frames::Frames(const Job& job, const model::VtkOutput& o, const std::string& step, double t0, double t1)
-    : job_(job), schedule_({o.t0, o.t1, o.every, o.frames_per_revolution, o.frames, o.max_frames}, t0, t1) {
+    : job_(job), schedule_({o.t0, o.t1, o.every, o.frames_per_revolution, o.frames, o.max_frames}, t0, t1), arrays_(job) {
   io::VtkFrameOptions options;
-  options.directory = job.folder.path("vtk");
+  options.directory = job.folder.subfolder("vtk");
   options.name = step;
   io::set_content(options, o.content);
   options.deformation_scale = o.deformation_scale;
   options.points_around = o.points_around;
   options.max_frames = static_cast<std::uint64_t>(o.max_frames);
   writer_ = io::make_vtk_frames(options);
-  const std::size_t n = job.mesh.nodes.size();
-  poses_.resize(n), velocity_.resize(n), omega_.resize(n);
+  line_ = options.line;
+  bearings_ = options.bearings;
 }
 
 void Frames::begin(const Snapshot& s) {
@@ -152,15 +146,11 @@ void Frames::restore(InArchive& in) {
 }
 
 void Frames::write(const Snapshot& s) {
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
-    const system::NodeState& n = s.node(static_cast<Index>(i));
-    poses_[i] = {job_.mesh.nodes[i].position + n.u, n.d(), n.phi};
-    velocity_[i] = n.du, omega_[i] = n.omega();
-  }
-  io::FrameState frame;
-  frame.time = s.t();
-  frame.nodes = poses_, frame.velocity = velocity_, frame.angular_velocity = omega_;
-  writer_->frame(frame);
+  const auto node = [&s](Index i) -> const system::NodeState& { return s.node(i); };
+  arrays_.take_nodes(node);
+  if (line_) arrays_.take_sections(assembly::calc_section_results(job_.model, job_.mesh, job_.built, node, s.context(), 0));
+  if (bearings_) arrays_.take_supports(node, s.context(), [&s](Index k) { return s.reactions()[k]; });
+  writer_->frame(arrays_.state(s.t(), s.frames(), true));
 }
 
 }  // namespace whirl::app

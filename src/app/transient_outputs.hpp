@@ -1,5 +1,6 @@
 // What a transient step writes while it runs: time histories and frames.
 #pragma once
+#include <app/frame_arrays.hpp>
 #include <app/job.hpp>
 #include <core/archive.hpp>
 
@@ -41,8 +42,8 @@ class Frames final : public analysis::Observer {
   const Job& job_;
   io::FrameSchedule schedule_;
   std::unique_ptr<io::FrameWriter> writer_;
-  std::vector<io::Pose> poses_;
-  std::vector<Vec3> velocity_, omega_;
+  FrameArrays arrays_;
+  bool line_ = false, bearings_ = false;   ///< the sets that show section forces, forces of bearings
   double phi_ = 0, now_ = 0;
 };
 

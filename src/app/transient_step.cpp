@@ -5,6 +5,7 @@
 #include <analysis/transient.hpp>
 #include <app/accuracy.hpp>
 #include <app/checkpoint.hpp>
+#include <app/held.hpp>
 #include <app/interrupt.hpp>
 #include <app/job.hpp>
 #include <app/keyphasor_output.hpp>
@@ -12,6 +13,7 @@
 #include <app/spectra_output.hpp>
 #include <app/support_diagnosis.hpp>
 #include <app/transient_outputs.hpp>
+#include <core/interrupt.hpp>
 #include <core/rotation.hpp>
 #include <io/plots.hpp>
 
@@ -76,21 +78,40 @@ analysis::TransientOptions transient_options(const Job& job, const model::Transi
   return t;
 }
 
-StepState transient_start(Job& job, const model::Step& step, const model::TransientStep& law) {
+namespace {
+
+/// A start that no transient left: settled as the step asks for.
+void settle_start(Job& job, StepState& start, const model::TransientStep& law) {
   using Start = model::TransientStep::Start;
-  if (!law.previous.empty()) return start_of_other_run(job, law.previous, law.previous_step);
-  StepState start = job.start_of(step, law.speed0);
-  if (step.from.empty() && (law.start == Start::unbalance_response || law.start == Start::mode)) {
-    const PhaseTimer timer(job, "equilibrium");
-    if (law.start == Start::mode) start_in_mode(job, start, law.mode, law.mode_amplitude);
-    else start_in_unbalance_response(job, start);
-    return start;
+  if (law.start == Start::rest) return;
+  const PhaseTimer timer(job, "equilibrium");
+  if (law.start == Start::mode) start_in_mode(job, start, law);
+  else if (law.start == Start::unbalance_response) start_in_unbalance_response(job, start);
+  else job.settle(start, {}, true);
+}
+
+}  // namespace
+
+/// The step goes on from the motion of another one, which has its own speed.
+static bool goes_on_in_motion(const Job& job, const model::Step& step) {
+  return std::any_of(job.model.steps.begin(), job.model.steps.end(),
+                     [&](const model::Step& s) { return s.name == step.from && std::holds_alternative<model::TransientStep>(s.law); });
+}
+
+StepState transient_start(Job& job, const model::Step& step, const model::TransientStep& law) {
+  const bool other_run = !law.previous.empty();
+  const auto speed = goes_on_in_motion(job, step) ? std::nullopt : law.own_speed();
+  StepState start = other_run ? start_of_other_run(job, law.previous, law.previous_step) : job.start_of(step, speed);
+  begin_governors(job, start);
+  if (other_run) return start;
+  if (step.from.empty()) {
+    settle_start(job, start, law);
+    start.governors.clear();   // the equilibrium has angles of its own
+    begin_governors(job, start);
   }
-  if (law.start == Start::static_equilibrium && step.from.empty()) {
-    const PhaseTimer timer(job, "equilibrium");
-    job.settle(start, {}, true);
-  }
-  warn_of_closed_contacts(job, step, start);
+  using Start = model::TransientStep::Start;
+  const bool steady_motion = step.from.empty() && (law.start == Start::unbalance_response || law.start == Start::mode);
+  if (!steady_motion) warn_of_closed_contacts(job, step, start);
   return start;
 }
 
@@ -121,6 +142,25 @@ std::vector<analysis::EventLog::Watch> watches_of(const Job& job) {
   return out;
 }
 
+void warn(Job& job, const model::Step& step, const std::string& what) {
+  job.summary["steps"][step.name]["warnings"].push(what);
+  job.report.warnings.push_back(step.name + ": " + what);
+  if (!job.options.quiet) std::fputs(fmt::format("warning: {}: {}\n", step.name, what).c_str(), stderr);
+}
+
+/// A drive that prescribes another speed than the rotor has where the step goes on: an infinite torque for an instant.
+void warn_of_jumps(Job& job, const model::Step& step, const StepState& start) {
+  for (const model::Drive& d : job.model.drives) {
+    const auto* law = std::get_if<model::PrescribedSpin>(&d.law);
+    if (!law || !law->angle || (!d.step.empty() && d.step != step.name)) continue;
+    const double wanted = law->angle->at(start.state.t).df;
+    const double now = start.state.v[6 * job.mesh.place(d.at).node + system::spin_phi];
+    if (std::abs(wanted - now) <= 1e-3 * std::max(std::abs(wanted), std::abs(now))) continue;
+    warn(job, step, fmt::format("drive '{}' prescribes {:.6g} rpm at t = {:.6g} s, where shaft '{}' turns at {:.6g} rpm: its speed jumps", d.name, wanted * 30.0 / pi,
+                                start.state.t, job.model.shafts[d.at.shaft].name, now * 30.0 / pi));
+  }
+}
+
 /// When rows of the histories are wanted, or nothing when always.
 analysis::Recorder::Gate gate_of(const Job& job, const std::vector<std::pair<std::string, Point>>& watched) {
   const model::Output& o = job.model.output;
@@ -148,10 +188,15 @@ void keep_earlier_series(const Job& job, const std::string& name) {
 }  // namespace
 
 void run_transient_step(Job& job, const model::Step& step, const model::TransientStep& law) {
+  const Stopwatch watch;
   job.build_for(step);
-  const std::filesystem::path checkpoint_path = checkpoint_file(job.folder.root(), step.name);
+  const std::filesystem::path checkpoint_path = job.folder.path(checkpoint_name(step.name));
   const std::optional<Checkpoint> resumed = job.options.resume ? read_checkpoint(checkpoint_path) : std::nullopt;
-  StepState start = resumed ? StepState{resumed->state, resumed->speed} : transient_start(job, step, law);
+  StepState start = resumed ? StepState{resumed->state, resumed->speed, {}} : transient_start(job, step, law);
+  const bool goes_on = !step.from.empty() || !law.previous.empty();
+  if (!resumed && goes_on) warn_of_jumps(job, step, start);
+  if (!resumed && law.own_speed() && (goes_on_in_motion(job, step) || !law.previous.empty()))
+    warn(job, step, "initial_speed has no effect: the step goes on from a motion with its own speed");
   const std::unique_ptr<system::SystemProblem> equations = transient_problem(job, law, start);
   system::SystemProblem& problem = *equations;
   const double t0 = resumed ? resumed->t_begin : start.state.t;
@@ -218,19 +263,26 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   }
   std::unique_ptr<KeyphasorOutput> keyphasor;
   if (out.tracking.on && !job.model.probes.empty() && (out.csv || out.report)) {
-    keyphasor = std::make_unique<KeyphasorOutput>(job, step);
+    keyphasor = std::make_unique<KeyphasorOutput>(job, step, probe_senses(job, start));
     observers.push_back(&keyphasor->observer());
     parts.add_output(keyphasor->key(), *keyphasor);
   }
   std::unique_ptr<SpectraOutput> spectra;
   if (out.spectra && !job.model.probes.empty() && (out.csv || out.report)) {
-    spectra = std::make_unique<SpectraOutput>(job, step, t0);
+    spectra = std::make_unique<SpectraOutput>(job, step, t0, probe_senses(job, start));
     observers.push_back(&spectra->observer());
     parts.add_output(spectra->key(), *spectra);
   }
   if (auto* small = dynamic_cast<analysis::LinearMotion*>(equations.get()))
     parts.add("steady motion", [small](OutArchive& a) { small->save(a); }, [small](InArchive& a) { small->restore(a); });
-  double seconds_before = 0.0;
+  if (!job.built.governors.empty())
+    parts.add(governors_part, [&start](OutArchive& a) { save_governors(a, start); },
+              [&](InArchive& a) {
+                restore_governors(a, start);
+                begin_governors(job, start);
+              });
+  double seconds_before = 0.0, wall_before = 0.0;
+  parts.add("wall clock", [&](OutArchive& a) { a.put(wall_before + watch.elapsed().wall); }, [&](InArchive& a) { wall_before = a.number(); });
   parts.restore(resumed ? &*resumed : nullptr);
   if (resumed) {
     options.new_observers = parts.fresh();
@@ -242,12 +294,21 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   }
   const std::string deck = what_moves(job.model, step.name);
   const double cpu0 = cpu_seconds();
-  if (law.checkpoint > 0.0)
+  std::optional<Checkpoint> kept;
+  const auto checkpoint_of = [&](const system::State& state, const time::IntegratorState& integrator) {
+    Checkpoint c{deck, t0, start.speed, seconds_before + cpu_seconds() - cpu0, {}, state, integrator, {}};
+    parts.save(c);
+    return c;
+  };
+  if (law.checkpoint > 0.0) {
     options.checkpoint = [&](const system::State& state, const time::IntegratorState& integrator) {
-      Checkpoint c{deck, t0, start.speed, seconds_before + cpu_seconds() - cpu0, {}, state, integrator, {}};
-      parts.save(c);
-      write_checkpoint(checkpoint_path, c);
+      write_checkpoint(checkpoint_path, checkpoint_of(state, integrator));
     };
+    options.keep = [&](const system::State& state, const time::IntegratorState& integrator) { kept = checkpoint_of(state, integrator); };
+    options.fall_back = [&] {
+      if (kept) write_checkpoint(checkpoint_path, *kept);
+    };
+  }
 
   ProgressLine line(step.name, job.options.quiet);
   options.progress = [&](const analysis::Progress& p) {
@@ -258,11 +319,12 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
     const PhaseTimer timer(job, "stepping and histories");
     return analysis::run_transient(problem, start.state, options, observers, resumed ? &resumed->integrator : nullptr);
   }();
+  const interrupt::Shield shield;   // an interrupted step too is written to its end
   r.seconds += seconds_before;
   if (sink) sink->close();
   if (keyphasor) keyphasor->close();
   if (spectra) spectra->close();
-  job.states[step.name] = {r.end, start.speed};
+  job.states[step.name] = {r.end, start.speed, start.governors};
 
   // summary
   const time::Statistics& s = r.statistics;
@@ -280,7 +342,8 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   v["integrator"]["residual evaluations"] = s.residuals;
   v["integrator"]["step min [s]"] = s.step_min, v["integrator"]["step mean [s]"] = s.step_mean(), v["integrator"]["step max [s]"] = s.step_max;
   v["integrator"]["local error / allowance, max"] = s.error_max, v["integrator"]["local error / allowance, mean"] = s.error_mean();
-  v["run time [s]"] = r.seconds;
+  const RunTime time{r.seconds, wall_before + watch.elapsed().wall};
+  put_run_time(v, time);
   v["energy"]["stored at start [J]"] = energy.stored0(), v["energy"]["stored at end [J]"] = energy.stored();
   v["energy"]["supplied [J]"] = energy.supplied(), v["energy"]["dissipated [J]"] = energy.dissipated();
   v["energy"]["defect [J]"] = energy.defect(), v["energy"]["largest defect [J]"] = energy.worst_defect();
@@ -298,23 +361,18 @@ void run_transient_step(Job& job, const model::Step& step, const model::Transien
   {
     const PhaseTimer timer(job, "accuracy");
     const double speed = r.end.v[6 * job.reference() + system::spin_phi];
-    for (const std::string& w : state_accuracy(job, {law, r, energy, lengths, speed}, v["accuracy"], section)) {
-      v["warnings"].push(w);
-      job.report.warnings.push_back(step.name + ": " + w);
-      if (!job.options.quiet) std::fputs(fmt::format("warning: {}: {}\n", step.name, w).c_str(), stderr);
-    }
+    for (const std::string& w : state_accuracy(job, {law, r, energy, lengths, speed}, v["accuracy"], section)) warn(job, step, w);
   }
   // second-order terms: the square of the tilt
   if (law.linear && tilt.tilt() * tilt.tilt() > 0.01) {
-    const std::string w = fmt::format("linear = true, but {} tilts by {:.2g} rad: the terms left out are {:.2g} of those kept", job.system().node(tilt.node()).name, tilt.tilt(), tilt.tilt() * tilt.tilt());
-    v["warnings"].push(w);
-    job.report.warnings.push_back(step.name + ": " + w);
-    if (!job.options.quiet) std::fputs(fmt::format("warning: {}: {}\n", step.name, w).c_str(), stderr);
+    warn(job, step, fmt::format("linear = true, but {} tilts by {:.2g} rad: the terms left out are {:.2g} of those kept", job.system().node(tilt.node()).name, tilt.tilt(),
+                                tilt.tilt() * tilt.tilt()));
   }
   for (const auto& f : frames) v["frames"] = f->frames();
 
-  line.done(fmt::format("{}: {} steps, {} Newton iterations, {:.3f} s, energy defect {:.2e} J", to_string(r.reason), s.accepted,
-                        s.newton_iterations, r.seconds, energy.worst_defect()));
+  line.done(fmt::format("{}: {} steps, {} Newton iterations, {}, energy defect {:.2e} J", to_string(r.reason), s.accepted,
+                        s.newton_iterations, time.text(), energy.worst_defect()));
+  say_held(job, step, held_in_step(job, step), section);
 
   if (!events.watches().empty()) {
     io::Table t;

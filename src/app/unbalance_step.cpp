@@ -134,6 +134,7 @@ void run_unbalance_step(Job& job, const model::Step& step, const model::Unbalanc
   v["speeds"] = r.points.size();
   io::Table table;
   table.title = "Peaks of the response";
+  table.nan_means = "no half-power point on this side within the speeds";
   table.columns = {{"probe", "-", ""}, {"order", "-", ""}, {"speed", "rpm", ""}, {"amplitude", "m", "0-peak, major axis of the orbit"},
                    {"phase lag", "deg", ""}, {"amplification factor", "-", "from the half-power points"}, {"N1", "rpm", "lower half-power speed"},
                    {"N2", "rpm", "upper half-power speed"}};
@@ -161,6 +162,7 @@ void run_unbalance_step(Job& job, const model::Step& step, const model::Unbalanc
   if (law.operating[1] > 0) {
     io::Table margins;
     margins.title = "Separation margins (API RP 684)";
+    margins.nan_means = "no half-power point within the speeds";
     margins.columns = {{"probe", "-", ""}, {"peak", "rpm", ""}, {"amplification factor", "-", ""}, {"required", "%", ""}, {"actual", "%", "negative: inside the operating range"},
                        {"result", "-", ""}};
     int failed = 0;

@@ -19,7 +19,7 @@ struct SupportForce {
   using Law = std::function<Vec3(const NodeAt&, const system::Context&, const ReactionAt&)>;
   std::string name;                 ///< of the bearing
   Law force;
-  Law moment{};                     ///< N m, about the node; null where the support gives none
+  Law moment{};                     ///< N m, about the place of the support; null where it gives none
 };
 
 /// How a support with a gap stands: films before their clearance is used up, contacts before they close.
@@ -49,6 +49,14 @@ struct DriveTorque {
   std::function<double(const NodeAt&, double t, const ReactionAt&)> torque;
 };
 
+/// A speed controller of a drive, whose integral of the speed error begins where begin() was called last: time, s, and angle of its node,
+/// rad, whole turns included.
+struct Governor {
+  std::string drive;
+  Index node = 0;
+  std::function<void(double time, double angle)> begin;
+};
+
 /// Spin every node of a line starts with: from a prescribed angle law of the step, else Shaft::spin0.
 struct LineSpin {
   bool prescribed = false;
@@ -69,10 +77,12 @@ struct Built {
   std::vector<Fine> fine;           ///< nodes whose lateral motion must be right to a small part of a length: journals, to their clearance, m
   std::vector<RollingLoads> rolling_loads;
   std::vector<DriveTorque> drive_torques;
+  std::vector<Governor> governors;
   std::vector<LineSpin> spins;      ///< one a line
   Index reference = 0;              ///< node whose spin is the speed axis: the first drive's, else the first node of the first rotating line
   std::vector<std::string> notes;      ///< what was idealised otherwise than the deck says it, one line each, for the summary
   std::vector<double> table_frequencies;   ///< rad/s, in no order: of supports with coefficients against the frequency of the motion (system/frequency.hpp)
+  std::vector<std::string> held;       ///< motions that nothing resists and that are held for it, one line each
   std::vector<std::string> left_out;   ///< physics this scene does not need, one line each, for the summary
   std::vector<std::string> simpler;    ///< general kernels that simpler ones stand for here; Model::keep_everything keeps them
 };

@@ -18,7 +18,7 @@ elements::TorqueLaw torque_law(const model::TorqueCurve& c) {
   if (c.power) t.power = {c.power->power, c.power->max_torque};
   if (c.dc) t.dc = {c.dc->stall, c.dc->no_load_speed};
   t.brake = c.brake;
-  if (c.governor) t.governor = {c.governor->target, c.governor->kp, c.governor->ki, c.governor->max_torque, 0.0};
+  if (c.governor) t.governor = {c.governor->target, c.governor->kp, c.governor->ki, c.governor->max_torque};
   return t;
 }
 
@@ -26,6 +26,11 @@ template <elements::TorqueAction A>
 void add_torque(Assembly& a, const model::Drive& d, Index node) {
   elements::SpinTorque<A> k;
   k.law = torque_law(std::get<model::TorqueCurve>(d.law));
+  if (k.law.governor) {
+    const auto start = std::make_shared<elements::TorqueLaw::Start>();
+    k.law.governor->start = start;
+    a.built.governors.push_back({d.name, node, [start](double time, double angle) { *start = {time, angle}; }});
+  }
   a.take_breakpoints(k.breakpoints());
   a.builder.add(k, {node}, "drives");
   a.built.drive_torques.push_back({d.name, [k, node](const NodeAt& at, double t, const ReactionAt&) { return k.working(at(node), t).torque; }});
@@ -42,12 +47,28 @@ void add_load(Assembly& a, const model::PointLoad& l) {
     a.builder.add(elements::FixedLoad{l.force, l.moment, at.offset, l.factor}, {at.node}, "loads");
 }
 
+/// The pair of forces that pulls at the ends of a shaft.
+void add_axial_force(Assembly& a, std::size_t shaft) {
+  const model::Shaft& s = a.model.shafts[shaft];
+  if (s.axial_force == 0) return;
+  const double length = s.length();
+  for (const bool right : {false, true}) {
+    model::PointLoad pull;
+    pull.at.shaft = shaft;
+    pull.at.s = right ? length : 0.0;
+    const Vec3 outwards = s.path.empty() ? Vec3(Vec3::UnitX()) : right ? Vec3(s.path.before(length).triad.col(0)) : Vec3(s.path.after(0.0).triad.col(0));
+    pull.force = (right ? s.axial_force : -s.axial_force) * outwards;
+    add_load(a, pull);
+  }
+}
+
 }  // namespace
 
 void add_loads(Assembly& a) {
   for (int k = 0; k < 3; ++k)
     if (const LawPtr& law = a.model.base.acceleration[static_cast<std::size_t>(k)]) a.builder.set_base_acceleration(k, law), a.take_breakpoints(law);
   for (const model::PointLoad& l : a.model.loads) add_load(a, l);
+  for (std::size_t k = 0; k < a.model.shafts.size(); ++k) add_axial_force(a, k);
 
   for (const model::Shaft& s : a.model.shafts) {
     LineSpin spin;

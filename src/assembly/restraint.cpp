@@ -92,8 +92,7 @@ class Restraint {
           continue;
         }
         a_.builder.hold(node, x);
-        a_.built.left_out.push_back(fmt::format("axial motion of {} as a whole: nothing resists or loads it; held at the {}", named(lines),
-                                                a_.builder.node(node).name));
+        hold(fmt::format("axial motion of {} as a whole: nothing resists or loads it; held at the {}", named(lines), a_.builder.node(node).name));
       }
     }
   }
@@ -121,7 +120,7 @@ class Restraint {
       if (!line.rotating) {
         if (grounded({l}, rx)) continue;
         a_.builder.hold(line.first_node, system::spin_phi);
-        a_.built.left_out.push_back(fmt::format("turning of casing '{}' about its axis: held at its left end", line.name));
+        hold(fmt::format("turning of casing '{}' about its axis: held at its left end", line.name));
         continue;
       }
       // No inertia about the axis at all: an unknown spin would have no equation.
@@ -137,12 +136,16 @@ class Restraint {
       spin.prescribed = true;
       spin.angle = make_angle_of_speed(make_constant(spin.spin0), 0.0);
       for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) a_.builder.hold(n, system::spin_phi, spin.angle);
-      a_.built.left_out.push_back(fmt::format("torsion and spin of shaft '{}' as unknowns: no inertia about its axis; it turns at {:.6g} rad/s", line.name,
-                                              spin.spin0));
+      hold(fmt::format("torsion and spin of shaft '{}' as unknowns: no inertia about its axis; it turns at {:.6g} rad/s", line.name, spin.spin0));
     }
   }
 
  private:
+  /// What is held is also left out of the unknowns.
+  void hold(const std::string& what) {
+    a_.built.held.push_back(what);
+    a_.built.left_out.push_back(what);
+  }
   /// The axial motion stays an unknown: a spring that gives it a natural frequency of 1 rad/s makes its equilibrium unique.
   void keep_axial(const std::vector<std::size_t>& lines, Index node) {
     double mass = 0.0;

@@ -3,6 +3,7 @@
 #include <assembly/parts.hpp>
 #include <elements/at_offset.hpp>
 #include <elements/lateral_joint.hpp>
+#include <elements/moment.hpp>
 
 #include <fmt/format.h>
 
@@ -26,9 +27,19 @@ bool guarded(Assembly& a, const model::Bearing& b, Make make) {
   }
 }
 
-/// A lateral law between journal and housing.
+/// Moment of a support on the shaft about the place of the support, N m, global axes. f: what stands on the node for it (left side);
+/// offset: of the place from the node along its normal, m.
+inline Vec3 moment_about_place(const system::NodeState& n, const Vector<7>& f, double offset) {
+  const Vec3 about_node = -elements::moment_of(n, f.segment<3>(3), f[6]);
+  return about_node + offset * n.d().cross(Vec3(f.head<3>()));
+}
+
+enum class Friction { none, torque };
+
+/// A lateral law between journal and housing. friction: whether it gives a torque on the journal.
 template <class Law>
-void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Law& law, const char* kind) {
+void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Law& law, const char* kind,
+                 Friction friction = Friction::torque) {
   const Pair nodes{n.shaft.node, n.other.node};
   const auto add = [&](auto joint) {
     joint.law = law;
@@ -39,6 +50,12 @@ void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNode
       joint.law.force(joint.motion_of(nodes_of(at, nodes)), z);
       return Vec3(0, z[0], z[1]);
     }});
+    if (friction == Friction::none) return;
+    a.built.support_forces.back().moment = [joint, nodes](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+      system::ForceX<14> f = system::ForceX<14>::Zero();
+      joint.add_force(nodes_of(at, nodes), c, f);
+      return moment_about_place(at(nodes[0]), f.template head<7>(), joint.offset[0]);
+    };
   };
   if (n.shaft.offset == 0 && n.other.offset == 0) add(elements::LateralJoint<Law, false>{});
   else add(elements::LateralJoint<Law, true>{});
@@ -57,12 +74,9 @@ void add_joint(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
       return f;
     };
     a.built.support_forces.push_back({b.name, [left_side](const NodeAt& at, const system::Context& c, const ReactionAt&) { return Vec3(-left_side(at, c).template head<3>()); }});
-    // what stands on the director tilts it, what stands on phi twists
-    if constexpr (Kernel::width == 7)
-      a.built.support_forces.back().moment = [left_side, node = n.shaft.node](const NodeAt& at, const system::Context& c, const ReactionAt&) {
-        const auto f = left_side(at, c);
-        const Vec3 d = at(node).d();
-        return Vec3(-d.cross(Vec3(f.template segment<3>(3))) - f[6] * d);
+    if constexpr (K::width == 7)
+      a.built.support_forces.back().moment = [left_side, place = n.shaft](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+        return moment_about_place(at(place.node), left_side(at, c).template head<7>(), place.offset);
       };
   };
   if (n.shaft.offset == 0 && n.other.offset == 0) add(kernel);

@@ -53,6 +53,12 @@ void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
   a.builder.add(k, {node}, "spring blocks");
   a.built.support_forces.push_back(
       {b.name, [k, node](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(-k.C1 * k.displacement(at(node))); }});
+  if (law.C2 == 0) return;
+  a.built.support_forces.back().moment = [k, node](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+    system::ForceX<7> f = system::ForceX<7>::Zero();
+    k.add_force({&at(node)}, c, f);
+    return moment_about_place(at(node), f, k.offset);
+  };
 }
 
 template <int N>
@@ -71,7 +77,7 @@ template <class Table>
 void add_table_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law, std::shared_ptr<const Table> table, const char* kind) {
   const auto add = [&](auto mass) {
     if constexpr (Table::size == 2) {
-      add_lateral(a, b, n, elements::TableBearingLaw<mass.value, Table>{table}, kind);
+      add_lateral(a, b, n, elements::TableBearingLaw<mass.value, Table>{table}, kind, Friction::none);
     } else {
       const Pair nodes{n.shaft.node, n.other.node};
       const elements::SpatialTableBearing<mass.value, Table> k{table, {n.shaft.offset, n.other.offset}, law.setpoint, law.preload};
@@ -123,6 +129,18 @@ struct HeldNode {
   std::shared_ptr<std::vector<Share>> second = std::make_shared<std::vector<Share>>();
 };
 
+/// Moment of a support that holds rotations of its node; null when it holds none. A held angle is zero, so its generalised force is the
+/// moment itself (gamma2 about y, gamma3 about z).
+SupportForce::Law moment_of_held(Index node, const model::RigidSupport& law) {
+  if (!law.held[3] && !law.held[4] && !law.held[5]) return {};
+  return [node, turns = law.held](const NodeAt&, const system::Context&, const ReactionAt& r) {
+    Vec3 M = Vec3::Zero();
+    for (Index c = 0; c < 3; ++c)
+      if (turns[static_cast<std::size_t>(3 + c)]) M[c] = r(6 * node + 3 + c);
+    return M;
+  };
+}
+
 void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::RigidSupport& law,
                std::map<Index, HeldNode>& held) {
   const std::string who = name_of(b);
@@ -150,9 +168,17 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     meshes::BearingNodes to_ground = n;
     to_ground.other = {n.ground, 0.0};
     add_linear(a, b, to_ground, linear);
-    if (whole && b.pedestal->mass > 0) a.builder.add(elements::PointMass{b.pedestal->mass}, {node}, "point masses");
+    SupportForce& support = a.built.support_forces.back();
+    if (whole && b.pedestal->mass > 0) {
+      // its weight and inertia (ddu: less gravity) stand between the spring and the shaft
+      a.builder.add(elements::PointMass{b.pedestal->mass}, {node}, "point masses");
+      support.force = [spring = support.force, m = b.pedestal->mass, node](const NodeAt& at, const system::Context& c, const ReactionAt& r) {
+        return Vec3(spring(at, c, r) - m * at(node).ddu);
+      };
+    }
     for (std::size_t c = 3; c < 6; ++c)
       if (law.held[c]) a.builder.hold(node, static_cast<int>(c)), h.held[c] = true;
+    if (const SupportForce::Law held_turns = moment_of_held(node, law)) support.moment = held_turns;
     return;
   }
   for (std::size_t c = 0; c < 6; ++c) {
@@ -177,15 +203,6 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     h.second->push_back({c, unknown[c], scale[c]});
   }
   const auto others = first ? h.second : nullptr;
-  // A held angle is zero, so its generalised force is the moment itself (gamma2 about y, gamma3 about z).
-  SupportForce::Law moment;
-  if (law.held[3] || law.held[4] || law.held[5])
-    moment = [node, turns = law.held](const NodeAt&, const system::Context&, const ReactionAt& r) {
-      Vec3 M = Vec3::Zero();
-      for (Index c = 0; c < 3; ++c)
-        if (turns[static_cast<std::size_t>(3 + c)]) M[c] = r(6 * node + 3 + c);
-      return M;
-    };
   a.built.support_forces.push_back({b.name, [unknown, scale, others](const NodeAt&, const system::Context&, const ReactionAt& r) {
     Vec3 F = Vec3::Zero();
     for (std::size_t c = 0; c < 3; ++c)
@@ -193,7 +210,7 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     if (others)
       for (const HeldNode::Share& o : *others) F[static_cast<Index>(o.direction)] -= o.scale * r(o.unknown);
     return F;
-  }, moment});
+  }, moment_of_held(node, law)});
 }
 
 // ---------------------------------------------------------------- pedestals

@@ -114,7 +114,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
   elements::AnnularSeal k;
   k.radius = 0.5 * law.diameter, k.length = law.length, k.clearance = law.clearance, k.pressure_drop = law.pressure_drop;
   k.density = law.density, k.viscosity = law.viscosity, k.inlet_loss = law.inlet_loss, k.inlet_swirl = law.inlet_swirl;
-  add_lateral(a, b, n, k, "annular seals");
+  add_lateral(a, b, n, k, "annular seals", Friction::none);
 }
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::CrossCoupling& law) {

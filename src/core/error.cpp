@@ -27,6 +27,17 @@ int cut(std::string_view line, int first, int last, std::string& out) {
   return k;
 }
 
+/// Control characters (a NUL would end the text, an escape could repaint the terminal) as they are written in a deck; lines stay.
+std::string printable(std::string_view s) {
+  std::string out;
+  for (const char c : s) {
+    const auto u = static_cast<unsigned char>(c);
+    if ((u < 0x20 && c != '\n' && c != '\t') || u == 0x7F) out += fmt::format("\\u{:04x}", u);
+    else out += c;
+  }
+  return out;
+}
+
 }  // namespace
 
 const char* name_of(Diagnostic::Severity s) {
@@ -37,14 +48,14 @@ std::string format(const Diagnostic& d, std::string_view source_line, bool colou
   const auto paint = [&](const char* code, const std::string& s) { return colour ? fmt::format("\x1b[{}m{}\x1b[0m", code, s) : s; };
   std::string out;
   if (!d.where.file.empty()) {
-    out += d.where.file;
+    out += printable(d.where.file);
     if (d.where.line > 0) out += fmt::format(":{}", d.where.line);
     if (d.where.line > 0 && d.where.column > 0) out += fmt::format(":{}", d.where.column);
     out += ": ";
   }
   const char* tint = d.severity == Diagnostic::Severity::error ? "1;31" : d.severity == Diagnostic::Severity::warning ? "1;33" : "1;36";
   const std::string code = d.code.empty() ? std::string() : fmt::format("[{}]", d.code);
-  out += fmt::format("{}: {}\n", paint(tint, fmt::format("{}{}", name_of(d.severity), code)), d.message);
+  out += fmt::format("{}: {}\n", paint(tint, fmt::format("{}{}", name_of(d.severity), code)), printable(d.message));
 
   const std::string number = fmt::format("{:>4}", d.where.line);
   const std::string blank(number.size(), ' ');
@@ -61,7 +72,7 @@ std::string format(const Diagnostic& d, std::string_view source_line, bool colou
       out += fmt::format("{} | {}{}\n", blank, std::string(static_cast<std::size_t>(column - first + (first > 0 ? 3 : 0)), ' '),
                          paint(tint, fmt::format("^{:~<{}}", "", length - 1)));
   }
-  if (!d.hint.empty()) out += fmt::format("{} = hint: {}\n", blank, d.hint);
+  if (!d.hint.empty()) out += fmt::format("{} = hint: {}\n", blank, printable(d.hint));
   return out;
 }
 

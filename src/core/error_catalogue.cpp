@@ -160,6 +160,14 @@ const std::vector<CodeInfo>& error_catalogue() {
        "contradict it, and so does the integrator momentum_rk. Unequal stiffness or inertia of a shaft that turns makes its matrices turn too; "
        "the message then says so. Leave linear out: the general model does all of these.",
        "[[step]]\nname = \"release\"\ntype = \"transient\"\nlinear = true\ninitial_speed = \"3000 rpm\""},
+      {"E61", "an unknown with neither stiffness nor mass",
+       "The eigenvalue problem cannot be factored at any shift: nothing in the model resists or carries the motion that the message names. Hold it, or give "
+       "the node mass or stiffness in this direction.",
+       ""},
+      {"E62", "modes that do not agree with their count",
+       "The number of modes found differs from the number that the inertia of K - s M promises. The matrices are not those of a vibrating structure: M is "
+       "indefinite, or K or M is not symmetric.",
+       ""},
       {"E69", "a load path that did not reach its load",
        "The path of equilibria was followed from no load, but not to the load factor or displacement it should end at: it ran out of points "
        "(max_points), perhaps because it turned back at a limit point; Newton's method did not converge even in the shortest steps; a section was "
@@ -235,8 +243,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "A stability map reads the deck again for each value of one of its [parameters]; it is drawn for rotors whose matrices are constant in fixed axes.",
        "[parameters]\nclearance = \"75 um\"\n\n[[step]]\ntype = \"stability\"\nmap = { parameter = \"clearance\", values = [\"60 um\", \"75 um\", \"90 um\"] }"},
       {"E90", "a plug-in is missing or does not fit",
-       "VTK, HDF5 and SUNDIALS live in plug-ins that are loaded only when a deck asks for them. The message lists where the file was looked for. "
-       "Install the package that holds it, set WHIRL_PLUGIN_PATH, or ask for another output or method.",
+       "VTK, HDF5 and SUNDIALS live in plug-ins that are loaded only when a deck asks for them. They stand in lib/whirl of the "
+       "installation and come from the same build as the program, which is checked before anything of them runs. Install the package that holds the one "
+       "that is missing, or ask for another output or method.",
        ""},
       {"E91", "a file cannot be written or read",
        "The operating system refused: the disk is full, the folder may not be written, or the file is not what it should be. Files are written "
@@ -259,6 +268,45 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"E96", "not an exact solution of this deck",
        "whirl study --exact FILE wants the displacements of probes at instants of the first transient step, in the columns that whirl run writes.",
        "t [s],disk.y [m],disk.z [m]\n0.5,1.2e-05,-3.4e-06"},
+      {"E97", "the results folder is in use",
+       "Another run writes into this folder. Two runs in one folder would leave a mixture of both. Wait for it, stop it, or give this one a folder of "
+       "its own with -o. A run that was killed does not count: its lock goes with its process.",
+       "whirl run deck.toml -o results/second"},
+      {"E98", "an environment variable with an unknown value",
+       "WHIRL_ISA asks for the kernels of a smaller instruction set: baseline, avx2 or avx512 (the best there is, also without the variable). A misspelt "
+       "word would give other digits than those asked for.",
+       "WHIRL_ISA=baseline whirl run deck.toml"},
+      {"N10", "unknown integrator",
+       "The names of the schemes are those of [step.integrator] method.",
+       "method = \"radau5\""},
+      {"N11", "an integrator that cannot do what is asked",
+       "IDA chooses its steps itself; a fixed step dt needs another scheme.",
+       "method = \"radau5\""},
+      {"N20", "no acceleration satisfies the equations",
+       "A part without mass that nothing holds, or a state outside the model's range: the forces there cannot be balanced by any acceleration.",
+       ""},
+      {"N21", "a jump that mass-less parts would have to follow",
+       "A prescribed velocity jumps, and unknowns without mass would have to jump with it. Give the law a short transition, or the parts mass.",
+       ""},
+      {"N30", "SUNDIALS cannot be set up",
+       "The library refused to create its solver, usually for lack of memory.",
+       ""},
+      {"N31", "IDA failed",
+       "SUNDIALS' integrator IDA returned the code shown; its manual lists them.",
+       ""},
+      {"N32", "ARKODE failed",
+       "SUNDIALS' integrator ARKODE returned the code shown; its manual lists them.",
+       ""},
+      {"R10", "a transient step stopped before its end",
+       "The integrator could not go on: Newton's method found no next state however short the step, a chart or a table reached its limit, or a quantity "
+       "became singular. The message says when, where and why; results up to that time are complete.",
+       ""},
+      {"R11", "a state that cannot be evaluated",
+       "The state found lies outside the range of an element: a tilt beyond the chart, a journal beyond its clearance, a table beyond its rows.",
+       ""},
+      {"R20", "the reference run of a study failed",
+       "whirl study measures errors against a run of much finer tolerance, which did not reach its end. The message says why.",
+       ""},
       {"W01", "unused parameter",
        "A key of [parameters] is used nowhere: probably a misspelt ${name}, or a leftover.",
        ""},
@@ -277,6 +325,15 @@ const std::vector<CodeInfo>& error_catalogue() {
        "A bearing or coupling between two shafts acts at one point: its force on one shaft is the opposite of that on the other. Where the two places do not "
        "coincide, the couple of the two forces is missing from the balance. Gears are apart across the shafts, never along them.",
        "origin = [\"400 mm\", \"0 mm\", \"0 mm\"]   # the second shaft begins where the first one ends"},
+      {"W06", "a drive clamps the shaft in small motions",
+       "A drive that prescribes speed or angle holds the axial angle at its place exactly. In modes, responses and stability that end does not twist, as if "
+       "clamped to an infinite inertia, and the shaft's free spin is no motion. The speed of such a step is its own, whatever the drive prescribes.",
+       "step = \"run up\"   # of the drive: it acts in that transient alone"},
+      {"W07", "a list of modes that is not complete",
+       "The roots of the eigenvalue problem were counted by the argument principle (docs/numerics.md), and the list does not hold all of them, or the count did "
+       "not settle. The message says how many are missing and about where. The run goes on and ends with exit code 4: neither the list nor a verdict "
+       "of stability drawn from it is to be relied on.",
+       ""},
       {"W08", "an unstable equilibrium",
        "The state found is in balance, but its static tangent has directions in which a small displacement grows: a column beyond its buckling load, a "
        "shaft on a support of negative stiffness, a path beyond a limit point. The number of directions is that of the negative eigenvalues (inertia of the "

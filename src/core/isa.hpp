@@ -5,6 +5,9 @@
 
 namespace whirl {
 
+/// The words that WHIRL_ISA may be.
+inline bool known_isa(std::string_view word) { return word.empty() || word == "baseline" || word == "avx2" || word == "avx512"; }
+
 /// The best of three tables; avx2 and avx512 may be null (not compiled in). AVX-512 means F and VL, both need FMA. The environment
 /// variable WHIRL_ISA=baseline or avx2 asks for less than the machine can: the same digits on unlike machines, tests.
 template <class Kernels>

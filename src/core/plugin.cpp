@@ -2,9 +2,10 @@
 #include <core/plugin.hpp>
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <vector>
@@ -19,25 +20,23 @@ namespace fs = std::filesystem;
                                    Where{{}, 0, 0, 0, "plug-in '" + name + "'"}});
 }
 
+/// The program's own installation and nothing else: PREFIX/lib/whirl beside PREFIX/bin, or `plugins` of the build tree it was built in.
 std::vector<fs::path> search_path() {
-  std::vector<fs::path> dirs;
-  if (const char* env = std::getenv("WHIRL_PLUGIN_PATH")) {
-    std::string_view rest = env;
-    while (!rest.empty()) {
-      const auto colon = rest.find(':');
-      if (const auto one = rest.substr(0, colon); !one.empty()) dirs.emplace_back(one);
-      rest = colon == std::string_view::npos ? std::string_view{} : rest.substr(colon + 1);
-    }
-  }
   std::error_code ec;
   const fs::path exe = fs::read_symlink("/proc/self/exe", ec);
-  if (!ec) {
-    fs::path dir = exe.parent_path();
-    dirs.push_back(dir);
-    dirs.push_back(dir.parent_path() / "lib" / "whirl");
-    for (int up = 0; up < 4; ++up, dir = dir.parent_path()) dirs.push_back(dir / "plugins");
-  }
+  if (ec) return {};
+  const fs::path prefix = exe.parent_path().parent_path();
+  std::vector<fs::path> dirs{prefix / "lib" / "whirl"};
+  if (fs::is_regular_file(prefix / "CMakeCache.txt", ec)) dirs.push_back(prefix / "plugins");
   return dirs;
+}
+
+/// Whether the file says that it fits this program. Read, not opened as a library: opening one runs its code.
+bool fits(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string marker = fmt::format("{}{}{}", WHIRL_PLUGIN_MARKER_BEGIN, WHIRL_PLUGIN_ABI, WHIRL_PLUGIN_MARKER_END);
+  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  return text.find(marker) != std::string::npos;
 }
 
 fs::path find(const std::string& name) {
@@ -69,7 +68,8 @@ const Plugin& Plugin::load(const std::string& name) {
   const fs::path path = find(name);
   if (path.empty())
     fail(name, fmt::format("the component '{}' is not installed (no libwhirl_{}.so)", name, name),
-         "build Whirl with it, or set WHIRL_PLUGIN_PATH to the folder that holds it");
+         "install the package that holds it, or build Whirl with it");
+  if (!fits(path)) fail(name, fmt::format("{} is not from this build of Whirl", path.string()), "rebuild it with the program");
   Plugin p;
   p.name_ = name;
   p.path_ = path.string();

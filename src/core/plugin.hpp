@@ -7,16 +7,21 @@
 #define WHIRL_PLUGIN_ABI "whirl plug-in 1, " __VERSION__
 /// Once in every plug-in: proves that it fits. Other entry points are extern "C" with the same visibility.
 #define WHIRL_PLUGIN_EXPORT extern "C" __attribute__((visibility("default")))
-#define WHIRL_DEFINE_PLUGIN \
-  WHIRL_PLUGIN_EXPORT const char* whirl_plugin_abi() { return WHIRL_PLUGIN_ABI; }
+#define WHIRL_DEFINE_PLUGIN                                                                                                       \
+  WHIRL_PLUGIN_EXPORT const char* whirl_plugin_abi() { return WHIRL_PLUGIN_ABI; }                                               \
+  extern "C" __attribute__((visibility("default"), used)) const char whirl_plugin_marker[] =                                    \
+      WHIRL_PLUGIN_MARKER_BEGIN WHIRL_PLUGIN_ABI WHIRL_PLUGIN_MARKER_END;
+/// What the program looks for in the file before any of its code runs.
+#define WHIRL_PLUGIN_MARKER_BEGIN "<whirl plug-in fits: "
+#define WHIRL_PLUGIN_MARKER_END ">"
 
 namespace whirl {
 
 class Plugin {
  public:
-  /// Opens libwhirl_<name>.so on first use and keeps it until the program ends. Looked for in $WHIRL_PLUGIN_PATH
-  /// (colon-separated), beside the program, in ../lib/whirl, and in `plugins` of the build tree.
-  /// Error (Exit::io) when it is not there, cannot be opened, or was built by another compiler.
+  /// Opens libwhirl_<name>.so on first use and keeps it until the program ends. Looked for in ../lib/whirl of the program's own folder,
+  /// or in ../plugins when the program stands in its build tree. Error (Exit::io) when it is not there or cannot be opened, and, before
+  /// anything of it runs, when it was built by another compiler.
   static const Plugin& load(const std::string& name);
   /// Whether the file is there; opens nothing.
   static bool available(const std::string& name);

@@ -65,6 +65,11 @@ Document parse_with_includes(int source, Files& files) {
       files.diagnostics.error("E28", name.spot, fmt::format("more than {} files, or more than {} levels, are included", max_files, max_include_depth));
       continue;
     }
+    if (!may_be_read(files.sources, path, {".toml"})) {
+      files.diagnostics.error("E02", name.spot, fmt::format("cannot read '{}': it lies outside the deck's folder and is not named *.toml", name.text),
+                              "move it beside the deck, or give it the name of a deck");
+      continue;
+    }
     FileText text = read_file(path, max_deck_bytes);
     if (!text.ok()) { files.diagnostics.error(text.code, name.spot, text.message, text.hint); continue; }
     const TextProblem bad = check_text(text.text, TextKind::deck);
@@ -85,6 +90,17 @@ Document parse_with_includes(int source, Files& files) {
 }
 
 }  // namespace
+
+bool may_be_read(const Sources& sources, const std::filesystem::path& file, std::initializer_list<std::string_view> extensions) {
+  const std::string extension = file.extension().string();
+  if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return true;
+  std::error_code ec;
+  const std::filesystem::path folder = sources[0].folder.empty() ? std::filesystem::path(".") : sources[0].folder;
+  const auto deck = std::filesystem::weakly_canonical(std::filesystem::absolute(folder, ec), ec);
+  const auto whole = std::filesystem::weakly_canonical(std::filesystem::absolute(file, ec), ec);
+  const auto [end, rest] = std::mismatch(deck.begin(), deck.end(), whole.begin(), whole.end());
+  return end == deck.end() || (std::next(end) == deck.end() && end->empty());
+}
 
 Document assemble(Sources& sources, Diagnostics& diagnostics, const AssembleOptions& options) {
   Files files{sources, diagnostics, options, {}, 0};

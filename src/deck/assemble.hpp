@@ -13,4 +13,8 @@ Document assemble(Sources& sources, Diagnostics& diagnostics, const AssembleOpti
 /// Applies "path=value" arguments; they become one more source, one argument a line.
 void apply_overrides(Document& document, const std::vector<std::string>& arguments, Sources& sources, Diagnostics& diagnostics);
 
+/// Whether a file that a deck names may be read. Messages quote what they are about, so that a deck from somebody else could show the user's
+/// private files to whoever sees its messages: outside the deck's own folder only names with one of the extensions are read.
+bool may_be_read(const Sources& sources, const std::filesystem::path& file, std::initializer_list<std::string_view> extensions);
+
 }  // namespace whirl::deck

@@ -11,6 +11,7 @@ namespace {
 
 std::string stem_of(const std::filesystem::path& file) {
   const std::string s = file.stem().string();
+  if (s == "-") return "deck";   // standard input
   // examples/01_paper_rotor/deck.toml is better called after its folder
   if (s == "deck" && file.has_parent_path() && file.parent_path().has_filename() && file.parent_path().filename() != "." && file.parent_path().filename() != "..") return file.parent_path().filename().string();
   return s.empty() ? "deck" : s;
@@ -95,8 +96,9 @@ std::string Deck::report(bool colour) const {
 
 Deck read_deck(const std::filesystem::path& file, const ReadOptions& options) {
   Deck deck;
-  FileText text = read_file(file, max_deck_bytes);
-  deck.sources.add(file.string(), file.parent_path(), std::move(text.text));
+  const bool standard_input = file == "-";
+  FileText text = standard_input ? read_standard_input(max_deck_bytes) : read_file(file, max_deck_bytes);
+  deck.sources.add(standard_input ? "standard input" : file.string(), file.parent_path(), std::move(text.text));
   if (!text.ok()) {
     Diagnostic d;
     d.code = text.code;

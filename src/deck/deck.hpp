@@ -24,7 +24,7 @@ struct Deck {
   std::string report(bool colour = false) const;
 };
 
-/// Reads and checks a deck. Never throws for what a deck can contain.
+/// Reads and checks a deck; "-" is standard input. Never throws for what a deck can contain.
 Deck read_deck(const std::filesystem::path& file, const ReadOptions& options = {});
 /// The same from memory; `name` is shown in messages, relative paths start at `folder`.
 Deck read_deck_text(std::string text, const std::string& name = "deck.toml", const ReadOptions& options = {}, const std::filesystem::path& folder = {});
@@ -34,9 +34,16 @@ model::Model load_model(const std::filesystem::path& file, const ReadOptions& op
 /// The exit code that fits the errors: Exit::usage for a bad --set, Exit::io for a deck that cannot be read, else Exit::deck.
 Exit exit_of(const std::vector<Diagnostic>& diagnostics);
 
-/// Bytes the outputs of a model will take, roughly (rows of the histories, frames of pictures).
-struct OutputEstimate { double histories = 0, pictures = 0; double total() const { return histories + pictures; } };
+/// Bytes the outputs of a model will take, roughly (rows of the histories, frames of pictures; windows of time honoured).
+struct OutputEstimate {
+  double histories = 0, pictures = 0;
+  bool at_most = false;   ///< rows are written inside a window of speed or amplitude only: there may be far fewer
+  Where where;            ///< the step that writes most
+  double total() const { return histories + pictures; }
+};
 OutputEstimate estimate_output(const model::Model& model);
+/// "1.2 GB"
+std::string size_text(double bytes);
 /// E33 when the estimate exceeds `available` bytes, else nothing.
 std::vector<Diagnostic> check_output(const model::Model& model, double available);
 

@@ -12,6 +12,7 @@ KeyInfo& Describer::add(const Key& k, KeyInfo::Kind kind, const char* doc) {
   i.doc = doc;
   i.required = k.required;
   i.listed = k.listed;
+  i.plain_zero = k.plain_zero;
   if (k.absent) i.absent = k.absent;
   tables_.back()->keys.push_back(std::move(i));
   return tables_.back()->keys.back();
@@ -197,13 +198,21 @@ std::vector<std::string> key_names(const std::function<void(Visitor&)>& body) {
   return r;
 }
 
-std::vector<std::string> column_names(const std::function<void(Visitor&)>& body) {
+std::vector<KeyShape> column_shapes(const std::function<void(Visitor&)>& body) {
   TableInfo t;
   Describer d(t);
   body(d);
-  std::vector<std::string> r;
+  const auto kind_of = [](const KeyInfo& k) {
+    switch (k.kind) {
+      case KeyInfo::Kind::quantity: return KeyShape::Kind::quantity;
+      case KeyInfo::Kind::integer: return KeyShape::Kind::integer;
+      case KeyInfo::Kind::flag: return KeyShape::Kind::flag;
+      default: return KeyShape::Kind::text;
+    }
+  };
+  std::vector<KeyShape> r;
   for (const auto& k : t.keys)
-    if (fits_a_cell(k)) r.push_back(k.name);
+    if (fits_a_cell(k)) r.push_back({k.name, kind_of(k), k.unit});
   return r;
 }
 

@@ -1,6 +1,7 @@
 // The visitor that collects: what keys a deck has, without reading one. The JSON schema, the reference documentation,
 // templates and "did you mean" come from it.
 #pragma once
+#include <deck/suggest.hpp>
 #include <deck/visitor.hpp>
 #include <memory>
 
@@ -16,6 +17,7 @@ struct KeyInfo {
   std::string unit;                    ///< of quantities; "" = plain number
   bool required = false;
   bool listed = true;                  ///< in the reference; see Key
+  bool plain_zero = false;             ///< of a quantity: 0 needs no unit
   std::string default_text;            ///< as written in a deck; empty when there is none
   std::string absent;                  ///< what holds when left out, where the default does not say it
   Range range;
@@ -74,8 +76,8 @@ class Describer : public Visitor {
 const TableInfo& deck_keys();
 /// The names of all keys of one table, alternatives and columns left out.
 std::vector<std::string> key_names(const std::function<void(Visitor&)>& body);
-/// Those of them that can be columns of a table: one value each.
-std::vector<std::string> column_names(const std::function<void(Visitor&)>& body);
+/// Those of them that can be columns of a table, with the values they take: one value each.
+std::vector<KeyShape> column_shapes(const std::function<void(Visitor&)>& body);
 /// Reference documentation of every table and key, Markdown.
 std::string reference_markdown();
 /// Table of units, Markdown.

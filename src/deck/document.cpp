@@ -1,6 +1,7 @@
 #include <deck/document.hpp>
 #include <algorithm>
 #include <cctype>
+#include <fmt/format.h>
 #include <tuple>
 #include <utility>
 
@@ -78,6 +79,11 @@ const char* name_of(Value::Kind k) {
   return "";
 }
 
+bool Diagnostics::fresh(const std::string& code, const Spot& spot, const std::string& message) {
+  // the header of a table of rows is looked at once per row: it is said once
+  return seen_.insert(fmt::format("{} {} {} {} {}", spot.source, spot.line, spot.column, code, message)).second;
+}
+
 void Diagnostics::add(Diagnostic::Severity severity, std::string code, const Spot& spot, std::string message, std::string hint, std::string entity) {
   Diagnostic d;
   d.severity = severity;
@@ -90,10 +96,14 @@ void Diagnostics::add(Diagnostic::Severity severity, std::string code, const Spo
 
 void Diagnostics::error(std::string code, const Spot& spot, std::string message, std::string hint, std::string entity) {
   ++errors_;
+  if (full() || !fresh(code, spot, message)) return;
+  ++kept_;
   add(Diagnostic::Severity::error, std::move(code), spot, std::move(message), std::move(hint), std::move(entity));
 }
 
 void Diagnostics::warning(std::string code, const Spot& spot, std::string message, std::string hint, std::string entity) {
+  if (warnings_ >= limit || !fresh(code, spot, message)) return;
+  ++warnings_;
   add(Diagnostic::Severity::warning, std::move(code), spot, std::move(message), std::move(hint), std::move(entity));
 }
 
@@ -105,11 +115,13 @@ std::vector<Diagnostic> Diagnostics::take(const Sources& sources) {
     const std::string entity = e.d.where.entity;
     e.d.where = sources.where(e.spot);
     e.d.where.entity = entity;
-    // the header of a table of rows is looked at once per row: say it once
-    const bool again = std::any_of(r.begin(), r.end(), [&](const Diagnostic& o) {
-      return o.code == e.d.code && o.message == e.d.message && o.where.file == e.d.where.file && o.where.line == e.d.where.line && o.where.column == e.d.where.column;
-    });
-    if (!again) r.push_back(std::move(e.d));
+    r.push_back(std::move(e.d));
+  }
+  if (full()) {
+    Diagnostic more;
+    more.severity = Diagnostic::Severity::note;
+    more.message = fmt::format("the first {} errors are shown; there may be more", limit);
+    r.push_back(std::move(more));
   }
   list_.clear();
   return r;

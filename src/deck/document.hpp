@@ -3,6 +3,7 @@
 #include <deck/sources.hpp>
 #include <cstdint>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace whirl::deck {
@@ -54,19 +55,28 @@ struct Member {
 /// "a number", "text", "a list", ...
 const char* name_of(Value::Kind k);
 
-/// Diagnostics of one reading, sorted by place and without repetitions when taken.
+/// Diagnostics of one reading, sorted by place and without repetitions when taken. Errors beyond the first `limit` are counted
+/// and not kept: nobody reads them, and a wholly wrong table has a million.
 class Diagnostics {
  public:
+  static constexpr int limit = 200;
   void error(std::string code, const Spot& spot, std::string message, std::string hint = {}, std::string entity = {});
   void warning(std::string code, const Spot& spot, std::string message, std::string hint = {}, std::string entity = {});
   int errors() const { return errors_; }
+  /// Long lists need not be read further: what is wrong with them would not be shown.
+  bool full() const { return kept_ >= limit; }
+  /// With a note at the end when errors were left out.
   std::vector<Diagnostic> take(const Sources& sources);
 
  private:
+  /// Whether this is said for the first time.
+  bool fresh(const std::string& code, const Spot& spot, const std::string& message);
   void add(Diagnostic::Severity severity, std::string code, const Spot& spot, std::string message, std::string hint, std::string entity);
   struct Entry { Diagnostic d; Spot spot; };
   std::vector<Entry> list_;
-  int errors_ = 0;
+  std::unordered_set<std::string> seen_;   ///< place, code and message of what is in list_
+  int errors_ = 0;                         ///< repetitions included
+  int kept_ = 0, warnings_ = 0;
 };
 
 /// A text as a document. Mistakes are reported and stepped over, so that one reading finds them all.

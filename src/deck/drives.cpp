@@ -75,7 +75,7 @@ void describe_torque(Visitor& v, model::Drive& d) {
     w.quantity("ki", m.ki, "N.m/rad", not_negative, "integral gain");
     w.quantity(optional("max_torque", "no limit"), m.max_torque, "N.m", positive, "limit of its torque");
     if (w.clean()) t.governor = m;
-  }, "speed controller: kp (target - s) + ki times the integral of it");
+  }, "speed controller: kp (target - s) + ki times the integral of it, from the beginning of the step in which it begins to act and on through those that go on from there");
   const bool brake = describe_law(v, optional("brake", "none"), t.brake, "N.m", "magnitude of a torque that opposes the spin, constant or a law of time");
   if (v.clean() && !t.of_time && !table && !load && !induction && !dc && !power && !governor && !brake)
     v.error("E05", nullptr, fmt::format("drive '{}' has no torque", d.name), "give torque, columns and rows, load, induction, dc, constant_power, governor or brake; those given are added");
@@ -87,7 +87,7 @@ void describe_torque(Visitor& v, model::Drive& d) {
 void describe(Visitor& v, model::Drive& d) {
   v.name(d, "drive");
   v.location(required("at"), d.at, "place on a shaft: \"section:start\", \"shaft:end\", \"1.14 m\"");
-  v.step(optional("step", "all transient steps"), d.step, "the transient step it belongs to");
+  v.step(optional("step", "all steps; those that are no motion in time have their own speed"), d.step, "the step it belongs to: it acts in no other one");
   const Alternative kinds[] = {
       {"speed", "prescribed speed", [&](Visitor& w) { describe_speed(w, d); }},
       {"angle", "prescribed angle", [&](Visitor& w) { describe_angle(w, d); }},

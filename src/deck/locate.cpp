@@ -15,7 +15,7 @@ std::string_view trim(std::string_view s) {
 }
 
 struct Named {
-  std::string name;
+  std::string_view name;
   std::size_t shaft;
   double start, end;     ///< equal for a disk or bearing
   int rank;              ///< 0 section, 1 shaft, 2 other
@@ -61,6 +61,9 @@ Located check(const model::Model& m, std::size_t shaft, double s, std::string_vi
 
 Located locate(const model::Model& m, std::string_view given) {
   const std::string_view text = trim(given);
+  if (m.shafts.empty()) {
+    return fail("E18", fmt::format("\"{}\" stands on no shaft: the deck has none", text), "add [shaft]");
+  }
   if (text.empty()) return fail("E18", "the place is empty", "write \"section:mid\" or a distance such as \"1.14 m\"");
   std::string_view rest = text;
   std::optional<std::size_t> only;
@@ -99,7 +102,7 @@ Located locate(const model::Model& m, std::string_view given) {
     const std::size_t stop = std::min(rest.find_first_of(":+"), rest.size());
     const std::string word(trim(rest.substr(0, stop)));
     std::vector<std::string> all;
-    for (const auto& n : names) all.push_back(n.name);
+    for (const auto& n : names) all.emplace_back(n.name);
     if (const std::size_t slash = word.find('/'); slash != std::string::npos) {
       std::vector<std::string> shafts;
       for (const auto& x : m.shafts) shafts.push_back(x.name);

@@ -44,6 +44,7 @@ void describe(Visitor& v, model::Model& m) {
   v.table("model", [&](Visitor& w) { describe_settings(w, m); }, "settings of the whole model");
   v.list(optional("material", "built-in materials"), m.materials, "materials besides the built-in ones (steel, stainless_steel, titanium, aluminium, inconel_718, cast_iron)");
   v.list(required("shaft"), m.shafts, "a shaft line: sections from left to right along +x");
+  if (v.clean() && v.given("shaft") && m.shafts.empty()) v.error("E35", "shaft", "the list of shafts is empty", "a deck needs a [shaft] with its sections");
   v.list(optional("disk", "none"), m.disks, "a rigid disk or body fixed to a shaft, by mass and inertia or by its shape");
   v.list(optional("bearing", "none"), m.bearings, "whatever connects a shaft with the ground or another shaft");
   v.list(optional("foundation", "none"), m.foundations, "a foundation or casing as reduced stiffness, damping and mass matrices, under one or more bearings");

@@ -35,7 +35,7 @@ void describe(Visitor& v, model::VtkOutput& o) {
 void describe(Visitor& v, model::Output& o) {
   static constexpr Option quantities[] = {
       {"speed", "spin of each shaft"},         {"probes", "displacements of the probes"}, {"positions", "positions of the probes in space"}, {"velocity", "velocities of the probes"}, {"acceleration", "accelerations of the probes, relative to the base"}, {"rotation", "gamma, phi and its rate at the probes"}, {"bearing_force", "forces of the bearings on the shaft"},
-      {"bearing_moment", "moments and torques of couplings, gears, rigid supports and bearings with tilting or torsional stiffness"},
+      {"bearing_moment", "moments and torques of the bearings that give any (tilting or torsional stiffness, friction), about their places"},
       {"torque", "torques of the drives"},     {"energy", "energies and their balance"},
   };
   static constexpr Option amplitudes[] = {{"zero_to_peak", ""}, {"peak_to_peak", ""}};

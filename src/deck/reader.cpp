@@ -138,6 +138,7 @@ bool Reader::read_quantity(const char* key, const Value& given, const char* unit
 }
 
 bool Reader::quantity(const Key& k, double& target, const char* unit, Range range, const char*) {
+  note_shape(k, KeyShape::Kind::quantity, unit);
   const Member* m = find(k);
   if (!m) {
     if (std::isfinite(target)) put_default(k, *unit ? Value::of_text(units::format(target, unit)) : Value::of_number(target));
@@ -154,6 +155,7 @@ bool Reader::quantity(const Key& k, double& target, const char* unit, Range rang
 }
 
 bool Reader::integer(const Key& k, int& target, Range range, const char*) {
+  note_shape(k, KeyShape::Kind::integer);
   const Member* m = find(k);
   if (!m) {
     put_default(k, Value::of_integer(target));
@@ -180,6 +182,7 @@ bool Reader::integer(const Key& k, int& target, Range range, const char*) {
 }
 
 bool Reader::flag(const Key& k, bool& target, const char*) {
+  note_shape(k, KeyShape::Kind::flag);
   const Member* m = find(k);
   if (!m) {
     put_default(k, Value::of_flag(target));
@@ -207,6 +210,7 @@ bool Reader::read_list(const Key& k, const Member& m, int count, Value& list) {
 }
 
 bool Reader::quantities(const Key& k, std::vector<double>& target, const char* unit, Range range, int count, const char*, const char* per) {
+  note_shape(k, KeyShape::Kind::list);
   const Member* m = find(k);
   if (!m) {
     if (!target.empty()) {
@@ -237,6 +241,7 @@ bool Reader::quantities(const Key& k, std::vector<double>& target, const char* u
 }
 
 bool Reader::matrix(const Key& k, Matrix<6>& target, const char* translation, const char* coupling, const char* rotation, const char*) {
+  note_shape(k, KeyShape::Kind::list);
   const Member* m = find(k);
   if (!m) return false;
   Value list;
@@ -278,6 +283,7 @@ bool Reader::read_text(const char* key, const Value& given, std::string& target)
 }
 
 bool Reader::text(const Key& k, std::string& target, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) {
     put_default(k, Value::of_text(target));
@@ -288,6 +294,7 @@ bool Reader::text(const Key& k, std::string& target, const char*) {
 }
 
 bool Reader::texts(const Key& k, std::vector<std::string>& target, const char*) {
+  note_shape(k, KeyShape::Kind::list);
   const Member* m = find(k);
   if (!m) {
     Value list = Value::make_array();
@@ -330,6 +337,7 @@ bool Reader::read_option(const char* key, const Value& given, std::span<const Op
 }
 
 bool Reader::option(const Key& k, int& index, std::span<const Option> options, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) {
     put_default(k, Value::of_text(options[static_cast<std::size_t>(index)].name));

@@ -3,6 +3,7 @@
 #pragma once
 #include <core/units.hpp>
 #include <deck/parameters.hpp>
+#include <deck/suggest.hpp>
 #include <deck/visitor.hpp>
 #include <deque>
 #include <map>
@@ -50,6 +51,7 @@ class Reader : public Visitor {
     const Value* table = nullptr;                  ///< what is read
     Value* resolved = nullptr;                     ///< what is written; null for rows
     std::vector<std::string> known;                ///< keys asked for so far
+    std::vector<KeyShape> shapes;                  ///< what values those of them take that are not choices
     std::map<std::string, std::map<std::string, Spot>> names;   ///< names of the things in this table's lists, by kind
     int errors_at_start = 0;
     bool dirty = false;                            ///< holds something reported before
@@ -67,6 +69,7 @@ class Reader : public Visitor {
   /// Notes the key as known and finds it; reports when it is required and missing.
   const Member* find(const Key&);
   void put(const Key&, Value);
+  void note_shape(const Key& k, KeyShape::Kind kind, const char* unit = "") { scope().shapes.push_back({k.name, kind, unit}); }
   void put_default(const Key& k, Value v) { if (!k.absent && !k.required) put(k, std::move(v)); }
   void problem(const char* code, const Spot&, std::string message, std::string hint = {});
   bool wrong_type(const char* key, const Value&, const char* wanted, std::string hint = {});

@@ -8,6 +8,7 @@
 namespace whirl::deck {
 
 bool Reader::name(model::Entity& entity, const char* kind) {
+  note_shape("name", KeyShape::Kind::text);
   const Member* m = find(optional("name", ""));
   Scope* parent = scopes_.size() > 1 ? &scopes_[scopes_.size() - 2] : nullptr;
   auto& names = parent ? parent->names[kind] : scope().names[kind];
@@ -19,7 +20,18 @@ bool Reader::name(model::Entity& entity, const char* kind) {
   }
   const Spot spot = m ? m->value.spot : scope().table->spot;
   scope().entity = fmt::format("{} '{}'", kind, name);
-  if (given && (name.empty() || name.find_first_of(":/+\"\\\n") != std::string::npos || name.size() > 100))
+  const auto control = [](char c) {
+    const auto u = static_cast<unsigned char>(c);
+    return u < 0x20 || u == 0x7F;
+  };
+  if (given && !name.empty() && (name.front() == '=' || name.front() == '-' || name.front() == '@'))
+    problem("E14", spot, fmt::format("the name \"{}\" begins with '{}'", name, name.front()),
+            "names stand in the titles and cells of result tables, where spreadsheets would take this one for a formula");
+  else if (given && !name.empty() && name.front() == '.')
+    problem("E14", spot, fmt::format("the name \"{}\" begins with '.'", name), "names stand in names of files, which would be hidden ones");
+  else if (given && std::any_of(name.begin(), name.end(), control))
+    problem("E14", spot, fmt::format("the name \"{}\" has a control character", name), "a name is one line of letters, digits and signs");
+  else if (given && (name.empty() || name.find_first_of(":/+\"\\") != std::string::npos || name.size() > 100))
     problem("E14", spot, name.empty() ? std::string("the name is empty") : fmt::format("the name \"{}\" has a character that places are written with", name), "a name may not contain : / + \" or \\");
   const auto [it, fresh] = names.emplace(name, spot);
   if (!fresh) problem("E16", spot, fmt::format("a {} '{}' exists already", kind, name), fmt::format("the first is in line {}", it->second.line));
@@ -30,6 +42,7 @@ bool Reader::name(model::Entity& entity, const char* kind) {
 }
 
 bool Reader::location(const Key& k, model::Location& target, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) return false;
   const Value v = expand(m->value, Parameters::Use::quantity);
@@ -37,11 +50,15 @@ bool Reader::location(const Key& k, model::Location& target, const char*) {
     wrong_type(k.name, v, "a place on a shaft", fmt::format("for example {} = \"section:mid\" or \"1.14 m\"", k.name));
     return true;
   }
-  // where the shafts themselves are wrong, places on them cannot be judged
+  // where the shafts themselves are wrong or missing, places on them cannot be judged
+  if (model_.shafts.empty()) {
+    scope().dirty = true;
+    return true;
+  }
   const auto unplaced = [&](const auto& list) {   // a disk or bearing whose own place was reported
     return std::any_of(list.begin(), list.end(), [&](const auto& x) { return x.at.text.empty() && v.text.starts_with(x.name); });
   };
-  const bool shafts_bad = shafts_bad_ || model_.shafts.empty() || unplaced(model_.disks) || unplaced(model_.bearings);
+  const bool shafts_bad = shafts_bad_ || unplaced(model_.disks) || unplaced(model_.bearings);
   const Located found = locate(model_, v.text);
   if (!found.at) {
     if (shafts_bad) { scope().dirty = true; return true; }
@@ -60,6 +77,7 @@ bool Reader::location(const Key& k, model::Location& target, const char*) {
 }
 
 bool Reader::material(const Key& k, std::size_t& index, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) return false;
   std::string name;
@@ -84,6 +102,7 @@ bool Reader::material(const Key& k, std::size_t& index, const char*) {
 }
 
 bool Reader::shaft(const Key& k, std::size_t& index, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) {
     if (model_.shafts.size() > 1) problem("E05", scope().table->spot, fmt::format("the key '{}' is missing", k.name), "the deck has several shafts: say which");
@@ -107,6 +126,7 @@ bool Reader::shaft(const Key& k, std::size_t& index, const char*) {
 }
 
 bool Reader::step(const Key& k, std::string& target, const char*) {
+  note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) return false;
   if (!read_text(k.name, m->value, target)) return true;

@@ -1,5 +1,6 @@
 // Tables in tables, lists, rows with column titles (in the deck or a CSV file), and keys chosen by a "type".
 #include <core/table.hpp>
+#include <deck/assemble.hpp>
 #include <deck/describer.hpp>
 #include <deck/reader.hpp>
 #include <algorithm>
@@ -34,6 +35,7 @@ void Reader::close_table() {
   if (s.any_key || s.header) return;
   for (const auto& m : s.table->members) {
     if (std::find(s.known.begin(), s.known.end(), m.key) != s.known.end()) continue;
+    if (diagnostics_.full()) break;
     std::string hint;
     for (const auto& other : s.others) {
       const auto keys = key_names(other.body);
@@ -42,9 +44,15 @@ void Reader::close_table() {
       break;
     }
     if (hint.empty()) {
-      const auto near = nearest(m.key, s.known);
-      if (!near.empty()) hint = fmt::format("did you mean '{}'?", near.front());
-      else if (s.known.size() <= 16) hint = fmt::format("known here: {}", fmt::join(s.known, ", "));
+      std::vector<KeyShape> free;   // a choice of keys ("type") is none of them, nor is what is given already
+      for (const auto& k : s.shapes)
+        if (!s.table->find(k.name)) free.push_back(k);
+      hint = suggest(m.key, shape_of(m.value), free);
+      const auto given = nearest(m.key, s.known);   // one that is written right elsewhere in the table
+      if (hint.empty() && !given.empty()) hint = fmt::format("did you mean '{}'?", given.front());
+    }
+    if (hint.empty()) {
+      if (s.known.size() <= 16) hint = fmt::format("known here: {}", fmt::join(s.known, ", "));
       else hint = "`whirl schema --reference` lists all keys";
     }
     problem("E04", m.spot, fmt::format("unknown key '{}'{}", m.key, s.entity.empty() ? "" : " in " + s.entity), std::move(hint));
@@ -52,11 +60,13 @@ void Reader::close_table() {
 }
 
 void Reader::free_table(const Key& k, const char*) {
+  note_shape(k, KeyShape::Kind::table);
   const Member* m = find(k);
   if (m && !m->value.is_table()) wrong_type(k.name, m->value, "a table");
 }
 
 bool Reader::table(const Key& k, const std::function<void(Visitor&)>& body, const char*) {
+  note_shape(k, KeyShape::Kind::table);
   const Member* m = find(k);
   Value resolved = Value::make_table();
   if (!m) {
@@ -78,6 +88,7 @@ bool Reader::table(const Key& k, const std::function<void(Visitor&)>& body, cons
 }
 
 void Reader::list(const Key& k, const ListBody& body, const char*) {
+  note_shape(k, KeyShape::Kind::list);
   const Member* m = find(k);
   if (!m) return;
   expanded_.push_back(expand(m->value));
@@ -96,7 +107,11 @@ void Reader::list(const Key& k, const ListBody& body, const char*) {
     all.items.push_back(std::move(resolved));
   };
   if (v.is_table()) one(v);
-  else for (const auto& item : v.items) one(item);
+  else
+    for (const auto& item : v.items) {
+      if (diagnostics_.full()) break;
+      one(item);
+    }
   if (scopes_.size() == 1 && std::string_view(k.name) == "shaft") shafts_bad_ = scope().dirty;
   scope().dirty = scope().dirty || dirty_before;
   if (!all.items.empty()) put(k, std::move(all));
@@ -121,6 +136,8 @@ void Reader::alternatives(const Key& k, std::span<const Alternative> list, const
 }
 
 bool Reader::either(const Key& k, double& simple, const char* unit, bool& is_simple, const std::function<void(Visitor&)>& body, const char*) {
+  note_shape(k, KeyShape::Kind::quantity, unit);
+  note_shape(k, KeyShape::Kind::table);
   const Member* m = find(k);
   if (!m) return false;
   expanded_.push_back(expand(m->value, Parameters::Use::quantity));
@@ -141,7 +158,9 @@ bool Reader::either(const Key& k, double& simple, const char* unit, bool& is_sim
 // ---------------------------------------------------------------- rows
 
 bool Reader::read_titles(const std::vector<Value>& titles, const ListBody& body, std::vector<ColumnUnit*>& columns, std::vector<std::string>& keys) {
-  const auto known = column_names(body.prototype);
+  const auto shapes = column_shapes(body.prototype);
+  std::vector<std::string> known;
+  for (const auto& k : shapes) known.push_back(k.name);
   bool good = true;
   for (const auto& given : titles) {
     const Value t = expand(given);
@@ -150,9 +169,10 @@ bool Reader::read_titles(const std::vector<Value>& titles, const ListBody& body,
     columns_.push_back({title.unit, title.has_unit, t.spot});
     columns.push_back(&columns_.back());
     if (std::find(known.begin(), known.end(), title.name) == known.end()) {
-      const auto near = nearest(title.name, known);
-      problem("E04", t.spot, fmt::format("unknown column '{}'", title.name),
-              near.empty() ? fmt::format("known here: {}", fmt::join(known, ", ")) : fmt::format("did you mean '{}'?", near.front()));
+      std::vector<KeyShape> free;
+      std::copy_if(shapes.begin(), shapes.end(), std::back_inserter(free), [&](const KeyShape& k) { return std::find(keys.begin(), keys.end(), k.name) == keys.end(); });
+      const std::string hint = suggest(title.name, shape_of_column(title.unit), free);
+      problem("E04", t.spot, fmt::format("unknown column '{}'", title.name), hint.empty() ? fmt::format("known here: {}", fmt::join(known, ", ")) : hint);
       good = false;
     } else if (std::find(keys.begin(), keys.end(), title.name) != keys.end()) {
       problem("E29", t.spot, fmt::format("the column '{}' stands twice in the table", title.name));
@@ -185,6 +205,7 @@ void Reader::read_rows_from_deck(const Value& titles, const Value& rows, const L
   for (const auto& t : titles.items) out_columns.items.push_back(expand(t));
   if (rows.items.empty()) problem("E35", rows.spot, "the table has no rows");
   for (const auto& r : rows.items) {
+    if (diagnostics_.full()) break;   // a wholly wrong table need not be shown line by line
     const Value row = expand(r);
     if (!row.is_array()) { wrong_type("rows", row, "a list of lists"); continue; }
     std::vector<Value> cells;
@@ -203,6 +224,11 @@ void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value&
   if (!read_text("file", file, name)) return;
   if (!files_allowed) { problem("E02", file.spot, fmt::format("cannot read '{}': files are not allowed here", name)); return; }
   const std::filesystem::path path = sources_[file.spot.source].folder / name;
+  if (!may_be_read(sources_, path, {".csv", ".tsv", ".txt", ".dat"})) {
+    problem("E02", file.spot, fmt::format("cannot read '{}': it lies outside the deck's folder and is not named *.csv, *.tsv, *.txt or *.dat", name),
+            "move it beside the deck, or give it the name of a table");
+    return;
+  }
   FileText text = read_file(path, max_table_bytes);
   if (!text.ok()) { problem(text.code.c_str(), file.spot, text.message, text.hint); return; }
   const TextProblem bad = check_text(text.text, TextKind::table);
@@ -242,11 +268,13 @@ void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value&
     out_rows.items.push_back(std::move(shown));
     const Spot row = at(r.front().line, r.front().column, std::max(1, r.back().column + r.back().length - r.front().column));
     read_row(columns, keys, std::move(values), row, header, body);
-    if (diagnostics_.errors() > 1000) break;   // a wholly wrong table need not be shown line by line
+    if (diagnostics_.full()) break;   // a wholly wrong table need not be shown line by line
   }
 }
 
 bool Reader::rows(const ListBody& body, bool must, const char*) {
+  for (const char* part : {"columns", "rows"}) note_shape(part, KeyShape::Kind::list);
+  note_shape("file", KeyShape::Kind::text);
   const Member* columns = find(optional("columns", ""));
   const Member* rows = find(optional("rows", ""));
   const Member* file = find(optional("file", ""));

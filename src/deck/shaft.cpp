@@ -200,7 +200,10 @@ void describe(Visitor& v, model::Shaft& s) {
   v.flag("rotating", s.rotating, "false: a casing or foundation beam that does not turn");
   v.number("speed_ratio", s.speed_ratio, any, "speed relative to the reference speed of frequency-domain steps; negative: turns the other way");
   v.quantity("initial_spin", s.spin0, "rpm", any, "spin at the start of transients, unless the step or a drive says otherwise");
-  v.quantity("axial_preload", s.axial_preload, "N", any, "axial force, tension positive");
+  v.quantity("axial_preload", s.axial_preload, "N", any,
+             "axial force in the undeformed shaft, tension positive, as of a shaft clamped between supports under tension: what holds its ends along the axis must "
+             "balance it, and where an end is free it relaxes");
+  v.quantity("axial_force", s.axial_force, "N", any, "axial force that pulls at both ends of the shaft, tension positive: a load that stays whatever the shaft does");
   v.quantity("temperature_rise", start.temperature_rise, "K", any, "of all sections that do not give another: the shaft grows, or its supports hold it back");
   v.table(optional("bow", "straight"), [&](Visitor& w) {
     w.quantity(required("amount"), s.bow.amount, "um", positive, "largest deviation, at mid-length");

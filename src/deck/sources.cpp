@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
+#include <iostream>
 #include <system_error>
 
 namespace whirl::deck {
@@ -45,6 +46,31 @@ std::string_view Sources::line(const Where& w) const {
   return {};
 }
 
+namespace {
+
+/// In pieces: the size of pipes and devices is not known beforehand.
+void read_stream(std::istream& in, const std::string& name, std::size_t limit, FileText& r) {
+  std::string buffer(1u << 16, '\0');
+  while (in) {
+    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    r.text.append(buffer.data(), static_cast<std::size_t>(in.gcount()));
+    if (r.text.size() > limit) {
+      r.text.clear();
+      r.code = "E03";
+      r.message = fmt::format("'{}' is larger than the limit of {} MiB", name, limit >> 20);
+      r.hint = "long tables belong in CSV files named by 'file'";
+      return;
+    }
+  }
+  if (in.bad()) {
+    r.text.clear();
+    r.code = "E02";
+    r.message = fmt::format("cannot read '{}': {}", name, std::strerror(errno));
+  }
+}
+
+}  // namespace
+
 FileText read_file(const std::filesystem::path& path, std::size_t limit) {
   FileText r;
   std::error_code ec;
@@ -75,25 +101,17 @@ FileText read_file(const std::filesystem::path& path, std::size_t limit) {
     r.message = fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno));
     return r;
   }
-  // read in pieces: the size of pipes and devices is not known beforehand
-  std::string buffer(1u << 16, '\0');
-  while (in) {
-    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    r.text.append(buffer.data(), static_cast<std::size_t>(in.gcount()));
-    if (r.text.size() > limit) {
-      r.text.clear();
-      r.code = "E03";
-      r.message = fmt::format("'{}' is larger than the limit of {} MiB", path.string(), limit >> 20);
-      r.hint = "long tables belong in CSV files named by 'file'";
-      return r;
-    }
-  }
-  if (in.bad()) {
-    r.text.clear();
-    r.code = "E02";
-    r.message = fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno));
-  }
+  read_stream(in, path.string(), limit, r);
   return r;
+}
+
+FileText read_standard_input(std::size_t limit) {
+  static const FileText kept = [limit] {
+    FileText r;
+    read_stream(std::cin, "standard input", limit, r);
+    return r;
+  }();
+  return kept;
 }
 
 namespace {

@@ -48,6 +48,8 @@ struct FileText {
   bool ok() const { return code.empty(); }
 };
 FileText read_file(const std::filesystem::path& path, std::size_t limit);
+/// The same of standard input, which is read once and kept: steps that vary a parameter read their deck again.
+FileText read_standard_input(std::size_t limit);
 
 /// Why the bytes cannot be a deck or a table (E03), found without parsing: empty, binary, not UTF-8, nested too deeply.
 struct TextProblem {

@@ -92,7 +92,8 @@ void describe(Visitor& v, model::LoadPath& p) {
 
 void describe(Visitor& v, model::StaticStep& s) {
   v.integer("load_steps", s.load_steps, between(1, 100000), "number of parts in which gravity and the loads are put on (more where needed)");
-  v.quantity(optional("speed", "0 rpm"), s.speed, "rpm", any, "speed of the rotor");
+  s.speed_given = v.quantity(optional("speed", "what the drives prescribe at time 0, else the shafts' initial_spin"), s.speed, "rpm", any,
+                             "speed of the rotor, whatever drives prescribe: every shaft at its speed_ratio");
   v.table(optional("speeds", "speed alone"), s.speeds, "equilibria at these speeds instead, one after another: locus, eccentricity, load and the eight coefficients of each bearing against speed; later steps start from the last one");
   v.table(optional("path", "one equilibrium, at the full load"), s.path, "follow the equilibria from no load past limit points (snap-through) and, with branch, off bifurcations (buckling); a path that does not reach its load is an error");
   if (v.clean() && s.path && s.load_steps > 1) v.error("E26", "load_steps", "a path has its own steps", "use path.steps");
@@ -104,10 +105,17 @@ namespace {
 void describe_motion(Visitor& v, model::MotionKind& motion) {
   v.choice("motion", motion,
            {{"all", "every motion, coupled as it is"},
-            {"lateral", "bending alone: twist and axial motion held"},
-            {"torsional", "twist alone"},
-            {"axial", "motion along the shafts alone"}},
+            {"lateral", "bending: axial motion and twist follow without inertia"},
+            {"torsional", "twist alone: bending and axial motion held"},
+            {"axial", "motion along the shafts alone: bending and twist held"}},
            "unknowns that take part");
+}
+
+void describe_about(Visitor& v, model::About& about) {
+  v.choice("about", about,
+           {{"equilibrium", "the static equilibrium at the speed, under gravity and loads"},
+            {"undeformed", "the rotor as drawn: no gravity, no loads, no deflection; not with supports whose stiffness is that of their load"}},
+           "state that the equations are linearised about");
 }
 
 void describe_damping(Visitor& v, bool& damped) {
@@ -139,6 +147,7 @@ void describe(Visitor& v, model::ModalStep& s) {
   v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "rad/s", positive, "modes up to this frequency only (Hz, rpm or rad/s)");
   describe_damping(v, s.damped);
   describe_motion(v, s.motion);
+  describe_about(v, s.about);
   v.integer("shapes", s.shapes, between(0, 1000), "number of mode shapes drawn, and animated where [[output.vtk]] asks for this step");
 }
 
@@ -149,6 +158,7 @@ void describe(Visitor& v, model::CampbellStep& s) {
   v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "rad/s", positive, "modes up to this frequency only (Hz, rpm or rad/s)");
   describe_damping(v, s.damped);
   describe_motion(v, s.motion);
+  describe_about(v, s.about);
   check_orders(v, s.orders);
 }
 
@@ -158,6 +168,7 @@ void describe(Visitor& v, model::CriticalStep& s) {
   v.quantities("orders", s.orders, "", positive, -1, orders_doc);
   v.integer("modes", s.modes, between(1, 10000), "critical speeds listed of each order, from the lowest");
   describe_motion(v, s.motion);
+  describe_about(v, s.about);
   v.integer("shapes", s.shapes, between(0, 1000), "number of mode shapes drawn");
   check_orders(v, s.orders);
   if (v.clean() && s.min_speed >= s.max_speed) v.error("E21", "min_speed", "min_speed is not below max_speed");
@@ -168,6 +179,7 @@ void describe(Visitor& v, model::UnbalanceStep& s) {
   std::vector<double> range;
   const bool given = v.quantities(optional("operating_speed", "no separation margins"), range, "rpm", positive, 2, "lowest and highest operating speed: separation margins as in API RP 684");
   v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "rpm", positive, -1, "speeds at which the deflected rotor is drawn");
+  describe_about(v, s.about);
   if (!v.clean() || !given) return;
   if (range[1] < range[0]) v.error("E21", "operating_speed", "the highest operating speed is below the lowest");
   else s.operating = {range[0], range[1]};
@@ -195,6 +207,7 @@ void describe(Visitor& v, model::StabilityStep& s) {
   v.table(required("speed"), s.speed, "the speeds");
   v.integer("modes", s.modes, between(1, 10000), "number of modes followed, from the lowest frequency");
   v.table(optional("map", "the deck as it is"), s.map, "stability over a parameter of the deck as well: onset speed and log decrement at each of its values");
+  describe_about(v, s.about);
 }
 
 void describe(Visitor& v, model::CriticalMapStep& s) {
@@ -204,7 +217,9 @@ void describe(Visitor& v, model::CriticalMapStep& s) {
   v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "critical speeds up to this one");
   v.number("order", s.order, positive, "excitations a revolution");
   v.flag("backward", s.backward, "backward critical speeds as lines of their own");
-  v.texts(optional("bearings", "all but rigid ones"), s.bearings, "names of the bearings whose stiffness is varied");
+  describe_motion(v, s.motion);
+  describe_about(v, s.about);
+  v.texts(optional("bearings", "all that carry laterally from a shaft to the ground, but rigid ones"), s.bearings, "names of the bearings whose lateral stiffness is varied; what they do along and about the shaft stays");
   if (v.clean() && s.stiffness_max <= s.stiffness_min) v.error("E21", "stiffness_max", "stiffness_max is not above stiffness_min");
 }
 
@@ -213,7 +228,7 @@ void describe(Visitor& v, model::HarmonicForce& f) {
   v.vector("force", f.force, "N", "amplitude of the force along x, y, z");
   v.vector("moment", f.moment, "N.m", "amplitude of the moment about x, y, z; about x it twists the shaft");
   v.quantity("phase", f.phase, "deg", any, "lead of this force: cos(w t + phase)");
-  v.choice("whirl", f.whirl, {{"none", "along fixed directions"}, {"forward", "turning from y towards z at the frequency"}, {"backward", "turning from z towards y"}},
+  v.choice("whirl", f.whirl, {{"none", "along fixed directions"}, {"forward", "turning at the frequency as the shaft spins (from y towards z where its spin is positive)"}, {"backward", "turning against the spin"}},
            "a lateral force or moment that turns starts in the direction given");
   if (!v.clean()) return;
   if (!v.given("force") && !v.given("moment")) v.error("E05", nullptr, "a harmonic force has neither 'force' nor 'moment'");
@@ -229,6 +244,7 @@ void describe(Visitor& v, model::HarmonicStep& s) {
   v.number(optional("order", "1"), s.order, positive, "excitation frequency relative to the speed");
   v.flag("speed_squared", s.speed_squared, "amplitudes grow with the square of the speed; they are given for the highest speed");
   describe_motion(v, s.motion);
+  describe_about(v, s.about);
   v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "rad/s", positive, -1, "excitation frequencies at which the deflected rotor is drawn");
   if (!v.clean()) return;
   if (s.forces.empty()) v.error("E05", nullptr, "a harmonic response needs at least one force", "[[step.force]] with at, force or moment");
@@ -243,6 +259,7 @@ void describe(Visitor& v, model::TorsionalStep& s) {
   v.integer("modes", s.modes, between(1, 10000), "number of torsional modes, from the lowest frequency");
   v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "end of the interference diagram");
   v.quantities("orders", s.orders, "", positive, -1, orders_doc);
+  describe_about(v, s.about);
   check_orders(v, s.orders);
 }
 
@@ -254,11 +271,14 @@ void describe(Visitor& v, model::BucklingStep& s) {
 void describe(Visitor& v, model::TransientStep& s) {
   v.quantity(required("duration"), s.duration, "s", positive, "length of the run; it begins at time 0, or where the step named by 'from' ended");
   v.choice("start", s.start, {{"rest", "straight and unstressed, loads applied at once"}, {"static", "in static equilibrium"}, {"unbalance_response", "in the steady response to the unbalance at the initial speed"}, {"mode", "in static equilibrium plus a whirl mode at the initial speed"}}, "state at the start, unless 'from' names a transient step");
-  v.integer("mode", s.mode, between(1, 10000), "of start = \"mode\": its number from the lowest frequency");
+  v.integer("mode", s.mode, between(1, 10000), "of start = \"mode\": its number from the lowest frequency, among the modes of its kind");
+  v.choice("mode_kind", s.mode_kind, {{"all", "every kind, in one row"}, {"lateral", "bending"}, {"torsional", "twist"}, {"axial", "along the shafts"}},
+           "of start = \"mode\": kind of the modes that are counted, by the largest share of their energy");
   v.quantity("mode_amplitude", s.mode_amplitude, "mm", positive, "of start = \"mode\": its largest displacement");
   v.text(optional("previous", "none"), s.previous, "results folder of an earlier run of the same rotor; this step starts from its last state (of the checkpoint written at its end)");
   v.text(optional("previous_step", "the only one"), s.previous_step, "which of its transient steps");
-  v.quantity("initial_speed", s.speed0, "rpm", any, "spin at the start of every rotating line (times its speed_ratio)");
+  s.speed0_given = v.quantity(optional("initial_speed", "what the drives prescribe, else the shafts' initial_spin"), s.speed0, "rpm", any,
+                              "spin at the start of every rotating line (times its speed_ratio)");
   v.quantity(optional("stop_speed", "never"), s.stop_speed, "rpm", any, "the run ends when the reference spin passes this value");
   v.quantity(optional("amplitude_limit", "none"), s.amplitude_limit, "mm", positive, "the run ends when a probe exceeds this displacement");
   v.flag("linear", s.linear, "small motions about the rotor that turns at constant speed in static equilibrium: constant matrices, one factorisation for each length of step; loads and unbalance act as they are");

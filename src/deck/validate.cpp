@@ -4,6 +4,7 @@
 #include <deck/deck.hpp>
 #include <deck/validate.hpp>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 
 namespace whirl::deck {
@@ -105,6 +106,22 @@ void check_restraint(const model::Model& m, Problems& out) {
   }
 }
 
+/// Prescribed spin of a shaft in a step (null: none).
+const model::PrescribedSpin* prescribed(const model::Model& m, std::size_t shaft, const model::Step* s) {
+  for (const auto& d : m.drives)
+    if (d.at.shaft == shaft && (d.step.empty() || (s && d.step == s->name)))
+      if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law); p && p->angle) return p;
+  return nullptr;
+}
+
+/// Spin of a shaft, rad/s, where a step without a state to start from begins. own: speed of the reference the step gives.
+double spin_at_start(const model::Model& m, const model::Step& s, std::size_t shaft, std::optional<double> own) {
+  if (!m.shafts[shaft].rotating) return 0.0;
+  if (own) return *own * m.shafts[shaft].speed_ratio;
+  const auto* p = prescribed(m, shaft, &s);
+  return p ? p->angle->at(0.0).df : m.shafts[shaft].spin0;
+}
+
 /// Speeds a step goes through: least and largest of the reference shaft, or nothing.
 std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const model::Step& s, std::size_t shaft) {
   const double ratio = m.shafts[shaft].speed_ratio;
@@ -112,7 +129,12 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
     const double a = r.values.empty() ? r.start : r.values.front(), b = r.values.empty() ? r.stop : r.values.back();
     return std::pair(std::min(a * ratio, b * ratio), std::max(a * ratio, b * ratio));
   };
-  if (const auto* x = std::get_if<model::StaticStep>(&s.law)) return x->speeds ? range(*x->speeds) : std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::StaticStep>(&s.law)) {
+    if (x->speeds) return range(*x->speeds);
+    if (!s.from.empty() && !x->own_speed()) return std::nullopt;   // that of the step it starts from
+    const double spin = spin_at_start(m, s, shaft, x->own_speed());
+    return std::pair(spin, spin);
+  }
   if (const auto* x = std::get_if<model::ModalStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) return range(x->speed);
   if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) return range(x->speed);
@@ -136,7 +158,7 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
       return std::pair(low, high);
     }
     // a free spin is known at its start only
-    const double start = x->speed0 != 0 ? x->speed0 * ratio : m.shafts[shaft].spin0;
+    const double start = spin_at_start(m, s, shaft, x->own_speed());
     if (s.from.empty() && x->previous.empty()) return std::pair(start, start);
   }
   return {};   // critical speeds look inside the table only
@@ -168,11 +190,30 @@ std::optional<std::pair<double, double>> frequencies_of(const model::Model& m, c
   return std::nullopt;
 }
 
+/// A shaft whose bending stiffnesses differ by more than rounding of its data turns its matrices with it.
+bool turns_with_stiffness(const model::Shaft& s) {
+  constexpr double share = 0.02;
+  if (!s.rotating || s.speed_ratio == 0) return false;
+  return std::any_of(s.sections.begin(), s.sections.end(), [](const model::Section& x) { return x.general && std::abs(x.general->Iy - x.general->Iz) > share * std::max(x.general->Iy, x.general->Iz); });
+}
+
+/// A law has one value from 0 to `duration`, s: looked at where it may change and 1000 times between.
+bool is_constant(const Law& law, double duration) {
+  std::vector<double> times = law.breakpoints();
+  for (int i = 0; i <= 1000; ++i) times.push_back(duration * i / 1000);
+  const double first = law.at(0.0).f;
+  return std::none_of(times.begin(), times.end(), [&](double t) { return t >= 0 && t <= duration && std::abs(law.at(t).f - first) > 1e-9 * std::abs(first); });
+}
+
 void check_linear(const model::Model& m, Problems& out) {
   for (const auto& s : m.steps) {
     const auto* t = std::get_if<model::TransientStep>(&s.law);
     if (!t || !t->linear) continue;
     const auto say = [&](std::string what, const char* hint) { add(out, "E39", fmt::format("step '{}' is linear, but {}", s.name, what), hint, s.where); };
+    for (const auto& shaft : m.shafts)
+      if (turns_with_stiffness(shaft)) say(fmt::format("the stiffness of shaft '{}' turns with it", shaft.name), "leave linear out of the step");
+    if (m.base.turn && m.base.turn->rate && !is_constant(*m.base.turn->rate, t->duration))
+      say("the base turns at a rate that changes, and the matrices with it", "a constant rate, or leave linear out");
     if (t->integrator.method == "momentum_rk") say("momentum_rk integrates the general motion of rigid bodies", "another method, or linear = false");
     for (const auto& d : m.drives) {
       if (!d.step.empty() && d.step != s.name) continue;
@@ -183,6 +224,18 @@ void check_linear(const model::Model& m, Problems& out) {
             "a constant speed, or leave linear out");
       }
     }
+  }
+}
+
+void check_maps(const model::Model& m, Problems& out) {
+  for (const auto& s : m.steps) {
+    const auto* map = std::get_if<model::CriticalMapStep>(&s.law);
+    if (!map) continue;
+    for (const std::string& name : map->bearings)
+      if (std::none_of(m.bearings.begin(), m.bearings.end(), [&](const model::Bearing& b) { return b.name == name; }))
+        add(out, "E80", fmt::format("step '{}' names bearing '{}', which the deck does not have", s.name, name), "", s.where);
+    const bool any = std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) { return !std::holds_alternative<model::RigidSupport>(b.law) && !b.to; });
+    if (map->bearings.empty() && !any) add(out, "E80", fmt::format("step '{}' has no bearing to vary: all are rigid", s.name), "give the bearing a stiffness (type \"linear\")", s.where);
   }
 }
 
@@ -224,12 +277,21 @@ void check_drives(const model::Model& m, Problems& out) {
     }
 }
 
-/// Prescribed spin of a shaft in a step (null: none).
-const model::PrescribedSpin* prescribed(const model::Model& m, std::size_t shaft, const model::Step* s) {
-  for (const auto& d : m.drives)
-    if (d.at.shaft == shaft && (d.step.empty() || (s && d.step == s->name)))
-      if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law); p && p->angle) return p;
-  return nullptr;
+/// A transient begins at the speed its drives prescribe: another one given for it contradicts. (Where it goes on from another step the run says
+/// what jumps.)
+void check_start_speeds(const model::Model& m, Problems& out) {
+  for (const auto& s : m.steps) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    if (!t || !t->own_speed() || !s.from.empty() || !t->previous.empty()) continue;
+    for (const auto& d : m.drives) {
+      const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
+      if (!p || !p->angle || (!d.step.empty() && d.step != s.name) || !m.shafts[d.at.shaft].rotating) continue;
+      const double driven = p->angle->at(0.0).df, wanted = *t->own_speed() * m.shafts[d.at.shaft].speed_ratio;
+      if (std::abs(driven - wanted) <= 1e-6 * std::max(std::abs(driven), std::abs(wanted))) continue;
+      add(out, "E26", fmt::format("step '{}' begins at {}, but drive '{}' prescribes {} at time 0", s.name, units::display(wanted, "rpm"), d.name, units::display(driven, "rpm")),
+          "leave initial_speed out, or let the drive's law begin at it", d.where);
+    }
+  }
 }
 
 /// Gears and couplings tie the speeds of two shafts together.
@@ -301,6 +363,48 @@ void check_places(const model::Model& m, Problems& out) {
   }
 }
 
+/// Torsion takes part in a step of small motions.
+bool twists(const model::StepLaw& law) {
+  return std::visit(
+      [](const auto& s) {
+        using T = std::decay_t<decltype(s)>;
+        if constexpr (std::is_same_v<T, model::StaticStep> || std::is_same_v<T, model::TransientStep> || std::is_same_v<T, model::CriticalMapStep>) return false;
+        else if constexpr (requires { s.motion; }) return s.motion == model::MotionKind::all || s.motion == model::MotionKind::torsional;
+        else return true;
+      },
+      law);
+}
+
+/// A prescribed angle is held in small motions: the shaft is clamped there.
+void check_clamps(const model::Model& m, Problems& out) {
+  for (const auto& d : m.drives) {
+    if (!std::holds_alternative<model::PrescribedSpin>(d.law)) continue;
+    std::string steps;
+    for (const auto& s : m.steps)
+      if (twists(s.law) && (d.step.empty() || d.step == s.name)) steps += fmt::format("{}'{}'", steps.empty() ? "" : ", ", s.name);
+    if (steps.empty()) continue;
+    add(out, "W06", fmt::format("drive '{}' holds the twist of shaft '{}' at {} in step{} {}: torsional motions are those of a shaft clamped there; the speed is that of the step",
+                                d.name, m.shafts[d.at.shaft].name, d.at.text, steps.find(',') == std::string::npos ? "" : "s", steps),
+        "name the transient step it drives (step = \"..\") to leave the shaft free in the others", d.where, Diagnostic::Severity::warning);
+  }
+}
+
+/// An axial preload is a force only between two places that hold the shaft along its axis.
+void check_preloads(const model::Model& m, Problems& out) {
+  for (std::size_t k = 0; k < m.shafts.size(); ++k) {
+    if (m.shafts[k].axial_preload == 0) continue;
+    std::set<double> places;
+    for (const auto& b : m.bearings) {
+      if (!held_by(b.law)[0]) continue;
+      if (b.at.shaft == k) places.insert(b.at.s);
+      if (b.to && b.to->shaft == k) places.insert(b.to->s);
+    }
+    if (places.size() > 1) continue;
+    add(out, "W02", fmt::format("axial_preload of shaft '{}' has no effect but its length: it relaxes, because nothing holds the shaft along its axis at two places", m.shafts[k].name),
+        "axial_force is a force that pulls at the ends and stays", m.shafts[k].where, Diagnostic::Severity::warning);
+  }
+}
+
 void check_effects(const model::Model& m, Problems& out) {
   const bool transient = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) { return std::holds_alternative<model::TransientStep>(s.law); });
   const auto warn = [&](std::string what, const Where& w) {
@@ -318,7 +422,6 @@ void check_effects(const model::Model& m, Problems& out) {
       }
   }
   if (transient) return;
-  if (!m.drives.empty()) warn("a drive", m.drives.front().where);
   if (!m.initial.empty()) warn("an initial motion", m.initial.front().where);
   const bool shapes = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
     return std::holds_alternative<model::StaticStep>(s.law) || std::holds_alternative<model::ModalStep>(s.law) || std::holds_alternative<model::CriticalStep>(s.law) ||
@@ -330,6 +433,35 @@ void check_effects(const model::Model& m, Problems& out) {
     if (o.step.empty()) warn("a picture output", o.where);
 }
 
+/// Supports that have no coefficients without their load.
+bool needs_its_load(const model::BearingLaw& law) {
+  if (std::holds_alternative<model::ShortJournal>(law) || std::holds_alternative<model::FiniteJournal>(law)) return true;
+  if (const auto* b = std::get_if<model::BallBearing>(&law)) return b->preload == 0 && b->clearance >= 0;
+  if (const auto* b = std::get_if<model::RollerBearing>(&law)) return b->clearance >= 0;
+  return false;
+}
+
+/// Steps linearised about the rotor as drawn.
+void check_undeformed(const model::Model& m, Problems& out) {
+  for (const model::Step& s : m.steps) {
+    const bool undeformed = std::visit(
+        [](const auto& law) {
+          if constexpr (requires { law.about; }) return law.about == model::About::undeformed;
+          else return false;
+        },
+        s.law);
+    if (!undeformed) continue;
+    if (!s.from.empty())
+      add(out, "E26", fmt::format("step '{}' starts from step '{}', but is linearised about the undeformed rotor", s.name, s.from), "leave out 'from', or about = \"equilibrium\"", s.where);
+    if (const auto* stability = std::get_if<model::StabilityStep>(&s.law); stability && stability->map)
+      add(out, "E26", fmt::format("step '{}': a map of the stability over a parameter is about the equilibrium of each of its rotors", s.name), "leave out 'map', or about = \"equilibrium\"", s.where);
+    for (const model::Bearing& b : m.bearings)
+      if (needs_its_load(b.law))
+        add(out, "E26", fmt::format("step '{}' is linearised about the undeformed rotor, where bearing '{}' carries no load: its stiffness is that of its load", s.name, b.name),
+            "about = \"equilibrium\", or a bearing of type \"linear\" or \"table\" in its place", s.where);
+  }
+}
+
 }  // namespace
 
 std::vector<WholeModelProblem> check_model(const model::Model& m) {
@@ -337,52 +469,116 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_restraint(m, out);
   check_tables(m, out);
   check_linear(m, out);
+  check_maps(m, out);
   check_drives(m, out);
+  check_start_speeds(m, out);
   check_speeds_of_pairs(m, out);
   check_places(m, out);
+  check_clamps(m, out);
+  check_preloads(m, out);
+  check_undeformed(m, out);
   check_effects(m, out);
   return out;
 }
 
-OutputEstimate estimate_output(const model::Model& m) {
-  OutputEstimate e;
-  double length = 0, sections = 0;
-  for (const auto& s : m.shafts) {
-    length += s.length();
-    for (const auto& x : s.sections) sections += std::max(x.min_elements, std::isfinite(x.max_element_length) ? static_cast<int>(std::min(1e6, std::ceil(x.length / x.max_element_length))) : 1);
+namespace {
+
+/// Characters a number takes in CSV files, bytes in binary ones.
+constexpr double csv_bytes = 20;
+constexpr double binary_bytes = 8;
+
+struct Interval {
+  double begin = 0, end = 0;
+  double length() const { return std::max(0.0, end - begin); }
+};
+
+Interval common(const Interval& a, double t0, double t1) { return {std::max(a.begin, t0), std::min(a.end, t1)}; }
+
+/// When each transient step runs: one that starts from another goes on where that one ends.
+std::map<std::string, Interval> times_of_steps(const model::Model& m) {
+  std::map<std::string, Interval> r;
+  for (const auto& s : m.steps) {
+    const auto before = r.find(s.from);
+    const double begin = before == r.end() ? 0.0 : before->second.end;
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    r[s.name] = {begin, begin + (t ? t->duration : 0.0)};
   }
-  const double nodes = sections + static_cast<double>(m.shafts.size() + m.disks.size() + m.bearings.size());
+  return r;
+}
+
+double count_of_nodes(const model::Model& m) {
+  double sections = 0;
+  for (const auto& s : m.shafts)
+    for (const auto& x : s.sections) {
+      const bool limited = std::isfinite(x.max_element_length);
+      const int parts = limited ? static_cast<int>(std::min(1e6, std::ceil(x.length / x.max_element_length))) : 1;
+      sections += std::max(x.min_elements, parts);
+    }
+  return sections + static_cast<double>(m.shafts.size() + m.disks.size() + m.bearings.size());
+}
+
+double count_of_columns(const model::Model& m) {
   double columns = 2 + static_cast<double>(m.shafts.size());
   for (const auto& p : m.probes) columns += p.angles.empty() ? 2 : static_cast<double>(p.angles.size());
-  columns += 3.0 * static_cast<double>(m.bearings.size()) + 6;
+  return columns + 3.0 * static_cast<double>(m.bearings.size()) + 6;
+}
+
+double bytes_of_pictures(const model::VtkOutput& o, const Interval& time, double nodes) {
+  const Interval window = common(time, o.t0, o.t1);
+  double frames = o.every > 0 ? window.length() / o.every : o.frames;
+  if (o.every == 0 && o.frames_per_revolution > 0) frames = o.max_frames;
+  frames = std::min<double>(frames, o.max_frames);
+  const bool surface = std::find(o.content.begin(), o.content.end(), "surface") != o.content.end();
+  // a centre-line node carries some 20 doubles; a surface point 12 floats and its share of connectivity
+  return frames * (nodes * 160 + (surface ? nodes * o.points_around * 80 : 0) + 4000);
+}
+
+}  // namespace
+
+OutputEstimate estimate_output(const model::Model& m) {
+  OutputEstimate e;
+  const double nodes = count_of_nodes(m), columns = count_of_columns(m);
+  const auto times = times_of_steps(m);
+  double largest = 0;
   for (const auto& s : m.steps) {
     const auto* t = std::get_if<model::TransientStep>(&s.law);
     if (!t) continue;
-    // 20 characters a number; the adaptive step is not known beforehand, so only a given interval can be judged
+    const Interval& time = times.at(s.name);
+    // the adaptive step is not known beforehand, so only a given interval can be judged
     const double every = m.output.every > 0 ? m.output.every : t->integrator.dt;
-    if (every > 0) e.histories += t->duration / every * columns * ((m.output.csv ? 20 : 0) + (m.output.binary ? 8 : 0));
-    for (const auto& o : m.output.vtk) {
-      if (!o.step.empty() && o.step != s.name) continue;
-      const double window = std::max(0.0, std::min(o.t1, t->duration) - std::max(0.0, o.t0));
-      double frames = o.every > 0 ? window / o.every : o.frames;
-      if (o.every == 0 && o.frames_per_revolution > 0) frames = o.max_frames;
-      frames = std::min<double>(frames, o.max_frames);
-      const bool surface = std::find(o.content.begin(), o.content.end(), "surface") != o.content.end();
-      // a centre-line node carries some 20 doubles; a surface point 12 floats and its share of connectivity
-      e.pictures += frames * (nodes * 160 + (surface ? nodes * o.points_around * 80 : 0) + 4000);
+    const double row = columns * ((m.output.csv ? csv_bytes : 0) + (m.output.binary ? binary_bytes : 0));
+    const double before = e.total();
+    if (every > 0) e.histories += common(time, m.output.t0, m.output.t1).length() / every * row;
+    for (const auto& o : m.output.vtk)
+      if (o.step.empty() || o.step == s.name) e.pictures += bytes_of_pictures(o, time, nodes);
+    if (e.total() - before > largest) {
+      largest = e.total() - before;
+      e.where = s.where;
     }
   }
+  // how long the speed or the amplitude stays inside its window is what the run is to find out
+  const model::Output& o = m.output;
+  e.at_most = o.speed_low > -infinity || o.speed_high < infinity || o.above > 0;
   return e;
+}
+
+std::string size_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", bytes / 1e3);
+  if (bytes < 1e9) return fmt::format("{:.1f} MB", bytes / 1e6);
+  if (bytes < 1e12) return fmt::format("{:.1f} GB", bytes / 1e9);
+  return fmt::format("{:.1f} TB", bytes / 1e12);
 }
 
 std::vector<Diagnostic> check_output(const model::Model& m, double available) {
   const OutputEstimate e = estimate_output(m);
-  if (e.total() <= available) return {};
-  const auto size = [](double bytes) { return bytes < 1e6 ? fmt::format("{:.0f} kB", bytes / 1e3) : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : bytes < 1e12 ? fmt::format("{:.1f} GB", bytes / 1e9) : fmt::format("{:.1f} TB", bytes / 1e12); };
+  const double sure = e.pictures + (e.at_most ? 0 : e.histories);
+  if (sure <= available) return {};
   Diagnostic d;
   d.code = "E33";
-  d.message = fmt::format("the output would take about {} (histories {}, pictures {}), but only {} are free", size(e.total()), size(e.histories), size(e.pictures), size(available));
+  d.message = fmt::format("the output would take about {} (histories {}, pictures {}), but only {} are free", size_text(e.total()),
+                          size_text(e.histories), size_text(e.pictures), size_text(available));
   d.hint = e.histories > e.pictures ? "write rows less often: output.every" : "ask for fewer frames or a window in [[output.vtk]]";
+  d.where = e.where;
   return {d};
 }
 

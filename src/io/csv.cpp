@@ -1,7 +1,7 @@
 #include <core/error.hpp>
 #include <core/types.hpp>
 #include <io/file.hpp>
-#include <io/results.hpp>
+#include <io/plain_csv.hpp>
 #include <charconv>
 #include <chrono>
 #include <cerrno>
@@ -97,17 +97,22 @@ class CsvSeries final : public TimeSeries {
     out_.commit(static_cast<std::size_t>(p - start));
     ++rows_;
     const auto now = std::chrono::steady_clock::now();
-    if (now - last_flush_ > flush_every_) flush();
+    if (now - last_flush_ > flush_every_) hand_over();
   }
 
   void flush() override {
-    out_.flush();
+    out_.sync();
     last_flush_ = std::chrono::steady_clock::now();
   }
   void close() override { out_.close(); }
   std::uint64_t rows() const override { return rows_; }
 
  private:
+  /// To the operating system: readers see it.
+  void hand_over() {
+    out_.flush();
+    last_flush_ = std::chrono::steady_clock::now();
+  }
   void prepare(std::span<const Channel> channels) {
     scale_.clear();
     for (const auto& c : channels) scale_.insert(scale_.end(), c.width(), c.scale);
@@ -159,7 +164,7 @@ std::size_t row_width(std::span<const Channel> channels) {
   return n;
 }
 
-TimeSeriesPtr make_csv_series(fs::path file, SeriesOptions options) {
+TimeSeriesPtr make_plain_csv_series(fs::path file, SeriesOptions options) {
   return std::make_unique<CsvSeries>(std::move(file), options);
 }
 

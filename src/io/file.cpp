@@ -119,6 +119,8 @@ void write_atomic(const fs::path& file, std::string_view content) {
   const int fd = ::open(tmp.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (fd < 0) io_failure(file, "cannot write", errno);
   int e = write_all(fd, content.data(), content.size());
+  // a power cut after the rename must not leave a file of that name without its content
+  if (e == 0 && ::fdatasync(fd) != 0 && errno != EINVAL && errno != EROFS) e = errno;
   if (::close(fd) != 0 && e == 0) e = errno;
   if (e != 0) {
     ::unlink(tmp.c_str());
@@ -176,7 +178,7 @@ void AppendFile::create(const fs::path& file, std::string_view head) {
 void AppendFile::reopen(const fs::path& file, std::uint64_t size) {
   close();
   path_ = file;
-  fd_ = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  fd_ = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
   if (fd_ < 0) io_failure(file, "cannot continue", errno);
   if (::ftruncate(fd_, static_cast<off_t>(size)) != 0 || ::lseek(fd_, static_cast<off_t>(size), SEEK_SET) < 0)
     io_failure(file, "cannot continue", errno);
@@ -193,6 +195,11 @@ void AppendFile::flush() {
   const int e = write_all(fd_, buffer_.data(), used_);
   used_ = 0;
   if (e != 0) io_failure(path_, "cannot write", e);
+}
+
+void AppendFile::sync() {
+  flush();
+  if (fd_ >= 0 && ::fdatasync(fd_) != 0 && errno != EINVAL && errno != EROFS) io_failure(path_, "cannot write", errno);
 }
 
 void AppendFile::close() {

@@ -8,7 +8,7 @@
 
 namespace whirl::io {
 
-/// Writes `content` beside `file` and renames it into place. Makes missing folders. Error with Exit::io.
+/// Writes `content` beside `file`, waits until it is on the disk and renames it into place. Makes missing folders. Error with Exit::io.
 void write_atomic(const std::filesystem::path& file, std::string_view content);
 /// Name of the file that write_atomic and others use before renaming: same folder, hidden, unique to this process.
 std::filesystem::path temporary_beside(const std::filesystem::path& file);
@@ -37,6 +37,8 @@ class AppendFile {
   void commit(std::size_t n) { used_ += n; }
   std::size_t waiting() const { return used_; }
   void flush();
+  /// As flush(), and safe from a power cut: before something else counts on it.
+  void sync();
   void close();
 
  private:

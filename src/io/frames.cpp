@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
+#include <unordered_set>
 
 namespace whirl::io {
 namespace {
@@ -38,14 +39,20 @@ class Collection {
   Collection(const fs::path& directory, const std::string& stem, double keep_until, std::vector<Frame> kept = {}, std::uint64_t next = 0)
       : frames_(std::move(kept)), next_(next), pvd_(directory / (stem + ".pvd")), folder_(directory / stem), stem_(stem) {
     std::error_code ec;
+    if (fs::is_symlink(fs::symlink_status(folder_, ec))) io_failure(folder_, "nothing is written through a symbolic link:");
     fs::create_directories(folder_, ec);
     if (ec) io_failure(folder_, "cannot make the folder", ec.value());
-    if (next_ == 0 && keep_until > -infinity && fs::exists(pvd_, ec)) recover(keep_until);
+    const bool earlier = fs::exists(pvd_, ec) && read_text(pvd_).starts_with(pvd_head);
+    if (next_ == 0 && keep_until > -infinity && earlier) recover(keep_until);
     write_list();   // before files go: the list never names a missing one
+    if (!earlier) return;   // no run made frames here: whatever is in the folder is somebody else's
+    std::unordered_set<std::string> listed;
+    for (const auto& f : frames_) listed.insert(f.file);
     std::vector<fs::path> stale;
-    for (const auto& f : fs::directory_iterator(folder_, ec))
-      // and what a killed run was writing
-      if (const std::string name = f.path().filename().string(); (name.starts_with("frame_") || name.starts_with(".frame_")) && !listed(name)) stale.push_back(f.path());
+    for (const auto& f : fs::directory_iterator(folder_, ec)) {
+      const std::string name = f.path().filename().string();
+      if (is_frame(name) && !listed.count(name)) stale.push_back(f.path());
+    }
     for (const auto& f : stale) fs::remove(f, ec);
   }
 
@@ -77,10 +84,15 @@ class Collection {
   }
 
  private:
-  bool listed(const std::string& file) const {
-    for (const auto& f : frames_)
-      if (f.file == file) return true;
-    return false;
+  /// frame_000123.vtp, or what a killed run was writing of it: .frame_000123.vtp.4711.0.part
+  static bool is_frame(std::string_view name) {
+    const bool part = name.starts_with('.') && name.ends_with(".part");
+    if (part) name.remove_prefix(1);
+    if (!name.starts_with("frame_")) return false;
+    name.remove_prefix(6);
+    const std::size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());
+    const std::string_view rest = name.substr(digits);
+    return digits >= 6 && (part ? rest.starts_with(".vtp.") : rest == ".vtp");
   }
 
   void recover(double keep_until) {

@@ -3,9 +3,11 @@
 // Every whole file is written beside its place and renamed, so a reader sees the old one or the new one. Time series
 // are append-only: a killed run keeps every row flushed so far, and can be continued (`resume`).
 #pragma once
+#include <io/manifest.hpp>
 #include <io/value.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -43,7 +45,7 @@ class TimeSeries {
   virtual void resume(std::span<const Channel> channels, std::uint64_t rows) = 0;
   /// Appends one row of row_width(channels) values, unscaled. Does not allocate.
   virtual void append(std::span<const double> row) = 0;
-  /// Everything appended so far becomes readable by others.
+  /// Everything appended so far becomes readable by others and, in text files, safe from a power cut: what a checkpoint counts on.
   virtual void flush() = 0;
   virtual void close() = 0;
   /// Rows in the file once flushed, counting those kept by resume(): what a checkpoint remembers.
@@ -97,6 +99,9 @@ class Table {
   std::string title;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
+  /// What "nan" in a cell stands for ("the mode is not there at this speed"); empty: there is to be none, and one that is written all the
+  /// same is reported (nonfinite.hpp).
+  std::string nan_means;
 
   /// Adds a row; it must have one cell a column.
   void add(std::vector<Cell> row);
@@ -105,18 +110,24 @@ class Table {
 void write_csv(const std::filesystem::path& file, const Table& table);
 
 /// A folder of results. Made on construction (with parents), and rid of half-written files of killed runs. All names are relative to it.
+/// What is written is listed in its manifest (manifest.hpp), which keeps the user's own files in the same folder safe.
 class ResultsFolder {
  public:
   explicit ResultsFolder(std::filesystem::path root);
   const std::filesystem::path& root() const { return root_; }
-  /// Path of a file in it; makes the folders in between.
+  /// Path of a file that will be written in it, and listed as such; makes the folders in between.
   std::filesystem::path path(std::string_view name) const;
+  /// Path of a folder in it, made when missing. Error as for a file when it is a symbolic link.
+  std::filesystem::path subfolder(std::string_view name) const;
+  /// Removes the files of earlier runs that `which` accepts, by their names; never a file that no run made.
+  void remove(const std::function<bool(const std::string& name)>& which) const;
   void write_text(std::string_view name, std::string_view content) const;   ///< atomic
   void write_json(std::string_view name, const Value& value) const;         ///< atomic
   void write_table(std::string_view name, const Table& table) const;        ///< atomic
 
  private:
   std::filesystem::path root_;
+  std::shared_ptr<Manifest> manifest_;
 };
 
 }  // namespace whirl::io

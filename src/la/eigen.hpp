@@ -9,6 +9,7 @@
 // circle is missing, which also finds all copies of multiple eigenvalues. A neighbouring problem (the next speed of a Campbell diagram)
 // starts from the known modes: polishing and the search for missing ones are all that is left.
 #pragma once
+#include <cmath>
 #include <la/block.hpp>
 #include <memory>
 #include <optional>
@@ -23,8 +24,14 @@ struct Mode {
   /// Backward error: largest entry of |Q x| over the largest of (|lambda|^2 |M| + |lambda| |C| + |K|) |x|, rows scaled by their
   /// diagonal entries so that forces and moments compare.
   double residual = 0.0;
+  double uncertainty = 0.0;   ///< 1/s: what rounding of the entries of M, C, K to working precision can do to lambda
   Index from = -1;       ///< which of the modes given as a start this one continues, -1: none
 };
+
+/// A motion counts as one that oscillates up to a damping ratio of 3/sqrt(10) = 0.949: beyond it hardly a second swing can be seen, and the number of
+/// such roots grows with the mesh. They are listed with the roots on the real axis.
+inline constexpr double oscillating_reach = 3.0;
+inline bool oscillates(Complex lambda) { return lambda.imag() != 0.0 && -lambda.real() <= oscillating_reach * std::abs(lambda.imag()); }
 
 struct ModeOptions {
   Index count = 12;      ///< modes wanted: the nearest to the shift (none given: of least |lambda|)
@@ -36,6 +43,26 @@ struct ModeOptions {
   Index dense_below = 36;     ///< active unknowns up to which a dense solver is used
   bool real_roots = true;     ///< return (and count) overdamped and rigid-body modes, Im lambda = 0
   Index guard = 2;            ///< modes kept beyond count, so that a neighbouring problem does not lose one at the border
+  /// Count the roots by an independent method (root_count.hpp), look for those that are missing, and say what is known: Certificate. Only without
+  /// a shift. `count` then counts modes that oscillate (as la::oscillates() says), in the order of their damped frequency |Im lambda|; real_roots adds every other
+  /// root that the counted region holds.
+  bool certify = false;
+  bool growing = false;       ///< with certify: also every root of the region with Re lambda > 0, whatever its number
+};
+
+/// What is known of a list of modes: that every root of the region { Re s >= 0, |s| <= radius } and { -reach <= Re s < 0, |Im s| <= radius } is
+/// in it. counted: the argument principle gave a number; missing: that number less the roots found (a conjugate pair counts as two).
+struct Certificate {
+  bool counted = false;
+  Index missing = 0;
+  double radius = 0.0;             ///< rad/s
+  double reach = 0.0;              ///< 1/s
+  std::vector<Complex> where;      ///< estimates of the missing roots, Im >= 0
+  Index factorizations = 0;        ///< what it cost
+  Index recovered = 0;             ///< roots the search had missed and the count led to
+  bool complete() const { return counted && missing == 0; }
+  /// Roots of frequency `radius` are in the region up to this damping ratio, slower ones further.
+  double damping_ratio() const { return reach > 0.0 ? reach / std::hypot(reach, radius) : 0.0; }
 };
 
 /// Modes sorted by |Im lambda|, then |lambda|; overdamped roots are kept, each on its own; a rigid-body motion (K x = 0,
@@ -50,10 +77,15 @@ class ModeSolver {
   ModeSolver(ModeSolver&&) noexcept;
   /// All modes wanted. From the second call on it starts from what the last call found (Mode::from counts in its result).
   const std::vector<Mode>& solve(const MCK& m);
+  /// The same, with ModeOptions::certify, for a region that reaches at least to the radius (rad/s).
+  const std::vector<Mode>& solve_to(const MCK& m, double radius);
   /// Forgets what is known, so that the next solve() starts from nothing.
   void reset();
   /// Newton's method from one mode; nullopt when it does not converge.
   std::optional<Mode> follow(const MCK& m, const Mode& start);
+
+  /// Of the last solve(), with ModeOptions::certify.
+  const Certificate& certificate() const;
 
   struct Work { Index factorizations = 0, operator_products = 0, searches = 0; };
   Work work() const;  ///< of the last call

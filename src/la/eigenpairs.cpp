@@ -1,5 +1,7 @@
 #include <la/eigenpairs.hpp>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -19,6 +21,76 @@ void Eigenpairs::suggest(std::vector<Pair>& found, Complex lambda, const VecXc& 
   if (lambda.imag() != 0.0) push(lambda.real(), z.imag().cast<Complex>());
 }
 
+void Eigenpairs::make_real(Pair& p) {
+  if (p.lambda.imag() == 0.0 || std::abs(p.lambda.imag()) > std::max(real_line * std::abs(p.lambda), 10.0 * p.uncertainty)) return;
+  p.lambda = p.lambda.real();
+  p.x = p.x.real().cast<Complex>().eval();
+  if (polisher.evaluate(p)) polisher.assess(p);
+}
+
+Index Eigenpairs::count_slow_companions(const std::vector<std::size_t>& free) const {
+  MatX span(6 * pattern.size(), static_cast<Index>(free.size()));
+  for (std::size_t j = 0; j < free.size(); ++j) span.col(static_cast<Index>(j)) = known[free[j]].x.real();
+  const Eigen::ColPivHouseholderQR<MatX> qr(span);
+  return std::count_if(known.begin(), known.end(), [&](const Pair& p) {
+    if (p.rigid || p.lambda.imag() != 0.0 || std::abs(p.lambda) > 1e-2 * std::abs(shift)) return false;
+    const VecX x = p.x.real();
+    return (x - span * qr.solve(x)).norm() < 1e-2 * x.norm();
+  });
+}
+
+void Eigenpairs::add_companions() {
+  double_zeros = 0;
+  std::vector<std::size_t> free;
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (known[i].rigid) free.push_back(i);
+  const Index r = static_cast<Index>(free.size());
+  if (r == 0 || first_order) return;
+  MatX mass(r, r), drag(r, r);
+  double rounding = 0.0;
+  for (Index i = 0; i < r; ++i) {
+    Pair& p = known[free[at(i)]];
+    for (Index j = 0; j < r; ++j) {
+      const Pair& q = known[free[at(j)]];
+      mass(i, j) = p.x.dot(q.Mx).real();
+      drag(i, j) = p.x.dot(q.Cx).real();
+    }
+    rounding = std::max(rounding, polisher.rounding_of_stiffness(p) / std::max(std::abs(mass(i, i)), 1e-300));
+  }
+  const Eigen::PartialPivLU<MatX> lu(mass);
+  const Eigen::EigenSolver<MatX> eig(MatX(-lu.solve(drag)));
+  Index slow_found = count_slow_companions(free);
+  for (Index j = 0; j < r; ++j) {
+    const Complex rate = eig.eigenvalues()(j);
+    // What rounding of K makes of a double zero is sqrt(rounding): a drag below that cannot be told from none.
+    if (!(std::norm(rate) > 100.0 * rounding)) {
+      if (slow_found > 0) --slow_found;
+      else ++double_zeros;
+      continue;
+    }
+    if (rate.imag() < 0.0) continue;
+    Pair p;
+    p.lambda = rate.imag() == 0.0 ? Complex(rate.real()) : rate;
+    p.x = VecXc::Zero(6 * pattern.size());
+    for (Index i = 0; i < r; ++i) {
+      const Complex part = eig.eigenvectors()(i, j);
+      p.x += (rate.imag() == 0.0 ? Complex(part.real()) : part) * known[free[at(i)]].x;
+    }
+    // Two estimates: the projection, and Newton's method from it where it stays in the neighbourhood and off the zero.
+    Pair better = p;
+    if (!polisher.evaluate(p)) continue;
+    const bool polished = polisher.polish(better, opt.tolerance, false) && std::abs(better.lambda - rate) < 0.9 * std::abs(rate);
+    Pair& chosen = polished ? better : p;
+    polisher.assess(chosen);
+    make_real(chosen);
+    const bool there = std::any_of(known.begin(), known.end(), [&](const Pair& k) {
+      return !k.rigid && std::abs(k.lambda - chosen.lambda) < 1e-3 * std::abs(chosen.lambda) + 10.0 * chosen.uncertainty;
+    });
+    if (!there) known.push_back(std::move(chosen));
+  }
+  sort_known();
+}
+
 bool Eigenpairs::add(Pair&& p) {
   if (p.lambda.imag() < 0.0) {
     p.lambda = std::conj(p.lambda);
@@ -26,6 +98,7 @@ bool Eigenpairs::add(Pair&& p) {
     p.Mx = p.Mx.conjugate().eval(), p.Cx = p.Cx.conjugate().eval(), p.Kx = p.Kx.conjugate().eval();
   }
   polisher.assess(p);
+  if (!complex_shift()) make_real(p);
   std::vector<const Pair*> close;
   for (const Pair& k : known)
     if (std::abs(k.lambda - p.lambda) <= 1e-7 * std::abs(p.lambda) + 10.0 * (k.uncertainty + p.uncertainty)) close.push_back(&k);
@@ -101,7 +174,7 @@ double Eigenpairs::wanted_radius() const {
   if (opt.count <= 0) return opt.max_frequency;
   Index c = 0;
   for (const Pair& p : known)
-    if (counts(p) && ++c == opt.count) return std::min(key(p.lambda), opt.max_frequency);
+    if (counts(p) && ++c == opt.count) return std::min(std::max(key(p.lambda), least_radius), std::max(opt.max_frequency, least_radius));
   return opt.max_frequency;
 }
 

@@ -7,6 +7,7 @@ namespace whirl::la {
 struct Eigenpairs : ShiftedOperator {
   using ShiftedOperator::ShiftedOperator;
   std::vector<Pair> known;
+  double least_radius = 0.0;   ///< rad/s: all roots up to it are wanted, whatever their number
 
   Complex centre() const { return opt.shift.value_or(0.0); }
   double key(Complex lambda) const {
@@ -19,6 +20,16 @@ struct Eigenpairs : ShiftedOperator {
   void suggest(std::vector<Pair>& found, Complex lambda, const VecXc& z, bool real_problem, std::vector<VecXc>* vectors) const;
   /// Adds a polished pair unless it is already there: its vector in the span of those with the same eigenvalue.
   bool add(Pair&& p);
+  /// Takes a root that rounding alone keeps off the real axis for what it is.
+  void make_real(Pair& p);
+  static constexpr double real_line = 1e-9;   ///< |Im| over |lambda|
+  /// What stands beside the zero roots of the free motions: a second zero each where nothing damps the motion, else the rate at which it dies away
+  /// (or grows), a root of its own that shares the vector but for a small twist and is easily taken for the first. Adds those of the second kind.
+  void add_companions();
+  /// Slow real roots among the known ones whose vectors are free motions: companions that the search has told from zero.
+  Index count_slow_companions(const std::vector<std::size_t>& free) const;
+  /// Free motions whose second root is zero as well.
+  Index double_zeros = 0;
   /// The rigid-body motions in the span of the candidates' real and imaginary parts and of those already known.
   bool add_rigid(const std::vector<Pair>& candidates);
   /// Polishes what a search has found (near) or what a neighbouring problem suggests, and adds it. What does not lead to anything new is left in

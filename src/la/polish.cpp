@@ -104,7 +104,8 @@ bool Polisher::polish(Pair& p, double tolerance, bool near) {
   // What rounding of K x alone can do to lambda: beams of many elements need sums better than working precision.
   const bool exact = uncertainty(p) > 1e-10 * std::abs(p.lambda);
   const Complex start = p.lambda;
-  const double floor = std::numeric_limits<double>::epsilon() * std::abs(start) + 1e-300;
+  // Roots near zero are known no better than rounding of K allows.
+  const double floor = std::max(std::numeric_limits<double>::epsilon() * std::abs(start), 1e3 * uncertainty(p)) + 1e-300;
   double change = std::numeric_limits<double>::infinity();
   Complex shift;
   // Newton. Quadratic, so that a change of 1e-3 leaves about 1e-6 for the linear phase.
@@ -186,7 +187,7 @@ void Polisher::assess(Pair& p) {
   p.residual = residual > 0.0 ? std::sqrt(residual / size) : 0.0;
 }
 
-bool Polisher::is_unresisted(const Pair& p) {
+double Polisher::rounding_of_stiffness(const Pair& p) {
   sizes(p, 0.0, 0.0, 1.0);
   // Rounding of n products of random sign; 16 eps is far below any support that could be told from none.
   double rounding = 16.0 * eps * abs_x_.dot(size_);
@@ -196,8 +197,10 @@ bool Polisher::is_unresisted(const Pair& p) {
   size_.setZero();
   add_multiply_size(m_->K, 1.0, abs_x_, size_);
   rounding += abs_x_.dot(size_);
-  return std::abs(p.x.dot(p.Kx)) <= rounding;
+  return rounding;
 }
+
+bool Polisher::is_unresisted(const Pair& p) { return std::abs(p.x.dot(p.Kx)) <= rounding_of_stiffness(p); }
 
 void Polisher::separate(std::span<Pair*> group) {
   const Index k = static_cast<Index>(group.size()), n = y_.size();

@@ -32,6 +32,8 @@ class Polisher {
   bool polish(Pair& p, double tolerance, bool near);
   /// Sets residual (as Mode::residual) and uncertainty; uses Mx, Cx, Kx.
   void assess(Pair& p);
+  /// What rounding of K can make of x^H K x.
+  double rounding_of_stiffness(const Pair& p);
   /// |x^H K x| at the level of the rounding errors of K: nothing resists the motion x.
   bool is_unresisted(const Pair& p);
   /// Best vectors of a group of close eigenpairs within the space they span: the projected problem, solved densely. Leaves the

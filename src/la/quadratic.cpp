@@ -3,6 +3,7 @@
 #include <la/eigen.hpp>
 #include <la/eigenpairs.hpp>
 #include <la/ritz.hpp>
+#include <la/root_count.hpp>
 
 namespace whirl::la {
 
@@ -11,6 +12,8 @@ struct ModeSolver::Impl : Eigenpairs {
   Krylov<Complex> krylov_complex;
   std::vector<VecXc> deflated;  ///< Ritz vectors z that polishing could not make anything new of; out of the way of the searches of this call
   std::vector<Mode> result;
+  std::optional<RootCounter> counter;
+  Certificate certificate;
 
   template <class Scalar> void lock_known(Krylov<Scalar>& k) {
     typename Krylov<Scalar>::Vec z(dimension());
@@ -181,31 +184,165 @@ struct ModeSolver::Impl : Eigenpairs {
     separate_close();
   }
 
-  void collect() {
-    std::vector<Mode> modes;
-    std::vector<Index> index_of(known.size(), -1);
+  /// Indices of the known pairs to be returned.
+  std::vector<std::size_t> choose() const {
     std::vector<std::size_t> chosen;
     Index c = 0;
     for (std::size_t i = 0; i < known.size(); ++i) {
-      Pair& p = known[i];
+      const Pair& p = known[i];
       if (!counts(p)) continue;
       if (opt.count > 0 && c == opt.count) break;
       ++c;
       if (opt.count <= 0 ? std::abs(p.lambda) > opt.max_frequency : p.lambda.imag() > opt.max_frequency) continue;
       chosen.push_back(i);
     }
+    sort_by_frequency(chosen);
+    return chosen;
+  }
+
+  void sort_by_frequency(std::vector<std::size_t>& chosen) const {
     std::stable_sort(chosen.begin(), chosen.end(), [&](std::size_t a, std::size_t b) {
       const Complex x = known[a].lambda, y = known[b].lambda;
       return x.imag() != y.imag() ? x.imag() < y.imag() : std::abs(x) < std::abs(y);
     });
+  }
+
+  /// The same of a counted list: all that oscillates up to the frequency or the number asked for, and the real roots of the region.
+  std::vector<std::size_t> choose_counted() const {
+    const CountRegion region{certificate.radius, certificate.reach};
+    std::vector<std::size_t> oscillating, real_ones;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      const Pair& p = known[i];
+      if (oscillates(p.lambda) && p.lambda.imag() <= opt.max_frequency) oscillating.push_back(i);
+      if (!oscillates(p.lambda) && opt.real_roots && region.contains(p.lambda)) real_ones.push_back(i);
+    }
+    sort_by_frequency(oscillating);
+    sort_by_frequency(real_ones);
+    if (opt.count > 0 && static_cast<Index>(oscillating.size()) > opt.count) {
+      const auto beyond = oscillating.begin() + static_cast<std::ptrdiff_t>(opt.count);
+      const auto kept = std::remove_if(beyond, oscillating.end(), [&](std::size_t i) {
+        return !(opt.growing && region.contains(known[i].lambda) && known[i].lambda.real() > known[i].uncertainty);
+      });
+      oscillating.erase(kept, oscillating.end());
+    }
+    real_ones.insert(real_ones.end(), oscillating.begin(), oscillating.end());
+    return real_ones;
+  }
+
+  void collect() {
+    std::vector<Mode> modes;
+    const std::vector<std::size_t> chosen = opt.certify ? choose_counted() : choose();
     for (const std::size_t i : chosen) {
       Pair& p = known[i];
       if (p.rigid) polisher.assess(p);
-      modes.push_back({p.lambda, p.x, p.residual, p.from});
+      modes.push_back({p.lambda, p.x, p.residual, p.uncertainty, p.from});
     }
     for (Pair& p : known) p.from = -1;
     for (std::size_t j = 0; j < chosen.size(); ++j) known[chosen[j]].from = static_cast<Index>(j);
     result = std::move(modes);
+  }
+
+  /// A radius for the count: at least what is asked for, where the frequencies known leave the widest gap.
+  double count_radius() const {
+    std::vector<double> f;
+    for (const Pair& p : known)
+      if (oscillates(p.lambda)) f.push_back(p.lambda.imag());
+    std::sort(f.begin(), f.end());
+    if (opt.count <= 0) return std::max(1.01 * opt.max_frequency, least_radius);
+    const Index n = static_cast<Index>(f.size());
+    double radius = n > 0 ? 1.1 * f.back() : 4.0 * sigma;
+    double widest = 0.0;
+    for (Index i = opt.count; i < n; ++i) {
+      const double low = f[at(i - 1)], high = f[at(i)];
+      if (high / low > widest) widest = high / low, radius = std::sqrt(high * low);
+    }
+    return std::max(std::min(radius, 1.01 * opt.max_frequency), 1.01 * least_radius);
+  }
+
+  std::vector<Complex> known_roots() const {
+    std::vector<Complex> roots(static_cast<std::size_t>(double_zeros), 0.0);
+    for (const Pair& p : known) roots.push_back(p.lambda);
+    return roots;
+  }
+
+  /// Looks for roots near a place of the complex plane, in complex arithmetic. True: something new.
+  bool look_near(Complex place, Index count) {
+    ModeOptions o;
+    o.count = count;
+    o.shift = Complex(place.real(), std::max(place.imag(), 1e-3 * std::abs(place) + 1e-3 * sigma));
+    o.tolerance = opt.tolerance;
+    o.dense_below = 0;
+    bool any = false;
+    const MCK& problem = *m;
+    for (const Mode& mode : quadratic_modes(problem, active, o)) {
+      Pair p;
+      p.lambda = mode.lambda;
+      p.x = mode.x;
+      if (polisher.evaluate(p) && add(std::move(p))) any = true;
+    }
+    sort_known();
+    return any;
+  }
+
+  /// Looks round a grid over the region, for roots that lie too close together for their moments to tell them apart.
+  bool look_everywhere(const CountRegion& region) {
+    bool any = false;
+    for (const double height : {0.02, 0.15, 0.35, 0.6, 0.85})
+      for (const double left : {0.0, 0.3, 1.0, 2.0}) any = look_near(region.radius * Complex(-left, height), 6) || any;
+    return any;
+  }
+
+  Index count_oscillating() const {
+    return std::count_if(known.begin(), known.end(), [](const Pair& p) { return oscillates(p.lambda); });
+  }
+
+  /// All searches that lead to something new.
+  void search_all() {
+    for (unsigned seed = 1; seed < 40; ++seed)
+      if (!(complex_shift() ? search(krylov_complex, seed) : search(krylov, seed))) break;
+    if (!complex_shift()) add_companions();
+  }
+
+  /// Pairs counted on the way may have turned out to be real: the search goes on until as many modes oscillate as are wanted.
+  void extend_to_count() {
+    const double given = least_radius;
+    for (int more = 0; more < 4 && count_oscillating() < opt.count; ++more) {
+      least_radius = 2.0 * std::max(certificate.radius, wanted_radius() < infinity ? wanted_radius() : 0.0);
+      search_all();
+      certify();
+    }
+    least_radius = given;
+  }
+
+  /// Counts the roots of the region, looks for those that are missing, and leaves the certificate.
+  void certify() {
+    certificate = {};
+    if (!counter) counter.emplace(pattern, active);
+    const std::size_t before = known.size();
+    double radius = count_radius();
+    for (int round = 0; round < 6; ++round) {
+      const CountRegion region{radius, oscillating_reach * radius};
+      const RootCount c = counter->count(*m, region, known_roots());
+      certificate.factorizations += c.factorizations;
+      certificate.radius = region.radius;
+      certificate.reach = region.reach;
+      certificate.counted = c.certain;
+      certificate.missing = c.certain ? std::abs(c.unknown) : 0;
+      if (!c.certain) {   // a root on the curve itself
+        radius *= 1.023;
+        continue;
+      }
+      if (c.unknown <= 0) break;
+      certificate.where = counter->locate(c.unknown);
+      const Index more = std::min<Index>(c.unknown, 2 * (round + 1)) + 1;
+      bool any = false;
+      for (const Complex place : certificate.where) any = look_near(place, more) || any;
+      if (!any) any = look_everywhere(region);
+      if (!any) break;
+    }
+    if (certificate.complete()) certificate.where.clear();
+    certificate.recovered = static_cast<Index>(known.size() - before);
+    work.factorizations += certificate.factorizations;
   }
 
   void set(const MCK& matrices) {
@@ -224,6 +361,7 @@ struct ModeSolver::Impl : Eigenpairs {
     set(matrices);
     result.clear();
     deflated.clear();
+    certificate = {};
     if (n == 0 || (first_order && !damped)) {
       known.clear();
       return;
@@ -233,15 +371,25 @@ struct ModeSolver::Impl : Eigenpairs {
     const bool dense = n <= opt.dense_below && !complex_shift();
     if (dense) {
       solve_dense();
+      if (!complex_shift()) add_companions();
     } else {
-      for (unsigned seed = 1; seed < 40; ++seed)
-        if (!(complex_shift() ? search(krylov_complex, seed) : search(krylov, seed))) break;
+      search_all();
+    }
+    if (opt.certify) {
+      certify();
+      if (!dense && opt.count > 0) extend_to_count();
     }
     // Only what is wanted, and the guard, is carried on.
     if (opt.count > 0) {
       Index c = 0;
       std::size_t keep = 0;
       while (keep < known.size() && c < opt.count + opt.guard) c += counts(known[keep++]) ? 1 : 0;
+      if (opt.certify) {
+        const CountRegion region{certificate.radius, certificate.reach};
+        const auto carried = std::stable_partition(known.begin() + static_cast<std::ptrdiff_t>(keep), known.end(),
+                                                   [&](const Pair& p) { return region.contains(p.lambda); });
+        keep = static_cast<std::size_t>(carried - known.begin());
+      }
       known.resize(keep);
     }
     collect();
@@ -251,9 +399,10 @@ struct ModeSolver::Impl : Eigenpairs {
 
   void rescale_shift() {
     if (opt.shift) return;
-    double least = infinity;
+    std::vector<double> sizes;
     for (const Pair& p : known)
-      if (!p.rigid) least = std::min(least, std::abs(p.lambda));
+      if (!p.rigid) sizes.push_back(std::abs(p.lambda));
+    const double least = scale_of(std::move(sizes));
     if (least < infinity && (least < 0.5 * sigma || least > 10.0 * sigma) && least > 1e-5 * sigma) sigma = alpha = 0.5 * least;
   }
 };
@@ -262,6 +411,13 @@ ModeSolver::ModeSolver(const BlockPattern& pattern, std::span<const unsigned cha
     : impl_(std::make_unique<Impl>(pattern, active, options)) {}
 ModeSolver::~ModeSolver() = default;
 ModeSolver::ModeSolver(ModeSolver&&) noexcept = default;
+
+const std::vector<Mode>& ModeSolver::solve_to(const MCK& m, double radius) {
+  impl_->least_radius = radius;
+  impl_->solve(m);
+  impl_->least_radius = 0.0;
+  return impl_->result;
+}
 
 const std::vector<Mode>& ModeSolver::solve(const MCK& m) {
   impl_->solve(m);
@@ -280,8 +436,10 @@ std::optional<Mode> ModeSolver::follow(const MCK& m, const Mode& start) {
   p.x = start.x;
   if (!impl_->polisher.polish(p, impl_->opt.tolerance, false)) return std::nullopt;
   impl_->polisher.assess(p);
-  return Mode{p.lambda, p.x, p.residual, -1};
+  return Mode{p.lambda, p.x, p.residual, p.uncertainty, -1};
 }
+
+const Certificate& ModeSolver::certificate() const { return impl_->certificate; }
 
 ModeSolver::Work ModeSolver::work() const { return impl_->work; }
 

@@ -4,6 +4,14 @@
 
 namespace whirl::la {
 
+double ShiftedOperator::scale_of(std::vector<double> sizes) {
+  std::sort(sizes.begin(), sizes.end());
+  std::size_t first = 0;
+  for (std::size_t k = 0; k + 1 < sizes.size() && k < most_slow; ++k)
+    if (sizes[k + 1] > slow_gap * sizes[k]) first = k + 1;
+  return sizes.empty() ? infinity : sizes[first];
+}
+
 double ShiftedOperator::crude_frequency() const {
   double best = infinity;
   for (Index i = 0; i < pattern.size(); ++i) {
@@ -34,7 +42,7 @@ void ShiftedOperator::find_shift() {
     for (int k = 0; k < 14; ++k)
       if (!krylov.step(operation<double>())) break;
     const Ritz r = look(krylov);
-    double least = infinity;
+    std::vector<double> sizes;
     for (std::size_t j = 0; j < r.theta.size(); ++j) {
       if (!(std::abs(r.theta[j]) > 0.0)) continue;
       const Complex lambda = s + 1.0 / r.theta[j];
@@ -47,8 +55,9 @@ void ShiftedOperator::find_shift() {
         p.x = v;
         if (!polisher.evaluate(p) || polisher.is_unresisted(p)) continue;
       }
-      least = std::min(least, std::abs(lambda));
+      if (lambda.imag() >= 0.0) sizes.push_back(std::abs(lambda));
     }
+    const double least = scale_of(std::move(sizes));
     if (!(least < infinity) || (least > 0.3 * s && least < 30.0 * s)) return;
     s = 0.5 * least;
   }

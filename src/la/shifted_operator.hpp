@@ -1,5 +1,6 @@
 // Part of the quadratic eigensolver (eigen.hpp): the problem, the operator (A - sigma B)^-1 B by way of Q(sigma) alone, and the choice of its shift.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <core/error.hpp>
 #include <la/krylov.hpp>
@@ -115,6 +116,11 @@ struct ShiftedOperator {
     };
   }
 
+  /// The least of the sizes of the roots that sets the scale of the shift: motions that hardly anything resists (a spin slowed by the drag of its
+  /// films, a rotor on a soft coupling) stand far below the others; a shift as small as they are would see all others as one.
+  static double scale_of(std::vector<double> sizes);
+  static constexpr double slow_gap = 30.0;
+  static constexpr std::size_t most_slow = 8;
   /// Some frequency of the problem: the lowest one a single unknown would have with all others held.
   double crude_frequency() const;
   /// A real shift of half the least nonzero |lambda|, to an order of magnitude: below it rigid-body modes make K singular,

@@ -73,7 +73,8 @@ struct Shaft : Entity {
   bool rotating = true;         ///< false: a casing or foundation beam
   double speed_ratio = 1;       ///< speed of this line relative to the reference speed of frequency-domain steps
   double spin0 = 0;             ///< initial spin of transients unless a drive says otherwise, rad/s
-  double axial_preload = 0;     ///< N, tension positive
+  double axial_preload = 0;     ///< N, tension positive: before anything deforms; relaxes where the ends are free along the axis
+  double axial_force = 0;       ///< N, tension positive: pulls at both ends, a load
   Bow bow;
   double length() const { double s = 0; for (const auto& x : sections) s += x.length; return s; }
   Vec3 position(double s) const { return path.empty() ? Vec3(origin + Vec3(s, 0, 0)) : path.after(s).r; }
@@ -208,11 +209,17 @@ struct LoadPath {
 struct StaticStep {
   int load_steps = 1;
   double speed = 0;
+  bool speed_given = false;         ///< 0 may be meant
+  /// rad/s; nothing where the deck leaves the speed to the drives and initial spins.
+  std::optional<double> own_speed() const { return speed_given || speed != 0 ? std::optional(speed) : std::nullopt; }
   std::optional<SpeedRange> speeds; ///< equilibria one after another; the last one is the step's result
   std::optional<LoadPath> path;
 };
 /// Which unknowns of the shafts take part in a frequency-domain step; the others are held.
 enum class MotionKind { all, lateral, torsional, axial };
+/// What a frequency-domain step is linearised about: the static equilibrium at its speed, or the rotor as drawn, without
+/// gravity, loads and the deflection they cause.
+enum class About { equilibrium, undeformed };
 /// Excitation frequencies, rad/s: equally spaced, or one by one.
 struct FrequencyRange { double start = 0, stop = 0; int points = 2; std::vector<double> values; };
 
@@ -223,6 +230,7 @@ struct ModalStep {
   bool damped = true;                ///< false: the conservative part of the matrices only
   MotionKind motion = MotionKind::all;
   int shapes = 6;                    ///< mode shapes drawn and animated
+  About about = About::equilibrium;
 };
 struct CampbellStep {
   SpeedRange speed;
@@ -231,6 +239,7 @@ struct CampbellStep {
   double max_frequency = infinity;
   bool damped = true;
   MotionKind motion = MotionKind::all;
+  About about = About::equilibrium;
 };
 struct CriticalStep {
   double max_speed = 0;
@@ -239,22 +248,31 @@ struct CriticalStep {
   double min_speed = 0;
   MotionKind motion = MotionKind::all;
   int shapes = 4;
+  About about = About::equilibrium;
 };
 struct UnbalanceStep {
   SpeedRange speed;
   std::array<double, 2> operating{0, 0};   ///< range of operating speeds, rad/s; 0 0 = not given
   std::vector<double> shapes_at;           ///< speeds of operating shapes, rad/s; empty = at the peaks
+  About about = About::equilibrium;
 };
 /// The stability at several values of a parameter of the deck, as written there ("75 um").
 struct StabilityMap { std::string parameter; std::vector<std::string> values; };
-struct StabilityStep { SpeedRange speed; int modes = 12; std::optional<StabilityMap> map; };
+struct StabilityStep {
+  SpeedRange speed;
+  int modes = 12;
+  std::optional<StabilityMap> map;
+  About about = About::equilibrium;
+};
 struct CriticalMapStep {
   double stiffness_min = 0, stiffness_max = 0;   ///< N/m
   int points = 31;
   double max_speed = 0;
   double order = 1;
   bool backward = false;                         ///< backward criticals as lines of their own
-  std::vector<std::string> bearings;             ///< whose stiffness is varied; empty = all but rigid ones
+  std::vector<std::string> bearings;             ///< whose stiffness is varied; empty = all that carry laterally to the ground
+  MotionKind motion = MotionKind::lateral;
+  About about = About::equilibrium;
 };
 /// Harmonic force or moment: Re(amplitude exp(i (w t + phase))), or turning at w in the lateral plane.
 struct HarmonicForce : Entity {
@@ -273,21 +291,26 @@ struct HarmonicStep {
   bool speed_squared = false;              ///< amplitudes are those at the highest speed and grow with its square
   MotionKind motion = MotionKind::all;
   std::vector<double> shapes_at;           ///< frequencies of operating shapes, rad/s; empty = at the peaks
+  About about = About::equilibrium;
 };
 struct TorsionalStep {
   double max_speed = 0;
   std::vector<double> orders{1.0};
   int modes = 6;
+  About about = About::equilibrium;
 };
 struct BucklingStep { int modes = 3; double speed = 0; };
 struct TransientStep {
   double duration = 0;             ///< s; from 0 unless it continues a previous step
   IntegratorOptions integrator;
   enum class Start { rest, static_equilibrium, unbalance_response, mode } start = Start::static_equilibrium;
-  int mode = 1;                    ///< of start = mode: number from the lowest frequency
+  int mode = 1;                    ///< of start = mode: number from the lowest frequency among those of mode_kind
+  MotionKind mode_kind = MotionKind::all;
   double mode_amplitude = 1e-5;    ///< its largest displacement, m
   std::string previous, previous_step;   ///< results folder of another run (and its step) whose end this one starts from
   double speed0 = 0;               ///< rad/s, initial spin of every rotating line times its speed_ratio
+  bool speed0_given = false;       ///< 0 may be meant
+  std::optional<double> own_speed() const { return speed0_given || speed0 != 0 ? std::optional(speed0) : std::nullopt; }
   double stop_speed = 0;           ///< stop when the reference spin passes this value; 0 = never
   double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
   double checkpoint = 60;          ///< wall-clock s between checkpoints; 0 = none

@@ -89,7 +89,7 @@ time::Problem::Power SystemProblem::power_here(time::CRef v, time::CRef reaction
   return {energy_.kinetic + energy_.elastic + energy_.gravity, energy_.kinetic, energy_.supplied, energy_.dissipated};
 }
 
-time::Problem::Power SystemProblem::exchange_here(time::CRef v, time::CRef reactions) const {
+time::Problem::Power SystemProblem::exchange_here(time::CRef v, time::CRef reactions) {
   Energy e = system_.exchange(workspace_);
   for (const Hold& h : system_.holds())
     if (h.law) e.supplied += reactions[h.unknown] * v[h.unknown];

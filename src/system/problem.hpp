@@ -36,11 +36,12 @@ class SystemProblem : public time::Problem {
   bool accept(double t, time::Ref q, time::Ref v, time::Ref a) override;
 
   /// The same for the state the nodes were last evaluated at (System::evaluate_nodes or residual).
-  Power power_here(time::CRef v, time::CRef reactions);
+  virtual Power power_here(time::CRef v, time::CRef reactions);
   /// Only `supplied` and `dissipated` of it.
-  Power exchange_here(time::CRef v, time::CRef reactions) const;
-  /// Some unknown follows a law of time: its reaction supplies power. Otherwise `reactions` is not read above.
-  bool driven_by_law() const { return driven_by_law_; }
+  virtual Power exchange_here(time::CRef v, time::CRef reactions);
+  /// The residual has a part in the power: an unknown follows a law of time, whose reaction supplies power. Otherwise `reactions`
+  /// is not read above.
+  virtual bool power_needs_reactions() const { return driven_by_law_; }
 
   const System& system() const { return system_; }
   const la::MCK& matrices() const { return matrices_; }

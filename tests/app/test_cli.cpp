@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <set>
 #include <sstream>
 
 namespace fs = std::filesystem;
@@ -241,4 +243,48 @@ TEST(Sha256, KnownDigests) {   // FIPS 180-4 examples
   EXPECT_EQ(app::sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(app::sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
   EXPECT_EQ(app::sha256_hex(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+// whatever code a message can carry is explained
+TEST_F(Cli, EveryCodeInTheSourceIsExplained) {
+  const std::regex code("\"([ENRW][0-9][0-9])\"");
+  std::set<std::string> unknown;
+  int found = 0;
+  for (const char* part : {"src", "elements", "meshes"})
+    for (const auto& f : fs::recursive_directory_iterator(fs::path(WHIRL_SOURCE) / part)) {
+      if (f.path().extension() != ".cpp" && f.path().extension() != ".hpp") continue;
+      const std::string text = read(f.path());
+      for (auto it = std::sregex_iterator(text.begin(), text.end(), code); it != std::sregex_iterator(); ++it, ++found)
+        if (!find_code((*it)[1].str())) unknown.insert((*it)[1].str() + " in " + f.path().filename().string());
+    }
+  EXPECT_GT(found, 100);
+  for (const auto& u : unknown) ADD_FAILURE() << u;
+}
+
+TEST_F(Cli, MinusIsStandardInput) {
+  write("good.toml", good);
+  const Result r = whirl("check - <good.toml");
+  EXPECT_EQ(r.code, 0) << r.err;
+  EXPECT_NE(r.out.find("Two sections"), std::string::npos) << r.out;
+  write("bad.toml", "format = 1\n[shaft]\nmas = 3\n");
+  const Result bad = whirl("check - <bad.toml");
+  EXPECT_EQ(bad.code, 3);
+  EXPECT_NE(bad.err.find("standard input:3"), std::string::npos) << bad.err;
+}
+
+TEST_F(Cli, AMisspeltInstructionSetIsAnError) {
+  write("good.toml", good);
+  const Result r = whirl("check good.toml", "env WHIRL_ISA=avx3");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.err.find("error[E98]: WHIRL_ISA = 'avx3'"), std::string::npos) << r.err;
+  EXPECT_EQ(whirl("check good.toml", "env WHIRL_ISA=baseline").code, 0);
+}
+
+TEST_F(Cli, TooMuchOutputIsSaidWithItsLine) {
+  const std::string step = "[[step]]\ntype = \"transient\"\nstart = \"rest\"\nduration = \"1e9 s\"\n[[probe]]\nat = \"left\"\n[output]\nevery = \"1 ns\"\n";
+  write("long.toml", good + step);
+  const Result r = whirl("run long.toml -o r");
+  EXPECT_EQ(r.code, 3);
+  EXPECT_NE(r.err.find("long.toml:13:"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("error[E33]: the output would take"), std::string::npos) << r.err;
 }

@@ -208,3 +208,59 @@ TEST(ExampleNumbers, MisalignedCoupling) {
   EXPECT_NEAR(line("pump DE", w), std::abs(x2[m + 2 * pump_de]), 1e-4 * std::abs(x2[m + 2 * pump_de]));
   EXPECT_LT(line("motor DE", Omega), 1e-4 * line("motor DE", w));   // nothing is out of balance
 }
+
+// The speed of this example is held at its end, where one row is the fastest by rounding alone.
+TEST(ExampleNumbers, AListOfPeaksDoesNotHangOnRounding) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("whirl_peaks_" + std::to_string(::getpid()));
+  std::vector<std::vector<std::string>> lists;
+  for (const char* isa : {"baseline", "avx2", "avx512"}) {
+    const fs::path results = folder / isa;
+    fs::create_directories(results);
+    const std::string command = "cd '" + folder.string() + "' && WHIRL_ISA=" + isa + " '" WHIRL_EXE "' run '" WHIRL_SOURCE "/examples/03_rotating_shaft_benchmark/deck.toml' -q -o '" + results.string() + "'";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    lists.emplace_back();
+    for (const auto& f : fs::directory_iterator(results)) {
+      if (!f.path().filename().string().ends_with("_response_peaks.csv")) continue;
+      std::ifstream in(f.path());
+      for (std::string line; std::getline(in, line);) {   // probe, direction, rising or falling
+        std::size_t end = 0;
+        for (int k = 0; k < 3; ++k) end = line.find(',', end + 1);
+        lists.back().push_back(line.substr(0, end));
+      }
+    }
+  }
+  std::error_code ec;
+  fs::remove_all(folder, ec);
+  ASSERT_GT(lists[0].size(), 3u);
+  EXPECT_EQ(lists[0], lists[1]);
+  EXPECT_EQ(lists[0], lists[2]);
+}
+
+// The table of this example ends at the first and the last speed of its steps: forces there are those of a table that may be extrapolated,
+// not NaN for the last bit of a speed.
+TEST(ExampleNumbers, ATableReachesToItsEnds) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("whirl_table_ends_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  fs::copy(example("26_pad_dynamics").parent_path(), folder, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  std::ostringstream text;
+  text << std::ifstream(folder / "deck.toml").rdbuf();
+  std::string deck = text.str();
+  const std::string held = "extrapolate = \"hold\"\n";
+  ASSERT_NE(deck.find(held), std::string::npos);
+  deck.erase(deck.find(held), held.size());
+  std::ofstream(folder / "one.toml") << deck;
+  const auto response = [](const fs::path& deck_file) {
+    const DeckRun r(deck_file);
+    EXPECT_EQ(r.exit, 0) << r.log;
+    EXPECT_FALSE(r.says("not finite")) << r.log;
+    return r.csv("unbalance_response.csv");
+  };
+  const Columns a = response(folder / "deck.toml"), b = response(folder / "one.toml");
+  std::error_code ec;
+  fs::remove_all(folder, ec);
+  ASSERT_EQ(a.rows.size(), b.rows.size());
+  for (std::size_t r = 0; r < a.rows.size(); ++r)
+    for (std::size_t c = 0; c < a.names.size(); ++c) EXPECT_NEAR(b.rows[r][c], a.rows[r][c], 1e-6 * std::abs(a.rows[r][c]) + 1e-12) << a.names[c] << " in row " << r;
+}

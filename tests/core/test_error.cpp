@@ -53,6 +53,12 @@ TEST(Diagnostic, CaretBeyondTheLineIsHarmless) {
   EXPECT_EQ(format(d, "ab"), "deck.toml:62:100: error[E07]: no unit\n  62 | ab\n     |   ^\n     = hint: write one\n");
 }
 
+TEST(Diagnostic, ControlCharactersNeitherCutNorPaint) {
+  Diagnostic d = sample();
+  d.message = std::string("a\0b", 3) + "\x1b[31m";
+  EXPECT_EQ(format(d), "deck.toml:62:8: error[E07]: a\\u0000b\\u001b[31m\n     = hint: write one\n");
+}
+
 TEST(Diagnostic, ColourOnlyWhenAsked) {
   EXPECT_EQ(format(sample(), "x", false).find('\x1b'), std::string::npos);
   EXPECT_NE(format(sample(), "x", true).find("\x1b[1;31merror[E07]\x1b[0m"), std::string::npos);

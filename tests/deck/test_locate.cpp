@@ -82,3 +82,11 @@ TEST(Locate, Problems) {
     EXPECT_EQ(r.message, t.message) << t.text;
   }
 }
+
+TEST(Locate, WithoutAShaftThereIsNoPlace) {
+  for (const char* text : {"1 m", "a:mid", "-3 mm", "(1 m)", "a/1 m", ""}) {
+    const auto r = deck::locate(model::Model{}, text);
+    EXPECT_FALSE(r.at) << text;
+    EXPECT_EQ(r.code, "E18") << text;
+  }
+}

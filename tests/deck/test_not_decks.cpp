@@ -2,6 +2,7 @@
 #include <deck/deck.hpp>
 #include <gtest/gtest.h>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -93,4 +94,45 @@ TEST_F(NotDecks, ParametersThatMultiply) {
   text += "[shaft]\nname = \"${p40}\"\n";
   const auto d = deck::read_deck_text(text);
   EXPECT_NE(d.report().find("E27"), std::string::npos);
+}
+
+namespace {
+
+/// Of the processor, whoever else uses it.
+double seconds_to_read(const std::string& text, deck::Deck& deck) {
+  const std::clock_t begin = std::clock();
+  deck = deck::read_deck_text(text);
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
+}  // namespace
+
+// 100,000 rows, each wrong: five times as many as once took 5.5 s, in which time grew with the square of the errors.
+TEST_F(NotDecks, AWhollyWrongTableIsCutShort) {
+  std::string text = "format = 1\n[shaft]\nmaterial = \"steel\"\ncolumns = [\"length[mm]\", \"od[mm]\"]\nrows = [\n";
+  for (int k = 0; k < 100000; ++k) text += fmt::format("[{}, -1],\n", k + 1);
+  deck::Deck d;
+  EXPECT_LT(seconds_to_read(text + "]\n", d), 10.0);   // a second or two, nearly all of it the TOML library's
+  EXPECT_GE(d.errors, 200);
+  ASSERT_EQ(d.diagnostics.size(), 201u);
+  EXPECT_EQ(d.diagnostics.back().message, "the first 200 errors are shown; there may be more");
+  EXPECT_EQ(d.diagnostics.back().severity, Diagnostic::Severity::note);
+}
+
+TEST_F(NotDecks, WrongTablesOneByOneAreCutShort) {
+  std::string text = "format = 1\n[shaft]\nmaterial = \"steel\"\ncolumns = [\"length[mm]\", \"od[mm]\"]\nrows = [[100, 20]]\n";
+  for (int k = 0; k < 20000; ++k) text += fmt::format("[[disk]]\nat = \"{} mm\"\nmas = 1\n", k);
+  deck::Deck d;
+  EXPECT_LT(seconds_to_read(text, d), 10.0);
+  EXPECT_EQ(d.diagnostics.size(), 201u);
+}
+
+TEST_F(NotDecks, ARepeatedErrorHidesNoOthers) {
+  // the header is wrong, which is found again in every row; the mistake after it is said all the same
+  std::string text = "format = 1\n[shaft]\nmaterial = \"steel\"\ncolumns = [\"length\", \"od[mm]\"]\nrows = [\n";
+  for (int k = 0; k < 1000; ++k) text += "[1, 20],\n";
+  deck::Deck d;
+  seconds_to_read(text + "]\n[[probe]]\nplace = 3\n", d);
+  EXPECT_NE(d.report().find("unknown key 'place'"), std::string::npos) << d.report();
+  EXPECT_LT(d.diagnostics.size(), 10u);
 }

@@ -73,10 +73,10 @@ Vec2 reference_force(double L, const Vec2& r, const Vec2& w, int N, int M) {
 
 TEST(FiniteJournal, Conformance) {
   ConformanceOptions o;
-  // small displacements about eccentric positions: higher derivatives jump where a film boundary passes a grid node
-  o.u = 1e-3 * c, o.du = 1e-3 * c * Omega, o.ddu = c * Omega * Omega;
+  // small displacements about eccentric positions: higher derivatives jump where a film reaches a groove
+  o.u = 1e-2 * c, o.du = 1e-2 * c * Omega, o.ddu = c * Omega * Omega;
   o.tilt = 0.2, o.dtilt = 1e-2, o.ddtilt = 10, o.dphi = 0.3, o.ddphi = 300;
-  o.tangent_tolerance = 1e-7, o.power_tolerance = 1e-7;
+  o.tangent_tolerance = 1e-8, o.power_tolerance = 1e-8;
   o.samples = 4;
   for (const auto& film : {bearing(0.05, split()), bearing(0.08, lobe_pads(3, 0.4, 0.3, 0.6), 0.4), bearing(0.06, {})}) {
     o.q0.assign(12, 0.0), o.v0.assign(12, 0.0);
@@ -108,7 +108,7 @@ TEST(FiniteJournal, LundThomsen) {
     for (int i = 0; i < 9; ++i) EXPECT_NEAR(got[i], t[i + 2], std::max(0.06, 0.06 * std::abs(t[i + 2]))) << "S " << t[1] << " column " << i;
     EXPECT_NEAR(got[0], t[2], 0.005 * t[2]);   // the locus itself is much closer
     EXPECT_NEAR(got[1], t[3], 0.005 * t[3]);
-    EXPECT_NEAR(B(0, 1), B(1, 0), 0.01 * std::abs(B(0, 1)));   // symmetric damping, up to the grid
+    EXPECT_NEAR(B(0, 1), B(1, 0), 1e-4 * std::abs(B(0, 1)));   // symmetric damping, up to the grid
   }
 }
 
@@ -125,11 +125,11 @@ TEST(FiniteJournal, AgainstTwoDimensionalReynolds) {
 }
 
 TEST(FiniteJournal, GridAndShortLimit) {
-  // 72 nodes against 288: below 0.5 % to an eccentricity of 0.9
+  // 72 points against 288
   for (double ecc : {0.3, 0.6, 0.8, 0.9}) {
     const Vec2 r = ecc * c * Vec2(0.6, -0.8);
     const Vec2 coarse = force(bearing(0.06, split()), r, Vec2::Zero()).F, fine = force(bearing(0.06, split(), 0, 288), r, Vec2::Zero()).F;
-    EXPECT_LT((coarse - fine).norm(), 0.005 * fine.norm()) << ecc;
+    EXPECT_LT((coarse - fine).norm(), 1e-5 * fine.norm()) << ecc;
   }
   // a very short bearing: Ocvirk's film
   FiniteJournal b = bearing(0.005, {}, 0, 288);
@@ -141,39 +141,191 @@ TEST(FiniteJournal, GridAndShortLimit) {
   EXPECT_NEAR(f.T, g.T, 1e-9 * std::abs(g.T));
 }
 
-TEST(FiniteJournal, ForceAndTangentAreContinuous) {
-  // Along a path on which film boundaries pass many nodes the tangent is the slope of the force within 2 % of the largest, and
-  // continuous. Where a stretch of film one cell long appears or vanishes, the force jumps by less than 1e-3 of itself.
-  const FilmLaw<FiniteJournal> law{bearing(0.05, split())};
-  const double ds = 2e-4 * c;
-  Vec2 last_slope = Vec2::Zero();
-  int births = 0;
-  for (int i = 0; i < 3000; ++i) {
-    LateralMotion m;
-    const double a = 2e-4 * i * 6;
-    m.r = 0.6 * c * Vec2(std::cos(a), std::sin(a));
-    const Vec2 t(-std::sin(a), std::cos(a));
-    m.v = 0.1 * c * Omega * Vec2(std::sin(3 * a), 0.4), m.spin = Omega;
-    Vector<4> z, zu, zd;
-    LateralTangent k;
-    law.tangent(m, z, k);
-    const Vec2 slope = k.r.topRows<2>() * t;
-    LateralMotion up = m, dn = m;
-    up.r += ds * t, dn.r -= ds * t;
-    law.force(up, zu), law.force(dn, zd);
-    const double scale = k.r.topRows<2>().cwiseAbs().maxCoeff();
-    EXPECT_LT(((zu - zd).head<2>() - 2 * ds * slope).norm(), 0.02 * 2 * ds * scale + 1e-3 * z.head<2>().norm()) << i;
-    if (((zu - zd).head<2>() / (2 * ds) - slope).norm() > 0.02 * scale) {
-      ++births;
-    } else if (i > 0) {
-      EXPECT_LT((slope - last_slope).norm(), 0.05 * scale) << i;
-    }
-    last_slope = slope;
+/// Random bearings and motions: what the tests below look at.
+struct AnyBearing {
+  FiniteJournal film;
+  FilmPoint at;
+};
+AnyBearing any_bearing(Random& random, int n) {
+  const auto draw = [&](double low, double high) { return low + (high - low) * 0.5 * (1.0 + random.vector<1>()[0]); };
+  std::vector<JournalPad> pads;
+  double preload = 0.0;
+  if (n % 3 == 1) pads = two_groove_pads(draw(-3, 3), draw(0.1, 1.0));
+  if (n % 3 == 2) {
+    pads = lobe_pads(2 + n / 3 % 4, draw(-3, 3), draw(0.1, 0.6), draw(0.3, 0.7));
+    preload = draw(0.0, 0.8);
   }
-  EXPECT_LE(births, 6);
+  AnyBearing b{bearing(0.1 * std::pow(10.0, draw(-0.7, 0.3)), pads, preload), {}};
+  const double angle = draw(0, two_pi);
+  b.at.r = draw(0.1, 0.9) * c * Vec2(std::cos(angle), std::sin(angle));
+  b.at.w = 0.5 * Omega * Vec2(b.at.r.y(), -b.at.r.x()) + draw(0, 0.5) * c * Omega * random.vector<2>();
+  b.at.slip = Omega;
+  return b;
 }
 
-TEST(FiniteJournal, FilmIsPassiveAndOneSided) {
+/// The load int P n of one pad on a fixed grid of N points, second order: complementarity by active sets from Brennan and Schwartz's
+/// elimination both ways. start, arc: of the pad, or of a circle cut where it is dry.
+Vec2 pad_on_fixed_grid(double start, double arc, double beta, const Vec2& e, const Vec2& W, int N) {
+  const auto n = static_cast<std::size_t>(N);
+  const double step = arc / N;
+  const auto h3 = [&](double a) { return std::pow(1.0 - e.x() * std::cos(a) - e.y() * std::sin(a), 3); };
+  std::vector<double> K(n), D(n + 1), b(n + 1), P(n + 1, 0.0), u(n + 1), v(n + 1);
+  std::vector<bool> film(n + 1, false);
+  for (std::size_t i = 0; i < n; ++i) K[i] = h3(start + (static_cast<double>(i) + 0.5) * step) / step;
+  for (std::size_t i = 1; i < n; ++i) {
+    const double a = start + static_cast<double>(i) * step;
+    D[i] = K[i] + K[i - 1] + beta * h3(a) * step;
+    b[i] = (W.x() * std::cos(a) + W.y() * std::sin(a)) * step;
+    film[i] = b[i] > 0.0;
+  }
+  const auto extend = [&](bool up) {
+    bool more = false;
+    double carry = 0.0, value = 0.0;
+    for (std::size_t k = 1; k < n; ++k) {
+      const std::size_t i = up ? k : n - k;
+      const double before = up ? K[i - 1] : K[i], after = up ? K[i] : K[i - 1];
+      const double pivot = 1.0 / (D[i] - before * carry), next = (b[i] + before * value) * pivot;
+      if (!film[i] && next <= 0.0) {
+        carry = value = 0.0;
+        continue;
+      }
+      more = more || !film[i];
+      film[i] = true;
+      carry = after * pivot;
+      value = next;
+    }
+    return more;
+  };
+  while (extend(true) | extend(false)) {}
+  for (bool changed = true; changed;) {
+    for (std::size_t i = 1; i < n; ++i) {
+      const double before = film[i - 1] ? K[i - 1] : 0.0, pivot = 1.0 / (D[i] - before * u[i - 1]);
+      u[i] = film[i] ? K[i] * pivot : 0.0;
+      v[i] = film[i] ? (b[i] + before * v[i - 1]) * pivot : 0.0;
+    }
+    for (std::size_t i = n - 1; i > 0; --i) P[i] = v[i] + u[i] * P[i + 1];
+    changed = false;
+    const auto was = film;
+    for (std::size_t i = 1; i < n; ++i) {
+      const bool want = was[i] ? P[i] >= 0.0 : b[i] + K[i] * P[i + 1] + K[i - 1] * P[i - 1] > 0.0;
+      changed = changed || want != was[i];
+      film[i] = want;
+    }
+  }
+  Vec2 G = Vec2::Zero();
+  for (std::size_t i = 1; i < n; ++i) {
+    const double a = start + static_cast<double>(i) * step;
+    G += P[i] * step * Vec2(std::cos(a), std::sin(a));
+  }
+  return G;
+}
+
+TEST(FiniteJournal, PadAgainstAFixedGrid) {
+  // Two grids of second order extrapolated; where a film ends between two points that leaves 1e-5.
+  Random random(31);
+  int two = 0, merged = 0, circles = 0;
+  for (int n = 0; n < 300; ++n) {
+    const auto draw = [&](double low, double high) { return low + (high - low) * 0.5 * (1.0 + random.vector<1>()[0]); };
+    const bool round = n % 5 == 0;
+    const double start = draw(-3, 3), arc = round ? two_pi : draw(0.5, 6.2), beta = n % 7 == 1 ? 0.0 : 10 * std::pow(2 * std::pow(10.0, draw(-0.8, 0.4)), -2);
+    const double turn = draw(0, two_pi), of_source = draw(0, two_pi), size = draw(0, 0.95);
+    const Vec2 e = size * Vec2(std::cos(turn), std::sin(turn)), W(std::cos(of_source), std::sin(of_source));
+    const PadFilm pad(start, arc, round, round ? beta + 0.5 : beta, 72 * arc / two_pi);
+    const auto film = pad.find_film(e, W);
+    const double cut = round ? 0.5 * (film.stretch[0].from + film.stretch[0].to) - pi : start;   // the circle where it is dry
+    const auto reference = [&](int N) { return pad_on_fixed_grid(cut, arc, round ? beta + 0.5 : beta, e, W, N); };
+    const Vec2 coarse = reference(1500), fine = reference(3000), exact = fine + (fine - coarse) / 3.0;
+    const Vec2 got = pad.load(e, W);
+    // films that end in the grid's first cells are seen by it to their own size only
+    EXPECT_LT((got - exact).norm(), 2e-4 * exact.norm() + 1e-9) << n << " arc " << arc << " beta " << beta << " e " << size;
+    EXPECT_LE(film.passes, 24) << n;
+    two += film.count == 2;
+    merged += film.count == 1 && arc > pi && !film.stretch[0].free_from && !film.stretch[0].free_to;
+    circles += round;
+    for (int k = 0; k < film.count; ++k) {   // a film forms and ruptures where there is no source
+      const auto& s = film.stretch[static_cast<std::size_t>(k)];
+      const auto source = [&](double angle) { return W.dot(Vec2(std::cos(angle), std::sin(angle))); };
+      EXPECT_LE(s.free_from ? source(s.from) : 0.0, 1e-12);
+      EXPECT_LE(s.free_to ? source(s.to) : 0.0, 1e-12);
+    }
+  }
+  EXPECT_GT(two, 10);
+  EXPECT_GE(merged, 5);
+  EXPECT_EQ(circles, 60);
+}
+
+TEST(FiniteJournal, CoefficientsAreConverged) {
+  // All shapes, preloads 0 to 0.8, L/D 0.2 to 2, eccentricities 0.1 to 0.9: K and C of the default grid within 2e-3 of the converged
+  // ones (0.5 % is asked for), forces within 1e-3 and at the grids around the default as well.
+  Random random(5);
+  double worst[3] = {};
+  for (int n = 0; n < 400; ++n) {
+    const AnyBearing b = any_bearing(random, n);
+    if (!b.film.inside(b.at)) continue;
+    const auto with = [&](int nodes, FilmForce& f, FilmTangent& t) {
+      FiniteJournal film = b.film;
+      std::vector<JournalPad> pads;
+      for (const auto& a : b.film.surface->arcs())
+        if (!a.round) pads.push_back({a.start, a.start + a.length, std::atan2(a.thinnest.y(), a.thinnest.x())});
+      const double preload = b.film.surface->lift() / b.film.surface->pad_clearance();
+      film.surface = std::make_shared<JournalSurface>(c, preload, pads, nodes);
+      film.evaluate(b.at, f, t);
+    };
+    FilmForce f, g;
+    FilmTangent t, fine;
+    with(360, g, fine);
+    const double F = g.F.norm(), K = fine.F_r.cwiseAbs().maxCoeff(), C = fine.F_w.cwiseAbs().maxCoeff();
+    for (int nodes : {60, 72, 90, 144}) {
+      with(nodes, f, t);
+      const double error[3] = {(f.F - g.F).norm() / F, (t.F_r - fine.F_r).cwiseAbs().maxCoeff() / K, (t.F_w - fine.F_w).cwiseAbs().maxCoeff() / C};
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_LT(error[k], k == 0 ? 1e-3 : 2e-3) << n << " grid " << nodes << " of " << k;
+        if (nodes == 72) worst[k] = std::max(worst[k], error[k]);
+      }
+    }
+  }
+  RecordProperty("force", std::to_string(worst[0]));
+  RecordProperty("K", std::to_string(worst[1]));
+  RecordProperty("C", std::to_string(worst[2]));
+}
+
+TEST(FiniteJournal, ForceIsSmoothUnderRotation) {
+  // The journal is carried round the bearing: ends of films run over the pads, reach grooves and leave them. The slope by differences is
+  // the tangent, everywhere, and the change of the force from place to place bends by no more than the step squared allows.
+  Random random(8);
+  for (int n = 0; n < 24; ++n) {
+    AnyBearing b = any_bearing(random, n);
+    const FilmLaw<FiniteJournal> law{b.film};
+    const double radius = b.at.r.norm(), step = 2e-4;
+    double load = 0.0, jump = 0.0, wrong = 0.0;
+    std::vector<Vec2> F;
+    std::vector<Vec2> slope;
+    for (int i = 0; i < 1500; ++i) {
+      LateralMotion m;
+      const double a = step * i + n;
+      m.r = radius * Vec2(std::cos(a), std::sin(a));
+      m.v = 0.1 * c * Omega * Vec2(std::sin(3 * a), 0.4), m.a.setZero(), m.spin = Omega;
+      Vector<4> z;
+      LateralTangent t;
+      law.tangent(m, z, t);
+      F.push_back(z.head<2>());
+      slope.push_back(Vec2(t.r.topRows<2>() * Vec2(-m.r.y(), m.r.x()) + t.v.topRows<2>() * Vec2(0.3 * c * Omega * std::cos(3 * a), 0.0)));
+      load = std::max(load, z.head<2>().norm());
+    }
+    double steepest = 0.0;
+    for (const Vec2& s : slope) steepest = std::max(steepest, s.norm());
+    for (std::size_t i = 1; i < F.size(); ++i) {
+      const Vec2 change = F[i] - F[i - 1];
+      jump = std::max(jump, (change - 0.5 * step * (slope[i] + slope[i - 1])).norm());
+      wrong = std::max(wrong, (slope[i] - slope[i - 1]).norm());
+    }
+    if (!std::isfinite(load)) continue;   // the pads are nearer than that
+    EXPECT_LT(jump, 1e-5 * load) << n;          // 1e-4 of the load is asked for; a change over one step is about 5e-4 of it
+    EXPECT_LT(wrong, 0.02 * steepest) << n;     // the slope has no jumps either
+  }
+}
+
+TEST(FiniteJournal, FilmIsPassive) {
   Random r(23);
   for (const auto& b : {bearing(0.05, split()), bearing(0.08, lobe_pads(4, 0.1, 0.2), 0.5), bearing(0.04, {})})
     for (int n = 0; n < 300; ++n) {
@@ -182,10 +334,6 @@ TEST(FiniteJournal, FilmIsPassiveAndOneSided) {
       b.evaluate(p, f);
       if (!std::isfinite(f.F.x())) continue;   // outside the clearance
       EXPECT_LE(f.F.dot(p.w) + f.T * p.slip, 0.0);
-      FiniteJournal::Pressure q;
-      b.pressure(p, q);
-      EXPECT_LE(q.passes, 30);
-      for (double P : q.P) EXPECT_GE(P, 0.0);
     }
 }
 
@@ -197,13 +345,13 @@ TEST(FiniteJournal, LobedBearing) {
   EXPECT_GT(e.K(0, 0), 0.0);
   EXPECT_NEAR(e.K(0, 0), e.K(1, 1), 1e-6 * e.K(0, 0));
   EXPECT_NEAR(e.K(0, 1), -e.K(1, 0), 1e-6 * e.K(0, 0));
-  EXPECT_NEAR(e.C(0, 1), 0.0, 2e-3 * e.C(0, 0));   // symmetric but for the grid
+  EXPECT_NEAR(e.C(0, 1), 0.0, 1e-5 * e.C(0, 0));   // symmetric but for the grid
   // more preload, stiffer: the pads' wedge grows
   const auto soft = find_journal_equilibrium(film_function(FilmLaw<FiniteJournal>{bearing(0.05, lobe_pads(3, -pi / 2, 20 * pi / 180), 0.2)}), Vec2::Zero(), Omega, c);
   EXPECT_GT(e.K(0, 0), soft.K(0, 0));
   // against a lobed film solved on four times the grid
   const auto fine = find_journal_equilibrium(film_function(FilmLaw<FiniteJournal>{bearing(0.05, lobe_pads(3, -pi / 2, 20 * pi / 180), 0.5, 288)}), Vec2::Zero(), Omega, c);
-  EXPECT_NEAR(e.K(0, 0), fine.K(0, 0), 0.01 * fine.K(0, 0));
+  EXPECT_NEAR(e.K(0, 0), fine.K(0, 0), 1e-4 * fine.K(0, 0));
 }
 
 TEST(FiniteJournal, BadInput) {

@@ -158,9 +158,11 @@ int Ida::solve(N_Vector x, N_Vector b) {
 }
 
 int Ida::weights(N_Vector w) {
-  double h = 0.0;
-  IDAGetCurrentStep(ida_, &h);
-  if (!(h > 0.0)) h = h_init_;
+  // After IDAReInit IDA still reports the step of its life before, which a run that was continued does not know.
+  double h = h_init_;
+  long steps = 0;
+  IDAGetNumSteps(ida_, &steps);
+  if (steps > 0) IDAGetCurrentStep(ida_, &h);
   increments_ = h * v_ + (0.5 * h * h) * a_;
   scale_.begin_step(increments_);
   auto out = view(w);
@@ -421,7 +423,8 @@ void Ida::interpolate(double t, Ref q, Ref v, Ref a) const {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// IDA's history cannot be written back: both the saving and the restored integrator start anew from the same state.
+// IDA's history cannot be written back: both the saving and the restored integrator start anew from the same state, and nothing of IDA's
+// memory from before that may reach what comes after (weights()).
 
 IntegratorState Ida::save() {
   reinitialize_ = true;

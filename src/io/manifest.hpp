@@ -1,0 +1,36 @@
+// Which files of a results folder the program made. A folder may hold the user's own files too (directory = "."): what no
+// run made is neither removed nor written over, and nothing is written through a symbolic link to somewhere else.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+
+namespace whirl::io {
+
+class Manifest {
+ public:
+  static constexpr const char* file_name = "manifest.txt";
+  /// Reads the list of the folder; an older results folder without one (it has the run.json of this program) counts as made
+  /// by the program where files are written, not where they are removed.
+  explicit Manifest(std::filesystem::path root);
+
+  /// `name` (relative to the folder, '/' between parts) is going to be written: listed, at once and for good. A file of that
+  /// name that no run made is moved aside to "NAME.kept", said on standard error.
+  /// Error (Exit::io, E91) when a folder on the way is a symbolic link, or the name leads out of the results folder.
+  void claim(std::string_view name);
+  bool lists(std::string_view name) const { return names_.count(std::string(name)) != 0; }
+  /// Removes the listed regular files that `which` accepts. Their names stay listed.
+  void remove(const std::function<bool(const std::string& name)>& which) const;
+
+ private:
+  bool inside(const std::string& name) const;
+  void append(const std::string& line);
+
+  std::filesystem::path root_;
+  std::unordered_set<std::string> names_;
+  bool older_ = false;   ///< results of a program that kept no list
+};
+
+}  // namespace whirl::io
