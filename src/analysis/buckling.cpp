@@ -14,7 +14,9 @@ namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Largest displacement relative to the model's size, and largest rotation.
-struct Size { double displacement = 0, rotation = 0; };
+struct Size {
+  double displacement = 0, rotation = 0;
+};
 Size size_of(const system::System& s, const VecX& u) {
   const double length = model_length(s);
   Size out;
@@ -26,7 +28,9 @@ Size size_of(const system::System& s, const VecX& u) {
   return out;
 }
 
-Eigen::Map<VecX> values(la::BlockMatrix<6>& m) { return {m.data(), static_cast<Index>(m.value_count())}; }
+Eigen::Map<VecX> values(la::BlockMatrix<6>& m) {
+  return {m.data(), static_cast<Index>(m.value_count())};
+}
 
 /// Terms whose derivative along the response is not known exactly.
 std::vector<std::size_t> other_terms(const system::System& s) {
@@ -36,19 +40,30 @@ std::vector<std::size_t> other_terms(const system::System& s) {
   return out;
 }
 
-/// dK/dt of the terms in `only` along q' = u by central differences of steps h and h/2, extrapolated; at the state of a visit.
+/// dK/dt of the terms in `only` along q' = u by central differences of steps h and h/2,
+/// extrapolated; at the state of a visit.
 class Differences {
  public:
   Differences(const system::System& s, const std::vector<std::size_t>& only, double h)
-      : system_(s), only_(only), h_(h), workspace_(s.make_workspace()), plus_(s.make_matrices()), minus_(s.make_matrices()) {}
-  void add(const system::Context& context, const system::Frames& frames, const VecX& q, const VecX& v, const VecX& u, double weight, la::BlockMatrix<6>& out) {
+      : system_(s),
+        only_(only),
+        h_(h),
+        workspace_(s.make_workspace()),
+        plus_(s.make_matrices()),
+        minus_(s.make_matrices()) {}
+  void add(const system::Context& context, const system::Frames& frames, const VecX& q,
+           const VecX& v, const VecX& u, double weight, la::BlockMatrix<6>& out) {
     if (only_.empty()) return;
     workspace_.context = context;
     const VecX a = VecX::Zero(q.size());
     for (const auto& [h, share] : {std::pair{h_, -1.0 / 3.0}, std::pair{0.5 * h_, 4.0 / 3.0}}) {
-      const bool inside = system_.tangent(workspace_, frames, context.time, q + h * u, v, a, plus_, &only_) &&
-                          system_.tangent(workspace_, frames, context.time, q - h * u, v, a, minus_, &only_);
-      if (!inside) throw run_error("E76", "no linearised buckling: the response to the loads leaves the range of an element");
+      const bool inside =
+          system_.tangent(workspace_, frames, context.time, q + h * u, v, a, plus_, &only_) &&
+          system_.tangent(workspace_, frames, context.time, q - h * u, v, a, minus_, &only_);
+      if (!inside)
+        throw run_error(
+            "E76",
+            "no linearised buckling: the response to the loads leaves the range of an element");
       values(out) += (weight * share / (2.0 * h)) * (values(plus_.K) - values(minus_.K));
     }
   }
@@ -62,16 +77,19 @@ class Differences {
 };
 
 /// What the response u changes of K at a steady state, the mean over the revolution.
-void add_rate(RunningSystem& running, const system::State& s, double Omega, const VecX& u, la::BlockMatrix<6>& out) {
+void add_rate(RunningSystem& running, const system::State& s, double Omega, const VecX& u,
+              la::BlockMatrix<6>& out) {
   const system::System& system = running.system();
   const std::vector<std::size_t> others = other_terms(system);
   const Size response = size_of(system, u);
-  Differences differences(system, others, 1e-5 / std::max({response.displacement, response.rotation, 1e-300}));
+  Differences differences(system, others,
+                          1e-5 / std::max({response.displacement, response.rotation, 1e-300}));
   VecX v(system.size());
   running.set_rates(Omega, v);
   running.visit_revolution(s.frames, Omega, s.q, [&](double weight, const system::Workspace& w) {
     VecX turned = s.q;
-    for (Index i = 0; i < system.nodes(); ++i) turned[6 * i + system::spin_phi] = w.nodes[at(i)].phi;
+    for (Index i = 0; i < system.nodes(); ++i)
+      turned[6 * i + system::spin_phi] = w.nodes[at(i)].phi;
     system::add_stiffness_rate({system, w, s.frames, turned, u}, weight, out);
     differences.add(w.context, s.frames, turned, v, u, weight, out);
   });
@@ -107,25 +125,30 @@ std::vector<BucklingMode> buckling(RunningSystem& running, double Omega, Index c
   u = r0 - u;
   for (Index k = 0; k < u.size(); ++k)
     if (!solver.free()[at(k)]) u[k] = 0.0;
-  const auto direct = la::make_direct_solver<double>(system.pattern(), solver.free(), options.solver);
+  const auto direct =
+      la::make_direct_solver<double>(system.pattern(), solver.free(), options.solver);
   if (direct->factor(K0, 0.0, 0.0, 1.0) != la::Status::ok) {
     running.set_load(full);
-    throw run_error("E75", "nothing resists a motion of the unloaded rotor", "add a support in that direction, or hold it rigidly");
+    throw run_error("E75", "nothing resists a motion of the unloaded rotor",
+                    "add a support in that direction, or hold it rigidly");
   }
   direct->solve(u);
 
   la::BlockMatrix<6> B(system.pattern());
   values(B) = values(loaded.K) - values(K0.K);
   // differences of equal sums are rounding
-  values(B) = (values(B).array().abs() <= 1e-14 * values(K0.K).array().abs()).select(0.0, values(B));
+  values(B) =
+      (values(B).array().abs() <= 1e-14 * values(K0.K).array().abs()).select(0.0, values(B));
   add_rate(running, rest, Omega, u, B);
   running.set_load(full);
-  const double change = values(B).cwiseAbs().maxCoeff(), stiffness = values(K0.K).cwiseAbs().maxCoeff();
+  const double change = values(B).cwiseAbs().maxCoeff(),
+               stiffness = values(K0.K).cwiseAbs().maxCoeff();
   const Size response = size_of(system, u);
   // against what a response of 1e-5 would change
   const double share = 1e-5 / std::max({response.displacement, response.rotation, 1e-300});
   if (!(change * std::min(share, 1.0) > 1e-15 * stiffness))
-    throw run_error("E79", "no load changes the stiffness of the model: nothing can buckle", "give a load along a shaft, or a moment");
+    throw run_error("E79", "no load changes the stiffness of the model: nothing can buckle",
+                    "give a load along a shaft, or a moment");
   values(B) *= -1.0;
   std::vector<BucklingMode> out;
   for (const la::Mode& m : la::linear_modes(K0.K, B, solver.free(), count)) {
@@ -137,7 +160,8 @@ std::vector<BucklingMode> buckling(RunningSystem& running, double Omega, Index c
   return out;
 }
 
-PathCheck check_on_path(RunningSystem& running, double Omega, double factor, const EquilibriumOptions& options) {
+PathCheck check_on_path(RunningSystem& running, double Omega, double factor,
+                        const EquilibriumOptions& options) {
   LoadPathOptions o;
   o.equilibrium = options;
   o.last_load = 1.25 * factor * running.load();
@@ -145,10 +169,11 @@ PathCheck check_on_path(RunningSystem& running, double Omega, double factor, con
   o.max_points = 400;
   const double full = running.load();
   PathCheck out;
-  const LoadPathResult r = follow_load_path(running, Omega, running.system().make_state(), o, [&](const LoadPathPoint& p) {
-    out.load = p.load;
-    return !p.bifurcation && p.tangent.stable();
-  });
+  const LoadPathResult r = follow_load_path(running, Omega, running.system().make_state(), o,
+                                            [&](const LoadPathPoint& p) {
+                                              out.load = p.load;
+                                              return !p.bifurcation && p.tangent.stable();
+                                            });
   running.set_load(full);
   out.load /= full;
   if (!r.critical.empty()) {
@@ -156,7 +181,7 @@ PathCheck check_on_path(RunningSystem& running, double Omega, double factor, con
     out.limit = r.critical.front().limit;
     out.load = r.critical.front().load / full;
   } else if (r.end == LoadPathEnd::stopped) {
-    out.found = true;   // unstable from the beginning
+    out.found = true; // unstable from the beginning
   } else if (r.end != LoadPathEnd::reached) {
     out.ended = describe(r);
   }

@@ -27,14 +27,17 @@ VecX row_sizes(const la::BlockMatrix<6>& K) {
     for (Index c = 0; c < 6; ++c) {
       double size = std::abs(K.block(p.diagonal(i))(c, c));
       if (size == 0.0)
-        for (Index b = p.row_start()[at(i)]; b < p.row_start()[at(i) + 1]; ++b) size = std::max(size, K.block(b).row(c).cwiseAbs().maxCoeff());
+        for (Index b = p.row_start()[at(i)]; b < p.row_start()[at(i) + 1]; ++b)
+          size = std::max(size, K.block(b).row(c).cwiseAbs().maxCoeff());
       w[6 * i + c] = size > 0.0 ? size : 1.0;
     }
   return w;
 }
 
-/// Symmetric part of K in `out`; the largest asymmetry relative to what the rows hold, free unknowns only.
-double symmetrise(const la::BlockMatrix<6>& K, const VecX& rows, std::span<const unsigned char> free, la::BlockMatrix<6>& out) {
+/// Symmetric part of K in `out`; the largest asymmetry relative to what the rows hold, free
+/// unknowns only.
+double symmetrise(const la::BlockMatrix<6>& K, const VecX& rows,
+                  std::span<const unsigned char> free, la::BlockMatrix<6>& out) {
   const la::BlockPattern& p = K.pattern();
   double skew = 0;
   for (Index i = 0; i < p.size(); ++i)
@@ -56,11 +59,13 @@ double symmetrise(const la::BlockMatrix<6>& K, const VecX& rows, std::span<const
 /// K and a positive diagonal in M's place, for factors of K + s diag.
 class Shifted {
  public:
-  Shifted(const la::BlockMatrix<6>& K, const VecX& diagonal, std::span<const unsigned char> free) : m_(K.pattern()), lu_(K.pattern(), free) {
+  Shifted(const la::BlockMatrix<6>& K, const VecX& diagonal, std::span<const unsigned char> free)
+      : m_(K.pattern()), lu_(K.pattern(), free) {
     std::copy_n(K.data(), K.value_count(), m_.K.data());
     m_.M.set_zero();
     const la::BlockPattern& p = K.pattern();
-    for (Index i = 0; i < p.size(); ++i) m_.M.block(p.diagonal(i)).diagonal() = diagonal.segment<6>(6 * i);
+    for (Index i = 0; i < p.size(); ++i)
+      m_.M.block(p.diagonal(i)).diagonal() = diagonal.segment<6>(6 * i);
   }
   bool factor(double s) { return lu_.factor(m_, s, 0.0, 1.0) == la::Status::ok; }
   /// Negative eigenvalues of K + s diag; a pivot that vanishes moves s a little up.
@@ -94,13 +99,17 @@ void clear_held(VecX& x, std::span<const unsigned char> free) {
 /// A start that no symmetry of a model makes orthogonal to what is sought.
 VecX generic_start(Index n, std::span<const unsigned char> free) {
   VecX x(n);
-  for (Index k = 0; k < n; ++k) x[k] = 0.5 + std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.0);
+  for (Index k = 0; k < n; ++k)
+    x[k] = 0.5 + std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.0);
   clear_held(x, free);
   return x;
 }
 
-/// Inverse iteration with the factors at hand: x becomes the vector, the result mu of (K + shift D) x = mu D x of least size.
-double inverse_iteration(la::BlockLu<double>& lu, const VecX& D, std::span<const unsigned char> free, VecX& x, int steps, double tolerance) {
+/// Inverse iteration with the factors at hand: x becomes the vector, the result mu of (K + shift D)
+/// x = mu D x of least size.
+double inverse_iteration(la::BlockLu<double>& lu, const VecX& D,
+                         std::span<const unsigned char> free, VecX& x, int steps,
+                         double tolerance) {
   double mu = nan;
   for (int k = 0; k < steps; ++k) {
     x /= std::sqrt(x.dot(D.cwiseProduct(x)));
@@ -117,11 +126,13 @@ double inverse_iteration(la::BlockLu<double>& lu, const VecX& D, std::span<const
   return mu;
 }
 
-/// Lowest eigenvalue and vector of a symmetric K: its place between shifts by inertia, then inverse iteration from just below.
-void find_lowest(const la::BlockMatrix<6>& K, std::span<const unsigned char> free, const system::System& system, double length, Definiteness& out) {
+/// Lowest eigenvalue and vector of a symmetric K: its place between shifts by inertia, then inverse
+/// iteration from just below.
+void find_lowest(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
+                 const system::System& system, double length, Definiteness& out) {
   const VecX D = metric(system, length);
   Shifted shifted(K, D, free);
-  double up = 1.0;   // K + up D is definite; a start from what one row holds
+  double up = 1.0; // K + up D is definite; a start from what one row holds
   VecX x = generic_start(D.size(), free);
   VecX Kx = VecX::Zero(D.size());
   K.add_multiply(1.0, x, Kx);
@@ -129,9 +140,13 @@ void find_lowest(const la::BlockMatrix<6>& K, std::span<const unsigned char> fre
   while (shifted.negative(up) > 0 && up < 1e30) up *= 16.0;
   double down = 0.0;
   for (int k = 0; k < 60 && up - down > 0.02 * up; ++k) {
-    const double middle = down > 0.0 && up > 4.0 * down ? std::sqrt(up * down) : down > 0.0 ? 0.5 * (up + down) : up / 64.0;
-    if (shifted.negative(middle) > 0) down = middle;
-    else up = middle;
+    const double middle = down > 0.0 && up > 4.0 * down ? std::sqrt(up * down)
+                          : down > 0.0                  ? 0.5 * (up + down)
+                                                        : up / 64.0;
+    if (shifted.negative(middle) > 0)
+      down = middle;
+    else
+      up = middle;
   }
   if (!shifted.factor(up)) return;
   const double mu = inverse_iteration(shifted.lu(), D, free, x, 60, 1e-12);
@@ -141,11 +156,13 @@ void find_lowest(const la::BlockMatrix<6>& K, std::span<const unsigned char> fre
 }
 
 /// Unsymmetric K: negative real eigenvalues among those of least size.
-void count_real(const la::BlockMatrix<6>& K, std::span<const unsigned char> free, const system::System& system, double length, Definiteness& out) {
+void count_real(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
+                const system::System& system, double length, Definiteness& out) {
   const VecX D = metric(system, length);
   la::BlockMatrix<6> B(K.pattern());
   B.set_zero();
-  for (Index i = 0; i < K.pattern().size(); ++i) B.block(K.pattern().diagonal(i)).diagonal() = D.segment<6>(6 * i);
+  for (Index i = 0; i < K.pattern().size(); ++i)
+    B.block(K.pattern().diagonal(i)).diagonal() = D.segment<6>(6 * i);
   out.negative = 0;
   try {
     for (const la::Mode& m : la::linear_modes(K, B, free, 8)) {
@@ -159,16 +176,15 @@ void count_real(const la::BlockMatrix<6>& K, std::span<const unsigned char> free
       out.shape = (m.x / m.x[largest]).real();
       scale_shape(out.shape, system);
     }
-  } catch (const Error&) {
-    out.negative = 0;
-  }
+  } catch (const Error&) { out.negative = 0; }
   // one more than were found where the sign of det K says so
   if ((out.negative % 2 != 0) != (out.sign < 0)) ++out.negative;
 }
 
 }  // namespace
 
-Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned char> free, const system::System& system, double length, bool shape) {
+Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
+                           const system::System& system, double length, bool shape) {
   Definiteness out;
   const VecX rows = row_sizes(K);
   la::BlockMatrix<6> symmetric(K.pattern());
@@ -191,9 +207,11 @@ Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned
 
 std::string describe(const Definiteness& d) {
   if (d.negative == 0) return "stable";
-  const std::string count = fmt::format("unstable in {} direction{}", d.negative, d.negative == 1 ? "" : "s");
+  const std::string count =
+      fmt::format("unstable in {} direction{}", d.negative, d.negative == 1 ? "" : "s");
   if (d.symmetric) return count;
-  return count + (d.certain ? " (divergence, for any mass and damping)" : " (negative real eigenvalues found)");
+  return count + (d.certain ? " (divergence, for any mass and damping)"
+                            : " (negative real eigenvalues found)");
 }
 
 void scale_shape(VecX& x, const system::System& s) {
@@ -224,7 +242,8 @@ std::vector<unsigned char> free_unknowns(const system::System& s, std::span<cons
   return out;
 }
 
-double eigenvalue_near_zero(const la::BlockMatrix<6>& K, std::span<const unsigned char> free, const system::System& system, double length, VecX& x) {
+double eigenvalue_near_zero(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
+                            const system::System& system, double length, VecX& x) {
   const VecX D = metric(system, length);
   if (x.size() != D.size()) x = generic_start(D.size(), free);
   Shifted shifted(K, D, free);

@@ -1,14 +1,19 @@
-// Whether an equilibrium is stable: the directions in which its static tangent K = dR/dq drives a small displacement further away.
+// Whether an equilibrium is stable: the directions in which its static tangent K = dR/dq drives a
+// small displacement further away.
 //
-// Symmetric K (dead loads, springs, gravity): the number of its negative eigenvalues, by Sylvester's law from one factorisation. In
-// each of these directions the potential energy falls, at any speed.
-// Unsymmetric K (films, cross-coupling, internal damping that turns, torques of fixed direction) is the derivative of no energy.
-// What is claimed then, for lambda^2 M + lambda C + K with any positive M and any C:
-//   x' K x > 0 for every x (inertia of the symmetric part)     no real root lambda >= 0: no divergence, certain
-//   det K < 0                                                  an odd number of real roots lambda > 0: unstable, certain
-//   otherwise                                                  the negative real eigenvalues among those of least size: counted, not proved
-// Loss of stability by oscillation (whirl, flutter) is not asked about here, nor whether gyroscopic moments hold an even number of
-// negative directions in a rotor that spins: modal analysis of the same state answers both.
+// Symmetric K (dead loads, springs, gravity): the number of its negative eigenvalues, by
+// Sylvester's law from one factorisation. In each of these directions the potential energy falls,
+// at any speed.
+// Unsymmetric K (films, cross-coupling, internal damping that turns, torques of fixed direction) is
+// the derivative of no energy. What is claimed then, for lambda^2 M + lambda C + K with any positive
+// M and any C:
+//   x' K x > 0 for every x (inertia of the symmetric part): no real root lambda >= 0, no divergence;
+//     certain
+//   det K < 0: an odd number of real roots lambda > 0, unstable; certain
+//   otherwise: the negative real eigenvalues among those of least size; counted, not proved
+// Loss of stability by oscillation (whirl, flutter) is not asked about here, nor whether gyroscopic
+// moments hold an even number of negative directions in a rotor that spins: modal analysis of the
+// same state answers both.
 #pragma once
 #include <la/block.hpp>
 #include <system/system.hpp>
@@ -16,32 +21,38 @@
 namespace whirl::analysis {
 
 struct Definiteness {
-  Index negative = 0;        ///< directions (symmetric K) or negative real eigenvalues (unsymmetric K)
+  Index negative = 0; ///< directions (symmetric K) or negative real eigenvalues (unsymmetric K)
   bool symmetric = true;
-  bool certain = true;       ///< false: counted, not proved
-  int sign = 1;              ///< of det K
-  double lowest = 0;         ///< the lowest eigenvalue of K x = mu D x, D = 1 for displacements and (length/10)^2 for rotations, N/m
-  VecX shape;                ///< its vector (u, phi, gamma) a node, largest displacement 1; only when negative > 0
+  bool certain = true; ///< false: counted, not proved
+  int sign = 1;        ///< of det K
+  double lowest = 0;   ///< the lowest eigenvalue of K x = mu D x, D = 1 for displacements and
+                       ///< (length/10)^2 for rotations, N/m
+  VecX shape; ///< its vector (u, phi, gamma) a node, largest displacement 1; only when negative > 0
 
   bool stable() const { return negative == 0; }
 };
 
-/// Judges a tangent. free: 1 where q is unknown. length: size of the model, m. Directions that K resists by less than 2e-14 of what
-/// its rows hold are rounding (indifferent), not negative. shape: find it (some 20 factorisations, unstable equilibria only).
-Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned char> free, const system::System& system, double length, bool shape = true);
+/// Judges a tangent. free: 1 where q is unknown. length: size of the model, m. Directions that K
+/// resists by less than 2e-14 of what its rows hold are rounding (indifferent), not negative.
+/// shape: find it (some 20 factorisations, unstable equilibria only).
+Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
+                           const system::System& system, double length, bool shape = true);
 
 /// Scales a shape: largest displacement 1 (rotation, where nothing is displaced).
 void scale_shape(VecX& x, const system::System& system);
 /// Diagonal of the box around the nodes, m (1 where that is zero).
 double model_length(const system::System& system);
-/// Unknowns of an equilibrium: the system's, but for angles that only the speed holds (Equilibrium::spin_holds).
-std::vector<unsigned char> free_unknowns(const system::System& system, std::span<const Index> spin_holds);
+/// Unknowns of an equilibrium: the system's, but for angles that only the speed holds
+/// (Equilibrium::spin_holds).
+std::vector<unsigned char> free_unknowns(const system::System& system,
+                                         std::span<const Index> spin_holds);
 
 /// "unstable in 2 directions", "stable", for unsymmetric tangents with what is claimed
 std::string describe(const Definiteness& d);
 
-/// The eigenvalue of K x = mu D x nearest to zero, and its vector, by inverse iteration from x (or a start of its own when x is empty).
-/// NaN: K cannot be factored.
-double eigenvalue_near_zero(const la::BlockMatrix<6>& K, std::span<const unsigned char> free, const system::System& system, double length, VecX& x);
+/// The eigenvalue of K x = mu D x nearest to zero, and its vector, by inverse iteration from x (or
+/// a start of its own when x is empty). NaN: K cannot be factored.
+double eigenvalue_near_zero(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
+                            const system::System& system, double length, VecX& x);
 
 }  // namespace whirl::analysis

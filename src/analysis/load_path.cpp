@@ -18,9 +18,17 @@ constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 class Loaded final : public la::ContinuationProblem {
  public:
   /// free: unknowns of the path (those of the solver, but for what a branch holds).
-  Loaded(RunningSystem& running, EquilibriumSolver& solver, std::span<const unsigned char> free, double Omega, const system::State& s, const LoadPathOptions& o)
-      : running_(running), free_(free), Omega_(Omega), frames_(s.frames), scale_(s.q.size()), r1_(s.q.size()), matrices_(running.system().make_matrices()),
-        direct_(la::make_direct_solver<double>(running.system().pattern(), free, o.equilibrium.solver)) {
+  Loaded(RunningSystem& running, EquilibriumSolver& solver, std::span<const unsigned char> free,
+         double Omega, const system::State& s, const LoadPathOptions& o)
+      : running_(running),
+        free_(free),
+        Omega_(Omega),
+        frames_(s.frames),
+        scale_(s.q.size()),
+        r1_(s.q.size()),
+        matrices_(running.system().make_matrices()),
+        direct_(la::make_direct_solver<double>(running.system().pattern(), free,
+                                               o.equilibrium.solver)) {
     const system::System& sys = running.system();
     // Root mean square of displacements over the model's length, and of angles: 1 is as far as things can go.
     double unknowns = 0;
@@ -65,14 +73,15 @@ class Loaded final : public la::ContinuationProblem {
   /// K of the last factor().
   const la::BlockMatrix<6>& tangent() const { return matrices_.K; }
 
-  std::string why;   ///< of the last failure; empty: Newton's iteration itself
+  std::string why; ///< of the last failure; empty: Newton's iteration itself
 
  private:
   std::string reason_outside(const VecX& q) const {
     const system::System& s = running_.system();
     for (Index i = 0; i < s.nodes(); ++i)
       if (!s.node(i).scalar && q.segment<2>(6 * i + 4).norm() >= rotation::chart_limit)
-        return fmt::format("chart limit at {}: its section is tilted by pi from its axis", s.node(i).name);
+        return fmt::format("chart limit at {}: its section is tilted by pi from its axis",
+                           s.node(i).name);
     return "the next state lies outside the range of an element";
   }
   void mask(VecX& x) const {
@@ -89,11 +98,13 @@ class Loaded final : public la::ContinuationProblem {
   std::unique_ptr<la::DirectSolver<double>> direct_;
 };
 
-/// One path on its way: the tangent's count at each point, critical points, and the continuation that leads from one to the next.
+/// One path on its way: the tangent's count at each point, critical points, and the continuation
+/// that leads from one to the next.
 class Follower {
  public:
   using Accept = std::function<bool(const LoadPathPoint&)>;
-  Follower(RunningSystem& running, double Omega, const system::State& start, const LoadPathOptions& o, const Accept& accept)
+  Follower(RunningSystem& running, double Omega, const system::State& start,
+           const LoadPathOptions& o, const Accept& accept)
       : running_(running), Omega_(Omega), o_(o), accept_(accept), solver_(running, o.equilibrium) {
     running.set_load(0.0);
     out_.last = solver_.solve(Omega, &start);
@@ -101,7 +112,7 @@ class Follower {
     c_.tolerance = o.equilibrium.tolerance;
     c_.first_step = 1.0 / std::max(o.steps, 1);
     c_.max_step = std::max(c_.first_step, 0.05);
-    c_.max_steps = std::numeric_limits<int>::max();   // max_points ends the path
+    c_.max_steps = std::numeric_limits<int>::max(); // max_points ends the path
   }
 
   LoadPathResult follow() {
@@ -115,7 +126,8 @@ class Follower {
     bool going = accept_({0.0, false, out_.last.iterations, &s, now_});
     if (!going) out_.end = LoadPathEnd::stopped;
     while (going) going = follow_on_one_chart();
-    if (out_.end == LoadPathEnd::reached && o_.branch != 0 && out_.branched_at < 0) out_.end = LoadPathEnd::no_branch;
+    if (out_.end == LoadPathEnd::reached && o_.branch != 0 && out_.branched_at < 0)
+      out_.end = LoadPathEnd::no_branch;
     return finish();
   }
 
@@ -124,12 +136,14 @@ class Follower {
   /// A point between two points of the path.
   struct Probe {
     double part = 0, load = 0;
-    double mu = nan;   ///< the eigenvalue nearest to zero
-    VecX q, shape;     ///< shape: of that eigenvalue
+    double mu = nan; ///< the eigenvalue nearest to zero
+    VecX q, shape;   ///< shape: of that eigenvalue
     Definiteness tangent;
   };
 
-  Definiteness judge(const la::BlockMatrix<6>& K) const { return judge_tangent(K, solver_.free(), running_.system(), solver_.length(), false); }
+  Definiteness judge(const la::BlockMatrix<6>& K) const {
+    return judge_tangent(K, solver_.free(), running_.system(), solver_.length(), false);
+  }
 
   /// Continues while the charts stay; whether there is more to follow.
   bool follow_on_one_chart() {
@@ -143,7 +157,8 @@ class Follower {
       if (to_go == 0.0) return false;
       c_.controlled = o_.controlled;
       c_.last_controlled = o_.controlled_to;
-      c_.max_step = std::abs(o_.controlled_to / problem.scale()[o_.controlled]) / std::max(o_.steps, 1);
+      c_.max_step =
+          std::abs(o_.controlled_to / problem.scale()[o_.controlled]) / std::max(o_.steps, 1);
       c_.first_step = std::copysign(c_.max_step, to_go);
     }
     const VecX leave_along = std::move(leave_along_);
@@ -151,20 +166,29 @@ class Follower {
     c_.start_direction = leave_along.size() > 0 ? &leave_along : nullptr;
     kept_arc_ = 0.0;
     Next next = Next::go_on;
-    const auto result = continuation_.run(problem, s.q, load_, c_, [&](const VecX&, const la::ContinuationPoint& p) {
-      next = take(problem, p);
-      return next == Next::go_on;
-    });
+    const auto result = continuation_.run(problem, s.q, load_, c_,
+                                          [&](const VecX&, const la::ContinuationPoint& p) {
+                                            next = take(problem, p);
+                                            return next == Next::go_on;
+                                          });
     if (result.status == la::ContinuationStatus::finished && next == Next::go_on) return false;
     switch (next) {
       case Next::chart:
-      case Next::branch: return true;
-      case Next::stop: out_.end = LoadPathEnd::stopped; return false;
-      case Next::enough: out_.end = LoadPathEnd::too_many_points; return false;
-      case Next::go_on: break;
+      case Next::branch:
+        return true;
+      case Next::stop:
+        out_.end = LoadPathEnd::stopped;
+        return false;
+      case Next::enough:
+        out_.end = LoadPathEnd::too_many_points;
+        return false;
+      case Next::go_on:
+        break;
     }
     out_.end = LoadPathEnd::lost;
-    out_.why = problem.why.empty() ? "Newton's iteration does not converge even in the shortest steps" : problem.why;
+    out_.why = problem.why.empty()
+                   ? "Newton's iteration does not converge even in the shortest steps"
+                   : problem.why;
     return false;
   }
 
@@ -192,7 +216,8 @@ class Follower {
     return moved ? Next::chart : Next::go_on;
   }
 
-  /// Where the load is stationary between the last two points: on the cubic through both with their slopes.
+  /// Where the load is stationary between the last two points: on the cubic through both with their
+  /// slopes.
   void add_limit(const la::ContinuationPoint& p, Index before) {
     CriticalPoint c;
     c.limit = true;
@@ -207,11 +232,13 @@ class Follower {
     const double c3 = a + b - 2.0 * rise;
     const double root = std::sqrt(std::max(c2 * c2 - 3.0 * a * c3, 0.0));
     const double x = std::clamp(a / (-c2 + std::copysign(root, a)), 0.0, 1.0);
-    c.load = std::isfinite(x) ? kept_load_ + x * (a + x * (c2 + x * c3)) : 0.5 * (kept_load_ + load_);
+    c.load =
+        std::isfinite(x) ? kept_load_ + x * (a + x * (c2 + x * c3)) : 0.5 * (kept_load_ + load_);
     out_.critical.push_back(std::move(c));
   }
 
-  /// Bifurcations between the last point kept and the one just found; true when the path shall leave at one of them, which is then the state.
+  /// Bifurcations between the last point kept and the one just found; true when the path shall
+  /// leave at one of them, which is then the state.
   bool locate(Index counted) {
     Loaded problem(running_, solver_, free_, Omega_, kept_, o_);
     const VecX end = out_.last.state.q;
@@ -221,10 +248,12 @@ class Follower {
     const auto probe = [&](double part) {
       Probe x;
       x.part = part;
-      if (!chord.between(problem, kept_.q, kept_load_, end, end_load, part, c_, x.q, x.load)) return x;
+      if (!chord.between(problem, kept_.q, kept_load_, end, end_load, part, c_, x.q, x.load))
+        return x;
       problem.factor(x.q, x.load);
       x.tangent = judge(problem.tangent());
-      x.mu = eigenvalue_near_zero(problem.tangent(), solver_.free(), running_.system(), solver_.length(), shape);
+      x.mu = eigenvalue_near_zero(problem.tangent(), solver_.free(), running_.system(),
+                                  solver_.length(), shape);
       x.shape = shape;
       return x;
     };
@@ -253,12 +282,17 @@ class Follower {
     return leaves;
   }
 
-  /// Notes the point where the eigenvalue vanishes between two probes; true when the path shall branch there.
+  /// Notes the point where the eigenvalue vanishes between two probes; true when the path shall
+  /// branch there.
   bool add_bifurcation(const Probe& low, const Probe& high, Index before, Loaded& problem) {
     const bool both = low.mu * high.mu < 0.0;
-    const Probe& near = both && std::abs(high.mu) < std::abs(low.mu) ? high : std::isnan(low.mu) ? high : low;
-    const double load = both ? low.load + (high.load - low.load) * low.mu / (low.mu - high.mu) : near.load;
-    // at a limit point the load does work on the motion, at a bifurcation (of a symmetric tangent) none
+    const Probe& near = both && std::abs(high.mu) < std::abs(low.mu) ? high
+                        : std::isnan(low.mu)                         ? high
+                                                                     : low;
+    const double load =
+        both ? low.load + (high.load - low.load) * low.mu / (low.mu - high.mu) : near.load;
+    // at a limit point the load does work on the motion, at a bifurcation (of a symmetric tangent)
+    // none
     VecX f(near.q.size());
     problem.load(near.q, near.load, f);
     const double work = std::abs(f.dot(near.shape));
@@ -291,13 +325,15 @@ class Follower {
     return true;
   }
 
-  /// Where two eigenvalues vanish together the branch may be a family (a round column bends in any plane), along which nothing is resisted. One
-  /// displacement is held where it is: `along` becomes the motion that leaves it alone. finish() checks that nothing is held by force.
+  /// Where two eigenvalues vanish together the branch may be a family (a round column bends in any
+  /// plane), along which nothing is resisted. One displacement is held where it is: `along` becomes
+  /// the motion that leaves it alone. finish() checks that nothing is held by force.
   void hold_one(VecX& along, Loaded& problem) {
     Index largest = -1;
     for (Index k = 0; k < along.size(); ++k) {
       const bool displacement = k % 6 < 3 && free_[at(k)];
-      if (displacement && (largest < 0 || std::abs(along[k]) > std::abs(along[largest]))) largest = k;
+      if (displacement && (largest < 0 || std::abs(along[k]) > std::abs(along[largest])))
+        largest = k;
     }
     if (largest < 0) return;
     free_[at(largest)] = 0;
@@ -316,9 +352,12 @@ class Follower {
     running_.residual(s.frames, Omega_, s.q, out_.last.reactions);
     const double largest = out_.last.reactions.cwiseAbs().maxCoeff();
     for (Index k : held_) {
-      if (std::abs(out_.last.reactions[k]) <= 1e-6 * largest || out_.end != LoadPathEnd::reached) continue;
+      if (std::abs(out_.last.reactions[k]) <= 1e-6 * largest || out_.end != LoadPathEnd::reached)
+        continue;
       out_.end = LoadPathEnd::lost;
-      out_.why = fmt::format("several branches leave at the bifurcation, and none along {} of {} = 0", system::component_name(static_cast<int>(k % 6)), running_.system().node(k / 6).name);
+      out_.why = fmt::format(
+          "several branches leave at the bifurcation, and none along {} of {} = 0",
+          system::component_name(static_cast<int>(k % 6)), running_.system().node(k / 6).name);
     }
     for (Index k = 0; k < out_.last.reactions.size(); ++k)
       if (solver_.free()[at(k)]) out_.last.reactions[k] = 0.0;
@@ -334,8 +373,8 @@ class Follower {
   la::Continuation continuation_;
   la::ContinuationOptions c_;
   LoadPathResult out_;
-  Definiteness now_;                ///< at the last point
-  system::State kept_;              ///< the last point, with its load, slope of the load and arc length
+  Definiteness now_;   ///< at the last point
+  system::State kept_; ///< the last point, with its load, slope of the load and arc length
   double kept_load_ = 0, kept_slope_ = 0, kept_arc_ = 0;
   double load_ = 0, sign_ = 1;
   int bifurcations_ = 0;
@@ -346,7 +385,8 @@ class Follower {
 
 }  // namespace
 
-LoadPathResult follow_load_path(RunningSystem& running, double Omega, const system::State& start, const LoadPathOptions& o,
+LoadPathResult follow_load_path(RunningSystem& running, double Omega, const system::State& start,
+                                const LoadPathOptions& o,
                                 const std::function<bool(const LoadPathPoint&)>& accept) {
   return Follower(running, Omega, start, o, accept).follow();
 }
@@ -355,15 +395,25 @@ std::string describe(const LoadPathResult& r) {
   std::string limits;
   for (const CriticalPoint& c : r.critical)
     if (c.limit) limits += fmt::format("{}{:.6g}", limits.empty() ? "" : ", ", c.load);
-  if (!limits.empty()) limits = fmt::format("; it turned back at limit points, load factors {}", limits);
+  if (!limits.empty())
+    limits = fmt::format("; it turned back at limit points, load factors {}", limits);
   switch (r.end) {
-    case LoadPathEnd::reached: return fmt::format("reached its end at load factor {:.6g} after {} points", r.load, r.points);
-    case LoadPathEnd::stopped: return fmt::format("was stopped at load factor {:.6g} after {} points", r.load, r.points);
-    case LoadPathEnd::too_many_points: return fmt::format("ended at load factor {:.6g}: max_points, {} points{}", r.load, r.points, limits);
-    case LoadPathEnd::no_branch: return fmt::format("reached its end at load factor {:.6g} after {} points without the bifurcation it should branch at", r.load, r.points);
-    case LoadPathEnd::lost: break;
+    case LoadPathEnd::reached:
+      return fmt::format("reached its end at load factor {:.6g} after {} points", r.load, r.points);
+    case LoadPathEnd::stopped:
+      return fmt::format("was stopped at load factor {:.6g} after {} points", r.load, r.points);
+    case LoadPathEnd::too_many_points:
+      return fmt::format("ended at load factor {:.6g}: max_points, {} points{}", r.load, r.points,
+                         limits);
+    case LoadPathEnd::no_branch:
+      return fmt::format(
+          "reached its end at load factor {:.6g} after {} points without the bifurcation it should branch at",
+          r.load, r.points);
+    case LoadPathEnd::lost:
+      break;
   }
-  return fmt::format("was lost at load factor {:.6g} after {} points: {}{}", r.load, r.points, r.why, limits);
+  return fmt::format("was lost at load factor {:.6g} after {} points: {}{}", r.load, r.points,
+                     r.why, limits);
 }
 
 }  // namespace whirl::analysis

@@ -76,13 +76,15 @@ const std::vector<TrackedMode>& ModeTracker::advance(double Omega, const Visit& 
   }
   const double whole = std::abs(Omega - speed_);
   double goal = Omega;
+  int doubts = 0;
   while (speed_ != Omega) {
     const double from = speed_;
-    const bool last_chance = std::abs(goal - from) <= whole * std::ldexp(1.0, -options_.halvings);
+    const bool last_chance = doubts >= options_.most_doubts || std::abs(goal - from) <= whole * std::ldexp(1.0, -options_.halvings);
     if (step(goal, last_chance)) {
       if (visit) visit(from, speed_, modes_);
       goal = Omega;
     } else {
+      ++doubts;
       goal = 0.5 * (from + goal);
     }
   }

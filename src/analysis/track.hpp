@@ -14,6 +14,7 @@ struct TrackOptions {
   ModesOptions modes;
   double doubt = 0.6;    ///< likeness below which an intermediate speed is put in
   int halvings = 8;      ///< at most
+  int most_doubts = 64;  ///< between two speeds asked for; then pairs are taken as they are (a rotor whose modes change beyond recognition)
 };
 
 /// One mode on its way. id counts lines in order of appearance; before is valid when has_before.

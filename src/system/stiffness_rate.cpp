@@ -23,9 +23,10 @@ Eigen::Matrix<double, 7, 6> jacobian(const Mat32& D) {
   return J;
 }
 
-/// How it changes as the director moves at d', for one and the same small rotation of the node, w = W (dphi, dgamma):
-/// dd = w x d, dphi = (e + d).w/(1 + e.d).
-Eigen::Matrix<double, 7, 6> jacobian_rate(const Mat3& chart, const Vec2& gamma, const Vec3& t, const Vec3& d_rate) {
+/// How it changes as the director moves at d', for one and the same small rotation of the node, w =
+/// W (dphi, dgamma): dd = w x d, dphi = (e + d).w/(1 + e.d).
+Eigen::Matrix<double, 7, 6> jacobian_rate(const Mat3& chart, const Vec2& gamma, const Vec3& t,
+                                          const Vec3& d_rate) {
   Mat3 W;
   W.col(0) = chart * rotation::omega_of_rates(gamma, 1.0, Vec2::Zero());
   W.col(1) = chart * rotation::omega_of_rates(gamma, 0.0, Vec2::UnitX());
@@ -58,11 +59,13 @@ RelativeMotion::RelativeMotion(const StiffnessMotion& m, const std::array<Index,
   const Vec3 chord = place[1] - place[0];
   const Vec3 mean = 0.5 * (omega[0] + omega[1]);
   Vec3 turn = mean;
-  if (chord.squaredNorm() > 0.0) turn = (chord.cross(velocity[1] - velocity[0]) + chord.dot(mean) * chord) / chord.squaredNorm();
+  if (chord.squaredNorm() > 0.0)
+    turn = (chord.cross(velocity[1] - velocity[0]) + chord.dot(mean) * chord) / chord.squaredNorm();
   const Vec3 middle = 0.5 * (place[0] + place[1]);
   const Vec3 move = 0.5 * (velocity[0] + velocity[1]);
   for (std::size_t a = 0; a < 2; ++a) {
-    const rotation::ChartRates whole = rotation::rates_of_omega(gamma[a], chart[a].transpose() * turn);
+    const rotation::ChartRates whole =
+        rotation::rates_of_omega(gamma[a], chart[a].transpose() * turn);
     gamma_rate[a] -= whole.gamma;
     rotation::Director d;
     rotation::director(gamma[a], gamma_rate[a], Vec2::Zero(), d);
@@ -80,7 +83,8 @@ Mat2 curvature_rate(const RelativeMotion& m, std::size_t node, const Vec3& f, co
   const Mat2 change = d.curvature(m.chart[node].transpose() * df);
   const double size = m.gamma_rate[node].norm();
   if (size == 0.0 || f.isZero(0.0)) return change;
-  // how the curvature turns under the force that is there at rest: a smooth function of two angles, fourth-order difference, 0.01 rad
+  // how the curvature turns under the force that is there at rest: a smooth function of two angles,
+  // fourth-order difference, 0.01 rad
   const Vec3 at_rest = m.chart[node].transpose() * f;
   const double h = 0.01 / size;
   const auto shifted = [&](double step) {
@@ -92,7 +96,9 @@ Mat2 curvature_rate(const RelativeMotion& m, std::size_t node, const Vec3& f, co
   return change + (8.0 * near - far) / (12.0 * h);
 }
 
-void know_stiffness_rate(std::type_index batch, AddStiffnessRates add) { known().emplace(batch, add); }
+void know_stiffness_rate(std::type_index batch, AddStiffnessRates add) {
+  known().emplace(batch, add);
+}
 
 AddStiffnessRates find_stiffness_rate(const Term& batch) {
   const auto it = known().find(std::type_index(typeid(batch)));

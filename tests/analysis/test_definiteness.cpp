@@ -1,4 +1,5 @@
-// Negative directions of tangents: against dense eigenvalues, and of columns beyond their buckling loads.
+// Negative directions of tangents: against dense eigenvalues, and of columns beyond their buckling
+// loads.
 #include "rotors.hpp"
 
 #include <analysis/definiteness.hpp>
@@ -19,7 +20,8 @@ MatX dense(const la::BlockMatrix<6>& K, std::span<const unsigned char> free) {
   const la::BlockPattern& p = K.pattern();
   MatX out = MatX::Zero(6 * p.size(), 6 * p.size());
   for (Index i = 0; i < p.size(); ++i)
-    for (Index b = p.row_start()[static_cast<std::size_t>(i)]; b < p.row_start()[static_cast<std::size_t>(i + 1)]; ++b)
+    for (Index b = p.row_start()[static_cast<std::size_t>(i)];
+         b < p.row_start()[static_cast<std::size_t>(i + 1)]; ++b)
       out.block<6, 6>(6 * i, 6 * p.cols()[static_cast<std::size_t>(b)]) = K.block(b);
   std::vector<Index> keep;
   for (Index k = 0; k < out.rows(); ++k)
@@ -29,9 +31,13 @@ MatX dense(const la::BlockMatrix<6>& K, std::span<const unsigned char> free) {
 
 system::System chain(Index elements, double thrust = 0.0) {
   Rotor r;
-  r.add_shaft(constants(1e9, 0, 1500, 2000, 1), 1.5, static_cast<int>(elements)).pin(0, true).pin(1.5);
+  r.add_shaft(constants(1e9, 0, 1500, 2000, 1), 1.5, static_cast<int>(elements))
+      .pin(0, true)
+      .pin(1.5);
   r.b.hold(r.at(0), 3);
-  if (thrust != 0.0) r.b.add(elements::FixedLoad{Vec3(-thrust, 0, 0), Vec3::Zero(), 0, nullptr}, {r.at(1.5)}, "thrust");
+  if (thrust != 0.0)
+    r.b.add(elements::FixedLoad{Vec3(-thrust, 0, 0), Vec3::Zero(), 0, nullptr}, {r.at(1.5)},
+            "thrust");
   return r.b.finalize();
 }
 
@@ -50,7 +56,8 @@ TEST(Definiteness, CountsAsDenseEigenvaluesDo) {
     for (Index i = 0; i < s.nodes(); ++i) {
       if (symmetric)
         for (Index j : {i, std::min<Index>(i + 1, s.nodes() - 1)}) {
-          const Matrix<6> mean = 0.5 * (K.block(s.pattern().slot(i, j)) + K.block(s.pattern().slot(j, i)).transpose());
+          const Matrix<6> mean =
+              0.5 * (K.block(s.pattern().slot(i, j)) + K.block(s.pattern().slot(j, i)).transpose());
           K.block(s.pattern().slot(i, j)) = mean;
           K.block(s.pattern().slot(j, i)) = mean.transpose();
         }
@@ -68,7 +75,8 @@ TEST(Definiteness, CountsAsDenseEigenvaluesDo) {
         VecX Kx = VecX::Zero(s.size());
         K.add_multiply(1.0, d.shape, Kx);
         double metric = 0;
-        for (Index k = 0; k < s.size(); ++k) metric += (k % 6 < 3 ? 1.0 : 0.0225) * d.shape[k] * d.shape[k];
+        for (Index k = 0; k < s.size(); ++k)
+          metric += (k % 6 < 3 ? 1.0 : 0.0225) * d.shape[k] * d.shape[k];
         EXPECT_NEAR(d.shape.dot(Kx) / metric, d.lowest, 1e-6 * std::abs(d.lowest)) << trial;
       }
       continue;
@@ -86,7 +94,8 @@ TEST(Definiteness, CountsAsDenseEigenvaluesDo) {
 TEST(Definiteness, ColumnBeyondItsLoads) {
   // pinned column: each Euler load k^2 pi^2 EI/L^2 makes two more directions, one a plane
   const double euler = pi * pi * 2000 / (1.5 * 1.5);
-  for (const auto& [load, expected] : {std::pair{0.99, 0}, {1.01, 2}, {3.9, 2}, {4.1, 4}, {9.2, 6}}) {
+  for (const auto& [load, expected] :
+       {std::pair{0.99, 0}, {1.01, 2}, {3.9, 2}, {4.1, 4}, {9.2, 6}}) {
     const system::System s = chain(16, load * euler);
     Running still;
     still.ratio.assign(static_cast<std::size_t>(s.lines()), 0.0);

@@ -1,4 +1,5 @@
-// Static steps that say whether their equilibrium is stable, and load paths that say when they did not get there.
+// Static steps that say whether their equilibrium is stable, and load paths that say when they did
+// not get there.
 #include "deck_run.hpp"
 
 #include <gtest/gtest.h>
@@ -7,12 +8,14 @@ using namespace whirl::test;
 
 namespace {
 
-/// Cantilever column of 1 m and 4 mm under `load` times its Euler load pi^2 EI/(4 L^2) = 6.5113 N; a step and other lines at the end.
+/// Cantilever column of 1 m and 4 mm under `load` times its Euler load pi^2 EI/(4 L^2) = 6.5113 N;
+/// a step and other lines at the end.
 std::string column(double load, const std::string& more) {
   return R"(format = 1
 title = "column"
 [parameters]
-P = ")" + std::to_string(-6.5113180 * load) + R"( N"
+P = ")" + std::to_string(-6.5113180 * load) +
+         R"( N"
 [model]
 gravity = "0 m/s^2"
 [[material]]
@@ -60,17 +63,21 @@ TEST(StaticStability, ColumnBeyondItsBucklingLoad) {
   EXPECT_NE(summary.find("\"unstable directions\": 2"), std::string::npos) << summary;
   // the direction is the first buckling shape, u = 1 - cos(pi x/2L)
   const Columns shape = above.csv("st_unstable_direction.csv");
-  const std::size_t x = shape.column("x [m]"), y = shape.column("u_y [-]"), z = shape.column("u_z [-]"), along = shape.column("u_x [-]");
+  const std::size_t x = shape.column("x [m]"), y = shape.column("u_y [-]"),
+                    z = shape.column("u_z [-]"), along = shape.column("u_x [-]");
   ASSERT_EQ(shape.rows.size(), 21u);
   const double tip = std::hypot(shape.rows.back()[y], shape.rows.back()[z]);
   for (const auto& row : shape.rows) {
-    EXPECT_NEAR(std::hypot(row[y], row[z]) / tip, 1.0 - std::cos(M_PI / 2 * row[x]), 0.02) << row[x];   // at 1.2 of the load, not 1
+    EXPECT_NEAR(std::hypot(row[y], row[z]) / tip, 1.0 - std::cos(M_PI / 2 * row[x]), 0.02)
+        << row[x]; // at 1.2 of the load, not 1
     EXPECT_LT(std::abs(row[along]), 1e-9);
   }
 }
 
 TEST(StaticStability, SpeedSweepCountsToo) {
-  const DeckRun run(column(1.2, "[[step]]\nname = \"st\"\ntype = \"static\"\nspeeds = { start = \"0 rpm\", stop = \"100 rpm\", points = 3 }\n"));
+  const DeckRun run(column(
+      1.2,
+      "[[step]]\nname = \"st\"\ntype = \"static\"\nspeeds = { start = \"0 rpm\", stop = \"100 rpm\", points = 3 }\n"));
   EXPECT_EQ(run.exit, 0) << run.log;
   EXPECT_TRUE(run.says("3 of them unstable")) << run.log;
   const Columns t = run.csv("st_equilibria.csv");
@@ -94,11 +101,17 @@ kzz = "-1e5 N/m"
   const DeckRun symmetric(column(0.1, spring + "[[step]]\nname = \"st\"\ntype = \"static\"\n"));
   EXPECT_TRUE(symmetric.says("unstable equilibrium, 1 direction")) << symmetric.log;
   // with cross-coupling the tangent is unsymmetric: det K < 0 proves divergence
-  const DeckRun skew(column(0.1, spring + "kyz = \"1e3 N/m\"\nkzy = \"-1e3 N/m\"\n[[step]]\nname = \"st\"\ntype = \"static\"\n"));
-  EXPECT_TRUE(skew.says("unstable equilibrium, 1 direction: it diverges at any mass and damping")) << skew.log;
+  const DeckRun skew(column(
+      0.1,
+      spring +
+          "kyz = \"1e3 N/m\"\nkzy = \"-1e3 N/m\"\n[[step]]\nname = \"st\"\ntype = \"static\"\n"));
+  EXPECT_TRUE(skew.says("unstable equilibrium, 1 direction: it diverges at any mass and damping"))
+      << skew.log;
   // cross-coupling alone makes no divergence
-  const DeckRun whirl(column(0.1, "[[bearing]]\nname = \"far\"\nat = \"column:end\"\ntype = \"linear\"\nkyy = \"1e4 N/m\"\nkzz = \"1e4 N/m\"\nkyz = \"3e3 N/m\"\nkzy = \"-3e3 N/m\"\n"
-                                  "[[step]]\nname = \"st\"\ntype = \"static\"\n"));
+  const DeckRun whirl(column(
+      0.1,
+      "[[bearing]]\nname = \"far\"\nat = \"column:end\"\ntype = \"linear\"\nkyy = \"1e4 N/m\"\nkzz = \"1e4 N/m\"\nkyz = \"3e3 N/m\"\nkzy = \"-3e3 N/m\"\n"
+      "[[step]]\nname = \"st\"\ntype = \"static\"\n"));
   EXPECT_EQ(whirl.exit, 0) << whirl.log;
   EXPECT_FALSE(whirl.says("unstable")) << whirl.log;
 }
@@ -149,17 +162,20 @@ path = { load = 10, steps = 100, max_points = 30 }
 }
 
 TEST(StaticStability, BifurcationOfTheColumn) {
-  const std::string path = "[[step]]\nname = \"st\"\ntype = \"static\"\npath = { load = 1.2, steps = 12";
+  const std::string path =
+      "[[step]]\nname = \"st\"\ntype = \"static\"\npath = { load = 1.2, steps = 12";
   const DeckRun straight(column(1.0, path + " }\n"));
   EXPECT_EQ(straight.exit, 0) << straight.log;
   EXPECT_TRUE(straight.says("bifurcation 1 at load factor")) << straight.log;
   EXPECT_TRUE(straight.says("0 unstable directions before, 2 after")) << straight.log;
   const Columns c = straight.csv("st_critical_points.csv");
   ASSERT_EQ(c.rows.size(), 1u);
-  EXPECT_NEAR(c.rows[0][c.column("load factor [-]")], 1.0, 2e-5);   // 20 elements; shear and shortening 4e-6
+  EXPECT_NEAR(c.rows[0][c.column("load factor [-]")], 1.0,
+              2e-5); // 20 elements; shear and shortening 4e-6
   EXPECT_TRUE(std::filesystem::exists(straight.folder / "r" / "st_bifurcation_1.csv"));
   // the branch is the elastica: at 1.2 of the Euler load, k = sin(alpha/2), K(k)^2 = 1.2 pi^2/4
-  const DeckRun bent(column(1.0, path + ", branch = 1 }\n[[probe]]\nname = \"tip\"\nat = \"column:end\"\n"));
+  const DeckRun bent(
+      column(1.0, path + ", branch = 1 }\n[[probe]]\nname = \"tip\"\nat = \"column:end\"\n"));
   EXPECT_EQ(bent.exit, 0) << bent.log;
   double k = 0.5;
   for (int i = 0; i < 60; ++i) {
@@ -181,7 +197,8 @@ TEST(StaticStability, BucklingAndItsPath) {
   EXPECT_EQ(run.exit, 0) << run.log;
   EXPECT_TRUE(run.says("at a bifurcation point")) << run.log;
   EXPECT_FALSE(run.says("W09")) << run.log;
-  // a shallow arch: the state before buckling is not small, and the path has a limit point long before the factor
+  // a shallow arch: the state before buckling is not small, and the path has a limit point long
+  // before the factor
   const DeckRun arch(R"(format = 1
 [model]
 gravity = "0 m/s^2"

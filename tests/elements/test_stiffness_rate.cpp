@@ -28,7 +28,8 @@ GeneralBeam curved_beam() {
   c.b11 = c.b22 = 2.0 / 15;
   c.b12 = -1.0 / 30;
   const Mat3 T = rotation::L(Vec3(0.3, 0.5, -0.4));
-  const Mat3 t1 = T * rotation::L(Vec3(0.2, 0.1, -0.15)), t2 = T * rotation::L(Vec3(-0.1, 0.12, 0.2));
+  const Mat3 t1 = T * rotation::L(Vec3(0.2, 0.1, -0.15)),
+             t2 = T * rotation::L(Vec3(-0.1, 0.12, 0.2));
   return GeneralBeam(c, 0.39 * T.col(0), t1, t2, Vec3(0.02, 0.05, -0.03), Vec3(-0.04, 0.01, 0.02));
 }
 
@@ -70,10 +71,13 @@ TEST(StiffnessRate, IsTheDerivativeOfTheTangent) {
     const Matrix<14> K = tangent(0.0);
     EXPECT_LT((r.K - K).cwiseAbs().maxCoeff(), 1e-12 * K.cwiseAbs().maxCoeff());
     EXPECT_LT((r.df - K * dx).cwiseAbs().maxCoeff(), 1e-11 * (K * dx).cwiseAbs().maxCoeff());
-    // differences of fourth order: steps of 1e-3 leave 1e-12 of the fifth derivative, and rounding of 1e-13
+    // differences of fourth order: steps of 1e-3 leave 1e-12 of the fifth derivative, and rounding
+    // of 1e-13
     const double h = 1e-3;
-    const Matrix<14> difference = (8.0 * (tangent(h) - tangent(-h)) - (tangent(2 * h) - tangent(-2 * h))) / (12.0 * h);
-    EXPECT_LT((r.dK - difference).cwiseAbs().maxCoeff(), 1e-7 * difference.cwiseAbs().maxCoeff()) << trial;
+    const Matrix<14> difference =
+        (8.0 * (tangent(h) - tangent(-h)) - (tangent(2 * h) - tangent(-2 * h))) / (12.0 * h);
+    EXPECT_LT((r.dK - difference).cwiseAbs().maxCoeff(), 1e-7 * difference.cwiseAbs().maxCoeff())
+        << trial;
   }
 }
 
@@ -87,7 +91,8 @@ TEST(StiffnessRate, RigidMotionGivesNone) {
   const int n = 4;
   const auto c = elements::make_shaft_constants(section, 0.25);
   for (int i = 0; i <= n; ++i) b.add_node({Vec3(0.25 * i, 0, 0), 0, "node", false});
-  for (int i = 0; i < n; ++i) b.add(elements::ShaftBeam<false>(c, Vec3::UnitX()), {i, i + 1}, "shaft elements");
+  for (int i = 0; i < n; ++i)
+    b.add(elements::ShaftBeam<false>(c, Vec3::UnitX()), {i, i + 1}, "shaft elements");
   const System s = b.finalize();
   const State rest = s.make_state();
   Workspace w = s.make_workspace();
@@ -96,13 +101,15 @@ TEST(StiffnessRate, RigidMotionGivesNone) {
   VecX u(s.size());
   for (Index i = 0; i <= n; ++i) {
     u.segment<3>(6 * i) = Vec3(1, 2, 3) + turn.cross(s.node(i).position);
-    u.segment<3>(6 * i + 3) = turn;   // about x, y, z: phi, gamma
+    u.segment<3>(6 * i + 3) = turn; // about x, y, z: phi, gamma
   }
   la::BlockMatrix<6> out(s.pattern());
   out.set_zero();
   add_stiffness_rate({s, w, rest.frames, rest.q, u}, 1.0, out);
   const double stiffest = 1e8 / 0.25;
-  EXPECT_LT(Eigen::Map<VecX>(out.data(), static_cast<Index>(out.value_count())).cwiseAbs().maxCoeff(), 1e-13 * stiffest);
+  EXPECT_LT(
+      Eigen::Map<VecX>(out.data(), static_cast<Index>(out.value_count())).cwiseAbs().maxCoeff(),
+      1e-13 * stiffest);
   // stretching by the strain s makes the stiffness of a string: N/L, N = EA s
   u.setZero();
   for (Index i = 0; i <= n; ++i) u[6 * i] = 1e-3 * s.node(i).position.x();
@@ -111,8 +118,8 @@ TEST(StiffnessRate, RigidMotionGivesNone) {
   VecX sideways = VecX::Zero(s.size()), force = sideways;
   for (Index i = 0; i <= n; ++i) {
     sideways[6 * i + 1] = s.node(i).position.x();
-    sideways[6 * i + 5] = 1.0;   // turns with the line
+    sideways[6 * i + 5] = 1.0; // turns with the line
   }
   out.add_multiply(1.0, sideways, force);
-  EXPECT_NEAR(sideways.dot(force), 1e5, 1e-6);   // N times the length
+  EXPECT_NEAR(sideways.dot(force), 1e5, 1e-6); // N times the length
 }
