@@ -49,8 +49,19 @@ RollingStiffness stiffness_of_rolling(FrequencyStep& s, const std::vector<std::s
   return out;
 }
 
-/// Only the lateral stiffness is varied.
+/// Only the lateral stiffness is varied: what the support does where no lateral force acts stays, K_oo - K_ol K_ll^-1 K_lo, and so does
+/// the place at which it pushes, K_ll^-1 K_lo (the pressure centre of an angular-contact bearing). Without couplings the rest stays as
+/// it is; with them K stays definite at every k.
 void set_lateral(Matrix<6>& K, double k) {
+  const Mat2 Kll = K.block<2, 2>(1, 1);
+  if (Kll.determinant() > 0) {
+    const Mat2 flexibility = Kll.inverse();
+    Eigen::Matrix<double, 2, 6> here = flexibility * K.middleRows<2>(1);
+    Eigen::Matrix<double, 6, 2> there = K.middleCols<2>(1) * flexibility;
+    here.middleCols<2>(1).setIdentity();
+    there.middleRows<2>(1).setIdentity();
+    K += there * (k * Mat2::Identity() - Kll) * here;
+  }
   K(1, 2) = K(2, 1) = 0.0;
   K(1, 1) = K(2, 2) = k;
 }
@@ -192,7 +203,7 @@ void run_critical_map_step(Job& job, const model::Step& step, const model::Criti
   s.summary()["lines"] = map.lines.size(), s.summary()["stiffnesses"] = map.stiffness.size();
   s.add_table("critical_map", std::move(table), false);
   s.add_figure(io::plot_critical_map(s.file("critical_map"), "Undamped critical speeds against support stiffness", curves, own));
-  s.section.text = fmt::format("Lateral stiffness of {} supports varied together: {}. What else they do along and about the shaft stays as it is;"
+  s.section.text = fmt::format("Lateral stiffness of {} supports varied together: {}. What else they do along and about the shaft stays;"
                                " their damping, mass and pedestals are left out.", chosen.size(), names);
   if (!rolling.empty()) s.section.text += fmt::format(" Rolling bearings keep the stiffness of the equilibrium at {:.6g} rpm.", to_rpm(law.max_speed));
   if (map.lines.empty()) s.section.text += fmt::format(" No critical speed lies below {:.6g} rpm.", to_rpm(law.max_speed));

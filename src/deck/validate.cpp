@@ -455,8 +455,14 @@ void check_undeformed(const model::Model& m, Problems& out) {
       add(out, "E26", fmt::format("step '{}' starts from step '{}', but is linearised about the undeformed rotor", s.name, s.from), "leave out 'from', or about = \"equilibrium\"", s.where);
     if (const auto* stability = std::get_if<model::StabilityStep>(&s.law); stability && stability->map)
       add(out, "E26", fmt::format("step '{}': a map of the stability over a parameter is about the equilibrium of each of its rotors", s.name), "leave out 'map', or about = \"equilibrium\"", s.where);
+    // a map puts its own stiffness in the place of the films it varies
+    const auto* map = std::get_if<model::CriticalMapStep>(&s.law);
+    const auto varied_film = [&](const model::Bearing& b) {
+      const bool film = std::holds_alternative<model::ShortJournal>(b.law) || std::holds_alternative<model::FiniteJournal>(b.law);
+      return map && film && (map->bearings.empty() ? !b.to : std::find(map->bearings.begin(), map->bearings.end(), b.name) != map->bearings.end());
+    };
     for (const model::Bearing& b : m.bearings)
-      if (needs_its_load(b.law))
+      if (needs_its_load(b.law) && !varied_film(b))
         add(out, "E26", fmt::format("step '{}' is linearised about the undeformed rotor, where bearing '{}' carries no load: its stiffness is that of its load", s.name, b.name),
             "about = \"equilibrium\", or a bearing of type \"linear\" or \"table\" in its place", s.where);
   }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cmath>
 
 using namespace whirl;
@@ -272,6 +273,54 @@ kzz = "3e6 N/m"
         if (!std::isnan(rows[i][j])) {
           EXPECT_NEAR(t.rows[i][j], rows[i][j], 1e-4 * rows[i][j]) << i << " " << j;
         }
+  }
+}
+
+// Angular-contact bearings, whose lateral and tilting stiffness are coupled, at the lateral stiffness that the static step gives
+// them: the map is at the critical speeds of the machine itself. (A mesh shares mass with a linear support in another way: 3e-5.)
+TEST(CriticalMap, RollingBearingsAtTheirOwnStiffness) {
+  const auto deck = [](const std::string& steps) {
+    std::string text = R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[shaft]
+material = "steel"
+columns = ["name", "length[m]", "od[mm]", "min_elements"]
+rows = [["a", 0.3, 40, 4], ["b", 0.2, 40, 3]]
+[[disk]]
+at = "b:end"
+mass = "8 kg"
+Ip = "0.05 kg.m^2"
+Id = "0.03 kg.m^2"
+[output]
+report = false
+)";
+    for (const auto& [name, at, side] : {std::array{"A", "a:start", "+x"}, std::array{"B", "a:end", "-x"}})
+      text += fmt::format("[[bearing]]\nname = \"{}\"\nat = \"{}\"\ndirection = \"{}\"\ntype = \"ball\"\nballs = 12\nball_diameter = \"10 mm\"\n"
+                          "pitch_diameter = \"60 mm\"\ncontact_angle = \"25 deg\"\npreload = \"500 N\"\n", name, at, side);
+    return text + steps;
+  };
+  double stiffness = 0;
+  std::vector<double> own;
+  {
+    const DeckRun run(deck("[[step]]\nname = \"s\"\ntype = \"static\"\nspeed = \"20000 rpm\"\n[[step]]\nname = \"c\"\ntype = \"critical_speeds\"\n"
+                           "max_speed = \"20000 rpm\"\nmotion = \"lateral\"\nshapes = 0\n"));
+    ASSERT_EQ(run.exit, 0) << run.log;
+    stiffness = run.csv("s_rolling_stiffness.csv").rows.at(1).at(3);   // A, y, per y
+    const Columns c = run.csv("c_undamped.csv");
+    for (const auto& row : c.rows) own.push_back(row[c.column("speed [rpm]")]);
+  }
+  const DeckRun run(deck(fmt::format("[[step]]\nname = \"m\"\ntype = \"critical_map\"\nmax_speed = \"20000 rpm\"\nbackward = true\npoints = 3\n"
+                                     "stiffness_min = \"{:.17g} N/m\"\nstiffness_max = \"{:.17g} N/m\"\n", 0.01 * stiffness, 100 * stiffness)));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const Columns map = run.csv("m_critical_map.csv");
+  ASSERT_EQ(own.size(), 2u);
+  EXPECT_NEAR(map.rows.at(1)[map.column("backward 1 [rpm]")], own[0], 1e-4 * own[0]);
+  EXPECT_NEAR(map.rows.at(1)[map.column("forward 1 [rpm]")], own[1], 1e-4 * own[1]);
+  // softer supports never raise a critical speed: their stiffness stays definite
+  for (const char* line : {"backward 1 [rpm]", "forward 1 [rpm]"}) {
+    EXPECT_LT(map.rows.at(0)[map.column(line)], map.rows.at(1)[map.column(line)]);
+    EXPECT_LT(map.rows.at(1)[map.column(line)], map.rows.at(2)[map.column(line)]);
   }
 }
 
