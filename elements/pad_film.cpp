@@ -221,7 +221,8 @@ Condensed<T> condense(const Place<T>& at, const T& from, const T& to, double bet
 PadFilm::PadFilm(double start, double arc, bool round, double beta, double points_on_arc)
     : start_(start), arc_(arc), beta_(beta), round_(round) {
   // at the ends of short pads the pressure falls within 1/sqrt(beta): an element is at most three of those
-  elements_ = std::max({4, static_cast<int>(std::lround(points_on_arc / points_of_element)), static_cast<int>(std::ceil(std::sqrt(beta) * arc / 3.0))});
+  const double asked = std::round(points_on_arc / points_of_element), needed = std::ceil(std::sqrt(beta) * arc / 3.0);
+  elements_ = std::max(4, static_cast<int>(std::max(asked, needed)));
 }
 
 double PadFilm::smallest_clearance(const Vec2& e) const {
@@ -298,7 +299,9 @@ bool PadFilm::settle(const Vec2& e, const Vec2& W, Ends& s, int elements, double
       const double outward = i == 0 ? -1.0 : 1.0, core = i == 0 ? s.core_a : s.core_b;
       double to = std::clamp(end + outward * std::min(step[i], most), s.low, s.high);
       // a step back beyond where it came from, or into the core: the root is between
-      if (k > 0 && last[i] != end && out[i] * last_out[i] < 0.0 && (to - end) / (last[i] - end) >= 1.0) to = end + (last[i] - end) * out[i] / (out[i] - last_out[i]);
+      const double back = last[i] - end;
+      const bool between = k > 0 && back != 0.0 && out[i] * last_out[i] < 0.0;
+      if (between && (to - end) / back >= 1.0) to = end + back * out[i] / (out[i] - last_out[i]);
       if (outward * (to - core) < 0.0) to = 0.5 * (end + core);
       moved = std::max(moved, std::abs(to - end));
       last[i] = end;
@@ -366,8 +369,14 @@ PadLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W) const {
     const T G[2] = {c.S00 * W.x() + c.S01 * W.y(), c.S01 * W.x() + c.S11 * W.y()};
     const T flow[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(), c.out_b.x * W.x() + c.out_b.y * W.y()};
     Mat2 by_ends, flow_by_ends = Mat2::Identity(), flow_by_e = Mat2::Zero(), flow_by_W = Mat2::Zero();
-    if (free_a) flow_by_ends.row(0) = flow[0].g.tail<2>(), flow_by_e.row(0) = flow[0].g.head<2>(), flow_by_W.row(0) << c.out_a.x.v, c.out_a.y.v;
-    if (free_b) flow_by_ends.row(1) = flow[1].g.tail<2>(), flow_by_e.row(1) = flow[1].g.head<2>(), flow_by_W.row(1) << c.out_b.x.v, c.out_b.y.v;
+    const bool free[2] = {free_a, free_b};
+    const Pair<T> outflow[2] = {c.out_a, c.out_b};
+    for (int k = 0; k < 2; ++k) {
+      if (!free[k]) continue;
+      flow_by_ends.row(k) = flow[k].g.tail<2>();
+      flow_by_e.row(k) = flow[k].g.head<2>();
+      flow_by_W.row(k) << outflow[k].x.v, outflow[k].y.v;
+    }
     Mat2 S, S_e;
     S << c.S00.v, c.S01.v, c.S01.v, c.S11.v;
     for (int k = 0; k < 2; ++k) {

@@ -44,6 +44,21 @@ TEST(SqueezeFilm, CircularCentredOrbit) {
   }
 }
 
+TEST(SqueezeFilm, DragOfTheFullFilm) {
+  // Shear eta R s/h over the whole circle, at the lever R: -eta R^3 L s int dtheta/(c (1 - e cos theta)), by the rectangle rule (exact here).
+  for (const double e : {0.0, 0.3, 0.7}) {
+    FilmForce f;
+    FilmTangent t;
+    const double slip = 120;
+    ShortFullFilm{R, L, c, eta}.evaluate({Vec2(0.6 * e * c, -0.8 * e * c), Vec2(1e-3, 2e-3), slip}, f, t);
+    double shear = 0;
+    for (int k = 0; k < 400; ++k) shear += two_pi / 400 / (1 - e * std::cos(two_pi * k / 400));
+    const double torque = -eta * R * R * R * L / c * shear;
+    EXPECT_NEAR(f.T, torque * slip, 1e-12 * std::abs(torque * slip));
+    EXPECT_NEAR(t.T_slip, torque, 1e-12 * std::abs(torque));
+  }
+}
+
 TEST(SqueezeFilm, SealedEndsAgainstLongFilm) {
   // Radial squeeze at the centre towards +y with the feed opposite: (h^3 P')' = -12 eta R^2 w cos(theta) with P = 0 at theta = pi gives
   // P = 12 eta R^2 w/c^3 (1 + cos theta), positive all round: F = -12 pi eta R^3 L w/c^3, the long damper that does not cavitate.
