@@ -19,7 +19,7 @@ const char* left_out_motion(const model::StepLaw& law) {
         else if constexpr (std::is_same_v<T, model::CriticalMapStep>) motion = model::MotionKind::lateral;
         else if constexpr (requires { s.motion; }) motion = s.motion;
         switch (motion) {
-          case model::MotionKind::lateral: return "twist and axial motion: the step takes lateral motion alone";
+          case model::MotionKind::lateral: return "twist and axial motion without inertia: they follow lateral motion statically";
           case model::MotionKind::torsional: return "lateral and axial motion: the step takes torsional motion alone";
           case model::MotionKind::axial: return "lateral motion and twist: the step takes axial motion alone";
           case model::MotionKind::all: break;

@@ -21,6 +21,9 @@ constexpr std::string_view head =
     "# Files in this folder that whirl made. Later runs replace these and leave all others "
     "alone.\n";
 
+/// Stands in the list of a folder that held results from before there were lists: files found there are replaced.
+constexpr std::string_view older_mark = "# made before there were lists";
+
 bool is_there(const fs::path& p) {
   std::error_code ec;
   return fs::symlink_status(p, ec).type() != fs::file_type::not_found;
@@ -67,6 +70,7 @@ Manifest::Manifest(fs::path root) : root_(std::move(root)) {
   const fs::path list = root_ / file_name;
   if (!is_there(list)) {
     older_ = has_older_results(root_);
+    if (older_) append(std::string(older_mark));
     return;
   }
   const std::string text = regular(list) ? read_text(list) : std::string();
@@ -76,8 +80,10 @@ Manifest::Manifest(fs::path root) : root_(std::move(root)) {
   }
   std::istringstream in(text);
   std::string line;
-  while (std::getline(in, line))
+  while (std::getline(in, line)) {
+    older_ = older_ || line == older_mark;
     if (!line.empty() && line.front() != '#') names_.insert(line);
+  }
 }
 
 bool Manifest::inside(const std::string& name) const {

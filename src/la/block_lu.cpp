@@ -11,6 +11,61 @@ namespace {
 template <class Scalar>
 constexpr std::size_t planes = std::is_same_v<Scalar, Complex> ? 2 : 1;
 
+/// a b without the checks for infinite factors that the operator makes.
+Complex multiply(Complex a, Complex b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+/// A 6 x 6 matrix in real and imaginary parts, for determinants of the pivot blocks.
+struct SmallMatrix {
+  double re[6][6];
+  double im[6][6];
+
+  /// Columns of eight doubles; the imaginary plane follows.
+  void load(const double* data, bool complex) {
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i < 6; ++i) {
+        re[i][j] = data[8 * j + i];
+        im[i][j] = complex ? data[8 * j + i + lu::plane] : 0.0;
+      }
+  }
+
+  /// Elimination with row pivots.
+  Complex determinant() {
+    Complex out = 1.0;
+    for (int k = 0; k < 6; ++k) {
+      int pivot = k;
+      for (int i = k + 1; i < 6; ++i)
+        if (size(i, k) > size(pivot, k)) pivot = i;
+      if (pivot != k) {
+        std::swap(re[pivot], re[k]);
+        std::swap(im[pivot], im[k]);
+        out = -out;
+      }
+      out = multiply(out, {re[k][k], im[k][k]});
+      eliminate(k);
+    }
+    return out;
+  }
+
+ private:
+  double size(int i, int j) const { return std::abs(re[i][j]) + std::abs(im[i][j]); }
+
+  void eliminate(int k) {
+    const double norm = re[k][k] * re[k][k] + im[k][k] * im[k][k];
+    const double inverse_re = re[k][k] / norm;
+    const double inverse_im = -im[k][k] / norm;
+    for (int i = k + 1; i < 6; ++i) {
+      const double f_re = re[i][k] * inverse_re - im[i][k] * inverse_im;
+      const double f_im = re[i][k] * inverse_im + im[i][k] * inverse_re;
+      for (int j = k + 1; j < 6; ++j) {
+        re[i][j] -= f_re * re[k][j] - f_im * im[k][j];
+        im[i][j] -= f_re * im[k][j] + f_im * re[k][j];
+      }
+    }
+  }
+};
+
 void add_term(lu::Terms& t, const BlockMatrix<6>& m, Complex c) {
   if (c == Complex(0.0)) return;
   t.value[t.count] = m.data();
@@ -77,16 +132,15 @@ std::pair<double, Complex> BlockLu<Scalar>::determinant() const {
   double log10_size = 0.0;
   Complex phase = 1.0;
   for (Index k = 0; k < symbolic_.plan().n; ++k) {
-    const auto lu = inverse_pivot_block(k).partialPivLu();  // of D^-1: reciprocal determinant
-    phase *= static_cast<double>(lu.permutationP().determinant());
-    for (int i = 0; i < 6; ++i) {
-      const Complex u = lu.matrixLU()(i, i);
-      log10_size -= std::log10(std::abs(u));
-      phase *= std::conj(u) / std::abs(u);
-    }
-    phase /= std::abs(phase);
+    SmallMatrix inverse;
+    const std::size_t offset = static_cast<std::size_t>(k * lu::plane) * planes<Scalar>;
+    inverse.load(inverse_.data() + offset, std::is_same_v<Scalar, Complex>);
+    const Complex d = inverse.determinant();
+    const double size = std::sqrt(d.real() * d.real() + d.imag() * d.imag());
+    log10_size -= std::log10(size);
+    phase = multiply(phase, Complex(d.real() / size, -d.imag() / size));
   }
-  return {log10_size, phase};
+  return {log10_size, phase / std::abs(phase)};
 }
 
 template <class Scalar>

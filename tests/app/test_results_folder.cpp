@@ -154,6 +154,20 @@ TEST_F(ResultsFolder, TheUsersOwnFilesStay) {
   }
 }
 
+TEST_F(ResultsFolder, ResultsOfAnOlderProgramAreReplaced) {
+  // A folder from before there were lists: what has the name of a result is one, in every part of
+  // the run.
+  write("d.toml", deck(response));
+  write("r/run.json", "{ \"program\": \"whirl 0.1.0\" }");
+  for (const char* older : {"r/summary.json", "r/r_response.csv", "r/plots/r_P_bode.svg"})
+    write(older, older);
+  ASSERT_EQ(run({"d.toml", "-o", "r"}), 0) << read("log.txt");
+  for (const char* older : {"r/summary.json", "r/r_response.csv", "r/plots/r_P_bode.svg"}) {
+    EXPECT_FALSE(fs::exists(std::string(older) + ".kept")) << read("log.txt");
+    EXPECT_NE(read(older), older);
+  }
+}
+
 TEST_F(ResultsFolder, PicturesOfEarlierRunsGo) {
   write("d.toml", deck(response));
   ASSERT_EQ(run({"d.toml", "-o", "r"}), 0) << read("log.txt");
