@@ -79,17 +79,15 @@ void Eigenpairs::add_companions() {
       const Complex part = eig.eigenvectors()(i, j);
       p.x += (rate.imag() == 0.0 ? Complex(part.real()) : part) * known[free[at(i)]].x;
     }
-    // Two estimates: the projection, and Newton's method from it where it stays in the neighbourhood and off the zero.
-    Pair better = p;
-    if (!polisher.evaluate(p)) continue;
-    const bool polished = polisher.polish(better, opt.tolerance, false) && std::abs(better.lambda - rate) < 0.9 * std::abs(rate);
-    Pair& chosen = polished ? better : p;
-    polisher.assess(chosen);
-    make_real(chosen);
+    // The projection is an estimate only (the left vector is another one); what does not polish is left to the count.
+    if (!polisher.evaluate(p) || !polisher.polish(p, opt.tolerance, false)) continue;
+    if (std::abs(p.lambda - rate) > 0.9 * std::abs(rate)) continue;
+    polisher.assess(p);
+    make_real(p);
     const bool there = std::any_of(known.begin(), known.end(), [&](const Pair& k) {
-      return !k.rigid && std::abs(k.lambda - chosen.lambda) < 1e-3 * std::abs(chosen.lambda) + 10.0 * chosen.uncertainty;
+      return !k.rigid && std::abs(k.lambda - p.lambda) < 1e-3 * std::abs(p.lambda) + 10.0 * p.uncertainty;
     });
-    if (!there) known.push_back(std::move(chosen));
+    if (!there) known.push_back(std::move(p));
   }
   sort_known();
 }
@@ -106,10 +104,15 @@ bool Eigenpairs::add(Pair&& p) {
   for (const Pair& k : known)
     if (std::abs(k.lambda - p.lambda) <= 1e-7 * std::abs(p.lambda) + 10.0 * (k.uncertainty + p.uncertainty)) close.push_back(&k);
   if (!close.empty()) {
+    const VecX weight = polisher.weights(p.lambda);
     MatXc a(p.x.size(), static_cast<Index>(close.size()));
-    for (std::size_t j = 0; j < close.size(); ++j) a.col(static_cast<Index>(j)) = close[j]->x;
-    const VecXc rest = p.x - a * a.colPivHouseholderQr().solve(p.x);
-    if (rest.norm() < 0.05 * p.x.norm()) return false;
+    for (std::size_t j = 0; j < close.size(); ++j) {
+      a.col(static_cast<Index>(j)) = weight.cwiseProduct(close[j]->x);
+      a.col(static_cast<Index>(j)).normalize();
+    }
+    const VecXc x = weight.cwiseProduct(p.x);
+    const VecXc rest = x - a * a.colPivHouseholderQr().solve(x);
+    if (rest.norm() < 0.05 * x.norm()) return false;
   }
   known.push_back(std::move(p));
   return true;
@@ -149,12 +152,29 @@ bool Eigenpairs::add_rigid(const std::vector<Pair>& candidates) {
   return after > before;
 }
 
+bool Eigenpairs::is_free_motion(Pair& p) {
+  if (!polisher.evaluate(p)) return false;
+  if (polisher.is_unresisted(p)) return true;
+  if (complex_shift() || sigma == 0.0) return false;
+  // Vectors of several zero roots come out mixed with what rounding makes of the rest.
+  Pair pure = p;
+  VecX x = p.x.real();
+  if (p.x.imag().norm() > x.norm()) x = p.x.imag();
+  purify(x);
+  pure.x = x;
+  if (!polisher.evaluate(pure) || !polisher.is_unresisted(pure)) return false;
+  const VecXc moved = pure.x - p.x * (p.x.dot(pure.x) / p.x.squaredNorm());
+  if (moved.norm() > 1e-2 * pure.x.norm()) return false;   // another motion
+  p.x = pure.x;
+  return polisher.evaluate(p);
+}
+
 bool Eigenpairs::take(std::vector<Pair>& found, bool near) {
   bool any = false;
   std::vector<Pair> rest, rigid;
   for (Pair& p : found) {
     // Rounding of a double zero eigenvalue shows up as far as 1e-3 of the shift.
-    if (!first_order && std::abs(p.lambda) < 1e-3 * std::abs(shift) && polisher.evaluate(p) && polisher.is_unresisted(p)) {
+    if (!first_order && std::abs(p.lambda) < 1e-3 * std::abs(shift) && is_free_motion(p)) {
       rigid.push_back(std::move(p));
       continue;
     }

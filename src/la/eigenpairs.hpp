@@ -30,6 +30,8 @@ struct Eigenpairs : ShiftedOperator {
   Index count_slow_companions(const std::vector<std::size_t>& free) const;
   /// Free motions whose second root is zero as well.
   Index double_zeros = 0;
+  /// Nothing resists the motion, but for what rounding mixed into its vector (taken off then).
+  bool is_free_motion(Pair& p);
   /// The rigid-body motions in the span of the candidates' real and imaginary parts and of those already known.
   bool add_rigid(const std::vector<Pair>& candidates);
   /// Polishes what a search has found (near) or what a neighbouring problem suggests, and adds it. What does not lead to anything new is left in

@@ -200,6 +200,11 @@ double Polisher::rounding_of_stiffness(const Pair& p) {
   return rounding;
 }
 
+VecX Polisher::weights(Complex lambda) const {
+  const double s = std::abs(lambda);
+  return (diagonal_k_ + s * diagonal_c_ + s * s * diagonal_m_).cwiseSqrt();
+}
+
 bool Polisher::is_unresisted(const Pair& p) { return std::abs(p.x.dot(p.Kx)) <= rounding_of_stiffness(p); }
 
 void Polisher::separate(std::span<Pair*> group) {

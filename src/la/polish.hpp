@@ -40,6 +40,9 @@ class Polisher {
   /// group alone when its vectors are dependent.
   void separate(std::span<Pair*> group);
 
+  /// Square roots of the diagonal entries of |lambda|^2 |M| + |lambda| |C| + |K|: with them displacements and angles compare.
+  VecX weights(Complex lambda) const;
+
   Index factorizations = 0;
 
  private:

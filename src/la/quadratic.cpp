@@ -14,6 +14,7 @@ struct ModeSolver::Impl : Eigenpairs {
   std::vector<Mode> result;
   std::optional<RootCounter> counter;
   Certificate certificate;
+  static constexpr double unproved = 1e-8;   ///< backward error
 
   template <class Scalar> void lock_known(Krylov<Scalar>& k) {
     typename Krylov<Scalar>::Vec z(dimension());
@@ -259,27 +260,37 @@ struct ModeSolver::Impl : Eigenpairs {
     return std::max(std::min(radius, 1.01 * opt.max_frequency), 1.01 * least_radius);
   }
 
+  /// A pair that is no root, or a zero root counted with the free motions already, would hide one that is missing.
+  void drop_unproved() {
+    std::erase_if(known, [](const Pair& p) { return !p.rigid && (!(p.residual < unproved) || std::abs(p.lambda) <= p.uncertainty); });
+  }
+
   std::vector<Complex> known_roots() const {
     std::vector<Complex> roots(static_cast<std::size_t>(double_zeros), 0.0);
     for (const Pair& p : known) roots.push_back(p.lambda);
     return roots;
   }
 
-  /// Looks for roots near a place of the complex plane, in complex arithmetic. True: something new.
-  bool look_near(Complex place, Index count) {
+  /// Looks for roots within a distance from a place of the complex plane, in complex arithmetic, with all that is known out of the way. True:
+  /// something new.
+  bool look_near(Complex place, double distance) {
     ModeOptions o;
-    o.count = count;
-    o.shift = Complex(place.real(), std::max(place.imag(), 1e-3 * std::abs(place) + 1e-3 * sigma));
+    o.count = 0;
+    o.max_frequency = distance;
+    o.shift = Complex(place.real(), std::max(place.imag(), 1e-2 * distance));
     o.tolerance = opt.tolerance;
     o.dense_below = 0;
+    Impl near(pattern, active, o);
+    constexpr Index old = 1 << 20;   // marks what was known before
+    near.set(*m);
+    near.known = known;
+    for (Pair& p : near.known) p.from = old;
+    near.prepare_operator(false);
+    for (unsigned seed = 1; seed < 12; ++seed)
+      if (!near.search(near.krylov_complex, seed)) break;
     bool any = false;
-    const MCK& problem = *m;
-    for (const Mode& mode : quadratic_modes(problem, active, o)) {
-      Pair p;
-      p.lambda = mode.lambda;
-      p.x = mode.x;
-      if (polisher.evaluate(p) && add(std::move(p))) any = true;
-    }
+    for (Pair& p : near.known)
+      if (!p.rigid && p.from != old && std::abs(p.lambda) > p.uncertainty) any = add(std::move(p)) || any;
     sort_known();
     return any;
   }
@@ -287,8 +298,9 @@ struct ModeSolver::Impl : Eigenpairs {
   /// Looks round a grid over the region, for roots that lie too close together for their moments to tell them apart.
   bool look_everywhere(const CountRegion& region) {
     bool any = false;
-    for (const double height : {0.02, 0.15, 0.35, 0.6, 0.85})
-      for (const double left : {0.0, 0.3, 1.0, 2.0}) any = look_near(region.radius * Complex(-left, height), 6) || any;
+    for (const double height : {0.0, 0.5, 1.0})
+      for (const double left : {0.0, 0.7, 1.4, 2.1, 2.8})
+        any = look_near(region.radius * Complex(-left, height), 0.5 * region.radius) || any;
     return any;
   }
 
@@ -314,6 +326,41 @@ struct ModeSolver::Impl : Eigenpairs {
     least_radius = given;
   }
 
+  /// The missing roots are further copies of overdamped ones that are known: massless unknowns under damping in proportion to their stiffness all
+  /// have the one rate -1/beta. Their number says nothing about the machine.
+  bool further_copies(const std::vector<Complex>& places) const {
+    const auto is_copy = [&](Complex place) {
+      return std::any_of(known.begin(), known.end(), [&](const Pair& p) {
+        return !oscillates(p.lambda) && p.lambda.real() < 0.0 && std::abs(p.lambda - place) < 1e-2 * std::abs(p.lambda);
+      });
+    };
+    return !places.empty() && std::all_of(places.begin(), places.end(), is_copy);
+  }
+
+  /// Free motions whose zero roots the search could not tell apart (several at once are defective): they are counted by themselves, within a
+  /// circle round zero that is small beside every other root, and the region once more with as many zeros. True: nothing else is missing.
+  bool only_zeros_missing() {
+    std::vector<double> sizes;
+    for (const Pair& p : known)
+      if (!p.rigid) sizes.push_back(std::abs(p.lambda));
+    const double scale = scale_of(sizes);
+    if (!(scale < infinity)) return false;
+    for (const double share : {1e-6, 1e-5, 1e-4}) {
+      const double small = share * scale;
+      std::vector<Complex> others;
+      for (const Pair& p : known)
+        if (!p.rigid && std::abs(p.lambda) > small) others.push_back(p.lambda);
+      const RootCount zeros = counter->count(*m, {small, small}, others);
+      certificate.factorizations += zeros.factorizations;
+      if (!zeros.certain || zeros.unknown <= 0) continue;
+      others.insert(others.end(), static_cast<std::size_t>(zeros.unknown), Complex(0.0));
+      const RootCount all = counter->count(*m, {certificate.radius, certificate.reach}, others);
+      certificate.factorizations += all.factorizations;
+      if (all.certain && all.unknown == 0) return true;
+    }
+    return false;
+  }
+
   /// Counts the roots of the region, looks for those that are missing, and leaves the certificate.
   void certify() {
     certificate = {};
@@ -321,6 +368,7 @@ struct ModeSolver::Impl : Eigenpairs {
     const std::size_t before = known.size();
     double radius = count_radius();
     for (int round = 0; round < 6; ++round) {
+      drop_unproved();
       const CountRegion region{radius, oscillating_reach * radius};
       const RootCount c = counter->count(*m, region, known_roots());
       certificate.factorizations += c.factorizations;
@@ -334,14 +382,18 @@ struct ModeSolver::Impl : Eigenpairs {
       }
       if (c.unknown <= 0) break;
       certificate.where = counter->locate(c.unknown);
-      const Index more = std::min<Index>(c.unknown, 2 * (round + 1)) + 1;
+      if (further_copies(certificate.where)) {
+        certificate.missing = 0;
+        break;
+      }
       bool any = false;
-      for (const Complex place : certificate.where) any = look_near(place, more) || any;
+      for (const Complex place : certificate.where) any = look_near(place, 0.1 * (round + 1) * radius) || any;
       if (!any) any = look_everywhere(region);
       if (!any) break;
     }
+    if (certificate.counted && certificate.missing > 0 && only_zeros_missing()) certificate.missing = 0;
     if (certificate.complete()) certificate.where.clear();
-    certificate.recovered = static_cast<Index>(known.size() - before);
+    certificate.recovered = std::max<Index>(0, static_cast<Index>(known.size()) - static_cast<Index>(before));
     work.factorizations += certificate.factorizations;
   }
 

@@ -7,7 +7,8 @@ namespace whirl::la {
 double ShiftedOperator::scale_of(std::vector<double> sizes) {
   std::sort(sizes.begin(), sizes.end());
   std::size_t first = 0;
-  for (std::size_t k = 0; k + 1 < sizes.size() && k < most_slow; ++k)
+  // More roots stand beyond the gap than before it.
+  for (std::size_t k = 0; 2 * (k + 1) < sizes.size() && k < most_slow; ++k)
     if (sizes[k + 1] > slow_gap * sizes[k]) first = k + 1;
   return sizes.empty() ? infinity : sizes[first];
 }
@@ -44,7 +45,7 @@ void ShiftedOperator::find_shift() {
     const Ritz r = look(krylov);
     std::vector<double> sizes;
     for (std::size_t j = 0; j < r.theta.size(); ++j) {
-      if (!(std::abs(r.theta[j]) > 0.0)) continue;
+      if (!(std::abs(r.theta[j]) > 1e-12 * std::abs(r.theta[0]))) continue;   // at infinity: no mass
       const Complex lambda = s + 1.0 / r.theta[j];
       // Rigid-body motions do not set the scale; rounding moves their double zero to about 1e-8 of the highest frequency.
       if (std::abs(lambda) < 0.1 * s) {
@@ -123,7 +124,7 @@ VecXc ShiftedOperator::full_vector(const VecXc& z) const {
 }
 
 void ShiftedOperator::purify(VecX& v) {
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < purifications; ++k) {
     multiply(m->M, v, t_);
     multiply(m->C, v, y_);
     y_ = sigma * (sigma * t_ + y_);

@@ -131,7 +131,8 @@ struct ShiftedOperator {
   void prepare_operator(bool fresh);
   void factor_operator(bool fresh);
   VecXc full_vector(const VecXc& z) const;
-  /// x <- Q(sigma)^-1 (sigma^2 M + sigma C) x keeps K x = 0 and takes (sigma/omega)^2 off the rest, four times.
+  /// x <- Q(sigma)^-1 (sigma^2 M + sigma C) x keeps K x = 0 and takes (sigma/omega)^2 off the rest, time and again.
+  static constexpr int purifications = 12;
   void purify(VecX& v);
 };
 

@@ -79,7 +79,7 @@ rows = [["column", 1000, 4, 20]]
 [[bearing]]
 at = "column:start"
 type = "rigid"
-directions = ["x", "y", "z", "rx", "ry", "rz"]
+directions = ["x", "y", "z", "ry", "rz"]
 [[load]]
 at = "column:end"
 force = [")" + force + R"(", "0 N", "0 N"]
@@ -165,8 +165,8 @@ czz = "100 N.s/m"
 name = "pull"
 at = "a:end"
 type = "table"
-columns = ["speed[rpm]", "kzz[N/m]"]
-rows = [[0, 0], [4000, -4e6]]
+columns = ["speed[rpm]", "kyy[N/m]", "kzz[N/m]"]
+rows = [[0, 0, 0], [4000, 0, -4e6]]
 [[step]]
 name = "s"
 type = "stability"
@@ -175,7 +175,8 @@ speed = { start = "100 rpm", stop = "3900 rpm", points = 12 }
   ASSERT_EQ(d.exit, 0) << d.log;
   const Columns onset = d.csv("s_onset.csv");
   ASSERT_EQ(onset.rows.size(), 1u) << d.log;
-  EXPECT_NEAR(onset.rows[0][onset.column("speed [rpm]")], 1000.0, 1e-5);
+  // What grows within the rounding of the matrices is neutral: that is 3e-4 rpm here.
+  EXPECT_NEAR(onset.rows[0][onset.column("speed [rpm]")], 1000.0, 1e-3);
   EXPECT_EQ(onset.rows[0][onset.column("whirl frequency [Hz]")], 0.0);
   EXPECT_TRUE(d.says("diverging without whirl")) << d.log;
 }

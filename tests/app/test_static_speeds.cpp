@@ -97,9 +97,10 @@ TEST(StaticSpeeds, LundThomsenTable) {
 }
 
 // A speed at which the film carries too little is left out and named; the others are there.
+// At rest a film carries nothing. (At any speed above it an equilibrium exists, ever nearer to the wall; beyond what is believed of a film, W03.)
 TEST(StaticSpeeds, SpeedsWithoutEquilibriumAreNamed) {
-  const DeckRun d(deck("type = \"journal\"\nshape = \"plain\"\nlength = \"30 mm\"\nviscosity = \"1 mPa.s\"\n", R"("0.01 rpm", "3000 rpm", "6000 rpm")"));
+  const DeckRun d(deck("type = \"journal\"\nshape = \"plain\"\nlength = \"30 mm\"\nviscosity = \"1 mPa.s\"\n", R"("0 rpm", "3000 rpm", "6000 rpm")"));
   ASSERT_EQ(d.exit, 0) << d.log;
-  EXPECT_TRUE(d.says("none at 0.01 rpm")) << d.log;
+  EXPECT_TRUE(d.says("none at 0 rpm")) << d.log;
   EXPECT_EQ(d.csv("films_coefficients.csv").rows.size(), 2u);
 }

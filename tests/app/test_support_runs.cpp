@@ -59,28 +59,20 @@ std::string film(const char* name, const char* at) {
 
 }  // namespace
 
-// The short-bearing film has no largest load: its equilibrium runs into the wall. What is not believed is said, with load, capacity and
-// eccentricity. 200 kN on two films of 50 mm.
+// A film has no largest load: its equilibrium runs into the wall. What is not believed is said, with load, capacity and eccentricity. 200 kN on two
+// films of 50 mm.
 TEST_F(SupportRuns, FilmBeyondItsCapacityIsAWarning) {
-  write("d.toml", std::string(rotor) + film("DE", "a:start") + film("NDE", "b:end") +
-                      "[[load]]\nat = \"a:end\"\nforce = [\"0 N\", \"0 N\", \"-2e5 N\"]\n[[step]]\nname = \"weight\"\ntype = \"static\"\nspeed = \"100 rpm\"\n");
-  EXPECT_EQ(whirl("run d.toml"), 0) << said_;
-  EXPECT_TRUE(says("warning[W03]: bearing 'DE' runs at eccentricity 0.99")) << said_;
-  EXPECT_TRUE(says("carrying 1e+05 N")) << said_;
-  EXPECT_TRUE(says("believed up to 0.99, where it carries about")) << said_;
-}
-
-TEST_F(SupportRuns, NoEquilibriumTellsLoadCapacityAndEccentricity) {
-  std::string text = std::string(rotor) + film("DE", "a:start") + film("NDE", "b:end") +
-                     "[[load]]\nat = \"a:end\"\nforce = [\"0 N\", \"0 N\", \"-2e5 N\"]\n[[step]]\nname = \"weight\"\ntype = \"static\"\nspeed = \"100 rpm\"\n";
-  for (std::size_t at; (at = text.find("\"short_journal\"")) != std::string::npos;) text.replace(at, 15, "\"journal\"\nshape = \"plain\"");
-  write("d.toml", text);
-  EXPECT_EQ(whirl("run d.toml"), 4) << said_;
-  EXPECT_TRUE(says("error[E76]: no equilibrium found: the supports carry 0.07")) << said_;
-  EXPECT_TRUE(says("of the load; there bearing 'DE' carries 78")) << said_;
-  EXPECT_TRUE(says("N at eccentricity 0.99")) << said_;
-  EXPECT_TRUE(says("(about 2256 N at 0.99), bearing 'NDE' carries")) << said_;
-  EXPECT_TRUE(says("d.toml:")) << said_;
+  const std::string text = std::string(rotor) + film("DE", "a:start") + film("NDE", "b:end") +
+                           "[[load]]\nat = \"a:end\"\nforce = [\"0 N\", \"0 N\", \"-2e5 N\"]\n[[step]]\nname = \"weight\"\ntype = \"static\"\nspeed = \"100 rpm\"\n";
+  std::string finite = text;
+  for (std::size_t at; (at = finite.find("\"short_journal\"")) != std::string::npos;) finite.replace(at, 15, "\"journal\"\nshape = \"plain\"");
+  for (const std::string& deck : {text, finite}) {
+    write("d.toml", deck);
+    EXPECT_EQ(whirl("run d.toml"), 0) << said_;
+    EXPECT_TRUE(says("warning[W03]: bearing 'DE' runs at eccentricity 0.99")) << said_;
+    EXPECT_TRUE(says("carrying 1e+05 N")) << said_;
+    EXPECT_TRUE(says("believed up to 0.99, where it carries about")) << said_;
+  }
 }
 
 TEST_F(SupportRuns, FilmsAtRestCarryNothing) {

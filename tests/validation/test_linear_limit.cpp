@@ -48,6 +48,7 @@ czz = "2000 N.s/m"
 at = "left:start"
 type = "speed"
 speed = "3600 rpm"
+step = "run"
 [[probe]]
 name = "disk"
 at = "disk"
