@@ -17,8 +17,9 @@ ModesOptions mode_options(const StabilityOptions& o) {
 }
 
 std::vector<double> speeds_of(const StabilityOptions& o) {
-  std::vector<double> speeds = o.speeds;
-  for (Index k = 0; speeds.empty() && k <= o.grid; ++k) {
+  if (!o.speeds.empty()) return o.speeds;
+  std::vector<double> speeds;
+  for (Index k = 0; k <= o.grid; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(o.grid);
     speeds.push_back(o.min_speed + (o.max_speed - o.min_speed) * share);
   }
