@@ -345,7 +345,7 @@ struct ModeSolver::Impl : Eigenpairs {
       if (!p.rigid) sizes.push_back(std::abs(p.lambda));
     const double scale = scale_of(sizes);
     if (!(scale < infinity)) return false;
-    for (const double share : {1e-6, 1e-5, 1e-4}) {
+    for (const double share : {1e-6, 1e-5}) {
       const double small = share * scale;
       std::vector<Complex> others;
       for (const Pair& p : known)
