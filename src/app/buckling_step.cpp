@@ -3,6 +3,8 @@
 #include <analysis/buckling.hpp>
 #include <app/diagnose.hpp>
 #include <app/frequency.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 
 #include <fmt/format.h>
 

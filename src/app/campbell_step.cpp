@@ -2,6 +2,9 @@
 #include <analysis/campbell.hpp>
 #include <analysis/critical.hpp>
 #include <app/frequency.hpp>
+#include <app/progress.hpp>
+#include <app/campbell_lines.hpp>
+#include <app/step_kinds.hpp>
 
 #include <fmt/format.h>
 
@@ -37,21 +40,6 @@ io::Table make_table(const analysis::Campbell& c) {
 }
 
 }  // namespace
-
-std::vector<io::CampbellLine> drawn_lines(const analysis::Campbell& c) {
-  std::vector<io::CampbellLine> out;
-  for (const analysis::CampbellLine& l : c.lines) {
-    io::CampbellLine d;
-    d.label = l.label, d.whirl = whirl_of(l.direction);
-    d.speed = c.speeds, d.frequency = l.frequency, d.log_decrement = l.log_decrement;
-    for (const analysis::Direction x : l.direction_at) d.whirl_at.push_back(l.kind == analysis::ModeKind::lateral ? whirl_of(x) : io::Whirl::none);
-    // at rest a mode is planar and moves like the line it belongs to
-    for (std::size_t k = 0; k < d.whirl_at.size(); ++k)
-      if (l.direction_at[k] == analysis::Direction::planar) d.whirl_at[k] = d.whirl;
-    out.push_back(std::move(d));
-  }
-  return out;
-}
 
 void run_campbell_step(Job& job, const model::Step& step, const model::CampbellStep& law) {
   analysis::CampbellOptions o;

@@ -2,6 +2,7 @@
 #include <app/diagnose.hpp>
 #include <app/prepare.hpp>
 #include <app/results_folder.hpp>
+#include <app/run_deck.hpp>
 #include <core/units.hpp>
 #include <cstdio>
 #include <fmt/format.h>

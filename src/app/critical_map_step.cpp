@@ -2,6 +2,8 @@
 #include <analysis/critical.hpp>
 #include <app/frequency.hpp>
 #include <app/support_coefficients.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 #include <elements/hertz.hpp>
 
 #include <fmt/format.h>

@@ -1,6 +1,8 @@
 // A critical-speed step: undamped and damped critical speeds of any order, solved for directly.
 #include <analysis/critical.hpp>
 #include <app/frequency.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 #include <app/diagnose.hpp>
 #include <app/frequency.hpp>
 #include <app/held.hpp>
+#include <app/progress.hpp>
 
 #include <fmt/format.h>
 
@@ -237,6 +238,13 @@ void FrequencyStep::finish(const std::string& line) {
   ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}, {}", line, about_, time.text()));
   say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
+}
+
+bool turns_with_stiffness(const model::Model& m) {
+  for (const model::Shaft& s : m.shafts)
+    for (const model::Section& x : s.sections)
+      if (s.rotating && s.speed_ratio != 0 && x.general && (x.general->Iy != x.general->Iz || x.general->kappa_y != x.general->kappa_z)) return true;
+  return false;
 }
 
 }  // namespace whirl::app

@@ -80,27 +80,7 @@ void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d);
 /// displacement is a twentieth of the rotor's length (times deformation_scale in any case).
 void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& a, double amplitude = 0);
 
-/// Lines of a Campbell diagram as the plots take them; see campbell_step.cpp.
-std::vector<io::CampbellLine> drawn_lines(const analysis::Campbell& c);
-
-void run_modal_step(Job&, const model::Step&, const model::ModalStep&);
-void run_campbell_step(Job&, const model::Step&, const model::CampbellStep&);
-void run_critical_step(Job&, const model::Step&, const model::CriticalStep&);
-void run_unbalance_step(Job&, const model::Step&, const model::UnbalanceStep&);
-void run_stability_step(Job&, const model::Step&, const model::StabilityStep&);
 /// A rotating shaft has unequal principal stiffnesses: matrices in fixed axes are means over the revolution, and stability is another matter.
 bool turns_with_stiffness(const model::Model& m);
-/// A stability step of such a rotor, in axes that turn with it.
-void run_instability_bands(Job&, const model::Step&, const model::StabilityStep&);
-/// Figures and tables of the stability over a parameter; returns what to add to the step's line.
-/// The deck of a run with another value of a map's parameter. E89: nothing depends on it.
-model::Model variant_of(const RunOptions& options, const model::Step& step, const model::StabilityMap& map, const std::string& value);
-/// E89: such a rotor has bands of instability, over which no map is drawn.
-Error no_map_of_bands(const model::Step& step);
-std::string add_stability_map(FrequencyStep& s, const model::StabilityMap& map, const analysis::StabilityOptions& options);
-void run_critical_map_step(Job&, const model::Step&, const model::CriticalMapStep&);
-void run_harmonic_step(Job&, const model::Step&, const model::HarmonicStep&);
-void run_torsional_step(Job&, const model::Step&, const model::TorsionalStep&);
-void run_buckling_step(Job&, const model::Step&, const model::BucklingStep&);
 
 }  // namespace whirl::app

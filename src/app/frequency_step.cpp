@@ -1,5 +1,6 @@
 // Which function runs a step in the frequency domain.
 #include <app/frequency.hpp>
+#include <app/step_kinds.hpp>
 
 #include <type_traits>
 

@@ -2,6 +2,8 @@
 #include <analysis/frequency_response.hpp>
 #include <analysis/search.hpp>
 #include <app/response.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 #include <core/rotation.hpp>
 #include <io/text.hpp>
 

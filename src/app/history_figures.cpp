@@ -1,6 +1,7 @@
 // Figures of a transient's time histories.
 #include <app/job.hpp>
 #include <app/plot_buffer.hpp>
+#include <app/history_figures.hpp>
 #include <io/plots.hpp>
 
 #include <fmt/format.h>

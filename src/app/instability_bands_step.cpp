@@ -1,6 +1,9 @@
 // A stability step of a rotor whose shaft has unequal principal stiffnesses: bands of parametric instability.
 #include <analysis/periodic.hpp>
 #include <app/frequency.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
+#include <app/stability_map.hpp>
 
 #include <fmt/format.h>
 
@@ -8,13 +11,6 @@
 #include <cmath>
 
 namespace whirl::app {
-
-bool turns_with_stiffness(const model::Model& m) {
-  for (const model::Shaft& s : m.shafts)
-    for (const model::Section& x : s.sections)
-      if (s.rotating && s.speed_ratio != 0 && x.general && (x.general->Iy != x.general->Iz || x.general->kappa_y != x.general->kappa_z)) return true;
-  return false;
-}
 
 Error no_map_of_bands(const model::Step& step) {
   return run_error("E89", fmt::format("step '{}': a map over a parameter is not drawn for asymmetric shafts, whose instabilities are bands", step.name),

@@ -5,6 +5,7 @@
 #include <app/diagnose.hpp>
 #include <app/terminal.hpp>
 #include <app/version.hpp>
+#include <app/study.hpp>
 #include <core/interrupt.hpp>
 #include <core/isa.hpp>
 #include <cstdio>
@@ -75,13 +76,6 @@ int command_line(int argc, char** argv) {
   bool keep_everything = false;
   c->add_flag("--keep-everything", keep_everything, "build the general model instead of leaving out what the deck does not need");
 
-#ifdef WHIRL_HAVE_REPORT
-  ReportOptions report;
-  c = app.add_subcommand("report", "write the report of a results folder anew");
-  c->add_option("results", report.results, "results folder")->required();
-  c->add_flag("-q,--quiet", report.quiet, "say nothing");
-#endif
-#ifdef WHIRL_HAVE_STUDY
   StudyOptions study;
   c = app.add_subcommand("study", "error against run time of a deck over tolerances, steps, integrators and meshes");
   add_deck(c, study.deck, study.read);
@@ -89,7 +83,6 @@ int command_line(int argc, char** argv) {
   c->add_option("--exact", study.exact, "exact displacements of probes to measure against as well: CSV with columns \"t [s]\", \"PROBE.y [m]\", ..")->type_name("FILE");
   bool stability = false;
   c->add_flag("--stability", stability, "instead: spectral radius, numerical damping and energy over 1e5 steps of every integrator on this rotor");
-#endif
 
   bool reference = false, unit_list = false;
   c = app.add_subcommand("schema", "JSON schema of decks, for editors");
@@ -125,15 +118,10 @@ int command_line(int argc, char** argv) {
     if (keep_everything) run.read.set.emplace_back("model.keep_everything=true");
     return run_command(run);
   }
-#ifdef WHIRL_HAVE_REPORT
-  if (given("report")) return report_results(report);
-#endif
-#ifdef WHIRL_HAVE_STUDY
   if (given("study")) {
     study.run.terminal = is_terminal(2);
     return stability ? study_stability(study) : study_deck(study);
   }
-#endif
   if (given("schema")) return print_schema(reference ? SchemaForm::reference : unit_list ? SchemaForm::units : SchemaForm::json);
   if (given("explain")) return explain(codes);
   if (given("new")) return new_deck(fresh);

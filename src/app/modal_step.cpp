@@ -1,6 +1,8 @@
 // A modal step: whirl modes at one speed.
 #include <analysis/mode_energy.hpp>
 #include <app/frequency.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 
 #include <fmt/format.h>
 

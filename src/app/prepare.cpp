@@ -4,6 +4,7 @@
 #include <app/frequency.hpp>
 #include <app/prepare.hpp>
 #include <app/results_folder.hpp>
+#include <app/stability_map.hpp>
 #include <assembly/build_system.hpp>
 
 #include <fmt/format.h>

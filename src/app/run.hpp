@@ -1,4 +1,4 @@
-// What the commands do; the command line itself is main.cpp.
+// Choices of a run.
 #pragma once
 #include <deck/deck.hpp>
 #include <filesystem>
@@ -20,26 +20,5 @@ struct RunOptions {
   /// The model of the same deck with a key set otherwise ("parameters.clearance=75 um"), for steps that vary one. Throws as load_model().
   std::function<model::Model(const std::string& setting)> variant;
 };
-
-/// Runs all steps of a checked model. Returns the exit code (core/error.hpp); throws Error for what the user must know.
-int run_deck(const model::Model& model, const RunOptions& options);
-
-struct ReportOptions {
-  std::filesystem::path results; ///< a results folder
-  bool quiet = false;
-};
-/// Writes report.html of a results folder anew.
-int report_results(const ReportOptions& options);
-
-struct StudyOptions {
-  std::filesystem::path deck;
-  deck::ReadOptions read;
-  RunOptions run;
-  std::filesystem::path exact;   ///< CSV of the exact displacements of probes; empty: none
-};
-/// Error against run time of a deck over a ladder of tolerances, steps, integrators and meshes.
-int study_deck(const StudyOptions& options);
-/// Spectral radius, numerical damping and energy over very many steps of every integrator on the deck's rotor.
-int study_stability(const StudyOptions& options);
 
 }  // namespace whirl::app

@@ -1,5 +1,6 @@
 // Stability over a parameter of the deck: the least log decrement against speed at each of its values, and the onset speeds.
 #include <app/frequency.hpp>
+#include <app/stability_map.hpp>
 #include <assembly/build_system.hpp>
 #include <meshes/mesh.hpp>
 

@@ -1,6 +1,10 @@
 // A stability step: log decrement against speed and the onset speeds of instability, solved for directly.
 #include <analysis/stability.hpp>
 #include <app/frequency.hpp>
+#include <app/progress.hpp>
+#include <app/campbell_lines.hpp>
+#include <app/step_kinds.hpp>
+#include <app/stability_map.hpp>
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 #include <analysis/whirl_modes.hpp>
 #include <app/checkpoint.hpp>
 #include <app/job.hpp>
+#include <app/starts.hpp>
 
 #include <fmt/format.h>
 

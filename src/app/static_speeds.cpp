@@ -4,6 +4,8 @@
 #include <app/static_results.hpp>
 #include <app/support_coefficients.hpp>
 #include <app/support_diagnosis.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 #include <core/error.hpp>
 
 #include <fmt/format.h>

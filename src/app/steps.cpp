@@ -3,6 +3,8 @@
 #include <app/job.hpp>
 #include <app/savings.hpp>
 #include <app/steps.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 #include <core/interrupt.hpp>
 #include <io/nonfinite.hpp>
 #include <io/rotor_drawing.hpp>

@@ -3,6 +3,7 @@
 #include <app/results_folder.hpp>
 #include <app/run.hpp>
 #include <app/study_parts.hpp>
+#include <app/study.hpp>
 #include <deck/deck.hpp>
 #include <io/plots.hpp>
 #include <io/svg.hpp>

@@ -2,6 +2,8 @@
 // rows do not belong to nodes, column by column, relative to the largest value of its unit in the table; angles are left out, being
 // anything where an amplitude vanishes.
 #include <app/study_parts.hpp>
+#include <app/run_deck.hpp>
+#include <app/study.hpp>
 #include <core/error.hpp>
 #include <io/results.hpp>
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <analysis/study.hpp>
 #include <app/run.hpp>
+#include <app/study.hpp>
 #include <io/report.hpp>
 #include <io/value.hpp>
 #include <meshes/mesh.hpp>

@@ -4,6 +4,7 @@
 #include <app/job.hpp>
 #include <app/results_folder.hpp>
 #include <app/run.hpp>
+#include <app/study.hpp>
 #include <core/error.hpp>
 #include <deck/deck.hpp>
 #include <io/plot.hpp>

@@ -2,6 +2,8 @@
 #include <app/job.hpp>
 #include <app/results_folder.hpp>
 #include <app/study_parts.hpp>
+#include <app/transient_step.hpp>
+#include <app/study.hpp>
 #include <core/table.hpp>
 #include <io/results.hpp>
 #include <system/momentum.hpp>

@@ -1,6 +1,8 @@
 // A torsional step: natural frequencies in torsion, their shapes, and the speeds at which orders of the speed meet them.
 #include <analysis/critical.hpp>
 #include <app/frequency.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 
 #include <fmt/format.h>
 

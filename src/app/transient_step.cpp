@@ -13,6 +13,11 @@
 #include <app/spectra_output.hpp>
 #include <app/support_diagnosis.hpp>
 #include <app/transient_outputs.hpp>
+#include <app/history_figures.hpp>
+#include <app/transient_step.hpp>
+#include <app/starts.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 #include <core/interrupt.hpp>
 #include <core/rotation.hpp>
 #include <io/plots.hpp>

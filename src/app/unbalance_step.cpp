@@ -2,6 +2,8 @@
 #include <analysis/api684.hpp>
 #include <analysis/critical.hpp>
 #include <app/response.hpp>
+#include <app/progress.hpp>
+#include <app/step_kinds.hpp>
 #include <io/text.hpp>
 
 #include <fmt/format.h>

@@ -5,6 +5,7 @@
 #include <app/run.hpp>
 #include <app/run_lock.hpp>
 #include <app/steps.hpp>
+#include <app/run_deck.hpp>
 
 #include <fmt/format.h>
 
