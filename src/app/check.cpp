@@ -1,15 +1,15 @@
 #include <app/commands.hpp>
-#include <app/diagnose.hpp>
-#include <app/prepare.hpp>
-#include <app/results_folder.hpp>
-#include <app/run_deck.hpp>
+#include <run/diagnose.hpp>
+#include <steps/prepare.hpp>
+#include <run/results_folder.hpp>
+#include <steps/run_deck.hpp>
 #include <core/units.hpp>
 #include <cstdio>
 #include <fmt/format.h>
-#include <io/plots.hpp>
+#include <plot/plots.hpp>
 #include <io/results.hpp>
-#include <io/rotor_drawing.hpp>
-#include <io/svg.hpp>
+#include <plot/rotor_drawing.hpp>
+#include <plot/svg.hpp>
 #include <meshes/mass_properties.hpp>
 #include <meshes/mesh.hpp>
 #include <meshes/mesh_tables.hpp>
@@ -43,7 +43,7 @@ io::Value summary_value(const model::Model& m, const meshes::Mesh& mesh) {
   io::Value v = io::Value::object();
   v["title"] = m.title;
   v["deck"] = m.deck_path;
-  v["sha256"] = deck_hash(m);
+  v["sha256"] = run::deck_hash(m);
   v["nodes"] = mesh.nodes.size();
   v["elements"] = mesh.elements.size();
   v["shafts"] = io::Value::array();
@@ -83,7 +83,7 @@ void write_mesh(const model::Model& m, const meshes::Mesh& mesh, const std::file
   out.write_text("nodes.csv", meshes::nodes_csv(mesh));
   out.write_text("elements.csv", meshes::elements_csv(m, mesh));
   out.write_text("stations.csv", meshes::stations_csv(mesh));
-  for (const io::Figure& f : io::draw_model(m, mesh, meshes::make_scene(m, mesh))) out.write_text(f.name + ".svg", io::render_svg(f));
+  for (const plot::Figure& f : plot::draw_model(m, mesh, meshes::make_scene(m, mesh))) out.write_text(f.name + ".svg", plot::render_svg(f));
 }
 
 /// The same deck with a key set otherwise.
@@ -106,9 +106,9 @@ bool has_parameters(const deck::Deck& d) {
 meshes::Mesh prepare(const deck::Deck& d, const CheckOptions& o) {
   meshes::Mesh mesh = meshes::make_mesh(d.model);
   if (d.model.steps.empty()) return mesh;
-  RunOptions run;
+  run::RunOptions run;
   if (has_parameters(d)) run.variant = variants_of(o.deck, o.read);
-  check_steps(d.model, mesh, run);
+  steps::check_steps(d.model, mesh, run);
   return mesh;
 }
 
@@ -120,10 +120,10 @@ int check_deck(const CheckOptions& o) {
     if (o.json) {
       io::Value v = io::Value::object();
       v["ok"] = false;
-      v["diagnostics"] = to_value(d.diagnostics);
+      v["diagnostics"] = run::to_value(d.diagnostics);
       std::fputs(io::to_json(v).c_str(), stdout);
     } else {
-      print_diagnostics(d, o.quiet);
+      run::print_diagnostics(d, o.quiet);
     }
     return static_cast<int>(deck::exit_of(d.diagnostics));
   }
@@ -134,22 +134,22 @@ int check_deck(const CheckOptions& o) {
     if (!o.json) throw;
     io::Value v = io::Value::object();
     v["ok"] = false;
-    v["diagnostics"] = to_value(e.diagnostics());
+    v["diagnostics"] = run::to_value(e.diagnostics());
     std::fputs(io::to_json(v).c_str(), stdout);
     return static_cast<int>(e.exit());
   }
   if (!o.mesh.empty()) write_mesh(d.model, mesh, o.mesh);
   if (o.resolved) {
-    print_diagnostics(d, o.quiet);
+    run::print_diagnostics(d, o.quiet);
     std::fputs(d.model.resolved.c_str(), stdout);
   } else if (o.json) {
     io::Value v = io::Value::object();
     v["ok"] = true;
-    v["diagnostics"] = to_value(d.diagnostics);
+    v["diagnostics"] = run::to_value(d.diagnostics);
     v["model"] = summary_value(d.model, mesh);
     std::fputs(io::to_json(v).c_str(), stdout);
   } else {
-    print_diagnostics(d, o.quiet);
+    run::print_diagnostics(d, o.quiet);
     if (!o.quiet)
       std::fputs((summary(d.model, mesh) + "\n" + meshes::station_table(d.model, mesh) + "\n" + meshes::mass_table(d.model)).c_str(), stdout);
   }
@@ -161,10 +161,10 @@ int run_command(const RunCommand& o) {
   if (!d.ok() && o.run.json) {
     io::Value v = io::Value::object();
     v["ok"] = false;
-    v["diagnostics"] = to_value(d.diagnostics);
+    v["diagnostics"] = run::to_value(d.diagnostics);
     std::fputs(io::to_json(v).c_str(), stdout);
   } else {
-    print_diagnostics(d, o.run.quiet);
+    run::print_diagnostics(d, o.run.quiet);
   }
   if (!d.ok()) return static_cast<int>(deck::exit_of(d.diagnostics));
   if (d.model.steps.empty()) {
@@ -175,9 +175,9 @@ int run_command(const RunCommand& o) {
     e.where.file = d.model.deck_path;
     throw Error(Exit::deck, std::move(e));
   }
-  RunOptions run = o.run;
+  run::RunOptions run = o.run;
   run.variant = variants_of(o.deck, o.read);
-  return run_deck(d.model, run);
+  return steps::run_deck(d.model, run);
 }
 
 }  // namespace whirl::app

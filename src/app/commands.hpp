@@ -1,6 +1,6 @@
 // One function per command of the program. Each returns the exit code of core/error.hpp and throws Error.
 #pragma once
-#include <app/run.hpp>
+#include <run/options.hpp>
 #include <string>
 #include <vector>
 
@@ -18,7 +18,7 @@ int check_deck(const CheckOptions& options);
 struct RunCommand {
   std::filesystem::path deck;
   deck::ReadOptions read;
-  RunOptions run;
+  run::RunOptions run;
 };
 int run_command(const RunCommand& options);
 

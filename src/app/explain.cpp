@@ -2,7 +2,7 @@
 #include <core/error.hpp>
 #include <cctype>
 #include <cstdio>
-#include <deck/document.hpp>
+#include <deck/text/document.hpp>
 #include <fmt/format.h>
 
 namespace whirl::app {

@@ -2,10 +2,10 @@
 #include <CLI/CLI.hpp>
 
 #include <app/commands.hpp>
-#include <app/diagnose.hpp>
-#include <app/terminal.hpp>
-#include <app/version.hpp>
-#include <app/study.hpp>
+#include <run/diagnose.hpp>
+#include <run/terminal.hpp>
+#include <core/version.hpp>
+#include <study/study.hpp>
 #include <core/interrupt.hpp>
 #include <core/isa.hpp>
 #include <cstdio>
@@ -23,7 +23,7 @@ void add_deck(CLI::App* c, std::filesystem::path& deck, deck::ReadOptions& read)
   c->add_option("--set", read.set, "override a key: --set step.run_up.duration='5 s' (may be repeated)")->type_name("PATH=VALUE")->take_all()->allow_extra_args(false);
 }
 
-void add_run(CLI::App* c, RunOptions& run) {
+void add_run(CLI::App* c, run::RunOptions& run) {
   c->add_flag("-q,--quiet", run.quiet, "no progress and no summary");
   c->add_flag("--json", run.json, "summary as JSON on standard output");
   c->add_option("-j,--jobs", run.jobs, "threads for what can go in parallel (0: all processors)")->check(CLI::Range(0, 1024))->type_name("N");
@@ -76,7 +76,7 @@ int command_line(int argc, char** argv) {
   bool keep_everything = false;
   c->add_flag("--keep-everything", keep_everything, "build the general model instead of leaving out what the deck does not need");
 
-  StudyOptions study;
+  study::StudyOptions study;
   c = app.add_subcommand("study", "error against run time of a deck over tolerances, steps, integrators and meshes");
   add_deck(c, study.deck, study.read);
   add_run(c, study.run);
@@ -114,13 +114,13 @@ int command_line(int argc, char** argv) {
   const auto given = [&](const char* name) { return app.got_subcommand(name); };
   if (given("check")) return check_deck(check);
   if (given("run")) {
-    run.run.terminal = is_terminal(2);
+    run.run.terminal = run::is_terminal(2);
     if (keep_everything) run.read.set.emplace_back("model.keep_everything=true");
     return run_command(run);
   }
   if (given("study")) {
-    study.run.terminal = is_terminal(2);
-    return stability ? study_stability(study) : study_deck(study);
+    study.run.terminal = run::is_terminal(2);
+    return stability ? study::study_stability(study) : study::study_deck(study);
   }
   if (given("schema")) return print_schema(reference ? SchemaForm::reference : unit_list ? SchemaForm::units : SchemaForm::json);
   if (given("explain")) return explain(codes);
@@ -145,7 +145,7 @@ int main(int argc, char** argv) {
     }
     return code;
   } catch (const whirl::Error& e) {
-    print_diagnostics(e.diagnostics());
+    run::print_diagnostics(e.diagnostics());
     return static_cast<int>(e.exit());
   } catch (const whirl::Interrupted&) {
     return static_cast<int>(whirl::Exit::interrupted);

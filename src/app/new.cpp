@@ -1,7 +1,7 @@
 #include <app/commands.hpp>
 #include <app/examples.hpp>
 #include <cstdio>
-#include <deck/document.hpp>
+#include <deck/text/document.hpp>
 #include <fmt/format.h>
 #include <filesystem>
 #include <io/file.hpp>

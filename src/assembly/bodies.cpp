@@ -1,6 +1,6 @@
 #include <assembly/parts.hpp>
-#include <elements/point_mass.hpp>
-#include <elements/rigid_body.hpp>
+#include <elements/rigid/point_mass.hpp>
+#include <elements/rigid/rigid_body.hpp>
 
 #include <fmt/format.h>
 

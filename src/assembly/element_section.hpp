@@ -1,7 +1,7 @@
 // From a section of the model to the numbers of its elements.
 #pragma once
-#include <elements/section.hpp>
-#include <elements/timoshenko_matrices.hpp>
+#include <elements/shaft/section.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
 #include <meshes/mesh.hpp>
 #include <model/model.hpp>
 

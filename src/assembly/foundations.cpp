@@ -1,7 +1,7 @@
 // Reduced foundations: a node for every support point and every internal coordinate, matrices in parts between pairs of them.
 #include <assembly/parts.hpp>
-#include <elements/matrix_part.hpp>
-#include <elements/point_mass.hpp>
+#include <elements/supports/matrix_part.hpp>
+#include <elements/rigid/point_mass.hpp>
 
 #include <fmt/format.h>
 

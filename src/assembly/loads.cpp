@@ -1,6 +1,6 @@
 #include <assembly/parts.hpp>
-#include <elements/point_load.hpp>
-#include <elements/spin_torque.hpp>
+#include <elements/loads/point_load.hpp>
+#include <elements/loads/spin_torque.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // How much of what moves and loads the nodes is the elements' own inertia: the share of elements/timoshenko_matrices.hpp.
 #pragma once
 #include <assembly/parts.hpp>
-#include <elements/timoshenko_matrices.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
 #include <vector>
 
 namespace whirl::assembly {

@@ -5,7 +5,7 @@
 // Each support is a row: relative motion of its two sides. What the rows leave free is their null space, found for each group
 // of connected lines on its own.
 #include <assembly/parts.hpp>
-#include <elements/linear_bearing.hpp>
+#include <elements/supports/linear_bearing.hpp>
 #include <meshes/mass_properties.hpp>
 
 #include <Eigen/Eigenvalues>

@@ -5,14 +5,14 @@
 #include <assembly/element_section.hpp>
 #include <assembly/mass_shares.hpp>
 #include <assembly/parts.hpp>
-#include <elements/general_beam.hpp>
-#include <elements/hysteretic_damping.hpp>
-#include <elements/point_mass.hpp>
-#include <elements/rigid_body.hpp>
-#include <elements/rigid_disk.hpp>
-#include <elements/shaft_beam.hpp>
-#include <elements/shaft_damping.hpp>
-#include <elements/weight_rest.hpp>
+#include <elements/shaft/general_beam.hpp>
+#include <elements/shaft/hysteretic_damping.hpp>
+#include <elements/rigid/point_mass.hpp>
+#include <elements/rigid/rigid_body.hpp>
+#include <elements/rigid/rigid_disk.hpp>
+#include <elements/shaft/shaft_beam.hpp>
+#include <elements/shaft/shaft_damping.hpp>
+#include <elements/supports/weight_rest.hpp>
 #include <meshes/mass_properties.hpp>
 
 #include <fmt/format.h>

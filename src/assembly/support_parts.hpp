@@ -1,9 +1,9 @@
 // What the functions that add one kind of support share. Internal to src/assembly.
 #pragma once
 #include <assembly/parts.hpp>
-#include <elements/at_offset.hpp>
-#include <elements/lateral_joint.hpp>
-#include <elements/moment.hpp>
+#include <elements/supports/at_offset.hpp>
+#include <elements/supports/lateral_joint.hpp>
+#include <elements/loads/moment.hpp>
 
 #include <fmt/format.h>
 

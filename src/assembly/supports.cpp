@@ -1,11 +1,11 @@
 // Bearings, supports and pedestals. A bearing acts between its shaft node and the other side: ground, pedestal, or a second
 // station. Rigid supports hold unknowns of the shaft node itself; no penalty stiffness anywhere.
 #include <assembly/support_parts.hpp>
-#include <elements/coefficient_grid.hpp>
-#include <elements/linear_bearing.hpp>
-#include <elements/point_mass.hpp>
-#include <elements/spring_block.hpp>
-#include <elements/table_bearing.hpp>
+#include <elements/supports/coefficient_grid.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/rigid/point_mass.hpp>
+#include <elements/supports/spring_block.hpp>
+#include <elements/supports/table_bearing.hpp>
 
 #include <fmt/format.h>
 

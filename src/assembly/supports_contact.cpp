@@ -1,7 +1,7 @@
 // Nonlinear springs and contacts.
 #include <assembly/support_parts.hpp>
-#include <elements/nonlinear_spring.hpp>
-#include <elements/rub.hpp>
+#include <elements/supports/nonlinear_spring.hpp>
+#include <elements/supports/rub.hpp>
 
 namespace whirl::assembly {
 namespace {

@@ -1,10 +1,10 @@
 // Journal bearings, squeeze-film dampers, seals.
 #include <assembly/support_parts.hpp>
-#include <elements/annular_seal.hpp>
-#include <elements/finite_journal.hpp>
-#include <elements/oil.hpp>
-#include <elements/short_journal.hpp>
-#include <elements/squeeze_film.hpp>
+#include <elements/films/annular_seal.hpp>
+#include <elements/films/finite_journal.hpp>
+#include <elements/films/oil.hpp>
+#include <elements/films/short_journal.hpp>
+#include <elements/films/squeeze_film.hpp>
 
 namespace whirl::assembly {
 namespace {

@@ -1,7 +1,7 @@
 // Ball and roller bearings.
 #include <assembly/support_parts.hpp>
-#include <elements/hertz.hpp>
-#include <elements/rolling_bearing.hpp>
+#include <elements/rolling/hertz.hpp>
+#include <elements/rolling/rolling_bearing.hpp>
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
 // What connects two shafts: couplings and gear pairs.
 #include <assembly/support_parts.hpp>
-#include <elements/gear_mesh.hpp>
-#include <elements/shaft_coupling.hpp>
+#include <elements/between_shafts/gear_mesh.hpp>
+#include <elements/between_shafts/shaft_coupling.hpp>
 
 #include <cmath>
 

@@ -1,12 +1,12 @@
 // A base that turns: one more element beside every inertia.
 #include <assembly/parts.hpp>
-#include <elements/general_beam.hpp>
-#include <elements/point_mass.hpp>
-#include <elements/rigid_body.hpp>
-#include <elements/rigid_disk.hpp>
-#include <elements/shaft_beam.hpp>
-#include <elements/turning_base.hpp>
-#include <elements/unbalance.hpp>
+#include <elements/shaft/general_beam.hpp>
+#include <elements/rigid/point_mass.hpp>
+#include <elements/rigid/rigid_body.hpp>
+#include <elements/rigid/rigid_disk.hpp>
+#include <elements/shaft/shaft_beam.hpp>
+#include <elements/rigid/turning_base.hpp>
+#include <elements/loads/unbalance.hpp>
 
 namespace whirl::assembly {
 namespace {

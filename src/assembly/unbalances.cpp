@@ -5,7 +5,7 @@
 // the same place of the resultant: w_j = c_j (a + b (x_j - x0)), c_j = m_j J_j, which is the least squares of U_j^2/c_j.
 #include <assembly/node_inertia.hpp>
 #include <assembly/parts.hpp>
-#include <elements/unbalance.hpp>
+#include <elements/loads/unbalance.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <deck/assemble.hpp>
+#include <deck/text/assemble.hpp>
 #include <deck/deck.hpp>
 #include <deck/materials.hpp>
 #include <deck/reader.hpp>

@@ -1,6 +1,6 @@
 // Reading decks: the public face of this component.
 #pragma once
-#include <deck/sources.hpp>
+#include <deck/text/sources.hpp>
 #include <filesystem>
 #include <model/model.hpp>
 #include <string>

@@ -2,7 +2,7 @@
 // (what the user wrote with parameters put in, plus every default made explicit, plus the tables of CSV files).
 #pragma once
 #include <core/units.hpp>
-#include <deck/parameters.hpp>
+#include <deck/text/parameters.hpp>
 #include <deck/suggest.hpp>
 #include <deck/visitor.hpp>
 #include <deque>

@@ -1,5 +1,5 @@
 // Names and references: entities, places on shafts, materials, shafts, steps.
-#include <deck/locate.hpp>
+#include <deck/text/locate.hpp>
 #include <deck/materials.hpp>
 #include <deck/reader.hpp>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Tables in tables, lists, rows with column titles (in the deck or a CSV file), and keys chosen by a "type".
 #include <core/table.hpp>
-#include <deck/assemble.hpp>
+#include <deck/text/assemble.hpp>
 #include <deck/describer.hpp>
 #include <deck/reader.hpp>
 #include <algorithm>

@@ -2,7 +2,7 @@
 // near in spelling; a name alone decides only where no key takes such a value.
 #pragma once
 #include <core/units.hpp>
-#include <deck/document.hpp>
+#include <deck/text/document.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 // Checks that need the whole model.
 #pragma once
-#include <deck/document.hpp>
+#include <deck/text/document.hpp>
 #include <model/model.hpp>
 
 namespace whirl::deck {

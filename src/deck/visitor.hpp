@@ -8,7 +8,7 @@
 // A new key is one line in its describe function; a new kind of bearing is one describe function and one line in the list of
 // alternatives (see bearings.cpp).
 #pragma once
-#include <deck/document.hpp>
+#include <deck/text/document.hpp>
 #include <model/model.hpp>
 #include <functional>
 #include <optional>

@@ -9,7 +9,7 @@ void Collector::begin(std::span<const Channel> channels) {
   scale_.clear();
   for (const auto& c : channels) scale_.insert(scale_.end(), c.width(), c.scale);
   scaled_.assign(scale_.size(), 0.0);
-  envelopes_.assign(scale_.size(), Envelope(bins_));
+  envelopes_.assign(scale_.size(), plot::Envelope(bins_));
   ring_.assign(keep_ * scale_.size(), 0.0);
   rows_ = 0;
 }

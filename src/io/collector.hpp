@@ -1,6 +1,6 @@
 // Keeps of a running time series what its plots need, in bounded memory: the envelope of every column and the last rows.
 #pragma once
-#include <io/decimate.hpp>
+#include <plot/decimate.hpp>
 #include <io/results.hpp>
 
 namespace whirl::io {
@@ -28,7 +28,7 @@ class Collector final : public TimeSeries {
   std::size_t bins_, keep_;
   std::vector<Channel> channels_;
   std::vector<double> scale_, scaled_, ring_;
-  std::vector<Envelope> envelopes_;
+  std::vector<plot::Envelope> envelopes_;
   std::uint64_t rows_ = 0;
 };
 

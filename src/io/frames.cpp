@@ -3,7 +3,7 @@
 #include <io/file.hpp>
 #include <io/frame_sets.hpp>
 #include <io/frames.hpp>
-#include <io/text.hpp>
+#include <core/text.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>

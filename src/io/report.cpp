@@ -1,8 +1,8 @@
 #include <io/file.hpp>
 #include <io/report.hpp>
 #include <io/report/assets.hpp>
-#include <io/svg.hpp>
-#include <io/text.hpp>
+#include <plot/svg.hpp>
+#include <core/text.hpp>
 #include <algorithm>
 #include <set>
 
@@ -58,17 +58,17 @@ std::string value_html(const Value& v) {
   return v.is_null() ? "" : v.boolean() ? "yes" : "no";
 }
 
-bool turns(const Figure& f) {
-  return std::any_of(f.axes.begin(), f.axes.end(), [](const Axes& a) { return a.kind == AxesKind::space; });
+bool turns(const plot::Figure& f) {
+  return std::any_of(f.axes.begin(), f.axes.end(), [](const plot::Axes& a) { return a.kind == plot::AxesKind::space; });
 }
 
-std::string figure_html(const Figure& f, const std::string& id) {
+std::string figure_html(const plot::Figure& f, const std::string& id) {
   std::string s = "<figure style=\"width:" + number_text(f.width) + "px\"><div class=\"bar\"><h3>" + escape(f.title) + "</h3><span class=\"hint\">";
   s += turns(f) ? "drag turns" : "click, then wheel zooms; drag pans; shift-drag: window";
   s += "</span><button data-do=\"reset\" title=\"back to the whole picture (double click)\">reset</button>"
        "<button data-do=\"save\" title=\"save this picture as it is now\">SVG</button></div>\n";
   // Twice the density of the printed picture: something is left to zoom into.
-  s += render_svg(f, {false, id, 2.0});
+  s += plot::render_svg(f, {false, id, 2.0});
   if (!f.caption.empty()) s += "<figcaption>" + escape(f.caption) + "</figcaption>";
   return s + "</figure>\n";
 }

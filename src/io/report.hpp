@@ -1,7 +1,7 @@
 // One self-contained page of a run: no network, no third-party script. Figures are inline SVG; a small script of our own
 // adds readout, zoom, pan, legend toggles and turning of 3-D figures. Without scripts it is still a complete page.
 #pragma once
-#include <io/plot.hpp>
+#include <plot/plot.hpp>
 #include <io/results.hpp>
 #include <filesystem>
 #include <string>
@@ -13,7 +13,7 @@ struct ReportSection {
   std::string title;                       ///< "Step 'run_up': transient"
   std::string text;                        ///< plain paragraphs, blank line between them
   std::vector<Table> tables;
-  std::vector<Figure> figures;
+  std::vector<plot::Figure> figures;
   std::vector<std::pair<std::string, std::string>> files;   ///< title, path relative to the report
 };
 

@@ -1,12 +1,12 @@
 // Rotors for tests, built from elements directly.
 #pragma once
-#include <elements/linear_bearing.hpp>
-#include <elements/point_load.hpp>
-#include <elements/rigid_disk.hpp>
-#include <elements/shaft_beam.hpp>
-#include <elements/shaft_damping.hpp>
-#include <elements/timoshenko_matrices.hpp>
-#include <elements/unbalance.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/loads/point_load.hpp>
+#include <elements/rigid/rigid_disk.hpp>
+#include <elements/shaft/shaft_beam.hpp>
+#include <elements/shaft/shaft_damping.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
+#include <elements/loads/unbalance.hpp>
 #include <system/system.hpp>
 
 #include <cmath>

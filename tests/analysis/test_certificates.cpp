@@ -4,8 +4,8 @@
 #include "../validation/deck_model.hpp"
 #include "random_machines.hpp"
 
-#include <analysis/stability.hpp>
-#include <analysis/whirl_modes.hpp>
+#include <analysis/spectra/stability.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
 #include <core/error.hpp>
 #include <gtest/gtest.h>
 

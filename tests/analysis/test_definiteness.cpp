@@ -2,8 +2,8 @@
 // loads.
 #include "rotors.hpp"
 
-#include <analysis/definiteness.hpp>
-#include <analysis/equilibrium.hpp>
+#include <analysis/statics/definiteness.hpp>
+#include <analysis/statics/equilibrium.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
@@ -97,9 +97,9 @@ TEST(Definiteness, ColumnBeyondItsLoads) {
   for (const auto& [load, expected] :
        {std::pair{0.99, 0}, {1.01, 2}, {3.9, 2}, {4.1, 4}, {9.2, 6}}) {
     const system::System s = chain(16, load * euler);
-    Running still;
+    SteadyRotation still;
     still.ratio.assign(static_cast<std::size_t>(s.lines()), 0.0);
-    RunningSystem running(s, still);
+    SteadySystem running(s, still);
     EquilibriumSolver solver(running);
     const Equilibrium e = solver.solve(0.0);
     la::MCK m = s.make_matrices();
@@ -116,8 +116,8 @@ TEST(Definiteness, FreeMotionIsNotUnstable) {
     Rotor r;
     r.add_shaft(constants(1e9, 0, 1500, 2000, 1), 1.5, n).pin(0, false).pin(1.5);
     const system::System s = r.b.finalize();
-    Running still;
-    RunningSystem running(s, still);
+    SteadyRotation still;
+    SteadySystem running(s, still);
     la::MCK m = s.make_matrices();
     const system::State rest = s.make_state();
     running.tangent(rest.frames, 0.0, rest.q, m);

@@ -1,10 +1,10 @@
 // Static and spinning equilibria against closed forms; diagnosis of what cannot stand.
 #include "rotors.hpp"
 
-#include <analysis/equilibrium.hpp>
+#include <analysis/statics/equilibrium.hpp>
 #include <core/error.hpp>
-#include <elements/general_beam.hpp>
-#include <elements/spin_torque.hpp>
+#include <elements/shaft/general_beam.hpp>
+#include <elements/loads/spin_torque.hpp>
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@ using namespace whirl::tests;
 
 namespace {
 
-Equilibrium solve(const system::System& s, double Omega = 0, double load = 1, Running running = {}) {
+Equilibrium solve(const system::System& s, double Omega = 0, double load = 1, SteadyRotation running = {}) {
   running.mean = Omega != 0;
-  RunningSystem r(s, running);
+  SteadySystem r(s, running);
   r.set_load(load);
   return EquilibriumSolver(r).solve(Omega);
 }
@@ -159,7 +159,7 @@ TEST(Equilibrium, SaysWhenAShaftCannotTurn) {
   } catch (const Error& e) {
     EXPECT_EQ(e.diagnostics().at(0).code, "E78");
   }
-  Running still;
+  SteadyRotation still;
   still.ratio = {0.0};
   EXPECT_NO_THROW(solve(s, 100.0, 1.0, still));
   EXPECT_NO_THROW(solve(s, 0.0));

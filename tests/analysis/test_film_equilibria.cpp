@@ -1,8 +1,8 @@
 // Random machines in oil films: an equilibrium that exists is found, and none is claimed where there is none.
-#include <analysis/equilibrium.hpp>
+#include <analysis/statics/equilibrium.hpp>
 #include <assembly/build_system.hpp>
 #include <deck/deck.hpp>
-#include <elements/finite_journal.hpp>
+#include <elements/films/finite_journal.hpp>
 #include "../core/reference.hpp"
 
 #include <fmt/format.h>
@@ -125,7 +125,7 @@ Count run(unsigned seed, int machines, double least_sommerfeld) {
     const deck::Deck deck = deck::read_deck_text(m.deck, "deck.toml");
     const meshes::Mesh mesh = meshes::make_mesh(deck.model);
     const assembly::Built built = assembly::build_system(deck.model, mesh);
-    analysis::RunningSystem running(built.system);
+    analysis::SteadySystem running(built.system);
     analysis::EquilibriumSolver solver(running);
     const auto e = solver.try_solve(m.spin);
     if (!e) {

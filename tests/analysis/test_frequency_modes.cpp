@@ -1,8 +1,8 @@
 // All modes on supports whose coefficients depend on the frequency of the motion, against references that do not use Whirl's solver.
-#include <analysis/campbell.hpp>
-#include <analysis/critical.hpp>
-#include <analysis/stability.hpp>
-#include <analysis/whirl_modes.hpp>
+#include <analysis/spectra/campbell.hpp>
+#include <analysis/spectra/critical.hpp>
+#include <analysis/spectra/stability.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>

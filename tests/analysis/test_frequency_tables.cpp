@@ -2,9 +2,9 @@
 // a pedestal m2, k2, c2. Seen from the mass the support is the dynamic stiffness
 //   D(w) = 1/(1/(k1 + i w c1) + 1/(k2 - w^2 m2 + i w c2)),   K(w) = Re D,  C(w) = Im D/w,
 // so the response to F exp(i w t) is F/(D - m w^2), and without dampers the frequencies are the roots of m w^2 = D(w).
-#include <analysis/frequency_response.hpp>
-#include <analysis/unbalance.hpp>
-#include <analysis/whirl_modes.hpp>
+#include <analysis/response/frequency_response.hpp>
+#include <analysis/response/unbalance.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
 #include <assembly/build_system.hpp>
 #include <core/error.hpp>
 #include <deck/deck.hpp>

@@ -2,9 +2,9 @@
 #include "rotors.hpp"
 #include "../validation/deck_model.hpp"
 
-#include <analysis/campbell.hpp>
-#include <analysis/critical.hpp>
-#include <analysis/stability.hpp>
+#include <analysis/spectra/campbell.hpp>
+#include <analysis/spectra/critical.hpp>
+#include <analysis/spectra/stability.hpp>
 
 #include <gtest/gtest.h>
 
@@ -26,16 +26,16 @@ TEST(Linearizer, PolynomialInSpeedIsExact) {
   rotor.add_shaft_damping<true>(1e-5).add_shaft_damping<false>(2e-5).add_unbalance(0.5, 1e-3, 0.3);
   rotor.b.set_gravity(Vec3(0, 0, -9.81));
   const system::System s = rotor.b.finalize();
-  Running running;
+  SteadyRotation running;
   running.top_speed = 1000;
-  RunningSystem sweep(s, running);
+  SteadySystem sweep(s, running);
   EquilibriumSolver solver(sweep);
   const Equilibrium e = solver.solve(200);
   la::MCK a = s.make_matrices(), b = s.make_matrices();
   sweep.tangent(e.state.frames, 0, e.state.q, b);   // first and second speed make the polynomials
   for (double Omega : {100.0, 1.0, 1000.0, -300.0, 1900.0}) {
     ASSERT_TRUE(sweep.tangent(e.state.frames, Omega, e.state.q, a));
-    RunningSystem direct(s);
+    SteadySystem direct(s);
     ASSERT_TRUE(direct.tangent(e.state.frames, Omega, e.state.q, b));
     for (auto [x, y] : {std::pair{&a.M, &b.M}, std::pair{&a.C, &b.C}, std::pair{&a.K, &b.K}}) {
       const Eigen::Map<const VecX> X(x->data(), static_cast<Index>(x->value_count())), Y(y->data(), static_cast<Index>(y->value_count()));
@@ -79,7 +79,7 @@ TEST(Linearizer, ForcingOfSeveralLines) {
     b.hold(node.back(), system::gamma2), b.hold(node.back(), system::gamma3);
   }
   const system::System s = b.finalize();
-  Running running;
+  SteadyRotation running;
   running.ratio = {1.0, 1.3, -0.7};
   Linearizer linear(s, running);
   linear.at(100.0);

@@ -1,7 +1,7 @@
 // Kinds of motion: condensation against dense algebra, free motions, senses of the spin.
 #include "rotors.hpp"
 
-#include <analysis/whirl_modes.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
 
 #include <Eigen/QR>
 #include <gtest/gtest.h>
@@ -140,7 +140,7 @@ TEST(SpinSenses, StandingPartsFollowTheShaftTheyCarry) {
   EXPECT_EQ(senses({1.0, -1.5}), (Senses{1, -1, 1, 1, -1, 1}));   // the middle is nearer to the left; apart: the first shaft
   EXPECT_EQ(senses({-1.0, 1.5}), (Senses{-1, 1, -1, -1, 1, -1}));
   EXPECT_EQ(senses({}), (Senses{1, 1, 1, 1, 1, 1}));
-  Running running;
+  SteadyRotation running;
   running.ratio = {-1.0, -1.0};
   Linearizer linear(s, running);
   linear.at(0.0);

@@ -1,8 +1,8 @@
 // Observers: peaks found between steps, at a cost that hardly grows with the number of points; the
 // energy that a motion turns over.
 #include "rotors.hpp"
-#include <analysis/observer.hpp>
-#include <analysis/transient.hpp>
+#include <analysis/transient/observer.hpp>
+#include <analysis/transient/transient.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>

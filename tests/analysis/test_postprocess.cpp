@@ -1,6 +1,6 @@
 // Tracking filter and spectra on signals whose content is known.
-#include <analysis/revolutions.hpp>
-#include <analysis/spectrum.hpp>
+#include <analysis/transient/revolutions.hpp>
+#include <analysis/transient/spectrum.hpp>
 #include <gtest/gtest.h>
 #include <cmath>
 #include <random>

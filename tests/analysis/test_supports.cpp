@@ -1,5 +1,5 @@
 // Every kind of bearing from the deck to the assembled system: its tangents there, its equilibrium, its matrices.
-#include <analysis/linear.hpp>
+#include <analysis/linearizer.hpp>
 #include <assembly/build_system.hpp>
 #include <core/error.hpp>
 #include <deck/deck.hpp>
@@ -308,7 +308,7 @@ TEST(Supports, EquilibriumCarriesTheWeight) {
     SCOPED_TRACE(c.name);
     const Assembled m(c.deck);
     const system::System& s = m.built.system;
-    analysis::Running running;
+    analysis::SteadyRotation running;
     for (const auto& shaft : m.deck.model.shafts) running.ratio.push_back(shaft.speed_ratio);
     analysis::Linearizer linear(s, running);
     try {

@@ -1,14 +1,14 @@
 // Inertia on a turning base: conformance, and free motion that must be uniform in inertial axes.
 #include "../elements/conformance.hpp"
-#include <analysis/observer.hpp>
-#include <analysis/transient.hpp>
+#include <analysis/transient/observer.hpp>
+#include <analysis/transient/transient.hpp>
 #include <core/rotation.hpp>
-#include <elements/point_mass.hpp>
-#include <elements/rigid_body.hpp>
-#include <elements/shaft_beam.hpp>
-#include <elements/timoshenko_matrices.hpp>
-#include <elements/turning_base.hpp>
-#include <elements/unbalance.hpp>
+#include <elements/rigid/point_mass.hpp>
+#include <elements/rigid/rigid_body.hpp>
+#include <elements/shaft/shaft_beam.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
+#include <elements/rigid/turning_base.hpp>
+#include <elements/loads/unbalance.hpp>
 #include <system/problem.hpp>
 
 using namespace whirl;

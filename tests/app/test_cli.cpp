@@ -1,6 +1,6 @@
 // The program as the user meets it: exit codes, streams, and files, through the real executable.
-#include <app/results_folder.hpp>
-#include <app/sha256.hpp>
+#include <run/results_folder.hpp>
+#include <run/sha256.hpp>
 #include <core/error.hpp>
 #include <gtest/gtest.h>
 #include <io/value.hpp>
@@ -156,23 +156,23 @@ TEST_F(Cli, ResolvedDeckChecksAndHashes) {
   write("resolved.toml", r.out);
   EXPECT_EQ(whirl("check resolved.toml --resolved").out, r.out);
   const auto model = deck::load_model(folder_ / "resolved.toml");
-  EXPECT_EQ(app::deck_hash(model), app::sha256_hex(r.out));
+  EXPECT_EQ(run::deck_hash(model), run::sha256_hex(r.out));
 }
 
 TEST_F(Cli, ResultsFolder) {
   write("good.toml", std::string(good) + "[[step]]\ntype = \"modal\"\n");
   const auto model = deck::load_model(folder_ / "good.toml");
-  app::RunOptions o;
+  run::RunOptions o;
   o.output = folder_ / "results" / "deep";
-  const auto where = app::prepare_results(model, o);
+  const auto where = run::prepare_results(model, o);
   EXPECT_EQ(read(where / "resolved.toml"), model.resolved);
   const auto run = io::read_json(where / "run.json");
-  EXPECT_EQ(run.at("sha256").text(), app::sha256_hex(model.resolved));
+  EXPECT_EQ(run.at("sha256").text(), run::sha256_hex(model.resolved));
   EXPECT_EQ(run.at("title").text(), "Two sections");
   for (const auto& e : fs::directory_iterator(where)) EXPECT_NE(e.path().filename().string()[0], '.') << "left behind: " << e.path();
   write("blocked", "a file where the folder should be");
   o.output = folder_ / "blocked";
-  EXPECT_THROW(app::prepare_results(model, o), Error);
+  EXPECT_THROW(run::prepare_results(model, o), Error);
 }
 
 TEST_F(Cli, Explain) {
@@ -239,10 +239,10 @@ TEST_F(Cli, ManPageNamesEveryCommandAndOption) {
 }
 
 TEST(Sha256, KnownDigests) {   // FIPS 180-4 examples
-  EXPECT_EQ(app::sha256_hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(app::sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(app::sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-  EXPECT_EQ(app::sha256_hex(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  EXPECT_EQ(run::sha256_hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(run::sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(run::sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(run::sha256_hex(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
 // whatever code a message can carry is explained

@@ -1,6 +1,6 @@
 // Every example as the program prunes it against the general model of --keep-everything: all numbers it writes, to the accuracy asked
 // for. Transients run for at most `longest` seconds of their time.
-#include <app/run.hpp>
+#include <run/options.hpp>
 #include <deck/deck.hpp>
 #include <gtest/gtest.h>
 #include <io/value.hpp>
@@ -96,7 +96,7 @@ TEST_P(KeepEverything, GivesTheSame) {
         m.output.every = std::max(m.output.every, t->duration / 500.0);   // equal rows in both runs
         tolerance = std::max(tolerance, t->integrator.tolerance);
       }
-    app::RunOptions o;
+    run::RunOptions o;
     o.quiet = true;
     o.variant = [&](const std::string& setting) {
       deck::ReadOptions read;
@@ -106,7 +106,7 @@ TEST_P(KeepEverything, GivesTheSame) {
       return other;
     };
     o.output = folder_ / (all ? "all" : "pruned");
-    ASSERT_EQ(app::run_deck(m, o), 0);
+    ASSERT_EQ(steps::run_deck(m, o), 0);
   }
   // Each run aims at `tolerance` of the largest value; aim and hit differ by a factor of up to 2.5, and there are two of them.
   // Without a transient the two solve the same equations by iterations converged to 1e-9 or better.

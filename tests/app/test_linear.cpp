@@ -1,5 +1,5 @@
 // linear = true in a deck: what the summary says of it, and the same motion as the general run.
-#include <app/run.hpp>
+#include <run/options.hpp>
 #include <core/error.hpp>
 #include <deck/deck.hpp>
 #include <gtest/gtest.h>
@@ -20,9 +20,9 @@ nlohmann::json run(const fs::path& folder, bool linear, double scale) {
   auto& t = std::get<model::TransientStep>(m.steps.front().law);
   t.linear = linear, t.integrator.tolerance = 1e-6, t.checkpoint = 0;
   m.output.report = false, m.output.csv = false, m.output.spectra.reset(), m.output.vtk.clear();
-  app::RunOptions o;
+  run::RunOptions o;
   o.quiet = true, o.output = folder;
-  EXPECT_EQ(app::run_deck(m, o), 0);
+  EXPECT_EQ(steps::run_deck(m, o), 0);
   std::ifstream in(folder / "summary.json");
   return nlohmann::json::parse(in)["steps"]["loss"];
 }

@@ -1,6 +1,6 @@
 // What a step costs as physics is absent, and what the program costs before and after the first step. Prints a Markdown table:
 //   build/bin/bench_scenes build/bin/whirl .
-#include <app/job.hpp>
+#include <run/job.hpp>
 #include <deck/deck.hpp>
 
 #include <fmt/format.h>
@@ -25,17 +25,17 @@ struct Cost { long steps = 0; double newton = 0, factorisations = 0, micro = 0, 
 
 /// The fastest of three runs of the deck's first step, without outputs but for `observers`.
 Cost measure(const model::Model& m) {
-  app::RunOptions options;
+  run::RunOptions options;
   options.quiet = true;
-  app::Job job(m, options, scratch());
+  run::Job job(m, options, scratch());
   const model::Step& step = m.steps.front();
   const auto& law = std::get<model::TransientStep>(m.steps.front().law);
   job.build_for(step);
-  const app::StepState start = app::transient_start(job, step, law);
+  const run::StepState start = steps::transient_start(job, step, law);
   Cost best;
   for (int k = 0; k < 3; ++k) {
-    const auto problem = app::transient_problem(job, law, start);
-    const analysis::TransientResult r = analysis::run_transient(*problem, start.state, app::transient_options(job, law, start.state.t), {});
+    const auto problem = steps::transient_problem(job, law, start);
+    const analysis::TransientResult r = analysis::run_transient(*problem, start.state, steps::transient_options(job, law, start.state.t), {});
     if (r.reason != analysis::StopReason::end_time) std::printf("<!-- %s %s -->\n", std::string(to_string(r.reason)).c_str(), r.detail.c_str());
     if (k > 0 && r.seconds > best.seconds) continue;
     const double n = static_cast<double>(r.statistics.accepted);

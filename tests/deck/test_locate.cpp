@@ -1,4 +1,4 @@
-#include <deck/locate.hpp>
+#include <deck/text/locate.hpp>
 #include <gtest/gtest.h>
 
 using namespace whirl;

@@ -1,6 +1,6 @@
 // Annular seal: closed form against the perturbation equations it solves; cross-coupling formulas.
 #include "conformance.hpp"
-#include <elements/annular_seal.hpp>
+#include <elements/films/annular_seal.hpp>
 #include <complex>
 
 using namespace whirl;

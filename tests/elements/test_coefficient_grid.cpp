@@ -1,7 +1,7 @@
 // Coefficients against spin and frequency: interpolation, derivatives, ranges, what is asked and what is not.
 #include "conformance.hpp"
 #include <core/error.hpp>
-#include <elements/coefficient_grid.hpp>
+#include <elements/supports/coefficient_grid.hpp>
 #include <system/frequency.hpp>
 
 using namespace whirl;

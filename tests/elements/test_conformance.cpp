@@ -1,6 +1,6 @@
 // The suite itself: deliberate faults must be found.
 #include "conformance.hpp"
-#include <elements/rigid_disk.hpp>
+#include <elements/rigid/rigid_disk.hpp>
 #include <gtest/gtest-spi.h>
 #include <functional>
 

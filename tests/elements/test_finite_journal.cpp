@@ -1,10 +1,10 @@
 // Finite-length journal bearing: published coefficients, two-dimensional reference, smoothness, lobes; oil viscosity.
 #include "conformance.hpp"
 #include <core/error.hpp>
-#include <elements/finite_journal.hpp>
-#include <elements/journal_statics.hpp>
-#include <elements/oil.hpp>
-#include <elements/short_journal.hpp>
+#include <elements/films/finite_journal.hpp>
+#include <elements/films/journal_statics.hpp>
+#include <elements/films/oil.hpp>
+#include <elements/films/short_journal.hpp>
 
 using namespace whirl;
 using namespace whirl::test;

@@ -1,7 +1,7 @@
 // Gear mesh: conformance, geometry, ratio, power, backlash.
 #include "conformance.hpp"
 #include <core/error.hpp>
-#include <elements/gear_mesh.hpp>
+#include <elements/between_shafts/gear_mesh.hpp>
 
 using namespace whirl;
 using namespace whirl::test;

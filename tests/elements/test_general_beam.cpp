@@ -1,7 +1,7 @@
 // The general beam element: exact tangents, invariance, power balance, and agreement with the axisymmetric element.
 #include <core/rotation.hpp>
-#include <elements/general_beam.hpp>
-#include <elements/shaft_beam.hpp>
+#include <elements/shaft/general_beam.hpp>
+#include <elements/shaft/shaft_beam.hpp>
 #include <system/system.hpp>
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // Point loads and torques.
 #include "conformance.hpp"
-#include <elements/moment.hpp>
-#include <elements/point_load.hpp>
-#include <elements/spin_torque.hpp>
+#include <elements/loads/moment.hpp>
+#include <elements/loads/point_load.hpp>
+#include <elements/loads/spin_torque.hpp>
 
 using namespace whirl;
 using namespace whirl::test;

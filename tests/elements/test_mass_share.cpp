@@ -2,7 +2,7 @@
 // times its own, 1 = mu beta/4 (tan(beta/2) - tanh(beta/2)) for symmetric modes (W. C. Hurty, M. F. Rubinstein, Dynamics of Structures,
 // 1964, ch. 5), beta^4 = omega^2 rhoA L^4/EI; and the weight that the shares leave out.
 #include <Eigen/Eigenvalues>
-#include <elements/timoshenko_matrices.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
 #include <gtest/gtest.h>
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Force curves and the nonlinear springs made of them.
 #include "conformance.hpp"
 #include <core/error.hpp>
-#include <elements/nonlinear_spring.hpp>
+#include <elements/supports/nonlinear_spring.hpp>
 
 using namespace whirl;
 using namespace whirl::test;

@@ -1,9 +1,9 @@
 // Rigid disk, rigid body, unbalance, point mass: the conformance suite, and Newton-Euler written out independently.
 #include "conformance.hpp"
 #include <core/error.hpp>
-#include <elements/point_mass.hpp>
-#include <elements/rigid_body.hpp>
-#include <elements/unbalance.hpp>
+#include <elements/rigid/point_mass.hpp>
+#include <elements/rigid/rigid_body.hpp>
+#include <elements/loads/unbalance.hpp>
 
 using namespace whirl;
 using namespace whirl::test;

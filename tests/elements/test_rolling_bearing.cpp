@@ -1,8 +1,8 @@
 // Rolling bearings: Hertz, load sharing, stiffness, varying compliance, classical checks.
 #include "conformance.hpp"
 #include <core/error.hpp>
-#include <elements/hertz.hpp>
-#include <elements/rolling_bearing.hpp>
+#include <elements/rolling/hertz.hpp>
+#include <elements/rolling/rolling_bearing.hpp>
 #include <Eigen/LU>
 #include <algorithm>
 #include <numeric>

@@ -1,6 +1,6 @@
 // Rub: conformance, sign of friction, synchronous full annular rub (exact branches) and its transients.
 #include "conformance.hpp"
-#include <elements/rub.hpp>
+#include <elements/supports/rub.hpp>
 #include <complex>
 
 using namespace whirl;

@@ -1,4 +1,4 @@
-#include <elements/section.hpp>
+#include <elements/shaft/section.hpp>
 #include <gtest/gtest.h>
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // The corotational shaft element in q-space: exact tangents, invariance under rigid motion, power balance, small-tilt digits.
 #include <core/rotation.hpp>
-#include <elements/shaft_beam.hpp>
-#include <elements/shaft_damping.hpp>
+#include <elements/shaft/shaft_beam.hpp>
+#include <elements/shaft/shaft_damping.hpp>
 #include <system/problem.hpp>
 
 #include <gtest/gtest.h>

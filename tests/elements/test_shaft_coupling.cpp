@@ -1,7 +1,7 @@
 // Flexible coupling between two shaft lines.
 #include "conformance.hpp"
-#include <elements/linear_bearing.hpp>
-#include <elements/shaft_coupling.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/between_shafts/shaft_coupling.hpp>
 
 using namespace whirl;
 using namespace whirl::test;

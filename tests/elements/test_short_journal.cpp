@@ -1,8 +1,8 @@
 // Short journal bearing: film integrals, published and exact loci, coefficients and whirl onsets.
 #include "conformance.hpp"
 #include <core/error.hpp>
-#include <elements/journal_statics.hpp>
-#include <elements/short_journal.hpp>
+#include <elements/films/journal_statics.hpp>
+#include <elements/films/short_journal.hpp>
 
 using namespace whirl;
 using namespace whirl::test;

@@ -1,9 +1,9 @@
 // Spring block and linear bearings.
 #include "conformance.hpp"
-#include <elements/linear_bearing.hpp>
-#include <elements/matrix_part.hpp>
-#include <elements/moment.hpp>
-#include <elements/spring_block.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/supports/matrix_part.hpp>
+#include <elements/loads/moment.hpp>
+#include <elements/supports/spring_block.hpp>
 
 using namespace whirl;
 using namespace whirl::test;

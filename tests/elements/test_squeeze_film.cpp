@@ -1,8 +1,8 @@
 // Squeeze-film dampers.
 #include "conformance.hpp"
-#include <elements/finite_journal.hpp>
-#include <elements/short_journal.hpp>
-#include <elements/squeeze_film.hpp>
+#include <elements/films/finite_journal.hpp>
+#include <elements/films/short_journal.hpp>
+#include <elements/films/squeeze_film.hpp>
 
 using namespace whirl;
 using namespace whirl::test;

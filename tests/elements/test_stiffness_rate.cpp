@@ -1,8 +1,8 @@
 // How stiffness grows along a motion: against differences of exact tangents.
 #include <core/rotation.hpp>
-#include <elements/general_beam.hpp>
-#include <elements/shaft_beam.hpp>
-#include <elements/timoshenko_matrices.hpp>
+#include <elements/shaft/general_beam.hpp>
+#include <elements/shaft/shaft_beam.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
 #include <system/stiffness_rate.hpp>
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // Tabulated bearing: interpolation, ranges, tangents with the spin's part, power balance.
 #include "conformance.hpp"
 #include <core/error.hpp>
-#include <elements/coefficient_grid.hpp>
-#include <elements/linear_bearing.hpp>
-#include <elements/table_bearing.hpp>
+#include <elements/supports/coefficient_grid.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/supports/table_bearing.hpp>
 
 #include <random>
 

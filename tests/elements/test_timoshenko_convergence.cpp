@@ -1,6 +1,6 @@
 // Natural frequencies of small dense beams built from the element constants, against closed forms and against an
 // independent shooting solution of the differential equations; measured orders of convergence.
-#include <elements/timoshenko_matrices.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
 #include <complex>
 #include <gtest/gtest.h>
 #include <Eigen/Dense>

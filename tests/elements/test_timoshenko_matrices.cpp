@@ -1,5 +1,5 @@
 // Element constants against closed forms, and the natural frequencies of small beams built from them.
-#include <elements/timoshenko_matrices.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 #include <cmath>

@@ -4,11 +4,11 @@
 #include "xml_check.hpp"
 #include <io/collector.hpp>
 #include <io/file.hpp>
-#include <io/palette.hpp>
-#include <io/png.hpp>
-#include <io/svg.hpp>
-#include <io/text.hpp>
-#include <io/ticks.hpp>
+#include <plot/palette.hpp>
+#include <plot/png.hpp>
+#include <plot/svg.hpp>
+#include <core/text.hpp>
+#include <plot/ticks.hpp>
 #include <algorithm>
 #include <random>
 #include <set>
@@ -22,7 +22,7 @@ TEST(Decimate, EveryColumnKeepsItsLowestAndHighestPoint) {
   std::vector<double> x, y;
   for (int i = 0; i < 1000000; ++i) x.push_back(i * 1e-5), y.push_back(noise(rng) * (i == 123456 ? 1000 : 1));
   constexpr std::size_t columns = 700;
-  const auto keep = decimate_columns(x, y, 0, 10, columns);
+  const auto keep = plot::decimate_columns(x, y, 0, 10, columns);
   EXPECT_LE(keep.size(), 4 * columns);
   EXPECT_TRUE(std::is_sorted(keep.begin(), keep.end()));
   std::vector<double> lo(columns, 1e9), hi(columns, -1e9), klo = lo, khi = hi;
@@ -39,7 +39,7 @@ TEST(Decimate, GapsStayGaps) {
   std::vector<double> x(1000), y(1000, 1.0);
   for (std::size_t i = 0; i < 1000; ++i) x[i] = static_cast<double>(i);
   for (std::size_t i = 400; i < 500; ++i) y[i] = nan;
-  const auto keep = decimate_columns(x, y, 0, 1000, 10);
+  const auto keep = plot::decimate_columns(x, y, 0, 1000, 10);
   EXPECT_EQ(std::count_if(keep.begin(), keep.end(), [&](auto i) { return std::isnan(y[i]); }), 1);
   EXPECT_TRUE(std::find(keep.begin(), keep.end(), 399u) != keep.end());
   EXPECT_TRUE(std::find(keep.begin(), keep.end(), 500u) != keep.end());
@@ -50,7 +50,7 @@ TEST(Decimate, RepeatedOrbitIsDrawnOnce) {
   for (int i = 0; i < 100000; ++i) x.push_back(100 * std::cos(two_pi * i / 500)), y.push_back(100 * std::sin(two_pi * i / 500));
   std::size_t points = 0;
   double far = 0;
-  for (const auto& run : decimate_path(x, y)) {
+  for (const auto& run : plot::decimate_path(x, y)) {
     points += run.size();
     for (const auto i : run) far = std::max(far, x[i]);
   }
@@ -58,10 +58,10 @@ TEST(Decimate, RepeatedOrbitIsDrawnOnce) {
   EXPECT_EQ(far, 100.0);
 }
 
-TEST(Envelope, BoundedMemoryExactExtremes) {
+TEST(plot::Envelope, BoundedMemoryExactExtremes) {
   std::mt19937 rng(3);
   std::normal_distribution<double> noise;
-  Envelope e(256);
+  plot::Envelope e(256);
   double lo = 0, hi = 0, t_hi = 0;
   for (int i = 0; i < 1000000; ++i) {
     const double v = noise(rng);
@@ -96,31 +96,31 @@ TEST(Collector, KeepsEnvelopeAndLastRowsInWrittenUnits) {
   EXPECT_EQ(again.last()["time"], c.last()["time"]);
 }
 
-TEST(Ticks, RoundNumbersInsideTheRange) {
-  const Ticks a = linear_ticks(0.3, 9.7, 5);
+TEST(plot::Ticks, RoundNumbersInsideTheRange) {
+  const plot::Ticks a = plot::linear_ticks(0.3, 9.7, 5);
   EXPECT_EQ(a.major, (std::vector<double>{2, 4, 6, 8}));
   EXPECT_EQ(a.labels, (std::vector<std::string>{"2", "4", "6", "8"}));
-  const Ticks b = linear_ticks(-2.2e-6, 2.2e-6, 5);
+  const plot::Ticks b = plot::linear_ticks(-2.2e-6, 2.2e-6, 5);
   EXPECT_EQ(b.exponent, -6);
   EXPECT_EQ(b.labels.front(), "−2");
   EXPECT_EQ(b.labels[b.labels.size() / 2], "0");
-  const Ticks c = linear_ticks(49.9931, 50.0012, 4);
+  const plot::Ticks c = plot::linear_ticks(49.9931, 50.0012, 4);
   EXPECT_EQ(c.labels.front(), "49.9950");   // steps of 0.0025
   for (const double span : {1e-300, 1e-9, 1.0, 7.3, 1e9, 1e300})
     for (const double at : {0.0, 1.0, -3.0}) {
-      const Ticks t = linear_ticks(at * span, (at + 1) * span, 6);
+      const plot::Ticks t = plot::linear_ticks(at * span, (at + 1) * span, 6);
       EXPECT_GE(t.major.size(), 3u) << span;
       EXPECT_LE(t.major.size(), 13u) << span;
       for (const double v : t.major) EXPECT_TRUE(v >= (at - 1e-6) * span && v <= (at + 1 + 1e-6) * span);
     }
 }
 
-TEST(Ticks, DecadesAndTheirFractions) {
-  const Ticks a = log_ticks(2e-8, 3, 5);
+TEST(plot::Ticks, DecadesAndTheirFractions) {
+  const plot::Ticks a = plot::log_ticks(2e-8, 3, 5);
   EXPECT_EQ(a.labels.size(), a.major.size());
   EXPECT_LE(a.major.size(), 6u);
   for (const double v : a.major) EXPECT_NEAR(std::log10(v), std::round(std::log10(v)), 1e-9);
-  EXPECT_EQ(log_ticks(1, 100, 6).labels, (std::vector<std::string>{"1", "2", "5", "10", "20", "50", "100"}));
+  EXPECT_EQ(plot::log_ticks(1, 100, 6).labels, (std::vector<std::string>{"1", "2", "5", "10", "20", "50", "100"}));
 }
 
 TEST(Text, EscapesAndRepairs) {
@@ -138,7 +138,7 @@ TEST(Text, EscapesAndRepairs) {
 
 TEST(Palette, MapGrowsLighterInEqualSteps) {
   double last = -1;
-  for (const auto& c : color_map()) {
+  for (const auto& c : plot::color_map()) {
     // Relative luminance, sRGB.
     const auto lin = [](unsigned char v) { const double x = v / 255.0; return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); };
     const double y = 0.2126 * lin(c.r) + 0.7152 * lin(c.g) + 0.0722 * lin(c.b);
@@ -151,7 +151,7 @@ TEST(Palette, MapGrowsLighterInEqualSteps) {
 TEST(Png, CellsStandInTheFileAsTheyAre) {
   std::vector<std::uint8_t> cells(70000);
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<std::uint8_t>(i * 31);
-  const std::string png = make_png(700, 100, cells, color_map());
+  const std::string png = plot::make_png(700, 100, cells, plot::color_map());
   EXPECT_EQ(png.substr(1, 3), "PNG");
   EXPECT_NE(png.find(std::string("\0", 1) + std::string(cells.begin() + 700, cells.begin() + 1400)), std::string::npos);
   EXPECT_NE(png.find("IEND\xae\x42\x60\x82"), std::string::npos);   // the one checksum everybody knows
@@ -164,8 +164,8 @@ TEST(XmlCheck, FindsFaults) {
 
 class Gallery : public ::testing::TestWithParam<std::size_t> {
  protected:
-  static const std::vector<Figure>& figures() {
-    static const std::vector<Figure> f = gallery();
+  static const std::vector<plot::Figure>& figures() {
+    static const std::vector<plot::Figure> f = gallery();
     return f;
   }
 };
@@ -173,9 +173,9 @@ INSTANTIATE_TEST_SUITE_P(Plots, Gallery, ::testing::Range<std::size_t>(0, 15), [
 
 TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
   ASSERT_EQ(figures().size(), 15u);
-  const Figure& f = figures()[GetParam()];
+  const plot::Figure& f = figures()[GetParam()];
   for (const bool standalone : {true, false}) {
-    const std::string svg = render_svg(f, {standalone, "", 1.0});
+    const std::string svg = plot::render_svg(f, {standalone, "", 1.0});
     EXPECT_EQ(xml_fault(svg), "");
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf\""), std::string::npos);
@@ -189,10 +189,10 @@ TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
   for (const auto& a : f.axes) {
     EXPECT_FALSE(a.x.unit.empty());
     EXPECT_FALSE(a.y.unit.empty());
-    EXPECT_TRUE(a.kind != AxesKind::space || !a.z.unit.empty());
+    EXPECT_TRUE(a.kind != plot::AxesKind::space || !a.z.unit.empty());
   }
   // Ids are unique: several figures share a page.
-  const std::string svg = render_svg(f);
+  const std::string svg = plot::render_svg(f);
   std::set<std::string> ids;
   for (std::size_t at = svg.find(" id=\""); at != std::string::npos; at = svg.find(" id=\"", at + 1)) {
     const auto id = svg.substr(at + 5, svg.find('"', at + 5) - at - 5);
@@ -202,16 +202,16 @@ TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
 }
 
 TEST(Svg, OneMillionPointsMakeASmallFileWithThePeakInIt) {
-  Figure f;
+  plot::Figure f;
   f.name = "long";
-  Axes a;
-  a.x = Axis("time", "s"), a.y = Axis("displacement", "µm");
+  plot::Axes a;
+  a.x = plot::Axis("time", "s"), a.y = plot::Axis("displacement", "µm");
   a.y.min = 0, a.y.max = 100;
-  Series s;
+  plot::Series s;
   for (int i = 0; i < 1000000; ++i) s.x.push_back(1e-3 * i), s.y.push_back(40 + 10 * std::sin(i * 0.7) + (i == 654321 ? 50 : 0));
   a.series.push_back(s);
   f.axes.push_back(a);
-  const std::string svg = render_svg(f);
+  const std::string svg = plot::render_svg(f);
   EXPECT_LT(svg.size(), 60000u);
   // The frame and the path tell where 40 + 10 sin + 50 stands.
   const auto box_at = svg.find("data-box=\"") + 10;
@@ -233,20 +233,20 @@ TEST(Svg, OneMillionPointsMakeASmallFileWithThePeakInIt) {
 
 TEST(Svg, EmptyConstantAndBrokenDataAreDrawn) {
   for (const bool log : {false, true}) {
-    Figure f;
+    plot::Figure f;
     f.name = "odd";
-    Axes a;
-    a.x = Axis("x", "-", log), a.y = Axis("y", "-", log);
+    plot::Axes a;
+    a.x = plot::Axis("x", "-", log), a.y = plot::Axis("y", "-", log);
     f.axes.push_back(a);
-    EXPECT_EQ(xml_fault(render_svg(f)), "");
+    EXPECT_EQ(xml_fault(plot::render_svg(f)), "");
     for (const auto& y : {std::vector<double>{3, 3, 3}, {nan, nan, nan}, {1, nan, 2}, {0, 0, 0}, {-1, 1e300, 2}, {infinity, 1, 2}}) {
       f.axes[0].series.clear();
-      Series s;
+      plot::Series s;
       s.label = "<&\">";
       s.x = {1, 2, 3}, s.y = y;
-      s.style.marker = Marker::circle;
+      s.style.marker = plot::Marker::circle;
       f.axes[0].series.push_back(s);
-      const std::string svg = render_svg(f);
+      const std::string svg = plot::render_svg(f);
       EXPECT_EQ(xml_fault(svg), "");
       EXPECT_EQ(svg.find("=\"nan"), std::string::npos);
     }
@@ -254,9 +254,9 @@ TEST(Svg, EmptyConstantAndBrokenDataAreDrawn) {
 }
 
 TEST(Svg, NamesOfDecksBecomeIds) {
-  Figure f = gallery().front();
+  plot::Figure f = gallery().front();
   f.name = "step \"a/b\" <1>";
-  const std::string svg = render_svg(f);
+  const std::string svg = plot::render_svg(f);
   EXPECT_EQ(xml_fault(svg), "");
   EXPECT_NE(svg.find("id=\"step__a_b___1_\""), std::string::npos);
   EXPECT_EQ(safe_name("../x"), "_.._x");
@@ -265,25 +265,25 @@ TEST(Svg, NamesOfDecksBecomeIds) {
 
 TEST(Svg, FileIsWrittenWhole) {
   TempFolder dir;
-  write_svg(dir / "a/b.svg", gallery().front());
+  io::write_atomic(dir / "a/b.svg", plot::render_svg(gallery().front()));
   EXPECT_EQ(xml_fault(read_text(dir / "a/b.svg")), "");
   EXPECT_EQ(file_count(dir / "a"), 1u);
 }
 
 TEST(Units, SuitTheSize) {
-  EXPECT_EQ(length_unit(30e-6).name, "µm");
-  EXPECT_EQ(length_unit(0.02).name, "mm");
-  EXPECT_EQ(length_unit(0.75).name, "m");
-  EXPECT_EQ(unit_for("J", 2e-6).name, "µJ");
-  EXPECT_EQ(unit_for("N", 2e5).name, "kN");
-  EXPECT_EQ(unit_for("N m", 3).name, "N·m");
-  EXPECT_NEAR(unit_for("rad/s", 100).factor * two_pi, 60, 1e-12);
-  EXPECT_EQ(unit_for("s", 1000).name, "s");
+  EXPECT_EQ(plot::length_unit(30e-6).name, "µm");
+  EXPECT_EQ(plot::length_unit(0.02).name, "mm");
+  EXPECT_EQ(plot::length_unit(0.75).name, "m");
+  EXPECT_EQ(plot::unit_for("J", 2e-6).name, "µJ");
+  EXPECT_EQ(plot::unit_for("N", 2e5).name, "kN");
+  EXPECT_EQ(plot::unit_for("N m", 3).name, "N·m");
+  EXPECT_NEAR(plot::unit_for("rad/s", 100).factor * two_pi, 60, 1e-12);
+  EXPECT_EQ(plot::unit_for("s", 1000).name, "s");
 }
 
 TEST(Pareto, FrontIsTheLowerLeftStaircase) {
-  const StudyCurve c[] = {{"a", {{1, 1e-2, ""}, {2, 1e-3, ""}, {8, 5e-3, ""}}}, {"b", {{4, 1e-6, ""}, {3, 1e-2, ""}}}};
-  const Figure f = plot_study("s", "s", c, "error", "-");
+  const plot::StudyCurve c[] = {{"a", {{1, 1e-2, ""}, {2, 1e-3, ""}, {8, 5e-3, ""}}}, {"b", {{4, 1e-6, ""}, {3, 1e-2, ""}}}};
+  const plot::Figure f = plot::plot_study("s", "s", c, "error", "-");
   const auto& front = f.axes[0].series.back();
   EXPECT_EQ(front.label, "Pareto front");
   EXPECT_EQ(front.x, (std::vector<double>{1, 2, 2, 4, 4}));

@@ -69,7 +69,7 @@ TEST(Report, HoldsEverythingInOrderAndEscaped) {
 
 TEST(Report, SameFigureInTwoStepsGetsTwoIds) {
   Report r;
-  const Figure f = gallery().front();
+  const plot::Figure f = gallery().front();
   r.sections = {{"a", "", {}, {f}, {}}, {"b", "", {}, {f}, {}}};
   const std::string html = render_report(r);
   std::set<std::string> ids;

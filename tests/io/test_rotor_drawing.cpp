@@ -1,8 +1,8 @@
 // From a model to its drawing and its picture: sections, disks, bearings and probes stand where the deck puts them.
 #include "xml_check.hpp"
 #include <gtest/gtest.h>
-#include <io/rotor_drawing.hpp>
-#include <io/svg.hpp>
+#include <plot/rotor_drawing.hpp>
+#include <plot/svg.hpp>
 #include <cmath>
 
 namespace whirl::io {
@@ -16,7 +16,7 @@ model::Section section(const char* name, double length, double od, double id) {
   return s;
 }
 
-TEST(RotorDrawing, FollowsTheModel) {
+TEST(plot::RotorDrawing, FollowsTheModel) {
   model::Model m;
   model::Material steel;
   steel.name = "steel", steel.E = 211e9, steel.G = 81e9, steel.rho = 7810;
@@ -37,7 +37,7 @@ TEST(RotorDrawing, FollowsTheModel) {
   m.probes = {probe};
 
   const meshes::Mesh mesh = meshes::make_mesh(m);
-  const auto drawings = make_rotor_drawings(m, mesh, meshes::make_scene(m, mesh));
+  const auto drawings = plot::make_rotor_drawings(m, mesh, meshes::make_scene(m, mesh));
   ASSERT_EQ(drawings.size(), 1u);
   const auto& d = drawings[0];
   ASSERT_EQ(d.sections.size(), 2u);
@@ -53,7 +53,7 @@ TEST(RotorDrawing, FollowsTheModel) {
   ASSERT_EQ(d.probes.size(), 1u);
   EXPECT_NEAR(d.probes[0].radius, 0.04, 1e-12);   // at a step: the larger side
   EXPECT_EQ(d.nodes.size(), static_cast<std::size_t>(mesh.lines[0].nodes));
-  EXPECT_EQ(xml_fault(render_svg(plot_rotor("rotor", d))), "");
+  EXPECT_EQ(xml_fault(plot::render_svg(plot::plot_rotor("rotor", d))), "");
 }
 
 }  // namespace

@@ -1,15 +1,15 @@
 // Small scenes whose motion is known exactly, run the way the program runs a deck.
 #pragma once
-#include <analysis/equilibrium.hpp>
-#include <analysis/transient.hpp>
-#include <elements/linear_bearing.hpp>
-#include <elements/point_load.hpp>
-#include <elements/point_mass.hpp>
-#include <elements/rigid_body.hpp>
-#include <elements/rigid_disk.hpp>
-#include <elements/shaft_beam.hpp>
-#include <elements/spring_block.hpp>
-#include <elements/timoshenko_matrices.hpp>
+#include <analysis/statics/equilibrium.hpp>
+#include <analysis/transient/transient.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/loads/point_load.hpp>
+#include <elements/rigid/point_mass.hpp>
+#include <elements/rigid/rigid_body.hpp>
+#include <elements/rigid/rigid_disk.hpp>
+#include <elements/shaft/shaft_beam.hpp>
+#include <elements/supports/spring_block.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
 
 #include <gtest/gtest.h>
 #include <string>
@@ -89,7 +89,7 @@ inline void clamp(system::Builder& b, Index node) {
 }
 
 inline analysis::Equilibrium equilibrium(const system::System& s, const system::State* start = nullptr) {
-  analysis::RunningSystem running(s);
+  analysis::SteadySystem running(s);
   return analysis::EquilibriumSolver(running).solve(0.0, start);
 }
 

@@ -2,7 +2,7 @@
 #include "scene.hpp"
 #include <core/error.hpp>
 #include <core/law.hpp>
-#include <elements/unbalance.hpp>
+#include <elements/loads/unbalance.hpp>
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Clearances of zero and 1e-9 m, stops up to 1e12 N/m and impacts, against exact sequences of flights and contacts.
 #include "scene.hpp"
-#include <elements/nonlinear_spring.hpp>
-#include <elements/rub.hpp>
+#include <elements/supports/nonlinear_spring.hpp>
+#include <elements/supports/rub.hpp>
 #include <fmt/format.h>
 #include <cmath>
 

@@ -1,10 +1,10 @@
 // Scenes with constant coefficients, and the linear limit of the general rotor.
 #include "scene.hpp"
-#include <analysis/linear_motion.hpp>
-#include <analysis/scheme_stability.hpp>
+#include <analysis/transient/linear_motion.hpp>
+#include <analysis/study/scheme_stability.hpp>
 #include <core/error.hpp>
 #include <core/law.hpp>
-#include <elements/unbalance.hpp>
+#include <elements/loads/unbalance.hpp>
 #include <fmt/format.h>
 #include <cmath>
 
@@ -30,7 +30,7 @@ system::System rotor(double unbalance, bool driven = true) {
 }
 
 system::State settled(const system::System& s) {
-  analysis::RunningSystem running(s);
+  analysis::SteadySystem running(s);
   return analysis::EquilibriumSolver(running).solve(speed).state;
 }
 

@@ -2,7 +2,7 @@
 #include "../time/dense_problem.hpp"
 #include "scene.hpp"
 #include <core/law.hpp>
-#include <elements/unbalance.hpp>
+#include <elements/loads/unbalance.hpp>
 #include <fmt/format.h>
 #include <cmath>
 

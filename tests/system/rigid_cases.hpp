@@ -1,8 +1,8 @@
 // Rigid bodies with known motions, as systems with their initial states.
 #pragma once
 #include <core/rotation.hpp>
-#include <elements/linear_bearing.hpp>
-#include <elements/rigid_body.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/rigid/rigid_body.hpp>
 #include <system/system.hpp>
 #include <cmath>
 

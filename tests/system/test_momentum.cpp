@@ -3,13 +3,13 @@
 #include "../core/reference.hpp"
 #include <core/error.hpp>
 #include <core/rotation.hpp>
-#include <elements/linear_bearing.hpp>
-#include <elements/point_load.hpp>
-#include <elements/point_mass.hpp>
-#include <elements/rigid_body.hpp>
-#include <elements/spin_torque.hpp>
-#include <elements/spring_block.hpp>
-#include <elements/unbalance.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/loads/point_load.hpp>
+#include <elements/rigid/point_mass.hpp>
+#include <elements/rigid/rigid_body.hpp>
+#include <elements/loads/spin_torque.hpp>
+#include <elements/supports/spring_block.hpp>
+#include <elements/loads/unbalance.hpp>
 #include <system/momentum.hpp>
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // General beams along any line: nodes on the line, triads from its tangent and a normal, one chart for all.
 #pragma once
-#include <analysis/equilibrium.hpp>
+#include <analysis/statics/equilibrium.hpp>
 #include <core/rotation.hpp>
-#include <elements/general_beam.hpp>
-#include <elements/point_load.hpp>
-#include <elements/timoshenko_matrices.hpp>
+#include <elements/shaft/general_beam.hpp>
+#include <elements/loads/point_load.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
 #include <system/problem.hpp>
 #include <functional>
 #include <string>
@@ -58,9 +58,9 @@ inline void clamp(system::Builder& b, Index node) {
 
 /// Static equilibrium with nothing spinning.
 inline system::State settle(const system::System& s, int load_steps = 1, const system::State* start = nullptr, double load = 1.0) {
-  analysis::Running still;
+  analysis::SteadyRotation still;
   still.ratio.assign(static_cast<std::size_t>(s.lines()), 0.0);
-  analysis::RunningSystem running(s, still);
+  analysis::SteadySystem running(s, still);
   running.set_load(load);
   analysis::EquilibriumOptions o;
   o.load_steps = load_steps;

@@ -1,7 +1,7 @@
 // A deck given as text, built; and an observer of how far a node goes.
 #pragma once
-#include <analysis/running.hpp>
-#include <analysis/transient.hpp>
+#include <analysis/steady_rotation.hpp>
+#include <analysis/transient/transient.hpp>
 #include <assembly/build_system.hpp>
 #include <deck/deck.hpp>
 
@@ -28,8 +28,8 @@ struct DeckModel {
     mesh = meshes::make_mesh(deck.model);
     built = assembly::build_system(deck.model, mesh);
   }
-  analysis::Running running() const {
-    analysis::Running r;
+  analysis::SteadyRotation running() const {
+    analysis::SteadyRotation r;
     for (const auto& s : deck.model.shafts) r.ratio.push_back(s.rotating ? s.speed_ratio : 0.0);
     r.table_frequencies = built.table_frequencies;
     return r;

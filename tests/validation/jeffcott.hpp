@@ -1,10 +1,10 @@
 // A Jeffcott rotor: one disk on an isotropic spring, its plane kept upright, so that the equations of the textbooks hold exactly.
 #pragma once
-#include <analysis/transient.hpp>
-#include <elements/linear_bearing.hpp>
-#include <elements/rigid_disk.hpp>
-#include <elements/spin_torque.hpp>
-#include <elements/unbalance.hpp>
+#include <analysis/transient/transient.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/rigid/rigid_disk.hpp>
+#include <elements/loads/spin_torque.hpp>
+#include <elements/loads/unbalance.hpp>
 
 namespace whirl::test {
 

@@ -1,6 +1,6 @@
 // A model solved to its static equilibrium, for the static validation cases.
 #pragma once
-#include <analysis/equilibrium.hpp>
+#include <analysis/statics/equilibrium.hpp>
 #include <assembly/section_results.hpp>
 #include <meshes/mesh.hpp>
 #include <system/problem.hpp>
@@ -26,9 +26,9 @@ struct Solved {
 inline Solved solve(const model::Model& m, double Omega = 0.0, double load = 1.0) {
   Solved s{meshes::make_mesh(m), {}, {}, nullptr, {}, {}};
   s.built = assembly::build_system(m, s.mesh);
-  analysis::Running running;
+  analysis::SteadyRotation running;
   for (const model::Shaft& shaft : m.shafts) running.ratio.push_back(shaft.rotating ? shaft.speed_ratio : 0.0);
-  analysis::RunningSystem turning(s.built.system, running);
+  analysis::SteadySystem turning(s.built.system, running);
   turning.set_load(load);
   analysis::EquilibriumSolver solver(turning);
   s.found = solver.solve(Omega);

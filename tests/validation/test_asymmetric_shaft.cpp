@@ -5,9 +5,9 @@
 #include "beam_line.hpp"
 #include "record.hpp"
 
-#include <analysis/periodic.hpp>
-#include <elements/linear_bearing.hpp>
-#include <elements/rigid_disk.hpp>
+#include <analysis/spectra/periodic.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/rigid/rigid_disk.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>

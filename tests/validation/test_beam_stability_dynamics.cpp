@@ -7,8 +7,8 @@
 #include "beam_line.hpp"
 #include "record.hpp"
 
-#include <analysis/transient.hpp>
-#include <elements/shaft_beam.hpp>
+#include <analysis/transient/transient.hpp>
+#include <elements/shaft/shaft_beam.hpp>
 
 #include <la/eigen.hpp>
 
@@ -26,9 +26,9 @@ LinePoint straight(double s) { return {Vec3(s, 0, 0), Mat3::Identity()}; }
 
 /// Load factor at which the determinant of the tangent about the loaded state changes its sign, between lo and hi.
 double critical_load(const system::System& s, double lo, double hi) {
-  analysis::Running still;
+  analysis::SteadyRotation still;
   still.ratio.assign(static_cast<std::size_t>(s.lines()), 0.0);
-  analysis::RunningSystem running(s, still);
+  analysis::SteadySystem running(s, still);
   analysis::EquilibriumSolver solver(running);
   std::vector<Index> free;
   for (Index k = 0; k < s.size(); ++k)
@@ -63,9 +63,9 @@ double critical_torque(const system::System& s, double lo, double hi) {
   std::vector<Index> free;
   for (Index k = 0; k < s.size(); ++k)
     if (s.active()[static_cast<std::size_t>(k)]) free.push_back(k);
-  analysis::Running still;
+  analysis::SteadyRotation still;
   still.ratio.assign(static_cast<std::size_t>(s.lines()), 0.0);
-  analysis::RunningSystem running(s, still);
+  analysis::SteadySystem running(s, still);
   analysis::EquilibriumSolver solver(running);
   la::MCK m = s.make_matrices();
   const auto log_det = [&](double load) {

@@ -1,6 +1,6 @@
 // Published and closed-form bearing cases from the deck: what a user writes, and the equilibrium, coefficients, stability and motion that
 // come out.
-#include <analysis/whirl_modes.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
 #include <system/problem.hpp>
 
 #include "deck_model.hpp"
@@ -300,9 +300,9 @@ TEST(BallBearingDeck, LoadSharing) {
     const Vec2 along(std::cos(angle), std::sin(angle));
     const DeckModel m(lateral_mass(20, "0 m/s^2", fmt::format("[[bearing]]\nname = \"balls\"\nat = \"mass\"\ntype = \"ball\"\nballs = 8\nball_diameter = \"11.9 mm\"\n"
                                                               "pitch_diameter = \"52 mm\"\nclearance = \"{} um\"\nstiffness = \"1.334e10 N/m^1.5\"\n", t.clearance) + load(t.W * along)));
-    analysis::Running turning = m.running();
+    analysis::SteadyRotation turning = m.running();
     turning.mean = false;
-    analysis::RunningSystem running(m.built.system, turning);
+    analysis::SteadySystem running(m.built.system, turning);
     const auto e = analysis::EquilibriumSolver(running).solve(0.0);
     const Vec2 r = e.state.q.segment<2>(6 * m.disk() + 1);
     const std::string at = fmt::format("clearance {:g} um, {:g} N, {}: ", t.clearance, t.W, t.between ? "between balls" : "on a ball");

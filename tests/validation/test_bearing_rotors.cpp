@@ -5,8 +5,8 @@
 // integration of Capone's film force.
 // Blade loss: a Jeffcott rotor whose unbalance is switched on while it turns; the exact superposition of steady and free motion,
 //   r = H e^(iOt) + a e^(s1 t) + b e^(s2 t),  H = O^2/(1 - O^2 + 2 i zeta O),  a = H (s2 - iO)/(s1 - s2),  b = -H - a   (units of e and omega_n).
-#include <analysis/stability.hpp>
-#include <analysis/whirl_modes.hpp>
+#include <analysis/spectra/stability.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
 #include "deck_model.hpp"
 #include "record.hpp"
 #include "../app/oil_whirl_rotor.hpp"
@@ -105,7 +105,7 @@ TEST(OilWhirl, NonlinearRunsDecayBelowAndGrowAbove) {
     const double Omega = (k == 0 ? 0.98 : 1.02) * at;
     const DeckModel m(rigid_rotor() + "[[drive]]\nname = \"motor\"\nat = \"mass\"\ntype = \"speed\"\nspeed = \"" + std::to_string(Omega) + " rad/s\"\n");
     const system::System& s = m.built.system;
-    analysis::RunningSystem running(s, m.running());
+    analysis::SteadySystem running(s, m.running());
     analysis::Equilibrium e = analysis::EquilibriumSolver(running).solve(Omega);
     const Index node = m.disk();
     const Vec2 centre = e.state.q.segment<2>(6 * node + 1);
@@ -135,9 +135,9 @@ pitch_diameter = "52 mm"
 clearance = "5 um"
 stiffness = "1.334e10 N/m^1.5"
 )"));
-  analysis::Running turning = m.running();
+  analysis::SteadyRotation turning = m.running();
   turning.mean = false;
-  analysis::RunningSystem running(m.built.system, turning);
+  analysis::SteadySystem running(m.built.system, turning);
   const auto e = analysis::EquilibriumSolver(running).solve(0.0);
   const Index node = m.disk();
   EXPECT_NEAR(e.state.q[6 * node + 2], -9.87145827e-06, 1e-9 * 9.9e-6);
@@ -175,7 +175,7 @@ gap = "0.25 mm"
 stiffness = "1e7 N/m"
 friction = 0.2
 )");
-  analysis::RunningSystem running(m.built.system, m.running());
+  analysis::SteadySystem running(m.built.system, m.running());
   const auto e = analysis::EquilibriumSolver(running).solve(0.0);
   const double W = 7850 * pi / 4 * 0.04 * 0.04 * 0.9 * 9.81, far = W * (0.45 - 0.3) / 0.6;
   const auto z = [&](std::size_t bearing) { return -e.state.q[6 * m.mesh.bearings[bearing].shaft.node + 2]; };
@@ -186,7 +186,7 @@ friction = 0.2
 // A one-sided stop under a mass that is guided sideways by a soft spring: the gap, and the weight over the stiffness.
 TEST(Gaps, MassSettlesOnAOneSidedStop) {
   const DeckModel m(mass_in_a_stop("clearance"));
-  analysis::RunningSystem running(m.built.system, m.running());
+  analysis::SteadySystem running(m.built.system, m.running());
   const auto e = analysis::EquilibriumSolver(running).solve(0.0);
   EXPECT_NEAR(e.state.q[6 * m.disk() + 2], -2e-3 - 196 / 1e7, 1e-12);
 }
@@ -219,7 +219,7 @@ directions = ["x"]
 at = "mass"
 moment = ["0 N.m", "0 N.m", "50 N.m"]
 )" + stop("near", "left:start") + stop("far", "right:end"));
-  analysis::RunningSystem running(m.built.system, m.running());
+  analysis::SteadySystem running(m.built.system, m.running());
   const auto e = analysis::EquilibriumSolver(running).solve(0.0);
   system::Workspace w = m.built.system.make_workspace();
   ASSERT_TRUE(m.built.system.evaluate_nodes(w, e.state.frames, 0.0, e.state.q, e.state.v, e.state.a));
@@ -246,9 +246,9 @@ pitch_diameter = "52 mm"
 clearance = "40 um"
 stiffness = "1.334e10 N/m^1.5"
 )"));
-  analysis::Running still = m.running();
+  analysis::SteadyRotation still = m.running();
   still.mean = false;
-  analysis::RunningSystem running(m.built.system, still);
+  analysis::SteadySystem running(m.built.system, still);
   const auto e = analysis::EquilibriumSolver(running).solve(0.0);
   EXPECT_NEAR(e.state.q[6 * m.disk() + 2], -4e-5 - std::pow(196 / 1.334e10, 2.0 / 3), 1e-10 * 4e-5);
   EXPECT_NEAR(e.state.q[6 * m.disk() + 1], 0.0, 1e-12);
@@ -257,7 +257,7 @@ stiffness = "1.334e10 N/m^1.5"
 // What no play excuses stays an error: a motion that a load drives on and on, and one that nothing resists beside a support without play.
 TEST(Gaps, NothingToFind) {
   const DeckModel away(mass_in_a_stop("one_sided"));
-  analysis::RunningSystem running(away.built.system, away.running());
+  analysis::SteadySystem running(away.built.system, away.running());
   EXPECT_THROW(analysis::EquilibriumSolver(running).solve(0.0), Error);
 }
 

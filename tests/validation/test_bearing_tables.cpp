@@ -2,9 +2,9 @@
 //
 // A rigid body (mass m, Ip, Id) on one bearing at a distance a from its mass centre. In (x, y, z, ry, rz) of the mass centre, turning at
 // Omega, with B from these to the bearing's motion:  M l^2 + (B^T C B + Omega G) l + B^T K B,  G from Ip. Solved here as it stands.
-#include <analysis/equilibrium.hpp>
-#include <analysis/whirl_modes.hpp>
-#include <elements/hertz.hpp>
+#include <analysis/statics/equilibrium.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
+#include <elements/rolling/hertz.hpp>
 #include "deck_model.hpp"
 #include "record.hpp"
 
@@ -151,7 +151,7 @@ TEST(BearingTables, SetPointAndPreload) {
   weight[2] = -mass * 9.81;
   const Matrix<6> K = stiffness(0);
   const Vector<5> q = (B.transpose() * K * B).fullPivLu().solve(weight + B.transpose() * (preload + K * setpoint));
-  analysis::RunningSystem running(m.built.system, m.running());
+  analysis::SteadySystem running(m.built.system, m.running());
   const Vec3 u = analysis::EquilibriumSolver(running).solve(0.0).state.q.segment<3>(6 * m.disk());
   const double o = m.mesh.place(m.deck.model.disks[0].at).offset;   // of the mass centre from its node
   Vec3 exact = Vec3(q.head<3>()) - o * Vec3(0, q[4], -q[3]);

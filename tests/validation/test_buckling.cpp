@@ -2,7 +2,7 @@
 #include "../analysis/rotors.hpp"
 #include "record.hpp"
 
-#include <analysis/buckling.hpp>
+#include <analysis/statics/buckling.hpp>
 #include <core/error.hpp>
 
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@ namespace {
 constexpr double EI = 2000, L = 1.5, GJ = 1500;
 
 std::vector<BucklingMode> factors(const system::System& s, Index count = 2) {
-  Running running;
+  SteadyRotation running;
   running.ratio.assign(static_cast<std::size_t>(s.lines()), 0.0);
-  RunningSystem still(s, running);
+  SteadySystem still(s, running);
   return buckling(still, 0, count);
 }
 

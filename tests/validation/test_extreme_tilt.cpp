@@ -1,7 +1,7 @@
 // The chart near its limit: a free axisymmetric body that spins and tumbles steadily, driven to 3.0 rad and to pi.
-#include <analysis/transient.hpp>
+#include <analysis/transient/transient.hpp>
 #include <core/rotation.hpp>
-#include <elements/rigid_disk.hpp>
+#include <elements/rigid/rigid_disk.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Foundations as matrices: closed forms, and the same bodies built otherwise.
-#include <analysis/linear.hpp>
-#include <analysis/whirl_modes.hpp>
+#include <analysis/linearizer.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
 #include <core/error.hpp>
 #include "deck_model.hpp"
 

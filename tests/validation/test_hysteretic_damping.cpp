@@ -4,10 +4,10 @@
 #include "../analysis/rotors.hpp"
 #include "record.hpp"
 
-#include <analysis/frequency_response.hpp>
-#include <analysis/stability.hpp>
-#include <analysis/unbalance.hpp>
-#include <elements/hysteretic_damping.hpp>
+#include <analysis/response/frequency_response.hpp>
+#include <analysis/spectra/stability.hpp>
+#include <analysis/response/unbalance.hpp>
+#include <elements/shaft/hysteretic_damping.hpp>
 
 #include <gtest/gtest.h>
 

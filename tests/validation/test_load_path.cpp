@@ -1,9 +1,9 @@
 // Load paths past limit points: the column beyond its Euler load against the elastica, the snap-through of two bars against its closed form.
 #include "record.hpp"
-#include <analysis/load_path.hpp>
-#include <elements/point_load.hpp>
-#include <elements/shaft_beam.hpp>
-#include <elements/timoshenko_matrices.hpp>
+#include <analysis/statics/load_path.hpp>
+#include <elements/loads/point_load.hpp>
+#include <elements/shaft/shaft_beam.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(LoadPath, ColumnFollowsTheElastica) {
   for (const bool by_arc : {true, false}) {
     const double beta = by_arc ? 2e-3 : 1e-6;
     const system::System s = column(20, pi * pi / 4, std::tan(beta));
-    RunningSystem running(s);
+    SteadySystem running(s);
     LoadPathOptions o;
     o.last_load = 3.0;
     if (!by_arc) o.controlled = 6 * 20 + 1, o.controlled_to = 0.78, o.steps = 30;
@@ -101,7 +101,7 @@ TEST(LoadPath, BarSnapsThrough) {
   b.add(elements::PointForce{Vec3(0, -0.01, 0), nullptr}, {1}, "forces");
   const system::System s = b.finalize();
   for (const bool by_arc : {true, false}) {
-    RunningSystem running(s);
+    SteadySystem running(s);
     LoadPathOptions o;
     o.last_load = 1.0, o.steps = 40;
     if (!by_arc) o.controlled = 7, o.controlled_to = -0.7;

@@ -5,9 +5,9 @@
 // Reference: two independent formulations integrated at order 8 with rtol 1e-12, which agree to 5e-13 m over 10 s (nine printed digits).
 #include "record.hpp"
 
-#include <analysis/transient.hpp>
-#include <elements/rigid_disk.hpp>
-#include <elements/spring_block.hpp>
+#include <analysis/transient/transient.hpp>
+#include <elements/rigid/rigid_disk.hpp>
+#include <elements/supports/spring_block.hpp>
 
 #include <gtest/gtest.h>
 

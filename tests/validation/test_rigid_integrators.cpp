@@ -3,7 +3,7 @@
 #include "../core/reference.hpp"
 #include "../system/explicit_motion.hpp"
 #include "../system/rigid_cases.hpp"
-#include <elements/spring_block.hpp>
+#include <elements/supports/spring_block.hpp>
 #include <time/integrator.hpp>
 #include <functional>
 

@@ -6,13 +6,13 @@
 // three-node beams, Exudyn and Chrono isogeometric at finite steps).
 #include "record.hpp"
 
-#include <analysis/transient.hpp>
-#include <elements/linear_bearing.hpp>
-#include <elements/rigid_disk.hpp>
-#include <elements/shaft_beam.hpp>
-#include <elements/spin_torque.hpp>
-#include <elements/timoshenko_matrices.hpp>
-#include <elements/unbalance.hpp>
+#include <analysis/transient/transient.hpp>
+#include <elements/supports/linear_bearing.hpp>
+#include <elements/rigid/rigid_disk.hpp>
+#include <elements/shaft/shaft_beam.hpp>
+#include <elements/loads/spin_torque.hpp>
+#include <elements/shaft/timoshenko_matrices.hpp>
+#include <elements/loads/unbalance.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Shafts, casings and sleeves from the text of a deck to their frequencies and deflections, against closed forms.
-#include <analysis/whirl_modes.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
 #include <assembly/build_system.hpp>
 #include <deck/deck.hpp>
 #include <meshes/mesh.hpp>
@@ -23,8 +23,8 @@ struct Deck {
     mesh = meshes::make_mesh(model);
     built = assembly::build_system(model, mesh);
   }
-  Running running() const {
-    Running r;
+  SteadyRotation running() const {
+    SteadyRotation r;
     for (std::size_t l = 0; l < mesh.lines.size(); ++l) r.ratio.push_back(mesh.lines[l].rotating ? model.shafts[l].speed_ratio : 0.0);
     return r;
   }
@@ -178,7 +178,7 @@ at = "shaft/0.5 m"
 force = ["0 N", "1 N", "0 N"]
 )";
   Deck d(shaft("od = \"60 mm\"") + casing + "[[bearing]]\nname = \"guide\"\nat = \"shaft/0.5 m\"\ntype = \"linear\"\nkrr = \"1e4 N.m/rad\"\n");
-  RunningSystem running(d.built.system, d.running());
+  SteadySystem running(d.built.system, d.running());
   const Equilibrium e = EquilibriumSolver(running).solve(0.0);
   const double exact = 1e-6 + 1.0 / (48 * 2e11 * (I(0.1) - I(0.09)));
   const auto at = [&](const char* line) {

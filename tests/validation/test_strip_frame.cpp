@@ -6,7 +6,7 @@
 #include "exact_rod.hpp"
 #include "record.hpp"
 
-#include <analysis/buckling.hpp>
+#include <analysis/statics/buckling.hpp>
 #include <core/error.hpp>
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ force = ["1 N", "0 N", "{} N"]
 
 struct Frame {
   DeckModel model;
-  RunningSystem running;
+  SteadySystem running;
   Frame(int n, double out_of_plane)
       : model(deck(n, out_of_plane)), running(model.built.system, model.running()) {}
   Index tip() const { return model.mesh.lines[0].first_node + model.mesh.lines[0].nodes - 1; }
@@ -176,7 +176,7 @@ TEST(StripFrame, BucklingUnderRefinement) {
 // bends away, says that there is none.
 TEST(StripFrame, SmallForceAcrossThePlane) {
   Frame plain(16, 0.0), pushed(16, 1e-3);
-  const auto smallest_positive = [](RunningSystem& r) {
+  const auto smallest_positive = [](SteadySystem& r) {
     double out = infinity;
     for (const BucklingMode& m : buckling(r, 0.0, 3))
       if (m.factor.real() > 0 && m.factor.imag() == 0) out = std::min(out, m.factor.real());

@@ -2,8 +2,8 @@
 #include "../analysis/rotors.hpp"
 #include "record.hpp"
 
-#include <analysis/critical.hpp>
-#include <analysis/unbalance.hpp>
+#include <analysis/spectra/critical.hpp>
+#include <analysis/response/unbalance.hpp>
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ std::string number(double x) {
 }
 
 std::vector<Critical> criticals(const system::System& s, double max_rpm, double order = 1) {
-  Running running;
+  SteadyRotation running;
   running.top_speed = max_rpm * rpm;
   Linearizer linear(s, running);
   CriticalOptions o;

@@ -2,8 +2,8 @@
 #include "../analysis/rotors.hpp"
 #include "record.hpp"
 
-#include <analysis/stability.hpp>
-#include <elements/short_journal.hpp>
+#include <analysis/spectra/stability.hpp>
+#include <elements/films/short_journal.hpp>
 
 #include <gtest/gtest.h>
 

@@ -91,18 +91,20 @@
     }
     return Float32Array.from(out);
   }
-  const json = (s) => (s ? JSON.parse(s) : null);
+  // lists in an attribute: a line each, cells apart by tabs
+  const lines = (s) => (s ? s.split("\n") : null);
+  const extras = (s) => (s ? lines(s).map((line) => { const [l, u, ...v] = line.split("\t"); return { l, u, v }; }) : null);
   // What the pointer can find: curves and clouds of one <g class="axes">.
   function traces(g) {
     const out = [];
     for (const p of g.querySelectorAll("path[data-s]:not([data-quiet])")) {
       if (p.closest(".legend")) continue;
       out.push({ el: p, s: p.dataset.s, name: p.dataset.name || "", line: true, right: "right" in p.dataset, xy: null,
-        base: p.dataset.base ? numbers(p.dataset.base) : null, unit: p.dataset.unit, extra: json(p.dataset.extra), names: json(p.dataset.names) });
+        base: p.dataset.base ? numbers(p.dataset.base) : null, unit: p.dataset.unit, extra: extras(p.dataset.extra), names: lines(p.dataset.names) });
     }
     for (const p of g.querySelectorAll("g[data-pins]:not([data-quiet]):not([data-legend])")) {
       out.push({ el: p, s: p.dataset.s, name: p.dataset.name || "", line: false, right: "right" in p.dataset, xy: null,
-        base: null, extra: json(p.dataset.extra), names: json(p.dataset.names) });
+        base: null, extra: extras(p.dataset.extra), names: lines(p.dataset.names) });
     }
     return out;
   }

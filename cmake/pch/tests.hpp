@@ -1,0 +1,3 @@
+// Precompiled for test programs.
+#include "numbers.hpp"
+#include <gtest/gtest.h>

@@ -1,0 +1,131 @@
+#include <elements/films/finite_journal.hpp>
+
+#include <core/error.hpp>
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::elements {
+
+namespace {
+
+[[noreturn]] void fail(const char* what) { throw run_error("E84", std::string("journal bearing: ") + what); }
+
+Vec2 direction(double a) { return Vec2(std::cos(a), std::sin(a)); }
+
+}  // namespace
+
+JournalSurface::JournalSurface(double clearance, double preload, const std::vector<JournalPad>& pads, int nodes)
+    : clearance_(clearance), lift_(0.0) {
+  if (!(clearance > 0)) fail("the clearance must be positive");
+  if (!(preload >= 0 && preload < 1)) fail("the preload must be at least 0 and below 1");
+  if (nodes < 8 || nodes > max_nodes) fail("the grid needs 8 to 360 points");
+  if (pads.empty() && preload != 0.0) fail("a preload needs pads");
+  lift_ = clearance / (1.0 - preload) - clearance;
+  std::vector<JournalPad> all = pads;
+  const bool round = all.empty() || (all.size() == 1 && all[0].end - all[0].start > two_pi - 1e-9);
+  if (all.empty()) all.push_back({0.0, two_pi, 0.0});
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.start < b.start; });
+  double total = 0.0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!(all[k].end > all[k].start)) fail("a pad is empty");
+    const double next = k + 1 < all.size() ? all[k + 1].start : all[0].start + two_pi;
+    if (all[k].end > next + 1e-9) fail("pads overlap");
+    total += all[k].end - all[k].start;
+  }
+  for (const JournalPad& a : all) {
+    const double length = a.end - a.start;
+    arcs_.push_back({a.start, length, round, direction(a.thinnest), nodes * length / total});
+  }
+}
+
+std::vector<JournalPad> two_groove_pads(double groove_at, double groove) {
+  std::vector<JournalPad> pads;
+  for (int k = 0; k < 2; ++k) {
+    const double a = groove_at + k * pi + 0.5 * groove, b = groove_at + (k + 1) * pi - 0.5 * groove;
+    pads.push_back({a, b, 0.5 * (a + b)});
+  }
+  return pads;
+}
+
+std::vector<JournalPad> lobe_pads(int n, double first, double groove, double offset) {
+  std::vector<JournalPad> pads;
+  const double arc = two_pi / n - groove;
+  for (int k = 0; k < n; ++k) {
+    const double a = first + k * two_pi / n - 0.5 * arc;
+    pads.push_back({a, a + arc, a + offset * arc});
+  }
+  return pads;
+}
+
+PadFilm FiniteJournal::pad(std::size_t k) const {
+  const JournalSurface::Arc& arc = surface->arcs()[k];
+  return PadFilm(arc.start, arc.length, arc.round, leakage * radius * radius / (length * length), arc.points);
+}
+
+FiniteJournal::PadPlace FiniteJournal::place(std::size_t k, const FilmPoint& p) const {
+  const Vec2& n = surface->arcs()[k].thinnest;
+  const double lift = surface->lift();
+  return {(p.r + lift * n) / surface->pad_clearance(), p.w - 0.5 * p.slip * lift * Vec2(-n.y(), n.x())};
+}
+
+bool FiniteJournal::inside(const FilmPoint& p) const {
+  if (!p.r.allFinite() || !p.w.allFinite() || !std::isfinite(p.slip)) return false;
+  for (std::size_t k = 0; k < surface->arcs().size(); ++k)
+    if (!(pad(k).smallest_clearance(place(k, p).e) > 0.0)) return false;
+  return true;
+}
+
+void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
+  f.F.setZero(), f.T = 0.0;
+  if (!inside(p)) {
+    f.F.setConstant(nan), f.T = nan;
+    return;
+  }
+  const double c = surface->pad_clearance();
+  const double unit = source * viscosity * std::pow(radius / c, 3) * length;   // N per m/s of W
+  const double drag = viscosity * std::pow(radius, 3) * length / c;
+  for (std::size_t k = 0; k < surface->arcs().size(); ++k) {
+    const PadFilm film = pad(k);
+    const auto [e, W] = place(k, p);
+    const Vec2& n = surface->arcs()[k].thinnest;
+    const Vec2 G = film.load(e, W);
+    Vec2 gradient;
+    f.F -= unit * G;
+    f.T += 0.5 * unit * surface->lift() * (n.x() * G.y() - n.y() * G.x());
+    if (p.slip != 0.0) f.T -= drag * p.slip * film.shear(e, gradient);
+  }
+}
+
+void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
+  if (!inside(p)) {
+    f.F.setConstant(nan), f.T = nan;
+    t.F_r.setConstant(nan), t.F_w = t.F_r, t.F_slip.setConstant(nan), t.T_r = t.T_w = t.F_slip, t.T_slip = nan;
+    return;
+  }
+  f.F.setZero(), f.T = 0.0;
+  t.F_r.setZero(), t.F_w.setZero(), t.F_slip.setZero(), t.T_r.setZero(), t.T_w.setZero(), t.T_slip = 0.0;
+  const double c = surface->pad_clearance(), half_lift = 0.5 * surface->lift();
+  const double unit = source * viscosity * std::pow(radius / c, 3) * length;
+  const double drag = viscosity * std::pow(radius, 3) * length / c;
+  for (std::size_t k = 0; k < surface->arcs().size(); ++k) {
+    const PadFilm film = pad(k);
+    auto [e, W] = place(k, p);
+    const Vec2& n = surface->arcs()[k].thinnest;
+    const Vec2 across(-n.y(), n.x());
+    if (W.norm() <= 1e-9 * std::abs(p.slip) * c) W.setZero();   // a journal centred in its pad but for rounding
+    const PadLoad load = film.load_and_slopes(e, W);
+    Vec2 shear_e;
+    const double shear = film.shear(e, shear_e);
+    f.F -= unit * load.G;
+    t.F_r -= unit / c * load.by_e;
+    t.F_w -= unit * load.by_W;
+    t.F_slip += unit * half_lift * (load.by_W * across);
+    // pressure on the lobe, and shear of a full film
+    f.T += unit * half_lift * across.dot(load.G) - drag * p.slip * shear;
+    t.T_r += unit / c * half_lift * (load.by_e.transpose() * across) - drag * p.slip / c * shear_e;
+    t.T_w += unit * half_lift * (load.by_W.transpose() * across);
+    t.T_slip -= unit * half_lift * half_lift * across.dot(load.by_W * across) + drag * shear;
+  }
+}
+
+}  // namespace whirl::elements

@@ -1,0 +1,436 @@
+#include <elements/films/pad_film.hpp>
+
+#include <core/dual.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::elements {
+
+namespace {
+
+constexpr int p = PadFilm::order;
+constexpr int bubbles = p - 1;
+constexpr int shapes = p + 1;   // bubbles, then the left and the right vertex
+constexpr int points = p + 1;   // Gauss points: one more than the order asks for halves the elements a given error takes
+constexpr int entries = shapes * (shapes + 1) / 2;
+
+/// Gauss-Legendre points and weights on [0, 1].
+template <int n>
+struct Gauss {
+  std::array<double, n> x, w;
+  Gauss() {
+    for (std::size_t i = 0; i < n; ++i) {
+      double t = std::cos(pi * (static_cast<double>(i) + 0.75) / (n + 0.5));
+      double slope = 1.0;
+      for (int newton = 0; newton < 20; ++newton) {
+        double a = 1.0, b = t;
+        for (int k = 2; k <= n; ++k) {
+          const double next = ((2 * k - 1) * t * b - (k - 1) * a) / k;
+          a = b;
+          b = next;
+        }
+        slope = n * (a - t * b) / (1.0 - t * t);
+        t -= b / slope;
+      }
+      x[i] = 0.5 * (1.0 - t);
+      w[i] = 1.0 / ((1.0 - t * t) * slope * slope);
+    }
+  }
+};
+
+/// Shape functions at the Gauss points: integrated Legendre polynomials inside, linear ones at the vertices.
+struct Reference {
+  Gauss<points> gauss;
+  std::array<std::array<double, points>, shapes> value, slope;
+  /// products of two (upper triangle by rows), of their slopes; shape functions; all times the weight of the point
+  std::array<std::array<double, entries>, points> mass, stiffness;
+  std::array<std::array<double, shapes>, points> source;
+
+  Reference() {
+    for (std::size_t q = 0; q < points; ++q) {
+      const double x = gauss.x[q], t = 2.0 * x - 1.0;
+      std::array<double, p + 1> legendre{1.0, t};
+      for (std::size_t k = 2; k <= p; ++k) {
+        const double m = static_cast<double>(k);
+        legendre[k] = ((2 * m - 1) * t * legendre[k - 1] - (m - 1) * legendre[k - 2]) / m;
+      }
+      for (std::size_t k = 0; k < bubbles; ++k) {
+        const double m = static_cast<double>(k) + 1.0;
+        value[k][q] = (legendre[k + 2] - legendre[k]) / (2.0 * (2 * m + 1));
+        slope[k][q] = legendre[k + 1];
+      }
+      value[bubbles][q] = 1.0 - x;
+      slope[bubbles][q] = -1.0;
+      value[bubbles + 1][q] = x;
+      slope[bubbles + 1][q] = 1.0;
+      std::size_t m = 0;
+      for (std::size_t i = 0; i < shapes; ++i) {
+        source[q][i] = gauss.w[q] * value[i][q];
+        for (std::size_t j = i; j < shapes; ++j, ++m) {
+          mass[q][m] = gauss.w[q] * value[i][q] * value[j][q];
+          stiffness[q][m] = gauss.w[q] * slope[i][q] * slope[j][q];
+        }
+      }
+    }
+  }
+};
+
+const Reference& reference() {
+  static const Reference r;
+  return r;
+}
+
+template <class T>
+struct Pair { T x, y; };
+
+/// Position of the journal, and the Moebius map of the circle to Sommerfeld's angle: zeta = (z - b)/(1 - conj(b) z).
+template <class T>
+struct Place {
+  Pair<T> e, b;
+  T spread, over_spread;   ///< 1 - |b|^2 and its inverse
+
+  Place(const T& ex, const T& ey) : e{ex, ey} {
+    using std::sqrt;
+    // near contact the grading of the elements goes no further: contact off the pad is possible
+    constexpr double least = 0.02;   // of sqrt(1 - e^2)
+    const T square = ex * ex + ey * ey;
+    const double room = 1.0 - value(square);
+    T scale(0.5);
+    if (room > least * least) scale = 1.0 / (1.0 + sqrt(1.0 - square));
+    else scale = std::sqrt((1.0 - least) / (1.0 + least)) / sqrt(square);
+    b = {scale * ex, scale * ey};
+    spread = 1.0 - (b.x * b.x + b.y * b.y);
+    over_spread = 1.0 / spread;
+  }
+  T gamma(double theta) const {
+    using std::atan2;
+    const double c = std::cos(theta), s = std::sin(theta);
+    return theta + 2.0 * atan2(b.x * s - b.y * c, 1.0 - (b.x * c + b.y * s));
+  }
+  double theta(double angle) const {
+    const double c = std::cos(angle), s = std::sin(angle), bx = value(b.x), by = value(b.y);
+    return angle + 2.0 * std::atan2(by * c - bx * s, 1.0 + bx * c + by * s);
+  }
+};
+
+/// What the film needs at an angle gamma given by (cos, sin).
+template <class T>
+struct AtPoint {
+  Pair<T> n;
+  T h, stretch;   ///< clearance, dtheta/dgamma
+  T flow;         ///< h^3 dgamma/dtheta
+  AtPoint(const Place<T>& at, const Pair<T>& zeta) {
+    const Pair<T> sum{zeta.x + at.b.x, zeta.y + at.b.y};
+    const T re = 1.0 + at.b.x * zeta.x + at.b.y * zeta.y, im = at.b.x * zeta.y - at.b.y * zeta.x;   // 1 + conj(b) zeta
+    const T square = re * re + im * im, inverse = 1.0 / square;
+    n = {(sum.x * re + sum.y * im) * inverse, (sum.y * re - sum.x * im) * inverse};
+    h = 1.0 - (at.e.x * n.x + at.e.y * n.y);
+    stretch = at.spread * inverse;
+    flow = h * h * h * square * at.over_spread;
+  }
+};
+
+/// A stretch of film condensed to its two ends, for the unit sources n_x and n_y.
+template <class T>
+struct Condensed {
+  T S00, S01, S11;           ///< loads int P_i n_j dtheta with P = 0 at both ends
+  Pair<T> out_a, out_b;      ///< flow out at the ends
+  T D_aa, D_ab, D_bb;        ///< stiffness: flow in at an end for a pressure there
+};
+
+template <class T>
+void add_load(Condensed<T>& c, const T& x, const T& y, const T& inverse) {
+  const T ix = inverse * x;
+  c.S00 += ix * x;
+  c.S01 += ix * y;
+  c.S11 += inverse * y * y;
+}
+
+template <class T>
+Condensed<T> condense(const Place<T>& at, const T& from, const T& to, double beta, int n) {
+  using std::cos;
+  using std::sin;
+  const Reference& ref = reference();
+  const T width = (1.0 / n) * (to - from), over_width = 1.0 / width;
+  const auto at_angle = [](const T& angle) { return Pair<T>{cos(angle), sin(angle)}; };
+  const Pair<T> turn = at_angle(width), middle = at_angle(from + 0.5 * width);
+  std::array<Pair<T>, points> zeta;
+  for (std::size_t q = 0; q < points / 2; ++q) {   // points lie in pairs about the middle
+    const Pair<T> away = at_angle((0.5 - ref.gauss.x[q]) * width);
+    const T cc = middle.x * away.x, ss = middle.y * away.y, sc = middle.y * away.x, cs = middle.x * away.y;
+    zeta[q] = {cc + ss, sc - cs};
+    zeta[points - 1 - q] = {cc - ss, sc + cs};
+  }
+  zeta[points / 2] = middle;
+  Condensed<T> c{0.0, 0.0, 0.0, {0.0, 0.0}, {0.0, 0.0}, 0.0, 0.0, 0.0};
+  for (int k = 0; k < n; ++k) {
+    std::array<T, entries> A;   // upper triangle by rows
+    std::array<Pair<T>, shapes> B;
+    A.fill(T(0.0));
+    B.fill({T(0.0), T(0.0)});
+    for (std::size_t q = 0; q < points; ++q) {
+      const AtPoint<T> x(at, zeta[q]);
+      const T flow = over_width * x.flow, arc = width * x.stretch, leak = beta * (x.h * x.h * x.h) * arc;
+      const T sx = arc * x.n.x, sy = arc * x.n.y;
+      for (std::size_t m = 0; m < entries; ++m) A[m] += ref.stiffness[q][m] * flow + ref.mass[q][m] * leak;
+      for (std::size_t i = 0; i < shapes; ++i) {
+        B[i].x += ref.source[q][i] * sx;
+        B[i].y += ref.source[q][i] * sy;
+      }
+      const Pair<T> z = zeta[q];
+      zeta[q] = {z.x * turn.x - z.y * turn.y, z.x * turn.y + z.y * turn.x};
+    }
+    for (std::size_t i = 0, row = 0; i < bubbles; row += shapes - i, ++i) {
+      const T inverse = 1.0 / A[row];
+      add_load(c, B[i].x, B[i].y, inverse);
+      std::size_t below = row + shapes - i;
+      for (std::size_t j = 1; j < shapes - i; ++j) {
+        const T factor = A[row + j] * inverse;
+        for (std::size_t m = j; m < shapes - i; ++m) A[below++] -= factor * A[row + m];
+        B[i + j].x -= factor * B[i].x;
+        B[i + j].y -= factor * B[i].y;
+      }
+    }
+    const T &ll = A[entries - 3], &lr = A[entries - 2], &rr = A[entries - 1];
+    const Pair<T>&left = B[bubbles], &right = B[bubbles + 1];
+    if (k == 0) {
+      c.D_aa = ll;
+      c.D_ab = lr;
+      c.D_bb = rr;
+      c.out_a = left;
+      c.out_b = right;
+      continue;
+    }
+    // the vertex between what is condensed so far and this element
+    const T inverse = 1.0 / (c.D_bb + ll), x = c.out_b.x + left.x, y = c.out_b.y + left.y;
+    add_load(c, x, y, inverse);
+    const T back = c.D_ab * inverse, ahead = lr * inverse;
+    c.out_a.x -= back * x;
+    c.out_a.y -= back * y;
+    c.out_b = {right.x - ahead * x, right.y - ahead * y};
+    c.D_aa -= back * c.D_ab;
+    c.D_bb = rr - ahead * lr;
+    c.D_ab = -(back * lr);
+  }
+  return c;
+}
+
+}  // namespace
+
+PadFilm::PadFilm(double start, double arc, bool round, double beta, double points_on_arc)
+    : start_(start), arc_(arc), beta_(beta), round_(round) {
+  // at the ends of short pads the pressure falls within 1/sqrt(beta): an element is at most three of those
+  const double asked = std::round(points_on_arc / points_of_element), needed = std::ceil(std::sqrt(beta) * arc / 3.0);
+  elements_ = std::max(4, static_cast<int>(std::max(asked, needed)));
+}
+
+double PadFilm::smallest_clearance(const Vec2& e) const {
+  const double turn = std::atan2(e.y(), e.x()) - start_, inside = turn - two_pi * std::floor(turn / two_pi);
+  if (round_ || inside <= arc_) return 1.0 - e.norm();
+  const auto at = [&](double a) { return 1.0 - e.x() * std::cos(a) - e.y() * std::sin(a); };
+  return std::min(at(start_), at(start_ + arc_));
+}
+
+/// The stretches where the source is positive, and how far their ends may move.
+int PadFilm::cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const {
+  const Place<double> at(e.x(), e.y());
+  const double begin = std::atan2(W.y(), W.x()) - 0.5 * pi - start_, u = begin - two_pi * std::floor(begin / two_pi);
+  const auto gamma = [&](double theta) { return at.gamma(start_ + theta); };
+  const auto stretch = [](double a, double b, double low, double high, bool held_a, bool held_b) {
+    return Ends{a, b, a, b, low, high, held_a, held_b};
+  };
+  if (round_) {
+    out[0] = stretch(gamma(u), gamma(u + pi), -infinity, infinity, false, false);
+    return 1;
+  }
+  const double low = gamma(0.0), high = gamma(arc_);
+  const bool first = u > pi, second = u < arc_;   // from the start of the pad; up to its end or ending on it
+  int n = 0;
+  if (first) {
+    const bool whole = u - pi >= arc_;
+    out[0] = stretch(low, whole ? high : gamma(u - pi), low, second ? gamma(u) : high, true, whole);
+    n = 1;
+  }
+  if (second) {
+    const bool whole = u + pi >= arc_;
+    const double a = u > 0.0 ? gamma(u) : low, b = whole ? high : gamma(u + pi);
+    out[static_cast<std::size_t>(n++)] = stretch(a, b, first ? gamma(u - pi) : low, high, u <= 0.0, whole);
+  }
+  return n;
+}
+
+/// Newton's method for the free ends. What flows out at an end is positive while the film is too short.
+bool PadFilm::settle(const Vec2& e, const Vec2& W, Ends& s, int elements, double tolerance, int most_passes, int& passes) const {
+  const Place<double> at(e.x(), e.y());
+  double last[2] = {s.a, s.b}, last_out[2] = {0.0, 0.0};
+  const double least = -1e-6 * W.norm();   // where two films could meet the source vanishes again
+  for (int k = 0; k < most_passes; ++k) {
+    const Condensed<double> c = condense(at, s.a, s.b, beta_, elements);
+    ++passes;
+    const double out[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(), c.out_b.x * W.x() + c.out_b.y * W.y()};
+    const bool moves[2] = {!s.held_a && !(s.a <= s.low && out[0] >= 0.0), !s.held_b && !(s.b >= s.high && out[1] >= 0.0)};
+    if (!moves[0] && !moves[1]) return true;
+    double slope[2], shift[2];   // of the flow by lengthening; pressure at the old end by lengthening
+    for (int i = 0; i < 2; ++i) {
+      const double angle = i == 0 ? s.a : s.b;
+      const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
+      shift[i] = std::max(0.0, out[i]) * x.stretch / (x.h * x.h * x.h);
+      const double source = std::min(W.x() * x.n.x + W.y() * x.n.y, least);
+      slope[i] = source * x.stretch - (i == 0 ? c.D_aa : c.D_bb) * shift[i];
+    }
+    double step[2] = {0.0, 0.0};
+    if (moves[0] && moves[1]) {
+      const double ab = -c.D_ab * shift[1], ba = -c.D_ab * shift[0];   // d out_a/d b, d out_b/d a
+      const double det = slope[0] * slope[1] - ab * ba;
+      step[0] = -(slope[1] * out[0] - ab * out[1]) / det;
+      step[1] = -(slope[0] * out[1] - ba * out[0]) / det;
+    } else {
+      const int i = moves[0] ? 0 : 1;
+      step[i] = -out[i] / slope[i];
+    }
+    if (!std::isfinite(step[0]) || !std::isfinite(step[1])) return false;
+    const double length = s.b - s.a;
+    double most = length;
+    if (round_) most = std::min(most, 0.25 * (two_pi - length));
+    double moved = 0.0;
+    for (int i = 0; i < 2; ++i) {
+      double& end = i == 0 ? s.a : s.b;
+      const double outward = i == 0 ? -1.0 : 1.0, core = i == 0 ? s.core_a : s.core_b;
+      double to = std::clamp(end + outward * std::min(step[i], most), s.low, s.high);
+      // a step back beyond where it came from, or into the core: the root is between
+      const double back = last[i] - end;
+      const bool between = k > 0 && back != 0.0 && out[i] * last_out[i] < 0.0;
+      if (between && (to - end) / back >= 1.0) to = end + back * out[i] / (out[i] - last_out[i]);
+      if (outward * (to - core) < 0.0) to = 0.5 * (end + core);
+      moved = std::max(moved, std::abs(to - end));
+      last[i] = end;
+      last_out[i] = out[i];
+      end = to;
+    }
+    if (moved < tolerance * length) return true;
+  }
+  return false;
+}
+
+int PadFilm::solve(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out, int& passes) const {
+  int n = cores(e, W, out);
+  const auto find = [&](Ends& s) {
+    if (s.held_a && s.held_b) return;
+    // from a little outside the core: at its ends there is no source to balance a flow
+    const double beyond = std::min(0.15, 0.3 * (s.b - s.a));
+    const double room_a = round_ ? 0.5 * (two_pi - (s.b - s.a)) : s.a - s.low, room_b = round_ ? room_a : s.high - s.b;
+    if (!s.held_a) s.a -= std::min(beyond, 0.5 * room_a);
+    if (!s.held_b) s.b += std::min(beyond, 0.5 * room_b);
+    settle(e, W, s, std::max(2, elements_ / 3), 3e-3, 8, passes);
+    // the load does not feel small errors of a free end, and Newton's error goes with the square of the last step
+    settle(e, W, s, elements_, 1e-4, 60, passes);
+  };
+  for (int i = 0; i < n; ++i) find(out[static_cast<std::size_t>(i)]);
+  if (n == 2 && out[0].b >= out[1].a) {   // films from both ends that meet are one
+    out[0].b = out[1].b;
+    out[0].held_b = true;
+    n = 1;
+  }
+  return n;
+}
+
+Vec2 PadFilm::load(const Vec2& e, const Vec2& W) const {
+  Vec2 G = Vec2::Zero();
+  if (W.isZero(0.0)) return G;
+  std::array<Ends, 2> films;
+  int passes = 0;
+  const int n = solve(e, W, films, passes);
+  const Place<double> at(e.x(), e.y());
+  for (int i = 0; i < n; ++i) {
+    const Ends& s = films[static_cast<std::size_t>(i)];
+    const Condensed<double> c = condense(at, s.a, s.b, beta_, elements_);
+    G += Vec2(c.S00 * W.x() + c.S01 * W.y(), c.S01 * W.x() + c.S11 * W.y());
+  }
+  return G;
+}
+
+PadLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W) const {
+  PadLoad out{Vec2::Zero(), Mat2::Zero(), Mat2::Zero()};
+  if (W.isZero(0.0)) {
+    out.by_W = mean_slope(e);
+    return out;
+  }
+  using T = Dual<4>;   // e_x, e_y, ends a and b
+  std::array<Ends, 2> films;
+  int passes = 0;
+  const int n = solve(e, W, films, passes);
+  const Place<T> at(T::variable(e.x(), 0), T::variable(e.y(), 1));
+  for (int i = 0; i < n; ++i) {
+    const Ends& s = films[static_cast<std::size_t>(i)];
+    const bool free_a = !s.held_a && s.a > s.low, free_b = !s.held_b && s.b < s.high;
+    const T a = free_a ? T::variable(s.a, 2) : at.gamma(start_), b = free_b ? T::variable(s.b, 3) : at.gamma(start_ + arc_);
+    const Condensed<T> c = condense(at, a, b, beta_, elements_);
+    const T G[2] = {c.S00 * W.x() + c.S01 * W.y(), c.S01 * W.x() + c.S11 * W.y()};
+    const T flow[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(), c.out_b.x * W.x() + c.out_b.y * W.y()};
+    Mat2 by_ends, flow_by_ends = Mat2::Identity(), flow_by_e = Mat2::Zero(), flow_by_W = Mat2::Zero();
+    const bool free[2] = {free_a, free_b};
+    const Pair<T> outflow[2] = {c.out_a, c.out_b};
+    for (int k = 0; k < 2; ++k) {
+      if (!free[k]) continue;
+      flow_by_ends.row(k) = flow[k].g.tail<2>();
+      flow_by_e.row(k) = flow[k].g.head<2>();
+      flow_by_W.row(k) << outflow[k].x.v, outflow[k].y.v;
+    }
+    Mat2 S, S_e;
+    S << c.S00.v, c.S01.v, c.S01.v, c.S11.v;
+    for (int k = 0; k < 2; ++k) {
+      out.G[k] += G[k].v;
+      S_e.row(k) = G[k].g.head<2>();
+      by_ends.row(k) = G[k].g.tail<2>();
+    }
+    const Mat2 follow = by_ends * flow_by_ends.inverse();
+    out.by_e += S_e - follow * flow_by_e;
+    out.by_W += S - follow * flow_by_W;
+  }
+  return out;
+}
+
+Mat2 PadFilm::mean_slope(const Vec2& e) const {
+  constexpr int directions = 16;   // more change it by less than 2e-3
+  Mat2 C = Mat2::Zero();
+  for (int k = 0; k < directions; ++k) {
+    const double angle = two_pi * (k + 0.5) / directions;
+    const Vec2 n(std::cos(angle), std::sin(angle));
+    C += 2.0 / directions * load(e, n) * n.transpose();
+  }
+  return C;
+}
+
+double PadFilm::shear(const Vec2& e, Vec2& gradient) const {
+  // in Sommerfeld's angle the integrands are a constant and a wave: two panels of eight points are exact to rounding
+  static const Gauss<8> gauss;
+  const Place<double> at(e.x(), e.y());
+  const double from = at.gamma(start_), half = 0.5 * (at.gamma(start_ + arc_) - from);
+  double sum = 0.0;
+  gradient.setZero();
+  for (int panel = 0; panel < 2; ++panel)
+    for (std::size_t q = 0; q < 8; ++q) {
+      const double angle = from + (panel + gauss.x[q]) * half;
+      const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
+      const double part = gauss.w[q] * half * x.stretch / x.h;
+      sum += part;
+      gradient += part / x.h * Vec2(x.n.x, x.n.y);
+    }
+  return sum;
+}
+
+PadFilm::Film PadFilm::find_film(const Vec2& e, const Vec2& W) const {
+  Film out;
+  if (W.isZero(0.0)) return out;
+  std::array<Ends, 2> films;
+  out.count = solve(e, W, films, out.passes);
+  const Place<double> at(e.x(), e.y());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(out.count); ++i) {
+    const Ends& s = films[i];
+    out.stretch[i] = {at.theta(s.a), at.theta(s.b), !s.held_a && s.a > s.low, !s.held_b && s.b < s.high};
+  }
+  return out;
+}
+
+}  // namespace whirl::elements

@@ -1,0 +1,242 @@
+#include <elements/rolling/rolling_bearing.hpp>
+
+#include <core/error.hpp>
+#include <elements/rolling/hertz.hpp>
+
+#include <cmath>
+
+namespace whirl::elements {
+
+using system::Context;
+using system::Energy;
+using system::ForceX;
+using system::Nodes;
+using system::TangentX;
+
+bool BallContact::evaluate(double x, double rho, double t, Local& l) const {
+  const double sa = a0 + x - R * t, sr = r0 + rho, A = std::hypot(sa, sr), delta = A - A0;
+  if (delta <= 0.0) return false;
+  const double root = std::sqrt(delta), Q = K * delta * root, dQ = 1.5 * K * root;
+  const Vec2 n(sa / A, sr / A);
+  // gradient of (s_a, s_r) in (x, rho, t): (1, 0, -R), (0, 1, 0)
+  l.V = 0.4 * Q * delta;
+  l.g << Q * n.x(), Q * n.y(), -R * Q * n.x();
+  const double c = Q / A, haa = dQ * n.x() * n.x() + c * n.y() * n.y(), har = (dQ - c) * n.x() * n.y(),
+               hrr = dQ * n.y() * n.y() + c * n.x() * n.x();
+  l.H << haa, har, -R * haa, har, hrr, -R * har, -R * haa, -R * har, R * R * haa;
+  return true;
+}
+
+double BallContact::load(double x, double rho, double t) const {
+  const double delta = std::hypot(a0 + x - R * t, r0 + rho) - A0;
+  return delta > 0.0 ? K * delta * std::sqrt(delta) : 0.0;
+}
+
+bool RollerContact::evaluate(double, double rho, double t, Local& l) const {
+  bool touch = false;
+  l.V = 0, l.g.setZero(), l.H.setZero();
+  const double k = K / slices;
+  for (int i = 0; i < slices; ++i) {
+    const double s = length * ((i + 0.5) / slices - 0.5), delta = rho + s * t - clearance;
+    if (delta <= 0.0) continue;
+    touch = true;
+    const double dQ = 10.0 / 9.0 * k * std::pow(delta, 1.0 / 9.0), Q = 0.9 * dQ * delta;
+    l.V += 9.0 / 19.0 * Q * delta;
+    l.g.y() += Q, l.g.z() += s * Q;
+    l.H(1, 1) += dQ, l.H(1, 2) += s * dQ, l.H(2, 2) += s * s * dQ;
+  }
+  l.H(2, 1) = l.H(1, 2);
+  return touch;
+}
+
+double RollerContact::load(double, double rho, double t) const {
+  Local l;
+  return evaluate(0, rho, t, l) ? l.g.y() : 0.0;
+}
+
+template <class Contact>
+Vector<6> RollingBearing<Contact>::deflection(const Nodes<2>& x) const {
+  Vector<6> q;
+  q.head<3>() = x[0]->u - x[1]->u;
+  q.segment<2>(3) = (x[0]->d() - x[1]->d()).template tail<2>();
+  const double turns = cage[0] * x[0]->turns + cage[1] * x[1]->turns;
+  q[5] = cage[0] * x[0]->phi + cage[1] * x[1]->phi + two_pi * (turns - std::floor(turns));
+  return q;
+}
+
+template <class Contact>
+void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p, bool with_hessian, int copies) const {
+  p.V = 0, p.g.setZero(), p.H.setZero();
+  typename Contact::Local l;
+  // One turn of Z steps by the addition theorem: no trigonometry in the loop.
+  double c = std::cos(q[5]), s = std::sin(q[5]);
+  const int n = copies * elements;
+  const double c1 = std::cos(two_pi / n), s1 = std::sin(two_pi / n);
+  for (int j = 0; j < n; ++j) {
+    const double rho = q[1] * c + q[2] * s, t = q[3] * c + q[4] * s;
+    if (contact.evaluate(q[0], rho, t, l)) {
+      const double rho_psi = q[2] * c - q[1] * s, t_psi = q[4] * c - q[3] * s;
+      p.V += l.V;
+      p.g[0] += l.g.x();
+      p.g[1] += l.g.y() * c, p.g[2] += l.g.y() * s;
+      p.g[3] += l.g.z() * c, p.g[4] += l.g.z() * s;
+      p.g[5] += l.g.y() * rho_psi + l.g.z() * t_psi;
+      if (with_hessian) {
+        Matrix<3, 6> J;
+        J << 1, 0, 0, 0, 0, 0, 0, c, s, 0, 0, rho_psi, 0, 0, 0, c, s, t_psi;
+        p.H.noalias() += J.transpose() * l.H * J;
+        const double cross[4] = {-s * l.g.y(), c * l.g.y(), -s * l.g.z(), c * l.g.z()};
+        for (int k = 0; k < 4; ++k) p.H(1 + k, 5) += cross[k], p.H(5, 1 + k) += cross[k];
+        p.H(5, 5) -= l.g.y() * rho + l.g.z() * t;
+      }
+    }
+    const double next = c * c1 - s * s1;
+    s = s * c1 + c * s1;
+    c = next;
+  }
+  if (copies > 1) p.V /= copies, p.g /= copies, p.H /= copies;
+}
+
+template <class Contact>
+void RollingBearing<Contact>::evaluate(const Nodes<2>& x, bool averaged, RollingPotential& p, bool with_hessian) const {
+  Vector<6> q = deflection(x);
+  if (!averaged) return potential(q, p, with_hessian, 1);
+  q[5] = 0.0;
+  potential(q, p, with_hessian, (smeared + elements - 1) / elements);
+  p.g[5] = 0.0, p.H.row(5).setZero(), p.H.col(5).setZero();
+}
+
+template <class Contact>
+std::vector<double> RollingBearing<Contact>::loads(const Vector<6>& q) const {
+  std::vector<double> out;
+  for (int j = 0; j < elements; ++j) {
+    const double a = q[5] + two_pi * j / elements, c = std::cos(a), s = std::sin(a);
+    out.push_back(contact.load(q[0], q[1] * c + q[2] * s, q[3] * c + q[4] * s));
+  }
+  return out;
+}
+
+namespace {
+
+// q_m = sum over nodes of sign[node][m] X[at[m]]
+constexpr int at[6] = {0, 1, 2, 4, 5, 6};
+
+Vec3 damping_of(double c_axial, double c_radial) { return Vec3(c_axial, c_radial, c_radial); }
+
+}  // namespace
+
+template <class Contact>
+void RollingBearing<Contact>::add_force(const Nodes<2>& x, const Context& context, ForceX<14>& f) const {
+  RollingPotential p;
+  evaluate(x, context.averaged, p, false);
+  const Vec3 drag = damping_of(c_axial, c_radial).cwiseProduct(x[0]->du - x[1]->du);
+  f.template segment<3>(0) += p.g.template head<3>() + drag, f.template segment<3>(7) -= p.g.template head<3>() + drag;
+  f.template segment<2>(4) += p.g.template segment<2>(3), f.template segment<2>(11) -= p.g.template segment<2>(3);
+  f[6] += cage[0] * p.g[5], f[13] += cage[1] * p.g[5];
+}
+
+template <class Contact>
+void RollingBearing<Contact>::add_tangent(const Nodes<2>& x, const Context& context, TangentX<14>& t) const {
+  RollingPotential p;
+  evaluate(x, context.averaged, p, true);
+  const double sign[2][6] = {{1, 1, 1, 1, 1, cage[0]}, {-1, -1, -1, -1, -1, cage[1]}};
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b)
+      for (int m = 0; m < 6; ++m)
+        for (int n = 0; n < 6; ++n) t.K(7 * a + at[m], 7 * b + at[n]) += sign[a][m] * sign[b][n] * p.H(m, n);
+  const Vec3 c = damping_of(c_axial, c_radial);
+  for (int k = 0; k < 3; ++k) t.C(k, k) += c[k], t.C(7 + k, 7 + k) += c[k], t.C(k, 7 + k) -= c[k], t.C(7 + k, k) -= c[k];
+}
+
+template <class Contact>
+void RollingBearing<Contact>::add_energy(const Nodes<2>& x, const Context& context, Energy& e) const {
+  RollingPotential p;
+  evaluate(x, context.averaged, p, false);
+  e.elastic += p.V;
+  const Vec3 v = x[0]->du - x[1]->du;
+  e.dissipated += damping_of(c_axial, c_radial).dot(v.cwiseProduct(v));
+}
+
+template struct RollingBearing<BallContact>;
+template struct RollingBearing<RollerContact>;
+
+namespace {
+
+[[noreturn]] void fail(const std::string& what) { throw run_error("E83", "rolling bearing: " + what); }
+
+void check_ring(int n, double D, double d_m, const char* what) {
+  if (n < 2) fail(std::string("at least two ") + what + " are needed");
+  if (!(D > 0) || !(d_m > D)) fail("element diameter must be positive and smaller than the pitch diameter");
+  if (n > 2 && D > d_m * std::sin(pi / n)) fail(std::string("the ") + what + " do not fit side by side on the pitch circle");
+}
+
+}  // namespace
+
+BallBearing make_ball_bearing(const BallGeometry& g) {
+  check_ring(g.balls, g.ball_diameter, g.pitch_diameter, "balls");
+  if (!(g.f_inner > 0.5) || !(g.f_outer > 0.5)) fail("groove radii must exceed half the ball diameter (f > 0.5)");
+  if (!(std::abs(g.contact_angle) < 80.0 * pi / 180.0)) fail("the contact angle must be below 80 degrees");
+  const double D = g.ball_diameter, A0 = (g.f_inner + g.f_outer - 1.0) * D;
+  if (!(g.radial_clearance < A0)) fail("the radial clearance is larger than the grooves allow");
+  if (g.contact_angle != 0.0 && g.radial_clearance != 0.0) fail("give either a contact angle or a radial clearance, not both");
+  const double cos_alpha = std::cos(g.contact_angle), lambda = D * cos_alpha / g.pitch_diameter;
+  BallBearing b;
+  b.elements = g.balls;
+  b.cage = {0.5 * (1.0 - lambda), 0.5 * (1.0 + lambda)};
+  BallContact& c = b.contact;
+  c.A0 = A0;
+  c.r0 = A0 * cos_alpha - g.radial_clearance;
+  // The inner groove centre moves towards +x with the shaft: contact opens further when it already lies on that side.
+  c.a0 = (g.direction >= 0 ? 1.0 : -1.0) * A0 * std::sin(std::abs(g.contact_angle));
+  c.R = 0.5 * g.pitch_diameter + (g.f_inner - 0.5) * D * cos_alpha;
+  c.K = g.stiffness;
+  if (c.K == 0.0) {
+    // Principal planes: rolling direction (ball on ring) and across it (ball in groove).
+    const double R = 0.5 * D, inner = R * (1.0 - lambda), outer = R * (1.0 + lambda);
+    const double across_i = g.f_inner * D * R / (g.f_inner * D - R), across_o = g.f_outer * D * R / (g.f_outer * D - R);
+    c.K = hertz_series(hertz_point_stiffness(inner, across_i), hertz_point_stiffness(outer, across_o), 1.5);
+  }
+  if (!(c.K > 0)) fail("the contact stiffness must be positive");
+  return b;
+}
+
+void set_axial_preload(BallBearing& b, double force) {
+  BallContact& c = b.contact;
+  if (!(force >= 0)) fail("the preload must not be negative");
+  if (c.a0 == 0.0) fail("a deep-groove bearing has no side to be preloaded on: give a contact angle");
+  const double side = c.a0 > 0 ? 1.0 : -1.0, start = c.a0;
+  const auto push = [&](double shift) {
+    BallContact::Local l;
+    c.a0 = start + side * shift;
+    return c.evaluate(0, 0, 0, l) ? b.elements * std::abs(l.g.x()) : 0.0;
+  };
+  double lo = 0.0, hi = 1e-9 * c.A0;
+  while (push(hi) < force && hi < 1e6 * c.A0) hi *= 2.0;
+  for (int i = 0; i < 200 && lo < hi; ++i) {
+    const double mid = 0.5 * (lo + hi);
+    if (mid == lo || mid == hi) break;
+    (push(mid) < force ? lo : hi) = mid;
+  }
+  c.a0 = start + side * 0.5 * (lo + hi);
+}
+
+RollerBearing make_roller_bearing(const RollerGeometry& g) {
+  check_ring(g.rollers, g.roller_diameter, g.pitch_diameter, "rollers");
+  if (!(g.roller_length > 0)) fail("the roller length must be positive");
+  const double lambda = g.roller_diameter / g.pitch_diameter;
+  RollerBearing b;
+  b.elements = g.rollers;
+  b.cage = {0.5 * (1.0 - lambda), 0.5 * (1.0 + lambda)};
+  b.contact.length = g.roller_length, b.contact.clearance = g.radial_clearance;
+  b.contact.K = g.stiffness;
+  if (b.contact.K == 0.0) {
+    const double k = hertz_line_stiffness(g.roller_length);
+    b.contact.K = hertz_series(k, k, 10.0 / 9.0);
+  }
+  if (!(b.contact.K > 0)) fail("the contact stiffness must be positive");
+  return b;
+}
+
+double outer_pass_per_turn(int elements, double lambda) { return 0.5 * elements * (1.0 - lambda); }
+
+}  // namespace whirl::elements

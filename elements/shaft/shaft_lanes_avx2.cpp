@@ -1,0 +1,11 @@
+// Shaft element force for AVX2 and FMA; compiled with those flags on x86-64 (see CMakeLists.txt), chosen at run time.
+#if defined(__AVX2__) && defined(__FMA__)
+#define WHIRL_LANES_TABLE avx2_kernels
+#define WHIRL_LANES_ISA "avx2"
+#include <elements/shaft/shaft_lanes.inl>
+#else
+#include <elements/shaft/shaft_lanes.hpp>
+namespace whirl::elements::lanes {
+const Kernels* avx2_kernels() { return nullptr; }
+}  // namespace whirl::elements::lanes
+#endif

@@ -1,0 +1,127 @@
+#include <analysis/linearizer.hpp>
+
+#include <core/error.hpp>
+#include <core/interrupt.hpp>
+#include <system/frequency.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::analysis {
+
+namespace {
+constexpr std::size_t at_(Index i) { return static_cast<std::size_t>(i); }
+
+/// Largest force and largest moment of the free unknowns.
+Vec2 largest(const VecX& r, std::span<const unsigned char> free) {
+  Vec2 m = Vec2::Zero();
+  for (Index k = 0; k < r.size(); ++k)
+    if (free[at_(k)]) {
+      double& x = m[k % 6 < 3 ? 0 : 1];
+      x = std::max(x, std::abs(r[k]));
+    }
+  return m;
+}
+}  // namespace
+
+Linearizer::Linearizer(const system::System& system, SteadyRotation running, EquilibriumOptions options)
+    : running_(system, std::move(running)), solver_(running_, options), matrices_(system.make_matrices()) {}
+
+void Linearizer::set_equilibrium(const Equilibrium& e) {
+  equilibrium_ = e;
+  have_ = true;
+  running_.residual(e.state.frames, e.Omega, e.state.q, r_);
+  floor_ = largest(r_, solver_.free());
+}
+
+void Linearizer::stay_undeformed() {
+  undeformed_ = true;
+  have_ = false;
+  running_.set_load(0.0);
+}
+
+void Linearizer::take_undeformed(double Omega) {
+  equilibrium_ = Equilibrium();
+  equilibrium_.Omega = Omega;
+  equilibrium_.state = system().make_state();
+  system::State& s = equilibrium_.state;
+  s.t = running_.running().time;
+  running_.impose(s.frames, s.q);
+  running_.set_rates(Omega, s.v);
+  s.a.setZero();
+  equilibrium_.reactions = VecX::Zero(system().size());
+  have_ = true;
+}
+
+bool Linearizer::still_balanced(double Omega) {
+  // A rotor in linear bearings keeps its equilibrium at every speed: then the residual stays at its rounding level.
+  if (!have_ || !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_)) return false;
+  const Vec2 now = largest(r_, solver_.free());
+  return now[0] <= 4.0 * floor_[0] && now[1] <= 4.0 * floor_[1];
+}
+
+const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
+  throw_if_interrupted();
+  running_.set_whirl(0.0);
+  if (have_ && Omega == equilibrium_.Omega && running_.running().frequency_dependent()) {
+    // One equilibrium at every frequency asked about.
+  } else if (undeformed_) {
+    take_undeformed(Omega);
+  } else if (still_balanced(Omega)) {
+    equilibrium_.Omega = Omega;
+    running_.set_rates(Omega, equilibrium_.state.v);
+    equilibrium_.reactions = r_;
+    for (Index k = 0; k < r_.size(); ++k)
+      if (solver_.free()[at_(k)]) equilibrium_.reactions[k] = 0.0;
+  } else {
+    set_equilibrium(solver_.solve(Omega, have_ ? &equilibrium_.state : first_ ? &*first_ : nullptr));
+  }
+  have_forcing_ = false;
+  const auto linearise = [&] {
+    running_.set_whirl(std::isnan(lambda.imag()) ? Complex(0) : lambda, false, side);
+    const bool inside = running_.tangent(equilibrium_.state.frames, Omega, equilibrium_.state.q, matrices_);
+    running_.set_whirl(0.0);
+    if (!inside) throw run_error("E76", "no linearisation: the state lies outside the range of an element");
+  };
+  if (!running_.running().frequency_dependent() || !std::isfinite(tables)) {
+    linearise();
+    return matrices_;
+  }
+  const system::FrequencyScope ask(tables);
+  linearise();
+  const auto finite = [](const la::BlockMatrix<6>& x) { return Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count())).allFinite(); };
+  if (!finite(matrices_.K) || !finite(matrices_.C) || !finite(matrices_.M))
+    throw run_error("E81", fmt::format("a bearing table does not cover the frequency {:.6g} Hz at {:.6g} rpm", std::abs(tables) / two_pi, Omega * 30.0 / pi),
+                    "extend its frequencies, narrow the step (max_frequency, modes), or write extrapolate = \"hold\"");
+  return matrices_;
+}
+
+const la::MCK& Linearizer::conservative_at(double Omega, double w) {
+  at(Omega, Complex(0, infinity), nan, w);
+  if (conservative_.M.value_count() == 0) conservative_ = system().make_matrices();
+  take_conservative_part(matrices_, conservative_);
+  return conservative_;
+}
+
+const std::vector<VecXc>& Linearizer::forcing() {
+  if (!have_forcing_) {
+    running_.forcing(equilibrium_.state.frames, equilibrium_.Omega, equilibrium_.state.q, forcing_);
+    have_forcing_ = true;
+  }
+  return forcing_;
+}
+
+void take_conservative_part(const la::MCK& m, la::MCK& out) {
+  const la::BlockPattern& p = m.M.pattern();
+  std::copy_n(m.M.data(), m.M.value_count(), out.M.data());
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index s = p.row_start()[at_(i)]; s < p.row_start()[at_(i) + 1]; ++s) {
+      const Index j = p.cols()[at_(s)], t = p.slot(j, i);
+      out.C.block(s) = 0.5 * (m.C.block(s) - m.C.block(t).transpose());
+      out.K.block(s) = 0.5 * (m.K.block(s) + m.K.block(t).transpose());
+    }
+}
+
+}  // namespace whirl::analysis

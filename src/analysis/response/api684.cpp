@@ -1,0 +1,34 @@
+#include <analysis/response/api684.hpp>
+
+#include <cmath>
+
+namespace whirl::analysis {
+
+double required_margin(double amplification, bool above) {
+  if (!(amplification >= 2.5)) return 0.0;
+  const double sm = 0.17 * (1.0 - 1.0 / (amplification - 1.5));
+  return above ? 0.10 + sm : sm;
+}
+
+std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks, const std::vector<ResponseProbe>& probes,
+                                          const OperatingRange& range, std::size_t order) {
+  std::vector<MarginRow> rows;
+  for (const ResponsePeak& p : peaks) {
+    if (p.order != order) continue;
+    MarginRow r;
+    r.probe = probes[p.probe].name;
+    r.speed = p.speed, r.amplitude = p.amplitude, r.amplification = p.amplification(), r.low = p.low, r.high = p.high;
+    // A peak without half-power points is too flat to have an AF of 2.5, or is cut off by the range of speeds.
+    r.critically_damped = !(r.amplification >= 2.5);
+    const bool above = p.speed > range.max;
+    r.required = required_margin(r.amplification, above);
+    r.actual = above               ? (p.speed - range.max) / range.max
+               : p.speed < range.min ? (range.min - p.speed) / range.min
+                                     : -std::min(p.speed - range.min, range.max - p.speed) / p.speed;
+    r.passed = r.critically_damped || r.actual >= r.required;
+    rows.push_back(r);
+  }
+  return rows;
+}
+
+}  // namespace whirl::analysis

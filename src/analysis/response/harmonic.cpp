@@ -1,0 +1,283 @@
+#include <analysis/response/harmonic.hpp>
+
+#include <system/frequency.hpp>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::analysis {
+
+namespace {
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Size of a variation: differences of second order in it drop out by symmetry, third order is below rounding.
+double variation_step(const VecXc& a) {
+  const double largest = a.cwiseAbs().maxCoeff();
+  return largest > 0 ? 1e-7 / largest : 0.0;
+}
+
+VecXc times(const la::BlockMatrix<6>& matrix, const VecXc& x) {
+  VecX re = VecX::Zero(x.size()), im = re;
+  matrix.add_multiply(1.0, VecX(x.real()), re);
+  matrix.add_multiply(1.0, VecX(x.imag()), im);
+  return re.cast<Complex>() + Complex(0, 1) * im.cast<Complex>();
+}
+
+/// The last unknown phi of the line that `first` stands on.
+Index last_of_line(const system::System& s, std::span<const unsigned char> active, Index first) {
+  const Index line = s.node(first / 6).line;
+  Index last = first;
+  for (Index i = first / 6; i < s.nodes(); ++i) {
+    const Index k = 6 * i + system::spin_phi;
+    if (s.node(i).line == line && !s.node(i).scalar && active[at(k)]) last = k;
+  }
+  return last;
+}
+
+/// Size of the single torques whose sum in row k is zero but for rounding when nothing drives the
+/// rotor round.
+double torque_size(const system::System& s, const la::MCK& m, const VecXc& x, const VecXc& f,
+                   Index k) {
+  const Index node = k / 6, line = s.node(node).line;
+  double size = 0;
+  for (Index i = 0; i < s.nodes(); ++i)
+    if (s.node(i).line == line) size += std::abs(f[6 * i + system::spin_phi]);
+  const auto& start = s.pattern().row_start();
+  for (Index i = 0; i < s.nodes(); ++i) {
+    if (s.node(i).line != line) continue;
+    for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b) {
+      const Index j = s.pattern().cols()[at(b)];
+      size = std::max(
+          size,
+          (m.K.block(b).row(system::spin_phi).cwiseAbs() * x.segment<6>(6 * j).cwiseAbs()).value());
+    }
+  }
+  return size;
+}
+}  // namespace
+
+HarmonicSolver::HarmonicSolver(Linearizer& linear, Motion motion)
+    : linear_(linear),
+      motion_(linear.system(), motion),
+      solver_(la::make_direct_solver<Complex>(linear.system().pattern(), motion_.active())) {}
+
+bool HarmonicSolver::prepare(double Omega, double w) {
+  const la::MCK& m = motion_.reduce(linear_.at(Omega, Complex(0, w)));
+  matrices_ = &m;
+  w_ = w;
+  spin_free_ = false;
+  if (w != 0.0 &&
+      solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok)
+    return true;
+  std::vector<Index> first, last;
+  for (const Index k : linear_.equilibrium().spin_holds) {
+    if (!motion_.takes_part(k)) continue;
+    first.push_back(k);
+    last.push_back(last_of_line(linear_.system(), motion_.active(), k));
+  }
+  if (first.empty())
+    return w == 0.0 &&
+           solver_->factor(m, Complex(0, 0), Complex(0, 0), Complex(1, 0)) == la::Status::ok;
+  spin_free_ = hold(m, w, std::move(first), first_) && hold(m, w, std::move(last), last_);
+  return spin_free_;
+}
+
+bool HarmonicSolver::hold(const la::MCK& m, double w, std::vector<Index> unknowns, Held& held) {
+  if (held.at != unknowns || !held.solver) {
+    held.at = std::move(unknowns);
+    held.active.assign(motion_.active().begin(), motion_.active().end());
+    for (const Index k : held.at) held.active[at(k)] = 0;
+    held.solver = la::make_direct_solver<Complex>(linear_.system().pattern(), held.active);
+  }
+  return held.solver->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok;
+}
+
+void HarmonicSolver::solve(VecXc& x) {
+  for (Index k = 0; k < x.size(); ++k)
+    if (!motion_.takes_part(k)) x[k] = 0;
+  if (spin_free_)
+    solve_held(x);
+  else
+    solver_->solve(x);
+}
+
+VecXc HarmonicSolver::multiply(const VecXc& x) const {
+  VecXc out = times(matrices_->K, x);
+  if (w_ != 0.0) out += inertia_and_damping(x);
+  return out;
+}
+
+void HarmonicSolver::solve_held(VecXc& x) {
+  const VecXc f = x;
+  const auto answer = [&](Held& held) {
+    VecXc y = f;
+    for (const Index k : held.at) y[k] = 0;
+    held.solver->solve(y);
+    return y;
+  };
+  x = answer(first_);
+  const VecXc rest =
+      f - multiply(x);  // what the holds must exert: the torques that drive the rotors round
+  if (w_ != 0.0) {
+    // Their inertia and damping take the torque up: turning by c, then what that does to the twist.
+    const MatX spins = free_spins();
+    const VecXc c = spin_matrix(spins, matrices_->M, matrices_->C)
+                        .fullPivLu()
+                        .solve(spins.transpose().cast<Complex>() * rest);
+    VecXc turned = spins.cast<Complex>() * c;
+    VecXc left = rest - inertia_and_damping(turned);
+    for (const Index k : first_.at) left[k] = 0;
+    first_.solver->solve(left);
+    x += turned + left;
+    return;
+  }
+  // Rounding leaves some torque where there is none.
+  bool driven = false;
+  for (const Index k : first_.at)
+    driven =
+        driven || std::abs(rest[k]) > 1e-9 * torque_size(linear_.system(), *matrices_, x, f, k);
+  if (!driven) {
+    add_free_spin(x);
+    return;
+  }
+  // What depends on where the rotor is held has no answer; displacements and angles are compared
+  // with the largest of their kind.
+  const VecXc other = answer(last_);
+  double largest[2] = {0, 0};
+  for (Index k = 0; k < x.size(); ++k)
+    largest[k % 6 < 3 ? 0 : 1] = std::max(largest[k % 6 < 3 ? 0 : 1], std::abs(x[k]));
+  for (Index k = 0; k < x.size(); ++k)
+    if (!(std::abs(x[k] - other[k]) <= 1e-9 * largest[k % 6 < 3 ? 0 : 1])) x[k] = Complex(nan, nan);
+  for (const Index k : first_.at) x[k] = Complex(nan, nan);
+}
+
+VecXc HarmonicSolver::inertia_and_damping(const VecXc& x) const {
+  return Complex(0, w_) * times(matrices_->C, x) - w_ * w_ * times(matrices_->M, x);
+}
+
+MatXc HarmonicSolver::spin_matrix(const MatX& spins, const la::BlockMatrix<6>& M,
+                                  const la::BlockMatrix<6>& C) const {
+  MatXc out(spins.cols(), spins.cols());
+  for (Index j = 0; j < spins.cols(); ++j) {
+    VecX mass = VecX::Zero(spins.rows()), damping = mass;
+    M.add_multiply(1.0, spins.col(j), mass);
+    C.add_multiply(1.0, spins.col(j), damping);
+    out.col(j) = spins.transpose().cast<Complex>() *
+                 (Complex(0, w_) * damping.cast<Complex>() - w_ * w_ * mass.cast<Complex>());
+  }
+  return out;
+}
+
+MatX HarmonicSolver::free_spins() const {
+  const Index unknowns = linear_.system().size(), n = static_cast<Index>(first_.at.size());
+  MatX spins(unknowns, n);
+  for (Index j = 0; j < n; ++j) {
+    VecX e = VecX::Zero(unknowns), pull = e;
+    e[first_.at[at(j)]] = 1.0;
+    matrices_->K.add_multiply(-1.0, e, pull);
+    for (Index k = 0; k < unknowns; ++k)
+      if (!first_.active[at(k)]) pull[k] = 0.0;
+    VecXc follow = pull.cast<Complex>();
+    first_.solver->solve(follow);
+    spins.col(j) = follow.real() + e;
+  }
+  return spins;
+}
+
+void HarmonicSolver::add_free_spin(VecXc& x) const {
+  const MatX spins = free_spins();
+  // As w goes to 0 the torques of damping on the free spins vanish, and where there is no damping
+  // those of inertia.
+  for (const la::BlockMatrix<6>* matrix : {&matrices_->C, &matrices_->M}) {
+    MatX on_spins(spins.cols(), spins.cols());
+    double size = 0;
+    for (Index j = 0; j < spins.cols(); ++j) {
+      VecX image = VecX::Zero(x.size());
+      matrix->add_multiply(1.0, spins.col(j), image);
+      on_spins.col(j) = spins.transpose() * image;
+      size = std::max(size, spins.col(j).cwiseAbs().dot(image.cwiseAbs()));
+    }
+    const VecXc on_x = spins.transpose().cast<Complex>() * times(*matrix, x);
+    const Eigen::FullPivLU<MatX> lu(on_spins);
+    if (!(size > 0) || !(lu.maxPivot() > 1e-9 * size) || !lu.isInvertible()) continue;
+    const VecXc turn = lu.solve(MatX(on_x.real())).cast<Complex>() +
+                       Complex(0, 1) * lu.solve(MatX(on_x.imag())).cast<Complex>();
+    x -= spins.cast<Complex>() * turn;
+    return;
+  }
+}
+
+PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p) {
+  const Eigen::Vector3cd u = local_displacement(linear, a, p.node);
+  const double sense = linear.sense(p.node);
+  if (p.offset == 0.0) return {u[1], u[2], sense};
+  // d = e + gamma x e about a nearly straight equilibrium: gamma3 along e2, -gamma2 along e3
+  return {u[1] + p.offset * a[6 * p.node + 5], u[2] - p.offset * a[6 * p.node + 4], sense};
+}
+
+VariationMeter::VariationMeter(Linearizer& linear) : linear_(linear), problem_(linear.system()), snapshot_(problem_) {}
+
+void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measurement>& what, std::vector<std::vector<Complex>>& out) {
+  const system::State& s = linear_.equilibrium().state;
+  problem_.frames = s.frames;
+  system::Context& context = problem_.workspace().context;
+  context.hysteretic = linear_.hysteretic(), context.whirl = context.whirl_side = w;
+  out.resize(what.size());
+  for (std::size_t m = 0; m < what.size(); ++m) out[m].assign(what[m].width(), Complex(0, 0));
+  if (!a.allFinite()) {   // no response: an undamped resonance, or a motion that nothing resists at 0 Hz
+    for (auto& values : out) std::fill(values.begin(), values.end(), Complex(nan, nan));
+    return;
+  }
+  const double eps = variation_step(a);
+  if (eps == 0.0) return;
+  const system::FrequencyScope ask(w);
+  std::vector<double> value;
+  for (int part = 0; part < 2; ++part) {
+    // the motion at phase 0 and a quarter period earlier: Re and Im of the amplitude
+    const Complex turn = part == 0 ? Complex(1, 0) : Complex(0, -1);
+    const VecX q = (turn * a).real(), v = (turn * Complex(0, w) * a).real(), acc = (turn * (-w * w) * a).real();
+    for (int sign : {1, -1}) {
+      const double h = sign * eps;
+      const VecX q1 = s.q + h * q, v1 = s.v + h * v, a1 = s.a + h * acc;
+      snapshot_.set(s.t, q1, v1, a1);
+      for (std::size_t m = 0; m < what.size(); ++m) {
+        value.resize(what[m].width());
+        what[m].evaluate(snapshot_, value.data());
+        for (std::size_t c = 0; c < value.size(); ++c) {
+          const double x = sign * value[c] / (2.0 * eps);
+          out[m][c] += part == 0 ? Complex(x, 0) : Complex(0, x);
+        }
+      }
+    }
+  }
+}
+
+VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const VecXc& f) {
+  const system::System& system = linear.system();
+  const system::State& s = linear.equilibrium().state;
+  system::Workspace workspace = system.make_workspace();
+  workspace.context.hysteretic = linear.hysteretic(), workspace.context.whirl = workspace.context.whirl_side = w;
+  VecXc out = VecXc::Zero(a.size());
+  const double eps = variation_step(a);
+  VecX r(a.size());
+  const system::FrequencyScope ask(w);
+  if (eps > 0)
+    for (int part = 0; part < 2; ++part) {
+      const Complex turn = part == 0 ? Complex(1, 0) : Complex(0, -1);
+      for (int sign : {1, -1}) {
+        const double h = sign * eps;
+        const VecX q = s.q + h * (turn * a).real(), v = s.v + h * (turn * Complex(0, w) * a).real(),
+                   acc = s.a + h * (turn * (-w * w) * a).real();
+        system.residual(workspace, s.frames, s.t, q, v, acc, r);
+        out += (part == 0 ? Complex(1, 0) : Complex(0, 1)) * (sign / (2.0 * eps)) * r;
+      }
+    }
+  out += f;
+  for (Index k = 0; k < a.size(); ++k)
+    if (system.active()[at(k)]) out[k] = 0;
+  return out;
+}
+
+}  // namespace whirl::analysis

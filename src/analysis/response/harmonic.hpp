@@ -1,0 +1,85 @@
+// Steady harmonic motion about the spinning equilibrium, x(t) = Re(a exp(i w t)):
+//   (K + i w C - w^2 M) a = f,
+// one complex factorisation for each (Omega, w). Nothing is assumed about symmetry of the supports:
+// forward and backward parts are both in a. At w = 0, and so near to it that the inertia drowns in
+// rounding, nothing determines the angle of a rotor that is free to turn: its free spin is taken
+// out (held at one node), which changes no other unknown unless the force turns the rotor. Phase
+// reference: the rotor mark (phi = 0) passes e2 at t = 0, so that -arg is the lag behind the mark.
+#pragma once
+#include <analysis/transient/measurement.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
+
+namespace whirl::analysis {
+
+class HarmonicSolver {
+ public:
+  /// Forces on what does not take part in the motion are left out.
+  explicit HarmonicSolver(Linearizer& linear, Motion motion = Motion::all);
+  /// Equilibrium, matrices and factorisation at speed Omega and excitation frequency w, rad/s.
+  /// False: resonance without damping, or a motion other than the spin of a rotor that nothing
+  /// resists.
+  bool prepare(double Omega, double w);
+  /// x := S^-1 x; entries of x at unknowns that take no part are not looked at, those of held ones
+  /// become zero. At w = 0 a force that turns a free rotor has no finite answer: the entries that it
+  /// moves without bound become NaN, the others are right.
+  void solve(VecXc& x);
+  Linearizer& linear() { return linear_; }
+
+ private:
+  /// The system with one unknown of each free spin held.
+  struct Held {
+    std::vector<Index> at;  ///< the unknowns held
+    std::vector<unsigned char> active;
+    std::unique_ptr<la::DirectSolver<Complex>> solver;
+  };
+  bool hold(const la::MCK& m, double w, std::vector<Index> unknowns, Held& held);
+  /// S x with the matrices prepared.
+  VecXc multiply(const VecXc& x) const;
+  VecXc inertia_and_damping(const VecXc& x) const;
+  /// Columns: the motions of all unknowns when one free rotor turns by one radian.
+  MatX free_spins() const;
+  /// Inertia and damping of the free spins at the frequency prepared.
+  MatXc spin_matrix(const MatX& spins, const la::BlockMatrix<6>& M,
+                    const la::BlockMatrix<6>& C) const;
+  void solve_held(VecXc& x);
+  /// Adds the turning of free rotors that the limit w -> 0 asks for.
+  void add_free_spin(VecXc& x) const;
+
+  Linearizer& linear_;
+  MotionReduction motion_;
+  std::unique_ptr<la::DirectSolver<Complex>> solver_;
+  bool spin_free_ = false;  ///< prepared without inertia: `first_` and `last_` are used
+  double w_ = 0;
+  const la::MCK* matrices_ = nullptr;
+  Held first_, last_;  ///< free spins held at the first and at the last node of their lines
+};
+
+/// Amplitudes (Y, Z) along e2, e3 of a point of a shaft. sense: +1 where the spin there is from e2 to e3, else -1.
+struct PointAmplitude {
+  Complex y, z;
+  double sense = 1;
+  /// Along a direction at `angle` from e2 towards e3.
+  Complex along(double angle) const { return std::cos(angle) * y + std::sin(angle) * z; }
+  Orbit orbit() const { return orbit_of(y, z, sense); }
+  /// Of the circle that turns with the spin.
+  Complex forward() const { return 0.5 * (y + Complex(0, sense) * z); }
+};
+PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p);
+
+/// Complex amplitudes of anything that can be measured on the system (bearing forces, torques, velocities): its exact first
+/// variation along a, by central differences about the equilibrium. The measurement must be smooth there.
+class VariationMeter {
+ public:
+  explicit VariationMeter(Linearizer& linear);
+  void measure(const VecXc& a, double w, const std::vector<Measurement>& what, std::vector<std::vector<Complex>>& out);
+
+ private:
+  Linearizer& linear_;
+  system::SystemProblem problem_;
+  Snapshot snapshot_;
+};
+
+/// Forces and moments that supports exert at held unknowns, complex amplitudes (zero at free unknowns); f: what stands in the residual.
+VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const VecXc& f);
+
+}  // namespace whirl::analysis

@@ -1,0 +1,130 @@
+#include <analysis/spectra/motion.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::analysis {
+
+namespace {
+
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Of the stiffness an unknown has by itself, the part left when all others give way: below this it is rounding. The pivot of
+/// a chain that nothing holds ends at 1e-16 to 1e-13 of it.
+constexpr double unresisted = 1e-11;
+
+void copy_without(const la::BlockMatrix<6>& in, std::span<const unsigned char> out_of, la::BlockMatrix<6>& out) {
+  const la::BlockPattern& p = in.pattern();
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index s = p.row_start()[at(i)]; s < p.row_start()[at(i) + 1]; ++s) {
+      const Index j = p.cols()[at(s)];
+      auto block = out.block(s);
+      block = in.block(s);
+      for (Index c = 0; c < 6; ++c) {
+        if (out_of[at(6 * i + c)]) block.row(c).setZero();
+        if (out_of[at(6 * j + c)]) block.col(c).setZero();
+      }
+    }
+}
+
+}  // namespace
+
+Motion kind_of_unknown(const system::System& system, Index unknown) {
+  if (system.node(unknown / 6).scalar) return Motion::lateral;
+  const Index c = unknown % 6;
+  return c == system::spin_phi ? Motion::torsional : c == system::ux ? Motion::axial : Motion::lateral;
+}
+
+MotionReduction::MotionReduction(const system::System& system, Motion motion, Twist twist)
+    : system_(system), motion_(motion), active_(system.active().begin(), system.active().end()), follows_(active_.size(), 0) {
+  if (motion == Motion::all) return;
+  for (Index k = 0; k < system.size(); ++k) {
+    const Motion kind = kind_of_unknown(system, k);
+    if (!active_[at(k)] || kind == motion) continue;
+    if (motion == Motion::lateral && (kind == Motion::axial || twist == Twist::follows)) follows_[at(k)] = 1;
+    else active_[at(k)] = 0;
+  }
+  any_ = std::find(follows_.begin(), follows_.end(), 1) != follows_.end();
+  if (!any_) return;
+  reduced_ = system.make_matrices();
+  scratch_.resize(system.size());
+  // in natural order a step of the elimination is a node
+  followers_ = std::make_unique<la::BlockLu<double>>(system.pattern(), follows_, la::lu::Ordering::natural);
+}
+
+const la::MCK& MotionReduction::reduce(const la::MCK& m) {
+  if (!any_) return m;
+  copy_without(m.M, follows_, reduced_.M);
+  copy_without(m.C, follows_, reduced_.C);
+  std::copy_n(m.K.data(), m.K.value_count(), reduced_.K.data());
+  find_restraints();
+  return reduced_;
+}
+
+double& MotionReduction::own_stiffness(Index unknown) {
+  const Index slot = reduced_.K.pattern().diagonal(unknown / 6);
+  return reduced_.K.data()[36 * slot + 7 * (unknown % 6)];
+}
+
+void MotionReduction::restrain(Index unknown) {
+  double& stiffness = own_stiffness(unknown);
+  const double spring = stiffness != 0.0 ? std::abs(stiffness) : 1.0;   // what nothing resists at all: any spring will do
+  stiffness += spring;
+  restraints_.push_back(unknown);
+  springs_.push_back(spring);
+}
+
+/// The unknown that others hold least, or -1 when all are held. After a factorisation.
+Index MotionReduction::softest_unknown() const {
+  Index softest = -1;
+  double most = 1.0 / unresisted;
+  for (Index i = 0; i < system_.nodes(); ++i) {
+    const auto flags = std::span(follows_).subspan(at(6 * i), 6);
+    if (std::find(flags.begin(), flags.end(), 1) == flags.end()) continue;
+    const Matrix<6> flexibility = followers_->inverse_pivot_block(i);
+    const auto stiffness = reduced_.K.block(reduced_.K.pattern().diagonal(i));
+    for (Index c = 0; c < 6; ++c) {
+      if (!flags[at(c)]) continue;
+      const double ratio = std::abs(flexibility(c, c) * stiffness(c, c));
+      if (ratio > most) {
+        most = ratio;
+        softest = 6 * i + c;
+      }
+    }
+  }
+  return softest;
+}
+
+/// The springs of the last time: each must still give way to a load on it as it would alone.
+bool MotionReduction::restraints_still_free() {
+  for (std::size_t i = 0; i < restraints_.size(); ++i) {
+    scratch_.setZero();
+    scratch_[restraints_[i]] = springs_[i];
+    followers_->solve(scratch_);
+    if (std::abs(scratch_[restraints_[i]] - 1.0) > 1e-9) return false;
+  }
+  return true;
+}
+
+void MotionReduction::find_restraints() {
+  const auto factor = [&] { return followers_->factor(reduced_, 0.0, 0.0, 1.0) == la::Status::ok; };
+  std::vector<Index> last;
+  last.swap(restraints_);
+  springs_.clear();
+  for (const Index k : last) restrain(k);
+  bool regular = factor();
+  if (!last.empty() && (!regular || !restraints_still_free())) {
+    for (std::size_t i = 0; i < restraints_.size(); ++i) own_stiffness(restraints_[i]) -= springs_[i];
+    restraints_.clear();
+    springs_.clear();
+    regular = factor();
+  }
+  while (true) {
+    const Index k = regular ? softest_unknown() : followers_->singular_unknown();
+    if (k < 0 || static_cast<Index>(restraints_.size()) >= system_.size()) return;
+    restrain(k);
+    regular = factor();
+  }
+}
+
+}  // namespace whirl::analysis

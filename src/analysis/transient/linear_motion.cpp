@@ -1,0 +1,171 @@
+#include <analysis/transient/linear_motion.hpp>
+
+#include <core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace whirl::analysis {
+
+namespace {
+
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Largest difference of the lateral entries of two matrices, relative to the diagonals they stand between.
+double difference(const la::BlockMatrix<6>& x, const la::BlockMatrix<6>& y, const VecX& diagonal) {
+  const la::BlockPattern& p = x.pattern();
+  double worst = 0.0;
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index s = p.row_start()[at(i)]; s < p.row_start()[at(i) + 1]; ++s) {
+      const Index j = p.cols()[at(s)];
+      for (int a = 0; a < 6; ++a)
+        for (int b = 0; b < 6; ++b) {
+          if (a == system::spin_phi || b == system::spin_phi) continue;
+          const double size = std::sqrt(diagonal[6 * i + a] * diagonal[6 * j + b]);
+          if (size > 0.0) worst = std::max(worst, std::abs(x.block(s)(a, b) - y.block(s)(a, b)) / size);
+        }
+    }
+  return worst;
+}
+
+VecX diagonal_of(const la::BlockMatrix<6>& x) {
+  const la::BlockPattern& p = x.pattern();
+  VecX d = VecX::Zero(6 * p.size());
+  for (Index i = 0; i < p.size(); ++i) d.segment<6>(6 * i) = x.block(p.slot(i, i)).diagonal().cwiseAbs();
+  return d;
+}
+
+/// An unbalance moves the mass of a station by a share of 1e-6 or so; a key way or a second moment of area shows more.
+constexpr double turning_share = 1e-3;
+
+}  // namespace
+
+LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& running, double Omega, const system::State& start, EquilibriumOptions options)
+    : SystemProblem(system, {la::SolverKind::automatic, false, 2.0}), q_(system.size()), v_(system.size()), a_(VecX::Zero(system.size())),
+      steady_(system.make_workspace()) {
+  Linearizer linear(system, running, options);
+  linear.start_from(start);
+  const la::MCK& m = linear.at(Omega);
+  const system::State& e = linear.equilibrium().state;
+  for (std::size_t l = 0; l < e.frames.chart.size(); ++l)
+    if (!e.frames.chart[l].isApprox(start.frames.chart[l], 1e-12))
+      throw run_error("E39", "the rotor tilts too far for small motions", "leave linear out of the step");
+  if (linear.running().phase_dependent()) {
+    la::MCK turned = system.make_matrices();
+    const VecX K = diagonal_of(m.K), M = diagonal_of(m.M);
+    double worst = 0.0;
+    for (double theta : {0.4, 1.9}) {
+      linear.running().tangent_at(e.frames, Omega, e.q, theta, turned);
+      worst = std::max({worst, difference(turned.K, m.K, K), difference(turned.M, m.M, M)});
+    }
+    if (worst > turning_share)
+      throw run_error("E39", "the matrices turn with the rotor: its stiffness or inertia is not the same in all directions",
+                      "leave linear out of the step");
+  }
+  la::MCK& kept = kept_matrices();
+  for (auto [to, from] : {std::pair(&kept.M, &m.M), std::pair(&kept.C, &m.C), std::pair(&kept.K, &m.K)})
+    std::copy_n(from->data(), from->value_count(), to->data());
+
+  q0_ = e.q, v0_ = e.v;
+  const auto spinning = linear.running().spinning();
+  turns_.assign(spinning.begin(), spinning.end());
+  angle_ = VecX::Zero(system.lines());
+  std::vector<unsigned char> seen(at(system.lines()), 0);
+  for (Index l = 0; l < system.lines(); ++l) rate_.push_back(Omega * linear.running().ratio(l));
+  for (Index i = 0; i < system.nodes(); ++i) {
+    const Index l = system.node(i).line;
+    if (!turns_[at(i)] || seen[at(l)]) continue;
+    seen[at(l)] = 1;
+    angle_[l] = start.total_phi(i, l) - q0_[6 * i + system::spin_phi] - rate_[at(l)] * start.t;
+  }
+  frames = start.frames;
+  find_changing(start.t);
+}
+
+void LinearMotion::find_changing(double t) {
+  // A term is constant when its force is the same at all angles of the rotor and all times: at the breakpoints of the laws there are, between
+  // them, and at times from microseconds to weeks. Small generic motions about the steady one show what cancels in it.
+  std::vector<double> times = system().breakpoints();
+  for (std::size_t k = times.size(); k-- > 1;) times.push_back(0.5 * (times[k] + times[k - 1]));
+  for (double x = 1e-6; x < 1e7; x *= 3.7) times.push_back(t + x);
+  std::mt19937 rng(7);
+  std::normal_distribution<double> normal;
+  VecX q = q0_, v = v0_, a(q0_.size());
+  for (Index k = 0; k < q.size(); ++k) q[k] += 1e-6 * normal(rng), v[k] += 1e-4 * normal(rng), a[k] = normal(rng);
+  const auto& terms = system().terms();
+  std::vector<std::vector<Vector<7>>> base(terms.size());
+  std::vector<unsigned char> changes(terms.size(), 0);
+  times.insert(times.begin(), t);
+  VecX turned = q;
+  for (std::size_t sample = 0; sample < times.size(); ++sample) {
+    const double theta = std::fmod(1.3 * static_cast<double>(sample), two_pi);   // small angles: rounding of their differences stays small
+    for (Index i = 0; i < system().nodes(); ++i)
+      if (turns_[at(i)]) turned[6 * i + system::spin_phi] = q[6 * i + system::spin_phi] + theta * (rate_[at(system().node(i).line)] < 0 ? -1.0 : 1.0);
+    if (!system().evaluate_nodes(steady_, frames, times[sample], turned, v, a)) continue;
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      if (changes[k]) continue;
+      for (auto& x : steady_.force) x.setZero();
+      terms[k]->add_force(steady_);
+      if (sample == 0) {
+        base[k] = steady_.force;
+        continue;
+      }
+      if (!same_forces(base[k], steady_.force)) changes[k] = 1;
+    }
+  }
+  std::vector<std::size_t> still;
+  for (std::size_t k = 0; k < terms.size(); ++k) (changes[k] ? changing_ : still).push_back(k);
+  constant_ = VecX::Zero(system().size());
+  if (!system().residual(steady_, frames, t, q0_, v0_, a_, constant_, &still)) {   // leave it to residual() to say so
+    changing_.insert(changing_.end(), still.begin(), still.end());
+    constant_.setZero();
+  }
+}
+
+double LinearMotion::power_beside(time::CRef v, time::CRef residual) {
+  // the general residual at the node states of the last evaluation
+  system::Workspace& w = workspace();
+  for (auto& x : w.force) x.setZero();
+  for (const auto& term : system().terms()) term->add_force(w);
+  general_.resize(v.size());
+  for (Index i = 0; i < system().nodes(); ++i) {
+    const Vector<7>& f = w.force[at(i)];
+    general_.segment<3>(6 * i) = f.head<3>();
+    general_[6 * i + system::spin_phi] = f[6];
+    general_.segment<2>(6 * i + 4) = w.D[at(i)].transpose() * f.segment<3>(3);
+  }
+  const double power = v.dot(general_ - residual);
+  return std::isfinite(power) ? power : nan;
+}
+
+time::Problem::Power LinearMotion::power_here(time::CRef v, time::CRef reactions) {
+  Power p = SystemProblem::power_here(v, reactions);
+  p.supplied += power_beside(v, reactions);
+  return p;
+}
+
+time::Problem::Power LinearMotion::exchange_here(time::CRef v, time::CRef reactions) {
+  Power p = SystemProblem::exchange_here(v, reactions);
+  p.supplied += power_beside(v, reactions);
+  return p;
+}
+
+bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
+  q_ = q0_, v_ = v0_;
+  for (Index i = 0; i < system().nodes(); ++i)
+    if (turns_[at(i)]) {
+      const Index l = system().node(i).line;
+      q_[6 * i + system::spin_phi] += (angle_[l] - two_pi * frames.turns[at(l)]) + rate_[at(l)] * t;
+    }
+  if (!system().residual(steady_, frames, t, q_, v_, a_, r, &changing_)) return false;
+  r += constant_;
+  q_ = q - q_, v_ = v - v_;
+  const la::MCK& m = matrices();
+  m.M.add_multiply(1.0, a, r);
+  m.C.add_multiply(1.0, v_, r);
+  m.K.add_multiply(1.0, q_, r);
+  return true;
+}
+
+}  // namespace whirl::analysis

@@ -1,0 +1,232 @@
+#include <analysis/transient/observer.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::analysis {
+
+Recorder::Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0, double t1, Gate gate)
+    : channels_(std::move(channels)), sink_(std::move(sink)), gate_(std::move(gate)), ticker_(t_begin, every), every_(every), t0_(t0), t1_(t1) {
+  std::size_t n = 1;
+  for (const Measurement& m : channels_) n += m.width();
+  row_.resize(n);
+}
+
+void Recorder::write(const Snapshot& s) {
+  if (gate_ && !gate_(s)) return;
+  row_[0] = s.t();
+  double* out = row_.data() + 1;
+  for (const Measurement& m : channels_) m.evaluate(s, out), out += m.width();
+  sink_(row_);
+  ++rows_;
+}
+
+void Recorder::begin(const Snapshot& s) {
+  if (s.t() >= t0_ && s.t() <= t1_) write(s);
+  ticker_.advance();
+}
+
+void Recorder::step(StepAccess& s) {
+  if (every_ <= 0.0) {
+    if (s.t1() >= t0_ && s.t1() <= t1_) write(s.end());
+    return;
+  }
+  // a tick within round-off of the step's end belongs to this step
+  const double slack = 1e-12 * std::max(std::abs(s.t1()), every_);
+  if (s.t1() < t0_ || s.t0() > t1_) {   // outside the window nothing is evaluated
+    ticker_.pass(s.t1() + slack);
+    return;
+  }
+  if (s.t0() < t0_) ticker_.pass(t0_ - slack);
+  for (; ticker_.next() <= s.t1() + slack; ticker_.advance())
+    if (const double t = std::min(ticker_.next(), s.t1()); t >= t0_ && t <= t1_) write(s.at(t));
+}
+
+void Recorder::save(OutArchive& out) const {
+  out.put_count(static_cast<std::uint64_t>(ticker_.count())), out.put_count(static_cast<std::uint64_t>(rows_));
+}
+
+void Recorder::restore(InArchive& in) {
+  ticker_.set_count(static_cast<long>(in.count())), rows_ = static_cast<long>(in.count());
+}
+
+PeakTracker::PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from)
+    : points_(std::move(points)), reference_(reference), t_from_(t_from) {
+  for (const auto& p : points_) peaks_.push_back({p.first, 0.0, 0.0, 0.0});
+}
+
+void PeakTracker::begin(const Snapshot& s) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const double r = displacement(s, points_[i].second).tail<2>().norm();
+    peaks_[i] = {points_[i].first, r, s.t(), s.node(reference_).spin()};
+  }
+}
+
+namespace {
+
+/// Weights of the polynomial through n + 1 equally spaced values at x in [0, n] (barycentric form:
+/// J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 2004).
+template <std::size_t N> std::array<double, N> lagrange(double x) {
+  static const auto signed_binomials = [] {
+    std::array<double, N> w{};
+    double c = 1;
+    for (std::size_t k = 0; k < N; ++k) {
+      w[k] = k % 2 == 0 ? c : -c;
+      c = c * static_cast<double>(N - 1 - k) / static_cast<double>(k + 1);
+    }
+    return w;
+  }();
+  std::array<double, N> w{};
+  double sum = 0;
+  for (std::size_t k = 0; k < N; ++k) {
+    const double d = x - static_cast<double>(k);
+    if (d == 0.0) {
+      w = {};
+      w[k] = 1;
+      return w;
+    }
+    w[k] = signed_binomials[k] / d;
+    sum += w[k];
+  }
+  for (double& x_k : w) x_k /= sum;
+  return w;
+}
+
+}  // namespace
+
+void PeakTracker::look(StepAccess& s, int k) {
+  const double t = k == looks - 1 ? s.t1() : s.t0() + (s.t1() - s.t0()) * k / (looks - 1);
+  const Snapshot& now = s.at(t);
+  std::vector<Vec2>& seen = seen_[static_cast<std::size_t>(k)];
+  seen.resize(points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    seen[i] = displacement(now, points_[i].second).tail<2>();
+  spin_[static_cast<std::size_t>(k)] = now.node(reference_).spin();
+}
+
+void PeakTracker::step(StepAccess& s) {
+  if (s.t1() < t_from_) return;
+  // Four looks a step bracket a maximum; golden section finishes a new one.
+  for (int k = 2; k < looks; k += 2) look(s, k);
+  bool complete = false;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    double best = 0.0, where = looks - 1;
+    for (int k = 2; k < looks; k += 2)
+      if (const double r = seen_[static_cast<std::size_t>(k)][i].norm(); r > best) {
+        best = r;
+        where = k;
+      }
+    if (best < 0.9 * peaks_[i].amplitude) continue;
+    for (int k : {0, 1, 3, 5, 7})
+      if (!complete) look(s, k);
+    complete = true;
+    refine(s, i, best, where);
+  }
+}
+
+void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double where) {
+  const auto radius = [&](double x) {
+    const std::array<double, looks> w = lagrange<looks>(x);
+    Vec2 u = Vec2::Zero();
+    for (std::size_t k = 0; k < looks; ++k) u += w[k] * seen_[k][point];
+    return u.norm();
+  };
+  Peak& peak = peaks_[point];
+  double a = std::max(0.0, where - 2), b = std::min<double>(looks - 1, where + 2);
+  constexpr double golden = 0.6180339887498949;
+  double x1 = b - golden * (b - a), x2 = a + golden * (b - a), r1 = radius(x1), r2 = radius(x2);
+  for (int k = 0; k < 24 && best > 0.99 * peak.amplitude; ++k) {
+    if (r1 > r2) {
+      b = x2;
+      x2 = x1;
+      r2 = r1;
+      x1 = b - golden * (b - a);
+      r1 = radius(x1);
+    } else {
+      a = x1;
+      x1 = x2;
+      r1 = r2;
+      x2 = a + golden * (b - a);
+      r2 = radius(x2);
+    }
+  }
+  if (r1 > best) best = r1, where = x1;
+  if (r2 > best) best = r2, where = x2;
+  if (!(best > peak.amplitude)) return;
+  const std::array<double, looks> w = lagrange<looks>(where);
+  double spin = 0;
+  for (std::size_t k = 0; k < looks; ++k) spin += w[k] * spin_[k];
+  const double t = where == looks - 1 ? s.t1() : s.t0() + (s.t1() - s.t0()) * where / (looks - 1);
+  peak = {points_[point].first, best, t, spin};
+}
+
+void PeakTracker::save(OutArchive& out) const {
+  for (const Peak& p : peaks_) out.put(p.amplitude), out.put(p.time), out.put(p.speed);
+}
+
+void PeakTracker::restore(InArchive& in) {
+  for (Peak& p : peaks_) p.amplitude = in.number(), p.time = in.number(), p.speed = in.number();
+}
+
+void EnergyBalance::begin(const Snapshot& s) {
+  const auto p = s.power();
+  e0_ = e1_ = p.stored;
+  kinetic0_ = p.kinetic;
+  largest_kinetic_ = p.kinetic;
+  largest_potential_ = std::abs(p.stored - p.kinetic);
+}
+
+void EnergyBalance::step(StepAccess& s) {
+  // Powers at the Radau points of the step: the collocation polynomial is most accurate there, and the quadrature has order 5.
+  static const double r6 = std::sqrt(6.0);
+  const double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
+  const double b[3] = {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0};
+  const double h = s.t1() - s.t0();
+  for (int k = 0; k < 2; ++k) {
+    const auto p = s.at(s.t0() + c[k] * h).exchange();
+    supplied_ += h * b[k] * p.supplied;
+    dissipated_ += h * b[k] * p.dissipated;
+  }
+  // Where laws jump, the end of the step sees them from the left.
+  const bool jump = std::binary_search(jumps_.begin(), jumps_.end(), s.t1());
+  const auto p = jump ? s.at(std::nextafter(s.t1(), -infinity)).power() : s.end().power();
+  supplied_ += h * b[2] * p.supplied;
+  dissipated_ += h * b[2] * p.dissipated;
+  e1_ = p.stored;
+  rounding_ += 20 * 2.2e-16 * std::max(std::abs(p.stored), p.kinetic);
+  look(p);
+  if (!jump) return;
+  const double after = s.end().power().stored;
+  supplied_ += after - e1_;
+  e1_ = after;
+}
+
+void EnergyBalance::look(const time::Problem::Power& p) {
+  known_ = known_ && std::isfinite(defect());
+  largest_kinetic_ = std::max(largest_kinetic_, p.kinetic);
+  largest_potential_ = std::max(largest_potential_, std::abs(p.stored - p.kinetic));
+  const double kinetic = p.kinetic - kinetic0_;
+  const double stored = p.stored - e0_;
+  for (const double x : {kinetic, stored - kinetic, stored, supplied_, dissipated_}) exchanged_ = std::max(exchanged_, std::abs(x));
+  worst_ = std::max(worst_, std::abs(defect()));
+}
+
+void EnergyBalance::save(OutArchive& out) const {
+  for (double x : {e0_, kinetic0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_, largest_potential_, exchanged_, rounding_}) out.put(x);
+  out.put_count(known_ ? 1 : 0);
+}
+
+void EnergyBalance::restore(InArchive& in) {
+  for (double* x : {&e0_, &kinetic0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_, &largest_potential_, &exchanged_, &rounding_}) *x = in.number();
+  known_ = in.count() != 0;
+}
+
+void TiltWatch::save(OutArchive& out) const { out.put(tilt_), out.put(time_), out.put_count(static_cast<std::uint64_t>(node_)); }
+void TiltWatch::restore(InArchive& in) { tilt_ = in.number(), time_ = in.number(), node_ = static_cast<Index>(in.count()); }
+
+void TiltWatch::look(const Snapshot& s) {
+  for (Index i = 0; i < s.system().nodes(); ++i)
+    if (const double g = s.gamma(i).norm(); g > tilt_) tilt_ = g, time_ = s.t(), node_ = i;
+}
+
+}  // namespace whirl::analysis

@@ -1,0 +1,168 @@
+// Observers watch a transient step by step: time histories, frames, peaks, energy balance, checkpoints. The stepping loop
+// knows none of them; what a deck does not ask for is an observer that does not exist.
+#pragma once
+#include <analysis/transient/measurement.hpp>
+#include <core/archive.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace whirl::analysis {
+
+/// The accepted step [t0, t1] with its dense output. at() evaluates a state inside it; the reference is good until the next
+/// call.
+class StepAccess {
+ public:
+  virtual ~StepAccess() = default;
+  virtual double t0() const = 0;
+  virtual double t1() const = 0;
+  virtual const Snapshot& at(double t) = 0;
+  const Snapshot& end() { return at(t1()); }
+};
+
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  /// The initial state, once.
+  virtual void begin(const Snapshot& s) { (void)s; }
+  virtual void step(StepAccess& s) = 0;
+  virtual void end() {}
+  /// What it knows so far, for a checkpoint; restore() of an observer made alike instead of begin() continues bit for bit.
+  virtual void save(OutArchive& out) const { (void)out; }
+  virtual void restore(InArchive& in) { (void)in; }
+};
+
+/// Times k * every from t_begin on, free of accumulated rounding.
+class Ticker {
+ public:
+  Ticker(double t_begin, double every) : t0_(t_begin), every_(every) {}
+  double next() const { return t0_ + static_cast<double>(k_) * every_; }
+  void advance() { ++k_; }
+  /// To the first time beyond t, as if by advance() alone.
+  void pass(double t) {
+    const double turns = every_ > 0 ? std::floor((t - t0_) / every_) - 1 : 0;
+    if (turns > static_cast<double>(k_) && turns < 9e18) k_ = static_cast<long>(turns);
+    while (next() <= t) advance();
+  }
+  long count() const { return k_; }
+  void set_count(long k) { k_ = k; }
+
+ private:
+  double t0_, every_;
+  long k_ = 0;
+};
+
+/// Receives rows of measured values.
+using RowSink = std::function<void(const std::vector<double>&)>;
+
+/// Rows of measurements (time first) at fixed intervals, or at every accepted step (every = 0). Decimation by interval; window by
+/// [t0, t1]. Values are SI and unscaled.
+class Recorder final : public Observer {
+ public:
+  /// gate: rows only where it says so (null: everywhere).
+  using Gate = std::function<bool(const Snapshot&)>;
+  Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0 = -infinity, double t1 = infinity, Gate gate = {});
+  void begin(const Snapshot& s) override;
+  void step(StepAccess& s) override;
+  void save(OutArchive& out) const override;
+  void restore(InArchive& in) override;
+  long rows() const { return rows_; }
+  Ticker& ticker() { return ticker_; }
+
+ private:
+  void write(const Snapshot& s);
+  std::vector<Measurement> channels_;
+  RowSink sink_;
+  Gate gate_;
+  Ticker ticker_;
+  double every_, t0_, t1_;
+  long rows_ = 0;
+  std::vector<double> row_;
+};
+
+/// Largest lateral amplitude of a point, where on the speed axis it happened, refined inside steps by golden section.
+struct Peak {
+  std::string name;
+  double amplitude = 0, time = 0, speed = 0;   ///< m, s, rad/s
+};
+class PeakTracker final : public Observer {
+ public:
+  /// reference: node whose spin is the speed axis. All points share the looks at the dense output of a step, four of them and nine where
+  /// one comes near its peak; between looks each point moves by the polynomial through them (a thousand points cost little more than one).
+  PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from = -infinity);
+  void begin(const Snapshot& s) override;
+  void step(StepAccess& s) override;
+  void save(OutArchive& out) const override;
+  void restore(InArchive& in) override;
+  const std::vector<Peak>& peaks() const { return peaks_; }
+
+ private:
+  static constexpr int looks = 9;   ///< at k/8 of the step, k = 0 .. 8
+  void look(StepAccess& s, int k);
+  void refine(StepAccess& s, std::size_t point, double best, double where);
+
+  std::vector<std::pair<std::string, Point>> points_;
+  std::vector<Peak> peaks_;
+  Index reference_;
+  double t_from_;
+  std::array<std::vector<Vec2>, looks> seen_;   ///< lateral displacements of all points
+  std::array<double, looks> spin_{};
+};
+
+/// Work and energy: E(t) - E(0) = work supplied - energy dissipated; the defect is the run's own measure of accuracy.
+/// Where a law jumps, mass may come or go at an instant (blade loss): the energy it brings counts as supplied.
+class EnergyBalance final : public Observer {
+ public:
+  /// jumps: times, increasing, at which laws jump and steps end.
+  explicit EnergyBalance(std::vector<double> jumps = {}) : jumps_(std::move(jumps)) {}
+  void begin(const Snapshot& s) override;
+  void step(StepAccess& s) override;
+  void save(OutArchive& out) const override;
+  void restore(InArchive& in) override;
+  double stored0() const { return e0_; }
+  double stored() const { return e1_; }
+  double supplied() const { return supplied_; }
+  double dissipated() const { return dissipated_; }
+  double defect() const { return e1_ - e0_ - supplied_ + dissipated_; }
+  double worst_defect() const { return worst_; }
+  double largest_kinetic() const { return largest_kinetic_; }
+  /// Energy that changed its place, J: the largest of what was supplied, what was dissipated, and how far the kinetic, the potential
+  /// and the stored energy departed from their starts. What a defect is measured by: in a conservative motion nothing but the
+  /// exchange between kinetic and potential energy. The defect itself is no part of it.
+  double exchanged() const { return exchanged_; }
+  /// Largest kinetic or potential energy, J: the measure of a motion that turns over nothing (a steady whirl without damping).
+  double largest_energy() const { return std::max(largest_kinetic_, largest_potential_); }
+  /// False when the motion left the range in which the energies of its elements are defined (a film's clearance).
+  bool known() const { return known_; }
+  /// What the defect may reach by rounding alone: twenty last digits of the stored energy, a sum over elements, a step.
+  double rounding() const { return rounding_; }
+
+ private:
+  std::vector<double> jumps_;
+  void look(const time::Problem::Power& p);
+  double rounding_ = 0;
+  double e0_ = 0, kinetic0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0, largest_potential_ = 0, exchanged_ = 0;
+  bool known_ = true;
+};
+
+/// Largest tilt |gamma| of any node, where and when: how far the run was from the limit of the chart (pi).
+class TiltWatch final : public Observer {
+ public:
+  void begin(const Snapshot& s) override { look(s); }
+  void step(StepAccess& s) override { look(s.end()); }
+  void save(OutArchive& out) const override;
+  void restore(InArchive& in) override;
+  double tilt() const { return tilt_; }
+  double time() const { return time_; }
+  Index node() const { return node_; }
+
+ private:
+  void look(const Snapshot& s);
+  double tilt_ = 0, time_ = 0;
+  Index node_ = 0;
+};
+
+}  // namespace whirl::analysis

@@ -1,0 +1,136 @@
+#include <plot/decimate.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
+
+namespace whirl::plot {
+
+bool is_increasing(std::span<const double> x) {
+  double last = -INFINITY;
+  for (const double v : x) {
+    if (v < last) return false;
+    if (!std::isnan(v)) last = v;
+  }
+  return true;
+}
+
+std::vector<std::size_t> decimate_columns(std::span<const double> x, std::span<const double> y, double x0, double x1,
+                                          std::size_t columns) {
+  std::vector<std::size_t> keep;
+  const std::size_t n = x.size();
+  const double scale = static_cast<double>(columns) / (x1 - x0);
+  std::ptrdiff_t column = -2;
+  std::size_t first = 0, low = 0, high = 0, last = 0;
+  bool open = false, gap = false;
+  const auto close = [&] {
+    if (!open) return;
+    std::array<std::size_t, 4> k{first, low, high, last};
+    std::sort(k.begin(), k.end());
+    for (std::size_t j = 0; j < 4; ++j)
+      if (j == 0 || k[j] != k[j - 1]) keep.push_back(k[j]);
+    open = false;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (std::isnan(x[i]) || std::isnan(y[i])) {
+      close();
+      if (!gap) keep.push_back(i);
+      gap = true;
+      continue;
+    }
+    gap = false;
+    // Everything left of the range is one column and everything right of it another: enough for the lines that cross.
+    const double c = std::floor((x[i] - x0) * scale);
+    const auto now = c < 0 ? std::ptrdiff_t{-1} : c >= static_cast<double>(columns) && x[i] > x1 ? static_cast<std::ptrdiff_t>(columns) : std::min(static_cast<std::ptrdiff_t>(c), static_cast<std::ptrdiff_t>(columns) - 1);
+    if (!open || now != column) {
+      close();
+      open = true, column = now;
+      first = low = high = i;
+    }
+    if (y[i] < y[low]) low = i;
+    if (y[i] > y[high]) high = i;
+    last = i;
+  }
+  close();
+  return keep;
+}
+
+std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px, std::span<const double> py, double cell) {
+  struct Hash {
+    std::size_t operator()(const std::array<std::int32_t, 4>& k) const {
+      std::uint64_t h = 0x9E3779B97F4A7C15ull;
+      for (const auto v : k) h = (h ^ static_cast<std::uint32_t>(v)) * 0xBF58476D1CE4E5B9ull, h ^= h >> 29;
+      return h;
+    }
+  };
+  std::unordered_set<std::array<std::int32_t, 4>, Hash> drawn;
+  std::vector<std::vector<std::size_t>> runs;
+  const auto grid = [&](double v) { return static_cast<std::int32_t>(std::lround(std::clamp(v / cell, -1e8, 1e8))); };
+  bool have = false, joined = false;
+  std::size_t from = 0;
+  std::int32_t gx = 0, gy = 0;
+  for (std::size_t i = 0; i < px.size(); ++i) {
+    if (std::isnan(px[i]) || std::isnan(py[i])) {
+      have = joined = false;
+      continue;
+    }
+    const std::int32_t hx = grid(px[i]), hy = grid(py[i]);
+    if (!have) {
+      have = true, joined = false;
+      from = i, gx = hx, gy = hy;
+      continue;
+    }
+    if (hx == gx && hy == gy) continue;   // within one cell
+    // The same segment backwards looks the same.
+    std::array<std::int32_t, 4> key{gx, gy, hx, hy};
+    if (std::pair(hx, hy) < std::pair(gx, gy)) key = {hx, hy, gx, gy};
+    if (drawn.insert(key).second) {
+      if (!joined) runs.push_back({from});
+      runs.back().push_back(i);
+      joined = true;
+    } else joined = false;
+    from = i, gx = hx, gy = hy;
+  }
+  if (runs.empty() && have) runs.push_back({from});
+  return runs;
+}
+
+Envelope::Envelope(std::size_t bins) : most_(std::max<std::size_t>(2, bins + bins % 2)) { bins_.reserve(most_); }
+
+void Envelope::add(double x, double y) {
+  const Point p{x, y, count_++};
+  if (!bins_.empty() && in_last_ < per_bin_) {
+    Bin& b = bins_.back();
+    if (!(p.y >= b.low.y)) b.low = p;
+    if (!(p.y <= b.high.y)) b.high = p;
+    b.last = p;
+    ++in_last_;
+    return;
+  }
+  if (bins_.size() == most_) {
+    for (std::size_t k = 0; k < most_ / 2; ++k) {
+      Bin a = bins_[2 * k];
+      const Bin& b = bins_[2 * k + 1];
+      if (b.low.y < a.low.y) a.low = b.low;
+      if (b.high.y > a.high.y) a.high = b.high;
+      a.last = b.last;
+      bins_[k] = a;
+    }
+    bins_.resize(most_ / 2);
+    per_bin_ *= 2;
+  }
+  bins_.push_back({p, p, p, p});
+  in_last_ = 1;
+}
+
+void Envelope::points(std::vector<double>& x, std::vector<double>& y) const {
+  x.clear(), y.clear();
+  for (const auto& b : bins_) {
+    std::array<Point, 4> k{b.first, b.low, b.high, b.last};
+    std::sort(k.begin(), k.end(), [](const Point& a, const Point& c) { return a.order < c.order; });
+    for (std::size_t j = 0; j < 4; ++j)
+      if (j == 0 || k[j].order != k[j - 1].order) x.push_back(k[j].x), y.push_back(k[j].y);
+  }
+}
+
+}  // namespace whirl::plot

@@ -1,0 +1,65 @@
+#include <results/frame_arrays.hpp>
+
+#include <algorithm>
+
+namespace whirl::results {
+
+namespace {
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+}  // namespace
+
+FrameArrays::FrameArrays(const run::Job& job)
+    : job_(job), poses_(job.mesh.nodes.size()), velocity_(poses_.size()), omega_(poses_.size()), force_(poses_.size(), Vec3::Zero()),
+      moment_(poses_.size(), Vec3::Zero()), supports_(job.model.bearings.size(), Vec3::Zero()), stress_(poses_.size(), 0.0) {}
+
+void FrameArrays::take_nodes(const assembly::NodeAt& node) {
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const system::NodeState& n = node(static_cast<Index>(i));
+    poses_[i] = {job_.mesh.nodes[i].position + n.u, n.d(), n.phi};
+    velocity_[i] = n.du;
+    omega_[i] = n.omega();
+  }
+}
+
+void FrameArrays::take_sections(const std::vector<assembly::SectionPoint>& points) {
+  std::fill(force_.begin(), force_.end(), Vec3::Zero());
+  std::fill(moment_.begin(), moment_.end(), Vec3::Zero());
+  std::fill(stress_.begin(), stress_.end(), 0.0);
+  for (const assembly::SectionPoint& p : points) {
+    if (p.xi != 0.0 && p.xi != 1.0) continue;
+    const meshes::Element& e = job_.mesh.elements[at(p.element)];
+    const std::size_t i = at(p.xi == 0.0 ? e.left.node : e.right.node);
+    const bool first = p.xi == 0.0 && p.element == job_.mesh.lines[at(p.line)].first_element;
+    if (p.xi == 1.0 || first) {
+      force_[i] = p.force;
+      moment_[i] = p.moment;
+    }
+    stress_[i] = std::max(stress_[i], p.von_mises);
+  }
+}
+
+void FrameArrays::take_supports(const assembly::NodeAt& node, const system::Context& context, const assembly::ReactionAt& reaction) {
+  for (std::size_t i = 0; i < supports_.size(); ++i) {
+    supports_[i].setZero();
+    for (const assembly::SupportForce& f : job_.built.support_forces)
+      if (f.name == job_.model.bearings[i].name) supports_[i] = f.force(node, context, reaction);
+  }
+}
+
+io::FrameState FrameArrays::state(double time, const system::Frames& frames, bool in_motion) const {
+  io::FrameState frame;
+  frame.time = time;
+  frame.nodes = poses_;
+  frame.charts = std::span<const Mat3>(frames.chart).first(job_.mesh.lines.size());
+  if (in_motion) {
+    frame.velocity = velocity_;
+    frame.angular_velocity = omega_;
+  }
+  frame.force = force_;
+  frame.moment = moment_;
+  frame.stress = stress_;
+  frame.support_force = supports_;
+  return frame;
+}
+
+}  // namespace whirl::results

@@ -1,0 +1,86 @@
+// What the steps in the frequency domain share: the linearisation a step works on, its tables, figures and pictures.
+#pragma once
+#include <analysis/spectra/campbell.hpp>
+#include <analysis/response/harmonic.hpp>
+#include <analysis/spectra/stability.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
+#include <results/transient_outputs.hpp>
+#include <plot/plots.hpp>
+
+#include <cmath>
+#include <span>
+
+namespace whirl::results {
+
+/// Spin of every line relative to the reference speed, as the deck's speed_ratio says; casings stand.
+analysis::SteadyRotation steady_rotation_of(const run::Job& job, double top_speed);
+std::vector<double> speeds_of(const model::SpeedRange& range);
+std::vector<double> frequencies_of(const model::FrequencyRange& range);
+analysis::Motion motion_of(model::MotionKind kind);
+plot::Whirl whirl_of(analysis::Direction d);
+inline double to_rpm(double omega) { return omega * 30.0 / pi; }
+inline double to_hz(double omega) { return omega / two_pi; }
+/// Rounding of what is zero, as zero: ratios and shares of 1 (or 100 %).
+inline double tidy(double x) { return std::abs(x) < 1e-12 ? 0.0 : x; }
+/// "lateral, forward", "torsional"
+std::string description(const analysis::WhirlMode& m);
+/// "lateral 1", "torsional 1", .. of a list: numbers within each kind.
+std::vector<std::string> labels_of(std::span<const analysis::WhirlMode> modes);
+/// "forward", or "" where there is no lateral orbit
+std::string direction_text(const analysis::WhirlMode& m);
+/// "No growing motion at any frequency" or up to which one that is known, where none was found.
+std::string stability_text(const analysis::SpectrumCertificate& c);
+/// With a capital letter.
+std::string capital(std::string text);
+/// Motions that do not oscillate: overdamped, free and diverging ones, by their rates.
+io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes);
+/// Forces of the supports on the shaft, N, fixed axes.
+std::vector<analysis::Measurement> support_measurements(const run::Job& job);
+
+/// One step on its way: where it stands, and what it has to show.
+class FrequencyStep {
+ public:
+  /// top_speed: highest |speed| expected, rad/s.
+  /// title: of its section, "Campbell diagram".
+  FrequencyStep(run::Job& job, const model::Step& step, const std::string& type, const std::string& title, double top_speed, int load_steps = 1);
+  run::Job& job;
+  const model::Step& step;
+  analysis::Linearizer linear;
+  io::ReportSection section;
+
+  io::Value& summary() { return job.summary["steps"][step.name]; }
+  /// Writes <step>_<name>.csv and shows the table in the report, its title with about() (only as a file when `shown` is false).
+  void add_table(const std::string& name, io::Table table, bool shown = true);
+  void add_figure(plot::Figure f);
+  /// "about the static equilibrium at 3000 rpm": the state that everything here is linearised about.
+  const std::string& about() const { return about_; }
+  /// A name for files: <step>_<name>.
+  std::string file(const std::string& name) const;
+  /// Puts what is known of a list of modes into the summary and the section; what is missing also into the terminal and the exit code.
+  /// where: "at 3000 rpm", or empty.
+  void certify(const analysis::SpectrumCertificate& certificate, const std::string& where = {});
+  /// Adds the section to the report, the run time to the summary, and a line to the terminal; each says about() and what the motion
+  /// asked for leaves out.
+  void finish(const std::string& line);
+
+ private:
+  std::string type_, about_;
+  Stopwatch watch_;
+};
+
+/// A shape (amplitudes of all unknowns) as drawings; see shapes.cpp.
+struct ShapeDrawing {
+  std::string name, title, caption;   ///< name: within the step's files
+  const VecXc* a = nullptr;
+  analysis::ModeKind kind = analysis::ModeKind::lateral;
+};
+/// Adds a figure for each line that moves: lateral shapes in space and in two planes, twist and axial motion against position.
+void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d);
+/// Frames of one period where [[output.vtk]] asks for this step. amplitude: factor on the shape; 0 = such that the largest
+/// displacement is a twentieth of the rotor's length (times deformation_scale in any case).
+void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& a, double amplitude = 0);
+
+/// A rotating shaft has unequal principal stiffnesses: matrices in fixed axes are means over the revolution, and stability is another matter.
+bool turns_with_stiffness(const model::Model& m);
+
+}  // namespace whirl::results

@@ -1,0 +1,31 @@
+// Whether a static state is stable, and the shapes that go with it, as steps report them.
+#pragma once
+#include <analysis/statics/load_path.hpp>
+#include <run/job.hpp>
+
+namespace whirl::results {
+
+/// Judges the static tangent of a state at the load of `running`.
+analysis::Definiteness judge_state(analysis::SteadySystem& running, const system::State& state,
+                                   double Omega, std::span<const Index> spin_holds, bool shape);
+
+/// "unstable equilibrium, 2 directions"; empty when it is stable. At a speed: what that means
+/// there.
+std::string stability_line(const analysis::Definiteness& d, double Omega);
+
+/// The same as a warning (W08) on the terminal, in the report and in the summary.
+void warn_of_unstable(run::Job& job, const std::string& step, const analysis::Definiteness& d,
+                      double Omega);
+
+/// Into the summary of a step: stable or not, directions, what is claimed.
+void add_stability(io::Value& v, const analysis::Definiteness& d, double Omega);
+
+/// A shape node by node: position, displacement, turn about the axis, tilt of the section about the
+/// axes.
+io::Table shape_table(const run::Job& job, const std::string& title, const system::Frames& frames,
+                      const VecX& q, const VecX& shape);
+
+/// Bifurcation and limit points of a path.
+io::Table critical_table(const analysis::LoadPathResult& path);
+
+}  // namespace whirl::results

@@ -1,0 +1,46 @@
+#include <run/interrupt.hpp>
+#include <core/interrupt.hpp>
+
+#include <csignal>
+
+namespace whirl::run {
+
+namespace {
+
+volatile std::sig_atomic_t asked_by = 0;  // the first signal that asked to stop
+
+extern "C" void on_signal(int sig) {
+  interrupt::flag.store(true, std::memory_order_relaxed);
+  // Ctrl-C twice ends it at once. A terminal that closes sends SIGHUP more than once, and other
+  // signals with it.
+  if (asked_by == sig && sig != SIGHUP) {
+    std::signal(sig, SIG_DFL);
+    std::raise(sig);
+  }
+  asked_by = sig;
+}
+
+void handle(int sig) {
+  struct sigaction before {};
+  ::sigaction(sig, nullptr, &before);
+  if (before.sa_handler == SIG_IGN) return;  // nohup, or a job in the background
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = SA_RESTART;
+  ::sigemptyset(&action.sa_mask);
+  ::sigaction(sig, &action, nullptr);
+}
+
+}  // namespace
+
+const std::atomic<bool>& interrupted() { return interrupt::flag; }
+
+void install_interrupt_handlers() {
+  handle(SIGINT);
+  handle(SIGTERM);
+  handle(SIGHUP);
+  // nobody reads the progress any more: the run goes on
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+}  // namespace whirl::run

@@ -1,0 +1,112 @@
+#include <run/job.hpp>
+#include <run/support_diagnosis.hpp>
+
+#include <analysis/statics/equilibrium.hpp>
+#include <core/rotation.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <unistd.h>
+
+namespace whirl::run {
+
+Job::Job(const model::Model& m, const RunOptions& o, const std::filesystem::path& root)
+    : model(m), options(o), mesh(meshes::make_mesh(m)), scene(meshes::make_scene(m, mesh)), folder(root) {}
+
+void Job::build_for(const model::Step& step) {
+  // Only drives belong to steps: without drives of its own a step shares the last system.
+  std::string key;
+  for (const model::Drive& d : model.drives)
+    if (d.step == step.name) key = step.name;
+  if (!built_for.empty() && built_for == "<" + key) return;
+  const PhaseTimer timer(*this, "assembly");
+  built = assembly::build_system(model, mesh, key);
+  built_for = "<" + key;
+}
+
+StepState Job::start_of(const model::Step& step, std::optional<double> speed) const {
+  if (!step.from.empty()) {
+    StepState s = states.at(step.from);
+    if (!speed) return s;
+    s.speed = *speed;
+    for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+      const meshes::Line& line = mesh.lines[l];
+      const double spin = model.shafts[l].rotating ? *speed * model.shafts[l].speed_ratio : 0.0;
+      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) s.state.v[6 * n + system::spin_phi] = spin;
+    }
+    return s;
+  }
+  const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
+  StepState s{system().make_state(), 0.0, {}};
+  system::State& x = s.state;
+  double reference_spin = 0.0, some_spin = 0.0;
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    const meshes::Line& line = mesh.lines[l];
+    const model::Shaft& shaft = model.shafts[l];
+    const assembly::LineSpin& law = built.spins[l];
+    const LawValue drive = law.prescribed ? law.angle->at(0.0) : LawValue{0.0, law.spin0, 0.0};
+    const double phi = drive.f;
+    const bool follows_drive = law.prescribed && in_time;
+    double spin = speed && !follows_drive ? *speed * shaft.speed_ratio : drive.df;
+    if (!shaft.rotating) spin = 0.0;
+    if (static_cast<Index>(l) == mesh.nodes[static_cast<std::size_t>(built.reference)].line) reference_spin = spin;
+    if (some_spin == 0.0) some_spin = spin;
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
+      x.q[6 * n + system::spin_phi] = phi;
+      x.v[6 * n + system::spin_phi] = spin;
+    }
+  }
+  // a reference that stands still while another line turns cannot measure the speeds
+  s.speed = speed ? *speed : reference_spin != 0.0 ? reference_spin : some_spin;
+  for (const model::InitialMotion& i : model.initial) {
+    const meshes::Line& line = mesh.lines[i.shaft];
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
+      const Mat3& chart = x.frames.chart[i.shaft];
+      const Vec3 arm = mesh.nodes[static_cast<std::size_t>(n)].position - i.about;
+      const Mat3 R = rotation::L(chart * Vec3(0, i.gamma[0], i.gamma[1]));
+      x.q.segment<3>(6 * n) += i.displacement + (R - Mat3::Identity()) * arm;
+      x.q.segment<2>(6 * n + 4) = i.gamma;
+      // the line's own spin is about the tilted axis; omega is added to it
+      const Vec3 omega = i.omega + x.v[6 * n + system::spin_phi] * R * chart.col(0);
+      const rotation::ChartRates r = rotation::rates_of_omega(i.gamma, chart.transpose() * omega);
+      x.v[6 * n + system::spin_phi] = r.phi;
+      x.v.segment<2>(6 * n + 4) = r.gamma;
+      x.v.segment<3>(6 * n) += i.velocity + i.omega.cross(R * arm);
+    }
+  }
+  return s;
+}
+
+analysis::SteadyRotation Job::steady_rotation_of(const StepState& start) const {
+  analysis::SteadyRotation running;
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    const Index n = mesh.lines[l].first_node;
+    const double spin = start.state.v[6 * n + system::spin_phi];
+    // at rest too a rotor that nothing holds is free to turn
+    running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : model.shafts[l].rotating ? model.shafts[l].speed_ratio : 0.0);
+  }
+  running.ratio.resize(static_cast<std::size_t>(system().lines()), 0.0);
+  running.mean = start.speed != 0.0;   // at rest every part stands where it stands: no mean over a revolution that nobody makes
+  return running;
+}
+
+analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions options, bool in_time) const {
+  analysis::SteadyRotation running = steady_rotation_of(start);
+  running.hysteretic = !in_time;
+  analysis::SteadySystem turning(system(), running);
+  options.chart_change = model.chart_change;
+  analysis::EquilibriumSolver solver(turning, options);
+  analysis::Equilibrium found;
+  try {
+    found = solver.solve(start.speed, &start.state);
+  } catch (const Error& e) {
+    throw explain_no_equilibrium(*this, turning, start, e);
+  }
+  start.state = found.state;
+  start.state.a.setZero();
+  return found;
+}
+
+}  // namespace whirl::run

@@ -1,0 +1,24 @@
+// Choices of a run.
+#pragma once
+#include <deck/deck.hpp>
+#include <filesystem>
+#include <functional>
+#include <model/model.hpp>
+#include <string>
+#include <vector>
+
+namespace whirl::run {
+
+/// Choices of a run that do not change its results.
+struct RunOptions {
+  bool quiet = false;            ///< no progress, no summary on standard output
+  bool json = false;             ///< the summary as JSON on standard output
+  bool terminal = false;         ///< standard error is a terminal: one progress line, rewritten
+  int jobs = 0;                  ///< threads for what can go in parallel; 0 = all processors
+  bool resume = false;           ///< continue from the last checkpoint of the results folder
+  std::filesystem::path output;  ///< results folder; empty: as the deck says
+  /// The model of the same deck with a key set otherwise ("parameters.clearance=75 um"), for steps that vary one. Throws as load_model().
+  std::function<model::Model(const std::string& setting)> variant;
+};
+
+}  // namespace whirl::run

@@ -1,0 +1,49 @@
+#include <run/progress.hpp>
+#include <chrono>
+#include <cstdio>
+#include <unistd.h>
+
+namespace whirl::run {
+
+ProgressLine::ProgressLine(std::string name, bool quiet) : name_(std::move(name)), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+namespace {
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+}  // namespace
+
+PhaseTimer::PhaseTimer(Job& job, std::string phase) : job_(job), phase_(std::move(phase)) {}
+
+void put_run_time(io::Value& summary, const RunTime& time) {
+  summary["run time, CPU [s]"] = time.cpu;
+  summary["run time, wall [s]"] = time.wall;
+}
+
+PhaseTimer::~PhaseTimer() {
+  const RunTime spent = watch_.elapsed();
+  for (auto& [name, time] : job_.phases)
+    if (name == phase_) {
+      time += spent;
+      return;
+    }
+  job_.phases.emplace_back(phase_, spent);
+}
+
+void ProgressLine::update(double fraction, const std::string& text) {
+  if (quiet_) return;
+  if (terminal_) {
+    const double t = now();
+    if (t - last_time_ < 0.1) return;
+    last_time_ = t;
+    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", name_.c_str(), 100.0 * fraction, text.c_str());
+  } else if (const int tenth = static_cast<int>(10.0 * fraction); tenth > last_tenth_ && tenth < 10) {
+    last_tenth_ = tenth;
+    if (tenth > 0) std::fprintf(stderr, "%s %d %%  %s\n", name_.c_str(), 10 * tenth, text.c_str());
+  }
+}
+
+void ProgressLine::done(const std::string& text) {
+  if (quiet_) return;
+  std::fprintf(stderr, "%s%s: %s\n", terminal_ ? "\r\033[K" : "", name_.c_str(), text.c_str());
+}
+
+}  // namespace whirl::run

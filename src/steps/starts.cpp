@@ -1,0 +1,174 @@
+// States a transient step can start from beside rest and static equilibrium.
+#include <analysis/response/harmonic.hpp>
+#include <analysis/spectra/whirl_modes.hpp>
+#include <run/checkpoint.hpp>
+#include <run/job.hpp>
+#include <steps/starts.hpp>
+
+#include <fmt/format.h>
+
+namespace whirl::steps {
+
+namespace {
+
+/// The turning model at the spins of a start.
+analysis::Linearizer linearizer_of(const run::Job& job, const run::StepState& start) {
+  analysis::SteadyRotation running;
+  for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
+    const double spin = start.state.v[6 * job.mesh.lines[l].first_node + system::spin_phi];
+    running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : job.model.shafts[l].rotating ? job.model.shafts[l].speed_ratio : 0.0);
+  }
+  running.ratio.resize(static_cast<std::size_t>(job.system().lines()), 0.0);
+  running.time = start.state.t;
+  analysis::EquilibriumOptions o;
+  o.chart_change = job.model.chart_change;
+  return analysis::Linearizer(job.system(), running, o);
+}
+
+/// Axial angle of the reference at the start: what turns with the rotor stands there.
+double start_angle(const run::Job& job, const run::StepState& start) { return start.state.q[6 * job.reference() + system::spin_phi]; }
+
+/// The equilibrium has its rotor at angle zero; the start's angles are put back.
+void take_equilibrium(const run::Job& job, const analysis::Equilibrium& e, run::StepState& start) {
+  const VecX q0 = start.state.q, v0 = start.state.v;
+  const double t = start.state.t;
+  start.state = e.state;
+  start.state.t = t;
+  for (Index i = 0; i < job.system().nodes(); ++i) {
+    if (job.system().node(i).scalar) continue;
+    start.state.q[6 * i + system::spin_phi] += q0[6 * i + system::spin_phi];
+    start.state.v[6 * i + system::spin_phi] = v0[6 * i + system::spin_phi];
+  }
+  start.state.a.setZero();
+}
+
+}  // namespace
+
+void start_in_unbalance_response(const run::Job& job, run::StepState& start) {
+  analysis::Linearizer linear = linearizer_of(job, start);
+  linear.at(start.speed);
+  const std::vector<VecXc> f = linear.forcing();
+  const std::vector<double> orders(linear.running().orders().begin(), linear.running().orders().end());
+  analysis::HarmonicSolver solver(linear);
+  const double theta = start_angle(job, start);
+  VecX q = VecX::Zero(job.system().size()), v = q;
+  for (std::size_t k = 0; k < orders.size(); ++k) {
+    const double w = orders[k] * start.speed;
+    VecXc a = -f[k];
+    if (!solver.prepare(start.speed, w)) throw run_error("E76", fmt::format("no steady unbalance response at {:.6g} rpm: resonance without damping", start.speed * 30.0 / pi), "start from static equilibrium, or give the model damping");
+    solver.solve(a);
+    const Complex turn = std::polar(1.0, orders[k] * theta);
+    q += (turn * a).real(), v += (Complex(0.0, w) * turn * a).real();
+  }
+  take_equilibrium(job, linear.equilibrium(), start);
+  start.state.q += q, start.state.v += v;
+}
+
+namespace {
+
+bool is_of(const analysis::WhirlMode& m, model::MotionKind kind) {
+  using Kind = analysis::ModeKind;
+  switch (kind) {
+    case model::MotionKind::lateral: return m.kind == Kind::lateral;
+    case model::MotionKind::torsional: return m.kind == Kind::torsional;
+    case model::MotionKind::axial: return m.kind == Kind::axial;
+    case model::MotionKind::all: break;
+  }
+  return true;
+}
+
+}  // namespace
+
+void start_in_mode(const run::Job& job, run::StepState& start, const model::TransientStep& law) {
+  analysis::Linearizer linear = linearizer_of(job, start);
+  std::optional<analysis::WhirlMode> found;
+  int of_kind = 0;
+  std::size_t all = 0;
+  // more modes until there are enough of the kind, or no more
+  for (Index count = law.mode + 2; !found; count *= 2) {
+    analysis::ModesOptions o;
+    o.count = count;
+    const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, start.speed, o);
+    of_kind = 0;
+    all = modes.size();
+    for (const analysis::WhirlMode& m : modes)
+      if (is_of(m, law.mode_kind) && ++of_kind == law.mode) found = m;
+    if (static_cast<Index>(modes.size()) < count || count > 2 * job.system().size()) break;
+  }
+  if (!found) {
+    constexpr std::string_view names[] = {"", "lateral ", "torsional ", "axial "};
+    throw run_error("E76", fmt::format("the rotor has {} {}modes, not {}", law.mode_kind == model::MotionKind::all ? static_cast<int>(all) : of_kind,
+                                       names[static_cast<int>(law.mode_kind)], law.mode), "choose a lower number");
+  }
+  take_equilibrium(job, linear.equilibrium(), start);
+  start.state.q += law.mode_amplitude * found->x.real();
+  start.state.v += law.mode_amplitude * (found->lambda * found->x).real();
+}
+
+void begin_governors(const run::Job& job, run::StepState& start) {
+  std::map<std::string, run::StepState::Began> acting;
+  for (const assembly::Governor& g : job.built.governors) {
+    const auto before = start.governors.find(g.drive);
+    const double angle = start.state.total_phi(g.node, job.system().node(g.node).line);
+    const run::StepState::Began began = before != start.governors.end() ? before->second : run::StepState::Began{start.state.t, angle};
+    g.begin(began.time, began.angle);
+    acting[g.drive] = began;
+  }
+  start.governors = std::move(acting);
+}
+
+void save_governors(OutArchive& out, const run::StepState& start) {
+  out.put_count(start.governors.size());
+  for (const auto& [drive, began] : start.governors) {
+    out.put(drive);
+    out.put(began.time);
+    out.put(began.angle);
+  }
+}
+
+void restore_governors(InArchive& in, run::StepState& start) {
+  start.governors.clear();
+  for (std::uint64_t n = in.count(); n > 0; --n) {
+    const std::string drive = in.text();
+    run::StepState::Began& began = start.governors[drive];
+    began.time = in.number();
+    began.angle = in.number();
+  }
+}
+
+run::Checkpoint run::last_state_of(const std::string& folder, const std::string& step) {
+  namespace fs = std::filesystem;
+  fs::path file = step.empty() ? fs::path() : run::checkpoint_file(folder, step);
+  std::error_code ec;
+  if (step.empty())
+    for (const auto& f : fs::directory_iterator(fs::path(folder) / "checkpoint", ec))
+      if (f.path().extension() == ".whirl") {
+        if (!file.empty())
+          throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("{} holds checkpoints of several steps", folder), "name one with previous_step", Where{}});
+        file = f.path();
+      }
+  std::optional<run::Checkpoint> c = file.empty() ? std::nullopt : run::read_checkpoint(file);
+  if (!c)
+    throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("no state of an earlier run in '{}'", folder),
+                                     "previous names a results folder whose transient step has run with checkpoints", Where{}});
+  return std::move(*c);
+}
+
+void run::check_state_fits(const run::Checkpoint& c, const std::string& folder, const system::System& system, const std::string& deck) {
+  if (c.state.q.size() == system.size() && c.state.frames.chart.size() == static_cast<std::size_t>(system.lines())) return;
+  throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94", fmt::format("the run in '{}' has {} unknowns, this model {}", folder, c.state.q.size(), system.size()),
+                                     "both must have the same mesh", Where{deck, 0, 0, 0, {}}});
+}
+
+run::StepState start_of_other_run(const run::Job& job, const std::string& folder, const std::string& step) {
+  const run::Checkpoint c = run::last_state_of(folder, step);
+  run::check_state_fits(c, folder, job.system(), job.model.deck_path);
+  run::StepState start{c.state, c.speed, {}};
+  if (const auto governors = c.parts.find(governors_part); governors != c.parts.end()) {
+    InArchive in(governors->second);
+    restore_governors(in, start);
+  }
+  return start;
+}
+
+}  // namespace whirl::steps

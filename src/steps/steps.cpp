@@ -1,0 +1,131 @@
+// Runs the steps of a deck in order and writes summary and report, complete or not: a failed step keeps what came before it.
+#include <run/interrupt.hpp>
+#include <run/job.hpp>
+#include <steps/savings.hpp>
+#include <steps/steps.hpp>
+#include <run/progress.hpp>
+#include <steps/step_kinds.hpp>
+#include <core/interrupt.hpp>
+#include <io/nonfinite.hpp>
+#include <plot/rotor_drawing.hpp>
+#include <plot/svg.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <type_traits>
+
+namespace whirl::steps {
+
+namespace {
+
+void describe_model(run::Job& job) {
+  io::Value& v = job.summary["model"];
+  v["nodes"] = job.mesh.nodes.size();
+  v["elements"] = job.mesh.elements.size();
+  long unknowns = 0;
+  for (unsigned char a : job.system().active()) unknowns += a;
+  v["unknowns"] = unknowns;
+  io::Value parts = io::Value::object();
+  for (const auto& term : job.system().terms()) parts[term->kind()] = term->count();
+  v["batches"] = parts;
+  io::Value left = io::Value::array();
+  for (const std::string& s : job.built.left_out) left.push(s);
+  for (const std::string& s : job.built.simpler) left.push(s);
+  v["left out"] = left;
+  if (job.built.notes.empty()) return;
+  io::Value notes = io::Value::array();
+  for (const std::string& s : job.built.notes) notes.push(s);
+  v["notes"] = notes;
+}
+
+/// Numbers that are none and that nothing accounts for: the results are not to be trusted there, and that is said.
+void report_nonfinite(run::Job& job) {
+  for (const io::NonFinite& n : io::take_nonfinite()) {
+    const std::string text = fmt::format("{} in {} are not finite (first in the column '{}'): what should stand there was not found", n.count == 1 ? "1 number" : fmt::format("{} numbers", n.count),
+                                         n.file, n.column);
+    job.summary["warnings"].push(text);
+    job.report.warnings.push_back(text);
+    if (!job.options.quiet) std::fputs(fmt::format("warning: {}\n", text).c_str(), stderr);
+  }
+}
+
+/// What leaving out saved. Printed only for runs long enough that somebody waits for them.
+void describe_savings(run::Job& job, double seconds) {
+  if (job.model.keep_everything || job.built_for.empty() || run::interrupted()) return;
+  const Savings s = measure_savings(job);
+  if (!(s.everything > 0.0)) return;
+  io::Value& v = job.summary["model"]["cost of one evaluation of forces and tangents"];
+  v["of this model [us]"] = 1e6 * s.pruned, v["of the general model [us]"] = 1e6 * s.everything;
+  v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
+  if (!job.options.quiet && seconds > 0.5 && s.everything > 1.05 * s.pruned)
+    std::fputs(fmt::format("left out: {} parts of the general model this deck does not need (summary.json); an evaluation takes {:.0f} us CPU instead of {:.0f} us\n",
+                           job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned, 1e6 * s.everything).c_str(), stderr);
+}
+
+}  // namespace
+
+void run_steps(run::Job& job) {
+  const Stopwatch watch;
+  job.report.title = job.model.title.empty() ? job.model.deck_name : job.model.title;
+  job.report.deck = job.model.resolved;
+  for (const Diagnostic& w : job.model.warnings) job.report.warnings.push_back(w.message);
+  auto finish = [&] {
+    report_nonfinite(job);
+    auto take_times = [&] {
+      for (const auto& [name, time] : job.phases) {
+        job.summary["run time by phase, CPU [s]"][name] = time.cpu;
+        job.summary["run time by phase, wall [s]"][name] = time.wall;
+      }
+      run::put_run_time(job.summary, watch.elapsed());
+    };
+    take_times();
+    if (job.model.output.report) {
+      const run::PhaseTimer timer(job, "report");
+      job.report.summary = job.summary;
+      const RunTime time = watch.elapsed();
+      job.report.facts.emplace_back("run time, CPU", fmt::format("{:.3f} s", time.cpu));
+      job.report.facts.emplace_back("run time, wall", fmt::format("{:.3f} s", time.wall));
+      io::ReportSection rotor;
+      rotor.title = "Rotor";
+      rotor.figures = plot::draw_model(job.model, job.mesh, job.scene);
+      job.report.sections.insert(job.report.sections.begin(), std::move(rotor));
+      io::write_report(job.folder.path("report.html"), job.report);
+      for (const io::ReportSection& s : job.report.sections)
+        for (const plot::Figure& f : s.figures) job.folder.write_text("plots/" + f.name + ".svg", plot::render_svg(f));
+    }
+    take_times();
+    job.folder.write_json("summary.json", job.summary);
+  };
+  std::string running;
+  try {
+    for (const model::Step& step : job.model.steps) {
+      running = step.name;
+      if (run::interrupted()) break;
+      job.build_for(step);
+      if (!job.summary.is_object() || job.summary.at("model").is_null()) describe_model(job);
+      std::visit(
+          [&](const auto& law) {
+            using T = std::decay_t<decltype(law)>;
+            if constexpr (std::is_same_v<T, model::TransientStep>) run_transient_step(job, step, law);
+            else if constexpr (std::is_same_v<T, model::StaticStep>) run_static_step(job, step, law);
+            else run_frequency_step(job, step);
+          },
+          step.law);
+    }
+  } catch (const Interrupted&) {
+    // steps before it are complete; of this one nothing is
+    job.summary["steps"][running]["outcome"] = "interrupted";
+    if (!job.options.quiet) std::fputs(fmt::format("{}: interrupted\n", running).c_str(), stderr);
+  } catch (const Error& e) {
+    io::Value& v = job.summary["error"];
+    for (const Diagnostic& d : e.diagnostics()) v.push(d.code + ": " + d.message);
+    finish();
+    throw;
+  }
+  describe_savings(job, watch.elapsed().wall);
+  finish();
+}
+
+}  // namespace whirl::steps
