@@ -27,12 +27,12 @@ Mat3 steiner(double m, const Vec3& c) { return m * (c.squaredNorm() * Mat3::Iden
 Mat3 MassProperties::about_centre() const { return about_origin - steiner(mass, centre()); }
 
 MassProperties& MassProperties::operator+=(const MassProperties& o) {
-  mass += o.mass, moment += o.moment, about_origin += o.about_origin;
+  mass += o.mass; moment += o.moment; about_origin += o.about_origin;
   return *this;
 }
 
 void MassProperties::add(double m, const Vec3& c, const Mat3& J) {
-  mass += m, moment += m * c, about_origin += J + steiner(m, c);
+  mass += m; moment += m * c; about_origin += J + steiner(m, c);
 }
 
 MassProperties section_mass(const model::Model& m, const model::Section& s, const Vec3& left_end) {
@@ -41,22 +41,22 @@ MassProperties section_mass(const model::Model& m, const model::Section& s, cons
   double mass = 0, first = 0, second = 0, about_y = 0, about_z = 0, polar = 0, product = 0;
   if (s.constants) {
     const auto& c = *s.constants;
-    mass = c.rhoA * L, first = mass * L / 2, second = mass * L * L / 3;
-    about_y = about_z = c.rhoI * L, polar = c.rhoIp * L;
+    mass = c.rhoA * L; first = mass * L / 2; second = mass * L * L / 3;
+    about_y = about_z = c.rhoI * L; polar = c.rhoIp * L;
   } else if (s.general) {
     const auto& g = *s.general;
     const double c = std::cos(g.angle), n = std::sin(g.angle);   // about_* refer to global y, z
-    mass = rho * g.A * L, first = mass * L / 2, second = mass * L * L / 3;
-    about_y = rho * L * (g.Iy * c * c + g.Iz * n * n), about_z = rho * L * (g.Iy * n * n + g.Iz * c * c);
-    polar = rho * L * (g.Iy + g.Iz), product = rho * L * (g.Iz - g.Iy) * c * n;
+    mass = rho * g.A * L; first = mass * L / 2; second = mass * L * L / 3;
+    about_y = rho * L * (g.Iy * c * c + g.Iz * n * n); about_z = rho * L * (g.Iy * n * n + g.Iz * c * c);
+    polar = rho * L * (g.Iy + g.Iz); product = rho * L * (g.Iz - g.Iy) * c * n;
   } else if (s.od_l > 0 || s.od_r > 0) {
     const Frustum out(L, s.od_l, s.od_r), in(L, s.id_l, s.id_r);
-    mass = rho * (out.V - in.V), first = rho * (out.S - in.S), second = rho * (out.I - in.I);
-    polar = rho * (out.J - in.J), about_y = about_z = polar / 2;
+    mass = rho * (out.V - in.V); first = rho * (out.S - in.S); second = rho * (out.I - in.I);
+    polar = rho * (out.J - in.J); about_y = about_z = polar / 2;
   }
   if (!s.rotary_inertia && !s.rigid) about_y = about_z = product = 0;
   const double added = s.added_mass_per_length * L;
-  mass += added, first += added * L / 2, second += added * L * L / 3;
+  mass += added; first += added * L / 2; second += added * L * L / 3;
   MassProperties p;
   if (!(mass > 0)) return p;
   const double x = first / mass, own = second - mass * x * x;   // about the section's own centre

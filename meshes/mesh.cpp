@@ -192,11 +192,11 @@ class LineMesher {
     for (const Attached* x : attached_) {
       if (x->where->s < a - tolerance_ || x->where->s > b + tolerance_) continue;
       const double s = std::clamp(x->where->s, a, b);
-      if (x->held && !held) where = s, held = true;
-      if (!held && x->weight > heaviest) where = s, heaviest = x->weight;
+      if (x->held && !held) { where = s; held = true; }
+      if (!held && x->weight > heaviest) { where = s; heaviest = x->weight; }
     }
     const Index node = add_node(where);
-    if (pending_ >= 0) mesh_.elements[at(pending_)].right = {node, a - where}, pending_ = -1;
+    if (pending_ >= 0) { mesh_.elements[at(pending_)].right = {node, a - where}; pending_ = -1; }
     for (std::size_t k = first; k < last; ++k)
       mesh_.rigid_parts.push_back({index_, k, node, ends_[k] - where, ends_[k + 1] - where});
     stretches_.push_back({a, b, node, where});
@@ -225,8 +225,8 @@ class LineMesher {
         Element e;
         e.line = index_;
         e.section = k;
-        e.s1 = point(i), e.s2 = point(i + 1);
-        e.xi1 = (e.s1 - a) / s.length, e.xi2 = e.s2 == b ? 1.0 : (e.s2 - a) / s.length;
+        e.s1 = point(i); e.s2 = point(i + 1);
+        e.xi1 = (e.s1 - a) / s.length; e.xi2 = e.s2 == b ? 1.0 : (e.s2 - a) / s.length;
         e.left = end_;
         mesh_.elements.push_back(e);
         if (e.s2 == b && rigid_next) {
@@ -277,11 +277,11 @@ class LineMesher {
     const auto begin = mesh_.elements.begin() + line_.first_element, end = begin + line_.elements;
     const auto right = std::lower_bound(begin, end, x.s - tolerance_, [](const Element& e, double v) { return e.s1 < v; });
     if (right != end && right->s1 <= x.s + tolerance_) {
-      x.at = right->left, x.element = right - mesh_.elements.begin();
+      x.at = right->left; x.element = right - mesh_.elements.begin();
       return;
     }
     if (right != begin && std::abs((right - 1)->s2 - x.s) <= tolerance_) {
-      x.at = (right - 1)->right, x.element = right - 1 - mesh_.elements.begin();
+      x.at = (right - 1)->right; x.element = right - 1 - mesh_.elements.begin();
       return;
     }
     for (const Stretch& r : stretches_)

@@ -76,7 +76,7 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
       out.radius.push_back(radius_at(shaft, line.length, s.s));
       if (!bent) continue;
       const auto [before, after] = bends(s.s);
-      out.bend_before.push_back(before), out.bend_after.push_back(after);
+      out.bend_before.push_back(before); out.bend_after.push_back(after);
     }
     // Elements and rigid parts in order of their left ends.
     struct Piece { double s; ShaftPiece shape; };

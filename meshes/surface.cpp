@@ -62,9 +62,9 @@ Mat3 section_axes(const Mat3& triad, const Vec3& d, double phi) {
 Spot make_spot(const Scene& scene, Index line, const Place& a, const Place& b, double xi, Index bend_a, Index bend_b) {
   const Mat3& triad = scene.lines[static_cast<std::size_t>(line)].triad;
   Spot s;
-  s.line = line, s.a = a, s.b = b, s.xi = xi;
+  s.line = line; s.a = a; s.b = b; s.xi = xi;
   s.bent = bend_a >= 0 && bend_b >= 0;
-  if (s.bent) s.bend_a = scene.bends[static_cast<std::size_t>(bend_a)], s.bend_b = scene.bends[static_cast<std::size_t>(bend_b)];
+  if (s.bent) { s.bend_a = scene.bends[static_cast<std::size_t>(bend_a)]; s.bend_b = scene.bends[static_cast<std::size_t>(bend_b)]; }
   const Vec3 ta = triad * s.bend_a.col(0), tb = triad * s.bend_b.col(0);
   const Vec3 ra = scene.nodes[static_cast<std::size_t>(a.node)] + a.offset * ta;
   const Vec3 rb = scene.nodes[static_cast<std::size_t>(b.node)] + b.offset * tb;
@@ -82,12 +82,12 @@ Frame frame_of(std::span<const Pose> nodes, const Mat3& triad, const Spot& s) {
   Pose a = nodes[static_cast<std::size_t>(s.a.node)], b = nodes[static_cast<std::size_t>(s.b.node)];
   Mat3 ta = section_axes(triad, a.d, a.phi) * s.bend_a;
   const Mat3 tb = section_axes(triad, b.d, b.phi) * s.bend_b;
-  a.d = ta.col(0), b.d = tb.col(0);
-  a.r += s.a.offset * a.d, b.r += s.b.offset * b.d;
+  a.d = ta.col(0); b.d = tb.col(0);
+  a.r += s.a.offset * a.d; b.r += s.b.offset * b.d;
   if (s.xi <= 0.0) return {a.r, ta, a.phi};
   const Pose p = interpolate(a, b, s.length, s.xi);
   const Vec3 y = (1 - s.xi) * ta.col(1) + s.xi * tb.col(1);
-  ta.col(0) = p.d, ta.col(1) = unit(y - p.d.dot(y) * p.d), ta.col(2) = p.d.cross(ta.col(1));
+  ta.col(0) = p.d; ta.col(1) = unit(y - p.d.dot(y) * p.d); ta.col(2) = p.d.cross(ta.col(1));
   return {p.r, ta, p.phi};
 }
 
@@ -95,7 +95,7 @@ Skin::Skin(const Scene& scene, int points_around) : around_(points_around) {
   if (points_around < 3) throw std::invalid_argument("Skin: at least 3 points around");
   for (Index k = 0; k < around_; ++k) {
     const double theta = two_pi * static_cast<double>(k) / static_cast<double>(around_);
-    cos_.push_back(std::cos(theta)), sin_.push_back(std::sin(theta));
+    cos_.push_back(std::cos(theta)); sin_.push_back(std::sin(theta));
   }
   int part = 0;
   for (std::size_t i = 0; i < scene.lines.size(); ++i) {
@@ -142,7 +142,7 @@ void Skin::add_shaft(const Scene& scene, Index line) {
 
 void Skin::add_disk(const Scene& scene, Index line, const DiskShape& disk, int part) {
   Place left = disk.at, right = disk.at;
-  left.offset -= disk.width / 2, right.offset += disk.width / 2;
+  left.offset -= disk.width / 2; right.offset += disk.width / 2;
   const std::size_t a = add_station(make_spot(scene, line, left, left, 0.0, disk.bend, disk.bend)), b = add_station(make_spot(scene, line, right, right, 0.0, disk.bend, disk.bend));
   const double sa = left.offset, sb = right.offset;
   revolve({{a, sa, disk.outer}, {b, sb, disk.outer}, {b, sb, disk.inner}, {a, sa, disk.inner}}, part);
@@ -172,7 +172,7 @@ void Skin::revolve(const std::vector<Vertex>& profile, int part) {
       stripe_.push_back(k < stripe_width ? 1 : 0);
       part_.push_back(part);
     }
-    last_axial = n_axial, last_radial = n_radial;
+    last_axial = n_axial; last_radial = n_radial;
     last_vertex = i + 1;
   }
 }
@@ -192,7 +192,7 @@ void Skin::update(std::span<const Pose> nodes, std::vector<float>& points, std::
     for (std::size_t k = 0; k < static_cast<std::size_t>(around_); ++k) {
       const Vec3 radial = cos_[k] * at.axes.col(1) + sin_[k] * at.axes.col(2);
       const Vec3 x = at.r + ring.radius * radial, m = ring.n_axial * at.axes.col(0) + ring.n_radial * radial;
-      for (int c = 0; c < 3; ++c) *p++ = static_cast<float>(x[c]), *n++ = static_cast<float>(m[c]);
+      for (int c = 0; c < 3; ++c) { *p++ = static_cast<float>(x[c]); *n++ = static_cast<float>(m[c]); }
     }
   }
 }

@@ -40,13 +40,13 @@ struct Mesh {
     }
     const double theta = g.z1 * n.phi;
     dtheta = g.z1 * n.dphi;
-    k = g.k0, k1 = k2 = e1 = e2 = 0.0;
+    k = g.k0; k1 = k2 = e1 = e2 = 0.0;
     for (int h = 0; h < g.harmonics && !averaged; ++h) {
       const double w = h + 1;
       const auto &a = g.stiffness[static_cast<std::size_t>(h)], &e = g.error[static_cast<std::size_t>(h)];
       const double ca = std::cos(w * theta + a.phase), sa = std::sin(w * theta + a.phase), ce = std::cos(w * theta + e.phase), se = std::sin(w * theta + e.phase);
-      k += g.k0 * a.amplitude * ca, k1 -= g.k0 * a.amplitude * w * sa, k2 -= g.k0 * a.amplitude * w * w * ca;
-      delta += e.amplitude * ce, e1 -= e.amplitude * w * se, e2 -= e.amplitude * w * w * ce;
+      k += g.k0 * a.amplitude * ca; k1 -= g.k0 * a.amplitude * w * sa; k2 -= g.k0 * a.amplitude * w * w * ca;
+      delta += e.amplitude * ce; e1 -= e.amplitude * w * se; e2 -= e.amplitude * w * w * ce;
     }
     rate += e1 * dtheta;
   }
@@ -146,11 +146,11 @@ GearMesh make_gear_mesh(const GearGeometry& g, double k0, double c, const std::v
   if (n > GearMesh::max_harmonics) fail("at most 5 harmonics");
   GearMesh m;
   double swing = 0;
-  for (std::size_t i = 0; i < stiffness.size(); ++i) m.stiffness[i] = stiffness[i], swing += std::abs(stiffness[i].amplitude);
+  for (std::size_t i = 0; i < stiffness.size(); ++i) { m.stiffness[i] = stiffness[i]; swing += std::abs(stiffness[i].amplitude); }
   for (std::size_t i = 0; i < error.size(); ++i) m.error[i] = error[i];
   if (swing >= 1.0) fail("the mesh stiffness would become negative: the harmonics add up to 1 or more");
   m.harmonics = static_cast<int>(n);
-  m.k0 = k0, m.c = c, m.z1 = g.z1, m.z2 = g.z2;
+  m.k0 = k0; m.c = c; m.z1 = g.z1; m.z2 = g.z2;
   const double side = g.drive >= 0 ? 1.0 : -1.0, ca = std::cos(g.pressure_angle), sa = std::sin(g.pressure_angle);
   const double cb = std::cos(g.base_helix), sb = std::sin(g.base_helix);
   const double r1 = g.pitch_radius, r2 = r1 * g.z2 / g.z1;
@@ -158,10 +158,10 @@ GearMesh make_gear_mesh(const GearGeometry& g, double k0, double c, const std::v
   // An internal gear lies outside: its flanks push the pinion inwards.
   const double out = g.z2 > 0 ? 1.0 : -1.0;
   const Vec3 normal = cb * (side * ca * around + out * sa * centre) + side * sb * Vec3::UnitX();
-  m.b.segment<3>(0) = normal, m.b.segment<3>(7) = -normal;
-  m.b.segment<3>(3) = -side * sb * r1 * centre, m.b.segment<3>(10) = -side * sb * r2 * centre;
+  m.b.segment<3>(0) = normal; m.b.segment<3>(7) = -normal;
+  m.b.segment<3>(3) = -side * sb * r1 * centre; m.b.segment<3>(10) = -side * sb * r2 * centre;
   m.rotation = side * cb * r1 * ca / g.z1;
-  m.b[6] = m.rotation * g.z1, m.b[13] = m.rotation * g.z2;
+  m.b[6] = m.rotation * g.z1; m.b[13] = m.rotation * g.z2;
   return m;
 }
 
@@ -177,7 +177,7 @@ BacklashGearMesh make_backlash_gear_mesh(const GearGeometry& g, double k0, doubl
   for (auto& e : opposite) e.amplitude = -e.amplitude;
   m.drive = make_gear_mesh(g, k0, 0.0, stiffness, error);
   m.back = make_gear_mesh(other, k0, 0.0, stiffness, opposite);
-  m.backlash = backlash, m.relaxation = relaxation;
+  m.backlash = backlash; m.relaxation = relaxation;
   return m;
 }
 

@@ -71,7 +71,7 @@ void ShaftCoupling::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>&
   Relative<D> d;
   for (int i = 0; i < 7; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    d.y[k] = D::variable(r.y[k], i), d.v[k] = D::variable(r.v[k], 7 + i);
+    d.y[k] = D::variable(r.y[k], i); d.v[k] = D::variable(r.v[k], 7 + i);
   }
   const Motion<D> m(*this, d);
   for (int a = 0; a < 2; ++a)

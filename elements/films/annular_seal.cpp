@@ -83,7 +83,7 @@ void AnnularSeal::tangent(const LateralMotion& m, Vector<4>& z, LateralTangent& 
   const Mat2 K = cross(v.K, v.k), C = cross(v.C, v.c);
   z << -(K * m.r + C * m.v + v.M * m.a), 0.0, 0.0;
   t.set_zero();
-  t.r.topRows<2>() = -K, t.v.topRows<2>() = -C, t.a.topRows<2>() = -v.M * Mat2::Identity();
+  t.r.topRows<2>() = -K; t.v.topRows<2>() = -C; t.a.topRows<2>() = -v.M * Mat2::Identity();
   t.spin.head<2>() = -(cross(dv.K, dv.k) * m.r + cross(dv.C, dv.c) * m.v + dv.M * m.a);
 }
 

@@ -72,7 +72,7 @@ struct FilmLaw {
     fill(g.F_w, g.T_w, t.v);
     fill(F_r, T_r, t.r);
     const Eigen::RowVector2d cross(0.5 * f.F.y(), -0.5 * f.F.x());   // d(r x F / 2)/dr at fixed F
-    t.r.row(2) -= cross, t.r.row(3) -= cross;
+    t.r.row(2) -= cross; t.r.row(3) -= cross;
     t.a.setZero();
     const auto by_spin = [&](double sign, Vector<4>& out) {
       const Vec2 F = g.F_w * w_spin + sign * g.F_slip;

@@ -76,9 +76,9 @@ bool FiniteJournal::inside(const FilmPoint& p) const {
 }
 
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
-  f.F.setZero(), f.T = 0.0;
+  f.F.setZero(); f.T = 0.0;
   if (!inside(p)) {
-    f.F.setConstant(nan), f.T = nan;
+    f.F.setConstant(nan); f.T = nan;
     return;
   }
   const double c = surface->pad_clearance();
@@ -98,12 +98,12 @@ void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
 
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
   if (!inside(p)) {
-    f.F.setConstant(nan), f.T = nan;
-    t.F_r.setConstant(nan), t.F_w = t.F_r, t.F_slip.setConstant(nan), t.T_r = t.T_w = t.F_slip, t.T_slip = nan;
+    f.F.setConstant(nan); f.T = nan;
+    t.F_r.setConstant(nan); t.F_w = t.F_r; t.F_slip.setConstant(nan); t.T_r = t.T_w = t.F_slip; t.T_slip = nan;
     return;
   }
-  f.F.setZero(), f.T = 0.0;
-  t.F_r.setZero(), t.F_w.setZero(), t.F_slip.setZero(), t.T_r.setZero(), t.T_w.setZero(), t.T_slip = 0.0;
+  f.F.setZero(); f.T = 0.0;
+  t.F_r.setZero(); t.F_w.setZero(); t.F_slip.setZero(); t.T_r.setZero(); t.T_w.setZero(); t.T_slip = 0.0;
   const double c = surface->pad_clearance(), half_lift = 0.5 * surface->lift();
   const double unit = source * viscosity * std::pow(radius / c, 3) * length;
   const double drag = viscosity * std::pow(radius, 3) * length / c;

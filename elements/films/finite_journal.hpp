@@ -68,7 +68,7 @@ struct FiniteJournal {
   double leakage = 10, source = 10;
   /// Sealed ends (squeeze-film dampers with piston rings or O-rings): uniform along the axis, flow round the circumference only. Needs a groove
   /// (feed): without one nothing fixes the level of the pressure.
-  void seal_ends() { leakage = 0, source = 12; }
+  void seal_ends() { leakage = 0; source = 12; }
 
   void evaluate(const FilmPoint& p, FilmForce& f) const;
   void evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;

@@ -20,12 +20,12 @@ struct Balance {
 
   bool at(const Vec2& r) {
     LateralMotion m;
-    m.r = r, m.v.setZero(), m.a.setZero(), m.spin = spin;
+    m.r = r; m.v.setZero(); m.a.setZero(); m.spin = spin;
     Vector<4> z;
     LateralTangent t;
     film(m, z, t);
-    F = z.head<2>(), torque = z[2];
-    F_r = t.r.topRows<2>(), F_v = t.v.topRows<2>();
+    F = z.head<2>(); torque = z[2];
+    F_r = t.r.topRows<2>(); F_v = t.v.topRows<2>();
     return F.allFinite() && F_r.allFinite();
   }
 };
@@ -87,7 +87,7 @@ JournalEquilibrium find_journal_equilibrium(const FilmFunction& film, const Vec2
       while (done < 1.0 && step > 1e-6) {
         const double next = std::min(1.0, done + step);
         Vec2 trial = r;
-        if (newton(b, (1.0 - next) * start + next * load, size, limit, trial)) r = trial, done = next, step *= 1.6;
+        if (newton(b, (1.0 - next) * start + next * load, size, limit, trial)) { r = trial; done = next; step *= 1.6; }
         else step *= 0.4;
       }
       found = done >= 1.0;
@@ -114,7 +114,7 @@ JournalEquilibrium find_journal_equilibrium(const FilmFunction& film, const Vec2
   e.r = r;
   e.eccentricity = r.norm() / clearance;
   if (W > 0.0) e.attitude = turn * std::atan2(load.x() * r.y() - load.y() * r.x(), load.dot(r));
-  e.K = -b.F_r, e.C = -b.F_v, e.torque = b.torque;
+  e.K = -b.F_r; e.C = -b.F_v; e.torque = b.torque;
   return e;
 }
 
@@ -140,7 +140,7 @@ WhirlOnset find_whirl_onset(const FilmFunction& film, const Vec2& load, double m
   };
   double a = low;
   if (excess(a) > 0.0) {
-    out.speed = low, out.whirl = whirl;
+    out.speed = low; out.whirl = whirl;
     return out;
   }
   for (int i = 1; i <= points; ++i) {
@@ -155,7 +155,7 @@ WhirlOnset find_whirl_onset(const FilmFunction& film, const Vec2& load, double m
       (excess(m) > 0.0 ? b : a) = m;
     }
     excess(b);
-    out.speed = b, out.whirl = whirl;
+    out.speed = b; out.whirl = whirl;
     return out;
   }
   out.speed = out.whirl = infinity;

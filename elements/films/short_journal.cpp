@@ -26,7 +26,7 @@ Mat2 axes_of(const Vec2& w, double speed) {
   return A;
 }
 
-void outside(FilmForce& f) { f.F.setConstant(nan), f.T = nan; }
+void outside(FilmForce& f) { f.F.setConstant(nan); f.T = nan; }
 
 }  // namespace
 
@@ -46,7 +46,7 @@ void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) co
   const double c2 = clearance * clearance, u = 1.0 - p.r.squaredNorm() / c2;
   if (!(u > 0.0)) {
     outside(f);
-    t.F_r.setConstant(nan), t.F_w = t.F_r, t.F_slip.setConstant(nan), t.T_r = t.T_w = t.F_slip, t.T_slip = nan;
+    t.F_r.setConstant(nan); t.F_w = t.F_r; t.F_slip.setConstant(nan); t.T_r = t.T_w = t.F_slip; t.T_slip = nan;
     return;
   }
   const double speed = p.w.norm();

@@ -34,17 +34,17 @@ struct SqueezeFilm {
   void add_force(const system::Nodes<2>& x, const system::Context&, system::ForceX<6>& f) const {
     FilmForce q;
     film.evaluate(point(x), q);
-    f.template segment<2>(1) -= q.F, f.template segment<2>(4) += q.F;
+    f.template segment<2>(1) -= q.F; f.template segment<2>(4) += q.F;
   }
   void add_tangent(const system::Nodes<2>& x, const system::Context&, system::TangentX<6>& t) const {
     FilmForce q;
     FilmTangent g;
     film.evaluate(point(x), q, g);
     const auto add = [](const Mat2& m, Matrix<6>& out) {
-      out.template block<2, 2>(1, 1) -= m, out.template block<2, 2>(4, 4) -= m;
-      out.template block<2, 2>(1, 4) += m, out.template block<2, 2>(4, 1) += m;
+      out.template block<2, 2>(1, 1) -= m; out.template block<2, 2>(4, 4) -= m;
+      out.template block<2, 2>(1, 4) += m; out.template block<2, 2>(4, 1) += m;
     };
-    add(g.F_r, t.K), add(g.F_w, t.C);
+    add(g.F_r, t.K); add(g.F_w, t.C);
   }
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const {
     const FilmPoint p = point(x);

@@ -27,16 +27,16 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) con
     v.dx -= 2.0 * induction->breakdown * zb * (zb * zb - z * z) / (q * q) / induction->synchronous;
   }
   if (power) {
-    if (x * power->max_torque > power->power) v.T += power->power / x, v.dx -= power->power / (x * x);
+    if (x * power->max_torque > power->power) { v.T += power->power / x; v.dx -= power->power / (x * x); }
     else v.T += power->max_torque;
   }
-  if (dc) v.T += dc->stall * (1.0 - x / dc->no_load_speed), v.dx -= dc->stall / dc->no_load_speed;
+  if (dc) { v.T += dc->stall * (1.0 - x / dc->no_load_speed); v.dx -= dc->stall / dc->no_load_speed; }
   if (governor) {
     const Governor& g = *governor;
     const Start from = g.start ? *g.start : Start{};
     const double integral = settled ? 0.0 : g.target * (t - from.time) - (phi - from.angle - g.phi0);
     const double T = g.kp * (g.target - x) + g.ki * integral;
-    if (std::abs(T) < g.max_torque) v.T += T, v.dx -= g.kp, v.dphi -= g.ki;
+    if (std::abs(T) < g.max_torque) { v.T += T; v.dx -= g.kp; v.dphi -= g.ki; }
     else v.T += std::copysign(g.max_torque, T);
   }
   const double smooth = std::tanh(x / friction_speed);

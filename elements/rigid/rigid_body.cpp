@@ -20,7 +20,7 @@ struct Axes {
   BodyFrame frame;
   BodyVector b2, b3;
   explicit Axes(const NodeState& n) : frame(n), b2(frame, 1.0, 0.0), b3(frame, 0.0, 1.0) {
-    b2.add_rates(frame), b3.add_rates(frame);
+    b2.add_rates(frame); b3.add_rates(frame);
   }
 };
 
@@ -50,7 +50,7 @@ RigidBody::RigidBody(double mass, const Vec3& offset, const Mat3& J) {
   S = mass * offset.tail<2>();
   G = mass * offset * offset.transpose() - J;
   G(0, 0) = 0.0;
-  G(1, 1) += disk.Jt, G(2, 2) += disk.Jt;
+  G(1, 1) += disk.Jt; G(2, 2) += disk.Jt;
 }
 
 void RigidBody::add_force(const Nodes<1>& x, const Context& c, ForceX<7>& f) const {
@@ -74,7 +74,7 @@ void RigidBody::add_tangent(const Nodes<1>& x, const Context& c, TangentX<7>& t)
   // d(y_k)/d(.) for the three kinds: G (B_2, B_3) and its analogues with 2B' and B''; d itself has gradient (1, 0)
   const auto add = [&](Matrix<7>& m, const Mat34& X2, const Mat34& X3, bool acceleration) {
     Mat34 z1 = G(0, 1) * X2 + G(0, 2) * X3, z2 = G(1, 1) * X2 + G(1, 2) * X3, z3 = G(1, 2) * X2 + G(2, 2) * X3;
-    if (acceleration) z2.diagonal().array() += G(0, 1), z3.diagonal().array() += G(0, 2);
+    if (acceleration) { z2.diagonal().array() += G(0, 1); z3.diagonal().array() += G(0, 2); }
     m.topRightCorner<3, 4>() += S[0] * X2 + S[1] * X3;
     m.block<3, 4>(3, 3) += z1;
     m.bottomRightCorner<4, 4>() += a.b2.B.transpose() * z2 + a.b3.B.transpose() * z3;

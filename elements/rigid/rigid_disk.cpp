@@ -21,7 +21,7 @@ void RigidDisk::add_tangent(const Nodes<1>& x, const Context&, TangentX<7>& t) c
   const double mz = mass * offset, Jd = Jt + mz * offset;
   for (int i = 0; i < 3; ++i) {
     t.M(i, i) += mass;
-    t.M(i, 3 + i) += mz, t.M(3 + i, i) += mz;
+    t.M(i, 3 + i) += mz; t.M(3 + i, i) += mz;
     t.M(3 + i, 3 + i) += Jd;
   }
   t.M.block<3, 3>(3, 3) += (Jp * s.w) * s.w.transpose();

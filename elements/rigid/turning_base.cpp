@@ -21,7 +21,7 @@ void AbsoluteNode::derive(const system::NodeState& n, const TurningBase::Motion&
   const Vec3 d = n.d(), e = n.e(), w = n.spin_form();
   const double D = 2.0 + e.dot(n.t);
   const Mat3 O = skew(b.omega), S = O * O + skew(b.alpha), W = (skew(e) - w * e.transpose()) / D;
-  rate_position.setZero(), accel_rate.setZero(), accel_position.setZero();
+  rate_position.setZero(); accel_rate.setZero(); accel_position.setZero();
   for (int k : {0, 3}) {
     rate_position.block<3, 3>(k, k) = O;
     accel_rate.block<3, 3>(k, k) = 2.0 * O;

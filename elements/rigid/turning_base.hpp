@@ -62,7 +62,7 @@ struct OnTurningBase {
     const TurningBase::Motion b = base->at(c.time);
     std::array<system::NodeState, n_nodes> states;
     system::Nodes<n_nodes> absolute;
-    for (int i = 0; i < n_nodes; ++i) states[i] = AbsoluteNode(*x[i], b, c.load, reference[i]).state, absolute[i] = &states[i];
+    for (int i = 0; i < n_nodes; ++i) { states[i] = AbsoluteNode(*x[i], b, c.load, reference[i]).state; absolute[i] = &states[i]; }
     system::ForceX<n_nodes * width> relative = system::ForceX<n_nodes * width>::Zero();
     kernel.add_force(x, c, relative);
     kernel.add_force(absolute, c, f);
@@ -75,12 +75,12 @@ struct OnTurningBase {
     std::array<system::NodeState, n_nodes> states;
     system::Nodes<n_nodes> absolute;
     system::TangentX<n_nodes * W> a, r;
-    a.set_zero(), r.set_zero();
+    a.set_zero(); r.set_zero();
     Matrix<n_nodes * W> rate_position = Matrix<n_nodes * W>::Zero(), accel_rate = rate_position, accel_position = rate_position;
     for (int i = 0; i < n_nodes; ++i) {
       AbsoluteNode n(*x[i], b, c.load, reference[i]);
       n.derive(*x[i], b);
-      states[i] = n.state, absolute[i] = &states[i];
+      states[i] = n.state; absolute[i] = &states[i];
       rate_position.template block<W, W>(W * i, W * i) = n.rate_position.template topLeftCorner<W, W>();
       accel_rate.template block<W, W>(W * i, W * i) = n.accel_rate.template topLeftCorner<W, W>();
       accel_position.template block<W, W>(W * i, W * i) = n.accel_position.template topLeftCorner<W, W>();

@@ -34,7 +34,7 @@ double BallContact::load(double x, double rho, double t) const {
 
 bool RollerContact::evaluate(double, double rho, double t, Local& l) const {
   bool touch = false;
-  l.V = 0, l.g.setZero(), l.H.setZero();
+  l.V = 0; l.g.setZero(); l.H.setZero();
   const double k = K / slices;
   for (int i = 0; i < slices; ++i) {
     const double s = length * ((i + 0.5) / slices - 0.5), delta = rho + s * t - clearance;
@@ -42,8 +42,8 @@ bool RollerContact::evaluate(double, double rho, double t, Local& l) const {
     touch = true;
     const double dQ = 10.0 / 9.0 * k * std::pow(delta, 1.0 / 9.0), Q = 0.9 * dQ * delta;
     l.V += 9.0 / 19.0 * Q * delta;
-    l.g.y() += Q, l.g.z() += s * Q;
-    l.H(1, 1) += dQ, l.H(1, 2) += s * dQ, l.H(2, 2) += s * s * dQ;
+    l.g.y() += Q; l.g.z() += s * Q;
+    l.H(1, 1) += dQ; l.H(1, 2) += s * dQ; l.H(2, 2) += s * s * dQ;
   }
   l.H(2, 1) = l.H(1, 2);
   return touch;
@@ -66,7 +66,7 @@ Vector<6> RollingBearing<Contact>::deflection(const Nodes<2>& x) const {
 
 template <class Contact>
 void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p, bool with_hessian, int copies) const {
-  p.V = 0, p.g.setZero(), p.H.setZero();
+  p.V = 0; p.g.setZero(); p.H.setZero();
   typename Contact::Local l;
   // One turn of Z steps by the addition theorem: no trigonometry in the loop.
   double c = std::cos(q[5]), s = std::sin(q[5]);
@@ -78,15 +78,15 @@ void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p,
       const double rho_psi = q[2] * c - q[1] * s, t_psi = q[4] * c - q[3] * s;
       p.V += l.V;
       p.g[0] += l.g.x();
-      p.g[1] += l.g.y() * c, p.g[2] += l.g.y() * s;
-      p.g[3] += l.g.z() * c, p.g[4] += l.g.z() * s;
+      p.g[1] += l.g.y() * c; p.g[2] += l.g.y() * s;
+      p.g[3] += l.g.z() * c; p.g[4] += l.g.z() * s;
       p.g[5] += l.g.y() * rho_psi + l.g.z() * t_psi;
       if (with_hessian) {
         Matrix<3, 6> J;
         J << 1, 0, 0, 0, 0, 0, 0, c, s, 0, 0, rho_psi, 0, 0, 0, c, s, t_psi;
         p.H.noalias() += J.transpose() * l.H * J;
         const double cross[4] = {-s * l.g.y(), c * l.g.y(), -s * l.g.z(), c * l.g.z()};
-        for (int k = 0; k < 4; ++k) p.H(1 + k, 5) += cross[k], p.H(5, 1 + k) += cross[k];
+        for (int k = 0; k < 4; ++k) { p.H(1 + k, 5) += cross[k]; p.H(5, 1 + k) += cross[k]; }
         p.H(5, 5) -= l.g.y() * rho + l.g.z() * t;
       }
     }
@@ -94,7 +94,7 @@ void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p,
     s = s * c1 + c * s1;
     c = next;
   }
-  if (copies > 1) p.V /= copies, p.g /= copies, p.H /= copies;
+  if (copies > 1) { p.V /= copies; p.g /= copies; p.H /= copies; }
 }
 
 template <class Contact>
@@ -103,7 +103,7 @@ void RollingBearing<Contact>::evaluate(const Nodes<2>& x, bool averaged, Rolling
   if (!averaged) return potential(q, p, with_hessian, 1);
   q[5] = 0.0;
   potential(q, p, with_hessian, (smeared + elements - 1) / elements);
-  p.g[5] = 0.0, p.H.row(5).setZero(), p.H.col(5).setZero();
+  p.g[5] = 0.0; p.H.row(5).setZero(); p.H.col(5).setZero();
 }
 
 template <class Contact>
@@ -130,9 +130,9 @@ void RollingBearing<Contact>::add_force(const Nodes<2>& x, const Context& contex
   RollingPotential p;
   evaluate(x, context.averaged, p, false);
   const Vec3 drag = damping_of(c_axial, c_radial).cwiseProduct(x[0]->du - x[1]->du);
-  f.template segment<3>(0) += p.g.template head<3>() + drag, f.template segment<3>(7) -= p.g.template head<3>() + drag;
-  f.template segment<2>(4) += p.g.template segment<2>(3), f.template segment<2>(11) -= p.g.template segment<2>(3);
-  f[6] += cage[0] * p.g[5], f[13] += cage[1] * p.g[5];
+  f.template segment<3>(0) += p.g.template head<3>() + drag; f.template segment<3>(7) -= p.g.template head<3>() + drag;
+  f.template segment<2>(4) += p.g.template segment<2>(3); f.template segment<2>(11) -= p.g.template segment<2>(3);
+  f[6] += cage[0] * p.g[5]; f[13] += cage[1] * p.g[5];
 }
 
 template <class Contact>
@@ -145,7 +145,7 @@ void RollingBearing<Contact>::add_tangent(const Nodes<2>& x, const Context& cont
       for (int m = 0; m < 6; ++m)
         for (int n = 0; n < 6; ++n) t.K(7 * a + at[m], 7 * b + at[n]) += sign[a][m] * sign[b][n] * p.H(m, n);
   const Vec3 c = damping_of(c_axial, c_radial);
-  for (int k = 0; k < 3; ++k) t.C(k, k) += c[k], t.C(7 + k, 7 + k) += c[k], t.C(k, 7 + k) -= c[k], t.C(7 + k, k) -= c[k];
+  for (int k = 0; k < 3; ++k) { t.C(k, k) += c[k]; t.C(7 + k, 7 + k) += c[k]; t.C(k, 7 + k) -= c[k]; t.C(7 + k, k) -= c[k]; }
 }
 
 template <class Contact>
@@ -227,7 +227,7 @@ RollerBearing make_roller_bearing(const RollerGeometry& g) {
   RollerBearing b;
   b.elements = g.rollers;
   b.cage = {0.5 * (1.0 - lambda), 0.5 * (1.0 + lambda)};
-  b.contact.length = g.roller_length, b.contact.clearance = g.radial_clearance;
+  b.contact.length = g.roller_length; b.contact.clearance = g.radial_clearance;
   b.contact.K = g.stiffness;
   if (b.contact.K == 0.0) {
     const double k = hertz_line_stiffness(g.roller_length);

@@ -47,7 +47,7 @@ struct Motion {
     const T s = n.dphi - wd, sdot = n.ddphi - w.dot(n.ddd) + wd * ed / D;
     omega = d.cross(n.dd) + s * d;
     alpha = d.cross(n.ddd) + sdot * d + s * n.dd;
-    cphi = cos(n.phi), sphi = sin(n.phi);
+    cphi = cos(n.phi); sphi = sin(n.phi);
   }
   /// A vector fixed in the node, given by its components in the node's chart at rest.
   V3<T> turn(const Vec3& c) const {
@@ -79,7 +79,7 @@ struct Planes {
       EI = 0.5 * L * (mean - k12);
       // a cone without shear gives a little more or less than one
       const double stiff = std::min((mean + k12) / (3.0 * (mean - k12)), 1.0);
-      f = 6.0 / L * stiff, phi = 1.0 - stiff, soft = phi / stiff * L * L / (12.0 * EI);
+      f = 6.0 / L * stiff; phi = 1.0 - stiff; soft = phi / stiff * L * L / (12.0 * EI);
     };
     plane(c.ky_def11, c.ky_def12, c.ky_def22, EIa, fa, phia, softa);
     plane(c.kz_def11, c.kz_def12, c.kz_def22, EIb, fb, phib, softb);
@@ -98,13 +98,13 @@ struct Shape {
   Shape(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1, const Motion<T>& m2) {
     using std::atan2;
     using std::sqrt;
-    ro[0] = m1.turn(b.arm1), ro[1] = m2.turn(b.arm2);
+    ro[0] = m1.turn(b.arm1); ro[1] = m2.turn(b.arm2);
     const V3<T> du = n2.u - n1.u + (ro[1] - V3<T>(b.offset2)) - (ro[0] - V3<T>(b.offset1));
     const V3<T> lambda = V3<T>(b.chord) + du;
     l = sqrt(lambda.dot(lambda));
     stretch = (2.0 * V3<T>(b.chord).dot(du) + du.dot(du)) / (l + T(b.l0));
     a = (T(1.0) / l) * lambda;
-    D[0] = m1.turn(b.body1.col(0)), D[1] = m2.turn(b.body2.col(0));
+    D[0] = m1.turn(b.body1.col(0)); D[1] = m2.turn(b.body2.col(0));
     const V3<T> B[2] = {m1.turn(b.body1.col(1)), m2.turn(b.body2.col(1))};
     V3<T> Bt[2];
     for (int i = 0; i < 2; ++i) {
@@ -128,7 +128,7 @@ struct Shape {
     for (int i = 0; i < 2; ++i) P[i] = {p[i].dot(y), p[i].dot(z)};
     const Planes plane(b.c);
     const double il = 1.0 / b.c.length;
-    My = il * (P[1].y - P[0].y), Mz = il * (P[1].z - P[0].z);
+    My = il * (P[1].y - P[0].y); Mz = il * (P[1].z - P[0].z);
     const Vec2 rest = b.p01 + b.p02;   // the unstressed shape has no shear
     Ky = plane.fa * (P[0].y + P[1].y - T(rest[0])) + T(6.0 * il * rest[0]);
     Kz = plane.fb * (P[0].z + P[1].z - T(rest[1])) + T(6.0 * il * rest[1]);
@@ -150,7 +150,7 @@ struct Give {
   Give(double soft, const T& N) {
     const bool usual = soft * value(N) > -0.5;
     const T n = usual ? N : T(-0.5 / soft), d = N - n, rho = T(1.0) / (T(1.0) + soft * n), slope = 0.5 * (n * rho * (T(1.0) + rho));
-    g1 = slope + rho * rho * rho * d, g = n * n * rho + (slope + g1) * d;
+    g1 = slope + rho * rho * rho * d; g = n * n * rho + (slope + g1) * d;
   }
 };
 
@@ -234,9 +234,9 @@ struct Inner {
     T lz = th * c0z + on_parabola * c2z + on_s1 * s0z + on_s2 * s2z;
     // and of the area in psi
     const T area = (L * L / 12.0) * torque, half = 0.5 * torque;
-    gy = gy - area * Kz, gz = gz + area * Ky, ly = ly + area * Mz, lz = lz - area * My;
-    my[0] = n.fa * ly - il * gy - half * p.P[1].z, my[1] = n.fa * ly + il * gy + half * p.P[0].z;
-    mz[0] = n.fb * lz - il * gz + half * p.P[1].y, mz[1] = n.fb * lz + il * gz - half * p.P[0].y;
+    gy = gy - area * Kz; gz = gz + area * Ky; ly = ly + area * Mz; lz = lz - area * My;
+    my[0] = n.fa * ly - il * gy - half * p.P[1].z; my[1] = n.fa * ly + il * gy + half * p.P[0].z;
+    mz[0] = n.fb * lz - il * gz + half * p.P[1].y; mz[1] = n.fb * lz + il * gz - half * p.P[0].y;
   }
 };
 
@@ -259,12 +259,12 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   T ky[2], kz[2];   // deformations along y and z
   for (int i = 0; i < 2; ++i) {
     const Vec2& p0 = i == 0 ? b.p01 : b.p02;
-    ky[i] = s.P[i].y - T(p0[0]), kz[i] = s.P[i].z - T(p0[1]);
+    ky[i] = s.P[i].y - T(p0[0]); kz[i] = s.P[i].z - T(p0[1]);
   }
   T my[2] = {c.ky_def11 * ky[0] + c.ky_def12 * ky[1], c.ky_def12 * ky[0] + c.ky_def22 * ky[1]};
   T mz[2] = {c.kz_def11 * kz[0] + c.kz_def12 * kz[1], c.kz_def12 * kz[0] + c.kz_def22 * kz[1]};
   const Inner<T> inner(b, s, ky, kz, N0);
-  for (int i = 0; i < 2; ++i) my[i] += inner.my[i], mz[i] += inner.mz[i];
+  for (int i = 0; i < 2; ++i) { my[i] += inner.my[i]; mz[i] += inner.mz[i]; }
   const T N = inner.axial, NL = c.length * N;
   T twist = inner.torque;
   V3<T> ad[2];
@@ -286,14 +286,14 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
     T ry[2], rz[2];
     for (int i = 0; i < 2; ++i) {
       rate[i] = rate[i] - mean * s.a.cross(s.p[i]);
-      ry[i] = rate[i].dot(s.y), rz[i] = rate[i].dot(s.z);
+      ry[i] = rate[i].dot(s.y); rz[i] = rate[i].dot(s.z);
     }
     const T dy[2] = {c.beta * (c.ky_def11 * ry[0] + c.ky_def12 * ry[1]), c.beta * (c.ky_def12 * ry[0] + c.ky_def22 * ry[1])};
     const T dz[2] = {c.beta * (c.kz_def11 * rz[0] + c.kz_def12 * rz[1]), c.beta * (c.kz_def12 * rz[0] + c.kz_def22 * rz[1])};
     const T psidot = sigma[1] - sigma[0], dt = (c.beta_twist * c.GJ_l) * psidot;
     twist += dt;
     out.dissipated = dt * psidot;
-    for (int i = 0; i < 2; ++i) my[i] += dy[i], mz[i] += dz[i], out.dissipated += dy[i] * ry[i] + dz[i] * rz[i];
+    for (int i = 0; i < 2; ++i) { my[i] += dy[i]; mz[i] += dz[i]; out.dissipated += dy[i] * ry[i] + dz[i] * rz[i]; }
   }
 
   // power of the stresses -> forces on chord rate and spins (see shaft_damping.cpp for the same chain)
@@ -315,7 +315,7 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   // inertia
   V3<T> acc[4], g[4];
   for (int i = 0; i < 2; ++i) {
-    acc[2 * i] = no[i]->ddu + mo[i]->accel(s.ro[i]), acc[2 * i + 1] = mo[i]->accel(s.D[i]);
+    acc[2 * i] = no[i]->ddu + mo[i]->accel(s.ro[i]); acc[2 * i + 1] = mo[i]->accel(s.D[i]);
     if (c.alpha > 0.0) {
       acc[2 * i] = acc[2 * i] + T(c.alpha) * (no[i]->du + mo[i]->omega.cross(s.ro[i]));
       acc[2 * i + 1] = acc[2 * i + 1] + T(c.alpha) * mo[i]->omega.cross(s.D[i]);
@@ -329,7 +329,7 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
     const double J = axis == 0 ? -c.rhoI_l : axis == 1 ? c.rhoIz_l : c.rhoIy_l;
     const V3<T> b1 = m1.turn(b.body1.col(axis)), b2 = m2.turn(b.body2.col(axis));
     V3<T> a1 = m1.accel(b1), a2 = m2.accel(b2);
-    if (c.alpha > 0.0) a1 = a1 + T(c.alpha) * m1.omega.cross(b1), a2 = a2 + T(c.alpha) * m2.omega.cross(b2);
+    if (c.alpha > 0.0) { a1 = a1 + T(c.alpha) * m1.omega.cross(b1); a2 = a2 + T(c.alpha) * m2.omega.cross(b2); }
     out.m[0] = out.m[0] + b1.cross(T(J * 5.0 / 12.0) * a1 + T(J / 12.0) * a2);
     out.m[1] = out.m[1] + b2.cross(T(J / 12.0) * a1 + T(J * 5.0 / 12.0) * a2);
   }
@@ -349,7 +349,7 @@ std::array<T, 14> to_X(const ForceOut<T>& f, const Motion<T>& m1, const Motion<T
     const T along = f.m[i].dot(mo[i]->d);
     const V3<T> fd = f.m[i].cross(mo[i]->d) - along * mo[i]->w;
     T* out = r.data() + 7 * i;
-    out[0] = f.f[i].x, out[1] = f.f[i].y, out[2] = f.f[i].z, out[3] = fd.x, out[4] = fd.y, out[5] = fd.z, out[6] = along;
+    out[0] = f.f[i].x; out[1] = f.f[i].y; out[2] = f.f[i].z; out[3] = fd.x; out[4] = fd.y; out[5] = fd.z; out[6] = along;
   }
   return r;
 }
@@ -375,11 +375,11 @@ GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chor
       body2(chart2.transpose() * t2), arm1(chart1.transpose() * o1), arm2(chart2.transpose() * o2), l0(chord_.norm()) {
   NodeState rest1, rest2;
   for (NodeState* r : {&rest1, &rest2}) r->u = r->du = r->ddu = r->t = r->dd = r->ddd = Vec3::Zero();
-  rest1.chart = &chart1, rest2.chart = &chart2;
+  rest1.chart = &chart1; rest2.chart = &chart2;
   const NodeT<double> n1(rest1), n2(rest2);
   const Motion<double> m1(n1), m2(n2);
   const Shape<double> s(*this, n1, n2, m1, m2);
-  p01 = Vec2(s.P[0].y, s.P[0].z), p02 = Vec2(s.P[1].y, s.P[1].z);
+  p01 = Vec2(s.P[0].y, s.P[0].z); p02 = Vec2(s.P[1].y, s.P[1].z);
   psi0 = Shape<double>(*this, n1, n2, m1, m2).psi;   // with the area of the unstressed shape
   if (p01.squaredNorm() + p02.squaredNorm() > 1e-20) psi_r = psi0;
 }
@@ -393,13 +393,13 @@ void GeneralBeam::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) co
 
 void GeneralBeam::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& out) const {
   out.K += differentiate(*this, x, [](NodeT<D14>& n, const NodeState& s, int k) {
-    n.u = V3<D14>::variable(s.u, k), n.t = V3<D14>::variable(s.t, k + 3), n.phi = D14::variable(s.phi, k + 6);
+    n.u = V3<D14>::variable(s.u, k); n.t = V3<D14>::variable(s.t, k + 3); n.phi = D14::variable(s.phi, k + 6);
   });
   out.C += differentiate(*this, x, [](NodeT<D14>& n, const NodeState& s, int k) {
-    n.du = V3<D14>::variable(s.du, k), n.dd = V3<D14>::variable(s.dd, k + 3), n.dphi = D14::variable(s.dphi, k + 6);
+    n.du = V3<D14>::variable(s.du, k); n.dd = V3<D14>::variable(s.dd, k + 3); n.dphi = D14::variable(s.dphi, k + 6);
   });
   out.M += differentiate(*this, x, [](NodeT<D14>& n, const NodeState& s, int k) {
-    n.ddu = V3<D14>::variable(s.ddu, k), n.ddd = V3<D14>::variable(s.ddd, k + 3), n.ddphi = D14::variable(s.ddphi, k + 6);
+    n.ddu = V3<D14>::variable(s.ddu, k); n.ddd = V3<D14>::variable(s.ddd, k + 3); n.ddphi = D14::variable(s.ddphi, k + 6);
   });
 }
 

@@ -36,12 +36,12 @@ struct Strain {
     stretch = (2.0 * L * b.e0.dot(du) + du.squaredNorm()) / (l + L);
     const Vec3 alpha = (du - stretch * b.e0) / l;   // a - e0
     a = b.e0 + alpha;
-    d1 = x1.d(), d2 = x2.d();
+    d1 = x1.d(); d2 = x2.d();
     const Vec3 shift = x1.e() - b.e0 - alpha;       // e - e0 is exactly zero in the line's own chart
-    delta1 = x1.t + shift, delta2 = x2.t + shift;
-    n1 = 0.5 * delta1.squaredNorm(), n2 = 0.5 * delta2.squaredNorm(), m = delta1.dot(delta2);
+    delta1 = x1.t + shift; delta2 = x2.t + shift;
+    n1 = 0.5 * delta1.squaredNorm(); n2 = 0.5 * delta2.squaredNorm(); m = delta1.dot(delta2);
     tau = a.dot(delta1.cross(delta2));
-    r1 = AngleRatio(n1), r2 = AngleRatio(n2);
+    r1 = AngleRatio(n1); r2 = AngleRatio(n2);
     S = r1.G * r2.G * (m - n1 * n2);
   }
   double bow(const ShaftElementConstants& c) const { return 0.5 * (c.b11 * r1.F + 2.0 * c.b12 * S + c.b22 * r2.F); }
@@ -58,7 +58,7 @@ struct Form {
     h11 = c11 * D1 + c12 * (s.r1.G2 * G2 * P - 2.0 * D1 * G2 * s.n2);
     h22 = c22 * D2 + c12 * (G1 * s.r2.G2 * P - 2.0 * G1 * D2 * s.n1);
     h12 = c12 * (D1 * D2 * P - D1 * G2 * s.n1 - G1 * D2 * s.n2 - G1 * G2);
-    h1m = c12 * D1 * G2, h2m = c12 * G1 * D2;
+    h1m = c12 * D1 * G2; h2m = c12 * G1 * D2;
   }
 };
 
@@ -68,7 +68,7 @@ struct Give {
   template <class Beam>
   Give(const Beam& b, double N) {
     const double n = std::max(N, b.soft_limit), d = N - n, rho = 1.0 / (1.0 + b.soft_shear * n), slope = 0.5 * n * rho * (1.0 + rho);
-    g2 = rho * rho * rho, g1 = slope + g2 * d, g = n * n * rho + (slope + g1) * d;
+    g2 = rho * rho * rho; g1 = slope + g2 * d; g = n * n * rho + (slope + g1) * d;
   }
 };
 
@@ -104,7 +104,7 @@ struct Twist {
   Twist(const Vec3& e, const Strain& s, double tau_c) : o1(e, s.d1, s.a), o2(e, s.a, s.d2) {
     const double G = s.r1.G * s.r2.G;
     geometric = -(o1.value + o2.value) + tau_c * G * s.tau;
-    tau_1 = s.delta2.cross(s.a), tau_2 = s.a.cross(s.delta1);
+    tau_1 = s.delta2.cross(s.a); tau_2 = s.a.cross(s.delta1);
     tau_a = s.a.cross(s.delta2 - s.delta1) + s.delta1.cross(s.delta2);
     const double c1 = tau_c * s.r1.G1 * s.r2.G * s.tau, c2 = tau_c * s.r1.G * s.r2.G1 * s.tau;
     g.head<3>() = -o1.grad_w() - o2.grad_v() + tau_c * G * tau_a - c1 * s.delta1 - c2 * s.delta2;
@@ -121,7 +121,7 @@ void chain_gradient(const Strain& s, double Vl, Vector9& g) {
 
 /// m += s [v]
 inline void add_skew(Mat3& m, double f, const Vec3& v) {
-  m(0, 1) -= f * v.z(), m(0, 2) += f * v.y(), m(1, 0) += f * v.z(), m(1, 2) -= f * v.x(), m(2, 0) -= f * v.y(), m(2, 1) += f * v.x();
+  m(0, 1) -= f * v.z(); m(0, 2) += f * v.y(); m(1, 0) += f * v.z(); m(1, 2) -= f * v.x(); m(2, 0) -= f * v.y(); m(2, 1) += f * v.x();
 }
 
 /// Start of (x1, d1, x2, d2) in the element's 14.
@@ -152,11 +152,11 @@ void ShaftBeam<Offsets>::add_forces(std::span<const ShaftBeam> elements, const s
   const ShaftBeam& k = elements[0];
   const double* const start = reinterpret_cast<const double*>(&k);
   lanes::ShaftElements b;
-  b.element = start, b.stride = sizeof(ShaftBeam) / sizeof(double), b.count = elements.size();
-  b.scalars = &k.c.length - start, b.M4 = k.c.M4.data() - start, b.G4c = k.G4c.data() - start, b.polar = k.c.polar.data() - start;
-  b.e0 = k.e0.data() - start, b.psi0 = &k.psi0 - start, b.preload = &k.preload - start, b.soft = &k.soft_torque - start;
+  b.element = start; b.stride = sizeof(ShaftBeam) / sizeof(double); b.count = elements.size();
+  b.scalars = &k.c.length - start; b.M4 = k.c.M4.data() - start; b.G4c = k.G4c.data() - start; b.polar = k.c.polar.data() - start;
+  b.e0 = k.e0.data() - start; b.psi0 = &k.psi0 - start; b.preload = &k.preload - start; b.soft = &k.soft_torque - start;
   b.nodes = nodes->data();
-  b.state = states[0].u.data(), b.state_stride = sizeof(NodeState) / sizeof(double), b.chart = offsetof(NodeState, chart) / sizeof(double);
+  b.state = states[0].u.data(); b.state_stride = sizeof(NodeState) / sizeof(double); b.chart = offsetof(NodeState, chart) / sizeof(double);
   b.force = force->data();
   static const lanes::Kernels& kernels = lanes::kernels();
   (Offsets ? kernels.add_force_offset : kernels.add_force)(b);
@@ -218,18 +218,18 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   const Vec3 e = x1.e();
   Mat3 H11 = start(wd1, td1, b1, wd1, td1, b1), H12 = start(wd1, td1, b1, wd2, td2, b2), H22 = start(wd2, td2, b2, wd2, td2, b2);
   Mat3 H1a = start(wd1, td1, b1, wa, ta, ba), H2a = start(wd2, td2, b2, wa, ta, ba), Haa = start(wa, ta, ba, wa, ta, ba);
-  add_outer(H11, y11, p1), add_outer(H11, y1m, p2), add_outer(H11, y1t, t.tau_1);
-  add_outer(H12, y12, p2), add_outer(H12, y1m, p1), add_outer(H12, y1t, t.tau_2);
-  add_outer(H22, y22, p2), add_outer(H22, y2m, p1), add_outer(H22, y2t, t.tau_2);
-  add_outer(H1a, -y11 - y1m, p1), add_outer(H1a, -y12 - y1m, p2), add_outer(H1a, y1t, t.tau_a);
-  add_outer(H2a, -y21 - y2m, p1), add_outer(H2a, -y22 - y2m, p2), add_outer(H2a, y2t, t.tau_a);
-  add_outer(Haa, -ya1 - yam, p1), add_outer(Haa, -ya2 - yam, p2), add_outer(Haa, yat, t.tau_a);
-  t.o1.add_vv(-T, H11), t.o1.add_ww(-T, Haa), t.o1.add_vw(-T, e, H1a);
-  t.o2.add_ww(-T, H22), t.o2.add_vv(-T, Haa), t.o2.add_wv(-T, e, H2a);
-  H11.diagonal().array() += w1, H22.diagonal().array() += w2, H12.diagonal().array() += wm;
+  add_outer(H11, y11, p1); add_outer(H11, y1m, p2); add_outer(H11, y1t, t.tau_1);
+  add_outer(H12, y12, p2); add_outer(H12, y1m, p1); add_outer(H12, y1t, t.tau_2);
+  add_outer(H22, y22, p2); add_outer(H22, y2m, p1); add_outer(H22, y2t, t.tau_2);
+  add_outer(H1a, -y11 - y1m, p1); add_outer(H1a, -y12 - y1m, p2); add_outer(H1a, y1t, t.tau_a);
+  add_outer(H2a, -y21 - y2m, p1); add_outer(H2a, -y22 - y2m, p2); add_outer(H2a, y2t, t.tau_a);
+  add_outer(Haa, -ya1 - yam, p1); add_outer(Haa, -ya2 - yam, p2); add_outer(Haa, yat, t.tau_a);
+  t.o1.add_vv(-T, H11); t.o1.add_ww(-T, Haa); t.o1.add_vw(-T, e, H1a);
+  t.o2.add_ww(-T, H22); t.o2.add_vv(-T, Haa); t.o2.add_wv(-T, e, H2a);
+  H11.diagonal().array() += w1; H22.diagonal().array() += w2; H12.diagonal().array() += wm;
   Haa.diagonal().array() += w1 + w2 + 2.0 * wm;
-  H1a.diagonal().array() -= w1 + wm, H2a.diagonal().array() -= w2 + wm;
-  add_skew(H1a, wt, s.d2), add_skew(H2a, -wt, s.d1), add_skew(H12, -wt, s.a);
+  H1a.diagonal().array() -= w1 + wm; H2a.diagonal().array() -= w2 + wm;
+  add_skew(H1a, wt, s.d2); add_skew(H2a, -wt, s.d1); add_skew(H12, -wt, s.a);
 
   // from (a, l) to lambda: da = P dlambda, P = (1 - a a^T)/l
   const Vec3 va = ga.head<3>(), Pva = (va - s.a.dot(va) * s.a) / s.l, Pcw = (EA_l / s.l) * (wa - s.a.dot(wa) * s.a);
@@ -239,7 +239,7 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   Mat3 Hll = il2 * Haa;
   Hll.diagonal().array() += tension;
   const Vec3 side = Pcw - il2 * Ha - il * Pva;
-  add_outer(Hll, s.a, side), add_outer(Hll, side + (il2 * aHa + EA_l - tension) * s.a, s.a);
+  add_outer(Hll, s.a, side); add_outer(Hll, side + (il2 * aHa + EA_l - tension) * s.a, s.a);
   // Hl_i = P Haa_i + EA a gw_i^T, i = 1, 2
   auto lambda_d = [&](const Mat3& Hda, const Vec3& wd) {
     Mat3 m = il * Hda.transpose();
@@ -256,26 +256,26 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
     H11 += -o1 * (H1 + H1.transpose()) + o1 * o1 * Hll;
     H22 += o2 * (H2 + H2.transpose()) + o2 * o2 * Hll;
     H12 += -o1 * H2 + o2 * H1.transpose() - o1 * o2 * Hll;
-    H1 -= o1 * Hll, H2 += o2 * Hll;
-    tg1 -= o1 * tg.head<3>(), tg2 += o2 * tg.head<3>();
+    H1 -= o1 * Hll; H2 += o2 * Hll;
+    tg1 -= o1 * tg.head<3>(); tg2 += o2 * tg.head<3>();
   }
   auto& K = out.K;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {
       const double ll = Hll(i, j), l1 = H1(i, j), l2 = H2(i, j), m12 = H12(i, j);
-      K(i, j) += ll, K(7 + i, 7 + j) += ll, K(i, 7 + j) -= ll, K(7 + i, j) -= ll;
-      K(i, 3 + j) -= l1, K(7 + i, 3 + j) += l1, K(3 + j, i) -= l1, K(3 + j, 7 + i) += l1;
-      K(i, 10 + j) -= l2, K(7 + i, 10 + j) += l2, K(10 + j, i) -= l2, K(10 + j, 7 + i) += l2;
-      K(3 + i, 3 + j) += H11(i, j), K(10 + i, 10 + j) += H22(i, j), K(3 + i, 10 + j) += m12, K(10 + j, 3 + i) += m12;
+      K(i, j) += ll; K(7 + i, 7 + j) += ll; K(i, 7 + j) -= ll; K(7 + i, j) -= ll;
+      K(i, 3 + j) -= l1; K(7 + i, 3 + j) += l1; K(3 + j, i) -= l1; K(3 + j, 7 + i) += l1;
+      K(i, 10 + j) -= l2; K(7 + i, 10 + j) += l2; K(10 + j, i) -= l2; K(10 + j, 7 + i) += l2;
+      K(3 + i, 3 + j) += H11(i, j); K(10 + i, 10 + j) += H22(i, j); K(3 + i, 10 + j) += m12; K(10 + j, 3 + i) += m12;
     }
   for (int i = 0; i < 3; ++i) {   // torque against phi
     const double l = GJ_l * tg[i], d1 = GJ_l * tg1[i], d2 = GJ_l * tg2[i];
-    K(13, i) -= l, K(i, 13) -= l, K(6, i) += l, K(i, 6) += l;
-    K(13, 7 + i) += l, K(7 + i, 13) += l, K(6, 7 + i) -= l, K(7 + i, 6) -= l;
-    K(13, 3 + i) += d1, K(3 + i, 13) += d1, K(6, 3 + i) -= d1, K(3 + i, 6) -= d1;
-    K(13, 10 + i) += d2, K(10 + i, 13) += d2, K(6, 10 + i) -= d2, K(10 + i, 6) -= d2;
+    K(13, i) -= l; K(i, 13) -= l; K(6, i) += l; K(i, 6) += l;
+    K(13, 7 + i) += l; K(7 + i, 13) += l; K(6, 7 + i) -= l; K(7 + i, 6) -= l;
+    K(13, 3 + i) += d1; K(3 + i, 13) += d1; K(6, 3 + i) -= d1; K(3 + i, 6) -= d1;
+    K(13, 10 + i) += d2; K(10 + i, 13) += d2; K(6, 10 + i) -= d2; K(10 + i, 6) -= d2;
   }
-  K(6, 6) += GJ_l, K(13, 13) += GJ_l, K(6, 13) -= GJ_l, K(13, 6) -= GJ_l;
+  K(6, 6) += GJ_l; K(13, 13) += GJ_l; K(6, 13) -= GJ_l; K(13, 6) -= GJ_l;
 
   // inertia
   const NodeState* n[2] = {&x1, &x2};
@@ -291,8 +291,8 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
       const int q = pos[j];
       v += G4c(k, j) * *vel[j];
       const double m = c.M4(k, j), gx = G4c(k, j) * ms.x(), gy = G4c(k, j) * ms.y(), gz = G4c(k, j) * ms.z();
-      M(r, q) += m, M(r + 1, q + 1) += m, M(r + 2, q + 2) += m;
-      C(r, q + 1) += gz, C(r, q + 2) -= gy, C(r + 1, q) -= gz, C(r + 1, q + 2) += gx, C(r + 2, q) += gy, C(r + 2, q + 1) -= gx;
+      M(r, q) += m; M(r + 1, q + 1) += m; M(r + 2, q + 2) += m;
+      C(r, q + 1) += gz; C(r, q + 2) -= gy; C(r + 1, q) -= gz; C(r + 1, q + 2) += gx; C(r + 2, q) += gy; C(r + 2, q + 1) -= gx;
     }
     // -s a x v through the spins, then through a: s [v] P = s ([v] - (v x a) a^T)/l
     const Vec3 av = 0.5 * s.a.cross(v);
@@ -302,10 +302,10 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 2; ++j) C(r + i, 7 * j + 6) -= av[i];
       for (int j = 0; j < 3; ++j) {
-        C(r + i, 3 + j) += av[i] * sp[0].w[j], C(r + i, 10 + j) += av[i] * sp[1].w[j];
-        K(r + i, 3 + j) -= av[i] * sp[0].s_d[j], K(r + i, 10 + j) -= av[i] * sp[1].s_d[j];
-        K(r + i, j) -= B(i, j), K(r + i, 7 + j) += B(i, j);
-        if constexpr (Offsets) K(r + i, 3 + j) -= c.o1 * B(i, j), K(r + i, 10 + j) += c.o2 * B(i, j);
+        C(r + i, 3 + j) += av[i] * sp[0].w[j]; C(r + i, 10 + j) += av[i] * sp[1].w[j];
+        K(r + i, 3 + j) -= av[i] * sp[0].s_d[j]; K(r + i, 10 + j) -= av[i] * sp[1].s_d[j];
+        K(r + i, j) -= B(i, j); K(r + i, 7 + j) += B(i, j);
+        if constexpr (Offsets) { K(r + i, 3 + j) -= c.o1 * B(i, j); K(r + i, 10 + j) += c.o2 * B(i, j); }
       }
     }
   }
@@ -316,17 +316,17 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
     const Vec3 d = n[i]->d(), dxd = d.cross(n[i]->dd);
     const Mat3 W = sp[i].W();
     Mat3 A = Mat3::Zero(), B = Mat3::Zero();
-    add_skew(A, hi, n[i]->dd), add_skew(B, -hi, d);
+    add_skew(A, hi, n[i]->dd); add_skew(B, -hi, d);
     for (int b = 0; b < 3; ++b)
-      for (int a = 0; a < 3; ++a) K(r + 3 + a, r + 3 + b) += A(a, b) - hdot * W(a, b), C(r + 3 + a, r + 3 + b) += B(a, b);
+      for (int a = 0; a < 3; ++a) { K(r + 3 + a, r + 3 + b) += A(a, b) - hdot * W(a, b); C(r + 3 + a, r + 3 + b) += B(a, b); }
     for (int j = 0; j < 2; ++j) {
       const int q = 7 * j;
       const double p = c.polar(i, j);
       const Vec3 &wi = sp[i].w, &wj = sp[j].w;
       M(r + 6, q + 6) += p;
       for (int b = 0; b < 3; ++b) {
-        M(r + 6, q + 3 + b) -= p * wj[b], M(r + 3 + b, q + 6) -= p * wi[b];
-        C(r + 6, q + 3 + b) += p * sp[j].sdot_dd[b], C(r + 3 + b, q + 6) -= p * dxd[b];
+        M(r + 6, q + 3 + b) -= p * wj[b]; M(r + 3 + b, q + 6) -= p * wi[b];
+        C(r + 6, q + 3 + b) += p * sp[j].sdot_dd[b]; C(r + 3 + b, q + 6) -= p * dxd[b];
         K(r + 6, q + 3 + b) += p * sp[j].sdot_d[b];
         for (int a = 0; a < 3; ++a) {
           M(r + 3 + a, q + 3 + b) += p * wi[a] * wj[b];
@@ -368,7 +368,7 @@ typename ShaftBeam<Offsets>::Internal ShaftBeam<Offsets>::internal(const Nodes<2
   Internal r;
   const Twist t(x1.e(), s, c.tau_c);
   const Inside in(*this, s, preload + c.EA_l * (s.stretch + c.length * s.bow(c)), x2.phi - x1.phi + t.geometric - psi0);
-  r.N = in.N, r.torque = in.torque;
+  r.N = in.N; r.torque = in.torque;
   const Vec3 th1 = s.r1.G * s.a.cross(s.d1), th2 = s.r2.G * s.a.cross(s.d2);   // rotation vectors from chord to normal
   r.moment1 = (c.k11 - in.Q) * th1 + (c.k12 + in.Q) * th2;
   r.moment2 = (c.k12 + in.Q) * th1 + (c.k22 - in.Q) * th2;

@@ -29,7 +29,7 @@ template <class T> T root(const T& x) {
 }
 template <class T> void angle_ratio(const T& n, T& G, T& G1) {
   const AngleRatio r(value(n));
-  G = chain(n, r.G, r.G1), G1 = chain(n, r.G1, r.G2);
+  G = chain(n, r.G, r.G1); G1 = chain(n, r.G1, r.G2);
 }
 #define WHIRL_INLINE inline
 #include <elements/shaft/shaft_damping.inl>
@@ -55,7 +55,7 @@ void scatter(double o1, double o2, const Vec3& fl, const Vec3& f1, const Vec3& f
   out.template segment<3>(7) += fl;
   out.template segment<3>(3) += f1 - o1 * fl;
   out.template segment<3>(10) += f2 + o2 * fl;
-  out[6] += p1, out[13] += p2;
+  out[6] += p1; out[13] += p2;
 }
 
 Vec3 values(const Vec3T<double>& v) { return {v.x, v.y, v.z}; }
@@ -84,9 +84,9 @@ void ShaftDamping<Rotating>::add_forces(std::span<const ShaftDamping> elements, 
   static_assert(sizeof(ShaftDamping) % sizeof(double) == 0);
   static_assert(offsetof(ShaftDamping, d_axial) == 10 * sizeof(double));
   lanes::DampingElements b;
-  b.element = &elements[0].length, b.stride = sizeof(ShaftDamping) / sizeof(double), b.count = elements.size();
+  b.element = &elements[0].length; b.stride = sizeof(ShaftDamping) / sizeof(double); b.count = elements.size();
   b.nodes = nodes->data();
-  b.state = states[0].u.data(), b.state_stride = sizeof(NodeState) / sizeof(double), b.chart = offsetof(NodeState, chart) / sizeof(double);
+  b.state = states[0].u.data(); b.state_stride = sizeof(NodeState) / sizeof(double); b.chart = offsetof(NodeState, chart) / sizeof(double);
   b.force = force->data();
   static const lanes::Kernels& kernels = lanes::kernels();
   (Rotating ? kernels.add_internal_damping : kernels.add_external_damping)(b);
@@ -122,7 +122,7 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&, Tang
   C.template middleCols<3>(7) += columns.leftCols<3>();
   C.template middleCols<3>(3) += columns.middleCols<3>(3) - o1 * columns.leftCols<3>();
   C.template middleCols<3>(10) += columns.middleCols<3>(6) + o2 * columns.leftCols<3>();
-  C.col(6) += columns.col(9), C.col(13) += columns.col(10);
+  C.col(6) += columns.col(9); C.col(13) += columns.col(10);
 
   // K: nine directions at once (lambda, d1, d2)
   using D = Dual<9>;

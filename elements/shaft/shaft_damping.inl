@@ -64,15 +64,15 @@ WHIRL_INLINE DampingForce<S> damping_force(const DampingParameters<S>& p, const 
   V turned1{}, turned2{};   // a x p
   if constexpr (Rotating) {
     const T sigma = 0.5 * (s1 + s2);
-    turned1 = e1.G * cross(a, e1.q), turned2 = e2.G * cross(a, e2.q);
-    r1 = r1 - sigma * turned1, r2 = r2 - sigma * turned2;
+    turned1 = e1.G * cross(a, e1.q); turned2 = e2.G * cross(a, e2.q);
+    r1 = r1 - sigma * turned1; r2 = r2 - sigma * turned2;
   }
   const V m1 = p.d11 * r1 + p.d12 * r2, m2 = p.d12 * r1 + p.d22 * r2;
   const T torque = p.d_twist * (s2 - s1);
   T b1 = -torque, b2 = torque;   // conjugate to sigma_1, sigma_2
   if constexpr (Rotating) {
     const T s = -0.5 * (dot(m1, turned1) + dot(m2, turned2));
-    b1 = b1 + s, b2 = b2 + s;
+    b1 = b1 + s; b2 = b2 + s;
   }
   DampingForce<S> f;
   const V k1 = (e1.G1 * dot(m1, e1.q)) * e1.delta, k2 = (e2.G1 * dot(m2, e2.q)) * e2.delta;
@@ -81,7 +81,7 @@ WHIRL_INLINE DampingForce<S> damping_force(const DampingParameters<S>& p, const 
   f.d2 = k2 + e2.G * perpendicular(m2) + b2 * (e2.ad - e2.w);
   const V fa = b1 * e1.ad + b2 * e2.ad - k1 - k2 - (e1.G * (1.0 - e1.n)) * m1 - (e2.G * (1.0 - e2.n)) * m2;
   f.lambda = il * perpendicular(fa) + (p.d_axial * ldot) * a;
-  f.phi1 = b1, f.phi2 = b2;
+  f.phi1 = b1; f.phi2 = b2;
   f.power = dot(m1, r1) + dot(m2, r2) + torque * (s2 - s1) + p.d_axial * ldot * ldot;
   return f;
 }

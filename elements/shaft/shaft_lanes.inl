@@ -17,11 +17,11 @@ WHIRL_INLINE Node load_node(const double* const* at) {
   const double* p[width];
   for (int i = 0; i < width; ++i) p[i] = at[i];
   Node n;
-  load4(p, n.u.x, n.u.y, n.u.z, n.du.x), advance(p, 4);
-  load4(p, n.du.y, n.du.z, n.ddu.x, n.ddu.y), advance(p, 4);
-  load4(p, n.ddu.z, n.t.x, n.t.y, n.t.z), advance(p, 4);
-  load4(p, n.dd.x, n.dd.y, n.dd.z, n.ddd.x), advance(p, 4);
-  load4(p, n.ddd.y, n.ddd.z, n.phi, n.dphi), advance(p, 4);
+  load4(p, n.u.x, n.u.y, n.u.z, n.du.x); advance(p, 4);
+  load4(p, n.du.y, n.du.z, n.ddu.x, n.ddu.y); advance(p, 4);
+  load4(p, n.ddu.z, n.t.x, n.t.y, n.t.z); advance(p, 4);
+  load4(p, n.dd.x, n.dd.y, n.dd.z, n.ddd.x); advance(p, 4);
+  load4(p, n.ddd.y, n.ddd.z, n.phi, n.dphi); advance(p, 4);
   n.ddphi = load(p);
   return n;
 }
@@ -54,7 +54,7 @@ WHIRL_INLINE Ratio ratio(T n) {
       continue;
     }
     const double theta = 2.0 * ::asin(__builtin_sqrt(0.5 * x)), q = x * (2.0 - x);
-    r.F[i] = theta * theta, r.G[i] = theta / __builtin_sqrt(q);
+    r.F[i] = theta * theta; r.G[i] = theta / __builtin_sqrt(q);
     r.G1[i] = (1.0 - (1.0 - x) * r.G[i]) / q;
   }
   return r;
@@ -102,10 +102,10 @@ WHIRL_INLINE Group group_of(const Elements& b, std::size_t first, int used) {
     const std::size_t k = first + static_cast<std::size_t>(i < used ? i : used - 1);
     const std::ptrdiff_t n1 = b.nodes[2 * k], n2 = b.nodes[2 * k + 1];
     g.element[i] = b.element + static_cast<std::ptrdiff_t>(k) * b.stride;
-    g.s1[i] = b.state + n1 * b.state_stride, g.s2[i] = b.state + n2 * b.state_stride;
-    g.f1[i] = b.force + 7 * n1, g.f2[i] = b.force + 7 * n2;
+    g.s1[i] = b.state + n1 * b.state_stride; g.s2[i] = b.state + n2 * b.state_stride;
+    g.f1[i] = b.force + 7 * n1; g.f2[i] = b.force + 7 * n2;
     const double* const chart = *(const double* const*)(const void*)(g.s1[i] + b.chart);
-    g.e.x[i] = chart[0], g.e.y[i] = chart[1], g.e.z[i] = chart[2];
+    g.e.x[i] = chart[0]; g.e.y[i] = chart[1]; g.e.z[i] = chart[2];
   }
   return g;
 }
@@ -128,11 +128,11 @@ WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used)
   };
   T length, o1, o2, EA_l, b11, b12, b22, k11, k12, k22, GJ_l, tau_c;
   from(b.scalars);
-  load4(p, length, o1, o2, EA_l), advance(p, 4);
-  load4(p, b11, b12, b22, k11), advance(p, 4);
+  load4(p, length, o1, o2, EA_l); advance(p, 4);
+  load4(p, b11, b12, b22, k11); advance(p, 4);
   load4(p, k12, k22, GJ_l, tau_c);
   V e0;
-  from(b.e0), e0.x = load(p), advance(p, 1), e0.y = load(p), advance(p, 1), e0.z = load(p);
+  from(b.e0); e0.x = load(p); advance(p, 1); e0.y = load(p); advance(p, 1); e0.z = load(p);
   from(b.psi0);
   const T psi0 = load(p);
   from(b.preload);
@@ -174,7 +174,7 @@ WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used)
   add(gd1, torque * (tG * cross(delta2, a) + t1 * delta1 - w1.grad_v));
   add(gd2, torque * (tG * cross(a, delta1) + t2 * delta2 - w2.grad_w));
   const V gl = N * a + il * (ga - dot(a, ga) * a);
-  if constexpr (Offsets) add(gd1, V{} - o1 * gl), add(gd2, o2 * gl);
+  if constexpr (Offsets) { add(gd1, V{} - o1 * gl); add(gd2, o2 * gl); }
 
   // inertia
   const Spin sp1 = spin_rate(x1, e), sp2 = spin_rate(x2, e);
@@ -186,14 +186,14 @@ WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used)
   f[0] = V{} - gl, f[1] = gd1, f[2] = gl, f[3] = gd2;
   for (int j = 0; j < 4; ++j) {
     T c0, c1, c2, c3;
-    from(b.M4 + 4 * j), load4(p, c0, c1, c2, c3);
-    add(f[0], c0 * *acc[j]), add(f[1], c1 * *acc[j]), add(f[2], c2 * *acc[j]), add(f[3], c3 * *acc[j]);
-    from(b.G4c + 4 * j), load4(p, c0, c1, c2, c3);
-    add(v[0], c0 * *vel[j]), add(v[1], c1 * *vel[j]), add(v[2], c2 * *vel[j]), add(v[3], c3 * *vel[j]);
+    from(b.M4 + 4 * j); load4(p, c0, c1, c2, c3);
+    add(f[0], c0 * *acc[j]); add(f[1], c1 * *acc[j]); add(f[2], c2 * *acc[j]); add(f[3], c3 * *acc[j]);
+    from(b.G4c + 4 * j); load4(p, c0, c1, c2, c3);
+    add(v[0], c0 * *vel[j]); add(v[1], c1 * *vel[j]); add(v[2], c2 * *vel[j]); add(v[3], c3 * *vel[j]);
   }
   for (int k = 0; k < 4; ++k) f[k] = f[k] - cross(sa, v[k]);
   T p11, p21, p12, p22;
-  from(b.polar), load4(p, p11, p21, p12, p22);
+  from(b.polar); load4(p, p11, p21, p12, p22);
   const T h1 = p11 * sp1.s + p12 * sp2.s, h2 = p21 * sp1.s + p22 * sp2.s;
   const T q1 = p11 * sp1.sdot + p12 * sp2.sdot, q2 = p21 * sp1.sdot + p22 * sp2.sdot;
   f[1] = f[1] - (q1 * sp1.w + h1 * cross(d1, x1.dd));
@@ -207,7 +207,7 @@ struct Lanes {
 };
 WHIRL_INLINE void angle_ratio(T n, T& G, T& G1) {
   const Ratio r = ratio(n);
-  G = r.G, G1 = r.G1;
+  G = r.G; G1 = r.G1;
 }
 #include <elements/shaft/shaft_damping.inl>
 
@@ -218,8 +218,8 @@ WHIRL_INLINE void add_group(const DampingElements& b, std::size_t first, int use
   for (int i = 0; i < width; ++i) p[i] = g.element[i];
   DampingParameters<Lanes> c;
   T o1, o2;
-  load4(p, c.length, o1, o2, c.e0.x), advance(p, 4);
-  load4(p, c.e0.y, c.e0.z, c.d11, c.d12), advance(p, 3);
+  load4(p, c.length, o1, o2, c.e0.x); advance(p, 4);
+  load4(p, c.e0.y, c.e0.z, c.d11, c.d12); advance(p, 3);
   load4(p, c.d12, c.d22, c.d_twist, c.d_axial);   // one over the last, so as not to read beyond the element
   const Node x1 = load_node(g.s1), x2 = load_node(g.s2);
   const V du = x2.u - x1.u + o2 * x2.t - o1 * x1.t;

@@ -19,7 +19,7 @@ struct GaussRule {
         double p0 = 1, p1 = z;
         for (int k = 2; k <= n; ++k) {
           const double p2 = ((2 * k - 1) * z * p1 - (k - 1) * p0) / k;
-          p0 = p1, p1 = p2;
+          p0 = p1; p1 = p2;
         }
         dp = n * (z * p1 - p0) / (z * z - 1);
         const double step = p1 / dp;
@@ -268,7 +268,7 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
   c.GJ_l = has_GJ ? 1 / sp.integral([](const auto& q) { return 1 / q.p.GJ; }) : 0.0;
   c.mass = sp.integral([](const auto& q) { return q.p.rhoA; });
   const Mat2 k = end_stiffness(sp);
-  c.k11 = k(0, 0), c.k12 = k(0, 1), c.k22 = k(1, 1);
+  c.k11 = k(0, 0); c.k12 = k(0, 1); c.k22 = k(1, 1);
   const std::array<StaticShape, 2> shape{static_shape(sp, k, 0), static_shape(sp, k, 1)};
 
   Matrix<4> M = Matrix<4>::Zero(), G4 = Matrix<4>::Zero();

@@ -43,7 +43,7 @@ struct AtOffset {
       for (std::size_t i = 0; i < n_nodes; ++i) {
         system::NodeState& n = state[i];
         n = *x[i];
-        n.u += k.offset[i] * n.t, n.du += k.offset[i] * n.dd, n.ddu += k.offset[i] * n.ddd;
+        n.u += k.offset[i] * n.t; n.du += k.offset[i] * n.dd; n.ddu += k.offset[i] * n.ddd;
         nodes[i] = &n;
       }
     }

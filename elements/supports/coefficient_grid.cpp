@@ -20,11 +20,11 @@ struct Hermite {
     i = std::clamp<std::size_t>(static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), at) - x.begin()), 1, x.size() - 1) - 1;
     const double h = x[i + 1] - x[i], u = (at - x[i]) / h;
     if (!cubic) {
-      value[0] = 1 - u, value[1] = u, rate[0] = -1 / h, rate[1] = 1 / h;
+      value[0] = 1 - u; value[1] = u; rate[0] = -1 / h; rate[1] = 1 / h;
       return;
     }
-    value[0] = (1 + 2 * u) * (1 - u) * (1 - u), value[1] = u * u * (3 - 2 * u), value[2] = h * u * (1 - u) * (1 - u), value[3] = -h * u * u * (1 - u);
-    rate[0] = -6 * u * (1 - u) / h, rate[1] = -rate[0], rate[2] = (1 - u) * (1 - 3 * u), rate[3] = u * (3 * u - 2);
+    value[0] = (1 + 2 * u) * (1 - u) * (1 - u); value[1] = u * u * (3 - 2 * u); value[2] = h * u * (1 - u) * (1 - u); value[3] = -h * u * u * (1 - u);
+    rate[0] = -6 * u * (1 - u) / h; rate[1] = -rate[0]; rate[2] = (1 - u) * (1 - 3 * u); rate[3] = u * (3 * u - 2);
   }
 };
 
@@ -99,7 +99,7 @@ void CoefficientGrid<N>::at(double s, double w, Values& v, Values& ds, Values& d
       const auto sum = [&](const double* l, const double* r) {
         return Row((l[p] * r[q]) * n.f + (l[2 + p] * r[q]) * n.f_s + (l[p] * r[2 + q]) * n.f_w + (l[2 + p] * r[2 + q]) * n.f_sw);
       };
-      x[0] += sum(a.value, b.value), x[1] += sum(a.rate, b.value), x[2] += sum(a.value, b.rate);
+      x[0] += sum(a.value, b.value); x[1] += sum(a.rate, b.value); x[2] += sum(a.value, b.rate);
     }
   if (outside_ == Outside::undefined) {
     // beyond the end by rounding is at the end, as in CoefficientTable
@@ -112,7 +112,7 @@ void CoefficientGrid<N>::at(double s, double w, Values& v, Values& ds, Values& d
     if (s != s_in) x[1].setZero();   // held
     if (w != w_in) x[2].setZero();
   }
-  v.set(x[0]), ds.set(x[1]), dw.set(x[2]);
+  v.set(x[0]); ds.set(x[1]); dw.set(x[2]);
 }
 
 template <int N>
@@ -123,7 +123,7 @@ void CoefficientGrid<N>::at(double s, Values& v, Values& dv) const {
   at(s, w, v, dv, dw);
   if (w != std::abs(s)) return;
   const double along = s < 0 ? -1.0 : 1.0;
-  dv.K += along * dw.K, dv.C += along * dw.C, dv.M += along * dw.M;
+  dv.K += along * dw.K; dv.C += along * dw.C; dv.M += along * dw.M;
 }
 
 template class CoefficientGrid<2>;

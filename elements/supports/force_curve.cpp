@@ -33,7 +33,7 @@ ForceCurve::Value ForceCurve::at(double x) const {
   const Piece& p = piece(x);
   const double u = x - p.x0;
   double F = 0, d = 0;
-  for (int k = 7; k >= 0; --k) d = d * u + F, F = F * u + p.c[static_cast<std::size_t>(k)];
+  for (int k = 7; k >= 0; --k) { d = d * u + F; F = F * u + p.c[static_cast<std::size_t>(k)]; }
   return {F, d, p.V0 + energy_of(p.c, u)};
 }
 
@@ -71,7 +71,7 @@ ForceCurve ForceCurve::table(const std::vector<double>& x, const std::vector<dou
     if (!std::isfinite(x[i]) || !std::isfinite(F[i]) || (i > 0 && !(x[i] > x[i - 1]))) fail("deflections must be finite and increase");
   std::vector<double> d(n - 1), m(n);
   for (std::size_t i = 0; i + 1 < n; ++i) d[i] = (F[i + 1] - F[i]) / (x[i + 1] - x[i]);
-  m.front() = d.front(), m.back() = d.back();
+  m.front() = d.front(); m.back() = d.back();
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const double h0 = x[i] - x[i - 1], h1 = x[i + 1] - x[i], w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
     m[i] = d[i - 1] * d[i] > 0 ? (w0 + w1) / (w0 / d[i - 1] + w1 / d[i]) : 0.0;
@@ -82,7 +82,7 @@ ForceCurve ForceCurve::table(const std::vector<double>& x, const std::vector<dou
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double h = x[i + 1] - x[i];
     Piece p{x[i], {F[i], d[i]}};
-    if (monotone_cubic) p.c[1] = m[i], p.c[2] = (3 * d[i] - 2 * m[i] - m[i + 1]) / h, p.c[3] = (m[i] + m[i + 1] - 2 * d[i]) / (h * h);
+    if (monotone_cubic) { p.c[1] = m[i]; p.c[2] = (3 * d[i] - 2 * m[i] - m[i + 1]) / h; p.c[3] = (m[i] + m[i + 1] - 2 * d[i]) / (h * h); }
     f.pieces_.push_back(p);
     f.breaks_.push_back(x[i + 1]);
   }

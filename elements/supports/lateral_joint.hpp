@@ -33,7 +33,7 @@ struct LateralMotion {
 struct LateralTangent {
   Matrix<4, 2> r, v, a;
   Vector<4> spin, housing_spin;
-  void set_zero() { r.setZero(), v.setZero(), a.setZero(), spin.setZero(), housing_spin.setZero(); }
+  void set_zero() { r.setZero(); v.setZero(); a.setZero(); spin.setZero(); housing_spin.setZero(); }
 };
 
 template <class Law_, bool Offsets = false>
@@ -48,7 +48,7 @@ struct LateralJoint {
   void add_force(const system::Nodes<2>& x, const system::Context&, system::ForceX<14>& f) const {
     const system::Spin s0(*x[0]), s1(*x[1]);
     LateralMotion m = motion(x);
-    m.spin = s0.s, m.housing_spin = s1.s;
+    m.spin = s0.s; m.housing_spin = s1.s;
     Vector<4> z;
     law.force(m, z);
     scatter(s0.w, s1.w, z, f);
@@ -57,7 +57,7 @@ struct LateralJoint {
   void add_tangent(const system::Nodes<2>& x, const system::Context&, system::TangentX<14>& k) const {
     const system::Spin s0(*x[0]), s1(*x[1]);
     LateralMotion m = motion(x);
-    m.spin = s0.s, m.housing_spin = s1.s;
+    m.spin = s0.s; m.housing_spin = s1.s;
     Vector<4> z;
     LateralTangent t;
     law.tangent(m, z, t);
@@ -83,7 +83,7 @@ struct LateralJoint {
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const {
     const system::SpinRate s0(*x[0]), s1(*x[1]);
     LateralMotion m = motion(x);
-    m.spin = s0.s, m.housing_spin = s1.s, m.spin_rate = s0.sdot, m.housing_spin_rate = s1.sdot;
+    m.spin = s0.s; m.housing_spin = s1.s; m.spin_rate = s0.sdot; m.housing_spin_rate = s1.sdot;
     law.energy(m, e);
   }
 
@@ -93,7 +93,7 @@ struct LateralJoint {
   /// Relative motion with spins, for results.
   LateralMotion motion_of(const system::Nodes<2>& x) const {
     LateralMotion m = motion(x);
-    m.spin = x[0]->spin(), m.housing_spin = x[1]->spin();
+    m.spin = x[0]->spin(); m.housing_spin = x[1]->spin();
     return m;
   }
 
@@ -101,7 +101,7 @@ struct LateralJoint {
   LateralMotion motion(const system::Nodes<2>& x) const {
     const system::NodeState &n = *x[0], &h = *x[1];
     LateralMotion m;
-    m.r = (n.u - h.u).template tail<2>(), m.v = (n.du - h.du).template tail<2>();
+    m.r = (n.u - h.u).template tail<2>(); m.v = (n.du - h.du).template tail<2>();
     if constexpr (has_M) m.a = (n.ddu - h.ddu).template tail<2>();
     if constexpr (Offsets) {
       m.r += (offset[0] * n.t - offset[1] * h.t).template tail<2>();

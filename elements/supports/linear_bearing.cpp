@@ -16,10 +16,10 @@ void TranslationalBearing::add_force(const Nodes<2>& x, const Context&, ForceX<6
 
 void TranslationalBearing::add_tangent(const Nodes<2>&, const Context&, TangentX<6>& t) const {
   const auto add = [](Matrix<6>& to, const Mat3& m) {
-    to.topLeftCorner<3, 3>() += m, to.bottomRightCorner<3, 3>() += m;
-    to.topRightCorner<3, 3>() -= m, to.bottomLeftCorner<3, 3>() -= m;
+    to.topLeftCorner<3, 3>() += m; to.bottomRightCorner<3, 3>() += m;
+    to.topRightCorner<3, 3>() -= m; to.bottomLeftCorner<3, 3>() -= m;
   };
-  add(t.M, M), add(t.C, C), add(t.K, K);
+  add(t.M, M); add(t.C, C); add(t.K, K);
 }
 
 void TranslationalBearing::add_energy(const Nodes<2>& x, const Context&, Energy& e) const {

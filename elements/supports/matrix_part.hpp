@@ -25,7 +25,7 @@ struct MatrixPart {
     const Motion m(x);
     f.noalias() += K * m.u + C * m.v + M * m.a;
   }
-  void add_tangent(const system::Nodes<N>&, const system::Context&, system::TangentX<W * N>& t) const { t.K += K, t.C += C, t.M += M; }
+  void add_tangent(const system::Nodes<N>&, const system::Context&, system::TangentX<W * N>& t) const { t.K += K; t.C += C; t.M += M; }
   void add_energy(const system::Nodes<N>& x, const system::Context& c, system::Energy& e) const {
     const Motion m(x);
     const Vector<W * N> Ku = K * m.u;
@@ -45,10 +45,10 @@ struct MatrixPart {
     explicit Motion(const system::Nodes<N>& x) {
       for (int i = 0; i < N; ++i) {
         const auto& n = *x[static_cast<std::size_t>(i)];
-        u.template segment<3>(W * i) = n.u, v.template segment<3>(W * i) = n.du, a.template segment<3>(W * i) = n.ddu;
+        u.template segment<3>(W * i) = n.u; v.template segment<3>(W * i) = n.du; a.template segment<3>(W * i) = n.ddu;
         if constexpr (W == 7) {
-          u.template segment<3>(W * i + 3) = n.t + (n.e() - Vec3::UnitX()), v.template segment<3>(W * i + 3) = n.dd, a.template segment<3>(W * i + 3) = n.ddd;
-          u[W * i + 6] = n.phi + two_pi * n.turns, v[W * i + 6] = n.dphi, a[W * i + 6] = n.ddphi;
+          u.template segment<3>(W * i + 3) = n.t + (n.e() - Vec3::UnitX()); v.template segment<3>(W * i + 3) = n.dd; a.template segment<3>(W * i + 3) = n.ddd;
+          u[W * i + 6] = n.phi + two_pi * n.turns; v[W * i + 6] = n.dphi; a[W * i + 6] = n.ddphi;
         }
       }
     }
@@ -61,10 +61,10 @@ MatrixPart<N, 7> with_rotations(const Matrix<6 * N>& K, const Matrix<6 * N>& C, 
   Matrix<6 * N, 7 * N> S = Matrix<6 * N, 7 * N>::Zero();   // dq/dX; e0 x d = (0, -d_z, d_y)
   for (int i = 0; i < N; ++i) {
     for (int c = 0; c < 3; ++c) S(6 * i + c, 7 * i + c) = 1.0;
-    S(6 * i + 3, 7 * i + 6) = 1.0, S(6 * i + 4, 7 * i + 5) = -1.0, S(6 * i + 5, 7 * i + 4) = 1.0;
+    S(6 * i + 3, 7 * i + 6) = 1.0; S(6 * i + 4, 7 * i + 5) = -1.0; S(6 * i + 5, 7 * i + 4) = 1.0;
   }
   MatrixPart<N, 7> p;
-  p.K = S.transpose() * K * S, p.C = S.transpose() * C * S, p.M = S.transpose() * M * S;
+  p.K = S.transpose() * K * S; p.C = S.transpose() * C * S; p.M = S.transpose() * M * S;
   p.internal = internal;
   return p;
 }

@@ -25,7 +25,7 @@ void SpringBlock::add_tangent(const Nodes<1>& x, const Context&, TangentX<7>& t)
   t.K.block<3, 3>(3, 3) += (C2 * r.G1) * delta * delta.transpose();
   for (int i = 0; i < 3; ++i) {
     t.K(i, i) += C1;
-    t.K(i, 3 + i) += C1 * offset, t.K(3 + i, i) += C1 * offset;
+    t.K(i, 3 + i) += C1 * offset; t.K(3 + i, i) += C1 * offset;
     t.K(3 + i, 3 + i) += C1 * offset * offset + C2 * r.G;
   }
 }

@@ -20,7 +20,7 @@ typename CoefficientValues<N>::Row CoefficientValues<N>::row() const {
 
 template <int N>
 void CoefficientValues<N>::set(const Row& r) {
-  K.reshaped() = r.template head<entries>(), C.reshaped() = r.template segment<entries>(entries), M.reshaped() = r.template tail<entries>();
+  K.reshaped() = r.template head<entries>(); C.reshaped() = r.template segment<entries>(entries); M.reshaped() = r.template tail<entries>();
 }
 
 template <int N>
@@ -44,7 +44,7 @@ template <int N>
 void CoefficientTable<N>::at(double s, Values& v, Values& dv) const {
   Row x = Row::Zero(), dx = Row::Zero();
   if (outside_ == Outside::undefined && covers(s)) s = std::clamp(s, spin_.front(), spin_.back());
-  if (!covers(s)) x.setConstant(nan), dx.setConstant(nan);
+  if (!covers(s)) { x.setConstant(nan); dx.setConstant(nan); }
   else if (s <= spin_.front() || spin_.size() == 1) x = value_.front();
   else if (s >= spin_.back()) x = value_.back();
   if (s >= spin_.front() && s <= spin_.back() && spin_.size() > 1) {
@@ -53,14 +53,14 @@ void CoefficientTable<N>::at(double s, Values& v, Values& dv) const {
     const double h = spin_[i + 1] - spin_[i], u = (s - spin_[i]) / h;
     const Row chord = (value_[i + 1] - value_[i]) / h;
     if (between_ == Between::linear) {
-      x = value_[i] + (s - spin_[i]) * chord, dx = chord;
+      x = value_[i] + (s - spin_[i]) * chord; dx = chord;
     } else {
       const Row a = h * (slope_[i] - chord), b = h * (slope_[i + 1] - chord);
       x = value_[i] + u * h * chord + u * (1 - u) * ((1 - u) * a - u * b);
       dx = chord + ((1 - u) * (1 - 3 * u) * a - u * (2 - 3 * u) * b) / h;
     }
   }
-  v.set(x), dv.set(dx);
+  v.set(x); dv.set(dx);
 }
 
 template <bool Mass, class Table>
@@ -78,9 +78,9 @@ void TableBearingLaw<Mass, Table>::tangent(const LateralMotion& m, Vector<4>& z,
   table->at(m.spin, v, dv);
   Vec2 F = -(v.K * m.r + v.C * m.v), F_s = -(dv.K * m.r + dv.C * m.v);
   t.set_zero();
-  t.r.topRows<2>() = -v.K, t.v.topRows<2>() = -v.C;
+  t.r.topRows<2>() = -v.K; t.v.topRows<2>() = -v.C;
   if constexpr (Mass) {
-    F -= v.M * m.a, F_s -= dv.M * m.a;
+    F -= v.M * m.a; F_s -= dv.M * m.a;
     t.a.topRows<2>() = -v.M;
   }
   t.spin.head<2>() = F_s;

@@ -62,7 +62,7 @@ std::vector<double> distance_to_spin(const system::System& s, std::span<const do
   return distance;
 }
 
-void add_scaled(la::MCK& y, double s, const la::MCK& x) { add_scaled(y.M, s, x.M), add_scaled(y.C, s, x.C), add_scaled(y.K, s, x.K); }
+void add_scaled(la::MCK& y, double s, const la::MCK& x) { add_scaled(y.M, s, x.M); add_scaled(y.C, s, x.C); add_scaled(y.K, s, x.K); }
 
 }  // namespace
 
@@ -119,12 +119,12 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
 }
 
 void SteadySystem::set_load(double factor) {
-  if (workspace_.context.load != factor) workspace_.context.load = factor, polynomial_ = seen_ = false;
+  if (workspace_.context.load != factor) { workspace_.context.load = factor; polynomial_ = seen_ = false; }
 }
 
 void SteadySystem::set_whirl(Complex lambda, bool rotates, double side) {
   system::Context& c = workspace_.context;
-  c.whirl = std::abs(lambda.imag()), c.growth = lambda.real(), c.whirl_rotates = rotates;
+  c.whirl = std::abs(lambda.imag()); c.growth = lambda.real(); c.whirl_rotates = rotates;
   c.whirl_side = std::isnan(side) ? c.whirl : side;
 }
 
@@ -153,7 +153,7 @@ void SteadySystem::make_samples() {
     theta_[at(j)] = (g - std::floor(g)) * 4.0 * two_pi / spacing;
     A(j, 0) = 1.0;
     for (Index h = 0; h < static_cast<Index>(harmonics.size()); ++h)
-      A(j, 1 + 2 * h) = std::cos(harmonics[at(h)] * theta_[at(j)]), A(j, 2 + 2 * h) = std::sin(harmonics[at(h)] * theta_[at(j)]);
+      { A(j, 1 + 2 * h) = std::cos(harmonics[at(h)] * theta_[at(j)]); A(j, 2 + 2 * h) = std::sin(harmonics[at(h)] * theta_[at(j)]); }
   }
   const MatX inverse = A.completeOrthogonalDecomposition().pseudoInverse();
   weights_.resize(1 + 2 * k, samples);
@@ -168,7 +168,7 @@ void SteadySystem::make_samples() {
 bool same_forces(const std::vector<Vector<7>>& f, const std::vector<Vector<7>>& g) {
   Vec3 size = Vec3::Zero(), change = Vec3::Zero();
   const auto largest = [](const Vector<7>& x) { return Vec3(x.head<3>().cwiseAbs().maxCoeff(), x.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(x[6])); };
-  for (std::size_t i = 0; i < f.size(); ++i) size = size.cwiseMax(largest(f[i])), change = change.cwiseMax(largest(g[i] - f[i]));
+  for (std::size_t i = 0; i < f.size(); ++i) { size = size.cwiseMax(largest(f[i])); change = change.cwiseMax(largest(g[i] - f[i])); }
   return (change.array() <= 1e-8 * size.array()).all();   // rounding of phi differences stays below
 }
 
@@ -178,7 +178,7 @@ void SteadySystem::sort_terms() {
   std::normal_distribution<double> normal;
   const system::Frames frames = system_.make_state().frames;
   VecX q(system_.size()), v(system_.size()), a(system_.size());
-  for (Index k = 0; k < q.size(); ++k) q[k] = 1e-6 * normal(rng), v[k] = 1e-4 * normal(rng), a[k] = normal(rng);
+  for (Index k = 0; k < q.size(); ++k) { q[k] = 1e-6 * normal(rng); v[k] = 1e-4 * normal(rng); a[k] = normal(rng); }
   VecX turned = q;
   for (Index i = 0; i < system_.nodes(); ++i)
     if (spinning_[at(i)]) v[6 * i + 3] += 10.0 * ratio_[at(system_.node(i).line)];
@@ -215,7 +215,7 @@ void SteadySystem::sort_terms() {
     // nothing is averaged: what turns is evaluated like the rest
     other_.insert(other_.end(), turning_.begin(), turning_.end());
     smooth_.insert(smooth_.end(), turning_smooth_.begin(), turning_smooth_.end());
-    turning_.clear(), turning_smooth_.clear();
+    turning_.clear(); turning_smooth_.clear();
   }
   find_frequency_terms();
 }
@@ -364,7 +364,7 @@ bool SteadySystem::smooth_tangent(const system::Frames& f, double Omega, const V
 bool SteadySystem::make_polynomial(const system::Frames& f, double Omega, const VecX& q) {
   // Interpolation at -s, 0, s with s near the top speed: no digits are lost below it.
   const double s = std::max({std::abs(Omega), running_.top_speed, 1.0});
-  if (p0_.M.value_count() == 0) p0_ = system_.make_matrices(), p1_ = system_.make_matrices(), k2_ = la::BlockMatrix<6>(system_.pattern());
+  if (p0_.M.value_count() == 0) { p0_ = system_.make_matrices(); p1_ = system_.make_matrices(); k2_ = la::BlockMatrix<6>(system_.pattern()); }
   for (VecX* r : {&r0_, &r1_, &r2_}) r->resize(q.size());
   if (!smooth_tangent(f, s, q, p1_) || !smooth_residual(f, s, q, r1_)) return false;
   if (!smooth_tangent(f, -s, q, part_) || !smooth_residual(f, -s, q, r2_)) return false;
@@ -376,7 +376,7 @@ bool SteadySystem::make_polynomial(const system::Frames& f, double Omega, const 
     f1_[o] = (0.5 / s) * (plus - minus);
     f2_[o] = (0.5 / (s * s)) * (plus + minus - 2.0 * f0_[o]);
   }
-  set_scaled(k2_, 0.5 / (s * s), p1_.K), add_scaled(k2_, 0.5 / (s * s), part_.K), add_scaled(k2_, -1.0 / (s * s), p0_.K);
+  set_scaled(k2_, 0.5 / (s * s), p1_.K); add_scaled(k2_, 0.5 / (s * s), part_.K); add_scaled(k2_, -1.0 / (s * s), p0_.K);
   for (auto [p, m] : {std::pair{&p1_.C, &part_.C}, std::pair{&p1_.K, &part_.K}}) {
     set_scaled(*p, 0.5 / s, *p);
     add_scaled(*p, -0.5 / s, *m);
@@ -384,7 +384,7 @@ bool SteadySystem::make_polynomial(const system::Frames& f, double Omega, const 
   const VecX plus = r1_, minus = r2_;
   r1_ = (0.5 / s) * (plus - minus);
   r2_ = (0.5 / (s * s)) * (plus + minus - 2.0 * r0_);
-  polynomial_ = true, scale_ = s, polynomial_q_ = q, polynomial_charts_ = f.chart;
+  polynomial_ = true; scale_ = s; polynomial_q_ = q; polynomial_charts_ = f.chart;
   return true;
 }
 
@@ -410,7 +410,7 @@ bool SteadySystem::tangent(const system::Frames& f, double Omega, const VecX& q,
     if (fixed_.M.value_count() == 0) fixed_ = system_.make_matrices();
     have_fixed_ = fixed_tangent(f, Omega, q, fixed_);
     if (!have_fixed_) return false;
-    fixed_speed_ = Omega, fixed_load_ = c.load, fixed_whirl_ = whirl, fixed_q_ = q, fixed_charts_ = f.chart;
+    fixed_speed_ = Omega; fixed_load_ = c.load; fixed_whirl_ = whirl; fixed_q_ = q; fixed_charts_ = f.chart;
   }
   if (!evaluate_tangent(f, Omega, q, 0.0, out, by_frequency_)) return false;
   add_scaled(out, 1.0, fixed_);
@@ -422,7 +422,7 @@ bool SteadySystem::fixed_tangent(const system::Frames& f, double Omega, const Ve
     // A second speed at the same equilibrium: a sweep, in which the polynomials pay.
     const bool sweep = seen_ && seen_speed_ != Omega && seen_q_ == q;
     if (sweep && !make_polynomial(f, Omega, q)) return false;
-    seen_ = true, seen_speed_ = Omega, seen_q_ = q;
+    seen_ = true; seen_speed_ = Omega; seen_q_ = q;
   }
   if (fits_polynomial(f, Omega, q)) {
     std::copy_n(p0_.M.data(), p0_.M.value_count(), out.M.data());

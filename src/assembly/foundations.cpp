@@ -32,7 +32,7 @@ void add_part(Assembly& a, const Parts<N>& p, const std::array<Index, N>& nodes,
   for (int i = 0; i < N; ++i)
     for (int j = 0; j < N; ++j) {
       const auto take = [&](auto& to, const auto& from) { to.template block<3, 3>(3 * i, 3 * j) = from.template block<3, 3>(6 * i, 6 * j); };
-      take(part.K, p.K), take(part.C, p.C), take(part.M, p.M);
+      take(part.K, p.K); take(part.C, p.C); take(part.M, p.M);
     }
   part.internal = internal;
   a.builder.add(part, nodes, kind);
@@ -97,12 +97,12 @@ void add_foundation(Assembly& a, const Foundation& f) {
       const auto [n2, d2, internal2] = place[j];
       if (n1 == n2) {
         Parts<1>& p = single[n1];
-        p.K(d1, d2) = k, p.C(d1, d2) = c, p.M(d1, d2) = m;
+        p.K(d1, d2) = k; p.C(d1, d2) = c; p.M(d1, d2) = m;
       } else if (k != 0 || c != 0 || m != 0) {
         const bool swap = n2 < n1;
         Parts<2>& p = pairs[swap ? std::array{n2, n1} : std::array{n1, n2}];
         const int row = swap ? 6 + d1 : d1, column = swap ? d2 : 6 + d2;
-        p.K(row, column) = k, p.C(row, column) = c, p.M(row, column) = m;
+        p.K(row, column) = k; p.C(row, column) = c; p.M(row, column) = m;
       }
     }
   for (const auto& [node, p] : single) add_part<1>(a, p, {node}, {internal[node]}, "foundation matrices");

@@ -12,8 +12,8 @@ namespace {
 elements::TorqueLaw torque_law(const model::TorqueCurve& c) {
   elements::TorqueLaw t;
   t.of_time = c.of_time;
-  t.speed = c.speed, t.torque = c.torque;
-  t.friction = c.constant, t.viscous = c.viscous, t.quadratic = c.quadratic;
+  t.speed = c.speed; t.torque = c.torque;
+  t.friction = c.constant; t.viscous = c.viscous; t.quadratic = c.quadratic;
   if (c.induction) t.induction = {c.induction->breakdown, c.induction->slip_breakdown, c.induction->synchronous};
   if (c.power) t.power = {c.power->power, c.power->max_torque};
   if (c.dc) t.dc = {c.dc->stall, c.dc->no_load_speed};
@@ -66,7 +66,7 @@ void add_axial_force(Assembly& a, std::size_t shaft) {
 
 void add_loads(Assembly& a) {
   for (int k = 0; k < 3; ++k)
-    if (const LawPtr& law = a.model.base.acceleration[static_cast<std::size_t>(k)]) a.builder.set_base_acceleration(k, law), a.take_breakpoints(law);
+    if (const LawPtr& law = a.model.base.acceleration[static_cast<std::size_t>(k)]) { a.builder.set_base_acceleration(k, law); a.take_breakpoints(law); }
   for (const model::PointLoad& l : a.model.loads) add_load(a, l);
   for (std::size_t k = 0; k < a.model.shafts.size(); ++k) add_axial_force(a, k);
 

@@ -45,7 +45,7 @@ std::array<bool, 6> resisted(const model::Bearing& b) {
   } else if (std::holds_alternative<model::BallBearing>(b.law)) {
     out[x] = out[y] = out[z] = out[ry] = out[rz] = true;
   } else if (const auto* estimate = std::get_if<model::RollingEstimate>(&b.law)) {
-    out[x] = estimate->kxx > 0, out[y] = out[z] = true;
+    out[x] = estimate->kxx > 0; out[y] = out[z] = true;
   } else if (std::holds_alternative<model::RollerBearing>(b.law)) {
     out[y] = out[z] = out[ry] = out[rz] = true;
   } else if (const auto* coupling = std::get_if<model::Coupling>(&b.law)) {
@@ -189,14 +189,14 @@ class Restraint {
       if (e.line < 0 || it == lines.end()) return;
       const Index i = 2 * (it - lines.begin());
       const double h = half(*it), middle = 0.5 * a_.mesh.lines[*it].length;
-      if (!tilt) row[i] += sign, row[i + 1] += sign * (e.s - middle) / h;
+      if (!tilt) { row[i] += sign; row[i + 1] += sign * (e.s - middle) / h; }
       else row[i + 1] += sign * half(lines.front()) / h;
     };
     for (const Link& k : links_)
       for (bool tilt : {false, true}) {
         if (!k.in[tilt ? turn : along] || !contains(lines, k.a.line)) continue;
         VecX row = VecX::Zero(n);
-        add(row, k.a, tilt, 1.0), add(row, k.b, tilt, -1.0);
+        add(row, k.a, tilt, 1.0); add(row, k.b, tilt, -1.0);
         A += row * row.transpose();
       }
     // Two supports at a distance of 1e-6 of the shaft still count as two.

@@ -26,7 +26,7 @@ void add_stress(const elements::ElementSection& s, double xi, SectionPoint& p) {
   const double A = elements::annulus_area(od, id), I = elements::annulus_I(od, id), J = elements::annulus_J(od, id), c = 0.5 * od, ri = 0.5 * id;
   const double shear = 4.0 * p.V.norm() * (c * c + c * ri + ri * ri) / (3.0 * A * (c * c + ri * ri));
   p.has_stress = true;
-  p.axial = p.N / A, p.bending = p.M.norm() * c / I, p.torsion = std::abs(p.T) * c / J;
+  p.axial = p.N / A; p.bending = p.M.norm() * c / I; p.torsion = std::abs(p.T) * c / J;
   const double surface = std::hypot(std::abs(p.axial) + p.bending, std::sqrt(3.0) * p.torsion);
   p.von_mises = std::max(surface, std::hypot(p.axial, std::sqrt(3.0) * (p.torsion + shear)));
 }
@@ -44,10 +44,10 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
     built.element_forces.at(k)(built.system, {&n1, &n2}, context, f);
     const double L = e.s2 - e.s1;
     End a, b;
-    a.d = n1.d(), b.d = n2.d();
+    a.d = n1.d(); b.d = n2.d();
     a.r = mesh.nodes[static_cast<std::size_t>(e.left.node)].position + n1.u + e.left.offset * a.d;
     b.r = mesh.nodes[static_cast<std::size_t>(e.right.node)].position + n2.u + e.right.offset * b.d;
-    a.F = -f.segment<3>(0), b.F = f.segment<3>(7);
+    a.F = -f.segment<3>(0); b.F = f.segment<3>(7);
     a.M = -moment_of(n1, f.segment<3>(3), f[6]) - e.left.offset * a.d.cross(a.F);
     b.M = moment_of(n2, f.segment<3>(10), f[13]) - e.right.offset * b.d.cross(b.F);
     const Vec3 chord = (b.r - a.r) / L;
@@ -64,7 +64,7 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
     for (int j = 0; j <= inner + 1; ++j) {
       const double x = static_cast<double>(j) / (inner + 1), y = 1.0 - x;
       SectionPoint p;
-      p.line = e.line, p.element = static_cast<Index>(k), p.s = j == 0 ? e.s1 : j == inner + 1 ? e.s2 : e.s1 + x * L, p.xi = x;
+      p.line = e.line; p.element = static_cast<Index>(k); p.s = j == 0 ? e.s1 : j == inner + 1 ? e.s2 : e.s1 + x * L; p.xi = x;
       p.force = y * a.F + x * b.F;
       p.moment = y * y * (1.0 + 2.0 * x) * a.M + x * x * (3.0 - 2.0 * x) * b.M + x * y * (y * dM1 - x * dM2);
       const Vec3 d = (bent ? Vec3(y * t1.col(0) + x * t2.col(0)) : Vec3(y * a.d + x * b.d)).normalized();
@@ -72,13 +72,13 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
       Vec3 ey, ez;
       if (bent) {   // turning with the twist from end to end
         const Vec3 mean = y * t1.col(1) + x * t2.col(1);
-        ey = (mean - d.dot(mean) * d).normalized(), ez = d.cross(ey);
+        ey = (mean - d.dot(mean) * d).normalized(); ez = d.cross(ey);
       } else {
         const Mat3 axes = rotation::minimal_rotation(chart.col(0), d);
-        ey = axes * chart.col(1), ez = axes * chart.col(2);
+        ey = axes * chart.col(1); ez = axes * chart.col(2);
       }
-      p.N = p.force.dot(d), p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
-      p.T = p.moment.dot(d), p.M = Vec2(p.moment.dot(ey), p.moment.dot(ez));
+      p.N = p.force.dot(d); p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
+      p.T = p.moment.dot(d); p.M = Vec2(p.moment.dot(ey), p.moment.dot(ez));
       if (!section.general) add_stress(shape, x, p);
       out.push_back(p);
     }

@@ -122,9 +122,9 @@ elements::GeneralBeamConstants round_constants(Assembly& a, const MassShares& sh
   const double l = e.s2 - e.s1;
   const ShaftElementConstants k = between_nodes(a, shares, e, section, 1.0);
   elements::GeneralBeamConstants c;
-  c.length = l, c.EA_l = k.EA_l, c.GJ_l = k.GJ_l;
-  c.ky_def11 = c.kz_def11 = k.k11, c.ky_def12 = c.kz_def12 = k.k12, c.ky_def22 = c.kz_def22 = k.k22;
-  c.b11 = k.b11, c.b12 = k.b12, c.b22 = k.b22;
+  c.length = l; c.EA_l = k.EA_l; c.GJ_l = k.GJ_l;
+  c.ky_def11 = c.kz_def11 = k.k11; c.ky_def12 = c.kz_def12 = k.k12; c.ky_def22 = c.kz_def22 = k.k22;
+  c.b11 = k.b11; c.b12 = k.b12; c.b22 = k.b22;
   c.M4 = k.M4;
   c.rhoIz_l = c.rhoIy_l = c.rhoI_l = 0.5 * k.polar.sum();
   c.beta = shaft.damping.beta_internal;
@@ -154,16 +154,16 @@ elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& 
                    material.rho * g.A + s.added_mass_per_length, s.rotary_inertia ? 0.5 * material.rho * (g.Iy + g.Iz) : 0.0, 0};
     return between_nodes(a, shares, e, plane, 0.5);
   };
-  y = constants(g.Iz, g.kappa_y), z = constants(g.Iy, g.kappa_z);
+  y = constants(g.Iz, g.kappa_y); z = constants(g.Iy, g.kappa_z);
   elements::GeneralBeamConstants c;
   c.length = l;
-  c.EA_l = y.EA_l, c.GJ_l = y.GJ_l;
-  c.ky_def11 = y.k11, c.ky_def12 = y.k12, c.ky_def22 = y.k22;
-  c.kz_def11 = z.k11, c.kz_def12 = z.k12, c.kz_def22 = z.k22;
-  c.b11 = 0.5 * (y.b11 + z.b11), c.b12 = 0.5 * (y.b12 + z.b12), c.b22 = 0.5 * (y.b22 + z.b22);
+  c.EA_l = y.EA_l; c.GJ_l = y.GJ_l;
+  c.ky_def11 = y.k11; c.ky_def12 = y.k12; c.ky_def22 = y.k22;
+  c.kz_def11 = z.k11; c.kz_def12 = z.k12; c.kz_def22 = z.k22;
+  c.b11 = 0.5 * (y.b11 + z.b11); c.b12 = 0.5 * (y.b12 + z.b12); c.b22 = 0.5 * (y.b22 + z.b22);
   c.M4 = 0.5 * (y.M4 + z.M4);
   const double rho = s.rotary_inertia ? material.rho * l : 0.0;
-  c.rhoIz_l = rho * g.Iz, c.rhoIy_l = rho * g.Iy, c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
+  c.rhoIz_l = rho * g.Iz; c.rhoIy_l = rho * g.Iy; c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
   c.beta = shaft.damping.beta_internal;
   return c;
 }
@@ -185,10 +185,10 @@ void add_general(Assembly& a, const MassShares& shares, const model::Shaft& shaf
   finish_general(a, shaft, e, beam, nodes);
   // Fixed-axes damping does not turn with the section: it takes the mean of both planes.
   ShaftElementConstants mean = y;
-  mean.k11 = 0.5 * (y.k11 + z.k11), mean.k12 = 0.5 * (y.k12 + z.k12), mean.k22 = 0.5 * (y.k22 + z.k22);
-  mean.o1 = e.left.offset, mean.o2 = e.right.offset;
+  mean.k11 = 0.5 * (y.k11 + z.k11); mean.k12 = 0.5 * (y.k12 + z.k12); mean.k22 = 0.5 * (y.k22 + z.k22);
+  mean.o1 = e.left.offset; mean.o2 = e.right.offset;
   Matrix<4> T = Matrix<4>::Identity();
-  T(0, 1) = mean.o1, T(2, 3) = mean.o2;
+  T(0, 1) = mean.o1; T(2, 3) = mean.o2;
   mean.M4 = T.transpose() * c.M4 * T;
   add_damping(a, shaft, mean, nodes, false);
 }
@@ -200,7 +200,7 @@ void add_curved(Assembly& a, const MassShares& shares, const model::Shaft& shaft
   const model::ShaftDamping& d = shaft.damping;
   ShaftElementConstants y, z;
   elements::GeneralBeamConstants c = s.general ? unequal_constants(a, shares, shaft, e, y, z) : round_constants(a, shares, shaft, e);
-  c.beta = d.beta_internal + d.beta_external, c.beta_twist = c.beta + d.beta_torsion, c.alpha = d.alpha;
+  c.beta = d.beta_internal + d.beta_external; c.beta_twist = c.beta + d.beta_torsion; c.alpha = d.alpha;
   const Path::Point p = shaft.path.after(e.s1), q = shaft.path.before(e.s2);
   elements::GeneralBeam beam(c, q.r - p.r, p.triad * section_axes(s), q.triad * section_axes(s));
   beam.preload = preload_of(a, shaft, e, c.EA_l * c.length);
@@ -222,7 +222,7 @@ void add_rigid_part(Assembly& a, const model::Shaft& shaft, const meshes::RigidP
 void list_absent(Assembly& a, const model::Shaft& shaft, Index line) {
   int elements = 0, joined = 0;
   for (const meshes::Element& e : a.mesh.elements)
-    if (e.line == line && shaft.path.empty() && !shaft.sections[e.section].general) ++elements, joined += e.left.offset == 0 && e.right.offset == 0;
+    if (e.line == line && shaft.path.empty() && !shaft.sections[e.section].general) { ++elements; joined += e.left.offset == 0 && e.right.offset == 0; }
   if (elements == 0) return;
   std::string absent;
   const auto list = [&](bool is_absent, const char* what) {

@@ -48,7 +48,7 @@ void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     return;
   }
   elements::SpringBlock k;
-  k.C1 = law.C1, k.C2 = law.C2, k.offset = n.shaft.offset;
+  k.C1 = law.C1; k.C2 = law.C2; k.offset = n.shaft.offset;
   const Index node = n.shaft.node;
   a.builder.add(k, {node}, "spring blocks");
   a.built.support_forces.push_back(
@@ -177,7 +177,7 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
       };
     }
     for (std::size_t c = 3; c < 6; ++c)
-      if (law.held[c]) a.builder.hold(node, static_cast<int>(c)), h.held[c] = true;
+      if (law.held[c]) { a.builder.hold(node, static_cast<int>(c)); h.held[c] = true; }
     if (const SupportForce::Law held_turns = moment_of_held(node, law)) support.moment = held_turns;
     return;
   }
@@ -186,7 +186,7 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     if (c >= 3 || arm == 0) {
       h.held[c] = true;
       a.builder.hold(node, static_cast<int>(c));
-      if (c < 3) unknown[c] = 6 * node + static_cast<Index>(c), first = true;
+      if (c < 3) { unknown[c] = 6 * node + static_cast<Index>(c); first = true; }
       continue;
     }
     const std::size_t tilt = c == 1 ? 5 : 4;   // y: gamma3, z: gamma2

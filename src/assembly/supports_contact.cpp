@@ -43,7 +43,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::Rub& law) {
   elements::RubLaw k;
-  k.gap = law.gap, k.stiffness = law.stiffness, k.damping = law.damping, k.friction = law.friction, k.slip_speed = law.slip_speed;
+  k.gap = law.gap; k.stiffness = law.stiffness; k.damping = law.damping; k.friction = law.friction; k.slip_speed = law.slip_speed;
   k.radius = law.diameter > 0 ? 0.5 * law.diameter : a.mesh.radius(a.model, b.at.shaft, b.at.s);
   if (law.friction > 0 && !(k.radius > 0)) {
     a.error("E05", fmt::format("{}: friction needs the diameter of the rubbing surface, and the shaft has none there", name_of(b)), "diameter = \"80 mm\"", b, name_of(b));
@@ -52,7 +52,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
   add_lateral(a, b, n, k, "contacts");
   a.built.conditions.push_back({b.name, b.where, [r = displacement_of(n), k](const NodeAt& at) {
     SupportCondition::State s;
-    s.gap = k.gap, s.displacement = r(at).norm();
+    s.gap = k.gap; s.displacement = r(at).norm();
     s.load = k.stiffness * std::max(0.0, s.displacement - k.gap);
     return s;
   }});

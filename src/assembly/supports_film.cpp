@@ -30,12 +30,12 @@ void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   const Pair nodes{n.shaft.node, n.other.node};
   a.built.conditions.push_back({b.name, b.where, [r = displacement_of(n), law, clearance, nodes](const NodeAt& at) {
     elements::LateralMotion m;
-    m.r = r(at), m.v.setZero(), m.a.setZero();
-    m.spin = at(nodes[0]).spin(), m.housing_spin = at(nodes[1]).spin();
+    m.r = r(at); m.v.setZero(); m.a.setZero();
+    m.spin = at(nodes[0]).spin(); m.housing_spin = at(nodes[1]).spin();
     Vector<4> z;
     law.force(m, z);
     SupportCondition::State s;
-    s.film = true, s.gap = clearance, s.displacement = m.r.norm(), s.load = z.head<2>().norm();
+    s.film = true; s.gap = clearance; s.displacement = m.r.norm(); s.load = z.head<2>().norm();
     m.r = s.displacement > 0 ? Vec2(m.r * (SupportCondition::believed * clearance / s.displacement)) : Vec2(0.0, -SupportCondition::believed * clearance);
     law.force(m, z);
     s.capacity = z.head<2>().norm();
@@ -66,7 +66,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::FiniteJournal& law) {
   guarded(a, b, [&] {
     elements::FiniteJournal film;
-    film.radius = 0.5 * law.diameter, film.length = law.length, film.viscosity = viscosity_of(law.oil);
+    film.radius = 0.5 * law.diameter; film.length = law.length; film.viscosity = viscosity_of(law.oil);
     film.surface = std::make_shared<elements::JournalSurface>(law.clearance, law.preload, pads_of(law), law.nodes);
     add_film(a, b, n, film, law.clearance);
   });
@@ -80,7 +80,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     else if (law.film == Film::full) add_damper(a, b, n, elements::ShortFullFilm{R, law.length, law.clearance, eta});
     else {
       elements::FiniteJournal film;
-      film.radius = R, film.length = law.length, film.viscosity = eta;
+      film.radius = R; film.length = law.length; film.viscosity = eta;
       std::vector<elements::JournalPad> pads;
       if (law.film == Film::sealed) {
         film.seal_ends();
@@ -92,14 +92,14 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     follow_closely(a, n, law.clearance);
     a.built.conditions.push_back({b.name, b.where, [r = displacement_of(n), law](const NodeAt& at) {
       SupportCondition::State s;
-      s.film = true, s.gap = law.clearance, s.displacement = r(at).norm();
-      s.load = law.stiffness * s.displacement, s.capacity = law.stiffness * SupportCondition::believed * law.clearance;
+      s.film = true; s.gap = law.clearance; s.displacement = r(at).norm();
+      s.load = law.stiffness * s.displacement; s.capacity = law.stiffness * SupportCondition::believed * law.clearance;
       return s;
     }});
     if (law.stiffness == 0 && law.damping == 0) return;
     // The centring spring acts beside the film: one support, two elements. Its force is added to the film's.
     model::LinearBearing spring;
-    for (Index k : {1, 2}) spring.K(k, k) = law.stiffness, spring.C(k, k) = law.damping;
+    for (Index k : {1, 2}) { spring.K(k, k) = law.stiffness; spring.C(k, k) = law.damping; }
     auto film = a.built.support_forces.back().force;
     add_linear(a, b, n, spring);
     auto centring = a.built.support_forces.back().force;
@@ -112,8 +112,8 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::AnnularSeal& law) {
   elements::AnnularSeal k;
-  k.radius = 0.5 * law.diameter, k.length = law.length, k.clearance = law.clearance, k.pressure_drop = law.pressure_drop;
-  k.density = law.density, k.viscosity = law.viscosity, k.inlet_loss = law.inlet_loss, k.inlet_swirl = law.inlet_swirl;
+  k.radius = 0.5 * law.diameter; k.length = law.length; k.clearance = law.clearance; k.pressure_drop = law.pressure_drop;
+  k.density = law.density; k.viscosity = law.viscosity; k.inlet_loss = law.inlet_loss; k.inlet_swirl = law.inlet_swirl;
   add_lateral(a, b, n, k, "annular seals", Friction::none);
 }
 
@@ -126,7 +126,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     k = elements::wachel_stiffness(w.power, w.speed, w.diameter, w.width, w.molar_mass, w.density_ratio);
   }
   model::LinearBearing linear;   // F = -K q: F_y = -k z, F_z = k y
-  linear.K(1, 2) = k, linear.K(2, 1) = -k;
+  linear.K(1, 2) = k; linear.K(2, 1) = -k;
   add_linear(a, b, n, linear);
 }
 

@@ -33,11 +33,11 @@ void add_rolling(Assembly& a, const model::Bearing& b, const meshes::BearingNode
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::BallBearing& law) {
   guarded(a, b, [&] {
     elements::BallGeometry g;
-    g.balls = law.balls, g.ball_diameter = law.ball_diameter, g.pitch_diameter = law.pitch_diameter, g.contact_angle = law.contact_angle;
-    g.radial_clearance = law.clearance, g.f_inner = law.f_inner, g.f_outer = law.f_outer, g.direction = law.direction, g.stiffness = law.stiffness;
+    g.balls = law.balls; g.ball_diameter = law.ball_diameter; g.pitch_diameter = law.pitch_diameter; g.contact_angle = law.contact_angle;
+    g.radial_clearance = law.clearance; g.f_inner = law.f_inner; g.f_outer = law.f_outer; g.direction = law.direction; g.stiffness = law.stiffness;
     elements::BallBearing k = elements::make_ball_bearing(g);
     if (law.preload > 0) elements::set_axial_preload(k, law.preload);
-    k.c_radial = law.c_radial, k.c_axial = law.c_axial;
+    k.c_radial = law.c_radial; k.c_axial = law.c_axial;
     add_rolling(a, b, n, k, "ball bearings");
   });
 }
@@ -45,7 +45,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::RollerBearing& law) {
   guarded(a, b, [&] {
     elements::RollerBearing k = elements::make_roller_bearing({law.rollers, law.roller_diameter, law.roller_length, law.pitch_diameter, law.clearance, law.stiffness});
-    k.c_radial = law.c_radial, k.c_axial = law.c_axial;
+    k.c_radial = law.c_radial; k.c_axial = law.c_axial;
     add_rolling(a, b, n, k, "roller bearings");
   });
 }

@@ -9,15 +9,15 @@ namespace whirl::assembly {
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::Coupling& law) {
   elements::ShaftCoupling k;
-  k.K = law.K, k.C = law.C;
-  k.offset = Vec3(0, law.offset_y, law.offset_z), k.angle = Vec2(std::sin(law.angle_y), std::sin(law.angle_z));
+  k.K = law.K; k.C = law.C;
+  k.offset = Vec3(0, law.offset_y, law.offset_z); k.angle = Vec2(std::sin(law.angle_y), std::sin(law.angle_z));
   add_joint(a, b, n, k, "couplings");
 }
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::GearPair& law) {
   elements::GearGeometry g;
-  g.z1 = law.teeth, g.z2 = law.other_teeth, g.pitch_radius = 0.5 * law.pitch_diameter;
-  g.pressure_angle = law.pressure_angle, g.base_helix = law.helix, g.drive = law.drive;
+  g.z1 = law.teeth; g.z2 = law.other_teeth; g.pitch_radius = 0.5 * law.pitch_diameter;
+  g.pressure_angle = law.pressure_angle; g.base_helix = law.helix; g.drive = law.drive;
   // Places of the gear centres: they say where the mesh is, and must agree with the teeth.
   const Vec3 p = a.mesh.station(b.at).position, q = a.mesh.station(*b.to).position;
   const Vec2 between = (q - p).tail<2>();

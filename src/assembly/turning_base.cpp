@@ -29,7 +29,7 @@ void add_turning_base(Assembly& a) {
   const auto& t = a.model.base.turn;
   if (!t) return;
   auto base = std::make_shared<elements::TurningBase>();
-  base->axis = t->axis, base->about = t->about, base->rate = t->rate, base->gravity = a.model.gravity;
+  base->axis = t->axis; base->about = t->about; base->rate = t->rate; base->gravity = a.model.gravity;
   a.take_breakpoints(t->rate);
   turn<elements::ShaftBeam<false>>(a, base);
   turn<elements::ShaftBeam<true>>(a, base);

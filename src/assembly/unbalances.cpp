@@ -44,7 +44,7 @@ Shares share(double U, double x0, Index k, const std::vector<double>& x, const s
     for (Index j = lo; j <= hi; ++j) {
       const auto i = static_cast<std::size_t>(j);
       const double c = nodes[i].carries() * nodes[i].carries(), xi = (x[i] - x0) / scale;
-      s0 += c, s1 += c * xi, s2 += c * xi * xi;
+      s0 += c; s1 += c * xi; s2 += c * xi * xi;
     }
     const double det = s0 * s2 - s1 * s1;
     if (hi > lo && det > 0) {
@@ -67,7 +67,7 @@ Shares share(double U, double x0, Index k, const std::vector<double>& x, const s
 
 void too_much(Assembly& a, const model::Unbalance& u, double U, const std::vector<NodeInertia>& nodes) {
   NodeInertia whole;
-  for (const NodeInertia& n : nodes) whole.mass += n.mass, whole.Ip += n.Ip;
+  for (const NodeInertia& n : nodes) { whole.mass += n.mass; whole.Ip += n.Ip; }
   a.error("E38", fmt::format("an unbalance of {:.4g} kg m is more than its shaft can have: {:.4g} kg with a radius of inertia of {:.3g} mm about the axis, the mass centre {:.3g} mm beside it", U, whole.mass,
                              1e3 * std::sqrt(whole.Ip / whole.mass), 1e3 * U / whole.mass),
           "an amount is mass times eccentricity: 1 g at 100 mm is \"100 g.mm\" = \"1e-4 kg.m\"; give the disk that has it its mass, Ip and Id", u, u.name.empty() ? "unbalance" : u.name);

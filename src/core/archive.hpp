@@ -16,8 +16,8 @@ class OutArchive {
  public:
   void put(double x) { raw(&x, sizeof x); }
   void put_count(std::uint64_t n) { raw(&n, sizeof n); }
-  void put(std::string_view s) { put_count(s.size()), raw(s.data(), s.size()); }
-  void put(std::span<const double> x) { put_count(x.size()), raw(x.data(), x.size_bytes()); }
+  void put(std::string_view s) { put_count(s.size()); raw(s.data(), s.size()); }
+  void put(std::span<const double> x) { put_count(x.size()); raw(x.data(), x.size_bytes()); }
   void put(const VecX& x) { put(std::span<const double>(x.data(), static_cast<std::size_t>(x.size()))); }
   const std::string& data() const { return data_; }
 

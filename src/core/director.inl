@@ -70,11 +70,11 @@ template <class T>
 WHIRL_INLINE Place<T> place_of(T g2, T g3, T x, const Ratios<T>& b) {
   Place<T> o;
   o.t[0] = cosine_less_one(x, b);
-  o.t[1] = b.b0 * g3, o.t[2] = -(b.b0 * g2);
-  o.D[0][0] = -(b.b0 * g2), o.D[0][1] = -(b.b0 * g3);
+  o.t[1] = b.b0 * g3; o.t[2] = -(b.b0 * g2);
+  o.D[0][0] = -(b.b0 * g2); o.D[0][1] = -(b.b0 * g3);
   const T b3 = b.b1 * g3, b2 = b.b1 * g2;
-  o.D[1][0] = -(b3 * g2), o.D[1][1] = b.b0 - b3 * g3;
-  o.D[2][0] = b2 * g2 - b.b0, o.D[2][1] = b2 * g3;
+  o.D[1][0] = -(b3 * g2); o.D[1][1] = b.b0 - b3 * g3;
+  o.D[2][0] = b2 * g2 - b.b0; o.D[2][1] = b2 * g3;
   return o;
 }
 
@@ -84,9 +84,9 @@ WHIRL_INLINE void jacobian_rate(T g2, T g3, T w2, T w3, const Ratios<T>& b, T (&
   const T alpha = g2 * w2 + g3 * w3, ba = b.b1 * alpha, bg2 = b.b1 * g2, bg3 = b.b1 * g3;
   // p = gamma x e = (g3, -g2) turns into (w3, -w2)
   const T l3 = b.b2 * alpha * g3 - b.b1 * w3, l2 = b.b1 * w2 - b.b2 * alpha * g2;
-  r[0][0] = ba * g2 - b.b0 * w2, r[0][1] = ba * g3 - b.b0 * w3;
-  r[1][0] = l3 * g2 - bg3 * w2, r[1][1] = l3 * g3 - bg3 * w3 - ba;
-  r[2][0] = l2 * g2 + bg2 * w2 + ba, r[2][1] = l2 * g3 + bg2 * w3;
+  r[0][0] = ba * g2 - b.b0 * w2; r[0][1] = ba * g3 - b.b0 * w3;
+  r[1][0] = l3 * g2 - bg3 * w2; r[1][1] = l3 * g3 - bg3 * w3 - ba;
+  r[2][0] = l2 * g2 + bg2 * w2 + ba; r[2][1] = l2 * g3 + bg2 * w3;
 }
 
 /// d' = D w, d'' = D a + D' w.

@@ -26,8 +26,8 @@ struct Dual {
     const double q = a.v / b.v;
     return {q, (a.g - q * b.g) / b.v};
   }
-  Dual& operator+=(const Dual& b) { v += b.v, g += b.g; return *this; }
-  Dual& operator-=(const Dual& b) { v -= b.v, g -= b.g; return *this; }
+  Dual& operator+=(const Dual& b) { v += b.v; g += b.g; return *this; }
+  Dual& operator-=(const Dual& b) { v -= b.v; g -= b.g; return *this; }
   /// f(x) with derivative df at x.
   friend Dual chain(const Dual& x, double f, double df) { return {f, df * x.g}; }
   friend Dual sqrt(const Dual& x) { const double s = std::sqrt(x.v); return {s, x.g / (2.0 * s)}; }

@@ -22,7 +22,7 @@ const Kernels& best_kernels(const Kernels* baseline, const Kernels* avx2, const 
   if (avx512 && fma && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) return *avx512;
   if (avx2 && fma && __builtin_cpu_supports("avx2")) return *avx2;
 #else
-  (void)avx2, (void)avx512;
+  (void)avx2; (void)avx512;
 #endif
   return *baseline;
 }

@@ -26,10 +26,10 @@ WHIRL_INLINE void transpose4(T a, T b, T c, T d, T* r) {
 #ifdef __AVX2__
   const T l01 = __builtin_shufflevector(a, b, 0, 4, 2, 6), h01 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
   const T l23 = __builtin_shufflevector(c, d, 0, 4, 2, 6), h23 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  r[0] = __builtin_shufflevector(l01, l23, 0, 1, 4, 5), r[1] = __builtin_shufflevector(h01, h23, 0, 1, 4, 5);
-  r[2] = __builtin_shufflevector(l01, l23, 2, 3, 6, 7), r[3] = __builtin_shufflevector(h01, h23, 2, 3, 6, 7);
+  r[0] = __builtin_shufflevector(l01, l23, 0, 1, 4, 5); r[1] = __builtin_shufflevector(h01, h23, 0, 1, 4, 5);
+  r[2] = __builtin_shufflevector(l01, l23, 2, 3, 6, 7); r[3] = __builtin_shufflevector(h01, h23, 2, 3, 6, 7);
 #else
-  (void)a, (void)b, (void)c, (void)d, (void)r;
+  (void)a; (void)b; (void)c; (void)d; (void)r;
 #endif
 }
 /// Four consecutive doubles of each into four vectors.
@@ -37,9 +37,9 @@ WHIRL_INLINE void load4(const double* const* p, T& a, T& b, T& c, T& d) {
 #ifdef __AVX2__
   T r[4];
   transpose4(*(const Unaligned*)p[0], *(const Unaligned*)p[1], *(const Unaligned*)p[2], *(const Unaligned*)p[3], r);
-  a = r[0], b = r[1], c = r[2], d = r[3];
+  a = r[0]; b = r[1]; c = r[2]; d = r[3];
 #else
-  a = T{p[0][0], p[1][0]}, b = T{p[0][1], p[1][1]}, c = T{p[0][2], p[1][2]}, d = T{p[0][3], p[1][3]};
+  a = T{p[0][0], p[1][0]}; b = T{p[0][1], p[1][1]}; c = T{p[0][2], p[1][2]}; d = T{p[0][3], p[1][3]};
 #endif
 }
 WHIRL_INLINE void advance(const double** p, int n) {
@@ -59,7 +59,7 @@ WHIRL_INLINE void store4(double* const* p, int offset, int used, T a, T b, T c, 
     if (i < used) *(Unaligned*)(p[i] + offset) = r[i];
 #else
   for (int i = 0; i < width; ++i)
-    if (i < used) p[i][offset] = a[i], p[i][offset + 1] = b[i], p[i][offset + 2] = c[i], p[i][offset + 3] = d[i];
+    if (i < used) { p[i][offset] = a[i]; p[i][offset + 1] = b[i]; p[i][offset + 2] = c[i]; p[i][offset + 3] = d[i]; }
 #endif
 }
 /// Adds four components to four consecutive doubles of each element, the first `used` elements only.
@@ -71,7 +71,7 @@ WHIRL_INLINE void add4(double* const* p, int offset, int used, T a, T b, T c, T 
     if (i < used) *(Unaligned*)(p[i] + offset) += r[i];
 #else
   for (int i = 0; i < width; ++i)
-    if (i < used) p[i][offset] += a[i], p[i][offset + 1] += b[i], p[i][offset + 2] += c[i], p[i][offset + 3] += d[i];
+    if (i < used) { p[i][offset] += a[i]; p[i][offset + 1] += b[i]; p[i][offset + 2] += c[i]; p[i][offset + 3] += d[i]; }
 #endif
 }
 

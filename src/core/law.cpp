@@ -168,7 +168,7 @@ class Sum final : public Law {
     LawValue s;
     for (const auto& l : laws_) {
       const LawValue v = l->at(t);
-      s.f += v.f, s.df += v.df, s.ddf += v.ddf;
+      s.f += v.f; s.df += v.df; s.ddf += v.ddf;
     }
     return s;
   }
@@ -243,7 +243,7 @@ class AngleOfSpeed final : public Law {
         const double h = (knots[k + 1] - knots[k]) / n;
         for (int i = 0; i < n; ++i) {
           const double part = gauss10(f, knots[k] + i * h, knots[k] + (i + 1) * h);
-          now += part, size += std::abs(part);
+          now += part; size += std::abs(part);
         }
         const bool settled = std::abs(now - before) <= 4e-15 * size;
         before = now;
@@ -286,7 +286,7 @@ LawPtr make_pchip(std::vector<double> t, std::vector<double> f) {
   const std::size_t n = t.size();
   if (n < 3) return make_table(std::move(t), std::move(f));
   std::vector<double> h(n - 1), secant(n - 1), slope(n);
-  for (std::size_t k = 0; k + 1 < n; ++k) h[k] = t[k + 1] - t[k], secant[k] = (f[k + 1] - f[k]) / h[k];
+  for (std::size_t k = 0; k + 1 < n; ++k) { h[k] = t[k + 1] - t[k]; secant[k] = (f[k + 1] - f[k]) / h[k]; }
   for (std::size_t k = 1; k + 1 < n; ++k) {
     if (secant[k - 1] * secant[k] <= 0.0) continue;
     const double w1 = 2.0 * h[k] + h[k - 1], w2 = h[k] + 2.0 * h[k - 1];

@@ -23,8 +23,8 @@ Mat3 least_turn(const Vec3& a, const Vec3& b) {
 
 bool Path::append(const Vec3& tangent, double length, const Vec3& turn, const Vec3& centre) {
   Piece p;
-  p.s0 = this->length(), p.s1 = p.s0 + length;
-  p.r = end_, p.turn = turn, p.centre = centre;
+  p.s0 = this->length(); p.s1 = p.s0 + length;
+  p.r = end_; p.turn = turn; p.centre = centre;
   const Mat3 last = pieces_.empty() ? Mat3::Identity() : on(pieces_.back(), pieces_.back().s1).triad;
   p.triad = least_turn(last.col(0), tangent) * last;
   p.triad.col(0) = tangent;

@@ -122,7 +122,7 @@ Vec3 euler_vector(const Mat3& R) {
     v[j] = R(j, i) + R(i, j);
     v[l] = R(l, i) + R(i, l);
   }
-  if (w < 0.0) w = -w, v = -v;
+  if (w < 0.0) { w = -w; v = -v; }
   const double n = v.stableNorm();
   return n > 0.0 ? Vec3(v * (2.0 * std::atan2(n, w) / n)) : Vec3(Vec3::Zero());
 }
@@ -263,9 +263,9 @@ Angles ChartChange::apply(const Angles& old) const {
   const Vec3 omega = Q * omega_of_rates(old.gamma, old.dphi, old.dgamma);
   const Vec3 domega = Q * omega_rate_of_rates(old.gamma, old.dphi, old.dgamma, old.ddphi, old.ddgamma);
   const ChartRates v = rates_of_omega(now.gamma, omega);
-  now.dphi = v.phi, now.dgamma = v.gamma;
+  now.dphi = v.phi; now.dgamma = v.gamma;
   const ChartRates acc = accelerations_of_omega(now.gamma, now.dphi, now.dgamma, domega);
-  now.ddphi = acc.phi, now.ddgamma = acc.gamma;
+  now.ddphi = acc.phi; now.ddgamma = acc.gamma;
   return now;
 }
 

@@ -29,7 +29,7 @@ void Collector::append(std::span<const double> row) {
 Columns Collector::last() const {
   Columns c;
   for (const auto& ch : channels_)
-    for (std::size_t k = 0; k < ch.width(); ++k) c.names.push_back(ch.column(k)), c.units.push_back(ch.unit);
+    for (std::size_t k = 0; k < ch.width(); ++k) { c.names.push_back(ch.column(k)); c.units.push_back(ch.unit); }
   c.values.resize(scale_.size());
   const std::uint64_t n = std::min<std::uint64_t>(rows_, keep_);
   for (std::uint64_t i = rows_ - n; i < rows_; ++i)

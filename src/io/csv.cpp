@@ -139,7 +139,7 @@ std::size_t read_record(const std::string& text, std::size_t at, std::vector<std
     const char c = text[at];
     if (in_quotes) {
       if (c != '"') cells.back() += c;
-      else if (at + 1 < text.size() && text[at + 1] == '"') cells.back() += '"', ++at;
+      else if (at + 1 < text.size() && text[at + 1] == '"') { cells.back() += '"'; ++at; }
       else in_quotes = false;
     } else if (c == '"') in_quotes = true;
     else if (c == ',') cells.emplace_back();

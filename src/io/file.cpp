@@ -106,7 +106,7 @@ int write_all(int fd, const char* p, std::size_t n) {
       if (errno == EINTR) continue;
       return errno;
     }
-    p += k, n -= static_cast<std::size_t>(k);
+    p += k; n -= static_cast<std::size_t>(k);
   }
   return 0;
 }
@@ -228,7 +228,7 @@ void OverwriteFile::put(std::uint64_t offset, std::string_view s) {
     const ssize_t k = ::pwrite(fd_, s.data(), s.size(), static_cast<off_t>(offset));
     if (k < 0 && errno == EINTR) continue;
     if (k < 0) io_failure(path_, "cannot write", errno);
-    s.remove_prefix(static_cast<std::size_t>(k)), offset += static_cast<std::uint64_t>(k);
+    s.remove_prefix(static_cast<std::size_t>(k)); offset += static_cast<std::uint64_t>(k);
   }
 }
 

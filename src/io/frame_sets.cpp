@@ -210,7 +210,7 @@ class SupportSet final : public FrameSet {
   // A support on a line without a radius (rigid massless rod): a fiftieth of the rotor's length.
   double default_radius() const {
     Vec3 lo = scene_.nodes.front(), hi = lo;
-    for (const auto& x : scene_.nodes) lo = lo.cwiseMin(x), hi = hi.cwiseMax(x);
+    for (const auto& x : scene_.nodes) { lo = lo.cwiseMin(x); hi = hi.cwiseMax(x); }
     double longest = (hi - lo).maxCoeff();
     for (const auto& l : scene_.lines)
       for (const auto& d : l.disks) longest = std::max(longest, d.outer);
@@ -249,7 +249,7 @@ class TrailSet final : public FrameSet {
   void update(const FramePoses& f) override {
     if (times_.size() == longest_) times_.pop_front();
     times_.push_back(f.state->time);
-    data_.points.clear(), data_.lines.clear(), data_.vertices.clear();
+    data_.points.clear(); data_.lines.clear(); data_.vertices.clear();
     auto& age = data_.point_data[0].floats();
     age.clear();
     ++data_.topology;

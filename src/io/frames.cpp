@@ -142,23 +142,23 @@ class VtkFrames final : public FrameWriter {
 
   void begin(const Scene& scene) override {
     open(scene, {}, 0);
-    offered_ = 0, stride_ = 1;
+    offered_ = 0; stride_ = 1;
   }
 
   void save(OutArchive& out) const override {
-    out.put_count(offered_), out.put_count(stride_);
+    out.put_count(offered_); out.put_count(stride_);
     out.put_count(sets_.empty() ? 0 : sets_.front().files.next());
     out.put_count(sets_.empty() ? 0 : sets_.front().files.frames().size());
     if (!sets_.empty())
-      for (const auto& f : sets_.front().files.frames()) out.put(f.time), out.put(f.file);
+      for (const auto& f : sets_.front().files.frames()) { out.put(f.time); out.put(f.file); }
     for (const auto& s : sets_) s.set->save(out);
   }
 
   void resume(const Scene& scene, InArchive& in) override {
-    offered_ = in.count(), stride_ = in.count();
+    offered_ = in.count(); stride_ = in.count();
     const std::uint64_t next = in.count();
     std::vector<Collection::Frame> kept(in.count());
-    for (auto& f : kept) f.time = in.number(), f.file = in.text();
+    for (auto& f : kept) { f.time = in.number(); f.file = in.text(); }
     open(scene, kept, next);
     for (const auto& s : sets_) s.set->restore(in);
   }

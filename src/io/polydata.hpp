@@ -15,8 +15,8 @@ struct PolyData {
     std::vector<std::int64_t> offset{0};      ///< starts of the cells in `point`, one more than cells
     std::vector<std::int64_t> point;
     std::size_t size() const { return offset.size() - 1; }
-    void add(const std::int64_t* p, std::size_t n) { point.insert(point.end(), p, p + n), offset.push_back(static_cast<std::int64_t>(point.size())); }
-    void clear() { offset.assign(1, 0), point.clear(); }
+    void add(const std::int64_t* p, std::size_t n) { point.insert(point.end(), p, p + n); offset.push_back(static_cast<std::int64_t>(point.size())); }
+    void clear() { offset.assign(1, 0); point.clear(); }
   };
   struct Array {
     std::string name;

@@ -109,7 +109,7 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
     bool landing = false;
     if (o.controlled >= 0 && std::isfinite(o.last_controlled)) {
       const double left = std::abs(o.last_controlled - q(o.controlled)) * weight_(o.controlled);
-      if (ds >= left * (1.0 - 1e-9)) ds = left, landing = true;
+      if (ds >= left * (1.0 - 1e-9)) { ds = left; landing = true; }
     }
     const int iterations = correct(problem, q, mu, ds, o, false);
     if (iterations < 0) {
@@ -133,12 +133,12 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
     const double before = mu_direction_;
     last_ = direction_;
     // At a limit point K is singular to rounding: the old tangent serves for one more step.
-    if (!tangent(problem, trial_, trial_mu_, o, false)) direction_ = last_, mu_direction_ = before;
+    if (!tangent(problem, trial_, trial_mu_, o, false)) { direction_ = last_; mu_direction_ = before; }
     if (o.controlled < 0 && !leaving && ds > 1e3 * o.min_step) {
       // A turn of more than 45 degrees in one step may have jumped to another part of the path, or back.
       const double turn = direction_.cwiseProduct(weight_).dot(last_.cwiseProduct(weight_)) + mu_direction_ * before / (mu_weight_ * mu_weight_);
       if (turn < 0.7) {
-        direction_ = last_, mu_direction_ = before;
+        direction_ = last_; mu_direction_ = before;
         ds *= 0.5;
         continue;
       }

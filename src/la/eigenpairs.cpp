@@ -13,7 +13,7 @@ void Eigenpairs::suggest(std::vector<Pair>& found, Complex lambda, const VecXc& 
     Pair p;
     p.lambda = l;
     p.x = full_vector(v);
-    if (vectors) p.from = static_cast<Index>(vectors->size()), vectors->push_back(std::move(v));
+    if (vectors) { p.from = static_cast<Index>(vectors->size()); vectors->push_back(std::move(v)); }
     found.push_back(std::move(p));
   };
   if (!real_problem || std::abs(lambda.imag()) > 1e-6 * std::abs(lambda)) return push(lambda, z);
@@ -96,7 +96,7 @@ bool Eigenpairs::add(Pair&& p) {
   if (p.lambda.imag() < 0.0) {
     p.lambda = std::conj(p.lambda);
     p.x = p.x.conjugate().eval();
-    p.Mx = p.Mx.conjugate().eval(), p.Cx = p.Cx.conjugate().eval(), p.Kx = p.Kx.conjugate().eval();
+    p.Mx = p.Mx.conjugate().eval(); p.Cx = p.Cx.conjugate().eval(); p.Kx = p.Kx.conjugate().eval();
   }
   polisher.assess(p);
   if (!complex_shift()) make_real(p);

@@ -209,7 +209,7 @@ class KluSolver final : public DirectSolver<Scalar> {
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < n(); ++k) {
       const double s = size(u[k]) / col_size_[at(symbolic_->Q[k])];
-      if (!(s >= least)) worst = k, least = s;
+      if (!(s >= least)) { worst = k; least = s; }
       if (s != s) break;
     }
     return least;

@@ -15,7 +15,7 @@ class Krylov {
 
   /// Forgets everything. dim: length of the vectors.
   void reset(Index dim, unsigned seed) {
-    dim_ = dim, locked_ = size_ = next_ = 0;
+    dim_ = dim; locked_ = size_ = next_ = 0;
     rng_.seed(seed);
     if (basis_.rows() != dim || basis_.cols() == 0) basis_.resize(dim, std::min<Index>(dim, 32));
     work_.resize(dim);

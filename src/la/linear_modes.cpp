@@ -58,7 +58,7 @@ std::vector<RealMode> symmetric_modes(const MCK& m, std::span<const unsigned cha
       for (Index i = std::min(count, n - 1); i < n; ++i) {
         const double a = modes[static_cast<std::size_t>(i - 1)].omega2, b = modes[static_cast<std::size_t>(i)].omega2;
         const double gap = (b - a) / (std::abs(a) + std::abs(b));
-        if (gap > widest) widest = gap, below = i, s = 0.5 * (a + b);
+        if (gap > widest) { widest = gap; below = i; s = 0.5 * (a + b); }
       }
     }
     if (inertia.factor(m, -s, 0.0, 1.0) == Status::ok && inertia.negative_eigenvalues() == below) break;

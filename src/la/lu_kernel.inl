@@ -19,7 +19,7 @@ constexpr double noted_growth = 1e3;
 template <class T> struct Block { T c[6]; };
 
 template <int I> struct Int { static constexpr int value = I; };
-template <class F> WHIRL_INLINE void for_each6(F&& f) { f(Int<0>{}), f(Int<1>{}), f(Int<2>{}), f(Int<3>{}), f(Int<4>{}), f(Int<5>{}); }
+template <class F> WHIRL_INLINE void for_each6(F&& f) { f(Int<0>{}); f(Int<1>{}); f(Int<2>{}); f(Int<3>{}); f(Int<4>{}); f(Int<5>{}); }
 
 /// b = sum of coefficient * matrix block. N = number of terms.
 template <int N> WHIRL_INLINE void form(Block<Real>& b, const Terms& t, long slot) {
@@ -36,13 +36,13 @@ template <int N> WHIRL_INLINE void form(Block<Cplx>& b, const Terms& t, long slo
     Col x = splat(t.re[0]) * v, y = splat(t.im[0]) * v;
     if constexpr (N > 1) {
       const Col w = load6(t.value[1] + 36 * slot + 6 * j);
-      x = x + splat(t.re[1]) * w, y = y + splat(t.im[1]) * w;
+      x = x + splat(t.re[1]) * w; y = y + splat(t.im[1]) * w;
     }
     if constexpr (N > 2) {
       const Col w = load6(t.value[2] + 36 * slot + 6 * j);
-      x = x + splat(t.re[2]) * w, y = y + splat(t.im[2]) * w;
+      x = x + splat(t.re[2]) * w; y = y + splat(t.im[2]) * w;
     }
-    b.c[j].x = x, b.c[j].y = y;
+    b.c[j].x = x; b.c[j].y = y;
   }
 }
 
@@ -146,7 +146,7 @@ template <> struct Scalar<Cplx> {
   double re, im;
   double size() const { return __builtin_fabs(re) + __builtin_fabs(im); }
   static Scalar get(const double* p) { return {p[0], p[plane]}; }
-  void put(double* p) const { p[0] = re, p[plane] = im; }
+  void put(double* p) const { p[0] = re; p[plane] = im; }
   Scalar inverse() const {
     const double s = 1.0 / size(), a = re * s, b = im * s, n = s / (a * a + b * b);
     return {a * n, -b * n};
@@ -190,8 +190,8 @@ template <class T> __attribute__((noinline)) int invert_carefully(const double* 
     double best = -1.0;
     for (int j = k; j < 6; ++j)
       for (int i = k; i < 6; ++i)
-        if (a[i][j].size() > best) best = a[i][j].size(), bi = i, bj = j;
-    pr[k] = bi, pc[k] = bj;
+        if (a[i][j].size() > best) { best = a[i][j].size(); bi = i; bj = j; }
+    pr[k] = bi; pc[k] = bj;
     if (!(best > tolerance)) {
       // Follow the column exchanges back to the unknown that is left without a pivot.
       int u = bj;
@@ -289,8 +289,8 @@ template <class T> WHIRL_INLINE void sub_multiply(T& y, const double* a, const d
   T z = zero_of<T>();
   for (int k = 0; k < 6; k += 2) {
     T a0, a1, s0, s1;
-    load_col(a0, a + 8 * k), load_scalar(s0, x + k, lane);
-    load_col(a1, a + 8 * k + 8), load_scalar(s1, x + k + 1, lane);
+    load_col(a0, a + 8 * k); load_scalar(s0, x + k, lane);
+    load_col(a1, a + 8 * k + 8); load_scalar(s1, x + k + 1, lane);
     sub_mul(y, a0, s0);
     sub_mul(z, a1, s1);
   }
@@ -302,18 +302,18 @@ WHIRL_INLINE void load_rhs(Real& y, const double* b) { y.x = load6(b); }
 WHIRL_INLINE void store_rhs(double* b, const Real& y) { store6(b, y.x); }
 WHIRL_INLINE void load_rhs(Cplx& y, const double* b) {
   double re[8] = {}, im[8] = {};
-  for (int i = 0; i < 6; ++i) re[i] = b[2 * i], im[i] = b[2 * i + 1];
-  y.x = load(re), y.y = load(im);
+  for (int i = 0; i < 6; ++i) { re[i] = b[2 * i]; im[i] = b[2 * i + 1]; }
+  y.x = load(re); y.y = load(im);
 }
 WHIRL_INLINE void store_rhs(double* b, const Cplx& y) {
   double re[8], im[8];
-  store(re, y.x), store(im, y.y);
-  for (int i = 0; i < 6; ++i) b[2 * i] = re[i], b[2 * i + 1] = im[i];
+  store(re, y.x); store(im, y.y);
+  for (int i = 0; i < 6; ++i) { b[2 * i] = re[i]; b[2 * i + 1] = im[i]; }
 }
 WHIRL_INLINE void store_vec(double* p, const Real& y) { store(p, y.x); }
-WHIRL_INLINE void store_vec(double* p, const Cplx& y) { store(p, y.x), store(p + lane, y.y); }
+WHIRL_INLINE void store_vec(double* p, const Cplx& y) { store(p, y.x); store(p + lane, y.y); }
 WHIRL_INLINE void load_vec(Real& y, const double* p) { y.x = load(p); }
-WHIRL_INLINE void load_vec(Cplx& y, const double* p) { y.x = load(p), y.y = load(p + lane); }
+WHIRL_INLINE void load_vec(Cplx& y, const double* p) { y.x = load(p); y.y = load(p + lane); }
 
 template <class T> void solve(const Plan& p, const Factors& f, double* b) {
   constexpr long stride = plane * T::planes, width = lane * T::planes;
@@ -377,9 +377,9 @@ void multiply_three(const Matrix6& m, const double* const a[3], const double* x,
       for (int c = 0; c < 6; ++c) {
         const Col re = splat(v[2 * c]), im = splat(v[2 * c + 1]);
         const Col c0 = load6(a[0] + 36 * k + 6 * c), c1 = load6(a[1] + 36 * k + 6 * c), c2 = load6(a[2] + 36 * k + 6 * c);
-        r0.x = r0.x + c0 * re, r0.y = r0.y + c0 * im;
-        r1.x = r1.x + c1 * re, r1.y = r1.y + c1 * im;
-        r2.x = r2.x + c2 * re, r2.y = r2.y + c2 * im;
+        r0.x = r0.x + c0 * re; r0.y = r0.y + c0 * im;
+        r1.x = r1.x + c1 * re; r1.y = r1.y + c1 * im;
+        r2.x = r2.x + c2 * re; r2.y = r2.y + c2 * im;
       }
     }
     store_rhs(y[0] + 12 * i, r0);

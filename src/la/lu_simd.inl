@@ -64,8 +64,8 @@ WHIRL_INLINE Col load(const double* p) { return {*(const v4*)p, *(const v4*)(p +
 WHIRL_INLINE Col load6(const double* p) {
   return {*(const v4*)p, __builtin_shufflevector(*(const v2*)(p + 4), v2{}, 0, 1, 2, 3)};
 }
-WHIRL_INLINE void store(double* p, Col c) { *(v4*)p = c.a, *(v4*)(p + 4) = c.b; }
-WHIRL_INLINE void store6(double* p, Col c) { *(v4*)p = c.a, *(v2*)(p + 4) = __builtin_shufflevector(c.b, c.b, 0, 1); }
+WHIRL_INLINE void store(double* p, Col c) { *(v4*)p = c.a; *(v4*)(p + 4) = c.b; }
+WHIRL_INLINE void store6(double* p, Col c) { *(v4*)p = c.a; *(v2*)(p + 4) = __builtin_shufflevector(c.b, c.b, 0, 1); }
 WHIRL_INLINE Col operator+(Col x, Col y) { return {x.a + y.a, x.b + y.b}; }
 WHIRL_INLINE Col operator-(Col x, Col y) { return {x.a - y.a, x.b - y.b}; }
 WHIRL_INLINE Col operator*(Col x, Col y) { return {x.a * y.a, x.b * y.b}; }
@@ -123,7 +123,7 @@ WHIRL_INLINE Col splat(double s) { return Col::all(s); }
 WHIRL_INLINE Col zero_col() { return splat(0.0); }
 WHIRL_INLINE Col load(const double* p) { return {*(const v2*)p, *(const v2*)(p + 2), *(const v2*)(p + 4)}; }
 WHIRL_INLINE Col load6(const double* p) { return load(p); }
-WHIRL_INLINE void store(double* p, Col x) { *(v2*)p = x.a, *(v2*)(p + 2) = x.b, *(v2*)(p + 4) = x.c; }
+WHIRL_INLINE void store(double* p, Col x) { *(v2*)p = x.a; *(v2*)(p + 2) = x.b; *(v2*)(p + 4) = x.c; }
 WHIRL_INLINE void store6(double* p, Col x) { store(p, x); }
 WHIRL_INLINE Col operator+(Col x, Col y) { return {x.a + y.a, x.b + y.b, x.c + y.c}; }
 WHIRL_INLINE Col operator-(Col x, Col y) { return {x.a - y.a, x.b - y.b, x.c - y.c}; }
@@ -195,11 +195,11 @@ template <> inline __attribute__((always_inline)) Real zero_of<Real>() { return 
 template <> inline __attribute__((always_inline)) Cplx zero_of<Cplx>() { return {zero_col(), zero_col()}; }
 
 WHIRL_INLINE void load_col(Real& c, const double* p) { c.x = load(p); }
-WHIRL_INLINE void load_col(Cplx& c, const double* p) { c.x = load(p), c.y = load(p + plane); }
+WHIRL_INLINE void load_col(Cplx& c, const double* p) { c.x = load(p); c.y = load(p + plane); }
 WHIRL_INLINE void store_col(double* p, const Real& c) { store(p, c.x); }
-WHIRL_INLINE void store_col(double* p, const Cplx& c) { store(p, c.x), store(p + plane, c.y); }
+WHIRL_INLINE void store_col(double* p, const Cplx& c) { store(p, c.x); store(p + plane, c.y); }
 WHIRL_INLINE void load_scalar(Real& c, const double* p, int) { c.x = splat(*p); }
-WHIRL_INLINE void load_scalar(Cplx& c, const double* p, int stride) { c.x = splat(*p), c.y = splat(p[stride]); }
+WHIRL_INLINE void load_scalar(Cplx& c, const double* p, int stride) { c.x = splat(*p); c.y = splat(p[stride]); }
 /// acc -= a s, acc += a s
 WHIRL_INLINE void sub_mul(Real& acc, const Real& a, const Real& s) { acc.x = acc.x - a.x * s.x; }
 WHIRL_INLINE void sub_mul(Cplx& acc, const Cplx& a, const Cplx& s) {
@@ -235,4 +235,4 @@ template <int P> WHIRL_INLINE Cplx replace(const Cplx& c, const Cplx& d) {
   return {replace<P>(c.x, d.x), replace<P>(c.y, d.y)};
 }
 WHIRL_INLINE void apply_mask(Real& c, const long long* m) { c.x = mask_and(c.x, m); }
-WHIRL_INLINE void apply_mask(Cplx& c, const long long* m) { c.x = mask_and(c.x, m), c.y = mask_and(c.y, m); }
+WHIRL_INLINE void apply_mask(Cplx& c, const long long* m) { c.x = mask_and(c.x, m); c.y = mask_and(c.y, m); }

@@ -55,7 +55,7 @@ bool Polisher::evaluate(Pair& p, bool exact) {
   double size = 0.0;
   for (Index u = 0; u < p.x.size(); ++u) {
     const double v = std::norm(p.x(u));
-    if (!(v <= size)) size = v, big = u;
+    if (!(v <= size)) { size = v; big = u; }
   }
   if (!(size > 0.0 && size < std::numeric_limits<double>::infinity())) return false;
   p.x *= 1.0 / p.x(big);
@@ -79,7 +79,7 @@ Complex Polisher::rayleigh_root(const Pair& p, Complex s0) {
   double distance = std::numeric_limits<double>::infinity();
   const auto consider = [&](Complex s) {
     const double r = std::abs(s - s0);
-    if (r < distance) distance = r, best = s;  // false for NaN
+    if (r < distance) { distance = r; best = s; }  // false for NaN
   };
   if (a != 0.0) consider(q / a);
   if (q != 0.0) consider(c / q);
@@ -222,7 +222,7 @@ void Polisher::separate(std::span<Pair*> group) {
     const Pair& p = *group[at(j)];
     real = real && p.lambda.imag() == 0.0;
     const double s = 1.0 / p.x.norm();
-    X.col(j) = s * p.x, MX.col(j) = s * p.Mx, CX.col(j) = s * p.Cx, KX.col(j) = s * p.Kx;
+    X.col(j) = s * p.x; MX.col(j) = s * p.Mx; CX.col(j) = s * p.Cx; KX.col(j) = s * p.Kx;
     centre += p.lambda / static_cast<double>(k);
   }
   for (Index j = 0; j < k; ++j) radius = std::max(radius, std::abs(group[at(j)]->lambda - centre));
@@ -261,7 +261,7 @@ void Polisher::separate(std::span<Pair*> group) {
     Index bi = 0, bj = 0;
     for (Index i = 0; i < k; ++i)
       for (Index j = 0; j < k; ++j)
-        if (!taken[at(j)] && !given[at(i)] && std::abs(y(i, j)) > best) best = std::abs(y(i, j)), bi = i, bj = j;
+        if (!taken[at(j)] && !given[at(i)] && std::abs(y(i, j)) > best) { best = std::abs(y(i, j)); bi = i; bj = j; }
     taken[at(bj)] = given[at(bi)] = true;
     of[at(bi)] = bj;
   }
@@ -276,7 +276,7 @@ void Polisher::separate(std::span<Pair*> group) {
       p.lambda = p.lambda.real();
       w = w.real().cast<Complex>().eval();
     }
-    p.x = X * w, p.Mx = MX * w, p.Cx = CX * w, p.Kx = KX * w;
+    p.x = X * w; p.Mx = MX * w; p.Cx = CX * w; p.Kx = KX * w;
   }
 }
 

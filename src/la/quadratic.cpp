@@ -255,7 +255,7 @@ struct ModeSolver::Impl : Eigenpairs {
     double widest = 0.0;
     for (Index i = opt.count; i < n; ++i) {
       const double low = f[at(i - 1)], high = f[at(i)];
-      if (high / low > widest) widest = high / low, radius = std::sqrt(high * low);
+      if (high / low > widest) { widest = high / low; radius = std::sqrt(high * low); }
     }
     return std::max(std::min(radius, 1.01 * opt.max_frequency), 1.01 * least_radius);
   }

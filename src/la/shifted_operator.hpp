@@ -58,8 +58,8 @@ struct ShiftedOperator {
     Vec r = b;
     multiply_exact(m->K, t, work);
     r -= work;
-    if (!first_order) multiply(m->M, t, work), r -= s * s * work;
-    if (damped) multiply(m->C, t, work), r -= s * work;
+    if (!first_order) { multiply(m->M, t, work); r -= s * s * work; }
+    if (damped) { multiply(m->C, t, work); r -= s * work; }
     for (std::size_t u = 0; u < active.size(); ++u)
       if (!active[u]) r(static_cast<Index>(u)) = 0.0;
     solver.solve(r);

@@ -44,7 +44,7 @@ std::vector<std::size_t> decimate_columns(std::span<const double> x, std::span<c
     const auto now = c < 0 ? std::ptrdiff_t{-1} : c >= static_cast<double>(columns) && x[i] > x1 ? static_cast<std::ptrdiff_t>(columns) : std::min(static_cast<std::ptrdiff_t>(c), static_cast<std::ptrdiff_t>(columns) - 1);
     if (!open || now != column) {
       close();
-      open = true, column = now;
+      open = true; column = now;
       first = low = high = i;
     }
     if (y[i] < y[low]) low = i;
@@ -59,7 +59,7 @@ std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px, 
   struct Hash {
     std::size_t operator()(const std::array<std::int32_t, 4>& k) const {
       std::uint64_t h = 0x9E3779B97F4A7C15ull;
-      for (const auto v : k) h = (h ^ static_cast<std::uint32_t>(v)) * 0xBF58476D1CE4E5B9ull, h ^= h >> 29;
+      for (const auto v : k) { h = (h ^ static_cast<std::uint32_t>(v)) * 0xBF58476D1CE4E5B9ull; h ^= h >> 29; }
       return h;
     }
   };
@@ -76,8 +76,8 @@ std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px, 
     }
     const std::int32_t hx = grid(px[i]), hy = grid(py[i]);
     if (!have) {
-      have = true, joined = false;
-      from = i, gx = hx, gy = hy;
+      have = true; joined = false;
+      from = i; gx = hx; gy = hy;
       continue;
     }
     if (hx == gx && hy == gy) continue;   // within one cell
@@ -89,7 +89,7 @@ std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px, 
       runs.back().push_back(i);
       joined = true;
     } else joined = false;
-    from = i, gx = hx, gy = hy;
+    from = i; gx = hx; gy = hy;
   }
   if (runs.empty() && have) runs.push_back({from});
   return runs;
@@ -124,12 +124,12 @@ void Envelope::add(double x, double y) {
 }
 
 void Envelope::points(std::vector<double>& x, std::vector<double>& y) const {
-  x.clear(), y.clear();
+  x.clear(); y.clear();
   for (const auto& b : bins_) {
     std::array<Point, 4> k{b.first, b.low, b.high, b.last};
     std::sort(k.begin(), k.end(), [](const Point& a, const Point& c) { return a.order < c.order; });
     for (std::size_t j = 0; j < 4; ++j)
-      if (j == 0 || k[j].order != k[j - 1].order) x.push_back(k[j].x), y.push_back(k[j].y);
+      if (j == 0 || k[j].order != k[j - 1].order) { x.push_back(k[j].x); y.push_back(k[j].y); }
   }
 }
 

@@ -14,7 +14,7 @@ struct Extent { double speed0 = infinity, speed1 = -infinity, frequency1 = 0, am
 Extent extent_of(std::span<const SpectrumTrace> traces) {
   Extent e;
   for (const auto& t : traces) {
-    e.speed0 = std::min(e.speed0, t.speed * rpm), e.speed1 = std::max(e.speed1, t.speed * rpm);
+    e.speed0 = std::min(e.speed0, t.speed * rpm); e.speed1 = std::max(e.speed1, t.speed * rpm);
     for (const double v : t.frequency) e.frequency1 = std::max(e.frequency1, v * hertz);
     for (const double v : t.amplitude)
       if (std::isfinite(v)) e.amplitude = std::max(e.amplitude, v);
@@ -36,10 +36,10 @@ double round_down(double x) {
 Figure plot_waterfall(std::string name, std::string title, std::span<const SpectrumTrace> traces, std::string quantity,
                       std::string unit, Amplitude convention, std::span<const double> orders) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
+  f.name = std::move(name); f.title = std::move(title);
   f.height = 560;
   Axes a;
-  a.x = Axis("frequency", "Hz"), a.y = Axis("speed", "rpm");
+  a.x = Axis("frequency", "Hz"); a.y = Axis("speed", "rpm");
   a.legend = false;
   const Extent e = extent_of(traces);
   const DisplayUnit u = unit_for(unit, e.amplitude);
@@ -53,22 +53,22 @@ Figure plot_waterfall(std::string name, std::string title, std::span<const Spect
   const double spacing = (e.speed1 - e.speed0) / std::max<std::size_t>(1, shown.size() - 1);
   const double height = std::max(0.16 * (e.speed1 - e.speed0), 1.5 * spacing);
   const double per_y = e.amplitude > 0 ? e.amplitude * u.factor / height : 1;
-  a.y.min = e.speed0 - 0.02 * (e.speed1 - e.speed0), a.y.max = e.speed1 + 1.05 * height;
-  a.x.min = 0, a.x.max = e.frequency1;
+  a.y.min = e.speed0 - 0.02 * (e.speed1 - e.speed0); a.y.max = e.speed1 + 1.05 * height;
+  a.x.min = 0; a.x.max = e.frequency1;
   for (const auto* t : shown) {   // the highest speed first: lower ones stand in front
     Series s;
     s.baseline = t->speed * rpm;
-    s.amplitude_per_y = per_y, s.amplitude_unit = u.name + " " + to_string(convention);
+    s.amplitude_per_y = per_y; s.amplitude_unit = u.name + " " + to_string(convention);
     s.fill_to_baseline = true;
     s.style = {0, Dash::solid, 1.0};
     s.trace_label = readable(s.baseline, 5) + " rpm";
-    for (std::size_t i = 0; i < t->frequency.size(); ++i) s.x.push_back(t->frequency[i] * hertz), s.y.push_back(s.baseline + t->amplitude[i] * u.factor / per_y);
+    for (std::size_t i = 0; i < t->frequency.size(); ++i) { s.x.push_back(t->frequency[i] * hertz); s.y.push_back(s.baseline + t->amplitude[i] * u.factor / per_y); }
     a.series.push_back(std::move(s));
   }
   for (const double k : orders) {
     Series s;
     const double last = std::min(e.speed1 + 0.6 * height, e.frequency1 * 60 / k);   // a little beyond the last trace
-    s.x = {e.speed0 * k / 60, last * k / 60}, s.y = {e.speed0, last};
+    s.x = {e.speed0 * k / 60, last * k / 60}; s.y = {e.speed0, last};
     s.style = {1, Dash::dashed, 0.9};
     s.trace_label = number_text(k, 3) + "×";
     const bool at_edge = last < e.speed1 + 0.6 * height;
@@ -78,7 +78,7 @@ Figure plot_waterfall(std::string name, std::string title, std::span<const Spect
   if (e.amplitude > 0) {   // the scale of the amplitudes
     const double bar = round_down(e.amplitude * u.factor), x = 0.985 * e.frequency1, y1 = e.speed1 + 1.0 * height, y0 = y1 - bar / per_y;
     Series s;
-    s.x = {x, x}, s.y = {y0, y1};
+    s.x = {x, x}; s.y = {y0, y1};
     s.style = {ink, Dash::solid, 2.5};
     s.trace_label = "scale";
     a.series.push_back(std::move(s));
@@ -93,18 +93,18 @@ Figure plot_waterfall(std::string name, std::string title, std::span<const Spect
 Figure plot_spectrogram(std::string name, std::string title, std::span<const SpectrumTrace> traces, std::string quantity,
                         std::string unit, Amplitude convention, bool logarithmic) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
+  f.name = std::move(name); f.title = std::move(title);
   f.height = 460;
   Axes a;
-  a.x = Axis("speed", "rpm"), a.y = Axis("frequency", "Hz");
+  a.x = Axis("speed", "rpm"); a.y = Axis("frequency", "Hz");
   const Extent e = extent_of(traces);
   const DisplayUnit u = unit_for(unit, e.amplitude);
   std::size_t lines = 1;
   for (const auto& t : traces) lines = std::max(lines, t.frequency.size());
   HeatMap h;
-  h.nx = static_cast<int>(std::clamp<std::size_t>(traces.size(), 1, 360)), h.ny = static_cast<int>(std::clamp<std::size_t>(lines, 1, 300));
-  h.x0 = e.speed0, h.x1 = e.speed1, h.y0 = 0, h.y1 = e.frequency1 > 0 ? e.frequency1 : 1;
-  h.label = quantity_name(quantity, convention), h.unit = u.name, h.logarithmic = logarithmic;
+  h.nx = static_cast<int>(std::clamp<std::size_t>(traces.size(), 1, 360)); h.ny = static_cast<int>(std::clamp<std::size_t>(lines, 1, 300));
+  h.x0 = e.speed0; h.x1 = e.speed1; h.y0 = 0; h.y1 = e.frequency1 > 0 ? e.frequency1 : 1;
+  h.label = quantity_name(quantity, convention); h.unit = u.name; h.logarithmic = logarithmic;
   const auto nx = static_cast<std::size_t>(h.nx), ny = static_cast<std::size_t>(h.ny);
   h.values.assign(nx * ny, nan);
   // Each cell holds the largest amplitude that falls into it; a column nobody falls into repeats its left neighbour.
@@ -121,7 +121,7 @@ Figure plot_spectrogram(std::string name, std::string title, std::span<const Spe
   for (std::size_t ix = 1; ix < nx; ++ix)
     if (std::isnan(h.values[ix])) for (std::size_t iy = 0; iy < ny; ++iy)
         if (std::isnan(h.values[iy * nx + ix])) h.values[iy * nx + ix] = h.values[iy * nx + ix - 1];
-  if (logarithmic && e.amplitude > 0) h.max = e.amplitude * u.factor, h.min = h.max * 1e-4;
+  if (logarithmic && e.amplitude > 0) { h.max = e.amplitude * u.factor; h.min = h.max * 1e-4; }
   a.heat.push_back(std::move(h));
   f.axes.push_back(std::move(a));
   return f;

@@ -36,7 +36,7 @@ void add_line(Axes& a, const CampbellLine& line, std::span<const double> y, cons
     if (!std::exchange(used[static_cast<std::size_t>(l.whirl)], true)) s.label = l.name;
     Extra e{extra_label, extra_unit, {}};
     for (std::size_t k = i; k < std::min(n, j + 1); ++k) {
-      s.x.push_back(rpm * line.speed[k]), s.y.push_back(y[k]);
+      s.x.push_back(rpm * line.speed[k]); s.y.push_back(y[k]);
       if (k < extra.size()) e.values.push_back(extra[k]);
     }
     if (!e.values.empty()) s.extra.push_back(std::move(e));
@@ -52,10 +52,10 @@ std::string order_name(double order) { return number_text(order, 3) + "×"; }
 Figure plot_campbell(std::string name, std::string title, std::span<const CampbellLine> lines,
                      std::span<const double> orders, std::span<const CriticalMark> criticals) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
+  f.name = std::move(name); f.title = std::move(title);
   f.height = 500;
   Axes a;
-  a.x = Axis("speed", "rpm"), a.y = Axis("damped natural frequency", "Hz");
+  a.x = Axis("speed", "rpm"); a.y = Axis("damped natural frequency", "Hz");
   a.x.include_zero = a.y.include_zero = true;
   double top = 0, end = 0;
   std::array<bool, 4> used{};
@@ -72,7 +72,7 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
     if (!(end > 0) || !(order > 0)) continue;
     const double limit = std::min(end, 1.06 * top / (order * hertz));
     Series s;
-    s.x = {0, limit * rpm}, s.y = {0, order * limit * hertz};
+    s.x = {0, limit * rpm}; s.y = {0, order * limit * hertz};
     s.style = {ink, Dash::solid, 0.8};
     s.trace_label = order_name(order) + " excitation";
     a.series.push_back(std::move(s));
@@ -87,9 +87,9 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
 
 Figure plot_stability(std::string name, std::string title, std::span<const CampbellLine> lines, std::span<const double> thresholds) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
+  f.name = std::move(name); f.title = std::move(title);
   Axes a;
-  a.x = Axis("speed", "rpm"), a.y = Axis("logarithmic decrement (unstable below 0)", "-");
+  a.x = Axis("speed", "rpm"); a.y = Axis("logarithmic decrement (unstable below 0)", "-");
   a.x.include_zero = a.y.include_zero = true;
   std::array<bool, 4> used{};
   for (const auto& l : lines) {
@@ -131,7 +131,7 @@ std::vector<double> unwrapped(const std::vector<double>& phase) {
 Figure plot_bode(std::string name, std::string title, std::span<const ResponseCurve> curves, Amplitude convention,
                  std::span<const CriticalMark> criticals, bool log_amplitude) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
+  f.name = std::move(name); f.title = std::move(title);
   f.height = 540;
   const double factor = convention == Amplitude::peak_to_peak ? 2 : 1;
   const DisplayUnit u = amplitude_unit(curves, factor);
@@ -150,7 +150,7 @@ Figure plot_bode(std::string name, std::string title, std::span<const ResponseCu
     p.x = s.x;
     for (const double v : c.amplitude) s.y.push_back(v * factor * u.factor);
     p.y = unwrapped(c.phase_lag);
-    amplitude.series.push_back(std::move(s)), phase.series.push_back(std::move(p));
+    amplitude.series.push_back(std::move(s)); phase.series.push_back(std::move(p));
   }
   for (const auto& c : criticals) {
     amplitude.rules.push_back({true, c.speed * rpm, c.label.empty() ? readable(c.speed * rpm, 4) + " rpm" : c.label, {ink, Dash::dotted, 1.0}});
@@ -162,8 +162,8 @@ Figure plot_bode(std::string name, std::string title, std::span<const ResponseCu
 
 Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves, Amplitude convention) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
-  f.width = 620, f.height = 520;
+  f.name = std::move(name); f.title = std::move(title);
+  f.width = 620; f.height = 520;
   const double factor = convention == Amplitude::peak_to_peak ? 2 : 1;
   const DisplayUnit u = amplitude_unit(curves, factor);
   Axes a;
@@ -198,20 +198,20 @@ Figure plot_polar(std::string name, std::string title, std::span<const ResponseC
 
 Figure plot_critical_map(std::string name, std::string title, std::span<const Curve> modes, std::span<const Curve> supports) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
+  f.name = std::move(name); f.title = std::move(title);
   f.height = 480;
   Axes a;
-  a.x = Axis("support stiffness", "N/m", true), a.y = Axis("undamped critical speed", "rpm", true);
+  a.x = Axis("support stiffness", "N/m", true); a.y = Axis("undamped critical speed", "rpm", true);
   double lo = infinity, hi = 0;
   for (const auto& m : modes) {
     Series s;
     s.label = m.label;
     s.x = m.x;
     for (const double v : m.y) s.y.push_back(v * rpm);
-    for (const double v : m.x) lo = std::min(lo, v), hi = std::max(hi, v);
+    for (const double v : m.x) { lo = std::min(lo, v); hi = std::max(hi, v); }
     a.series.push_back(std::move(s));
   }
-  if (hi > lo) a.x.min = lo, a.x.max = hi;
+  if (hi > lo) { a.x.min = lo; a.x.max = hi; }
   for (const auto& b : supports) {
     Series s;
     s.label = b.label;

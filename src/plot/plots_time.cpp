@@ -48,7 +48,7 @@ DisplayUnit unit_for(const std::string& si, double m) {
 
 Figure plot_history(std::string name, std::string title, std::span<const double> time, std::span<const HistoryCurve> curves) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
+  f.name = std::move(name); f.title = std::move(title);
   const DisplayUnit s = unit_for("s", time.empty() ? 0 : std::max(std::abs(time.front()), std::abs(time.back())));
   const std::vector<double> t = scaled(time, s.factor);
   std::vector<std::string> keys;
@@ -66,7 +66,7 @@ Figure plot_history(std::string name, std::string title, std::span<const double>
       a.y = Axis(c.axis.empty() ? c.label : c.axis, u.name);
       Series line;
       line.label = c.label;
-      line.x = t, line.y = scaled(c.y, u.factor);
+      line.x = t; line.y = scaled(c.y, u.factor);
       line.style.width = 1.2;
       a.series.push_back(std::move(line));
     }
@@ -80,27 +80,27 @@ Figure plot_history(std::string name, std::string title, std::span<const double>
 
 Figure plot_orbit(std::string name, std::string title, std::span<const Orbit> orbits, double clearance) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
-  f.width = 520, f.height = 480;
+  f.name = std::move(name); f.title = std::move(title);
+  f.width = 520; f.height = 480;
   double m = clearance;
   for (const auto& o : orbits) m = std::max({m, largest(o.y), largest(o.z)});
   const DisplayUnit u = length_unit(m);
   Axes a;
-  a.x = Axis("y displacement", u.name), a.y = Axis("z displacement", u.name);
+  a.x = Axis("y displacement", u.name); a.y = Axis("z displacement", u.name);
   a.equal_aspect = true;
   int color = 0;
   for (const auto& o : orbits) {
     Series s;
     s.label = orbits.size() > 1 || !o.label.empty() ? o.label : "";
-    s.x = scaled(o.y, u.factor), s.y = scaled(o.z, u.factor);
+    s.x = scaled(o.y, u.factor); s.y = scaled(o.z, u.factor);
     s.style.color = color;
     s.style.width = 1.3;
     Series key;   // bright spot where the keyphasor fires
     key.trace_label = (o.label.empty() ? "" : o.label + ", ") + "keyphasor";
     key.style.color = color++;
-    key.style.width = 0, key.style.marker = Marker::circle, key.style.marker_size = 7;
+    key.style.width = 0; key.style.marker = Marker::circle; key.style.marker_size = 7;
     for (const auto k : o.keyphasor)
-      if (k < s.x.size()) key.x.push_back(s.x[k]), key.y.push_back(s.y[k]);
+      if (k < s.x.size()) { key.x.push_back(s.x[k]); key.y.push_back(s.y[k]); }
     if (&o == &orbits.front() && !key.x.empty()) key.label = "keyphasor";
     a.series.push_back(std::move(s));
     if (!key.x.empty()) a.series.push_back(std::move(key));
@@ -109,7 +109,7 @@ Figure plot_orbit(std::string name, std::string title, std::span<const Orbit> or
     Series c;
     c.label = "clearance";
     c.style = {ink, Dash::dash_dot, 1.0};
-    for (int k = 0; k <= 180; ++k) c.x.push_back(u.factor * clearance * std::cos(two_pi * k / 180)), c.y.push_back(u.factor * clearance * std::sin(two_pi * k / 180));
+    for (int k = 0; k <= 180; ++k) { c.x.push_back(u.factor * clearance * std::cos(two_pi * k / 180)); c.y.push_back(u.factor * clearance * std::sin(two_pi * k / 180)); }
     a.series.push_back(std::move(c));
   }
   f.axes.push_back(std::move(a));
@@ -118,18 +118,18 @@ Figure plot_orbit(std::string name, std::string title, std::span<const Orbit> or
 
 Figure plot_path(std::string name, std::string title, std::string x_label, std::string y_label, std::span<const Curve> paths) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
-  f.width = 560, f.height = 480;
+  f.name = std::move(name); f.title = std::move(title);
+  f.width = 560; f.height = 480;
   double m = 0;
   for (const auto& c : paths) m = std::max({m, largest(c.x), largest(c.y)});
   const DisplayUnit u = length_unit(m);
   Axes a;
-  a.x = Axis(std::move(x_label), u.name), a.y = Axis(std::move(y_label), u.name);
+  a.x = Axis(std::move(x_label), u.name); a.y = Axis(std::move(y_label), u.name);
   a.equal_aspect = true;
   for (const auto& c : paths) {
     Series s;
     s.label = c.label;
-    s.x = scaled(c.x, u.factor), s.y = scaled(c.y, u.factor);
+    s.x = scaled(c.x, u.factor); s.y = scaled(c.y, u.factor);
     s.style.width = 1.2;
     a.series.push_back(std::move(s));
   }
@@ -140,7 +140,7 @@ Figure plot_path(std::string name, std::string title, std::string x_label, std::
 Figure plot_path_in_space(std::string name, std::string title, std::span<const double> x, std::span<const double> y,
                           std::span<const double> z) {
   Figure f;
-  f.name = std::move(name), f.title = std::move(title);
+  f.name = std::move(name); f.title = std::move(title);
   f.height = 500;
   Axes a;
   a.kind = AxesKind::space;
@@ -161,7 +161,7 @@ Figure plot_path_in_space(std::string name, std::string title, std::span<const d
   if (!x.empty()) {
     const auto first = dot(0, "start", 2), last = dot(x.size() - 1, "end", 1);
     a.space.push_back({"", std::move(w[0]), std::move(w[1]), std::move(w[2]), Style{0, Dash::solid, 1.1}});
-    a.space.push_back(first), a.space.push_back(last);
+    a.space.push_back(first); a.space.push_back(last);
   }
   f.axes.push_back(std::move(a));
   return f;

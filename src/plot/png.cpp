@@ -50,7 +50,7 @@ std::string make_png(int nx, int ny, std::span<const std::uint8_t> cells, std::s
   }
   std::string z = "\x78\x01";
   std::uint32_t a = 1, b = 0;   // Adler-32
-  for (const char x : raw) a = (a + static_cast<unsigned char>(x)) % 65521, b = (b + a) % 65521;
+  for (const char x : raw) { a = (a + static_cast<unsigned char>(x)) % 65521; b = (b + a) % 65521; }
   for (std::size_t at = 0; at < raw.size();) {
     const std::size_t n = std::min<std::size_t>(65535, raw.size() - at);
     z += at + n == raw.size() ? '\x01' : '\x00';

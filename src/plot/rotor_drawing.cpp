@@ -18,7 +18,7 @@ std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const m
       DrawnSection x{s, s + section.length, section.od_l / 2, section.od_r / 2, section.id_l / 2, section.id_r / 2, section.name};
       if (x.outer_left <= 0 && x.outer_right <= 0)   // constants instead of diameters
         for (const auto& p : pieces)
-          if (const double m = (s_of(p.left) + s_of(p.right)) / 2; m > x.s0 && m < x.s1) x.outer_left = p.outer_left, x.outer_right = p.outer_right;
+          if (const double m = (s_of(p.left) + s_of(p.right)) / 2; m > x.s0 && m < x.s1) { x.outer_left = p.outer_left; x.outer_right = p.outer_right; }
       d.sections.push_back(std::move(x));
       s += section.length;
     }

@@ -41,7 +41,7 @@ std::string render_svg(const Figure& figure, const SvgOptions& options) {
     if (figure.axes[i].kind != AxesKind::cartesian) continue;
     margins[i] = cartesian_margins(figure.axes[i], cell_w, (H - top) * figure.axes[i].weight / total, flags[i]);
     auto& m = column[i % columns];
-    m.left = std::max(m.left, margins[i].left), m.right = std::max(m.right, margins[i].right);
+    m.left = std::max(m.left, margins[i].left); m.right = std::max(m.right, margins[i].right);
     row_top[i / columns] = std::max(row_top[i / columns], margins[i].top);
     row_bottom[i / columns] = std::max(row_bottom[i / columns], margins[i].bottom);
   }

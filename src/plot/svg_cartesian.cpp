@@ -9,7 +9,7 @@ Ticks axis_ticks(const Axis& a, const Scale& s, double length, double spacing) {
   Ticks t;
   if (!a.ticks.empty()) {
     t = fixed_ticks(a.ticks);
-    if (!a.tick_labels.empty()) t.labels = a.tick_labels, t.labels.resize(t.major.size()), t.exponent = 0;
+    if (!a.tick_labels.empty()) { t.labels = a.tick_labels; t.labels.resize(t.major.size()); t.exponent = 0; }
     return t;
   }
   const double target = std::clamp(length / spacing, 2.0, 10.0);
@@ -32,7 +32,7 @@ struct Range {
   double lo = infinity, hi = -infinity;
   bool log = false;
   void add(double v) {
-    if (std::isfinite(v) && (!log || v > 0)) lo = std::min(lo, v), hi = std::max(hi, v);
+    if (std::isfinite(v) && (!log || v > 0)) { lo = std::min(lo, v); hi = std::max(hi, v); }
   }
   void add(const std::vector<double>& v) { for (const double x : v) add(x); }
 };
@@ -41,16 +41,16 @@ struct Range {
 void finish(const Range& r, const Axis& a, double pad, Scale& s) {
   double lo = r.lo, hi = r.hi;
   s.log = a.logarithmic;
-  if (!(lo <= hi)) lo = s.log ? 0.1 : 0, hi = s.log ? 10 : 1;   // nothing to show
-  if (a.include_zero && !s.log) lo = std::min(lo, 0.0), hi = std::max(hi, 0.0);
+  if (!(lo <= hi)) { lo = s.log ? 0.1 : 0; hi = s.log ? 10 : 1; }   // nothing to show
+  if (a.include_zero && !s.log) { lo = std::min(lo, 0.0); hi = std::max(hi, 0.0); }
   if (s.log) {
-    if (hi < lo * 1.001) lo /= 2, hi *= 2;
+    if (hi < lo * 1.001) { lo /= 2; hi *= 2; }
     const double f = std::pow(hi / lo, pad);
-    lo /= f, hi *= f;
+    lo /= f; hi *= f;
   } else {
     double span = hi - lo;
     const double size = std::max(std::abs(lo), std::abs(hi));
-    if (span <= 1e-12 * size) span = size > 0 ? 0.2 * size : 1, lo -= span / 2, hi += span / 2;   // constant
+    if (span <= 1e-12 * size) { span = size > 0 ? 0.2 * size : 1; lo -= span / 2; hi += span / 2; }   // constant
     // Zero stays at the edge when the data end there.
     if (lo != 0.0 || !a.include_zero) lo -= pad * span;
     if (hi != 0.0 || !a.include_zero) hi += pad * span;
@@ -58,7 +58,7 @@ void finish(const Range& r, const Axis& a, double pad, Scale& s) {
   if (!std::isnan(a.min)) lo = a.min;
   if (!std::isnan(a.max)) hi = a.max;
   if (!(hi > lo)) hi = s.log ? lo * 10 : lo + 1;
-  s.lo = lo, s.hi = hi;
+  s.lo = lo; s.hi = hi;
 }
 
 bool has_right(const Axes& a) {
@@ -67,13 +67,13 @@ bool has_right(const Axes& a) {
 }
 
 void place(Prepared& p, const Axes& a, const Box& b) {
-  p.x.p0 = b.x, p.x.p1 = b.right();
-  p.y.p0 = p.r.p0 = b.bottom(), p.y.p1 = p.r.p1 = b.y;
+  p.x.p0 = b.x; p.x.p1 = b.right();
+  p.y.p0 = p.r.p0 = b.bottom(); p.y.p1 = p.r.p1 = b.y;
   if (a.equal_aspect) {   // the tighter direction rules; the other range grows about its centre
     const double ux = (p.x.hi - p.x.lo) / b.w, uy = (p.y.hi - p.y.lo) / b.h, u = std::max(ux, uy);
     const double cx = (p.x.lo + p.x.hi) / 2, cy = (p.y.lo + p.y.hi) / 2;
-    p.x.lo = cx - u * b.w / 2, p.x.hi = cx + u * b.w / 2;
-    p.y.lo = cy - u * b.h / 2, p.y.hi = cy + u * b.h / 2;
+    p.x.lo = cx - u * b.w / 2; p.x.hi = cx + u * b.w / 2;
+    p.y.lo = cy - u * b.h / 2; p.y.hi = cy + u * b.h / 2;
   }
   // With equal aspect both directions get the same step.
   p.tx = axis_ticks(a.x, p.x, b.w, a.equal_aspect ? 68 : 90);
@@ -122,7 +122,7 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
     c.add("</g>");
   }
   c.add("\n<rect class=\"frame ci\" fill=\"none\" stroke=\"#222222\" stroke-width=\"0.9\"");
-  c.attr("x", b.x), c.attr("y", b.y), c.attr("width", b.w), c.attr("height", b.h);
+  c.attr("x", b.x); c.attr("y", b.y); c.attr("width", b.w); c.attr("height", b.h);
   c.add("/>\n");
   if (!f.hide_x)
     c.text(b.x + b.w / 2, b.bottom() + tick_length + 31, axis_title(a.x, p.tx.exponent), label_size, "middle", "data-label=\"x\"");
@@ -139,7 +139,7 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
 
 void data_range(const Axes& a, Scale& x, Scale& y, Scale& right) {
   Range rx, ry, rr;
-  rx.log = a.x.logarithmic, ry.log = a.y.logarithmic, rr.log = a.right.logarithmic;
+  rx.log = a.x.logarithmic; ry.log = a.y.logarithmic; rr.log = a.right.logarithmic;
   bool loose = !a.bars.empty() || !a.patches.empty() || a.equal_aspect;
   for (const auto& s : a.series) {
     rx.add(s.x);
@@ -147,12 +147,12 @@ void data_range(const Axes& a, Scale& x, Scale& y, Scale& right) {
     loose = loose || s.style.width <= 0 || s.style.marker != Marker::none || !is_increasing(s.x);
   }
   for (const auto& s : a.bars) {
-    for (const double v : s.x) rx.add(v - s.width / 2), rx.add(v + s.width / 2);
+    for (const double v : s.x) { rx.add(v - s.width / 2); rx.add(v + s.width / 2); }
     (s.right_axis ? rr : ry).add(s.height);
     (s.right_axis ? rr : ry).add(0.0);
   }
-  for (const auto& s : a.patches) rx.add(s.x), ry.add(s.y);
-  for (const auto& h : a.heat) rx.add(h.x0), rx.add(h.x1), ry.add(h.y0), ry.add(h.y1);
+  for (const auto& s : a.patches) { rx.add(s.x); ry.add(s.y); }
+  for (const auto& h : a.heat) { rx.add(h.x0); rx.add(h.x1); ry.add(h.y0); ry.add(h.y1); }
   // Histories run from edge to edge; clouds, loops and drawings get air.
   finish(rx, a.x, loose ? 0.04 : 0.0, x);
   finish(ry, a.y, a.heat.empty() ? 0.06 : 0.0, y);
@@ -192,7 +192,7 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   if (!a.title.empty()) c.text(b.x, b.y - 9, a.title, title_size, "start", "font-weight=\"600\"");
   const std::string clip = c.id();
   c.add("<clipPath id=\"" + clip + "\"><rect");
-  c.attr("x", b.x), c.attr("y", b.y), c.attr("width", b.w), c.attr("height", b.h);
+  c.attr("x", b.x); c.attr("y", b.y); c.attr("width", b.w); c.attr("height", b.h);
   c.add("/></clipPath>\n");
   draw_grid(c, p, b);
   std::vector<Point> seen;

@@ -22,10 +22,10 @@ void Canvas::attr(const char* name, double v) {
 
 void Canvas::text(double x, double y, std::string_view content, double size, const char* anchor, std::string_view extra) {
   out += "<text";
-  attr("x", x), attr("y", y), attr("font-size", size);
+  attr("x", x); attr("y", y); attr("font-size", size);
   if (std::string_view(anchor) != "start") out += std::string(" text-anchor=\"") + anchor + '"';
   out += " " + fill(ink);
-  if (!extra.empty()) out += " ", out += extra;
+  if (!extra.empty()) { out += " "; out += extra; }
   out += '>';
   out += escape(content);
   out += "</text>";
@@ -33,7 +33,7 @@ void Canvas::text(double x, double y, std::string_view content, double size, con
 
 void Canvas::line(double x0, double y0, double x1, double y1, std::string_view rest) {
   out += "<line";
-  attr("x1", x0), attr("y1", y0), attr("x2", x1), attr("y2", y1);
+  attr("x1", x0); attr("y1", y0); attr("x2", x1); attr("y2", y1);
   out += ' ';
   out += rest;
   out += "/>";
@@ -107,7 +107,7 @@ std::string path_of(const std::vector<double>& px, const std::vector<double>& py
   const auto put = [&](double x, double y) {
     if (std::isnan(x) || std::isnan(y)) return lift();
     // Far outside the frame: renderers have limits.
-    x = std::clamp(x, -1e5, 1e5), y = std::clamp(y, -1e5, 1e5);
+    x = std::clamp(x, -1e5, 1e5); y = std::clamp(y, -1e5, 1e5);
     d += run == 0 ? 'M' : run == 1 ? 'L' : ' ';
     append_number(d, x);
     d += ' ';
@@ -120,7 +120,7 @@ std::string path_of(const std::vector<double>& px, const std::vector<double>& py
   } else if (increasing) {
     double lo = infinity, hi = -infinity;
     for (const double x : px)
-      if (!std::isnan(x)) lo = std::min(lo, x), hi = std::max(hi, x);
+      if (!std::isnan(x)) { lo = std::min(lo, x); hi = std::max(hi, x); }
     if (!(hi > lo)) hi = lo + 1;
     const auto n = static_cast<std::size_t>(std::max(1.0, columns * (hi - lo)));
     for (const auto i : decimate_columns(px, py, lo, hi, n)) put(px[i], py[i]);
@@ -164,7 +164,7 @@ void draw_pins(Canvas& c, const std::vector<double>& px, const std::vector<doubl
     if (std::isnan(px[i]) || std::isnan(py[i])) continue;
     if (clip && (px[i] < clip->x - 0.5 || px[i] > clip->right() + 0.5 || py[i] < clip->y - 0.5 || py[i] > clip->bottom() + 0.5)) continue;
     c.add("<use href=\"#" + id + "\"");
-    c.attr("x", px[i]), c.attr("y", py[i]);
+    c.attr("x", px[i]); c.attr("y", py[i]);
     c.add("/>");
   }
   c.add("</g></g>\n");

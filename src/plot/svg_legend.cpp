@@ -33,7 +33,7 @@ void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& 
                  const Box& outside) {
   if (entries.empty()) return;
   Box b = legend_size_of(entries);
-  if (outside.w > 0) b.x = outside.x, b.y = outside.y;
+  if (outside.w > 0) { b.x = outside.x; b.y = outside.y; }
   else {
     const double m = 8, xs[3] = {frame.right() - b.w - m, frame.x + m, frame.x + (frame.w - b.w) / 2};
     const double ys[3] = {frame.y + m, frame.bottom() - b.h - m, frame.y + (frame.h - b.h) / 2};
@@ -43,29 +43,29 @@ void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& 
       for (int ix = 0; ix < 3; ++ix) {
         if (ix == 2 && iy == 2) continue;
         Box t = b;
-        t.x = xs[ix], t.y = ys[iy];
+        t.x = xs[ix]; t.y = ys[iy];
         double cost = 0.002 * (3 * iy + ix);   // prefers the corners, the upper right first
         double inside = 0;
         for (const auto& p : seen)
           if (p.x > t.x - 3 && p.x < t.right() + 3 && p.y > t.y - 3 && p.y < t.bottom() + 3) ++inside;
         cost += inside / (1.0 + static_cast<double>(seen.size()));
         for (const auto& o : taken) cost += t.overlaps(o) ? 0.3 : 0;
-        if (cost < best) best = cost, at = t;
+        if (cost < best) { best = cost; at = t; }
       }
     b = at;
   }
   c.add("<g class=\"legend\"><rect rx=\"3\"");
-  c.attr("x", b.x), c.attr("y", b.y), c.attr("width", b.w), c.attr("height", b.h);
+  c.attr("x", b.x); c.attr("y", b.y); c.attr("width", b.w); c.attr("height", b.h);
   c.add(" class=\"fp cg\" fill=\"#ffffff\" fill-opacity=\"0.88\" stroke=\"#d9d9d9\" stroke-width=\"0.7\"/>\n");
   double y = b.y + pad + row / 2 - 2;
   for (const auto& e : entries) {
     c.add("<g class=\"entry\" data-s=\"" + std::to_string(e.series) + "\"><rect fill=\"transparent\"");
-    c.attr("x", b.x), c.attr("y", y - row / 2), c.attr("width", b.w), c.attr("height", row);
+    c.attr("x", b.x); c.attr("y", y - row / 2); c.attr("width", b.w); c.attr("height", row);
     c.add("/>");
     const double x0 = b.x + pad, x1 = x0 + sample;
     if (e.patch || e.bar) {
       c.add("<rect");
-      c.attr("x", x0 + 4), c.attr("y", y - 5), c.attr("width", sample - 8), c.attr("height", 10);
+      c.attr("x", x0 + 4); c.attr("y", y - 5); c.attr("width", sample - 8); c.attr("height", 10);
       c.add(" " + fill(e.color) + (e.patch ? " fill-opacity=\"0.4\"" : "") + "/>");
     } else {
       if (e.style.width > 0) c.line(x0, y, x1, y, stroke(e.color, e.style.width, e.style.dash));

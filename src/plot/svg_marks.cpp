@@ -14,16 +14,16 @@ struct HeatScale { double lo, hi; };
 HeatScale heat_scale(const HeatMap& h) {
   double lo = infinity, hi = -infinity;
   for (const double v : h.values)
-    if (std::isfinite(v) && (!h.logarithmic || v > 0)) lo = std::min(lo, v), hi = std::max(hi, v);
+    if (std::isfinite(v) && (!h.logarithmic || v > 0)) { lo = std::min(lo, v); hi = std::max(hi, v); }
   if (!std::isnan(h.min)) lo = h.min;
   if (!std::isnan(h.max)) hi = h.max;
-  if (!(hi > lo)) lo = h.logarithmic ? 0.1 : 0, hi = lo + 1;
+  if (!(hi > lo)) { lo = h.logarithmic ? 0.1 : 0; hi = lo + 1; }
   return {lo, hi};
 }
 
 void draw_image(Canvas& c, const std::string& png, const Box& at, std::string_view rest) {
   c.add("<image preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\"");
-  c.attr("x", at.x), c.attr("y", at.y), c.attr("width", at.w), c.attr("height", at.h);
+  c.attr("x", at.x); c.attr("y", at.y); c.attr("width", at.w); c.attr("height", at.h);
   c.add(rest);
   c.add(" href=\"data:image/png;base64," + base64(png) + "\"/>\n");
 }
@@ -109,7 +109,7 @@ void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p, s
     const Series& s = a.series[i];
     const Scale& ys = s.right_axis ? p.r : p.y;
     std::vector<double> px(s.x.size()), py(s.x.size());
-    for (std::size_t j = 0; j < s.x.size(); ++j) px[j] = p.x(s.x[j]), py[j] = j < s.y.size() ? ys(s.y[j]) : nan;
+    for (std::size_t j = 0; j < s.x.size(); ++j) { px[j] = p.x(s.x[j]); py[j] = j < s.y.size() ? ys(s.y[j]) : nan; }
     const bool keep = s.keep_all || !s.extra.empty() || !s.point_names.empty();
     if (s.style.width > 0) {
       const std::string d = path_of(px, py, keep, is_increasing(px), c.options.columns_per_px, &seen);
@@ -134,8 +134,8 @@ void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p, s
       }
       if (px.size() > 2000 && !keep) {
         for (const auto& run : decimate_path(px, py, 1.0))
-          for (const auto j : run) job.x.push_back(px[j]), job.y.push_back(py[j]);
-      } else job.x = std::move(px), job.y = std::move(py);
+          for (const auto j : run) { job.x.push_back(px[j]); job.y.push_back(py[j]); }
+      } else { job.x = std::move(px); job.y = std::move(py); }
       pins.push_back(std::move(job));
     }
   }
@@ -152,7 +152,7 @@ void draw_bars_and_patches(Canvas& c, const Axes& a, const Colors& k, const Prep
       const double x0 = p.x(s.x[j] - s.width / 2), x1 = p.x(s.x[j] + s.width / 2), y = ys(s.height[j]);
       if (std::isnan(y)) continue;
       c.add("<rect");
-      c.attr("x", x0), c.attr("y", std::min(y, base)), c.attr("width", x1 - x0), c.attr("height", std::abs(base - y));
+      c.attr("x", x0); c.attr("y", std::min(y, base)); c.attr("width", x1 - x0); c.attr("height", std::abs(base - y));
       c.add("><title>" + escape((s.label.empty() ? "" : s.label + ": ") + readable(s.height[j]) + " " + (s.right_axis ? a.right : a.y).unit) + "</title></rect>");
     }
     c.add("</g>\n");
@@ -197,16 +197,16 @@ void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& fr
       for (const auto& o : taken) cost += t.overlaps(o) ? 10 : 0;
       if (t.x < frame.x + 2 || t.right() > frame.right() - 2 || t.y < frame.y + 2 || t.bottom() > frame.bottom() - 2) cost += 20;
       for (const auto& q : seen) cost += q.x > t.x - 2 && q.x < t.right() + 2 && q.y > t.y - 1 && q.y < t.bottom() + 1 ? 0.12 : 0;
-      if (cost < best) best = cost, at = t;
+      if (cost < best) { best = cost; at = t; }
     }
   taken.push_back(at);
   c.add("<g class=\"pin\" data-p=\"" + number_text(p.x) + " " + number_text(p.y) + "\">");
   c.line(p.x, p.y, std::clamp(p.x, at.x, at.right()), at.y + at.h / 2 < p.y ? at.bottom() : at.y, stroke(ink, 0.7));
   c.add("<circle");
-  c.attr("cx", p.x), c.attr("cy", p.y), c.attr("r", 3.2);
+  c.attr("cx", p.x); c.attr("cy", p.y); c.attr("r", 3.2);
   c.add(" class=\"ci hp\" stroke=\"#222222\" stroke-width=\"1.2\" fill=\"#ffffff\"/>");
   c.add("<rect rx=\"2\"");
-  c.attr("x", at.x - 2), c.attr("y", at.y), c.attr("width", at.w + 4), c.attr("height", at.h);
+  c.attr("x", at.x - 2); c.attr("y", at.y); c.attr("width", at.w + 4); c.attr("height", at.h);
   c.add(" " + paper_fill() + " fill-opacity=\"0.8\"/>");
   c.text(at.x, at.y + 11, text, note_size);
   c.add("</g>\n");

@@ -39,7 +39,7 @@ void draw_polar(Canvas& c, const Axes& a, const Box& cell) {
   }
   for (double r = step; r < full * 1.001; r += step) {
     c.add("<circle");
-    c.attr("cx", cx), c.attr("cy", cy), c.attr("r", R * r / full);
+    c.attr("cx", cx); c.attr("cy", cy); c.attr("r", R * r / full);
     c.add(" " + (r > full * 0.999 ? stroke(ink, 0.9) : stroke(faint, 0.8)) + "/>");
   }
   c.add("</g>\n<g class=\"plot\">\n");
@@ -50,7 +50,7 @@ void draw_polar(Canvas& c, const Axes& a, const Box& cell) {
     for (std::size_t j = 0; j < s.x.size() && j < s.y.size(); ++j) {
       if (!std::isfinite(s.x[j]) || !std::isfinite(s.y[j])) continue;
       const Point p = at(s.x[j], R * s.y[j] / full);
-      px[j] = p.x, py[j] = p.y;
+      px[j] = p.x; py[j] = p.y;
     }
     const std::string rest = readout_attributes(s, px, py);
     const bool keep = s.keep_all || !s.extra.empty() || !s.point_names.empty();

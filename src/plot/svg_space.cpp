@@ -42,16 +42,16 @@ void draw_space(Canvas& c, const Axes& a, const Box& cell) {
     double lo = infinity, hi = -infinity;
     for (const auto& s : a.space)
       for (const double v : d == 0 ? s.x : d == 1 ? s.y : s.z)
-        if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
-    if (!(lo <= hi)) lo = 0, hi = 1;
-    if (hi - lo < 1e-12 * std::max(std::abs(lo), std::abs(hi)) || hi == lo) lo -= 0.5 * std::max(std::abs(lo), 1e-3), hi += 0.5 * std::max(std::abs(hi), 1e-3);
+        if (std::isfinite(v)) { lo = std::min(lo, v); hi = std::max(hi, v); }
+    if (!(lo <= hi)) { lo = 0; hi = 1; }
+    if (hi - lo < 1e-12 * std::max(std::abs(lo), std::abs(hi)) || hi == lo) { lo -= 0.5 * std::max(std::abs(lo), 1e-3); hi += 0.5 * std::max(std::abs(hi), 1e-3); }
     const double pad = 0.03 * (hi - lo);
     scale[d] = {std::isnan(axis[d]->min) ? lo - pad : axis[d]->min, std::isnan(axis[d]->max) ? hi + pad : axis[d]->max, false, -a.space_aspect[d] / 2, a.space_aspect[d] / 2};
   }
   if (a.equal_aspect) {   // one unit of length for all: the box follows the data
     double longest = 0;
     for (const auto& s : scale) longest = std::max(longest, s.hi - s.lo);
-    for (auto& s : scale) s.p1 = (s.hi - s.lo) / longest, s.p0 = -s.p1;
+    for (auto& s : scale) { s.p1 = (s.hi - s.lo) / longest; s.p0 = -s.p1; }
   }
   const Projection view(a.view);
   const double top = a.title.empty() ? 6 : 26;
@@ -59,7 +59,7 @@ void draw_space(Canvas& c, const Axes& a, const Box& cell) {
   Vec3 lo = Vec3::Constant(infinity), hi = -lo;
   for (int i = 0; i < 8; ++i) {
     const Vec3 p = view(Vec3(i & 1 ? scale[0].p1 : scale[0].p0, i & 2 ? scale[1].p1 : scale[1].p0, i & 4 ? scale[2].p1 : scale[2].p0));
-    lo = lo.cwiseMin(p), hi = hi.cwiseMax(p);
+    lo = lo.cwiseMin(p); hi = hi.cwiseMax(p);
   }
   const double unit = std::min(box.w / (hi.x() - lo.x()), box.h / (hi.y() - lo.y()));
   const double cx = box.x + box.w / 2 - unit * (lo.x() + hi.x()) / 2, cy = box.y + box.h / 2 + unit * (lo.y() + hi.y()) / 2;
@@ -93,9 +93,9 @@ void draw_space(Canvas& c, const Axes& a, const Box& cell) {
     Vec3 p, q;
     p[d] = q[d] = back[at(d)];
     for (const auto& [i, j] : {std::pair{u, v}, {v, u}}) {
-      p[j] = scale[at(j)].p0, q[j] = scale[at(j)].p1;
-      for (const double tick : ticks[at(i)].major) p[i] = q[i] = scale[at(i)](tick), segment(p, q, stroke(faint, 0.8));
-      for (const double edge : {scale[at(i)].p0, scale[at(i)].p1}) p[i] = q[i] = edge, segment(p, q, stroke(faint, 1.2));
+      p[j] = scale[at(j)].p0; q[j] = scale[at(j)].p1;
+      for (const double tick : ticks[at(i)].major) { p[i] = q[i] = scale[at(i)](tick); segment(p, q, stroke(faint, 0.8)); }
+      for (const double edge : {scale[at(i)].p0, scale[at(i)].p1}) { p[i] = q[i] = edge; segment(p, q, stroke(faint, 1.2)); }
     }
   }
   for (Index d = 0; d < 3; ++d) {
@@ -103,23 +103,23 @@ void draw_space(Canvas& c, const Axes& a, const Box& cell) {
     const auto at = [](Index i) { return static_cast<std::size_t>(i); };
     const Index u = d == 0 ? 1 : 0, v = d == 2 ? 1 : 2;
     Vec3 p = Vec3::Zero();
-    if (d < 2) p[u] = -back[at(u)], p[v] = scale[2].p0;
+    if (d < 2) { p[u] = -back[at(u)]; p[v] = scale[2].p0; }
     else {
       double leftmost = infinity;
       for (const double pu : {scale[0].p0, scale[0].p1})
         for (const double pv : {scale[1].p0, scale[1].p1})
-          if (const double x = view(Vec3(pu, pv, 0)).x(); x < leftmost) leftmost = x, p[0] = pu, p[1] = pv;
+          if (const double x = view(Vec3(pu, pv, 0)).x(); x < leftmost) { leftmost = x; p[0] = pu; p[1] = pv; }
     }
     Vec3 q = p;
-    p[d] = scale[at(d)].p0, q[d] = scale[at(d)].p1;
+    p[d] = scale[at(d)].p0; q[d] = scale[at(d)].p1;
     segment(p, q, stroke(ink, 0.9));
     const Point m = px(p), n = px(q), middle{(m.x + n.x) / 2, (m.y + n.y) / 2};
     // Outwards: away from the middle of the box.
     double ox = middle.x - (box.x + box.w / 2), oy = middle.y - (box.y + box.h / 2);
     const double ex = n.x - m.x, ey = n.y - m.y, el = std::max(1e-9, std::hypot(ex, ey)), along = (ox * ex + oy * ey) / el;
-    ox -= along * ex / el, oy -= along * ey / el;
+    ox -= along * ex / el; oy -= along * ey / el;
     const double ol = std::max(1e-9, std::hypot(ox, oy));
-    ox /= ol, oy /= ol;
+    ox /= ol; oy /= ol;
     if (el < 12) continue;   // seen end on
     double widest = 0;
     for (std::size_t i = 0; i < ticks[at(d)].major.size(); ++i) {
@@ -147,13 +147,13 @@ void draw_space(Canvas& c, const Axes& a, const Box& cell) {
     std::string xyz;
     for (const auto j : thin(p)) {
       if (std::isnan(p[j].x() + p[j].y() + p[j].z())) {
-        qx.push_back(nan), qy.push_back(nan);
+        qx.push_back(nan); qy.push_back(nan);
         xyz += "| ";
         continue;
       }
       const Point q = px(p[j]);
-      qx.push_back(q.x), qy.push_back(q.y);
-      for (Index d = 0; d < 3; ++d) append_number(xyz, p[j][d], 4), xyz += ' ';
+      qx.push_back(q.x); qy.push_back(q.y);
+      for (Index d = 0; d < 3; ++d) { append_number(xyz, p[j][d], 4); xyz += ' '; }
     }
     if (!xyz.empty()) xyz.pop_back();
     std::string d = path_of(qx, qy, true, false, 1, &seen);

@@ -42,7 +42,7 @@ Ticks linear_ticks(double lo, double hi, double target) {
   int parts = 5;
   for (const auto& [factor, minor] : {std::pair{1.0, 5}, {2.0, 4}, {2.5, 5}, {5.0, 5}})
     if (factor * power >= raw * 0.999) {
-      step = factor * power, parts = minor;
+      step = factor * power; parts = minor;
       break;
     }
   const double eps = 1e-9 * span;

@@ -56,7 +56,7 @@ std::vector<analysis::Measurement> support_measurements(const run::Job& job) {
     analysis::Measurement m{"bearing " + f.name + " force", "N", "force of the support on the shaft, fixed axes", {"x", "y", "z"}, 1.0, {}};
     m.evaluate = [&f](const analysis::Snapshot& s, double* v) {
       system::Context mean;
-      mean.time = s.t(), mean.averaged = true;
+      mean.time = s.t(); mean.averaged = true;
       Eigen::Map<Vec3>{v} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); }, mean,
                                     [&s](Index k) { return s.reactions()[k]; });
     };

@@ -47,7 +47,7 @@ plot::Series series(std::string label, PlotBuffer::Points p, double factor = 1.0
   plot::Series s;
   s.label = std::move(label);
   for (double& y : p.y) y *= factor;
-  s.x = std::move(p.t), s.y = std::move(p.y);
+  s.x = std::move(p.t); s.y = std::move(p.y);
   s.style.width = 1.1;
   return s;
 }
@@ -130,18 +130,18 @@ void add_history_figures(const run::Job& job, const model::Step& step, const std
           std::size_t top = static_cast<std::size_t>(std::max_element(rpm.begin(), rpm.end()) - rpm.begin());
           if (rpm[top] - *std::min_element(rpm.begin() + static_cast<std::ptrdiff_t>(top), rpm.end()) < 1e-3 * rpm[top]) top = rpm.size() - 1;   // it stays up
           plot::Series up, down;
-          up.label = top + 1 < rows.size() ? "speed rising" : "", down.label = "speed falling";
+          up.label = top + 1 < rows.size() ? "speed rising" : ""; down.label = "speed falling";
           up.style.width = down.style.width = 1.0;
           for (std::size_t r = 0; r < rows.size(); ++r) {
             plot::Series& s = r <= top ? up : down;
-            s.x.push_back(rpm[r]), s.y.push_back(factor * unit.factor * radius[r]);
+            s.x.push_back(rpm[r]); s.y.push_back(factor * unit.factor * radius[r]);
           }
           a.series.push_back(std::move(up));
           if (!down.x.empty()) a.series.push_back(std::move(down));
           add(figure(step, probe.name + "_amplitude", probe.name + ": orbit radius against spin", {std::move(a)}));
         }
         plot::Axes a;
-        a.x = plot::Axis(m.components[0], unit.name), a.y = plot::Axis(m.components[1], unit.name);
+        a.x = plot::Axis(m.components[0], unit.name); a.y = plot::Axis(m.components[1], unit.name);
         a.equal_aspect = true;
         plot::Series s;
         s.style.width = 0.8;
@@ -154,7 +154,7 @@ void add_history_figures(const run::Job& job, const model::Step& step, const std
           while (from < largest_row && std::abs(rows[from][p] - phi) > 5.0 * two_pi) ++from;
           for (to = largest_row; to < rows.size() && std::abs(rows[to][p] - phi) <= 5.0 * two_pi;) ++to;
         }
-        for (std::size_t r = from; r < to; ++r) s.x.push_back(unit.factor * rows[r][y]), s.y.push_back(unit.factor * rows[r][y + 1]);
+        for (std::size_t r = from; r < to; ++r) { s.x.push_back(unit.factor * rows[r][y]); s.y.push_back(unit.factor * rows[r][y + 1]); }
         const bool part = to - from < rows.size();
         a.series.push_back(std::move(s));
         add(figure(step, probe.name + "_orbit", probe.name + (part ? fmt::format(": orbit, ten turns about the largest radius ({:.0f} rpm)", rpm[largest_row]) : ": orbit"),
@@ -164,7 +164,7 @@ void add_history_figures(const run::Job& job, const model::Step& step, const std
     if (const std::ptrdiff_t j = src.find(probe.name + " position"); j >= 0) {
       const std::size_t c = 1 + start[static_cast<std::size_t>(j)];
       std::vector<double> x, y, z;
-      for (const auto& r : rows) x.push_back(r[c]), y.push_back(r[c + 1]), z.push_back(r[c + 2]);
+      for (const auto& r : rows) { x.push_back(r[c]); y.push_back(r[c + 1]); z.push_back(r[c + 2]); }
       add(plot::plot_path_in_space(step.name + "_" + probe.name + "_space", probe.name + ": trajectory in space", x, y, z));
       const plot::Curve path{"", y, z};
       add(plot::plot_path(step.name + "_" + probe.name + "_yz", probe.name + ": trajectory in the yz plane", "y", "z", std::span(&path, 1)));
@@ -217,8 +217,8 @@ void add_history_figures(const run::Job& job, const model::Step& step, const std
     for (std::size_t c = 0; c < 3; ++c) a.series.push_back(series(all[i].components[c], src.column(i, c), unit.factor));
     // the sum, from whole rows: extremes of the parts do not add up
     plot::Series sum;
-    sum.label = "sum", sum.style.width = 1.1, sum.style.dash = plot::Dash::dashed;
-    for (const auto& r : rows) sum.x.push_back(r[0]), sum.y.push_back(unit.factor * (r[1 + start[i]] + r[2 + start[i]] + r[3 + start[i]]));
+    sum.label = "sum"; sum.style.width = 1.1; sum.style.dash = plot::Dash::dashed;
+    for (const auto& r : rows) { sum.x.push_back(r[0]); sum.y.push_back(unit.factor * (r[1 + start[i]] + r[2 + start[i]] + r[3 + start[i]])); }
     a.series.push_back(std::move(sum));
     add(figure(step, "energy", "Energies", {std::move(a)}));
   }

@@ -33,15 +33,15 @@ std::vector<std::size_t> peaks_of(const std::vector<double>& y, double share) {
   bool climbing = true;
   for (std::size_t i = 1; i < y.size(); ++i) {
     if (climbing) {
-      if (y[i] > high) high = y[i], at = i;
+      if (y[i] > high) { high = y[i]; at = i; }
       else if (y[i] < high - rise) {
         if (at > 0 && high - low >= rise) out.push_back(at);
-        climbing = false, low = y[i];
+        climbing = false; low = y[i];
       }
     } else if (y[i] < low) {
       low = y[i];
     } else if (y[i] > low + rise) {
-      climbing = true, high = y[i], at = i;
+      climbing = true; high = y[i]; at = i;
     }
   }
   return out;
@@ -84,7 +84,7 @@ KeyphasorOutput::KeyphasorOutput(const run::Job& job, const model::Step& step, s
   }
   row_.resize(columns_);
   rows_ = PlotBuffer(columns_ - 1, 2);   // whole rows alone are wanted
-  recent_.resize(probes_.size()), largest_.resize(probes_.size());
+  recent_.resize(probes_.size()); largest_.resize(probes_.size());
   if (out_.csv) sink_ = io::make_csv_series(job.folder.path(step_ + "_tracking.csv"));
 }
 
@@ -116,7 +116,7 @@ void KeyphasorOutput::begin() {
 
 void KeyphasorOutput::take(const analysis::Turn& turn) {
   const double speed = turn.speed(), t = 0.5 * (turn.t0 + turn.t1);
-  row_[0] = t, row_[1] = speed;
+  row_[0] = t; row_[1] = speed;
   for (std::size_t p = 0; p < probes_.size(); ++p) {
     const std::vector<double>&y = turn.y[p], &z = turn.z[p];
     double* out = row_.data() + probes_[p].column;
@@ -129,7 +129,7 @@ void KeyphasorOutput::take(const analysis::Turn& turn) {
         *out++ = analysis::lag_of(turn, x);
       }
       const analysis::Range r = analysis::range_of(direction_values_);
-      *out++ = 0.5 * (r.high - r.low), *out++ = r.mean;
+      *out++ = 0.5 * (r.high - r.low); *out++ = r.mean;
     }
     // against the angle of the reference, so that a rotor may turn either way
     const analysis::Orbit circles = analysis::orbit_of(analysis::synchronous(turn, y, 1), analysis::synchronous(turn, z, 1), probes_[p].sense);
@@ -170,12 +170,12 @@ void KeyphasorOutput::save(OutArchive& out) {
   const auto put = [&out](const std::vector<Orbit>& list) {
     out.put_count(list.size());
     for (const Orbit& o : list) {
-      out.put_count(o.probe), out.put(o.t), out.put(o.speed), out.put(o.size);
-      out.put(o.y), out.put(o.z);
+      out.put_count(o.probe); out.put(o.t); out.put(o.speed); out.put(o.size);
+      out.put(o.y); out.put(o.z);
     }
   };
   for (const auto& r : recent_) put(r);
-  put(largest_), put(passed_);
+  put(largest_); put(passed_);
   revolutions_.save(out);
 }
 
@@ -187,12 +187,12 @@ void KeyphasorOutput::restore(InArchive& in) {
   const auto get = [&in](std::vector<Orbit>& list) {
     list.resize(in.count());
     for (Orbit& o : list) {
-      o.probe = in.count(), o.t = in.number(), o.speed = in.number(), o.size = in.number();
-      o.y = in.numbers(), o.z = in.numbers();
+      o.probe = in.count(); o.t = in.number(); o.speed = in.number(); o.size = in.number();
+      o.y = in.numbers(); o.z = in.numbers();
     }
   };
   for (auto& r : recent_) get(r);
-  get(largest_), get(passed_);
+  get(largest_); get(passed_);
   revolutions_.restore(in);
 }
 
@@ -211,12 +211,12 @@ namespace {
 /// a phase round by a turn: unwrapped, the curves would part for good.
 plot::Series within_a_turn(const plot::Series& in) {
   plot::Series out = in;
-  out.x.clear(), out.y.clear();
+  out.x.clear(); out.y.clear();
   for (std::size_t i = 0; i < in.x.size(); ++i) {
     double y = std::fmod(in.y[i], 360.0);
     if (y < 0.0) y += 360.0;
-    if (!out.y.empty() && std::abs(y - out.y.back()) > 180.0) out.x.push_back(in.x[i]), out.y.push_back(nan);
-    out.x.push_back(in.x[i]), out.y.push_back(y);
+    if (!out.y.empty() && std::abs(y - out.y.back()) > 180.0) { out.x.push_back(in.x[i]); out.y.push_back(nan); }
+    out.x.push_back(in.x[i]); out.y.push_back(y);
   }
   return out;
 }
@@ -234,7 +234,7 @@ std::size_t turning_row(const std::vector<std::vector<double>>& rows) {
 
 bool speed_changes(const std::vector<std::vector<double>>& rows) {
   double low = rows[0][1], high = low;
-  for (const auto& r : rows) low = std::min(low, r[1]), high = std::max(high, r[1]);
+  for (const auto& r : rows) { low = std::min(low, r[1]); high = std::max(high, r[1]); }
   return high - low > 0.02 * std::max(std::abs(low), std::abs(high));
 }
 
@@ -255,17 +255,17 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p) const 
     // constant speed: amplitude and envelope against time
     const plot::DisplayUnit unit = plot::length_unit(size);
     plot::Figure f;
-    f.name = id + "_synchronous", f.title = probe.name + ": synchronous amplitude and envelope, turn by turn";
+    f.name = id + "_synchronous"; f.title = probe.name + ": synchronous amplitude and envelope, turn by turn";
     plot::Axes a;
-    a.x = plot::Axis("time", "s"), a.y = plot::Axis(std::string("amplitude, ") + plot::to_string(convention), unit.name);
+    a.x = plot::Axis("time", "s"); a.y = plot::Axis(std::string("amplitude, ") + plot::to_string(convention), unit.name);
     a.y.include_zero = true;
     const double factor = unit.factor * (out_.peak_to_peak ? 2.0 : 1.0);
     for (std::size_t d = 0; d < probe.directions.size(); ++d)
       for (const std::size_t what : {std::size_t{0}, per_direction_ - 2}) {
         plot::Series s;
         s.label = probe.directions[d].name + (what == 0 ? fmt::format(" {}X", out_.tracking.orders.front()) : " envelope");
-        if (what != 0) s.style.dash = plot::Dash::dashed, s.style.width = 1.1;
-        for (const auto& r : rows) s.x.push_back(r[0]), s.y.push_back(factor * r[column(p, d, what)]);
+        if (what != 0) { s.style.dash = plot::Dash::dashed; s.style.width = 1.1; }
+        for (const auto& r : rows) { s.x.push_back(r[0]); s.y.push_back(factor * r[column(p, d, what)]); }
         a.series.push_back(std::move(s));
       }
     f.axes.push_back(std::move(a));
@@ -284,15 +284,15 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p) const 
       for (std::size_t r = from; r < to; ++r) {
         const double amplitude = rows[r][column(p, d, 0)];
         // below a billionth of the largest motion the phase is that of rounding
-        c.speed.push_back(rows[r][1]), c.amplitude.push_back(amplitude), c.phase_lag.push_back(amplitude > 1e-9 * size ? rows[r][column(p, d, 1)] : nan);
-        e.speed.push_back(rows[r][1]), e.amplitude.push_back(rows[r][column(p, d, per_direction_ - 2)]), e.phase_lag.push_back(nan);
+        c.speed.push_back(rows[r][1]); c.amplitude.push_back(amplitude); c.phase_lag.push_back(amplitude > 1e-9 * size ? rows[r][column(p, d, 1)] : nan);
+        e.speed.push_back(rows[r][1]); e.amplitude.push_back(rows[r][column(p, d, per_direction_ - 2)]); e.phase_lag.push_back(nan);
       }
-      curves.push_back(std::move(c)), envelope.push_back(std::move(e));
+      curves.push_back(std::move(c)); envelope.push_back(std::move(e));
     }
   const std::string order = fmt::format("{}X", out_.tracking.orders.front());
   plot::Figure bode = plot::plot_bode(id + "_bode", probe.name + ": " + order + " amplitude and phase against speed (tracking filter)", curves, convention);
   for (plot::Series& s : bode.axes[1].series) s = within_a_turn(s);
-  bode.axes[1].y.min = 0.0, bode.axes[1].y.max = 360.0, bode.axes[1].y.ticks = {0, 90, 180, 270, 360};
+  bode.axes[1].y.min = 0.0; bode.axes[1].y.max = 360.0; bode.axes[1].y.ticks = {0, 90, 180, 270, 360};
   section.figures.push_back(std::move(bode));
   section.figures.push_back(plot::plot_polar(id + "_polar", probe.name + ": " + order + " vector (polar)", curves, convention));
   plot::Figure all = plot::plot_bode(id + "_envelope", probe.name + ": envelope (all frequencies) against speed", envelope, convention);
@@ -337,7 +337,7 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
     plot::Orbit d;
     d.label = std::move(label);
     const analysis::Range y = analysis::range_of(o.y), z = analysis::range_of(o.z);
-    for (std::size_t j = 0; j < o.y.size(); ++j) d.y.push_back(o.y[j] - y.mean), d.z.push_back(o.z[j] - z.mean);
+    for (std::size_t j = 0; j < o.y.size(); ++j) { d.y.push_back(o.y[j] - y.mean); d.z.push_back(o.z[j] - z.mean); }
     for (std::size_t j = 0; j + 1 < o.y.size(); j += n) d.keyphasor.push_back(j);
     return d;
   };
@@ -354,7 +354,7 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
     }
     std::vector<plot::Orbit> at_speeds;
     for (const Orbit& o : passed_)
-      if (o.probe == p) at_speeds.push_back(drawn(o, fmt::format("{:.0f} rpm, {:.3g} s", o.speed * 30.0 / pi, o.t))), list(o);
+      if (o.probe == p) { at_speeds.push_back(drawn(o, fmt::format("{:.0f} rpm, {:.3g} s", o.speed * 30.0 / pi, o.t))); list(o); }
     if (!at_speeds.empty()) section.figures.push_back(plot::plot_orbit(id + "_orbits", probes_[p].name + ": orbits at given speeds", at_speeds));
   }
   if (!t.rows.empty()) {

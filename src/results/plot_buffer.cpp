@@ -12,8 +12,8 @@ void PlotBuffer::append(const std::vector<double>& row) {
     Extreme* bucket = data_.data() + data_.size() - channels_;
     for (std::size_t k = 0; k < channels_; ++k) {
       const double y = row[k + 1];
-      if (y < bucket[k].lo) bucket[k].lo = y, bucket[k].t_lo = row[0];
-      if (y > bucket[k].hi) bucket[k].hi = y, bucket[k].t_hi = row[0];
+      if (y < bucket[k].lo) { bucket[k].lo = y; bucket[k].t_lo = row[0]; }
+      if (y > bucket[k].hi) { bucket[k].hi = y; bucket[k].t_hi = row[0]; }
     }
   }
   if (++filled_ == stride_) filled_ = 0;
@@ -44,7 +44,7 @@ void PlotBuffer::halve() {
 
 void PlotBuffer::save(OutArchive& out) const {
   for (std::size_t n : {stride_, rows_, filled_, keep_stride_, data_.size(), kept_.size()}) out.put_count(n);
-  for (const Extreme& e : data_) out.put(e.lo), out.put(e.hi), out.put(e.t_lo), out.put(e.t_hi);
+  for (const Extreme& e : data_) { out.put(e.lo); out.put(e.hi); out.put(e.t_lo); out.put(e.t_hi); }
   for (const auto& row : kept_) out.put(row);
 }
 
@@ -52,8 +52,8 @@ void PlotBuffer::restore(InArchive& in) {
   std::size_t data = 0, kept = 0;
   for (std::size_t* n : {&stride_, &rows_, &filled_, &keep_stride_, &data, &kept}) *n = in.count();
   if (data > capacity_ * channels_ || kept > rows_capacity) throw std::invalid_argument("plot buffer of another run");
-  data_.resize(data), kept_.resize(kept);
-  for (Extreme& e : data_) e.lo = in.number(), e.hi = in.number(), e.t_lo = in.number(), e.t_hi = in.number();
+  data_.resize(data); kept_.resize(kept);
+  for (Extreme& e : data_) { e.lo = in.number(); e.hi = in.number(); e.t_lo = in.number(); e.t_hi = in.number(); }
   for (auto& row : kept_) row = in.numbers();
 }
 
@@ -63,12 +63,12 @@ PlotBuffer::Points PlotBuffer::channel(std::size_t k) const {
   for (std::size_t b = 0; b < n; ++b) {
     const Extreme& x = data_[b * channels_ + k];
     if (x.t_lo == x.t_hi) {
-      p.t.push_back(x.t_lo), p.y.push_back(x.lo);
+      p.t.push_back(x.t_lo); p.y.push_back(x.lo);
       continue;
     }
     const bool low_first = x.t_lo < x.t_hi;
-    p.t.push_back(low_first ? x.t_lo : x.t_hi), p.y.push_back(low_first ? x.lo : x.hi);
-    p.t.push_back(low_first ? x.t_hi : x.t_lo), p.y.push_back(low_first ? x.hi : x.lo);
+    p.t.push_back(low_first ? x.t_lo : x.t_hi); p.y.push_back(low_first ? x.lo : x.hi);
+    p.t.push_back(low_first ? x.t_hi : x.t_lo); p.y.push_back(low_first ? x.hi : x.lo);
   }
   return p;
 }

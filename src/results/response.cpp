@@ -17,7 +17,7 @@ ProbeCurves curves_of(const analysis::ResponseProbe& probe, const std::vector<an
   if (probe.angles.empty()) {
     c.label = {"y", "z"};
     c.amplitude.resize(2);
-    for (const analysis::PointAmplitude& a : amplitudes) c.amplitude[0].push_back(a.y), c.amplitude[1].push_back(a.z);
+    for (const analysis::PointAmplitude& a : amplitudes) { c.amplitude[0].push_back(a.y); c.amplitude[1].push_back(a.z); }
     return c;
   }
   for (const double angle : probe.angles) {
@@ -40,9 +40,9 @@ void add_probe_columns(io::Table& t, const std::string& name) {
 
 void add_probe_cells(std::vector<io::Table::Cell>& row, const analysis::PointAmplitude& a) {
   const analysis::Orbit o = a.orbit();
-  row.emplace_back(std::abs(a.y)), row.emplace_back(lag(a.y) * 180 / pi);
-  row.emplace_back(std::abs(a.z)), row.emplace_back(lag(a.z) * 180 / pi);
-  row.emplace_back(o.major), row.emplace_back(o.minor);
+  row.emplace_back(std::abs(a.y)); row.emplace_back(lag(a.y) * 180 / pi);
+  row.emplace_back(std::abs(a.z)); row.emplace_back(lag(a.z) * 180 / pi);
+  row.emplace_back(o.major); row.emplace_back(o.minor);
 }
 
 }  // namespace whirl::results

@@ -59,7 +59,7 @@ plot::Figure along_figure(const FrequencyStep& s, const ShapeDrawing& d) {
   double largest = 0;
   Complex top = 1;
   for (Index n = 0; n < s.linear.system().nodes(); ++n)
-    if (const Complex x = (*d.a)[6 * n + c]; !s.linear.system().node(n).scalar && std::abs(x) > largest) largest = std::abs(x), top = x;
+    if (const Complex x = (*d.a)[6 * n + c]; !s.linear.system().node(n).scalar && std::abs(x) > largest) { largest = std::abs(x); top = x; }
   for (std::size_t l = 0; l < s.job.mesh.lines.size(); ++l) {
     const meshes::Line& line = s.job.mesh.lines[l];
     plot::Series y;
@@ -69,12 +69,12 @@ plot::Figure along_figure(const FrequencyStep& s, const ShapeDrawing& d) {
     y.keep_all = true;
     for (Index k = line.first_station; k < line.first_station + line.stations; ++k) {
       const meshes::Station& st = s.job.mesh.stations[at(k)];
-      y.x.push_back(st.position.x()), y.y.push_back(((*d.a)[6 * st.at.node + c] / top).real());
+      y.x.push_back(st.position.x()); y.y.push_back(((*d.a)[6 * st.at.node + c] / top).real());
     }
     axes.series.push_back(std::move(y));
   }
   plot::Figure f;
-  f.name = s.file(d.name), f.title = d.title, f.caption = d.caption;
+  f.name = s.file(d.name); f.title = d.title; f.caption = d.caption;
   f.height = 300;
   f.axes.push_back(std::move(axes));
   return f;
@@ -112,7 +112,7 @@ void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d) {
           return (1 - 3 * x2 + 2 * x3) * st[k].u[c] + (x - 2 * x2 + x3) * h * st[k].t[c] + (3 * x2 - 2 * x3) * st[k + 1].u[c] +
                  (x3 - x2) * h * st[k + 1].t[c];
         };
-        m.s.push_back(st[k].s + x * h), m.y.push_back(value(1)), m.z.push_back(value(2));
+        m.s.push_back(st[k].s + x * h); m.y.push_back(value(1)); m.z.push_back(value(2));
       }
     }
     const std::string of = lines > 1 ? fmt::format(" of {}", s.job.mesh.lines[l].name) : "";

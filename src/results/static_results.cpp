@@ -35,7 +35,7 @@ plot::Series curve(std::string label) {
 plot::Axes axes_along(std::string y, double first, double last) {
   plot::Axes a;
   a.x = plot::Axis("position along the shaft", "m");
-  a.x.min = first, a.x.max = last;
+  a.x.min = first; a.x.max = last;
   a.y = plot::Axis(std::move(y), "");
   a.y.include_zero = true;
   return a;
@@ -45,7 +45,7 @@ plot::Axes axes_along(std::string y, double first, double last) {
 void mark(plot::Axes& a, const run::Job& job, std::size_t line) {
   const auto rule = [&](double s, const std::string& name) {
     plot::Rule r;
-    r.value = s, r.label = name;
+    r.value = s; r.label = name;
     a.rules.push_back(r);
   };
   for (const model::Bearing& b : job.model.bearings) {
@@ -79,7 +79,7 @@ void add_rows(plot::Figure& f, const run::Job& job, std::size_t line, const std:
       double m = 0;
       for (const SectionPoint& p : points) {
         if (p.line != static_cast<Index>(line)) continue;
-        s.x.push_back(p.s), s.y.push_back(c.second(p)), m = std::max(m, std::abs(c.second(p)));
+        s.x.push_back(p.s); s.y.push_back(c.second(p)); m = std::max(m, std::abs(c.second(p)));
       }
       if (m > 1e-9 * largest[r]) a.series.push_back(std::move(s));
     }
@@ -145,12 +145,12 @@ StaticResults make_static_results(run::Job& job, const std::string& step, system
       const Vec3 u = n.u + st.at.offset * (n.d() - Vec3::UnitX());
       const Vec3 d = path.empty() ? n.d() : tangent(n, path.after(st.s));
       out.deflection.add({line.name, st.s, st.label(), u.x(), u.y(), u.z(), d.y(), d.z(), n.phi});
-      x.x.push_back(st.s), x.y.push_back(u.x()), y.x.push_back(st.s), y.y.push_back(u.y()), z.x.push_back(st.s), z.y.push_back(u.z());
-      phi.x.push_back(st.s), phi.y.push_back(n.phi - phi0);
-      if (const double a = size_of(u); a > worst) worst = a, where = st.s, worst_at = &st;
+      x.x.push_back(st.s); x.y.push_back(u.x()); y.x.push_back(st.s); y.y.push_back(u.y()); z.x.push_back(st.s); z.y.push_back(u.z());
+      phi.x.push_back(st.s); phi.y.push_back(n.phi - phi0);
+      if (const double a = size_of(u); a > worst) { worst = a; where = st.s; worst_at = &st; }
     }
     // between nodes: the cubic with the directors as end slopes
-    for (plot::Series* c : {&x, &y, &z}) c->x.clear(), c->y.clear();
+    for (plot::Series* c : {&x, &y, &z}) { c->x.clear(); c->y.clear(); }
     for (Index k = line.first_element; k < line.first_element + line.elements; ++k) {
       const meshes::Element& e = job.mesh.elements[at(k)];
       const auto pose = [&](const meshes::Place& p) {
@@ -158,14 +158,14 @@ StaticResults make_static_results(run::Job& job, const std::string& step, system
         return meshes::Pose{job.mesh.nodes[at(p.node)].position + n.u + p.offset * n.d(), n.d(), n.phi};
       };
       meshes::Pose a = pose(e.left), b = pose(e.right);
-      if (!path.empty()) a.d = tangent(node(e.left.node), path.after(e.s1)), b.d = tangent(node(e.right.node), path.before(e.s2));
+      if (!path.empty()) { a.d = tangent(node(e.left.node), path.after(e.s1)); b.d = tangent(node(e.right.node), path.before(e.s2)); }
       // end slopes for the stretched length (thermal growth): chord, and the arc over it
       const double arc = (b.r - a.r).norm() * (1.0 + (b.d - a.d).squaredNorm() / 24.0);
       for (int i = k == line.first_element ? 0 : 1; i <= 8; ++i) {
         const double xi = i / 8.0, s = e.s1 + xi * (e.s2 - e.s1);
         const Vec3 u = meshes::interpolate(a, b, arc, xi).r - job.model.shafts[l].position(s);
-        x.x.push_back(s), x.y.push_back(u.x()), y.x.push_back(s), y.y.push_back(u.y()), z.x.push_back(s), z.y.push_back(u.z());
-        if (const double w = size_of(u); w > worst * (1 + 1e-9)) worst = w, where = s, worst_at = nullptr;
+        x.x.push_back(s); x.y.push_back(u.x()); y.x.push_back(s); y.y.push_back(u.y()); z.x.push_back(s); z.y.push_back(u.z());
+        if (const double w = size_of(u); w > worst * (1 + 1e-9)) { worst = w; where = s; worst_at = nullptr; }
       }
     }
     plot::Figure f;
@@ -185,7 +185,7 @@ StaticResults make_static_results(run::Job& job, const std::string& step, system
       mark(a, job, l);
       if (!f.axes.empty())
         for (plot::Rule& r : a.rules) r.label.clear();
-      a.share_x = !f.axes.empty(), a.legend = a.series.size() > 1;
+      a.share_x = !f.axes.empty(); a.legend = a.series.size() > 1;
       if (!a.legend && series.size() > 1) a.y.label += " " + a.series.front().label;
       if (std::string_view(unit) == "rad") a.y.unit = "rad";
       else finish(a, unit);
@@ -213,7 +213,7 @@ StaticResults make_static_results(run::Job& job, const std::string& step, system
     int number = 0, loaded = 0;
     for (const auto& e : b.loads(node)) {
       out.rolling.add({b.name, static_cast<double>(++number), e.angle * 180.0 / pi, e.load});
-      most = std::max(most, e.load), loaded += e.load > 0 ? 1 : 0;
+      most = std::max(most, e.load); loaded += e.load > 0 ? 1 : 0;
     }
     summary["rolling elements"][b.name]["largest load [N]"] = most;
     summary["rolling elements"][b.name]["loaded"] = loaded;
@@ -232,10 +232,10 @@ StaticResults make_static_results(run::Job& job, const std::string& step, system
     const Vec3 v = clean(loads[i].force), m = clean(loads[i].moment);
     out.supports.add({f.name, v.x(), v.y(), v.z(), m.x(), m.y(), m.z()});
     io::Value& q = summary["support forces [N]"][f.name];
-    q.push(v.x()), q.push(v.y()), q.push(v.z());
+    q.push(v.x()); q.push(v.y()); q.push(v.z());
     if (!m.isZero(0.0)) {
       io::Value& qm = summary["support moments [N m]"][f.name];
-      qm.push(m.x()), qm.push(m.y()), qm.push(m.z());
+      qm.push(m.x()); qm.push(m.y()); qm.push(m.z());
     }
     std::string line = fmt::format("support '{}': {:.5g}, {:.5g}, {:.5g} N", f.name, v.x(), v.y(), v.z());
     if (!m.isZero(0.0)) line += fmt::format("; {:.5g}, {:.5g}, {:.5g} N m", m.x(), m.y(), m.z());
@@ -280,14 +280,14 @@ StaticResults make_static_results(run::Job& job, const std::string& step, system
       bool any = false;
       for (const SectionPoint& p : out.points) {
         if (p.line != static_cast<Index>(l) || (q.stress && !p.has_stress)) continue;
-        if (const double v = q.of(p); !any || std::abs(v) > std::abs(best) * (1 + 1e-12)) best = v, s = p.s, any = true;
+        if (const double v = q.of(p); !any || std::abs(v) > std::abs(best) * (1 + 1e-12)) { best = v; s = p.s; any = true; }
       }
       if (!any) continue;
       const plot::DisplayUnit unit = plot::unit_for(q.unit, std::abs(best));
       x.add({name, q.label, best * unit.factor, unit.name, s});
       summary["largest"][name][fmt::format("{} [{}]", q.label, q.unit)] = best;
       summary["largest"][name][fmt::format("{} at [m]", q.label)] = s;
-      if (std::string_view(q.label) == "von Mises stress") worst_stress = best, stress_at = s;
+      if (std::string_view(q.label) == "von Mises stress") { worst_stress = best; stress_at = s; }
       if (std::string_view(q.label) == "bending moment" && best > 0) {
         const plot::DisplayUnit u = plot::unit_for("N m", best);
         out.lines.push_back(fmt::format("{} '{}': largest bending moment {:.4g} {} at {:.4g} m", kind, name, best * u.factor, u.name, s));
@@ -307,7 +307,7 @@ StaticResults make_static_results(run::Job& job, const std::string& step, system
     const double length = job.mesh.lines[l].length;
     const std::string of = job.mesh.lines.size() > 1 ? " of " + name : "";
     plot::Figure f;
-    f.name = file_safe(step, "sections", job, l), f.title = "Section forces" + of;
+    f.name = file_safe(step, "sections", job, l); f.title = "Section forces" + of;
     f.caption = "Of the right part on the left one; N tension positive; M_z positive bends the shaft hollow towards +y.";
     add_rows(f, job, l, out.points,
              {{"shear force", "N", {{"V_y", [](const SectionPoint& p) { return p.V.x(); }}, {"V_z", [](const SectionPoint& p) { return p.V.y(); }}}},
@@ -318,7 +318,7 @@ StaticResults make_static_results(run::Job& job, const std::string& step, system
     if (!f.axes.empty()) out.figures.push_back(std::move(f));
     if (!stressed) continue;
     plot::Figure g;
-    g.name = file_safe(step, "stress", job, l), g.title = "Stress at the surface" + of;
+    g.name = file_safe(step, "stress", job, l); g.title = "Stress at the surface" + of;
     g.caption = "Nominal, without stress concentration. In a turning shaft the bending stress alternates once a revolution.";
     add_rows(g, job, l, out.points,
              {{"stress", "Pa",
@@ -361,7 +361,7 @@ void PathRecord::add(system::SystemProblem& problem, const analysis::LoadPathPoi
   for (const Watched& w : watched_) {
     const system::NodeState& n = problem.workspace().nodes[at(w.at.node)];
     const Vec3 x = n.u + w.at.offset * (n.d() - Vec3::UnitX());
-    for (double v : x) row.emplace_back(v), u.push_back(v);
+    for (double v : x) { row.emplace_back(v); u.push_back(v); }
   }
   for (const Watched& w : watched_) row.emplace_back(problem.workspace().nodes[at(w.at.node)].phi);
   table_.add(std::move(row));
@@ -371,10 +371,10 @@ void PathRecord::add(system::SystemProblem& problem, const analysis::LoadPathPoi
 
 plot::Figure PathRecord::figure(const std::string& step) const {
   plot::Figure f;
-  f.name = step + "_path", f.title = "Load path";
+  f.name = step + "_path"; f.title = "Load path";
   f.height = 380;
   plot::Axes a;
-  a.x = plot::Axis("displacement", "m"), a.y = plot::Axis("load factor", "-");
+  a.x = plot::Axis("displacement", "m"); a.y = plot::Axis("load factor", "-");
   a.y.include_zero = true;
   double largest = 0;
   for (const auto& u : u_)
@@ -384,9 +384,9 @@ plot::Figure PathRecord::figure(const std::string& step) const {
   for (std::size_t w = 0; w < watched_.size(); ++w)
     for (std::size_t c = 0; c < 3; ++c) {
       plot::Series s = curve(fmt::format("{} u_{}", watched_[w].name, "xyz"[c]));
-      s.style.marker = plot::Marker::circle, s.style.marker_size = 3.5;
+      s.style.marker = plot::Marker::circle; s.style.marker_size = 3.5;
       double m = 0;
-      for (std::size_t k = 0; k < load_.size(); ++k) s.x.push_back(unit.factor * u_[k][3 * w + c]), s.y.push_back(load_[k]), m = std::max(m, std::abs(u_[k][3 * w + c]));
+      for (std::size_t k = 0; k < load_.size(); ++k) { s.x.push_back(unit.factor * u_[k][3 * w + c]); s.y.push_back(load_[k]); m = std::max(m, std::abs(u_[k][3 * w + c])); }
       if (m > 1e-6 * largest) a.series.push_back(std::move(s));
     }
   f.axes.push_back(std::move(a));

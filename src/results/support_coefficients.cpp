@@ -45,7 +45,7 @@ Matrix<5> at_point(const Matrix<6>& node, double o) {
   // of a shift and a turn of the point: u_y at the node = u_y - o rz, u_z = u_z + o ry
   Matrix<6, 5> A = Matrix<6, 5>::Zero();
   A(0, 0) = A(1, 1) = A(2, 2) = A(4, 3) = A(5, 4) = 1.0;
-  A(1, 4) = -o, A(2, 3) = o;
+  A(1, 4) = -o; A(2, 3) = o;
   return A.transpose() * node * A;
 }
 
@@ -56,7 +56,7 @@ void find_threshold(SupportCoefficients& b) {
   const double k = (K(0, 0) * C(1, 1) + K(1, 1) * C(0, 0) - K(0, 1) * C(1, 0) - K(1, 0) * C(0, 1)) / C.trace();
   const double w2 = ((k - K(0, 0)) * (k - K(1, 1)) - K(0, 1) * K(1, 0)) / C.determinant();
   if (!(C.trace() > 0) || !(C.determinant() > 0) || !(k > 0) || !(w2 > 0) || b.spin == 0) return;
-  b.threshold_mass = k / w2, b.whirl_ratio = std::sqrt(w2) / std::abs(b.spin);
+  b.threshold_mass = k / w2; b.whirl_ratio = std::sqrt(w2) / std::abs(b.spin);
 }
 
 }  // namespace
@@ -88,15 +88,15 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job, 
     if (slot < 0) continue;
     SupportCoefficients c;
     if (alone) {
-      c.K = matrices.K.block(slot).block<2, 2>(1, 1), c.C = matrices.C.block(slot).block<2, 2>(1, 1);
+      c.K = matrices.K.block(slot).block<2, 2>(1, 1); c.C = matrices.C.block(slot).block<2, 2>(1, 1);
       if (std::holds_alternative<model::BallBearing>(b.law) || std::holds_alternative<model::RollerBearing>(b.law)) c.K5 = at_point(matrices.K.block(slot), n.shaft.offset);
     } else {   // two of a kind on one node stand in one block
-      c.K = differences(*force, w, n.shaft.node, &system::NodeState::u, 1e-9), c.C = differences(*force, w, n.shaft.node, &system::NodeState::du, 1e-6);
+      c.K = differences(*force, w, n.shaft.node, &system::NodeState::u, 1e-9); c.C = differences(*force, w, n.shaft.node, &system::NodeState::du, 1e-6);
     }
     const auto node = [&](Index k) -> const system::NodeState& { return w.nodes[static_cast<std::size_t>(k)]; };
     const auto place = [&](const meshes::Place& p) { return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>()); };
     const Vec2 r = place(n.shaft) - place(n.other);
-    c.name = b.name, c.spin = node(n.shaft.node).spin(), c.place = r;
+    c.name = b.name; c.spin = node(n.shaft.node).spin(); c.place = r;
     const Vec2 F = force->force(node, w.context, [](Index) { return 0.0; }).tail<2>();
     c.load = F.norm();
     if (c.load > 0 && r.norm() > 0) {

@@ -100,8 +100,8 @@ Frames::Frames(const run::Job& job, const model::VtkOutput& o, const std::string
 
 void Frames::begin(const Snapshot& s) {
   writer_->begin(job_.scene);
-  now_ = s.t(), phi_ = s.total_phi(job_.reference());
-  if (!schedule_.by_revolution() && schedule_.next_time() <= s.t()) write(s), schedule_.advance();
+  now_ = s.t(); phi_ = s.total_phi(job_.reference());
+  if (!schedule_.by_revolution() && schedule_.next_time() <= s.t()) { write(s); schedule_.advance(); }
 }
 
 void Frames::step(analysis::StepAccess& s) {
@@ -123,19 +123,19 @@ void Frames::step(analysis::StepAccess& s) {
       (sign * (f - target) < 0.0 ? flo : fhi) = f;
     }
     if (schedule_.in_window(t)) write(s.at(t));
-    a = t, fa = target;
+    a = t; fa = target;
     target = schedule_.next_angle(target + sign * 1e-9, sign);
   }
   phi_ = phi1;
 }
 
 void Frames::save(OutArchive& out) const {
-  out.put(now_), out.put(phi_), out.put(schedule_.next_time()), out.put_count(schedule_.planned()), out.put_count(schedule_.taken());
+  out.put(now_); out.put(phi_); out.put(schedule_.next_time()); out.put_count(schedule_.planned()); out.put_count(schedule_.taken());
   writer_->save(out);
 }
 
 void Frames::restore(InArchive& in) {
-  now_ = in.number(), phi_ = in.number();
+  now_ = in.number(); phi_ = in.number();
   const double next = in.number();
   const std::uint64_t planned = in.count(), taken = in.count();
   if (planned == schedule_.planned()) schedule_.set_taken(taken);

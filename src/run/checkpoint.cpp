@@ -32,14 +32,14 @@ bool starts_with_key(std::string_view line, std::string_view key) {
 std::string encode(const Checkpoint& c) {
   OutArchive a;
   a.put(c.deck);
-  a.put(c.t_begin), a.put(c.speed), a.put(c.seconds), a.put(c.reason);
-  a.put(c.state.t), a.put(c.state.q), a.put(c.state.v), a.put(c.state.a);
+  a.put(c.t_begin); a.put(c.speed); a.put(c.seconds); a.put(c.reason);
+  a.put(c.state.t); a.put(c.state.q); a.put(c.state.v); a.put(c.state.a);
   a.put_count(c.state.frames.chart.size());
   for (const Mat3& m : c.state.frames.chart) a.put(std::span<const double>(m.data(), 9));
   a.put(c.state.frames.turns);
   a.put(c.integrator.serialize());
   a.put_count(c.parts.size());
-  for (const auto& [key, data] : c.parts) a.put(key), a.put(data);
+  for (const auto& [key, data] : c.parts) { a.put(key); a.put(data); }
   return a.data();
 }
 
@@ -47,8 +47,8 @@ Checkpoint decode(std::string_view data) {
   InArchive a(data);
   Checkpoint c;
   c.deck = a.text();
-  c.t_begin = a.number(), c.speed = a.number(), c.seconds = a.number(), c.reason = a.text();
-  c.state.t = a.number(), c.state.q = a.vector(), c.state.v = a.vector(), c.state.a = a.vector();
+  c.t_begin = a.number(); c.speed = a.number(); c.seconds = a.number(); c.reason = a.text();
+  c.state.t = a.number(); c.state.q = a.vector(); c.state.v = a.vector(); c.state.a = a.vector();
   c.state.frames.chart.resize(a.count());
   for (Mat3& m : c.state.frames.chart) {
     const std::vector<double> x = a.numbers();

@@ -42,7 +42,7 @@ Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& runni
     Diagnostic d = failed.diagnostics().front();
     std::string names;
     for (const model::Bearing& b : job.model.bearings)
-      if (has_gap(b)) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", b.name), d.where = names.find(',') == std::string::npos ? b.where : d.where;
+      if (has_gap(b)) { names += fmt::format("{}'{}'", names.empty() ? "" : ", ", b.name); d.where = names.find(',') == std::string::npos ? b.where : d.where; }
     if (d.code != "E75" || names.empty()) return failed;
     d.message += fmt::format("; {} {} a gap, and moving the shaft along its load finds nothing that holds it", names, names.find(',') == std::string::npos ? "has" : "have");
     d.hint = "in the middle of its gap a support carries nothing: give the rotor weight or a load that presses it against the support, less gap, or another support";
@@ -57,7 +57,7 @@ Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& runni
     const double factor = 0.5 * (done + fails);
     part.set_load(factor);
     auto e = solver.try_solve(start.speed, last ? &last->state : &start.state);
-    if (e) last = std::move(e), done = factor;
+    if (e) { last = std::move(e); done = factor; }
     else fails = factor;
   }
   constexpr const char* hint = "a film carries more at a higher speed or viscosity, with a smaller clearance, or with a longer bearing; at rest it carries nothing";
@@ -70,7 +70,7 @@ Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& runni
     return Error(failed.exit(), std::move(d));
   }
   // something did carry a share of it: the load is the matter, not a missing support
-  d.code = "E76", d.message = fmt::format("no equilibrium found: the supports carry {:.3g} of the load; there", done);
+  d.code = "E76"; d.message = fmt::format("no equilibrium found: the supports carry {:.3g} of the load; there", done);
   const Conditions now(job, last->state);
   const char* sep = " ";
   for (const SupportCondition& c : job.built.conditions) {

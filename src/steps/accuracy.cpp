@@ -78,7 +78,7 @@ std::vector<std::string> state_accuracy(run::Job& job, const AccuracyInputs& in,
     const double numerical = decay / m.frequency, lost = 1.0 - std::exp(-std::max(decay, 0.0) * in.steps.seconds());
     io::Value q;
     q["frequency [Hz]"] = m.frequency / two_pi;
-    q["physical damping ratio"] = physical, q["numerical damping ratio"] = numerical;
+    q["physical damping ratio"] = physical; q["numerical damping ratio"] = numerical;
     v["modes"].push(q);
     const std::string motion = m.kind == analysis::ModeKind::lateral ? fmt::format("lateral, {}", analysis::to_string(m.direction)) : std::string(analysis::to_string(m.kind));
     t.add({m.frequency / two_pi, motion, physical, numerical, lost});

@@ -64,7 +64,7 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
     const run::PhaseTimer timer(job, "critical speeds");
     for (const double order : law.orders) {
       analysis::CriticalOptions q;
-      q.order = order, q.max_speed = top, q.min_speed = o.speeds.front(), q.motion = o.track.modes.motion, q.damped = law.damped;
+      q.order = order; q.max_speed = top; q.min_speed = o.speeds.front(); q.motion = o.track.modes.motion; q.damped = law.damped;
       q.grid = static_cast<Index>(o.speeds.size());
       double highest = 0;
       for (const analysis::CampbellLine& l : c.lines)
@@ -80,7 +80,7 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   const std::size_t found = marks.size();
 
   io::Value& v = s.summary();
-  v["modes"] = c.lines.size(), v["speeds"] = c.speeds.size(), v["speeds solved"] = c.speeds_solved;
+  v["modes"] = c.lines.size(); v["speeds"] = c.speeds.size(); v["speeds solved"] = c.speeds_solved;
   for (const plot::CriticalMark& m : marks) v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(results::to_rpm(m.speed));
   s.add_table("campbell", make_table(c), false);
   s.add_table("critical_speeds", std::move(criticals));

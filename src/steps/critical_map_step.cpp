@@ -152,7 +152,7 @@ void add_own_curves(const model::Bearing& b, double max_speed, std::vector<plot:
             if (std::abs(f[k] - table->speed[i]) < std::abs(f[j] - table->speed[i])) j = k;
           row = i * f.size() + j;
         }
-        if (table->speed[i] > 0 && table->K[row](entry, entry) > 0) c.x.push_back(table->K[row](entry, entry)), c.y.push_back(table->speed[i]);
+        if (table->speed[i] > 0 && table->K[row](entry, entry) > 0) { c.x.push_back(table->K[row](entry, entry)); c.y.push_back(table->speed[i]); }
       }
       if (!c.x.empty()) out.push_back(std::move(c));
     }
@@ -165,7 +165,7 @@ void run_critical_map_step(run::Job& job, const model::Step& step, const model::
   const std::vector<std::size_t> chosen = chosen_bearings(job.model, step, law);
   results::FrequencyStep s(job, step, "critical_map", "critical-speed map", law.max_speed);
   analysis::CriticalMapOptions o;
-  o.critical.max_speed = law.max_speed, o.critical.order = law.order, o.critical.motion = results::motion_of(law.motion);
+  o.critical.max_speed = law.max_speed; o.critical.order = law.order; o.critical.motion = results::motion_of(law.motion);
   o.running = results::steady_rotation_of(job, law.max_speed);
   o.forward_only = !law.backward;
   o.undeformed = law.about == model::About::undeformed;
@@ -202,7 +202,7 @@ void run_critical_map_step(run::Job& job, const model::Step& step, const model::
     s.summary()["bearings varied"].push(job.model.bearings[i].name);
   }
   for (const std::size_t i : chosen) add_own_curves(job.model.bearings[i], law.max_speed, own);
-  s.summary()["lines"] = map.lines.size(), s.summary()["stiffnesses"] = map.stiffness.size();
+  s.summary()["lines"] = map.lines.size(); s.summary()["stiffnesses"] = map.stiffness.size();
   s.add_table("critical_map", std::move(table), false);
   s.add_figure(plot::plot_critical_map(s.file("critical_map"), "Undamped critical speeds against support stiffness", curves, own));
   s.section.text = fmt::format("Lateral stiffness of {} supports varied together: {}. What else they do along and about the shaft stays;"

@@ -18,7 +18,7 @@ bool is_damped(analysis::Linearizer& linear, double Omega) {
   const auto distance = [](const la::BlockMatrix<6>& a, const la::BlockMatrix<6>& b) {
     double size = 0, apart = 0;
     for (std::size_t k = 0; k < a.value_count(); ++k)
-      size = std::max(size, std::abs(a.data()[k])), apart = std::max(apart, std::abs(a.data()[k] - b.data()[k]));
+      { size = std::max(size, std::abs(a.data()[k])); apart = std::max(apart, std::abs(a.data()[k] - b.data()[k])); }
     return size > 0 ? apart / size : 0.0;
   };
   const la::BlockMatrix<6> C = all.C, K = all.K;
@@ -51,7 +51,7 @@ void run_critical_step(run::Job& job, const model::Step& step, const model::Crit
     std::size_t found = 0;
     for (const double order : law.orders) {
       analysis::CriticalOptions o;
-      o.order = order, o.min_speed = law.min_speed, o.max_speed = law.max_speed, o.damped = damped, o.motion = results::motion_of(law.motion);
+      o.order = order; o.min_speed = law.min_speed; o.max_speed = law.max_speed; o.damped = damped; o.motion = results::motion_of(law.motion);
       analysis::SpectrumCertificate certificate;
       std::vector<analysis::Critical> list = analysis::critical_speeds(s.linear, o, &certificate);
       if (damped) s.certify(certificate, fmt::format("damped, order {:g}", order));

@@ -68,13 +68,13 @@ void use_frequency_axis(plot::Figure& f) {
       for (plot::Series& s : a.series)
         for (plot::Extra& e : s.extra)
           if (e.unit == "rpm") {
-            e.label = "frequency", e.unit = "Hz";
+            e.label = "frequency"; e.unit = "Hz";
             for (double& x : e.values) x /= 60.0;
           }
       a.notes.clear();   // they name speeds
       continue;
     }
-    a.x.label = "excitation frequency", a.x.unit = "Hz";
+    a.x.label = "excitation frequency"; a.x.unit = "Hz";
     for (plot::Series& s : a.series)
       for (double& x : s.x) x /= 60.0;
     for (plot::Rule& r : a.rules) r.value /= r.vertical ? 60.0 : 1.0;
@@ -125,7 +125,7 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
   double largest = 0, largest_twist = 0, at = 0;
   for (std::size_t k = 0; k < points.size(); ++k)
     for (std::size_t p = 0; p < o.probes.size(); ++p) {
-      if (lateral(points[k], p) > largest) largest = lateral(points[k], p), at = grid[k];
+      if (lateral(points[k], p) > largest) { largest = lateral(points[k], p); at = grid[k]; }
       largest_twist = std::max(largest_twist, twist(points[k], p));
     }
   const bool twists = law.motion == model::MotionKind::torsional || largest == 0;
@@ -140,7 +140,7 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
   t.columns = {{"speed", "rpm", ""}, {"frequency", "Hz", "of the excitation"}};
   for (const analysis::ResponseProbe& p : o.probes) {
     results::add_probe_columns(t, p.name);
-    t.columns.push_back({p.name + " twist amplitude", "rad", "0-peak"}), t.columns.push_back({p.name + " twist phase lag", "deg", "behind a force of phase 0"});
+    t.columns.push_back({p.name + " twist amplitude", "rad", "0-peak"}); t.columns.push_back({p.name + " twist phase lag", "deg", "behind a force of phase 0"});
   }
   for (const analysis::Measurement& m : o.outputs)
     for (const char* c : {"x", "y", "z"}) t.columns.push_back({fmt::format("{} {}", m.name, c), "N", "0-peak"});
@@ -150,7 +150,7 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
     std::vector<io::Table::Cell> row{results::to_rpm(x.Omega), results::to_hz(x.frequency)};
     for (std::size_t p = 0; p < o.probes.size(); ++p) {
       results::add_probe_cells(row, x.probe[p]);
-      row.emplace_back(std::abs(x.unknown[p])), row.emplace_back(lag(x.unknown[p]) * 180 / pi);
+      row.emplace_back(std::abs(x.unknown[p])); row.emplace_back(lag(x.unknown[p]) * 180 / pi);
     }
     for (std::size_t m = 0; m < o.outputs.size(); ++m)
       for (std::size_t c = 0; c < 3; ++c) row.emplace_back(std::abs(x.output[m][c]));
@@ -178,7 +178,7 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
       const FrequencyPoint peak = respond(x);
       peaks.add({o.probes[p].name, results::to_rpm(peak.Omega), results::to_hz(peak.frequency), size(peak)});
       io::Value e = io::Value::object();
-      e["frequency [Hz]"] = results::to_hz(peak.frequency), e["speed [rpm]"] = results::to_rpm(peak.Omega), e["amplitude"] = size(peak);
+      e["frequency [Hz]"] = results::to_hz(peak.frequency); e["speed [rpm]"] = results::to_rpm(peak.Omega); e["amplitude"] = size(peak);
       v["peaks"][o.probes[p].name].push(std::move(e));
       all.push_back({x, size(peak)});
     }
@@ -196,34 +196,34 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
     std::vector<plot::ResponseCurve> curves;
     for (std::size_t i = 0; i < c.label.size(); ++i) {
       plot::ResponseCurve curve{c.label[i], axis, {}, {}};
-      for (const Complex a : c.amplitude[i]) curve.amplitude.push_back(std::abs(a)), curve.phase_lag.push_back(lag(a));
+      for (const Complex a : c.amplitude[i]) { curve.amplitude.push_back(std::abs(a)); curve.phase_lag.push_back(lag(a)); }
       curves.push_back(std::move(curve));
     }
     plot::Figure bode = plot::plot_bode(s.file(o.probes[p].name + "_bode"), o.probes[p].name + ": response to harmonic forces", curves, convention);
     plot::Figure polar = plot::plot_polar(s.file(o.probes[p].name + "_polar"), o.probes[p].name + ": polar plot", curves, convention);
-    if (asynchronous) use_frequency_axis(bode), use_frequency_axis(polar);
-    s.add_figure(std::move(bode)), s.add_figure(std::move(polar));
+    if (asynchronous) { use_frequency_axis(bode); use_frequency_axis(polar); }
+    s.add_figure(std::move(bode)); s.add_figure(std::move(polar));
   }
   // twist of the rounding of the lateral motion is no response: the arm that would make it visible is longer than any rotor
   if (largest_twist > 1e-9 * largest) {
     std::vector<plot::Axes> axes(2);
-    axes[0].y = plot::Axis("twist amplitude, 0-peak", "rad"), axes[1].y = plot::Axis("largest vibratory torque, 0-peak", "N.m");
-    for (plot::Axes& a : axes) a.x = asynchronous ? plot::Axis("excitation frequency", "Hz") : plot::Axis("speed", "rpm"), a.y.include_zero = true;
+    axes[0].y = plot::Axis("twist amplitude, 0-peak", "rad"); axes[1].y = plot::Axis("largest vibratory torque, 0-peak", "N.m");
+    for (plot::Axes& a : axes) { a.x = asynchronous ? plot::Axis("excitation frequency", "Hz") : plot::Axis("speed", "rpm"); a.y.include_zero = true; }
     axes[1].share_x = true;
     for (std::size_t p = 0; p < o.probes.size(); ++p) {
       plot::Series y;
       y.label = o.probes[p].name;
-      for (std::size_t k = 0; k < points.size(); ++k) y.x.push_back(asynchronous ? results::to_hz(axis[k]) : results::to_rpm(axis[k])), y.y.push_back(twist(points[k], p));
+      for (std::size_t k = 0; k < points.size(); ++k) { y.x.push_back(asynchronous ? results::to_hz(axis[k]) : results::to_rpm(axis[k])); y.y.push_back(twist(points[k], p)); }
       axes[0].series.push_back(std::move(y));
     }
     for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
       plot::Series y;
       y.label = job.mesh.lines[l].name;
-      for (std::size_t k = 0; k < points.size(); ++k) y.x.push_back(asynchronous ? results::to_hz(axis[k]) : results::to_rpm(axis[k])), y.y.push_back(torques[k][l]);
+      for (std::size_t k = 0; k < points.size(); ++k) { y.x.push_back(asynchronous ? results::to_hz(axis[k]) : results::to_rpm(axis[k])); y.y.push_back(torques[k][l]); }
       axes[1].series.push_back(std::move(y));
     }
     plot::Figure f;
-    f.name = s.file("torsion"), f.title = "Torsional response", f.axes = std::move(axes), f.height = 540;
+    f.name = s.file("torsion"); f.title = "Torsional response"; f.axes = std::move(axes); f.height = 540;
     s.add_figure(std::move(f));
   }
 

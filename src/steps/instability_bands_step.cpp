@@ -41,7 +41,7 @@ void run_instability_bands(run::Job& job, const model::Step& step, const model::
   for (const analysis::InstabilityBand& b : r.bands) {
     table.add({results::to_rpm(b.low), results::to_rpm(b.high), b.growth, results::to_rpm(b.speed), results::to_hz(results::tidy(b.frequency))});
     io::Value e = io::Value::object();
-    e["from [rpm]"] = results::to_rpm(b.low), e["to [rpm]"] = results::to_rpm(b.high), e["largest growth [1/s]"] = b.growth, e["at [rpm]"] = results::to_rpm(b.speed);
+    e["from [rpm]"] = results::to_rpm(b.low); e["to [rpm]"] = results::to_rpm(b.high); e["largest growth [1/s]"] = b.growth; e["at [rpm]"] = results::to_rpm(b.speed);
     v["bands"].push(std::move(e));
     const std::string from = std::isnan(b.low) ? "below" : fmt::format("{:.8g}", results::to_rpm(b.low));
     line += fmt::format("{}{} to {} rpm", line.empty() ? "unstable from " : ", ", std::isnan(b.low) ? fmt::format("below {:.6g}", results::to_rpm(r.speeds.front())) : from,
@@ -54,10 +54,10 @@ void run_instability_bands(run::Job& job, const model::Step& step, const model::
   rates.title = "Largest growth rate against speed";
   rates.columns = {{"speed", "rpm", ""}, {"growth", "1/s", "largest real part of the eigenvalues; negative: all motions decay"}, {"frequency", "Hz", "of that motion, in axes turning with the rotor"}};
   plot::Figure f;
-  f.name = s.file("growth"), f.title = "Growth rate of the least stable motion";
+  f.name = s.file("growth"); f.title = "Growth rate of the least stable motion";
   f.caption = "Shaded: instability. Eigenvalues in axes that turn with the rotor.";
   plot::Axes a;
-  a.x = plot::Axis("speed", "rpm"), a.y = plot::Axis("largest growth rate (unstable above 0)", "1/s");
+  a.x = plot::Axis("speed", "rpm"); a.y = plot::Axis("largest growth rate (unstable above 0)", "1/s");
   a.y.include_zero = true;
   plot::Series curve;
   curve.label = "largest growth rate";
@@ -79,13 +79,13 @@ void run_instability_bands(run::Job& job, const model::Step& step, const model::
     top = std::max(top, b.growth);
   }
   std::sort(points.begin(), points.end(), [](const Point& x, const Point& y) { return x.speed < y.speed; });
-  for (const Point& p : points) curve.x.push_back(results::to_rpm(p.speed)), curve.y.push_back(p.growth), hertz.values.push_back(results::to_hz(p.frequency));
+  for (const Point& p : points) { curve.x.push_back(results::to_rpm(p.speed)); curve.y.push_back(p.growth); hertz.values.push_back(results::to_hz(p.frequency)); }
   curve.extra.push_back(std::move(hertz));
   a.y.max = top > 0 ? 1.15 * top : nan;
   for (const analysis::InstabilityBand& b : r.bands) {
     const double from = results::to_rpm(std::isnan(b.low) ? r.speeds.front() : b.low), to = results::to_rpm(std::isnan(b.high) ? r.speeds.back() : b.high);
     plot::Patch p;
-    p.x = {from, to, to, from}, p.y = {bottom, bottom, 1.15 * top, 1.15 * top};
+    p.x = {from, to, to, from}; p.y = {bottom, bottom, 1.15 * top, 1.15 * top};
     p.style = {1, plot::Dash::solid, 0.0};
     p.tooltip = fmt::format("unstable from {:.6g} to {:.6g} rpm", from, to);
     if (&b == &r.bands.front()) p.label = "instability";

@@ -124,7 +124,7 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
     e["log decrement"] = results::tidy(m.log_decrement);
     e["damping ratio"] = results::tidy(m.damping_ratio);
     if (o.continued) e["continued log decrement"] = results::tidy(continued);
-    e["kind"] = std::string(to_string(m.kind)), e["direction"] = results::direction_text(m);
+    e["kind"] = std::string(to_string(m.kind)); e["direction"] = results::direction_text(m);
     list.push(std::move(e));
     unstable += m.growth() > 0;
   }

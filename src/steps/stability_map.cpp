@@ -64,12 +64,12 @@ std::string add_stability_map(results::FrequencyStep& s, const model::StabilityM
   rates.title = "Least log decrement against speed and " + law.parameter;
   rates.columns.push_back({"speed", "rpm", ""});
   plot::Axes curve, lines;
-  curve.x = plot::Axis(law.parameter, unit), curve.y = plot::Axis("onset speed of instability", "rpm");
+  curve.x = plot::Axis(law.parameter, unit); curve.y = plot::Axis("onset speed of instability", "rpm");
   curve.y.include_zero = true;
-  lines.x = plot::Axis("speed", "rpm"), lines.y = plot::Axis("least log decrement (unstable below 0)", "-");
+  lines.x = plot::Axis("speed", "rpm"); lines.y = plot::Axis("least log decrement (unstable below 0)", "-");
   lines.y.include_zero = true;
   plot::Series edge;
-  edge.label = "onset", edge.style = {1, plot::Dash::solid, 1.8, plot::Marker::circle};
+  edge.label = "onset"; edge.style = {1, plot::Dash::solid, 1.8, plot::Marker::circle};
   io::Value& v = s.summary()["map"];
   v = io::Value::array();
   int found = 0;
@@ -78,14 +78,14 @@ std::string add_stability_map(results::FrequencyStep& s, const model::StabilityM
     const bool at_once = std::isinf(o), never = std::isnan(o);
     onset.add({values.number[k], at_once || never ? nan : results::to_rpm(o), results::to_hz(map.frequency[k]), std::string(at_once ? "unstable at all speeds from the first" : never ? "stable at all speeds" : "")});
     io::Value e = io::Value::object();
-    e[law.parameter] = law.values[k], e["onset [rpm]"] = at_once || never ? nan : results::to_rpm(o);
+    e[law.parameter] = law.values[k]; e["onset [rpm]"] = at_once || never ? nan : results::to_rpm(o);
     v.push(std::move(e));
     found += !at_once && !never;
-    edge.x.push_back(values.number[k]), edge.y.push_back(at_once ? results::to_rpm(map.speeds.front()) : never ? nan : results::to_rpm(o));
+    edge.x.push_back(values.number[k]); edge.y.push_back(at_once ? results::to_rpm(map.speeds.front()) : never ? nan : results::to_rpm(o));
     rates.columns.push_back({law.parameter + " = " + law.values[k], "-", "log decrement"});
     plot::Series line;
     line.label = law.values[k];
-    for (std::size_t i = 0; i < map.speeds.size(); ++i) line.x.push_back(results::to_rpm(map.speeds[i])), line.y.push_back(map.least_log_decrement[k][i]);
+    for (std::size_t i = 0; i < map.speeds.size(); ++i) { line.x.push_back(results::to_rpm(map.speeds[i])); line.y.push_back(map.least_log_decrement[k][i]); }
     lines.series.push_back(std::move(line));
   }
   for (std::size_t i = 0; i < map.speeds.size(); ++i) {
@@ -99,27 +99,27 @@ std::string add_stability_map(results::FrequencyStep& s, const model::StabilityM
     // cells round each value and speed; the onset drawn over them
     const double dx = values.number[1] - values.number[0], dy = results::to_rpm(map.speeds[1] - map.speeds[0]);
     plot::HeatMap heat;
-    heat.nx = static_cast<int>(place.size()), heat.ny = static_cast<int>(map.speeds.size());
-    heat.x0 = values.number.front() - 0.5 * dx, heat.x1 = values.number.back() + 0.5 * dx;
-    heat.y0 = results::to_rpm(map.speeds.front()) - 0.5 * dy, heat.y1 = results::to_rpm(map.speeds.back()) + 0.5 * dy;
+    heat.nx = static_cast<int>(place.size()); heat.ny = static_cast<int>(map.speeds.size());
+    heat.x0 = values.number.front() - 0.5 * dx; heat.x1 = values.number.back() + 0.5 * dx;
+    heat.y0 = results::to_rpm(map.speeds.front()) - 0.5 * dy; heat.y1 = results::to_rpm(map.speeds.back()) + 0.5 * dy;
     for (std::size_t i = 0; i < map.speeds.size(); ++i)
       for (std::size_t k = 0; k < place.size(); ++k) heat.values.push_back(map.least_log_decrement[k][i]);
-    heat.label = "least log decrement", heat.unit = "-";
+    heat.label = "least log decrement"; heat.unit = "-";
     curve.y.label = "speed";
     curve.heat.push_back(std::move(heat));
-    curve.x.min = values.number.front() - 0.5 * dx, curve.x.max = values.number.back() + 0.5 * dx;
-    curve.y.min = std::max(0.0, results::to_rpm(map.speeds.front()) - 0.5 * dy), curve.y.max = results::to_rpm(map.speeds.back()) + 0.5 * dy;
+    curve.x.min = values.number.front() - 0.5 * dx; curve.x.max = values.number.back() + 0.5 * dx;
+    curve.y.min = std::max(0.0, results::to_rpm(map.speeds.front()) - 0.5 * dy); curve.y.max = results::to_rpm(map.speeds.back()) + 0.5 * dy;
   }
   s.add_table("map_onset", std::move(onset));
   s.add_table("map", std::move(rates), false);
   plot::Figure f;
-  f.name = s.file("map"), f.title = "Stability against speed and " + law.parameter;
+  f.name = s.file("map"); f.title = "Stability against speed and " + law.parameter;
   f.caption = "Line: onset of instability, solved for at each value" + std::string(curve.heat.empty() ? "." : "; colours: log decrement of the least stable mode.");
   f.height = 460;
   f.axes.push_back(std::move(curve));
   s.add_figure(std::move(f));
   plot::Figure g;
-  g.name = s.file("map_lines"), g.title = "Log decrement of the least stable mode, for values of " + law.parameter;
+  g.name = s.file("map_lines"); g.title = "Log decrement of the least stable mode, for values of " + law.parameter;
   g.axes.push_back(std::move(lines));
   s.add_figure(std::move(g));
   return fmt::format("; onset found at {} of {} values of {}", found, place.size(), law.parameter);

@@ -30,7 +30,7 @@ io::Table verdict_table(const analysis::StabilityResult& r) {
     const analysis::SpectrumCertificate& c = v.certificate;
     const char* word = c.stability_certain() ? "all" : c.complete() ? "band" : "no";
     io::Table::Cell top = std::string(), missing = std::string();
-    if (c.open.empty()) top = results::to_hz(c.list.radius), missing = static_cast<int>(c.list.missing);
+    if (c.open.empty()) { top = results::to_hz(c.list.radius); missing = static_cast<int>(c.list.missing); }
     t.add({results::to_rpm(v.speed), static_cast<int>(v.whirling), static_cast<int>(v.diverging), v.fastest, std::move(top), std::move(missing), std::string(word)});
   }
   return t;
@@ -63,7 +63,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   const std::vector<double> speeds = results::speeds_of(law.speed);
   if (results::turns_with_stiffness(job.model)) return run_instability_bands(job, step, law);
   results::FrequencyStep s(job, step, "stability", "stability", std::max(std::abs(speeds.front()), std::abs(speeds.back())));
-  o.speeds = speeds, o.modes = law.modes, o.all = true;
+  o.speeds = speeds; o.modes = law.modes; o.all = true;
   const run::PhaseTimer timer(job, "stability");
   const analysis::StabilityResult r = analysis::find_instability(s.linear, o);
 
@@ -84,7 +84,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
     table.add({results::to_rpm(x.speed), results::to_hz(x.frequency), x.ratio(), std::string(to_string(x.mode.kind)), results::direction_text(x.mode),
                x.divergence() ? (x.gains ? "diverges" : "no longer diverges") : x.gains ? "unstable" : "stable again"});
     io::Value e = io::Value::object();
-    e["speed [rpm]"] = results::to_rpm(x.speed), e["whirl frequency [Hz]"] = results::to_hz(x.frequency), e["becomes unstable"] = x.gains;
+    e["speed [rpm]"] = results::to_rpm(x.speed); e["whirl frequency [Hz]"] = results::to_hz(x.frequency); e["becomes unstable"] = x.gains;
     e["divergence"] = x.divergence();
     v["onsets"].push(std::move(e));
     thresholds.push_back(x.speed);

@@ -58,10 +58,10 @@ void start_in_unbalance_response(const run::Job& job, run::StepState& start) {
     if (!solver.prepare(start.speed, w)) throw run_error("E76", fmt::format("no steady unbalance response at {:.6g} rpm: resonance without damping", start.speed * 30.0 / pi), "start from static equilibrium, or give the model damping");
     solver.solve(a);
     const Complex turn = std::polar(1.0, orders[k] * theta);
-    q += (turn * a).real(), v += (Complex(0.0, w) * turn * a).real();
+    q += (turn * a).real(); v += (Complex(0.0, w) * turn * a).real();
   }
   take_equilibrium(job, linear.equilibrium(), start);
-  start.state.q += q, start.state.v += v;
+  start.state.q += q; start.state.v += v;
 }
 
 namespace {

@@ -25,7 +25,7 @@ struct Sweep {
   template <class Of> plot::Series series(std::string label, Of of) const {
     plot::Series s;
     s.label = std::move(label);
-    for (const results::SupportCoefficients& c : at) s.x.push_back(results::to_rpm(c.spin)), s.y.push_back(of(c));
+    for (const results::SupportCoefficients& c : at) { s.x.push_back(results::to_rpm(c.spin)); s.y.push_back(of(c)); }
     s.keep_all = true;
     return s;
   }
@@ -34,7 +34,7 @@ struct Sweep {
 /// Grid of one pair of axes a bearing.
 plot::Figure grid(std::string name, std::string title, std::size_t bearings, double height) {
   plot::Figure f;
-  f.name = std::move(name), f.title = std::move(title);
+  f.name = std::move(name); f.title = std::move(title);
   f.columns = bearings > 1 ? 2 : 1;
   f.height = height * static_cast<double>((bearings + 1) / 2);
   return f;
@@ -49,25 +49,25 @@ plot::Figure draw_locus(const std::string& name, const std::vector<Sweep>& all) 
     a.title = b.name;
     a.equal_aspect = true;
     const double unit = b.film() ? 1.0 / b.at.front().clearance : 1e6;
-    a.x = b.film() ? plot::Axis("y / clearance", "-") : plot::Axis("y", "um"), a.y = b.film() ? plot::Axis("z / clearance", "-") : plot::Axis("z", "um");
+    a.x = b.film() ? plot::Axis("y / clearance", "-") : plot::Axis("y", "um"); a.y = b.film() ? plot::Axis("z / clearance", "-") : plot::Axis("z", "um");
     if (b.film()) {
       plot::Series circle;
       circle.label = "clearance";
       circle.style = {plot::ink, plot::Dash::dash_dot, 1.0};
-      for (int k = 0; k <= 180; ++k) circle.x.push_back(std::cos(two_pi * k / 180)), circle.y.push_back(std::sin(two_pi * k / 180));
+      for (int k = 0; k <= 180; ++k) { circle.x.push_back(std::cos(two_pi * k / 180)); circle.y.push_back(std::sin(two_pi * k / 180)); }
       a.series.push_back(std::move(circle));
     }
     plot::Series locus;
     locus.label = "locus";
     locus.style = {0, plot::Dash::solid, 1.4, plot::Marker::circle, 3.0};
     for (const results::SupportCoefficients& c : b.at) {
-      locus.x.push_back(unit * c.place.x()), locus.y.push_back(unit * c.place.y());
+      locus.x.push_back(unit * c.place.x()); locus.y.push_back(unit * c.place.y());
       locus.point_names.push_back(fmt::format("{:.6g} rpm", results::to_rpm(c.spin)));
     }
     const auto mark = [&](std::size_t k, plot::Marker m) {
       plot::Series s;
       s.style = {0, plot::Dash::solid, 0.0, m, 9.0};
-      s.x = {locus.x[k]}, s.y = {locus.y[k]};
+      s.x = {locus.x[k]}; s.y = {locus.y[k]};
       s.point_names = {locus.point_names[k]};
       a.series.push_back(std::move(s));
       a.notes.push_back({locus.x[k], locus.y[k], locus.point_names[k], false});
@@ -93,7 +93,7 @@ plot::Figure draw_eccentricity(const std::string& name, const std::vector<Sweep>
     a.right = plot::Axis("attitude", "deg");
     a.series.push_back(b.series("eccentricity", [&](const results::SupportCoefficients& c) { return c.place.norm() * (b.film() ? 1 / c.clearance : 1e6); }));
     plot::Series attitude = b.series("attitude", [](const results::SupportCoefficients& c) { return c.attitude; });
-    attitude.right_axis = true, attitude.style.dash = plot::Dash::dashed;
+    attitude.right_axis = true; attitude.style.dash = plot::Dash::dashed;
     a.series.push_back(std::move(attitude));
     f.axes.push_back(std::move(a));
   }
@@ -105,7 +105,7 @@ plot::Figure draw_coefficients(const std::string& name, const char* what, const 
   for (const Sweep& b : all) {
     plot::Axes a;
     a.title = b.name;
-    a.x = plot::Axis("speed", "rpm"), a.y = plot::Axis(what, unit);
+    a.x = plot::Axis("speed", "rpm"); a.y = plot::Axis(what, unit);
     a.y.include_zero = true;
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j) {
@@ -177,7 +177,7 @@ void run_static_speeds(run::Job& job, const model::Step& step, const std::vector
   if (unstable == 0) v["stability"]["stable"] = true;
   v["unstable equilibria"] = unstable;
   s.add_table("equilibria", std::move(judged), unstable > 0);
-  v["speeds"] = static_cast<int>(speeds.size()), v["equilibria"] = static_cast<int>(found);
+  v["speeds"] = static_cast<int>(speeds.size()); v["equilibria"] = static_cast<int>(found);
   s.section.text = fmt::format("Equilibria at {} of {} speeds from {:.6g} to {:.6g} rpm, each started from the one before.", found, speeds.size(), results::to_rpm(speeds.front()), results::to_rpm(speeds.back()));
   if (!missing.empty()) s.section.text += fmt::format(" None at {} rpm: {}.", missing, first_error->diagnostics().front().message);
   if (rows.empty()) {
@@ -194,7 +194,7 @@ void run_static_speeds(run::Job& job, const model::Step& step, const std::vector
     for (const Sweep& b : bearings) {
       io::Value e = io::Value::object();
       e["bearing"] = b.name;
-      if (b.film()) e["eccentricity / clearance at the first speed"] = b.at.front().place.norm() / b.at.front().clearance, e["and at the last"] = b.at.back().place.norm() / b.at.back().clearance;
+      if (b.film()) { e["eccentricity / clearance at the first speed"] = b.at.front().place.norm() / b.at.front().clearance; e["and at the last"] = b.at.back().place.norm() / b.at.back().clearance; }
       v["bearings"].push(std::move(e));
     }
   }

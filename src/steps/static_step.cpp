@@ -23,7 +23,7 @@ namespace {
 analysis::LoadPathOptions path_options(const run::Job& job, const model::LoadPath& p, const analysis::EquilibriumOptions& e) {
   analysis::LoadPathOptions o;
   o.equilibrium = e;
-  o.steps = p.steps, o.max_points = p.max_points;
+  o.steps = p.steps; o.max_points = p.max_points;
   if (p.control == model::LoadPath::Control::displacement) {
     const meshes::Place at = job.mesh.place(p.at);
     o.controlled = 6 * at.node + p.direction;
@@ -132,7 +132,7 @@ void run_static_step(run::Job& job, const model::Step& step, const model::Static
     run::warn_of_closed_contacts(job, step, s);
   }
   s.state = found.state;
-  v["Newton iterations"] = found.iterations, v["load steps"] = found.load_steps;
+  v["Newton iterations"] = found.iterations; v["load steps"] = found.load_steps;
 
   // node states, reactions and energy of the state found
   VecX r(job.system().size());
@@ -184,10 +184,10 @@ void run_static_step(run::Job& job, const model::Step& step, const model::Static
     for (plot::Figure& f : results.figures) section.figures.push_back(std::move(f));
     section.tables.push_back(std::move(results.supports));
     section.tables.push_back(std::move(results.extremes));
-    if (linearised) section.tables.push_back(std::move(coefficients)), section.files.emplace_back("bearing coefficients", step.name + "_coefficients.csv");
+    if (linearised) { section.tables.push_back(std::move(coefficients)); section.files.emplace_back("bearing coefficients", step.name + "_coefficients.csv"); }
     for (const char* what : {"deflection", "supports", "sections"}) section.files.emplace_back(what, step.name + "_" + what + ".csv");
-    if (has_five) section.tables.push_back(std::move(five)), section.files.emplace_back("stiffness of rolling bearings", step.name + "_rolling_stiffness.csv");
-    if (rolling) section.tables.push_back(std::move(results.rolling)), section.files.emplace_back("rolling elements", step.name + "_rolling.csv");
+    if (has_five) { section.tables.push_back(std::move(five)); section.files.emplace_back("stiffness of rolling bearings", step.name + "_rolling_stiffness.csv"); }
+    if (rolling) { section.tables.push_back(std::move(results.rolling)); section.files.emplace_back("rolling elements", step.name + "_rolling.csv"); }
     if (path) section.files.emplace_back("load path", step.name + "_path.csv");
     job.report.sections.push_back(std::move(section));
   }

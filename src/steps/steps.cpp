@@ -57,7 +57,7 @@ void describe_savings(run::Job& job, double seconds) {
   const Savings s = measure_savings(job);
   if (!(s.everything > 0.0)) return;
   io::Value& v = job.summary["model"]["cost of one evaluation of forces and tangents"];
-  v["of this model [us]"] = 1e6 * s.pruned, v["of the general model [us]"] = 1e6 * s.everything;
+  v["of this model [us]"] = 1e6 * s.pruned; v["of the general model [us]"] = 1e6 * s.everything;
   v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
   if (!job.options.quiet && seconds > 0.5 && s.everything > 1.05 * s.pruned)
     std::fputs(fmt::format("left out: {} parts of the general model this deck does not need (summary.json); an evaluation takes {:.0f} us CPU instead of {:.0f} us\n",

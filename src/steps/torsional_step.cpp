@@ -15,7 +15,7 @@ void run_torsional_step(run::Job& job, const model::Step& step, const model::Tor
   results::FrequencyStep s(job, step, "torsional", "torsional vibration", law.max_speed);
   const run::PhaseTimer timer(job, "modes");
   analysis::ModesOptions o;
-  o.count = law.modes, o.motion = analysis::Motion::torsional;
+  o.count = law.modes; o.motion = analysis::Motion::torsional;
   analysis::SpectrumCertificate certificate;
   const std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(s.linear, law.max_speed, o, &certificate);
   s.certify(certificate);
@@ -32,7 +32,7 @@ void run_torsional_step(run::Job& job, const model::Step& step, const model::Tor
     highest = std::max(highest, m.frequency);
     plot::CampbellLine l;
     l.label = fmt::format("T{}", k + 1);
-    l.speed = {0, law.max_speed}, l.frequency = {m.frequency, m.frequency}, l.log_decrement = {results::tidy(m.log_decrement), results::tidy(m.log_decrement)};
+    l.speed = {0, law.max_speed}; l.frequency = {m.frequency, m.frequency}; l.log_decrement = {results::tidy(m.log_decrement), results::tidy(m.log_decrement)};
     lines.push_back(std::move(l));
     results::add_shape_figures(s, {fmt::format("mode_{}", k + 1), fmt::format("Torsional mode {}: {:.5g} Hz", k + 1, results::to_hz(m.frequency)), {}, &m.x, analysis::ModeKind::torsional});
     results::write_shape_frames(s, fmt::format("mode_{}", k + 1), m.x);
@@ -44,7 +44,7 @@ void run_torsional_step(run::Job& job, const model::Step& step, const model::Tor
   std::vector<plot::CriticalMark> marks;
   for (const double order : law.orders) {
     analysis::CriticalOptions q;
-    q.order = order, q.max_speed = law.max_speed, q.motion = analysis::Motion::torsional, q.max_frequency = 1.0001 * highest;
+    q.order = order; q.max_speed = law.max_speed; q.motion = analysis::Motion::torsional; q.max_frequency = 1.0001 * highest;
     if (modes.empty()) break;
     for (const analysis::Critical& c : analysis::critical_speeds(s.linear, q)) {
       criticals.add({order, results::to_rpm(c.speed), results::to_hz(c.frequency)});

@@ -62,7 +62,7 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
   time::Options& o = t.integrator;
   o.tolerance = law.integrator.tolerance;
   o.t_end = t0 + law.duration;
-  o.dt_fixed = law.integrator.dt, o.dt_first = law.integrator.dt_first, o.dt_min = law.integrator.dt_min, o.dt_max = law.integrator.dt_max;
+  o.dt_fixed = law.integrator.dt; o.dt_first = law.integrator.dt_first; o.dt_min = law.integrator.dt_min; o.dt_max = law.integrator.dt_max;
   o.rho_inf = law.integrator.rho_inf;
   for (double b : job.built.breakpoints)
     if (b > t0 && b < o.t_end) o.breakpoints.push_back(b);
@@ -226,8 +226,8 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
   bool series_continues = false;
   const std::string series_key = fmt::format("series {}{}: {}", out.csv ? "csv " : "", out.binary ? "hdf5 " : "", columns);
   if (sink)
-    parts.add(series_key, [&](OutArchive& a) { sink->flush(), a.put_count(sink->rows()); },
-              [&](InArchive& a) { sink->resume(results::io_channels(channels), a.count()), series_continues = true; });
+    parts.add(series_key, [&](OutArchive& a) { sink->flush(); a.put_count(sink->rows()); },
+              [&](InArchive& a) { sink->resume(results::io_channels(channels), a.count()); series_continues = true; });
   parts.add("plot buffer " + columns, [&](OutArchive& a) { buffer.save(a); }, [&](InArchive& a) { buffer.restore(a); });
   analysis::Recorder recorder(
       channels.all,
@@ -241,13 +241,13 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
     parts.add(fmt::format("recorder every {} {}", out.every, series_key), recorder);
   }
   analysis::PeakTracker peaks(watched, job.reference());
-  if (!watched.empty()) observers.push_back(&peaks), parts.add("peaks " + watching, peaks);
+  if (!watched.empty()) { observers.push_back(&peaks); parts.add("peaks " + watching, peaks); }
   analysis::EnergyBalance energy(options.integrator.breakpoints);
-  observers.push_back(&energy), parts.add("energy", energy);
+  observers.push_back(&energy); parts.add("energy", energy);
   analysis::TiltWatch tilt;
-  observers.push_back(&tilt), parts.add("tilt", tilt);
+  observers.push_back(&tilt); parts.add("tilt", tilt);
   analysis::StepHistogram lengths(job.reference());
-  observers.push_back(&lengths), parts.add("step lengths", lengths);
+  observers.push_back(&lengths); parts.add("step lengths", lengths);
   std::vector<std::unique_ptr<results::Frames>> frames;
   for (const model::VtkOutput& v : out.vtk)
     if (v.step.empty() || v.step == step.name) {
@@ -334,29 +334,29 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
   // summary
   const time::Statistics& s = r.statistics;
   io::Value& v = job.summary["steps"][step.name];
-  v["type"] = "transient", v["outcome"] = std::string(to_string(r.reason));
+  v["type"] = "transient"; v["outcome"] = std::string(to_string(r.reason));
   if (!r.detail.empty()) v["detail"] = r.detail;
   v["t_end [s]"] = r.end.t;
   if (resumed) v["resumed at [s]"] = resumed->state.t;
-  v["integrator"]["method"] = law.integrator.method, v["integrator"]["tolerance"] = law.integrator.tolerance;
-  v["integrator"]["steps"] = s.accepted, v["integrator"]["rejected by error"] = s.rejected_error;
-  v["integrator"]["rejected by Newton"] = s.rejected_newton, v["integrator"]["Newton iterations"] = s.newton_iterations;
+  v["integrator"]["method"] = law.integrator.method; v["integrator"]["tolerance"] = law.integrator.tolerance;
+  v["integrator"]["steps"] = s.accepted; v["integrator"]["rejected by error"] = s.rejected_error;
+  v["integrator"]["rejected by Newton"] = s.rejected_newton; v["integrator"]["Newton iterations"] = s.newton_iterations;
   if (problem.is_linear()) v["equations"] = law.linear ? "linear: small motions about the steadily turning equilibrium" : "linear: constant matrices";
   v["integrator"]["linearisations"] = s.linearizations;
-  v["integrator"]["factorisations real"] = s.factorizations_real, v["integrator"]["factorisations complex"] = s.factorizations_complex;
+  v["integrator"]["factorisations real"] = s.factorizations_real; v["integrator"]["factorisations complex"] = s.factorizations_complex;
   v["integrator"]["residual evaluations"] = s.residuals;
-  v["integrator"]["step min [s]"] = s.step_min, v["integrator"]["step mean [s]"] = s.step_mean(), v["integrator"]["step max [s]"] = s.step_max;
-  v["integrator"]["local error / allowance, max"] = s.error_max, v["integrator"]["local error / allowance, mean"] = s.error_mean();
+  v["integrator"]["step min [s]"] = s.step_min; v["integrator"]["step mean [s]"] = s.step_mean(); v["integrator"]["step max [s]"] = s.step_max;
+  v["integrator"]["local error / allowance, max"] = s.error_max; v["integrator"]["local error / allowance, mean"] = s.error_mean();
   const RunTime time{r.seconds, wall_before + watch.elapsed().wall};
   run::put_run_time(v, time);
-  v["energy"]["stored at start [J]"] = energy.stored0(), v["energy"]["stored at end [J]"] = energy.stored();
-  v["energy"]["supplied [J]"] = energy.supplied(), v["energy"]["dissipated [J]"] = energy.dissipated();
-  v["energy"]["defect [J]"] = energy.defect(), v["energy"]["largest defect [J]"] = energy.worst_defect();
+  v["energy"]["stored at start [J]"] = energy.stored0(); v["energy"]["stored at end [J]"] = energy.stored();
+  v["energy"]["supplied [J]"] = energy.supplied(); v["energy"]["dissipated [J]"] = energy.dissipated();
+  v["energy"]["defect [J]"] = energy.defect(); v["energy"]["largest defect [J]"] = energy.worst_defect();
   for (const analysis::Peak& p : peaks.peaks()) {
     io::Value& q = v["peaks"][p.name];
-    q["amplitude 0-peak [m]"] = p.amplitude, q["time [s]"] = p.time, q["speed [rpm]"] = p.speed * 30.0 / pi;
+    q["amplitude 0-peak [m]"] = p.amplitude; q["time [s]"] = p.time; q["speed [rpm]"] = p.speed * 30.0 / pi;
   }
-  v["largest tilt"]["|gamma| [rad]"] = tilt.tilt(), v["largest tilt"]["time [s]"] = tilt.time();
+  v["largest tilt"]["|gamma| [rad]"] = tilt.tilt(); v["largest tilt"]["time [s]"] = tilt.time();
   v["largest tilt"]["node"] = job.system().node(tilt.node()).name;
   v["largest tilt"]["condition of (phi', gamma') -> omega"] = rotation::chart_condition(tilt.tilt());
   io::ReportSection section;
@@ -386,7 +386,7 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
     for (const auto& e : events.events()) t.add({events.watches()[e.watch].name, e.rising ? "rising" : "falling", e.t, e.speed * 30.0 / pi});
     job.folder.write_table(step.name + "_events.csv", t);
     v["events"] = events.events().size() + events.more();
-    if (t.rows.size() > 100) t.title = "Events (the first 100)", t.rows.resize(100);
+    if (t.rows.size() > 100) { t.title = "Events (the first 100)"; t.rows.resize(100); }
     section.tables.push_back(std::move(t));
     section.files.emplace_back("events", step.name + "_events.csv");
   }

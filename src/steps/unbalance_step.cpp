@@ -28,11 +28,11 @@ void add_probe_figures(results::FrequencyStep& s, const UnbalanceResponse& r, co
     for (std::size_t k = 0; k < r.orders.size(); ++k) {
       std::vector<analysis::PointAmplitude> amplitudes;
       std::vector<double> speeds;
-      for (const SteadyPoint& x : r.points) speeds.push_back(x.Omega), amplitudes.push_back(x.probe[k][p]);
+      for (const SteadyPoint& x : r.points) { speeds.push_back(x.Omega); amplitudes.push_back(x.probe[k][p]); }
       const results::ProbeCurves c = results::curves_of(probes[p], amplitudes);
       for (std::size_t i = 0; i < c.label.size(); ++i) {
         plot::ResponseCurve curve{c.label[i] + order_suffix(r, k), speeds, {}, {}};
-        for (const Complex a : c.amplitude[i]) curve.amplitude.push_back(std::abs(a)), curve.phase_lag.push_back(lag(a));
+        for (const Complex a : c.amplitude[i]) { curve.amplitude.push_back(std::abs(a)); curve.phase_lag.push_back(lag(a)); }
         curves.push_back(std::move(curve));
       }
     }
@@ -62,12 +62,12 @@ void add_force_figure(results::FrequencyStep& s, const UnbalanceResponse& r, con
       y.label = s.job.built.support_forces[m].name + order_suffix(r, k);
       for (const SteadyPoint& x : r.points) {
         const auto& f = x.output[k][m];
-        y.x.push_back(results::to_rpm(x.Omega)), y.y.push_back(unit.factor * analysis::orbit_of(f[1], f[2]).major);
+        y.x.push_back(results::to_rpm(x.Omega)); y.y.push_back(unit.factor * analysis::orbit_of(f[1], f[2]).major);
       }
       axes.series.push_back(std::move(y));
     }
   plot::Figure f;
-  f.name = s.file("bearing_forces"), f.title = "Dynamic forces of the supports";
+  f.name = s.file("bearing_forces"); f.title = "Dynamic forces of the supports";
   f.axes.push_back(std::move(axes));
   s.add_figure(std::move(f));
 }
@@ -87,7 +87,7 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k, const std::vecto
     std::vector<io::Table::Cell> row{results::to_rpm(x.Omega)};
     for (const analysis::PointAmplitude& a : x.probe[k]) results::add_probe_cells(row, a);
     for (std::size_t m = 0; m < outputs.size(); ++m)
-      for (std::size_t c : {1u, 2u}) row.emplace_back(std::abs(x.output[k][m][c])), row.emplace_back(lag(x.output[k][m][c]) * 180 / pi);
+      for (std::size_t c : {1u, 2u}) { row.emplace_back(std::abs(x.output[k][m][c])); row.emplace_back(lag(x.output[k][m][c]) * 180 / pi); }
     t.add(std::move(row));
   }
   return t;
@@ -100,7 +100,7 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
   const auto orders = s.linear.running().orders();
   for (const double order : std::vector<double>(orders.begin(), orders.end())) {
     analysis::CriticalOptions o;
-    o.order = order, o.max_speed = high, o.min_speed = low, o.damped = true, o.motion = analysis::Motion::lateral;
+    o.order = order; o.max_speed = high; o.min_speed = low; o.damped = true; o.motion = analysis::Motion::lateral;
     for (const analysis::Critical& c : analysis::critical_speeds(s.linear, o))
       for (const double x : {-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
         const double Omega = c.speed * (1.0 + x * c.mode.damping_ratio);
@@ -143,7 +143,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   for (const analysis::ResponsePeak& p : peaks) {
     table.add({o.probes[p.probe].name, r.orders[p.order], results::to_rpm(p.speed), p.amplitude, p.phase_lag * 180 / pi, p.amplification(), results::to_rpm(p.low), results::to_rpm(p.high)});
     io::Value e = io::Value::object();
-    e["speed [rpm]"] = results::to_rpm(p.speed), e["amplitude 0-peak [m]"] = p.amplitude, e["amplification factor"] = p.amplification();
+    e["speed [rpm]"] = results::to_rpm(p.speed); e["amplitude 0-peak [m]"] = p.amplitude; e["amplification factor"] = p.amplification();
     v["peaks"][o.probes[p.probe].name].push(std::move(e));
   }
   double largest = 0, at = 0;
@@ -153,7 +153,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
       for (const auto& order : x.probe)
         if (const double a = order[p].orbit().major; a > most) {
           most = a;
-          if (a > largest) largest = a, at = x.Omega;
+          if (a > largest) { largest = a; at = x.Omega; }
         }
     v["largest amplitude 0-peak [m]"][o.probes[p].name] = most;
   }

@@ -54,7 +54,7 @@ StudyPart write_study(const std::filesystem::path& root, const analysis::StudyRe
                                      static_cast<double>(s.steps), static_cast<double>(s.newton), static_cast<double>(s.factorizations), front, s.worst()};
     for (double e : s.errors) row.emplace_back(e);
     io::Value sample;
-    sample["setting"] = s.setting.label(), sample["CPU [s]"] = s.seconds, sample["Pareto"] = front > 0.0, sample["largest error"] = s.worst();
+    sample["setting"] = s.setting.label(); sample["CPU [s]"] = s.seconds; sample["Pareto"] = front > 0.0; sample["largest error"] = s.worst();
     for (std::size_t i = 0; i < r.quantities.size(); ++i) sample["errors"][r.quantities[i]] = s.errors[i];
     json["settings"].push(sample);
     table.add(std::move(row));

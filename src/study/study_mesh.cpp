@@ -68,11 +68,11 @@ bool has_mesh_study(const model::Model& model) {
 StudyPart study_meshes(const model::Model& model, const StudyOptions& options, const std::filesystem::path& root) {
   model::Model base = model;
   base.steps = mesh_steps(model);
-  base.output.report = base.output.binary = false, base.output.csv = true;
+  base.output.report = base.output.binary = false; base.output.csv = true;
   base.output.vtk.clear();
   const meshes::Mesh mesh = meshes::make_mesh(model);
   run::RunOptions run = options.run;
-  run.quiet = true, run.json = run.terminal = false;
+  run.quiet = true; run.json = run.terminal = false;
   run.output = root / "mesh_study";
   const bool talk = !options.run.quiet;
 
@@ -110,14 +110,14 @@ StudyPart study_meshes(const model::Model& model, const StudyOptions& options, c
           first = false;
           std::erase_if(s.quantities, [&](const auto& q) { return rows.count(q.name) == 0; });
         } catch (const Error& e) {
-          s.ok = false, s.note = e.what();
+          s.ok = false; s.note = e.what();
         }
         return s;
       },
       o);
   std::filesystem::remove_all(run.output);
   StudyText text;
-  text.stem = "study_mesh", text.heading = "Error of the mesh against run time";
+  text.stem = "study_mesh"; text.heading = "Error of the mesh against run time";
   text.title = fmt::format("{}: error of the mesh against run time", model.title.empty() ? model.deck_name : model.title);
   text.reference = fmt::format("{} elements, checked by {}", finest * elements, finest * elements / 2);
   return write_study(root, result, text, talk);

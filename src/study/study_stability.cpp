@@ -50,8 +50,8 @@ Scheme examine(const analysis::ReducedRotor& rotor, const char* name, double rho
   for (int k = 0; k <= points; ++k) {
     const double h = first * std::pow(last / first, static_cast<double>(k) / points);
     const double r = analysis::spectral_radius(rotor, name, h, rho);
-    s.radius.x.push_back(h * slow / two_pi), s.radius.y.push_back(r);
-    s.largest_radius = std::max(s.largest_radius, r), s.limit = r;
+    s.radius.x.push_back(h * slow / two_pi); s.radius.y.push_back(r);
+    s.largest_radius = std::max(s.largest_radius, r); s.limit = r;
     // double roots are found to the square root of rounding
     if (r > 1.0 + 1e-6) s.first_unstable = std::min(s.first_unstable, h);
   }
@@ -96,7 +96,7 @@ int study_stability(const StudyOptions& options) {
   const analysis::ReducedRotor damped = analysis::reduce_rotor(linear, Omega), rotor = damped.conservative();
   double slow = infinity, fast = 0.0;
   for (const Complex& l : rotor.lambda)
-    if (l.imag() > 0.0) slow = std::min(slow, l.imag()), fast = std::max(fast, l.imag());
+    if (l.imag() > 0.0) { slow = std::min(slow, l.imag()); fast = std::max(fast, l.imag()); }
   if (!(fast > 0.0)) throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95", "the rotor has no mode that oscillates", "a stability study needs elastic supports or shafts", Where{options.deck.string(), 0, 0, 0, ""}});
 
   std::vector<Scheme> found;
@@ -113,28 +113,28 @@ int study_stability(const StudyOptions& options) {
   io::Table curves;
   curves.columns = {{"method", "-", ""}, {"step", "s", ""}, {"step / period of the first mode", "-", ""}, {"spectral radius", "-", ""}};
   io::Value json = io::Value::object();
-  json["speed [rpm]"] = Omega * 30.0 / pi, json["unknowns kept"] = static_cast<double>(rotor.M.rows());
-  json["frequencies kept, lowest [Hz]"] = slow / two_pi, json["frequencies kept, highest [Hz]"] = fast / two_pi;
+  json["speed [rpm]"] = Omega * 30.0 / pi; json["unknowns kept"] = static_cast<double>(rotor.M.rows());
+  json["frequencies kept, lowest [Hz]"] = slow / two_pi; json["frequencies kept, highest [Hz]"] = fast / two_pi;
   plot::Figure figure;
-  figure.name = "stability", figure.title = model.title + ": stability of the integrators", figure.height = 820;
+  figure.name = "stability"; figure.title = model.title + ": stability of the integrators"; figure.height = 820;
   figure.caption = fmt::format("Above: one step on the undamped rotor at {:.0f} rpm. Below: what a step adds to the damping ratio of a mode.", Omega * 30.0 / pi);
   plot::Axes above, below;
-  above.x = plot::Axis("step / period of the first mode", "-", true), above.y = plot::Axis("spectral radius", "-");
+  above.x = plot::Axis("step / period of the first mode", "-", true); above.y = plot::Axis("spectral radius", "-");
   above.rules.push_back({false, 1.0, "energy is kept"});
-  below.x = plot::Axis("steps a period of the mode", "-", true), below.y = plot::Axis("damping ratio added by the scheme", "-", true);
+  below.x = plot::Axis("steps a period of the mode", "-", true); below.y = plot::Axis("damping ratio added by the scheme", "-", true);
   int colour = 0;
   for (Scheme& s : found) {
     std::vector<io::Table::Cell> row{label_of(s.name, rho), s.largest_radius, s.limit, std::isfinite(s.first_unstable) ? io::Table::Cell(s.first_unstable) : io::Table::Cell(std::string("none")),
                                      std::isnan(s.energy) ? io::Table::Cell(std::string("-")) : io::Table::Cell(s.energy)};
     io::Value& v = json["schemes"][s.name];
-    v["largest spectral radius"] = s.largest_radius, v["spectral radius of the longest step"] = s.limit;
+    v["largest spectral radius"] = s.largest_radius; v["spectral radius of the longest step"] = s.limit;
     v["stable at every step"] = !std::isfinite(s.first_unstable);
     if (std::isfinite(s.first_unstable)) v["unstable from step [s]"] = s.first_unstable;
     if (!std::isnan(s.energy)) v["energy ratio after many steps"] = s.energy;
     for (std::size_t i = 0; i < s.response.size(); ++i) {
-      row.emplace_back(s.response[i].damping), row.emplace_back(s.response[i].frequency_error);
+      row.emplace_back(s.response[i].damping); row.emplace_back(s.response[i].frequency_error);
       io::Value& at = v["steps a period"][fmt::format("{:g}", resolutions[i])];
-      at["damping ratio added"] = s.response[i].damping, at["frequency error"] = s.response[i].frequency_error;
+      at["damping ratio added"] = s.response[i].damping; at["frequency error"] = s.response[i].frequency_error;
     }
     table.add(std::move(row));
     for (std::size_t k = 0; k < s.radius.x.size(); ++k) curves.add({s.name, s.radius.x[k] * two_pi / slow, s.radius.x[k], s.radius.y[k]});
@@ -143,15 +143,15 @@ int study_stability(const StudyOptions& options) {
     s.radius.style.color = damping.style.color = colour++;
     for (double n = 400.0; n >= 4.0; n /= 1.1) {
       const double d = time::mode_response(s.name, 1.0, 0.0, two_pi / n, rho).damping;
-      if (d > 1e-12) damping.x.push_back(n), damping.y.push_back(d);
+      if (d > 1e-12) { damping.x.push_back(n); damping.y.push_back(d); }
     }
     if (!damping.x.empty()) below.series.push_back(std::move(damping));
     above.series.push_back(std::move(s.radius));
   }
-  above.y.min = 0.0, above.y.max = 1.1;
+  above.y.min = 0.0; above.y.max = 1.1;
   for (const Scheme& s : found)
     if (s.largest_radius > 1.05) above.y.max = std::min(3.0, 1.05 * s.largest_radius);
-  figure.axes.push_back(std::move(above)), figure.axes.push_back(std::move(below));
+  figure.axes.push_back(std::move(above)); figure.axes.push_back(std::move(below));
 
   job.folder.write_table("stability.csv", table);
   job.folder.write_table("stability_curves.csv", curves);

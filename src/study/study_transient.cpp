@@ -79,7 +79,7 @@ class Sampler final : public analysis::Observer {
       const analysis::Snapshot& x = s.at(std::min(ticker_.next(), s.t1()));
       for (std::size_t i = 0; i < points_.size(); ++i) {
         const Vec3 u = analysis::displacement(x, points_[i].second);
-        displacement_[i].push_back(u.y()), displacement_[i].push_back(u.z());
+        displacement_[i].push_back(u.y()); displacement_[i].push_back(u.z());
       }
       spin_.push_back(x.node(job_.reference()).spin());
       const system::Energy& e = x.energy();
@@ -88,7 +88,7 @@ class Sampler final : public analysis::Observer {
       now.time = x.t();
       for (std::size_t i = 0; i < force_.size(); ++i) {
         const Vec3 f = job_.built.support_forces[i].force([&x](Index n) -> const system::NodeState& { return x.node(n); }, now, [&x](Index k) { return x.reactions()[k]; });
-        force_[i].push_back(f.y()), force_[i].push_back(f.z());
+        force_[i].push_back(f.y()); force_[i].push_back(f.z());
       }
     }
   }
@@ -139,7 +139,7 @@ struct Bench {
       const analysis::TransientResult r = analysis::run_transient(problem, start.state, o, {&sampler, &peaks});
       s.ok = r.reason == analysis::StopReason::end_time;
       if (!s.ok) s.note = fmt::format("{} {}", to_string(r.reason), r.detail);
-      s.seconds = r.seconds, s.steps = r.statistics.accepted, s.newton = r.statistics.newton_iterations;
+      s.seconds = r.seconds; s.steps = r.statistics.accepted; s.newton = r.statistics.newton_iterations;
       s.factorizations = r.statistics.factorizations_real + r.statistics.factorizations_complex;
       for (std::size_t i = 0; i < points.size(); ++i) {
         s.quantities.push_back({points[i].first + ": displacement", "m", sampler.displacement(i), 0.0});
@@ -158,7 +158,7 @@ struct Bench {
       for (std::size_t k = 0; exact && k < exact->columns.size(); ++k)
         s.quantities.push_back({fmt::format("{}.{} against the exact solution", points[exact->columns[k].point].first, "xyz"[exact->columns[k].axis]), "m", sampler.exact(k), 0.0});
     } catch (const Error& e) {
-      s.ok = false, s.note = e.what();
+      s.ok = false; s.note = e.what();
     }
     return s;
   }
@@ -228,7 +228,7 @@ StudyPart study_transient(const model::Model& model, std::size_t which, const St
         const bool ladder = number >= 2;
         if (ladder && spent[key] > patience) {
           analysis::StudySample s;
-          s.setting = c, s.ok = false, s.note = "left out: the setting before it took long";
+          s.setting = c; s.ok = false; s.note = "left out: the setting before it took long";
           return s;
         }
         analysis::StudySample s = bench(c.mesh_factor).run(c, exact.get());
@@ -240,7 +240,7 @@ StudyPart study_transient(const model::Model& model, std::size_t which, const St
       o);
 
   StudyText text;
-  text.stem = "study", text.heading = "Error against run time";
+  text.stem = "study"; text.heading = "Error against run time";
   text.title = fmt::format("{}: error against run time", model.title.empty() ? model.deck_name : model.title);
   text.reference = fmt::format("{}{}, checked by {}", o.reference.label(), exact ? " and the exact solution given" : "", o.cross_check.label());
   text.target = bench(1).law.integrator.tolerance;

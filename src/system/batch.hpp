@@ -63,7 +63,7 @@ class Batch final : public Term {
  public:
   static constexpr int N = K::n_nodes, W = K::width;
   explicit Batch(std::string kind) : kind_(std::move(kind)) {}
-  void add(const K& k, const std::array<Index, N>& nodes) { elements_.push_back(k), nodes_.push_back(nodes); }
+  void add(const K& k, const std::array<Index, N>& nodes) { elements_.push_back(k); nodes_.push_back(nodes); }
   std::string_view kind() const override { return kind_; }
   std::size_t count() const override { return elements_.size(); }
   int width() const override { return W; }
@@ -104,7 +104,7 @@ class Batch final : public Term {
     if constexpr (has_regions)
       for (std::size_t i = 0; i < elements_.size(); ++i) out.push_back(elements_[i].region(gather(w, i)));
     else
-      (void)w, (void)out;
+      { (void)w; (void)out; }
   }
   bool hysteretic() const override {
     if constexpr (requires { K::hysteretic; }) return K::hysteretic;

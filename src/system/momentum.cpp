@@ -37,7 +37,7 @@ std::string MomentumProblem::list_bodies(const System& system, std::vector<Body>
     if (def.scalar) return "an internal unknown (" + def.name + ")";
     const RigidInertia& in = inertia[at(i)];
     Body b{};
-    b.node = i, b.line = def.line, b.start = next, b.mass = in.mass;
+    b.node = i; b.line = def.line; b.start = next; b.mass = in.mass;
     b.form = free == 63 ? Form::free : free == 56 ? Form::pivot : Form::point;
     if (free != 63 && free != 56 && free != 7) return "a partly held node (" + def.name + ")";
     for (const Hold& h : system.holds())
@@ -72,7 +72,7 @@ std::string MomentumProblem::obstacle(const System& system) {
   system.evaluate_nodes(w, s.frames, 0.0, q, v, a);
   for (const auto& term : system.terms()) {
     if (term->inertial()) continue;
-    w.M.set_zero(), w.C.set_zero(), w.K.set_zero();
+    w.M.set_zero(); w.C.set_zero(); w.K.set_zero();
     term->add_tangent(w);
     if (std::any_of(w.M.data(), w.M.data() + w.M.value_count(), [](double x) { return x != 0.0; }))
       return "mass in " + std::string(term->kind());
@@ -90,14 +90,14 @@ MomentumProblem::MomentumProblem(const System& system, MomentumOptions options)
   list_bodies(system, bodies_);
   frames = system.make_state().frames;
   const State s = system.make_state();
-  q_ = s.q, v_ = s.v, a_ = s.a;
+  q_ = s.q; v_ = s.v; a_ = s.a;
   for (const Body& b : bodies_) {
     const auto add = [&](int n, double x, bool unbounded = false) {
-      for (int i = 0; i < n; ++i) scale_.push_back(x), unbounded_.push_back(unbounded);
+      for (int i = 0; i < n; ++i) { scale_.push_back(x); unbounded_.push_back(unbounded); }
     };
-    if (b.form != Form::pivot) add(3, options.displacement), add(3, options.displacement * options.rate);
+    if (b.form != Form::pivot) { add(3, options.displacement); add(3, options.displacement * options.rate); }
     if (b.form == Form::point) continue;
-    add(1, 1.0, true), add(2, options.tilt), add(3, b.J.diagonal().maxCoeff() * options.tilt * options.rate);
+    add(1, 1.0, true); add(2, options.tilt); add(3, b.J.diagonal().maxCoeff() * options.tilt * options.rate);
   }
   size_ = static_cast<Index>(scale_.size());
   dy_.resize(size_);
@@ -117,7 +117,7 @@ bool MomentumProblem::evaluate(double t, time::CRef y) {
   for (const Body& b : bodies_) {
     const Index n = 6 * b.node;
     if (b.form == Form::point) {
-      q_.segment<3>(n) = y.segment<3>(b.start), v_.segment<3>(n) = y.segment<3>(b.start + 3);
+      q_.segment<3>(n) = y.segment<3>(b.start); v_.segment<3>(n) = y.segment<3>(b.start + 3);
       continue;
     }
     const Index k = angles(b);
@@ -129,7 +129,7 @@ bool MomentumProblem::evaluate(double t, time::CRef y) {
     const Attitude x = attitude(b, y);
     q_.segment<3>(n + 3) = y.segment<3>(k);
     const rotation::ChartRates rate = rotation::rates_of_omega(gamma, frames.chart[at(b.line)].transpose() * x.omega);
-    v_[n + 3] = rate.phi, v_.segment<2>(n + 4) = rate.gamma;
+    v_[n + 3] = rate.phi; v_.segment<2>(n + 4) = rate.gamma;
     if (b.form == Form::free) {
       const Vec3 arm = x.R * b.centre;
       q_.segment<3>(n) = y.segment<3>(b.start) - (arm - b.centre0);
@@ -161,7 +161,7 @@ bool MomentumProblem::rate(double t, time::CRef y, time::Ref dy) {
       const Vec3 arm = body_axes(*n.chart, y[k], y.segment<2>(k + 1)) * b.centre;
       moment -= b.form == Form::free ? arm.cross(F) : arm.cross(Vec3(-b.mass * w_.context.gravity));
     }
-    dy[k] = n.dphi, dy.segment<2>(k + 1) = v_.segment<2>(6 * b.node + 4);
+    dy[k] = n.dphi; dy.segment<2>(k + 1) = v_.segment<2>(6 * b.node + 4);
     dy.segment<3>(k + 3) = moment;
   }
   return dy.allFinite();
@@ -171,7 +171,7 @@ void MomentumProblem::set_state(const State& s, time::Ref y) {
   frames = s.frames;
   for (const Body& b : bodies_) {
     const Index n = 6 * b.node;
-    if (b.form != Form::pivot) y.segment<3>(b.start) = s.q.segment<3>(n), y.segment<3>(b.start + 3) = s.v.segment<3>(n);
+    if (b.form != Form::pivot) { y.segment<3>(b.start) = s.q.segment<3>(n); y.segment<3>(b.start + 3) = s.v.segment<3>(n); }
     if (b.form == Form::point) continue;
     const Index k = angles(b);
     const Vec2 gamma = s.q.segment<2>(n + 4);
@@ -191,8 +191,8 @@ void MomentumProblem::set_state(const State& s, time::Ref y) {
 
 bool MomentumProblem::get_state(double t, time::CRef y, State& s) {
   if (!rate(t, y, dy_)) return false;
-  s.t = t, s.frames = frames;
-  s.q = q_, s.v = v_, s.a = a_;
+  s.t = t; s.frames = frames;
+  s.q = q_; s.v = v_; s.a = a_;
   for (const Body& b : bodies_) {
     const Index n = 6 * b.node;
     if (b.form != Form::pivot) s.a.segment<3>(n) = dy_.segment<3>(b.start + 3);
@@ -209,7 +209,7 @@ bool MomentumProblem::get_state(double t, time::CRef y, State& s) {
     const Vec2 gamma = y.segment<2>(k + 1), dgamma = s.v.segment<2>(n + 4);
     const auto acc = rotation::accelerations_of_omega(gamma, s.v[n + 3], dgamma,
                                                       frames.chart[at(b.line)].transpose() * domega);
-    s.a[n + 3] = acc.phi, s.a.segment<2>(n + 4) = acc.gamma;
+    s.a[n + 3] = acc.phi; s.a.segment<2>(n + 4) = acc.gamma;
   }
   return true;
 }
@@ -224,7 +224,7 @@ bool MomentumProblem::accept(time::Ref y) {
     for (const Body& b : bodies_) {
       if (b.line != line || b.form == Form::point) continue;
       const Index k = angles(b);
-      if (first) turns = std::nearbyint(y[k] / two_pi), first = false;
+      if (first) { turns = std::nearbyint(y[k] / two_pi); first = false; }
       const Vec2 gamma = y.segment<2>(k + 1);
       largest = std::max(largest, gamma.norm());
       axis += chart * rotation::L(Vec3(0, gamma.x(), gamma.y())).col(0);
@@ -242,9 +242,9 @@ bool MomentumProblem::accept(time::Ref y) {
       y[k] = rotation::without_turns(y[k], turns);
       if (!move) continue;
       rotation::Angles angle;
-      angle.phi = y[k], angle.gamma = y.segment<2>(k + 1);
+      angle.phi = y[k]; angle.gamma = y.segment<2>(k + 1);
       angle = rotation::ChartChange(chart, axis).apply(angle);
-      y[k] = angle.phi, y.segment<2>(k + 1) = angle.gamma;
+      y[k] = angle.phi; y.segment<2>(k + 1) = angle.gamma;
     }
   }
   return changed;

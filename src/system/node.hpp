@@ -55,7 +55,7 @@ template <int W> using ForceX = Vector<W>;
 /// Tangents of the force in X.
 template <int W> struct TangentX {
   Matrix<W> M, C, K;  ///< d f/d X'', d f/d X', d f/d X
-  void set_zero() { M.setZero(), C.setZero(), K.setZero(); }
+  void set_zero() { M.setZero(); C.setZero(); K.setZero(); }
 };
 
 /// Energies in J and powers in W, summed over elements. Gravity's potential is kept apart from the elastic one.

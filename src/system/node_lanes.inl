@@ -14,7 +14,7 @@ WHIRL_INLINE void redo_large(T x, Ratios<T>& r) {
   for (int i = 0; i < width; ++i) {
     if (!(x[i] > 4.0)) continue;
     const Ratios<double> one = by_trigonometry(x[i]);
-    r.b0[i] = one.b0, r.b1[i] = one.b1, r.b2[i] = one.b2, r.b3[i] = one.b3, r.cosine[i] = one.cosine;
+    r.b0[i] = one.b0; r.b1[i] = one.b1; r.b2[i] = one.b2; r.b3[i] = one.b3; r.cosine[i] = one.cosine;
   }
 }
 WHIRL_INLINE T cosine_less_one(T x, const Ratios<T>& b) {
@@ -32,7 +32,7 @@ WHIRL_INLINE Six load6(const double* const* from) {
   for (int i = 0; i < width; ++i) p[i] = from[i];
   Six s;
   T skip;
-  load4(p, s.u.x, s.u.y, s.u.z, s.phi), advance(p, 2);
+  load4(p, s.u.x, s.u.y, s.u.z, s.phi); advance(p, 2);
   load4(p, skip, skip, s.g2, s.g3);
   return s;
 }
@@ -45,9 +45,9 @@ WHIRL_INLINE std::ptrdiff_t evaluate_group(const Motion& m, std::ptrdiff_t first
   bool same = true;
   for (int i = 0; i < width; ++i) {
     const std::ptrdiff_t k = first + (i < used ? i : used - 1);
-    pq[i] = m.q + 6 * k, pv[i] = m.v + 6 * k, pa[i] = m.a + 6 * k;
-    state[i] = m.state + k * m.stride, D[i] = m.D + 6 * k;
-    line[i] = m.line[k], falling[i] = m.falling[k];
+    pq[i] = m.q + 6 * k; pv[i] = m.v + 6 * k; pa[i] = m.a + 6 * k;
+    state[i] = m.state + k * m.stride; D[i] = m.D + 6 * k;
+    line[i] = m.line[k]; falling[i] = m.falling[k];
     same = same && line[i] == line[0];
   }
   const Six q = load6(pq), v = load6(pv), a = load6(pa);
@@ -69,7 +69,7 @@ WHIRL_INLINE std::ptrdiff_t evaluate_group(const Motion& m, std::ptrdiff_t first
   } else {
     for (int i = 0; i < width; ++i) {
       const double* const c = m.chart + 9 * line[i];
-      for (int k = 0; k < 3; ++k) axis[k].x[i] = c[3 * k], axis[k].y[i] = c[3 * k + 1], axis[k].z[i] = c[3 * k + 2];
+      for (int k = 0; k < 3; ++k) { axis[k].x[i] = c[3 * k]; axis[k].y[i] = c[3 * k + 1]; axis[k].z[i] = c[3 * k + 2]; }
     }
   }
   auto turned = [&](T cx, T cy, T cz) { return cx * axis[0] + cy * axis[1] + cz * axis[2]; };
@@ -85,9 +85,9 @@ WHIRL_INLINE std::ptrdiff_t evaluate_group(const Motion& m, std::ptrdiff_t first
   store4(D, 0, used, D2.x, D2.y, D2.z, D3.x);
   for (int i = 0; i < width; ++i) {
     if (i >= used) break;
-    state[i][20] = a.phi[i], state[i][21] = m.turns[line[i]];
+    state[i][20] = a.phi[i]; state[i][21] = m.turns[line[i]];
     *(const double**)(void*)(state[i] + 22) = m.chart + 9 * line[i];
-    D[i][4] = D3.y[i], D[i][5] = D3.z[i];
+    D[i][4] = D3.y[i]; D[i][5] = D3.z[i];
   }
   return -1;
 }

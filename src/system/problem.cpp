@@ -135,8 +135,8 @@ bool SystemProblem::rechart(Index line, time::Ref q, time::Ref v, time::Ref a) {
   for (Index i : nodes) {
     const rotation::Angles n = change.apply({q[6 * i + 3], v[6 * i + 3], a[6 * i + 3], q.segment<2>(6 * i + 4),
                                              v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4)});
-    q[6 * i + 3] = n.phi, v[6 * i + 3] = n.dphi, a[6 * i + 3] = n.ddphi;
-    q.segment<2>(6 * i + 4) = n.gamma, v.segment<2>(6 * i + 4) = n.dgamma, a.segment<2>(6 * i + 4) = n.ddgamma;
+    q[6 * i + 3] = n.phi; v[6 * i + 3] = n.dphi; a[6 * i + 3] = n.ddphi;
+    q.segment<2>(6 * i + 4) = n.gamma; v.segment<2>(6 * i + 4) = n.dgamma; a.segment<2>(6 * i + 4) = n.ddgamma;
   }
   frames.chart[at(line)] = change.new_triad();
   return true;

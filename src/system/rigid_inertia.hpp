@@ -10,7 +10,7 @@ struct RigidInertia {
   Vec3 moment = Vec3::Zero();   ///< mass x position of the mass centre, kg m
   Mat3 J = Mat3::Zero();        ///< kg m2
   RigidInertia& operator+=(const RigidInertia& o) {
-    mass += o.mass, moment += o.moment, J += o.J;
+    mass += o.mass; moment += o.moment; J += o.J;
     return *this;
   }
 };

@@ -18,7 +18,7 @@ constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 template <class Column>
 inline void project_block(const Mat32& Di, const double* x, double* y, Column&& gamma_column) {
   auto finish = [&](const double* col, double* out) {
-    out[0] = col[0], out[1] = col[1], out[2] = col[2], out[3] = col[6];
+    out[0] = col[0]; out[1] = col[1]; out[2] = col[2]; out[3] = col[6];
     out[4] = Di(0, 0) * col[3] + Di(1, 0) * col[4] + Di(2, 0) * col[5];
     out[5] = Di(0, 1) * col[3] + Di(1, 1) * col[4] + Di(2, 1) * col[5];
   };
@@ -63,7 +63,7 @@ void Builder::hold(Index node, int component, LawPtr law) { holds_.push_back({6 
 System Builder::finalize() {
   System& s = system_;
   s.active_.assign(at(s.size()), 1);
-  for (const NodeDef& d : s.defs_) s.line_of_.push_back(static_cast<int>(d.line)), s.falling_.push_back(d.scalar ? 0.0 : 1.0);
+  for (const NodeDef& d : s.defs_) { s.line_of_.push_back(static_cast<int>(d.line)); s.falling_.push_back(d.scalar ? 0.0 : 1.0); }
   // A law outranks a plain hold of the same unknown; the last law wins.
   std::stable_sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) {
     return a.unknown != b.unknown ? a.unknown < b.unknown : !a.law && b.law;
@@ -80,7 +80,7 @@ System Builder::finalize() {
     const int first_free = s.defs_[at(i)].scalar ? 1 : width[at(i)] == 7 ? 6 : width[at(i)] == 3 ? 3 : 0;
     for (int c = first_free; c < 6; ++c) s.active_[at(6 * i + c)] = 0;
   }
-  for (const Hold& h : holds_) s.active_[at(h.unknown)] = 0, law[at(h.unknown)] = h.law;
+  for (const Hold& h : holds_) { s.active_[at(h.unknown)] = 0; law[at(h.unknown)] = h.law; }
   std::vector<Index> row(at(s.nodes()), -1);
   for (Index k = 0; k < s.size(); ++k) {
     if (s.active_[at(k)]) row[at(k / 6)] = k / 6;
@@ -130,8 +130,8 @@ State System::make_state() const {
 Workspace System::make_workspace() const {
   Workspace w;
   const std::size_t n = at(nodes());
-  w.nodes.resize(n), w.D.resize(n), w.D_rate.resize(n), w.D_accel.resize(n), w.director.resize(n), w.force.resize(n);
-  w.M = la::BlockMatrix<7>(*pattern_), w.C = la::BlockMatrix<7>(*pattern_), w.K = la::BlockMatrix<7>(*pattern_);
+  w.nodes.resize(n); w.D.resize(n); w.D_rate.resize(n); w.D_accel.resize(n); w.director.resize(n); w.force.resize(n);
+  w.M = la::BlockMatrix<7>(*pattern_); w.C = la::BlockMatrix<7>(*pattern_); w.K = la::BlockMatrix<7>(*pattern_);
   return w;
 }
 
@@ -149,7 +149,7 @@ void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<Ve
       continue;
     }
     const LawValue x = h.law->at(t);
-    q[h.unknown] = x.f, v[h.unknown] = x.df, a[h.unknown] = x.ddf;
+    q[h.unknown] = x.f; v[h.unknown] = x.df; a[h.unknown] = x.ddf;
     if (h.unknown % 6 == spin_phi) q[h.unknown] -= two_pi * f.turns[at(defs_[at(h.unknown / 6)].line)];
   }
 }
@@ -162,12 +162,12 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   w.context.gravity = w.context.load * gravity_at(t);
   lanes::Motion m;
   m.count = nodes();
-  m.q = q.data(), m.v = v.data(), m.a = a.data();
-  m.line = line_of_.data(), m.falling = falling_.data();
-  m.chart = f.chart.data()->data(), m.turns = f.turns.data();
+  m.q = q.data(); m.v = v.data(); m.a = a.data();
+  m.line = line_of_.data(); m.falling = falling_.data();
+  m.chart = f.chart.data()->data(); m.turns = f.turns.data();
   for (int k = 0; k < 3; ++k) m.gravity[k] = w.context.gravity[k];
   m.limit_squared = rotation::chart_limit * rotation::chart_limit;
-  m.state = w.nodes.data()->u.data(), m.stride = sizeof(NodeState) / sizeof(double);
+  m.state = w.nodes.data()->u.data(); m.stride = sizeof(NodeState) / sizeof(double);
   m.D = w.D.data()->data();
   static const lanes::Kernels& kernels = lanes::kernels();
   w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
@@ -179,7 +179,7 @@ void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::R
     const Mat3& E = *w.nodes[at(i)].chart;
     rotation::Director& dir = w.director[at(i)];
     rotation::director(q.segment<2>(6 * i + 4), v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4), dir);
-    w.D_rate[at(i)].noalias() = E * dir.D_rate, w.D_accel[at(i)].noalias() = E * dir.D_accel;
+    w.D_rate[at(i)].noalias() = E * dir.D_rate; w.D_accel[at(i)].noalias() = E * dir.D_accel;
   }
 }
 
@@ -209,11 +209,11 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
   if (!evaluate_nodes(w, f, t, q, v, a)) return false;
   evaluate_jacobians(w, q, v, a);
   for (auto& x : w.force) x.setZero();
-  w.M.set_zero(), w.C.set_zero(), w.K.set_zero();
+  w.M.set_zero(); w.C.set_zero(); w.K.set_zero();
   if (only)
-    for (std::size_t k : *only) terms_[k]->add_force(w), terms_[k]->add_tangent(w);
+    for (std::size_t k : *only) { terms_[k]->add_force(w); terms_[k]->add_tangent(w); }
   else
-    for (const auto& term : terms_) term->add_force(w), term->add_tangent(w);
+    for (const auto& term : terms_) { term->add_force(w); term->add_tangent(w); }
 
   // q-space blocks: columns of gamma through D and its rates (node.hpp), then rows through D^T.
   const auto& start = pattern_->row_start();

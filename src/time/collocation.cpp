@@ -278,7 +278,7 @@ double Collocation::estimate(double h) {
     qs_ = q0_ + e_;
     vs_ = v0_ + u_ / h;
     as_ = a0_;
-    for (Index i : held_) qs_[i] = q0_[i], vs_[i] = v0_[i];
+    for (Index i : held_) { qs_[i] = q0_[i]; vs_[i] = v0_[i]; }
     rho_q_ += u_ / h;
     if (residual(t0_, qs_, vs_, as_, r_.col(0))) {
       vs_ = r_.col(0);

@@ -28,7 +28,7 @@ bool EventLocator::find(const Integrator& integrator, const StepReport& step, do
     const double t = last ? step.t1 : step.t0 + h * k / (samples + 1);
     const double g = last ? g_last_ : value(integrator, t);
     if (!crosses(g_left, g)) {
-      t_left = t, g_left = g;
+      t_left = t; g_left = g;
       continue;
     }
     // Bracketed search: regula falsi with the Illinois rule, bisection whenever it shrinks the bracket too little.
@@ -41,11 +41,11 @@ bool EventLocator::find(const Integrator& integrator, const StepReport& step, do
       if (!(c > a + 0.25 * width && c < b - 0.25 * width)) c = it % 2 ? 0.5 * (a + b) : (c <= a + 0.25 * width ? a + 0.5 * width : b - 0.5 * width);
       const double fc = value(integrator, c);
       if ((fc < 0.0) == (g_left < 0.0) && fc != 0.0) {
-        a = c, fa = fc;
+        a = c; fa = fc;
         if (side == -1) fb *= 0.5;
         side = -1;
       } else {
-        b = c, fb = fc;
+        b = c; fb = fc;
         if (side == 1) fa *= 0.5;
         side = 1;
       }
@@ -53,9 +53,9 @@ bool EventLocator::find(const Integrator& integrator, const StepReport& step, do
         c = 0.5 * (a + b);
         const double fm = value(integrator, c);
         if ((fm < 0.0) == (g_left < 0.0) && fm != 0.0)
-          a = c, fa = fm;
+          { a = c; fa = fm; }
         else
-          b = c, fb = fm;
+          { b = c; fb = fm; }
         side = 0;
       }
     }

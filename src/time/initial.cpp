@@ -34,7 +34,7 @@ void InitialSolver::classify(const Problem& problem) {
   problem.add_C(1.0, probe_, r_);
   for (Index i = 0; i < r_.size(); ++i)
     if (row_[at(i)] == Row::algebraic && r_[i] != 0.0) row_[at(i)] = Row::first_order;
-  for (Index i : held_) row_[at(i)] = Row::dynamic, dynamic_[i] = 0.0;
+  for (Index i : held_) { row_[at(i)] = Row::dynamic; dynamic_[i] = 0.0; }
   for (Row row : row_) any_massless_ = any_massless_ || row != Row::dynamic;
 }
 
@@ -49,12 +49,12 @@ StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, Ve
   classify(problem);
   // Matrix of a step of length tau: massless rows need C or K in it, the others want tau -> 0.
   static constexpr double lengths[] = {0.0, 1e-8, 1e-10, 1e-6, 1e-12, 1e-4};
-  q_start_ = q, v_start_ = v, a_start_ = a;
+  q_start_ = q; v_start_ = v; a_start_ = a;
   StepStatus status = StepStatus::singular;
   for (double tau : lengths) {
     if (any_massless_ && tau == 0.0) continue;
     if (!factor(problem, tau, statistics)) continue;
-    q = q_start_, v = v_start_, a = a_start_;
+    q = q_start_; v = v_start_; a = a_start_;
     status = StepStatus::newton;
     double previous = infinity;
     for (int iteration = 0; iteration < 20; ++iteration) {

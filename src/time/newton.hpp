@@ -17,7 +17,7 @@ class NewtonMonitor {
   /// Part of `acceptable` that rounding may reach.
   static constexpr double rounding_share = 3.0;
   void configure(int limit, double allowance, double acceptable) {
-    limit_ = limit, allowance_ = allowance, acceptable_ = std::max(acceptable, allowance);
+    limit_ = limit; allowance_ = allowance; acceptable_ = std::max(acceptable, allowance);
   }
   void begin() {
     count_ = 0;
@@ -60,7 +60,7 @@ class NewtonMonitor {
   void forget() { eta_ = 1.0; }
   void save(std::vector<double>& out) const { out.insert(out.end(), {eta_, noise_}); }
   const double* restore(const double* in) {
-    eta_ = in[0], noise_ = in[1];
+    eta_ = in[0]; noise_ = in[1];
     return in + 2;
   }
 

@@ -49,7 +49,7 @@ class Problem {
   virtual Power power(double t, CRef q, CRef v, CRef a, CRef reactions) = 0;
   /// Called after an accepted step: may re-chart rotations and take whole turns out of phi (q, v, a change
   /// consistently). Returns true when it changed anything: the scheme then drops what it extrapolates from.
-  virtual bool accept(double t, Ref q, Ref v, Ref a) { (void)t, (void)q, (void)v, (void)a; return false; }
+  virtual bool accept(double t, Ref q, Ref v, Ref a) { (void)t; (void)q; (void)v; (void)a; return false; }
 };
 
 }  // namespace whirl::time

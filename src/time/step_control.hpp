@@ -12,7 +12,7 @@ class StepControl {
   StepControl() { reset(); }
   void configure(double exponent) { exponent_ = exponent; }
   /// Forgets the previous step (start, discontinuity).
-  void reset() { have_previous_ = false, recent_.fill(large), rejected_ = false, newton_limit_ = large; }
+  void reset() { have_previous_ = false; recent_.fill(large); rejected_ = false; newton_limit_ = large; }
   /// Next step after an accepted one. iterations: Newton iterations spent, of `limit`.
   double accepted(double h, double error, int iterations, int limit);
   /// Step to try after one that failed the error test.

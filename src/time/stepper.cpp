@@ -33,9 +33,9 @@ void Stepper::start(double t, CRef q, CRef v) {
   t_low_ = t0_low_ = 0.0;
   h_ = h_next_ = 0.0;
   have_step_ = accept_pending_ = at_break_ = false;
-  q_ = q, v_ = v;
+  q_ = q; v_ = v;
   a_.setZero();
-  q_low_.setZero(), v_low_.setZero();
+  q_low_.setZero(); v_low_.setZero();
   problem_.impose(t, q_, v_, a_);
   after_discontinuity(false);
   scale_.reset(q_);
@@ -45,21 +45,21 @@ void Stepper::start(double t, CRef q, CRef v) {
   v0_.setZero();
   problem_.add_M(1.0, q0_, v0_);
   scale_.set_spin_inertia(v0_);
-  q0_ = q_, v0_ = v_, a0_ = a_;
+  q0_ = q_; v0_ = v_; a0_ = a_;
   choose_first_step();
 }
 
 void Stepper::restart(CRef q, CRef v, bool corner) {
-  if (corner) rate_span_ = std::max(rate_span_, longest_), longest_ = rate_steps_ = 0.0;   // an approach may take more than one
-  q_ = q, v_ = v;
-  q_low_.setZero(), v_low_.setZero();
+  if (corner) { rate_span_ = std::max(rate_span_, longest_); longest_ = rate_steps_ = 0.0; }   // an approach may take more than one
+  q_ = q; v_ = v;
+  q_low_.setZero(); v_low_.setZero();
   accept_pending_ = at_break_ = have_step_ = false;
   problem_.impose(t_, q_, v_, a_);
   after_discontinuity(false);
   for (Index i = 0; i < n_; ++i)
     if (q_[i] != q0_[i]) scale_.rebase(i, q_[i]);
-  q0_ = q_, v0_ = v_, a0_ = a_;
-  t0_ = t_, t0_low_ = t_low_;
+  q0_ = q_; v0_ = v_; a0_ = a_;
+  t0_ = t_; t0_low_ = t_low_;
 }
 
 void Stepper::after_discontinuity(bool impulse) {
@@ -174,7 +174,7 @@ Stepper::Target Stepper::plan(double h) {
 void Stepper::begin_step() {
   if (accept_pending_) {
     accept_pending_ = false;
-    q0_ = q_, v0_ = v_, a0_ = a_;
+    q0_ = q_; v0_ = v_; a0_ = a_;
     if (problem_.accept(t_, q_, v_, a_)) {
       const auto kinds = problem_.kinds();
       bool rates_changed = false;
@@ -195,9 +195,9 @@ void Stepper::begin_step() {
     at_break_ = false;
     after_discontinuity(true);
   }
-  q0_ = q_, v0_ = v_, a0_ = a_;
-  q0_low_ = q_low_, v0_low_ = v_low_;
-  t0_ = t_, t0_low_ = t_low_;
+  q0_ = q_; v0_ = v_; a0_ = a_;
+  q0_low_ = q_low_; v0_low_ = v_low_;
+  t0_ = t_; t0_low_ = t_low_;
   fresh_ = false;
 }
 
@@ -272,18 +272,18 @@ StepReport Stepper::advance() {
     if (result.status == StepStatus::ok && (fixed || result.error <= 1.0)) break;
     if (result.status == StepStatus::ok) {
       result.status = StepStatus::error_test;
-      ++report.rejected_error, ++statistics_.rejected_error;
+      ++report.rejected_error; ++statistics_.rejected_error;
       h_wanted = control_.rejected(target.h, result.error);
       retrying_ = true;
     } else {
-      ++report.rejected_newton, ++statistics_.rejected_newton;
+      ++report.rejected_newton; ++statistics_.rejected_newton;
       h_wanted = target.h * (result.status == StepStatus::domain ? 0.25 : 0.5);
       control_.newton_failed(target.h);
     }
     if (h_wanted < dt_min || tries + 1 >= options_.max_attempts) {
-      q_ = q0_, v_ = v0_, a_ = a0_;
-      q_low_ = q0_low_, v_low_ = v0_low_;
-      t_ = t0_, t_low_ = t0_low_;
+      q_ = q0_; v_ = v0_; a_ = a0_;
+      q_low_ = q0_low_; v_low_ = v0_low_;
+      t_ = t0_; t_low_ = t0_low_;
       report.status = result.status;
       h_next_ = std::max(h_wanted, dt_min);
       return report;
@@ -339,9 +339,9 @@ StepReport Stepper::shorten_to(double t) {
   report.error = result.error;
   if (result.status != StepStatus::ok) {
     // back to the start of the step; the caller may go on with advance()
-    q_ = q0_, v_ = v0_, a_ = a0_;
-    q_low_ = q0_low_, v_low_ = v0_low_;
-    t_ = t0_, t_low_ = t0_low_;
+    q_ = q0_; v_ = v0_; a_ = a0_;
+    q_low_ = q0_low_; v_low_ = v0_low_;
+    t_ = t0_; t_low_ = t0_low_;
     have_step_ = false;
     accept_pending_ = false;
     report.t1 = t_;
@@ -361,11 +361,11 @@ StepReport Stepper::shorten_to(double t) {
 
 void Stepper::interpolate(double t, Ref q, Ref v, Ref a) const {
   if (!have_step_ || t == t_) {
-    q = q_, v = v_, a = a_;
+    q = q_; v = v_; a = a_;
     return;
   }
   if (t == t0_) {
-    q = q0_, v = v0_, a = a0_;
+    q = q0_; v = v0_; a = a0_;
     return;
   }
   dense(((t - t0_) - t0_low_) / h_, q, v, a);
@@ -390,7 +390,7 @@ IntegratorState Stepper::save() {
   refresh();
   IntegratorState s;
   s.t = t_;
-  s.q = q_, s.v = v_, s.a = a_;
+  s.q = q_; s.v = v_; s.a = a_;
   auto& out = s.history;
   const Statistics& k = statistics_;
   for (long c : {k.accepted, k.rejected_error, k.rejected_newton, k.newton_iterations, k.linearizations, k.factorizations_real,
@@ -420,12 +420,12 @@ void Stepper::restore(const IntegratorState& s) {
   for (double* c : {&k.step_min, &k.step_max, &k.step_sum, &k.error_max, &k.error_sum}) *c = *in++;
   auto flag = [&in] { return *in++ != 0.0; };
   t_ = s.t;
-  longest_ = *in++, rate_span_ = *in++, rate_steps_ = *in++;
+  longest_ = *in++; rate_span_ = *in++; rate_steps_ = *in++;
   t_low_ = *in++;
   h_next_ = *in++;
-  first_ = flag(), accept_pending_ = flag(), at_break_ = flag();
+  first_ = flag(); accept_pending_ = flag(); at_break_ = flag();
   for (double* c : {&segment_start_, &segment_end_, &segment_count_, &segment_step_, &segment_k_}) *c = *in++;
-  segment_valid_ = flag(), inside_part_ = flag();
+  segment_valid_ = flag(); inside_part_ = flag();
   for (VecX* x : {&q_low_, &v_low_}) {
     std::copy_n(in, n_, x->data());
     in += n_;
@@ -434,8 +434,8 @@ void Stepper::restore(const IntegratorState& s) {
   in = control_.restore(in);
   in = initial_.restore(in);
   restore_history(in);
-  q_ = q0_ = s.q, v_ = v0_ = s.v, a_ = a0_ = s.a;
-  t0_ = t_, t0_low_ = t_low_;
+  q_ = q0_ = s.q; v_ = v0_ = s.v; a_ = a0_ = s.a;
+  t0_ = t_; t0_low_ = t_low_;
   have_step_ = false;
   refresh();
 }

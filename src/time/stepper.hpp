@@ -22,7 +22,7 @@ class Stepper : public Integrator {
   const VecX& a() const final { return a_; }
   double proposed_step() const final { return h_next_; }
   void interpolate(double t, Ref q, Ref v, Ref a) const final;
-  void refresh() final { linearize_ = true, h_factored_ = 0.0; }
+  void refresh() final { linearize_ = true; h_factored_ = 0.0; }
   void set_end(double t_end) final;
   void set_breakpoints(std::vector<double> times) final;
   const Statistics& statistics() const final { return statistics_; }

@@ -28,11 +28,11 @@ Square<Real> inverse(Square<Real> m) {
     std::swap(m[k], m[p]);
     std::swap(inv[k], inv[p]);
     const Real d = m[k][k];
-    for (std::size_t j = 0; j < n; ++j) m[k][j] /= d, inv[k][j] /= d;
+    for (std::size_t j = 0; j < n; ++j) { m[k][j] /= d; inv[k][j] /= d; }
     for (std::size_t i = 0; i < n; ++i) {
       if (i == k) continue;
       const Real f = m[i][k];
-      for (std::size_t j = 0; j < n; ++j) m[i][j] -= f * m[k][j], inv[i][j] -= f * inv[k][j];
+      for (std::size_t j = 0; j < n; ++j) { m[i][j] -= f * m[k][j]; inv[i][j] -= f * inv[k][j]; }
     }
   }
   return inv;
@@ -59,7 +59,7 @@ std::vector<Cplx> eigenvector(const Square<Real>& B, Cplx lambda, bool transpose
         y[k] = entry(p, l) * entry(q, m) - entry(p, m) * entry(q, l);
         size = std::max(size, std::abs(y[k]));
       }
-      if (size > best) best = size, x = y;
+      if (size > best) { best = size; x = y; }
     }
   }
   Cplx largest = x[0];
@@ -138,13 +138,13 @@ Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, 
   std::vector<Cplx> x, w;
   pair(lambda, x, w);
   t.lambda_c = Complex(lambda);
-  for (std::size_t i = 0; i < s; ++i) t.x_c[i] = Complex(x[i]), t.w_c[i] = Complex(w[i]);
+  for (std::size_t i = 0; i < s; ++i) { t.x_c[i] = Complex(x[i]); t.w_c[i] = Complex(w[i]); }
   t.has_real = s == 3;
   if (t.has_real) {
     pair(Cplx(root), x, w);
     t.lambda_r = static_cast<double>(root);
     for (std::size_t i = 0; i < s; ++i)
-      t.x_r[i] = static_cast<double>(x[i].real()), t.w_r[i] = static_cast<double>(w[i].real());
+      { t.x_r[i] = static_cast<double>(x[i].real()); t.w_r[i] = static_cast<double>(w[i].real()); }
   }
   t.mu = t.has_real ? t.lambda_r : std::abs(t.lambda_c);
   return t;

@@ -20,7 +20,7 @@ inline elements::ElementSection cylinder(double d, double E, double G, double rh
   elements::ElementSection s;
   s.od1 = s.od2 = s.mass_od1 = s.mass_od2 = d;
   s.id1 = s.id2 = s.mass_id1 = s.mass_id2 = bore;
-  s.E = E, s.G = G, s.rho = rho, s.shear = shear;
+  s.E = E; s.G = G; s.rho = rho; s.shear = shear;
   return s;
 }
 
@@ -75,8 +75,8 @@ struct Rotor {
   }
   Rotor& add_bearing(double position, double kyy, double kzz, double cyy = 0, double czz = 0, double kyz = 0, double kzy = 0) {
     elements::TranslationalBearing t;
-    t.K(1, 1) = kyy, t.K(2, 2) = kzz, t.K(1, 2) = kyz, t.K(2, 1) = kzy;
-    t.C(1, 1) = cyy, t.C(2, 2) = czz;
+    t.K(1, 1) = kyy; t.K(2, 2) = kzz; t.K(1, 2) = kyz; t.K(2, 1) = kzy;
+    t.C(1, 1) = cyy; t.C(2, 2) = czz;
     b.add(t, {at(position), b.add_ground(Vec3(position, 0, 0), "ground")}, "bearings");
     return *this;
   }

@@ -178,11 +178,11 @@ TEST(Equilibrium, RollUpToAFullCircleAndTwoTurns) {
     }
     elements::GeneralBeamConstants c;
     const double l = L / n, Phi = 12 * EI / (1.77e6 * l * l);
-    c.length = l, c.EA_l = 1.77e6 / l, c.GJ_l = 8160 / l;
+    c.length = l; c.EA_l = 1.77e6 / l; c.GJ_l = 8160 / l;
     c.kz_def11 = c.kz_def22 = c.ky_def11 = c.ky_def22 = EI * (4 + Phi) / (l * (1 + Phi));
     c.kz_def12 = c.ky_def12 = EI * (2 - Phi) / (l * (1 + Phi));
     const double q = (1 + Phi) * (1 + Phi);
-    c.b11 = c.b22 = (2.0 / 15 + Phi / 6 + Phi * Phi / 12) / q, c.b12 = -(1.0 / 30 + Phi / 6 + Phi * Phi / 12) / q;
+    c.b11 = c.b22 = (2.0 / 15 + Phi / 6 + Phi * Phi / 12) / q; c.b12 = -(1.0 / 30 + Phi / 6 + Phi * Phi / 12) / q;
     for (int i = 0; i < n; ++i)
       b.add(elements::GeneralBeam(c, Vec3(l, 0, 0), Mat3::Identity(), Mat3::Identity()), {node[i], node[i + 1]}, "beams");
     for (int k = 0; k < 6; ++k) b.hold(node[0], k);

@@ -60,7 +60,7 @@ bool carries(const Journal& j, double spin) {
   const double c = j.film.surface->clearance(), W = j.load.norm();
   const auto at = [&](const Vec2& r, Vec2& g, Mat2& K) {
     LateralMotion m;
-    m.r = r, m.v.setZero(), m.a.setZero(), m.spin = spin;
+    m.r = r; m.v.setZero(); m.a.setZero(); m.spin = spin;
     Vector<4> z;
     LateralTangent t;
     law.tangent(m, z, t);

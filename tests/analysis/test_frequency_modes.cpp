@@ -97,7 +97,7 @@ void insert(std::vector<double>& w, double x) {
 
 analysis::ModesOptions lateral(Index count) {
   analysis::ModesOptions o;
-  o.count = count, o.motion = analysis::Motion::lateral;
+  o.count = count; o.motion = analysis::Motion::lateral;
   return o;
 }
 
@@ -160,7 +160,7 @@ TEST(FrequencyModes, UndampedCriticalSpeedsOfAMassOnAPedestal) {
   const test::DeckModel a(test::lateral_mass(light.m1, "0 m/s^2", table("shaken", "mass", {0.0, 1500.0}, rows_of(light), [](double, double w) { return light.at(w); })));
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::CriticalOptions o;
-  o.max_speed = 1450, o.motion = analysis::Motion::lateral;
+  o.max_speed = 1450; o.motion = analysis::Motion::lateral;
   std::vector<double> exact;
   int rising = 0;
   double last = 1;
@@ -226,7 +226,7 @@ TEST(FrequencyModes, InstabilityAtItsOwnFrequencyOnly) {
   const double onset = w0 * c / a;
   ASSERT_LT(branch(m, f(onset, onset), 1).real(), -0.9 * c / (2 * m));   // with synchronous coefficients: as stable as without
   analysis::StabilityOptions o;
-  o.min_speed = 100, o.max_speed = 1000, o.grid = 10, o.modes = 6, o.motion = analysis::Motion::lateral, o.all = true;
+  o.min_speed = 100; o.max_speed = 1000; o.grid = 10; o.modes = 6; o.motion = analysis::Motion::lateral; o.all = true;
   const auto r = analysis::find_instability(linear, o);
   EXPECT_TRUE(r.stable_at_start);
   ASSERT_EQ(r.onsets.size(), 1u);
@@ -304,7 +304,7 @@ TEST(FrequencyModes, RotorOnPedestalsInTablesIsTheRotorOnPedestals) {
       EXPECT_NEAR(found[l].frequency[k], lines[l].frequency[k], 1e-4 * lines[l].frequency[k]) << l << " at " << o.speeds[k];
   }
   analysis::CriticalOptions c;
-  c.max_speed = 1000, c.grid = 10, c.damped = true, c.motion = analysis::Motion::lateral;
+  c.max_speed = 1000; c.grid = 10; c.damped = true; c.motion = analysis::Motion::lateral;
   const auto speeds = analysis::critical_speeds(exact, c), same = analysis::critical_speeds(reduced, c);
   ASSERT_GE(speeds.size(), 3u);
   ASSERT_EQ(same.size(), speeds.size());

@@ -102,7 +102,7 @@ TEST(FrequencyTable, ModesAtTheirOwnFrequency) {
   }
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::ModesOptions o;
-  o.count = 6, o.motion = analysis::Motion::lateral;
+  o.count = 6; o.motion = analysis::Motion::lateral;
   for (double Omega : {40.0, 600.0}) {
     const auto modes = analysis::whirl_modes(linear, Omega, o);
     ASSERT_EQ(modes.size(), 2u);   // one a plane
@@ -125,7 +125,7 @@ TEST(FrequencyTable, RealRootsAtZeroFrequency) {
     ASSERT_GT(root, 0.0);
     analysis::Linearizer linear(a.built.system, a.running());
     analysis::ModesOptions o;
-    o.count = 8, o.motion = analysis::Motion::lateral, o.real_roots = true;
+    o.count = 8; o.motion = analysis::Motion::lateral; o.real_roots = true;
     const auto modes = analysis::whirl_modes(linear, Omega, o);
     for (const double exact : {(-C + root) / (2 * m), (-C - root) / (2 * m)}) {
       int found = 0;
@@ -147,7 +147,7 @@ TEST(FrequencyTable, DampedModesAtTheirOwnFrequency) {
   }
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::ModesOptions o;
-  o.count = 6, o.motion = analysis::Motion::lateral;
+  o.count = 6; o.motion = analysis::Motion::lateral;
   for (const auto& mode : analysis::whirl_modes(linear, 100.0, o)) EXPECT_LT(std::abs(mode.lambda - lambda), 1e-6 * std::abs(lambda));
 }
 
@@ -169,7 +169,7 @@ TEST(FrequencyTable, UncoveredFrequencyIsAnError) {
   const test::DeckModel a(deck_text(undamped, grid(200, 4)));
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::ModesOptions o;
-  o.count = 6, o.motion = analysis::Motion::lateral;
+  o.count = 6; o.motion = analysis::Motion::lateral;
   try {
     analysis::whirl_modes(linear, 40.0, o);
     FAIL();

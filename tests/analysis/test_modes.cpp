@@ -76,7 +76,7 @@ TEST(Linearizer, ForcingOfSeveralLines) {
     elements::TranslationalBearing t;
     t.K = 1e5 * Mat3::Identity();
     b.add(t, {node.back(), b.add_ground(Vec3(k, 0, 0), "ground")}, "bearings");
-    b.hold(node.back(), system::gamma2), b.hold(node.back(), system::gamma3);
+    b.hold(node.back(), system::gamma2); b.hold(node.back(), system::gamma3);
   }
   const system::System s = b.finalize();
   SteadyRotation running;
@@ -127,7 +127,7 @@ TEST(WhirlModes, DirectionsKindsAndPairs) {
   const system::System s = rotor.b.finalize();
   Linearizer linear(s);
   ModesOptions o;
-  o.max_frequency = two_pi * 1500, o.count = 0;
+  o.max_frequency = two_pi * 1500; o.count = 0;
   const auto modes = whirl_modes(linear, 4000 * rpm, o);
   int forward = 0, backward = 0, torsional = 0, axial = 0;
   for (const WhirlMode& m : modes) {
@@ -211,7 +211,7 @@ TEST(Critical, OrdersAndDampedLimit) {
   Linearizer linear(s), damped(t);
   for (double order : {0.5, 1.0, 2.0, 3.0}) {
     CriticalOptions o;
-    o.order = order, o.max_speed = 9000 * rpm / order;
+    o.order = order; o.max_speed = 9000 * rpm / order;
     const auto a = critical_speeds(linear, o);
     o.damped = true;
     const auto b = critical_speeds(damped, o);

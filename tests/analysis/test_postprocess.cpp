@@ -12,8 +12,8 @@ namespace {
 
 Turn turn_of(int n, bool backward) {
   Turn t;
-  t.n = n, t.backward = backward;
-  t.t0 = 0.0, t.t1 = 0.02;
+  t.n = n; t.backward = backward;
+  t.t0 = 0.0; t.t1 = 0.02;
   return t;
 }
 

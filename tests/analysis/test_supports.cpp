@@ -240,8 +240,8 @@ TEST_P(SupportTangents, AreDerivativesInTheAssembledSystem) {
   VecX q_size(n), v_size(n), a_size = VecX::Ones(n);
   for (Index k = 0; k < n; ++k) {
     const bool angle = k % 6 >= 3;
-    q_size[k] = angle ? (k % 6 == 3 ? 1e-4 : 3e-5) : c.size, v_size[k] = angle ? 0.01 : 1e-3;
-    q[k] = normal(rng) * q_size[k], v[k] = normal(rng) * v_size[k], a[k] = normal(rng);
+    q_size[k] = angle ? (k % 6 == 3 ? 1e-4 : 3e-5) : c.size; v_size[k] = angle ? 0.01 : 1e-3;
+    q[k] = normal(rng) * q_size[k]; v[k] = normal(rng) * v_size[k]; a[k] = normal(rng);
     const auto line = static_cast<std::size_t>(std::max<Index>(0, s.node(k / 6).line));
     if (k % 6 == 3) v[k] += 300.0 * m.deck.model.shafts[std::min(line, m.deck.model.shafts.size() - 1)].speed_ratio;
   }

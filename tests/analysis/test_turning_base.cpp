@@ -44,7 +44,7 @@ Mat3 attitude(const TurningBase& b, double t) { return rotation::L(Vec3(b.rate->
 analysis::TransientResult run(const system::System& sys, const system::State& start, double t_end, analysis::Observer& o) {
   system::SystemProblem problem(sys);
   analysis::TransientOptions t;
-  t.integrator.tolerance = 1e-9, t.integrator.t_end = t_end;
+  t.integrator.tolerance = 1e-9; t.integrator.t_end = t_end;
   return analysis::run_transient(problem, start, t, {&o});
 }
 
@@ -87,7 +87,7 @@ TEST(TurningBase, FreeFlightOfASpinningDisk) {
       const Vec3 w = b.rate->at(s.t()).f * b.axis, r = position + n.u + k.offset * n.d() - b.about;
       const Vec3 X = A * r, V = A * (n.du + k.offset * n.dd + w.cross(r)), omega = n.omega() + w, d = n.d();
       const Vec3 H = A * (k.Jt * (omega - omega.dot(d) * d) + k.Jp * omega.dot(d) * d);
-      if (first) X0 = X, V0 = V, H0 = H;
+      if (first) { X0 = X; V0 = V; H0 = H; }
       worst_X = std::max(worst_X, (X - X0 - s.t() * V0 - 0.5 * s.t() * s.t() * g).norm());
       worst_H = std::max(worst_H, (H - H0).norm() / H0.norm());
     }
@@ -106,7 +106,7 @@ TEST(TurningBase, ShaftAtRestInSpaceStaysAtRest) {
   const TurningBasePtr b = base(Vec3::Zero());
   ElementSection section;
   section.od1 = section.od2 = section.mass_od1 = section.mass_od2 = 0.05;
-  section.E = 2.1e11, section.G = 8.08e10, section.rho = 7850;
+  section.E = 2.1e11; section.G = 8.08e10; section.rho = 7850;
   const double l = 0.3;
   const ShaftBeam<false> beam(make_shaft_constants(section, l), Vec3::UnitX());
   system::Builder builder;
@@ -126,7 +126,7 @@ TEST(TurningBase, ShaftAtRestInSpaceStaysAtRest) {
   for (Index i = 0; i < 4; ++i) {
     start.v.segment<3>(6 * i) = -w.cross(at[static_cast<std::size_t>(i)] - b->about);
     start.v[6 * i + system::spin_phi] = -w.x();
-    start.v[6 * i + system::gamma2] = -w.y(), start.v[6 * i + system::gamma3] = -w.z();
+    start.v[6 * i + system::gamma2] = -w.y(); start.v[6 * i + system::gamma3] = -w.z();
   }
   struct Watch final : analysis::Observer {
     const TurningBase& b;

@@ -46,11 +46,11 @@ struct ReferenceRotor {
     }
     for (int e = 0; e < n; ++e) {
       const int j = 2 * node(x.back() + l);
-      M.block<4, 4>(j - 2, j - 2) += mass, G.block<4, 4>(j - 2, j - 2) += gyro, K.block<4, 4>(j - 2, j - 2) += k, C.block<4, 4>(j - 2, j - 2) += beta * k;
+      M.block<4, 4>(j - 2, j - 2) += mass; G.block<4, 4>(j - 2, j - 2) += gyro; K.block<4, 4>(j - 2, j - 2) += k; C.block<4, 4>(j - 2, j - 2) += beta * k;
     }
     return static_cast<int>(x.size()) - 1;
   }
-  void disk(int at, double mass, double Ip, double Id) { M(2 * at, 2 * at) += mass, M(2 * at + 1, 2 * at + 1) += Id, G(2 * at + 1, 2 * at + 1) += Ip; }
+  void disk(int at, double mass, double Ip, double Id) { M(2 * at, 2 * at) += mass; M(2 * at + 1, 2 * at + 1) += Id; G(2 * at + 1, 2 * at + 1) += Ip; }
 };
 
 /// Eigenvalues of (M l^2 + C l + K) x = 0.

@@ -61,7 +61,7 @@ Result run(const std::string& right, const std::string& key) {
   Result r{infinity, -infinity, supports.rows.at(0).at(supports.column("F_x [N]")), modes.rows.at(0).at(modes.column("frequency [Hz]")), d.log};
   for (const auto& row : sections.rows) {
     const double N = row[sections.column("N [N]")];
-    r.least = std::min(r.least, N), r.largest = std::max(r.largest, N);
+    r.least = std::min(r.least, N); r.largest = std::max(r.largest, N);
   }
   return r;
 }

@@ -38,7 +38,7 @@ TEST(ExampleNumbers, VaryingCompliance) {
   double least[2] = {infinity, infinity}, most[2] = {-infinity, -infinity};
   for (const auto& row : run.rows)
     if (row[t] > 0.6)
-      for (int k = 0; k < 2; ++k) least[k] = std::min(least[k], row[k == 0 ? y : z]), most[k] = std::max(most[k], row[k == 0 ? y : z]);
+      for (int k = 0; k < 2; ++k) { least[k] = std::min(least[k], row[k == 0 ? y : z]); most[k] = std::max(most[k], row[k == 0 ? y : z]); }
   // rows every 0.1 ms see a peak of a pass of 32 ms to 1e-4 of the swing of 1.4 um
   EXPECT_NEAR(-most[1], 9.71753874e-06, 1e-3 * 1.6e-7);
   EXPECT_NEAR(-least[1], 9.87555871e-06, 1e-3 * 1.6e-7);
@@ -68,27 +68,27 @@ TEST(ExampleNumbers, CasingOnFoundation) {
   MatX M = MatX::Zero(n, n), C = M, K = M;
   for (Index p = 0; p < 2; ++p) {
     const Index a = p * r, b = 2 * r + p * c;
-    M.block(a, a, r, r) = rotor.M, K.block(a, a, r, r) = rotor.K;
-    M.block(b, b, c, c) = casing.M, K.block(b, b, c, c) = casing.K;
+    M.block(a, a, r, r) = rotor.M; K.block(a, a, r, r) = rotor.K;
+    M.block(b, b, c, c) = casing.M; K.block(b, b, c, c) = casing.K;
   }
-  C.block(0, r, r, r) = Omega * rotor.G, C.block(r, 0, r, r) = -Omega * rotor.G;
+  C.block(0, r, r, r) = Omega * rotor.G; C.block(r, 0, r, r) = -Omega * rotor.G;
   const auto spring = [&](Index i, Index j, double k, double damping) {
-    for (const auto& [m, value] : {std::pair(&K, k), std::pair(&C, damping)}) (*m)(i, i) += value, (*m)(j, j) += value, (*m)(i, j) -= value, (*m)(j, i) -= value;
+    for (const auto& [m, value] : {std::pair(&K, k), std::pair(&C, damping)}) { (*m)(i, i) += value; (*m)(j, j) += value; (*m)(i, j) -= value; (*m)(j, i) -= value; }
   };
   const Index table = 2 * r + 2 * c;
   for (Index p = 0; p < 2; ++p) {
     const auto at_rotor = [&](int node) { return p * r + 2 * node; };
     const auto at_casing = [&](int node) { return 2 * r + p * c + 2 * node; };
-    spring(at_rotor(de), at_casing(front), 1.5e8, 6e4), spring(at_rotor(nde), at_casing(rear), 1.5e8, 6e4);
-    spring(at_casing(front_foot), table + p, p == 0 ? 3e8 : 5e8, 2e4), spring(at_casing(rear_foot), table + 2 + p, p == 0 ? 3e8 : 5e8, 2e4);
+    spring(at_rotor(de), at_casing(front), 1.5e8, 6e4); spring(at_rotor(nde), at_casing(rear), 1.5e8, 6e4);
+    spring(at_casing(front_foot), table + p, p == 0 ? 3e8 : 5e8, 2e4); spring(at_casing(rear_foot), table + 2 + p, p == 0 ? 3e8 : 5e8, 2e4);
     for (int foot : {front_foot, rear_foot}) K(at_casing(foot) + 1, at_casing(foot) + 1) += 2e7;
-    for (Index i : {table + p, table + 2 + p}) K(i, i) += p == 0 ? 4e8 : 6e8, C(i, i) += p == 0 ? 8e4 : 9e4, M(i, i) += p == 0 ? 800 : 850;
+    for (Index i : {table + p, table + 2 + p}) { K(i, i) += p == 0 ? 4e8 : 6e8; C(i, i) += p == 0 ? 8e4 : 9e4; M(i, i) += p == 0 ? 800 : 850; }
     K(table + p, table + 2 + p) = K(table + 2 + p, table + p) = p == 0 ? -1e8 : -1.5e8;
     M(table + p, table + 2 + p) = M(table + 2 + p, table + p) = p == 0 ? 120 : 140;
   }
   const Index mode = table + 4;
-  K(mode, mode) = 2.2e7, C(mode, mode) = 4e3, M(mode, mode) = 400;
-  M(mode, table + 1) = M(table + 1, mode) = 260, M(mode, table + 3) = M(table + 3, mode) = -260;
+  K(mode, mode) = 2.2e7; C(mode, mode) = 4e3; M(mode, mode) = 400;
+  M(mode, table + 1) = M(table + 1, mode) = 260; M(mode, table + 3) = M(table + 3, mode) = -260;
   const Eigen::VectorXcd exact = test::eigenvalues(M.cast<Complex>(), C.cast<Complex>(), K.cast<Complex>());
 
   const DeckRun d(example("25_casing_on_foundation"));
@@ -119,13 +119,13 @@ TEST(ExampleNumbers, PadDynamics) {
   // The pads as masses of their own.
   const Index n = rotor.M.rows();
   MatXc M = MatXc::Zero(n + 2, n + 2), C = M, K = M;
-  M.topLeftCorner(n, n) = rotor.M.cast<Complex>(), C.topLeftCorner(n, n) = -Complex(0, Omega) * rotor.G, K.topLeftCorner(n, n) = rotor.K.cast<Complex>();
+  M.topLeftCorner(n, n) = rotor.M.cast<Complex>(); C.topLeftCorner(n, n) = -Complex(0, Omega) * rotor.G; K.topLeftCorner(n, n) = rotor.K.cast<Complex>();
   K(2 * middle, 2 * middle) -= Complex(0, 4e6);
   for (int k = 0; k < 2; ++k) {
     const Index at = 2 * (k == 0 ? de : nde), p = n + k;
     M(p, p) = m2;
     for (auto [matrix, inner, outer] : {std::tuple{&K, k1, k2}, std::tuple{&C, c1, c2}})
-      (*matrix)(at, at) += inner, (*matrix)(p, p) += inner + outer, (*matrix)(at, p) -= inner, (*matrix)(p, at) -= inner;
+      { (*matrix)(at, at) += inner; (*matrix)(p, p) += inner + outer; (*matrix)(at, p) -= inner; (*matrix)(p, at) -= inner; }
   }
   const VecXc truth = test::eigenvalues(M, C, K);
   for (const auto& [sign, guess] : {std::pair{-1.0, 89.2}, std::pair{1.0, 89.5}, std::pair{-1.0, 381.0}, std::pair{1.0, 382.0}}) {   // backward, forward: y + i z turns with e^(i w t)
@@ -135,7 +135,7 @@ TEST(ExampleNumbers, PadDynamics) {
       const double w = std::abs(l.imag());
       const Complex film(k1, w * c1), pad(k2 - w * w * m2, w * c2), both = 1.0 / (1.0 / film + 1.0 / pad);
       MatXc Kw = rotor.K.cast<Complex>(), Cw = -Complex(0, Omega) * rotor.G;
-      for (int at : {de, nde}) Kw(2 * at, 2 * at) += both.real(), Cw(2 * at, 2 * at) += both.imag() / w;
+      for (int at : {de, nde}) { Kw(2 * at, 2 * at) += both.real(); Cw(2 * at, 2 * at) += both.imag() / w; }
       Kw(2 * middle, 2 * middle) -= Complex(0, 4e6);
       const Complex next = test::nearest(test::eigenvalues(rotor.M.cast<Complex>(), Cw, Kw), l);
       l += (of_pads ? 0.4 : 1.0) * (next - l);   // there 0.4 makes it converge: Im l falls faster than w rises
@@ -164,18 +164,18 @@ TEST(ExampleNumbers, MisalignedCoupling) {
   const int pump_de = pump.tube(0.15, 0.045, 0, 6, true, 1e-5);
   const int impeller = pump.tube(0.15, 0.045, 0, 6, true, 1e-5);
   const int pump_end = pump.tube(0.15, 0.045, 0, 6, true, 1e-5);
-  motor.disk(armature, 18, 0.09, 0.1), pump.disk(impeller, 9, 0.05, 0.03);
+  motor.disk(armature, 18, 0.09, 0.1); pump.disk(impeller, 9, 0.05, 0.03);
   const Index m = motor.M.rows(), p = pump.M.rows(), n = m + p;
   MatX M = MatX::Zero(n, n), C = M, K = M, G = M;
-  M.topLeftCorner(m, m) = motor.M, C.topLeftCorner(m, m) = motor.C, K.topLeftCorner(m, m) = motor.K, G.topLeftCorner(m, m) = motor.G;
-  M.bottomRightCorner(p, p) = pump.M, C.bottomRightCorner(p, p) = pump.C, K.bottomRightCorner(p, p) = pump.K, G.bottomRightCorner(p, p) = pump.G;
+  M.topLeftCorner(m, m) = motor.M; C.topLeftCorner(m, m) = motor.C; K.topLeftCorner(m, m) = motor.K; G.topLeftCorner(m, m) = motor.G;
+  M.bottomRightCorner(p, p) = pump.M; C.bottomRightCorner(p, p) = pump.C; K.bottomRightCorner(p, p) = pump.K; G.bottomRightCorner(p, p) = pump.G;
   VecX weight = VecX::Zero(n);
   for (Index i = 0; i < n; i += 2) weight[i] = 1;
   weight = M * weight * g;
-  for (int at : {0, motor_de}) K(2 * at, 2 * at) += 6e7, C(2 * at, 2 * at) += 3e3;
-  for (Index at : {m + 2 * pump_de, m + 2 * pump_end}) K(at, at) += 5e7, C(at, at) += 3e3;
+  for (int at : {0, motor_de}) { K(2 * at, 2 * at) += 6e7; C(2 * at, 2 * at) += 3e3; }
+  for (Index at : {m + 2 * pump_de, m + 2 * pump_end}) { K(at, at) += 5e7; C(at, at) += 3e3; }
   VecX b = VecX::Zero(n), tilt = b;
-  b[2 * end] = 1, b[m] = -1, tilt[2 * end + 1] = 1, tilt[m + 1] = -1;
+  b[2 * end] = 1; b[m] = -1; tilt[2 * end + 1] = 1; tilt[m + 1] = -1;
   K += mean * b * b.transpose() + 4e3 * tilt * tilt.transpose();
   const double w = 2 * Omega;
   const Eigen::PartialPivLU<MatXc> still(K.cast<Complex>()), turning((K - w * w * M).cast<Complex>() + Complex(0, w) * C + w * Omega * G);
@@ -199,7 +199,7 @@ TEST(ExampleNumbers, MisalignedCoupling) {
     for (const auto& row : run.rows)
       if (row[t] >= from && row[t] <= 1.5) {
         const double weight = 1 - std::cos(two_pi * (row[t] - from) / (1.5 - from));
-        sum += weight * Complex(row[y], row[z]) * std::exp(Complex(0, -frequency * row[t])), weights += weight;
+        sum += weight * Complex(row[y], row[z]) * std::exp(Complex(0, -frequency * row[t])); weights += weight;
       }
     return std::abs(sum) / weights;
   };

@@ -133,16 +133,16 @@ report = false
   M.diagonal().head<4>() << mass, mass, Id, Id;
   M.bottomRightCorner<4, 4>() = p.Mf;
   for (const auto& [part, own, whole] : {std::tuple{&p.K, &p.Kf, &K}, std::tuple{&p.C, &p.Cf, &C}}) {
-    whole->topLeftCorner<4, 4>() = *part, whole->topRightCorner<4, 4>() = -*part;
-    whole->bottomLeftCorner<4, 4>() = -*part, whole->bottomRightCorner<4, 4>() = *part + *own;
+    whole->topLeftCorner<4, 4>() = *part; whole->topRightCorner<4, 4>() = -*part;
+    whole->bottomLeftCorner<4, 4>() = -*part; whole->bottomRightCorner<4, 4>() = *part + *own;
   }
-  C(2, 3) += Ip * Omega, C(3, 2) -= Ip * Omega;
+  C(2, 3) += Ip * Omega; C(3, 2) -= Ip * Omega;
   MatX A = MatX::Zero(16, 16);
   A.topRightCorner<8, 8>().setIdentity();
-  A.bottomLeftCorner<8, 8>() = -M.inverse() * K, A.bottomRightCorner<8, 8>() = -M.inverse() * C;
+  A.bottomLeftCorner<8, 8>() = -M.inverse() * K; A.bottomRightCorner<8, 8>() = -M.inverse() * C;
   const Eigen::ComplexEigenSolver<MatXc> eigen(A.cast<Complex>());
   VecXc start = VecXc::Zero(16);
-  start.head<4>() = q0.cast<Complex>(), start.segment<4>(8) = v0.cast<Complex>();
+  start.head<4>() = q0.cast<Complex>(); start.segment<4>(8) = v0.cast<Complex>();
   const VecXc part = eigen.eigenvectors().partialPivLu().solve(start);
   const auto exact = [&](double t) { return VecX((eigen.eigenvectors() * (eigen.eigenvalues() * t).array().exp().matrix().asDiagonal() * part).real()); };
 

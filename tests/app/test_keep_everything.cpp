@@ -87,7 +87,7 @@ TEST_P(KeepEverything, GivesTheSame) {
   for (const bool all : {false, true}) {
     model::Model m = deck::load_model(deck, {});
     m.keep_everything = all;
-    m.output.report = false, m.output.binary = false, m.output.csv = true;
+    m.output.report = false; m.output.binary = false; m.output.csv = true;
     m.output.vtk.clear();
     for (model::Step& s : m.steps)
       if (auto* t = std::get_if<model::TransientStep>(&s.law)) {
@@ -120,7 +120,7 @@ TEST_P(KeepEverything, GivesTheSame) {
     ASSERT_EQ(a.rows.size(), b.rows.size()) << e.path().filename();
     if (e.path().stem().string().ends_with("_energy")) {   // shares of the parts of each mode: parts are listed by kind, and kinds differ
       const auto by_share = [](const auto& x, const auto& y) { return std::pair(x.front(), x.back()) < std::pair(y.front(), y.back()); };
-      std::sort(a.rows.begin(), a.rows.end(), by_share), std::sort(b.rows.begin(), b.rows.end(), by_share);
+      std::sort(a.rows.begin(), a.rows.end(), by_share); std::sort(b.rows.begin(), b.rows.end(), by_share);
     }
     double largest = 0.0;   // m, of all amplitudes in the file
     for (std::size_t c = 0; c < a.columns.size(); ++c)

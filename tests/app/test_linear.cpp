@@ -18,10 +18,10 @@ nlohmann::json run(const fs::path& folder, bool linear, double scale) {
   model::Model m = deck::load_model(fs::path(WHIRL_SOURCE) / "examples/12_blade_loss/deck.toml", {});
   for (model::Unbalance& u : m.unbalances) u.amount *= scale;
   auto& t = std::get<model::TransientStep>(m.steps.front().law);
-  t.linear = linear, t.integrator.tolerance = 1e-6, t.checkpoint = 0;
-  m.output.report = false, m.output.csv = false, m.output.spectra.reset(), m.output.vtk.clear();
+  t.linear = linear; t.integrator.tolerance = 1e-6; t.checkpoint = 0;
+  m.output.report = false; m.output.csv = false; m.output.spectra.reset(); m.output.vtk.clear();
   run::RunOptions o;
-  o.quiet = true, o.output = folder;
+  o.quiet = true; o.output = folder;
   EXPECT_EQ(steps::run_deck(m, o), 0);
   std::ifstream in(folder / "summary.json");
   return nlohmann::json::parse(in)["steps"]["loss"];

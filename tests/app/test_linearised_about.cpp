@@ -366,7 +366,7 @@ directions = ["y", "z"]
   int level = 0;
   for (std::size_t j = 1; j < t.names.size(); ++j) {
     double low = infinity, high = -infinity;
-    for (const auto& row : t.rows) low = std::min(low, row[j]), high = std::max(high, row[j]);
+    for (const auto& row : t.rows) { low = std::min(low, row[j]); high = std::max(high, row[j]); }
     bool whole = true;
     for (const auto& row : t.rows) whole = whole && !std::isnan(row[j]);
     level += whole && high - low < 1e-8 * high;
@@ -409,7 +409,7 @@ at = "d"
   const std::size_t y = bend.column("P.y [m]");
   const auto range = [&](const Columns& t) {
     double low = infinity, high = -infinity;
-    for (const auto& row : t.rows) low = std::min(low, row[y]), high = std::max(high, row[y]);
+    for (const auto& row : t.rows) { low = std::min(low, row[y]); high = std::max(high, row[y]); }
     return high - low;
   };
   EXPECT_LT(range(twist), 1e-3 * range(bend));

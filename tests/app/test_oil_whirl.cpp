@@ -51,7 +51,7 @@ double whirl_in(const Columns& run, double from, double length) {
   const std::size_t t = run.column("t [s]"), y = run.column("journal.y [m]"), z = run.column("journal.z [m]");
   double count = 0, Y = 0, Z = 0, sum = 0;
   for (const auto& row : run.rows)
-    if (row[t] >= from && row[t] < from + length) ++count, Y += row[y], Z += row[z];
+    if (row[t] >= from && row[t] < from + length) { ++count; Y += row[y]; Z += row[z]; }
   for (const auto& row : run.rows)
     if (row[t] >= from && row[t] < from + length) sum += std::pow(row[y] - Y / count, 2) + std::pow(row[z] - Z / count, 2);
   return std::sqrt(sum / count);

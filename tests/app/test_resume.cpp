@@ -109,7 +109,7 @@ class Resume : public testing::Test {
     const pid_t pid = ::fork();
     if (pid == 0) {
       const int log = ::open("log.txt", O_WRONLY | O_CREAT | O_APPEND, 0644);
-      ::dup2(log, 1), ::dup2(log, 2);
+      ::dup2(log, 1); ::dup2(log, 2);
       if (resume) ::execl(WHIRL_EXE, WHIRL_EXE, "run", file.c_str(), "-o", output.c_str(), "--resume", nullptr);
       else ::execl(WHIRL_EXE, WHIRL_EXE, "run", file.c_str(), "-o", output.c_str(), nullptr);
       ::_exit(127);
@@ -190,7 +190,7 @@ TEST_F(Resume, LaterEndAndOtherOutputs) {
     for (std::getline(in, line); std::getline(in, line);) {
       const std::size_t comma = line.find(',');
       last = std::stod(line);
-      if (last > 0.3) sum += std::stod(line.substr(comma + 1)), ++count;
+      if (last > 0.3) { sum += std::stod(line.substr(comma + 1)); ++count; }
     }
     EXPECT_EQ(last, 0.4);
     EXPECT_NEAR(count, 1000, 1);

@@ -37,7 +37,7 @@ TEST(RollingLoads, StribeckNumber) {
       double most = 0, z = 0;
       for (const auto& row : t.rows) {
         const auto e = t.named(row);
-        most = std::max(most, e.at("load [N]")), z += e.at("load [N]") * std::sin(e.at("angle [deg]") * pi / 180);
+        most = std::max(most, e.at("load [N]")); z += e.at("load [N]") * std::sin(e.at("angle [deg]") * pi / 180);
       }
       EXPECT_NEAR(z, -1000, 1e-6);   // they carry it: the shaft presses down
       EXPECT_NEAR(Z[i] * most / 1000, balls ? ball[i] : roller[i], 1e-8) << (balls ? "balls " : "rollers ") << Z[i];

@@ -53,9 +53,9 @@ struct ConstantAcceleration {
     Complex a = 0, b = 0;
     for (std::size_t k = 0; k < 12; ++k) {
       const double s = 0.5 * h * (1 + (k < 6 ? -x[k] : x[k - 6])), weight = 0.5 * h * g[k % 6];
-      a += weight * std::exp(lambda * (h - s)) * load(t + s), b += weight * std::exp(std::conj(lambda) * (h - s)) * load(t + s);
+      a += weight * std::exp(lambda * (h - s)) * load(t + s); b += weight * std::exp(std::conj(lambda) * (h - s)) * load(t + s);
     }
-    z = std::exp(lambda * h) * z + a, zbar = std::exp(std::conj(lambda) * h) * zbar + b;
+    z = std::exp(lambda * h) * z + a; zbar = std::exp(std::conj(lambda) * h) * zbar + b;
     t += h;
   }
   Complex r() const { return (z - zbar) / Complex(0, 2 * w * std::sqrt(1 - zeta * zeta)); }
@@ -75,7 +75,7 @@ TEST_F(Study, ExactSolutionOfTheExampleIsExact) {
   io::Columns file;
   if (!update) file = io::read_csv(example_09 + "exact.csv");
   for (int row = 1; row <= 60; ++row) {
-    for (int k = 0; k < 100; ++k) s.advance(1e-3), peak = std::max(peak, std::abs(s.r()));
+    for (int k = 0; k < 100; ++k) { s.advance(1e-3); peak = std::max(peak, std::abs(s.r())); }
     csv << 0.1 * row << ',' << s.r().real() << ',' << s.r().imag() << '\n';
     if (update) continue;
     ASSERT_GE(file.rows(), static_cast<std::size_t>(row));

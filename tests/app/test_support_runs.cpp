@@ -242,7 +242,7 @@ quantities = ["speed", "probes", "bearing_force", "energy"]
     std::string t = text;
     return t.replace(t.find("DURATION"), 8, duration);
   };
-  write("short.toml", with("0.04 s")), write("long.toml", with("0.08 s"));
+  write("short.toml", with("0.04 s")); write("long.toml", with("0.08 s"));
   ASSERT_EQ(whirl("run short.toml -o r"), 0) << said_;
   ASSERT_EQ(whirl("run long.toml -o r --resume"), 0) << said_;
   ASSERT_EQ(whirl("run long.toml -o whole"), 0) << said_;

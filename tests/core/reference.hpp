@@ -23,7 +23,7 @@ inline RMat3 exponential(const RVec3& v) {
   const RMat3 a = r_skew(v) / Real(1 << squarings);
   // exp(a) - 1 is squared as (1+e)^2 - 1 = 2e + e^2, which keeps the digits of small rotations
   RMat3 e = RMat3::Zero(), term = RMat3::Identity();
-  for (int k = 1; k < 25; ++k) term = (term * a / Real(k)).eval(), e += term;
+  for (int k = 1; k < 25; ++k) { term = (term * a / Real(k)).eval(); e += term; }
   for (int k = 0; k < squarings; ++k) e = (2 * e + e * e).eval();
   return RMat3::Identity() + e;
 }

@@ -69,7 +69,7 @@ TEST(Rotation, BesselRatiosAgreeWithTheirSeries) {
     EXPECT_NEAR(b.cosine, static_cast<double>(std::cos(std::sqrt(Real(x)))), 4e-16);
     EXPECT_NEAR(rot::one_minus_cos_ratio(x), static_cast<double>((1 - std::cos(std::sqrt(Real(x)))) / x), 1e-15 + 1e-19 / x);
     Real f3 = 0, term = 1.0L / 6;
-    for (int k = 0; k < 40; ++k) f3 += term, term *= -Real(x) / ((2 * k + 4) * (2 * k + 5));
+    for (int k = 0; k < 40; ++k) { f3 += term; term *= -Real(x) / ((2 * k + 4) * (2 * k + 5)); }
     EXPECT_NEAR(rot::g_minus_sin_ratio(x), static_cast<double>(f3), 3e-16);
   }
 }
@@ -379,7 +379,7 @@ TEST(Rotation, ManyChartChangesKeepTheTriadAndTheBody) {
   Random r(10);
   Mat3 triad = Mat3::Identity();
   rot::Angles a;
-  a.phi = 0.3, a.gamma = Vec2(1.5, -1.4);
+  a.phi = 0.3; a.gamma = Vec2(1.5, -1.4);
   const auto body = [&] {
     return Mat3(triad * rot::L(Vec3(0, a.gamma.x(), a.gamma.y())) * rot::L(Vec3(a.phi, 0, 0)));
   };
@@ -410,7 +410,7 @@ TEST(Rotation, WholeTurnsCostNoAccuracy) {
   double remainder = 0, count = 0, plain = 0;
   const long steps = 37'000'000;
   for (long i = 0; i < steps; ++i) {
-    remainder += step, plain += step;
+    remainder += step; plain += step;
     if (remainder > pi) count += rot::take_turns(remainder);
   }
   const Real exact = Real(step) * steps - two_pi_long * count;

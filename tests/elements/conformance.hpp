@@ -56,10 +56,10 @@ struct NodeFrame {
       rotation::director(q.template segment<2>(6 * i + 4), v.template segment<2>(6 * i + 4),
                          a.template segment<2>(6 * i + 4), o);
       n.chart = &chart;
-      n.u = q.template segment<3>(6 * i), n.du = v.template segment<3>(6 * i);
+      n.u = q.template segment<3>(6 * i); n.du = v.template segment<3>(6 * i);
       n.ddu = a.template segment<3>(6 * i) - gravity;
-      n.t = chart * o.t, n.dd = chart * o.rate, n.ddd = chart * o.accel;
-      n.phi = q[6 * i + 3], n.dphi = v[6 * i + 3], n.ddphi = a[6 * i + 3];
+      n.t = chart * o.t; n.dd = chart * o.rate; n.ddd = chart * o.accel;
+      n.phi = q[6 * i + 3]; n.dphi = v[6 * i + 3]; n.ddphi = a[6 * i + 3];
       J.template block<3, 3>(W * i, 6 * i).setIdentity();
       if constexpr (W == 7) {
         J.template block<3, 2>(W * i + 3, 6 * i + 4) = chart * o.D;
@@ -79,7 +79,7 @@ struct NodeFrame {
     for (int i = 0; i < N; ++i) {
       const auto& n = state[static_cast<std::size_t>(i)];
       r.template segment<3>(W * i) = n.du;
-      if constexpr (W == 7) r.template segment<3>(W * i + 3) = n.dd, r[W * i + 6] = n.dphi;
+      if constexpr (W == 7) { r.template segment<3>(W * i + 3) = n.dd; r[W * i + 6] = n.dphi; }
     }
     return r;
   }
@@ -95,7 +95,7 @@ class Conformance {
   Conformance(const K& kernel, const ConformanceOptions& options) : k_(kernel), o_(options), random_(options.seed) {
     for (int i = 0; i < N; ++i) {
       const auto fill = [i](Q& s, double u, double phi, double tilt) {
-        s.template segment<3>(6 * i).setConstant(u), s[6 * i + 3] = phi, s.template segment<2>(6 * i + 4).setConstant(tilt);
+        s.template segment<3>(6 * i).setConstant(u); s[6 * i + 3] = phi; s.template segment<2>(6 * i + 4).setConstant(tilt);
       };
       fill(q_scale_, o_.u, o_.phi, o_.tilt);
       fill(v_scale_, o_.du, o_.dphi, o_.dtilt);
@@ -121,7 +121,7 @@ class Conformance {
       return x.empty() ? Q(Q::Zero()) : Q(Eigen::Map<const Q>(x.data()));
     };
     // the length of gamma, not only its components, stays below `tilt`
-    q_ = add(o_.q0) + q_scale_.cwiseProduct(random_.vector<n>()), v_ = add(o_.v0) + v_scale_.cwiseProduct(random_.vector<n>());
+    q_ = add(o_.q0) + q_scale_.cwiseProduct(random_.vector<n>()); v_ = add(o_.v0) + v_scale_.cwiseProduct(random_.vector<n>());
     for (int i = 0; i < N; ++i) q_.template segment<2>(6 * i + 4) *= std::sqrt(0.5);
     a_ = a_scale_.cwiseProduct(random_.vector<n>());
   }
@@ -140,7 +140,7 @@ class Conformance {
 
   system::TangentX<N * W> tangent(const NodeFrame<N, W>& x, double start) const {
     system::TangentX<N * W> t;
-    t.M.setConstant(start), t.C.setConstant(start), t.K.setConstant(start);
+    t.M.setConstant(start); t.C.setConstant(start); t.K.setConstant(start);
     k_.add_tangent(x.nodes(), context_, t);
     return t;
   }
@@ -158,13 +158,13 @@ class Conformance {
       EXPECT_LE((b - a - std::decay_t<decltype(a)>::Constant(1.0)).cwiseAbs().maxCoeff(), 1e-14 * s)
           << "add_tangent must add to " << what;
     };
-    same(t0.M, t1.M, "M"), same(t0.C, t1.C, "C"), same(t0.K, t1.K, "K");
+    same(t0.M, t1.M, "M"); same(t0.C, t1.C, "C"); same(t0.K, t1.K, "K");
     const auto untouched = [](bool has, const auto& a, const char* what) {
       if (!has) {
         EXPECT_EQ(a.cwiseAbs().maxCoeff(), 0.0) << "has_" << what << " is false but " << what << " was written";
       }
     };
-    untouched(K::has_M, t0.M, "M"), untouched(K::has_C, t0.C, "C"), untouched(K::has_K, t0.K, "K");
+    untouched(K::has_M, t0.M, "M"); untouched(K::has_C, t0.C, "C"); untouched(K::has_K, t0.K, "K");
   }
 
   void check_tangents() {
@@ -299,9 +299,9 @@ class Conformance {
       gamma = rotation::gamma_of_director(Tc * (Vec3::UnitX() + before.director[static_cast<std::size_t>(i)].t) - Vec3::UnitX());
       const auto rate = rotation::rates_of_omega(gamma, Tc * omega);
       const auto accel = rotation::accelerations_of_omega(gamma, rate.phi, rate.gamma, Tc * domega);
-      q[6 * i + 3] = phi, q.template segment<2>(6 * i + 4) = gamma;
-      v[6 * i + 3] = rate.phi, v.template segment<2>(6 * i + 4) = rate.gamma;
-      a[6 * i + 3] = accel.phi, a.template segment<2>(6 * i + 4) = accel.gamma;
+      q[6 * i + 3] = phi; q.template segment<2>(6 * i + 4) = gamma;
+      v[6 * i + 3] = rate.phi; v.template segment<2>(6 * i + 4) = rate.gamma;
+      a[6 * i + 3] = accel.phi; a.template segment<2>(6 * i + 4) = accel.gamma;
     }
     system::Context turned = context_;
     turned.gravity = T * o_.gravity;
@@ -311,16 +311,16 @@ class Conformance {
     std::array<Vec3, N> F0, F1, m0, m1;
     for (int i = 0; i < N; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      F0[k] = f0.template segment<3>(W * i), F1[k] = f1.template segment<3>(W * i);
+      F0[k] = f0.template segment<3>(W * i); F1[k] = f1.template segment<3>(W * i);
       m0[k] = m1[k] = Vec3::Zero();
       if constexpr (W == 7) {
         const auto moment = [&](const system::NodeState& s, const X& f) {
           const Vec3 fd = f.template segment<3>(W * i + 3);
           return Vec3(s.d().cross(fd) + f[W * i + 6] * (s.e() + s.d()) / (1.0 + s.e().dot(s.d())));
         };
-        m0[k] = moment(before.state[k], f0), m1[k] = moment(after.state[k], f1);
+        m0[k] = moment(before.state[k], f0); m1[k] = moment(after.state[k], f1);
       }
-      force_size = std::max(force_size, F0[k].norm()), moment_size = std::max(moment_size, m0[k].norm());
+      force_size = std::max(force_size, F0[k].norm()); moment_size = std::max(moment_size, m0[k].norm());
     }
     for (int i = 0; i < N; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -329,7 +329,7 @@ class Conformance {
       EXPECT_LE((m1[k] - T * m0[k]).norm(), 1e-9 * (force_size + moment_size)) << "moment not objective, node " << i;
     }
     system::Energy e0, e1;
-    k_.add_energy(before.nodes(), context_, e0), k_.add_energy(after.nodes(), turned, e1);
+    k_.add_energy(before.nodes(), context_, e0); k_.add_energy(after.nodes(), turned, e1);
     EXPECT_NEAR(e0.elastic, e1.elastic, 1e-9 * std::abs(e0.elastic));
     EXPECT_NEAR(e0.kinetic, e1.kinetic, 1e-9 * std::abs(e0.kinetic));
     EXPECT_NEAR(e0.dissipated, e1.dissipated, 1e-9 * std::abs(e0.dissipated));

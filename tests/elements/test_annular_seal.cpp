@@ -31,7 +31,7 @@ Complex film_integral(const AnnularSeal& k, double spin, Complex s, double weigh
   Complex drop = 0, moment = 0;
   for (int i = 0; i <= N; ++i) {
     const double z = i * h, w = (i == 0 || i == N ? 1 : i % 2 ? 4 : 2) * h / 3;
-    drop += w * gradient(z), moment += w * z * gradient(z);
+    drop += w * gradient(z); moment += w * z * gradient(z);
   }
   // inlet: p1(0) = -(1 + xi) w0 = drop + B sigma w0
   const Complex w0 = -drop / (1 + k.inlet_loss + B * f.sigma);
@@ -68,7 +68,7 @@ TEST(AnnularSeal, LeakageAndDerivatives) {
     AnnularSeal::Coefficients v, dv, a, b, d;
     k.coefficients(spin, v, dv);
     const double h = 0.5;
-    k.coefficients(spin + h, a, d), k.coefficients(spin - h, b, d);
+    k.coefficients(spin + h, a, d); k.coefficients(spin - h, b, d);
     // central differences over 1 rad/s: error about h^2/(R s/V)^2
     EXPECT_NEAR(dv.K, (a.K - b.K) / (2 * h), 1e-6 * v.K / 100);
     EXPECT_NEAR(dv.k, (a.k - b.k) / (2 * h), 1e-6 * v.K / 100);
@@ -77,7 +77,7 @@ TEST(AnnularSeal, LeakageAndDerivatives) {
   }
   // reversed spin: even direct, odd cross terms
   AnnularSeal::Coefficients p, q, d;
-  k.coefficients(300, p, d), k.coefficients(-300, q, d);
+  k.coefficients(300, p, d); k.coefficients(-300, q, d);
   EXPECT_NEAR(p.K, q.K, 1e-9 * p.K);
   EXPECT_NEAR(p.k, -q.k, 1e-9 * p.K);
   EXPECT_NEAR(p.c, -q.c, 1e-9 * p.C);
@@ -89,7 +89,7 @@ TEST(AnnularSeal, LeakageAndDerivatives) {
 
 TEST(AnnularSeal, Conformance) {
   ConformanceOptions o;
-  o.u = 5e-5, o.du = 0.02, o.ddu = 10, o.tilt = 0.2, o.dtilt = 1, o.ddtilt = 10, o.dphi = 10, o.ddphi = 100;
+  o.u = 5e-5; o.du = 0.02; o.ddu = 10; o.tilt = 0.2; o.dtilt = 1; o.ddtilt = 10; o.dphi = 10; o.ddphi = 100;
   o.v0.assign(12, 0.0);
   o.v0[3] = 400;
   check_kernel(SealJoint{{pump(0.2)}}, o);

@@ -15,7 +15,7 @@ const std::vector<double> spins{0, 100, 250, 400, 700}, frequencies{0, 50, 150, 
 
 CoefficientValues<2> smooth(double s, double w) {
   const auto mat = [](double a, double b, double c, double d) { return (Mat2() << a, b, c, d).finished(); };
-  s /= 100, w /= 100;
+  s /= 100; w /= 100;
   return {mat(100 + 10 * s + 3 * w, 5 + s * s + 0.4 * w * w, -8 - 3 * s * w, 120 - s + w), mat(4 + s + 2 * w + 0.5 * s * w, 0.3, 0.2 * s, 5 - 0.1 * w * w),
           mat(0.2 + 0.1 * s, 0.05 * w, -0.04, 0.3)};
 }
@@ -45,9 +45,9 @@ TEST(CoefficientGrid, ValuesAndDerivatives) {
       EXPECT_NEAR(v.C(0, 0), smooth(s, w).C(0, 0), 1e-11);
       // central differences: exact for the cubics up to h^2 f'''/6
       const double h = 1e-3;
-      g.at(s + h, w, p, x, y), g.at(s - h, w, m, x, y);
+      g.at(s + h, w, p, x, y); g.at(s - h, w, m, x, y);
       EXPECT_LT(((p.K - m.K) / (2 * h) - ds.K).norm() + ((p.C - m.C) / (2 * h) - ds.C).norm() + ((p.M - m.M) / (2 * h) - ds.M).norm(), 1e-9);
-      g.at(s, w + h, p, x, y), g.at(s, w - h, m, x, y);
+      g.at(s, w + h, p, x, y); g.at(s, w - h, m, x, y);
       EXPECT_LT(((p.K - m.K) / (2 * h) - dw.K).norm() + ((p.C - m.C) / (2 * h) - dw.C).norm(), 1e-9);
     }
   }
@@ -61,14 +61,14 @@ TEST(CoefficientGrid, OrderOfTheError) {
       std::vector<double> s, w;
       std::vector<CoefficientValues<2>> rows;
       const int n = k ? 20 : 10;
-      for (int i = 0; i <= n; ++i) s.push_back(i / double(n)), w.push_back(i / double(n));
+      for (int i = 0; i <= n; ++i) { s.push_back(i / double(n)); w.push_back(i / double(n)); }
       for (double x : s)
         for (double y : w) rows.push_back({Mat2::Constant(std::exp(x + 0.7 * y)), Mat2::Zero(), Mat2::Zero()});
       const Grid g(s, w, rows, between, Grid::Outside::undefined);
       CoefficientValues<2> v, ds, dw;
       error[k] = 0;
       for (double x = 0.21; x < 0.8; x += 0.0137)
-        for (double y = 0.21; y < 0.8; y += 0.0171) g.at(x, y, v, ds, dw), error[k] = std::max(error[k], std::abs(v.K(0, 0) - std::exp(x + 0.7 * y)));
+        for (double y = 0.21; y < 0.8; y += 0.0171) { g.at(x, y, v, ds, dw); error[k] = std::max(error[k], std::abs(v.K(0, 0) - std::exp(x + 0.7 * y))); }
     }
     EXPECT_GT(error[0] / error[1], factor);
     EXPECT_LT(error[1], between == Grid::Between::linear ? 2.5e-3 : 2e-4);
@@ -100,7 +100,7 @@ TEST(CoefficientGrid, AskedAndSynchronous) {
   g.at(701.0, v, dv);
   EXPECT_TRUE(v.K.hasNaN());
   const Grid held = grid(Grid::Between::linear, Grid::Outside::hold);
-  held.at(900.0, 2000.0, v, ds, dw), held.at(700.0, 800.0, x, ds, dw);
+  held.at(900.0, 2000.0, v, ds, dw); held.at(700.0, 800.0, x, ds, dw);
   EXPECT_EQ(v.K, x.K);
 }
 
@@ -108,9 +108,9 @@ TEST(CoefficientGrid, Conformance) {
   ConformanceOptions o;
   o.chart = tilted_chart();
   o.v0.assign(12, 0.0);
-  o.v0[3] = 350, o.tilt = 0.4, o.dphi = 20;   // stays inside one piece of the grid while differences are taken
+  o.v0[3] = 350; o.tilt = 0.4; o.dphi = 20;   // stays inside one piece of the grid while differences are taken
   o.ddphi = 300;
-  o.symmetric_M = false, o.semidefinite_M = false;
+  o.symmetric_M = false; o.semidefinite_M = false;
   o.passive = false;   // C of a table need not be positive
   for (const auto between : {Grid::Between::linear, Grid::Between::monotone_cubic}) {
     const auto g = std::make_shared<Grid>(grid(between, Grid::Outside::hold));

@@ -21,7 +21,7 @@ std::vector<JournalPad> split() { return two_groove_pads(0.0, 20 * pi / 180); }
 
 FilmForce force(const FiniteJournal& b, const Vec2& r, const Vec2& v, double spin = Omega) {
   LateralMotion m;
-  m.r = r, m.v = v, m.spin = spin;
+  m.r = r; m.v = v; m.spin = spin;
   FilmForce f;
   b.evaluate(FilmLaw<FiniteJournal>::point(m), f);
   return f;
@@ -38,7 +38,7 @@ Vec2 reference_force(double L, const Vec2& r, const Vec2& w, int N, int M) {
   std::vector<bool> groove(static_cast<std::size_t>(N));
   for (int i = 0; i < N; ++i) {
     const double th = i * dth;
-    hm[static_cast<std::size_t>(i)] = std::pow(h(th + dth / 2), 3), hc[static_cast<std::size_t>(i)] = std::pow(h(th), 3);
+    hm[static_cast<std::size_t>(i)] = std::pow(h(th + dth / 2), 3); hc[static_cast<std::size_t>(i)] = std::pow(h(th), 3);
     f[static_cast<std::size_t>(i)] = -(w.x() * std::cos(th) + w.y() * std::sin(th));
     const double a = std::abs(std::remainder(th, pi));
     groove[static_cast<std::size_t>(i)] = a <= 10 * pi / 180 + 1e-9;
@@ -55,7 +55,7 @@ Vec2 reference_force(double L, const Vec2& r, const Vec2& w, int N, int M) {
         const double sum = west * at(l, k) + east * at(z, k) + axial * (at(a, k + 1) + (k == 0 ? at(a, 1) : at(a, k - 1))) - 12 * f[a];
         double& p = P[a * static_cast<std::size_t>(M + 1) + static_cast<std::size_t>(k)];
         const double next = std::max(0.0, p + 1.85 * (sum / (west + east + 2 * axial) - p));
-        change = std::max(change, std::abs(next - p)), top = std::max(top, next);
+        change = std::max(change, std::abs(next - p)); top = std::max(top, next);
         p = next;
       }
     }
@@ -74,17 +74,17 @@ Vec2 reference_force(double L, const Vec2& r, const Vec2& w, int N, int M) {
 TEST(FiniteJournal, Conformance) {
   ConformanceOptions o;
   // small displacements about eccentric positions: higher derivatives jump where a film reaches a groove
-  o.u = 1e-2 * c, o.du = 1e-2 * c * Omega, o.ddu = c * Omega * Omega;
-  o.tilt = 0.2, o.dtilt = 1e-2, o.ddtilt = 10, o.dphi = 0.3, o.ddphi = 300;
-  o.tangent_tolerance = 1e-8, o.power_tolerance = 1e-8;
+  o.u = 1e-2 * c; o.du = 1e-2 * c * Omega; o.ddu = c * Omega * Omega;
+  o.tilt = 0.2; o.dtilt = 1e-2; o.ddtilt = 10; o.dphi = 0.3; o.ddphi = 300;
+  o.tangent_tolerance = 1e-8; o.power_tolerance = 1e-8;
   o.samples = 4;
   for (const auto& film : {bearing(0.05, split()), bearing(0.08, lobe_pads(3, 0.4, 0.3, 0.6), 0.4), bearing(0.06, {})}) {
-    o.q0.assign(12, 0.0), o.v0.assign(12, 0.0);
-    o.v0[3] = Omega, o.v0[9] = 20;
-    o.q0[1] = 0.45 * c, o.q0[2] = -0.35 * c;
+    o.q0.assign(12, 0.0); o.v0.assign(12, 0.0);
+    o.v0[3] = Omega; o.v0[9] = 20;
+    o.q0[1] = 0.45 * c; o.q0[2] = -0.35 * c;
     o.v0[1] = 0.05 * c * Omega;
     check_kernel(FiniteJournalBearing{{film}}, o);
-    o.v0[1] = -0.9 * c * Omega, o.v0[2] = 0.7 * c * Omega;   // squeezed hard
+    o.v0[1] = -0.9 * c * Omega; o.v0[2] = 0.7 * c * Omega;   // squeezed hard
     check_kernel(LateralJoint<FilmLaw<FiniteJournal>, true>{{film}, {1e-6, 2e-6}}, o);
   }
 }
@@ -136,7 +136,7 @@ TEST(FiniteJournal, GridAndShortLimit) {
   const ShortJournal ocvirk{R, 0.005, c, eta};
   FilmForce f, g;
   const FilmPoint p{Vec2(0.3 * c, -0.4 * c), Vec2(0.004, 0.003), Omega};
-  b.evaluate(p, f), ocvirk.evaluate(p, g);
+  b.evaluate(p, f); ocvirk.evaluate(p, g);
   EXPECT_LT((f.F - g.F).norm(), 0.01 * g.F.norm());   // the difference falls with (L/D)^2; film boundaries differ
   EXPECT_NEAR(f.T, g.T, 1e-9 * std::abs(g.T));
 }
@@ -304,7 +304,7 @@ TEST(FiniteJournal, ForceIsSmoothUnderRotation) {
       LateralMotion m;
       const double a = step * i + n;
       m.r = radius * Vec2(std::cos(a), std::sin(a));
-      m.v = 0.1 * c * Omega * Vec2(std::sin(3 * a), 0.4), m.a.setZero(), m.spin = Omega;
+      m.v = 0.1 * c * Omega * Vec2(std::sin(3 * a), 0.4); m.a.setZero(); m.spin = Omega;
       Vector<4> z;
       LateralTangent t;
       law.tangent(m, z, t);

@@ -11,7 +11,7 @@ namespace {
 
 GearGeometry pair(int z1, int z2, double helix = 0.0) {
   GearGeometry g;
-  g.z1 = z1, g.z2 = z2, g.pitch_radius = 0.5, g.base_helix = helix, g.centre_angle = 0.7;
+  g.z1 = z1; g.z2 = z2; g.pitch_radius = 0.5; g.base_helix = helix; g.centre_angle = 0.7;
   return g;
 }
 
@@ -25,7 +25,7 @@ NodeFrame<2, 7> at(const Vector<12>& q, const Vector<12>& v = Vector<12>::Zero()
 TEST(GearMesh, Conformance) {
   ConformanceOptions o;
   o.symmetric_K = true;
-  o.phi = 0.3, o.tilt = 0.3;   // the mesh phase is 5 phi: smooth on the scale of the differences
+  o.phi = 0.3; o.tilt = 0.3;   // the mesh phase is 5 phi: smooth on the scale of the differences
   const std::vector<GearHarmonic> k{{0.3, 0.2}, {0.1, -1.0}}, e{{0.02, 0.5}};
   check_kernel(make_gear_mesh(pair(5, 9, 0.3), 1000, 3, k, e), o);
   check_kernel(make_gear_mesh(pair(5, -17, -0.2), 1000, 3, k, e), o);
@@ -34,7 +34,7 @@ TEST(GearMesh, Conformance) {
   // backlash: pressed on the drive flank, on the back flank, free
   const auto b = make_backlash_gear_mesh(pair(5, 9, 0.2), 1000, 0.05, 0.2, k, e);
   o.chart = Mat3::Identity();
-  o.u = 0.05, o.phi = 0.03, o.tilt = 0.05, o.dphi = 0.5, o.du = 0.5, o.dtilt = 0.3;
+  o.u = 0.05; o.phi = 0.03; o.tilt = 0.05; o.dphi = 0.5; o.du = 0.5; o.dtilt = 0.3;
   o.q0.assign(12, 0.0);
   for (double turn : {0.6, -1.1, -0.2}) {
     o.q0[3] = turn;
@@ -45,17 +45,17 @@ TEST(GearMesh, Conformance) {
 TEST(GearMesh, RatioAndWholeTurns) {
   const auto m = make_gear_mesh(pair(23, 41), 1e8, 0);
   Vector<12> q = Vector<12>::Zero();
-  q[3] = 41 * 0.01, q[9] = -23 * 0.01;   // rolling without compression
+  q[3] = 41 * 0.01; q[9] = -23 * 0.01;   // rolling without compression
   auto x = at(q);
   EXPECT_NEAR(m.compression(x.nodes()), 0.0, 1e-15);
   // ... for a million turns of gear 2 and the matching turns of gear 1
-  x.state[0].turns = 41e6, x.state[1].turns = -23e6;
+  x.state[0].turns = 41e6; x.state[1].turns = -23e6;
   EXPECT_NEAR(m.compression(x.nodes()), 0.0, 1e-15);
   x.state[0].turns += 1;   // one turn too many: 2 pi r_b1
   EXPECT_NEAR(m.compression(x.nodes()), two_pi * 0.5 * std::cos(20 * pi / 180), 1e-12);
   // internal pair: both turn the same way
   const auto ring = make_gear_mesh(pair(20, -60), 1e8, 0);
-  q[3] = 0.3, q[9] = 0.1;
+  q[3] = 0.3; q[9] = 0.1;
   EXPECT_NEAR(ring.compression(at(q).nodes()), 0.0, 1e-15);
 }
 
@@ -90,11 +90,11 @@ TEST(GearMesh, VaryingStiffnessDoesNoNetWork) {
   double sum = 0, largest = 0;
   for (int i = 0; i < 50; ++i) {
     Vector<12> q = Vector<12>::Zero();
-    q[3] = two_pi / 10 * i / 50, q[9] = -q[3] + 1e-3;
+    q[3] = two_pi / 10 * i / 50; q[9] = -q[3] + 1e-3;
     system::ForceX<14> f = Vector<14>::Zero();
     m.add_force(at(q).nodes(), {}, f);
     const double phase_torque = f[6] - f[13];   // radii are equal: what is left is k' delta^2/2
-    sum += phase_torque, largest = std::max(largest, std::abs(phase_torque));
+    sum += phase_torque; largest = std::max(largest, std::abs(phase_torque));
   }
   EXPECT_GT(largest, 0.0);
   EXPECT_NEAR(sum / 50, 0.0, 1e-12 * largest);
@@ -117,7 +117,7 @@ TEST(GearMesh, BacklashOpensAndCloses) {
   // the centres moved together use up the backlash from both sides: no play left beyond j/(2 sin alpha)
   Vector<12> q = Vector<12>::Zero();
   const double closer = 0.6 * j / std::sin(20 * pi / 180);
-  q[1] = closer * std::cos(0.7), q[2] = closer * std::sin(0.7), q[3] = -0.5 * j / rb;
+  q[1] = closer * std::cos(0.7); q[2] = closer * std::sin(0.7); q[3] = -0.5 * j / rb;
   system::ForceX<14> f = Vector<14>::Zero();
   m.add_force(at(q).nodes(), {}, f);
   const Vec3 c(0, std::cos(0.7), std::sin(0.7));

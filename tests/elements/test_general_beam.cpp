@@ -18,14 +18,14 @@ namespace {
 GeneralBeamConstants constants(double beta = 0.0) {
   GeneralBeamConstants c;
   const double L = 0.4;
-  c.length = L, c.EA_l = 4e4 / L, c.GJ_l = 90 / L;
-  c.ky_def11 = c.ky_def22 = 4 * 120 / L, c.ky_def12 = 2 * 120 / L;
-  c.kz_def11 = c.kz_def22 = 4 * 70 / L, c.kz_def12 = 2 * 70 / L;
-  c.b11 = c.b22 = 2.0 / 15, c.b12 = -1.0 / 30;
+  c.length = L; c.EA_l = 4e4 / L; c.GJ_l = 90 / L;
+  c.ky_def11 = c.ky_def22 = 4 * 120 / L; c.ky_def12 = 2 * 120 / L;
+  c.kz_def11 = c.kz_def22 = 4 * 70 / L; c.kz_def12 = 2 * 70 / L;
+  c.b11 = c.b22 = 2.0 / 15; c.b12 = -1.0 / 30;
   c.M4 << 156, 22 * L, 54, -13 * L, 22 * L, 4 * L * L, 13 * L, -3 * L * L, 54, 13 * L, 156, -22 * L, -13 * L, -3 * L * L,
       -22 * L, 4 * L * L;
   c.M4 *= 2.0 * L / 420;
-  c.rhoIz_l = 0.03, c.rhoIy_l = 0.05, c.beta = c.beta_twist = beta;
+  c.rhoIz_l = 0.03; c.rhoIy_l = 0.05; c.beta = c.beta_twist = beta;
   c.rhoI_l = 0.01;   // anything: what M4 is said to contain
   return c;
 }
@@ -50,7 +50,7 @@ Case make(double beta, unsigned seed, double tilt, double alpha = 0.0) {
   b.add(GeneralBeam(c, chord, t1, t2, o1, o2), {n1, n2}, "general beams");
   b.set_gravity(Vec3(1, -2, -9.81));
   Case s{b.finalize(), {}, {}, VecX(12), VecX(12), VecX(12)};
-  s.w = s.sys.make_workspace(), s.f = s.sys.make_state().frames;
+  s.w = s.sys.make_workspace(); s.f = s.sys.make_state().frames;
   std::mt19937 rng(seed);
   std::normal_distribution<double> d;
   for (int k = 0; k < 12; ++k) {
@@ -59,7 +59,7 @@ Case make(double beta, unsigned seed, double tilt, double alpha = 0.0) {
     s.v[k] = d(rng) * (c == 3 ? 5.0 : 1.0);
     s.a[k] = d(rng);
   }
-  s.q[3] += 2.0, s.q[9] += 2.0;
+  s.q[3] += 2.0; s.q[9] += 2.0;
   return s;
 }
 
@@ -80,7 +80,7 @@ TEST(GeneralBeam, TangentsAreExact) {
     for (Index i = 0; i < 2; ++i)
       for (Index j = 0; j < 2; ++j) {
         const Index k = s.sys.pattern().slot(i, j);
-        M.block<6, 6>(6 * i, 6 * j) = m.M.block(k), C.block<6, 6>(6 * i, 6 * j) = m.C.block(k), K.block<6, 6>(6 * i, 6 * j) = m.K.block(k);
+        M.block<6, 6>(6 * i, 6 * j) = m.M.block(k); C.block<6, 6>(6 * i, 6 * j) = m.C.block(k); K.block<6, 6>(6 * i, 6 * j) = m.K.block(k);
       }
     for (Index k = 0; k < 12; ++k) {
       const VecX e = VecX::Unit(12, k);
@@ -100,7 +100,7 @@ TEST(GeneralBeam, TangentsAreExact) {
 
 TEST(GeneralBeam, StaticTangentIsAHessian) {
   Case s = make(0.0, 7, 0.3);
-  s.v.setZero(), s.a.setZero();
+  s.v.setZero(); s.a.setZero();
   s.a.segment<3>(0) = s.a.segment<3>(6) = Vec3(1, -2, -9.81);   // cancels gravity
   la::MCK m = s.sys.make_matrices();
   ASSERT_TRUE(s.sys.tangent(s.w, s.f, 0, s.q, s.v, s.a, m));
@@ -153,7 +153,7 @@ TEST(GeneralBeam, RigidMotionKeepsEnergyAndLosesNone) {
   for (Index i = 0; i < 2; ++i) {
     v.segment<3>(6 * i) = omega.cross(s.sys.node(i).position + q.segment<3>(6 * i));
     const rotation::ChartRates rate = rotation::rates_of_omega(q.segment<2>(6 * i + 4), omega);
-    v[6 * i + 3] = rate.phi, v.segment<2>(6 * i + 4) = rate.gamma;
+    v[6 * i + 3] = rate.phi; v.segment<2>(6 * i + 4) = rate.gamma;
   }
   residual(s, q, v, z);
   EXPECT_LT(s.sys.energy(s.w).dissipated, 1e-18);   // rates of 20 rad/s to 1e-15, squared, times moduli below 1e5 beta
@@ -165,11 +165,11 @@ TEST(GeneralBeam, AgreesWithTheAxisymmetricElement) {
   elements::ShaftElementConstants a;
   GeneralBeamConstants g = constants();
   const double EI = 120 / g.length;
-  g.ky_def11 = g.ky_def22 = EI * (4 + Phi) / (1 + Phi), g.ky_def12 = EI * (2 - Phi) / (1 + Phi);
+  g.ky_def11 = g.ky_def22 = EI * (4 + Phi) / (1 + Phi); g.ky_def12 = EI * (2 - Phi) / (1 + Phi);
   g.rhoI_l = 0;
-  g.kz_def11 = g.ky_def11, g.kz_def12 = g.ky_def12, g.kz_def22 = g.ky_def22, g.rhoIz_l = g.rhoIy_l = 0;
-  a.length = g.length, a.EA_l = g.EA_l, a.GJ_l = g.GJ_l, a.b11 = g.b11, a.b12 = g.b12, a.b22 = g.b22;
-  a.k11 = g.ky_def11, a.k12 = g.ky_def12, a.k22 = g.ky_def22, a.tau_c = 0.5 * (1 - Phi) / (1 + Phi), a.M4 = g.M4;
+  g.kz_def11 = g.ky_def11; g.kz_def12 = g.ky_def12; g.kz_def22 = g.ky_def22; g.rhoIz_l = g.rhoIy_l = 0;
+  a.length = g.length; a.EA_l = g.EA_l; a.GJ_l = g.GJ_l; a.b11 = g.b11; a.b12 = g.b12; a.b22 = g.b22;
+  a.k11 = g.ky_def11; a.k12 = g.ky_def12; a.k22 = g.ky_def22; a.tau_c = 0.5 * (1 - Phi) / (1 + Phi); a.M4 = g.M4;
   auto build = [&](bool general) {
     Builder b;
     b.add_line("beam");
@@ -204,7 +204,7 @@ TEST(GeneralBeam, AMovedChartChangesNothing) {
   State s = sys.make_state();
   std::mt19937 rng(5);
   std::normal_distribution<double> d;
-  for (int k = 0; k < 12; ++k) s.q[k] = 0.4 * d(rng), s.v[k] = d(rng), s.a[k] = d(rng);
+  for (int k = 0; k < 12; ++k) { s.q[k] = 0.4 * d(rng); s.v[k] = d(rng); s.a[k] = d(rng); }
   auto loads = [&](Vector<12>& out) {
     VecX r(12);
     ASSERT_TRUE(sys.residual(w, s.frames, 0, s.q, s.v, s.a, r));
@@ -221,8 +221,8 @@ TEST(GeneralBeam, AMovedChartChangesNothing) {
     const rotation::ChartChange change(s.frames.chart[static_cast<std::size_t>(i)], Vec3(1, 0.5 + i, -0.7).normalized());
     const rotation::Angles n = change.apply({s.q[6 * i + 3], s.v[6 * i + 3], s.a[6 * i + 3], s.q.segment<2>(6 * i + 4),
                                              s.v.segment<2>(6 * i + 4), s.a.segment<2>(6 * i + 4)});
-    s.q[6 * i + 3] = n.phi, s.v[6 * i + 3] = n.dphi, s.a[6 * i + 3] = n.ddphi;
-    s.q.segment<2>(6 * i + 4) = n.gamma, s.v.segment<2>(6 * i + 4) = n.dgamma, s.a.segment<2>(6 * i + 4) = n.ddgamma;
+    s.q[6 * i + 3] = n.phi; s.v[6 * i + 3] = n.dphi; s.a[6 * i + 3] = n.ddphi;
+    s.q.segment<2>(6 * i + 4) = n.gamma; s.v.segment<2>(6 * i + 4) = n.dgamma; s.a.segment<2>(6 * i + 4) = n.ddgamma;
     s.frames.chart[static_cast<std::size_t>(i)] = change.new_triad();
   }
   loads(after);

@@ -21,7 +21,7 @@ const LawPtr law = make_harmonic(0.4, 1.0, 3.0, 0.2);
 TorqueLaw smooth_law() {
   TorqueLaw t;
   t.of_time = law;
-  t.friction = 0.3, t.friction_speed = 2.0, t.viscous = 0.1;
+  t.friction = 0.3; t.friction_speed = 2.0; t.viscous = 0.1;
   t.induction = TorqueLaw::Induction{2.0, 0.2, 12.0};
   t.dc = TorqueLaw::DcLine{1.5, 20.0};
   t.brake = make_polynomial({0.1, 0.2});
@@ -82,7 +82,7 @@ TEST(SpinTorque, Conformance) {
   check_kernel(FixedTorque{smooth_law(), Vec3(0.6, 0.8, 0)}, general());
   // kinked laws, away from their kinks
   TorqueLaw kinked;
-  kinked.speed = {-50, 0, 10, 50}, kinked.torque = {5, 4, 2, -1};
+  kinked.speed = {-50, 0, 10, 50}; kinked.torque = {5, 4, 2, -1};
   kinked.quadratic = 0.02;
   kinked.power = TorqueLaw::ConstantPower{30, 20};
   ConformanceOptions o = general();
@@ -119,7 +119,7 @@ TEST(SpinTorque, Directions) {
 TEST(TorqueLaw, Terms) {
   TorqueLaw t;
   EXPECT_EQ(t.at(0, 5, 0).T, 0.0);
-  t.speed = {0, 10}, t.torque = {4, 2};
+  t.speed = {0, 10}; t.torque = {4, 2};
   EXPECT_DOUBLE_EQ(t.at(0, 5, 0).T, 3);
   EXPECT_DOUBLE_EQ(t.at(0, -5, 0).T, 4);
   EXPECT_DOUBLE_EQ(t.at(0, 15, 0).T, 2);
@@ -151,7 +151,7 @@ TEST(TorqueLaw, Terms) {
   EXPECT_DOUBLE_EQ(t.at(1.5, -10, 0).loss, 3);
   EXPECT_EQ(t.breakpoints(), (std::vector<double>{1, 2}));
   t = {};
-  t.friction = 5, t.viscous = 0.1, t.quadratic = 0.01;
+  t.friction = 5; t.viscous = 0.1; t.quadratic = 0.01;
   EXPECT_DOUBLE_EQ(t.at(0, 10, 0).T, -(5 + 1 + 1));
   EXPECT_DOUBLE_EQ(t.at(0, -10, 0).T, 7);
   EXPECT_EQ(t.at(0, 0, 0).T, 0);

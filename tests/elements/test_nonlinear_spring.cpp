@@ -82,10 +82,10 @@ TEST(NonlinearSpring, TwistCountsWholeTurns) {
   const auto linear = curve(ForceCurve::polynomial({0, 7})), none = curve(ForceCurve::polynomial({0}));
   const auto k = ScalarSpring<7>::twist(linear, none);
   Vector<12> q = Vector<12>::Zero(), zero = q;
-  q[3] = 0.5, q[9] = 0.25;
+  q[3] = 0.5; q[9] = 0.25;
   const Mat3 chart = Mat3::Identity();
   NodeFrame<2, 7> x(q, zero, zero, chart, Vec3::Zero());
-  x.state[0].turns = 1e6, x.state[1].turns = 1e6 - 3;
+  x.state[0].turns = 1e6; x.state[1].turns = 1e6 - 3;
   system::ForceX<14> f = Vector<14>::Zero();
   k.add_force(x.nodes(), {}, f);
   EXPECT_NEAR(f[6], 7 * (0.25 + 3 * two_pi), 1e-7);
@@ -100,7 +100,7 @@ TEST(NonlinearSpring, RadialCentre) {
   system::ForceX<6> f = Vector<6>::Zero();
   system::TangentX<6> t;
   t.set_zero();
-  k.add_force(x.nodes(), {}, f), k.add_tangent(x.nodes(), {}, t);
+  k.add_force(x.nodes(), {}, f); k.add_tangent(x.nodes(), {}, t);
   EXPECT_EQ(f.norm(), 0.0);
   EXPECT_EQ(t.K.norm(), 0.0);
   EXPECT_TRUE(t.C.allFinite());

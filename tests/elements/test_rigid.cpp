@@ -31,14 +31,14 @@ RigidBody lopsided() {
 TEST(RigidDisk, Conformance) {
   check_kernel(disk, free_body());
   ConformanceOptions far = free_body();
-  far.tilt = 2.2, far.seed = 2;  // beyond the usual switch of chart
+  far.tilt = 2.2; far.seed = 2;  // beyond the usual switch of chart
   check_kernel(disk, far);
 }
 
 TEST(RigidBody, Conformance) {
   check_kernel(lopsided(), free_body());
   ConformanceOptions far = free_body();
-  far.tilt = 2.2, far.seed = 2;
+  far.tilt = 2.2; far.seed = 2;
   check_kernel(lopsided(), far);
 }
 
@@ -143,7 +143,7 @@ TEST(Unbalance, IsTheOffsetMassCentreOfADisk) {
       const system::Context c{0.0, Vec3(0, 0, -9.81)};
       system::ForceX<7> f1 = Vector<7>::Zero(), f2 = f1;
       body.add_force(x.nodes(), c, f1);
-      centred.add_force(x.nodes(), c, f2), u.add_force(x.nodes(), c, f2);
+      centred.add_force(x.nodes(), c, f2); u.add_force(x.nodes(), c, f2);
       EXPECT_LT((x.J.transpose() * (f1 - f2)).norm(), 1e-13 * f1.norm());
     }
   }

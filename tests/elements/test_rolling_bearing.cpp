@@ -16,8 +16,8 @@ namespace {
 // 8 balls between races of 40.1 and 63.9 mm, K = 1.334e10 N/m^1.5: the usual varying-compliance bearing (Fukata et al. 1985)
 BallBearing fukata(double clearance) {
   BallGeometry g;
-  g.balls = 8, g.ball_diameter = (0.0639 - 0.0401) / 2, g.pitch_diameter = (0.0639 + 0.0401) / 2;
-  g.radial_clearance = clearance, g.stiffness = 1.334e10;
+  g.balls = 8; g.ball_diameter = (0.0639 - 0.0401) / 2; g.pitch_diameter = (0.0639 + 0.0401) / 2;
+  g.radial_clearance = clearance; g.stiffness = 1.334e10;
   return make_ball_bearing(g);
 }
 
@@ -27,7 +27,7 @@ double press(const BallBearing& b, double W, double psi) {
   for (int i = 0; i < 200; ++i) {
     const double mid = 0.5 * (lo + hi);
     Vector<6> q = Vector<6>::Zero();
-    q[1] = mid, q[5] = psi;
+    q[1] = mid; q[5] = psi;
     RollingPotential p;
     b.potential(q, p, false);
     (p.g[1] < W ? lo : hi) = mid;
@@ -37,7 +37,7 @@ double press(const BallBearing& b, double W, double psi) {
 
 RollerBearing rollers(double clearance) {
   RollerGeometry g;
-  g.rollers = 13, g.roller_diameter = 0.0125, g.roller_length = 0.014, g.pitch_diameter = 0.065, g.radial_clearance = clearance;
+  g.rollers = 13; g.roller_diameter = 0.0125; g.roller_length = 0.014; g.pitch_diameter = 0.065; g.radial_clearance = clearance;
   return make_roller_bearing(g);
 }
 
@@ -58,7 +58,7 @@ TEST(Hertz, KnownContacts) {
   const int N = 4000;
   for (int i = 0; i < N; ++i) {
     const double a = (i + 0.5) * pi / 2 / N, d = std::sqrt(1 - m2 * std::sin(a) * std::sin(a));
-    F += pi / 2 / N / d, S += pi / 2 / N * d;
+    F += pi / 2 / N / d; S += pi / 2 / N * d;
   }
   const double rho = (1 / 0.004 - 1 / 0.09) / (1 / 0.004 + 1 / 0.09), k2 = kappa * kappa;
   EXPECT_NEAR(((k2 + 1) * S - 2 * F) / ((k2 - 1) * S), rho, 1e-9);
@@ -72,17 +72,17 @@ TEST(Hertz, KnownContacts) {
 TEST(RollingBearing, Conformance) {
   ConformanceOptions o;
   o.symmetric_K = true;
-  o.u = 1e-5, o.du = 1e-2, o.ddu = 10, o.tilt = 2e-4, o.dtilt = 0.1, o.ddtilt = 10;
+  o.u = 1e-5; o.du = 1e-2; o.ddu = 10; o.tilt = 2e-4; o.dtilt = 0.1; o.ddtilt = 10;
   // every element loaded throughout: differences do not cross the onset
   auto deep = fukata(-8e-5);
-  deep.c_radial = 500, deep.c_axial = 200;
+  deep.c_radial = 500; deep.c_axial = 200;
   check_kernel(deep, o);
   BallGeometry g;
-  g.balls = 16, g.ball_diameter = 0.02223, g.pitch_diameter = 0.12527, g.contact_angle = 40 * pi / 180, g.f_inner = g.f_outer = 0.5232;
+  g.balls = 16; g.ball_diameter = 0.02223; g.pitch_diameter = 0.12527; g.contact_angle = 40 * pi / 180; g.f_inner = g.f_outer = 0.5232;
   auto angular = make_ball_bearing(g);
   set_axial_preload(angular, 2e5);
   check_kernel(angular, o);
-  o.u = 5e-6, o.tilt = 1e-4;
+  o.u = 5e-6; o.tilt = 1e-4;
   check_kernel(rollers(-4e-5), o);
 }
 
@@ -96,8 +96,8 @@ TEST(RollingBearing, PartlyLoadedTangent) {
   const double step[6] = {1e-9, 1e-9, 1e-9, 1e-8, 1e-8, 1e-5};
   for (int j = 0; j < 6; ++j) {
     Vector<6> up = q, dn = q;
-    up[j] += step[j], dn[j] -= step[j];
-    b.potential(up, a, false), b.potential(dn, c, false);
+    up[j] += step[j]; dn[j] -= step[j];
+    b.potential(up, a, false); b.potential(dn, c, false);
     EXPECT_NEAR((a.V - c.V) / (2 * step[j]), p.g[j], 1e-6 * std::abs(p.g[j]) + 1e-9);
     for (int i = 0; i < 6; ++i)
       EXPECT_NEAR((a.g[i] - c.g[i]) / (2 * step[j]), p.H(i, j), 1e-7 * std::sqrt(std::abs(p.H(i, i) * p.H(j, j))) + 1e-9 * std::abs(p.H(1, 1)) * (i > 2 ? 1e-2 : 1)) << i << j;
@@ -117,7 +117,7 @@ TEST(RollingBearing, LoadSharing) {
     const double psi = t[2] ? 0.0 : pi / 8, x = press(b, t[1], psi);
     EXPECT_NEAR(x, t[3], 1e-9 * t[3]);
     Vector<6> q = Vector<6>::Zero();
-    q[1] = x, q[5] = psi;
+    q[1] = x; q[5] = psi;
     RollingPotential p;
     b.potential(q, p, true);
     EXPECT_NEAR(p.H(1, 1), t[4], 1e-9 * t[4]);
@@ -141,10 +141,10 @@ TEST(RollingBearing, StribeckNumber) {
       return Z[i] * bearing.loads(q)[0] / p.g[1];
     };
     BallGeometry g;
-    g.balls = Z[i], g.ball_diameter = 0.008, g.pitch_diameter = 0.06, g.stiffness = 1e10;
+    g.balls = Z[i]; g.ball_diameter = 0.008; g.pitch_diameter = 0.06; g.stiffness = 1e10;
     EXPECT_NEAR(number(make_ball_bearing(g)), ball[i], 1e-8);
     RollerGeometry r;
-    r.rollers = Z[i], r.roller_diameter = 0.008, r.roller_length = 0.01, r.pitch_diameter = 0.06;
+    r.rollers = Z[i]; r.roller_diameter = 0.008; r.roller_length = 0.01; r.pitch_diameter = 0.06;
     EXPECT_NEAR(number(make_roller_bearing(r)), roller[i], 1e-8);
   }
 }
@@ -159,7 +159,7 @@ TEST(RollingBearing, CageSpeedAndWholeTurns) {
   q[3] = 1.234;
   NodeFrame<2, 7> x(q, zero, zero, chart, Vec3::Zero());
   const double psi = b.deflection(x.nodes())[5];
-  x.state[0].turns = 52000 * 1000.0, x.state[1].turns = 0;   // 1000 common turns of shaft (52000) and cage (20050)
+  x.state[0].turns = 52000 * 1000.0; x.state[1].turns = 0;   // 1000 common turns of shaft (52000) and cage (20050)
   EXPECT_NEAR(std::remainder(b.deflection(x.nodes())[5] - psi, two_pi), 0.0, 1e-7);
   x.state[0].turns = 1;
   EXPECT_NEAR(std::remainder(b.deflection(x.nodes())[5] - psi - two_pi * b.cage[0], two_pi), 0.0, 1e-14);
@@ -171,7 +171,7 @@ TEST(RollingBearing, AngularContactUnderThrust) {
   // 218 angular-contact bearing, Harris: Z = 16, D = 22.23 mm, alpha0 = 40 deg, B = 0.0464, axial constant 896.7 N/mm^2; thrust 17800 N.
   // Exact root of sin a (cos 40/cos a - 1)^1.5 = Fa/(Z D^2 K): 41.59207702 deg, 0.03831822 mm
   BallGeometry g;
-  g.balls = 16, g.ball_diameter = 0.02223, g.pitch_diameter = 0.12527, g.contact_angle = 40 * pi / 180, g.f_inner = g.f_outer = 0.5232;
+  g.balls = 16; g.ball_diameter = 0.02223; g.pitch_diameter = 0.12527; g.contact_angle = 40 * pi / 180; g.f_inner = g.f_outer = 0.5232;
   // K (B D)^1.5 = 896.7 N/mm^2 D^2
   g.stiffness = 896.7e6 * 0.02223 * 0.02223 / std::pow(0.0464 * 0.02223, 1.5);
   for (int side : {1, -1}) {
@@ -214,8 +214,8 @@ TEST(RollingBearing, RollerTiltMoment) {
   EXPECT_EQ(p.g[0], 0.0);
   EXPECT_GT(p.H(3, 3), 0.0);
   q[3] = 5e-4;
-  b.contact.slices = 9, b.potential(q, p, true);
-  b.contact.slices = 201, b.potential(q, fine, true);
+  b.contact.slices = 9; b.potential(q, p, true);
+  b.contact.slices = 201; b.potential(q, fine, true);
   EXPECT_GT(p.g[3], 0.0);
   EXPECT_NEAR(p.g[3], fine.g[3], 0.03 * fine.g[3]);   // lamina rule, error ~ 1/(4 slices^2) plus the edge of contact
   EXPECT_NEAR(p.g[1], fine.g[1], 0.005 * fine.g[1]);
@@ -228,7 +228,7 @@ TEST(RollingBearing, VaryingComplianceCycle) {
   Vec2 r(9.8e-6, 0), v = Vec2::Zero();
   const auto accel = [&](double t, const Vec2& x, const Vec2& w) {
     Vector<6> q = Vector<6>::Zero();
-    q[1] = x.x(), q[2] = x.y(), q[5] = std::fmod(rate * t, two_pi);
+    q[1] = x.x(); q[2] = x.y(); q[5] = std::fmod(rate * t, two_pi);
     RollingPotential p;
     b.potential(q, p, false);
     return Vec2((Vec2(W, 0) - p.g.segment<2>(1) - c * w) / m);
@@ -244,7 +244,7 @@ TEST(RollingBearing, VaryingComplianceCycle) {
       r += h * v + h * h / 6 * (k1 + k2 + k3);
       v += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
       if (cycle < 20) continue;
-      xmin = std::min(xmin, r.x()), xmax = std::max(xmax, r.x()), ymin = std::min(ymin, r.y()), ymax = std::max(ymax, r.y());
+      xmin = std::min(xmin, r.x()); xmax = std::max(xmax, r.x()); ymin = std::min(ymin, r.y()); ymax = std::max(ymax, r.y());
       mean += r.x() / steps;
     }
   EXPECT_NEAR(xmin, 9.71753874e-06, 1e-5 * 1e-5);
@@ -275,7 +275,7 @@ TEST(RollingBearing, EstimatesOfFriswell) {
 TEST(RollingBearing, BadGeometry) {
   const auto code = [](auto change) {
     BallGeometry g;
-    g.balls = 8, g.ball_diameter = 0.0119, g.pitch_diameter = 0.052;
+    g.balls = 8; g.ball_diameter = 0.0119; g.pitch_diameter = 0.052;
     change(g);
     try {
       make_ball_bearing(g);
@@ -287,7 +287,7 @@ TEST(RollingBearing, BadGeometry) {
   EXPECT_EQ(code([](BallGeometry& g) { g.balls = 40; }), "E83");
   EXPECT_EQ(code([](BallGeometry& g) { g.f_inner = 0.5; }), "E83");
   EXPECT_EQ(code([](BallGeometry& g) { g.radial_clearance = 1e-3; }), "E83");
-  EXPECT_EQ(code([](BallGeometry& g) { g.contact_angle = 0.4, g.radial_clearance = 1e-6; }), "E83");
+  EXPECT_EQ(code([](BallGeometry& g) { g.contact_angle = 0.4; g.radial_clearance = 1e-6; }), "E83");
   EXPECT_EQ(code([](BallGeometry& g) { g.stiffness = -1; }), "E83");
   auto deep = fukata(0);
   EXPECT_THROW(set_axial_preload(deep, 10), Error);

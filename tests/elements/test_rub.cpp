@@ -15,14 +15,14 @@ constexpr double m = 10, k = 1e6, c = 400, ecc = 1e-4, kc = 4e6, gap = 3e-4;
 
 RubLaw ring(double mu) {
   RubLaw r;
-  r.gap = gap, r.stiffness = kc, r.friction = mu, r.radius = 0.05, r.slip_speed = 1e-2;
+  r.gap = gap; r.stiffness = kc; r.friction = mu; r.radius = 0.05; r.slip_speed = 1e-2;
   return r;
 }
 
 /// Synchronous equation with the contact force taken from the kernel; zero on a branch.
 double imbalance(const RubLaw& rub, double Omega, double R) {
   LateralMotion x;
-  x.r = Vec2(R, 0), x.v = Vec2(0, Omega * R), x.spin = Omega;
+  x.r = Vec2(R, 0); x.v = Vec2(0, Omega * R); x.spin = Omega;
   Vector<4> z;
   rub.force(x, z);
   const Complex dynamic = (Complex(k - m * Omega * Omega, c * Omega)) * R - Complex(z[0], z[1]);
@@ -33,7 +33,7 @@ double root(const RubLaw& rub, double Omega, double lo, double hi) {
   double a = imbalance(rub, Omega, lo);
   for (int i = 0; i < 200; ++i) {
     const double mid = 0.5 * (lo + hi), v = imbalance(rub, Omega, mid);
-    if ((v > 0) == (a > 0)) lo = mid, a = v;
+    if ((v > 0) == (a > 0)) { lo = mid; a = v; }
     else hi = mid;
   }
   return 0.5 * (lo + hi);
@@ -45,7 +45,7 @@ double settle(const RubLaw& rub, double Omega, Vec2 r, Vec2 v, int turns, int st
   double t = 0;
   const auto accel = [&](double s, const Vec2& x, const Vec2& w) {
     LateralMotion q;
-    q.r = x, q.v = w, q.spin = Omega;
+    q.r = x; q.v = w; q.spin = Omega;
     Vector<4> z;
     rub.force(q, z);
     return Vec2((m * ecc * Omega * Omega * Vec2(std::cos(Omega * s), std::sin(Omega * s)) - k * x - c * w + z.head<2>()) / m);
@@ -63,22 +63,22 @@ double settle(const RubLaw& rub, double Omega, Vec2 r, Vec2 v, int turns, int st
 
 TEST(Rub, Conformance) {
   RubLaw law;
-  law.gap = 0.05, law.stiffness = 1e3, law.damping = 0.1, law.friction = 0.3, law.radius = 0.4, law.slip_speed = 2.0;
+  law.gap = 0.05; law.stiffness = 1e3; law.damping = 0.1; law.friction = 0.3; law.radius = 0.4; law.slip_speed = 2.0;
   ConformanceOptions o;
   o.chart = tilted_chart();
-  o.u = 0.03, o.du = 0.3, o.tilt = 0.3, o.dtilt = 0.5, o.dphi = 1.0;
-  o.q0.assign(12, 0.0), o.v0.assign(12, 0.0);
-  o.q0[1] = 0.1, o.q0[2] = -0.12;   // always in contact
+  o.u = 0.03; o.du = 0.3; o.tilt = 0.3; o.dtilt = 0.5; o.dphi = 1.0;
+  o.q0.assign(12, 0.0); o.v0.assign(12, 0.0);
+  o.q0[1] = 0.1; o.q0[2] = -0.12;   // always in contact
   for (double spin : {4.0, -6.0, 0.0}) {
-    o.v0[3] = spin, o.v0[9] = 0.4 * spin + 1;
+    o.v0[3] = spin; o.v0[9] = 0.4 * spin + 1;
     check_kernel(Rub{{law}}, o);
     check_kernel(LateralJoint<RubLaw, true>{{law}, {0.02, 0.03}}, o);
   }
   // apart: nothing
-  o.q0.assign(12, 0.0), o.u = 0.01;
+  o.q0.assign(12, 0.0); o.u = 0.01;
   check_kernel(Rub{{law}}, o);
   // released faster than the contact relaxes: N = 0, the stored energy is lost
-  o.q0[1] = 0.1, o.v0[1] = -25, o.u = 0.005;
+  o.q0[1] = 0.1; o.v0[1] = -25; o.u = 0.005;
   check_kernel(Rub{{law}}, o);
 }
 
@@ -88,7 +88,7 @@ TEST(Rub, FrictionOpposesSlipAndTakesPower) {
   Random random(17);
   for (int n = 0; n < 2000; ++n) {
     LateralMotion x;
-    x.r = 1e-3 * random.vector<2>(), x.v = random.vector<2>(), x.spin = 50 * random.vector<1>()[0], x.housing_spin = 10 * random.vector<1>()[0];
+    x.r = 1e-3 * random.vector<2>(); x.v = random.vector<2>(); x.spin = 50 * random.vector<1>()[0]; x.housing_spin = 10 * random.vector<1>()[0];
     Vector<4> z;
     law.force(x, z);
     const auto contact = law.contact(x);

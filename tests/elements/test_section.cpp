@@ -34,7 +34,7 @@ TEST(Section, BenchmarkTube) {
   ElementSection s;
   s.od1 = s.od2 = s.mass_od1 = s.mass_od2 = 0.1;
   s.id1 = s.id2 = s.mass_id1 = s.mass_id2 = 0.09;
-  s.E = 210e9, s.G = 210e9 / 2.6, s.rho = 7800;
+  s.E = 210e9; s.G = 210e9 / 2.6; s.rho = 7800;
   const SectionProperties p = s.at(0.3);
   EXPECT_NEAR(p.EA, 313.4e6, 0.05e6);      // printed digits
   EXPECT_NEAR(p.EI, 354.5e3, 0.05e3);
@@ -47,8 +47,8 @@ TEST(Section, BenchmarkTube) {
 
 TEST(Section, PartInterpolatesAndKeepsCylindersExact) {
   ElementSection s;
-  s.od1 = 0.1, s.od2 = 0.2, s.id1 = s.id2 = 0.03, s.mass_od1 = 0.1, s.mass_od2 = 0.3;
-  s.E = 2e11, s.G = 8e10, s.rho = 7800;
+  s.od1 = 0.1; s.od2 = 0.2; s.id1 = s.id2 = 0.03; s.mass_od1 = 0.1; s.mass_od2 = 0.3;
+  s.E = 2e11; s.G = 8e10; s.rho = 7800;
   const ElementSection p = s.part(0.25, 0.75);
   EXPECT_DOUBLE_EQ(p.od1, 0.125);
   EXPECT_DOUBLE_EQ(p.od2, 0.175);
@@ -62,7 +62,7 @@ TEST(Section, PartInterpolatesAndKeepsCylindersExact) {
 TEST(Section, SwitchesOfTheBookBeams) {
   ElementSection s;
   s.od1 = s.od2 = s.mass_od1 = s.mass_od2 = 0.05;
-  s.E = 2e11, s.G = 8e10, s.rho = 7800;
+  s.E = 2e11; s.G = 8e10; s.rho = 7800;
   s.shear = ShearRule::rigid;
   s.rotary_inertia = false;
   s.added_mass = 2.5;

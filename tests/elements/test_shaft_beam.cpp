@@ -22,11 +22,11 @@ ShaftElementConstants constants(bool offsets, double stiffness = 1.0) {
   const double L = 0.4, EA = 3e5 * stiffness, EI = 120.0 * stiffness, GJ = 90.0 * stiffness, Phi = 0.3, rhoA = 2.0, rhoI = 0.01;
   ShaftElementConstants c;
   c.length = L;
-  if (offsets) c.o1 = 0.1, c.o2 = -0.07;
-  c.EA_l = EA / L, c.GJ_l = GJ / L;
-  c.k11 = EI * (4 + Phi) / (L * (1 + Phi)), c.k22 = 1.1 * c.k11, c.k12 = EI * (2 - Phi) / (L * (1 + Phi));
+  if (offsets) { c.o1 = 0.1; c.o2 = -0.07; }
+  c.EA_l = EA / L; c.GJ_l = GJ / L;
+  c.k11 = EI * (4 + Phi) / (L * (1 + Phi)); c.k22 = 1.1 * c.k11; c.k12 = EI * (2 - Phi) / (L * (1 + Phi));
   const double q = (1 + Phi) * (1 + Phi);
-  c.b11 = (2.0 / 15 + Phi / 6 + Phi * Phi / 12) / q, c.b22 = 1.2 * c.b11, c.b12 = -(1.0 / 30 + Phi / 6 + Phi * Phi / 12) / q;
+  c.b11 = (2.0 / 15 + Phi / 6 + Phi * Phi / 12) / q; c.b22 = 1.2 * c.b11; c.b12 = -(1.0 / 30 + Phi / 6 + Phi * Phi / 12) / q;
   c.tau_c = 0.5 * (1 - Phi) / (1 + Phi);
   // any symmetric matrix of a rigid body's form is good enough for derivatives; use the cubic beam's
   c.M4 << 156, 22 * L, 54, -13 * L, 22 * L, 4 * L * L, 13 * L, -3 * L * L, 54, 13 * L, 156, -22 * L, -13 * L, -3 * L * L,
@@ -54,7 +54,7 @@ System make_system(const Mat3& triad = Mat3::Identity(), With damping = With::no
   const Index n1 = b.add_node({Vec3::Zero(), line, "node 1", false});
   const Index n2 = b.add_node({Vec3((c.length + c.o1 - c.o2) * e0), line, "node 2", false});
   ShaftBeam<Offsets> beam(c, e0);
-  beam.preload = 40.0 * stiffness, beam.psi0 = 0.05;
+  beam.preload = 40.0 * stiffness; beam.psi0 = 0.05;
   b.add(beam, {n1, n2}, "shaft elements");
   if (damping == With::rotating) b.add(elements::ShaftDamping<true>(c, e0, 2e-3, 1e-3, 5e-4), {n1, n2}, "internal damping");
   if (damping == With::external) {
@@ -102,7 +102,7 @@ void check_tangent(double tilt, unsigned seed, const Mat3& triad, With damping =
   for (Index i = 0; i < 2; ++i)
     for (Index j = 0; j < 2; ++j) {
       const Index s = sys.pattern().slot(i, j);
-      M.block<6, 6>(6 * i, 6 * j) = m.M.block(s), C.block<6, 6>(6 * i, 6 * j) = m.C.block(s), K.block<6, 6>(6 * i, 6 * j) = m.K.block(s);
+      M.block<6, 6>(6 * i, 6 * j) = m.M.block(s); C.block<6, 6>(6 * i, 6 * j) = m.C.block(s); K.block<6, 6>(6 * i, 6 * j) = m.K.block(s);
     }
   auto R = [&](const VecX& q, const VecX& v, const VecX& a) {
     VecX r(12);
@@ -141,7 +141,7 @@ TEST(ShaftBeam, StaticTangentIsSymmetric) {
   Workspace w = sys.make_workspace();
   std::mt19937 rng(3);
   Point p = random_point(rng, 0.5);
-  p.v.setZero(), p.a.setZero();
+  p.v.setZero(); p.a.setZero();
   la::MCK m = sys.make_matrices();
   // gravity-free: inertia loads vanish and K is a true Hessian in the global chart (u, phi, gamma)
   p.a.segment<3>(0) = p.a.segment<3>(6) = Vec3(1, -2, -9.81);
@@ -173,7 +173,7 @@ TEST(ShaftBeam, RigidMotionStoresNoEnergy) {
     rotation::director(gamma, dir);
     VecX q = VecX::Zero(12), z = VecX::Zero(12), r(12);
     const Vec3 shift(d(rng), d(rng), d(rng));
-    q.head<3>() = shift, q.segment<3>(6) = shift + X2.x() * dir.t;
+    q.head<3>() = shift; q.segment<3>(6) = shift + X2.x() * dir.t;
     q[3] = q[9] = 10 * d(rng);
     q.segment<2>(4) = q.segment<2>(10) = gamma;
     ASSERT_TRUE(sys.residual(w, f, 0, q, z, z, r));
@@ -212,7 +212,7 @@ TEST(ShaftBeam, RigidRotationOfABentTwistedElementKeepsEnergyAndTorque) {
     }
     // phi is only known modulo 2 pi from R: keep the two continuous with each other
     const double dphi = phi[1] - phi[0], old = p.q[9] - p.q[3];
-    q[3] = phi[0], q[9] = phi[0] + dphi + two_pi * std::round((old - dphi) / two_pi);
+    q[3] = phi[0]; q[9] = phi[0] + dphi + two_pi * std::round((old - dphi) / two_pi);
     ASSERT_TRUE(sys.residual(w, f, 0, q, z, z, r));
     EXPECT_NEAR(sys.energy(w).elastic, V, 1e-12 * V);
   }
@@ -252,7 +252,7 @@ TEST(ShaftDamping, PowerAndRigidSpin) {
       const Vec3 X = damped.node(i).position;
       p.v.segment<3>(6 * i) = omega.cross(X + p.q.segment<3>(6 * i));
       const rotation::ChartRates rate = rotation::rates_of_omega(p.q.segment<2>(6 * i + 4), E.transpose() * omega);
-      p.v[6 * i + 3] = rate.phi, p.v.segment<2>(6 * i + 4) = rate.gamma;
+      p.v[6 * i + 3] = rate.phi; p.v.segment<2>(6 * i + 4) = rate.gamma;
     }
     ASSERT_TRUE(damped.evaluate_nodes(wd, f, 0, p.q, p.v, p.a));
     const double lost = damped.energy(wd).dissipated;
@@ -295,13 +295,13 @@ TEST(ShaftBeam, SmallTiltKeepsItsDigits) {
   VecX q = VecX::Zero(12);
   q[9] = 0.05;   // psi0: no torque
   VecX dq = VecX::Zero(12);
-  dq[1] = 0.1, dq[5] = 1.0, dq[10] = -0.7, dq[8] = 0.05;
+  dq[1] = 0.1; dq[5] = 1.0; dq[10] = -0.7; dq[8] = 0.05;
   const auto response = [&](double s, VecX& r) {
     VecX x = q + s * dq;
     sys.residual(w, f, 0, x, z, a, r);
     sys.residual(w, f, 0, q, z, a, r0);
     r = (r - r0) / s;
   };
-  response(1e-4, r1), response(1e-12, r2);
+  response(1e-4, r1); response(1e-12, r2);
   for (int k : {1, 2, 4, 5, 7, 8, 10, 11}) EXPECT_NEAR(r1[k], r2[k], 1e-6 * r1.norm());
 }

@@ -12,7 +12,7 @@ namespace {
 ShaftCoupling disc_pack() {
   ShaftCoupling k;
   k.K.diagonal() << 200, 500, 300, 80, 40, 25;
-  k.K(1, 5) = k.K(5, 1) = 20, k.K(2, 4) = k.K(4, 2) = -15, k.K(0, 3) = k.K(3, 0) = 4;
+  k.K(1, 5) = k.K(5, 1) = 20; k.K(2, 4) = k.K(4, 2) = -15; k.K(0, 3) = k.K(3, 0) = 4;
   k.C.diagonal() << 2, 3, 4, 1, 0.5, 0.7;
   k.offset = Vec3(0.02, -0.05, 0.03);
   k.angle = Vec2(0.02, -0.04);
@@ -24,7 +24,7 @@ ShaftCoupling disc_pack() {
 TEST(ShaftCoupling, Conformance) {
   ConformanceOptions o;
   o.symmetric_K = true;
-  o.tilt = 0.4, o.phi = 1.0;
+  o.tilt = 0.4; o.phi = 1.0;
   check_kernel(disc_pack(), o);
   o.chart = tilted_chart();
   check_kernel(disc_pack(), o);
@@ -33,7 +33,7 @@ TEST(ShaftCoupling, Conformance) {
 TEST(ShaftCoupling, IsotropicIsALinearBearing) {
   ShaftCoupling k;
   k.K.diagonal() << 200, 500, 500, 80, 40, 40;
-  k.offset = Vec3(0.0, 1e-3, -2e-3), k.angle = Vec2(2e-3, 1e-3);
+  k.offset = Vec3(0.0, 1e-3, -2e-3); k.angle = Vec2(2e-3, 1e-3);
   // rx, ry, rz of the linear bearing: tilts -tau_z, tau_y; the setpoint is minus the misalignment
   Vector<6> set;
   set << -k.offset, 0.0, k.angle.y(), -k.angle.x();
@@ -42,9 +42,9 @@ TEST(ShaftCoupling, IsotropicIsALinearBearing) {
   Vector<12> q = 0.1 * r.vector<12>(), v = r.vector<12>();
   const Mat3 chart = Mat3::Identity();
   NodeFrame<2, 7> x(q, v, v, chart, Vec3::Zero());
-  x.state[0].turns = 7, x.state[1].turns = 5;   // wound up by two turns
+  x.state[0].turns = 7; x.state[1].turns = 5;   // wound up by two turns
   system::ForceX<14> f = Vector<14>::Zero(), g = f;
-  k.add_force(x.nodes(), {}, f), b.add_force(x.nodes(), {}, g);
+  k.add_force(x.nodes(), {}, f); b.add_force(x.nodes(), {}, g);
   EXPECT_LT((f - g).norm(), 1e-12 * g.norm());
   EXPECT_GT(f[6], 80 * (2 * two_pi - 1));
 }

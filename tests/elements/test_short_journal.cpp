@@ -28,9 +28,9 @@ void expect_matrix(const Mat2& m, double a, double b, double c, double d, double
 ConformanceOptions in_the_clearance(double c, double speed) {
   ConformanceOptions o;
   o.u = 0.2 * c;   // two nodes: relative displacement within 0.4 sqrt(2) c
-  o.du = 0.3 * c * speed, o.ddu = c * speed * speed;
-  o.tilt = 0.3, o.dtilt = 0.2 * speed, o.ddtilt = 0.2 * speed * speed;
-  o.dphi = 0.3 * speed, o.ddphi = speed * speed;
+  o.du = 0.3 * c * speed; o.ddu = c * speed * speed;
+  o.tilt = 0.3; o.dtilt = 0.2 * speed; o.ddtilt = 0.2 * speed * speed;
+  o.dphi = 0.3 * speed; o.ddphi = speed * speed;
   o.v0.assign(12, 0.0);
   o.v0[3] = speed;
   return o;
@@ -82,13 +82,13 @@ TEST(ShortJournal, ForcesOfCapone) {
   const FilmLaw<ShortJournal> law{friswell};
   for (const auto& t : table) {
     LateralMotion m;
-    m.r = c * Vec2(t[0], t[1]), m.v = c * Omega * Vec2(t[2], t[3]), m.spin = Omega;
+    m.r = c * Vec2(t[0], t[1]); m.v = c * Omega * Vec2(t[2], t[3]); m.spin = Omega;
     Vector<4> z;
     law.force(m, z);
     EXPECT_NEAR(z[0] / unit, t[4], 1e-6 * std::hypot(t[4], t[5]));
     EXPECT_NEAR(z[1] / unit, t[5], 1e-6 * std::hypot(t[4], t[5]));
     // reversed spin and mirrored motion: mirrored force
-    m.r.x() *= -1, m.v.x() *= -1, m.spin *= -1;
+    m.r.x() *= -1; m.v.x() *= -1; m.spin *= -1;
     Vector<4> mirror;
     law.force(m, mirror);
     EXPECT_NEAR(mirror[0], -z[0], 1e-12 * unit);
@@ -189,7 +189,7 @@ TEST(ShortJournal, ExtremeEccentricity) {
   Random r(9);
   for (int n = 0; n < 200; ++n) {
     FilmPoint p;
-    p.r = r.vector<2>().normalized() * c * 0.99999, p.w = r.vector<2>(), p.slip = 0;
+    p.r = r.vector<2>().normalized() * c * 0.99999; p.w = r.vector<2>(); p.slip = 0;
     FilmForce f;
     friswell.evaluate(p, f);
     EXPECT_LE(f.F.dot(p.w), 0.0);

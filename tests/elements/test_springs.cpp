@@ -99,7 +99,7 @@ TEST(LinearBearing, TiltsAndWholeTurns) {
   const Matrix<6> z = Matrix<6>::Zero();
   const LinearBearing b(K, z, z, Vector<6>::Zero(), Vector<6>::Zero());
   Vector<12> q = Vector<12>::Zero(), v = q, a = q;
-  q[3] = 0.5, q[4] = 1e-4, q[5] = -2e-4;
+  q[3] = 0.5; q[4] = 1e-4; q[5] = -2e-4;
   const Mat3 chart = Mat3::Identity();
   NodeFrame<2, 7> x(q, v, a, chart, Vec3::Zero());
   x.state[0].turns = 3;
@@ -128,6 +128,6 @@ TEST(MatrixPart, Conformance) {
   o.symmetric_K = o.passive = false;
   check_kernel(with_rotations<2>(matrix(12, 30), matrix(12, 3), square(matrix(12, 1)), {false, false}), o);
   MatrixPart<2> plain;
-  plain.K = matrix(6, 30), plain.C = matrix(6, 3), plain.M = square(matrix(6, 1));
+  plain.K = matrix(6, 30); plain.C = matrix(6, 3); plain.M = square(matrix(6, 1));
   check_kernel(plain, o);
 }

@@ -14,13 +14,13 @@ constexpr double R = 0.065, L = 0.02, c = 1.2e-4, eta = 0.006;
 
 TEST(SqueezeFilm, Conformance) {
   ConformanceOptions o;
-  o.u = 0.2 * c, o.du = 0.1;
+  o.u = 0.2 * c; o.du = 0.1;
   check_kernel(SqueezeFilm<ShortJournal>{{R, L, c, eta}}, o);
   check_kernel(SqueezeFilm<ShortFullFilm>{{R, L, c, eta}}, o);
-  o.u = 1e-3 * c, o.du = 1e-3;   // boundaries of the finite film pass nodes: small steps
+  o.u = 1e-3 * c; o.du = 1e-3;   // boundaries of the finite film pass nodes: small steps
   o.tangent_tolerance = o.power_tolerance = 1e-7;
-  o.q0.assign(12, 0.0), o.v0.assign(12, 0.0);
-  o.q0[1] = 0.5 * c, o.q0[2] = 0.2 * c, o.v0[1] = 0.02, o.v0[2] = -0.05;
+  o.q0.assign(12, 0.0); o.v0.assign(12, 0.0);
+  o.q0[1] = 0.5 * c; o.q0[2] = 0.2 * c; o.v0[1] = 0.02; o.v0[2] = -0.05;
   FiniteJournal film{R, L, eta, std::make_shared<JournalSurface>(c, 0.0, std::vector<JournalPad>{})};
   check_kernel(SqueezeFilm<FiniteJournal>{film}, o);
   film.surface = std::make_shared<JournalSurface>(c, 0.0, std::vector<JournalPad>{{0.1, two_pi - 0.1, pi}});

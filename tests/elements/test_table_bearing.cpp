@@ -34,9 +34,9 @@ TEST(TableBearing, Conformance) {
   ConformanceOptions o;
   o.chart = tilted_chart();
   o.v0.assign(12, 0.0);
-  o.v0[3] = 320, o.tilt = 0.4, o.dphi = 20;   // stays inside one cubic piece while differences are taken
+  o.v0[3] = 320; o.tilt = 0.4; o.dphi = 20;   // stays inside one cubic piece while differences are taken
   o.ddphi = 300;
-  o.symmetric_M = false, o.semidefinite_M = false;
+  o.symmetric_M = false; o.semidefinite_M = false;
   o.passive = false;   // C of a table need not be positive
   for (auto between : {T::Between::linear, T::Between::monotone_cubic}) {
     check_kernel(LateralJoint<TableBearingLaw<false>>{{std::make_shared<T>(spins, rows(false), between, T::Outside::hold)}}, o);
@@ -67,7 +67,7 @@ TEST(TableBearing, Interpolation) {
     last = v.K(0, 1);
     if (s == 0 || s == 700) continue;
     T::Values a, b, d;
-    cubic.at(s - 1e-4, a, d), cubic.at(s + 1e-4, b, d);
+    cubic.at(s - 1e-4, a, d); cubic.at(s + 1e-4, b, d);
     EXPECT_NEAR((b.K(0, 1) - a.K(0, 1)) / 2e-4, dv.K(0, 1), 1e-7);
   }
   cubic.at(700.001, v, dv);
@@ -90,9 +90,9 @@ TEST(SpatialTableBearing, Conformance) {
   const Vector<6> setpoint = Vector<6>::NullaryExpr([&] { return 0.1 * d(random); }), preload = Vector<6>::NullaryExpr([&] { return 20 * d(random); });
   ConformanceOptions o;
   o.v0.assign(12, 0.0);
-  o.v0[3] = 320, o.tilt = 0.4, o.dphi = 20;   // stays inside one cubic piece while differences are taken
+  o.v0[3] = 320; o.tilt = 0.4; o.dphi = 20;   // stays inside one cubic piece while differences are taken
   o.ddphi = 300;
-  o.symmetric_M = false, o.semidefinite_M = false, o.passive = false;
+  o.symmetric_M = false; o.semidefinite_M = false; o.passive = false;
   using T = CoefficientTable<6>;
   using G = CoefficientGrid<6>;
   for (const bool linear : {true, false}) {
@@ -119,7 +119,7 @@ TEST(SpatialTableBearing, IsTheLinearOneWhereNothingChanges) {
   const Mat3 chart = Mat3::Identity();
   const NodeFrame<2, 7> frame(q, v, a, chart, Vec3::Zero());
   system::ForceX<14> f = system::ForceX<14>::Zero(), g = f;
-  table.add_force(frame.nodes(), {}, f), linear.add_force(frame.nodes(), {}, g);
+  table.add_force(frame.nodes(), {}, f); linear.add_force(frame.nodes(), {}, g);
   EXPECT_LT((f - g).norm(), 1e-14 * g.norm());
   EXPECT_EQ(table.load_on_first(frame.nodes()), linear.load_on_first(frame.nodes()));
 }

@@ -16,9 +16,9 @@ namespace {
 ElementSection cone(double d1, double d2, double bore1 = 0, double bore2 = 0, ShearRule shear = ShearRule::cowper,
                     bool rotary = true) {
   ElementSection s;
-  s.od1 = s.mass_od1 = d1, s.od2 = s.mass_od2 = d2;
-  s.id1 = s.mass_id1 = bore1, s.id2 = s.mass_id2 = bore2;
-  s.E = 2.1e11, s.G = 2.1e11 / 2.6, s.rho = 7850;
+  s.od1 = s.mass_od1 = d1; s.od2 = s.mass_od2 = d2;
+  s.id1 = s.mass_id1 = bore1; s.id2 = s.mass_id2 = bore2;
+  s.E = 2.1e11; s.G = 2.1e11 / 2.6; s.rho = 7850;
   s.shear = shear;
   s.rotary_inertia = rotary;
   return s;
@@ -39,7 +39,7 @@ struct Beam {
   int rigid = 0;   // number of zero frequencies
 
   Beam(const ElementSection& s, double L, int n, Ends ends, MassKind kind, double uneven = 0) {
-    K = MatX::Zero(2 * n + 2, 2 * n + 2), M = K, G = K;
+    K = MatX::Zero(2 * n + 2, 2 * n + 2); M = K; G = K;
     for (int e = 0; e < n; ++e) {
       const double x1 = (e + (e % 2 ? uneven : 0)) / n, x2 = (e + 1 + (e % 2 ? 0 : uneven)) / n;
       const ShaftElementConstants c = make_shaft_constants(s.part(x1, x2), L * (x2 - x1), 0, 0, kind);
@@ -51,7 +51,7 @@ struct Beam {
       const bool held = ends == Ends::pinned ? i == 0 || i == 2 * n : ends == Ends::clamped_free && i < 2;
       if (!held) keep.push_back(i);
     }
-    K = MatX(K(keep, keep)), M = MatX(M(keep, keep)), G = MatX(G(keep, keep));
+    K = MatX(K(keep, keep)); M = MatX(M(keep, keep)); G = MatX(G(keep, keep));
     rigid = ends == Ends::free_free ? 2 : 0;
   }
   /// Frequency m = 1, 2, .. at rest, rad/s.
@@ -126,7 +126,7 @@ double exact_shooting(const ElementSection& s, double L, Ends ends, double Omega
   double a = guess, b = guess * (1 + 1e-4), fa = det(a), fb = det(b);
   for (int i = 0; i < 30 && std::abs(b - a) > 1e-14 * std::abs(b) && fb != fa; ++i) {
     const double c = b - fb * (b - a) / (fb - fa);
-    a = b, fa = fb, b = c, fb = det(b);
+    a = b; fa = fb; b = c; fb = det(b);
   }
   return b;
 }
@@ -160,7 +160,7 @@ TEST(TimoshenkoConvergence, SlenderOrders) {
         const int n = 6 << k;
         const Beam a(s, 1, n, ends, MassKind::consistent), b(s, 1, n, ends, MassKind::corrected);
         const double exact = ends == Ends::pinned ? exact_pinned(s.at(0), 1, m, 0, b.at_rest(m)) : exact_shooting(s, 1, ends, 0, b.at_rest(m));
-        plain[k] = a.at_rest(m) / exact - 1, fixed[k] = b.at_rest(m) / exact - 1;
+        plain[k] = a.at_rest(m) / exact - 1; fixed[k] = b.at_rest(m) / exact - 1;
       }
       SCOPED_TRACE(m);
       EXPECT_GT(order(plain[0], plain[1]), 3.6);
@@ -226,7 +226,7 @@ TEST(TimoshenkoConvergence, OrderFourAtAnySpin) {
           Real a = exact * (1 + 1e-6L), b = exact * (1 - 1e-6L), fa = det(a), fb = det(b);
           for (int i = 0; i < 40 && fa != fb; ++i) {
             const Real x = b - fb * (b - a) / (fb - fa);
-            a = b, fa = fb, b = x, fb = det(b);
+            a = b; fa = fb; b = x; fb = det(b);
           }
           return static_cast<double>(b / exact - 1);
         };
@@ -324,7 +324,7 @@ double exact_torsion(const ElementSection& s, double L, double guess) {
   double a = guess, b = guess * (1 + 1e-4), fa = tip(a), fb = tip(b);
   for (int i = 0; i < 30 && std::abs(b - a) > 1e-14 * b && fb != fa; ++i) {
     const double c = b - fb * (b - a) / (fb - fa);
-    a = b, fa = fb, b = c, fb = tip(b);
+    a = b; fa = fb; b = c; fb = tip(b);
   }
   return b;
 }

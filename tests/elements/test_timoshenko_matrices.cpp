@@ -13,7 +13,7 @@ namespace {
 ElementSection cylinder(double d, ShearRule shear = ShearRule::cowper, bool rotary = true) {
   ElementSection s;
   s.od1 = s.od2 = s.mass_od1 = s.mass_od2 = d;
-  s.E = 2.1e11, s.G = 2.1e11 / 2.6, s.rho = 7850;
+  s.E = 2.1e11; s.G = 2.1e11 / 2.6; s.rho = 7850;
   s.shear = shear;
   s.rotary_inertia = rotary;
   return s;
@@ -241,7 +241,7 @@ TEST(TimoshenkoElement, RigidInertiaIsExact) {
 TEST(TimoshenkoElement, MasslessAndTorsionlessConstants) {
   ElementSection s;
   s.constants = true;
-  s.given.EI = 1000, s.given.EA = 1e6;
+  s.given.EI = 1000; s.given.EA = 1e6;
   const ShaftElementConstants c = make_shaft_constants(s, 0.5);
   EXPECT_EQ(c.M4.norm(), 0.0);
   EXPECT_EQ(c.polar.norm(), 0.0);

@@ -23,7 +23,7 @@ inline std::vector<plot::Figure> gallery() {
     for (const double x : t) {
       const double omega = 200 * x, phi = 100 * x * x;
       const Complex a = 40e-6 * jeffcott(omega / w1, 0.03) * std::polar(1.0, phi);
-      speed.push_back(omega), y.push_back(a.real()), z.push_back(a.imag() - 12e-6);
+      speed.push_back(omega); y.push_back(a.real()); z.push_back(a.imag() - 12e-6);
       torque.push_back(20 + 3 * std::sin(30 * x));
     }
     const plot::HistoryCurve c[] = {{"y", "m", y, "displacement DE"}, {"z", "m", z, "displacement DE"}, {"spin", "rad/s", speed, "speed"}, {"torque", "N m", torque, "drive torque"}};
@@ -34,9 +34,9 @@ inline std::vector<plot::Figure> gallery() {
     plot::Orbit a{"2400 rpm", {}, {}, {}}, b{"4600 rpm", {}, {}, {}};
     for (int k = 0; k <= 720; ++k) {
       const double p = two_pi * k / 240;
-      a.y.push_back(30e-6 * std::cos(p) + 4e-6 * std::cos(2 * p)), a.z.push_back(18e-6 * std::sin(p + 0.4));
-      b.y.push_back(62e-6 * std::cos(p + 1) + 9e-6 * std::cos(0.48 * p)), b.z.push_back(55e-6 * std::sin(p + 1.2) + 9e-6 * std::sin(0.48 * p));
-      if (k % 240 == 0) a.keyphasor.push_back(static_cast<std::size_t>(k)), b.keyphasor.push_back(static_cast<std::size_t>(k));
+      a.y.push_back(30e-6 * std::cos(p) + 4e-6 * std::cos(2 * p)); a.z.push_back(18e-6 * std::sin(p + 0.4));
+      b.y.push_back(62e-6 * std::cos(p + 1) + 9e-6 * std::cos(0.48 * p)); b.z.push_back(55e-6 * std::sin(p + 1.2) + 9e-6 * std::sin(0.48 * p));
+      if (k % 240 == 0) { a.keyphasor.push_back(static_cast<std::size_t>(k)); b.keyphasor.push_back(static_cast<std::size_t>(k)); }
     }
     const plot::Orbit o[] = {a, b};
     all.push_back(plot::plot_orbit("orbit", "Orbits at the drive-end bearing", o, 75e-6));
@@ -44,7 +44,7 @@ inline std::vector<plot::Figure> gallery() {
   {   // a path in the plane and in space: a slow spiral with a whirl
     std::vector<double> x, y, z;
     for (const double t : grid(0, 10, 20000)) {
-      x.push_back(0.75 - 0.012 * (1 - std::cos(3 * t)) + 0.001 * t), y.push_back(0.09 * std::sin(0.9 * t) * std::cos(7 * t)), z.push_back(-0.09 + 0.06 * std::cos(7 * t) * std::cos(0.5 * t));
+      x.push_back(0.75 - 0.012 * (1 - std::cos(3 * t)) + 0.001 * t); y.push_back(0.09 * std::sin(0.9 * t) * std::cos(7 * t)); z.push_back(-0.09 + 0.06 * std::cos(7 * t) * std::cos(0.5 * t));
     }
     const plot::Curve c[] = {{"centre of the disk", y, z}};
     all.push_back(plot::plot_path("path", "Path of the disk in the yz plane", "y", "z", c));
@@ -59,12 +59,12 @@ inline std::vector<plot::Figure> gallery() {
       plot::CampbellLine b{"mode " + std::to_string(k++), plot::Whirl::backward, {}, {}, {}, {}}, f{"mode " + std::to_string(k++), plot::Whirl::forward, {}, {}, {}, {}};
       for (const double s : speeds) {
         const double g = 0.00025 * s * w / 1000 * (w / w1);
-        b.speed.push_back(s), b.frequency.push_back(w * (std::sqrt(1 + g * g) - g)), b.log_decrement.push_back(0.25 + 0.0001 * s);
-        f.speed.push_back(s), f.frequency.push_back(w * (std::sqrt(1 + g * g) + g)), f.log_decrement.push_back(0.3 - 0.00028 * s * w1 / w);
-        if (s < 250 && w < 1000) f.whirl_at.push_back(plot::Whirl::mixed), b.whirl_at.push_back(plot::Whirl::mixed);
-        else f.whirl_at.push_back(plot::Whirl::forward), b.whirl_at.push_back(plot::Whirl::backward);
+        b.speed.push_back(s); b.frequency.push_back(w * (std::sqrt(1 + g * g) - g)); b.log_decrement.push_back(0.25 + 0.0001 * s);
+        f.speed.push_back(s); f.frequency.push_back(w * (std::sqrt(1 + g * g) + g)); f.log_decrement.push_back(0.3 - 0.00028 * s * w1 / w);
+        if (s < 250 && w < 1000) { f.whirl_at.push_back(plot::Whirl::mixed); b.whirl_at.push_back(plot::Whirl::mixed); }
+        else { f.whirl_at.push_back(plot::Whirl::forward); b.whirl_at.push_back(plot::Whirl::backward); }
       }
-      lines.push_back(b), lines.push_back(f);
+      lines.push_back(b); lines.push_back(f);
     }
     plot::CampbellLine torsion{"torsion 1", plot::Whirl::none, speeds, std::vector<double>(speeds.size(), 1010.0), std::vector<double>(speeds.size(), 0.02), {}};
     lines.push_back(torsion);
@@ -85,7 +85,7 @@ inline std::vector<plot::Figure> gallery() {
       plot::ResponseCurve c{label, {}, {}, {}};
       for (const double s : grid(30, 1500, 400)) {
         const Complex a = 25e-6 * gain * (jeffcott(s / w1, 0.04) - 0.6 * jeffcott(s / w2, 0.05)) * std::polar(1.0, -lag);
-        c.speed.push_back(s), c.amplitude.push_back(std::abs(a)), c.phase_lag.push_back(-std::arg(a));
+        c.speed.push_back(s); c.amplitude.push_back(std::abs(a)); c.phase_lag.push_back(-std::arg(a));
       }
       curves.push_back(c);
     }
@@ -113,12 +113,12 @@ inline std::vector<plot::Figure> gallery() {
       plot::Curve c{"mode " + std::to_string(m), {}, {}};
       for (const double e : grid(5, 10, 80)) {
         const double k = std::pow(10, e), limit = 450.0 * m * m;
-        c.x.push_back(k), c.y.push_back(limit / std::sqrt(1 + 3e7 * m * m / k) + (m > 2 ? 0.5 * limit : 0));
+        c.x.push_back(k); c.y.push_back(limit / std::sqrt(1 + 3e7 * m * m / k) + (m > 2 ? 0.5 * limit : 0));
       }
       modes.push_back(c);
     }
     plot::Curve b{"bearing kyy", {}, {}};
-    for (const double s : grid(100, 6000, 50)) b.x.push_back(4e7 * (1 + s / 3000)), b.y.push_back(s);
+    for (const double s : grid(100, 6000, 50)) { b.x.push_back(4e7 * (1 + s / 3000)); b.y.push_back(s); }
     supports.push_back(b);
     all.push_back(plot::plot_critical_map("criticals", "Critical-speed map", modes, supports));
   }
@@ -126,13 +126,13 @@ inline std::vector<plot::Figure> gallery() {
     plot::ModeShape m{"mode 2, forward, 76.4 Hz, log decrement 0.12", {}, {}, {}, {{"DE", 0.15}, {"impeller", 0.7}, {"NDE", 1.2}}};
     for (const double s : grid(0, 1.4, 60)) {
       const double w = std::sin(pi * (s - 0.1) / 1.1) + 0.1;
-      m.s.push_back(s), m.y.push_back(w * Complex(1, 0.2)), m.z.push_back(w * Complex(0.15, -0.7));
+      m.s.push_back(s); m.y.push_back(w * Complex(1, 0.2)); m.z.push_back(w * Complex(0.15, -0.7));
     }
     all.push_back(plot::plot_mode_shape("mode", "Mode shape", m));
   }
   {   // energies
     std::vector<double> t = grid(0, 10, 4000), kinetic, potential, error;
-    for (const double x : t) kinetic.push_back(49 + 1.2 * std::sin(5 * x) * std::sin(x)), potential.push_back(-1.2 * std::sin(5 * x) * std::sin(x)), error.push_back(2e-7 * std::sin(40 * x) * x);
+    for (const double x : t) { kinetic.push_back(49 + 1.2 * std::sin(5 * x) * std::sin(x)); potential.push_back(-1.2 * std::sin(5 * x) * std::sin(x)); error.push_back(2e-7 * std::sin(40 * x) * x); }
     const plot::Curve e[] = {{"kinetic", {}, kinetic}, {"potential", {}, potential}};
     all.push_back(plot::plot_energy("energy", "Energies", t, e, error));
   }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 // A shaft of three nodes with a disk in the middle, two bearings, one trail.
 Scene small_rotor() {
   Scene s;
-  for (int k = 0; k < 3; ++k) s.nodes.emplace_back(0.5 * k, 0, 0), s.node_line.push_back(0);
+  for (int k = 0; k < 3; ++k) { s.nodes.emplace_back(0.5 * k, 0, 0); s.node_line.push_back(0); }
   Scene::Line line;
   line.name = "shaft";
   line.points = {{0, 0}, {1, 0}, {2, 0}};
@@ -64,7 +64,7 @@ class Frames : public ::testing::Test {
     const std::vector<Vec3> v(3, Vec3(0, 1, 2)), f(2, Vec3(0, 0, 500));
     FrameState s;
     const double stress[] = {1e6, 3e6, 1e6};
-    s.time = t, s.nodes = p, s.velocity = v, s.support_force = f, s.stress = stress;
+    s.time = t; s.nodes = p; s.velocity = v; s.support_force = f; s.stress = stress;
     w.frame(s);
   }
   TempFolder dir_;

@@ -20,15 +20,15 @@ TEST(Decimate, EveryColumnKeepsItsLowestAndHighestPoint) {
   std::mt19937 rng(7);
   std::normal_distribution<double> noise;
   std::vector<double> x, y;
-  for (int i = 0; i < 1000000; ++i) x.push_back(i * 1e-5), y.push_back(noise(rng) * (i == 123456 ? 1000 : 1));
+  for (int i = 0; i < 1000000; ++i) { x.push_back(i * 1e-5); y.push_back(noise(rng) * (i == 123456 ? 1000 : 1)); }
   constexpr std::size_t columns = 700;
   const auto keep = plot::decimate_columns(x, y, 0, 10, columns);
   EXPECT_LE(keep.size(), 4 * columns);
   EXPECT_TRUE(std::is_sorted(keep.begin(), keep.end()));
   std::vector<double> lo(columns, 1e9), hi(columns, -1e9), klo = lo, khi = hi;
   const auto column = [&](double v) { return std::min(columns - 1, static_cast<std::size_t>(v * columns / 10)); };
-  for (std::size_t i = 0; i < x.size(); ++i) lo[column(x[i])] = std::min(lo[column(x[i])], y[i]), hi[column(x[i])] = std::max(hi[column(x[i])], y[i]);
-  for (const auto i : keep) klo[column(x[i])] = std::min(klo[column(x[i])], y[i]), khi[column(x[i])] = std::max(khi[column(x[i])], y[i]);
+  for (std::size_t i = 0; i < x.size(); ++i) { lo[column(x[i])] = std::min(lo[column(x[i])], y[i]); hi[column(x[i])] = std::max(hi[column(x[i])], y[i]); }
+  for (const auto i : keep) { klo[column(x[i])] = std::min(klo[column(x[i])], y[i]); khi[column(x[i])] = std::max(khi[column(x[i])], y[i]); }
   EXPECT_EQ(lo, klo);
   EXPECT_EQ(hi, khi);
   EXPECT_EQ(keep.front(), 0u);
@@ -47,7 +47,7 @@ TEST(Decimate, GapsStayGaps) {
 
 TEST(Decimate, RepeatedOrbitIsDrawnOnce) {
   std::vector<double> x, y;
-  for (int i = 0; i < 100000; ++i) x.push_back(100 * std::cos(two_pi * i / 500)), y.push_back(100 * std::sin(two_pi * i / 500));
+  for (int i = 0; i < 100000; ++i) { x.push_back(100 * std::cos(two_pi * i / 500)); y.push_back(100 * std::sin(two_pi * i / 500)); }
   std::size_t points = 0;
   double far = 0;
   for (const auto& run : plot::decimate_path(x, y)) {
@@ -65,7 +65,7 @@ TEST(plot::Envelope, BoundedMemoryExactExtremes) {
   double lo = 0, hi = 0, t_hi = 0;
   for (int i = 0; i < 1000000; ++i) {
     const double v = noise(rng);
-    if (v > hi) hi = v, t_hi = i;
+    if (v > hi) { hi = v; t_hi = i; }
     lo = std::min(lo, v);
     e.add(i, v);
   }
@@ -205,10 +205,10 @@ TEST(Svg, OneMillionPointsMakeASmallFileWithThePeakInIt) {
   plot::Figure f;
   f.name = "long";
   plot::Axes a;
-  a.x = plot::Axis("time", "s"), a.y = plot::Axis("displacement", "µm");
-  a.y.min = 0, a.y.max = 100;
+  a.x = plot::Axis("time", "s"); a.y = plot::Axis("displacement", "µm");
+  a.y.min = 0; a.y.max = 100;
   plot::Series s;
-  for (int i = 0; i < 1000000; ++i) s.x.push_back(1e-3 * i), s.y.push_back(40 + 10 * std::sin(i * 0.7) + (i == 654321 ? 50 : 0));
+  for (int i = 0; i < 1000000; ++i) { s.x.push_back(1e-3 * i); s.y.push_back(40 + 10 * std::sin(i * 0.7) + (i == 654321 ? 50 : 0)); }
   a.series.push_back(s);
   f.axes.push_back(a);
   const std::string svg = plot::render_svg(f);
@@ -222,7 +222,7 @@ TEST(Svg, OneMillionPointsMakeASmallFileWithThePeakInIt) {
   double highest = 1e9, x = 0, y = 0, at_x = 0;
   const char* p = d.c_str();
   for (int n = 0; std::sscanf(p, "%lf %lf%n", &x, &y, &n) == 2; p += *p == '"' ? 0 : 1) {
-    if (y < highest) highest = y, at_x = x;
+    if (y < highest) { highest = y; at_x = x; }
     p += n;
     if (*p == '"') break;
   }
@@ -236,14 +236,14 @@ TEST(Svg, EmptyConstantAndBrokenDataAreDrawn) {
     plot::Figure f;
     f.name = "odd";
     plot::Axes a;
-    a.x = plot::Axis("x", "-", log), a.y = plot::Axis("y", "-", log);
+    a.x = plot::Axis("x", "-", log); a.y = plot::Axis("y", "-", log);
     f.axes.push_back(a);
     EXPECT_EQ(xml_fault(plot::render_svg(f)), "");
     for (const auto& y : {std::vector<double>{3, 3, 3}, {nan, nan, nan}, {1, nan, 2}, {0, 0, 0}, {-1, 1e300, 2}, {infinity, 1, 2}}) {
       f.axes[0].series.clear();
       plot::Series s;
       s.label = "<&\">";
-      s.x = {1, 2, 3}, s.y = y;
+      s.x = {1, 2, 3}; s.y = y;
       s.style.marker = plot::Marker::circle;
       f.axes[0].series.push_back(s);
       const std::string svg = plot::render_svg(f);

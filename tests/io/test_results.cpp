@@ -42,7 +42,7 @@ TEST(ResultsFolder, HalfWrittenFilesOfKilledRunsGo) {
   const auto make = [&](const std::string& name) { std::ofstream(dir / name) << "x"; };
   fs::create_directory(dir / "vtk");
   const std::string gone = "." + std::string("run.csv.") + std::to_string(dead) + ".3.part";
-  make(gone), make("vtk/" + gone);
+  make(gone); make("vtk/" + gone);
   const std::string living = ".run.csv." + std::to_string(::getppid()) + ".0.part";
   for (const std::string& name : {living, std::string("run.csv"), std::string(".hidden"), std::string(".a.part"), std::string(".part"), "a.csv." + std::to_string(dead) + ".3.part"}) make(name);
   const ResultsFolder folder(dir.path());

@@ -12,14 +12,14 @@ model::Section section(const char* name, double length, double od, double id) {
   model::Section s;
   s.name = name;
   s.length = length;
-  s.od_l = s.od_r = od, s.id_l = s.id_r = id;
+  s.od_l = s.od_r = od; s.id_l = s.id_r = id;
   return s;
 }
 
 TEST(plot::RotorDrawing, FollowsTheModel) {
   model::Model m;
   model::Material steel;
-  steel.name = "steel", steel.E = 211e9, steel.G = 81e9, steel.rho = 7810;
+  steel.name = "steel"; steel.E = 211e9; steel.G = 81e9; steel.rho = 7810;
   m.materials = {steel};
   model::Shaft shaft;
   shaft.name = "hp";
@@ -27,13 +27,13 @@ TEST(plot::RotorDrawing, FollowsTheModel) {
   m.shafts = {shaft};
   const auto at = [](double s) { return model::Location{0, s, "", {}}; };
   model::Disk disk;
-  disk.name = "impeller", disk.at = at(0.4), disk.mass = 10, disk.Ip = 0.2, disk.Id = 0.1;
+  disk.name = "impeller"; disk.at = at(0.4); disk.mass = 10; disk.Ip = 0.2; disk.Id = 0.1;
   m.disks = {disk};
   model::Bearing bearing;
-  bearing.name = "DE", bearing.at = at(0.1), bearing.law = model::LinearBearing{};
+  bearing.name = "DE"; bearing.at = at(0.1); bearing.law = model::LinearBearing{};
   m.bearings = {bearing};
   model::Probe probe;
-  probe.name = "P", probe.at = at(0.2);
+  probe.name = "P"; probe.at = at(0.2);
   m.probes = {probe};
 
   const meshes::Mesh mesh = meshes::make_mesh(m);

@@ -67,14 +67,14 @@ TEST(Skin, SteppedHollowConicalShaftHasItsVolumeAndIsClosed) {
   std::map<std::array<int, 6>, int> edges;
   const auto key = [](const Vec3& a, const Vec3& b) {
     std::array<int, 6> k;
-    for (Index c = 0; c < 3; ++c) k[static_cast<std::size_t>(c)] = static_cast<int>(std::lround(a[c] * 1e6)), k[static_cast<std::size_t>(c + 3)] = static_cast<int>(std::lround(b[c] * 1e6));
+    for (Index c = 0; c < 3; ++c) { k[static_cast<std::size_t>(c)] = static_cast<int>(std::lround(a[c] * 1e6)); k[static_cast<std::size_t>(c + 3)] = static_cast<int>(std::lround(b[c] * 1e6)); }
     return k;
   };
   const auto& q = skin.quads();
   for (std::size_t k = 0; k < q.size(); k += 4)
     for (std::size_t j = 0; j < 4; ++j) {
       const Vec3 a = corner(p, p, q[k + j]).x, b = corner(p, p, q[k + (j + 1) % 4]).x;
-      if ((a - b).norm() > 1e-7) ++edges[key(a, b)], --edges[key(b, a)];
+      if ((a - b).norm() > 1e-7) { ++edges[key(a, b)]; --edges[key(b, a)]; }
     }
   for (const auto& [k, count] : edges) EXPECT_EQ(count, 0);
 

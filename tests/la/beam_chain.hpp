@@ -83,7 +83,7 @@ inline void add_disk(MCK& m, Index node, double mass, double Jp, double Jt, doub
   const Index d = m.M.pattern().diagonal(node);
   for (int c = 0; c < 3; ++c) m.M.block(d)(c, c) += mass;
   m.M.block(d)(3, 3) += Jp;
-  m.M.block(d)(4, 4) += Jt, m.M.block(d)(5, 5) += Jt;
+  m.M.block(d)(4, 4) += Jt; m.M.block(d)(5, 5) += Jt;
   m.C.block(d)(4, 5) += Jp * Omega;
   m.C.block(d)(5, 4) -= Jp * Omega;
 }
@@ -91,9 +91,9 @@ inline void add_disk(MCK& m, Index node, double mass, double Jp, double Jt, doub
 /// A bearing: stiffness and damping in y and z, cross-coupled stiffness q (K_yz = q, K_zy = -q).
 inline void add_bearing(MCK& m, Index node, double ky, double kz, double cy, double cz, double q = 0.0) {
   const Index d = m.K.pattern().diagonal(node);
-  m.K.block(d)(1, 1) += ky, m.K.block(d)(2, 2) += kz;
-  m.K.block(d)(1, 2) += q, m.K.block(d)(2, 1) -= q;
-  m.C.block(d)(1, 1) += cy, m.C.block(d)(2, 2) += cz;
+  m.K.block(d)(1, 1) += ky; m.K.block(d)(2, 2) += kz;
+  m.K.block(d)(1, 2) += q; m.K.block(d)(2, 1) -= q;
+  m.C.block(d)(1, 1) += cy; m.C.block(d)(2, 2) += cz;
 }
 
 /// Three disks on two bearings, as in many text-book rotors; axial motion held at the first node, spin free.

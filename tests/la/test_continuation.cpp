@@ -27,7 +27,7 @@ struct Arch : ContinuationProblem {
     f(1) = hanger * (q(1) - q(0)) - mu;
     return true;
   }
-  void load(const VecX&, double, VecX& f) override { f(0) = 0.0, f(1) = -1.0; }
+  void load(const VecX&, double, VecX& f) override { f(0) = 0.0; f(1) = -1.0; }
   bool factor(const VecX& q, double) override {
     K << stiffness(q(0)) + hanger, -hanger, -hanger, hanger;
     return std::abs(K.determinant()) > 1e-13;

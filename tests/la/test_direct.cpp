@@ -109,7 +109,7 @@ TYPED_TEST(Direct, HeldUnknownsHideWhateverStandsThere) {
     ASSERT_EQ(a->factor(m, S(0.1), S(0.2), S(1.0)), Status::ok);
     ASSERT_EQ(b->factor(clean, S(0.1), S(0.2), S(1.0)), Status::ok);
     Vec<S> x = Vec<S>::Random(24), y = x;
-    a->solve(x), b->solve(y);
+    a->solve(x); b->solve(y);
     EXPECT_EQ(x, y);
   }
   const Mask none(24, 0);
@@ -155,7 +155,7 @@ TYPED_TEST(Direct, UnitsDoNotMatter) {
     ASSERT_EQ(b->factor(scaled, S(0.0), S(0.0), S(1.0)), Status::ok);
     Vec<S> x = Vec<S>::Random(48), y = x;
     for (Index i = 0; i < 8; ++i) y.template segment<6>(6 * i) = (1e-12 * unit.asDiagonal() * y.template segment<6>(6 * i)).eval();
-    a->solve(x), b->solve(y);
+    a->solve(x); b->solve(y);
     for (Index i = 0; i < 8; ++i) y.template segment<6>(6 * i) = (unit.asDiagonal() * y.template segment<6>(6 * i)).eval();
     EXPECT_LT(difference(y, x), 1e-12);  // condition number below 100
   }

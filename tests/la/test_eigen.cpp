@@ -47,7 +47,7 @@ void expect_same(std::vector<Mode> modes, const std::vector<Complex>& reference,
     std::size_t best = 0;
     double distance = infinity;
     for (std::size_t j = 0; j < std::min(reference.size(), modes.size() + 2); ++j)
-      if (!used[j] && std::abs(reference[j] - mode.lambda) < distance) distance = std::abs(reference[j] - mode.lambda), best = j;
+      if (!used[j] && std::abs(reference[j] - mode.lambda) < distance) { distance = std::abs(reference[j] - mode.lambda); best = j; }
     used[best] = true;
     EXPECT_LE(distance, tolerance * std::abs(mode.lambda)) << mode.lambda << " nearest " << reference[best];
   }
@@ -73,9 +73,9 @@ Index frequencies_below(const MCK& m, const Mask& active, double omega) {
 Mask pinned(const BlockPattern& p, bool only_bending) {
   Mask a = all_active(p);
   const auto hold = [&](Index node, int c) { a[static_cast<std::size_t>(6 * node + c)] = 0; };
-  for (const Index end : {Index(0), p.size() - 1}) hold(end, 1), hold(end, 2);
+  for (const Index end : {Index(0), p.size() - 1}) { hold(end, 1); hold(end, 2); }
   if (only_bending)
-    for (Index i = 0; i < p.size(); ++i) hold(i, 0), hold(i, 3);
+    for (Index i = 0; i < p.size(); ++i) { hold(i, 0); hold(i, 3); }
   return a;
 }
 
@@ -86,9 +86,9 @@ TEST(QuadraticModes, GyroscopicRotorOnSpringsInClosedForm) {
   const BlockPattern p(1, {});
   MCK m(p);
   const double mass = 3.0, k = 2.7e4, jt = 0.02, jp = 0.034, kt = 150.0, Omega = 800.0;
-  for (int c : {1, 2}) m.M.block(0)(c, c) = mass, m.K.block(0)(c, c) = k;
-  for (int c : {4, 5}) m.M.block(0)(c, c) = jt, m.K.block(0)(c, c) = kt;
-  m.C.block(0)(4, 5) = jp * Omega, m.C.block(0)(5, 4) = -jp * Omega;
+  for (int c : {1, 2}) { m.M.block(0)(c, c) = mass; m.K.block(0)(c, c) = k; }
+  for (int c : {4, 5}) { m.M.block(0)(c, c) = jt; m.K.block(0)(c, c) = kt; }
+  m.C.block(0)(4, 5) = jp * Omega; m.C.block(0)(5, 4) = -jp * Omega;
   Mask a(6, 1);
   a[0] = a[3] = 0;
   const double g = jp * Omega, root = std::sqrt(g * g + 4.0 * jt * kt);
@@ -127,7 +127,7 @@ TEST(QuadraticModes, SpinningRayleighShaftInClosedForm) {
     for (int j = 1; j <= 6; ++j) {
       const double k = j * pi / s.length, mm = s.rho * (s.area() + s.I() * k * k), g = 2.0 * s.rho * s.I() * k * k * Omega;
       const double root = std::sqrt(g * g + 4.0 * mm * s.E * s.I() * std::pow(k, 4));
-      exact.push_back((root - g) / (2.0 * mm)), exact.push_back((root + g) / (2.0 * mm));
+      exact.push_back((root - g) / (2.0 * mm)); exact.push_back((root + g) / (2.0 * mm));
     }
     std::sort(exact.begin(), exact.end());
     for (std::size_t i = 0; i < 8; ++i) {
@@ -150,10 +150,10 @@ TEST(QuadraticModes, MatchesDenseOnRandomProblems) {
     if (round % 4 == 3)  // a massless, damped node and one without anything but stiffness
       for (Index j = 0; j < n; ++j) {
         const bool first = p.slot(0, j) >= 0, last = p.slot(n - 1, j) >= 0;
-        if (first) m.M.block(p.slot(0, j)).setZero(), m.M.block(p.slot(j, 0)).setZero();
+        if (first) { m.M.block(p.slot(0, j)).setZero(); m.M.block(p.slot(j, 0)).setZero(); }
         if (last) {
-          m.M.block(p.slot(n - 1, j)).setZero(), m.M.block(p.slot(j, n - 1)).setZero();
-          m.C.block(p.slot(n - 1, j)).setZero(), m.C.block(p.slot(j, n - 1)).setZero();
+          m.M.block(p.slot(n - 1, j)).setZero(); m.M.block(p.slot(j, n - 1)).setZero();
+          m.C.block(p.slot(n - 1, j)).setZero(); m.C.block(p.slot(j, n - 1)).setZero();
         }
       }
     const auto reference = dense_eigenvalues(m, a);
@@ -247,7 +247,7 @@ TEST(QuadraticModes, DraggedRigidMotionHasARealRoot) {
     m.C.block(p.diagonal(i))(0, 0) = 0.5;
     if (i == 0) continue;
     const double k = 1e3;
-    m.K.block(p.diagonal(i))(0, 0) += k, m.K.block(p.diagonal(i - 1))(0, 0) += k;
+    m.K.block(p.diagonal(i))(0, 0) += k; m.K.block(p.diagonal(i - 1))(0, 0) += k;
     m.K.block(p.slot(i, i - 1))(0, 0) = m.K.block(p.slot(i - 1, i))(0, 0) = -k;
   }
   for (const Index dense_below : {0, 36}) {

@@ -8,7 +8,7 @@ namespace whirl::test {
 inline model::Material steel() {
   model::Material s;
   s.name = "steel";
-  s.E = 2.1e11, s.nu = 0.3, s.G = 2.1e11 / 2.6, s.rho = 7850;
+  s.E = 2.1e11; s.nu = 0.3; s.G = 2.1e11 / 2.6; s.rho = 7850;
   return s;
 }
 
@@ -30,7 +30,7 @@ inline model::Section rigid(std::string name, double length, double od = 0) {
 
 inline model::Location place(double s, std::size_t shaft = 0) {
   model::Location l;
-  l.shaft = shaft, l.s = s;
+  l.shaft = shaft; l.s = s;
   return l;
 }
 
@@ -43,7 +43,7 @@ template <class T> T named(std::string name, double s, std::size_t shaft = 0) {
 
 inline model::Disk disk(std::string name, double s, double mass, double Ip, double Id, std::size_t shaft = 0) {
   auto d = named<model::Disk>(std::move(name), s, shaft);
-  d.mass = mass, d.Ip = Ip, d.Id = Id;
+  d.mass = mass; d.Ip = Ip; d.Id = Id;
   return d;
 }
 

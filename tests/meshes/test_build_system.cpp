@@ -47,7 +47,7 @@ struct Rest {
   system::SystemProblem problem;
   explicit Rest(const Built& b, const std::vector<Index>& also_held = {}) : problem(b.system) {
     const Index n = b.system.size();
-    q = VecX::Zero(n), r = VecX::Zero(n);
+    q = VecX::Zero(n); r = VecX::Zero(n);
     const VecX zero = VecX::Zero(n);
     VecX v = zero, a = zero;
     problem.impose(0.0, q, v, a);
@@ -98,12 +98,12 @@ TEST(BuildSystem, ThrustBearingsLeaveTheLateralMassAlone) {
   const Matrix<4> plain = mass();
   auto thrust = named<model::Bearing>("thrust", 0.2);
   model::LinearBearing linear;
-  linear.K(0, 0) = 1e8, linear.C(0, 0) = 1e3;
+  linear.K(0, 0) = 1e8; linear.C(0, 0) = 1e3;
   thrust.law = linear;
   m.bearings.push_back(thrust);
   EXPECT_EQ(mass(), plain);
   model::TableBearing table;
-  table.speed = {0, 100}, table.K = {linear.K, 2 * linear.K}, table.C = {linear.C, linear.C};
+  table.speed = {0, 100}; table.K = {linear.K, 2 * linear.K}; table.C = {linear.C, linear.C};
   m.bearings.back().law = table;
   EXPECT_EQ(mass(), plain);
   table.K[1](1, 1) = table.K[1](2, 2) = 1e7;
@@ -124,13 +124,13 @@ TEST(BuildSystem, AbsentPhysicsIsAnAbsentBatch) {
   m.disks = {disk("balanced", 0.1, 3, 0.02, 0.01), disk("point", 0.2, 1, 0, 0), disk("eccentric", 0.3, 3, 0.02, 0.01)};
   m.disks[2].offset = Vec3(0, 1e-4, 0);
   auto u = named<model::Unbalance>("u", 0.2);
-  u.amount = 1e-4, u.factor = make_ramp(1, 2, 1, 0);
+  u.amount = 1e-4; u.factor = make_ramp(1, 2, 1, 0);
   m.unbalances = {u};
   auto force = named<model::PointLoad>("force", 0.2), moment = force, body = force;
   force.force = Vec3(0, 1, 0);
   force.factor = make_ramp(0.5, 1, 0, 1);
   moment.moment = Vec3(0, 0, 1);
-  body.force = Vec3(0, 1, 0), body.frame = model::LoadFrame::rotating;
+  body.force = Vec3(0, 1, 0); body.frame = model::LoadFrame::rotating;
   m.loads = {force, moment, body};
   auto block = named<model::Bearing>("block", 0.2);
   block.law = model::SpringBlock{100, 10};
@@ -202,14 +202,14 @@ TEST(BuildSystem, AssembledMassIsThatOfTheModel) {
   model::Model m = one_shaft({rigid("stub", 0.1, 0.08), cylinder("a", 0.3, 0.05, 0.01, 3), cylinder("cone", 0.2, 0.05, 0.02, 2), rigid("hub", 0.1),
                               cylinder("b", 0.25, 0.07, 0, 2)});
   m.shafts[0].origin = Vec3(0.3, -0.1, 0.2);
-  m.shafts[0].sections[2].od_r = 0.09, m.shafts[0].sections[2].id_r = 0.03;
+  m.shafts[0].sections[2].od_r = 0.09; m.shafts[0].sections[2].id_r = 0.03;
   m.shafts[0].sections[1].added_mass_per_length = 4;
   m.shafts[0].sections[4].stiffness_diameters = {{0.06, 0, 0.06, 0}};
   m.disks = {disk("d", 0.62, 3, 0.02, 0.012), disk("skewed", 0.35, 2, 0.01, 0.006), disk("eccentric", 0.05, 1, 0.01, 0.006)};
-  m.disks[1].skew = 0.1, m.disks[1].skew_phase = 0.7;
+  m.disks[1].skew = 0.1; m.disks[1].skew_phase = 0.7;
   m.disks[2].offset = Vec3(0.01, 2e-3, -1e-3);
   auto u = named<model::Unbalance>("u", 0.65);   // on the rigid hub, away from its node
-  u.amount = 1e-3, u.phase = 0.3;
+  u.amount = 1e-3; u.phase = 0.3;
   m.unbalances = {u};
   model::Shaft keyed;
   keyed.name = "keyed";
@@ -300,7 +300,7 @@ TEST(BuildSystem, PedestalTakesTheForce) {
   m.gravity = Vec3(0, 0, -9.81);
   auto l = spring("l", 0.0, 1e6), r = spring("r", 1.0, 1e6);
   Mat3 K = Mat3::Zero();
-  K(1, 1) = 2e6, K(2, 2) = 4e6;
+  K(1, 1) = 2e6; K(2, 2) = 4e6;
   l.pedestal = model::Pedestal{10, K, Mat3::Zero()};
   m.bearings = {l, r};
   ask_equilibrium(m);
@@ -429,7 +429,7 @@ TEST(BuildSystem, InnerSpoolHangsOnTheOuter) {
   m.shafts.push_back(hp);
   m.gravity = Vec3(0, 0, -9.81);
   auto i1 = spring("i1", 0.2, 1e7), i2 = spring("i2", 0.7, 1e7);
-  i1.to = place(0.0, 1), i2.to = place(0.5, 1);
+  i1.to = place(0.0, 1); i2.to = place(0.5, 1);
   m.bearings = {i1, i2};
   ask_equilibrium(m);
   auto e = errors_of(m);

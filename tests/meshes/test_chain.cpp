@@ -34,7 +34,7 @@ Matrices lateral(const assembly::Built& b, double Omega) {
   Matrices full{MatX::Zero(n, n), MatX::Zero(n, n), MatX::Zero(n, n)};
   for (Index k = 0; k < n; ++k) {
     const VecX e = VecX::Unit(n, k);
-    p.add_M(1.0, e, full.M.col(k)), p.add_C(1.0, e, full.C.col(k)), p.add_K(1.0, e, full.K.col(k));
+    p.add_M(1.0, e, full.M.col(k)); p.add_C(1.0, e, full.C.col(k)); p.add_K(1.0, e, full.K.col(k));
   }
   return {full.M(keep, keep), full.C(keep, keep), full.K(keep, keep)};
 }
@@ -60,7 +60,7 @@ std::vector<double> frequencies(const Matrices& m) {
 
 model::Model pinned_shaft(int elements, bool rotary) {
   model::Model m = one_shaft({cylinder("shaft", 0.9, 0.05, 0, elements)});
-  m.materials[0].E = 2e11, m.materials[0].G = 2e11 / 2.6, m.materials[0].rho = 7800;
+  m.materials[0].E = 2e11; m.materials[0].G = 2e11 / 2.6; m.materials[0].rho = 7800;
   m.shafts[0].sections[0].shear = model::ShearFactor::none;
   m.shafts[0].sections[0].rotary_inertia = rotary;
   m.bearings = {held("l", 0, {true, true, true, false, false, false}), held("r", 0.9, {false, true, true, false, false, false})};
@@ -76,7 +76,7 @@ TEST(Chain, SpinningPinnedShaftExactWhirl) {
     for (int n = 1; n <= 4; ++n) {
       const double b = std::pow(n * pi / 0.9, 2), a = rho * A + (rotary ? rho * I * b : 0), g = rho * I * b * Omega;
       const double root = std::sqrt(g * g + a * E * I * b * b);
-      exact.push_back((root - g) / a), exact.push_back((root + g) / a);
+      exact.push_back((root - g) / a); exact.push_back((root + g) / a);
     }
     std::vector<double> coarse, fine;
     for (int elements : {12, 24}) {

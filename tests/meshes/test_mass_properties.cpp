@@ -37,7 +37,7 @@ TEST(MassProperties, PointedCone) {
 // A hollow frustum is the sum of many thin slices.
 TEST(MassProperties, HollowFrustumAgainstSlices) {
   model::Model m = one_shaft({cylinder("a", 0.3, 0.1, 0.02), cylinder("b", 0.2, 0.06)});
-  m.shafts[0].sections[0].od_r = 0.06, m.shafts[0].sections[0].id_r = 0.05;
+  m.shafts[0].sections[0].od_r = 0.06; m.shafts[0].sections[0].id_r = 0.05;
   m.shafts[0].sections[1].added_mass_per_length = 12;
   MassProperties sum;
   const int n = 4000;
@@ -61,10 +61,10 @@ TEST(MassProperties, DisksOffsetSkewAndUnbalance) {
   model::Model m = one_shaft({rigid("rod", 1.0)});
   model::Disk d = disk("d", 0.25, 2, 0.02, 0.012);
   d.offset = Vec3(0.01, 0.002, 0);
-  d.skew = 0.3, d.skew_phase = pi / 2;   // leans towards +z
+  d.skew = 0.3; d.skew_phase = pi / 2;   // leans towards +z
   m.disks.push_back(d);
   auto u = named<model::Unbalance>("u", 0.25);
-  u.amount = 2e-3, u.phase = pi / 2;
+  u.amount = 2e-3; u.phase = pi / 2;
   m.unbalances.push_back(u);
   const MassProperties p = total_mass(m);
   EXPECT_NEAR(p.mass, 2, 1e-15);
@@ -74,7 +74,7 @@ TEST(MassProperties, DisksOffsetSkewAndUnbalance) {
   MassProperties expected;
   expected.add(2, Vec3(0.26, 0.002, 0), J);
   // 2 g m at +z: products of inertia - x u about the origin
-  expected.about_origin(0, 2) -= 0.25 * 2e-3, expected.about_origin(2, 0) -= 0.25 * 2e-3;
+  expected.about_origin(0, 2) -= 0.25 * 2e-3; expected.about_origin(2, 0) -= 0.25 * 2e-3;
   EXPECT_LT((p.about_origin - expected.about_origin).norm(), 1e-15);
 }
 

@@ -40,14 +40,14 @@ void check_invariants(const model::Model& m, const Mesh& mesh) {
       const model::Section& sec = m.shafts[l].sections[e.section];
       EXPECT_NEAR((e.xi2 - e.xi1) * sec.length, e.s2 - e.s1, 1e-12 * line.length);
       EXPECT_LE(e.s2 - e.s1, std::min(sec.max_element_length, m.max_element_length) * (1 + 1e-9));
-      node = e.left.node, s = e.s2;
+      node = e.left.node; s = e.s2;
     }
     // Every section once, elements and rigid parts together.
     for (std::size_t k = 0; k < m.shafts[l].sections.size(); ++k) {
       double covered = 0;
       int count = 0;
       for (const Element& e : mesh.elements)
-        if (e.line == static_cast<Index>(l) && e.section == k) covered += e.s2 - e.s1, ++count;
+        if (e.line == static_cast<Index>(l) && e.section == k) { covered += e.s2 - e.s1; ++count; }
       for (const RigidPart& r : mesh.rigid_parts)
         if (r.line == static_cast<Index>(l) && r.section == k) covered += r.o2 - r.o1;
       EXPECT_NEAR(covered, m.shafts[l].sections[k].length, 1e-12 * line.length);
@@ -92,7 +92,7 @@ TEST(Mesh, RefinementByCountAndSize) {
   check_invariants(m, mesh);
   EXPECT_EQ(mesh.elements.size(), 8u);   // 3 + 5: as even as the attachment allows
   double longest = 0, shortest = 1;
-  for (const Element& e : mesh.elements) longest = std::max(longest, e.s2 - e.s1), shortest = std::min(shortest, e.s2 - e.s1);
+  for (const Element& e : mesh.elements) { longest = std::max(longest, e.s2 - e.s1); shortest = std::min(shortest, e.s2 - e.s1); }
   EXPECT_NEAR(longest, 2.0 / 15, 1e-14);
   EXPECT_NEAR(shortest, 1.0 / 9, 1e-14);
   m.max_element_length = 0.1;            // exactly a tenth: no extra element from round-off

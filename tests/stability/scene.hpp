@@ -33,7 +33,7 @@ inline analysis::TransientResult run(const system::System& s, const system::Stat
   system::SystemProblem problem(s, {la::SolverKind::automatic, chart_change, 2.0});
   analysis::TransientOptions o;
   o.method = c.method;
-  o.integrator.tolerance = c.tol, o.integrator.t_end = c.t_end, o.integrator.scales.length = c.length, o.integrator.dt_fixed = c.dt;
+  o.integrator.tolerance = c.tol; o.integrator.t_end = c.t_end; o.integrator.scales.length = c.length; o.integrator.dt_fixed = c.dt;
   o.integrator.breakpoints = s.breakpoints();
   return analysis::run_transient(problem, start, o, observers);
 }
@@ -51,7 +51,7 @@ inline Mat3 isotropic(double k) { return Vec3(k, k, k).asDiagonal(); }
 /// Spring and damper to ground at a node.
 inline void add_spring(system::Builder& b, Index node, const Mat3& K, const Mat3& C = Mat3::Zero()) {
   elements::TranslationalBearing s;
-  s.K = K, s.C = C;
+  s.K = K; s.C = C;
   b.add(s, {node, b.add_ground(b.node(node).position, "ground")}, "springs");
 }
 
@@ -80,7 +80,7 @@ inline void add_shaft(system::Builder& b, const elements::ElementSection& sectio
 inline elements::ElementSection round_bar(double diameter) {
   elements::ElementSection s;
   s.od1 = s.od2 = s.mass_od1 = s.mass_od2 = diameter;
-  s.E = 2.1e11, s.G = 2.1e11 / 2.6, s.rho = 7850;
+  s.E = 2.1e11; s.G = 2.1e11 / 2.6; s.rho = 7850;
   return s;
 }
 

@@ -41,7 +41,7 @@ TEST(Contact, BouncesOnAStop) {
         const auto stop = std::make_shared<elements::ForceCurve>(elements::ForceCurve::one_sided(gap, k));
         const auto none = std::make_shared<elements::ForceCurve>(elements::ForceCurve::polynomial({0.0}));
         b.add(elements::ScalarSpring<3>::translation(-Vec3::UnitZ(), stop, none), {n, ground}, "stops");
-        b.hold(n, 0), b.hold(n, 1);
+        b.hold(n, 0); b.hold(n, 1);
         b.set_gravity(Vec3(0, 0, -g));
         const system::System s = b.finalize();
         const std::string what = fmt::format("{} gap {:g} k {:g}", method, gap, k);
@@ -68,10 +68,10 @@ TEST(Contact, ComesToRestInAClearance) {
       const Index ground = b.add_ground(Vec3::Zero(), "bore");
       b.add(elements::RigidDisk{1.0, 1e-3, 2e-3, 0.0}, {n}, "rigid disks");
       elements::Rub rub;
-      rub.law.gap = gap, rub.law.stiffness = k, rub.law.damping = 1.0, rub.law.friction = 0.1, rub.law.radius = 0.05;
+      rub.law.gap = gap; rub.law.stiffness = k; rub.law.damping = 1.0; rub.law.friction = 0.1; rub.law.radius = 0.05;
       b.add(rub, {n, ground}, "rubs");
       add_spring(b, n, Mat3::Zero(), isotropic(2.0 * 0.5 * std::sqrt(k)));   // half of critical in contact
-      b.hold(n, 0), b.hold(n, 3), b.hold(n, 4), b.hold(n, 5);
+      b.hold(n, 0); b.hold(n, 3); b.hold(n, 4); b.hold(n, 5);
       b.set_gravity(Vec3(0, 0, -9.81));
       const system::System s = b.finalize();
       const double w = std::sqrt(k), c = std::sqrt(k), rest = gap + 9.81 / k;

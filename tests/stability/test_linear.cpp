@@ -52,7 +52,7 @@ TEST(Linear, LimitOfTheGeneralRotor) {
     const system::System s = rotor(unbalance);
     const system::State start = settled(s);
     analysis::TransientOptions o;
-    o.integrator.tolerance = 1e-9, o.integrator.t_end = 0.3;
+    o.integrator.tolerance = 1e-9; o.integrator.t_end = 0.3;
     system::SystemProblem general(s);
     analysis::LinearMotion small(s, {}, speed, start);
     Track a, b;
@@ -79,7 +79,7 @@ TEST(Linear, EqualStepsUseOneFactorisation) {
     analysis::LinearMotion problem(s, {}, speed, start);
     analysis::TransientOptions o;
     o.method = method;
-    o.integrator.t_end = 1.0, o.integrator.dt_fixed = 1e-3;
+    o.integrator.t_end = 1.0; o.integrator.dt_fixed = 1e-3;
     const analysis::TransientResult r = run_transient(problem, start, o, {});
     ASSERT_EQ(r.reason, analysis::StopReason::end_time) << method << ": " << r.detail;
     EXPECT_EQ(r.statistics.accepted, 1000) << method;
@@ -101,12 +101,12 @@ TEST(Linear, FoundFromWhatTheSceneContains) {
   b.add(elements::RigidDisk{10.0, 0.05, 0.05, 0.0}, {n}, "rigid disks");
   b.add(elements::UnbalanceMass(1e-3, 0.0), {n}, "unbalances");
   add_spring(b, n, isotropic(1e5), isotropic(20.0));
-  b.hold(n, 0), b.hold(n, 4), b.hold(n, 5);
+  b.hold(n, 0); b.hold(n, 4); b.hold(n, 5);
   b.hold(n, system::spin_phi, make_polynomial({0.0, 0.0, 10.0}));
   const system::System s = b.finalize();
   EXPECT_TRUE(s.linear());
   analysis::TransientOptions o;
-  o.integrator.tolerance = 1e-7, o.integrator.t_end = 5.4238694;   // F. M. Lewis 1932: largest r/e 23.5842911 at 1.084738806 omega_n
+  o.integrator.tolerance = 1e-7; o.integrator.t_end = 5.4238694;   // F. M. Lewis 1932: largest r/e 23.5842911 at 1.084738806 omega_n
   system::SystemProblem problem(s);
   analysis::PeakTracker peaks({{"disk", {n, 0.0}}}, n);
   const analysis::TransientResult r = run_transient(problem, s.make_state(), o, {&peaks});

@@ -33,7 +33,7 @@ TEST(Rotation, SpeedsToAMillionRpm) {
       const double Omega = rpm * pi / 30.0, G = Jp * Omega, root = std::sqrt(G * G + 4.0 * Jt * C2);
       const double fast = (G + std::copysign(root, G)) / (2.0 * Jt), slow = -C2 / (Jt * fast);   // product of the roots: -C2/Jt
       system::State start = s.make_state();
-      start.q[4] = g0, start.v[3] = Omega;
+      start.q[4] = g0; start.v[3] = Omega;
       const Complex i(0.0, 1.0);
       const Complex exact = g0 / (fast - slow) * (fast * std::exp(i * slow * t) - slow * std::exp(i * fast * t));
       const std::string what = fmt::format("{} {:g} rpm", method, rpm);
@@ -55,7 +55,7 @@ TEST(Rotation, ReversalThroughZero) {
   b.add(elements::UnbalanceMass(m * e, 0.0), {n}, "unbalances");
   add_spring(b, n, isotropic(k), isotropic(c));
   b.hold(n, system::spin_phi, make_angle_of_speed(make_polynomial({Omega0, -2.0 * Omega0 / T}), 0.0));
-  b.hold(n, 4), b.hold(n, 5);
+  b.hold(n, 4); b.hold(n, 5);
   const system::System s = b.finalize();
   const auto f = [&](double t, const VecX& y) {
     const double phi = Omega0 * t - Omega0 / T * t * t, O = Omega0 - 2.0 * Omega0 / T * t, alpha = -2.0 * Omega0 / T;

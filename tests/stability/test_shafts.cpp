@@ -25,7 +25,7 @@ double elliptic_K(double k) {
   double a = 1.0, b = std::sqrt(1.0 - k * k);
   while (std::abs(a - b) > 1e-15) {
     const double m = 0.5 * (a + b);
-    b = std::sqrt(a * b), a = m;
+    b = std::sqrt(a * b); a = m;
   }
   return 0.5 * pi / a;
 }
@@ -33,7 +33,7 @@ double elliptic_K(double k) {
 elements::ElementSection wire(double EI) {
   elements::ElementSection s;
   s.constants = true;
-  s.given.EA = 1e8 * EI, s.given.GJ = EI, s.given.EI = EI, s.given.rhoA = 1.0, s.given.rhoI = 0.0, s.given.rhoIp = 1e-4;
+  s.given.EA = 1e8 * EI; s.given.GJ = EI; s.given.EI = EI; s.given.rhoA = 1.0; s.given.rhoI = 0.0; s.given.rhoIp = 1e-4;
   return s;
 }
 
@@ -166,7 +166,7 @@ TEST(Shafts, WindUpOfAHundredTurns) {
       b.add_line("shaft");
       add_shaft(b, bar, std::vector<double>(static_cast<std::size_t>(n), L / n));
       clamp(b, 0);
-      b.hold(n, 1), b.hold(n, 2);
+      b.hold(n, 1); b.hold(n, 2);
       b.add(elements::FixedLoad{Vec3::Zero(), Vec3(sign * GJ * twist / L, 0, 0), 0.0, nullptr}, {Index(n)}, "loads");
       const system::System s = b.finalize();
       const analysis::Equilibrium e = equilibrium(s);
@@ -181,7 +181,7 @@ TEST(Shafts, FreeMotionIsDiagnosed) {
   system::Builder b;
   b.add_line("shaft");
   add_shaft(b, round_bar(0.02), {0.5, 0.5});
-  b.hold(0, 1), b.hold(0, 2), b.hold(0, 0);   // a pivot: the shaft can swing
+  b.hold(0, 1); b.hold(0, 2); b.hold(0, 0);   // a pivot: the shaft can swing
   b.add(elements::PointForce{Vec3(0, 0, 1.0), nullptr}, {Index(2)}, "forces");
   const system::System s = b.finalize();
   try {

@@ -69,7 +69,7 @@ inline RigidCase symmetric_top() {
   const Vec3 d = rotation::L(Vec3(0, gamma.x(), gamma.y())).col(0);
   const auto rates = rotation::rates_of_omega(gamma, 200.0 * d);
   c.start.q.tail<2>() = gamma;
-  c.start.v[3] = rates.phi, c.start.v.tail<2>() = rates.gamma;
+  c.start.v[3] = rates.phi; c.start.v.tail<2>() = rates.gamma;
   return c;
 }
 

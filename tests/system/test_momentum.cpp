@@ -64,7 +64,7 @@ System mixed(Random& r) {
   b.add(TranslationalBearing{K, 0.1 * K, Mat3::Zero(), Vec3::Zero(), Vec3::Zero()}, {free, point}, "support");
   b.add(BodyLoad{Vec3(1, 2, 3), Vec3(0.1, -0.2, 0.3), 0.1, make_harmonic(1, 1, 3, 0)}, {free}, "load");
   TorqueLaw law;
-  law.of_time = make_constant(0.7), law.viscous = 0.1;
+  law.of_time = make_constant(0.7); law.viscous = 0.1;
   b.add(JointTorque{law, Vec3::UnitX()}, {pivot}, "drive");
   b.add(FixedTorque{law, Vec3::UnitY()}, {free}, "drive");
   return b.finalize();
@@ -162,11 +162,11 @@ TEST(Momentum, RefusesWhatItDoesNotCover) {
   const RigidDisk disk{1, 1, 2, 0};
   const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
   EXPECT_EQ(refusal([&](Builder& b, Index n) { b.add(disk, {n}, "disk"); }), "covered");
-  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) { b.add(disk, {n}, "disk"), b.hold(n, 1); }), "partly held"));
+  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) { b.add(disk, {n}, "disk"); b.hold(n, 1); }), "partly held"));
   EXPECT_TRUE(has(refusal([&](Builder& b, Index n) { b.add(SpringBlock{1, 1, 0, Vec3::UnitX()}, {n}, "spring"); }), "without mass"));
   EXPECT_TRUE(has(refusal([&](Builder& b, Index n) { b.add(RigidDisk{1, 0, 0, 0}, {n}, "disk"); }), "rotary inertia"));
   EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
-                    b.add(disk, {n}, "disk"), b.add(UnbalanceMass(1, 0, make_ramp(0, 1, 0, 1)), {n}, "unbalance");
+                    b.add(disk, {n}, "disk"); b.add(UnbalanceMass(1, 0, make_ramp(0, 1, 0, 1)), {n}, "unbalance");
                   }), "changes in time"));
   EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
                     b.add(disk, {n}, "disk");

@@ -35,7 +35,7 @@ TEST(RigidMotion, SymmetricTopNutation) {
   for (auto& [name, m] : both_forms(c.system, c.start)) {
     const auto look = [&](double& theta, double& azimuth) {
       const Vec3 d = attitude(c.system, m->state(), 0).col(0);
-      theta = std::atan2(std::hypot(d.x(), d.y()), d.z()), azimuth = std::atan2(d.y(), d.x());
+      theta = std::atan2(std::hypot(d.x(), d.y()), d.z()); azimuth = std::atan2(d.y(), d.x());
     };
     double theta, azimuth, theta0, azimuth0;
     look(theta0, azimuth0);
@@ -128,11 +128,11 @@ TEST(RigidMotion, WhirlFrequenciesOfARotorOnTwoSprings) {
     Matrix<4> M, C, K;
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
-        M(i, j) = m.M.block(0)(use[i], use[j]), C(i, j) = m.C.block(0)(use[i], use[j]), K(i, j) = m.K.block(0)(use[i], use[j]);
+        M(i, j) = m.M.block(0)(use[i], use[j]); C(i, j) = m.C.block(0)(use[i], use[j]); K(i, j) = m.K.block(0)(use[i], use[j]);
       }
     Matrix<8> A = Matrix<8>::Zero();
     A.topRightCorner<4, 4>().setIdentity();
-    A.bottomLeftCorner<4, 4>() = -M.inverse() * K, A.bottomRightCorner<4, 4>() = -M.inverse() * C;
+    A.bottomLeftCorner<4, 4>() = -M.inverse() * K; A.bottomRightCorner<4, 4>() = -M.inverse() * C;
     const Eigen::EigenSolver<MatX> solver{MatX(A)};
     std::vector<double> hz;
     for (int i = 0; i < 8; ++i) {

@@ -11,7 +11,7 @@ namespace whirl::time::test {
 template <class S> class DenseLu {
  public:
   using Mat = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>;
-  void resize(Index n) { lu_.resize(n, n), pivot_.resize(static_cast<std::size_t>(n)); }
+  void resize(Index n) { lu_.resize(n, n); pivot_.resize(static_cast<std::size_t>(n)); }
   Mat& matrix() { return lu_; }
   bool factor() {
     const Index n = lu_.rows();
@@ -97,7 +97,7 @@ class LinearProblem : public DenseProblem {
   using Force = std::function<void(double t, Ref f)>;
   LinearProblem(std::vector<Kind> kinds, const MatX& m, const MatX& c, const MatX& k, Force force = {}, bool linear = true)
       : DenseProblem(std::move(kinds)), force_(std::move(force)), linear_(linear), f_(VecX::Zero(m.rows())) {
-    M = m, C = c, K = k;
+    M = m; C = c; K = k;
   }
   bool is_linear() const override { return linear_; }
   bool residual(double t, CRef q, CRef v, CRef a, Ref r) override {
@@ -140,7 +140,7 @@ inline VecX reference(const std::function<VecX(double, const VecX&)>& f, double 
       VecX z0 = y, z1 = y + h * f(t, y);
       for (int k = 1; k < m; ++k) {
         const VecX z2 = z0 + 2.0 * h * f(t + k * h, z1);
-        z0 = z1, z1 = z2;
+        z0 = z1; z1 = z2;
       }
       VecX value = 0.5 * (z1 + z0 + h * f(t + H, z1));
       for (int i = 0; i < j; ++i) {

@@ -138,7 +138,7 @@ TEST(Accuracy, SmallMotionOnALargeOffset) {
         const double f = motion * sag * 6e5;   // near 0.6 of the stiffness at the free end, at this frequency
         LinearProblem p(all(2), M, C, K, [f](double t, Ref r) { r[1] = 1e3 + f * std::sin(w * t); }, false);
         Options o;
-        o.tolerance = tolerance, o.t_end = 0.1;
+        o.tolerance = tolerance; o.t_end = 0.1;
         auto integrator = make_integrator(name, p, o);
         integrator->start(0.0, Vec2(1e-3, 2e-3), Vec2::Zero());
         EXPECT_EQ(run(*integrator, 0.1), StepStatus::ok) << name << " " << motion << " " << tolerance;

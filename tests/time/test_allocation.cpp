@@ -57,7 +57,7 @@ TEST(Allocation, TheCounterCounts) {
 TEST(Allocation, StepsDoNotAllocate) {
   for (const char* name : {"radau5", "gauss4", "gauss6", "generalized_alpha"}) {
     LavalRotor p;
-    p.m = 1.0, p.e = 0.05, p.J = 0.02, p.k = 100.0, p.c = 0.3, p.torque = 3.0;
+    p.m = 1.0; p.e = 0.05; p.J = 0.02; p.k = 100.0; p.c = 0.3; p.torque = 3.0;
     Options o;
     o.tolerance = 1e-4;
     o.breakpoints = {0.3, 0.77};

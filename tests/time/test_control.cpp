@@ -184,14 +184,14 @@ TEST(Control, ImpassableStatesAreReported) {
     integrator->start(0.0, VecX::Zero(1), VecX::Ones(1));
     StepReport s;
     int steps = 0;
-    do s = integrator->advance(), ++steps;
+    do { s = integrator->advance(); ++steps; }
     while (s.ok() && steps < 10000);
     EXPECT_EQ(s.status, StepStatus::domain) << name;
     EXPECT_NEAR(integrator->time(), 1.0, 1e-8) << name;
     EXPECT_EQ(integrator->time(), s.t0);
     EXPECT_NEAR(integrator->q()[0], integrator->time(), 1e-12);
     // asked again it may creep on by steps of dt_min, with the same end
-    do s = integrator->advance(), ++steps;
+    do { s = integrator->advance(); ++steps; }
     while (s.ok() && steps < 10000);
     EXPECT_EQ(s.status, StepStatus::domain) << name;
     EXPECT_LT(integrator->q()[0], 1.0);
@@ -306,7 +306,7 @@ TEST(Control, JumpOfAPrescribedVelocityIsAnImpulse) {
 TEST(Control, AMillionRevolutions) {
   for (const char* name : {"radau5", "gauss4", "generalized_alpha"}) {
     LavalRotor p;
-    p.e = 0.0, p.torque = 0.0;
+    p.e = 0.0; p.torque = 0.0;
     Options o;
     const double omega = 523.6, dt = 0.93 * two_pi / omega;
     o.dt_fixed = dt;
@@ -337,7 +337,7 @@ class Charted final : public DenseProblem {
     if (std::abs(q[0]) < 0.5) return false;
     const double f = unit == 1.0 ? 2.0 : 0.5;
     shift += 0.7 * unit * q[0];
-    q *= 0.3 / f, v /= f, a /= f;
+    q *= 0.3 / f; v /= f; a /= f;
     unit *= f;
     ++changes;
     return true;
@@ -363,7 +363,7 @@ TEST(Control, BadOptionsAreRefused) {
   EXPECT_THROW(make_integrator("radau7", p, Options{}), Error);
   for (auto spoil : std::vector<std::function<void(Options&)>>{
            [](Options& o) { o.tolerance = 0.0; }, [](Options& o) { o.tolerance = nan; }, [](Options& o) { o.rho_inf = 1.1; },
-           [](Options& o) { o.dt_fixed = -1.0; }, [](Options& o) { o.dt_max = 0.0; }, [](Options& o) { o.dt_min = 1.0, o.dt_max = 0.5; },
+           [](Options& o) { o.dt_fixed = -1.0; }, [](Options& o) { o.dt_max = 0.0; }, [](Options& o) { o.dt_min = 1.0; o.dt_max = 0.5; },
            [](Options& o) { o.t_end = nan; }, [](Options& o) { o.scales.length = 0.0; }, [](Options& o) { o.max_newton = 0; }}) {
     Options o;
     spoil(o);

@@ -79,7 +79,7 @@ TEST(Events, TheTimeLiesBeyondTheCrossing) {
 // Landing on an event: the step made again is a step of the scheme, not a point of its interpolant, and the run goes on.
 TEST(Events, StepsMadeAgainEndOnTheEvent) {
   LavalRotor model;
-  model.m = 1.0, model.e = 0.05, model.J = 0.02, model.k = 100.0, model.c = 0.3, model.torque = 0.5;
+  model.m = 1.0; model.e = 0.05; model.J = 0.02; model.k = 100.0; model.c = 0.3; model.torque = 0.5;
   VecX y0(6);
   y0 << 0.02, -0.01, 0.3, 0.1, 0.2, 2.0;
   for (const char* name : {"radau5", "gauss4", "gauss6", "generalized_alpha"}) {

@@ -50,7 +50,7 @@ TEST(Order, DoublePendulum) {
 
 TEST(Order, LavalRotorWithFreeSpinAndGyroscopicCoupling) {
   LavalRotor model;
-  model.m = 1.0, model.e = 0.05, model.J = 0.02, model.k = 100.0, model.c = 0.3, model.b = 2.0, model.torque = 0.5;
+  model.m = 1.0; model.e = 0.05; model.J = 0.02; model.k = 100.0; model.c = 0.3; model.b = 2.0; model.torque = 0.5;
   VecX y0(6);
   y0 << 0.02, -0.01, 0.3, 0.1, 0.2, 12.0;
   const VecX y = reference([&](double, const VecX& x) { return model.rate(x); }, 0.0, 1.0, y0, 400);
@@ -92,9 +92,9 @@ TEST(Order, PrescribedMotion) {
 LinearProblem maxwell() {
   MatX M = MatX::Zero(3, 3), C = M, K = M;
   M(0, 0) = 1.0;
-  K(0, 0) = 30.0, K(0, 1) = -20.0;
-  C(1, 1) = 5.0, K(1, 1) = 20.0, K(1, 0) = -20.0;
-  K(2, 0) = -1.0, K(2, 1) = -1.0, K(2, 2) = 1.0;
+  K(0, 0) = 30.0; K(0, 1) = -20.0;
+  C(1, 1) = 5.0; K(1, 1) = 20.0; K(1, 0) = -20.0;
+  K(2, 0) = -1.0; K(2, 1) = -1.0; K(2, 2) = 1.0;
   return LinearProblem({Kind::displacement, Kind::displacement, Kind::internal}, M, C, K,
                        [](double t, Ref f) { f[0] = std::cos(2.0 * t); }, false);
 }

@@ -138,7 +138,7 @@ TEST(Stability, NoOrderCollapseOnStiffSupports) {
     K << 1e4, -1e4, -1e4, 1e4 + k;
     C << 2.0, -2.0, -2.0, 2.0;
     auto make = [&] {
-      return LinearProblem(all(2), M, C, K, [](double t, Ref f) { f[0] = 100.0 * std::sin(70.0 * t), f[1] = 50.0 * std::sin(40.0 * t); });
+      return LinearProblem(all(2), M, C, K, [](double t, Ref f) { f[0] = 100.0 * std::sin(70.0 * t); f[1] = 50.0 * std::sin(40.0 * t); });
     };
     auto p = make();
     Options o;

@@ -8,7 +8,7 @@ namespace {
 
 LavalRotor rotor() {
   LavalRotor p;
-  p.m = 1.0, p.e = 0.02, p.J = 0.02, p.k = 400.0, p.c = 0.3, p.b = 1.0, p.torque = 0.8;
+  p.m = 1.0; p.e = 0.02; p.J = 0.02; p.k = 400.0; p.c = 0.3; p.b = 1.0; p.torque = 0.8;
   return p;
 }
 

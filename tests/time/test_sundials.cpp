@@ -82,9 +82,9 @@ TEST_F(Sundials, IdaMasslessUnknowns) {
   // as in the order tests: mass, first-order joint, algebraic follower
   MatX M = MatX::Zero(3, 3), C = M, K = M;
   M(0, 0) = 1.0;
-  K(0, 0) = 30.0, K(0, 1) = -20.0;
-  C(1, 1) = 5.0, K(1, 1) = 20.0, K(1, 0) = -20.0;
-  K(2, 0) = -1.0, K(2, 1) = -1.0, K(2, 2) = 1.0;
+  K(0, 0) = 30.0; K(0, 1) = -20.0;
+  C(1, 1) = 5.0; K(1, 1) = 20.0; K(1, 0) = -20.0;
+  K(2, 0) = -1.0; K(2, 1) = -1.0; K(2, 2) = 1.0;
   auto make = [&] {
     return LinearProblem({Kind::displacement, Kind::displacement, Kind::internal}, M, C, K,
                          [](double t, Ref f) { f[0] = std::cos(2.0 * t); }, false);
@@ -168,7 +168,7 @@ TEST_F(Sundials, ExplicitRungeKuttaAgrees) {
 
 TEST_F(Sundials, ExplicitRungeKuttaOrder) {
   LavalRates p;
-  p.model.e = 0.05, p.model.k = 100.0, p.model.torque = 0.5;
+  p.model.e = 0.05; p.model.k = 100.0; p.model.torque = 0.5;
   VecX y0(6);
   y0 << 0.02, -0.01, 0.3, 0.1, 0.2, 12.0;
   const VecX y = reference([&](double, const VecX& x) { return p.model.rate(x); }, 0.0, 1.0, y0, 400);

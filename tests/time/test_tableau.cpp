@@ -68,7 +68,7 @@ TEST(Tableau, BasisAndExtrapolationAreExactForPolynomials) {
       double a = 0, v = 0, q = 0;
       for (int j = 0; j < t->stages; ++j) {
         const double f = accel(t->c[u(j)]);
-        a += b.l[u(j)] * f, v += b.l1[u(j)] * f, q += b.l2[u(j)] * f;
+        a += b.l[u(j)] * f; v += b.l1[u(j)] * f; q += b.l2[u(j)] * f;
       }
       EXPECT_NEAR(a, accel(x), 1e-13);
       EXPECT_NEAR(v, speed(x), 1e-13);

@@ -26,12 +26,12 @@ inline elements::GeneralBeamConstants general_constants(const BeamSection& s, do
   };
   const auto y = plane(s.EI_C, s.kGA_B), z = plane(s.EI_B, s.kGA_C);
   elements::GeneralBeamConstants c;
-  c.length = l, c.EA_l = y.EA_l, c.GJ_l = y.GJ_l;
-  c.ky_def11 = y.k11, c.ky_def12 = y.k12, c.ky_def22 = y.k22;
-  c.kz_def11 = z.k11, c.kz_def12 = z.k12, c.kz_def22 = z.k22;
-  c.b11 = 0.5 * (y.b11 + z.b11), c.b12 = 0.5 * (y.b12 + z.b12), c.b22 = 0.5 * (y.b22 + z.b22);
+  c.length = l; c.EA_l = y.EA_l; c.GJ_l = y.GJ_l;
+  c.ky_def11 = y.k11; c.ky_def12 = y.k12; c.ky_def22 = y.k22;
+  c.kz_def11 = z.k11; c.kz_def12 = z.k12; c.kz_def22 = z.k22;
+  c.b11 = 0.5 * (y.b11 + z.b11); c.b12 = 0.5 * (y.b12 + z.b12); c.b22 = 0.5 * (y.b22 + z.b22);
   c.M4 = 0.5 * (y.M4 + z.M4);
-  c.rhoIz_l = s.rhoI_C * l, c.rhoIy_l = s.rhoI_B * l, c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
+  c.rhoIz_l = s.rhoI_C * l; c.rhoIy_l = s.rhoI_B * l; c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
   return c;
 }
 

@@ -53,8 +53,8 @@ struct Windows final : analysis::Observer {
     const Vec2 u = s.node(node).u.tail<2>();
     for (std::size_t k = 0; k < windows.size(); ++k)
       if (s.t() >= windows[k][0] && s.t() <= windows[k][1]) {
-        if (const double away = (u - centre).norm(); away > peak[k]) peak[k] = away, peak_time[k] = s.t();
-        least[k] = least[k].cwiseMin(u), most[k] = most[k].cwiseMax(u);
+        if (const double away = (u - centre).norm(); away > peak[k]) { peak[k] = away; peak_time[k] = s.t(); }
+        least[k] = least[k].cwiseMin(u); most[k] = most[k].cwiseMax(u);
       }
     dissipated_least = std::min(dissipated_least, s.energy().dissipated);
   }
@@ -66,7 +66,7 @@ struct Windows final : analysis::Observer {
       if (s.t0() < windows[k][0] || s.t1() > windows[k][1]) continue;
       Vec2 sum = Vec2::Zero();
       for (int i = 0; i < 8; ++i) sum += s.at(s.t0() + dt * (i + 0.5) / 8).node(node).u.tail<2>();
-      span[k] += dt, mean[k] += (dt / span[k]) * (sum / 8 - mean[k]);
+      span[k] += dt; mean[k] += (dt / span[k]) * (sum / 8 - mean[k]);
     }
   }
 };

@@ -22,7 +22,7 @@ struct Jeffcott {
     b.add_line("rotor");
     b.add_node({Vec3::Zero(), 0, "disk", false});
     elements::RigidDisk disk;
-    disk.mass = m, disk.Jp = J, disk.Jt = J;
+    disk.mass = m; disk.Jp = J; disk.Jt = J;
     b.add(disk, {Index(0)}, "rigid disks");
     if (e != 0.0) b.add(elements::UnbalanceMass(m * e, 0.0, unbalance), {Index(0)}, "unbalances");
     elements::TranslationalBearing spring;
@@ -36,7 +36,7 @@ struct Jeffcott {
       b.add(motor, {Index(0)}, "drives");
     }
     for (const int c6 : {0, 4, 5}) b.hold(0, c6);
-    if (k == 0.0) b.hold(0, 1), b.hold(0, 2);
+    if (k == 0.0) { b.hold(0, 1); b.hold(0, 2); }
     if (phi) b.hold(0, system::spin_phi, phi);
     b.set_gravity(gravity);
     if (base_y) b.set_base_acceleration(1, base_y);
@@ -70,7 +70,7 @@ inline JeffcottRun run(const Jeffcott& rotor, double t_end, double tolerance, do
   system::SystemProblem problem(sys);
   analysis::TransientOptions o;
   o.method = method;
-  o.integrator.tolerance = tolerance, o.integrator.t_end = t_end;
+  o.integrator.tolerance = tolerance; o.integrator.t_end = t_end;
   o.integrator.breakpoints = sys.breakpoints();
   o.speed_stops = std::move(stops);
   analysis::PeakTracker peaks({{"disk", {0, 0.0}}}, 0);
@@ -80,7 +80,7 @@ inline JeffcottRun run(const Jeffcott& rotor, double t_end, double tolerance, do
   start.v[system::spin_phi] = spin0;
   JeffcottRun r;
   r.result = analysis::run_transient(problem, start, o, {&peaks, &energy, &at});
-  r.peak = peaks.peaks().front(), r.samples = at.samples, r.energy_defect = energy.worst_defect();
+  r.peak = peaks.peaks().front(); r.samples = at.samples; r.energy_defect = energy.worst_defect();
   return r;
 }
 

@@ -30,7 +30,7 @@ system::System jeffcott(double c, double ky = 0, double kz = 0) {
     for (int k = n == 0 ? 0 : 1; k < 3; ++k) b.hold(n, k);
   b.add(elements::RigidDisk{m, 0.01, 0.005, 0}, {Index(1)}, "disks");
   elements::TranslationalBearing support;
-  support.K(1, 1) = ky, support.K(2, 2) = kz, support.C(1, 1) = support.C(2, 2) = c;
+  support.K(1, 1) = ky; support.K(2, 2) = kz; support.C(1, 1) = support.C(2, 2) = c;
   b.add(support, {Index(1), b.add_ground(Vec3(0.5, 0, 0), "ground")}, "springs");
   return b.finalize();
 }
@@ -40,7 +40,7 @@ BandResult bands(const system::System& s, double from, double to, int points, do
   RotatingAxes axes(linear, to);
   EXPECT_TRUE(axes.turning());
   BandOptions o;
-  o.modes = 4, o.tolerance = tolerance;
+  o.modes = 4; o.tolerance = tolerance;
   for (int k = 0; k < points; ++k) o.speeds.push_back(from + (to - from) * k / (points - 1));
   return find_bands(axes, o);
 }
@@ -139,7 +139,7 @@ TEST(AsymmetricShaft, TwicePerTurnUnderGravity) {
   const double n = static_cast<double>(rows.size());
   for (const auto& x : rows) {
     const Complex e = std::polar(1.0, 2 * Omega * x[0]), w(x[1], x[2]);
-    E += e / n, S0 += w / n, S2 += std::conj(e) * w / n;
+    E += e / n; S0 += w / n; S2 += std::conj(e) * w / n;
   }
   const Complex X0 = (S0 - E * S2) / (1 - std::norm(E)), X2 = (S2 - std::conj(E) * S0) / (1 - std::norm(E));
   // 158 rad/s is so near half the critical speed that 1e-7 of the stiffness is 3e-6 of the motion: what large rotation and the step leave

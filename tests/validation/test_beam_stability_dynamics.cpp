@@ -82,8 +82,8 @@ double critical_torque(const system::System& s, double lo, double hi) {
   const double r = 0.5 * (std::sqrt(5.0) - 1.0);
   double a = hi - r * (hi - lo), b = lo + r * (hi - lo), fa = log_det(a), fb = log_det(b);
   while (hi - lo > 1e-7 * hi) {
-    if (fa < fb) hi = b, b = a, fb = fa, a = hi - r * (hi - lo), fa = log_det(a);
-    else lo = a, a = b, fa = fb, b = lo + r * (hi - lo), fb = log_det(b);
+    if (fa < fb) { hi = b; b = a; fb = fa; a = hi - r * (hi - lo); fa = log_det(a); }
+    else { lo = a; a = b; fa = fb; b = lo + r * (hi - lo); fb = log_det(b); }
   }
   return 0.5 * (lo + hi);
 }
@@ -103,10 +103,10 @@ system::System torqued_shaft(int n, bool clamped, double kGA) {
   for (int i = 0; i <= n; ++i) b.add_node({Vec3(1.0 * i / n, 0, 0), 0, "node " + std::to_string(i), false});
   for (int i = 0; i < n; ++i) b.add(elements::ShaftBeam<false>(c, Vec3::UnitX()), {i, i + 1}, "shaft elements");
   for (int end : {0, n}) {
-    b.hold(end, 1), b.hold(end, 2);
-    if (clamped) b.hold(end, 4), b.hold(end, 5);
+    b.hold(end, 1); b.hold(end, 2);
+    if (clamped) { b.hold(end, 4); b.hold(end, 5); }
   }
-  b.hold(0, 0), b.hold(n / 2, 3);
+  b.hold(0, 0); b.hold(n / 2, 3);
   b.add(elements::FixedLoad{Vec3::Zero(), Vec3(-1, 0, 0), 0, nullptr}, {0}, "loads");
   b.add(elements::FixedLoad{Vec3::Zero(), Vec3(1, 0, 0), 0, nullptr}, {n}, "loads");
   return b.finalize();
@@ -146,8 +146,8 @@ TEST(BeamBuckling, EulerColumn) {
       const auto c = elements::make_shaft_constants(shaft_section(1e10, kGA, 1.0, 1.0), 1.0 / n);
       for (int i = 0; i <= n; ++i) b.add_node({Vec3(1.0 * i / n, 0, 0), 0, "node " + std::to_string(i), false});
       for (int i = 0; i < n; ++i) b.add(elements::ShaftBeam<false>(c, Vec3::UnitX()), {i, i + 1}, "shaft elements");
-      for (int i = 0; i <= n; ++i) b.hold(i, 2), b.hold(i, 3), b.hold(i, 4);   // in the plane x-y
-      b.hold(0, 0), b.hold(0, 1), b.hold(n, 1);
+      for (int i = 0; i <= n; ++i) { b.hold(i, 2); b.hold(i, 3); b.hold(i, 4); }   // in the plane x-y
+      b.hold(0, 0); b.hold(0, 1); b.hold(n, 1);
       b.add(elements::PointForce{Vec3(-1, 0, 0), nullptr}, {n}, "forces");
       const double exact = kGA > 0 ? pi * pi / (1 + pi * pi / kGA) : pi * pi;
       error[k] = std::abs(critical_load(b.finalize(), 0.7 * exact, 1.3 * exact) / exact - 1.0);
@@ -174,7 +174,7 @@ TEST(BeamBuckling, LateralTorsional) {
   system::Builder b;
   const Index line = b.add_line("strip");
   const Index right = add_beam(b, line, Mat3::Identity(), straight, 0, 1, 16, {1e9, 0, 0, 1.0, 1e7, 1.0});
-  for (Index n : {Index(0), right}) b.hold(n, 1), b.hold(n, 2), b.hold(n, 3);
+  for (Index n : {Index(0), right}) { b.hold(n, 1); b.hold(n, 2); b.hold(n, 3); }
   b.hold(0, 0);
   b.add(elements::FixedLoad{Vec3::Zero(), Vec3(0, -1, 0), 0, nullptr}, {0}, "loads");
   b.add(elements::FixedLoad{Vec3::Zero(), Vec3(0, 1, 0), 0, nullptr}, {right}, "loads");
@@ -188,7 +188,7 @@ TEST(BeamTheories, EulerBernoulliRayleighAndTimoshenko) {
   const double d = 0.05, L = 0.5, E = 2.1e11, G = 8.1e10, rho = 7800, r = d * d / 16;
   for (int theory = 0; theory < 3; ++theory) {
     elements::ElementSection e;
-    e.od1 = e.od2 = e.mass_od1 = e.mass_od2 = d, e.E = E, e.G = G, e.rho = rho;
+    e.od1 = e.od2 = e.mass_od1 = e.mass_od2 = d; e.E = E; e.G = G; e.rho = rho;
     e.shear = theory < 2 ? elements::ShearRule::rigid : elements::ShearRule::cowper;
     e.rotary_inertia = theory > 0;
     const int n = 16;
@@ -197,8 +197,8 @@ TEST(BeamTheories, EulerBernoulliRayleighAndTimoshenko) {
     b.add_line("shaft");
     for (int i = 0; i <= n; ++i) b.add_node({Vec3(L * i / n, 0, 0), 0, "node " + std::to_string(i), false});
     for (int i = 0; i < n; ++i) b.add(elements::ShaftBeam<false>(c, Vec3::UnitX()), {i, i + 1}, "shaft elements");
-    for (int i = 0; i <= n; ++i) b.hold(i, 0), b.hold(i, 2), b.hold(i, 3), b.hold(i, 4);   // in the plane x-y
-    b.hold(0, 1), b.hold(n, 1);
+    for (int i = 0; i <= n; ++i) { b.hold(i, 0); b.hold(i, 2); b.hold(i, 3); b.hold(i, 4); }   // in the plane x-y
+    b.hold(0, 1); b.hold(n, 1);
     const system::System s = b.finalize();
     system::Workspace w = s.make_workspace();
     la::MCK m = s.make_matrices();
@@ -228,13 +228,13 @@ TEST(WindUp, TenAndAHundredTurnsAndTheirEnergy) {
     system::Builder b;
     b.add_line("shaft");
     elements::ElementSection e;
-    e.od1 = e.od2 = e.mass_od1 = e.mass_od2 = 0.02, e.E = 2.08e11, e.G = 80e9, e.rho = 7850;
+    e.od1 = e.od2 = e.mass_od1 = e.mass_od2 = 0.02; e.E = 2.08e11; e.G = 80e9; e.rho = 7850;
     const auto c = elements::make_shaft_constants(e, L / n);
     for (int i = 0; i <= n; ++i) b.add_node({Vec3(L * i / n, 0, 0), 0, "node " + std::to_string(i), false});
     for (int i = 0; i < n; ++i) b.add(elements::ShaftBeam<false>(c, Vec3::UnitX()), {i, i + 1}, "shaft elements");
     for (int i = 0; i <= n; ++i)
       for (int k : {1, 2, 4, 5}) b.hold(i, k);
-    b.hold(0, 0), b.hold(0, 3);
+    b.hold(0, 0); b.hold(0, 3);
     const double twist = two_pi * turns, T = GJ * twist / L;
     if (turns == 4.0) { EXPECT_NEAR(T, 6316.546817, 1e-6); }
     b.add(elements::FixedLoad{Vec3::Zero(), Vec3(T, 0, 0), 0, nullptr}, {n}, "loads");

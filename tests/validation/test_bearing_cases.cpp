@@ -73,7 +73,7 @@ TEST(ShortJournalDeck, LocusAndStabilityTable) {
     record.check(at + "attitude", "deg", std::atan2(r.x(), -r.y()) * 180 / pi, t.attitude, 1e-7 * t.attitude);   // from the load (-z) in the sense of rotation (y -> z: to +y)
     record.check(at + "equivalent stiffness", "W/c", limit[0] * c / W, t.k, 1e-6 * t.k);
     analysis::ModesOptions o;
-    o.count = 4, o.motion = analysis::Motion::lateral;
+    o.count = 4; o.motion = analysis::Motion::lateral;
     const auto modes = analysis::whirl_modes(linear, Omega, o);
     if (!std::isfinite(t.p2)) {
       EXPECT_LT(limit[1], 0.0);   // no threshold: stable whatever the mass
@@ -83,7 +83,7 @@ TEST(ShortJournalDeck, LocusAndStabilityTable) {
     const double given = m.deck.model.disks[0].mass;   // as rounded in the deck
     double nearest = infinity, frequency = 0;
     for (const auto& mode : modes)
-      if (mode.frequency > 0 && std::abs(mode.lambda.real()) < nearest) nearest = std::abs(mode.lambda.real()), frequency = mode.frequency;
+      if (mode.frequency > 0 && std::abs(mode.lambda.real()) < nearest) { nearest = std::abs(mode.lambda.real()); frequency = mode.frequency; }
     EXPECT_LT(nearest, 1e-6 * Omega + std::abs(given / M - 1) * Omega) << t.eps;
     record.check(at + "whirl at the onset over speed", "-", frequency / Omega, t.whirl, 1e-6);
   }
@@ -114,7 +114,7 @@ TEST(ShortJournalDeck, StableAtAnySpeedBeyondAnEccentricity) {
                                    "viscosity = \"20 mPa.s\"\n" + load(Vec2(0, -W))));
     analysis::Linearizer linear(m.built.system, m.running());
     analysis::ModesOptions o;
-    o.count = 4, o.motion = analysis::Motion::lateral;
+    o.count = 4; o.motion = analysis::Motion::lateral;
     bool all = true;
     for (const auto& mode : analysis::whirl_modes(linear, Omega, o)) all = all && !(mode.lambda.real() > 0);
     EXPECT_EQ(all, stable) << eps;
@@ -201,11 +201,11 @@ double rub_radius(double friction, double ratio, double R, double turns, double&
   if (R > 0) {
     const Complex D = Complex(rub_k - rub_m * Omega * Omega, Omega * rub_c) + rub_kc * std::max(0.0, 1 - rub_gap / R) * Complex(1, friction);
     const Complex r = R * std::exp(Complex(0, -std::arg(D)));
-    s.q[n + 1] = r.real(), s.q[n + 2] = r.imag(), s.v[n + 1] = -Omega * r.imag(), s.v[n + 2] = Omega * r.real();
+    s.q[n + 1] = r.real(); s.q[n + 2] = r.imag(); s.v[n + 1] = -Omega * r.imag(); s.v[n + 2] = Omega * r.real();
   }
   problem.impose(0.0, s.q, s.v, s.a);
   analysis::TransientOptions o;
-  o.integrator.tolerance = 1e-7, o.integrator.t_end = end;
+  o.integrator.tolerance = 1e-7; o.integrator.t_end = end;
   Windows w(m.disk(), Vec2::Zero(), {{end * (1 - 1 / turns), end}});
   const auto r = analysis::run_transient(problem, s, o, {&w});
   EXPECT_EQ(r.reason, analysis::StopReason::end_time) << r.detail;
@@ -324,7 +324,7 @@ TEST(BallBearingDeck, VaryingComplianceCycle) {
   problem.impose(0.0, s.q, s.v, s.a);
   const double period = 1 / (10 * 3.084615385);
   analysis::TransientOptions o;
-  o.integrator.tolerance = 1e-7, o.integrator.t_end = 21 * period;
+  o.integrator.tolerance = 1e-7; o.integrator.t_end = 21 * period;
   o.integrator.breakpoints = {20 * period};   // a step ends where the mean begins
   o.integrator.breakpoints.insert(o.integrator.breakpoints.begin(), 19 * period);
   Windows w(m.disk(), Vec2::Zero(), {{20 * period, 21 * period}, {19 * period, 20 * period}});

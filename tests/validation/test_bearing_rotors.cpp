@@ -55,7 +55,7 @@ shape = ")" + shape + "\"\n");
 analysis::Onset onset(const DeckModel& m, double low, double high) {
   analysis::Linearizer linear(m.built.system, m.running());
   analysis::StabilityOptions o;
-  o.min_speed = low, o.max_speed = high, o.grid = 20, o.modes = 6, o.motion = analysis::Motion::lateral;
+  o.min_speed = low; o.max_speed = high; o.grid = 20; o.modes = 6; o.motion = analysis::Motion::lateral;
   const auto r = analysis::find_instability(linear, o);
   EXPECT_TRUE(r.stable_at_start);
   if (r.onsets.empty()) throw std::runtime_error("no onset");
@@ -86,7 +86,7 @@ TEST(OilWhirl, EigenvaluesOfTheFlexibleRotorAboveTheOnset) {
   const DeckModel m(test::oil_whirl_rotor());
   analysis::Linearizer linear(m.built.system, m.running());
   analysis::ModesOptions o;
-  o.count = 6, o.motion = analysis::Motion::lateral;
+  o.count = 6; o.motion = analysis::Motion::lateral;
   const auto modes = analysis::whirl_modes(linear, 4000 * rpm, o);
   ASSERT_GE(modes.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) {
@@ -113,7 +113,7 @@ TEST(OilWhirl, NonlinearRunsDecayBelowAndGrowAbove) {
     system::SystemProblem problem(s);
     problem.impose(0.0, e.state.q, e.state.v, e.state.a);
     analysis::TransientOptions o;
-    o.integrator.tolerance = 1e-6, o.integrator.t_end = 0.6;
+    o.integrator.tolerance = 1e-6; o.integrator.t_end = 0.6;
     Windows w(node, centre, {{0, 0.09}, {0.24, 0.33}, {0.51, 0.6}});
     const auto r = analysis::run_transient(problem, e.state, o, {&w});
     ASSERT_EQ(r.reason, analysis::StopReason::end_time) << r.detail;
@@ -339,7 +339,7 @@ speed = ")" + std::to_string(row[0] * wn) + " rad/s\"\n");
     system::State start = s.make_state();
     problem.impose(0.0, start.q, start.v, start.a);
     analysis::TransientOptions o;
-    o.integrator.tolerance = 1e-8, o.integrator.breakpoints = m.built.breakpoints;
+    o.integrator.tolerance = 1e-8; o.integrator.breakpoints = m.built.breakpoints;
     o.integrator.t_end = lost + 400 / wn;   // e^(-zeta omega_n t) = 2e-9
     const Index node = m.disk();
     Windows w(node, Vec2::Zero(), {{0, lost}, {lost, o.integrator.t_end}, {lost + 380 / wn, o.integrator.t_end}});

@@ -28,18 +28,18 @@ Matrix<6> stiffness(double speed) {
   K(0, 0) = 4e6;
   K.block<2, 2>(1, 1) << 2e7 + 1e6 * s, 3e6 * s, -2e6 * s, 3e7;
   K.block<2, 2>(4, 4) << 3e5, 2e4 * s, -1e4 * s, 4e5 + 1e5 * s;
-  K(1, 5) = 4e5 * s, K(5, 1) = 3e5, K(2, 4) = -2e5, K(4, 2) = -5e5 * s, K(0, 4) = 1e5, K(4, 0) = 1e5;
+  K(1, 5) = 4e5 * s; K(5, 1) = 3e5; K(2, 4) = -2e5; K(4, 2) = -5e5 * s; K(0, 4) = 1e5; K(4, 0) = 1e5;
   K(3, 3) = 10;   // against twist
   return K;
 }
 Matrix<6> damping(double speed) {
   Matrix<6> C = 1e-4 * stiffness(0);
-  C(1, 2) = 200 + 0.1 * speed, C(2, 1) = -C(1, 2), C(1, 5) = 30;
+  C(1, 2) = 200 + 0.1 * speed; C(2, 1) = -C(1, 2); C(1, 5) = 30;
   return C;
 }
 Matrix<6> inertia() {
   Matrix<6> M = Matrix<6>::Zero();
-  M(1, 1) = M(2, 2) = 2.0, M(4, 4) = M(5, 5) = 0.01, M(1, 5) = M(5, 1) = 0.05;
+  M(1, 1) = M(2, 2) = 2.0; M(4, 4) = M(5, 5) = 0.01; M(1, 5) = M(5, 1) = 0.05;
   return M;
 }
 
@@ -92,7 +92,7 @@ at = "left:start"
 Matrix<6, 5> to_bearing() {
   Matrix<6, 5> B = Matrix<6, 5>::Zero();
   B(0, 0) = B(1, 1) = B(2, 2) = B(4, 3) = B(5, 4) = 1;
-  B(1, 4) = -arm, B(2, 3) = arm;
+  B(1, 4) = -arm; B(2, 3) = arm;
   return B;
 }
 
@@ -101,11 +101,11 @@ std::vector<Complex> exact(double Omega) {
   const Matrix<5> K = B.transpose() * stiffness(Omega) * B;
   Matrix<5> C = B.transpose() * damping(Omega) * B, M = B.transpose() * inertia() * B;
   M.diagonal() += (Vector<5>() << mass, mass, mass, Id, Id).finished();
-  C(3, 4) += Ip * Omega, C(4, 3) -= Ip * Omega;   // Id ry'' + Ip Omega rz' = My: the spin's momentum follows the axis (1, rz, -ry)
+  C(3, 4) += Ip * Omega; C(4, 3) -= Ip * Omega;   // Id ry'' + Ip Omega rz' = My: the spin's momentum follows the axis (1, rz, -ry)
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(10, 10);
   const Matrix<5> Mi = M.inverse();
   A.topRightCorner(5, 5).setIdentity();
-  A.bottomLeftCorner(5, 5) = -Mi * K, A.bottomRightCorner(5, 5) = -Mi * C;
+  A.bottomLeftCorner(5, 5) = -Mi * K; A.bottomRightCorner(5, 5) = -Mi * C;
   std::vector<Complex> out;
   for (const Complex& l : A.eigenvalues())
     if (l.imag() > 0) out.push_back(l);
@@ -172,7 +172,7 @@ contact_angle = "30 deg"
 )", roller ? "roller_estimate\"\nrollers = 8\nroller_length = \"30 mm" : "ball_estimate\"\nballs = 8\nball_diameter = \"30 mm")));
     analysis::Linearizer linear(m.built.system, m.running());
     analysis::ModesOptions o;
-    o.count = 4, o.motion = analysis::Motion::lateral;
+    o.count = 4; o.motion = analysis::Motion::lateral;
     const auto modes = analysis::whirl_modes(linear, 0.0, o);
     ASSERT_EQ(modes.size(), 2u);
     // Friswell et al. 2010, pp. 182-185, for 8 elements of 30 mm at 500 N and 30 degrees: 46.4, 100.9 (balls), 272.8, 556.8 (rollers) MN/m

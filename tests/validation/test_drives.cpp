@@ -14,7 +14,7 @@ constexpr double J = 0.05;
 /// Spins at the times, from spin0.
 std::vector<double> spins(elements::TorqueLaw law, double spin0, const std::vector<double>& times) {
   Jeffcott j;
-  j.k = 0.0, j.e = 0.0, j.J = J, j.driven = true;
+  j.k = 0.0; j.e = 0.0; j.J = J; j.driven = true;
   j.torque = std::move(law);
   std::vector<double> out;
   for (const At::Sample& s : run(j, times.back(), 1e-9, spin0, times).samples) out.push_back(s.spin);
@@ -109,7 +109,7 @@ TEST(Drives, ControllerWithASpeedTarget) {
 TEST(Drives, TorqueAgainstSpeedTable) {
   // 10 N m at rest to 2 N m at 200 rad/s: s' = (10 - 0.04 s)/J
   elements::TorqueLaw law;
-  law.speed = {0.0, 200.0}, law.torque = {10.0, 2.0};
+  law.speed = {0.0, 200.0}; law.torque = {10.0, 2.0};
   expect(spins(law, 0.0, {0.1, 0.25, 0.5, 0.8, 1.0}), [](double t) {
     const double t1 = -J / 0.04 * std::log(1.0 - 0.04 * 200.0 / 10.0);   // reaches 200 rad/s
     return t < t1 ? 250.0 * (1.0 - std::exp(-0.04 * t / J)) : 200.0 + 2.0 * (t - t1) / J;

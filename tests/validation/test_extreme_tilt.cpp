@@ -17,7 +17,7 @@ system::System make_body() {
   b.add_line("body");
   const Index n = b.add_node({Vec3::Zero(), 0, "node at 0 m of shaft 'body'", false});
   elements::RigidDisk disk;
-  disk.mass = 2.0, disk.Jt = 0.3, disk.Jp = 0.3;   // a sphere: any steady omega is a free motion
+  disk.mass = 2.0; disk.Jt = 0.3; disk.Jp = 0.3;   // a sphere: any steady omega is a free motion
   b.add(disk, {n}, "rigid disks");
   return b.finalize();
 }
@@ -25,7 +25,7 @@ system::System make_body() {
 system::State tumbling(const system::System& s, const Vec3& omega) {
   system::State x = s.make_state();
   const rotation::ChartRates r = rotation::rates_of_omega(Vec2::Zero(), omega);
-  x.v[system::spin_phi] = r.phi, x.v.segment<2>(4) = r.gamma;
+  x.v[system::spin_phi] = r.phi; x.v.segment<2>(4) = r.gamma;
   return x;
 }
 
@@ -74,7 +74,7 @@ TEST(ExtremeTilt, WithChartChangeItTumblesOn) {
   system::SystemProblem problem(s);
   const Vec3 omega(0.3, 1.0, -0.4);
   TransientOptions o;
-  o.integrator.tolerance = 1e-8, o.integrator.t_end = 100.0;
+  o.integrator.tolerance = 1e-8; o.integrator.t_end = 100.0;
   const TransientResult r = run_transient(problem, tumbling(s, omega), o, {});
   ASSERT_EQ(r.reason, StopReason::end_time) << r.detail;
   rotation::Director d;

@@ -52,7 +52,7 @@ rows = [[1, 1, 8e6, 300, 60], [2, 2, 8e6, 300, 60], [1, 2, 6e5, 9e3, 0], [2, 1, 
   K << k1, -k1, -k1, Complex(k1 + k2, -s);
   Eigen::Matrix4cd A = Eigen::Matrix4cd::Zero();
   A.topRightCorner<2, 2>().setIdentity();
-  A.bottomLeftCorner<2, 2>() = -M.inverse() * K, A.bottomRightCorner<2, 2>() = -M.inverse() * C;
+  A.bottomLeftCorner<2, 2>() = -M.inverse() * K; A.bottomRightCorner<2, 2>() = -M.inverse() * C;
   const Eigen::Vector4cd exact = Eigen::ComplexEigenSolver<Eigen::Matrix4cd>(A, false).eigenvalues();
   EXPECT_GT(exact.real().maxCoeff(), 1.0);   // it does grow
   const auto found = eigenvalues(m, 100.0, 4);
@@ -184,7 +184,7 @@ rows = [[1, 1, 4e7, 500, 12], [2, 2, 6e7, 500, 12], [3, 3, 4e7, 500, 12], [4, 4,
   for (Index i = 0; i < f.nodes(); ++i)
     for (Index c = 0; c < 6; ++c) {
       const Index from = 6 * i + c, to = 6 * same[static_cast<std::size_t>(i)] + c;
-      q[0][to] = q[1][from] = 1e-4 * normal(rng), v[0][to] = v[1][from] = 0.1 * normal(rng), a[0][to] = a[1][from] = 10 * normal(rng);
+      q[0][to] = q[1][from] = 1e-4 * normal(rng); v[0][to] = v[1][from] = 0.1 * normal(rng); a[0][to] = a[1][from] = 10 * normal(rng);
     }
   const system::System* systems[2] = {&p, &f};
   for (int k = 0; k < 2; ++k) {

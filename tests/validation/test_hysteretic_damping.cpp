@@ -70,7 +70,7 @@ TEST(HystereticDamping, OnsetAtTheCriticalSpeed) {
     const system::System s = jeffcott(c).b.finalize();
     Linearizer linear(s);
     StabilityOptions o;
-    o.min_speed = 10, o.max_speed = 900, o.modes = 2, o.motion = Motion::lateral;
+    o.min_speed = 10; o.max_speed = 900; o.modes = 2; o.motion = Motion::lateral;
     const StabilityResult r = find_instability(linear, o);
     EXPECT_TRUE(r.stable_at_start);
     if (c > eta * std::sqrt(k * m)) {
@@ -137,7 +137,7 @@ TEST(HystereticDamping, TangentsAreExact) {
   system::Builder b;
   const Index line = b.add_line("line"), n1 = b.add_node({Vec3::Zero(), line, "1"}), n2 = b.add_node({Vec3(0.4, 0, 0), line, "2"});
   b.add(law, {n1, n2}, "hysteretic damping");
-  b.add(elements::RigidDisk{1, 1, 1, 0}, {n1}, "disk"), b.add(elements::RigidDisk{1, 1, 1, 0}, {n2}, "disk");
+  b.add(elements::RigidDisk{1, 1, 1, 0}, {n1}, "disk"); b.add(elements::RigidDisk{1, 1, 1, 0}, {n2}, "disk");
   const system::System s = b.finalize();
   system::Workspace work = s.make_workspace();
   work.context.hysteretic = true;

@@ -52,7 +52,7 @@ namespace {
 /// eighth-order integration of the three equations (rtol 1e-10); captured states from the exact balance T = c Omega r^2.
 Jeffcott sommerfeld(double torque) {
   Jeffcott j;
-  j.zeta = 0.01, j.e = 1e-3, j.J = 0.05;
+  j.zeta = 0.01; j.e = 1e-3; j.J = 0.05;
   j.driven = true;
   j.torque.of_time = make_constant(torque);
   return j;
@@ -112,7 +112,7 @@ TEST(Sommerfeld, HysteresisOfAMotorLine) {
   const auto line = [&](double w) { return w + drag(w) / S; };
   double up = 0, down = infinity, up_at = 0;
   for (double w = 80; w < 100.5; w += 1e-3)
-    if (line(w) > up) up = line(w), up_at = w;
+    if (line(w) > up) { up = line(w); up_at = w; }
   for (double w = up_at; w < 140; w += 1e-3) down = std::min(down, line(w));
   ASSERT_GT(up, down + 20.0);
   Jeffcott j = sommerfeld(0.0);
@@ -158,7 +158,7 @@ TEST(SuddenUnbalance, BladeLossAgainstClosedForm) {
     for (const At::Sample& s : r.samples) {
       const double t = omega * (s.t - t0);
       const Complex exact = H * std::exp(i * W * t) + a * std::exp(s1 * t) + b * std::exp(s2 * t);
-      error = std::max(error, std::abs(Complex(s.y, s.z) / j.e - exact)), size = std::max(size, std::abs(exact));
+      error = std::max(error, std::abs(Complex(s.y, s.z) / j.e - exact)); size = std::max(size, std::abs(exact));
     }
     // ten times the tolerance
     char at[60];
@@ -172,7 +172,7 @@ TEST(MovingBase, AccelerationOfTheBaseAgainstClosedForm) {
   double worst = 0;
   // relative motion: y'' + 2 zeta w y' + w^2 y = -A cos(W t), from rest
   Jeffcott j;
-  j.zeta = 0.02, j.e = 0.0;
+  j.zeta = 0.02; j.e = 0.0;
   j.phi = make_polynomial({0.0, 50.0});
   const double A = 3.0, W = 70.0, w = 100.0;
   j.base_y = make_harmonic(0.0, A, W, 0.0);

@@ -48,7 +48,7 @@ TEST(LoadPath, ColumnFollowsTheElastica) {
     SteadySystem running(s);
     LoadPathOptions o;
     o.last_load = 3.0;
-    if (!by_arc) o.controlled = 6 * 20 + 1, o.controlled_to = 0.78, o.steps = 30;
+    if (!by_arc) { o.controlled = 6 * 20 + 1; o.controlled_to = 0.78; o.steps = 30; }
     int checked = 0;
     double last = 0, largest_tilt = 0;
     const LoadPathResult r = follow_load_path(running, 0.0, s.make_state(), o, [&](const LoadPathPoint& p) {
@@ -97,14 +97,14 @@ TEST(LoadPath, BarSnapsThrough) {
   b.add_node({Vec3(1, w0, 0), 0, "crown", false});
   b.add(ShaftBeam<false>(c, triad.col(0)), {0, 1}, "shaft elements");
   for (int k : {0, 1, 2, 3}) b.hold(0, k);
-  b.hold(1, 0), b.hold(1, 2);
+  b.hold(1, 0); b.hold(1, 2);
   b.add(elements::PointForce{Vec3(0, -0.01, 0), nullptr}, {1}, "forces");
   const system::System s = b.finalize();
   for (const bool by_arc : {true, false}) {
     SteadySystem running(s);
     LoadPathOptions o;
-    o.last_load = 1.0, o.steps = 40;
-    if (!by_arc) o.controlled = 7, o.controlled_to = -0.7;
+    o.last_load = 1.0; o.steps = 40;
+    if (!by_arc) { o.controlled = 7; o.controlled_to = -0.7; }
     int limits = 0;
     double highest = -infinity, lowest = infinity;
     const LoadPathResult r = follow_load_path(running, 0.0, s.make_state(), o, [&](const LoadPathPoint& p) {

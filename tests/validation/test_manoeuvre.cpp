@@ -20,7 +20,7 @@ TEST(Manoeuvre, BearingsCarryGyroscopicCoupleAndCentrifugalForce) {
   double mass = 0, Ip = 0;
   for (const Cylinder c : {Cylinder{0.12, 0.06, 0}, {0.48, 0.07, 0}, {0.045, 0.32, 0.07}}) {
     const double m = rho * c.length * pi / 4 * (c.od * c.od - c.id * c.id);
-    mass += m, Ip += m * (c.od * c.od + c.id * c.id) / 8;
+    mass += m; Ip += m * (c.od * c.od + c.id * c.id) / 8;
   }
   // The last 0.1 s before the shock: 15 turns. The spin in space is that of the drive, about an axis square to the turning.
   const auto mean = r.csv("manoeuvre.csv").means(0.8, 0.9);

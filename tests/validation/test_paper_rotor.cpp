@@ -23,10 +23,10 @@ system::System make_rotor() {
   b.add_line("rotor");
   const Index n = b.add_node({Vec3(l, 0, 0), 0, "disk centre", false});
   elements::RigidDisk disk;
-  disk.mass = m, disk.Jt = m * D * D / 16, disk.Jp = m * D * D / 8;
+  disk.mass = m; disk.Jt = m * D * D / 16; disk.Jp = m * D * D / 8;
   b.add(disk, {n}, "rigid disks");
   elements::SpringBlock spring;
-  spring.C1 = 2000, spring.C2 = 500, spring.offset = -l;
+  spring.C1 = 2000; spring.C2 = 500; spring.offset = -l;
   b.add(spring, {n}, "spring blocks");
   b.set_gravity(Vec3(0, 0, -9.81));
   return b.finalize();
@@ -78,7 +78,7 @@ void run(const std::string& method, double tolerance, double dt, Outcome& out) {
   TransientOptions o;
   o.method = method;
   o.integrator.tolerance = tolerance > 0 ? tolerance : 1e-10;   // fixed steps: Newton's accuracy
-  o.integrator.dt_fixed = dt, o.integrator.t_end = 10.0;
+  o.integrator.dt_fixed = dt; o.integrator.t_end = 10.0;
   o.integrator.breakpoints = {1, 2, 5};   // the table's times are step ends: what is compared is the scheme, not its interpolant
   out.result = run_transient(problem, start_of(s, Omega0), o, {&out.watch, &out.energy});
 }
@@ -108,7 +108,7 @@ TEST(PaperRotor, ReferenceTableByRadau) {
   for (std::size_t i = 0; i < o.watch.rows.size() && i < std::size(reference); ++i) {
     const Row &a = o.watch.rows[i], &b = reference[i];
     const std::string at = "t = " + std::to_string(static_cast<int>(b.t)) + " s, ";
-    record.check(at + "x", "m", a.x, b.x, 1e-7 * 0.75), record.check(at + "y", "m", a.y, b.y, 1e-8), record.check(at + "z", "m", a.z, b.z, 1e-8);
+    record.check(at + "x", "m", a.x, b.x, 1e-7 * 0.75); record.check(at + "y", "m", a.y, b.y, 1e-8); record.check(at + "z", "m", a.z, b.z, 1e-8);
     record.check(at + "phi", "rad", a.phi, b.phi, 1e-7 * b.phi);
   }
   record.check("largest |omega_phi - omega0|/omega0", "-", o.watch.deviation, 7.0176e-4, 5e-8);   // five printed digits
@@ -175,7 +175,7 @@ TEST(PaperRotor, HundredThousandRevolutionsAtHighSpeed) {
   } phase;
   phase.omega = Omega;
   TransientOptions o;
-  o.integrator.tolerance = 1e-6, o.integrator.t_end = t_end;
+  o.integrator.tolerance = 1e-6; o.integrator.t_end = t_end;
   const TransientResult r = run_transient(problem, start_of(s, Omega), o, {&phase});
   ASSERT_EQ(r.reason, StopReason::end_time) << r.detail;
   const double phi = r.end.total_phi(0, 0);

@@ -28,7 +28,7 @@ Outcome integrate(const RigidCase& c, const char* method, double tolerance, doub
   system::SystemProblem problem(c.system, po);
   problem.frames = c.start.frames;
   time::Options o;
-  o.tolerance = tolerance, o.t_end = t_end;
+  o.tolerance = tolerance; o.t_end = t_end;
   auto integrator = time::make_integrator(method, problem, o);
   integrator->start(0.0, c.start.q, c.start.v);
   Outcome r;

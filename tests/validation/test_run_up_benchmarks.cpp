@@ -36,11 +36,11 @@ system::System make_K2(int n, bool gravity = true) {
   b.add_line("shaft");
   ElementSection s;
   s.mass_od1 = s.mass_od2 = s.od1 = s.od2 = 0.02;
-  s.E = 210e9, s.G = 210e9 / 2.6, s.rho = 7850;
-  s.kappa = 6 * 1.3 / (7 + 6 * 0.3), s.shear = ShearRule::given;
+  s.E = 210e9; s.G = 210e9 / 2.6; s.rho = 7850;
+  s.kappa = 6 * 1.3 / (7 + 6 * 0.3); s.shear = ShearRule::given;
   add_shaft(b, s, 1.0, n);
   RigidDisk disk;
-  disk.mass = 3, disk.Jp = 0.015, disk.Jt = 0.0075372;
+  disk.mass = 3; disk.Jp = 0.015; disk.Jt = 0.0075372;
   b.add(disk, {n / 2}, "rigid disks");
   b.add(UnbalanceMass(3 * 1e-4, 0.0), {n / 2}, "unbalances");
   auto support = [&](Index node, double kx, double cx, double k, double c) {
@@ -73,12 +73,12 @@ TransientResult run_K2(int n, double tolerance, const std::string& method, doubl
   TransientOptions o;
   o.method = method;
   if (tolerance > 0) o.integrator.tolerance = tolerance;
-  o.integrator.dt_fixed = dt, o.integrator.t_end = 1.0;
+  o.integrator.dt_fixed = dt; o.integrator.t_end = 1.0;
   PeakTracker peaks({{"mid", {n / 2, 0.0}}}, n / 2);
   EndSpin end(n / 2);
   EnergyBalance energy;
   TransientResult r = run_transient(problem, sys.make_state(), o, {&peaks, &end, &energy});
-  peak = peaks.peaks().front(), spin = end.spin, defect = energy.worst_defect();
+  peak = peaks.peaks().front(); spin = end.spin; defect = energy.worst_defect();
   return r;
 }
 

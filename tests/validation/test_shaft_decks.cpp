@@ -133,7 +133,7 @@ id = "180 mm"
   for (const double w : exact) {
     double nearest = infinity;
     int hits = 0;
-    for (const WhirlMode& m : modes) nearest = std::min(nearest, std::abs(m.frequency - w)), hits += std::abs(m.frequency - w) < 1e-7 * w;
+    for (const WhirlMode& m : modes) { nearest = std::min(nearest, std::abs(m.frequency - w)); hits += std::abs(m.frequency - w) < 1e-7 * w; }
     EXPECT_LT(nearest, 1e-7 * w) << w;   // 20 elements: 1e-8
     EXPECT_EQ(hits, w == exact.back() ? 2 : 1) << w;   // the casing's two planes alike
   }

@@ -16,7 +16,7 @@ namespace {
 model::Model two_disks(int elements) {
   model::Model m;
   model::Material s;
-  s.name = "steel", s.E = 211e9, s.G = 81.2e9, s.nu = s.E / (2 * s.G) - 1, s.rho = 7810;
+  s.name = "steel"; s.E = 211e9; s.G = 81.2e9; s.nu = s.E / (2 * s.G) - 1; s.rho = 7810;
   m.materials = {s};
   model::Shaft shaft;
   shaft.name = "shaft";
@@ -26,7 +26,7 @@ model::Model two_disks(int elements) {
     const double di = 0.05, w = 0.07, mass = 7810 * pi / 4 * (od * od - di * di) * w;
     m.disks.push_back(disk("disk", s0, mass, mass * (od * od + di * di) / 8, mass * (3 * (od * od + di * di) + 4 * w * w) / 48));
   };
-  add_disk(0.5, 0.28), add_disk(1.0, 0.35);
+  add_disk(0.5, 0.28); add_disk(1.0, 0.35);
   m.bearings = {spring("left", 0.0, 1e6), spring("right", 1.5, 1e6)};
   std::get<model::LinearBearing>(m.bearings[0].law).K(0, 0) = 1e6;
   m.gravity = Vec3(0, -9.81, 0);
@@ -85,10 +85,10 @@ TEST(StaticRotor, UniformPinnedShaft) {
   for (int n : {2, 6}) {
     model::Model m;
     model::Material s;
-    s.name = "steel", s.E = 211e9, s.G = 81.2e9, s.nu = s.E / (2 * s.G) - 1, s.rho = 7810;
+    s.name = "steel"; s.E = 211e9; s.G = 81.2e9; s.nu = s.E / (2 * s.G) - 1; s.rho = 7810;
     m.materials = {s};
     model::Shaft shaft;
-    shaft.name = "shaft", shaft.sections = {cylinder("a", 0.5, 0.05, 0, n / 2), cylinder("b", 0.5, 0.05, 0, n / 2)};
+    shaft.name = "shaft"; shaft.sections = {cylinder("a", 0.5, 0.05, 0, n / 2), cylinder("b", 0.5, 0.05, 0, n / 2)};
     m.shafts = {shaft};
     m.bearings = {held("l", 0, {true, true, true, false, false, false}), held("r", 1.0, {false, true, true, false, false, false})};
     m.gravity = Vec3(0, 0, -9.81);
@@ -101,11 +101,11 @@ TEST(StaticRotor, TorqueTensionAndBendingTogether) {
   model::Model m;
   m.materials = {steel()};
   model::Shaft shaft;
-  shaft.name = "shaft", shaft.sections = {cylinder("a", 0.8, 0.04, 0.02, 4)};
+  shaft.name = "shaft"; shaft.sections = {cylinder("a", 0.8, 0.04, 0.02, 4)};
   m.shafts = {shaft};
   m.bearings = {held("wall", 0, {true, true, true, true, true, true})};
   auto load = named<model::PointLoad>("end", 0.8);
-  load.force = Vec3(3.0, -0.02, 0.01), load.moment = Vec3(0.5, 0, 0);
+  load.force = Vec3(3.0, -0.02, 0.01); load.moment = Vec3(0.5, 0, 0);
   m.loads = {load};
   const Solved s = solve(m);
   const assembly::SectionPoint& p = s.sections.front();
@@ -189,7 +189,7 @@ TEST(StaticRotor, ThermalGrowthFreeAndHeldBack) {
   m.materials = {steel()};
   m.materials[0].expansion = 12e-6;
   model::Shaft shaft;
-  shaft.name = "shaft", shaft.sections = {cylinder("a", 0.5, 0.04, 0, 2), cylinder("b", 0.3, 0.04, 0, 2)};
+  shaft.name = "shaft"; shaft.sections = {cylinder("a", 0.5, 0.04, 0, 2), cylinder("b", 0.3, 0.04, 0, 2)};
   for (model::Section& s : shaft.sections) s.temperature_rise = 60;
   m.shafts = {shaft};
   m.bearings = {held("l", 0, {true, true, true, true, false, false}), held("r", 0.8, {false, true, true, false, false, false})};
@@ -214,7 +214,7 @@ TEST(StaticRotor, PreloadOfAGeneralSectionStiffensIt) {
     model::Model m;
     m.materials = {steel()};
     model::Shaft shaft;
-    shaft.name = "wire", shaft.sections = {cylinder("a", 0.5, 0.002, 0, 40), cylinder("b", 0.5, 0.002, 0, 40)};   // the ends and the load bend it within EI/N's root, 18 mm
+    shaft.name = "wire"; shaft.sections = {cylinder("a", 0.5, 0.002, 0, 40), cylinder("b", 0.5, 0.002, 0, 40)};   // the ends and the load bend it within EI/N's root, 18 mm
     shaft.axial_preload = 500.0;
     if (general == 1)
       for (model::Section& s : shaft.sections) {
@@ -239,7 +239,7 @@ TEST(StaticRotor, BowedShaftTakesItsShapeAndTurnsIt) {
   model::Model m;
   m.materials = {steel()};
   model::Shaft shaft;
-  shaft.name = "shaft", shaft.sections = {cylinder("a", 0.4, 0.03, 0, 4), cylinder("b", 0.4, 0.03, 0.01, 4)};
+  shaft.name = "shaft"; shaft.sections = {cylinder("a", 0.4, 0.03, 0, 4), cylinder("b", 0.4, 0.03, 0.01, 4)};
   shaft.bow = {1e-4, 0.5};
   m.shafts = {shaft};
   m.bearings = {held("l", 0, {true, true, true, true, false, false}), held("r", 0.8, {false, true, true, false, false, false})};

@@ -19,12 +19,12 @@ double end_torque(double w) {
   const auto bar = [&](double l, double d) {
     const double J = pi / 32 * d * d * d * d, b = w * std::sqrt(rho / G), c = std::cos(b * l), s = std::sin(b * l), z = G * J * b;
     const double p = phi;
-    phi = c * p + s / z * T, T = -z * s * p + c * T;
+    phi = c * p + s / z * T; T = -z * s * p + c * T;
   };
   const auto disk = [&](double Ip) { T -= w * w * Ip * phi; };
-  bar(0.3, 0.09), disk(3.5), bar(0.4, 0.09);
+  bar(0.3, 0.09); disk(3.5); bar(0.4, 0.09);
   phi += T / 2e5;
-  bar(0.35, 0.08), disk(1.8), bar(0.45, 0.08), disk(1.1), bar(0.2, 0.07);
+  bar(0.35, 0.08); disk(1.8); bar(0.45, 0.08); disk(1.1); bar(0.2, 0.07);
   return T;
 }
 
@@ -62,7 +62,7 @@ TEST(TorsionalTrain, FrequenciesAndCriticalSpeedsOfTheContinuousTrain) {
   double sum = 0;
   int count = 0;
   for (const auto& row : run.rows)
-    if (row[0] < 2 * period) sum += run.named(row).at("bearing coupling moment.x [N.m]"), ++count;
+    if (row[0] < 2 * period) { sum += run.named(row).at("bearing coupling moment.x [N.m]"); ++count; }
   // over two periods: a period is 105.6 rows, the decay 0.2 a period, the second mode adds a few percent, and the load has begun to grow
   record.check("mean torque in the coupling after the start", "N m", sum / count, -1500 * share, 0.03 * 1500 * share);
   EXPECT_LT(least, -1.7 * 1500 * share);

@@ -21,7 +21,7 @@ constexpr double rpm = pi / 30;
 std::vector<double> lateral_hz(const system::System& s, double Omega, Index count) {
   Linearizer linear(s);
   ModesOptions o;
-  o.count = count, o.motion = Motion::lateral;
+  o.count = count; o.motion = Motion::lateral;
   std::vector<double> f;
   for (const WhirlMode& m : whirl_modes(linear, Omega, o)) f.push_back(m.frequency / two_pi);
   std::sort(f.begin(), f.end());
@@ -44,7 +44,7 @@ std::vector<Critical> criticals(const system::System& s, double max_rpm, double 
   running.top_speed = max_rpm * rpm;
   Linearizer linear(s, running);
   CriticalOptions o;
-  o.max_speed = max_rpm * rpm, o.order = order, o.motion = Motion::lateral;
+  o.max_speed = max_rpm * rpm; o.order = order; o.motion = Motion::lateral;
   return critical_speeds(linear, o);
 }
 
@@ -267,9 +267,9 @@ TEST(RigidRotor, GyroscopicWhirl) {
     Matrix<6> K = Matrix<6>::Zero(), zero = K;
     const double kl = 1e6, kr = 1.3e6, a = 0.25;
     const double s = kl + kr, c = a * (kr - kl), t = a * a * (kl + kr);
-    K(1, 1) = K(2, 2) = s, K(4, 4) = K(5, 5) = t;
+    K(1, 1) = K(2, 2) = s; K(4, 4) = K(5, 5) = t;
     // y + x gamma_z, z - x gamma_y
-    K(1, 5) = K(5, 1) = c, K(2, 4) = K(4, 2) = -c;
+    K(1, 5) = K(5, 1) = c; K(2, 4) = K(4, 2) = -c;
     b.add(elements::LinearBearing(K, zero, zero, Vector<6>::Zero(), Vector<6>::Zero()), {node, b.add_ground(Vec3::Zero(), "ground")}, "springs");
     b.hold(node, system::ux);
     const system::System sys = b.finalize();

@@ -28,7 +28,7 @@ Rotor jeffcott(double extra) {
 StabilityResult onsets(const system::System& s, double from, double to, Index modes = 2) {
   Linearizer linear(s);
   StabilityOptions o;
-  o.min_speed = from, o.max_speed = to, o.modes = modes, o.motion = Motion::lateral;
+  o.min_speed = from; o.max_speed = to; o.modes = modes; o.motion = Motion::lateral;
   return find_instability(linear, o);
 }
 

@@ -17,7 +17,7 @@ std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks
     if (p.order != order) continue;
     MarginRow r;
     r.probe = probes[p.probe].name;
-    r.speed = p.speed, r.amplitude = p.amplitude, r.amplification = p.amplification(), r.low = p.low, r.high = p.high;
+    r.speed = p.speed; r.amplitude = p.amplitude; r.amplification = p.amplification(); r.low = p.low; r.high = p.high;
     // A peak without half-power points is too flat to have an AF of 2.5, or is cut off by the range of speeds.
     r.critically_damped = !(r.amplification >= 2.5);
     const bool above = p.speed > range.max;

@@ -9,7 +9,7 @@ HarmonicResponder::HarmonicResponder(Linearizer& linear, FrequencyResponseOption
 
 FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
   FrequencyPoint p;
-  p.Omega = Omega, p.frequency = w;
+  p.Omega = Omega; p.frequency = w;
   VecXc a = VecXc::Zero(linear_.system().size());
   for (const HarmonicForce& f : options_.forces) a[f.unknown] += scale * f.amplitude;
   if (solver_.prepare(Omega, w)) solver_.solve(a);

@@ -223,7 +223,7 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
   const system::State& s = linear_.equilibrium().state;
   problem_.frames = s.frames;
   system::Context& context = problem_.workspace().context;
-  context.hysteretic = linear_.hysteretic(), context.whirl = context.whirl_side = w;
+  context.hysteretic = linear_.hysteretic(); context.whirl = context.whirl_side = w;
   out.resize(what.size());
   for (std::size_t m = 0; m < what.size(); ++m) out[m].assign(what[m].width(), Complex(0, 0));
   if (!a.allFinite()) {   // no response: an undamped resonance, or a motion that nothing resists at 0 Hz
@@ -258,7 +258,7 @@ VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const Ve
   const system::System& system = linear.system();
   const system::State& s = linear.equilibrium().state;
   system::Workspace workspace = system.make_workspace();
-  workspace.context.hysteretic = linear.hysteretic(), workspace.context.whirl = workspace.context.whirl_side = w;
+  workspace.context.hysteretic = linear.hysteretic(); workspace.context.whirl = workspace.context.whirl_side = w;
   VecXc out = VecXc::Zero(a.size());
   const double eps = variation_step(a);
   VecX r(a.size());

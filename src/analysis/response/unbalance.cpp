@@ -57,7 +57,7 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe, const std
     // a peak of rounding on a plateau is none
     if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-7 * top) continue;
     ResponsePeak peak;
-    peak.order = order, peak.probe = probe;
+    peak.order = order; peak.probe = probe;
     peak.speed = find_maximum(coarse[i - 1].Omega, coarse[i].Omega, f1, coarse[i + 1].Omega, 3e-9, evaluate);
     const SteadyPoint top_point = at(peak.speed);
     peak.amplitude = size(top_point);
@@ -73,9 +73,9 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe, const std
         break;
       }
       if (size(coarse[j]) > peak.amplitude) break;   // the flank of a higher peak
-      inner = coarse[j].Omega, f_inner = f;
+      inner = coarse[j].Omega; f_inner = f;
     }
-    inner = peak.speed, f_inner = peak.amplitude - half;
+    inner = peak.speed; f_inner = peak.amplitude - half;
     for (std::size_t j = i; j < coarse.size(); ++j) {
       if (coarse[j].Omega <= peak.speed) continue;
       const double f = size(coarse[j]) - half;
@@ -84,7 +84,7 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe, const std
         break;
       }
       if (size(coarse[j]) > peak.amplitude) break;
-      inner = coarse[j].Omega, f_inner = f;
+      inner = coarse[j].Omega; f_inner = f;
     }
     peaks_.push_back(peak);
     if (!options_.refine_peaks) continue;

@@ -17,16 +17,16 @@ void CampbellRecorder::take(std::size_t k, const std::vector<TrackedMode>& modes
   const std::size_t n = out_.speeds.size();
   for (Index id = static_cast<Index>(out_.lines.size()); id < lines; ++id) {
     CampbellLine line;
-    line.frequency.assign(n, nan), line.damping_ratio.assign(n, nan), line.log_decrement.assign(n, nan);
-    line.direction_at.assign(n, Direction::none), line.lambda.assign(n, Complex(nan, nan));
+    line.frequency.assign(n, nan); line.damping_ratio.assign(n, nan); line.log_decrement.assign(n, nan);
+    line.direction_at.assign(n, Direction::none); line.lambda.assign(n, Complex(nan, nan));
     if (shapes_) line.shape.resize(n);
     out_.lines.push_back(std::move(line));
     votes_.push_back({0, 0, 0});
   }
   for (const TrackedMode& m : modes) {
     CampbellLine& line = out_.lines[at(m.id)];
-    line.frequency[k] = m.now.frequency, line.damping_ratio[k] = m.now.damping_ratio, line.log_decrement[k] = m.now.log_decrement;
-    line.direction_at[k] = m.now.direction, line.lambda[k] = m.now.lambda;
+    line.frequency[k] = m.now.frequency; line.damping_ratio[k] = m.now.damping_ratio; line.log_decrement[k] = m.now.log_decrement;
+    line.direction_at[k] = m.now.direction; line.lambda[k] = m.now.lambda;
     if (shapes_) line.shape[k] = m.now.x;
     ++votes_[at(m.id)][static_cast<std::size_t>(m.now.kind)];
   }
@@ -63,7 +63,7 @@ Campbell CampbellRecorder::finish(long speeds_solved) {
     double s = 0;
     int c = 0;
     for (double f : l.frequency)
-      if (!std::isnan(f)) s += f, ++c;
+      if (!std::isnan(f)) { s += f; ++c; }
     return s / std::max(c, 1);
   };
   // Lines that start together (a pair at rest) go on by their mean: backward before forward.

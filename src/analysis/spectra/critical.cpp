@@ -79,10 +79,10 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
   for (const double b : grid) {
     const Index nb = counter.count(b);
     isolate(counter, {a, b, na, nb}, o.max_speed, brackets);
-    a = b, na = nb;
+    a = b; na = nb;
   }
   ModesOptions mo;
-  mo.damped = false, mo.motion = o.motion;
+  mo.damped = false; mo.motion = o.motion;
   WhirlSolver follower(linear, mo);
   std::vector<Critical> out;
   for (const Bracket& k : brackets) {
@@ -108,11 +108,11 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
       for (int it = 0; it < 40 && f1 != 0.0; ++it) {
         const auto next = follower.follow(x1, mode);
         if (!next) throw run_error("E77", "a critical speed was isolated but its mode was lost on the way");
-        mode = *next, f1 = gap(x1, mode);
+        mode = *next; f1 = gap(x1, mode);
         if (f1 == f0 || x1 == x0) break;
         const double x2 = x1 - f1 * (x1 - x0) / (f1 - f0);
         const bool done = std::abs(x2 - x1) <= o.tolerance * x1;
-        x0 = x1, f0 = f1, x1 = x2;
+        x0 = x1; f0 = f1; x1 = x2;
         if (done) break;
       }
       out.push_back({x1, o.order * x1, o.order, mode});
@@ -128,7 +128,7 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
   t.modes.max_frequency = 1.1 * o.order * o.max_speed;   // only modes that reach the order line within the range matter
   ModeTracker tracker(linear, t);
   ModesOptions mo = t.modes;
-  mo.max_frequency = infinity, mo.count = 2;
+  mo.max_frequency = infinity; mo.count = 2;
   WhirlSolver follower(linear, mo);
   const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
   std::vector<Critical> out;

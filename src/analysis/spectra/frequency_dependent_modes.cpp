@@ -42,7 +42,7 @@ Changes changes_between(const OwnFrequency::Matrices& at, const std::vector<doub
     for (std::size_t k = 0; k < 3; ++k) {
       const double *a = part(base, k), *b = part(m, k);
       for (std::size_t e = 0; e < n; ++e)
-        if (a[e] != b[e]) differs[r].emplace_back(k * n + e, b[e]), ids.push_back(k * n + e);
+        if (a[e] != b[e]) { differs[r].emplace_back(k * n + e, b[e]); ids.push_back(k * n + e); }
     }
   }
   std::sort(ids.begin(), ids.end());
@@ -143,7 +143,7 @@ void OwnFrequency::choose_rows(const Matrices& at) {
     Index worst = -1;
     double most = enough;
     for (Index r = i + 1; r < j; ++r)
-      if (const double d = deviation(c, all, i, j, r); d > most) most = d, worst = r;
+      if (const double d = deviation(c, all, i, j, r); d > most) { most = d; worst = r; }
     if (worst < 0) {
       rows_.push_back(all[at_(j)]);
     } else {
@@ -180,10 +180,10 @@ std::optional<OwnFrequency::Point> OwnFrequency::step(const Matrices& at, const 
 std::optional<OwnFrequency::Root> OwnFrequency::root(const Matrices& at, Point low, Point high) {
   double w0 = low.w, f0 = low.gap(), w1 = high.w, f1 = high.gap(), width = high.w - low.w;
   if (f0 == 0.0) return Root{std::move(low), false};
-  if (std::abs(f0) < std::abs(f1)) std::swap(w0, w1), std::swap(f0, f1);
+  if (std::abs(f0) < std::abs(f1)) { std::swap(w0, w1); std::swap(f0, f1); }
   for (int it = 0, slow = 0; it < 200; ++it) {
     double w = f1 != f0 ? w1 - f1 * (w1 - w0) / (f1 - f0) : nan;
-    if (!(w > low.w && w < high.w) || slow >= 3) w = 0.5 * (low.w + high.w), slow = 0;
+    if (!(w > low.w && w < high.w) || slow >= 3) { w = 0.5 * (low.w + high.w); slow = 0; }
     const bool lower = w - low.w < high.w - w;
     auto p = step(at, lower ? low : high, w);
     if (!p) p = step(at, lower ? high : low, w);
@@ -192,7 +192,7 @@ std::optional<OwnFrequency::Root> OwnFrequency::root(const Matrices& at, Point l
     const bool rising = (f - f1) * (w - w1) > 0.0 && std::abs(f1) > 1e-9 * std::abs(p->mode.lambda);
     // The eigenvalue itself is known to 1e-12.
     if (std::abs(f) <= 1e-11 * std::abs(p->mode.lambda)) return Root{std::move(*p), rising};
-    w0 = w1, f0 = f1, w1 = w, f1 = f;
+    w0 = w1; f0 = f1; w1 = w; f1 = f;
     (f > 0.0 ? low : high) = std::move(*p);
     const double now = high.w - low.w;
     if (now <= 1e-15 * high.w) return Root{low, false};
@@ -270,7 +270,7 @@ void OwnFrequency::search(const Matrices& at, const Node& a, const Node& b) {
     std::size_t nearest = b.modes.size();
     double least = 1e-9 * std::abs(end->mode.lambda);
     for (std::size_t k = 0; k < b.modes.size(); ++k)
-      if (const double d = std::abs(b.modes[k].lambda - end->mode.lambda); !of_b[k] && d < least) least = d, nearest = k;
+      if (const double d = std::abs(b.modes[k].lambda - end->mode.lambda); !of_b[k] && d < least) { least = d; nearest = k; }
     if (nearest < b.modes.size()) of_b[nearest] = true;
   }
   for (std::size_t k = 0; k < b.modes.size(); ++k)
@@ -387,7 +387,7 @@ std::optional<la::Mode> OwnFrequency::settle(const Matrices& at, const la::Mode&
       if (feels_tables(at, p->mode)) at(p->mode.lambda.imag());   // an error
       return std::move(p->mode);
     }
-    w0 = w, f0 = f;
+    w0 = w; f0 = f;
     p = step(at, *p, next);
   }
   return std::nullopt;

@@ -62,7 +62,7 @@ ModeEnergy energy_distribution(Linearizer& linear, const VecXc& x) {
         out.strain.push_back({kind, i, j, e.dot(D * e).real()});
       }
   }
-  normalise(out.strain), normalise(out.kinetic);
+  normalise(out.strain); normalise(out.kinetic);
   return out;
 }
 

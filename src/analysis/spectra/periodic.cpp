@@ -24,7 +24,7 @@ Matrix<6> turn(const system::System& s, const Mat3& chart, Index node, double th
   if (derivative) r << -k, -c, c, -k;
   else r << c, -k, k, c;
   R.block<2, 2>(1, 1) = r;
-  if (!derivative) R(0, 0) = 1.0, T(3, 3) = 1.0;
+  if (!derivative) { R(0, 0) = 1.0; T(3, 3) = 1.0; }
   T.block<3, 3>(0, 0) = chart * R * chart.transpose();
   T.block<2, 2>(4, 4) = r;
   return T;
@@ -130,11 +130,11 @@ const la::MCK& RotatingAxes::at(double Omega, Complex lambda) {
   for (Index n = 0; n < points; ++n) {
     const double theta = two_pi / static_cast<double>(step_ * points) * static_cast<double>(n);
     sample(Omega, theta, lambda);
-    f[0] = 1.0, g[0] = gg[0] = 0.0;
+    f[0] = 1.0; g[0] = gg[0] = 0.0;
     for (Index h = 1; h <= harmonics_; ++h) {
       const double w = static_cast<double>(step_ * h), c = std::cos(w * theta), s = std::sin(w * theta);
-      f[2 * h - 1] = c, g[2 * h - 1] = -w * Omega * s, gg[2 * h - 1] = -w * w * Omega * Omega * c;
-      f[2 * h] = s, g[2 * h] = w * Omega * c, gg[2 * h] = -w * w * Omega * Omega * s;
+      f[2 * h - 1] = c; g[2 * h - 1] = -w * Omega * s; gg[2 * h - 1] = -w * w * Omega * Omega * c;
+      f[2 * h] = s; g[2 * h] = w * Omega * c; gg[2 * h] = -w * w * Omega * Omega * s;
     }
     for (Index i = 0; i < p.size(); ++i)
       for (Index k = p.row_start()[idx(i)]; k < p.row_start()[idx(i) + 1]; ++k) {
@@ -252,7 +252,7 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
   BandResult out;
   for (const double Omega : speeds) {
     const Growth g = search.at(Omega);
-    out.speeds.push_back(Omega), out.growth.push_back(g.rate), out.frequency.push_back(g.frequency);
+    out.speeds.push_back(Omega); out.growth.push_back(g.rate); out.frequency.push_back(g.frequency);
   }
   // At an edge the growth crosses zero, or, without damping, two frequencies merge and it rises as a square root from the rounding of a double
   // eigenvalue. Neutral motions (growth zero at every speed) hide the crossing, so it is extrapolated from within the band.
@@ -301,7 +301,7 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
     if (std::isfinite(a) && std::isfinite(b))
       band.speed = find_maximum(a, speeds[top], out.growth[top], b, 1e-8, [&](double Omega) { return search.at(Omega).rate; });
     const Growth g = search.at(band.speed);
-    band.growth = g.rate, band.frequency = g.frequency;
+    band.growth = g.rate; band.frequency = g.frequency;
     out.bands.push_back(band);
     k = last;
   }

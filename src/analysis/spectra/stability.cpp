@@ -11,8 +11,8 @@ namespace {
 
 ModesOptions mode_options(const StabilityOptions& o) {
   ModesOptions m;
-  m.count = o.modes, m.motion = o.motion;
-  m.real_roots = true, m.judge = true;
+  m.count = o.modes; m.motion = o.motion;
+  m.real_roots = true; m.judge = true;
   return m;
 }
 
@@ -214,7 +214,7 @@ StabilityMap stability_map(const std::function<system::System(double)>& build, c
     map.frequency.push_back(nan);
     for (const Onset& o : result.onsets)
       if (o.gains && result.stable_at_start) {
-        map.onset.back() = o.speed, map.frequency.back() = o.frequency;
+        map.onset.back() = o.speed; map.frequency.back() = o.frequency;
         break;
       }
   }

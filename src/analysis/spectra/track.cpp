@@ -20,7 +20,7 @@ bool ModeTracker::step(double Omega, bool last_chance) {
   const Index n = static_cast<Index>(found.size()), p = static_cast<Index>(modes_.size());
   if (!started_) {
     for (const WhirlMode& m : found) modes_.push_back({next_id_++, m, {}, false});
-    started_ = true, speed_ = Omega;
+    started_ = true; speed_ = Omega;
     return true;
   }
   // Likeness of all pairs within reach: M products of the new modes once.
@@ -55,7 +55,7 @@ bool ModeTracker::step(double Omega, bool last_chance) {
     // What does not oscillate is followed as well as may be, not at the price of more speeds.
     const bool matters = modes_[at(k.old)].now.oscillates() && found[at(k.now)].oscillates();
     if (matters && k.like < options_.doubt && !(split && k.like > 0.45)) sure = false;
-    of_old[at(k.old)] = k.now, of_new[at(k.now)] = k.old;
+    of_old[at(k.old)] = k.now; of_new[at(k.now)] = k.old;
   }
   if (!sure && !last_chance) return false;
   std::vector<TrackedMode> next;
@@ -103,11 +103,11 @@ std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const Whi
   // shrunk to half in three trials.
   TrackedRoot best = std::abs(ga) < std::abs(gb) ? lo : hi;
   double x0 = lo.speed, f0 = ga, x1 = hi.speed, f1 = gb, width = std::abs(b - a);
-  if (std::abs(f0) < std::abs(f1)) std::swap(x0, x1), std::swap(f0, f1);
+  if (std::abs(f0) < std::abs(f1)) { std::swap(x0, x1); std::swap(f0, f1); }
   for (int it = 0, slow = 0; it < 100; ++it) {
     double x = f1 != f0 ? x1 - f1 * (x1 - x0) / (f1 - f0) : 0.5 * (lo.speed + hi.speed);
     const double low = std::min(lo.speed, hi.speed), high = std::max(lo.speed, hi.speed);
-    if (!(x > low && x < high) || slow >= 3) x = 0.5 * (low + high), slow = 0;
+    if (!(x > low && x < high) || slow >= 3) { x = 0.5 * (low + high); slow = 0; }
     const TrackedRoot& near = std::abs(x - lo.speed) < std::abs(x - hi.speed) ? lo : hi;
     auto mode = solver.follow(x, near.mode);
     if (!mode) mode = solver.follow(x, (&near == &lo ? hi : lo).mode);
@@ -115,7 +115,7 @@ std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const Whi
     const double f = g(x, *mode);
     const double step = std::abs(x - x1);
     best = {x, *mode};
-    x0 = x1, f0 = f1, x1 = x, f1 = f;
+    x0 = x1; f0 = f1; x1 = x; f1 = f;
     if (f == 0.0 || step <= enough) return best;
     if ((f > 0) == (ga > 0)) lo = best;
     else hi = best;

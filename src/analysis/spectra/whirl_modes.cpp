@@ -68,7 +68,7 @@ Eigen::Vector3cd local_displacement(const Linearizer& linear, const VecXc& x, In
 
 double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
   VecXc mx, my;
-  la::multiply(m.M, x, mx), la::multiply(m.M, y, my);
+  la::multiply(m.M, x, mx); la::multiply(m.M, y, my);
   const double a = std::abs(x.dot(mx)), b = std::abs(y.dot(my));
   return a > 0 && b > 0 ? std::norm(x.dot(my)) / (a * b) : 0.0;
 }
@@ -76,7 +76,7 @@ double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
 WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer& linear) {
   const system::System& s = linear.system();
   WhirlMode w;
-  w.lambda = w.continued = mode.lambda, w.x = mode.x, w.residual = mode.residual, w.from = mode.from;
+  w.lambda = w.continued = mode.lambda; w.x = mode.x; w.residual = mode.residual; w.from = mode.from;
   w.rounding = rounding_of(mode);
   w.frequency = std::abs(mode.lambda.imag());
   const double size = std::abs(mode.lambda);
@@ -88,7 +88,7 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
 
   // Energy by component, in axes of the line (e, e2, e3).
   VecXc mx, kx;
-  la::multiply(m.M, w.x, mx), la::multiply(m.K, w.x, kx);
+  la::multiply(m.M, w.x, mx); la::multiply(m.K, w.x, kx);
   double lateral = 0, torsional = 0, axial = 0;
   const double w2 = std::norm(w.lambda);
   for (Index i = 0; i < s.nodes(); ++i) {
@@ -105,9 +105,9 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
     lateral += share(u[1], g[1]) + share(u[2], g[2]) + share(x[4], f[4]) + share(x[5], f[5]);
     torsional += share(x[3], f[3]);
   }
-  lateral = std::max(lateral, 0.0), torsional = std::max(torsional, 0.0), axial = std::max(axial, 0.0);
+  lateral = std::max(lateral, 0.0); torsional = std::max(torsional, 0.0); axial = std::max(axial, 0.0);
   const double total = lateral + torsional + axial;
-  if (total > 0) w.lateral = lateral / total, w.torsional = torsional / total, w.axial = axial / total;
+  if (total > 0) { w.lateral = lateral / total; w.torsional = torsional / total; w.axial = axial / total; }
   w.kind = w.torsional > w.lateral && w.torsional >= w.axial ? ModeKind::torsional
            : w.axial > w.lateral                             ? ModeKind::axial
                                                              : ModeKind::lateral;
@@ -115,7 +115,7 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
     double twist = 0, along = 0, across = 0;
     for (Index i = 0; i < s.nodes(); ++i) {
       const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
-      twist = std::max(twist, std::abs(w.x[6 * i + 3])), along = std::max(along, std::abs(u[0]));
+      twist = std::max(twist, std::abs(w.x[6 * i + 3])); along = std::max(along, std::abs(u[0]));
       across = std::max({across, std::abs(u[1]), std::abs(u[2])});
     }
     w.kind = twist > std::max(along, across) ? ModeKind::torsional : along > across ? ModeKind::axial : ModeKind::lateral;
@@ -155,9 +155,9 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   double area = 0, sum = 0, most = 0, least = 0;
   for (const auto& r : radius) {
     const double f = r[k][0] * r[k][0], b = r[k][1] * r[k][1];
-    area += f - b, sum += f + b;
+    area += f - b; sum += f + b;
     // The direction of orbits below 3 % of the largest decides nothing.
-    if (std::sqrt(f) + std::sqrt(b) > 0.03 * top[k]) most = std::max(most, (f - b) / (f + b)), least = std::min(least, (f - b) / (f + b));
+    if (std::sqrt(f) + std::sqrt(b) > 0.03 * top[k]) { most = std::max(most, (f - b) / (f + b)); least = std::min(least, (f - b) / (f + b)); }
   }
   w.forwardness = sum > 0 ? area / sum : 0.0;
   const double flat = 1e-6;   // far above the rounding of eigenvectors, far below any orbit one could see
@@ -353,7 +353,7 @@ std::string SpectrumCertificate::text() const {
 
 std::optional<WhirlMode> WhirlSolver::follow(double Omega, const WhirlMode& start) {
   la::Mode from;
-  from.lambda = start.lambda, from.x = start.x;
+  from.lambda = start.lambda; from.x = start.x;
   std::optional<la::Mode> found;
   if (options_.damped && linear_.hysteretic()) found = settle_rate(Omega, from);
   else if (by_frequency() && from.lambda.imag() != 0.0) found = own_->settle(at_frequency(Omega), from);

@@ -50,7 +50,7 @@ EquilibriumSolver::EquilibriumSolver(SteadySystem& running, EquilibriumOptions o
   const system::System& s = running.system();
   Vec3 low = Vec3::Constant(infinity), high = -low;
   for (Index i = 0; i < s.nodes(); ++i)
-    if (!s.node(i).scalar) low = low.cwiseMin(s.node(i).position), high = high.cwiseMax(s.node(i).position);
+    if (!s.node(i).scalar) { low = low.cwiseMin(s.node(i).position); high = high.cwiseMax(s.node(i).position); }
   length_ = (high - low).norm();
   if (!(length_ > 0)) length_ = 1.0;   // one body: metre and radian weigh alike
 }
@@ -74,7 +74,7 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
   const auto& start = sys.pattern().row_start();
   const auto& cols = sys.pattern().cols();
   for (Index l = 0; l < L; ++l) {
-    ke[at(l)] = VecX::Zero(sys.size()), size[at(l)] = VecX::Zero(sys.size());
+    ke[at(l)] = VecX::Zero(sys.size()); size[at(l)] = VecX::Zero(sys.size());
     if (first[at(l)] < 0) continue;
     matrices_.K.add_multiply(1.0, e[at(l)], ke[at(l)]);
     for (Index i = 0; i < sys.nodes(); ++i)
@@ -101,7 +101,7 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
     bool held = false;
     for (Index l = 0; l < L; ++l) {
       if (root(l) != g) continue;
-      sum += ke[at(l)], scale += size[at(l)];
+      sum += ke[at(l)]; scale += size[at(l)];
       if (lead < 0) lead = first[at(l)];
     }
     for (Index i = 0; i < sys.nodes(); ++i)   // a prescribed angle holds its whole group
@@ -112,7 +112,7 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
     bool resisted = false;
     for (Index k = 0; k < sys.size(); ++k)
       resisted = resisted || (free_[at(k)] && std::abs(sum[k]) > 1e-9 * std::max(scale[k], k % 6 < 3 ? torque / length_ : torque));
-    if (!resisted) spin_holds_.push_back(lead), free_[at(lead)] = 0;
+    if (!resisted) { spin_holds_.push_back(lead); free_[at(lead)] = 0; }
   }
   group_.resize(at(L));
   for (Index l = 0; l < L; ++l) group_[at(l)] = root(l);
@@ -131,14 +131,14 @@ std::string EquilibriumSolver::name_motion(Index singular) const {
       e.setZero();
       bool any = false;
       for (Index i = 0; i < sys.nodes(); ++i)
-        if (const Index k = 6 * i + c; sys.node(i).line == l && !sys.node(i).scalar && free_[at(k)]) e[k] = 1.0, any = true;
+        if (const Index k = 6 * i + c; sys.node(i).line == l && !sys.node(i).scalar && free_[at(k)]) { e[k] = 1.0; any = true; }
       if (!any) continue;
       bool resisted = false;
       for (Index i = 0; i < sys.nodes() && !resisted; ++i) {
         Vector<6> sum = Vector<6>::Zero(), size = sum;
         for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b) {
           const auto x = e.segment<6>(6 * cols[at(b)]);
-          sum += matrices_.K.block(b) * x, size += matrices_.K.block(b).cwiseAbs() * x;
+          sum += matrices_.K.block(b) * x; size += matrices_.K.block(b).cwiseAbs() * x;
         }
         // forces against forces, moments against moments: small couplings are not rounding of each other
         const double force = size.head<3>().maxCoeff(), moment = size.tail<3>().maxCoeff();
@@ -166,7 +166,7 @@ bool EquilibriumSolver::is_small(const VecX& d, const VecX& q) const {
   double now[4] = {}, all[4] = {};
   for (Index k = 0; k < d.size(); ++k) {
     const int c = s.node(k / 6).scalar ? 3 : k % 6 < 3 ? 0 : k % 6 == 3 ? 1 : 2;
-    now[c] = std::max(now[c], std::abs(d[k])), all[c] = std::max(all[c], std::abs(q[k]));
+    now[c] = std::max(now[c], std::abs(d[k])); all[c] = std::max(all[c], std::abs(q[k]));
   }
   for (int c = 0; c < 4; ++c)
     if (now[c] > std::max(options_.tolerance * all[c], c == 0 ? 1e-15 * length_ : 1e-15)) return false;
@@ -217,7 +217,7 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
     // Converged, or as small as rounding lets it become.
     if (is_small(step_, s.q) || (damping == 1.0 && size < 1e-8 && size > 0.25 * last)) {
       s.q += step_;
-      if (!running_.residual(s.frames, Omega, s.q, r_)) s.q -= step_, running_.residual(s.frames, Omega, s.q, r_);
+      if (!running_.residual(s.frames, Omega, s.q, r_)) { s.q -= step_; running_.residual(s.frames, Omega, s.q, r_); }
       if (balanced(running_, Omega, s, r_, matrices_, free_)) return Outcome::converged;
       last = size;
       continue;
@@ -255,7 +255,7 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
       return Outcome::diverged;
     }
     s.q = trial_;
-    damping = alpha, last = size;
+    damping = alpha; last = size;
   }
   Index worst = 0;
   for (Index k = 0; k < step_.size(); ++k) {
@@ -290,12 +290,12 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
   running_.impose(s.frames, s.q);
   running_.set_rates(Omega, s.v);
   s.a.setZero();
-  if (!holds_known_) find_spin_holds(s, Omega), holds_known_ = true;
+  if (!holds_known_) { find_spin_holds(s, Omega); holds_known_ = true; }
   for (Index k : spin_holds_) s.q[k] = 0.0;
 
   const system::State begin = s;
   Outcome o = options_.load_steps > 1 ? Outcome::diverged : newton(Omega, s, out.iterations);
-  if (o == Outcome::singular) s = begin, o = close_gaps(Omega, s, out.iterations);
+  if (o == Outcome::singular) { s = begin; o = close_gaps(Omega, s, out.iterations); }
   if (o != Outcome::converged) {
     // Loads in steps from the unloaded state, doubled after an easy step, halved after a failure.
     const double full = running_.load();
@@ -314,10 +314,10 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
       s = kept;
       int n = 0;
       o = newton(Omega, s, n);
-      out.iterations += n, ++out.load_steps;
+      out.iterations += n; ++out.load_steps;
       if (o == Outcome::converged) {
         if (options_.chart_change) change_charts(s);
-        kept = s, done = factor;
+        kept = s; done = factor;
         if (factor == 1.0) break;
         if (!first && n <= 6) step = std::min(2.0 * step, largest);
         first = false;

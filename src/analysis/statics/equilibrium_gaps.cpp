@@ -36,7 +36,7 @@ EquilibriumSolver::Outcome EquilibriumSolver::close_gaps(double Omega, system::S
   }
   s = begin;
   const Outcome o = let_down(Omega, s, iterations);
-  if (o != Outcome::converged) s = begin, why_ = why;
+  if (o != Outcome::converged) { s = begin; why_ = why; }
   return o;
 }
 
@@ -78,7 +78,7 @@ void EquilibriumSolver::close_backlash(double Omega, system::State& s, int& iter
         for (Index b = start[static_cast<std::size_t>(i)]; b < start[static_cast<std::size_t>(i + 1)]; ++b) {
           const auto row = matrices_.K.block(b).row(system::spin_phi);
           const auto x = e.segment<6>(6 * cols[static_cast<std::size_t>(b)]);
-          torque += row.dot(x), size += row.cwiseAbs().dot(x.cwiseAbs());
+          torque += row.dot(x); size += row.cwiseAbs().dot(x.cwiseAbs());
         }
         if (std::abs(torque) > 1e-9 * size) other = group_[static_cast<std::size_t>(sys.node(i).line)];
       }
@@ -97,7 +97,7 @@ void EquilibriumSolver::close_backlash(double Omega, system::State& s, int& iter
       }
       break;
     }
-    if (!free_[static_cast<std::size_t>(held)]) s = open, r_ = residual;
+    if (!free_[static_cast<std::size_t>(held)]) { s = open; r_ = residual; }
   }
 }
 
@@ -159,7 +159,7 @@ EquilibriumSolver::Outcome EquilibriumSolver::let_down(double Omega, system::Sta
       tau *= 0.25;
       continue;
     }
-    s.q = trial_, r = r_, way += step;
+    s.q = trial_; r = r_; way += step;
     if (way > 0.5 * length_) return Outcome::singular;
     tau = std::min(tau * std::max(2.0, now / std::max(after, 1e-300)), 1e13 / stiffest);
     now = after;

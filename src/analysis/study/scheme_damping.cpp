@@ -47,7 +47,7 @@ void StepHistogram::look(const Snapshot& s) { spin_ = std::max(spin_, std::abs(s
 void StepHistogram::step(StepAccess& s) {
   const double h = s.t1() - s.t0();
   const auto bin = static_cast<std::size_t>(std::clamp(std::log2(h / shortest) * per_octave, 0.0, static_cast<double>(time_.size() - 1)));
-  time_[bin] += h, seconds_ += h;
+  time_[bin] += h; seconds_ += h;
   look(s.end());
 }
 
@@ -62,10 +62,10 @@ double StepHistogram::mean_decay(std::string_view method, double rho_inf, Comple
   return counted > 0.0 ? sum / counted : 0.0;
 }
 
-void StepHistogram::save(OutArchive& out) const { out.put(spin_), out.put(seconds_), out.put(time_); }
+void StepHistogram::save(OutArchive& out) const { out.put(spin_); out.put(seconds_); out.put(time_); }
 
 void StepHistogram::restore(InArchive& in) {
-  spin_ = in.number(), seconds_ = in.number();
+  spin_ = in.number(); seconds_ = in.number();
   time_ = in.numbers();
   time_.resize(per_octave * octaves);
 }

@@ -45,7 +45,7 @@ class Dense final : public time::Problem {
   void solve(time::RefC b) const override { b = complex_.solve(b).eval(); }
   Power power(double, time::CRef q, time::CRef v, time::CRef, time::CRef) override {
     Power p;
-    p.kinetic = 0.5 * v.dot(r_.M * v), p.stored = p.kinetic + 0.5 * q.dot(r_.K * q);
+    p.kinetic = 0.5 * v.dot(r_.M * v); p.stored = p.kinetic + 0.5 * q.dot(r_.K * q);
     return p;
   }
 

@@ -105,7 +105,7 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
           steepest = std::max(steepest, slope);
         }
       }
-      n += 1, x += p[i].first, y += p[i].second, xx += p[i].first * p[i].first, xy += p[i].first * p[i].second;
+      n += 1; x += p[i].first; y += p[i].second; xx += p[i].first * p[i].first; xy += p[i].first * p[i].second;
     }
     const double d = n * xx - x * x;
     result.orders.push_back({name, n >= 2 && d > 1e-12 ? (n * xy - x * y) / d : 0.0});
@@ -125,7 +125,7 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
     StudyResult::Advice advice{target, 0, false};
     for (std::size_t i : result.pareto)
       if (result.samples[i].worst() <= target) {
-        advice.sample = i, advice.found = true;
+        advice.sample = i; advice.found = true;
         break;   // pareto is sorted by time
       }
     result.advice.push_back(advice);

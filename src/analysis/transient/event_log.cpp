@@ -31,21 +31,21 @@ void EventLog::step(StepAccess& s) {
           else ++more_;
         }
       }
-      a = b, ga = gb;
+      a = b; ga = gb;
     }
     last_[i] = ga;
   }
 }
 
 void EventLog::save(OutArchive& out) const {
-  out.put(last_), out.put_count(more_), out.put_count(events_.size());
-  for (const Happened& e : events_) out.put_count(e.watch), out.put(e.t), out.put(e.speed), out.put_count(e.rising ? 1 : 0);
+  out.put(last_); out.put_count(more_); out.put_count(events_.size());
+  for (const Happened& e : events_) { out.put_count(e.watch); out.put(e.t); out.put(e.speed); out.put_count(e.rising ? 1 : 0); }
 }
 
 void EventLog::restore(InArchive& in) {
-  last_ = in.numbers(), more_ = in.count();
+  last_ = in.numbers(); more_ = in.count();
   events_.resize(in.count());
-  for (Happened& e : events_) e.watch = in.count(), e.t = in.number(), e.speed = in.number(), e.rising = in.count() != 0;
+  for (Happened& e : events_) { e.watch = in.count(); e.t = in.number(); e.speed = in.number(); e.rising = in.count() != 0; }
 }
 
 }  // namespace whirl::analysis

@@ -67,7 +67,7 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
   for (auto [to, from] : {std::pair(&kept.M, &m.M), std::pair(&kept.C, &m.C), std::pair(&kept.K, &m.K)})
     std::copy_n(from->data(), from->value_count(), to->data());
 
-  q0_ = e.q, v0_ = e.v;
+  q0_ = e.q; v0_ = e.v;
   const auto spinning = linear.running().spinning();
   turns_.assign(spinning.begin(), spinning.end());
   angle_ = VecX::Zero(system.lines());
@@ -92,7 +92,7 @@ void LinearMotion::find_changing(double t) {
   std::mt19937 rng(7);
   std::normal_distribution<double> normal;
   VecX q = q0_, v = v0_, a(q0_.size());
-  for (Index k = 0; k < q.size(); ++k) q[k] += 1e-6 * normal(rng), v[k] += 1e-4 * normal(rng), a[k] = normal(rng);
+  for (Index k = 0; k < q.size(); ++k) { q[k] += 1e-6 * normal(rng); v[k] += 1e-4 * normal(rng); a[k] = normal(rng); }
   const auto& terms = system().terms();
   std::vector<std::vector<Vector<7>>> base(terms.size());
   std::vector<unsigned char> changes(terms.size(), 0);
@@ -152,7 +152,7 @@ time::Problem::Power LinearMotion::exchange_here(time::CRef v, time::CRef reacti
 }
 
 bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
-  q_ = q0_, v_ = v0_;
+  q_ = q0_; v_ = v0_;
   for (Index i = 0; i < system().nodes(); ++i)
     if (turns_[at(i)]) {
       const Index l = system().node(i).line;
@@ -160,7 +160,7 @@ bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, 
     }
   if (!system().residual(steady_, frames, t, q_, v_, a_, r, &changing_)) return false;
   r += constant_;
-  q_ = q - q_, v_ = v - v_;
+  q_ = q - q_; v_ = v - v_;
   const la::MCK& m = matrices();
   m.M.add_multiply(1.0, a, r);
   m.C.add_multiply(1.0, v_, r);

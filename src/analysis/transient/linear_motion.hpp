@@ -35,8 +35,8 @@ class LinearMotion final : public system::SystemProblem {
   bool power_needs_reactions() const override { return true; }
 
   /// The steady motion, for checkpoints.
-  void save(OutArchive& out) const { out.put(q0_), out.put(v0_), out.put(angle_), out.put(constant_); }
-  void restore(InArchive& in) { q0_ = in.vector(), v0_ = in.vector(), angle_ = in.vector(), constant_ = in.vector(); }
+  void save(OutArchive& out) const { out.put(q0_); out.put(v0_); out.put(angle_); out.put(constant_); }
+  void restore(InArchive& in) { q0_ = in.vector(); v0_ = in.vector(); angle_ = in.vector(); constant_ = in.vector(); }
 
  private:
   void find_changing(double t);

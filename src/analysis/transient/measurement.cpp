@@ -5,7 +5,7 @@
 namespace whirl::analysis {
 
 void Snapshot::set(double t, const VecX& q, const VecX& v, const VecX& a) {
-  t_ = t, q_ = &q, v_ = &v, a_ = &a;
+  t_ = t; q_ = &q; v_ = &v; a_ = &a;
   have_reactions_ = have_energy_ = false;
   problem_.system().evaluate_nodes(problem_.workspace(), problem_.frames, t, q, v, a);
 }
@@ -49,7 +49,7 @@ Measurement measure_displacement(std::string name, Point p, const std::vector<do
   Measurement m{std::move(name), "m", "displacement from the reference position", {"y", "z"}, 1.0, {}};
   std::vector<std::pair<double, double>> axes{{1.0, 0.0}, {0.0, 1.0}};
   if (!angles.empty()) {
-    axes.clear(), m.components.clear();
+    axes.clear(); m.components.clear();
     m.description = "displacement along the probe's direction, angle from +y towards +z";
     for (double angle : angles) {
       axes.emplace_back(std::cos(angle), std::sin(angle));
@@ -112,7 +112,7 @@ Measurement measure_energy() {
   return {"energy", "J", "kinetic, elastic and gravity potential energy", {"kinetic", "elastic", "gravity"}, 1.0,
           [](const Snapshot& s, double* out) {
             const system::Energy& e = s.energy();
-            out[0] = e.kinetic, out[1] = e.elastic, out[2] = e.gravity;
+            out[0] = e.kinetic; out[1] = e.elastic; out[2] = e.gravity;
           }};
 }
 

@@ -16,7 +16,7 @@ void Recorder::write(const Snapshot& s) {
   if (gate_ && !gate_(s)) return;
   row_[0] = s.t();
   double* out = row_.data() + 1;
-  for (const Measurement& m : channels_) m.evaluate(s, out), out += m.width();
+  for (const Measurement& m : channels_) { m.evaluate(s, out); out += m.width(); }
   sink_(row_);
   ++rows_;
 }
@@ -43,11 +43,11 @@ void Recorder::step(StepAccess& s) {
 }
 
 void Recorder::save(OutArchive& out) const {
-  out.put_count(static_cast<std::uint64_t>(ticker_.count())), out.put_count(static_cast<std::uint64_t>(rows_));
+  out.put_count(static_cast<std::uint64_t>(ticker_.count())); out.put_count(static_cast<std::uint64_t>(rows_));
 }
 
 void Recorder::restore(InArchive& in) {
-  ticker_.set_count(static_cast<long>(in.count())), rows_ = static_cast<long>(in.count());
+  ticker_.set_count(static_cast<long>(in.count())); rows_ = static_cast<long>(in.count());
 }
 
 PeakTracker::PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from)
@@ -150,8 +150,8 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
       r2 = radius(x2);
     }
   }
-  if (r1 > best) best = r1, where = x1;
-  if (r2 > best) best = r2, where = x2;
+  if (r1 > best) { best = r1; where = x1; }
+  if (r2 > best) { best = r2; where = x2; }
   if (!(best > peak.amplitude)) return;
   const std::array<double, looks> w = lagrange<looks>(where);
   double spin = 0;
@@ -161,11 +161,11 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
 }
 
 void PeakTracker::save(OutArchive& out) const {
-  for (const Peak& p : peaks_) out.put(p.amplitude), out.put(p.time), out.put(p.speed);
+  for (const Peak& p : peaks_) { out.put(p.amplitude); out.put(p.time); out.put(p.speed); }
 }
 
 void PeakTracker::restore(InArchive& in) {
-  for (Peak& p : peaks_) p.amplitude = in.number(), p.time = in.number(), p.speed = in.number();
+  for (Peak& p : peaks_) { p.amplitude = in.number(); p.time = in.number(); p.speed = in.number(); }
 }
 
 void EnergyBalance::begin(const Snapshot& s) {
@@ -221,12 +221,12 @@ void EnergyBalance::restore(InArchive& in) {
   known_ = in.count() != 0;
 }
 
-void TiltWatch::save(OutArchive& out) const { out.put(tilt_), out.put(time_), out.put_count(static_cast<std::uint64_t>(node_)); }
-void TiltWatch::restore(InArchive& in) { tilt_ = in.number(), time_ = in.number(), node_ = static_cast<Index>(in.count()); }
+void TiltWatch::save(OutArchive& out) const { out.put(tilt_); out.put(time_); out.put_count(static_cast<std::uint64_t>(node_)); }
+void TiltWatch::restore(InArchive& in) { tilt_ = in.number(); time_ = in.number(); node_ = static_cast<Index>(in.count()); }
 
 void TiltWatch::look(const Snapshot& s) {
   for (Index i = 0; i < s.system().nodes(); ++i)
-    if (const double g = s.gamma(i).norm(); g > tilt_) tilt_ = g, time_ = s.t(), node_ = i;
+    if (const double g = s.gamma(i).norm(); g > tilt_) { tilt_ = g; time_ = s.t(); node_ = i; }
 }
 
 }  // namespace whirl::analysis

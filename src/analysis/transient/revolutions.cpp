@@ -23,7 +23,7 @@ double lag_of(const Turn& turn, Complex amplitude) {
 Range range_of(std::span<const double> x) {
   Range r{x[0], x[0], 0.0};
   for (std::size_t j = 0; j < x.size(); ++j) {
-    r.low = std::min(r.low, x[j]), r.high = std::max(r.high, x[j]);
+    r.low = std::min(r.low, x[j]); r.high = std::max(r.high, x[j]);
     r.mean += (j == 0 || j + 1 == x.size() ? 0.5 : 1.0) * x[j];
   }
   r.mean /= static_cast<double>(x.size() - 1);
@@ -38,8 +38,8 @@ Revolutions::Revolutions(std::vector<Point> probes, Index reference, int samples
 }
 
 void Revolutions::begin(const Snapshot& s) {
-  phi_ = angle(s), rate_ = s.node(reference_).dphi;
-  direction_ = 0, filled_ = 0;
+  phi_ = angle(s); rate_ = s.node(reference_).dphi;
+  direction_ = 0; filled_ = 0;
 }
 
 double Revolutions::time_of(StepAccess& s, double phi) {
@@ -68,18 +68,18 @@ void Revolutions::take(const Snapshot& s) {
   const auto at = static_cast<std::size_t>(filled_++);
   for (std::size_t i = 0; i < probes_.size(); ++i) {
     const Vec3 u = displacement(s, probes_[i]);
-    turn_.y[i][at] = u.y(), turn_.z[i][at] = u.z();
+    turn_.y[i][at] = u.y(); turn_.z[i][at] = u.z();
   }
 }
 
 void Revolutions::step(StepAccess& s) {
-  step_phi_ = phi_, step_rate_ = rate_;
+  step_phi_ = phi_; step_rate_ = rate_;
   const Snapshot& end = s.end();
-  phi_ = angle(end), rate_ = end.node(reference_).dphi;
+  phi_ = angle(end); rate_ = end.node(reference_).dphi;
   if (phi_ == step_phi_) return;
   const int direction = phi_ > step_phi_ ? 1 : -1;
   if (direction != direction_) {   // the rotor turned round (or starts): no whole turn can end
-    direction_ = direction, filled_ = 0;
+    direction_ = direction; filled_ = 0;
     const double k = step_phi_ / step_angle_;
     next_ = static_cast<long>(direction > 0 ? std::floor(k + 1e-9) + 1.0 : std::ceil(k - 1e-9) - 1.0);
   }
@@ -94,7 +94,7 @@ void Revolutions::step(StepAccess& s) {
     }
     if (filled_ == turn_.n) {
       take(now);
-      turn_.t1 = t, turn_.backward = direction < 0;
+      turn_.t1 = t; turn_.backward = direction < 0;
       turn_.number = next_ / turn_.n - (direction > 0 ? 1 : 0);
       sink_(turn_);
     }
@@ -106,13 +106,13 @@ void Revolutions::step(StepAccess& s) {
 
 void Revolutions::save(OutArchive& out) const {
   for (double x : {phi_, rate_, turn_.t0, static_cast<double>(next_), static_cast<double>(direction_), static_cast<double>(filled_)}) out.put(x);
-  for (std::size_t i = 0; i < probes_.size(); ++i) out.put(turn_.y[i]), out.put(turn_.z[i]);
+  for (std::size_t i = 0; i < probes_.size(); ++i) { out.put(turn_.y[i]); out.put(turn_.z[i]); }
 }
 
 void Revolutions::restore(InArchive& in) {
-  phi_ = in.number(), rate_ = in.number(), turn_.t0 = in.number();
-  next_ = static_cast<long>(in.number()), direction_ = static_cast<int>(in.number()), filled_ = static_cast<int>(in.number());
-  for (std::size_t i = 0; i < probes_.size(); ++i) turn_.y[i] = in.numbers(), turn_.z[i] = in.numbers();
+  phi_ = in.number(); rate_ = in.number(); turn_.t0 = in.number();
+  next_ = static_cast<long>(in.number()); direction_ = static_cast<int>(in.number()); filled_ = static_cast<int>(in.number());
+  for (std::size_t i = 0; i < probes_.size(); ++i) { turn_.y[i] = in.numbers(); turn_.z[i] = in.numbers(); }
 }
 
 }  // namespace whirl::analysis

@@ -42,7 +42,7 @@ class Dense final : public StepAccess {
   /// look: called before every evaluation; throws to stop.
   Dense(system::SystemProblem& p, time::Integrator& i, std::function<void()> look)
       : integrator_(i), look_(std::move(look)), snapshot_(p), q_(p.size()), v_(p.size()), a_(p.size()) {}
-  void set(double t0, double t1) { t0_ = t0, t1_ = t1, at_end_ = false; }
+  void set(double t0, double t1) { t0_ = t0; t1_ = t1; at_end_ = false; }
   double t0() const override { return t0_; }
   double t1() const override { return t1_; }
   const Snapshot& at(double t) override {
@@ -84,7 +84,7 @@ double crossing(Dense& step, F&& f, double f0) {
       }
       return hi;
     }
-    a = b, fa = fb;
+    a = b; fa = fb;
   }
   return -1.0;
 }
@@ -150,7 +150,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         result.reason = StopReason::interrupted;
         break;
       }
-      if (land_on_corners) step.end(), corners.begin();
+      if (land_on_corners) { step.end(); corners.begin(); }
       time::StepReport report = integrator->advance();
       if (!report.ok()) {
         result.reason = StopReason::failed;
@@ -180,7 +180,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
           step.set(report.t0, report.t1);
         }
         if (!report.ok()) {
-          result.reason = StopReason::failed, result.detail = failure(problem, report);
+          result.reason = StopReason::failed; result.detail = failure(problem, report);
           break;
         }
       }
@@ -191,7 +191,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         auto f = [&](const Snapshot& x) { return x.node(s.node).spin() - s.speed; };
         const double t = crossing(step, f, speed_before[i]);
         if (t >= 0.0 && t < t_stop) {
-          t_stop = t, result.reason = StopReason::speed_reached;
+          t_stop = t; result.reason = StopReason::speed_reached;
           result.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", s.speed * 30.0 / pi, t);
         }
         speed_before[i] = f(step.end());
@@ -200,7 +200,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         auto f = [&](const Snapshot& x) { return displacement(x, s.point).tail<2>().norm() - s.limit; };
         const double t = crossing(step, f, -1.0);
         if (t >= 0.0 && t < t_stop) {
-          t_stop = t, result.reason = StopReason::amplitude_limit;
+          t_stop = t; result.reason = StopReason::amplitude_limit;
           result.detail = fmt::format("{} passes {:.4g} m at t = {:.9g} s", s.name, s.limit, t);
         }
       }
@@ -209,7 +209,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         if (t_stop < report.t1 && t_stop > report.t0) {
           report = integrator->shorten_to(t_stop);
           if (!report.ok()) {
-            result.reason = StopReason::failed, result.detail = failure(problem, report);
+            result.reason = StopReason::failed; result.detail = failure(problem, report);
             break;
           }
           step.set(report.t0, report.t1);
@@ -226,7 +226,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         step.set(report.t1, report.t1);
       }
       if (options.progress) {
-        progress.t = report.t1, progress.dt = report.t1 - report.t0, ++progress.steps;
+        progress.t = report.t1; progress.dt = report.t1 - report.t0; ++progress.steps;
         progress.newton = integrator->statistics().newton_iterations;
         progress.spin = step.end().node(options.reference).spin();
         options.progress(progress);

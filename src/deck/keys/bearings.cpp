@@ -94,8 +94,8 @@ void describe_rest(Visitor& v, Vector<6>& setpoint, Vector<6>& preload) {
   v.quantities("preload_moment", moment, "N.m", any, 3, "constant moment on the shaft");
   for (Index i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    setpoint[i] = position[k], setpoint[i + 3] = tilt[k];
-    preload[i] = force[k], preload[i + 3] = moment[k];
+    setpoint[i] = position[k]; setpoint[i + 3] = tilt[k];
+    preload[i] = force[k]; preload[i + 3] = moment[k];
   }
 }
 

@@ -25,7 +25,7 @@ void curve_points(Visitor& v, model::ForceLaw& f, const Units& u) {
             point(w, p);
             if (w.clean() && !f.q.empty() && !(p.q > f.q.back()))
               w.error("E21", "deflection", fmt::format("the deflections do not increase: {} after {}", units::display(p.q, u.deflection), units::display(f.q.back(), u.deflection)));
-            f.q.push_back(p.q), f.F.push_back(p.F);
+            f.q.push_back(p.q); f.F.push_back(p.F);
           },
           [&](Visitor& w) { CurvePoint p; point(w, p); }},
          true, "force against deflection, at least two rows");

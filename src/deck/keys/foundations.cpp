@@ -88,8 +88,8 @@ void describe(Visitor& v, model::Foundation& f) {
     if (given(i, j) != 0 && (differs(e.K, f.K(i, j)) || differs(e.C, f.C(i, j)) || differs(e.M, f.M(i, j))))
       w.error("E29", "row", fmt::format("the entry {}, {} is given twice and not the same", e.row, e.column),
               symmetric ? "the matrices are symmetric: one half is enough; symmetric = false says that they are not" : "");
-    f.K(i, j) = e.K, f.C(i, j) = e.C, f.M(i, j) = e.M, given(i, j) = 1;
-    if (symmetric) f.K(j, i) = e.K, f.C(j, i) = e.C, f.M(j, i) = e.M, given(j, i) = 1;
+    f.K(i, j) = e.K; f.C(i, j) = e.C; f.M(i, j) = e.M; given(i, j) = 1;
+    if (symmetric) { f.K(j, i) = e.K; f.C(j, i) = e.C; f.M(j, i) = e.M; given(j, i) = 1; }
   };
   v.rows({add, [](Visitor& w) { Entry e; describe(w, e, {}); }}, true, "entries of the matrices, one row an entry; those left out are zero");
   if (!v.clean()) return;

@@ -49,11 +49,11 @@ void describe(Visitor& v, model::Output& o) {
   v.quantity(optional("above", "always"), o.above, "mm", positive, "rows of the histories only while a probe is displaced by more than this");
   if (has_window && v.clean()) {
     if (!(window[1] > window[0])) v.error("E21", "window", "the window ends before it starts");
-    o.t0 = window[0], o.t1 = window[1];
+    o.t0 = window[0]; o.t1 = window[1];
   }
   if (has_speeds && v.clean()) {
     if (!(speeds[1] > speeds[0])) v.error("E21", "speed_window", "the window ends before it starts");
-    o.speed_low = speeds[0], o.speed_high = speeds[1];
+    o.speed_low = speeds[0]; o.speed_high = speeds[1];
   }
   v.table("tracking", o.tracking, "tracking filter: synchronous amplitude and phase, envelope and orbits of the probes, turn by turn");
   v.table(optional("spectra", "none"), o.spectra, "spectra of the probes, block by block: waterfall and full spectrum");

@@ -199,7 +199,7 @@ void describe(Visitor& v, model::StabilityMap& m) {
     if (end == text.c_str()) return v.error("E20", "values", fmt::format("'{}' is not a number with a unit", text), "values = [\"60 um\", \"75 um\"]");
     if (last != -infinity && rest != unit) return v.error("E26", "values", fmt::format("the values have different units: '{}' and '{}'", unit, rest), "write all of them in one unit");
     if (!(x > last)) return v.error("E21", "values", fmt::format("the values do not increase: '{}'", text));
-    last = x, unit = rest;
+    last = x; unit = rest;
   }
 }
 

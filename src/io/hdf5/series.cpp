@@ -144,7 +144,7 @@ Opened open_series(const fs::path& path, bool writing) {
   Handle space(H5Dget_space(o.tail), H5Sclose, path, "cannot read");
   hsize_t dims[2] = {0, 0};
   H5Sget_simple_extent_dims(space, dims, nullptr);
-  o.chunk = dims[0], o.width = dims[1];
+  o.chunk = dims[0]; o.width = dims[1];
   // "order" holds, column by column of the tail, the data set it belongs to.
   const auto order = read_strings(path, o.file, "order");
   if (order.size() != o.width) io_failure(path, "not a series of Whirl:");
@@ -242,7 +242,7 @@ class Hdf5Series final : public TimeSeries {
     const std::size_t from = (in_data - base_) * width_;
     std::copy_n(tail.begin(), std::min<std::size_t>(tail.size(), used_ * width_ - from), buffer_.begin() + static_cast<std::ptrdiff_t>(from));
     groups_ = std::move(o.groups);
-    file_ = std::move(o.file), tail_ = std::move(o.tail), state_ = std::move(o.state);
+    file_ = std::move(o.file); tail_ = std::move(o.tail); state_ = std::move(o.state);
     make_spaces();
     flushed_ = 0;
     write_tail();
@@ -303,7 +303,7 @@ class Hdf5Series final : public TimeSeries {
   void release() {
     memory_.reset();
     groups_.clear();
-    tail_.reset(), state_.reset(), file_.reset();
+    tail_.reset(); state_.reset(); file_.reset();
   }
 
   Handle make_dataset(const char* name, hid_t type, std::array<hsize_t, 2> dims, std::array<hsize_t, 2> most,
@@ -315,7 +315,7 @@ class Hdf5Series final : public TimeSeries {
     const std::uint64_t zero = 0;
     if (type == H5T_IEEE_F64LE) H5Pset_fill_value(how, H5T_NATIVE_DOUBLE, &missing);
     else H5Pset_fill_value(how, H5T_NATIVE_UINT64, &zero);
-    if (compress) H5Pset_shuffle(how), H5Pset_deflate(how, 4);
+    if (compress) { H5Pset_shuffle(how); H5Pset_deflate(how, 4); }
     return Handle(H5Dcreate2(file_, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose, path_, "cannot write");
   }
 
@@ -407,11 +407,11 @@ void read(const fs::path& path, Columns& out) {
   std::vector<double> all(rows * o.width);
   for (const auto& g : o.groups) read_rows(path, g, 0, o.s[0], o.width, 0, all);
   std::copy(tail.begin(), tail.end(), all.begin() + static_cast<std::ptrdiff_t>(o.s[0] * o.width));
-  out.names.resize(o.width), out.units.resize(o.width), out.values.assign(o.width, std::vector<double>(rows));
+  out.names.resize(o.width); out.units.resize(o.width); out.values.assign(o.width, std::vector<double>(rows));
   for (const auto& g : o.groups)
     for (std::size_t k = 0; k < g.columns.size(); ++k) {
       const auto c = g.columns[k];
-      out.names[c] = g.titles[k], out.units[c] = g.units[k];
+      out.names[c] = g.titles[k]; out.units[c] = g.units[k];
       for (std::size_t i = 0; i < rows; ++i) out.values[c][i] = all[i * o.width + c];
     }
 }

@@ -65,7 +65,7 @@ class Writer final : public PolyDataWriter {
 
   void write(const std::filesystem::path& file, const PolyData& data, double time) override {
     if (topology_ != data.topology) {
-      vertices_ = copy(data.vertices), lines_ = copy(data.lines), polygons_ = copy(data.polygons);
+      vertices_ = copy(data.vertices); lines_ = copy(data.lines); polygons_ = copy(data.polygons);
       topology_ = data.topology;
     }
     vtkNew<vtkPolyData> poly;

@@ -125,7 +125,7 @@ int Ida::linearize(double t, double cj, N_Vector y, N_Vector yp) {
   t_lin_ = std::min(t, t_stop_eval_);
   cj_ = cj;
   split(t_lin_, y, yp);
-  q_lin_ = qs_, v_lin_ = vs_, a_lin_ = as_;
+  q_lin_ = qs_; v_lin_ = vs_; a_lin_ = as_;
   ++statistics_.linearizations;
   problem_.linearize(t_lin_, q_lin_, v_lin_, a_lin_);
   have_matrices_ = true;
@@ -152,7 +152,7 @@ int Ida::solve(N_Vector x, N_Vector b) {
   out.head(n_) = r_;
   for (Index i : held_) {
     const double b1 = rhs[i], b2 = rhs[n_ + i];
-    out[i] = b1, out[n_ + i] = b2;
+    out[i] = b1; out[n_ + i] = b2;
   }
   return out.allFinite() ? 0 : 1;
 }
@@ -230,7 +230,7 @@ void Ida::initial_acceleration() {
 void Ida::start(double t, CRef q, CRef v) {
   statistics_ = {};
   t_ = t0_ = t;
-  q_ = q, v_ = v;
+  q_ = q; v_ = v;
   a_.setZero();
   accept_pending_ = at_break_ = have_step_ = false;
   problem_.impose(t, q_, v_, a_);
@@ -239,17 +239,17 @@ void Ida::start(double t, CRef q, CRef v) {
   bool is_break;
   const double stop = stops_.next(t_, is_break), span = std::isfinite(stop) ? stop - t_ : 1.0;
   h_next_ = options_.dt_first > 0.0 ? options_.dt_first : 1e-6 * span;
-  q0_ = q_, v0_ = v_, a0_ = a_;
+  q0_ = q_; v0_ = v_; a0_ = a_;
 }
 
 void Ida::restart(CRef q, CRef v, bool) {
-  q_ = q, v_ = v;
+  q_ = q; v_ = v;
   accept_pending_ = at_break_ = have_step_ = false;
   problem_.impose(t_, q_, v_, a_);
   initial_acceleration();
   for (Index i = 0; i < n_; ++i)
     if (q_[i] != q0_[i]) scale_.rebase(i, q_[i]);
-  q0_ = q_, v0_ = v_, a0_ = a_, t0_ = t_;
+  q0_ = q_; v0_ = v_; a0_ = a_; t0_ = t_;
 }
 
 void Ida::reinitialize() {
@@ -297,7 +297,7 @@ void Ida::reinitialize() {
 void Ida::begin_step() {
   if (accept_pending_) {
     accept_pending_ = false;
-    q0_ = q_, v0_ = v_, a0_ = a_;
+    q0_ = q_; v0_ = v_; a0_ = a_;
     if (problem_.accept(t_, q_, v_, a_)) {
       for (Index i = 0; i < n_; ++i) {
         if (v_[i] != v0_[i] || a_[i] != a0_[i]) reinitialize_ = true;
@@ -311,7 +311,7 @@ void Ida::begin_step() {
     problem_.impose(t_, q_, v_, a_);
     initial_acceleration();
   }
-  q0_ = q_, v0_ = v_, a0_ = a_, t0_ = t_;
+  q0_ = q_; v0_ = v_; a0_ = a_; t0_ = t_;
   if (reinitialize_) reinitialize();
   if (matrices_lost_ && have_matrices_) {
     problem_.linearize(t_lin_, q_lin_, v_lin_, a_lin_);
@@ -350,7 +350,7 @@ StepReport Ida::step_to(double stop, bool is_break) {
   report.rejected_error = static_cast<int>(errors - errors_before_);
   report.rejected_newton = static_cast<int>(failures - failures_before_);
   report.newton_iterations = static_cast<int>(iterations - iterations_before_);
-  errors_before_ = errors, failures_before_ = failures, iterations_before_ = iterations;
+  errors_before_ = errors; failures_before_ = failures; iterations_before_ = iterations;
   statistics_.rejected_error += report.rejected_error;
   statistics_.rejected_newton += report.rejected_newton;
   statistics_.newton_iterations += report.newton_iterations;
@@ -365,7 +365,7 @@ StepReport Ida::step_to(double stop, bool is_break) {
   const bool landed = flag == IDA_TSTOP_RETURN;
   t_ = landed ? stop : reached;
   split(std::min(t_, t_stop_eval_), y_.handle(), yp_.handle());
-  q_ = qs_, v_ = vs_, a_ = as_;
+  q_ = qs_; v_ = vs_; a_ = as_;
   report.t1 = t_;
   report.at_breakpoint = at_break_ = landed && is_break;
   have_step_ = accept_pending_ = true;
@@ -410,11 +410,11 @@ StepReport Ida::shorten_to(double t) {
 
 void Ida::interpolate(double t, Ref q, Ref v, Ref a) const {
   if (!have_step_ || t == t_) {
-    q = q_, v = v_, a = a_;
+    q = q_; v = v_; a = a_;
     return;
   }
   if (t == t0_) {
-    q = q0_, v = v0_, a = a0_;
+    q = q0_; v = v0_; a = a0_;
     return;
   }
   const double h = t_ - t0_;
@@ -430,7 +430,7 @@ IntegratorState Ida::save() {
   reinitialize_ = true;
   IntegratorState s;
   s.t = t_;
-  s.q = q_, s.v = v_, s.a = a_;
+  s.q = q_; s.v = v_; s.a = a_;
   auto& out = s.history;
   const Statistics& k = statistics_;
   for (long c : {k.accepted, k.rejected_error, k.rejected_newton, k.newton_iterations, k.linearizations, k.factorizations_real,
@@ -457,7 +457,7 @@ void Ida::restore(const IntegratorState& s) {
   in = scale_.restore(in);
   initial_.restore(in);
   t_ = t0_ = s.t;
-  q_ = q0_ = s.q, v_ = v0_ = s.v, a_ = a0_ = s.a;
+  q_ = q0_ = s.q; v_ = v0_ = s.v; a_ = a0_ = s.a;
   have_step_ = false;
   reinitialize_ = true;
 }
