@@ -13,7 +13,8 @@ using model::Model;
 using model::Section;
 using model::Shaft;
 
-/// Places closer than this part of the line's length are one place: round-off of sums of section lengths.
+/// Places closer than this part of the line's length are one place: round-off of sums of section
+/// lengths.
 constexpr double same_place = 1e-9;
 
 /// More elements than this in one section are a mistake in units, not a mesh.
@@ -24,8 +25,8 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 struct Attached {
   const Location* where;
   std::string label;
-  double weight = 0;      ///< kg, of a disk
-  bool held = false;      ///< a rigid support: it decides where the node of a rigid stretch stands
+  double weight = 0;  ///< kg, of a disk
+  bool held = false;  ///< a rigid support: it decides where the node of a rigid stretch stands
 };
 
 std::string named(const char* kind, const model::Entity& e) {
@@ -34,7 +35,8 @@ std::string named(const char* kind, const model::Entity& e) {
 
 std::vector<Attached> attachments(const Model& m) {
   std::vector<Attached> out;
-  for (const auto& x : m.disks) out.push_back({&x.at, named("disk", x), x.mass});
+  for (const auto& x : m.disks)
+    out.push_back({&x.at, named("disk", x), x.mass});
   for (const auto& x : m.unbalances) {
     out.push_back({&x.at, named("unbalance", x)});
     if (x.to) out.push_back({&*x.to, named("unbalance", x)});
@@ -44,13 +46,18 @@ std::vector<Attached> attachments(const Model& m) {
     out.push_back({&x.at, named("bearing", x), 0.0, held});
     if (x.to) out.push_back({&*x.to, named("bearing", x), 0.0, false});
   }
-  for (const auto& x : m.loads) out.push_back({&x.at, named("load", x)});
-  for (const auto& x : m.drives) out.push_back({&x.at, named("drive", x)});
-  for (const auto& x : m.probes) out.push_back({&x.at, named("probe", x)});
+  for (const auto& x : m.loads)
+    out.push_back({&x.at, named("load", x)});
+  for (const auto& x : m.drives)
+    out.push_back({&x.at, named("drive", x)});
+  for (const auto& x : m.probes)
+    out.push_back({&x.at, named("probe", x)});
   for (const auto& s : m.steps) {
     if (const auto* h = std::get_if<model::HarmonicStep>(&s.law))
-      for (const auto& x : h->forces) out.push_back({&x.at, fmt::format("force of step '{}'", s.name)});
-    if (const auto* p = std::get_if<model::StaticStep>(&s.law); p && p->path && p->path->control == model::LoadPath::Control::displacement)
+      for (const auto& x : h->forces)
+        out.push_back({&x.at, fmt::format("force of step '{}'", s.name)});
+    if (const auto* p = std::get_if<model::StaticStep>(&s.law);
+        p && p->path && p->path->control == model::LoadPath::Control::displacement)
       out.push_back({&p->path->at, fmt::format("control of step '{}'", s.name)});
   }
   return out;
@@ -58,14 +65,16 @@ std::vector<Attached> attachments(const Model& m) {
 
 class Checker {
  public:
-  void add(const char* code, std::string message, std::string hint, const Where& where, std::string entity) {
+  void add(const char* code, std::string message, std::string hint, const Where& where,
+           std::string entity) {
     Diagnostic d{Diagnostic::Severity::error, code, std::move(message), std::move(hint), where};
     if (d.where.entity.empty()) d.where.entity = std::move(entity);
     found_.push_back(std::move(d));
   }
   void finish() {
     if (found_.empty()) return;
-    std::stable_sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) { return a.where.line < b.where.line; });
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const auto& a, const auto& b) { return a.where.line < b.where.line; });
     throw Error(Exit::deck, std::move(found_));
   }
 
@@ -76,18 +85,26 @@ class Checker {
 void check_section(const Shaft& shaft, const Section& s, double model_largest, Checker& check) {
   const double largest = std::min(s.max_element_length, model_largest);
   const std::string who = fmt::format("section '{}' of shaft '{}'", s.name, shaft.name);
-  if (!(s.length > 0)) check.add("E14", fmt::format("{}: the length {} m is not positive", who, s.length), {}, s.where, who);
+  if (!(s.length > 0))
+    check.add("E14", fmt::format("{}: the length {} m is not positive", who, s.length), {}, s.where,
+              who);
   if (!s.rigid && largest > 0 && s.length / largest > most_elements)
-    check.add("E14", fmt::format("{}: elements of {} m would be {:.3g} of them", who, largest, s.length / largest),
+    check.add("E14",
+              fmt::format("{}: elements of {} m would be {:.3g} of them", who, largest,
+                          s.length / largest),
               "more than a million elements in one section", s.where, who);
   if (s.min_elements < 1 || !(s.max_element_length > 0))
-    check.add("E14", fmt::format("{}: at least one element of positive length is needed", who), {}, s.where, who);
+    check.add("E14", fmt::format("{}: at least one element of positive length is needed", who), {},
+              s.where, who);
   const bool wants_circle = !s.rigid && !s.constants && !s.general;
   const auto circle = [&](double od, double id, const char* which) {
     if (wants_circle && !(od > 0))
-      check.add("E14", fmt::format("{}: the {}outer diameter {} m is not positive", who, which, od), {}, s.where, who);
+      check.add("E14", fmt::format("{}: the {}outer diameter {} m is not positive", who, which, od),
+                {}, s.where, who);
     else if (od < 0 || id < 0 || (od > 0 && id >= od))
-      check.add("E23", fmt::format("{}: the {}bore, {} m, is not smaller than the outer diameter, {} m", who, which, id, od),
+      check.add("E23",
+                fmt::format("{}: the {}bore, {} m, is not smaller than the outer diameter, {} m",
+                            who, which, id, od),
                 "diameters are meant, not radii", s.where, who);
   };
   circle(s.od_l, s.id_l, "");
@@ -98,7 +115,10 @@ void check_section(const Shaft& shaft, const Section& s, double model_largest, C
     if (d[2] != d[0] || d[3] != d[1]) circle(d[2], d[3], "right stiffness ");
   }
   if (s.constants && !s.rigid && !(s.constants->EI > 0 && std::isfinite(s.constants->EI)))
-    check.add("E14", fmt::format("{}: EI must be positive and finite; use a rigid section for a rigid one", who), {}, s.where, who);
+    check.add(
+        "E14",
+        fmt::format("{}: EI must be positive and finite; use a rigid section for a rigid one", who),
+        {}, s.where, who);
 }
 
 void check_model(const Model& m, const std::vector<Attached>& attached) {
@@ -109,16 +129,20 @@ void check_model(const Model& m, const std::vector<Attached>& attached) {
     check.add("E35", "the model has no shaft", "add a [shaft] with its sections", deck, "model");
   }
   for (const Shaft& shaft : m.shafts)
-    for (const Section& s : shaft.sections) check_section(shaft, s, m.max_element_length, check);
+    for (const Section& s : shaft.sections)
+      check_section(shaft, s, m.max_element_length, check);
   for (const Attached& a : attached) {
     if (a.where->shaft >= m.shafts.size()) {
-      check.add("E17", fmt::format("{} stands on a shaft that does not exist", a.label), {}, a.where->where, a.label);
+      check.add("E17", fmt::format("{} stands on a shaft that does not exist", a.label), {},
+                a.where->where, a.label);
       continue;
     }
     const Shaft& shaft = m.shafts[a.where->shaft];
     const double L = shaft.length(), s = a.where->s;
     if (!(s >= -same_place * L && s <= L * (1 + same_place)))
-      check.add("E19", fmt::format("{} stands at {:.6g} m, but shaft '{}' reaches from 0 to {:.6g} m", a.label, s, shaft.name, L),
+      check.add("E19",
+                fmt::format("{} stands at {:.6g} m, but shaft '{}' reaches from 0 to {:.6g} m",
+                            a.label, s, shaft.name, L),
                 {}, a.where->where, a.label);
   }
   check.finish();
@@ -133,10 +157,11 @@ std::vector<int> element_counts(const std::vector<double>& cuts, double largest,
     n.push_back(std::max(1, static_cast<int>(std::ceil(pieces * (1 - 1e-12)))));
     total += n.back();
   }
-  for (; total < least; ++total) {   // one more where the elements are longest
+  for (; total < least; ++total) {  // one more where the elements are longest
     std::size_t worst = 0;
     for (std::size_t k = 1; k < n.size(); ++k)
-      if ((cuts[k + 1] - cuts[k]) / n[k] > (1 + 1e-9) * (cuts[worst + 1] - cuts[worst]) / n[worst]) worst = k;
+      if ((cuts[k + 1] - cuts[k]) / n[k] > (1 + 1e-9) * (cuts[worst + 1] - cuts[worst]) / n[worst])
+        worst = k;
     ++n[worst];
   }
   return n;
@@ -146,7 +171,10 @@ std::vector<int> element_counts(const std::vector<double>& cuts, double largest,
 class LineMesher {
  public:
   LineMesher(const Model& m, std::size_t index, const std::vector<Attached>& attached, Mesh& mesh)
-      : model_(m), shaft_(m.shafts[index]), mesh_(mesh), index_(static_cast<Index>(index)) {
+      : model_(m),
+        shaft_(m.shafts[index]),
+        mesh_(mesh),
+        index_(static_cast<Index>(index)) {
     line_.name = shaft_.name;
     line_.origin = shaft_.origin;
     line_.rotating = shaft_.rotating;
@@ -154,17 +182,20 @@ class LineMesher {
     line_.first_element = static_cast<Index>(mesh.elements.size());
     line_.first_station = static_cast<Index>(mesh.stations.size());
     ends_.push_back(0.0);
-    for (const Section& s : shaft_.sections) ends_.push_back(ends_.back() + s.length);
+    for (const Section& s : shaft_.sections)
+      ends_.push_back(ends_.back() + s.length);
     line_.length = ends_.back();
     tolerance_ = same_place * line_.length;
     for (const Attached& a : attached)
       if (a.where->shaft == index) attached_.push_back(&a);
-    std::stable_sort(attached_.begin(), attached_.end(), [](auto* a, auto* b) { return a->where->s < b->where->s; });
+    std::stable_sort(attached_.begin(), attached_.end(),
+                     [](auto* a, auto* b) { return a->where->s < b->where->s; });
   }
 
   void run() {
     if (shaft_.sections.empty()) end_ = {add_node(0.0), 0.0};
-    for (std::size_t k = 0; k < shaft_.sections.size();) k = shaft_.sections[k].rigid ? rigid_stretch(k) : flexible(k);
+    for (std::size_t k = 0; k < shaft_.sections.size();)
+      k = shaft_.sections[k].rigid ? rigid_stretch(k) : flexible(k);
     line_.nodes = static_cast<Index>(mesh_.nodes.size()) - line_.first_node;
     line_.elements = static_cast<Index>(mesh_.elements.size()) - line_.first_element;
     add_stations();
@@ -177,26 +208,38 @@ class LineMesher {
     n.position = shaft_.position(s);
     n.line = index_;
     n.s = s;
-    n.name = fmt::format("node at {:.6g} m of {} '{}'", s, shaft_.rotating ? "shaft" : "casing", shaft_.name);
+    n.name = fmt::format("node at {:.6g} m of {} '{}'", s, shaft_.rotating ? "shaft" : "casing",
+                         shaft_.name);
     mesh_.nodes.push_back(std::move(n));
     return static_cast<Index>(mesh_.nodes.size()) - 1;
   }
 
-  /// Sections k.. that are rigid: one node, at a rigid support if there is one, else at the heaviest body, else in the middle.
+  /// Sections k.. that are rigid: one node, at a rigid support if there is one, else at the
+  /// heaviest body, else in the middle.
   std::size_t rigid_stretch(std::size_t first) {
     std::size_t last = first;
-    while (last < shaft_.sections.size() && shaft_.sections[last].rigid) ++last;
+    while (last < shaft_.sections.size() && shaft_.sections[last].rigid)
+      ++last;
     const double a = ends_[first], b = ends_[last];
     double where = 0.5 * (a + b), heaviest = 0;
     bool held = false;
     for (const Attached* x : attached_) {
       if (x->where->s < a - tolerance_ || x->where->s > b + tolerance_) continue;
       const double s = std::clamp(x->where->s, a, b);
-      if (x->held && !held) { where = s; held = true; }
-      if (!held && x->weight > heaviest) { where = s; heaviest = x->weight; }
+      if (x->held && !held) {
+        where = s;
+        held = true;
+      }
+      if (!held && x->weight > heaviest) {
+        where = s;
+        heaviest = x->weight;
+      }
     }
     const Index node = add_node(where);
-    if (pending_ >= 0) { mesh_.elements[at(pending_)].right = {node, a - where}; pending_ = -1; }
+    if (pending_ >= 0) {
+      mesh_.elements[at(pending_)].right = {node, a - where};
+      pending_ = -1;
+    }
     for (std::size_t k = first; k < last; ++k)
       mesh_.rigid_parts.push_back({index_, k, node, ends_[k] - where, ends_[k + 1] - where});
     stretches_.push_back({a, b, node, where});
@@ -209,13 +252,15 @@ class LineMesher {
     const double a = ends_[k], b = ends_[k + 1];
     std::vector<double> cuts{a};
     std::vector<double> inside = shaft_.path.joints();
-    for (const Attached* x : attached_) inside.push_back(x->where->s);
+    for (const Attached* x : attached_)
+      inside.push_back(x->where->s);
     std::sort(inside.begin(), inside.end());
     for (const double s : inside)
       if (s > cuts.back() + tolerance_ && s < b - tolerance_) cuts.push_back(s);
     cuts.push_back(b);
-    const std::vector<int> n = element_counts(cuts, std::min(s.max_element_length, model_.max_element_length),
-                                              std::max(s.min_elements, model_.min_elements));
+    const std::vector<int> n =
+        element_counts(cuts, std::min(s.max_element_length, model_.max_element_length),
+                       std::max(s.min_elements, model_.min_elements));
     if (k == 0) end_ = {add_node(a), 0.0};
     const bool rigid_next = k + 1 < shaft_.sections.size() && shaft_.sections[k + 1].rigid;
     for (std::size_t c = 0; c < n.size(); ++c)
@@ -225,12 +270,15 @@ class LineMesher {
         Element e;
         e.line = index_;
         e.section = k;
-        e.s1 = point(i); e.s2 = point(i + 1);
-        e.xi1 = (e.s1 - a) / s.length; e.xi2 = e.s2 == b ? 1.0 : (e.s2 - a) / s.length;
+        e.s1 = point(i);
+        e.s2 = point(i + 1);
+        e.xi1 = (e.s1 - a) / s.length;
+        e.xi2 = e.s2 == b ? 1.0 : (e.s2 - a) / s.length;
         e.left = end_;
         mesh_.elements.push_back(e);
         if (e.s2 == b && rigid_next) {
-          pending_ = static_cast<Index>(mesh_.elements.size()) - 1;   // its right end is the node of the rigid stretch
+          pending_ = static_cast<Index>(mesh_.elements.size()) -
+                     1;  // its right end is the node of the rigid stretch
         } else {
           end_ = {add_node(e.s2), 0.0};
           mesh_.elements.back().right = end_;
@@ -253,16 +301,22 @@ class LineMesher {
       add(ends_[k], name.empty() ? name : name + ":start");
       add(ends_[k + 1], name.empty() ? name : name + ":end");
     }
-    for (Index i = line_.first_node; i < line_.first_node + line_.nodes; ++i) add(mesh_.nodes[at(i)].s, {});
-    for (const Attached* a : attached_) add(std::clamp(a->where->s, 0.0, line_.length), a->label);
-    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
-    // Merge what stands at one place; section ends come before attachments in the list, so they give the exact distance.
+    for (Index i = line_.first_node; i < line_.first_node + line_.nodes; ++i)
+      add(mesh_.nodes[at(i)].s, {});
+    for (const Attached* a : attached_)
+      add(std::clamp(a->where->s, 0.0, line_.length), a->label);
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.s < b.s; });
+    // Merge what stands at one place; section ends come before attachments in the list, so they
+    // give the exact distance.
     std::vector<Station> merged;
     for (Station& x : found) {
-      if (merged.empty() || x.s > merged.back().s + tolerance_) merged.push_back(std::move(x));
+      if (merged.empty() || x.s > merged.back().s + tolerance_)
+        merged.push_back(std::move(x));
       else
         for (auto& l : x.labels)
-          if (std::find(merged.back().labels.begin(), merged.back().labels.end(), l) == merged.back().labels.end())
+          if (std::find(merged.back().labels.begin(), merged.back().labels.end(), l) ==
+              merged.back().labels.end())
             merged.back().labels.push_back(std::move(l));
     }
     for (Station& x : merged) {
@@ -275,13 +329,16 @@ class LineMesher {
 
   void resolve(Station& x) const {
     const auto begin = mesh_.elements.begin() + line_.first_element, end = begin + line_.elements;
-    const auto right = std::lower_bound(begin, end, x.s - tolerance_, [](const Element& e, double v) { return e.s1 < v; });
+    const auto right = std::lower_bound(begin, end, x.s - tolerance_,
+                                        [](const Element& e, double v) { return e.s1 < v; });
     if (right != end && right->s1 <= x.s + tolerance_) {
-      x.at = right->left; x.element = right - mesh_.elements.begin();
+      x.at = right->left;
+      x.element = right - mesh_.elements.begin();
       return;
     }
     if (right != begin && std::abs((right - 1)->s2 - x.s) <= tolerance_) {
-      x.at = (right - 1)->right; x.element = right - 1 - mesh_.elements.begin();
+      x.at = (right - 1)->right;
+      x.element = right - 1 - mesh_.elements.begin();
       return;
     }
     for (const Stretch& r : stretches_)
@@ -289,10 +346,14 @@ class LineMesher {
         x.at = {r.node, x.s - r.where};
         return;
       }
-    x.at = end_;   // a line without sections
+    x.at = end_;  // a line without sections
   }
 
-  struct Stretch { double a, b; Index node; double where; };
+  struct Stretch {
+    double a, b;
+    Index node;
+    double where;
+  };
   const Model& model_;
   const Shaft& shaft_;
   Mesh& mesh_;
@@ -302,8 +363,8 @@ class LineMesher {
   std::vector<double> ends_;
   std::vector<const Attached*> attached_;
   std::vector<Stretch> stretches_;
-  Place end_;              ///< right end of what is meshed so far
-  Index pending_ = -1;     ///< element whose right end is the node of the next rigid stretch
+  Place end_;           ///< right end of what is meshed so far
+  Index pending_ = -1;  ///< element whose right end is the node of the next rigid stretch
 };
 
 Index add_fixed(Mesh& mesh, const Vec3& position, NodeKind kind, std::string name) {
@@ -322,9 +383,11 @@ void add_supports(const Model& m, Mesh& mesh) {
     x.shaft = mesh.place(b.at);
     x.other.node = -1;
     const bool rigid = std::holds_alternative<model::RigidSupport>(b.law);
-    if (b.to) x.other = mesh.place(*b.to);
+    if (b.to)
+      x.other = mesh.place(*b.to);
     else if ((b.pedestal || m.foundation_of(k) >= 0) && !rigid) {
-      x.pedestal = add_fixed(mesh, mesh.station(b.at).position, NodeKind::pedestal, fmt::format("pedestal of {}", named("bearing", b)));
+      x.pedestal = add_fixed(mesh, mesh.station(b.at).position, NodeKind::pedestal,
+                             fmt::format("pedestal of {}", named("bearing", b)));
       x.other = {x.pedestal, 0.0};
     }
     mesh.bearings.push_back(x);
@@ -332,9 +395,11 @@ void add_supports(const Model& m, Mesh& mesh) {
   for (std::size_t k = 0; k < m.bearings.size(); ++k) {
     const auto& b = m.bearings[k];
     BearingNodes& x = mesh.bearings[k];
-    const bool alone = std::holds_alternative<model::RigidSupport>(b.law) || std::holds_alternative<model::SpringBlock>(b.law);
+    const bool alone = std::holds_alternative<model::RigidSupport>(b.law) ||
+                       std::holds_alternative<model::SpringBlock>(b.law);
     if (!b.pedestal && (b.to || alone)) continue;
-    x.ground = add_fixed(mesh, mesh.station(b.at).position, NodeKind::ground, fmt::format("ground of {}", named("bearing", b)));
+    x.ground = add_fixed(mesh, mesh.station(b.at).position, NodeKind::ground,
+                         fmt::format("ground of {}", named("bearing", b)));
     if (x.other.node < 0 && !alone) x.other = {x.ground, 0.0};
   }
 }
@@ -346,10 +411,16 @@ std::string Station::label() const { return fmt::format("{}", fmt::join(labels, 
 const Station& Mesh::station(const model::Location& where) const {
   const Line& line = lines.at(where.shaft);
   const auto begin = stations.begin() + line.first_station, end = begin + line.stations;
-  auto x = std::lower_bound(begin, end, where.s, [](const Station& a, double s) { return a.s < s; });
+  auto x =
+      std::lower_bound(begin, end, where.s, [](const Station& a, double s) { return a.s < s; });
   if (x == end || (x != begin && where.s - (x - 1)->s < x->s - where.s)) --x;
   if (std::abs(x->s - where.s) > 2 * same_place * line.length)
-    throw Error(Exit::internal, Diagnostic{Diagnostic::Severity::error, "", fmt::format("no station at {} m of '{}'", where.s, line.name), {}, where.where});
+    throw Error(Exit::internal,
+                Diagnostic{Diagnostic::Severity::error,
+                           "",
+                           fmt::format("no station at {} m of '{}'", where.s, line.name),
+                           {},
+                           where.where});
   return *x;
 }
 
@@ -360,7 +431,8 @@ double Mesh::radius(const model::Model& m, std::size_t line, double s) const {
   for (const Section& k : shaft.sections) {
     const double end = start + k.length;
     if (s >= start - tolerance && s <= end + tolerance)
-      r = std::max(r, 0.5 * (k.od_l + (k.od_r - k.od_l) * std::clamp((s - start) / k.length, 0.0, 1.0)));
+      r = std::max(
+          r, 0.5 * (k.od_l + (k.od_r - k.od_l) * std::clamp((s - start) / k.length, 0.0, 1.0)));
     start = end;
   }
   return r;
@@ -370,7 +442,8 @@ Mesh make_mesh(const Model& m) {
   const std::vector<Attached> attached = attachments(m);
   check_model(m, attached);
   Mesh mesh;
-  for (std::size_t k = 0; k < m.shafts.size(); ++k) LineMesher(m, k, attached, mesh).run();
+  for (std::size_t k = 0; k < m.shafts.size(); ++k)
+    LineMesher(m, k, attached, mesh).run();
   add_supports(m, mesh);
   return mesh;
 }

@@ -7,8 +7,8 @@ namespace whirl::meshes {
 
 /// node, name, kind, line, s[m], x[m], y[m], z[m]
 std::string nodes_csv(const Mesh& mesh);
-/// element, line, section, left node, right node, s1[m], s2[m], left offset[m], right offset[m], outer and inner diameters of
-/// both ends [m] (of mass; empty where the section has none)
+/// element, line, section, left node, right node, s1[m], s2[m], left offset[m], right offset[m],
+/// outer and inner diameters of both ends [m] (of mass; empty where the section has none)
 std::string elements_csv(const model::Model& m, const Mesh& mesh);
 /// station, line, s[m], node, offset[m], element, labels
 std::string stations_csv(const Mesh& mesh);

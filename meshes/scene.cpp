@@ -6,13 +6,16 @@
 namespace whirl::meshes {
 namespace {
 
-struct Radii { double outer, inner; };
+struct Radii {
+  double outer, inner;
+};
 
 /// Radii of a section at the fraction xi.
 Radii radii(const model::Section& s, double line_length, double xi) {
   const auto mix = [xi](double a, double b) { return 0.5 * (a + xi * (b - a)); };
   if (s.od_l > 0 || s.od_r > 0) return {mix(s.od_l, s.od_r), mix(s.id_l, s.id_r)};
-  if (s.constants && s.constants->EA > 0 && s.constants->EI > 0) return {2 * std::sqrt(s.constants->EI / s.constants->EA), 0};   // EI/EA = r^2/4
+  if (s.constants && s.constants->EA > 0 && s.constants->EI > 0)
+    return {2 * std::sqrt(s.constants->EI / s.constants->EA), 0};  // EI/EA = r^2/4
   if (s.general && s.general->A > 0) return {std::sqrt(s.general->A / pi), 0};
   return {0.01 * line_length, 0};
 }
@@ -36,7 +39,7 @@ DiskShape disk_shape(const model::Disk& d, Place at, double shaft_radius) {
   out.width = d.draw_width;
   if (!(out.outer > 0) && d.mass > 0 && d.Ip > 0) out.outer = std::sqrt(2 * d.Ip / d.mass);
   if (!(out.outer > 0)) out.outer = shaft_radius > 0 ? 2 * shaft_radius : 0.05;
-  if (!(out.width > 0) && d.mass > 0) {   // Id = m (3 r^2 + w^2)/12
+  if (!(out.width > 0) && d.mass > 0) {  // Id = m (3 r^2 + w^2)/12
     const double w2 = 12 * d.Id / d.mass - 3 * out.outer * out.outer;
     out.width = w2 > 0 ? std::min(std::sqrt(w2), 2 * out.outer) : 0.0;
   }
@@ -76,13 +79,18 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
       out.radius.push_back(radius_at(shaft, line.length, s.s));
       if (!bent) continue;
       const auto [before, after] = bends(s.s);
-      out.bend_before.push_back(before); out.bend_after.push_back(after);
+      out.bend_before.push_back(before);
+      out.bend_after.push_back(after);
     }
     // Elements and rigid parts in order of their left ends.
-    struct Piece { double s; ShaftPiece shape; };
+    struct Piece {
+      double s;
+      ShaftPiece shape;
+    };
     std::vector<Piece> pieces;
     const auto add = [&](std::size_t section, double s, Place a, Place b, double xi1, double xi2) {
-      const Radii r1 = radii(shaft.sections[section], line.length, xi1), r2 = radii(shaft.sections[section], line.length, xi2);
+      const Radii r1 = radii(shaft.sections[section], line.length, xi1),
+                  r2 = radii(shaft.sections[section], line.length, xi2);
       pieces.push_back({s, {a, b, r1.outer, r2.outer, r1.inner, r2.inner}});
     };
     for (Index k = line.first_element; k < line.first_element + line.elements; ++k) {
@@ -92,14 +100,19 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
       ShaftPiece& p = pieces.back().shape;
       const Index last = pieces.size() > 1 ? pieces[pieces.size() - 2].shape.bend_right : -1;
       const Mat3 from = shaft.path.after(e.s1).triad;
-      p.bend_left = last >= 0 && (scene.bends[static_cast<std::size_t>(last)] - from).norm() < 1e-6 ? last : bends(e.s1).second;
+      p.bend_left = last >= 0 && (scene.bends[static_cast<std::size_t>(last)] - from).norm() < 1e-6
+                        ? last
+                        : bends(e.s1).second;
       p.bend_right = bends(e.s2).first;
     }
     for (const RigidPart& r : mesh.rigid_parts)
       if (r.line == static_cast<Index>(l))
-        add(r.section, mesh.nodes[static_cast<std::size_t>(r.node)].s + r.o1, {r.node, r.o1}, {r.node, r.o2}, 0, 1);
-    std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.s < b.s; });
-    for (Piece& p : pieces) out.pieces.push_back(p.shape);
+        add(r.section, mesh.nodes[static_cast<std::size_t>(r.node)].s + r.o1, {r.node, r.o1},
+            {r.node, r.o2}, 0, 1);
+    std::stable_sort(pieces.begin(), pieces.end(),
+                     [](const Piece& a, const Piece& b) { return a.s < b.s; });
+    for (Piece& p : pieces)
+      out.pieces.push_back(p.shape);
     for (const auto& d : m.disks)
       if (d.at.shaft == l) {
         out.disks.push_back(disk_shape(d, mesh.place(d.at), radius_at(shaft, line.length, d.at.s)));
@@ -112,7 +125,8 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
     const BearingNodes& n = mesh.bearings[i];
     SupportShape s;
     s.name = b.name;
-    s.kind = std::holds_alternative<model::SpringBlock>(b.law) ? SupportShape::Kind::spring : SupportShape::Kind::bearing;
+    s.kind = std::holds_alternative<model::SpringBlock>(b.law) ? SupportShape::Kind::spring
+                                                               : SupportShape::Kind::bearing;
     s.at = n.shaft;
     s.to_node = n.other.node >= 0 && n.other.node != n.ground;
     if (s.to_node) s.to = n.other;
@@ -123,7 +137,8 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
     }
     scene.supports.push_back(std::move(s));
   }
-  for (const auto& p : m.probes) scene.trails.push_back({p.name, mesh.place(p.at)});
+  for (const auto& p : m.probes)
+    scene.trails.push_back({p.name, mesh.place(p.at)});
   return scene;
 }
 

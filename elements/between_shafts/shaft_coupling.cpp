@@ -30,7 +30,13 @@ Relative<double> relative(const ShaftCoupling& k, const Nodes<2>& x) {
   const Vec3 u = a.u - b.u + k.offset, du = a.du - b.du;
   const Vec2 t = (a.d() - b.d()).tail<2>() + k.angle, dt = (a.dd - b.dd).tail<2>();
   const double whole = 0.5 * (a.turns + b.turns);
-  r.y = {u.x(), u.y(), u.z(), t.x(), t.y(), a.phi - b.phi + two_pi * (a.turns - b.turns), 0.5 * (a.phi + b.phi) + two_pi * (whole - std::floor(whole))};
+  r.y = {u.x(),
+         u.y(),
+         u.z(),
+         t.x(),
+         t.y(),
+         a.phi - b.phi + two_pi * (a.turns - b.turns),
+         0.5 * (a.phi + b.phi) + two_pi * (whole - std::floor(whole))};
   r.v = {du.x(), du.y(), du.z(), dt.x(), dt.y(), a.dphi - b.dphi, 0.5 * (a.dphi + b.dphi)};
   return r;
 }
@@ -43,16 +49,25 @@ struct Motion {
   Motion(const ShaftCoupling& k, const Relative<T>& r) {
     using std::cos, std::sin;
     const T c = cos(r.y[6]), s = sin(r.y[6]);
-    const T ry = T(0.0) - r.y[4], vry = T(0.0) - r.v[4];   // tilts about y and z: -tau_z, tau_y
-    p = {r.y[0], c * r.y[1] + s * r.y[2], c * r.y[2] - s * r.y[1], r.y[5], c * ry + s * r.y[3], c * r.y[3] - s * ry};
-    rate = {r.v[0], c * r.v[1] + s * r.v[2] + r.v[6] * p[2], c * r.v[2] - s * r.v[1] - r.v[6] * p[1], r.v[5],
-            c * vry + s * r.v[3] + r.v[6] * p[5], c * r.v[3] - s * vry - r.v[6] * p[4]};
+    const T ry = T(0.0) - r.y[4], vry = T(0.0) - r.v[4];  // tilts about y and z: -tau_z, tau_y
+    p = {r.y[0], c * r.y[1] + s * r.y[2], c * r.y[2] - s * r.y[1],
+         r.y[5], c * ry + s * r.y[3],     c * r.y[3] - s * ry};
+    rate = {
+        r.v[0], c * r.v[1] + s * r.v[2] + r.v[6] * p[2], c * r.v[2] - s * r.v[1] - r.v[6] * p[1],
+        r.v[5], c * vry + s * r.v[3] + r.v[6] * p[5],    c * r.v[3] - s * vry - r.v[6] * p[4]};
     for (int i = 0; i < 6; ++i) {
       T q = 0.0;
-      for (int j = 0; j < 6; ++j) q += k.K(i, j) * p[static_cast<std::size_t>(j)] + k.C(i, j) * rate[static_cast<std::size_t>(j)];
+      for (int j = 0; j < 6; ++j)
+        q += k.K(i, j) * p[static_cast<std::size_t>(j)] +
+             k.C(i, j) * rate[static_cast<std::size_t>(j)];
       load[static_cast<std::size_t>(i)] = q;
     }
-    force = {load[0], c * load[1] - s * load[2], s * load[1] + c * load[2], s * load[4] + c * load[5], s * load[5] - c * load[4], load[3],
+    force = {load[0],
+             c * load[1] - s * load[2],
+             s * load[1] + c * load[2],
+             s * load[4] + c * load[5],
+             s * load[5] - c * load[4],
+             load[3],
              load[1] * p[2] - load[2] * p[1] + load[4] * p[5] - load[5] * p[4]};
   }
 };
@@ -62,7 +77,8 @@ struct Motion {
 void ShaftCoupling::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
   const Motion<double> m(*this, relative(*this, x));
   for (int a = 0; a < 2; ++a)
-    for (std::size_t i = 0; i < 7; ++i) f[7 * a + at[i]] += sign[a][i] * m.force[i];
+    for (std::size_t i = 0; i < 7; ++i)
+      f[7 * a + at[i]] += sign[a][i] * m.force[i];
 }
 
 void ShaftCoupling::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& t) const {
@@ -71,7 +87,8 @@ void ShaftCoupling::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>&
   Relative<D> d;
   for (int i = 0; i < 7; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    d.y[k] = D::variable(r.y[k], i); d.v[k] = D::variable(r.v[k], 7 + i);
+    d.y[k] = D::variable(r.y[k], i);
+    d.v[k] = D::variable(r.v[k], 7 + i);
   }
   const Motion<D> m(*this, d);
   for (int a = 0; a < 2; ++a)

@@ -19,7 +19,8 @@ double friction(const AnnularSeal& k, double V, double x) {
 AnnularSeal::Flow AnnularSeal::flow(double spin) const {
   const double unit = std::sqrt(2.0 * pressure_drop / density);
   double V = unit / std::sqrt(1.0 + inlet_loss), lambda = 0.0;
-  // dp = rho V^2/2 (1 + xi + 2 lambda L/C): the left side grows with V and is convex in log V; Newton in log V.
+  // dp = rho V^2/2 (1 + xi + 2 lambda L/C): the left side grows with V and is convex in log V;
+  // Newton in log V.
   for (int it = 0; it < 60; ++it) {
     const double x = std::pow(0.5 * radius * spin / V, 2);
     lambda = friction(*this, V, x);
@@ -37,7 +38,8 @@ void AnnularSeal::coefficients(double spin, Coefficients& v, Coefficients& dv) c
   using S = Dual<1>;
   const Flow f = flow(spin);
   // V as a function of the spin: implicit derivative of the leakage equation.
-  const double x0 = std::pow(0.5 * radius * spin / f.V, 2), loss = 2.0 * f.lambda * length / clearance, total = 1.0 + inlet_loss + loss;
+  const double x0 = std::pow(0.5 * radius * spin / f.V, 2),
+               loss = 2.0 * f.lambda * length / clearance, total = 1.0 + inlet_loss + loss;
   const double by_V = 2.0 + loss / total * (m0 - 0.75 * x0 / (1.0 + x0));
   const double by_spin = spin == 0.0 ? 0.0 : loss / total * 0.75 * x0 / (1.0 + x0) / spin;
   const S s = S::variable(spin, 0), V(f.V, Vector<1>(-f.V * by_spin / by_V));
@@ -46,13 +48,17 @@ void AnnularSeal::coefficients(double spin, Coefficients& v, Coefficients& dv) c
   const S lambda = 0.066 * chain(Ra, std::pow(Ra.v, m0), m0 * std::pow(Ra.v, m0 - 1.0)) *
                    chain(one_x, std::pow(one_x.v, 0.375), 0.375 * std::pow(one_x.v, -0.625));
   const S sigma = (length / clearance) * lambda, beta = x / one_x, B = S(1.0) + S(1.0 + m0) / one_x;
-  const S E = S(1.0 + inlet_loss) / (2.0 * (S(1.0 + inlet_loss) + B * sigma)), a = sigma * (S(1.0) + (1.0 + m0) * beta);
+  const S E = S(1.0 + inlet_loss) / (2.0 * (S(1.0 + inlet_loss) + B * sigma)),
+          a = sigma * (S(1.0) + (1.0 + m0) * beta);
   const S ea = chain(a, std::exp(-a.v), -std::exp(-a.v)), ia = S(1.0) / a, T = S(length) / V;
   const double v0 = inlet_swirl - 0.5;
   const S alpha1 = E + B * sigma * (S(1.0 / 12.0) + 0.5 * E), alpha2 = 0.5 * (S(1.0 / 6.0) + E);
-  const S gamma1 = sigma * ia * (E * B + (S(1.0) / sigma - B * ia) * ((S(1.0) - ea) * (E + S(0.5) + ia) - S(1.0)));
+  const S gamma1 =
+      sigma * ia *
+      (E * B + (S(1.0) / sigma - B * ia) * ((S(1.0) - ea) * (E + S(0.5) + ia) - S(1.0)));
   const S gamma2 = ia * ((E + ia * ia) * (S(1.0) - ea) - (S(0.5) + ia) * ea);
-  const S n = (two_pi * radius * pressure_drop) * sigma / (lambda * (S(1.0 + inlet_loss) + 2.0 * sigma));
+  const S n =
+      (two_pi * radius * pressure_drop) * sigma / (lambda * (S(1.0 + inlet_loss) + 2.0 * sigma));
   const S sT = s * T;
   const S K = n * ((1.0 - m0) * sigma * E - 0.25 * sT * sT * (alpha2 + 2.0 * v0 * gamma2));
   const S k = 0.5 * n * sT * (alpha1 + 2.0 * v0 * gamma1);
@@ -83,7 +89,9 @@ void AnnularSeal::tangent(const LateralMotion& m, Vector<4>& z, LateralTangent& 
   const Mat2 K = cross(v.K, v.k), C = cross(v.C, v.c);
   z << -(K * m.r + C * m.v + v.M * m.a), 0.0, 0.0;
   t.set_zero();
-  t.r.topRows<2>() = -K; t.v.topRows<2>() = -C; t.a.topRows<2>() = -v.M * Mat2::Identity();
+  t.r.topRows<2>() = -K;
+  t.v.topRows<2>() = -C;
+  t.a.topRows<2>() = -v.M * Mat2::Identity();
   t.spin.head<2>() = -(cross(dv.K, dv.k) * m.r + cross(dv.C, dv.c) * m.v + dv.M * m.a);
 }
 
@@ -93,14 +101,16 @@ void AnnularSeal::energy(const LateralMotion& m, system::Energy& e) const {
   e.elastic += 0.5 * v.K * m.r.squaredNorm();
   e.kinetic += 0.5 * v.M * m.v.squaredNorm();
   e.dissipated += v.C * m.v.squaredNorm();
-  e.supplied += 0.5 * m.spin_rate * (dv.K * m.r.squaredNorm() + dv.M * m.v.squaredNorm()) - v.k * (m.v.x() * m.r.y() - m.v.y() * m.r.x());
+  e.supplied += 0.5 * m.spin_rate * (dv.K * m.r.squaredNorm() + dv.M * m.v.squaredNorm()) -
+                v.k * (m.v.x() * m.r.y() - m.v.y() * m.r.x());
 }
 
 double alford_stiffness(double beta, double torque, double mean_diameter, double blade_height) {
   return beta * torque / (mean_diameter * blade_height);
 }
 
-double wachel_stiffness(double power, double speed, double diameter, double width, double molar_mass, double density_ratio) {
+double wachel_stiffness(double power, double speed, double diameter, double width,
+                        double molar_mass, double density_ratio) {
   return power / (speed * diameter * width) * (molar_mass / 0.010) * density_ratio;
 }
 

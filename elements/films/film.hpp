@@ -1,22 +1,27 @@
 // Lubricating films between a circular journal and its housing, as laws of LateralJoint.
 //
-// Reynolds: div(h^3/(12 eta) grad p) = v_s dh/ds + dh/dt. For a journal displaced by r in a housing whose own clearance is
-// h0(theta), h = h0 - r.n, n = (cos theta, sin theta) from +y towards +z. With the mean spin m = (s_0+s_1)/2, the slip
-// s = s_0 - s_1 and J the quarter turn y -> z, the right side is
+// Reynolds: div(h^3/(12 eta) grad p) = v_s dh/ds + dh/dt. For a journal displaced by r in a housing
+// whose own clearance is h0(theta), h = h0 - r.n, n = (cos theta, sin theta) from +y towards +z.
+// With the mean spin m = (s_0+s_1)/2, the slip s = s_0 - s_1 and J the quarter turn y -> z, the
+// right side is
 //   -w.n + (s/2) h0',   w = v - m J r
-// (the housing's shape does not turn: grooves and lobes stand still in (y, z)). A film is therefore a function of (r, w, s).
+// (the housing's shape does not turn: grooves and lobes stand still in (y, z)). A film is therefore
+// a function of (r, w, s).
 //
-// Force F on the journal. Torque about the housing centre balances (a film has no inertia): T_0 + T_1 + r x F = 0, and
+// Force F on the journal. Torque about the housing centre balances (a film has no inertia): T_0 +
+// T_1 + r x F = 0, and
 //   T_0 = T - (r x F)/2,   T_1 = -T - (r x F)/2,
-// T = shear and lobe part. Power delivered to the nodes is F.w + T s: what the film turns into heat, with the sign changed. So whirl
-// driven by a film takes its power out of the spin of the shaft, exactly.
+// T = shear and lobe part. Power delivered to the nodes is F.w + T s: what the film turns into
+// heat, with the sign changed. So whirl driven by a film takes its power out of the spin of the
+// shaft, exactly.
 //
 //   struct Film {
 //     void evaluate(const FilmPoint&, FilmForce&) const;
 //     void evaluate(const FilmPoint&, FilmForce&, FilmTangent&) const;
 //   };
-// Outside its domain (film thickness <= 0) a film returns NaN: the time step or the Newton step is then shortened.
-// Source: Szeri, Fluid Film Lubrication, 2nd ed., 2011, doi 10.1017/CBO9780511782022, ch. 2-4.
+// Outside its domain (film thickness <= 0) a film returns NaN: the time step or the Newton step is
+// then shortened. Source: Szeri, Fluid Film Lubrication, 2nd ed., 2011,
+// doi 10.1017/CBO9780511782022, ch. 2-4.
 #pragma once
 #include <elements/supports/lateral_joint.hpp>
 #include <cmath>
@@ -24,12 +29,12 @@
 namespace whirl::elements {
 
 struct FilmPoint {
-  Vec2 r, w;         ///< displacement m; velocity in the frame turning with the mean spin, m/s
-  double slip = 0;   ///< s_0 - s_1, rad/s
+  Vec2 r, w;        ///< displacement m; velocity in the frame turning with the mean spin, m/s
+  double slip = 0;  ///< s_0 - s_1, rad/s
 };
 struct FilmForce {
-  Vec2 F;            ///< on the journal, N
-  double T = 0;      ///< torque on the journal beside -(r x F)/2, N m
+  Vec2 F;        ///< on the journal, N
+  double T = 0;  ///< torque on the journal beside -(r x F)/2, N m
 };
 struct FilmTangent {
   Mat2 F_r, F_w;
@@ -60,8 +65,8 @@ struct FilmLaw {
     const double mean = 0.5 * (m.spin + m.housing_spin);
     Mat2 J;
     J << 0.0, -1.0, 1.0, 0.0;
-    const Mat2 F_r = g.F_r - mean * g.F_w * J;              // total: w depends on r
-    const Vec2 T_r = g.T_r + mean * J * g.T_w;              // J^T = -J
+    const Mat2 F_r = g.F_r - mean * g.F_w * J;                // total: w depends on r
+    const Vec2 T_r = g.T_r + mean * J * g.T_w;                // J^T = -J
     const Vec2 w_spin = Vec2(0.5 * m.r.y(), -0.5 * m.r.x());  // dw/ds_0 = dw/ds_1
     const auto fill = [&](const Mat2& F, const Vec2& T, Matrix<4, 2>& out) {
       out.topRows<2>() = F;
@@ -71,12 +76,14 @@ struct FilmLaw {
     };
     fill(g.F_w, g.T_w, t.v);
     fill(F_r, T_r, t.r);
-    const Eigen::RowVector2d cross(0.5 * f.F.y(), -0.5 * f.F.x());   // d(r x F / 2)/dr at fixed F
-    t.r.row(2) -= cross; t.r.row(3) -= cross;
+    const Eigen::RowVector2d cross(0.5 * f.F.y(), -0.5 * f.F.x());  // d(r x F / 2)/dr at fixed F
+    t.r.row(2) -= cross;
+    t.r.row(3) -= cross;
     t.a.setZero();
     const auto by_spin = [&](double sign, Vector<4>& out) {
       const Vec2 F = g.F_w * w_spin + sign * g.F_slip;
-      const double T = g.T_w.dot(w_spin) + sign * g.T_slip, half = 0.5 * (m.r.x() * F.y() - m.r.y() * F.x());
+      const double T = g.T_w.dot(w_spin) + sign * g.T_slip,
+                   half = 0.5 * (m.r.x() * F.y() - m.r.y() * F.x());
       out << F, T - half, -T - half;
     };
     by_spin(1.0, t.spin);

@@ -8,14 +8,18 @@ namespace whirl::elements {
 
 namespace {
 
-[[noreturn]] void fail(const char* what) { throw run_error("E84", std::string("journal bearing: ") + what); }
+[[noreturn]] void fail(const char* what) {
+  throw run_error("E84", std::string("journal bearing: ") + what);
+}
 
 Vec2 direction(double a) { return Vec2(std::cos(a), std::sin(a)); }
 
 }  // namespace
 
-JournalSurface::JournalSurface(double clearance, double preload, const std::vector<JournalPad>& pads, int nodes)
-    : clearance_(clearance), lift_(0.0) {
+JournalSurface::JournalSurface(double clearance, double preload,
+                               const std::vector<JournalPad>& pads, int nodes)
+    : clearance_(clearance),
+      lift_(0.0) {
   if (!(clearance > 0)) fail("the clearance must be positive");
   if (!(preload >= 0 && preload < 1)) fail("the preload must be at least 0 and below 1");
   if (nodes < 8 || nodes > max_nodes) fail("the grid needs 8 to 360 points");
@@ -59,13 +63,15 @@ std::vector<JournalPad> lobe_pads(int n, double first, double groove, double off
 
 PadFilm FiniteJournal::pad(std::size_t k) const {
   const JournalSurface::Arc& arc = surface->arcs()[k];
-  return PadFilm(arc.start, arc.length, arc.round, leakage * radius * radius / (length * length), arc.points);
+  return PadFilm(arc.start, arc.length, arc.round, leakage * radius * radius / (length * length),
+                 arc.points);
 }
 
 FiniteJournal::PadPlace FiniteJournal::place(std::size_t k, const FilmPoint& p) const {
   const Vec2& n = surface->arcs()[k].thinnest;
   const double lift = surface->lift();
-  return {(p.r + lift * n) / surface->pad_clearance(), p.w - 0.5 * p.slip * lift * Vec2(-n.y(), n.x())};
+  return {(p.r + lift * n) / surface->pad_clearance(),
+          p.w - 0.5 * p.slip * lift * Vec2(-n.y(), n.x())};
 }
 
 bool FiniteJournal::inside(const FilmPoint& p) const {
@@ -76,13 +82,15 @@ bool FiniteJournal::inside(const FilmPoint& p) const {
 }
 
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
-  f.F.setZero(); f.T = 0.0;
+  f.F.setZero();
+  f.T = 0.0;
   if (!inside(p)) {
-    f.F.setConstant(nan); f.T = nan;
+    f.F.setConstant(nan);
+    f.T = nan;
     return;
   }
   const double c = surface->pad_clearance();
-  const double unit = source * viscosity * std::pow(radius / c, 3) * length;   // N per m/s of W
+  const double unit = source * viscosity * std::pow(radius / c, 3) * length;  // N per m/s of W
   const double drag = viscosity * std::pow(radius, 3) * length / c;
   for (std::size_t k = 0; k < surface->arcs().size(); ++k) {
     const PadFilm film = pad(k);
@@ -98,12 +106,23 @@ void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
 
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
   if (!inside(p)) {
-    f.F.setConstant(nan); f.T = nan;
-    t.F_r.setConstant(nan); t.F_w = t.F_r; t.F_slip.setConstant(nan); t.T_r = t.T_w = t.F_slip; t.T_slip = nan;
+    f.F.setConstant(nan);
+    f.T = nan;
+    t.F_r.setConstant(nan);
+    t.F_w = t.F_r;
+    t.F_slip.setConstant(nan);
+    t.T_r = t.T_w = t.F_slip;
+    t.T_slip = nan;
     return;
   }
-  f.F.setZero(); f.T = 0.0;
-  t.F_r.setZero(); t.F_w.setZero(); t.F_slip.setZero(); t.T_r.setZero(); t.T_w.setZero(); t.T_slip = 0.0;
+  f.F.setZero();
+  f.T = 0.0;
+  t.F_r.setZero();
+  t.F_w.setZero();
+  t.F_slip.setZero();
+  t.T_r.setZero();
+  t.T_w.setZero();
+  t.T_slip = 0.0;
   const double c = surface->pad_clearance(), half_lift = 0.5 * surface->lift();
   const double unit = source * viscosity * std::pow(radius / c, 3) * length;
   const double drag = viscosity * std::pow(radius, 3) * length / c;
@@ -112,7 +131,8 @@ void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) c
     auto [e, W] = place(k, p);
     const Vec2& n = surface->arcs()[k].thinnest;
     const Vec2 across(-n.y(), n.x());
-    if (W.norm() <= 1e-9 * std::abs(p.slip) * c) W.setZero();   // a journal centred in its pad but for rounding
+    if (W.norm() <= 1e-9 * std::abs(p.slip) * c)
+      W.setZero();  // a journal centred in its pad but for rounding
     const PadLoad load = film.load_and_slopes(e, W);
     Vec2 shear_e;
     const double shear = film.shear(e, shear_e);

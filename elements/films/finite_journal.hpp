@@ -1,23 +1,30 @@
-// Journal bearing of finite length: plain, with axial grooves, or multi-lobe; nonlinear in displacement and velocity.
+// Journal bearing of finite length: plain, with axial grooves, or multi-lobe; nonlinear in
+// displacement and velocity.
 //
-// Reynolds with the axial pressure profile p = 3/2 P(theta) (1 - (2z/L)^2) (Galerkin in z; P: axial mean, Pa):
+// Reynolds with the axial pressure profile p = 3/2 P(theta) (1 - (2z/L)^2) (Galerkin in z; P: axial
+// mean, Pa):
 //   (h^3 P')'/R^2 - 10/L^2 h^3 P = 10 eta f,   f = -w.n + (s/2) h0',   h = h0(theta) - r.n
-// and Swift-Stieber (Reynolds) cavitation P >= 0. Grooves hold P = 0 (ambient; a supply pressure is neglected against film pressures).
-// Seen from its own centre every pad is a circle with a single wave of f, so a pad's load is a function of two vectors, solved by
-// elements.pad_film. No grid is fixed in space: forces are smooth in position, velocity and load.
+// and Swift-Stieber (Reynolds) cavitation P >= 0. Grooves hold P = 0 (ambient; a supply pressure is
+// neglected against film pressures). Seen from its own centre every pad is a circle with a single
+// wave of f, so a pad's load is a function of two vectors, solved by elements.pad_film. No grid is
+// fixed in space: forces are smooth in position, velocity and load.
 //
-// Pads: h0 = c_p - (c_p - c_b) cos(theta - theta_k); c_p: pad clearance (radius of the pad less that of the journal), c_b: assembled clearance,
-// theta_k where the film of a centred journal is thinnest; preload m = 1 - c_b/c_p. Angles from +y towards +z.
-// At w = 0 a cylinder carries nothing, and its force is homogeneous in w with another derivative in each direction (a film that cavitates). The
-// tangent there is the linear law nearest to it in all directions, C = 1/pi int F(n) n^T dphi: of a short film the half of the full one.
-// Torque: shear of a full film between the grooves, -eta R^3 L s int dtheta/h, and the pressure on lobes, R/2 int p h0'.
+// Pads: h0 = c_p - (c_p - c_b) cos(theta - theta_k); c_p: pad clearance (radius of the pad less
+// that of the journal), c_b: assembled clearance, theta_k where the film of a centred journal is
+// thinnest; preload m = 1 - c_b/c_p. Angles from +y towards +z. At w = 0 a cylinder carries
+// nothing, and its force is homogeneous in w with another derivative in each direction (a film that
+// cavitates). The tangent there is the linear law nearest to it in all directions, C = 1/pi int
+// F(n) n^T dphi: of a short film the half of the full one. Torque: shear of a full film between the
+// grooves, -eta R^3 L s int dtheta/h, and the pressure on lobes, R/2 int p h0'.
 //
-// Error against a two-dimensional Reynolds solution (test FiniteJournal.AgainstTwoDimensionalReynolds), from the axial profile and
-// the rupture line, which is straight across the bearing: below 2 % of the force for L/D <= 0.5, or L/D <= 1 with eccentricities to 0.6; 3 % at L/D = 1 and
-// 0.9. Grid: force within 1e-3 and coefficients within 2e-3 of the converged ones at the default of 72 points, to an eccentricity of 0.9, most
-// within 1e-4 (test CoefficientsAreConverged). About 8 us a force and 13 us a tangent on one core.
-// Limits: isoviscous, laminar, no inertia, aligned.
-// Sources: Reynolds equation Szeri 2011, doi 10.1017/CBO9780511782022; published coefficients Lund & Thomsen, ASME 1978 (Topics in Fluid
+// Error against a two-dimensional Reynolds solution (test
+// FiniteJournal.AgainstTwoDimensionalReynolds), from the axial profile and the rupture line, which
+// is straight across the bearing: below 2 % of the force for L/D <= 0.5, or L/D <= 1 with
+// eccentricities to 0.6; 3 % at L/D = 1 and 0.9. Grid: force within 1e-3 and coefficients within
+// 2e-3 of the converged ones at the default of 72 points, to an eccentricity of 0.9, most within
+// 1e-4 (test CoefficientsAreConverged). About 8 us a force and 13 us a tangent on one core. Limits:
+// isoviscous, laminar, no inertia, aligned. Sources: Reynolds equation Szeri 2011,
+// doi 10.1017/CBO9780511782022; published coefficients Lund & Thomsen, ASME 1978 (Topics in Fluid
 // Film Bearing and Rotor Bearing System Design and Optimization, pp. 1-28).
 #pragma once
 #include <elements/films/film.hpp>
@@ -29,23 +36,31 @@ namespace whirl::elements {
 
 /// One pad: a stretch of bearing surface between two grooves.
 struct JournalPad {
-  double start = 0, end = 0;   ///< rad, end > start, at most start + 2 pi
-  double thinnest = 0;         ///< theta_k, rad
+  double start = 0, end = 0;  ///< rad, end > start, at most start + 2 pi
+  double thinnest = 0;        ///< theta_k, rad
 };
 
 /// Shape of the bearing surface; shared by all copies of a kernel.
 class JournalSurface {
  public:
   static constexpr int max_nodes = 360;
-  /// clearance: assembled c_b, m; preload m in [0, 1): c_p = c_b/(1 - m). nodes: grid points over all pads; no pads: one uninterrupted
-  /// cylinder. Errors E84: no clearance, preload outside [0, 1), pads that overlap or are empty, too many or too few nodes.
-  JournalSurface(double clearance, double preload, const std::vector<JournalPad>& pads, int nodes = 72);
+  /// clearance: assembled c_b, m; preload m in [0, 1): c_p = c_b/(1 - m). nodes: grid points over
+  /// all pads; no pads: one uninterrupted cylinder. Errors E84: no clearance, preload outside [0,
+  /// 1), pads that overlap or are empty, too many or too few nodes.
+  JournalSurface(double clearance, double preload, const std::vector<JournalPad>& pads,
+                 int nodes = 72);
 
-  /// A pad seen from its centre, which is `lift` to the side of `thinnest` from that of the bearing.
-  struct Arc { double start, length; bool round; Vec2 thinnest; double points; };
+  /// A pad seen from its centre, which is `lift` to the side of `thinnest` from that of the
+  /// bearing.
+  struct Arc {
+    double start, length;
+    bool round;
+    Vec2 thinnest;
+    double points;
+  };
   const std::vector<Arc>& arcs() const { return arcs_; }
-  double pad_clearance() const { return clearance_ + lift_; }   ///< c_p, m
-  double lift() const { return lift_; }                         ///< c_p - c_b, m
+  double pad_clearance() const { return clearance_ + lift_; }  ///< c_p, m
+  double lift() const { return lift_; }                        ///< c_p - c_b, m
   double clearance() const { return clearance_; }
   bool lobed() const { return lift_ != 0.0; }
 
@@ -54,28 +69,37 @@ class JournalSurface {
   std::vector<Arc> arcs_;
 };
 
-/// Two pads between axial grooves of `groove` rad at theta = groove_at and opposite (the usual split bearing).
+/// Two pads between axial grooves of `groove` rad at theta = groove_at and opposite (the usual
+/// split bearing).
 std::vector<JournalPad> two_groove_pads(double groove_at, double groove);
-/// n equal lobes, the first centred at theta = first; grooves of `groove` rad between them; offset: (theta_k - start)/(arc) (0.5: centred).
+/// n equal lobes, the first centred at theta = first; grooves of `groove` rad between them; offset:
+/// (theta_k - start)/(arc) (0.5: centred).
 std::vector<JournalPad> lobe_pads(int n, double first, double groove, double offset = 0.5);
 
 struct FiniteJournal {
-  double radius = 0;      ///< R, m
-  double length = 0;      ///< L, m
-  double viscosity = 0;   ///< eta, Pa s
+  double radius = 0;     ///< R, m
+  double length = 0;     ///< L, m
+  double viscosity = 0;  ///< eta, Pa s
   std::shared_ptr<const JournalSurface> surface;
-  /// Axial profile: leakage/L^2 is the outflow term and `source` eta the source of (h^3 P')'/R^2 - leakage/L^2 h^3 P = source eta f.
+  /// Axial profile: leakage/L^2 is the outflow term and `source` eta the source of (h^3 P')'/R^2 -
+  /// leakage/L^2 h^3 P = source eta f.
   double leakage = 10, source = 10;
-  /// Sealed ends (squeeze-film dampers with piston rings or O-rings): uniform along the axis, flow round the circumference only. Needs a groove
-  /// (feed): without one nothing fixes the level of the pressure.
-  void seal_ends() { leakage = 0; source = 12; }
+  /// Sealed ends (squeeze-film dampers with piston rings or O-rings): uniform along the axis, flow
+  /// round the circumference only. Needs a groove (feed): without one nothing fixes the level of
+  /// the pressure.
+  void seal_ends() {
+    leakage = 0;
+    source = 12;
+  }
 
   void evaluate(const FilmPoint& p, FilmForce& f) const;
   void evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
 
   /// The film of pad k in its own terms, at its displacement e and source W (in m/s).
   PadFilm pad(std::size_t k) const;
-  struct PadPlace { Vec2 e, W; };
+  struct PadPlace {
+    Vec2 e, W;
+  };
   PadPlace place(std::size_t k, const FilmPoint& p) const;
   /// Whether the journal is clear of every pad.
   bool inside(const FilmPoint& p) const;

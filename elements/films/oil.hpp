@@ -3,14 +3,18 @@
 
 namespace whirl::elements {
 
-/// Dynamic viscosity of an ISO VG oil (ISO 3448: kinematic viscosity `grade` mm2/s at 40 C), viscosity index near 100, Pa s:
-///   eta = eta_x exp[(159.55657/(T + 95) - 0.181913) ln(rho grade 1e-6/eta_x)],  eta_x = 0.18e-3 Pa s, T in degrees Celsius
+/// Dynamic viscosity of an ISO VG oil (ISO 3448: kinematic viscosity `grade` mm2/s at 40 C),
+/// viscosity index near 100, Pa s:
+///   eta = eta_x exp[(159.55657/(T + 95) - 0.181913) ln(rho grade 1e-6/eta_x)],  eta_x = 0.18e-3 Pa
+///   s, T in degrees Celsius
 /// (Vogel form of DIN 31652-2 / DIN 31654-2). temperature: kelvin, 243 to 473 K; density: kg/m3.
 /// Errors E85: grade or density not positive, temperature outside the range.
 double iso_vg_viscosity(double grade, double temperature, double density = 900.0);
 
-/// Walther (ASTM D341): log10 log10(nu + 0.7) linear in log10 T through two measured points (T1, nu1), (T2, nu2); nu in m2/s, T in kelvin.
-/// Returns density * nu, Pa s. Errors E85: equal temperatures, viscosities not positive or not above 0.3 mm2/s at T, T outside 223 to 523 K.
-double walther_viscosity(double T1, double nu1, double T2, double nu2, double T, double density = 900.0);
+/// Walther (ASTM D341): log10 log10(nu + 0.7) linear in log10 T through two measured points (T1,
+/// nu1), (T2, nu2); nu in m2/s, T in kelvin. Returns density * nu, Pa s. Errors E85: equal
+/// temperatures, viscosities not positive or not above 0.3 mm2/s at T, T outside 223 to 523 K.
+double walther_viscosity(double T1, double nu1, double T2, double nu2, double T,
+                         double density = 900.0);
 
 }  // namespace whirl::elements

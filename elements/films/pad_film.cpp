@@ -11,8 +11,10 @@ namespace {
 
 constexpr int p = PadFilm::order;
 constexpr int bubbles = p - 1;
-constexpr int shapes = p + 1;   // bubbles, then the left and the right vertex
-constexpr int points = p + 1;   // Gauss points: one more than the order asks for halves the elements a given error takes
+constexpr int shapes = p + 1;  // bubbles, then the left and the right vertex
+constexpr int points =
+    p +
+    1;  // Gauss points: one more than the order asks for halves the elements a given error takes
 constexpr int entries = shapes * (shapes + 1) / 2;
 
 /// Gauss-Legendre points and weights on [0, 1].
@@ -39,11 +41,13 @@ struct Gauss {
   }
 };
 
-/// Shape functions at the Gauss points: integrated Legendre polynomials inside, linear ones at the vertices.
+/// Shape functions at the Gauss points: integrated Legendre polynomials inside, linear ones at the
+/// vertices.
 struct Reference {
   Gauss<points> gauss;
   std::array<std::array<double, points>, shapes> value, slope;
-  /// products of two (upper triangle by rows), of their slopes; shape functions; all times the weight of the point
+  /// products of two (upper triangle by rows), of their slopes; shape functions; all times the
+  /// weight of the point
   std::array<std::array<double, entries>, points> mass, stiffness;
   std::array<std::array<double, shapes>, points> source;
 
@@ -82,23 +86,28 @@ const Reference& reference() {
 }
 
 template <class T>
-struct Pair { T x, y; };
+struct Pair {
+  T x, y;
+};
 
-/// Position of the journal, and the Moebius map of the circle to Sommerfeld's angle: zeta = (z - b)/(1 - conj(b) z).
+/// Position of the journal, and the Moebius map of the circle to Sommerfeld's angle: zeta = (z -
+/// b)/(1 - conj(b) z).
 template <class T>
 struct Place {
   Pair<T> e, b;
-  T spread, over_spread;   ///< 1 - |b|^2 and its inverse
+  T spread, over_spread;  ///< 1 - |b|^2 and its inverse
 
   Place(const T& ex, const T& ey) : e{ex, ey} {
     using std::sqrt;
     // near contact the grading of the elements goes no further: contact off the pad is possible
-    constexpr double least = 0.02;   // of sqrt(1 - e^2)
+    constexpr double least = 0.02;  // of sqrt(1 - e^2)
     const T square = ex * ex + ey * ey;
     const double room = 1.0 - value(square);
     T scale(0.5);
-    if (room > least * least) scale = 1.0 / (1.0 + sqrt(1.0 - square));
-    else scale = std::sqrt((1.0 - least) / (1.0 + least)) / sqrt(square);
+    if (room > least * least)
+      scale = 1.0 / (1.0 + sqrt(1.0 - square));
+    else
+      scale = std::sqrt((1.0 - least) / (1.0 + least)) / sqrt(square);
     b = {scale * ex, scale * ey};
     spread = 1.0 - (b.x * b.x + b.y * b.y);
     over_spread = 1.0 / spread;
@@ -118,11 +127,12 @@ struct Place {
 template <class T>
 struct AtPoint {
   Pair<T> n;
-  T h, stretch;   ///< clearance, dtheta/dgamma
-  T flow;         ///< h^3 dgamma/dtheta
+  T h, stretch;  ///< clearance, dtheta/dgamma
+  T flow;        ///< h^3 dgamma/dtheta
   AtPoint(const Place<T>& at, const Pair<T>& zeta) {
     const Pair<T> sum{zeta.x + at.b.x, zeta.y + at.b.y};
-    const T re = 1.0 + at.b.x * zeta.x + at.b.y * zeta.y, im = at.b.x * zeta.y - at.b.y * zeta.x;   // 1 + conj(b) zeta
+    const T re = 1.0 + at.b.x * zeta.x + at.b.y * zeta.y,
+            im = at.b.x * zeta.y - at.b.y * zeta.x;  // 1 + conj(b) zeta
     const T square = re * re + im * im, inverse = 1.0 / square;
     n = {(sum.x * re + sum.y * im) * inverse, (sum.y * re - sum.x * im) * inverse};
     h = 1.0 - (at.e.x * n.x + at.e.y * n.y);
@@ -134,9 +144,9 @@ struct AtPoint {
 /// A stretch of film condensed to its two ends, for the unit sources n_x and n_y.
 template <class T>
 struct Condensed {
-  T S00, S01, S11;           ///< loads int P_i n_j dtheta with P = 0 at both ends
-  Pair<T> out_a, out_b;      ///< flow out at the ends
-  T D_aa, D_ab, D_bb;        ///< stiffness: flow in at an end for a pressure there
+  T S00, S01, S11;       ///< loads int P_i n_j dtheta with P = 0 at both ends
+  Pair<T> out_a, out_b;  ///< flow out at the ends
+  T D_aa, D_ab, D_bb;    ///< stiffness: flow in at an end for a pressure there
 };
 
 template <class T>
@@ -156,24 +166,27 @@ Condensed<T> condense(const Place<T>& at, const T& from, const T& to, double bet
   const auto at_angle = [](const T& angle) { return Pair<T>{cos(angle), sin(angle)}; };
   const Pair<T> turn = at_angle(width), middle = at_angle(from + 0.5 * width);
   std::array<Pair<T>, points> zeta;
-  for (std::size_t q = 0; q < points / 2; ++q) {   // points lie in pairs about the middle
+  for (std::size_t q = 0; q < points / 2; ++q) {  // points lie in pairs about the middle
     const Pair<T> away = at_angle((0.5 - ref.gauss.x[q]) * width);
-    const T cc = middle.x * away.x, ss = middle.y * away.y, sc = middle.y * away.x, cs = middle.x * away.y;
+    const T cc = middle.x * away.x, ss = middle.y * away.y, sc = middle.y * away.x,
+            cs = middle.x * away.y;
     zeta[q] = {cc + ss, sc - cs};
     zeta[points - 1 - q] = {cc - ss, sc + cs};
   }
   zeta[points / 2] = middle;
   Condensed<T> c{0.0, 0.0, 0.0, {0.0, 0.0}, {0.0, 0.0}, 0.0, 0.0, 0.0};
   for (int k = 0; k < n; ++k) {
-    std::array<T, entries> A;   // upper triangle by rows
+    std::array<T, entries> A;  // upper triangle by rows
     std::array<Pair<T>, shapes> B;
     A.fill(T(0.0));
     B.fill({T(0.0), T(0.0)});
     for (std::size_t q = 0; q < points; ++q) {
       const AtPoint<T> x(at, zeta[q]);
-      const T flow = over_width * x.flow, arc = width * x.stretch, leak = beta * (x.h * x.h * x.h) * arc;
+      const T flow = over_width * x.flow, arc = width * x.stretch,
+              leak = beta * (x.h * x.h * x.h) * arc;
       const T sx = arc * x.n.x, sy = arc * x.n.y;
-      for (std::size_t m = 0; m < entries; ++m) A[m] += ref.stiffness[q][m] * flow + ref.mass[q][m] * leak;
+      for (std::size_t m = 0; m < entries; ++m)
+        A[m] += ref.stiffness[q][m] * flow + ref.mass[q][m] * leak;
       for (std::size_t i = 0; i < shapes; ++i) {
         B[i].x += ref.source[q][i] * sx;
         B[i].y += ref.source[q][i] * sy;
@@ -187,7 +200,8 @@ Condensed<T> condense(const Place<T>& at, const T& from, const T& to, double bet
       std::size_t below = row + shapes - i;
       for (std::size_t j = 1; j < shapes - i; ++j) {
         const T factor = A[row + j] * inverse;
-        for (std::size_t m = j; m < shapes - i; ++m) A[below++] -= factor * A[row + m];
+        for (std::size_t m = j; m < shapes - i; ++m)
+          A[below++] -= factor * A[row + m];
         B[i + j].x -= factor * B[i].x;
         B[i + j].y -= factor * B[i].y;
       }
@@ -219,14 +233,20 @@ Condensed<T> condense(const Place<T>& at, const T& from, const T& to, double bet
 }  // namespace
 
 PadFilm::PadFilm(double start, double arc, bool round, double beta, double points_on_arc)
-    : start_(start), arc_(arc), beta_(beta), round_(round) {
-  // at the ends of short pads the pressure falls within 1/sqrt(beta): an element is at most three of those
-  const double asked = std::round(points_on_arc / points_of_element), needed = std::ceil(std::sqrt(beta) * arc / 3.0);
+    : start_(start),
+      arc_(arc),
+      beta_(beta),
+      round_(round) {
+  // at the ends of short pads the pressure falls within 1/sqrt(beta): an element is at most three
+  // of those
+  const double asked = std::round(points_on_arc / points_of_element),
+               needed = std::ceil(std::sqrt(beta) * arc / 3.0);
   elements_ = std::max(4, static_cast<int>(std::max(asked, needed)));
 }
 
 double PadFilm::smallest_clearance(const Vec2& e) const {
-  const double turn = std::atan2(e.y(), e.x()) - start_, inside = turn - two_pi * std::floor(turn / two_pi);
+  const double turn = std::atan2(e.y(), e.x()) - start_,
+               inside = turn - two_pi * std::floor(turn / two_pi);
   if (round_ || inside <= arc_) return 1.0 - e.norm();
   const auto at = [&](double a) { return 1.0 - e.x() * std::cos(a) - e.y() * std::sin(a); };
   return std::min(at(start_), at(start_ + arc_));
@@ -235,7 +255,8 @@ double PadFilm::smallest_clearance(const Vec2& e) const {
 /// The stretches where the source is positive, and how far their ends may move.
 int PadFilm::cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const {
   const Place<double> at(e.x(), e.y());
-  const double begin = std::atan2(W.y(), W.x()) - 0.5 * pi - start_, u = begin - two_pi * std::floor(begin / two_pi);
+  const double begin = std::atan2(W.y(), W.x()) - 0.5 * pi - start_,
+               u = begin - two_pi * std::floor(begin / two_pi);
   const auto gamma = [&](double theta) { return at.gamma(start_ + theta); };
   const auto stretch = [](double a, double b, double low, double high, bool held_a, bool held_b) {
     return Ends{a, b, a, b, low, high, held_a, held_b};
@@ -245,7 +266,8 @@ int PadFilm::cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const
     return 1;
   }
   const double low = gamma(0.0), high = gamma(arc_);
-  const bool first = u > pi, second = u < arc_;   // from the start of the pad; up to its end or ending on it
+  const bool first = u > pi,
+             second = u < arc_;  // from the start of the pad; up to its end or ending on it
   int n = 0;
   if (first) {
     const bool whole = u - pi >= arc_;
@@ -255,23 +277,29 @@ int PadFilm::cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const
   if (second) {
     const bool whole = u + pi >= arc_;
     const double a = u > 0.0 ? gamma(u) : low, b = whole ? high : gamma(u + pi);
-    out[static_cast<std::size_t>(n++)] = stretch(a, b, first ? gamma(u - pi) : low, high, u <= 0.0, whole);
+    out[static_cast<std::size_t>(n++)] =
+        stretch(a, b, first ? gamma(u - pi) : low, high, u <= 0.0, whole);
   }
   return n;
 }
 
-/// Newton's method for the free ends. What flows out at an end is positive while the film is too short.
-bool PadFilm::settle(const Vec2& e, const Vec2& W, Ends& s, int elements, double tolerance, int most_passes, int& passes) const {
+/// Newton's method for the free ends. What flows out at an end is positive while the film is too
+/// short.
+bool PadFilm::settle(const Vec2& e, const Vec2& W, Ends& s, int elements, double tolerance,
+                     int most_passes, int& passes) const {
   const Place<double> at(e.x(), e.y());
   double last[2] = {s.a, s.b}, last_out[2] = {0.0, 0.0};
-  const double least = -1e-6 * W.norm();   // where two films could meet the source vanishes again
+  const double least = -1e-6 * W.norm();  // where two films could meet the source vanishes again
   for (int k = 0; k < most_passes; ++k) {
     const Condensed<double> c = condense(at, s.a, s.b, beta_, elements);
     ++passes;
-    const double out[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(), c.out_b.x * W.x() + c.out_b.y * W.y()};
-    const bool moves[2] = {!s.held_a && !(s.a <= s.low && out[0] >= 0.0), !s.held_b && !(s.b >= s.high && out[1] >= 0.0)};
+    const double out[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(),
+                           c.out_b.x * W.x() + c.out_b.y * W.y()};
+    const bool moves[2] = {!s.held_a && !(s.a <= s.low && out[0] >= 0.0),
+                           !s.held_b && !(s.b >= s.high && out[1] >= 0.0)};
     if (!moves[0] && !moves[1]) return true;
-    double slope[2], shift[2];   // of the flow by lengthening; pressure at the old end by lengthening
+    double slope[2],
+        shift[2];  // of the flow by lengthening; pressure at the old end by lengthening
     for (int i = 0; i < 2; ++i) {
       const double angle = i == 0 ? s.a : s.b;
       const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
@@ -281,7 +309,7 @@ bool PadFilm::settle(const Vec2& e, const Vec2& W, Ends& s, int elements, double
     }
     double step[2] = {0.0, 0.0};
     if (moves[0] && moves[1]) {
-      const double ab = -c.D_ab * shift[1], ba = -c.D_ab * shift[0];   // d out_a/d b, d out_b/d a
+      const double ab = -c.D_ab * shift[1], ba = -c.D_ab * shift[0];  // d out_a/d b, d out_b/d a
       const double det = slope[0] * slope[1] - ab * ba;
       step[0] = -(slope[1] * out[0] - ab * out[1]) / det;
       step[1] = -(slope[0] * out[1] - ba * out[0]) / det;
@@ -319,15 +347,18 @@ int PadFilm::solve(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out, int& 
     if (s.held_a && s.held_b) return;
     // from a little outside the core: at its ends there is no source to balance a flow
     const double beyond = std::min(0.15, 0.3 * (s.b - s.a));
-    const double room_a = round_ ? 0.5 * (two_pi - (s.b - s.a)) : s.a - s.low, room_b = round_ ? room_a : s.high - s.b;
+    const double room_a = round_ ? 0.5 * (two_pi - (s.b - s.a)) : s.a - s.low,
+                 room_b = round_ ? room_a : s.high - s.b;
     if (!s.held_a) s.a -= std::min(beyond, 0.5 * room_a);
     if (!s.held_b) s.b += std::min(beyond, 0.5 * room_b);
     settle(e, W, s, std::max(2, elements_ / 3), 3e-3, 8, passes);
-    // the load does not feel small errors of a free end, and Newton's error goes with the square of the last step
+    // the load does not feel small errors of a free end, and Newton's error goes with the square of
+    // the last step
     settle(e, W, s, elements_, 1e-4, 60, passes);
   };
-  for (int i = 0; i < n; ++i) find(out[static_cast<std::size_t>(i)]);
-  if (n == 2 && out[0].b >= out[1].a) {   // films from both ends that meet are one
+  for (int i = 0; i < n; ++i)
+    find(out[static_cast<std::size_t>(i)]);
+  if (n == 2 && out[0].b >= out[1].a) {  // films from both ends that meet are one
     out[0].b = out[1].b;
     out[0].held_b = true;
     n = 1;
@@ -356,7 +387,7 @@ PadLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W) const {
     out.by_W = mean_slope(e);
     return out;
   }
-  using T = Dual<4>;   // e_x, e_y, ends a and b
+  using T = Dual<4>;  // e_x, e_y, ends a and b
   std::array<Ends, 2> films;
   int passes = 0;
   const int n = solve(e, W, films, passes);
@@ -364,11 +395,14 @@ PadLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W) const {
   for (int i = 0; i < n; ++i) {
     const Ends& s = films[static_cast<std::size_t>(i)];
     const bool free_a = !s.held_a && s.a > s.low, free_b = !s.held_b && s.b < s.high;
-    const T a = free_a ? T::variable(s.a, 2) : at.gamma(start_), b = free_b ? T::variable(s.b, 3) : at.gamma(start_ + arc_);
+    const T a = free_a ? T::variable(s.a, 2) : at.gamma(start_),
+            b = free_b ? T::variable(s.b, 3) : at.gamma(start_ + arc_);
     const Condensed<T> c = condense(at, a, b, beta_, elements_);
     const T G[2] = {c.S00 * W.x() + c.S01 * W.y(), c.S01 * W.x() + c.S11 * W.y()};
-    const T flow[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(), c.out_b.x * W.x() + c.out_b.y * W.y()};
-    Mat2 by_ends, flow_by_ends = Mat2::Identity(), flow_by_e = Mat2::Zero(), flow_by_W = Mat2::Zero();
+    const T flow[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(),
+                       c.out_b.x * W.x() + c.out_b.y * W.y()};
+    Mat2 by_ends, flow_by_ends = Mat2::Identity(), flow_by_e = Mat2::Zero(),
+                  flow_by_W = Mat2::Zero();
     const bool free[2] = {free_a, free_b};
     const Pair<T> outflow[2] = {c.out_a, c.out_b};
     for (int k = 0; k < 2; ++k) {
@@ -392,7 +426,7 @@ PadLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W) const {
 }
 
 Mat2 PadFilm::mean_slope(const Vec2& e) const {
-  constexpr int directions = 16;   // more change it by less than 2e-3
+  constexpr int directions = 16;  // more change it by less than 2e-3
   Mat2 C = Mat2::Zero();
   for (int k = 0; k < directions; ++k) {
     const double angle = two_pi * (k + 0.5) / directions;
@@ -403,7 +437,8 @@ Mat2 PadFilm::mean_slope(const Vec2& e) const {
 }
 
 double PadFilm::shear(const Vec2& e, Vec2& gradient) const {
-  // in Sommerfeld's angle the integrands are a constant and a wave: two panels of eight points are exact to rounding
+  // in Sommerfeld's angle the integrands are a constant and a wave: two panels of eight points are
+  // exact to rounding
   static const Gauss<8> gauss;
   const Place<double> at(e.x(), e.y());
   const double from = at.gamma(start_), half = 0.5 * (at.gamma(start_ + arc_) - from);
@@ -428,7 +463,8 @@ PadFilm::Film PadFilm::find_film(const Vec2& e, const Vec2& W) const {
   const Place<double> at(e.x(), e.y());
   for (std::size_t i = 0; i < static_cast<std::size_t>(out.count); ++i) {
     const Ends& s = films[i];
-    out.stretch[i] = {at.theta(s.a), at.theta(s.b), !s.held_a && s.a > s.low, !s.held_b && s.b < s.high};
+    out.stretch[i] = {at.theta(s.a), at.theta(s.b), !s.held_a && s.a > s.low,
+                      !s.held_b && s.b < s.high};
   }
   return out;
 }

@@ -26,7 +26,10 @@ Mat2 axes_of(const Vec2& w, double speed) {
   return A;
 }
 
-void outside(FilmForce& f) { f.F.setConstant(nan); f.T = nan; }
+void outside(FilmForce& f) {
+  f.F.setConstant(nan);
+  f.T = nan;
+}
 
 }  // namespace
 
@@ -39,14 +42,19 @@ void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
   const HalfFilmIntegral g(e.x(), e.y());
   const double scale = viscosity * radius * length * length * length / (c2 * clearance);
   f.F = -0.5 * scale * speed * (A * Vec2(g.aa, g.ab));
-  f.T = -two_pi * viscosity * radius * radius * radius * length / (clearance * std::sqrt(u)) * p.slip;
+  f.T =
+      -two_pi * viscosity * radius * radius * radius * length / (clearance * std::sqrt(u)) * p.slip;
 }
 
 void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
   const double c2 = clearance * clearance, u = 1.0 - p.r.squaredNorm() / c2;
   if (!(u > 0.0)) {
     outside(f);
-    t.F_r.setConstant(nan); t.F_w = t.F_r; t.F_slip.setConstant(nan); t.T_r = t.T_w = t.F_slip; t.T_slip = nan;
+    t.F_r.setConstant(nan);
+    t.F_w = t.F_r;
+    t.F_slip.setConstant(nan);
+    t.T_r = t.T_w = t.F_slip;
+    t.T_slip = nan;
     return;
   }
   const double speed = p.w.norm();
@@ -57,7 +65,7 @@ void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) co
   f.F = -0.5 * scale * speed * (A * Vec2(g.aa, g.ab));
   Mat2 S2, S3;
   S2 << g.aa, g.ab, g.ab, g.bb;
-  if (speed == 0.0) {   // mean of the two half circles
+  if (speed == 0.0) {  // mean of the two half circles
     const HalfFilmIntegral o(-e.x(), -e.y());
     Mat2 other;
     other << o.aa, o.ab, o.ab, o.bb;
@@ -67,7 +75,8 @@ void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) co
   t.F_w = -0.5 * scale * A * S2 * A.transpose();
   t.F_r = -0.5 * scale / clearance * speed * A * S3 * A.transpose();
   t.F_slip.setZero();
-  const double drag = -two_pi * viscosity * radius * radius * radius * length / (clearance * std::sqrt(u));
+  const double drag =
+      -two_pi * viscosity * radius * radius * radius * length / (clearance * std::sqrt(u));
   f.T = drag * p.slip;
   t.T_slip = drag;
   t.T_r = drag * p.slip / (u * c2) * p.r;

@@ -4,11 +4,20 @@
 namespace whirl::elements {
 
 BodyFrame::BodyFrame(const system::NodeState& s)
-    : e(s.chart->col(0)), e2(s.chart->col(1)), e3(s.chart->col(2)), p(2.0 * e + s.t), n(s), D(2.0 + e.dot(s.t)),
-      D1(e.dot(s.dd)), D2(e.dot(s.ddd)), cosine(std::cos(s.phi)), sine(std::sin(s.phi)) {}
+    : e(s.chart->col(0)),
+      e2(s.chart->col(1)),
+      e3(s.chart->col(2)),
+      p(2.0 * e + s.t),
+      n(s),
+      D(2.0 + e.dot(s.t)),
+      D1(e.dot(s.dd)),
+      D2(e.dot(s.ddd)),
+      cosine(std::cos(s.phi)),
+      sine(std::sin(s.phi)) {}
 
 BodyVector::BodyVector(const BodyFrame& f, double cos_beta, double sin_beta) {
-  const double c = f.cosine * cos_beta - f.sine * sin_beta, s = f.sine * cos_beta + f.cosine * sin_beta;
+  const double c = f.cosine * cos_beta - f.sine * sin_beta,
+               s = f.sine * cos_beta + f.cosine * sin_beta;
   c_ = c * f.e2 + s * f.e3;
   c1_ = c * f.e3 - s * f.e2;
   alpha_ = f.n.t.dot(c_) / f.D;  // d.c = t.c: c is perpendicular to e
@@ -24,7 +33,8 @@ void BodyVector::add_rates(const BodyFrame& f) {
   const auto& n = f.n;
   const double w = n.dphi, ww = w * w;
   const double n1 = n.dd.dot(c_) + w * n.t.dot(c1_);
-  const double n2 = n.ddd.dot(c_) + 2.0 * w * n.dd.dot(c1_) + n.ddphi * n.t.dot(c1_) - ww * n.t.dot(c_);
+  const double n2 =
+      n.ddd.dot(c_) + 2.0 * w * n.dd.dot(c1_) + n.ddphi * n.t.dot(c1_) - ww * n.t.dot(c_);
   alpha1_ = (n1 - alpha_ * f.D1) / f.D;
   alpha2_ = (n2 - 2.0 * alpha1_ * f.D1 - alpha_ * f.D2) / f.D;
   rate = w * c1_ - alpha1_ * f.p - alpha_ * n.dd;
@@ -34,16 +44,19 @@ void BodyVector::add_rates(const BodyFrame& f) {
 void BodyVector::gradient_rates(const BodyFrame& f, Mat34& B_rate, Mat34& B_accel) const {
   const auto& n = f.n;
   const double w = n.dphi, ww = w * w;
-  const Vec3 c_rate = w * c1_, c_accel = n.ddphi * c1_ - ww * c_;       // c' and c''
-  const Vec3 c1_rate = -w * c_, c1_accel = -n.ddphi * c_ - ww * c1_;    // (dc/dphi)' and ''
+  const Vec3 c_rate = w * c1_, c_accel = n.ddphi * c1_ - ww * c_;     // c' and c''
+  const Vec3 c1_rate = -w * c_, c1_accel = -n.ddphi * c_ - ww * c1_;  // (dc/dphi)' and ''
   const Vec3 d1 = (c_rate - alpha1_ * f.e - f.D1 * alpha_d_) / f.D;
   const Vec3 d2 = (c_accel - alpha2_ * f.e - 2.0 * f.D1 * d1 - f.D2 * alpha_d_) / f.D;
   const double p1 = (n.dd.dot(c1_) + n.t.dot(c1_rate) - f.D1 * alpha_phi_) / f.D;
-  const double p2 = (n.ddd.dot(c1_) + 2.0 * n.dd.dot(c1_rate) + n.t.dot(c1_accel) - 2.0 * f.D1 * p1 - f.D2 * alpha_phi_) / f.D;
+  const double p2 = (n.ddd.dot(c1_) + 2.0 * n.dd.dot(c1_rate) + n.t.dot(c1_accel) -
+                     2.0 * f.D1 * p1 - f.D2 * alpha_phi_) /
+                    f.D;
   B_rate.leftCols<3>() = -n.dd * alpha_d_.transpose() - f.p * d1.transpose();
   B_rate.diagonal().array() -= alpha1_;
   B_rate.col(3) = c1_rate - p1 * f.p - alpha_phi_ * n.dd;
-  B_accel.leftCols<3>() = -n.ddd * alpha_d_.transpose() - 2.0 * n.dd * d1.transpose() - f.p * d2.transpose();
+  B_accel.leftCols<3>() =
+      -n.ddd * alpha_d_.transpose() - 2.0 * n.dd * d1.transpose() - f.p * d2.transpose();
   B_accel.diagonal().array() -= alpha2_;
   B_accel.col(3) = c1_accel - p2 * f.p - 2.0 * p1 * n.dd - alpha_phi_ * n.ddd;
 }

@@ -1,4 +1,5 @@
-// A moment vector m in the coordinates (d, phi): from m.omega with omega = d x d' + (phi' - w.d') d,
+// A moment vector m in the coordinates (d, phi): from m.omega with omega = d x d' + (phi' - w.d')
+// d,
 //   f_d = m x d - (m.d) w,  f_phi = m.d;  and back: m = d x f_d + f_phi (e + d)/(1 + e.d).
 #pragma once
 #include <system/spin.hpp>

@@ -8,21 +8,26 @@ using namespace system;
 
 namespace {
 
-double value(const LawPtr& law, const Context& c) { return law ? c.load * law->at(c.time).f : c.load; }
+double value(const LawPtr& law, const Context& c) {
+  return law ? c.load * law->at(c.time).f : c.load;
+}
 
 /// A vector with body components, in global axes, with its gradient in (d, phi).
 struct BodyLoadVector {
   Vec3 v;
   Mat34 B;
   BodyLoadVector(const BodyVector& b2, const BodyVector& b3, const Vec3& d, const Vec3& c)
-      : v(c[0] * d + c[1] * b2.b + c[2] * b3.b), B(c[1] * b2.B + c[2] * b3.B) {
+      : v(c[0] * d + c[1] * b2.b + c[2] * b3.b),
+        B(c[1] * b2.B + c[2] * b3.B) {
     B.diagonal().array() += c[0];
   }
 };
 
 }  // namespace
 
-void PointForce::add_force(const Nodes<1>&, const Context& c, ForceX<3>& f) const { f -= value(factor, c) * force; }
+void PointForce::add_force(const Nodes<1>&, const Context& c, ForceX<3>& f) const {
+  f -= value(factor, c) * force;
+}
 
 void PointForce::add_energy(const Nodes<1>& x, const Context& c, Energy& e) const {
   e.supplied += value(factor, c) * force.dot(x[0]->du);

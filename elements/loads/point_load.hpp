@@ -1,9 +1,12 @@
-// Given forces and moments at a point of the shaft axis, times a law of time. External: f = -load. One node each.
+// Given forces and moments at a point of the shaft axis, times a law of time. External: f = -load.
+// One node each.
 //
-// A moment M does the power M.omega, omega = d x d' + s d, s = phi' - w.d'; its part in (d, phi) is therefore
+// A moment M does the power M.omega, omega = d x d' + s d, s = phi' - w.d'; its part in (d, phi) is
+// therefore
 //   f_d = -(M x d - (M.d) w),  f_phi = -M.d.
-// A fixed moment is not conservative; nor is a load that turns with the body. force N; moment N m; offset: point of
-// application from the node along d, m; factor dimensionless, null = 1. Power counted as supplied.
+// A fixed moment is not conservative; nor is a load that turns with the body. force N; moment N m;
+// offset: point of application from the node along d, m; factor dimensionless, null = 1. Power
+// counted as supplied.
 #pragma once
 #include <core/law.hpp>
 #include <system/kernel.hpp>
@@ -21,37 +24,48 @@ struct PointForce {
   void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<3>& f) const;
   void add_tangent(const system::Nodes<1>&, const system::Context&, system::TangentX<3>&) const {}
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const { return factor ? factor->breakpoints() : std::vector<double>{}; }
+  std::vector<double> breakpoints() const {
+    return factor ? factor->breakpoints() : std::vector<double>{};
+  }
 };
 
 /// Force and moment of fixed direction (global axes) at an offset point.
 struct FixedLoad {
   static constexpr int n_nodes = 1, width = 7;
-  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true, linear_in_displacements = true;
+  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
+                        linear_in_displacements = true;
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;
   LawPtr factor;
 
   void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<7>& f) const;
-  void add_tangent(const system::Nodes<1>& x, const system::Context& c, system::TangentX<7>& t) const;
+  void add_tangent(const system::Nodes<1>& x, const system::Context& c,
+                   system::TangentX<7>& t) const;
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const { return factor ? factor->breakpoints() : std::vector<double>{}; }
+  std::vector<double> breakpoints() const {
+    return factor ? factor->breakpoints() : std::vector<double>{};
+  }
 };
 
-/// Force and moment given in body axes (d, b_2, b_3): they turn with tilt and spin (follower loads).
+/// Force and moment given in body axes (d, b_2, b_3): they turn with tilt and spin (follower
+/// loads).
 struct BodyLoad {
   static constexpr int n_nodes = 1, width = 7;
-  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true, linear_in_displacements = true;
+  static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
+                        linear_in_displacements = true;
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;
   LawPtr factor;
 
   void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<7>& f) const;
-  void add_tangent(const system::Nodes<1>& x, const system::Context& c, system::TangentX<7>& t) const;
+  void add_tangent(const system::Nodes<1>& x, const system::Context& c,
+                   system::TangentX<7>& t) const;
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const { return factor ? factor->breakpoints() : std::vector<double>{}; }
+  std::vector<double> breakpoints() const {
+    return factor ? factor->breakpoints() : std::vector<double>{};
+  }
 };
 
 }  // namespace whirl::elements

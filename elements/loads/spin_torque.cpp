@@ -12,8 +12,10 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) con
   if (of_time) v.T += of_time->at(t).f;
   if (!speed.empty()) {
     const auto k = std::upper_bound(speed.begin(), speed.end(), x) - speed.begin();
-    if (k == 0) v.T += torque.front();
-    else if (static_cast<std::size_t>(k) == speed.size()) v.T += torque.back();
+    if (k == 0)
+      v.T += torque.front();
+    else if (static_cast<std::size_t>(k) == speed.size())
+      v.T += torque.back();
     else {
       const auto i = static_cast<std::size_t>(k);
       const double slope = (torque[i] - torque[i - 1]) / (speed[i] - speed[i - 1]);
@@ -22,22 +24,34 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) con
     }
   }
   if (induction) {
-    const double zb = induction->slip_breakdown, z = 1.0 - x / induction->synchronous, q = z * z + zb * zb;
+    const double zb = induction->slip_breakdown, z = 1.0 - x / induction->synchronous,
+                 q = z * z + zb * zb;
     v.T += 2.0 * induction->breakdown * z * zb / q;
     v.dx -= 2.0 * induction->breakdown * zb * (zb * zb - z * z) / (q * q) / induction->synchronous;
   }
   if (power) {
-    if (x * power->max_torque > power->power) { v.T += power->power / x; v.dx -= power->power / (x * x); }
-    else v.T += power->max_torque;
+    if (x * power->max_torque > power->power) {
+      v.T += power->power / x;
+      v.dx -= power->power / (x * x);
+    } else
+      v.T += power->max_torque;
   }
-  if (dc) { v.T += dc->stall * (1.0 - x / dc->no_load_speed); v.dx -= dc->stall / dc->no_load_speed; }
+  if (dc) {
+    v.T += dc->stall * (1.0 - x / dc->no_load_speed);
+    v.dx -= dc->stall / dc->no_load_speed;
+  }
   if (governor) {
     const Governor& g = *governor;
     const Start from = g.start ? *g.start : Start{};
-    const double integral = settled ? 0.0 : g.target * (t - from.time) - (phi - from.angle - g.phi0);
+    const double integral =
+        settled ? 0.0 : g.target * (t - from.time) - (phi - from.angle - g.phi0);
     const double T = g.kp * (g.target - x) + g.ki * integral;
-    if (std::abs(T) < g.max_torque) { v.T += T; v.dx -= g.kp; v.dphi -= g.ki; }
-    else v.T += std::copysign(g.max_torque, T);
+    if (std::abs(T) < g.max_torque) {
+      v.T += T;
+      v.dx -= g.kp;
+      v.dphi -= g.ki;
+    } else
+      v.T += std::copysign(g.max_torque, T);
   }
   const double smooth = std::tanh(x / friction_speed);
   const double dry = friction + (brake ? brake->at(t).f : 0.0);
@@ -51,7 +65,8 @@ std::vector<double> TorqueLaw::breakpoints() const {
   std::vector<double> out;
   for (const LawPtr& l : {of_time, brake})
     if (l)
-      for (double t : l->breakpoints()) out.push_back(t);
+      for (double t : l->breakpoints())
+        out.push_back(t);
   return out;
 }
 
@@ -59,9 +74,12 @@ namespace {
 
 template <TorqueAction A>
 double speed_of(const NodeState& n, const Vec3& e0) {
-  if constexpr (A == TorqueAction::joint) return n.dphi;
-  else if constexpr (A == TorqueAction::normal) return n.spin();
-  else return e0.dot(n.omega());
+  if constexpr (A == TorqueAction::joint)
+    return n.dphi;
+  else if constexpr (A == TorqueAction::normal)
+    return n.spin();
+  else
+    return e0.dot(n.omega());
 }
 
 double angle_of(const NodeState& n) { return n.phi + two_pi * n.turns; }
@@ -80,7 +98,7 @@ void SpinTorque<A>::add_force(const Nodes<1>& x, const Context& c, ForceX<7>& f)
   if constexpr (A == TorqueAction::joint) {
     f[6] -= T;
   } else if constexpr (A == TorqueAction::normal) {
-    f.template segment<3>(3) += T * n.spin_form();   // moment along d: s = phi' - w.d'
+    f.template segment<3>(3) += T * n.spin_form();  // moment along d: s = phi' - w.d'
     f[6] -= T;
   } else {
     add_moment(n, -T * e0, f);

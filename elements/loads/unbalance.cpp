@@ -7,7 +7,11 @@ namespace whirl::elements {
 using namespace system;
 
 UnbalanceMass::UnbalanceMass(double U, double beta, LawPtr law, double o)
-    : amount(U), cos_beta(std::cos(beta)), sin_beta(std::sin(beta)), factor(std::move(law)), offset(o) {}
+    : amount(U),
+      cos_beta(std::cos(beta)),
+      sin_beta(std::sin(beta)),
+      factor(std::move(law)),
+      offset(o) {}
 
 void UnbalanceMass::add_force(const Nodes<1>& x, const Context& c, ForceX<7>& f) const {
   const NodeState& n = *x[0];
@@ -46,7 +50,8 @@ void UnbalanceMass::add_energy(const Nodes<1>& x, const Context& c, Energy& e) c
   BodyVector v(frame, cos_beta, sin_beta);
   v.add_rates(frame);
   const LawValue law = factor ? factor->at(c.time) : LawValue{1.0, 0.0, 0.0};
-  const double kinetic = amount * (n.du + offset * n.dd).dot(v.rate), gravity = -amount * c.gravity.dot(v.b);
+  const double kinetic = amount * (n.du + offset * n.dd).dot(v.rate),
+               gravity = -amount * c.gravity.dot(v.b);
   e.kinetic += law.f * kinetic;
   e.gravity += law.f * gravity;
   if (law.df != 0.0) e.supplied += law.df * (kinetic + gravity);
@@ -55,7 +60,8 @@ void UnbalanceMass::add_energy(const Nodes<1>& x, const Context& c, Energy& e) c
 RigidInertia UnbalanceMass::inertia(double time) const {
   RigidInertia r;
   r.moment = at(time) * Vec3(0, cos_beta, sin_beta);
-  for (int k : {1, 2}) r.J(0, k) = r.J(k, 0) = -offset * r.moment[k];
+  for (int k : {1, 2})
+    r.J(0, k) = r.J(k, 0) = -offset * r.moment[k];
   return r;
 }
 

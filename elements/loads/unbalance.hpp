@@ -1,10 +1,12 @@
-// Unbalance: the static moment U = mass x eccentricity of the station's bodies, turning with them. One node.
+// Unbalance: the static moment U = mass x eccentricity of the station's bodies, turning with them.
+// One node.
 //   T = U (u + o d)'.b',  b = P(d <- e)(cos(phi + beta) e2 + sin(phi + beta) e3);  potential -U g.b
 //   f_u = U b'',  f_d = U o b'',  (f_d, f_phi) += U (db/d(d, phi))^T (u'' + o d'' - g)
-// Exact at any amplitude: a body of given mass, given inertia about the node and static moment U, in force, moment, torque
-// and gravity. U(t) = amount factor(t): mass that comes or goes moves with the body and carries its own energy
-// (counted as supplied power), so a step factor is a blade loss without impulse. amount kg m; beta rad, body angle at
-// phi = 0 from e2 towards e3; factor dimensionless, null = 1; offset o: the station from the node along d, m.
+// Exact at any amplitude: a body of given mass, given inertia about the node and static moment U,
+// in force, moment, torque and gravity. U(t) = amount factor(t): mass that comes or goes moves with
+// the body and carries its own energy (counted as supplied power), so a step factor is a blade loss
+// without impulse. amount kg m; beta rad, body angle at phi = 0 from e2 towards e3; factor
+// dimensionless, null = 1; offset o: the station from the node along d, m.
 #pragma once
 #include <core/law.hpp>
 #include <system/kernel.hpp>
@@ -14,7 +16,8 @@ namespace whirl::elements {
 
 struct UnbalanceMass {
   static constexpr int n_nodes = 1, width = 7;
-  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true, inertial = true, linear_in_displacements = true;
+  static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
+                        inertial = true, linear_in_displacements = true;
 
   double amount = 0, cos_beta = 1, sin_beta = 0;
   LawPtr factor;
@@ -26,9 +29,12 @@ struct UnbalanceMass {
   double at(double t) const { return factor ? amount * factor->at(t).f : amount; }
 
   void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<7>& f) const;
-  void add_tangent(const system::Nodes<1>& x, const system::Context& c, system::TangentX<7>& t) const;
+  void add_tangent(const system::Nodes<1>& x, const system::Context& c,
+                   system::TangentX<7>& t) const;
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const { return factor ? factor->breakpoints() : std::vector<double>{}; }
+  std::vector<double> breakpoints() const {
+    return factor ? factor->breakpoints() : std::vector<double>{};
+  }
   system::RigidInertia inertia(double time) const;
 };
 

@@ -7,11 +7,14 @@ namespace whirl::elements {
 
 struct PointMass {
   static constexpr int n_nodes = 1, width = 3;
-  static constexpr bool has_M = true, has_C = false, has_K = false, quadratic_in_rates = true, inertial = true, powerless = true, linear_in_displacements = true;
+  static constexpr bool has_M = true, has_C = false, has_K = false, quadratic_in_rates = true,
+                        inertial = true, powerless = true, linear_in_displacements = true;
 
   double mass = 0;
 
-  void add_force(const system::Nodes<1>& x, const system::Context&, system::ForceX<3>& f) const { f += mass * x[0]->ddu; }
+  void add_force(const system::Nodes<1>& x, const system::Context&, system::ForceX<3>& f) const {
+    f += mass * x[0]->ddu;
+  }
   void add_tangent(const system::Nodes<1>&, const system::Context&, system::TangentX<3>& t) const {
     t.M.diagonal().array() += mass;
   }

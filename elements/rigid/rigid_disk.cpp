@@ -21,7 +21,8 @@ void RigidDisk::add_tangent(const Nodes<1>& x, const Context&, TangentX<7>& t) c
   const double mz = mass * offset, Jd = Jt + mz * offset;
   for (int i = 0; i < 3; ++i) {
     t.M(i, i) += mass;
-    t.M(i, 3 + i) += mz; t.M(3 + i, i) += mz;
+    t.M(i, 3 + i) += mz;
+    t.M(3 + i, i) += mz;
     t.M(3 + i, 3 + i) += Jd;
   }
   t.M.block<3, 3>(3, 3) += (Jp * s.w) * s.w.transpose();
@@ -29,19 +30,23 @@ void RigidDisk::add_tangent(const Nodes<1>& x, const Context&, TangentX<7>& t) c
   t.M.block<1, 3>(6, 3) -= Jp * s.w.transpose();
   t.M(6, 6) += Jp;
 
-  t.C.block<3, 3>(3, 3) -= Jp * (s.w * s.sdot_dd.transpose() - g * s.w.transpose() + s.s * skew(n.d()));
+  t.C.block<3, 3>(3, 3) -=
+      Jp * (s.w * s.sdot_dd.transpose() - g * s.w.transpose() + s.s * skew(n.d()));
   t.C.block<3, 1>(3, 6) -= Jp * g;
   t.C.block<1, 3>(6, 3) += Jp * s.sdot_dd.transpose();
 
-  t.K.block<3, 3>(3, 3) -= Jp * (s.w * s.sdot_d.transpose() + s.sdot * s.W() + g * s.s_d.transpose() - s.s * skew(n.dd));
+  t.K.block<3, 3>(3, 3) -=
+      Jp * (s.w * s.sdot_d.transpose() + s.sdot * s.W() + g * s.s_d.transpose() - s.s * skew(n.dd));
   t.K.block<1, 3>(6, 3) += Jp * s.sdot_d.transpose();
 }
 
 void RigidDisk::add_energy(const Nodes<1>& x, const Context& c, Energy& e) const {
   const NodeState& n = *x[0];
   const double s = n.spin();
-  e.kinetic += 0.5 * (mass * (n.du + offset * n.dd).squaredNorm() + Jt * n.dd.squaredNorm() + Jp * s * s);
-  e.gravity -= mass * c.gravity.dot(n.u + offset * n.d());   // d, not t: t starts anew when the chart is moved
+  e.kinetic +=
+      0.5 * (mass * (n.du + offset * n.dd).squaredNorm() + Jt * n.dd.squaredNorm() + Jp * s * s);
+  e.gravity -= mass * c.gravity.dot(
+                          n.u + offset * n.d());  // d, not t: t starts anew when the chart is moved
 }
 
 RigidInertia RigidDisk::inertia(double) const {

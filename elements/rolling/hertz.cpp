@@ -9,8 +9,10 @@ namespace whirl::elements {
 
 double hertz_ellipticity(double Rx, double Ry) {
   const double ratio = std::max(Rx, Ry) / std::min(Rx, Ry), F_rho = (ratio - 1.0) / (ratio + 1.0);
-  if (F_rho < 1e-5) return 1.0 + 4.0 / 3.0 * F_rho;   // nearly circular: kappa = ratio^(2/3), error F_rho^2
-  // The left side minus F_rho grows from below zero at kappa = 1 to 1 - F_rho: bisection in log kappa.
+  if (F_rho < 1e-5)
+    return 1.0 + 4.0 / 3.0 * F_rho;  // nearly circular: kappa = ratio^(2/3), error F_rho^2
+  // The left side minus F_rho grows from below zero at kappa = 1 to 1 - F_rho: bisection in log
+  // kappa.
   const auto excess = [&](double kappa) {
     const double k2 = kappa * kappa, m = std::sqrt(1.0 - 1.0 / k2);
     const double F = std::comp_ellint_1(m), E = std::comp_ellint_2(m);
@@ -25,9 +27,11 @@ double hertz_ellipticity(double Rx, double Ry) {
   return std::sqrt(lo * hi);
 }
 
-double hertz_point_stiffness(double Rx, double Ry, const ContactMaterial& a, const ContactMaterial& b) {
+double hertz_point_stiffness(double Rx, double Ry, const ContactMaterial& a,
+                             const ContactMaterial& b) {
   const double modulus = 2.0 / ((1.0 - a.nu * a.nu) / a.E + (1.0 - b.nu * b.nu) / b.E);
-  const double R = 1.0 / (1.0 / Rx + 1.0 / Ry), kappa = hertz_ellipticity(Rx, Ry), m = std::sqrt(1.0 - 1.0 / (kappa * kappa));
+  const double R = 1.0 / (1.0 / Rx + 1.0 / Ry), kappa = hertz_ellipticity(Rx, Ry),
+               m = std::sqrt(1.0 - 1.0 / (kappa * kappa));
   const double F = std::comp_ellint_1(m), E = std::comp_ellint_2(m);
   return pi * kappa * modulus * std::sqrt(R * E / (4.5 * F * F * F));
 }
@@ -37,7 +41,9 @@ double hertz_line_stiffness(double length) {
   return 8.06e4 * std::pow(1e3 * length, 8.0 / 9.0) * std::pow(1e3, 10.0 / 9.0);
 }
 
-double hertz_series(double K1, double K2, double n) { return std::pow(std::pow(K1, -1.0 / n) + std::pow(K2, -1.0 / n), -n); }
+double hertz_series(double K1, double K2, double n) {
+  return std::pow(std::pow(K1, -1.0 / n) + std::pow(K2, -1.0 / n), -n);
+}
 
 namespace {
 
@@ -49,12 +55,14 @@ double interpolate(int n, double at8, double at12, double at16) {
 }  // namespace
 
 BearingEstimate estimate_ball_bearing(int balls, double diameter, double load, double alpha) {
-  const double k = 13e6 * std::pow(balls, 2.0 / 3.0) * std::cbrt(diameter * load) * std::pow(std::cos(alpha), 5.0 / 3.0);
+  const double k = 13e6 * std::pow(balls, 2.0 / 3.0) * std::cbrt(diameter * load) *
+                   std::pow(std::cos(alpha), 5.0 / 3.0);
   return {k, k * interpolate(balls, 0.46, 0.64, 0.73)};
 }
 
 BearingEstimate estimate_roller_bearing(int rollers, double length, double load, double alpha) {
-  const double k = 1e9 * std::pow(rollers, 0.9) * std::pow(length, 0.8) * std::pow(load, 0.1) * std::pow(std::cos(alpha), 1.9);
+  const double k = 1e9 * std::pow(rollers, 0.9) * std::pow(length, 0.8) * std::pow(load, 0.1) *
+                   std::pow(std::cos(alpha), 1.9);
   return {k, k * interpolate(rollers, 0.49, 0.66, 0.74)};
 }
 

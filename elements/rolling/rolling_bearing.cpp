@@ -21,8 +21,8 @@ bool BallContact::evaluate(double x, double rho, double t, Local& l) const {
   // gradient of (s_a, s_r) in (x, rho, t): (1, 0, -R), (0, 1, 0)
   l.V = 0.4 * Q * delta;
   l.g << Q * n.x(), Q * n.y(), -R * Q * n.x();
-  const double c = Q / A, haa = dQ * n.x() * n.x() + c * n.y() * n.y(), har = (dQ - c) * n.x() * n.y(),
-               hrr = dQ * n.y() * n.y() + c * n.x() * n.x();
+  const double c = Q / A, haa = dQ * n.x() * n.x() + c * n.y() * n.y(),
+               har = (dQ - c) * n.x() * n.y(), hrr = dQ * n.y() * n.y() + c * n.x() * n.x();
   l.H << haa, har, -R * haa, har, hrr, -R * har, -R * haa, -R * har, R * R * haa;
   return true;
 }
@@ -34,7 +34,9 @@ double BallContact::load(double x, double rho, double t) const {
 
 bool RollerContact::evaluate(double, double rho, double t, Local& l) const {
   bool touch = false;
-  l.V = 0; l.g.setZero(); l.H.setZero();
+  l.V = 0;
+  l.g.setZero();
+  l.H.setZero();
   const double k = K / slices;
   for (int i = 0; i < slices; ++i) {
     const double s = length * ((i + 0.5) / slices - 0.5), delta = rho + s * t - clearance;
@@ -42,8 +44,11 @@ bool RollerContact::evaluate(double, double rho, double t, Local& l) const {
     touch = true;
     const double dQ = 10.0 / 9.0 * k * std::pow(delta, 1.0 / 9.0), Q = 0.9 * dQ * delta;
     l.V += 9.0 / 19.0 * Q * delta;
-    l.g.y() += Q; l.g.z() += s * Q;
-    l.H(1, 1) += dQ; l.H(1, 2) += s * dQ; l.H(2, 2) += s * s * dQ;
+    l.g.y() += Q;
+    l.g.z() += s * Q;
+    l.H(1, 1) += dQ;
+    l.H(1, 2) += s * dQ;
+    l.H(2, 2) += s * s * dQ;
   }
   l.H(2, 1) = l.H(1, 2);
   return touch;
@@ -65,8 +70,11 @@ Vector<6> RollingBearing<Contact>::deflection(const Nodes<2>& x) const {
 }
 
 template <class Contact>
-void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p, bool with_hessian, int copies) const {
-  p.V = 0; p.g.setZero(); p.H.setZero();
+void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p, bool with_hessian,
+                                        int copies) const {
+  p.V = 0;
+  p.g.setZero();
+  p.H.setZero();
   typename Contact::Local l;
   // One turn of Z steps by the addition theorem: no trigonometry in the loop.
   double c = std::cos(q[5]), s = std::sin(q[5]);
@@ -78,15 +86,20 @@ void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p,
       const double rho_psi = q[2] * c - q[1] * s, t_psi = q[4] * c - q[3] * s;
       p.V += l.V;
       p.g[0] += l.g.x();
-      p.g[1] += l.g.y() * c; p.g[2] += l.g.y() * s;
-      p.g[3] += l.g.z() * c; p.g[4] += l.g.z() * s;
+      p.g[1] += l.g.y() * c;
+      p.g[2] += l.g.y() * s;
+      p.g[3] += l.g.z() * c;
+      p.g[4] += l.g.z() * s;
       p.g[5] += l.g.y() * rho_psi + l.g.z() * t_psi;
       if (with_hessian) {
         Matrix<3, 6> J;
         J << 1, 0, 0, 0, 0, 0, 0, c, s, 0, 0, rho_psi, 0, 0, 0, c, s, t_psi;
         p.H.noalias() += J.transpose() * l.H * J;
         const double cross[4] = {-s * l.g.y(), c * l.g.y(), -s * l.g.z(), c * l.g.z()};
-        for (int k = 0; k < 4; ++k) { p.H(1 + k, 5) += cross[k]; p.H(5, 1 + k) += cross[k]; }
+        for (int k = 0; k < 4; ++k) {
+          p.H(1 + k, 5) += cross[k];
+          p.H(5, 1 + k) += cross[k];
+        }
         p.H(5, 5) -= l.g.y() * rho + l.g.z() * t;
       }
     }
@@ -94,16 +107,23 @@ void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p,
     s = s * c1 + c * s1;
     c = next;
   }
-  if (copies > 1) { p.V /= copies; p.g /= copies; p.H /= copies; }
+  if (copies > 1) {
+    p.V /= copies;
+    p.g /= copies;
+    p.H /= copies;
+  }
 }
 
 template <class Contact>
-void RollingBearing<Contact>::evaluate(const Nodes<2>& x, bool averaged, RollingPotential& p, bool with_hessian) const {
+void RollingBearing<Contact>::evaluate(const Nodes<2>& x, bool averaged, RollingPotential& p,
+                                       bool with_hessian) const {
   Vector<6> q = deflection(x);
   if (!averaged) return potential(q, p, with_hessian, 1);
   q[5] = 0.0;
   potential(q, p, with_hessian, (smeared + elements - 1) / elements);
-  p.g[5] = 0.0; p.H.row(5).setZero(); p.H.col(5).setZero();
+  p.g[5] = 0.0;
+  p.H.row(5).setZero();
+  p.H.col(5).setZero();
 }
 
 template <class Contact>
@@ -126,30 +146,42 @@ Vec3 damping_of(double c_axial, double c_radial) { return Vec3(c_axial, c_radial
 }  // namespace
 
 template <class Contact>
-void RollingBearing<Contact>::add_force(const Nodes<2>& x, const Context& context, ForceX<14>& f) const {
+void RollingBearing<Contact>::add_force(const Nodes<2>& x, const Context& context,
+                                        ForceX<14>& f) const {
   RollingPotential p;
   evaluate(x, context.averaged, p, false);
   const Vec3 drag = damping_of(c_axial, c_radial).cwiseProduct(x[0]->du - x[1]->du);
-  f.template segment<3>(0) += p.g.template head<3>() + drag; f.template segment<3>(7) -= p.g.template head<3>() + drag;
-  f.template segment<2>(4) += p.g.template segment<2>(3); f.template segment<2>(11) -= p.g.template segment<2>(3);
-  f[6] += cage[0] * p.g[5]; f[13] += cage[1] * p.g[5];
+  f.template segment<3>(0) += p.g.template head<3>() + drag;
+  f.template segment<3>(7) -= p.g.template head<3>() + drag;
+  f.template segment<2>(4) += p.g.template segment<2>(3);
+  f.template segment<2>(11) -= p.g.template segment<2>(3);
+  f[6] += cage[0] * p.g[5];
+  f[13] += cage[1] * p.g[5];
 }
 
 template <class Contact>
-void RollingBearing<Contact>::add_tangent(const Nodes<2>& x, const Context& context, TangentX<14>& t) const {
+void RollingBearing<Contact>::add_tangent(const Nodes<2>& x, const Context& context,
+                                          TangentX<14>& t) const {
   RollingPotential p;
   evaluate(x, context.averaged, p, true);
   const double sign[2][6] = {{1, 1, 1, 1, 1, cage[0]}, {-1, -1, -1, -1, -1, cage[1]}};
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b)
       for (int m = 0; m < 6; ++m)
-        for (int n = 0; n < 6; ++n) t.K(7 * a + at[m], 7 * b + at[n]) += sign[a][m] * sign[b][n] * p.H(m, n);
+        for (int n = 0; n < 6; ++n)
+          t.K(7 * a + at[m], 7 * b + at[n]) += sign[a][m] * sign[b][n] * p.H(m, n);
   const Vec3 c = damping_of(c_axial, c_radial);
-  for (int k = 0; k < 3; ++k) { t.C(k, k) += c[k]; t.C(7 + k, 7 + k) += c[k]; t.C(k, 7 + k) -= c[k]; t.C(7 + k, k) -= c[k]; }
+  for (int k = 0; k < 3; ++k) {
+    t.C(k, k) += c[k];
+    t.C(7 + k, 7 + k) += c[k];
+    t.C(k, 7 + k) -= c[k];
+    t.C(7 + k, k) -= c[k];
+  }
 }
 
 template <class Contact>
-void RollingBearing<Contact>::add_energy(const Nodes<2>& x, const Context& context, Energy& e) const {
+void RollingBearing<Contact>::add_energy(const Nodes<2>& x, const Context& context,
+                                         Energy& e) const {
   RollingPotential p;
   evaluate(x, context.averaged, p, false);
   e.elastic += p.V;
@@ -162,23 +194,30 @@ template struct RollingBearing<RollerContact>;
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what) { throw run_error("E83", "rolling bearing: " + what); }
+[[noreturn]] void fail(const std::string& what) {
+  throw run_error("E83", "rolling bearing: " + what);
+}
 
 void check_ring(int n, double D, double d_m, const char* what) {
   if (n < 2) fail(std::string("at least two ") + what + " are needed");
-  if (!(D > 0) || !(d_m > D)) fail("element diameter must be positive and smaller than the pitch diameter");
-  if (n > 2 && D > d_m * std::sin(pi / n)) fail(std::string("the ") + what + " do not fit side by side on the pitch circle");
+  if (!(D > 0) || !(d_m > D))
+    fail("element diameter must be positive and smaller than the pitch diameter");
+  if (n > 2 && D > d_m * std::sin(pi / n))
+    fail(std::string("the ") + what + " do not fit side by side on the pitch circle");
 }
 
 }  // namespace
 
 BallBearing make_ball_bearing(const BallGeometry& g) {
   check_ring(g.balls, g.ball_diameter, g.pitch_diameter, "balls");
-  if (!(g.f_inner > 0.5) || !(g.f_outer > 0.5)) fail("groove radii must exceed half the ball diameter (f > 0.5)");
-  if (!(std::abs(g.contact_angle) < 80.0 * pi / 180.0)) fail("the contact angle must be below 80 degrees");
+  if (!(g.f_inner > 0.5) || !(g.f_outer > 0.5))
+    fail("groove radii must exceed half the ball diameter (f > 0.5)");
+  if (!(std::abs(g.contact_angle) < 80.0 * pi / 180.0))
+    fail("the contact angle must be below 80 degrees");
   const double D = g.ball_diameter, A0 = (g.f_inner + g.f_outer - 1.0) * D;
   if (!(g.radial_clearance < A0)) fail("the radial clearance is larger than the grooves allow");
-  if (g.contact_angle != 0.0 && g.radial_clearance != 0.0) fail("give either a contact angle or a radial clearance, not both");
+  if (g.contact_angle != 0.0 && g.radial_clearance != 0.0)
+    fail("give either a contact angle or a radial clearance, not both");
   const double cos_alpha = std::cos(g.contact_angle), lambda = D * cos_alpha / g.pitch_diameter;
   BallBearing b;
   b.elements = g.balls;
@@ -186,15 +225,18 @@ BallBearing make_ball_bearing(const BallGeometry& g) {
   BallContact& c = b.contact;
   c.A0 = A0;
   c.r0 = A0 * cos_alpha - g.radial_clearance;
-  // The inner groove centre moves towards +x with the shaft: contact opens further when it already lies on that side.
+  // The inner groove centre moves towards +x with the shaft: contact opens further when it already
+  // lies on that side.
   c.a0 = (g.direction >= 0 ? 1.0 : -1.0) * A0 * std::sin(std::abs(g.contact_angle));
   c.R = 0.5 * g.pitch_diameter + (g.f_inner - 0.5) * D * cos_alpha;
   c.K = g.stiffness;
   if (c.K == 0.0) {
     // Principal planes: rolling direction (ball on ring) and across it (ball in groove).
     const double R = 0.5 * D, inner = R * (1.0 - lambda), outer = R * (1.0 + lambda);
-    const double across_i = g.f_inner * D * R / (g.f_inner * D - R), across_o = g.f_outer * D * R / (g.f_outer * D - R);
-    c.K = hertz_series(hertz_point_stiffness(inner, across_i), hertz_point_stiffness(outer, across_o), 1.5);
+    const double across_i = g.f_inner * D * R / (g.f_inner * D - R),
+                 across_o = g.f_outer * D * R / (g.f_outer * D - R);
+    c.K = hertz_series(hertz_point_stiffness(inner, across_i),
+                       hertz_point_stiffness(outer, across_o), 1.5);
   }
   if (!(c.K > 0)) fail("the contact stiffness must be positive");
   return b;
@@ -203,7 +245,8 @@ BallBearing make_ball_bearing(const BallGeometry& g) {
 void set_axial_preload(BallBearing& b, double force) {
   BallContact& c = b.contact;
   if (!(force >= 0)) fail("the preload must not be negative");
-  if (c.a0 == 0.0) fail("a deep-groove bearing has no side to be preloaded on: give a contact angle");
+  if (c.a0 == 0.0)
+    fail("a deep-groove bearing has no side to be preloaded on: give a contact angle");
   const double side = c.a0 > 0 ? 1.0 : -1.0, start = c.a0;
   const auto push = [&](double shift) {
     BallContact::Local l;
@@ -211,7 +254,8 @@ void set_axial_preload(BallBearing& b, double force) {
     return c.evaluate(0, 0, 0, l) ? b.elements * std::abs(l.g.x()) : 0.0;
   };
   double lo = 0.0, hi = 1e-9 * c.A0;
-  while (push(hi) < force && hi < 1e6 * c.A0) hi *= 2.0;
+  while (push(hi) < force && hi < 1e6 * c.A0)
+    hi *= 2.0;
   for (int i = 0; i < 200 && lo < hi; ++i) {
     const double mid = 0.5 * (lo + hi);
     if (mid == lo || mid == hi) break;
@@ -227,7 +271,8 @@ RollerBearing make_roller_bearing(const RollerGeometry& g) {
   RollerBearing b;
   b.elements = g.rollers;
   b.cage = {0.5 * (1.0 - lambda), 0.5 * (1.0 + lambda)};
-  b.contact.length = g.roller_length; b.contact.clearance = g.radial_clearance;
+  b.contact.length = g.roller_length;
+  b.contact.clearance = g.radial_clearance;
   b.contact.K = g.stiffness;
   if (b.contact.K == 0.0) {
     const double k = hertz_line_stiffness(g.roller_length);

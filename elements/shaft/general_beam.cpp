@@ -19,7 +19,8 @@ using system::TangentX;
 
 namespace {
 
-template <class T> using V3 = Vec3T<T>;
+template <class T>
+using V3 = Vec3T<T>;
 
 /// Node coordinates, rates and accelerations in any scalar.
 template <class T>
@@ -28,16 +29,29 @@ struct NodeT {
   V3<T> u, t, du, dd, ddu, ddd;
   T phi, dphi, ddphi;
   explicit NodeT(const NodeState& n)
-      : chart(n.chart), u(n.u), t(n.t), du(n.du), dd(n.dd), ddu(n.ddu), ddd(n.ddd), phi(n.phi), dphi(n.dphi), ddphi(n.ddphi) {}
+      : chart(n.chart),
+        u(n.u),
+        t(n.t),
+        du(n.du),
+        dd(n.dd),
+        ddu(n.ddu),
+        ddd(n.ddd),
+        phi(n.phi),
+        dphi(n.dphi),
+        ddphi(n.ddphi) {}
 };
 
 /// Rotation, angular velocity and acceleration of a node.
 template <class T>
 struct Motion {
-  V3<T> e, d, s2, omega, alpha, w;   // s2 = (e + d)/(1 + e.d)
+  V3<T> e, d, s2, omega, alpha, w;  // s2 = (e + d)/(1 + e.d)
   V3<T> e2, e3;
   T cphi, sphi;
-  explicit Motion(const NodeT<T>& n) : e(Vec3(n.chart->col(0))), d(e + n.t), e2(Vec3(n.chart->col(1))), e3(Vec3(n.chart->col(2))) {
+  explicit Motion(const NodeT<T>& n)
+      : e(Vec3(n.chart->col(0))),
+        d(e + n.t),
+        e2(Vec3(n.chart->col(1))),
+        e3(Vec3(n.chart->col(2))) {
     using std::cos;
     using std::sin;
     const T D = T(2.0) + e.dot(n.t);
@@ -47,20 +61,23 @@ struct Motion {
     const T s = n.dphi - wd, sdot = n.ddphi - w.dot(n.ddd) + wd * ed / D;
     omega = d.cross(n.dd) + s * d;
     alpha = d.cross(n.ddd) + sdot * d + s * n.dd;
-    cphi = cos(n.phi); sphi = sin(n.phi);
+    cphi = cos(n.phi);
+    sphi = sin(n.phi);
   }
   /// A vector fixed in the node, given by its components in the node's chart at rest.
   V3<T> turn(const Vec3& c) const {
-    const V3<T> m = (T(c.y()) * cphi - T(c.z()) * sphi) * e2 + (T(c.y()) * sphi + T(c.z()) * cphi) * e3;
+    const V3<T> m =
+        (T(c.y()) * cphi - T(c.z()) * sphi) * e2 + (T(c.y()) * sphi + T(c.z()) * cphi) * e3;
     return T(c.x()) * d + m - d.dot(m) * s2;
   }
   V3<T> accel(const V3<T>& r) const { return alpha.cross(r) + omega.cross(omega.cross(r)); }
 };
 
-/// Third derivative of theta/sin theta in n = 1 - cos theta: n (2 - n) G''' = 4 G' - 5 (1 - n) G'' (see AngleRatio).
+/// Third derivative of theta/sin theta in n = 1 - cos theta: n (2 - n) G''' = 4 G' - 5 (1 - n) G''
+/// (see AngleRatio).
 double third_of_angle_ratio(double n, const AngleRatio& r) {
   if (n >= 0.02) return (4.0 * r.G1 - 5.0 * (1.0 - n) * r.G2) / (n * (2.0 - n));
-  double g = 1.0, power = 1.0, sum = 0.0;   // power = n^(k-3)
+  double g = 1.0, power = 1.0, sum = 0.0;  // power = n^(k-3)
   for (int k = 1; k <= 11; ++k) {
     g *= k / (2.0 * k + 1.0);
     if (k < 3) continue;
@@ -70,16 +87,20 @@ double third_of_angle_ratio(double n, const AngleRatio& r) {
   return sum;
 }
 
-/// Bending stiffness of each plane and what shear takes of it: 1/(1 + Phi) = 1 - phi, slope of the curvature per p1 + p2, 1/kGA.
+/// Bending stiffness of each plane and what shear takes of it: 1/(1 + Phi) = 1 - phi, slope of the
+/// curvature per p1 + p2, 1/kGA.
 struct Planes {
   double EIa, EIb, fa, fb, phia, phib, softa, softb;
   explicit Planes(const GeneralBeamConstants& c) {
-    const auto plane = [&c](double k11, double k12, double k22, double& EI, double& f, double& phi, double& soft) {
+    const auto plane = [&c](double k11, double k12, double k22, double& EI, double& f, double& phi,
+                            double& soft) {
       const double mean = 0.5 * (k11 + k22), L = c.length;
       EI = 0.5 * L * (mean - k12);
       // a cone without shear gives a little more or less than one
       const double stiff = std::min((mean + k12) / (3.0 * (mean - k12)), 1.0);
-      f = 6.0 / L * stiff; phi = 1.0 - stiff; soft = phi / stiff * L * L / (12.0 * EI);
+      f = 6.0 / L * stiff;
+      phi = 1.0 - stiff;
+      soft = phi / stiff * L * L / (12.0 * EI);
     };
     plane(c.ky_def11, c.ky_def12, c.ky_def22, EIa, fa, phia, softa);
     plane(c.kz_def11, c.kz_def12, c.kz_def22, EIb, fb, phib, softb);
@@ -91,20 +112,25 @@ template <class T>
 struct Shape {
   V3<T> a, D[2], delta[2], q[2], p[2], y, z, ro[2];
   T l, stretch, n[2], G[2], G1[2], psi;
-  struct Components { T y, z; };
-  Components P[2];        // of p
-  T My, Mz, Ky, Kz;       // mean curvature, and how much it changes from end to end
+  struct Components {
+    T y, z;
+  };
+  Components P[2];   // of p
+  T My, Mz, Ky, Kz;  // mean curvature, and how much it changes from end to end
   AngleRatio ratio[2];
-  Shape(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1, const Motion<T>& m2) {
+  Shape(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1,
+        const Motion<T>& m2) {
     using std::atan2;
     using std::sqrt;
-    ro[0] = m1.turn(b.arm1); ro[1] = m2.turn(b.arm2);
+    ro[0] = m1.turn(b.arm1);
+    ro[1] = m2.turn(b.arm2);
     const V3<T> du = n2.u - n1.u + (ro[1] - V3<T>(b.offset2)) - (ro[0] - V3<T>(b.offset1));
     const V3<T> lambda = V3<T>(b.chord) + du;
     l = sqrt(lambda.dot(lambda));
     stretch = (2.0 * V3<T>(b.chord).dot(du) + du.dot(du)) / (l + T(b.l0));
     a = (T(1.0) / l) * lambda;
-    D[0] = m1.turn(b.body1.col(0)); D[1] = m2.turn(b.body2.col(0));
+    D[0] = m1.turn(b.body1.col(0));
+    D[1] = m2.turn(b.body2.col(0));
     const V3<T> B[2] = {m1.turn(b.body1.col(1)), m2.turn(b.body2.col(1))};
     V3<T> Bt[2];
     for (int i = 0; i < 2; ++i) {
@@ -125,14 +151,18 @@ struct Shape {
     const V3<T> sum = Bt[0] + Bt[1];
     y = (T(1.0) / sqrt(sum.dot(sum))) * sum;
     z = a.cross(y);
-    for (int i = 0; i < 2; ++i) P[i] = {p[i].dot(y), p[i].dot(z)};
+    for (int i = 0; i < 2; ++i)
+      P[i] = {p[i].dot(y), p[i].dot(z)};
     const Planes plane(b.c);
     const double il = 1.0 / b.c.length;
-    My = il * (P[1].y - P[0].y); Mz = il * (P[1].z - P[0].z);
-    const Vec2 rest = b.p01 + b.p02;   // the unstressed shape has no shear
+    My = il * (P[1].y - P[0].y);
+    Mz = il * (P[1].z - P[0].z);
+    const Vec2 rest = b.p01 + b.p02;  // the unstressed shape has no shear
     Ky = plane.fa * (P[0].y + P[1].y - T(rest[0])) + T(6.0 * il * rest[0]);
     Kz = plane.fb * (P[0].z + P[1].z - T(rest[1])) + T(6.0 * il * rest[1]);
-    psi = atan2(a.dot(Bt[0].cross(Bt[1])), Bt[0].dot(Bt[1])) - 0.5 * (P[0].y * P[1].z - P[0].z * P[1].y) - (b.c.length * b.c.length / 12.0) * (My * Kz - Mz * Ky);
+    psi = atan2(a.dot(Bt[0].cross(Bt[1])), Bt[0].dot(Bt[1])) -
+          0.5 * (P[0].y * P[1].z - P[0].z * P[1].y) -
+          (b.c.length * b.c.length / 12.0) * (My * Kz - Mz * Ky);
   }
   T bow(const GeneralBeamConstants& c) const {
     return 0.5 * (c.b11 * p[0].dot(p[0]) + 2.0 * c.b12 * p[0].dot(p[1]) + c.b22 * p[1].dot(p[1]));
@@ -140,17 +170,21 @@ struct Shape {
 };
 
 double bow0(const GeneralBeam& b) {
-  return 0.5 * (b.c.b11 * b.p01.squaredNorm() + 2.0 * b.c.b12 * b.p01.dot(b.p02) + b.c.b22 * b.p02.squaredNorm());
+  return 0.5 * (b.c.b11 * b.p01.squaredNorm() + 2.0 * b.c.b12 * b.p01.dot(b.p02) +
+                b.c.b22 * b.p02.squaredNorm());
 }
 
-/// g = N^2/(1 + N/kGA) and half its derivative; its parabola below N = -kGA/2. As in shaft_beam.cpp.
+/// g = N^2/(1 + N/kGA) and half its derivative; its parabola below N = -kGA/2. As in
+/// shaft_beam.cpp.
 template <class T>
 struct Give {
   T g, g1;
   Give(double soft, const T& N) {
     const bool usual = soft * value(N) > -0.5;
-    const T n = usual ? N : T(-0.5 / soft), d = N - n, rho = T(1.0) / (T(1.0) + soft * n), slope = 0.5 * (n * rho * (T(1.0) + rho));
-    g1 = slope + rho * rho * rho * d; g = n * n * rho + (slope + g1) * d;
+    const T n = usual ? N : T(-0.5 / soft), d = N - n, rho = T(1.0) / (T(1.0) + soft * n),
+            slope = 0.5 * (n * rho * (T(1.0) + rho));
+    g1 = slope + rho * rho * rho * d;
+    g = n * n * rho + (slope + g1) * d;
   }
 };
 
@@ -172,16 +206,18 @@ struct TwistGive {
   }
 };
 
-/// What the element does inside (general_beam.hpp): energy, and forces on (p1.y, p2.y), (p1.z, p2.z); the torque and axial force that act on the
-/// rates of psi and w. ky, kz: deformations.
+/// What the element does inside (general_beam.hpp): energy, and forces on (p1.y, p2.y), (p1.z,
+/// p2.z); the torque and axial force that act on the rates of psi and w. ky, kz: deformations.
 template <class T>
 struct Inner {
   T V{}, my[2], mz[2], torque{}, axial{};
   Inner(const GeneralBeam& b, const Shape<T>& p, const T (&ky)[2], const T (&kz)[2], const T& N) {
     const GeneralBeamConstants& c = b.c;
     const Planes n(c);
-    const double L = c.length, il = 1.0 / L, h = L / 12.0, GJ = c.GJ_l * L, EIa = n.EIa, EIb = n.EIb;
-    const T Ey = il * (ky[1] - ky[0]), Ez = il * (kz[1] - kz[0]), Sy = n.fa * (ky[0] + ky[1]), Sz = n.fb * (kz[0] + kz[1]);
+    const double L = c.length, il = 1.0 / L, h = L / 12.0, GJ = c.GJ_l * L, EIa = n.EIa,
+                 EIb = n.EIb;
+    const T Ey = il * (ky[1] - ky[0]), Ez = il * (kz[1] - kz[0]), Sy = n.fa * (ky[0] + ky[1]),
+            Sz = n.fb * (kz[0] + kz[1]);
     const T &My = p.My, &Mz = p.Mz, &Ky = p.Ky, &Kz = p.Kz;
     const T t = p.psi - T(b.psi_r), twist = p.psi - T(b.psi0);
     const T th = h * t;
@@ -191,15 +227,18 @@ struct Inner {
     const T c1 = EIa * (Kz * Ey + Mz * Sy) - EIb * (Ky * Ez + My * Sz);
     const T c2 = EIa * (Kz * Sy) - EIb * (Ky * Sz);
     const T s0 = EIa * (Mz * Mz - My * Ey) + EIb * (My * My - Mz * Ez);
-    const T s1 = EIa * (2.0 * (Mz * Kz) - My * Sy - Ky * Ey) + EIb * (2.0 * (My * Ky) - Mz * Sz - Kz * Ez);
+    const T s1 =
+        EIa * (2.0 * (Mz * Kz) - My * Sy - Ky * Ey) + EIb * (2.0 * (My * Ky) - Mz * Sz - Kz * Ez);
     const T s2 = EIa * (Kz * Kz - Ky * Sy) + EIb * (Ky * Ky - Kz * Sz);
-    // derivatives in (My, Ey) together and in (Ky, Sy) together; c1 has those of c0 and c2 crossed, s1 those of s0 and s2
+    // derivatives in (My, Ey) together and in (Ky, Sy) together; c1 has those of c0 and c2 crossed,
+    // s1 those of s0 and s2
     const T c0y = EIa * Mz - EIb * Ez, c0z = EIa * Ey - EIb * My;
     const T c2y = EIa * Kz - EIb * Sz, c2z = EIa * Sy - EIb * Ky;
     const T s0y = 2.0 * EIb * My - EIa * (Ey + My), s0z = 2.0 * EIa * Mz - EIb * (Ez + Mz);
     const T s2y = 2.0 * EIb * Ky - EIa * (Sy + Ky), s2z = 2.0 * EIa * Kz - EIb * (Sz + Kz);
 
-    // the sections inside turn by t x, and by a parabola out of the way of c, against GJ and against s
+    // the sections inside turn by t x, and by a parabola out of the way of c, against GJ and
+    // against s
     T on_c0{}, on_parabola{}, on_s0 = 0.5 * (th * t), on_s2 = (L / 160.0) * (t * t);
     V = th * c1 + on_s0 * s0 + on_s2 * s2;
     if (GJ > 0.0) {
@@ -210,7 +249,7 @@ struct Inner {
       const T on_more = (-0.5 * scale * L * L) * (load * load * give.slope);
       V += 0.5 * (load * on_load);
       on_c0 = (2.0 / 3.0) * on_load;
-      on_parabola = (1.0 / 30.0) * on_load;   // on c2, and on t s1
+      on_parabola = (1.0 / 30.0) * on_load;  // on c2, and on t s1
       on_s0 += 0.1 * on_more;
       on_s2 += (1.0 / 280.0) * on_more;
     }
@@ -218,10 +257,13 @@ struct Inner {
 
     // slopes of curvature and shear that the end moments do not make
     const T xy = t * c0y + GJ * (twist * Mz), xz = t * c0z - GJ * (twist * My);
-    const double qa = L / 12.0 * n.phia / n.EIa, qb = L / 12.0 * n.phib / n.EIb;   // L^3/kGA/144 (1 - phi)
+    const double qa = L / 12.0 * n.phia / n.EIa,
+                 qb = L / 12.0 * n.phib / n.EIb;  // L^3/kGA/144 (1 - phi)
     const double na = L * L * L / 12.0 * n.softa, nb = L * L * L / 12.0 * n.softb;
-    const Give<T> ga(n.softa, N), gb(n.softb, N);   // the slope of the shear lengthens the line too: kGA + N
-    V -= 0.5 * (qa * (xy * xy) + qb * (xz * xz)) + 0.5 * (na * ga.g * (My * My) + nb * gb.g * (Mz * Mz));
+    const Give<T> ga(n.softa, N),
+        gb(n.softb, N);  // the slope of the shear lengthens the line too: kGA + N
+    V -= 0.5 * (qa * (xy * xy) + qb * (xz * xz)) +
+         0.5 * (na * ga.g * (My * My) + nb * gb.g * (Mz * Mz));
     axial = N - c.EA_l * (na * ga.g1 * (My * My) + nb * gb.g1 * (Mz * Mz));
     const T ax = qa * xy, az = qb * xz;
     torque = T(c.GJ_l) * twist + h * (c1 + t * s0) + (L / 80.0) * (t * s2) + on_parabola * s1;
@@ -234,21 +276,26 @@ struct Inner {
     T lz = th * c0z + on_parabola * c2z + on_s1 * s0z + on_s2 * s2z;
     // and of the area in psi
     const T area = (L * L / 12.0) * torque, half = 0.5 * torque;
-    gy = gy - area * Kz; gz = gz + area * Ky; ly = ly + area * Mz; lz = lz - area * My;
-    my[0] = n.fa * ly - il * gy - half * p.P[1].z; my[1] = n.fa * ly + il * gy + half * p.P[0].z;
-    mz[0] = n.fb * lz - il * gz + half * p.P[1].y; mz[1] = n.fb * lz + il * gz - half * p.P[0].y;
+    gy = gy - area * Kz;
+    gz = gz + area * Ky;
+    ly = ly + area * Mz;
+    lz = lz - area * My;
+    my[0] = n.fa * ly - il * gy - half * p.P[1].z;
+    my[1] = n.fa * ly + il * gy + half * p.P[0].z;
+    mz[0] = n.fb * lz - il * gz + half * p.P[1].y;
+    mz[1] = n.fb * lz + il * gz - half * p.P[0].y;
   }
 };
 
 template <class T>
 struct ForceOut {
-  V3<T> f[2], m[2];   // on u, and moment on omega
+  V3<T> f[2], m[2];  // on u, and moment on omega
   T dissipated{};
 };
 
 template <class T>
-ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1,
-                       const Motion<T>& m2) {
+ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2,
+                       const Motion<T>& m1, const Motion<T>& m2) {
   const GeneralBeamConstants& c = b.c;
   const Shape<T> s(b, n1, n2, m1, m2);
   const Motion<T>* mo[2] = {&m1, &m2};
@@ -256,19 +303,24 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   ForceOut<T> out;
 
   const T N0 = T(b.preload) + c.EA_l * (s.stretch + c.length * (s.bow(c) - T(bow0(b))));
-  T ky[2], kz[2];   // deformations along y and z
+  T ky[2], kz[2];  // deformations along y and z
   for (int i = 0; i < 2; ++i) {
     const Vec2& p0 = i == 0 ? b.p01 : b.p02;
-    ky[i] = s.P[i].y - T(p0[0]); kz[i] = s.P[i].z - T(p0[1]);
+    ky[i] = s.P[i].y - T(p0[0]);
+    kz[i] = s.P[i].z - T(p0[1]);
   }
   T my[2] = {c.ky_def11 * ky[0] + c.ky_def12 * ky[1], c.ky_def12 * ky[0] + c.ky_def22 * ky[1]};
   T mz[2] = {c.kz_def11 * kz[0] + c.kz_def12 * kz[1], c.kz_def12 * kz[0] + c.kz_def22 * kz[1]};
   const Inner<T> inner(b, s, ky, kz, N0);
-  for (int i = 0; i < 2; ++i) { my[i] += inner.my[i]; mz[i] += inner.mz[i]; }
+  for (int i = 0; i < 2; ++i) {
+    my[i] += inner.my[i];
+    mz[i] += inner.mz[i];
+  }
   const T N = inner.axial, NL = c.length * N;
   T twist = inner.torque;
   V3<T> ad[2];
-  for (int i = 0; i < 2; ++i) ad[i] = (T(1.0) / (T(2.0) - s.n[i])) * s.a.cross(s.delta[i]);
+  for (int i = 0; i < 2; ++i)
+    ad[i] = (T(1.0) / (T(2.0) - s.n[i])) * s.a.cross(s.delta[i]);
   if (c.beta > 0.0 || c.beta_twist > 0.0) {
     // objective rates of the same measures
     const V3<T> rdot = n2.du + m2.omega.cross(s.ro[1]) - n1.du - m1.omega.cross(s.ro[0]);
@@ -280,23 +332,32 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
       const V3<T> Dd = mo[i]->omega.cross(s.D[i]);
       sigma[i] = (s.a + s.D[i]).dot(mo[i]->omega) / (T(2.0) - s.n[i]) + ad[i].dot(adot);
       const T ndot = s.delta[i].dot(Dd - adot);
-      rate[i] = (s.G1[i] * ndot) * s.q[i] + s.G[i] * (Dd - s.a.dot(Dd) * s.a - (T(1.0) - s.n[i]) * adot);
+      rate[i] =
+          (s.G1[i] * ndot) * s.q[i] + s.G[i] * (Dd - s.a.dot(Dd) * s.a - (T(1.0) - s.n[i]) * adot);
     }
     const T mean = 0.5 * (sigma[0] + sigma[1]);
     T ry[2], rz[2];
     for (int i = 0; i < 2; ++i) {
       rate[i] = rate[i] - mean * s.a.cross(s.p[i]);
-      ry[i] = rate[i].dot(s.y); rz[i] = rate[i].dot(s.z);
+      ry[i] = rate[i].dot(s.y);
+      rz[i] = rate[i].dot(s.z);
     }
-    const T dy[2] = {c.beta * (c.ky_def11 * ry[0] + c.ky_def12 * ry[1]), c.beta * (c.ky_def12 * ry[0] + c.ky_def22 * ry[1])};
-    const T dz[2] = {c.beta * (c.kz_def11 * rz[0] + c.kz_def12 * rz[1]), c.beta * (c.kz_def12 * rz[0] + c.kz_def22 * rz[1])};
+    const T dy[2] = {c.beta * (c.ky_def11 * ry[0] + c.ky_def12 * ry[1]),
+                     c.beta * (c.ky_def12 * ry[0] + c.ky_def22 * ry[1])};
+    const T dz[2] = {c.beta * (c.kz_def11 * rz[0] + c.kz_def12 * rz[1]),
+                     c.beta * (c.kz_def12 * rz[0] + c.kz_def22 * rz[1])};
     const T psidot = sigma[1] - sigma[0], dt = (c.beta_twist * c.GJ_l) * psidot;
     twist += dt;
     out.dissipated = dt * psidot;
-    for (int i = 0; i < 2; ++i) { my[i] += dy[i]; mz[i] += dz[i]; out.dissipated += dy[i] * ry[i] + dz[i] * rz[i]; }
+    for (int i = 0; i < 2; ++i) {
+      my[i] += dy[i];
+      mz[i] += dz[i];
+      out.dissipated += dy[i] * ry[i] + dz[i] * rz[i];
+    }
   }
 
-  // power of the stresses -> forces on chord rate and spins (see shaft_damping.cpp for the same chain)
+  // power of the stresses -> forces on chord rate and spins (see shaft_damping.cpp for the same
+  // chain)
   V3<T> M[2];
   M[0] = my[0] * s.y + mz[0] * s.z + NL * (T(c.b11) * s.p[0] + T(c.b12) * s.p[1]);
   M[1] = my[1] * s.y + mz[1] * s.z + NL * (T(c.b12) * s.p[0] + T(c.b22) * s.p[1]);
@@ -315,7 +376,8 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   // inertia
   V3<T> acc[4], g[4];
   for (int i = 0; i < 2; ++i) {
-    acc[2 * i] = no[i]->ddu + mo[i]->accel(s.ro[i]); acc[2 * i + 1] = mo[i]->accel(s.D[i]);
+    acc[2 * i] = no[i]->ddu + mo[i]->accel(s.ro[i]);
+    acc[2 * i + 1] = mo[i]->accel(s.D[i]);
     if (c.alpha > 0.0) {
       acc[2 * i] = acc[2 * i] + T(c.alpha) * (no[i]->du + mo[i]->omega.cross(s.ro[i]));
       acc[2 * i + 1] = acc[2 * i + 1] + T(c.alpha) * mo[i]->omega.cross(s.D[i]);
@@ -323,13 +385,17 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   }
   for (int k = 0; k < 4; ++k) {
     g[k] = T(c.M4(k, 0)) * acc[0];
-    for (int j = 1; j < 4; ++j) g[k] = g[k] + T(c.M4(k, j)) * acc[j];
+    for (int j = 1; j < 4; ++j)
+      g[k] = g[k] + T(c.M4(k, j)) * acc[j];
   }
   for (int axis = 0; axis < 3; ++axis) {
     const double J = axis == 0 ? -c.rhoI_l : axis == 1 ? c.rhoIz_l : c.rhoIy_l;
     const V3<T> b1 = m1.turn(b.body1.col(axis)), b2 = m2.turn(b.body2.col(axis));
     V3<T> a1 = m1.accel(b1), a2 = m2.accel(b2);
-    if (c.alpha > 0.0) { a1 = a1 + T(c.alpha) * m1.omega.cross(b1); a2 = a2 + T(c.alpha) * m2.omega.cross(b2); }
+    if (c.alpha > 0.0) {
+      a1 = a1 + T(c.alpha) * m1.omega.cross(b1);
+      a2 = a2 + T(c.alpha) * m2.omega.cross(b2);
+    }
     out.m[0] = out.m[0] + b1.cross(T(J * 5.0 / 12.0) * a1 + T(J / 12.0) * a2);
     out.m[1] = out.m[1] + b2.cross(T(J / 12.0) * a1 + T(J * 5.0 / 12.0) * a2);
   }
@@ -349,7 +415,13 @@ std::array<T, 14> to_X(const ForceOut<T>& f, const Motion<T>& m1, const Motion<T
     const T along = f.m[i].dot(mo[i]->d);
     const V3<T> fd = f.m[i].cross(mo[i]->d) - along * mo[i]->w;
     T* out = r.data() + 7 * i;
-    out[0] = f.f[i].x; out[1] = f.f[i].y; out[2] = f.f[i].z; out[3] = fd.x; out[4] = fd.y; out[5] = fd.z; out[6] = along;
+    out[0] = f.f[i].x;
+    out[1] = f.f[i].y;
+    out[2] = f.f[i].z;
+    out[3] = fd.x;
+    out[4] = fd.y;
+    out[5] = fd.z;
+    out[6] = along;
   }
   return r;
 }
@@ -359,28 +431,43 @@ using D14 = Dual<14>;
 template <class Seed>
 Matrix<14> differentiate(const GeneralBeam& b, const Nodes<2>& x, Seed&& seed) {
   NodeT<D14> n[2] = {NodeT<D14>(*x[0]), NodeT<D14>(*x[1])};
-  for (int i = 0; i < 2; ++i) seed(n[i], *x[i], 7 * i);
+  for (int i = 0; i < 2; ++i)
+    seed(n[i], *x[i], 7 * i);
   const Motion<D14> m1(n[0]), m2(n[1]);
   const auto f = to_X(beam_force(b, n[0], n[1], m1, m2), m1, m2);
   Matrix<14> J;
-  for (int k = 0; k < 14; ++k) J.row(k) = f[static_cast<std::size_t>(k)].g.transpose();
+  for (int k = 0; k < 14; ++k)
+    J.row(k) = f[static_cast<std::size_t>(k)].g.transpose();
   return J;
 }
 
 }  // namespace
 
-GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chord_, const Mat3& t1, const Mat3& t2, const Vec3& o1,
-                         const Vec3& o2, const Mat3& chart1, const Mat3& chart2)
-    : c(constants), chord(chord_), triad1(t1), triad2(t2), offset1(o1), offset2(o2), body1(chart1.transpose() * t1),
-      body2(chart2.transpose() * t2), arm1(chart1.transpose() * o1), arm2(chart2.transpose() * o2), l0(chord_.norm()) {
+GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chord_, const Mat3& t1,
+                         const Mat3& t2, const Vec3& o1, const Vec3& o2, const Mat3& chart1,
+                         const Mat3& chart2)
+    : c(constants),
+      chord(chord_),
+      triad1(t1),
+      triad2(t2),
+      offset1(o1),
+      offset2(o2),
+      body1(chart1.transpose() * t1),
+      body2(chart2.transpose() * t2),
+      arm1(chart1.transpose() * o1),
+      arm2(chart2.transpose() * o2),
+      l0(chord_.norm()) {
   NodeState rest1, rest2;
-  for (NodeState* r : {&rest1, &rest2}) r->u = r->du = r->ddu = r->t = r->dd = r->ddd = Vec3::Zero();
-  rest1.chart = &chart1; rest2.chart = &chart2;
+  for (NodeState* r : {&rest1, &rest2})
+    r->u = r->du = r->ddu = r->t = r->dd = r->ddd = Vec3::Zero();
+  rest1.chart = &chart1;
+  rest2.chart = &chart2;
   const NodeT<double> n1(rest1), n2(rest2);
   const Motion<double> m1(n1), m2(n2);
   const Shape<double> s(*this, n1, n2, m1, m2);
-  p01 = Vec2(s.P[0].y, s.P[0].z); p02 = Vec2(s.P[1].y, s.P[1].z);
-  psi0 = Shape<double>(*this, n1, n2, m1, m2).psi;   // with the area of the unstressed shape
+  p01 = Vec2(s.P[0].y, s.P[0].z);
+  p02 = Vec2(s.P[1].y, s.P[1].z);
+  psi0 = Shape<double>(*this, n1, n2, m1, m2).psi;  // with the area of the unstressed shape
   if (p01.squaredNorm() + p02.squaredNorm() > 1e-20) psi_r = psi0;
 }
 
@@ -393,20 +480,28 @@ void GeneralBeam::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) co
 
 void GeneralBeam::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& out) const {
   out.K += differentiate(*this, x, [](NodeT<D14>& n, const NodeState& s, int k) {
-    n.u = V3<D14>::variable(s.u, k); n.t = V3<D14>::variable(s.t, k + 3); n.phi = D14::variable(s.phi, k + 6);
+    n.u = V3<D14>::variable(s.u, k);
+    n.t = V3<D14>::variable(s.t, k + 3);
+    n.phi = D14::variable(s.phi, k + 6);
   });
   out.C += differentiate(*this, x, [](NodeT<D14>& n, const NodeState& s, int k) {
-    n.du = V3<D14>::variable(s.du, k); n.dd = V3<D14>::variable(s.dd, k + 3); n.dphi = D14::variable(s.dphi, k + 6);
+    n.du = V3<D14>::variable(s.du, k);
+    n.dd = V3<D14>::variable(s.dd, k + 3);
+    n.dphi = D14::variable(s.dphi, k + 6);
   });
   out.M += differentiate(*this, x, [](NodeT<D14>& n, const NodeState& s, int k) {
-    n.ddu = V3<D14>::variable(s.ddu, k); n.ddd = V3<D14>::variable(s.ddd, k + 3); n.ddphi = D14::variable(s.ddphi, k + 6);
+    n.ddu = V3<D14>::variable(s.ddu, k);
+    n.ddd = V3<D14>::variable(s.ddd, k + 3);
+    n.ddphi = D14::variable(s.ddphi, k + 6);
   });
 }
 
-void GeneralBeam::add_stiffness_rate(const Nodes<2>& x, const Nodes<2>& rate, const Context&, system::StiffnessRateX<14>& out) const {
+void GeneralBeam::add_stiffness_rate(const Nodes<2>& x, const Nodes<2>& rate, const Context&,
+                                     system::StiffnessRateX<14>& out) const {
   using D = DualRate<14>;
   const auto moving = [](const Vec3& v, const Vec3& dv, int k) {
-    return V3<D>(D::variable(v.x(), dv.x(), k), D::variable(v.y(), dv.y(), k + 1), D::variable(v.z(), dv.z(), k + 2));
+    return V3<D>(D::variable(v.x(), dv.x(), k), D::variable(v.y(), dv.y(), k + 1),
+                 D::variable(v.z(), dv.z(), k + 2));
   };
   NodeT<D> n[2] = {NodeT<D>(*x[0]), NodeT<D>(*x[1])};
   for (int i = 0; i < 2; ++i) {
@@ -433,7 +528,8 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
   const double w = s.stretch + c.length * (s.bow(c) - bow0(*this));
   const double N = preload + c.EA_l * w;
   double V = (0.5 * c.EA_l * w + preload) * w + 0.5 * c.GJ_l * (s.psi - psi0) * (s.psi - psi0);
-  const double y1 = s.P[0].y - p01[0], y2 = s.P[1].y - p02[0], z1 = s.P[0].z - p01[1], z2 = s.P[1].z - p02[1];
+  const double y1 = s.P[0].y - p01[0], y2 = s.P[1].y - p02[0], z1 = s.P[0].z - p01[1],
+               z2 = s.P[1].z - p02[1];
   V += 0.5 * (c.ky_def11 * y1 * y1 + 2 * c.ky_def12 * y1 * y2 + c.ky_def22 * y2 * y2);
   V += 0.5 * (c.kz_def11 * z1 * z1 + 2 * c.kz_def12 * z1 * z2 + c.kz_def22 * z2 * z2);
   const double ky[2] = {y1, y2}, kz[2] = {z1, z2};
@@ -442,18 +538,24 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
   auto vec = [](const V3<double>& v) { return Vec3(v.x, v.y, v.z); };
   const Vec3 w1 = vec(m1.omega), w2 = vec(m2.omega);
   const Vec3 X[4] = {vec(s.ro[0]), vec(s.D[0]), vec(s.ro[1]), vec(s.D[1])};
-  const Vec3 v[4] = {x[0]->du + w1.cross(X[0]), w1.cross(X[1]), x[1]->du + w2.cross(X[2]), w2.cross(X[3])};
+  const Vec3 v[4] = {x[0]->du + w1.cross(X[0]), w1.cross(X[1]), x[1]->du + w2.cross(X[2]),
+                     w2.cross(X[3])};
   for (int k = 0; k < 4; ++k)
-    for (int j = 0; j < 4; ++j) en.kinetic += 0.5 * c.M4(k, j) * v[k].dot(v[j]);
+    for (int j = 0; j < 4; ++j)
+      en.kinetic += 0.5 * c.M4(k, j) * v[k].dot(v[j]);
   for (int axis = 0; axis < 3; ++axis) {
     const double J = axis == 0 ? -c.rhoI_l : axis == 1 ? c.rhoIz_l : c.rhoIy_l;
-    const Vec3 b1 = w1.cross(vec(m1.turn(body1.col(axis)))), b2 = w2.cross(vec(m2.turn(body2.col(axis))));
+    const Vec3 b1 = w1.cross(vec(m1.turn(body1.col(axis)))),
+               b2 = w2.cross(vec(m2.turn(body2.col(axis))));
     en.kinetic += 0.5 * J * (5.0 / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) + b1.dot(b2) / 6.0);
   }
   // Relative to the reference configuration, so that a change of chart leaves it alone.
-  const Vec3 P[4] = {x[0]->u + X[0] - offset1, X[1] - triad1.col(0), x[1]->u + X[2] - offset2, X[3] - triad2.col(0)};
-  for (int j = 0; j < 4; ++j) en.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(P[j]);
-  if (c.beta > 0.0 || c.beta_twist > 0.0) en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
+  const Vec3 P[4] = {x[0]->u + X[0] - offset1, X[1] - triad1.col(0), x[1]->u + X[2] - offset2,
+                     X[3] - triad2.col(0)};
+  for (int j = 0; j < 4; ++j)
+    en.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(P[j]);
+  if (c.beta > 0.0 || c.beta_twist > 0.0)
+    en.dissipated += beam_force(*this, n1, n2, m1, m2).dissipated;
   if (c.alpha > 0.0) en.dissipated += 2.0 * c.alpha * (en.kinetic - kinetic_before);
 }
 

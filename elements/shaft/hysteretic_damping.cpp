@@ -10,8 +10,11 @@ using system::ForceX;
 using system::Nodes;
 using system::TangentX;
 
-GeneralBeamDamping::GeneralBeamDamping(const GeneralBeam& beam, double beta, double beta_twist) : with(beam), without(beam) {
-  with.c.beta = beta; with.c.beta_twist = beta_twist;
+GeneralBeamDamping::GeneralBeamDamping(const GeneralBeam& beam, double beta, double beta_twist)
+    : with(beam),
+      without(beam) {
+  with.c.beta = beta;
+  with.c.beta_twist = beta_twist;
   without.c.beta = without.c.beta_twist = 0.0;
   with.c.alpha = without.c.alpha = 0.0;
 }
@@ -27,10 +30,12 @@ void GeneralBeamDamping::add_tangent(const Nodes<2>& x, const Context& ctx, Tang
   TangentX<14> g;
   g.set_zero();
   with.add_tangent(x, ctx, g);
-  t.C += g.C; t.K += g.K;
+  t.C += g.C;
+  t.K += g.K;
   g.set_zero();
   without.add_tangent(x, ctx, g);
-  t.C -= g.C; t.K -= g.K;
+  t.C -= g.C;
+  t.K -= g.K;
 }
 
 void GeneralBeamDamping::add_energy(const Nodes<2>& x, const Context& ctx, Energy& e) const {
@@ -45,22 +50,27 @@ namespace {
 double spin_of(const Nodes<2>& x) { return 0.5 * (x[0]->dphi + x[1]->dphi); }
 
 /// sign, zero where a and b are the same rate but for rounding.
-double compare(double a, double b) { return std::abs(a - b) <= 1e-12 * std::abs(b) ? 0.0 : a > b ? 1.0 : -1.0; }
+double compare(double a, double b) {
+  return std::abs(a - b) <= 1e-12 * std::abs(b) ? 0.0 : a > b ? 1.0 : -1.0;
+}
 
 /// a and b of the header.
 struct Rule {
   double s, w, a, b;
   bool left_out;
   Rule(double spin, const Context& ctx) : s(spin), w(ctx.whirl), left_out(std::isinf(ctx.whirl)) {
-    const double forward = w == 0.0 ? compare(0.0, s) : compare(ctx.whirl_side, s), backward = w == 0.0 ? compare(s, 0.0) : compare(ctx.whirl_side, -s);
-    a = 0.5 * (forward + backward); b = 0.5 * (backward - forward);
+    const double forward = w == 0.0 ? compare(0.0, s) : compare(ctx.whirl_side, s),
+                 backward = w == 0.0 ? compare(s, 0.0) : compare(ctx.whirl_side, -s);
+    a = 0.5 * (forward + backward);
+    b = 0.5 * (backward - forward);
   }
 };
 
 }  // namespace
 
 template <class Viscous>
-void HystereticDamping<Viscous>::add_force(const Nodes<2>& x, const Context& ctx, ForceX<14>& f) const {
+void HystereticDamping<Viscous>::add_force(const Nodes<2>& x, const Context& ctx,
+                                           ForceX<14>& f) const {
   if (!ctx.hysteretic) {
     if (stand_in == 0.0) return;
     ForceX<14> g = ForceX<14>::Zero();
@@ -73,7 +83,11 @@ void HystereticDamping<Viscous>::add_force(const Nodes<2>& x, const Context& ctx
   if (r.left_out) return;
   // f = eta (a/w C X' + b S X): the steady spin alone gives s S X
   system::NodeState steady[2] = {*x[0], *x[1]};
-  for (system::NodeState& n : steady) { n.du.setZero(); n.dd.setZero(); n.dphi = r.s; }
+  for (system::NodeState& n : steady) {
+    n.du.setZero();
+    n.dd.setZero();
+    n.dphi = r.s;
+  }
   ForceX<14> turning = ForceX<14>::Zero(), all = ForceX<14>::Zero();
   if (r.a != 0.0 || r.b != 0.0) bending.add_force({&steady[0], &steady[1]}, ctx, turning);
   if (r.a != 0.0) {
@@ -88,38 +102,47 @@ void HystereticDamping<Viscous>::add_force(const Nodes<2>& x, const Context& ctx
 }
 
 template <class Viscous>
-void HystereticDamping<Viscous>::add_tangent(const Nodes<2>& x, const Context& ctx, TangentX<14>& t) const {
+void HystereticDamping<Viscous>::add_tangent(const Nodes<2>& x, const Context& ctx,
+                                             TangentX<14>& t) const {
   TangentX<14> v;
   v.set_zero();
   if (!ctx.hysteretic) {
     if (stand_in == 0.0) return;
     bending.add_tangent(x, ctx, v);
     along.add_tangent(x, ctx, v);
-    t.C += stand_in * v.C; t.K += stand_in * v.K;
+    t.C += stand_in * v.C;
+    t.K += stand_in * v.K;
     return;
   }
   const Rule r(spin_of(x), ctx);
   if (r.left_out) return;
-  if (ctx.whirl_rotates) {   // the rate in rotating axes itself: the viscous law with 1/w, and no circulation is left there
+  if (ctx.whirl_rotates) {  // the rate in rotating axes itself: the viscous law with 1/w, and no
+                            // circulation is left there
     if (r.w == 0.0) return;
     bending.add_tangent(x, ctx, v);
     along.add_tangent(x, ctx, v);
-    t.C += v.C / r.w; t.K += v.K / r.w - (ctx.growth / r.w) * v.C;
+    t.C += v.C / r.w;
+    t.K += v.K / r.w - (ctx.growth / r.w) * v.C;
     return;
   }
   if (r.a != 0.0 || r.b != 0.0) {
     bending.add_tangent(x, ctx, v);
-    if (r.a != 0.0) { t.C += (r.a / r.w) * v.C; t.K -= (r.a * ctx.growth / r.w) * v.C; }
+    if (r.a != 0.0) {
+      t.C += (r.a / r.w) * v.C;
+      t.K -= (r.a * ctx.growth / r.w) * v.C;
+    }
     if (r.b != 0.0) t.K += (r.b / r.s) * v.K;
   }
   if (r.w == 0.0) return;
   v.set_zero();
   along.add_tangent(x, ctx, v);
-  t.C += v.C / r.w; t.K -= (ctx.growth / r.w) * v.C;
+  t.C += v.C / r.w;
+  t.K -= (ctx.growth / r.w) * v.C;
 }
 
 template <class Viscous>
-void HystereticDamping<Viscous>::add_energy(const Nodes<2>& x, const Context& ctx, Energy& e) const {
+void HystereticDamping<Viscous>::add_energy(const Nodes<2>& x, const Context& ctx,
+                                            Energy& e) const {
   if (ctx.hysteretic || stand_in == 0.0) return;
   Energy lost;
   bending.add_energy(x, ctx, lost);

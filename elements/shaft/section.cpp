@@ -5,7 +5,9 @@ namespace whirl::elements {
 // Factored forms: no cancellation for thin walls.
 double annulus_area(double od, double id) { return pi / 4 * (od - id) * (od + id); }
 double annulus_I(double od, double id) { return annulus_J(od, id) / 2; }
-double annulus_J(double od, double id) { return pi / 32 * (od - id) * (od + id) * (od * od + id * id); }
+double annulus_J(double od, double id) {
+  return pi / 32 * (od - id) * (od + id) * (od * od + id * id);
+}
 
 double cowper_factor(double m, double nu) {
   const double m2 = m * m, p = (1 + m2) * (1 + m2);

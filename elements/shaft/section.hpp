@@ -1,5 +1,5 @@
-// Cross-section properties of a shaft element: a solid or hollow circle whose diameters vary linearly from end 1 to end 2
-// (cylinder, cone, hollow cone), or constants given directly.
+// Cross-section properties of a shaft element: a solid or hollow circle whose diameters vary
+// linearly from end 1 to end 2 (cylinder, cone, hollow cone), or constants given directly.
 //
 // Shear factor kappa (shear stiffness kappa G A) of a hollow circle, m = inner/outer diameter:
 //   Cowper      6(1+nu)(1+m^2)^2 / ((7+6nu)(1+m^2)^2 + (20+12nu) m^2)
@@ -14,13 +14,13 @@ namespace whirl::elements {
 
 /// Stiffness and inertia of one cross-section.
 struct SectionProperties {
-  double EA = 0;    ///< N
-  double kGA = 0;   ///< kappa G A, N; infinite: no shear deformation
-  double GJ = 0;    ///< N m2
-  double EI = 0;    ///< N m2
-  double rhoA = 0;  ///< kg/m
-  double rhoI = 0;  ///< transverse rotary inertia, kg m; 0: Euler-Bernoulli mass
-  double rhoIp = 0; ///< polar inertia, kg m
+  double EA = 0;     ///< N
+  double kGA = 0;    ///< kappa G A, N; infinite: no shear deformation
+  double GJ = 0;     ///< N m2
+  double EI = 0;     ///< N m2
+  double rhoA = 0;   ///< kg/m
+  double rhoI = 0;   ///< transverse rotary inertia, kg m; 0: Euler-Bernoulli mass
+  double rhoIp = 0;  ///< polar inertia, kg m
 };
 
 /// Area, transverse and polar second moments of a hollow circle, m2 and m4.
@@ -39,11 +39,11 @@ struct ElementSection {
   // Circle with linear diameters, m. Mass and stiffness may have their own.
   double mass_od1 = 0, mass_id1 = 0, mass_od2 = 0, mass_id2 = 0;
   double od1 = 0, id1 = 0, od2 = 0, id2 = 0;
-  double E = 0, G = 0, rho = 0;     ///< Pa, Pa, kg/m3
+  double E = 0, G = 0, rho = 0;  ///< Pa, Pa, kg/m3
   ShearRule shear = ShearRule::cowper;
-  double kappa = 0;                 ///< for ShearRule::given
-  bool rotary_inertia = true;       ///< false: rhoI = 0 (rhoIp, spin and its gyroscopic effect, stays)
-  double added_mass = 0;            ///< kg/m without stiffness or rotary inertia
+  double kappa = 0;            ///< for ShearRule::given
+  bool rotary_inertia = true;  ///< false: rhoI = 0 (rhoIp, spin and its gyroscopic effect, stays)
+  double added_mass = 0;       ///< kg/m without stiffness or rotary inertia
   // Or constants (kGA <= 0 stands for no shear deformation).
   bool constants = false;
   SectionProperties given{};

@@ -21,15 +21,24 @@ struct Scalars {
   using T = X;
   using V = Vec3T<X>;
 };
-template <class T> T dot(const Vec3T<T>& a, const Vec3T<T>& b) { return a.dot(b); }
-template <class T> Vec3T<T> cross(const Vec3T<T>& a, const Vec3T<T>& b) { return a.cross(b); }
-template <class T> T root(const T& x) {
+template <class T>
+T dot(const Vec3T<T>& a, const Vec3T<T>& b) {
+  return a.dot(b);
+}
+template <class T>
+Vec3T<T> cross(const Vec3T<T>& a, const Vec3T<T>& b) {
+  return a.cross(b);
+}
+template <class T>
+T root(const T& x) {
   using std::sqrt;
   return sqrt(x);
 }
-template <class T> void angle_ratio(const T& n, T& G, T& G1) {
+template <class T>
+void angle_ratio(const T& n, T& G, T& G1) {
   const AngleRatio r(value(n));
-  G = chain(n, r.G, r.G1); G1 = chain(n, r.G1, r.G2);
+  G = chain(n, r.G, r.G1);
+  G1 = chain(n, r.G1, r.G2);
 }
 #define WHIRL_INLINE inline
 #include <elements/shaft/shaft_damping.inl>
@@ -42,27 +51,33 @@ struct Rates {
 };
 
 template <bool Rotating, class T>
-DampingForce<Scalars<T>> force_of(const ShaftDamping<Rotating>& p, const Vec3& e, const Vec3T<T>& du, const Vec3T<T>& t1, const Vec3T<T>& t2, const Rates& v) {
+DampingForce<Scalars<T>> force_of(const ShaftDamping<Rotating>& p, const Vec3& e,
+                                  const Vec3T<T>& du, const Vec3T<T>& t1, const Vec3T<T>& t2,
+                                  const Rates& v) {
   using V = Vec3T<T>;
-  return damping_force<Rotating, Scalars<T>>({V(p.e0), p.length, p.d11, p.d12, p.d22, p.d_twist, p.d_axial}, V(e), du, t1, t2,
-                                             {V(v.lambda), V(v.d1), V(v.d2), v.phi1, v.phi2});
+  return damping_force<Rotating, Scalars<T>>(
+      {V(p.e0), p.length, p.d11, p.d12, p.d22, p.d_twist, p.d_axial}, V(e), du, t1, t2,
+      {V(v.lambda), V(v.d1), V(v.d2), v.phi1, v.phi2});
 }
 
 /// (lambda, d1, d2, phi1, phi2) forces into the element's 14 entries.
 template <class Out>
-void scatter(double o1, double o2, const Vec3& fl, const Vec3& f1, const Vec3& f2, double p1, double p2, Out&& out) {
+void scatter(double o1, double o2, const Vec3& fl, const Vec3& f1, const Vec3& f2, double p1,
+             double p2, Out&& out) {
   out.template segment<3>(0) -= fl;
   out.template segment<3>(7) += fl;
   out.template segment<3>(3) += f1 - o1 * fl;
   out.template segment<3>(10) += f2 + o2 * fl;
-  out[6] += p1; out[13] += p2;
+  out[6] += p1;
+  out[13] += p2;
 }
 
 Vec3 values(const Vec3T<double>& v) { return {v.x, v.y, v.z}; }
 
 template <bool Rotating>
 Rates rates_of(const ShaftDamping<Rotating>& p, const Nodes<2>& x) {
-  return {x[1]->du - x[0]->du + p.o2 * x[1]->dd - p.o1 * x[0]->dd, x[0]->dd, x[1]->dd, x[0]->dphi, x[1]->dphi};
+  return {x[1]->du - x[0]->du + p.o2 * x[1]->dd - p.o1 * x[0]->dd, x[0]->dd, x[1]->dd, x[0]->dphi,
+          x[1]->dphi};
 }
 
 template <bool Rotating>
@@ -73,20 +88,33 @@ Vec3 du_of(const ShaftDamping<Rotating>& p, const Nodes<2>& x) {
 }  // namespace
 
 template <bool Rotating>
-ShaftDamping<Rotating>::ShaftDamping(const ShaftElementConstants& c, const Vec3& direction, double bb, double bt, double ba)
-    : length(c.length), o1(c.o1), o2(c.o2), e0(direction), d11(bb * c.k11), d12(bb * c.k12), d22(bb * c.k22),
-      d_twist(bt * c.GJ_l), d_axial(ba * c.EA_l) {}
+ShaftDamping<Rotating>::ShaftDamping(const ShaftElementConstants& c, const Vec3& direction,
+                                     double bb, double bt, double ba)
+    : length(c.length),
+      o1(c.o1),
+      o2(c.o2),
+      e0(direction),
+      d11(bb * c.k11),
+      d12(bb * c.k12),
+      d22(bb * c.k22),
+      d_twist(bt * c.GJ_l),
+      d_axial(ba * c.EA_l) {}
 
 template <bool Rotating>
-void ShaftDamping<Rotating>::add_forces(std::span<const ShaftDamping> elements, const std::array<Index, 2>* nodes, const NodeState* states,
+void ShaftDamping<Rotating>::add_forces(std::span<const ShaftDamping> elements,
+                                        const std::array<Index, 2>* nodes, const NodeState* states,
                                         const Context&, Vector<7>* force) {
   if (elements.empty()) return;
   static_assert(sizeof(ShaftDamping) % sizeof(double) == 0);
   static_assert(offsetof(ShaftDamping, d_axial) == 10 * sizeof(double));
   lanes::DampingElements b;
-  b.element = &elements[0].length; b.stride = sizeof(ShaftDamping) / sizeof(double); b.count = elements.size();
+  b.element = &elements[0].length;
+  b.stride = sizeof(ShaftDamping) / sizeof(double);
+  b.count = elements.size();
   b.nodes = nodes->data();
-  b.state = states[0].u.data(); b.state_stride = sizeof(NodeState) / sizeof(double); b.chart = offsetof(NodeState, chart) / sizeof(double);
+  b.state = states[0].u.data();
+  b.state_stride = sizeof(NodeState) / sizeof(double);
+  b.chart = offsetof(NodeState, chart) / sizeof(double);
   b.force = force->data();
   static const lanes::Kernels& kernels = lanes::kernels();
   (Rotating ? kernels.add_internal_damping : kernels.add_external_damping)(b);
@@ -102,7 +130,8 @@ void ShaftDamping<Rotating>::add_force(const Nodes<2>& x, const Context& ctx, Fo
 }
 
 template <bool Rotating>
-void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& out) const {
+void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&,
+                                         TangentX<14>& out) const {
   using V = Vec3T<double>;
   const Vec3 e = x[0]->e(), du = du_of(*this, x);
   // C: the force is linear in the rates, one column per rate of (lambda, d1, d2, phi1, phi2)
@@ -110,10 +139,14 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&, Tang
   Eigen::Matrix<double, 14, 11> columns = Eigen::Matrix<double, 14, 11>::Zero();
   for (int k = 0; k < 11; ++k) {
     Rates v;
-    if (k < 3) v.lambda[k] = 1.0;
-    else if (k < 6) v.d1[k - 3] = 1.0;
-    else if (k < 9) v.d2[k - 6] = 1.0;
-    else (k == 9 ? v.phi1 : v.phi2) = 1.0;
+    if (k < 3)
+      v.lambda[k] = 1.0;
+    else if (k < 6)
+      v.d1[k - 3] = 1.0;
+    else if (k < 9)
+      v.d2[k - 6] = 1.0;
+    else
+      (k == 9 ? v.phi1 : v.phi2) = 1.0;
     const auto r = force_of<Rotating, double>(*this, e, vdu, vt1, vt2, v);
     scatter(o1, o2, values(r.lambda), values(r.d1), values(r.d2), r.phi1, r.phi2, columns.col(k));
   }
@@ -122,12 +155,14 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&, Tang
   C.template middleCols<3>(7) += columns.leftCols<3>();
   C.template middleCols<3>(3) += columns.middleCols<3>(3) - o1 * columns.leftCols<3>();
   C.template middleCols<3>(10) += columns.middleCols<3>(6) + o2 * columns.leftCols<3>();
-  C.col(6) += columns.col(9); C.col(13) += columns.col(10);
+  C.col(6) += columns.col(9);
+  C.col(13) += columns.col(10);
 
   // K: nine directions at once (lambda, d1, d2)
   using D = Dual<9>;
   using W = Vec3T<D>;
-  const auto r = force_of<Rotating, D>(*this, e, W::variable(du, 0), W::variable(x[0]->t, 3), W::variable(x[1]->t, 6), rates_of(*this, x));
+  const auto r = force_of<Rotating, D>(*this, e, W::variable(du, 0), W::variable(x[0]->t, 3),
+                                       W::variable(x[1]->t, 6), rates_of(*this, x));
   Eigen::Matrix<double, 14, 9> g = Eigen::Matrix<double, 14, 9>::Zero();
   for (int k = 0; k < 9; ++k) {
     auto slope = [k](const W& v) { return Vec3(v.x.g[k], v.y.g[k], v.z.g[k]); };
@@ -143,7 +178,9 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&, Tang
 template <bool Rotating>
 void ShaftDamping<Rotating>::add_energy(const Nodes<2>& x, const Context&, Energy& e) const {
   using V = Vec3T<double>;
-  e.dissipated += force_of<Rotating, double>(*this, x[0]->e(), V(du_of(*this, x)), V(x[0]->t), V(x[1]->t), rates_of(*this, x)).power;
+  e.dissipated += force_of<Rotating, double>(*this, x[0]->e(), V(du_of(*this, x)), V(x[0]->t),
+                                             V(x[1]->t), rates_of(*this, x))
+                      .power;
 }
 
 template struct ShaftDamping<false>;
@@ -156,18 +193,21 @@ constexpr int pos[4] = {0, 3, 7, 10};
 void ShaftMassDamping::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
   const Vec3* vel[4] = {&x[0]->du, &x[0]->dd, &x[1]->du, &x[1]->dd};
   for (int k = 0; k < 4; ++k)
-    for (int j = 0; j < 4; ++j) f.segment<3>(pos[k]) += C4(k, j) * *vel[j];
+    for (int j = 0; j < 4; ++j)
+      f.segment<3>(pos[k]) += C4(k, j) * *vel[j];
 }
 
 void ShaftMassDamping::add_tangent(const Nodes<2>&, const Context&, TangentX<14>& t) const {
   for (int k = 0; k < 4; ++k)
-    for (int j = 0; j < 4; ++j) t.C.block<3, 3>(pos[k], pos[j]).diagonal().array() += C4(k, j);
+    for (int j = 0; j < 4; ++j)
+      t.C.block<3, 3>(pos[k], pos[j]).diagonal().array() += C4(k, j);
 }
 
 void ShaftMassDamping::add_energy(const Nodes<2>& x, const Context&, Energy& e) const {
   const Vec3* vel[4] = {&x[0]->du, &x[0]->dd, &x[1]->du, &x[1]->dd};
   for (int k = 0; k < 4; ++k)
-    for (int j = 0; j < 4; ++j) e.dissipated += C4(k, j) * vel[k]->dot(*vel[j]);
+    for (int j = 0; j < 4; ++j)
+      e.dissipated += C4(k, j) * vel[k]->dot(*vel[j]);
 }
 
 }  // namespace whirl::elements

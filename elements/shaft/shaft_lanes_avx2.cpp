@@ -1,4 +1,5 @@
-// Shaft element force for AVX2 and FMA; compiled with those flags on x86-64 (see CMakeLists.txt), chosen at run time.
+// Shaft element force for AVX2 and FMA; compiled with those flags on x86-64 (see CMakeLists.txt),
+// chosen at run time.
 #if defined(__AVX2__) && defined(__FMA__)
 #define WHIRL_LANES_TABLE avx2_kernels
 #define WHIRL_LANES_ISA "avx2"

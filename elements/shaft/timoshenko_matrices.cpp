@@ -19,7 +19,8 @@ struct GaussRule {
         double p0 = 1, p1 = z;
         for (int k = 2; k <= n; ++k) {
           const double p2 = ((2 * k - 1) * z * p1 - (k - 1) * p0) / k;
-          p0 = p1; p1 = p2;
+          p0 = p1;
+          p1 = p2;
         }
         dp = n * (z * p1 - p0) / (z * z - 1);
         const double step = p1 / dp;
@@ -30,10 +31,12 @@ struct GaussRule {
       w[n - 1 - i] = 1 / ((1 - z * z) * dp * dp);
     }
     for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) cumulative[i * n + j] = 0;
+      for (int j = 0; j < n; ++j)
+        cumulative[i * n + j] = 0;
     for (int i = 0; i < n; ++i)
       for (int k = 0; k < n; ++k)
-        for (int j = 0; j < n; ++j) cumulative[i * n + j] += x[i] * w[k] * lagrange(j, x[i] * x[k]);
+        for (int j = 0; j < n; ++j)
+          cumulative[i * n + j] += x[i] * w[k] * lagrange(j, x[i] * x[k]);
   }
   double lagrange(int j, double t) const {
     double p = 1;
@@ -49,8 +52,9 @@ const GaussRule& polynomial_rule() {
   static const GaussRule rule(4);
   return rule;
 }
-/// For cones. The nearest pole of 1/EI lies where a diameter or the wall vanishes; with their ratio kept below 1.5 within a
-/// panel it is at least 5 half-panels from its middle, and 16-point interpolation converges like (5 + sqrt 24)^-16 = 1e-16.
+/// For cones. The nearest pole of 1/EI lies where a diameter or the wall vanishes; with their ratio
+/// kept below 1.5 within a panel it is at least 5 half-panels from its middle, and 16-point
+/// interpolation converges like (5 + sqrt 24)^-16 = 1e-16.
 const GaussRule& taper_rule() {
   static const GaussRule rule(16);
   return rule;
@@ -71,7 +75,8 @@ std::vector<double> panels(const ElementSection& s, const std::vector<double>& c
     while (!right.empty()) {
       const double a = out.back(), b = right.back();
       const ElementSection p = s.part(a, b);
-      const bool fine = ratio(p.od1, p.od2) <= panel_ratio && ratio(p.od1 - p.id1, p.od2 - p.id2) <= panel_ratio;
+      const bool fine =
+          ratio(p.od1, p.od2) <= panel_ratio && ratio(p.od1 - p.id1, p.od2 - p.id2) <= panel_ratio;
       if (fine || right.size() > 60) {
         out.push_back(b);
         right.pop_back();
@@ -96,7 +101,9 @@ struct Sampled {
   std::vector<Point> points;
 
   Sampled(const ElementSection& s, double length, const std::vector<double>& cuts)
-      : rule(s.uniform() ? polynomial_rule() : taper_rule()), ends(panels(s, cuts)), l(length) {
+      : rule(s.uniform() ? polynomial_rule() : taper_rule()),
+        ends(panels(s, cuts)),
+        l(length) {
     points.reserve((ends.size() - 1) * rule.x.size());
     for (std::size_t k = 0; k + 1 < ends.size(); ++k)
       for (int i = 0; i < rule.size(); ++i) {
@@ -107,19 +114,25 @@ struct Sampled {
   }
 
   /// Integral over the element of f(point).
-  template <class F> double integral(F f) const {
+  template <class F>
+  double integral(F f) const {
     double sum = 0;
-    for (const Point& p : points) sum += p.ds * f(p);
+    for (const Point& p : points)
+      sum += p.ds * f(p);
     return sum;
   }
   /// Integral of f(point) from 0 to each point.
-  template <class F> std::vector<double> running(F f) const {
+  template <class F>
+  std::vector<double> running(F f) const {
     std::vector<double> v(points.size());
-    for (std::size_t n = 0; n < v.size(); ++n) v[n] = f(points[n]);
+    for (std::size_t n = 0; n < v.size(); ++n)
+      v[n] = f(points[n]);
     return running(v, 0.0);
   }
-  /// start + integral of f (one value a point) from 0 to each point; at the panel ends in `at_ends` when given.
-  std::vector<double> running(const std::vector<double>& f, double start, std::vector<double>* at_ends = nullptr) const {
+  /// start + integral of f (one value a point) from 0 to each point; at the panel ends in `at_ends`
+  /// when given.
+  std::vector<double> running(const std::vector<double>& f, double start,
+                              std::vector<double>* at_ends = nullptr) const {
     std::vector<double> out(f.size());
     const int n = rule.size();
     double base = start;
@@ -130,7 +143,8 @@ struct Sampled {
       double whole = 0;
       for (int i = 0; i < n; ++i) {
         double part = 0;
-        for (int j = 0; j < n; ++j) part += rule.cumulative[i * n + j] * fk[j];
+        for (int j = 0; j < n; ++j)
+          part += rule.cumulative[i * n + j] * fk[j];
         out[k * n + i] = base + h * part;
         whole += rule.w[i] * fk[i];
       }
@@ -147,7 +161,8 @@ double shear_softness(const SectionProperties& p) { return 1 / p.kGA; }  // 0 fo
 Mat2 end_stiffness(const Sampled& sp) {
   const double l = sp.l;
   const double shear = sp.integral([](const auto& q) { return shear_softness(q.p); }) / (l * l);
-  const double f11 = sp.integral([](const auto& q) { return (1 - q.xi) * (1 - q.xi) / q.p.EI; }) + shear;
+  const double f11 =
+      sp.integral([](const auto& q) { return (1 - q.xi) * (1 - q.xi) / q.p.EI; }) + shear;
   const double f22 = sp.integral([](const auto& q) { return q.xi * q.xi / q.p.EI; }) + shear;
   const double f12 = sp.integral([](const auto& q) { return -q.xi * (1 - q.xi) / q.p.EI; }) + shear;
   const double det = f11 * f22 - f12 * f12;
@@ -156,7 +171,8 @@ Mat2 end_stiffness(const Sampled& sp) {
   return k;
 }
 
-/// Section rotation, deflection and slope of the static solution for th_i = 1 (i = 0, 1), at points and panel ends.
+/// Section rotation, deflection and slope of the static solution for th_i = 1 (i = 0, 1), at points
+/// and panel ends.
 struct StaticShape {
   std::vector<double> g, w, slope, g_end, w_end;
 };
@@ -164,15 +180,18 @@ StaticShape static_shape(const Sampled& sp, const Mat2& k, int i) {
   const double m1 = k(0, i), m2 = k(1, i), Q = -(m1 + m2) / sp.l;
   StaticShape s;
   std::vector<double> f(sp.points.size());
-  for (std::size_t n = 0; n < f.size(); ++n) f[n] = (-m1 * (1 - sp.points[n].xi) + m2 * sp.points[n].xi) / sp.points[n].p.EI;
+  for (std::size_t n = 0; n < f.size(); ++n)
+    f[n] = (-m1 * (1 - sp.points[n].xi) + m2 * sp.points[n].xi) / sp.points[n].p.EI;
   s.g = sp.running(f, i == 0 ? 1.0 : 0.0, &s.g_end);
   s.slope.resize(f.size());
-  for (std::size_t n = 0; n < f.size(); ++n) s.slope[n] = s.g[n] + Q * shear_softness(sp.points[n].p);
+  for (std::size_t n = 0; n < f.size(); ++n)
+    s.slope[n] = s.g[n] + Q * shear_softness(sp.points[n].p);
   s.w = sp.running(s.slope, 0.0, &s.w_end);
   return s;
 }
 
-/// From chord-frame shapes to shapes on (r1, d1, r2, d2): r = r1 + s a + w1 (d1 - a) + w2 (d2 - a), a = (r2 - r1)/l.
+/// From chord-frame shapes to shapes on (r1, d1, r2, d2): r = r1 + s a + w1 (d1 - a) + w2 (d2 - a),
+/// a = (r2 - r1)/l.
 Vector<4> on_nodes(double chord, double f1, double f2, double l, bool deflection) {
   const double a = (chord - f1 - f2) / l;
   return Vector<4>(deflection ? 1 - a : -a, f1, a, f2);
@@ -186,15 +205,18 @@ Matrix<4> offset_map(double o1, double o2) {
   return T;
 }
 
-/// Bending stiffness on (r1, d1, r2, d2): th_i = d_i - (r2 - r1)/l to first order in the plane of bending.
+/// Bending stiffness on (r1, d1, r2, d2): th_i = d_i - (r2 - r1)/l to first order in the plane of
+/// bending.
 Matrix<4> end_point_stiffness(const Mat2& k, double l) {
   Matrix<2, 4> th;
   th << 1 / l, 1, -1 / l, 0, 1 / l, 0, -1 / l, 1;
   return th.transpose() * k * th;
 }
 
-/// Twice the complementary energy of the element clamped at both ends, from any equilibrium M(s), Q(s) of its load.
-double clamped_energy(const Sampled& sp, const Mat2& k, const std::vector<double>& M, const std::vector<double>& Q) {
+/// Twice the complementary energy of the element clamped at both ends, from any equilibrium M(s),
+/// Q(s) of its load.
+double clamped_energy(const Sampled& sp, const Mat2& k, const std::vector<double>& M,
+                      const std::vector<double>& Q) {
   double own = 0;
   Vec2 g = Vec2::Zero();
   for (std::size_t n = 0; n < sp.points.size(); ++n) {
@@ -209,25 +231,33 @@ double clamped_energy(const Sampled& sp, const Mat2& k, const std::vector<double
 /// c_w of the header, s^2: the element clamped at both ends under the load rhoA(s).
 double translation_softness(const Sampled& sp, const Mat2& k, double mass) {
   if (!(mass > 0)) return 0;
-  std::vector<double> Q = sp.running([](const auto& q) { return q.p.rhoA; });  // simply supported: Q = R - int rhoA, M' = -Q
+  std::vector<double> Q = sp.running(
+      [](const auto& q) { return q.p.rhoA; });  // simply supported: Q = R - int rhoA, M' = -Q
   const double R = sp.integral([](const auto& q) { return q.p.rhoA * (1 - q.xi); });
-  for (double& q : Q) q -= R;
+  for (double& q : Q)
+    q -= R;
   std::vector<double> M = sp.running(Q, 0.0);
-  for (double& q : Q) q = -q;
+  for (double& q : Q)
+    q = -q;
   return clamped_energy(sp, k, M, Q) / mass;
 }
 
-/// c_th and c_p: clamped at both ends under a distributed moment inertia(s) (= rhoI or rhoIp): M' = -inertia, Q = 0.
-template <class F> double rotation_softness(const Sampled& sp, const Mat2& k, F inertia) {
+/// c_th and c_p: clamped at both ends under a distributed moment inertia(s) (= rhoI or rhoIp): M' =
+/// -inertia, Q = 0.
+template <class F>
+double rotation_softness(const Sampled& sp, const Mat2& k, F inertia) {
   const double total = sp.integral(inertia);
   if (!(total > 0)) return 0;
   const std::vector<double> M = sp.running(inertia);
   return clamped_energy(sp, k, M, std::vector<double>(M.size(), 0.0)) / total;
 }
 
-/// (w_i c_i K_ij + K_ij c_j w_j)/2 at the nodes (x1, d1, x2, d2), with c = (cr, cd, cr, cd) and K at the end points.
-Matrix<4> weighted(const Matrix<4>& K, double cr, double cd, const Matrix<4>& T, const Vector<4>& share) {
-  const Matrix<4> a = share.asDiagonal() * (T.transpose() * Vector<4>(cr, cd, cr, cd).asDiagonal() * K * T);
+/// (w_i c_i K_ij + K_ij c_j w_j)/2 at the nodes (x1, d1, x2, d2), with c = (cr, cd, cr, cd) and K
+/// at the end points.
+Matrix<4> weighted(const Matrix<4>& K, double cr, double cd, const Matrix<4>& T,
+                   const Vector<4>& share) {
+  const Matrix<4> a =
+      share.asDiagonal() * (T.transpose() * Vector<4>(cr, cd, cr, cd).asDiagonal() * K * T);
   return 0.5 * (a + a.transpose());
 }
 
@@ -237,7 +267,8 @@ Mat2 polar_mass(const Sampled& sp, MassKind kind, const Vec2& share) {
   const double total = sp.integral([](const auto& q) { return q.p.rhoIp; });
   if (!(total > 0)) return Mat2::Zero();
   const std::vector<double> L2 = sp.running([soft](const auto& q) { return q.soft_t / soft; });
-  const std::vector<double> V = sp.running([](const auto& q) { return q.p.rhoIp; });  // fixed ends: torque T0 - V
+  const std::vector<double> V =
+      sp.running([](const auto& q) { return q.p.rhoIp; });  // fixed ends: torque T0 - V
   Mat2 m = Mat2::Zero();
   double vv = 0, v = 0;
   for (std::size_t n = 0; n < V.size(); ++n) {
@@ -257,7 +288,8 @@ Mat2 polar_mass(const Sampled& sp, MassKind kind, const Vec2& share) {
 
 }  // namespace
 
-ShaftElementConstants make_shaft_constants(const ElementSection& section, double l, double o1, double o2, MassKind kind, const MassShare& share) {
+ShaftElementConstants make_shaft_constants(const ElementSection& section, double l, double o1,
+                                           double o2, MassKind kind, const MassShare& share) {
   const Sampled sp(section, l, {});
   ShaftElementConstants c;
   c.length = l;
@@ -268,14 +300,17 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
   c.GJ_l = has_GJ ? 1 / sp.integral([](const auto& q) { return 1 / q.p.GJ; }) : 0.0;
   c.mass = sp.integral([](const auto& q) { return q.p.rhoA; });
   const Mat2 k = end_stiffness(sp);
-  c.k11 = k(0, 0); c.k12 = k(0, 1); c.k22 = k(1, 1);
+  c.k11 = k(0, 0);
+  c.k12 = k(0, 1);
+  c.k22 = k(1, 1);
   const std::array<StaticShape, 2> shape{static_shape(sp, k, 0), static_shape(sp, k, 1)};
 
   Matrix<4> M = Matrix<4>::Zero(), G4 = Matrix<4>::Zero();
   double area = 0;
   for (std::size_t n = 0; n < sp.points.size(); ++n) {
     const auto& q = sp.points[n];
-    const double g1 = shape[0].g[n], g2 = shape[1].g[n], w1 = shape[0].slope[n], w2 = shape[1].slope[n];
+    const double g1 = shape[0].g[n], g2 = shape[1].g[n], w1 = shape[0].slope[n],
+                 w2 = shape[1].slope[n];
     const Vector<4> N = on_nodes(q.xi * l, shape[0].w[n], shape[1].w[n], l, true);
     const Vector<4> G = on_nodes(1.0, g1, g2, l, false);
     M += q.ds * (q.p.rhoA * N * N.transpose() + q.p.rhoI * G * G.transpose());
@@ -283,9 +318,11 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
     c.b11 += q.ds / l * w1 * w1;
     c.b12 += q.ds / l * w1 * w2;
     c.b22 += q.ds / l * w2 * w2;
-    // Area between the curve of directors and its two arcs through the chord: 1/2 int (g1 g2' - g2 g1') ds.
+    // Area between the curve of directors and its two arcs through the chord: 1/2 int (g1 g2' - g2
+    // g1') ds.
     const double m = 1 - q.xi;
-    const double dg1 = (-k(0, 0) * m + k(1, 0) * q.xi) / q.p.EI, dg2 = (-k(0, 1) * m + k(1, 1) * q.xi) / q.p.EI;
+    const double dg1 = (-k(0, 0) * m + k(1, 0) * q.xi) / q.p.EI,
+                 dg2 = (-k(0, 1) * m + k(1, 1) * q.xi) / q.p.EI;
     area += q.ds * 0.5 * (g1 * dg2 - g2 * dg1);
   }
   c.tau_c = -area;
@@ -307,18 +344,22 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
 
 Matrix<4> bending_stiffness(const ShaftElementConstants& c) {
   const Matrix<4> T = offset_map(c.o1, c.o2);
-  return T.transpose() * end_point_stiffness((Mat2() << c.k11, c.k12, c.k12, c.k22).finished(), c.length) * T;
+  return T.transpose() *
+         end_point_stiffness((Mat2() << c.k11, c.k12, c.k12, c.k22).finished(), c.length) * T;
 }
 
-std::vector<ShapeFunctions> shape_functions(const ElementSection& section, double l, const std::vector<double>& xi) {
+std::vector<ShapeFunctions> shape_functions(const ElementSection& section, double l,
+                                            const std::vector<double>& xi) {
   const Sampled sp(section, l, xi);
   const Mat2 k = end_stiffness(sp);
   const StaticShape s1 = static_shape(sp, k, 0), s2 = static_shape(sp, k, 1);
   std::vector<ShapeFunctions> out;
   for (double x : xi) {
-    const auto at = static_cast<std::size_t>(std::lower_bound(sp.ends.begin(), sp.ends.end(), x) - sp.ends.begin());
+    const auto at = static_cast<std::size_t>(std::lower_bound(sp.ends.begin(), sp.ends.end(), x) -
+                                             sp.ends.begin());
     const double soft = shear_softness(section.at(x));
-    const double v1 = s1.g_end[at] - (k(0, 0) + k(1, 0)) / l * soft, v2 = s2.g_end[at] - (k(0, 1) + k(1, 1)) / l * soft;
+    const double v1 = s1.g_end[at] - (k(0, 0) + k(1, 0)) / l * soft,
+                 v2 = s2.g_end[at] - (k(0, 1) + k(1, 1)) / l * soft;
     ShapeFunctions f;
     f.xi = x;
     f.N = on_nodes(x * l, s1.w_end[at], s2.w_end[at], l, true);

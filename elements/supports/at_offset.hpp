@@ -1,5 +1,6 @@
 // A kernel acting at points off its nodes: on rigid stubs o_i along the nodes' axes.
-//   u_i -> u_i + o_i (d_i - e_i), rates alike; what the kernel gives in these coordinates goes back by the transposed map, which is
+//   u_i -> u_i + o_i (d_i - e_i), rates alike; what the kernel gives in these coordinates goes back
+//   by the transposed map, which is
 // constant in X: f_d += o f_u, tangents by congruence.
 #pragma once
 #include <system/kernel.hpp>
@@ -12,15 +13,17 @@ struct AtOffset {
   static constexpr bool has_M = K::has_M, has_C = K::has_C, has_K = K::has_K;
 
   K kernel;
-  std::array<double, n_nodes> offset{};   ///< o_i, m
+  std::array<double, n_nodes> offset{};  ///< o_i, m
 
-  void add_force(const system::Nodes<n_nodes>& x, const system::Context& c, system::ForceX<7 * n_nodes>& f) const {
+  void add_force(const system::Nodes<n_nodes>& x, const system::Context& c,
+                 system::ForceX<7 * n_nodes>& f) const {
     const Shifted s(*this, x);
-    system::ForceX<inner * n_nodes> g = system::ForceX<inner * n_nodes>::Zero();
+    system::ForceX<inner* n_nodes> g = system::ForceX<inner * n_nodes>::Zero();
     kernel.add_force(s.nodes, c, g);
     f.noalias() += map().transpose() * g;
   }
-  void add_tangent(const system::Nodes<n_nodes>& x, const system::Context& c, system::TangentX<7 * n_nodes>& t) const {
+  void add_tangent(const system::Nodes<n_nodes>& x, const system::Context& c,
+                   system::TangentX<7 * n_nodes>& t) const {
     const Shifted s(*this, x);
     system::TangentX<inner * n_nodes> g;
     g.set_zero();
@@ -30,7 +33,8 @@ struct AtOffset {
     if constexpr (has_C) t.C.noalias() += T.transpose() * g.C * T;
     if constexpr (has_K) t.K.noalias() += T.transpose() * g.K * T;
   }
-  void add_energy(const system::Nodes<n_nodes>& x, const system::Context& c, system::Energy& e) const {
+  void add_energy(const system::Nodes<n_nodes>& x, const system::Context& c,
+                  system::Energy& e) const {
     const Shifted s(*this, x);
     kernel.add_energy(s.nodes, c, e);
   }
@@ -43,7 +47,9 @@ struct AtOffset {
       for (std::size_t i = 0; i < n_nodes; ++i) {
         system::NodeState& n = state[i];
         n = *x[i];
-        n.u += k.offset[i] * n.t; n.du += k.offset[i] * n.dd; n.ddu += k.offset[i] * n.ddd;
+        n.u += k.offset[i] * n.t;
+        n.du += k.offset[i] * n.dd;
+        n.ddu += k.offset[i] * n.ddd;
         nodes[i] = &n;
       }
     }
@@ -54,8 +60,10 @@ struct AtOffset {
   Map map() const {
     Map T = Map::Zero();
     for (int i = 0; i < n_nodes; ++i) {
-      for (int k = 0; k < inner; ++k) T(inner * i + k, 7 * i + k) = 1.0;
-      for (int k = 0; k < 3; ++k) T(inner * i + k, 7 * i + 3 + k) = offset[static_cast<std::size_t>(i)];
+      for (int k = 0; k < inner; ++k)
+        T(inner * i + k, 7 * i + k) = 1.0;
+      for (int k = 0; k < 3; ++k)
+        T(inner * i + k, 7 * i + 3 + k) = offset[static_cast<std::size_t>(i)];
     }
     return T;
   }

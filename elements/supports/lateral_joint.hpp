@@ -1,20 +1,25 @@
-// Two-node kernel for everything that acts between a journal and its housing in the lateral plane and may depend on spin:
-// films, tabulated bearings, seals, rub. The physics is a Law of the relative motion; this header carries it to the nodes.
+// Two-node kernel for everything that acts between a journal and its housing in the lateral plane
+// and may depend on spin: films, tabulated bearings, seals, rub. The physics is a Law of the
+// relative motion; this header carries it to the nodes.
 //
-// Nodes: 0 = journal (shaft), 1 = housing (pedestal, casing, second shaft, or a ground node). The shaft line runs along +x;
-// the lateral plane is the fixed (y, z). With p_i = u_i + o_i d_i (o: axial offset of the acting point on a rigid stub, m)
-//   r = (p_0 - p_1)_yz,  v = r',  a = r'',  s_i = spin of node i about its own normal d_i (rotor spins y -> z for s > 0).
-// A law gives z = (F_y, F_z, T_0, T_1): force on the journal (minus it on the housing) and torques about d_0 and d_1. With
-// w = spin form of a node (s = phi' - w.d') the virtual work F.dr + sum T_i (dphi_i - w_i.dd_i) gives the entries of the
-// left side: f_u0 = -F, f_u1 = F, f_phi = -T, f_d = T w -+ o F. Power delivered to the nodes: F.v + T_0 s_0 + T_1 s_1.
-// The tangents are exact, including those of w, of s with respect to (phi', d', d), and of the torques.
+// Nodes: 0 = journal (shaft), 1 = housing (pedestal, casing, second shaft, or a ground node). The
+// shaft line runs along +x; the lateral plane is the fixed (y, z). With p_i = u_i + o_i d_i (o:
+// axial offset of the acting point on a rigid stub, m)
+//   r = (p_0 - p_1)_yz,  v = r',  a = r'',  s_i = spin of node i about its own normal d_i (rotor
+//   spins y -> z for s > 0).
+// A law gives z = (F_y, F_z, T_0, T_1): force on the journal (minus it on the housing) and torques
+// about d_0 and d_1. With w = spin form of a node (s = phi' - w.d') the virtual work F.dr + sum T_i
+// (dphi_i - w_i.dd_i) gives the entries of the left side: f_u0 = -F, f_u1 = F, f_phi = -T, f_d = T
+// w -+ o F. Power delivered to the nodes: F.v + T_0 s_0 + T_1 s_1. The tangents are exact,
+// including those of w, of s with respect to (phi', d', d), and of the torques.
 //
 //   struct Law {
 //     static constexpr bool inertia = false;                           // force depends on a
 //     void force(const LateralMotion&, Vector<4>& z) const;            // sets z
 //     void tangent(const LateralMotion&, Vector<4>& z, LateralTangent& t) const;   // sets z and t
 //     void energy(const LateralMotion&, Energy&) const;                // adds
-//     int region(const LateralMotion&) const;                          // optional: smooth piece of a force with corners
+//     int region(const LateralMotion&) const;                          // optional: smooth piece of
+//     a force with corners
 //   };
 #pragma once
 #include <system/kernel.hpp>
@@ -24,16 +29,22 @@ namespace whirl::elements {
 
 /// Motion of the journal point relative to the housing point, (y, z).
 struct LateralMotion {
-  Vec2 r, v, a;                                ///< m, m/s, m/s2
-  double spin = 0, housing_spin = 0;           ///< rad/s
-  double spin_rate = 0, housing_spin_rate = 0; ///< rad/s2, set for energy() only
+  Vec2 r, v, a;                                 ///< m, m/s, m/s2
+  double spin = 0, housing_spin = 0;            ///< rad/s
+  double spin_rate = 0, housing_spin_rate = 0;  ///< rad/s2, set for energy() only
 };
 
 /// Derivatives of z = (F_y, F_z, T_0, T_1).
 struct LateralTangent {
   Matrix<4, 2> r, v, a;
   Vector<4> spin, housing_spin;
-  void set_zero() { r.setZero(); v.setZero(); a.setZero(); spin.setZero(); housing_spin.setZero(); }
+  void set_zero() {
+    r.setZero();
+    v.setZero();
+    a.setZero();
+    spin.setZero();
+    housing_spin.setZero();
+  }
 };
 
 template <class Law_, bool Offsets = false>
@@ -43,21 +54,24 @@ struct LateralJoint {
   static constexpr bool has_M = Law::inertia, has_C = true, has_K = true;
 
   Law law;
-  std::array<double, 2> offset{0.0, 0.0};   ///< o_0, o_1, m (used when Offsets)
+  std::array<double, 2> offset{0.0, 0.0};  ///< o_0, o_1, m (used when Offsets)
 
   void add_force(const system::Nodes<2>& x, const system::Context&, system::ForceX<14>& f) const {
     const system::Spin s0(*x[0]), s1(*x[1]);
     LateralMotion m = motion(x);
-    m.spin = s0.s; m.housing_spin = s1.s;
+    m.spin = s0.s;
+    m.housing_spin = s1.s;
     Vector<4> z;
     law.force(m, z);
     scatter(s0.w, s1.w, z, f);
   }
 
-  void add_tangent(const system::Nodes<2>& x, const system::Context&, system::TangentX<14>& k) const {
+  void add_tangent(const system::Nodes<2>& x, const system::Context&,
+                   system::TangentX<14>& k) const {
     const system::Spin s0(*x[0]), s1(*x[1]);
     LateralMotion m = motion(x);
-    m.spin = s0.s; m.housing_spin = s1.s;
+    m.spin = s0.s;
+    m.housing_spin = s1.s;
     Vector<4> z;
     LateralTangent t;
     law.tangent(m, z, t);
@@ -83,17 +97,26 @@ struct LateralJoint {
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const {
     const system::SpinRate s0(*x[0]), s1(*x[1]);
     LateralMotion m = motion(x);
-    m.spin = s0.s; m.housing_spin = s1.s; m.spin_rate = s0.sdot; m.housing_spin_rate = s1.sdot;
+    m.spin = s0.s;
+    m.housing_spin = s1.s;
+    m.spin_rate = s0.sdot;
+    m.housing_spin_rate = s1.sdot;
     law.energy(m, e);
   }
 
-  bool cornered() const requires requires(const Law& l, const LateralMotion& m) { l.region(m); } { return true; }
-  int region(const system::Nodes<2>& x) const requires requires(const Law& l, const LateralMotion& m) { l.region(m); } { return law.region(motion(x)); }
+  bool cornered() const requires requires(const Law& l, const LateralMotion& m) { l.region(m); }
+  { return true; }
+  int region(const system::Nodes<2>& x) const requires
+      requires(const Law& l, const LateralMotion& m) {
+    l.region(m);
+  }
+  { return law.region(motion(x)); }
 
   /// Relative motion with spins, for results.
   LateralMotion motion_of(const system::Nodes<2>& x) const {
     LateralMotion m = motion(x);
-    m.spin = x[0]->spin(); m.housing_spin = x[1]->spin();
+    m.spin = x[0]->spin();
+    m.housing_spin = x[1]->spin();
     return m;
   }
 
@@ -101,7 +124,8 @@ struct LateralJoint {
   LateralMotion motion(const system::Nodes<2>& x) const {
     const system::NodeState &n = *x[0], &h = *x[1];
     LateralMotion m;
-    m.r = (n.u - h.u).template tail<2>(); m.v = (n.du - h.du).template tail<2>();
+    m.r = (n.u - h.u).template tail<2>();
+    m.v = (n.du - h.du).template tail<2>();
     if constexpr (has_M) m.a = (n.ddu - h.ddu).template tail<2>();
     if constexpr (Offsets) {
       m.r += (offset[0] * n.t - offset[1] * h.t).template tail<2>();

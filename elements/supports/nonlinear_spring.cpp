@@ -9,22 +9,31 @@ using system::Nodes;
 using system::TangentX;
 
 template <int W>
-ScalarSpring<W> ScalarSpring<W>::translation(const Vec3& n, ForceCurvePtr F, ForceCurvePtr D, double s0, double s1) {
+ScalarSpring<W> ScalarSpring<W>::translation(const Vec3& n, ForceCurvePtr F, ForceCurvePtr D,
+                                             double s0, double s1) {
   ScalarSpring k;
-  k.b0.setZero(); k.b1.setZero();
-  k.b0.template head<3>() = n; k.b1.template head<3>() = n;
-  if constexpr (W == 7) { k.b0.template segment<3>(3) = s0 * n; k.b1.template segment<3>(3) = s1 * n; }
-  k.force = std::move(F); k.damping = std::move(D);
+  k.b0.setZero();
+  k.b1.setZero();
+  k.b0.template head<3>() = n;
+  k.b1.template head<3>() = n;
+  if constexpr (W == 7) {
+    k.b0.template segment<3>(3) = s0 * n;
+    k.b1.template segment<3>(3) = s1 * n;
+  }
+  k.force = std::move(F);
+  k.damping = std::move(D);
   return k;
 }
 
 template <int W>
-ScalarSpring<W> ScalarSpring<W>::tilt(const Vec3& n, const Vec3& e, ForceCurvePtr F, ForceCurvePtr D) requires(W == 7) {
+ScalarSpring<W> ScalarSpring<W>::tilt(const Vec3& n, const Vec3& e, ForceCurvePtr F,
+                                      ForceCurvePtr D) requires(W == 7) {
   ScalarSpring k;
   k.b0.setZero();
   k.b0.template segment<3>(3) = n.cross(e);
   k.b1 = k.b0;
-  k.force = std::move(F); k.damping = std::move(D);
+  k.force = std::move(F);
+  k.damping = std::move(D);
   return k;
 }
 
@@ -34,7 +43,8 @@ ScalarSpring<W> ScalarSpring<W>::twist(ForceCurvePtr F, ForceCurvePtr D) require
   k.b0.setZero();
   k.b0[6] = 1.0;
   k.b1 = k.b0;
-  k.force = std::move(F); k.damping = std::move(D);
+  k.force = std::move(F);
+  k.damping = std::move(D);
   return k;
 }
 
@@ -45,7 +55,8 @@ typename ScalarSpring<W>::Deflection ScalarSpring<W>::deflection(const Nodes<2>&
     const auto& n = *x[static_cast<std::size_t>(i)];
     const Vector<W>& b = i == 0 ? b0 : b1;
     const double sign = i == 0 ? 1.0 : -1.0;
-    d.q += sign * b.template head<3>().dot(n.u); d.dq += sign * b.template head<3>().dot(n.du);
+    d.q += sign * b.template head<3>().dot(n.u);
+    d.dq += sign * b.template head<3>().dot(n.du);
     if constexpr (W == 7) {
       d.q += sign * (b.template segment<3>(3).dot(n.t) + b[6] * n.phi);
       d.dq += sign * (b.template segment<3>(3).dot(n.dd) + b[6] * n.dphi);
@@ -89,7 +100,9 @@ struct Radial {
   Vec2 r, v;
   double rho;
   explicit Radial(const Nodes<2>& x)
-      : r((x[0]->u - x[1]->u).tail<2>()), v((x[0]->du - x[1]->du).tail<2>()), rho(r.norm()) {}
+      : r((x[0]->u - x[1]->u).tail<2>()),
+        v((x[0]->du - x[1]->du).tail<2>()),
+        rho(r.norm()) {}
 };
 
 }  // namespace
@@ -107,10 +120,13 @@ void RadialSpring::add_tangent(const Nodes<2>& x, const Context&, TangentX<6>& t
   const auto F = force->at(q.rho), D = damping->at(q.rho);
   const double secant = q.rho > 0.0 ? F.F / q.rho : F.slope;
   const Vec2 n = q.rho > 0.0 ? Vec2(q.r / q.rho) : Vec2(Vec2::Zero());
-  const Mat2 K = secant * Mat2::Identity() + (F.slope - secant) * n * n.transpose() + D.slope * q.v * n.transpose();
+  const Mat2 K = secant * Mat2::Identity() + (F.slope - secant) * n * n.transpose() +
+                 D.slope * q.v * n.transpose();
   const auto add = [](const Mat2& m, Matrix<6>& out) {
-    out.block<2, 2>(1, 1) += m; out.block<2, 2>(4, 4) += m;
-    out.block<2, 2>(1, 4) -= m; out.block<2, 2>(4, 1) -= m;
+    out.block<2, 2>(1, 1) += m;
+    out.block<2, 2>(4, 4) += m;
+    out.block<2, 2>(1, 4) -= m;
+    out.block<2, 2>(4, 1) -= m;
   };
   add(K, t.K);
   add(D.F * Mat2::Identity(), t.C);

@@ -14,7 +14,7 @@ Vec3 SpringBlock::displacement(const NodeState& n) const { return n.u + offset *
 
 void SpringBlock::add_force(const Nodes<1>& x, const Context&, ForceX<7>& f) const {
   const Vec3 delta = tilt(*x[0], e0), F = C1 * (x[0]->u + offset * delta);
-  const AngleRatio r(0.5 * delta.squaredNorm());   // 1 - cos theta
+  const AngleRatio r(0.5 * delta.squaredNorm());  // 1 - cos theta
   f.head<3>() += F;
   f.segment<3>(3) += offset * F + (C2 * r.G) * delta;
 }
@@ -25,14 +25,16 @@ void SpringBlock::add_tangent(const Nodes<1>& x, const Context&, TangentX<7>& t)
   t.K.block<3, 3>(3, 3) += (C2 * r.G1) * delta * delta.transpose();
   for (int i = 0; i < 3; ++i) {
     t.K(i, i) += C1;
-    t.K(i, 3 + i) += C1 * offset; t.K(3 + i, i) += C1 * offset;
+    t.K(i, 3 + i) += C1 * offset;
+    t.K(3 + i, i) += C1 * offset;
     t.K(3 + i, 3 + i) += C1 * offset * offset + C2 * r.G;
   }
 }
 
 void SpringBlock::add_energy(const Nodes<1>& x, const Context&, Energy& e) const {
   const Vec3 delta = tilt(*x[0], e0);
-  e.elastic += 0.5 * C1 * (x[0]->u + offset * delta).squaredNorm() + 0.5 * C2 * AngleRatio(0.5 * delta.squaredNorm()).F;
+  e.elastic += 0.5 * C1 * (x[0]->u + offset * delta).squaredNorm() +
+               0.5 * C2 * AngleRatio(0.5 * delta.squaredNorm()).F;
 }
 
 }  // namespace whirl::elements

@@ -1,11 +1,15 @@
-// Bearing or seal with coefficients tabulated against spin. The usual case are the lateral ones (TableBearingLaw):
-//   F = -K(s) r - C(s) v - M(s) a,  F on the journal, (r, v, a) relative to the housing, (y, z), s the journal's spin;
+// Bearing or seal with coefficients tabulated against spin. The usual case are the lateral ones
+// (TableBearingLaw):
+//   F = -K(s) r - C(s) v - M(s) a,  F on the journal, (r, v, a) relative to the housing, (y, z), s
+//   the journal's spin;
 // 6x6 matrices, a set point or a preload take SpatialTableBearing.
-// The tangents contain dK/ds, dC/ds and dM/ds: a run-up with free spin sees them. A table gives no torque on the shaft, so what
-// its cross coupling (skew K) feeds into whirl counts as supplied power; symmetric K and M store energy, symmetric C dissipates.
+// The tangents contain dK/ds, dC/ds and dM/ds: a run-up with free spin sees them. A table gives no
+// torque on the shaft, so what its cross coupling (skew K) feeds into whirl counts as supplied
+// power; symmetric K and M store energy, symmetric C dissipates.
 //
-// Interpolation: linear, or monotone cubic (Fritsch & Carlson, SIAM J. Numer. Anal. 17, 1980, doi 10.1137/0717021) per
-// coefficient. Outside the table: held at its ends, or not defined (NaN: the step is rejected and the run says so).
+// Interpolation: linear, or monotone cubic (Fritsch & Carlson, SIAM J. Numer. Anal. 17, 1980,
+// doi 10.1137/0717021) per coefficient. Outside the table: held at its ends, or not defined (NaN:
+// the step is rejected and the run says so).
 #pragma once
 #include <elements/supports/lateral_joint.hpp>
 #include <elements/supports/six_motion.hpp>
@@ -16,12 +20,12 @@
 
 namespace whirl::elements {
 
-/// Coefficient matrices, rows (force) and columns (motion); N/m, N s/m, kg, and N m/rad, .. where a rotation takes part.
-/// N = 2: y, z. N = 6: x, y, z, rx, ry, rz.
+/// Coefficient matrices, rows (force) and columns (motion); N/m, N s/m, kg, and N m/rad, .. where a
+/// rotation takes part. N = 2: y, z. N = 6: x, y, z, rx, ry, rz.
 template <int N>
 struct CoefficientValues {
   static constexpr int entries = N * N;
-  using Row = Eigen::Array<double, 3 * entries, 1>;   ///< K, C, M one after another
+  using Row = Eigen::Array<double, 3 * entries, 1>;  ///< K, C, M one after another
   Matrix<N> K, C, M;
   Row row() const;
   void set(const Row& r);
@@ -35,12 +39,18 @@ class CoefficientTable {
   using Values = CoefficientValues<N>;
   enum class Between { linear, monotone_cubic };
   enum class Outside { undefined, hold };
-  /// spin: rad/s, strictly increasing. Errors (E81): no rows, lengths that differ, spin not increasing, a value not finite.
-  CoefficientTable(std::vector<double> spin, std::vector<Values> rows, Between between, Outside outside);
+  /// spin: rad/s, strictly increasing. Errors (E81): no rows, lengths that differ, spin not
+  /// increasing, a value not finite.
+  CoefficientTable(std::vector<double> spin, std::vector<Values> rows, Between between,
+                   Outside outside);
   /// Values at spin s with their derivatives in s; NaN outside an undefined range.
   void at(double s, Values& v, Values& dv) const;
-  /// A speed beyond the end by rounding (rpm to rad/s and back, a variation about the end) is that of the end.
-  bool covers(double s) const { return outside_ == Outside::hold || (s >= spin_.front() - slack() && s <= spin_.back() + slack()); }
+  /// A speed beyond the end by rounding (rpm to rad/s and back, a variation about the end) is that
+  /// of the end.
+  bool covers(double s) const {
+    return outside_ == Outside::hold ||
+           (s >= spin_.front() - slack() && s <= spin_.back() + slack());
+  }
   double first() const { return spin_.front(); }
   double last() const { return spin_.back(); }
   bool has_mass() const { return has_mass_; }
@@ -56,7 +66,7 @@ class CoefficientTable {
 };
 
 template <int N>
-class CoefficientGrid;   // coefficient_grid.hpp: against spin and frequency
+class CoefficientGrid;  // coefficient_grid.hpp: against spin and frequency
 
 /// Mass: the table has M columns that are not all zero. Table: CoefficientTable, CoefficientGrid.
 template <bool Mass, class Table = CoefficientTable<2>>
@@ -69,10 +79,11 @@ struct TableBearingLaw {
   void energy(const LateralMotion& m, system::Energy& e) const;
 };
 
-/// The same for all six motions of the journal against its housing, with set point and preload: the linear bearing (linear_bearing.hpp)
-/// with coefficients that follow the spin s of node 0,
+/// The same for all six motions of the journal against its housing, with set point and preload: the
+/// linear bearing (linear_bearing.hpp) with coefficients that follow the spin s of node 0,
 ///   force on node 0 = preload - K(s) (q - setpoint) - C(s) q' - M(s) q''.
-/// Stiffness that changes with s does work on what is deflected; the shaft's spin gets no torque for it, so it counts as supplied.
+/// Stiffness that changes with s does work on what is deflected; the shaft's spin gets no torque
+/// for it, so it counts as supplied.
 template <bool Mass, class Table>
 struct SpatialTableBearing {
   static constexpr int n_nodes = 2, width = 7;
@@ -83,7 +94,8 @@ struct SpatialTableBearing {
   Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
 
   void add_force(const system::Nodes<2>& x, const system::Context& c, system::ForceX<14>& f) const;
-  void add_tangent(const system::Nodes<2>& x, const system::Context& c, system::TangentX<14>& t) const;
+  void add_tangent(const system::Nodes<2>& x, const system::Context& c,
+                   system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context& c, system::Energy& e) const;
   /// Force and moment on node 0's point, N, N m.
   Vector<6> load_on_first(const system::Nodes<2>& x) const;

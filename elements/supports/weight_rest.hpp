@@ -1,5 +1,6 @@
-// What the mass matrix of an element leaves out of its weight where a body shares one of its nodes (timoshenko_matrices.hpp): with it a
-// line sags under gravity exactly as without the correction of its masses. Dead forces and, on the directors, dead couples
+// What the mass matrix of an element leaves out of its weight where a body shares one of its nodes
+// (timoshenko_matrices.hpp): with it a line sags under gravity exactly as without the correction of
+// its masses. Dead forces and, on the directors, dead couples
 //   f_k = -rest_k g,   k = u1, d1, u2, d2.
 // rest kg, kg m, kg, kg m: differences of order l^4; rest_1 + rest_3 = 0.
 #pragma once
@@ -11,15 +12,18 @@ namespace whirl::elements {
 
 struct WeightRest {
   static constexpr int n_nodes = 2, width = 7;
-  static constexpr bool has_M = false, has_C = false, has_K = false, quadratic_in_rates = true, powerless = true, linear_in_displacements = true;
+  static constexpr bool has_M = false, has_C = false, has_K = false, quadratic_in_rates = true,
+                        powerless = true, linear_in_displacements = true;
 
   Vector<4> rest = Vector<4>::Zero();
 
   void add_force(const system::Nodes<2>&, const system::Context& c, system::ForceX<14>& f) const {
-    for (int k = 0; k < 4; ++k) f.segment<3>(k < 2 ? 3 * k : 1 + 3 * k) -= rest[k] * c.gravity;
+    for (int k = 0; k < 4; ++k)
+      f.segment<3>(k < 2 ? 3 * k : 1 + 3 * k) -= rest[k] * c.gravity;
   }
   /// The same for all elements at once: no state is needed.
-  static void add_forces(std::span<const WeightRest> elements, const std::array<Index, 2>* nodes, const system::NodeState*, const system::Context& c, Vector<7>* force) {
+  static void add_forces(std::span<const WeightRest> elements, const std::array<Index, 2>* nodes,
+                         const system::NodeState*, const system::Context& c, Vector<7>* force) {
     for (std::size_t i = 0; i < elements.size(); ++i)
       for (std::size_t k = 0; k < 2; ++k) {
         Vector<7>& f = force[nodes[i][k]];
@@ -29,7 +33,8 @@ struct WeightRest {
   }
   void add_tangent(const system::Nodes<2>&, const system::Context&, system::TangentX<14>&) const {}
   void add_energy(const system::Nodes<2>& x, const system::Context& c, system::Energy& e) const {
-    e.gravity -= c.gravity.dot(rest[0] * x[0]->u + rest[1] * x[0]->d() + rest[2] * x[1]->u + rest[3] * x[1]->d());
+    e.gravity -= c.gravity.dot(rest[0] * x[0]->u + rest[1] * x[0]->d() + rest[2] * x[1]->u +
+                               rest[3] * x[1]->d());
   }
 };
 

@@ -26,8 +26,11 @@ Vec2 largest(const VecX& r, std::span<const unsigned char> free) {
 }
 }  // namespace
 
-Linearizer::Linearizer(const system::System& system, SteadyRotation running, EquilibriumOptions options)
-    : running_(system, std::move(running)), solver_(running_, options), matrices_(system.make_matrices()) {}
+Linearizer::Linearizer(const system::System& system, SteadyRotation running,
+                       EquilibriumOptions options)
+    : running_(system, std::move(running)),
+      solver_(running_, options),
+      matrices_(system.make_matrices()) {}
 
 void Linearizer::set_equilibrium(const Equilibrium& e) {
   equilibrium_ = e;
@@ -56,8 +59,10 @@ void Linearizer::take_undeformed(double Omega) {
 }
 
 bool Linearizer::still_balanced(double Omega) {
-  // A rotor in linear bearings keeps its equilibrium at every speed: then the residual stays at its rounding level.
-  if (!have_ || !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_)) return false;
+  // A rotor in linear bearings keeps its equilibrium at every speed: then the residual stays at its
+  // rounding level.
+  if (!have_ || !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_))
+    return false;
   const Vec2 now = largest(r_, solver_.free());
   return now[0] <= 4.0 * floor_[0] && now[1] <= 4.0 * floor_[1];
 }
@@ -76,14 +81,18 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
     for (Index k = 0; k < r_.size(); ++k)
       if (solver_.free()[at_(k)]) equilibrium_.reactions[k] = 0.0;
   } else {
-    set_equilibrium(solver_.solve(Omega, have_ ? &equilibrium_.state : first_ ? &*first_ : nullptr));
+    set_equilibrium(solver_.solve(Omega, have_    ? &equilibrium_.state
+                                         : first_ ? &*first_
+                                                  : nullptr));
   }
   have_forcing_ = false;
   const auto linearise = [&] {
     running_.set_whirl(std::isnan(lambda.imag()) ? Complex(0) : lambda, false, side);
-    const bool inside = running_.tangent(equilibrium_.state.frames, Omega, equilibrium_.state.q, matrices_);
+    const bool inside =
+        running_.tangent(equilibrium_.state.frames, Omega, equilibrium_.state.q, matrices_);
     running_.set_whirl(0.0);
-    if (!inside) throw run_error("E76", "no linearisation: the state lies outside the range of an element");
+    if (!inside)
+      throw run_error("E76", "no linearisation: the state lies outside the range of an element");
   };
   if (!running_.running().frequency_dependent() || !std::isfinite(tables)) {
     linearise();
@@ -91,10 +100,16 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
   }
   const system::FrequencyScope ask(tables);
   linearise();
-  const auto finite = [](const la::BlockMatrix<6>& x) { return Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count())).allFinite(); };
+  const auto finite = [](const la::BlockMatrix<6>& x) {
+    return Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count())).allFinite();
+  };
   if (!finite(matrices_.K) || !finite(matrices_.C) || !finite(matrices_.M))
-    throw run_error("E81", fmt::format("a bearing table does not cover the frequency {:.6g} Hz at {:.6g} rpm", std::abs(tables) / two_pi, Omega * 30.0 / pi),
-                    "extend its frequencies, narrow the step (max_frequency, modes), or write extrapolate = \"hold\"");
+    throw run_error(
+        "E81",
+        fmt::format("a bearing table does not cover the frequency {:.6g} Hz at {:.6g} rpm",
+                    std::abs(tables) / two_pi, Omega * 30.0 / pi),
+        "extend its frequencies, narrow the step (max_frequency, modes), or write extrapolate = "
+        "\"hold\"");
   return matrices_;
 }
 

@@ -1,8 +1,9 @@
-// Small motions about the spinning, loaded equilibrium: M, C(Omega), K(Omega) on the system's block pattern, in
-// q = (u, phi, gamma) a node, fixed axes:
+// Small motions about the spinning, loaded equilibrium: M, C(Omega), K(Omega) on the system's block
+// pattern, in q = (u, phi, gamma) a node, fixed axes:
 //   M x'' + C x' + K x = -sum_k Re(f_k exp(i order_k Omega t))
-// C holds damping and gyroscopic effects, K all stiffness, geometric and circulatory ones included; both are exact derivatives
-// of the nonlinear model, averaged over the revolution where something turns (steady_rotation.hpp).
+// C holds damping and gyroscopic effects, K all stiffness, geometric and circulatory ones included;
+// both are exact derivatives of the nonlinear model, averaged over the revolution where something
+// turns (steady_rotation.hpp).
 #pragma once
 #include <analysis/statics/equilibrium.hpp>
 #include <analysis/spectra/motion.hpp>
@@ -11,22 +12,30 @@ namespace whirl::analysis {
 
 class Linearizer {
  public:
-  explicit Linearizer(const system::System& system, SteadyRotation running = {}, EquilibriumOptions options = {});
+  explicit Linearizer(const system::System& system, SteadyRotation running = {},
+                      EquilibriumOptions options = {});
 
-  /// Moves the equilibrium to Omega (rad/s, from the last one) and returns the matrices there; valid until the next call.
-  /// Errors: as EquilibriumSolver::solve.
+  /// Moves the equilibrium to Omega (rad/s, from the last one) and returns the matrices there;
+  /// valid until the next call. Errors: as EquilibriumSolver::solve.
   const la::MCK& at(double Omega) { return at(Omega, Complex(0, nan)); }
-  /// The same as a motion x exp(lambda t) meets them, lambda = g + i w: supports that answer by frequency (SteadyRotation::table_frequencies) and
-  /// hysteretic damping give real matrices that are exact for it alone. w NaN: synchronous values of tables, hysteretic damping of the steady
-  /// state only; infinite: synchronous values, no hysteretic damping. The equilibrium is the same at every lambda.
-  /// side: frequency that decides whether the whirl is faster than the spin; w unless given. Errors: E81, a table does not cover w.
-  const la::MCK& at(double Omega, Complex lambda, double side = nan) { return at(Omega, lambda, side, lambda.imag()); }
-  const la::MCK& at(double Omega, double) = delete;   // a real lambda is rarely meant
+  /// The same as a motion x exp(lambda t) meets them, lambda = g + i w: supports that answer by
+  /// frequency (SteadyRotation::table_frequencies) and hysteretic damping give real matrices that
+  /// are exact for it alone. w NaN: synchronous values of tables, hysteretic damping of the steady
+  /// state only; infinite: synchronous values, no hysteretic damping. The equilibrium is the same
+  /// at every lambda. side: frequency that decides whether the whirl is faster than the spin; w
+  /// unless given. Errors: E81, a table does not cover w.
+  const la::MCK& at(double Omega, Complex lambda, double side = nan) {
+    return at(Omega, lambda, side, lambda.imag());
+  }
+  const la::MCK& at(double Omega, double) = delete;  // a real lambda is rarely meant
   /// tables: the frequency that supports answer to, where it is not Im lambda.
   const la::MCK& at(double Omega, Complex lambda, double side, double tables);
   /// Tables at the frequency w, no hysteretic damping beside that of the steady state.
-  const la::MCK& at_frequency(double Omega, double w) { return at(Omega, Complex(0, infinity), nan, w); }
-  /// The part of them that keeps energy: M, skew part of C (gyroscopic), symmetric part of K. For "undamped" results.
+  const la::MCK& at_frequency(double Omega, double w) {
+    return at(Omega, Complex(0, infinity), nan, w);
+  }
+  /// The part of them that keeps energy: M, skew part of C (gyroscopic), symmetric part of K. For
+  /// "undamped" results.
   const la::MCK& conservative_at(double Omega, double w = nan);
   double Omega() const { return equilibrium_.Omega; }
   const Equilibrium& equilibrium() const { return equilibrium_; }
@@ -34,15 +43,16 @@ class Linearizer {
   void set_equilibrium(const Equilibrium& e);
   /// The first equilibrium is sought from this state instead of the reference configuration.
   void start_from(const system::State& s) { first_ = s; }
-  /// From now on everything is about the reference configuration, turning, without gravity and loads. Held unknowns stand at
-  /// their laws; supports answer as they do there.
+  /// From now on everything is about the reference configuration, turning, without gravity and
+  /// loads. Held unknowns stand at their laws; supports answer as they do there.
   void stay_undeformed();
   /// Forcing amplitudes at the last speed, one for each of running().orders().
   const std::vector<VecXc>& forcing();
   SteadySystem& running() { return running_; }
   bool hysteretic() const { return running_.hysteretic(); }
   const system::System& system() const { return running_.system(); }
-  /// +1 or -1: sense of the spin that whirl at a node is measured against, at the last speed; at rest that of a positive one.
+  /// +1 or -1: sense of the spin that whirl at a node is measured against, at the last speed; at
+  /// rest that of a positive one.
   double sense(Index node) const { return (Omega() < 0 ? -1.0 : 1.0) * running_.sense(node); }
   /// Unknowns of small motions: what is not held by a support. A free rotor may turn.
   std::span<const unsigned char> active() const { return running_.system().active(); }
@@ -55,7 +65,7 @@ class Linearizer {
   Equilibrium equilibrium_;
   std::optional<system::State> first_;
   bool have_ = false, have_forcing_ = false, undeformed_ = false;
-  Vec2 floor_ = Vec2::Zero();      ///< residual left at the last solution: force, moment
+  Vec2 floor_ = Vec2::Zero();  ///< residual left at the last solution: force, moment
   la::MCK matrices_, conservative_;
   std::vector<VecXc> forcing_;
   VecX r_;

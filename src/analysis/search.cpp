@@ -4,7 +4,8 @@
 
 namespace whirl::analysis {
 
-double find_maximum(double a, double m, double fm, double b, double tolerance, const std::function<double(double)>& f) {
+double find_maximum(double a, double m, double fm, double b, double tolerance,
+                    const std::function<double(double)>& f) {
   const double golden = 0.3819660112501051;
   double x = m, w = m, v = m, fx = fm, fw = fm, fv = fm, d = 0, e = 0;
   for (int it = 0; it < 80; ++it) {
@@ -15,29 +16,54 @@ double find_maximum(double a, double m, double fm, double b, double tolerance, c
       const double r = (x - w) * (fx - fv), q0 = (x - v) * (fx - fw), q = 2 * (q0 - r);
       const double p = (x - v) * q0 - (x - w) * r;
       const double s = q > 0 ? -p : p, t = std::abs(q);
-      if (std::abs(s) < std::abs(0.5 * t * e) && s > t * (a - x) && s < t * (b - x)) { e = d; d = s / t; parabola = true; }
+      if (std::abs(s) < std::abs(0.5 * t * e) && s > t * (a - x) && s < t * (b - x)) {
+        e = d;
+        d = s / t;
+        parabola = true;
+      }
     }
-    if (!parabola) { e = x < middle ? b - x : a - x; d = golden * e; }
+    if (!parabola) {
+      e = x < middle ? b - x : a - x;
+      d = golden * e;
+    }
     const double u = x + (std::abs(d) >= tol ? d : d > 0 ? tol : -tol), fu = f(u);
     if (fu >= fx) {
       (u < x ? b : a) = x;
-      v = w; fv = fw; w = x; fw = fx; x = u; fx = fu;
+      v = w;
+      fv = fw;
+      w = x;
+      fw = fx;
+      x = u;
+      fx = fu;
     } else {
       (u < x ? a : b) = u;
-      if (fu >= fw || w == x) { v = w; fv = fw; w = u; fw = fu; }
-      else if (fu >= fv || v == x || v == w) { v = u; fv = fu; }
+      if (fu >= fw || w == x) {
+        v = w;
+        fv = fw;
+        w = u;
+        fw = fu;
+      } else if (fu >= fv || v == x || v == w) {
+        v = u;
+        fv = fu;
+      }
     }
   }
   return x;
 }
 
-double find_crossing(double a, double fa, double b, double fb, double tolerance, const std::function<double(double)>& f) {
+double find_crossing(double a, double fa, double b, double fb, double tolerance,
+                     const std::function<double(double)>& f) {
   for (int it = 0; it < 80 && std::abs(b - a) > tolerance * std::abs(b); ++it) {
     const double x = (a * fb - b * fa) / (fb - fa), fx = f(x);
     if (fx == 0.0) return x;
-    if ((fx > 0) == (fb > 0)) fa *= 0.5;
-    else { a = b; fa = fb; }
-    b = x; fb = fx;
+    if ((fx > 0) == (fb > 0))
+      fa *= 0.5;
+    else {
+      a = b;
+      fa = fb;
+    }
+    b = x;
+    fb = fx;
   }
   return b;
 }

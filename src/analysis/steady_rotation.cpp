@@ -24,8 +24,10 @@ void set_scaled(la::BlockMatrix<6>& y, double s, const la::BlockMatrix<6>& x) {
   Eigen::Map<VecX>(y.data(), static_cast<Index>(y.value_count())) =
       s * Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count()));
 }
-/// Shortest way from every node to a turning shaft whose spin has this sign, m, along what stands and moves; infinity: none.
-std::vector<double> distance_to_spin(const system::System& s, std::span<const double> ratio, double sign) {
+/// Shortest way from every node to a turning shaft whose spin has this sign, m, along what stands
+/// and moves; infinity: none.
+std::vector<double> distance_to_spin(const system::System& s, std::span<const double> ratio,
+                                     double sign) {
   const auto ratio_of = [&](Index node) {
     const std::size_t line = at(s.node(node).line);
     return line < ratio.size() ? ratio[line] : 0.0;
@@ -50,7 +52,7 @@ std::vector<double> distance_to_spin(const system::System& s, std::span<const do
     if (d > distance[at(i)]) continue;
     for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b) {
       const Index j = cols[at(b)];
-      if (ratio_of(j) != 0.0 || !moves(j)) continue;   // other shafts and the ground lead nowhere
+      if (ratio_of(j) != 0.0 || !moves(j)) continue;  // other shafts and the ground lead nowhere
       // generalised coordinates have no place
       const bool placed = !s.node(i).scalar && !s.node(j).scalar;
       const double next = d + (placed ? (s.node(i).position - s.node(j).position).norm() : 0.0);
@@ -62,7 +64,11 @@ std::vector<double> distance_to_spin(const system::System& s, std::span<const do
   return distance;
 }
 
-void add_scaled(la::MCK& y, double s, const la::MCK& x) { add_scaled(y.M, s, x.M); add_scaled(y.C, s, x.C); add_scaled(y.K, s, x.K); }
+void add_scaled(la::MCK& y, double s, const la::MCK& x) {
+  add_scaled(y.M, s, x.M);
+  add_scaled(y.C, s, x.C);
+  add_scaled(y.K, s, x.K);
+}
 
 }  // namespace
 
@@ -81,8 +87,16 @@ std::vector<double> spin_senses(const system::System& system, std::span<const do
 }
 
 SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
-    : system_(system), running_(std::move(running)), ratio_(running_.ratio), workspace_(system.make_workspace()),
-      q_(system.size()), v_(system.size()), a_(VecX::Zero(system.size())), r_(system.size()), part_(system.make_matrices()), sample_(system.make_matrices()) {
+    : system_(system),
+      running_(std::move(running)),
+      ratio_(running_.ratio),
+      workspace_(system.make_workspace()),
+      q_(system.size()),
+      v_(system.size()),
+      a_(VecX::Zero(system.size())),
+      r_(system.size()),
+      part_(system.make_matrices()),
+      sample_(system.make_matrices()) {
   if (ratio_.empty()) ratio_.assign(at(system.lines()), 1.0);
   ratio_.resize(at(system.lines()), 0.0);
   std::vector<unsigned char> turnable(at(system.nodes()), 0);
@@ -90,12 +104,15 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
     if (term->width() == 7) {
       std::vector<Index> nodes;
       term->list_nodes(nodes);
-      for (Index i : nodes) turnable[at(i)] = 1;
+      for (Index i : nodes)
+        turnable[at(i)] = 1;
     }
   spinning_.assign(at(system.nodes()), 0);
   for (Index i = 0; i < system.nodes(); ++i)
-    spinning_[at(i)] = turnable[at(i)] && !system.node(i).scalar && ratio_[at(system.node(i).line)] != 0.0;
-  // A line whose angle is held somewhere stands still. (The line of the ground points has nothing that could turn.)
+    spinning_[at(i)] =
+        turnable[at(i)] && !system.node(i).scalar && ratio_[at(system.node(i).line)] != 0.0;
+  // A line whose angle is held somewhere stands still. (The line of the ground points has nothing
+  // that could turn.)
   std::vector<unsigned char> moves(at(system.lines()), 0);
   for (Index k = 0; k < system.size(); ++k)
     if (system.active()[at(k)]) moves[at(system.node(k / 6).line)] = 1;
@@ -113,18 +130,24 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
   sense_ = spin_senses(system, ratio_);
   workspace_.context.averaged = running_.mean;
   workspace_.context.hysteretic = running_.hysteretic;
-  for (const auto& term : system.terms()) hysteretic_ = hysteretic_ || (running_.hysteretic && term->hysteretic());
+  for (const auto& term : system.terms())
+    hysteretic_ = hysteretic_ || (running_.hysteretic && term->hysteretic());
   make_samples();
   sort_terms();
 }
 
 void SteadySystem::set_load(double factor) {
-  if (workspace_.context.load != factor) { workspace_.context.load = factor; polynomial_ = seen_ = false; }
+  if (workspace_.context.load != factor) {
+    workspace_.context.load = factor;
+    polynomial_ = seen_ = false;
+  }
 }
 
 void SteadySystem::set_whirl(Complex lambda, bool rotates, double side) {
   system::Context& c = workspace_.context;
-  c.whirl = std::abs(lambda.imag()); c.growth = lambda.real(); c.whirl_rotates = rotates;
+  c.whirl = std::abs(lambda.imag());
+  c.growth = lambda.real();
+  c.whirl_rotates = rotates;
   c.whirl_side = std::isnan(side) ? c.whirl : side;
 }
 
@@ -133,17 +156,23 @@ void SteadySystem::make_samples() {
   if (k <= 1) {
     // four a revolution: exact up to the second harmonic, aliases of the third and fourth
     theta_ = {0.0, 0.5 * pi, pi, 1.5 * pi};
-    if (k == 1) for (double& x : theta_) x /= orders_[0];
+    if (k == 1)
+      for (double& x : theta_)
+        x /= orders_[0];
     weights_.resize(3, 4);
     weights_ << 0.25, 0.25, 0.25, 0.25, 0.5, 0, -0.5, 0, 0, 0.5, 0, -0.5;
     return;
   }
   std::vector<double> harmonics = orders_;
-  for (double o : orders_) harmonics.push_back(2.0 * o);
+  for (double o : orders_)
+    harmonics.push_back(2.0 * o);
   std::sort(harmonics.begin(), harmonics.end());
-  harmonics.erase(std::unique(harmonics.begin(), harmonics.end(), [](double a, double b) { return b - a < 1e-9 * b; }), harmonics.end());
+  harmonics.erase(std::unique(harmonics.begin(), harmonics.end(),
+                              [](double a, double b) { return b - a < 1e-9 * b; }),
+                  harmonics.end());
   double spacing = harmonics.front();
-  for (std::size_t i = 1; i < harmonics.size(); ++i) spacing = std::min(spacing, harmonics[i] - harmonics[i - 1]);
+  for (std::size_t i = 1; i < harmonics.size(); ++i)
+    spacing = std::min(spacing, harmonics[i] - harmonics[i - 1]);
   const Index unknowns = 1 + 2 * static_cast<Index>(harmonics.size()), samples = 3 * unknowns;
   MatX A(samples, unknowns);
   theta_.resize(at(samples));
@@ -152,33 +181,47 @@ void SteadySystem::make_samples() {
     const double g = 0.6180339887498949 * static_cast<double>(j + 1);
     theta_[at(j)] = (g - std::floor(g)) * 4.0 * two_pi / spacing;
     A(j, 0) = 1.0;
-    for (Index h = 0; h < static_cast<Index>(harmonics.size()); ++h)
-      { A(j, 1 + 2 * h) = std::cos(harmonics[at(h)] * theta_[at(j)]); A(j, 2 + 2 * h) = std::sin(harmonics[at(h)] * theta_[at(j)]); }
+    for (Index h = 0; h < static_cast<Index>(harmonics.size()); ++h) {
+      A(j, 1 + 2 * h) = std::cos(harmonics[at(h)] * theta_[at(j)]);
+      A(j, 2 + 2 * h) = std::sin(harmonics[at(h)] * theta_[at(j)]);
+    }
   }
   const MatX inverse = A.completeOrthogonalDecomposition().pseudoInverse();
   weights_.resize(1 + 2 * k, samples);
   weights_.row(0) = inverse.row(0);
   for (Index o = 0; o < k; ++o) {
     Index h = 0;
-    while (std::abs(harmonics[at(h)] - orders_[at(o)]) > 1e-9 * orders_[at(o)]) ++h;
+    while (std::abs(harmonics[at(h)] - orders_[at(o)]) > 1e-9 * orders_[at(o)])
+      ++h;
     weights_.middleRows(1 + 2 * o, 2) = inverse.middleRows(1 + 2 * h, 2);
   }
 }
 
 bool same_forces(const std::vector<Vector<7>>& f, const std::vector<Vector<7>>& g) {
   Vec3 size = Vec3::Zero(), change = Vec3::Zero();
-  const auto largest = [](const Vector<7>& x) { return Vec3(x.head<3>().cwiseAbs().maxCoeff(), x.segment<3>(3).cwiseAbs().maxCoeff(), std::abs(x[6])); };
-  for (std::size_t i = 0; i < f.size(); ++i) { size = size.cwiseMax(largest(f[i])); change = change.cwiseMax(largest(g[i] - f[i])); }
-  return (change.array() <= 1e-8 * size.array()).all();   // rounding of phi differences stays below
+  const auto largest = [](const Vector<7>& x) {
+    return Vec3(x.head<3>().cwiseAbs().maxCoeff(), x.segment<3>(3).cwiseAbs().maxCoeff(),
+                std::abs(x[6]));
+  };
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    size = size.cwiseMax(largest(f[i]));
+    change = change.cwiseMax(largest(g[i] - f[i]));
+  }
+  return (change.array() <= 1e-8 * size.array()).all();  // rounding of phi differences stays below
 }
 
 void SteadySystem::sort_terms() {
-  // A term sees phi when its force changes as all lines turn on together. Small generic motions, equal for all angles.
+  // A term sees phi when its force changes as all lines turn on together. Small generic motions,
+  // equal for all angles.
   std::mt19937 rng(7);
   std::normal_distribution<double> normal;
   const system::Frames frames = system_.make_state().frames;
   VecX q(system_.size()), v(system_.size()), a(system_.size());
-  for (Index k = 0; k < q.size(); ++k) { q[k] = 1e-6 * normal(rng); v[k] = 1e-4 * normal(rng); a[k] = normal(rng); }
+  for (Index k = 0; k < q.size(); ++k) {
+    q[k] = 1e-6 * normal(rng);
+    v[k] = 1e-4 * normal(rng);
+    a[k] = normal(rng);
+  }
   VecX turned = q;
   for (Index i = 0; i < system_.nodes(); ++i)
     if (spinning_[at(i)]) v[6 * i + 3] += 10.0 * ratio_[at(system_.node(i).line)];
@@ -188,10 +231,12 @@ void SteadySystem::sort_terms() {
   workspace_.context.averaged = true;
   for (double theta : {0.0, 1.0, 2.3}) {
     for (Index i = 0; i < system_.nodes(); ++i)
-      if (spinning_[at(i)]) turned[6 * i + 3] = q[6 * i + 3] + theta * ratio_[at(system_.node(i).line)];
+      if (spinning_[at(i)])
+        turned[6 * i + 3] = q[6 * i + 3] + theta * ratio_[at(system_.node(i).line)];
     system_.evaluate_nodes(workspace_, frames, running_.time, turned, v, a);
     for (std::size_t k = 0; k < terms.size(); ++k) {
-      for (auto& x : workspace_.force) x.setZero();
+      for (auto& x : workspace_.force)
+        x.setZero();
       terms[k]->add_force(workspace_);
       if (theta == 0.0) {
         base[k] = workspace_.force;
@@ -207,15 +252,19 @@ void SteadySystem::sort_terms() {
     std::vector<Index> touched;
     terms[k]->list_nodes(touched);
     if (!sees[k] && touched.size() > terms[k]->count()) blind_.push_back(k);
-    if (sees[k]) (terms[k]->quadratic_in_rates() ? turning_smooth_ : turning_).push_back(k);
-    else if (terms[k]->quadratic_in_rates()) smooth_.push_back(k);
-    else other_.push_back(k);
+    if (sees[k])
+      (terms[k]->quadratic_in_rates() ? turning_smooth_ : turning_).push_back(k);
+    else if (terms[k]->quadratic_in_rates())
+      smooth_.push_back(k);
+    else
+      other_.push_back(k);
   }
   if (!running_.mean) {
     // nothing is averaged: what turns is evaluated like the rest
     other_.insert(other_.end(), turning_.begin(), turning_.end());
     smooth_.insert(smooth_.end(), turning_smooth_.begin(), turning_smooth_.end());
-    turning_.clear(); turning_smooth_.clear();
+    turning_.clear();
+    turning_smooth_.clear();
   }
   find_frequency_terms();
 }
@@ -223,15 +272,16 @@ void SteadySystem::sort_terms() {
 void SteadySystem::find_frequency_terms() {
   steady_ = other_;
   if (!running_.frequency_dependent()) return;
-  // The motion of sort_terms, at every frequency a table has. Whatever is not equal to the last bit may depend on it, NaN included: a
-  // table that does not reach so far.
+  // The motion of sort_terms, at every frequency a table has. Whatever is not equal to the last bit
+  // may depend on it, NaN included: a table that does not reach so far.
   std::vector<std::vector<Vector<7>>> base;
   std::vector<unsigned char> differs(other_.size(), 0);
   for (const double w : running_.table_frequencies) {
     const system::FrequencyScope ask(w);
     for (std::size_t k = 0; k < other_.size(); ++k) {
       if (differs[k]) continue;
-      for (auto& x : workspace_.force) x.setZero();
+      for (auto& x : workspace_.force)
+        x.setZero();
       system_.terms()[other_[k]]->add_force(workspace_);
       if (base.size() <= k) base.push_back(workspace_.force);
       for (std::size_t i = 0; i < base[k].size(); ++i)
@@ -239,15 +289,19 @@ void SteadySystem::find_frequency_terms() {
     }
   }
   steady_.clear();
-  for (std::size_t k = 0; k < other_.size(); ++k) (differs[k] ? by_frequency_ : steady_).push_back(other_[k]);
+  for (std::size_t k = 0; k < other_.size(); ++k)
+    (differs[k] ? by_frequency_ : steady_).push_back(other_[k]);
 }
 
 void SteadySystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
   v.setZero();
   if (Omega != 0.0)
     for (const auto& [line, node] : held_)
-      throw run_error("E78", "shaft '" + system_.line_name(line) + "' cannot turn: its spin is held at " + system_.node(node).name,
-                      "release the rotation about the axis (rx) of that support, or give the shaft speed_ratio = 0");
+      throw run_error("E78",
+                      "shaft '" + system_.line_name(line) + "' cannot turn: its spin is held at " +
+                          system_.node(node).name,
+                      "release the rotation about the axis (rx) of that support, or give the shaft "
+                      "speed_ratio = 0");
   for (Index i = 0; i < system_.nodes(); ++i)
     if (spinning_[at(i)]) v[6 * i + 3] = Omega * ratio_[at(system_.node(i).line)];
 }
@@ -272,7 +326,8 @@ void SteadySystem::impose(const system::Frames& f, Eigen::Ref<VecX> q) const {
   }
 }
 
-bool SteadySystem::evaluate_residual(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r, const Terms& only) {
+bool SteadySystem::evaluate_residual(const system::Frames& f, double Omega, const VecX& q,
+                                     double theta, VecX& r, const Terms& only) {
   throw_if_interrupted();
   set_rates(Omega, v_);
   if (theta == 0.0) return system_.residual(workspace_, f, running_.time, q, v_, a_, r, &only);
@@ -282,7 +337,8 @@ bool SteadySystem::evaluate_residual(const system::Frames& f, double Omega, cons
   return system_.residual(workspace_, f, running_.time, q_, v_, a_, r, &only);
 }
 
-bool SteadySystem::evaluate_tangent(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out, const Terms& only) {
+bool SteadySystem::evaluate_tangent(const system::Frames& f, double Omega, const VecX& q,
+                                    double theta, la::MCK& out, const Terms& only) {
   throw_if_interrupted();
   set_rates(Omega, v_);
   if (theta == 0.0) return system_.tangent(workspace_, f, running_.time, q, v_, a_, out, &only);
@@ -292,26 +348,31 @@ bool SteadySystem::evaluate_tangent(const system::Frames& f, double Omega, const
   return system_.tangent(workspace_, f, running_.time, q_, v_, a_, out, &only);
 }
 
-bool SteadySystem::visit_revolution(const system::Frames& f, double Omega, const VecX& q, const std::function<void(double, const system::Workspace&)>& visit) {
+bool SteadySystem::visit_revolution(
+    const system::Frames& f, double Omega, const VecX& q,
+    const std::function<void(double, const system::Workspace&)>& visit) {
   const std::size_t visits = phase_dependent() ? theta_.size() : 1;
   for (std::size_t k = 0; k < visits; ++k) {
     set_rates(Omega, v_);
     q_ = q;
     for (Index i = 0; i < system_.nodes(); ++i)
-      if (visits > 1 && spinning_[at(i)]) q_[6 * i + 3] += theta_[k] * ratio_[at(system_.node(i).line)];
+      if (visits > 1 && spinning_[at(i)])
+        q_[6 * i + 3] += theta_[k] * ratio_[at(system_.node(i).line)];
     if (!system_.evaluate_nodes(workspace_, f, running_.time, q_, v_, a_)) return false;
     visit(visits > 1 ? weights_(0, static_cast<Index>(k)) : 1.0, workspace_);
   }
   return true;
 }
 
-bool SteadySystem::residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r) {
+bool SteadySystem::residual_at(const system::Frames& f, double Omega, const VecX& q, double theta,
+                               VecX& r) {
   workspace_.context.averaged = false;
   const bool inside = evaluate_residual(f, Omega, q, theta, r, all_);
   workspace_.context.averaged = running_.mean;
   return inside;
 }
-bool SteadySystem::tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out) {
+bool SteadySystem::tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta,
+                              la::MCK& out) {
   workspace_.context.averaged = false;
   const bool inside = evaluate_tangent(f, Omega, q, theta, out, all_);
   workspace_.context.averaged = running_.mean;
@@ -319,10 +380,12 @@ bool SteadySystem::tangent_at(const system::Frames& f, double Omega, const VecX&
 }
 
 bool SteadySystem::fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const {
-  return polynomial_ && std::abs(Omega) <= 2.0 * scale_ && q == polynomial_q_ && f.chart == polynomial_charts_;
+  return polynomial_ && std::abs(Omega) <= 2.0 * scale_ && q == polynomial_q_ &&
+         f.chart == polynomial_charts_;
 }
 
-bool SteadySystem::add_mean_residual(const system::Frames& f, double Omega, const VecX& q, const Terms& only, VecX& r) {
+bool SteadySystem::add_mean_residual(const system::Frames& f, double Omega, const VecX& q,
+                                     const Terms& only, VecX& r) {
   if (only.empty()) return true;
   for (std::size_t k = 0; k < theta_.size(); ++k) {
     if (!evaluate_residual(f, Omega, q, theta_[k], r_, only)) return false;
@@ -331,7 +394,8 @@ bool SteadySystem::add_mean_residual(const system::Frames& f, double Omega, cons
   return true;
 }
 
-bool SteadySystem::add_mean_tangent(const system::Frames& f, double Omega, const VecX& q, const Terms& only, la::MCK& out) {
+bool SteadySystem::add_mean_tangent(const system::Frames& f, double Omega, const VecX& q,
+                                    const Terms& only, la::MCK& out) {
   if (only.empty()) return true;
   for (std::size_t k = 0; k < theta_.size(); ++k) {
     if (!evaluate_tangent(f, Omega, q, theta_[k], sample_, only)) return false;
@@ -340,7 +404,8 @@ bool SteadySystem::add_mean_tangent(const system::Frames& f, double Omega, const
   return true;
 }
 
-bool SteadySystem::add_forcing(const system::Frames& f, double Omega, const VecX& q, const Terms& only, std::vector<VecXc>& out) {
+bool SteadySystem::add_forcing(const system::Frames& f, double Omega, const VecX& q,
+                               const Terms& only, std::vector<VecXc>& out) {
   if (only.empty()) return true;
   for (std::size_t k = 0; k < theta_.size(); ++k) {
     if (!evaluate_residual(f, Omega, q, theta_[k], r_, only)) return false;
@@ -354,29 +419,42 @@ bool SteadySystem::add_forcing(const system::Frames& f, double Omega, const VecX
 }
 
 bool SteadySystem::smooth_residual(const system::Frames& f, double Omega, const VecX& q, VecX& r) {
-  return evaluate_residual(f, Omega, q, 0.0, r, smooth_) && add_mean_residual(f, Omega, q, turning_smooth_, r);
+  return evaluate_residual(f, Omega, q, 0.0, r, smooth_) &&
+         add_mean_residual(f, Omega, q, turning_smooth_, r);
 }
 
-bool SteadySystem::smooth_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
-  return evaluate_tangent(f, Omega, q, 0.0, out, smooth_) && add_mean_tangent(f, Omega, q, turning_smooth_, out);
+bool SteadySystem::smooth_tangent(const system::Frames& f, double Omega, const VecX& q,
+                                  la::MCK& out) {
+  return evaluate_tangent(f, Omega, q, 0.0, out, smooth_) &&
+         add_mean_tangent(f, Omega, q, turning_smooth_, out);
 }
 
 bool SteadySystem::make_polynomial(const system::Frames& f, double Omega, const VecX& q) {
   // Interpolation at -s, 0, s with s near the top speed: no digits are lost below it.
   const double s = std::max({std::abs(Omega), running_.top_speed, 1.0});
-  if (p0_.M.value_count() == 0) { p0_ = system_.make_matrices(); p1_ = system_.make_matrices(); k2_ = la::BlockMatrix<6>(system_.pattern()); }
-  for (VecX* r : {&r0_, &r1_, &r2_}) r->resize(q.size());
+  if (p0_.M.value_count() == 0) {
+    p0_ = system_.make_matrices();
+    p1_ = system_.make_matrices();
+    k2_ = la::BlockMatrix<6>(system_.pattern());
+  }
+  for (VecX* r : {&r0_, &r1_, &r2_})
+    r->resize(q.size());
   if (!smooth_tangent(f, s, q, p1_) || !smooth_residual(f, s, q, r1_)) return false;
   if (!smooth_tangent(f, -s, q, part_) || !smooth_residual(f, -s, q, r2_)) return false;
   if (!smooth_tangent(f, 0.0, q, p0_) || !smooth_residual(f, 0.0, q, r0_)) return false;
-  for (auto* x : {&f0_, &f1_, &f2_}) x->assign(orders_.size(), VecXc::Zero(q.size()));
-  if (!add_forcing(f, s, q, turning_smooth_, f1_) || !add_forcing(f, -s, q, turning_smooth_, f2_) || !add_forcing(f, 0.0, q, turning_smooth_, f0_)) return false;
+  for (auto* x : {&f0_, &f1_, &f2_})
+    x->assign(orders_.size(), VecXc::Zero(q.size()));
+  if (!add_forcing(f, s, q, turning_smooth_, f1_) || !add_forcing(f, -s, q, turning_smooth_, f2_) ||
+      !add_forcing(f, 0.0, q, turning_smooth_, f0_))
+    return false;
   for (std::size_t o = 0; o < orders_.size(); ++o) {
     const VecXc plus = f1_[o], minus = f2_[o];
     f1_[o] = (0.5 / s) * (plus - minus);
     f2_[o] = (0.5 / (s * s)) * (plus + minus - 2.0 * f0_[o]);
   }
-  set_scaled(k2_, 0.5 / (s * s), p1_.K); add_scaled(k2_, 0.5 / (s * s), part_.K); add_scaled(k2_, -1.0 / (s * s), p0_.K);
+  set_scaled(k2_, 0.5 / (s * s), p1_.K);
+  add_scaled(k2_, 0.5 / (s * s), part_.K);
+  add_scaled(k2_, -1.0 / (s * s), p0_.K);
   for (auto [p, m] : {std::pair{&p1_.C, &part_.C}, std::pair{&p1_.K, &part_.K}}) {
     set_scaled(*p, 0.5 / s, *p);
     add_scaled(*p, -0.5 / s, *m);
@@ -384,7 +462,10 @@ bool SteadySystem::make_polynomial(const system::Frames& f, double Omega, const 
   const VecX plus = r1_, minus = r2_;
   r1_ = (0.5 / s) * (plus - minus);
   r2_ = (0.5 / (s * s)) * (plus + minus - 2.0 * r0_);
-  polynomial_ = true; scale_ = s; polynomial_q_ = q; polynomial_charts_ = f.chart;
+  polynomial_ = true;
+  scale_ = s;
+  polynomial_q_ = q;
+  polynomial_charts_ = f.chart;
   return true;
 }
 
@@ -406,29 +487,39 @@ bool SteadySystem::tangent(const system::Frames& f, double Omega, const VecX& q,
   if (by_frequency_.empty()) return fixed_tangent(f, Omega, q, out);
   const system::Context& c = workspace_.context;
   const std::array<double, 4> whirl{c.whirl, c.growth, c.whirl_side, c.whirl_rotates ? 1.0 : 0.0};
-  if (!have_fixed_ || fixed_speed_ != Omega || fixed_load_ != c.load || fixed_whirl_ != whirl || fixed_q_ != q || fixed_charts_ != f.chart) {
+  if (!have_fixed_ || fixed_speed_ != Omega || fixed_load_ != c.load || fixed_whirl_ != whirl ||
+      fixed_q_ != q || fixed_charts_ != f.chart) {
     if (fixed_.M.value_count() == 0) fixed_ = system_.make_matrices();
     have_fixed_ = fixed_tangent(f, Omega, q, fixed_);
     if (!have_fixed_) return false;
-    fixed_speed_ = Omega; fixed_load_ = c.load; fixed_whirl_ = whirl; fixed_q_ = q; fixed_charts_ = f.chart;
+    fixed_speed_ = Omega;
+    fixed_load_ = c.load;
+    fixed_whirl_ = whirl;
+    fixed_q_ = q;
+    fixed_charts_ = f.chart;
   }
   if (!evaluate_tangent(f, Omega, q, 0.0, out, by_frequency_)) return false;
   add_scaled(out, 1.0, fixed_);
   return true;
 }
 
-bool SteadySystem::fixed_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
+bool SteadySystem::fixed_tangent(const system::Frames& f, double Omega, const VecX& q,
+                                 la::MCK& out) {
   if (!fits_polynomial(f, Omega, q)) {
     // A second speed at the same equilibrium: a sweep, in which the polynomials pay.
     const bool sweep = seen_ && seen_speed_ != Omega && seen_q_ == q;
     if (sweep && !make_polynomial(f, Omega, q)) return false;
-    seen_ = true; seen_speed_ = Omega; seen_q_ = q;
+    seen_ = true;
+    seen_speed_ = Omega;
+    seen_q_ = q;
   }
   if (fits_polynomial(f, Omega, q)) {
     std::copy_n(p0_.M.data(), p0_.M.value_count(), out.M.data());
     const Index n = static_cast<Index>(p0_.C.value_count());
-    Eigen::Map<VecX>(out.C.data(), n) = Eigen::Map<const VecX>(p0_.C.data(), n) + Omega * Eigen::Map<const VecX>(p1_.C.data(), n);
-    Eigen::Map<VecX>(out.K.data(), n) = Eigen::Map<const VecX>(p0_.K.data(), n) + Omega * Eigen::Map<const VecX>(p1_.K.data(), n) +
+    Eigen::Map<VecX>(out.C.data(), n) =
+        Eigen::Map<const VecX>(p0_.C.data(), n) + Omega * Eigen::Map<const VecX>(p1_.C.data(), n);
+    Eigen::Map<VecX>(out.K.data(), n) = Eigen::Map<const VecX>(p0_.K.data(), n) +
+                                        Omega * Eigen::Map<const VecX>(p1_.K.data(), n) +
                                         (Omega * Omega) * Eigen::Map<const VecX>(k2_.data(), n);
   } else if (!smooth_tangent(f, Omega, q, out)) {
     return false;
@@ -440,14 +531,18 @@ bool SteadySystem::fixed_tangent(const system::Frames& f, double Omega, const Ve
   return add_mean_tangent(f, Omega, q, turning_, out);
 }
 
-bool SteadySystem::forcing(const system::Frames& f, double Omega, const VecX& q, std::vector<VecXc>& out) {
+bool SteadySystem::forcing(const system::Frames& f, double Omega, const VecX& q,
+                           std::vector<VecXc>& out) {
   out.resize(orders_.size());
   const bool ready = fits_polynomial(f, Omega, q);
   for (std::size_t o = 0; o < orders_.size(); ++o) {
-    if (ready) out[o] = f0_[o] + Omega * f1_[o] + (Omega * Omega) * f2_[o];
-    else out[o] = VecXc::Zero(q.size());
+    if (ready)
+      out[o] = f0_[o] + Omega * f1_[o] + (Omega * Omega) * f2_[o];
+    else
+      out[o] = VecXc::Zero(q.size());
   }
-  return (ready || add_forcing(f, Omega, q, turning_smooth_, out)) && add_forcing(f, Omega, q, turning_, out);
+  return (ready || add_forcing(f, Omega, q, turning_smooth_, out)) &&
+         add_forcing(f, Omega, q, turning_, out);
 }
 
 }  // namespace whirl::analysis

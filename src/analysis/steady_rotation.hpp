@@ -1,15 +1,18 @@
 // The system turning at constant speed: what every analysis in the frequency domain is about.
 //
-// Each spinning line l turns at Omega ratio_l and nothing else moves. R(q; Omega) is the residual averaged over the
-// revolution: what turns with a rotor and has no mean (unbalance, skew, bow, key ways) drops out and stands in the forcing
-// instead,
-//   R(theta) = R + sum_k Re(f_k exp(i order_k theta)) + ...,   theta = Omega t,  order_k = |ratio|, distinct values,
-// found from samples of the exact residual over theta (four a revolution when all lines have one speed, else a least-squares
-// fit with first and second harmonics of every speed; exact for what has no higher harmonics). No element is known by name.
-// The same averages of the tangents are the matrices M, C(Omega), K(Omega); an axisymmetric balanced rotor needs no average.
+// Each spinning line l turns at Omega ratio_l and nothing else moves. R(q; Omega) is the residual
+// averaged over the revolution: what turns with a rotor and has no mean (unbalance, skew, bow, key
+// ways) drops out and stands in the forcing instead,
+//   R(theta) = R + sum_k Re(f_k exp(i order_k theta)) + ...,   theta = Omega t,  order_k = |ratio|,
+//   distinct values,
+// found from samples of the exact residual over theta (four a revolution when all lines have one
+// speed, else a least-squares fit with first and second harmonics of every speed; exact for what
+// has no higher harmonics). No element is known by name. The same averages of the tangents are the
+// matrices M, C(Omega), K(Omega); an axisymmetric balanced rotor needs no average.
 //
-// Terms that are quadratic in the rates keep their (mean) matrices and forcing as polynomials in Omega (C linear, K and forcing
-// quadratic: exact), so a sweep over speeds re-evaluates films and the like only.
+// Terms that are quadratic in the rates keep their (mean) matrices and forcing as polynomials in
+// Omega (C linear, K and forcing quadratic: exact), so a sweep over speeds re-evaluates films and
+// the like only.
 #pragma once
 #include <system/system.hpp>
 #include <array>
@@ -20,14 +23,18 @@
 namespace whirl::analysis {
 
 struct SteadyRotation {
-  std::vector<double> ratio;   ///< spin of each line relative to the reference speed (negative: the other way); empty = all 1;
-                               ///< shorter than the lines: the rest (ground) stand still
-  double time = 0;             ///< laws of time are read here
-  bool hysteretic = true;      ///< hysteretic damping in its own form; false: as its stand-in in motions
-  bool mean = true;            ///< average over the revolution; false: rotor angles as they stand (statics)
-  double top_speed = 0;        ///< highest |Omega| expected, rad/s (keeps the polynomials from being made twice); 0 = unknown
-  /// rad/s, in any order: frequencies at which coefficients are given of supports that answer differently to motions of different frequency
-  /// (system/frequency.hpp); between neighbours they change smoothly. Empty: there are none.
+  std::vector<double>
+      ratio;  ///< spin of each line relative to the reference speed (negative: the other way);
+              ///< empty = all 1; shorter than the lines: the rest (ground) stand still
+  double time = 0;  ///< laws of time are read here
+  bool hysteretic =
+      true;          ///< hysteretic damping in its own form; false: as its stand-in in motions
+  bool mean = true;  ///< average over the revolution; false: rotor angles as they stand (statics)
+  double top_speed = 0;  ///< highest |Omega| expected, rad/s (keeps the polynomials from being made
+                         ///< twice); 0 = unknown
+  /// rad/s, in any order: frequencies at which coefficients are given of supports that answer
+  /// differently to motions of different frequency (system/frequency.hpp); between neighbours they
+  /// change smoothly. Empty: there are none.
   std::vector<double> table_frequencies;
   bool frequency_dependent() const { return !table_frequencies.empty(); }
 };
@@ -44,22 +51,26 @@ class SteadySystem {
   bool phase_dependent() const { return !turning_.empty() || !turning_smooth_.empty(); }
   /// Distinct |ratio| > 0, ascending.
   std::span<const double> orders() const { return orders_; }
-  /// +1 or -1: sign of the spin (at a positive reference speed) that whirl at a node is measured against; see spin_senses().
+  /// +1 or -1: sign of the spin (at a positive reference speed) that whirl at a node is measured
+  /// against; see spin_senses().
   double sense(Index node) const { return sense_[static_cast<std::size_t>(node)]; }
 
   /// Factor on gravity and given loads.
   void set_load(double factor);
-  /// How hysteretic damping (elements that depend on the rate of the motion) enters the matrices: at the rate lambda, 1/s, of a small motion;
-  /// infinite Im: not at all; 0: as for the steady state. rotates: lambda is seen in axes turning with the shaft.
-  /// side: the frequency that decides whether the whirl is faster than the spin, Im lambda unless given.
+  /// How hysteretic damping (elements that depend on the rate of the motion) enters the matrices:
+  /// at the rate lambda, 1/s, of a small motion; infinite Im: not at all; 0: as for the steady
+  /// state. rotates: lambda is seen in axes turning with the shaft. side: the frequency that
+  /// decides whether the whirl is faster than the spin, Im lambda unless given.
   void set_whirl(Complex lambda, bool rotates = false, double side = nan);
   /// Something in the system depends on it.
   bool hysteretic() const { return hysteretic_; }
   double load() const { return workspace_.context.load; }
 
-  /// v of the steady motion: Omega ratio at spinning phi, else zero. Errors: E78, a line that shall turn is held against it.
+  /// v of the steady motion: Omega ratio at spinning phi, else zero. Errors: E78, a line that shall
+  /// turn is held against it.
   void set_rates(double Omega, Eigen::Ref<VecX> v) const;
-  /// Held unknowns at their laws (running.time), spinning phi that is prescribed: relative to the first prescribed one.
+  /// Held unknowns at their laws (running.time), spinning phi that is prescribed: relative to the
+  /// first prescribed one.
   void impose(const system::Frames& f, Eigen::Ref<VecX> q) const;
   /// Mean residual; held rows are the reactions. False outside the domain of charts or elements.
   bool residual(const system::Frames& f, double Omega, const VecX& q, VecX& r);
@@ -67,27 +78,37 @@ class SteadySystem {
   bool tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
   /// K of all terms that do not see phi: what can hold a rotor's angle.
   bool blind_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out) {
-    workspace_.context.averaged = true;   // a mesh whose stiffness varies joins its shafts all the same
+    workspace_.context.averaged =
+        true;  // a mesh whose stiffness varies joins its shafts all the same
     const bool inside = evaluate_tangent(f, Omega, q, 0.0, out, blind_);
     workspace_.context.averaged = running_.mean;
     return inside;
   }
-  /// f_k of orders(): complex amplitudes of what stands in the residual; the response solves S a = -f.
+  /// f_k of orders(): complex amplitudes of what stands in the residual; the response solves S a =
+  /// -f.
   bool forcing(const system::Frames& f, double Omega, const VecX& q, std::vector<VecXc>& out);
-  /// Visits the states of the nodes over the revolution with the weights of the mean (once where nothing that was built sees the angle): the mean of
-  /// any result is the weighted sum of what it is at the visits. False outside the domain.
-  bool visit_revolution(const system::Frames& f, double Omega, const VecX& q, const std::function<void(double weight, const system::Workspace&)>& visit);
-  /// Samples of tangents over the revolution, for periodic systems: f(theta) with theta = 2 pi k/n, k = 0 .. n-1.
+  /// Visits the states of the nodes over the revolution with the weights of the mean (once where
+  /// nothing that was built sees the angle): the mean of any result is the weighted sum of what it
+  /// is at the visits. False outside the domain.
+  bool visit_revolution(const system::Frames& f, double Omega, const VecX& q,
+                        const std::function<void(double weight, const system::Workspace&)>& visit);
+  /// Samples of tangents over the revolution, for periodic systems: f(theta) with theta = 2 pi k/n,
+  /// k = 0 .. n-1.
   bool tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out);
   bool residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r);
 
  private:
   using Terms = std::vector<std::size_t>;
-  bool evaluate_residual(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r, const Terms& only);
-  bool evaluate_tangent(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out, const Terms& only);
-  bool add_mean_residual(const system::Frames& f, double Omega, const VecX& q, const Terms& only, VecX& r);
-  bool add_mean_tangent(const system::Frames& f, double Omega, const VecX& q, const Terms& only, la::MCK& out);
-  bool add_forcing(const system::Frames& f, double Omega, const VecX& q, const Terms& only, std::vector<VecXc>& out);
+  bool evaluate_residual(const system::Frames& f, double Omega, const VecX& q, double theta,
+                         VecX& r, const Terms& only);
+  bool evaluate_tangent(const system::Frames& f, double Omega, const VecX& q, double theta,
+                        la::MCK& out, const Terms& only);
+  bool add_mean_residual(const system::Frames& f, double Omega, const VecX& q, const Terms& only,
+                         VecX& r);
+  bool add_mean_tangent(const system::Frames& f, double Omega, const VecX& q, const Terms& only,
+                        la::MCK& out);
+  bool add_forcing(const system::Frames& f, double Omega, const VecX& q, const Terms& only,
+                   std::vector<VecXc>& out);
   bool smooth_residual(const system::Frames& f, double Omega, const VecX& q, VecX& r);
   bool smooth_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
   /// All but by_frequency_.
@@ -101,24 +122,27 @@ class SteadySystem {
   const system::System& system_;
   SteadyRotation running_;
   std::vector<double> ratio_, orders_;
-  std::vector<double> sense_;              ///< of the nodes
+  std::vector<double> sense_;  ///< of the nodes
   std::vector<unsigned char> spinning_;
-  std::vector<std::pair<Index, Index>> held_;   ///< line that cannot turn, and the node at which it is held
-  Terms smooth_, other_;                   ///< blind to phi: quadratic in the rates; the rest
-  Terms turning_smooth_, turning_;         ///< that see phi: the same
+  std::vector<std::pair<Index, Index>>
+      held_;                        ///< line that cannot turn, and the node at which it is held
+  Terms smooth_, other_;            ///< blind to phi: quadratic in the rates; the rest
+  Terms turning_smooth_, turning_;  ///< that see phi: the same
   Terms blind_, all_;
-  Terms by_frequency_, steady_;            ///< of other_: those that answer differently to motions of different frequency; the rest
-  std::vector<double> theta_;              ///< samples
-  MatX weights_;                           ///< rows: mean, then cos and sin of each order; columns: samples
+  Terms by_frequency_, steady_;  ///< of other_: those that answer differently to motions of
+                                 ///< different frequency; the rest
+  std::vector<double> theta_;    ///< samples
+  MatX weights_;                 ///< rows: mean, then cos and sin of each order; columns: samples
   bool hysteretic_ = false;
   system::Workspace workspace_;
-  VecX q_, v_, a_, r_;                     // scratch
+  VecX q_, v_, a_, r_;  // scratch
   la::MCK part_, sample_;
-  // What does not depend on the frequency asked about, kept while the state stays: supports tabulated against it alone are evaluated again
+  // What does not depend on the frequency asked about, kept while the state stays: supports
+  // tabulated against it alone are evaluated again
   la::MCK fixed_;
   bool have_fixed_ = false;
   double fixed_speed_ = 0, fixed_load_ = 1;
-  std::array<double, 4> fixed_whirl_{};    ///< rate of hysteretic damping
+  std::array<double, 4> fixed_whirl_{};  ///< rate of hysteretic damping
   VecX fixed_q_;
   std::vector<Mat3> fixed_charts_;
   // smooth terms as polynomials at one q
@@ -126,20 +150,23 @@ class SteadySystem {
   double scale_ = 0, polynomial_load_ = 1, seen_speed_ = 0;
   VecX polynomial_q_, seen_q_;
   std::vector<Mat3> polynomial_charts_;
-  la::MCK p0_, p1_;                        ///< constant part; slopes of C and K
-  la::BlockMatrix<6> k2_;                  ///< curvature of K
+  la::MCK p0_, p1_;        ///< constant part; slopes of C and K
+  la::BlockMatrix<6> k2_;  ///< curvature of K
   VecX r0_, r1_, r2_;
-  std::vector<VecXc> f0_, f1_, f2_;        ///< forcing
+  std::vector<VecXc> f0_, f1_, f2_;  ///< forcing
 };
 
-/// Sign of the spin that whirl at each node is measured against, +1 or -1, one a node, at a positive reference speed.
-/// ratio: spin of each line relative to the reference (lines beyond its end stand still). A node of a shaft that turns has
-/// the sign of that shaft. What stands (casing, pedestal, foundation) follows the shaft it carries: the nearest one along its
-/// own elements and supports; where shafts that turn either way are equally near, the first turning shaft decides. So it does
-/// for parts that carry no shaft. Without any turning shaft all are +1. A mirrored machine has the opposite signs throughout.
+/// Sign of the spin that whirl at each node is measured against, +1 or -1, one a node, at a
+/// positive reference speed. ratio: spin of each line relative to the reference (lines beyond its
+/// end stand still). A node of a shaft that turns has the sign of that shaft. What stands (casing,
+/// pedestal, foundation) follows the shaft it carries: the nearest one along its own elements and
+/// supports; where shafts that turn either way are equally near, the first turning shaft decides.
+/// So it does for parts that carry no shaft. Without any turning shaft all are +1. A mirrored
+/// machine has the opposite signs throughout.
 std::vector<double> spin_senses(const system::System& system, std::span<const double> ratio);
 
-/// Node forces f and g of one term are equal but for rounding: to 1e-8 of its largest force, director force and torque.
+/// Node forces f and g of one term are equal but for rounding: to 1e-8 of its largest force,
+/// director force and torque.
 bool same_forces(const std::vector<Vector<7>>& f, const std::vector<Vector<7>>& g);
 
 }  // namespace whirl::analysis

@@ -21,20 +21,32 @@ namespace whirl::app {
 namespace {
 
 const char* kind_of(const model::StepLaw& law) {
-  static constexpr const char* names[] = {"static", "modal", "campbell", "critical_speeds", "unbalance_response",
-                                          "stability", "critical_map", "harmonic_response", "torsional", "buckling", "transient"};
+  static constexpr const char* names[] = {
+      "static",    "modal",        "campbell",          "critical_speeds", "unbalance_response",
+      "stability", "critical_map", "harmonic_response", "torsional",       "buckling",
+      "transient"};
   static_assert(std::size(names) == std::variant_size_v<model::StepLaw>);
   return names[law.index()];
 }
 
-std::string count(std::size_t n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
+std::string count(std::size_t n, const char* one, const char* many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
 
 std::string summary(const model::Model& m, const meshes::Mesh& mesh) {
   std::string r = fmt::format("{}{}{}\n", m.deck_path, m.title.empty() ? "" : ": ", m.title);
-  r += fmt::format("  {}, {}, {}, {}, {}, {}\n", count(m.shafts.size(), "shaft", "shafts"), count(m.disks.size(), "disk", "disks"), count(m.bearings.size(), "bearing", "bearings"),
-                   count(m.unbalances.size(), "unbalance", "unbalances"), count(mesh.nodes.size(), "node", "nodes"), count(mesh.elements.size(), "shaft element", "shaft elements"));
-  r += fmt::format("  gravity {} m/s^2 along ({:g}, {:g}, {:g})\n", units::format_number(m.gravity.norm()), m.gravity.x(), m.gravity.y(), m.gravity.z());
-  for (const auto& s : m.steps) r += fmt::format("  step '{}': {}{}\n", s.name, kind_of(s.law), s.from.empty() ? "" : ", from '" + s.from + "'");
+  r += fmt::format("  {}, {}, {}, {}, {}, {}\n", count(m.shafts.size(), "shaft", "shafts"),
+                   count(m.disks.size(), "disk", "disks"),
+                   count(m.bearings.size(), "bearing", "bearings"),
+                   count(m.unbalances.size(), "unbalance", "unbalances"),
+                   count(mesh.nodes.size(), "node", "nodes"),
+                   count(mesh.elements.size(), "shaft element", "shaft elements"));
+  r += fmt::format("  gravity {} m/s^2 along ({:g}, {:g}, {:g})\n",
+                   units::format_number(m.gravity.norm()), m.gravity.x(), m.gravity.y(),
+                   m.gravity.z());
+  for (const auto& s : m.steps)
+    r += fmt::format("  step '{}': {}{}\n", s.name, kind_of(s.law),
+                     s.from.empty() ? "" : ", from '" + s.from + "'");
   if (m.steps.empty()) r += "  no steps: nothing to run\n";
   return r;
 }
@@ -61,7 +73,8 @@ io::Value summary_value(const model::Model& m, const meshes::Mesh& mesh) {
   }
   const auto names = [&](const char* key, const auto& list) {
     v[key] = io::Value::array();
-    for (const auto& x : list) v[key].push(x.name);
+    for (const auto& x : list)
+      v[key].push(x.name);
   };
   names("disks", m.disks);
   names("bearings", m.bearings);
@@ -78,16 +91,19 @@ io::Value summary_value(const model::Model& m, const meshes::Mesh& mesh) {
   return v;
 }
 
-void write_mesh(const model::Model& m, const meshes::Mesh& mesh, const std::filesystem::path& folder) {
+void write_mesh(const model::Model& m, const meshes::Mesh& mesh,
+                const std::filesystem::path& folder) {
   const io::ResultsFolder out(folder);
   out.write_text("nodes.csv", meshes::nodes_csv(mesh));
   out.write_text("elements.csv", meshes::elements_csv(m, mesh));
   out.write_text("stations.csv", meshes::stations_csv(mesh));
-  for (const plot::Figure& f : plot::draw_model(m, mesh, meshes::make_scene(m, mesh))) out.write_text(f.name + ".svg", plot::render_svg(f));
+  for (const plot::Figure& f : plot::draw_model(m, mesh, meshes::make_scene(m, mesh)))
+    out.write_text(f.name + ".svg", plot::render_svg(f));
 }
 
 /// The same deck with a key set otherwise.
-std::function<model::Model(const std::string&)> variants_of(const std::filesystem::path& deck, const deck::ReadOptions& options) {
+std::function<model::Model(const std::string&)> variants_of(const std::filesystem::path& deck,
+                                                            const deck::ReadOptions& options) {
   return [deck, options](const std::string& setting) {
     deck::ReadOptions read = options;
     read.set.push_back(setting);
@@ -95,7 +111,8 @@ std::function<model::Model(const std::string&)> variants_of(const std::filesyste
   };
 }
 
-/// A resolved deck has its parameters put in: what a map would vary there is gone, and no mistake of its writer.
+/// A resolved deck has its parameters put in: what a map would vary there is gone, and no mistake
+/// of its writer.
 bool has_parameters(const deck::Deck& d) {
   for (int k = 0; k < d.sources.size(); ++k)
     if (d.sources[k].text.find("parameters") != std::string::npos) return true;
@@ -151,7 +168,10 @@ int check_deck(const CheckOptions& o) {
   } else {
     run::print_diagnostics(d, o.quiet);
     if (!o.quiet)
-      std::fputs((summary(d.model, mesh) + "\n" + meshes::station_table(d.model, mesh) + "\n" + meshes::mass_table(d.model)).c_str(), stdout);
+      std::fputs((summary(d.model, mesh) + "\n" + meshes::station_table(d.model, mesh) + "\n" +
+                  meshes::mass_table(d.model))
+                     .c_str(),
+                 stdout);
   }
   return static_cast<int>(Exit::ok);
 }

@@ -1,4 +1,5 @@
-// One function per command of the program. Each returns the exit code of core/error.hpp and throws Error.
+// One function per command of the program. Each returns the exit code of core/error.hpp and throws
+// Error.
 #pragma once
 #include <run/options.hpp>
 #include <string>
@@ -10,7 +11,8 @@ struct CheckOptions {
   std::filesystem::path deck;
   deck::ReadOptions read;
   bool json = false, quiet = false, resolved = false;
-  std::filesystem::path mesh;     ///< folder for the mesh as tables and the drawing of the rotor; empty: none
+  std::filesystem::path
+      mesh;  ///< folder for the mesh as tables and the drawing of the rotor; empty: none
 };
 /// Reads a deck and prints what is wrong with it; station table, masses and summary of a good one.
 int check_deck(const CheckOptions& options);
@@ -31,8 +33,8 @@ std::string json_schema();
 int explain(const std::vector<std::string>& codes);
 
 struct NewOptions {
-  std::string example;            ///< empty: list the examples
-  std::filesystem::path file;     ///< empty: standard output
+  std::string example;         ///< empty: list the examples
+  std::filesystem::path file;  ///< empty: standard output
   bool force = false;
 };
 /// Writes a commented deck to start from.

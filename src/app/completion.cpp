@@ -6,17 +6,21 @@
 namespace whirl::app {
 namespace {
 
-std::string words(const std::vector<std::string>& list) { return fmt::format("{}", fmt::join(list, " ")); }
+std::string words(const std::vector<std::string>& list) {
+  return fmt::format("{}", fmt::join(list, " "));
+}
 
 std::string codes() {
   std::vector<std::string> r;
-  for (const auto& c : error_catalogue()) r.emplace_back(c.code);
+  for (const auto& c : error_catalogue())
+    r.emplace_back(c.code);
   return words(r);
 }
 
 std::string example_names() {
   std::vector<std::string> r;
-  for (const auto& e : examples()) r.emplace_back(e.folder);
+  for (const auto& e : examples())
+    r.emplace_back(e.folder);
   return words(r);
 }
 
@@ -27,7 +31,8 @@ std::string bash(const std::vector<CommandInfo>& commands) {
     names.push_back(c.name);
     cases += fmt::format("    {}) options=\"{}\" ;;\n", c.name, words(c.options));
   }
-  return fmt::format(R"(# bash completion of whirl; put it where bash-completion looks, or: source <(whirl completion bash)
+  return fmt::format(
+      R"(# bash completion of whirl; put it where bash-completion looks, or: source <(whirl completion bash)
 _whirl() {{
   local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} command="" options="" i
   COMPREPLY=()
@@ -56,7 +61,8 @@ _whirl() {{
   fi
 }}
 complete -o filenames -F _whirl whirl
-)", words(names), cases, example_names(), codes());
+)",
+      words(names), cases, example_names(), codes());
 }
 
 std::string fish(const std::vector<CommandInfo>& commands) {
@@ -64,8 +70,11 @@ std::string fish(const std::vector<CommandInfo>& commands) {
   for (const auto& c : commands) {
     r += fmt::format("complete -c whirl -n __fish_use_subcommand -a {}\n", c.name);
     for (const auto& o : c.options)
-      if (o.starts_with("--")) r += fmt::format("complete -c whirl -n '__fish_seen_subcommand_from {}' -l {}\n", c.name, o.substr(2));
-    if (c.takes_deck) r += fmt::format("complete -c whirl -n '__fish_seen_subcommand_from {}' -F\n", c.name);
+      if (o.starts_with("--"))
+        r += fmt::format("complete -c whirl -n '__fish_seen_subcommand_from {}' -l {}\n", c.name,
+                         o.substr(2));
+    if (c.takes_deck)
+      r += fmt::format("complete -c whirl -n '__fish_seen_subcommand_from {}' -F\n", c.name);
   }
   r += fmt::format("complete -c whirl -n '__fish_seen_subcommand_from explain' -a '{}'\n", codes());
   return r;

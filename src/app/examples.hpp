@@ -10,9 +10,9 @@ struct ExampleFile {
 };
 
 struct Example {
-  const char* folder;   ///< "01_paper_rotor"
-  const char* deck;     ///< text of its deck.toml
-  std::vector<ExampleFile> files;   ///< tables it reads from its folder
+  const char* folder;              ///< "01_paper_rotor"
+  const char* deck;                ///< text of its deck.toml
+  std::vector<ExampleFile> files;  ///< tables it reads from its folder
 };
 /// In the order of their numbers.
 const std::vector<Example>& examples();

@@ -14,8 +14,14 @@ std::string wrap(const std::string& text) {
   std::size_t column = 0;
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t stop = std::min(text.find(' ', i), text.size());
-    if (column > 0 && column + 1 + (stop - i) > 88) { r += '\n'; column = 0; }
-    if (column > 0) { r += ' '; ++column; }
+    if (column > 0 && column + 1 + (stop - i) > 88) {
+      r += '\n';
+      column = 0;
+    }
+    if (column > 0) {
+      r += ' ';
+      ++column;
+    }
     r += text.substr(i, stop - i);
     column += stop - i;
     i = stop + 1;
@@ -27,11 +33,13 @@ std::string wrap(const std::string& text) {
 
 int explain(const std::vector<std::string>& codes) {
   if (codes.empty()) {
-    for (const auto& c : error_catalogue()) std::fputs(fmt::format("{}  {}\n", c.code, c.title).c_str(), stdout);
+    for (const auto& c : error_catalogue())
+      std::fputs(fmt::format("{}  {}\n", c.code, c.title).c_str(), stdout);
     return static_cast<int>(Exit::ok);
   }
   for (std::string code : codes) {
-    for (char& c : code) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    for (char& c : code)
+      c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     const CodeInfo* info = find_code(code);
     if (!info) {
       Diagnostic d;

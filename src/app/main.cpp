@@ -20,14 +20,21 @@ using namespace whirl::app;
 
 void add_deck(CLI::App* c, std::filesystem::path& deck, deck::ReadOptions& read) {
   c->add_option("deck", deck, "deck file (TOML); - is standard input")->required();
-  c->add_option("--set", read.set, "override a key: --set step.run_up.duration='5 s' (may be repeated)")->type_name("PATH=VALUE")->take_all()->allow_extra_args(false);
+  c->add_option("--set", read.set,
+                "override a key: --set step.run_up.duration='5 s' (may be repeated)")
+      ->type_name("PATH=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
 }
 
 void add_run(CLI::App* c, run::RunOptions& run) {
   c->add_flag("-q,--quiet", run.quiet, "no progress and no summary");
   c->add_flag("--json", run.json, "summary as JSON on standard output");
-  c->add_option("-j,--jobs", run.jobs, "threads for what can go in parallel (0: all processors)")->check(CLI::Range(0, 1024))->type_name("N");
-  c->add_option("-o,--output", run.output, "results folder instead of the deck's")->type_name("FOLDER");
+  c->add_option("-j,--jobs", run.jobs, "threads for what can go in parallel (0: all processors)")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  c->add_option("-o,--output", run.output, "results folder instead of the deck's")
+      ->type_name("FOLDER");
 }
 
 std::vector<CommandInfo> commands_of(const CLI::App& app) {
@@ -35,7 +42,8 @@ std::vector<CommandInfo> commands_of(const CLI::App& app) {
   for (const auto* c : app.get_subcommands([](const CLI::App*) { return true; })) {
     CommandInfo info{c->get_name(), {}, false};
     for (const auto* o : c->get_options()) {
-      for (const auto& n : o->get_lnames()) info.options.push_back("--" + n);
+      for (const auto& n : o->get_lnames())
+        info.options.push_back("--" + n);
       info.takes_deck = info.takes_deck || o->get_name() == "deck";
     }
     r.push_back(std::move(info));
@@ -46,8 +54,10 @@ std::vector<CommandInfo> commands_of(const CLI::App& app) {
 void check_environment() {
   const char* isa = std::getenv("WHIRL_ISA");
   if (!isa || known_isa(isa)) return;
-  throw Error(Exit::usage, Diagnostic{Diagnostic::Severity::error, "E98", fmt::format("WHIRL_ISA = '{}' is no instruction set", isa),
-                                      "it is baseline, avx2 or avx512; leave it out for the best one", Where{}});
+  throw Error(Exit::usage,
+              Diagnostic{Diagnostic::Severity::error, "E98",
+                         fmt::format("WHIRL_ISA = '{}' is no instruction set", isa),
+                         "it is baseline, avx2 or avx512; leave it out for the best one", Where{}});
 }
 
 int command_line(int argc, char** argv) {
@@ -56,17 +66,26 @@ int command_line(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", [] { return "whirl " + version(); });
   app.failure_message(CLI::FailureMessage::simple);
-  app.footer("Exit codes: 0 done, 1 internal error, 2 usage, 3 deck, 4 no convergence, 5 input or output, 130 interrupted.\nExamples:\n"
-             "  whirl new --example run_up deck.toml    a commented deck to start from\n  whirl check deck.toml                   what is in it, what is wrong with it\n"
-             "  whirl run deck.toml                     run it\n  whirl explain E07                       what an error code means");
+  app.footer(
+      "Exit codes: 0 done, 1 internal error, 2 usage, 3 deck, 4 no convergence, 5 input or output, "
+      "130 interrupted.\nExamples:\n"
+      "  whirl new --example run_up deck.toml    a commented deck to start from\n  whirl check "
+      "deck.toml                   what is in it, what is wrong with it\n"
+      "  whirl run deck.toml                     run it\n  whirl explain E07                       "
+      "what an error code means");
 
   CheckOptions check;
-  auto* c = app.add_subcommand("check", "read a deck; print stations, masses and everything that is wrong");
+  auto* c = app.add_subcommand("check",
+                               "read a deck; print stations, masses and everything that is wrong");
   add_deck(c, check.deck, check.read);
-  c->add_option("--mesh", check.mesh, "write nodes, elements and stations (CSV) and a drawing of the rotor (SVG) into this folder")->type_name("FOLDER");
+  c->add_option(
+       "--mesh", check.mesh,
+       "write nodes, elements and stations (CSV) and a drawing of the rotor (SVG) into this folder")
+      ->type_name("FOLDER");
   c->add_flag("--json", check.json, "result as JSON on standard output");
   c->add_flag("-q,--quiet", check.quiet, "errors only");
-  c->add_flag("--resolved", check.resolved, "print the resolved deck: parameters put in, defaults explicit");
+  c->add_flag("--resolved", check.resolved,
+              "print the resolved deck: parameters put in, defaults explicit");
 
   RunCommand run;
   c = app.add_subcommand("run", "run the steps of a deck");
@@ -74,15 +93,22 @@ int command_line(int argc, char** argv) {
   add_run(c, run.run);
   c->add_flag("--resume", run.run.resume, "continue from the last checkpoint");
   bool keep_everything = false;
-  c->add_flag("--keep-everything", keep_everything, "build the general model instead of leaving out what the deck does not need");
+  c->add_flag("--keep-everything", keep_everything,
+              "build the general model instead of leaving out what the deck does not need");
 
   study::StudyOptions study;
-  c = app.add_subcommand("study", "error against run time of a deck over tolerances, steps, integrators and meshes");
+  c = app.add_subcommand(
+      "study", "error against run time of a deck over tolerances, steps, integrators and meshes");
   add_deck(c, study.deck, study.read);
   add_run(c, study.run);
-  c->add_option("--exact", study.exact, "exact displacements of probes to measure against as well: CSV with columns \"t [s]\", \"PROBE.y [m]\", ..")->type_name("FILE");
+  c->add_option("--exact", study.exact,
+                "exact displacements of probes to measure against as well: CSV with columns \"t "
+                "[s]\", \"PROBE.y [m]\", ..")
+      ->type_name("FILE");
   bool stability = false;
-  c->add_flag("--stability", stability, "instead: spectral radius, numerical damping and energy over 1e5 steps of every integrator on this rotor");
+  c->add_flag("--stability", stability,
+              "instead: spectral radius, numerical damping and energy over 1e5 steps of every "
+              "integrator on this rotor");
 
   bool reference = false, unit_list = false;
   c = app.add_subcommand("schema", "JSON schema of decks, for editors");
@@ -94,7 +120,8 @@ int command_line(int argc, char** argv) {
   c->add_option("codes", codes, "error codes")->type_name("CODE");
 
   NewOptions fresh;
-  c = app.add_subcommand("new", "write a commented deck to start from; without --example: the list");
+  c = app.add_subcommand("new",
+                         "write a commented deck to start from; without --example: the list");
   c->add_option("--example", fresh.example, "which one")->type_name("NAME");
   c->add_option("file", fresh.file, "file to write (standard output when left out)");
   c->add_flag("--force", fresh.force, "replace an existing file");
@@ -108,7 +135,7 @@ int command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);   // prints help, version or the message
+    const int code = app.exit(e);  // prints help, version or the message
     return code == 0 ? static_cast<int>(Exit::ok) : static_cast<int>(Exit::usage);
   }
   const auto given = [&](const char* name) { return app.got_subcommand(name); };
@@ -122,7 +149,10 @@ int command_line(int argc, char** argv) {
     study.run.terminal = run::is_terminal(2);
     return stability ? study::study_stability(study) : study::study_deck(study);
   }
-  if (given("schema")) return print_schema(reference ? SchemaForm::reference : unit_list ? SchemaForm::units : SchemaForm::json);
+  if (given("schema"))
+    return print_schema(reference   ? SchemaForm::reference
+                        : unit_list ? SchemaForm::units
+                                    : SchemaForm::json);
   if (given("explain")) return explain(codes);
   if (given("new")) return new_deck(fresh);
   if (given("completion")) {

@@ -1,4 +1,5 @@
-// JSON schema (draft 2020-12) of decks, for editors that know TOML schemas (Even Better TOML, taplo).
+// JSON schema (draft 2020-12) of decks, for editors that know TOML schemas (Even Better TOML,
+// taplo).
 #include <app/commands.hpp>
 #include <core/units.hpp>
 #include <cmath>
@@ -45,7 +46,8 @@ class Definitions {
     auto known = names_.find(text);
     if (known == names_.end()) {
       std::string name = hint;
-      for (int n = 2; taken_.count(name); ++n) name = fmt::format("{} {}", hint, n);
+      for (int n = 2; taken_.count(name); ++n)
+        name = fmt::format("{} {}", hint, n);
       taken_.insert(name);
       known = names_.emplace(text, name).first;
       all_[name] = std::move(v);
@@ -57,14 +59,15 @@ class Definitions {
   const Value& all() const { return all_; }
 
  private:
-  static constexpr std::size_t shortest = 120;   // characters, of JSON as it is written
+  static constexpr std::size_t shortest = 120;  // characters, of JSON as it is written
   /// As a JSON pointer in a URI.
   static std::string escaped(const std::string& name) {
     std::string out;
-    for (const char c : name) out += c == ' ' ? "%20" : std::string(1, c);
+    for (const char c : name)
+      out += c == ' ' ? "%20" : std::string(1, c);
     return out;
   }
-  std::map<std::string, std::string> names_;   // by content
+  std::map<std::string, std::string> names_;  // by content
   std::set<std::string> taken_;
   Value all_ = Value::object();
 };
@@ -79,13 +82,14 @@ Value quantity(const std::string& unit, const deck::Range& range, bool plain_zer
   Value n = type("number");
   if (std::isfinite(range.min)) n[range.open_min ? "exclusiveMinimum" : "minimum"] = range.min;
   if (std::isfinite(range.max)) n[range.open_max ? "exclusiveMaximum" : "maximum"] = range.max;
-  return any_of({n, type("string")});   // "5 %"
+  return any_of({n, type("string")});  // "5 %"
 }
 
 Value words(const std::vector<deck::Option>& options) {
   Value e = type("string");
   e["enum"] = Value::array();
-  for (const auto& o : options) e["enum"].push(o.name);
+  for (const auto& o : options)
+    e["enum"].push(o.name);
   return any_of({e, parameter()});
 }
 
@@ -93,7 +97,10 @@ Value words(const std::vector<deck::Option>& options) {
 Value list_of(Value item, int count = -1) {
   Value v = type("array");
   v["items"] = std::move(item);
-  if (count >= 0) { v["minItems"] = count; v["maxItems"] = count; }
+  if (count >= 0) {
+    v["minItems"] = count;
+    v["maxItems"] = count;
+  }
   return any_of({v, parameter()});
 }
 
@@ -124,7 +131,8 @@ class Schema {
   }
 
  private:
-  /// One way to fill a table. open: its "type" is a parameter, so which keys belong to it is not known.
+  /// One way to fill a table. open: its "type" is a parameter, so which keys belong to it is not
+  /// known.
   struct Form {
     Value properties = Value::object(), required = Value::array();
     bool open = false;
@@ -148,12 +156,15 @@ class Schema {
       case KeyInfo::Kind::matrix: return list_of(list_of(matrix_entry(), 6), 6);
       case KeyInfo::Kind::option: return words(k.words);
       case KeyInfo::Kind::options: return list_of(words(k.words));
-      case KeyInfo::Kind::table: return any_of({definitions_.refer(path, table_of(*k.table, path)), parameter()});
+      case KeyInfo::Kind::table:
+        return any_of({definitions_.refer(path, table_of(*k.table, path)), parameter()});
       case KeyInfo::Kind::list: {
         const Value t = definitions_.refer(path, table_of(*k.table, path));
         return any_of({list_of(t), t});
       }
-      case KeyInfo::Kind::either: return any_of({quantity(k.unit, k.range), definitions_.refer(path, table_of(*k.table, path))});
+      case KeyInfo::Kind::either:
+        return any_of(
+            {quantity(k.unit, k.range), definitions_.refer(path, table_of(*k.table, path))});
       case KeyInfo::Kind::free_table: return type("object");
       case KeyInfo::Kind::alternatives: break;
     }
@@ -163,15 +174,17 @@ class Schema {
   void add_key(Form& form, const KeyInfo& k, const std::string& table) {
     const std::string path = table == "deck" ? k.name : table + "." + k.name;
     Value v = value_of(k, path);
-    if (path == "format") {   // the one there is
+    if (path == "format") {  // the one there is
       Value version = Value::object();
       version["const"] = 1;
       v = any_of({version, parameter()});
     }
     std::string doc = k.doc;
     if (k.kind == KeyInfo::Kind::quantity && !k.unit.empty()) doc += fmt::format(" [{}]", k.unit);
-    if (!k.default_text.empty()) doc += fmt::format("; default {}", k.default_text);
-    else if (!k.absent.empty()) doc += fmt::format("; left out: {}", k.absent);
+    if (!k.default_text.empty())
+      doc += fmt::format("; default {}", k.default_text);
+    else if (!k.absent.empty())
+      doc += fmt::format("; left out: {}", k.absent);
     for (const auto& w : k.words)
       if (*w.doc) doc += fmt::format("\n{}: {}", w.name, w.doc);
     v["description"] = doc;
@@ -184,11 +197,13 @@ class Schema {
     form.properties["columns"]["description"] = "titles of the columns, \"key[unit]\"";
     form.properties["rows"] = list_of(any_of({type("array"), parameter()}));
     form.properties["file"] = type("string");
-    form.properties["file"]["description"] = "CSV file with titled columns, instead of columns and rows";
+    form.properties["file"]["description"] =
+        "CSV file with titled columns, instead of columns and rows";
   }
 
-  /// Every way to fill a table whose keys join those of `start`: each "type" of it, and each "type" among the keys of that one, is a form of
-  /// its own, so that editors offer the keys that belong to it.
+  /// Every way to fill a table whose keys join those of `start`: each "type" of it, and each "type"
+  /// among the keys of that one, is a form of its own, so that editors offer the keys that belong
+  /// to it.
   std::vector<Form> forms_of(const TableInfo& t, Form start, const std::string& path) {
     for (const auto& k : t.keys)
       if (k.kind != KeyInfo::Kind::alternatives) add_key(start, k, path);
@@ -210,7 +225,9 @@ class Schema {
           word["description"] = c.doc;
           chosen.properties[k.name] = std::move(word);
           chosen.required.push(k.name);
-          const std::vector<Form> all = f.open ? std::vector{chosen} : forms_of(*c.table, std::move(chosen), path + "." + c.name);
+          const std::vector<Form> all =
+              f.open ? std::vector{chosen}
+                     : forms_of(*c.table, std::move(chosen), path + "." + c.name);
           longer.insert(longer.end(), all.begin(), all.end());
         }
       }
@@ -231,7 +248,8 @@ class Schema {
     if (forms.size() == 1) return object(forms.front());
     Value v = Value::object();
     v["oneOf"] = Value::array();
-    for (const Form& f : forms) v["oneOf"].push(object(f));
+    for (const Form& f : forms)
+      v["oneOf"].push(object(f));
     return v;
   }
 
@@ -243,7 +261,9 @@ class Schema {
 std::string json_schema() { return io::to_json(Schema().root()); }
 
 int print_schema(SchemaForm form) {
-  const std::string text = form == SchemaForm::reference ? deck::reference_markdown() : form == SchemaForm::units ? deck::units_markdown() : json_schema();
+  const std::string text = form == SchemaForm::reference ? deck::reference_markdown()
+                           : form == SchemaForm::units   ? deck::units_markdown()
+                                                         : json_schema();
   std::fputs(text.c_str(), stdout);
   return static_cast<int>(Exit::ok);
 }

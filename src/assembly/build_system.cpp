@@ -6,7 +6,8 @@
 
 namespace whirl::assembly {
 
-void Assembly::error(const char* code, std::string message, std::string hint, const model::Entity& e, std::string entity) {
+void Assembly::error(const char* code, std::string message, std::string hint,
+                     const model::Entity& e, std::string entity) {
   Diagnostic d{Diagnostic::Severity::error, code, std::move(message), std::move(hint), e.where};
   d.where.entity = std::move(entity);
   errors.push_back(std::move(d));
@@ -15,7 +16,8 @@ void Assembly::error(const char* code, std::string message, std::string hint, co
 Built build_system(const model::Model& model, const meshes::Mesh& mesh, const std::string& step) {
   Assembly a{model, mesh, step, {}, {}, {}};
   // Nodes in the order of the mesh: indices agree everywhere.
-  for (const meshes::Line& line : mesh.lines) a.builder.add_line(line.name);
+  for (const meshes::Line& line : mesh.lines)
+    a.builder.add_line(line.name);
   Index supports = -1;
   for (const meshes::Node& n : mesh.nodes) {
     if (n.kind == meshes::NodeKind::ground) {
@@ -23,7 +25,8 @@ Built build_system(const model::Model& model, const meshes::Mesh& mesh, const st
       continue;
     }
     Index line = n.line;
-    if (n.kind == meshes::NodeKind::pedestal) {   // axes of their own: those of a shaft line may be moved
+    if (n.kind ==
+        meshes::NodeKind::pedestal) {  // axes of their own: those of a shaft line may be moved
       if (supports < 0) supports = a.builder.add_line("supports");
       line = supports;
     }
@@ -39,7 +42,8 @@ Built build_system(const model::Model& model, const meshes::Mesh& mesh, const st
   add_turning_base(a);
   check_restraint(a);
   if (!a.errors.empty()) {
-    std::stable_sort(a.errors.begin(), a.errors.end(), [](const auto& x, const auto& y) { return x.where.line < y.where.line; });
+    std::stable_sort(a.errors.begin(), a.errors.end(),
+                     [](const auto& x, const auto& y) { return x.where.line < y.where.line; });
     throw Error(Exit::deck, std::move(a.errors));
   }
   Built out = std::move(a.built);
@@ -47,7 +51,8 @@ Built build_system(const model::Model& model, const meshes::Mesh& mesh, const st
   const std::vector<double> held = out.system.breakpoints();
   out.breakpoints.insert(out.breakpoints.end(), held.begin(), held.end());
   std::sort(out.breakpoints.begin(), out.breakpoints.end());
-  out.breakpoints.erase(std::unique(out.breakpoints.begin(), out.breakpoints.end()), out.breakpoints.end());
+  out.breakpoints.erase(std::unique(out.breakpoints.begin(), out.breakpoints.end()),
+                        out.breakpoints.end());
   return out;
 }
 

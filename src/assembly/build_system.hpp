@@ -1,4 +1,5 @@
-// The only translator from Model + Mesh to System. Absent physics is an absent batch: what the deck does not contain is not added.
+// The only translator from Model + Mesh to System. Absent physics is an absent batch: what the deck
+// does not contain is not added.
 #pragma once
 #include <meshes/mesh.hpp>
 #include <model/model.hpp>
@@ -9,36 +10,41 @@
 
 namespace whirl::assembly {
 
-/// How results read a state: node states and reactions (residual at held unknowns, system::System::residual).
+/// How results read a state: node states and reactions (residual at held unknowns,
+/// system::System::residual).
 using NodeAt = std::function<const system::NodeState&(Index)>;
 using ReactionAt = std::function<double(Index unknown)>;
 
-/// Force of a support on the shaft, N, global axes (and moment, N m, where it has one). Of the context the time and whether the mean over the
-/// revolution is asked for.
+/// Force of a support on the shaft, N, global axes (and moment, N m, where it has one). Of the
+/// context the time and whether the mean over the revolution is asked for.
 struct SupportForce {
   using Law = std::function<Vec3(const NodeAt&, const system::Context&, const ReactionAt&)>;
-  std::string name;                 ///< of the bearing
+  std::string name;  ///< of the bearing
   Law force;
-  Law moment{};                     ///< N m, about the place of the support; null where it gives none
+  Law moment{};  ///< N m, about the place of the support; null where it gives none
 };
 
-/// How a support with a gap stands: films before their clearance is used up, contacts before they close.
+/// How a support with a gap stands: films before their clearance is used up, contacts before they
+/// close.
 struct SupportCondition {
-  static constexpr double believed = 0.99;   ///< eccentricity beyond which a film is not believed
+  static constexpr double believed = 0.99;  ///< eccentricity beyond which a film is not believed
   struct State {
     bool film = false;
-    double gap = 0, displacement = 0;        ///< m
-    double load = 0, capacity = 0;           ///< N; capacity of a film: at the believed eccentricity
+    double gap = 0, displacement = 0;  ///< m
+    double load = 0, capacity = 0;     ///< N; capacity of a film: at the believed eccentricity
   };
   std::string name;
   Where where;
   std::function<State(const NodeAt&)> state;
-  double sommerfeld = 0;            ///< of a film: eta L D (R/c)^2, N s; times the speed in rev/s over the load it is the Sommerfeld number
+  double sommerfeld = 0;  ///< of a film: eta L D (R/c)^2, N s; times the speed in rev/s over the
+                          ///< load it is the Sommerfeld number
 };
 
 /// Load of every element of a rolling bearing.
 struct RollingLoads {
-  struct Element { double angle, load; };    ///< rad from +y towards +z, 0 to 2 pi; N
+  struct Element {
+    double angle, load;
+  };  ///< rad from +y towards +z, 0 to 2 pi; N
   std::string name;
   std::function<std::vector<Element>(const NodeAt&)> loads;
 };
@@ -49,46 +55,63 @@ struct DriveTorque {
   std::function<double(const NodeAt&, double t, const ReactionAt&)> torque;
 };
 
-/// A speed controller of a drive, whose integral of the speed error begins where begin() was called last: time, s, and angle of its node,
-/// rad, whole turns included.
+/// A speed controller of a drive, whose integral of the speed error begins where begin() was called
+/// last: time, s, and angle of its node, rad, whole turns included.
 struct Governor {
   std::string drive;
   Index node = 0;
   std::function<void(double time, double angle)> begin;
 };
 
-/// Spin every node of a line starts with: from a prescribed angle law of the step, else Shaft::spin0.
+/// Spin every node of a line starts with: from a prescribed angle law of the step, else
+/// Shaft::spin0.
 struct LineSpin {
   bool prescribed = false;
-  LawPtr angle;                     ///< when prescribed
-  double spin0 = 0;                 ///< rad/s
+  LawPtr angle;      ///< when prescribed
+  double spin0 = 0;  ///< rad/s
 };
 
-/// What a shaft element (stiffness, inertia, damping of its material) adds to the force in X of its two nodes.
-using ElementForce = std::function<void(const system::System&, const system::Nodes<2>&, const system::Context&, system::ForceX<14>&)>;
+/// What a shaft element (stiffness, inertia, damping of its material) adds to the force in X of its
+/// two nodes.
+using ElementForce = std::function<void(const system::System&, const system::Nodes<2>&,
+                                        const system::Context&, system::ForceX<14>&)>;
 
 struct Built {
   system::System system;
-  std::vector<ElementForce> element_forces;   ///< one an element of the mesh
-  std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors), sorted: integrator steps land on them
+  std::vector<ElementForce> element_forces;  ///< one an element of the mesh
+  std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors),
+                                    ///< sorted: integrator steps land on them
   std::vector<SupportForce> support_forces;
   std::vector<SupportCondition> conditions;
-  struct Fine { Index node; double length; };
-  std::vector<Fine> fine;           ///< nodes whose lateral motion must be right to a small part of a length: journals, to their clearance, m
+  struct Fine {
+    Index node;
+    double length;
+  };
+  std::vector<Fine> fine;  ///< nodes whose lateral motion must be right to a small part of a
+                           ///< length: journals, to their clearance, m
   std::vector<RollingLoads> rolling_loads;
   std::vector<DriveTorque> drive_torques;
   std::vector<Governor> governors;
-  std::vector<LineSpin> spins;      ///< one a line
-  Index reference = 0;              ///< node whose spin is the speed axis: the first drive's, else the first node of the first rotating line
-  std::vector<std::string> notes;      ///< what was idealised otherwise than the deck says it, one line each, for the summary
-  std::vector<double> table_frequencies;   ///< rad/s, in no order: of supports with coefficients against the frequency of the motion (system/frequency.hpp)
-  std::vector<std::string> held;       ///< motions that nothing resists and that are held for it, one line each
-  std::vector<std::string> left_out;   ///< physics this scene does not need, one line each, for the summary
-  std::vector<std::string> simpler;    ///< general kernels that simpler ones stand for here; Model::keep_everything keeps them
+  std::vector<LineSpin> spins;  ///< one a line
+  Index reference = 0;  ///< node whose spin is the speed axis: the first drive's, else the first
+                        ///< node of the first rotating line
+  std::vector<std::string> notes;  ///< what was idealised otherwise than the deck says it, one line
+                                   ///< each, for the summary
+  std::vector<double>
+      table_frequencies;  ///< rad/s, in no order: of supports with coefficients against the
+                          ///< frequency of the motion (system/frequency.hpp)
+  std::vector<std::string>
+      held;  ///< motions that nothing resists and that are held for it, one line each
+  std::vector<std::string>
+      left_out;  ///< physics this scene does not need, one line each, for the summary
+  std::vector<std::string> simpler;  ///< general kernels that simpler ones stand for here;
+                                     ///< Model::keep_everything keeps them
 };
 
-/// step: name of the step whose drives act (drives without a step always act); "" = only those without.
-/// Errors (Exit::deck): unrestrained motion named with its shaft, attachments off the shaft, impossible bodies.
-Built build_system(const model::Model& model, const meshes::Mesh& mesh, const std::string& step = {});
+/// step: name of the step whose drives act (drives without a step always act); "" = only those
+/// without. Errors (Exit::deck): unrestrained motion named with its shaft, attachments off the
+/// shaft, impossible bodies.
+Built build_system(const model::Model& model, const meshes::Mesh& mesh,
+                   const std::string& step = {});
 
 }  // namespace whirl::assembly

@@ -7,13 +7,24 @@ elements::ElementSection element_section(const model::Model& m, const meshes::El
   elements::ElementSection out;
   if (!m.materials.empty()) {
     const model::Material& material = m.materials.at(s.material);
-    out.E = material.E; out.G = material.G; out.rho = material.rho;
+    out.E = material.E;
+    out.G = material.G;
+    out.rho = material.rho;
   }
-  out.mass_od1 = s.od_l; out.mass_id1 = s.id_l; out.mass_od2 = s.od_r; out.mass_id2 = s.id_r;
-  out.od1 = s.od_l; out.id1 = s.id_l; out.od2 = s.od_r; out.id2 = s.id_r;
+  out.mass_od1 = s.od_l;
+  out.mass_id1 = s.id_l;
+  out.mass_od2 = s.od_r;
+  out.mass_id2 = s.id_r;
+  out.od1 = s.od_l;
+  out.id1 = s.id_l;
+  out.od2 = s.od_r;
+  out.id2 = s.id_r;
   if (s.stiffness_diameters) {
     const auto& d = *s.stiffness_diameters;
-    out.od1 = d[0]; out.id1 = d[1]; out.od2 = d[2]; out.id2 = d[3];
+    out.od1 = d[0];
+    out.id1 = d[1];
+    out.od2 = d[2];
+    out.id2 = d[3];
   }
   switch (s.shear) {
     case model::ShearFactor::cowper: out.shear = elements::ShearRule::cowper; break;
@@ -33,8 +44,10 @@ elements::ElementSection element_section(const model::Model& m, const meshes::El
   return out.part(e.xi1, e.xi2);
 }
 
-elements::ShaftElementConstants element_constants(const model::Model& m, const meshes::Element& e, const elements::MassShare& share) {
-  return elements::make_shaft_constants(element_section(m, e), e.s2 - e.s1, e.left.offset, e.right.offset, elements::MassKind::corrected, share);
+elements::ShaftElementConstants element_constants(const model::Model& m, const meshes::Element& e,
+                                                  const elements::MassShare& share) {
+  return elements::make_shaft_constants(element_section(m, e), e.s2 - e.s1, e.left.offset,
+                                        e.right.offset, elements::MassKind::corrected, share);
 }
 
 }  // namespace whirl::assembly

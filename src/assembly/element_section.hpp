@@ -9,7 +9,9 @@ namespace whirl::assembly {
 
 /// The part of a (circular or given) section that a mesh element covers.
 elements::ElementSection element_section(const model::Model& m, const meshes::Element& e);
-/// Constants of a mesh element, with its offsets; share as in make_shaft_constants(). Not for general sections.
-elements::ShaftElementConstants element_constants(const model::Model& m, const meshes::Element& e, const elements::MassShare& share = {});
+/// Constants of a mesh element, with its offsets; share as in make_shaft_constants(). Not for
+/// general sections.
+elements::ShaftElementConstants element_constants(const model::Model& m, const meshes::Element& e,
+                                                  const elements::MassShare& share = {});
 
 }  // namespace whirl::assembly

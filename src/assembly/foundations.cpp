@@ -1,4 +1,5 @@
-// Reduced foundations: a node for every support point and every internal coordinate, matrices in parts between pairs of them.
+// Reduced foundations: a node for every support point and every internal coordinate, matrices in
+// parts between pairs of them.
 #include <assembly/parts.hpp>
 #include <elements/supports/matrix_part.hpp>
 #include <elements/rigid/point_mass.hpp>
@@ -13,17 +14,26 @@ namespace {
 using Foundation = model::Foundation;
 
 /// Where a coordinate lives.
-struct Coordinate { Index node; int component; bool internal; };
+struct Coordinate {
+  Index node;
+  int component;
+  bool internal;
+};
 
 /// Rows and columns (x, y, z, rx, ry, rz) of N nodes.
-template <int N> struct Parts { Matrix<6 * N> K = Matrix<6 * N>::Zero(), C = K, M = K; };
+template <int N>
+struct Parts {
+  Matrix<6 *N> K = Matrix<6 * N>::Zero(), C = K, M = K;
+};
 
 template <int N>
-void add_part(Assembly& a, const Parts<N>& p, const std::array<Index, N>& nodes, const std::array<bool, N>& internal, const char* kind) {
+void add_part(Assembly& a, const Parts<N>& p, const std::array<Index, N>& nodes,
+              const std::array<bool, N>& internal, const char* kind) {
   bool turns = false;
   for (int i = 0; i < 6 * N; ++i)
     if (i % 6 >= 3)
-      for (const auto* m : {&p.K, &p.C, &p.M}) turns = turns || !m->row(i).isZero(0.0) || !m->col(i).isZero(0.0);
+      for (const auto* m : {&p.K, &p.C, &p.M})
+        turns = turns || !m->row(i).isZero(0.0) || !m->col(i).isZero(0.0);
   if (turns) {
     a.builder.add(elements::with_rotations<N>(p.K, p.C, p.M, internal), nodes, kind);
     return;
@@ -31,20 +41,27 @@ void add_part(Assembly& a, const Parts<N>& p, const std::array<Index, N>& nodes,
   elements::MatrixPart<N> part;
   for (int i = 0; i < N; ++i)
     for (int j = 0; j < N; ++j) {
-      const auto take = [&](auto& to, const auto& from) { to.template block<3, 3>(3 * i, 3 * j) = from.template block<3, 3>(6 * i, 6 * j); };
-      take(part.K, p.K); take(part.C, p.C); take(part.M, p.M);
+      const auto take = [&](auto& to, const auto& from) {
+        to.template block<3, 3>(3 * i, 3 * j) = from.template block<3, 3>(6 * i, 6 * j);
+      };
+      take(part.K, p.K);
+      take(part.C, p.C);
+      take(part.M, p.M);
     }
   part.internal = internal;
   a.builder.add(part, nodes, kind);
 }
 
-/// Masses that are no more than points: each support point with the same mass along all its directions, without couplings. Node -> kg.
+/// Masses that are no more than points: each support point with the same mass along all its
+/// directions, without couplings. Node -> kg.
 std::map<Index, double> point_masses(const Foundation& f, const std::vector<Coordinate>& place) {
   std::map<Index, double> out;
   for (std::size_t i = 0; i < place.size(); ++i) {
     const auto r = static_cast<Index>(i);
     const double m = f.M(r, r);
-    if (((f.M.row(r).array() != 0).count() > (m != 0 ? 1 : 0)) || (m != 0 && (place[i].internal || place[i].component >= 3))) return {};
+    if (((f.M.row(r).array() != 0).count() > (m != 0 ? 1 : 0)) ||
+        (m != 0 && (place[i].internal || place[i].component >= 3)))
+      return {};
     if (place[i].internal || place[i].component >= 3) continue;
     const auto [at, fresh] = out.emplace(place[i].node, m);
     if (!fresh && at->second != m) return {};
@@ -59,25 +76,35 @@ void add_foundation(Assembly& a, const Foundation& f) {
   std::map<Index, std::array<bool, 6>> used;
   for (const auto& c : f.coordinates) {
     if (c.bearing >= 0) {
-      place.push_back({a.mesh.bearings[static_cast<std::size_t>(c.bearing)].pedestal, c.direction, false});
+      place.push_back(
+          {a.mesh.bearings[static_cast<std::size_t>(c.bearing)].pedestal, c.direction, false});
       used[place.back().node][static_cast<std::size_t>(c.direction)] = true;
     } else {
       if (line < 0) line = a.builder.add_line(who);
-      place.push_back({a.builder.add_node({Vec3::Zero(), line, fmt::format("coordinate '{}' of {}", c.name, who), true}), 0, true});
+      place.push_back(
+          {a.builder.add_node(
+               {Vec3::Zero(), line, fmt::format("coordinate '{}' of {}", c.name, who), true}),
+           0, true});
     }
   }
-  for (const auto& [node, directions] : used)   // a support point moves along its coordinates only
+  for (const auto& [node, directions] : used)  // a support point moves along its coordinates only
     for (int c = 0; c < 6; ++c)
       if (!directions[static_cast<std::size_t>(c)]) a.builder.hold(node, c);
 
   MatX M = f.M;
   if (a.model.base.turn && !M.isZero(0.0)) {
-    // Where the mass of a reduced body is, its matrices do not say, so the centrifugal and Coriolis forces on it are known for points only.
+    // Where the mass of a reduced body is, its matrices do not say, so the centrifugal and Coriolis
+    // forces on it are known for points only.
     const std::map<Index, double> points = point_masses(f, place);
     if (points.empty()) {
-      a.error("E26", fmt::format("{}: its mass matrix does not say where the mass is, so the forces of a turning base on it are not known", who),
-              "on a turning base give the support points one mass each, the same along their directions and without couplings, or make the casing a [[shaft]] with rotating = false",
-              f, who);
+      a.error(
+          "E26",
+          fmt::format("{}: its mass matrix does not say where the mass is, so the forces of a "
+                      "turning base on it are not known",
+                      who),
+          "on a turning base give the support points one mass each, the same along their "
+          "directions and without couplings, or make the casing a [[shaft]] with rotating = false",
+          f, who);
       return;
     }
     for (const auto& [node, mass] : points)
@@ -88,7 +115,8 @@ void add_foundation(Assembly& a, const Foundation& f) {
   std::map<Index, Parts<1>> single;
   std::map<std::array<Index, 2>, Parts<2>> pairs;
   std::map<Index, bool> internal;
-  for (std::size_t i = 0; i < place.size(); ++i) internal[place[i].node] = place[i].internal;
+  for (std::size_t i = 0; i < place.size(); ++i)
+    internal[place[i].node] = place[i].internal;
   for (std::size_t i = 0; i < place.size(); ++i)
     for (std::size_t j = 0; j < place.size(); ++j) {
       const auto r = static_cast<Index>(i), s = static_cast<Index>(j);
@@ -97,22 +125,29 @@ void add_foundation(Assembly& a, const Foundation& f) {
       const auto [n2, d2, internal2] = place[j];
       if (n1 == n2) {
         Parts<1>& p = single[n1];
-        p.K(d1, d2) = k; p.C(d1, d2) = c; p.M(d1, d2) = m;
+        p.K(d1, d2) = k;
+        p.C(d1, d2) = c;
+        p.M(d1, d2) = m;
       } else if (k != 0 || c != 0 || m != 0) {
         const bool swap = n2 < n1;
         Parts<2>& p = pairs[swap ? std::array{n2, n1} : std::array{n1, n2}];
         const int row = swap ? 6 + d1 : d1, column = swap ? d2 : 6 + d2;
-        p.K(row, column) = k; p.C(row, column) = c; p.M(row, column) = m;
+        p.K(row, column) = k;
+        p.C(row, column) = c;
+        p.M(row, column) = m;
       }
     }
-  for (const auto& [node, p] : single) add_part<1>(a, p, {node}, {internal[node]}, "foundation matrices");
-  for (const auto& [nodes, p] : pairs) add_part<2>(a, p, nodes, {internal[nodes[0]], internal[nodes[1]]}, "foundation couplings");
+  for (const auto& [node, p] : single)
+    add_part<1>(a, p, {node}, {internal[node]}, "foundation matrices");
+  for (const auto& [nodes, p] : pairs)
+    add_part<2>(a, p, nodes, {internal[nodes[0]], internal[nodes[1]]}, "foundation couplings");
 }
 
 }  // namespace
 
 void add_foundations(Assembly& a) {
-  for (const Foundation& f : a.model.foundations) add_foundation(a, f);
+  for (const Foundation& f : a.model.foundations)
+    add_foundation(a, f);
 }
 
 }  // namespace whirl::assembly

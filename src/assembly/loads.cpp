@@ -12,13 +12,18 @@ namespace {
 elements::TorqueLaw torque_law(const model::TorqueCurve& c) {
   elements::TorqueLaw t;
   t.of_time = c.of_time;
-  t.speed = c.speed; t.torque = c.torque;
-  t.friction = c.constant; t.viscous = c.viscous; t.quadratic = c.quadratic;
-  if (c.induction) t.induction = {c.induction->breakdown, c.induction->slip_breakdown, c.induction->synchronous};
+  t.speed = c.speed;
+  t.torque = c.torque;
+  t.friction = c.constant;
+  t.viscous = c.viscous;
+  t.quadratic = c.quadratic;
+  if (c.induction)
+    t.induction = {c.induction->breakdown, c.induction->slip_breakdown, c.induction->synchronous};
   if (c.power) t.power = {c.power->power, c.power->max_torque};
   if (c.dc) t.dc = {c.dc->stall, c.dc->no_load_speed};
   t.brake = c.brake;
-  if (c.governor) t.governor = {c.governor->target, c.governor->kp, c.governor->ki, c.governor->max_torque};
+  if (c.governor)
+    t.governor = {c.governor->target, c.governor->kp, c.governor->ki, c.governor->max_torque};
   return t;
 }
 
@@ -29,11 +34,16 @@ void add_torque(Assembly& a, const model::Drive& d, Index node) {
   if (k.law.governor) {
     const auto start = std::make_shared<elements::TorqueLaw::Start>();
     k.law.governor->start = start;
-    a.built.governors.push_back({d.name, node, [start](double time, double angle) { *start = {time, angle}; }});
+    a.built.governors.push_back({d.name, node, [start](double time, double angle) {
+                                   *start = {time, angle};
+                                 }});
   }
   a.take_breakpoints(k.breakpoints());
   a.builder.add(k, {node}, "drives");
-  a.built.drive_torques.push_back({d.name, [k, node](const NodeAt& at, double t, const ReactionAt&) { return k.working(at(node), t).torque; }});
+  a.built.drive_torques.push_back(
+      {d.name, [k, node](const NodeAt& at, double t, const ReactionAt&) {
+         return k.working(at(node), t).torque;
+       }});
 }
 
 void add_load(Assembly& a, const model::PointLoad& l) {
@@ -56,7 +66,9 @@ void add_axial_force(Assembly& a, std::size_t shaft) {
     model::PointLoad pull;
     pull.at.shaft = shaft;
     pull.at.s = right ? length : 0.0;
-    const Vec3 outwards = s.path.empty() ? Vec3(Vec3::UnitX()) : right ? Vec3(s.path.before(length).triad.col(0)) : Vec3(s.path.after(0.0).triad.col(0));
+    const Vec3 outwards = s.path.empty() ? Vec3(Vec3::UnitX())
+                          : right        ? Vec3(s.path.before(length).triad.col(0))
+                                         : Vec3(s.path.after(0.0).triad.col(0));
     pull.force = (right ? s.axial_force : -s.axial_force) * outwards;
     add_load(a, pull);
   }
@@ -66,9 +78,14 @@ void add_axial_force(Assembly& a, std::size_t shaft) {
 
 void add_loads(Assembly& a) {
   for (int k = 0; k < 3; ++k)
-    if (const LawPtr& law = a.model.base.acceleration[static_cast<std::size_t>(k)]) { a.builder.set_base_acceleration(k, law); a.take_breakpoints(law); }
-  for (const model::PointLoad& l : a.model.loads) add_load(a, l);
-  for (std::size_t k = 0; k < a.model.shafts.size(); ++k) add_axial_force(a, k);
+    if (const LawPtr& law = a.model.base.acceleration[static_cast<std::size_t>(k)]) {
+      a.builder.set_base_acceleration(k, law);
+      a.take_breakpoints(law);
+    }
+  for (const model::PointLoad& l : a.model.loads)
+    add_load(a, l);
+  for (std::size_t k = 0; k < a.model.shafts.size(); ++k)
+    add_axial_force(a, k);
 
   for (const model::Shaft& s : a.model.shafts) {
     LineSpin spin;
@@ -84,14 +101,18 @@ void add_loads(Assembly& a) {
     if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law)) {
       if (!prescribed.insert(node).second) {
         const std::string who = fmt::format("drive '{}'", d.name);
-        a.error("E26", fmt::format("{}: the angle at {} is prescribed twice", who, a.builder.node(node).name), {}, d, who);
+        a.error(
+            "E26",
+            fmt::format("{}: the angle at {} is prescribed twice", who, a.builder.node(node).name),
+            {}, d, who);
         continue;
       }
       a.builder.hold(node, system::spin_phi, p->angle);
       LineSpin& spin = a.built.spins[d.at.shaft];
       if (!spin.prescribed) spin = {true, p->angle, spin.spin0};
       const Index unknown = 6 * node + system::spin_phi;
-      a.built.drive_torques.push_back({d.name, [unknown](const NodeAt&, double, const ReactionAt& r) { return r(unknown); }});
+      a.built.drive_torques.push_back(
+          {d.name, [unknown](const NodeAt&, double, const ReactionAt& r) { return r(unknown); }});
     } else if (d.kind == model::TorqueKind::fixed_direction) {
       add_torque<elements::TorqueAction::fixed>(a, d, node);
     } else {

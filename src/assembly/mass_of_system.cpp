@@ -7,7 +7,8 @@ namespace whirl::assembly {
 meshes::MassProperties mass_of_system(const system::System& s, Index line) {
   system::State state = s.make_state();
   system::Workspace w = s.make_workspace();
-  MatX R = MatX::Zero(s.size(), 6);   // translations, rotations about the global axes through the origin
+  MatX R =
+      MatX::Zero(s.size(), 6);  // translations, rotations about the global axes through the origin
   for (Index i = 0; i < s.nodes(); ++i) {
     const system::NodeDef& n = s.node(i);
     if ((line >= 0 && n.line != line) || n.scalar) continue;
@@ -16,7 +17,8 @@ meshes::MassProperties mass_of_system(const system::System& s, Index line) {
       const Vec3 axis = Vec3::Unit(k);
       R(6 * i + k, k) = 1.0;
       R.block<3, 1>(6 * i, 3 + k) = axis.cross(n.position);
-      R.block<3, 1>(6 * i + 3, 3 + k) = E.transpose() * axis;   // (phi', gamma2', gamma3') at gamma = 0
+      R.block<3, 1>(6 * i + 3, 3 + k) =
+          E.transpose() * axis;  // (phi', gamma2', gamma3') at gamma = 0
     }
   }
   // From kinetic energies, not from the matrix: that has no rows of nodes that are held.
@@ -25,9 +27,12 @@ meshes::MassProperties mass_of_system(const system::System& s, Index line) {
     return 2.0 * s.energy(w).kinetic;
   };
   Matrix<6> T;
-  for (int i = 0; i < 6; ++i) T(i, i) = twice_energy(R.col(i));
   for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < i; ++j) T(i, j) = T(j, i) = 0.25 * (twice_energy(R.col(i) + R.col(j)) - twice_energy(R.col(i) - R.col(j)));
+    T(i, i) = twice_energy(R.col(i));
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < i; ++j)
+      T(i, j) = T(j, i) =
+          0.25 * (twice_energy(R.col(i) + R.col(j)) - twice_energy(R.col(i) - R.col(j)));
   meshes::MassProperties p;
   p.mass = T.topLeftCorner<3, 3>().trace() / 3.0;
   // u = e_k x r: r^T M r of (translation i, rotation k) is m (e_k x c)_i
@@ -36,7 +41,8 @@ meshes::MassProperties mass_of_system(const system::System& s, Index line) {
   return p;
 }
 
-double mass_disagreement(const meshes::MassProperties& a, const meshes::MassProperties& b, double length) {
+double mass_disagreement(const meshes::MassProperties& a, const meshes::MassProperties& b,
+                         double length) {
   if (!(b.mass > 0)) return a.mass;
   const double l = length > 0 ? length : 1.0;
   return std::max({std::abs(a.mass - b.mass) / b.mass, (a.moment - b.moment).norm() / (b.mass * l),

@@ -1,4 +1,5 @@
-// How much of what moves and loads the nodes is the elements' own inertia: the share of elements/timoshenko_matrices.hpp.
+// How much of what moves and loads the nodes is the elements' own inertia: the share of
+// elements/timoshenko_matrices.hpp.
 #pragma once
 #include <assembly/parts.hpp>
 #include <elements/shaft/timoshenko_matrices.hpp>
@@ -16,7 +17,7 @@ class MassShares {
 
  private:
   const Vec3& node(const meshes::Place& p) const { return of_[static_cast<std::size_t>(p.node)]; }
-  std::vector<Vec3> of_;   ///< (translation, rotation, spin) of each node
+  std::vector<Vec3> of_;  ///< (translation, rotation, spin) of each node
 };
 
 }  // namespace whirl::assembly

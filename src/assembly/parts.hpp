@@ -11,12 +11,17 @@ struct Assembly {
   system::Builder builder;
   Built built;
   std::vector<Diagnostic> errors;
-  int translational = 0;   ///< linear bearings without moments
+  int translational = 0;  ///< linear bearings without moments
 
   bool acts(const model::Drive& d) const { return d.step.empty() || d.step == step; }
-  void error(const char* code, std::string message, std::string hint, const model::Entity& e, std::string entity);
-  void take_breakpoints(const std::vector<double>& t) { built.breakpoints.insert(built.breakpoints.end(), t.begin(), t.end()); }
-  void take_breakpoints(const LawPtr& law) { if (law) take_breakpoints(law->breakpoints()); }
+  void error(const char* code, std::string message, std::string hint, const model::Entity& e,
+             std::string entity);
+  void take_breakpoints(const std::vector<double>& t) {
+    built.breakpoints.insert(built.breakpoints.end(), t.begin(), t.end());
+  }
+  void take_breakpoints(const LawPtr& law) {
+    if (law) take_breakpoints(law->breakpoints());
+  }
 };
 
 /// Shaft and casing elements with their damping, and rigid sections as bodies.

@@ -1,9 +1,9 @@
-// Which rigid motions of shafts and casings nothing resists. Only whether a support acts in a direction counts, not how
-// strongly, so a spring of 1 N/m beside one of 1e12 N/m is seen.
+// Which rigid motions of shafts and casings nothing resists. Only whether a support acts in a
+// direction counts, not how strongly, so a spring of 1 N/m beside one of 1e12 N/m is seen.
 //
-// Rigid motions of a line in a plane: sideways, and turning about its middle (unit displacement at the ends); axially: one.
-// Each support is a row: relative motion of its two sides. What the rows leave free is their null space, found for each group
-// of connected lines on its own.
+// Rigid motions of a line in a plane: sideways, and turning about its middle (unit displacement at
+// the ends); axially: one. Each support is a row: relative motion of its two sides. What the rows
+// leave free is their null space, found for each group of connected lines on its own.
 #include <assembly/parts.hpp>
 #include <elements/supports/linear_bearing.hpp>
 #include <meshes/mass_properties.hpp>
@@ -24,16 +24,18 @@ enum Direction { x, y, z, rx, ry, rz };
 std::array<bool, 6> resisted(const model::Bearing& b) {
   std::array<bool, 6> out{};
   if (const auto* linear = std::get_if<model::LinearBearing>(&b.law)) {
-    for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = !linear->K.row(c).isZero(0.0);
+    for (int c = 0; c < 6; ++c)
+      out[static_cast<std::size_t>(c)] = !linear->K.row(c).isZero(0.0);
   } else if (const auto* table = std::get_if<model::TableBearing>(&b.law)) {
     for (const auto& k : table->K)
-      for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] |= !k.row(c).isZero(0.0);
+      for (int c = 0; c < 6; ++c)
+        out[static_cast<std::size_t>(c)] |= !k.row(c).isZero(0.0);
   } else if (const auto* block = std::get_if<model::SpringBlock>(&b.law)) {
     out[x] = out[y] = out[z] = block->C1 != 0;
     out[ry] = out[rz] = block->C2 != 0;
   } else if (const auto* rigid = std::get_if<model::RigidSupport>(&b.law)) {
     out = rigid->held;
-    for (std::size_t c = 0; c < 3 && b.pedestal; ++c)   // through the spring of its pedestal
+    for (std::size_t c = 0; c < 3 && b.pedestal; ++c)  // through the spring of its pedestal
       out[c] = out[c] && !b.pedestal->K.row(static_cast<Index>(c)).isZero(0.0);
   } else if (const auto* spring = std::get_if<model::NonlinearSpring>(&b.law)) {
     using Along = model::NonlinearSpring::Along;
@@ -41,27 +43,33 @@ std::array<bool, 6> resisted(const model::Bearing& b) {
     out[of[static_cast<std::size_t>(spring->along)]] = true;
     if (spring->along == Along::radial) out[z] = true;
   } else if (const auto* damper = std::get_if<model::SqueezeFilm>(&b.law)) {
-    out[y] = out[z] = damper->stiffness > 0;   // the film alone carries nothing at rest
+    out[y] = out[z] = damper->stiffness > 0;  // the film alone carries nothing at rest
   } else if (std::holds_alternative<model::BallBearing>(b.law)) {
     out[x] = out[y] = out[z] = out[ry] = out[rz] = true;
   } else if (const auto* estimate = std::get_if<model::RollingEstimate>(&b.law)) {
-    out[x] = estimate->kxx > 0; out[y] = out[z] = true;
+    out[x] = estimate->kxx > 0;
+    out[y] = out[z] = true;
   } else if (std::holds_alternative<model::RollerBearing>(b.law)) {
     out[y] = out[z] = out[ry] = out[rz] = true;
   } else if (const auto* coupling = std::get_if<model::Coupling>(&b.law)) {
-    for (int c = 0; c < 6; ++c) out[static_cast<std::size_t>(c)] = !coupling->K.row(c).isZero(0.0);
+    for (int c = 0; c < 6; ++c)
+      out[static_cast<std::size_t>(c)] = !coupling->K.row(c).isZero(0.0);
   } else if (const auto* gear = std::get_if<model::GearPair>(&b.law)) {
-    out[x] = gear->helix != 0;   // one direction in space: not counted as holding y and z
+    out[x] = gear->helix != 0;  // one direction in space: not counted as holding y and z
   } else if (std::holds_alternative<model::CrossCoupling>(b.law)) {
     // circulatory: holds nothing
   } else {
-    out[y] = out[z] = true;   // a film, a seal or a contact carries load once it is displaced
+    out[y] = out[z] = true;  // a film, a seal or a contact carries load once it is displaced
   }
   return out;
 }
 
-/// A point whose motion counts: on a line, or nowhere (ground; pedestals resist in every direction, see add_pedestal).
-struct End { Index line = -1; double s = 0; };
+/// A point whose motion counts: on a line, or nowhere (ground; pedestals resist in every direction,
+/// see add_pedestal).
+struct End {
+  Index line = -1;
+  double s = 0;
+};
 
 class Restraint {
  public:
@@ -74,9 +82,12 @@ class Restraint {
     }
     for (const model::Step& s : a.model.steps) {
       if (!s.from.empty()) continue;
-      if (std::holds_alternative<model::StaticStep>(s.law)) equilibrium_ = true;
-      else if (const auto* t = std::get_if<model::TransientStep>(&s.law)) equilibrium_ |= t->start == model::TransientStep::Start::static_equilibrium;
-      else frequency_ = true;
+      if (std::holds_alternative<model::StaticStep>(s.law))
+        equilibrium_ = true;
+      else if (const auto* t = std::get_if<model::TransientStep>(&s.law))
+        equilibrium_ |= t->start == model::TransientStep::Start::static_equilibrium;
+      else
+        frequency_ = true;
     }
   }
 
@@ -84,15 +95,19 @@ class Restraint {
     for (const auto& lines : groups({x})) {
       if (grounded(lines, x)) continue;
       if (loaded(lines, true) && (equilibrium_ || frequency_)) {
-        complain(lines, "axial motion of {}", "add a thrust bearing (kxx), or a bearing of type \"rigid\" with directions = [\"x\"]");
+        complain(
+            lines, "axial motion of {}",
+            "add a thrust bearing (kxx), or a bearing of type \"rigid\" with directions = [\"x\"]");
       } else if (equilibrium_ || frequency_) {
         const Index node = a_.mesh.lines[lines.front()].first_node;
-        if (a_.model.keep_everything && !frequency_) {   // there it would be one more mode
+        if (a_.model.keep_everything && !frequency_) {  // there it would be one more mode
           keep_axial(lines, node);
           continue;
         }
         a_.builder.hold(node, x);
-        hold(fmt::format("axial motion of {} as a whole: nothing resists or loads it; held at the {}", named(lines), a_.builder.node(node).name));
+        hold(fmt::format(
+            "axial motion of {} as a whole: nothing resists or loads it; held at the {}",
+            named(lines), a_.builder.node(node).name));
       }
     }
   }
@@ -102,16 +117,21 @@ class Restraint {
     for (int p = 0; p < 2; ++p) {
       const Direction along = p == 0 ? y : z, turn = p == 0 ? rz : ry;
       for (const auto& lines : groups({along, turn}))
-        if (const std::string what = free_motion(lines, along, turn); !what.empty() && wrong(lines, what)) found[p].push_back({lines, what});
+        if (const std::string what = free_motion(lines, along, turn);
+            !what.empty() && wrong(lines, what))
+          found[p].push_back({lines, what});
     }
-    const char* hint = "a shaft needs two lateral bearings, or one that also holds its tilt; to let it move freely start the transient from rest "
-                       "(start = \"rest\")";
+    const char* hint =
+        "a shaft needs two lateral bearings, or one that also holds its tilt; to let it move "
+        "freely start the transient from rest "
+        "(start = \"rest\")";
     for (const auto& f : found[0]) {
       const bool both = std::find(found[1].begin(), found[1].end(), f) != found[1].end();
       complain(f.first, f.second + (both ? " (y and z)" : " (y)"), hint);
     }
     for (const auto& f : found[1])
-      if (std::find(found[0].begin(), found[0].end(), f) == found[0].end()) complain(f.first, f.second + " (z)", hint);
+      if (std::find(found[0].begin(), found[0].end(), f) == found[0].end())
+        complain(f.first, f.second + " (z)", hint);
   }
 
   void check_spin() {
@@ -130,13 +150,21 @@ class Restraint {
       for (const model::Drive& d : a_.model.drives)
         if (a_.acts(d) && d.at.shaft == l) {
           const std::string who = fmt::format("drive '{}'", d.name);
-          a_.error("E32", fmt::format("{}: shaft '{}' has no inertia about its axis that a torque could accelerate", who, line.name),
-                   "give a disk its Ip, or prescribe the speed", d, who);
+          a_.error(
+              "E32",
+              fmt::format(
+                  "{}: shaft '{}' has no inertia about its axis that a torque could accelerate",
+                  who, line.name),
+              "give a disk its Ip, or prescribe the speed", d, who);
         }
       spin.prescribed = true;
       spin.angle = make_angle_of_speed(make_constant(spin.spin0), 0.0);
-      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) a_.builder.hold(n, system::spin_phi, spin.angle);
-      hold(fmt::format("torsion and spin of shaft '{}' as unknowns: no inertia about its axis; it turns at {:.6g} rad/s", line.name, spin.spin0));
+      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
+        a_.builder.hold(n, system::spin_phi, spin.angle);
+      hold(
+          fmt::format("torsion and spin of shaft '{}' as unknowns: no inertia about its axis; it "
+                      "turns at {:.6g} rad/s",
+                      line.name, spin.spin0));
     }
   }
 
@@ -146,57 +174,81 @@ class Restraint {
     a_.built.held.push_back(what);
     a_.built.left_out.push_back(what);
   }
-  /// The axial motion stays an unknown: a spring that gives it a natural frequency of 1 rad/s makes its equilibrium unique.
+  /// The axial motion stays an unknown: a spring that gives it a natural frequency of 1 rad/s makes
+  /// its equilibrium unique.
   void keep_axial(const std::vector<std::size_t>& lines, Index node) {
     double mass = 0.0;
-    for (std::size_t l : lines) mass += meshes::shaft_mass(a_.model, l).mass;
+    for (std::size_t l : lines)
+      mass += meshes::shaft_mass(a_.model, l).mass;
     elements::TranslationalBearing spring{};
     spring.K(0, 0) = mass > 0.0 ? mass : 1.0;
-    a_.builder.add(spring, {node, a_.builder.add_ground(a_.builder.node(node).position, "ground of the axial motion")}, "linear bearings");
+    a_.builder.add(
+        spring,
+        {node, a_.builder.add_ground(a_.builder.node(node).position, "ground of the axial motion")},
+        "linear bearings");
   }
-  struct Link { End a, b; std::array<bool, 6> in; };
+  struct Link {
+    End a, b;
+    std::array<bool, 6> in;
+  };
 
   /// Groups of lines connected by links that act in one of the directions.
   std::vector<std::vector<std::size_t>> groups(std::vector<Direction> directions) {
     std::iota(group_.begin(), group_.end(), std::size_t{0});
     const auto root = [this](std::size_t i) {
-      while (group_[i] != i) i = group_[i];
+      while (group_[i] != i)
+        i = group_[i];
       return i;
     };
     for (const Link& k : links_)
       for (Direction d : directions)
-        if (k.in[d] && k.b.line >= 0) group_[root(static_cast<std::size_t>(k.b.line))] = root(static_cast<std::size_t>(k.a.line));
+        if (k.in[d] && k.b.line >= 0)
+          group_[root(static_cast<std::size_t>(k.b.line))] =
+              root(static_cast<std::size_t>(k.a.line));
     std::vector<std::vector<std::size_t>> out(group_.size());
-    for (std::size_t i = 0; i < group_.size(); ++i) out[root(i)].push_back(i);
-    out.erase(std::remove_if(out.begin(), out.end(), [](const auto& g) { return g.empty(); }), out.end());
+    for (std::size_t i = 0; i < group_.size(); ++i)
+      out[root(i)].push_back(i);
+    out.erase(std::remove_if(out.begin(), out.end(), [](const auto& g) { return g.empty(); }),
+              out.end());
     return out;
   }
   static bool contains(const std::vector<std::size_t>& lines, Index l) {
-    return l >= 0 && std::find(lines.begin(), lines.end(), static_cast<std::size_t>(l)) != lines.end();
+    return l >= 0 &&
+           std::find(lines.begin(), lines.end(), static_cast<std::size_t>(l)) != lines.end();
   }
   bool grounded(const std::vector<std::size_t>& lines, Direction d) const {
-    return std::any_of(links_.begin(), links_.end(), [&](const Link& k) { return k.in[d] && k.b.line < 0 && contains(lines, k.a.line); });
+    return std::any_of(links_.begin(), links_.end(), [&](const Link& k) {
+      return k.in[d] && k.b.line < 0 && contains(lines, k.a.line);
+    });
   }
 
-  double half(std::size_t l) const { return a_.mesh.lines[l].length > 0 ? 0.5 * a_.mesh.lines[l].length : 1.0; }
+  double half(std::size_t l) const {
+    return a_.mesh.lines[l].length > 0 ? 0.5 * a_.mesh.lines[l].length : 1.0;
+  }
 
-  /// "" when every motion of the group in the plane is resisted, else which is not ("turning of {} ..").
-  std::string free_motion(const std::vector<std::size_t>& lines, Direction along, Direction turn) const {
-    const Index n = 2 * static_cast<Index>(lines.size());   // (sideways, turning) a line
+  /// "" when every motion of the group in the plane is resisted, else which is not ("turning of {}
+  /// ..").
+  std::string free_motion(const std::vector<std::size_t>& lines, Direction along,
+                          Direction turn) const {
+    const Index n = 2 * static_cast<Index>(lines.size());  // (sideways, turning) a line
     MatX A = MatX::Zero(n, n);
     const auto add = [&](VecX& row, const End& e, bool tilt, double sign) {
       const auto it = std::find(lines.begin(), lines.end(), static_cast<std::size_t>(e.line));
       if (e.line < 0 || it == lines.end()) return;
       const Index i = 2 * (it - lines.begin());
       const double h = half(*it), middle = 0.5 * a_.mesh.lines[*it].length;
-      if (!tilt) { row[i] += sign; row[i + 1] += sign * (e.s - middle) / h; }
-      else row[i + 1] += sign * half(lines.front()) / h;
+      if (!tilt) {
+        row[i] += sign;
+        row[i + 1] += sign * (e.s - middle) / h;
+      } else
+        row[i + 1] += sign * half(lines.front()) / h;
     };
     for (const Link& k : links_)
       for (bool tilt : {false, true}) {
         if (!k.in[tilt ? turn : along] || !contains(lines, k.a.line)) continue;
         VecX row = VecX::Zero(n);
-        add(row, k.a, tilt, 1.0); add(row, k.b, tilt, -1.0);
+        add(row, k.a, tilt, 1.0);
+        add(row, k.b, tilt, -1.0);
         A += row * row.transpose();
       }
     // Two supports at a distance of 1e-6 of the shaft still count as two.
@@ -207,25 +259,31 @@ class Restraint {
     const VecX v = eig.eigenvectors().col(0);
     const double side = v[0], tilt = v[1];
     if (std::abs(tilt) < 1e-6 * std::abs(side)) return "sideways motion of {}";
-    const double h = half(lines.front()), pivot = 0.5 * a_.mesh.lines[lines.front()].length - h * side / tilt;
-    return fmt::format("turning of {{}} about the point at {:.4g} m", std::abs(pivot) < 1e-9 * h ? 0.0 : pivot);
+    const double h = half(lines.front()),
+                 pivot = 0.5 * a_.mesh.lines[lines.front()].length - h * side / tilt;
+    return fmt::format("turning of {{}} about the point at {:.4g} m",
+                       std::abs(pivot) < 1e-9 * h ? 0.0 : pivot);
   }
 
-  /// Free turning is no mistake where weight along the axis can give it an equilibrium (a pendulum), nor is any free motion
-  /// where nothing asks for an equilibrium.
+  /// Free turning is no mistake where weight along the axis can give it an equilibrium (a
+  /// pendulum), nor is any free motion where nothing asks for an equilibrium.
   bool wrong(const std::vector<std::size_t>& lines, const std::string& what) const {
     if (what.front() == 't' && a_.model.gravity.x() != 0) return false;
     return equilibrium_ || (frequency_ && loaded(lines, false));
   }
 
   bool loaded(const std::vector<std::size_t>& lines, bool axial) const {
-    const auto acts = [axial](const Vec3& f) { return axial ? f.x() != 0 : f.y() != 0 || f.z() != 0; };
+    const auto acts = [axial](const Vec3& f) {
+      return axial ? f.x() != 0 : f.y() != 0 || f.z() != 0;
+    };
     for (const model::PointLoad& l : a_.model.loads)
       if (contains(lines, static_cast<Index>(l.at.shaft)) && acts(l.force)) return true;
     for (const model::Bearing& b : a_.model.bearings) {
       const auto* linear = std::get_if<model::LinearBearing>(&b.law);
       const auto* table = std::get_if<model::TableBearing>(&b.law);
-      const Vec3 preload = linear ? Vec3(linear->preload.head<3>()) : table ? Vec3(table->preload.head<3>()) : Vec3(Vec3::Zero());
+      const Vec3 preload = linear  ? Vec3(linear->preload.head<3>())
+                           : table ? Vec3(table->preload.head<3>())
+                                   : Vec3(Vec3::Zero());
       if (contains(lines, static_cast<Index>(b.at.shaft)) && acts(preload)) return true;
     }
     for (const model::Step& s : a_.model.steps)
@@ -239,13 +297,19 @@ class Restraint {
     std::string out;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const meshes::Line& l = a_.mesh.lines[lines[i]];
-      out += fmt::format("{}{} '{}'", i == 0 ? "" : i + 1 == lines.size() ? " and " : ", ", l.rotating ? "shaft" : "casing", l.name);
+      out += fmt::format("{}{} '{}'",
+                         i == 0                  ? ""
+                         : i + 1 == lines.size() ? " and "
+                                                 : ", ",
+                         l.rotating ? "shaft" : "casing", l.name);
     }
     return lines.size() > 1 ? out + " together" : out;
   }
-  void complain(const std::vector<std::size_t>& lines, const std::string& motion, const char* hint) {
+  void complain(const std::vector<std::size_t>& lines, const std::string& motion,
+                const char* hint) {
     const model::Shaft& shaft = a_.model.shafts[lines.front()];
-    a_.error("E32", "nothing resists " + fmt::format(fmt::runtime(motion), named(lines)), hint, shaft, named({lines.front()}));
+    a_.error("E32", "nothing resists " + fmt::format(fmt::runtime(motion), named(lines)), hint,
+             shaft, named({lines.front()}));
   }
 
   Assembly& a_;

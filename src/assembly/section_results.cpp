@@ -11,9 +11,12 @@ namespace {
 
 using system::NodeState;
 
-struct End { Vec3 r, d, F, M; };
+struct End {
+  Vec3 r, d, F, M;
+};
 
-/// Moment of a force in X: virtual work on delta d = theta x d, delta phi = theta.(e + d)/(1 + e.d).
+/// Moment of a force in X: virtual work on delta d = theta x d, delta phi = theta.(e + d)/(1 +
+/// e.d).
 Vec3 moment_of(const NodeState& n, const Vec3& f_d, double f_phi) {
   const Vec3 d = n.d();
   return d.cross(f_d) + f_phi / (2.0 + n.e().dot(n.t)) * (n.e() + d);
@@ -23,17 +26,22 @@ void add_stress(const elements::ElementSection& s, double xi, SectionPoint& p) {
   if (s.constants) return;
   const double od = s.od1 + xi * (s.od2 - s.od1), id = s.id1 + xi * (s.id2 - s.id1);
   if (!(od > 0)) return;
-  const double A = elements::annulus_area(od, id), I = elements::annulus_I(od, id), J = elements::annulus_J(od, id), c = 0.5 * od, ri = 0.5 * id;
-  const double shear = 4.0 * p.V.norm() * (c * c + c * ri + ri * ri) / (3.0 * A * (c * c + ri * ri));
+  const double A = elements::annulus_area(od, id), I = elements::annulus_I(od, id),
+               J = elements::annulus_J(od, id), c = 0.5 * od, ri = 0.5 * id;
+  const double shear =
+      4.0 * p.V.norm() * (c * c + c * ri + ri * ri) / (3.0 * A * (c * c + ri * ri));
   p.has_stress = true;
-  p.axial = p.N / A; p.bending = p.M.norm() * c / I; p.torsion = std::abs(p.T) * c / J;
+  p.axial = p.N / A;
+  p.bending = p.M.norm() * c / I;
+  p.torsion = std::abs(p.T) * c / J;
   const double surface = std::hypot(std::abs(p.axial) + p.bending, std::sqrt(3.0) * p.torsion);
   p.von_mises = std::max(surface, std::hypot(p.axial, std::sqrt(3.0) * (p.torsion + shear)));
 }
 
 }  // namespace
 
-std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh, const Built& built, const NodeAt& at,
+std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
+                                               const Built& built, const NodeAt& at,
                                                const system::Context& context, int inner) {
   std::vector<SectionPoint> out;
   out.reserve(mesh.elements.size() * static_cast<std::size_t>(inner + 2));
@@ -44,41 +52,53 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
     built.element_forces.at(k)(built.system, {&n1, &n2}, context, f);
     const double L = e.s2 - e.s1;
     End a, b;
-    a.d = n1.d(); b.d = n2.d();
+    a.d = n1.d();
+    b.d = n2.d();
     a.r = mesh.nodes[static_cast<std::size_t>(e.left.node)].position + n1.u + e.left.offset * a.d;
     b.r = mesh.nodes[static_cast<std::size_t>(e.right.node)].position + n2.u + e.right.offset * b.d;
-    a.F = -f.segment<3>(0); b.F = f.segment<3>(7);
+    a.F = -f.segment<3>(0);
+    b.F = f.segment<3>(7);
     a.M = -moment_of(n1, f.segment<3>(3), f[6]) - e.left.offset * a.d.cross(a.F);
     b.M = moment_of(n2, f.segment<3>(10), f[13]) - e.right.offset * b.d.cross(b.F);
     const Vec3 chord = (b.r - a.r) / L;
     const model::Shaft& shaft = m.shafts[static_cast<std::size_t>(e.line)];
     const bool bent = !shaft.path.empty();
-    Mat3 t1, t2;   // axes of a line along a path now
+    Mat3 t1, t2;  // axes of a line along a path now
     if (bent) {
       t1 = meshes::section_axes(*n1.chart, a.d, n1.phi) * shaft.path.after(e.s1).triad;
       t2 = meshes::section_axes(*n2.chart, b.d, n2.phi) * shaft.path.before(e.s2).triad;
     }
-    const Vec3 dM1 = -L * (bent ? Vec3(t1.col(0)) : chord).cross(a.F), dM2 = -L * (bent ? Vec3(t2.col(0)) : chord).cross(b.F);
+    const Vec3 dM1 = -L * (bent ? Vec3(t1.col(0)) : chord).cross(a.F),
+               dM2 = -L * (bent ? Vec3(t2.col(0)) : chord).cross(b.F);
     const model::Section& section = m.shafts[static_cast<std::size_t>(e.line)].sections[e.section];
     const elements::ElementSection shape = element_section(m, e);
     for (int j = 0; j <= inner + 1; ++j) {
       const double x = static_cast<double>(j) / (inner + 1), y = 1.0 - x;
       SectionPoint p;
-      p.line = e.line; p.element = static_cast<Index>(k); p.s = j == 0 ? e.s1 : j == inner + 1 ? e.s2 : e.s1 + x * L; p.xi = x;
+      p.line = e.line;
+      p.element = static_cast<Index>(k);
+      p.s = j == 0 ? e.s1 : j == inner + 1 ? e.s2 : e.s1 + x * L;
+      p.xi = x;
       p.force = y * a.F + x * b.F;
-      p.moment = y * y * (1.0 + 2.0 * x) * a.M + x * x * (3.0 - 2.0 * x) * b.M + x * y * (y * dM1 - x * dM2);
-      const Vec3 d = (bent ? Vec3(y * t1.col(0) + x * t2.col(0)) : Vec3(y * a.d + x * b.d)).normalized();
+      p.moment = y * y * (1.0 + 2.0 * x) * a.M + x * x * (3.0 - 2.0 * x) * b.M +
+                 x * y * (y * dM1 - x * dM2);
+      const Vec3 d =
+          (bent ? Vec3(y * t1.col(0) + x * t2.col(0)) : Vec3(y * a.d + x * b.d)).normalized();
       const Mat3& chart = *n1.chart;
       Vec3 ey, ez;
-      if (bent) {   // turning with the twist from end to end
+      if (bent) {  // turning with the twist from end to end
         const Vec3 mean = y * t1.col(1) + x * t2.col(1);
-        ey = (mean - d.dot(mean) * d).normalized(); ez = d.cross(ey);
+        ey = (mean - d.dot(mean) * d).normalized();
+        ez = d.cross(ey);
       } else {
         const Mat3 axes = rotation::minimal_rotation(chart.col(0), d);
-        ey = axes * chart.col(1); ez = axes * chart.col(2);
+        ey = axes * chart.col(1);
+        ez = axes * chart.col(2);
       }
-      p.N = p.force.dot(d); p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
-      p.T = p.moment.dot(d); p.M = Vec2(p.moment.dot(ey), p.moment.dot(ez));
+      p.N = p.force.dot(d);
+      p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
+      p.T = p.moment.dot(d);
+      p.M = Vec2(p.moment.dot(ey), p.moment.dot(ez));
       if (!section.general) add_stress(shape, x, p);
       out.push_back(p);
     }

@@ -1,7 +1,8 @@
-// Shaft elements. Damping of a line: beta_internal acts on bending and axial strain rates seen turning with the shaft,
-// beta_external on those seen in fixed axes; the twist rate is the same in both, so torsion gets
-// beta_internal + beta_external + beta_torsion. alpha acts on the velocities of the shaft's own mass.
-// The loss factor acts on all strain rates seen turning with the shaft (hysteretic_damping.hpp).
+// Shaft elements. Damping of a line: beta_internal acts on bending and axial strain rates seen
+// turning with the shaft, beta_external on those seen in fixed axes; the twist rate is the same in
+// both, so torsion gets beta_internal + beta_external + beta_torsion. alpha acts on the velocities
+// of the shaft's own mass. The loss factor acts on all strain rates seen turning with the shaft
+// (hysteretic_damping.hpp).
 #include <assembly/element_section.hpp>
 #include <assembly/mass_shares.hpp>
 #include <assembly/parts.hpp>
@@ -30,7 +31,8 @@ void add_stressed(Assembly& a, const K& k, const std::array<Index, 2>& nodes, co
   const std::size_t place = a.builder.count<K>();
   a.builder.add(k, nodes, kind);
   ElementForce& f = a.built.element_forces.back();
-  f = [place, before = std::move(f)](const system::System& s, const system::Nodes<2>& x, const system::Context& c, system::ForceX<14>& out) {
+  f = [place, before = std::move(f)](const system::System& s, const system::Nodes<2>& x,
+                                     const system::Context& c, system::ForceX<14>& out) {
     if (before) before(s, x, c, out);
     s.batch<K>()->elements()[place].add_force(x, c, out);
   };
@@ -41,27 +43,36 @@ bool has_weight(const model::Model& m) {
   return m.gravity != Vec3::Zero() || base[0] || base[1] || base[2];
 }
 
-/// Constants of an element, make(share), and the part of its weight that its share of the mass leaves out. part: of their mass that is used.
+/// Constants of an element, make(share), and the part of its weight that its share of the mass
+/// leaves out. part: of their mass that is used.
 template <class Make>
-ShaftElementConstants shared_constants(Assembly& a, const MassShares& shares, const meshes::Element& e, Make make, double part = 1.0) {
+ShaftElementConstants shared_constants(Assembly& a, const MassShares& shares,
+                                       const meshes::Element& e, Make make, double part = 1.0) {
   const elements::MassShare share = shares.of(e);
   const ShaftElementConstants c = make(share);
   const Vector<4> rest = part * (make({}).M4 - c.M4) * Vector<4>(1, 0, 1, 0);
-  if (has_weight(a.model) && (rest.array() != 0).any()) add_stressed(a, elements::WeightRest{rest}, {e.left.node, e.right.node}, "weights beside bodies");
+  if (has_weight(a.model) && (rest.array() != 0).any())
+    add_stressed(a, elements::WeightRest{rest}, {e.left.node, e.right.node},
+                 "weights beside bodies");
   return c;
 }
 
-void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConstants& c, const std::array<Index, 2>& nodes, bool internal) {
+void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConstants& c,
+                 const std::array<Index, 2>& nodes, bool internal) {
   const model::ShaftDamping& d = shaft.damping;
   const Vec3 e0 = Vec3::UnitX();
   const double twist = d.beta_internal + d.beta_external + d.beta_torsion;
   // The twist goes with whichever of the two exists.
   const bool all = a.model.keep_everything;
-  const bool rotating = internal && (all || d.beta_internal != 0), fixed = all || d.beta_external != 0;
+  const bool rotating = internal && (all || d.beta_internal != 0),
+             fixed = all || d.beta_external != 0;
   if (rotating)
-    add_stressed(a, elements::ShaftDamping<true>(c, e0, d.beta_internal, twist, d.beta_internal), nodes, "internal damping");
+    add_stressed(a, elements::ShaftDamping<true>(c, e0, d.beta_internal, twist, d.beta_internal),
+                 nodes, "internal damping");
   if (fixed || (twist != 0 && !rotating))
-    a.builder.add(elements::ShaftDamping<false>(c, e0, d.beta_external, rotating ? 0.0 : twist, d.beta_external), nodes, "external damping");
+    a.builder.add(elements::ShaftDamping<false>(c, e0, d.beta_external, rotating ? 0.0 : twist,
+                                                d.beta_external),
+                  nodes, "external damping");
   if (all || d.alpha != 0) {
     elements::ShaftMassDamping m;
     m.C4 = d.alpha * c.M4;
@@ -69,38 +80,55 @@ void add_damping(Assembly& a, const model::Shaft& shaft, const ShaftElementConst
   }
 }
 
-double stand_in_of(const model::ShaftDamping& d) { return d.loss_frequency > 0 ? 1.0 / d.loss_frequency : 0.0; }
+double stand_in_of(const model::ShaftDamping& d) {
+  return d.loss_frequency > 0 ? 1.0 / d.loss_frequency : 0.0;
+}
 
-void add_hysteresis(Assembly& a, const model::Shaft& shaft, const ShaftElementConstants& c, const std::array<Index, 2>& nodes) {
+void add_hysteresis(Assembly& a, const model::Shaft& shaft, const ShaftElementConstants& c,
+                    const std::array<Index, 2>& nodes) {
   const model::ShaftDamping& d = shaft.damping;
   if (d.loss_factor == 0) return;
   using Viscous = elements::ShaftDamping<true>;
-  add_stressed(a, elements::HystereticDamping<Viscous>{Viscous(c, Vec3::UnitX(), d.loss_factor, 0.0, 0.0), Viscous(c, Vec3::UnitX(), 0.0, d.loss_factor, d.loss_factor), stand_in_of(d)},
+  add_stressed(a,
+               elements::HystereticDamping<Viscous>{
+                   Viscous(c, Vec3::UnitX(), d.loss_factor, 0.0, 0.0),
+                   Viscous(c, Vec3::UnitX(), 0.0, d.loss_factor, d.loss_factor), stand_in_of(d)},
                nodes, "hysteretic damping");
 }
 
-void add_hysteresis(Assembly& a, const model::Shaft& shaft, const elements::GeneralBeam& beam, const std::array<Index, 2>& nodes) {
+void add_hysteresis(Assembly& a, const model::Shaft& shaft, const elements::GeneralBeam& beam,
+                    const std::array<Index, 2>& nodes) {
   const model::ShaftDamping& d = shaft.damping;
   if (d.loss_factor == 0) return;
   using Viscous = elements::GeneralBeamDamping;
-  add_stressed(a, elements::HystereticDamping<Viscous>{Viscous(beam, d.loss_factor, 0.0), Viscous(beam, 0.0, d.loss_factor), stand_in_of(d)}, nodes, "hysteretic damping");
+  add_stressed(
+      a,
+      elements::HystereticDamping<Viscous>{Viscous(beam, d.loss_factor, 0.0),
+                                           Viscous(beam, 0.0, d.loss_factor), stand_in_of(d)},
+      nodes, "hysteretic damping");
 }
 
 /// Force at unstressed length: preload, and what keeps the element from its thermal growth.
-double preload_of(const Assembly& a, const model::Shaft& shaft, const meshes::Element& e, double EA) {
+double preload_of(const Assembly& a, const model::Shaft& shaft, const meshes::Element& e,
+                  double EA) {
   const model::Section& s = shaft.sections[e.section];
-  const double strain = s.constants || a.model.materials.empty() ? 0.0 : a.model.materials.at(s.material).expansion * s.temperature_rise;
+  const double strain = s.constants || a.model.materials.empty()
+                            ? 0.0
+                            : a.model.materials.at(s.material).expansion * s.temperature_rise;
   return shaft.axial_preload - EA * strain;
 }
 
-/// Preload and the unstressed shape of a bowed shaft: the slopes of w = A sin(pi s/L) against the chord are stress-free.
-void finish_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& e, elements::GeneralBeam& beam, const std::array<Index, 2>& nodes) {
+/// Preload and the unstressed shape of a bowed shaft: the slopes of w = A sin(pi s/L) against the
+/// chord are stress-free.
+void finish_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& e,
+                    elements::GeneralBeam& beam, const std::array<Index, 2>& nodes) {
   beam.preload = preload_of(a, shaft, e, beam.c.EA_l * beam.c.length);
   if (shaft.bow.amount != 0) {
     const double L = shaft.length(), k = pi / L, A = shaft.bow.amount;
     const double chord = A * (std::sin(k * e.s2) - std::sin(k * e.s1)) / (e.s2 - e.s1);
     // body axes of the section may be turned by an angle of their own
-    const double angle = shaft.sections[e.section].general ? shaft.sections[e.section].general->angle : 0.0;
+    const double angle =
+        shaft.sections[e.section].general ? shaft.sections[e.section].general->angle : 0.0;
     const Vec2 axis(std::cos(shaft.bow.phase - angle), std::sin(shaft.bow.phase - angle));
     beam.p01 += (A * k * std::cos(k * e.s1) - chord) * axis;
     beam.p02 += (A * k * std::cos(k * e.s2) - chord) * axis;
@@ -109,22 +137,39 @@ void finish_general(Assembly& a, const model::Shaft& shaft, const meshes::Elemen
   add_hysteresis(a, shaft, beam, nodes);
 }
 
-/// Constants for a general beam, which has the offsets of its ends itself; the shares are those of nodes, so only without offsets.
-ShaftElementConstants between_nodes(Assembly& a, const MassShares& shares, const meshes::Element& e, const elements::ElementSection& section, double part) {
-  const auto make = [&](const elements::MassShare& share) { return elements::make_shaft_constants(section, e.s2 - e.s1, 0, 0, elements::MassKind::corrected, share); };
-  const bool straight = a.model.shafts[static_cast<std::size_t>(e.line)].path.empty();   // what is left of the weight acts on the directors of straight lines
-  return straight && e.left.offset == 0 && e.right.offset == 0 ? shared_constants(a, shares, e, make, part) : make({});
+/// Constants for a general beam, which has the offsets of its ends itself; the shares are those of
+/// nodes, so only without offsets.
+ShaftElementConstants between_nodes(Assembly& a, const MassShares& shares, const meshes::Element& e,
+                                    const elements::ElementSection& section, double part) {
+  const auto make = [&](const elements::MassShare& share) {
+    return elements::make_shaft_constants(section, e.s2 - e.s1, 0, 0, elements::MassKind::corrected,
+                                          share);
+  };
+  const bool straight =
+      a.model.shafts[static_cast<std::size_t>(e.line)]
+          .path.empty();  // what is left of the weight acts on the directors of straight lines
+  return straight && e.left.offset == 0 && e.right.offset == 0
+             ? shared_constants(a, shares, e, make, part)
+             : make({});
 }
 
 /// A round section, or one given by constants, as a general beam.
-elements::GeneralBeamConstants round_constants(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
+elements::GeneralBeamConstants round_constants(Assembly& a, const MassShares& shares,
+                                               const model::Shaft& shaft,
+                                               const meshes::Element& e) {
   const elements::ElementSection section = element_section(a.model, e);
   const double l = e.s2 - e.s1;
   const ShaftElementConstants k = between_nodes(a, shares, e, section, 1.0);
   elements::GeneralBeamConstants c;
-  c.length = l; c.EA_l = k.EA_l; c.GJ_l = k.GJ_l;
-  c.ky_def11 = c.kz_def11 = k.k11; c.ky_def12 = c.kz_def12 = k.k12; c.ky_def22 = c.kz_def22 = k.k22;
-  c.b11 = k.b11; c.b12 = k.b12; c.b22 = k.b22;
+  c.length = l;
+  c.EA_l = k.EA_l;
+  c.GJ_l = k.GJ_l;
+  c.ky_def11 = c.kz_def11 = k.k11;
+  c.ky_def12 = c.kz_def12 = k.k12;
+  c.ky_def22 = c.kz_def22 = k.k22;
+  c.b11 = k.b11;
+  c.b12 = k.b12;
+  c.b22 = k.b22;
   c.M4 = k.M4;
   c.rhoIz_l = c.rhoIy_l = c.rhoI_l = 0.5 * k.polar.sum();
   c.beta = shaft.damping.beta_internal;
@@ -132,17 +177,22 @@ elements::GeneralBeamConstants round_constants(Assembly& a, const MassShares& sh
 }
 
 /// A round section whose unstressed shape is not straight.
-void add_bowed(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
+void add_bowed(Assembly& a, const MassShares& shares, const model::Shaft& shaft,
+               const meshes::Element& e) {
   const elements::GeneralBeamConstants c = round_constants(a, shares, shaft, e);
   const std::array<Index, 2> nodes{e.left.node, e.right.node};
-  elements::GeneralBeam beam(c, Vec3(c.length, 0, 0), Mat3::Identity(), Mat3::Identity(), Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0));
+  elements::GeneralBeam beam(c, Vec3(c.length, 0, 0), Mat3::Identity(), Mat3::Identity(),
+                             Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0));
   finish_general(a, shaft, e, beam, nodes);
   add_damping(a, shaft, element_constants(a.model, e), nodes, false);
 }
 
-/// Section with unequal principal axes; y, z: each plane by itself. Deflection along the section's y bends about its z.
-elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e,
-                                                 ShaftElementConstants& y, ShaftElementConstants& z) {
+/// Section with unequal principal axes; y, z: each plane by itself. Deflection along the section's
+/// y bends about its z.
+elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& shares,
+                                                 const model::Shaft& shaft,
+                                                 const meshes::Element& e, ShaftElementConstants& y,
+                                                 ShaftElementConstants& z) {
   const model::Section& s = shaft.sections[e.section];
   const model::Section::General& g = *s.general;
   const model::Material& material = a.model.materials.at(s.material);
@@ -150,20 +200,35 @@ elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& 
   elements::ElementSection plane;
   plane.constants = true;
   const auto constants = [&](double I, double kappa) {
-    plane.given = {material.E * g.A, kappa > 0 ? kappa * material.G * g.A : 0.0, material.G * g.J, material.E * I,
-                   material.rho * g.A + s.added_mass_per_length, s.rotary_inertia ? 0.5 * material.rho * (g.Iy + g.Iz) : 0.0, 0};
+    plane.given = {material.E * g.A,
+                   kappa > 0 ? kappa * material.G * g.A : 0.0,
+                   material.G * g.J,
+                   material.E * I,
+                   material.rho * g.A + s.added_mass_per_length,
+                   s.rotary_inertia ? 0.5 * material.rho * (g.Iy + g.Iz) : 0.0,
+                   0};
     return between_nodes(a, shares, e, plane, 0.5);
   };
-  y = constants(g.Iz, g.kappa_y); z = constants(g.Iy, g.kappa_z);
+  y = constants(g.Iz, g.kappa_y);
+  z = constants(g.Iy, g.kappa_z);
   elements::GeneralBeamConstants c;
   c.length = l;
-  c.EA_l = y.EA_l; c.GJ_l = y.GJ_l;
-  c.ky_def11 = y.k11; c.ky_def12 = y.k12; c.ky_def22 = y.k22;
-  c.kz_def11 = z.k11; c.kz_def12 = z.k12; c.kz_def22 = z.k22;
-  c.b11 = 0.5 * (y.b11 + z.b11); c.b12 = 0.5 * (y.b12 + z.b12); c.b22 = 0.5 * (y.b22 + z.b22);
+  c.EA_l = y.EA_l;
+  c.GJ_l = y.GJ_l;
+  c.ky_def11 = y.k11;
+  c.ky_def12 = y.k12;
+  c.ky_def22 = y.k22;
+  c.kz_def11 = z.k11;
+  c.kz_def12 = z.k12;
+  c.kz_def22 = z.k22;
+  c.b11 = 0.5 * (y.b11 + z.b11);
+  c.b12 = 0.5 * (y.b12 + z.b12);
+  c.b22 = 0.5 * (y.b22 + z.b22);
   c.M4 = 0.5 * (y.M4 + z.M4);
   const double rho = s.rotary_inertia ? material.rho * l : 0.0;
-  c.rhoIz_l = rho * g.Iz; c.rhoIy_l = rho * g.Iy; c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
+  c.rhoIz_l = rho * g.Iz;
+  c.rhoIy_l = rho * g.Iy;
+  c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
   c.beta = shaft.damping.beta_internal;
   return c;
 }
@@ -172,35 +237,47 @@ elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& 
 Mat3 section_axes(const model::Section& s) {
   const double angle = s.general ? s.general->angle : 0.0;
   Mat3 axes;
-  axes << Vec3::UnitX(), Vec3(0, std::cos(angle), std::sin(angle)), Vec3(0, -std::sin(angle), std::cos(angle));
+  axes << Vec3::UnitX(), Vec3(0, std::cos(angle), std::sin(angle)),
+      Vec3(0, -std::sin(angle), std::cos(angle));
   return axes;
 }
 
-void add_general(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
+void add_general(Assembly& a, const MassShares& shares, const model::Shaft& shaft,
+                 const meshes::Element& e) {
   ShaftElementConstants y, z;
   const elements::GeneralBeamConstants c = unequal_constants(a, shares, shaft, e, y, z);
   const Mat3 triad = section_axes(shaft.sections[e.section]);
   const std::array<Index, 2> nodes{e.left.node, e.right.node};
-  elements::GeneralBeam beam(c, Vec3(c.length, 0, 0), triad, triad, Vec3(e.left.offset, 0, 0), Vec3(e.right.offset, 0, 0));
+  elements::GeneralBeam beam(c, Vec3(c.length, 0, 0), triad, triad, Vec3(e.left.offset, 0, 0),
+                             Vec3(e.right.offset, 0, 0));
   finish_general(a, shaft, e, beam, nodes);
   // Fixed-axes damping does not turn with the section: it takes the mean of both planes.
   ShaftElementConstants mean = y;
-  mean.k11 = 0.5 * (y.k11 + z.k11); mean.k12 = 0.5 * (y.k12 + z.k12); mean.k22 = 0.5 * (y.k22 + z.k22);
-  mean.o1 = e.left.offset; mean.o2 = e.right.offset;
+  mean.k11 = 0.5 * (y.k11 + z.k11);
+  mean.k12 = 0.5 * (y.k12 + z.k12);
+  mean.k22 = 0.5 * (y.k22 + z.k22);
+  mean.o1 = e.left.offset;
+  mean.o2 = e.right.offset;
   Matrix<4> T = Matrix<4>::Identity();
-  T(0, 1) = mean.o1; T(2, 3) = mean.o2;
+  T(0, 1) = mean.o1;
+  T(2, 3) = mean.o2;
   mean.M4 = T.transpose() * c.M4 * T;
   add_damping(a, shaft, mean, nodes, false);
 }
 
-/// An element of a line along a path: its ends keep their angles to the chord. Nodes have global axes. A line that does not turn has one kind of
-/// stiffness-proportional damping: internal and external together.
-void add_curved(Assembly& a, const MassShares& shares, const model::Shaft& shaft, const meshes::Element& e) {
+/// An element of a line along a path: its ends keep their angles to the chord. Nodes have global
+/// axes. A line that does not turn has one kind of stiffness-proportional damping: internal and
+/// external together.
+void add_curved(Assembly& a, const MassShares& shares, const model::Shaft& shaft,
+                const meshes::Element& e) {
   const model::Section& s = shaft.sections[e.section];
   const model::ShaftDamping& d = shaft.damping;
   ShaftElementConstants y, z;
-  elements::GeneralBeamConstants c = s.general ? unequal_constants(a, shares, shaft, e, y, z) : round_constants(a, shares, shaft, e);
-  c.beta = d.beta_internal + d.beta_external; c.beta_twist = c.beta + d.beta_torsion; c.alpha = d.alpha;
+  elements::GeneralBeamConstants c = s.general ? unequal_constants(a, shares, shaft, e, y, z)
+                                               : round_constants(a, shares, shaft, e);
+  c.beta = d.beta_internal + d.beta_external;
+  c.beta_twist = c.beta + d.beta_torsion;
+  c.alpha = d.alpha;
   const Path::Point p = shaft.path.after(e.s1), q = shaft.path.before(e.s2);
   elements::GeneralBeam beam(c, q.r - p.r, p.triad * section_axes(s), q.triad * section_axes(s));
   beam.preload = preload_of(a, shaft, e, c.EA_l * c.length);
@@ -210,19 +287,26 @@ void add_curved(Assembly& a, const MassShares& shares, const model::Shaft& shaft
 }
 
 void add_rigid_part(Assembly& a, const model::Shaft& shaft, const meshes::RigidPart& r) {
-  const meshes::MassProperties p = meshes::section_mass(a.model, shaft.sections[r.section], Vec3(r.o1, 0, 0));   // from the node
+  const meshes::MassProperties p =
+      meshes::section_mass(a.model, shaft.sections[r.section], Vec3(r.o1, 0, 0));  // from the node
   if (!(p.mass > 0)) return;
   if (a.model.keep_everything)
-    a.builder.add(elements::RigidBody(p.mass, p.centre(), Vec3(p.Ip(), p.Id(), p.Id()).asDiagonal()), {r.node}, "rigid bodies");
+    a.builder.add(
+        elements::RigidBody(p.mass, p.centre(), Vec3(p.Ip(), p.Id(), p.Id()).asDiagonal()),
+        {r.node}, "rigid bodies");
   else
-    a.builder.add(elements::RigidDisk{p.mass, p.Id(), p.Ip(), p.centre().x()}, {r.node}, "rigid disks");
+    a.builder.add(elements::RigidDisk{p.mass, p.Id(), p.Ip(), p.centre().x()}, {r.node},
+                  "rigid disks");
 }
 
 /// What the elements of a line do without.
 void list_absent(Assembly& a, const model::Shaft& shaft, Index line) {
   int elements = 0, joined = 0;
   for (const meshes::Element& e : a.mesh.elements)
-    if (e.line == line && shaft.path.empty() && !shaft.sections[e.section].general) { ++elements; joined += e.left.offset == 0 && e.right.offset == 0; }
+    if (e.line == line && shaft.path.empty() && !shaft.sections[e.section].general) {
+      ++elements;
+      joined += e.left.offset == 0 && e.right.offset == 0;
+    }
   if (elements == 0) return;
   std::string absent;
   const auto list = [&](bool is_absent, const char* what) {
@@ -232,12 +316,18 @@ void list_absent(Assembly& a, const model::Shaft& shaft, Index line) {
   list(d.beta_internal == 0, "internal damping");
   list(d.beta_external == 0, "external damping");
   list(d.alpha == 0, "mass-proportional damping");
-  if (!absent.empty()) a.built.simpler.push_back(fmt::format("{} of shaft '{}': its {} elements have none", absent, shaft.name, elements));
-  if (joined > 0) a.built.simpler.push_back(fmt::format("rigid end offsets of {} of {} elements of shaft '{}': zero", joined, elements, shaft.name));
+  if (!absent.empty())
+    a.built.simpler.push_back(
+        fmt::format("{} of shaft '{}': its {} elements have none", absent, shaft.name, elements));
+  if (joined > 0)
+    a.built.simpler.push_back(
+        fmt::format("rigid end offsets of {} of {} elements of shaft '{}': zero", joined, elements,
+                    shaft.name));
 }
 
 void list_absent(Assembly& a) {
-  for (std::size_t i = 0; i < a.model.shafts.size(); ++i) list_absent(a, a.model.shafts[i], static_cast<Index>(i));
+  for (std::size_t i = 0; i < a.model.shafts.size(); ++i)
+    list_absent(a, a.model.shafts[i], static_cast<Index>(i));
 }
 
 }  // namespace
@@ -260,18 +350,23 @@ void add_shafts(Assembly& a) {
       add_bowed(a, shares, shaft, e);
       continue;
     }
-    const ShaftElementConstants c = shared_constants(a, shares, e, [&](const elements::MassShare& share) { return element_constants(a.model, e, share); });
+    const ShaftElementConstants c = shared_constants(
+        a, shares, e,
+        [&](const elements::MassShare& share) { return element_constants(a.model, e, share); });
     const std::array<Index, 2> nodes{e.left.node, e.right.node};
     const auto add = [&](auto beam) {
       beam.preload = preload_of(a, shaft, e, c.EA_l * c.length);
       add_stressed(a, beam, nodes, "shaft elements");
     };
-    if (!a.model.keep_everything && c.o1 == 0 && c.o2 == 0) add(elements::ShaftBeam<false>(c, Vec3::UnitX()));
-    else add(elements::ShaftBeam<true>(c, Vec3::UnitX()));
+    if (!a.model.keep_everything && c.o1 == 0 && c.o2 == 0)
+      add(elements::ShaftBeam<false>(c, Vec3::UnitX()));
+    else
+      add(elements::ShaftBeam<true>(c, Vec3::UnitX()));
     add_damping(a, shaft, c, nodes, true);
     add_hysteresis(a, shaft, c, nodes);
   }
-  for (const meshes::RigidPart& r : a.mesh.rigid_parts) add_rigid_part(a, a.model.shafts[static_cast<std::size_t>(r.line)], r);
+  for (const meshes::RigidPart& r : a.mesh.rigid_parts)
+    add_rigid_part(a, a.model.shafts[static_cast<std::size_t>(r.line)], r);
 }
 
 }  // namespace whirl::assembly

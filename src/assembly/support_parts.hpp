@@ -27,8 +27,8 @@ bool guarded(Assembly& a, const model::Bearing& b, Make make) {
   }
 }
 
-/// Moment of a support on the shaft about the place of the support, N m, global axes. f: what stands on the node for it (left side);
-/// offset: of the place from the node along its normal, m.
+/// Moment of a support on the shaft about the place of the support, N m, global axes. f: what
+/// stands on the node for it (left side); offset: of the place from the node along its normal, m.
 inline Vec3 moment_about_place(const system::NodeState& n, const Vector<7>& f, double offset) {
   const Vec3 about_node = -elements::moment_of(n, f.segment<3>(3), f[6]);
   return about_node + offset * n.d().cross(Vec3(f.head<3>()));
@@ -38,32 +38,38 @@ enum class Friction { none, torque };
 
 /// A lateral law between journal and housing. friction: whether it gives a torque on the journal.
 template <class Law>
-void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Law& law, const char* kind,
-                 Friction friction = Friction::torque) {
+void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                 const Law& law, const char* kind, Friction friction = Friction::torque) {
   const Pair nodes{n.shaft.node, n.other.node};
   const auto add = [&](auto joint) {
     joint.law = law;
     joint.offset = {n.shaft.offset, n.other.offset};
     a.builder.add(joint, nodes, kind);
-    a.built.support_forces.push_back({b.name, [joint, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
-      Vector<4> z;
-      joint.law.force(joint.motion_of(nodes_of(at, nodes)), z);
-      return Vec3(0, z[0], z[1]);
-    }});
+    a.built.support_forces.push_back(
+        {b.name, [joint, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
+           Vector<4> z;
+           joint.law.force(joint.motion_of(nodes_of(at, nodes)), z);
+           return Vec3(0, z[0], z[1]);
+         }});
     if (friction == Friction::none) return;
-    a.built.support_forces.back().moment = [joint, nodes](const NodeAt& at, const system::Context& c, const ReactionAt&) {
-      system::ForceX<14> f = system::ForceX<14>::Zero();
-      joint.add_force(nodes_of(at, nodes), c, f);
-      return moment_about_place(at(nodes[0]), f.template head<7>(), joint.offset[0]);
-    };
+    a.built.support_forces.back().moment =
+        [joint, nodes](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+          system::ForceX<14> f = system::ForceX<14>::Zero();
+          joint.add_force(nodes_of(at, nodes), c, f);
+          return moment_about_place(at(nodes[0]), f.template head<7>(), joint.offset[0]);
+        };
   };
-  if (n.shaft.offset == 0 && n.other.offset == 0) add(elements::LateralJoint<Law, false>{});
-  else add(elements::LateralJoint<Law, true>{});
+  if (n.shaft.offset == 0 && n.other.offset == 0)
+    add(elements::LateralJoint<Law, false>{});
+  else
+    add(elements::LateralJoint<Law, true>{});
 }
 
-/// Any other two-node kernel; off the nodes through AtOffset. The force on the shaft is what stands on its node, with the sign changed.
+/// Any other two-node kernel; off the nodes through AtOffset. The force on the shaft is what stands
+/// on its node, with the sign changed.
 template <class K>
-void add_joint(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const K& kernel, const char* kind) {
+void add_joint(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const K& kernel,
+               const char* kind) {
   const Pair nodes{n.shaft.node, n.other.node};
   const auto add = [&](const auto& k) {
     using Kernel = std::decay_t<decltype(k)>;
@@ -73,14 +79,22 @@ void add_joint(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
       k.add_force(nodes_of(at, nodes), c, f);
       return f;
     };
-    a.built.support_forces.push_back({b.name, [left_side](const NodeAt& at, const system::Context& c, const ReactionAt&) { return Vec3(-left_side(at, c).template head<3>()); }});
+    a.built.support_forces.push_back(
+        {b.name, [left_side](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+           return Vec3(-left_side(at, c).template head<3>());
+         }});
     if constexpr (K::width == 7)
-      a.built.support_forces.back().moment = [left_side, place = n.shaft](const NodeAt& at, const system::Context& c, const ReactionAt&) {
-        return moment_about_place(at(place.node), left_side(at, c).template head<7>(), place.offset);
+      a.built.support_forces.back().moment = [left_side, place = n.shaft](const NodeAt& at,
+                                                                          const system::Context& c,
+                                                                          const ReactionAt&) {
+        return moment_about_place(at(place.node), left_side(at, c).template head<7>(),
+                                  place.offset);
       };
   };
-  if (n.shaft.offset == 0 && n.other.offset == 0) add(kernel);
-  else add(elements::AtOffset<K>{kernel, {n.shaft.offset, n.other.offset}});
+  if (n.shaft.offset == 0 && n.other.offset == 0)
+    add(kernel);
+  else
+    add(elements::AtOffset<K>{kernel, {n.shaft.offset, n.other.offset}});
 }
 
 /// Displacement of the shaft against the other side in (y, z), m.
@@ -91,18 +105,29 @@ inline std::function<Vec2(const NodeAt&)> displacement_of(const meshes::BearingN
   };
 }
 
-void add_linear(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::LinearBearing&);      // supports.cpp
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::NonlinearSpring&);       // supports_contact.cpp
+void add_linear(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+                const model::LinearBearing&);  // supports.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::NonlinearSpring&);  // supports_contact.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::Rub&);
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::ShortJournal&);          // supports_film.cpp
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::FiniteJournal&);
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::SqueezeFilm&);
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::AnnularSeal&);
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::CrossCoupling&);
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::BallBearing&);           // supports_rolling.cpp
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::RollerBearing&);
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::RollingEstimate&);
-void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::Coupling&);              // supports_shafts.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::ShortJournal&);  // supports_film.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::FiniteJournal&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::SqueezeFilm&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::AnnularSeal&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::CrossCoupling&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::BallBearing&);  // supports_rolling.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::RollerBearing&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::RollingEstimate&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::Coupling&);  // supports_shafts.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::GearPair&);
 
 }  // namespace whirl::assembly

@@ -1,5 +1,6 @@
-// Bearings, supports and pedestals. A bearing acts between its shaft node and the other side: ground, pedestal, or a second
-// station. Rigid supports hold unknowns of the shaft node itself; no penalty stiffness anywhere.
+// Bearings, supports and pedestals. A bearing acts between its shaft node and the other side:
+// ground, pedestal, or a second station. Rigid supports hold unknowns of the shaft node itself; no
+// penalty stiffness anywhere.
 #include <assembly/support_parts.hpp>
 #include <elements/supports/coefficient_grid.hpp>
 #include <elements/supports/linear_bearing.hpp>
@@ -16,45 +17,64 @@ namespace whirl::assembly {
 
 // ---------------------------------------------------------------- one function a law
 
-void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::LinearBearing& law) {
+void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                const model::LinearBearing& law) {
   const Pair nodes{n.shaft.node, n.other.node};
   const auto translations_only = [](const Matrix<6>& m) {
     return m.bottomRows<3>().isZero(0.0) && m.topRightCorner<3, 3>().isZero(0.0);
   };
-  const bool small = n.shaft.offset == 0 && n.other.offset == 0 && translations_only(law.K) && translations_only(law.C) && translations_only(law.M) &&
+  const bool small = n.shaft.offset == 0 && n.other.offset == 0 && translations_only(law.K) &&
+                     translations_only(law.C) && translations_only(law.M) &&
                      law.preload.tail<3>().isZero(0.0);
   if (small && !a.model.keep_everything) {
     ++a.translational;
-    const elements::TranslationalBearing k{law.K.topLeftCorner<3, 3>(), law.C.topLeftCorner<3, 3>(), law.M.topLeftCorner<3, 3>(),
-                                           law.setpoint.head<3>(), law.preload.head<3>()};
+    const elements::TranslationalBearing k{law.K.topLeftCorner<3, 3>(), law.C.topLeftCorner<3, 3>(),
+                                           law.M.topLeftCorner<3, 3>(), law.setpoint.head<3>(),
+                                           law.preload.head<3>()};
     a.builder.add(k, nodes, "linear bearings");
     a.built.support_forces.push_back(
-        {b.name, [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return k.force_on_first(nodes_of(at, nodes)); }});
+        {b.name, [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
+           return k.force_on_first(nodes_of(at, nodes));
+         }});
     return;
   }
-  const elements::LinearBearing k(law.K, law.C, law.M, law.setpoint, law.preload, n.shaft.offset, n.other.offset);
+  const elements::LinearBearing k(law.K, law.C, law.M, law.setpoint, law.preload, n.shaft.offset,
+                                  n.other.offset);
   a.builder.add(k, nodes, "linear bearings");
-  a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>()); }});
-  if (!small) a.built.support_forces.back().moment = [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).tail<3>()); };
+  a.built.support_forces.push_back(
+      {b.name, [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
+         return Vec3(k.load_on_first(nodes_of(at, nodes)).head<3>());
+       }});
+  if (!small)
+    a.built.support_forces.back().moment = [k, nodes](const NodeAt& at, const system::Context&,
+                                                      const ReactionAt&) {
+      return Vec3(k.load_on_first(nodes_of(at, nodes)).tail<3>());
+    };
 }
 
 namespace {
 
-void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::SpringBlock& law) {
-  if (n.other.node >= 0) {   // relative to a moving point: the linear form
+void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+               const model::SpringBlock& law) {
+  if (n.other.node >= 0) {  // relative to a moving point: the linear form
     model::LinearBearing linear;
     linear.K.diagonal() << law.C1, law.C1, law.C1, 0, law.C2, law.C2;
     add_linear(a, b, n, linear);
     return;
   }
   elements::SpringBlock k;
-  k.C1 = law.C1; k.C2 = law.C2; k.offset = n.shaft.offset;
+  k.C1 = law.C1;
+  k.C2 = law.C2;
+  k.offset = n.shaft.offset;
   const Index node = n.shaft.node;
   a.builder.add(k, {node}, "spring blocks");
   a.built.support_forces.push_back(
-      {b.name, [k, node](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(-k.C1 * k.displacement(at(node))); }});
+      {b.name, [k, node](const NodeAt& at, const system::Context&, const ReactionAt&) {
+         return Vec3(-k.C1 * k.displacement(at(node)));
+       }});
   if (law.C2 == 0) return;
-  a.built.support_forces.back().moment = [k, node](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+  a.built.support_forces.back().moment = [k, node](const NodeAt& at, const system::Context& c,
+                                                   const ReactionAt&) {
     system::ForceX<7> f = system::ForceX<7>::Zero();
     k.add_force({&at(node)}, c, f);
     return moment_about_place(at(node), f, k.offset);
@@ -68,69 +88,98 @@ std::vector<elements::CoefficientValues<N>> table_rows(const model::TableBearing
     return i < m.size() ? Matrix<N>(m[i].block<N, N>(first, first)) : Matrix<N>::Zero();
   };
   std::vector<elements::CoefficientValues<N>> rows(law.K.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = {part(law.K, i), part(law.C, i), part(law.M, i)};
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    rows[i] = {part(law.K, i), part(law.C, i), part(law.M, i)};
   return rows;
 }
 
-/// Adds the kernel of a table: the lateral one where nothing else is given, else the one in all six motions.
+/// Adds the kernel of a table: the lateral one where nothing else is given, else the one in all six
+/// motions.
 template <class Table>
-void add_table_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law, std::shared_ptr<const Table> table, const char* kind) {
+void add_table_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                   const model::TableBearing& law, std::shared_ptr<const Table> table,
+                   const char* kind) {
   const auto add = [&](auto mass) {
     if constexpr (Table::size == 2) {
-      add_lateral(a, b, n, elements::TableBearingLaw<mass.value, Table>{table}, kind, Friction::none);
+      add_lateral(a, b, n, elements::TableBearingLaw<mass.value, Table>{table}, kind,
+                  Friction::none);
     } else {
       const Pair nodes{n.shaft.node, n.other.node};
-      const elements::SpatialTableBearing<mass.value, Table> k{table, {n.shaft.offset, n.other.offset}, law.setpoint, law.preload};
+      const elements::SpatialTableBearing<mass.value, Table> k{
+          table, {n.shaft.offset, n.other.offset}, law.setpoint, law.preload};
       a.builder.add(k, nodes, kind);
-      a.built.support_forces.push_back({b.name, [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).template head<3>()); },
-                                        [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) { return Vec3(k.load_on_first(nodes_of(at, nodes)).template tail<3>()); }});
+      a.built.support_forces.push_back(
+          {b.name,
+           [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
+             return Vec3(k.load_on_first(nodes_of(at, nodes)).template head<3>());
+           },
+           [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
+             return Vec3(k.load_on_first(nodes_of(at, nodes)).template tail<3>());
+           }});
     }
   };
-  if (table->has_mass()) add(std::true_type{});
-  else add(std::false_type{});
+  if (table->has_mass())
+    add(std::true_type{});
+  else
+    add(std::false_type{});
 }
 
 template <int N>
-void add_table_of(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law) {
+void add_table_of(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                  const model::TableBearing& law) {
   using Table = elements::CoefficientTable<N>;
   using Grid = elements::CoefficientGrid<N>;
   const auto between = law.monotone_cubic ? Table::Between::monotone_cubic : Table::Between::linear;
   const auto outside = law.extrapolate_hold ? Table::Outside::hold : Table::Outside::undefined;
   guarded(a, b, [&] {
     if (law.frequency.empty()) {
-      add_table_law<Table>(a, b, n, law, std::make_shared<Table>(law.speed, table_rows<N>(law), between, outside), "tabulated bearings");
+      add_table_law<Table>(a, b, n, law,
+                           std::make_shared<Table>(law.speed, table_rows<N>(law), between, outside),
+                           "tabulated bearings");
     } else {
-      a.built.table_frequencies.insert(a.built.table_frequencies.end(), law.frequency.begin(), law.frequency.end());
-      add_table_law<Grid>(a, b, n, law, std::make_shared<Grid>(law.speed, law.frequency, table_rows<N>(law), between, outside), "bearings tabulated against frequency");
+      a.built.table_frequencies.insert(a.built.table_frequencies.end(), law.frequency.begin(),
+                                       law.frequency.end());
+      add_table_law<Grid>(
+          a, b, n, law,
+          std::make_shared<Grid>(law.speed, law.frequency, table_rows<N>(law), between, outside),
+          "bearings tabulated against frequency");
     }
   });
 }
 
-void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::TableBearing& law) {
+void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+               const model::TableBearing& law) {
   const auto lateral = [](const std::vector<Matrix<6>>& list) {
     return std::all_of(list.begin(), list.end(), [](Matrix<6> m) {
       m.block<2, 2>(1, 1).setZero();
       return m.isZero(0.0);
     });
   };
-  const bool small = lateral(law.K) && lateral(law.C) && lateral(law.M) && law.setpoint.isZero(0.0) && law.preload.isZero(0.0);
-  if (small && !a.model.keep_everything) add_table_of<2>(a, b, n, law);
-  else add_table_of<6>(a, b, n, law);
+  const bool small = lateral(law.K) && lateral(law.C) && lateral(law.M) &&
+                     law.setpoint.isZero(0.0) && law.preload.isZero(0.0);
+  if (small && !a.model.keep_everything)
+    add_table_of<2>(a, b, n, law);
+  else
+    add_table_of<6>(a, b, n, law);
 }
 
 // ---------------------------------------------------------------- rigid supports
 
-/// What rigid supports hold of one node. A second one on the same rigid stretch, `arm` away, holds the tilts instead: with u held,
-/// u + arm (d - e) = 0 means d_y = gamma3 sin g/g = 0, d_z = -gamma2 sin g/g = 0.
-/// The reaction of a displacement is then the sum of both supports' forces.
+/// What rigid supports hold of one node. A second one on the same rigid stretch, `arm` away, holds
+/// the tilts instead: with u held, u + arm (d - e) = 0 means d_y = gamma3 sin g/g = 0, d_z =
+/// -gamma2 sin g/g = 0. The reaction of a displacement is then the sum of both supports' forces.
 struct HeldNode {
-  struct Share { std::size_t direction; Index unknown; double scale; };
-  std::array<bool, 6> held{};                                  // unknowns of the node
+  struct Share {
+    std::size_t direction;
+    Index unknown;
+    double scale;
+  };
+  std::array<bool, 6> held{};  // unknowns of the node
   std::shared_ptr<std::vector<Share>> second = std::make_shared<std::vector<Share>>();
 };
 
-/// Moment of a support that holds rotations of its node; null when it holds none. A held angle is zero, so its generalised force is the
-/// moment itself (gamma2 about y, gamma3 about z).
+/// Moment of a support that holds rotations of its node; null when it holds none. A held angle is
+/// zero, so its generalised force is the moment itself (gamma2 about y, gamma3 about z).
 SupportForce::Law moment_of_held(Index node, const model::RigidSupport& law) {
   if (!law.held[3] && !law.held[4] && !law.held[5]) return {};
   return [node, turns = law.held](const NodeAt&, const system::Context&, const ReactionAt& r) {
@@ -141,11 +190,14 @@ SupportForce::Law moment_of_held(Index node, const model::RigidSupport& law) {
   };
 }
 
-void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::RigidSupport& law,
-               std::map<Index, HeldNode>& held) {
+void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+               const model::RigidSupport& law, std::map<Index, HeldNode>& held) {
   const std::string who = name_of(b);
   if (n.other.node >= 0) {
-    a.error("E26", fmt::format("{}: a rigid bearing holds a shaft to the ground; between two shafts it must have a stiffness", who),
+    a.error("E26",
+            fmt::format("{}: a rigid bearing holds a shaft to the ground; between two shafts it "
+                        "must have a stiffness",
+                        who),
             "use type = \"linear\" with the stiffness of the connection", b, who);
     return;
   }
@@ -153,13 +205,15 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
   const double arm = n.shaft.offset;
   HeldNode& h = held[node];
   // x, y, z, rx, ry, rz in order are u, phi, gamma2, gamma3.
-  std::array<Index, 3> unknown{-1, -1, -1};   // whose reaction is the force along x, y, z
+  std::array<Index, 3> unknown{-1, -1, -1};  // whose reaction is the force along x, y, z
   std::array<double, 3> scale{1, 1, 1};
   bool first = false;
   if (b.pedestal) {
-    // The shaft sits rigidly in the pedestal: its mass, spring and damper act on the shaft station, in the directions held.
+    // The shaft sits rigidly in the pedestal: its mass, spring and damper act on the shaft station,
+    // in the directions held.
     Vec3 on = Vec3::Zero();
-    for (int c = 0; c < 3; ++c) on[c] = law.held[static_cast<std::size_t>(c)] ? 1.0 : 0.0;
+    for (int c = 0; c < 3; ++c)
+      on[c] = law.held[static_cast<std::size_t>(c)] ? 1.0 : 0.0;
     model::LinearBearing linear;
     linear.K.topLeftCorner<3, 3>() = on.asDiagonal() * b.pedestal->K * on.asDiagonal();
     linear.C.topLeftCorner<3, 3>() = on.asDiagonal() * b.pedestal->C * on.asDiagonal();
@@ -172,12 +226,16 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     if (whole && b.pedestal->mass > 0) {
       // its weight and inertia (ddu: less gravity) stand between the spring and the shaft
       a.builder.add(elements::PointMass{b.pedestal->mass}, {node}, "point masses");
-      support.force = [spring = support.force, m = b.pedestal->mass, node](const NodeAt& at, const system::Context& c, const ReactionAt& r) {
+      support.force = [spring = support.force, m = b.pedestal->mass, node](
+                          const NodeAt& at, const system::Context& c, const ReactionAt& r) {
         return Vec3(spring(at, c, r) - m * at(node).ddu);
       };
     }
     for (std::size_t c = 3; c < 6; ++c)
-      if (law.held[c]) { a.builder.hold(node, static_cast<int>(c)); h.held[c] = true; }
+      if (law.held[c]) {
+        a.builder.hold(node, static_cast<int>(c));
+        h.held[c] = true;
+      }
     if (const SupportForce::Law held_turns = moment_of_held(node, law)) support.moment = held_turns;
     return;
   }
@@ -186,31 +244,42 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     if (c >= 3 || arm == 0) {
       h.held[c] = true;
       a.builder.hold(node, static_cast<int>(c));
-      if (c < 3) { unknown[c] = 6 * node + static_cast<Index>(c); first = true; }
+      if (c < 3) {
+        unknown[c] = 6 * node + static_cast<Index>(c);
+        first = true;
+      }
       continue;
     }
-    const std::size_t tilt = c == 1 ? 5 : 4;   // y: gamma3, z: gamma2
+    const std::size_t tilt = c == 1 ? 5 : 4;  // y: gamma3, z: gamma2
     if (c == 0 || !h.held[c] || h.held[tilt]) {
-      a.error("E26", fmt::format("{}: the rigid stretch it stands on is held elsewhere in a way that leaves no room for holding {} here",
-                                 who, "xyz"[c]),
-              "on a rigid stretch two rigid bearings may hold y and z both, x one of them, and no third one anything", b, who);
+      a.error("E26",
+              fmt::format("{}: the rigid stretch it stands on is held elsewhere in a way that "
+                          "leaves no room for holding {} here",
+                          who, "xyz"[c]),
+              "on a rigid stretch two rigid bearings may hold y and z both, x one of them, and no "
+              "third one anything",
+              b, who);
       continue;
     }
     h.held[tilt] = true;
     a.builder.hold(node, static_cast<int>(tilt));
     unknown[c] = 6 * node + static_cast<Index>(tilt);
-    scale[c] = (c == 1 ? 1.0 : -1.0) / arm;   // Q_gamma3 = arm F_y, Q_gamma2 = -arm F_z
+    scale[c] = (c == 1 ? 1.0 : -1.0) / arm;  // Q_gamma3 = arm F_y, Q_gamma2 = -arm F_z
     h.second->push_back({c, unknown[c], scale[c]});
   }
   const auto others = first ? h.second : nullptr;
-  a.built.support_forces.push_back({b.name, [unknown, scale, others](const NodeAt&, const system::Context&, const ReactionAt& r) {
-    Vec3 F = Vec3::Zero();
-    for (std::size_t c = 0; c < 3; ++c)
-      if (unknown[c] >= 0) F[static_cast<Index>(c)] = scale[c] * r(unknown[c]);
-    if (others)
-      for (const HeldNode::Share& o : *others) F[static_cast<Index>(o.direction)] -= o.scale * r(o.unknown);
-    return F;
-  }, moment_of_held(node, law)});
+  a.built.support_forces.push_back(
+      {b.name,
+       [unknown, scale, others](const NodeAt&, const system::Context&, const ReactionAt& r) {
+         Vec3 F = Vec3::Zero();
+         for (std::size_t c = 0; c < 3; ++c)
+           if (unknown[c] >= 0) F[static_cast<Index>(c)] = scale[c] * r(unknown[c]);
+         if (others)
+           for (const HeldNode::Share& o : *others)
+             F[static_cast<Index>(o.direction)] -= o.scale * r(o.unknown);
+         return F;
+       },
+       moment_of_held(node, law)});
 }
 
 // ---------------------------------------------------------------- pedestals
@@ -218,8 +287,9 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
 void add_pedestal(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n) {
   const model::Pedestal& p = *b.pedestal;
   if (p.mass > 0) a.builder.add(elements::PointMass{p.mass}, {n.pedestal}, "point masses");
-  a.builder.add(elements::TranslationalBearing{p.K, p.C, Mat3::Zero(), Vec3::Zero(), Vec3::Zero()}, {n.pedestal, n.ground}, "pedestals");
-  for (int c = 0; c < 6; ++c)   // it does not turn, and where it has no spring it does not move
+  a.builder.add(elements::TranslationalBearing{p.K, p.C, Mat3::Zero(), Vec3::Zero(), Vec3::Zero()},
+                {n.pedestal, n.ground}, "pedestals");
+  for (int c = 0; c < 6; ++c)  // it does not turn, and where it has no spring it does not move
     if (c >= 3 || (p.K.row(c).isZero(0.0) && p.K.col(c).isZero(0.0))) a.builder.hold(n.pedestal, c);
 }
 
@@ -231,27 +301,39 @@ void add_supports(Assembly& a) {
     const model::Bearing& b = a.model.bearings[i];
     const meshes::BearingNodes& n = a.mesh.bearings[i];
     if (b.to && b.pedestal) {
-      a.error("E26", fmt::format("{}: a pedestal stands on the ground; between two shafts there is none", name_of(b)), {}, b, name_of(b));
+      a.error("E26",
+              fmt::format("{}: a pedestal stands on the ground; between two shafts there is none",
+                          name_of(b)),
+              {}, b, name_of(b));
       continue;
     }
     if (n.other.node == n.shaft.node) {
-      a.error("E26", fmt::format("{}: both its ends are the same place or rigidly connected", name_of(b)), {}, b, name_of(b));
+      a.error("E26",
+              fmt::format("{}: both its ends are the same place or rigidly connected", name_of(b)),
+              {}, b, name_of(b));
       continue;
     }
     std::visit(
         [&](const auto& law) {
           using Law = std::decay_t<decltype(law)>;
-          if constexpr (std::is_same_v<Law, model::LinearBearing>) add_linear(a, b, n, law);
-          else if constexpr (std::is_same_v<Law, model::SpringBlock>) add_block(a, b, n, law);
-          else if constexpr (std::is_same_v<Law, model::TableBearing>) add_table(a, b, n, law);
-          else if constexpr (std::is_same_v<Law, model::RigidSupport>) add_rigid(a, b, n, law, held);
-          else add_law(a, b, n, law);
+          if constexpr (std::is_same_v<Law, model::LinearBearing>)
+            add_linear(a, b, n, law);
+          else if constexpr (std::is_same_v<Law, model::SpringBlock>)
+            add_block(a, b, n, law);
+          else if constexpr (std::is_same_v<Law, model::TableBearing>)
+            add_table(a, b, n, law);
+          else if constexpr (std::is_same_v<Law, model::RigidSupport>)
+            add_rigid(a, b, n, law, held);
+          else
+            add_law(a, b, n, law);
         },
         b.law);
     if (n.pedestal >= 0 && b.pedestal) add_pedestal(a, b, n);
   }
   if (a.translational > 0)
-    a.built.simpler.push_back(fmt::format("moments and tilts of {} linear bearing{}: without coefficients", a.translational, a.translational > 1 ? "s" : ""));
+    a.built.simpler.push_back(
+        fmt::format("moments and tilts of {} linear bearing{}: without coefficients",
+                    a.translational, a.translational > 1 ? "s" : ""));
 }
 
 }  // namespace whirl::assembly

@@ -10,7 +10,8 @@ namespace whirl::assembly {
 namespace {
 
 double viscosity_of(const model::Oil& o) {
-  return o.viscosity > 0 ? o.viscosity : elements::iso_vg_viscosity(o.grade, o.temperature, o.density);
+  return o.viscosity > 0 ? o.viscosity
+                         : elements::iso_vg_viscosity(o.grade, o.temperature, o.density);
 }
 
 /// What a film does depends on the motion of both its sides against the clearance.
@@ -19,114 +20,165 @@ void follow_closely(Assembly& a, const meshes::BearingNodes& n, double clearance
     if (node >= 0) a.built.fine.push_back({node, clearance});
 }
 
-/// Films: clearance, and the load they carry near it at the present spin in the direction of the displacement.
+/// Films: clearance, and the load they carry near it at the present spin in the direction of the
+/// displacement.
 template <class Film>
-void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Film& film, double clearance) {
-  const double sommerfeld = 2.0 * film.viscosity * film.length * film.radius * (film.radius / clearance) * (film.radius / clearance);
+void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Film& film,
+              double clearance) {
+  const double sommerfeld = 2.0 * film.viscosity * film.length * film.radius *
+                            (film.radius / clearance) * (film.radius / clearance);
   using Law = elements::FilmLaw<Film>;
   const Law law{film};
   add_lateral(a, b, n, law, "journal bearings");
   follow_closely(a, n, clearance);
   const Pair nodes{n.shaft.node, n.other.node};
-  a.built.conditions.push_back({b.name, b.where, [r = displacement_of(n), law, clearance, nodes](const NodeAt& at) {
-    elements::LateralMotion m;
-    m.r = r(at); m.v.setZero(); m.a.setZero();
-    m.spin = at(nodes[0]).spin(); m.housing_spin = at(nodes[1]).spin();
-    Vector<4> z;
-    law.force(m, z);
-    SupportCondition::State s;
-    s.film = true; s.gap = clearance; s.displacement = m.r.norm(); s.load = z.head<2>().norm();
-    m.r = s.displacement > 0 ? Vec2(m.r * (SupportCondition::believed * clearance / s.displacement)) : Vec2(0.0, -SupportCondition::believed * clearance);
-    law.force(m, z);
-    s.capacity = z.head<2>().norm();
-    return s;
-  }, sommerfeld});
+  a.built.conditions.push_back(
+      {b.name, b.where,
+       [r = displacement_of(n), law, clearance, nodes](const NodeAt& at) {
+         elements::LateralMotion m;
+         m.r = r(at);
+         m.v.setZero();
+         m.a.setZero();
+         m.spin = at(nodes[0]).spin();
+         m.housing_spin = at(nodes[1]).spin();
+         Vector<4> z;
+         law.force(m, z);
+         SupportCondition::State s;
+         s.film = true;
+         s.gap = clearance;
+         s.displacement = m.r.norm();
+         s.load = z.head<2>().norm();
+         m.r = s.displacement > 0
+                   ? Vec2(m.r * (SupportCondition::believed * clearance / s.displacement))
+                   : Vec2(0.0, -SupportCondition::believed * clearance);
+         law.force(m, z);
+         s.capacity = z.head<2>().norm();
+         return s;
+       },
+       sommerfeld});
 }
 
 std::vector<elements::JournalPad> pads_of(const model::FiniteJournal& law) {
   using Shape = model::FiniteJournal::Shape;
   if (law.shape == Shape::two_grooves) return elements::two_groove_pads(law.groove_at, law.groove);
-  if (law.shape == Shape::lobes) return elements::lobe_pads(law.lobes, law.lobe_at, law.groove, law.lobe_offset);
+  if (law.shape == Shape::lobes)
+    return elements::lobe_pads(law.lobes, law.lobe_at, law.groove, law.lobe_offset);
   return {};
 }
 
 template <class Film>
-void add_damper(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const Film& film) {
+void add_damper(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                const Film& film) {
   add_joint(a, b, n, elements::SqueezeFilm<Film>{film}, "squeeze films");
 }
 
 }  // namespace
 
-void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::ShortJournal& law) {
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+             const model::ShortJournal& law) {
   guarded(a, b, [&] {
-    add_film(a, b, n, elements::ShortJournal{0.5 * law.diameter, law.length, law.clearance, viscosity_of(law.oil)}, law.clearance);
+    add_film(a, b, n,
+             elements::ShortJournal{0.5 * law.diameter, law.length, law.clearance,
+                                    viscosity_of(law.oil)},
+             law.clearance);
   });
 }
 
-void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::FiniteJournal& law) {
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+             const model::FiniteJournal& law) {
   guarded(a, b, [&] {
     elements::FiniteJournal film;
-    film.radius = 0.5 * law.diameter; film.length = law.length; film.viscosity = viscosity_of(law.oil);
-    film.surface = std::make_shared<elements::JournalSurface>(law.clearance, law.preload, pads_of(law), law.nodes);
+    film.radius = 0.5 * law.diameter;
+    film.length = law.length;
+    film.viscosity = viscosity_of(law.oil);
+    film.surface = std::make_shared<elements::JournalSurface>(law.clearance, law.preload,
+                                                              pads_of(law), law.nodes);
     add_film(a, b, n, film, law.clearance);
   });
 }
 
-void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::SqueezeFilm& law) {
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+             const model::SqueezeFilm& law) {
   using Film = model::SqueezeFilm::Film;
   guarded(a, b, [&] {
     const double R = 0.5 * law.diameter, eta = viscosity_of(law.oil);
-    if (law.film == Film::cavitated) add_damper(a, b, n, elements::ShortJournal{R, law.length, law.clearance, eta});
-    else if (law.film == Film::full) add_damper(a, b, n, elements::ShortFullFilm{R, law.length, law.clearance, eta});
+    if (law.film == Film::cavitated)
+      add_damper(a, b, n, elements::ShortJournal{R, law.length, law.clearance, eta});
+    else if (law.film == Film::full)
+      add_damper(a, b, n, elements::ShortFullFilm{R, law.length, law.clearance, eta});
     else {
       elements::FiniteJournal film;
-      film.radius = R; film.length = law.length; film.viscosity = eta;
+      film.radius = R;
+      film.length = law.length;
+      film.viscosity = eta;
       std::vector<elements::JournalPad> pads;
       if (law.film == Film::sealed) {
         film.seal_ends();
-        pads.push_back({law.groove_at + 0.5 * law.groove, law.groove_at - 0.5 * law.groove + two_pi, 0.0});
+        pads.push_back(
+            {law.groove_at + 0.5 * law.groove, law.groove_at - 0.5 * law.groove + two_pi, 0.0});
       }
       film.surface = std::make_shared<elements::JournalSurface>(law.clearance, 0.0, pads);
       add_damper(a, b, n, film);
     }
     follow_closely(a, n, law.clearance);
     a.built.conditions.push_back({b.name, b.where, [r = displacement_of(n), law](const NodeAt& at) {
-      SupportCondition::State s;
-      s.film = true; s.gap = law.clearance; s.displacement = r(at).norm();
-      s.load = law.stiffness * s.displacement; s.capacity = law.stiffness * SupportCondition::believed * law.clearance;
-      return s;
-    }});
+                                    SupportCondition::State s;
+                                    s.film = true;
+                                    s.gap = law.clearance;
+                                    s.displacement = r(at).norm();
+                                    s.load = law.stiffness * s.displacement;
+                                    s.capacity =
+                                        law.stiffness * SupportCondition::believed * law.clearance;
+                                    return s;
+                                  }});
     if (law.stiffness == 0 && law.damping == 0) return;
-    // The centring spring acts beside the film: one support, two elements. Its force is added to the film's.
+    // The centring spring acts beside the film: one support, two elements. Its force is added to
+    // the film's.
     model::LinearBearing spring;
-    for (Index k : {1, 2}) { spring.K(k, k) = law.stiffness; spring.C(k, k) = law.damping; }
+    for (Index k : {1, 2}) {
+      spring.K(k, k) = law.stiffness;
+      spring.C(k, k) = law.damping;
+    }
     auto film = a.built.support_forces.back().force;
     add_linear(a, b, n, spring);
     auto centring = a.built.support_forces.back().force;
     a.built.support_forces.pop_back();
-    a.built.support_forces.back().force = [film, centring](const NodeAt& at, const system::Context& c, const ReactionAt& r) {
-      return Vec3(film(at, c, r) + centring(at, c, r));
-    };
+    a.built.support_forces.back().force =
+        [film, centring](const NodeAt& at, const system::Context& c, const ReactionAt& r) {
+          return Vec3(film(at, c, r) + centring(at, c, r));
+        };
   });
 }
 
-void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::AnnularSeal& law) {
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+             const model::AnnularSeal& law) {
   elements::AnnularSeal k;
-  k.radius = 0.5 * law.diameter; k.length = law.length; k.clearance = law.clearance; k.pressure_drop = law.pressure_drop;
-  k.density = law.density; k.viscosity = law.viscosity; k.inlet_loss = law.inlet_loss; k.inlet_swirl = law.inlet_swirl;
+  k.radius = 0.5 * law.diameter;
+  k.length = law.length;
+  k.clearance = law.clearance;
+  k.pressure_drop = law.pressure_drop;
+  k.density = law.density;
+  k.viscosity = law.viscosity;
+  k.inlet_loss = law.inlet_loss;
+  k.inlet_swirl = law.inlet_swirl;
   add_lateral(a, b, n, k, "annular seals", Friction::none);
 }
 
-void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n, const model::CrossCoupling& law) {
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+             const model::CrossCoupling& law) {
   using From = model::CrossCoupling::From;
   double k = law.k;
-  if (law.from == From::alford) k = elements::alford_stiffness(law.alford.beta, law.alford.torque, law.alford.diameter, law.alford.blade_height);
+  if (law.from == From::alford)
+    k = elements::alford_stiffness(law.alford.beta, law.alford.torque, law.alford.diameter,
+                                   law.alford.blade_height);
   if (law.from == From::wachel) {
     const auto& w = law.wachel;
-    k = elements::wachel_stiffness(w.power, w.speed, w.diameter, w.width, w.molar_mass, w.density_ratio);
+    k = elements::wachel_stiffness(w.power, w.speed, w.diameter, w.width, w.molar_mass,
+                                   w.density_ratio);
   }
-  model::LinearBearing linear;   // F = -K q: F_y = -k z, F_z = k y
-  linear.K(1, 2) = k; linear.K(2, 1) = -k;
+  model::LinearBearing linear;  // F = -K q: F_y = -k z, F_z = k y
+  linear.K(1, 2) = k;
+  linear.K(2, 1) = -k;
   add_linear(a, b, n, linear);
 }
 

@@ -18,8 +18,10 @@ void turn(Assembly& a, const elements::TurningBasePtr& base) {
   for (std::size_t i = 0; i < inertias->count(); ++i) {
     const auto& nodes = inertias->nodes()[i];
     std::array<Vec3, K::n_nodes> position;
-    for (std::size_t k = 0; k < position.size(); ++k) position[k] = a.builder.node(nodes[k]).position;
-    a.builder.add(elements::OnTurningBase<K>(inertias->elements()[i], base, position), nodes, "inertia on a turning base");
+    for (std::size_t k = 0; k < position.size(); ++k)
+      position[k] = a.builder.node(nodes[k]).position;
+    a.builder.add(elements::OnTurningBase<K>(inertias->elements()[i], base, position), nodes,
+                  "inertia on a turning base");
   }
 }
 
@@ -29,7 +31,10 @@ void add_turning_base(Assembly& a) {
   const auto& t = a.model.base.turn;
   if (!t) return;
   auto base = std::make_shared<elements::TurningBase>();
-  base->axis = t->axis; base->about = t->about; base->rate = t->rate; base->gravity = a.model.gravity;
+  base->axis = t->axis;
+  base->about = t->about;
+  base->rate = t->rate;
+  base->gravity = a.model.gravity;
   a.take_breakpoints(t->rate);
   turn<elements::ShaftBeam<false>>(a, base);
   turn<elements::ShaftBeam<true>>(a, base);

@@ -1,8 +1,10 @@
-// Unbalances. A static moment U at one section has no limit in a beam: with the section's mass m and inertia J (per length h both
-// ~ h) the kinetic energy m u'^2/2 + U u'.b' + J omega^2/2 is positive only while U^2 < m J, so that on short elements a run with
-// a perfectly ordinary unbalance grows without bound at the highest frequencies of the mesh. A real unbalance sits on a length of
-// shaft. So U is shared among as many neighbouring nodes as are needed for each to carry its share, with the same sum and
-// the same place of the resultant: w_j = c_j (a + b (x_j - x0)), c_j = m_j J_j, which is the least squares of U_j^2/c_j.
+// Unbalances. A static moment U at one section has no limit in a beam: with the section's mass m
+// and inertia J (per length h both ~ h) the kinetic energy m u'^2/2 + U u'.b' + J omega^2/2 is
+// positive only while U^2 < m J, so that on short elements a run with a perfectly ordinary
+// unbalance grows without bound at the highest frequencies of the mesh. A real unbalance sits on a
+// length of shaft. So U is shared among as many neighbouring nodes as are needed for each to carry
+// its share, with the same sum and the same place of the resultant: w_j = c_j (a + b (x_j - x0)),
+// c_j = m_j J_j, which is the least squares of U_j^2/c_j.
 #include <assembly/node_inertia.hpp>
 #include <assembly/parts.hpp>
 #include <elements/loads/unbalance.hpp>
@@ -14,16 +16,19 @@
 namespace whirl::assembly {
 namespace {
 
-/// Largest U_j^2/(m_j J_j), squared root of it: what the unbalance may change of the inertia of its nodes is a hundredth.
+/// Largest U_j^2/(m_j J_j), squared root of it: what the unbalance may change of the inertia of its
+/// nodes is a hundredth.
 constexpr double fine = 0.1;
-/// Where no more nodes are to be had. The consistent masses of neighbours are at least a third of the lumped ones counted here.
+/// Where no more nodes are to be had. The consistent masses of neighbours are at least a third of
+/// the lumped ones counted here.
 constexpr double impossible = 1.0 / 3.0;
 
 double largest_factor(const model::Unbalance& u) {
   if (!u.factor) return 1.0;
   double most = std::abs(u.factor->at(0.0).f);
   for (const double t : u.factor->breakpoints())
-    for (const double s : {t, std::nextafter(t, -infinity)}) most = std::max(most, std::abs(u.factor->at(s).f));
+    for (const double s : {t, std::nextafter(t, -infinity)})
+      most = std::max(most, std::abs(u.factor->at(s).f));
   return most;
 }
 
@@ -31,27 +36,33 @@ double largest_factor(const model::Unbalance& u) {
 struct Shares {
   Index first = 0;
   std::vector<double> w;
-  double worst = infinity;   ///< largest |w_j| / carries_j, 1/(kg m)
+  double worst = infinity;  ///< largest |w_j| / carries_j, 1/(kg m)
 };
 
-/// The fewest neighbours of node k (positions x, increasing) that keep |U w_j| below `fine` of what each carries, or the best there are.
-Shares share(double U, double x0, Index k, const std::vector<double>& x, const std::vector<NodeInertia>& nodes) {
+/// The fewest neighbours of node k (positions x, increasing) that keep |U w_j| below `fine` of what
+/// each carries, or the best there are.
+Shares share(double U, double x0, Index k, const std::vector<double>& x,
+             const std::vector<NodeInertia>& nodes) {
   const auto n = static_cast<Index>(x.size());
   Shares best;
   for (Index lo = k, hi = k;;) {
     double s0 = 0, s1 = 0, s2 = 0;
-    const double scale = std::max(x[static_cast<std::size_t>(hi)] - x[static_cast<std::size_t>(lo)], 1e-300);
+    const double scale =
+        std::max(x[static_cast<std::size_t>(hi)] - x[static_cast<std::size_t>(lo)], 1e-300);
     for (Index j = lo; j <= hi; ++j) {
       const auto i = static_cast<std::size_t>(j);
       const double c = nodes[i].carries() * nodes[i].carries(), xi = (x[i] - x0) / scale;
-      s0 += c; s1 += c * xi; s2 += c * xi * xi;
+      s0 += c;
+      s1 += c * xi;
+      s2 += c * xi * xi;
     }
     const double det = s0 * s2 - s1 * s1;
     if (hi > lo && det > 0) {
       Shares now{lo, {}, 0};
       for (Index j = lo; j <= hi; ++j) {
         const auto i = static_cast<std::size_t>(j);
-        const double w = nodes[i].carries() * nodes[i].carries() * (s2 - s1 * (x[i] - x0) / scale) / det;
+        const double w =
+            nodes[i].carries() * nodes[i].carries() * (s2 - s1 * (x[i] - x0) / scale) / det;
         now.w.push_back(w);
         if (w != 0) now.worst = std::max(now.worst, std::abs(w) / nodes[i].carries());
       }
@@ -60,42 +71,63 @@ Shares share(double U, double x0, Index k, const std::vector<double>& x, const s
     }
     const bool left = lo > 0, right = hi + 1 < n;
     if (!left && !right) return best;
-    if (right && (!left || x[static_cast<std::size_t>(hi + 1)] - x0 <= x0 - x[static_cast<std::size_t>(lo - 1)])) ++hi;
-    else --lo;
+    if (right && (!left || x[static_cast<std::size_t>(hi + 1)] - x0 <=
+                               x0 - x[static_cast<std::size_t>(lo - 1)]))
+      ++hi;
+    else
+      --lo;
   }
 }
 
-void too_much(Assembly& a, const model::Unbalance& u, double U, const std::vector<NodeInertia>& nodes) {
+void too_much(Assembly& a, const model::Unbalance& u, double U,
+              const std::vector<NodeInertia>& nodes) {
   NodeInertia whole;
-  for (const NodeInertia& n : nodes) { whole.mass += n.mass; whole.Ip += n.Ip; }
-  a.error("E38", fmt::format("an unbalance of {:.4g} kg m is more than its shaft can have: {:.4g} kg with a radius of inertia of {:.3g} mm about the axis, the mass centre {:.3g} mm beside it", U, whole.mass,
-                             1e3 * std::sqrt(whole.Ip / whole.mass), 1e3 * U / whole.mass),
-          "an amount is mass times eccentricity: 1 g at 100 mm is \"100 g.mm\" = \"1e-4 kg.m\"; give the disk that has it its mass, Ip and Id", u, u.name.empty() ? "unbalance" : u.name);
+  for (const NodeInertia& n : nodes) {
+    whole.mass += n.mass;
+    whole.Ip += n.Ip;
+  }
+  a.error("E38",
+          fmt::format(
+              "an unbalance of {:.4g} kg m is more than its shaft can have: {:.4g} kg with a "
+              "radius of inertia of {:.3g} mm about the axis, the mass centre {:.3g} mm beside it",
+              U, whole.mass, 1e3 * std::sqrt(whole.Ip / whole.mass), 1e3 * U / whole.mass),
+          "an amount is mass times eccentricity: 1 g at 100 mm is \"100 g.mm\" = \"1e-4 kg.m\"; "
+          "give the disk that has it its mass, Ip and Id",
+          u, u.name.empty() ? "unbalance" : u.name);
 }
 
-/// Spread evenly over elements and rigid sections: with the cubic shapes of an element, int N ds = l/2 on the displacement and +-l^2/12 on
-/// the director of each end, which the offset of a node's share stands for.
-void add_spread(Assembly& a, const model::Unbalance& u, const meshes::Line& line, const std::vector<NodeInertia>& nodes) {
-  const double from = u.at.s, to = u.to->s, per_length = u.amount / (to - from), tiny = 1e-9 * (to - from);
-  std::vector<Vec2> share(nodes.size(), Vec2::Zero());   // kg m, kg m2 along the axis from the node
-  const auto add = [&](Index node, double amount, double moment) { share[static_cast<std::size_t>(node - line.first_node)] += Vec2(amount, moment); };
+/// Spread evenly over elements and rigid sections: with the cubic shapes of an element, int N ds =
+/// l/2 on the displacement and +-l^2/12 on the director of each end, which the offset of a node's
+/// share stands for.
+void add_spread(Assembly& a, const model::Unbalance& u, const meshes::Line& line,
+                const std::vector<NodeInertia>& nodes) {
+  const double from = u.at.s, to = u.to->s, per_length = u.amount / (to - from),
+               tiny = 1e-9 * (to - from);
+  std::vector<Vec2> share(nodes.size(), Vec2::Zero());  // kg m, kg m2 along the axis from the node
+  const auto add = [&](Index node, double amount, double moment) {
+    share[static_cast<std::size_t>(node - line.first_node)] += Vec2(amount, moment);
+  };
   for (Index i = line.first_element; i < line.first_element + line.elements; ++i) {
     const meshes::Element& e = a.mesh.elements[static_cast<std::size_t>(i)];
-    if (e.s1 < from - tiny || e.s2 > to + tiny) continue;   // its ends are nodes
+    if (e.s1 < from - tiny || e.s2 > to + tiny) continue;  // its ends are nodes
     const double l = e.s2 - e.s1, half = 0.5 * per_length * l, moment = per_length * l * l / 12;
     add(e.left.node, half, half * e.left.offset + moment);
     add(e.right.node, half, half * e.right.offset - moment);
   }
   for (const meshes::RigidPart& r : a.mesh.rigid_parts) {
     if (r.node < line.first_node || r.node >= line.first_node + line.nodes) continue;
-    const double s = a.mesh.nodes[static_cast<std::size_t>(r.node)].s, o1 = std::max(r.o1, from - s), o2 = std::min(r.o2, to - s);
+    const double s = a.mesh.nodes[static_cast<std::size_t>(r.node)].s,
+                 o1 = std::max(r.o1, from - s), o2 = std::min(r.o2, to - s);
     if (o2 > o1) add(r.node, per_length * (o2 - o1), per_length * (o2 - o1) * 0.5 * (o1 + o2));
   }
   for (std::size_t i = 0; i < share.size(); ++i) {
     if (share[i][0] == 0) continue;
     const double U = std::abs(share[i][0]) * largest_factor(u), own = nodes[i].carries();
-    if (own > 0 && U > impossible * own) return too_much(a, u, std::abs(u.amount) * largest_factor(u), nodes);
-    a.builder.add(elements::UnbalanceMass(share[i][0], u.phase, u.factor, share[i][1] / share[i][0]), {line.first_node + static_cast<Index>(i)}, "unbalances");
+    if (own > 0 && U > impossible * own)
+      return too_much(a, u, std::abs(u.amount) * largest_factor(u), nodes);
+    a.builder.add(
+        elements::UnbalanceMass(share[i][0], u.phase, u.factor, share[i][1] / share[i][0]),
+        {line.first_node + static_cast<Index>(i)}, "unbalances");
   }
 }
 
@@ -115,14 +147,18 @@ void add_unbalances(Assembly& a) {
       continue;
     }
     const Index k = at.node - line.first_node;
-    const double U = std::abs(u.amount) * largest_factor(u), own = nodes[static_cast<std::size_t>(k)].carries();
-    // A node without any inertia is a mass point on a massless shaft; whether it may turn is for the scene to say.
+    const double U = std::abs(u.amount) * largest_factor(u),
+                 own = nodes[static_cast<std::size_t>(k)].carries();
+    // A node without any inertia is a mass point on a massless shaft; whether it may turn is for
+    // the scene to say.
     if (U <= fine * own || own == 0) {
-      a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node}, "unbalances");
+      a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node},
+                    "unbalances");
       continue;
     }
     std::vector<double> x;
-    for (Index i = 0; i < line.nodes; ++i) x.push_back(a.mesh.nodes[static_cast<std::size_t>(line.first_node + i)].s);
+    for (Index i = 0; i < line.nodes; ++i)
+      x.push_back(a.mesh.nodes[static_cast<std::size_t>(line.first_node + i)].s);
     const double x0 = x[static_cast<std::size_t>(k)] + at.offset;
     Shares s = share(U, x0, k, x, nodes);
     if (!(s.worst < 1 / own)) s = {k, {1.0}, 1 / own};
@@ -131,13 +167,20 @@ void add_unbalances(Assembly& a) {
       continue;
     }
     if (s.w.size() == 1) {
-      a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node}, "unbalances");
+      a.builder.add(elements::UnbalanceMass(u.amount, u.phase, u.factor, at.offset), {at.node},
+                    "unbalances");
       continue;
     }
     for (std::size_t j = 0; j < s.w.size(); ++j)
-      if (s.w[j] != 0) a.builder.add(elements::UnbalanceMass(s.w[j] * u.amount, u.phase, u.factor), {line.first_node + s.first + static_cast<Index>(j)}, "unbalances");
-    a.built.notes.push_back(fmt::format("{} ({:.4g} kg m): spread over {:.3g} mm of the shaft, as the slice of one node is too light to carry it", u.name.empty() ? "unbalance" : u.name, u.amount,
-                                        1e3 * (x[static_cast<std::size_t>(s.first) + s.w.size() - 1] - x[static_cast<std::size_t>(s.first)])));
+      if (s.w[j] != 0)
+        a.builder.add(elements::UnbalanceMass(s.w[j] * u.amount, u.phase, u.factor),
+                      {line.first_node + s.first + static_cast<Index>(j)}, "unbalances");
+    a.built.notes.push_back(
+        fmt::format("{} ({:.4g} kg m): spread over {:.3g} mm of the shaft, as the slice of one "
+                    "node is too light to carry it",
+                    u.name.empty() ? "unbalance" : u.name, u.amount,
+                    1e3 * (x[static_cast<std::size_t>(s.first) + s.w.size() - 1] -
+                           x[static_cast<std::size_t>(s.first)])));
   }
 }
 

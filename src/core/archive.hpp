@@ -1,5 +1,6 @@
-// A byte string of numbers and texts in the order they were put: what checkpoints are made of. Numbers are stored as they stand
-// in memory, so what is taken out is bit for bit what was put in; files are for the machine type that wrote them.
+// A byte string of numbers and texts in the order they were put: what checkpoints are made of.
+// Numbers are stored as they stand in memory, so what is taken out is bit for bit what was put in;
+// files are for the machine type that wrote them.
 #pragma once
 #include <core/types.hpp>
 #include <cstdint>
@@ -16,13 +17,23 @@ class OutArchive {
  public:
   void put(double x) { raw(&x, sizeof x); }
   void put_count(std::uint64_t n) { raw(&n, sizeof n); }
-  void put(std::string_view s) { put_count(s.size()); raw(s.data(), s.size()); }
-  void put(std::span<const double> x) { put_count(x.size()); raw(x.data(), x.size_bytes()); }
-  void put(const VecX& x) { put(std::span<const double>(x.data(), static_cast<std::size_t>(x.size()))); }
+  void put(std::string_view s) {
+    put_count(s.size());
+    raw(s.data(), s.size());
+  }
+  void put(std::span<const double> x) {
+    put_count(x.size());
+    raw(x.data(), x.size_bytes());
+  }
+  void put(const VecX& x) {
+    put(std::span<const double>(x.data(), static_cast<std::size_t>(x.size())));
+  }
   const std::string& data() const { return data_; }
 
  private:
-  void raw(const void* p, std::size_t n) { if (n) data_.append(static_cast<const char*>(p), n); }
+  void raw(const void* p, std::size_t n) {
+    if (n) data_.append(static_cast<const char*>(p), n);
+  }
   std::string data_;
 };
 
@@ -30,8 +41,16 @@ class OutArchive {
 class InArchive {
  public:
   explicit InArchive(std::string_view data) : data_(data) {}
-  double number() { double x; raw(&x, sizeof x); return x; }
-  std::uint64_t count() { std::uint64_t n; raw(&n, sizeof n); return n; }
+  double number() {
+    double x;
+    raw(&x, sizeof x);
+    return x;
+  }
+  std::uint64_t count() {
+    std::uint64_t n;
+    raw(&n, sizeof n);
+    return n;
+  }
   std::string text() {
     std::string s(sized(1), '\0');
     raw(s.data(), s.size());

@@ -14,9 +14,12 @@ struct DualRate {
   double v = 0.0, e = 0.0;
   Vector<N> g = Vector<N>::Zero(), h = Vector<N>::Zero();
   DualRate() = default;
-  DualRate(double value) : v(value) {} // implicit: constants mix with duals
+  DualRate(double value) : v(value) {}  // implicit: constants mix with duals
   DualRate(double value, double rate, const Vector<N>& gradient, const Vector<N>& gradient_rate)
-      : v(value), e(rate), g(gradient), h(gradient_rate) {}
+      : v(value),
+        e(rate),
+        g(gradient),
+        h(gradient_rate) {}
   /// The independent variable k at a value, moving at a rate.
   static DualRate variable(double value, double rate, int k) {
     DualRate d(value);

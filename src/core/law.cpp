@@ -31,8 +31,8 @@ void require_interval(double t0, double t1, const char* what) {
     refuse(std::string(what) + ": the end time must be later than the start time", "");
 }
 
-// Polynomials between knots: piece k, in powers of t - origin, holds from knot[k-1] to knot[k] (the first from -infinity,
-// the last to +infinity).
+// Polynomials between knots: piece k, in powers of t - origin, holds from knot[k-1] to knot[k] (the
+// first from -infinity, the last to +infinity).
 class PiecewisePolynomial final : public Law {
  public:
   struct Piece {
@@ -42,13 +42,15 @@ class PiecewisePolynomial final : public Law {
   };
 
   PiecewisePolynomial(std::vector<double> knots, std::vector<Piece> pieces)
-      : knots_(std::move(knots)), pieces_(std::move(pieces)) {
+      : knots_(std::move(knots)),
+        pieces_(std::move(pieces)) {
     for (std::size_t k = 1; k < pieces_.size(); ++k) {
       const double t = knots_[k - 1];
       pieces_[k].base = primitive(pieces_[k - 1], t) - (primitive(pieces_[k], t) - pieces_[k].base);
     }
     const double zero = primitive(piece(0.0), 0.0);
-    for (auto& p : pieces_) p.base -= zero;
+    for (auto& p : pieces_)
+      p.base -= zero;
   }
 
   LawValue at(double t) const override {
@@ -73,7 +75,8 @@ class PiecewisePolynomial final : public Law {
   static double primitive(const Piece& p, double t) {
     const double x = t - p.origin;
     double s = 0.0;
-    for (std::size_t j = p.c.size(); j-- > 0;) s = s * x + p.c[j] / static_cast<double>(j + 1);
+    for (std::size_t j = p.c.size(); j-- > 0;)
+      s = s * x + p.c[j] / static_cast<double>(j + 1);
     return p.base + s * x;
   }
 
@@ -82,17 +85,24 @@ class PiecewisePolynomial final : public Law {
 };
 
 // Pieces between the knots with a constant before and after.
-LawPtr make_held(std::vector<double> t, double first, double last, std::vector<std::vector<double>> inner) {
+LawPtr make_held(std::vector<double> t, double first, double last,
+                 std::vector<std::vector<double>> inner) {
   std::vector<PiecewisePolynomial::Piece> pieces;
   pieces.push_back({t.front(), {first}});
-  for (std::size_t k = 0; k < inner.size(); ++k) pieces.push_back({t[k], std::move(inner[k])});
+  for (std::size_t k = 0; k < inner.size(); ++k)
+    pieces.push_back({t[k], std::move(inner[k])});
   pieces.push_back({t.back(), {last}});
   return std::make_shared<PiecewisePolynomial>(std::move(t), std::move(pieces));
 }
 
 class CosineStep final : public Law {
  public:
-  CosineStep(double t0, double t1, double f0, double f1) : t0_(t0), t1_(t1), f0_(f0), f1_(f1), w_(pi / (t1 - t0)) {
+  CosineStep(double t0, double t1, double f0, double f1)
+      : t0_(t0),
+        t1_(t1),
+        f0_(f0),
+        f1_(f1),
+        w_(pi / (t1 - t0)) {
     zero_ = primitive(0.0);
   }
   LawValue at(double t) const override {
@@ -118,9 +128,13 @@ class CosineStep final : public Law {
 class Harmonic final : public Law {
  public:
   Harmonic(double mean, double amplitude, double omega, double phase)
-      : mean_(mean), amplitude_(amplitude), omega_(omega), phase_(phase) {}
+      : mean_(mean),
+        amplitude_(amplitude),
+        omega_(omega),
+        phase_(phase) {}
   LawValue at(double t) const override {
-    const double a = omega_ * t + phase_, c = amplitude_ * std::cos(a), s = amplitude_ * std::sin(a);
+    const double a = omega_ * t + phase_, c = amplitude_ * std::cos(a),
+                 s = amplitude_ * std::sin(a);
     return {mean_ + c, -omega_ * s, -omega_ * omega_ * c};
   }
   double integral(double t) const override {
@@ -134,20 +148,26 @@ class Harmonic final : public Law {
 
 class Piecewise final : public Law {
  public:
-  Piecewise(std::vector<double> start, std::vector<LawPtr> laws) : start_(std::move(start)), laws_(std::move(laws)) {
+  Piecewise(std::vector<double> start, std::vector<LawPtr> laws)
+      : start_(std::move(start)),
+        laws_(std::move(laws)) {
     base_.assign(laws_.size(), 0.0);
     for (std::size_t k = 1; k < laws_.size(); ++k)
       base_[k] = base_[k - 1] + laws_[k - 1]->integral(start_[k]) - laws_[k]->integral(start_[k]);
     const double zero = base_[index(0.0)];
-    for (double& b : base_) b -= zero;
+    for (double& b : base_)
+      b -= zero;
   }
   LawValue at(double t) const override { return laws_[index(t)]->at(t); }
-  double integral(double t) const override { return base_[index(t)] + laws_[index(t)]->integral(t); }
+  double integral(double t) const override {
+    return base_[index(t)] + laws_[index(t)]->integral(t);
+  }
   std::vector<double> breakpoints() const override {
     std::vector<double> b(start_.begin() + 1, start_.end());
     for (std::size_t k = 0; k < laws_.size(); ++k)
       for (double t : laws_[k]->breakpoints())
-        if ((k == 0 || t > start_[k]) && (k + 1 == laws_.size() || t < start_[k + 1])) b.push_back(t);
+        if ((k == 0 || t > start_[k]) && (k + 1 == laws_.size() || t < start_[k + 1]))
+          b.push_back(t);
     std::sort(b.begin(), b.end());
     return b;
   }
@@ -168,13 +188,16 @@ class Sum final : public Law {
     LawValue s;
     for (const auto& l : laws_) {
       const LawValue v = l->at(t);
-      s.f += v.f; s.df += v.df; s.ddf += v.ddf;
+      s.f += v.f;
+      s.df += v.df;
+      s.ddf += v.ddf;
     }
     return s;
   }
   double integral(double t) const override {
     double s = 0.0;
-    for (const auto& l : laws_) s += l->integral(t);
+    for (const auto& l : laws_)
+      s += l->integral(t);
     return s;
   }
   std::vector<double> breakpoints() const override {
@@ -210,13 +233,16 @@ class Scaled final : public Law {
 // Gauss-Legendre with 10 points on [-1, 1]: exact to degree 19.
 template <class F>
 double gauss10(const F& f, double a, double b) {
-  static constexpr std::array<double, 5> x{0.14887433898163121, 0.43339539412924719, 0.67940956829902441,
-                                           0.86506336668898451, 0.97390652851717172};
-  static constexpr std::array<double, 5> w{0.29552422471475287, 0.26926671930999636, 0.21908636251598204,
-                                           0.14945134915058059, 0.066671344308688138};
+  static constexpr std::array<double, 5> x{0.14887433898163121, 0.43339539412924719,
+                                           0.67940956829902441, 0.86506336668898451,
+                                           0.97390652851717172};
+  static constexpr std::array<double, 5> w{0.29552422471475287, 0.26926671930999636,
+                                           0.21908636251598204, 0.14945134915058059,
+                                           0.066671344308688138};
   const double m = 0.5 * (a + b), h = 0.5 * (b - a);
   double s = 0.0;
-  for (std::size_t i = 0; i < 5; ++i) s += w[i] * (f(m - h * x[i]) + f(m + h * x[i]));
+  for (std::size_t i = 0; i < 5; ++i)
+    s += w[i] * (f(m - h * x[i]) + f(m + h * x[i]));
   return s * h;
 }
 
@@ -228,7 +254,8 @@ class AngleOfSpeed final : public Law {
     return {phi0_ + speed_->integral(t), v.f, v.df};
   }
   double integral(double t) const override {
-    // Cauchy: the repeated integral of the speed, by quadrature between its breakpoints, halved until two levels agree.
+    // Cauchy: the repeated integral of the speed, by quadrature between its breakpoints, halved
+    // until two levels agree.
     const double a = std::min(0.0, t), b = std::max(0.0, t);
     std::vector<double> knots{a};
     for (double x : speed_->breakpoints())
@@ -243,7 +270,8 @@ class AngleOfSpeed final : public Law {
         const double h = (knots[k + 1] - knots[k]) / n;
         for (int i = 0; i < n; ++i) {
           const double part = gauss10(f, knots[k] + i * h, knots[k] + (i + 1) * h);
-          now += part; size += std::abs(part);
+          now += part;
+          size += std::abs(part);
         }
         const bool settled = std::abs(now - before) <= 4e-15 * size;
         before = now;
@@ -275,7 +303,8 @@ LawPtr make_table(std::vector<double> t, std::vector<double> f) {
   require_increasing(t, f.size(), "table");
   require_finite(f, "table");
   std::vector<std::vector<double>> inner;
-  for (std::size_t k = 0; k + 1 < t.size(); ++k) inner.push_back({f[k], (f[k + 1] - f[k]) / (t[k + 1] - t[k])});
+  for (std::size_t k = 0; k + 1 < t.size(); ++k)
+    inner.push_back({f[k], (f[k + 1] - f[k]) / (t[k + 1] - t[k])});
   if (t.size() == 1) return make_constant(f[0]);
   return make_held(std::move(t), f.front(), f.back(), std::move(inner));
 }
@@ -286,7 +315,10 @@ LawPtr make_pchip(std::vector<double> t, std::vector<double> f) {
   const std::size_t n = t.size();
   if (n < 3) return make_table(std::move(t), std::move(f));
   std::vector<double> h(n - 1), secant(n - 1), slope(n);
-  for (std::size_t k = 0; k + 1 < n; ++k) { h[k] = t[k + 1] - t[k]; secant[k] = (f[k + 1] - f[k]) / h[k]; }
+  for (std::size_t k = 0; k + 1 < n; ++k) {
+    h[k] = t[k + 1] - t[k];
+    secant[k] = (f[k + 1] - f[k]) / h[k];
+  }
   for (std::size_t k = 1; k + 1 < n; ++k) {
     if (secant[k - 1] * secant[k] <= 0.0) continue;
     const double w1 = 2.0 * h[k] + h[k - 1], w2 = h[k] + 2.0 * h[k - 1];
@@ -338,7 +370,9 @@ LawPtr make_piecewise(std::vector<double> start, std::vector<LawPtr> laws) {
 
 LawPtr make_sum(std::vector<LawPtr> laws) { return std::make_shared<Sum>(std::move(laws)); }
 
-LawPtr make_scaled(double scale, LawPtr law) { return std::make_shared<Scaled>(scale, std::move(law)); }
+LawPtr make_scaled(double scale, LawPtr law) {
+  return std::make_shared<Scaled>(scale, std::move(law));
+}
 
 LawPtr make_angle_of_speed(LawPtr speed, double phi0) {
   return std::make_shared<AngleOfSpeed>(std::move(speed), phi0);

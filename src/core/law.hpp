@@ -1,5 +1,5 @@
-// Time laws: a scalar function of time with its first two derivatives. Prescribed speeds and angles, loads,
-// growing unbalance and base motion all use these.
+// Time laws: a scalar function of time with its first two derivatives. Prescribed speeds and
+// angles, loads, growing unbalance and base motion all use these.
 #pragma once
 #include <memory>
 #include <vector>
@@ -15,11 +15,14 @@ struct LawValue {
 class Law {
  public:
   virtual ~Law() = default;
-  /// At a breakpoint: the limits from the right. Those from the left are at(std::nextafter(t, -infinity)).
+  /// At a breakpoint: the limits from the right. Those from the left are at(std::nextafter(t,
+  /// -infinity)).
   virtual LawValue at(double t) const = 0;
-  /// Integral of the value from 0 to t (exact: a prescribed speed law becomes an angle law through it).
+  /// Integral of the value from 0 to t (exact: a prescribed speed law becomes an angle law through
+  /// it).
   virtual double integral(double t) const = 0;
-  /// Times, increasing, at which the law or one of its derivatives jumps; the time integrator lands a step on each.
+  /// Times, increasing, at which the law or one of its derivatives jumps; the time integrator lands
+  /// a step on each.
   virtual std::vector<double> breakpoints() const { return {}; }
 };
 
@@ -27,14 +30,17 @@ using LawPtr = std::shared_ptr<const Law>;
 
 /// f = c
 LawPtr make_constant(double c);
-/// Straight lines through (t_i, f_i), held constant outside. Errors: no point, lengths differ, t not increasing, not finite.
+/// Straight lines through (t_i, f_i), held constant outside. Errors: no point, lengths differ, t
+/// not increasing, not finite.
 LawPtr make_table(std::vector<double> t, std::vector<double> f);
-/// Monotone piecewise cubic (Fritsch-Carlson conditions, slopes by the weighted harmonic mean of Fritsch and Butland,
-/// doi 10.1137/0905021) through (t_i, f_i), held constant outside. Errors as make_table.
+/// Monotone piecewise cubic (Fritsch-Carlson conditions, slopes by the weighted harmonic mean of
+/// Fritsch and Butland, doi 10.1137/0905021) through (t_i, f_i), held constant outside. Errors as
+/// make_table.
 LawPtr make_pchip(std::vector<double> t, std::vector<double> f);
 /// f0 before t0, f1 after t1, between them: linear. Errors: t1 <= t0 (also the two that follow).
 LawPtr make_ramp(double t0, double t1, double f0, double f1);
-/// f0 before t0, f1 after t1, between them the quintic with zero first and second derivative at both ends.
+/// f0 before t0, f1 after t1, between them the quintic with zero first and second derivative at
+/// both ends.
 LawPtr make_smooth_step(double t0, double t1, double f0, double f1);
 /// f0 before t0, f1 after t1, between them f0 + (f1-f0)(1-cos(pi (t-t0)/(t1-t0)))/2.
 LawPtr make_cosine_step(double t0, double t1, double f0, double f1);
@@ -42,15 +48,15 @@ LawPtr make_cosine_step(double t0, double t1, double f0, double f1);
 LawPtr make_harmonic(double mean, double amplitude, double omega, double phase);
 /// Polynomial sum c_k t^k
 LawPtr make_polynomial(std::vector<double> coefficients);
-/// Pieces in time: law k holds from start[k] to start[k+1]; each sees the global time; the first also holds before start[0].
-/// Errors: lengths differ or zero, start not increasing.
+/// Pieces in time: law k holds from start[k] to start[k+1]; each sees the global time; the first
+/// also holds before start[0]. Errors: lengths differ or zero, start not increasing.
 LawPtr make_piecewise(std::vector<double> start, std::vector<LawPtr> laws);
 /// The sum of laws.
 LawPtr make_sum(std::vector<LawPtr> laws);
 /// scale * law(t)
 LawPtr make_scaled(double scale, LawPtr law);
-/// The angle law phi0 + integral of a speed law (its value is the angle, df the speed, ddf the acceleration). Its own
-/// integral is by quadrature, to round-off.
+/// The angle law phi0 + integral of a speed law (its value is the angle, df the speed, ddf the
+/// acceleration). Its own integral is by quadrature, to round-off.
 LawPtr make_angle_of_speed(LawPtr speed, double phi0);
 
 }  // namespace whirl

@@ -23,9 +23,13 @@ Mat3 least_turn(const Vec3& a, const Vec3& b) {
 
 bool Path::append(const Vec3& tangent, double length, const Vec3& turn, const Vec3& centre) {
   Piece p;
-  p.s0 = this->length(); p.s1 = p.s0 + length;
-  p.r = end_; p.turn = turn; p.centre = centre;
-  const Mat3 last = pieces_.empty() ? Mat3::Identity() : on(pieces_.back(), pieces_.back().s1).triad;
+  p.s0 = this->length();
+  p.s1 = p.s0 + length;
+  p.r = end_;
+  p.turn = turn;
+  p.centre = centre;
+  const Mat3 last =
+      pieces_.empty() ? Mat3::Identity() : on(pieces_.back(), pieces_.back().s1).triad;
   p.triad = least_turn(last.col(0), tangent) * last;
   p.triad.col(0) = tangent;
   pieces_.push_back(p);
@@ -46,8 +50,11 @@ bool Path::add_arc_through(const Vec3& middle, const Vec3& to) {
   // circle through end_, middle, to
   const Vec3 a = middle - end_, b = to - end_, n = a.cross(b);
   const double n2 = n.squaredNorm();
-  if (!(std::sqrt(n2) > same_point * a.norm() * b.norm()) || !((to - middle).norm() > same_point * b.norm())) return false;
-  const Vec3 centre = end_ + (a.squaredNorm() * b.cross(n) + b.squaredNorm() * n.cross(a)) / (2.0 * n2);
+  if (!(std::sqrt(n2) > same_point * a.norm() * b.norm()) ||
+      !((to - middle).norm() > same_point * b.norm()))
+    return false;
+  const Vec3 centre =
+      end_ + (a.squaredNorm() * b.cross(n) + b.squaredNorm() * n.cross(a)) / (2.0 * n2);
   const Vec3 axis = n / std::sqrt(n2), x = end_ - centre, y = axis.cross(x);
   double angle = std::atan2((to - centre).dot(y), (to - centre).dot(x));
   if (angle <= 0) angle += two_pi;
@@ -84,7 +91,9 @@ Path::Point Path::at(double s, bool before) const {
   if (pieces_.empty()) return {start_ + Vec3(s, 0, 0), Mat3::Identity()};
   std::size_t k = 0;
   const double slack = same_point * length();
-  while (k + 1 < pieces_.size() && (before ? s > pieces_[k].s1 + slack : s >= pieces_[k].s1 - slack)) ++k;
+  while (k + 1 < pieces_.size() &&
+         (before ? s > pieces_[k].s1 + slack : s >= pieces_[k].s1 - slack))
+    ++k;
   Point x = on(pieces_[k], std::min(std::max(s, pieces_[k].s0), pieces_[k].s1));
   const double beyond = s < 0 ? s : std::max(s - length(), 0.0);
   x.r += beyond * x.triad.col(0);
@@ -93,7 +102,8 @@ Path::Point Path::at(double s, bool before) const {
 
 std::vector<double> Path::joints() const {
   std::vector<double> out;
-  for (std::size_t k = 0; k + 1 < pieces_.size(); ++k) out.push_back(pieces_[k].s1);
+  for (std::size_t k = 0; k + 1 < pieces_.size(); ++k)
+    out.push_back(pieces_[k].s1);
   return out;
 }
 

@@ -1,7 +1,9 @@
-// A line in space made of straight pieces and circular arcs, with section axes carried along it without twist.
+// A line in space made of straight pieces and circular arcs, with section axes carried along it
+// without twist.
 //
-// Triad of a place: columns (tangent, y, z). At the start it is the least rotation of the global axes that brings x to the tangent; along an arc and
-// across a corner it turns by the least rotation again (Bishop's frame). A corner has two triads, one before and one after it.
+// Triad of a place: columns (tangent, y, z). At the start it is the least rotation of the global
+// axes that brings x to the tangent; along an arc and across a corner it turns by the least
+// rotation again (Bishop's frame). A corner has two triads, one before and one after it.
 #pragma once
 #include <core/types.hpp>
 #include <vector>
@@ -18,18 +20,20 @@ class Path {
   const Vec3& start() const { return start_; }
   const Vec3& end() const { return end_; }
 
-  /// Each appends a piece at the end and returns false, leaving the path as it was, where there is no such piece: no length; three points in a line
-  /// or two that are one; an end on the axis of the arc, or no angle.
+  /// Each appends a piece at the end and returns false, leaving the path as it was, where there is
+  /// no such piece: no length; three points in a line or two that are one; an end on the axis of
+  /// the arc, or no angle.
   bool add_line(const Vec3& to);
   bool add_arc_through(const Vec3& middle, const Vec3& to);
   /// About an axis through `centre`, by `angle`, rad; at most two whole turns.
   bool add_arc_about(const Vec3& centre, const Vec3& axis, double angle);
 
   struct Point {
-    Vec3 r = Vec3::Zero();            ///< m
-    Mat3 triad = Mat3::Identity();    ///< tangent, y, z
+    Vec3 r = Vec3::Zero();          ///< m
+    Mat3 triad = Mat3::Identity();  ///< tangent, y, z
   };
-  /// At distance s from the start, m; straight on beyond both ends. At a joint of two pieces: the end of the one before, or the start of the next.
+  /// At distance s from the start, m; straight on beyond both ends. At a joint of two pieces: the
+  /// end of the one before, or the start of the next.
   Point before(double s) const { return at(s, true); }
   Point after(double s) const { return at(s, false); }
   /// Where pieces join, from the start, m (without both ends).
@@ -37,11 +41,11 @@ class Path {
 
  private:
   struct Piece {
-    double s0, s1;                    ///< m
-    Vec3 r;                           ///< start
-    Mat3 triad;                       ///< at the start
-    Vec3 turn;                        ///< rotation vector per length, rad/m; zero: straight
-    Vec3 centre;                      ///< of the arc
+    double s0, s1;  ///< m
+    Vec3 r;         ///< start
+    Mat3 triad;     ///< at the start
+    Vec3 turn;      ///< rotation vector per length, rad/m; zero: straight
+    Vec3 centre;    ///< of the arc
   };
   Point at(double s, bool before) const;
   static Point on(const Piece& p, double s);

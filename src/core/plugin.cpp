@@ -16,11 +16,12 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const std::string& name, std::string message, std::string hint) {
-  throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E90", std::move(message), std::move(hint),
-                                   Where{{}, 0, 0, 0, "plug-in '" + name + "'"}});
+  throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E90", std::move(message),
+                                   std::move(hint), Where{{}, 0, 0, 0, "plug-in '" + name + "'"}});
 }
 
-/// The program's own installation and nothing else: PREFIX/lib/whirl beside PREFIX/bin, or `plugins` of the build tree it was built in.
+/// The program's own installation and nothing else: PREFIX/lib/whirl beside PREFIX/bin, or
+/// `plugins` of the build tree it was built in.
 std::vector<fs::path> search_path() {
   std::error_code ec;
   const fs::path exe = fs::read_symlink("/proc/self/exe", ec);
@@ -31,10 +32,12 @@ std::vector<fs::path> search_path() {
   return dirs;
 }
 
-/// Whether the file says that it fits this program. Read, not opened as a library: opening one runs its code.
+/// Whether the file says that it fits this program. Read, not opened as a library: opening one runs
+/// its code.
 bool fits(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
-  const std::string marker = fmt::format("{}{}{}", WHIRL_PLUGIN_MARKER_BEGIN, WHIRL_PLUGIN_ABI, WHIRL_PLUGIN_MARKER_END);
+  const std::string marker =
+      fmt::format("{}{}{}", WHIRL_PLUGIN_MARKER_BEGIN, WHIRL_PLUGIN_ABI, WHIRL_PLUGIN_MARKER_END);
   std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   return text.find(marker) != std::string::npos;
 }
@@ -69,21 +72,27 @@ const Plugin& Plugin::load(const std::string& name) {
   if (path.empty())
     fail(name, fmt::format("the component '{}' is not installed (no libwhirl_{}.so)", name, name),
          "install the package that holds it, or build Whirl with it");
-  if (!fits(path)) fail(name, fmt::format("{} is not from this build of Whirl", path.string()), "rebuild it with the program");
+  if (!fits(path))
+    fail(name, fmt::format("{} is not from this build of Whirl", path.string()),
+         "rebuild it with the program");
   Plugin p;
   p.name_ = name;
   p.path_ = path.string();
   p.handle_ = dlopen(p.path_.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!p.handle_) fail(name, fmt::format("the component '{}' cannot be loaded: {}", name, dlerror()), {});
+  if (!p.handle_)
+    fail(name, fmt::format("the component '{}' cannot be loaded: {}", name, dlerror()), {});
   const auto abi = reinterpret_cast<const char* (*)()>(dlsym(p.handle_, "whirl_plugin_abi"));
   if (!abi || std::strcmp(abi(), WHIRL_PLUGIN_ABI) != 0)
-    fail(name, fmt::format("{} is not from this build of Whirl", p.path_), "rebuild it with the program");
+    fail(name, fmt::format("{} is not from this build of Whirl", p.path_),
+         "rebuild it with the program");
   return all.emplace(name, std::move(p)).first->second;
 }
 
 void* Plugin::address(const char* symbol) const {
   void* a = dlsym(handle_, symbol);
-  if (!a) fail(name_, fmt::format("{} has no entry point '{}'", path_, symbol), "rebuild it with the program");
+  if (!a)
+    fail(name_, fmt::format("{} has no entry point '{}'", path_, symbol),
+         "rebuild it with the program");
   return a;
 }
 

@@ -39,7 +39,8 @@ double one_minus_cos_slope(double x) {  // d/dx of b0(x/4)^2/2
   return -0.125 * h.b0 * h.b1;
 }
 
-// D+ d' for d' in the tangent plane: d'_perp = b0 P gamma' - b1 p alpha, d'_x = -b0 alpha, alpha = gamma.gamma'.
+// D+ d' for d' in the tangent plane: d'_perp = b0 P gamma' - b1 p alpha, d'_x = -b0 alpha, alpha =
+// gamma.gamma'.
 Vec2 pull_back(const Vec2& gamma, const BesselRatios& b, const Vec3& v) {
   const Vec2 p = turn(gamma), v_perp = v.tail<2>();
   const double alpha = b.cosine * p.dot(v_perp) - b.b0 * gamma.squaredNorm() * v.x();
@@ -122,7 +123,10 @@ Vec3 euler_vector(const Mat3& R) {
     v[j] = R(j, i) + R(i, j);
     v[l] = R(l, i) + R(i, l);
   }
-  if (w < 0.0) { w = -w; v = -v; }
+  if (w < 0.0) {
+    w = -w;
+    v = -v;
+  }
   const double n = v.stableNorm();
   return n > 0.0 ? Vec3(v * (2.0 * std::atan2(n, w) / n)) : Vec3(Vec3::Zero());
 }
@@ -147,7 +151,8 @@ Mat2 Director::curvature(const Vec3& f) const {
   Mat2 m;
   m(0, 0) = diagonal + gamma.x() * (outer * gamma.x() - 2.0 * b.b1 * h.x());
   m(1, 1) = diagonal + gamma.y() * (outer * gamma.y() - 2.0 * b.b1 * h.y());
-  m(0, 1) = m(1, 0) = outer * gamma.x() * gamma.y() - b.b1 * (gamma.x() * h.y() + h.x() * gamma.y());
+  m(0, 1) = m(1, 0) =
+      outer * gamma.x() * gamma.y() - b.b1 * (gamma.x() * h.y() + h.x() * gamma.y());
   return m;
 }
 
@@ -155,9 +160,11 @@ void director(const Vec2& gamma, Director& out) { position(gamma, out); }
 
 void director(const Vec2& gamma, const Vec2& dgamma, const Vec2& ddgamma, Director& o) {
   const Place<double> at = position(gamma, o);
-  // Written out in scalars: this runs for every node of every linearisation. d2 d[w, .] and d2 d[gamma'', .], then d3 d[w, w, .].
+  // Written out in scalars: this runs for every node of every linearisation. d2 d[w, .] and d2
+  // d[gamma'', .], then d3 d[w, w, .].
   const double b0 = o.b.b0, b1 = o.b.b1, b2 = o.b.b2, b3 = o.b.b3;
-  const double g2 = gamma.x(), g3 = gamma.y(), w2 = dgamma.x(), w3 = dgamma.y(), a2 = ddgamma.x(), a3 = ddgamma.y();
+  const double g2 = gamma.x(), g3 = gamma.y(), w2 = dgamma.x(), w3 = dgamma.y(), a2 = ddgamma.x(),
+               a3 = ddgamma.y();
   const double alpha = g2 * w2 + g3 * w3, beta = g2 * a2 + g3 * a3, ww = w2 * w2 + w3 * w3;
   const double ba = b1 * alpha, bg2 = b1 * g2, bg3 = b1 * g3;
   double r[3][2], rate[3], accel[3];
@@ -166,11 +173,13 @@ void director(const Vec2& gamma, const Vec2& dgamma, const Vec2& ddgamma, Direct
   o.D_rate << r[0][0], r[0][1], r[1][0], r[1][1], r[2][0], r[2][1];
   o.rate << rate[0], rate[1], rate[2];
   o.accel << accel[0], accel[1], accel[2];
-  // d2 d[gamma'', .] + d3 d[w, w, .]: coefficients of g^T, w^T and gamma''^T, and the part that turns
+  // d2 d[gamma'', .] + d3 d[w, w, .]: coefficients of g^T, w^T and gamma''^T, and the part that
+  // turns
   const double aa = alpha * alpha, cg = b1 * beta + b1 * ww - b2 * aa, cw = 2.0 * ba;
-  const double q = b2 * (beta + ww) - b3 * aa, k = 2.0 * b2 * alpha, turning = b2 * aa - b1 * (ww + beta);
-  const double m3 = q * g3 + k * w3 - b1 * a3, m2 = b1 * a2 - q * g2 - k * w2;       // times g^T
-  const double n3 = k * g3 - 2.0 * b1 * w3, n2 = 2.0 * b1 * w2 - k * g2;             // times w^T
+  const double q = b2 * (beta + ww) - b3 * aa, k = 2.0 * b2 * alpha,
+               turning = b2 * aa - b1 * (ww + beta);
+  const double m3 = q * g3 + k * w3 - b1 * a3, m2 = b1 * a2 - q * g2 - k * w2;  // times g^T
+  const double n3 = k * g3 - 2.0 * b1 * w3, n2 = 2.0 * b1 * w2 - k * g2;        // times w^T
   o.D_accel << cg * g2 + cw * w2 - b0 * a2, cg * g3 + cw * w3 - b0 * a3,
       m3 * g2 + n3 * w2 - bg3 * a2, m3 * g3 + n3 * w3 - bg3 * a3 + turning,
       m2 * g2 + n2 * w2 + bg2 * a2 - turning, m2 * g3 + n2 * w3 + bg2 * a3;
@@ -180,8 +189,10 @@ Vec2 gamma_of_director(const Vec3& t) {
   const double sine = std::hypot(t.y(), t.z());
   if (sine == 0.0) {
     if (t.x() < -1.0)
-      throw run_error("E71", "the section normal is opposite to the reference axis: the transverse rotation is pi",
-                      "turn on the change of chart (model.chart_change = true)");
+      throw run_error(
+          "E71",
+          "the section normal is opposite to the reference axis: the transverse rotation is pi",
+          "turn on the change of chart (model.chart_change = true)");
     return Vec2::Zero();
   }
   const double scale = std::atan2(sine, 1.0 + t.x()) / sine;
@@ -205,7 +216,8 @@ Vec3 omega_of_rates(const Vec2& gamma, double dphi, const Vec2& dgamma) {
   return d.cross(o.D * dgamma) + s * d;
 }
 
-ChartRates accelerations_of_omega(const Vec2& gamma, double dphi, const Vec2& dgamma, const Vec3& domega) {
+ChartRates accelerations_of_omega(const Vec2& gamma, double dphi, const Vec2& dgamma,
+                                  const Vec3& domega) {
   Director o;
   director(gamma, dgamma, Vec2::Zero(), o);
   const double x = gamma.squaredNorm(), a = one_minus_cos_ratio(x), swept = cross2(gamma, dgamma);
@@ -216,7 +228,8 @@ ChartRates accelerations_of_omega(const Vec2& gamma, double dphi, const Vec2& dg
   return {domega.dot(d) + a_rate * swept + a * cross2(gamma, ddgamma), ddgamma};
 }
 
-Vec3 omega_rate_of_rates(const Vec2& gamma, double dphi, const Vec2& dgamma, double ddphi, const Vec2& ddgamma) {
+Vec3 omega_rate_of_rates(const Vec2& gamma, double dphi, const Vec2& dgamma, double ddphi,
+                         const Vec2& ddgamma) {
   Director o;
   director(gamma, dgamma, ddgamma, o);
   const double x = gamma.squaredNorm(), a = one_minus_cos_ratio(x), swept = cross2(gamma, dgamma);
@@ -234,15 +247,18 @@ double chart_condition(double g) {
 }
 
 void throw_beyond_chart(double g, const std::string& node, double time) {
-  throw run_error("E71",
-                  fmt::format("transverse rotation |gamma| = {:.6g} rad of {} at t = {:.9g} s is beyond the chart "
-                              "(limit {} rad; the split into phi and gamma is singular at pi)",
-                              g, node, time, chart_limit),
-                  "turn on the change of chart (model.chart_change = true)", node);
+  throw run_error(
+      "E71",
+      fmt::format(
+          "transverse rotation |gamma| = {:.6g} rad of {} at t = {:.9g} s is beyond the chart "
+          "(limit {} rad; the split into phi and gamma is singular at pi)",
+          g, node, time, chart_limit),
+      "turn on the change of chart (model.chart_change = true)", node);
 }
 
 ChartChange::ChartChange(const Mat3& triad, const Vec3& new_e) : from_(triad) {
-  // Orthonormal to the last digit again: rounding would grow by a factor at every change and turn up as energy.
+  // Orthonormal to the last digit again: rounding would grow by a factor at every change and turn
+  // up as energy.
   const Vec3 e = new_e.normalized();
   const Vec3 e2 = minimal_rotation(triad.col(0), e) * triad.col(1);
   to_.col(0) = e;
@@ -253,19 +269,22 @@ ChartChange::ChartChange(const Mat3& triad, const Vec3& new_e) : from_(triad) {
 Angles ChartChange::apply(const Angles& old) const {
   Director o;
   position(old.gamma, o);
-  const Vec3 d = whole(o.t);                 // in the old chart's axes
-  const Mat3 Q = to_.transpose() * from_;    // old axes -> new axes
-  const Vec3 new_e = Q.row(0).transpose();   // e' in the old axes
+  const Vec3 d = whole(o.t);                // in the old chart's axes
+  const Mat3 Q = to_.transpose() * from_;   // old axes -> new axes
+  const Vec3 new_e = Q.row(0).transpose();  // e' in the old axes
   const Vec3 t = Q * d - Vec3::UnitX();
   Angles now;
   now.phi = old.phi + solid_angle(Vec3::UnitX(), d, new_e);
   now.gamma = gamma_of_director(t);
   const Vec3 omega = Q * omega_of_rates(old.gamma, old.dphi, old.dgamma);
-  const Vec3 domega = Q * omega_rate_of_rates(old.gamma, old.dphi, old.dgamma, old.ddphi, old.ddgamma);
+  const Vec3 domega =
+      Q * omega_rate_of_rates(old.gamma, old.dphi, old.dgamma, old.ddphi, old.ddgamma);
   const ChartRates v = rates_of_omega(now.gamma, omega);
-  now.dphi = v.phi; now.dgamma = v.gamma;
+  now.dphi = v.phi;
+  now.dgamma = v.gamma;
   const ChartRates acc = accelerations_of_omega(now.gamma, now.dphi, now.dgamma, domega);
-  now.ddphi = acc.phi; now.ddgamma = acc.gamma;
+  now.ddphi = acc.phi;
+  now.ddgamma = acc.gamma;
   return now;
 }
 

@@ -1,4 +1,5 @@
-// Run times: the processor's time of the whole process, and the clock on the wall. Both are always given, and named.
+// Run times: the processor's time of the whole process, and the clock on the wall. Both are always
+// given, and named.
 #pragma once
 #include <fmt/format.h>
 
@@ -9,7 +10,7 @@
 namespace whirl {
 
 struct RunTime {
-  double cpu = 0, wall = 0;   ///< s
+  double cpu = 0, wall = 0;  ///< s
   RunTime& operator+=(const RunTime& more) {
     cpu += more.cpu;
     wall += more.wall;
@@ -30,7 +31,10 @@ class Stopwatch {
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
   }
-  static double wall_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+  static double wall_now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  }
 
   double cpu_ = cpu_now(), wall_ = wall_now();
 };

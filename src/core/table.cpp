@@ -5,13 +5,16 @@ namespace whirl {
 namespace {
 
 std::string_view trim(std::string_view s) {
-  while (!s.empty() && (s.front() == ' ' || s.front() == '\t')) s.remove_prefix(1);
-  while (!s.empty() && (s.back() == ' ' || s.back() == '\t')) s.remove_suffix(1);
+  while (!s.empty() && (s.front() == ' ' || s.front() == '\t'))
+    s.remove_prefix(1);
+  while (!s.empty() && (s.back() == ' ' || s.back() == '\t'))
+    s.remove_suffix(1);
   return s;
 }
 
 int count_characters(std::string_view s) {
-  return static_cast<int>(std::count_if(s.begin(), s.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<int>(std::count_if(
+      s.begin(), s.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 char find_separator(std::string_view header) {
@@ -31,11 +34,14 @@ char find_separator(std::string_view header) {
 }
 
 /// Cells of one line; false when a quote is not closed (its character position in `bad`).
-bool split_line(std::string_view line, int number, char separator, std::vector<Cell>& out, int& bad) {
+bool split_line(std::string_view line, int number, char separator, std::vector<Cell>& out,
+                int& bad) {
   std::size_t i = 0;
   for (;;) {
     std::size_t start = i;
-    while (start < line.size() && (line[start] == ' ' || (line[start] == '\t' && separator != '\t'))) ++start;
+    while (start < line.size() &&
+           (line[start] == ' ' || (line[start] == '\t' && separator != '\t')))
+      ++start;
     Cell cell;
     cell.line = number;
     cell.column = count_characters(line.substr(0, start)) + 1;
@@ -43,15 +49,28 @@ bool split_line(std::string_view line, int number, char separator, std::vector<C
       cell.quoted = true;
       i = start + 1;
       for (;; ++i) {
-        if (i >= line.size()) { bad = cell.column; return false; }
-        if (line[i] != '"') { cell.text += line[i]; continue; }
-        if (i + 1 < line.size() && line[i + 1] == '"') { cell.text += '"'; ++i; continue; }
+        if (i >= line.size()) {
+          bad = cell.column;
+          return false;
+        }
+        if (line[i] != '"') {
+          cell.text += line[i];
+          continue;
+        }
+        if (i + 1 < line.size() && line[i + 1] == '"') {
+          cell.text += '"';
+          ++i;
+          continue;
+        }
         break;
       }
       ++i;
       cell.length = count_characters(line.substr(start, i - start));
-      while (i < line.size() && line[i] != separator) cell.text += line[i++];   // text after the closing quote is kept, to be rejected by its reader
-      if (cell.text.find_last_not_of(" \t") != std::string::npos) cell.text.erase(cell.text.find_last_not_of(" \t") + 1);
+      while (i < line.size() && line[i] != separator)
+        cell.text +=
+            line[i++];  // text after the closing quote is kept, to be rejected by its reader
+      if (cell.text.find_last_not_of(" \t") != std::string::npos)
+        cell.text.erase(cell.text.find_last_not_of(" \t") + 1);
     } else {
       i = std::min(line.find(separator, start), line.size());
       const std::string_view t = trim(line.substr(start, i - start));
@@ -88,11 +107,16 @@ CellTable read_cells(std::string_view text) {
       table.problem_column = bad;
       return table;
     }
-    if (header) table.header = std::move(cells);
-    else table.rows.push_back(std::move(cells));
+    if (header)
+      table.header = std::move(cells);
+    else
+      table.rows.push_back(std::move(cells));
     header = false;
   }
-  if (header) { table.problem = "the table is empty"; table.problem_line = 0; }
+  if (header) {
+    table.problem = "the table is empty";
+    table.problem_line = 0;
+  }
   return table;
 }
 

@@ -5,7 +5,8 @@
 
 namespace whirl {
 
-/// &, <, >, " escaped; control characters and broken UTF-8 replaced, so the result is well-formed XML text.
+/// &, <, >, " escaped; control characters and broken UTF-8 replaced, so the result is well-formed
+/// XML text.
 std::string escape(std::string_view text);
 /// Appends x with at most `decimals` digits after the point, no trailing zeros ("12.5", "-3").
 void append_number(std::string& out, double x, int decimals = 2);
@@ -14,9 +15,11 @@ std::string number_text(double x, int decimals = 2);
 std::string readable(double x, int digits = 4);
 /// "×10⁻⁶" without the sign of multiplication: "10⁻⁶".
 std::string power_of_ten(int exponent);
-/// Width of a line of text in px at a font size, for a Helvetica-like face; an estimate, good to some per cent.
+/// Width of a line of text in px at a font size, for a Helvetica-like face; an estimate, good to
+/// some per cent.
 double text_width(std::string_view utf8, double font_size);
-/// Letters, digits, '.', '-' and '_' of a name, the rest as '_': good for files, anchors and ids. Never empty, never starts with '.'.
+/// Letters, digits, '.', '-' and '_' of a name, the rest as '_': good for files, anchors and ids.
+/// Never empty, never starts with '.'.
 std::string safe_name(std::string_view name);
 std::string base64(std::string_view bytes);
 

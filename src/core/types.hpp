@@ -11,8 +11,10 @@ namespace whirl {
 using Index = std::ptrdiff_t;
 using Complex = std::complex<double>;
 
-template <int N> using Vector = Eigen::Matrix<double, N, 1>;
-template <int R, int C = R> using Matrix = Eigen::Matrix<double, R, C>;
+template <int N>
+using Vector = Eigen::Matrix<double, N, 1>;
+template <int R, int C = R>
+using Matrix = Eigen::Matrix<double, R, C>;
 
 using Vec2 = Vector<2>;
 using Vec3 = Vector<3>;

@@ -1,5 +1,6 @@
-// Definitions: SI brochure (9th ed.); the inch (25.4 mm) and the avoirdupois pound (0.45359237 kg) are exact by the 1959
-// agreement, standard gravity 9.80665 m/s^2; derived imperial units follow from these three.
+// Definitions: SI brochure (9th ed.); the inch (25.4 mm) and the avoirdupois pound (0.45359237 kg)
+// are exact by the 1959 agreement, standard gravity 9.80665 m/s^2; derived imperial units follow
+// from these three.
 #include <core/types.hpp>
 #include <core/units_table.hpp>
 #include <cmath>
@@ -8,8 +9,8 @@
 namespace whirl::units {
 namespace {
 
-constexpr double lbf_num = 44482216152605.0, lbf_den = 1e13;   // 0.45359237 * 9.80665
-constexpr double psi_num = lbf_num, psi_den = 6451600000.0;    // lbf / (0.0254 m)^2
+constexpr double lbf_num = 44482216152605.0, lbf_den = 1e13;  // 0.45359237 * 9.80665
+constexpr double psi_num = lbf_num, psi_den = 6451600000.0;   // lbf / (0.0254 m)^2
 
 const std::vector<Entry>& table() {
   static const std::vector<Entry> t = {
@@ -39,7 +40,13 @@ const std::vector<Entry>& table() {
       {"rev", "revolution, 2 pi rad", "", two_pi, 1, {0, 0, 0, 0, 0, 1}},
       {"turn", "revolution, 2 pi rad", "", two_pi, 1, {0, 0, 0, 0, 0, 1}},
       {"rpm", "revolutions per minute", "k", two_pi, 60, {0, 0, -1, 0, 0, 1}},
-      {"Hz", "1/s as a frequency; 2 pi rad/s where an angular speed is wanted", "mkMG", 1, 1, {0, 0, -1, 0, 0, 0}, 1},
+      {"Hz",
+       "1/s as a frequency; 2 pi rad/s where an angular speed is wanted",
+       "mkMG",
+       1,
+       1,
+       {0, 0, -1, 0, 0, 0},
+       1},
       {"cpm", "cycles per minute", "", 1, 60, {0, 0, -1, 0, 0, 0}, 1},
       // force, pressure, energy, power
       {"N", "newton", "umkMG", 1, 1, {1, 1, -2, 0, 0, 0}},
@@ -53,7 +60,12 @@ const std::vector<Entry>& table() {
       {"ksi", "1000 psi", "", psi_num, psi_den / 1e3, {-1, 1, -2, 0, 0, 0}},
       {"J", "joule", "umkMG", 1, 1, {2, 1, -2, 0, 0, 0}},
       {"W", "watt", "umkMG", 1, 1, {2, 1, -3, 0, 0, 0}},
-      {"hp", "mechanical horsepower, 550 ft.lbf/s", "", 550 * 3048 * (lbf_num / 1e4), lbf_den, {2, 1, -3, 0, 0, 0}},
+      {"hp",
+       "mechanical horsepower, 550 ft.lbf/s",
+       "",
+       550 * 3048 * (lbf_num / 1e4),
+       lbf_den,
+       {2, 1, -3, 0, 0, 0}},
       // viscosity
       {"P", "poise, 0.1 Pa.s", "cm", 1, 10, {-1, 1, -1, 0, 0, 0}},
       {"reyn", "lbf.s/in^2", "u", psi_num, psi_den, {-1, 1, -1, 0, 0, 0}},
@@ -62,8 +74,22 @@ const std::vector<Entry>& table() {
       {"gn", "standard gravity, 9.80665 m/s^2", "m", 980665, 1e5, {1, 0, -2, 0, 0, 0}},
       // temperature
       {"K", "kelvin", "m", 1, 1, {0, 0, 0, 1, 0, 0}},
-      {"degC", "degree Celsius (a temperature, not a difference)", "", 1, 1, {0, 0, 0, 1, 0, 0}, 0, 273.15},
-      {"degF", "degree Fahrenheit (a temperature, not a difference)", "", 5, 9, {0, 0, 0, 1, 0, 0}, 0, 459.67 * 5 / 9},
+      {"degC",
+       "degree Celsius (a temperature, not a difference)",
+       "",
+       1,
+       1,
+       {0, 0, 0, 1, 0, 0},
+       0,
+       273.15},
+      {"degF",
+       "degree Fahrenheit (a temperature, not a difference)",
+       "",
+       5,
+       9,
+       {0, 0, 0, 1, 0, 0},
+       0,
+       459.67 * 5 / 9},
       // electric
       {"A", "ampere", "umk", 1, 1, {0, 0, 0, 0, 1, 0}},
       {"V", "volt", "umk", 1, 1, {2, 1, -3, 0, -1, 0}},
@@ -78,7 +104,8 @@ const std::vector<Entry>& table() {
 const std::unordered_map<std::string_view, const Entry*>& by_name() {
   static const auto m = [] {
     std::unordered_map<std::string_view, const Entry*> r;
-    for (const auto& e : table()) r.emplace(e.name, &e);
+    for (const auto& e : table())
+      r.emplace(e.name, &e);
     return r;
   }();
   return m;
@@ -116,23 +143,39 @@ const std::vector<Entry>& entries() { return table(); }
 
 std::optional<Quantity> find_unit(std::string_view name) {
   if (name == "\xC2\xB0") name = "deg";
-  if (name == "\xC2\xB0" "C") name = "degC";
-  if (name == "\xC2\xB0" "F") name = "degF";
+  if (name ==
+      "\xC2\xB0"
+      "C")
+    name = "degC";
+  if (name ==
+      "\xC2\xB0"
+      "F")
+    name = "degF";
   if (name == "\xCE\xA9" || name == "ohm") name = "Ohm";
   if (name == "l") name = "L";
   const auto& names = by_name();
   if (auto it = names.find(name); it != names.end()) return of(*it->second);
   std::size_t skip = 1;
   char prefix = name.empty() ? '\0' : name[0];
-  if (name.starts_with("\xC2\xB5") || name.starts_with("\xCE\xBC")) { prefix = 'u'; skip = 2; }
+  if (name.starts_with("\xC2\xB5") || name.starts_with("\xCE\xBC")) {
+    prefix = 'u';
+    skip = 2;
+  }
   if (name.size() <= skip) return {};
   auto it = names.find(name.substr(skip));
-  if (it == names.end() || std::string_view(it->second->prefixes).find(prefix) == std::string_view::npos) return {};
+  if (it == names.end() ||
+      std::string_view(it->second->prefixes).find(prefix) == std::string_view::npos)
+    return {};
   Quantity q = of(*it->second);
   const double f = power_of_ten(prefix);
-  if (f > 1) q.num *= f;
-  else q.den *= std::round(1 / f);
-  if (q.den > 1 && q.num >= q.den && std::fmod(q.num, q.den) == 0) { q.num /= q.den; q.den = 1; }
+  if (f > 1)
+    q.num *= f;
+  else
+    q.den *= std::round(1 / f);
+  if (q.den > 1 && q.num >= q.den && std::fmod(q.num, q.den) == 0) {
+    q.num /= q.den;
+    q.den = 1;
+  }
   return q;
 }
 

@@ -7,9 +7,9 @@ namespace whirl::units {
 struct Entry {
   const char* name;
   const char* meaning;
-  const char* prefixes;         ///< SI prefixes allowed before it ('u' also covers the micro signs)
-  double num, den;              ///< scale to base units; ratios of exactly representable numbers where possible
-  std::array<double, 6> exponent;   ///< m, kg, s, K, A, rad
+  const char* prefixes;  ///< SI prefixes allowed before it ('u' also covers the micro signs)
+  double num, den;  ///< scale to base units; ratios of exactly representable numbers where possible
+  std::array<double, 6> exponent;  ///< m, kg, s, K, A, rad
   double cycles = 0;
   double offset = 0;
 };
@@ -18,7 +18,10 @@ struct Entry {
 std::optional<Quantity> find_unit(std::string_view name);
 const std::vector<Entry>& entries();
 
-struct DimensionName { const char* unit; const char* name; };
+struct DimensionName {
+  const char* unit;
+  const char* name;
+};
 const std::vector<DimensionName>& dimension_names();
 
 }  // namespace whirl::units

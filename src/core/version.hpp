@@ -4,7 +4,7 @@
 
 namespace whirl {
 
-std::string version();          ///< "0.1.0"
-std::string version_text();     ///< version, compiler, build type and optional components, a few lines
+std::string version();       ///< "0.1.0"
+std::string version_text();  ///< version, compiler, build type and optional components, a few lines
 
 }  // namespace whirl

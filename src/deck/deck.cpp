@@ -11,9 +11,11 @@ namespace {
 
 std::string stem_of(const std::filesystem::path& file) {
   const std::string s = file.stem().string();
-  if (s == "-") return "deck";   // standard input
+  if (s == "-") return "deck";  // standard input
   // examples/01_paper_rotor/deck.toml is better called after its folder
-  if (s == "deck" && file.has_parent_path() && file.parent_path().has_filename() && file.parent_path().filename() != "." && file.parent_path().filename() != "..") return file.parent_path().filename().string();
+  if (s == "deck" && file.has_parent_path() && file.parent_path().has_filename() &&
+      file.parent_path().filename() != "." && file.parent_path().filename() != "..")
+    return file.parent_path().filename().string();
   return s.empty() ? "deck" : s;
 }
 
@@ -37,9 +39,12 @@ void add_builtin_materials(Value& resolved, const model::Model& m) {
     list->value = std::move(all);
     return;
   }
-  // where the reader puts a given one: right after [model], so that a resolved deck resolves to itself
-  const auto model = std::find_if(resolved.members.begin(), resolved.members.end(), [](const Member& x) { return x.key == "model"; });
-  resolved.members.insert(model == resolved.members.end() ? model : model + 1, Member{"material", {}, std::move(all)});
+  // where the reader puts a given one: right after [model], so that a resolved deck resolves to
+  // itself
+  const auto model = std::find_if(resolved.members.begin(), resolved.members.end(),
+                                  [](const Member& x) { return x.key == "model"; });
+  resolved.members.insert(model == resolved.members.end() ? model : model + 1,
+                          Member{"material", {}, std::move(all)});
 }
 
 void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions& options) {
@@ -56,7 +61,8 @@ void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions&
       deck.model.deck_name = stem_of(file);
       deck.model.output.directory = "results/" + deck.model.deck_name;
       const Member* parameters = document.root.find("parameters");
-      Parameters names(parameters && parameters->value.is_table() ? &parameters->value : nullptr, {{"deck", deck.model.deck_name}});
+      Parameters names(parameters && parameters->value.is_table() ? &parameters->value : nullptr,
+                       {{"deck", deck.model.deck_name}});
       Reader reader(deck.sources, diagnostics, names, document, deck.model);
       reader.files_allowed = options.files_allowed;
       reader.read();
@@ -79,9 +85,12 @@ void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions&
     deck.errors += p.severity == Diagnostic::Severity::error;
     deck.diagnostics.push_back(std::move(d));
   }
-  std::stable_sort(deck.diagnostics.begin(), deck.diagnostics.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return a.where.file == b.where.file && std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
-  });
+  std::stable_sort(deck.diagnostics.begin(), deck.diagnostics.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) {
+                     return a.where.file == b.where.file &&
+                            std::pair(a.where.line, a.where.column) <
+                                std::pair(b.where.line, b.where.column);
+                   });
   for (const auto& d : deck.diagnostics)
     if (d.severity == Diagnostic::Severity::warning) deck.model.warnings.push_back(d);
 }
@@ -90,15 +99,18 @@ void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions&
 
 std::string Deck::report(bool colour) const {
   std::string out;
-  for (const auto& d : diagnostics) out += format(d, sources.line(d.where), colour);
+  for (const auto& d : diagnostics)
+    out += format(d, sources.line(d.where), colour);
   return out;
 }
 
 Deck read_deck(const std::filesystem::path& file, const ReadOptions& options) {
   Deck deck;
   const bool standard_input = file == "-";
-  FileText text = standard_input ? read_standard_input(max_deck_bytes) : read_file(file, max_deck_bytes);
-  deck.sources.add(standard_input ? "standard input" : file.string(), file.parent_path(), std::move(text.text));
+  FileText text =
+      standard_input ? read_standard_input(max_deck_bytes) : read_file(file, max_deck_bytes);
+  deck.sources.add(standard_input ? "standard input" : file.string(), file.parent_path(),
+                   std::move(text.text));
   if (!text.ok()) {
     Diagnostic d;
     d.code = text.code;
@@ -112,7 +124,8 @@ Deck read_deck(const std::filesystem::path& file, const ReadOptions& options) {
   return deck;
 }
 
-Deck read_deck_text(std::string text, const std::string& name, const ReadOptions& options, const std::filesystem::path& folder) {
+Deck read_deck_text(std::string text, const std::string& name, const ReadOptions& options,
+                    const std::filesystem::path& folder) {
   Deck deck;
   deck.sources.add(name, folder, std::move(text));
   read_into(deck, name, options);
@@ -129,9 +142,12 @@ Exit exit_of(const std::vector<Diagnostic>& diagnostics) {
   bool usage = false, other = false, io = false;
   for (const auto& d : diagnostics) {
     if (d.severity != Diagnostic::Severity::error) continue;
-    if (d.where.file == "--set" && d.code == "E34") usage = true;
-    else if (d.code == "E02" && d.where.line == 0) io = true;
-    else other = true;
+    if (d.where.file == "--set" && d.code == "E34")
+      usage = true;
+    else if (d.code == "E02" && d.where.line == 0)
+      io = true;
+    else
+      other = true;
   }
   return other ? Exit::deck : usage ? Exit::usage : io ? Exit::io : Exit::deck;
 }

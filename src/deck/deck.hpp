@@ -9,15 +9,15 @@
 namespace whirl::deck {
 
 struct ReadOptions {
-  std::vector<std::string> set;   ///< "path=value" overrides, applied before anything is checked
-  bool files_allowed = true;      ///< false: included files and CSV tables are refused (untrusted text)
+  std::vector<std::string> set;  ///< "path=value" overrides, applied before anything is checked
+  bool files_allowed = true;  ///< false: included files and CSV tables are refused (untrusted text)
 };
 
 /// What came out of a deck. With errors the model is not to be used.
 struct Deck {
   model::Model model;
-  std::vector<Diagnostic> diagnostics;   ///< errors and warnings in the order of the text
-  Sources sources;                       ///< the texts, for caret lines
+  std::vector<Diagnostic> diagnostics;  ///< errors and warnings in the order of the text
+  Sources sources;                      ///< the texts, for caret lines
   int errors = 0;
   bool ok() const { return errors == 0; }
   /// All diagnostics as shown to the user.
@@ -27,18 +27,23 @@ struct Deck {
 /// Reads and checks a deck; "-" is standard input. Never throws for what a deck can contain.
 Deck read_deck(const std::filesystem::path& file, const ReadOptions& options = {});
 /// The same from memory; `name` is shown in messages, relative paths start at `folder`.
-Deck read_deck_text(std::string text, const std::string& name = "deck.toml", const ReadOptions& options = {}, const std::filesystem::path& folder = {});
-/// The model of a deck; throws Error(Exit::deck) with all diagnostics when there are errors. Warnings are in the model.
+Deck read_deck_text(std::string text, const std::string& name = "deck.toml",
+                    const ReadOptions& options = {}, const std::filesystem::path& folder = {});
+/// The model of a deck; throws Error(Exit::deck) with all diagnostics when there are errors.
+/// Warnings are in the model.
 model::Model load_model(const std::filesystem::path& file, const ReadOptions& options = {});
 
-/// The exit code that fits the errors: Exit::usage for a bad --set, Exit::io for a deck that cannot be read, else Exit::deck.
+/// The exit code that fits the errors: Exit::usage for a bad --set, Exit::io for a deck that cannot
+/// be read, else Exit::deck.
 Exit exit_of(const std::vector<Diagnostic>& diagnostics);
 
-/// Bytes the outputs of a model will take, roughly (rows of the histories, frames of pictures; windows of time honoured).
+/// Bytes the outputs of a model will take, roughly (rows of the histories, frames of pictures;
+/// windows of time honoured).
 struct OutputEstimate {
   double histories = 0, pictures = 0;
-  bool at_most = false;   ///< rows are written inside a window of speed or amplitude only: there may be far fewer
-  Where where;            ///< the step that writes most
+  bool at_most = false;  ///< rows are written inside a window of speed or amplitude only: there may
+                         ///< be far fewer
+  Where where;           ///< the step that writes most
   double total() const { return histories + pictures; }
 };
 OutputEstimate estimate_output(const model::Model& model);

@@ -26,11 +26,13 @@ std::shared_ptr<TableInfo> Describer::collect(const std::function<void(Visitor&)
   return t;
 }
 
-bool Describer::quantity(const Key& k, double& target, const char* unit, Range range, const char* doc) {
+bool Describer::quantity(const Key& k, double& target, const char* unit, Range range,
+                         const char* doc) {
   KeyInfo& i = add(k, KeyInfo::Kind::quantity, doc);
   i.unit = unit;
   i.range = range;
-  if (!k.required && !k.absent && std::isfinite(target)) i.default_text = *unit ? '"' + units::format(target, unit) + '"' : units::format_number(target);
+  if (!k.required && !k.absent && std::isfinite(target))
+    i.default_text = *unit ? '"' + units::format(target, unit) + '"' : units::format_number(target);
   return false;
 }
 
@@ -56,7 +58,8 @@ bool Describer::text(const Key& k, std::string& target, const char* doc) {
 namespace {
 std::string list_text(const std::vector<std::string>& words) {
   std::string r = "[";
-  for (const auto& w : words) r += (r.size() > 1 ? ", \"" : "\"") + w + '"';
+  for (const auto& w : words)
+    r += (r.size() > 1 ? ", \"" : "\"") + w + '"';
   return r + "]";
 }
 }  // namespace
@@ -67,7 +70,8 @@ bool Describer::texts(const Key& k, std::vector<std::string>& target, const char
   return false;
 }
 
-bool Describer::quantities(const Key& k, std::vector<double>& target, const char* unit, Range range, int count, const char* doc, const char*) {
+bool Describer::quantities(const Key& k, std::vector<double>& target, const char* unit, Range range,
+                           int count, const char* doc, const char*) {
   KeyInfo& i = add(k, KeyInfo::Kind::quantities, doc);
   i.unit = unit;
   i.range = range;
@@ -84,7 +88,8 @@ bool Describer::quantities(const Key& k, std::vector<double>& target, const char
   return false;
 }
 
-bool Describer::matrix(const Key& k, Matrix<6>&, const char* translation, const char* coupling, const char* rotation, const char* doc) {
+bool Describer::matrix(const Key& k, Matrix<6>&, const char* translation, const char* coupling,
+                       const char* rotation, const char* doc) {
   KeyInfo& i = add(k, KeyInfo::Kind::matrix, doc);
   i.unit = fmt::format("{} | {} | {}", translation, coupling, rotation);
   return false;
@@ -93,11 +98,13 @@ bool Describer::matrix(const Key& k, Matrix<6>&, const char* translation, const 
 bool Describer::option(const Key& k, int& index, std::span<const Option> options, const char* doc) {
   KeyInfo& i = add(k, KeyInfo::Kind::option, doc);
   i.words.assign(options.begin(), options.end());
-  if (!k.required && !k.absent) i.default_text = fmt::format("\"{}\"", options[static_cast<std::size_t>(index)].name);
+  if (!k.required && !k.absent)
+    i.default_text = fmt::format("\"{}\"", options[static_cast<std::size_t>(index)].name);
   return false;
 }
 
-bool Describer::options(const Key& k, std::vector<std::string>& target, std::span<const Option> options, const char* doc) {
+bool Describer::options(const Key& k, std::vector<std::string>& target,
+                        std::span<const Option> options, const char* doc) {
   KeyInfo& i = add(k, KeyInfo::Kind::options, doc);
   i.words.assign(options.begin(), options.end());
   if (!k.required && !k.absent && !target.empty()) i.default_text = list_text(target);
@@ -105,7 +112,8 @@ bool Describer::options(const Key& k, std::vector<std::string>& target, std::spa
 }
 
 bool Describer::name(model::Entity&, const char* kind) {
-  KeyInfo& i = add(optional("name", "numbered by kind"), KeyInfo::Kind::text, "name, unique among its kind; used in references, results and messages");
+  KeyInfo& i = add(optional("name", "numbered by kind"), KeyInfo::Kind::text,
+                   "name, unique among its kind; used in references, results and messages");
   i.absent = fmt::format("\"{} 1\", \"{} 2\", ...", kind, kind);
   return false;
 }
@@ -130,7 +138,9 @@ bool Describer::step(const Key& k, std::string&, const char* doc) {
   return false;
 }
 
-void Describer::free_table(const Key& k, const char* doc) { add(k, KeyInfo::Kind::free_table, doc); }
+void Describer::free_table(const Key& k, const char* doc) {
+  add(k, KeyInfo::Kind::free_table, doc);
+}
 
 bool Describer::table(const Key& k, const std::function<void(Visitor&)>& body, const char* doc) {
   auto t = collect(body);
@@ -145,7 +155,9 @@ void Describer::list(const Key& k, const ListBody& body, const char* doc) {
 
 namespace {
 bool fits_a_cell(const KeyInfo& i) {
-  return i.kind != KeyInfo::Kind::table && i.kind != KeyInfo::Kind::list && i.kind != KeyInfo::Kind::matrix && i.kind != KeyInfo::Kind::quantities && i.kind != KeyInfo::Kind::texts;
+  return i.kind != KeyInfo::Kind::table && i.kind != KeyInfo::Kind::list &&
+         i.kind != KeyInfo::Kind::matrix && i.kind != KeyInfo::Kind::quantities &&
+         i.kind != KeyInfo::Kind::texts;
 }
 }  // namespace
 
@@ -160,11 +172,13 @@ bool Describer::rows(const ListBody& body, bool must, const char* doc) {
 
 void Describer::alternatives(const Key& k, std::span<const Alternative> list, const char* doc) {
   std::vector<KeyInfo::Choice> choices;
-  for (const auto& a : list) choices.push_back({a.name, a.doc, collect(a.body)});
+  for (const auto& a : list)
+    choices.push_back({a.name, a.doc, collect(a.body)});
   add(k, KeyInfo::Kind::alternatives, doc).choices = std::move(choices);
 }
 
-bool Describer::either(const Key& k, double&, const char* unit, bool&, const std::function<void(Visitor&)>& body, const char* doc) {
+bool Describer::either(const Key& k, double&, const char* unit, bool&,
+                       const std::function<void(Visitor&)>& body, const char* doc) {
   auto t = collect(body);
   KeyInfo& i = add(k, KeyInfo::Kind::either, doc);
   i.unit = unit;
@@ -194,7 +208,8 @@ std::vector<std::string> key_names(const std::function<void(Visitor&)>& body) {
   Describer d(t);
   body(d);
   std::vector<std::string> r;
-  for (const auto& k : t.keys) r.push_back(k.name);
+  for (const auto& k : t.keys)
+    r.push_back(k.name);
   return r;
 }
 

@@ -1,5 +1,5 @@
-// The visitor that collects: what keys a deck has, without reading one. The JSON schema, the reference documentation,
-// templates and "did you mean" come from it.
+// The visitor that collects: what keys a deck has, without reading one. The JSON schema, the
+// reference documentation, templates and "did you mean" come from it.
 #pragma once
 #include <deck/suggest.hpp>
 #include <deck/visitor.hpp>
@@ -10,27 +10,48 @@ namespace whirl::deck {
 struct TableInfo;
 
 struct KeyInfo {
-  enum class Kind { quantity, integer, flag, text, texts, quantities, matrix, option, options, location, reference, table, list, alternatives, either, free_table };
+  enum class Kind {
+    quantity,
+    integer,
+    flag,
+    text,
+    texts,
+    quantities,
+    matrix,
+    option,
+    options,
+    location,
+    reference,
+    table,
+    list,
+    alternatives,
+    either,
+    free_table
+  };
   std::string name;
   Kind kind = Kind::text;
   std::string doc;
-  std::string unit;                    ///< of quantities; "" = plain number
+  std::string unit;  ///< of quantities; "" = plain number
   bool required = false;
-  bool listed = true;                  ///< in the reference; see Key
-  bool plain_zero = false;             ///< of a quantity: 0 needs no unit
-  std::string default_text;            ///< as written in a deck; empty when there is none
-  std::string absent;                  ///< what holds when left out, where the default does not say it
+  bool listed = true;        ///< in the reference; see Key
+  bool plain_zero = false;   ///< of a quantity: 0 needs no unit
+  std::string default_text;  ///< as written in a deck; empty when there is none
+  std::string absent;        ///< what holds when left out, where the default does not say it
   Range range;
-  int count = -1;                      ///< of lists of fixed length
+  int count = -1;  ///< of lists of fixed length
   std::vector<Option> words;
-  std::shared_ptr<TableInfo> table;    ///< of tables, lists of tables, and `either`
-  struct Choice { std::string name, doc; std::shared_ptr<TableInfo> table; };
-  std::vector<Choice> choices;         ///< of alternatives: further keys of the same table
+  std::shared_ptr<TableInfo> table;  ///< of tables, lists of tables, and `either`
+  struct Choice {
+    std::string name, doc;
+    std::shared_ptr<TableInfo> table;
+  };
+  std::vector<Choice> choices;  ///< of alternatives: further keys of the same table
 };
 
 struct TableInfo {
   std::vector<KeyInfo> keys;
-  std::shared_ptr<TableInfo> row;      ///< keys usable as columns of `columns`/`rows`/`file`; null = no rows here
+  std::shared_ptr<TableInfo>
+      row;  ///< keys usable as columns of `columns`/`rows`/`file`; null = no rows here
   bool row_required = false;
   std::string row_doc;
 };
@@ -44,10 +65,12 @@ class Describer : public Visitor {
   bool flag(const Key&, bool&, const char*) override;
   bool text(const Key&, std::string&, const char*) override;
   bool texts(const Key&, std::vector<std::string>&, const char*) override;
-  bool quantities(const Key&, std::vector<double>&, const char* unit, Range, int count, const char*, const char* per) override;
+  bool quantities(const Key&, std::vector<double>&, const char* unit, Range, int count, const char*,
+                  const char* per) override;
   bool matrix(const Key&, Matrix<6>&, const char*, const char*, const char*, const char*) override;
   bool option(const Key&, int& index, std::span<const Option>, const char*) override;
-  bool options(const Key&, std::vector<std::string>&, std::span<const Option>, const char*) override;
+  bool options(const Key&, std::vector<std::string>&, std::span<const Option>,
+               const char*) override;
   bool name(model::Entity&, const char* kind) override;
   bool location(const Key&, model::Location&, const char*) override;
   bool material(const Key&, std::size_t&, const char*) override;
@@ -58,7 +81,8 @@ class Describer : public Visitor {
   void list(const Key&, const ListBody&, const char*) override;
   bool rows(const ListBody&, bool must, const char*) override;
   void alternatives(const Key&, std::span<const Alternative>, const char*) override;
-  bool either(const Key&, double&, const char* unit, bool&, const std::function<void(Visitor&)>&, const char*) override;
+  bool either(const Key&, double&, const char* unit, bool&, const std::function<void(Visitor&)>&,
+              const char*) override;
   bool clean() const override { return false; }
   bool given(const char*) const override { return false; }
   void error(const char*, const char*, std::string, std::string) override {}

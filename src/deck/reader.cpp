@@ -18,13 +18,19 @@ std::string shown_text(const Value& v) {
 }
 
 int characters(std::string_view s) {
-  return static_cast<int>(std::count_if(s.begin(), s.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<int>(std::count_if(
+      s.begin(), s.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 }  // namespace
 
-Reader::Reader(Sources& sources, Diagnostics& diagnostics, Parameters& parameters, const Document& document, model::Model& model)
-    : sources_(sources), diagnostics_(diagnostics), parameters_(parameters), document_(document), model_(model) {}
+Reader::Reader(Sources& sources, Diagnostics& diagnostics, Parameters& parameters,
+               const Document& document, model::Model& model)
+    : sources_(sources),
+      diagnostics_(diagnostics),
+      parameters_(parameters),
+      document_(document),
+      model_(model) {}
 
 void Reader::read() {
   in_table("", document_.root, &resolved_, nullptr, [&](Visitor& v) { describe(v, model_); });
@@ -40,33 +46,47 @@ const Member* Reader::find(const Key& k) {
   if (m && m->value.kind == Value::Kind::unreadable) s.dirty = true;
   if (!m && k.required) {
     s.dirty = true;
-    if (s.header) problem("E05", *s.header, fmt::format("the column '{}' is missing", k.name));
+    if (s.header)
+      problem("E05", *s.header, fmt::format("the column '{}' is missing", k.name));
     else if (!document_.damaged)
-      problem("E05", s.table->spot, s.table == &document_.root ? fmt::format("the key '{}' is missing", k.name)
-                                                               : fmt::format("{} lacks the key '{}'", s.entity.empty() ? "the table" : s.entity, k.name));
+      problem("E05", s.table->spot,
+              s.table == &document_.root
+                  ? fmt::format("the key '{}' is missing", k.name)
+                  : fmt::format("{} lacks the key '{}'", s.entity.empty() ? "the table" : s.entity,
+                                k.name));
   }
   return m;
 }
 
 void Reader::put(const Key& k, Value v) {
   if (!scope().resolved || v.kind == Value::Kind::unreadable) return;
-  if (Member* m = scope().resolved->find(k.name)) m->value = std::move(v);
-  else scope().resolved->add(k.name, std::move(v));
+  if (Member* m = scope().resolved->find(k.name))
+    m->value = std::move(v);
+  else
+    scope().resolved->add(k.name, std::move(v));
 }
 
 void Reader::problem(const char* code, const Spot& spot, std::string message, std::string hint) {
-  diagnostics_.error(code, spot, std::move(message), std::move(hint), scopes_.empty() ? std::string() : scope().entity);
+  diagnostics_.error(code, spot, std::move(message), std::move(hint),
+                     scopes_.empty() ? std::string() : scope().entity);
 }
 
 bool Reader::wrong_type(const char* key, const Value& v, const char* wanted, std::string hint) {
-  if (v.kind == Value::Kind::unreadable) scope().dirty = true;
-  else problem("E06", v.spot, fmt::format("'{}' must be {}, not {}", key, wanted, name_of(v.kind)), std::move(hint));
+  if (v.kind == Value::Kind::unreadable)
+    scope().dirty = true;
+  else
+    problem("E06", v.spot, fmt::format("'{}' must be {}, not {}", key, wanted, name_of(v.kind)),
+            std::move(hint));
   return false;
 }
 
-Value Reader::expand(const Value& v, Parameters::Use use) { return parameters_.expand(v, use, diagnostics_); }
+Value Reader::expand(const Value& v, Parameters::Use use) {
+  return parameters_.expand(v, use, diagnostics_);
+}
 
-bool Reader::clean() const { return !scope().dirty && diagnostics_.errors() == scope().errors_at_start; }
+bool Reader::clean() const {
+  return !scope().dirty && diagnostics_.errors() == scope().errors_at_start;
+}
 
 bool Reader::given(const char* key) const { return scope().table->find(key) != nullptr; }
 
@@ -77,7 +97,8 @@ void Reader::error(const char* code, const char* key, std::string message, std::
 
 void Reader::warning(const char* code, const char* key, std::string message, std::string hint) {
   const Member* m = key ? scope().table->find(key) : nullptr;
-  diagnostics_.warning(code, m ? m->value.spot : scope().table->spot, std::move(message), std::move(hint), scope().entity);
+  diagnostics_.warning(code, m ? m->value.spot : scope().table->spot, std::move(message),
+                       std::move(hint), scope().entity);
 }
 
 Where Reader::where() const {
@@ -88,28 +109,40 @@ Where Reader::where() const {
 
 // ---------------------------------------------------------------- quantities and numbers
 
-bool Reader::read_quantity(const char* key, const Value& given, const char* unit, Range range, double& target, Value& shown) {
+bool Reader::read_quantity(const char* key, const Value& given, const char* unit, Range range,
+                           double& target, Value& shown) {
   const Value v = expand(given, Parameters::Use::quantity);
   double x = 0;
   if (v.is_number()) {
     x = v.number();
     if (!std::isfinite(x)) {
-      problem("E13", v.spot, fmt::format("'{}' is not a finite number", key), "leave the key out where no limit is meant");
+      problem("E13", v.spot, fmt::format("'{}' is not a finite number", key),
+              "leave the key out where no limit is meant");
       return false;
     }
     if (v.column) {
       auto it = factors_.find({v.column->unit, unit});
-      if (it == factors_.end()) it = factors_.emplace(std::pair(v.column->unit, std::string(unit)), units::factor(v.column->unit, unit)).first;
+      if (it == factors_.end())
+        it = factors_
+                 .emplace(std::pair(v.column->unit, std::string(unit)),
+                          units::factor(v.column->unit, unit))
+                 .first;
       const units::Factor& f = it->second;
       if (f.problem) {
         Spot spot = v.column->spot;
-        if (!v.column->given) problem("E07", spot, fmt::format("the column '{}' has no unit", key), fmt::format("write the unit in the title, for example \"{}[{}]\"", key, unit));
-        else problem(f.problem->code.c_str(), spot, fmt::format("column '{}': {}", key, f.problem->message), f.problem->hint);
+        if (!v.column->given)
+          problem("E07", spot, fmt::format("the column '{}' has no unit", key),
+                  fmt::format("write the unit in the title, for example \"{}[{}]\"", key, unit));
+        else
+          problem(f.problem->code.c_str(), spot,
+                  fmt::format("column '{}': {}", key, f.problem->message), f.problem->hint);
         return false;
       }
       x = f(x);
     } else if (*unit && !units::unit(unit).dimension.dimensionless()) {
-      problem("E07", v.spot, fmt::format("'{}' is a number without a unit where {} is needed", key, units::name_of(units::unit(unit).dimension)),
+      problem("E07", v.spot,
+              fmt::format("'{}' is a number without a unit where {} is needed", key,
+                          units::name_of(units::unit(unit).dimension)),
               fmt::format("write the unit, for example {} = \"{} {}\"", key, shown_text(v), unit));
       return false;
     }
@@ -117,19 +150,29 @@ bool Reader::read_quantity(const char* key, const Value& given, const char* unit
     const units::Converted c = units::convert(v.text, unit);
     if (c.problem) {
       Spot spot = v.spot;
-      if (given.is_text() && given.text == v.text && !v.column && characters(v.text) + 2 == spot.length) {   // as it stands in the file
+      if (given.is_text() && given.text == v.text && !v.column &&
+          characters(v.text) + 2 == spot.length) {  // as it stands in the file
         spot.column += 1 + characters(std::string_view(v.text).substr(0, c.problem->offset));
-        spot.length = std::max(1, characters(std::string_view(v.text).substr(std::min(c.problem->offset, v.text.size()), c.problem->length)));
+        spot.length =
+            std::max(1, characters(std::string_view(v.text).substr(
+                            std::min(c.problem->offset, v.text.size()), c.problem->length)));
       }
-      problem(c.problem->code.c_str(), spot, fmt::format("'{}': {}", key, c.problem->message), c.problem->hint);
+      problem(c.problem->code.c_str(), spot, fmt::format("'{}': {}", key, c.problem->message),
+              c.problem->hint);
       return false;
     }
     x = c.value;
   } else {
-    return wrong_type(key, v, *unit ? "a quantity" : "a number", *unit ? fmt::format("for example {} = \"1 {}\"", key, unit) : "");
+    return wrong_type(key, v, *unit ? "a quantity" : "a number",
+                      *unit ? fmt::format("for example {} = \"1 {}\"", key, unit) : "");
   }
   if (!inside(range, x)) {
-    problem("E14", v.spot, fmt::format("'{}' = {} {}", key, v.column && v.is_number() ? fmt::format("{} {}", shown_text(v), v.column->unit) : shown_text(v), text_of(range)));
+    problem(
+        "E14", v.spot,
+        fmt::format("'{}' = {} {}", key,
+                    v.column && v.is_number() ? fmt::format("{} {}", shown_text(v), v.column->unit)
+                                              : shown_text(v),
+                    text_of(range)));
     return false;
   }
   target = x;
@@ -141,7 +184,9 @@ bool Reader::quantity(const Key& k, double& target, const char* unit, Range rang
   note_shape(k, KeyShape::Kind::quantity, unit);
   const Member* m = find(k);
   if (!m) {
-    if (std::isfinite(target)) put_default(k, *unit ? Value::of_text(units::format(target, unit)) : Value::of_number(target));
+    if (std::isfinite(target))
+      put_default(k,
+                  *unit ? Value::of_text(units::format(target, unit)) : Value::of_number(target));
     return false;
   }
   if (k.plain_zero && m->value.is_number() && m->value.number() == 0 && inside(range, 0)) {
@@ -162,18 +207,23 @@ bool Reader::integer(const Key& k, int& target, Range range, const char*) {
     return false;
   }
   Value v = expand(m->value);
-  if (v.is_text()) {   // "${n}" inside a longer text, or a --set value
+  if (v.is_text()) {  // "${n}" inside a longer text, or a --set value
     std::int64_t i = 0;
     const auto r = std::from_chars(v.text.data(), v.text.data() + v.text.size(), i);
-    if (r.ec == std::errc() && r.ptr == v.text.data() + v.text.size() && (v.column || v.text != m->value.text)) v = Value::of_integer(i, v.spot);
+    if (r.ec == std::errc() && r.ptr == v.text.data() + v.text.size() &&
+        (v.column || v.text != m->value.text))
+      v = Value::of_integer(i, v.spot);
   }
-  if (v.kind == Value::Kind::real && v.real == std::floor(v.real) && std::abs(v.real) < 1e9) v = Value::of_integer(static_cast<std::int64_t>(v.real), v.spot);
+  if (v.kind == Value::Kind::real && v.real == std::floor(v.real) && std::abs(v.real) < 1e9)
+    v = Value::of_integer(static_cast<std::int64_t>(v.real), v.spot);
   if (v.kind != Value::Kind::integer) {
     wrong_type(k.name, v, "a whole number");
     return true;
   }
   if (!inside(range, static_cast<double>(v.integer)) || std::abs(v.integer) > 2000000000) {
-    problem("E14", v.spot, fmt::format("'{}' = {} {}", k.name, v.integer, std::abs(v.integer) > 2000000000 ? "is too large" : text_of(range)));
+    problem("E14", v.spot,
+            fmt::format("'{}' = {} {}", k.name, v.integer,
+                        std::abs(v.integer) > 2000000000 ? "is too large" : text_of(range)));
     return true;
   }
   target = static_cast<int>(v.integer);
@@ -189,7 +239,8 @@ bool Reader::flag(const Key& k, bool& target, const char*) {
     return false;
   }
   Value v = expand(m->value);
-  if (v.is_text() && v.column && (v.text == "true" || v.text == "false")) v = Value::of_flag(v.text == "true", v.spot);
+  if (v.is_text() && v.column && (v.text == "true" || v.text == "false"))
+    v = Value::of_flag(v.text == "true", v.spot);
   if (v.kind != Value::Kind::boolean) {
     wrong_type(k.name, v, "true or false");
     return true;
@@ -203,19 +254,22 @@ bool Reader::read_list(const Key& k, const Member& m, int count, Value& list) {
   list = expand(m.value);
   if (!list.is_array()) return wrong_type(k.name, list, "a list");
   if (count >= 0 && static_cast<int>(list.items.size()) != count) {
-    problem("E20", list.spot, fmt::format("'{}' needs {} values, not {}", k.name, count, list.items.size()));
+    problem("E20", list.spot,
+            fmt::format("'{}' needs {} values, not {}", k.name, count, list.items.size()));
     return false;
   }
   return true;
 }
 
-bool Reader::quantities(const Key& k, std::vector<double>& target, const char* unit, Range range, int count, const char*, const char* per) {
+bool Reader::quantities(const Key& k, std::vector<double>& target, const char* unit, Range range,
+                        int count, const char*, const char* per) {
   note_shape(k, KeyShape::Kind::list);
   const Member* m = find(k);
   if (!m) {
     if (!target.empty()) {
       Value list = Value::make_array();
-      for (double x : target) list.items.push_back(*unit ? Value::of_text(units::format(x, unit)) : Value::of_number(x));
+      for (double x : target)
+        list.items.push_back(*unit ? Value::of_text(units::format(x, unit)) : Value::of_number(x));
       put_default(k, std::move(list));
     }
     return false;
@@ -227,7 +281,8 @@ bool Reader::quantities(const Key& k, std::vector<double>& target, const char* u
   bool good = true;
   for (std::size_t i = 0; i < list.items.size(); ++i) {
     std::string u = unit;
-    if (per && i > 0) u = fmt::format("{}/{}{}", *unit ? unit : "1", per, i == 1 ? "" : fmt::format("^{}", i));
+    if (per && i > 0)
+      u = fmt::format("{}/{}{}", *unit ? unit : "1", per, i == 1 ? "" : fmt::format("^{}", i));
     double x = 0;
     Value shown;
     good = read_quantity(k.name, list.items[i], u.c_str(), range, x, shown) && good;
@@ -240,7 +295,8 @@ bool Reader::quantities(const Key& k, std::vector<double>& target, const char* u
   return true;
 }
 
-bool Reader::matrix(const Key& k, Matrix<6>& target, const char* translation, const char* coupling, const char* rotation, const char*) {
+bool Reader::matrix(const Key& k, Matrix<6>& target, const char* translation, const char* coupling,
+                    const char* rotation, const char*) {
   note_shape(k, KeyShape::Kind::list);
   const Member* m = find(k);
   if (!m) return false;
@@ -250,24 +306,36 @@ bool Reader::matrix(const Key& k, Matrix<6>& target, const char* translation, co
   bool good = true;
   for (int i = 0; i < 6; ++i) {
     Value row = expand(list.items[static_cast<std::size_t>(i)]);
-    if (!row.is_array()) { wrong_type(k.name, row, "a list of six lists"); return true; }
+    if (!row.is_array()) {
+      wrong_type(k.name, row, "a list of six lists");
+      return true;
+    }
     if (row.items.size() != 6) {
-      problem("E20", row.spot, fmt::format("a row of '{}' needs 6 values, not {}", k.name, row.items.size()));
+      problem("E20", row.spot,
+              fmt::format("a row of '{}' needs 6 values, not {}", k.name, row.items.size()));
       return true;
     }
     for (int j = 0; j < 6; ++j) {
       const Value& x = row.items[static_cast<std::size_t>(j)];
       double number = 0;
       Value shown;
-      if (x.is_number() && x.number() == 0) number = 0;
-      else good = read_quantity(k.name, x, i < 3 && j < 3 ? translation : i < 3 || j < 3 ? coupling : rotation, any, number, shown) && good;
+      if (x.is_number() && x.number() == 0)
+        number = 0;
+      else
+        good = read_quantity(k.name, x,
+                             i < 3 && j < 3   ? translation
+                             : i < 3 || j < 3 ? coupling
+                                              : rotation,
+                             any, number, shown) &&
+               good;
       value(i, j) = number;
     }
   }
   if (!good) return true;
   target = value;
   for (auto& row : list.items)
-    for (auto& x : row.items) x = expand(x, Parameters::Use::quantity);
+    for (auto& x : row.items)
+      x = expand(x, Parameters::Use::quantity);
   put(k, list);
   return true;
 }
@@ -276,7 +344,8 @@ bool Reader::matrix(const Key& k, Matrix<6>& target, const char* translation, co
 
 bool Reader::read_text(const char* key, const Value& given, std::string& target) {
   Value v = expand(given);
-  if (v.is_number() && v.column && !v.text.empty()) v.kind = Value::Kind::text;   // a CSV cell such as 1
+  if (v.is_number() && v.column && !v.text.empty())
+    v.kind = Value::Kind::text;  // a CSV cell such as 1
   if (!v.is_text()) return wrong_type(key, v, "text");
   target = v.text;
   return true;
@@ -298,7 +367,8 @@ bool Reader::texts(const Key& k, std::vector<std::string>& target, const char*) 
   const Member* m = find(k);
   if (!m) {
     Value list = Value::make_array();
-    for (const auto& s : target) list.items.push_back(Value::of_text(s));
+    for (const auto& s : target)
+      list.items.push_back(Value::of_text(s));
     put_default(k, std::move(list));
     return false;
   }
@@ -317,7 +387,8 @@ bool Reader::texts(const Key& k, std::vector<std::string>& target, const char*) 
   return true;
 }
 
-bool Reader::read_option(const char* key, const Value& given, std::span<const Option> options, int& index) {
+bool Reader::read_option(const char* key, const Value& given, std::span<const Option> options,
+                         int& index) {
   std::string word;
   if (!read_text(key, given, word)) return false;
   std::vector<std::string> names;
@@ -328,11 +399,16 @@ bool Reader::read_option(const char* key, const Value& given, std::span<const Op
       return true;
     }
     names.emplace_back(options[i].name);
-    all += fmt::format("{}\"{}\"", i == 0 ? "" : i + 1 == options.size() ? " or " : ", ", options[i].name);
+    all += fmt::format("{}\"{}\"",
+                       i == 0                    ? ""
+                       : i + 1 == options.size() ? " or "
+                                                 : ", ",
+                       options[i].name);
   }
   const auto near = nearest(word, names);
   problem("E15", given.spot, fmt::format("'{}' does not know the word \"{}\"", key, word),
-          near.empty() ? fmt::format("it is {}", all) : fmt::format("did you mean \"{}\"? It is {}", near.front(), all));
+          near.empty() ? fmt::format("it is {}", all)
+                       : fmt::format("did you mean \"{}\"? It is {}", near.front(), all));
   return false;
 }
 
@@ -343,11 +419,13 @@ bool Reader::option(const Key& k, int& index, std::span<const Option> options, c
     put_default(k, Value::of_text(options[static_cast<std::size_t>(index)].name));
     return false;
   }
-  if (read_option(k.name, m->value, options, index)) put(k, Value::of_text(options[static_cast<std::size_t>(index)].name));
+  if (read_option(k.name, m->value, options, index))
+    put(k, Value::of_text(options[static_cast<std::size_t>(index)].name));
   return true;
 }
 
-bool Reader::options(const Key& k, std::vector<std::string>& target, std::span<const Option> options, const char* doc) {
+bool Reader::options(const Key& k, std::vector<std::string>& target,
+                     std::span<const Option> options, const char* doc) {
   const Member* m = find(k);
   if (!m) {
     scope().known.pop_back();
@@ -360,7 +438,10 @@ bool Reader::options(const Key& k, std::vector<std::string>& target, std::span<c
   bool good = true;
   for (const auto& x : list.items) {
     int i = 0;
-    if (!read_option(k.name, x, options, i)) { good = false; continue; }
+    if (!read_option(k.name, x, options, i)) {
+      good = false;
+      continue;
+    }
     words.emplace_back(options[static_cast<std::size_t>(i)].name);
     shown.items.push_back(Value::of_text(words.back()));
   }

@@ -1,5 +1,6 @@
-// The visitor that reads: fills the model from the document, reports every mistake, and writes the resolved deck on the way
-// (what the user wrote with parameters put in, plus every default made explicit, plus the tables of CSV files).
+// The visitor that reads: fills the model from the document, reports every mistake, and writes the
+// resolved deck on the way (what the user wrote with parameters put in, plus every default made
+// explicit, plus the tables of CSV files).
 #pragma once
 #include <core/units.hpp>
 #include <deck/text/parameters.hpp>
@@ -12,22 +13,26 @@ namespace whirl::deck {
 
 class Reader : public Visitor {
  public:
-  Reader(Sources& sources, Diagnostics& diagnostics, Parameters& parameters, const Document& document, model::Model& model);
+  Reader(Sources& sources, Diagnostics& diagnostics, Parameters& parameters,
+         const Document& document, model::Model& model);
 
   /// Describes the whole model into the one given.
   void read();
   Value take_resolved() { return std::move(resolved_); }
-  bool files_allowed = true;   ///< false: naming a file is a mistake (texts from untrusted sources)
+  bool files_allowed = true;  ///< false: naming a file is a mistake (texts from untrusted sources)
 
   bool quantity(const Key&, double&, const char* unit, Range, const char*) override;
   bool integer(const Key&, int&, Range, const char*) override;
   bool flag(const Key&, bool&, const char*) override;
   bool text(const Key&, std::string&, const char*) override;
   bool texts(const Key&, std::vector<std::string>&, const char*) override;
-  bool quantities(const Key&, std::vector<double>&, const char* unit, Range, int count, const char*, const char* per) override;
-  bool matrix(const Key&, Matrix<6>&, const char* translation, const char* coupling, const char* rotation, const char*) override;
+  bool quantities(const Key&, std::vector<double>&, const char* unit, Range, int count, const char*,
+                  const char* per) override;
+  bool matrix(const Key&, Matrix<6>&, const char* translation, const char* coupling,
+              const char* rotation, const char*) override;
   bool option(const Key&, int& index, std::span<const Option>, const char*) override;
-  bool options(const Key&, std::vector<std::string>&, std::span<const Option>, const char*) override;
+  bool options(const Key&, std::vector<std::string>&, std::span<const Option>,
+               const char*) override;
   bool name(model::Entity&, const char* kind) override;
   bool location(const Key&, model::Location&, const char*) override;
   bool material(const Key&, std::size_t&, const char*) override;
@@ -38,7 +43,8 @@ class Reader : public Visitor {
   void list(const Key&, const ListBody&, const char*) override;
   bool rows(const ListBody&, bool must, const char*) override;
   void alternatives(const Key&, std::span<const Alternative>, const char*) override;
-  bool either(const Key&, double&, const char* unit, bool& is_simple, const std::function<void(Visitor&)>&, const char*) override;
+  bool either(const Key&, double&, const char* unit, bool& is_simple,
+              const std::function<void(Visitor&)>&, const char*) override;
   bool clean() const override;
   bool given(const char* key) const override;
   void error(const char* code, const char* key, std::string message, std::string hint) override;
@@ -48,45 +54,59 @@ class Reader : public Visitor {
 
  private:
   struct Scope {
-    const Value* table = nullptr;                  ///< what is read
-    Value* resolved = nullptr;                     ///< what is written; null for rows
-    std::vector<std::string> known;                ///< keys asked for so far
-    std::vector<KeyShape> shapes;                  ///< what values those of them take that are not choices
-    std::map<std::string, std::map<std::string, Spot>> names;   ///< names of the things in this table's lists, by kind
+    const Value* table = nullptr;    ///< what is read
+    Value* resolved = nullptr;       ///< what is written; null for rows
+    std::vector<std::string> known;  ///< keys asked for so far
+    std::vector<KeyShape> shapes;    ///< what values those of them take that are not choices
+    std::map<std::string, std::map<std::string, Spot>>
+        names;  ///< names of the things in this table's lists, by kind
     int errors_at_start = 0;
-    bool dirty = false;                            ///< holds something reported before
-    bool any_key = false;                          ///< unknown keys are not reported (their table has an unknown type)
-    std::string path;                              ///< "output" in [output]; empty at the top
-    std::string entity;                            ///< "disk 'impeller'"
-    const Spot* header = nullptr;                  ///< of rows: where missing columns are reported
-    std::vector<Alternative> others;               ///< alternatives not chosen, for hints
+    bool dirty = false;    ///< holds something reported before
+    bool any_key = false;  ///< unknown keys are not reported (their table has an unknown type)
+    std::string path;      ///< "output" in [output]; empty at the top
+    std::string entity;    ///< "disk 'impeller'"
+    const Spot* header = nullptr;     ///< of rows: where missing columns are reported
+    std::vector<Alternative> others;  ///< alternatives not chosen, for hints
     std::string other_key;
   };
-  struct PendingStep { Spot spot; std::string name; int from = -1; /**< index of the step that refers, or -1 */ };
+  struct PendingStep {
+    Spot spot;
+    std::string name;
+    int from = -1; /**< index of the step that refers, or -1 */
+  };
   Scope& scope() { return scopes_.back(); }
   const Scope& scope() const { return scopes_.back(); }
 
   /// Notes the key as known and finds it; reports when it is required and missing.
   const Member* find(const Key&);
   void put(const Key&, Value);
-  void note_shape(const Key& k, KeyShape::Kind kind, const char* unit = "") { scope().shapes.push_back({k.name, kind, unit}); }
-  void put_default(const Key& k, Value v) { if (!k.absent && !k.required) put(k, std::move(v)); }
+  void note_shape(const Key& k, KeyShape::Kind kind, const char* unit = "") {
+    scope().shapes.push_back({k.name, kind, unit});
+  }
+  void put_default(const Key& k, Value v) {
+    if (!k.absent && !k.required) put(k, std::move(v));
+  }
   void problem(const char* code, const Spot&, std::string message, std::string hint = {});
   bool wrong_type(const char* key, const Value&, const char* wanted, std::string hint = {});
   Value expand(const Value& v, Parameters::Use use = Parameters::Use::text);
   /// One quantity; false when reported. `shown` gets what goes into the resolved deck.
-  bool read_quantity(const char* key, const Value&, const char* unit, Range, double& target, Value& shown);
+  bool read_quantity(const char* key, const Value&, const char* unit, Range, double& target,
+                     Value& shown);
   bool read_text(const char* key, const Value&, std::string& target);
   bool read_option(const char* key, const Value&, std::span<const Option>, int& index);
   bool read_list(const Key&, const Member&, int count, Value& list);
   void close_table();
-  void in_table(const char* key, const Value&, Value* resolved, const Spot* header, const std::function<void(Visitor&)>& body);
+  void in_table(const char* key, const Value&, Value* resolved, const Spot* header,
+                const std::function<void(Visitor&)>& body);
   /// Path of a key of the present table, as it stands in a header: "output.vtk".
   std::string path_of(const char* key) const;
-  void read_row(const std::vector<ColumnUnit*>& columns, const std::vector<std::string>& keys, std::vector<Value> cells, const Spot& row, const Spot& header, const ListBody&);
-  bool read_titles(const std::vector<Value>& titles, const ListBody&, std::vector<ColumnUnit*>& columns, std::vector<std::string>& keys);
+  void read_row(const std::vector<ColumnUnit*>& columns, const std::vector<std::string>& keys,
+                std::vector<Value> cells, const Spot& row, const Spot& header, const ListBody&);
+  bool read_titles(const std::vector<Value>& titles, const ListBody&,
+                   std::vector<ColumnUnit*>& columns, std::vector<std::string>& keys);
   void read_rows_from_file(const Value& file, const ListBody&, Value& columns, Value& rows);
-  void read_rows_from_deck(const Value& columns, const Value& rows, const ListBody&, Value& out_columns, Value& out_rows);
+  void read_rows_from_deck(const Value& columns, const Value& rows, const ListBody&,
+                           Value& out_columns, Value& out_rows);
   void settle_steps();
 
   Sources& sources_;
@@ -96,11 +116,11 @@ class Reader : public Visitor {
   model::Model& model_;
   Value resolved_;
   std::deque<Scope> scopes_;
-  std::deque<ColumnUnit> columns_;      ///< titles that cells point at
-  std::deque<Value> expanded_;          ///< tables that came out of parameters
+  std::deque<ColumnUnit> columns_;  ///< titles that cells point at
+  std::deque<Value> expanded_;      ///< tables that came out of parameters
   std::map<std::pair<std::string, std::string>, units::Factor> factors_;
   std::vector<PendingStep> pending_steps_;
-  bool shafts_bad_ = false;             ///< a shaft was reported: places on shafts are not judged
+  bool shafts_bad_ = false;  ///< a shaft was reported: places on shafts are not judged
 };
 
 }  // namespace whirl::deck

@@ -15,7 +15,8 @@ bool Reader::name(model::Entity& entity, const char* kind) {
   std::string name;
   const bool given = m && read_text("name", m->value, name);
   if (!given) {
-    for (std::size_t k = names.size() + 1; name.empty() || names.count(name); ++k) name = fmt::format("{} {}", kind, k);
+    for (std::size_t k = names.size() + 1; name.empty() || names.count(name); ++k)
+      name = fmt::format("{} {}", kind, k);
     if (std::string_view(kind) == "shaft" && names.empty()) name = "shaft";
   }
   const Spot spot = m ? m->value.spot : scope().table->spot;
@@ -26,15 +27,25 @@ bool Reader::name(model::Entity& entity, const char* kind) {
   };
   if (given && !name.empty() && (name.front() == '=' || name.front() == '-' || name.front() == '@'))
     problem("E14", spot, fmt::format("the name \"{}\" begins with '{}'", name, name.front()),
-            "names stand in the titles and cells of result tables, where spreadsheets would take this one for a formula");
+            "names stand in the titles and cells of result tables, where spreadsheets would take "
+            "this one for a formula");
   else if (given && !name.empty() && name.front() == '.')
-    problem("E14", spot, fmt::format("the name \"{}\" begins with '.'", name), "names stand in names of files, which would be hidden ones");
+    problem("E14", spot, fmt::format("the name \"{}\" begins with '.'", name),
+            "names stand in names of files, which would be hidden ones");
   else if (given && std::any_of(name.begin(), name.end(), control))
-    problem("E14", spot, fmt::format("the name \"{}\" has a control character", name), "a name is one line of letters, digits and signs");
-  else if (given && (name.empty() || name.find_first_of(":/+\"\\") != std::string::npos || name.size() > 100))
-    problem("E14", spot, name.empty() ? std::string("the name is empty") : fmt::format("the name \"{}\" has a character that places are written with", name), "a name may not contain : / + \" or \\");
+    problem("E14", spot, fmt::format("the name \"{}\" has a control character", name),
+            "a name is one line of letters, digits and signs");
+  else if (given && (name.empty() || name.find_first_of(":/+\"\\") != std::string::npos ||
+                     name.size() > 100))
+    problem("E14", spot,
+            name.empty()
+                ? std::string("the name is empty")
+                : fmt::format("the name \"{}\" has a character that places are written with", name),
+            "a name may not contain : / + \" or \\");
   const auto [it, fresh] = names.emplace(name, spot);
-  if (!fresh) problem("E16", spot, fmt::format("a {} '{}' exists already", kind, name), fmt::format("the first is in line {}", it->second.line));
+  if (!fresh)
+    problem("E16", spot, fmt::format("a {} '{}' exists already", kind, name),
+            fmt::format("the first is in line {}", it->second.line));
   entity.name = name;
   entity.where = where();
   put("name", Value::of_text(name));
@@ -47,7 +58,8 @@ bool Reader::location(const Key& k, model::Location& target, const char*) {
   if (!m) return false;
   const Value v = expand(m->value, Parameters::Use::quantity);
   if (!v.is_text()) {
-    wrong_type(k.name, v, "a place on a shaft", fmt::format("for example {} = \"section:mid\" or \"1.14 m\"", k.name));
+    wrong_type(k.name, v, "a place on a shaft",
+               fmt::format("for example {} = \"section:mid\" or \"1.14 m\"", k.name));
     return true;
   }
   // where the shafts themselves are wrong or missing, places on them cannot be judged
@@ -55,15 +67,21 @@ bool Reader::location(const Key& k, model::Location& target, const char*) {
     scope().dirty = true;
     return true;
   }
-  const auto unplaced = [&](const auto& list) {   // a disk or bearing whose own place was reported
-    return std::any_of(list.begin(), list.end(), [&](const auto& x) { return x.at.text.empty() && v.text.starts_with(x.name); });
+  const auto unplaced = [&](const auto& list) {  // a disk or bearing whose own place was reported
+    return std::any_of(list.begin(), list.end(), [&](const auto& x) {
+      return x.at.text.empty() && v.text.starts_with(x.name);
+    });
   };
   const bool shafts_bad = shafts_bad_ || unplaced(model_.disks) || unplaced(model_.bearings);
   const Located found = locate(model_, v.text);
   if (!found.at) {
-    if (shafts_bad) { scope().dirty = true; return true; }
+    if (shafts_bad) {
+      scope().dirty = true;
+      return true;
+    }
     Spot spot = v.spot;
-    if (found.length > 0 && v.text == m->value.text && static_cast<int>(v.text.size()) + 2 == spot.length) {
+    if (found.length > 0 && v.text == m->value.text &&
+        static_cast<int>(v.text.size()) + 2 == spot.length) {
       spot.column += 1 + static_cast<int>(found.offset);
       spot.length = static_cast<int>(found.length);
     }
@@ -94,10 +112,14 @@ bool Reader::material(const Key& k, std::size_t& index, const char*) {
     return true;
   }
   std::vector<std::string> names;
-  for (const auto& x : model_.materials) names.push_back(x.name);
-  for (const auto& x : builtin_materials()) names.push_back(x.name);
+  for (const auto& x : model_.materials)
+    names.push_back(x.name);
+  for (const auto& x : builtin_materials())
+    names.push_back(x.name);
   const auto near = nearest(name, names);
-  problem("E17", m->value.spot, fmt::format("there is no material '{}'", name), near.empty() ? "define it with [[material]]" : fmt::format("did you mean '{}'?", near.front()));
+  problem("E17", m->value.spot, fmt::format("there is no material '{}'", name),
+          near.empty() ? "define it with [[material]]"
+                       : fmt::format("did you mean '{}'?", near.front()));
   return true;
 }
 
@@ -105,7 +127,9 @@ bool Reader::shaft(const Key& k, std::size_t& index, const char*) {
   note_shape(k, KeyShape::Kind::text);
   const Member* m = find(k);
   if (!m) {
-    if (model_.shafts.size() > 1) problem("E05", scope().table->spot, fmt::format("the key '{}' is missing", k.name), "the deck has several shafts: say which");
+    if (model_.shafts.size() > 1)
+      problem("E05", scope().table->spot, fmt::format("the key '{}' is missing", k.name),
+              "the deck has several shafts: say which");
     return false;
   }
   std::string name;
@@ -121,7 +145,8 @@ bool Reader::shaft(const Key& k, std::size_t& index, const char*) {
   }
   const auto near = nearest(name, names);
   problem("E17", m->value.spot, fmt::format("there is no shaft '{}'", name),
-          near.empty() ? fmt::format("known: {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near.front()));
+          near.empty() ? fmt::format("known: {}", fmt::join(names, ", "))
+                       : fmt::format("did you mean '{}'?", near.front()));
   return true;
 }
 
@@ -133,29 +158,39 @@ bool Reader::step(const Key& k, std::string& target, const char*) {
   put(k, Value::of_text(target));
   // `from` inside a step: only earlier ones; elsewhere any step. Judged when all steps are known.
   const bool in_step = std::string_view(k.name) == "from";
-  pending_steps_.push_back({m->value.spot, target, in_step ? static_cast<int>(model_.steps.size()) - 1 : -1});
+  pending_steps_.push_back(
+      {m->value.spot, target, in_step ? static_cast<int>(model_.steps.size()) - 1 : -1});
   return true;
 }
 
 void Reader::settle_steps() {
   std::vector<std::string> names;
-  for (const auto& s : model_.steps) names.push_back(s.name);
+  for (const auto& s : model_.steps)
+    names.push_back(s.name);
   for (const auto& p : pending_steps_) {
     const auto it = std::find(names.begin(), names.end(), p.name);
     if (it == names.end()) {
       const auto near = nearest(p.name, names);
       problem(p.from >= 0 ? "E30" : "E17", p.spot, fmt::format("there is no step '{}'", p.name),
-              near.empty() ? fmt::format("the steps are: {}", fmt::join(names, ", ")) : fmt::format("did you mean '{}'?", near.front()));
+              near.empty() ? fmt::format("the steps are: {}", fmt::join(names, ", "))
+                           : fmt::format("did you mean '{}'?", near.front()));
       continue;
     }
     if (p.from < 0) continue;
     const auto index = static_cast<int>(it - names.begin());
-    if (index == p.from) problem("E30", p.spot, fmt::format("step '{}' starts from itself", p.name), "'from' names an earlier step");
-    else if (index > p.from) problem("E30", p.spot, fmt::format("step '{}' stands below the step that starts from it", p.name), "steps run in the order of the deck: move it up");
+    if (index == p.from)
+      problem("E30", p.spot, fmt::format("step '{}' starts from itself", p.name),
+              "'from' names an earlier step");
+    else if (index > p.from)
+      problem("E30", p.spot,
+              fmt::format("step '{}' stands below the step that starts from it", p.name),
+              "steps run in the order of the deck: move it up");
     else {
       const auto& law = model_.steps[static_cast<std::size_t>(index)].law;
-      if (!std::holds_alternative<model::StaticStep>(law) && !std::holds_alternative<model::TransientStep>(law))
-        problem("E30", p.spot, fmt::format("step '{}' leaves no state to start from", p.name), "'from' names a static or transient step");
+      if (!std::holds_alternative<model::StaticStep>(law) &&
+          !std::holds_alternative<model::TransientStep>(law))
+        problem("E30", p.spot, fmt::format("step '{}' leaves no state to start from", p.name),
+                "'from' names a static or transient step");
     }
   }
 }

@@ -7,24 +7,31 @@ namespace {
 
 using Kind = KeyShape::Kind;
 
-units::Dimension dimension_of(const KeyShape& k) { return k.unit.empty() ? units::Dimension{} : units::unit(k.unit).dimension; }
+units::Dimension dimension_of(const KeyShape& k) {
+  return k.unit.empty() ? units::Dimension{} : units::unit(k.unit).dimension;
+}
 
 bool fits(const KeyShape& key, const ValueShape& value) {
-  if (value.kind != key.kind) return value.kind == Kind::integer && key.kind == Kind::quantity && dimension_of(key).dimensionless();
+  if (value.kind != key.kind)
+    return value.kind == Kind::integer && key.kind == Kind::quantity &&
+           dimension_of(key).dimensionless();
   if (key.kind != Kind::quantity) return true;
-  return value.dimension ? dimension_of(key) == *value.dimension : dimension_of(key).dimensionless();
+  return value.dimension ? dimension_of(key) == *value.dimension
+                         : dimension_of(key).dimensionless();
 }
 
 std::string joined(const std::vector<std::string>& names, std::size_t most) {
   std::string out;
   const std::size_t n = std::min(names.size(), most);
-  for (std::size_t i = 0; i < n; ++i) out += fmt::format("{}'{}'", i == 0 ? "" : i + 1 == n ? " or " : ", ", names[i]);
+  for (std::size_t i = 0; i < n; ++i)
+    out += fmt::format("{}'{}'", i == 0 ? "" : i + 1 == n ? " or " : ", ", names[i]);
   return out;
 }
 
 std::vector<std::string> names_of(const std::vector<KeyShape>& keys) {
   std::vector<std::string> out;
-  for (const auto& k : keys) out.push_back(k.name);
+  for (const auto& k : keys)
+    out.push_back(k.name);
   return out;
 }
 
@@ -53,17 +60,25 @@ ValueShape shape_of_column(const std::string& unit) {
   return {Kind::quantity, p.quantity.dimension};
 }
 
-std::string suggest(const std::string& name, const ValueShape& value, const std::vector<KeyShape>& free) {
+std::string suggest(const std::string& name, const ValueShape& value,
+                    const std::vector<KeyShape>& free) {
   std::vector<KeyShape> right;
-  std::copy_if(free.begin(), free.end(), std::back_inserter(right), [&](const KeyShape& k) { return fits(k, value); });
-  if (const auto near = nearest(name, names_of(right)); !near.empty()) return fmt::format("did you mean '{}'?", near.front());
+  std::copy_if(free.begin(), free.end(), std::back_inserter(right),
+               [&](const KeyShape& k) { return fits(k, value); });
+  if (const auto near = nearest(name, names_of(right)); !near.empty())
+    return fmt::format("did you mean '{}'?", near.front());
   const auto by_spelling = nearest(name, names_of(free));
-  constexpr std::size_t most = 4;   // more are no help
+  constexpr std::size_t most = 4;  // more are no help
   if (value.dimension && !value.dimension->dimensionless() && !right.empty()) {
-    const std::string of_its_kind = fmt::format("{} here is {}{}", units::name_of(*value.dimension), joined(names_of(right), most), right.size() > most ? ", .." : "");
-    return by_spelling.empty() ? of_its_kind : fmt::format("{}; near in spelling: '{}'", of_its_kind, by_spelling.front());
+    const std::string of_its_kind =
+        fmt::format("{} here is {}{}", units::name_of(*value.dimension),
+                    joined(names_of(right), most), right.size() > most ? ", .." : "");
+    return by_spelling.empty()
+               ? of_its_kind
+               : fmt::format("{}; near in spelling: '{}'", of_its_kind, by_spelling.front());
   }
-  return by_spelling.empty() ? std::string() : fmt::format("did you mean '{}'?", by_spelling.front());
+  return by_spelling.empty() ? std::string()
+                             : fmt::format("did you mean '{}'?", by_spelling.front());
 }
 
 }  // namespace whirl::deck

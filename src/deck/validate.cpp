@@ -12,41 +12,57 @@ namespace {
 
 using Problems = std::vector<WholeModelProblem>;
 
-void add(Problems& p, const char* code, std::string message, std::string hint, const Where& where, Diagnostic::Severity severity = Diagnostic::Severity::error) {
+void add(Problems& p, const char* code, std::string message, std::string hint, const Where& where,
+         Diagnostic::Severity severity = Diagnostic::Severity::error) {
   p.push_back({severity, code, std::move(message), std::move(hint), where});
 }
 
-/// Rigid motions of one shaft that something resists. Lateral and tilting restraint in one plane follows from the stations
-/// where that plane is held: one place holds the shift, a second place or a tilting stiffness the tilt.
+/// Rigid motions of one shaft that something resists. Lateral and tilting restraint in one plane
+/// follows from the stations where that plane is held: one place holds the shift, a second place or
+/// a tilting stiffness the tilt.
 struct Restraint {
   bool axial = false;
-  std::array<std::set<double>, 2> stations;   ///< held laterally along y, z
-  std::array<bool, 2> tilt{};                 ///< tilt in the x-y, x-z plane held by a moment
+  std::array<std::set<double>, 2> stations;  ///< held laterally along y, z
+  std::array<bool, 2> tilt{};                ///< tilt in the x-y, x-z plane held by a moment
   bool lateral(int k) const { return !stations[static_cast<std::size_t>(k)].empty(); }
-  bool tilting(int k) const { return tilt[static_cast<std::size_t>(k)] || stations[static_cast<std::size_t>(k)].size() > 1; }
+  bool tilting(int k) const {
+    return tilt[static_cast<std::size_t>(k)] || stations[static_cast<std::size_t>(k)].size() > 1;
+  }
 };
 
-/// What one bearing holds: x, y, z, tilt in x-y (about z), tilt in x-z (about y). A kind of bearing that is not listed
-/// here is a film, contact or the like and is taken to hold both lateral directions.
+/// What one bearing holds: x, y, z, tilt in x-y (about z), tilt in x-z (about y). A kind of bearing
+/// that is not listed here is a film, contact or the like and is taken to hold both lateral
+/// directions.
 std::array<bool, 5> held_by(const model::BearingLaw& law) {
-  if (const auto* b = std::get_if<model::SpringBlock>(&law)) return {b->C1 > 0, b->C1 > 0, b->C1 > 0, b->C2 > 0, b->C2 > 0};
-  if (const auto* b = std::get_if<model::LinearBearing>(&law)) return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
+  if (const auto* b = std::get_if<model::SpringBlock>(&law))
+    return {b->C1 > 0, b->C1 > 0, b->C1 > 0, b->C2 > 0, b->C2 > 0};
+  if (const auto* b = std::get_if<model::LinearBearing>(&law))
+    return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
   if (const auto* b = std::get_if<model::TableBearing>(&law)) {
-    const auto entry = [b](Index c) { return std::any_of(b->K.begin(), b->K.end(), [c](const Matrix<6>& k) { return k(c, c) != 0; }); };
+    const auto entry = [b](Index c) {
+      return std::any_of(b->K.begin(), b->K.end(),
+                         [c](const Matrix<6>& k) { return k(c, c) != 0; });
+    };
     return {entry(0), entry(1), entry(2), entry(5), entry(4)};
   }
-  if (const auto* b = std::get_if<model::RollingEstimate>(&law)) return {b->kxx > 0, true, true, false, false};
-  if (const auto* b = std::get_if<model::RigidSupport>(&law)) return {b->held[0], b->held[1], b->held[2], b->held[5], b->held[4]};
+  if (const auto* b = std::get_if<model::RollingEstimate>(&law))
+    return {b->kxx > 0, true, true, false, false};
+  if (const auto* b = std::get_if<model::RigidSupport>(&law))
+    return {b->held[0], b->held[1], b->held[2], b->held[5], b->held[4]};
   if (const auto* b = std::get_if<model::NonlinearSpring>(&law)) {
     using Along = model::NonlinearSpring::Along;
     const bool radial = b->along == Along::radial;
-    return {b->along == Along::x, radial || b->along == Along::y, radial || b->along == Along::z, b->along == Along::rz, b->along == Along::ry};
+    return {b->along == Along::x, radial || b->along == Along::y, radial || b->along == Along::z,
+            b->along == Along::rz, b->along == Along::ry};
   }
-  if (const auto* b = std::get_if<model::SqueezeFilm>(&law)) return {false, b->stiffness > 0, b->stiffness > 0, false, false};
+  if (const auto* b = std::get_if<model::SqueezeFilm>(&law))
+    return {false, b->stiffness > 0, b->stiffness > 0, false, false};
   if (std::holds_alternative<model::BallBearing>(law)) return {true, true, true, true, true};
   if (std::holds_alternative<model::RollerBearing>(law)) return {false, true, true, true, true};
-  if (const auto* b = std::get_if<model::Coupling>(&law)) return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
-  if (const auto* b = std::get_if<model::GearPair>(&law)) return {b->helix != 0, false, false, false, false};
+  if (const auto* b = std::get_if<model::Coupling>(&law))
+    return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
+  if (const auto* b = std::get_if<model::GearPair>(&law))
+    return {b->helix != 0, false, false, false, false};
   if (std::holds_alternative<model::CrossCoupling>(law)) return {};
   return {false, true, true, false, false};
 }
@@ -63,7 +79,8 @@ std::vector<Restraint> restraints(const model::Model& m) {
   };
   for (const auto& b : m.bearings)
     if (!b.to) apply(b.at, held_by(b.law));
-  // a bearing to another shaft holds as far as that shaft is held there; whole chains settle in as many passes
+  // a bearing to another shaft holds as far as that shaft is held there; whole chains settle in as
+  // many passes
   for (std::size_t pass = 0; pass < m.shafts.size(); ++pass)
     for (const auto& b : m.bearings) {
       if (!b.to) continue;
@@ -73,7 +90,8 @@ std::vector<Restraint> restraints(const model::Model& m) {
         std::array<bool, 5> held = held_by(b.law);
         held[0] = held[0] && other.axial;
         for (std::size_t k = 0; k < 2; ++k) {
-          const bool fixed = other.lateral(static_cast<int>(k)) && other.tilting(static_cast<int>(k));
+          const bool fixed =
+              other.lateral(static_cast<int>(k)) && other.tilting(static_cast<int>(k));
           held[1 + k] = held[1 + k] && fixed;
           held[3 + k] = held[3 + k] && fixed;
         }
@@ -85,7 +103,8 @@ std::vector<Restraint> restraints(const model::Model& m) {
 
 bool starts_static(const model::Step& s) {
   if (std::holds_alternative<model::StaticStep>(s.law)) return true;
-  if (const auto* t = std::get_if<model::TransientStep>(&s.law)) return s.from.empty() && t->start == model::TransientStep::Start::static_equilibrium;
+  if (const auto* t = std::get_if<model::TransientStep>(&s.law))
+    return s.from.empty() && t->start == model::TransientStep::Start::static_equilibrium;
   return false;
 }
 
@@ -95,27 +114,43 @@ void check_restraint(const model::Model& m, Problems& out) {
   const auto r = restraints(m);
   for (std::size_t k = 0; k < m.shafts.size(); ++k) {
     const auto say = [&](const char* motion, const char* hint) {
-      add(out, "E32", fmt::format("nothing resists {} of shaft '{}', but step '{}' needs a static equilibrium", motion, m.shafts[k].name, needs->name), hint, m.shafts[k].where);
+      add(out, "E32",
+          fmt::format("nothing resists {} of shaft '{}', but step '{}' needs a static equilibrium",
+                      motion, m.shafts[k].name, needs->name),
+          hint, m.shafts[k].where);
     };
-    if (!r[k].axial) say("axial motion", "give a bearing kxx, or add one of type \"rigid\" with directions = [\"x\"]; or start from rest");
+    if (!r[k].axial)
+      say("axial motion",
+          "give a bearing kxx, or add one of type \"rigid\" with directions = [\"x\"]; or start "
+          "from rest");
     for (int a = 0; a < 2; ++a) {
       const char* axis = a == 0 ? "y" : "z";
-      if (!r[k].lateral(a)) say(a == 0 ? "motion along y" : "motion along z", a == 0 ? "a bearing with kyy is missing" : "a bearing with kzz is missing");
-      else if (!r[k].tilting(a)) say(a == 0 ? "tilting in the x-y plane" : "tilting in the x-z plane", fmt::format("it is held along {} at one place only: a second bearing or a tilting stiffness is missing", axis).c_str());
+      if (!r[k].lateral(a))
+        say(a == 0 ? "motion along y" : "motion along z",
+            a == 0 ? "a bearing with kyy is missing" : "a bearing with kzz is missing");
+      else if (!r[k].tilting(a))
+        say(a == 0 ? "tilting in the x-y plane" : "tilting in the x-z plane",
+            fmt::format("it is held along {} at one place only: a second bearing or a tilting "
+                        "stiffness is missing",
+                        axis)
+                .c_str());
     }
   }
 }
 
 /// Prescribed spin of a shaft in a step (null: none).
-const model::PrescribedSpin* prescribed(const model::Model& m, std::size_t shaft, const model::Step* s) {
+const model::PrescribedSpin* prescribed(const model::Model& m, std::size_t shaft,
+                                        const model::Step* s) {
   for (const auto& d : m.drives)
     if (d.at.shaft == shaft && (d.step.empty() || (s && d.step == s->name)))
       if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law); p && p->angle) return p;
   return nullptr;
 }
 
-/// Spin of a shaft, rad/s, where a step without a state to start from begins. own: speed of the reference the step gives.
-double spin_at_start(const model::Model& m, const model::Step& s, std::size_t shaft, std::optional<double> own) {
+/// Spin of a shaft, rad/s, where a step without a state to start from begins. own: speed of the
+/// reference the step gives.
+double spin_at_start(const model::Model& m, const model::Step& s, std::size_t shaft,
+                     std::optional<double> own) {
   if (!m.shafts[shaft].rotating) return 0.0;
   if (own) return *own * m.shafts[shaft].speed_ratio;
   const auto* p = prescribed(m, shaft, &s);
@@ -123,32 +158,39 @@ double spin_at_start(const model::Model& m, const model::Step& s, std::size_t sh
 }
 
 /// Speeds a step goes through: least and largest of the reference shaft, or nothing.
-std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const model::Step& s, std::size_t shaft) {
+std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const model::Step& s,
+                                                   std::size_t shaft) {
   const double ratio = m.shafts[shaft].speed_ratio;
   const auto range = [&](const model::SpeedRange& r) {
-    const double a = r.values.empty() ? r.start : r.values.front(), b = r.values.empty() ? r.stop : r.values.back();
+    const double a = r.values.empty() ? r.start : r.values.front(),
+                 b = r.values.empty() ? r.stop : r.values.back();
     return std::pair(std::min(a * ratio, b * ratio), std::max(a * ratio, b * ratio));
   };
   if (const auto* x = std::get_if<model::StaticStep>(&s.law)) {
     if (x->speeds) return range(*x->speeds);
-    if (!s.from.empty() && !x->own_speed()) return std::nullopt;   // that of the step it starts from
+    if (!s.from.empty() && !x->own_speed()) return std::nullopt;  // that of the step it starts from
     const double spin = spin_at_start(m, s, shaft, x->own_speed());
     return std::pair(spin, spin);
   }
-  if (const auto* x = std::get_if<model::ModalStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::ModalStep>(&s.law))
+    return std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) return range(x->speed);
   if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) return range(x->speed);
   if (const auto* x = std::get_if<model::StabilityStep>(&s.law)) return range(x->speed);
-  if (const auto* x = std::get_if<model::HarmonicStep>(&s.law)) return x->speeds ? range(*x->speeds) : std::pair(x->speed * ratio, x->speed * ratio);
-  if (const auto* x = std::get_if<model::BucklingStep>(&s.law)) return std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::HarmonicStep>(&s.law))
+    return x->speeds ? range(*x->speeds) : std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::BucklingStep>(&s.law))
+    return std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {
     for (const auto& d : m.drives) {
       const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
       if (!p || !p->angle || d.at.shaft != shaft || (!d.step.empty() && d.step != s.name)) continue;
-      // a law is smooth between its breakpoints; 1000 samples find its extremes well enough for a check
+      // a law is smooth between its breakpoints; 1000 samples find its extremes well enough for a
+      // check
       double low = infinity, high = -infinity;
       std::vector<double> t = p->angle->breakpoints();
-      for (int i = 0; i <= 1000; ++i) t.push_back(x->duration * i / 1000);
+      for (int i = 0; i <= 1000; ++i)
+        t.push_back(x->duration * i / 1000);
       for (double ti : t) {
         if (ti < 0 || ti > x->duration) continue;
         const double w = p->angle->at(ti).df;
@@ -161,23 +203,26 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
     const double start = spin_at_start(m, s, shaft, x->own_speed());
     if (s.from.empty() && x->previous.empty()) return std::pair(start, start);
   }
-  return {};   // critical speeds look inside the table only
+  return {};  // critical speeds look inside the table only
 }
 
 std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
 
 /// Frequencies of excitation of a step, rad/s: least and largest, or nothing.
-std::optional<std::pair<double, double>> frequencies_of(const model::Model& m, const model::Step& s) {
+std::optional<std::pair<double, double>> frequencies_of(const model::Model& m,
+                                                        const model::Step& s) {
   const auto speeds = [](const model::SpeedRange& r, double order) {
-    const double a = order * std::abs(r.values.empty() ? r.start : r.values.front()), b = order * std::abs(r.values.empty() ? r.stop : r.values.back());
+    const double a = order * std::abs(r.values.empty() ? r.start : r.values.front()),
+                 b = order * std::abs(r.values.empty() ? r.stop : r.values.back());
     return std::pair(std::min(a, b), std::max(a, b));
   };
   if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) {
-    std::pair<double, double> all{infinity, 0.0};   // of all shafts that turn
+    std::pair<double, double> all{infinity, 0.0};  // of all shafts that turn
     for (const auto& shaft : m.shafts) {
       if (!shaft.rotating || shaft.speed_ratio == 0) continue;
       const auto own = speeds(x->speed, std::abs(shaft.speed_ratio));
-      if (own.first > 0 || own.second > 0) all = {std::min(all.first, own.first), std::max(all.second, own.second)};
+      if (own.first > 0 || own.second > 0)
+        all = {std::min(all.first, own.first), std::max(all.second, own.second)};
     }
     return all.second > 0 ? std::optional(all) : std::nullopt;
   }
@@ -185,42 +230,62 @@ std::optional<std::pair<double, double>> frequencies_of(const model::Model& m, c
     if (x->speeds) return speeds(*x->speeds, x->order);
     if (!x->frequency) return std::nullopt;
     const auto& f = *x->frequency;
-    return f.values.empty() ? std::pair(f.start, f.stop) : std::pair(f.values.front(), f.values.back());
+    return f.values.empty() ? std::pair(f.start, f.stop)
+                            : std::pair(f.values.front(), f.values.back());
   }
   return std::nullopt;
 }
 
-/// A shaft whose bending stiffnesses differ by more than rounding of its data turns its matrices with it.
+/// A shaft whose bending stiffnesses differ by more than rounding of its data turns its matrices
+/// with it.
 bool turns_with_stiffness(const model::Shaft& s) {
   constexpr double share = 0.02;
   if (!s.rotating || s.speed_ratio == 0) return false;
-  return std::any_of(s.sections.begin(), s.sections.end(), [](const model::Section& x) { return x.general && std::abs(x.general->Iy - x.general->Iz) > share * std::max(x.general->Iy, x.general->Iz); });
+  return std::any_of(s.sections.begin(), s.sections.end(), [](const model::Section& x) {
+    return x.general &&
+           std::abs(x.general->Iy - x.general->Iz) > share * std::max(x.general->Iy, x.general->Iz);
+  });
 }
 
-/// A law has one value from 0 to `duration`, s: looked at where it may change and 1000 times between.
+/// A law has one value from 0 to `duration`, s: looked at where it may change and 1000 times
+/// between.
 bool is_constant(const Law& law, double duration) {
   std::vector<double> times = law.breakpoints();
-  for (int i = 0; i <= 1000; ++i) times.push_back(duration * i / 1000);
+  for (int i = 0; i <= 1000; ++i)
+    times.push_back(duration * i / 1000);
   const double first = law.at(0.0).f;
-  return std::none_of(times.begin(), times.end(), [&](double t) { return t >= 0 && t <= duration && std::abs(law.at(t).f - first) > 1e-9 * std::abs(first); });
+  return std::none_of(times.begin(), times.end(), [&](double t) {
+    return t >= 0 && t <= duration && std::abs(law.at(t).f - first) > 1e-9 * std::abs(first);
+  });
 }
 
 void check_linear(const model::Model& m, Problems& out) {
   for (const auto& s : m.steps) {
     const auto* t = std::get_if<model::TransientStep>(&s.law);
     if (!t || !t->linear) continue;
-    const auto say = [&](std::string what, const char* hint) { add(out, "E39", fmt::format("step '{}' is linear, but {}", s.name, what), hint, s.where); };
+    const auto say = [&](std::string what, const char* hint) {
+      add(out, "E39", fmt::format("step '{}' is linear, but {}", s.name, what), hint, s.where);
+    };
     for (const auto& shaft : m.shafts)
-      if (turns_with_stiffness(shaft)) say(fmt::format("the stiffness of shaft '{}' turns with it", shaft.name), "leave linear out of the step");
+      if (turns_with_stiffness(shaft))
+        say(fmt::format("the stiffness of shaft '{}' turns with it", shaft.name),
+            "leave linear out of the step");
     if (m.base.turn && m.base.turn->rate && !is_constant(*m.base.turn->rate, t->duration))
-      say("the base turns at a rate that changes, and the matrices with it", "a constant rate, or leave linear out");
-    if (t->integrator.method == "momentum_rk") say("momentum_rk integrates the general motion of rigid bodies", "another method, or linear = false");
+      say("the base turns at a rate that changes, and the matrices with it",
+          "a constant rate, or leave linear out");
+    if (t->integrator.method == "momentum_rk")
+      say("momentum_rk integrates the general motion of rigid bodies",
+          "another method, or linear = false");
     for (const auto& d : m.drives) {
       if (!d.step.empty() && d.step != s.name) continue;
       if (std::holds_alternative<model::TorqueCurve>(d.law)) {
-        say(fmt::format("drive '{}' is a torque: it changes the speed", d.name), "give it another step, or leave linear out");
-      } else if (const auto range = speeds_of(m, s, d.at.shaft); range && range->second - range->first > 1e-9 * std::max(std::abs(range->first), std::abs(range->second))) {
-        say(fmt::format("drive '{}' changes the speed from {} to {}", d.name, units::display(range->first, "rpm"), units::display(range->second, "rpm")),
+        say(fmt::format("drive '{}' is a torque: it changes the speed", d.name),
+            "give it another step, or leave linear out");
+      } else if (const auto range = speeds_of(m, s, d.at.shaft);
+                 range && range->second - range->first >
+                              1e-9 * std::max(std::abs(range->first), std::abs(range->second))) {
+        say(fmt::format("drive '{}' changes the speed from {} to {}", d.name,
+                        units::display(range->first, "rpm"), units::display(range->second, "rpm")),
             "a constant speed, or leave linear out");
       }
     }
@@ -232,10 +297,17 @@ void check_maps(const model::Model& m, Problems& out) {
     const auto* map = std::get_if<model::CriticalMapStep>(&s.law);
     if (!map) continue;
     for (const std::string& name : map->bearings)
-      if (std::none_of(m.bearings.begin(), m.bearings.end(), [&](const model::Bearing& b) { return b.name == name; }))
-        add(out, "E80", fmt::format("step '{}' names bearing '{}', which the deck does not have", s.name, name), "", s.where);
-    const bool any = std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) { return !std::holds_alternative<model::RigidSupport>(b.law) && !b.to; });
-    if (map->bearings.empty() && !any) add(out, "E80", fmt::format("step '{}' has no bearing to vary: all are rigid", s.name), "give the bearing a stiffness (type \"linear\")", s.where);
+      if (std::none_of(m.bearings.begin(), m.bearings.end(),
+                       [&](const model::Bearing& b) { return b.name == name; }))
+        add(out, "E80",
+            fmt::format("step '{}' names bearing '{}', which the deck does not have", s.name, name),
+            "", s.where);
+    const bool any = std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) {
+      return !std::holds_alternative<model::RigidSupport>(b.law) && !b.to;
+    });
+    if (map->bearings.empty() && !any)
+      add(out, "E80", fmt::format("step '{}' has no bearing to vary: all are rigid", s.name),
+          "give the bearing a stiffness (type \"linear\")", s.where);
   }
 }
 
@@ -245,23 +317,37 @@ void check_tables(const model::Model& m, Problems& out) {
     if (!table || table->speed.empty()) continue;
     for (const auto& s : m.steps)
       if (!table->frequency.empty() && std::holds_alternative<model::TransientStep>(s.law))
-        add(out, "W03", fmt::format("the table of bearing '{}' depends on frequency: step '{}' is a motion in time and takes its values at the frequency of the spin", b.name, s.name),
-            "true for synchronous motion; a motion at another frequency (subsynchronous whirl) sees other coefficients", b.where, Diagnostic::Severity::warning);
+        add(out, "W03",
+            fmt::format("the table of bearing '{}' depends on frequency: step '{}' is a motion in "
+                        "time and takes its values at the frequency of the spin",
+                        b.name, s.name),
+            "true for synchronous motion; a motion at another frequency (subsynchronous whirl) "
+            "sees other coefficients",
+            b.where, Diagnostic::Severity::warning);
     if (table->extrapolate_hold) continue;
     for (const auto& s : m.steps) {
       if (const auto w = frequencies_of(m, s); w && !table->frequency.empty()) {
         const double least = table->frequency.front(), most = table->frequency.back();
         if (w->first < least - 1e-9 * most || w->second > most + 1e-9 * most)
-          add(out, "E22", fmt::format("the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}", b.name, hertz(least), hertz(most), s.name, hertz(w->first), hertz(w->second)),
+          add(out, "E22",
+              fmt::format(
+                  "the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}",
+                  b.name, hertz(least), hertz(most), s.name, hertz(w->first), hertz(w->second)),
               "extend the table, narrow the step, or write extrapolate = \"hold\"", b.where);
       }
       const auto range = speeds_of(m, s, b.at.shaft);
       if (!range) continue;
       // rounding of rpm to rad/s and back
-      const double slack = 1e-9 * std::max(std::abs(table->speed.front()), std::abs(table->speed.back()));
-      if (range->first < table->speed.front() - slack || range->second > table->speed.back() + slack)
-        add(out, "E22", fmt::format("the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}", b.name, units::display(table->speed.front(), "rpm"), units::display(table->speed.back(), "rpm"), s.name,
-                                    units::display(range->first, "rpm"), units::display(range->second, "rpm")),
+      const double slack =
+          1e-9 * std::max(std::abs(table->speed.front()), std::abs(table->speed.back()));
+      if (range->first < table->speed.front() - slack ||
+          range->second > table->speed.back() + slack)
+        add(out, "E22",
+            fmt::format(
+                "the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}",
+                b.name, units::display(table->speed.front(), "rpm"),
+                units::display(table->speed.back(), "rpm"), s.name,
+                units::display(range->first, "rpm"), units::display(range->second, "rpm")),
             "extend the table, narrow the step, or write extrapolate = \"hold\"", b.where);
     }
   }
@@ -271,24 +357,35 @@ void check_drives(const model::Model& m, Problems& out) {
   for (std::size_t i = 0; i < m.drives.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const auto &a = m.drives[j], &b = m.drives[i];
-      const bool both = std::holds_alternative<model::PrescribedSpin>(a.law) && std::holds_alternative<model::PrescribedSpin>(b.law);
-      if (both && a.at.shaft == b.at.shaft && a.at.s == b.at.s && (a.step.empty() || b.step.empty() || a.step == b.step))
-        add(out, "E26", fmt::format("drives '{}' and '{}' both prescribe the spin of one station", a.name, b.name), "keep one of the two, or give them different steps", b.where);
+      const bool both = std::holds_alternative<model::PrescribedSpin>(a.law) &&
+                        std::holds_alternative<model::PrescribedSpin>(b.law);
+      if (both && a.at.shaft == b.at.shaft && a.at.s == b.at.s &&
+          (a.step.empty() || b.step.empty() || a.step == b.step))
+        add(out, "E26",
+            fmt::format("drives '{}' and '{}' both prescribe the spin of one station", a.name,
+                        b.name),
+            "keep one of the two, or give them different steps", b.where);
     }
 }
 
-/// A transient begins at the speed its drives prescribe: another one given for it contradicts. (Where it goes on from another step the run says
-/// what jumps.)
+/// A transient begins at the speed its drives prescribe: another one given for it contradicts.
+/// (Where it goes on from another step the run says what jumps.)
 void check_start_speeds(const model::Model& m, Problems& out) {
   for (const auto& s : m.steps) {
     const auto* t = std::get_if<model::TransientStep>(&s.law);
     if (!t || !t->own_speed() || !s.from.empty() || !t->previous.empty()) continue;
     for (const auto& d : m.drives) {
       const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
-      if (!p || !p->angle || (!d.step.empty() && d.step != s.name) || !m.shafts[d.at.shaft].rotating) continue;
-      const double driven = p->angle->at(0.0).df, wanted = *t->own_speed() * m.shafts[d.at.shaft].speed_ratio;
-      if (std::abs(driven - wanted) <= 1e-6 * std::max(std::abs(driven), std::abs(wanted))) continue;
-      add(out, "E26", fmt::format("step '{}' begins at {}, but drive '{}' prescribes {} at time 0", s.name, units::display(wanted, "rpm"), d.name, units::display(driven, "rpm")),
+      if (!p || !p->angle || (!d.step.empty() && d.step != s.name) ||
+          !m.shafts[d.at.shaft].rotating)
+        continue;
+      const double driven = p->angle->at(0.0).df,
+                   wanted = *t->own_speed() * m.shafts[d.at.shaft].speed_ratio;
+      if (std::abs(driven - wanted) <= 1e-6 * std::max(std::abs(driven), std::abs(wanted)))
+        continue;
+      add(out, "E26",
+          fmt::format("step '{}' begins at {}, but drive '{}' prescribes {} at time 0", s.name,
+                      units::display(wanted, "rpm"), d.name, units::display(driven, "rpm")),
           "leave initial_speed out, or let the drive's law begin at it", d.where);
     }
   }
@@ -301,30 +398,54 @@ void check_speeds_of_pairs(const model::Model& m, Problems& out) {
     if ((!g && !std::holds_alternative<model::Coupling>(b.law)) || !b.to) continue;
     const auto &here = m.shafts[b.at.shaft], &there = m.shafts[b.to->shaft];
     const double ratio = g ? -static_cast<double>(g->teeth) / g->other_teeth : 1.0;
-    const auto wrong = [ratio](double a, double c) { return std::abs(c - ratio * a) > 1e-6 * std::max(std::abs(c), std::abs(ratio * a)); };
-    const std::string gears = g ? fmt::format("gear pair '{}' ({} and {} teeth) turns shaft '{}' at {:.6g} times the speed of '{}'", b.name, g->teeth, g->other_teeth, there.name, ratio, here.name)
-                                : fmt::format("coupling '{}' turns shaft '{}' at the speed of '{}'", b.name, there.name, here.name);
+    const auto wrong = [ratio](double a, double c) {
+      return std::abs(c - ratio * a) > 1e-6 * std::max(std::abs(c), std::abs(ratio * a));
+    };
+    const std::string gears =
+        g ? fmt::format(
+                "gear pair '{}' ({} and {} teeth) turns shaft '{}' at {:.6g} times the speed of "
+                "'{}'",
+                b.name, g->teeth, g->other_teeth, there.name, ratio, here.name)
+          : fmt::format("coupling '{}' turns shaft '{}' at the speed of '{}'", b.name, there.name,
+                        here.name);
     if (!here.rotating || !there.rotating) {
-      add(out, "E37", fmt::format("{} '{}' turns with its shafts, but shaft '{}' does not rotate", g ? "gear pair" : "coupling", b.name, here.rotating ? there.name : here.name),
-          "rotating = true for that shaft, or a bearing of type \"linear\" between the two", b.where);
+      add(out, "E37",
+          fmt::format("{} '{}' turns with its shafts, but shaft '{}' does not rotate",
+                      g ? "gear pair" : "coupling", b.name, here.rotating ? there.name : here.name),
+          "rotating = true for that shaft, or a bearing of type \"linear\" between the two",
+          b.where);
       continue;
     }
     if (wrong(here.speed_ratio, there.speed_ratio))
-      add(out, "E37", fmt::format("{}, but their speed_ratio are {:.6g} and {:.6g}", gears, there.speed_ratio, here.speed_ratio),
-          fmt::format("speed_ratio = {:.10g} for shaft '{}'", ratio * here.speed_ratio + 0.0, there.name), there.where);
+      add(out, "E37",
+          fmt::format("{}, but their speed_ratio are {:.6g} and {:.6g}", gears, there.speed_ratio,
+                      here.speed_ratio),
+          fmt::format("speed_ratio = {:.10g} for shaft '{}'", ratio * here.speed_ratio + 0.0,
+                      there.name),
+          there.where);
     else if (wrong(here.spin0, there.spin0))
-      add(out, "E37", fmt::format("{}, but their initial_spin are {} and {}", gears, units::display(there.spin0, "rpm"), units::display(here.spin0, "rpm")),
-          fmt::format("initial_spin = \"{}\" for shaft '{}'", units::display(ratio * here.spin0 + 0.0, "rpm"), there.name), there.where);
+      add(out, "E37",
+          fmt::format("{}, but their initial_spin are {} and {}", gears,
+                      units::display(there.spin0, "rpm"), units::display(here.spin0, "rpm")),
+          fmt::format("initial_spin = \"{}\" for shaft '{}'",
+                      units::display(ratio * here.spin0 + 0.0, "rpm"), there.name),
+          there.where);
     for (const auto& s : m.steps) {
       const auto* t = std::get_if<model::TransientStep>(&s.law);
       const auto *p = prescribed(m, b.at.shaft, &s), *q = prescribed(m, b.to->shaft, &s);
       if (!t || !p || !q) continue;
       bool said = false;
-      for (int i = 0; i <= 200 && !said; ++i) {   // enough to see a law that does not follow the other
-        const double time = t->duration * i / 200, a = p->angle->at(time).df, c = q->angle->at(time).df;
+      for (int i = 0; i <= 200 && !said;
+           ++i) {  // enough to see a law that does not follow the other
+        const double time = t->duration * i / 200, a = p->angle->at(time).df,
+                     c = q->angle->at(time).df;
         if (!wrong(a, c)) continue;
-        add(out, "E37", fmt::format("{}, but the drives of step '{}' prescribe {} and {} at {:.4g} s", gears, s.name, units::display(c, "rpm"), units::display(a, "rpm"), time),
-            g ? "prescribe the speed of one of the two: the other follows through the mesh" : "prescribe the speed of one of the two: the other follows", b.where);
+        add(out, "E37",
+            fmt::format("{}, but the drives of step '{}' prescribe {} and {} at {:.4g} s", gears,
+                        s.name, units::display(c, "rpm"), units::display(a, "rpm"), time),
+            g ? "prescribe the speed of one of the two: the other follows through the mesh"
+              : "prescribe the speed of one of the two: the other follows",
+            b.where);
         said = true;
       }
     }
@@ -333,17 +454,23 @@ void check_speeds_of_pairs(const model::Model& m, Problems& out) {
 
 void check_places(const model::Model& m, Problems& out) {
   const auto on_shaft = [&](const model::Location& at, const char* what) {
-    if (at.housing >= 0) add(out, "E26", fmt::format("a {} cannot stand on the support of a bearing", what), "only probes and loads can", at.where);
+    if (at.housing >= 0)
+      add(out, "E26", fmt::format("a {} cannot stand on the support of a bearing", what),
+          "only probes and loads can", at.where);
   };
-  for (const auto& d : m.disks) on_shaft(d.at, "disk");
+  for (const auto& d : m.disks)
+    on_shaft(d.at, "disk");
   for (const auto& u : m.unbalances) {
     on_shaft(u.at, "unbalance");
     if (!u.to) continue;
     on_shaft(*u.to, "unbalance");
     if (u.to->shaft != u.at.shaft || !(u.to->s > u.at.s))
-      add(out, "E26", "the end of an unbalance lies on another shaft or not to the right of its beginning", "'to' is a place further right on the shaft of 'at'", u.to->where);
+      add(out, "E26",
+          "the end of an unbalance lies on another shaft or not to the right of its beginning",
+          "'to' is a place further right on the shaft of 'at'", u.to->where);
   }
-  for (const auto& d : m.drives) on_shaft(d.at, "drive");
+  for (const auto& d : m.drives)
+    on_shaft(d.at, "drive");
   for (const auto& b : m.bearings) {
     on_shaft(b.at, "bearing");
     if (!b.to) continue;
@@ -351,15 +478,26 @@ void check_places(const model::Model& m, Problems& out) {
     // forces on both sides are taken to meet in one point (gears: in one plane)
     const bool gears = std::holds_alternative<model::GearPair>(b.law);
     if (b.at.housing >= 0 || b.to->housing >= 0) continue;
-    const Vec3 apart = m.shafts[b.to->shaft].position(b.to->s) - m.shafts[b.at.shaft].position(b.at.s);
+    const Vec3 apart =
+        m.shafts[b.to->shaft].position(b.to->s) - m.shafts[b.at.shaft].position(b.at.s);
     const double along = std::abs(apart.x()), across = gears ? 0.0 : apart.tail<2>().norm();
     if (along > 1e-3)
-      add(out, "W05", fmt::format("the two places of '{}' are {:.5g} mm apart along x: its forces on both shafts are not in line, and their couple is missing", b.name, 1e3 * along),
-          "check the origins of the shafts and the two places; a spacer is a section of one of the shafts", b.where, Diagnostic::Severity::warning);
+      add(out, "W05",
+          fmt::format("the two places of '{}' are {:.5g} mm apart along x: its forces on both "
+                      "shafts are not in line, and their couple is missing",
+                      b.name, 1e3 * along),
+          "check the origins of the shafts and the two places; a spacer is a section of one of the "
+          "shafts",
+          b.where, Diagnostic::Severity::warning);
     if (across > 1e-6)
-      add(out, "W05", fmt::format("the two places of '{}' are {:.5g} mm apart across the shafts: that distance has no effect", b.name, 1e3 * across),
-          std::holds_alternative<model::Coupling>(b.law) ? "a misalignment is given by offset_y, offset_z, angle_y, angle_z" : "a set point of the springs is given by 'setpoint'", b.where,
-          Diagnostic::Severity::warning);
+      add(out, "W05",
+          fmt::format("the two places of '{}' are {:.5g} mm apart across the shafts: that distance "
+                      "has no effect",
+                      b.name, 1e3 * across),
+          std::holds_alternative<model::Coupling>(b.law)
+              ? "a misalignment is given by offset_y, offset_z, angle_y, angle_z"
+              : "a set point of the springs is given by 'setpoint'",
+          b.where, Diagnostic::Severity::warning);
   }
 }
 
@@ -368,9 +506,14 @@ bool twists(const model::StepLaw& law) {
   return std::visit(
       [](const auto& s) {
         using T = std::decay_t<decltype(s)>;
-        if constexpr (std::is_same_v<T, model::StaticStep> || std::is_same_v<T, model::TransientStep> || std::is_same_v<T, model::CriticalMapStep>) return false;
-        else if constexpr (requires { s.motion; }) return s.motion == model::MotionKind::all || s.motion == model::MotionKind::torsional;
-        else return true;
+        if constexpr (std::is_same_v<T, model::StaticStep> ||
+                      std::is_same_v<T, model::TransientStep> ||
+                      std::is_same_v<T, model::CriticalMapStep>)
+          return false;
+        else if constexpr (requires { s.motion; })
+          return s.motion == model::MotionKind::all || s.motion == model::MotionKind::torsional;
+        else
+          return true;
       },
       law);
 }
@@ -381,11 +524,16 @@ void check_clamps(const model::Model& m, Problems& out) {
     if (!std::holds_alternative<model::PrescribedSpin>(d.law)) continue;
     std::string steps;
     for (const auto& s : m.steps)
-      if (twists(s.law) && (d.step.empty() || d.step == s.name)) steps += fmt::format("{}'{}'", steps.empty() ? "" : ", ", s.name);
+      if (twists(s.law) && (d.step.empty() || d.step == s.name))
+        steps += fmt::format("{}'{}'", steps.empty() ? "" : ", ", s.name);
     if (steps.empty()) continue;
-    add(out, "W06", fmt::format("drive '{}' holds the twist of shaft '{}' at {} in step{} {}: torsional motions are those of a shaft clamped there; the speed is that of the step",
-                                d.name, m.shafts[d.at.shaft].name, d.at.text, steps.find(',') == std::string::npos ? "" : "s", steps),
-        "name the transient step it drives (step = \"..\") to leave the shaft free in the others", d.where, Diagnostic::Severity::warning);
+    add(out, "W06",
+        fmt::format("drive '{}' holds the twist of shaft '{}' at {} in step{} {}: torsional "
+                    "motions are those of a shaft clamped there; the speed is that of the step",
+                    d.name, m.shafts[d.at.shaft].name, d.at.text,
+                    steps.find(',') == std::string::npos ? "" : "s", steps),
+        "name the transient step it drives (step = \"..\") to leave the shaft free in the others",
+        d.where, Diagnostic::Severity::warning);
   }
 }
 
@@ -400,23 +548,39 @@ void check_preloads(const model::Model& m, Problems& out) {
       if (b.to && b.to->shaft == k) places.insert(b.to->s);
     }
     if (places.size() > 1) continue;
-    add(out, "W02", fmt::format("axial_preload of shaft '{}' has no effect but its length: it relaxes, because nothing holds the shaft along its axis at two places", m.shafts[k].name),
-        "axial_force is a force that pulls at the ends and stays", m.shafts[k].where, Diagnostic::Severity::warning);
+    add(out, "W02",
+        fmt::format("axial_preload of shaft '{}' has no effect but its length: it relaxes, because "
+                    "nothing holds the shaft along its axis at two places",
+                    m.shafts[k].name),
+        "axial_force is a force that pulls at the ends and stays", m.shafts[k].where,
+        Diagnostic::Severity::warning);
   }
 }
 
 void check_effects(const model::Model& m, Problems& out) {
-  const bool transient = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) { return std::holds_alternative<model::TransientStep>(s.law); });
+  const bool transient = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
+    return std::holds_alternative<model::TransientStep>(s.law);
+  });
   const auto warn = [&](std::string what, const Where& w) {
-    add(out, "W02", fmt::format("{} without effect: the deck has no transient step", what), "", w, Diagnostic::Severity::warning);
+    add(out, "W02", fmt::format("{} without effect: the deck has no transient step", what), "", w,
+        Diagnostic::Severity::warning);
   };
   for (const auto& s : m.shafts) {
     if (transient && s.damping.loss_factor != 0 && s.damping.loss_frequency == 0)
-      add(out, "W02", fmt::format("internal_loss_factor of shaft '{}' has no effect on transient steps: hysteretic damping has no form in time", s.name),
-          "internal_loss_frequency = \"30 Hz\": viscous damping stands for it then that loses as much at this frequency, seen in rotating axes", s.where, Diagnostic::Severity::warning);
+      add(out, "W02",
+          fmt::format("internal_loss_factor of shaft '{}' has no effect on transient steps: "
+                      "hysteretic damping has no form in time",
+                      s.name),
+          "internal_loss_frequency = \"30 Hz\": viscous damping stands for it then that loses as "
+          "much at this frequency, seen in rotating axes",
+          s.where, Diagnostic::Severity::warning);
     for (const auto& x : s.sections)
-      if (x.temperature_rise != 0 && (x.constants || m.materials.empty() || m.materials.at(x.material).expansion == 0)) {
-        add(out, "W02", fmt::format("temperature_rise of section '{}' has no effect: {}", x.name, x.constants ? "its constants have no thermal expansion" : "its material has no 'expansion'"),
+      if (x.temperature_rise != 0 &&
+          (x.constants || m.materials.empty() || m.materials.at(x.material).expansion == 0)) {
+        add(out, "W02",
+            fmt::format("temperature_rise of section '{}' has no effect: {}", x.name,
+                        x.constants ? "its constants have no thermal expansion"
+                                    : "its material has no 'expansion'"),
             "expansion = \"12e-6 1/K\" for steel", x.where, Diagnostic::Severity::warning);
         break;
       }
@@ -424,8 +588,11 @@ void check_effects(const model::Model& m, Problems& out) {
   if (transient) return;
   if (!m.initial.empty()) warn("an initial motion", m.initial.front().where);
   const bool shapes = std::any_of(m.steps.begin(), m.steps.end(), [](const model::Step& s) {
-    return std::holds_alternative<model::StaticStep>(s.law) || std::holds_alternative<model::ModalStep>(s.law) || std::holds_alternative<model::CriticalStep>(s.law) ||
-           std::holds_alternative<model::UnbalanceStep>(s.law) || std::holds_alternative<model::HarmonicStep>(s.law) ||
+    return std::holds_alternative<model::StaticStep>(s.law) ||
+           std::holds_alternative<model::ModalStep>(s.law) ||
+           std::holds_alternative<model::CriticalStep>(s.law) ||
+           std::holds_alternative<model::UnbalanceStep>(s.law) ||
+           std::holds_alternative<model::HarmonicStep>(s.law) ||
            std::holds_alternative<model::BucklingStep>(s.law);
   });
   if (shapes) return;
@@ -435,8 +602,11 @@ void check_effects(const model::Model& m, Problems& out) {
 
 /// Supports that have no coefficients without their load.
 bool needs_its_load(const model::BearingLaw& law) {
-  if (std::holds_alternative<model::ShortJournal>(law) || std::holds_alternative<model::FiniteJournal>(law)) return true;
-  if (const auto* b = std::get_if<model::BallBearing>(&law)) return b->preload == 0 && b->clearance >= 0;
+  if (std::holds_alternative<model::ShortJournal>(law) ||
+      std::holds_alternative<model::FiniteJournal>(law))
+    return true;
+  if (const auto* b = std::get_if<model::BallBearing>(&law))
+    return b->preload == 0 && b->clearance >= 0;
   if (const auto* b = std::get_if<model::RollerBearing>(&law)) return b->clearance >= 0;
   return false;
 }
@@ -446,25 +616,44 @@ void check_undeformed(const model::Model& m, Problems& out) {
   for (const model::Step& s : m.steps) {
     const bool undeformed = std::visit(
         [](const auto& law) {
-          if constexpr (requires { law.about; }) return law.about == model::About::undeformed;
-          else return false;
+          if constexpr (requires { law.about; })
+            return law.about == model::About::undeformed;
+          else
+            return false;
         },
         s.law);
     if (!undeformed) continue;
     if (!s.from.empty())
-      add(out, "E26", fmt::format("step '{}' starts from step '{}', but is linearised about the undeformed rotor", s.name, s.from), "leave out 'from', or about = \"equilibrium\"", s.where);
-    if (const auto* stability = std::get_if<model::StabilityStep>(&s.law); stability && stability->map)
-      add(out, "E26", fmt::format("step '{}': a map of the stability over a parameter is about the equilibrium of each of its rotors", s.name), "leave out 'map', or about = \"equilibrium\"", s.where);
+      add(out, "E26",
+          fmt::format(
+              "step '{}' starts from step '{}', but is linearised about the undeformed rotor",
+              s.name, s.from),
+          "leave out 'from', or about = \"equilibrium\"", s.where);
+    if (const auto* stability = std::get_if<model::StabilityStep>(&s.law);
+        stability && stability->map)
+      add(out, "E26",
+          fmt::format("step '{}': a map of the stability over a parameter is about the equilibrium "
+                      "of each of its rotors",
+                      s.name),
+          "leave out 'map', or about = \"equilibrium\"", s.where);
     // a map puts its own stiffness in the place of the films it varies
     const auto* map = std::get_if<model::CriticalMapStep>(&s.law);
     const auto varied_film = [&](const model::Bearing& b) {
-      const bool film = std::holds_alternative<model::ShortJournal>(b.law) || std::holds_alternative<model::FiniteJournal>(b.law);
-      return map && film && (map->bearings.empty() ? !b.to : std::find(map->bearings.begin(), map->bearings.end(), b.name) != map->bearings.end());
+      const bool film = std::holds_alternative<model::ShortJournal>(b.law) ||
+                        std::holds_alternative<model::FiniteJournal>(b.law);
+      return map && film &&
+             (map->bearings.empty() ? !b.to
+                                    : std::find(map->bearings.begin(), map->bearings.end(),
+                                                b.name) != map->bearings.end());
     };
     for (const model::Bearing& b : m.bearings)
       if (needs_its_load(b.law) && !varied_film(b))
-        add(out, "E26", fmt::format("step '{}' is linearised about the undeformed rotor, where bearing '{}' carries no load: its stiffness is that of its load", s.name, b.name),
-            "about = \"equilibrium\", or a bearing of type \"linear\" or \"table\" in its place", s.where);
+        add(out, "E26",
+            fmt::format("step '{}' is linearised about the undeformed rotor, where bearing '{}' "
+                        "carries no load: its stiffness is that of its load",
+                        s.name, b.name),
+            "about = \"equilibrium\", or a bearing of type \"linear\" or \"table\" in its place",
+            s.where);
   }
 }
 
@@ -498,7 +687,9 @@ struct Interval {
   double length() const { return std::max(0.0, end - begin); }
 };
 
-Interval common(const Interval& a, double t0, double t1) { return {std::max(a.begin, t0), std::min(a.end, t1)}; }
+Interval common(const Interval& a, double t0, double t1) {
+  return {std::max(a.begin, t0), std::min(a.end, t1)};
+}
 
 /// When each transient step runs: one that starts from another goes on where that one ends.
 std::map<std::string, Interval> times_of_steps(const model::Model& m) {
@@ -517,7 +708,8 @@ double count_of_nodes(const model::Model& m) {
   for (const auto& s : m.shafts)
     for (const auto& x : s.sections) {
       const bool limited = std::isfinite(x.max_element_length);
-      const int parts = limited ? static_cast<int>(std::min(1e6, std::ceil(x.length / x.max_element_length))) : 1;
+      const int parts =
+          limited ? static_cast<int>(std::min(1e6, std::ceil(x.length / x.max_element_length))) : 1;
       sections += std::max(x.min_elements, parts);
     }
   return sections + static_cast<double>(m.shafts.size() + m.disks.size() + m.bearings.size());
@@ -525,7 +717,8 @@ double count_of_nodes(const model::Model& m) {
 
 double count_of_columns(const model::Model& m) {
   double columns = 2 + static_cast<double>(m.shafts.size());
-  for (const auto& p : m.probes) columns += p.angles.empty() ? 2 : static_cast<double>(p.angles.size());
+  for (const auto& p : m.probes)
+    columns += p.angles.empty() ? 2 : static_cast<double>(p.angles.size());
   return columns + 3.0 * static_cast<double>(m.bearings.size()) + 6;
 }
 
@@ -535,7 +728,8 @@ double bytes_of_pictures(const model::VtkOutput& o, const Interval& time, double
   if (o.every == 0 && o.frames_per_revolution > 0) frames = o.max_frames;
   frames = std::min<double>(frames, o.max_frames);
   const bool surface = std::find(o.content.begin(), o.content.end(), "surface") != o.content.end();
-  // a centre-line node carries some 20 doubles; a surface point 12 floats and its share of connectivity
+  // a centre-line node carries some 20 doubles; a surface point 12 floats and its share of
+  // connectivity
   return frames * (nodes * 160 + (surface ? nodes * o.points_around * 80 : 0) + 4000);
 }
 
@@ -552,7 +746,8 @@ OutputEstimate estimate_output(const model::Model& m) {
     const Interval& time = times.at(s.name);
     // the adaptive step is not known beforehand, so only a given interval can be judged
     const double every = m.output.every > 0 ? m.output.every : t->integrator.dt;
-    const double row = columns * ((m.output.csv ? csv_bytes : 0) + (m.output.binary ? binary_bytes : 0));
+    const double row =
+        columns * ((m.output.csv ? csv_bytes : 0) + (m.output.binary ? binary_bytes : 0));
     const double before = e.total();
     if (every > 0) e.histories += common(time, m.output.t0, m.output.t1).length() / every * row;
     for (const auto& o : m.output.vtk)
@@ -581,9 +776,11 @@ std::vector<Diagnostic> check_output(const model::Model& m, double available) {
   if (sure <= available) return {};
   Diagnostic d;
   d.code = "E33";
-  d.message = fmt::format("the output would take about {} (histories {}, pictures {}), but only {} are free", size_text(e.total()),
-                          size_text(e.histories), size_text(e.pictures), size_text(available));
-  d.hint = e.histories > e.pictures ? "write rows less often: output.every" : "ask for fewer frames or a window in [[output.vtk]]";
+  d.message = fmt::format(
+      "the output would take about {} (histories {}, pictures {}), but only {} are free",
+      size_text(e.total()), size_text(e.histories), size_text(e.pictures), size_text(available));
+  d.hint = e.histories > e.pictures ? "write rows less often: output.every"
+                                    : "ask for fewer frames or a window in [[output.vtk]]";
   d.where = e.where;
   return {d};
 }

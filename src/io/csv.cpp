@@ -49,7 +49,9 @@ std::string header_line(std::span<const Channel> channels) {
 class CsvSeries final : public TimeSeries {
  public:
   CsvSeries(fs::path file, SeriesOptions options)
-      : path_(std::move(file)), options_(options), out_(options.buffer_bytes) {}
+      : path_(std::move(file)),
+        options_(options),
+        out_(options.buffer_bytes) {}
 
   void begin(std::span<const Channel> channels) override {
     prepare(channels);
@@ -115,7 +117,8 @@ class CsvSeries final : public TimeSeries {
   }
   void prepare(std::span<const Channel> channels) {
     scale_.clear();
-    for (const auto& c : channels) scale_.insert(scale_.end(), c.width(), c.scale);
+    for (const auto& c : channels)
+      scale_.insert(scale_.end(), c.width(), c.scale);
     if (scale_.empty()) throw std::logic_error("TimeSeries: no channels");
     flush_every_ = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
         std::chrono::duration<double>(options_.flush_seconds));
@@ -130,21 +133,29 @@ class CsvSeries final : public TimeSeries {
   std::chrono::steady_clock::duration flush_every_{};
 };
 
-// Splits one record that starts at `at` into cells; returns the position after its newline, or npos when the record
-// has no newline yet.
+// Splits one record that starts at `at` into cells; returns the position after its newline, or npos
+// when the record has no newline yet.
 std::size_t read_record(const std::string& text, std::size_t at, std::vector<std::string>& cells) {
   cells.assign(1, {});
   bool in_quotes = false;
   for (; at < text.size(); ++at) {
     const char c = text[at];
     if (in_quotes) {
-      if (c != '"') cells.back() += c;
-      else if (at + 1 < text.size() && text[at + 1] == '"') { cells.back() += '"'; ++at; }
-      else in_quotes = false;
-    } else if (c == '"') in_quotes = true;
-    else if (c == ',') cells.emplace_back();
-    else if (c == '\n') return at + 1;
-    else if (c != '\r') cells.back() += c;
+      if (c != '"')
+        cells.back() += c;
+      else if (at + 1 < text.size() && text[at + 1] == '"') {
+        cells.back() += '"';
+        ++at;
+      } else
+        in_quotes = false;
+    } else if (c == '"')
+      in_quotes = true;
+    else if (c == ',')
+      cells.emplace_back();
+    else if (c == '\n')
+      return at + 1;
+    else if (c != '\r')
+      cells.back() += c;
   }
   return std::string::npos;
 }
@@ -160,7 +171,8 @@ double number(const std::string& cell) {
 
 std::size_t row_width(std::span<const Channel> channels) {
   std::size_t n = 0;
-  for (const auto& c : channels) n += c.width();
+  for (const auto& c : channels)
+    n += c.width();
   return n;
 }
 
@@ -171,7 +183,11 @@ TimeSeriesPtr make_plain_csv_series(fs::path file, SeriesOptions options) {
 const std::vector<double>& Columns::operator[](std::string_view name) const {
   for (std::size_t k = 0; k < names.size(); ++k)
     if (names[k] == name) return values[k];
-  throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", "no column '" + std::string(name) + "'", {}, Where{}});
+  throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error,
+                                   "E91",
+                                   "no column '" + std::string(name) + "'",
+                                   {},
+                                   Where{}});
 }
 
 Columns read_csv(const fs::path& file) {
@@ -188,8 +204,10 @@ Columns read_csv(const fs::path& file) {
   }
   c.values.resize(c.names.size());
   while ((at = read_record(text, at, cells)) != std::string::npos) {
-    if (cells.size() != c.names.size()) io_failure(file, "a row with " + std::to_string(cells.size()) + " cells in");
-    for (std::size_t k = 0; k < cells.size(); ++k) c.values[k].push_back(number(cells[k]));
+    if (cells.size() != c.names.size())
+      io_failure(file, "a row with " + std::to_string(cells.size()) + " cells in");
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      c.values[k].push_back(number(cells[k]));
   }
   return c;
 }
@@ -208,8 +226,10 @@ void write_csv(const fs::path& file, const Table& table) {
   for (const auto& row : table.rows) {
     for (std::size_t k = 0; k < row.size(); ++k) {
       if (k) s += ',';
-      if (row[k].is_text) s += csv_text(row[k].text);
-      else s.append(buffer, put(buffer, row[k].number));
+      if (row[k].is_text)
+        s += csv_text(row[k].text);
+      else
+        s.append(buffer, put(buffer, row[k].number));
     }
     s += '\n';
   }

@@ -26,7 +26,8 @@ void io_failure(const fs::path& file, const std::string& what, int error_number)
   std::string hint;
   if (error_number == ENOSPC) hint = "the disk is full";
   if (error_number == EACCES || error_number == EROFS) hint = "choose another output directory";
-  throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", std::move(m), std::move(hint), Where{}});
+  throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", std::move(m),
+                                   std::move(hint), Where{}});
 }
 
 fs::path temporary_beside(const fs::path& file) {
@@ -64,8 +65,10 @@ void remove_leftovers_of(const fs::path& folder) {
   std::error_code ec;
   for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec)) {
     const long pid = writer_of(it->path().filename().native());
-    if (pid == 0 || (pid != ::getpid() && (::kill(static_cast<pid_t>(pid), 0) == 0 || errno != ESRCH))) continue;
-    std::error_code ignored;   // somebody else may have removed it
+    if (pid == 0 ||
+        (pid != ::getpid() && (::kill(static_cast<pid_t>(pid), 0) == 0 || errno != ESRCH)))
+      continue;
+    std::error_code ignored;  // somebody else may have removed it
     fs::remove(it->path(), ignored);
   }
 }
@@ -106,7 +109,8 @@ int write_all(int fd, const char* p, std::size_t n) {
       if (errno == EINTR) continue;
       return errno;
     }
-    p += k; n -= static_cast<std::size_t>(k);
+    p += k;
+    n -= static_cast<std::size_t>(k);
   }
   return 0;
 }
@@ -151,7 +155,8 @@ std::string read_text(const fs::path& file) {
   return s;
 }
 
-AppendFile::AppendFile(std::size_t buffer_bytes) : buffer_(std::max<std::size_t>(buffer_bytes, 4096), '\0') {}
+AppendFile::AppendFile(std::size_t buffer_bytes)
+    : buffer_(std::max<std::size_t>(buffer_bytes, 4096), '\0') {}
 
 AppendFile::~AppendFile() {
   try {
@@ -180,7 +185,8 @@ void AppendFile::reopen(const fs::path& file, std::uint64_t size) {
   path_ = file;
   fd_ = ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
   if (fd_ < 0) io_failure(file, "cannot continue", errno);
-  if (::ftruncate(fd_, static_cast<off_t>(size)) != 0 || ::lseek(fd_, static_cast<off_t>(size), SEEK_SET) < 0)
+  if (::ftruncate(fd_, static_cast<off_t>(size)) != 0 ||
+      ::lseek(fd_, static_cast<off_t>(size), SEEK_SET) < 0)
     io_failure(file, "cannot continue", errno);
 }
 
@@ -199,7 +205,8 @@ void AppendFile::flush() {
 
 void AppendFile::sync() {
   flush();
-  if (fd_ >= 0 && ::fdatasync(fd_) != 0 && errno != EINVAL && errno != EROFS) io_failure(path_, "cannot write", errno);
+  if (fd_ >= 0 && ::fdatasync(fd_) != 0 && errno != EINVAL && errno != EROFS)
+    io_failure(path_, "cannot write", errno);
 }
 
 void AppendFile::close() {
@@ -224,11 +231,12 @@ void OverwriteFile::open(const fs::path& file) {
 }
 
 void OverwriteFile::put(std::uint64_t offset, std::string_view s) {
-  while (!s.empty()) {   // a write to a disk is cut short only when the disk is full
+  while (!s.empty()) {  // a write to a disk is cut short only when the disk is full
     const ssize_t k = ::pwrite(fd_, s.data(), s.size(), static_cast<off_t>(offset));
     if (k < 0 && errno == EINTR) continue;
     if (k < 0) io_failure(path_, "cannot write", errno);
-    s.remove_prefix(static_cast<std::size_t>(k)); offset += static_cast<std::uint64_t>(k);
+    s.remove_prefix(static_cast<std::size_t>(k));
+    offset += static_cast<std::uint64_t>(k);
   }
 }
 

@@ -8,17 +8,21 @@
 
 namespace whirl::io {
 
-/// Writes `content` beside `file`, waits until it is on the disk and renames it into place. Makes missing folders. Error with Exit::io.
+/// Writes `content` beside `file`, waits until it is on the disk and renames it into place. Makes
+/// missing folders. Error with Exit::io.
 void write_atomic(const std::filesystem::path& file, std::string_view content);
-/// Name of the file that write_atomic and others use before renaming: same folder, hidden, unique to this process.
+/// Name of the file that write_atomic and others use before renaming: same folder, hidden, unique
+/// to this process.
 std::filesystem::path temporary_beside(const std::filesystem::path& file);
-/// Removes from `folder` and the folders in it what a killed process left before renaming; files of other processes that live stay.
-/// Call it before this process writes there: a name with its own number is taken for a dead predecessor's.
+/// Removes from `folder` and the folders in it what a killed process left before renaming; files of
+/// other processes that live stay. Call it before this process writes there: a name with its own
+/// number is taken for a dead predecessor's.
 void remove_leftovers(const std::filesystem::path& folder);
 /// Renames; removes `from` and throws on failure.
 void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
 std::string read_text(const std::filesystem::path& file);
-[[noreturn]] void io_failure(const std::filesystem::path& file, const std::string& what, int error_number = 0);
+[[noreturn]] void io_failure(const std::filesystem::path& file, const std::string& what,
+                             int error_number = 0);
 
 /// An append-only file descriptor with a fixed buffer; short writes and full disks become Errors.
 class AppendFile {
@@ -52,7 +56,9 @@ class AppendFile {
 class OverwriteFile {
  public:
   OverwriteFile() = default;
-  OverwriteFile(OverwriteFile&& o) noexcept : path_(std::move(o.path_)), fd_(std::exchange(o.fd_, -1)) {}
+  OverwriteFile(OverwriteFile&& o) noexcept
+      : path_(std::move(o.path_)),
+        fd_(std::exchange(o.fd_, -1)) {}
   OverwriteFile& operator=(OverwriteFile&&) = delete;
   ~OverwriteFile() { close(); }
   void open(const std::filesystem::path& file);

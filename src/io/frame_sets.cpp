@@ -15,11 +15,13 @@ using meshes::Skin;
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void put(std::vector<float>& v, std::size_t i, const Vec3& x) {
-  for (std::size_t c = 0; c < 3; ++c) v[3 * i + c] = static_cast<float>(x[static_cast<Index>(c)]);
+  for (std::size_t c = 0; c < 3; ++c)
+    v[3 * i + c] = static_cast<float>(x[static_cast<Index>(c)]);
 }
 
 PolyData::Array array(std::string name, int components, std::size_t n) {
-  return {std::move(name), components, std::vector<float>(n * static_cast<std::size_t>(components))};
+  return {std::move(name), components,
+          std::vector<float>(n * static_cast<std::size_t>(components))};
 }
 
 Index line_of(const Scene& s, const Place& p) { return s.node_line[at(p.node)]; }
@@ -41,17 +43,21 @@ class LineSet final : public FrameSet {
           const double xi = static_cast<double>(j) / n;
           ids.push_back(static_cast<std::int64_t>(places_.size()));
           const bool bent = scene_.bent(static_cast<Index>(l));
-          const Index from = bent ? (last ? line.bend_before[k] : line.bend_after[k]) : -1, to = bent ? line.bend_before[std::min(k + 1, line.points.size() - 1)] : -1;
+          const Index from = bent ? (last ? line.bend_before[k] : line.bend_after[k]) : -1,
+                      to = bent ? line.bend_before[std::min(k + 1, line.points.size() - 1)] : -1;
           places_.push_back(meshes::make_spot(scene_, static_cast<Index>(l), a, b, xi, from, to));
           radius_.push_back(static_cast<float>(ra + xi * (rb - ra)));
         }
       }
-      if (ids.size() > 1) data_.lines.add(ids.data(), ids.size());
-      else if (ids.size() == 1) data_.vertices.add(ids.data(), 1);
+      if (ids.size() > 1)
+        data_.lines.add(ids.data(), ids.size());
+      else if (ids.size() == 1)
+        data_.vertices.add(ids.data(), 1);
     }
     const std::size_t n = places_.size();
     data_.points.resize(3 * n);
-    for (const char* name : {"displacement", "rotation", "director", "axis2", "axis3"}) data_.point_data.push_back(array(name, 3, n));
+    for (const char* name : {"displacement", "rotation", "director", "axis2", "axis3"})
+      data_.point_data.push_back(array(name, 3, n));
     data_.point_data.push_back(array("spin_angle", 1, n));
     data_.point_data.push_back({"radius", 1, radius_});
   }
@@ -64,11 +70,13 @@ class LineSet final : public FrameSet {
     arrays.resize(7);
     for (std::size_t i = 0; i < n; ++i) {
       const auto& p = places_[i];
-      const Mat3& triad = f.state->charts.empty() ? scene_.lines[at(p.line)].triad : f.state->charts[at(p.line)];
+      const Mat3& triad =
+          f.state->charts.empty() ? scene_.lines[at(p.line)].triad : f.state->charts[at(p.line)];
       const meshes::Frame x = meshes::frame_of(f.true_poses, triad, p);
       put(data_.points, i, meshes::frame_of(f.drawn, triad, p).r);
       // tilt: of the node's axis from e; on a line along a path that of the nearer node to its left
-      const Vec3 e = triad.col(0), d = p.bent ? f.true_poses[at(p.a.node)].d : Vec3(x.axes.col(0)), axis = e.cross(d);
+      const Vec3 e = triad.col(0), d = p.bent ? f.true_poses[at(p.a.node)].d : Vec3(x.axes.col(0)),
+                 axis = e.cross(d);
       const double s = std::sqrt(axis.squaredNorm()), g = std::atan2(s, e.dot(d));
       put(arrays[0].floats(), i, x.r - p.reference);
       put(arrays[1].floats(), i, s > 0 ? Vec3(g / s * axis) : Vec3(Vec3::Zero()));
@@ -94,8 +102,10 @@ class LineSet final : public FrameSet {
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const auto& p = places_[i];
       const T v = (1 - p.xi) * values[at(p.a.node)] + p.xi * values[at(p.b.node)];
-      if constexpr (vector) put(a.floats(), i, v);
-      else a.floats()[i] = static_cast<float>(v);
+      if constexpr (vector)
+        put(a.floats(), i, v);
+      else
+        a.floats()[i] = static_cast<float>(v);
     }
     data_.point_data.push_back(std::move(a));
   }
@@ -117,12 +127,15 @@ class SurfaceSet final : public FrameSet {
     data_.normals = "Normals";
     data_.point_data.push_back({"Normals", 3, std::vector<float>{}});
     data_.point_data.push_back({"displacement", 3, std::vector<float>{}});
-    data_.cell_data.push_back({"stripe", 1, std::vector<std::int32_t>(skin_.stripe().begin(), skin_.stripe().end())});
-    data_.cell_data.push_back({"part", 1, std::vector<std::int32_t>(skin_.part().begin(), skin_.part().end())});
+    data_.cell_data.push_back(
+        {"stripe", 1, std::vector<std::int32_t>(skin_.stripe().begin(), skin_.stripe().end())});
+    data_.cell_data.push_back(
+        {"part", 1, std::vector<std::int32_t>(skin_.part().begin(), skin_.part().end())});
   }
   const char* name() const override { return "surface"; }
   void update(const FramePoses& f) override {
-    for (std::size_t l = 0; l < f.state->charts.size(); ++l) skin_.set_chart(static_cast<Index>(l), f.state->charts[l]);
+    for (std::size_t l = 0; l < f.state->charts.size(); ++l)
+      skin_.set_chart(static_cast<Index>(l), f.state->charts[l]);
     skin_.update(f.drawn, data_.points, data_.point_data[0].floats());
     skin_.centre_displacement(f.true_poses, data_.point_data[1].floats());
   }
@@ -139,17 +152,20 @@ class SupportSet final : public FrameSet {
       const std::int64_t vertex = grow(1);
       data_.vertices.add(&vertex, 1);
       if (s.kind == meshes::SupportShape::Kind::bearing)
-        for (int ring = 0; ring < 2; ++ring) polyline(ring_points + 1);
+        for (int ring = 0; ring < 2; ++ring)
+          polyline(ring_points + 1);
       polylines_of_springs(s);
     }
     data_.points.resize(3 * count_);
     data_.point_data.push_back(array("force", 3, count_));
     // Cell data follow the order of cells: all vertices, then all lines.
     std::vector<std::int32_t> number;
-    for (std::size_t k = 0; k < scene_.supports.size(); ++k) number.push_back(static_cast<std::int32_t>(k));
+    for (std::size_t k = 0; k < scene_.supports.size(); ++k)
+      number.push_back(static_cast<std::int32_t>(k));
     for (std::size_t k = 0; k < scene_.supports.size(); ++k) {
       const auto& s = scene_.supports[k];
-      number.insert(number.end(), s.kind == meshes::SupportShape::Kind::bearing ? 6 : 2, static_cast<std::int32_t>(k));
+      number.insert(number.end(), s.kind == meshes::SupportShape::Kind::bearing ? 6 : 2,
+                    static_cast<std::int32_t>(k));
     }
     data_.cell_data.push_back({"support", 1, std::move(number)});
   }
@@ -181,10 +197,12 @@ class SupportSet final : public FrameSet {
         for (int q = 0; q < 4; ++q) {
           const double a = pi / 4 + q * pi / 2;
           helix(far + 1.9 * r * (std::cos(a) * far_axes.col(1) + std::sin(a) * far_axes.col(2)),
-                journal.r + 1.12 * r * (std::cos(a) * axes.col(1) + std::sin(a) * axes.col(2)), triad * bend.col(0), 0.12 * r, i);
+                journal.r + 1.12 * r * (std::cos(a) * axes.col(1) + std::sin(a) * axes.col(2)),
+                triad * bend.col(0), 0.12 * r, i);
         }
       } else {
-        for (int q = 1; q < 3; ++q) helix(far - 5.0 * r * far_axes.col(q), journal.r, triad * bend.col(0), 0.5 * r, i);
+        for (int q = 1; q < 3; ++q)
+          helix(far - 5.0 * r * far_axes.col(q), journal.r, triad * bend.col(0), 0.5 * r, i);
       }
     }
   }
@@ -200,20 +218,26 @@ class SupportSet final : public FrameSet {
   void polyline(std::size_t n) {
     std::vector<std::int64_t> id(n);
     std::int64_t first = grow(n);
-    for (auto& x : id) x = first++;
+    for (auto& x : id)
+      x = first++;
     data_.lines.add(id.data(), n);
   }
   void polylines_of_springs(const meshes::SupportShape& s) {
     const int n = s.kind == meshes::SupportShape::Kind::bearing ? 4 : 2;
-    for (int q = 0; q < n; ++q) polyline(spring_points);
+    for (int q = 0; q < n; ++q)
+      polyline(spring_points);
   }
   // A support on a line without a radius (rigid massless rod): a fiftieth of the rotor's length.
   double default_radius() const {
     Vec3 lo = scene_.nodes.front(), hi = lo;
-    for (const auto& x : scene_.nodes) { lo = lo.cwiseMin(x); hi = hi.cwiseMax(x); }
+    for (const auto& x : scene_.nodes) {
+      lo = lo.cwiseMin(x);
+      hi = hi.cwiseMax(x);
+    }
     double longest = (hi - lo).maxCoeff();
     for (const auto& l : scene_.lines)
-      for (const auto& d : l.disks) longest = std::max(longest, d.outer);
+      for (const auto& d : l.disks)
+        longest = std::max(longest, d.outer);
     return longest > 0 ? longest / 50 : 1.0;
   }
   void circle(const Vec3& centre, const Mat3& axes, double r, std::size_t& i) {
@@ -232,7 +256,8 @@ class SupportSet final : public FrameSet {
       const double x = static_cast<double>(k) / (spring_points - 1);
       const double coil = std::clamp((x - 0.12) / 0.76, 0.0, 1.0), angle = two_pi * turns * coil;
       const double swell = r * std::min({1.0, 12 * coil, 12 * (1 - coil)});
-      put(data_.points, i++, a + x * axis + swell * (std::cos(angle) * n1 + std::sin(angle) * side));
+      put(data_.points, i++,
+          a + x * axis + swell * (std::cos(angle) * n1 + std::sin(angle) * side));
     }
   }
 
@@ -242,14 +267,19 @@ class SupportSet final : public FrameSet {
 
 class TrailSet final : public FrameSet {
  public:
-  TrailSet(const Scene& scene, std::size_t longest) : scene_(scene), longest_(std::max<std::size_t>(longest, 2)), points_(scene.trails.size()) {
+  TrailSet(const Scene& scene, std::size_t longest)
+      : scene_(scene),
+        longest_(std::max<std::size_t>(longest, 2)),
+        points_(scene.trails.size()) {
     data_.point_data.push_back(array("age", 1, 0));
   }
   const char* name() const override { return "orbits"; }
   void update(const FramePoses& f) override {
     if (times_.size() == longest_) times_.pop_front();
     times_.push_back(f.state->time);
-    data_.points.clear(); data_.lines.clear(); data_.vertices.clear();
+    data_.points.clear();
+    data_.lines.clear();
+    data_.vertices.clear();
     auto& age = data_.point_data[0].floats();
     age.clear();
     ++data_.topology;
@@ -260,28 +290,35 @@ class TrailSet final : public FrameSet {
       id.clear();
       for (std::size_t j = 0; j < points_[k].size(); ++j) {
         id.push_back(static_cast<std::int64_t>(data_.points.size() / 3));
-        for (int c = 0; c < 3; ++c) data_.points.push_back(static_cast<float>(points_[k][j][c]));
+        for (int c = 0; c < 3; ++c)
+          data_.points.push_back(static_cast<float>(points_[k][j][c]));
         age.push_back(static_cast<float>(f.state->time - times_[j]));
       }
-      if (id.size() > 1) data_.lines.add(id.data(), id.size());
-      else data_.vertices.add(id.data(), 1);
+      if (id.size() > 1)
+        data_.lines.add(id.data(), id.size());
+      else
+        data_.vertices.add(id.data(), 1);
     }
   }
 
   void save(OutArchive& out) const override {
     out.put_count(times_.size());
-    for (const double t : times_) out.put(t);
+    for (const double t : times_)
+      out.put(t);
     for (const auto& trail : points_)
       for (const Vec3& r : trail)
-        for (int c = 0; c < 3; ++c) out.put(r[c]);
+        for (int c = 0; c < 3; ++c)
+          out.put(r[c]);
   }
   void restore(InArchive& in) override {
     times_.resize(in.count());
-    for (double& t : times_) t = in.number();
+    for (double& t : times_)
+      t = in.number();
     for (auto& trail : points_) {
       trail.resize(times_.size());
       for (Vec3& r : trail)
-        for (int c = 0; c < 3; ++c) r[c] = in.number();
+        for (int c = 0; c < 3; ++c)
+          r[c] = in.number();
     }
   }
 
@@ -294,9 +331,17 @@ class TrailSet final : public FrameSet {
 
 }  // namespace
 
-std::unique_ptr<FrameSet> make_line_set(const Scene& scene) { return std::make_unique<LineSet>(scene); }
-std::unique_ptr<FrameSet> make_surface_set(const Scene& scene, int points_around) { return std::make_unique<SurfaceSet>(scene, points_around); }
-std::unique_ptr<FrameSet> make_support_set(const Scene& scene) { return std::make_unique<SupportSet>(scene); }
-std::unique_ptr<FrameSet> make_trail_set(const Scene& scene, std::size_t longest) { return std::make_unique<TrailSet>(scene, longest); }
+std::unique_ptr<FrameSet> make_line_set(const Scene& scene) {
+  return std::make_unique<LineSet>(scene);
+}
+std::unique_ptr<FrameSet> make_surface_set(const Scene& scene, int points_around) {
+  return std::make_unique<SurfaceSet>(scene, points_around);
+}
+std::unique_ptr<FrameSet> make_support_set(const Scene& scene) {
+  return std::make_unique<SupportSet>(scene);
+}
+std::unique_ptr<FrameSet> make_trail_set(const Scene& scene, std::size_t longest) {
+  return std::make_unique<TrailSet>(scene, longest);
+}
 
 }  // namespace whirl::io

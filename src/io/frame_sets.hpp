@@ -1,4 +1,5 @@
-// The sets of a frame: centre lines, surface, supports, orbit trails. Each turns a scene and poses into PolyData.
+// The sets of a frame: centre lines, surface, supports, orbit trails. Each turns a scene and poses
+// into PolyData.
 #pragma once
 #include <io/frames.hpp>
 #include <io/polydata.hpp>
@@ -26,13 +27,15 @@ class FrameSet {
   PolyData data_;
 };
 
-/// Centre lines: displacement, rotation (Euler vector of the tilt), spin_angle, radius, director, axis2, axis3; velocity,
-/// angular_velocity, force, moment, von_mises where the state has them. Four segments between two nodes.
+/// Centre lines: displacement, rotation (Euler vector of the tilt), spin_angle, radius, director,
+/// axis2, axis3; velocity, angular_velocity, force, moment, von_mises where the state has them.
+/// Four segments between two nodes.
 std::unique_ptr<FrameSet> make_line_set(const Scene& scene);
-/// True surface: normals, displacement of the centre line; cells: stripe (1 = painted), part (0 shaft, k disk).
+/// True surface: normals, displacement of the centre line; cells: stripe (1 = painted), part (0
+/// shaft, k disk).
 std::unique_ptr<FrameSet> make_surface_set(const Scene& scene, int points_around);
-/// Supports: housing ring, journal ring and springs between them; a vertex at each journal carries `force`; cell
-/// array `support` counts them.
+/// Supports: housing ring, journal ring and springs between them; a vertex at each journal carries
+/// `force`; cell array `support` counts them.
 std::unique_ptr<FrameSet> make_support_set(const Scene& scene);
 /// Paths of the trail points so far: `age` s.
 std::unique_ptr<FrameSet> make_trail_set(const Scene& scene, std::size_t longest);

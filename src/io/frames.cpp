@@ -26,34 +26,47 @@ std::string padded(std::uint64_t k) {
 }
 
 constexpr std::string_view pvd_head =
-    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
+    "byte_order=\"LittleEndian\">\n<Collection>\n";
 constexpr std::string_view pvd_foot = "</Collection>\n</VTKFile>\n";
 
-/// One .pvd and its folder of frames. The .pvd always lists whole files and always ends in its footer: a new entry and the
-/// footer after it are put over the old footer in one write. (A file renamed into place for every frame costs four times
-/// the frame itself in the file system.)
+/// One .pvd and its folder of frames. The .pvd always lists whole files and always ends in its
+/// footer: a new entry and the footer after it are put over the old footer in one write. (A file
+/// renamed into place for every frame costs four times the frame itself in the file system.)
 class Collection {
  public:
-  struct Frame { double time; std::string file; };
-  /// kept: frames of the earlier run that stay, whose number is `next`; else those of the .pvd up to keep_until.
-  Collection(const fs::path& directory, const std::string& stem, double keep_until, std::vector<Frame> kept = {}, std::uint64_t next = 0)
-      : frames_(std::move(kept)), next_(next), pvd_(directory / (stem + ".pvd")), folder_(directory / stem), stem_(stem) {
+  struct Frame {
+    double time;
+    std::string file;
+  };
+  /// kept: frames of the earlier run that stay, whose number is `next`; else those of the .pvd up
+  /// to keep_until.
+  Collection(const fs::path& directory, const std::string& stem, double keep_until,
+             std::vector<Frame> kept = {}, std::uint64_t next = 0)
+      : frames_(std::move(kept)),
+        next_(next),
+        pvd_(directory / (stem + ".pvd")),
+        folder_(directory / stem),
+        stem_(stem) {
     std::error_code ec;
-    if (fs::is_symlink(fs::symlink_status(folder_, ec))) io_failure(folder_, "nothing is written through a symbolic link:");
+    if (fs::is_symlink(fs::symlink_status(folder_, ec)))
+      io_failure(folder_, "nothing is written through a symbolic link:");
     fs::create_directories(folder_, ec);
     if (ec) io_failure(folder_, "cannot make the folder", ec.value());
     const bool earlier = fs::exists(pvd_, ec) && read_text(pvd_).starts_with(pvd_head);
     if (next_ == 0 && keep_until > -infinity && earlier) recover(keep_until);
-    write_list();   // before files go: the list never names a missing one
-    if (!earlier) return;   // no run made frames here: whatever is in the folder is somebody else's
+    write_list();          // before files go: the list never names a missing one
+    if (!earlier) return;  // no run made frames here: whatever is in the folder is somebody else's
     std::unordered_set<std::string> listed;
-    for (const auto& f : frames_) listed.insert(f.file);
+    for (const auto& f : frames_)
+      listed.insert(f.file);
     std::vector<fs::path> stale;
     for (const auto& f : fs::directory_iterator(folder_, ec)) {
       const std::string name = f.path().filename().string();
       if (is_frame(name) && !listed.count(name)) stale.push_back(f.path());
     }
-    for (const auto& f : stale) fs::remove(f, ec);
+    for (const auto& f : stale)
+      fs::remove(f, ec);
   }
 
   fs::path next_file() const { return folder_ / ("frame_" + padded(next_) + ".vtp"); }
@@ -74,13 +87,16 @@ class Collection {
     std::vector<Frame> kept;
     std::vector<fs::path> gone;
     for (std::size_t k = 0; k < frames_.size(); ++k) {
-      if (k % 2 == 0) kept.push_back(std::move(frames_[k]));
-      else gone.push_back(folder_ / frames_[k].file);
+      if (k % 2 == 0)
+        kept.push_back(std::move(frames_[k]));
+      else
+        gone.push_back(folder_ / frames_[k].file);
     }
     frames_ = std::move(kept);
-    write_list();   // before the files go
+    write_list();  // before the files go
     std::error_code ec;
-    for (const auto& f : gone) fs::remove(f, ec);
+    for (const auto& f : gone)
+      fs::remove(f, ec);
   }
 
  private:
@@ -101,25 +117,28 @@ class Collection {
     for (std::size_t p = text.find(open); p != std::string::npos; p = text.find(open, p + 1)) {
       double time = 0;
       std::from_chars(text.data() + p + open.size(), text.data() + text.size(), time);
-      const std::size_t a = text.find(mid, p), slash = text.find('/', a), end = text.find('"', slash);
+      const std::size_t a = text.find(mid, p), slash = text.find('/', a),
+                        end = text.find('"', slash);
       if (end == std::string::npos || time > keep_until) break;
       frames_.push_back({time, text.substr(slash + 1, end - slash - 1)});
     }
     if (!frames_.empty()) {
-      const std::string& f = frames_.back().file;   // frame_000123.vtp
+      const std::string& f = frames_.back().file;  // frame_000123.vtp
       std::from_chars(f.data() + 6, f.data() + f.size(), next_);
       ++next_;
     }
   }
 
   std::string line(const Frame& f) const {
-    return "<DataSet timestep=\"" + shortest(f.time) + "\" part=\"0\" file=\"" + stem_ + "/" + f.file + "\"/>\n";
+    return "<DataSet timestep=\"" + shortest(f.time) + "\" part=\"0\" file=\"" + stem_ + "/" +
+           f.file + "\"/>\n";
   }
 
   // The whole list, in place of an older file in one go.
   void write_list() {
     std::string s(pvd_head);
-    // after a kill a frame may be gone that the checkpoint still counts: it is thinned out again at the same frame
+    // after a kill a frame may be gone that the checkpoint still counts: it is thinned out again at
+    // the same frame
     std::error_code ec;
     for (const auto& f : frames_)
       if (fs::exists(folder_ / f.file, ec)) s += line(f);
@@ -132,7 +151,7 @@ class Collection {
   std::uint64_t next_ = 0;
   fs::path pvd_, folder_;
   std::string stem_;
-  std::uint64_t length_ = 0;   // of the .pvd without its footer
+  std::uint64_t length_ = 0;  // of the .pvd without its footer
   OverwriteFile file_;
 };
 
@@ -142,32 +161,45 @@ class VtkFrames final : public FrameWriter {
 
   void begin(const Scene& scene) override {
     open(scene, {}, 0);
-    offered_ = 0; stride_ = 1;
+    offered_ = 0;
+    stride_ = 1;
   }
 
   void save(OutArchive& out) const override {
-    out.put_count(offered_); out.put_count(stride_);
+    out.put_count(offered_);
+    out.put_count(stride_);
     out.put_count(sets_.empty() ? 0 : sets_.front().files.next());
     out.put_count(sets_.empty() ? 0 : sets_.front().files.frames().size());
     if (!sets_.empty())
-      for (const auto& f : sets_.front().files.frames()) { out.put(f.time); out.put(f.file); }
-    for (const auto& s : sets_) s.set->save(out);
+      for (const auto& f : sets_.front().files.frames()) {
+        out.put(f.time);
+        out.put(f.file);
+      }
+    for (const auto& s : sets_)
+      s.set->save(out);
   }
 
   void resume(const Scene& scene, InArchive& in) override {
-    offered_ = in.count(); stride_ = in.count();
+    offered_ = in.count();
+    stride_ = in.count();
     const std::uint64_t next = in.count();
     std::vector<Collection::Frame> kept(in.count());
-    for (auto& f : kept) { f.time = in.number(); f.file = in.text(); }
+    for (auto& f : kept) {
+      f.time = in.number();
+      f.file = in.text();
+    }
     open(scene, kept, next);
-    for (const auto& s : sets_) s.set->restore(in);
+    for (const auto& s : sets_)
+      s.set->restore(in);
   }
 
   void frame(const FrameState& state) override {
-    if (state.nodes.size() != scene_.nodes.size()) throw std::logic_error("FrameWriter: not one pose a node");
+    if (state.nodes.size() != scene_.nodes.size())
+      throw std::logic_error("FrameWriter: not one pose a node");
     if (offered_++ % stride_ != 0) return;
     if (frames_ >= options_.max_frames && options_.max_frames > 1) {
-      for (auto& s : sets_) s.files.thin();
+      for (auto& s : sets_)
+        s.files.thin();
       frames_ = sets_.empty() ? 0 : sets_.front().files.size();
       const bool on_stride = (offered_ - 1) % (2 * stride_) == 0;
       stride_ *= 2;
@@ -177,7 +209,9 @@ class VtkFrames final : public FrameWriter {
       const auto line = static_cast<std::size_t>(scene_.node_line[i]);
       const Vec3 e = scene_.lines[line].triad.col(0);
       drawn_[i] = meshes::magnified(state.nodes[i], scene_.nodes[i], e, options_.deformation_scale);
-      if (scene_.bent(scene_.node_line[i])) drawn_[i].phi *= options_.deformation_scale;   // it does not spin: its angle is deformation too
+      if (scene_.bent(scene_.node_line[i]))
+        drawn_[i].phi *=
+            options_.deformation_scale;  // it does not spin: its angle is deformation too
     }
     const FramePoses poses{state.nodes, drawn_, &state};
     for (auto& s : sets_) {
@@ -202,14 +236,17 @@ class VtkFrames final : public FrameWriter {
     scene_ = scene;
     drawn_.resize(scene_.nodes.size());
     const auto add = [&](std::unique_ptr<FrameSet> set) {
-      Collection files(options_.directory, safe_name(options_.name) + "_" + set->name(), options_.keep_until, kept, next);
-      sets_.push_back({std::move(set), std::move(files),
-                       std::unique_ptr<PolyDataWriter>(plugin_.function<VtkMakeWriter>(vtk_make_writer)())});
+      Collection files(options_.directory, safe_name(options_.name) + "_" + set->name(),
+                       options_.keep_until, kept, next);
+      sets_.push_back(
+          {std::move(set), std::move(files),
+           std::unique_ptr<PolyDataWriter>(plugin_.function<VtkMakeWriter>(vtk_make_writer)())});
     };
     if (options_.line) add(make_line_set(scene_));
     if (options_.surface) add(make_surface_set(scene_, options_.points_around));
     if (options_.bearings && !scene_.supports.empty()) add(make_support_set(scene_));
-    if (options_.orbits && !scene_.trails.empty()) add(make_trail_set(scene_, options_.trail_points));
+    if (options_.orbits && !scene_.trails.empty())
+      add(make_trail_set(scene_, options_.trail_points));
     frames_ = sets_.empty() ? 0 : sets_.front().files.size();
   }
 
@@ -226,13 +263,18 @@ class VtkFrames final : public FrameWriter {
 void set_content(VtkFrameOptions& o, std::span<const std::string> names) {
   o.line = o.surface = o.bearings = o.orbits = false;
   for (const auto& n : names) {
-    if (n == "line") o.line = true;
-    else if (n == "surface") o.surface = true;
-    else if (n == "bearings") o.bearings = true;
-    else if (n == "orbits") o.orbits = true;
+    if (n == "line")
+      o.line = true;
+    else if (n == "surface")
+      o.surface = true;
+    else if (n == "bearings")
+      o.bearings = true;
+    else if (n == "orbits")
+      o.orbits = true;
     else
-      throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E93", "unknown VTK content '" + n + "'",
-                                         "one of: line, surface, bearings, orbits", Where{}});
+      throw Error(Exit::deck,
+                  Diagnostic{Diagnostic::Severity::error, "E93", "unknown VTK content '" + n + "'",
+                             "one of: line, surface, bearings, orbits", Where{}});
   }
 }
 
@@ -243,42 +285,48 @@ std::unique_ptr<FrameWriter> make_vtk_frames(VtkFrameOptions options) {
 }
 
 FrameSchedule::FrameSchedule(const Options& o, double t_begin, double t_end)
-    : t0_(std::max(o.t0, t_begin)), t1_(std::min(o.t1, t_end)) {
+    : t0_(std::max(o.t0, t_begin)),
+      t1_(std::min(o.t1, t_end)) {
   const int cap = std::max(o.max_frames, 2);
   if (o.every <= 0.0 && o.frames_per_revolution > 0.0) {
     step_angle_ = two_pi / o.frames_per_revolution;
     return;
   }
-  if (!(t1_ >= t0_)) return;   // the window lies outside the run
+  if (!(t1_ >= t0_)) return;  // the window lies outside the run
   const double span = t1_ - t0_;
   step_ = o.every > 0.0 ? o.every : span / std::max(o.frames - 1, 1);
   if (step_ > 0.0 && span / step_ > cap - 1) {
     stretch_ = span / step_ / (cap - 1);
     step_ *= stretch_;
   }
-  planned_ = step_ > 0.0 ? static_cast<std::uint64_t>(std::floor(span / step_ * (1 + 1e-12))) + 1 : 1;
+  planned_ =
+      step_ > 0.0 ? static_cast<std::uint64_t>(std::floor(span / step_ * (1 + 1e-12))) + 1 : 1;
   next_time_ = t0_;
 }
 
 void FrameSchedule::set_taken(std::uint64_t n) {
   taken_ = n;
-  if (planned_ > 0 && n > 0) next_time_ = n < planned_ ? std::min(t0_ + static_cast<double>(n) * step_, t1_) : infinity;
+  if (planned_ > 0 && n > 0)
+    next_time_ = n < planned_ ? std::min(t0_ + static_cast<double>(n) * step_, t1_) : infinity;
 }
 
 double FrameSchedule::next_angle(double phi, double direction) const {
   // A frame at phi itself is behind us: the next multiple, a hair beyond for round-off.
   const double k = phi / step_angle_;
-  return direction >= 0.0 ? (std::floor(k + 1e-9) + 1.0) * step_angle_ : (std::ceil(k - 1e-9) - 1.0) * step_angle_;
+  return direction >= 0.0 ? (std::floor(k + 1e-9) + 1.0) * step_angle_
+                          : (std::ceil(k - 1e-9) - 1.0) * step_angle_;
 }
 
 void FrameSchedule::advance() {
   ++taken_;
-  // Counted, not summed: frame k stands at t0 + k step to the last digit; the last one at the end of the window.
-  next_time_ = taken_ < planned_ ? std::min(t0_ + static_cast<double>(taken_) * step_, t1_) : infinity;
+  // Counted, not summed: frame k stands at t0 + k step to the last digit; the last one at the end
+  // of the window.
+  next_time_ =
+      taken_ < planned_ ? std::min(t0_ + static_cast<double>(taken_) * step_, t1_) : infinity;
 }
 
-void pose_of_phase(std::span<const Pose> rest, const HarmonicShape& shape, double amplitude, double theta,
-                   std::vector<Pose>& out) {
+void pose_of_phase(std::span<const Pose> rest, const HarmonicShape& shape, double amplitude,
+                   double theta, std::vector<Pose>& out) {
   const Complex z = amplitude * std::polar(1.0, theta);
   out.resize(rest.size());
   for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -289,12 +337,14 @@ void pose_of_phase(std::span<const Pose> rest, const HarmonicShape& shape, doubl
   }
 }
 
-void write_harmonic(FrameWriter& writer, const Scene& scene, const HarmonicShape& shape, double amplitude, int phases) {
+void write_harmonic(FrameWriter& writer, const Scene& scene, const HarmonicShape& shape,
+                    double amplitude, int phases) {
   if (shape.u.size() != scene.nodes.size() || shape.tilt.size() != scene.nodes.size())
     throw std::invalid_argument("write_harmonic: one u and one tilt a node");
   std::vector<Pose> rest(scene.nodes.size()), now;
   for (std::size_t i = 0; i < rest.size(); ++i)
-    rest[i] = {scene.nodes[i], scene.lines[static_cast<std::size_t>(scene.node_line[i])].triad.col(0), 0.0};
+    rest[i] = {scene.nodes[i],
+               scene.lines[static_cast<std::size_t>(scene.node_line[i])].triad.col(0), 0.0};
   writer.begin(scene);
   for (int k = 0; k < phases; ++k) {
     FrameState s;

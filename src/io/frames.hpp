@@ -1,5 +1,5 @@
-// Frames of the moving rotor. The writer draws a Scene (plain data) at node states; the VTK writer is a plug-in that is
-// loaded by make_vtk_frames() and by nothing else.
+// Frames of the moving rotor. The writer draws a Scene (plain data) at node states; the VTK writer
+// is a plug-in that is loaded by make_vtk_frames() and by nothing else.
 #pragma once
 #include <core/archive.hpp>
 #include <core/types.hpp>
@@ -18,15 +18,17 @@ using meshes::Scene;
 
 /// State of all nodes at one time. Only `nodes` is needed; what is empty is not written.
 struct FrameState {
-  double time = 0.0;                        ///< s (phase in rad for mode shapes)
-  std::span<const Pose> nodes;              ///< one a node of the scene
-  std::span<const Mat3> charts;             ///< triad of each line that (d, phi) refer to, after a change of chart
-  std::span<const Vec3> velocity;           ///< m/s
-  std::span<const Vec3> angular_velocity;   ///< rad/s
-  std::span<const Vec3> force;              ///< N, internal force at the node (section to its right on its left)
-  std::span<const Vec3> moment;             ///< N m
-  std::span<const double> stress;           ///< Pa, equivalent (von Mises) stress at the node
-  std::span<const Vec3> support_force;      ///< N on the shaft, one a support of the scene
+  double time = 0.0;            ///< s (phase in rad for mode shapes)
+  std::span<const Pose> nodes;  ///< one a node of the scene
+  std::span<const Mat3>
+      charts;  ///< triad of each line that (d, phi) refer to, after a change of chart
+  std::span<const Vec3> velocity;          ///< m/s
+  std::span<const Vec3> angular_velocity;  ///< rad/s
+  std::span<const Vec3>
+      force;  ///< N, internal force at the node (section to its right on its left)
+  std::span<const Vec3> moment;         ///< N m
+  std::span<const double> stress;       ///< Pa, equivalent (von Mises) stress at the node
+  std::span<const Vec3> support_force;  ///< N on the shaft, one a support of the scene
 };
 
 class FrameWriter {
@@ -37,20 +39,23 @@ class FrameWriter {
   /// The files are complete after every frame; end() only closes.
   virtual void end() = 0;
   virtual std::uint64_t frames() const = 0;
-  /// What a checkpoint must know; resume() instead of begin() continues the files from there: later frames are dropped.
+  /// What a checkpoint must know; resume() instead of begin() continues the files from there: later
+  /// frames are dropped.
   virtual void save(OutArchive& out) const = 0;
   virtual void resume(const Scene& scene, InArchive& in) = 0;
 };
 
 struct VtkFrameOptions {
-  std::filesystem::path directory;   ///< gets <name>_line.pvd ... and a folder of frames for each set
-  std::string name = "frames";       ///< characters that do not belong in file names become '_'
+  std::filesystem::path
+      directory;                ///< gets <name>_line.pvd ... and a folder of frames for each set
+  std::string name = "frames";  ///< characters that do not belong in file names become '_'
   bool line = true, surface = true, bearings = false, orbits = false;
-  double deformation_scale = 1.0;    ///< magnifies displacement and tilt, not the spin
+  double deformation_scale = 1.0;  ///< magnifies displacement and tilt, not the spin
   int points_around = 32;
-  std::uint64_t max_frames = 5000;   ///< beyond it every other frame is removed and the stride doubles
-  std::size_t trail_points = 2000;   ///< longest orbit trail, frames
-  double keep_until = -infinity;     ///< continued run: frames of the earlier run up to this time stay
+  std::uint64_t max_frames =
+      5000;  ///< beyond it every other frame is removed and the stride doubles
+  std::size_t trail_points = 2000;  ///< longest orbit trail, frames
+  double keep_until = -infinity;  ///< continued run: frames of the earlier run up to this time stay
 };
 
 /// Sets from deck names: "line", "surface", "bearings", "orbits". Error for any other.
@@ -60,24 +65,26 @@ bool vtk_available();
 /// Loads the VTK plug-in. Error (Exit::io) when it was not built or cannot be loaded.
 std::unique_ptr<FrameWriter> make_vtk_frames(VtkFrameOptions options);
 
-/// When frames are due. Either by time or by revolutions of a reference angle; window and cap as in the deck.
+/// When frames are due. Either by time or by revolutions of a reference angle; window and cap as in
+/// the deck.
 class FrameSchedule {
  public:
   struct Options {
-    double t0 = 0.0, t1 = infinity;       ///< window, s
-    double every = 0.0;                   ///< s between frames
-    double frames_per_revolution = 0.0;   ///< used when every == 0
-    int frames = 200;                     ///< over the window, when neither is given
+    double t0 = 0.0, t1 = infinity;      ///< window, s
+    double every = 0.0;                  ///< s between frames
+    double frames_per_revolution = 0.0;  ///< used when every == 0
+    int frames = 200;                    ///< over the window, when neither is given
     int max_frames = 5000;
   };
-  /// t_end: end of the run, to bound an open window. When the number of frames is known beforehand and above
-  /// max_frames, the interval is stretched: stretch() tells by how much.
+  /// t_end: end of the run, to bound an open window. When the number of frames is known beforehand
+  /// and above max_frames, the interval is stretched: stretch() tells by how much.
   FrameSchedule(const Options& options, double t_begin, double t_end);
 
   bool by_revolution() const { return step_angle_ > 0.0; }
   /// By time: the next frame time, infinity when done.
   double next_time() const { return by_revolution() ? infinity : next_time_; }
-  /// By revolution: the next angle above `phi` at which a frame is due; frames stand on multiples of 2 pi / n.
+  /// By revolution: the next angle above `phi` at which a frame is due; frames stand on multiples
+  /// of 2 pi / n.
   double next_angle(double phi, double direction = 1.0) const;
   bool in_window(double t) const { return t >= t0_ && t <= t1_; }
   /// Call once the frame at next_time() is written.
@@ -94,16 +101,17 @@ class FrameSchedule {
   std::uint64_t planned_ = 0, taken_ = 0;
 };
 
-/// One phase of a mode or of a steady harmonic motion about `rest`: r = r_rest + A Re(u exp(i theta)),
-/// d = normalised(d_rest + A Re(t exp(i theta))), phi = phi_rest + A Re(phi exp(i theta)).
+/// One phase of a mode or of a steady harmonic motion about `rest`: r = r_rest + A Re(u exp(i
+/// theta)), d = normalised(d_rest + A Re(t exp(i theta))), phi = phi_rest + A Re(phi exp(i theta)).
 struct HarmonicShape {
-  std::vector<Eigen::Vector3cd> u;       ///< m
-  std::vector<Eigen::Vector3cd> tilt;    ///< director change d - e
-  std::vector<Complex> phi;              ///< rad; may be empty
+  std::vector<Eigen::Vector3cd> u;     ///< m
+  std::vector<Eigen::Vector3cd> tilt;  ///< director change d - e
+  std::vector<Complex> phi;            ///< rad; may be empty
 };
-void pose_of_phase(std::span<const Pose> rest, const HarmonicShape& shape, double amplitude, double theta,
-                   std::vector<Pose>& out);
+void pose_of_phase(std::span<const Pose> rest, const HarmonicShape& shape, double amplitude,
+                   double theta, std::vector<Pose>& out);
 /// Writes `phases` frames of one period.
-void write_harmonic(FrameWriter& writer, const Scene& scene, const HarmonicShape& shape, double amplitude, int phases = 24);
+void write_harmonic(FrameWriter& writer, const Scene& scene, const HarmonicShape& shape,
+                    double amplitude, int phases = 24);
 
 }  // namespace whirl::io

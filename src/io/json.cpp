@@ -44,12 +44,14 @@ Json to_library(const Value& value) {
     Json operator()(const std::string& s) const { return s; }
     Json operator()(const Value::Array& a) const {
       Json j = Json::array();
-      for (const auto& v : a) j.push_back(to_library(v));
+      for (const auto& v : a)
+        j.push_back(to_library(v));
       return j;
     }
     Json operator()(const Value::Object& o) const {
       Json j = Json::object();
-      for (const auto& [k, v] : o) j[k] = to_library(v);
+      for (const auto& [k, v] : o)
+        j[k] = to_library(v);
       return j;
     }
   };
@@ -66,12 +68,14 @@ Value from_library(const Json& j) {
     case Json::value_t::array: {
       Value::Array a;
       a.reserve(j.size());
-      for (const auto& x : j) a.push_back(from_library(x));
+      for (const auto& x : j)
+        a.push_back(from_library(x));
       return a;
     }
     case Json::value_t::object: {
       Value::Object o;
-      for (const auto& [k, v] : j.items()) o.emplace_back(k, from_library(v));
+      for (const auto& [k, v] : j.items())
+        o.emplace_back(k, from_library(v));
       return o;
     }
     default: return {};
@@ -88,7 +92,10 @@ Value parse_json(std::string_view text) {
   try {
     return from_library(Json::parse(text));
   } catch (const nlohmann::json::exception& e) {
-    throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E92", std::string("not JSON: ") + e.what(), {}, Where{}});
+    throw Error(
+        Exit::io,
+        Diagnostic{
+            Diagnostic::Severity::error, "E92", std::string("not JSON: ") + e.what(), {}, Where{}});
   }
 }
 

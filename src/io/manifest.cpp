@@ -21,7 +21,8 @@ constexpr std::string_view head =
     "# Files in this folder that whirl made. Later runs replace these and leave all others "
     "alone.\n";
 
-/// Stands in the list of a folder that held results from before there were lists: files found there are replaced.
+/// Stands in the list of a folder that held results from before there were lists: files found there
+/// are replaced.
 constexpr std::string_view older_mark = "# made before there were lists";
 
 bool is_there(const fs::path& p) {

@@ -9,26 +9,34 @@
 
 namespace whirl::io {
 
-/// Points, and cells given by counts and point indices. Cell data are ordered: vertices, lines, polygons.
+/// Points, and cells given by counts and point indices. Cell data are ordered: vertices, lines,
+/// polygons.
 struct PolyData {
   struct Cells {
-    std::vector<std::int64_t> offset{0};      ///< starts of the cells in `point`, one more than cells
+    std::vector<std::int64_t> offset{0};  ///< starts of the cells in `point`, one more than cells
     std::vector<std::int64_t> point;
     std::size_t size() const { return offset.size() - 1; }
-    void add(const std::int64_t* p, std::size_t n) { point.insert(point.end(), p, p + n); offset.push_back(static_cast<std::int64_t>(point.size())); }
-    void clear() { offset.assign(1, 0); point.clear(); }
+    void add(const std::int64_t* p, std::size_t n) {
+      point.insert(point.end(), p, p + n);
+      offset.push_back(static_cast<std::int64_t>(point.size()));
+    }
+    void clear() {
+      offset.assign(1, 0);
+      point.clear();
+    }
   };
   struct Array {
     std::string name;
     int components = 1;
-    std::variant<std::vector<float>, std::vector<std::int32_t>> values;   ///< bytes would be taken for colours
+    std::variant<std::vector<float>, std::vector<std::int32_t>>
+        values;  ///< bytes would be taken for colours
     std::vector<float>& floats() { return std::get<0>(values); }
   };
-  std::vector<float> points;                  ///< 3 a point
+  std::vector<float> points;  ///< 3 a point
   Cells vertices, lines, polygons;
   std::vector<Array> point_data, cell_data;
-  std::string normals;                        ///< name of the point array that holds normals; empty: none
-  std::uint64_t topology = 0;                 ///< changes when the cells do
+  std::string normals;         ///< name of the point array that holds normals; empty: none
+  std::uint64_t topology = 0;  ///< changes when the cells do
 };
 
 /// Writes frames of one set; keeps what does not change between them.

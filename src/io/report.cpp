@@ -30,13 +30,15 @@ std::string table_html(const Table& t) {
     const auto& c = t.columns[k];
     s += numeric[k] ? "<th class=\"n\"" : "<th";
     if (!c.description.empty()) s += " title=\"" + escape(c.description) + '"';
-    s += ">" + escape(c.name) + (c.unit.empty() || c.unit == "-" ? "" : "<small>" + escape(c.unit) + "</small>") + "</th>";
+    s += ">" + escape(c.name) +
+         (c.unit.empty() || c.unit == "-" ? "" : "<small>" + escape(c.unit) + "</small>") + "</th>";
   }
   s += "</tr></thead>\n<tbody>";
   for (const auto& row : t.rows) {
     s += "<tr>";
     for (std::size_t k = 0; k < row.size(); ++k)
-      s += (numeric[k] ? "<td class=\"n\">" : "<td>") + (row[k].is_text ? escape(row[k].text) : readable(row[k].number, 6)) + "</td>";
+      s += (numeric[k] ? "<td class=\"n\">" : "<td>") +
+           (row[k].is_text ? escape(row[k].text) : readable(row[k].number, 6)) + "</td>";
     s += "</tr>\n";
   }
   return s + "</tbody></table></div>\n";
@@ -45,12 +47,14 @@ std::string table_html(const Table& t) {
 std::string value_html(const Value& v) {
   if (v.is_object()) {
     std::string s = "<table>";
-    for (const auto& [k, x] : v.members()) s += "<tr><td>" + escape(k) + "</td><td>" + value_html(x) + "</td></tr>";
+    for (const auto& [k, x] : v.members())
+      s += "<tr><td>" + escape(k) + "</td><td>" + value_html(x) + "</td></tr>";
     return s + "</table>";
   }
   if (v.is_array()) {
     std::string s;
-    for (const auto& x : v.items()) s += (s.empty() ? "" : x.is_object() ? "" : ", ") + value_html(x);
+    for (const auto& x : v.items())
+      s += (s.empty() ? "" : x.is_object() ? "" : ", ") + value_html(x);
     return s;
   }
   if (v.is_text()) return escape(v.text());
@@ -59,13 +63,16 @@ std::string value_html(const Value& v) {
 }
 
 bool turns(const plot::Figure& f) {
-  return std::any_of(f.axes.begin(), f.axes.end(), [](const plot::Axes& a) { return a.kind == plot::AxesKind::space; });
+  return std::any_of(f.axes.begin(), f.axes.end(),
+                     [](const plot::Axes& a) { return a.kind == plot::AxesKind::space; });
 }
 
 std::string figure_html(const plot::Figure& f, const std::string& id) {
-  std::string s = "<figure style=\"width:" + number_text(f.width) + "px\"><div class=\"bar\"><h3>" + escape(f.title) + "</h3><span class=\"hint\">";
+  std::string s = "<figure style=\"width:" + number_text(f.width) + "px\"><div class=\"bar\"><h3>" +
+                  escape(f.title) + "</h3><span class=\"hint\">";
   s += turns(f) ? "drag turns" : "click, then wheel zooms; drag pans; shift-drag: window";
-  s += "</span><button data-do=\"reset\" title=\"back to the whole picture (double click)\">reset</button>"
+  s += "</span><button data-do=\"reset\" title=\"back to the whole picture (double "
+       "click)\">reset</button>"
        "<button data-do=\"save\" title=\"save this picture as it is now\">SVG</button></div>\n";
   // Twice the density of the printed picture: something is left to zoom into.
   s += plot::render_svg(f, {false, id, 2.0});
@@ -78,8 +85,10 @@ std::string anchor(std::size_t k) { return "s" + std::to_string(k + 1); }
 }  // namespace
 
 std::string render_report(const Report& r) {
-  std::string s = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                  "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" + escape(r.title) + "</title>\n<style>\n";
+  std::string s =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+      escape(r.title) + "</title>\n<style>\n";
   s += report_css;
   s += "</style>\n</head>\n<body>\n";
   const bool nav = r.sections.size() > 1;
@@ -89,7 +98,8 @@ std::string render_report(const Report& r) {
   for (std::size_t k = 0; k < r.sections.size(); ++k)
     for (const auto& f : r.sections[k].figures) {
       std::string id = safe_name(f.name);
-      for (int n = 2; !taken.insert(id).second; ++n) id = safe_name(f.name) + "-" + std::to_string(n) + "-";
+      for (int n = 2; !taken.insert(id).second; ++n)
+        id = safe_name(f.name) + "-" + std::to_string(n) + "-";
       ids[k].push_back(std::move(id));
     }
   s += nav ? "<div class=\"page with-nav\">\n" : "<div class=\"page\">\n";
@@ -101,7 +111,8 @@ std::string render_report(const Report& r) {
     for (std::size_t k = 0; k < r.sections.size(); ++k) {
       s += "<li><a href=\"#" + anchor(k) + "\">" + escape(r.sections[k].title) + "</a>";
       for (std::size_t i = 0; i < ids[k].size(); ++i)
-        s += "<span class=\"sub\"><a href=\"#" + ids[k][i] + "\">" + escape(r.sections[k].figures[i].title) + "</a></span>";
+        s += "<span class=\"sub\"><a href=\"#" + ids[k][i] + "\">" +
+             escape(r.sections[k].figures[i].title) + "</a></span>";
       s += "</li>";
     }
     s += "</ol></nav>\n";
@@ -109,38 +120,48 @@ std::string render_report(const Report& r) {
   s += "<main>\n";
   if (!r.facts.empty()) {
     s += "<dl class=\"facts\">";
-    for (const auto& [name, value] : r.facts) s += "<div><dt>" + escape(name) + "</dt><dd>" + escape(value) + "</dd></div>";
+    for (const auto& [name, value] : r.facts)
+      s += "<div><dt>" + escape(name) + "</dt><dd>" + escape(value) + "</dd></div>";
     s += "</dl>\n";
   }
   if (!r.warnings.empty()) {
     s += "<div class=\"warnings\">";
-    for (const auto& w : r.warnings) s += "<p>" + escape(w) + "</p>";
+    for (const auto& w : r.warnings)
+      s += "<p>" + escape(w) + "</p>";
     s += "</div>\n";
   }
   for (std::size_t k = 0; k < r.sections.size(); ++k) {
     const auto& x = r.sections[k];
-    s += "<section id=\"" + anchor(k) + "\"><h2>" + escape(x.title) + "</h2>\n" + paragraphs(x.text);
-    for (const auto& t : x.tables) s += table_html(t);
+    s +=
+        "<section id=\"" + anchor(k) + "\"><h2>" + escape(x.title) + "</h2>\n" + paragraphs(x.text);
+    for (const auto& t : x.tables)
+      s += table_html(t);
     if (!x.figures.empty()) {
       s += "<div class=\"figures\">";
-      for (std::size_t i = 0; i < x.figures.size(); ++i) s += figure_html(x.figures[i], ids[k][i]);
+      for (std::size_t i = 0; i < x.figures.size(); ++i)
+        s += figure_html(x.figures[i], ids[k][i]);
       s += "</div>\n";
     }
     if (!x.files.empty()) {
       s += "<p class=\"files\">Files: ";
       for (std::size_t i = 0; i < x.files.size(); ++i)
-        s += (i ? ", " : "") + ("<a href=\"" + escape(x.files[i].second) + "\">" + escape(x.files[i].first) + "</a>");
+        s += (i ? ", " : "") +
+             ("<a href=\"" + escape(x.files[i].second) + "\">" + escape(x.files[i].first) + "</a>");
       s += "</p>\n";
     }
     s += "</section>\n";
   }
-  if (!r.summary.is_null()) s += "<details><summary>Run summary</summary>" + value_html(r.summary) + "</details>\n";
-  if (!r.deck.empty()) s += "<details><summary>Deck, resolved</summary><pre>" + escape(r.deck) + "</pre></details>\n";
+  if (!r.summary.is_null())
+    s += "<details><summary>Run summary</summary>" + value_html(r.summary) + "</details>\n";
+  if (!r.deck.empty())
+    s += "<details><summary>Deck, resolved</summary><pre>" + escape(r.deck) + "</pre></details>\n";
   s += "</main>\n</div>\n<script>\n";
   s += report_js;
   return s + "</script>\n</body>\n</html>\n";
 }
 
-void write_report(const std::filesystem::path& file, const Report& r) { write_atomic(file, render_report(r)); }
+void write_report(const std::filesystem::path& file, const Report& r) {
+  write_atomic(file, render_report(r));
+}
 
 }  // namespace whirl::io

@@ -17,11 +17,29 @@ namespace fs = std::filesystem;
 class Tee final : public TimeSeries {
  public:
   explicit Tee(std::vector<TimeSeriesPtr> sinks) : sinks_(std::move(sinks)) {}
-  void begin(std::span<const Channel> c) override { rows_ = 0; for (auto& s : sinks_) s->begin(c); }
-  void resume(std::span<const Channel> c, std::uint64_t rows) override { rows_ = rows; for (auto& s : sinks_) s->resume(c, rows); }
-  void append(std::span<const double> row) override { ++rows_; for (auto& s : sinks_) s->append(row); }
-  void flush() override { for (auto& s : sinks_) s->flush(); }
-  void close() override { for (auto& s : sinks_) s->close(); }
+  void begin(std::span<const Channel> c) override {
+    rows_ = 0;
+    for (auto& s : sinks_)
+      s->begin(c);
+  }
+  void resume(std::span<const Channel> c, std::uint64_t rows) override {
+    rows_ = rows;
+    for (auto& s : sinks_)
+      s->resume(c, rows);
+  }
+  void append(std::span<const double> row) override {
+    ++rows_;
+    for (auto& s : sinks_)
+      s->append(row);
+  }
+  void flush() override {
+    for (auto& s : sinks_)
+      s->flush();
+  }
+  void close() override {
+    for (auto& s : sinks_)
+      s->close();
+  }
   std::uint64_t rows() const override { return rows_; }
 
  private:
@@ -44,7 +62,8 @@ class Watched final : public TimeSeries {
   }
   void append(std::span<const double> row) override {
     double zero = 0;
-    for (const double x : row) zero += 0.0 * x;   // NaN when any is not finite
+    for (const double x : row)
+      zero += 0.0 * x;  // NaN when any is not finite
     if (!(zero == 0.0)) count(row);
     sink_->append(row);
   }
@@ -59,7 +78,8 @@ class Watched final : public TimeSeries {
   void take_names(std::span<const Channel> channels) {
     names_.clear();
     for (const Channel& c : channels)
-      for (std::size_t k = 0; k < c.width(); ++k) names_.push_back(c.column(k));
+      for (std::size_t k = 0; k < c.width(); ++k)
+        names_.push_back(c.column(k));
   }
   void count(std::span<const double> row) {
     for (std::size_t k = 0; k < row.size(); ++k) {
@@ -80,15 +100,19 @@ class Watched final : public TimeSeries {
 
 TimeSeriesPtr make_csv_series(fs::path file, SeriesOptions options) {
   std::string name = file.filename().string();
-  return std::make_unique<Watched>(std::move(name), make_plain_csv_series(std::move(file), options));
+  return std::make_unique<Watched>(std::move(name),
+                                   make_plain_csv_series(std::move(file), options));
 }
 
-TimeSeriesPtr make_tee(std::vector<TimeSeriesPtr> sinks) { return std::make_unique<Tee>(std::move(sinks)); }
+TimeSeriesPtr make_tee(std::vector<TimeSeriesPtr> sinks) {
+  return std::make_unique<Tee>(std::move(sinks));
+}
 
 bool hdf5_available() { return Plugin::available("hdf5"); }
 
 TimeSeriesPtr make_hdf5_series(fs::path file, SeriesOptions options) {
-  TimeSeriesPtr sink(Plugin::load("hdf5").function<Hdf5MakeSeries>(hdf5_make_series)(file, options));
+  TimeSeriesPtr sink(
+      Plugin::load("hdf5").function<Hdf5MakeSeries>(hdf5_make_series)(file, options));
   return std::make_unique<Watched>(file.filename().string(), std::move(sink));
 }
 
@@ -118,23 +142,32 @@ fs::path ResultsFolder::path(std::string_view name) const {
 fs::path ResultsFolder::subfolder(std::string_view name) const {
   const fs::path p = root_ / name;
   std::error_code ec;
-  if (fs::is_symlink(fs::symlink_status(p, ec))) io_failure(p, "nothing is written through a symbolic link:");
+  if (fs::is_symlink(fs::symlink_status(p, ec)))
+    io_failure(p, "nothing is written through a symbolic link:");
   fs::create_directories(p, ec);
   if (ec) io_failure(p, "cannot make the folder", ec.value());
   return p;
 }
 
-void ResultsFolder::remove(const std::function<bool(const std::string&)>& which) const { manifest_->remove(which); }
+void ResultsFolder::remove(const std::function<bool(const std::string&)>& which) const {
+  manifest_->remove(which);
+}
 
-void ResultsFolder::write_text(std::string_view name, std::string_view content) const { write_atomic(path(name), content); }
-void ResultsFolder::write_json(std::string_view name, const Value& value) const { write_atomic(path(name), to_json(value)); }
+void ResultsFolder::write_text(std::string_view name, std::string_view content) const {
+  write_atomic(path(name), content);
+}
+void ResultsFolder::write_json(std::string_view name, const Value& value) const {
+  write_atomic(path(name), to_json(value));
+}
 
 void ResultsFolder::write_table(std::string_view name, const Table& table) const {
   const auto unexpected = [&](const Table::Cell& c) {
-    return !c.is_text && !std::isfinite(c.number) && !(std::isnan(c.number) && !table.nan_means.empty());
+    return !c.is_text && !std::isfinite(c.number) &&
+           !(std::isnan(c.number) && !table.nan_means.empty());
   };
   for (std::size_t k = 0; k < table.columns.size(); ++k) {
-    const auto count = std::count_if(table.rows.begin(), table.rows.end(), [&](const auto& row) { return unexpected(row[k]); });
+    const auto count = std::count_if(table.rows.begin(), table.rows.end(),
+                                     [&](const auto& row) { return unexpected(row[k]); });
     note_nonfinite(name, table.columns[k].name, static_cast<std::size_t>(count));
   }
   write_csv(path(name), table);

@@ -1,7 +1,9 @@
-// What a run leaves behind: a results folder, time series that stream to disk, tables, and a JSON summary.
+// What a run leaves behind: a results folder, time series that stream to disk, tables, and a JSON
+// summary.
 //
-// Every whole file is written beside its place and renamed, so a reader sees the old one or the new one. Time series
-// are append-only: a killed run keeps every row flushed so far, and can be continued (`resume`).
+// Every whole file is written beside its place and renamed, so a reader sees the old one or the new
+// one. Time series are append-only: a killed run keeps every row flushed so far, and can be
+// continued (`resume`).
 #pragma once
 #include <io/manifest.hpp>
 #include <io/value.hpp>
@@ -18,34 +20,40 @@ namespace whirl::io {
 
 /// One column, or a few that belong together, of a time series.
 struct Channel {
-  std::string name;                      ///< "DE-XY", "bearing NDE force": unique within a series
-  std::string unit;                      ///< unit of what is written ("m", "rpm"); "-" = dimensionless
-  std::string description;               ///< one line, with sign convention and amplitude convention where it matters
-  std::vector<std::string> components;   ///< empty = scalar; otherwise one name a column ("x", "y", "z")
-  double scale = 1.0;                    ///< written value = scale * appended value (rad/s -> rpm: 30/pi)
-  std::string group;                     ///< data set it goes into in binary files; "" = "series"
+  std::string name;  ///< "DE-XY", "bearing NDE force": unique within a series
+  std::string unit;  ///< unit of what is written ("m", "rpm"); "-" = dimensionless
+  std::string
+      description;  ///< one line, with sign convention and amplitude convention where it matters
+  std::vector<std::string>
+      components;      ///< empty = scalar; otherwise one name a column ("x", "y", "z")
+  double scale = 1.0;  ///< written value = scale * appended value (rad/s -> rpm: 30/pi)
+  std::string group;   ///< data set it goes into in binary files; "" = "series"
 
   std::size_t width() const { return components.empty() ? 1 : components.size(); }
   /// Column title of component k: "name" or "name.component".
-  std::string column(std::size_t k) const { return components.empty() ? name : name + "." + components[k]; }
+  std::string column(std::size_t k) const {
+    return components.empty() ? name : name + "." + components[k];
+  }
 };
 
 /// Number of values in a row.
 std::size_t row_width(std::span<const Channel> channels);
 
-/// A sink for rows. begin() or resume() once, append() per row, close() at the end (also done by the destructor, which
-/// swallows errors). Errors: Error with Exit::io.
+/// A sink for rows. begin() or resume() once, append() per row, close() at the end (also done by
+/// the destructor, which swallows errors). Errors: Error with Exit::io.
 class TimeSeries {
  public:
   virtual ~TimeSeries() = default;
-  /// Starts a new series; an older file of that name is replaced. The first channel is the time by convention.
+  /// Starts a new series; an older file of that name is replaced. The first channel is the time by
+  /// convention.
   virtual void begin(std::span<const Channel> channels) = 0;
-  /// Continues a file: keeps its first `rows` rows, drops what follows (a run killed after its last checkpoint).
-  /// Error when its channels differ or when it holds fewer rows.
+  /// Continues a file: keeps its first `rows` rows, drops what follows (a run killed after its last
+  /// checkpoint). Error when its channels differ or when it holds fewer rows.
   virtual void resume(std::span<const Channel> channels, std::uint64_t rows) = 0;
   /// Appends one row of row_width(channels) values, unscaled. Does not allocate.
   virtual void append(std::span<const double> row) = 0;
-  /// Everything appended so far becomes readable by others and, in text files, safe from a power cut: what a checkpoint counts on.
+  /// Everything appended so far becomes readable by others and, in text files, safe from a power
+  /// cut: what a checkpoint counts on.
   virtual void flush() = 0;
   virtual void close() = 0;
   /// Rows in the file once flushed, counting those kept by resume(): what a checkpoint remembers.
@@ -54,11 +62,12 @@ class TimeSeries {
 using TimeSeriesPtr = std::unique_ptr<TimeSeries>;
 
 struct SeriesOptions {
-  double flush_seconds = 1.0;         ///< wall clock between flushes
-  std::size_t buffer_bytes = 1 << 18; ///< flushed earlier when this much is waiting
+  double flush_seconds = 1.0;          ///< wall clock between flushes
+  std::size_t buffer_bytes = 1 << 18;  ///< flushed earlier when this much is waiting
 };
 
-/// Comma-separated values: header "name [unit],...", then shortest decimal forms that read back to the same double.
+/// Comma-separated values: header "name [unit],...", then shortest decimal forms that read back to
+/// the same double.
 TimeSeriesPtr make_csv_series(std::filesystem::path file, SeriesOptions options = {});
 
 /// HDF5 (plug-in, loaded by this call): one compressed rows x columns data set a group; the file
@@ -72,12 +81,13 @@ TimeSeriesPtr make_tee(std::vector<TimeSeriesPtr> sinks);
 /// What comes back from a series or table file.
 struct Columns {
   std::vector<std::string> names, units;
-  std::vector<std::vector<double>> values;   ///< one vector a column
+  std::vector<std::vector<double>> values;  ///< one vector a column
   std::size_t rows() const { return values.empty() ? 0 : values.front().size(); }
   /// Column by title. Error when there is none.
   const std::vector<double>& operator[](std::string_view name) const;
 };
-/// Reads a CSV series or table; an unfinished last line (killed run) is left out. Text cells read as NaN.
+/// Reads a CSV series or table; an unfinished last line (killed run) is left out. Text cells read
+/// as NaN.
 Columns read_csv(const std::filesystem::path& file);
 /// Reads an HDF5 series, also of a killed or still running program.
 Columns read_hdf5(const std::filesystem::path& file);
@@ -94,13 +104,15 @@ class Table {
     Cell(std::string s) : text(std::move(s)), is_text(true) {}
     Cell(const char* s) : text(s), is_text(true) {}
   };
-  struct Column { std::string name, unit, description; };
+  struct Column {
+    std::string name, unit, description;
+  };
 
   std::string title;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows;
-  /// What "nan" in a cell stands for ("the mode is not there at this speed"); empty: there is to be none, and one that is written all the
-  /// same is reported (nonfinite.hpp).
+  /// What "nan" in a cell stands for ("the mode is not there at this speed"); empty: there is to be
+  /// none, and one that is written all the same is reported (nonfinite.hpp).
   std::string nan_means;
 
   /// Adds a row; it must have one cell a column.
@@ -109,8 +121,9 @@ class Table {
 /// CSV, header "name [unit]", written atomically.
 void write_csv(const std::filesystem::path& file, const Table& table);
 
-/// A folder of results. Made on construction (with parents), and rid of half-written files of killed runs. All names are relative to it.
-/// What is written is listed in its manifest (manifest.hpp), which keeps the user's own files in the same folder safe.
+/// A folder of results. Made on construction (with parents), and rid of half-written files of
+/// killed runs. All names are relative to it. What is written is listed in its manifest
+/// (manifest.hpp), which keeps the user's own files in the same folder safe.
 class ResultsFolder {
  public:
   explicit ResultsFolder(std::filesystem::path root);
@@ -119,11 +132,12 @@ class ResultsFolder {
   std::filesystem::path path(std::string_view name) const;
   /// Path of a folder in it, made when missing. Error as for a file when it is a symbolic link.
   std::filesystem::path subfolder(std::string_view name) const;
-  /// Removes the files of earlier runs that `which` accepts, by their names; never a file that no run made.
+  /// Removes the files of earlier runs that `which` accepts, by their names; never a file that no
+  /// run made.
   void remove(const std::function<bool(const std::string& name)>& which) const;
-  void write_text(std::string_view name, std::string_view content) const;   ///< atomic
-  void write_json(std::string_view name, const Value& value) const;         ///< atomic
-  void write_table(std::string_view name, const Table& table) const;        ///< atomic
+  void write_text(std::string_view name, std::string_view content) const;  ///< atomic
+  void write_json(std::string_view name, const Value& value) const;        ///< atomic
+  void write_table(std::string_view name, const Table& table) const;       ///< atomic
 
  private:
   std::filesystem::path root_;

@@ -42,7 +42,8 @@ class Value {
   bool is_text() const { return std::holds_alternative<std::string>(v_); }
   bool is_number() const { return v_.index() == 2 || v_.index() == 3; }
 
-  /// Member by key; made when absent (null becomes an object), like summary["newton"]["iterations"] = 12.
+  /// Member by key; made when absent (null becomes an object), like summary["newton"]["iterations"]
+  /// = 12.
   Value& operator[](std::string_view key);
   /// Member by key, or a null value.
   const Value& at(std::string_view key) const;
@@ -52,18 +53,22 @@ class Value {
   const Object& members() const { return std::get<Object>(v_); }
   const Array& items() const { return std::get<Array>(v_); }
   const std::string& text() const { return std::get<std::string>(v_); }
-  double number() const { return v_.index() == 2 ? double(std::get<std::int64_t>(v_)) : std::get<double>(v_); }
+  double number() const {
+    return v_.index() == 2 ? double(std::get<std::int64_t>(v_)) : std::get<double>(v_);
+  }
   bool boolean() const { return std::get<bool>(v_); }
 
-  using Variant = std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Object>;
+  using Variant =
+      std::variant<std::monostate, bool, std::int64_t, double, std::string, Array, Object>;
   const Variant& variant() const { return v_; }
 
  private:
   Variant v_;
 };
 
-/// JSON text, two-space indent, ends with a newline. Numbers read back to the same double; nan and the infinities,
-/// which JSON lacks, become the strings "nan", "inf", "-inf". Text that is not UTF-8 has the bad bytes replaced.
+/// JSON text, two-space indent, ends with a newline. Numbers read back to the same double; nan and
+/// the infinities, which JSON lacks, become the strings "nan", "inf", "-inf". Text that is not
+/// UTF-8 has the bad bytes replaced.
 std::string to_json(const Value& v, int indent = 2);
 /// Error with Exit::io when the text is not JSON.
 Value parse_json(std::string_view text);

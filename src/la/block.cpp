@@ -6,9 +6,11 @@ namespace whirl::la {
 BlockPattern::BlockPattern(Index n, const std::vector<std::pair<Index, Index>>& couplings) : n_(n) {
   std::vector<std::pair<Index, Index>> entries;
   entries.reserve(static_cast<std::size_t>(n) + 2 * couplings.size());
-  for (Index i = 0; i < n; ++i) entries.emplace_back(i, i);
+  for (Index i = 0; i < n; ++i)
+    entries.emplace_back(i, i);
   for (const auto& [i, j] : couplings) {
-    if (i < 0 || j < 0 || i >= n || j >= n) throw std::out_of_range("BlockPattern: coupling to a node outside 0..n-1");
+    if (i < 0 || j < 0 || i >= n || j >= n)
+      throw std::out_of_range("BlockPattern: coupling to a node outside 0..n-1");
     if (i == j) continue;
     entries.emplace_back(i, j);
     entries.emplace_back(j, i);

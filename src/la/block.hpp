@@ -1,5 +1,5 @@
-// Block-sparse matrices on the node graph of the model. One block row per node; the pattern is structurally symmetric,
-// always holds the diagonal, and never changes after it is built.
+// Block-sparse matrices on the node graph of the model. One block row per node; the pattern is
+// structurally symmetric, always holds the diagonal, and never changes after it is built.
 #pragma once
 #include <core/types.hpp>
 #include <algorithm>
@@ -13,7 +13,8 @@ namespace whirl::la {
 class BlockPattern {
  public:
   BlockPattern() = default;
-  /// n nodes, couplings given as pairs (any order, duplicates allowed; (i,j) implies (j,i); diagonals are added).
+  /// n nodes, couplings given as pairs (any order, duplicates allowed; (i,j) implies (j,i);
+  /// diagonals are added).
   BlockPattern(Index n, const std::vector<std::pair<Index, Index>>& couplings);
 
   Index size() const { return n_; }
@@ -40,7 +41,9 @@ class BlockMatrix {
   using Map = Eigen::Map<Block>;
   using ConstMap = Eigen::Map<const Block>;
   BlockMatrix() = default;
-  explicit BlockMatrix(const BlockPattern& p) : pattern_(&p), values_(static_cast<std::size_t>(p.blocks() * B * B)) {}
+  explicit BlockMatrix(const BlockPattern& p)
+      : pattern_(&p),
+        values_(static_cast<std::size_t>(p.blocks() * B * B)) {}
   const BlockPattern& pattern() const { return *pattern_; }
   void set_zero() { std::fill(values_.begin(), values_.end(), Scalar(0)); }
   Map block(Index slot) { return Map(values_.data() + slot * B * B); }
@@ -54,7 +57,8 @@ class BlockMatrix {
     const auto& start = pattern_->row_start();
     const auto& cols = pattern_->cols();
     for (Index i = 0; i < pattern_->size(); ++i)
-      for (Index k = start[static_cast<std::size_t>(i)]; k < start[static_cast<std::size_t>(i) + 1]; ++k)
+      for (Index k = start[static_cast<std::size_t>(i)]; k < start[static_cast<std::size_t>(i) + 1];
+           ++k)
         y.template segment<B>(B * i) +=
             s * (block(k) * x.template segment<B>(B * cols[static_cast<std::size_t>(k)]));
   }
@@ -64,7 +68,8 @@ class BlockMatrix {
   std::vector<Scalar> values_;
 };
 
-/// The three matrices of a linearisation, all on one pattern, in the nodal unknowns (u, phi, gamma).
+/// The three matrices of a linearisation, all on one pattern, in the nodal unknowns (u, phi,
+/// gamma).
 struct MCK {
   MCK() = default;
   explicit MCK(const BlockPattern& p) : M(p), C(p), K(p) {}

@@ -77,16 +77,18 @@ void add_term(lu::Terms& t, const BlockMatrix<6>& m, Complex c) {
 }  // namespace
 
 template <class Scalar>
-BlockLu<Scalar>::BlockLu(const BlockPattern& pattern, std::span<const unsigned char> active, lu::Ordering ordering,
-                         const lu::Kernels* kernels)
+BlockLu<Scalar>::BlockLu(const BlockPattern& pattern, std::span<const unsigned char> active,
+                         lu::Ordering ordering, const lu::Kernels* kernels)
     : symbolic_(pattern, active, ordering),
       kernels_(kernels ? *kernels : lu::kernels()),
       inverse_(static_cast<std::size_t>(pattern.size() * lu::plane) * planes<Scalar>),
       lower_(static_cast<std::size_t>(symbolic_.entries() * lu::plane) * planes<Scalar>),
       upper_(static_cast<std::size_t>(symbolic_.entries() * lu::plane) * planes<Scalar>),
       vec_(static_cast<std::size_t>(pattern.size() * lu::lane) * planes<Scalar>) {
-  // A singular chain leaves a last pivot of the size of the rounding errors it has gathered; they add up at random.
-  const double tolerance = std::numeric_limits<double>::epsilon() * (16.0 + std::sqrt(static_cast<double>(pattern.size())));
+  // A singular chain leaves a last pivot of the size of the rounding errors it has gathered; they
+  // add up at random.
+  const double tolerance = std::numeric_limits<double>::epsilon() *
+                           (16.0 + std::sqrt(static_cast<double>(pattern.size())));
   factors_ = {inverse_.data(), lower_.data(), upper_.data(), vec_.data(), tolerance};
 }
 
@@ -101,7 +103,8 @@ Status BlockLu<Scalar>::factor(const MCK& m, Scalar cm, Scalar cc, Scalar ck) {
     outcome_ = kernels_.factor_real(symbolic_.plan(), t, factors_);
   else
     outcome_ = kernels_.factor_complex(symbolic_.plan(), t, factors_);
-  singular_ = outcome_.step < 0 ? -1 : 6 * Index(symbolic_.plan().node[outcome_.step]) + outcome_.component;
+  singular_ =
+      outcome_.step < 0 ? -1 : 6 * Index(symbolic_.plan().node[outcome_.step]) + outcome_.component;
   return singular_ < 0 ? Status::ok : Status::singular;
 }
 
@@ -115,7 +118,8 @@ void BlockLu<Scalar>::solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>
 
 template <class Scalar>
 Eigen::Matrix<Scalar, 6, 6> BlockLu<Scalar>::inverse_pivot_block(Index step) const {
-  const double* const p = inverse_.data() + static_cast<std::size_t>(step * lu::plane) * planes<Scalar>;
+  const double* const p =
+      inverse_.data() + static_cast<std::size_t>(step * lu::plane) * planes<Scalar>;
   Eigen::Matrix<Scalar, 6, 6> d;
   for (int j = 0; j < 6; ++j)
     for (int i = 0; i < 6; ++i) {
@@ -151,7 +155,8 @@ Index BlockLu<Scalar>::negative_eigenvalues() const {
     Eigen::Matrix<Scalar, 6, 6> d = inverse_pivot_block(k);
     d = (0.5 * (d + d.adjoint())).eval();
     Vector<6> s;
-    for (int i = 0; i < 6; ++i) s(i) = 1.0 / std::sqrt(std::max(d.row(i).cwiseAbs().maxCoeff(), 1e-300));
+    for (int i = 0; i < 6; ++i)
+      s(i) = 1.0 / std::sqrt(std::max(d.row(i).cwiseAbs().maxCoeff(), 1e-300));
     d = (s.asDiagonal() * d * s.asDiagonal()).eval();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Scalar, 6, 6>> eig(d, Eigen::EigenvaluesOnly);
     count += (eig.eigenvalues().array() < 0.0).count();

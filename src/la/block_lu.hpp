@@ -1,4 +1,5 @@
-// Block-sparse LU with 6x6 blocks on any symmetric node graph (chains, trees, gears, pedestals, casings).
+// Block-sparse LU with 6x6 blocks on any symmetric node graph (chains, trees, gears, pedestals,
+// casings).
 #pragma once
 #include <la/direct.hpp>
 #include <la/lu_plan.hpp>
@@ -8,7 +9,9 @@ namespace whirl::la {
 /// Memory aligned for vector loads, allocated once.
 class AlignedBuffer {
  public:
-  explicit AlignedBuffer(std::size_t doubles) : data_(static_cast<double*>(::operator new[](std::max<std::size_t>(doubles, 1) * sizeof(double), std::align_val_t(64)))) {
+  explicit AlignedBuffer(std::size_t doubles)
+      : data_(static_cast<double*>(::operator new[](
+            std::max<std::size_t>(doubles, 1) * sizeof(double), std::align_val_t(64)))) {
     std::fill_n(data_.get(), doubles, 0.0);
   }
   double* data() { return data_.get(); }
@@ -21,8 +24,8 @@ class AlignedBuffer {
   std::unique_ptr<double[], Free> data_;
 };
 
-/// Pivots are sought inside the diagonal block of a node only. That is stable for what rotor models give (definite,
-/// gyroscopic, damped, shifted), and growth() tells when it was not.
+/// Pivots are sought inside the diagonal block of a node only. That is stable for what rotor models
+/// give (definite, gyroscopic, damped, shifted), and growth() tells when it was not.
 template <class Scalar>
 class BlockLu final : public DirectSolver<Scalar> {
  public:
@@ -39,7 +42,8 @@ class BlockLu final : public DirectSolver<Scalar> {
   int repivoted_blocks() const { return outcome_.repivoted; }
   /// log10 |det S| and det S / |det S| of the last factorisation (held unknowns count as 1).
   std::pair<double, Complex> determinant() const;
-  /// Negative eigenvalues of S, which must be Hermitian: by Sylvester's law, those of the blocks D_k.
+  /// Negative eigenvalues of S, which must be Hermitian: by Sylvester's law, those of the blocks
+  /// D_k.
   Index negative_eigenvalues() const;
   /// Diagonal block D_k^-1 of the elimination step of a node.
   Eigen::Matrix<Scalar, 6, 6> inverse_pivot_block(Index step) const;

@@ -4,7 +4,8 @@
 
 namespace whirl::la {
 
-bool Continuation::tangent(ContinuationProblem& problem, const VecX& q, double mu, const ContinuationOptions& o, bool first) {
+bool Continuation::tangent(ContinuationProblem& problem, const VecX& q, double mu,
+                           const ContinuationOptions& o, bool first) {
   // K dq + f_mu dmu = 0, normalised in the scaled space.
   if (!problem.factor(q, mu)) return false;
   problem.load(q, mu, load_);
@@ -20,7 +21,8 @@ bool Continuation::tangent(ContinuationProblem& problem, const VecX& q, double m
     if (o.direction < 0.0) s = -s;
   } else {
     // Onwards: along the last direction.
-    const double forward = b_.cwiseProduct(weight_).dot(direction_.cwiseProduct(weight_)) + mu_direction_ / (mu_weight_ * mu_weight_);
+    const double forward = b_.cwiseProduct(weight_).dot(direction_.cwiseProduct(weight_)) +
+                           mu_direction_ / (mu_weight_ * mu_weight_);
     if (forward < 0.0) s = -s;
   }
   direction_ = s * b_;
@@ -29,7 +31,8 @@ bool Continuation::tangent(ContinuationProblem& problem, const VecX& q, double m
 }
 
 /// Newton on f(q, mu) = 0 with the constraint of this step; the number of iterations, or -1.
-int Continuation::correct(ContinuationProblem& problem, const VecX& q, double mu, double ds, const ContinuationOptions& o, bool fixed_mu) {
+int Continuation::correct(ContinuationProblem& problem, const VecX& q, double mu, double ds,
+                          const ContinuationOptions& o, bool fixed_mu) {
   double stretch = ds;
   if (o.controlled >= 0 && !fixed_mu) {
     const double rate = std::abs(direction_(o.controlled) * weight_(o.controlled));
@@ -54,14 +57,16 @@ int Continuation::correct(ContinuationProblem& problem, const VecX& q, double mu
         dmu = -a_(o.controlled) / b_(o.controlled);
       } else {
         // Stay in the plane across the tangent.
-        const double down = direction_.cwiseProduct(weight_).dot(b_.cwiseProduct(weight_)) + mu_direction_ / (mu_weight_ * mu_weight_);
+        const double down = direction_.cwiseProduct(weight_).dot(b_.cwiseProduct(weight_)) +
+                            mu_direction_ / (mu_weight_ * mu_weight_);
         dmu = -direction_.cwiseProduct(weight_).dot(a_.cwiseProduct(weight_)) / down;
       }
       a_ += dmu * b_;
     }
     trial_ += a_;
     trial_mu_ += dmu;
-    const double size = std::max(a_.cwiseProduct(weight_).cwiseAbs().maxCoeff(), std::abs(dmu) / mu_weight_);
+    const double size =
+        std::max(a_.cwiseProduct(weight_).cwiseAbs().maxCoeff(), std::abs(dmu) / mu_weight_);
     if (!(size < infinity)) return -1;
     if (size <= o.tolerance) return k;
     if (k > 3 && size > 2.0 * last) return -1;
@@ -71,13 +76,15 @@ int Continuation::correct(ContinuationProblem& problem, const VecX& q, double mu
 }
 
 void Continuation::prepare(ContinuationProblem& problem, Index n) {
-  for (VecX* v : {&f_, &load_, &a_, &b_, &trial_, &direction_, &last_}) v->resize(n);
+  for (VecX* v : {&f_, &load_, &a_, &b_, &trial_, &direction_, &last_})
+    v->resize(n);
   weight_ = problem.scale().cwiseInverse();
   mu_weight_ = problem.mu_scale();
 }
 
-bool Continuation::between(ContinuationProblem& problem, const VecX& qa, double mua, const VecX& qb, double mub, double part,
-                           const ContinuationOptions& o, VecX& q, double& mu) {
+bool Continuation::between(ContinuationProblem& problem, const VecX& qa, double mua, const VecX& qb,
+                           double mub, double part, const ContinuationOptions& o, VecX& q,
+                           double& mu) {
   prepare(problem, qa.size());
   direction_ = qb - qa;
   mu_direction_ = mub - mua;
@@ -94,7 +101,8 @@ bool Continuation::between(ContinuationProblem& problem, const VecX& qa, double 
   return true;
 }
 
-ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, double& mu, const ContinuationOptions& o, const Accept& accept) {
+ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, double& mu,
+                                     const ContinuationOptions& o, const Accept& accept) {
   ContinuationResult result;
   prepare(problem, q.size());
   double ds = std::abs(o.first_step), arc = 0.0;
@@ -109,7 +117,10 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
     bool landing = false;
     if (o.controlled >= 0 && std::isfinite(o.last_controlled)) {
       const double left = std::abs(o.last_controlled - q(o.controlled)) * weight_(o.controlled);
-      if (ds >= left * (1.0 - 1e-9)) { ds = left; landing = true; }
+      if (ds >= left * (1.0 - 1e-9)) {
+        ds = left;
+        landing = true;
+      }
     }
     const int iterations = correct(problem, q, mu, ds, o, false);
     if (iterations < 0) {
@@ -118,7 +129,8 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
       continue;
     }
     int used = iterations;
-    const bool passed = !leaving && (trial_mu_ - o.last_mu) * (mu - o.last_mu) <= 0.0 && std::isfinite(o.last_mu);
+    const bool passed =
+        !leaving && (trial_mu_ - o.last_mu) * (mu - o.last_mu) <= 0.0 && std::isfinite(o.last_mu);
     if (passed) {
       // Land on the last value: the step in proportion, then Newton at that mu.
       const double part = (o.last_mu - mu) / (trial_mu_ - mu);
@@ -133,12 +145,18 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
     const double before = mu_direction_;
     last_ = direction_;
     // At a limit point K is singular to rounding: the old tangent serves for one more step.
-    if (!tangent(problem, trial_, trial_mu_, o, false)) { direction_ = last_; mu_direction_ = before; }
+    if (!tangent(problem, trial_, trial_mu_, o, false)) {
+      direction_ = last_;
+      mu_direction_ = before;
+    }
     if (o.controlled < 0 && !leaving && ds > 1e3 * o.min_step) {
-      // A turn of more than 45 degrees in one step may have jumped to another part of the path, or back.
-      const double turn = direction_.cwiseProduct(weight_).dot(last_.cwiseProduct(weight_)) + mu_direction_ * before / (mu_weight_ * mu_weight_);
+      // A turn of more than 45 degrees in one step may have jumped to another part of the path, or
+      // back.
+      const double turn = direction_.cwiseProduct(weight_).dot(last_.cwiseProduct(weight_)) +
+                          mu_direction_ * before / (mu_weight_ * mu_weight_);
       if (turn < 0.7) {
-        direction_ = last_; mu_direction_ = before;
+        direction_ = last_;
+        mu_direction_ = before;
         ds *= 0.5;
         continue;
       }
@@ -146,14 +164,16 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
     ++result.steps;
     // Arc length of the chord.
     const double dmu = trial_mu_ - mu;
-    arc += std::sqrt((trial_ - q).cwiseProduct(weight_).squaredNorm() + dmu * dmu / (mu_weight_ * mu_weight_));
+    arc += std::sqrt((trial_ - q).cwiseProduct(weight_).squaredNorm() +
+                     dmu * dmu / (mu_weight_ * mu_weight_));
     q = trial_;
     mu = trial_mu_;
     const ContinuationPoint point{mu, arc, mu_direction_, used, before * mu_direction_ < 0.0};
     leaving = false;
     if (!accept(q, point)) return result.status = ContinuationStatus::stopped, result;
     if (passed || landing) return result;
-    ds = std::clamp(ds * std::clamp(static_cast<double>(o.wanted_iterations) / used, 0.5, 2.0), o.min_step, o.max_step);
+    ds = std::clamp(ds * std::clamp(static_cast<double>(o.wanted_iterations) / used, 0.5, 2.0),
+                    o.min_step, o.max_step);
   }
   result.status = ContinuationStatus::too_many_steps;
   return result;

@@ -13,7 +13,9 @@ template <class Scalar>
 class AutomaticSolver final : public DirectSolver<Scalar> {
  public:
   AutomaticSolver(const BlockPattern& pattern, std::span<const unsigned char> active)
-      : pattern_(pattern), active_(active.begin(), active.end()), block_(pattern, active) {}
+      : pattern_(pattern),
+        active_(active.begin(), active.end()),
+        block_(pattern, active) {}
   Status factor(const MCK& m, Scalar cm, Scalar cc, Scalar ck) override {
     last_ = &block_;
     const Status s = block_.factor(m, cm, cc, ck);
@@ -40,7 +42,8 @@ class AutomaticSolver final : public DirectSolver<Scalar> {
 }  // namespace
 
 template <class Scalar>
-std::unique_ptr<DirectSolver<Scalar>> make_direct_solver(const BlockPattern& pattern, std::span<const unsigned char> active,
+std::unique_ptr<DirectSolver<Scalar>> make_direct_solver(const BlockPattern& pattern,
+                                                         std::span<const unsigned char> active,
                                                          SolverKind kind) {
   switch (kind) {
     case SolverKind::block: return std::make_unique<BlockLu<Scalar>>(pattern, active);
@@ -50,7 +53,11 @@ std::unique_ptr<DirectSolver<Scalar>> make_direct_solver(const BlockPattern& pat
   return std::make_unique<AutomaticSolver<Scalar>>(pattern, active);
 }
 
-template std::unique_ptr<DirectSolver<double>> make_direct_solver(const BlockPattern&, std::span<const unsigned char>, SolverKind);
-template std::unique_ptr<DirectSolver<Complex>> make_direct_solver(const BlockPattern&, std::span<const unsigned char>, SolverKind);
+template std::unique_ptr<DirectSolver<double>> make_direct_solver(const BlockPattern&,
+                                                                  std::span<const unsigned char>,
+                                                                  SolverKind);
+template std::unique_ptr<DirectSolver<Complex>> make_direct_solver(const BlockPattern&,
+                                                                   std::span<const unsigned char>,
+                                                                   SolverKind);
 
 }  // namespace whirl::la

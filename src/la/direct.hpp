@@ -1,5 +1,5 @@
-// Direct solvers for S = cm M + cc C + ck K on the block pattern. One interface; block LU for the usual chain and tree
-// patterns, KLU (SuiteSparse) as the general one.
+// Direct solvers for S = cm M + cc C + ck K on the block pattern. One interface; block LU for the
+// usual chain and tree patterns, KLU (SuiteSparse) as the general one.
 #pragma once
 #include <la/block.hpp>
 #include <memory>
@@ -10,8 +10,9 @@ namespace whirl::la {
 
 enum class Status { ok, singular };
 
-/// Scalar is double or Complex. Unknowns with active == 0 are replaced by identity rows and columns: their solution
-/// components are whatever stands in the right-hand side (callers set them to zero).
+/// Scalar is double or Complex. Unknowns with active == 0 are replaced by identity rows and
+/// columns: their solution components are whatever stands in the right-hand side (callers set them
+/// to zero).
 template <class Scalar>
 class DirectSolver {
  public:
@@ -23,17 +24,19 @@ class DirectSolver {
   /// After `singular`: the unknown (6 * node + component) whose pivot vanished, or -1.
   virtual Index singular_unknown() const { return -1; }
   virtual std::string_view name() const = 0;
-  /// How much elimination made entries grow in the last factorisation: the relative backward error is about this times
-  /// 2e-16. 1 means none.
+  /// How much elimination made entries grow in the last factorisation: the relative backward error
+  /// is about this times 2e-16. 1 means none.
   virtual double growth() const = 0;
 };
 
-/// automatic: block, and KLU (made when first needed) for a matrix that pivoting inside node blocks cannot handle.
+/// automatic: block, and KLU (made when first needed) for a matrix that pivoting inside node blocks
+/// cannot handle.
 enum class SolverKind { automatic, block, klu };
 
 /// active: 6 * pattern.size() flags (1 = unknown, 0 = held). The pattern must outlive the solver.
 template <class Scalar>
-std::unique_ptr<DirectSolver<Scalar>> make_direct_solver(const BlockPattern& pattern, std::span<const unsigned char> active,
+std::unique_ptr<DirectSolver<Scalar>> make_direct_solver(const BlockPattern& pattern,
+                                                         std::span<const unsigned char> active,
                                                          SolverKind kind = SolverKind::automatic);
 
 }  // namespace whirl::la

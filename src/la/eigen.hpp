@@ -1,13 +1,18 @@
-// Eigenvalues of the quadratic problem (lambda^2 M + lambda C + K) x = 0 of whirl, of K x = omega^2 M x, and of A x = mu B x.
+// Eigenvalues of the quadratic problem (lambda^2 M + lambda C + K) x = 0 of whirl, of K x = omega^2
+// M x, and of A x = mu B x.
 //
-// Method: shift-invert Arnoldi on the linearisation z = (x, lambda x / alpha) in real arithmetic. The operator
-// (A - sigma B)^-1 B needs only the N-sized factorisation Q(sigma) = sigma^2 M + sigma C + K:
-//   p = -Q(sigma)^-1 (M (v + sigma x) + C x),  q = x + sigma p   for (x, v) -> (p, q),  eigenvalue 1/(lambda - sigma).
-// Massless unknowns (singular M) only add eigenvalues at infinity, which this operator maps to zero. What Arnoldi finds
-// is polished by Newton's method on the N-sized problem (F. Tisseur and K. Meerbergen, doi 10.1137/S0036144500381988; A. Neumaier,
-// doi 10.1137/0722055) and deflated; a new Arnoldi run from a random vector in the complement then shows whether anything inside the wanted
-// circle is missing, which also finds all copies of multiple eigenvalues. A neighbouring problem (the next speed of a Campbell diagram)
-// starts from the known modes: polishing and the search for missing ones are all that is left.
+// Method: shift-invert Arnoldi on the linearisation z = (x, lambda x / alpha) in real arithmetic.
+// The operator (A - sigma B)^-1 B needs only the N-sized factorisation Q(sigma) = sigma^2 M + sigma
+// C + K:
+//   p = -Q(sigma)^-1 (M (v + sigma x) + C x),  q = x + sigma p   for (x, v) -> (p, q),  eigenvalue
+//   1/(lambda - sigma).
+// Massless unknowns (singular M) only add eigenvalues at infinity, which this operator maps to
+// zero. What Arnoldi finds is polished by Newton's method on the N-sized problem (F. Tisseur and K.
+// Meerbergen, doi 10.1137/S0036144500381988; A. Neumaier, doi 10.1137/0722055) and deflated; a new
+// Arnoldi run from a random vector in the complement then shows whether anything inside the wanted
+// circle is missing, which also finds all copies of multiple eigenvalues. A neighbouring problem
+// (the next speed of a Campbell diagram) starts from the known modes: polishing and the search for
+// missing ones are all that is left.
 #pragma once
 #include <cmath>
 #include <la/block.hpp>
@@ -19,63 +24,79 @@
 namespace whirl::la {
 
 struct Mode {
-  Complex lambda;        ///< 1/s, Im lambda >= 0; the conjugate pair counts as one mode
-  VecXc x;               ///< nodal amplitudes (u, phi, gamma), largest component 1; zero at held unknowns
-  /// Backward error: largest entry of |Q x| over the largest of (|lambda|^2 |M| + |lambda| |C| + |K|) |x|, rows scaled by their
-  /// diagonal entries so that forces and moments compare.
+  Complex lambda;  ///< 1/s, Im lambda >= 0; the conjugate pair counts as one mode
+  VecXc x;         ///< nodal amplitudes (u, phi, gamma), largest component 1; zero at held unknowns
+  /// Backward error: largest entry of |Q x| over the largest of (|lambda|^2 |M| + |lambda| |C| +
+  /// |K|) |x|, rows scaled by their diagonal entries so that forces and moments compare.
   double residual = 0.0;
-  double uncertainty = 0.0;   ///< 1/s: what rounding of the entries of M, C, K to working precision can do to lambda
-  Index from = -1;       ///< which of the modes given as a start this one continues, -1: none
+  double uncertainty =
+      0.0;  ///< 1/s: what rounding of the entries of M, C, K to working precision can do to lambda
+  Index from = -1;  ///< which of the modes given as a start this one continues, -1: none
 };
 
-/// A motion counts as one that oscillates up to a damping ratio of 3/sqrt(10) = 0.949: beyond it hardly a second swing can be seen, and the number of
-/// such roots grows with the mesh. They are listed with the roots on the real axis.
+/// A motion counts as one that oscillates up to a damping ratio of 3/sqrt(10) = 0.949: beyond it
+/// hardly a second swing can be seen, and the number of such roots grows with the mesh. They are
+/// listed with the roots on the real axis.
 inline constexpr double oscillating_reach = 3.0;
-inline bool oscillates(Complex lambda) { return lambda.imag() != 0.0 && -lambda.real() <= oscillating_reach * std::abs(lambda.imag()); }
+inline bool oscillates(Complex lambda) {
+  return lambda.imag() != 0.0 && -lambda.real() <= oscillating_reach * std::abs(lambda.imag());
+}
 
 struct ModeOptions {
-  Index count = 12;      ///< modes wanted: the nearest to the shift (none given: of least |lambda|)
-  /// Where to look. Complex: only modes near it are sought, in complex arithmetic. Not set: least |lambda|.
+  Index count = 12;  ///< modes wanted: the nearest to the shift (none given: of least |lambda|)
+  /// Where to look. Complex: only modes near it are sought, in complex arithmetic. Not set: least
+  /// |lambda|.
   std::optional<Complex> shift;
-  /// rad/s. With count = 0: every mode with |lambda| <= max_frequency; otherwise drops modes beyond.
+  /// rad/s. With count = 0: every mode with |lambda| <= max_frequency; otherwise drops modes
+  /// beyond.
   double max_frequency = std::numeric_limits<double>::infinity();
-  double tolerance = 1e-12;   ///< relative accuracy of lambda aimed at; what the condition of the problem allows is the limit
-  Index dense_below = 36;     ///< active unknowns up to which a dense solver is used
-  bool real_roots = true;     ///< return (and count) overdamped and rigid-body modes, Im lambda = 0
-  Index guard = 2;            ///< modes kept beyond count, so that a neighbouring problem does not lose one at the border
-  /// Count the roots by an independent method (root_count.hpp), look for those that are missing, and say what is known: Certificate. Only without
-  /// a shift. `count` then counts modes that oscillate (as la::oscillates() says), in the order of their damped frequency |Im lambda|; real_roots adds every other
-  /// root that the counted region holds.
+  double tolerance = 1e-12;  ///< relative accuracy of lambda aimed at; what the condition of the
+                             ///< problem allows is the limit
+  Index dense_below = 36;    ///< active unknowns up to which a dense solver is used
+  bool real_roots = true;    ///< return (and count) overdamped and rigid-body modes, Im lambda = 0
+  Index guard = 2;  ///< modes kept beyond count, so that a neighbouring problem does not lose one
+                    ///< at the border
+  /// Count the roots by an independent method (root_count.hpp), look for those that are missing,
+  /// and say what is known: Certificate. Only without a shift. `count` then counts modes that
+  /// oscillate (as la::oscillates() says), in the order of their damped frequency |Im lambda|;
+  /// real_roots adds every other root that the counted region holds.
   bool certify = false;
-  bool growing = false;       ///< with certify: also every root of the region with Re lambda > 0, whatever its number
+  bool growing = false;  ///< with certify: also every root of the region with Re lambda > 0,
+                         ///< whatever its number
 };
 
-/// What is known of a list of modes: that every root of the region { Re s >= 0, |s| <= radius } and { -reach <= Re s < 0, |Im s| <= radius } is
-/// in it. counted: the argument principle gave a number; missing: that number less the roots found (a conjugate pair counts as two).
+/// What is known of a list of modes: that every root of the region { Re s >= 0, |s| <= radius } and
+/// { -reach <= Re s < 0, |Im s| <= radius } is in it. counted: the argument principle gave a
+/// number; missing: that number less the roots found (a conjugate pair counts as two).
 struct Certificate {
   bool counted = false;
   Index missing = 0;
-  double radius = 0.0;             ///< rad/s
-  double reach = 0.0;              ///< 1/s
-  std::vector<Complex> where;      ///< estimates of the missing roots, Im >= 0
-  Index factorizations = 0;        ///< what it cost
-  Index recovered = 0;             ///< roots the search had missed and the count led to
+  double radius = 0.0;         ///< rad/s
+  double reach = 0.0;          ///< 1/s
+  std::vector<Complex> where;  ///< estimates of the missing roots, Im >= 0
+  Index factorizations = 0;    ///< what it cost
+  Index recovered = 0;         ///< roots the search had missed and the count led to
   bool complete() const { return counted && missing == 0; }
   /// Roots of frequency `radius` are in the region up to this damping ratio, slower ones further.
   double damping_ratio() const { return reach > 0.0 ? reach / std::hypot(reach, radius) : 0.0; }
 };
 
-/// Modes sorted by |Im lambda|, then |lambda|; overdamped roots are kept, each on its own; a rigid-body motion (K x = 0,
-/// C x = 0) comes once, with lambda = 0. Throws Error when the problem has no eigenvalues or cannot be factored.
-std::vector<Mode> quadratic_modes(const MCK& m, std::span<const unsigned char> active, const ModeOptions& options = {});
+/// Modes sorted by |Im lambda|, then |lambda|; overdamped roots are kept, each on its own; a
+/// rigid-body motion (K x = 0, C x = 0) comes once, with lambda = 0. Throws Error when the problem
+/// has no eigenvalues or cannot be factored.
+std::vector<Mode> quadratic_modes(const MCK& m, std::span<const unsigned char> active,
+                                  const ModeOptions& options = {});
 
-/// The same for a series of neighbouring problems on one pattern; keeps factorisations, workspace and guard modes.
+/// The same for a series of neighbouring problems on one pattern; keeps factorisations, workspace
+/// and guard modes.
 class ModeSolver {
  public:
-  ModeSolver(const BlockPattern& pattern, std::span<const unsigned char> active, const ModeOptions& options = {});
+  ModeSolver(const BlockPattern& pattern, std::span<const unsigned char> active,
+             const ModeOptions& options = {});
   ~ModeSolver();
   ModeSolver(ModeSolver&&) noexcept;
-  /// All modes wanted. From the second call on it starts from what the last call found (Mode::from counts in its result).
+  /// All modes wanted. From the second call on it starts from what the last call found (Mode::from
+  /// counts in its result).
   const std::vector<Mode>& solve(const MCK& m);
   /// The same, with ModeOptions::certify, for a region that reaches at least to the radius (rad/s).
   const std::vector<Mode>& solve_to(const MCK& m, double radius);
@@ -87,7 +108,9 @@ class ModeSolver {
   /// Of the last solve(), with ModeOptions::certify.
   const Certificate& certificate() const;
 
-  struct Work { Index factorizations = 0, operator_products = 0, searches = 0; };
+  struct Work {
+    Index factorizations = 0, operator_products = 0, searches = 0;
+  };
   Work work() const;  ///< of the last call
 
  private:
@@ -97,18 +120,22 @@ class ModeSolver {
 
 /// A mode of K x = omega^2 M x with symmetric K and M, M positive semidefinite.
 struct RealMode {
-  double omega2 = 0.0;   ///< (rad/s)^2; negative beyond buckling
-  VecX x;                ///< x^T M x = 1
-  double residual = 0.0; ///< backward error as in Mode
+  double omega2 = 0.0;    ///< (rad/s)^2; negative beyond buckling
+  VecX x;                 ///< x^T M x = 1
+  double residual = 0.0;  ///< backward error as in Mode
 };
 
-/// The `count` eigenvalues omega^2 of least size in ascending order (undamped, at rest). C is not looked at. That none is
-/// missing below the last is proved by the inertia of K - s M (Sylvester), which needs K with few negative eigenvalues, or none.
-std::vector<RealMode> symmetric_modes(const MCK& m, std::span<const unsigned char> active, Index count, double tolerance = 1e-12);
+/// The `count` eigenvalues omega^2 of least size in ascending order (undamped, at rest). C is not
+/// looked at. That none is missing below the last is proved by the inertia of K - s M (Sylvester),
+/// which needs K with few negative eigenvalues, or none.
+std::vector<RealMode> symmetric_modes(const MCK& m, std::span<const unsigned char> active,
+                                      Index count, double tolerance = 1e-12);
 
-/// Eigenvalues mu of A x = mu B x nearest to the shift, sorted by |mu - shift|: buckling (A stiffness, B minus the geometric
-/// stiffness per unit load). Complex pairs (Im mu > 0 listed) mean flutter. Mode::lambda = mu.
-std::vector<Mode> linear_modes(const BlockMatrix<6>& A, const BlockMatrix<6>& B, std::span<const unsigned char> active,
-                               Index count, double shift = 0.0);
+/// Eigenvalues mu of A x = mu B x nearest to the shift, sorted by |mu - shift|: buckling (A
+/// stiffness, B minus the geometric stiffness per unit load). Complex pairs (Im mu > 0 listed) mean
+/// flutter. Mode::lambda = mu.
+std::vector<Mode> linear_modes(const BlockMatrix<6>& A, const BlockMatrix<6>& B,
+                               std::span<const unsigned char> active, Index count,
+                               double shift = 0.0);
 
 }  // namespace whirl::la

@@ -8,12 +8,16 @@
 
 namespace whirl::la {
 
-void Eigenpairs::suggest(std::vector<Pair>& found, Complex lambda, const VecXc& z, bool real_problem, std::vector<VecXc>* vectors) const {
+void Eigenpairs::suggest(std::vector<Pair>& found, Complex lambda, const VecXc& z,
+                         bool real_problem, std::vector<VecXc>* vectors) const {
   const auto push = [&](Complex l, VecXc v) {
     Pair p;
     p.lambda = l;
     p.x = full_vector(v);
-    if (vectors) { p.from = static_cast<Index>(vectors->size()); vectors->push_back(std::move(v)); }
+    if (vectors) {
+      p.from = static_cast<Index>(vectors->size());
+      vectors->push_back(std::move(v));
+    }
     found.push_back(std::move(p));
   };
   if (!real_problem || std::abs(lambda.imag()) > 1e-6 * std::abs(lambda)) return push(lambda, z);
@@ -22,7 +26,9 @@ void Eigenpairs::suggest(std::vector<Pair>& found, Complex lambda, const VecXc& 
 }
 
 void Eigenpairs::make_real(Pair& p) {
-  if (p.lambda.imag() == 0.0 || std::abs(p.lambda.imag()) > std::max(real_line * std::abs(p.lambda), 10.0 * p.uncertainty)) return;
+  if (p.lambda.imag() == 0.0 ||
+      std::abs(p.lambda.imag()) > std::max(real_line * std::abs(p.lambda), 10.0 * p.uncertainty))
+    return;
   p.lambda = p.lambda.real();
   p.x = p.x.real().cast<Complex>().eval();
   if (polisher.evaluate(p)) polisher.assess(p);
@@ -30,10 +36,12 @@ void Eigenpairs::make_real(Pair& p) {
 
 Index Eigenpairs::count_slow_companions(const std::vector<std::size_t>& free) const {
   MatX span(6 * pattern.size(), static_cast<Index>(free.size()));
-  for (std::size_t j = 0; j < free.size(); ++j) span.col(static_cast<Index>(j)) = known[free[j]].x.real();
+  for (std::size_t j = 0; j < free.size(); ++j)
+    span.col(static_cast<Index>(j)) = known[free[j]].x.real();
   const Eigen::ColPivHouseholderQR<MatX> qr(span);
   return std::count_if(known.begin(), known.end(), [&](const Pair& p) {
-    if (p.rigid || p.lambda.imag() != 0.0 || std::abs(p.lambda) > 1e-2 * std::abs(shift)) return false;
+    if (p.rigid || p.lambda.imag() != 0.0 || std::abs(p.lambda) > 1e-2 * std::abs(shift))
+      return false;
     const VecX x = p.x.real();
     return (x - span * qr.solve(x)).norm() < 1e-2 * x.norm();
   });
@@ -55,18 +63,20 @@ void Eigenpairs::add_companions() {
       mass(i, j) = p.x.dot(q.Mx).real();
       drag(i, j) = p.x.dot(q.Cx).real();
     }
-    rounding = std::max(rounding, polisher.rounding_of_stiffness(p) / std::max(std::abs(mass(i, i)), 1e-300));
+    rounding = std::max(rounding,
+                        polisher.rounding_of_stiffness(p) / std::max(std::abs(mass(i, i)), 1e-300));
   }
   const Eigen::PartialPivLU<MatX> lu(mass);
   const Eigen::EigenSolver<MatX> eig(MatX(-lu.solve(drag)));
   Index slow_found = count_slow_companions(free);
   for (Index j = 0; j < r; ++j) {
     const Complex rate = eig.eigenvalues()(j);
-    if (rate.imag() == 0.0 && slow_found > 0) {   // the search has told it from zero
+    if (rate.imag() == 0.0 && slow_found > 0) {  // the search has told it from zero
       --slow_found;
       continue;
     }
-    // What rounding of K makes of a double zero is sqrt(rounding): a drag below that cannot be told from none.
+    // What rounding of K makes of a double zero is sqrt(rounding): a drag below that cannot be told
+    // from none.
     if (!(std::norm(rate) > 100.0 * rounding)) {
       ++double_zeros;
       continue;
@@ -79,13 +89,15 @@ void Eigenpairs::add_companions() {
       const Complex part = eig.eigenvectors()(i, j);
       p.x += (rate.imag() == 0.0 ? Complex(part.real()) : part) * known[free[at(i)]].x;
     }
-    // The projection is an estimate only (the left vector is another one); what does not polish is left to the count.
+    // The projection is an estimate only (the left vector is another one); what does not polish is
+    // left to the count.
     if (!polisher.evaluate(p) || !polisher.polish(p, opt.tolerance, false)) continue;
     if (std::abs(p.lambda - rate) > 0.9 * std::abs(rate)) continue;
     polisher.assess(p);
     make_real(p);
     const bool there = std::any_of(known.begin(), known.end(), [&](const Pair& k) {
-      return !k.rigid && std::abs(k.lambda - p.lambda) < 1e-3 * std::abs(p.lambda) + 10.0 * p.uncertainty;
+      return !k.rigid &&
+             std::abs(k.lambda - p.lambda) < 1e-3 * std::abs(p.lambda) + 10.0 * p.uncertainty;
     });
     if (!there) known.push_back(std::move(p));
   }
@@ -96,13 +108,17 @@ bool Eigenpairs::add(Pair&& p) {
   if (p.lambda.imag() < 0.0) {
     p.lambda = std::conj(p.lambda);
     p.x = p.x.conjugate().eval();
-    p.Mx = p.Mx.conjugate().eval(); p.Cx = p.Cx.conjugate().eval(); p.Kx = p.Kx.conjugate().eval();
+    p.Mx = p.Mx.conjugate().eval();
+    p.Cx = p.Cx.conjugate().eval();
+    p.Kx = p.Kx.conjugate().eval();
   }
   polisher.assess(p);
   if (!complex_shift()) make_real(p);
   std::vector<const Pair*> close;
   for (const Pair& k : known)
-    if (std::abs(k.lambda - p.lambda) <= 1e-7 * std::abs(p.lambda) + 10.0 * (k.uncertainty + p.uncertainty)) close.push_back(&k);
+    if (std::abs(k.lambda - p.lambda) <=
+        1e-7 * std::abs(p.lambda) + 10.0 * (k.uncertainty + p.uncertainty))
+      close.push_back(&k);
   if (!close.empty()) {
     const VecX weight = polisher.weights(p.lambda);
     MatXc a(p.x.size(), static_cast<Index>(close.size()));
@@ -120,7 +136,8 @@ bool Eigenpairs::add(Pair&& p) {
 
 bool Eigenpairs::add_rigid(const std::vector<Pair>& candidates) {
   if (candidates.empty()) return false;
-  const Index before = std::count_if(known.begin(), known.end(), [](const Pair& p) { return p.rigid; });
+  const Index before =
+      std::count_if(known.begin(), known.end(), [](const Pair& p) { return p.rigid; });
   std::vector<VecX> columns;
   const auto take = [&](VecX v) {
     const double size = v.norm();
@@ -136,7 +153,8 @@ bool Eigenpairs::add_rigid(const std::vector<Pair>& candidates) {
     if (p.x.imag().norm() > 1e-6 * p.x.real().norm()) take(p.x.imag());
   }
   MatX a(6 * pattern.size(), static_cast<Index>(columns.size()));
-  for (Index j = 0; j < a.cols(); ++j) a.col(j) = columns[at(j)];
+  for (Index j = 0; j < a.cols(); ++j)
+    a.col(j) = columns[at(j)];
   const Eigen::JacobiSVD<MatX> svd(a, Eigen::ComputeThinU);
   std::erase_if(known, [](const Pair& p) { return p.rigid; });
   Index after = 0;
@@ -164,7 +182,7 @@ bool Eigenpairs::is_free_motion(Pair& p) {
   pure.x = x;
   if (!polisher.evaluate(pure) || !polisher.is_unresisted(pure)) return false;
   const VecXc moved = pure.x - p.x * (p.x.dot(pure.x) / p.x.squaredNorm());
-  if (moved.norm() > 1e-2 * pure.x.norm()) return false;   // another motion
+  if (moved.norm() > 1e-2 * pure.x.norm()) return false;  // another motion
   p.x = pure.x;
   return polisher.evaluate(p);
 }
@@ -180,30 +198,39 @@ bool Eigenpairs::take(std::vector<Pair>& found, bool near) {
     }
     Pair q = p;
     if (near) q.from = -1;
-    if (polisher.polish(q, opt.tolerance, near) && add(std::move(q))) any = true;
-    else rest.push_back(std::move(p));
+    if (polisher.polish(q, opt.tolerance, near) && add(std::move(q)))
+      any = true;
+    else
+      rest.push_back(std::move(p));
   }
-  if (add_rigid(rigid)) any = true;
-  else rest.insert(rest.end(), std::make_move_iterator(rigid.begin()), std::make_move_iterator(rigid.end()));
+  if (add_rigid(rigid))
+    any = true;
+  else
+    rest.insert(rest.end(), std::make_move_iterator(rigid.begin()),
+                std::make_move_iterator(rigid.end()));
   found = std::move(rest);
   return any;
 }
 
 void Eigenpairs::sort_known() {
-  std::stable_sort(known.begin(), known.end(), [&](const Pair& a, const Pair& b) { return key(a.lambda) < key(b.lambda); });
+  std::stable_sort(known.begin(), known.end(),
+                   [&](const Pair& a, const Pair& b) { return key(a.lambda) < key(b.lambda); });
 }
 
 double Eigenpairs::wanted_radius() const {
   if (opt.count <= 0) return opt.max_frequency;
   Index c = 0;
   for (const Pair& p : known)
-    if (counts(p) && ++c == opt.count) return std::min(std::max(key(p.lambda), least_radius), std::max(opt.max_frequency, least_radius));
+    if (counts(p) && ++c == opt.count)
+      return std::min(std::max(key(p.lambda), least_radius),
+                      std::max(opt.max_frequency, least_radius));
   return opt.max_frequency;
 }
 
 Index Eigenpairs::missing() const {
   if (opt.count <= 0) return 0;
-  return opt.count + opt.guard - std::count_if(known.begin(), known.end(), [&](const Pair& p) { return counts(p); });
+  return opt.count + opt.guard -
+         std::count_if(known.begin(), known.end(), [&](const Pair& p) { return counts(p); });
 }
 
 void Eigenpairs::separate_close() {
@@ -216,17 +243,21 @@ void Eigenpairs::separate_close() {
     if (done[i] || all[i].rigid) continue;
     group.assign(1, &all[i]);
     for (std::size_t j = i + 1; j < all.size(); ++j)
-      if (!done[j] && !all[j].rigid && std::abs(all[j].lambda - all[i].lambda) < 1e-4 * std::abs(all[i].lambda)) {
+      if (!done[j] && !all[j].rigid &&
+          std::abs(all[j].lambda - all[i].lambda) < 1e-4 * std::abs(all[i].lambda)) {
         group.push_back(&all[j]);
         done[j] = true;
       }
     if (group.size() == 1) continue;
     polisher.separate(group);
-    for (Pair* p : group) polisher.evaluate(*p);
+    for (Pair* p : group)
+      polisher.evaluate(*p);
   }
   for (Pair& p : all) {
-    if (p.rigid) known.push_back(std::move(p));
-    else add(std::move(p));
+    if (p.rigid)
+      known.push_back(std::move(p));
+    else
+      add(std::move(p));
   }
   sort_known();
 }

@@ -10,12 +10,13 @@ namespace {
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Pivots kept from an earlier factorisation are given up when entries grow by more than this (largest entry of U over
-/// largest of the matrix, by columns). That is measured when a pivot falls below its reciprocal times its column.
+/// Pivots kept from an earlier factorisation are given up when entries grow by more than this
+/// (largest entry of U over largest of the matrix, by columns). That is measured when a pivot falls
+/// below its reciprocal times its column.
 constexpr double refactor_growth = 1e4;
 
-/// Rows and columns are scaled to largest entry 1 before KLU sees them, so that neither the pivot threshold nor the test
-/// for zero pivots depends on units. Refactorisations keep the scaling.
+/// Rows and columns are scaled to largest entry 1 before KLU sees them, so that neither the pivot
+/// threshold nor the test for zero pivots depends on units. Refactorisations keep the scaling.
 template <class Scalar>
 class KluSolver final : public DirectSolver<Scalar> {
   static constexpr bool complex = std::is_same_v<Scalar, Complex>;
@@ -85,7 +86,8 @@ class KluSolver final : public DirectSolver<Scalar> {
       numeric_ = klu_z_factor(start_.data(), row_.data(), raw(value_), symbolic_, &common_);
     else
       numeric_ = klu_factor(start_.data(), row_.data(), raw(value_), symbolic_, &common_);
-    if (common_.status == KLU_OUT_OF_MEMORY || common_.status == KLU_TOO_LARGE) throw std::bad_alloc();
+    if (common_.status == KLU_OUT_OF_MEMORY || common_.status == KLU_TOO_LARGE)
+      throw std::bad_alloc();
     if (!numeric_ || common_.status != KLU_OK) {
       const Index j = common_.singular_col;
       if (numeric_) free_numeric();
@@ -105,12 +107,14 @@ class KluSolver final : public DirectSolver<Scalar> {
 
   void solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> b) override {
     if (unknown_.empty()) return;
-    for (std::size_t i = 0; i < unknown_.size(); ++i) work_[i] = row_scale_[i] * b(unknown_[i]);
+    for (std::size_t i = 0; i < unknown_.size(); ++i)
+      work_[i] = row_scale_[i] * b(unknown_[i]);
     if constexpr (complex)
       klu_z_solve(symbolic_, numeric_, n(), 1, raw(work_), &common_);
     else
       klu_solve(symbolic_, numeric_, n(), 1, raw(work_), &common_);
-    for (std::size_t i = 0; i < unknown_.size(); ++i) b(unknown_[i]) = col_scale_[i] * work_[i];
+    for (std::size_t i = 0; i < unknown_.size(); ++i)
+      b(unknown_[i]) = col_scale_[i] * work_[i];
   }
   Index singular_unknown() const override { return singular_; }
   std::string_view name() const override { return "klu"; }
@@ -126,7 +130,8 @@ class KluSolver final : public DirectSolver<Scalar> {
     if (cm == Scalar(0.0)) return form_terms(m.C.data(), cc, m.K.data(), ck, nullptr, cm);
     form_terms(m.M.data(), cm, m.K.data(), ck, m.C.data(), cc);
   }
-  void form_terms(const double* a, Scalar ca, const double* b, Scalar cb, const double* c, Scalar cc) {
+  void form_terms(const double* a, Scalar ca, const double* b, Scalar cb, const double* c,
+                  Scalar cc) {
     for (int j = 0; j < n(); ++j) {
       double largest = 0.0;
       for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e) {
@@ -156,12 +161,14 @@ class KluSolver final : public DirectSolver<Scalar> {
     if (!invert(row_scale_)) return false;
     for (int j = 0; j < n(); ++j) {
       double s = 0.0;
-      for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e) s = std::max(s, row_scale_[at(row_[at(e)])] * size(value_[at(e)]));
+      for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e)
+        s = std::max(s, row_scale_[at(row_[at(e)])] * size(value_[at(e)]));
       col_scale_[at(j)] = s;
     }
     if (!invert(col_scale_)) return false;
     for (int j = 0; j < n(); ++j) {
-      for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e) value_[at(e)] *= row_scale_[at(row_[at(e)])] * col_scale_[at(j)];
+      for (int e = start_[at(j)]; e < start_[at(j) + 1]; ++e)
+        value_[at(e)] *= row_scale_[at(row_[at(e)])] * col_scale_[at(j)];
       col_size_[at(j)] = 1.0;
     }
     return true;
@@ -197,19 +204,26 @@ class KluSolver final : public DirectSolver<Scalar> {
       klu_z_rgrowth(start_.data(), row_.data(), raw(value_), symbolic_, numeric_, &common_);
     else
       klu_rgrowth(start_.data(), row_.data(), raw(value_), symbolic_, numeric_, &common_);
-    growth_ = common_.rgrowth > 0.0 ? std::max(1.0, 1.0 / common_.rgrowth) : std::numeric_limits<double>::infinity();
+    growth_ = common_.rgrowth > 0.0 ? std::max(1.0, 1.0 / common_.rgrowth)
+                                    : std::numeric_limits<double>::infinity();
   }
 
   /// Rounding leaves pivots of a singular matrix at a few times 1e-16 of the scaled entries.
-  double tolerance() const { return std::numeric_limits<double>::epsilon() * (16.0 + std::sqrt(static_cast<double>(n()))); }
+  double tolerance() const {
+    return std::numeric_limits<double>::epsilon() * (16.0 + std::sqrt(static_cast<double>(n())));
+  }
 
-  /// Smallest pivot relative to the largest entry of its column (NaN when there is one), and its step.
+  /// Smallest pivot relative to the largest entry of its column (NaN when there is one), and its
+  /// step.
   double least_pivot(int& worst) const {
     const Scalar* const u = static_cast<const Scalar*>(numeric_->Udiag);
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < n(); ++k) {
       const double s = size(u[k]) / col_size_[at(symbolic_->Q[k])];
-      if (!(s >= least)) { worst = k; least = s; }
+      if (!(s >= least)) {
+        worst = k;
+        least = s;
+      }
       if (s != s) break;
     }
     return least;
@@ -237,11 +251,14 @@ class KluSolver final : public DirectSolver<Scalar> {
 }  // namespace
 
 template <class Scalar>
-std::unique_ptr<DirectSolver<Scalar>> make_klu_solver(const BlockPattern& pattern, std::span<const unsigned char> active) {
+std::unique_ptr<DirectSolver<Scalar>> make_klu_solver(const BlockPattern& pattern,
+                                                      std::span<const unsigned char> active) {
   return std::make_unique<KluSolver<Scalar>>(pattern, active);
 }
 
-template std::unique_ptr<DirectSolver<double>> make_klu_solver(const BlockPattern&, std::span<const unsigned char>);
-template std::unique_ptr<DirectSolver<Complex>> make_klu_solver(const BlockPattern&, std::span<const unsigned char>);
+template std::unique_ptr<DirectSolver<double>> make_klu_solver(const BlockPattern&,
+                                                               std::span<const unsigned char>);
+template std::unique_ptr<DirectSolver<Complex>> make_klu_solver(const BlockPattern&,
+                                                                std::span<const unsigned char>);
 
 }  // namespace whirl::la

@@ -5,6 +5,7 @@
 namespace whirl::la {
 
 template <class Scalar>
-std::unique_ptr<DirectSolver<Scalar>> make_klu_solver(const BlockPattern& pattern, std::span<const unsigned char> active);
+std::unique_ptr<DirectSolver<Scalar>> make_klu_solver(const BlockPattern& pattern,
+                                                      std::span<const unsigned char> active);
 
 }  // namespace whirl::la

@@ -1,12 +1,13 @@
-// Arnoldi's method with a locked (already known) invariant subspace, deflation of dependent vectors, and restart from a
-// fresh random vector when a Krylov space is exhausted.
+// Arnoldi's method with a locked (already known) invariant subspace, deflation of dependent
+// vectors, and restart from a fresh random vector when a Krylov space is exhausted.
 #pragma once
 #include <core/types.hpp>
 #include <random>
 
 namespace whirl::la {
 
-/// Orthonormal basis V = [locked | searched] and, over the searched part, H = V^H Op V of the processed vectors.
+/// Orthonormal basis V = [locked | searched] and, over the searched part, H = V^H Op V of the
+/// processed vectors.
 template <class Scalar>
 class Krylov {
  public:
@@ -15,12 +16,14 @@ class Krylov {
 
   /// Forgets everything. dim: length of the vectors.
   void reset(Index dim, unsigned seed) {
-    dim_ = dim; locked_ = size_ = next_ = 0;
+    dim_ = dim;
+    locked_ = size_ = next_ = 0;
     rng_.seed(seed);
     if (basis_.rows() != dim || basis_.cols() == 0) basis_.resize(dim, std::min<Index>(dim, 32));
     work_.resize(dim);
   }
-  /// Adds a vector to the locked part; false when it depends on the ones already there. Only before a search.
+  /// Adds a vector to the locked part; false when it depends on the ones already there. Only before
+  /// a search.
   bool lock(const Vec& v) {
     if (!append(v, 1e-7)) return false;
     locked_ = next_ = size_;
@@ -33,13 +36,15 @@ class Krylov {
   bool inject() {
     for (int tries = 0; tries < 5 && size_ < dim_; ++tries) {
       Vec v(dim_);
-      for (Index i = 0; i < dim_; ++i) v(i) = static_cast<double>(rng_() >> 11) * 0x1p-52 - 1.0;
+      for (Index i = 0; i < dim_; ++i)
+        v(i) = static_cast<double>(rng_() >> 11) * 0x1p-52 - 1.0;
       if (append(v, 1e-8)) return true;
     }
     return false;
   }
 
-  /// Applies op(in, out) to the next basis vector; a fresh random vector is taken when none is left. False: the space is exhausted.
+  /// Applies op(in, out) to the next basis vector; a fresh random vector is taken when none is
+  /// left. False: the space is exhausted.
   template <class Op>
   bool step(Op&& op) {
     if (next_ == size_ && !inject()) return false;
@@ -78,9 +83,11 @@ class Krylov {
 
  private:
   void grow() {
-    if (size_ + 1 > basis_.cols()) basis_.conservativeResize(dim_, std::min(dim_, 2 * basis_.cols()));
+    if (size_ + 1 > basis_.cols())
+      basis_.conservativeResize(dim_, std::min(dim_, 2 * basis_.cols()));
   }
-  /// work_ -= V V^H work_, twice when needed (Daniel, Gragg, Kaufman & Stewart); coefficients_ = the sum of both.
+  /// work_ -= V V^H work_, twice when needed (Daniel, Gragg, Kaufman & Stewart); coefficients_ =
+  /// the sum of both.
   void orthogonalize() {
     const auto v = basis_.leftCols(size_);
     const double before = work_.norm();

@@ -1,5 +1,6 @@
-// Body of the block LU kernels; see lu_kernel.hpp. Included by one .cpp per instruction set, which defines
-// WHIRL_LU_TABLE (name of the function that returns the table) and WHIRL_LU_ISA (its label). Everything here has internal linkage.
+// Body of the block LU kernels; see lu_kernel.hpp. Included by one .cpp per instruction set, which
+// defines WHIRL_LU_TABLE (name of the function that returns the table) and WHIRL_LU_ISA (its
+// label). Everything here has internal linkage.
 #include <la/lu_kernel.hpp>
 
 namespace whirl::la::lu {
@@ -7,22 +8,40 @@ namespace {
 
 #include <la/lu_simd.inl>
 
-/// Ratio of a multiplier (rows scaled to size 1) above which a diagonal pivot is refused; 1/0.001 is KLU's own default.
+/// Ratio of a multiplier (rows scaled to size 1) above which a diagonal pivot is refused; 1/0.001
+/// is KLU's own default.
 constexpr double pivot_threshold = 1e3;
-/// A pivot below this fraction of its row is left to the careful inversion, which decides whether it is zero.
+/// A pivot below this fraction of its row is left to the careful inversion, which decides whether
+/// it is zero.
 constexpr double suspicious_pivot = 1e-9;
-/// Pivots outside [smallest, 1/smallest] are left to the careful inversion too: squares of complex ones must not underflow.
+/// Pivots outside [smallest, 1/smallest] are left to the careful inversion too: squares of complex
+/// ones must not underflow.
 constexpr double smallest_pivot = 1e-140;
 /// Growth of a diagonal block by elimination beyond this is recorded.
 constexpr double noted_growth = 1e3;
 
-template <class T> struct Block { T c[6]; };
+template <class T>
+struct Block {
+  T c[6];
+};
 
-template <int I> struct Int { static constexpr int value = I; };
-template <class F> WHIRL_INLINE void for_each6(F&& f) { f(Int<0>{}); f(Int<1>{}); f(Int<2>{}); f(Int<3>{}); f(Int<4>{}); f(Int<5>{}); }
+template <int I>
+struct Int {
+  static constexpr int value = I;
+};
+template <class F>
+WHIRL_INLINE void for_each6(F&& f) {
+  f(Int<0>{});
+  f(Int<1>{});
+  f(Int<2>{});
+  f(Int<3>{});
+  f(Int<4>{});
+  f(Int<5>{});
+}
 
 /// b = sum of coefficient * matrix block. N = number of terms.
-template <int N> WHIRL_INLINE void form(Block<Real>& b, const Terms& t, long slot) {
+template <int N>
+WHIRL_INLINE void form(Block<Real>& b, const Terms& t, long slot) {
   for (int j = 0; j < 6; ++j) {
     Col x = splat(t.re[0]) * load6(t.value[0] + 36 * slot + 6 * j);
     if constexpr (N > 1) x = x + splat(t.re[1]) * load6(t.value[1] + 36 * slot + 6 * j);
@@ -30,24 +49,30 @@ template <int N> WHIRL_INLINE void form(Block<Real>& b, const Terms& t, long slo
     b.c[j].x = x;
   }
 }
-template <int N> WHIRL_INLINE void form(Block<Cplx>& b, const Terms& t, long slot) {
+template <int N>
+WHIRL_INLINE void form(Block<Cplx>& b, const Terms& t, long slot) {
   for (int j = 0; j < 6; ++j) {
     const Col v = load6(t.value[0] + 36 * slot + 6 * j);
     Col x = splat(t.re[0]) * v, y = splat(t.im[0]) * v;
     if constexpr (N > 1) {
       const Col w = load6(t.value[1] + 36 * slot + 6 * j);
-      x = x + splat(t.re[1]) * w; y = y + splat(t.im[1]) * w;
+      x = x + splat(t.re[1]) * w;
+      y = y + splat(t.im[1]) * w;
     }
     if constexpr (N > 2) {
       const Col w = load6(t.value[2] + 36 * slot + 6 * j);
-      x = x + splat(t.re[2]) * w; y = y + splat(t.im[2]) * w;
+      x = x + splat(t.re[2]) * w;
+      y = y + splat(t.im[2]) * w;
     }
-    b.c[j].x = x; b.c[j].y = y;
+    b.c[j].x = x;
+    b.c[j].y = y;
   }
 }
 
-/// Clears held rows (of step i) and columns (of step j) and puts ones on the diagonal of held unknowns.
-template <class T> __attribute__((noinline)) void hold(const Plan& p, Block<T>& b, int i, int j) {
+/// Clears held rows (of step i) and columns (of step j) and puts ones on the diagonal of held
+/// unknowns.
+template <class T>
+__attribute__((noinline)) void hold(const Plan& p, Block<T>& b, int i, int j) {
   const long long* const rows = p.mask + 8 * i;
   const long long* const cols = p.mask + 8 * j;
   for (int c = 0; c < 6; ++c) {
@@ -61,9 +86,11 @@ template <class T> __attribute__((noinline)) void hold(const Plan& p, Block<T>& 
   });
 }
 
-template <int N, class T> WHIRL_INLINE void assemble(Block<T>& b, const Plan& p, const Terms& t, long slot, int i, int j) {
+template <int N, class T>
+WHIRL_INLINE void assemble(Block<T>& b, const Plan& p, const Terms& t, long slot, int i, int j) {
   if (slot < 0) {
-    for (int c = 0; c < 6; ++c) b.c[c] = zero_of<T>();
+    for (int c = 0; c < 6; ++c)
+      b.c[c] = zero_of<T>();
     return;
   }
   form<N>(b, t, slot);
@@ -74,12 +101,15 @@ template <int N, class T> WHIRL_INLINE void assemble(Block<T>& b, const Plan& p,
   }
 }
 
-template <class T> WHIRL_INLINE void store_block(double* p, const Block<T>& b) {
-  for (int j = 0; j < 6; ++j) store_col(p + 8 * j, b.c[j]);
+template <class T>
+WHIRL_INLINE void store_block(double* p, const Block<T>& b) {
+  for (int j = 0; j < 6; ++j)
+    store_col(p + 8 * j, b.c[j]);
 }
 
 /// c -= a b, a and b in memory.
-template <class T> WHIRL_INLINE void sub_product(Block<T>& c, const double* a, const double* b) {
+template <class T>
+WHIRL_INLINE void sub_product(Block<T>& c, const double* a, const double* b) {
   for (int k = 0; k < 6; ++k) {
     T ak;
     load_col(ak, a + 8 * k);
@@ -92,7 +122,8 @@ template <class T> WHIRL_INLINE void sub_product(Block<T>& c, const double* a, c
 }
 
 /// c = a b, a in registers or on the stack, b in memory.
-template <class T> WHIRL_INLINE void product(Block<T>& c, const Block<T>& a, const double* b) {
+template <class T>
+WHIRL_INLINE void product(Block<T>& c, const Block<T>& a, const double* b) {
   for (int j = 0; j < 6; ++j) {
     T s;
     load_scalar(s, b + 8 * j, plane);
@@ -106,18 +137,22 @@ template <class T> WHIRL_INLINE void product(Block<T>& c, const Block<T>& a, con
     }
 }
 
-template <class T> WHIRL_INLINE Col row_sizes(const Block<T>& b) {
+template <class T>
+WHIRL_INLINE Col row_sizes(const Block<T>& b) {
   Col m = size_of(b.c[0]);
-  for (int j = 1; j < 6; ++j) m = max(m, size_of(b.c[j]));
+  for (int j = 1; j < 6; ++j)
+    m = max(m, size_of(b.c[j]));
   return m;
 }
 
 /// One in-place Gauss-Jordan step on the diagonal pivot P, with its test.
 template <int P, class T>
-WHIRL_INLINE void pivot_step(Block<T>& d, const Col& rows, const Col& rows_t, const Col& floor, Violation& v) {
+WHIRL_INLINE void pivot_step(Block<T>& d, const Col& rows, const Col& rows_t, const Col& floor,
+                             Violation& v) {
   const T pivot = broadcast<P>(d.c[P]);
   const Col size = size_of(pivot);
-  note_unless_le(v, size_of(d.c[P]) * broadcast<P>(rows), rows_t * size);  // |d_iP|/row_i <= threshold |d_PP|/row_P
+  note_unless_le(v, size_of(d.c[P]) * broadcast<P>(rows),
+                 rows_t * size);  // |d_iP|/row_i <= threshold |d_PP|/row_P
   note_unless_le(v, broadcast<P>(floor), size);
   const T r = reciprocal(pivot);
   const T q = replace<P>(mul(d.c[P], neg(r)), r);
@@ -131,8 +166,10 @@ WHIRL_INLINE void pivot_step(Block<T>& d, const Col& rows, const Col& rows_t, co
   d.c[P] = q;
 }
 
-template <class T> struct Scalar;
-template <> struct Scalar<Real> {
+template <class T>
+struct Scalar;
+template <>
+struct Scalar<Real> {
   double re;
   double size() const { return __builtin_fabs(re); }
   static Scalar get(const double* p) { return {*p}; }
@@ -142,11 +179,15 @@ template <> struct Scalar<Real> {
   Scalar operator-(Scalar b) const { return {re - b.re}; }
   Scalar scaled(double s) const { return {re * s}; }
 };
-template <> struct Scalar<Cplx> {
+template <>
+struct Scalar<Cplx> {
   double re, im;
   double size() const { return __builtin_fabs(re) + __builtin_fabs(im); }
   static Scalar get(const double* p) { return {p[0], p[plane]}; }
-  void put(double* p) const { p[0] = re; p[plane] = im; }
+  void put(double* p) const {
+    p[0] = re;
+    p[plane] = im;
+  }
   Scalar inverse() const {
     const double s = 1.0 / size(), a = re * s, b = im * s, n = s / (a * a + b * b);
     return {a * n, -b * n};
@@ -156,9 +197,12 @@ template <> struct Scalar<Cplx> {
   Scalar scaled(double s) const { return {re * s, im * s}; }
 };
 
-/// Inverse of a padded block with complete pivoting after scaling rows and columns to size one, the sizes taken over the block before (s)
-/// and after (d) elimination. Returns the component of the first zero pivot, or -1. `growth` is raised where |d| exceeds |s|.
-template <class T> __attribute__((noinline)) int invert_carefully(const double* s, const double* d, double* out, double tolerance, double& growth) {
+/// Inverse of a padded block with complete pivoting after scaling rows and columns to size one, the
+/// sizes taken over the block before (s) and after (d) elimination. Returns the component of the
+/// first zero pivot, or -1. `growth` is raised where |d| exceeds |s|.
+template <class T>
+__attribute__((noinline)) int invert_carefully(const double* s, const double* d, double* out,
+                                               double tolerance, double& growth) {
   using S = Scalar<T>;
   S a[6][6];
   double row[6], col[6];
@@ -177,12 +221,14 @@ template <class T> __attribute__((noinline)) int invert_carefully(const double* 
   for (int j = 0; j < 6; ++j) {
     col[j] = 0.0;
     for (int i = 0; i < 6; ++i) {
-      const double x = S::get(s + 8 * j + i).size() / row[i], y = S::get(d + 8 * j + i).size() / row[i];
+      const double x = S::get(s + 8 * j + i).size() / row[i],
+                   y = S::get(d + 8 * j + i).size() / row[i];
       col[j] = x > col[j] ? x : col[j];
       col[j] = y > col[j] ? y : col[j];
     }
     if (!(col[j] > 0.0)) return j;
-    for (int i = 0; i < 6; ++i) a[i][j] = S::get(d + 8 * j + i).scaled(1.0 / row[i]).scaled(1.0 / col[j]);
+    for (int i = 0; i < 6; ++i)
+      a[i][j] = S::get(d + 8 * j + i).scaled(1.0 / row[i]).scaled(1.0 / col[j]);
   }
   int pr[6], pc[6];
   for (int k = 0; k < 6; ++k) {
@@ -190,16 +236,30 @@ template <class T> __attribute__((noinline)) int invert_carefully(const double* 
     double best = -1.0;
     for (int j = k; j < 6; ++j)
       for (int i = k; i < 6; ++i)
-        if (a[i][j].size() > best) { best = a[i][j].size(); bi = i; bj = j; }
-    pr[k] = bi; pc[k] = bj;
+        if (a[i][j].size() > best) {
+          best = a[i][j].size();
+          bi = i;
+          bj = j;
+        }
+    pr[k] = bi;
+    pc[k] = bj;
     if (!(best > tolerance)) {
       // Follow the column exchanges back to the unknown that is left without a pivot.
       int u = bj;
-      for (int m = k - 1; m >= 0; --m) u = u == m ? pc[m] : u == pc[m] ? m : u;
+      for (int m = k - 1; m >= 0; --m)
+        u = u == m ? pc[m] : u == pc[m] ? m : u;
       return u;
     }
-    for (int j = 0; j < 6; ++j) { const S t = a[k][j]; a[k][j] = a[bi][j]; a[bi][j] = t; }
-    for (int i = 0; i < 6; ++i) { const S t = a[i][k]; a[i][k] = a[i][bj]; a[i][bj] = t; }
+    for (int j = 0; j < 6; ++j) {
+      const S t = a[k][j];
+      a[k][j] = a[bi][j];
+      a[bi][j] = t;
+    }
+    for (int i = 0; i < 6; ++i) {
+      const S t = a[i][k];
+      a[i][k] = a[i][bj];
+      a[i][bj] = t;
+    }
     const S r = a[k][k].inverse();
     for (int j = 0; j < 6; ++j)
       if (j != k) a[k][j] = a[k][j] * r;
@@ -212,25 +272,38 @@ template <class T> __attribute__((noinline)) int invert_carefully(const double* 
     }
     a[k][k] = r;
   }
-  // inverse(P A Q) = Q^-1 A^-1 P^-1: undo column exchanges on rows, row exchanges on columns, last first.
+  // inverse(P A Q) = Q^-1 A^-1 P^-1: undo column exchanges on rows, row exchanges on columns, last
+  // first.
   for (int k = 5; k >= 0; --k) {
     if (pc[k] != k)
-      for (int j = 0; j < 6; ++j) { const S t = a[k][j]; a[k][j] = a[pc[k]][j]; a[pc[k]][j] = t; }
+      for (int j = 0; j < 6; ++j) {
+        const S t = a[k][j];
+        a[k][j] = a[pc[k]][j];
+        a[pc[k]][j] = t;
+      }
     if (pr[k] != k)
-      for (int i = 0; i < 6; ++i) { const S t = a[i][k]; a[i][k] = a[i][pr[k]]; a[i][pr[k]] = t; }
+      for (int i = 0; i < 6; ++i) {
+        const S t = a[i][k];
+        a[i][k] = a[i][pr[k]];
+        a[i][pr[k]] = t;
+      }
   }
   for (int j = 0; j < 6; ++j) {
-    for (int i = 0; i < 6; ++i) a[i][j].scaled(1.0 / col[i]).scaled(1.0 / row[j]).put(out + 8 * j + i);
+    for (int i = 0; i < 6; ++i)
+      a[i][j].scaled(1.0 / col[i]).scaled(1.0 / row[j]).put(out + 8 * j + i);
     for (int i = 6; i < 8; ++i)
-      for (int m = 0; m < T::planes; ++m) out[8 * j + i + plane * m] = 0.0;
+      for (int m = 0; m < T::planes; ++m)
+        out[8 * j + i + plane * m] = 0.0;
   }
   return -1;
 }
 
-template <int N, class T> Outcome factor(const Plan& p, const Terms& t, const Factors& f) {
+template <int N, class T>
+Outcome factor(const Plan& p, const Terms& t, const Factors& f) {
   constexpr long stride = plane * T::planes;
   Outcome out;
-  const Col threshold = splat(pivot_threshold), floor_factor = splat(suspicious_pivot), growth_limit = splat(noted_growth);
+  const Col threshold = splat(pivot_threshold), floor_factor = splat(suspicious_pivot),
+            growth_limit = splat(noted_growth);
   const Col smallest = splat(smallest_pivot), largest = splat(1.0 / smallest_pivot);
   for (int k = 0; k < p.n; ++k) {
     Block<T> d;
@@ -243,7 +316,8 @@ template <int N, class T> Outcome factor(const Plan& p, const Terms& t, const Fa
     double* const inverse = f.inverse + stride * k;
     alignas(64) double saved[plane * T::planes];
     store_block(saved, d);
-    const Col rows = row_sizes(d), rows_t = rows * threshold, floor = max(before * floor_factor, smallest);
+    const Col rows = row_sizes(d), rows_t = rows * threshold,
+              floor = max(before * floor_factor, smallest);
     Violation bad = no_violation();
     note_unless_le(bad, rows, before * growth_limit);
     note_unless_le(bad, rows, largest);
@@ -255,7 +329,8 @@ template <int N, class T> Outcome factor(const Plan& p, const Terms& t, const Fa
       alignas(64) double original[plane * T::planes];
       assemble<N>(s, p, t, p.diag_slot[k], k, k);
       store_block(original, s);
-      out.component = invert_carefully<T>(original, saved, inverse, f.singular_tolerance, out.growth);
+      out.component =
+          invert_carefully<T>(original, saved, inverse, f.singular_tolerance, out.growth);
       if (out.component >= 0) {
         out.step = k;
         return out;
@@ -278,19 +353,23 @@ template <int N, class T> Outcome factor(const Plan& p, const Terms& t, const Fa
   return out;
 }
 
-template <class T> Outcome factor_any(const Plan& p, const Terms& t, const Factors& f) {
+template <class T>
+Outcome factor_any(const Plan& p, const Terms& t, const Factors& f) {
   if (t.count == 1) return factor<1, T>(p, t, f);
   if (t.count == 2) return factor<2, T>(p, t, f);
   return factor<3, T>(p, t, f);
 }
 
 /// y -= A x (sign < 0) with two accumulators to shorten the chain of dependent operations.
-template <class T> WHIRL_INLINE void sub_multiply(T& y, const double* a, const double* x) {
+template <class T>
+WHIRL_INLINE void sub_multiply(T& y, const double* a, const double* x) {
   T z = zero_of<T>();
   for (int k = 0; k < 6; k += 2) {
     T a0, a1, s0, s1;
-    load_col(a0, a + 8 * k); load_scalar(s0, x + k, lane);
-    load_col(a1, a + 8 * k + 8); load_scalar(s1, x + k + 1, lane);
+    load_col(a0, a + 8 * k);
+    load_scalar(s0, x + k, lane);
+    load_col(a1, a + 8 * k + 8);
+    load_scalar(s1, x + k + 1, lane);
     sub_mul(y, a0, s0);
     sub_mul(z, a1, s1);
   }
@@ -302,20 +381,35 @@ WHIRL_INLINE void load_rhs(Real& y, const double* b) { y.x = load6(b); }
 WHIRL_INLINE void store_rhs(double* b, const Real& y) { store6(b, y.x); }
 WHIRL_INLINE void load_rhs(Cplx& y, const double* b) {
   double re[8] = {}, im[8] = {};
-  for (int i = 0; i < 6; ++i) { re[i] = b[2 * i]; im[i] = b[2 * i + 1]; }
-  y.x = load(re); y.y = load(im);
+  for (int i = 0; i < 6; ++i) {
+    re[i] = b[2 * i];
+    im[i] = b[2 * i + 1];
+  }
+  y.x = load(re);
+  y.y = load(im);
 }
 WHIRL_INLINE void store_rhs(double* b, const Cplx& y) {
   double re[8], im[8];
-  store(re, y.x); store(im, y.y);
-  for (int i = 0; i < 6; ++i) { b[2 * i] = re[i]; b[2 * i + 1] = im[i]; }
+  store(re, y.x);
+  store(im, y.y);
+  for (int i = 0; i < 6; ++i) {
+    b[2 * i] = re[i];
+    b[2 * i + 1] = im[i];
+  }
 }
 WHIRL_INLINE void store_vec(double* p, const Real& y) { store(p, y.x); }
-WHIRL_INLINE void store_vec(double* p, const Cplx& y) { store(p, y.x); store(p + lane, y.y); }
+WHIRL_INLINE void store_vec(double* p, const Cplx& y) {
+  store(p, y.x);
+  store(p + lane, y.y);
+}
 WHIRL_INLINE void load_vec(Real& y, const double* p) { y.x = load(p); }
-WHIRL_INLINE void load_vec(Cplx& y, const double* p) { y.x = load(p); y.y = load(p + lane); }
+WHIRL_INLINE void load_vec(Cplx& y, const double* p) {
+  y.x = load(p);
+  y.y = load(p + lane);
+}
 
-template <class T> void solve(const Plan& p, const Factors& f, double* b) {
+template <class T>
+void solve(const Plan& p, const Factors& f, double* b) {
   constexpr long stride = plane * T::planes, width = lane * T::planes;
   for (int k = 0; k < p.n; ++k) {
     T y;
@@ -369,17 +463,22 @@ void multiply_complex(const Matrix6& m, const double* x, double* y) {
   }
 }
 
-void multiply_three(const Matrix6& m, const double* const a[3], const double* x, double* const y[3]) {
+void multiply_three(const Matrix6& m, const double* const a[3], const double* x,
+                    double* const y[3]) {
   for (std::ptrdiff_t i = 0; i < m.n; ++i) {
     Cplx r0 = zero_of<Cplx>(), r1 = r0, r2 = r0;
     for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k) {
       const double* const v = x + 12 * m.cols[k];
       for (int c = 0; c < 6; ++c) {
         const Col re = splat(v[2 * c]), im = splat(v[2 * c + 1]);
-        const Col c0 = load6(a[0] + 36 * k + 6 * c), c1 = load6(a[1] + 36 * k + 6 * c), c2 = load6(a[2] + 36 * k + 6 * c);
-        r0.x = r0.x + c0 * re; r0.y = r0.y + c0 * im;
-        r1.x = r1.x + c1 * re; r1.y = r1.y + c1 * im;
-        r2.x = r2.x + c2 * re; r2.y = r2.y + c2 * im;
+        const Col c0 = load6(a[0] + 36 * k + 6 * c), c1 = load6(a[1] + 36 * k + 6 * c),
+                  c2 = load6(a[2] + 36 * k + 6 * c);
+        r0.x = r0.x + c0 * re;
+        r0.y = r0.y + c0 * im;
+        r1.x = r1.x + c1 * re;
+        r1.y = r1.y + c1 * im;
+        r2.x = r2.x + c2 * re;
+        r2.y = r2.y + c2 * im;
       }
     }
     store_rhs(y[0] + 12 * i, r0);
@@ -388,7 +487,8 @@ void multiply_three(const Matrix6& m, const double* const a[3], const double* x,
   }
 }
 
-/// (sum, rest) += a b without rounding error but in rest: T. Ogita, S. Rump and S. Oishi, doi 10.1137/030601818.
+/// (sum, rest) += a b without rounding error but in rest: T. Ogita, S. Rump and S. Oishi,
+/// doi 10.1137/030601818.
 WHIRL_INLINE void add_exact(Col& sum, Col& rest, Col a, Col b) {
   const Col p = opaque(a * b);  // opaque: p must be the rounded product, not part of a fused sum
   const Col s = sum + p, z = s - sum;
@@ -400,7 +500,8 @@ void multiply_exact_real(const Matrix6& m, const double* x, double* y) {
   for (std::ptrdiff_t i = 0; i < m.n; ++i) {
     Col sum = zero_col(), rest = sum;
     for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k)
-      for (int c = 0; c < 6; ++c) add_exact(sum, rest, load6(m.value + 36 * k + 6 * c), splat(x[6 * m.cols[k] + c]));
+      for (int c = 0; c < 6; ++c)
+        add_exact(sum, rest, load6(m.value + 36 * k + 6 * c), splat(x[6 * m.cols[k] + c]));
     store6(y + 6 * i, sum + rest);
   }
 }
@@ -435,9 +536,10 @@ void add_multiply_size(const Matrix6& m, double s, const double* x, double* y) {
   }
 }
 
-constexpr Kernels table = {WHIRL_LU_ISA,  factor_any<Real>, factor_any<Cplx>, solve<Real>,
-                           solve<Cplx>,   multiply_real,    multiply_complex, multiply_three,
-                           multiply_exact_real, multiply_exact_complex, add_multiply_size};
+constexpr Kernels table = {
+    WHIRL_LU_ISA,        factor_any<Real>,       factor_any<Cplx>, solve<Real>,
+    solve<Cplx>,         multiply_real,          multiply_complex, multiply_three,
+    multiply_exact_real, multiply_exact_complex, add_multiply_size};
 
 }  // namespace
 

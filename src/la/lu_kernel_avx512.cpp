@@ -1,4 +1,5 @@
-// Block LU kernels for AVX-512; compiled with those flags on x86-64 (see CMakeLists.txt), chosen at run time.
+// Block LU kernels for AVX-512; compiled with those flags on x86-64 (see CMakeLists.txt), chosen at
+// run time.
 #if defined(__AVX512F__)
 #include <immintrin.h>
 #define WHIRL_LU_TABLE avx512_kernels

@@ -20,7 +20,8 @@ std::vector<int> make_amd_order(const BlockPattern& pattern) {
   }
   if (cols.empty()) cols.push_back(0);  // AMD wants a valid pointer
   const int status = amd_order(n, start.data(), cols.data(), order.data(), nullptr, nullptr);
-  if (status != AMD_OK && status != AMD_OK_BUT_JUMBLED) throw std::runtime_error("AMD ordering failed");
+  if (status != AMD_OK && status != AMD_OK_BUT_JUMBLED)
+    throw std::runtime_error("AMD ordering failed");
   return order;
 }
 
@@ -28,24 +29,30 @@ std::vector<int> make_amd_order(const BlockPattern& pattern) {
 
 std::vector<int> make_order(const BlockPattern& pattern, Ordering ordering) {
   const int n = static_cast<int>(pattern.size());
-  if (ordering == Ordering::best) ordering = pattern.is_tridiagonal() ? Ordering::two_ended : Ordering::amd;
+  if (ordering == Ordering::best)
+    ordering = pattern.is_tridiagonal() ? Ordering::two_ended : Ordering::amd;
   if (ordering == Ordering::amd && n > 0) return make_amd_order(pattern);
   std::vector<int> order(at(n));
   if (ordering == Ordering::two_ended)
-    for (int k = 0; k < n; ++k) order[at(k)] = k % 2 == 0 ? k / 2 : n - 1 - k / 2;
+    for (int k = 0; k < n; ++k)
+      order[at(k)] = k % 2 == 0 ? k / 2 : n - 1 - k / 2;
   else
     std::iota(order.begin(), order.end(), 0);
   return order;
 }
 
-Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> active, Ordering ordering) {
+Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> active,
+                   Ordering ordering) {
   const int n = static_cast<int>(pattern.size());
-  if (active.size() != at(6 * n)) throw std::invalid_argument("direct solver: the active mask must have 6 flags a node");
+  if (active.size() != at(6 * n))
+    throw std::invalid_argument("direct solver: the active mask must have 6 flags a node");
   node_ = make_order(pattern, ordering);
   step_.resize(at(n));
-  for (int k = 0; k < n; ++k) step_[at(node_[at(k)])] = k;
+  for (int k = 0; k < n; ++k)
+    step_[at(node_[at(k)])] = k;
 
-  // Columns of the factor: neighbours eliminated later, merged with the columns of the children in the elimination tree.
+  // Columns of the factor: neighbours eliminated later, merged with the columns of the children in
+  // the elimination tree.
   std::vector<std::vector<int>> column(at(n));
   std::vector<std::vector<int>> children(at(n));
   std::vector<int> seen(at(n), -1);
@@ -62,7 +69,8 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
     for (Index s = pattern.row_start()[at(node)]; s < pattern.row_start()[at(node) + 1]; ++s)
       add(step_[at(pattern.cols()[at(s)])]);
     for (const int child : children[at(k)])
-      for (const int i : column[at(child)]) add(i);
+      for (const int i : column[at(child)])
+        add(i);
     std::sort(col.begin(), col.end());
     if (!col.empty()) children[at(col.front())].push_back(k);
   }
@@ -82,8 +90,10 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
 
   // Rows of the factor, by counting.
   row_start_.assign(at(n) + 1, 0);
-  for (const int i : row_) ++row_start_[at(i) + 1];
-  for (int k = 0; k < n; ++k) row_start_[at(k) + 1] += row_start_[at(k)];
+  for (const int i : row_)
+    ++row_start_[at(i) + 1];
+  for (int k = 0; k < n; ++k)
+    row_start_[at(k) + 1] += row_start_[at(k)];
   row_entry_.resize(row_.size());
   row_step_.resize(row_.size());
   std::vector<int> next(row_start_.begin(), row_start_.end() - 1);
@@ -96,7 +106,8 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
 
   // Updates of entry (i,k): every earlier step j with both k and i in its column.
   const auto find = [&](int j, int i) {
-    const auto first = row_.begin() + entry_start_[at(j)], last = row_.begin() + entry_start_[at(j) + 1];
+    const auto first = row_.begin() + entry_start_[at(j)],
+               last = row_.begin() + entry_start_[at(j) + 1];
     const auto it = std::lower_bound(first, last, i);
     return it != last && *it == i ? static_cast<int>(it - row_.begin()) : -1;
   };
@@ -122,9 +133,20 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
       if (!on) partial_[at(k)] = 1;
     }
 
-  plan_ = Plan{n, node_.data(), diag_slot_.data(), entry_start_.data(), row_.data(), lower_slot_.data(),
-               upper_slot_.data(), row_start_.data(), row_entry_.data(), row_step_.data(), update_start_.data(),
-               update_.data(), partial_.data(), mask_.data()};
+  plan_ = Plan{n,
+               node_.data(),
+               diag_slot_.data(),
+               entry_start_.data(),
+               row_.data(),
+               lower_slot_.data(),
+               upper_slot_.data(),
+               row_start_.data(),
+               row_entry_.data(),
+               row_step_.data(),
+               update_start_.data(),
+               update_.data(),
+               partial_.data(),
+               mask_.data()};
 }
 
 }  // namespace whirl::la::lu

@@ -9,10 +9,11 @@ namespace whirl::la::lu {
 
 /// How the nodes are ordered.
 enum class Ordering {
-  natural,   ///< as numbered
-  two_ended, ///< tridiagonal patterns: 0, n-1, 1, n-2, ...: no fill, and two independent chains that overlap in the processor
-  amd,       ///< approximate minimum degree on the node graph
-  best       ///< two_ended on tridiagonal patterns, amd on others
+  natural,    ///< as numbered
+  two_ended,  ///< tridiagonal patterns: 0, n-1, 1, n-2, ...: no fill, and two independent chains
+              ///< that overlap in the processor
+  amd,        ///< approximate minimum degree on the node graph
+  best        ///< two_ended on tridiagonal patterns, amd on others
 };
 
 /// Elimination order of the nodes: order[k] is eliminated at step k.

@@ -17,7 +17,8 @@ void multiply(const BlockMatrix<6>& a, const VecX& x, VecX& y) {
 
 void multiply(const BlockMatrix<6>& a, const VecXc& x, VecXc& y) {
   y.resize(x.size());
-  lu::kernels().multiply_complex(view(a), reinterpret_cast<const double*>(x.data()), reinterpret_cast<double*>(y.data()));
+  lu::kernels().multiply_complex(view(a), reinterpret_cast<const double*>(x.data()),
+                                 reinterpret_cast<double*>(y.data()));
 }
 
 void multiply_exact(const BlockMatrix<6>& a, const VecX& x, VecX& y) {
@@ -27,13 +28,16 @@ void multiply_exact(const BlockMatrix<6>& a, const VecX& x, VecX& y) {
 
 void multiply_exact(const BlockMatrix<6>& a, const VecXc& x, VecXc& y) {
   y.resize(x.size());
-  lu::kernels().multiply_exact_complex(view(a), reinterpret_cast<const double*>(x.data()), reinterpret_cast<double*>(y.data()));
+  lu::kernels().multiply_exact_complex(view(a), reinterpret_cast<const double*>(x.data()),
+                                       reinterpret_cast<double*>(y.data()));
 }
 
 void multiply(const MCK& m, const VecXc& x, VecXc& Mx, VecXc& Cx, VecXc& Kx) {
-  for (VecXc* y : {&Mx, &Cx, &Kx}) y->resize(x.size());
+  for (VecXc* y : {&Mx, &Cx, &Kx})
+    y->resize(x.size());
   const double* const a[3] = {m.M.data(), m.C.data(), m.K.data()};
-  double* const y[3] = {reinterpret_cast<double*>(Mx.data()), reinterpret_cast<double*>(Cx.data()), reinterpret_cast<double*>(Kx.data())};
+  double* const y[3] = {reinterpret_cast<double*>(Mx.data()), reinterpret_cast<double*>(Cx.data()),
+                        reinterpret_cast<double*>(Kx.data())};
   lu::kernels().multiply_three(view(m.K), a, reinterpret_cast<const double*>(x.data()), y);
 }
 

@@ -13,7 +13,8 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 
 void diagonal_of(const BlockMatrix<6>& a, VecX& d) {
   const BlockPattern& p = a.pattern();
-  for (Index i = 0; i < p.size(); ++i) d.segment<6>(6 * i) = a.block(p.diagonal(i)).diagonal().cwiseAbs();
+  for (Index i = 0; i < p.size(); ++i)
+    d.segment<6>(6 * i) = a.block(p.diagonal(i)).diagonal().cwiseAbs();
 }
 
 double size_of(Complex z) { return std::abs(z.real()) + std::abs(z.imag()); }
@@ -21,9 +22,12 @@ double size_of(Complex z) { return std::abs(z.real()) + std::abs(z.imag()); }
 }  // namespace
 
 Polisher::Polisher(const BlockPattern& pattern, std::span<const unsigned char> active)
-    : active_(active.begin(), active.end()), block_(make_direct_solver<Complex>(pattern, active, SolverKind::block)), pattern_(pattern) {
+    : active_(active.begin(), active.end()),
+      block_(make_direct_solver<Complex>(pattern, active, SolverKind::block)),
+      pattern_(pattern) {
   const Index n = 6 * pattern.size();
-  for (VecX* v : {&abs_x_, &size_, &diagonal_k_, &diagonal_c_, &diagonal_m_}) v->resize(n);
+  for (VecX* v : {&abs_x_, &size_, &diagonal_k_, &diagonal_c_, &diagonal_m_})
+    v->resize(n);
   y_.resize(n);
   for (Index u = 0; u < n; ++u)
     if (!active_[at(u)]) held_.push_back(u);
@@ -46,7 +50,8 @@ bool Polisher::factor(Complex shift) {
 }
 
 void Polisher::mask(VecXc& v) const {
-  for (const Index u : held_) v(u) = 0.0;
+  for (const Index u : held_)
+    v(u) = 0.0;
 }
 
 bool Polisher::evaluate(Pair& p, bool exact) {
@@ -55,17 +60,23 @@ bool Polisher::evaluate(Pair& p, bool exact) {
   double size = 0.0;
   for (Index u = 0; u < p.x.size(); ++u) {
     const double v = std::norm(p.x(u));
-    if (!(v <= size)) { size = v; big = u; }
+    if (!(v <= size)) {
+      size = v;
+      big = u;
+    }
   }
   if (!(size > 0.0 && size < std::numeric_limits<double>::infinity())) return false;
   p.x *= 1.0 / p.x(big);
-  // What a mode does not move decays from iteration to iteration; denormal numbers would cost a hundred times as much.
+  // What a mode does not move decays from iteration to iteration; denormal numbers would cost a
+  // hundred times as much.
   for (Index u = 0; u < p.x.size(); ++u)
     if (size_of(p.x(u)) < 1e-40) p.x(u) = 0.0;
-  for (VecXc* v : {&p.Mx, &p.Cx, &p.Kx}) v->resize(p.x.size());
+  for (VecXc* v : {&p.Mx, &p.Cx, &p.Kx})
+    v->resize(p.x.size());
   multiply(*m_, p.x, p.Mx, p.Cx, p.Kx);
   if (exact) multiply_exact(m_->K, p.x, p.Kx);
-  for (VecXc* v : {&p.Mx, &p.Cx, &p.Kx}) mask(*v);
+  for (VecXc* v : {&p.Mx, &p.Cx, &p.Kx})
+    mask(*v);
   return true;
 }
 
@@ -79,7 +90,10 @@ Complex Polisher::rayleigh_root(const Pair& p, Complex s0) {
   double distance = std::numeric_limits<double>::infinity();
   const auto consider = [&](Complex s) {
     const double r = std::abs(s - s0);
-    if (r < distance) { distance = r; best = s; }  // false for NaN
+    if (r < distance) {
+      distance = r;
+      best = s;
+    }  // false for NaN
   };
   if (a != 0.0) consider(q / a);
   if (q != 0.0) consider(c / q);
@@ -101,11 +115,14 @@ double Polisher::residual_norm(const Pair& p, Complex lambda) {
 
 bool Polisher::polish(Pair& p, double tolerance, bool near) {
   if (p.Kx.size() == 0 && !evaluate(p)) return false;
-  // What rounding of K x alone can do to lambda: beams of many elements need sums better than working precision.
+  // What rounding of K x alone can do to lambda: beams of many elements need sums better than
+  // working precision.
   const bool exact = uncertainty(p) > 1e-10 * std::abs(p.lambda);
   const Complex start = p.lambda;
   // Roots near zero are known no better than rounding of K allows.
-  const double floor = std::max(std::numeric_limits<double>::epsilon() * std::abs(start), 1e3 * uncertainty(p)) + 1e-300;
+  const double floor =
+      std::max(std::numeric_limits<double>::epsilon() * std::abs(start), 1e3 * uncertainty(p)) +
+      1e-300;
   double change = std::numeric_limits<double>::infinity();
   Complex shift;
   // Newton. Quadratic, so that a change of 1e-3 leaves about 1e-6 for the linear phase.
@@ -113,7 +130,8 @@ bool Polisher::polish(Pair& p, double tolerance, bool near) {
     // A little beside: a start that is an eigenvalue already must not make Q singular.
     shift = p.lambda * (1.0 + 1e-6);
     if (!factor(shift)) {
-      // A soft support under parts a billion times stiffer: so close to the eigenvalue its share of the last pivot is rounding.
+      // A soft support under parts a billion times stiffer: so close to the eigenvalue its share of
+      // the last pivot is rounding.
       shift = p.lambda * (1.0 + 5e-4);
       if (!factor(shift)) return false;
     }
@@ -140,19 +158,21 @@ bool Polisher::polish(Pair& p, double tolerance, bool near) {
     // Along x the correction only rescales, and near the eigenvalue rounding makes that part large.
     y_ -= p.x.dot(y_) / p.x.squaredNorm() * p.x;
     step = 0.0;
-    for (Index u = 0; u < y_.size(); ++u) step = std::max(step, size_of(y_(u)));
+    for (Index u = 0; u < y_.size(); ++u)
+      step = std::max(step, size_of(y_(u)));
     if (!(step < last)) break;  // the limit that rounding sets
     p.x -= y_;
     if (!evaluate(p, exact)) return false;
     const Complex next = rayleigh_root(p, p.lambda);
     change = std::abs(next - p.lambda) / std::max(std::abs(next), floor);
     p.lambda = next;
-    // The vector converges linearly; what its last step leaves in lambda is below the product of both.
+    // The vector converges linearly; what its last step leaves in lambda is below the product of
+    // both.
     if (change <= tolerance && step <= 1e-8) break;
     last = 0.5 * step;
   }
-  // What is left, relative to the largest component. Eigenvalues closer together than this shift can resolve keep the vectors mixed; the
-  // caller separates them.
+  // What is left, relative to the largest component. Eigenvalues closer together than this shift
+  // can resolve keep the vectors mixed; the caller separates them.
   return step < 1e-3 || std::abs(p.lambda - shift) < 1e-5 * std::abs(p.lambda);
 }
 
@@ -181,7 +201,8 @@ void Polisher::assess(Pair& p) {
   for (Index u = 0; u < p.x.size(); ++u) {
     const double w = diagonal_k_(u) + s * diagonal_c_(u) + s * s * diagonal_m_(u);
     if (!(w > 0.0)) continue;
-    residual = std::max(residual, std::norm(p.lambda * (p.lambda * p.Mx(u) + p.Cx(u)) + p.Kx(u)) / w);
+    residual =
+        std::max(residual, std::norm(p.lambda * (p.lambda * p.Mx(u) + p.Cx(u)) + p.Kx(u)) / w);
     size = std::max(size, size_(u) * size_(u) / w);
   }
   p.residual = residual > 0.0 ? std::sqrt(residual / size) : 0.0;
@@ -189,11 +210,14 @@ void Polisher::assess(Pair& p) {
 
 double Polisher::rounding_of_stiffness(const Pair& p) {
   sizes(p, 0.0, 0.0, 1.0);
-  // Rounding of n products of random sign; 16 eps is far below any support that could be told from none.
+  // Rounding of n products of random sign; 16 eps is far below any support that could be told from
+  // none.
   double rounding = 16.0 * eps * abs_x_.dot(size_);
-  // Components below eps are rounding of the largest, which is 1: what K makes of them is none either.
+  // Components below eps are rounding of the largest, which is 1: what K makes of them is none
+  // either.
   abs_x_.setConstant(eps);
-  for (const Index u : held_) abs_x_(u) = 0.0;
+  for (const Index u : held_)
+    abs_x_(u) = 0.0;
   size_.setZero();
   add_multiply_size(m_->K, 1.0, abs_x_, size_);
   rounding += abs_x_.dot(size_);
@@ -205,7 +229,9 @@ VecX Polisher::weights(Complex lambda) const {
   return (diagonal_k_ + s * diagonal_c_ + s * s * diagonal_m_).cwiseSqrt();
 }
 
-bool Polisher::is_unresisted(const Pair& p) { return std::abs(p.x.dot(p.Kx)) <= rounding_of_stiffness(p); }
+bool Polisher::is_unresisted(const Pair& p) {
+  return std::abs(p.x.dot(p.Kx)) <= rounding_of_stiffness(p);
+}
 
 void Polisher::separate(std::span<Pair*> group) {
   const Index k = static_cast<Index>(group.size()), n = y_.size();
@@ -222,10 +248,14 @@ void Polisher::separate(std::span<Pair*> group) {
     const Pair& p = *group[at(j)];
     real = real && p.lambda.imag() == 0.0;
     const double s = 1.0 / p.x.norm();
-    X.col(j) = s * p.x; MX.col(j) = s * p.Mx; CX.col(j) = s * p.Cx; KX.col(j) = s * p.Kx;
+    X.col(j) = s * p.x;
+    MX.col(j) = s * p.Mx;
+    CX.col(j) = s * p.Cx;
+    KX.col(j) = s * p.Kx;
     centre += p.lambda / static_cast<double>(k);
   }
-  for (Index j = 0; j < k; ++j) radius = std::max(radius, std::abs(group[at(j)]->lambda - centre));
+  for (Index j = 0; j < k; ++j)
+    radius = std::max(radius, std::abs(group[at(j)]->lambda - centre));
   // A shift off the group, so that none of its eigenvalues is hit.
   const Complex c = centre + 0.3 * std::max(radius, 1e-2 * std::abs(centre)) * Complex(1.0, 0.2);
   const MatXc gram = X.adjoint() * X;
@@ -242,8 +272,11 @@ void Polisher::separate(std::span<Pair*> group) {
   if (!op.allFinite()) return;
   const Eigen::ComplexEigenSolver<MatXc> eig(op);
   std::vector<Index> order(at(2 * k));
-  for (Index j = 0; j < 2 * k; ++j) order[at(j)] = j;
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::abs(eig.eigenvalues()(a)) > std::abs(eig.eigenvalues()(b)); });
+  for (Index j = 0; j < 2 * k; ++j)
+    order[at(j)] = j;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::abs(eig.eigenvalues()(a)) > std::abs(eig.eigenvalues()(b));
+  });
   // The k nearest to the centre, each given to the old vector it contains most of.
   MatXc y(k, k);
   VecXc lambda(k);
@@ -261,7 +294,11 @@ void Polisher::separate(std::span<Pair*> group) {
     Index bi = 0, bj = 0;
     for (Index i = 0; i < k; ++i)
       for (Index j = 0; j < k; ++j)
-        if (!taken[at(j)] && !given[at(i)] && std::abs(y(i, j)) > best) { best = std::abs(y(i, j)); bi = i; bj = j; }
+        if (!taken[at(j)] && !given[at(i)] && std::abs(y(i, j)) > best) {
+          best = std::abs(y(i, j));
+          bi = i;
+          bj = j;
+        }
     taken[at(bj)] = given[at(bi)] = true;
     of[at(bi)] = bj;
   }
@@ -276,7 +313,10 @@ void Polisher::separate(std::span<Pair*> group) {
       p.lambda = p.lambda.real();
       w = w.real().cast<Complex>().eval();
     }
-    p.x = X * w; p.Mx = MX * w; p.Cx = CX * w; p.Kx = KX * w;
+    p.x = X * w;
+    p.Mx = MX * w;
+    p.Cx = CX * w;
+    p.Kx = KX * w;
   }
 }
 

@@ -10,13 +10,15 @@ namespace whirl::la {
 struct ModeSolver::Impl : Eigenpairs {
   using Eigenpairs::Eigenpairs;
   Krylov<Complex> krylov_complex;
-  std::vector<VecXc> deflated;  ///< Ritz vectors z that polishing could not make anything new of; out of the way of the searches of this call
+  std::vector<VecXc> deflated;  ///< Ritz vectors z that polishing could not make anything new of;
+                                ///< out of the way of the searches of this call
   std::vector<Mode> result;
   std::optional<RootCounter> counter;
   Certificate certificate;
-  static constexpr double unproved = 1e-8;   ///< backward error
+  static constexpr double unproved = 1e-8;  ///< backward error
 
-  template <class Scalar> void lock_known(Krylov<Scalar>& k) {
+  template <class Scalar>
+  void lock_known(Krylov<Scalar>& k) {
     typename Krylov<Scalar>::Vec z(dimension());
     const auto lock = [&](const VecXc& x, Complex lambda) {
       if constexpr (std::is_same_v<Scalar, double>) {
@@ -43,17 +45,22 @@ struct ModeSolver::Impl : Eigenpairs {
       if constexpr (!std::is_same_v<Scalar, double>)
         if (p.lambda.imag() != 0.0) lock(p.x.conjugate(), std::conj(p.lambda));
       if (!p.rigid || first_order) continue;
-      // Steady drift (0, x) belongs to the invariant space of a free motion when nothing damps it: the operator then makes
+      // Steady drift (0, x) belongs to the invariant space of a free motion when nothing damps it:
+      // the operator then makes
       // -(alpha / shift^2) x and the like of it.
       for (Index i = 0; i < n; ++i) {
         z(i) = 0.0;
-        if constexpr (std::is_same_v<Scalar, double>) z(n + i) = p.x(unknown[at(i)]).real();
-        else z(n + i) = p.x(unknown[at(i)]);
+        if constexpr (std::is_same_v<Scalar, double>)
+          z(n + i) = p.x(unknown[at(i)]).real();
+        else
+          z(n + i) = p.x(unknown[at(i)]);
       }
       operation<Scalar>()(z, image);
       Scalar s;
-      if constexpr (std::is_same_v<Scalar, double>) s = sigma;
-      else s = shift;
+      if constexpr (std::is_same_v<Scalar, double>)
+        s = sigma;
+      else
+        s = shift;
       image.head(n) += alpha / (s * s) * z.tail(n);
       if (image.head(n).norm() < 1e-4 * alpha / std::norm(s) * z.norm()) k.lock(z);
     }
@@ -67,8 +74,10 @@ struct ModeSolver::Impl : Eigenpairs {
     }
   }
 
-  /// One Arnoldi run in the complement of what is known. False: nothing unknown is left within the wanted radius.
-  template <class Scalar> bool search(Krylov<Scalar>& k, unsigned seed) {
+  /// One Arnoldi run in the complement of what is known. False: nothing unknown is left within the
+  /// wanted radius.
+  template <class Scalar>
+  bool search(Krylov<Scalar>& k, unsigned seed) {
     ++work.searches;
     k.reset(dimension(), seed);
     lock_known(k);
@@ -84,10 +93,12 @@ struct ModeSolver::Impl : Eigenpairs {
     const auto op = operation<Scalar>();
     while (true) {
       bool exhausted = false;
-      while (k.processed() < next_look && !exhausted) exhausted = !k.step(op);
+      while (k.processed() < next_look && !exhausted)
+        exhausted = !k.step(op);
       if (k.processed() == 0) return false;
       const Ritz ritz = look(k);
-      // Converged Ritz values before the first that is not; the converse distance bounds what is still unknown.
+      // Converged Ritz values before the first that is not; the converse distance bounds what is
+      // still unknown.
       std::vector<Pair> found;
       std::vector<VecXc> vectors;
       Index counted = 0;
@@ -111,7 +122,8 @@ struct ModeSolver::Impl : Eigenpairs {
         const VecXc z = k.searched_basis() * ritz.y.col(static_cast<Index>(j));
         const std::size_t before = found.size();
         suggest(found, lambda, z, std::is_same_v<Scalar, double>, &vectors);
-        if (opt.real_roots || found.back().lambda.imag() != 0.0) counted += static_cast<Index>(found.size() - before);
+        if (opt.real_roots || found.back().lambda.imag() != 0.0)
+          counted += static_cast<Index>(found.size() - before);
       }
       const bool enough = growing && opt.count > 0 && counted >= lacking && lacking > 0;
       if (exhausted || enough || all) {
@@ -119,7 +131,8 @@ struct ModeSolver::Impl : Eigenpairs {
         take(found, true);
         sort_known();
         separate_close();
-        for (const Pair& p : found) deflated.push_back(std::move(vectors[at(p.from)]));
+        for (const Pair& p : found)
+          deflated.push_back(std::move(vectors[at(p.from)]));
         return !(exhausted && k.locked() == 0);
       }
       next_look = k.processed() + std::max<Index>(4, k.processed() / 5);
@@ -138,7 +151,8 @@ struct ModeSolver::Impl : Eigenpairs {
     }
     const Eigen::EigenSolver<MatX> eig(op);
     double largest = 0.0;
-    for (Index j = 0; j < d; ++j) largest = std::max(largest, std::abs(eig.eigenvalues()(j)));
+    for (Index j = 0; j < d; ++j)
+      largest = std::max(largest, std::abs(eig.eigenvalues()(j)));
     std::vector<Pair> found;
     for (Index j = 0; j < d; ++j) {
       const Complex theta = eig.eigenvalues()(j);
@@ -153,7 +167,8 @@ struct ModeSolver::Impl : Eigenpairs {
   }
 
   void start_from_known() {
-    // A better eigenvalue from each old vector, better vectors within groups of close ones, then Newton.
+    // A better eigenvalue from each old vector, better vectors within groups of close ones, then
+    // Newton.
     std::vector<Pair> old = std::move(known);
     known.clear();
     std::vector<Pair*> group;
@@ -169,12 +184,14 @@ struct ModeSolver::Impl : Eigenpairs {
       found.push_back(std::move(p));
     }
     std::stable_sort(found.begin(), found.end(), [](const Pair& a, const Pair& b) {
-      return a.lambda.imag() != b.lambda.imag() ? a.lambda.imag() < b.lambda.imag() : a.lambda.real() < b.lambda.real();
+      return a.lambda.imag() != b.lambda.imag() ? a.lambda.imag() < b.lambda.imag()
+                                                : a.lambda.real() < b.lambda.real();
     });
     for (std::size_t i = 0; i < found.size();) {
       group.clear();
       std::size_t j = i;
-      do group.push_back(&found[j++]);
+      do
+        group.push_back(&found[j++]);
       while (j < found.size() && group.size() < 8 &&
              std::abs(found[j].lambda - found[j - 1].lambda) < 0.05 * std::abs(found[j].lambda));
       polisher.separate(group);
@@ -194,7 +211,9 @@ struct ModeSolver::Impl : Eigenpairs {
       if (!counts(p)) continue;
       if (opt.count > 0 && c == opt.count) break;
       ++c;
-      if (opt.count <= 0 ? std::abs(p.lambda) > opt.max_frequency : p.lambda.imag() > opt.max_frequency) continue;
+      if (opt.count <= 0 ? std::abs(p.lambda) > opt.max_frequency
+                         : p.lambda.imag() > opt.max_frequency)
+        continue;
       chosen.push_back(i);
     }
     sort_by_frequency(chosen);
@@ -208,21 +227,24 @@ struct ModeSolver::Impl : Eigenpairs {
     });
   }
 
-  /// The same of a counted list: all that oscillates up to the frequency or the number asked for, and the real roots of the region.
+  /// The same of a counted list: all that oscillates up to the frequency or the number asked for,
+  /// and the real roots of the region.
   std::vector<std::size_t> choose_counted() const {
     const CountRegion region{certificate.radius, certificate.reach};
     std::vector<std::size_t> oscillating, real_ones;
     for (std::size_t i = 0; i < known.size(); ++i) {
       const Pair& p = known[i];
       if (oscillates(p.lambda) && p.lambda.imag() <= opt.max_frequency) oscillating.push_back(i);
-      if (!oscillates(p.lambda) && opt.real_roots && region.contains(p.lambda)) real_ones.push_back(i);
+      if (!oscillates(p.lambda) && opt.real_roots && region.contains(p.lambda))
+        real_ones.push_back(i);
     }
     sort_by_frequency(oscillating);
     sort_by_frequency(real_ones);
     if (opt.count > 0 && static_cast<Index>(oscillating.size()) > opt.count) {
       const auto beyond = oscillating.begin() + static_cast<std::ptrdiff_t>(opt.count);
       const auto kept = std::remove_if(beyond, oscillating.end(), [&](std::size_t i) {
-        return !(opt.growing && region.contains(known[i].lambda) && known[i].lambda.real() > known[i].uncertainty);
+        return !(opt.growing && region.contains(known[i].lambda) &&
+                 known[i].lambda.real() > known[i].uncertainty);
       });
       oscillating.erase(kept, oscillating.end());
     }
@@ -238,12 +260,15 @@ struct ModeSolver::Impl : Eigenpairs {
       if (p.rigid) polisher.assess(p);
       modes.push_back({p.lambda, p.x, p.residual, p.uncertainty, p.from});
     }
-    for (Pair& p : known) p.from = -1;
-    for (std::size_t j = 0; j < chosen.size(); ++j) known[chosen[j]].from = static_cast<Index>(j);
+    for (Pair& p : known)
+      p.from = -1;
+    for (std::size_t j = 0; j < chosen.size(); ++j)
+      known[chosen[j]].from = static_cast<Index>(j);
     result = std::move(modes);
   }
 
-  /// A radius for the count: at least what is asked for, where the frequencies known leave the widest gap.
+  /// A radius for the count: at least what is asked for, where the frequencies known leave the
+  /// widest gap.
   double count_radius() const {
     std::vector<double> f;
     for (const Pair& p : known)
@@ -255,24 +280,31 @@ struct ModeSolver::Impl : Eigenpairs {
     double widest = 0.0;
     for (Index i = opt.count; i < n; ++i) {
       const double low = f[at(i - 1)], high = f[at(i)];
-      if (high / low > widest) { widest = high / low; radius = std::sqrt(high * low); }
+      if (high / low > widest) {
+        widest = high / low;
+        radius = std::sqrt(high * low);
+      }
     }
     return std::max(std::min(radius, 1.01 * opt.max_frequency), 1.01 * least_radius);
   }
 
-  /// A pair that is no root, or a zero root counted with the free motions already, would hide one that is missing.
+  /// A pair that is no root, or a zero root counted with the free motions already, would hide one
+  /// that is missing.
   void drop_unproved() {
-    std::erase_if(known, [](const Pair& p) { return !p.rigid && (!(p.residual < unproved) || std::abs(p.lambda) <= p.uncertainty); });
+    std::erase_if(known, [](const Pair& p) {
+      return !p.rigid && (!(p.residual < unproved) || std::abs(p.lambda) <= p.uncertainty);
+    });
   }
 
   std::vector<Complex> known_roots() const {
     std::vector<Complex> roots(static_cast<std::size_t>(double_zeros), 0.0);
-    for (const Pair& p : known) roots.push_back(p.lambda);
+    for (const Pair& p : known)
+      roots.push_back(p.lambda);
     return roots;
   }
 
-  /// Looks for roots within a distance from a place of the complex plane, in complex arithmetic, with all that is known out of the way. True:
-  /// something new.
+  /// Looks for roots within a distance from a place of the complex plane, in complex arithmetic,
+  /// with all that is known out of the way. True: something new.
   bool look_near(Complex place, double distance) {
     ModeOptions o;
     o.count = 0;
@@ -281,21 +313,24 @@ struct ModeSolver::Impl : Eigenpairs {
     o.tolerance = opt.tolerance;
     o.dense_below = 0;
     Impl near(pattern, active, o);
-    constexpr Index old = 1 << 20;   // marks what was known before
+    constexpr Index old = 1 << 20;  // marks what was known before
     near.set(*m);
     near.known = known;
-    for (Pair& p : near.known) p.from = old;
+    for (Pair& p : near.known)
+      p.from = old;
     near.prepare_operator(false);
     for (unsigned seed = 1; seed < 12; ++seed)
       if (!near.search(near.krylov_complex, seed)) break;
     bool any = false;
     for (Pair& p : near.known)
-      if (!p.rigid && p.from != old && std::abs(p.lambda) > p.uncertainty) any = add(std::move(p)) || any;
+      if (!p.rigid && p.from != old && std::abs(p.lambda) > p.uncertainty)
+        any = add(std::move(p)) || any;
     sort_known();
     return any;
   }
 
-  /// Looks round a grid over the region, for roots that lie too close together for their moments to tell them apart.
+  /// Looks round a grid over the region, for roots that lie too close together for their moments to
+  /// tell them apart.
   bool look_everywhere(const CountRegion& region) {
     bool any = false;
     for (const double height : {0.0, 0.5, 1.0})
@@ -305,7 +340,8 @@ struct ModeSolver::Impl : Eigenpairs {
   }
 
   Index count_oscillating() const {
-    return std::count_if(known.begin(), known.end(), [](const Pair& p) { return oscillates(p.lambda); });
+    return std::count_if(known.begin(), known.end(),
+                         [](const Pair& p) { return oscillates(p.lambda); });
   }
 
   /// All searches that lead to something new.
@@ -315,30 +351,35 @@ struct ModeSolver::Impl : Eigenpairs {
     if (!complex_shift()) add_companions();
   }
 
-  /// Pairs counted on the way may have turned out to be real: the search goes on until as many modes oscillate as are wanted.
+  /// Pairs counted on the way may have turned out to be real: the search goes on until as many
+  /// modes oscillate as are wanted.
   void extend_to_count() {
     const double given = least_radius;
     for (int more = 0; more < 4 && count_oscillating() < opt.count; ++more) {
-      least_radius = 2.0 * std::max(certificate.radius, wanted_radius() < infinity ? wanted_radius() : 0.0);
+      least_radius =
+          2.0 * std::max(certificate.radius, wanted_radius() < infinity ? wanted_radius() : 0.0);
       search_all();
       certify();
     }
     least_radius = given;
   }
 
-  /// The missing roots are further copies of overdamped ones that are known: massless unknowns under damping in proportion to their stiffness all
-  /// have the one rate -1/beta. Their number says nothing about the machine.
+  /// The missing roots are further copies of overdamped ones that are known: massless unknowns
+  /// under damping in proportion to their stiffness all have the one rate -1/beta. Their number
+  /// says nothing about the machine.
   bool further_copies(const std::vector<Complex>& places) const {
     const auto is_copy = [&](Complex place) {
       return std::any_of(known.begin(), known.end(), [&](const Pair& p) {
-        return !oscillates(p.lambda) && p.lambda.real() < 0.0 && std::abs(p.lambda - place) < 1e-2 * std::abs(p.lambda);
+        return !oscillates(p.lambda) && p.lambda.real() < 0.0 &&
+               std::abs(p.lambda - place) < 1e-2 * std::abs(p.lambda);
       });
     };
     return !places.empty() && std::all_of(places.begin(), places.end(), is_copy);
   }
 
-  /// Free motions whose zero roots the search could not tell apart (several at once are defective): they are counted by themselves, within a
-  /// circle round zero that is small beside every other root, and the region once more with as many zeros. True: nothing else is missing.
+  /// Free motions whose zero roots the search could not tell apart (several at once are defective):
+  /// they are counted by themselves, within a circle round zero that is small beside every other
+  /// root, and the region once more with as many zeros. True: nothing else is missing.
   bool only_zeros_missing() {
     std::vector<double> sizes;
     for (const Pair& p : known)
@@ -376,7 +417,7 @@ struct ModeSolver::Impl : Eigenpairs {
       certificate.reach = region.reach;
       certificate.counted = c.certain;
       certificate.missing = c.certain ? std::abs(c.unknown) : 0;
-      if (!c.certain) {   // a root on the curve itself
+      if (!c.certain) {  // a root on the curve itself
         radius *= 1.023;
         continue;
       }
@@ -387,13 +428,16 @@ struct ModeSolver::Impl : Eigenpairs {
         break;
       }
       bool any = false;
-      for (const Complex place : certificate.where) any = look_near(place, 0.1 * (round + 1) * radius) || any;
+      for (const Complex place : certificate.where)
+        any = look_near(place, 0.1 * (round + 1) * radius) || any;
       if (!any) any = look_everywhere(region);
       if (!any) break;
     }
-    if (certificate.counted && certificate.missing > 0 && only_zeros_missing()) certificate.missing = 0;
+    if (certificate.counted && certificate.missing > 0 && only_zeros_missing())
+      certificate.missing = 0;
     if (certificate.complete()) certificate.where.clear();
-    certificate.recovered = std::max<Index>(0, static_cast<Index>(known.size()) - static_cast<Index>(before));
+    certificate.recovered =
+        std::max<Index>(0, static_cast<Index>(known.size()) - static_cast<Index>(before));
     work.factorizations += certificate.factorizations;
   }
 
@@ -435,11 +479,13 @@ struct ModeSolver::Impl : Eigenpairs {
     if (opt.count > 0) {
       Index c = 0;
       std::size_t keep = 0;
-      while (keep < known.size() && c < opt.count + opt.guard) c += counts(known[keep++]) ? 1 : 0;
+      while (keep < known.size() && c < opt.count + opt.guard)
+        c += counts(known[keep++]) ? 1 : 0;
       if (opt.certify) {
         const CountRegion region{certificate.radius, certificate.reach};
-        const auto carried = std::stable_partition(known.begin() + static_cast<std::ptrdiff_t>(keep), known.end(),
-                                                   [&](const Pair& p) { return region.contains(p.lambda); });
+        const auto carried =
+            std::stable_partition(known.begin() + static_cast<std::ptrdiff_t>(keep), known.end(),
+                                  [&](const Pair& p) { return region.contains(p.lambda); });
         keep = static_cast<std::size_t>(carried - known.begin());
       }
       known.resize(keep);
@@ -455,11 +501,13 @@ struct ModeSolver::Impl : Eigenpairs {
     for (const Pair& p : known)
       if (!p.rigid) sizes.push_back(std::abs(p.lambda));
     const double least = scale_of(std::move(sizes));
-    if (least < infinity && (least < 0.5 * sigma || least > 10.0 * sigma) && least > 1e-5 * sigma) sigma = alpha = 0.5 * least;
+    if (least < infinity && (least < 0.5 * sigma || least > 10.0 * sigma) && least > 1e-5 * sigma)
+      sigma = alpha = 0.5 * least;
   }
 };
 
-ModeSolver::ModeSolver(const BlockPattern& pattern, std::span<const unsigned char> active, const ModeOptions& options)
+ModeSolver::ModeSolver(const BlockPattern& pattern, std::span<const unsigned char> active,
+                       const ModeOptions& options)
     : impl_(std::make_unique<Impl>(pattern, active, options)) {}
 ModeSolver::~ModeSolver() = default;
 ModeSolver::ModeSolver(ModeSolver&&) noexcept = default;
@@ -495,7 +543,8 @@ const Certificate& ModeSolver::certificate() const { return impl_->certificate; 
 
 ModeSolver::Work ModeSolver::work() const { return impl_->work; }
 
-std::vector<Mode> quadratic_modes(const MCK& m, std::span<const unsigned char> active, const ModeOptions& options) {
+std::vector<Mode> quadratic_modes(const MCK& m, std::span<const unsigned char> active,
+                                  const ModeOptions& options) {
   return ModeSolver(m.K.pattern(), active, options).solve(m);
 }
 

@@ -8,10 +8,13 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 template <class Scalar>
 Refinement<Scalar>::Refinement(const BlockPattern& pattern, std::span<const unsigned char> active)
-    : active_(active.begin(), active.end()), residual_(6 * pattern.size()), size_(6 * pattern.size()) {}
+    : active_(active.begin(), active.end()),
+      residual_(6 * pattern.size()),
+      size_(6 * pattern.size()) {}
 
 template <class Scalar>
-double Refinement<Scalar>::backward_error(const MCK& m, Scalar cm, Scalar cc, Scalar ck, const Vec& x, const Vec& b) {
+double Refinement<Scalar>::backward_error(const MCK& m, Scalar cm, Scalar cc, Scalar ck,
+                                          const Vec& x, const Vec& b) {
   const BlockPattern& p = m.K.pattern();
   double worst = 0.0;
   for (Index i = 0; i < p.size(); ++i) {
@@ -48,8 +51,8 @@ void Refinement<Scalar>::correct(DirectSolver<Scalar>& solver, Vec& x) {
 }
 
 template <class Scalar>
-double Refinement<Scalar>::refine(DirectSolver<Scalar>& solver, const MCK& m, Scalar cm, Scalar cc, Scalar ck, const Vec& b,
-                                  Vec& x, int steps, double goal) {
+double Refinement<Scalar>::refine(DirectSolver<Scalar>& solver, const MCK& m, Scalar cm, Scalar cc,
+                                  Scalar ck, const Vec& b, Vec& x, int steps, double goal) {
   double error = backward_error(m, cm, cc, ck, x, b);
   for (int k = 0; k < steps && !(error <= goal); ++k) {
     correct(solver, x);

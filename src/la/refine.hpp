@@ -11,15 +11,18 @@ class Refinement {
   /// active as given to the solver; copied.
   Refinement(const BlockPattern& pattern, std::span<const unsigned char> active);
 
-  /// Componentwise backward error max_i |b - S x|_i / (|S| |x| + |b|)_i (Oettli & Prager, doi 10.1007/BF01386090): the smallest
-  /// relative change of the single entries of S and b that makes x exact. Does not depend on units; about 1e-15 when x is as good
-  /// as the data deserve. Rows of held unknowns do not count. Keeps the residual for correct().
+  /// Componentwise backward error max_i |b - S x|_i / (|S| |x| + |b|)_i (Oettli & Prager,
+  /// doi 10.1007/BF01386090): the smallest relative change of the single entries of S and b that
+  /// makes x exact. Does not depend on units; about 1e-15 when x is as good as the data deserve.
+  /// Rows of held unknowns do not count. Keeps the residual for correct().
   double backward_error(const MCK& m, Scalar cm, Scalar cc, Scalar ck, const Vec& x, const Vec& b);
-  /// x += S^-1 (b - S x) with the residual of the last backward_error() and a solver that holds S (or something near it).
+  /// x += S^-1 (b - S x) with the residual of the last backward_error() and a solver that holds S
+  /// (or something near it).
   void correct(DirectSolver<Scalar>& solver, Vec& x);
-  /// Up to `steps` corrections until the backward error is below `goal`; returns the last backward error.
-  double refine(DirectSolver<Scalar>& solver, const MCK& m, Scalar cm, Scalar cc, Scalar ck, const Vec& b, Vec& x,
-                int steps = 2, double goal = 1e-15);
+  /// Up to `steps` corrections until the backward error is below `goal`; returns the last backward
+  /// error.
+  double refine(DirectSolver<Scalar>& solver, const MCK& m, Scalar cm, Scalar cc, Scalar ck,
+                const Vec& b, Vec& x, int steps = 2, double goal = 1e-15);
   const Vec& residual() const { return residual_; }
 
  private:

@@ -19,13 +19,16 @@ struct Ritz {
 template <class Scalar>
 Ritz look(const Krylov<Scalar>& krylov) {
   const Index p = krylov.processed();
-  using Solver = std::conditional_t<std::is_same_v<Scalar, double>, Eigen::EigenSolver<MatX>, Eigen::ComplexEigenSolver<MatXc>>;
+  using Solver = std::conditional_t<std::is_same_v<Scalar, double>, Eigen::EigenSolver<MatX>,
+                                    Eigen::ComplexEigenSolver<MatXc>>;
   const Solver eig(typename Krylov<Scalar>::Mat(krylov.projected()));
   const VecXc values = eig.eigenvalues();
   const MatXc vectors = eig.eigenvectors();
   std::vector<Index> order(static_cast<std::size_t>(p));
-  for (Index j = 0; j < p; ++j) order[static_cast<std::size_t>(j)] = j;
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return std::abs(values(a)) > std::abs(values(b)); });
+  for (Index j = 0; j < p; ++j)
+    order[static_cast<std::size_t>(j)] = j;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return std::abs(values(a)) > std::abs(values(b)); });
   Ritz r;
   r.y.resize(p, p);
   const typename Krylov<Scalar>::Mat rest = krylov.rest();
@@ -33,7 +36,8 @@ Ritz look(const Krylov<Scalar>& krylov) {
     const Index e = order[static_cast<std::size_t>(j)];
     r.theta.push_back(values(e));
     r.y.col(j) = vectors.col(e) / vectors.col(e).norm();
-    r.residual.push_back(rest.rows() == 0 ? 0.0 : (rest.template cast<Complex>() * r.y.col(j)).norm());
+    r.residual.push_back(rest.rows() == 0 ? 0.0
+                                          : (rest.template cast<Complex>() * r.y.col(j)).norm());
   }
   return r;
 }

@@ -8,11 +8,12 @@ namespace whirl::la {
 
 namespace {
 
-constexpr double largest_step = 12.0;      ///< of log f between neighbouring samples
-constexpr double counting_surprise = 0.4;  ///< of that, what the slopes do not explain: enough to count
-constexpr double moment_surprise = 2e-3;   ///< and to say where the roots are
-constexpr double difference = 1e-5;        ///< of the radius: step of the slope
-constexpr int deepest = 14;                ///< halvings of one interval
+constexpr double largest_step = 12.0;  ///< of log f between neighbouring samples
+constexpr double counting_surprise =
+    0.4;  ///< of that, what the slopes do not explain: enough to count
+constexpr double moment_surprise = 2e-3;  ///< and to say where the roots are
+constexpr double difference = 1e-5;       ///< of the radius: step of the slope
+constexpr int deepest = 14;               ///< halvings of one interval
 constexpr Index most_samples = 400;
 
 /// The argument of an increment of log f in (-pi, pi].
@@ -21,16 +22,19 @@ Complex principal(Complex step) { return {step.real(), std::remainder(step.imag(
 /// Zeros of the polynomial whose roots have the power sums p_1 .. p_n (Newton's identities).
 std::vector<Complex> roots_of_moments(const std::vector<double>& p) {
   const Index n = static_cast<Index>(p.size());
-  VecX e = VecX::Zero(n + 1);   // elementary symmetric functions
+  VecX e = VecX::Zero(n + 1);  // elementary symmetric functions
   e(0) = 1.0;
   for (Index k = 1; k <= n; ++k) {
     double sum = 0.0;
-    for (Index i = 1; i <= k; ++i) sum += (i % 2 ? 1.0 : -1.0) * e(k - i) * p[static_cast<std::size_t>(i - 1)];
+    for (Index i = 1; i <= k; ++i)
+      sum += (i % 2 ? 1.0 : -1.0) * e(k - i) * p[static_cast<std::size_t>(i - 1)];
     e(k) = sum / static_cast<double>(k);
   }
   MatX companion = MatX::Zero(n, n);
-  for (Index k = 0; k < n; ++k) companion(0, k) = (k % 2 ? -1.0 : 1.0) * e(k + 1);
-  for (Index k = 1; k < n; ++k) companion(k, k - 1) = 1.0;
+  for (Index k = 0; k < n; ++k)
+    companion(0, k) = (k % 2 ? -1.0 : 1.0) * e(k + 1);
+  for (Index k = 1; k < n; ++k)
+    companion(k, k - 1) = 1.0;
   if (!companion.allFinite()) return {};
   const VecXc values = companion.eigenvalues();
   std::vector<Complex> out;
@@ -48,7 +52,8 @@ bool CountRegion::contains(Complex s) const {
 
 double CountRegion::damping_ratio() const { return reach / std::hypot(reach, radius); }
 
-RootCounter::RootCounter(const BlockPattern& pattern, std::span<const unsigned char> active) : lu_(pattern, active) {}
+RootCounter::RootCounter(const BlockPattern& pattern, std::span<const unsigned char> active)
+    : lu_(pattern, active) {}
 
 Complex RootCounter::point(double t) const {
   const double r = region_.radius;
@@ -84,7 +89,7 @@ Complex RootCounter::direction(double t, double within) const {
 bool RootCounter::sample(double t, Sample& out) {
   out.t = t;
   out.s = point(t);
-  if (t == 0.0 || t == 3.0) out.s.imag(0.0);   // exactly real: f is
+  if (t == 0.0 || t == 3.0) out.s.imag(0.0);  // exactly real: f is
   out.log_f = log_f(out.s);
   const Complex beside = difference * region_.radius * Complex(0.6, 0.8);
   out.slope = principal(log_f(out.s + beside) - out.log_f) / beside;
@@ -93,8 +98,10 @@ bool RootCounter::sample(double t, Sample& out) {
 
 bool RootCounter::settle(const Sample& a, const Sample& b, int depth) {
   Sample middle;
-  if (static_cast<Index>(samples_.size()) > most_samples || !sample(0.5 * (a.t + b.t), middle)) return false;
-  // d log f/dt at the three, the integrals of the parabola through them, and what is left of the differences.
+  if (static_cast<Index>(samples_.size()) > most_samples || !sample(0.5 * (a.t + b.t), middle))
+    return false;
+  // d log f/dt at the three, the integrals of the parabola through them, and what is left of the
+  // differences.
   const Complex ga = a.slope * direction(a.t, middle.t);
   const Complex gm = middle.slope * direction(middle.t, middle.t);
   const Complex gb = b.slope * direction(b.t, middle.t);
@@ -117,7 +124,8 @@ bool RootCounter::settle(const Sample& a, const Sample& b, int depth) {
   return settle(reached, b, depth - 1);
 }
 
-void RootCounter::add_moments(const Sample& a, const Sample& b, std::vector<double>& moments) const {
+void RootCounter::add_moments(const Sample& a, const Sample& b,
+                              std::vector<double>& moments) const {
   const Complex chord = b.s - a.s;
   const Complex rise = b.log_f - a.log_f;
   const Complex first = a.slope * chord;
@@ -128,7 +136,8 @@ void RootCounter::add_moments(const Sample& a, const Sample& b, std::vector<doub
   constexpr double weight[] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   for (int g = 0; g < 3; ++g) {
     const double u = at[g];
-    const Complex derivative = 6.0 * u * (1.0 - u) * rise + (3.0 * u * u - 4.0 * u + 1.0) * first + (3.0 * u * u - 2.0 * u) * last;
+    const Complex derivative = 6.0 * u * (1.0 - u) * rise + (3.0 * u * u - 4.0 * u + 1.0) * first +
+                               (3.0 * u * u - 2.0 * u) * last;
     const Complex s = (a.s + u * chord) / region_.radius;
     Complex power = s;
     for (double& moment : moments) {
@@ -155,7 +164,8 @@ bool RootCounter::follow_curve(double surprise) {
   return true;
 }
 
-RootCount RootCounter::count(const MCK& m, const CountRegion& region, std::span<const Complex> known) {
+RootCount RootCounter::count(const MCK& m, const CountRegion& region,
+                             std::span<const Complex> known) {
   m_ = &m;
   region_ = region;
   known_.assign(known.begin(), known.end());
@@ -175,8 +185,10 @@ std::vector<Complex> RootCounter::locate(Index unknown) {
   std::vector<Complex> out;
   if (unknown <= 0 || !follow_curve(moment_surprise)) return out;
   std::vector<double> moments(static_cast<std::size_t>(unknown), 0.0);
-  for (std::size_t k = 1; k < samples_.size(); ++k) add_moments(samples_[k - 1], samples_[k], moments);
-  for (const Complex z : roots_of_moments(moments)) out.push_back(z * region_.radius);
+  for (std::size_t k = 1; k < samples_.size(); ++k)
+    add_moments(samples_[k - 1], samples_[k], moments);
+  for (const Complex z : roots_of_moments(moments))
+    out.push_back(z * region_.radius);
   return out;
 }
 

@@ -19,7 +19,8 @@ double ShiftedOperator::crude_frequency() const {
     const Index s = pattern.diagonal(i);
     for (int c = 0; c < 6; ++c) {
       if (!active[at(6 * i + c)]) continue;
-      const double k = std::abs(m->K.block(s)(c, c)), mm = std::abs(m->M.block(s)(c, c)), cc = std::abs(m->C.block(s)(c, c));
+      const double k = std::abs(m->K.block(s)(c, c)), mm = std::abs(m->M.block(s)(c, c)),
+                   cc = std::abs(m->C.block(s)(c, c));
       if (k <= 0.0) continue;
       if (!first_order && mm > 0.0) best = std::min(best, std::sqrt(k / mm));
       if (first_order && cc > 0.0) best = std::min(best, k / cc);
@@ -45,9 +46,10 @@ void ShiftedOperator::find_shift() {
     const Ritz r = look(krylov);
     std::vector<double> sizes;
     for (std::size_t j = 0; j < r.theta.size(); ++j) {
-      if (!(std::abs(r.theta[j]) > 1e-12 * std::abs(r.theta[0]))) continue;   // at infinity: no mass
+      if (!(std::abs(r.theta[j]) > 1e-12 * std::abs(r.theta[0]))) continue;  // at infinity: no mass
       const Complex lambda = s + 1.0 / r.theta[j];
-      // Rigid-body motions do not set the scale; rounding moves their double zero to about 1e-8 of the highest frequency.
+      // Rigid-body motions do not set the scale; rounding moves their double zero to about 1e-8 of
+      // the highest frequency.
       if (std::abs(lambda) < 0.1 * s) {
         Pair p;
         p.x = full_vector(krylov.searched_basis().topRows(n) * r.y.col(static_cast<Index>(j)));
@@ -69,15 +71,19 @@ void ShiftedOperator::find_shift() {
 
 Error ShiftedOperator::singular_problem() const {
   const Index u = real ? real->singular_unknown() : complex->singular_unknown();
-  return run_error("E61", "the eigenvalue problem cannot be factored: unknown " + std::to_string(u % 6) + " of node " + std::to_string(u / 6) +
-                              " has neither stiffness nor mass",
-                   "give the node mass or stiffness in this direction, or hold it", "node " + std::to_string(u / 6));
+  return run_error("E61",
+                   "the eigenvalue problem cannot be factored: unknown " + std::to_string(u % 6) +
+                       " of node " + std::to_string(u / 6) + " has neither stiffness nor mass",
+                   "give the node mass or stiffness in this direction, or hold it",
+                   "node " + std::to_string(u / 6));
 }
 
 void ShiftedOperator::prepare_operator(bool fresh) {
   factor_operator(fresh);
-  if (complex_shift()) measure_accuracy<Complex>(*complex, shift);
-  else measure_accuracy<double>(*real, sigma);
+  if (complex_shift())
+    measure_accuracy<Complex>(*complex, shift);
+  else
+    measure_accuracy<double>(*real, sigma);
 }
 
 void ShiftedOperator::factor_operator(bool fresh) {
@@ -119,7 +125,8 @@ void ShiftedOperator::factor_operator(bool fresh) {
 
 VecXc ShiftedOperator::full_vector(const VecXc& z) const {
   VecXc x = VecXc::Zero(6 * pattern.size());
-  for (Index i = 0; i < n; ++i) x(unknown[at(i)]) = z(i);
+  for (Index i = 0; i < n; ++i)
+    x(unknown[at(i)]) = z(i);
   return x;
 }
 
@@ -129,7 +136,8 @@ void ShiftedOperator::purify(VecX& v) {
     multiply(m->C, v, y_);
     y_ = sigma * (sigma * t_ + y_);
     v.setZero();
-    for (const Index u : unknown) v(u) = y_(u);
+    for (const Index u : unknown)
+      v(u) = y_(u);
     real->solve(v);
   }
 }

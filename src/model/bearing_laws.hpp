@@ -7,42 +7,51 @@
 
 namespace whirl::model {
 
-/// The paper's spring block at a point: force -C1 (r - r0), moment -C2 gamma (gamma: Euler vector of the axis tilt).
-struct SpringBlock { double C1 = 0, C2 = 0; };
+/// The paper's spring block at a point: force -C1 (r - r0), moment -C2 gamma (gamma: Euler vector
+/// of the axis tilt).
+struct SpringBlock {
+  double C1 = 0, C2 = 0;
+};
 
-/// Linear bearing or support between a shaft station and ground (or another station): 6x6 K, C, M in the order
-/// (x, y, z, rx, ry, rz), fixed axes; force on the shaft = preload - K (q - setpoint) - C q'.
+/// Linear bearing or support between a shaft station and ground (or another station): 6x6 K, C, M
+/// in the order (x, y, z, rx, ry, rz), fixed axes; force on the shaft = preload - K (q - setpoint)
+/// - C q'.
 struct LinearBearing {
   Matrix<6> K = Matrix<6>::Zero(), C = Matrix<6>::Zero(), M = Matrix<6>::Zero();
   Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
 };
 
-/// The linear bearing with K, C (and M) tabulated against speed, and where given against the frequency of the motion. With
-/// frequencies the rows are a grid, speed by speed: row i f + j belongs to speed i, frequency j.
+/// The linear bearing with K, C (and M) tabulated against speed, and where given against the
+/// frequency of the motion. With frequencies the rows are a grid, speed by speed: row i f + j
+/// belongs to speed i, frequency j.
 struct TableBearing {
-  std::vector<double> speed;                      ///< rad/s, increasing
-  std::vector<double> frequency;                  ///< rad/s, increasing; empty: against speed alone
-  std::vector<Matrix<6>> K, C, M;                 ///< as many as speeds (times frequencies); M may be empty
+  std::vector<double> speed;       ///< rad/s, increasing
+  std::vector<double> frequency;   ///< rad/s, increasing; empty: against speed alone
+  std::vector<Matrix<6>> K, C, M;  ///< as many as speeds (times frequencies); M may be empty
   Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
-  bool monotone_cubic = true;                     ///< else linear
-  bool extrapolate_hold = false;                  ///< else outside the table is an error
+  bool monotone_cubic = true;     ///< else linear
+  bool extrapolate_hold = false;  ///< else outside the table is an error
   std::string file;
 };
 
 /// Directions held rigidly (constraints, no penalty): x, y, z, rx (spin), ry, rz.
-struct RigidSupport { std::array<bool, 6> held{}; };
+struct RigidSupport {
+  std::array<bool, 6> held{};
+};
 
 /// A force (or moment) against a deflection (or angle).
 struct ForceLaw {
   enum class Shape { polynomial, table, clearance, one_sided } shape = Shape::polynomial;
-  std::vector<double> coefficients;               ///< c0, c1, ...: sum c_k q^k
-  std::vector<double> q, F;                       ///< table
-  bool monotone_cubic = true;                     ///< table: else straight lines
-  double gap_minus = 0, gap_plus = 0;             ///< clearance: play on either side; one_sided: gap_plus
-  double stiffness = 0, smooth = 0;               ///< clearance and one_sided: behind the gap; length over which it sets in
+  std::vector<double> coefficients;    ///< c0, c1, ...: sum c_k q^k
+  std::vector<double> q, F;            ///< table
+  bool monotone_cubic = true;          ///< table: else straight lines
+  double gap_minus = 0, gap_plus = 0;  ///< clearance: play on either side; one_sided: gap_plus
+  double stiffness = 0,
+         smooth = 0;  ///< clearance and one_sided: behind the gap; length over which it sets in
 };
 
-/// Nonlinear spring with damper along one direction: load on the shaft -(F(q) + D(q) q'), D = damping + damping2 q^2.
+/// Nonlinear spring with damper along one direction: load on the shaft -(F(q) + D(q) q'), D =
+/// damping + damping2 q^2.
 struct NonlinearSpring {
   enum class Along { y, z, radial, x, ry, rz, rx } along = Along::y;
   ForceLaw force;
@@ -51,25 +60,25 @@ struct NonlinearSpring {
 
 /// Viscosity of a lubricant: given, or an ISO VG oil at a temperature.
 struct Oil {
-  double viscosity = 0;                           ///< Pa s; 0: from the grade
-  double grade = 0, temperature = 0, density = 900;   ///< ISO VG number, K, kg/m3
+  double viscosity = 0;                              ///< Pa s; 0: from the grade
+  double grade = 0, temperature = 0, density = 900;  ///< ISO VG number, K, kg/m3
 };
 
 /// Plain journal bearing by the short-bearing theory (pi film).
 struct ShortJournal {
-  double diameter = 0, length = 0, clearance = 0; ///< m; clearance radial
+  double diameter = 0, length = 0, clearance = 0;  ///< m; clearance radial
   Oil oil;
 };
 
 /// Journal bearing of finite length with cavitation: plain, with axial grooves, or multi-lobe.
 struct FiniteJournal {
-  double diameter = 0, length = 0, clearance = 0; ///< m; clearance radial, as assembled
+  double diameter = 0, length = 0, clearance = 0;  ///< m; clearance radial, as assembled
   Oil oil;
-  double preload = 0;                             ///< of the pads, in [0, 1)
+  double preload = 0;  ///< of the pads, in [0, 1)
   enum class Shape { plain, two_grooves, lobes } shape = Shape::plain;
   int lobes = 3;
-  double groove = 0, groove_at = 0, lobe_at = 0, lobe_offset = 0.5;   ///< rad; from +y towards +z
-  int nodes = 72;                                 ///< grid points round the circumference
+  double groove = 0, groove_at = 0, lobe_at = 0, lobe_offset = 0.5;  ///< rad; from +y towards +z
+  int nodes = 72;  ///< grid points round the circumference
 };
 
 /// Squeeze-film damper, with its centring spring where it has one.
@@ -77,8 +86,8 @@ struct SqueezeFilm {
   double diameter = 0, length = 0, clearance = 0;
   Oil oil;
   enum class Film { cavitated, full, finite, sealed } film = Film::cavitated;
-  double groove = 0, groove_at = 0;               ///< feed of the sealed film, rad
-  double stiffness = 0, damping = 0;              ///< centring spring, the same in y and z, N/m, N s/m
+  double groove = 0, groove_at = 0;   ///< feed of the sealed film, rad
+  double stiffness = 0, damping = 0;  ///< centring spring, the same in y and z, N/m, N s/m
 };
 
 struct BallBearing {
@@ -99,17 +108,17 @@ struct RollerBearing {
 struct RollingEstimate {
   bool roller = false;
   int elements = 0;
-  double size = 0;                                ///< ball diameter or roller length, m
-  double load = 0, load_angle = 0;                ///< N; rad, from +y towards +z
-  double contact_angle = 0;                       ///< rad
-  double kxx = 0, c_radial = 0;                   ///< given: axial stiffness, N/m; lateral damping, N s/m
+  double size = 0;                  ///< ball diameter or roller length, m
+  double load = 0, load_angle = 0;  ///< N; rad, from +y towards +z
+  double contact_angle = 0;         ///< rad
+  double kxx = 0, c_radial = 0;     ///< given: axial stiffness, N/m; lateral damping, N s/m
 };
 
 /// One-sided contact with friction: rub, stop, catcher bearing. The stator is the pedestal.
 struct Rub {
-  double gap = 0, stiffness = 0, damping = 0, friction = 0;   ///< m, N/m, s/m (Hunt & Crossley), -
-  double diameter = 0;                            ///< 0: that of the shaft
-  double slip_speed = 1e-3;                       ///< m/s
+  double gap = 0, stiffness = 0, damping = 0, friction = 0;  ///< m, N/m, s/m (Hunt & Crossley), -
+  double diameter = 0;                                       ///< 0: that of the shaft
+  double slip_speed = 1e-3;                                  ///< m/s
 };
 
 struct AnnularSeal {
@@ -119,9 +128,13 @@ struct AnnularSeal {
 
 /// Destabilising force k J r of a bladed stage or impeller.
 struct CrossCoupling {
-  double k = 0;                                   ///< N/m, positive: drives whirl y -> z
-  struct Alford { double beta = 1, torque = 0, diameter = 0, blade_height = 0; };
-  struct Wachel { double power = 0, speed = 0, diameter = 0, width = 0, molar_mass = 0.029, density_ratio = 1; };
+  double k = 0;  ///< N/m, positive: drives whirl y -> z
+  struct Alford {
+    double beta = 1, torque = 0, diameter = 0, blade_height = 0;
+  };
+  struct Wachel {
+    double power = 0, speed = 0, diameter = 0, width = 0, molar_mass = 0.029, density_ratio = 1;
+  };
   enum class From { given, alford, wachel } from = From::given;
   Alford alford;
   Wachel wachel;
@@ -130,21 +143,21 @@ struct CrossCoupling {
 /// Coupling between two shafts: K, C turn with them (order x, y, z, rx, ry, rz).
 struct Coupling {
   Matrix<6> K = Matrix<6>::Zero(), C = Matrix<6>::Zero();
-  double offset_y = 0, offset_z = 0;              ///< parallel misalignment of hub 1 against hub 2, m
-  double angle_y = 0, angle_z = 0;                ///< angular misalignment: slopes towards y and z, rad
+  double offset_y = 0, offset_z = 0;  ///< parallel misalignment of hub 1 against hub 2, m
+  double angle_y = 0, angle_z = 0;    ///< angular misalignment: slopes towards y and z, rad
 };
 
 /// Spur or helical gear pair between the shaft and a second one.
 struct GearPair {
-  int teeth = 0, other_teeth = 0;                 ///< other_teeth < 0: internal gear
-  double pitch_diameter = 0;                      ///< of the gear on this shaft, m
-  double pressure_angle = pi / 9, helix = 0;      ///< transverse, and base helix angle, rad
-  double centre_angle = nan;                      ///< rad; nan: from the places of the shafts
+  int teeth = 0, other_teeth = 0;             ///< other_teeth < 0: internal gear
+  double pitch_diameter = 0;                  ///< of the gear on this shaft, m
+  double pressure_angle = pi / 9, helix = 0;  ///< transverse, and base helix angle, rad
+  double centre_angle = nan;                  ///< rad; nan: from the places of the shafts
   int drive = 1;
-  double stiffness = 0, damping = 0;              ///< N/m, N s/m (with backlash: s/m)
-  double backlash = -1;                           ///< m along the line of action; negative: none, both flanks always hold
-  std::vector<double> stiffness_harmonics, stiffness_phases;   ///< relative to the mean; rad
-  std::vector<double> error_harmonics, error_phases;           ///< m; rad
+  double stiffness = 0, damping = 0;  ///< N/m, N s/m (with backlash: s/m)
+  double backlash = -1;  ///< m along the line of action; negative: none, both flanks always hold
+  std::vector<double> stiffness_harmonics, stiffness_phases;  ///< relative to the mean; rad
+  std::vector<double> error_harmonics, error_phases;          ///< m; rad
 };
 
 }  // namespace whirl::model

@@ -1,5 +1,6 @@
-// The model: what the deck says, as plain values in SI (m, kg, s, rad, N). Validated once by the deck reader, then const.
-// No matrices, no mesh, no numbering. Every entity keeps where in the deck it stands.
+// The model: what the deck says, as plain values in SI (m, kg, s, rad, N). Validated once by the
+// deck reader, then const. No matrices, no mesh, no numbering. Every entity keeps where in the deck
+// it stands.
 #pragma once
 #include <core/error.hpp>
 #include <core/law.hpp>
@@ -34,59 +35,80 @@ enum class ShearFactor { cowper, hutchinson, none /* Euler-Bernoulli or Rayleigh
 struct Section : Entity {
   double length = 0;
   double od_l = 0, id_l = 0, od_r = 0, id_r = 0;  ///< mass diameters, m
-  std::optional<std::array<double, 4>> stiffness_diameters;  ///< od_l, id_l, od_r, id_r for stiffness, when they differ
-  std::size_t material = 0;                       ///< index into Model::materials
-  bool rigid = false;                             ///< rigid link: no deformation; massless unless it has diameters
+  std::optional<std::array<double, 4>>
+      stiffness_diameters;   ///< od_l, id_l, od_r, id_r for stiffness, when they differ
+  std::size_t material = 0;  ///< index into Model::materials
+  bool rigid = false;        ///< rigid link: no deformation; massless unless it has diameters
   ShearFactor shear = ShearFactor::cowper;
-  double kappa = 0;                               ///< for ShearFactor::given
-  bool rotary_inertia = true;                     ///< false: Euler-Bernoulli mass
-  double added_mass_per_length = 0;               ///< kg/m without stiffness
-  double temperature_rise = 0;                    ///< K above the state in which the shaft has its lengths
+  double kappa = 0;                  ///< for ShearFactor::given
+  bool rotary_inertia = true;        ///< false: Euler-Bernoulli mass
+  double added_mass_per_length = 0;  ///< kg/m without stiffness
+  double temperature_rise = 0;       ///< K above the state in which the shaft has its lengths
   int min_elements = 1;
   double max_element_length = infinity;
-  /// General sections (not axisymmetric): stiffnesses given directly; I about the section's own y and z axes.
-  struct General { double A = 0, Iy = 0, Iz = 0, J = 0, kappa_y = 0, kappa_z = 0, angle = 0; };
+  /// General sections (not axisymmetric): stiffnesses given directly; I about the section's own y
+  /// and z axes.
+  struct General {
+    double A = 0, Iy = 0, Iz = 0, J = 0, kappa_y = 0, kappa_z = 0, angle = 0;
+  };
   std::optional<General> general;
-  /// Stiffness and inertia constants given directly (benchmarks that state them): EA, kGA, GJ, EI; rhoA, rhoI (transverse), rhoIp.
-  struct Constants { double EA = 0, kGA = 0, GJ = 0, EI = 0, rhoA = 0, rhoI = 0, rhoIp = 0; };
+  /// Stiffness and inertia constants given directly (benchmarks that state them): EA, kGA, GJ, EI;
+  /// rhoA, rhoI (transverse), rhoIp.
+  struct Constants {
+    double EA = 0, kGA = 0, GJ = 0, EI = 0, rhoA = 0, rhoI = 0, rhoIp = 0;
+  };
   std::optional<Constants> constants;
 };
 
 /// Damping of a shaft line.
 struct ShaftDamping {
-  double alpha = 0;             ///< mass-proportional, external (fixed frame), 1/s
-  double beta_external = 0;     ///< stiffness-proportional, non-rotating, s
-  double beta_internal = 0;     ///< stiffness-proportional, rotating (viscous), s
-  double loss_factor = 0;       ///< hysteretic, rotating
-  double loss_frequency = 0;    ///< rad/s in rotating axes, at which a viscous stand-in loses as much in transients; 0: none
-  double beta_torsion = 0;      ///< torsional viscous, s
+  double alpha = 0;           ///< mass-proportional, external (fixed frame), 1/s
+  double beta_external = 0;   ///< stiffness-proportional, non-rotating, s
+  double beta_internal = 0;   ///< stiffness-proportional, rotating (viscous), s
+  double loss_factor = 0;     ///< hysteretic, rotating
+  double loss_frequency = 0;  ///< rad/s in rotating axes, at which a viscous stand-in loses as much
+                              ///< in transients; 0: none
+  double beta_torsion = 0;    ///< torsional viscous, s
 };
 
-/// Residual bow of an unloaded shaft: half a sine from end to end, in a plane that turns with the shaft.
-struct Bow { double amount = 0, phase = 0; };   ///< m at mid-length; rad, body angle from e2 towards e3
+/// Residual bow of an unloaded shaft: half a sine from end to end, in a plane that turns with the
+/// shaft.
+struct Bow {
+  double amount = 0, phase = 0;
+};  ///< m at mid-length; rad, body angle from e2 towards e3
 
 struct Shaft : Entity {
-  Vec3 origin = Vec3::Zero();   ///< position of station 0, m; the line runs along +x, or along `path`
-  Path path;                    ///< of a line that is not straight; it starts at the origin
+  Vec3 origin =
+      Vec3::Zero();  ///< position of station 0, m; the line runs along +x, or along `path`
+  Path path;         ///< of a line that is not straight; it starts at the origin
   std::vector<Section> sections;
   ShaftDamping damping;
-  bool rotating = true;         ///< false: a casing or foundation beam
-  double speed_ratio = 1;       ///< speed of this line relative to the reference speed of frequency-domain steps
-  double spin0 = 0;             ///< initial spin of transients unless a drive says otherwise, rad/s
-  double axial_preload = 0;     ///< N, tension positive: before anything deforms; relaxes where the ends are free along the axis
-  double axial_force = 0;       ///< N, tension positive: pulls at both ends, a load
+  bool rotating = true;  ///< false: a casing or foundation beam
+  double speed_ratio =
+      1;  ///< speed of this line relative to the reference speed of frequency-domain steps
+  double spin0 = 0;          ///< initial spin of transients unless a drive says otherwise, rad/s
+  double axial_preload = 0;  ///< N, tension positive: before anything deforms; relaxes where the
+                             ///< ends are free along the axis
+  double axial_force = 0;    ///< N, tension positive: pulls at both ends, a load
   Bow bow;
-  double length() const { double s = 0; for (const auto& x : sections) s += x.length; return s; }
-  Vec3 position(double s) const { return path.empty() ? Vec3(origin + Vec3(s, 0, 0)) : path.after(s).r; }
+  double length() const {
+    double s = 0;
+    for (const auto& x : sections)
+      s += x.length;
+    return s;
+  }
+  Vec3 position(double s) const {
+    return path.empty() ? Vec3(origin + Vec3(s, 0, 0)) : path.after(s).r;
+  }
 };
 
 /// A place on a shaft line: distance from station 0.
 struct Location {
   std::size_t shaft = 0;
-  double s = 0;        ///< m
-  std::string text;    ///< as written in the deck ("body2:mid")
+  double s = 0;      ///< m
+  std::string text;  ///< as written in the deck ("body2:mid")
   Where where{};
-  int housing = -1;    ///< bearing (index) whose support is meant instead of the shaft ("DE:support")
+  int housing = -1;  ///< bearing (index) whose support is meant instead of the shaft ("DE:support")
 };
 
 // ---------------------------------------------------------------- what sits on a shaft
@@ -94,19 +116,23 @@ struct Location {
 /// Rigid disk or body, fixed to the shaft at `at`.
 struct Disk : Entity {
   Location at;
-  double mass = 0, Ip = 0, Id = 0;      ///< about the mass centre
-  std::optional<Mat3> inertia;          ///< full body-fixed tensor about the mass centre, axes (e, e2, e3) at phi = 0
-  Vec3 offset = Vec3::Zero();           ///< mass centre from the station, body axes (x along the shaft): unbalance is mass * offset_yz
-  double skew = 0, skew_phase = 0;      ///< rad: principal axis tilted by `skew` towards body angle `skew_phase`
+  double mass = 0, Ip = 0, Id = 0;  ///< about the mass centre
+  std::optional<Mat3>
+      inertia;  ///< full body-fixed tensor about the mass centre, axes (e, e2, e3) at phi = 0
+  Vec3 offset = Vec3::Zero();  ///< mass centre from the station, body axes (x along the shaft):
+                               ///< unbalance is mass * offset_yz
+  double skew = 0,
+         skew_phase = 0;  ///< rad: principal axis tilted by `skew` towards body angle `skew_phase`
   double draw_od = 0, draw_id = 0, draw_width = 0;  ///< picture only
 };
 
 struct Unbalance : Entity {
   Location at;
-  std::optional<Location> to;   ///< of the same shaft, to the right: evenly over the length between; absent = at one place
-  double amount = 0;   ///< kg m
-  double phase = 0;    ///< rad, body angle from e2 towards e3
-  LawPtr factor;       ///< time law multiplying amount (blade loss, thermal growth); null = 1
+  std::optional<Location> to;  ///< of the same shaft, to the right: evenly over the length between;
+                               ///< absent = at one place
+  double amount = 0;           ///< kg m
+  double phase = 0;            ///< rad, body angle from e2 towards e3
+  LawPtr factor;  ///< time law multiplying amount (blade loss, thermal growth); null = 1
 };
 
 /// Initial values of a free body or line: applied to all nodes as a rigid motion.
@@ -114,122 +140,160 @@ struct InitialMotion : Entity {
   std::size_t shaft = 0;
   Vec3 displacement = Vec3::Zero(), velocity = Vec3::Zero(), omega = Vec3::Zero();
   Vec2 gamma = Vec2::Zero();
-  Vec3 about = Vec3::Zero();            ///< point the rotation and velocity refer to (reference position)
+  Vec3 about = Vec3::Zero();  ///< point the rotation and velocity refer to (reference position)
 };
 
 // ---------------------------------------------------------------- supports and bearings
 
-using BearingLaw = std::variant<SpringBlock, LinearBearing, TableBearing, RigidSupport, NonlinearSpring, ShortJournal, FiniteJournal, SqueezeFilm,
-                                BallBearing, RollerBearing, RollingEstimate, Rub, AnnularSeal, CrossCoupling, Coupling, GearPair>;
+using BearingLaw =
+    std::variant<SpringBlock, LinearBearing, TableBearing, RigidSupport, NonlinearSpring,
+                 ShortJournal, FiniteJournal, SqueezeFilm, BallBearing, RollerBearing,
+                 RollingEstimate, Rub, AnnularSeal, CrossCoupling, Coupling, GearPair>;
 
 /// A mass-spring-damper pedestal under a bearing: mass with its own y, z (and x) motion.
-struct Pedestal { double mass = 0; Mat3 K = Mat3::Zero(), C = Mat3::Zero(); };
+struct Pedestal {
+  double mass = 0;
+  Mat3 K = Mat3::Zero(), C = Mat3::Zero();
+};
 
 struct Bearing : Entity {
   Location at;
-  std::optional<Location> to;          ///< second shaft station (intershaft bearing or coupling); absent = ground
+  std::optional<Location>
+      to;  ///< second shaft station (intershaft bearing or coupling); absent = ground
   BearingLaw law;
   std::optional<Pedestal> pedestal;
 };
 
-/// A foundation or casing as reduced matrices: its coordinates are support points of bearings and internal ones.
+/// A foundation or casing as reduced matrices: its coordinates are support points of bearings and
+/// internal ones.
 struct Foundation : Entity {
-  struct Coordinate { std::string name; int bearing = -1; int direction = 0; };   ///< bearing -1: internal; direction 0 .. 2 x, y, z, 3 .. 5 rotations about them
+  struct Coordinate {
+    std::string name;
+    int bearing = -1;
+    int direction = 0;
+  };  ///< bearing -1: internal; direction 0 .. 2 x, y, z, 3 .. 5 rotations about them
   std::vector<Coordinate> coordinates;
-  MatX K, C, M;                        ///< one row and column a coordinate; M symmetric
+  MatX K, C, M;  ///< one row and column a coordinate; M symmetric
 };
 
 // ---------------------------------------------------------------- loads and drives
 
-enum class LoadFrame { fixed, rotating };   ///< fixed directions, or turning with phi (body axes)
+enum class LoadFrame { fixed, rotating };  ///< fixed directions, or turning with phi (body axes)
 
 struct PointLoad : Entity {
   Location at;
   LoadFrame frame = LoadFrame::fixed;
-  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();   ///< N, N m; multiplied by factor(t)
-  LawPtr factor;                                      ///< null = 1
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< N, N m; multiplied by factor(t)
+  LawPtr factor;                                     ///< null = 1
 };
 
-/// Torque along the shaft on phi (a constant-velocity joint, along (e+d)/(1+e.d)) or as a fixed-direction moment.
+/// Torque along the shaft on phi (a constant-velocity joint, along (e+d)/(1+e.d)) or as a
+/// fixed-direction moment.
 enum class TorqueKind { spin, fixed_direction };
 
 /// Torque as a function of the station's own spin: T(t, s).
 struct TorqueCurve {
-  LawPtr of_time;                               ///< T(t); null = 0
-  std::vector<double> speed, torque;            ///< table against spin, rad/s -> N m (linear between, held outside); may be empty
-  double constant = 0, viscous = 0, quadratic = 0;  ///< load torque -(constant sign(s) + viscous s + quadratic s|s|)
-  struct Induction { double breakdown = 0, slip_breakdown = 0.1, synchronous = 0; };   ///< Kloss: 2 Tb/(x/xb + xb/x)
+  LawPtr of_time;  ///< T(t); null = 0
+  std::vector<double> speed,
+      torque;  ///< table against spin, rad/s -> N m (linear between, held outside); may be empty
+  double constant = 0, viscous = 0,
+         quadratic = 0;  ///< load torque -(constant sign(s) + viscous s + quadratic s|s|)
+  struct Induction {
+    double breakdown = 0, slip_breakdown = 0.1, synchronous = 0;
+  };  ///< Kloss: 2 Tb/(x/xb + xb/x)
   std::optional<Induction> induction;
-  struct ConstantPower { double power = 0, max_torque = 0; };
+  struct ConstantPower {
+    double power = 0, max_torque = 0;
+  };
   std::optional<ConstantPower> power;
-  struct DcLine { double stall = 0, no_load_speed = 0; };                              ///< stall (1 - s/no_load_speed), N m, rad/s
+  struct DcLine {
+    double stall = 0, no_load_speed = 0;
+  };  ///< stall (1 - s/no_load_speed), N m, rad/s
   std::optional<DcLine> dc;
-  LawPtr brake;                                 ///< magnitude of a torque opposing the spin, N m(t); null = 0
-  struct Governor { double target = 0, kp = 0, ki = 0, max_torque = infinity; };       ///< PI on speed
+  LawPtr brake;  ///< magnitude of a torque opposing the spin, N m(t); null = 0
+  struct Governor {
+    double target = 0, kp = 0, ki = 0, max_torque = infinity;
+  };  ///< PI on speed
   std::optional<Governor> governor;
 };
 
-struct PrescribedSpin { LawPtr angle; };        ///< phi(t) at the station, exact constraint
+struct PrescribedSpin {
+  LawPtr angle;
+};  ///< phi(t) at the station, exact constraint
 struct Drive : Entity {
   Location at;
   std::variant<PrescribedSpin, TorqueCurve> law;
   TorqueKind kind = TorqueKind::spin;
-  std::string step;                             ///< the transient step it belongs to; empty = all
+  std::string step;  ///< the transient step it belongs to; empty = all
 };
 
 // ---------------------------------------------------------------- observation
 
 struct Probe : Entity {
   Location at;
-  std::vector<double> angles;   ///< rad from +y towards +z; empty: y and z
+  std::vector<double> angles;  ///< rad from +y towards +z; empty: y and z
 };
 
 // ---------------------------------------------------------------- steps
 
 struct IntegratorOptions {
-  std::string method = "radau5";   ///< radau5, generalized_alpha, gauss4, gauss6, ida, momentum_rk
-  double tolerance = 1e-4;         ///< one user-facing accuracy number, relative to the peak response of each kind
-  double rho_inf = 0.9;            ///< generalized-alpha
-  double dt = 0;                   ///< fixed step, s; 0 = adaptive
+  std::string method = "radau5";  ///< radau5, generalized_alpha, gauss4, gauss6, ida, momentum_rk
+  double tolerance =
+      1e-4;  ///< one user-facing accuracy number, relative to the peak response of each kind
+  double rho_inf = 0.9;  ///< generalized-alpha
+  double dt = 0;         ///< fixed step, s; 0 = adaptive
   double dt_max = infinity, dt_min = 0, dt_first = 0;
 };
 
-struct SpeedRange { double start = 0, stop = 0; int points = 2; std::vector<double> values; bool refine_peaks = false; };
+struct SpeedRange {
+  double start = 0, stop = 0;
+  int points = 2;
+  std::vector<double> values;
+  bool refine_peaks = false;
+};
 
 /// Static equilibria followed past limit points, the load factor (on gravity and loads) an unknown.
 struct LoadPath {
   enum class Control { arc_length, displacement } control = Control::arc_length;
-  int branch = 0;               ///< arc length: bifurcation at which the path leaves on the branch, 1 the first; negative: to its other side; 0: none
-  double last_load = 1;         ///< arc length: load factor at which the path ends
-  Location at;                  ///< displacement control: where,
-  int direction = 1;            ///< 0 .. 2: x, y, z; 3: angle about the axis,
-  double to = 0;                ///< m or rad
+  int branch = 0;  ///< arc length: bifurcation at which the path leaves on the branch, 1 the first;
+                   ///< negative: to its other side; 0: none
+  double last_load = 1;  ///< arc length: load factor at which the path ends
+  Location at;           ///< displacement control: where,
+  int direction = 1;     ///< 0 .. 2: x, y, z; 3: angle about the axis,
+  double to = 0;         ///< m or rad
   int steps = 20, max_points = 400;
 };
 struct StaticStep {
   int load_steps = 1;
   double speed = 0;
-  bool speed_given = false;         ///< 0 may be meant
+  bool speed_given = false;  ///< 0 may be meant
   /// rad/s; nothing where the deck leaves the speed to the drives and initial spins.
-  std::optional<double> own_speed() const { return speed_given || speed != 0 ? std::optional(speed) : std::nullopt; }
-  std::optional<SpeedRange> speeds; ///< equilibria one after another; the last one is the step's result
+  std::optional<double> own_speed() const {
+    return speed_given || speed != 0 ? std::optional(speed) : std::nullopt;
+  }
+  std::optional<SpeedRange>
+      speeds;  ///< equilibria one after another; the last one is the step's result
   std::optional<LoadPath> path;
 };
 /// Which unknowns of the shafts take part in a frequency-domain step; the others are held.
 enum class MotionKind { all, lateral, torsional, axial };
-/// What a frequency-domain step is linearised about: the static equilibrium at its speed, or the rotor as drawn, without
-/// gravity, loads and the deflection they cause.
+/// What a frequency-domain step is linearised about: the static equilibrium at its speed, or the
+/// rotor as drawn, without gravity, loads and the deflection they cause.
 enum class About { equilibrium, undeformed };
 /// Excitation frequencies, rad/s: equally spaced, or one by one.
-struct FrequencyRange { double start = 0, stop = 0; int points = 2; std::vector<double> values; };
+struct FrequencyRange {
+  double start = 0, stop = 0;
+  int points = 2;
+  std::vector<double> values;
+};
 
 struct ModalStep {
   double speed = 0;
   int modes = 10;
-  double max_frequency = infinity;   ///< rad/s
-  bool damped = true;                ///< false: the conservative part of the matrices only
+  double max_frequency = infinity;  ///< rad/s
+  bool damped = true;               ///< false: the conservative part of the matrices only
   MotionKind motion = MotionKind::all;
-  int shapes = 6;                    ///< mode shapes drawn and animated
+  int shapes = 6;  ///< mode shapes drawn and animated
   About about = About::equilibrium;
 };
 struct CampbellStep {
@@ -244,7 +308,7 @@ struct CampbellStep {
 struct CriticalStep {
   double max_speed = 0;
   std::vector<double> orders{1.0};
-  int modes = 10;                    ///< critical speeds listed of each order, from the lowest
+  int modes = 10;  ///< critical speeds listed of each order, from the lowest
   double min_speed = 0;
   MotionKind motion = MotionKind::all;
   int shapes = 4;
@@ -252,12 +316,15 @@ struct CriticalStep {
 };
 struct UnbalanceStep {
   SpeedRange speed;
-  std::array<double, 2> operating{0, 0};   ///< range of operating speeds, rad/s; 0 0 = not given
-  std::vector<double> shapes_at;           ///< speeds of operating shapes, rad/s; empty = at the peaks
+  std::array<double, 2> operating{0, 0};  ///< range of operating speeds, rad/s; 0 0 = not given
+  std::vector<double> shapes_at;  ///< speeds of operating shapes, rad/s; empty = at the peaks
   About about = About::equilibrium;
 };
 /// The stability at several values of a parameter of the deck, as written there ("75 um").
-struct StabilityMap { std::string parameter; std::vector<std::string> values; };
+struct StabilityMap {
+  std::string parameter;
+  std::vector<std::string> values;
+};
 struct StabilityStep {
   SpeedRange speed;
   int modes = 12;
@@ -265,32 +332,35 @@ struct StabilityStep {
   About about = About::equilibrium;
 };
 struct CriticalMapStep {
-  double stiffness_min = 0, stiffness_max = 0;   ///< N/m
+  double stiffness_min = 0, stiffness_max = 0;  ///< N/m
   int points = 31;
   double max_speed = 0;
   double order = 1;
-  bool backward = false;                         ///< backward criticals as lines of their own
-  std::vector<std::string> bearings;             ///< whose stiffness is varied; empty = all that carry laterally to the ground
+  bool backward = false;  ///< backward criticals as lines of their own
+  std::vector<std::string>
+      bearings;  ///< whose stiffness is varied; empty = all that carry laterally to the ground
   MotionKind motion = MotionKind::lateral;
   About about = About::equilibrium;
 };
-/// Harmonic force or moment: Re(amplitude exp(i (w t + phase))), or turning at w in the lateral plane.
+/// Harmonic force or moment: Re(amplitude exp(i (w t + phase))), or turning at w in the lateral
+/// plane.
 struct HarmonicForce : Entity {
   enum class Whirl { none, forward, backward };
   Location at;
-  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();   ///< amplitudes, N, N m
-  double phase = 0;                                   ///< rad
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< amplitudes, N, N m
+  double phase = 0;                                  ///< rad
   Whirl whirl = Whirl::none;
 };
 struct HarmonicStep {
   std::vector<HarmonicForce> forces;
-  double speed = 0;                        ///< asynchronous: rotor speed while the frequency varies
+  double speed = 0;  ///< asynchronous: rotor speed while the frequency varies
   std::optional<FrequencyRange> frequency;
-  std::optional<SpeedRange> speeds;        ///< synchronous: frequency = order x speed
+  std::optional<SpeedRange> speeds;  ///< synchronous: frequency = order x speed
   double order = 1;
-  bool speed_squared = false;              ///< amplitudes are those at the highest speed and grow with its square
+  bool speed_squared =
+      false;  ///< amplitudes are those at the highest speed and grow with its square
   MotionKind motion = MotionKind::all;
-  std::vector<double> shapes_at;           ///< frequencies of operating shapes, rad/s; empty = at the peaks
+  std::vector<double> shapes_at;  ///< frequencies of operating shapes, rad/s; empty = at the peaks
   About about = About::equilibrium;
 };
 struct TorsionalStep {
@@ -299,28 +369,40 @@ struct TorsionalStep {
   int modes = 6;
   About about = About::equilibrium;
 };
-struct BucklingStep { int modes = 3; double speed = 0; };
+struct BucklingStep {
+  int modes = 3;
+  double speed = 0;
+};
 struct TransientStep {
-  double duration = 0;             ///< s; from 0 unless it continues a previous step
+  double duration = 0;  ///< s; from 0 unless it continues a previous step
   IntegratorOptions integrator;
-  enum class Start { rest, static_equilibrium, unbalance_response, mode } start = Start::static_equilibrium;
-  int mode = 1;                    ///< of start = mode: number from the lowest frequency among those of mode_kind
+  enum class Start {
+    rest,
+    static_equilibrium,
+    unbalance_response,
+    mode
+  } start = Start::static_equilibrium;
+  int mode = 1;  ///< of start = mode: number from the lowest frequency among those of mode_kind
   MotionKind mode_kind = MotionKind::all;
-  double mode_amplitude = 1e-5;    ///< its largest displacement, m
-  std::string previous, previous_step;   ///< results folder of another run (and its step) whose end this one starts from
-  double speed0 = 0;               ///< rad/s, initial spin of every rotating line times its speed_ratio
-  bool speed0_given = false;       ///< 0 may be meant
-  std::optional<double> own_speed() const { return speed0_given || speed0 != 0 ? std::optional(speed0) : std::nullopt; }
-  double stop_speed = 0;           ///< stop when the reference spin passes this value; 0 = never
+  double mode_amplitude = 1e-5;         ///< its largest displacement, m
+  std::string previous, previous_step;  ///< results folder of another run (and its step) whose end
+                                        ///< this one starts from
+  double speed0 = 0;          ///< rad/s, initial spin of every rotating line times its speed_ratio
+  bool speed0_given = false;  ///< 0 may be meant
+  std::optional<double> own_speed() const {
+    return speed0_given || speed0 != 0 ? std::optional(speed0) : std::nullopt;
+  }
+  double stop_speed = 0;              ///< stop when the reference spin passes this value; 0 = never
   double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
-  double checkpoint = 60;          ///< wall-clock s between checkpoints; 0 = none
-  bool linear = false;             ///< small motions about the steadily turning equilibrium: constant matrices
+  double checkpoint = 60;             ///< wall-clock s between checkpoints; 0 = none
+  bool linear = false;  ///< small motions about the steadily turning equilibrium: constant matrices
 };
 
-using StepLaw = std::variant<StaticStep, ModalStep, CampbellStep, CriticalStep, UnbalanceStep, StabilityStep, CriticalMapStep, HarmonicStep,
-                             TorsionalStep, BucklingStep, TransientStep>;
+using StepLaw =
+    std::variant<StaticStep, ModalStep, CampbellStep, CriticalStep, UnbalanceStep, StabilityStep,
+                 CriticalMapStep, HarmonicStep, TorsionalStep, BucklingStep, TransientStep>;
 struct Step : Entity {
-  std::string from;                ///< earlier step whose result it starts from
+  std::string from;  ///< earlier step whose result it starts from
   StepLaw law;
 };
 
@@ -329,9 +411,9 @@ struct Step : Entity {
 struct VtkOutput {
   std::string step;
   double t0 = 0, t1 = infinity;
-  double every = 0;                ///< s between frames; 0 = use frames_per_revolution or frames
+  double every = 0;  ///< s between frames; 0 = use frames_per_revolution or frames
   double frames_per_revolution = 0;
-  int frames = 200;                ///< used when nothing else is given
+  int frames = 200;  ///< used when nothing else is given
   int max_frames = 5000;
   std::vector<std::string> content{"line", "surface"};
   double deformation_scale = 1;
@@ -342,26 +424,28 @@ struct VtkOutput {
 /// Motion seen from the keyphasor: synchronous amplitudes and phases turn by turn, orbits.
 struct TrackingOutput {
   bool on = true;
-  int samples = 48;                 ///< a turn
-  std::vector<double> orders{1.0, 2.0};   ///< whole multiples of the speed
-  std::vector<double> orbit_speeds; ///< rad/s: orbits are kept when the spin passes these, beside the largest one
-  int orbit_turns = 3;              ///< turns an orbit shows
+  int samples = 48;                      ///< a turn
+  std::vector<double> orders{1.0, 2.0};  ///< whole multiples of the speed
+  std::vector<double>
+      orbit_speeds;  ///< rad/s: orbits are kept when the spin passes these, beside the largest one
+  int orbit_turns = 3;  ///< turns an orbit shows
 };
 
 /// Spectra of the probes block by block (waterfall, full spectrum).
 struct SpectraOutput {
-  double max_frequency = 0;         ///< rad/s
-  int lines = 400;                  ///< frequencies from 0 to the highest
-  int traces = 200;                 ///< most spectra kept for the figures
+  double max_frequency = 0;  ///< rad/s
+  int lines = 400;           ///< frequencies from 0 to the highest
+  int traces = 200;          ///< most spectra kept for the figures
 };
 
 struct Output {
-  std::string directory;           ///< default results/<deck name>
-  double every = 0;                ///< s between rows of time histories; 0 = every accepted step
+  std::string directory;  ///< default results/<deck name>
+  double every = 0;       ///< s between rows of time histories; 0 = every accepted step
   std::vector<std::string> quantities{"speed", "probes", "energy"};
-  double t0 = -infinity, t1 = infinity;             ///< rows only inside this window, s
-  double speed_low = -infinity, speed_high = infinity;   ///< rows only while the reference spin is within, rad/s
-  double above = 0;                ///< rows only while a probe is displaced by more than this, m; 0 = always
+  double t0 = -infinity, t1 = infinity;  ///< rows only inside this window, s
+  double speed_low = -infinity,
+         speed_high = infinity;  ///< rows only while the reference spin is within, rad/s
+  double above = 0;  ///< rows only while a probe is displaced by more than this, m; 0 = always
   TrackingOutput tracking;
   std::optional<SpectraOutput> spectra;
   bool csv = true, binary = false, report = true;
@@ -373,34 +457,34 @@ struct Output {
 
 /// Turning of the base about an axis fixed in it and in space: a manoeuvre.
 struct BaseTurn {
-  Vec3 axis = Vec3::UnitY();       ///< unit vector
-  Vec3 about = Vec3::Zero();       ///< a point of the axis, m
-  LawPtr rate;                     ///< rad/s
+  Vec3 axis = Vec3::UnitY();  ///< unit vector
+  Vec3 about = Vec3::Zero();  ///< a point of the axis, m
+  LawPtr rate;                ///< rad/s
 };
 
 /// Motion of the base: displacements are relative to it.
 struct BaseMotion {
-  std::array<LawPtr, 3> acceleration;   ///< along its axes x, y, z, m/s2; null = none
+  std::array<LawPtr, 3> acceleration;  ///< along its axes x, y, z, m/s2; null = none
   std::optional<BaseTurn> turn;
 };
 
 /// Something that happens during a transient, located on the dense output.
 struct Event : Entity {
   enum class Kind { speed, amplitude } kind = Kind::speed;
-  double value = 0;                ///< rad/s, m
-  std::optional<Location> at;      ///< where the amplitude is looked at
-  int direction = 0;               ///< +1 rising, -1 falling, 0 both
-  bool stop = false;               ///< ends the run
+  double value = 0;            ///< rad/s, m
+  std::optional<Location> at;  ///< where the amplitude is looked at
+  int direction = 0;           ///< +1 rising, -1 falling, 0 both
+  bool stop = false;           ///< ends the run
 };
 
 struct Model {
   int format = 1;
   std::string title;
-  std::string deck_path;           ///< as given by the user
-  std::string deck_name;           ///< file name without extension
-  std::string resolved;            ///< the resolved deck (parameters substituted, includes merged), TOML text
-  Vec3 gravity = Vec3::Zero();     ///< m/s2, global axes; +x along the shaft
-  bool chart_change = true;        ///< re-chart rotations beyond 2 rad of tilt
+  std::string deck_path;  ///< as given by the user
+  std::string deck_name;  ///< file name without extension
+  std::string resolved;  ///< the resolved deck (parameters substituted, includes merged), TOML text
+  Vec3 gravity = Vec3::Zero();  ///< m/s2, global axes; +x along the shaft
+  bool chart_change = true;     ///< re-chart rotations beyond 2 rad of tilt
   bool keep_everything = false;
   double max_element_length = infinity;
   int min_elements = 1;

@@ -15,8 +15,8 @@ bool is_increasing(std::span<const double> x) {
   return true;
 }
 
-std::vector<std::size_t> decimate_columns(std::span<const double> x, std::span<const double> y, double x0, double x1,
-                                          std::size_t columns) {
+std::vector<std::size_t> decimate_columns(std::span<const double> x, std::span<const double> y,
+                                          double x0, double x1, std::size_t columns) {
   std::vector<std::size_t> keep;
   const std::size_t n = x.size();
   const double scale = static_cast<double>(columns) / (x1 - x0);
@@ -39,12 +39,18 @@ std::vector<std::size_t> decimate_columns(std::span<const double> x, std::span<c
       continue;
     }
     gap = false;
-    // Everything left of the range is one column and everything right of it another: enough for the lines that cross.
+    // Everything left of the range is one column and everything right of it another: enough for the
+    // lines that cross.
     const double c = std::floor((x[i] - x0) * scale);
-    const auto now = c < 0 ? std::ptrdiff_t{-1} : c >= static_cast<double>(columns) && x[i] > x1 ? static_cast<std::ptrdiff_t>(columns) : std::min(static_cast<std::ptrdiff_t>(c), static_cast<std::ptrdiff_t>(columns) - 1);
+    const auto now =
+        c < 0 ? std::ptrdiff_t{-1}
+        : c >= static_cast<double>(columns) && x[i] > x1
+            ? static_cast<std::ptrdiff_t>(columns)
+            : std::min(static_cast<std::ptrdiff_t>(c), static_cast<std::ptrdiff_t>(columns) - 1);
     if (!open || now != column) {
       close();
-      open = true; column = now;
+      open = true;
+      column = now;
       first = low = high = i;
     }
     if (y[i] < y[low]) low = i;
@@ -55,17 +61,23 @@ std::vector<std::size_t> decimate_columns(std::span<const double> x, std::span<c
   return keep;
 }
 
-std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px, std::span<const double> py, double cell) {
+std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px,
+                                                    std::span<const double> py, double cell) {
   struct Hash {
     std::size_t operator()(const std::array<std::int32_t, 4>& k) const {
       std::uint64_t h = 0x9E3779B97F4A7C15ull;
-      for (const auto v : k) { h = (h ^ static_cast<std::uint32_t>(v)) * 0xBF58476D1CE4E5B9ull; h ^= h >> 29; }
+      for (const auto v : k) {
+        h = (h ^ static_cast<std::uint32_t>(v)) * 0xBF58476D1CE4E5B9ull;
+        h ^= h >> 29;
+      }
       return h;
     }
   };
   std::unordered_set<std::array<std::int32_t, 4>, Hash> drawn;
   std::vector<std::vector<std::size_t>> runs;
-  const auto grid = [&](double v) { return static_cast<std::int32_t>(std::lround(std::clamp(v / cell, -1e8, 1e8))); };
+  const auto grid = [&](double v) {
+    return static_cast<std::int32_t>(std::lround(std::clamp(v / cell, -1e8, 1e8)));
+  };
   bool have = false, joined = false;
   std::size_t from = 0;
   std::int32_t gx = 0, gy = 0;
@@ -76,11 +88,14 @@ std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px, 
     }
     const std::int32_t hx = grid(px[i]), hy = grid(py[i]);
     if (!have) {
-      have = true; joined = false;
-      from = i; gx = hx; gy = hy;
+      have = true;
+      joined = false;
+      from = i;
+      gx = hx;
+      gy = hy;
       continue;
     }
-    if (hx == gx && hy == gy) continue;   // within one cell
+    if (hx == gx && hy == gy) continue;  // within one cell
     // The same segment backwards looks the same.
     std::array<std::int32_t, 4> key{gx, gy, hx, hy};
     if (std::pair(hx, hy) < std::pair(gx, gy)) key = {hx, hy, gx, gy};
@@ -88,14 +103,19 @@ std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px, 
       if (!joined) runs.push_back({from});
       runs.back().push_back(i);
       joined = true;
-    } else joined = false;
-    from = i; gx = hx; gy = hy;
+    } else
+      joined = false;
+    from = i;
+    gx = hx;
+    gy = hy;
   }
   if (runs.empty() && have) runs.push_back({from});
   return runs;
 }
 
-Envelope::Envelope(std::size_t bins) : most_(std::max<std::size_t>(2, bins + bins % 2)) { bins_.reserve(most_); }
+Envelope::Envelope(std::size_t bins) : most_(std::max<std::size_t>(2, bins + bins % 2)) {
+  bins_.reserve(most_);
+}
 
 void Envelope::add(double x, double y) {
   const Point p{x, y, count_++};
@@ -124,12 +144,16 @@ void Envelope::add(double x, double y) {
 }
 
 void Envelope::points(std::vector<double>& x, std::vector<double>& y) const {
-  x.clear(); y.clear();
+  x.clear();
+  y.clear();
   for (const auto& b : bins_) {
     std::array<Point, 4> k{b.first, b.low, b.high, b.last};
     std::sort(k.begin(), k.end(), [](const Point& a, const Point& c) { return a.order < c.order; });
     for (std::size_t j = 0; j < 4; ++j)
-      if (j == 0 || k[j].order != k[j - 1].order) { x.push_back(k[j].x); y.push_back(k[j].y); }
+      if (j == 0 || k[j].order != k[j - 1].order) {
+        x.push_back(k[j].x);
+        y.push_back(k[j].y);
+      }
   }
 }
 

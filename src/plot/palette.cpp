@@ -6,7 +6,9 @@
 namespace whirl::plot {
 namespace {
 
-struct Lab { double L, a, b; };
+struct Lab {
+  double L, a, b;
+};
 
 // Oklab to sRGB, B. Ottosson 2020.
 Rgb to_rgb(const Lab& c) {
@@ -28,13 +30,19 @@ Rgb to_rgb(const Lab& c) {
 const std::array<Rgb, 256>& color_map() {
   static const auto map = [] {
     // (a, b) at equal steps of lightness from 0.18 to 0.95: indigo, blue, teal, green, yellow.
-    constexpr std::array<std::array<double, 2>, 6> ab = {{{0.03, -0.09}, {0.00, -0.12}, {-0.06, -0.06}, {-0.11, 0.03}, {-0.09, 0.13}, {-0.03, 0.15}}};
+    constexpr std::array<std::array<double, 2>, 6> ab = {{{0.03, -0.09},
+                                                          {0.00, -0.12},
+                                                          {-0.06, -0.06},
+                                                          {-0.11, 0.03},
+                                                          {-0.09, 0.13},
+                                                          {-0.03, 0.15}}};
     std::array<Rgb, 256> m{};
     for (std::size_t k = 0; k < 256; ++k) {
       const double t = static_cast<double>(k) / 255, x = t * (ab.size() - 1);
       const auto i = std::min(static_cast<std::size_t>(x), ab.size() - 2);
       const double f = x - static_cast<double>(i);
-      m[k] = to_rgb({0.18 + 0.77 * t, ab[i][0] + f * (ab[i + 1][0] - ab[i][0]), ab[i][1] + f * (ab[i + 1][1] - ab[i][1])});
+      m[k] = to_rgb({0.18 + 0.77 * t, ab[i][0] + f * (ab[i + 1][0] - ab[i][0]),
+                     ab[i][1] + f * (ab[i + 1][1] - ab[i][1])});
     }
     return m;
   }();

@@ -1,4 +1,5 @@
-// The field's plots: plain data in, Figure out. SI in, the units named here out. Speeds are rad/s in and rpm on the axis.
+// The field's plots: plain data in, Figure out. SI in, the units named here out. Speeds are rad/s
+// in and rpm on the axis.
 #pragma once
 #include <plot/plot.hpp>
 #include <optional>
@@ -13,35 +14,58 @@ enum class Amplitude { zero_to_peak, peak_to_peak };
 const char* to_string(Amplitude a);
 
 /// A length in the unit that suits its size (m, mm, um): factor and name.
-struct DisplayUnit { double factor = 1.0; std::string name; };
+struct DisplayUnit {
+  double factor = 1.0;
+  std::string name;
+};
 DisplayUnit length_unit(double largest);
-DisplayUnit unit_for(const std::string& si, double largest);   ///< any SI unit: chooses a prefix for N, J, W, N m, Pa, s
+DisplayUnit unit_for(const std::string& si,
+                     double largest);  ///< any SI unit: chooses a prefix for N, J, W, N m, Pa, s
 
-struct Curve { std::string label; std::vector<double> x, y; };
+struct Curve {
+  std::string label;
+  std::vector<double> x, y;
+};
 
-/// Histories against time, s; one row of axes for each unit among `curves` (label, unit given per curve).
-struct HistoryCurve { std::string label, unit; std::vector<double> y; std::string axis; };
-Figure plot_history(std::string name, std::string title, std::span<const double> time, std::span<const HistoryCurve> curves);
+/// Histories against time, s; one row of axes for each unit among `curves` (label, unit given per
+/// curve).
+struct HistoryCurve {
+  std::string label, unit;
+  std::vector<double> y;
+  std::string axis;
+};
+Figure plot_history(std::string name, std::string title, std::span<const double> time,
+                    std::span<const HistoryCurve> curves);
 
-/// Orbit of a probe in its two measuring directions, m; dots where the keyphasor fires (indices into y, z).
-struct Orbit { std::string label; std::vector<double> y, z; std::vector<std::size_t> keyphasor; };
-Figure plot_orbit(std::string name, std::string title, std::span<const Orbit> orbits, double clearance = 0.0);
+/// Orbit of a probe in its two measuring directions, m; dots where the keyphasor fires (indices
+/// into y, z).
+struct Orbit {
+  std::string label;
+  std::vector<double> y, z;
+  std::vector<std::size_t> keyphasor;
+};
+Figure plot_orbit(std::string name, std::string title, std::span<const Orbit> orbits,
+                  double clearance = 0.0);
 
 /// Path of a point in a plane and in space, m.
-Figure plot_path(std::string name, std::string title, std::string x_label, std::string y_label, std::span<const Curve> paths);
-Figure plot_path_in_space(std::string name, std::string title, std::span<const double> x, std::span<const double> y,
-                          std::span<const double> z);
+Figure plot_path(std::string name, std::string title, std::string x_label, std::string y_label,
+                 std::span<const Curve> paths);
+Figure plot_path_in_space(std::string name, std::string title, std::span<const double> x,
+                          std::span<const double> y, std::span<const double> z);
 
-enum class Whirl { forward, backward, mixed, none };   ///< none: torsional or axial
+enum class Whirl { forward, backward, mixed, none };  ///< none: torsional or axial
 struct CampbellLine {
   std::string label;
   Whirl whirl = Whirl::none;
-  std::vector<double> speed;            ///< rad/s
-  std::vector<double> frequency;        ///< damped natural frequency, rad/s; nan = no oscillation
-  std::vector<double> log_decrement;    ///< may be empty
-  std::vector<Whirl> whirl_at;          ///< direction point by point, may be empty
+  std::vector<double> speed;          ///< rad/s
+  std::vector<double> frequency;      ///< damped natural frequency, rad/s; nan = no oscillation
+  std::vector<double> log_decrement;  ///< may be empty
+  std::vector<Whirl> whirl_at;        ///< direction point by point, may be empty
 };
-struct CriticalMark { double speed = 0, frequency = 0, order = 1; std::string label; };
+struct CriticalMark {
+  double speed = 0, frequency = 0, order = 1;
+  std::string label;
+};
 Figure plot_campbell(std::string name, std::string title, std::span<const CampbellLine> lines,
                      std::span<const double> orders, std::span<const CriticalMark> criticals);
 /// Log decrement against speed, with the threshold at zero.
@@ -49,55 +73,86 @@ Figure plot_stability(std::string name, std::string title, std::span<const Campb
                       std::span<const double> thresholds = {});
 
 /// Steady response amplitude (m, 0-peak) and phase lag (rad) against speed.
-struct ResponseCurve { std::string label; std::vector<double> speed, amplitude, phase_lag; };
-Figure plot_bode(std::string name, std::string title, std::span<const ResponseCurve> curves, Amplitude convention,
-                 std::span<const CriticalMark> criticals = {}, bool log_amplitude = false);
-Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves, Amplitude convention);
+struct ResponseCurve {
+  std::string label;
+  std::vector<double> speed, amplitude, phase_lag;
+};
+Figure plot_bode(std::string name, std::string title, std::span<const ResponseCurve> curves,
+                 Amplitude convention, std::span<const CriticalMark> criticals = {},
+                 bool log_amplitude = false);
+Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves,
+                  Amplitude convention);
 
-/// Stacked spectra against speed (or time): amplitude[i] over frequency (rad/s) at speed[i] (rad/s).
-struct SpectrumTrace { double speed = 0; std::vector<double> frequency, amplitude; };
-Figure plot_waterfall(std::string name, std::string title, std::span<const SpectrumTrace> traces, std::string quantity,
-                      std::string unit, Amplitude convention, std::span<const double> orders);
+/// Stacked spectra against speed (or time): amplitude[i] over frequency (rad/s) at speed[i]
+/// (rad/s).
+struct SpectrumTrace {
+  double speed = 0;
+  std::vector<double> frequency, amplitude;
+};
+Figure plot_waterfall(std::string name, std::string title, std::span<const SpectrumTrace> traces,
+                      std::string quantity, std::string unit, Amplitude convention,
+                      std::span<const double> orders);
 /// The same as a map of colours.
-Figure plot_spectrogram(std::string name, std::string title, std::span<const SpectrumTrace> traces, std::string quantity,
-                        std::string unit, Amplitude convention, bool logarithmic = true);
+Figure plot_spectrogram(std::string name, std::string title, std::span<const SpectrumTrace> traces,
+                        std::string quantity, std::string unit, Amplitude convention,
+                        bool logarithmic = true);
 
-/// Undamped critical speeds (rad/s) against support stiffness (N/m), and the supports' own stiffness against speed.
-Figure plot_critical_map(std::string name, std::string title, std::span<const Curve> modes, std::span<const Curve> supports);
+/// Undamped critical speeds (rad/s) against support stiffness (N/m), and the supports' own
+/// stiffness against speed.
+Figure plot_critical_map(std::string name, std::string title, std::span<const Curve> modes,
+                         std::span<const Curve> supports);
 
 /// A mode or an operating shape: along the shaft (m), complex deflection in the two planes.
 struct ModeShape {
   std::string label;
   std::vector<double> s;
   std::vector<Complex> y, z;
-  std::vector<std::pair<std::string, double>> stations;   ///< bearings, disks: name and s
+  std::vector<std::pair<std::string, double>> stations;  ///< bearings, disks: name and s
 };
 Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mode);
 
 /// Energies (J) and the error of their balance against time (s).
-Figure plot_energy(std::string name, std::string title, std::span<const double> time, std::span<const Curve> energies,
-                   std::span<const double> balance_error);
+Figure plot_energy(std::string name, std::string title, std::span<const double> time,
+                   std::span<const Curve> energies, std::span<const double> balance_error);
 
 /// Error against run time, log-log; the Pareto front is drawn through the best points.
-struct StudyPoint { double seconds = 0, error = 0; std::string label; };
-struct StudyCurve { std::string label; std::vector<StudyPoint> points; };
-Figure plot_study(std::string name, std::string title, std::span<const StudyCurve> curves, std::string error_label,
-                  std::string error_unit, double target = 0.0);
+struct StudyPoint {
+  double seconds = 0, error = 0;
+  std::string label;
+};
+struct StudyCurve {
+  std::string label;
+  std::vector<StudyPoint> points;
+};
+Figure plot_study(std::string name, std::string title, std::span<const StudyCurve> curves,
+                  std::string error_label, std::string error_unit, double target = 0.0);
 
 /// Side elevation of a rotor: what `check` draws. Lengths in m.
-struct DrawnSection { double s0 = 0, s1 = 0, outer_left = 0, outer_right = 0, inner_left = 0, inner_right = 0; std::string name; };
-struct DrawnDisk { double s = 0, outer = 0, inner = 0, width = 0; std::string name; };
-struct DrawnMark { double s = 0, radius = 0; std::string name; };
+struct DrawnSection {
+  double s0 = 0, s1 = 0, outer_left = 0, outer_right = 0, inner_left = 0, inner_right = 0;
+  std::string name;
+};
+struct DrawnDisk {
+  double s = 0, outer = 0, inner = 0, width = 0;
+  std::string name;
+};
+struct DrawnMark {
+  double s = 0, radius = 0;
+  std::string name;
+};
 struct RotorDrawing {
   std::string title;
   std::vector<DrawnSection> sections;
   std::vector<DrawnDisk> disks;
   std::vector<DrawnMark> bearings, probes;
-  std::vector<double> nodes;             ///< mesh nodes, small ticks on the centre line
+  std::vector<double> nodes;  ///< mesh nodes, small ticks on the centre line
 };
 Figure plot_rotor(std::string name, const RotorDrawing& rotor);
 /// A line that is not straight, in space; lengths in m.
-struct DrawnPoint { Vec3 r = Vec3::Zero(); std::string name; };
+struct DrawnPoint {
+  Vec3 r = Vec3::Zero();
+  std::string name;
+};
 struct LineDrawing {
   std::string title;
   std::vector<Vec3> line, nodes;

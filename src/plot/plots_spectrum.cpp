@@ -9,13 +9,17 @@ namespace {
 
 constexpr double rpm = 30 / pi, hertz = 1 / two_pi;
 
-struct Extent { double speed0 = infinity, speed1 = -infinity, frequency1 = 0, amplitude = 0; };
+struct Extent {
+  double speed0 = infinity, speed1 = -infinity, frequency1 = 0, amplitude = 0;
+};
 
 Extent extent_of(std::span<const SpectrumTrace> traces) {
   Extent e;
   for (const auto& t : traces) {
-    e.speed0 = std::min(e.speed0, t.speed * rpm); e.speed1 = std::max(e.speed1, t.speed * rpm);
-    for (const double v : t.frequency) e.frequency1 = std::max(e.frequency1, v * hertz);
+    e.speed0 = std::min(e.speed0, t.speed * rpm);
+    e.speed1 = std::max(e.speed1, t.speed * rpm);
+    for (const double v : t.frequency)
+      e.frequency1 = std::max(e.frequency1, v * hertz);
     for (const double v : t.amplitude)
       if (std::isfinite(v)) e.amplitude = std::max(e.amplitude, v);
   }
@@ -23,7 +27,9 @@ Extent extent_of(std::span<const SpectrumTrace> traces) {
   return e;
 }
 
-std::string quantity_name(const std::string& quantity, Amplitude convention) { return quantity + ", " + to_string(convention); }
+std::string quantity_name(const std::string& quantity, Amplitude convention) {
+  return quantity + ", " + to_string(convention);
+}
 
 // A round number near x from below: 1, 2 or 5 times a power of ten.
 double round_down(double x) {
@@ -33,95 +39,131 @@ double round_down(double x) {
 
 }  // namespace
 
-Figure plot_waterfall(std::string name, std::string title, std::span<const SpectrumTrace> traces, std::string quantity,
-                      std::string unit, Amplitude convention, std::span<const double> orders) {
+Figure plot_waterfall(std::string name, std::string title, std::span<const SpectrumTrace> traces,
+                      std::string quantity, std::string unit, Amplitude convention,
+                      std::span<const double> orders) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
+  f.name = std::move(name);
+  f.title = std::move(title);
   f.height = 560;
   Axes a;
-  a.x = Axis("frequency", "Hz"); a.y = Axis("speed", "rpm");
+  a.x = Axis("frequency", "Hz");
+  a.y = Axis("speed", "rpm");
   a.legend = false;
   const Extent e = extent_of(traces);
   const DisplayUnit u = unit_for(unit, e.amplitude);
   std::vector<const SpectrumTrace*> order;
-  for (const auto& t : traces) order.push_back(&t);
-  std::stable_sort(order.begin(), order.end(), [](const auto* x, const auto* y) { return x->speed > y->speed; });
+  for (const auto& t : traces)
+    order.push_back(&t);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto* x, const auto* y) { return x->speed > y->speed; });
   // At most about sixty traces can be told apart.
   std::vector<const SpectrumTrace*> shown;
   const std::size_t stride = (order.size() + 59) / 60;
-  for (std::size_t i = 0; i < order.size(); i += std::max<std::size_t>(1, stride)) shown.push_back(order[i]);
+  for (std::size_t i = 0; i < order.size(); i += std::max<std::size_t>(1, stride))
+    shown.push_back(order[i]);
   const double spacing = (e.speed1 - e.speed0) / std::max<std::size_t>(1, shown.size() - 1);
   const double height = std::max(0.16 * (e.speed1 - e.speed0), 1.5 * spacing);
   const double per_y = e.amplitude > 0 ? e.amplitude * u.factor / height : 1;
-  a.y.min = e.speed0 - 0.02 * (e.speed1 - e.speed0); a.y.max = e.speed1 + 1.05 * height;
-  a.x.min = 0; a.x.max = e.frequency1;
-  for (const auto* t : shown) {   // the highest speed first: lower ones stand in front
+  a.y.min = e.speed0 - 0.02 * (e.speed1 - e.speed0);
+  a.y.max = e.speed1 + 1.05 * height;
+  a.x.min = 0;
+  a.x.max = e.frequency1;
+  for (const auto* t : shown) {  // the highest speed first: lower ones stand in front
     Series s;
     s.baseline = t->speed * rpm;
-    s.amplitude_per_y = per_y; s.amplitude_unit = u.name + " " + to_string(convention);
+    s.amplitude_per_y = per_y;
+    s.amplitude_unit = u.name + " " + to_string(convention);
     s.fill_to_baseline = true;
     s.style = {0, Dash::solid, 1.0};
     s.trace_label = readable(s.baseline, 5) + " rpm";
-    for (std::size_t i = 0; i < t->frequency.size(); ++i) { s.x.push_back(t->frequency[i] * hertz); s.y.push_back(s.baseline + t->amplitude[i] * u.factor / per_y); }
+    for (std::size_t i = 0; i < t->frequency.size(); ++i) {
+      s.x.push_back(t->frequency[i] * hertz);
+      s.y.push_back(s.baseline + t->amplitude[i] * u.factor / per_y);
+    }
     a.series.push_back(std::move(s));
   }
   for (const double k : orders) {
     Series s;
-    const double last = std::min(e.speed1 + 0.6 * height, e.frequency1 * 60 / k);   // a little beyond the last trace
-    s.x = {e.speed0 * k / 60, last * k / 60}; s.y = {e.speed0, last};
+    const double last =
+        std::min(e.speed1 + 0.6 * height, e.frequency1 * 60 / k);  // a little beyond the last trace
+    s.x = {e.speed0 * k / 60, last * k / 60};
+    s.y = {e.speed0, last};
     s.style = {1, Dash::dashed, 0.9};
     s.trace_label = number_text(k, 3) + "×";
     const bool at_edge = last < e.speed1 + 0.6 * height;
-    a.notes.push_back({last * k / 60, last, s.trace_label, false, at_edge ? -20.0 : 3.0, at_edge ? -4.0 : 0.0});
+    a.notes.push_back(
+        {last * k / 60, last, s.trace_label, false, at_edge ? -20.0 : 3.0, at_edge ? -4.0 : 0.0});
     a.series.push_back(std::move(s));
   }
-  if (e.amplitude > 0) {   // the scale of the amplitudes
-    const double bar = round_down(e.amplitude * u.factor), x = 0.985 * e.frequency1, y1 = e.speed1 + 1.0 * height, y0 = y1 - bar / per_y;
+  if (e.amplitude > 0) {  // the scale of the amplitudes
+    const double bar = round_down(e.amplitude * u.factor), x = 0.985 * e.frequency1,
+                 y1 = e.speed1 + 1.0 * height, y0 = y1 - bar / per_y;
     Series s;
-    s.x = {x, x}; s.y = {y0, y1};
+    s.x = {x, x};
+    s.y = {y0, y1};
     s.style = {ink, Dash::solid, 2.5};
     s.trace_label = "scale";
     a.series.push_back(std::move(s));
     const std::string text = number_text(bar, 6) + " " + u.name + " " + to_string(convention);
     a.notes.push_back({x, y1, text, false, -8 - text_width(text, 11), 10});
   }
-  f.caption = quantity_name(quantity, convention) + " [" + u.name + "] above each trace's speed; the bar gives the scale.";
+  f.caption = quantity_name(quantity, convention) + " [" + u.name +
+              "] above each trace's speed; the bar gives the scale.";
   f.axes.push_back(std::move(a));
   return f;
 }
 
-Figure plot_spectrogram(std::string name, std::string title, std::span<const SpectrumTrace> traces, std::string quantity,
-                        std::string unit, Amplitude convention, bool logarithmic) {
+Figure plot_spectrogram(std::string name, std::string title, std::span<const SpectrumTrace> traces,
+                        std::string quantity, std::string unit, Amplitude convention,
+                        bool logarithmic) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
+  f.name = std::move(name);
+  f.title = std::move(title);
   f.height = 460;
   Axes a;
-  a.x = Axis("speed", "rpm"); a.y = Axis("frequency", "Hz");
+  a.x = Axis("speed", "rpm");
+  a.y = Axis("frequency", "Hz");
   const Extent e = extent_of(traces);
   const DisplayUnit u = unit_for(unit, e.amplitude);
   std::size_t lines = 1;
-  for (const auto& t : traces) lines = std::max(lines, t.frequency.size());
+  for (const auto& t : traces)
+    lines = std::max(lines, t.frequency.size());
   HeatMap h;
-  h.nx = static_cast<int>(std::clamp<std::size_t>(traces.size(), 1, 360)); h.ny = static_cast<int>(std::clamp<std::size_t>(lines, 1, 300));
-  h.x0 = e.speed0; h.x1 = e.speed1; h.y0 = 0; h.y1 = e.frequency1 > 0 ? e.frequency1 : 1;
-  h.label = quantity_name(quantity, convention); h.unit = u.name; h.logarithmic = logarithmic;
+  h.nx = static_cast<int>(std::clamp<std::size_t>(traces.size(), 1, 360));
+  h.ny = static_cast<int>(std::clamp<std::size_t>(lines, 1, 300));
+  h.x0 = e.speed0;
+  h.x1 = e.speed1;
+  h.y0 = 0;
+  h.y1 = e.frequency1 > 0 ? e.frequency1 : 1;
+  h.label = quantity_name(quantity, convention);
+  h.unit = u.name;
+  h.logarithmic = logarithmic;
   const auto nx = static_cast<std::size_t>(h.nx), ny = static_cast<std::size_t>(h.ny);
   h.values.assign(nx * ny, nan);
-  // Each cell holds the largest amplitude that falls into it; a column nobody falls into repeats its left neighbour.
+  // Each cell holds the largest amplitude that falls into it; a column nobody falls into repeats
+  // its left neighbour.
   for (const auto& t : traces) {
-    const auto ix = std::min(nx - 1, static_cast<std::size_t>((t.speed * rpm - h.x0) / (h.x1 - h.x0) * static_cast<double>(nx)));
+    const auto ix = std::min(
+        nx - 1,
+        static_cast<std::size_t>((t.speed * rpm - h.x0) / (h.x1 - h.x0) * static_cast<double>(nx)));
     for (std::size_t i = 0; i < t.frequency.size(); ++i) {
       const double hz = t.frequency[i] * hertz;
       if (!(hz >= 0)) continue;
-      const auto iy = std::min(ny - 1, static_cast<std::size_t>(hz / h.y1 * static_cast<double>(ny)));
+      const auto iy =
+          std::min(ny - 1, static_cast<std::size_t>(hz / h.y1 * static_cast<double>(ny)));
       double& cell = h.values[iy * nx + ix];
       if (const double v = t.amplitude[i] * u.factor; !(cell >= v)) cell = v;
     }
   }
   for (std::size_t ix = 1; ix < nx; ++ix)
-    if (std::isnan(h.values[ix])) for (std::size_t iy = 0; iy < ny; ++iy)
+    if (std::isnan(h.values[ix]))
+      for (std::size_t iy = 0; iy < ny; ++iy)
         if (std::isnan(h.values[iy * nx + ix])) h.values[iy * nx + ix] = h.values[iy * nx + ix - 1];
-  if (logarithmic && e.amplitude > 0) { h.max = e.amplitude * u.factor; h.min = h.max * 1e-4; }
+  if (logarithmic && e.amplitude > 0) {
+    h.max = e.amplitude * u.factor;
+    h.min = h.max * 1e-4;
+  }
   a.heat.push_back(std::move(h));
   f.axes.push_back(std::move(a));
   return f;

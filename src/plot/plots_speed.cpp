@@ -11,24 +11,33 @@ namespace {
 
 constexpr double rpm = 30 / pi, hertz = 1 / two_pi;
 
-struct Look { Whirl whirl; const char* name; Style style; };
+struct Look {
+  Whirl whirl;
+  const char* name;
+  Style style;
+};
 const std::array<Look, 4>& looks() {
-  static const std::array<Look, 4> l = {{{Whirl::forward, "forward", {0, Dash::solid, 1.8}},
-                                         {Whirl::backward, "backward", {1, Dash::dashed, 1.8}},
-                                         {Whirl::mixed, "mixed", {2, Dash::dotted, 2.0}},
-                                         {Whirl::none, "torsional, axial", {3, Dash::dash_dot, 1.5}}}};
+  static const std::array<Look, 4> l = {
+      {{Whirl::forward, "forward", {0, Dash::solid, 1.8}},
+       {Whirl::backward, "backward", {1, Dash::dashed, 1.8}},
+       {Whirl::mixed, "mixed", {2, Dash::dotted, 2.0}},
+       {Whirl::none, "torsional, axial", {3, Dash::dash_dot, 1.5}}}};
   return l;
 }
 const Look& look(Whirl w) { return looks()[static_cast<std::size_t>(w)]; }
 
-// One series for each stretch of a line with the same whirl direction; stretches share their end points.
-void add_line(Axes& a, const CampbellLine& line, std::span<const double> y, const char* extra_label, const char* extra_unit,
-              std::span<const double> extra, std::array<bool, 4>& used) {
-  const auto whirl = [&](std::size_t i) { return i < line.whirl_at.size() ? line.whirl_at[i] : line.whirl; };
+// One series for each stretch of a line with the same whirl direction; stretches share their end
+// points.
+void add_line(Axes& a, const CampbellLine& line, std::span<const double> y, const char* extra_label,
+              const char* extra_unit, std::span<const double> extra, std::array<bool, 4>& used) {
+  const auto whirl = [&](std::size_t i) {
+    return i < line.whirl_at.size() ? line.whirl_at[i] : line.whirl;
+  };
   const std::size_t n = std::min(line.speed.size(), y.size());
   for (std::size_t i = 0; i < n;) {
     std::size_t j = i + 1;
-    while (j < n && whirl(j) == whirl(i)) ++j;
+    while (j < n && whirl(j) == whirl(i))
+      ++j;
     const Look& l = look(whirl(i));
     Series s;
     s.style = l.style;
@@ -36,7 +45,8 @@ void add_line(Axes& a, const CampbellLine& line, std::span<const double> y, cons
     if (!std::exchange(used[static_cast<std::size_t>(l.whirl)], true)) s.label = l.name;
     Extra e{extra_label, extra_unit, {}};
     for (std::size_t k = i; k < std::min(n, j + 1); ++k) {
-      s.x.push_back(rpm * line.speed[k]); s.y.push_back(y[k]);
+      s.x.push_back(rpm * line.speed[k]);
+      s.y.push_back(y[k]);
       if (k < extra.size()) e.values.push_back(extra[k]);
     }
     if (!e.values.empty()) s.extra.push_back(std::move(e));
@@ -52,19 +62,23 @@ std::string order_name(double order) { return number_text(order, 3) + "×"; }
 Figure plot_campbell(std::string name, std::string title, std::span<const CampbellLine> lines,
                      std::span<const double> orders, std::span<const CriticalMark> criticals) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
+  f.name = std::move(name);
+  f.title = std::move(title);
   f.height = 500;
   Axes a;
-  a.x = Axis("speed", "rpm"); a.y = Axis("damped natural frequency", "Hz");
+  a.x = Axis("speed", "rpm");
+  a.y = Axis("damped natural frequency", "Hz");
   a.x.include_zero = a.y.include_zero = true;
   double top = 0, end = 0;
   std::array<bool, 4> used{};
   for (const auto& l : lines) {
     std::vector<double> y(l.frequency);
-    for (double& v : y) v = v > 0 ? v * hertz : nan;   // an overdamped mode does not oscillate
+    for (double& v : y)
+      v = v > 0 ? v * hertz : nan;  // an overdamped mode does not oscillate
     for (const double v : y)
       if (v > top) top = v;
-    for (const double v : l.speed) end = std::max(end, v);
+    for (const double v : l.speed)
+      end = std::max(end, v);
     add_line(a, l, y, "log decrement", "-", l.log_decrement, used);
   }
   a.y.max = top > 0 ? 1.06 * top : nan;
@@ -72,33 +86,42 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
     if (!(end > 0) || !(order > 0)) continue;
     const double limit = std::min(end, 1.06 * top / (order * hertz));
     Series s;
-    s.x = {0, limit * rpm}; s.y = {0, order * limit * hertz};
+    s.x = {0, limit * rpm};
+    s.y = {0, order * limit * hertz};
     s.style = {ink, Dash::solid, 0.8};
     s.trace_label = order_name(order) + " excitation";
     a.series.push_back(std::move(s));
     const bool at_right = limit == end;
-    a.notes.push_back({limit * rpm, order * limit * hertz, order_name(order), false, at_right ? -22.0 : 4.0, at_right ? -5.0 : 14.0});
+    a.notes.push_back({limit * rpm, order * limit * hertz, order_name(order), false,
+                       at_right ? -22.0 : 4.0, at_right ? -5.0 : 14.0});
   }
   for (const auto& c : criticals)
-    a.notes.push_back({c.speed * rpm, c.frequency * hertz, c.label.empty() ? readable(c.speed * rpm, 4) + " rpm" : c.label});
+    a.notes.push_back({c.speed * rpm, c.frequency * hertz,
+                       c.label.empty() ? readable(c.speed * rpm, 4) + " rpm" : c.label});
   f.axes.push_back(std::move(a));
   return f;
 }
 
-Figure plot_stability(std::string name, std::string title, std::span<const CampbellLine> lines, std::span<const double> thresholds) {
+Figure plot_stability(std::string name, std::string title, std::span<const CampbellLine> lines,
+                      std::span<const double> thresholds) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
+  f.name = std::move(name);
+  f.title = std::move(title);
   Axes a;
-  a.x = Axis("speed", "rpm"); a.y = Axis("logarithmic decrement (unstable below 0)", "-");
+  a.x = Axis("speed", "rpm");
+  a.y = Axis("logarithmic decrement (unstable below 0)", "-");
   a.x.include_zero = a.y.include_zero = true;
   std::array<bool, 4> used{};
   for (const auto& l : lines) {
     std::vector<double> hz(l.frequency);
-    for (double& v : hz) v *= hertz;
+    for (double& v : hz)
+      v *= hertz;
     add_line(a, l, l.log_decrement, "frequency", "Hz", hz, used);
   }
   a.rules.push_back({false, 0, "", {ink, Dash::solid, 1.0}});
-  for (const double s : thresholds) a.rules.push_back({true, s * rpm, "onset " + readable(s * rpm, 5) + " rpm", {1, Dash::dashed, 1.2}});
+  for (const double s : thresholds)
+    a.rules.push_back(
+        {true, s * rpm, "onset " + readable(s * rpm, 5) + " rpm", {1, Dash::dashed, 1.2}});
   f.axes.push_back(std::move(a));
   return f;
 }
@@ -128,10 +151,12 @@ std::vector<double> unwrapped(const std::vector<double>& phase) {
 
 }  // namespace
 
-Figure plot_bode(std::string name, std::string title, std::span<const ResponseCurve> curves, Amplitude convention,
-                 std::span<const CriticalMark> criticals, bool log_amplitude) {
+Figure plot_bode(std::string name, std::string title, std::span<const ResponseCurve> curves,
+                 Amplitude convention, std::span<const CriticalMark> criticals,
+                 bool log_amplitude) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
+  f.name = std::move(name);
+  f.title = std::move(title);
   f.height = 540;
   const double factor = convention == Amplitude::peak_to_peak ? 2 : 1;
   const DisplayUnit u = amplitude_unit(curves, factor);
@@ -146,46 +171,64 @@ Figure plot_bode(std::string name, std::string title, std::span<const ResponseCu
   for (const auto& c : curves) {
     Series s, p;
     s.label = p.label = c.label;
-    for (const double v : c.speed) s.x.push_back(v * rpm);
+    for (const double v : c.speed)
+      s.x.push_back(v * rpm);
     p.x = s.x;
-    for (const double v : c.amplitude) s.y.push_back(v * factor * u.factor);
+    for (const double v : c.amplitude)
+      s.y.push_back(v * factor * u.factor);
     p.y = unwrapped(c.phase_lag);
-    amplitude.series.push_back(std::move(s)); phase.series.push_back(std::move(p));
+    amplitude.series.push_back(std::move(s));
+    phase.series.push_back(std::move(p));
   }
   for (const auto& c : criticals) {
-    amplitude.rules.push_back({true, c.speed * rpm, c.label.empty() ? readable(c.speed * rpm, 4) + " rpm" : c.label, {ink, Dash::dotted, 1.0}});
+    amplitude.rules.push_back({true,
+                               c.speed * rpm,
+                               c.label.empty() ? readable(c.speed * rpm, 4) + " rpm" : c.label,
+                               {ink, Dash::dotted, 1.0}});
     phase.rules.push_back({true, c.speed * rpm, "", {ink, Dash::dotted, 1.0}});
   }
   f.axes = {std::move(amplitude), std::move(phase)};
   return f;
 }
 
-Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves, Amplitude convention) {
+Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves,
+                  Amplitude convention) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
-  f.width = 620; f.height = 520;
+  f.name = std::move(name);
+  f.title = std::move(title);
+  f.width = 620;
+  f.height = 520;
   const double factor = convention == Amplitude::peak_to_peak ? 2 : 1;
   const DisplayUnit u = amplitude_unit(curves, factor);
   Axes a;
   a.kind = AxesKind::polar;
-  a.clockwise = true;   // growing lag runs against the spin
+  a.clockwise = true;  // growing lag runs against the spin
   a.x = Axis("phase lag clockwise", "°");
   a.y = Axis(std::string("amplitude, ") + to_string(convention), u.name);
   for (const auto& c : curves) {
     Series s;
     s.label = c.label;
     Extra speed{"speed", "rpm", {}};
-    for (const double v : c.phase_lag) s.x.push_back(v * 180 / pi);
-    for (const double v : c.amplitude) s.y.push_back(v * factor * u.factor);
-    for (const double v : c.speed) speed.values.push_back(v * rpm);
-    // On the first curve speeds are written where the vector has turned by 40 degrees or more, and at the peak.
+    for (const double v : c.phase_lag)
+      s.x.push_back(v * 180 / pi);
+    for (const double v : c.amplitude)
+      s.y.push_back(v * factor * u.factor);
+    for (const double v : c.speed)
+      speed.values.push_back(v * rpm);
+    // On the first curve speeds are written where the vector has turned by 40 degrees or more, and
+    // at the peak.
     double last = nan;
     const auto peak = std::max_element(s.y.begin(), s.y.end()) - s.y.begin();
     const double least = s.y.empty() ? 0 : 0.2 * s.y[static_cast<std::size_t>(peak)];
-    for (std::size_t i = 0; &c == &curves.front() && i < s.x.size() && i < speed.values.size(); ++i) {
+    for (std::size_t i = 0; &c == &curves.front() && i < s.x.size() && i < speed.values.size();
+         ++i) {
       const bool at_peak = static_cast<std::ptrdiff_t>(i) == peak;
-      if (!at_peak && (s.y[i] < least || (!std::isnan(last) && std::abs(std::remainder(s.x[i] - last, 360)) < 40))) continue;
-      if (!at_peak && peak > static_cast<std::ptrdiff_t>(i) && std::abs(std::remainder(s.x[i] - s.x[static_cast<std::size_t>(peak)], 360)) < 25) continue;
+      if (!at_peak && (s.y[i] < least ||
+                       (!std::isnan(last) && std::abs(std::remainder(s.x[i] - last, 360)) < 40)))
+        continue;
+      if (!at_peak && peak > static_cast<std::ptrdiff_t>(i) &&
+          std::abs(std::remainder(s.x[i] - s.x[static_cast<std::size_t>(peak)], 360)) < 25)
+        continue;
       a.notes.push_back({s.x[i], s.y[i], readable(speed.values[i], 4) + " rpm"});
       last = s.x[i];
     }
@@ -196,28 +239,39 @@ Figure plot_polar(std::string name, std::string title, std::span<const ResponseC
   return f;
 }
 
-Figure plot_critical_map(std::string name, std::string title, std::span<const Curve> modes, std::span<const Curve> supports) {
+Figure plot_critical_map(std::string name, std::string title, std::span<const Curve> modes,
+                         std::span<const Curve> supports) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
+  f.name = std::move(name);
+  f.title = std::move(title);
   f.height = 480;
   Axes a;
-  a.x = Axis("support stiffness", "N/m", true); a.y = Axis("undamped critical speed", "rpm", true);
+  a.x = Axis("support stiffness", "N/m", true);
+  a.y = Axis("undamped critical speed", "rpm", true);
   double lo = infinity, hi = 0;
   for (const auto& m : modes) {
     Series s;
     s.label = m.label;
     s.x = m.x;
-    for (const double v : m.y) s.y.push_back(v * rpm);
-    for (const double v : m.x) { lo = std::min(lo, v); hi = std::max(hi, v); }
+    for (const double v : m.y)
+      s.y.push_back(v * rpm);
+    for (const double v : m.x) {
+      lo = std::min(lo, v);
+      hi = std::max(hi, v);
+    }
     a.series.push_back(std::move(s));
   }
-  if (hi > lo) { a.x.min = lo; a.x.max = hi; }
+  if (hi > lo) {
+    a.x.min = lo;
+    a.x.max = hi;
+  }
   for (const auto& b : supports) {
     Series s;
     s.label = b.label;
     s.style = {ink, Dash::dashed, 1.3};
     s.x = b.x;
-    for (const double v : b.y) s.y.push_back(v * rpm);
+    for (const double v : b.y)
+      s.y.push_back(v * rpm);
     a.series.push_back(std::move(s));
   }
   f.axes.push_back(std::move(a));

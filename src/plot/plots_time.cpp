@@ -17,13 +17,16 @@ double largest(std::span<const double> v) {
 
 std::vector<double> scaled(std::span<const double> v, double f) {
   std::vector<double> out(v.begin(), v.end());
-  for (double& x : out) x *= f;
+  for (double& x : out)
+    x *= f;
   return out;
 }
 
 }  // namespace
 
-const char* to_string(Amplitude a) { return a == Amplitude::zero_to_peak ? "0-peak" : "peak-to-peak"; }
+const char* to_string(Amplitude a) {
+  return a == Amplitude::zero_to_peak ? "0-peak" : "peak-to-peak";
+}
 
 DisplayUnit length_unit(double m) {
   if (m >= 0.5 || m == 0) return {1, "m"};
@@ -36,24 +39,42 @@ DisplayUnit unit_for(const std::string& si, double m) {
   if (si == "m") return length_unit(m);
   if (si == "rad/s") return {30 / pi, "rpm"};
   if (si == "m/s") return m < 0.5 && m > 0 ? DisplayUnit{1e3, "mm/s"} : DisplayUnit{1, si};
-  if (si == "N" || si == "N m" || si == "N·m" || si == "W" || si == "J" || si == "Pa" || si == "s" || si == "Hz") {
+  if (si == "N" || si == "N m" || si == "N·m" || si == "W" || si == "J" || si == "Pa" ||
+      si == "s" || si == "Hz") {
     const std::string name = si == "N m" ? "N·m" : si;
-    struct Prefix { double least; double factor; const char* name; };
-    for (const auto& p : {Prefix{1e10, 1e-9, "G"}, {1e7, 1e-6, "M"}, {1e4, 1e-3, "k"}, {0.1, 1, ""}, {1e-4, 1e3, "m"}, {1e-7, 1e6, "µ"}, {0, 1e9, "n"}})
-      if (m >= p.least && m > 0) return p.factor < 1 && si == "s" ? DisplayUnit{1, "s"} : DisplayUnit{p.factor, p.name + name};
+    struct Prefix {
+      double least;
+      double factor;
+      const char* name;
+    };
+    for (const auto& p : {Prefix{1e10, 1e-9, "G"},
+                          {1e7, 1e-6, "M"},
+                          {1e4, 1e-3, "k"},
+                          {0.1, 1, ""},
+                          {1e-4, 1e3, "m"},
+                          {1e-7, 1e6, "µ"},
+                          {0, 1e9, "n"}})
+      if (m >= p.least && m > 0)
+        return p.factor < 1 && si == "s" ? DisplayUnit{1, "s"}
+                                         : DisplayUnit{p.factor, p.name + name};
     return {1, name};
   }
   return {1, si};
 }
 
-Figure plot_history(std::string name, std::string title, std::span<const double> time, std::span<const HistoryCurve> curves) {
+Figure plot_history(std::string name, std::string title, std::span<const double> time,
+                    std::span<const HistoryCurve> curves) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
-  const DisplayUnit s = unit_for("s", time.empty() ? 0 : std::max(std::abs(time.front()), std::abs(time.back())));
+  f.name = std::move(name);
+  f.title = std::move(title);
+  const DisplayUnit s =
+      unit_for("s", time.empty() ? 0 : std::max(std::abs(time.front()), std::abs(time.back())));
   const std::vector<double> t = scaled(time, s.factor);
   std::vector<std::string> keys;
   for (const auto& c : curves)
-    if (const std::string key = c.axis + '\n' + c.unit; std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    if (const std::string key = c.axis + '\n' + c.unit;
+        std::find(keys.begin(), keys.end(), key) == keys.end())
+      keys.push_back(key);
   for (const auto& key : keys) {
     double m = 0;
     for (const auto& c : curves)
@@ -66,11 +87,13 @@ Figure plot_history(std::string name, std::string title, std::span<const double>
       a.y = Axis(c.axis.empty() ? c.label : c.axis, u.name);
       Series line;
       line.label = c.label;
-      line.x = t; line.y = scaled(c.y, u.factor);
+      line.x = t;
+      line.y = scaled(c.y, u.factor);
       line.style.width = 1.2;
       a.series.push_back(std::move(line));
     }
-    if (a.series.size() == 1) a.series[0].trace_label = std::exchange(a.series[0].label, "");   // the axis names it
+    if (a.series.size() == 1)
+      a.series[0].trace_label = std::exchange(a.series[0].label, "");  // the axis names it
     a.share_x = !f.axes.empty();
     f.axes.push_back(std::move(a));
   }
@@ -78,29 +101,40 @@ Figure plot_history(std::string name, std::string title, std::span<const double>
   return f;
 }
 
-Figure plot_orbit(std::string name, std::string title, std::span<const Orbit> orbits, double clearance) {
+Figure plot_orbit(std::string name, std::string title, std::span<const Orbit> orbits,
+                  double clearance) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
-  f.width = 520; f.height = 480;
+  f.name = std::move(name);
+  f.title = std::move(title);
+  f.width = 520;
+  f.height = 480;
   double m = clearance;
-  for (const auto& o : orbits) m = std::max({m, largest(o.y), largest(o.z)});
+  for (const auto& o : orbits)
+    m = std::max({m, largest(o.y), largest(o.z)});
   const DisplayUnit u = length_unit(m);
   Axes a;
-  a.x = Axis("y displacement", u.name); a.y = Axis("z displacement", u.name);
+  a.x = Axis("y displacement", u.name);
+  a.y = Axis("z displacement", u.name);
   a.equal_aspect = true;
   int color = 0;
   for (const auto& o : orbits) {
     Series s;
     s.label = orbits.size() > 1 || !o.label.empty() ? o.label : "";
-    s.x = scaled(o.y, u.factor); s.y = scaled(o.z, u.factor);
+    s.x = scaled(o.y, u.factor);
+    s.y = scaled(o.z, u.factor);
     s.style.color = color;
     s.style.width = 1.3;
-    Series key;   // bright spot where the keyphasor fires
+    Series key;  // bright spot where the keyphasor fires
     key.trace_label = (o.label.empty() ? "" : o.label + ", ") + "keyphasor";
     key.style.color = color++;
-    key.style.width = 0; key.style.marker = Marker::circle; key.style.marker_size = 7;
+    key.style.width = 0;
+    key.style.marker = Marker::circle;
+    key.style.marker_size = 7;
     for (const auto k : o.keyphasor)
-      if (k < s.x.size()) { key.x.push_back(s.x[k]); key.y.push_back(s.y[k]); }
+      if (k < s.x.size()) {
+        key.x.push_back(s.x[k]);
+        key.y.push_back(s.y[k]);
+      }
     if (&o == &orbits.front() && !key.x.empty()) key.label = "keyphasor";
     a.series.push_back(std::move(s));
     if (!key.x.empty()) a.series.push_back(std::move(key));
@@ -109,27 +143,36 @@ Figure plot_orbit(std::string name, std::string title, std::span<const Orbit> or
     Series c;
     c.label = "clearance";
     c.style = {ink, Dash::dash_dot, 1.0};
-    for (int k = 0; k <= 180; ++k) { c.x.push_back(u.factor * clearance * std::cos(two_pi * k / 180)); c.y.push_back(u.factor * clearance * std::sin(two_pi * k / 180)); }
+    for (int k = 0; k <= 180; ++k) {
+      c.x.push_back(u.factor * clearance * std::cos(two_pi * k / 180));
+      c.y.push_back(u.factor * clearance * std::sin(two_pi * k / 180));
+    }
     a.series.push_back(std::move(c));
   }
   f.axes.push_back(std::move(a));
   return f;
 }
 
-Figure plot_path(std::string name, std::string title, std::string x_label, std::string y_label, std::span<const Curve> paths) {
+Figure plot_path(std::string name, std::string title, std::string x_label, std::string y_label,
+                 std::span<const Curve> paths) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
-  f.width = 560; f.height = 480;
+  f.name = std::move(name);
+  f.title = std::move(title);
+  f.width = 560;
+  f.height = 480;
   double m = 0;
-  for (const auto& c : paths) m = std::max({m, largest(c.x), largest(c.y)});
+  for (const auto& c : paths)
+    m = std::max({m, largest(c.x), largest(c.y)});
   const DisplayUnit u = length_unit(m);
   Axes a;
-  a.x = Axis(std::move(x_label), u.name); a.y = Axis(std::move(y_label), u.name);
+  a.x = Axis(std::move(x_label), u.name);
+  a.y = Axis(std::move(y_label), u.name);
   a.equal_aspect = true;
   for (const auto& c : paths) {
     Series s;
     s.label = c.label;
-    s.x = scaled(c.x, u.factor); s.y = scaled(c.y, u.factor);
+    s.x = scaled(c.x, u.factor);
+    s.y = scaled(c.y, u.factor);
     s.style.width = 1.2;
     a.series.push_back(std::move(s));
   }
@@ -137,10 +180,11 @@ Figure plot_path(std::string name, std::string title, std::string x_label, std::
   return f;
 }
 
-Figure plot_path_in_space(std::string name, std::string title, std::span<const double> x, std::span<const double> y,
-                          std::span<const double> z) {
+Figure plot_path_in_space(std::string name, std::string title, std::span<const double> x,
+                          std::span<const double> y, std::span<const double> z) {
   Figure f;
-  f.name = std::move(name); f.title = std::move(title);
+  f.name = std::move(name);
+  f.title = std::move(title);
   f.height = 500;
   Axes a;
   a.kind = AxesKind::space;
@@ -160,20 +204,24 @@ Figure plot_path_in_space(std::string name, std::string title, std::span<const d
   };
   if (!x.empty()) {
     const auto first = dot(0, "start", 2), last = dot(x.size() - 1, "end", 1);
-    a.space.push_back({"", std::move(w[0]), std::move(w[1]), std::move(w[2]), Style{0, Dash::solid, 1.1}});
-    a.space.push_back(first); a.space.push_back(last);
+    a.space.push_back(
+        {"", std::move(w[0]), std::move(w[1]), std::move(w[2]), Style{0, Dash::solid, 1.1}});
+    a.space.push_back(first);
+    a.space.push_back(last);
   }
   f.axes.push_back(std::move(a));
   return f;
 }
 
-Figure plot_energy(std::string name, std::string title, std::span<const double> time, std::span<const Curve> energies,
-                   std::span<const double> balance_error) {
+Figure plot_energy(std::string name, std::string title, std::span<const double> time,
+                   std::span<const Curve> energies, std::span<const double> balance_error) {
   std::vector<HistoryCurve> curves;
-  for (const auto& e : energies) curves.push_back({e.label, "J", e.y, "energy"});
+  for (const auto& e : energies)
+    curves.push_back({e.label, "J", e.y, "energy"});
   Figure f = plot_history(std::move(name), std::move(title), time, curves);
   if (!balance_error.empty()) {
-    const HistoryCurve e{"balance error", "J", {balance_error.begin(), balance_error.end()}, "balance error"};
+    const HistoryCurve e{
+        "balance error", "J", {balance_error.begin(), balance_error.end()}, "balance error"};
     Axes a = std::move(plot_history("", "", time, std::span(&e, 1)).axes[0]);
     a.share_x = !f.axes.empty();
     a.weight = 0.6;

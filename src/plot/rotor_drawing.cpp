@@ -4,21 +4,36 @@
 
 namespace whirl::plot {
 
-std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const meshes::Mesh& mesh, const meshes::Scene& scene) {
+std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const meshes::Mesh& mesh,
+                                              const meshes::Scene& scene) {
   std::vector<RotorDrawing> all;
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
     const auto& line = mesh.lines[l];
     const auto& pieces = scene.lines[l].pieces;
-    const auto s_of = [&](const meshes::Place& p) { return mesh.nodes[static_cast<std::size_t>(p.node)].s + p.offset; };
-    const auto on_line = [&](const meshes::Place& p) { return mesh.nodes[static_cast<std::size_t>(p.node)].line == static_cast<Index>(l); };
+    const auto s_of = [&](const meshes::Place& p) {
+      return mesh.nodes[static_cast<std::size_t>(p.node)].s + p.offset;
+    };
+    const auto on_line = [&](const meshes::Place& p) {
+      return mesh.nodes[static_cast<std::size_t>(p.node)].line == static_cast<Index>(l);
+    };
     RotorDrawing d;
-    d.title = model.shafts[l].path.empty() ? "Shaft ‘" + line.name + "’" : "Line ‘" + line.name + "’, laid out straight";
+    d.title = model.shafts[l].path.empty() ? "Shaft ‘" + line.name + "’"
+                                           : "Line ‘" + line.name + "’, laid out straight";
     double s = 0;
     for (const auto& section : model.shafts[l].sections) {
-      DrawnSection x{s, s + section.length, section.od_l / 2, section.od_r / 2, section.id_l / 2, section.id_r / 2, section.name};
-      if (x.outer_left <= 0 && x.outer_right <= 0)   // constants instead of diameters
+      DrawnSection x{s,
+                     s + section.length,
+                     section.od_l / 2,
+                     section.od_r / 2,
+                     section.id_l / 2,
+                     section.id_r / 2,
+                     section.name};
+      if (x.outer_left <= 0 && x.outer_right <= 0)  // constants instead of diameters
         for (const auto& p : pieces)
-          if (const double m = (s_of(p.left) + s_of(p.right)) / 2; m > x.s0 && m < x.s1) { x.outer_left = p.outer_left; x.outer_right = p.outer_right; }
+          if (const double m = (s_of(p.left) + s_of(p.right)) / 2; m > x.s0 && m < x.s1) {
+            x.outer_left = p.outer_left;
+            x.outer_right = p.outer_right;
+          }
       d.sections.push_back(std::move(x));
       s += section.length;
     }
@@ -31,24 +46,29 @@ std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const m
         }
       return r;
     };
-    for (const auto& k : scene.lines[l].disks) d.disks.push_back({s_of(k.at), k.outer, k.inner, k.width, k.name});
+    for (const auto& k : scene.lines[l].disks)
+      d.disks.push_back({s_of(k.at), k.outer, k.inner, k.width, k.name});
     for (const auto& b : scene.supports)
       for (const auto* p : {&b.at, b.to_node ? &b.to : nullptr})
         if (p && on_line(*p)) {
           // several at one place are one mark with all their names
           const double at = s_of(*p);
-          const auto same = std::find_if(d.bearings.begin(), d.bearings.end(), [at](const auto& x) { return std::abs(x.s - at) < 1e-9; });
-          if (same != d.bearings.end()) same->name += ", " + b.name;
-          else d.bearings.push_back({at, radius(at), b.name});
+          const auto same = std::find_if(d.bearings.begin(), d.bearings.end(),
+                                         [at](const auto& x) { return std::abs(x.s - at) < 1e-9; });
+          if (same != d.bearings.end())
+            same->name += ", " + b.name;
+          else
+            d.bearings.push_back({at, radius(at), b.name});
         }
     for (const auto& p : model.probes) {
       if (p.at.shaft != l) continue;
-      double r = radius(p.at.s);   // a probe at a disk is drawn at its rim
+      double r = radius(p.at.s);  // a probe at a disk is drawn at its rim
       for (const auto& k : d.disks)
         if (std::abs(p.at.s - k.s) <= k.width / 2) r = std::max(r, k.outer);
       d.probes.push_back({p.at.s, r, p.name});
     }
-    for (Index k = line.first_node; k < line.first_node + line.nodes; ++k) d.nodes.push_back(mesh.nodes[static_cast<std::size_t>(k)].s);
+    for (Index k = line.first_node; k < line.first_node + line.nodes; ++k)
+      d.nodes.push_back(mesh.nodes[static_cast<std::size_t>(k)].s);
     all.push_back(std::move(d));
   }
   return all;
@@ -64,30 +84,40 @@ std::vector<LineDrawing> make_line_drawings(const model::Model& model, const mes
     d.title = "Line ‘" + line.name + "’ in space";
     for (Index k = line.first_element; k < line.first_element + line.elements; ++k) {
       const meshes::Element& e = mesh.elements[static_cast<std::size_t>(k)];
-      for (int i = d.line.empty() ? 0 : 1; i <= 8; ++i) d.line.push_back(shaft.position(e.s1 + (e.s2 - e.s1) * i / 8.0));
+      for (int i = d.line.empty() ? 0 : 1; i <= 8; ++i)
+        d.line.push_back(shaft.position(e.s1 + (e.s2 - e.s1) * i / 8.0));
     }
-    for (Index k = line.first_node; k < line.first_node + line.nodes; ++k) d.nodes.push_back(mesh.nodes[static_cast<std::size_t>(k)].position);
-    const auto add = [&](std::vector<DrawnPoint>& to, const model::Location& at, const std::string& name) {
+    for (Index k = line.first_node; k < line.first_node + line.nodes; ++k)
+      d.nodes.push_back(mesh.nodes[static_cast<std::size_t>(k)].position);
+    const auto add = [&](std::vector<DrawnPoint>& to, const model::Location& at,
+                         const std::string& name) {
       if (at.shaft == l && at.housing < 0) to.push_back({shaft.position(at.s), name});
     };
     for (const auto& x : model.bearings) {
       add(d.supports, x.at, x.name);
       if (x.to) add(d.supports, *x.to, x.name);
     }
-    for (const auto& x : model.disks) add(d.disks, x.at, x.name);
-    for (const auto& x : model.probes) add(d.probes, x.at, x.name);
+    for (const auto& x : model.disks)
+      add(d.disks, x.at, x.name);
+    for (const auto& x : model.probes)
+      add(d.probes, x.at, x.name);
     all.push_back(std::move(d));
   }
   return all;
 }
 
-std::vector<Figure> draw_model(const model::Model& model, const meshes::Mesh& mesh, const meshes::Scene& scene) {
+std::vector<Figure> draw_model(const model::Model& model, const meshes::Mesh& mesh,
+                               const meshes::Scene& scene) {
   std::vector<Figure> all;
-  const auto numbered = [](const char* name, int k) { return k == 1 ? std::string(name) : name + ("_" + std::to_string(k)); };
+  const auto numbered = [](const char* name, int k) {
+    return k == 1 ? std::string(name) : name + ("_" + std::to_string(k));
+  };
   int k = 0;
-  for (const RotorDrawing& d : make_rotor_drawings(model, mesh, scene)) all.push_back(plot_rotor(numbered("rotor", ++k), d));
+  for (const RotorDrawing& d : make_rotor_drawings(model, mesh, scene))
+    all.push_back(plot_rotor(numbered("rotor", ++k), d));
   k = 0;
-  for (const LineDrawing& d : make_line_drawings(model, mesh)) all.push_back(plot_line(numbered("line", ++k), d));
+  for (const LineDrawing& d : make_line_drawings(model, mesh))
+    all.push_back(plot_line(numbered("line", ++k), d));
   return all;
 }
 

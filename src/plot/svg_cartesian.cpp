@@ -9,7 +9,11 @@ Ticks axis_ticks(const Axis& a, const Scale& s, double length, double spacing) {
   Ticks t;
   if (!a.ticks.empty()) {
     t = fixed_ticks(a.ticks);
-    if (!a.tick_labels.empty()) { t.labels = a.tick_labels; t.labels.resize(t.major.size()); t.exponent = 0; }
+    if (!a.tick_labels.empty()) {
+      t.labels = a.tick_labels;
+      t.labels.resize(t.major.size());
+      t.exponent = 0;
+    }
     return t;
   }
   const double target = std::clamp(length / spacing, 2.0, 10.0);
@@ -20,7 +24,8 @@ Ticks axis_ticks(const Axis& a, const Scale& s, double length, double spacing) {
 
 double widest_label(const Ticks& t) {
   double w = 0;
-  for (const auto& l : t.labels) w = std::max(w, text_width(l, tick_size));
+  for (const auto& l : t.labels)
+    w = std::max(w, text_width(l, tick_size));
   return w;
 }
 
@@ -32,25 +37,45 @@ struct Range {
   double lo = infinity, hi = -infinity;
   bool log = false;
   void add(double v) {
-    if (std::isfinite(v) && (!log || v > 0)) { lo = std::min(lo, v); hi = std::max(hi, v); }
+    if (std::isfinite(v) && (!log || v > 0)) {
+      lo = std::min(lo, v);
+      hi = std::max(hi, v);
+    }
   }
-  void add(const std::vector<double>& v) { for (const double x : v) add(x); }
+  void add(const std::vector<double>& v) {
+    for (const double x : v)
+      add(x);
+  }
 };
 
 // Margins around data, then what the axis fixes.
 void finish(const Range& r, const Axis& a, double pad, Scale& s) {
   double lo = r.lo, hi = r.hi;
   s.log = a.logarithmic;
-  if (!(lo <= hi)) { lo = s.log ? 0.1 : 0; hi = s.log ? 10 : 1; }   // nothing to show
-  if (a.include_zero && !s.log) { lo = std::min(lo, 0.0); hi = std::max(hi, 0.0); }
+  if (!(lo <= hi)) {
+    lo = s.log ? 0.1 : 0;
+    hi = s.log ? 10 : 1;
+  }  // nothing to show
+  if (a.include_zero && !s.log) {
+    lo = std::min(lo, 0.0);
+    hi = std::max(hi, 0.0);
+  }
   if (s.log) {
-    if (hi < lo * 1.001) { lo /= 2; hi *= 2; }
+    if (hi < lo * 1.001) {
+      lo /= 2;
+      hi *= 2;
+    }
     const double f = std::pow(hi / lo, pad);
-    lo /= f; hi *= f;
+    lo /= f;
+    hi *= f;
   } else {
     double span = hi - lo;
     const double size = std::max(std::abs(lo), std::abs(hi));
-    if (span <= 1e-12 * size) { span = size > 0 ? 0.2 * size : 1; lo -= span / 2; hi += span / 2; }   // constant
+    if (span <= 1e-12 * size) {
+      span = size > 0 ? 0.2 * size : 1;
+      lo -= span / 2;
+      hi += span / 2;
+    }  // constant
     // Zero stays at the edge when the data end there.
     if (lo != 0.0 || !a.include_zero) lo -= pad * span;
     if (hi != 0.0 || !a.include_zero) hi += pad * span;
@@ -58,22 +83,28 @@ void finish(const Range& r, const Axis& a, double pad, Scale& s) {
   if (!std::isnan(a.min)) lo = a.min;
   if (!std::isnan(a.max)) hi = a.max;
   if (!(hi > lo)) hi = s.log ? lo * 10 : lo + 1;
-  s.lo = lo; s.hi = hi;
+  s.lo = lo;
+  s.hi = hi;
 }
 
 bool has_right(const Axes& a) {
-  return std::any_of(a.series.begin(), a.series.end(), [](const Series& s) { return s.right_axis; }) ||
+  return std::any_of(a.series.begin(), a.series.end(),
+                     [](const Series& s) { return s.right_axis; }) ||
          std::any_of(a.bars.begin(), a.bars.end(), [](const Bars& s) { return s.right_axis; });
 }
 
 void place(Prepared& p, const Axes& a, const Box& b) {
-  p.x.p0 = b.x; p.x.p1 = b.right();
-  p.y.p0 = p.r.p0 = b.bottom(); p.y.p1 = p.r.p1 = b.y;
-  if (a.equal_aspect) {   // the tighter direction rules; the other range grows about its centre
+  p.x.p0 = b.x;
+  p.x.p1 = b.right();
+  p.y.p0 = p.r.p0 = b.bottom();
+  p.y.p1 = p.r.p1 = b.y;
+  if (a.equal_aspect) {  // the tighter direction rules; the other range grows about its centre
     const double ux = (p.x.hi - p.x.lo) / b.w, uy = (p.y.hi - p.y.lo) / b.h, u = std::max(ux, uy);
     const double cx = (p.x.lo + p.x.hi) / 2, cy = (p.y.lo + p.y.hi) / 2;
-    p.x.lo = cx - u * b.w / 2; p.x.hi = cx + u * b.w / 2;
-    p.y.lo = cy - u * b.h / 2; p.y.hi = cy + u * b.h / 2;
+    p.x.lo = cx - u * b.w / 2;
+    p.x.hi = cx + u * b.w / 2;
+    p.y.lo = cy - u * b.h / 2;
+    p.y.hi = cy + u * b.h / 2;
   }
   // With equal aspect both directions get the same step.
   p.tx = axis_ticks(a.x, p.x, b.w, a.equal_aspect ? 68 : 90);
@@ -81,18 +112,23 @@ void place(Prepared& p, const Axes& a, const Box& b) {
   if (has_right(a)) p.tr = axis_ticks(a.right, p.r, b.h, 48);
 }
 
-bool legend_outside(const std::vector<LegendEntry>& e, double height) { return e.size() > 8 || legend_size_of(e).h > 0.6 * height; }
+bool legend_outside(const std::vector<LegendEntry>& e, double height) {
+  return e.size() > 8 || legend_size_of(e).h > 0.6 * height;
+}
 
 void draw_grid(Canvas& c, const Prepared& p, const Box& b) {
   const std::string s = stroke(faint, 0.8);
   c.add("<g class=\"gx\">");
-  for (const double v : p.tx.major) c.line(p.x(v), b.y, p.x(v), b.bottom(), s);
+  for (const double v : p.tx.major)
+    c.line(p.x(v), b.y, p.x(v), b.bottom(), s);
   c.add("</g><g class=\"gy\">");
-  for (const double v : p.ty.major) c.line(b.x, p.y(v), b.right(), p.y(v), s);
+  for (const double v : p.ty.major)
+    c.line(b.x, p.y(v), b.right(), p.y(v), s);
   c.add("</g>\n");
 }
 
-void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const CartesianFlags& f, bool right) {
+void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const CartesianFlags& f,
+                bool right) {
   const std::string s = stroke(ink, 0.9);
   c.add("<g class=\"tx\">");
   for (std::size_t k = 0; k < p.tx.major.size(); ++k) {
@@ -101,7 +137,8 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
     c.line(x, b.bottom(), x, b.bottom() + tick_length, s);
     if (!f.hide_x) c.text(x, b.bottom() + tick_length + 12.5, p.tx.labels[k], tick_size, "middle");
   }
-  for (const double v : p.tx.minor) c.line(p.x(v), b.bottom(), p.x(v), b.bottom() + 2.5, s);
+  for (const double v : p.tx.minor)
+    c.line(p.x(v), b.bottom(), p.x(v), b.bottom() + 2.5, s);
   c.add("</g><g class=\"ty\">");
   for (std::size_t k = 0; k < p.ty.major.size(); ++k) {
     const double y = p.y(p.ty.major[k]);
@@ -109,7 +146,8 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
     c.line(b.x - tick_length, y, b.x, y, s);
     c.text(b.x - tick_length - 3, y + 4, p.ty.labels[k], tick_size, "end");
   }
-  for (const double v : p.ty.minor) c.line(b.x - 2.5, p.y(v), b.x, p.y(v), s);
+  for (const double v : p.ty.minor)
+    c.line(b.x - 2.5, p.y(v), b.x, p.y(v), s);
   c.add("</g>");
   if (right) {
     c.add("<g class=\"tr\">");
@@ -122,24 +160,36 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
     c.add("</g>");
   }
   c.add("\n<rect class=\"frame ci\" fill=\"none\" stroke=\"#222222\" stroke-width=\"0.9\"");
-  c.attr("x", b.x); c.attr("y", b.y); c.attr("width", b.w); c.attr("height", b.h);
+  c.attr("x", b.x);
+  c.attr("y", b.y);
+  c.attr("width", b.w);
+  c.attr("height", b.h);
   c.add("/>\n");
   if (!f.hide_x)
-    c.text(b.x + b.w / 2, b.bottom() + tick_length + 31, axis_title(a.x, p.tx.exponent), label_size, "middle", "data-label=\"x\"");
+    c.text(b.x + b.w / 2, b.bottom() + tick_length + 31, axis_title(a.x, p.tx.exponent), label_size,
+           "middle", "data-label=\"x\"");
   const auto sideways = [&](double x, double y, const std::string& t, const char* which) {
     // A title longer than its axis is set smaller.
-    const double size = label_size * std::clamp((b.h + 24) / std::max(1.0, text_width(t, label_size)), 0.7, 1.0);
-    c.text(x, y, t, size, "middle", "data-label=\"" + std::string(which) + "\" transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
+    const double size =
+        label_size * std::clamp((b.h + 24) / std::max(1.0, text_width(t, label_size)), 0.7, 1.0);
+    c.text(x, y, t, size, "middle",
+           "data-label=\"" + std::string(which) + "\" transform=\"rotate(-90 " + number_text(x) +
+               " " + number_text(y) + ")\"");
   };
-  sideways(b.x - tick_length - 10 - widest_label(p.ty), b.y + b.h / 2, axis_title(a.y, p.ty.exponent), "y");
-  if (right) sideways(b.right() + tick_length + 18 + widest_label(p.tr), b.y + b.h / 2, axis_title(a.right, p.tr.exponent), "r");
+  sideways(b.x - tick_length - 10 - widest_label(p.ty), b.y + b.h / 2,
+           axis_title(a.y, p.ty.exponent), "y");
+  if (right)
+    sideways(b.right() + tick_length + 18 + widest_label(p.tr), b.y + b.h / 2,
+             axis_title(a.right, p.tr.exponent), "r");
 }
 
 }  // namespace
 
 void data_range(const Axes& a, Scale& x, Scale& y, Scale& right) {
   Range rx, ry, rr;
-  rx.log = a.x.logarithmic; ry.log = a.y.logarithmic; rr.log = a.right.logarithmic;
+  rx.log = a.x.logarithmic;
+  ry.log = a.y.logarithmic;
+  rr.log = a.right.logarithmic;
   bool loose = !a.bars.empty() || !a.patches.empty() || a.equal_aspect;
   for (const auto& s : a.series) {
     rx.add(s.x);
@@ -147,12 +197,23 @@ void data_range(const Axes& a, Scale& x, Scale& y, Scale& right) {
     loose = loose || s.style.width <= 0 || s.style.marker != Marker::none || !is_increasing(s.x);
   }
   for (const auto& s : a.bars) {
-    for (const double v : s.x) { rx.add(v - s.width / 2); rx.add(v + s.width / 2); }
+    for (const double v : s.x) {
+      rx.add(v - s.width / 2);
+      rx.add(v + s.width / 2);
+    }
     (s.right_axis ? rr : ry).add(s.height);
     (s.right_axis ? rr : ry).add(0.0);
   }
-  for (const auto& s : a.patches) { rx.add(s.x); ry.add(s.y); }
-  for (const auto& h : a.heat) { rx.add(h.x0); rx.add(h.x1); ry.add(h.y0); ry.add(h.y1); }
+  for (const auto& s : a.patches) {
+    rx.add(s.x);
+    ry.add(s.y);
+  }
+  for (const auto& h : a.heat) {
+    rx.add(h.x0);
+    rx.add(h.x1);
+    ry.add(h.y0);
+    ry.add(h.y1);
+  }
   // Histories run from edge to edge; clouds, loops and drawings get air.
   finish(rx, a.x, loose ? 0.04 : 0.0, x);
   finish(ry, a.y, a.heat.empty() ? 0.06 : 0.0, y);
@@ -167,10 +228,13 @@ Margins cartesian_margins(const Axes& a, double width, double height, const Cart
   m.left = widest_label(p.ty) + tick_length + 3 + 24;
   m.bottom = f.hide_x ? 8 : 42;
   m.top = a.title.empty() ? 8 : 26;
-  m.right = std::max(14.0, p.tx.labels.empty() || f.hide_x ? 0.0 : text_width(p.tx.labels.back(), tick_size) / 2 + 4);
+  m.right = std::max(14.0, p.tx.labels.empty() || f.hide_x
+                               ? 0.0
+                               : text_width(p.tx.labels.back(), tick_size) / 2 + 4);
   if (has_right(a)) m.right = widest_label(p.tr) + tick_length + 30;
   if (!a.heat.empty()) m.right = colorbar;
-  if (const auto e = legend_entries(a, resolve_colors(a)); legend_outside(e, height)) m.right += legend_size_of(e).w + 6;
+  if (const auto e = legend_entries(a, resolve_colors(a)); legend_outside(e, height))
+    m.right += legend_size_of(e).w + 6;
   return m;
 }
 
@@ -180,7 +244,8 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   data_range(a, p.x, p.y, p.r);
   place(p, a, b);
   const bool right = has_right(a);
-  c.add("<g class=\"axes\" data-kind=\"xy\" data-box=\"" + number_text(b.x) + " " + number_text(b.y) + " " + number_text(b.w) + " " + number_text(b.h) + '"');
+  c.add("<g class=\"axes\" data-kind=\"xy\" data-box=\"" + number_text(b.x) + " " +
+        number_text(b.y) + " " + number_text(b.w) + " " + number_text(b.h) + '"');
   axis_attributes(c, "x", a.x, p.x);
   axis_attributes(c, "y", a.y, p.y);
   if (right) axis_attributes(c, "r", a.right, p.r);
@@ -192,7 +257,10 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   if (!a.title.empty()) c.text(b.x, b.y - 9, a.title, title_size, "start", "font-weight=\"600\"");
   const std::string clip = c.id();
   c.add("<clipPath id=\"" + clip + "\"><rect");
-  c.attr("x", b.x); c.attr("y", b.y); c.attr("width", b.w); c.attr("height", b.h);
+  c.attr("x", b.x);
+  c.attr("y", b.y);
+  c.attr("width", b.w);
+  c.attr("height", b.h);
   c.add("/></clipPath>\n");
   draw_grid(c, p, b);
   std::vector<Point> seen;
@@ -206,14 +274,20 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   draw_rules(c, a, p, b);
   draw_series(c, a, k, p, seen, pins);
   c.add("</g>\n<g class=\"pins\">\n");
-  for (const auto& job : pins) draw_pins(c, job.x, job.y, a.series[job.series].style, job.color, static_cast<int>(job.series), a.series[job.series].right_axis, job.attributes);
+  for (const auto& job : pins)
+    draw_pins(c, job.x, job.y, a.series[job.series].style, job.color, static_cast<int>(job.series),
+              a.series[job.series].right_axis, job.attributes);
   draw_notes(c, a, p, b, taken, seen);
   c.add("</g></g>\n");
   draw_ticks(c, a, p, b, f, right);
   if (!a.heat.empty()) draw_color_bar(c, a.heat.front(), {b.right() + 14, b.y, 13, b.h});
   const Box size = legend_size_of(entries);
   draw_legend(c, entries, b, seen, taken,
-              outside ? Box{b.right() + (right ? widest_label(p.tr) + tick_length + 30 : a.heat.empty() ? 8 : colorbar), b.y, size.w, size.h} : Box{});
+              outside ? Box{b.right() + (right            ? widest_label(p.tr) + tick_length + 30
+                                         : a.heat.empty() ? 8
+                                                          : colorbar),
+                            b.y, size.w, size.h}
+                      : Box{});
   c.add("</g>\n");
 }
 

@@ -20,12 +20,18 @@ void Canvas::attr(const char* name, double v) {
   out += '"';
 }
 
-void Canvas::text(double x, double y, std::string_view content, double size, const char* anchor, std::string_view extra) {
+void Canvas::text(double x, double y, std::string_view content, double size, const char* anchor,
+                  std::string_view extra) {
   out += "<text";
-  attr("x", x); attr("y", y); attr("font-size", size);
+  attr("x", x);
+  attr("y", y);
+  attr("font-size", size);
   if (std::string_view(anchor) != "start") out += std::string(" text-anchor=\"") + anchor + '"';
   out += " " + fill(ink);
-  if (!extra.empty()) { out += " "; out += extra; }
+  if (!extra.empty()) {
+    out += " ";
+    out += extra;
+  }
   out += '>';
   out += escape(content);
   out += "</text>";
@@ -33,7 +39,10 @@ void Canvas::text(double x, double y, std::string_view content, double size, con
 
 void Canvas::line(double x0, double y0, double x1, double y1, std::string_view rest) {
   out += "<line";
-  attr("x1", x0); attr("y1", y0); attr("x2", x1); attr("y2", y1);
+  attr("x1", x0);
+  attr("y1", y0);
+  attr("x2", x1);
+  attr("y2", y1);
   out += ' ';
   out += rest;
   out += "/>";
@@ -42,21 +51,27 @@ void Canvas::line(double x0, double y0, double x1, double y1, std::string_view r
 namespace {
 
 std::string color_class(char kind, int color) {
-  return color == ink ? std::string(1, kind) + "i" : color == faint ? std::string(1, kind) + "g" : kind + std::to_string(color % palette_size);
+  return color == ink     ? std::string(1, kind) + "i"
+         : color == faint ? std::string(1, kind) + "g"
+                          : kind + std::to_string(color % palette_size);
 }
 const char* color_value(int color) {
-  return color == ink ? ink_light : color == faint ? grid_light : palette_light[static_cast<std::size_t>(color % palette_size)];
+  return color == ink     ? ink_light
+         : color == faint ? grid_light
+                          : palette_light[static_cast<std::size_t>(color % palette_size)];
 }
 
 }  // namespace
 
 std::string stroke(int color, double width, Dash dash) {
-  std::string s = "class=\"" + color_class('c', color) + "\" stroke=\"" + color_value(color) + "\" fill=\"none\"";
+  std::string s = "class=\"" + color_class('c', color) + "\" stroke=\"" + color_value(color) +
+                  "\" fill=\"none\"";
   if (width > 0) s += " stroke-width=\"" + number_text(width) + '"';
   const double w = std::max(width, 1.0);
   const auto dashes = [&](std::initializer_list<double> d) {
     s += " stroke-dasharray=\"";
-    for (const double x : d) s += number_text(x * w) + (x == *(d.end() - 1) ? "" : " ");
+    for (const double x : d)
+      s += number_text(x * w) + (x == *(d.end() - 1) ? "" : " ");
     s += '"';
   };
   switch (dash) {
@@ -68,24 +83,31 @@ std::string stroke(int color, double width, Dash dash) {
   return s;
 }
 
-std::string fill(int color) { return "class=\"" + color_class('f', color) + "\" fill=\"" + color_value(color) + '"'; }
+std::string fill(int color) {
+  return "class=\"" + color_class('f', color) + "\" fill=\"" + color_value(color) + '"';
+}
 std::string paper_fill() { return std::string("class=\"fp\" fill=\"") + paper_light + '"'; }
 
 Colors resolve_colors(const Axes& a) {
   Colors k;
   int next = 0;
   const auto pick = [&](const Style& s) { return s.color == next_color ? next++ : s.color; };
-  for (const auto& s : a.series) k.series.push_back(pick(s.style));
-  for (const auto& s : a.bars) k.bars.push_back(pick(s.style));
-  for (const auto& s : a.patches) k.patches.push_back(pick(s.style));
-  for (const auto& s : a.space) k.space.push_back(pick(s.style));
+  for (const auto& s : a.series)
+    k.series.push_back(pick(s.style));
+  for (const auto& s : a.bars)
+    k.bars.push_back(pick(s.style));
+  for (const auto& s : a.patches)
+    k.patches.push_back(pick(s.style));
+  for (const auto& s : a.space)
+    k.space.push_back(pick(s.style));
   return k;
 }
 
 std::string axis_title(const Axis& a, int exponent) {
   if (a.unit.empty() && exponent == 0) return a.label;
   std::string unit = a.unit.empty() ? "-" : a.unit;
-  if (exponent != 0) unit = power_of_ten(exponent) + (a.unit == "-" || a.unit.empty() ? "" : " " + a.unit);
+  if (exponent != 0)
+    unit = power_of_ten(exponent) + (a.unit == "-" || a.unit.empty() ? "" : " " + a.unit);
   return a.label.empty() ? "[" + unit + "]" : a.label + " [" + unit + "]";
 }
 
@@ -93,21 +115,23 @@ void axis_attributes(Canvas& c, const char* name, const Axis& a, const Scale& s)
   char b[128];
   std::snprintf(b, sizeof b, " data-%s=\"%.17g %.17g %d\"", name, s.lo, s.hi, s.log ? 1 : 0);
   c.add(b);
-  c.add(std::string(" data-") + name + "l=\"" + escape(a.label) + "\" data-" + name + "u=\"" + escape(a.unit == "-" ? "" : a.unit) + '"');
+  c.add(std::string(" data-") + name + "l=\"" + escape(a.label) + "\" data-" + name + "u=\"" +
+        escape(a.unit == "-" ? "" : a.unit) + '"');
 }
 
-std::string path_of(const std::vector<double>& px, const std::vector<double>& py, bool keep_all, bool increasing, double columns,
-                    std::vector<Point>* seen) {
+std::string path_of(const std::vector<double>& px, const std::vector<double>& py, bool keep_all,
+                    bool increasing, double columns, std::vector<Point>* seen) {
   std::string d;
   std::size_t run = 0;
   const auto lift = [&] {
-    if (run == 1) d += "h0";   // a lone point: visible with round caps
+    if (run == 1) d += "h0";  // a lone point: visible with round caps
     run = 0;
   };
   const auto put = [&](double x, double y) {
     if (std::isnan(x) || std::isnan(y)) return lift();
     // Far outside the frame: renderers have limits.
-    x = std::clamp(x, -1e5, 1e5); y = std::clamp(y, -1e5, 1e5);
+    x = std::clamp(x, -1e5, 1e5);
+    y = std::clamp(y, -1e5, 1e5);
     d += run == 0 ? 'M' : run == 1 ? 'L' : ' ';
     append_number(d, x);
     d += ' ';
@@ -116,17 +140,23 @@ std::string path_of(const std::vector<double>& px, const std::vector<double>& py
     if (seen) seen->push_back({x, y});
   };
   if (keep_all || px.size() < 500) {
-    for (std::size_t i = 0; i < px.size(); ++i) put(px[i], py[i]);
+    for (std::size_t i = 0; i < px.size(); ++i)
+      put(px[i], py[i]);
   } else if (increasing) {
     double lo = infinity, hi = -infinity;
     for (const double x : px)
-      if (!std::isnan(x)) { lo = std::min(lo, x); hi = std::max(hi, x); }
+      if (!std::isnan(x)) {
+        lo = std::min(lo, x);
+        hi = std::max(hi, x);
+      }
     if (!(hi > lo)) hi = lo + 1;
     const auto n = static_cast<std::size_t>(std::max(1.0, columns * (hi - lo)));
-    for (const auto i : decimate_columns(px, py, lo, hi, n)) put(px[i], py[i]);
+    for (const auto i : decimate_columns(px, py, lo, hi, n))
+      put(px[i], py[i]);
   } else {
     for (const auto& run : decimate_path(px, py, 0.5 / std::max(1.0, columns))) {
-      for (const auto i : run) put(px[i], py[i]);
+      for (const auto i : run)
+        put(px[i], py[i]);
       lift();
     }
   }
@@ -134,8 +164,9 @@ std::string path_of(const std::vector<double>& px, const std::vector<double>& py
   return d;
 }
 
-void draw_pins(Canvas& c, const std::vector<double>& px, const std::vector<double>& py, const Style& style, int color, int series, bool right,
-               std::string_view rest, const Box* clip) {
+void draw_pins(Canvas& c, const std::vector<double>& px, const std::vector<double>& py,
+               const Style& style, int color, int series, bool right, std::string_view rest,
+               const Box* clip) {
   const std::string id = c.id();
   const double r = style.marker_size / 2;
   std::string shape;
@@ -143,18 +174,35 @@ void draw_pins(Canvas& c, const std::vector<double>& px, const std::vector<doubl
   switch (style.marker) {
     case Marker::none: return;
     case Marker::circle: shape = "<circle r=\"" + n(1) + "\"/>"; break;
-    case Marker::square: shape = "<path d=\"M" + n(-0.9) + " " + n(-0.9) + "H" + n(0.9) + "V" + n(0.9) + "H" + n(-0.9) + "Z\"/>"; break;
-    case Marker::diamond: shape = "<path d=\"M0 " + n(-1.25) + "L" + n(1.25) + " 0 0 " + n(1.25) + " " + n(-1.25) + " 0Z\"/>"; break;
-    case Marker::triangle: shape = "<path d=\"M0 " + n(-1.2) + "L" + n(1.1) + " " + n(0.8) + " " + n(-1.1) + " " + n(0.8) + "Z\"/>"; break;
-    case Marker::cross: shape = "<path d=\"M" + n(-0.9) + " " + n(-0.9) + "L" + n(0.9) + " " + n(0.9) + "M" + n(-0.9) + " " + n(0.9) + "L" + n(0.9) + " " + n(-0.9) + "\"/>"; break;
-    case Marker::plus: shape = "<path d=\"M" + n(-1.1) + " 0H" + n(1.1) + "M0 " + n(-1.1) + "V" + n(1.1) + "\"/>"; break;
+    case Marker::square:
+      shape = "<path d=\"M" + n(-0.9) + " " + n(-0.9) + "H" + n(0.9) + "V" + n(0.9) + "H" +
+              n(-0.9) + "Z\"/>";
+      break;
+    case Marker::diamond:
+      shape = "<path d=\"M0 " + n(-1.25) + "L" + n(1.25) + " 0 0 " + n(1.25) + " " + n(-1.25) +
+              " 0Z\"/>";
+      break;
+    case Marker::triangle:
+      shape = "<path d=\"M0 " + n(-1.2) + "L" + n(1.1) + " " + n(0.8) + " " + n(-1.1) + " " +
+              n(0.8) + "Z\"/>";
+      break;
+    case Marker::cross:
+      shape = "<path d=\"M" + n(-0.9) + " " + n(-0.9) + "L" + n(0.9) + " " + n(0.9) + "M" +
+              n(-0.9) + " " + n(0.9) + "L" + n(0.9) + " " + n(-0.9) + "\"/>";
+      break;
+    case Marker::plus:
+      shape = "<path d=\"M" + n(-1.1) + " 0H" + n(1.1) + "M0 " + n(-1.1) + "V" + n(1.1) + "\"/>";
+      break;
   }
   c.add("<defs><g id=\"" + id + "\">" + shape + "</g></defs>");
-  c.add("<g data-s=\"" + std::to_string(series) + "\" data-pins=\"1\"" + (right ? " data-right=\"1\"" : "") + std::string(rest) + ">");
+  c.add("<g data-s=\"" + std::to_string(series) + "\" data-pins=\"1\"" +
+        (right ? " data-right=\"1\"" : "") + std::string(rest) + ">");
   const bool open = style.marker == Marker::cross || style.marker == Marker::plus;
-  const std::string paint = open ? stroke(color, 1.5) : style.filled ? fill(color) : stroke(color, 1.4);
+  const std::string paint = open           ? stroke(color, 1.5)
+                            : style.filled ? fill(color)
+                                           : stroke(color, 1.4);
   std::string inner = paint;
-  if (!open && !style.filled) {   // hollow markers hide the line behind them
+  if (!open && !style.filled) {  // hollow markers hide the line behind them
     const auto at = inner.find("fill=\"none\"");
     inner.replace(at, 11, std::string("fill=\"") + paper_light + '"');
     inner.insert(inner.find("class=\"") + 7, "hp ");
@@ -162,9 +210,12 @@ void draw_pins(Canvas& c, const std::vector<double>& px, const std::vector<doubl
   c.add("<g " + inner + ">");
   for (std::size_t i = 0; i < px.size(); ++i) {
     if (std::isnan(px[i]) || std::isnan(py[i])) continue;
-    if (clip && (px[i] < clip->x - 0.5 || px[i] > clip->right() + 0.5 || py[i] < clip->y - 0.5 || py[i] > clip->bottom() + 0.5)) continue;
+    if (clip && (px[i] < clip->x - 0.5 || px[i] > clip->right() + 0.5 || py[i] < clip->y - 0.5 ||
+                 py[i] > clip->bottom() + 0.5))
+      continue;
     c.add("<use href=\"#" + id + "\"");
-    c.attr("x", px[i]); c.attr("y", py[i]);
+    c.attr("x", px[i]);
+    c.attr("y", py[i]);
     c.add("/>");
   }
   c.add("</g></g>\n");

@@ -1,8 +1,9 @@
 // Inside of the renderer: shared by the files that draw cartesian, polar and 3-D axes.
 //
-// What the report's script relies on: <g class="axes"> carries data-kind, data-box and, per axis, data-x / data-y / data-r
-// = "lo hi log" with label and unit; curves stand in <g class="plot"> as paths in px, which the script turns back into values;
-// what must keep its size under zoom stands in <g class="pins"> with its px position; data-s numbers the series.
+// What the report's script relies on: <g class="axes"> carries data-kind, data-box and, per axis,
+// data-x / data-y / data-r = "lo hi log" with label and unit; curves stand in <g class="plot"> as
+// paths in px, which the script turns back into values; what must keep its size under zoom stands
+// in <g class="pins"> with its px position; data-s numbers the series.
 #pragma once
 #include <plot/plot.hpp>
 #include <plot/svg.hpp>
@@ -16,7 +17,9 @@ struct Box {
   double x = 0, y = 0, w = 0, h = 0;
   double right() const { return x + w; }
   double bottom() const { return y + h; }
-  bool overlaps(const Box& o) const { return x < o.right() && o.x < right() && y < o.bottom() && o.y < bottom(); }
+  bool overlaps(const Box& o) const {
+    return x < o.right() && o.x < right() && y < o.bottom() && o.y < bottom();
+  }
 };
 
 /// Values to px, linear or logarithmic.
@@ -24,16 +27,18 @@ struct Scale {
   double lo = 0, hi = 1;
   bool log = false;
   double p0 = 0, p1 = 1;
-  double operator()(double v) const;   ///< nan where a logarithmic axis has no place
+  double operator()(double v) const;  ///< nan where a logarithmic axis has no place
 };
 
-struct Point { double x, y; };
+struct Point {
+  double x, y;
+};
 
 struct Canvas {
   std::string out;
   const Figure& figure;
   const SvgOptions& options;
-  std::string prefix;   ///< of ids
+  std::string prefix;  ///< of ids
   int ids = 0;
   std::string id() { return prefix + "-" + std::to_string(++ids); }
   void add(std::string_view s) { out += s; }
@@ -44,15 +49,19 @@ struct Canvas {
   void line(double x0, double y0, double x1, double y1, std::string_view rest);
 };
 
-inline constexpr double tick_size = 11.5, label_size = 12.5, title_size = 13.5, legend_size = 11.5, note_size = 11;
+inline constexpr double tick_size = 11.5, label_size = 12.5, title_size = 13.5, legend_size = 11.5,
+                        note_size = 11;
 
 /// class and presentation attributes of a stroke or fill in palette colour k (or ink, faint).
 std::string stroke(int color, double width = 0, Dash dash = Dash::solid);
 std::string fill(int color);
 std::string paper_fill();
 
-/// Palette indices of all series of some axes, next_color resolved; series, bars, patches, space in that order.
-struct Colors { std::vector<int> series, bars, patches, space; };
+/// Palette indices of all series of some axes, next_color resolved; series, bars, patches, space in
+/// that order.
+struct Colors {
+  std::vector<int> series, bars, patches, space;
+};
 Colors resolve_colors(const Axes& a);
 
 std::string axis_title(const Axis& a, int exponent = 0);
@@ -60,21 +69,30 @@ std::string axis_title(const Axis& a, int exponent = 0);
 void axis_attributes(Canvas& c, const char* name, const Axis& a, const Scale& s);
 
 /// Path data of points, broken at nan. Appends what it drew to `seen` when given.
-std::string path_of(const std::vector<double>& px, const std::vector<double>& py, bool keep_all, bool increasing, double columns,
-                    std::vector<Point>* seen);
+std::string path_of(const std::vector<double>& px, const std::vector<double>& py, bool keep_all,
+                    bool increasing, double columns, std::vector<Point>* seen);
 /// Name, further values and point names of a curve as attributes for the readout.
-std::string readout_attributes(const Series& s, const std::vector<double>& px, const std::vector<double>& py);
+std::string readout_attributes(const Series& s, const std::vector<double>& px,
+                               const std::vector<double>& py);
 /// <use> markers at points; defines the marker's shape first.
-void draw_pins(Canvas& c, const std::vector<double>& px, const std::vector<double>& py, const Style& style, int color, int series, bool right,
-               std::string_view rest, const Box* clip = nullptr);
+void draw_pins(Canvas& c, const std::vector<double>& px, const std::vector<double>& py,
+               const Style& style, int color, int series, bool right, std::string_view rest,
+               const Box* clip = nullptr);
 
-struct LegendEntry { std::string label; Style style; int color; int series; bool patch = false, bar = false; };
+struct LegendEntry {
+  std::string label;
+  Style style;
+  int color;
+  int series;
+  bool patch = false, bar = false;
+};
 std::vector<LegendEntry> legend_entries(const Axes& a, const Colors& k);
 /// Size of the legend box.
 Box legend_size_of(const std::vector<LegendEntry>& entries);
-/// Draws it where it hides the fewest of `seen` inside the frame, or at `outside` when its width is positive.
-void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& frame, const std::vector<Point>& seen, const std::vector<Box>& taken,
-                 const Box& outside);
+/// Draws it where it hides the fewest of `seen` inside the frame, or at `outside` when its width is
+/// positive.
+void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& frame,
+                 const std::vector<Point>& seen, const std::vector<Box>& taken, const Box& outside);
 
 /// Range of cartesian or polar data, with margins; what the axis fixes stays.
 void data_range(const Axes& a, Scale& x, Scale& y, Scale& right);
@@ -84,20 +102,36 @@ Ticks axis_ticks(const Axis& a, const Scale& s, double length, double spacing);
 double widest_label(const Ticks& t);
 
 /// Cartesian axes ready to draw: scales (right = r) and their ticks.
-struct Prepared { Scale x, y, r; Ticks tx, ty, tr; };
+struct Prepared {
+  Scale x, y, r;
+  Ticks tx, ty, tr;
+};
 /// Markers that are drawn after all curves.
-struct PinJob { std::vector<double> x, y; std::size_t series; int color; std::string attributes; };
+struct PinJob {
+  std::vector<double> x, y;
+  std::size_t series;
+  int color;
+  std::string attributes;
+};
 void draw_heat(Canvas& c, const HeatMap& h, const Prepared& p);
 void draw_color_bar(Canvas& c, const HeatMap& h, const Box& bar);
-void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p, std::vector<Point>& seen, std::vector<PinJob>& pins);
+void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
+                 std::vector<Point>& seen, std::vector<PinJob>& pins);
 void draw_bars_and_patches(Canvas& c, const Axes& a, const Colors& k, const Prepared& p);
 void draw_rules(Canvas& c, const Axes& a, const Prepared& p, const Box& b);
-/// A circle at p and the text beside it, where it covers the least of what is there; adds its place to `taken`.
-void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame, std::vector<Box>& taken, const std::vector<Point>& seen);
-void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::vector<Box>& taken, const std::vector<Point>& seen);
+/// A circle at p and the text beside it, where it covers the least of what is there; adds its place
+/// to `taken`.
+void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame,
+               std::vector<Box>& taken, const std::vector<Point>& seen);
+void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::vector<Box>& taken,
+                const std::vector<Point>& seen);
 
-struct Margins { double left = 0, right = 0, top = 0, bottom = 0; };
-struct CartesianFlags { bool hide_x = false; };
+struct Margins {
+  double left = 0, right = 0, top = 0, bottom = 0;
+};
+struct CartesianFlags {
+  bool hide_x = false;
+};
 Margins cartesian_margins(const Axes& a, double width, double height, const CartesianFlags& f);
 void draw_cartesian(Canvas& c, const Axes& a, const Box& frame, const CartesianFlags& f);
 void draw_polar(Canvas& c, const Axes& a, const Box& cell);

@@ -12,30 +12,39 @@ std::vector<LegendEntry> legend_entries(const Axes& a, const Colors& k) {
   if (!a.legend) return e;
   int number = 0;
   for (std::size_t i = 0; i < a.series.size(); ++i, ++number)
-    if (!a.series[i].label.empty()) e.push_back({a.series[i].label, a.series[i].style, k.series[i], number});
+    if (!a.series[i].label.empty())
+      e.push_back({a.series[i].label, a.series[i].style, k.series[i], number});
   for (std::size_t i = 0; i < a.bars.size(); ++i, ++number)
-    if (!a.bars[i].label.empty()) e.push_back({a.bars[i].label, a.bars[i].style, k.bars[i], number, false, true});
+    if (!a.bars[i].label.empty())
+      e.push_back({a.bars[i].label, a.bars[i].style, k.bars[i], number, false, true});
   for (std::size_t i = 0; i < a.patches.size(); ++i, ++number)
-    if (!a.patches[i].label.empty()) e.push_back({a.patches[i].label, a.patches[i].style, k.patches[i], number, true});
+    if (!a.patches[i].label.empty())
+      e.push_back({a.patches[i].label, a.patches[i].style, k.patches[i], number, true});
   for (std::size_t i = 0; i < a.space.size(); ++i, ++number)
-    if (!a.space[i].label.empty()) e.push_back({a.space[i].label, a.space[i].style, k.space[i], number});
+    if (!a.space[i].label.empty())
+      e.push_back({a.space[i].label, a.space[i].style, k.space[i], number});
   return e;
 }
 
 Box legend_size_of(const std::vector<LegendEntry>& entries) {
   if (entries.empty()) return {};
   double w = 0;
-  for (const auto& e : entries) w = std::max(w, text_width(e.label, legend_size));
+  for (const auto& e : entries)
+    w = std::max(w, text_width(e.label, legend_size));
   return {0, 0, w + sample + 2 * pad + 6, row * static_cast<double>(entries.size()) + 2 * pad - 4};
 }
 
-void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& frame, const std::vector<Point>& seen, const std::vector<Box>& taken,
+void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& frame,
+                 const std::vector<Point>& seen, const std::vector<Box>& taken,
                  const Box& outside) {
   if (entries.empty()) return;
   Box b = legend_size_of(entries);
-  if (outside.w > 0) { b.x = outside.x; b.y = outside.y; }
-  else {
-    const double m = 8, xs[3] = {frame.right() - b.w - m, frame.x + m, frame.x + (frame.w - b.w) / 2};
+  if (outside.w > 0) {
+    b.x = outside.x;
+    b.y = outside.y;
+  } else {
+    const double m = 8,
+                 xs[3] = {frame.right() - b.w - m, frame.x + m, frame.x + (frame.w - b.w) / 2};
     const double ys[3] = {frame.y + m, frame.bottom() - b.h - m, frame.y + (frame.h - b.h) / 2};
     double best = infinity;
     Box at = b;
@@ -43,29 +52,47 @@ void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& 
       for (int ix = 0; ix < 3; ++ix) {
         if (ix == 2 && iy == 2) continue;
         Box t = b;
-        t.x = xs[ix]; t.y = ys[iy];
-        double cost = 0.002 * (3 * iy + ix);   // prefers the corners, the upper right first
+        t.x = xs[ix];
+        t.y = ys[iy];
+        double cost = 0.002 * (3 * iy + ix);  // prefers the corners, the upper right first
         double inside = 0;
         for (const auto& p : seen)
-          if (p.x > t.x - 3 && p.x < t.right() + 3 && p.y > t.y - 3 && p.y < t.bottom() + 3) ++inside;
+          if (p.x > t.x - 3 && p.x < t.right() + 3 && p.y > t.y - 3 && p.y < t.bottom() + 3)
+            ++inside;
         cost += inside / (1.0 + static_cast<double>(seen.size()));
-        for (const auto& o : taken) cost += t.overlaps(o) ? 0.3 : 0;
-        if (cost < best) { best = cost; at = t; }
+        for (const auto& o : taken)
+          cost += t.overlaps(o) ? 0.3 : 0;
+        if (cost < best) {
+          best = cost;
+          at = t;
+        }
       }
     b = at;
   }
   c.add("<g class=\"legend\"><rect rx=\"3\"");
-  c.attr("x", b.x); c.attr("y", b.y); c.attr("width", b.w); c.attr("height", b.h);
-  c.add(" class=\"fp cg\" fill=\"#ffffff\" fill-opacity=\"0.88\" stroke=\"#d9d9d9\" stroke-width=\"0.7\"/>\n");
+  c.attr("x", b.x);
+  c.attr("y", b.y);
+  c.attr("width", b.w);
+  c.attr("height", b.h);
+  c.add(
+      " class=\"fp cg\" fill=\"#ffffff\" fill-opacity=\"0.88\" stroke=\"#d9d9d9\" "
+      "stroke-width=\"0.7\"/>\n");
   double y = b.y + pad + row / 2 - 2;
   for (const auto& e : entries) {
-    c.add("<g class=\"entry\" data-s=\"" + std::to_string(e.series) + "\"><rect fill=\"transparent\"");
-    c.attr("x", b.x); c.attr("y", y - row / 2); c.attr("width", b.w); c.attr("height", row);
+    c.add("<g class=\"entry\" data-s=\"" + std::to_string(e.series) +
+          "\"><rect fill=\"transparent\"");
+    c.attr("x", b.x);
+    c.attr("y", y - row / 2);
+    c.attr("width", b.w);
+    c.attr("height", row);
     c.add("/>");
     const double x0 = b.x + pad, x1 = x0 + sample;
     if (e.patch || e.bar) {
       c.add("<rect");
-      c.attr("x", x0 + 4); c.attr("y", y - 5); c.attr("width", sample - 8); c.attr("height", 10);
+      c.attr("x", x0 + 4);
+      c.attr("y", y - 5);
+      c.attr("width", sample - 8);
+      c.attr("height", 10);
       c.add(" " + fill(e.color) + (e.patch ? " fill-opacity=\"0.4\"" : "") + "/>");
     } else {
       if (e.style.width > 0) c.line(x0, y, x1, y, stroke(e.color, e.style.width, e.style.dash));

@@ -1,4 +1,5 @@
-// What stands inside the frame of cartesian axes: maps, bars, patches, curves, markers, rules, notes.
+// What stands inside the frame of cartesian axes: maps, bars, patches, curves, markers, rules,
+// notes.
 #include <plot/decimate.hpp>
 #include <plot/palette.hpp>
 #include <plot/png.hpp>
@@ -10,20 +11,31 @@
 namespace whirl::plot::svg {
 namespace {
 
-struct HeatScale { double lo, hi; };
+struct HeatScale {
+  double lo, hi;
+};
 HeatScale heat_scale(const HeatMap& h) {
   double lo = infinity, hi = -infinity;
   for (const double v : h.values)
-    if (std::isfinite(v) && (!h.logarithmic || v > 0)) { lo = std::min(lo, v); hi = std::max(hi, v); }
+    if (std::isfinite(v) && (!h.logarithmic || v > 0)) {
+      lo = std::min(lo, v);
+      hi = std::max(hi, v);
+    }
   if (!std::isnan(h.min)) lo = h.min;
   if (!std::isnan(h.max)) hi = h.max;
-  if (!(hi > lo)) { lo = h.logarithmic ? 0.1 : 0; hi = lo + 1; }
+  if (!(hi > lo)) {
+    lo = h.logarithmic ? 0.1 : 0;
+    hi = lo + 1;
+  }
   return {lo, hi};
 }
 
 void draw_image(Canvas& c, const std::string& png, const Box& at, std::string_view rest) {
   c.add("<image preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\"");
-  c.attr("x", at.x); c.attr("y", at.y); c.attr("width", at.w); c.attr("height", at.h);
+  c.attr("x", at.x);
+  c.attr("y", at.y);
+  c.attr("width", at.w);
+  c.attr("height", at.h);
   c.add(rest);
   c.add(" href=\"data:image/png;base64," + base64(png) + "\"/>\n");
 }
@@ -33,23 +45,29 @@ void draw_image(Canvas& c, const std::string& png, const Box& at, std::string_vi
 void draw_heat(Canvas& c, const HeatMap& h, const Prepared& p) {
   const auto [lo, hi] = heat_scale(h);
   const auto index = [&, lo = lo, hi = hi](double v) -> std::uint8_t {
-    const double t = h.logarithmic ? (v > 0 ? std::log(v / lo) / std::log(hi / lo) : 0) : (v - lo) / (hi - lo);
-    return std::isnan(t) ? 0 : static_cast<std::uint8_t>(std::lround(255 * std::clamp(t, 0.0, 1.0)));
+    const double t =
+        h.logarithmic ? (v > 0 ? std::log(v / lo) / std::log(hi / lo) : 0) : (v - lo) / (hi - lo);
+    return std::isnan(t) ? 0
+                         : static_cast<std::uint8_t>(std::lround(255 * std::clamp(t, 0.0, 1.0)));
   };
   std::vector<std::uint8_t> cells(static_cast<std::size_t>(h.nx) * static_cast<std::size_t>(h.ny));
-  for (int iy = 0; iy < h.ny; ++iy)   // the picture starts at the top
+  for (int iy = 0; iy < h.ny; ++iy)  // the picture starts at the top
     for (int ix = 0; ix < h.nx; ++ix)
-      cells[static_cast<std::size_t>((h.ny - 1 - iy) * h.nx + ix)] = index(h.values[static_cast<std::size_t>(iy * h.nx + ix)]);
+      cells[static_cast<std::size_t>((h.ny - 1 - iy) * h.nx + ix)] =
+          index(h.values[static_cast<std::size_t>(iy * h.nx + ix)]);
   char range[160];
-  std::snprintf(range, sizeof range, " data-heat=\"%d %d %.9g %.9g %d\"", h.nx, h.ny, lo, hi, h.logarithmic ? 1 : 0);
-  draw_image(c, make_png(h.nx, h.ny, cells, color_map()), {p.x(h.x0), p.y(h.y1), p.x(h.x1) - p.x(h.x0), p.y(h.y0) - p.y(h.y1)},
+  std::snprintf(range, sizeof range, " data-heat=\"%d %d %.9g %.9g %d\"", h.nx, h.ny, lo, hi,
+                h.logarithmic ? 1 : 0);
+  draw_image(c, make_png(h.nx, h.ny, cells, color_map()),
+             {p.x(h.x0), p.y(h.y1), p.x(h.x1) - p.x(h.x0), p.y(h.y0) - p.y(h.y1)},
              range + (" data-hl=\"" + escape(h.label) + "\" data-hu=\"" + escape(h.unit) + "\""));
 }
 
 void draw_color_bar(Canvas& c, const HeatMap& h, const Box& bar) {
   const auto [lo, hi] = heat_scale(h);
   std::vector<std::uint8_t> ramp(256);
-  for (std::size_t k = 0; k < 256; ++k) ramp[k] = static_cast<std::uint8_t>(255 - k);
+  for (std::size_t k = 0; k < 256; ++k)
+    ramp[k] = static_cast<std::uint8_t>(255 - k);
   draw_image(c, make_png(1, 256, ramp, color_map()), bar, "");
   const Scale s{lo, hi, h.logarithmic, bar.bottom(), bar.y};
   const Axis axis(h.label, h.unit, h.logarithmic);
@@ -59,18 +77,23 @@ void draw_color_bar(Canvas& c, const HeatMap& h, const Box& bar) {
     c.text(bar.right() + 6, s(t.major[k]) + 4, t.labels[k], tick_size);
   }
   const double x = bar.right() + 22 + widest_label(t), y = bar.y + bar.h / 2;
-  c.text(x, y, axis_title(axis, t.exponent), label_size, "middle", "transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
+  c.text(x, y, axis_title(axis, t.exponent), label_size, "middle",
+         "transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
 }
 
 namespace {
 
-// Further values and names of the points, for the readout: only of points that the path has. Lists in an attribute: a line
-// each, cells apart by tabs, both as character references, or XML would read them as blanks.
+// Further values and names of the points, for the readout: only of points that the path has. Lists
+// in an attribute: a line each, cells apart by tabs, both as character references, or XML would
+// read them as blanks.
 constexpr const char* next_line = "&#10;";
 constexpr const char* next_cell = "&#9;";
 
-std::string point_attributes(const Series& s, const std::vector<double>& px, const std::vector<double>& py) {
-  const auto drawn = [&](std::size_t i) { return i < px.size() && !std::isnan(px[i]) && !std::isnan(py[i]); };
+std::string point_attributes(const Series& s, const std::vector<double>& px,
+                             const std::vector<double>& py) {
+  const auto drawn = [&](std::size_t i) {
+    return i < px.size() && !std::isnan(px[i]) && !std::isnan(py[i]);
+  };
   std::string extra;
   for (const Extra& e : s.extra) {
     if (!extra.empty()) extra += next_line;
@@ -92,9 +115,11 @@ std::string point_attributes(const Series& s, const std::vector<double>& px, con
 
 }  // namespace
 
-std::string readout_attributes(const Series& s, const std::vector<double>& px, const std::vector<double>& py) {
+std::string readout_attributes(const Series& s, const std::vector<double>& px,
+                               const std::vector<double>& py) {
   std::string out;
-  if (!s.trace_label.empty() || !s.label.empty()) out += " data-name=\"" + escape(s.trace_label.empty() ? s.label : s.trace_label) + '"';
+  if (!s.trace_label.empty() || !s.label.empty())
+    out += " data-name=\"" + escape(s.trace_label.empty() ? s.label : s.trace_label) + '"';
   if (s.amplitude_per_y != 0) {
     char v[80];
     std::snprintf(v, sizeof v, " data-base=\"%.9g %.9g\"", s.baseline, s.amplitude_per_y);
@@ -104,24 +129,34 @@ std::string readout_attributes(const Series& s, const std::vector<double>& px, c
   return out + point_attributes(s, px, py);
 }
 
-void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p, std::vector<Point>& seen, std::vector<PinJob>& pins) {
+void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
+                 std::vector<Point>& seen, std::vector<PinJob>& pins) {
   for (std::size_t i = 0; i < a.series.size(); ++i) {
     const Series& s = a.series[i];
     const Scale& ys = s.right_axis ? p.r : p.y;
     std::vector<double> px(s.x.size()), py(s.x.size());
-    for (std::size_t j = 0; j < s.x.size(); ++j) { px[j] = p.x(s.x[j]); py[j] = j < s.y.size() ? ys(s.y[j]) : nan; }
+    for (std::size_t j = 0; j < s.x.size(); ++j) {
+      px[j] = p.x(s.x[j]);
+      py[j] = j < s.y.size() ? ys(s.y[j]) : nan;
+    }
     const bool keep = s.keep_all || !s.extra.empty() || !s.point_names.empty();
     if (s.style.width > 0) {
-      const std::string d = path_of(px, py, keep, is_increasing(px), c.options.columns_per_px, &seen);
-      c.add("<path data-s=\"" + std::to_string(i) + "\"" + (s.right_axis ? " data-right=\"1\"" : ""));
+      const std::string d =
+          path_of(px, py, keep, is_increasing(px), c.options.columns_per_px, &seen);
+      c.add("<path data-s=\"" + std::to_string(i) + "\"" +
+            (s.right_axis ? " data-right=\"1\"" : ""));
       std::string paint = stroke(k.series[i], s.style.width, s.style.dash);
-      if (s.fill_to_baseline) {   // a trace hides those behind it; the fill closes from its last point to its first
-        paint.replace(paint.find("fill=\"none\""), 11, std::string("fill=\"") + paper_light + "\" fill-opacity=\"0.9\"");
+      if (s.fill_to_baseline) {  // a trace hides those behind it; the fill closes from its last
+                                 // point to its first
+        paint.replace(paint.find("fill=\"none\""), 11,
+                      std::string("fill=\"") + paper_light + "\" fill-opacity=\"0.9\"");
         paint.insert(paint.find("class=\"") + 7, "hp ");
       }
       c.add(readout_attributes(s, px, py) + ' ' + paint);
       if (s.style.opacity < 1) c.attr("stroke-opacity", s.style.opacity);
-      c.add(" stroke-linejoin=\"round\"" + std::string(s.style.dash == Dash::solid ? " stroke-linecap=\"round\"" : "") + " d=\"" + d + "\"/>\n");
+      c.add(" stroke-linejoin=\"round\"" +
+            std::string(s.style.dash == Dash::solid ? " stroke-linecap=\"round\"" : "") + " d=\"" +
+            d + "\"/>\n");
     } else {
       for (std::size_t j = 0; j < px.size(); j += 1 + px.size() / 3000)
         if (!std::isnan(px[j]) && !std::isnan(py[j])) seen.push_back({px[j], py[j]});
@@ -129,13 +164,19 @@ void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p, s
     if (s.style.marker != Marker::none) {
       // Markers that fall on one another's place are drawn once.
       PinJob job{{}, {}, i, k.series[i], " data-quiet=\"1\""};
-      if (s.style.width <= 0) {   // no path to read values from: the markers carry them
+      if (s.style.width <= 0) {  // no path to read values from: the markers carry them
         job.attributes = readout_attributes(s, px, py);
       }
       if (px.size() > 2000 && !keep) {
         for (const auto& run : decimate_path(px, py, 1.0))
-          for (const auto j : run) { job.x.push_back(px[j]); job.y.push_back(py[j]); }
-      } else { job.x = std::move(px); job.y = std::move(py); }
+          for (const auto j : run) {
+            job.x.push_back(px[j]);
+            job.y.push_back(py[j]);
+          }
+      } else {
+        job.x = std::move(px);
+        job.y = std::move(py);
+      }
       pins.push_back(std::move(job));
     }
   }
@@ -149,11 +190,18 @@ void draw_bars_and_patches(Canvas& c, const Axes& a, const Colors& k, const Prep
     const double base = ys.log ? ys.p0 : ys(0.0);
     c.add("<g data-s=\"" + std::to_string(number) + "\" " + fill(k.bars[i]) + ">");
     for (std::size_t j = 0; j < s.x.size(); ++j) {
-      const double x0 = p.x(s.x[j] - s.width / 2), x1 = p.x(s.x[j] + s.width / 2), y = ys(s.height[j]);
+      const double x0 = p.x(s.x[j] - s.width / 2), x1 = p.x(s.x[j] + s.width / 2),
+                   y = ys(s.height[j]);
       if (std::isnan(y)) continue;
       c.add("<rect");
-      c.attr("x", x0); c.attr("y", std::min(y, base)); c.attr("width", x1 - x0); c.attr("height", std::abs(base - y));
-      c.add("><title>" + escape((s.label.empty() ? "" : s.label + ": ") + readable(s.height[j]) + " " + (s.right_axis ? a.right : a.y).unit) + "</title></rect>");
+      c.attr("x", x0);
+      c.attr("y", std::min(y, base));
+      c.attr("width", x1 - x0);
+      c.attr("height", std::abs(base - y));
+      c.add("><title>" +
+            escape((s.label.empty() ? "" : s.label + ": ") + readable(s.height[j]) + " " +
+                   (s.right_axis ? a.right : a.y).unit) +
+            "</title></rect>");
     }
     c.add("</g>\n");
   }
@@ -168,8 +216,11 @@ void draw_bars_and_patches(Canvas& c, const Axes& a, const Colors& k, const Prep
     }
     c.add("<g data-s=\"" + std::to_string(number) + "\"><path " + fill(k.patches[i]));
     c.attr("fill-opacity", s.fill_opacity);
-    c.add(" d=\"" + d + "Z\">" + (s.tooltip.empty() ? "" : "<title>" + escape(s.tooltip) + "</title>") + "</path>");
-    if (s.style.width > 0) c.add("<path data-quiet=\"1\" " + stroke(k.patches[i], s.style.width, s.style.dash) + " stroke-linejoin=\"round\" d=\"" + d + "Z\"/>");
+    c.add(" d=\"" + d + "Z\">" +
+          (s.tooltip.empty() ? "" : "<title>" + escape(s.tooltip) + "</title>") + "</path>");
+    if (s.style.width > 0)
+      c.add("<path data-quiet=\"1\" " + stroke(k.patches[i], s.style.width, s.style.dash) +
+            " stroke-linejoin=\"round\" d=\"" + d + "Z\"/>");
     c.add("</g>\n");
   }
 }
@@ -178,60 +229,96 @@ void draw_rules(Canvas& c, const Axes& a, const Prepared& p, const Box& b) {
   for (const auto& r : a.rules) {
     const double v = r.vertical ? p.x(r.value) : p.y(r.value);
     if (std::isnan(v)) continue;
-    const std::string s = "data-quiet=\"1\" " + stroke(r.style.color == next_color ? ink : r.style.color, r.style.width, r.style.dash);
+    const std::string s =
+        "data-quiet=\"1\" " +
+        stroke(r.style.color == next_color ? ink : r.style.color, r.style.width, r.style.dash);
     c.add("<path " + s + " d=\"");
-    if (r.vertical) c.add("M" + number_text(v) + " " + number_text(b.y - 20 * b.h) + "V" + number_text(b.y + 20 * b.h));
-    else c.add("M" + number_text(b.x - 20 * b.w) + " " + number_text(v) + "H" + number_text(b.x + 20 * b.w));
+    if (r.vertical)
+      c.add("M" + number_text(v) + " " + number_text(b.y - 20 * b.h) + "V" +
+            number_text(b.y + 20 * b.h));
+    else
+      c.add("M" + number_text(b.x - 20 * b.w) + " " + number_text(v) + "H" +
+            number_text(b.x + 20 * b.w));
     c.add("\"/>\n");
   }
 }
 
-void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame, std::vector<Box>& taken, const std::vector<Point>& seen) {
+void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame,
+               std::vector<Box>& taken, const std::vector<Point>& seen) {
   const double w = text_width(text, note_size);
   Box at;
   double best = infinity;
   for (const double reach : {9.0, 20.0, 34.0, 50.0})
-    for (const auto& [sx, sy] : {std::pair{1.0, -1.0}, {-1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}, {0.0, -1.2}, {0.0, 1.2}}) {
-      const Box t{sx > 0 ? p.x + reach : sx < 0 ? p.x - reach - w : p.x - w / 2, p.y + sy * reach - 7, w, 14};
+    for (const auto& [sx, sy] :
+         {std::pair{1.0, -1.0}, {-1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}, {0.0, -1.2}, {0.0, 1.2}}) {
+      const Box t{sx > 0   ? p.x + reach
+                  : sx < 0 ? p.x - reach - w
+                           : p.x - w / 2,
+                  p.y + sy * reach - 7, w, 14};
       double cost = reach * 0.02;
-      for (const auto& o : taken) cost += t.overlaps(o) ? 10 : 0;
-      if (t.x < frame.x + 2 || t.right() > frame.right() - 2 || t.y < frame.y + 2 || t.bottom() > frame.bottom() - 2) cost += 20;
-      for (const auto& q : seen) cost += q.x > t.x - 2 && q.x < t.right() + 2 && q.y > t.y - 1 && q.y < t.bottom() + 1 ? 0.12 : 0;
-      if (cost < best) { best = cost; at = t; }
+      for (const auto& o : taken)
+        cost += t.overlaps(o) ? 10 : 0;
+      if (t.x < frame.x + 2 || t.right() > frame.right() - 2 || t.y < frame.y + 2 ||
+          t.bottom() > frame.bottom() - 2)
+        cost += 20;
+      for (const auto& q : seen)
+        cost += q.x > t.x - 2 && q.x < t.right() + 2 && q.y > t.y - 1 && q.y < t.bottom() + 1 ? 0.12
+                                                                                              : 0;
+      if (cost < best) {
+        best = cost;
+        at = t;
+      }
     }
   taken.push_back(at);
   c.add("<g class=\"pin\" data-p=\"" + number_text(p.x) + " " + number_text(p.y) + "\">");
-  c.line(p.x, p.y, std::clamp(p.x, at.x, at.right()), at.y + at.h / 2 < p.y ? at.bottom() : at.y, stroke(ink, 0.7));
+  c.line(p.x, p.y, std::clamp(p.x, at.x, at.right()), at.y + at.h / 2 < p.y ? at.bottom() : at.y,
+         stroke(ink, 0.7));
   c.add("<circle");
-  c.attr("cx", p.x); c.attr("cy", p.y); c.attr("r", 3.2);
+  c.attr("cx", p.x);
+  c.attr("cy", p.y);
+  c.attr("r", 3.2);
   c.add(" class=\"ci hp\" stroke=\"#222222\" stroke-width=\"1.2\" fill=\"#ffffff\"/>");
   c.add("<rect rx=\"2\"");
-  c.attr("x", at.x - 2); c.attr("y", at.y); c.attr("width", at.w + 4); c.attr("height", at.h);
+  c.attr("x", at.x - 2);
+  c.attr("y", at.y);
+  c.attr("width", at.w + 4);
+  c.attr("height", at.h);
   c.add(" " + paper_fill() + " fill-opacity=\"0.8\"/>");
   c.text(at.x, at.y + 11, text, note_size);
   c.add("</g>\n");
 }
 
-void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::vector<Box>& taken, const std::vector<Point>& seen) {
+void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::vector<Box>& taken,
+                const std::vector<Point>& seen) {
   for (const auto& r : a.rules) {
     if (r.label.empty()) continue;
     const double v = r.vertical ? p.x(r.value) : p.y(r.value), w = text_width(r.label, note_size);
-    if (std::isnan(v) || (r.vertical ? v < b.x || v > b.right() : v < b.y || v > b.bottom())) continue;
+    if (std::isnan(v) || (r.vertical ? v < b.x || v > b.right() : v < b.y || v > b.bottom()))
+      continue;
     Box at = r.vertical ? Box{v + 3, b.y + 3, w, 14} : Box{b.right() - w - 4, v - 15, w, 14};
     if (r.vertical && at.right() > b.right()) at.x = v - w - 3;
-    for (int k = 0; k < 6 && std::any_of(taken.begin(), taken.end(), [&](const Box& o) { return at.overlaps(o); }); ++k) {
-      if (r.vertical) at.y += 14;
-      else at.x -= w + 10;
+    for (int k = 0; k < 6 && std::any_of(taken.begin(), taken.end(),
+                                         [&](const Box& o) { return at.overlaps(o); });
+         ++k) {
+      if (r.vertical)
+        at.y += 14;
+      else
+        at.x -= w + 10;
     }
     taken.push_back(at);
-    c.add("<g class=\"pin\" data-p=\"" + number_text(r.vertical ? v : b.right()) + " " + number_text(r.vertical ? b.y : v) + "\" data-lock=\"" + (r.vertical ? "y" : "x") + "\">");
+    c.add("<g class=\"pin\" data-p=\"" + number_text(r.vertical ? v : b.right()) + " " +
+          number_text(r.vertical ? b.y : v) + "\" data-lock=\"" + (r.vertical ? "y" : "x") + "\">");
     c.text(at.x, at.y + 11, r.label, note_size);
     c.add("</g>\n");
   }
   for (const auto& n : a.notes) {
-    const double x = p.x(n.x), y = (n.right_axis ? p.r : p.y)(n.y), w = text_width(n.text, note_size);
-    if (std::isnan(x) || std::isnan(y) || x < b.x - 1 || x > b.right() + 1 || y < b.y - 1 || y > b.bottom() + 1) continue;
-    if (n.leader) draw_note(c, {x, y}, n.text, b, taken, seen);
+    const double x = p.x(n.x), y = (n.right_axis ? p.r : p.y)(n.y),
+                 w = text_width(n.text, note_size);
+    if (std::isnan(x) || std::isnan(y) || x < b.x - 1 || x > b.right() + 1 || y < b.y - 1 ||
+        y > b.bottom() + 1)
+      continue;
+    if (n.leader)
+      draw_note(c, {x, y}, n.text, b, taken, seen);
     else {
       const Box at{x + n.dx, y + n.dy - 11, w, 14};
       taken.push_back(at);

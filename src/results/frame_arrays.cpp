@@ -9,8 +9,14 @@ constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 FrameArrays::FrameArrays(const run::Job& job)
-    : job_(job), poses_(job.mesh.nodes.size()), velocity_(poses_.size()), omega_(poses_.size()), force_(poses_.size(), Vec3::Zero()),
-      moment_(poses_.size(), Vec3::Zero()), supports_(job.model.bearings.size(), Vec3::Zero()), stress_(poses_.size(), 0.0) {}
+    : job_(job),
+      poses_(job.mesh.nodes.size()),
+      velocity_(poses_.size()),
+      omega_(poses_.size()),
+      force_(poses_.size(), Vec3::Zero()),
+      moment_(poses_.size(), Vec3::Zero()),
+      supports_(job.model.bearings.size(), Vec3::Zero()),
+      stress_(poses_.size(), 0.0) {}
 
 void FrameArrays::take_nodes(const assembly::NodeAt& node) {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
@@ -38,7 +44,8 @@ void FrameArrays::take_sections(const std::vector<assembly::SectionPoint>& point
   }
 }
 
-void FrameArrays::take_supports(const assembly::NodeAt& node, const system::Context& context, const assembly::ReactionAt& reaction) {
+void FrameArrays::take_supports(const assembly::NodeAt& node, const system::Context& context,
+                                const assembly::ReactionAt& reaction) {
   for (std::size_t i = 0; i < supports_.size(); ++i) {
     supports_[i].setZero();
     for (const assembly::SupportForce& f : job_.built.support_forces)

@@ -1,4 +1,5 @@
-// What a frame of the rotor shows beside its place: velocities, section forces, stresses, support forces, at one state.
+// What a frame of the rotor shows beside its place: velocities, section forces, stresses, support
+// forces, at one state.
 #pragma once
 #include <run/job.hpp>
 #include <assembly/section_results.hpp>
@@ -11,13 +12,16 @@ class FrameArrays {
 
   /// Poses and velocities of the nodes (m, m/s, rad/s, global axes).
   void take_nodes(const assembly::NodeAt& node);
-  /// Section forces (N, N m, global axes: of the right part on the left one) and equivalent stresses (Pa) at the nodes. Where two elements
-  /// meet: the larger stress, and the section forces of the element on the left.
+  /// Section forces (N, N m, global axes: of the right part on the left one) and equivalent
+  /// stresses (Pa) at the nodes. Where two elements meet: the larger stress, and the section forces
+  /// of the element on the left.
   void take_sections(const std::vector<assembly::SectionPoint>& points);
   /// Force of each bearing of the model on its shaft, N, global axes.
-  void take_supports(const assembly::NodeAt& node, const system::Context& context, const assembly::ReactionAt& reaction);
+  void take_supports(const assembly::NodeAt& node, const system::Context& context,
+                     const assembly::ReactionAt& reaction);
 
-  /// The frame; valid until something is taken again. Charts: of the state, or its pictures turn with the old ones. In motion: with velocities.
+  /// The frame; valid until something is taken again. Charts: of the state, or its pictures turn
+  /// with the old ones. In motion: with velocities.
   io::FrameState state(double time, const system::Frames& frames, bool in_motion) const;
 
  private:

@@ -25,11 +25,14 @@ analysis::SteadyRotation steady_rotation_of(const run::Job& job, double top_spee
 std::vector<double> speeds_of(const model::SpeedRange& r) {
   if (!r.values.empty()) return r.values;
   std::vector<double> out;
-  for (int k = 0; k < r.points; ++k) out.push_back(r.points == 1 ? r.stop : r.start + (r.stop - r.start) * k / (r.points - 1));
+  for (int k = 0; k < r.points; ++k)
+    out.push_back(r.points == 1 ? r.stop : r.start + (r.stop - r.start) * k / (r.points - 1));
   return out;
 }
 
-std::vector<double> frequencies_of(const model::FrequencyRange& r) { return speeds_of({r.start, r.stop, r.points, r.values, false}); }
+std::vector<double> frequencies_of(const model::FrequencyRange& r) {
+  return speeds_of({r.start, r.stop, r.points, r.values, false});
+}
 
 analysis::Motion motion_of(model::MotionKind kind) { return static_cast<analysis::Motion>(kind); }
 
@@ -53,12 +56,18 @@ std::string description(const analysis::WhirlMode& m) {
 std::vector<analysis::Measurement> support_measurements(const run::Job& job) {
   std::vector<analysis::Measurement> out;
   for (const assembly::SupportForce& f : job.built.support_forces) {
-    analysis::Measurement m{"bearing " + f.name + " force", "N", "force of the support on the shaft, fixed axes", {"x", "y", "z"}, 1.0, {}};
+    analysis::Measurement m{"bearing " + f.name + " force",
+                            "N",
+                            "force of the support on the shaft, fixed axes",
+                            {"x", "y", "z"},
+                            1.0,
+                            {}};
     m.evaluate = [&f](const analysis::Snapshot& s, double* v) {
       system::Context mean;
-      mean.time = s.t(); mean.averaged = true;
-      Eigen::Map<Vec3>{v} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); }, mean,
-                                    [&s](Index k) { return s.reactions()[k]; });
+      mean.time = s.t();
+      mean.averaged = true;
+      Eigen::Map<Vec3>{v} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); },
+                                    mean, [&s](Index k) { return s.reactions()[k]; });
     };
     out.push_back(std::move(m));
   }
@@ -85,8 +94,10 @@ std::optional<double> speed_of(const model::StepLaw& law) {
 bool about_undeformed(const model::StepLaw& law) {
   return std::visit(
       [](const auto& x) {
-        if constexpr (requires { x.about; }) return x.about == model::About::undeformed;
-        else return false;
+        if constexpr (requires { x.about; })
+          return x.about == model::About::undeformed;
+        else
+          return false;
       },
       law);
 }
@@ -95,8 +106,10 @@ std::string about_of(const model::StepLaw& law) {
   if (about_undeformed(law)) return "about the undeformed rotor";
   const std::optional<double> speed = speed_of(law);
   const std::string at = speed ? fmt::format("at {:.6g} rpm", to_rpm(*speed)) : "at each speed";
-  if (std::holds_alternative<model::BucklingStep>(law)) return "about the unloaded equilibrium " + at;
-  if (std::holds_alternative<model::CriticalMapStep>(law)) return "about the static equilibrium " + at + " and stiffness";
+  if (std::holds_alternative<model::BucklingStep>(law))
+    return "about the unloaded equilibrium " + at;
+  if (std::holds_alternative<model::CriticalMapStep>(law))
+    return "about the static equilibrium " + at + " and stiffness";
   return "about the static equilibrium " + at;
 }
 
@@ -104,8 +117,10 @@ std::optional<model::MotionKind> motion_asked(const model::StepLaw& law) {
   if (std::holds_alternative<model::TorsionalStep>(law)) return model::MotionKind::torsional;
   return std::visit(
       [](const auto& x) -> std::optional<model::MotionKind> {
-        if constexpr (requires { x.motion; }) return x.motion;
-        else return std::nullopt;
+        if constexpr (requires { x.motion; })
+          return x.motion;
+        else
+          return std::nullopt;
       },
       law);
 }
@@ -113,8 +128,10 @@ std::optional<model::MotionKind> motion_asked(const model::StepLaw& law) {
 /// What a kind of motion leaves out.
 std::string motion_text(model::MotionKind kind) {
   switch (kind) {
-    case model::MotionKind::lateral: return "Lateral motion: axial motion and twist follow without inertia or damping.";
-    case model::MotionKind::torsional: return "Torsional motion: bending and axial motion are held.";
+    case model::MotionKind::lateral:
+      return "Lateral motion: axial motion and twist follow without inertia or damping.";
+    case model::MotionKind::torsional:
+      return "Torsional motion: bending and axial motion are held.";
     case model::MotionKind::axial: return "Axial motion: bending and twist are held.";
     case model::MotionKind::all: break;
   }
@@ -130,23 +147,30 @@ std::string_view motion_name(model::MotionKind kind) {
 std::vector<std::string> labels_of(std::span<const analysis::WhirlMode> modes) {
   std::map<analysis::ModeKind, int> count;
   std::vector<std::string> out;
-  for (const analysis::WhirlMode& m : modes) out.push_back(fmt::format("{} {}", to_string(m.kind), ++count[m.kind]));
+  for (const analysis::WhirlMode& m : modes)
+    out.push_back(fmt::format("{} {}", to_string(m.kind), ++count[m.kind]));
   return out;
 }
 
 std::string direction_text(const analysis::WhirlMode& m) {
-  return m.direction == analysis::Direction::none ? std::string() : std::string(to_string(m.direction));
+  return m.direction == analysis::Direction::none ? std::string()
+                                                  : std::string(to_string(m.direction));
 }
 
-FrequencyStep::FrequencyStep(run::Job& j, const model::Step& s, const std::string& type, const std::string& title, double top_speed, int load_steps)
-    : job(j), step(s), linear((j.build_for(s), j.system()), steady_rotation_of(j, top_speed), equilibrium_options(j, load_steps)) {
+FrequencyStep::FrequencyStep(run::Job& j, const model::Step& s, const std::string& type,
+                             const std::string& title, double top_speed, int load_steps)
+    : job(j),
+      step(s),
+      linear((j.build_for(s), j.system()), steady_rotation_of(j, top_speed),
+             equilibrium_options(j, load_steps)) {
   if (!s.from.empty()) linear.start_from(j.states.at(s.from).state);
   if (about_undeformed(s.law)) linear.stay_undeformed();
   type_ = type;
   about_ = about_of(s.law);
   summary()["type"] = type;
   summary()["linearised"] = about_;
-  if (const auto motion = motion_asked(s.law)) summary()["motion"] = std::string(motion_name(*motion));
+  if (const auto motion = motion_asked(s.law))
+    summary()["motion"] = std::string(motion_name(*motion));
   section.title = fmt::format("{}: {}", s.name, title);
 }
 
@@ -176,15 +200,27 @@ std::string capital(std::string text) {
 }
 
 std::string stability_text(const analysis::SpectrumCertificate& c) {
-  if (c.stability_certain()) return fmt::format("no motion grows at any frequency: all roots up to {:.5g} Hz counted, above it energy forbids growth by more than {:.0e} of the frequency", to_hz(c.list.radius), c.quiet_ratio);
-  if (c.complete()) return fmt::format("no motion grows below {:.5g} Hz; above it growth is not excluded (forces without damping of their own act across the modes)", to_hz(c.list.radius));
+  if (c.stability_certain())
+    return fmt::format(
+        "no motion grows at any frequency: all roots up to {:.5g} Hz counted, above it energy "
+        "forbids growth by more than {:.0e} of the frequency",
+        to_hz(c.list.radius), c.quiet_ratio);
+  if (c.complete())
+    return fmt::format(
+        "no motion grows below {:.5g} Hz; above it growth is not excluded (forces without damping "
+        "of their own act across the modes)",
+        to_hz(c.list.radius));
   return "no growing motion found; that there is none is not certified";
 }
 
 io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes) {
   io::Table t;
   t.title = "Motions that do not oscillate, or hardly (damping ratio above 0.949)";
-  t.columns = {{"rate", "1/s", "of exp(rate t); positive: grows"}, {"frequency", "Hz", "of what is left of an oscillation"}, {"damping ratio", "-", ""}, {"time", "s", "to 1/e, or to e"}, {"kind", "-", "by the largest share of energy"},
+  t.columns = {{"rate", "1/s", "of exp(rate t); positive: grows"},
+               {"frequency", "Hz", "of what is left of an oscillation"},
+               {"damping ratio", "-", ""},
+               {"time", "s", "to 1/e, or to e"},
+               {"kind", "-", "by the largest share of energy"},
                {"motion", "-", "decays, free (neither resisted nor driven), diverges"}};
   for (const analysis::WhirlMode& m : modes) {
     if (m.oscillates()) continue;
@@ -192,7 +228,8 @@ io::Table real_root_table(const std::vector<analysis::WhirlMode>& modes) {
     const char* word = m.growth() > 0 ? "diverges" : m.growth() < 0 ? "decays" : "free";
     io::Table::Cell time = std::string();
     if (rate != 0.0) time = 1.0 / std::abs(rate);
-    t.add({rate, to_hz(m.frequency), tidy(m.damping_ratio), std::move(time), std::string(to_string(m.kind)), std::string(word)});
+    t.add({rate, to_hz(m.frequency), tidy(m.damping_ratio), std::move(time),
+           std::string(to_string(m.kind)), std::string(word)});
   }
   return t;
 }
@@ -216,13 +253,16 @@ void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::s
   }
   v.push(std::move(e));
   if (c.complete() || !c.open.empty()) return;
-  const std::string message = fmt::format("step '{}'{}{}: {}", step.name, where.empty() ? "" : " ", where, c.text());
+  const std::string message =
+      fmt::format("step '{}'{}{}: {}", step.name, where.empty() ? "" : " ", where, c.text());
   job.uncertified.push_back(message);
   Diagnostic w;
   w.severity = Diagnostic::Severity::warning;
   w.code = "W07";
   w.message = message;
-  w.hint = "ask for more or fewer modes, or for another max_frequency; the list is not to be relied on as it is";
+  w.hint =
+      "ask for more or fewer modes, or for another max_frequency; the list is not to be relied on "
+      "as it is";
   job.report.warnings.push_back(message);
   job.summary["warnings"].push(w.code + ": " + message);
   if (!job.options.quiet) run::print_diagnostics({w});
@@ -231,11 +271,15 @@ void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::s
 void FrequencyStep::finish(const std::string& line) {
   const RunTime time = watch_.elapsed();
   run::put_run_time(summary(), time);
-  if (const auto motion = motion_asked(step.law); motion && *motion != model::MotionKind::all) section.text += " " + motion_text(*motion);
+  if (const auto motion = motion_asked(step.law); motion && *motion != model::MotionKind::all)
+    section.text += " " + motion_text(*motion);
   section.text += fmt::format(" Linearised {}.", about_);
   if (turns_with_stiffness(job.model) && type_ != "stability")
-    section.text += " The stiffness of the asymmetric shaft enters as its mean over a revolution; a stability step shows where its turning makes the rotor unstable.";
-  run::ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}, {}", line, about_, time.text()));
+    section.text +=
+        " The stiffness of the asymmetric shaft enters as its mean over a revolution; a stability "
+        "step shows where its turning makes the rotor unstable.";
+  run::ProgressLine(step.name, job.options.quiet)
+      .done(fmt::format("{}, {}, {}", line, about_, time.text()));
   say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
 }
@@ -243,7 +287,9 @@ void FrequencyStep::finish(const std::string& line) {
 bool turns_with_stiffness(const model::Model& m) {
   for (const model::Shaft& s : m.shafts)
     for (const model::Section& x : s.sections)
-      if (s.rotating && s.speed_ratio != 0 && x.general && (x.general->Iy != x.general->Iz || x.general->kappa_y != x.general->kappa_z)) return true;
+      if (s.rotating && s.speed_ratio != 0 && x.general &&
+          (x.general->Iy != x.general->Iz || x.general->kappa_y != x.general->kappa_z))
+        return true;
   return false;
 }
 

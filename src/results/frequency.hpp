@@ -1,4 +1,5 @@
-// What the steps in the frequency domain share: the linearisation a step works on, its tables, figures and pictures.
+// What the steps in the frequency domain share: the linearisation a step works on, its tables,
+// figures and pictures.
 #pragma once
 #include <analysis/spectra/campbell.hpp>
 #include <analysis/response/harmonic.hpp>
@@ -12,7 +13,8 @@
 
 namespace whirl::results {
 
-/// Spin of every line relative to the reference speed, as the deck's speed_ratio says; casings stand.
+/// Spin of every line relative to the reference speed, as the deck's speed_ratio says; casings
+/// stand.
 analysis::SteadyRotation steady_rotation_of(const run::Job& job, double top_speed);
 std::vector<double> speeds_of(const model::SpeedRange& range);
 std::vector<double> frequencies_of(const model::FrequencyRange& range);
@@ -42,25 +44,28 @@ class FrequencyStep {
  public:
   /// top_speed: highest |speed| expected, rad/s.
   /// title: of its section, "Campbell diagram".
-  FrequencyStep(run::Job& job, const model::Step& step, const std::string& type, const std::string& title, double top_speed, int load_steps = 1);
+  FrequencyStep(run::Job& job, const model::Step& step, const std::string& type,
+                const std::string& title, double top_speed, int load_steps = 1);
   run::Job& job;
   const model::Step& step;
   analysis::Linearizer linear;
   io::ReportSection section;
 
   io::Value& summary() { return job.summary["steps"][step.name]; }
-  /// Writes <step>_<name>.csv and shows the table in the report, its title with about() (only as a file when `shown` is false).
+  /// Writes <step>_<name>.csv and shows the table in the report, its title with about() (only as a
+  /// file when `shown` is false).
   void add_table(const std::string& name, io::Table table, bool shown = true);
   void add_figure(plot::Figure f);
-  /// "about the static equilibrium at 3000 rpm": the state that everything here is linearised about.
+  /// "about the static equilibrium at 3000 rpm": the state that everything here is linearised
+  /// about.
   const std::string& about() const { return about_; }
   /// A name for files: <step>_<name>.
   std::string file(const std::string& name) const;
-  /// Puts what is known of a list of modes into the summary and the section; what is missing also into the terminal and the exit code.
-  /// where: "at 3000 rpm", or empty.
+  /// Puts what is known of a list of modes into the summary and the section; what is missing also
+  /// into the terminal and the exit code. where: "at 3000 rpm", or empty.
   void certify(const analysis::SpectrumCertificate& certificate, const std::string& where = {});
-  /// Adds the section to the report, the run time to the summary, and a line to the terminal; each says about() and what the motion
-  /// asked for leaves out.
+  /// Adds the section to the report, the run time to the summary, and a line to the terminal; each
+  /// says about() and what the motion asked for leaves out.
   void finish(const std::string& line);
 
  private:
@@ -70,17 +75,21 @@ class FrequencyStep {
 
 /// A shape (amplitudes of all unknowns) as drawings; see shapes.cpp.
 struct ShapeDrawing {
-  std::string name, title, caption;   ///< name: within the step's files
+  std::string name, title, caption;  ///< name: within the step's files
   const VecXc* a = nullptr;
   analysis::ModeKind kind = analysis::ModeKind::lateral;
 };
-/// Adds a figure for each line that moves: lateral shapes in space and in two planes, twist and axial motion against position.
+/// Adds a figure for each line that moves: lateral shapes in space and in two planes, twist and
+/// axial motion against position.
 void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d);
-/// Frames of one period where [[output.vtk]] asks for this step. amplitude: factor on the shape; 0 = such that the largest
-/// displacement is a twentieth of the rotor's length (times deformation_scale in any case).
-void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& a, double amplitude = 0);
+/// Frames of one period where [[output.vtk]] asks for this step. amplitude: factor on the shape; 0
+/// = such that the largest displacement is a twentieth of the rotor's length (times
+/// deformation_scale in any case).
+void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& a,
+                        double amplitude = 0);
 
-/// A rotating shaft has unequal principal stiffnesses: matrices in fixed axes are means over the revolution, and stability is another matter.
+/// A rotating shaft has unequal principal stiffnesses: matrices in fixed axes are means over the
+/// revolution, and stability is another matter.
 bool turns_with_stiffness(const model::Model& m);
 
 }  // namespace whirl::results

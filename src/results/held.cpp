@@ -15,13 +15,19 @@ const char* left_out_motion(const model::StepLaw& law) {
       [](const auto& s) -> const char* {
         using T = std::decay_t<decltype(s)>;
         model::MotionKind motion = model::MotionKind::all;
-        if constexpr (std::is_same_v<T, model::TorsionalStep>) motion = model::MotionKind::torsional;
-        else if constexpr (std::is_same_v<T, model::CriticalMapStep>) motion = model::MotionKind::lateral;
-        else if constexpr (requires { s.motion; }) motion = s.motion;
+        if constexpr (std::is_same_v<T, model::TorsionalStep>)
+          motion = model::MotionKind::torsional;
+        else if constexpr (std::is_same_v<T, model::CriticalMapStep>)
+          motion = model::MotionKind::lateral;
+        else if constexpr (requires { s.motion; })
+          motion = s.motion;
         switch (motion) {
-          case model::MotionKind::lateral: return "twist and axial motion without inertia: they follow lateral motion statically";
-          case model::MotionKind::torsional: return "lateral and axial motion: the step takes torsional motion alone";
-          case model::MotionKind::axial: return "lateral motion and twist: the step takes axial motion alone";
+          case model::MotionKind::lateral:
+            return "twist and axial motion without inertia: they follow lateral motion statically";
+          case model::MotionKind::torsional:
+            return "lateral and axial motion: the step takes torsional motion alone";
+          case model::MotionKind::axial:
+            return "lateral motion and twist: the step takes axial motion alone";
           case model::MotionKind::all: break;
         }
         return nullptr;
@@ -31,30 +37,38 @@ const char* left_out_motion(const model::StepLaw& law) {
 
 }  // namespace
 
-std::vector<std::string> held_in_step(const run::Job& job, const model::Step& step, std::span<const Index> spin_holds) {
+std::vector<std::string> held_in_step(const run::Job& job, const model::Step& step,
+                                      std::span<const Index> spin_holds) {
   std::vector<std::string> out;
   const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
   for (const model::Drive& d : job.model.drives) {
-    if (in_time || !std::holds_alternative<model::PrescribedSpin>(d.law) || (!d.step.empty() && d.step != step.name)) continue;
-    out.push_back(fmt::format("twist of shaft '{}' at {}: drive '{}' prescribes its angle (the speed is that of the step)", job.model.shafts[d.at.shaft].name,
-                              d.at.text, d.name));
+    if (in_time || !std::holds_alternative<model::PrescribedSpin>(d.law) ||
+        (!d.step.empty() && d.step != step.name))
+      continue;
+    out.push_back(
+        fmt::format("twist of shaft '{}' at {}: drive '{}' prescribes its angle (the speed is that "
+                    "of the step)",
+                    job.model.shafts[d.at.shaft].name, d.at.text, d.name));
   }
   for (const Index k : spin_holds)
-    out.push_back(fmt::format("angle of {}: nothing else holds the turning of shaft '{}'", job.system().node(k / 6).name,
+    out.push_back(fmt::format("angle of {}: nothing else holds the turning of shaft '{}'",
+                              job.system().node(k / 6).name,
                               job.system().line_name(job.system().node(k / 6).line)));
   if (const char* motion = left_out_motion(step.law)) out.emplace_back(motion);
   out.insert(out.end(), job.built.held.begin(), job.built.held.end());
   return out;
 }
 
-void say_held(run::Job& job, const model::Step& step, const std::vector<std::string>& held, io::ReportSection& section) {
+void say_held(run::Job& job, const model::Step& step, const std::vector<std::string>& held,
+              io::ReportSection& section) {
   if (held.empty()) return;
   io::Value& list = job.summary["steps"][step.name]["held"];
   std::string all;
   for (const std::string& h : held) {
     list.push(h);
     all += (all.empty() ? "" : "; ") + h;
-    if (!job.options.quiet) std::fputs(fmt::format("  {}: held: {}\n", step.name, h).c_str(), stderr);
+    if (!job.options.quiet)
+      std::fputs(fmt::format("  {}: held: {}\n", step.name, h).c_str(), stderr);
   }
   section.text += "\n\nHeld: " + all + ".";
 }

@@ -1,5 +1,6 @@
-// Tracking filter of a transient's probes: CSV turn by turn, Bode and polar figures against speed, response peaks, orbits with
-// keyphasor marks. Memory is bounded: long runs are thinned for the figures, the CSV holds every turn.
+// Tracking filter of a transient's probes: CSV turn by turn, Bode and polar figures against speed,
+// response peaks, orbits with keyphasor marks. Memory is bounded: long runs are thinned for the
+// figures, the CSV holds every turn.
 #pragma once
 #include <analysis/transient/revolutions.hpp>
 #include <run/job.hpp>
@@ -9,8 +10,8 @@
 
 namespace whirl::results {
 
-/// Of each probe of the deck: +1 where the shaft there turns as the reference does, -1 the other way, by the spins at the start
-/// of a step (a shaft that does not turn yet: by its speed_ratio).
+/// Of each probe of the deck: +1 where the shaft there turns as the reference does, -1 the other
+/// way, by the spins at the start of a step (a shaft that does not turn yet: by its speed_ratio).
 std::vector<double> probe_senses(const run::Job& job, const run::StepState& start);
 
 class KeyphasorOutput {
@@ -21,22 +22,31 @@ class KeyphasorOutput {
   void begin();
   void save(OutArchive& out);
   void restore(InArchive& in);
-  void close() { if (sink_) sink_->close(); }
+  void close() {
+    if (sink_) sink_->close();
+  }
   /// Writes the tables and adds the figures.
   void report(run::Job& job, io::ReportSection& section) const;
   /// What decides whether a checkpoint's part fits.
   const std::string& key() const { return key_; }
 
  private:
-  struct Direction { std::string name; double c = 1, s = 0; };
+  struct Direction {
+    std::string name;
+    double c = 1, s = 0;
+  };
   struct Tracked {
     std::string name;
     std::vector<Direction> directions;
     std::size_t column = 0;
-    double sense = 1;   ///< -1: the shaft there turns against the reference
+    double sense = 1;  ///< -1: the shaft there turns against the reference
   };
   /// Some turns of one probe.
-  struct Orbit { std::size_t probe = 0; double t = 0, speed = 0, size = 0; std::vector<double> y, z; };
+  struct Orbit {
+    std::size_t probe = 0;
+    double t = 0, speed = 0, size = 0;
+    std::vector<double> y, z;
+  };
   void take(const analysis::Turn& turn);
   Orbit last_turns(std::size_t probe, double t, double speed, double size) const;
   std::size_t column(std::size_t probe, std::size_t direction, std::size_t what) const;
@@ -53,7 +63,7 @@ class KeyphasorOutput {
   io::TimeSeriesPtr sink_;
   PlotBuffer rows_;
   std::vector<double> row_, direction_values_;
-  std::vector<std::vector<Orbit>> recent_;   ///< [probe] last turns
+  std::vector<std::vector<Orbit>> recent_;  ///< [probe] last turns
   std::vector<Orbit> largest_, passed_;
   double last_speed_ = nan;
   analysis::Revolutions revolutions_;

@@ -1,4 +1,5 @@
-// Keeps the shape of arbitrarily long time histories in bounded memory: the extremes of every channel in buckets of time.
+// Keeps the shape of arbitrarily long time histories in bounded memory: the extremes of every
+// channel in buckets of time.
 #pragma once
 #include <core/archive.hpp>
 #include <cstddef>
@@ -8,12 +9,18 @@ namespace whirl::results {
 
 class PlotBuffer {
  public:
-  /// channels: values a row beside the time. capacity: buckets kept (rows themselves, until there are more).
-  explicit PlotBuffer(std::size_t channels, std::size_t capacity = 1 << 14) : channels_(channels), capacity_(capacity) {}
+  /// channels: values a row beside the time. capacity: buckets kept (rows themselves, until there
+  /// are more).
+  explicit PlotBuffer(std::size_t channels, std::size_t capacity = 1 << 14)
+      : channels_(channels),
+        capacity_(capacity) {}
   /// row[0] is the time.
   void append(const std::vector<double>& row);
-  /// Points of one channel: the rows themselves while they fit, else minimum and maximum of each bucket in order of time.
-  struct Points { std::vector<double> t, y; };
+  /// Points of one channel: the rows themselves while they fit, else minimum and maximum of each
+  /// bucket in order of time.
+  struct Points {
+    std::vector<double> t, y;
+  };
   Points channel(std::size_t k) const;
   std::size_t rows() const { return rows_; }
   void save(OutArchive& out) const;
@@ -22,11 +29,13 @@ class PlotBuffer {
   const std::vector<std::vector<double>>& kept_rows() const { return kept_; }
 
  private:
-  struct Extreme { double lo, hi, t_lo, t_hi; };
+  struct Extreme {
+    double lo, hi, t_lo, t_hi;
+  };
   void halve();
   static constexpr std::size_t rows_capacity = 1 << 16;
   std::size_t channels_, capacity_, stride_ = 1, rows_ = 0, filled_ = 0;
-  std::vector<Extreme> data_;   // bucket-major
+  std::vector<Extreme> data_;  // bucket-major
   std::vector<std::vector<double>> kept_;
   std::size_t keep_stride_ = 1;
 };

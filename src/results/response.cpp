@@ -6,24 +6,31 @@ namespace whirl::results {
 
 std::vector<analysis::ResponseProbe> response_probes(const run::Job& job) {
   std::vector<analysis::ResponseProbe> out;
-  for (const model::Probe& p : job.model.probes) out.push_back({p.name, point_of(job, p.at), p.angles});
+  for (const model::Probe& p : job.model.probes)
+    out.push_back({p.name, point_of(job, p.at), p.angles});
   if (out.empty())
-    for (const model::Disk& d : job.model.disks) out.push_back({"disk " + d.name, point_of(job, d.at), {}});
+    for (const model::Disk& d : job.model.disks)
+      out.push_back({"disk " + d.name, point_of(job, d.at), {}});
   return out;
 }
 
-ProbeCurves curves_of(const analysis::ResponseProbe& probe, const std::vector<analysis::PointAmplitude>& amplitudes) {
+ProbeCurves curves_of(const analysis::ResponseProbe& probe,
+                      const std::vector<analysis::PointAmplitude>& amplitudes) {
   ProbeCurves c;
   if (probe.angles.empty()) {
     c.label = {"y", "z"};
     c.amplitude.resize(2);
-    for (const analysis::PointAmplitude& a : amplitudes) { c.amplitude[0].push_back(a.y); c.amplitude[1].push_back(a.z); }
+    for (const analysis::PointAmplitude& a : amplitudes) {
+      c.amplitude[0].push_back(a.y);
+      c.amplitude[1].push_back(a.z);
+    }
     return c;
   }
   for (const double angle : probe.angles) {
     c.label.push_back(fmt::format("{:g}°", angle * 180 / pi));
     std::vector<Complex> x;
-    for (const analysis::PointAmplitude& a : amplitudes) x.push_back(a.along(angle));
+    for (const analysis::PointAmplitude& a : amplitudes)
+      x.push_back(a.along(angle));
     c.amplitude.push_back(std::move(x));
   }
   return c;
@@ -40,9 +47,12 @@ void add_probe_columns(io::Table& t, const std::string& name) {
 
 void add_probe_cells(std::vector<io::Table::Cell>& row, const analysis::PointAmplitude& a) {
   const analysis::Orbit o = a.orbit();
-  row.emplace_back(std::abs(a.y)); row.emplace_back(lag(a.y) * 180 / pi);
-  row.emplace_back(std::abs(a.z)); row.emplace_back(lag(a.z) * 180 / pi);
-  row.emplace_back(o.major); row.emplace_back(o.minor);
+  row.emplace_back(std::abs(a.y));
+  row.emplace_back(lag(a.y) * 180 / pi);
+  row.emplace_back(std::abs(a.z));
+  row.emplace_back(lag(a.z) * 180 / pi);
+  row.emplace_back(o.major);
+  row.emplace_back(o.minor);
 }
 
 }  // namespace whirl::results

@@ -11,12 +11,14 @@ std::vector<analysis::ResponseProbe> response_probes(const run::Job& job);
 /// Curves of a probe: one for each of its angles, without any y and z.
 struct ProbeCurves {
   std::vector<std::string> label;
-  std::vector<std::vector<Complex>> amplitude;   ///< m; [curve][point]
+  std::vector<std::vector<Complex>> amplitude;  ///< m; [curve][point]
 };
 /// amplitudes: the probe's at every speed.
-ProbeCurves curves_of(const analysis::ResponseProbe& probe, const std::vector<analysis::PointAmplitude>& amplitudes);
+ProbeCurves curves_of(const analysis::ResponseProbe& probe,
+                      const std::vector<analysis::PointAmplitude>& amplitudes);
 
-/// Columns "amplitude [m]", "phase lag [deg]" of y and z, and the major and minor axis of the orbit.
+/// Columns "amplitude [m]", "phase lag [deg]" of y and z, and the major and minor axis of the
+/// orbit.
 void add_probe_columns(io::Table& t, const std::string& name);
 void add_probe_cells(std::vector<io::Table::Cell>& row, const analysis::PointAmplitude& a);
 

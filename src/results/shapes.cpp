@@ -22,7 +22,10 @@ Eigen::Vector3cd tilt_of(const analysis::Linearizer& linear, const VecXc& a, Ind
   return s.frames.chart[at(linear.system().node(node).line)] * (d.D * a.segment<2>(6 * node + 4));
 }
 
-struct Station { double s; Eigen::Vector3cd u, t; };
+struct Station {
+  double s;
+  Eigen::Vector3cd u, t;
+};
 
 /// Displacement and tilt at the stations of a line, axes of the line.
 std::vector<Station> stations_of(const FrequencyStep& step, const VecXc& a, std::size_t l) {
@@ -59,7 +62,11 @@ plot::Figure along_figure(const FrequencyStep& s, const ShapeDrawing& d) {
   double largest = 0;
   Complex top = 1;
   for (Index n = 0; n < s.linear.system().nodes(); ++n)
-    if (const Complex x = (*d.a)[6 * n + c]; !s.linear.system().node(n).scalar && std::abs(x) > largest) { largest = std::abs(x); top = x; }
+    if (const Complex x = (*d.a)[6 * n + c];
+        !s.linear.system().node(n).scalar && std::abs(x) > largest) {
+      largest = std::abs(x);
+      top = x;
+    }
   for (std::size_t l = 0; l < s.job.mesh.lines.size(); ++l) {
     const meshes::Line& line = s.job.mesh.lines[l];
     plot::Series y;
@@ -69,12 +76,15 @@ plot::Figure along_figure(const FrequencyStep& s, const ShapeDrawing& d) {
     y.keep_all = true;
     for (Index k = line.first_station; k < line.first_station + line.stations; ++k) {
       const meshes::Station& st = s.job.mesh.stations[at(k)];
-      y.x.push_back(st.position.x()); y.y.push_back(((*d.a)[6 * st.at.node + c] / top).real());
+      y.x.push_back(st.position.x());
+      y.y.push_back(((*d.a)[6 * st.at.node + c] / top).real());
     }
     axes.series.push_back(std::move(y));
   }
   plot::Figure f;
-  f.name = s.file(d.name); f.title = d.title; f.caption = d.caption;
+  f.name = s.file(d.name);
+  f.title = d.title;
+  f.caption = d.caption;
   f.height = 300;
   f.axes.push_back(std::move(axes));
   return f;
@@ -93,7 +103,8 @@ void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d) {
   std::vector<double> size(lines, 0.0);
   for (std::size_t l = 0; l < lines; ++l) {
     stations.push_back(stations_of(s, *d.a, l));
-    for (const Station& x : stations.back()) size[l] = std::max({size[l], std::abs(x.u[1]), std::abs(x.u[2])});
+    for (const Station& x : stations.back())
+      size[l] = std::max({size[l], std::abs(x.u[1]), std::abs(x.u[2])});
   }
   const double largest = *std::max_element(size.begin(), size.end());
   for (std::size_t l = 0; l < lines; ++l) {
@@ -109,20 +120,24 @@ void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d) {
         const double x = static_cast<double>(i) / parts, x2 = x * x, x3 = x2 * x;
         const auto value = [&](int c) -> Complex {
           if (i == 0) return st[k].u[c];
-          return (1 - 3 * x2 + 2 * x3) * st[k].u[c] + (x - 2 * x2 + x3) * h * st[k].t[c] + (3 * x2 - 2 * x3) * st[k + 1].u[c] +
-                 (x3 - x2) * h * st[k + 1].t[c];
+          return (1 - 3 * x2 + 2 * x3) * st[k].u[c] + (x - 2 * x2 + x3) * h * st[k].t[c] +
+                 (3 * x2 - 2 * x3) * st[k + 1].u[c] + (x3 - x2) * h * st[k + 1].t[c];
         };
-        m.s.push_back(st[k].s + x * h); m.y.push_back(value(1)); m.z.push_back(value(2));
+        m.s.push_back(st[k].s + x * h);
+        m.y.push_back(value(1));
+        m.z.push_back(value(2));
       }
     }
     const std::string of = lines > 1 ? fmt::format(" of {}", s.job.mesh.lines[l].name) : "";
-    plot::Figure f = plot::plot_mode_shape(s.file(d.name + (lines > 1 ? "_" + s.job.mesh.lines[l].name : "")), d.title + of, m);
+    plot::Figure f = plot::plot_mode_shape(
+        s.file(d.name + (lines > 1 ? "_" + s.job.mesh.lines[l].name : "")), d.title + of, m);
     f.caption = d.caption;
     s.add_figure(std::move(f));
   }
 }
 
-void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& a, double amplitude) {
+void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& a,
+                        double amplitude) {
   const model::Output& out = s.job.model.output;
   for (const model::VtkOutput& v : out.vtk) {
     if (!v.step.empty() && v.step != s.step.name) continue;
@@ -130,7 +145,7 @@ void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& 
     options.directory = s.job.folder.subfolder("vtk");
     options.name = s.file(name);
     io::set_content(options, v.content);
-    options.deformation_scale = 1.0;   // in the amplitude
+    options.deformation_scale = 1.0;  // in the amplitude
     options.points_around = v.points_around;
     const Index nodes = static_cast<Index>(s.job.mesh.nodes.size());
     io::HarmonicShape shape;
@@ -142,10 +157,15 @@ void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& 
       largest = std::max(largest, shape.u.back().cwiseAbs().maxCoeff());
     }
     double twist = 0;
-    for (const Complex& p : shape.phi) twist = std::max(twist, std::abs(p));
-    for (const meshes::Line& l : s.job.mesh.lines) length = std::max(length, l.length);
+    for (const Complex& p : shape.phi)
+      twist = std::max(twist, std::abs(p));
+    for (const meshes::Line& l : s.job.mesh.lines)
+      length = std::max(length, l.length);
     double factor = amplitude;
-    if (factor == 0) factor = largest * 0.5 > twist * 0.05 * length ? 0.05 * length / largest : twist > 0 ? 0.5 / twist : 0.0;   // a torsional mode: half a radian
+    if (factor == 0)
+      factor = largest * 0.5 > twist * 0.05 * length ? 0.05 * length / largest
+               : twist > 0                           ? 0.5 / twist
+                                                     : 0.0;  // a torsional mode: half a radian
     const auto writer = io::make_vtk_frames(options);
     io::write_harmonic(*writer, s.job.scene, shape, factor * v.deformation_scale, 24);
   }

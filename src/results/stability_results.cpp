@@ -29,7 +29,8 @@ std::string stability_line(const analysis::Definiteness& d, double Omega) {
                      : " found among the eigenvalues of least size";
   if (Omega != 0.0)
     out +=
-        " (of the static tangent at this speed; whether gyroscopic moments hold it is for a modal step)";
+        " (of the static tangent at this speed; whether gyroscopic moments hold it is for a modal "
+        "step)";
   return out;
 }
 
@@ -41,7 +42,8 @@ void warn_of_unstable(run::Job& job, const std::string& step, const analysis::De
   w.code = "W08";
   w.message = fmt::format("step '{}': {}", step, stability_line(d, Omega));
   w.hint =
-      "a real structure leaves this state; a path with 'branch', or an imperfection, leads to where it goes";
+      "a real structure leaves this state; a path with 'branch', or an imperfection, leads to "
+      "where it goes";
   job.report.warnings.push_back(w.message);
   job.summary["warnings"].push(w.code + ": " + w.message);
   if (!job.options.quiet) run::print_diagnostics({w});
@@ -53,13 +55,14 @@ void add_stability(io::Value& v, const analysis::Definiteness& d, double Omega) 
   s["unstable directions"] = static_cast<int>(d.negative);
   s["tangent"] = d.symmetric ? "symmetric" : "unsymmetric";
   s["proved"] = d.certain;
-  s["means"] =
-      d.symmetric
-          ? "negative eigenvalues of the static tangent: directions in which the potential energy falls"
-          : "negative real eigenvalues of the static tangent: divergence; whirl and flutter are for a modal step";
+  s["means"] = d.symmetric ? "negative eigenvalues of the static tangent: directions in which the "
+                             "potential energy falls"
+                           : "negative real eigenvalues of the static tangent: divergence; whirl "
+                             "and flutter are for a modal step";
   if (Omega != 0.0)
     s["at speed"] =
-        "gyroscopic moments are not counted; they may hold an even number of directions (modal step)";
+        "gyroscopic moments are not counted; they may hold an even number of directions (modal "
+        "step)";
   if (!d.stable() && d.shape.size() > 0) s["lowest eigenvalue [N/m]"] = d.lowest;
 }
 

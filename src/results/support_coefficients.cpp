@@ -11,7 +11,9 @@ namespace {
 
 /// Batches of system::System that hold the bearings of a law; null: its coefficients are constant.
 const char* kind_of(const model::BearingLaw& law) {
-  if (std::holds_alternative<model::ShortJournal>(law) || std::holds_alternative<model::FiniteJournal>(law)) return "journal bearings";
+  if (std::holds_alternative<model::ShortJournal>(law) ||
+      std::holds_alternative<model::FiniteJournal>(law))
+    return "journal bearings";
   if (std::holds_alternative<model::SqueezeFilm>(law)) return "squeeze films";
   if (std::holds_alternative<model::AnnularSeal>(law)) return "annular seals";
   if (std::holds_alternative<model::BallBearing>(law)) return "ball bearings";
@@ -19,49 +21,66 @@ const char* kind_of(const model::BearingLaw& law) {
   if (std::holds_alternative<model::Rub>(law)) return "contacts";
   if (const auto* spring = std::get_if<model::NonlinearSpring>(&law)) {
     using Along = model::NonlinearSpring::Along;
-    return spring->along == Along::y || spring->along == Along::z || spring->along == Along::radial ? "nonlinear springs" : nullptr;
+    return spring->along == Along::y || spring->along == Along::z || spring->along == Along::radial
+               ? "nonlinear springs"
+               : nullptr;
   }
-  if (const auto* table = std::get_if<model::TableBearing>(&law)) return table->frequency.empty() ? "tabulated bearings" : "bearings tabulated against frequency";
+  if (const auto* table = std::get_if<model::TableBearing>(&law))
+    return table->frequency.empty() ? "tabulated bearings" : "bearings tabulated against frequency";
   return nullptr;
 }
 
-/// -dF/dr or -dF/dr' of a support's force on the shaft, by differences of fourth order. The steps, 1e-9 m and 1e-6 m/s, are small against every clearance and film, and
-/// what they change in the force is 1e-10 of it and more: good to 1e-6 where the exact tangent cannot be had.
-Mat2 differences(const assembly::SupportForce& f, const system::Workspace& w, Index shaft, Vec3 system::NodeState::*motion, double step) {
+/// -dF/dr or -dF/dr' of a support's force on the shaft, by differences of fourth order. The steps,
+/// 1e-9 m and 1e-6 m/s, are small against every clearance and film, and what they change in the
+/// force is 1e-10 of it and more: good to 1e-6 where the exact tangent cannot be had.
+Mat2 differences(const assembly::SupportForce& f, const system::Workspace& w, Index shaft,
+                 Vec3 system::NodeState::*motion, double step) {
   Mat2 out;
   for (Index j = 0; j < 2; ++j) {
     const auto at = [&](double x) {
       system::NodeState moved = w.nodes[static_cast<std::size_t>(shaft)];
       (moved.*motion)[1 + j] += x;
-      return Vec2(f.force([&](Index k) -> const system::NodeState& { return k == shaft ? moved : w.nodes[static_cast<std::size_t>(k)]; }, w.context, [](Index) { return 0.0; }).tail<2>());
+      return Vec2(f.force(
+                       [&](Index k) -> const system::NodeState& {
+                         return k == shaft ? moved : w.nodes[static_cast<std::size_t>(k)];
+                       },
+                       w.context, [](Index) { return 0.0; })
+                      .tail<2>());
     };
     out.col(j) = -(8.0 * (at(step) - at(-step)) - (at(2 * step) - at(-2 * step))) / (12.0 * step);
   }
   return out;
 }
 
-/// Stiffness in (x, y, z, ry, rz) of the point o along the axis from the node, from that of the node in (x, y, z, phi, ry, rz).
+/// Stiffness in (x, y, z, ry, rz) of the point o along the axis from the node, from that of the
+/// node in (x, y, z, phi, ry, rz).
 Matrix<5> at_point(const Matrix<6>& node, double o) {
   // of a shift and a turn of the point: u_y at the node = u_y - o rz, u_z = u_z + o ry
   Matrix<6, 5> A = Matrix<6, 5>::Zero();
   A(0, 0) = A(1, 1) = A(2, 2) = A(4, 3) = A(5, 4) = 1.0;
-  A(1, 4) = -o; A(2, 3) = o;
+  A(1, 4) = -o;
+  A(2, 3) = o;
   return A.transpose() * node * A;
 }
 
-/// Threshold of a rigid rotor in translation on K, C: at the onset (m l^2 + C l + K) x = 0 has l = i w. With k = m w^2 the real and imaginary parts of
-/// det(K - k + i w C) are k = (Kyy Czz + Kzz Cyy - Kyz Czy - Kzy Cyz)/(Cyy + Czz) and w^2 = ((k - Kyy)(k - Kzz) - Kyz Kzy)/(Cyy Czz - Cyz Czy).
+/// Threshold of a rigid rotor in translation on K, C: at the onset (m l^2 + C l + K) x = 0 has l =
+/// i w. With k = m w^2 the real and imaginary parts of det(K - k + i w C) are k = (Kyy Czz + Kzz
+/// Cyy - Kyz Czy - Kzy Cyz)/(Cyy + Czz) and w^2 = ((k - Kyy)(k - Kzz) - Kyz Kzy)/(Cyy Czz - Cyz
+/// Czy).
 void find_threshold(SupportCoefficients& b) {
   const Mat2 &K = b.K, &C = b.C;
-  const double k = (K(0, 0) * C(1, 1) + K(1, 1) * C(0, 0) - K(0, 1) * C(1, 0) - K(1, 0) * C(0, 1)) / C.trace();
+  const double k =
+      (K(0, 0) * C(1, 1) + K(1, 1) * C(0, 0) - K(0, 1) * C(1, 0) - K(1, 0) * C(0, 1)) / C.trace();
   const double w2 = ((k - K(0, 0)) * (k - K(1, 1)) - K(0, 1) * K(1, 0)) / C.determinant();
   if (!(C.trace() > 0) || !(C.determinant() > 0) || !(k > 0) || !(w2 > 0) || b.spin == 0) return;
-  b.threshold_mass = k / w2; b.whirl_ratio = std::sqrt(w2) / std::abs(b.spin);
+  b.threshold_mass = k / w2;
+  b.whirl_ratio = std::sqrt(w2) / std::abs(b.spin);
 }
 
 }  // namespace
 
-std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job, const run::StepState& s) {
+std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
+                                                           const run::StepState& s) {
   std::vector<SupportCoefficients> out;
   const system::System& system = job.system();
   system::Workspace w = system.make_workspace();
@@ -76,27 +95,43 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job, 
     for (std::size_t k = 0; k < system.terms().size(); ++k)
       if (system.terms()[k]->kind() == kind) only.push_back(k);
     const meshes::BearingNodes& n = job.mesh.bearings[i];
-    const bool alone = std::count_if(job.mesh.bearings.begin(), job.mesh.bearings.end(), [&](const meshes::BearingNodes& o) {
-                         const model::Bearing& other = job.model.bearings[static_cast<std::size_t>(&o - job.mesh.bearings.data())];
-                         const char* k = kind_of(other.law);
-                         return k && std::string_view(k) == kind && (o.shaft.node == n.shaft.node || o.other.node == n.shaft.node);
-                       }) == 1;
-    const auto force = std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(), [&](const auto& f) { return f.name == b.name; });
+    const bool alone =
+        std::count_if(
+            job.mesh.bearings.begin(), job.mesh.bearings.end(), [&](const meshes::BearingNodes& o) {
+              const model::Bearing& other =
+                  job.model.bearings[static_cast<std::size_t>(&o - job.mesh.bearings.data())];
+              const char* k = kind_of(other.law);
+              return k && std::string_view(k) == kind &&
+                     (o.shaft.node == n.shaft.node || o.other.node == n.shaft.node);
+            }) == 1;
+    const auto force =
+        std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(),
+                     [&](const auto& f) { return f.name == b.name; });
     if (only.empty() || force == job.built.support_forces.end()) continue;
     if (!system.tangent(w, x.frames, x.t, x.q, x.v, x.a, matrices, &only)) continue;
     const Index slot = matrices.K.pattern().slot(n.shaft.node, n.shaft.node);
     if (slot < 0) continue;
     SupportCoefficients c;
     if (alone) {
-      c.K = matrices.K.block(slot).block<2, 2>(1, 1); c.C = matrices.C.block(slot).block<2, 2>(1, 1);
-      if (std::holds_alternative<model::BallBearing>(b.law) || std::holds_alternative<model::RollerBearing>(b.law)) c.K5 = at_point(matrices.K.block(slot), n.shaft.offset);
-    } else {   // two of a kind on one node stand in one block
-      c.K = differences(*force, w, n.shaft.node, &system::NodeState::u, 1e-9); c.C = differences(*force, w, n.shaft.node, &system::NodeState::du, 1e-6);
+      c.K = matrices.K.block(slot).block<2, 2>(1, 1);
+      c.C = matrices.C.block(slot).block<2, 2>(1, 1);
+      if (std::holds_alternative<model::BallBearing>(b.law) ||
+          std::holds_alternative<model::RollerBearing>(b.law))
+        c.K5 = at_point(matrices.K.block(slot), n.shaft.offset);
+    } else {  // two of a kind on one node stand in one block
+      c.K = differences(*force, w, n.shaft.node, &system::NodeState::u, 1e-9);
+      c.C = differences(*force, w, n.shaft.node, &system::NodeState::du, 1e-6);
     }
-    const auto node = [&](Index k) -> const system::NodeState& { return w.nodes[static_cast<std::size_t>(k)]; };
-    const auto place = [&](const meshes::Place& p) { return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>()); };
+    const auto node = [&](Index k) -> const system::NodeState& {
+      return w.nodes[static_cast<std::size_t>(k)];
+    };
+    const auto place = [&](const meshes::Place& p) {
+      return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>());
+    };
     const Vec2 r = place(n.shaft) - place(n.other);
-    c.name = b.name; c.spin = node(n.shaft.node).spin(); c.place = r;
+    c.name = b.name;
+    c.spin = node(n.shaft.node).spin();
+    c.place = r;
     const Vec2 F = force->force(node, w.context, [](Index) { return 0.0; }).tail<2>();
     c.load = F.norm();
     if (c.load > 0 && r.norm() > 0) {
@@ -107,7 +142,8 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job, 
     for (const assembly::SupportCondition& x : job.built.conditions)
       if (x.name == b.name) {
         c.clearance = x.state(node).gap;
-        if (x.sommerfeld > 0 && c.load > 0) c.sommerfeld = x.sommerfeld * std::abs(c.spin) / two_pi / c.load;
+        if (x.sommerfeld > 0 && c.load > 0)
+          c.sommerfeld = x.sommerfeld * std::abs(c.spin) / two_pi / c.load;
       }
     find_threshold(c);
     out.push_back(std::move(c));
@@ -117,22 +153,28 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job, 
 
 Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::size_t bearing) {
   const std::string& name = job.model.bearings[bearing].name;
-  const auto support = std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(), [&](const auto& f) { return f.name == name; });
+  const auto support =
+      std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(),
+                   [&](const auto& f) { return f.name == name; });
   const meshes::Place at = job.mesh.bearings[bearing].shaft;
   const system::System& system = job.system();
   system::Workspace w = system.make_workspace();
   w.context.averaged = s.speed != 0.0;
   const system::State& x = s.state;
   system.evaluate_nodes(w, x.frames, x.t, x.q, x.v, x.a);
-  // Force and moment on the shaft at the bearing's place, with the shaft moved (e, e2, e3) or tilted there about it.
+  // Force and moment on the shaft at the bearing's place, with the shaft moved (e, e2, e3) or
+  // tilted there about it.
   const auto load = [&](Index motion, double by) {
     system::NodeState moved = w.nodes[static_cast<std::size_t>(at.node)];
     if (motion < 3) moved.u[motion] += by;
-    // a turn by ry takes the axis to -z, one by rz to +y; the place of the bearing stays where it is
+    // a turn by ry takes the axis to -z, one by rz to +y; the place of the bearing stays where it
+    // is
     const Vec3 turn = motion == 4 ? Vec3(0, 0, -by) : motion == 5 ? Vec3(0, by, 0) : Vec3(0, 0, 0);
     moved.t += turn;
     moved.u -= at.offset * turn;
-    const auto node = [&](Index k) -> const system::NodeState& { return k == at.node ? moved : w.nodes[static_cast<std::size_t>(k)]; };
+    const auto node = [&](Index k) -> const system::NodeState& {
+      return k == at.node ? moved : w.nodes[static_cast<std::size_t>(k)];
+    };
     const auto no_reaction = [](Index) { return 0.0; };
     Vector<6> out = Vector<6>::Zero();
     out.head<3>() = support->force(node, w.context, no_reaction);
@@ -144,21 +186,27 @@ Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::s
   Matrix<6> K = Matrix<6>::Zero();
   for (const Index j : {0, 1, 2, 4, 5}) {
     const double h = j < 3 ? 1e-9 : 1e-7;
-    K.col(j) = -(8.0 * (load(j, h) - load(j, -h)) - (load(j, 2 * h) - load(j, -2 * h))) / (12.0 * h);
+    K.col(j) =
+        -(8.0 * (load(j, h) - load(j, -h)) - (load(j, 2 * h) - load(j, -2 * h))) / (12.0 * h);
   }
-  K.row(3).setZero();   // the axial moment of a tilted load: friction-free bearings have none about their own axis
+  K.row(3).setZero();  // the axial moment of a tilted load: friction-free bearings have none about
+                       // their own axis
   return K;
 }
 
 io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list) {
   io::Table t;
   t.title = "Stiffness of the rolling bearings in five motions";
-  t.columns = {{"bearing", "-", ""}, {"force or moment", "-", "on the bearing, rows of the matrix"}};
+  t.columns = {{"bearing", "-", ""},
+               {"force or moment", "-", "on the bearing, rows of the matrix"}};
   const char* motions[] = {"x", "y", "z", "ry", "rz"};
   for (int j = 0; j < 5; ++j)
-    t.columns.push_back({std::string("per ") + motions[j], j < 3 ? "N/m, N" : "N/rad, N m/rad", j < 3 ? "forces N/m, moments N" : "forces N/rad, moments N m/rad"});
+    t.columns.push_back({std::string("per ") + motions[j], j < 3 ? "N/m, N" : "N/rad, N m/rad",
+                         j < 3 ? "forces N/m, moments N" : "forces N/rad, moments N m/rad"});
   for (const SupportCoefficients& c : list)
-    for (Index i = 0; i < 5 && c.K5; ++i) t.add({c.name, motions[i], (*c.K5)(i, 0), (*c.K5)(i, 1), (*c.K5)(i, 2), (*c.K5)(i, 3), (*c.K5)(i, 4)});
+    for (Index i = 0; i < 5 && c.K5; ++i)
+      t.add({c.name, motions[i], (*c.K5)(i, 0), (*c.K5)(i, 1), (*c.K5)(i, 2), (*c.K5)(i, 3),
+             (*c.K5)(i, 4)});
   return t;
 }
 
@@ -166,16 +214,27 @@ io::Table support_table(std::span<const SupportCoefficients> list) {
   io::Table t;
   t.title = "Bearings about the equilibrium";
   t.nan_means = "the bearing has no such number, or is never unstable";
-  t.columns = {{"bearing", "-", ""}, {"speed", "rpm", ""}, {"load", "N", "on the bearing, lateral"}, {"y", "m", "shaft against housing"}, {"z", "m", ""},
-               {"eccentricity", "m", ""}, {"eccentricity / clearance", "-", ""}, {"attitude", "deg", "from the load in the sense y to z"}};
+  t.columns = {{"bearing", "-", ""},
+               {"speed", "rpm", ""},
+               {"load", "N", "on the bearing, lateral"},
+               {"y", "m", "shaft against housing"},
+               {"z", "m", ""},
+               {"eccentricity", "m", ""},
+               {"eccentricity / clearance", "-", ""},
+               {"attitude", "deg", "from the load in the sense y to z"}};
   for (const char* m : {"k", "c"})
-    for (const char* e : {"yy", "yz", "zy", "zz"}) t.columns.push_back({std::string(m) + e, m[0] == 'k' ? "N/m" : "N s/m", ""});
+    for (const char* e : {"yy", "yz", "zy", "zz"})
+      t.columns.push_back({std::string(m) + e, m[0] == 'k' ? "N/m" : "N s/m", ""});
   t.columns.push_back({"Sommerfeld number", "-", "eta N L D (R/c)^2/W, N in rev/s"});
-  t.columns.push_back({"threshold mass", "kg", "share of a rigid rotor's mass on this bearing beyond which it is unstable at this speed; empty: never"});
+  t.columns.push_back({"threshold mass", "kg",
+                       "share of a rigid rotor's mass on this bearing beyond which it is unstable "
+                       "at this speed; empty: never"});
   t.columns.push_back({"whirl / speed", "-", "whirl frequency over speed at that threshold"});
   for (const SupportCoefficients& c : list)
-    t.add({c.name, c.spin * 30.0 / pi, c.load, c.place.x(), c.place.y(), c.place.norm(), c.place.norm() / c.clearance, c.attitude, c.K(0, 0), c.K(0, 1), c.K(1, 0), c.K(1, 1), c.C(0, 0),
-           c.C(0, 1), c.C(1, 0), c.C(1, 1), c.sommerfeld, c.threshold_mass, c.whirl_ratio});
+    t.add({c.name, c.spin * 30.0 / pi, c.load, c.place.x(), c.place.y(), c.place.norm(),
+           c.place.norm() / c.clearance, c.attitude, c.K(0, 0), c.K(0, 1), c.K(1, 0), c.K(1, 1),
+           c.C(0, 0), c.C(0, 1), c.C(1, 0), c.C(1, 1), c.sommerfeld, c.threshold_mass,
+           c.whirl_ratio});
   return t;
 }
 

@@ -1,4 +1,5 @@
-// The linearised bearings of a state: eccentricity, attitude, K and C of every film, seal, table, contact, nonlinear spring and rolling bearing.
+// The linearised bearings of a state: eccentricity, attitude, K and C of every film, seal, table,
+// contact, nonlinear spring and rolling bearing.
 #pragma once
 #include <run/job.hpp>
 
@@ -7,28 +8,33 @@
 
 namespace whirl::results {
 
-/// One bearing whose coefficients depend on where the shaft runs: F = -K r - C r' on the shaft, (y, z), at an equilibrium. Place and attitude are measured
-/// from the middle of the bearing, the attitude from the direction of the load (opposite to the force on the shaft) in the sense y -> z. Rolling bearings in
-/// a turning rotor: means over a pass.
+/// One bearing whose coefficients depend on where the shaft runs: F = -K r - C r' on the shaft, (y,
+/// z), at an equilibrium. Place and attitude are measured from the middle of the bearing, the
+/// attitude from the direction of the load (opposite to the force on the shaft) in the sense y ->
+/// z. Rolling bearings in a turning rotor: means over a pass.
 struct SupportCoefficients {
   std::string name;
-  double spin = 0;                 ///< of the shaft, rad/s
-  double load = 0;                 ///< on the bearing, lateral, N
-  Vec2 place = Vec2::Zero();       ///< shaft against housing, m
-  double clearance = nan;          ///< m; NaN where there is none
-  double attitude = nan;           ///< deg, 0 to 360; NaN without load or displacement
-  double sommerfeld = nan;         ///< films: eta N L D (R/c)^2/W, N in rev/s
-  Mat2 K = Mat2::Zero(), C = Mat2::Zero();   ///< N/m, N s/m
-  std::optional<Matrix<5>> K5;     ///< rolling bearings: in x, y, z, ry, rz at the place of the bearing; N, m, rad
-  /// Of a rigid rotor on bearings like this one alone (Lund; Routh's criterion): the share of its mass on this bearing beyond which the equilibrium is unstable at
-  /// this speed, kg, and whirl frequency over speed there. NaN: no mass makes it unstable.
+  double spin = 0;                          ///< of the shaft, rad/s
+  double load = 0;                          ///< on the bearing, lateral, N
+  Vec2 place = Vec2::Zero();                ///< shaft against housing, m
+  double clearance = nan;                   ///< m; NaN where there is none
+  double attitude = nan;                    ///< deg, 0 to 360; NaN without load or displacement
+  double sommerfeld = nan;                  ///< films: eta N L D (R/c)^2/W, N in rev/s
+  Mat2 K = Mat2::Zero(), C = Mat2::Zero();  ///< N/m, N s/m
+  std::optional<Matrix<5>>
+      K5;  ///< rolling bearings: in x, y, z, ry, rz at the place of the bearing; N, m, rad
+  /// Of a rigid rotor on bearings like this one alone (Lund; Routh's criterion): the share of its
+  /// mass on this bearing beyond which the equilibrium is unstable at this speed, kg, and whirl
+  /// frequency over speed there. NaN: no mass makes it unstable.
   double threshold_mass = nan, whirl_ratio = nan;
 };
 
 /// In the order of the deck; empty when there is none.
-std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job, const run::StepState& s);
-/// Stiffness of one support at a state in (x, y, z, rx, ry, rz), -d(force, moment)/d(displacement, tilt) on the shaft at the place
-/// of the bearing, N/m, N, N m, rad; the spin (rx) resists nothing. By differences of fourth order.
+std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
+                                                           const run::StepState& s);
+/// Stiffness of one support at a state in (x, y, z, rx, ry, rz), -d(force, moment)/d(displacement,
+/// tilt) on the shaft at the place of the bearing, N/m, N, N m, rad; the spin (rx) resists nothing.
+/// By differences of fourth order.
 Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::size_t bearing);
 /// A row each; empty title and no rows when there is none.
 io::Table support_table(std::span<const SupportCoefficients> list);

@@ -9,7 +9,7 @@ namespace whirl::results {
 /// Channels of a time history, with the plots they belong to.
 struct Channels {
   std::vector<analysis::Measurement> all;
-  std::vector<std::size_t> start;        // first column (without time) of each measurement
+  std::vector<std::size_t> start;  // first column (without time) of each measurement
   std::size_t columns = 0;
   std::size_t add(analysis::Measurement m) {
     start.push_back(columns);
@@ -29,7 +29,8 @@ analysis::Point point_of(const run::Job& job, const model::Location& at);
 /// Writes frames of the moving rotor when they are due.
 class Frames final : public analysis::Observer {
  public:
-  Frames(const run::Job& job, const model::VtkOutput& o, const std::string& step, double t0, double t1);
+  Frames(const run::Job& job, const model::VtkOutput& o, const std::string& step, double t0,
+         double t1);
   void begin(const analysis::Snapshot& s) override;
   void step(analysis::StepAccess& s) override;
   void end() override { writer_->end(); }
@@ -43,7 +44,7 @@ class Frames final : public analysis::Observer {
   io::FrameSchedule schedule_;
   std::unique_ptr<io::FrameWriter> writer_;
   FrameArrays arrays_;
-  bool line_ = false, bearings_ = false;   ///< the sets that show section forces, forces of bearings
+  bool line_ = false, bearings_ = false;  ///< the sets that show section forces, forces of bearings
   double phi_ = 0, now_ = 0;
 };
 

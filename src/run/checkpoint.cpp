@@ -21,7 +21,8 @@ constexpr std::string_view magic = "whirl checkpoint 1\n";
 /// FNV-1a, 64 bits: finds a damaged file, not an ill-willed one.
 std::uint64_t check_sum(std::string_view s) {
   std::uint64_t h = 14695981039346656037ull;
-  for (const char c : s) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+  for (const char c : s)
+    h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
   return h;
 }
 
@@ -32,14 +33,24 @@ bool starts_with_key(std::string_view line, std::string_view key) {
 std::string encode(const Checkpoint& c) {
   OutArchive a;
   a.put(c.deck);
-  a.put(c.t_begin); a.put(c.speed); a.put(c.seconds); a.put(c.reason);
-  a.put(c.state.t); a.put(c.state.q); a.put(c.state.v); a.put(c.state.a);
+  a.put(c.t_begin);
+  a.put(c.speed);
+  a.put(c.seconds);
+  a.put(c.reason);
+  a.put(c.state.t);
+  a.put(c.state.q);
+  a.put(c.state.v);
+  a.put(c.state.a);
   a.put_count(c.state.frames.chart.size());
-  for (const Mat3& m : c.state.frames.chart) a.put(std::span<const double>(m.data(), 9));
+  for (const Mat3& m : c.state.frames.chart)
+    a.put(std::span<const double>(m.data(), 9));
   a.put(c.state.frames.turns);
   a.put(c.integrator.serialize());
   a.put_count(c.parts.size());
-  for (const auto& [key, data] : c.parts) { a.put(key); a.put(data); }
+  for (const auto& [key, data] : c.parts) {
+    a.put(key);
+    a.put(data);
+  }
   return a.data();
 }
 
@@ -47,8 +58,14 @@ Checkpoint decode(std::string_view data) {
   InArchive a(data);
   Checkpoint c;
   c.deck = a.text();
-  c.t_begin = a.number(); c.speed = a.number(); c.seconds = a.number(); c.reason = a.text();
-  c.state.t = a.number(); c.state.q = a.vector(); c.state.v = a.vector(); c.state.a = a.vector();
+  c.t_begin = a.number();
+  c.speed = a.number();
+  c.seconds = a.number();
+  c.reason = a.text();
+  c.state.t = a.number();
+  c.state.q = a.vector();
+  c.state.v = a.vector();
+  c.state.a = a.vector();
   c.state.frames.chart.resize(a.count());
   for (Mat3& m : c.state.frames.chart) {
     const std::vector<double> x = a.numbers();
@@ -67,8 +84,9 @@ Checkpoint decode(std::string_view data) {
 }  // namespace
 
 std::string what_moves(const model::Model& model, const std::string& step) {
-  std::size_t steps = 0;   // up to and including this one
-  while (steps < model.steps.size() && model.steps[steps].name != step) ++steps;
+  std::size_t steps = 0;  // up to and including this one
+  while (steps < model.steps.size() && model.steps[steps].name != step)
+    ++steps;
   ++steps;
   std::istringstream in(model.resolved);
   std::string out, line;
@@ -79,21 +97,27 @@ std::string what_moves(const model::Model& model, const std::string& step) {
       if (line == "[[step]]") ++seen;
       in_step = line == "[[step]]";
       const bool of_step = line.starts_with("[step.") || line.starts_with("[[step");
-      keep = !(line.starts_with("[output") || line.starts_with("[[output") || line.starts_with("[parameters") || line.starts_with("[[probe") ||
+      keep = !(line.starts_with("[output") || line.starts_with("[[output") ||
+               line.starts_with("[parameters") || line.starts_with("[[probe") ||
                (of_step && seen > steps));
     }
     if (!keep || line.empty() || starts_with_key(line, "title")) continue;
-    if (in_step && (starts_with_key(line, "duration") || starts_with_key(line, "stop_speed") || starts_with_key(line, "amplitude_limit") ||
-                    starts_with_key(line, "checkpoint")))
+    if (in_step &&
+        (starts_with_key(line, "duration") || starts_with_key(line, "stop_speed") ||
+         starts_with_key(line, "amplitude_limit") || starts_with_key(line, "checkpoint")))
       continue;
     out += line + "\n";
   }
   return out;
 }
 
-std::string checkpoint_name(const std::string& step) { return "checkpoint/" + safe_name(step) + ".whirl"; }
+std::string checkpoint_name(const std::string& step) {
+  return "checkpoint/" + safe_name(step) + ".whirl";
+}
 
-fs::path checkpoint_file(const fs::path& results, const std::string& step) { return results / checkpoint_name(step); }
+fs::path checkpoint_file(const fs::path& results, const std::string& step) {
+  return results / checkpoint_name(step);
+}
 
 void write_checkpoint(const fs::path& file, const Checkpoint& c) {
   std::string data(magic);
@@ -108,7 +132,8 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& file) {
   if (!fs::exists(file, ec)) return std::nullopt;
   const std::string data = io::read_text(file);
   std::uint64_t sum = 0;
-  if (data.size() < magic.size() + sizeof sum || !data.starts_with(magic)) io::io_failure(file, "not a checkpoint of this version:");
+  if (data.size() < magic.size() + sizeof sum || !data.starts_with(magic))
+    io::io_failure(file, "not a checkpoint of this version:");
   std::memcpy(&sum, data.data() + data.size() - sizeof sum, sizeof sum);
   const std::string_view body = std::string_view(data).substr(0, data.size() - sizeof sum);
   if (sum != check_sum(body)) io::io_failure(file, "damaged checkpoint:");
@@ -131,30 +156,44 @@ void check_checkpoints(const fs::path& results, const model::Model& model) {
     int table = 0;
     std::string head;
     for (;; ++table) {
-      const bool more_a = static_cast<bool>(std::getline(a, old_line)), more_b = static_cast<bool>(std::getline(b, new_line));
+      const bool more_a = static_cast<bool>(std::getline(a, old_line)),
+                 more_b = static_cast<bool>(std::getline(b, new_line));
       if (!more_a) old_line = "(nothing)";
       if (!more_b) new_line = "(nothing)";
       if (!more_a || !more_b || old_line != new_line) break;
       if (new_line.starts_with('[')) head = new_line + " ";
     }
-    throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94",
-                                       fmt::format("the model is not the one of the checkpoint of step '{}': {}now '{}', then '{}'", s.name, head, new_line, old_line),
-                                       "a resumed run may change outputs, probes, duration and stop conditions; for another model start anew, without --resume",
-                                       Where{model.deck_path, 0, 0, 0, {}}});
+    throw Error(
+        Exit::deck,
+        Diagnostic{
+            Diagnostic::Severity::error, "E94",
+            fmt::format(
+                "the model is not the one of the checkpoint of step '{}': {}now '{}', then '{}'",
+                s.name, head, new_line, old_line),
+            "a resumed run may change outputs, probes, duration and stop conditions; for another "
+            "model start anew, without --resume",
+            Where{model.deck_path, 0, 0, 0, {}}});
   }
 }
 
 bool has_checkpoint(const fs::path& results, const model::Model& model) {
   std::error_code ec;
-  return std::any_of(model.steps.begin(), model.steps.end(), [&](const model::Step& s) { return fs::exists(checkpoint_file(results, s.name), ec); });
+  return std::any_of(model.steps.begin(), model.steps.end(), [&](const model::Step& s) {
+    return fs::exists(checkpoint_file(results, s.name), ec);
+  });
 }
 
-void Parts::add(std::string key, std::function<void(OutArchive&)> save, std::function<void(InArchive&)> restore) {
+void Parts::add(std::string key, std::function<void(OutArchive&)> save,
+                std::function<void(InArchive&)> restore) {
   parts_.push_back({std::move(key), std::move(save), std::move(restore), nullptr, {}});
 }
 
 void Parts::add(std::string key, analysis::Observer& o) {
-  parts_.push_back({std::move(key), [&o](OutArchive& a) { o.save(a); }, [&o](InArchive& a) { o.restore(a); }, &o, {}});
+  parts_.push_back({std::move(key),
+                    [&o](OutArchive& a) { o.save(a); },
+                    [&o](InArchive& a) { o.restore(a); },
+                    &o,
+                    {}});
 }
 
 void Parts::save(Checkpoint& c) const {
@@ -176,6 +215,42 @@ void Parts::restore(const Checkpoint* c) {
     InArchive a(it->second);
     p.restore(a);
   }
+}
+
+Checkpoint last_state_of(const std::string& folder, const std::string& step) {
+  namespace fs = std::filesystem;
+  fs::path file = step.empty() ? fs::path() : checkpoint_file(folder, step);
+  std::error_code ec;
+  if (step.empty())
+    for (const auto& f : fs::directory_iterator(fs::path(folder) / "checkpoint", ec))
+      if (f.path().extension() == ".whirl") {
+        if (!file.empty())
+          throw Error(Exit::io,
+                      Diagnostic{Diagnostic::Severity::error, "E91",
+                                 fmt::format("{} holds checkpoints of several steps", folder),
+                                 "name one with previous_step", Where{}});
+        file = f.path();
+      }
+  std::optional<Checkpoint> c = file.empty() ? std::nullopt : read_checkpoint(file);
+  if (!c)
+    throw Error(
+        Exit::io,
+        Diagnostic{Diagnostic::Severity::error, "E91",
+                   fmt::format("no state of an earlier run in '{}'", folder),
+                   "previous names a results folder whose transient step has run with checkpoints",
+                   Where{}});
+  return std::move(*c);
+}
+
+void check_state_fits(const Checkpoint& c, const std::string& folder, const system::System& system,
+                      const std::string& deck) {
+  if (c.state.q.size() == system.size() &&
+      c.state.frames.chart.size() == static_cast<std::size_t>(system.lines()))
+    return;
+  throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94",
+                                     fmt::format("the run in '{}' has {} unknowns, this model {}",
+                                                 folder, c.state.q.size(), system.size()),
+                                     "both must have the same mesh", Where{deck, 0, 0, 0, {}}});
 }
 
 }  // namespace whirl::run

@@ -1,8 +1,9 @@
-// Checkpoints of transient steps: one file a step in <results>/checkpoint/, written whole or not at all.
+// Checkpoints of transient steps: one file a step in <results>/checkpoint/, written whole or not at
+// all.
 //
-// A checkpoint holds the state, the integrator's memory, and what every observer knows, so that the continued run equals the
-// uninterrupted one bit for bit. It also holds the deck as far as the motion depends on it: a changed model is refused, changed
-// outputs and end conditions are not.
+// A checkpoint holds the state, the integrator's memory, and what every observer knows, so that the
+// continued run equals the uninterrupted one bit for bit. It also holds the deck as far as the
+// motion depends on it: a changed model is refused, changed outputs and end conditions are not.
 #pragma once
 #include <analysis/transient/observer.hpp>
 #include <model/model.hpp>
@@ -17,45 +18,52 @@
 namespace whirl::run {
 
 struct Checkpoint {
-  std::string deck;                          ///< what_moves() of the deck that wrote it
-  double t_begin = 0, speed = 0;             ///< where the step began; reference speed, rad/s
-  double seconds = 0;                        ///< CPU time spent so far
-  std::string reason;                        ///< why the run ended, empty: it did not
+  std::string deck;               ///< what_moves() of the deck that wrote it
+  double t_begin = 0, speed = 0;  ///< where the step began; reference speed, rad/s
+  double seconds = 0;             ///< CPU time spent so far
+  std::string reason;             ///< why the run ended, empty: it did not
   system::State state;
   time::IntegratorState integrator;
-  std::map<std::string, std::string> parts;  ///< archives of observers and outputs, by what they are
+  std::map<std::string, std::string>
+      parts;  ///< archives of observers and outputs, by what they are
 };
 
-/// The lines of the resolved deck that the motion of a step depends on: without titles, outputs, probes, later steps, and the
-/// step's own duration and stop conditions.
+/// The lines of the resolved deck that the motion of a step depends on: without titles, outputs,
+/// probes, later steps, and the step's own duration and stop conditions.
 std::string what_moves(const model::Model& model, const std::string& step);
 
 /// Name of a step's checkpoint in the results folder.
 std::string checkpoint_name(const std::string& step);
-std::filesystem::path checkpoint_file(const std::filesystem::path& results, const std::string& step);
+std::filesystem::path checkpoint_file(const std::filesystem::path& results,
+                                      const std::string& step);
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& c);
 /// Nothing when there is no file. Error E91 when it is damaged or of another version.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);
-/// The state in which a transient step of another results folder ended (step: "" = its only one). Error E91: there is none, or several.
+/// The state in which a transient step of another results folder ended (step: "" = its only one).
+/// Error E91: there is none, or several.
 Checkpoint last_state_of(const std::string& folder, const std::string& step);
 /// Error E94: the state is one of another mesh. deck: for the message.
-void check_state_fits(const Checkpoint& c, const std::string& folder, const system::System& system, const std::string& deck);
-/// Error E94 with the first differing line when a checkpoint in the results folder is of another model.
+void check_state_fits(const Checkpoint& c, const std::string& folder, const system::System& system,
+                      const std::string& deck);
+/// Error E94 with the first differing line when a checkpoint in the results folder is of another
+/// model.
 void check_checkpoints(const std::filesystem::path& results, const model::Model& model);
 /// True when there is a checkpoint of any step.
 bool has_checkpoint(const std::filesystem::path& results, const model::Model& model);
 
-/// Things that are saved and restored together, each under a key that says what it is: one whose key the checkpoint does not
-/// have is new and begins where the run continues.
+/// Things that are saved and restored together, each under a key that says what it is: one whose
+/// key the checkpoint does not have is new and begins where the run continues.
 class Parts {
  public:
-  void add(std::string key, std::function<void(OutArchive&)> save, std::function<void(InArchive&)> restore);
+  void add(std::string key, std::function<void(OutArchive&)> save,
+           std::function<void(InArchive&)> restore);
   /// An observer; those restored from nothing are listed in fresh().
   void add(std::string key, analysis::Observer& o);
   /// An output with files of its own: begin() opens them anew.
   template <class T>
   void add_output(std::string key, T& x) {
-    parts_.push_back({std::move(key), [&x](OutArchive& a) { x.save(a); }, [&x](InArchive& a) { x.restore(a); }, &x.observer(), [&x] { x.begin(); }});
+    parts_.push_back({std::move(key), [&x](OutArchive& a) { x.save(a); },
+                      [&x](InArchive& a) { x.restore(a); }, &x.observer(), [&x] { x.begin(); }});
   }
   void save(Checkpoint& c) const;
   /// null: everything begins.

@@ -10,8 +10,15 @@ namespace whirl::run {
 void print_diagnostics(const deck::Deck& deck, bool quiet) {
   const bool colour = wants_colour(2);
   for (const auto& d : deck.diagnostics)
-    if (!quiet || d.severity == Diagnostic::Severity::error) std::fputs(format(d, deck.sources.line(d.where), colour).c_str(), stderr);
-  if (deck.errors > 0) std::fputs(fmt::format("{}: {}\n", deck.model.deck_path.empty() ? deck.sources[0].name : deck.model.deck_path, count_text(deck.diagnostics)).c_str(), stderr);
+    if (!quiet || d.severity == Diagnostic::Severity::error)
+      std::fputs(format(d, deck.sources.line(d.where), colour).c_str(), stderr);
+  if (deck.errors > 0)
+    std::fputs(
+        fmt::format("{}: {}\n",
+                    deck.model.deck_path.empty() ? deck.sources[0].name : deck.model.deck_path,
+                    count_text(deck.diagnostics))
+            .c_str(),
+        stderr);
 }
 
 void print_diagnostics(const std::vector<Diagnostic>& diagnostics) {
@@ -45,12 +52,16 @@ io::Value to_value(const Diagnostic& d) {
 
 io::Value to_value(const std::vector<Diagnostic>& diagnostics) {
   io::Value v = io::Value::array();
-  for (const auto& d : diagnostics) v.push(to_value(d));
+  for (const auto& d : diagnostics)
+    v.push(to_value(d));
   return v;
 }
 
 std::string count_text(const std::vector<Diagnostic>& diagnostics) {
-  const auto of = [&](Diagnostic::Severity s) { return std::count_if(diagnostics.begin(), diagnostics.end(), [s](const Diagnostic& d) { return d.severity == s; }); };
+  const auto of = [&](Diagnostic::Severity s) {
+    return std::count_if(diagnostics.begin(), diagnostics.end(),
+                         [s](const Diagnostic& d) { return d.severity == s; });
+  };
   const auto e = of(Diagnostic::Severity::error), w = of(Diagnostic::Severity::warning);
   std::string r = fmt::format("{} error{}", e, e == 1 ? "" : "s");
   if (w > 0) r += fmt::format(", {} warning{}", w, w == 1 ? "" : "s");

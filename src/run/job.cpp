@@ -1,4 +1,5 @@
 #include <run/job.hpp>
+#include <run/progress.hpp>
 #include <run/support_diagnosis.hpp>
 
 #include <analysis/statics/equilibrium.hpp>
@@ -13,7 +14,11 @@
 namespace whirl::run {
 
 Job::Job(const model::Model& m, const RunOptions& o, const std::filesystem::path& root)
-    : model(m), options(o), mesh(meshes::make_mesh(m)), scene(meshes::make_scene(m, mesh)), folder(root) {}
+    : model(m),
+      options(o),
+      mesh(meshes::make_mesh(m)),
+      scene(meshes::make_scene(m, mesh)),
+      folder(root) {}
 
 void Job::build_for(const model::Step& step) {
   // Only drives belong to steps: without drives of its own a step shares the last system.
@@ -34,7 +39,8 @@ StepState Job::start_of(const model::Step& step, std::optional<double> speed) co
     for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
       const meshes::Line& line = mesh.lines[l];
       const double spin = model.shafts[l].rotating ? *speed * model.shafts[l].speed_ratio : 0.0;
-      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) s.state.v[6 * n + system::spin_phi] = spin;
+      for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
+        s.state.v[6 * n + system::spin_phi] = spin;
     }
     return s;
   }
@@ -51,7 +57,8 @@ StepState Job::start_of(const model::Step& step, std::optional<double> speed) co
     const bool follows_drive = law.prescribed && in_time;
     double spin = speed && !follows_drive ? *speed * shaft.speed_ratio : drive.df;
     if (!shaft.rotating) spin = 0.0;
-    if (static_cast<Index>(l) == mesh.nodes[static_cast<std::size_t>(built.reference)].line) reference_spin = spin;
+    if (static_cast<Index>(l) == mesh.nodes[static_cast<std::size_t>(built.reference)].line)
+      reference_spin = spin;
     if (some_spin == 0.0) some_spin = spin;
     for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
       x.q[6 * n + system::spin_phi] = phi;
@@ -85,14 +92,18 @@ analysis::SteadyRotation Job::steady_rotation_of(const StepState& start) const {
     const Index n = mesh.lines[l].first_node;
     const double spin = start.state.v[6 * n + system::spin_phi];
     // at rest too a rotor that nothing holds is free to turn
-    running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : model.shafts[l].rotating ? model.shafts[l].speed_ratio : 0.0);
+    running.ratio.push_back(start.speed != 0.0         ? spin / start.speed
+                            : model.shafts[l].rotating ? model.shafts[l].speed_ratio
+                                                       : 0.0);
   }
   running.ratio.resize(static_cast<std::size_t>(system().lines()), 0.0);
-  running.mean = start.speed != 0.0;   // at rest every part stands where it stands: no mean over a revolution that nobody makes
+  running.mean = start.speed != 0.0;  // at rest every part stands where it stands: no mean over a
+                                      // revolution that nobody makes
   return running;
 }
 
-analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions options, bool in_time) const {
+analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions options,
+                                  bool in_time) const {
   analysis::SteadyRotation running = steady_rotation_of(start);
   running.hysteretic = !in_time;
   analysis::SteadySystem turning(system(), running);

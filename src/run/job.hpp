@@ -1,4 +1,5 @@
-// One run of a deck: model -> mesh -> system -> the deck's steps, in order, each writing its results. The body of run_deck().
+// One run of a deck: model -> mesh -> system -> the deck's steps, in order, each writing its
+// results. The body of run_deck().
 #pragma once
 #include <analysis/statics/equilibrium.hpp>
 #include <analysis/transient/measurement.hpp>
@@ -23,9 +24,12 @@ namespace whirl::run {
 /// Results of a finished step that a later one can start from.
 struct StepState {
   system::State state;
-  double speed = 0;   ///< rad/s of the reference line
-  /// Where the integrals of the governors that acted began, by drive: a later step in which they act as well goes on with them.
-  struct Began { double time = 0, angle = 0; };
+  double speed = 0;  ///< rad/s of the reference line
+  /// Where the integrals of the governors that acted began, by drive: a later step in which they
+  /// act as well goes on with them.
+  struct Began {
+    double time = 0, angle = 0;
+  };
   std::map<std::string, Began> governors;
 };
 
@@ -33,15 +37,16 @@ struct Job {
   const model::Model& model;
   const RunOptions& options;
   meshes::Mesh mesh;
-  assembly::Built built;               ///< system, breakpoints of element laws, what was left out
+  assembly::Built built;  ///< system, breakpoints of element laws, what was left out
   meshes::Scene scene;
   io::ResultsFolder folder;
   io::Report report;
   io::Value summary;
   std::map<std::string, StepState> states;
-  std::vector<std::pair<std::string, RunTime>> phases;   ///< for the summary
+  std::vector<std::pair<std::string, RunTime>> phases;  ///< for the summary
 
-  /// Steps whose lists or verdicts could not be certified although they should be: the run ends with Exit::no_convergence.
+  /// Steps whose lists or verdicts could not be certified although they should be: the run ends
+  /// with Exit::no_convergence.
   std::vector<std::string> uncertified;
 
   std::string built_for;
@@ -51,13 +56,16 @@ struct Job {
   Index reference() const { return built.reference; }
   /// Builds the system with the drives of a step (the same one again costs nothing).
   void build_for(const model::Step& step);
-  /// Initial state of a step: that of the step it names, else straight, with the lines' spins. speed: of the reference, rad/s, every line at
-  /// its speed_ratio whatever drives prescribe; without it lines turn as their drives prescribe at time 0, else with their initial spins.
+  /// Initial state of a step: that of the step it names, else straight, with the lines' spins.
+  /// speed: of the reference, rad/s, every line at its speed_ratio whatever drives prescribe;
+  /// without it lines turn as their drives prescribe at time 0, else with their initial spins.
   StepState start_of(const model::Step& step, std::optional<double> speed) const;
   /// How the lines turn in a state.
   analysis::SteadyRotation steady_rotation_of(const StepState& start) const;
-  /// Moves a start to its static equilibrium (spinning, loaded; in_time: where a transient starts, hysteretic damping as it acts there). Errors E75, E76 when there is none.
-  analysis::Equilibrium settle(StepState& start, analysis::EquilibriumOptions options = {}, bool in_time = false) const;
+  /// Moves a start to its static equilibrium (spinning, loaded; in_time: where a transient starts,
+  /// hysteretic damping as it acts there). Errors E75, E76 when there is none.
+  analysis::Equilibrium settle(StepState& start, analysis::EquilibriumOptions options = {},
+                               bool in_time = false) const;
 };
 
 }  // namespace whirl::run

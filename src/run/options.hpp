@@ -17,7 +17,8 @@ struct RunOptions {
   int jobs = 0;                  ///< threads for what can go in parallel; 0 = all processors
   bool resume = false;           ///< continue from the last checkpoint of the results folder
   std::filesystem::path output;  ///< results folder; empty: as the deck says
-  /// The model of the same deck with a key set otherwise ("parameters.clearance=75 um"), for steps that vary one. Throws as load_model().
+  /// The model of the same deck with a key set otherwise ("parameters.clearance=75 um"), for steps
+  /// that vary one. Throws as load_model().
   std::function<model::Model(const std::string& setting)> variant;
 };
 

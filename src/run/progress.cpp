@@ -5,10 +5,15 @@
 
 namespace whirl::run {
 
-ProgressLine::ProgressLine(std::string name, bool quiet) : name_(std::move(name)), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+ProgressLine::ProgressLine(std::string name, bool quiet)
+    : name_(std::move(name)),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO) != 0) {}
 
 namespace {
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 }  // namespace
 
 PhaseTimer::PhaseTimer(Job& job, std::string phase) : job_(job), phase_(std::move(phase)) {}
@@ -35,7 +40,8 @@ void ProgressLine::update(double fraction, const std::string& text) {
     if (t - last_time_ < 0.1) return;
     last_time_ = t;
     std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", name_.c_str(), 100.0 * fraction, text.c_str());
-  } else if (const int tenth = static_cast<int>(10.0 * fraction); tenth > last_tenth_ && tenth < 10) {
+  } else if (const int tenth = static_cast<int>(10.0 * fraction);
+             tenth > last_tenth_ && tenth < 10) {
     last_tenth_ = tenth;
     if (tenth > 0) std::fprintf(stderr, "%s %d %%  %s\n", name_.c_str(), 10 * tenth, text.c_str());
   }

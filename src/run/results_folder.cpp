@@ -15,20 +15,24 @@ std::string deck_hash(const model::Model& model) { return sha256_hex(model.resol
 
 namespace {
 
-constexpr double worth_saying = 1e9;   // bytes of output
+constexpr double worth_saying = 1e9;  // bytes of output
 
-/// Pictures of an earlier run with other steps or probes would stand among those of this one; its checkpoints would be resumed.
+/// Pictures of an earlier run with other steps or probes would stand among those of this one; its
+/// checkpoints would be resumed.
 bool is_of_one_run(const std::string& name) {
-  return (name.starts_with("plots/") && name.ends_with(".svg")) || (name.starts_with("checkpoint/") && name.ends_with(".whirl"));
+  return (name.starts_with("plots/") && name.ends_with(".svg")) ||
+         (name.starts_with("checkpoint/") && name.ends_with(".whirl"));
 }
 
 }  // namespace
 
 void check_space(const model::Model& model, const RunOptions& options) {
-  std::filesystem::path folder = options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
+  std::filesystem::path folder =
+      options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
   std::error_code ec;
   folder = std::filesystem::absolute(folder, ec);
-  while (!std::filesystem::exists(folder, ec) && folder.has_relative_path()) folder = folder.parent_path();
+  while (!std::filesystem::exists(folder, ec) && folder.has_relative_path())
+    folder = folder.parent_path();
   const auto space = std::filesystem::space(folder, ec);
   if (ec) return;
   const double available = static_cast<double>(space.available);
@@ -39,12 +43,17 @@ void check_space(const model::Model& model, const RunOptions& options) {
   }
   const deck::OutputEstimate e = deck::estimate_output(model);
   if (options.quiet || e.total() < worth_saying) return;
-  std::fputs(fmt::format("the output will take {} {} (histories {}, pictures {}); {} are free\n", e.at_most ? "at most" : "about", deck::size_text(e.total()),
-                         deck::size_text(e.histories), deck::size_text(e.pictures), deck::size_text(available)).c_str(), stderr);
+  std::fputs(fmt::format("the output will take {} {} (histories {}, pictures {}); {} are free\n",
+                         e.at_most ? "at most" : "about", deck::size_text(e.total()),
+                         deck::size_text(e.histories), deck::size_text(e.pictures),
+                         deck::size_text(available))
+                 .c_str(),
+             stderr);
 }
 
 std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options) {
-  const std::filesystem::path root = options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
+  const std::filesystem::path root =
+      options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
   const io::ResultsFolder folder(root);
   check_space(model, options);
   if (!options.resume) folder.remove(is_of_one_run);

@@ -23,7 +23,8 @@ std::string holder_of(int descriptor) {
   char text[32] = {};
   const ssize_t n = ::pread(descriptor, text, sizeof text - 1, 0);
   std::string number(text, n > 0 ? static_cast<std::size_t>(n) : 0);
-  while (!number.empty() && (number.back() < '0' || number.back() > '9')) number.pop_back();
+  while (!number.empty() && (number.back() < '0' || number.back() > '9'))
+    number.pop_back();
   return number;
 }
 

@@ -14,11 +14,15 @@ using assembly::SupportCondition;
 /// The conditions of the supports at a state; node states as evaluated there.
 class Conditions {
  public:
-  Conditions(const Job& job, const system::State& s) : job_(job), workspace_(job.system().make_workspace()) {
+  Conditions(const Job& job, const system::State& s)
+      : job_(job),
+        workspace_(job.system().make_workspace()) {
     job.system().evaluate_nodes(workspace_, s.frames, s.t, s.q, s.v, s.a);
   }
   SupportCondition::State of(const SupportCondition& c) const {
-    return c.state([this](Index n) -> const system::NodeState& { return workspace_.nodes[static_cast<std::size_t>(n)]; });
+    return c.state([this](Index n) -> const system::NodeState& {
+      return workspace_.nodes[static_cast<std::size_t>(n)];
+    });
   }
 
  private:
@@ -28,24 +32,34 @@ class Conditions {
 
 }  // namespace
 
-Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& running, const StepState& start, const Error& failed) {
+Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& running,
+                             const StepState& start, const Error& failed) {
   bool films = false;
-  for (const SupportCondition& c : job.built.conditions) films = films || Conditions(job, start.state).of(c).film;
+  for (const SupportCondition& c : job.built.conditions)
+    films = films || Conditions(job, start.state).of(c).film;
   if (!films) {
     const auto has_gap = [](const model::Bearing& b) {
       using Shape = model::ForceLaw::Shape;
       if (const auto* x = std::get_if<model::BallBearing>(&b.law)) return x->clearance > 0;
       if (const auto* x = std::get_if<model::RollerBearing>(&b.law)) return x->clearance > 0;
-      if (const auto* x = std::get_if<model::NonlinearSpring>(&b.law)) return x->force.shape == Shape::clearance || x->force.shape == Shape::one_sided;
+      if (const auto* x = std::get_if<model::NonlinearSpring>(&b.law))
+        return x->force.shape == Shape::clearance || x->force.shape == Shape::one_sided;
       return std::holds_alternative<model::Rub>(b.law);
     };
     Diagnostic d = failed.diagnostics().front();
     std::string names;
     for (const model::Bearing& b : job.model.bearings)
-      if (has_gap(b)) { names += fmt::format("{}'{}'", names.empty() ? "" : ", ", b.name); d.where = names.find(',') == std::string::npos ? b.where : d.where; }
+      if (has_gap(b)) {
+        names += fmt::format("{}'{}'", names.empty() ? "" : ", ", b.name);
+        d.where = names.find(',') == std::string::npos ? b.where : d.where;
+      }
     if (d.code != "E75" || names.empty()) return failed;
-    d.message += fmt::format("; {} {} a gap, and moving the shaft along its load finds nothing that holds it", names, names.find(',') == std::string::npos ? "has" : "have");
-    d.hint = "in the middle of its gap a support carries nothing: give the rotor weight or a load that presses it against the support, less gap, or another support";
+    d.message += fmt::format(
+        "; {} {} a gap, and moving the shaft along its load finds nothing that holds it", names,
+        names.find(',') == std::string::npos ? "has" : "have");
+    d.hint =
+        "in the middle of its gap a support carries nothing: give the rotor weight or a load that "
+        "presses it against the support, less gap, or another support";
     return Error(failed.exit(), std::move(d));
   }
   // The largest part of the load that has an equilibrium, to 1/256.
@@ -57,10 +71,15 @@ Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& runni
     const double factor = 0.5 * (done + fails);
     part.set_load(factor);
     auto e = solver.try_solve(start.speed, last ? &last->state : &start.state);
-    if (e) { last = std::move(e); done = factor; }
-    else fails = factor;
+    if (e) {
+      last = std::move(e);
+      done = factor;
+    } else
+      fails = factor;
   }
-  constexpr const char* hint = "a film carries more at a higher speed or viscosity, with a smaller clearance, or with a longer bearing; at rest it carries nothing";
+  constexpr const char* hint =
+      "a film carries more at a higher speed or viscosity, with a smaller clearance, or with a "
+      "longer bearing; at rest it carries nothing";
   Diagnostic d = failed.diagnostics().front();
   if (!last) {
     d.message += "; none either under 1/256 of the load";
@@ -70,14 +89,18 @@ Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& runni
     return Error(failed.exit(), std::move(d));
   }
   // something did carry a share of it: the load is the matter, not a missing support
-  d.code = "E76"; d.message = fmt::format("no equilibrium found: the supports carry {:.3g} of the load; there", done);
+  d.code = "E76";
+  d.message =
+      fmt::format("no equilibrium found: the supports carry {:.3g} of the load; there", done);
   const Conditions now(job, last->state);
   const char* sep = " ";
   for (const SupportCondition& c : job.built.conditions) {
     const SupportCondition::State s = now.of(c);
     if (!s.film) continue;
-    d.message += fmt::format("{}bearing '{}' carries {:.4g} N at eccentricity {:.3f}", sep, c.name, s.load, s.displacement / s.gap);
-    if (s.capacity > 0) d.message += fmt::format(" (about {:.4g} N at {})", s.capacity, SupportCondition::believed);
+    d.message += fmt::format("{}bearing '{}' carries {:.4g} N at eccentricity {:.3f}", sep, c.name,
+                             s.load, s.displacement / s.gap);
+    if (s.capacity > 0)
+      d.message += fmt::format(" (about {:.4g} N at {})", s.capacity, SupportCondition::believed);
     sep = ", ";
     if (d.where.line == 0) d.where = c.where;
   }
@@ -89,20 +112,25 @@ std::string supports_at_their_limit(const Job& job, const system::State& s) {
   std::string out;
   system::Workspace w = job.system().make_workspace();
   job.system().evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a);
-  constexpr double near = 1e-4;   // the steps before it shrink towards the end of the range
+  constexpr double near = 1e-4;  // the steps before it shrink towards the end of the range
   for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
     const model::Bearing& b = job.model.bearings[i];
     const auto* table = std::get_if<model::TableBearing>(&b.law);
     if (!table || table->extrapolate_hold || table->speed.empty()) continue;
-    const double spin = w.nodes[static_cast<std::size_t>(job.mesh.bearings[i].shaft.node)].spin(), low = table->speed.front(), high = table->speed.back();
+    const double spin = w.nodes[static_cast<std::size_t>(job.mesh.bearings[i].shaft.node)].spin(),
+                 low = table->speed.front(), high = table->speed.back();
     const double slack = near * std::max(std::abs(low), std::abs(high));
     if (spin < high - slack && spin > low + slack) continue;
-    out += fmt::format("; the table of bearing '{}' covers {:.6g} to {:.6g} rpm, and its shaft turns at {:.6g} rpm", b.name, low * 30 / pi, high * 30 / pi, spin * 30 / pi);
+    out += fmt::format(
+        "; the table of bearing '{}' covers {:.6g} to {:.6g} rpm, and its shaft turns at {:.6g} "
+        "rpm",
+        b.name, low * 30 / pi, high * 30 / pi, spin * 30 / pi);
   }
   const Conditions now(job, s);
   for (const SupportCondition& c : job.built.conditions)
     if (const SupportCondition::State x = now.of(c); x.film && x.displacement > (1 - near) * x.gap)
-      out += fmt::format("; the journal of bearing '{}' is at the wall (eccentricity {:.6f})", c.name, x.displacement / x.gap);
+      out += fmt::format("; the journal of bearing '{}' is at the wall (eccentricity {:.6f})",
+                         c.name, x.displacement / x.gap);
   return out;
 }
 
@@ -117,13 +145,20 @@ void warn_of_closed_contacts(Job& job, const model::Step& step, const StepState&
     d.severity = Diagnostic::Severity::warning;
     d.code = s.film ? "W03" : "W04";
     if (s.film)
-      d.message = fmt::format("bearing '{}' runs at eccentricity {:.5f} at the start of step '{}', carrying {:.4g} N: its film is believed up to {}, where it carries about {:.4g} N", c.name,
-                              s.displacement / s.gap, step.name, s.load, SupportCondition::believed, s.capacity);
+      d.message = fmt::format(
+          "bearing '{}' runs at eccentricity {:.5f} at the start of step '{}', carrying {:.4g} N: "
+          "its film is believed up to {}, where it carries about {:.4g} N",
+          c.name, s.displacement / s.gap, step.name, s.load, SupportCondition::believed,
+          s.capacity);
     else
-    d.message = fmt::format("contact '{}' is closed at the start of step '{}': displacement {:.4g} mm, gap {:.4g} mm, contact force about {:.3g} N", c.name, step.name,
-                            1e3 * s.displacement, 1e3 * s.gap, s.load);
-    d.hint = s.film ? "the film is thinner than roughness and tilt allow: more speed or viscosity, less clearance, a longer bearing, less load"
-                    : "a larger gap, or a set point of the bearings that lifts the shaft, opens it; the run goes on with the contact closed";
+      d.message = fmt::format(
+          "contact '{}' is closed at the start of step '{}': displacement {:.4g} mm, gap {:.4g} "
+          "mm, contact force about {:.3g} N",
+          c.name, step.name, 1e3 * s.displacement, 1e3 * s.gap, s.load);
+    d.hint = s.film ? "the film is thinner than roughness and tilt allow: more speed or viscosity, "
+                      "less clearance, a longer bearing, less load"
+                    : "a larger gap, or a set point of the bearings that lifts the shaft, opens "
+                      "it; the run goes on with the contact closed";
     d.where = c.where;
     job.report.warnings.push_back(d.message);
     io::Value& list = job.summary["warnings"];

@@ -1,19 +1,26 @@
-// What supports with a gap say about an equilibrium: how far a film was pressed when none was found, contacts that are closed at rest.
+// What supports with a gap say about an equilibrium: how far a film was pressed when none was
+// found, contacts that are closed at rest.
 #pragma once
 #include <run/job.hpp>
 
-namespace whirl::analysis { class SteadySystem; }
+namespace whirl::analysis {
+class SteadySystem;
+}
 
 namespace whirl::run {
 
-/// `failed` with what the films say at the largest load that still has an equilibrium: load, capacity, eccentricity reached.
-Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& running, const StepState& start, const Error& failed);
+/// `failed` with what the films say at the largest load that still has an equilibrium: load,
+/// capacity, eccentricity reached.
+Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& running,
+                             const StepState& start, const Error& failed);
 
-/// Contacts that are closed in the state a step starts from, as warnings of the run (terminal, report and summary).
+/// Contacts that are closed in the state a step starts from, as warnings of the run (terminal,
+/// report and summary).
 void warn_of_closed_contacts(Job& job, const model::Step& step, const StepState& start);
 
-/// Which supports stand at the end of their range in a state (a table at the speed where it ends, a journal at the wall): "; ..." for the message of a motion
-/// that could not go on, empty when none does.
+/// Which supports stand at the end of their range in a state (a table at the speed where it ends, a
+/// journal at the wall): "; ..." for the message of a motion that could not go on, empty when none
+/// does.
 std::string supports_at_their_limit(const Job& job, const system::State& s);
 
 }  // namespace whirl::run

@@ -1,4 +1,5 @@
-// What a transient run says about its own accuracy: energy balance, local errors, numerical against physical damping, warnings.
+// What a transient run says about its own accuracy: energy balance, local errors, numerical against
+// physical damping, warnings.
 #pragma once
 #include <analysis/transient/observer.hpp>
 #include <analysis/study/scheme_damping.hpp>
@@ -12,10 +13,11 @@ struct AccuracyInputs {
   const analysis::TransientResult& result;
   const analysis::EnergyBalance& energy;
   const analysis::StepHistogram& steps;
-  double speed = 0;        ///< of the reference at the end, rad/s
+  double speed = 0;  ///< of the reference at the end, rad/s
 };
 
 /// Fills `summary`, adds a table and a paragraph to the section, and returns the warnings.
-std::vector<std::string> state_accuracy(run::Job& job, const AccuracyInputs& in, io::Value& summary, io::ReportSection& section);
+std::vector<std::string> state_accuracy(run::Job& job, const AccuracyInputs& in, io::Value& summary,
+                                        io::ReportSection& section);
 
 }  // namespace whirl::steps

@@ -49,14 +49,16 @@ void compare(results::FrequencyStep& s, double factor, const analysis::BucklingM
   const bool agrees = p.found && std::abs(p.load - factor) <= agreement * std::abs(factor);
   v["agrees with the first factor"] = agrees;
   s.section.text += fmt::format(
-      "\n\nBefore it buckles at the first factor the rotor turns by {:.3g} rad and moves by {:.3g} of its size; {}.",
+      "\n\nBefore it buckles at the first factor the rotor turns by {:.3g} rad and moves by {:.3g} "
+      "of its size; {}.",
       mode.rotation, mode.displacement, describe(p));
   if (agrees) return;
   Diagnostic d;
   d.severity = Diagnostic::Severity::warning;
   d.code = "W09";
   d.message = fmt::format(
-      "step '{}': the state before buckling is not small, or not symmetric: load factor {:.6g} of the linearised analysis (rotations up to {:.3g} rad there), but {}",
+      "step '{}': the state before buckling is not small, or not symmetric: load factor {:.6g} of "
+      "the linearised analysis (rotations up to {:.3g} rad there), but {}",
       s.step.name, factor, mode.rotation, describe(p));
   d.hint = "a static step with 'path' follows the equilibria; believe the path";
   s.job.report.warnings.push_back(d.message);
@@ -97,11 +99,18 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
     v["rotations before buckling [rad]"].push(m.rotation);
     v["displacements before buckling [-]"].push(m.displacement);
     const std::string name = fmt::format("buckling_{}", k + 1);
-    results::add_shape_figures(s, {name, fmt::format("Buckling shape {}: load factor {:.6g}", k + 1, m.factor.real()), {}, &m.x, analysis::ModeKind::lateral});
+    results::add_shape_figures(
+        s, {name,
+            fmt::format("Buckling shape {}: load factor {:.6g}", k + 1, m.factor.real()),
+            {},
+            &m.x,
+            analysis::ModeKind::lateral});
     results::write_shape_frames(s, name, m.x);
   }
   s.add_table("buckling", std::move(table));
-  s.section.text = "Factors on gravity and all loads at which the stiffness of the rotor vanishes, from its derivative with the loads at the unloaded state.";
+  s.section.text =
+      "Factors on gravity and all loads at which the stiffness of the rotor vanishes, from its "
+      "derivative with the loads at the unloaded state.";
   std::string line = modes.empty()
                          ? "no buckling load"
                          : fmt::format("smallest load factor {:.6g}",

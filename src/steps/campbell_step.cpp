@@ -1,4 +1,5 @@
-// A Campbell step: natural frequencies and damping against speed, each line one mode, with the critical speeds on it.
+// A Campbell step: natural frequencies and damping against speed, each line one mode, with the
+// critical speeds on it.
 #include <analysis/spectra/campbell.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
@@ -32,7 +33,8 @@ io::Table make_table(const analysis::Campbell& c) {
       row.emplace_back(results::to_hz(l.frequency[k]));
       row.emplace_back(results::tidy(l.log_decrement[k]));
       row.emplace_back(results::tidy(l.damping_ratio[k]));
-      row.emplace_back(std::isnan(l.frequency[k]) ? std::string() : std::string(to_string(l.direction_at[k])));
+      row.emplace_back(std::isnan(l.frequency[k]) ? std::string()
+                                                  : std::string(to_string(l.direction_at[k])));
     }
     t.add(std::move(row));
   }
@@ -58,21 +60,32 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   std::vector<plot::CriticalMark> marks;
   io::Table criticals;
   criticals.title = "Critical speeds";
-  criticals.columns = {{"order", "-", "excitations a revolution"}, {"speed", "rpm", ""}, {"frequency", "Hz", ""}, {"kind", "-", ""},
-                       {"direction", "-", ""}, {"log decrement", "-", ""}, {"damping ratio", "-", ""}};
+  criticals.columns = {{"order", "-", "excitations a revolution"},
+                       {"speed", "rpm", ""},
+                       {"frequency", "Hz", ""},
+                       {"kind", "-", ""},
+                       {"direction", "-", ""},
+                       {"log decrement", "-", ""},
+                       {"damping ratio", "-", ""}};
   if (top > 0 && o.speeds.front() >= 0) {
     const run::PhaseTimer timer(job, "critical speeds");
     for (const double order : law.orders) {
       analysis::CriticalOptions q;
-      q.order = order; q.max_speed = top; q.min_speed = o.speeds.front(); q.motion = o.track.modes.motion; q.damped = law.damped;
+      q.order = order;
+      q.max_speed = top;
+      q.min_speed = o.speeds.front();
+      q.motion = o.track.modes.motion;
+      q.damped = law.damped;
       q.grid = static_cast<Index>(o.speeds.size());
       double highest = 0;
       for (const analysis::CampbellLine& l : c.lines)
-        for (double f : l.frequency) highest = std::max(highest, std::isnan(f) ? 0.0 : f);
+        for (double f : l.frequency)
+          highest = std::max(highest, std::isnan(f) ? 0.0 : f);
       q.max_frequency = highest;
       for (const analysis::Critical& k : analysis::critical_speeds(s.linear, q)) {
         marks.push_back({k.speed, k.frequency, order, {}});
-        criticals.add({order, results::to_rpm(k.speed), results::to_hz(k.frequency), std::string(to_string(k.mode.kind)), results::direction_text(k.mode),
+        criticals.add({order, results::to_rpm(k.speed), results::to_hz(k.frequency),
+                       std::string(to_string(k.mode.kind)), results::direction_text(k.mode),
                        results::tidy(k.mode.log_decrement), results::tidy(k.mode.damping_ratio)});
       }
     }
@@ -80,23 +93,36 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   const std::size_t found = marks.size();
 
   io::Value& v = s.summary();
-  v["modes"] = c.lines.size(); v["speeds"] = c.speeds.size(); v["speeds solved"] = c.speeds_solved;
-  for (const plot::CriticalMark& m : marks) v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(results::to_rpm(m.speed));
+  v["modes"] = c.lines.size();
+  v["speeds"] = c.speeds.size();
+  v["speeds solved"] = c.speeds_solved;
+  for (const plot::CriticalMark& m : marks)
+    v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(results::to_rpm(m.speed));
   s.add_table("campbell", make_table(c), false);
   s.add_table("critical_speeds", std::move(criticals));
   const std::vector<plot::CampbellLine> lines = results::drawn_lines(c);
-  s.add_figure(plot::plot_campbell(s.file("campbell"), "Campbell diagram", lines, law.orders, marks));
+  s.add_figure(
+      plot::plot_campbell(s.file("campbell"), "Campbell diagram", lines, law.orders, marks));
   const bool any = std::any_of(c.lines.begin(), c.lines.end(), [](const analysis::CampbellLine& l) {
-    return std::any_of(l.log_decrement.begin(), l.log_decrement.end(), [](double x) { return std::abs(x) > 1e-6; });
+    return std::any_of(l.log_decrement.begin(), l.log_decrement.end(),
+                       [](double x) { return std::abs(x) > 1e-6; });
   });
-  if (any) s.add_figure(plot::plot_stability(s.file("log_decrement"), "Log decrement of the modes", lines));
-  s.section.text = fmt::format("{} modes followed over {} speeds. Critical speeds are solved for, not read off the diagram.", c.lines.size(), c.speeds.size());
+  if (any)
+    s.add_figure(
+        plot::plot_stability(s.file("log_decrement"), "Log decrement of the modes", lines));
+  s.section.text = fmt::format(
+      "{} modes followed over {} speeds. Critical speeds are solved for, not read off the diagram.",
+      c.lines.size(), c.speeds.size());
   std::size_t weakest = 0;
   for (std::size_t k = 1; k < c.certificates.size(); ++k)
     if (!c.certificates[k].complete() && c.certificates[weakest].complete()) weakest = k;
-  s.certify(c.certificates[weakest], fmt::format("at {:.6g} rpm", results::to_rpm(c.speeds[weakest])));
-  s.section.text += c.certificates[weakest].complete() ? " At every speed the roots were counted: the list of modes is complete." : " " + results::capital(c.certificates[weakest].text()) + ".";
-  s.finish(fmt::format("{} modes at {} speeds, {} critical speeds", c.lines.size(), c.speeds.size(), found));
+  s.certify(c.certificates[weakest],
+            fmt::format("at {:.6g} rpm", results::to_rpm(c.speeds[weakest])));
+  s.section.text += c.certificates[weakest].complete()
+                        ? " At every speed the roots were counted: the list of modes is complete."
+                        : " " + results::capital(c.certificates[weakest].text()) + ".";
+  s.finish(fmt::format("{} modes at {} speeds, {} critical speeds", c.lines.size(), c.speeds.size(),
+                       found));
 }
 
 }  // namespace whirl::steps

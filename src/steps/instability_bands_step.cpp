@@ -1,4 +1,5 @@
-// A stability step of a rotor whose shaft has unequal principal stiffnesses: bands of parametric instability.
+// A stability step of a rotor whose shaft has unequal principal stiffnesses: bands of parametric
+// instability.
 #include <analysis/spectra/periodic.hpp>
 #include <results/frequency.hpp>
 #include <run/progress.hpp>
@@ -13,63 +14,91 @@
 namespace whirl::steps {
 
 Error no_map_of_bands(const model::Step& step) {
-  return run_error("E89", fmt::format("step '{}': a map over a parameter is not drawn for asymmetric shafts, whose instabilities are bands", step.name),
+  return run_error("E89",
+                   fmt::format("step '{}': a map over a parameter is not drawn for asymmetric "
+                               "shafts, whose instabilities are bands",
+                               step.name),
                    "leave 'map' out, or give the shaft equal stiffnesses", step.name);
 }
 
-void run_instability_bands(run::Job& job, const model::Step& step, const model::StabilityStep& law) {
+void run_instability_bands(run::Job& job, const model::Step& step,
+                           const model::StabilityStep& law) {
   const std::vector<double> speeds = results::speeds_of(law.speed);
-  results::FrequencyStep s(job, step, "stability", "instability bands of the asymmetric shaft", std::max(std::abs(speeds.front()), std::abs(speeds.back())));
+  results::FrequencyStep s(job, step, "stability", "instability bands of the asymmetric shaft",
+                           std::max(std::abs(speeds.front()), std::abs(speeds.back())));
   const run::PhaseTimer timer(job, "stability");
   if (law.map) throw no_map_of_bands(step);
   analysis::RotatingAxes axes(s.linear, speeds.back());
   analysis::BandOptions o;
   o.modes = law.modes;
-  for (const double Omega : speeds) o.speeds.push_back(std::abs(Omega));
+  for (const double Omega : speeds)
+    o.speeds.push_back(std::abs(Omega));
   std::sort(o.speeds.begin(), o.speeds.end());
   const analysis::BandResult r = analysis::find_bands(axes, o);
 
   io::Table table;
   table.title = "Bands of instability";
   table.nan_means = "the band goes on beyond the speeds";
-  table.columns = {{"from", "rpm", ""}, {"to", "rpm", ""}, {"largest growth", "1/s", "real part of the eigenvalue"}, {"at", "rpm", ""},
-                   {"frequency there", "Hz", "in axes turning with the rotor; 0: the rotor bends out at its own speed"}};
+  table.columns = {{"from", "rpm", ""},
+                   {"to", "rpm", ""},
+                   {"largest growth", "1/s", "real part of the eigenvalue"},
+                   {"at", "rpm", ""},
+                   {"frequency there", "Hz",
+                    "in axes turning with the rotor; 0: the rotor bends out at its own speed"}};
   io::Value& v = s.summary();
   v["supports"] = axes.constant() ? "isotropic" : "unequal";
   v["bands"] = io::Value::array();
   std::string line;
   for (const analysis::InstabilityBand& b : r.bands) {
-    table.add({results::to_rpm(b.low), results::to_rpm(b.high), b.growth, results::to_rpm(b.speed), results::to_hz(results::tidy(b.frequency))});
+    table.add({results::to_rpm(b.low), results::to_rpm(b.high), b.growth, results::to_rpm(b.speed),
+               results::to_hz(results::tidy(b.frequency))});
     io::Value e = io::Value::object();
-    e["from [rpm]"] = results::to_rpm(b.low); e["to [rpm]"] = results::to_rpm(b.high); e["largest growth [1/s]"] = b.growth; e["at [rpm]"] = results::to_rpm(b.speed);
+    e["from [rpm]"] = results::to_rpm(b.low);
+    e["to [rpm]"] = results::to_rpm(b.high);
+    e["largest growth [1/s]"] = b.growth;
+    e["at [rpm]"] = results::to_rpm(b.speed);
     v["bands"].push(std::move(e));
-    const std::string from = std::isnan(b.low) ? "below" : fmt::format("{:.8g}", results::to_rpm(b.low));
-    line += fmt::format("{}{} to {} rpm", line.empty() ? "unstable from " : ", ", std::isnan(b.low) ? fmt::format("below {:.6g}", results::to_rpm(r.speeds.front())) : from,
-                        std::isnan(b.high) ? fmt::format("above {:.6g}", results::to_rpm(r.speeds.back())) : fmt::format("{:.8g}", results::to_rpm(b.high)));
+    const std::string from =
+        std::isnan(b.low) ? "below" : fmt::format("{:.8g}", results::to_rpm(b.low));
+    line += fmt::format(
+        "{}{} to {} rpm", line.empty() ? "unstable from " : ", ",
+        std::isnan(b.low) ? fmt::format("below {:.6g}", results::to_rpm(r.speeds.front())) : from,
+        std::isnan(b.high) ? fmt::format("above {:.6g}", results::to_rpm(r.speeds.back()))
+                           : fmt::format("{:.8g}", results::to_rpm(b.high)));
   }
-  if (r.bands.empty()) line = fmt::format("stable from {:.6g} to {:.6g} rpm", results::to_rpm(r.speeds.front()), results::to_rpm(r.speeds.back()));
+  if (r.bands.empty())
+    line = fmt::format("stable from {:.6g} to {:.6g} rpm", results::to_rpm(r.speeds.front()),
+                       results::to_rpm(r.speeds.back()));
   s.add_table("bands", std::move(table));
 
   io::Table rates;
   rates.title = "Largest growth rate against speed";
-  rates.columns = {{"speed", "rpm", ""}, {"growth", "1/s", "largest real part of the eigenvalues; negative: all motions decay"}, {"frequency", "Hz", "of that motion, in axes turning with the rotor"}};
+  rates.columns = {
+      {"speed", "rpm", ""},
+      {"growth", "1/s", "largest real part of the eigenvalues; negative: all motions decay"},
+      {"frequency", "Hz", "of that motion, in axes turning with the rotor"}};
   plot::Figure f;
-  f.name = s.file("growth"); f.title = "Growth rate of the least stable motion";
+  f.name = s.file("growth");
+  f.title = "Growth rate of the least stable motion";
   f.caption = "Shaded: instability. Eigenvalues in axes that turn with the rotor.";
   plot::Axes a;
-  a.x = plot::Axis("speed", "rpm"); a.y = plot::Axis("largest growth rate (unstable above 0)", "1/s");
+  a.x = plot::Axis("speed", "rpm");
+  a.y = plot::Axis("largest growth rate (unstable above 0)", "1/s");
   a.y.include_zero = true;
   plot::Series curve;
   curve.label = "largest growth rate";
   curve.style = {0, plot::Dash::solid, 1.8};
   plot::Extra hertz{"frequency in rotating axes", "Hz", {}};
   // the edges belong to the curve: growth zero there
-  struct Point { double speed, growth, frequency; };
+  struct Point {
+    double speed, growth, frequency;
+  };
   std::vector<Point> points;
   double top = 0, bottom = 0;
   for (std::size_t k = 0; k < r.speeds.size(); ++k) {
     points.push_back({r.speeds[k], r.growth[k], r.frequency[k]});
-    rates.add({results::to_rpm(r.speeds[k]), results::tidy(r.growth[k]), results::to_hz(results::tidy(r.frequency[k]))});
+    rates.add({results::to_rpm(r.speeds[k]), results::tidy(r.growth[k]),
+               results::to_hz(results::tidy(r.frequency[k]))});
     bottom = std::min(bottom, r.growth[k]);
   }
   for (const analysis::InstabilityBand& b : r.bands) {
@@ -78,14 +107,21 @@ void run_instability_bands(run::Job& job, const model::Step& step, const model::
       if (!std::isnan(x)) points.push_back({x, 0.0, nan});
     top = std::max(top, b.growth);
   }
-  std::sort(points.begin(), points.end(), [](const Point& x, const Point& y) { return x.speed < y.speed; });
-  for (const Point& p : points) { curve.x.push_back(results::to_rpm(p.speed)); curve.y.push_back(p.growth); hertz.values.push_back(results::to_hz(p.frequency)); }
+  std::sort(points.begin(), points.end(),
+            [](const Point& x, const Point& y) { return x.speed < y.speed; });
+  for (const Point& p : points) {
+    curve.x.push_back(results::to_rpm(p.speed));
+    curve.y.push_back(p.growth);
+    hertz.values.push_back(results::to_hz(p.frequency));
+  }
   curve.extra.push_back(std::move(hertz));
   a.y.max = top > 0 ? 1.15 * top : nan;
   for (const analysis::InstabilityBand& b : r.bands) {
-    const double from = results::to_rpm(std::isnan(b.low) ? r.speeds.front() : b.low), to = results::to_rpm(std::isnan(b.high) ? r.speeds.back() : b.high);
+    const double from = results::to_rpm(std::isnan(b.low) ? r.speeds.front() : b.low),
+                 to = results::to_rpm(std::isnan(b.high) ? r.speeds.back() : b.high);
     plot::Patch p;
-    p.x = {from, to, to, from}; p.y = {bottom, bottom, 1.15 * top, 1.15 * top};
+    p.x = {from, to, to, from};
+    p.y = {bottom, bottom, 1.15 * top, 1.15 * top};
     p.style = {1, plot::Dash::solid, 0.0};
     p.tooltip = fmt::format("unstable from {:.6g} to {:.6g} rpm", from, to);
     if (&b == &r.bands.front()) p.label = "instability";
@@ -97,9 +133,15 @@ void run_instability_bands(run::Job& job, const model::Step& step, const model::
   s.add_table("growth", std::move(rates), false);
   s.add_figure(std::move(f));
   s.section.text = line + ".";
-  s.section.text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(s.section.text[0])));
-  s.section.text += axes.constant() ? " The supports are isotropic: in axes turning with the rotor its matrices are constant."
-                                    : fmt::format(" Neither the shaft nor its supports are isotropic: Hill's equations with {} harmonics.", axes.harmonics());
+  s.section.text[0] =
+      static_cast<char>(std::toupper(static_cast<unsigned char>(s.section.text[0])));
+  s.section.text +=
+      axes.constant()
+          ? " The supports are isotropic: in axes turning with the rotor its matrices are constant."
+          : fmt::format(
+                " Neither the shaft nor its supports are isotropic: Hill's equations with {} "
+                "harmonics.",
+                axes.harmonics());
   s.finish(line);
 }
 

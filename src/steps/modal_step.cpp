@@ -16,13 +16,16 @@ namespace {
 /// Names of what stands at the nodes: disks for kinetic energy, bearings for strain energy.
 struct NodeNames {
   std::vector<std::string> disk, bearing;
-  explicit NodeNames(const run::Job& job) : disk(job.mesh.nodes.size()), bearing(job.mesh.nodes.size()) {
+  explicit NodeNames(const run::Job& job)
+      : disk(job.mesh.nodes.size()),
+        bearing(job.mesh.nodes.size()) {
     const auto add = [](std::vector<std::string>& to, Index node, const std::string& name) {
       if (node < 0) return;
       std::string& s = to[static_cast<std::size_t>(node)];
       s += (s.empty() ? "" : ", ") + name;
     };
-    for (const model::Disk& d : job.model.disks) add(disk, job.mesh.place(d.at).node, d.name);
+    for (const model::Disk& d : job.model.disks)
+      add(disk, job.mesh.place(d.at).node, d.name);
     for (std::size_t i = 0; i < job.mesh.bearings.size(); ++i) {
       const meshes::BearingNodes& b = job.mesh.bearings[i];
       add(bearing, b.shaft.node, job.model.bearings[i].name);
@@ -32,14 +35,16 @@ struct NodeNames {
   }
 };
 
-/// Two tables: every part of every mode (a file), and shares by shaft, disk and bearing (the report).
+/// Two tables: every part of every mode (a file), and shares by shaft, disk and bearing (the
+/// report).
 void add_energy_tables(results::FrequencyStep& s, const std::vector<analysis::WhirlMode>& modes) {
   const NodeNames names(s.job);
   io::Table all, sums;
   all.title = "Energy of the modes by element";
-  all.columns = {{"mode", "-", ""}, {"energy", "-", "strain or kinetic"}, {"part", "-", ""}, {"from", "-", "node"}, {"to", "-", "node, of an element"}, {"share", "%", ""}};
+  all.columns = {{"mode", "-", ""},     {"energy", "-", "strain or kinetic"}, {"part", "-", ""},
+                 {"from", "-", "node"}, {"to", "-", "node, of an element"},   {"share", "%", ""}};
   sums.title = "Energy of the modes by part";
-  std::vector<std::pair<std::string, std::vector<double>>> columns;   // in order of appearance
+  std::vector<std::pair<std::string, std::vector<double>>> columns;  // in order of appearance
   const auto column = [&](const std::string& name) -> std::vector<double>& {
     for (auto& c : columns)
       if (c.first == name) return c.second;
@@ -52,19 +57,30 @@ void add_energy_tables(results::FrequencyStep& s, const std::vector<analysis::Wh
     const system::System& sys = s.linear.system();
     for (const bool kinetic : {false, true})
       for (const analysis::EnergyPart& p : kinetic ? e.kinetic : e.strain) {
-        all.add({static_cast<int>(k + 1), kinetic ? "kinetic" : "strain", p.kind, sys.node(p.node).name, p.other >= 0 ? sys.node(p.other).name : std::string(), 100 * p.share});
+        all.add({static_cast<int>(k + 1), kinetic ? "kinetic" : "strain", p.kind,
+                 sys.node(p.node).name, p.other >= 0 ? sys.node(p.other).name : std::string(),
+                 100 * p.share});
         const std::vector<std::string>& own = kinetic ? names.disk : names.bearing;
-        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty() && p.kind.find("shaft") == std::string::npos && p.kind.find("beam") == std::string::npos;
-        const std::string part = known ? own[at(p.node)] : p.kind == "shaft elements" || p.kind == "general beam elements" ? "shaft" : p.kind;
+        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty() &&
+                           p.kind.find("shaft") == std::string::npos &&
+                           p.kind.find("beam") == std::string::npos;
+        const std::string part = known ? own[at(p.node)]
+                                 : p.kind == "shaft elements" || p.kind == "general beam elements"
+                                     ? "shaft"
+                                     : p.kind;
         column((kinetic ? "kinetic: " : "strain: ") + part)[k] += p.share;
       }
   }
   sums.columns.push_back({"mode", "-", ""});
-  std::stable_sort(columns.begin(), columns.end(), [](const auto& a, const auto& b) { return a.first.front() > b.first.front(); });   // strain first
-  for (const auto& c : columns) sums.columns.push_back({c.first, "%", ""});
+  std::stable_sort(columns.begin(), columns.end(), [](const auto& a, const auto& b) {
+    return a.first.front() > b.first.front();
+  });  // strain first
+  for (const auto& c : columns)
+    sums.columns.push_back({c.first, "%", ""});
   for (std::size_t k = 0; k < modes.size(); ++k) {
     std::vector<io::Table::Cell> row{static_cast<int>(k + 1)};
-    for (const auto& c : columns) row.emplace_back(100 * results::tidy(c.second[k]));
+    for (const auto& c : columns)
+      row.emplace_back(100 * results::tidy(c.second[k]));
     sums.add(std::move(row));
   }
   s.add_table("energy_parts", std::move(sums));
@@ -89,7 +105,8 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
     return analysis::whirl_modes(s.linear, law.speed, o, &certificate);
   }();
   std::vector<analysis::WhirlMode> modes;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(modes), [](const analysis::WhirlMode& m) { return m.oscillates(); });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(modes),
+               [](const analysis::WhirlMode& m) { return m.oscillates(); });
 
   io::Table table;
   table.title = "Modes";
@@ -105,7 +122,10 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
                    {"torsional", "%", ""},
                    {"axial", "%", ""},
                    {"forwardness", "-", "1: forward circles, -1: backward circles"}};
-  if (o.continued) table.columns.push_back({"continued log decrement", "-", "with coefficients continued from the frequency to the decay of the motion, first order"});
+  if (o.continued)
+    table.columns.push_back(
+        {"continued log decrement", "-",
+         "with coefficients continued from the frequency to the decay of the motion, first order"});
   io::Value& v = s.summary();
   v["speed [rpm]"] = results::to_rpm(law.speed);
   io::Value list = io::Value::array();
@@ -113,8 +133,13 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
   const std::vector<std::string> labels = results::labels_of(modes);
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::WhirlMode& m = modes[k];
-    std::vector<io::Table::Cell> row{static_cast<int>(k + 1), labels[k], std::string(to_string(m.kind)), results::direction_text(m), results::to_hz(m.frequency), results::to_rpm(m.frequency),
-                                     results::tidy(m.log_decrement), results::tidy(m.damping_ratio), 100 * results::tidy(m.lateral), 100 * results::tidy(m.torsional), 100 * results::tidy(m.axial), results::tidy(m.forwardness)};
+    std::vector<io::Table::Cell> row{
+        static_cast<int>(k + 1),        labels[k],
+        std::string(to_string(m.kind)), results::direction_text(m),
+        results::to_hz(m.frequency),    results::to_rpm(m.frequency),
+        results::tidy(m.log_decrement), results::tidy(m.damping_ratio),
+        100 * results::tidy(m.lateral), 100 * results::tidy(m.torsional),
+        100 * results::tidy(m.axial),   results::tidy(m.forwardness)};
     const double continued = -two_pi * m.continued.real() / m.continued.imag();
     if (o.continued) row.emplace_back(results::tidy(continued));
     table.add(std::move(row));
@@ -124,7 +149,8 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
     e["log decrement"] = results::tidy(m.log_decrement);
     e["damping ratio"] = results::tidy(m.damping_ratio);
     if (o.continued) e["continued log decrement"] = results::tidy(continued);
-    e["kind"] = std::string(to_string(m.kind)); e["direction"] = results::direction_text(m);
+    e["kind"] = std::string(to_string(m.kind));
+    e["direction"] = results::direction_text(m);
     list.push(std::move(e));
     unstable += m.growth() > 0;
   }
@@ -149,21 +175,38 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
   for (std::size_t k = 0; k < drawn; ++k) {
     const analysis::WhirlMode& m = modes[k];
     const std::string name = fmt::format("mode_{}", k + 1);
-    results::ShapeDrawing d{name, fmt::format("Mode {} ({}): {:.5g} Hz, {}", k + 1, labels[k], results::to_hz(m.frequency), results::description(m)), {}, &m.x, m.kind};
-    if (std::abs(m.log_decrement) > 1e-9) d.caption = fmt::format("Log decrement {:.4g}, damping ratio {:.4g}.", m.log_decrement, m.damping_ratio);
+    results::ShapeDrawing d{name,
+                            fmt::format("Mode {} ({}): {:.5g} Hz, {}", k + 1, labels[k],
+                                        results::to_hz(m.frequency), results::description(m)),
+                            {},
+                            &m.x,
+                            m.kind};
+    if (std::abs(m.log_decrement) > 1e-9)
+      d.caption = fmt::format("Log decrement {:.4g}, damping ratio {:.4g}.", m.log_decrement,
+                              m.damping_ratio);
     results::add_shape_figures(s, d);
     results::write_shape_frames(s, name, m.x);
   }
-  s.section.text = fmt::format("{} whirl modes at {:.6g} rpm, {}.", modes.size(), results::to_rpm(law.speed),
-                               law.damped ? "damped" : "undamped");
+  s.section.text = fmt::format("{} whirl modes at {:.6g} rpm, {}.", modes.size(),
+                               results::to_rpm(law.speed), law.damped ? "damped" : "undamped");
   if (unstable > 0) s.section.text += fmt::format(" {} of them unstable.", unstable);
-  if (diverging > 0) s.section.text += fmt::format(" {} motion{} without oscillating.", diverging, diverging == 1 ? " diverges" : "s diverge");
+  if (diverging > 0)
+    s.section.text += fmt::format(" {} motion{} without oscillating.", diverging,
+                                  diverging == 1 ? " diverges" : "s diverge");
   s.section.text += " " + results::capital(certificate.text()) + ".";
-  if (law.damped && unstable + diverging == 0) s.section.text += " " + results::capital(results::stability_text(certificate)) + ".";
-  std::string line = fmt::format("{} modes at {:.0f} rpm", modes.size(), results::to_rpm(law.speed));
-  for (std::size_t k = 0; k < std::min<std::size_t>(modes.size(), 4); ++k) line += fmt::format("{}{:.4g}", k ? ", " : ": ", results::to_hz(modes[k].frequency));
-  s.finish(line + (modes.empty() ? "" : modes.size() > 4 ? " ... Hz" : " Hz") + (unstable ? fmt::format(", {} unstable", unstable) : "") +
-           (diverging ? fmt::format(", {} diverging", diverging) : "") + (certificate.complete() ? ", complete" : ", not certified"));
+  if (law.damped && unstable + diverging == 0)
+    s.section.text += " " + results::capital(results::stability_text(certificate)) + ".";
+  std::string line =
+      fmt::format("{} modes at {:.0f} rpm", modes.size(), results::to_rpm(law.speed));
+  for (std::size_t k = 0; k < std::min<std::size_t>(modes.size(), 4); ++k)
+    line += fmt::format("{}{:.4g}", k ? ", " : ": ", results::to_hz(modes[k].frequency));
+  s.finish(line +
+           (modes.empty()      ? ""
+            : modes.size() > 4 ? " ... Hz"
+                               : " Hz") +
+           (unstable ? fmt::format(", {} unstable", unstable) : "") +
+           (diverging ? fmt::format(", {} diverging", diverging) : "") +
+           (certificate.complete() ? ", complete" : ", not certified"));
 }
 
 }  // namespace whirl::steps

@@ -18,7 +18,10 @@ namespace {
 /// Finds what stands against a run step by step; systems that steps share are put together once.
 class Obstacles {
  public:
-  Obstacles(const model::Model& model, const meshes::Mesh& mesh, const run::RunOptions& options) : model_(model), mesh_(mesh), options_(options) {}
+  Obstacles(const model::Model& model, const meshes::Mesh& mesh, const run::RunOptions& options)
+      : model_(model),
+        mesh_(mesh),
+        options_(options) {}
 
   void find() {
     look_at_steps();
@@ -28,17 +31,21 @@ class Obstacles {
  private:
   void look_at_steps() {
     note({}, [&] { run::check_space(model_, options_); });
-    // the system without drives of any step is put together in any case: what is wrong with the model itself
+    // the system without drives of any step is put together in any case: what is wrong with the
+    // model itself
     if (!note({}, [&] { system_of({}); })) return;
     for (const model::Step& step : model_.steps) {
       if (!note(step.where, [&] { system_of(step.name); })) continue;
       note(step.where, [&] { check_turning(step); });
-      if (const auto* t = std::get_if<model::TransientStep>(&step.law)) note(step.where, [&] { check_transient(step, *t); });
-      if (const auto* s = std::get_if<model::StabilityStep>(&step.law); s && s->map) note(step.where, [&] { check_map(step, *s->map); });
+      if (const auto* t = std::get_if<model::TransientStep>(&step.law))
+        note(step.where, [&] { check_transient(step, *t); });
+      if (const auto* s = std::get_if<model::StabilityStep>(&step.law); s && s->map)
+        note(step.where, [&] { check_map(step, *s->map); });
     }
   }
 
-  /// Whether `look` found nothing; what it throws is noted, at the place of the step when it has none.
+  /// Whether `look` found nothing; what it throws is noted, at the place of the step when it has
+  /// none.
   template <class Look>
   bool note(const Where& step, Look look) {
     try {
@@ -72,24 +79,32 @@ class Obstacles {
   void check_turning(const model::Step& step) {
     const assembly::Built& built = system_of(step.name);
     std::optional<double> own;
-    if (const auto* s = std::get_if<model::StaticStep>(&step.law)) own = s->speeds ? std::optional(results::speeds_of(*s->speeds).back()) : s->own_speed();
-    else if (const auto* t = std::get_if<model::TransientStep>(&step.law)) own = t->own_speed();
-    else own = top_speed(step.law);
-    if (!own && !step.from.empty()) return;   // that of the step it starts from
+    if (const auto* s = std::get_if<model::StaticStep>(&step.law))
+      own = s->speeds ? std::optional(results::speeds_of(*s->speeds).back()) : s->own_speed();
+    else if (const auto* t = std::get_if<model::TransientStep>(&step.law))
+      own = t->own_speed();
+    else
+      own = top_speed(step.law);
+    if (!own && !step.from.empty()) return;  // that of the step it starts from
     analysis::SteadyRotation running;
     double reference = 0.0;
     for (std::size_t l = 0; l < mesh_.lines.size(); ++l) {
       const assembly::LineSpin& law = built.spins[l];
       const double given = law.prescribed ? law.angle->at(0.0).df : law.spin0;
-      const double spin = !model_.shafts[l].rotating ? 0.0 : own ? *own * model_.shafts[l].speed_ratio : given;
+      const double spin = !model_.shafts[l].rotating ? 0.0
+                          : own                      ? *own * model_.shafts[l].speed_ratio
+                                                     : given;
       running.ratio.push_back(spin);
       if (reference == 0.0) reference = spin;
     }
     if (reference == 0.0) return;
-    for (double& r : running.ratio) r /= reference;
+    for (double& r : running.ratio)
+      r /= reference;
     running.ratio.resize(static_cast<std::size_t>(built.system.lines()), 0.0);
     // a motion in time that starts at rest may well have a brake on
-    if (const auto* t = std::get_if<model::TransientStep>(&step.law); t && t->start == model::TransientStep::Start::rest && !t->linear) return;
+    if (const auto* t = std::get_if<model::TransientStep>(&step.law);
+        t && t->start == model::TransientStep::Start::rest && !t->linear)
+      return;
     const analysis::SteadySystem turning(built.system, running);
     VecX v(built.system.size());
     turning.set_rates(reference, v);
@@ -99,29 +114,39 @@ class Obstacles {
     return std::visit(
         [](const auto& s) -> std::optional<double> {
           using T = std::decay_t<decltype(s)>;
-          if constexpr (std::is_same_v<T, model::HarmonicStep>) return s.speeds ? results::speeds_of(*s.speeds).back() : s.speed;
-          else if constexpr (requires { s.max_speed; }) return s.max_speed;
-          else if constexpr (requires { s.speed.points; }) return results::speeds_of(s.speed).back();
-          else if constexpr (std::is_same_v<T, model::ModalStep> || std::is_same_v<T, model::BucklingStep>) return s.speed;
-          else return std::nullopt;
+          if constexpr (std::is_same_v<T, model::HarmonicStep>)
+            return s.speeds ? results::speeds_of(*s.speeds).back() : s.speed;
+          else if constexpr (requires { s.max_speed; })
+            return s.max_speed;
+          else if constexpr (requires { s.speed.points; })
+            return results::speeds_of(s.speed).back();
+          else if constexpr (std::is_same_v<T, model::ModalStep> ||
+                             std::is_same_v<T, model::BucklingStep>)
+            return s.speed;
+          else
+            return std::nullopt;
         },
         law);
   }
 
-  /// E74, N10, N11: the integrator can be made. E91, E94: the state it goes on from is there and fits.
+  /// E74, N10, N11: the integrator can be made. E91, E94: the state it goes on from is there and
+  /// fits.
   void check_transient(const model::Step& step, const model::TransientStep& law) {
     const assembly::Built& built = system_of(step.name);
     if (!law.previous.empty()) {
       const run::Checkpoint c = run::last_state_of(law.previous, law.previous_step);
       run::check_state_fits(c, law.previous, built.system, model_.deck_path);
     }
-    system::SystemProblem problem(built.system, {la::SolverKind::automatic, model_.chart_change, 2.0});
+    system::SystemProblem problem(built.system,
+                                  {la::SolverKind::automatic, model_.chart_change, 2.0});
     time::Options o;
     o.t_end = law.duration;
     o.tolerance = law.integrator.tolerance;
     o.dt_fixed = law.integrator.dt;
-    if (law.integrator.method == "momentum_rk") analysis::make_momentum_integrator(problem, o);
-    else time::make_integrator(law.integrator.method, problem, o);
+    if (law.integrator.method == "momentum_rk")
+      analysis::make_momentum_integrator(problem, o);
+    else
+      time::make_integrator(law.integrator.method, problem, o);
   }
 
   /// E89, and what is wrong with the deck at another value of the parameter.
@@ -144,6 +169,9 @@ class Obstacles {
 
 }  // namespace
 
-void check_steps(const model::Model& model, const meshes::Mesh& mesh, const run::RunOptions& options) { Obstacles(model, mesh, options).find(); }
+void check_steps(const model::Model& model, const meshes::Mesh& mesh,
+                 const run::RunOptions& options) {
+  Obstacles(model, mesh, options).find();
+}
 
 }  // namespace whirl::steps

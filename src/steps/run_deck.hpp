@@ -4,7 +4,8 @@
 
 namespace whirl::steps {
 
-/// Runs all steps of a checked model. Returns the exit code (core/error.hpp); throws Error for what the user must know.
+/// Runs all steps of a checked model. Returns the exit code (core/error.hpp); throws Error for what
+/// the user must know.
 int run_deck(const model::Model& model, const run::RunOptions& options);
 
 }  // namespace whirl::steps

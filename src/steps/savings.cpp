@@ -19,7 +19,7 @@ double evaluation(const system::System& s) {
   la::MCK m = s.make_matrices();
   VecX r(s.size());
   double best = infinity;
-  for (int i = 0; i < 8; ++i) {   // the first ones fill the caches
+  for (int i = 0; i < 8; ++i) {  // the first ones fill the caches
     const double t0 = cpu_seconds();
     s.residual(w, x.frames, 0.0, x.q, x.v, x.a, r);
     s.tangent(w, x.frames, 0.0, x.q, x.v, x.a, m);
@@ -34,10 +34,11 @@ Savings measure_savings(const run::Job& job) {
   model::Model general = job.model;
   general.keep_everything = true;
   try {
-    const assembly::Built built = assembly::build_system(general, job.mesh, job.built_for.empty() ? "" : job.built_for.substr(1));
+    const assembly::Built built = assembly::build_system(
+        general, job.mesh, job.built_for.empty() ? "" : job.built_for.substr(1));
     return {evaluation(job.system()), evaluation(built.system)};
   } catch (const Error&) {
-    return {};   // only the measurement is lost
+    return {};  // only the measurement is lost
   }
 }
 

@@ -6,10 +6,12 @@
 namespace whirl::steps {
 
 /// The deck of a run with another value of a map's parameter. E89: nothing depends on it.
-model::Model variant_of(const run::RunOptions& options, const model::Step& step, const model::StabilityMap& map, const std::string& value);
+model::Model variant_of(const run::RunOptions& options, const model::Step& step,
+                        const model::StabilityMap& map, const std::string& value);
 /// E89: such a rotor has bands of instability, over which no map is drawn.
 Error no_map_of_bands(const model::Step& step);
 /// Figures and tables of the stability over a parameter; returns what to add to the step's line.
-std::string add_stability_map(results::FrequencyStep& s, const model::StabilityMap& map, const analysis::StabilityOptions& options);
+std::string add_stability_map(results::FrequencyStep& s, const model::StabilityMap& map,
+                              const analysis::StabilityOptions& options);
 
 }  // namespace whirl::steps

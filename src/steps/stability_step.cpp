@@ -1,4 +1,5 @@
-// A stability step: log decrement against speed and the onset speeds of instability, solved for directly.
+// A stability step: log decrement against speed and the onset speeds of instability, solved for
+// directly.
 #include <analysis/spectra/stability.hpp>
 #include <results/frequency.hpp>
 #include <run/progress.hpp>
@@ -17,21 +18,34 @@ namespace {
 
 /// The speed of which least is known: not counted, then not complete, then not excluded above.
 const analysis::SpeedVerdict& weakest(const analysis::StabilityResult& r) {
-  const auto grade = [](const analysis::SpeedVerdict& v) { return v.certificate.stability_certain() ? 2 : v.certificate.complete() ? 1 : 0; };
-  return *std::min_element(r.verdicts.begin(), r.verdicts.end(), [&](const auto& a, const auto& b) { return grade(a) < grade(b); });
+  const auto grade = [](const analysis::SpeedVerdict& v) {
+    return v.certificate.stability_certain() ? 2 : v.certificate.complete() ? 1 : 0;
+  };
+  return *std::min_element(r.verdicts.begin(), r.verdicts.end(),
+                           [&](const auto& a, const auto& b) { return grade(a) < grade(b); });
 }
 
 io::Table verdict_table(const analysis::StabilityResult& r) {
   io::Table t;
   t.title = "Verdict at each speed";
-  t.columns = {{"speed", "rpm", ""}, {"growing whirl modes", "-", ""}, {"diverging motions", "-", ""}, {"fastest growth", "1/s", ""},
-               {"roots counted up to", "Hz", ""}, {"roots not found", "-", ""}, {"certified", "-", "all: at all frequencies; band: up to the frequency counted to; no"}};
+  t.columns = {
+      {"speed", "rpm", ""},
+      {"growing whirl modes", "-", ""},
+      {"diverging motions", "-", ""},
+      {"fastest growth", "1/s", ""},
+      {"roots counted up to", "Hz", ""},
+      {"roots not found", "-", ""},
+      {"certified", "-", "all: at all frequencies; band: up to the frequency counted to; no"}};
   for (const analysis::SpeedVerdict& v : r.verdicts) {
     const analysis::SpectrumCertificate& c = v.certificate;
     const char* word = c.stability_certain() ? "all" : c.complete() ? "band" : "no";
     io::Table::Cell top = std::string(), missing = std::string();
-    if (c.open.empty()) { top = results::to_hz(c.list.radius); missing = static_cast<int>(c.list.missing); }
-    t.add({results::to_rpm(v.speed), static_cast<int>(v.whirling), static_cast<int>(v.diverging), v.fastest, std::move(top), std::move(missing), std::string(word)});
+    if (c.open.empty()) {
+      top = results::to_hz(c.list.radius);
+      missing = static_cast<int>(c.list.missing);
+    }
+    t.add({results::to_rpm(v.speed), static_cast<int>(v.whirling), static_cast<int>(v.diverging),
+           v.fastest, std::move(top), std::move(missing), std::string(word)});
   }
   return t;
 }
@@ -42,17 +56,28 @@ std::string verdict_line(const analysis::StabilityResult& r, const std::vector<d
   const analysis::SpeedVerdict& first = r.verdicts.front();
   if (!r.stable_at_start)
     line = fmt::format("unstable at {:.6g} rpm already ({})", results::to_rpm(speeds.front()),
-                       first.diverging > 0 ? fmt::format("a motion diverges at {:.4g} 1/s", first.fastest) : fmt::format("growth {:.4g} 1/s", first.fastest));
-  else if (r.onsets.empty()) line = fmt::format("stable from {:.6g} to {:.6g} rpm", results::to_rpm(speeds.front()), results::to_rpm(speeds.back()));
+                       first.diverging > 0
+                           ? fmt::format("a motion diverges at {:.4g} 1/s", first.fastest)
+                           : fmt::format("growth {:.4g} 1/s", first.fastest));
+  else if (r.onsets.empty())
+    line = fmt::format("stable from {:.6g} to {:.6g} rpm", results::to_rpm(speeds.front()),
+                       results::to_rpm(speeds.back()));
   for (const analysis::Onset& x : r.onsets) {
     if (!x.gains) continue;
-    const std::string what = x.divergence() ? "diverging without whirl" : fmt::format("whirling at {:.5g} Hz", results::to_hz(x.frequency));
-    line += fmt::format("{}instability above {:.8g} rpm, {}", line.empty() ? "" : "; ", results::to_rpm(x.speed), what);
+    const std::string what =
+        x.divergence() ? "diverging without whirl"
+                       : fmt::format("whirling at {:.5g} Hz", results::to_hz(x.frequency));
+    line += fmt::format("{}instability above {:.8g} rpm, {}", line.empty() ? "" : "; ",
+                        results::to_rpm(x.speed), what);
     break;
   }
   const analysis::SpectrumCertificate& c = weakest(r).certificate;
-  if (r.certain()) return line + fmt::format(" (certified at {} speeds: all roots accounted for)", r.verdicts.size());
-  if (r.complete()) return line + fmt::format(" (certified up to {:.5g} Hz; above it growth is not excluded)", results::to_hz(c.list.radius));
+  if (r.certain())
+    return line +
+           fmt::format(" (certified at {} speeds: all roots accounted for)", r.verdicts.size());
+  if (r.complete())
+    return line + fmt::format(" (certified up to {:.5g} Hz; above it growth is not excluded)",
+                              results::to_hz(c.list.radius));
   return line + " (not certified: " + c.text() + ")";
 }
 
@@ -62,8 +87,11 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   analysis::StabilityOptions o;
   const std::vector<double> speeds = results::speeds_of(law.speed);
   if (results::turns_with_stiffness(job.model)) return run_instability_bands(job, step, law);
-  results::FrequencyStep s(job, step, "stability", "stability", std::max(std::abs(speeds.front()), std::abs(speeds.back())));
-  o.speeds = speeds; o.modes = law.modes; o.all = true;
+  results::FrequencyStep s(job, step, "stability", "stability",
+                           std::max(std::abs(speeds.front()), std::abs(speeds.back())));
+  o.speeds = speeds;
+  o.modes = law.modes;
+  o.all = true;
   const run::PhaseTimer timer(job, "stability");
   const analysis::StabilityResult r = analysis::find_instability(s.linear, o);
 
@@ -77,14 +105,20 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   v["onsets"] = io::Value::array();
   io::Table table;
   table.title = "Onset of instability";
-  table.columns = {{"speed", "rpm", ""}, {"whirl frequency", "Hz", ""}, {"frequency / speed", "-", ""}, {"kind", "-", ""}, {"direction", "-", ""},
-                   {"above this speed", "-", ""}};
+  table.columns = {{"speed", "rpm", ""},           {"whirl frequency", "Hz", ""},
+                   {"frequency / speed", "-", ""}, {"kind", "-", ""},
+                   {"direction", "-", ""},         {"above this speed", "-", ""}};
   std::vector<double> thresholds;
   for (const analysis::Onset& x : r.onsets) {
-    table.add({results::to_rpm(x.speed), results::to_hz(x.frequency), x.ratio(), std::string(to_string(x.mode.kind)), results::direction_text(x.mode),
-               x.divergence() ? (x.gains ? "diverges" : "no longer diverges") : x.gains ? "unstable" : "stable again"});
+    table.add({results::to_rpm(x.speed), results::to_hz(x.frequency), x.ratio(),
+               std::string(to_string(x.mode.kind)), results::direction_text(x.mode),
+               x.divergence() ? (x.gains ? "diverges" : "no longer diverges")
+               : x.gains      ? "unstable"
+                              : "stable again"});
     io::Value e = io::Value::object();
-    e["speed [rpm]"] = results::to_rpm(x.speed); e["whirl frequency [Hz]"] = results::to_hz(x.frequency); e["becomes unstable"] = x.gains;
+    e["speed [rpm]"] = results::to_rpm(x.speed);
+    e["whirl frequency [Hz]"] = results::to_hz(x.frequency);
+    e["becomes unstable"] = x.gains;
     e["divergence"] = x.divergence();
     v["onsets"].push(std::move(e));
     thresholds.push_back(x.speed);
@@ -111,13 +145,20 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   }
   s.add_table("onset", std::move(table));
   s.add_table("log_decrement", std::move(rates), false);
-  s.add_figure(plot::plot_stability(s.file("log_decrement"), "Log decrement of the modes", lines, thresholds));
-  s.add_figure(plot::plot_campbell(s.file("frequencies"), "Frequencies of these modes", lines, std::vector<double>{1.0}, {}));
+  s.add_figure(plot::plot_stability(s.file("log_decrement"), "Log decrement of the modes", lines,
+                                    thresholds));
+  s.add_figure(plot::plot_campbell(s.file("frequencies"), "Frequencies of these modes", lines,
+                                   std::vector<double>{1.0}, {}));
   for (std::size_t k = 0; k < r.onsets.size() && k < 3; ++k) {
     const analysis::Onset& x = r.onsets[k];
     s.linear.at(x.speed);
-    results::add_shape_figures(s, {fmt::format("onset_{}", k + 1), fmt::format("Mode at the onset, {:.6g} rpm, {:.5g} Hz, {}", results::to_rpm(x.speed), results::to_hz(x.frequency), results::description(x.mode)), {},
-                          &x.mode.x, x.mode.kind});
+    results::add_shape_figures(
+        s, {fmt::format("onset_{}", k + 1),
+            fmt::format("Mode at the onset, {:.6g} rpm, {:.5g} Hz, {}", results::to_rpm(x.speed),
+                        results::to_hz(x.frequency), results::description(x.mode)),
+            {},
+            &x.mode.x,
+            x.mode.kind});
     results::write_shape_frames(s, fmt::format("onset_{}", k + 1), x.mode.x);
   }
   std::string line = verdict_line(r, speeds);

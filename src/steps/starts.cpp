@@ -16,7 +16,9 @@ analysis::Linearizer linearizer_of(const run::Job& job, const run::StepState& st
   analysis::SteadyRotation running;
   for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
     const double spin = start.state.v[6 * job.mesh.lines[l].first_node + system::spin_phi];
-    running.ratio.push_back(start.speed != 0.0 ? spin / start.speed : job.model.shafts[l].rotating ? job.model.shafts[l].speed_ratio : 0.0);
+    running.ratio.push_back(start.speed != 0.0             ? spin / start.speed
+                            : job.model.shafts[l].rotating ? job.model.shafts[l].speed_ratio
+                                                           : 0.0);
   }
   running.ratio.resize(static_cast<std::size_t>(job.system().lines()), 0.0);
   running.time = start.state.t;
@@ -26,7 +28,9 @@ analysis::Linearizer linearizer_of(const run::Job& job, const run::StepState& st
 }
 
 /// Axial angle of the reference at the start: what turns with the rotor stands there.
-double start_angle(const run::Job& job, const run::StepState& start) { return start.state.q[6 * job.reference() + system::spin_phi]; }
+double start_angle(const run::Job& job, const run::StepState& start) {
+  return start.state.q[6 * job.reference() + system::spin_phi];
+}
 
 /// The equilibrium has its rotor at angle zero; the start's angles are put back.
 void take_equilibrium(const run::Job& job, const analysis::Equilibrium& e, run::StepState& start) {
@@ -48,20 +52,28 @@ void start_in_unbalance_response(const run::Job& job, run::StepState& start) {
   analysis::Linearizer linear = linearizer_of(job, start);
   linear.at(start.speed);
   const std::vector<VecXc> f = linear.forcing();
-  const std::vector<double> orders(linear.running().orders().begin(), linear.running().orders().end());
+  const std::vector<double> orders(linear.running().orders().begin(),
+                                   linear.running().orders().end());
   analysis::HarmonicSolver solver(linear);
   const double theta = start_angle(job, start);
   VecX q = VecX::Zero(job.system().size()), v = q;
   for (std::size_t k = 0; k < orders.size(); ++k) {
     const double w = orders[k] * start.speed;
     VecXc a = -f[k];
-    if (!solver.prepare(start.speed, w)) throw run_error("E76", fmt::format("no steady unbalance response at {:.6g} rpm: resonance without damping", start.speed * 30.0 / pi), "start from static equilibrium, or give the model damping");
+    if (!solver.prepare(start.speed, w))
+      throw run_error(
+          "E76",
+          fmt::format("no steady unbalance response at {:.6g} rpm: resonance without damping",
+                      start.speed * 30.0 / pi),
+          "start from static equilibrium, or give the model damping");
     solver.solve(a);
     const Complex turn = std::polar(1.0, orders[k] * theta);
-    q += (turn * a).real(); v += (Complex(0.0, w) * turn * a).real();
+    q += (turn * a).real();
+    v += (Complex(0.0, w) * turn * a).real();
   }
   take_equilibrium(job, linear.equilibrium(), start);
-  start.state.q += q; start.state.v += v;
+  start.state.q += q;
+  start.state.v += v;
 }
 
 namespace {
@@ -97,8 +109,12 @@ void start_in_mode(const run::Job& job, run::StepState& start, const model::Tran
   }
   if (!found) {
     constexpr std::string_view names[] = {"", "lateral ", "torsional ", "axial "};
-    throw run_error("E76", fmt::format("the rotor has {} {}modes, not {}", law.mode_kind == model::MotionKind::all ? static_cast<int>(all) : of_kind,
-                                       names[static_cast<int>(law.mode_kind)], law.mode), "choose a lower number");
+    throw run_error(
+        "E76",
+        fmt::format("the rotor has {} {}modes, not {}",
+                    law.mode_kind == model::MotionKind::all ? static_cast<int>(all) : of_kind,
+                    names[static_cast<int>(law.mode_kind)], law.mode),
+        "choose a lower number");
   }
   take_equilibrium(job, linear.equilibrium(), start);
   start.state.q += law.mode_amplitude * found->x.real();
@@ -110,7 +126,9 @@ void begin_governors(const run::Job& job, run::StepState& start) {
   for (const assembly::Governor& g : job.built.governors) {
     const auto before = start.governors.find(g.drive);
     const double angle = start.state.total_phi(g.node, job.system().node(g.node).line);
-    const run::StepState::Began began = before != start.governors.end() ? before->second : run::StepState::Began{start.state.t, angle};
+    const run::StepState::Began began = before != start.governors.end()
+                                            ? before->second
+                                            : run::StepState::Began{start.state.t, angle};
     g.begin(began.time, began.angle);
     acting[g.drive] = began;
   }
@@ -136,31 +154,8 @@ void restore_governors(InArchive& in, run::StepState& start) {
   }
 }
 
-run::Checkpoint run::last_state_of(const std::string& folder, const std::string& step) {
-  namespace fs = std::filesystem;
-  fs::path file = step.empty() ? fs::path() : run::checkpoint_file(folder, step);
-  std::error_code ec;
-  if (step.empty())
-    for (const auto& f : fs::directory_iterator(fs::path(folder) / "checkpoint", ec))
-      if (f.path().extension() == ".whirl") {
-        if (!file.empty())
-          throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("{} holds checkpoints of several steps", folder), "name one with previous_step", Where{}});
-        file = f.path();
-      }
-  std::optional<run::Checkpoint> c = file.empty() ? std::nullopt : run::read_checkpoint(file);
-  if (!c)
-    throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error, "E91", fmt::format("no state of an earlier run in '{}'", folder),
-                                     "previous names a results folder whose transient step has run with checkpoints", Where{}});
-  return std::move(*c);
-}
-
-void run::check_state_fits(const run::Checkpoint& c, const std::string& folder, const system::System& system, const std::string& deck) {
-  if (c.state.q.size() == system.size() && c.state.frames.chart.size() == static_cast<std::size_t>(system.lines())) return;
-  throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94", fmt::format("the run in '{}' has {} unknowns, this model {}", folder, c.state.q.size(), system.size()),
-                                     "both must have the same mesh", Where{deck, 0, 0, 0, {}}});
-}
-
-run::StepState start_of_other_run(const run::Job& job, const std::string& folder, const std::string& step) {
+run::StepState start_of_other_run(const run::Job& job, const std::string& folder,
+                                  const std::string& step) {
   const run::Checkpoint c = run::last_state_of(folder, step);
   run::check_state_fits(c, folder, job.system(), job.model.deck_path);
   run::StepState start{c.state, c.speed, {}};

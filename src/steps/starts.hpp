@@ -4,16 +4,19 @@
 
 namespace whirl::steps {
 
-/// Moves a start into the steady response to the unbalance at its speed; adds the whirl mode that the step names.
+/// Moves a start into the steady response to the unbalance at its speed; adds the whirl mode that
+/// the step names.
 void start_in_unbalance_response(const run::Job&, run::StepState& start);
 void start_in_mode(const run::Job&, run::StepState& start, const model::TransientStep&);
-/// Lets the governors of the step begin: where those of the start did that acted before, the others here, without a jump of their torque.
+/// Lets the governors of the step begin: where those of the start did that acted before, the others
+/// here, without a jump of their torque.
 void begin_governors(const run::Job&, run::StepState& start);
 /// The part of a checkpoint that says where they began.
 inline constexpr const char* governors_part = "governors";
 void save_governors(OutArchive& out, const run::StepState& start);
 void restore_governors(InArchive& in, run::StepState& start);
 /// The last state of a transient step in another results folder.
-run::StepState start_of_other_run(const run::Job&, const std::string& folder, const std::string& step);
+run::StepState start_of_other_run(const run::Job&, const std::string& folder,
+                                  const std::string& step);
 
 }  // namespace whirl::steps

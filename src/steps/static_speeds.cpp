@@ -1,4 +1,5 @@
-// A static step at a series of speeds: where each journal runs in its bearing, and the coefficients of the bearings against speed.
+// A static step at a series of speeds: where each journal runs in its bearing, and the coefficients
+// of the bearings against speed.
 #include <results/frequency.hpp>
 #include <results/stability_results.hpp>
 #include <results/static_results.hpp>
@@ -22,10 +23,14 @@ struct Sweep {
   std::string name;
   std::vector<results::SupportCoefficients> at;
   bool film() const { return !at.empty() && std::isfinite(at.front().clearance); }
-  template <class Of> plot::Series series(std::string label, Of of) const {
+  template <class Of>
+  plot::Series series(std::string label, Of of) const {
     plot::Series s;
     s.label = std::move(label);
-    for (const results::SupportCoefficients& c : at) { s.x.push_back(results::to_rpm(c.spin)); s.y.push_back(of(c)); }
+    for (const results::SupportCoefficients& c : at) {
+      s.x.push_back(results::to_rpm(c.spin));
+      s.y.push_back(of(c));
+    }
     s.keep_all = true;
     return s;
   }
@@ -34,7 +39,8 @@ struct Sweep {
 /// Grid of one pair of axes a bearing.
 plot::Figure grid(std::string name, std::string title, std::size_t bearings, double height) {
   plot::Figure f;
-  f.name = std::move(name); f.title = std::move(title);
+  f.name = std::move(name);
+  f.title = std::move(title);
   f.columns = bearings > 1 ? 2 : 1;
   f.height = height * static_cast<double>((bearings + 1) / 2);
   return f;
@@ -43,31 +49,39 @@ plot::Figure grid(std::string name, std::string title, std::size_t bearings, dou
 /// Places of the journals: in the clearance circle of a film, in um elsewhere.
 plot::Figure draw_locus(const std::string& name, const std::vector<Sweep>& all) {
   plot::Figure f = grid(name, "Where the shaft runs in its bearings", all.size(), 400);
-  f.caption = "The journal's place against its housing from the lowest speed (circle) to the highest (diamond); points carry their speeds.";
+  f.caption =
+      "The journal's place against its housing from the lowest speed (circle) to the highest "
+      "(diamond); points carry their speeds.";
   for (const Sweep& b : all) {
     plot::Axes a;
     a.title = b.name;
     a.equal_aspect = true;
     const double unit = b.film() ? 1.0 / b.at.front().clearance : 1e6;
-    a.x = b.film() ? plot::Axis("y / clearance", "-") : plot::Axis("y", "um"); a.y = b.film() ? plot::Axis("z / clearance", "-") : plot::Axis("z", "um");
+    a.x = b.film() ? plot::Axis("y / clearance", "-") : plot::Axis("y", "um");
+    a.y = b.film() ? plot::Axis("z / clearance", "-") : plot::Axis("z", "um");
     if (b.film()) {
       plot::Series circle;
       circle.label = "clearance";
       circle.style = {plot::ink, plot::Dash::dash_dot, 1.0};
-      for (int k = 0; k <= 180; ++k) { circle.x.push_back(std::cos(two_pi * k / 180)); circle.y.push_back(std::sin(two_pi * k / 180)); }
+      for (int k = 0; k <= 180; ++k) {
+        circle.x.push_back(std::cos(two_pi * k / 180));
+        circle.y.push_back(std::sin(two_pi * k / 180));
+      }
       a.series.push_back(std::move(circle));
     }
     plot::Series locus;
     locus.label = "locus";
     locus.style = {0, plot::Dash::solid, 1.4, plot::Marker::circle, 3.0};
     for (const results::SupportCoefficients& c : b.at) {
-      locus.x.push_back(unit * c.place.x()); locus.y.push_back(unit * c.place.y());
+      locus.x.push_back(unit * c.place.x());
+      locus.y.push_back(unit * c.place.y());
       locus.point_names.push_back(fmt::format("{:.6g} rpm", results::to_rpm(c.spin)));
     }
     const auto mark = [&](std::size_t k, plot::Marker m) {
       plot::Series s;
       s.style = {0, plot::Dash::solid, 0.0, m, 9.0};
-      s.x = {locus.x[k]}; s.y = {locus.y[k]};
+      s.x = {locus.x[k]};
+      s.y = {locus.y[k]};
       s.point_names = {locus.point_names[k]};
       a.series.push_back(std::move(s));
       a.notes.push_back({locus.x[k], locus.y[k], locus.point_names[k], false});
@@ -83,7 +97,9 @@ plot::Figure draw_locus(const std::string& name, const std::vector<Sweep>& all) 
 
 plot::Figure draw_eccentricity(const std::string& name, const std::vector<Sweep>& all) {
   plot::Figure f = grid(name, "Eccentricity and attitude against speed", all.size(), 330);
-  f.caption = "The attitude is counted from the load in the sense y to z, which is that of a positive spin.";
+  f.caption =
+      "The attitude is counted from the load in the sense y to z, which is that of a positive "
+      "spin.";
   for (const Sweep& b : all) {
     plot::Axes a;
     a.title = b.name;
@@ -91,25 +107,37 @@ plot::Figure draw_eccentricity(const std::string& name, const std::vector<Sweep>
     a.y = b.film() ? plot::Axis("eccentricity / clearance", "-") : plot::Axis("eccentricity", "um");
     a.y.include_zero = true;
     a.right = plot::Axis("attitude", "deg");
-    a.series.push_back(b.series("eccentricity", [&](const results::SupportCoefficients& c) { return c.place.norm() * (b.film() ? 1 / c.clearance : 1e6); }));
-    plot::Series attitude = b.series("attitude", [](const results::SupportCoefficients& c) { return c.attitude; });
-    attitude.right_axis = true; attitude.style.dash = plot::Dash::dashed;
+    a.series.push_back(b.series("eccentricity", [&](const results::SupportCoefficients& c) {
+      return c.place.norm() * (b.film() ? 1 / c.clearance : 1e6);
+    }));
+    plot::Series attitude =
+        b.series("attitude", [](const results::SupportCoefficients& c) { return c.attitude; });
+    attitude.right_axis = true;
+    attitude.style.dash = plot::Dash::dashed;
     a.series.push_back(std::move(attitude));
     f.axes.push_back(std::move(a));
   }
   return f;
 }
 
-plot::Figure draw_coefficients(const std::string& name, const char* what, const char* letter, const char* unit, double factor, Mat2 results::SupportCoefficients::*matrix, const std::vector<Sweep>& all) {
-  plot::Figure f = grid(name, fmt::format("{}{} against speed", static_cast<char>(std::toupper(what[0])), what + 1), all.size(), 330);
+plot::Figure draw_coefficients(const std::string& name, const char* what, const char* letter,
+                               const char* unit, double factor,
+                               Mat2 results::SupportCoefficients::*matrix,
+                               const std::vector<Sweep>& all) {
+  plot::Figure f = grid(
+      name, fmt::format("{}{} against speed", static_cast<char>(std::toupper(what[0])), what + 1),
+      all.size(), 330);
   for (const Sweep& b : all) {
     plot::Axes a;
     a.title = b.name;
-    a.x = plot::Axis("speed", "rpm"); a.y = plot::Axis(what, unit);
+    a.x = plot::Axis("speed", "rpm");
+    a.y = plot::Axis(what, unit);
     a.y.include_zero = true;
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j) {
-        plot::Series s = b.series(fmt::format("{}{}{}", letter, "yz"[i], "yz"[j]), [&](const results::SupportCoefficients& c) { return factor * (c.*matrix)(i, j); });
+        plot::Series s = b.series(
+            fmt::format("{}{}{}", letter, "yz"[i], "yz"[j]),
+            [&](const results::SupportCoefficients& c) { return factor * (c.*matrix)(i, j); });
         if (i != j) s.style.dash = plot::Dash::dashed;
         a.series.push_back(std::move(s));
       }
@@ -122,15 +150,20 @@ plot::Figure draw_coefficients(const std::string& name, const char* what, const 
 io::Table speeds_table() {
   io::Table t;
   t.title = "Equilibria against speed";
-  t.columns = {{"speed", "rpm", ""}, {"equilibrium", "-", "1: found"}, {"unstable directions", "-", "negative eigenvalues of the static tangent"},
-               {"symmetric tangent", "-", "0: negative real eigenvalues are counted (divergence)"}, {"proved", "-", "0: counted among the eigenvalues of least size"}};
+  t.columns = {{"speed", "rpm", ""},
+               {"equilibrium", "-", "1: found"},
+               {"unstable directions", "-", "negative eigenvalues of the static tangent"},
+               {"symmetric tangent", "-", "0: negative real eigenvalues are counted (divergence)"},
+               {"proved", "-", "0: counted among the eigenvalues of least size"}};
   return t;
 }
 
 }  // namespace
 
-void run_static_speeds(run::Job& job, const model::Step& step, const std::vector<double>& speeds, int load_steps) {
-  results::FrequencyStep s(job, step, "static", "equilibria against speed", std::max(std::abs(speeds.front()), std::abs(speeds.back())), load_steps);
+void run_static_speeds(run::Job& job, const model::Step& step, const std::vector<double>& speeds,
+                       int load_steps) {
+  results::FrequencyStep s(job, step, "static", "equilibria against speed",
+                           std::max(std::abs(speeds.front()), std::abs(speeds.back())), load_steps);
   std::vector<results::SupportCoefficients> rows;
   io::Table judged = speeds_table();
   int unstable = 0;
@@ -140,7 +173,9 @@ void run_static_speeds(run::Job& job, const model::Step& step, const std::vector
   std::size_t found = 0;
   run::ProgressLine progress(step.name, job.options.quiet);
   for (const double& Omega : speeds) {
-    progress.update(static_cast<double>(&Omega - speeds.data()) / static_cast<double>(speeds.size()), fmt::format("{:.6g} rpm", results::to_rpm(Omega)));
+    progress.update(
+        static_cast<double>(&Omega - speeds.data()) / static_cast<double>(speeds.size()),
+        fmt::format("{:.6g} rpm", results::to_rpm(Omega)));
     try {
       s.linear.at(Omega);
     } catch (const Error& e) {
@@ -154,17 +189,27 @@ void run_static_speeds(run::Job& job, const model::Step& step, const std::vector
       continue;
     }
     run::StepState at{s.linear.equilibrium().state, Omega};
-    const analysis::Definiteness tangent = results::judge_state(s.linear.running(), at.state, Omega, s.linear.equilibrium().spin_holds, unstable == 0);
-    judged.add({results::to_rpm(Omega), 1, static_cast<int>(tangent.negative), tangent.symmetric ? 1 : 0, tangent.certain ? 1 : 0});
+    const analysis::Definiteness tangent = results::judge_state(
+        s.linear.running(), at.state, Omega, s.linear.equilibrium().spin_holds, unstable == 0);
+    judged.add({results::to_rpm(Omega), 1, static_cast<int>(tangent.negative),
+                tangent.symmetric ? 1 : 0, tangent.certain ? 1 : 0});
     if (!tangent.stable() && unstable++ == 0) {
       results::add_stability(s.summary(), tangent, Omega);
-      results::warn_of_unstable(job, fmt::format("{}, {:.6g} rpm", step.name, results::to_rpm(Omega)), tangent, Omega);
+      results::warn_of_unstable(
+          job, fmt::format("{}, {:.6g} rpm", step.name, results::to_rpm(Omega)), tangent, Omega);
       if (tangent.shape.size() > 0)
-        s.add_table("unstable_direction", results::shape_table(job, fmt::format("Direction in which the equilibrium at {:.6g} rpm is left", results::to_rpm(Omega)), at.state.frames, at.state.q, tangent.shape), false);
+        s.add_table("unstable_direction",
+                    results::shape_table(
+                        job,
+                        fmt::format("Direction in which the equilibrium at {:.6g} rpm is left",
+                                    results::to_rpm(Omega)),
+                        at.state.frames, at.state.q, tangent.shape),
+                    false);
     }
     if (found++ == 0) run::warn_of_closed_contacts(job, step, at);
     for (results::SupportCoefficients& c : results::calc_support_coefficients(job, at)) {
-      auto b = std::find_if(bearings.begin(), bearings.end(), [&](const Sweep& x) { return x.name == c.name; });
+      auto b = std::find_if(bearings.begin(), bearings.end(),
+                            [&](const Sweep& x) { return x.name == c.name; });
       if (b == bearings.end()) b = bearings.insert(b, Sweep{c.name, {}});
       b->at.push_back(c);
       rows.push_back(std::move(c));
@@ -177,29 +222,43 @@ void run_static_speeds(run::Job& job, const model::Step& step, const std::vector
   if (unstable == 0) v["stability"]["stable"] = true;
   v["unstable equilibria"] = unstable;
   s.add_table("equilibria", std::move(judged), unstable > 0);
-  v["speeds"] = static_cast<int>(speeds.size()); v["equilibria"] = static_cast<int>(found);
-  s.section.text = fmt::format("Equilibria at {} of {} speeds from {:.6g} to {:.6g} rpm, each started from the one before.", found, speeds.size(), results::to_rpm(speeds.front()), results::to_rpm(speeds.back()));
-  if (!missing.empty()) s.section.text += fmt::format(" None at {} rpm: {}.", missing, first_error->diagnostics().front().message);
+  v["speeds"] = static_cast<int>(speeds.size());
+  v["equilibria"] = static_cast<int>(found);
+  s.section.text = fmt::format(
+      "Equilibria at {} of {} speeds from {:.6g} to {:.6g} rpm, each started from the one before.",
+      found, speeds.size(), results::to_rpm(speeds.front()), results::to_rpm(speeds.back()));
+  if (!missing.empty())
+    s.section.text +=
+        fmt::format(" None at {} rpm: {}.", missing, first_error->diagnostics().front().message);
   if (rows.empty()) {
     s.section.text += " No bearing of this model changes its coefficients with speed or load.";
   } else {
     io::Table t = results::support_table(rows);
     t.title = "Bearings against speed";
     s.add_table("coefficients", std::move(t));
-    std::vector<Sweep> drawn(bearings.begin(), bearings.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bearings.size(), 8)));
+    std::vector<Sweep> drawn(
+        bearings.begin(),
+        bearings.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bearings.size(), 8)));
     s.add_figure(draw_locus(s.file("locus"), drawn));
     s.add_figure(draw_eccentricity(s.file("eccentricity"), drawn));
-    s.add_figure(draw_coefficients(s.file("stiffness"), "stiffness", "k", "MN/m", 1e-6, &results::SupportCoefficients::K, drawn));
-    s.add_figure(draw_coefficients(s.file("damping"), "damping", "c", "kN s/m", 1e-3, &results::SupportCoefficients::C, drawn));
+    s.add_figure(draw_coefficients(s.file("stiffness"), "stiffness", "k", "MN/m", 1e-6,
+                                   &results::SupportCoefficients::K, drawn));
+    s.add_figure(draw_coefficients(s.file("damping"), "damping", "c", "kN s/m", 1e-3,
+                                   &results::SupportCoefficients::C, drawn));
     for (const Sweep& b : bearings) {
       io::Value e = io::Value::object();
       e["bearing"] = b.name;
-      if (b.film()) { e["eccentricity / clearance at the first speed"] = b.at.front().place.norm() / b.at.front().clearance; e["and at the last"] = b.at.back().place.norm() / b.at.back().clearance; }
+      if (b.film()) {
+        e["eccentricity / clearance at the first speed"] =
+            b.at.front().place.norm() / b.at.front().clearance;
+        e["and at the last"] = b.at.back().place.norm() / b.at.back().clearance;
+      }
       v["bearings"].push(std::move(e));
     }
   }
   const std::string judgement = unstable == 0 ? "" : fmt::format(", {} of them unstable", unstable);
-  s.finish(fmt::format("equilibria at {} speeds{}{}", found, judgement, missing.empty() ? "" : fmt::format(", none at {} rpm", missing)));
+  s.finish(fmt::format("equilibria at {} speeds{}{}", found, judgement,
+                       missing.empty() ? "" : fmt::format(", none at {} rpm", missing)));
 }
 
 }  // namespace whirl::steps

@@ -1,22 +1,26 @@
-// One function a kind of step. Each runs the step, adds its section to the report and its entry to the summary, and writes its files.
+// One function a kind of step. Each runs the step, adds its section to the report and its entry to
+// the summary, and writes its files.
 #pragma once
 #include <run/job.hpp>
 
 namespace whirl::steps {
 
 void run_static_step(run::Job&, const model::Step&, const model::StaticStep&);
-void run_static_speeds(run::Job&, const model::Step&, const std::vector<double>& speeds, int load_steps);
+void run_static_speeds(run::Job&, const model::Step&, const std::vector<double>& speeds,
+                       int load_steps);
 void run_transient_step(run::Job&, const model::Step&, const model::TransientStep&);
 /// In the frequency domain: any kind that is neither static nor transient.
 void run_frequency_step(run::Job&, const model::Step&);
 
-/// Modes, Campbell diagrams, critical speeds, stability, responses: each builds on results/frequency.hpp.
+/// Modes, Campbell diagrams, critical speeds, stability, responses: each builds on
+/// results/frequency.hpp.
 void run_modal_step(run::Job&, const model::Step&, const model::ModalStep&);
 void run_campbell_step(run::Job&, const model::Step&, const model::CampbellStep&);
 void run_critical_step(run::Job&, const model::Step&, const model::CriticalStep&);
 void run_critical_map_step(run::Job&, const model::Step&, const model::CriticalMapStep&);
 void run_stability_step(run::Job&, const model::Step&, const model::StabilityStep&);
-/// A stability step of a rotor whose shaft has unequal principal stiffnesses, in axes that turn with it.
+/// A stability step of a rotor whose shaft has unequal principal stiffnesses, in axes that turn
+/// with it.
 void run_instability_bands(run::Job&, const model::Step&, const model::StabilityStep&);
 void run_unbalance_step(run::Job&, const model::Step&, const model::UnbalanceStep&);
 void run_harmonic_step(run::Job&, const model::Step&, const model::HarmonicStep&);

@@ -1,4 +1,5 @@
-// Runs the steps of a deck in order and writes summary and report, complete or not: a failed step keeps what came before it.
+// Runs the steps of a deck in order and writes summary and report, complete or not: a failed step
+// keeps what came before it.
 #include <run/interrupt.hpp>
 #include <run/job.hpp>
 #include <steps/savings.hpp>
@@ -25,26 +26,33 @@ void describe_model(run::Job& job) {
   v["nodes"] = job.mesh.nodes.size();
   v["elements"] = job.mesh.elements.size();
   long unknowns = 0;
-  for (unsigned char a : job.system().active()) unknowns += a;
+  for (unsigned char a : job.system().active())
+    unknowns += a;
   v["unknowns"] = unknowns;
   io::Value parts = io::Value::object();
-  for (const auto& term : job.system().terms()) parts[term->kind()] = term->count();
+  for (const auto& term : job.system().terms())
+    parts[term->kind()] = term->count();
   v["batches"] = parts;
   io::Value left = io::Value::array();
-  for (const std::string& s : job.built.left_out) left.push(s);
-  for (const std::string& s : job.built.simpler) left.push(s);
+  for (const std::string& s : job.built.left_out)
+    left.push(s);
+  for (const std::string& s : job.built.simpler)
+    left.push(s);
   v["left out"] = left;
   if (job.built.notes.empty()) return;
   io::Value notes = io::Value::array();
-  for (const std::string& s : job.built.notes) notes.push(s);
+  for (const std::string& s : job.built.notes)
+    notes.push(s);
   v["notes"] = notes;
 }
 
-/// Numbers that are none and that nothing accounts for: the results are not to be trusted there, and that is said.
+/// Numbers that are none and that nothing accounts for: the results are not to be trusted there,
+/// and that is said.
 void report_nonfinite(run::Job& job) {
   for (const io::NonFinite& n : io::take_nonfinite()) {
-    const std::string text = fmt::format("{} in {} are not finite (first in the column '{}'): what should stand there was not found", n.count == 1 ? "1 number" : fmt::format("{} numbers", n.count),
-                                         n.file, n.column);
+    const std::string text = fmt::format(
+        "{} in {} are not finite (first in the column '{}'): what should stand there was not found",
+        n.count == 1 ? "1 number" : fmt::format("{} numbers", n.count), n.file, n.column);
     job.summary["warnings"].push(text);
     job.report.warnings.push_back(text);
     if (!job.options.quiet) std::fputs(fmt::format("warning: {}\n", text).c_str(), stderr);
@@ -57,11 +65,17 @@ void describe_savings(run::Job& job, double seconds) {
   const Savings s = measure_savings(job);
   if (!(s.everything > 0.0)) return;
   io::Value& v = job.summary["model"]["cost of one evaluation of forces and tangents"];
-  v["of this model [us]"] = 1e6 * s.pruned; v["of the general model [us]"] = 1e6 * s.everything;
+  v["of this model [us]"] = 1e6 * s.pruned;
+  v["of the general model [us]"] = 1e6 * s.everything;
   v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
   if (!job.options.quiet && seconds > 0.5 && s.everything > 1.05 * s.pruned)
-    std::fputs(fmt::format("left out: {} parts of the general model this deck does not need (summary.json); an evaluation takes {:.0f} us CPU instead of {:.0f} us\n",
-                           job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned, 1e6 * s.everything).c_str(), stderr);
+    std::fputs(
+        fmt::format("left out: {} parts of the general model this deck does not need "
+                    "(summary.json); an evaluation takes {:.0f} us CPU instead of {:.0f} us\n",
+                    job.built.left_out.size() + job.built.simpler.size(), 1e6 * s.pruned,
+                    1e6 * s.everything)
+            .c_str(),
+        stderr);
 }
 
 }  // namespace
@@ -70,7 +84,8 @@ void run_steps(run::Job& job) {
   const Stopwatch watch;
   job.report.title = job.model.title.empty() ? job.model.deck_name : job.model.title;
   job.report.deck = job.model.resolved;
-  for (const Diagnostic& w : job.model.warnings) job.report.warnings.push_back(w.message);
+  for (const Diagnostic& w : job.model.warnings)
+    job.report.warnings.push_back(w.message);
   auto finish = [&] {
     report_nonfinite(job);
     auto take_times = [&] {
@@ -93,7 +108,8 @@ void run_steps(run::Job& job) {
       job.report.sections.insert(job.report.sections.begin(), std::move(rotor));
       io::write_report(job.folder.path("report.html"), job.report);
       for (const io::ReportSection& s : job.report.sections)
-        for (const plot::Figure& f : s.figures) job.folder.write_text("plots/" + f.name + ".svg", plot::render_svg(f));
+        for (const plot::Figure& f : s.figures)
+          job.folder.write_text("plots/" + f.name + ".svg", plot::render_svg(f));
     }
     take_times();
     job.folder.write_json("summary.json", job.summary);
@@ -108,9 +124,12 @@ void run_steps(run::Job& job) {
       std::visit(
           [&](const auto& law) {
             using T = std::decay_t<decltype(law)>;
-            if constexpr (std::is_same_v<T, model::TransientStep>) run_transient_step(job, step, law);
-            else if constexpr (std::is_same_v<T, model::StaticStep>) run_static_step(job, step, law);
-            else run_frequency_step(job, step);
+            if constexpr (std::is_same_v<T, model::TransientStep>)
+              run_transient_step(job, step, law);
+            else if constexpr (std::is_same_v<T, model::StaticStep>)
+              run_static_step(job, step, law);
+            else
+              run_frequency_step(job, step);
           },
           step.law);
     }
@@ -120,7 +139,8 @@ void run_steps(run::Job& job) {
     if (!job.options.quiet) std::fputs(fmt::format("{}: interrupted\n", running).c_str(), stderr);
   } catch (const Error& e) {
     io::Value& v = job.summary["error"];
-    for (const Diagnostic& d : e.diagnostics()) v.push(d.code + ": " + d.message);
+    for (const Diagnostic& d : e.diagnostics())
+      v.push(d.code + ": " + d.message);
     finish();
     throw;
   }

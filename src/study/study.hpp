@@ -8,11 +8,12 @@ struct StudyOptions {
   std::filesystem::path deck;
   deck::ReadOptions read;
   run::RunOptions run;
-  std::filesystem::path exact;   ///< CSV of the exact displacements of probes; empty: none
+  std::filesystem::path exact;  ///< CSV of the exact displacements of probes; empty: none
 };
 /// Error against run time of a deck over a ladder of tolerances, steps, integrators and meshes.
 int study_deck(const StudyOptions& options);
-/// Spectral radius, numerical damping and energy over very many steps of every integrator on the deck's rotor.
+/// Spectral radius, numerical damping and energy over very many steps of every integrator on the
+/// deck's rotor.
 int study_stability(const StudyOptions& options);
 
 }  // namespace whirl::study

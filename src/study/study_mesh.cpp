@@ -1,6 +1,7 @@
-// The steps of a study that are no transients: the same deck on finer and finer meshes. What they write is compared: every table whose
-// rows do not belong to nodes, column by column, relative to the largest value of its unit in the table; angles are left out, being
-// anything where an amplitude vanishes.
+// The steps of a study that are no transients: the same deck on finer and finer meshes. What they
+// write is compared: every table whose rows do not belong to nodes, column by column, relative to
+// the largest value of its unit in the table; angles are left out, being anything where an
+// amplitude vanishes.
 #include <study/study_parts.hpp>
 #include <steps/run_deck.hpp>
 #include <study/study.hpp>
@@ -30,7 +31,8 @@ std::vector<model::Step> mesh_steps(const model::Model& m) {
       continue;
     }
     out.push_back(s);
-    if (auto* stability = std::get_if<model::StabilityStep>(&out.back().law)) stability->map.reset();
+    if (auto* stability = std::get_if<model::StabilityStep>(&out.back().law))
+      stability->map.reset();
   }
   return out;
 }
@@ -50,9 +52,10 @@ std::vector<analysis::Quantity> quantities_of(const std::filesystem::path& folde
         if (std::isfinite(x)) largest[c.units[k]] = std::max(largest[c.units[k]], std::abs(x));
     for (std::size_t k = 0; k < c.names.size(); ++k) {
       if (c.units[k] == "deg" || !(largest[c.units[k]] > 0)) continue;
-      analysis::Quantity q{file.stem().string() + ": " + c.names[k], c.units[k], c.values[k], largest[c.units[k]]};
+      analysis::Quantity q{file.stem().string() + ": " + c.names[k], c.units[k], c.values[k],
+                           largest[c.units[k]]};
       for (double& x : q.values)
-        if (!std::isfinite(x)) x = 0.0;   // texts, and values that a row does not have
+        if (!std::isfinite(x)) x = 0.0;  // texts, and values that a row does not have
       out.push_back(std::move(q));
     }
   }
@@ -65,26 +68,33 @@ bool has_mesh_study(const model::Model& model) {
   return !mesh_steps(model).empty() && !meshes::make_mesh(model).elements.empty();
 }
 
-StudyPart study_meshes(const model::Model& model, const StudyOptions& options, const std::filesystem::path& root) {
+StudyPart study_meshes(const model::Model& model, const StudyOptions& options,
+                       const std::filesystem::path& root) {
   model::Model base = model;
   base.steps = mesh_steps(model);
-  base.output.report = base.output.binary = false; base.output.csv = true;
+  base.output.report = base.output.binary = false;
+  base.output.csv = true;
   base.output.vtk.clear();
   const meshes::Mesh mesh = meshes::make_mesh(model);
   run::RunOptions run = options.run;
-  run.quiet = true; run.json = run.terminal = false;
+  run.quiet = true;
+  run.json = run.terminal = false;
   run.output = root / "mesh_study";
   const bool talk = !options.run.quiet;
 
   const auto elements = static_cast<long>(mesh.elements.size());
   int finest = 16;
-  while (finest > 2 && finest * elements > 3000) finest /= 2;   // beyond, rounding is what is seen
+  while (finest > 2 && finest * elements > 3000)
+    finest /= 2;  // beyond, rounding is what is seen
   analysis::StudyOptions o;
   o.reference = {"", 0.0, 0.0, finest};
   o.cross_check = {"", 0.0, 0.0, finest / 2};
-  for (int factor = 1; factor < finest; factor *= 2) o.ladder.push_back({"", 0.0, 0.0, factor});
+  for (int factor = 1; factor < finest; factor *= 2)
+    o.ladder.push_back({"", 0.0, 0.0, factor});
   if (talk) print_study_head();
-  o.progress = [&](const analysis::StudySample& s) { if (talk) print_study_sample(s); };
+  o.progress = [&](const analysis::StudySample& s) {
+    if (talk) print_study_sample(s);
+  };
 
   const auto run_on = [&](int factor) {
     std::filesystem::remove_all(run.output);
@@ -99,27 +109,37 @@ StudyPart study_meshes(const model::Model& model, const StudyOptions& options, c
   };
   // tables with as many rows on every mesh: the others belong to nodes
   std::map<std::string, std::size_t> rows;
-  for (const auto& q : run_on(1).quantities) rows[q.name] = q.values.size();
+  for (const auto& q : run_on(1).quantities)
+    rows[q.name] = q.values.size();
   bool first = true;
   const auto result = analysis::run_study(
       [&](const analysis::StudyCase& c) {
         analysis::StudySample s;
         try {
           s = run_on(c.mesh_factor);
-          if (first) std::erase_if(rows, [&](const auto& r) { return std::none_of(s.quantities.begin(), s.quantities.end(), [&](const auto& q) { return q.name == r.first && q.values.size() == r.second; }); });
+          if (first)
+            std::erase_if(rows, [&](const auto& r) {
+              return std::none_of(s.quantities.begin(), s.quantities.end(), [&](const auto& q) {
+                return q.name == r.first && q.values.size() == r.second;
+              });
+            });
           first = false;
           std::erase_if(s.quantities, [&](const auto& q) { return rows.count(q.name) == 0; });
         } catch (const Error& e) {
-          s.ok = false; s.note = e.what();
+          s.ok = false;
+          s.note = e.what();
         }
         return s;
       },
       o);
   std::filesystem::remove_all(run.output);
   StudyText text;
-  text.stem = "study_mesh"; text.heading = "Error of the mesh against run time";
-  text.title = fmt::format("{}: error of the mesh against run time", model.title.empty() ? model.deck_name : model.title);
-  text.reference = fmt::format("{} elements, checked by {}", finest * elements, finest * elements / 2);
+  text.stem = "study_mesh";
+  text.heading = "Error of the mesh against run time";
+  text.title = fmt::format("{}: error of the mesh against run time",
+                           model.title.empty() ? model.deck_name : model.title);
+  text.reference =
+      fmt::format("{} elements, checked by {}", finest * elements, finest * elements / 2);
   return write_study(root, result, text, talk);
 }
 

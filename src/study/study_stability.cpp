@@ -1,4 +1,5 @@
-// `whirl study DECK --stability`: what the integrators do to the modes of this rotor, at which steps.
+// `whirl study DECK --stability`: what the integrators do to the modes of this rotor, at which
+// steps.
 #include <analysis/study/scheme_stability.hpp>
 #include <results/frequency.hpp>
 #include <run/job.hpp>
@@ -8,6 +9,7 @@
 #include <core/error.hpp>
 #include <deck/deck.hpp>
 #include <plot/plot.hpp>
+#include <io/file.hpp>
 #include <plot/svg.hpp>
 #include <time/stability.hpp>
 
@@ -23,12 +25,13 @@ namespace {
 
 constexpr const char* schemes[] = {"radau5", "gauss4", "gauss6", "generalized_alpha", "ida"};
 constexpr long many_steps = 100000;
-constexpr double per_period = 20.0;   ///< steps in a period of the fastest mode kept, for the run of many steps
+constexpr double per_period =
+    20.0;  ///< steps in a period of the fastest mode kept, for the run of many steps
 
 struct Scheme {
   std::string name;
-  plot::Series radius;            ///< against h times the frequency of the first mode
-  double largest_radius = 0, limit = 0, first_unstable = infinity;   ///< s
+  plot::Series radius;  ///< against h times the frequency of the first mode
+  double largest_radius = 0, limit = 0, first_unstable = infinity;  ///< s
   double energy = nan;
   std::vector<time::ModeResponse> response;
 };
@@ -37,10 +40,13 @@ struct Scheme {
 constexpr double resolutions[] = {100, 50, 20, 10, 5};
 
 std::string label_of(const std::string& name, double rho) {
-  return name == "generalized_alpha" ? fmt::format("{} ({:g})", name, rho) : name == "ida" ? "ida (BDF2)" : name;
+  return name == "generalized_alpha" ? fmt::format("{} ({:g})", name, rho)
+         : name == "ida"             ? "ida (BDF2)"
+                                     : name;
 }
 
-Scheme examine(const analysis::ReducedRotor& rotor, const char* name, double rho, double slow, double fast) {
+Scheme examine(const analysis::ReducedRotor& rotor, const char* name, double rho, double slow,
+               double fast) {
   Scheme s;
   s.name = name;
   s.radius.label = label_of(name, rho);
@@ -50,26 +56,38 @@ Scheme examine(const analysis::ReducedRotor& rotor, const char* name, double rho
   for (int k = 0; k <= points; ++k) {
     const double h = first * std::pow(last / first, static_cast<double>(k) / points);
     const double r = analysis::spectral_radius(rotor, name, h, rho);
-    s.radius.x.push_back(h * slow / two_pi); s.radius.y.push_back(r);
-    s.largest_radius = std::max(s.largest_radius, r); s.limit = r;
+    s.radius.x.push_back(h * slow / two_pi);
+    s.radius.y.push_back(r);
+    s.largest_radius = std::max(s.largest_radius, r);
+    s.limit = r;
     // double roots are found to the square root of rounding
     if (r > 1.0 + 1e-6) s.first_unstable = std::min(s.first_unstable, h);
   }
-  for (double n : resolutions) s.response.push_back(time::mode_response(name, 1.0, 0.0, two_pi / n, rho));
-  if (s.name != "ida") s.energy = analysis::energy_ratio(rotor, name, two_pi / fast / per_period, many_steps, rho);   // ida has no equal steps
+  for (double n : resolutions)
+    s.response.push_back(time::mode_response(name, 1.0, 0.0, two_pi / n, rho));
+  if (s.name != "ida")
+    s.energy = analysis::energy_ratio(rotor, name, two_pi / fast / per_period, many_steps,
+                                      rho);  // ida has no equal steps
   return s;
 }
 
-/// Where the deck's motion takes place: the speed its first transient step begins with, else the first speed a step names.
+/// Where the deck's motion takes place: the speed its first transient step begins with, else the
+/// first speed a step names.
 double speed_of(run::Job& job) {
   for (const model::Step& step : job.model.steps) {
     job.build_for(step);
-    if (const auto* t = std::get_if<model::TransientStep>(&step.law)) return step.from.empty() ? job.start_of(step, t->own_speed()).speed : t->speed0;
+    if (const auto* t = std::get_if<model::TransientStep>(&step.law))
+      return step.from.empty() ? job.start_of(step, t->own_speed()).speed : t->speed0;
     if (const auto* m = std::get_if<model::ModalStep>(&step.law)) return m->speed;
-    if (const auto* m = std::get_if<model::StaticStep>(&step.law)) return m->speeds ? results::speeds_of(*m->speeds).back() : job.start_of(step, m->own_speed()).speed;
-    if (const auto* m = std::get_if<model::UnbalanceStep>(&step.law)) return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
-    if (const auto* m = std::get_if<model::CampbellStep>(&step.law)) return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
-    if (const auto* m = std::get_if<model::StabilityStep>(&step.law)) return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
+    if (const auto* m = std::get_if<model::StaticStep>(&step.law))
+      return m->speeds ? results::speeds_of(*m->speeds).back()
+                       : job.start_of(step, m->own_speed()).speed;
+    if (const auto* m = std::get_if<model::UnbalanceStep>(&step.law))
+      return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
+    if (const auto* m = std::get_if<model::CampbellStep>(&step.law))
+      return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
+    if (const auto* m = std::get_if<model::StabilityStep>(&step.law))
+      return m->speed.values.empty() ? m->speed.stop : m->speed.values.back();
   }
   return 0.0;
 }
@@ -79,7 +97,9 @@ double speed_of(run::Job& job) {
 int study_stability(const StudyOptions& options) {
   const model::Model model = deck::load_model(options.deck, options.read);
   if (model.steps.empty())
-    throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95", "the deck has no step", "a stability study takes the speed from the first step", Where{options.deck.string(), 0, 0, 0, ""}});
+    throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95", "the deck has no step",
+                                       "a stability study takes the speed from the first step",
+                                       Where{options.deck.string(), 0, 0, 0, ""}});
   run::RunOptions run = options.run;
   run.quiet = true;
   run::Job job(model, run, run::prepare_results(model, run));
@@ -88,81 +108,124 @@ int study_stability(const StudyOptions& options) {
   for (const model::Step& step : model.steps)
     if (const auto* t = std::get_if<model::TransientStep>(&step.law)) rho = t->integrator.rho_inf;
 
-  run::StepState standing = job.start_of(model.steps.front(), Omega != 0.0 ? std::optional(Omega) : std::nullopt);
+  run::StepState standing =
+      job.start_of(model.steps.front(), Omega != 0.0 ? std::optional(Omega) : std::nullopt);
   analysis::EquilibriumOptions equilibrium;
   equilibrium.chart_change = model.chart_change;
   analysis::SteadyRotation running = job.steady_rotation_of(standing);
   analysis::Linearizer linear(job.system(), running, equilibrium);
-  const analysis::ReducedRotor damped = analysis::reduce_rotor(linear, Omega), rotor = damped.conservative();
+  const analysis::ReducedRotor damped = analysis::reduce_rotor(linear, Omega),
+                               rotor = damped.conservative();
   double slow = infinity, fast = 0.0;
   for (const Complex& l : rotor.lambda)
-    if (l.imag() > 0.0) { slow = std::min(slow, l.imag()); fast = std::max(fast, l.imag()); }
-  if (!(fast > 0.0)) throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95", "the rotor has no mode that oscillates", "a stability study needs elastic supports or shafts", Where{options.deck.string(), 0, 0, 0, ""}});
+    if (l.imag() > 0.0) {
+      slow = std::min(slow, l.imag());
+      fast = std::max(fast, l.imag());
+    }
+  if (!(fast > 0.0))
+    throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95",
+                                       "the rotor has no mode that oscillates",
+                                       "a stability study needs elastic supports or shafts",
+                                       Where{options.deck.string(), 0, 0, 0, ""}});
 
   std::vector<Scheme> found;
-  for (const char* name : schemes) found.push_back(examine(rotor, name, rho, slow, fast));
+  for (const char* name : schemes)
+    found.push_back(examine(rotor, name, rho, slow, fast));
 
   io::Table table;
   table.title = "Schemes on the undamped rotor";
-  table.columns = {{"method", "-", ""}, {"largest spectral radius", "-", "over all steps looked at"}, {"spectral radius of the longest step", "-", ""}, {"unstable from step", "s", "none: stable at every step"},
-                   {fmt::format("energy after {} steps / at start", many_steps), "-", fmt::format("{:g} steps a period of the fastest mode kept", per_period)}};
+  table.columns = {{"method", "-", ""},
+                   {"largest spectral radius", "-", "over all steps looked at"},
+                   {"spectral radius of the longest step", "-", ""},
+                   {"unstable from step", "s", "none: stable at every step"},
+                   {fmt::format("energy after {} steps / at start", many_steps), "-",
+                    fmt::format("{:g} steps a period of the fastest mode kept", per_period)}};
   for (double n : resolutions) {
     table.columns.push_back({fmt::format("damping ratio added, {:g} steps a period", n), "-", ""});
     table.columns.push_back({fmt::format("frequency error, {:g} steps a period", n), "-", ""});
   }
   io::Table curves;
-  curves.columns = {{"method", "-", ""}, {"step", "s", ""}, {"step / period of the first mode", "-", ""}, {"spectral radius", "-", ""}};
+  curves.columns = {{"method", "-", ""},
+                    {"step", "s", ""},
+                    {"step / period of the first mode", "-", ""},
+                    {"spectral radius", "-", ""}};
   io::Value json = io::Value::object();
-  json["speed [rpm]"] = Omega * 30.0 / pi; json["unknowns kept"] = static_cast<double>(rotor.M.rows());
-  json["frequencies kept, lowest [Hz]"] = slow / two_pi; json["frequencies kept, highest [Hz]"] = fast / two_pi;
+  json["speed [rpm]"] = Omega * 30.0 / pi;
+  json["unknowns kept"] = static_cast<double>(rotor.M.rows());
+  json["frequencies kept, lowest [Hz]"] = slow / two_pi;
+  json["frequencies kept, highest [Hz]"] = fast / two_pi;
   plot::Figure figure;
-  figure.name = "stability"; figure.title = model.title + ": stability of the integrators"; figure.height = 820;
-  figure.caption = fmt::format("Above: one step on the undamped rotor at {:.0f} rpm. Below: what a step adds to the damping ratio of a mode.", Omega * 30.0 / pi);
+  figure.name = "stability";
+  figure.title = model.title + ": stability of the integrators";
+  figure.height = 820;
+  figure.caption = fmt::format(
+      "Above: one step on the undamped rotor at {:.0f} rpm. Below: what a step adds to the damping "
+      "ratio of a mode.",
+      Omega * 30.0 / pi);
   plot::Axes above, below;
-  above.x = plot::Axis("step / period of the first mode", "-", true); above.y = plot::Axis("spectral radius", "-");
+  above.x = plot::Axis("step / period of the first mode", "-", true);
+  above.y = plot::Axis("spectral radius", "-");
   above.rules.push_back({false, 1.0, "energy is kept"});
-  below.x = plot::Axis("steps a period of the mode", "-", true); below.y = plot::Axis("damping ratio added by the scheme", "-", true);
+  below.x = plot::Axis("steps a period of the mode", "-", true);
+  below.y = plot::Axis("damping ratio added by the scheme", "-", true);
   int colour = 0;
   for (Scheme& s : found) {
-    std::vector<io::Table::Cell> row{label_of(s.name, rho), s.largest_radius, s.limit, std::isfinite(s.first_unstable) ? io::Table::Cell(s.first_unstable) : io::Table::Cell(std::string("none")),
-                                     std::isnan(s.energy) ? io::Table::Cell(std::string("-")) : io::Table::Cell(s.energy)};
+    std::vector<io::Table::Cell> row{
+        label_of(s.name, rho), s.largest_radius, s.limit,
+        std::isfinite(s.first_unstable) ? io::Table::Cell(s.first_unstable)
+                                        : io::Table::Cell(std::string("none")),
+        std::isnan(s.energy) ? io::Table::Cell(std::string("-")) : io::Table::Cell(s.energy)};
     io::Value& v = json["schemes"][s.name];
-    v["largest spectral radius"] = s.largest_radius; v["spectral radius of the longest step"] = s.limit;
+    v["largest spectral radius"] = s.largest_radius;
+    v["spectral radius of the longest step"] = s.limit;
     v["stable at every step"] = !std::isfinite(s.first_unstable);
     if (std::isfinite(s.first_unstable)) v["unstable from step [s]"] = s.first_unstable;
     if (!std::isnan(s.energy)) v["energy ratio after many steps"] = s.energy;
     for (std::size_t i = 0; i < s.response.size(); ++i) {
-      row.emplace_back(s.response[i].damping); row.emplace_back(s.response[i].frequency_error);
+      row.emplace_back(s.response[i].damping);
+      row.emplace_back(s.response[i].frequency_error);
       io::Value& at = v["steps a period"][fmt::format("{:g}", resolutions[i])];
-      at["damping ratio added"] = s.response[i].damping; at["frequency error"] = s.response[i].frequency_error;
+      at["damping ratio added"] = s.response[i].damping;
+      at["frequency error"] = s.response[i].frequency_error;
     }
     table.add(std::move(row));
-    for (std::size_t k = 0; k < s.radius.x.size(); ++k) curves.add({s.name, s.radius.x[k] * two_pi / slow, s.radius.x[k], s.radius.y[k]});
+    for (std::size_t k = 0; k < s.radius.x.size(); ++k)
+      curves.add({s.name, s.radius.x[k] * two_pi / slow, s.radius.x[k], s.radius.y[k]});
     plot::Series damping;
     damping.label = s.radius.label;
     s.radius.style.color = damping.style.color = colour++;
     for (double n = 400.0; n >= 4.0; n /= 1.1) {
       const double d = time::mode_response(s.name, 1.0, 0.0, two_pi / n, rho).damping;
-      if (d > 1e-12) { damping.x.push_back(n); damping.y.push_back(d); }
+      if (d > 1e-12) {
+        damping.x.push_back(n);
+        damping.y.push_back(d);
+      }
     }
     if (!damping.x.empty()) below.series.push_back(std::move(damping));
     above.series.push_back(std::move(s.radius));
   }
-  above.y.min = 0.0; above.y.max = 1.1;
+  above.y.min = 0.0;
+  above.y.max = 1.1;
   for (const Scheme& s : found)
     if (s.largest_radius > 1.05) above.y.max = std::min(3.0, 1.05 * s.largest_radius);
-  figure.axes.push_back(std::move(above)); figure.axes.push_back(std::move(below));
+  figure.axes.push_back(std::move(above));
+  figure.axes.push_back(std::move(below));
 
   job.folder.write_table("stability.csv", table);
   job.folder.write_table("stability_curves.csv", curves);
   job.folder.write_json("stability.json", json);
   io::write_atomic(job.folder.path("plots/stability.svg"), plot::render_svg(figure));
   io::Report report;
-  report.title = "Stability of the integrators: " + (model.title.empty() ? model.deck_name : model.title);
+  report.title =
+      "Stability of the integrators: " + (model.title.empty() ? model.deck_name : model.title);
   io::ReportSection section;
   section.title = "Stability";
-  section.text = fmt::format("The rotor at {:.0f} rpm, linearised, without damping, on its lowest modes from {:.4g} to {:.4g} Hz. Energy is constant in truth: a spectral radius above 1 "
-                             "makes energy, one below 1 takes it. Damping ratios added and frequency errors hold for any undamped mode.", Omega * 30.0 / pi, slow / two_pi, fast / two_pi);
+  section.text = fmt::format(
+      "The rotor at {:.0f} rpm, linearised, without damping, on its lowest modes from {:.4g} to "
+      "{:.4g} Hz. Energy is constant in truth: a spectral radius above 1 "
+      "makes energy, one below 1 takes it. Damping ratios added and frequency errors hold for any "
+      "undamped mode.",
+      Omega * 30.0 / pi, slow / two_pi, fast / two_pi);
   section.figures.push_back(figure);
   section.tables.push_back(table);
   report.sections.push_back(std::move(section));
@@ -171,12 +234,18 @@ int study_stability(const StudyOptions& options) {
   io::write_report(job.folder.path("stability.html"), report);
 
   if (!options.run.quiet) {
-    std::printf("%.0f rpm, %ld unknowns, modes from %.4g to %.4g Hz, undamped\n\n", Omega * 30.0 / pi, static_cast<long>(rotor.M.rows()), slow / two_pi, fast / two_pi);
-    std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "largest radius", "long steps", "unstable from", "energy, 1e5", "damping added", "frequency err");
-    std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "", "", "s", "steps", "20 a period", "20 a period");
+    std::printf("%.0f rpm, %ld unknowns, modes from %.4g to %.4g Hz, undamped\n\n",
+                Omega * 30.0 / pi, static_cast<long>(rotor.M.rows()), slow / two_pi, fast / two_pi);
+    std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "largest radius", "long steps",
+                "unstable from", "energy, 1e5", "damping added", "frequency err");
+    std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "", "", "s", "steps", "20 a period",
+                "20 a period");
     for (const Scheme& s : found)
-      std::printf("%-26s %14.8f %14.3g %16s %16s %14.2e %14.2e\n", label_of(s.name, rho).c_str(), s.largest_radius, s.limit,
-                  std::isfinite(s.first_unstable) ? fmt::format("{:.3g}", s.first_unstable).c_str() : "none", std::isnan(s.energy) ? "-" : fmt::format("{:.6g}", s.energy).c_str(),
+      std::printf("%-26s %14.8f %14.3g %16s %16s %14.2e %14.2e\n", label_of(s.name, rho).c_str(),
+                  s.largest_radius, s.limit,
+                  std::isfinite(s.first_unstable) ? fmt::format("{:.3g}", s.first_unstable).c_str()
+                                                  : "none",
+                  std::isnan(s.energy) ? "-" : fmt::format("{:.6g}", s.energy).c_str(),
                   s.response[2].damping, s.response[2].frequency_error);
     std::printf("\nresults: %s\n", job.folder.root().string().c_str());
   }

@@ -22,7 +22,11 @@ namespace {
 /// An exact solution given as a table: displacements of probes at instants.
 struct Exact {
   std::vector<double> t;
-  struct Column { std::size_t point; int axis; std::vector<double> values; };   ///< axis 0, 1, 2: x, y, z
+  struct Column {
+    std::size_t point;
+    int axis;
+    std::vector<double> values;
+  };  ///< axis 0, 1, 2: x, y, z
   std::vector<Column> columns;
   double next(double after) const {
     const auto i = std::upper_bound(t.begin(), t.end(), after);
@@ -31,11 +35,14 @@ struct Exact {
 };
 
 /// Columns "t [s]" and "PROBE.y [m]" as `whirl run` writes them. Errors: E96.
-Exact read_exact(const std::filesystem::path& file, const std::vector<std::pair<std::string, analysis::Point>>& points, double t1) {
+Exact read_exact(const std::filesystem::path& file,
+                 const std::vector<std::pair<std::string, analysis::Point>>& points, double t1) {
   const auto wrong = [&file](const std::string& what, const std::string& hint) {
-    return Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E96", what, hint, Where{file.string(), 0, 0, 0, ""}});
+    return Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E96", what, hint,
+                                        Where{file.string(), 0, 0, 0, ""}});
   };
-  if (!std::filesystem::exists(file)) throw wrong("there is no file with an exact solution here", "give the path of a CSV file");
+  if (!std::filesystem::exists(file))
+    throw wrong("there is no file with an exact solution here", "give the path of a CSV file");
   const io::Columns c = io::read_csv(file);
   Exact out;
   for (std::size_t k = 0; k < c.names.size(); ++k) {
@@ -44,42 +51,67 @@ Exact read_exact(const std::filesystem::path& file, const std::vector<std::pair<
       continue;
     }
     const std::size_t dot = c.names[k].rfind('.');
-    const std::string probe = c.names[k].substr(0, dot), axis = dot == std::string::npos ? "" : c.names[k].substr(dot + 1);
+    const std::string probe = c.names[k].substr(0, dot),
+                      axis = dot == std::string::npos ? "" : c.names[k].substr(dot + 1);
     std::size_t p = 0;
-    while (p < points.size() && points[p].first != probe) ++p;
+    while (p < points.size() && points[p].first != probe)
+      ++p;
     if (p == points.size() || axis.size() != 1 || axis < "x" || axis > "z" || c.units[k] != "m") {
       std::string known;
-      for (const auto& [name, point] : points) known += fmt::format("{}\"{}.y [m]\"", known.empty() ? "" : ", ", name);
-      throw wrong(fmt::format("column '{} [{}]' is no displacement of a probe", c.names[k], c.units[k]), "columns are \"t [s]\" and displacements of this deck: " + known + ", ..");
+      for (const auto& [name, point] : points)
+        known += fmt::format("{}\"{}.y [m]\"", known.empty() ? "" : ", ", name);
+      throw wrong(
+          fmt::format("column '{} [{}]' is no displacement of a probe", c.names[k], c.units[k]),
+          "columns are \"t [s]\" and displacements of this deck: " + known + ", ..");
     }
     out.columns.push_back({p, axis[0] - 'x', c.values[k]});
   }
-  if (out.t.empty() || out.columns.empty()) throw wrong("no exact solution: a column \"t [s]\" and one of a displacement are needed", "as in the histories that `whirl run` writes");
+  if (out.t.empty() || out.columns.empty())
+    throw wrong("no exact solution: a column \"t [s]\" and one of a displacement are needed",
+                "as in the histories that `whirl run` writes");
   bool good = out.t.front() > 0.0 && out.t.back() <= t1 * (1.0 + 1e-12);
   for (std::size_t k = 0; k < out.t.size(); ++k) {
     good = good && std::isfinite(out.t[k]) && (k == 0 || out.t[k] > out.t[k - 1]);
-    for (const auto& col : out.columns) good = good && std::isfinite(col.values[k]);
+    for (const auto& col : out.columns)
+      good = good && std::isfinite(col.values[k]);
   }
-  if (!good) throw wrong(fmt::format("the times must increase, lie in 0 < t <= {:g} s, the length of the run, and all cells be numbers", t1), "");
+  if (!good)
+    throw wrong(fmt::format("the times must increase, lie in 0 < t <= {:g} s, the length of the "
+                            "run, and all cells be numbers",
+                            t1),
+                "");
   return out;
 }
 
-/// Displacements of the watched points, forces of the supports, spin and stored energy at equal intervals; and what an exact solution has.
+/// Displacements of the watched points, forces of the supports, spin and stored energy at equal
+/// intervals; and what an exact solution has.
 class Sampler final : public analysis::Observer {
  public:
-  Sampler(const run::Job& job, const std::vector<std::pair<std::string, analysis::Point>>& points, const Exact* exact, double t0, double t1, int n)
-      : job_(job), points_(points), exact_(exact), ticker_(t0, (t1 - t0) / n), displacement_(points.size()), force_(job.built.support_forces.size()),
-        exact_values_(exact ? exact->columns.size() : 0), next_exact_(exact ? exact->t.front() : infinity) { ticker_.advance(); }
+  Sampler(const run::Job& job, const std::vector<std::pair<std::string, analysis::Point>>& points,
+          const Exact* exact, double t0, double t1, int n)
+      : job_(job),
+        points_(points),
+        exact_(exact),
+        ticker_(t0, (t1 - t0) / n),
+        displacement_(points.size()),
+        force_(job.built.support_forces.size()),
+        exact_values_(exact ? exact->columns.size() : 0),
+        next_exact_(exact ? exact->t.front() : infinity) {
+    ticker_.advance();
+  }
   void step(analysis::StepAccess& s) override {
     for (; next_exact_ <= s.t1() * (1.0 + 1e-13); next_exact_ = exact_->next(next_exact_)) {
       const analysis::Snapshot& x = s.at(std::min(next_exact_, s.t1()));
-      for (std::size_t k = 0; k < exact_values_.size(); ++k) exact_values_[k].push_back(analysis::displacement(x, points_[exact_->columns[k].point].second)[exact_->columns[k].axis]);
+      for (std::size_t k = 0; k < exact_values_.size(); ++k)
+        exact_values_[k].push_back(analysis::displacement(
+            x, points_[exact_->columns[k].point].second)[exact_->columns[k].axis]);
     }
     for (; ticker_.next() <= s.t1() * (1.0 + 1e-13); ticker_.advance()) {
       const analysis::Snapshot& x = s.at(std::min(ticker_.next(), s.t1()));
       for (std::size_t i = 0; i < points_.size(); ++i) {
         const Vec3 u = analysis::displacement(x, points_[i].second);
-        displacement_[i].push_back(u.y()); displacement_[i].push_back(u.z());
+        displacement_[i].push_back(u.y());
+        displacement_[i].push_back(u.z());
       }
       spin_.push_back(x.node(job_.reference()).spin());
       const system::Energy& e = x.energy();
@@ -87,8 +119,11 @@ class Sampler final : public analysis::Observer {
       system::Context now;
       now.time = x.t();
       for (std::size_t i = 0; i < force_.size(); ++i) {
-        const Vec3 f = job_.built.support_forces[i].force([&x](Index n) -> const system::NodeState& { return x.node(n); }, now, [&x](Index k) { return x.reactions()[k]; });
-        force_[i].push_back(f.y()); force_[i].push_back(f.z());
+        const Vec3 f = job_.built.support_forces[i].force(
+            [&x](Index n) -> const system::NodeState& { return x.node(n); }, now,
+            [&x](Index k) { return x.reactions()[k]; });
+        force_[i].push_back(f.y());
+        force_[i].push_back(f.z());
       }
     }
   }
@@ -115,19 +150,24 @@ struct Bench {
   const model::Step& step;
   const model::TransientStep& law;
   run::StepState start;
-  Bench(model::Model m, const run::RunOptions& options, const std::filesystem::path& root, std::size_t which)
-      : model(std::move(m)), job(model, options, root), step(model.steps[which]),
+  Bench(model::Model m, const run::RunOptions& options, const std::filesystem::path& root,
+        std::size_t which)
+      : model(std::move(m)),
+        job(model, options, root),
+        step(model.steps[which]),
         law(std::get<model::TransientStep>(model.steps[which].law)) {
     job.build_for(step);
     start = steps::transient_start(job, step, law);
   }
   /// exact: its columns come last among the quantities. share: of the duration.
   analysis::StudySample run(const analysis::StudyCase& c, const Exact* exact, double share = 1.0) {
-    const std::unique_ptr<system::SystemProblem> equations = steps::transient_problem(job, law, start);
+    const std::unique_ptr<system::SystemProblem> equations =
+        steps::transient_problem(job, law, start);
     system::SystemProblem& problem = *equations;
     analysis::TransientOptions o = steps::transient_options(job, law, start.state.t);
     o.method = c.method;
-    o.integrator.tolerance = c.tolerance > 0 ? c.tolerance : 1e-8;   // fixed steps: Newton well below the step's error
+    o.integrator.tolerance =
+        c.tolerance > 0 ? c.tolerance : 1e-8;  // fixed steps: Newton well below the step's error
     o.integrator.dt_fixed = c.dt;
     o.integrator.t_end = start.state.t + share * law.duration;
     const auto points = steps::watched_points(job);
@@ -136,18 +176,25 @@ struct Bench {
     analysis::StudySample s;
     s.setting = c;
     try {
-      const analysis::TransientResult r = analysis::run_transient(problem, start.state, o, {&sampler, &peaks});
+      const analysis::TransientResult r =
+          analysis::run_transient(problem, start.state, o, {&sampler, &peaks});
       s.ok = r.reason == analysis::StopReason::end_time;
       if (!s.ok) s.note = fmt::format("{} {}", to_string(r.reason), r.detail);
-      s.seconds = r.seconds; s.steps = r.statistics.accepted; s.newton = r.statistics.newton_iterations;
+      s.seconds = r.seconds;
+      s.steps = r.statistics.accepted;
+      s.newton = r.statistics.newton_iterations;
       s.factorizations = r.statistics.factorizations_real + r.statistics.factorizations_complex;
       for (std::size_t i = 0; i < points.size(); ++i) {
-        s.quantities.push_back({points[i].first + ": displacement", "m", sampler.displacement(i), 0.0});
-        s.quantities.push_back({points[i].first + ": peak", "m", {peaks.peaks()[i].amplitude}, 0.0});
-        s.quantities.push_back({points[i].first + ": speed at peak", "rad/s", {peaks.peaks()[i].speed}, 0.0, false});
+        s.quantities.push_back(
+            {points[i].first + ": displacement", "m", sampler.displacement(i), 0.0});
+        s.quantities.push_back(
+            {points[i].first + ": peak", "m", {peaks.peaks()[i].amplitude}, 0.0});
+        s.quantities.push_back(
+            {points[i].first + ": speed at peak", "rad/s", {peaks.peaks()[i].speed}, 0.0, false});
       }
       for (std::size_t i = 0; i < sampler.forces().size(); ++i)
-        s.quantities.push_back({"bearing " + job.built.support_forces[i].name + ": force", "N", sampler.forces()[i], 0.0});
+        s.quantities.push_back({"bearing " + job.built.support_forces[i].name + ": force", "N",
+                                sampler.forces()[i], 0.0});
       s.quantities.push_back({"spin", "rad/s", sampler.spin(), 0.0});
       s.quantities.push_back({"stored energy", "J", sampler.energy(), 0.0});
       const Index n = job.reference();
@@ -156,9 +203,13 @@ struct Bench {
       end.set(r.end.t, r.end.q, r.end.v, r.end.a);
       s.quantities.push_back({"end angle", "rad", {end.total_phi(n)}, 0.0});
       for (std::size_t k = 0; exact && k < exact->columns.size(); ++k)
-        s.quantities.push_back({fmt::format("{}.{} against the exact solution", points[exact->columns[k].point].first, "xyz"[exact->columns[k].axis]), "m", sampler.exact(k), 0.0});
+        s.quantities.push_back(
+            {fmt::format("{}.{} against the exact solution", points[exact->columns[k].point].first,
+                         "xyz"[exact->columns[k].axis]),
+             "m", sampler.exact(k), 0.0});
     } catch (const Error& e) {
-      s.ok = false; s.note = e.what();
+      s.ok = false;
+      s.note = e.what();
     }
     return s;
   }
@@ -166,83 +217,111 @@ struct Bench {
 
 }  // namespace
 
-StudyPart study_transient(const model::Model& model, std::size_t which, const StudyOptions& options, const run::RunOptions& run, const std::filesystem::path& root) {
+StudyPart study_transient(const model::Model& model, std::size_t which, const StudyOptions& options,
+                          const run::RunOptions& run, const std::filesystem::path& root) {
   std::map<int, std::unique_ptr<Bench>> benches;
   benches[1] = std::make_unique<Bench>(model, run, root, which);
   auto bench = [&](int factor) -> Bench& {
     auto& b = benches[factor];
-    if (!b) b = std::make_unique<Bench>(refined(model, benches[1]->job.mesh, factor), run, root, which);
+    if (!b)
+      b = std::make_unique<Bench>(refined(model, benches[1]->job.mesh, factor), run, root, which);
     return *b;
   };
   std::unique_ptr<Exact> exact;
-  if (!options.exact.empty()) exact = std::make_unique<Exact>(read_exact(options.exact, steps::watched_points(benches[1]->job), benches[1]->law.duration));
+  if (!options.exact.empty())
+    exact = std::make_unique<Exact>(read_exact(
+        options.exact, steps::watched_points(benches[1]->job), benches[1]->law.duration));
   const bool flexible = !benches[1]->job.mesh.elements.empty();
   const bool rigid_bodies = system::MomentumProblem::obstacle(benches[1]->job.system()).empty();
 
   analysis::StudyOptions o;
-  // What the default accuracy costs says how tight a reference may be: one to 1e-10 on four times the elements takes a hundred times as long.
+  // What the default accuracy costs says how tight a reference may be: one to 1e-10 on four times
+  // the elements takes a hundred times as long.
   const analysis::StudySample probe = bench(1).run({"radau5", 1e-4, 0.0, 1}, nullptr);
   double tight = probe.seconds < 0.2 ? 1e-10 : probe.seconds < 2.0 ? 1e-8 : 1e-7;
   const int finest = !flexible ? 1 : probe.seconds < 0.5 ? 4 : 2;
   for (;; tight *= 10.0) {
     o.reference = {"gauss6", tight, 0.0, finest};
-    o.cross_check = rigid_bodies ? analysis::StudyCase{"momentum_rk", 0.1 * tight, 0.0, 1} : analysis::StudyCase{"radau5", 10.0 * tight, 0.0, finest};
-    // what starts from rest in a large sag has rounding above the tightest accuracies: found out on a hundredth of the run
-    if (tight > 5e-8 || (bench(finest).run(o.reference, nullptr, 0.01).ok && bench(o.cross_check.mesh_factor).run(o.cross_check, nullptr, 0.01).ok)) break;
+    o.cross_check = rigid_bodies ? analysis::StudyCase{"momentum_rk", 0.1 * tight, 0.0, 1}
+                                 : analysis::StudyCase{"radau5", 10.0 * tight, 0.0, finest};
+    // what starts from rest in a large sag has rounding above the tightest accuracies: found out on
+    // a hundredth of the run
+    if (tight > 5e-8 || (bench(finest).run(o.reference, nullptr, 0.01).ok &&
+                         bench(o.cross_check.mesh_factor).run(o.cross_check, nullptr, 0.01).ok))
+      break;
   }
   for (const char* m : {"radau5", "gauss4", "gauss6"})
     for (double tol : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8})
-      if (tol > 5.0 * tight) o.ladder.push_back({m, tol, 0.0, 1});   // nothing as tight as the reference
-  for (double tol : {1e-2, 1e-3, 1e-4, 1e-5}) o.ladder.push_back({"generalized_alpha", tol, 0.0, 1});
-  for (double tol : {1e-2, 1e-3, 1e-4, 1e-5}) o.ladder.push_back({"ida", tol, 0.0, 1});
+      if (tol > 5.0 * tight)
+        o.ladder.push_back({m, tol, 0.0, 1});  // nothing as tight as the reference
+  for (double tol : {1e-2, 1e-3, 1e-4, 1e-5})
+    o.ladder.push_back({"generalized_alpha", tol, 0.0, 1});
+  for (double tol : {1e-2, 1e-3, 1e-4, 1e-5})
+    o.ladder.push_back({"ida", tol, 0.0, 1});
   if (rigid_bodies)
-    for (double tol : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) o.ladder.push_back({"momentum_rk", tol, 0.0, 1});
+    for (double tol : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9})
+      o.ladder.push_back({"momentum_rk", tol, 0.0, 1});
   // equal steps around the one the default accuracy takes, on the reference's mesh: observed orders
   const double T = benches[1]->law.duration;
   const double h = T / static_cast<double>(std::max(probe.steps, 10L));
   for (const char* m : {"radau5", "gauss4", "gauss6", "generalized_alpha"})
     for (double f : {2.0, 1.0, 0.5, 0.25}) {
-      // of second order, it would need a hundred times these steps; on long runs it fights for each of them
+      // of second order, it would need a hundred times these steps; on long runs it fights for each
+      // of them
       if (probe.seconds > 0.2 && std::string_view(m) == "generalized_alpha") continue;
       o.ladder.push_back({m, 0.0, f * h, finest});
     }
   if (flexible)
     for (int factor = 2; factor <= finest; factor *= 2)
-      for (double tol : {1e-2, 1e-3, 1e-4, 1e-5}) o.ladder.push_back({"radau5", tol, 0.0, factor});
+      for (double tol : {1e-2, 1e-3, 1e-4, 1e-5})
+        o.ladder.push_back({"radau5", tol, 0.0, factor});
 
   const bool talk = !options.run.quiet;
-  constexpr double patience = 4.0;   // s: a finer setting than one that took this long would take longer
+  constexpr double patience =
+      4.0;  // s: a finer setting than one that took this long would take longer
   std::map<std::string, double> spent;
-  int runs = 0;                      // the first two are the reference and its check
-  if (talk) std::printf("%-34s %10s %9s %9s  %10s\n", "setting", "CPU s", "steps", "Newton", "worst error");
+  int runs = 0;  // the first two are the reference and its check
+  if (talk)
+    std::printf("%-34s %10s %9s %9s  %10s\n", "setting", "CPU s", "steps", "Newton", "worst error");
   o.progress = [&](const analysis::StudySample& s) {
     if (!talk) return;
-    if (s.ok) std::printf("%-34s %10.4f %9ld %9ld  %10.2e\n", s.setting.label().c_str(), s.seconds, s.steps, s.newton, s.worst());
-    else std::printf("%-34s %s\n", s.setting.label().c_str(), s.note.c_str());
+    if (s.ok)
+      std::printf("%-34s %10.4f %9ld %9ld  %10.2e\n", s.setting.label().c_str(), s.seconds, s.steps,
+                  s.newton, s.worst());
+    else
+      std::printf("%-34s %s\n", s.setting.label().c_str(), s.note.c_str());
     std::fflush(stdout);
   };
   const analysis::StudyResult r = analysis::run_study(
       [&](const analysis::StudyCase& c) {
-        const std::string key = c.method + (c.tolerance > 0 ? "" : " fixed") + (c.mesh_factor > 1 ? " finer" : "");
+        const std::string key =
+            c.method + (c.tolerance > 0 ? "" : " fixed") + (c.mesh_factor > 1 ? " finer" : "");
         const int number = runs++;
         const bool ladder = number >= 2;
         if (ladder && spent[key] > patience) {
           analysis::StudySample s;
-          s.setting = c; s.ok = false; s.note = "left out: the setting before it took long";
+          s.setting = c;
+          s.ok = false;
+          s.note = "left out: the setting before it took long";
           return s;
         }
         analysis::StudySample s = bench(c.mesh_factor).run(c, exact.get());
-        if (number == 0 && exact && s.ok)   // the reference itself
-          for (std::size_t k = 0, first = s.quantities.size() - exact->columns.size(); k < exact->columns.size(); ++k) s.quantities[first + k].values = exact->columns[k].values;
+        if (number == 0 && exact && s.ok)  // the reference itself
+          for (std::size_t k = 0, first = s.quantities.size() - exact->columns.size();
+               k < exact->columns.size(); ++k)
+            s.quantities[first + k].values = exact->columns[k].values;
         if (ladder) spent[key] = std::max(spent[key], s.seconds);
         return s;
       },
       o);
 
   StudyText text;
-  text.stem = "study"; text.heading = "Error against run time";
-  text.title = fmt::format("{}: error against run time", model.title.empty() ? model.deck_name : model.title);
-  text.reference = fmt::format("{}{}, checked by {}", o.reference.label(), exact ? " and the exact solution given" : "", o.cross_check.label());
+  text.stem = "study";
+  text.heading = "Error against run time";
+  text.title = fmt::format("{}: error against run time",
+                           model.title.empty() ? model.deck_name : model.title);
+  text.reference = fmt::format("{}{}, checked by {}", o.reference.label(),
+                               exact ? " and the exact solution given" : "", o.cross_check.label());
   text.target = bench(1).law.integrator.tolerance;
   return write_study(root, r, text, talk);
 }

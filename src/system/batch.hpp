@@ -1,5 +1,5 @@
-// A batch holds all elements of one kind with their nodes and the precomputed slots of their blocks: one virtual call
-// per kind and evaluation, none per element.
+// A batch holds all elements of one kind with their nodes and the precomputed slots of their
+// blocks: one virtual call per kind and evaluation, none per element.
 #pragma once
 #include <core/rotation.hpp>
 #include <la/block.hpp>
@@ -15,12 +15,12 @@ namespace whirl::system {
 /// Everything an evaluation writes to; one per thread. Sized once.
 struct Workspace {
   std::vector<NodeState> nodes;
-  std::vector<Mat32> D, D_rate, D_accel;   ///< node Jacobians in global axes
-  std::vector<rotation::Director> director;///< in chart axes
-  std::vector<Vector<7>> force;            ///< X-space force of every node
-  la::BlockMatrix<7> M, C, K;              ///< X-space tangents
+  std::vector<Mat32> D, D_rate, D_accel;     ///< node Jacobians in global axes
+  std::vector<rotation::Director> director;  ///< in chart axes
+  std::vector<Vector<7>> force;              ///< X-space force of every node
+  la::BlockMatrix<7> M, C, K;                ///< X-space tangents
   Context context;
-  Index outside = -1;                      ///< node that left the chart (|gamma| >= pi), or -1
+  Index outside = -1;  ///< node that left the chart (|gamma| >= pi), or -1
 };
 
 /// All elements of one kind.
@@ -29,20 +29,22 @@ class Term {
   virtual ~Term() = default;
   virtual std::string_view kind() const = 0;
   virtual std::size_t count() const = 0;
-  virtual int width() const = 0;           ///< 3: translations only; 7: rotations too
-  virtual bool inertial() const = 0;       ///< nothing but rigid-body inertia
-  /// The force is a polynomial of degree <= 2 in the rates (kernels that say quadratic_in_rates = true).
+  virtual int width() const = 0;      ///< 3: translations only; 7: rotations too
+  virtual bool inertial() const = 0;  ///< nothing but rigid-body inertia
+  /// The force is a polynomial of degree <= 2 in the rates (kernels that say quadratic_in_rates =
+  /// true).
   virtual bool quadratic_in_rates() const = 0;
   /// Neither supplies nor dissipates (kernels that say powerless = true).
   virtual bool powerless() const = 0;
-  /// At given directors and angles of its nodes the force is affine in u, u', u'' with constant coefficients (kernels that say
-  /// linear_in_displacements = true).
+  /// At given directors and angles of its nodes the force is affine in u, u', u'' with constant
+  /// coefficients (kernels that say linear_in_displacements = true).
   virtual bool linear_in_displacements() const = 0;
   /// The force has corners (kernels that have a region()).
   virtual bool cornered() const = 0;
   /// Appends, for every element of a cornered() term, on which smooth piece of its force it stands.
   virtual void list_regions(const Workspace& w, std::vector<int>& out) const = 0;
-  /// Tangents depend on the rate of the small motion, Context::whirl (kernels that say hysteretic = true).
+  /// Tangents depend on the rate of the small motion, Context::whirl (kernels that say hysteretic =
+  /// true).
   virtual bool hysteretic() const = 0;
   /// Adds the inertia of an inertial() term to its nodes; false when it is not constant in time.
   virtual bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const = 0;
@@ -63,36 +65,48 @@ class Batch final : public Term {
  public:
   static constexpr int N = K::n_nodes, W = K::width;
   explicit Batch(std::string kind) : kind_(std::move(kind)) {}
-  void add(const K& k, const std::array<Index, N>& nodes) { elements_.push_back(k); nodes_.push_back(nodes); }
+  void add(const K& k, const std::array<Index, N>& nodes) {
+    elements_.push_back(k);
+    nodes_.push_back(nodes);
+  }
   std::string_view kind() const override { return kind_; }
   std::size_t count() const override { return elements_.size(); }
   int width() const override { return W; }
   bool inertial() const override {
-    if constexpr (requires { K::inertial; }) return K::inertial;
-    else return false;
+    if constexpr (requires { K::inertial; })
+      return K::inertial;
+    else
+      return false;
   }
   bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const override {
     bool constant = true;
     if constexpr (requires(const K& k) { k.inertia(0.0); })
       for (std::size_t i = 0; i < elements_.size(); ++i) {
         of_node[static_cast<std::size_t>(nodes_[i][0])] += elements_[i].inertia(0.0);
-        if constexpr (requires(const K& k) { k.factor; }) constant = constant && !elements_[i].factor;
+        if constexpr (requires(const K& k) { k.factor; })
+          constant = constant && !elements_[i].factor;
       }
     else
       (void)of_node;
     return constant;
   }
   bool quadratic_in_rates() const override {
-    if constexpr (requires { K::quadratic_in_rates; }) return K::quadratic_in_rates;
-    else return false;
+    if constexpr (requires { K::quadratic_in_rates; })
+      return K::quadratic_in_rates;
+    else
+      return false;
   }
   bool powerless() const override {
-    if constexpr (requires { K::powerless; }) return K::powerless;
-    else return false;
+    if constexpr (requires { K::powerless; })
+      return K::powerless;
+    else
+      return false;
   }
   bool linear_in_displacements() const override {
-    if constexpr (requires { K::linear_in_displacements; }) return K::linear_in_displacements;
-    else return false;
+    if constexpr (requires { K::linear_in_displacements; })
+      return K::linear_in_displacements;
+    else
+      return false;
   }
   bool cornered() const override {
     if constexpr (has_regions)
@@ -102,28 +116,37 @@ class Batch final : public Term {
   }
   void list_regions(const Workspace& w, std::vector<int>& out) const override {
     if constexpr (has_regions)
-      for (std::size_t i = 0; i < elements_.size(); ++i) out.push_back(elements_[i].region(gather(w, i)));
-    else
-      { (void)w; (void)out; }
+      for (std::size_t i = 0; i < elements_.size(); ++i)
+        out.push_back(elements_[i].region(gather(w, i)));
+    else {
+      (void)w;
+      (void)out;
+    }
   }
   bool hysteretic() const override {
-    if constexpr (requires { K::hysteretic; }) return K::hysteretic;
-    else return false;
+    if constexpr (requires { K::hysteretic; })
+      return K::hysteretic;
+    else
+      return false;
   }
   std::vector<K>& elements() { return elements_; }
   const std::vector<K>& elements() const { return elements_; }
   const std::vector<std::array<Index, N>>& nodes() const { return nodes_; }
 
   void add_force(Workspace& w) const override {
-    if constexpr (requires { K::add_forces(std::span<const K>(elements_), nodes_.data(), w.nodes.data(), w.context, w.force.data()); }) {
+    if constexpr (requires {
+                    K::add_forces(std::span<const K>(elements_), nodes_.data(), w.nodes.data(),
+                                  w.context, w.force.data());
+                  }) {
       K::add_forces(elements_, nodes_.data(), w.nodes.data(), w.context, w.force.data());
       return;
     }
     for (std::size_t i = 0; i < elements_.size(); ++i) {
-      ForceX<N * W> f = ForceX<N * W>::Zero();
+      ForceX<N* W> f = ForceX<N * W>::Zero();
       elements_[i].add_force(gather(w, i), w.context, f);
       for (int a = 0; a < N; ++a)
-        w.force[static_cast<std::size_t>(nodes_[i][a])].template head<W>() += f.template segment<W>(W * a);
+        w.force[static_cast<std::size_t>(nodes_[i][a])].template head<W>() +=
+            f.template segment<W>(W * a);
     }
   }
   void add_tangent(Workspace& w) const override {
@@ -138,29 +161,36 @@ class Batch final : public Term {
           for (int b = 0; b < N; ++b) {
             const Index s = slots_[i][static_cast<std::size_t>(a * N + b)];
             if (s < 0) continue;
-            if constexpr (K::has_M) w.M.block(s).template topLeftCorner<W, W>() += t.M.template block<W, W>(W * a, W * b);
-            if constexpr (K::has_C) w.C.block(s).template topLeftCorner<W, W>() += t.C.template block<W, W>(W * a, W * b);
-            if constexpr (K::has_K) w.K.block(s).template topLeftCorner<W, W>() += t.K.template block<W, W>(W * a, W * b);
+            if constexpr (K::has_M)
+              w.M.block(s).template topLeftCorner<W, W>() += t.M.template block<W, W>(W * a, W * b);
+            if constexpr (K::has_C)
+              w.C.block(s).template topLeftCorner<W, W>() += t.C.template block<W, W>(W * a, W * b);
+            if constexpr (K::has_K)
+              w.K.block(s).template topLeftCorner<W, W>() += t.K.template block<W, W>(W * a, W * b);
           }
       }
     }
   }
   void add_energy(const Workspace& w, const Context& c, Energy& e) const override {
-    for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i].add_energy(gather(w, i), c, e);
+    for (std::size_t i = 0; i < elements_.size(); ++i)
+      elements_[i].add_energy(gather(w, i), c, e);
   }
   void list_couplings(std::vector<std::pair<Index, Index>>& out) const override {
     if constexpr (N > 1)
       for (const auto& n : nodes_)
         for (int a = 0; a < N; ++a)
-          for (int b = a + 1; b < N; ++b) out.emplace_back(n[a], n[b]);
+          for (int b = a + 1; b < N; ++b)
+            out.emplace_back(n[a], n[b]);
   }
   void list_nodes(std::vector<Index>& out) const override {
-    for (const auto& n : nodes_) out.insert(out.end(), n.begin(), n.end());
+    for (const auto& n : nodes_)
+      out.insert(out.end(), n.begin(), n.end());
   }
   void list_breakpoints(std::vector<double>& out) const override {
     if constexpr (requires(const K& k) { k.breakpoints(); })
       for (const K& k : elements_)
-        for (double t : k.breakpoints()) out.push_back(t);
+        for (double t : k.breakpoints())
+          out.push_back(t);
     else
       (void)out;
   }
@@ -169,16 +199,20 @@ class Batch final : public Term {
     for (std::size_t i = 0; i < elements_.size(); ++i)
       for (int a = 0; a < N; ++a)
         for (int b = 0; b < N; ++b) {
-          const Index ra = row[static_cast<std::size_t>(nodes_[i][a])], rb = row[static_cast<std::size_t>(nodes_[i][b])];
+          const Index ra = row[static_cast<std::size_t>(nodes_[i][a])],
+                      rb = row[static_cast<std::size_t>(nodes_[i][b])];
           slots_[i][static_cast<std::size_t>(a * N + b)] = ra < 0 || rb < 0 ? -1 : p.slot(ra, rb);
         }
   }
 
  private:
-  static constexpr bool has_regions = requires(const K& k, const Nodes<K::n_nodes>& x) { k.region(x); };
+  static constexpr bool has_regions = requires(const K& k, const Nodes<K::n_nodes>& x) {
+    k.region(x);
+  };
   Nodes<N> gather(const Workspace& w, std::size_t i) const {
     Nodes<N> x;
-    for (int a = 0; a < N; ++a) x[a] = &w.nodes[static_cast<std::size_t>(nodes_[i][a])];
+    for (int a = 0; a < N; ++a)
+      x[a] = &w.nodes[static_cast<std::size_t>(nodes_[i][a])];
     return x;
   }
   std::string kind_;

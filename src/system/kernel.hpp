@@ -3,30 +3,37 @@
 //   struct RigidDisk {
 //     static constexpr int n_nodes = 1;       // nodes it touches
 //     static constexpr int width = 7;         // coordinates a node: 3 = (u), 7 = (u, d, phi)
-//     static constexpr bool has_M = true, has_C = true, has_K = true;   // tangents that exist at all
-//     void add_force(const Nodes<1>&, const Context&, ForceX<7>& f) const;        // f += left side of M a + f = 0
-//     void add_tangent(const Nodes<1>&, const Context&, TangentX<7>& k) const;    // += exact derivatives of f
-//     void add_energy(const Nodes<1>&, const Context&, Energy& e) const;
+//     static constexpr bool has_M = true, has_C = true, has_K = true;   // tangents that exist at
+//     all void add_force(const Nodes<1>&, const Context&, ForceX<7>& f) const;        // f += left
+//     side of M a + f = 0 void add_tangent(const Nodes<1>&, const Context&, TangentX<7>& k) const;
+//     // += exact derivatives of f void add_energy(const Nodes<1>&, const Context&, Energy& e)
+//     const;
 //   };
 //
-// Optional: static void add_forces(std::span<const K>, const std::array<Index, n_nodes>* nodes, const NodeState*, const Context&,
-// Vector<7>* force), the same for all elements of a batch at once, where a kernel is fast that way.
+// Optional: static void add_forces(std::span<const K>, const std::array<Index, n_nodes>* nodes,
+// const NodeState*, const Context&, Vector<7>* force), the same for all elements of a batch at
+// once, where a kernel is fast that way.
 //
-// Optional: powerless = true says that add_energy never adds to supplied or dissipated, so that a power balance skips it.
+// Optional: powerless = true says that add_energy never adds to supplied or dissipated, so that a
+// power balance skips it.
 //
 // Optional: hysteretic = true says that the tangents depend on Context::whirl.
 //
-// Optional: quadratic_in_rates = true says that f is a polynomial of degree <= 2 in u', d', phi' at fixed u, d, phi, with
-// constant M: frequency-domain analyses then combine its matrices for any speed from three evaluations.
+// Optional: quadratic_in_rates = true says that f is a polynomial of degree <= 2 in u', d', phi' at
+// fixed u, d, phi, with constant M: frequency-domain analyses then combine its matrices for any
+// speed from three evaluations.
 //
-// Optional: linear_in_displacements = true says that at given d(t), phi(t) f is affine in u, u', u'' with constant coefficients: a
-// scene of such kernels in which nothing tilts or turns freely is integrated with one linearisation.
+// Optional: linear_in_displacements = true says that at given d(t), phi(t) f is affine in u, u',
+// u'' with constant coefficients: a scene of such kernels in which nothing tilts or turns freely is
+// integrated with one linearisation.
 //
-// Optional: int region(const Nodes<>&) const numbers the smooth pieces of a force that has corners (a gap closes), and bool
-// cornered() const says whether this element has any: a transient puts the ends of its steps on the corners.
+// Optional: int region(const Nodes<>&) const numbers the smooth pieces of a force that has corners
+// (a gap closes), and bool cornered() const says whether this element has any: a transient puts the
+// ends of its steps on the corners.
 //
-// Sign: f is what stands on the LEFT: inertia + internal force - external force. Absent tangents (has_* false) are never
-// touched. Kernels do not allocate, throw, or branch on physics that the deck could have left out: that is another kernel.
+// Sign: f is what stands on the LEFT: inertia + internal force - external force. Absent tangents
+// (has_* false) are never touched. Kernels do not allocate, throw, or branch on physics that the
+// deck could have left out: that is another kernel.
 #pragma once
 #include <system/node.hpp>
 #include <concepts>
@@ -34,8 +41,9 @@
 namespace whirl::system {
 
 template <class K>
-concept Kernel = requires(const K& k, const Nodes<K::n_nodes>& x, const Context& c, ForceX<K::n_nodes * K::width>& f,
-                          TangentX<K::n_nodes * K::width>& t, Energy& e) {
+concept Kernel = requires(const K& k, const Nodes<K::n_nodes>& x, const Context& c,
+                          ForceX<K::n_nodes * K::width>& f, TangentX<K::n_nodes * K::width>& t,
+                          Energy& e) {
   requires K::width == 3 || K::width == 7;
   { K::has_M } -> std::convertible_to<bool>;
   { K::has_C } -> std::convertible_to<bool>;

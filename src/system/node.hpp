@@ -1,11 +1,13 @@
 // Kinematic state of a node as the elements see it: extended coordinates X = (u, d, phi).
 //
-// The unknowns are q = (u, phi, gamma); elements never see gamma. They are written in the director d(gamma), its offset
-// t = d - e from the chart axis (kept separately, so that a tilt of 1e-12 rad keeps its digits), and phi. The system
-// converts forces and tangents once per node with the Jacobian J = dX/dq:
-//   r_q = J^T f_X,   M_q = J^T M J,   C_q = J^T (C J + 2 M J'),   K_q = J^T (K J + C J' + M J'') + f_d . d2d/dgamma2
-// with J' = d(Xdot)/dq and J'' = d(Xddot)/dq. Any smooth extension of an element's force off |d| = 1 gives the same
-// result, because J maps to the tangent space of the sphere.
+// The unknowns are q = (u, phi, gamma); elements never see gamma. They are written in the director
+// d(gamma), its offset t = d - e from the chart axis (kept separately, so that a tilt of 1e-12 rad
+// keeps its digits), and phi. The system converts forces and tangents once per node with the
+// Jacobian J = dX/dq:
+//   r_q = J^T f_X,   M_q = J^T M J,   C_q = J^T (C J + 2 M J'),   K_q = J^T (K J + C J' + M J'') +
+//   f_d . d2d/dgamma2
+// with J' = d(Xdot)/dq and J'' = d(Xddot)/dq. Any smooth extension of an element's force off |d| =
+// 1 gives the same result, because J maps to the tangent space of the sphere.
 #pragma once
 #include <core/types.hpp>
 #include <array>
@@ -13,13 +15,15 @@
 namespace whirl::system {
 
 struct NodeState {
-  Vec3 u, du;   ///< displacement from the reference position, m, and its rate, m/s (global axes)
-  Vec3 ddu;     ///< acceleration relative to free fall, u'' - g(t), m/s^2: gravity and base motion enter every inertia here
-  Vec3 t;       ///< d - e, exact for small tilt
-  Vec3 dd, ddd; ///< d', d''
-  double phi = 0.0, dphi = 0.0, ddphi = 0.0;  ///< axial angle (less the whole turns), rad, and rates
-  double turns = 0.0;                         ///< whole turns taken out of phi
-  const Mat3* chart = nullptr;                ///< columns e, e2, e3: the chart triad, in global axes
+  Vec3 u, du;    ///< displacement from the reference position, m, and its rate, m/s (global axes)
+  Vec3 ddu;      ///< acceleration relative to free fall, u'' - g(t), m/s^2: gravity and base motion
+                 ///< enter every inertia here
+  Vec3 t;        ///< d - e, exact for small tilt
+  Vec3 dd, ddd;  ///< d', d''
+  double phi = 0.0, dphi = 0.0,
+         ddphi = 0.0;           ///< axial angle (less the whole turns), rad, and rates
+  double turns = 0.0;           ///< whole turns taken out of phi
+  const Mat3* chart = nullptr;  ///< columns e, e2, e3: the chart triad, in global axes
 
   Vec3 e() const { return chart->col(0); }
   Vec3 d() const { return chart->col(0) + t; }
@@ -31,34 +35,46 @@ struct NodeState {
   Vec3 omega() const { return d().cross(dd) + spin() * d(); }
 };
 
-template <int N> using Nodes = std::array<const NodeState*, N>;
+template <int N>
+using Nodes = std::array<const NodeState*, N>;
 
 /// What an element may know beside its nodes.
 struct Context {
   double time = 0.0;
-  Vec3 gravity = Vec3::Zero();  ///< g(t) minus base acceleration; already inside NodeState::ddu, here for energies
-  double load = 1.0;            ///< factor on gravity and given loads: statics in load steps, buckling; 1 in every motion
-  /// Means over the revolution are asked for: gear meshes and rolling bearings, whose periods samples of the revolution would
-  /// alias, answer with their own mean.
+  Vec3 gravity = Vec3::Zero();  ///< g(t) minus base acceleration; already inside NodeState::ddu,
+                                ///< here for energies
+  double load = 1.0;  ///< factor on gravity and given loads: statics in load steps, buckling; 1 in
+                      ///< every motion
+  /// Means over the revolution are asked for: gear meshes and rolling bearings, whose periods
+  /// samples of the revolution would alias, answer with their own mean.
   bool averaged = false;
-  /// Hysteretic damping has no form in time: in motions a viscous stand-in acts (false); in steady states and in small motions about them,
-  /// at the rate growth + i whirl (1/s), a complex stiffness (true). whirl: 0 for the steady state itself, infinity to leave it out.
+  /// Hysteretic damping has no form in time: in motions a viscous stand-in acts (false); in steady
+  /// states and in small motions about them, at the rate growth + i whirl (1/s), a complex
+  /// stiffness (true). whirl: 0 for the steady state itself, infinity to leave it out.
   bool hysteretic = false;
-  bool whirl_rotates = false;   ///< whirl is seen in axes that turn with the shaft
+  bool whirl_rotates = false;  ///< whirl is seen in axes that turn with the shaft
   double whirl = 0.0, growth = 0.0;
-  double whirl_side = 0.0;      ///< compared with the spin in place of whirl (which may still be an iterate)
+  double whirl_side =
+      0.0;  ///< compared with the spin in place of whirl (which may still be an iterate)
 };
 
 /// Force contribution in X: 3 (u) or 7 (u, d, phi) entries a node.
-template <int W> using ForceX = Vector<W>;
+template <int W>
+using ForceX = Vector<W>;
 
 /// Tangents of the force in X.
-template <int W> struct TangentX {
+template <int W>
+struct TangentX {
   Matrix<W> M, C, K;  ///< d f/d X'', d f/d X', d f/d X
-  void set_zero() { M.setZero(); C.setZero(); K.setZero(); }
+  void set_zero() {
+    M.setZero();
+    C.setZero();
+    K.setZero();
+  }
 };
 
-/// Energies in J and powers in W, summed over elements. Gravity's potential is kept apart from the elastic one.
+/// Energies in J and powers in W, summed over elements. Gravity's potential is kept apart from the
+/// elastic one.
 struct Energy {
   double kinetic = 0.0, elastic = 0.0, gravity = 0.0;
   double supplied = 0.0;    ///< power of external loads (not gravity)

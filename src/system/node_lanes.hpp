@@ -1,6 +1,6 @@
-// Node states from the unknowns, several nodes at a time, compiled once per instruction set (see la/lu_kernel.hpp for why only
-// plain data crosses this interface). What a force needs; the derivatives of the Jacobian, which only a linearisation needs,
-// are rotation::director's.
+// Node states from the unknowns, several nodes at a time, compiled once per instruction set (see
+// la/lu_kernel.hpp for why only plain data crosses this interface). What a force needs; the
+// derivatives of the Jacobian, which only a linearisation needs, are rotation::director's.
 #pragma once
 #include <cstddef>
 
@@ -9,16 +9,17 @@ namespace whirl::system::lanes {
 /// Arrays over the nodes; distances in doubles.
 struct Motion {
   std::ptrdiff_t count = 0;
-  const double *q = nullptr, *v = nullptr, *a = nullptr;   ///< 6 a node: u, phi, gamma2, gamma3
-  const int* line = nullptr;           ///< per node
-  const double* falling = nullptr;     ///< per node: 1, or 0 for scalar degrees of freedom, which gravity does not touch
-  const double* chart = nullptr;       ///< 9 a line, column-major
-  const double* turns = nullptr;       ///< 1 a line
-  double gravity[3] = {};              ///< m/s2
-  double limit_squared = 0.0;          ///< of |gamma|
-  double* state = nullptr;             ///< out: u, du, ddu, t, dd, ddd, phi, dphi, ddphi, turns, chart pointer
+  const double *q = nullptr, *v = nullptr, *a = nullptr;  ///< 6 a node: u, phi, gamma2, gamma3
+  const int* line = nullptr;                              ///< per node
+  const double* falling =
+      nullptr;  ///< per node: 1, or 0 for scalar degrees of freedom, which gravity does not touch
+  const double* chart = nullptr;  ///< 9 a line, column-major
+  const double* turns = nullptr;  ///< 1 a line
+  double gravity[3] = {};         ///< m/s2
+  double limit_squared = 0.0;     ///< of |gamma|
+  double* state = nullptr;  ///< out: u, du, ddu, t, dd, ddd, phi, dphi, ddphi, turns, chart pointer
   std::ptrdiff_t stride = 0;
-  double* D = nullptr;                 ///< out: 3x2 a node, column-major, global axes
+  double* D = nullptr;  ///< out: 3x2 a node, column-major, global axes
 };
 
 struct Kernels {

@@ -11,19 +11,23 @@ constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 SystemProblem::SystemProblem(const System& system, ProblemOptions options)
-    : system_(system), options_(options), workspace_(system.make_workspace()), matrices_(system.make_matrices()) {
+    : system_(system),
+      options_(options),
+      workspace_(system.make_workspace()),
+      matrices_(system.make_matrices()) {
   frames = system.make_state().frames;
   kinds_.resize(at(system.size()));
   const auto active = system.active();
   for (Index k = 0; k < system.size(); ++k) {
     const Index c = k % 6;
-    kinds_[at(k)] = !active[at(k)]                         ? time::Kind::held
-                    : system.node(k / 6).scalar            ? time::Kind::internal
-                    : c < 3                                ? time::Kind::displacement
-                    : c == spin_phi                        ? time::Kind::spin_angle
-                                                           : time::Kind::tilt;
+    kinds_[at(k)] = !active[at(k)]              ? time::Kind::held
+                    : system.node(k / 6).scalar ? time::Kind::internal
+                    : c < 3                     ? time::Kind::displacement
+                    : c == spin_phi             ? time::Kind::spin_angle
+                                                : time::Kind::tilt;
   }
-  for (const Hold& h : system.holds()) driven_by_law_ = driven_by_law_ || h.law;
+  for (const Hold& h : system.holds())
+    driven_by_law_ = driven_by_law_ || h.law;
   line_nodes_.resize(at(system.lines()));
   rechartable_.assign(at(system.lines()), 1);
   lead_.assign(at(system.lines()), -1);
@@ -32,16 +36,19 @@ SystemProblem::SystemProblem(const System& system, ProblemOptions options)
   for (const auto& term : system.terms()) {
     std::vector<Index> touched;
     if (term->width() == 7) term->list_nodes(touched);
-    for (Index i : touched) rotates[at(i)] = 1;
+    for (Index i : touched)
+      rotates[at(i)] = 1;
   }
   for (Index i = 0; i < system.nodes(); ++i) {
     const NodeDef& def = system.node(i);
     if (def.scalar) continue;
     bool any = false, rotation_held = false;
-    for (int c = 3; c < 6; ++c) (active[at(6 * i + c)] ? any : rotation_held) = true;
+    for (int c = 3; c < 6; ++c)
+      (active[at(6 * i + c)] ? any : rotation_held) = true;
     // a prescribed spin still turns: it counts for whole turns
     bool law = false;
-    for (const Hold& h : system.holds()) law = law || (h.unknown == 6 * i + spin_phi && h.law);
+    for (const Hold& h : system.holds())
+      law = law || (h.unknown == 6 * i + spin_phi && h.law);
     if (rotates[at(i)] && !active[at(6 * i + spin_phi)] && !law) clamped[at(def.line)] = 1;
     if (!any && !law) continue;
     line_nodes_[at(def.line)].push_back(i);
@@ -62,12 +69,15 @@ void SystemProblem::linearize(double t, time::CRef q, time::CRef v, time::CRef a
 }
 
 bool SystemProblem::factor(double cm, double cc, double ck) {
-  if (!real_) real_ = la::make_direct_solver<double>(system_.pattern(), system_.active(), options_.solver);
+  if (!real_)
+    real_ = la::make_direct_solver<double>(system_.pattern(), system_.active(), options_.solver);
   return real_->factor(matrices_, cm, cc, ck) == la::Status::ok;
 }
 
 bool SystemProblem::factor(Complex cm, Complex cc, Complex ck) {
-  if (!complex_) complex_ = la::make_direct_solver<Complex>(system_.pattern(), system_.active(), options_.solver);
+  if (!complex_)
+    complex_ =
+        la::make_direct_solver<Complex>(system_.pattern(), system_.active(), options_.solver);
   return complex_->factor(matrices_, cm, cc, ck) == la::Status::ok;
 }
 
@@ -77,7 +87,8 @@ std::string SystemProblem::singular_unknown() const {
   return std::string(component_name(static_cast<int>(k % 6))) + " of " + system_.node(k / 6).name;
 }
 
-time::Problem::Power SystemProblem::power(double t, time::CRef q, time::CRef v, time::CRef a, time::CRef reactions) {
+time::Problem::Power SystemProblem::power(double t, time::CRef q, time::CRef v, time::CRef a,
+                                          time::CRef reactions) {
   system_.evaluate_nodes(workspace_, frames, t, q, v, a);
   return power_here(v, reactions);
 }
@@ -86,7 +97,8 @@ time::Problem::Power SystemProblem::power_here(time::CRef v, time::CRef reaction
   energy_ = system_.energy(workspace_);
   for (const Hold& h : system_.holds())
     if (h.law) energy_.supplied += reactions[h.unknown] * v[h.unknown];
-  return {energy_.kinetic + energy_.elastic + energy_.gravity, energy_.kinetic, energy_.supplied, energy_.dissipated};
+  return {energy_.kinetic + energy_.elastic + energy_.gravity, energy_.kinetic, energy_.supplied,
+          energy_.dissipated};
 }
 
 time::Problem::Power SystemProblem::exchange_here(time::CRef v, time::CRef reactions) {
@@ -101,11 +113,13 @@ bool SystemProblem::accept(double, time::Ref q, time::Ref v, time::Ref a) {
   for (Index l = 0; l < system_.lines(); ++l) {
     const auto& nodes = line_nodes_[at(l)];
     if (nodes.empty()) continue;
-    // Whole turns leave phi, all nodes of the line together: differences and trigonometry see no change, and phi keeps its
-    // last digit over any number of revolutions. 2 pi is taken out in two parts, so that the turns are true turns.
+    // Whole turns leave phi, all nodes of the line together: differences and trigonometry see no
+    // change, and phi keeps its last digit over any number of revolutions. 2 pi is taken out in two
+    // parts, so that the turns are true turns.
     const double turns = std::round(q[6 * lead_[at(l)] + spin_phi] / two_pi);
     if (std::abs(turns) >= 1.0) {
-      for (Index i : nodes) rotation::take_turns(q[6 * i + spin_phi], turns);
+      for (Index i : nodes)
+        rotation::take_turns(q[6 * i + spin_phi], turns);
       frames.turns[at(l)] += turns;
       changed = true;
     }
@@ -120,7 +134,8 @@ bool SystemProblem::accept(double, time::Ref q, time::Ref v, time::Ref a) {
 }
 
 bool SystemProblem::rechart(Index line, time::Ref q, time::Ref v, time::Ref a) {
-  // New axis: along the first node's present director, so that every node of the line starts near the middle of it.
+  // New axis: along the first node's present director, so that every node of the line starts near
+  // the middle of it.
   const auto& nodes = line_nodes_[at(line)];
   const Mat3 old_chart = frames.chart[at(line)];
   auto director_of = [&](Index i) {
@@ -129,14 +144,20 @@ bool SystemProblem::rechart(Index line, time::Ref q, time::Ref v, time::Ref a) {
     return Vec3(old_chart * (d.t + Vec3::UnitX()));
   };
   Vec3 mean = Vec3::Zero();
-  for (Index i : nodes) mean += director_of(i);
+  for (Index i : nodes)
+    mean += director_of(i);
   if (mean.norm() < 1e-3 * static_cast<double>(nodes.size())) return false;
   const rotation::ChartChange change(old_chart, mean.normalized());
   for (Index i : nodes) {
-    const rotation::Angles n = change.apply({q[6 * i + 3], v[6 * i + 3], a[6 * i + 3], q.segment<2>(6 * i + 4),
-                                             v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4)});
-    q[6 * i + 3] = n.phi; v[6 * i + 3] = n.dphi; a[6 * i + 3] = n.ddphi;
-    q.segment<2>(6 * i + 4) = n.gamma; v.segment<2>(6 * i + 4) = n.dgamma; a.segment<2>(6 * i + 4) = n.ddgamma;
+    const rotation::Angles n =
+        change.apply({q[6 * i + 3], v[6 * i + 3], a[6 * i + 3], q.segment<2>(6 * i + 4),
+                      v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4)});
+    q[6 * i + 3] = n.phi;
+    v[6 * i + 3] = n.dphi;
+    a[6 * i + 3] = n.ddphi;
+    q.segment<2>(6 * i + 4) = n.gamma;
+    v.segment<2>(6 * i + 4) = n.dgamma;
+    a.segment<2>(6 * i + 4) = n.ddgamma;
   }
   frames.chart[at(line)] = change.new_triad();
   return true;

@@ -9,8 +9,8 @@ namespace whirl::system {
 
 struct ProblemOptions {
   la::SolverKind solver = la::SolverKind::automatic;
-  bool chart_change = true;   ///< re-chart a line when a node's tilt passes chart_limit
-  double chart_limit = 2.0;   ///< rad
+  bool chart_change = true;  ///< re-chart a line when a node's tilt passes chart_limit
+  double chart_limit = 2.0;  ///< rad
 };
 
 /// Owns frames, workspace, matrices and factorisations; borrows the System.
@@ -22,12 +22,20 @@ class SystemProblem : public time::Problem {
   std::span<const time::Kind> kinds() const override { return kinds_; }
   bool is_linear() const override { return system_.linear(); }
   bool has_corners() const override { return system_.cornered(); }
-  void impose(double t, time::Ref q, time::Ref v, time::Ref a) const override { system_.impose(frames, t, q, v, a); }
+  void impose(double t, time::Ref q, time::Ref v, time::Ref a) const override {
+    system_.impose(frames, t, q, v, a);
+  }
   bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
   void linearize(double t, time::CRef q, time::CRef v, time::CRef a) override;
-  void add_M(double s, time::CRef x, time::Ref y) const override { matrices_.M.add_multiply(s, x, y); }
-  void add_C(double s, time::CRef x, time::Ref y) const override { matrices_.C.add_multiply(s, x, y); }
-  void add_K(double s, time::CRef x, time::Ref y) const override { matrices_.K.add_multiply(s, x, y); }
+  void add_M(double s, time::CRef x, time::Ref y) const override {
+    matrices_.M.add_multiply(s, x, y);
+  }
+  void add_C(double s, time::CRef x, time::Ref y) const override {
+    matrices_.C.add_multiply(s, x, y);
+  }
+  void add_K(double s, time::CRef x, time::Ref y) const override {
+    matrices_.K.add_multiply(s, x, y);
+  }
   bool factor(double cm, double cc, double ck) override;
   bool factor(Complex cm, Complex cc, Complex ck) override;
   void solve(time::Ref b) const override { real_->solve(b); }
@@ -39,8 +47,8 @@ class SystemProblem : public time::Problem {
   virtual Power power_here(time::CRef v, time::CRef reactions);
   /// Only `supplied` and `dissipated` of it.
   virtual Power exchange_here(time::CRef v, time::CRef reactions);
-  /// The residual has a part in the power: an unknown follows a law of time, whose reaction supplies power. Otherwise `reactions`
-  /// is not read above.
+  /// The residual has a part in the power: an unknown follows a law of time, whose reaction
+  /// supplies power. Otherwise `reactions` is not read above.
   virtual bool power_needs_reactions() const { return driven_by_law_; }
 
   const System& system() const { return system_; }
@@ -53,7 +61,7 @@ class SystemProblem : public time::Problem {
   /// After factor() returned false: "y of node ...", or empty.
   std::string singular_unknown() const;
 
-  Frames frames;   ///< current charts and turns; copy into State to checkpoint
+  Frames frames;  ///< current charts and turns; copy into State to checkpoint
 
  protected:
   /// For problems that keep matrices of their own making.
@@ -67,7 +75,7 @@ class SystemProblem : public time::Problem {
   std::vector<time::Kind> kinds_;
   std::vector<std::vector<Index>> line_nodes_;
   std::vector<unsigned char> rechartable_;
-  std::vector<Index> lead_;           ///< node whose phi decides about whole turns, per line
+  std::vector<Index> lead_;  ///< node whose phi decides about whole turns, per line
   Workspace workspace_;
   la::MCK matrices_;
   std::unique_ptr<la::DirectSolver<double>> real_;

@@ -1,7 +1,9 @@
-// Spin about the section's own normal in director form, with its derivatives: what polar inertia, films and internal
-// damping share. s = phi' - w(d).d', w = (e x d)/(1 + e.d)  (paper eq. (11); doi 10.18698/2308-6033-2018-10-1815).
-// Lagrange's equation of T = 1/2 Jp s^2 is, after projection to the sphere's tangent plane,
-//   L_phi = h', L_d = -h' w - h d x d',  h = Jp s: on the sphere curl w = d + (a part along e x d that cancels), so
+// Spin about the section's own normal in director form, with its derivatives: what polar inertia,
+// films and internal damping share. s = phi' - w(d).d', w = (e x d)/(1 + e.d)  (paper eq. (11);
+// doi 10.18698/2308-6033-2018-10-1815). Lagrange's equation of T = 1/2 Jp s^2 is, after projection
+// to the sphere's tangent plane,
+//   L_phi = h', L_d = -h' w - h d x d',  h = Jp s: on the sphere curl w = d + (a part along e x d
+//   that cancels), so
 // (W - W^T) d' = d x d' there.
 #pragma once
 #include <system/node.hpp>
@@ -11,9 +13,9 @@ namespace whirl::system {
 /// Spin and its gradients with respect to (phi', d', d).
 struct Spin {
   Vec3 e, w;
-  double D;         ///< 1 + e.d
-  double s;         ///< rad/s
-  Vec3 s_d;         ///< ds/dd; ds/dd' = -w, ds/dphi' = 1
+  double D;  ///< 1 + e.d
+  double s;  ///< rad/s
+  Vec3 s_d;  ///< ds/dd; ds/dd' = -w, ds/dphi' = 1
   explicit Spin(const NodeState& n) : e(n.e()), D(2.0 + e.dot(n.t)) {
     w = e.cross(n.t) / D;
     const double wd = w.dot(n.dd);
@@ -26,14 +28,15 @@ struct Spin {
 
 /// Spin acceleration s' with its gradients; ds'/dphi'' = 1, ds'/dd'' = -w.
 struct SpinRate : Spin {
-  double sdot;      ///< rad/s2
-  Vec3 sdot_dd;     ///< ds'/dd'
-  Vec3 sdot_d;      ///< ds'/dd
+  double sdot;   ///< rad/s2
+  Vec3 sdot_dd;  ///< ds'/dd'
+  Vec3 sdot_d;   ///< ds'/dd
   explicit SpinRate(const NodeState& n) : Spin(n) {
     const double wd = w.dot(n.dd), ed = e.dot(n.dd);
     sdot = n.ddphi - w.dot(n.ddd) + wd * ed / D;
     sdot_dd = (ed * w + wd * e) / D;
-    sdot_d = (e.cross(n.ddd) + w.dot(n.ddd) * e) / D + (ed / (D * D)) * (n.dd.cross(e) - 2.0 * wd * e);
+    sdot_d =
+        (e.cross(n.ddd) + w.dot(n.ddd) * e) / D + (ed / (D * D)) * (n.dd.cross(e) - 2.0 * wd * e);
   }
 };
 

@@ -35,7 +35,8 @@ Eigen::Matrix<double, 7, 6> jacobian_rate(const Mat3& chart, const Vec2& gamma, 
   const double D = 2.0 + e.dot(t);
   const Vec3 axis_rate = d_rate / D - (e.dot(d_rate) / (D * D)) * (2.0 * e + t);
   Eigen::Matrix<double, 7, 6> J = Eigen::Matrix<double, 7, 6>::Zero();
-  for (int c = 0; c < 3; ++c) J.block<3, 1>(3, 3 + c) = W.col(c).cross(d_rate);
+  for (int c = 0; c < 3; ++c)
+    J.block<3, 1>(3, 3 + c) = W.col(c).cross(d_rate);
   J.block<1, 3>(6, 3) = axis_rate.transpose() * W;
   return J;
 }

@@ -30,19 +30,19 @@ struct StiffnessRateX {
 /// A state and the motion along which its stiffness is asked for.
 struct StiffnessMotion {
   const System& system;
-  const Workspace& workspace; ///< node states at q
+  const Workspace& workspace;  ///< node states at q
   const Frames& frames;
   const VecX& q;
-  const VecX& direction; ///< q'
+  const VecX& direction;  ///< q'
 };
 
 /// Of two nodes the motion relative to that of their chord.
 struct RelativeMotion {
   RelativeMotion(const StiffnessMotion& m, const std::array<Index, 2>& nodes);
-  std::array<NodeState, 2> rate; ///< u', d', phi' in u, t, phi
+  std::array<NodeState, 2> rate;  ///< u', d', phi' in u, t, phi
   std::array<Eigen::Matrix<double, 7, 6>, 2> J,
-      J_rate; ///< dX/dq and its derivative, both for small rotations of the nodes as the whole
-              ///< model has them
+      J_rate;  ///< dX/dq and its derivative, both for small rotations of the nodes as the whole
+               ///< model has them
   std::array<Vec2, 2> gamma, gamma_rate;
   std::array<Mat3, 2> chart;
 };

@@ -13,20 +13,26 @@ namespace whirl::system {
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// One 7x7 block in X (columns u, d, phi) to the 6x6 block in q (u, phi, gamma): y = J_i^T x J_j, where gamma_column(k, r) is row r
-/// of column gamma_k. Column-major, spelled out: it runs for every block of every linearisation.
+/// One 7x7 block in X (columns u, d, phi) to the 6x6 block in q (u, phi, gamma): y = J_i^T x J_j,
+/// where gamma_column(k, r) is row r of column gamma_k. Column-major, spelled out: it runs for
+/// every block of every linearisation.
 template <class Column>
 inline void project_block(const Mat32& Di, const double* x, double* y, Column&& gamma_column) {
   auto finish = [&](const double* col, double* out) {
-    out[0] = col[0]; out[1] = col[1]; out[2] = col[2]; out[3] = col[6];
+    out[0] = col[0];
+    out[1] = col[1];
+    out[2] = col[2];
+    out[3] = col[6];
     out[4] = Di(0, 0) * col[3] + Di(1, 0) * col[4] + Di(2, 0) * col[5];
     out[5] = Di(0, 1) * col[3] + Di(1, 1) * col[4] + Di(2, 1) * col[5];
   };
-  for (int c = 0; c < 3; ++c) finish(x + 7 * c, y + 6 * c);
+  for (int c = 0; c < 3; ++c)
+    finish(x + 7 * c, y + 6 * c);
   finish(x + 42, y + 18);
   for (int k = 0; k < 2; ++k) {
     double col[7];
-    for (int r = 0; r < 7; ++r) col[r] = gamma_column(k, r);
+    for (int r = 0; r < 7; ++r)
+      col[r] = gamma_column(k, r);
     finish(col, y + 24 + 6 * k);
   }
 }
@@ -54,46 +60,66 @@ Index Builder::add_ground(const Vec3& position, std::string name) {
   if (system_.charts_.empty()) add_line("model");
   if (ground_line_ < 0) ground_line_ = add_line("ground");
   const Index n = add_node({position, ground_line_, std::move(name), false});
-  for (int c = 0; c < 6; ++c) hold(n, c);
+  for (int c = 0; c < 6; ++c)
+    hold(n, c);
   return n;
 }
 
-void Builder::hold(Index node, int component, LawPtr law) { holds_.push_back({6 * node + component, std::move(law)}); }
+void Builder::hold(Index node, int component, LawPtr law) {
+  holds_.push_back({6 * node + component, std::move(law)});
+}
 
 System Builder::finalize() {
   System& s = system_;
   s.active_.assign(at(s.size()), 1);
-  for (const NodeDef& d : s.defs_) { s.line_of_.push_back(static_cast<int>(d.line)); s.falling_.push_back(d.scalar ? 0.0 : 1.0); }
+  for (const NodeDef& d : s.defs_) {
+    s.line_of_.push_back(static_cast<int>(d.line));
+    s.falling_.push_back(d.scalar ? 0.0 : 1.0);
+  }
   // A law outranks a plain hold of the same unknown; the last law wins.
   std::stable_sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) {
     return a.unknown != b.unknown ? a.unknown < b.unknown : !a.law && b.law;
   });
-  // Unknowns no element can touch: rotations of nodes with translational elements only, all but the first of scalars.
+  // Unknowns no element can touch: rotations of nodes with translational elements only, all but the
+  // first of scalars.
   std::vector<int> width(at(s.nodes()), 0);
   for (const auto& term : s.terms_) {
     std::vector<Index> touched;
     term->list_nodes(touched);
-    for (Index n : touched) width[at(n)] = std::max(width[at(n)], term->width());
+    for (Index n : touched)
+      width[at(n)] = std::max(width[at(n)], term->width());
   }
   std::vector<LawPtr> law(at(s.size()));
   for (Index i = 0; i < s.nodes(); ++i) {
-    const int first_free = s.defs_[at(i)].scalar ? 1 : width[at(i)] == 7 ? 6 : width[at(i)] == 3 ? 3 : 0;
-    for (int c = first_free; c < 6; ++c) s.active_[at(6 * i + c)] = 0;
+    const int first_free = s.defs_[at(i)].scalar ? 1
+                           : width[at(i)] == 7   ? 6
+                           : width[at(i)] == 3   ? 3
+                                                 : 0;
+    for (int c = first_free; c < 6; ++c)
+      s.active_[at(6 * i + c)] = 0;
   }
-  for (const Hold& h : holds_) { s.active_[at(h.unknown)] = 0; law[at(h.unknown)] = h.law; }
+  for (const Hold& h : holds_) {
+    s.active_[at(h.unknown)] = 0;
+    law[at(h.unknown)] = h.law;
+  }
   std::vector<Index> row(at(s.nodes()), -1);
   for (Index k = 0; k < s.size(); ++k) {
-    if (s.active_[at(k)]) row[at(k / 6)] = k / 6;
-    else s.holds_.push_back({k, law[at(k)]});
+    if (s.active_[at(k)])
+      row[at(k / 6)] = k / 6;
+    else
+      s.holds_.push_back({k, law[at(k)]});
   }
   std::vector<std::pair<Index, Index>> all, kept;
-  for (const auto& term : s.terms_) term->list_couplings(all);
+  for (const auto& term : s.terms_)
+    term->list_couplings(all);
   for (auto [i, j] : all)
     if (row[at(i)] >= 0 && row[at(j)] >= 0) kept.emplace_back(i, j);
   s.pattern_ = std::make_unique<la::BlockPattern>(s.nodes(), kept);
-  for (auto& term : s.terms_) term->bind(*s.pattern_, row);
+  for (auto& term : s.terms_)
+    term->bind(*s.pattern_, row);
   s.linear_ = true;
-  for (const auto& term : s.terms_) s.linear_ = s.linear_ && term->linear_in_displacements();
+  for (const auto& term : s.terms_)
+    s.linear_ = s.linear_ && term->linear_in_displacements();
   for (Index k = 0; k < s.size(); ++k)
     if (k % 6 >= 3 && s.active_[at(k)]) s.linear_ = false;
   for (std::size_t i = 0; i < s.terms_.size(); ++i)
@@ -103,17 +129,23 @@ System Builder::finalize() {
 
 void System::list_regions(const Workspace& w, std::vector<int>& out) const {
   out.clear();
-  for (std::size_t i : cornered_) terms_[i]->list_regions(w, out);
+  for (std::size_t i : cornered_)
+    terms_[i]->list_regions(w, out);
 }
 
 std::vector<double> System::breakpoints() const {
   std::vector<double> out;
   auto take = [&](const LawPtr& l) {
-    if (l) for (double t : l->breakpoints()) out.push_back(t);
+    if (l)
+      for (double t : l->breakpoints())
+        out.push_back(t);
   };
-  for (const Hold& h : holds_) take(h.law);
-  for (const LawPtr& l : base_) take(l);
-  for (const auto& term : terms_) term->list_breakpoints(out);
+  for (const Hold& h : holds_)
+    take(h.law);
+  for (const LawPtr& l : base_)
+    take(l);
+  for (const auto& term : terms_)
+    term->list_breakpoints(out);
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
@@ -130,8 +162,15 @@ State System::make_state() const {
 Workspace System::make_workspace() const {
   Workspace w;
   const std::size_t n = at(nodes());
-  w.nodes.resize(n); w.D.resize(n); w.D_rate.resize(n); w.D_accel.resize(n); w.director.resize(n); w.force.resize(n);
-  w.M = la::BlockMatrix<7>(*pattern_); w.C = la::BlockMatrix<7>(*pattern_); w.K = la::BlockMatrix<7>(*pattern_);
+  w.nodes.resize(n);
+  w.D.resize(n);
+  w.D_rate.resize(n);
+  w.D_accel.resize(n);
+  w.director.resize(n);
+  w.force.resize(n);
+  w.M = la::BlockMatrix<7>(*pattern_);
+  w.C = la::BlockMatrix<7>(*pattern_);
+  w.K = la::BlockMatrix<7>(*pattern_);
   return w;
 }
 
@@ -142,44 +181,58 @@ Vec3 System::gravity_at(double t) const {
   return g;
 }
 
-void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v, Eigen::Ref<VecX> a) const {
+void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v,
+                    Eigen::Ref<VecX> a) const {
   for (const Hold& h : holds_) {
     if (!h.law) {
       q[h.unknown] = v[h.unknown] = a[h.unknown] = 0.0;
       continue;
     }
     const LawValue x = h.law->at(t);
-    q[h.unknown] = x.f; v[h.unknown] = x.df; a[h.unknown] = x.ddf;
-    if (h.unknown % 6 == spin_phi) q[h.unknown] -= two_pi * f.turns[at(defs_[at(h.unknown / 6)].line)];
+    q[h.unknown] = x.f;
+    v[h.unknown] = x.df;
+    a[h.unknown] = x.ddf;
+    if (h.unknown % 6 == spin_phi)
+      q[h.unknown] -= two_pi * f.turns[at(defs_[at(h.unknown / 6)].line)];
   }
 }
 
-bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                            Eigen::Ref<const VecX> a) const {
-  static_assert(offsetof(NodeState, turns) == 21 * sizeof(double) && offsetof(NodeState, chart) == 22 * sizeof(double));
+bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                            Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
+  static_assert(offsetof(NodeState, turns) == 21 * sizeof(double) &&
+                offsetof(NodeState, chart) == 22 * sizeof(double));
   static_assert(sizeof(Mat3) == 9 * sizeof(double) && sizeof(Mat32) == 6 * sizeof(double));
   w.context.time = t;
   w.context.gravity = w.context.load * gravity_at(t);
   lanes::Motion m;
   m.count = nodes();
-  m.q = q.data(); m.v = v.data(); m.a = a.data();
-  m.line = line_of_.data(); m.falling = falling_.data();
-  m.chart = f.chart.data()->data(); m.turns = f.turns.data();
-  for (int k = 0; k < 3; ++k) m.gravity[k] = w.context.gravity[k];
+  m.q = q.data();
+  m.v = v.data();
+  m.a = a.data();
+  m.line = line_of_.data();
+  m.falling = falling_.data();
+  m.chart = f.chart.data()->data();
+  m.turns = f.turns.data();
+  for (int k = 0; k < 3; ++k)
+    m.gravity[k] = w.context.gravity[k];
   m.limit_squared = rotation::chart_limit * rotation::chart_limit;
-  m.state = w.nodes.data()->u.data(); m.stride = sizeof(NodeState) / sizeof(double);
+  m.state = w.nodes.data()->u.data();
+  m.stride = sizeof(NodeState) / sizeof(double);
   m.D = w.D.data()->data();
   static const lanes::Kernels& kernels = lanes::kernels();
   w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
   return w.outside < 0;
 }
 
-void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
+void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
+                                Eigen::Ref<const VecX> a) const {
   for (Index i = 0; i < nodes(); ++i) {
     const Mat3& E = *w.nodes[at(i)].chart;
     rotation::Director& dir = w.director[at(i)];
-    rotation::director(q.segment<2>(6 * i + 4), v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4), dir);
-    w.D_rate[at(i)].noalias() = E * dir.D_rate; w.D_accel[at(i)].noalias() = E * dir.D_accel;
+    rotation::director(q.segment<2>(6 * i + 4), v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4),
+                       dir);
+    w.D_rate[at(i)].noalias() = E * dir.D_rate;
+    w.D_accel[at(i)].noalias() = E * dir.D_accel;
   }
 }
 
@@ -192,28 +245,42 @@ void System::project_force(const Workspace& w, Eigen::Ref<VecX> r) const {
   }
 }
 
-bool System::residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                      Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r, Selection only) const {
+bool System::residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                      Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r,
+                      Selection only) const {
   if (!evaluate_nodes(w, f, t, q, v, a)) return false;
-  for (auto& x : w.force) x.setZero();
+  for (auto& x : w.force)
+    x.setZero();
   if (only)
-    for (std::size_t k : *only) terms_[k]->add_force(w);
+    for (std::size_t k : *only)
+      terms_[k]->add_force(w);
   else
-    for (const auto& term : terms_) term->add_force(w);
+    for (const auto& term : terms_)
+      term->add_force(w);
   project_force(w, r);
   return r.allFinite();
 }
 
-bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                     Eigen::Ref<const VecX> a, la::MCK& out, Selection only) const {
+bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                     Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
+                     Selection only) const {
   if (!evaluate_nodes(w, f, t, q, v, a)) return false;
   evaluate_jacobians(w, q, v, a);
-  for (auto& x : w.force) x.setZero();
-  w.M.set_zero(); w.C.set_zero(); w.K.set_zero();
+  for (auto& x : w.force)
+    x.setZero();
+  w.M.set_zero();
+  w.C.set_zero();
+  w.K.set_zero();
   if (only)
-    for (std::size_t k : *only) { terms_[k]->add_force(w); terms_[k]->add_tangent(w); }
+    for (std::size_t k : *only) {
+      terms_[k]->add_force(w);
+      terms_[k]->add_tangent(w);
+    }
   else
-    for (const auto& term : terms_) { term->add_force(w); term->add_tangent(w); }
+    for (const auto& term : terms_) {
+      term->add_force(w);
+      term->add_tangent(w);
+    }
 
   // q-space blocks: columns of gamma through D and its rates (node.hpp), then rows through D^T.
   const auto& start = pattern_->row_start();
@@ -224,20 +291,25 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
       const std::size_t j = at(cols[at(s)]);
       const double *M = w.M.block(s).data(), *C = w.C.block(s).data(), *K = w.K.block(s).data();
       const Mat32 &D = w.D[j], &D1 = w.D_rate[j], &D2 = w.D_accel[j];
-      project_block(Di, M, out.M.block(s).data(), [&](int k, int r) { return D(0, k) * M[21 + r] + D(1, k) * M[28 + r] + D(2, k) * M[35 + r]; });
+      project_block(Di, M, out.M.block(s).data(), [&](int k, int r) {
+        return D(0, k) * M[21 + r] + D(1, k) * M[28 + r] + D(2, k) * M[35 + r];
+      });
       project_block(Di, C, out.C.block(s).data(), [&](int k, int r) {
         double y = 0.0;
-        for (int b = 0; b < 3; ++b) y += D(b, k) * C[21 + 7 * b + r] + 2.0 * D1(b, k) * M[21 + 7 * b + r];
+        for (int b = 0; b < 3; ++b)
+          y += D(b, k) * C[21 + 7 * b + r] + 2.0 * D1(b, k) * M[21 + 7 * b + r];
         return y;
       });
       project_block(Di, K, out.K.block(s).data(), [&](int k, int r) {
         double y = 0.0;
-        for (int b = 0; b < 3; ++b) y += D(b, k) * K[21 + 7 * b + r] + D1(b, k) * C[21 + 7 * b + r] + D2(b, k) * M[21 + 7 * b + r];
+        for (int b = 0; b < 3; ++b)
+          y += D(b, k) * K[21 + 7 * b + r] + D1(b, k) * C[21 + 7 * b + r] +
+               D2(b, k) * M[21 + 7 * b + r];
         return y;
       });
     }
-    out.K.block(pattern_->diagonal(i)).bottomRightCorner<2, 2>() +=
-        w.director[at(i)].curvature(w.nodes[at(i)].chart->transpose() * w.force[at(i)].segment<3>(3));
+    out.K.block(pattern_->diagonal(i)).bottomRightCorner<2, 2>() += w.director[at(i)].curvature(
+        w.nodes[at(i)].chart->transpose() * w.force[at(i)].segment<3>(3));
   }
   return true;
 }
@@ -252,7 +324,8 @@ Energy System::exchange(const Workspace& w) const {
 
 Energy System::energy(const Workspace& w) const {
   Energy e;
-  for (const auto& term : terms_) term->add_energy(w, w.context, e);
+  for (const auto& term : terms_)
+    term->add_energy(w, w.context, e);
   e.supplied += field_power(w);
   return e;
 }
@@ -263,8 +336,9 @@ double System::field_power(const Workspace& w) const {
   c.gravity.setZero();
   for (int k = 0; k < 3; ++k)
     if (base_[at(k)]) c.gravity[k] = -c.load * base_[at(k)]->at(c.time).df;
-  Energy e;   // the potential is linear in gravity
-  for (const auto& term : terms_) term->add_energy(w, c, e);
+  Energy e;  // the potential is linear in gravity
+  for (const auto& term : terms_)
+    term->add_energy(w, c, e);
   return e.gravity;
 }
 

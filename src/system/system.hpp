@@ -1,5 +1,5 @@
-// The assembled equations of motion R(t, q, v, a) = M(q) a + f(q, v, t) of nodes and element batches.
-// A System is const once built; what changes lives in State, scratch in Workspace.
+// The assembled equations of motion R(t, q, v, a) = M(q) a + f(q, v, t) of nodes and element
+// batches. A System is const once built; what changes lives in State, scratch in Workspace.
 #pragma once
 #include <core/law.hpp>
 #include <system/batch.hpp>
@@ -21,13 +21,13 @@ struct NodeDef {
   Vec3 position = Vec3::Zero();  ///< reference position, m, global axes
   Index line = 0;                ///< shaft line whose chart it uses
   std::string name;              ///< for messages: "node at 0.25 m of shaft 'hp'"
-  bool scalar = false;           ///< an internal unknown: only component 0 exists, gravity does not act
+  bool scalar = false;  ///< an internal unknown: only component 0 exists, gravity does not act
 };
 
 /// Chart triad and whole turns of each shaft line: part of the state, changed between steps only.
 struct Frames {
-  std::vector<Mat3> chart;       ///< columns e, e2, e3
-  std::vector<double> turns;     ///< whole turns taken out of phi
+  std::vector<Mat3> chart;    ///< columns e, e2, e3
+  std::vector<double> turns;  ///< whole turns taken out of phi
 };
 
 /// A complete state: copy it to checkpoint.
@@ -41,7 +41,10 @@ struct State {
   }
 };
 
-struct Hold { Index unknown; LawPtr law; };   ///< null law: held at zero
+struct Hold {
+  Index unknown;
+  LawPtr law;
+};  ///< null law: held at zero
 
 class System {
  public:
@@ -56,18 +59,24 @@ class System {
   const std::vector<Hold>& holds() const { return holds_; }
   const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
   const Vec3& gravity() const { return gravity_; }
-  /// The equations are affine in the unknowns with constant M, C, K: no rotation is unknown, and every kernel says so.
+  /// The equations are affine in the unknowns with constant M, C, K: no rotation is unknown, and
+  /// every kernel says so.
   bool linear() const { return linear_; }
   /// Terms whose force has corners (a gap closes): most scenes have none.
   bool cornered() const { return !cornered_.empty(); }
-  /// The smooth piece on which every element of theirs stands, at the node states of the last evaluation.
+  /// The smooth piece on which every element of theirs stands, at the node states of the last
+  /// evaluation.
   void list_regions(const Workspace& w, std::vector<int>& out) const;
   /// The batch of kernel type K, or null when the scene has none.
-  template <Kernel K> const Batch<K>* batch() const {
+  template <Kernel K>
+  const Batch<K>* batch() const {
     auto it = by_type_.find(std::type_index(typeid(K)));
     return it == by_type_.end() ? nullptr : static_cast<const Batch<K>*>(terms_[it->second].get());
   }
-  template <Kernel K> Batch<K>* batch() { return const_cast<Batch<K>*>(std::as_const(*this).template batch<K>()); }
+  template <Kernel K>
+  Batch<K>* batch() {
+    return const_cast<Batch<K>*>(std::as_const(*this).template batch<K>());
+  }
   /// Law breakpoints of holds, base motion and elements, sorted.
   std::vector<double> breakpoints() const;
 
@@ -76,18 +85,22 @@ class System {
   la::MCK make_matrices() const { return la::MCK(*pattern_); }
 
   /// Sets held entries of q, v, a at time t. phi laws are reduced by the line's whole turns.
-  void impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v, Eigen::Ref<VecX> a) const;
+  void impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v,
+              Eigen::Ref<VecX> a) const;
   /// Node states only (for probes, pictures). False when a node is outside its chart.
-  bool evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                      Eigen::Ref<const VecX> a) const;
+  bool evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                      Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const;
   /// Some of the terms, as numbers into terms(); a null pointer means all.
   using Selection = const std::vector<std::size_t>*;
-  /// r = R(t, q, v, a); held entries hold the reactions (force and torque the support exerts on the model).
-  bool residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-                Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r, Selection only = nullptr) const;
+  /// r = R(t, q, v, a); held entries hold the reactions (force and torque the support exerts on the
+  /// model).
+  bool residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+                Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r,
+                Selection only = nullptr) const;
   /// M = dR/da, C = dR/dv, K = dR/dq, exact.
-  bool tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
-               Eigen::Ref<const VecX> a, la::MCK& out, Selection only = nullptr) const;
+  bool tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
+               Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
+               Selection only = nullptr) const;
   /// Energies and powers of the elements at the node states of the last evaluation.
   Energy energy(const Workspace& w) const;
   /// Only what is supplied and dissipated, W: asks no element that does neither.
@@ -101,11 +114,12 @@ class System {
   double field_power(const Workspace& w) const;
 
   /// The derivatives of the node Jacobians, after evaluate_nodes.
-  void evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const;
+  void evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
+                          Eigen::Ref<const VecX> a) const;
 
   std::vector<NodeDef> defs_;
-  std::vector<int> line_of_;          ///< per node, as the node kernel reads it
-  std::vector<double> falling_;       ///< per node: 1, or 0 for scalar degrees of freedom
+  std::vector<int> line_of_;     ///< per node, as the node kernel reads it
+  std::vector<double> falling_;  ///< per node: 1, or 0 for scalar degrees of freedom
   std::vector<std::string> line_names_;
   std::vector<Mat3> charts_;
   std::vector<Hold> holds_;
@@ -116,7 +130,7 @@ class System {
   std::vector<std::size_t> cornered_;
   bool linear_ = false;
   Vec3 gravity_ = Vec3::Zero();
-  std::array<LawPtr, 3> base_;   ///< base acceleration along x, y, z; null = none
+  std::array<LawPtr, 3> base_;  ///< base acceleration along x, y, z; null = none
 };
 
 /// Puts a System together. Order of nodes along a shaft is the elimination order: keep it natural.
@@ -130,9 +144,12 @@ class Builder {
   /// A node that never moves (a ground point).
   Index add_ground(const Vec3& position, std::string name);
   void set_gravity(const Vec3& g) { system_.gravity_ = g; }
-  void set_base_acceleration(int axis, LawPtr law) { system_.base_[static_cast<std::size_t>(axis)] = std::move(law); }
+  void set_base_acceleration(int axis, LawPtr law) {
+    system_.base_[static_cast<std::size_t>(axis)] = std::move(law);
+  }
   /// `kind` names the batch in summaries ("shaft elements"); the first call for a type decides.
-  template <Kernel K> void add(const K& k, const std::array<Index, K::n_nodes>& nodes, const char* kind) {
+  template <Kernel K>
+  void add(const K& k, const std::array<Index, K::n_nodes>& nodes, const char* kind) {
     const std::type_index key(typeid(K));
     auto it = system_.by_type_.find(key);
     if (it == system_.by_type_.end()) {
@@ -142,12 +159,16 @@ class Builder {
     static_cast<Batch<K>&>(*system_.terms_[it->second]).add(k, nodes);
   }
   /// Elements of a kernel type so far: the next one's place in its batch.
-  template <Kernel K> std::size_t count() const {
+  template <Kernel K>
+  std::size_t count() const {
     const Batch<K>* b = system_.batch<K>();
     return b ? b->count() : 0;
   }
   /// What was added so far of a kernel type, or null.
-  template <Kernel K> const Batch<K>* batch() const { return system_.batch<K>(); }
+  template <Kernel K>
+  const Batch<K>* batch() const {
+    return system_.batch<K>();
+  }
   const NodeDef& node(Index i) const { return system_.defs_[static_cast<std::size_t>(i)]; }
   Index nodes() const { return static_cast<Index>(system_.defs_.size()); }
   /// Holds every rotational unknown no element resists or loads, then freezes pattern and slots.

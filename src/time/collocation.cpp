@@ -1,45 +1,58 @@
 // Collocation in second-order form.
 //
-// Equations and stages. On a step from (t0, q0, v0) to t0 + h the first-order form q' = v, v' = a is collocated at t_i =
-// t0 + c_i h: Q_i = q0 + h sum a_ij V_j, V_i = v0 + h sum a_ij A_j. The unknowns are the increments over free motion,
-//     Y_i = Q_i - q0 - c_i h v0,      V_i = v0 + (1/h) sum (A^-1)_ij Y_j,      A_i = (1/h^2) sum (A^-2)_ij Y_j,
-// which keep the digits of the acceleration when phi turns by radians a step, and R(t_i, Q_i, V_i, A_i) = 0 at every stage.
-// Rows of M may be zero: a first-order unknown then follows exactly the classical scheme for C v + f = 0, because V_i is
-// (A^-1 (Q - q0))_i / h whatever v0 was. Held entries take their exact values at every stage time.
+// Equations and stages. On a step from (t0, q0, v0) to t0 + h the first-order form q' = v, v' = a
+// is collocated at t_i = t0 + c_i h: Q_i = q0 + h sum a_ij V_j, V_i = v0 + h sum a_ij A_j. The
+// unknowns are the increments over free motion,
+//     Y_i = Q_i - q0 - c_i h v0,      V_i = v0 + (1/h) sum (A^-1)_ij Y_j,      A_i = (1/h^2) sum
+//     (A^-2)_ij Y_j,
+// which keep the digits of the acceleration when phi turns by radians a step, and R(t_i, Q_i, V_i,
+// A_i) = 0 at every stage. Rows of M may be zero: a first-order unknown then follows exactly the
+// classical scheme for C v + f = 0, because V_i is (A^-1 (Q - q0))_i / h whatever v0 was. Held
+// entries take their exact values at every stage time.
 //
 // Newton. With M, C, K frozen for all stages the linearised stage equations
 //     K dY_i + (1/h) C sum (A^-1)_ij dY_j + (1/h^2) M sum (A^-2)_ij dY_j = -R_i
 // decouple in the eigenvectors of A^-1 = sum lambda_k x_k w_k^T:  dY_i = sum_k x_k,i u_k,
 //     [ (lambda_k/h)^2 M + (lambda_k/h) C + K ] u_k = - sum_i w_k,i R_i.
-// One real and one complex N x N system (Gauss 4: complex only) instead of one of 6N. (E. Hairer, G. Wanner, Solving ODEs
-// II, IV.8; J. C. Butcher, BIT 16 (1976) 237, doi 10.1007/BF01932265.) Iteration ends when rate/(1-rate) times the last
-// correction is below the Newton allowance, with the rate of earlier steps standing in after the first correction. With Options::
-// linearize_inside new matrices are taken in the middle of the step, and where the iteration still fails, at the middle stage of where it has
-// come to: a film whose wedge all but vanishes changes its tangent within a correction.
+// One real and one complex N x N system (Gauss 4: complex only) instead of one of 6N. (E. Hairer,
+// G. Wanner, Solving ODEs II, IV.8; J. C. Butcher, BIT 16 (1976) 237, doi 10.1007/BF01932265.)
+// Iteration ends when rate/(1-rate) times the last correction is below the Newton allowance, with
+// the rate of earlier steps standing in after the first correction. With Options:: linearize_inside
+// new matrices are taken in the middle of the step, and where the iteration still fails, at the
+// middle stage of where it has come to: a film whose wedge all but vanishes changes its tangent
+// within a correction.
 //
 // Predictor: the acceleration polynomial of the last step, extrapolated and integrated twice.
 //
-// Error. Of all embedded formulas on {t0, t_1..t_s} of order s only one exists up to a factor: its defect is that of the
-// collocation polynomials u (of q) and w (of v) at the step's start,
-//     rho_q = v0 - u'(0),    rho_v = a0 - w'(0),    u'(0) = sum l_j(0) V_j,  w'(0) = sum l_j(0) A_j.
-// For Radau IIA 5 it is Hairer's estimate. Filtered by (mu/h - J)^-1, J the first-order Jacobian, so that stiff modes do
-// not count:   (mu/h) e_q - e_v = rho_q,   M (mu/h) e_v + C e_v + K e_q = M rho_v,   hence
-//     [ (mu/h)^2 M + (mu/h) C + K ] e_q = M (rho_v + (mu/h) rho_q) + C rho_q,    e_v = (mu/h) e_q - rho_q.
-// Radau: mu is the real eigenvalue, the matrix is Newton's, and a0 is the last stage of the step before (the state is
-// consistent). Gauss 6: likewise, but (q0, v0) is not a stage, so M a0 is replaced by M a0 - R(t0, q0, v0, a0), one
-// residual a step (which also shows whether the model holds at the step's end). Gauss 4: the same with mu = |lambda| and a real factorisation of its own. The error is O(h^(s+1)) with
-// s = 3, 3, 2. Where it exceeds its allowance on a first or repeated attempt, the defect is taken again at the filtered
-// point (q0 + e_q, v0 + e_v): on stiff transients the first estimate is far too large (Hairer & Wanner, IV.8 (8.20)).
-// Tested are e_q and h e_v in the scale of q; after a corner of the force the time for e_v is longer (Integrator::restart).
+// Error. Of all embedded formulas on {t0, t_1..t_s} of order s only one exists up to a factor: its
+// defect is that of the collocation polynomials u (of q) and w (of v) at the step's start,
+//     rho_q = v0 - u'(0),    rho_v = a0 - w'(0),    u'(0) = sum l_j(0) V_j,  w'(0) = sum l_j(0)
+//     A_j.
+// For Radau IIA 5 it is Hairer's estimate. Filtered by (mu/h - J)^-1, J the first-order Jacobian,
+// so that stiff modes do not count:   (mu/h) e_q - e_v = rho_q,   M (mu/h) e_v + C e_v + K e_q = M
+// rho_v,   hence
+//     [ (mu/h)^2 M + (mu/h) C + K ] e_q = M (rho_v + (mu/h) rho_q) + C rho_q,    e_v = (mu/h) e_q -
+//     rho_q.
+// Radau: mu is the real eigenvalue, the matrix is Newton's, and a0 is the last stage of the step
+// before (the state is consistent). Gauss 6: likewise, but (q0, v0) is not a stage, so M a0 is
+// replaced by M a0 - R(t0, q0, v0, a0), one residual a step (which also shows whether the model
+// holds at the step's end). Gauss 4: the same with mu = |lambda| and a real factorisation of its
+// own. The error is O(h^(s+1)) with s = 3, 3, 2. Where it exceeds its allowance on a first or
+// repeated attempt, the defect is taken again at the filtered point (q0 + e_q, v0 + e_v): on stiff
+// transients the first estimate is far too large (Hairer & Wanner, IV.8 (8.20)). Tested are e_q and
+// h e_v in the scale of q; after a corner of the force the time for e_v is longer
+// (Integrator::restart).
 //
-// Tolerance. The estimate is of order s + 1, the step itself of local order p + 1, p = 5, 6, 4. To make the global error
-// proportional to Options::tolerance the local allowance is c tolerance^((s+1)/p). c is set so that a hundred periods of an
-// undamped oscillator, a run-up through a resonance with Q = 50, or 160 nutations of an undamped fast top (the rotor of
+// Tolerance. The estimate is of order s + 1, the step itself of local order p + 1, p = 5, 6, 4. To
+// make the global error proportional to Options::tolerance the local allowance is c
+// tolerance^((s+1)/p). c is set so that a hundred periods of an undamped oscillator, a run-up
+// through a resonance with Q = 50, or 160 nutations of an undamped fast top (the rotor of
 // tests/validation/test_paper_rotor.cpp over 10 s) end with a global error of the tolerance or less
 // (tests/time/test_accuracy.cpp holds the numbers).
 //
-// Result. Radau: the last stage. Gauss: q1 = q0 + h v0 + h^2 sum b_j (1 - c_j) A_j, v1 = v0 + h sum b_j A_j. Dense output:
-// a(theta) the polynomial through the A_j, v and q its integrals; exact at both ends of the step in q and v.
+// Result. Radau: the last stage. Gauss: q1 = q0 + h v0 + h^2 sum b_j (1 - c_j) A_j, v1 = v0 + h sum
+// b_j A_j. Dense output: a(theta) the polynomial through the A_j, v and q its integrals; exact at
+// both ends of the step in q and v.
 #include <time/collocation.hpp>
 
 #include <cmath>
@@ -49,22 +62,34 @@ namespace whirl::time {
 namespace {
 
 /// Local allowance at tolerance 1 (c above).
-double allowance_factor(const Tableau& t) { return t.stiffly_accurate ? 0.014 : t.stages == 3 ? 0.05 : 0.026; }
-/// Largest Newton error of a step: this times tolerance^(1 + 1/p). It leaves a momentum error that a free spin sums up over
-/// the run, and the number of steps grows as tolerance^(-1/p). Gauss takes longer steps (6) or more of them (4).
+double allowance_factor(const Tableau& t) {
+  return t.stiffly_accurate ? 0.014 : t.stages == 3 ? 0.05 : 0.026;
+}
+/// Largest Newton error of a step: this times tolerance^(1 + 1/p). It leaves a momentum error that
+/// a free spin sums up over the run, and the number of steps grows as tolerance^(-1/p). Gauss takes
+/// longer steps (6) or more of them (4).
 double newton_share(const Tableau& t) { return t.stiffly_accurate ? 3e-4 : 5e-5; }
 
 }  // namespace
 
-Collocation::Collocation(std::string_view name, const Tableau& tableau, Problem& problem, const Options& options)
-    : Stepper(problem, options), name_(name), tab_(tableau), s_(tableau.stages) {
+Collocation::Collocation(std::string_view name, const Tableau& tableau, Problem& problem,
+                         const Options& options)
+    : Stepper(problem, options),
+      name_(name),
+      tab_(tableau),
+      s_(tableau.stages) {
   const double exponent = static_cast<double>(s_ + 1) / tab_.order;
   allowance_ = allowance_factor(tab_) * std::pow(options.tolerance, exponent);
-  newton_.configure(options.max_newton, newton_share(tab_) * std::pow(options.tolerance, 1.0 + 1.0 / tab_.order), 0.03 * allowance_);
+  newton_.configure(options.max_newton,
+                    newton_share(tab_) * std::pow(options.tolerance, 1.0 + 1.0 / tab_.order),
+                    0.03 * allowance_);
   scale_.resolve(NewtonMonitor::rounding_share * 0.03 * allowance_);
   control_.configure(s_ + 1);
-  for (MatX* m : {&y_, &a_stage_, &r_, &a_last_}) *m = MatX::Zero(n_, s_);
-  for (VecX* x : {&qs_, &vs_, &as_, &dq_, &u_, &e_, &rho_q_, &rho_v_, &start_residual_, &end_residual_, &start_before_}) *x = VecX::Zero(n_);
+  for (MatX* m : {&y_, &a_stage_, &r_, &a_last_})
+    *m = MatX::Zero(n_, s_);
+  for (VecX* x : {&qs_, &vs_, &as_, &dq_, &u_, &e_, &rho_q_, &rho_v_, &start_residual_,
+                  &end_residual_, &start_before_})
+    *x = VecX::Zero(n_);
   uc_ = VecXc::Zero(n_);
 }
 
@@ -76,7 +101,8 @@ bool Collocation::factor(double h) {
 
 void Collocation::predict(double h, bool extrapolate) {
   if (problem_.is_linear()) {
-    // One iteration solves exactly, whatever the start; from zero it cannot lose digits to an extrapolated stiff mode.
+    // One iteration solves exactly, whatever the start; from zero it cannot lose digits to an
+    // extrapolated stiff mode.
     y_.setZero();
   } else if (extrapolate) {
     const Tableau::Mat e = tab_.extrapolation(theta_start_, h / h_last_);
@@ -84,7 +110,8 @@ void Collocation::predict(double h, bool extrapolate) {
     for (int i = 0; i < s_; ++i) {
       const auto& row = e[static_cast<std::size_t>(i)];
       if (s_ == 3)
-        y_.col(i) = (h2 * row[0]) * a_last_.col(0) + (h2 * row[1]) * a_last_.col(1) + (h2 * row[2]) * a_last_.col(2);
+        y_.col(i) = (h2 * row[0]) * a_last_.col(0) + (h2 * row[1]) * a_last_.col(1) +
+                    (h2 * row[2]) * a_last_.col(2);
       else
         y_.col(i) = (h2 * row[0]) * a_last_.col(0) + (h2 * row[1]) * a_last_.col(1);
     }
@@ -123,7 +150,7 @@ bool Collocation::evaluate_stages(double h) {
 }
 
 bool Collocation::linearize_inside(double h) {
-  y_ += r_;   // the correction that showed it makes nothing better
+  y_ += r_;  // the correction that showed it makes nothing better
   const double t = set_stage(1, h);
   problem_.linearize(t, qs_, vs_, as_);
   ++statistics_.linearizations;
@@ -137,16 +164,20 @@ bool Collocation::correct() {
   const auto& t = tab_;
   if (s_ == 3) {
     u_ = t.w_r[0] * r_.col(0) + t.w_r[1] * r_.col(1) + t.w_r[2] * r_.col(2);
-    uc_.real() = t.w_c[0].real() * r_.col(0) + t.w_c[1].real() * r_.col(1) + t.w_c[2].real() * r_.col(2);
-    uc_.imag() = t.w_c[0].imag() * r_.col(0) + t.w_c[1].imag() * r_.col(1) + t.w_c[2].imag() * r_.col(2);
-    for (Index i : held_) u_[i] = 0.0;
+    uc_.real() =
+        t.w_c[0].real() * r_.col(0) + t.w_c[1].real() * r_.col(1) + t.w_c[2].real() * r_.col(2);
+    uc_.imag() =
+        t.w_c[0].imag() * r_.col(0) + t.w_c[1].imag() * r_.col(1) + t.w_c[2].imag() * r_.col(2);
+    for (Index i : held_)
+      u_[i] = 0.0;
     problem_.solve(Ref(u_));
     ++statistics_.solves_real;
   } else {
     uc_.real() = t.w_c[0].real() * r_.col(0) + t.w_c[1].real() * r_.col(1);
     uc_.imag() = t.w_c[0].imag() * r_.col(0) + t.w_c[1].imag() * r_.col(1);
   }
-  for (Index i : held_) uc_[i] = 0.0;
+  for (Index i : held_)
+    uc_[i] = 0.0;
   problem_.solve(RefC(uc_));
   ++statistics_.solves_complex;
   for (int i = 0; i < s_; ++i) {
@@ -186,7 +217,8 @@ void Collocation::newton(double h, Attempt& out) {
     double change = infinity;
     if (finite) {
       change = 0.0;
-      for (int i = 0; i < s_; ++i) change = std::max(change, scale_.norm(r_.col(i)));
+      for (int i = 0; i < s_; ++i)
+        change = std::max(change, scale_.norm(r_.col(i)));
     }
     switch (newton_.update(change, scale_.rounding())) {
       case NewtonMonitor::Verdict::converged:
@@ -202,8 +234,7 @@ void Collocation::newton(double h, Attempt& out) {
         out.status = StepStatus::newton;
         linearize_ = true;
         return;
-      case NewtonMonitor::Verdict::iterate:
-        break;
+      case NewtonMonitor::Verdict::iterate: break;
     }
     if (!evaluate_stages(h)) return;
   }
@@ -237,7 +268,8 @@ void Collocation::finish(double h) {
   add_compensated(q0_, q0_low_, dq_, q_, q_low_);
   add_compensated(v0_, v0_low_, e_, v_, v_low_);
   problem_.impose(t1_eval_, q_, v_, a_);
-  for (Index i : held_) q_low_[i] = v_low_[i] = 0.0;
+  for (Index i : held_)
+    q_low_[i] = v_low_[i] = 0.0;
 }
 
 double Collocation::estimate(double h) {
@@ -247,15 +279,18 @@ double Collocation::estimate(double h) {
   for (int i = 0; i < s_; ++i)
     for (int j = 0; j < s_; ++j)
       g[static_cast<std::size_t>(j)] -=
-          tab_.at_zero[static_cast<std::size_t>(i)] * tab_.Ainv[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] / h;
+          tab_.at_zero[static_cast<std::size_t>(i)] *
+          tab_.Ainv[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] / h;
   if (s_ == 3) {
     rho_q_ = g[0] * y_.col(0) + g[1] * y_.col(1) + g[2] * y_.col(2);
-    rho_v_ = a0_ - (tab_.at_zero[0] * a_stage_.col(0) + tab_.at_zero[1] * a_stage_.col(1) + tab_.at_zero[2] * a_stage_.col(2));
+    rho_v_ = a0_ - (tab_.at_zero[0] * a_stage_.col(0) + tab_.at_zero[1] * a_stage_.col(1) +
+                    tab_.at_zero[2] * a_stage_.col(2));
   } else {
     rho_q_ = g[0] * y_.col(0) + g[1] * y_.col(1);
     rho_v_ = a0_ - (tab_.at_zero[0] * a_stage_.col(0) + tab_.at_zero[1] * a_stage_.col(1));
   }
-  for (Index i : held_) rho_q_[i] = rho_v_[i] = 0.0;
+  for (Index i : held_)
+    rho_q_[i] = rho_v_[i] = 0.0;
 
   // with r = the residual at the start (or at the filtered point) on the right
   auto filter = [&](const VecX* r) {
@@ -264,21 +299,27 @@ double Collocation::estimate(double h) {
     problem_.add_M(1.0, u_, e_);
     problem_.add_C(1.0, rho_q_, e_);
     if (r) e_ -= *r;
-    for (Index i : held_) e_[i] = 0.0;
+    for (Index i : held_)
+      e_[i] = 0.0;
     problem_.solve(Ref(e_));
     ++statistics_.solves_real;
-    u_ = tab_.mu * e_ - h * rho_q_;                  // h e_v
-    dq_ = u_.cwiseProduct(initial_.dynamic());       // rates of massless unknowns are results, not states
-    return std::max(scale_.error_norm(e_), scale_.error_norm(dq_) * std::max(1.0, rate_span_ / h)) / allowance_;
+    u_ = tab_.mu * e_ - h * rho_q_;  // h e_v
+    dq_ =
+        u_.cwiseProduct(initial_.dynamic());  // rates of massless unknowns are results, not states
+    return std::max(scale_.error_norm(e_), scale_.error_norm(dq_) * std::max(1.0, rate_span_ / h)) /
+           allowance_;
   };
 
-  const bool consistent = tab_.stiffly_accurate || first_;   // a0 solves the equations at the start
+  const bool consistent = tab_.stiffly_accurate || first_;  // a0 solves the equations at the start
   double error = filter(consistent ? nullptr : &start_residual_);
   if (error > 1.0 && (first_ || retrying_)) {
     qs_ = q0_ + e_;
     vs_ = v0_ + u_ / h;
     as_ = a0_;
-    for (Index i : held_) { qs_[i] = q0_[i]; vs_[i] = v0_[i]; }
+    for (Index i : held_) {
+      qs_[i] = q0_[i];
+      vs_[i] = v0_[i];
+    }
     rho_q_ += u_ / h;
     if (residual(t0_, qs_, vs_, as_, r_.col(0))) {
       vs_ = r_.col(0);
@@ -301,7 +342,8 @@ Stepper::Attempt Collocation::attempt(double h) {
   newton(h, out);
   if (out.status != StepStatus::ok) return out;
   finish(h);
-  // Gauss: the end is no stage. Its residual shows whether the model holds there, and serves the next step's estimate.
+  // Gauss: the end is no stage. Its residual shows whether the model holds there, and serves the
+  // next step's estimate.
   if (!tab_.stiffly_accurate && !residual(t1_eval_, q_, v_, a_, end_residual_)) {
     out.status = StepStatus::domain;
     return out;
@@ -343,7 +385,8 @@ void Collocation::dense(double theta, Ref q, Ref v, Ref a) const {
 }
 
 void Collocation::save_history(std::vector<double>& out) const {
-  out.insert(out.end(), {h_last_, theta_start_, have_history_ ? 1.0 : 0.0, have_start_residual_ ? 1.0 : 0.0});
+  out.insert(out.end(),
+             {h_last_, theta_start_, have_history_ ? 1.0 : 0.0, have_start_residual_ ? 1.0 : 0.0});
   newton_.save(out);
   out.insert(out.end(), a_last_.data(), a_last_.data() + a_last_.size());
   out.insert(out.end(), start_residual_.data(), start_residual_.data() + n_);

@@ -1,4 +1,5 @@
-// Collocation (Radau IIA 5, Gauss 4, Gauss 6) for second-order implicit systems R(t, q, v, a) = 0. See collocation.cpp.
+// Collocation (Radau IIA 5, Gauss 4, Gauss 6) for second-order implicit systems R(t, q, v, a) = 0.
+// See collocation.cpp.
 #pragma once
 #include <time/newton.hpp>
 #include <time/stepper.hpp>
@@ -8,7 +9,8 @@ namespace whirl::time {
 
 class Collocation final : public Stepper {
  public:
-  Collocation(std::string_view name, const Tableau& tableau, Problem& problem, const Options& options);
+  Collocation(std::string_view name, const Tableau& tableau, Problem& problem,
+              const Options& options);
   std::string_view name() const override { return name_; }
   int order() const override { return tab_.order; }
 
@@ -25,7 +27,8 @@ class Collocation final : public Stepper {
   void predict(double h, bool extrapolate);
   /// State of stage i at the present increments into qs_, vs_, as_; its time.
   double set_stage(int i, double h);
-  /// Matrices at the middle stage of the present iterate: where those of the start do not lead to the solution. false: singular.
+  /// Matrices at the middle stage of the present iterate: where those of the start do not lead to
+  /// the solution. false: singular.
   bool linearize_inside(double h);
   /// Residuals of all stages at the present increments into r_; false: outside the model's domain.
   bool evaluate_stages(double h);
@@ -46,7 +49,8 @@ class Collocation final : public Stepper {
   VecX qs_, vs_, as_, dq_;
   VecX u_, e_, rho_q_, rho_v_;
   VecXc uc_;
-  // Gauss: residual at the start of the step, at its end, and at the start of the step before (for a repeated step)
+  // Gauss: residual at the start of the step, at its end, and at the start of the step before (for
+  // a repeated step)
   VecX start_residual_, end_residual_, start_before_;
   bool have_start_residual_ = false, had_start_residual_ = false;
   // history: stage accelerations of the last step and its length

@@ -24,11 +24,11 @@ class GeneralizedAlpha final : public Stepper {
   double alpha_m_, alpha_f_, beta_, gamma_;
   double error_constant_, allowance_;
   NewtonMonitor newton_;
-  VecX algorithmic0_, algorithmic_;   ///< the scheme's own acceleration at the step's start and end
-  VecX difference_;                   ///< last step's change of acceleration / its length
+  VecX algorithmic0_, algorithmic_;  ///< the scheme's own acceleration at the step's start and end
+  VecX difference_;                  ///< last step's change of acceleration / its length
   VecX difference_before_, algorithmic_before_;
   VecX r_, dq_, dv_, e_;
-  double h_last_ = 0.0, h_before_ = 0.0;       ///< 0: no history
+  double h_last_ = 0.0, h_before_ = 0.0;  ///< 0: no history
 };
 
 }  // namespace whirl::time

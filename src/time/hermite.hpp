@@ -4,11 +4,13 @@
 
 namespace whirl::time {
 
-inline void hermite(double theta, double h, const VecX& q0, const VecX& v0, const VecX& q1, const VecX& v1, Ref q, Ref v, Ref a) {
+inline void hermite(double theta, double h, const VecX& q0, const VecX& v0, const VecX& q1,
+                    const VecX& v1, Ref q, Ref v, Ref a) {
   const double x = theta, y = 1.0 - theta;
   q = q0 + (x * x * (3.0 - 2.0 * x)) * (q1 - q0) + (h * x * y * y) * v0 - (h * x * x * y) * v1;
   v = (6.0 * x * y / h) * (q1 - q0) + (y * (1.0 - 3.0 * x)) * v0 + (x * (3.0 * x - 2.0)) * v1;
-  a = (6.0 * (1.0 - 2.0 * x) / (h * h)) * (q1 - q0) + ((6.0 * x - 4.0) / h) * v0 + ((6.0 * x - 2.0) / h) * v1;
+  a = (6.0 * (1.0 - 2.0 * x) / (h * h)) * (q1 - q0) + ((6.0 * x - 4.0) / h) * v0 +
+      ((6.0 * x - 2.0) / h) * v1;
 }
 
 }  // namespace whirl::time

@@ -19,8 +19,8 @@ void InitialSolver::resize(Problem& problem) {
 }
 
 void InitialSolver::classify(const Problem& problem) {
-  // A row is zero exactly when its product with a vector in general position is: entries of different size and sign
-  // cancel to the last bit only in rows that hold nothing.
+  // A row is zero exactly when its product with a vector in general position is: entries of
+  // different size and sign cancel to the last bit only in rows that hold nothing.
   for (Index i = 0; i < probe_.size(); ++i)
     probe_[i] = std::fmod(0.6180339887498949 * static_cast<double>(i + 1), 1.0) + 0.5;
   r_.setZero();
@@ -34,8 +34,12 @@ void InitialSolver::classify(const Problem& problem) {
   problem.add_C(1.0, probe_, r_);
   for (Index i = 0; i < r_.size(); ++i)
     if (row_[at(i)] == Row::algebraic && r_[i] != 0.0) row_[at(i)] = Row::first_order;
-  for (Index i : held_) { row_[at(i)] = Row::dynamic; dynamic_[i] = 0.0; }
-  for (Row row : row_) any_massless_ = any_massless_ || row != Row::dynamic;
+  for (Index i : held_) {
+    row_[at(i)] = Row::dynamic;
+    dynamic_[i] = 0.0;
+  }
+  for (Row row : row_)
+    any_massless_ = any_massless_ || row != Row::dynamic;
 }
 
 bool InitialSolver::factor(Problem& problem, double tau, Statistics& statistics) const {
@@ -43,24 +47,30 @@ bool InitialSolver::factor(Problem& problem, double tau, Statistics& statistics)
   return problem.factor(1.0, tau, tau * tau);
 }
 
-StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, VecX& a, Statistics& statistics) {
+StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, VecX& a,
+                                Statistics& statistics) {
   ++statistics.linearizations;
   problem.linearize(t, q, v, a);
   classify(problem);
   // Matrix of a step of length tau: massless rows need C or K in it, the others want tau -> 0.
   static constexpr double lengths[] = {0.0, 1e-8, 1e-10, 1e-6, 1e-12, 1e-4};
-  q_start_ = q; v_start_ = v; a_start_ = a;
+  q_start_ = q;
+  v_start_ = v;
+  a_start_ = a;
   StepStatus status = StepStatus::singular;
   for (double tau : lengths) {
     if (any_massless_ && tau == 0.0) continue;
     if (!factor(problem, tau, statistics)) continue;
-    q = q_start_; v = v_start_; a = a_start_;
+    q = q_start_;
+    v = v_start_;
+    a = a_start_;
     status = StepStatus::newton;
     double previous = infinity;
     for (int iteration = 0; iteration < 20; ++iteration) {
       ++statistics.residuals;
       if (!problem.residual(t, q, v, a, r_)) return StepStatus::domain;
-      for (Index i : held_) r_[i] = 0.0;
+      for (Index i : held_)
+        r_[i] = 0.0;
       problem.solve(Ref(r_));
       if (!r_.allFinite()) break;
       // convergence in each class: increments against the values they correct
@@ -85,11 +95,13 @@ StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, Ve
             break;
         }
       }
-      // R is affine in a: two solutions determine it to round-off, which at an equilibrium (a = 0) is all there is of a
+      // R is affine in a: two solutions determine it to round-off, which at an equilibrium (a = 0)
+      // is all there is of a
       const double error = std::max(size > 0.0 && iteration < 2 ? change / size : 0.0,
                                     size_massless > 0.0 ? change_massless / size_massless : 0.0);
       // 1e-12: what a and the error filter need; at round-off the corrections stop shrinking
-      if (error <= 1e-12 || (iteration > 1 && error <= 1e-8 && error >= 0.5 * previous)) return StepStatus::ok;
+      if (error <= 1e-12 || (iteration > 1 && error <= 1e-8 && error >= 0.5 * previous))
+        return StepStatus::ok;
       if (iteration > 3 && error > 2.0 * previous) break;
       previous = error;
     }
@@ -97,11 +109,13 @@ StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, Ve
   return status;
 }
 
-StepStatus InitialSolver::impulse(Problem& problem, const VecX& dv_held, VecX& v, Statistics& statistics) {
+StepStatus InitialSolver::impulse(Problem& problem, const VecX& dv_held, VecX& v,
+                                  Statistics& statistics) {
   if (!factor(problem, any_massless_ ? 1e-8 : 0.0, statistics)) return StepStatus::singular;
   r_.setZero();
   problem.add_M(-1.0, dv_held, r_);
-  for (Index i : held_) r_[i] = 0.0;
+  for (Index i : held_)
+    r_[i] = 0.0;
   problem.solve(Ref(r_));
   for (Index i = 0; i < r_.size(); ++i)
     if (row_[at(i)] == Row::dynamic) v[i] += r_[i];
@@ -109,7 +123,8 @@ StepStatus InitialSolver::impulse(Problem& problem, const VecX& dv_held, VecX& v
 }
 
 void InitialSolver::save(std::vector<double>& out) const {
-  for (Row row : row_) out.push_back(static_cast<double>(row));
+  for (Row row : row_)
+    out.push_back(static_cast<double>(row));
   out.insert(out.end(), dynamic_.data(), dynamic_.data() + dynamic_.size());
 }
 
@@ -119,7 +134,8 @@ const double* InitialSolver::restore(const double* in) {
     row = static_cast<Row>(static_cast<int>(*in++));
     any_massless_ = any_massless_ || row != Row::dynamic;
   }
-  for (Index i = 0; i < dynamic_.size(); ++i) dynamic_[i] = *in++;
+  for (Index i = 0; i < dynamic_.size(); ++i)
+    dynamic_[i] = *in++;
   return in;
 }
 

@@ -1,20 +1,22 @@
-// Accelerations that satisfy the equations at a given (q, v), and velocity jumps of impulsive starts.
+// Accelerations that satisfy the equations at a given (q, v), and velocity jumps of impulsive
+// starts.
 #pragma once
 #include <time/integrator.hpp>
 
 namespace whirl::time {
 
-/// Rows of M that are zero belong to massless unknowns: where C acts, v is solved for instead of a; where only K acts, q.
+/// Rows of M that are zero belong to massless unknowns: where C acts, v is solved for instead of a;
+/// where only K acts, q.
 class InitialSolver {
  public:
   void resize(Problem& problem);
   /// Finds which unknowns are massless from the matrices kept in the problem.
   void classify(const Problem& problem);
-  /// Newton on R(t, q, v, a) = 0 with (q, v) given: a on return; v or q of massless unknowns. linearize() is called; factors
-  /// are left over. Returns the reason of failure, or ok.
+  /// Newton on R(t, q, v, a) = 0 with (q, v) given: a on return; v or q of massless unknowns.
+  /// linearize() is called; factors are left over. Returns the reason of failure, or ok.
   StepStatus solve(Problem& problem, double t, VecX& q, VecX& v, VecX& a, Statistics& statistics);
-  /// Held velocities jumped by dv_held (zero elsewhere): M dv = 0 in the free rows, the velocity jump of a rigid impulsive
-  /// drive. Adds it to v. Uses the kept matrices.
+  /// Held velocities jumped by dv_held (zero elsewhere): M dv = 0 in the free rows, the velocity
+  /// jump of a rigid impulsive drive. Adds it to v. Uses the kept matrices.
   StepStatus impulse(Problem& problem, const VecX& dv_held, VecX& v, Statistics& statistics);
   bool massless(Index i) const { return row_[static_cast<std::size_t>(i)] != Row::dynamic; }
   /// 1 for unknowns with inertia, 0 for massless and held ones.

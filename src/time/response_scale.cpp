@@ -8,9 +8,11 @@ namespace whirl::time {
 namespace {
 constexpr std::size_t of(Kind k) { return static_cast<std::size_t>(k); }
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-/// Motion below this share of a coordinate's size (a sag, a pre-deflection) is at rest: round-off of the size is near.
+/// Motion below this share of a coordinate's size (a sag, a pre-deflection) is at rest: round-off
+/// of the size is near.
 constexpr double least_share = 1e-6;
-/// Rounding of the coordinates a correction carries, in units of the last place: sums over a row of matrices.
+/// Rounding of the coordinates a correction carries, in units of the last place: sums over a row of
+/// matrices.
 constexpr double rounding_units = 4.0 * std::numeric_limits<double>::epsilon();
 }  // namespace
 
@@ -28,7 +30,9 @@ void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
   set_spin_inertia(VecX::Zero(n));
 }
 
-void ResponseScale::resolve(double smallest) { offset_share_ = std::max(least_share, rounding_units / smallest); }
+void ResponseScale::resolve(double smallest) {
+  offset_share_ = std::max(least_share, rounding_units / smallest);
+}
 
 void ResponseScale::reset(CRef q) {
   low_ = high_ = q;
@@ -39,9 +43,11 @@ void ResponseScale::reset(CRef q) {
 
 void ResponseScale::set_spin_inertia(CRef inertia) {
   double sum = 0.0;
-  for (Index i : spin_) sum += std::abs(inertia[i]);
   for (Index i : spin_)
-    inertia_[i] = sum > 0.0 && std::isfinite(sum) ? std::abs(inertia[i]) / sum : 1.0 / static_cast<double>(spin_.size());
+    sum += std::abs(inertia[i]);
+  for (Index i : spin_)
+    inertia_[i] = sum > 0.0 && std::isfinite(sum) ? std::abs(inertia[i]) / sum
+                                                  : 1.0 / static_cast<double>(spin_.size());
 }
 
 void ResponseScale::observe(CRef q) {
@@ -66,7 +72,8 @@ void ResponseScale::begin_step(CRef dq) {
   const Scales& o = options_;
   double& u = s[of(Kind::displacement)];
   double& g = s[of(Kind::tilt)];
-  u = std::max({u, o.displacement, o.floor_displacement, offset_share_ * size_[of(Kind::displacement)]});
+  u = std::max(
+      {u, o.displacement, o.floor_displacement, offset_share_ * size_[of(Kind::displacement)]});
   g = std::max({g, o.tilt, o.floor_tilt, offset_share_ * size_[of(Kind::tilt)]});
   const double u0 = u;
   u = std::max(u, o.cross_floor * o.length * g);
@@ -75,22 +82,29 @@ void ResponseScale::begin_step(CRef dq) {
   s[of(Kind::held)] = infinity;
   if (s != used_) {
     used_ = s;
-    for (Index i = 0; i < weight_.size(); ++i) weight_[i] = 1.0 / s[of(kinds_[at(i)])];
+    for (Index i = 0; i < weight_.size(); ++i)
+      weight_[i] = 1.0 / s[of(kinds_[at(i)])];
     for (const Scales::Limit& l : o.limits)
-      if (kinds_[at(l.unknown)] != Kind::held) weight_[l.unknown] = std::max(weight_[l.unknown], 1.0 / std::max(l.scale, offset_share_ * size_[of(Kind::displacement)]));
+      if (kinds_[at(l.unknown)] != Kind::held)
+        weight_[l.unknown] =
+            std::max(weight_[l.unknown],
+                     1.0 / std::max(l.scale, offset_share_ * size_[of(Kind::displacement)]));
   }
   const double floor = std::max(o.internal, o.floor_internal);
   for (Index i : internal_)
     weight_[i] = 1.0 / std::max({0.5 * (high_[i] - low_[i]), 0.5 * std::abs(dq[i]), floor});
 }
 
-double ResponseScale::norm(CRef x) const { return x.cwiseProduct(weight_).lpNorm<Eigen::Infinity>(); }
+double ResponseScale::norm(CRef x) const {
+  return x.cwiseProduct(weight_).lpNorm<Eigen::Infinity>();
+}
 
 double ResponseScale::rounding() const {
   double largest = 0.0;
   for (const Kind k : {Kind::displacement, Kind::tilt})
     if (used_[of(k)] > 0.0) largest = std::max(largest, size_[of(k)] / used_[of(k)]);
-  for (const Scales::Limit& l : options_.limits) largest = std::max(largest, size_[of(Kind::displacement)] / l.scale);
+  for (const Scales::Limit& l : options_.limits)
+    largest = std::max(largest, size_[of(Kind::displacement)] / l.scale);
   return rounding_units * largest;
 }
 
@@ -100,7 +114,8 @@ double ResponseScale::error_norm(CRef x) const {
     if (kinds_[at(i)] == Kind::spin_angle) continue;
     largest = std::max(largest, std::abs(x[i]) * weight_[i]);
   }
-  for (Index i : spin_) spin += inertia_[i] * x[i] * x[i] * weight_[i] * weight_[i];
+  for (Index i : spin_)
+    spin += inertia_[i] * x[i] * x[i] * weight_[i] * weight_[i];
   // NaN must not be lost in a comparison
   const double sum = x.sum();
   return std::isfinite(sum) ? std::max(largest, std::sqrt(spin)) : infinity;
@@ -109,7 +124,8 @@ double ResponseScale::error_norm(CRef x) const {
 void ResponseScale::save(std::vector<double>& out) const {
   out.insert(out.end(), swept_.begin(), swept_.end());
   out.insert(out.end(), size_.begin(), size_.end());
-  for (const VecX* x : {&low_, &high_, &inertia_}) out.insert(out.end(), x->data(), x->data() + x->size());
+  for (const VecX* x : {&low_, &high_, &inertia_})
+    out.insert(out.end(), x->data(), x->data() + x->size());
 }
 
 const double* ResponseScale::restore(const double* in) {

@@ -7,12 +7,15 @@ namespace whirl::time {
 namespace {
 constexpr double safety = 0.9;
 constexpr double grow_limit = 8.0, shrink_limit = 0.2;
-constexpr double dead_band = 1.2;    // growth below this is not worth a factorisation
-constexpr double hold = 0.95;        // nor is a reduction above this, while the safety factor covers it;
-constexpr double notch = 0.85;       // a smaller one is made large enough to last
-constexpr double prompt = 2.0;       // growth beyond this is taken at once, else it must last
-constexpr double newton_back = 0.8, newton_relax = 1.15;   // after a failure at h: the next proposals stay below 0.8 h, 0.92 h, ..
-constexpr double error_floor = 1e-8; // of the allowance; keeps the ratio of two round-off errors out of the prediction
+constexpr double dead_band = 1.2;  // growth below this is not worth a factorisation
+constexpr double hold = 0.95;   // nor is a reduction above this, while the safety factor covers it;
+constexpr double notch = 0.85;  // a smaller one is made large enough to last
+constexpr double prompt = 2.0;  // growth beyond this is taken at once, else it must last
+constexpr double newton_back = 0.8,
+                 newton_relax =
+                     1.15;  // after a failure at h: the next proposals stay below 0.8 h, 0.92 h, ..
+constexpr double error_floor =
+    1e-8;  // of the allowance; keeps the ratio of two round-off errors out of the prediction
 }  // namespace
 
 double StepControl::accepted(double h, double error, int iterations, int limit) {
@@ -40,8 +43,11 @@ double StepControl::accepted(double h, double error, int iterations, int limit) 
   recent_.back() = ratio;
   if (ratio > 1.0 && ratio < prompt) {
     double lasting = ratio;
-    for (double r : recent_) lasting = std::min(lasting, r == large ? ratio : r);
-    ratio = std::max(lasting, 1.0);   // one of them was a recovery from something: no growth, yet no reason to shrink
+    for (double r : recent_)
+      lasting = std::min(lasting, r == large ? ratio : r);
+    ratio = std::max(
+        lasting,
+        1.0);  // one of them was a recovery from something: no growth, yet no reason to shrink
   }
   if (ratio >= hold && ratio < dead_band) return h;
   if (ratio < 1.0) ratio = std::min(ratio, notch);
@@ -58,13 +64,15 @@ void StepControl::newton_failed(double h) {
 
 double StepControl::rejected(double h, double error) {
   rejected_ = true;
-  for (double& r : recent_) r = large;
+  for (double& r : recent_)
+    r = large;
   if (!std::isfinite(error)) return shrink_limit * h;
   return h * std::clamp(safety * std::pow(error, -1.0 / exponent_), shrink_limit, 0.8);
 }
 
 void StepControl::save(std::vector<double>& out) const {
-  out.insert(out.end(), {h_previous_, error_previous_, have_previous_ ? 1.0 : 0.0, rejected_ ? 1.0 : 0.0, newton_limit_});
+  out.insert(out.end(), {h_previous_, error_previous_, have_previous_ ? 1.0 : 0.0,
+                         rejected_ ? 1.0 : 0.0, newton_limit_});
   out.insert(out.end(), recent_.begin(), recent_.end());
 }
 
@@ -74,7 +82,8 @@ const double* StepControl::restore(const double* in) {
   have_previous_ = *in++ != 0.0;
   rejected_ = *in++ != 0.0;
   newton_limit_ = *in++;
-  for (double& r : recent_) r = *in++;
+  for (double& r : recent_)
+    r = *in++;
   return in;
 }
 

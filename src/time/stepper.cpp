@@ -10,16 +10,21 @@
 namespace whirl::time {
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-/// A stop this close to the step's end (relative to the step) is the step's end: no slivers of a step remain.
+/// A stop this close to the step's end (relative to the step) is the step's end: no slivers of a
+/// step remain.
 constexpr double landing_slack = 1e-9;
 }  // namespace
 
-Stepper::Stepper(Problem& problem, const Options& options) : problem_(problem), options_(options), n_(problem.size()) {
+Stepper::Stepper(Problem& problem, const Options& options)
+    : problem_(problem),
+      options_(options),
+      n_(problem.size()) {
   scale_.resize(problem.kinds(), options.scales);
   initial_.resize(problem);
   for (Index i = 0; i < n_; ++i)
     if (problem.kinds()[at(i)] == Kind::held) held_.push_back(i);
-  for (VecX* x : {&q0_, &v0_, &a0_, &q_, &v_, &a_, &q0_low_, &v0_low_, &q_low_, &v_low_}) *x = VecX::Zero(n_);
+  for (VecX* x : {&q0_, &v0_, &a0_, &q_, &v_, &a_, &q0_low_, &v0_low_, &q_low_, &v_low_})
+    *x = VecX::Zero(n_);
   set_breakpoints(options.breakpoints);
 }
 
@@ -33,33 +38,46 @@ void Stepper::start(double t, CRef q, CRef v) {
   t_low_ = t0_low_ = 0.0;
   h_ = h_next_ = 0.0;
   have_step_ = accept_pending_ = at_break_ = false;
-  q_ = q; v_ = v;
+  q_ = q;
+  v_ = v;
   a_.setZero();
-  q_low_.setZero(); v_low_.setZero();
+  q_low_.setZero();
+  v_low_.setZero();
   problem_.impose(t, q_, v_, a_);
   after_discontinuity(false);
   scale_.reset(q_);
   // polar inertia lumped by row: M times a unit spin acceleration of everything
   const auto kinds = problem_.kinds();
-  for (Index i = 0; i < n_; ++i) q0_[i] = kinds[at(i)] == Kind::spin_angle ? 1.0 : 0.0;
+  for (Index i = 0; i < n_; ++i)
+    q0_[i] = kinds[at(i)] == Kind::spin_angle ? 1.0 : 0.0;
   v0_.setZero();
   problem_.add_M(1.0, q0_, v0_);
   scale_.set_spin_inertia(v0_);
-  q0_ = q_; v0_ = v_; a0_ = a_;
+  q0_ = q_;
+  v0_ = v_;
+  a0_ = a_;
   choose_first_step();
 }
 
 void Stepper::restart(CRef q, CRef v, bool corner) {
-  if (corner) { rate_span_ = std::max(rate_span_, longest_); longest_ = rate_steps_ = 0.0; }   // an approach may take more than one
-  q_ = q; v_ = v;
-  q_low_.setZero(); v_low_.setZero();
+  if (corner) {
+    rate_span_ = std::max(rate_span_, longest_);
+    longest_ = rate_steps_ = 0.0;
+  }  // an approach may take more than one
+  q_ = q;
+  v_ = v;
+  q_low_.setZero();
+  v_low_.setZero();
   accept_pending_ = at_break_ = have_step_ = false;
   problem_.impose(t_, q_, v_, a_);
   after_discontinuity(false);
   for (Index i = 0; i < n_; ++i)
     if (q_[i] != q0_[i]) scale_.rebase(i, q_[i]);
-  q0_ = q_; v0_ = v_; a0_ = a_;
-  t0_ = t_; t0_low_ = t_low_;
+  q0_ = q_;
+  v0_ = v_;
+  a0_ = a_;
+  t0_ = t_;
+  t0_low_ = t_low_;
 }
 
 void Stepper::after_discontinuity(bool impulse) {
@@ -67,27 +85,34 @@ void Stepper::after_discontinuity(bool impulse) {
   if (impulse) {
     // q0_, v0_ are scratch here: held velocities before, jump
     v0_.setZero();
-    for (Index i : held_) v0_[i] = v_[i];
+    for (Index i : held_)
+      v0_[i] = v_[i];
     problem_.impose(t_, q_, v_, a_);
     double jump = 0.0;
     for (Index i : held_) {
       v0_[i] = v_[i] - v0_[i];
       // the left side is one ulp of t before: a smooth law differs by rounding alone
-      if (std::abs(v0_[i]) > 1e-9 * (1.0 + std::abs(v_[i]))) jump = std::max(jump, std::abs(v0_[i]));
+      if (std::abs(v0_[i]) > 1e-9 * (1.0 + std::abs(v_[i])))
+        jump = std::max(jump, std::abs(v0_[i]));
     }
     if (jump > 0.0) {
       problem_.linearize(t_, q_, v_, a_);
       ++statistics_.linearizations;
       initial_.classify(problem_);
       if (initial_.impulse(problem_, v0_, v_, statistics_) != StepStatus::ok)
-        throw run_error("N21", fmt::format("the jump of a prescribed velocity at t = {} s moves unknowns without mass", t_),
-                        "smooth the law, or give the parts it drives a mass");
+        throw run_error(
+            "N21",
+            fmt::format("the jump of a prescribed velocity at t = {} s moves unknowns without mass",
+                        t_),
+            "smooth the law, or give the parts it drives a mass");
     }
   }
   const StepStatus status = initial_.solve(problem_, t_, q_, v_, a_, statistics_);
   if (status != StepStatus::ok)
-    throw run_error("N20", fmt::format("no acceleration satisfies the equations at t = {} s: {}", t_, message(status)),
-                    "a part without mass that nothing holds, or a state outside the model's range");
+    throw run_error(
+        "N20",
+        fmt::format("no acceleration satisfies the equations at t = {} s: {}", t_, message(status)),
+        "a part without mass that nothing holds, or a state outside the model's range");
   drop_history();
   control_.reset();
   refresh();
@@ -105,7 +130,9 @@ void Stepper::choose_first_step() {
   if (h <= 0.0) {
     // Short enough to be accepted; the controller grows it eightfold a step.
     h = 1e-5 * span;
-    const double speed = scale_.weights().size() ? v_.cwiseProduct(initial_.dynamic()).lpNorm<Eigen::Infinity>() : 0.0;
+    const double speed = scale_.weights().size()
+                             ? v_.cwiseProduct(initial_.dynamic()).lpNorm<Eigen::Infinity>()
+                             : 0.0;
     const double acceleration = a_.cwiseProduct(initial_.dynamic()).lpNorm<Eigen::Infinity>();
     if (speed > 0.0 && acceleration > 0.0) h = std::min(h, 0.01 * speed / acceleration);
     h = std::max(h, 1e-9 * span);
@@ -143,7 +170,8 @@ void Stepper::plan_segment() {
   next_stop(segment_end_, is_break);
   segment_k_ = 0.0;
   if (std::isfinite(segment_end_)) {
-    segment_count_ = std::max(1.0, std::ceil((segment_end_ - segment_start_) / options_.dt_fixed - 1e-9));
+    segment_count_ =
+        std::max(1.0, std::ceil((segment_end_ - segment_start_) / options_.dt_fixed - 1e-9));
     segment_step_ = (segment_end_ - segment_start_) / segment_count_;
   } else {
     segment_count_ = infinity;
@@ -156,14 +184,17 @@ void Stepper::plan_segment() {
 Stepper::Target Stepper::plan(double h) {
   double target;
   if (options_.dt_fixed > 0.0) {
-    target = segment_k_ + 1.0 >= segment_count_ ? segment_end_ : segment_start_ + (segment_k_ + 1.0) * segment_step_;
+    target = segment_k_ + 1.0 >= segment_count_
+                 ? segment_end_
+                 : segment_start_ + (segment_k_ + 1.0) * segment_step_;
     if (!inside_part_ && h >= segment_step_) return {segment_step_, target, true, false};
   } else {
     bool is_break;
     next_stop(target, is_break);
   }
   const double remaining = (target - t0_) - t0_low_;
-  if (h >= remaining * (1.0 - landing_slack)) return {remaining, target, true, h > remaining * (1.0 + landing_slack)};
+  if (h >= remaining * (1.0 - landing_slack))
+    return {remaining, target, true, h > remaining * (1.0 + landing_slack)};
   if (h > 0.5 * remaining && options_.dt_fixed <= 0.0) h = 0.5 * remaining;
   return {h, t0_ + (h + t0_low_), false, false};
 }
@@ -174,7 +205,9 @@ Stepper::Target Stepper::plan(double h) {
 void Stepper::begin_step() {
   if (accept_pending_) {
     accept_pending_ = false;
-    q0_ = q_; v0_ = v_; a0_ = a_;
+    q0_ = q_;
+    v0_ = v_;
+    a0_ = a_;
     if (problem_.accept(t_, q_, v_, a_)) {
       const auto kinds = problem_.kinds();
       bool rates_changed = false;
@@ -183,7 +216,8 @@ void Stepper::begin_step() {
         rates_changed = rates_changed || rate;
         if (q_[i] != q0_[i]) scale_.rebase(i, q_[i]);
         // whole turns leave the remainder's compensation valid, a new chart does not
-        if (rate || (q_[i] != q0_[i] && kinds[at(i)] != Kind::spin_angle)) q_low_[i] = v_low_[i] = 0.0;
+        if (rate || (q_[i] != q0_[i] && kinds[at(i)] != Kind::spin_angle))
+          q_low_[i] = v_low_[i] = 0.0;
       }
       if (rates_changed) {
         drop_history();
@@ -195,15 +229,19 @@ void Stepper::begin_step() {
     at_break_ = false;
     after_discontinuity(true);
   }
-  q0_ = q_; v0_ = v_; a0_ = a_;
-  q0_low_ = q_low_; v0_low_ = v_low_;
-  t0_ = t_; t0_low_ = t_low_;
+  q0_ = q_;
+  v0_ = v_;
+  a0_ = a_;
+  q0_low_ = q_low_;
+  v0_low_ = v_low_;
+  t0_ = t_;
+  t0_low_ = t_low_;
   fresh_ = false;
 }
 
 void Stepper::linearize(double h, bool inside) {
-  // In films the stages differ from the start as much as from each other: the middle of the step, as far as the
-  // present acceleration tells it, is nearer to all of them.
+  // In films the stages differ from the start as much as from each other: the middle of the step,
+  // as far as the present acceleration tells it, is nearer to all of them.
   if (inside) {
     const double m = 0.5 * h;
     q_ = q0_ + m * v0_ + (0.5 * m * m) * a0_;
@@ -225,8 +263,10 @@ Stepper::Attempt Stepper::attempt_with_recovery(double h) {
     const bool inside = linearize_ && smooth();
     if (linearize_) linearize(h, inside);
     Attempt result;
-    if (inside && !factor(h)) linearize(h, false);   // out of the domain of a film
-    else if (inside) h_factored_ = h;
+    if (inside && !factor(h))
+      linearize(h, false);  // out of the domain of a film
+    else if (inside)
+      h_factored_ = h;
     if (h != h_factored_) {
       if (factor(h)) {
         h_factored_ = h;
@@ -239,9 +279,10 @@ Stepper::Attempt Stepper::attempt_with_recovery(double h) {
       result = attempt(h);
       statistics_.newton_iterations += result.iterations;
     }
-    const bool recoverable = result.status == StepStatus::newton || result.status == StepStatus::singular;
+    const bool recoverable =
+        result.status == StepStatus::newton || result.status == StepStatus::singular;
     if (!recoverable || fresh_ || problem_.is_linear()) return result;
-    linearize_ = true;   // old matrices: once more with new ones before the step is shortened
+    linearize_ = true;  // old matrices: once more with new ones before the step is shortened
   }
 }
 
@@ -255,8 +296,10 @@ StepReport Stepper::advance() {
   begin_step();
   const bool fixed = options_.dt_fixed > 0.0;
   if (fixed && (!segment_valid_ || segment_k_ >= segment_count_)) plan_segment();
-  double h_wanted = fixed ? (inside_part_ ? h_next_ : segment_step_) : std::min(h_next_, options_.dt_max);
-  const double dt_min = options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
+  double h_wanted =
+      fixed ? (inside_part_ ? h_next_ : segment_step_) : std::min(h_next_, options_.dt_max);
+  const double dt_min =
+      options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
   retrying_ = false;
   Target target{};
   Attempt result;
@@ -265,25 +308,32 @@ StepReport Stepper::advance() {
     const double stop = target.t1;
     t_ = target.t1;
     t_low_ = target.landing ? 0.0 : (t0_ - t_) + (target.h + t0_low_);
-    const bool lands_on_break = target.landing && std::binary_search(breaks_.begin(), breaks_.end(), stop);
+    const bool lands_on_break =
+        target.landing && std::binary_search(breaks_.begin(), breaks_.end(), stop);
     t1_eval_ = lands_on_break ? std::nextafter(stop, t0_) : stop;
     report.at_breakpoint = lands_on_break;
     result = attempt_with_recovery(target.h);
     if (result.status == StepStatus::ok && (fixed || result.error <= 1.0)) break;
     if (result.status == StepStatus::ok) {
       result.status = StepStatus::error_test;
-      ++report.rejected_error; ++statistics_.rejected_error;
+      ++report.rejected_error;
+      ++statistics_.rejected_error;
       h_wanted = control_.rejected(target.h, result.error);
       retrying_ = true;
     } else {
-      ++report.rejected_newton; ++statistics_.rejected_newton;
+      ++report.rejected_newton;
+      ++statistics_.rejected_newton;
       h_wanted = target.h * (result.status == StepStatus::domain ? 0.25 : 0.5);
       control_.newton_failed(target.h);
     }
     if (h_wanted < dt_min || tries + 1 >= options_.max_attempts) {
-      q_ = q0_; v_ = v0_; a_ = a0_;
-      q_low_ = q0_low_; v_low_ = v0_low_;
-      t_ = t0_; t_low_ = t0_low_;
+      q_ = q0_;
+      v_ = v0_;
+      a_ = a0_;
+      q_low_ = q0_low_;
+      v_low_ = v0_low_;
+      t_ = t0_;
+      t_low_ = t0_low_;
       report.status = result.status;
       h_next_ = std::max(h_wanted, dt_min);
       return report;
@@ -316,7 +366,8 @@ StepReport Stepper::advance() {
     if (target.landing) segment_k_ += 1.0;
     h_next_ = inside_part_ ? target.h : segment_step_;
   } else {
-    const double proposal = control_.accepted(target.h, result.error, result.iterations, options_.max_newton);
+    const double proposal =
+        control_.accepted(target.h, result.error, result.iterations, options_.max_newton);
     // a step cut short by a stop says nothing against the length wanted before
     h_next_ = target.clipped && smooth ? std::max(proposal, h_wanted) : proposal;
   }
@@ -325,7 +376,8 @@ StepReport Stepper::advance() {
 
 StepReport Stepper::shorten_to(double t) {
   StepReport report;
-  if (!have_step_ || !(t > t0_ && t < t_)) throw std::invalid_argument("shorten_to: t outside the last step");
+  if (!have_step_ || !(t > t0_ && t < t_))
+    throw std::invalid_argument("shorten_to: t outside the last step");
   const double wanted = h_next_, h_before = h_;
   retrying_ = false;
   t_ = t1_eval_ = t;
@@ -339,9 +391,13 @@ StepReport Stepper::shorten_to(double t) {
   report.error = result.error;
   if (result.status != StepStatus::ok) {
     // back to the start of the step; the caller may go on with advance()
-    q_ = q0_; v_ = v0_; a_ = a0_;
-    q_low_ = q0_low_; v_low_ = v0_low_;
-    t_ = t0_; t_low_ = t0_low_;
+    q_ = q0_;
+    v_ = v0_;
+    a_ = a0_;
+    q_low_ = q0_low_;
+    v_low_ = v0_low_;
+    t_ = t0_;
+    t_low_ = t0_low_;
     have_step_ = false;
     accept_pending_ = false;
     report.t1 = t_;
@@ -361,18 +417,23 @@ StepReport Stepper::shorten_to(double t) {
 
 void Stepper::interpolate(double t, Ref q, Ref v, Ref a) const {
   if (!have_step_ || t == t_) {
-    q = q_; v = v_; a = a_;
+    q = q_;
+    v = v_;
+    a = a_;
     return;
   }
   if (t == t0_) {
-    q = q0_; v = v0_; a = a0_;
+    q = q0_;
+    v = v0_;
+    a = a0_;
     return;
   }
   dense(((t - t0_) - t0_low_) / h_, q, v, a);
   problem_.impose(t, q, v, a);
 }
 
-void Stepper::add_compensated(const VecX& x, const VecX& x_low, const VecX& dx, VecX& sum, VecX& low) {
+void Stepper::add_compensated(const VecX& x, const VecX& x_low, const VecX& dx, VecX& sum,
+                              VecX& low) {
   // two-sum (Knuth): exact for any order of magnitudes
   for (Index i = 0; i < x.size(); ++i) {
     const double d = dx[i] + x_low[i];
@@ -390,17 +451,22 @@ IntegratorState Stepper::save() {
   refresh();
   IntegratorState s;
   s.t = t_;
-  s.q = q_; s.v = v_; s.a = a_;
+  s.q = q_;
+  s.v = v_;
+  s.a = a_;
   auto& out = s.history;
   const Statistics& k = statistics_;
-  for (long c : {k.accepted, k.rejected_error, k.rejected_newton, k.newton_iterations, k.linearizations, k.factorizations_real,
-                 k.factorizations_complex, k.residuals, k.solves_real, k.solves_complex})
+  for (long c : {k.accepted, k.rejected_error, k.rejected_newton, k.newton_iterations,
+                 k.linearizations, k.factorizations_real, k.factorizations_complex, k.residuals,
+                 k.solves_real, k.solves_complex})
     out.push_back(static_cast<double>(c));
   out.insert(out.end(), {k.step_min, k.step_max, k.step_sum, k.error_max, k.error_sum});
-  out.insert(out.end(), {longest_, rate_span_, rate_steps_, t_low_, h_next_, first_ ? 1.0 : 0.0, accept_pending_ ? 1.0 : 0.0, at_break_ ? 1.0 : 0.0});
-  out.insert(out.end(), {segment_start_, segment_end_, segment_count_, segment_step_, segment_k_, segment_valid_ ? 1.0 : 0.0,
-                         inside_part_ ? 1.0 : 0.0});
-  for (const VecX* x : {&q_low_, &v_low_}) out.insert(out.end(), x->data(), x->data() + n_);
+  out.insert(out.end(), {longest_, rate_span_, rate_steps_, t_low_, h_next_, first_ ? 1.0 : 0.0,
+                         accept_pending_ ? 1.0 : 0.0, at_break_ ? 1.0 : 0.0});
+  out.insert(out.end(), {segment_start_, segment_end_, segment_count_, segment_step_, segment_k_,
+                         segment_valid_ ? 1.0 : 0.0, inside_part_ ? 1.0 : 0.0});
+  for (const VecX* x : {&q_low_, &v_low_})
+    out.insert(out.end(), x->data(), x->data() + n_);
   scale_.save(out);
   control_.save(out);
   initial_.save(out);
@@ -411,21 +477,30 @@ IntegratorState Stepper::save() {
 void Stepper::restore(const IntegratorState& s) {
   if (s.q.size() != n_ || s.v.size() != n_ || s.a.size() != n_)
     throw std::invalid_argument("integrator state of another problem");
-  if (s.history.size() != save().history.size()) throw std::invalid_argument("integrator state of another scheme");
+  if (s.history.size() != save().history.size())
+    throw std::invalid_argument("integrator state of another scheme");
   const double* in = s.history.data();
   Statistics& k = statistics_;
-  for (long* c : {&k.accepted, &k.rejected_error, &k.rejected_newton, &k.newton_iterations, &k.linearizations,
-                  &k.factorizations_real, &k.factorizations_complex, &k.residuals, &k.solves_real, &k.solves_complex})
+  for (long* c : {&k.accepted, &k.rejected_error, &k.rejected_newton, &k.newton_iterations,
+                  &k.linearizations, &k.factorizations_real, &k.factorizations_complex,
+                  &k.residuals, &k.solves_real, &k.solves_complex})
     *c = static_cast<long>(*in++);
-  for (double* c : {&k.step_min, &k.step_max, &k.step_sum, &k.error_max, &k.error_sum}) *c = *in++;
+  for (double* c : {&k.step_min, &k.step_max, &k.step_sum, &k.error_max, &k.error_sum})
+    *c = *in++;
   auto flag = [&in] { return *in++ != 0.0; };
   t_ = s.t;
-  longest_ = *in++; rate_span_ = *in++; rate_steps_ = *in++;
+  longest_ = *in++;
+  rate_span_ = *in++;
+  rate_steps_ = *in++;
   t_low_ = *in++;
   h_next_ = *in++;
-  first_ = flag(); accept_pending_ = flag(); at_break_ = flag();
-  for (double* c : {&segment_start_, &segment_end_, &segment_count_, &segment_step_, &segment_k_}) *c = *in++;
-  segment_valid_ = flag(); inside_part_ = flag();
+  first_ = flag();
+  accept_pending_ = flag();
+  at_break_ = flag();
+  for (double* c : {&segment_start_, &segment_end_, &segment_count_, &segment_step_, &segment_k_})
+    *c = *in++;
+  segment_valid_ = flag();
+  inside_part_ = flag();
   for (VecX* x : {&q_low_, &v_low_}) {
     std::copy_n(in, n_, x->data());
     in += n_;
@@ -434,8 +509,11 @@ void Stepper::restore(const IntegratorState& s) {
   in = control_.restore(in);
   in = initial_.restore(in);
   restore_history(in);
-  q_ = q0_ = s.q; v_ = v0_ = s.v; a_ = a0_ = s.a;
-  t0_ = t_; t0_low_ = t_low_;
+  q_ = q0_ = s.q;
+  v_ = v0_ = s.v;
+  a_ = a0_ = s.a;
+  t0_ = t_;
+  t0_low_ = t_low_;
   have_step_ = false;
   refresh();
 }

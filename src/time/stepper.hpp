@@ -1,5 +1,5 @@
-// What all one-step schemes share: the loop around one step. Stops, step control, rejection, dense output frame, chart
-// changes, save and restore. A scheme adds attempt(), dense() and its history.
+// What all one-step schemes share: the loop around one step. Stops, step control, rejection, dense
+// output frame, chart changes, save and restore. A scheme adds attempt(), dense() and its history.
 #pragma once
 #include <time/initial.hpp>
 #include <time/integrator.hpp>
@@ -22,7 +22,10 @@ class Stepper : public Integrator {
   const VecX& a() const final { return a_; }
   double proposed_step() const final { return h_next_; }
   void interpolate(double t, Ref q, Ref v, Ref a) const final;
-  void refresh() final { linearize_ = true; h_factored_ = 0.0; }
+  void refresh() final {
+    linearize_ = true;
+    h_factored_ = 0.0;
+  }
   void set_end(double t_end) final;
   void set_breakpoints(std::vector<double> times) final;
   const Statistics& statistics() const final { return statistics_; }
@@ -32,11 +35,11 @@ class Stepper : public Integrator {
  protected:
   struct Attempt {
     StepStatus status = StepStatus::ok;
-    double error = 0.0;   ///< relative to the allowance
+    double error = 0.0;  ///< relative to the allowance
     int iterations = 0;
   };
-  /// One step of length h from (t0_, q0_, v0_, a0_) with the matrices at hand. On success q_, v_, a_, q_low_, v_low_ hold
-  /// its end (held entries too).
+  /// One step of length h from (t0_, q0_, v0_, a0_) with the matrices at hand. On success q_, v_,
+  /// a_, q_low_, v_low_ hold its end (held entries too).
   virtual Attempt attempt(double h) = 0;
   /// Factors the iteration matrices for step h.
   virtual bool factor(double h) = 0;
@@ -52,13 +55,17 @@ class Stepper : public Integrator {
   virtual const double* restore_history(const double* in) = 0;
 
   // Services to schemes.
-  double stage_time(double c, double h) const { return c == 1.0 ? t1_eval_ : t0_ + (c * h + t0_low_); }
+  double stage_time(double c, double h) const {
+    return c == 1.0 ? t1_eval_ : t0_ + (c * h + t0_low_);
+  }
   bool residual(double t, const VecX& q, const VecX& v, const VecX& a, Ref r) {
     ++statistics_.residuals;
     return problem_.residual(t, q, v, a, r);
   }
   /// Matrices may be taken inside the step, where Newton's iteration converges best.
-  bool smooth() const { return options_.linearize_inside && !first_ && !problem_.has_corners() && !problem_.is_linear(); }
+  bool smooth() const {
+    return options_.linearize_inside && !first_ && !problem_.has_corners() && !problem_.is_linear();
+  }
   bool factor_real(double cm, double cc, double ck) {
     ++statistics_.factorizations_real;
     return problem_.factor(cm, cc, ck);
@@ -68,7 +75,8 @@ class Stepper : public Integrator {
     return problem_.factor(cm, cc, ck);
   }
   /// sum = x + dx with the rounding error carried in low.
-  static void add_compensated(const VecX& x, const VecX& x_low, const VecX& dx, VecX& sum, VecX& low);
+  static void add_compensated(const VecX& x, const VecX& x_low, const VecX& dx, VecX& sum,
+                              VecX& low);
 
   Problem& problem_;
   Options options_;
@@ -80,16 +88,21 @@ class Stepper : public Integrator {
   InitialSolver initial_;
 
   double t0_ = 0.0, t0_low_ = 0.0, t_ = 0.0, t_low_ = 0.0;
-  double h_ = 0.0;               ///< length of the last accepted step
-  double t1_eval_ = 0.0;         ///< time at which the end of the step is evaluated: a breakpoint's left side
+  double h_ = 0.0;  ///< length of the last accepted step
+  double t1_eval_ =
+      0.0;  ///< time at which the end of the step is evaluated: a breakpoint's left side
   VecX q0_, v0_, a0_, q_, v_, a_;
   VecX q0_low_, v0_low_, q_low_, v_low_;
-  bool first_ = true;            ///< no step since start, restart or a breakpoint: a0_ solves the equations at t0_
-  double rate_span_ = 0.0;       ///< errors of rates count as displacements after this time at least, s
-  bool retrying_ = false;        ///< the previous attempt of this step failed the error test
+  bool first_ =
+      true;  ///< no step since start, restart or a breakpoint: a0_ solves the equations at t0_
+  double rate_span_ = 0.0;  ///< errors of rates count as displacements after this time at least, s
+  bool retrying_ = false;   ///< the previous attempt of this step failed the error test
 
  private:
-  struct Target { double h, t1; bool landing, clipped; };
+  struct Target {
+    double h, t1;
+    bool landing, clipped;
+  };
   void linearize(double h, bool inside);
   Attempt attempt_with_recovery(double h);
   void begin_step();
@@ -102,16 +115,18 @@ class Stepper : public Integrator {
   std::vector<double> breaks_;
   bool have_step_ = false, accept_pending_ = false, at_break_ = false;
   double h_next_ = 0.0;
-  double longest_ = 0.0;         ///< step since the last corner
-  double rate_steps_ = 0.0;      ///< steps made with rate_span_
-  bool fresh_ = false;           ///< matrices are of the present step's start
-  // fixed step: the segment between two stops in equal parts; a failed part is halved until its end is reached
-  double segment_start_ = 0.0, segment_end_ = 0.0, segment_count_ = 0.0, segment_step_ = 0.0, segment_k_ = 0.0;
+  double longest_ = 0.0;     ///< step since the last corner
+  double rate_steps_ = 0.0;  ///< steps made with rate_span_
+  bool fresh_ = false;       ///< matrices are of the present step's start
+  // fixed step: the segment between two stops in equal parts; a failed part is halved until its end
+  // is reached
+  double segment_start_ = 0.0, segment_end_ = 0.0, segment_count_ = 0.0, segment_step_ = 0.0,
+         segment_k_ = 0.0;
   bool segment_valid_ = false, inside_part_ = false;
 
  protected:
-  bool linearize_ = true;        ///< matrices are to be computed anew before the next attempt
-  double h_factored_ = 0.0;      ///< step length of the factors at hand; 0: none
+  bool linearize_ = true;    ///< matrices are to be computed anew before the next attempt
+  double h_factored_ = 0.0;  ///< step length of the factors at hand; 0: none
 };
 
 }  // namespace whirl::time

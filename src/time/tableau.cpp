@@ -1,7 +1,7 @@
-// Sources: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. 1996, IV.5 and IV.8
-// (doi 10.1007/978-3-642-05221-7). Only nodes and the characteristic polynomials of A^-1 are entered, both in closed
-// form; the rest follows in extended precision. A^-1 has the characteristic polynomial of the denominator of the
-// stability function, a Pade approximant of exp:
+// Sources: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. 1996, IV.5 and
+// IV.8 (doi 10.1007/978-3-642-05221-7). Only nodes and the characteristic polynomials of A^-1 are
+// entered, both in closed form; the rest follows in extended precision. A^-1 has the characteristic
+// polynomial of the denominator of the stability function, a Pade approximant of exp:
 //   Radau IIA 3:  x^3 -  9 x^2 + 36 x -  60
 //   Gauss 3:      x^3 - 12 x^2 + 60 x - 120
 //   Gauss 2:      x^2 -  6 x   + 12
@@ -15,12 +15,14 @@ namespace {
 
 using Real = long double;
 using Cplx = std::complex<Real>;
-template <class T> using Square = std::vector<std::vector<T>>;
+template <class T>
+using Square = std::vector<std::vector<T>>;
 
 Square<Real> inverse(Square<Real> m) {
   const std::size_t n = m.size();
   Square<Real> inv(n, std::vector<Real>(n, 0));
-  for (std::size_t i = 0; i < n; ++i) inv[i][i] = 1;
+  for (std::size_t i = 0; i < n; ++i)
+    inv[i][i] = 1;
   for (std::size_t k = 0; k < n; ++k) {
     std::size_t p = k;
     for (std::size_t i = k; i < n; ++i)
@@ -28,17 +30,24 @@ Square<Real> inverse(Square<Real> m) {
     std::swap(m[k], m[p]);
     std::swap(inv[k], inv[p]);
     const Real d = m[k][k];
-    for (std::size_t j = 0; j < n; ++j) { m[k][j] /= d; inv[k][j] /= d; }
+    for (std::size_t j = 0; j < n; ++j) {
+      m[k][j] /= d;
+      inv[k][j] /= d;
+    }
     for (std::size_t i = 0; i < n; ++i) {
       if (i == k) continue;
       const Real f = m[i][k];
-      for (std::size_t j = 0; j < n; ++j) { m[i][j] -= f * m[k][j]; inv[i][j] -= f * inv[k][j]; }
+      for (std::size_t j = 0; j < n; ++j) {
+        m[i][j] -= f * m[k][j];
+        inv[i][j] -= f * inv[k][j];
+      }
     }
   }
   return inv;
 }
 
-/// A vector in the kernel of B - lambda (transposed: of its transpose), scaled so that its largest entry is 1.
+/// A vector in the kernel of B - lambda (transposed: of its transpose), scaled so that its largest
+/// entry is 1.
 std::vector<Cplx> eigenvector(const Square<Real>& B, Cplx lambda, bool transposed) {
   const std::size_t n = B.size();
   auto entry = [&](std::size_t i, std::size_t j) {
@@ -59,13 +68,17 @@ std::vector<Cplx> eigenvector(const Square<Real>& B, Cplx lambda, bool transpose
         y[k] = entry(p, l) * entry(q, m) - entry(p, m) * entry(q, l);
         size = std::max(size, std::abs(y[k]));
       }
-      if (size > best) { best = size; x = y; }
+      if (size > best) {
+        best = size;
+        x = y;
+      }
     }
   }
   Cplx largest = x[0];
   for (const Cplx& e : x)
     if (std::abs(e) > std::abs(largest)) largest = e;
-  for (Cplx& e : x) e /= largest;
+  for (Cplx& e : x)
+    e /= largest;
   return x;
 }
 
@@ -80,8 +93,9 @@ Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, 
   // Lagrange polynomials: columns of the inverse Vandermonde matrix.
   Square<Real> vander(s, std::vector<Real>(s));
   for (std::size_t i = 0; i < s; ++i)
-    for (std::size_t k = 0; k < s; ++k) vander[i][k] = std::pow(c[i], static_cast<int>(k));
-  const auto coeff = inverse(vander);   // coeff[k][j]: power k of l_j
+    for (std::size_t k = 0; k < s; ++k)
+      vander[i][k] = std::pow(c[i], static_cast<int>(k));
+  const auto coeff = inverse(vander);  // coeff[k][j]: power k of l_j
   Square<Real> A(s, std::vector<Real>(s));
   for (std::size_t j = 0; j < s; ++j) {
     Real b = 0, one = 0;
@@ -95,13 +109,15 @@ Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, 
     t.at_zero[j] = static_cast<double>(coeff[0][j]);
     for (std::size_t i = 0; i < s; ++i) {
       Real a = 0;
-      for (std::size_t k = 0; k < s; ++k) a += coeff[k][j] * std::pow(c[i], static_cast<int>(k + 1)) / static_cast<Real>(k + 1);
+      for (std::size_t k = 0; k < s; ++k)
+        a += coeff[k][j] * std::pow(c[i], static_cast<int>(k + 1)) / static_cast<Real>(k + 1);
       A[i][j] = a;
       t.A[i][j] = static_cast<double>(a);
     }
   }
-  if (stiff) {   // exactly: the last stage is the step's end
-    for (std::size_t j = 0; j < s; ++j) t.at_one[j] = j + 1 == s ? 1.0 : 0.0;
+  if (stiff) {  // exactly: the last stage is the step's end
+    for (std::size_t j = 0; j < s; ++j)
+      t.at_one[j] = j + 1 == s ? 1.0 : 0.0;
   }
   const auto B = inverse(A);
   for (std::size_t i = 0; i < s; ++i) {
@@ -109,7 +125,8 @@ Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, 
     for (std::size_t j = 0; j < s; ++j) {
       t.Ainv[i][j] = static_cast<double>(B[i][j]);
       Real sum = 0;
-      for (std::size_t k = 0; k < s; ++k) sum += B[i][k] * B[k][j];
+      for (std::size_t k = 0; k < s; ++k)
+        sum += B[i][k] * B[k][j];
       t.Ainv2[i][j] = static_cast<double>(sum);
     }
   }
@@ -132,19 +149,26 @@ Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, 
     x = eigenvector(B, value, false);
     w = eigenvector(B, value, true);
     Cplx product = 0;
-    for (std::size_t i = 0; i < s; ++i) product += w[i] * x[i];
-    for (Cplx& y : w) y /= product;
+    for (std::size_t i = 0; i < s; ++i)
+      product += w[i] * x[i];
+    for (Cplx& y : w)
+      y /= product;
   };
   std::vector<Cplx> x, w;
   pair(lambda, x, w);
   t.lambda_c = Complex(lambda);
-  for (std::size_t i = 0; i < s; ++i) { t.x_c[i] = Complex(x[i]); t.w_c[i] = Complex(w[i]); }
+  for (std::size_t i = 0; i < s; ++i) {
+    t.x_c[i] = Complex(x[i]);
+    t.w_c[i] = Complex(w[i]);
+  }
   t.has_real = s == 3;
   if (t.has_real) {
     pair(Cplx(root), x, w);
     t.lambda_r = static_cast<double>(root);
-    for (std::size_t i = 0; i < s; ++i)
-      { t.x_r[i] = static_cast<double>(x[i].real()); t.w_r[i] = static_cast<double>(w[i].real()); }
+    for (std::size_t i = 0; i < s; ++i) {
+      t.x_r[i] = static_cast<double>(x[i].real());
+      t.w_r[i] = static_cast<double>(w[i].real());
+    }
   }
   t.mu = t.has_real ? t.lambda_r : std::abs(t.lambda_c);
   return t;
@@ -176,7 +200,8 @@ Tableau::Mat Tableau::extrapolation(double theta0, double r) const {
   for (std::size_t j = 0; j < static_cast<std::size_t>(stages); ++j) {
     Vec p = poly[j];
     for (int m = 0; m < stages; ++m)
-      for (int k = stages - 2; k >= m; --k) p[static_cast<std::size_t>(k)] += theta0 * p[static_cast<std::size_t>(k + 1)];
+      for (int k = stages - 2; k >= m; --k)
+        p[static_cast<std::size_t>(k)] += theta0 * p[static_cast<std::size_t>(k + 1)];
     for (std::size_t i = 0; i < static_cast<std::size_t>(stages); ++i) {
       double sum = 0, power = c[i] * c[i];
       for (int k = 0; k < stages; ++k) {

@@ -1,5 +1,6 @@
-// Lists of modes are complete and verdicts of stability right: random machines on films and linear supports, free to turn or nearly so, against all
-// eigenvalues of the same matrices by a dense method.
+// Lists of modes are complete and verdicts of stability right: random machines on films and linear
+// supports, free to turn or nearly so, against all eigenvalues of the same matrices by a dense
+// method.
 #include "../la/dense_spectrum.hpp"
 #include "../validation/deck_model.hpp"
 #include "random_machines.hpp"
@@ -18,16 +19,19 @@ using whirl::test::rpm;
 
 namespace {
 
-std::vector<Complex> all_roots(const la::MCK& m, std::span<const unsigned char> active, double scale) {
+std::vector<Complex> all_roots(const la::MCK& m, std::span<const unsigned char> active,
+                               double scale) {
   return la::test::dense_spectrum(m, la::test::Mask(active.begin(), active.end()), scale);
 }
 
 struct Tally {
-  int machines = 0, solved = 0, without_equilibrium = 0, certified = 0, certain = 0, unstable = 0, diverging = 0, recovered = 0;
+  int machines = 0, solved = 0, without_equilibrium = 0, certified = 0, certain = 0, unstable = 0,
+      diverging = 0, recovered = 0;
 };
 
 /// One machine at one speed: what the list says against all roots.
-void check_machine(const DeckModel& d, double Omega, Index count, const std::string& name, Tally& tally) {
+void check_machine(const DeckModel& d, double Omega, Index count, const std::string& name,
+                   Tally& tally) {
   Linearizer linear(d.built.system, d.running());
   ModesOptions o;
   o.count = count;
@@ -39,7 +43,8 @@ void check_machine(const DeckModel& d, double Omega, Index count, const std::str
     modes = whirl_modes(linear, Omega, o, &certificate);
   } catch (const Error& e) {
     const std::string code = e.diagnostics().front().code;
-    ASSERT_TRUE(code == "E75" || code == "E76") << name << ": " << e.what();   // no equilibrium: not this test's matter
+    ASSERT_TRUE(code == "E75" || code == "E76")
+        << name << ": " << e.what();  // no equilibrium: not this test's matter
     ++tally.without_equilibrium;
     return;
   }
@@ -48,11 +53,14 @@ void check_machine(const DeckModel& d, double Omega, Index count, const std::str
   tally.certain += certificate.stability_certain();
   tally.recovered += certificate.list.recovered > 0;
   EXPECT_TRUE(certificate.complete()) << name << ": " << certificate.text();
-  const std::vector<Complex> all = all_roots(linear.at(Omega), linear.active(), 0.37 * certificate.list.radius);
+  const std::vector<Complex> all =
+      all_roots(linear.at(Omega), linear.active(), 0.37 * certificate.list.radius);
   double largest = 0;
-  for (const Complex s : all) largest = std::max(largest, std::abs(s));
-  const double rounding = 1e-13 * largest;   // what the dense method leaves of a simple root
-  // A free motion is a double root: the dense method leaves the square root of its rounding, relative to its shift.
+  for (const Complex s : all)
+    largest = std::max(largest, std::abs(s));
+  const double rounding = 1e-13 * largest;  // what the dense method leaves of a simple root
+  // A free motion is a double root: the dense method leaves the square root of its rounding,
+  // relative to its shift.
   const double zero = 1e-6 * certificate.list.radius;
   // What grows is listed whatever its number: the list proper ends at the mode asked for.
   double last = 0;
@@ -69,8 +77,11 @@ void check_machine(const DeckModel& d, double Omega, Index count, const std::str
     const bool inside = region.contains(s * (1 + 1e-9));
     const bool wanted = inside && ((oscillates && s.imag() < last * (1 - 1e-6)) || s.real() > near);
     if (!wanted || std::abs(s) < near || std::abs(s) < zero) continue;
-    const bool listed = std::any_of(modes.begin(), modes.end(), [&](const WhirlMode& m) { return std::abs(m.lambda - s) < near; });
-    EXPECT_TRUE(listed) << name << " at " << Omega / rpm << " rpm: " << s.real() << " " << s.imag() << " i is not in the list; " << certificate.text();
+    const bool listed = std::any_of(modes.begin(), modes.end(), [&](const WhirlMode& m) {
+      return std::abs(m.lambda - s) < near;
+    });
+    EXPECT_TRUE(listed) << name << " at " << Omega / rpm << " rpm: " << s.real() << " " << s.imag()
+                        << " i is not in the list; " << certificate.text();
   }
   Index oscillating = 0;
   bool said = false;
@@ -79,7 +90,9 @@ void check_machine(const DeckModel& d, double Omega, Index count, const std::str
     said = said || m.growth() > 0;
     tally.diverging += !m.oscillates() && m.growth() > 0;
     if (std::abs(m.lambda) < std::max(zero, 1e4 * rounding)) continue;
-    const bool real = std::any_of(all.begin(), all.end(), [&](Complex s) { return std::abs(s - m.lambda) < 1e-5 * std::abs(s) + 1e5 * rounding; });
+    const bool real = std::any_of(all.begin(), all.end(), [&](Complex s) {
+      return std::abs(s - m.lambda) < 1e-5 * std::abs(s) + 1e5 * rounding;
+    });
     EXPECT_TRUE(real) << name << ": " << m.lambda << " is no root";
   }
   EXPECT_GE(oscillating, count) << name;
@@ -95,7 +108,8 @@ Tally campaign(unsigned first, unsigned machines) {
     ++tally.machines;
     const DeckModel d(machine.deck());
     for (const double share : {0.15, 1.0})
-      check_machine(d, share * machine.top_speed() * rpm, 8 + seed % 7, "machine " + std::to_string(seed), tally);
+      check_machine(d, share * machine.top_speed() * rpm, 8 + seed % 7,
+                    "machine " + std::to_string(seed), tally);
   }
   return tally;
 }
@@ -103,9 +117,12 @@ Tally campaign(unsigned first, unsigned machines) {
 }  // namespace
 
 TEST(Certificates, RandomMachinesLoseNoModeAndNoVerdictIsFalse) {
-  const char* wanted = std::getenv("WHIRL_CAMPAIGN");   // the long campaign: so many machines
+  const char* wanted = std::getenv("WHIRL_CAMPAIGN");  // the long campaign: so many machines
   const Tally t = campaign(1000, wanted ? static_cast<unsigned>(std::atoi(wanted)) : 25);
   EXPECT_EQ(t.certified, t.solved);
-  std::printf("%d machines, %d spectra (%d without equilibrium), %d certified, %d certain at all frequencies, %d unstable, %d divergences, %d recovered by the count\n",
-              t.machines, t.solved, t.without_equilibrium, t.certified, t.certain, t.unstable, t.diverging, t.recovered);
+  std::printf(
+      "%d machines, %d spectra (%d without equilibrium), %d certified, %d certain at all "
+      "frequencies, %d unstable, %d divergences, %d recovered by the count\n",
+      t.machines, t.solved, t.without_equilibrium, t.certified, t.certain, t.unstable, t.diverging,
+      t.recovered);
 }

@@ -51,7 +51,8 @@ TEST(Definiteness, CountsAsDenseEigenvaluesDo) {
   for (int trial = 0; trial < 200; ++trial) {
     const bool symmetric = trial % 2 == 0;
     la::BlockMatrix<6> K(s.pattern());
-    for (std::size_t k = 0; k < K.value_count(); ++k) K.data()[k] = normal(rng);
+    for (std::size_t k = 0; k < K.value_count(); ++k)
+      K.data()[k] = normal(rng);
     const double shift = 3.0 * std::abs(normal(rng));
     for (Index i = 0; i < s.nodes(); ++i) {
       if (symmetric)

@@ -14,7 +14,8 @@ using namespace whirl::tests;
 
 namespace {
 
-Equilibrium solve(const system::System& s, double Omega = 0, double load = 1, SteadyRotation running = {}) {
+Equilibrium solve(const system::System& s, double Omega = 0, double load = 1,
+                  SteadyRotation running = {}) {
   running.mean = Omega != 0;
   SteadySystem r(s, running);
   r.set_load(load);
@@ -23,8 +24,9 @@ Equilibrium solve(const system::System& s, double Omega = 0, double load = 1, St
 
 }  // namespace
 
-// Sag of the two-disk rotor: Timoshenko beam closed form (exact at nodes). Loads times 1e-4 and results times 1e4, so that the
-// geometric nonlinearity (slope^2 = 4e-6 at full load) drops below the tolerance.
+// Sag of the two-disk rotor: Timoshenko beam closed form (exact at nodes). Loads times 1e-4 and
+// results times 1e4, so that the geometric nonlinearity (slope^2 = 4e-6 at full load) drops below
+// the tolerance.
 TEST(Equilibrium, SagOfTheTwoDiskRotor) {
   for (int n : {6, 24}) {
     TwoDisk rotor(n);
@@ -44,7 +46,8 @@ TEST(Equilibrium, SagOfTheTwoDiskRotor) {
   }
 }
 
-// At full load the pins of a simply supported shaft carry exactly its weight, whatever the deflection.
+// At full load the pins of a simply supported shaft carry exactly its weight, whatever the
+// deflection.
 TEST(Equilibrium, ReactionsCarryTheWeight) {
   Rotor rotor;
   rotor.add_shaft(cylinder(0.05, 2.11e11, 8.12e10, 7810), 1.0, 8).pin(0, true).pin(1.0);
@@ -54,42 +57,48 @@ TEST(Equilibrium, ReactionsCarryTheWeight) {
   const double weight = 9.81 * 7810 * pi / 4 * 0.05 * 0.05 * 1.0;
   EXPECT_NEAR(e.reactions[6 * rotor.at(0) + 2], 0.5 * weight, 1e-9 * weight);
   EXPECT_NEAR(e.reactions[6 * rotor.at(1.0) + 2], 0.5 * weight, 1e-9 * weight);
-  // 5 w L^4/(384 EI) + w L^2/(8 kGA), kappa = 0.886306; nonlinear geometry changes slope^2 = 1e-8 of it
+  // 5 w L^4/(384 EI) + w L^2/(8 kGA), kappa = 0.886306; nonlinear geometry changes slope^2 = 1e-8
+  // of it
   EXPECT_NEAR(e.state.q[6 * rotor.at(0.5) + 2], -3.039219629e-05, 1e-8 * 3.04e-5);
-  EXPECT_NEAR(e.reactions[e.spin_holds.at(0)], 0.0, 1e-9);   // no torque is needed to keep turning
+  EXPECT_NEAR(e.reactions[e.spin_holds.at(0)], 0.0, 1e-9);  // no torque is needed to keep turning
 }
 
-// A cantilever under an end moment bends to an arc: x = EI/M sin(M L/EI), z = EI/M (1 - cos(M L/EI)). At 0.9 pi the split
-// element stays within its chart. Constant curvature is an exact state of the element but for the chord's quartic term, hence order 4.
+// A cantilever under an end moment bends to an arc: x = EI/M sin(M L/EI), z = EI/M (1 - cos(M
+// L/EI)). At 0.9 pi the split element stays within its chart. Constant curvature is an exact state
+// of the element but for the chord's quartic term, hence order 4.
 TEST(Equilibrium, EndMomentBendsToAnArcWithOrderFour) {
   const double L = 10, EI = 86900, M = 0.9 * pi * EI / L;
   double error[2];
   for (int k = 0; k < 2; ++k) {
     Rotor rotor;
     rotor.add_shaft(constants(1.77e6, 1.77e6, 8160, EI, 1), L, 8 << k).clamp(0);
-    rotor.b.add(elements::FixedLoad{Vec3::Zero(), Vec3(0, -M, 0), 0, nullptr}, {rotor.at(L)}, "moment");
+    rotor.b.add(elements::FixedLoad{Vec3::Zero(), Vec3(0, -M, 0), 0, nullptr}, {rotor.at(L)},
+                "moment");
     const system::System s = rotor.b.finalize();
     const Equilibrium e = solve(s);
     const Vec3 tip = s.node(rotor.at(L)).position + e.state.q.segment<3>(6 * rotor.at(L));
     const double r = EI / M;
     error[k] = (tip - Vec3(r * std::sin(L / r), 0, r * (1 - std::cos(L / r)))).norm();
-    EXPECT_NEAR(e.state.q[6 * rotor.at(L) + 4], -0.9 * pi, 1e-9);   // the tip's rotation is exact
+    EXPECT_NEAR(e.state.q[6 * rotor.at(L) + 4], -0.9 * pi, 1e-9);  // the tip's rotation is exact
     EXPECT_NEAR(e.reactions[4], M, 1e-8 * M);
   }
   EXPECT_LT(error[1], 1e-4 * L);
   EXPECT_NEAR(std::log2(error[0] / error[1]), 4.0, 0.1);
 }
 
-// Torsional wind-up far beyond a turn: T L/(GJ) = 8 pi; five spans of 1 m held laterally (buckling needs 40.8 rad).
+// Torsional wind-up far beyond a turn: T L/(GJ) = 8 pi; five spans of 1 m held laterally (buckling
+// needs 40.8 rad).
 TEST(Equilibrium, TorsionalWindUpOfFourTurns) {
   Rotor rotor;
   rotor.add_shaft(cylinder(0.02, 2.08e11, 8e10, 7850), 5.0, 10).clamp(0);
-  for (double x = 1; x < 5.5; x += 1) rotor.pin(x);
+  for (double x = 1; x < 5.5; x += 1)
+    rotor.pin(x);
   const double T = 6316.546817;
-  rotor.b.add(elements::FixedLoad{Vec3::Zero(), Vec3(T, 0, 0), 0, nullptr}, {rotor.at(5)}, "torque");
+  rotor.b.add(elements::FixedLoad{Vec3::Zero(), Vec3(T, 0, 0), 0, nullptr}, {rotor.at(5)},
+              "torque");
   const system::System s = rotor.b.finalize();
   const Equilibrium e = solve(s);
-  EXPECT_NEAR(e.state.q[6 * rotor.at(5) + 3], 25.13274123, 25.13 * 1e-9);   // the table's digits
+  EXPECT_NEAR(e.state.q[6 * rotor.at(5) + 3], 25.13274123, 25.13 * 1e-9);  // the table's digits
   EXPECT_NEAR(e.reactions[3], -T, 1e-9 * T);
   system::Workspace w = s.make_workspace();
   ASSERT_TRUE(s.evaluate_nodes(w, e.state.frames, 0, e.state.q, e.state.v, e.state.a));
@@ -106,7 +115,8 @@ TEST(Equilibrium, NothingToDo) {
   EXPECT_EQ(e.state.v[3], 500.0);
 }
 
-// A rotor driven at one end and loaded at the other winds up; the hold at its first node carries nothing when the torques balance.
+// A rotor driven at one end and loaded at the other winds up; the hold at its first node carries
+// nothing when the torques balance.
 TEST(Equilibrium, DriveAndLoadTorque) {
   TwoDisk rotor(6);
   elements::JointTorque drive, load;
@@ -119,14 +129,15 @@ TEST(Equilibrium, DriveAndLoadTorque) {
   const Equilibrium e = solve(s, 300.0);
   EXPECT_NEAR(e.state.q[6 * rotor.at(1.5) + 3], -300.0 * 1.5 / GJ, 1e-9 * 300.0 * 1.5 / GJ);
   EXPECT_NEAR(e.reactions[e.spin_holds.at(0)], 0.0, 1e-7);
-  const Equilibrium faster = solve(s, 400.0);   // 100 N m are missing
+  const Equilibrium faster = solve(s, 400.0);  // 100 N m are missing
   EXPECT_NEAR(faster.reactions[faster.spin_holds.at(0)], 100.0, 1e-7);
 }
 
 // What turns with the rotor has no part in the mean equilibrium.
 TEST(Equilibrium, UnbalanceIsAveragedAway) {
   TwoDisk rotor(6), plain(6);
-  for (TwoDisk* r : {&rotor, &plain}) r->b.set_gravity(Vec3(0, 0, -9.81));
+  for (TwoDisk* r : {&rotor, &plain})
+    r->b.set_gravity(Vec3(0, 0, -9.81));
   rotor.add_unbalance(0.5, 1e-3, 0.7);
   const system::System s = rotor.b.finalize(), p = plain.b.finalize();
   const Equilibrium a = solve(s, 300.0), b = solve(p, 300.0);
@@ -136,7 +147,9 @@ TEST(Equilibrium, UnbalanceIsAveragedAway) {
 
 TEST(Equilibrium, NamesWhatIsNotResisted) {
   Rotor rotor;
-  rotor.add_shaft(cylinder(0.05, 2.11e11, 8.12e10, 7810), 1.0, 4).add_bearing(0, 1e6, 1e6).add_bearing(1.0, 1e6, 1e6);
+  rotor.add_shaft(cylinder(0.05, 2.11e11, 8.12e10, 7810), 1.0, 4)
+      .add_bearing(0, 1e6, 1e6)
+      .add_bearing(1.0, 1e6, 1e6);
   rotor.b.set_gravity(Vec3(0, 0, -9.81));
   const system::System s = rotor.b.finalize();
   try {
@@ -144,7 +157,9 @@ TEST(Equilibrium, NamesWhatIsNotResisted) {
     FAIL() << "an axially free shaft has no unique equilibrium";
   } catch (const Error& e) {
     EXPECT_EQ(e.diagnostics().at(0).code, "E75");
-    EXPECT_NE(std::string(e.what()).find("nothing resists axial motion of shaft 'rotor'"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("nothing resists axial motion of shaft 'rotor'"),
+              std::string::npos)
+        << e.what();
   }
 }
 
@@ -178,18 +193,25 @@ TEST(Equilibrium, RollUpToAFullCircleAndTwoTurns) {
     }
     elements::GeneralBeamConstants c;
     const double l = L / n, Phi = 12 * EI / (1.77e6 * l * l);
-    c.length = l; c.EA_l = 1.77e6 / l; c.GJ_l = 8160 / l;
+    c.length = l;
+    c.EA_l = 1.77e6 / l;
+    c.GJ_l = 8160 / l;
     c.kz_def11 = c.kz_def22 = c.ky_def11 = c.ky_def22 = EI * (4 + Phi) / (l * (1 + Phi));
     c.kz_def12 = c.ky_def12 = EI * (2 - Phi) / (l * (1 + Phi));
     const double q = (1 + Phi) * (1 + Phi);
-    c.b11 = c.b22 = (2.0 / 15 + Phi / 6 + Phi * Phi / 12) / q; c.b12 = -(1.0 / 30 + Phi / 6 + Phi * Phi / 12) / q;
+    c.b11 = c.b22 = (2.0 / 15 + Phi / 6 + Phi * Phi / 12) / q;
+    c.b12 = -(1.0 / 30 + Phi / 6 + Phi * Phi / 12) / q;
     for (int i = 0; i < n; ++i)
-      b.add(elements::GeneralBeam(c, Vec3(l, 0, 0), Mat3::Identity(), Mat3::Identity()), {node[i], node[i + 1]}, "beams");
-    for (int k = 0; k < 6; ++k) b.hold(node[0], k);
-    b.add(elements::FixedLoad{Vec3::Zero(), Vec3(0, -two_pi * turns * EI / L, 0), 0, nullptr}, {node[n]}, "moment");
+      b.add(elements::GeneralBeam(c, Vec3(l, 0, 0), Mat3::Identity(), Mat3::Identity()),
+            {node[i], node[i + 1]}, "beams");
+    for (int k = 0; k < 6; ++k)
+      b.hold(node[0], k);
+    b.add(elements::FixedLoad{Vec3::Zero(), Vec3(0, -two_pi * turns * EI / L, 0), 0, nullptr},
+          {node[n]}, "moment");
     const system::System s = b.finalize();
     const Equilibrium e = solve(s);
     const Vec3 tip = s.node(node[n]).position + e.state.q.segment<3>(6 * node[n]);
-    EXPECT_LT(tip.norm(), 1e-9) << turns << " turns";   // every element bends alike: the polygon closes
+    EXPECT_LT(tip.norm(), 1e-9) << turns
+                                << " turns";  // every element bends alike: the polygon closes
   }
 }

@@ -1,4 +1,5 @@
-// All modes on supports whose coefficients depend on the frequency of the motion, against references that do not use Whirl's solver.
+// All modes on supports whose coefficients depend on the frequency of the motion, against
+// references that do not use Whirl's solver.
 #include <analysis/spectra/campbell.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <analysis/spectra/stability.hpp>
@@ -15,16 +16,23 @@ using namespace whirl;
 
 namespace {
 
-/// An isotropic support with cross coupling, at spin s and frequency w: F = -k r - c r' and kc turns r by a quarter, kyz = kc = -kzy.
-struct Coefficients { double k, c, kc; };
+/// An isotropic support with cross coupling, at spin s and frequency w: F = -k r - c r' and kc
+/// turns r by a quarter, kyz = kc = -kzy.
+struct Coefficients {
+  double k, c, kc;
+};
 using Support = std::function<Coefficients(double s, double w)>;
 
-std::string table(const char* name, const char* at, const std::vector<double>& spins, const std::vector<double>& w, const Support& f, const char* extrapolate = "error") {
+std::string table(const char* name, const char* at, const std::vector<double>& spins,
+                  const std::vector<double>& w, const Support& f,
+                  const char* extrapolate = "error") {
   std::string rows;
   for (const double s : spins)
     for (const double x : w) {
       const Coefficients v = f(s, x);
-      rows += fmt::format("[{:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}],\n", s, x / two_pi, v.k, v.k, v.kc, -v.kc, v.c, v.c);
+      rows +=
+          fmt::format("[{:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}],\n",
+                      s, x / two_pi, v.k, v.k, v.kc, -v.kc, v.c, v.c);
     }
   return fmt::format(R"([[bearing]]
 name = "{}"
@@ -34,10 +42,12 @@ extrapolate = "{}"
 columns = ["speed[rad/s]", "frequency[Hz]", "kyy[N/m]", "kzz[N/m]", "kyz[N/m]", "kzy[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
 rows = [
 {}]
-)", name, at, extrapolate, rows);
+)",
+                     name, at, extrapolate, rows);
 }
 
-/// The branch of m l^2 + c l + k - i sign kc = 0 with Im l > 0; sign 1: forward (y + i z turns with the spin), -1: backward.
+/// The branch of m l^2 + c l + k - i sign kc = 0 with Im l > 0; sign 1: forward (y + i z turns with
+/// the spin), -1: backward.
 Complex branch(double m, const Coefficients& v, int sign) {
   const Complex root = std::sqrt(Complex(v.c * v.c - 4 * m * v.k, 4 * m * sign * v.kc));
   const Complex a = (-v.c + root) / (2 * m), b = (-v.c - root) / (2 * m);
@@ -45,7 +55,8 @@ Complex branch(double m, const Coefficients& v, int sign) {
 }
 
 /// Every w in (0, top) at which Im l(w) falls through w: signs on a fine grid, then bisection.
-std::vector<Complex> scalar_modes(double m, const std::function<Coefficients(double)>& f, int sign, double top, int grid = 100000) {
+std::vector<Complex> scalar_modes(double m, const std::function<Coefficients(double)>& f, int sign,
+                                  double top, int grid = 100000) {
   std::vector<Complex> out;
   const auto gap = [&](double w) { return branch(m, f(w), sign).imag() - w; };
   double last = gap(1e-9 * top);
@@ -67,10 +78,13 @@ std::vector<Complex> scalar_modes(double m, const std::function<Coefficients(dou
 /// A mass m1 on k1, c1 standing on a pedestal m2, k2, c2.
 struct Chain {
   double m1, k1, c1, m2, k2, c2;
-  Complex D(double w) const { return 1.0 / (1.0 / Complex(k1, w * c1) + 1.0 / Complex(k2 - w * w * m2, w * c2)); }
+  Complex D(double w) const {
+    return 1.0 / (1.0 / Complex(k1, w * c1) + 1.0 / Complex(k2 - w * w * m2, w * c2));
+  }
   Coefficients at(double w) const {
     // at rest the limit: c1 k2^2 + c2 k1^2 over (k1 + k2)^2
-    return {D(w).real(), w > 0 ? D(w).imag() / w : (c1 * k2 * k2 + c2 * k1 * k1) / ((k1 + k2) * (k1 + k2)), 0.0};
+    return {D(w).real(),
+            w > 0 ? D(w).imag() / w : (c1 * k2 * k2 + c2 * k1 * k1) / ((k1 + k2) * (k1 + k2)), 0.0};
   }
   /// Its two modes as a system of two masses.
   std::array<Complex, 2> modes() const {
@@ -88,38 +102,46 @@ struct Chain {
 
 std::vector<double> grid(double last, int n) {
   std::vector<double> w;
-  for (int i = 0; i <= n; ++i) w.push_back(last * i / n);
+  for (int i = 0; i <= n; ++i)
+    w.push_back(last * i / n);
   return w;
 }
 void insert(std::vector<double>& w, double x) {
-  if (std::find(w.begin(), w.end(), x) == w.end()) w.insert(std::upper_bound(w.begin(), w.end(), x), x);
+  if (std::find(w.begin(), w.end(), x) == w.end())
+    w.insert(std::upper_bound(w.begin(), w.end(), x), x);
 }
 
 analysis::ModesOptions lateral(Index count) {
   analysis::ModesOptions o;
-  o.count = count; o.motion = analysis::Motion::lateral;
+  o.count = count;
+  o.motion = analysis::Motion::lateral;
   return o;
 }
 
 /// Each of `exact` is among the modes `copies` times, and nothing else is.
-void expect_modes(const std::vector<analysis::WhirlMode>& modes, const std::vector<Complex>& exact, int copies, double tolerance) {
+void expect_modes(const std::vector<analysis::WhirlMode>& modes, const std::vector<Complex>& exact,
+                  int copies, double tolerance) {
   EXPECT_EQ(modes.size(), exact.size() * static_cast<std::size_t>(copies));
   for (const Complex l : exact) {
     int found = 0;
-    for (const auto& m : modes) found += std::abs(m.lambda - l) < tolerance * std::abs(l) ? 1 : 0;
+    for (const auto& m : modes)
+      found += std::abs(m.lambda - l) < tolerance * std::abs(l) ? 1 : 0;
     EXPECT_EQ(found, copies) << l;
   }
 }
 
 constexpr Chain nearly_undamped{50, 8e6, 0, 20, 2e7, 0.2}, light{50, 8e6, 20, 20, 2e7, 10};
 
-/// Rows enough for the pole of the support at 1183.2 rad/s; the exact modes among them, where the table is then exact.
+/// Rows enough for the pole of the support at 1183.2 rad/s; the exact modes among them, where the
+/// table is then exact.
 std::vector<double> rows_of(const Chain& c) {
   std::vector<double> w = grid(1500, 150);
   const double pole = std::sqrt((c.k1 + c.k2) / c.m2), width = std::max(c.c2 / c.m2, 0.01);
   for (int k = -60; k <= 60; ++k)
     if (const double x = pole + width * std::sinh(0.15 * k); x > 1100 && x < 1300) insert(w, x);
-  for (const Complex l : scalar_modes(c.m1, [&](double x) { return c.at(x); }, 1, 1500)) insert(w, l.imag());
+  for (const Complex l : scalar_modes(
+           c.m1, [&](double x) { return c.at(x); }, 1, 1500))
+    insert(w, l.imag());
   return w;
 }
 
@@ -128,9 +150,12 @@ std::vector<double> rows_of(const Chain& c) {
 // One mass in the model, two modes in each plane: the second lives in the table alone.
 TEST(FrequencyModes, BothModesOfAMassOnAPedestal) {
   for (const Chain& c : {nearly_undamped, light}) {
-    const test::DeckModel a(test::lateral_mass(c.m1, "0 m/s^2", table("shaken", "mass", {0.0, 700.0}, rows_of(c), [&](double, double w) { return c.at(w); })));
+    const test::DeckModel a(test::lateral_mass(c.m1, "0 m/s^2",
+                                               table("shaken", "mass", {0.0, 700.0}, rows_of(c),
+                                                     [&](double, double w) { return c.at(w); })));
     analysis::Linearizer linear(a.built.system, a.running());
-    const std::vector<Complex> own = scalar_modes(c.m1, [&](double w) { return c.at(w); }, 1, 1500);
+    const std::vector<Complex> own = scalar_modes(
+        c.m1, [&](double w) { return c.at(w); }, 1, 1500);
     ASSERT_EQ(own.size(), 2u);
     const std::array<Complex, 2> chain = c.modes();
     for (const double Omega : {0.0, 40.0, 332.0, 700.0}) {
@@ -138,29 +163,37 @@ TEST(FrequencyModes, BothModesOfAMassOnAPedestal) {
       o.continued = true;
       const auto modes = analysis::whirl_modes(linear, Omega, o);
       expect_modes(modes, own, 2, 1e-9);
-      // The two-mass chain itself: coefficients at w describe a motion that neither grows nor decays. For one that does, K and C change with
-      // the decay rate too; to first order that divides the rate by 1 - K'/(2 m w), and the frequency changes with the square of the damping.
+      // The two-mass chain itself: coefficients at w describe a motion that neither grows nor
+      // decays. For one that does, K and C change with the decay rate too; to first order that
+      // divides the rate by 1 - K'/(2 m w), and the frequency changes with the square of the
+      // damping.
       for (std::size_t k = 0; k < 2; ++k) {
         const double w = own[k].imag(), h = 1e-5 * w, zeta = -own[k].real() / w;
         const double slope = (c.at(w + h).k - c.at(w - h).k) / (4 * h * c.m1 * w);
         EXPECT_NEAR(own[k].imag(), chain[k].imag(), zeta * zeta * w + 1e-10 * w);
-        EXPECT_NEAR(own[k].real() / (1 - slope), chain[k].real(), (zeta + 1e-6) * std::abs(chain[k].real()));
+        EXPECT_NEAR(own[k].real() / (1 - slope), chain[k].real(),
+                    (zeta + 1e-6) * std::abs(chain[k].real()));
         // The same from the table, whose slopes between rows are good to 1e-3.
         for (const auto& mode : modes)
           if (std::abs(mode.lambda - own[k]) < 1e-9 * w) {
-            EXPECT_LT(std::abs(mode.continued - chain[k]), zeta * zeta * w + 1e-3 * std::abs(chain[k].real()));
+            EXPECT_LT(std::abs(mode.continued - chain[k]),
+                      zeta * zeta * w + 1e-3 * std::abs(chain[k].real()));
           }
       }
     }
   }
 }
 
-// Undamped: K(w) = m w^2 with K = Re D alone, both planes. Near the pole K also rises through m w^2; that is no critical speed.
+// Undamped: K(w) = m w^2 with K = Re D alone, both planes. Near the pole K also rises through m
+// w^2; that is no critical speed.
 TEST(FrequencyModes, UndampedCriticalSpeedsOfAMassOnAPedestal) {
-  const test::DeckModel a(test::lateral_mass(light.m1, "0 m/s^2", table("shaken", "mass", {0.0, 1500.0}, rows_of(light), [](double, double w) { return light.at(w); })));
+  const test::DeckModel a(test::lateral_mass(light.m1, "0 m/s^2",
+                                             table("shaken", "mass", {0.0, 1500.0}, rows_of(light),
+                                                   [](double, double w) { return light.at(w); })));
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::CriticalOptions o;
-  o.max_speed = 1450; o.motion = analysis::Motion::lateral;
+  o.max_speed = 1450;
+  o.motion = analysis::Motion::lateral;
   std::vector<double> exact;
   int rising = 0;
   double last = 1;
@@ -170,7 +203,8 @@ TEST(FrequencyModes, UndampedCriticalSpeedsOfAMassOnAPedestal) {
     const double now = gap(high);
     rising += last <= 0 && now > 0;
     if (last > 0 && now <= 0) {
-      for (int k = 0; k < 60; ++k) (gap(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
+      for (int k = 0; k < 60; ++k)
+        (gap(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
       exact.push_back(high);
     }
     last = now;
@@ -179,54 +213,74 @@ TEST(FrequencyModes, UndampedCriticalSpeedsOfAMassOnAPedestal) {
   ASSERT_EQ(rising, 1);
   const auto found = analysis::critical_speeds(linear, o);
   ASSERT_EQ(found.size(), 4u);
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(found[k].speed, exact[k / 2], 1e-6 * exact[k / 2]);   // rows lie 0.05 rad/s from the second
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_NEAR(found[k].speed, exact[k / 2],
+                1e-6 * exact[k / 2]);  // rows lie 0.05 rad/s from the second
 }
 
-// Cross coupling, stiffness and damping that go up and down with frequency, so that one mass has many modes: exactly those that the
-// equation of y + i z has, forward and backward.
+// Cross coupling, stiffness and damping that go up and down with frequency, so that one mass has
+// many modes: exactly those that the equation of y + i z has, forward and backward.
 TEST(FrequencyModes, UnsymmetricTableHasExactlyTheModesOfItsEquation) {
   constexpr double m = 50, top = 1270;
   const Support f = [](double s, double w) {
-    return Coefficients{m * w * w * (1 + 0.1 * std::sin(w / 30)) + 2e5, 2e3 + 1.5e3 * std::cos(w / 60), (0.5 + s / 400) * 8e5 * std::sin(w / 37)};
+    return Coefficients{m * w * w * (1 + 0.1 * std::sin(w / 30)) + 2e5,
+                        2e3 + 1.5e3 * std::cos(w / 60), (0.5 + s / 400) * 8e5 * std::sin(w / 37)};
   };
   for (const double s : {100.0, 400.0}) {
     std::vector<Complex> exact;
     for (const int sign : {1, -1})
-      for (const Complex l : scalar_modes(m, [&](double w) { return f(s, w); }, sign, top)) exact.push_back(l);
+      for (const Complex l : scalar_modes(
+               m, [&](double w) { return f(s, w); }, sign, top))
+        exact.push_back(l);
     ASSERT_GE(exact.size(), 12u);
     std::vector<double> w = grid(top, 635);
-    for (const Complex l : exact) insert(w, l.imag());   // there the table is exact
-    const test::DeckModel a(test::lateral_mass(m, "0 m/s^2", table("shaken", "mass", {0.0, 100.0, 400.0}, w, f, "hold")));
+    for (const Complex l : exact)
+      insert(w, l.imag());  // there the table is exact
+    const test::DeckModel a(test::lateral_mass(
+        m, "0 m/s^2", table("shaken", "mass", {0.0, 100.0, 400.0}, w, f, "hold")));
     analysis::Linearizer linear(a.built.system, a.running());
     analysis::ModesOptions o = lateral(0);
-    o.max_frequency = 1.5 * top;   // beyond the table nothing: held there, both planes stay below
+    o.max_frequency = 1.5 * top;  // beyond the table nothing: held there, both planes stay below
     const auto modes = analysis::whirl_modes(linear, s, o);
     expect_modes(modes, exact, 1, 1e-9);
     for (const auto& mode : modes) {
-      const bool forward = std::abs(mode.lambda - branch(m, f(s, mode.frequency), 1)) < 1e-9 * mode.frequency;
-      EXPECT_EQ(mode.direction, forward ? analysis::Direction::forward : analysis::Direction::backward);
+      const bool forward =
+          std::abs(mode.lambda - branch(m, f(s, mode.frequency), 1)) < 1e-9 * mode.frequency;
+      EXPECT_EQ(mode.direction,
+                forward ? analysis::Direction::forward : analysis::Direction::backward);
     }
     // The least of them, by number.
     const auto least = analysis::whirl_modes(linear, s, lateral(5));
     ASSERT_EQ(least.size(), 5u);
     std::vector<double> size;
-    for (const Complex l : exact) size.push_back(std::abs(l));
+    for (const Complex l : exact)
+      size.push_back(std::abs(l));
     std::sort(size.begin(), size.end());
-    for (const auto& mode : least) EXPECT_LT(std::abs(mode.lambda), size[5] * (1 - 1e-6));
+    for (const auto& mode : least)
+      EXPECT_LT(std::abs(mode.lambda), size[5] * (1 - 1e-6));
   }
 }
 
-// Cross coupling kc(s, w) = s a b(w) that acts near the mode's own frequency alone: at the frequency of the spin there is next to
-// none. Onset where kc = w0 c at w0 = sqrt(k/m): s = w0 c/a.
+// Cross coupling kc(s, w) = s a b(w) that acts near the mode's own frequency alone: at the
+// frequency of the spin there is next to none. Onset where kc = w0 c at w0 = sqrt(k/m): s = w0 c/a.
 TEST(FrequencyModes, InstabilityAtItsOwnFrequencyOnly) {
   constexpr double m = 50, k = 8e6, c = 2e3, a = 1e3, w0 = 400;
-  const Support f = [](double s, double w) { return Coefficients{k, c, s * a * std::exp(-std::pow((w - w0) / 40, 2))}; };
-  const test::DeckModel d(test::lateral_mass(m, "0 m/s^2", table("seal", "mass", {0.0, 1000.0}, grid(1200, 120), f)));
+  const Support f = [](double s, double w) {
+    return Coefficients{k, c, s * a * std::exp(-std::pow((w - w0) / 40, 2))};
+  };
+  const test::DeckModel d(
+      test::lateral_mass(m, "0 m/s^2", table("seal", "mass", {0.0, 1000.0}, grid(1200, 120), f)));
   analysis::Linearizer linear(d.built.system, d.running());
   const double onset = w0 * c / a;
-  ASSERT_LT(branch(m, f(onset, onset), 1).real(), -0.9 * c / (2 * m));   // with synchronous coefficients: as stable as without
+  ASSERT_LT(branch(m, f(onset, onset), 1).real(),
+            -0.9 * c / (2 * m));  // with synchronous coefficients: as stable as without
   analysis::StabilityOptions o;
-  o.min_speed = 100; o.max_speed = 1000; o.grid = 10; o.modes = 6; o.motion = analysis::Motion::lateral; o.all = true;
+  o.min_speed = 100;
+  o.max_speed = 1000;
+  o.grid = 10;
+  o.modes = 6;
+  o.motion = analysis::Motion::lateral;
+  o.all = true;
   const auto r = analysis::find_instability(linear, o);
   EXPECT_TRUE(r.stable_at_start);
   ASSERT_EQ(r.onsets.size(), 1u);
@@ -236,7 +290,7 @@ TEST(FrequencyModes, InstabilityAtItsOwnFrequencyOnly) {
 }
 
 namespace {
-constexpr Chain pedestal{0, 1e8, 30, 60, 1.5e8, 15};   // m1: the rotor's
+constexpr Chain pedestal{0, 1e8, 30, 60, 1.5e8, 15};  // m1: the rotor's
 
 std::string overhung(const std::string& bearings, double loss = 0) {
   return fmt::format(R"(format = 1
@@ -258,7 +312,9 @@ name = "thrust"
 at = "de:start"
 type = "rigid"
 directions = ["x"]
-)", loss) + bearings;
+)",
+                     loss) +
+         bearings;
 }
 
 /// Bearings of the rotor above on pedestals that are masses (first), or in tables (second).
@@ -267,9 +323,11 @@ std::pair<std::string, std::string> on_pedestals() {
   // The pole at 2041 rad/s lies inside.
   std::vector<double> w = grid(3000, 100);
   const double pole = std::sqrt((pedestal.k1 + pedestal.k2) / pedestal.m2);
-  for (int k = -66; k <= 66; ++k) insert(w, pole + 0.4 * std::sinh(0.12 * k));
+  for (int k = -66; k <= 66; ++k)
+    insert(w, pole + 0.4 * std::sinh(0.12 * k));
   for (const auto& [name, at] : {std::pair{"first", "de:end"}, std::pair{"second", "span:end"}}) {
-    masses += fmt::format(R"([[bearing]]
+    masses +=
+        fmt::format(R"([[bearing]]
 name = "{0}"
 at = "{6}"
 type = "linear"
@@ -278,34 +336,42 @@ kzz = "{1} N/m"
 cyy = "{2} N.s/m"
 czz = "{2} N.s/m"
 support = {{ mass = "{3} kg", kyy = "{4} N/m", kzz = "{4} N/m", cyy = "{5} N.s/m", czz = "{5} N.s/m" }}
-)", name, pedestal.k1, pedestal.c1, pedestal.m2, pedestal.k2, pedestal.c2, at);
+)",
+                    name, pedestal.k1, pedestal.c1, pedestal.m2, pedestal.k2, pedestal.c2, at);
     tables += table(name, at, {0.0, 1000.0}, w, [](double, double x) { return pedestal.at(x); });
   }
   return {masses, tables};
 }
 }  // namespace
 
-// A gyroscopic rotor on two bearings with pedestals, once with the pedestals as masses, once within tables: the same Campbell diagram and
-// the same damped critical speeds.
+// A gyroscopic rotor on two bearings with pedestals, once with the pedestals as masses, once within
+// tables: the same Campbell diagram and the same damped critical speeds.
 TEST(FrequencyModes, RotorOnPedestalsInTablesIsTheRotorOnPedestals) {
   const auto [masses, tables] = on_pedestals();
   const test::DeckModel a(overhung(masses)), b(overhung(tables));
   analysis::Linearizer exact(a.built.system, a.running()), reduced(b.built.system, b.running());
   analysis::CampbellOptions o;
-  for (int k = 0; k <= 4; ++k) o.speeds.push_back(200.0 * k);
+  for (int k = 0; k <= 4; ++k)
+    o.speeds.push_back(200.0 * k);
   o.track.modes = lateral(0);
   o.track.modes.max_frequency = 2900;
-  const auto lines = analysis::campbell(exact, o).lines, found = analysis::campbell(reduced, o).lines;
+  const auto lines = analysis::campbell(exact, o).lines,
+             found = analysis::campbell(reduced, o).lines;
   ASSERT_GE(lines.size(), 10u);
   ASSERT_EQ(found.size(), lines.size());
   for (std::size_t l = 0; l < lines.size(); ++l) {
     EXPECT_EQ(found[l].label, lines[l].label);
     for (std::size_t k = 0; k < o.speeds.size(); ++k)
-      EXPECT_NEAR(found[l].frequency[k], lines[l].frequency[k], 1e-4 * lines[l].frequency[k]) << l << " at " << o.speeds[k];
+      EXPECT_NEAR(found[l].frequency[k], lines[l].frequency[k], 1e-4 * lines[l].frequency[k])
+          << l << " at " << o.speeds[k];
   }
   analysis::CriticalOptions c;
-  c.max_speed = 1000; c.grid = 10; c.damped = true; c.motion = analysis::Motion::lateral;
-  const auto speeds = analysis::critical_speeds(exact, c), same = analysis::critical_speeds(reduced, c);
+  c.max_speed = 1000;
+  c.grid = 10;
+  c.damped = true;
+  c.motion = analysis::Motion::lateral;
+  const auto speeds = analysis::critical_speeds(exact, c),
+             same = analysis::critical_speeds(reduced, c);
   ASSERT_GE(speeds.size(), 3u);
   ASSERT_EQ(same.size(), speeds.size());
   for (std::size_t k = 0; k < speeds.size(); ++k) {
@@ -321,13 +387,18 @@ TEST(FrequencyModes, HystereticShaftOnPedestalsInTables) {
   analysis::Linearizer exact(a.built.system, a.running()), reduced(b.built.system, b.running());
   analysis::ModesOptions o = lateral(0);
   o.max_frequency = 2900;
-  const auto modes = analysis::whirl_modes(exact, 400.0, o), found = analysis::whirl_modes(reduced, 400.0, o);
+  const auto modes = analysis::whirl_modes(exact, 400.0, o),
+             found = analysis::whirl_modes(reduced, 400.0, o);
   ASSERT_GE(modes.size(), 10u);
   ASSERT_EQ(found.size(), modes.size());
-  for (std::size_t k = 0; k < modes.size(); ++k) EXPECT_NEAR(found[k].frequency, modes[k].frequency, 2e-4 * modes[k].frequency);   // the square of the damping, which is larger here
+  for (std::size_t k = 0; k < modes.size(); ++k)
+    EXPECT_NEAR(found[k].frequency, modes[k].frequency,
+                2e-4 * modes[k].frequency);  // the square of the damping, which is larger here
   // The first two bend the shaft most: the loss factor is in their damping.
   const test::DeckModel without(overhung(tables));
   analysis::Linearizer free(without.built.system, without.running());
   const auto plain = analysis::whirl_modes(free, 400.0, o);
-  for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(found[k].damping_ratio - plain[k].damping_ratio, modes[k].damping_ratio, 0.1 * modes[k].damping_ratio);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_NEAR(found[k].damping_ratio - plain[k].damping_ratio, modes[k].damping_ratio,
+                0.1 * modes[k].damping_ratio);
 }

@@ -1,7 +1,9 @@
-// Bearings tabulated against frequency, in every analysis that has one. Reference: a mass m on a spring k1 and damper c1 that stand on
-// a pedestal m2, k2, c2. Seen from the mass the support is the dynamic stiffness
+// Bearings tabulated against frequency, in every analysis that has one. Reference: a mass m on a
+// spring k1 and damper c1 that stand on a pedestal m2, k2, c2. Seen from the mass the support is
+// the dynamic stiffness
 //   D(w) = 1/(1/(k1 + i w c1) + 1/(k2 - w^2 m2 + i w c2)),   K(w) = Re D,  C(w) = Im D/w,
-// so the response to F exp(i w t) is F/(D - m w^2), and without dampers the frequencies are the roots of m w^2 = D(w).
+// so the response to F exp(i w t) is F/(D - m w^2), and without dampers the frequencies are the
+// roots of m w^2 = D(w).
 #include <analysis/response/frequency_response.hpp>
 #include <analysis/response/unbalance.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
@@ -23,20 +25,26 @@ namespace {
 constexpr double m = 50, k1 = 8e6, m2 = 20, k2 = 2e7, e = 2e-5;
 struct Support {
   double c1, c2;
-  Complex D(double w) const { return 1.0 / (1.0 / Complex(k1, w * c1) + 1.0 / Complex(k2 - w * w * m2, w * c2)); }
+  Complex D(double w) const {
+    return 1.0 / (1.0 / Complex(k1, w * c1) + 1.0 / Complex(k2 - w * w * m2, w * c2));
+  }
 };
 
 /// w: rad/s.
-std::string deck_text(const Support& s, const std::vector<double>& w, const char* extrapolate = "error") {
+std::string deck_text(const Support& s, const std::vector<double>& w,
+                      const char* extrapolate = "error") {
   std::string rows;
   for (double rpm : {0.0, 6000.0})
     for (double x : w) {
       const Complex d = s.D(x);
       // C at w = 0 is the limit: c1 k2^2 + c2 k1^2 over (k1 + k2)^2
-      const double C = x > 0 ? d.imag() / x : (s.c1 * k2 * k2 + s.c2 * k1 * k1) / ((k1 + k2) * (k1 + k2));
-      rows += fmt::format("[{}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}],\n", rpm, x / two_pi, d.real(), d.real(), C, C);
+      const double C =
+          x > 0 ? d.imag() / x : (s.c1 * k2 * k2 + s.c2 * k1 * k1) / ((k1 + k2) * (k1 + k2));
+      rows += fmt::format("[{}, {:.17g}, {:.17g}, {:.17g}, {:.17g}, {:.17g}],\n", rpm, x / two_pi,
+                          d.real(), d.real(), C, C);
     }
-  return test::lateral_mass(m, "0 m/s^2", fmt::format(R"([[unbalance]]
+  return test::lateral_mass(m, "0 m/s^2",
+                            fmt::format(R"([[unbalance]]
 at = "mass"
 amount = "{:.17g} kg.m"
 [[bearing]]
@@ -47,12 +55,14 @@ extrapolate = "{}"
 columns = ["speed[rpm]", "frequency[Hz]", "kyy[N/m]", "kzz[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
 rows = [
 {}]
-)", m * e, extrapolate, rows));
+)",
+                                        m * e, extrapolate, rows));
 }
 
 std::vector<double> grid(double last, int n) {
   std::vector<double> w;
-  for (int i = 0; i <= n; ++i) w.push_back(last * i / n);
+  for (int i = 0; i <= n; ++i)
+    w.push_back(last * i / n);
   return w;
 }
 
@@ -91,8 +101,8 @@ TEST(FrequencyTable, UnbalanceAtTheFrequencyOfTheSpin) {
   }
 }
 
-// Undamped: the root of m w^2 = D(w), found by bisection; the cubic through a grid of 5 rad/s is exact to 1e-8 there. Coefficients
-// at the frequency of the spin would put it more than 1 % off.
+// Undamped: the root of m w^2 = D(w), found by bisection; the cubic through a grid of 5 rad/s is
+// exact to 1e-8 there. Coefficients at the frequency of the spin would put it more than 1 % off.
 TEST(FrequencyTable, ModesAtTheirOwnFrequency) {
   const test::DeckModel a(deck_text(undamped, grid(600, 120)));
   double low = 100, high = 600;
@@ -102,17 +112,20 @@ TEST(FrequencyTable, ModesAtTheirOwnFrequency) {
   }
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::ModesOptions o;
-  o.count = 6; o.motion = analysis::Motion::lateral;
+  o.count = 6;
+  o.motion = analysis::Motion::lateral;
   for (double Omega : {40.0, 600.0}) {
     const auto modes = analysis::whirl_modes(linear, Omega, o);
-    ASSERT_EQ(modes.size(), 2u);   // one a plane
-    for (const auto& mode : modes) EXPECT_NEAR(mode.frequency, low, 1e-7 * low) << Omega;
+    ASSERT_EQ(modes.size(), 2u);  // one a plane
+    for (const auto& mode : modes)
+      EXPECT_NEAR(mode.frequency, low, 1e-7 * low) << Omega;
     const double synchronous = std::sqrt(undamped.D(Omega).real() / m);
     EXPECT_GT(std::abs(synchronous - low), 0.01 * low);
   }
 }
 
-// Overdamped: the roots of m l^2 + C(0) l + K(0), C(0) and K(0) those at zero frequency; a table that begins at 5 rad/s leaves those at the spin.
+// Overdamped: the roots of m l^2 + C(0) l + K(0), C(0) and K(0) those at zero frequency; a table
+// that begins at 5 rad/s leaves those at the spin.
 TEST(FrequencyTable, RealRootsAtZeroFrequency) {
   constexpr Support heavy{3e5, 4e5};
   for (const bool covered : {true, false}) {
@@ -120,22 +133,28 @@ TEST(FrequencyTable, RealRootsAtZeroFrequency) {
     if (!covered) w.erase(w.begin());
     const test::DeckModel a(deck_text(heavy, w));
     const double Omega = 300.0, at = covered ? 0.0 : Omega;
-    const double K = heavy.D(at).real(), C = covered ? (heavy.c1 * k2 * k2 + heavy.c2 * k1 * k1) / ((k1 + k2) * (k1 + k2)) : heavy.D(Omega).imag() / Omega;
+    const double K = heavy.D(at).real(),
+                 C = covered ? (heavy.c1 * k2 * k2 + heavy.c2 * k1 * k1) / ((k1 + k2) * (k1 + k2))
+                             : heavy.D(Omega).imag() / Omega;
     const double root = std::sqrt(C * C - 4 * m * K);
     ASSERT_GT(root, 0.0);
     analysis::Linearizer linear(a.built.system, a.running());
     analysis::ModesOptions o;
-    o.count = 8; o.motion = analysis::Motion::lateral; o.real_roots = true;
+    o.count = 8;
+    o.motion = analysis::Motion::lateral;
+    o.real_roots = true;
     const auto modes = analysis::whirl_modes(linear, Omega, o);
     for (const double exact : {(-C + root) / (2 * m), (-C - root) / (2 * m)}) {
       int found = 0;
-      for (const auto& mode : modes) found += std::abs(mode.lambda - exact) < 1e-9 * std::abs(exact) ? 1 : 0;
-      EXPECT_EQ(found, 2) << exact;   // one a plane
+      for (const auto& mode : modes)
+        found += std::abs(mode.lambda - exact) < 1e-9 * std::abs(exact) ? 1 : 0;
+      EXPECT_EQ(found, 2) << exact;  // one a plane
     }
   }
 }
 
-// Damped: lambda^2 m + lambda C(w) + K(w) = 0 at w = Im lambda, solved here by iteration on the exact coefficients.
+// Damped: lambda^2 m + lambda C(w) + K(w) = 0 at w = Im lambda, solved here by iteration on the
+// exact coefficients.
 TEST(FrequencyTable, DampedModesAtTheirOwnFrequency) {
   const test::DeckModel a(deck_text(damped, grid(600, 120)));
   double w = 300;
@@ -147,8 +166,10 @@ TEST(FrequencyTable, DampedModesAtTheirOwnFrequency) {
   }
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::ModesOptions o;
-  o.count = 6; o.motion = analysis::Motion::lateral;
-  for (const auto& mode : analysis::whirl_modes(linear, 100.0, o)) EXPECT_LT(std::abs(mode.lambda - lambda), 1e-6 * std::abs(lambda));
+  o.count = 6;
+  o.motion = analysis::Motion::lateral;
+  for (const auto& mode : analysis::whirl_modes(linear, 100.0, o))
+    EXPECT_LT(std::abs(mode.lambda - lambda), 1e-6 * std::abs(lambda));
 }
 
 TEST(FrequencyTable, StaticsAndMotionsTakeTheSynchronousValues) {
@@ -169,7 +190,8 @@ TEST(FrequencyTable, UncoveredFrequencyIsAnError) {
   const test::DeckModel a(deck_text(undamped, grid(200, 4)));
   analysis::Linearizer linear(a.built.system, a.running());
   analysis::ModesOptions o;
-  o.count = 6; o.motion = analysis::Motion::lateral;
+  o.count = 6;
+  o.motion = analysis::Motion::lateral;
   try {
     analysis::whirl_modes(linear, 40.0, o);
     FAIL();

@@ -45,7 +45,9 @@ struct CountedPeaks final : analysis::Observer {
 /// The largest amplitude of the dense output itself, looked at 100 times a step.
 struct DenseSearch final : analysis::Observer {
   explicit DenseSearch(std::vector<analysis::Point> p)
-      : points(std::move(p)), amplitude(points.size()), spin(points.size()) {}
+      : points(std::move(p)),
+        amplitude(points.size()),
+        spin(points.size()) {}
   void step(analysis::StepAccess& s) override {
     for (int k = 0; k <= 100; ++k) {
       const analysis::Snapshot& now = s.at(s.t0() + (s.t1() - s.t0()) * k / 100);
@@ -140,7 +142,8 @@ TEST(Observers, RowsOutsideTheWindowCostNothing) {
   EXPECT_GT(t.next(), 1e4);
   EXPECT_LE(t.next(), 1e4 + 2e-9);
   analysis::Ticker slow(0.25, 0.1), fast(0.25, 0.1);
-  while (slow.next() <= 7.05) slow.advance();
+  while (slow.next() <= 7.05)
+    slow.advance();
   fast.pass(7.05);
   EXPECT_EQ(slow.count(), fast.count());
   fast.pass(3.0);  // never back

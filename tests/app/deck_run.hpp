@@ -25,11 +25,13 @@ struct Columns {
     std::string line;
     std::getline(in, line);
     std::istringstream head(line);
-    for (std::string name; std::getline(head, name, ',');) names.push_back(name);
+    for (std::string name; std::getline(head, name, ',');)
+      names.push_back(name);
     while (std::getline(in, line)) {
       std::istringstream cells(line);
       rows.emplace_back();
-      for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(number(cell));
+      for (std::string cell; std::getline(cells, cell, ',');)
+        rows.back().push_back(number(cell));
     }
   }
   static double number(const std::string& cell) {
@@ -44,10 +46,13 @@ struct Columns {
   }
   std::map<std::string, double> named(const std::vector<double>& row) const {
     std::map<std::string, double> out;
-    for (std::size_t k = 0; k < names.size() && k < row.size(); ++k) out[names[k]] = row[k];
+    for (std::size_t k = 0; k < names.size() && k < row.size(); ++k)
+      out[names[k]] = row[k];
     return out;
   }
-  std::map<std::string, double> last() const { return rows.empty() ? std::map<std::string, double>{} : named(rows.back()); }
+  std::map<std::string, double> last() const {
+    return rows.empty() ? std::map<std::string, double>{} : named(rows.back());
+  }
   /// Mean of each column over the rows whose first cell is in [from, to).
   std::map<std::string, double> means(double from, double to) const {
     std::vector<double> sum(names.size(), 0.0);
@@ -55,9 +60,11 @@ struct Columns {
     for (const auto& row : rows) {
       if (row.size() != names.size() || row[0] < from - 1e-9 || row[0] >= to - 1e-9) continue;
       ++count;
-      for (std::size_t k = 0; k < row.size(); ++k) sum[k] += row[k];
+      for (std::size_t k = 0; k < row.size(); ++k)
+        sum[k] += row[k];
     }
-    for (double& x : sum) x /= count;
+    for (double& x : sum)
+      x /= count;
     return named(sum);
   }
 };
@@ -90,11 +97,15 @@ struct DeckRun {
  private:
   void make_folder() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder = std::filesystem::temp_directory_path() / ("whirl_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" + std::to_string(::getpid()));
+    folder = std::filesystem::temp_directory_path() /
+             ("whirl_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" +
+              std::to_string(::getpid()));
     std::filesystem::create_directories(folder);
   }
   void run(const std::string& deck) {
-    const int status = std::system(("cd '" + folder.string() + "' && '" WHIRL_EXE "' run '" + deck + "' -o r >log.txt 2>&1 </dev/null").c_str());
+    const int status = std::system(("cd '" + folder.string() + "' && '" WHIRL_EXE "' run '" + deck +
+                                    "' -o r >log.txt 2>&1 </dev/null")
+                                       .c_str());
     exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     std::ostringstream text;
     text << std::ifstream(folder / "log.txt").rdbuf();

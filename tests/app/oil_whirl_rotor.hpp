@@ -4,7 +4,8 @@
 
 namespace whirl::test {
 
-/// Rotor of Friswell, Penny, Garvey & Lees, Dynamics of Rotating Machines, 2010, example 5.9.6: two disks, two short bearings with 525 N each.
+/// Rotor of Friswell, Penny, Garvey & Lees, Dynamics of Rotating Machines, 2010, example 5.9.6: two
+/// disks, two short bearings with 525 N each.
 inline std::string oil_whirl_rotor(const std::string& steps = {}) {
   const std::string film = R"(type = "short_journal"
 diameter = "100 mm"
@@ -56,7 +57,8 @@ at = "a:start"
 [[bearing]]
 name = "DE"
 at = "a:start"
-)" + film + "[[bearing]]\nname = \"NDE\"\nat = \"c:end\"\n" + film + steps;
+)" + film +
+         "[[bearing]]\nname = \"NDE\"\nat = \"c:end\"\n" + film + steps;
 }
 
 }  // namespace whirl::test

@@ -1,4 +1,5 @@
-// axial_force pulls at the ends of a shaft whatever it does; axial_preload is a force only where its supports balance it.
+// axial_force pulls at the ends of a shaft whatever it does; axial_preload is a force only where
+// its supports balance it.
 #include "deck_run.hpp"
 
 #include <core/types.hpp>
@@ -11,7 +12,8 @@ using test::DeckRun;
 
 namespace {
 
-/// A slender shaft of 1 m, 20 mm thick, hinged at both ends; right: directions held at the right end; key: of the shaft.
+/// A slender shaft of 1 m, 20 mm thick, hinged at both ends; right: directions held at the right
+/// end; key: of the shaft.
 std::string deck(const std::string& right, const std::string& key) {
   return R"(format = 1
 [model]
@@ -24,7 +26,8 @@ density = "7800 kg/m^3"
 [[shaft]]
 name = "s"
 material = "bar"
-)" + key + R"(columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+)" + key +
+         R"(columns = ["name", "length[mm]", "od[mm]", "min_elements"]
 rows = [["a", 1000, 20, 12]]
 [[bearing]]
 name = "L"
@@ -35,7 +38,8 @@ directions = ["x", "y", "z"]
 name = "R"
 at = "a:end"
 type = "rigid"
-directions = )" + right + R"(
+directions = )" +
+         right + R"(
 [[step]]
 name = "pull"
 type = "static"
@@ -50,25 +54,30 @@ report = false
 }
 
 struct Result {
-  double least, largest, thrust, frequency;   ///< axial force along the shaft and at the left support, N; first frequency, Hz
+  double least, largest, thrust,
+      frequency;  ///< axial force along the shaft and at the left support, N; first frequency, Hz
   std::string log;
 };
 
 Result run(const std::string& right, const std::string& key) {
   const DeckRun d(deck(right, key));
   EXPECT_EQ(d.exit, 0) << d.log;
-  const Columns sections = d.csv("pull_sections.csv"), modes = d.csv("modes_modes.csv"), supports = d.csv("pull_supports.csv");
-  Result r{infinity, -infinity, supports.rows.at(0).at(supports.column("F_x [N]")), modes.rows.at(0).at(modes.column("frequency [Hz]")), d.log};
+  const Columns sections = d.csv("pull_sections.csv"), modes = d.csv("modes_modes.csv"),
+                supports = d.csv("pull_supports.csv");
+  Result r{infinity, -infinity, supports.rows.at(0).at(supports.column("F_x [N]")),
+           modes.rows.at(0).at(modes.column("frequency [Hz]")), d.log};
   for (const auto& row : sections.rows) {
     const double N = row[sections.column("N [N]")];
-    r.least = std::min(r.least, N); r.largest = std::max(r.largest, N);
+    r.least = std::min(r.least, N);
+    r.largest = std::max(r.largest, N);
   }
   return r;
 }
 
 const std::string sliding = "[\"y\", \"z\"]", held = "[\"x\", \"y\", \"z\"]";
 constexpr double P = 5000.0;
-// hinged: w^2 = w0^2 (1 + P/Pcr), Pcr = pi^2 EI/L^2. Shear and rotary inertia of this shaft change w0 by 2e-4 and the ratio by less
+// hinged: w^2 = w0^2 (1 + P/Pcr), Pcr = pi^2 EI/L^2. Shear and rotary inertia of this shaft change
+// w0 by 2e-4 and the ratio by less
 const double critical = pi * pi * 200e9 * pi / 64 * std::pow(0.02, 4);
 const double stiffened = std::sqrt(1.0 + P / critical), softened = std::sqrt(1.0 - P / critical);
 
@@ -76,10 +85,11 @@ const double stiffened = std::sqrt(1.0 + P / critical), softened = std::sqrt(1.0
 
 TEST(AxialForce, StaysWhateverTheShaftDoes) {
   const double f0 = run(sliding, "").frequency;
-  const Result pulled = run(sliding, "axial_force = \"5 kN\"\n"), pushed = run(sliding, "axial_force = \"-5 kN\"\n");
+  const Result pulled = run(sliding, "axial_force = \"5 kN\"\n"),
+               pushed = run(sliding, "axial_force = \"-5 kN\"\n");
   EXPECT_NEAR(pulled.least, P, 1e-6 * P);
   EXPECT_NEAR(pulled.largest, P, 1e-6 * P);
-  EXPECT_NEAR(pulled.thrust, 0.0, 1e-6 * P);   // the two forces are in balance
+  EXPECT_NEAR(pulled.thrust, 0.0, 1e-6 * P);  // the two forces are in balance
   EXPECT_NEAR(pushed.least, -P, 1e-6 * P);
   EXPECT_NEAR(pulled.frequency / f0, stiffened, 1e-3);
   EXPECT_NEAR(pushed.frequency / f0, softened, 1e-3);
@@ -96,13 +106,16 @@ TEST(AxialForce, OfAPreloadIsBalancedByTheSupports) {
   const Result slides = run(sliding, "axial_preload = \"5 kN\"\n");
   EXPECT_NEAR(slides.largest, 0.0, 1e-3);
   EXPECT_NEAR(slides.frequency / f0, 1.0, 1e-4);
-  EXPECT_NE(slides.log.find("axial_preload of shaft 's' has no effect but its length"), std::string::npos) << slides.log;
+  EXPECT_NE(slides.log.find("axial_preload of shaft 's' has no effect but its length"),
+            std::string::npos)
+      << slides.log;
 }
 
 TEST(AxialForce, IsALoadThatBuckles) {
   // buckling: a push of 5 kN buckles the hinged column at Pcr/5 kN; shear lowers it by 3e-4
   std::string text = deck(sliding, "axial_force = \"-5 kN\"\n");
-  text.replace(text.find("[[step]]\nname = \"modes\""), std::string::npos, "[[step]]\nname = \"b\"\ntype = \"buckling\"\n[output]\nreport = false\n");
+  text.replace(text.find("[[step]]\nname = \"modes\""), std::string::npos,
+               "[[step]]\nname = \"b\"\ntype = \"buckling\"\n[output]\nreport = false\n");
   const DeckRun d(text);
   ASSERT_EQ(d.exit, 0) << d.log;
   const std::size_t at = d.log.find("smallest load factor ");

@@ -1,4 +1,5 @@
-// What `whirl run` refuses before it computes anything, `whirl check` refuses as well, with the same code.
+// What `whirl run` refuses before it computes anything, `whirl check` refuses as well, with the
+// same code.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -21,13 +22,18 @@ struct Said {
 
 class CheckRefuses : public testing::Test {
  protected:
-  CheckRefuses() : folder_(fs::temp_directory_path() / ("whirl_refuses_" + std::to_string(::getpid()))) { fs::create_directories(folder_); }
+  CheckRefuses()
+      : folder_(fs::temp_directory_path() / ("whirl_refuses_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_);
+  }
   ~CheckRefuses() override {
     std::error_code ec;
     fs::remove_all(folder_, ec);
   }
   Said whirl(const std::string& arguments) const {
-    const int status = std::system(("cd '" + folder_.string() + "' && '" WHIRL_EXE "' " + arguments + " >log.txt 2>&1 </dev/null").c_str());
+    const int status = std::system(("cd '" + folder_.string() + "' && '" WHIRL_EXE "' " +
+                                    arguments + " >log.txt 2>&1 </dev/null")
+                                       .c_str());
     std::ostringstream text;
     text << std::ifstream(folder_ / "log.txt").rdbuf();
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text.str()};
@@ -62,18 +68,39 @@ directions = ["y", "z"]
 }  // namespace
 
 TEST_F(CheckRefuses, WhatRunRefuses) {
-  struct Kind { const char* name; const char* code; std::string deck; };
-  const std::string map = "[[step]]\nname = \"map\"\ntype = \"critical_map\"\nstiffness_min = \"1e5 N/m\"\nstiffness_max = \"1e8 N/m\"\npoints = 3\nmax_speed = \"9000 rpm\"\n";
-  const std::string linear = "[[bearing]]\nname = \"M\"\nat = \"a:end\"\ntype = \"linear\"\nkyy = \"1e6 N/m\"\nkzz = \"1e6 N/m\"\n";
+  struct Kind {
+    const char* name;
+    const char* code;
+    std::string deck;
+  };
+  const std::string map =
+      "[[step]]\nname = \"map\"\ntype = \"critical_map\"\nstiffness_min = \"1e5 "
+      "N/m\"\nstiffness_max = \"1e8 N/m\"\npoints = 3\nmax_speed = \"9000 rpm\"\n";
+  const std::string linear =
+      "[[bearing]]\nname = \"M\"\nat = \"a:end\"\ntype = \"linear\"\nkyy = \"1e6 N/m\"\nkzz = "
+      "\"1e6 N/m\"\n";
   const Kind kinds[] = {
-      {"a map over a bearing that is not there", "E80", rotor(linear + map + "bearings = [\"N\"]\n")},
+      {"a map over a bearing that is not there", "E80",
+       rotor(linear + map + "bearings = [\"N\"]\n")},
       {"a map with nothing to vary", "E80", rotor(map)},
-      {"a shaft held where it shall turn", "E78", rotor("[[bearing]]\nat = \"a:end\"\ntype = \"rigid\"\ndirections = [\"rx\"]\n[[step]]\ntype = \"modal\"\nspeed = \"3000 rpm\"\n")},
-      {"a held shaft in an equilibrium", "E78", rotor("[[bearing]]\nat = \"a:end\"\ntype = \"rigid\"\ndirections = [\"rx\"]\n[[step]]\ntype = \"static\"\nspeed = \"3000 rpm\"\n")},
-      {"the momentum form with a flexible shaft", "E74", rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nintegrator = { method = \"momentum_rk\" }\n")},
-      {"a fixed step of IDA", "N11", rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nintegrator = { method = \"ida\", dt = \"1 us\" }\n")},
-      {"an earlier run that is not there", "E91", rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nprevious = \"nowhere\"\n")},
-      {"a stability map of a parameter that nothing uses", "E89", rotor(linear + "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"3000 rpm\", points = 3 }\nmap = { parameter = \"unused\", values = [\"1 mm\", \"2 mm\"] }\n")},
+      {"a shaft held where it shall turn", "E78",
+       rotor("[[bearing]]\nat = \"a:end\"\ntype = \"rigid\"\ndirections = [\"rx\"]\n[[step]]\ntype "
+             "= \"modal\"\nspeed = \"3000 rpm\"\n")},
+      {"a held shaft in an equilibrium", "E78",
+       rotor("[[bearing]]\nat = \"a:end\"\ntype = \"rigid\"\ndirections = [\"rx\"]\n[[step]]\ntype "
+             "= \"static\"\nspeed = \"3000 rpm\"\n")},
+      {"the momentum form with a flexible shaft", "E74",
+       rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nintegrator = { method = "
+             "\"momentum_rk\" }\n")},
+      {"a fixed step of IDA", "N11",
+       rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nintegrator = { method = "
+             "\"ida\", dt = \"1 us\" }\n")},
+      {"an earlier run that is not there", "E91",
+       rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nprevious = \"nowhere\"\n")},
+      {"a stability map of a parameter that nothing uses", "E89",
+       rotor(linear +
+             "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"3000 rpm\", "
+             "points = 3 }\nmap = { parameter = \"unused\", values = [\"1 mm\", \"2 mm\"] }\n")},
       {"small motions of an asymmetric shaft", "E39",
        R"(format = 1
 [[shaft]]
@@ -100,24 +127,30 @@ initial_speed = "3000 rpm"
   for (const Kind& k : kinds) {
     SCOPED_TRACE(k.name);
     write(k.deck);
-    const Said run = whirl("run d.toml -o r"), check = whirl("check d.toml"), json = whirl("check --json d.toml");
-    if (run.log.find("[E90]") != std::string::npos) continue;   // built without SUNDIALS
+    const Said run = whirl("run d.toml -o r"), check = whirl("check d.toml"),
+               json = whirl("check --json d.toml");
+    if (run.log.find("[E90]") != std::string::npos) continue;  // built without SUNDIALS
     EXPECT_NE(run.exit, 0) << run.log;
     EXPECT_EQ(check.exit, run.exit) << check.log << run.log;
     EXPECT_EQ(json.exit, run.exit) << json.log;
-    for (const Said& said : {run, check}) EXPECT_NE(said.log.find(std::string("[") + k.code + "]"), std::string::npos) << said.log;
+    for (const Said& said : {run, check})
+      EXPECT_NE(said.log.find(std::string("[") + k.code + "]"), std::string::npos) << said.log;
     EXPECT_NE(json.log.find(std::string("\"") + k.code + "\""), std::string::npos) << json.log;
     EXPECT_NE(json.log.find("\"ok\": false"), std::string::npos) << json.log;
   }
 }
 
 TEST_F(CheckRefuses, NothingThatRuns) {
-  write(rotor("[[step]]\ntype = \"transient\"\nname = \"t\"\nduration = \"1 ms\"\ninitial_speed = \"3000 rpm\"\n[[step]]\ntype = \"modal\"\nspeed = \"3000 rpm\"\n"
-              "[[step]]\ntype = \"transient\"\nname = \"u\"\nfrom = \"t\"\nduration = \"1 ms\"\n"));
+  write(
+      rotor("[[step]]\ntype = \"transient\"\nname = \"t\"\nduration = \"1 ms\"\ninitial_speed = "
+            "\"3000 rpm\"\n[[step]]\ntype = \"modal\"\nspeed = \"3000 rpm\"\n"
+            "[[step]]\ntype = \"transient\"\nname = \"u\"\nfrom = \"t\"\nduration = \"1 ms\"\n"));
   EXPECT_EQ(whirl("check d.toml").exit, 0) << whirl("check d.toml").log;
   EXPECT_EQ(whirl("run d.toml -o r").exit, 0);
   // the state of that run is there for another one
-  write(rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nprevious = \"r\"\nprevious_step = \"t\"\n"));
+  write(
+      rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nprevious = \"r\"\nprevious_step "
+            "= \"t\"\n"));
   EXPECT_EQ(whirl("check d.toml").exit, 0) << whirl("check d.toml").log;
   EXPECT_EQ(whirl("run d.toml -o s").exit, 0);
 }

@@ -32,18 +32,25 @@ struct Result {
 class Cli : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("whirl_cli_" + std::to_string(::getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ =
+        fs::temp_directory_path() / ("whirl_cli_" + std::to_string(::getpid()) + "_" +
+                                     testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }
 
   /// Runs `whirl ARGUMENTS` in the test's own folder.
   Result whirl(const std::string& arguments, const std::string& before = "") {
-    const std::string command = "cd '" + folder_.string() + "' && " + before + " >out.txt 2>err.txt </dev/null '" WHIRL_EXE "' " + arguments;   // so a test can redirect again
+    const std::string command = "cd '" + folder_.string() + "' && " + before +
+                                " >out.txt 2>err.txt </dev/null '" WHIRL_EXE "' " +
+                                arguments;  // so a test can redirect again
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "out.txt"), read(folder_ / "err.txt")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "out.txt"),
+            read(folder_ / "err.txt")};
   }
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name, std::ios::binary) << text; }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
 
   fs::path folder_;
   static constexpr const char* good = R"(format = 1
@@ -85,7 +92,7 @@ TEST_F(Cli, ExitCodes) {
   // 3: deck
   EXPECT_EQ(whirl("check bad.toml").code, 3);
   EXPECT_EQ(whirl("run bad.toml").code, 3);
-  EXPECT_EQ(whirl("run good.toml").code, 3);   // no step
+  EXPECT_EQ(whirl("run good.toml").code, 3);  // no step
   EXPECT_EQ(whirl("check good.toml --set parameters.od=40").code, 3);
   // 5: input and output
   EXPECT_EQ(whirl("check none.toml").code, 5);
@@ -99,7 +106,7 @@ TEST_F(Cli, CheckPrintsStationsAndSummary) {
   EXPECT_EQ(r.err, "");
   EXPECT_NE(r.out.find("good.toml: Two sections\n  1 shaft, 0 disks"), std::string::npos) << r.out;
   EXPECT_NE(r.out.find("left:start"), std::string::npos) << r.out;
-  EXPECT_NE(r.out.find("2.959"), std::string::npos) << r.out;   // mass: 7850 pi/4 0.04^2 0.3
+  EXPECT_NE(r.out.find("2.959"), std::string::npos) << r.out;  // mass: 7850 pi/4 0.04^2 0.3
   const Result quiet = whirl("check good.toml --quiet");
   EXPECT_EQ(quiet.out + quiet.err, "");
 }
@@ -108,10 +115,13 @@ TEST_F(Cli, MistakesGoToStandardError) {
   write("a deck.toml", "format = 1\n[shaft]\nlenght = 3\n");
   const Result r = whirl("check 'a deck.toml'");
   EXPECT_EQ(r.out, "");
-  EXPECT_EQ(r.err,
-            "a deck.toml:2:1: error[E05]: shaft 'shaft' has no sections\n   2 | [shaft]\n     | ^~~~~~~\n     = hint: give columns and rows, file = \"shaft.csv\", or [[shaft.section]]\n"
-            "a deck.toml:3:1: error[E04]: unknown key 'lenght' in shaft 'shaft'\n   3 | lenght = 3\n     | ^~~~~~\n     = hint: `whirl schema --reference` lists all keys\n"
-            "a deck.toml: 2 errors\n");
+  EXPECT_EQ(
+      r.err,
+      "a deck.toml:2:1: error[E05]: shaft 'shaft' has no sections\n   2 | [shaft]\n     | "
+      "^~~~~~~\n     = hint: give columns and rows, file = \"shaft.csv\", or [[shaft.section]]\n"
+      "a deck.toml:3:1: error[E04]: unknown key 'lenght' in shaft 'shaft'\n   3 | lenght = 3\n     "
+      "| ^~~~~~\n     = hint: `whirl schema --reference` lists all keys\n"
+      "a deck.toml: 2 errors\n");
 }
 
 TEST_F(Cli, NoColourWithoutATerminal) {
@@ -121,10 +131,13 @@ TEST_F(Cli, NoColourWithoutATerminal) {
 }
 
 TEST_F(Cli, ColourOnATerminalUnlessNoColorIsSet) {
-  if (std::system("script --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "needs script(1) for a terminal";
+  if (std::system("script --version >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "needs script(1) for a terminal";
   write("bad.toml", "format = 2\n");
   const auto terminal = [&](const std::string& environment) {
-    const std::string command = "cd '" + folder_.string() + "' && " + environment + " script -qec \"'" WHIRL_EXE "' check bad.toml\" typescript >/dev/null 2>&1 </dev/null";
+    const std::string command = "cd '" + folder_.string() + "' && " + environment +
+                                " script -qec \"'" WHIRL_EXE
+                                "' check bad.toml\" typescript >/dev/null 2>&1 </dev/null";
     std::system(command.c_str());
     return read(folder_ / "typescript");
   };
@@ -139,7 +152,8 @@ TEST_F(Cli, Json) {
   const auto ok = io::parse_json(whirl("check good.toml --json").out);
   EXPECT_TRUE(ok.at("ok").boolean());
   EXPECT_EQ(ok.at("model").at("shafts").items()[0].at("name").text(), "shaft");
-  EXPECT_NEAR(ok.at("model").at("shafts").items()[0].at("mass_kg").number(), 7850 * 3.14159265358979 / 4 * 0.04 * 0.04 * 0.3, 1e-9);
+  EXPECT_NEAR(ok.at("model").at("shafts").items()[0].at("mass_kg").number(),
+              7850 * 3.14159265358979 / 4 * 0.04 * 0.04 * 0.3, 1e-9);
   const Result r = whirl("check bad.toml --json");
   EXPECT_EQ(r.code, 3);
   EXPECT_EQ(r.err, "");
@@ -169,7 +183,8 @@ TEST_F(Cli, ResultsFolder) {
   const auto run = io::read_json(where / "run.json");
   EXPECT_EQ(run.at("sha256").text(), run::sha256_hex(model.resolved));
   EXPECT_EQ(run.at("title").text(), "Two sections");
-  for (const auto& e : fs::directory_iterator(where)) EXPECT_NE(e.path().filename().string()[0], '.') << "left behind: " << e.path();
+  for (const auto& e : fs::directory_iterator(where))
+    EXPECT_NE(e.path().filename().string()[0], '.') << "left behind: " << e.path();
   write("blocked", "a file where the folder should be");
   o.output = folder_ / "blocked";
   EXPECT_THROW(run::prepare_results(model, o), Error);
@@ -177,12 +192,14 @@ TEST_F(Cli, ResultsFolder) {
 
 TEST_F(Cli, Explain) {
   const Result list = whirl("explain");
-  for (const auto& c : error_catalogue()) EXPECT_NE(list.out.find(std::string(c.code) + "  " + c.title), std::string::npos) << c.code;
+  for (const auto& c : error_catalogue())
+    EXPECT_NE(list.out.find(std::string(c.code) + "  " + c.title), std::string::npos) << c.code;
   const Result one = whirl("explain e07");
   EXPECT_EQ(one.out.substr(0, one.out.find('\n')), "E07: a unit is missing");
   EXPECT_NE(one.out.find("    clearance = \"75 um\""), std::string::npos) << one.out;
   std::istringstream lines(one.out);
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 88u) << line;
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_LE(line.size(), 88u) << line;
 }
 
 TEST_F(Cli, NewDecksAreGood) {
@@ -196,7 +213,7 @@ TEST_F(Cli, NewDecksAreGood) {
     EXPECT_EQ(read(folder_ / (name + ".toml")), whirl("new --example " + name).out);
   }
   EXPECT_GE(count, 4);
-  EXPECT_EQ(whirl("new --example paper_rotor paper_rotor.toml").code, 5);   // exists
+  EXPECT_EQ(whirl("new --example paper_rotor paper_rotor.toml").code, 5);  // exists
   EXPECT_EQ(whirl("new --example paper_rotor paper_rotor.toml --force").code, 0);
 }
 
@@ -204,9 +221,12 @@ TEST_F(Cli, SchemaAndReferenceNameEveryKey) {
   const Result json = whirl("schema");
   const auto schema = io::parse_json(json.out);
   EXPECT_EQ(schema.at("additionalProperties").boolean(), false);
-  for (const char* key : {"shaft", "disk", "bearing", "step", "output", "parameters", "include", "format"}) EXPECT_TRUE(schema.at("properties").at(key).is_object()) << key;
+  for (const char* key :
+       {"shaft", "disk", "bearing", "step", "output", "parameters", "include", "format"})
+    EXPECT_TRUE(schema.at("properties").at(key).is_object()) << key;
   const std::string reference = whirl("schema --reference").out;
-  for (const char* word : {"### [[bearing]]", "type = \"spring_block\"", "`kyy`", "## Laws of time", "`max_element_length`"})
+  for (const char* word : {"### [[bearing]]", "type = \"spring_block\"", "`kyy`", "## Laws of time",
+                           "`max_element_length`"})
     EXPECT_NE(reference.find(word), std::string::npos) << word;
   EXPECT_NE(whirl("schema --units").out.find("| `rpm` |"), std::string::npos);
 }
@@ -217,8 +237,12 @@ TEST_F(Cli, CompletionIsValidShell) {
   write("completion.bash", r.out);
   EXPECT_EQ(std::system(("bash -n '" + (folder_ / "completion.bash").string() + "'").c_str()), 0);
   // what a shell would offer after "whirl ch"
-  write("ask.bash", "source ./completion.bash\nCOMP_WORDS=(whirl ch)\nCOMP_CWORD=1\n_whirl\necho \"${COMPREPLY[*]}\"\nCOMP_WORDS=(whirl check --re)\nCOMP_CWORD=2\n_whirl\necho \"${COMPREPLY[*]}\"\n");
-  EXPECT_EQ(std::system(("cd '" + folder_.string() + "' && bash ask.bash > answer.txt").c_str()), 0);
+  write("ask.bash",
+        "source ./completion.bash\nCOMP_WORDS=(whirl ch)\nCOMP_CWORD=1\n_whirl\necho "
+        "\"${COMPREPLY[*]}\"\nCOMP_WORDS=(whirl check --re)\nCOMP_CWORD=2\n_whirl\necho "
+        "\"${COMPREPLY[*]}\"\n");
+  EXPECT_EQ(std::system(("cd '" + folder_.string() + "' && bash ask.bash > answer.txt").c_str()),
+            0);
   EXPECT_EQ(read(folder_ / "answer.txt"), "check\n--resolved\n");
   EXPECT_NE(whirl("completion fish").out.find("complete -c whirl"), std::string::npos);
 }
@@ -229,20 +253,27 @@ TEST_F(Cli, ManPageNamesEveryCommandAndOption) {
   std::istringstream lines(whirl("completion fish").out);
   for (std::string line; std::getline(lines, line);) {
     std::size_t k = line.find("__fish_use_subcommand -a ");
-    if (k != std::string::npos) { EXPECT_NE(page.find("\n.SS whirl " + line.substr(k + 25)), std::string::npos) << line; }
+    if (k != std::string::npos) {
+      EXPECT_NE(page.find("\n.SS whirl " + line.substr(k + 25)), std::string::npos) << line;
+    }
     k = line.find(" -l ");
     if (k == std::string::npos) continue;
     std::string option = line.substr(k + 4), escaped;
-    for (char c : option) escaped += c == '-' ? std::string("\\-") : std::string(1, c);
+    for (char c : option)
+      escaped += c == '-' ? std::string("\\-") : std::string(1, c);
     EXPECT_NE(page.find("\\-\\-" + escaped), std::string::npos) << option;
   }
 }
 
-TEST(Sha256, KnownDigests) {   // FIPS 180-4 examples
-  EXPECT_EQ(run::sha256_hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(run::sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(run::sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-  EXPECT_EQ(run::sha256_hex(std::string(1000000, 'a')), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+TEST(Sha256, KnownDigests) {  // FIPS 180-4 examples
+  EXPECT_EQ(run::sha256_hex(""),
+            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(run::sha256_hex("abc"),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(run::sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(run::sha256_hex(std::string(1000000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
 // whatever code a message can carry is explained
@@ -254,11 +285,14 @@ TEST_F(Cli, EveryCodeInTheSourceIsExplained) {
     for (const auto& f : fs::recursive_directory_iterator(fs::path(WHIRL_SOURCE) / part)) {
       if (f.path().extension() != ".cpp" && f.path().extension() != ".hpp") continue;
       const std::string text = read(f.path());
-      for (auto it = std::sregex_iterator(text.begin(), text.end(), code); it != std::sregex_iterator(); ++it, ++found)
-        if (!find_code((*it)[1].str())) unknown.insert((*it)[1].str() + " in " + f.path().filename().string());
+      for (auto it = std::sregex_iterator(text.begin(), text.end(), code);
+           it != std::sregex_iterator(); ++it, ++found)
+        if (!find_code((*it)[1].str()))
+          unknown.insert((*it)[1].str() + " in " + f.path().filename().string());
     }
   EXPECT_GT(found, 100);
-  for (const auto& u : unknown) ADD_FAILURE() << u;
+  for (const auto& u : unknown)
+    ADD_FAILURE() << u;
 }
 
 TEST_F(Cli, MinusIsStandardInput) {
@@ -281,7 +315,9 @@ TEST_F(Cli, AMisspeltInstructionSetIsAnError) {
 }
 
 TEST_F(Cli, TooMuchOutputIsSaidWithItsLine) {
-  const std::string step = "[[step]]\ntype = \"transient\"\nstart = \"rest\"\nduration = \"1e9 s\"\n[[probe]]\nat = \"left\"\n[output]\nevery = \"1 ns\"\n";
+  const std::string step =
+      "[[step]]\ntype = \"transient\"\nstart = \"rest\"\nduration = \"1e9 s\"\n[[probe]]\nat = "
+      "\"left\"\n[output]\nevery = \"1 ns\"\n";
   write("long.toml", good + step);
   const Result r = whirl("run long.toml -o r");
   EXPECT_EQ(r.code, 3);

@@ -1,5 +1,6 @@
-// Direction of whirl is that of the spin: a machine and its mirror image (every vector reflected in the plane z = 0, every spin
-// the other way) get the same words and the same signs, whatever it consists of.
+// Direction of whirl is that of the spin: a machine and its mirror image (every vector reflected in
+// the plane z = 0, every spin the other way) get the same words and the same signs, whatever it
+// consists of.
 #include "deck_run.hpp"
 
 #include <fmt/format.h>
@@ -21,49 +22,78 @@ std::vector<std::vector<std::string>> cells_of(const std::filesystem::path& csv)
   for (std::string line; std::getline(in, line);) {
     std::istringstream cells(line);
     out.emplace_back();
-    for (std::string cell; std::getline(cells, cell, ',');) out.back().push_back(cell);
+    for (std::string cell; std::getline(cells, cell, ',');)
+      out.back().push_back(cell);
   }
   return out;
 }
 
 bool is_number(const std::string& cell) { return !std::isnan(Columns::number(cell)); }
 
-/// Rotors (one, or two that turn either way) in a casing on feet, one bearing on a pedestal of its own: all drawn at random.
-/// mirror = -1: its image.
+/// Rotors (one, or two that turn either way) in a casing on feet, one bearing on a pedestal of its
+/// own: all drawn at random. mirror = -1: its image.
 std::string machine(unsigned seed, double mirror) {
   std::mt19937 random(seed);
-  const auto draw = [&](double low, double high) { return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random); };
+  const auto draw = [&](double low, double high) {
+    return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random);
+  };
   std::string deck = "format = 1\n[output]\nreport = false\n";
-  deck += fmt::format("[model]\ngravity_vector = [\"{} m/s^2\", \"{} m/s^2\", \"{} m/s^2\"]\n", draw(-1, 1), draw(-9, 9), mirror * draw(-9, 9));
+  deck += fmt::format("[model]\ngravity_vector = [\"{} m/s^2\", \"{} m/s^2\", \"{} m/s^2\"]\n",
+                      draw(-1, 1), draw(-9, 9), mirror * draw(-9, 9));
   const int rotors = seed % 2 ? 2 : 1;
   const double second = seed % 4 == 1 ? -draw(0.6, 1.4) : draw(1.1, 1.6);
-  const auto support = [&](const std::string& name, const std::string& at, const std::string& rest, double k) {
-    const double kyy = k * draw(0.8, 1.2), kzz = k * draw(0.8, 1.2), kyz = 0.1 * k * draw(-1, 1), kzy = 0.1 * k * draw(-1, 1);
-    return fmt::format("[[bearing]]\nname = \"{}\"\nat = \"{}\"\n{}type = \"linear\"\nkxx = \"{} N/m\"\nkyy = \"{} N/m\"\nkzz = \"{} N/m\"\nkyz = \"{} N/m\"\n"
-                       "kzy = \"{} N/m\"\ncyy = \"{} N.s/m\"\nczz = \"{} N.s/m\"\nkryy = \"{} N.m/rad\"\nkrzz = \"{} N.m/rad\"\nkrxx = \"{} N.m/rad\"\n",
-                       name, at, rest, k, kyy, kzz, mirror * kyz, mirror * kzy, 1e-4 * k, 1e-4 * k, 1e-3 * k, 1e-3 * k, name.starts_with("foot") ? 1e-2 * k : 0.0);
+  const auto support = [&](const std::string& name, const std::string& at, const std::string& rest,
+                           double k) {
+    const double kyy = k * draw(0.8, 1.2), kzz = k * draw(0.8, 1.2), kyz = 0.1 * k * draw(-1, 1),
+                 kzy = 0.1 * k * draw(-1, 1);
+    return fmt::format(
+        "[[bearing]]\nname = \"{}\"\nat = \"{}\"\n{}type = \"linear\"\nkxx = \"{} N/m\"\nkyy = "
+        "\"{} N/m\"\nkzz = \"{} N/m\"\nkyz = \"{} N/m\"\n"
+        "kzy = \"{} N/m\"\ncyy = \"{} N.s/m\"\nczz = \"{} N.s/m\"\nkryy = \"{} N.m/rad\"\nkrzz = "
+        "\"{} N.m/rad\"\nkrxx = \"{} N.m/rad\"\n",
+        name, at, rest, k, kyy, kzz, mirror * kyz, mirror * kzy, 1e-4 * k, 1e-4 * k, 1e-3 * k,
+        1e-3 * k, name.starts_with("foot") ? 1e-2 * k : 0.0);
   };
   std::string bearings;
   for (int r = 0; r < rotors; ++r) {
     const double ratio = mirror * (r == 0 ? 1.0 : second), z = mirror * 0.05 * r;
-    deck += fmt::format("[[shaft]]\nname = \"r{0}\"\nmaterial = \"steel\"\nspeed_ratio = {1}\norigin = [\"{2} m\", \"0 m\", \"{3} m\"]\ncolumns = [\"name\", \"length[m]\", \"od[m]\", "
-                        "\"min_elements\"]\nrows = [[\"a{0}\", {4}, {5}, 2], [\"b{0}\", {6}, {5}, 2]]\n",
-                        r, ratio, 0.05 * r, z, draw(0.2, 0.3), draw(0.03, 0.05), draw(0.2, 0.3));
-    deck += fmt::format("[[disk]]\nname = \"d{0}\"\nat = \"r{0}/a{0}:end\"\nmass = \"{1} kg\"\nIp = \"{2} kg.m^2\"\nId = \"{3} kg.m^2\"\n", r, draw(4, 12), draw(0.08, 0.12), draw(0.07, 0.1));
-    deck += fmt::format("[[unbalance]]\nat = \"d{0}\"\namount = \"1 g.mm\"\nphase = \"{1} deg\"\n[[probe]]\nname = \"p{0}\"\nat = \"d{0}\"\n", r, mirror * draw(-180, 180));
-    bearings += support(fmt::format("left{}", r), fmt::format("r{0}/a{0}:start", r), fmt::format("to = \"casing/{} m\"\n", 0.1 + 0.05 * r), draw(1e6, 3e7));
+    deck += fmt::format(
+        "[[shaft]]\nname = \"r{0}\"\nmaterial = \"steel\"\nspeed_ratio = {1}\norigin = [\"{2} m\", "
+        "\"0 m\", \"{3} m\"]\ncolumns = [\"name\", \"length[m]\", \"od[m]\", "
+        "\"min_elements\"]\nrows = [[\"a{0}\", {4}, {5}, 2], [\"b{0}\", {6}, {5}, 2]]\n",
+        r, ratio, 0.05 * r, z, draw(0.2, 0.3), draw(0.03, 0.05), draw(0.2, 0.3));
+    deck += fmt::format(
+        "[[disk]]\nname = \"d{0}\"\nat = \"r{0}/a{0}:end\"\nmass = \"{1} kg\"\nIp = \"{2} "
+        "kg.m^2\"\nId = \"{3} kg.m^2\"\n",
+        r, draw(4, 12), draw(0.08, 0.12), draw(0.07, 0.1));
+    deck += fmt::format(
+        "[[unbalance]]\nat = \"d{0}\"\namount = \"1 g.mm\"\nphase = \"{1} deg\"\n[[probe]]\nname = "
+        "\"p{0}\"\nat = \"d{0}\"\n",
+        r, mirror * draw(-180, 180));
+    bearings += support(fmt::format("left{}", r), fmt::format("r{0}/a{0}:start", r),
+                        fmt::format("to = \"casing/{} m\"\n", 0.1 + 0.05 * r), draw(1e6, 3e7));
     const bool pedestal = r == 0 && seed % 3 == 0;
-    bearings += support(fmt::format("right{}", r), fmt::format("r{0}/b{0}:end", r), pedestal ? "" : fmt::format("to = \"casing/{} m\"\n", 0.6 + 0.05 * r), draw(1e6, 3e7));
+    bearings += support(fmt::format("right{}", r), fmt::format("r{0}/b{0}:end", r),
+                        pedestal ? "" : fmt::format("to = \"casing/{} m\"\n", 0.6 + 0.05 * r),
+                        draw(1e6, 3e7));
     if (pedestal) {
       const double k = draw(1e7, 5e7);
-      bearings += fmt::format("support = {{ mass = \"{} kg\", kxx = \"{} N/m\", kyy = \"{} N/m\", kzz = \"{} N/m\" }}\n", draw(2, 8), k, k, 1.3 * k);
+      bearings += fmt::format(
+          "support = {{ mass = \"{} kg\", kxx = \"{} N/m\", kyy = \"{} N/m\", kzz = \"{} N/m\" "
+          "}}\n",
+          draw(2, 8), k, k, 1.3 * k);
     }
   }
-  deck += "[[shaft]]\nname = \"casing\"\nmaterial = \"steel\"\nrotating = false\norigin = [\"-0.1 m\", \"0 m\", \"0 m\"]\ncolumns = [\"name\", \"length[m]\", \"od[m]\", \"id[m]\", \"min_elements\"]\n"
-          "rows = [[\"c\", 0.9, 0.3, 0.29, 4]]\n[[probe]]\nname = \"pc\"\nat = \"casing/0.4 m\"\n";
-  bearings += support("foot1", "casing/c:start", "", draw(5e6, 5e7)) + support("foot2", "casing/c:end", "", draw(5e6, 5e7));
+  deck +=
+      "[[shaft]]\nname = \"casing\"\nmaterial = \"steel\"\nrotating = false\norigin = [\"-0.1 m\", "
+      "\"0 m\", \"0 m\"]\ncolumns = [\"name\", \"length[m]\", \"od[m]\", \"id[m]\", "
+      "\"min_elements\"]\n"
+      "rows = [[\"c\", 0.9, 0.3, 0.29, 4]]\n[[probe]]\nname = \"pc\"\nat = \"casing/0.4 m\"\n";
+  bearings += support("foot1", "casing/c:start", "", draw(5e6, 5e7)) +
+              support("foot2", "casing/c:end", "", draw(5e6, 5e7));
   const double speed = draw(1000, 9000);
-  return deck + bearings + fmt::format(R"([[step]]
+  return deck + bearings +
+         fmt::format(R"([[step]]
 name = "m"
 type = "modal"
 speed = "{0} rpm"
@@ -90,28 +120,33 @@ frequency = {{ start = "20 Hz", stop = "150 Hz", points = 6 }}
 at = "d0"
 force = ["0 N", "3 N", "0 N"]
 whirl = "forward"
-)", speed, 0.3 * speed);
+)",
+                     speed, 0.3 * speed);
 }
 
 using Cells = std::vector<std::vector<std::string>>;
 
-/// The tables of a run as they stand in its files; energies element by element say nothing of directions.
+/// The tables of a run as they stand in its files; energies element by element say nothing of
+/// directions.
 std::map<std::string, Cells> results(const std::string& deck) {
   const DeckRun run(deck);
   EXPECT_EQ(run.exit, 0) << run.log;
   std::map<std::string, Cells> out;
   for (const auto& file : std::filesystem::directory_iterator(run.folder / "r")) {
     const std::string name = file.path().filename().string();
-    if (name.ends_with(".csv") && name.find("energy") == std::string::npos) out[name] = cells_of(file.path());
+    if (name.ends_with(".csv") && name.find("energy") == std::string::npos)
+      out[name] = cells_of(file.path());
   }
   return out;
 }
 
-/// Words equal, numbers equal but for rounding: 1e-5 of them, shapes of close modes being badly conditioned. Phase lags of z and of
-/// turns about x are half a turn apart.
+/// Words equal, numbers equal but for rounding: 1e-5 of them, shapes of close modes being badly
+/// conditioned. Phase lags of z and of turns about x are half a turn apart.
 void expect_alike(const Cells& x, const Cells& y, const std::string& which) {
   ASSERT_EQ(x.size(), y.size()) << which;
-  const auto holds = [](const std::string& name, const char* part) { return name.find(part) != std::string::npos; };
+  const auto holds = [](const std::string& name, const char* part) {
+    return name.find(part) != std::string::npos;
+  };
   for (std::size_t i = 0; i < x.size(); ++i) {
     ASSERT_EQ(x[i].size(), y[i].size()) << which;
     for (std::size_t j = 0; j < x[i].size(); ++j) {
@@ -123,7 +158,8 @@ void expect_alike(const Cells& x, const Cells& y, const std::string& which) {
       }
       const double p = Columns::number(x[i][j]), q = Columns::number(y[i][j]);
       double apart = p - q;
-      if (holds(name, "lag")) apart = std::remainder(apart, holds(name, " z ") || holds(name, "twist") ? 180.0 : 360.0);
+      if (holds(name, "lag"))
+        apart = std::remainder(apart, holds(name, " z ") || holds(name, "twist") ? 180.0 : 360.0);
       // amplitudes are 1e-7 m and more, energies and angles of the order of 1
       const double small = holds(name, "[m]") ? 1e-13 : holds(name, "[N]") ? 1e-8 : 1e-3;
       EXPECT_NEAR(apart, 0.0, 1e-5 * std::abs(p) + small) << where << ": " << p << " and " << q;
@@ -142,7 +178,9 @@ TEST(Direction, MirroredMachinesGetTheSameWords) {
     for (const auto& [file, cells] : here) {
       if (!image.contains(file)) continue;
       expect_alike(cells, image.at(file), fmt::format("{} seed {}", file, seed));
-      for (const auto& row : cells) words += static_cast<int>(std::count(row.begin(), row.end(), "forward") + std::count(row.begin(), row.end(), "backward"));
+      for (const auto& row : cells)
+        words += static_cast<int>(std::count(row.begin(), row.end(), "forward") +
+                                  std::count(row.begin(), row.end(), "backward"));
     }
   }
   EXPECT_GT(words, 200);
@@ -150,7 +188,8 @@ TEST(Direction, MirroredMachinesGetTheSameWords) {
 
 namespace {
 
-/// A flexible rotor on equal bearings far below its critical speed: the orbits are circles run with the spin.
+/// A flexible rotor on equal bearings far below its critical speed: the orbits are circles run with
+/// the spin.
 std::string counter(double ratio, const std::string& step) {
   return fmt::format(R"(format = 1
 [model]
@@ -217,7 +256,8 @@ name = "c"
 at = "c:end"
 [output]
 report = false
-{})", ratio, ratio < 0 ? -40 : 40, step);
+{})",
+                     ratio, ratio < 0 ? -40 : 40, step);
 }
 
 }  // namespace
@@ -245,7 +285,8 @@ whirl = "forward"
       const Columns t = run.csv(file);
       for (const char* probe : {"p", "c"}) {
         // a circle: both axes are one but for rounding
-        const double major = t.rows.at(0)[t.column(std::string(probe) + " major [m]")], minor = t.rows.at(0)[t.column(std::string(probe) + " minor [m]")];
+        const double major = t.rows.at(0)[t.column(std::string(probe) + " major [m]")],
+                     minor = t.rows.at(0)[t.column(std::string(probe) + " minor [m]")];
         EXPECT_GT(major, 1e-10) << file;
         EXPECT_NEAR(minor, major, 1e-9 * major) << file << " " << probe << " " << ratio;
       }
@@ -253,7 +294,8 @@ whirl = "forward"
   }
 }
 
-// The keyphasor's circles and lags of a rotor that turns backward are those of its image. Probes on the casing too.
+// The keyphasor's circles and lags of a rotor that turns backward are those of its image. Probes on
+// the casing too.
 TEST(Direction, KeyphasorOfARotorThatTurnsTheOtherWay) {
   const std::string step = R"([[step]]
 name = "t"
@@ -267,12 +309,14 @@ initial_speed = "1500 rpm"
     ASSERT_EQ(run.exit, 0) << run.log;
     const auto last = run.csv("t_tracking.csv").last();
     for (const std::string probe : {"p", "c"}) {
-      const double forward = last.at(probe + " 1X forward [m]"), backward = last.at(probe + " 1X backward [m]");
+      const double forward = last.at(probe + " 1X forward [m]"),
+                   backward = last.at(probe + " 1X backward [m]");
       EXPECT_GT(forward, 1e-9);
-      EXPECT_LT(backward, 1e-4 * forward) << probe << " " << ratio;   // the default accuracy
+      EXPECT_LT(backward, 1e-4 * forward) << probe << " " << ratio;  // the default accuracy
     }
-    // far below the critical speed the rotor bends out where the unbalance is: 40 degrees after the mark in the sense of its
-    // spin, which is 40 degrees before it in time, and the damping adds a little
+    // far below the critical speed the rotor bends out where the unbalance is: 40 degrees after the
+    // mark in the sense of its spin, which is 40 degrees before it in time, and the damping adds a
+    // little
     EXPECT_NEAR(std::remainder(last.at("p.y 1X lag [deg]") + 40.0, 360.0), 0.0, 3.0) << ratio;
   }
 }

@@ -1,4 +1,5 @@
-// Frames of a motion in time show what those of an equilibrium show: section forces, stresses, forces of the supports.
+// Frames of a motion in time show what those of an equilibrium show: section forces, stresses,
+// forces of the supports.
 #include "deck_run.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,8 @@
 using whirl::test::DeckRun;
 
 TEST(FramesInMotion, ShowEveryArrayOfAnEquilibrium) {
-  if (std::system("/usr/bin/python3 -c 'import vtkmodules.vtkIOXML' 2>/dev/null") != 0) GTEST_SKIP() << "no python3-vtk9";
+  if (std::system("/usr/bin/python3 -c 'import vtkmodules.vtkIOXML' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no python3-vtk9";
   const DeckRun d(R"(format = 1
 [[shaft]]
 name = "r"
@@ -53,5 +55,8 @@ content = ["line", "surface", "bearings"]
 )");
   ASSERT_EQ(d.exit, 0) << d.log;
   if (d.says("VTK")) GTEST_SKIP() << "built without VTK";
-  EXPECT_EQ(std::system(("/usr/bin/python3 compare_frames.py " + (d.folder / "r" / "vtk").string() + " sag go").c_str()), 0);
+  EXPECT_EQ(std::system(("/usr/bin/python3 compare_frames.py " + (d.folder / "r" / "vtk").string() +
+                         " sag go")
+                            .c_str()),
+            0);
 }

@@ -1,4 +1,5 @@
-// The integral of a governor: from the beginning of the step in which it begins to act, and on through steps in which it goes on acting.
+// The integral of a governor: from the beginning of the step in which it begins to act, and on
+// through steps in which it goes on acting.
 #include "deck_run.hpp"
 
 #include <core/types.hpp>
@@ -14,8 +15,10 @@ using test::DeckRun;
 
 namespace {
 
-/// A shaft at 500 rpm under a governor for 1000 rpm, kp 0.05 N m s/rad: 2.618 N m where its integral is zero.
-std::string deck(const std::string& drive_step, const std::string& steps, const std::string& more = "") {
+/// A shaft at 500 rpm under a governor for 1000 rpm, kp 0.05 N m s/rad: 2.618 N m where its
+/// integral is zero.
+std::string deck(const std::string& drive_step, const std::string& steps,
+                 const std::string& more = "") {
   return R"(format = 1
 [[shaft]]
 name = "s"
@@ -35,8 +38,10 @@ directions = ["y", "z"]
 name = "gov"
 at = "a:start"
 type = "torque"
-)" + drive_step + R"(governor = { target = "1000 rpm", kp = "0.05 N.m.s/rad", ki = "0.05 N.m/rad" }
-)" + more + steps + R"(
+)" + drive_step +
+         R"(governor = { target = "1000 rpm", kp = "0.05 N.m.s/rad", ki = "0.05 N.m/rad" }
+)" + more +
+         steps + R"(
 [output]
 every = "0.01 s"
 quantities = ["speed", "torque"]
@@ -44,7 +49,9 @@ report = false
 )";
 }
 std::string step(const std::string& name, const std::string& from, const std::string& duration) {
-  return "[[step]]\nname = \"" + name + "\"\ntype = \"transient\"\nintegrator = { tolerance = 1e-7 }\nduration = \"" + duration + "\"\n" + (from.empty() ? "" : "from = \"" + from + "\"\n");
+  return "[[step]]\nname = \"" + name +
+         "\"\ntype = \"transient\"\nintegrator = { tolerance = 1e-7 }\nduration = \"" + duration +
+         "\"\n" + (from.empty() ? "" : "from = \"" + from + "\"\n");
 }
 /// A file of the results; the folder goes with the run.
 Columns run(const std::string& text, const std::string& file) {
@@ -60,15 +67,19 @@ double value(const Columns& c, std::size_t row) { return c.rows.at(row).at(c.col
 }  // namespace
 
 TEST(Governor, IntegralBeginsWithItsStep) {
-  // After 2 s of coasting at 500 rpm an integral counted from time 0 would add 0.05 N m/rad x 104.7 rad = 5.2 N m.
+  // After 2 s of coasting at 500 rpm an integral counted from time 0 would add 0.05 N m/rad x 104.7
+  // rad = 5.2 N m.
   const Columns a = run(deck("step = \"hold\"\n", step("hold", "", "2 s")), "hold.csv");
-  const Columns b = run(deck("step = \"hold\"\n", step("coast", "", "2 s") + step("hold", "coast", "2 s")), "hold.csv");
+  const Columns b =
+      run(deck("step = \"hold\"\n", step("coast", "", "2 s") + step("hold", "coast", "2 s")),
+          "hold.csv");
   EXPECT_NEAR(value(a, 0), first, 1e-6 * first);
   EXPECT_NEAR(value(b, 0), first, 1e-6 * first);
   // the law does not know the time: both steps are one motion
   const std::size_t n = std::min(a.rows.size(), b.rows.size());
   ASSERT_GT(n, 190u);
-  for (std::size_t k = 0; k < n; k += 10) EXPECT_NEAR(value(a, k), value(b, k), 1e-6 * first) << k;
+  for (std::size_t k = 0; k < n; k += 10)
+    EXPECT_NEAR(value(a, k), value(b, k), 1e-6 * first) << k;
 }
 
 TEST(Governor, GoesOnWithoutAJump) {
@@ -82,17 +93,23 @@ TEST(Governor, GoesOnWithoutAJump) {
 }
 
 TEST(Governor, BeginsAfterAnEquilibriumThatFollowsAMotion) {
-  const DeckRun d(deck("", step("one", "", "0.5 s") + "[[step]]\nname = \"sag\"\ntype = \"static\"\nspeed = \"500 rpm\"\n" + step("two", "sag", "0.5 s")));
+  const DeckRun d(
+      deck("", step("one", "", "0.5 s") +
+                   "[[step]]\nname = \"sag\"\ntype = \"static\"\nspeed = \"500 rpm\"\n" +
+                   step("two", "sag", "0.5 s")));
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_NEAR(value(d.csv("two.csv"), 0), first, 1e-6 * first);
 }
 
 TEST(Governor, SeesNoAngleInSteadyStates) {
-  // Its integral is no function of the angle of the rotor: at its target speed it gives no torque, and the equilibrium needs none.
-  // Averaged over the angles of a revolution it gave -0.05 N m/rad x 3 pi/4.
-  const DeckRun d(deck("", "[[step]]\nname = \"still\"\ntype = \"static\"\nspeed = \"1000 rpm\"\n"));
+  // Its integral is no function of the angle of the rotor: at its target speed it gives no torque,
+  // and the equilibrium needs none. Averaged over the angles of a revolution it gave -0.05 N m/rad
+  // x 3 pi/4.
+  const DeckRun d(
+      deck("", "[[step]]\nname = \"still\"\ntype = \"static\"\nspeed = \"1000 rpm\"\n"));
   ASSERT_EQ(d.exit, 0) << d.log;
-  const nlohmann::json summary = nlohmann::json::parse(std::ifstream(d.folder / "r" / "summary.json"));
+  const nlohmann::json summary =
+      nlohmann::json::parse(std::ifstream(d.folder / "r" / "summary.json"));
   const nlohmann::json& step = summary["steps"]["still"];
   if (step.count("torque that keeps the speed [N m]")) {
     EXPECT_NEAR(step["torque that keeps the speed [N m]"]["s"].get<double>(), 0.0, 1e-9);

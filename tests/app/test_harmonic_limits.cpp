@@ -1,5 +1,6 @@
-// Harmonic forces at and next to 0 Hz, where a rotor that is free to turn has no stiffness against it: the right answer where there is
-// one, an error or a warning where there is none; never a quiet zero or a quiet NaN.
+// Harmonic forces at and next to 0 Hz, where a rotor that is free to turn has no stiffness against
+// it: the right answer where there is one, an error or a warning where there is none; never a quiet
+// zero or a quiet NaN.
 #include "deck_run.hpp"
 #include <gtest/gtest.h>
 #include <cmath>
@@ -7,7 +8,8 @@
 
 namespace {
 
-std::string deck(const std::string& thrust, const std::string& frequency, const std::string& motion) {
+std::string deck(const std::string& thrust, const std::string& frequency,
+                 const std::string& motion) {
   return R"(format = 1
 [model]
 gravity = "0 m/s^2"
@@ -20,7 +22,8 @@ rows = [["a", 300, 40], ["b", 300, 40]]
 name = "L"
 at = "a:start"
 type = "linear"
-)" + thrust + R"(
+)" + thrust +
+         R"(
 kyy = "1e7 N/m"
 kzz = "1e7 N/m"
 [[bearing]]
@@ -32,7 +35,8 @@ kzz = "1e7 N/m"
 [[step]]
 name = "push"
 type = "harmonic_response"
-motion = ")" + motion + "\"\nfrequency = { values = [\"" + frequency + R"("] }
+motion = ")" +
+         motion + "\"\nfrequency = { values = [\"" + frequency + R"("] }
 [[step.force]]
 at = "b:end"
 force = ["100 N", "0 N", "0 N"]
@@ -41,7 +45,9 @@ report = false
 )";
 }
 
-double thrust_of(const whirl::test::DeckRun& r) { return r.csv("push_response.csv").last().at("bearing L force x [N]"); }
+double thrust_of(const whirl::test::DeckRun& r) {
+  return r.csv("push_response.csv").last().at("bearing L force x [N]");
+}
 
 }  // namespace
 
@@ -55,7 +61,8 @@ TEST(HarmonicLimits, ThrustBearingCarriesIt) {
   const whirl::test::DeckRun still(deck("kxx = \"1e7 N/m\"", "0 Hz", "axial"));
   ASSERT_EQ(still.exit, 0) << still.log;
   EXPECT_NEAR(thrust_of(still), 100, 1e-9);
-  // at 10 Hz the mass m on the thrust bearing k, the shaft itself stiff: 100/(1 - m w^2/k), bar within 1e-4 of it
+  // at 10 Hz the mass m on the thrust bearing k, the shaft itself stiff: 100/(1 - m w^2/k), bar
+  // within 1e-4 of it
   const whirl::test::DeckRun slow(deck("kxx = \"1e7 N/m\"", "10 Hz", "all"));
   ASSERT_EQ(slow.exit, 0) << slow.log;
   const double m = 7850 * 3.14159265 * 0.04 * 0.04 / 4 * 0.6, w = 20 * 3.14159265;
@@ -71,8 +78,11 @@ std::string with_force(const std::string& force, const std::string& frequency = 
   const std::string given = "force = [\"100 N\", \"0 N\", \"0 N\"]\n";
   text.replace(text.find(given), given.size(), force);
   const std::size_t end = text.find("[[bearing]]");
-  return text.insert(end, "[[disk]]\nname = \"d\"\nat = \"a:end\"\nmass = \"3 kg\"\nIp = \"0.02 kg.m^2\"\nId = \"0.01 kg.m^2\"\n"
-                          "[[probe]]\nname = \"P\"\nat = \"d\"\n[[probe]]\nname = \"Q\"\nat = \"b:end\"\n");
+  return text.insert(
+      end,
+      "[[disk]]\nname = \"d\"\nat = \"a:end\"\nmass = \"3 kg\"\nIp = \"0.02 kg.m^2\"\nId = \"0.01 "
+      "kg.m^2\"\n"
+      "[[probe]]\nname = \"P\"\nat = \"d\"\n[[probe]]\nname = \"Q\"\nat = \"b:end\"\n");
 }
 
 std::map<std::string, double> answer(const std::string& text) {
@@ -84,7 +94,8 @@ std::map<std::string, double> answer(const std::string& text) {
 
 }  // namespace
 
-// 0 Hz is the documented default start. A rotor that is free to turn makes the matrix singular there, yet only its angle is undetermined.
+// 0 Hz is the documented default start. A rotor that is free to turn makes the matrix singular
+// there, yet only its angle is undetermined.
 TEST(HarmonicLimits, AFreeSpinHidesNothingAtZeroFrequency) {
   const whirl::test::DeckRun r(deck(with_thrust, "0 Hz", "all"));
   ASSERT_EQ(r.exit, 0) << r.log;
@@ -96,8 +107,10 @@ TEST(HarmonicLimits, ZeroFrequencyIsTheLimitOfLowOnes) {
   const auto zero = answer(with_force(force)), low = answer(with_force(force, "0.001 Hz"));
   // (w/w1)^2 = 1e-10 away
   for (const auto& [name, value] : low) {
-    if (name.find("phase") != std::string::npos || name.find("frequency") != std::string::npos) continue;
-    const double scale = name.find("[N]") != std::string::npos ? 100 : 1e-5;   // the force over one of the supports
+    if (name.find("phase") != std::string::npos || name.find("frequency") != std::string::npos)
+      continue;
+    const double scale =
+        name.find("[N]") != std::string::npos ? 100 : 1e-5;  // the force over one of the supports
     EXPECT_NEAR(zero.at(name), value, 1e-8 * (std::abs(value) + scale)) << name;
   }
   // simply supported by two springs: the force stands over R
@@ -107,31 +120,38 @@ TEST(HarmonicLimits, ZeroFrequencyIsTheLimitOfLowOnes) {
 TEST(HarmonicLimits, CouplesInBalanceTwistAFreeShaft) {
   std::string text = with_force("moment = [\"10 N.m\", \"0 N.m\", \"0 N.m\"]\n");
   text += "\n";
-  const std::string second = "[[step.force]]\nat = \"d\"\nmoment = [\"-10 N.m\", \"0 N.m\", \"0 N.m\"]\n";
+  const std::string second =
+      "[[step.force]]\nat = \"d\"\nmoment = [\"-10 N.m\", \"0 N.m\", \"0 N.m\"]\n";
   text.insert(text.find("[output]"), second);
   const auto zero = answer(text);
   // 10 N m over 0.3 m of 40 mm steel
   const double G = 80e9, J = 3.14159265358979 * std::pow(0.04, 4) / 32;
-  const double twist = zero.at("Q twist amplitude [rad]") + zero.at("P twist amplitude [rad]");   // of opposite sense
-  EXPECT_NEAR(twist, 10 * 0.3 / (G * J), 0.02 * twist);   // steel's G to 2 %
+  const double twist =
+      zero.at("Q twist amplitude [rad]") + zero.at("P twist amplitude [rad]");  // of opposite sense
+  EXPECT_NEAR(twist, 10 * 0.3 / (G * J), 0.02 * twist);                         // steel's G to 2 %
   EXPECT_NEAR(zero.at("largest torque in hp [N.m]"), 10, 1e-6);
 }
 
 TEST(HarmonicLimits, ATorqueOnAFreeRotorHasNoAnswerAndThatIsSaid) {
-  const whirl::test::DeckRun r(with_force("force = [\"0 N\", \"100 N\", \"0 N\"]\nmoment = [\"10 N.m\", \"0 N.m\", \"0 N.m\"]\n"));
+  const whirl::test::DeckRun r(with_force(
+      "force = [\"0 N\", \"100 N\", \"0 N\"]\nmoment = [\"10 N.m\", \"0 N.m\", \"0 N.m\"]\n"));
   ASSERT_EQ(r.exit, 0) << r.log;
   EXPECT_TRUE(r.says("are not finite")) << r.log;
   const auto row = r.csv("push_response.csv").last();
   EXPECT_TRUE(std::isnan(row.at("P twist amplitude [rad]")));
   // bending knows nothing of the torque
   const auto bending = answer(with_force("force = [\"0 N\", \"100 N\", \"0 N\"]\n"));
-  EXPECT_NEAR(row.at("Q y amplitude [m]"), bending.at("Q y amplitude [m]"), 1e-9 * bending.at("Q y amplitude [m]"));
+  EXPECT_NEAR(row.at("Q y amplitude [m]"), bending.at("Q y amplitude [m]"),
+              1e-9 * bending.at("Q y amplitude [m]"));
 }
 
 TEST(HarmonicLimits, UnbalanceNextToStandstill) {
   std::string text = with_force("");
   text.resize(text.find("[[step]]"));
-  text += "[[unbalance]]\nat = \"d\"\namount = \"60 g.mm\"\n[[step]]\nname = \"push\"\ntype = \"unbalance_response\"\nspeed = { values = [\"1e-7 rpm\", \"1 rpm\"] }\n[output]\nreport = false\n";
+  text +=
+      "[[unbalance]]\nat = \"d\"\namount = \"60 g.mm\"\n[[step]]\nname = \"push\"\ntype = "
+      "\"unbalance_response\"\nspeed = { values = [\"1e-7 rpm\", \"1 rpm\"] }\n[output]\nreport = "
+      "false\n";
   const whirl::test::DeckRun r(text);
   ASSERT_EQ(r.exit, 0) << r.log;
   EXPECT_FALSE(r.says("not finite")) << r.log;
@@ -139,5 +159,6 @@ TEST(HarmonicLimits, UnbalanceNextToStandstill) {
   ASSERT_EQ(c.rows.size(), 2u);
   // a force that grows with the square of the speed on springs
   const auto slow = c.named(c.rows[0]), fast = c.named(c.rows[1]);
-  EXPECT_NEAR(slow.at("P y amplitude [m]") * 1e14, fast.at("P y amplitude [m]"), 1e-4 * fast.at("P y amplitude [m]"));
+  EXPECT_NEAR(slow.at("P y amplitude [m]") * 1e14, fast.at("P y amplitude [m]"),
+              1e-4 * fast.at("P y amplitude [m]"));
 }

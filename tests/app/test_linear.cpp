@@ -15,13 +15,21 @@ using namespace whirl;
 namespace {
 
 nlohmann::json run(const fs::path& folder, bool linear, double scale) {
-  model::Model m = deck::load_model(fs::path(WHIRL_SOURCE) / "examples/12_blade_loss/deck.toml", {});
-  for (model::Unbalance& u : m.unbalances) u.amount *= scale;
+  model::Model m =
+      deck::load_model(fs::path(WHIRL_SOURCE) / "examples/12_blade_loss/deck.toml", {});
+  for (model::Unbalance& u : m.unbalances)
+    u.amount *= scale;
   auto& t = std::get<model::TransientStep>(m.steps.front().law);
-  t.linear = linear; t.integrator.tolerance = 1e-6; t.checkpoint = 0;
-  m.output.report = false; m.output.csv = false; m.output.spectra.reset(); m.output.vtk.clear();
+  t.linear = linear;
+  t.integrator.tolerance = 1e-6;
+  t.checkpoint = 0;
+  m.output.report = false;
+  m.output.csv = false;
+  m.output.spectra.reset();
+  m.output.vtk.clear();
   run::RunOptions o;
-  o.quiet = true; o.output = folder;
+  o.quiet = true;
+  o.output = folder;
   EXPECT_EQ(steps::run_deck(m, o), 0);
   std::ifstream in(folder / "summary.json");
   return nlohmann::json::parse(in)["steps"]["loss"];
@@ -30,8 +38,10 @@ nlohmann::json run(const fs::path& folder, bool linear, double scale) {
 }  // namespace
 
 TEST(LinearStep, BladeLossInTheSummary) {
-  const fs::path folder = fs::temp_directory_path() / ("whirl_linear_" + std::to_string(::getpid()));
-  const nlohmann::json general = run(folder / "general", false, 0.1), linear = run(folder / "linear", true, 0.1);
+  const fs::path folder =
+      fs::temp_directory_path() / ("whirl_linear_" + std::to_string(::getpid()));
+  const nlohmann::json general = run(folder / "general", false, 0.1),
+                       linear = run(folder / "linear", true, 0.1);
   EXPECT_EQ(general.count("equations"), 0u);
   ASSERT_EQ(linear.count("equations"), 1u);
   const auto& i = linear["integrator"];
@@ -39,15 +49,20 @@ TEST(LinearStep, BladeLossInTheSummary) {
   EXPECT_EQ(i["Newton iterations"].get<long>(), attempts);
   // a factorisation serves all steps of one length
   EXPECT_LT(i["factorisations complex"].get<long>(), attempts / 5);
-  EXPECT_LT(i["Newton iterations"].get<long>(), general["integrator"]["Newton iterations"].get<long>());
+  EXPECT_LT(i["Newton iterations"].get<long>(),
+            general["integrator"]["Newton iterations"].get<long>());
   // peaks: 1e-6 each by accuracy, and second-order terms of a motion of 20 um
   for (const auto& [name, peak] : general["peaks"].items())
-    EXPECT_NEAR(linear["peaks"][name]["amplitude 0-peak [m]"].get<double>(), peak["amplitude 0-peak [m]"].get<double>(), 1e-5 * peak["amplitude 0-peak [m]"].get<double>()) << name;
+    EXPECT_NEAR(linear["peaks"][name]["amplitude 0-peak [m]"].get<double>(),
+                peak["amplitude 0-peak [m]"].get<double>(),
+                1e-5 * peak["amplitude 0-peak [m]"].get<double>())
+        << name;
   fs::remove_all(folder);
 }
 
 TEST(LinearStep, ContradictionsAreSaid) {
-  const fs::path file = fs::temp_directory_path() / ("whirl_linear_" + std::to_string(::getpid()) + ".toml");
+  const fs::path file =
+      fs::temp_directory_path() / ("whirl_linear_" + std::to_string(::getpid()) + ".toml");
   std::ifstream in(fs::path(WHIRL_SOURCE) / "examples/09_jeffcott_run_up/deck.toml");
   std::string text((std::istreambuf_iterator<char>(in)), {});
   const std::string key = "type       = \"transient\"";

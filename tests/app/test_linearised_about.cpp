@@ -1,4 +1,5 @@
-// What the analyses in the frequency domain are about: the state, the kind of motion, the numbers of the modes; the critical map.
+// What the analyses in the frequency domain are about: the state, the kind of motion, the numbers
+// of the modes; the critical map.
 #include "deck_run.hpp"
 
 #include <core/types.hpp>
@@ -47,33 +48,41 @@ report = false
 )" + steps;
 }
 
-std::string modal(const std::string& name, const std::string& keys) { return "[[step]]\nname = \"" + name + "\"\ntype = \"modal\"\nshapes = 0\n" + keys; }
+std::string modal(const std::string& name, const std::string& keys) {
+  return "[[step]]\nname = \"" + name + "\"\ntype = \"modal\"\nshapes = 0\n" + keys;
+}
 
 std::vector<double> frequencies(const DeckRun& run, const std::string& step) {
   const Columns t = run.csv(step + "_modes.csv");
   std::vector<double> out;
-  for (const auto& row : t.rows) out.push_back(row[t.column("frequency [Hz]")]);
+  for (const auto& row : t.rows)
+    out.push_back(row[t.column("frequency [Hz]")]);
   return out;
 }
 
 }  // namespace
 
-// Held along its axis the sagged shaft would have to stretch as it bends in its plane: 5.966 Hz there instead of 5.640.
+// Held along its axis the sagged shaft would have to stretch as it bends in its plane: 5.966 Hz
+// there instead of 5.640.
 TEST(LateralMotion, SaggedShaftBendsWithoutStretching) {
-  const DeckRun run(sagging(modal("lateral", "modes = 6\nmotion = \"lateral\"\n") + modal("all", "modes = 6\nmotion = \"all\"\n")));
+  const DeckRun run(sagging(modal("lateral", "modes = 6\nmotion = \"lateral\"\n") +
+                            modal("all", "modes = 6\nmotion = \"all\"\n")));
   ASSERT_EQ(run.exit, 0) << run.log;
   const std::vector<double> lateral = frequencies(run, "lateral"), all = frequencies(run, "all");
   ASSERT_EQ(lateral.size(), 6u);
   EXPECT_NEAR(lateral[0], 5.640, 5e-4);
   // planes differ by the square of the sag over the length, 3e-6, times small integers
   EXPECT_NEAR(lateral[1], lateral[0], 3e-4 * lateral[0]);
-  // axial and torsional inertia left out: the square of 5.6 Hz over 215 Hz and more, times that of the slope of the sag
-  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(lateral[k], all[k], 1e-4 * all[k]) << k;
+  // axial and torsional inertia left out: the square of 5.6 Hz over 215 Hz and more, times that of
+  // the slope of the sag
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_NEAR(lateral[k], all[k], 1e-4 * all[k]) << k;
 }
 
 // A shaft that is free along its axis and about it has no lateral mode of that.
 TEST(LateralMotion, FreeMotionsAlongAndAboutTheAxisAreNoModes) {
-  const std::string deck = sagging(modal("free", "modes = 4\nmotion = \"lateral\"\nspeed = \"300 rpm\"\n"));
+  const std::string deck =
+      sagging(modal("free", "modes = 4\nmotion = \"lateral\"\nspeed = \"300 rpm\"\n"));
   std::string soft = deck;
   soft.replace(soft.find("kxx = \"1e9 N/m\""), 15, "kxx = \"1e-3 N/m\"");
   const DeckRun held(deck);
@@ -83,7 +92,8 @@ TEST(LateralMotion, FreeMotionsAlongAndAboutTheAxisAreNoModes) {
   ASSERT_EQ(run.exit, 0) << run.log;
   const std::vector<double> found = frequencies(run, "free");
   ASSERT_EQ(found.size(), expected.size());
-  for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-5 * expected[k]) << k;
+  for (std::size_t k = 0; k < found.size(); ++k)
+    EXPECT_NEAR(found[k], expected[k], 1e-5 * expected[k]) << k;
 }
 
 TEST(LateralMotion, CriticalMapOfTheSaggedShaft) {
@@ -98,14 +108,16 @@ backward = true
 )"));
   ASSERT_EQ(run.exit, 0) << run.log;
   const Columns t = run.csv("map_critical_map.csv");
-  ASSERT_EQ(t.names.size(), 3u) << run.log;   // both planes
+  ASSERT_EQ(t.names.size(), 3u) << run.log;  // both planes
   EXPECT_NEAR(t.rows.at(1)[1], 338.35, 0.06);
   EXPECT_NEAR(t.rows.at(1)[2], 338.46, 0.06);
 }
 
 // What a step is about stands in the summary and on the terminal, and a deck chooses.
 TEST(LinearisedAbout, IsSaidAndChosen) {
-  const DeckRun run(sagging(modal("sag", "modes = 2\nspeed = \"300 rpm\"\n") + modal("straight", "modes = 2\nspeed = \"300 rpm\"\nabout = \"undeformed\"\n") + R"([[step]]
+  const DeckRun run(sagging(
+      modal("sag", "modes = 2\nspeed = \"300 rpm\"\n") +
+      modal("straight", "modes = 2\nspeed = \"300 rpm\"\nabout = \"undeformed\"\n") + R"([[step]]
 name = "c"
 type = "critical_speeds"
 max_speed = "500 rpm"
@@ -118,10 +130,11 @@ about = "undeformed"
   EXPECT_EQ(steps["c"]["linearised"], "about the undeformed rotor");
   EXPECT_TRUE(run.says("about the static equilibrium at 300 rpm")) << run.log;
   EXPECT_TRUE(run.says("about the undeformed rotor")) << run.log;
-  // pinned straight beam of 6 m by Euler-Bernoulli: pi/2 sqrt(EI/(rho A))/L^2; shear and rotary inertia take 1e-3, the supports 1e-4
+  // pinned straight beam of 6 m by Euler-Bernoulli: pi/2 sqrt(EI/(rho A))/L^2; shear and rotary
+  // inertia take 1e-3, the supports 1e-4
   const double straight = frequencies(run, "straight").at(1), sag = frequencies(run, "sag").at(1);
   const Columns material = run.csv("straight_modes.csv");
-  EXPECT_GT(std::abs(straight - sag), 1e-6 * sag);   // the sag matters, if little
+  EXPECT_GT(std::abs(straight - sag), 1e-6 * sag);  // the sag matters, if little
   EXPECT_NEAR(straight, sag, 1e-2 * sag);
 }
 
@@ -181,7 +194,8 @@ Ip = "0.3 kg.m^2"
 Id = "0.2 kg.m^2"
 [output]
 report = false
-)" + bearings + R"([[step]]
+)" + bearings +
+         R"([[step]]
 name = "map"
 type = "critical_map"
 stiffness_min = "1e6 N/m"
@@ -193,9 +207,10 @@ max_speed = "30000 rpm"
 
 }  // namespace
 
-// Tables and linear bearings of the same coefficients have the same map, tilting stiffness included: 1740 rpm at 1e7 N/m. A
-// thrust bearing and a stop carry nothing laterally and are not varied. (The mesh shares an element's mass with a support
-// of constant stiffness in another way than with a table: 4e-5 of the highest critical speeds here.)
+// Tables and linear bearings of the same coefficients have the same map, tilting stiffness
+// included: 1740 rpm at 1e7 N/m. A thrust bearing and a stop carry nothing laterally and are not
+// varied. (The mesh shares an element's mass with a support of constant stiffness in another way
+// than with a table: 4e-5 of the highest critical speeds here.)
 TEST(CriticalMap, KeepsEveryStiffnessButTheOneVaried) {
   const std::string linear = map_deck(R"([[bearing]]
 name = "A"
@@ -276,8 +291,9 @@ kzz = "3e6 N/m"
   }
 }
 
-// Angular-contact bearings, whose lateral and tilting stiffness are coupled, at the lateral stiffness that the static step gives
-// them: the map is at the critical speeds of the machine itself. (A mesh shares mass with a linear support in another way: 3e-5.)
+// Angular-contact bearings, whose lateral and tilting stiffness are coupled, at the lateral
+// stiffness that the static step gives them: the map is at the critical speeds of the machine
+// itself. (A mesh shares mass with a linear support in another way: 3e-5.)
 TEST(CriticalMap, RollingBearingsAtTheirOwnStiffness) {
   const auto deck = [](const std::string& steps) {
     std::string text = R"(format = 1
@@ -295,23 +311,33 @@ Id = "0.03 kg.m^2"
 [output]
 report = false
 )";
-    for (const auto& [name, at, side] : {std::array{"A", "a:start", "+x"}, std::array{"B", "a:end", "-x"}})
-      text += fmt::format("[[bearing]]\nname = \"{}\"\nat = \"{}\"\ndirection = \"{}\"\ntype = \"ball\"\nballs = 12\nball_diameter = \"10 mm\"\n"
-                          "pitch_diameter = \"60 mm\"\ncontact_angle = \"25 deg\"\npreload = \"500 N\"\n", name, at, side);
+    for (const auto& [name, at, side] :
+         {std::array{"A", "a:start", "+x"}, std::array{"B", "a:end", "-x"}})
+      text += fmt::format(
+          "[[bearing]]\nname = \"{}\"\nat = \"{}\"\ndirection = \"{}\"\ntype = \"ball\"\nballs = "
+          "12\nball_diameter = \"10 mm\"\n"
+          "pitch_diameter = \"60 mm\"\ncontact_angle = \"25 deg\"\npreload = \"500 N\"\n",
+          name, at, side);
     return text + steps;
   };
   double stiffness = 0;
   std::vector<double> own;
   {
-    const DeckRun run(deck("[[step]]\nname = \"s\"\ntype = \"static\"\nspeed = \"20000 rpm\"\n[[step]]\nname = \"c\"\ntype = \"critical_speeds\"\n"
-                           "max_speed = \"20000 rpm\"\nmotion = \"lateral\"\nshapes = 0\n"));
+    const DeckRun run(
+        deck("[[step]]\nname = \"s\"\ntype = \"static\"\nspeed = \"20000 rpm\"\n[[step]]\nname = "
+             "\"c\"\ntype = \"critical_speeds\"\n"
+             "max_speed = \"20000 rpm\"\nmotion = \"lateral\"\nshapes = 0\n"));
     ASSERT_EQ(run.exit, 0) << run.log;
-    stiffness = run.csv("s_rolling_stiffness.csv").rows.at(1).at(3);   // A, y, per y
+    stiffness = run.csv("s_rolling_stiffness.csv").rows.at(1).at(3);  // A, y, per y
     const Columns c = run.csv("c_undamped.csv");
-    for (const auto& row : c.rows) own.push_back(row[c.column("speed [rpm]")]);
+    for (const auto& row : c.rows)
+      own.push_back(row[c.column("speed [rpm]")]);
   }
-  const DeckRun run(deck(fmt::format("[[step]]\nname = \"m\"\ntype = \"critical_map\"\nmax_speed = \"20000 rpm\"\nbackward = true\npoints = 3\n"
-                                     "stiffness_min = \"{:.17g} N/m\"\nstiffness_max = \"{:.17g} N/m\"\n", 0.01 * stiffness, 100 * stiffness)));
+  const DeckRun run(
+      deck(fmt::format("[[step]]\nname = \"m\"\ntype = \"critical_map\"\nmax_speed = \"20000 "
+                       "rpm\"\nbackward = true\npoints = 3\n"
+                       "stiffness_min = \"{:.17g} N/m\"\nstiffness_max = \"{:.17g} N/m\"\n",
+                       0.01 * stiffness, 100 * stiffness)));
   ASSERT_EQ(run.exit, 0) << run.log;
   const Columns map = run.csv("m_critical_map.csv");
   ASSERT_EQ(own.size(), 2u);
@@ -324,8 +350,8 @@ report = false
   }
 }
 
-// Two rotors, one on supports that are varied, one on others: the critical speed of the second is a level line through which
-// that of the first goes.
+// Two rotors, one on supports that are varied, one on others: the critical speed of the second is a
+// level line through which that of the first goes.
 TEST(CriticalMap, LinesGoByShapeThroughCrossings) {
   const DeckRun run(map_deck(R"([[bearing]]
 name = "A"
@@ -358,17 +384,23 @@ name = "D"
 at = "z:end"
 type = "rigid"
 directions = ["y", "z"]
-)", "bearings = [\"A\", \"B\"]\n"));
+)",
+                             "bearings = [\"A\", \"B\"]\n"));
   ASSERT_EQ(run.exit, 0) << run.log;
   const Columns t = run.csv("map_critical_map.csv");
-  // both criticals of the second rotor, 3654 and 14592 rpm, stay where they are at all stiffnesses; numbered from below the higher
-  // one would jump where the first rotor's second passes it, at 3e7 N/m
+  // both criticals of the second rotor, 3654 and 14592 rpm, stay where they are at all stiffnesses;
+  // numbered from below the higher one would jump where the first rotor's second passes it, at 3e7
+  // N/m
   int level = 0;
   for (std::size_t j = 1; j < t.names.size(); ++j) {
     double low = infinity, high = -infinity;
-    for (const auto& row : t.rows) { low = std::min(low, row[j]); high = std::max(high, row[j]); }
+    for (const auto& row : t.rows) {
+      low = std::min(low, row[j]);
+      high = std::max(high, row[j]);
+    }
     bool whole = true;
-    for (const auto& row : t.rows) whole = whole && !std::isnan(row[j]);
+    for (const auto& row : t.rows)
+      whole = whole && !std::isnan(row[j]);
     level += whole && high - low < 1e-8 * high;
   }
   EXPECT_EQ(level, 2) << run.log;
@@ -389,7 +421,11 @@ krxx = "1e5 N.m/rad"
 [[probe]]
 name = "P"
 at = "d"
-)", "[[step]]\nname = \"modes\"\ntype = \"modal\"\nmodes = 8\n[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"1 ms\"\nstart = \"mode\"\nmode_amplitude = \"0.01 mm\"\nlinear = true\n" + keys);
+)",
+                    "[[step]]\nname = \"modes\"\ntype = \"modal\"\nmodes = 8\n[[step]]\nname = "
+                    "\"t\"\ntype = \"transient\"\nduration = \"1 ms\"\nstart = "
+                    "\"mode\"\nmode_amplitude = \"0.01 mm\"\nlinear = true\n" +
+                        keys);
   };
   const DeckRun run(start("mode_kind = \"torsional\"\n"));
   ASSERT_EQ(run.exit, 0) << run.log;
@@ -409,7 +445,10 @@ at = "d"
   const std::size_t y = bend.column("P.y [m]");
   const auto range = [&](const Columns& t) {
     double low = infinity, high = -infinity;
-    for (const auto& row : t.rows) { low = std::min(low, row[y]); high = std::max(high, row[y]); }
+    for (const auto& row : t.rows) {
+      low = std::min(low, row[y]);
+      high = std::max(high, row[y]);
+    }
     return high - low;
   };
   EXPECT_LT(range(twist), 1e-3 * range(bend));

@@ -28,13 +28,15 @@ using Lines = std::vector<std::string>;
 Lines lines_of(const fs::path& file) {
   Lines r;
   std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) r.push_back(line);
+  for (std::string line; std::getline(in, line);)
+    r.push_back(line);
   return r;
 }
 
 std::string text_of(const Lines& lines) {
   std::string r;
-  for (const auto& l : lines) r += l + "\n";
+  for (const auto& l : lines)
+    r += l + "\n";
   return r;
 }
 
@@ -43,8 +45,10 @@ bool header(const std::string& line) { return line.starts_with("["); }
 /// The table that the line belongs to, from its header to before the next.
 std::pair<std::size_t, std::size_t> table_of(const Lines& lines, std::size_t at) {
   std::size_t begin = at, end = at + 1;
-  while (begin > 0 && !header(lines[begin])) --begin;
-  while (end < lines.size() && !header(lines[end])) ++end;
+  while (begin > 0 && !header(lines[begin]))
+    --begin;
+  while (end < lines.size() && !header(lines[end]))
+    ++end;
   return {begin, end};
 }
 
@@ -55,9 +59,7 @@ Lines with_mistake(Lines lines, std::size_t at, unsigned kind, std::mt19937& ran
   const char* values[] = {" \"\"",  " []",   " {}",   " 0",       " -1", " \"x\"",
                           " 1e300", " true", " [[]]", " \"nan\"", ""};
   switch (kind) {
-    case 0:
-      lines.erase(from);
-      break;
+    case 0: lines.erase(from); break;
     case 1: {
       const auto [begin, end] = table_of(lines, at);
       lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -70,12 +72,8 @@ Lines with_mistake(Lines lines, std::size_t at, unsigned kind, std::mt19937& ran
       else
         lines.erase(from);
       break;
-    case 3:
-      lines.insert(from, lines[at]);
-      break;
-    case 4:
-      lines.resize(at);
-      break;
+    case 3: lines.insert(from, lines[at]); break;
+    case 4: lines.resize(at); break;
     case 5: {  // a letter lost
       std::string& l = lines[at];
       if (!l.empty()) l.erase(random() % l.size(), 1);
@@ -108,7 +106,8 @@ std::string trouble(const std::string& text, const fs::path& folder) {
   try {
     const meshes::Mesh mesh = meshes::make_mesh(d.model);
     std::set<std::string> keys{""};
-    for (const model::Drive& x : d.model.drives) keys.insert(x.step);
+    for (const model::Drive& x : d.model.drives)
+      keys.insert(x.step);
     for (const std::string& step : keys) {
       const assembly::Built built = assembly::build_system(d.model, mesh, step);
       const system::State s = built.system.make_state();

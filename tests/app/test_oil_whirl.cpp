@@ -1,4 +1,5 @@
-// Oil whirl of the flexible rotor, from the deck to the results: the onset of the eigenvalues, nonlinear runs on both sides of it.
+// Oil whirl of the flexible rotor, from the deck to the results: the onset of the eigenvalues,
+// nonlinear runs on both sides of it.
 #include "deck_run.hpp"
 #include "oil_whirl_rotor.hpp"
 
@@ -43,17 +44,25 @@ integrator = {{ tolerance = {3:.1g} }}
 every = "1 ms"
 quantities = ["probes", "energy"]
 report = false
-)", rpm, seconds, amplitude, tolerance));
+)",
+                                           rpm, seconds, amplitude, tolerance));
 }
 
-/// Root of the mean square of the journal's distance from its mean place in [from, from + length), m.
+/// Root of the mean square of the journal's distance from its mean place in [from, from + length),
+/// m.
 double whirl_in(const Columns& run, double from, double length) {
-  const std::size_t t = run.column("t [s]"), y = run.column("journal.y [m]"), z = run.column("journal.z [m]");
+  const std::size_t t = run.column("t [s]"), y = run.column("journal.y [m]"),
+                    z = run.column("journal.z [m]");
   double count = 0, Y = 0, Z = 0, sum = 0;
   for (const auto& row : run.rows)
-    if (row[t] >= from && row[t] < from + length) { ++count; Y += row[y]; Z += row[z]; }
+    if (row[t] >= from && row[t] < from + length) {
+      ++count;
+      Y += row[y];
+      Z += row[z];
+    }
   for (const auto& row : run.rows)
-    if (row[t] >= from && row[t] < from + length) sum += std::pow(row[y] - Y / count, 2) + std::pow(row[z] - Z / count, 2);
+    if (row[t] >= from && row[t] < from + length)
+      sum += std::pow(row[y] - Y / count, 2) + std::pow(row[z] - Z / count, 2);
   return std::sqrt(sum / count);
 }
 
@@ -74,8 +83,9 @@ report = false
   EXPECT_NEAR(d.csv("stability_onset.csv").rows.at(0).at(0), onset, 2e-4 * onset);
 }
 
-// A mass on a light shaft (a spring of natural frequency 100, 200, 300 rad/s) between journals without mass: Omega = sqrt(keq ks/((keq + ks) M))/WFR, in closed form to
-// eight digits. Shaft and journals are lines of their own, so that no torque of the films runs through what bends.
+// A mass on a light shaft (a spring of natural frequency 100, 200, 300 rad/s) between journals
+// without mass: Omega = sqrt(keq ks/((keq + ks) M))/WFR, in closed form to eight digits. Shaft and
+// journals are lines of their own, so that no torque of the films runs through what bends.
 TEST(OilWhirlRuns, OnsetOfAMassOnALightShaft) {
   const double M = 525 / 9.81;
   const auto body = [](const char* name, double kg) {
@@ -95,11 +105,16 @@ name = "{0} guide"
 at = "{0} mass"
 type = "rigid"
 directions = ["x", "ry", "rz"]
-)", name, kg);
+)",
+                       name, kg);
   };
-  for (const auto& [natural, speed, whirl] : {std::tuple{100.0, 1811.3617, 97.37152}, {200.0, 3430.5272, 181.42303}, {300.0, 4678.6899, 246.38206}}) {
+  for (const auto& [natural, speed, whirl] : {std::tuple{100.0, 1811.3617, 97.37152},
+                                              {200.0, 3430.5272, 181.42303},
+                                              {300.0, 4678.6899, 246.38206}}) {
     SCOPED_TRACE(natural);
-    const DeckRun d("format = 1\n[model]\ngravity = \"9.81 m/s^2\"\n" + body("rotor", M) + body("journal", 0) + fmt::format(R"([[bearing]]
+    const DeckRun d("format = 1\n[model]\ngravity = \"9.81 m/s^2\"\n" + body("rotor", M) +
+                    body("journal", 0) +
+                    fmt::format(R"([[bearing]]
 name = "shaft"
 at = "rotor mass"
 to = "journal mass"
@@ -121,7 +136,8 @@ speed = {{ start = "{1:.6g} rpm", stop = "{2:.6g} rpm", points = 11 }}
 modes = 4
 [output]
 report = false
-)", M * natural * natural, 0.5 * speed, 1.5 * speed));
+)",
+                                M * natural * natural, 0.5 * speed, 1.5 * speed));
     ASSERT_EQ(d.exit, 0) << d.log;
     const Columns t = d.csv("stability_onset.csv");
     const auto onset = t.named(t.rows.at(0));
@@ -130,8 +146,9 @@ report = false
   }
 }
 
-// 0.1 um in a clearance of 100 um is a small motion: it decays below the onset and grows above at the rate of the eigenvalue. What is left is the second
-// order in amplitude over clearance, and the whole whirl periods that the windows hold to one sample in a thousand.
+// 0.1 um in a clearance of 100 um is a small motion: it decays below the onset and grows above at
+// the rate of the eigenvalue. What is left is the second order in amplitude over clearance, and the
+// whole whirl periods that the windows hold to one sample in a thousand.
 TEST(OilWhirlRuns, SmallMotionsFollowTheEigenvalue) {
   for (const double factor : {0.98, 1.02}) {
     SCOPED_TRACE(factor);
@@ -140,7 +157,7 @@ TEST(OilWhirlRuns, SmallMotionsFollowTheEigenvalue) {
     const Columns modes = d.csv("modes_modes.csv");
     const auto mode = modes.named(modes.rows.at(1));
     const double f = mode.at("frequency [Hz]"), rate = -f * mode.at("log decrement [-]");
-    EXPECT_NEAR(f, 17.418836, 0.01 * f);   // that of the onset, nearly
+    EXPECT_NEAR(f, 17.418836, 0.01 * f);  // that of the onset, nearly
     const Columns run = d.csv("run.csv");
     const double window = 34 / f;
     const double found = std::log(whirl_in(run, 10.0, window) / whirl_in(run, 0.0, window)) / 10.0;
@@ -149,7 +166,8 @@ TEST(OilWhirlRuns, SmallMotionsFollowTheEigenvalue) {
   }
 }
 
-// From some hundredths of the clearance: below the onset back to the equilibrium, above it out to a limit cycle near the bearing wall, which stays.
+// From some hundredths of the clearance: below the onset back to the equilibrium, above it out to a
+// limit cycle near the bearing wall, which stays.
 TEST(OilWhirlRuns, ReturnsBelowAndSettlesInAWhipAbove) {
   {
     const DeckRun d(run_in_mode(0.98 * onset, 30.0, "50 um", 1e-4));
@@ -168,16 +186,19 @@ TEST(OilWhirlRuns, ReturnsBelowAndSettlesInAWhipAbove) {
   }
 }
 
-// In the whip the film is 5 um thick, the shaft goes 3 mm, and the whirl is so near half the speed that the film's wedge all but vanishes: what the
-// journal does must be right to the clearance, whatever the tolerance. At the loosest one the amplitude is that of the tightest to its tolerance, and
-// the steps are fewer (they were more, ten times, when journals counted like the rest of the shaft and growing steps could be made shorter).
+// In the whip the film is 5 um thick, the shaft goes 3 mm, and the whirl is so near half the speed
+// that the film's wedge all but vanishes: what the journal does must be right to the clearance,
+// whatever the tolerance. At the loosest one the amplitude is that of the tightest to its
+// tolerance, and the steps are fewer (they were more, ten times, when journals counted like the
+// rest of the shaft and growing steps could be made shorter).
 TEST(OilWhirlRuns, WhipAtLooseTolerances) {
   const auto whip = [](double tolerance) {
     const DeckRun d(run_in_mode(1.02 * onset, 26.0, "100 um", tolerance));
     EXPECT_EQ(d.exit, 0) << d.log;
     std::ifstream in(d.folder / "r" / "summary.json");
     const auto run = nlohmann::json::parse(in).at("steps").at("run");
-    return std::pair(run.at("peaks").at("journal").at("amplitude 0-peak [m]").get<double>(), run.at("integrator").at("steps").get<double>());
+    return std::pair(run.at("peaks").at("journal").at("amplitude 0-peak [m]").get<double>(),
+                     run.at("integrator").at("steps").get<double>());
   };
   const auto [exact, most] = whip(1e-6);
   for (const double tolerance : {1e-3, 1e-4}) {

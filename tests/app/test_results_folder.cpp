@@ -107,15 +107,23 @@ class ResultsFolder : public testing::Test {
     const pid_t pid = ::fork();
     if (pid == 0) {
       const int log = closed_pipe ? ends[1] : ::open("log.txt", O_WRONLY | O_CREAT | O_TRUNC, 0644);
-      ::dup2(log, 1); ::dup2(log, 2);
-      if (closed_pipe) { ::close(ends[0]); ::close(ends[1]); }
+      ::dup2(log, 1);
+      ::dup2(log, 2);
+      if (closed_pipe) {
+        ::close(ends[0]);
+        ::close(ends[1]);
+      }
       std::vector<char*> argv{const_cast<char*>(WHIRL_EXE), const_cast<char*>("run")};
-      for (const auto& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+      for (const auto& a : arguments)
+        argv.push_back(const_cast<char*>(a.c_str()));
       argv.push_back(nullptr);
       ::execv(WHIRL_EXE, argv.data());
       ::_exit(127);
     }
-    if (closed_pipe) { ::close(ends[0]); ::close(ends[1]); }
+    if (closed_pipe) {
+      ::close(ends[0]);
+      ::close(ends[1]);
+    }
     return pid;
   }
   /// Exit code, minus the signal when it died of one.
@@ -187,7 +195,8 @@ TEST_F(ResultsFolder, NothingIsReachedThroughASymbolicLink) {
   EXPECT_NE(read("log.txt").find("symbolic link"), std::string::npos) << read("log.txt");
   EXPECT_EQ(read("elsewhere/mine.svg"), "mine");
   int files = 0;
-  for (const auto& f : fs::directory_iterator("elsewhere")) files += f.exists();
+  for (const auto& f : fs::directory_iterator("elsewhere"))
+    files += f.exists();
   EXPECT_EQ(files, 1);
   // a list that was tampered with removes nothing outside either
   fs::remove("r/plots");

@@ -24,7 +24,8 @@ std::string read(const fs::path& p) {
   return s.str();
 }
 
-/// Unbalanced rotor on soft bearings through its critical speed under a motor torque: events of every kind, some seconds of work.
+/// Unbalanced rotor on soft bearings through its critical speed under a motor torque: events of
+/// every kind, some seconds of work.
 constexpr const char* deck = R"(format = 1
 [shaft]
 name = "rotor"
@@ -89,8 +90,10 @@ class Resume : public testing::Test {
  protected:
   void SetUp() override {
     std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    for (char& c : name) if (c == '/') c = '_';
-    folder_ = fs::temp_directory_path() / ("whirl_resume_" + std::to_string(::getpid()) + "_" + name);
+    for (char& c : name)
+      if (c == '/') c = '_';
+    folder_ =
+        fs::temp_directory_path() / ("whirl_resume_" + std::to_string(::getpid()) + "_" + name);
     fs::create_directories(folder_);
     fs::current_path(folder_);
   }
@@ -98,20 +101,27 @@ class Resume : public testing::Test {
     fs::current_path("/");
     fs::remove_all(folder_);
   }
-  void write_deck(const std::string& file, const std::string& duration, const std::string& more = "", const std::string& integrator = "") {
+  void write_deck(const std::string& file, const std::string& duration,
+                  const std::string& more = "", const std::string& integrator = "") {
     std::string text = deck;
     text.replace(text.find("DURATION"), 8, duration);
     text.replace(text.find("METHOD"), 6, integrator);
     std::ofstream(file) << text << more;
   }
-  /// Starts `whirl run`; with seconds > 0 sends `signal` after that time. Returns the exit code, minus the signal when it died of one.
-  int run(const std::string& file, const std::string& output, bool resume, double seconds = 0, int signal = 0) {
+  /// Starts `whirl run`; with seconds > 0 sends `signal` after that time. Returns the exit code,
+  /// minus the signal when it died of one.
+  int run(const std::string& file, const std::string& output, bool resume, double seconds = 0,
+          int signal = 0) {
     const pid_t pid = ::fork();
     if (pid == 0) {
       const int log = ::open("log.txt", O_WRONLY | O_CREAT | O_APPEND, 0644);
-      ::dup2(log, 1); ::dup2(log, 2);
-      if (resume) ::execl(WHIRL_EXE, WHIRL_EXE, "run", file.c_str(), "-o", output.c_str(), "--resume", nullptr);
-      else ::execl(WHIRL_EXE, WHIRL_EXE, "run", file.c_str(), "-o", output.c_str(), nullptr);
+      ::dup2(log, 1);
+      ::dup2(log, 2);
+      if (resume)
+        ::execl(WHIRL_EXE, WHIRL_EXE, "run", file.c_str(), "-o", output.c_str(), "--resume",
+                nullptr);
+      else
+        ::execl(WHIRL_EXE, WHIRL_EXE, "run", file.c_str(), "-o", output.c_str(), nullptr);
       ::_exit(127);
     }
     if (seconds > 0) {
@@ -122,12 +132,15 @@ class Resume : public testing::Test {
     ::waitpid(pid, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   }
-  /// Relative path and content of what must not depend on interruptions: all but run times and the checkpoint's own.
+  /// Relative path and content of what must not depend on interruptions: all but run times and the
+  /// checkpoint's own.
   static std::map<std::string, std::string> files(const fs::path& root) {
     std::map<std::string, std::string> out;
     for (const auto& e : fs::recursive_directory_iterator(root)) {
-      const std::string name = fs::relative(e.path(), root).string(), ext = e.path().extension().string();
-      if (e.is_regular_file() && ext != ".json" && ext != ".html" && ext != ".whirl") out[name] = read(e.path());
+      const std::string name = fs::relative(e.path(), root).string(),
+                        ext = e.path().extension().string();
+      if (e.is_regular_file() && ext != ".json" && ext != ".html" && ext != ".whirl")
+        out[name] = read(e.path());
     }
     return out;
   }
@@ -147,31 +160,40 @@ class ResumeScheme : public Resume, public testing::WithParamInterface<const cha
 }  // namespace
 
 TEST_P(ResumeScheme, KilledAtRandomTimesEqualsUninterrupted) {
-  if (std::string(GetParam()).find("ida") != std::string::npos && !whirl::Plugin::available("sundials")) GTEST_SKIP() << "built without SUNDIALS";
+  if (std::string(GetParam()).find("ida") != std::string::npos &&
+      !whirl::Plugin::available("sundials"))
+    GTEST_SKIP() << "built without SUNDIALS";
   write_deck("d.toml", "0.5 s", "", "integrator = { " + std::string(GetParam()) + " }");
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_EQ(run("d.toml", "whole", false), 0);
-  const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double whole =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> share(0.02, 0.5);   // the first cut comes while it runs, also when the machine has become idle
+  std::uniform_real_distribution<double> share(
+      0.02, 0.5);  // the first cut comes while it runs, also when the machine has become idle
   int code = run("d.toml", "cut", false, share(random) * whole, SIGKILL), cuts = 0;
   for (; code != 0 && cuts < 50; ++cuts) {
     EXPECT_TRUE(code == -SIGKILL || code == 130) << code;
-    code = cuts < 4 ? run("d.toml", "cut", true, share(random) * whole, cuts % 2 ? SIGKILL : SIGINT) : run("d.toml", "cut", true);
+    code = cuts < 4 ? run("d.toml", "cut", true, share(random) * whole, cuts % 2 ? SIGKILL : SIGINT)
+                    : run("d.toml", "cut", true);
   }
   ASSERT_EQ(code, 0) << read("log.txt");
   EXPECT_GE(cuts, 1);
   expect_same("whole", "cut");
 }
 
-INSTANTIATE_TEST_SUITE_P(Schemes, ResumeScheme, testing::Values("method = \"radau5\"", "method = \"generalized_alpha\", dt = \"10 us\"", "method = \"gauss4\"",
-                                                                        "method = \"ida\", tolerance = 1e-2"));
+INSTANTIATE_TEST_SUITE_P(Schemes, ResumeScheme,
+                         testing::Values("method = \"radau5\"",
+                                         "method = \"generalized_alpha\", dt = \"10 us\"",
+                                         "method = \"gauss4\"",
+                                         "method = \"ida\", tolerance = 1e-2"));
 
 TEST_F(Resume, LaterEndAndOtherOutputs) {
   write_deck("short.toml", "0.2 s");
-  write_deck("long.toml", "0.4 s", "points_around = 16\n[[output.vtk]]\nframes = 11\ncontent = [\"bearings\"]\n");
+  write_deck("long.toml", "0.4 s",
+             "points_around = 16\n[[output.vtk]]\nframes = 11\ncontent = [\"bearings\"]\n");
   ASSERT_EQ(run("short.toml", "r", false), 0);
   const std::string before = read("r/run_up.csv");
   ASSERT_EQ(run("long.toml", "r", true), 0) << read("log.txt");
@@ -179,9 +201,11 @@ TEST_F(Resume, LaterEndAndOtherOutputs) {
   EXPECT_EQ(after.substr(0, before.size()), before);
   EXPECT_GT(after.size(), 1.9 * before.size());
   EXPECT_TRUE(fs::exists("r/vtk/run_up_2_bearings.pvd"));
-  // and it stays on the track of a run that was meant to last so long: the end of the first part changed some steps
+  // and it stays on the track of a run that was meant to last so long: the end of the first part
+  // changed some steps
   ASSERT_EQ(run("long.toml", "whole", false), 0);
-  // (undamped torsion rings in the spin of a node, as soon out of step as the steps differ: its mean over the last tenth of a second)
+  // (undamped torsion rings in the spin of a node, as soon out of step as the steps differ: its
+  // mean over the last tenth of a second)
   const auto mean_spin = [](const std::string& csv) {
     std::istringstream in(csv);
     double sum = 0, last = 0;
@@ -190,14 +214,17 @@ TEST_F(Resume, LaterEndAndOtherOutputs) {
     for (std::getline(in, line); std::getline(in, line);) {
       const std::size_t comma = line.find(',');
       last = std::stod(line);
-      if (last > 0.3) { sum += std::stod(line.substr(comma + 1)); ++count; }
+      if (last > 0.3) {
+        sum += std::stod(line.substr(comma + 1));
+        ++count;
+      }
     }
     EXPECT_EQ(last, 0.4);
     EXPECT_NEAR(count, 1000, 1);
     return sum / count;
   };
   const double a = mean_spin(after), b = mean_spin(read("whole/run_up.csv"));
-  EXPECT_NEAR(a, b, 1e-4 * b);   // the tolerance
+  EXPECT_NEAR(a, b, 1e-4 * b);  // the tolerance
 }
 
 TEST_F(Resume, OtherColumnsKeepTheEarlierFile) {

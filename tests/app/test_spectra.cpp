@@ -1,4 +1,5 @@
-// What lists of modes and verdicts of stability say, through the program: complete beside a free spin, real roots judged, rounding no instability.
+// What lists of modes and verdicts of stability say, through the program: complete beside a free
+// spin, real roots judged, rounding no instability.
 #include "deck_run.hpp"
 
 #include <algorithm>
@@ -10,7 +11,8 @@ namespace {
 
 std::vector<double> column(const Columns& table, const std::string& name) {
   std::vector<double> out;
-  for (const auto& row : table.rows) out.push_back(row[table.column(name)]);
+  for (const auto& row : table.rows)
+    out.push_back(row[table.column(name)]);
   return out;
 }
 
@@ -82,7 +84,8 @@ type = "rigid"
 directions = ["x", "y", "z", "ry", "rz"]
 [[load]]
 at = "column:end"
-force = [")" + force + R"(", "0 N", "0 N"]
+force = [")" +
+         force + R"(", "0 N", "0 N"]
 [[step]]
 name = "m"
 type = "modal"
@@ -98,8 +101,9 @@ speed = { start = "0 rpm", stop = "100 rpm", points = 3 }
 }  // namespace
 
 TEST(Spectra, FilmsBesideAFreeSpinLoseNoMode) {
-  // The same small motions without the free root: a soft spring holds the spin. Its lateral modes are those of the free rotor to 1e-8, for the spring
-  // feels them only through the drag of the films.
+  // The same small motions without the free root: a soft spring holds the spin. Its lateral modes
+  // are those of the free rotor to 1e-8, for the spring feels them only through the drag of the
+  // films.
   const DeckRun free(on_films("")), held(on_films(R"([[bearing]]
 name = "hold"
 at = "a:start"
@@ -114,7 +118,8 @@ krxx = "10 N.m/rad"
   ASSERT_EQ(a.size(), 14u);
   EXPECT_TRUE(std::is_sorted(a.begin(), a.end()));
   // Lateral and axial ones; torsion itself the spring changes.
-  for (const double f : {332.8758, 494.1965, 530.2474, 1062.984, 2561.617, 3117.252, 8234.979, 9301.024, 17953.80, 18247.34, 19802.66, 20473.17}) {
+  for (const double f : {332.8758, 494.1965, 530.2474, 1062.984, 2561.617, 3117.252, 8234.979,
+                         9301.024, 17953.80, 18247.34, 19802.66, 20473.17}) {
     const auto near = [f](double x) { return std::abs(x - f) < 1e-5 * f; };
     EXPECT_TRUE(std::any_of(a.begin(), a.end(), near)) << f;
     EXPECT_TRUE(std::any_of(b.begin(), b.end(), near)) << f;
@@ -122,8 +127,9 @@ krxx = "10 N.m/rad"
 }
 
 TEST(Spectra, ColumnBeyondItsEulerLoadDiverges) {
-  // 1.2 times the Euler load: EI w'''' + P w'' + rho A s^2 w = 0, clamped and free under a dead load, has one growing root, 8.556874 1/s, in each plane (the
-  // determinant of its four conditions). Twenty elements and shear leave 1e-5.
+  // 1.2 times the Euler load: EI w'''' + P w'' + rho A s^2 w = 0, clamped and free under a dead
+  // load, has one growing root, 8.556874 1/s, in each plane (the determinant of its four
+  // conditions). Twenty elements and shear leave 1e-5.
   const DeckRun above(column_under("-7.8135816 N"));
   ASSERT_EQ(above.exit, 0) << above.log;
   const std::vector<double> rates = column(above.csv("m_real_roots.csv"), "rate [1/s]");
@@ -140,8 +146,8 @@ TEST(Spectra, ColumnBeyondItsEulerLoadDiverges) {
 }
 
 TEST(Spectra, OnsetOfDivergenceIsLocated) {
-  // A disk of 10 kg on springs of 1e6 N/m and a table that falls from 0 to -4e6 N/m between 0 and 4000 rpm in z: K vanishes at 1000 rpm. Rigid,
-  // so the closed form is the table's own.
+  // A disk of 10 kg on springs of 1e6 N/m and a table that falls from 0 to -4e6 N/m between 0 and
+  // 4000 rpm in z: K vanishes at 1000 rpm. Rigid, so the closed form is the table's own.
   const DeckRun d(R"(format = 1
 [output]
 report = false
@@ -182,7 +188,8 @@ speed = { start = "100 rpm", stop = "3900 rpm", points = 12 }
 }
 
 TEST(Spectra, RoundingIsNoInstability) {
-  // An undamped shaft on undamped springs, turning: nothing dissipates, nothing grows, whatever the last digits say.
+  // An undamped shaft on undamped springs, turning: nothing dissipates, nothing grows, whatever the
+  // last digits say.
   const DeckRun d(R"(format = 1
 [output]
 report = false
@@ -220,6 +227,8 @@ speed = { start = "0 rpm", stop = "12000 rpm", points = 13 }
 )");
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_FALSE(d.says("unstable")) << d.log;
-  EXPECT_TRUE(d.says("stable from 0 to 12000 rpm (certified at 13 speeds: all roots accounted for)")) << d.log;
+  EXPECT_TRUE(
+      d.says("stable from 0 to 12000 rpm (certified at 13 speeds: all roots accounted for)"))
+      << d.log;
   EXPECT_TRUE(d.csv("s_onset.csv").rows.empty());
 }

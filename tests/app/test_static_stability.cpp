@@ -69,15 +69,15 @@ TEST(StaticStability, ColumnBeyondItsBucklingLoad) {
   const double tip = std::hypot(shape.rows.back()[y], shape.rows.back()[z]);
   for (const auto& row : shape.rows) {
     EXPECT_NEAR(std::hypot(row[y], row[z]) / tip, 1.0 - std::cos(M_PI / 2 * row[x]), 0.02)
-        << row[x]; // at 1.2 of the load, not 1
+        << row[x];  // at 1.2 of the load, not 1
     EXPECT_LT(std::abs(row[along]), 1e-9);
   }
 }
 
 TEST(StaticStability, SpeedSweepCountsToo) {
-  const DeckRun run(column(
-      1.2,
-      "[[step]]\nname = \"st\"\ntype = \"static\"\nspeeds = { start = \"0 rpm\", stop = \"100 rpm\", points = 3 }\n"));
+  const DeckRun run(column(1.2,
+                           "[[step]]\nname = \"st\"\ntype = \"static\"\nspeeds = { start = \"0 "
+                           "rpm\", stop = \"100 rpm\", points = 3 }\n"));
   EXPECT_EQ(run.exit, 0) << run.log;
   EXPECT_TRUE(run.says("3 of them unstable")) << run.log;
   const Columns t = run.csv("st_equilibria.csv");
@@ -108,10 +108,11 @@ kzz = "-1e5 N/m"
   EXPECT_TRUE(skew.says("unstable equilibrium, 1 direction: it diverges at any mass and damping"))
       << skew.log;
   // cross-coupling alone makes no divergence
-  const DeckRun whirl(column(
-      0.1,
-      "[[bearing]]\nname = \"far\"\nat = \"column:end\"\ntype = \"linear\"\nkyy = \"1e4 N/m\"\nkzz = \"1e4 N/m\"\nkyz = \"3e3 N/m\"\nkzy = \"-3e3 N/m\"\n"
-      "[[step]]\nname = \"st\"\ntype = \"static\"\n"));
+  const DeckRun whirl(
+      column(0.1,
+             "[[bearing]]\nname = \"far\"\nat = \"column:end\"\ntype = \"linear\"\nkyy = \"1e4 "
+             "N/m\"\nkzz = \"1e4 N/m\"\nkyz = \"3e3 N/m\"\nkzy = \"-3e3 N/m\"\n"
+             "[[step]]\nname = \"st\"\ntype = \"static\"\n"));
   EXPECT_EQ(whirl.exit, 0) << whirl.log;
   EXPECT_FALSE(whirl.says("unstable")) << whirl.log;
 }
@@ -171,7 +172,7 @@ TEST(StaticStability, BifurcationOfTheColumn) {
   const Columns c = straight.csv("st_critical_points.csv");
   ASSERT_EQ(c.rows.size(), 1u);
   EXPECT_NEAR(c.rows[0][c.column("load factor [-]")], 1.0,
-              2e-5); // 20 elements; shear and shortening 4e-6
+              2e-5);  // 20 elements; shear and shortening 4e-6
   EXPECT_TRUE(std::filesystem::exists(straight.folder / "r" / "st_bifurcation_1.csv"));
   // the branch is the elastica: at 1.2 of the Euler load, k = sin(alpha/2), K(k)^2 = 1.2 pi^2/4
   const DeckRun bent(

@@ -1,4 +1,5 @@
-// The speed a step gives is the one it is solved at, whatever drives prescribe; what drives hold there is said.
+// The speed a step gives is the one it is solved at, whatever drives prescribe; what drives hold
+// there is said.
 #include "deck_run.hpp"
 
 #include <core/types.hpp>
@@ -36,22 +37,28 @@ Ip = "0.5 kg.m^2"
 [[bearing]]
 name = "j1"
 at = "a:start"
-)" + film + "[[bearing]]\nname = \"j2\"\nat = \"b:end\"\n" + film + R"([[bearing]]
+)" + film +
+         "[[bearing]]\nname = \"j2\"\nat = \"b:end\"\n" + film + R"([[bearing]]
 name = "thrust"
 at = "a:start"
 type = "linear"
 kxx = "1e8 N/m"
-)" + (drive.empty() ? "" : "[[drive]]\nname = \"motor\"\nat = \"b:end\"\n" + drive + "\n") + steps + "[output]\nreport = false\n";
+)" + (drive.empty() ? "" : "[[drive]]\nname = \"motor\"\nat = \"b:end\"\n" + drive + "\n") +
+         steps + "[output]\nreport = false\n";
 }
 
-nlohmann::json summary_of(const DeckRun& d) { return nlohmann::json::parse(std::ifstream(d.folder / "r" / "summary.json")); }
+nlohmann::json summary_of(const DeckRun& d) {
+  return nlohmann::json::parse(std::ifstream(d.folder / "r" / "summary.json"));
+}
 
 double eccentricity(const DeckRun& d, const std::string& file, std::size_t row) {
   const Columns c = d.csv(file);
   return c.rows.at(row).at(c.column("eccentricity / clearance [-]"));
 }
 
-const std::string smooth = "type = \"speed\"\nspeed = { type = \"smooth\", time = [\"0 s\", \"1 s\"], value = [\"1000 rpm\", \"9000 rpm\"] }";
+const std::string smooth =
+    "type = \"speed\"\nspeed = { type = \"smooth\", time = [\"0 s\", \"1 s\"], value = [\"1000 "
+    "rpm\", \"9000 rpm\"] }";
 const std::string sag = "[[step]]\nname = \"sag\"\ntype = \"static\"\nspeed = \"9000 rpm\"\n";
 
 }  // namespace
@@ -62,11 +69,16 @@ TEST(StepSpeeds, OfAnEquilibriumUnderEveryDrive) {
   ASSERT_EQ(none.exit, 0) << none.log;
   const double e = eccentricity(none, "sag_coefficients.csv", 0);
   EXPECT_NEAR(e, 0.207, 5e-4);
-  for (const std::string& drive : {smooth, std::string("type = \"speed\"\nspeed = \"1000 rpm\""), std::string("type = \"angle\"\nangle = { type = \"polynomial\", coefficients = [\"0 rad\", \"100 rad/s\"] }"),
-                                   std::string("type = \"torque\"\ntorque = \"1 N.m\""),
-                                   std::string("type = \"torque\"\ngovernor = { target = \"2000 rpm\", kp = \"0.01 N.m.s/rad\", ki = \"0.01 N.m/rad\" }")}) {
+  for (const std::string& drive :
+       {smooth, std::string("type = \"speed\"\nspeed = \"1000 rpm\""),
+        std::string("type = \"angle\"\nangle = { type = \"polynomial\", coefficients = [\"0 rad\", "
+                    "\"100 rad/s\"] }"),
+        std::string("type = \"torque\"\ntorque = \"1 N.m\""),
+        std::string("type = \"torque\"\ngovernor = { target = \"2000 rpm\", kp = \"0.01 "
+                    "N.m.s/rad\", ki = \"0.01 N.m/rad\" }")}) {
     SCOPED_TRACE(drive);
-    const DeckRun d(rotor(drive, sag + "[[step]]\nname = \"many\"\ntype = \"static\"\nspeeds = { values = [\"3000 rpm\", \"9000 rpm\"] }\n"));
+    const DeckRun d(rotor(drive, sag + "[[step]]\nname = \"many\"\ntype = \"static\"\nspeeds = { "
+                                       "values = [\"3000 rpm\", \"9000 rpm\"] }\n"));
     ASSERT_EQ(d.exit, 0) << d.log;
     // the torques twist the shaft by 1e-5 rad and leave the films alone
     EXPECT_NEAR(eccentricity(d, "sag_coefficients.csv", 0), e, 1e-6);
@@ -77,18 +89,23 @@ TEST(StepSpeeds, OfAnEquilibriumUnderEveryDrive) {
 }
 
 TEST(StepSpeeds, OfModesUnderADrive) {
-  // The whirl frequencies at 9000 rpm hang on the films there: the same without a drive and under one that would turn at 1000 rpm.
-  const std::string modes = "[[step]]\nname = \"m\"\ntype = \"modal\"\nmodes = 4\nspeed = \"9000 rpm\"\nmotion = \"lateral\"\n";
+  // The whirl frequencies at 9000 rpm hang on the films there: the same without a drive and under
+  // one that would turn at 1000 rpm.
+  const std::string modes =
+      "[[step]]\nname = \"m\"\ntype = \"modal\"\nmodes = 4\nspeed = \"9000 rpm\"\nmotion = "
+      "\"lateral\"\n";
   std::vector<double> frequencies[2];
   for (int k = 0; k < 2; ++k) {
     const DeckRun d(rotor(k == 0 ? "" : smooth, modes));
     ASSERT_EQ(d.exit, 0) << d.log;
     const Columns c = d.csv("m_modes.csv");
-    for (const auto& row : c.rows) frequencies[k].push_back(row.at(c.column("frequency [Hz]")));
+    for (const auto& row : c.rows)
+      frequencies[k].push_back(row.at(c.column("frequency [Hz]")));
   }
   ASSERT_EQ(frequencies[0].size(), 4u);
   ASSERT_EQ(frequencies[1].size(), 4u);
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(frequencies[1][k], frequencies[0][k], 1e-6 * frequencies[0][k]) << k;
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_NEAR(frequencies[1][k], frequencies[0][k], 1e-6 * frequencies[0][k]) << k;
 }
 
 TEST(StepSpeeds, NoneGivenIsThatOfTheDrive) {
@@ -99,13 +116,17 @@ TEST(StepSpeeds, NoneGivenIsThatOfTheDrive) {
 }
 
 TEST(StepSpeeds, StartingFromAnotherEquilibriumItIsTheNewOne) {
-  const DeckRun d(rotor("", sag + "[[step]]\nname = \"slow\"\ntype = \"static\"\nfrom = \"sag\"\nspeed = \"1000 rpm\"\n"));
+  const DeckRun d(rotor(
+      "",
+      sag +
+          "[[step]]\nname = \"slow\"\ntype = \"static\"\nfrom = \"sag\"\nspeed = \"1000 rpm\"\n"));
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_NEAR(eccentricity(d, "slow_coefficients.csv", 0), 0.641, 1e-3);
 }
 
 TEST(StepSpeeds, OfShaftsWithSpeedRatios) {
-  // A second rotor of the same kind at twice the speed, and a drive on it: at 4500 rpm of the reference its films run as at 9000 rpm.
+  // A second rotor of the same kind at twice the speed, and a drive on it: at 4500 rpm of the
+  // reference its films run as at 9000 rpm.
   const std::string second = R"([[shaft]]
 name = "two"
 origin = ["0 mm", "1 m", "0 mm"]
@@ -120,7 +141,8 @@ Ip = "0.5 kg.m^2"
 [[bearing]]
 name = "k1"
 at = "two/c:start"
-)" + film + "[[bearing]]\nname = \"k2\"\nat = \"two/d:end\"\n" + film + R"([[bearing]]
+)" + film + "[[bearing]]\nname = \"k2\"\nat = \"two/d:end\"\n" +
+                             film + R"([[bearing]]
 at = "two/c:start"
 type = "linear"
 kxx = "1e8 N/m"
@@ -129,9 +151,12 @@ at = "two/d:end"
 type = "speed"
 speed = "700 rpm"
 )";
-  std::string deck = rotor("", second + "[[step]]\nname = \"sag\"\ntype = \"static\"\nspeed = \"4500 rpm\"\n");
+  std::string deck =
+      rotor("", second + "[[step]]\nname = \"sag\"\ntype = \"static\"\nspeed = \"4500 rpm\"\n");
   for (const char* place : {"a:", "b:"})
-    for (std::size_t p = deck.find(std::string("at = \"") + place); p != std::string::npos; p = deck.find(std::string("at = \"") + place, p)) deck.insert(p + 6, "r/");
+    for (std::size_t p = deck.find(std::string("at = \"") + place); p != std::string::npos;
+         p = deck.find(std::string("at = \"") + place, p))
+      deck.insert(p + 6, "r/");
   const DeckRun d(deck);
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_NEAR(summary_of(d)["steps"]["sag"]["speed [rpm]"].get<double>(), 4500.0, 1e-9);
@@ -192,10 +217,14 @@ TEST(StepSpeeds, AContradictionOfTheDriveIsAnError) {
   const std::string up = "[[step]]\nname = \"up\"\ntype = \"transient\"\nduration = \"1 ms\"\n";
   const DeckRun given(rotor(smooth, up + "initial_speed = \"3000 rpm\"\n"));
   EXPECT_EQ(given.exit, 3) << given.log;
-  EXPECT_TRUE(given.says("begins at 3000 rpm, but drive 'motor' prescribes 1000 rpm at time 0")) << given.log;
+  EXPECT_TRUE(given.says("begins at 3000 rpm, but drive 'motor' prescribes 1000 rpm at time 0"))
+      << given.log;
   const DeckRun from(rotor(smooth, sag + up + "from = \"sag\"\n"));
   EXPECT_EQ(from.exit, 0) << from.log;
-  EXPECT_TRUE(from.says("drive 'motor' prescribes 1000 rpm at t = 0 s, where shaft 'r' turns at 9000 rpm: its speed jumps")) << from.log;
+  EXPECT_TRUE(
+      from.says("drive 'motor' prescribes 1000 rpm at t = 0 s, where shaft 'r' turns at 9000 rpm: "
+                "its speed jumps"))
+      << from.log;
   const DeckRun agrees(rotor(smooth, sag + up + "initial_speed = \"1000 rpm\"\n"));
   EXPECT_EQ(agrees.exit, 0) << agrees.log;
 }
@@ -214,15 +243,19 @@ motion = "lateral"
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_TRUE(d.says("W06")) << d.log;
   EXPECT_FALSE(d.says("without effect")) << d.log;
-  EXPECT_TRUE(d.says("held: twist of shaft 'r' at b:end: drive 'motor' prescribes its angle")) << d.log;
+  EXPECT_TRUE(d.says("held: twist of shaft 'r' at b:end: drive 'motor' prescribes its angle"))
+      << d.log;
   const nlohmann::json s = summary_of(d);
   ASSERT_EQ(s["steps"]["m"]["held"].size(), 1u);
-  EXPECT_EQ(s["steps"]["m"]["held"][0].get<std::string>(), "twist of shaft 'r' at b:end: drive 'motor' prescribes its angle (the speed is that of the step)");
+  EXPECT_EQ(s["steps"]["m"]["held"][0].get<std::string>(),
+            "twist of shaft 'r' at b:end: drive 'motor' prescribes its angle (the speed is that of "
+            "the step)");
   EXPECT_EQ(s["steps"]["bending"]["held"].size(), 2u);
 }
 
 TEST(StepSpeeds, WhatNothingHoldsIsSaid) {
-  // no thrust bearing, a casing that nothing keeps from turning, and an equilibrium that holds the angle of the shaft
+  // no thrust bearing, a casing that nothing keeps from turning, and an equilibrium that holds the
+  // angle of the shaft
   const DeckRun d(R"(format = 1
 [[shaft]]
 name = "r"
@@ -260,12 +293,16 @@ report = false
   ASSERT_EQ(d.exit, 0) << d.log;
   const nlohmann::json held = summary_of(d)["steps"]["s"]["held"];
   const std::string all = held.dump();
-  EXPECT_NE(all.find("turning of casing 'case' about its axis: held at its left end"), std::string::npos) << all;
+  EXPECT_NE(all.find("turning of casing 'case' about its axis: held at its left end"),
+            std::string::npos)
+      << all;
   EXPECT_NE(all.find("nothing else holds the turning of shaft 'r'"), std::string::npos) << all;
 }
 
 TEST(StepSpeeds, RunTimesAreNamed) {
-  const DeckRun d(rotor("", sag + "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"9000 rpm\"\n[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"1 ms\"\nfrom = \"sag\"\n"));
+  const DeckRun d(rotor(
+      "", sag + "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"9000 rpm\"\n[[step]]\nname = "
+                "\"t\"\ntype = \"transient\"\nduration = \"1 ms\"\nfrom = \"sag\"\n"));
   ASSERT_EQ(d.exit, 0) << d.log;
   const nlohmann::json s = summary_of(d);
   for (const char* step : {"sag", "m", "t"}) {
@@ -275,8 +312,12 @@ TEST(StepSpeeds, RunTimesAreNamed) {
     const std::size_t line = d.log.find(std::string(step) + ": ");
     ASSERT_NE(line, std::string::npos) << step;
   }
-  for (const char* key : {"run time, CPU [s]", "run time, wall [s]", "run time by phase, CPU [s]", "run time by phase, wall [s]"}) EXPECT_EQ(s.count(key), 1u) << key;
+  for (const char* key : {"run time, CPU [s]", "run time, wall [s]", "run time by phase, CPU [s]",
+                          "run time by phase, wall [s]"})
+    EXPECT_EQ(s.count(key), 1u) << key;
   std::size_t said = 0;
-  for (std::size_t p = d.log.find(" s CPU, "); p != std::string::npos; p = d.log.find(" s CPU, ", p + 1)) ++said;
+  for (std::size_t p = d.log.find(" s CPU, "); p != std::string::npos;
+       p = d.log.find(" s CPU, ", p + 1))
+    ++said;
   EXPECT_EQ(said, 3u) << d.log;
 }

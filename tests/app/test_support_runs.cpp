@@ -1,4 +1,5 @@
-// What a run says about supports that cannot do what is asked of them, and what it keeps of their states.
+// What a run says about supports that cannot do what is asked of them, and what it keeps of their
+// states.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,17 +24,23 @@ std::string read(const fs::path& p) {
 class SupportRuns : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("whirl_supports_" + std::to_string(::getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ =
+        fs::temp_directory_path() / ("whirl_supports_" + std::to_string(::getpid()) + "_" +
+                                     testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }
   /// Exit code of `whirl ARGUMENTS` in the test's folder; what it said is said_.
   int whirl(const std::string& arguments) {
-    const int status = std::system(("cd '" + folder_.string() + "' && '" WHIRL_EXE "' " + arguments + " >out.txt 2>err.txt </dev/null").c_str());
+    const int status = std::system(("cd '" + folder_.string() + "' && '" WHIRL_EXE "' " +
+                                    arguments + " >out.txt 2>err.txt </dev/null")
+                                       .c_str());
     said_ = read(folder_ / "out.txt") + read(folder_ / "err.txt");
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name, std::ios::binary) << text; }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
   bool says(const char* text) const { return said_.find(text) != std::string::npos; }
 
   fs::path folder_;
@@ -54,18 +61,22 @@ directions = ["x"]
 
 std::string film(const char* name, const char* at) {
   return std::string("[[bearing]]\nname = \"") + name + "\"\nat = \"" + at +
-         "\"\ntype = \"short_journal\"\ndiameter = \"50 mm\"\nlength = \"20 mm\"\nclearance = \"50 um\"\nviscosity = \"10 mPa.s\"\n";
+         "\"\ntype = \"short_journal\"\ndiameter = \"50 mm\"\nlength = \"20 mm\"\nclearance = \"50 "
+         "um\"\nviscosity = \"10 mPa.s\"\n";
 }
 
 }  // namespace
 
-// A film has no largest load: its equilibrium runs into the wall. What is not believed is said, with load, capacity and eccentricity. 200 kN on two
-// films of 50 mm.
+// A film has no largest load: its equilibrium runs into the wall. What is not believed is said,
+// with load, capacity and eccentricity. 200 kN on two films of 50 mm.
 TEST_F(SupportRuns, FilmBeyondItsCapacityIsAWarning) {
-  const std::string text = std::string(rotor) + film("DE", "a:start") + film("NDE", "b:end") +
-                           "[[load]]\nat = \"a:end\"\nforce = [\"0 N\", \"0 N\", \"-2e5 N\"]\n[[step]]\nname = \"weight\"\ntype = \"static\"\nspeed = \"100 rpm\"\n";
+  const std::string text =
+      std::string(rotor) + film("DE", "a:start") + film("NDE", "b:end") +
+      "[[load]]\nat = \"a:end\"\nforce = [\"0 N\", \"0 N\", \"-2e5 N\"]\n[[step]]\nname = "
+      "\"weight\"\ntype = \"static\"\nspeed = \"100 rpm\"\n";
   std::string finite = text;
-  for (std::size_t at; (at = finite.find("\"short_journal\"")) != std::string::npos;) finite.replace(at, 15, "\"journal\"\nshape = \"plain\"");
+  for (std::size_t at; (at = finite.find("\"short_journal\"")) != std::string::npos;)
+    finite.replace(at, 15, "\"journal\"\nshape = \"plain\"");
   for (const std::string& deck : {text, finite}) {
     write("d.toml", deck);
     EXPECT_EQ(whirl("run d.toml"), 0) << said_;
@@ -76,33 +87,43 @@ TEST_F(SupportRuns, FilmBeyondItsCapacityIsAWarning) {
 }
 
 TEST_F(SupportRuns, FilmsAtRestCarryNothing) {
-  write("d.toml", std::string(rotor) + film("DE", "a:start") + film("NDE", "b:end") + "[[step]]\nname = \"weight\"\ntype = \"static\"\nspeed = \"0 rpm\"\n");
+  write("d.toml", std::string(rotor) + film("DE", "a:start") + film("NDE", "b:end") +
+                      "[[step]]\nname = \"weight\"\ntype = \"static\"\nspeed = \"0 rpm\"\n");
   EXPECT_EQ(whirl("run d.toml"), 4) << said_;
   EXPECT_TRUE(says("at rest it carries nothing")) << said_;
 }
 
 TEST_F(SupportRuns, GapThatNoLoadCloses) {
   const auto stop = [](const char* name, const char* at) {
-    return std::string("[[bearing]]\nname = \"") + name + "\"\nat = \"" + at + "\"\ntype = \"rub\"\ngap = \"0.2 mm\"\nstiffness = \"1e7 N/m\"\nfriction = 0.1\n";
-  };
-  const auto above = [](const char* name, const char* at) {   // the weight moves the shaft away from it
     return std::string("[[bearing]]\nname = \"") + name + "\"\nat = \"" + at +
-           "\"\ntype = \"nonlinear_spring\"\ndirection = \"z\"\nshape = \"one_sided\"\ngap = \"0.2 mm\"\nstiffness = \"1e7 N/m\"\n[[bearing]]\nat = \"" + at +
-           "\"\ntype = \"linear\"\nkyy = \"1e6 N/m\"\n";
+           "\"\ntype = \"rub\"\ngap = \"0.2 mm\"\nstiffness = \"1e7 N/m\"\nfriction = 0.1\n";
+  };
+  const auto above = [](const char* name,
+                        const char* at) {  // the weight moves the shaft away from it
+    return std::string("[[bearing]]\nname = \"") + name + "\"\nat = \"" + at +
+           "\"\ntype = \"nonlinear_spring\"\ndirection = \"z\"\nshape = \"one_sided\"\ngap = \"0.2 "
+           "mm\"\nstiffness = \"1e7 N/m\"\n[[bearing]]\nat = \"" +
+           at + "\"\ntype = \"linear\"\nkyy = \"1e6 N/m\"\n";
   };
   const std::string step = "[[step]]\nname = \"weight\"\ntype = \"static\"\nspeed = \"0 rpm\"\n";
   write("d.toml", std::string(rotor) + above("near", "a:start") + above("far", "b:end") + step);
   EXPECT_EQ(whirl("run d.toml"), 4) << said_;
   EXPECT_TRUE(says("E75")) << said_;
-  EXPECT_TRUE(says("'near', 'far' have a gap, and moving the shaft along its load finds nothing that holds it")) << said_;
-  // with its weight it lies in the stops, and that is said too; a couple without weight turns it into them
+  EXPECT_TRUE(says(
+      "'near', 'far' have a gap, and moving the shaft along its load finds nothing that holds it"))
+      << said_;
+  // with its weight it lies in the stops, and that is said too; a couple without weight turns it
+  // into them
   write("g.toml", std::string(rotor) + stop("near", "a:start") + stop("far", "b:end") + step);
   EXPECT_EQ(whirl("run g.toml"), 0) << said_;
   EXPECT_TRUE(says("warning[W04]: contact 'far' is closed at the start of step 'weight'")) << said_;
-  write("c.toml", std::string(rotor) + "[model]\ngravity = \"0 m/s^2\"\n" + stop("near", "a:start") + stop("far", "b:end") +
-                      "[[load]]\nat = \"a:end\"\nmoment = [\"0 N.m\", \"0 N.m\", \"1 N.m\"]\n" + step);
+  write("c.toml", std::string(rotor) + "[model]\ngravity = \"0 m/s^2\"\n" +
+                      stop("near", "a:start") + stop("far", "b:end") +
+                      "[[load]]\nat = \"a:end\"\nmoment = [\"0 N.m\", \"0 N.m\", \"1 N.m\"]\n" +
+                      step);
   EXPECT_EQ(whirl("run c.toml"), 0) << said_;
-  EXPECT_TRUE(says("warning[W04]: contact 'near' is closed at the start of step 'weight'")) << said_;
+  EXPECT_TRUE(says("warning[W04]: contact 'near' is closed at the start of step 'weight'"))
+      << said_;
 }
 
 TEST_F(SupportRuns, ContactClosedAtRestIsAWarning) {
@@ -131,7 +152,8 @@ type = "static"
 speed = "0 rpm"
 )");
   EXPECT_EQ(whirl("run d.toml"), 0) << said_;
-  EXPECT_TRUE(says("warning[W04]: contact 'stop' is closed at the start of step 'weight'")) << said_;
+  EXPECT_TRUE(says("warning[W04]: contact 'stop' is closed at the start of step 'weight'"))
+      << said_;
   std::string text = read(folder_ / "d.toml");
   text.replace(text.find("\"10 um\""), 7, "\"0.1 mm\"");
   write("open.toml", text);
@@ -139,8 +161,9 @@ speed = "0 rpm"
   EXPECT_FALSE(says("W04")) << said_;
 }
 
-// Elastic stator with mass, pedestal, gear mesh and a ball bearing's cage angle: a run continued from its checkpoint goes on as one that
-// was never interrupted. Fixed steps, so that the end of the first part is an ordinary step: only the rounding of its time differs.
+// Elastic stator with mass, pedestal, gear mesh and a ball bearing's cage angle: a run continued
+// from its checkpoint goes on as one that was never interrupted. Fixed steps, so that the end of
+// the first part is an ordinary step: only the rounding of its time differs.
 TEST_F(SupportRuns, StatesOfSupportsAreInTheCheckpoint) {
   const std::string text = R"(format = 1
 [[shaft]]
@@ -242,7 +265,8 @@ quantities = ["speed", "probes", "bearing_force", "energy"]
     std::string t = text;
     return t.replace(t.find("DURATION"), 8, duration);
   };
-  write("short.toml", with("0.04 s")); write("long.toml", with("0.08 s"));
+  write("short.toml", with("0.04 s"));
+  write("long.toml", with("0.08 s"));
   ASSERT_EQ(whirl("run short.toml -o r"), 0) << said_;
   ASSERT_EQ(whirl("run long.toml -o r --resume"), 0) << said_;
   ASSERT_EQ(whirl("run long.toml -o whole"), 0) << said_;
@@ -253,7 +277,8 @@ quantities = ["speed", "probes", "bearing_force", "energy"]
     for (std::getline(in, line); std::getline(in, line);) {
       std::istringstream cells(line);
       out.emplace_back();
-      while (std::getline(cells, cell, ',')) out.back().push_back(std::strtod(cell.c_str(), nullptr));
+      while (std::getline(cells, cell, ','))
+        out.back().push_back(std::strtod(cell.c_str(), nullptr));
     }
     return out;
   };
@@ -262,9 +287,11 @@ quantities = ["speed", "probes", "bearing_force", "energy"]
   ASSERT_GT(a.size(), 700u);
   std::vector<double> largest(b[0].size(), 0.0);
   for (const auto& r : b)
-    for (std::size_t k = 0; k < r.size(); ++k) largest[k] = std::max(largest[k], std::abs(r[k]));
+    for (std::size_t k = 0; k < r.size(); ++k)
+      largest[k] = std::max(largest[k], std::abs(r[k]));
   for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t k = 0; k < a[i].size(); ++k) ASSERT_NEAR(a[i][k], b[i][k], 1e-8 * largest[k]) << "row " << i << " column " << k;
+    for (std::size_t k = 0; k < a[i].size(); ++k)
+      ASSERT_NEAR(a[i][k], b[i][k], 1e-8 * largest[k]) << "row " << i << " column " << k;
   // the stator is struck, the pedestal moves: there is something to keep
   EXPECT_GT(largest.size(), 8u);
 }

@@ -1,4 +1,5 @@
-// What a step costs as physics is absent, and what the program costs before and after the first step. Prints a Markdown table:
+// What a step costs as physics is absent, and what the program costs before and after the first
+// step. Prints a Markdown table:
 //   build/bin/bench_scenes build/bin/whirl .
 #include <run/job.hpp>
 #include <deck/deck.hpp>
@@ -19,9 +20,14 @@ using namespace whirl;
 
 namespace {
 
-fs::path scratch() { return fs::temp_directory_path() / ("whirl_bench_" + std::to_string(::getpid())); }
+fs::path scratch() {
+  return fs::temp_directory_path() / ("whirl_bench_" + std::to_string(::getpid()));
+}
 
-struct Cost { long steps = 0; double newton = 0, factorisations = 0, micro = 0, seconds = 0; };
+struct Cost {
+  long steps = 0;
+  double newton = 0, factorisations = 0, micro = 0, seconds = 0;
+};
 
 /// The fastest of three runs of the deck's first step, without outputs but for `observers`.
 Cost measure(const model::Model& m) {
@@ -35,43 +41,57 @@ Cost measure(const model::Model& m) {
   Cost best;
   for (int k = 0; k < 3; ++k) {
     const auto problem = steps::transient_problem(job, law, start);
-    const analysis::TransientResult r = analysis::run_transient(*problem, start.state, steps::transient_options(job, law, start.state.t), {});
-    if (r.reason != analysis::StopReason::end_time) std::printf("<!-- %s %s -->\n", std::string(to_string(r.reason)).c_str(), r.detail.c_str());
+    const analysis::TransientResult r = analysis::run_transient(
+        *problem, start.state, steps::transient_options(job, law, start.state.t), {});
+    if (r.reason != analysis::StopReason::end_time)
+      std::printf("<!-- %s %s -->\n", std::string(to_string(r.reason)).c_str(), r.detail.c_str());
     if (k > 0 && r.seconds > best.seconds) continue;
     const double n = static_cast<double>(r.statistics.accepted);
     best = {r.statistics.accepted, static_cast<double>(r.statistics.newton_iterations) / n,
-            static_cast<double>(r.statistics.factorizations_real + r.statistics.factorizations_complex) / n, 1e6 * r.seconds / n, r.seconds};
+            static_cast<double>(r.statistics.factorizations_real +
+                                r.statistics.factorizations_complex) /
+                n,
+            1e6 * r.seconds / n, r.seconds};
   }
   return best;
 }
 
 void row(const char* what, const Cost& c) {
-  std::printf("| %s | %ld | %.2f | %.2f | %.1f | %.4f |\n", what, c.steps, c.newton, c.factorisations, c.micro, c.seconds);
+  std::printf("| %s | %ld | %.2f | %.2f | %.1f | %.4f |\n", what, c.steps, c.newton,
+              c.factorisations, c.micro, c.seconds);
   std::fflush(stdout);
 }
 
 /// CPU and wall time, peak memory of a child process: the least of several.
-struct Process { double wall = infinity, cpu = infinity, megabytes = 0; };
+struct Process {
+  double wall = infinity, cpu = infinity, megabytes = 0;
+};
 Process run(const std::vector<std::string>& arguments, int repeats) {
   Process best;
   for (int k = 0; k < repeats; ++k) {
     const auto t0 = std::chrono::steady_clock::now();
-    std::fflush(stdout);   // or the child writes it again
+    std::fflush(stdout);  // or the child writes it again
     const pid_t child = fork();
     if (child == 0) {
       std::vector<char*> argv;
-      for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+      for (const std::string& a : arguments)
+        argv.push_back(const_cast<char*>(a.c_str()));
       argv.push_back(nullptr);
-      if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr)) _exit(126);
+      if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))
+        _exit(126);
       execv(argv[0], argv.data());
       _exit(127);
     }
     int status = 0;
     rusage usage{};
     wait4(child, &status, 0, &usage);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) std::printf("<!-- %s failed -->\n", arguments.back().c_str());
-    const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
-    best.wall = std::min(best.wall, std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count());
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+      std::printf("<!-- %s failed -->\n", arguments.back().c_str());
+    const auto seconds = [](const timeval& t) {
+      return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    best.wall = std::min(
+        best.wall, std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count());
     best.cpu = std::min(best.cpu, seconds(usage.ru_utime) + seconds(usage.ru_stime));
     best.megabytes = static_cast<double>(usage.ru_maxrss) / 1024.0;
   }
@@ -85,13 +105,19 @@ int main(int argc, char** argv) {
   const fs::path source = argv[2];
   const model::Model base = [&] {
     model::Model m = deck::load_model(source / "examples/12_blade_loss/deck.toml", {});
-    m.events.clear();   // nothing stops the run
+    m.events.clear();  // nothing stops the run
     return m;
   }();
-  auto law = [](model::Model& m) -> model::TransientStep& { return std::get<model::TransientStep>(m.steps.front().law); };
+  auto law = [](model::Model& m) -> model::TransientStep& {
+    return std::get<model::TransientStep>(m.steps.front().law);
+  };
 
-  std::printf("A rotor of 15 elements and three disks (example 12: blade loss at 6000 rpm), 1 s, radau5 at 1e-4; CPU time of one core.\n\n");
-  std::printf("| scene | steps | Newton iterations a step | factorisations a step | us a step | s |\n|---|---|---|---|---|---|\n");
+  std::printf(
+      "A rotor of 15 elements and three disks (example 12: blade loss at 6000 rpm), 1 s, radau5 at "
+      "1e-4; CPU time of one core.\n\n");
+  std::printf(
+      "| scene | steps | Newton iterations a step | factorisations a step | us a step | s "
+      "|\n|---|---|---|---|---|---|\n");
   model::Model m = base;
   m.keep_everything = true;
   row("`--keep-everything`: the general model", measure(m));
@@ -102,7 +128,8 @@ int main(int argc, char** argv) {
   law(m).speed0 = 6000 * pi / 30;
   row("free spin instead of a prescribed speed", measure(m));
   m = base;
-  for (auto& s : m.shafts) s.damping = {};
+  for (auto& s : m.shafts)
+    s.damping = {};
   row("without internal damping", measure(m));
   m = base;
   law(m).linear = true;
@@ -124,14 +151,19 @@ int main(int argc, char** argv) {
   step_load.factor = make_table({0.0, 0.01, 0.0101}, {0.0, 0.0, 1.0});
   m.gravity = Vec3::Zero();
   m.loads = {step_load};
-  row("at rest, a step force in one plane: the other plane, torsion and axial motion are held", measure(m));
+  row("at rest, a step force in one plane: the other plane, torsion and axial motion are held",
+      measure(m));
   step_load.force[2] = 1000.0;
   m.loads = {step_load};
   row("at rest, a step force in both planes", measure(m));
-  row("one disk on a spring, prescribed angle (example 09, 6 s at 1e-7): constant matrices", measure(deck::load_model(source / "examples/09_jeffcott_run_up/deck.toml", {})));
-  row("one rigid body (example 01, 10 s)", measure(deck::load_model(source / "examples/01_paper_rotor/deck.toml", {})));
+  row("one disk on a spring, prescribed angle (example 09, 6 s at 1e-7): constant matrices",
+      measure(deck::load_model(source / "examples/09_jeffcott_run_up/deck.toml", {})));
+  row("one rigid body (example 01, 10 s)",
+      measure(deck::load_model(source / "examples/01_paper_rotor/deck.toml", {})));
 
-  std::printf("\nThe whole process:\n\n| command | wall, ms | CPU, ms | peak memory, MB |\n|---|---|---|---|\n");
+  std::printf(
+      "\nThe whole process:\n\n| command | wall, ms | CPU, ms | peak memory, MB "
+      "|\n|---|---|---|---|\n");
   fs::create_directories(scratch());
   const std::string out = (scratch() / "out").string();
   auto process = [&](const char* what, std::vector<std::string> arguments) {
@@ -143,15 +175,24 @@ int main(int argc, char** argv) {
   {
     std::ifstream in(source / "examples/01_paper_rotor/deck.toml");
     std::string text((std::istreambuf_iterator<char>(in)), {});
-    std::ofstream(scratch() / "disk.toml") << text.substr(0, text.find("[[output.vtk]]"));   // without frames
+    std::ofstream(scratch() / "disk.toml")
+        << text.substr(0, text.find("[[output.vtk]]"));  // without frames
   }
   const std::string disk = (scratch() / "disk.toml").string();
   process("`whirl check`, one disk", {"check", disk});
-  process("`whirl run`, one disk, no outputs", {"run", disk, "--quiet", "--output", out, "--set", "output.csv=false", "--set", "output.report=false"});
+  process("`whirl run`, one disk, no outputs",
+          {"run", disk, "--quiet", "--output", out, "--set", "output.csv=false", "--set",
+           "output.report=false"});
   process("`whirl run`, one disk, histories and report", {"run", disk, "--quiet", "--output", out});
-  process("`whirl run`, example 12, no outputs", {"run", (source / "examples/12_blade_loss/deck.toml").string(), "--quiet", "--output", out, "--set", "output.csv=false", "--set", "output.report=false"});
-  process("`whirl run`, example 12, histories, spectra and report", {"run", (source / "examples/12_blade_loss/deck.toml").string(), "--quiet", "--output", out});
-  process("`whirl run`, example 30: static", {"run", (source / "examples/30_static_sag/deck.toml").string(), "--quiet", "--output", out});
+  process("`whirl run`, example 12, no outputs",
+          {"run", (source / "examples/12_blade_loss/deck.toml").string(), "--quiet", "--output",
+           out, "--set", "output.csv=false", "--set", "output.report=false"});
+  process(
+      "`whirl run`, example 12, histories, spectra and report",
+      {"run", (source / "examples/12_blade_loss/deck.toml").string(), "--quiet", "--output", out});
+  process(
+      "`whirl run`, example 30: static",
+      {"run", (source / "examples/30_static_sag/deck.toml").string(), "--quiet", "--output", out});
   std::printf("\nThe program: %.1f MB.\n", static_cast<double>(fs::file_size(argv[1])) / 1048576.0);
   fs::remove_all(scratch());
   return 0;

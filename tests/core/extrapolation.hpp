@@ -1,4 +1,5 @@
-// Gragg-Bulirsch-Stoer extrapolation of order 14 with fixed steps: an integrator for references, independent of the program's.
+// Gragg-Bulirsch-Stoer extrapolation of order 14 with fixed steps: an integrator for references,
+// independent of the program's.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
@@ -22,7 +23,8 @@ Vec extrapolate(const F& f, typename Vec::Scalar t0, typename Vec::Scalar t1, Ve
       Vec a = y, b = y + h * slope;
       for (int i = 1; i < n; ++i) {
         const Vec c = a + 2 * h * f(t + i * h, b);
-        a = b; b = c;
+        a = b;
+        b = c;
       }
       // Gragg's smoothing, then Aitken and Neville in h^2
       row.assign(1, (a + b + h * f(t + H, b)) / Real(2));

@@ -1,4 +1,5 @@
-// Independent references in long double (64-bit mantissa): matrix exponential and central differences.
+// Independent references in long double (64-bit mantissa): matrix exponential and central
+// differences.
 #pragma once
 #include <core/types.hpp>
 #include <cmath>
@@ -23,8 +24,12 @@ inline RMat3 exponential(const RVec3& v) {
   const RMat3 a = r_skew(v) / Real(1 << squarings);
   // exp(a) - 1 is squared as (1+e)^2 - 1 = 2e + e^2, which keeps the digits of small rotations
   RMat3 e = RMat3::Zero(), term = RMat3::Identity();
-  for (int k = 1; k < 25; ++k) { term = (term * a / Real(k)).eval(); e += term; }
-  for (int k = 0; k < squarings; ++k) e = (2 * e + e * e).eval();
+  for (int k = 1; k < 25; ++k) {
+    term = (term * a / Real(k)).eval();
+    e += term;
+  }
+  for (int k = 0; k < squarings; ++k)
+    e = (2 * e + e * e).eval();
   return RMat3::Identity() + e;
 }
 
@@ -32,8 +37,8 @@ inline RMat3 exponential(const RVec3& v) {
 template <class F>
 auto central(const F& f, Real h) {
   return (((f(h) - f(-h)) * (4.0L / 5.0L) - (f(2 * h) - f(-2 * h)) * (1.0L / 5.0L) +
-          (f(3 * h) - f(-3 * h)) * (4.0L / 105.0L) - (f(4 * h) - f(-4 * h)) * (1.0L / 280.0L)) /
-         h)
+           (f(3 * h) - f(-3 * h)) * (4.0L / 105.0L) - (f(4 * h) - f(-4 * h)) * (1.0L / 280.0L)) /
+          h)
       .eval();
 }
 
@@ -41,8 +46,9 @@ auto central(const F& f, Real h) {
 template <class F>
 auto central2(const F& f, Real h) {
   return (((f(h) + f(-h)) * (8.0L / 5.0L) - (f(2 * h) + f(-2 * h)) * (1.0L / 5.0L) +
-          (f(3 * h) + f(-3 * h)) * (8.0L / 315.0L) - (f(4 * h) + f(-4 * h)) * (1.0L / 560.0L) - f(Real(0)) * (205.0L / 72.0L)) /
-         (h * h))
+           (f(3 * h) + f(-3 * h)) * (8.0L / 315.0L) - (f(4 * h) + f(-4 * h)) * (1.0L / 560.0L) -
+           f(Real(0)) * (205.0L / 72.0L)) /
+          (h * h))
       .eval();
 }
 
@@ -51,20 +57,25 @@ class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
   double number() { return distribution_(engine_); }
-  template <int N> Vector<N> vector() {
+  template <int N>
+  Vector<N> vector() {
     Vector<N> v;
-    for (int i = 0; i < N; ++i) v[i] = number();
+    for (int i = 0; i < N; ++i)
+      v[i] = number();
     return v;
   }
   /// Of length 1.
-  template <int N> Vector<N> direction() {
+  template <int N>
+  Vector<N> direction() {
     Vector<N> v;
-    do v = vector<N>();
+    do
+      v = vector<N>();
     while (v.norm() < 0.1 || v.norm() > 1.0);
     return v / v.norm();
   }
   Mat3 rotation() {
-    return exponential((direction<3>() * (pi * number())).template cast<Real>()).template cast<double>();
+    return exponential((direction<3>() * (pi * number())).template cast<Real>())
+        .template cast<double>();
   }
 
  private:

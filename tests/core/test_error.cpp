@@ -18,7 +18,8 @@ Diagnostic sample() {
 
 TEST(Diagnostic, IsPrintedWithItsLine) {
   EXPECT_EQ(format(sample(), "length 1234 x"),
-            "deck.toml:62:8: error[E07]: no unit\n  62 | length 1234 x\n     |        ^~~~\n     = hint: write one\n");
+            "deck.toml:62:8: error[E07]: no unit\n  62 | length 1234 x\n     |        ^~~~\n     = "
+            "hint: write one\n");
 }
 
 TEST(Diagnostic, WithoutALine) {
@@ -34,7 +35,9 @@ TEST(Diagnostic, CaretCountsCharactersNotBytes) {
   Diagnostic d = sample();
   d.where.column = 6;
   d.where.length = 2;
-  EXPECT_EQ(format(d, "\xC2\xB5\xC2\xB5 = \tab"), "deck.toml:62:6: error[E07]: no unit\n  62 | \xC2\xB5\xC2\xB5 =  ab\n     |      ^~\n     = hint: write one\n");
+  EXPECT_EQ(format(d, "\xC2\xB5\xC2\xB5 = \tab"),
+            "deck.toml:62:6: error[E07]: no unit\n  62 | \xC2\xB5\xC2\xB5 =  ab\n     |      ^~\n  "
+            "   = hint: write one\n");
 }
 
 TEST(Diagnostic, LongLinesAreCut) {
@@ -50,13 +53,16 @@ TEST(Diagnostic, CaretBeyondTheLineIsHarmless) {
   Diagnostic d = sample();
   d.where.column = 100;
   d.where.length = 100;
-  EXPECT_EQ(format(d, "ab"), "deck.toml:62:100: error[E07]: no unit\n  62 | ab\n     |   ^\n     = hint: write one\n");
+  EXPECT_EQ(
+      format(d, "ab"),
+      "deck.toml:62:100: error[E07]: no unit\n  62 | ab\n     |   ^\n     = hint: write one\n");
 }
 
 TEST(Diagnostic, ControlCharactersNeitherCutNorPaint) {
   Diagnostic d = sample();
   d.message = std::string("a\0b", 3) + "\x1b[31m";
-  EXPECT_EQ(format(d), "deck.toml:62:8: error[E07]: a\\u0000b\\u001b[31m\n     = hint: write one\n");
+  EXPECT_EQ(format(d),
+            "deck.toml:62:8: error[E07]: a\\u0000b\\u001b[31m\n     = hint: write one\n");
 }
 
 TEST(Diagnostic, ColourOnlyWhenAsked) {

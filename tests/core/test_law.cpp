@@ -8,7 +8,10 @@ using namespace whirl;
 
 namespace {
 
-struct Case { const char* name; LawPtr law; };
+struct Case {
+  const char* name;
+  LawPtr law;
+};
 
 std::vector<Case> all() {
   const std::vector<double> t{-1.0, 0.5, 1.0, 3.0}, f{2.0, -1.0, 4.0, 5.0};
@@ -22,7 +25,8 @@ std::vector<Case> all() {
           {"harmonic", make_harmonic(1, 2, 5, 0.3)},
           {"slow harmonic", make_harmonic(1, 2, 1e-9, 0.3)},
           {"polynomial", make_polynomial({1, -2, 0.5, 0.25})},
-          {"piecewise", make_piecewise({-0.5, 0.8, 2.0}, {table, make_harmonic(0, 1, 2, 0), make_constant(7)})},
+          {"piecewise",
+           make_piecewise({-0.5, 0.8, 2.0}, {table, make_harmonic(0, 1, 2, 0), make_constant(7)})},
           {"sum", make_sum({table, make_smooth_step(0, 2, 0, 3)})},
           {"scaled", make_scaled(-2.5, table)},
           {"angle", make_angle_of_speed(make_smooth_step(0.2, 1.7, 1, -4), 0.7)},
@@ -47,7 +51,9 @@ TEST(Law, DerivativesAgreeWithDifferences) {
       const auto g = [&](double s) { return c.law->at(s).df; };
       // sixth-order differences: truncation h^6 f^(7)/140 < 1e-13, rounding 1e-13/h
       const auto slope = [&](auto& y) {
-        return (45 * (y(t + h) - y(t - h)) - 9 * (y(t + 2 * h) - y(t - 2 * h)) + y(t + 3 * h) - y(t - 3 * h)) / (60 * h);
+        return (45 * (y(t + h) - y(t - h)) - 9 * (y(t + 2 * h) - y(t - 2 * h)) + y(t + 3 * h) -
+                y(t - 3 * h)) /
+               (60 * h);
       };
       EXPECT_NEAR(v.df, slope(f), 1e-10) << c.name << " t=" << t;
       EXPECT_NEAR(v.ddf, slope(g), 1e-10) << c.name << " t=" << t;
@@ -73,7 +79,8 @@ TEST(Law, IntegralsAgainstClosedForms) {
   EXPECT_DOUBLE_EQ(make_harmonic(0, 1, 2, 0)->integral(1), std::sin(2.0) / 2);
   EXPECT_DOUBLE_EQ(make_harmonic(0, 1, 0, 0)->integral(3), 3.0);
   EXPECT_DOUBLE_EQ(make_piecewise({0, 1}, {make_constant(2), make_constant(5)})->integral(3), 12.0);
-  EXPECT_DOUBLE_EQ(make_piecewise({0, 1}, {make_constant(2), make_constant(5)})->integral(-3), -6.0);
+  EXPECT_DOUBLE_EQ(make_piecewise({0, 1}, {make_constant(2), make_constant(5)})->integral(-3),
+                   -6.0);
   EXPECT_DOUBLE_EQ(make_scaled(3, make_polynomial({0, 1}))->integral(2), 6.0);
   // double integral of a linear ramp: t^3/6
   EXPECT_NEAR(make_angle_of_speed(make_ramp(0, 10, 0, 10), 1)->integral(3), 3 + 4.5, 1e-14);
@@ -109,12 +116,16 @@ TEST(Law, SmoothStepHasZeroEndDerivatives) {
 }
 
 TEST(Law, PchipIsMonotoneAndHitsItsPoints) {
-  // RPN 14 data of Fritsch and Carlson (doi 10.1137/0717021): a cubic spline overshoots, a monotone cubic must not
+  // RPN 14 data of Fritsch and Carlson (doi 10.1137/0717021): a cubic spline overshoots, a monotone
+  // cubic must not
   const std::vector<double> t{7.99, 8.09, 8.19, 8.7, 9.2, 10, 12, 15, 20};
-  const std::vector<double> f{0, 2.76429e-5, 4.37498e-2, 0.169183, 0.469428, 0.943740, 0.998636, 0.999919, 0.999994};
+  const std::vector<double> f{0,        2.76429e-5, 4.37498e-2, 0.169183, 0.469428,
+                              0.943740, 0.998636,   0.999919,   0.999994};
   const auto p = make_pchip(t, f);
-  for (std::size_t i = 0; i < t.size(); ++i) EXPECT_DOUBLE_EQ(p->at(t[i]).f, f[i]);
-  for (double s = 7.99; s < 20; s += 0.003) EXPECT_GE(p->at(s).df, -1e-15) << s;
+  for (std::size_t i = 0; i < t.size(); ++i)
+    EXPECT_DOUBLE_EQ(p->at(t[i]).f, f[i]);
+  for (double s = 7.99; s < 20; s += 0.003)
+    EXPECT_GE(p->at(s).df, -1e-15) << s;
   // exact on a straight line
   const auto line = make_pchip({0, 1, 4}, {1, 3, 9});
   EXPECT_NEAR(line->at(2.7).f, 6.4, 1e-14);
@@ -123,7 +134,8 @@ TEST(Law, PchipIsMonotoneAndHitsItsPoints) {
 TEST(Law, BreakpointsAreListedOnce) {
   const auto a = make_ramp(1, 2, 0, 1);
   EXPECT_EQ(make_sum({a, make_ramp(2, 3, 0, 1)})->breakpoints(), (std::vector<double>{1, 2, 3}));
-  EXPECT_EQ(make_piecewise({0, 1.5}, {a, make_constant(0)})->breakpoints(), (std::vector<double>{1, 1.5}));
+  EXPECT_EQ(make_piecewise({0, 1.5}, {a, make_constant(0)})->breakpoints(),
+            (std::vector<double>{1, 1.5}));
   EXPECT_TRUE(make_harmonic(0, 1, 1, 0)->breakpoints().empty());
   EXPECT_EQ(make_angle_of_speed(a, 0)->breakpoints(), a->breakpoints());
   EXPECT_EQ(make_scaled(2, a)->breakpoints(), a->breakpoints());

@@ -8,7 +8,7 @@
 using namespace whirl;
 
 namespace {
-constexpr double tol = 1e-13;   // round-off of a few rotations of unit size
+constexpr double tol = 1e-13;  // round-off of a few rotations of unit size
 }
 
 TEST(Path, EmptyIsStraightAlongX) {
@@ -23,7 +23,8 @@ TEST(Path, AnEighthOfACircleByEitherForm) {
   const double R = 100, a = pi / 4;
   Path about, through;
   about = through = Path(Vec3::Zero());
-  ASSERT_TRUE(about.add_arc_about(Vec3(R, 0, 7), Vec3(0, 0, -2), a));   // any point on the axis, any length of its direction
+  ASSERT_TRUE(about.add_arc_about(Vec3(R, 0, 7), Vec3(0, 0, -2),
+                                  a));  // any point on the axis, any length of its direction
   const auto on = [&](double t) { return Vec3(R * (1 - std::cos(t)), R * std::sin(t), 0); };
   ASSERT_TRUE(through.add_arc_through(on(0.3), on(a)));
   for (const Path& p : {about, through}) {
@@ -35,13 +36,15 @@ TEST(Path, AnEighthOfACircleByEitherForm) {
       triad << Vec3(std::sin(t), std::cos(t), 0), Vec3(-std::cos(t), std::sin(t), 0), Vec3::UnitZ();
       EXPECT_LT((x.triad - triad).norm(), tol);
     }
-    EXPECT_LT((p.after(R * a + 2).r - on(a) - 2 * Vec3(std::sin(a), std::cos(a), 0)).norm(), R * tol);
+    EXPECT_LT((p.after(R * a + 2).r - on(a) - 2 * Vec3(std::sin(a), std::cos(a), 0)).norm(),
+              R * tol);
   }
 }
 
 TEST(Path, TheLongWayRound) {
   Path p(Vec3(1, 0, 0));
-  ASSERT_TRUE(p.add_arc_through(Vec3(-1, 0, 0), Vec3(0, -1, 0)));   // three quarters of the unit circle
+  ASSERT_TRUE(
+      p.add_arc_through(Vec3(-1, 0, 0), Vec3(0, -1, 0)));  // three quarters of the unit circle
   EXPECT_NEAR(p.length(), 1.5 * pi, tol);
   EXPECT_LT((p.after(0.5 * pi).r - Vec3(0, 1, 0)).norm(), tol);
 }
@@ -58,7 +61,7 @@ TEST(Path, CornersHaveTwoTriads) {
   Mat3 second;
   second << Vec3::UnitY(), -Vec3::UnitX(), Vec3::UnitZ();
   EXPECT_LT((p.after(2).triad - second).norm(), tol);
-  Mat3 third;   // about -x by a right angle: y to -z, z to y
+  Mat3 third;  // about -x by a right angle: y to -z, z to y
   third << -Vec3::UnitZ(), -Vec3::UnitX(), Vec3::UnitY();
   EXPECT_LT((p.after(5).triad - third).norm(), tol);
   EXPECT_LT((p.after(5.25).r - Vec3(2, 3, -0.25)).norm(), tol);

@@ -4,7 +4,9 @@
 using namespace whirl;
 
 TEST(Cells, PlacesAndQuotes) {
-  const auto t = read_cells("\xEF\xBB\xBF# comment\r\n\r\na , b[mm] ,\"c, \"\"d\"\"\"\r\n1,  2.5,x\r\n# more\r\n,\xC2\xB5,\r\n");
+  const auto t = read_cells(
+      "\xEF\xBB\xBF# comment\r\n\r\na , b[mm] ,\"c, \"\"d\"\"\"\r\n1,  2.5,x\r\n# "
+      "more\r\n,\xC2\xB5,\r\n");
   ASSERT_TRUE(t.problem.empty());
   ASSERT_EQ(t.header.size(), 3u);
   EXPECT_EQ(t.header[0].text, "a");
@@ -19,13 +21,14 @@ TEST(Cells, PlacesAndQuotes) {
   EXPECT_EQ(t.rows[0][1].column, 5);
   EXPECT_EQ(t.rows[1].size(), 3u);
   EXPECT_EQ(t.rows[1][0].text, "");
-  EXPECT_EQ(t.rows[1][2].column, 4);   // after one two-byte character
+  EXPECT_EQ(t.rows[1][2].column, 4);  // after one two-byte character
 }
 
 TEST(Cells, Separators) {
   EXPECT_EQ(read_cells("a;b\n1,5;2\n").rows[0][0].text, "1,5");
   EXPECT_EQ(read_cells("a\tb c\n1\t2 3\n").rows[0][1].text, "2 3");
-  EXPECT_EQ(read_cells("k[N;m],b\n1,2\n").header.size(), 2u);   // inside brackets it separates nothing
+  EXPECT_EQ(read_cells("k[N;m],b\n1,2\n").header.size(),
+            2u);  // inside brackets it separates nothing
 }
 
 TEST(Cells, Problems) {

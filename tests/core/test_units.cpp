@@ -1,4 +1,5 @@
-// Units: the values are the definitions of the units, so they are compared exactly unless a product of roundings is named.
+// Units: the values are the definitions of the units, so they are compared exactly unless a product
+// of roundings is named.
 #include <core/types.hpp>
 #include <core/units.hpp>
 #include <gtest/gtest.h>
@@ -8,8 +9,18 @@
 using namespace whirl;
 
 namespace {
-struct Good { const char* text; const char* wanted; double value; };
-struct Bad { const char* text; const char* wanted; const char* code; const char* message; const char* hint; };
+struct Good {
+  const char* text;
+  const char* wanted;
+  double value;
+};
+struct Bad {
+  const char* text;
+  const char* wanted;
+  const char* code;
+  const char* message;
+  const char* hint;
+};
 }  // namespace
 
 TEST(Units, Values) {
@@ -58,7 +69,9 @@ TEST(Units, Values) {
       {"0.25", "", 0.25},
       {"-5 mm", "m", -5e-3},
       {"+5 mm", "m", 5e-3},
-      {"\xE2\x88\x92" "5 mm", "m", -5e-3},
+      {"\xE2\x88\x92"
+       "5 mm",
+       "m", -5e-3},
       {"40 degC", "K", 313.15},
       {"-40 degF", "K", 233.15},
       {"7850 kg/m^3", "kg/m^3", 7850},
@@ -101,7 +114,8 @@ TEST(Units, Values) {
 }
 
 TEST(Units, DecimalLiteralsAreExact) {
-  // "75 um" must be the same double as 75e-6: division by an exact power of ten is correctly rounded.
+  // "75 um" must be the same double as 75e-6: division by an exact power of ten is correctly
+  // rounded.
   EXPECT_EQ(units::convert("75 um", "m").value, 75e-6);
   EXPECT_EQ(units::convert("0.1 mm", "m").value, 1e-4);
   EXPECT_EQ(units::convert("12 g.mm", "kg.m").value, 12e-6);
@@ -111,36 +125,61 @@ TEST(Units, DecimalLiteralsAreExact) {
 
 TEST(Units, Problems) {
   const Bad table[] = {
-      {"75", "m", "E07", "\"75\" has no unit where a length is needed", "write the unit, for example \"75 m\""},
-      {"0.5", "1/s", "E07", "\"0.5\" has no unit where a rate (1/s) is needed", "write the unit, for example \"0.5 1/s\""},
-      {"0.5", "rad", "E07", "\"0.5\" has no unit where an angle is needed", "write the unit, for example \"0.5 rad\""},
-      {"75 kg", "mm", "E08", "\"75 kg\" is a mass where a length is needed", "write it in mm or another unit of the same kind"},
-      {"157 mm 5", "m", "E10", "\"157 mm 5\" cannot be read as a quantity: unexpected '5'", "a quantity is a number and a unit, such as \"75 um\" or \"8e4 N/m\""},
-      {"157 1/s", "rpm", "E08", "\"157 1/s\" is a rate (1/s) where an angular speed is needed", "say what turns: write it in rad/s, Hz or rpm"},
-      {"157 /s", "rpm", "E08", "\"157 /s\" is a rate (1/s) where an angular speed is needed", "say what turns: write it in rad/s, Hz or rpm"},
-      {"5 deg", "", "E08", "\"5 deg\" is an angle where a plain number is needed", "this value has no unit: write a plain number"},
-      {"5 N.m/rad", "N.m", "E08", "\"5 N.m/rad\" is a torsional stiffness where a torque, moment or energy is needed", "write it in N.m or another unit of the same kind"},
-      {"5 rad/s", "1/s", "E08", "\"5 rad/s\" is an angular speed where a rate (1/s) is needed", "write it in 1/s or another unit of the same kind"},
-      {"16 oz.in", "N.m", "E08", "\"16 oz.in\" is an unbalance (mass times length) where a torque, moment or energy is needed", "write it in N.m or another unit of the same kind"},
+      {"75", "m", "E07", "\"75\" has no unit where a length is needed",
+       "write the unit, for example \"75 m\""},
+      {"0.5", "1/s", "E07", "\"0.5\" has no unit where a rate (1/s) is needed",
+       "write the unit, for example \"0.5 1/s\""},
+      {"0.5", "rad", "E07", "\"0.5\" has no unit where an angle is needed",
+       "write the unit, for example \"0.5 rad\""},
+      {"75 kg", "mm", "E08", "\"75 kg\" is a mass where a length is needed",
+       "write it in mm or another unit of the same kind"},
+      {"157 mm 5", "m", "E10", "\"157 mm 5\" cannot be read as a quantity: unexpected '5'",
+       "a quantity is a number and a unit, such as \"75 um\" or \"8e4 N/m\""},
+      {"157 1/s", "rpm", "E08", "\"157 1/s\" is a rate (1/s) where an angular speed is needed",
+       "say what turns: write it in rad/s, Hz or rpm"},
+      {"157 /s", "rpm", "E08", "\"157 /s\" is a rate (1/s) where an angular speed is needed",
+       "say what turns: write it in rad/s, Hz or rpm"},
+      {"5 deg", "", "E08", "\"5 deg\" is an angle where a plain number is needed",
+       "this value has no unit: write a plain number"},
+      {"5 N.m/rad", "N.m", "E08",
+       "\"5 N.m/rad\" is a torsional stiffness where a torque, moment or energy is needed",
+       "write it in N.m or another unit of the same kind"},
+      {"5 rad/s", "1/s", "E08", "\"5 rad/s\" is an angular speed where a rate (1/s) is needed",
+       "write it in 1/s or another unit of the same kind"},
+      {"16 oz.in", "N.m", "E08",
+       "\"16 oz.in\" is an unbalance (mass times length) where a torque, moment or energy is "
+       "needed",
+       "write it in N.m or another unit of the same kind"},
       {"5 Nm", "N.m", "E09", "unknown unit 'Nm' in \"5 Nm\"", "write a point between units: 'N.m'"},
       {"5 RPM", "rpm", "E09", "unknown unit 'RPM' in \"5 RPM\"", "did you mean 'rpm'?"},
       {"5 KN", "N", "E09", "unknown unit 'KN' in \"5 KN\"", "did you mean 'kN'?"},
-      {"5 lb", "kg", "E09", "unknown unit 'lb' in \"5 lb\"", "say which: 'lbm' is the mass, 'lbf' the force"},
+      {"5 lb", "kg", "E09", "unknown unit 'lb' in \"5 lb\"",
+       "say which: 'lbm' is the mass, 'lbf' the force"},
       {"5 furlong", "m", "E09", "unknown unit 'furlong' in \"5 furlong\"", ""},
-      {"0,019 Pa.s", "Pa.s", "E12", "\"0,019 Pa.s\" has a comma inside a number", "write a decimal point (\"0.019 Pa.s\") and no thousands separator"},
-      {"1 W/m.K", "W/(m.K)", "E10", "\"1 W/m.K\" can be read in two ways: a product follows the '/'", "write the whole denominator in parentheses, such as \"W/(m.K)\""},
-      {"1/2 m", "m", "E10", "\"1/2 m\" can be read in two ways: a product follows the '/'", "write the whole denominator in parentheses, such as \"W/(m.K)\""},
-      {"nan m", "m", "E13", "\"nan m\" is not a finite number", "leave the key out where no limit is meant"},
-      {"-inf", "m", "E13", "\"-inf\" is not a finite number", "leave the key out where no limit is meant"},
+      {"0,019 Pa.s", "Pa.s", "E12", "\"0,019 Pa.s\" has a comma inside a number",
+       "write a decimal point (\"0.019 Pa.s\") and no thousands separator"},
+      {"1 W/m.K", "W/(m.K)", "E10",
+       "\"1 W/m.K\" can be read in two ways: a product follows the '/'",
+       "write the whole denominator in parentheses, such as \"W/(m.K)\""},
+      {"1/2 m", "m", "E10", "\"1/2 m\" can be read in two ways: a product follows the '/'",
+       "write the whole denominator in parentheses, such as \"W/(m.K)\""},
+      {"nan m", "m", "E13", "\"nan m\" is not a finite number",
+       "leave the key out where no limit is meant"},
+      {"-inf", "m", "E13", "\"-inf\" is not a finite number",
+       "leave the key out where no limit is meant"},
       {"1e999 m", "m", "E13", "\"1e999 m\" has a number beyond the range of double precision", ""},
-      {"1e300 GN", "N", "E13", "\"1e300 GN\" is not a finite number", "the value overflows double precision"},
+      {"1e300 GN", "N", "E13", "\"1e300 GN\" is not a finite number",
+       "the value overflows double precision"},
       {"1/0", "", "E13", "\"1/0\" is not a finite number", "the value overflows double precision"},
       {"", "m", "E10", "the text is empty where a quantity is expected", ""},
       {"5 mm +", "m", "E10", "\"5 mm +\" ends where a number or a unit is expected", ""},
       {"(5 mm", "m", "E10", "\"(5 mm\" has a parenthesis that is not closed", ""},
       {"5 mm + 2 s", "m", "E08", "\"5 mm + 2 s\" adds a length and a time", ""},
-      {"5 mm $", "m", "E10", "\"5 mm $\" cannot be read as a quantity: unexpected '$'", "a quantity is a number and a unit, such as \"75 um\" or \"8e4 N/m\""},
-      {"40 degC/m", "K/m", "E10", "\"40 degC/m\" calculates with degC or degF, whose zero is not the zero of temperature", "write \"40 degC\" alone, or calculate in K"},
+      {"5 mm $", "m", "E10", "\"5 mm $\" cannot be read as a quantity: unexpected '$'",
+       "a quantity is a number and a unit, such as \"75 um\" or \"8e4 N/m\""},
+      {"40 degC/m", "K/m", "E10",
+       "\"40 degC/m\" calculates with degC or degF, whose zero is not the zero of temperature",
+       "write \"40 degC\" alone, or calculate in K"},
       {"5 m^1000", "m", "E10", "\"5 m^1000\" has an exponent beyond 100", ""},
   };
   for (const auto& b : table) {
@@ -168,7 +207,7 @@ TEST(Units, ProblemsPointAtTheirPlace) {
 TEST(Units, Factors) {
   EXPECT_EQ(units::factor("mm", "m")(80), 0.08);
   EXPECT_EQ(units::factor("N/m", "N/m")(8e4), 8e4);
-  EXPECT_NEAR(units::factor("rpm", "rad/s")(60), two_pi, 1e-15);   // one rounding of 2 pi 60/60
+  EXPECT_NEAR(units::factor("rpm", "rad/s")(60), two_pi, 1e-15);  // one rounding of 2 pi 60/60
   EXPECT_EQ(units::factor("-", "")(3), 3);
   EXPECT_EQ(units::factor("%", "")(3), 0.03);
   EXPECT_EQ(units::factor("1/s", "1/s")(3), 3);
@@ -189,7 +228,8 @@ TEST(Units, FormatReadsBackExactly) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> mantissa(-10, 10);
   std::uniform_int_distribution<int> exponent(-18, 18);
-  for (const char* unit : {"mm", "rpm", "deg", "N.m/rad", "g.mm", "psi", "GPa", "kg.m^2", "1/s", "%", ""}) {
+  for (const char* unit :
+       {"mm", "rpm", "deg", "N.m/rad", "g.mm", "psi", "GPa", "kg.m^2", "1/s", "%", ""}) {
     for (int k = 0; k < 2000; ++k) {
       const double v = mantissa(random) * std::pow(10.0, exponent(random));
       const std::string s = units::format(v, unit);

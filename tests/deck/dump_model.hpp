@@ -1,4 +1,5 @@
-// Every number and name of a model as text, for comparing two of them exactly. Places in the deck are left out.
+// Every number and name of a model as text, for comparing two of them exactly. Places in the deck
+// are left out.
 #pragma once
 #include <fmt/format.h>
 #include <model/model.hpp>
@@ -14,41 +15,58 @@ class ModelDump {
  private:
   void put(const char* key, double x) { out_ += fmt::format("{}={:a} ", key, x); }
   void put(const char* key, const std::string& s) { out_ += fmt::format("{}='{}' ", key, s); }
-  template <class V> void each(const char* key, const V& values) {
+  template <class V>
+  void each(const char* key, const V& values) {
     out_ += fmt::format("{}=(", key);
-    for (const auto& v : values) out_ += fmt::format("{:a} ", static_cast<double>(v));
+    for (const auto& v : values)
+      out_ += fmt::format("{:a} ", static_cast<double>(v));
     out_ += ") ";
   }
-  template <class M> void matrix(const char* key, const M& m) {
+  template <class M>
+  void matrix(const char* key, const M& m) {
     out_ += fmt::format("{}=(", key);
     for (Index i = 0; i < m.rows(); ++i)
-      for (Index j = 0; j < m.cols(); ++j) out_ += fmt::format("{:a} ", m(i, j));
+      for (Index j = 0; j < m.cols(); ++j)
+        out_ += fmt::format("{:a} ", m(i, j));
     out_ += ") ";
   }
   void law(const char* key, const LawPtr& l) {
     out_ += fmt::format("{}=", key);
-    if (!l) { out_ += "none "; return; }
+    if (!l) {
+      out_ += "none ";
+      return;
+    }
     for (double t : {-1.0, 0.0, 0.3, 0.7, 1.0, 1.1, 1.9, 2.0, 3.7, 8.0, 30.0}) {
       const LawValue v = l->at(t);
       out_ += fmt::format("({:a} {:a} {:a} {:a}) ", v.f, v.df, v.ddf, l->integral(t));
     }
     each("breaks", l->breakpoints());
   }
-  void at(const char* key, const model::Location& l) { out_ += fmt::format("{}=({} {:a} '{}' {}) ", key, l.shaft, l.s, l.text, l.housing); }
-  void head(const char* kind, const model::Entity& e) { out_ += fmt::format("\n{} '{}' ", kind, e.name); }
+  void at(const char* key, const model::Location& l) {
+    out_ += fmt::format("{}=({} {:a} '{}' {}) ", key, l.shaft, l.s, l.text, l.housing);
+  }
+  void head(const char* kind, const model::Entity& e) {
+    out_ += fmt::format("\n{} '{}' ", kind, e.name);
+  }
 
   void shaft(const model::Shaft& s) {
     head("shaft", s);
     matrix("origin", s.origin);
-    each("damping", std::array{s.damping.alpha, s.damping.beta_external, s.damping.beta_internal, s.damping.loss_factor, s.damping.loss_frequency, s.damping.beta_torsion});
+    each("damping",
+         std::array{s.damping.alpha, s.damping.beta_external, s.damping.beta_internal,
+                    s.damping.loss_factor, s.damping.loss_frequency, s.damping.beta_torsion});
     each("state", std::array{double(s.rotating), s.speed_ratio, s.spin0, s.axial_preload});
     for (const auto& x : s.sections) {
       head(" section", x);
       each("d", std::array{x.length, x.od_l, x.id_l, x.od_r, x.id_r});
       if (x.stiffness_diameters) each("stiffness", *x.stiffness_diameters);
-      each("flags", std::array{double(x.material), double(x.rigid), double(x.shear), x.kappa, double(x.rotary_inertia), x.added_mass_per_length, double(x.min_elements), x.max_element_length});
-      if (const auto& g = x.general) each("general", std::array{g->A, g->Iy, g->Iz, g->J, g->kappa_y, g->kappa_z, g->angle});
-      if (const auto& c = x.constants) each("constants", std::array{c->EA, c->kGA, c->GJ, c->EI, c->rhoA, c->rhoI, c->rhoIp});
+      each("flags", std::array{double(x.material), double(x.rigid), double(x.shear), x.kappa,
+                               double(x.rotary_inertia), x.added_mass_per_length,
+                               double(x.min_elements), x.max_element_length});
+      if (const auto& g = x.general)
+        each("general", std::array{g->A, g->Iy, g->Iz, g->J, g->kappa_y, g->kappa_z, g->angle});
+      if (const auto& c = x.constants)
+        each("constants", std::array{c->EA, c->kGA, c->GJ, c->EI, c->rhoA, c->rhoI, c->rhoIp});
     }
   }
 
@@ -57,57 +75,100 @@ class ModelDump {
     at("at", b.at);
     if (b.to) at("to", *b.to);
     put("law", double(b.law.index()));
-    if (const auto* x = std::get_if<model::SpringBlock>(&b.law)) each("C", std::array{x->C1, x->C2});
+    if (const auto* x = std::get_if<model::SpringBlock>(&b.law))
+      each("C", std::array{x->C1, x->C2});
     if (const auto* x = std::get_if<model::LinearBearing>(&b.law)) {
-      matrix("K", x->K); matrix("C", x->C); matrix("M", x->M); matrix("setpoint", x->setpoint); matrix("preload", x->preload);
+      matrix("K", x->K);
+      matrix("C", x->C);
+      matrix("M", x->M);
+      matrix("setpoint", x->setpoint);
+      matrix("preload", x->preload);
     }
     if (const auto* x = std::get_if<model::TableBearing>(&b.law)) {
       each("speed", x->speed);
-      for (const auto& r : x->K) matrix("K", r);
-      for (const auto& r : x->C) matrix("C", r);
-      for (const auto& r : x->M) matrix("M", r);
-      matrix("setpoint", x->setpoint); matrix("preload", x->preload);
+      for (const auto& r : x->K)
+        matrix("K", r);
+      for (const auto& r : x->C)
+        matrix("C", r);
+      for (const auto& r : x->M)
+        matrix("M", r);
+      matrix("setpoint", x->setpoint);
+      matrix("preload", x->preload);
       each("how", std::array{x->monotone_cubic, x->extrapolate_hold});
     }
     if (const auto* x = std::get_if<model::RigidSupport>(&b.law)) each("held", x->held);
     std::visit([this](const auto& x) { law(x); }, b.law);
-    if (b.pedestal) { put("mass", b.pedestal->mass); matrix("K", b.pedestal->K); matrix("C", b.pedestal->C); }
+    if (b.pedestal) {
+      put("mass", b.pedestal->mass);
+      matrix("K", b.pedestal->K);
+      matrix("C", b.pedestal->C);
+    }
   }
 
-  template <class T> void law(const T&) {}   // those above
+  template <class T>
+  void law(const T&) {}  // those above
   void law(const model::NonlinearSpring& x) {
     const auto& f = x.force;
-    each("spring", std::array{double(x.along), double(f.shape), f.gap_minus, f.gap_plus, f.stiffness, f.smooth, double(f.monotone_cubic), x.damping, x.damping2});
-    each("coefficients", f.coefficients); each("q", f.q); each("F", f.F);
+    each("spring",
+         std::array{double(x.along), double(f.shape), f.gap_minus, f.gap_plus, f.stiffness,
+                    f.smooth, double(f.monotone_cubic), x.damping, x.damping2});
+    each("coefficients", f.coefficients);
+    each("q", f.q);
+    each("F", f.F);
   }
-  void oil(const model::Oil& o) { each("oil", std::array{o.viscosity, o.grade, o.temperature, o.density}); }
-  void law(const model::ShortJournal& x) { each("short", std::array{x.diameter, x.length, x.clearance}); oil(x.oil); }
+  void oil(const model::Oil& o) {
+    each("oil", std::array{o.viscosity, o.grade, o.temperature, o.density});
+  }
+  void law(const model::ShortJournal& x) {
+    each("short", std::array{x.diameter, x.length, x.clearance});
+    oil(x.oil);
+  }
   void law(const model::FiniteJournal& x) {
-    each("journal", std::array{x.diameter, x.length, x.clearance, x.preload, double(x.shape), double(x.lobes), x.groove, x.groove_at, x.lobe_at, x.lobe_offset, double(x.nodes)});
+    each("journal",
+         std::array{x.diameter, x.length, x.clearance, x.preload, double(x.shape), double(x.lobes),
+                    x.groove, x.groove_at, x.lobe_at, x.lobe_offset, double(x.nodes)});
     oil(x.oil);
   }
   void law(const model::SqueezeFilm& x) {
-    each("squeeze", std::array{x.diameter, x.length, x.clearance, double(x.film), x.groove, x.groove_at, x.stiffness, x.damping});
+    each("squeeze", std::array{x.diameter, x.length, x.clearance, double(x.film), x.groove,
+                               x.groove_at, x.stiffness, x.damping});
     oil(x.oil);
   }
   void law(const model::BallBearing& x) {
-    each("ball", std::array{double(x.balls), x.ball_diameter, x.pitch_diameter, x.contact_angle, x.clearance, x.f_inner, x.f_outer, x.stiffness, x.preload, double(x.direction), x.c_radial, x.c_axial});
+    each("ball", std::array{double(x.balls), x.ball_diameter, x.pitch_diameter, x.contact_angle,
+                            x.clearance, x.f_inner, x.f_outer, x.stiffness, x.preload,
+                            double(x.direction), x.c_radial, x.c_axial});
   }
   void law(const model::RollerBearing& x) {
-    each("roller", std::array{double(x.rollers), x.roller_diameter, x.roller_length, x.pitch_diameter, x.clearance, x.stiffness, x.c_radial, x.c_axial});
+    each("roller", std::array{double(x.rollers), x.roller_diameter, x.roller_length,
+                              x.pitch_diameter, x.clearance, x.stiffness, x.c_radial, x.c_axial});
   }
-  void law(const model::Rub& x) { each("rub", std::array{x.gap, x.stiffness, x.damping, x.friction, x.diameter, x.slip_speed}); }
+  void law(const model::Rub& x) {
+    each("rub", std::array{x.gap, x.stiffness, x.damping, x.friction, x.diameter, x.slip_speed});
+  }
   void law(const model::AnnularSeal& x) {
-    each("seal", std::array{x.diameter, x.length, x.clearance, x.pressure_drop, x.density, x.viscosity, x.inlet_loss, x.inlet_swirl});
+    each("seal", std::array{x.diameter, x.length, x.clearance, x.pressure_drop, x.density,
+                            x.viscosity, x.inlet_loss, x.inlet_swirl});
   }
   void law(const model::CrossCoupling& x) {
-    each("cross", std::array{double(x.from), x.k, x.alford.beta, x.alford.torque, x.alford.diameter, x.alford.blade_height, x.wachel.power, x.wachel.speed,
-                             x.wachel.diameter, x.wachel.width, x.wachel.molar_mass, x.wachel.density_ratio});
+    each("cross",
+         std::array{double(x.from), x.k, x.alford.beta, x.alford.torque, x.alford.diameter,
+                    x.alford.blade_height, x.wachel.power, x.wachel.speed, x.wachel.diameter,
+                    x.wachel.width, x.wachel.molar_mass, x.wachel.density_ratio});
   }
-  void law(const model::Coupling& x) { matrix("K", x.K); matrix("C", x.C); each("hubs", std::array{x.offset_y, x.offset_z, x.angle_y, x.angle_z}); }
+  void law(const model::Coupling& x) {
+    matrix("K", x.K);
+    matrix("C", x.C);
+    each("hubs", std::array{x.offset_y, x.offset_z, x.angle_y, x.angle_z});
+  }
   void law(const model::GearPair& x) {
-    each("gear", std::array{double(x.teeth), double(x.other_teeth), x.pitch_diameter, x.pressure_angle, x.helix, x.centre_angle, double(x.drive), x.stiffness, x.damping, x.backlash});
-    each("a", x.stiffness_harmonics); each("b", x.stiffness_phases); each("e", x.error_harmonics); each("f", x.error_phases);
+    each("gear",
+         std::array{double(x.teeth), double(x.other_teeth), x.pitch_diameter, x.pressure_angle,
+                    x.helix, x.centre_angle, double(x.drive), x.stiffness, x.damping, x.backlash});
+    each("a", x.stiffness_harmonics);
+    each("b", x.stiffness_phases);
+    each("e", x.error_harmonics);
+    each("f", x.error_phases);
   }
 
   void drive(const model::Drive& d) {
@@ -119,11 +180,17 @@ class ModelDump {
     if (const auto* t = std::get_if<model::TorqueCurve>(&d.law)) {
       law("torque", t->of_time);
       law("brake", t->brake);
-      each("speed", t->speed); each("torque", t->torque); each("load", std::array{t->constant, t->viscous, t->quadratic});
-      if (t->induction) each("induction", std::array{t->induction->breakdown, t->induction->slip_breakdown, t->induction->synchronous});
+      each("speed", t->speed);
+      each("torque", t->torque);
+      each("load", std::array{t->constant, t->viscous, t->quadratic});
+      if (t->induction)
+        each("induction", std::array{t->induction->breakdown, t->induction->slip_breakdown,
+                                     t->induction->synchronous});
       if (t->dc) each("dc", std::array{t->dc->stall, t->dc->no_load_speed});
       if (t->power) each("power", std::array{t->power->power, t->power->max_torque});
-      if (t->governor) each("governor", std::array{t->governor->target, t->governor->kp, t->governor->ki, t->governor->max_torque});
+      if (t->governor)
+        each("governor", std::array{t->governor->target, t->governor->kp, t->governor->ki,
+                                    t->governor->max_torque});
     }
   }
 
@@ -136,13 +203,23 @@ class ModelDump {
     head("step", s);
     put("from", s.from);
     put("kind", double(s.law.index()));
-    if (const auto* x = std::get_if<model::StaticStep>(&s.law)) each("static", std::array{double(x->load_steps), x->speed});
-    if (const auto* x = std::get_if<model::ModalStep>(&s.law)) each("modal", std::array{x->speed, double(x->modes)});
-    if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) { range(x->speed); put("modes", x->modes); each("orders", x->orders); }
-    if (const auto* x = std::get_if<model::CriticalStep>(&s.law)) { each("critical", std::array{x->max_speed, double(x->modes)}); each("orders", x->orders); }
+    if (const auto* x = std::get_if<model::StaticStep>(&s.law))
+      each("static", std::array{double(x->load_steps), x->speed});
+    if (const auto* x = std::get_if<model::ModalStep>(&s.law))
+      each("modal", std::array{x->speed, double(x->modes)});
+    if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) {
+      range(x->speed);
+      put("modes", x->modes);
+      each("orders", x->orders);
+    }
+    if (const auto* x = std::get_if<model::CriticalStep>(&s.law)) {
+      each("critical", std::array{x->max_speed, double(x->modes)});
+      each("orders", x->orders);
+    }
     if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) range(x->speed);
     if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {
-      each("transient", std::array{x->duration, double(x->start), x->speed0, x->stop_speed, x->amplitude_limit});
+      each("transient",
+           std::array{x->duration, double(x->start), x->speed0, x->stop_speed, x->amplitude_limit});
       const auto& o = x->integrator;
       put("method", o.method);
       each("integrator", std::array{o.tolerance, o.rho_inf, o.dt, o.dt_max, o.dt_min, o.dt_first});
@@ -153,44 +230,85 @@ class ModelDump {
     put("format", m.format);
     put("title", m.title);
     matrix("gravity", m.gravity);
-    each("settings", std::array{double(m.chart_change), double(m.keep_everything), m.max_element_length, double(m.min_elements)});
-    for (const auto& x : m.materials) { head("material", x); each("", std::array{x.E, x.G, x.nu, x.rho, x.yield}); }
-    for (const auto& x : m.shafts) shaft(x);
+    each("settings", std::array{double(m.chart_change), double(m.keep_everything),
+                                m.max_element_length, double(m.min_elements)});
+    for (const auto& x : m.materials) {
+      head("material", x);
+      each("", std::array{x.E, x.G, x.nu, x.rho, x.yield});
+    }
+    for (const auto& x : m.shafts)
+      shaft(x);
     for (const auto& d : m.disks) {
       head("disk", d);
       at("at", d.at);
-      each("body", std::array{d.mass, d.Ip, d.Id, d.skew, d.skew_phase, d.draw_od, d.draw_id, d.draw_width});
+      each("body", std::array{d.mass, d.Ip, d.Id, d.skew, d.skew_phase, d.draw_od, d.draw_id,
+                              d.draw_width});
       if (d.inertia) matrix("inertia", *d.inertia);
       matrix("offset", d.offset);
     }
-    for (const auto& u : m.unbalances) { head("unbalance", u); at("at", u.at); each("", std::array{u.amount, u.phase}); law("factor", u.factor); }
+    for (const auto& u : m.unbalances) {
+      head("unbalance", u);
+      at("at", u.at);
+      each("", std::array{u.amount, u.phase});
+      law("factor", u.factor);
+    }
     for (const auto& i : m.initial) {
       head("initial", i);
       put("shaft", double(i.shaft));
-      matrix("displacement", i.displacement); matrix("velocity", i.velocity); matrix("omega", i.omega); matrix("gamma", i.gamma); matrix("about", i.about);
+      matrix("displacement", i.displacement);
+      matrix("velocity", i.velocity);
+      matrix("omega", i.omega);
+      matrix("gamma", i.gamma);
+      matrix("about", i.about);
     }
-    for (const auto& b : m.bearings) bearing(b);
-    for (const auto& l : m.base.acceleration) law("base", l);
-    if (m.base.turn) { matrix("axis", m.base.turn->axis); matrix("about", m.base.turn->about); law("rate", m.base.turn->rate); }
+    for (const auto& b : m.bearings)
+      bearing(b);
+    for (const auto& l : m.base.acceleration)
+      law("base", l);
+    if (m.base.turn) {
+      matrix("axis", m.base.turn->axis);
+      matrix("about", m.base.turn->about);
+      law("rate", m.base.turn->rate);
+    }
     for (const auto& f : m.foundations) {
       head("foundation", f);
-      for (const auto& c : f.coordinates) out_ += fmt::format("('{}' {} {}) ", c.name, c.bearing, c.direction);
-      matrix("K", f.K); matrix("C", f.C); matrix("M", f.M);
+      for (const auto& c : f.coordinates)
+        out_ += fmt::format("('{}' {} {}) ", c.name, c.bearing, c.direction);
+      matrix("K", f.K);
+      matrix("C", f.C);
+      matrix("M", f.M);
     }
-    for (const auto& l : m.loads) { head("load", l); at("at", l.at); put("frame", double(l.frame)); matrix("force", l.force); matrix("moment", l.moment); law("factor", l.factor); }
-    for (const auto& d : m.drives) drive(d);
-    for (const auto& p : m.probes) { head("probe", p); at("at", p.at); each("angles", p.angles); }
-    for (const auto& s : m.steps) step(s);
+    for (const auto& l : m.loads) {
+      head("load", l);
+      at("at", l.at);
+      put("frame", double(l.frame));
+      matrix("force", l.force);
+      matrix("moment", l.moment);
+      law("factor", l.factor);
+    }
+    for (const auto& d : m.drives)
+      drive(d);
+    for (const auto& p : m.probes) {
+      head("probe", p);
+      at("at", p.at);
+      each("angles", p.angles);
+    }
+    for (const auto& s : m.steps)
+      step(s);
     const auto& o = m.output;
     out_ += "\noutput ";
-    each("", std::array{o.every, double(o.csv), double(o.binary), double(o.report), double(o.peak_to_peak)});
+    each("", std::array{o.every, double(o.csv), double(o.binary), double(o.report),
+                        double(o.peak_to_peak)});
     put("directory", o.directory);
-    for (const auto& q : o.quantities) put("quantity", q);
+    for (const auto& q : o.quantities)
+      put("quantity", q);
     for (const auto& v : o.vtk) {
       out_ += "\nvtk ";
       put("step", v.step);
-      each("", std::array{v.t0, v.t1, v.every, v.frames_per_revolution, double(v.frames), double(v.max_frames), v.deformation_scale, double(v.points_around)});
-      for (const auto& c : v.content) put("content", c);
+      each("", std::array{v.t0, v.t1, v.every, v.frames_per_revolution, double(v.frames),
+                          double(v.max_frames), v.deformation_scale, double(v.points_around)});
+      for (const auto& c : v.content)
+        put("content", c);
     }
   }
 

@@ -1,6 +1,7 @@
-// Every mistake a deck can have, with the whole text the user sees. bad/NAME.toml is read, its report compared with
-// bad/NAME.txt. Lines "#--set path=value" at the top of a deck are overrides. After a wanted change of wording run the test
-// with WHIRL_UPDATE_GOLDEN=1 and read the difference before committing it.
+// Every mistake a deck can have, with the whole text the user sees. bad/NAME.toml is read, its
+// report compared with bad/NAME.txt. Lines "#--set path=value" at the top of a deck are overrides.
+// After a wanted change of wording run the test with WHIRL_UPDATE_GOLDEN=1 and read the difference
+// before committing it.
 #include <core/error.hpp>
 #include <deck/deck.hpp>
 #include <gtest/gtest.h>
@@ -35,7 +36,8 @@ deck::Deck read_with_overrides(const fs::path& p) {
   deck::ReadOptions o;
   std::istringstream lines(read(p));
   std::string line;
-  while (std::getline(lines, line) && line.starts_with("#--set ")) o.set.push_back(line.substr(7));
+  while (std::getline(lines, line) && line.starts_with("#--set "))
+    o.set.push_back(line.substr(7));
   return deck::read_deck(p, o);
 }
 
@@ -56,7 +58,10 @@ TEST(BadDecks, SayWhatTheirNameSays) {
   for (const auto& p : decks()) {
     const auto d = read_with_overrides(p);
     const std::string code = p.filename().string().substr(0, 3);
-    EXPECT_TRUE(std::any_of(d.diagnostics.begin(), d.diagnostics.end(), [&](const Diagnostic& x) { return x.code == code; })) << p << "\n" << d.report();
+    EXPECT_TRUE(std::any_of(d.diagnostics.begin(), d.diagnostics.end(),
+                            [&](const Diagnostic& x) { return x.code == code; }))
+        << p << "\n"
+        << d.report();
     EXPECT_EQ(d.ok(), code[0] == 'W') << p;
   }
 }
@@ -64,13 +69,16 @@ TEST(BadDecks, SayWhatTheirNameSays) {
 TEST(BadDecks, CoverEveryCodeOfTheReader) {
   std::set<std::string> seen;
   for (const auto& p : decks())
-    for (const auto& d : read_with_overrides(p).diagnostics) seen.insert(d.code);
+    for (const auto& d : read_with_overrides(p).diagnostics)
+      seen.insert(d.code);
   for (const auto& c : error_catalogue()) {
     const std::string code = c.code;
-    if ((code[0] == 'E' && code >= "E40") || code[0] == 'N' || code[0] == 'R') continue;   // found while running
-    if (code == "W04" || code == "W07" || code == "W08" || code == "W09") continue;         // found while running
-    if (code == "E33") continue;                     // needs a disk: test_output_estimate
-    if (code == "E38") continue;                     // needs the inertia of a mesh: tests/app/test_extremes
+    if ((code[0] == 'E' && code >= "E40") || code[0] == 'N' || code[0] == 'R')
+      continue;  // found while running
+    if (code == "W04" || code == "W07" || code == "W08" || code == "W09")
+      continue;                   // found while running
+    if (code == "E33") continue;  // needs a disk: test_output_estimate
+    if (code == "E38") continue;  // needs the inertia of a mesh: tests/app/test_extremes
     EXPECT_TRUE(seen.count(code)) << code << ": no bad deck shows it";
   }
 }
@@ -81,7 +89,9 @@ TEST(BadDecks, AreSortedByPlaceAndKnownToExplain) {
     for (std::size_t i = 0; i < d.diagnostics.size(); ++i) {
       EXPECT_NE(find_code(d.diagnostics[i].code), nullptr) << p << ": " << d.diagnostics[i].code;
       if (i == 0 || d.diagnostics[i].where.file != d.diagnostics[i - 1].where.file) continue;
-      EXPECT_LE(std::pair(d.diagnostics[i - 1].where.line, d.diagnostics[i - 1].where.column), std::pair(d.diagnostics[i].where.line, d.diagnostics[i].where.column)) << p;
+      EXPECT_LE(std::pair(d.diagnostics[i - 1].where.line, d.diagnostics[i - 1].where.column),
+                std::pair(d.diagnostics[i].where.line, d.diagnostics[i].where.column))
+          << p;
     }
   }
 }

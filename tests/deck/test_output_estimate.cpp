@@ -26,7 +26,9 @@ every = "1 us"
   const auto problems = deck::check_output(d.model, 5e10);
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(format(problems[0]),
-            "deck.toml:8:1: error[E33]: the output would take about 220.0 TB (histories 220.0 TB, pictures 0 kB), but only 50.0 GB are free\n     = hint: write rows less often: output.every\n");
+            "deck.toml:8:1: error[E33]: the output would take about 220.0 TB (histories 220.0 TB, "
+            "pictures 0 kB), but only 50.0 GB are free\n     = hint: write rows less often: "
+            "output.every\n");
 }
 
 TEST(OutputEstimate, FramesAreCapped) {
@@ -65,7 +67,8 @@ name = "first"
 type = "transient"
 start = "rest"
 duration = "1000 s"
-)" + more_steps + "[output]\nevery = \"0.1 us\"\n" + more_output;
+)" + more_steps +
+         "[output]\nevery = \"0.1 us\"\n" + more_output;
 }
 
 double histories_of(const std::string& text) {
@@ -74,21 +77,25 @@ double histories_of(const std::string& text) {
   return deck::estimate_output(d.model).histories;
 }
 
-constexpr double row = (2 + 1 + 6) * 20;   // bytes: columns times characters
+constexpr double row = (2 + 1 + 6) * 20;  // bytes: columns times characters
 
 }  // namespace
 
 TEST(OutputEstimate, CountsRowsInsideTheWindowOnly) {
   EXPECT_DOUBLE_EQ(histories_of(long_run("")), 1e10 * row);
-  EXPECT_NEAR(histories_of(long_run("window = [\"0.01 s\", \"0.011 s\"]\n")), 1e4 * row, 1e-6 * row);
+  EXPECT_NEAR(histories_of(long_run("window = [\"0.01 s\", \"0.011 s\"]\n")), 1e4 * row,
+              1e-6 * row);
   // the window is partly, or wholly, beyond the end
-  EXPECT_NEAR(histories_of(long_run("window = [\"999.999 s\", \"1001 s\"]\n")), 1e4 * row, 1e-3 * row);
+  EXPECT_NEAR(histories_of(long_run("window = [\"999.999 s\", \"1001 s\"]\n")), 1e4 * row,
+              1e-3 * row);
   EXPECT_EQ(histories_of(long_run("window = [\"2000 s\", \"2001 s\"]\n")), 0.0);
 }
 
 TEST(OutputEstimate, AStepThatGoesOnHasItsTimesAfterThoseBefore) {
-  const std::string second = "[[step]]\nname = \"second\"\ntype = \"transient\"\nfrom = \"first\"\nduration = \"10 s\"\n";
-  EXPECT_NEAR(histories_of(long_run("window = [\"1001 s\", \"1001.001 s\"]\n", second)), 1e4 * row, 1e-3 * row);
+  const std::string second =
+      "[[step]]\nname = \"second\"\ntype = \"transient\"\nfrom = \"first\"\nduration = \"10 s\"\n";
+  EXPECT_NEAR(histories_of(long_run("window = [\"1001 s\", \"1001.001 s\"]\n", second)), 1e4 * row,
+              1e-3 * row);
 }
 
 TEST(OutputEstimate, RowsInsideAWindowOfSpeedMayBeFew) {

@@ -115,10 +115,12 @@ TEST(Reader, Everything) {
   const model::Model& m = d.model;
   EXPECT_EQ(m.title, "Everything \"quoted\", \xCE\xA9");
   EXPECT_EQ(m.gravity, Vec3(0.1, 0, -9.8));
-  ASSERT_EQ(m.materials.size(), 4u);   // two of its own, steel and titanium used
+  ASSERT_EQ(m.materials.size(), 4u);  // two of its own, steel and titanium used
   EXPECT_EQ(m.materials[0].name, "own");
-  EXPECT_NEAR(m.materials[0].nu, 30 / (2 * 11.5) - 1, 1e-15);   // one rounding each of E, G and their ratio
-  EXPECT_NEAR(m.materials[0].rho, 0.283 * 0.45359237 / std::pow(0.0254, 3), 1e-11);   // 7833 kg/m3 with a few roundings
+  EXPECT_NEAR(m.materials[0].nu, 30 / (2 * 11.5) - 1,
+              1e-15);  // one rounding each of E, G and their ratio
+  EXPECT_NEAR(m.materials[0].rho, 0.283 * 0.45359237 / std::pow(0.0254, 3),
+              1e-11);  // 7833 kg/m3 with a few roundings
   ASSERT_EQ(m.shafts.size(), 2u);
   const auto& hp = m.shafts[0];
   ASSERT_EQ(hp.sections.size(), 2u);
@@ -152,7 +154,7 @@ TEST(Reader, Everything) {
   EXPECT_NEAR(m.disks[1].at.s, 0.1016 + 0.1 + 0.005, 1e-15);
   EXPECT_NEAR(m.disks[1].mass, 7850 * pi / 4 * (0.26 * 0.26 - 0.14 * 0.14) * 0.055, 1e-13);
   EXPECT_EQ((*m.disks[2].inertia)(1, 2), -0.02);
-  EXPECT_EQ(m.disks[3].mass, 1);   // "1 kg * (2 * (75 um))/(150 um)"
+  EXPECT_EQ(m.disks[3].mass, 1);  // "1 kg * (2 * (75 um))/(150 um)"
   const auto& linear = std::get<model::LinearBearing>(m.bearings[0].law);
   EXPECT_EQ(linear.K(1, 2), 1e6);
   EXPECT_EQ(linear.K(2, 1), -1e6);
@@ -169,7 +171,7 @@ TEST(Reader, Everything) {
   EXPECT_EQ(matrix.K(5, 1), 2e5);
   const auto& table = std::get<model::TableBearing>(m.bearings[3].law);
   ASSERT_EQ(table.speed.size(), 2u);
-  EXPECT_NEAR(table.speed[1], 12000 * two_pi / 60, 1e-12);   // one rounding
+  EXPECT_NEAR(table.speed[1], 12000 * two_pi / 60, 1e-12);  // one rounding
   EXPECT_EQ((table.K[1].block<2, 2>(1, 1)), (Mat2() << 3e7, 2e5, -2e5, 3.1e7).finished());
   EXPECT_FALSE(table.monotone_cubic);
   EXPECT_TRUE(table.M.empty());
@@ -220,7 +222,8 @@ TEST(Reader, ResolvedDeckSaysTheSame) {
   for (const auto& p : good_decks()) {
     const auto first = deck::read_deck(p);
     ASSERT_TRUE(first.ok()) << p << "\n" << first.report();
-    const auto second = deck::read_deck_text(first.model.resolved, "resolved.toml");   // no other file is needed
+    const auto second =
+        deck::read_deck_text(first.model.resolved, "resolved.toml");  // no other file is needed
     ASSERT_TRUE(second.ok()) << p << "\n" << second.report() << first.model.resolved;
     EXPECT_EQ(ModelDump(first.model).text(), ModelDump(second.model).text()) << p;
     const auto third = deck::read_deck_text(second.model.resolved, "resolved.toml");
@@ -229,7 +232,8 @@ TEST(Reader, ResolvedDeckSaysTheSame) {
 }
 
 TEST(Reader, EveryEntityKeepsItsPlace) {
-  const auto d = read(std::string("format = 1\n") + shaft_text + "\n[[disk]]\nname = \"wheel\"\nat = \"left:end\"\nmass = \"1 kg\"\n");
+  const auto d = read(std::string("format = 1\n") + shaft_text +
+                      "\n[[disk]]\nname = \"wheel\"\nat = \"left:end\"\nmass = \"1 kg\"\n");
   ASSERT_TRUE(d.ok()) << d.report();
   EXPECT_EQ(d.model.shafts[0].where.line, 3);
   EXPECT_EQ(d.model.disks[0].where.line, 8);
@@ -239,15 +243,20 @@ TEST(Reader, EveryEntityKeepsItsPlace) {
 }
 
 TEST(Reader, LineEndsAndByteOrderMark) {
-  const std::string unix_text = std::string("format = 1\n") + shaft_text + "[[disk]]\nat = \"left:end\"\nmass = 3\n";
+  const std::string unix_text =
+      std::string("format = 1\n") + shaft_text + "[[disk]]\nat = \"left:end\"\nmass = 3\n";
   std::string windows = "\xEF\xBB\xBF";
-  for (char c : unix_text) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  for (char c : unix_text)
+    windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
   EXPECT_EQ(read(unix_text).report(), read(windows).report());
   EXPECT_EQ(read(unix_text).errors, 1);
 }
 
 TEST(Reader, Overrides) {
-  const std::string text = std::string("format = 1\n[parameters]\nm = \"1 kg\"\n") + shaft_text + "[[disk]]\nname = \"wheel\"\nat = \"left:end\"\nmass = \"${m}\"\n[[disk]]\nname = \"x.y\"\nat = \"left:end\"\nmass = \"1 kg\"\n";
+  const std::string text =
+      std::string("format = 1\n[parameters]\nm = \"1 kg\"\n") + shaft_text +
+      "[[disk]]\nname = \"wheel\"\nat = \"left:end\"\nmass = \"${m}\"\n[[disk]]\nname = "
+      "\"x.y\"\nat = \"left:end\"\nmass = \"1 kg\"\n";
   EXPECT_EQ(read(text, {"parameters.m=2 kg"}).model.disks[0].mass, 2);
   EXPECT_EQ(read(text, {"parameters.m=\"2 kg\""}).model.disks[0].mass, 2);
   EXPECT_EQ(read(text, {"disk.wheel.mass=3kg", "disk.1.mass=4kg"}).model.disks[1].mass, 4);
@@ -261,8 +270,13 @@ TEST(Reader, Overrides) {
 TEST(Reader, IncludesJoinLists) {
   const fs::path folder = fs::temp_directory_path() / "whirl deck test with blanks";
   fs::create_directories(folder);
-  std::ofstream(folder / "more disks.toml") << "[[disk]]\nname = \"first\"\nat = \"left:end\"\nmass = \"1 kg\"\n[model]\nchart_change = false\n";
-  std::ofstream(folder / "a deck.toml") << "format = 1\ninclude = [\"more disks.toml\"]\n" << shaft_text << "[[disk]]\nname = \"second\"\nat = \"left:end\"\nmass = \"1 kg\"\n[model]\ngravity = \"1 m/s^2\"\n";
+  std::ofstream(folder / "more disks.toml")
+      << "[[disk]]\nname = \"first\"\nat = \"left:end\"\nmass = \"1 kg\"\n[model]\nchart_change = "
+         "false\n";
+  std::ofstream(folder / "a deck.toml") << "format = 1\ninclude = [\"more disks.toml\"]\n"
+                                        << shaft_text
+                                        << "[[disk]]\nname = \"second\"\nat = \"left:end\"\nmass = "
+                                           "\"1 kg\"\n[model]\ngravity = \"1 m/s^2\"\n";
   const auto d = deck::read_deck(folder / "a deck.toml");
   ASSERT_TRUE(d.ok()) << d.report();
   ASSERT_EQ(d.model.disks.size(), 2u);
@@ -274,7 +288,9 @@ TEST(Reader, IncludesJoinLists) {
 }
 
 TEST(Reader, DefaultGravityAndNames) {
-  const auto d = read(std::string("format = 1\n") + shaft_text + "[[disk]]\nat = \"left:end\"\nmass = \"1 kg\"\n[[disk]]\nat = \"left:end\"\nmass = \"1 kg\"\n");
+  const auto d = read(std::string("format = 1\n") + shaft_text +
+                      "[[disk]]\nat = \"left:end\"\nmass = \"1 kg\"\n[[disk]]\nat = "
+                      "\"left:end\"\nmass = \"1 kg\"\n");
   ASSERT_TRUE(d.ok()) << d.report();
   EXPECT_EQ(d.model.gravity, Vec3(0, 0, -9.80665));
   EXPECT_EQ(d.model.disks[0].name, "disk 1");
@@ -285,7 +301,9 @@ TEST(Reader, DefaultGravityAndNames) {
 TEST(Reader, FilesCanBeRefused) {
   deck::ReadOptions o;
   o.files_allowed = false;
-  const auto d = deck::read_deck_text("format = 1\ninclude = [\"x.toml\"]\n[shaft]\nfile = \"shaft.csv\"\n", "deck.toml", o);
+  const auto d = deck::read_deck_text(
+      "format = 1\ninclude = [\"x.toml\"]\n[shaft]\nfile = \"shaft.csv\"\n", "deck.toml", o);
   EXPECT_EQ(d.errors, 2);
-  EXPECT_NE(d.report().find("cannot read 'x.toml': files are not allowed here"), std::string::npos) << d.report();
+  EXPECT_NE(d.report().find("cannot read 'x.toml': files are not allowed here"), std::string::npos)
+      << d.report();
 }

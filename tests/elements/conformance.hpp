@@ -1,14 +1,19 @@
 // The one suite every element kernel passes: check_kernel(kernel, options).
 //
-// It works in the nodal unknowns q = (u, phi, gamma) of each node, where the equations live, through the node Jacobian
-// J = dX/dq of src/system/node.hpp, and checks
-//   - add_force and add_tangent add (they do not overwrite) and leave tangents declared absent alone;
-//   - M_q, C_q, K_q built from the kernel's tangents against eighth-order differences of f_q = J^T f_X in (a, v, q);
+// It works in the nodal unknowns q = (u, phi, gamma) of each node, where the equations live,
+// through the node Jacobian J = dX/dq of src/system/node.hpp, and checks
+//   - add_force and add_tangent add (they do not overwrite) and leave tangents declared absent
+//   alone;
+//   - M_q, C_q, K_q built from the kernel's tangents against eighth-order differences of f_q = J^T
+//   f_X in (a, v, q);
 //     absent tangents are thereby shown to be zero;
-//   - power balance d(kinetic + elastic + gravity)/dt = f.X' + supplied - dissipated along smooth motions on |d| = 1
+//   - power balance d(kinetic + elastic + gravity)/dt = f.X' + supplied - dissipated along smooth
+//   motions on |d| = 1
 //     (f.X' is the power of the forces that a motion off the solution needs);
-//   - where declared: M symmetric and not negative, K symmetric at rest, dissipation not negative, and objectivity:
-//     turning a motion (and gravity) as a whole turns node forces and moments with it and keeps the energies.
+//   - where declared: M symmetric and not negative, K symmetric at rest, dissipation not negative,
+//   and objectivity:
+//     turning a motion (and gravity) as a whole turns node forces and moments with it and keeps the
+//     energies.
 #pragma once
 #include <core/rotation.hpp>
 #include <system/kernel.hpp>
@@ -21,7 +26,7 @@ namespace whirl::test {
 
 struct ConformanceOptions {
   // What the element claims.
-  bool symmetric_K = false;    ///< conservative at rest: K_q is a Hessian
+  bool symmetric_K = false;  ///< conservative at rest: K_q is a Hessian
   bool symmetric_M = true;
   bool semidefinite_M = true;  ///< no direction of negative inertia
   bool objective = false;      ///< free in space; needs `position` for elements with several nodes
@@ -30,13 +35,14 @@ struct ConformanceOptions {
   double u = 0.1, tilt = 0.8, phi = 2.0;
   double du = 1.0, dtilt = 2.0, dphi = 3.0;
   double ddu = 5.0, ddtilt = 5.0, ddphi = 5.0;
-  std::vector<double> q0, v0;          ///< added to the random states: 6 a node, (u, phi, gamma); empty = 0
-  std::vector<Vec3> position;          ///< reference positions of the nodes, m (objectivity only)
-  Mat3 chart = Mat3::Identity();       ///< columns e, e2, e3
+  std::vector<double> q0, v0;  ///< added to the random states: 6 a node, (u, phi, gamma); empty = 0
+  std::vector<Vec3> position;  ///< reference positions of the nodes, m (objectivity only)
+  Mat3 chart = Mat3::Identity();  ///< columns e, e2, e3
   Vec3 gravity = Vec3(0.3, -2.0, -9.0);
-  double time = 0.7;                   ///< laws are evaluated from here on
-  double tangent_tolerance = 1e-9;     ///< of the largest term in the row; differences reach about 1e-12
-  double power_tolerance = 1e-9;       ///< of the largest power; as above
+  double time = 0.7;  ///< laws are evaluated from here on
+  double tangent_tolerance =
+      1e-9;                       ///< of the largest term in the row; differences reach about 1e-12
+  double power_tolerance = 1e-9;  ///< of the largest power; as above
   int samples = 6;
   unsigned seed = 1;
 };
@@ -46,7 +52,8 @@ template <int N, int W>
 struct NodeFrame {
   std::array<system::NodeState, N> state;
   std::array<rotation::Director, N> director;
-  Matrix<N * W, 6 * N> J = Matrix<N * W, 6 * N>::Zero(), J1 = J, J2 = J;  ///< dX/dq, d(X')/dq, d(X'')/dq
+  Matrix<N * W, 6 *N> J = Matrix<N * W, 6 * N>::Zero(), J1 = J,
+                      J2 = J;  ///< dX/dq, d(X')/dq, d(X'')/dq
 
   template <class Q>
   NodeFrame(const Q& q, const Q& v, const Q& a, const Mat3& chart, const Vec3& gravity) {
@@ -56,10 +63,15 @@ struct NodeFrame {
       rotation::director(q.template segment<2>(6 * i + 4), v.template segment<2>(6 * i + 4),
                          a.template segment<2>(6 * i + 4), o);
       n.chart = &chart;
-      n.u = q.template segment<3>(6 * i); n.du = v.template segment<3>(6 * i);
+      n.u = q.template segment<3>(6 * i);
+      n.du = v.template segment<3>(6 * i);
       n.ddu = a.template segment<3>(6 * i) - gravity;
-      n.t = chart * o.t; n.dd = chart * o.rate; n.ddd = chart * o.accel;
-      n.phi = q[6 * i + 3]; n.dphi = v[6 * i + 3]; n.ddphi = a[6 * i + 3];
+      n.t = chart * o.t;
+      n.dd = chart * o.rate;
+      n.ddd = chart * o.accel;
+      n.phi = q[6 * i + 3];
+      n.dphi = v[6 * i + 3];
+      n.ddphi = a[6 * i + 3];
       J.template block<3, 3>(W * i, 6 * i).setIdentity();
       if constexpr (W == 7) {
         J.template block<3, 2>(W * i + 3, 6 * i + 4) = chart * o.D;
@@ -71,7 +83,8 @@ struct NodeFrame {
   }
   system::Nodes<N> nodes() const {
     system::Nodes<N> x;
-    for (std::size_t i = 0; i < N; ++i) x[i] = &state[i];
+    for (std::size_t i = 0; i < N; ++i)
+      x[i] = &state[i];
     return x;
   }
   Vector<N * W> rates() const {
@@ -79,7 +92,10 @@ struct NodeFrame {
     for (int i = 0; i < N; ++i) {
       const auto& n = state[static_cast<std::size_t>(i)];
       r.template segment<3>(W * i) = n.du;
-      if constexpr (W == 7) { r.template segment<3>(W * i + 3) = n.dd; r[W * i + 6] = n.dphi; }
+      if constexpr (W == 7) {
+        r.template segment<3>(W * i + 3) = n.dd;
+        r[W * i + 6] = n.dphi;
+      }
     }
     return r;
   }
@@ -92,10 +108,15 @@ class Conformance {
   using Q = Vector<n>;
   using X = Vector<N * W>;
 
-  Conformance(const K& kernel, const ConformanceOptions& options) : k_(kernel), o_(options), random_(options.seed) {
+  Conformance(const K& kernel, const ConformanceOptions& options)
+      : k_(kernel),
+        o_(options),
+        random_(options.seed) {
     for (int i = 0; i < N; ++i) {
       const auto fill = [i](Q& s, double u, double phi, double tilt) {
-        s.template segment<3>(6 * i).setConstant(u); s[6 * i + 3] = phi; s.template segment<2>(6 * i + 4).setConstant(tilt);
+        s.template segment<3>(6 * i).setConstant(u);
+        s[6 * i + 3] = phi;
+        s.template segment<2>(6 * i + 4).setConstant(tilt);
       };
       fill(q_scale_, o_.u, o_.phi, o_.tilt);
       fill(v_scale_, o_.du, o_.dphi, o_.dtilt);
@@ -121,15 +142,19 @@ class Conformance {
       return x.empty() ? Q(Q::Zero()) : Q(Eigen::Map<const Q>(x.data()));
     };
     // the length of gamma, not only its components, stays below `tilt`
-    q_ = add(o_.q0) + q_scale_.cwiseProduct(random_.vector<n>()); v_ = add(o_.v0) + v_scale_.cwiseProduct(random_.vector<n>());
-    for (int i = 0; i < N; ++i) q_.template segment<2>(6 * i + 4) *= std::sqrt(0.5);
+    q_ = add(o_.q0) + q_scale_.cwiseProduct(random_.vector<n>());
+    v_ = add(o_.v0) + v_scale_.cwiseProduct(random_.vector<n>());
+    for (int i = 0; i < N; ++i)
+      q_.template segment<2>(6 * i + 4) *= std::sqrt(0.5);
     a_ = a_scale_.cwiseProduct(random_.vector<n>());
   }
 
-  NodeFrame<N, W> frame(const Q& q, const Q& v, const Q& a) const { return {q, v, a, o_.chart, o_.gravity}; }
+  NodeFrame<N, W> frame(const Q& q, const Q& v, const Q& a) const {
+    return {q, v, a, o_.chart, o_.gravity};
+  }
 
   X force(const NodeFrame<N, W>& x, const system::Context& c) const {
-    system::ForceX<N * W> f = X::Zero();
+    system::ForceX<N* W> f = X::Zero();
     k_.add_force(x.nodes(), c, f);
     return f;
   }
@@ -140,7 +165,9 @@ class Conformance {
 
   system::TangentX<N * W> tangent(const NodeFrame<N, W>& x, double start) const {
     system::TangentX<N * W> t;
-    t.M.setConstant(start); t.C.setConstant(start); t.K.setConstant(start);
+    t.M.setConstant(start);
+    t.C.setConstant(start);
+    t.K.setConstant(start);
     k_.add_tangent(x.nodes(), context_, t);
     return t;
   }
@@ -149,22 +176,28 @@ class Conformance {
     const auto x = frame(q_, v_, a_);
     const X f = force(x, context_);
     const double size = f.cwiseAbs().maxCoeff();
-    system::ForceX<N * W> g = X::Constant(size);
+    system::ForceX<N* W> g = X::Constant(size);
     k_.add_force(x.nodes(), context_, g);
-    EXPECT_LE((g - X::Constant(size) - f).cwiseAbs().maxCoeff(), 1e-14 * size) << "add_force must add";
+    EXPECT_LE((g - X::Constant(size) - f).cwiseAbs().maxCoeff(), 1e-14 * size)
+        << "add_force must add";
     const auto t0 = tangent(x, 0.0), t1 = tangent(x, 1.0);
     const auto same = [](const auto& a, const auto& b, const char* what) {
       const double s = 1.0 + a.cwiseAbs().maxCoeff();
       EXPECT_LE((b - a - std::decay_t<decltype(a)>::Constant(1.0)).cwiseAbs().maxCoeff(), 1e-14 * s)
           << "add_tangent must add to " << what;
     };
-    same(t0.M, t1.M, "M"); same(t0.C, t1.C, "C"); same(t0.K, t1.K, "K");
+    same(t0.M, t1.M, "M");
+    same(t0.C, t1.C, "C");
+    same(t0.K, t1.K, "K");
     const auto untouched = [](bool has, const auto& a, const char* what) {
       if (!has) {
-        EXPECT_EQ(a.cwiseAbs().maxCoeff(), 0.0) << "has_" << what << " is false but " << what << " was written";
+        EXPECT_EQ(a.cwiseAbs().maxCoeff(), 0.0)
+            << "has_" << what << " is false but " << what << " was written";
       }
     };
-    untouched(K::has_M, t0.M, "M"); untouched(K::has_C, t0.C, "C"); untouched(K::has_K, t0.K, "K");
+    untouched(K::has_M, t0.M, "M");
+    untouched(K::has_C, t0.C, "C");
+    untouched(K::has_K, t0.K, "K");
   }
 
   void check_tangents() {
@@ -177,17 +210,28 @@ class Conformance {
     if constexpr (W == 7)
       for (int i = 0; i < N; ++i) {
         const Vec3 fd = o_.chart.transpose() * f.template segment<3>(W * i + 3);
-        Kq.template block<2, 2>(6 * i + 4, 6 * i + 4) += x.director[static_cast<std::size_t>(i)].curvature(fd);
+        Kq.template block<2, 2>(6 * i + 4, 6 * i + 4) +=
+            x.director[static_cast<std::size_t>(i)].curvature(fd);
       }
     // Terms of each row in force units, so that N/m, N/rad and N m/rad compare.
-    const Vector<n> row = (M.cwiseAbs() * a_scale_.asDiagonal()).rowwise().maxCoeff().cwiseMax(
-        (C.cwiseAbs() * v_scale_.asDiagonal()).rowwise().maxCoeff().cwiseMax(
-            (Kq.cwiseAbs() * q_scale_.asDiagonal()).rowwise().maxCoeff().cwiseMax(
-                (x.J.transpose() * f).cwiseAbs())));
+    const Vector<n> row =
+        (M.cwiseAbs() * a_scale_.asDiagonal())
+            .rowwise()
+            .maxCoeff()
+            .cwiseMax((C.cwiseAbs() * v_scale_.asDiagonal())
+                          .rowwise()
+                          .maxCoeff()
+                          .cwiseMax((Kq.cwiseAbs() * q_scale_.asDiagonal())
+                                        .rowwise()
+                                        .maxCoeff()
+                                        .cwiseMax((x.J.transpose() * f).cwiseAbs())));
     const double floor = 1e-6 * row.maxCoeff();  // a row of zeros has no scale of its own
-    compare(M, [&](const Q& d) { return force_q(q_, v_, a_ + d); }, a_scale_, row, floor, "M");
-    compare(C, [&](const Q& d) { return force_q(q_, v_ + d, a_); }, v_scale_, row, floor, "C");
-    compare(Kq, [&](const Q& d) { return force_q(q_ + d, v_, a_); }, q_scale_, row, floor, "K");
+    compare(
+        M, [&](const Q& d) { return force_q(q_, v_, a_ + d); }, a_scale_, row, floor, "M");
+    compare(
+        C, [&](const Q& d) { return force_q(q_, v_ + d, a_); }, v_scale_, row, floor, "C");
+    compare(
+        Kq, [&](const Q& d) { return force_q(q_ + d, v_, a_); }, q_scale_, row, floor, "K");
 
     if (o_.symmetric_M) {
       EXPECT_LE((M - M.transpose()).cwiseAbs().maxCoeff(), 1e-13 * M.cwiseAbs().maxCoeff());
@@ -195,7 +239,8 @@ class Conformance {
     if (o_.semidefinite_M && K::has_M) {
       const Matrix<n> S = 0.5 * (M + M.transpose());
       const Eigen::SelfAdjointEigenSolver<MatX> eigen(MatX(S), Eigen::EigenvaluesOnly);
-      EXPECT_GE(eigen.eigenvalues().minCoeff(), -1e-13 * eigen.eigenvalues().maxCoeff()) << "negative inertia";
+      EXPECT_GE(eigen.eigenvalues().minCoeff(), -1e-13 * eigen.eigenvalues().maxCoeff())
+          << "negative inertia";
     }
     if (o_.symmetric_K) {
       const auto rest = NodeFrame<N, W>(q_, Q(Q::Zero()), Q(Q::Zero()), o_.chart, Vec3::Zero());
@@ -204,19 +249,23 @@ class Conformance {
       if constexpr (W == 7) {
         const X g = force(rest, context_);
         for (int i = 0; i < N; ++i)
-          H.template block<2, 2>(6 * i + 4, 6 * i + 4) += rest.director[static_cast<std::size_t>(i)].curvature(
-              o_.chart.transpose() * g.template segment<3>(W * i + 3));
+          H.template block<2, 2>(6 * i + 4, 6 * i + 4) +=
+              rest.director[static_cast<std::size_t>(i)].curvature(
+                  o_.chart.transpose() * g.template segment<3>(W * i + 3));
       }
       const Matrix<n> scaled = q_scale_.asDiagonal() * H * q_scale_.asDiagonal();
-      EXPECT_LE((scaled - scaled.transpose()).cwiseAbs().maxCoeff(), 1e-12 * scaled.cwiseAbs().maxCoeff())
+      EXPECT_LE((scaled - scaled.transpose()).cwiseAbs().maxCoeff(),
+                1e-12 * scaled.cwiseAbs().maxCoeff())
           << "K is not symmetric at rest";
     }
   }
 
   template <class F>
-  void compare(const Matrix<n>& exact, const F& f, const Q& scale, const Vector<n>& row, double floor, const char* what) {
+  void compare(const Matrix<n>& exact, const F& f, const Q& scale, const Vector<n>& row,
+               double floor, const char* what) {
     for (int j = 0; j < n; ++j) {
-      // eighth order with a step of 1/100 of the amplitude: truncation 1e-16, rounding 1e-14 of the row
+      // eighth order with a step of 1/100 of the amplitude: truncation 1e-16, rounding 1e-14 of the
+      // row
       const Real h = 1e-2L;
       const auto g = [&](Real s) {
         Q d = Q::Zero();
@@ -225,7 +274,8 @@ class Conformance {
       };
       const Vector<n> slope = central(g, h).template cast<double>();
       for (int i = 0; i < n; ++i)
-        EXPECT_NEAR(exact(i, j) * scale[j], slope[i], o_.tangent_tolerance * std::max(row[i], floor))
+        EXPECT_NEAR(exact(i, j) * scale[j], slope[i],
+                    o_.tangent_tolerance * std::max(row[i], floor))
             << what << "_q(" << i << ", " << j << "), unknowns (u, phi, gamma) a node";
     }
   }
@@ -234,7 +284,8 @@ class Conformance {
   void check_power() {
     const Q jerk = a_scale_.cwiseProduct(random_.vector<n>());
     const auto at = [&](double t) {
-      return frame(q_ + v_ * t + a_ * (t * t / 2) + jerk * (t * t * t / 6), v_ + a_ * t + jerk * (t * t / 2), a_ + jerk * t);
+      return frame(q_ + v_ * t + a_ * (t * t / 2) + jerk * (t * t * t / 6),
+                   v_ + a_ * t + jerk * (t * t / 2), a_ + jerk * t);
     };
     const auto energy = [&](double t) {
       system::Context c = context_;
@@ -244,8 +295,9 @@ class Conformance {
       return e;
     };
     // a step in which no unknown moves by more than 1/100 of its amplitude
-    const double h = 1e-2 / (1e-30 + std::max((v_.cwiseAbs().cwiseQuotient(q_scale_)).maxCoeff(),
-                                              std::sqrt(a_.cwiseAbs().cwiseQuotient(q_scale_).maxCoeff())));
+    const double h =
+        1e-2 / (1e-30 + std::max((v_.cwiseAbs().cwiseQuotient(q_scale_)).maxCoeff(),
+                                 std::sqrt(a_.cwiseAbs().cwiseQuotient(q_scale_).maxCoeff())));
     const auto stored = [&](Real s) {
       const system::Energy e = energy(static_cast<double>(s));
       return Eigen::Matrix<Real, 1, 1>(Real(e.kinetic) + e.elastic + e.gravity);
@@ -254,9 +306,12 @@ class Conformance {
     const system::Energy now = energy(0.0);
     const auto x = at(0.0);
     const X terms = force(x, context_).cwiseProduct(x.rates());
-    const double size = std::abs(rate) + std::abs(now.supplied) + std::abs(now.dissipated) + terms.cwiseAbs().maxCoeff() +
-                        1e-6 * (std::abs(now.kinetic) + std::abs(now.elastic) + std::abs(now.gravity)) / h;
-    EXPECT_NEAR(rate, terms.sum() + now.supplied - now.dissipated, o_.power_tolerance * size) << "power balance";
+    const double size =
+        std::abs(rate) + std::abs(now.supplied) + std::abs(now.dissipated) +
+        terms.cwiseAbs().maxCoeff() +
+        1e-6 * (std::abs(now.kinetic) + std::abs(now.elastic) + std::abs(now.gravity)) / h;
+    EXPECT_NEAR(rate, terms.sum() + now.supplied - now.dissipated, o_.power_tolerance * size)
+        << "power balance";
     if (o_.semidefinite_M) {
       EXPECT_GE(now.kinetic, -1e-14 * size * h);
     }
@@ -265,23 +320,28 @@ class Conformance {
     }
   }
 
-  // Turns the motion by T about the origin and expects F -> T F, m -> T m, m = d x f_d + f_phi (e + d)/(1 + e.d).
+  // Turns the motion by T about the origin and expects F -> T F, m -> T m, m = d x f_d + f_phi (e +
+  // d)/(1 + e.d).
   void check_objectivity() {
-    ASSERT_TRUE(N == 1 || static_cast<int>(o_.position.size()) == N) << "objectivity needs the nodes' positions";
+    ASSERT_TRUE(N == 1 || static_cast<int>(o_.position.size()) == N)
+        << "objectivity needs the nodes' positions";
     const Vec3 axis = 0.8 * random_.direction<3>();
     const Mat3 T = rotation::L(axis);
     Q q = q_, v = v_, a = a_;
     const auto before = frame(q_, v_, a_);
     for (int i = 0; i < N; ++i) {
       const auto& s = before.state[static_cast<std::size_t>(i)];
-      const Vec3 p = o_.position.empty() ? Vec3(Vec3::Zero()) : o_.position[static_cast<std::size_t>(i)];
+      const Vec3 p =
+          o_.position.empty() ? Vec3(Vec3::Zero()) : o_.position[static_cast<std::size_t>(i)];
       q.template segment<3>(6 * i) = T * (p + s.u) - p;
       v.template segment<3>(6 * i) = T * s.du;
       a.template segment<3>(6 * i) = T * (s.ddu + o_.gravity);
       const Vec2 g = q_.template segment<2>(6 * i + 4), dg = v_.template segment<2>(6 * i + 4);
       const Vec3 omega = rotation::omega_of_rates(g, s.dphi, dg);
-      const Vec3 domega = rotation::omega_rate_of_rates(g, s.dphi, dg, s.ddphi, a_.template segment<2>(6 * i + 4));
-      // phi follows the turning continuously: d phi = (e+d).d theta/(1+e.d), all in chart axes, by fine RK4
+      const Vec3 domega =
+          rotation::omega_rate_of_rates(g, s.dphi, dg, s.ddphi, a_.template segment<2>(6 * i + 4));
+      // phi follows the turning continuously: d phi = (e+d).d theta/(1+e.d), all in chart axes, by
+      // fine RK4
       const Vec3 c = o_.chart.transpose() * axis;
       double phi = s.phi;
       Vec2 gamma = g;
@@ -296,12 +356,16 @@ class Conformance {
         gamma += h / 6 * (r1.gamma + 2 * r2.gamma + 2 * r3.gamma + r4.gamma);
       }
       const Mat3 Tc = o_.chart.transpose() * T * o_.chart;
-      gamma = rotation::gamma_of_director(Tc * (Vec3::UnitX() + before.director[static_cast<std::size_t>(i)].t) - Vec3::UnitX());
+      gamma = rotation::gamma_of_director(
+          Tc * (Vec3::UnitX() + before.director[static_cast<std::size_t>(i)].t) - Vec3::UnitX());
       const auto rate = rotation::rates_of_omega(gamma, Tc * omega);
       const auto accel = rotation::accelerations_of_omega(gamma, rate.phi, rate.gamma, Tc * domega);
-      q[6 * i + 3] = phi; q.template segment<2>(6 * i + 4) = gamma;
-      v[6 * i + 3] = rate.phi; v.template segment<2>(6 * i + 4) = rate.gamma;
-      a[6 * i + 3] = accel.phi; a.template segment<2>(6 * i + 4) = accel.gamma;
+      q[6 * i + 3] = phi;
+      q.template segment<2>(6 * i + 4) = gamma;
+      v[6 * i + 3] = rate.phi;
+      v.template segment<2>(6 * i + 4) = rate.gamma;
+      a[6 * i + 3] = accel.phi;
+      a.template segment<2>(6 * i + 4) = accel.gamma;
     }
     system::Context turned = context_;
     turned.gravity = T * o_.gravity;
@@ -311,25 +375,31 @@ class Conformance {
     std::array<Vec3, N> F0, F1, m0, m1;
     for (int i = 0; i < N; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      F0[k] = f0.template segment<3>(W * i); F1[k] = f1.template segment<3>(W * i);
+      F0[k] = f0.template segment<3>(W * i);
+      F1[k] = f1.template segment<3>(W * i);
       m0[k] = m1[k] = Vec3::Zero();
       if constexpr (W == 7) {
         const auto moment = [&](const system::NodeState& s, const X& f) {
           const Vec3 fd = f.template segment<3>(W * i + 3);
           return Vec3(s.d().cross(fd) + f[W * i + 6] * (s.e() + s.d()) / (1.0 + s.e().dot(s.d())));
         };
-        m0[k] = moment(before.state[k], f0); m1[k] = moment(after.state[k], f1);
+        m0[k] = moment(before.state[k], f0);
+        m1[k] = moment(after.state[k], f1);
       }
-      force_size = std::max(force_size, F0[k].norm()); moment_size = std::max(moment_size, m0[k].norm());
+      force_size = std::max(force_size, F0[k].norm());
+      moment_size = std::max(moment_size, m0[k].norm());
     }
     for (int i = 0; i < N; ++i) {
       const auto k = static_cast<std::size_t>(i);
       // 1e-9: phi is carried round by 400 steps of RK4, error 1e-11
-      EXPECT_LE((F1[k] - T * F0[k]).norm(), 1e-9 * (force_size + moment_size)) << "force not objective, node " << i;
-      EXPECT_LE((m1[k] - T * m0[k]).norm(), 1e-9 * (force_size + moment_size)) << "moment not objective, node " << i;
+      EXPECT_LE((F1[k] - T * F0[k]).norm(), 1e-9 * (force_size + moment_size))
+          << "force not objective, node " << i;
+      EXPECT_LE((m1[k] - T * m0[k]).norm(), 1e-9 * (force_size + moment_size))
+          << "moment not objective, node " << i;
     }
     system::Energy e0, e1;
-    k_.add_energy(before.nodes(), context_, e0); k_.add_energy(after.nodes(), turned, e1);
+    k_.add_energy(before.nodes(), context_, e0);
+    k_.add_energy(after.nodes(), turned, e1);
     EXPECT_NEAR(e0.elastic, e1.elastic, 1e-9 * std::abs(e0.elastic));
     EXPECT_NEAR(e0.kinetic, e1.kinetic, 1e-9 * std::abs(e0.kinetic));
     EXPECT_NEAR(e0.dissipated, e1.dissipated, 1e-9 * std::abs(e0.dissipated));

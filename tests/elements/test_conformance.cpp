@@ -18,13 +18,17 @@ struct Faulty {
   std::function<void(const system::NodeState&, system::TangentX<7>&)> tangent = [](auto&, auto&) {};
   std::function<void(const system::NodeState&, system::Energy&)> energy = [](auto&, auto&) {};
   void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<7>& f) const {
-    disk.add_force(x, c, f); force(*x[0], f);
+    disk.add_force(x, c, f);
+    force(*x[0], f);
   }
-  void add_tangent(const system::Nodes<1>& x, const system::Context& c, system::TangentX<7>& t) const {
-    disk.add_tangent(x, c, t); tangent(*x[0], t);
+  void add_tangent(const system::Nodes<1>& x, const system::Context& c,
+                   system::TangentX<7>& t) const {
+    disk.add_tangent(x, c, t);
+    tangent(*x[0], t);
   }
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const {
-    disk.add_energy(x, c, e); energy(*x[0], e);
+    disk.add_energy(x, c, e);
+    energy(*x[0], e);
   }
 };
 

@@ -21,7 +21,9 @@ const LawPtr law = make_harmonic(0.4, 1.0, 3.0, 0.2);
 TorqueLaw smooth_law() {
   TorqueLaw t;
   t.of_time = law;
-  t.friction = 0.3; t.friction_speed = 2.0; t.viscous = 0.1;
+  t.friction = 0.3;
+  t.friction_speed = 2.0;
+  t.viscous = 0.1;
   t.induction = TorqueLaw::Induction{2.0, 0.2, 12.0};
   t.dc = TorqueLaw::DcLine{1.5, 20.0};
   t.brake = make_polynomial({0.1, 0.2});
@@ -82,7 +84,8 @@ TEST(SpinTorque, Conformance) {
   check_kernel(FixedTorque{smooth_law(), Vec3(0.6, 0.8, 0)}, general());
   // kinked laws, away from their kinks
   TorqueLaw kinked;
-  kinked.speed = {-50, 0, 10, 50}; kinked.torque = {5, 4, 2, -1};
+  kinked.speed = {-50, 0, 10, 50};
+  kinked.torque = {5, 4, 2, -1};
   kinked.quadratic = 0.02;
   kinked.power = TorqueLaw::ConstantPower{30, 20};
   ConformanceOptions o = general();
@@ -106,11 +109,13 @@ TEST(SpinTorque, Directions) {
       k.add_force(x.nodes(), {}, f);
       return Vec3(-moment_of(s, f.template segment<3>(3), f[6]));
     };
-    EXPECT_LT((moment(JointTorque{T, {}}) - 3.0 * (s.e() + s.d()) / (1 + s.e().dot(s.d()))).norm(), 1e-14);
+    EXPECT_LT((moment(JointTorque{T, {}}) - 3.0 * (s.e() + s.d()) / (1 + s.e().dot(s.d()))).norm(),
+              1e-14);
     EXPECT_LT((moment(NormalTorque{T, {}}) - 3.0 * s.d()).norm(), 1e-14);
     EXPECT_LT((moment(FixedTorque{T, Vec3::UnitZ()}) - 3.0 * Vec3::UnitZ()).norm(), 1e-14);
     // the speed each works on
-    EXPECT_NEAR((JointTorque{T, {}}.working(s, 0).speed), (s.e() + s.d()).dot(s.omega()) / (1 + s.e().dot(s.d())), 1e-14);
+    EXPECT_NEAR((JointTorque{T, {}}.working(s, 0).speed),
+                (s.e() + s.d()).dot(s.omega()) / (1 + s.e().dot(s.d())), 1e-14);
     EXPECT_NEAR((NormalTorque{T, {}}.working(s, 0).speed), s.d().dot(s.omega()), 1e-14);
     EXPECT_NEAR((FixedTorque{T, Vec3::UnitZ()}.working(s, 0).speed), s.omega().z(), 1e-14);
   }
@@ -119,7 +124,8 @@ TEST(SpinTorque, Directions) {
 TEST(TorqueLaw, Terms) {
   TorqueLaw t;
   EXPECT_EQ(t.at(0, 5, 0).T, 0.0);
-  t.speed = {0, 10}; t.torque = {4, 2};
+  t.speed = {0, 10};
+  t.torque = {4, 2};
   EXPECT_DOUBLE_EQ(t.at(0, 5, 0).T, 3);
   EXPECT_DOUBLE_EQ(t.at(0, -5, 0).T, 4);
   EXPECT_DOUBLE_EQ(t.at(0, 15, 0).T, 2);
@@ -127,10 +133,10 @@ TEST(TorqueLaw, Terms) {
   t = {};
   t.induction = TorqueLaw::Induction{100, 0.2, 150};
   EXPECT_DOUBLE_EQ(t.at(0, 150, 0).T, 0);
-  EXPECT_DOUBLE_EQ(t.at(0, 150 * 0.8, 0).T, 100);       // breakdown
+  EXPECT_DOUBLE_EQ(t.at(0, 150 * 0.8, 0).T, 100);  // breakdown
   EXPECT_NEAR(t.at(0, 150 * 0.8, 0).dx, 0, 1e-14);
-  EXPECT_DOUBLE_EQ(t.at(0, 0, 0).T, 200 / (5 + 0.2));   // starting torque
-  EXPECT_LT(t.at(0, 160, 0).T, 0);                      // a generator above synchronous speed
+  EXPECT_DOUBLE_EQ(t.at(0, 0, 0).T, 200 / (5 + 0.2));  // starting torque
+  EXPECT_LT(t.at(0, 160, 0).T, 0);                     // a generator above synchronous speed
   t = {};
   t.power = TorqueLaw::ConstantPower{1000, 50};
   EXPECT_DOUBLE_EQ(t.at(0, 100, 0).T, 10);
@@ -151,7 +157,9 @@ TEST(TorqueLaw, Terms) {
   EXPECT_DOUBLE_EQ(t.at(1.5, -10, 0).loss, 3);
   EXPECT_EQ(t.breakpoints(), (std::vector<double>{1, 2}));
   t = {};
-  t.friction = 5; t.viscous = 0.1; t.quadratic = 0.01;
+  t.friction = 5;
+  t.viscous = 0.1;
+  t.quadratic = 0.01;
   EXPECT_DOUBLE_EQ(t.at(0, 10, 0).T, -(5 + 1 + 1));
   EXPECT_DOUBLE_EQ(t.at(0, -10, 0).T, 7);
   EXPECT_EQ(t.at(0, 0, 0).T, 0);

@@ -18,17 +18,22 @@ const auto damper = curve(ForceCurve::polynomial({3, 0, 50}));
 TEST(ForceCurve, SlopeAndEnergyAreThoseOfTheForce) {
   const ForceCurve curves[] = {ForceCurve::polynomial({1, -2, 3, 0.5, 0, 0, 0, 2}),
                                ForceCurve::table({-2, -1, 0, 1, 3}, {-9, -4, 0, 3, 20}, true),
-                               ForceCurve::clearance(0.3, 0.5, 1000, 0.1), ForceCurve::one_sided(-0.2, 50, 0.05)};
+                               ForceCurve::clearance(0.3, 0.5, 1000, 0.1),
+                               ForceCurve::one_sided(-0.2, 50, 0.05)};
   for (const auto& f : curves)
     for (double x = -2.93; x < 3.5; x += 0.171) {
       const double h = 1e-3;
       const auto v = f.at(x);
       // fourth-order differences of pieces of degree <= 8
-      const auto slope = [&](auto g) { return (8 * (g(x + h) - g(x - h)) - (g(x + 2 * h) - g(x - 2 * h))) / (12 * h); };
-      EXPECT_NEAR(v.slope, slope([&](double u) { return f.at(u).F; }), 1e-6 * (1 + std::abs(v.slope)));
+      const auto slope = [&](auto g) {
+        return (8 * (g(x + h) - g(x - h)) - (g(x + 2 * h) - g(x - 2 * h))) / (12 * h);
+      };
+      EXPECT_NEAR(v.slope, slope([&](double u) { return f.at(u).F; }),
+                  1e-6 * (1 + std::abs(v.slope)));
       EXPECT_NEAR(v.F, slope([&](double u) { return f.at(u).energy; }), 1e-6 * (1 + std::abs(v.F)));
     }
-  for (const auto& f : curves) EXPECT_NEAR(f.at(0.0).energy, 0.0, 1e-15);
+  for (const auto& f : curves)
+    EXPECT_NEAR(f.at(0.0).energy, 0.0, 1e-15);
 }
 
 TEST(ForceCurve, Shapes) {
@@ -54,7 +59,9 @@ TEST(ForceCurve, BadInput) {
     try {
       make();
       return std::string("none");
-    } catch (const Error& e) { return e.diagnostics().front().code; }
+    } catch (const Error& e) {
+      return e.diagnostics().front().code;
+    }
   };
   EXPECT_EQ(code([] { ForceCurve::clearance(-1e-6, 0, 1); }), "E82");
   EXPECT_EQ(code([] { ForceCurve::clearance(0, 0, -1); }), "E82");
@@ -79,13 +86,16 @@ TEST(NonlinearSpring, Conformance) {
 }
 
 TEST(NonlinearSpring, TwistCountsWholeTurns) {
-  const auto linear = curve(ForceCurve::polynomial({0, 7})), none = curve(ForceCurve::polynomial({0}));
+  const auto linear = curve(ForceCurve::polynomial({0, 7})),
+             none = curve(ForceCurve::polynomial({0}));
   const auto k = ScalarSpring<7>::twist(linear, none);
   Vector<12> q = Vector<12>::Zero(), zero = q;
-  q[3] = 0.5; q[9] = 0.25;
+  q[3] = 0.5;
+  q[9] = 0.25;
   const Mat3 chart = Mat3::Identity();
   NodeFrame<2, 7> x(q, zero, zero, chart, Vec3::Zero());
-  x.state[0].turns = 1e6; x.state[1].turns = 1e6 - 3;
+  x.state[0].turns = 1e6;
+  x.state[1].turns = 1e6 - 3;
   system::ForceX<14> f = Vector<14>::Zero();
   k.add_force(x.nodes(), {}, f);
   EXPECT_NEAR(f[6], 7 * (0.25 + 3 * two_pi), 1e-7);
@@ -100,7 +110,8 @@ TEST(NonlinearSpring, RadialCentre) {
   system::ForceX<6> f = Vector<6>::Zero();
   system::TangentX<6> t;
   t.set_zero();
-  k.add_force(x.nodes(), {}, f); k.add_tangent(x.nodes(), {}, t);
+  k.add_force(x.nodes(), {}, f);
+  k.add_tangent(x.nodes(), {}, t);
   EXPECT_EQ(f.norm(), 0.0);
   EXPECT_EQ(t.K.norm(), 0.0);
   EXPECT_TRUE(t.C.allFinite());

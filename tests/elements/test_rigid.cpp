@@ -1,4 +1,5 @@
-// Rigid disk, rigid body, unbalance, point mass: the conformance suite, and Newton-Euler written out independently.
+// Rigid disk, rigid body, unbalance, point mass: the conformance suite, and Newton-Euler written
+// out independently.
 #include "conformance.hpp"
 #include <core/error.hpp>
 #include <elements/rigid/point_mass.hpp>
@@ -31,14 +32,16 @@ RigidBody lopsided() {
 TEST(RigidDisk, Conformance) {
   check_kernel(disk, free_body());
   ConformanceOptions far = free_body();
-  far.tilt = 2.2; far.seed = 2;  // beyond the usual switch of chart
+  far.tilt = 2.2;
+  far.seed = 2;  // beyond the usual switch of chart
   check_kernel(disk, far);
 }
 
 TEST(RigidBody, Conformance) {
   check_kernel(lopsided(), free_body());
   ConformanceOptions far = free_body();
-  far.tilt = 2.2; far.seed = 2;
+  far.tilt = 2.2;
+  far.seed = 2;
   check_kernel(lopsided(), far);
 }
 
@@ -57,12 +60,14 @@ TEST(PointMass, Conformance) {
 
 namespace {
 
-// Newton and Euler about the mass centre, from rotation tensors alone: resultant force on the body and moment about the node
-// that the motion needs, less gravity.
-struct Needed { Vec3 force, moment; };
+// Newton and Euler about the mass centre, from rotation tensors alone: resultant force on the body
+// and moment about the node that the motion needs, less gravity.
+struct Needed {
+  Vec3 force, moment;
+};
 
-Needed newton_euler(double m, const Vec3& eps, const Mat3& J, const Vec2& g, double phi, const Vec3& omega, const Vec3& domega,
-                    const Vec3& a, const Mat3& chart) {
+Needed newton_euler(double m, const Vec3& eps, const Mat3& J, const Vec2& g, double phi,
+                    const Vec3& omega, const Vec3& domega, const Vec3& a, const Mat3& chart) {
   const Mat3 R = chart * rotation::L(Vec3(0, g.x(), g.y())) * rotation::L(Vec3(phi, 0, 0));
   const Vec3 w = chart * omega, dw = chart * domega, r = R * eps;
   const Mat3 Js = R * J * R.transpose();
@@ -87,16 +92,18 @@ void compare_with_newton_euler(const K& k, double m, const Vec3& eps, const Mat3
     const Vec3 fd = f.segment<3>(3), F = f.head<3>();
     const Vec3 moment = s.d().cross(fd) + f[6] * (s.e() + s.d()) / (1 + s.e().dot(s.d()));
     const Vec2 g = q.tail<2>();
-    const Needed e = newton_euler(m, eps, J, g, q[3], rotation::omega_of_rates(g, v[3], v.tail<2>()),
-                                  rotation::omega_rate_of_rates(g, v[3], v.tail<2>(), a[3], a.tail<2>()),
-                                  a.head<3>() - gravity, chart);
+    const Needed e =
+        newton_euler(m, eps, J, g, q[3], rotation::omega_of_rates(g, v[3], v.tail<2>()),
+                     rotation::omega_rate_of_rates(g, v[3], v.tail<2>(), a[3], a.tail<2>()),
+                     a.head<3>() - gravity, chart);
     // 1e-12 of forces up to m r s^2 (s = 40 rad/s): rounding of the two computations
     const double size = 1e-12 * (e.force.norm() + e.moment.norm() + m * 1600);
     EXPECT_LT((F - e.force).norm(), size);
     EXPECT_LT((moment - e.moment).norm(), size * (1 + J.norm()));
     // kinetic energy
     const Mat3 R = chart * rotation::L(Vec3(0, g.x(), g.y())) * rotation::L(Vec3(q[3], 0, 0));
-    const Vec3 w = chart * rotation::omega_of_rates(g, v[3], v.tail<2>()), vc = v.head<3>() + w.cross(R * eps);
+    const Vec3 w = chart * rotation::omega_of_rates(g, v[3], v.tail<2>()),
+               vc = v.head<3>() + w.cross(R * eps);
     system::Energy en;
     k.add_energy(x.nodes(), {0.0, gravity}, en);
     const double T = 0.5 * m * vc.squaredNorm() + 0.5 * w.dot(R * J * R.transpose() * w);
@@ -105,14 +112,17 @@ void compare_with_newton_euler(const K& k, double m, const Vec3& eps, const Mat3
     const system::RigidInertia in = k.inertia(0.0);
     EXPECT_NEAR(in.mass, m, 1e-15 * m);
     EXPECT_LT((in.moment - m * eps).norm(), 1e-15 * m);
-    EXPECT_LT((in.J - J - m * (eps.squaredNorm() * Mat3::Identity() - eps * eps.transpose())).norm(), 1e-14 * in.J.norm());
+    EXPECT_LT(
+        (in.J - J - m * (eps.squaredNorm() * Mat3::Identity() - eps * eps.transpose())).norm(),
+        1e-14 * in.J.norm());
   }
 }
 
 }  // namespace
 
 TEST(RigidDisk, IsNewtonEuler) {
-  compare_with_newton_euler(disk, disk.mass, Vec3(disk.offset, 0, 0), Vec3(disk.Jp, disk.Jt, disk.Jt).asDiagonal());
+  compare_with_newton_euler(disk, disk.mass, Vec3(disk.offset, 0, 0),
+                            Vec3(disk.Jp, disk.Jt, disk.Jt).asDiagonal());
 }
 
 TEST(RigidBody, IsNewtonEuler) {
@@ -122,12 +132,15 @@ TEST(RigidBody, IsNewtonEuler) {
 }
 
 TEST(Unbalance, IsTheOffsetMassCentreOfADisk) {
-  // disk about the node + static moment = body with its mass centre at eps and inertia about the mass centre less m eps^2
+  // disk about the node + static moment = body with its mass centre at eps and inertia about the
+  // mass centre less m eps^2
   const double m = 5, eps = 0.01, beta = 0.7, Jp = 0.15, Jt = 0.08;
   const Vec3 arm(0, eps * std::cos(beta), eps * std::sin(beta));
   const Mat3 about_station = Vec3(Jp, Jt, Jt).asDiagonal();
-  for (double station : {0.0, 0.2}) {   // from the node along the shaft
-    const RigidBody body(m, arm + Vec3(station, 0, 0), about_station - m * (eps * eps * Mat3::Identity() - arm * arm.transpose()));
+  for (double station : {0.0, 0.2}) {  // from the node along the shaft
+    const RigidBody body(
+        m, arm + Vec3(station, 0, 0),
+        about_station - m * (eps * eps * Mat3::Identity() - arm * arm.transpose()));
     const RigidDisk centred{m, Jt, Jp, station};
     const UnbalanceMass u(m * eps, beta, nullptr, station);
     system::RigidInertia parts = centred.inertia(0.0);
@@ -143,7 +156,8 @@ TEST(Unbalance, IsTheOffsetMassCentreOfADisk) {
       const system::Context c{0.0, Vec3(0, 0, -9.81)};
       system::ForceX<7> f1 = Vector<7>::Zero(), f2 = f1;
       body.add_force(x.nodes(), c, f1);
-      centred.add_force(x.nodes(), c, f2); u.add_force(x.nodes(), c, f2);
+      centred.add_force(x.nodes(), c, f2);
+      u.add_force(x.nodes(), c, f2);
       EXPECT_LT((x.J.transpose() * (f1 - f2)).norm(), 1e-13 * f1.norm());
     }
   }
@@ -159,7 +173,8 @@ TEST(RigidDisk, SmallTiltGivesTheTextbookGyroscopicMatrix) {
   system::TangentX<7> t;
   t.set_zero();
   RigidDisk{5.0, 0.08, 0.15, 0}.add_tangent(x.nodes(), {}, t);
-  const Matrix<6> C = x.J.transpose() * (t.C * x.J + 2.0 * t.M * x.J1), M = x.J.transpose() * t.M * x.J;
+  const Matrix<6> C = x.J.transpose() * (t.C * x.J + 2.0 * t.M * x.J1),
+                  M = x.J.transpose() * t.M * x.J;
   EXPECT_NEAR(C(4, 5), 0.15 * Omega, 1e-13);
   EXPECT_NEAR(C(5, 4), -0.15 * Omega, 1e-13);
   EXPECT_NEAR(M(4, 4), 0.08, 1e-16);

@@ -13,11 +13,15 @@ using namespace whirl::elements;
 
 namespace {
 
-// 8 balls between races of 40.1 and 63.9 mm, K = 1.334e10 N/m^1.5: the usual varying-compliance bearing (Fukata et al. 1985)
+// 8 balls between races of 40.1 and 63.9 mm, K = 1.334e10 N/m^1.5: the usual varying-compliance
+// bearing (Fukata et al. 1985)
 BallBearing fukata(double clearance) {
   BallGeometry g;
-  g.balls = 8; g.ball_diameter = (0.0639 - 0.0401) / 2; g.pitch_diameter = (0.0639 + 0.0401) / 2;
-  g.radial_clearance = clearance; g.stiffness = 1.334e10;
+  g.balls = 8;
+  g.ball_diameter = (0.0639 - 0.0401) / 2;
+  g.pitch_diameter = (0.0639 + 0.0401) / 2;
+  g.radial_clearance = clearance;
+  g.stiffness = 1.334e10;
   return make_ball_bearing(g);
 }
 
@@ -27,7 +31,8 @@ double press(const BallBearing& b, double W, double psi) {
   for (int i = 0; i < 200; ++i) {
     const double mid = 0.5 * (lo + hi);
     Vector<6> q = Vector<6>::Zero();
-    q[1] = mid; q[5] = psi;
+    q[1] = mid;
+    q[5] = psi;
     RollingPotential p;
     b.potential(q, p, false);
     (p.g[1] < W ? lo : hi) = mid;
@@ -37,7 +42,11 @@ double press(const BallBearing& b, double W, double psi) {
 
 RollerBearing rollers(double clearance) {
   RollerGeometry g;
-  g.rollers = 13; g.roller_diameter = 0.0125; g.roller_length = 0.014; g.pitch_diameter = 0.065; g.radial_clearance = clearance;
+  g.rollers = 13;
+  g.roller_diameter = 0.0125;
+  g.roller_length = 0.014;
+  g.pitch_diameter = 0.065;
+  g.radial_clearance = clearance;
   return make_roller_bearing(g);
 }
 
@@ -49,21 +58,28 @@ TEST(Hertz, KnownContacts) {
   EXPECT_NEAR(hertz_point_stiffness(0.01, 0.01), 2.0 / 3.0 * E * std::sqrt(0.01), 1e-12 * 1e11);
   EXPECT_NEAR(hertz_ellipticity(0.01, 0.01), 1.0, 1e-15);
   // the two branches of the solver meet
-  EXPECT_NEAR(hertz_ellipticity(1.0, 1.0 + 2.001e-5) - hertz_ellipticity(1.0, 1.0 + 1.999e-5), 2.0 / 3.0 * 2e-8, 2e-10);
-  // ellipticity against Hamrock's fit (Ry/Rx)^(2/pi), good to 4 % (Hamrock, Schmid & Jacobson 2004, ch. 17)
-  for (double r : {2.0, 5.0, 20.0, 100.0}) EXPECT_NEAR(hertz_ellipticity(1.0, r), std::pow(r, 2 / pi), 0.04 * std::pow(r, 2 / pi));
+  EXPECT_NEAR(hertz_ellipticity(1.0, 1.0 + 2.001e-5) - hertz_ellipticity(1.0, 1.0 + 1.999e-5),
+              2.0 / 3.0 * 2e-8, 2e-10);
+  // ellipticity against Hamrock's fit (Ry/Rx)^(2/pi), good to 4 % (Hamrock, Schmid & Jacobson 2004,
+  // ch. 17)
+  for (double r : {2.0, 5.0, 20.0, 100.0})
+    EXPECT_NEAR(hertz_ellipticity(1.0, r), std::pow(r, 2 / pi), 0.04 * std::pow(r, 2 / pi));
   // defining relation, with the elliptic integrals by quadrature
   const double kappa = hertz_ellipticity(0.004, 0.09), m2 = 1 - 1 / (kappa * kappa);
   double F = 0, S = 0;
   const int N = 4000;
   for (int i = 0; i < N; ++i) {
     const double a = (i + 0.5) * pi / 2 / N, d = std::sqrt(1 - m2 * std::sin(a) * std::sin(a));
-    F += pi / 2 / N / d; S += pi / 2 / N * d;
+    F += pi / 2 / N / d;
+    S += pi / 2 / N * d;
   }
   const double rho = (1 / 0.004 - 1 / 0.09) / (1 / 0.004 + 1 / 0.09), k2 = kappa * kappa;
   EXPECT_NEAR(((k2 + 1) * S - 2 * F) / ((k2 - 1) * S), rho, 1e-9);
-  // the handbook form K = (2 sqrt 2/3) E/(1-nu^2) (sum of curvatures)^(-1/2) delta*^(-3/2) (Harris: 2.15e5 N/mm^1.5 for steel)
-  const double star = 2 * F / pi * std::cbrt(pi / (2 * k2 * S)), handbook = 2 * std::sqrt(2.0) / 3 * E / std::sqrt(1 / 0.004 + 1 / 0.09) / std::pow(star, 1.5);
+  // the handbook form K = (2 sqrt 2/3) E/(1-nu^2) (sum of curvatures)^(-1/2) delta*^(-3/2)
+  // (Harris: 2.15e5 N/mm^1.5 for steel)
+  const double star = 2 * F / pi * std::cbrt(pi / (2 * k2 * S)),
+               handbook = 2 * std::sqrt(2.0) / 3 * E / std::sqrt(1 / 0.004 + 1 / 0.09) /
+                          std::pow(star, 1.5);
   EXPECT_NEAR(hertz_point_stiffness(0.004, 0.09), handbook, 1e-6 * handbook);
   EXPECT_NEAR(hertz_series(3.0, 3.0, 1.5), 3.0 / std::pow(2.0, 1.5), 1e-14);
   EXPECT_NEAR(hertz_line_stiffness(0.001), 8.06e4 * std::pow(1000.0, 10.0 / 9.0), 1e-6);
@@ -72,17 +88,28 @@ TEST(Hertz, KnownContacts) {
 TEST(RollingBearing, Conformance) {
   ConformanceOptions o;
   o.symmetric_K = true;
-  o.u = 1e-5; o.du = 1e-2; o.ddu = 10; o.tilt = 2e-4; o.dtilt = 0.1; o.ddtilt = 10;
+  o.u = 1e-5;
+  o.du = 1e-2;
+  o.ddu = 10;
+  o.tilt = 2e-4;
+  o.dtilt = 0.1;
+  o.ddtilt = 10;
   // every element loaded throughout: differences do not cross the onset
   auto deep = fukata(-8e-5);
-  deep.c_radial = 500; deep.c_axial = 200;
+  deep.c_radial = 500;
+  deep.c_axial = 200;
   check_kernel(deep, o);
   BallGeometry g;
-  g.balls = 16; g.ball_diameter = 0.02223; g.pitch_diameter = 0.12527; g.contact_angle = 40 * pi / 180; g.f_inner = g.f_outer = 0.5232;
+  g.balls = 16;
+  g.ball_diameter = 0.02223;
+  g.pitch_diameter = 0.12527;
+  g.contact_angle = 40 * pi / 180;
+  g.f_inner = g.f_outer = 0.5232;
   auto angular = make_ball_bearing(g);
   set_axial_preload(angular, 2e5);
   check_kernel(angular, o);
-  o.u = 5e-6; o.tilt = 1e-4;
+  o.u = 5e-6;
+  o.tilt = 1e-4;
   check_kernel(rollers(-4e-5), o);
 }
 
@@ -96,34 +123,43 @@ TEST(RollingBearing, PartlyLoadedTangent) {
   const double step[6] = {1e-9, 1e-9, 1e-9, 1e-8, 1e-8, 1e-5};
   for (int j = 0; j < 6; ++j) {
     Vector<6> up = q, dn = q;
-    up[j] += step[j]; dn[j] -= step[j];
-    b.potential(up, a, false); b.potential(dn, c, false);
+    up[j] += step[j];
+    dn[j] -= step[j];
+    b.potential(up, a, false);
+    b.potential(dn, c, false);
     EXPECT_NEAR((a.V - c.V) / (2 * step[j]), p.g[j], 1e-6 * std::abs(p.g[j]) + 1e-9);
     for (int i = 0; i < 6; ++i)
-      EXPECT_NEAR((a.g[i] - c.g[i]) / (2 * step[j]), p.H(i, j), 1e-7 * std::sqrt(std::abs(p.H(i, i) * p.H(j, j))) + 1e-9 * std::abs(p.H(1, 1)) * (i > 2 ? 1e-2 : 1)) << i << j;
+      EXPECT_NEAR((a.g[i] - c.g[i]) / (2 * step[j]), p.H(i, j),
+                  1e-7 * std::sqrt(std::abs(p.H(i, i) * p.H(j, j))) +
+                      1e-9 * std::abs(p.H(1, 1)) * (i > 2 ? 1e-2 : 1))
+          << i << j;
   }
 }
 
 TEST(RollingBearing, LoadSharing) {
-  // radial clearance um, load N, ball under load (1) or gap (0), displacement m, tangent N/m: roots of the 8-ball sum
-  const double table[][5] = {{0, 58.8, 1, 1.789759857e-06, 49280354.37}, {0, 196, 1, 3.993747404e-06, 73615071.33},
-                             {0, 58.8, 0, 1.802089581e-06, 48943182.92}, {0, 196, 0, 4.021260482e-06, 73111404.08},
-                             {1, 58.8, 1, 2.97298009e-06, 49114386.5},   {1, 196, 0, 5.242020287e-06, 72842652},
-                             {5, 58.8, 1, 7.567395999e-06, 43916464.13}, {5, 196, 1, 9.87145827e-06, 72322642.58},
-                             {5, 58.8, 0, 7.344383524e-06, 45642192.09}, {10, 196, 1, 1.559219672e-05, 67581319.78},
-                             {10, 58.8, 0, 1.275634453e-05, 45642192.09}, {10, 196, 0, 1.513601304e-05, 68180378.76}};
+  // radial clearance um, load N, ball under load (1) or gap (0), displacement m, tangent N/m: roots
+  // of the 8-ball sum
+  const double table[][5] = {
+      {0, 58.8, 1, 1.789759857e-06, 49280354.37},  {0, 196, 1, 3.993747404e-06, 73615071.33},
+      {0, 58.8, 0, 1.802089581e-06, 48943182.92},  {0, 196, 0, 4.021260482e-06, 73111404.08},
+      {1, 58.8, 1, 2.97298009e-06, 49114386.5},    {1, 196, 0, 5.242020287e-06, 72842652},
+      {5, 58.8, 1, 7.567395999e-06, 43916464.13},  {5, 196, 1, 9.87145827e-06, 72322642.58},
+      {5, 58.8, 0, 7.344383524e-06, 45642192.09},  {10, 196, 1, 1.559219672e-05, 67581319.78},
+      {10, 58.8, 0, 1.275634453e-05, 45642192.09}, {10, 196, 0, 1.513601304e-05, 68180378.76}};
   for (const auto& t : table) {
     const auto b = fukata(t[0] * 1e-6);
     const double psi = t[2] ? 0.0 : pi / 8, x = press(b, t[1], psi);
     EXPECT_NEAR(x, t[3], 1e-9 * t[3]);
     Vector<6> q = Vector<6>::Zero();
-    q[1] = x; q[5] = psi;
+    q[1] = x;
+    q[5] = psi;
     RollingPotential p;
     b.potential(q, p, true);
     EXPECT_NEAR(p.H(1, 1), t[4], 1e-9 * t[4]);
     const auto loads = b.loads(q);
     double sum = 0;
-    for (int j = 0; j < 8; ++j) sum += loads[static_cast<std::size_t>(j)] * std::cos(psi + two_pi * j / 8);
+    for (int j = 0; j < 8; ++j)
+      sum += loads[static_cast<std::size_t>(j)] * std::cos(psi + two_pi * j / 8);
     EXPECT_NEAR(sum, t[1], 1e-9 * t[1]);
   }
 }
@@ -131,7 +167,8 @@ TEST(RollingBearing, LoadSharing) {
 TEST(RollingBearing, StribeckNumber) {
   // Z Qmax/F at zero clearance: 4.37 (balls), 4.08 (rollers)
   const int Z[] = {8, 12, 16};
-  const double ball[] = {4.345708935, 4.364492313, 4.368085065}, roller[] = {4.077006838, 4.082806932, 4.084109416};
+  const double ball[] = {4.345708935, 4.364492313, 4.368085065},
+               roller[] = {4.077006838, 4.082806932, 4.084109416};
   for (int i = 0; i < 3; ++i) {
     Vector<6> q = Vector<6>::Zero();
     q[1] = 1e-5;
@@ -141,10 +178,16 @@ TEST(RollingBearing, StribeckNumber) {
       return Z[i] * bearing.loads(q)[0] / p.g[1];
     };
     BallGeometry g;
-    g.balls = Z[i]; g.ball_diameter = 0.008; g.pitch_diameter = 0.06; g.stiffness = 1e10;
+    g.balls = Z[i];
+    g.ball_diameter = 0.008;
+    g.pitch_diameter = 0.06;
+    g.stiffness = 1e10;
     EXPECT_NEAR(number(make_ball_bearing(g)), ball[i], 1e-8);
     RollerGeometry r;
-    r.rollers = Z[i]; r.roller_diameter = 0.008; r.roller_length = 0.01; r.pitch_diameter = 0.06;
+    r.rollers = Z[i];
+    r.roller_diameter = 0.008;
+    r.roller_length = 0.01;
+    r.pitch_diameter = 0.06;
     EXPECT_NEAR(number(make_roller_bearing(r)), roller[i], 1e-8);
   }
 }
@@ -159,19 +202,26 @@ TEST(RollingBearing, CageSpeedAndWholeTurns) {
   q[3] = 1.234;
   NodeFrame<2, 7> x(q, zero, zero, chart, Vec3::Zero());
   const double psi = b.deflection(x.nodes())[5];
-  x.state[0].turns = 52000 * 1000.0; x.state[1].turns = 0;   // 1000 common turns of shaft (52000) and cage (20050)
+  x.state[0].turns = 52000 * 1000.0;
+  x.state[1].turns = 0;  // 1000 common turns of shaft (52000) and cage (20050)
   EXPECT_NEAR(std::remainder(b.deflection(x.nodes())[5] - psi, two_pi), 0.0, 1e-7);
   x.state[0].turns = 1;
-  EXPECT_NEAR(std::remainder(b.deflection(x.nodes())[5] - psi - two_pi * b.cage[0], two_pi), 0.0, 1e-14);
+  EXPECT_NEAR(std::remainder(b.deflection(x.nodes())[5] - psi - two_pi * b.cage[0], two_pi), 0.0,
+              1e-14);
   // both rings together: the cage goes with them
   EXPECT_NEAR(b.cage[0] + b.cage[1], 1.0, 1e-15);
 }
 
 TEST(RollingBearing, AngularContactUnderThrust) {
-  // 218 angular-contact bearing, Harris: Z = 16, D = 22.23 mm, alpha0 = 40 deg, B = 0.0464, axial constant 896.7 N/mm^2; thrust 17800 N.
-  // Exact root of sin a (cos 40/cos a - 1)^1.5 = Fa/(Z D^2 K): 41.59207702 deg, 0.03831822 mm
+  // 218 angular-contact bearing, Harris: Z = 16, D = 22.23 mm, alpha0 = 40 deg, B = 0.0464, axial
+  // constant 896.7 N/mm^2; thrust 17800 N. Exact root of sin a (cos 40/cos a - 1)^1.5 = Fa/(Z D^2
+  // K): 41.59207702 deg, 0.03831822 mm
   BallGeometry g;
-  g.balls = 16; g.ball_diameter = 0.02223; g.pitch_diameter = 0.12527; g.contact_angle = 40 * pi / 180; g.f_inner = g.f_outer = 0.5232;
+  g.balls = 16;
+  g.ball_diameter = 0.02223;
+  g.pitch_diameter = 0.12527;
+  g.contact_angle = 40 * pi / 180;
+  g.f_inner = g.f_outer = 0.5232;
   // K (B D)^1.5 = 896.7 N/mm^2 D^2
   g.stiffness = 896.7e6 * 0.02223 * 0.02223 / std::pow(0.0464 * 0.02223, 1.5);
   for (int side : {1, -1}) {
@@ -188,13 +238,13 @@ TEST(RollingBearing, AngularContactUnderThrust) {
     EXPECT_NEAR(std::abs(q[0]), 0.03831822e-3, 1e-7 * 0.0383e-3);
     const double angle = std::atan2(std::abs(b.contact.a0 + q[0]), b.contact.r0) * 180 / pi;
     EXPECT_NEAR(angle, 41.59207702, 1e-7);
-    RollingPotential p;   // pulled the other way it comes loose
+    RollingPotential p;  // pulled the other way it comes loose
     q[0] = -side * 1e-5;
     b.potential(q, p, false);
     EXPECT_EQ(p.g[0], 0.0);
   }
   // preload: the undisplaced bearing pushes back with it
-  g.stiffness = 0;   // Hertz from the geometry
+  g.stiffness = 0;  // Hertz from the geometry
   auto b = make_ball_bearing(g);
   set_axial_preload(b, 500);
   RollingPotential p;
@@ -204,7 +254,8 @@ TEST(RollingBearing, AngularContactUnderThrust) {
 }
 
 TEST(RollingBearing, RollerTiltMoment) {
-  // an aligned roller row carries no moment; a tilt is resisted, and 5 slices differ from 41 by little
+  // an aligned roller row carries no moment; a tilt is resisted, and 5 slices differ from 41 by
+  // little
   auto b = rollers(0);
   Vector<6> q = Vector<6>::Zero();
   q[1] = 2e-5;
@@ -214,21 +265,28 @@ TEST(RollingBearing, RollerTiltMoment) {
   EXPECT_EQ(p.g[0], 0.0);
   EXPECT_GT(p.H(3, 3), 0.0);
   q[3] = 5e-4;
-  b.contact.slices = 9; b.potential(q, p, true);
-  b.contact.slices = 201; b.potential(q, fine, true);
+  b.contact.slices = 9;
+  b.potential(q, p, true);
+  b.contact.slices = 201;
+  b.potential(q, fine, true);
   EXPECT_GT(p.g[3], 0.0);
-  EXPECT_NEAR(p.g[3], fine.g[3], 0.03 * fine.g[3]);   // lamina rule, error ~ 1/(4 slices^2) plus the edge of contact
+  EXPECT_NEAR(p.g[3], fine.g[3],
+              0.03 * fine.g[3]);  // lamina rule, error ~ 1/(4 slices^2) plus the edge of contact
   EXPECT_NEAR(p.g[1], fine.g[1], 0.005 * fine.g[1]);
 }
 
 TEST(RollingBearing, VaryingComplianceCycle) {
-  // m = 20 kg, c = 2000 N s/m, W = 196 N along y, clearance 5 um, shaft 10 rev/s: limit cycle by an independent 8th-order run
+  // m = 20 kg, c = 2000 N s/m, W = 196 N along y, clearance 5 um, shaft 10 rev/s: limit cycle by an
+  // independent 8th-order run
   auto b = fukata(5e-6);
-  const double m = 20, c = 2000, W = 196, rate = b.cage[0] * two_pi * 10, period = two_pi / 8 / rate;
+  const double m = 20, c = 2000, W = 196, rate = b.cage[0] * two_pi * 10,
+               period = two_pi / 8 / rate;
   Vec2 r(9.8e-6, 0), v = Vec2::Zero();
   const auto accel = [&](double t, const Vec2& x, const Vec2& w) {
     Vector<6> q = Vector<6>::Zero();
-    q[1] = x.x(); q[2] = x.y(); q[5] = std::fmod(rate * t, two_pi);
+    q[1] = x.x();
+    q[2] = x.y();
+    q[5] = std::fmod(rate * t, two_pi);
     RollingPotential p;
     b.potential(q, p, false);
     return Vec2((Vec2(W, 0) - p.g.segment<2>(1) - c * w) / m);
@@ -240,11 +298,15 @@ TEST(RollingBearing, VaryingComplianceCycle) {
     for (int i = 0; i < steps; ++i) {
       const double t = (cycle * steps + i) * h;
       const Vec2 k1 = accel(t, r, v), k2 = accel(t + h / 2, r + h / 2 * v, v + h / 2 * k1),
-                 k3 = accel(t + h / 2, r + h / 2 * v + h * h / 4 * k1, v + h / 2 * k2), k4 = accel(t + h, r + h * v + h * h / 2 * k2, v + h * k3);
+                 k3 = accel(t + h / 2, r + h / 2 * v + h * h / 4 * k1, v + h / 2 * k2),
+                 k4 = accel(t + h, r + h * v + h * h / 2 * k2, v + h * k3);
       r += h * v + h * h / 6 * (k1 + k2 + k3);
       v += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
       if (cycle < 20) continue;
-      xmin = std::min(xmin, r.x()); xmax = std::max(xmax, r.x()); ymin = std::min(ymin, r.y()); ymax = std::max(ymax, r.y());
+      xmin = std::min(xmin, r.x());
+      xmax = std::max(xmax, r.x());
+      ymin = std::min(ymin, r.y());
+      ymax = std::max(ymax, r.y());
       mean += r.x() / steps;
     }
   EXPECT_NEAR(xmin, 9.71753874e-06, 1e-5 * 1e-5);
@@ -261,10 +323,12 @@ TEST(RollingBearing, EstimatesOfFriswell) {
   const auto roller = estimate_roller_bearing(8, 0.03, 500, pi / 6);
   EXPECT_NEAR(roller.across, 272821927, 1e-8 * 2.7e8);
   EXPECT_NEAR(roller.along, 556779444, 1e-8 * 5.5e8);
-  // stiffness across the load over that along it, for 8, 12 and 16 elements (ibid.); between them linear
+  // stiffness across the load over that along it, for 8, 12 and 16 elements (ibid.); between them
+  // linear
   const double balls[] = {0.46, 0.64, 0.73}, rollers[] = {0.49, 0.66, 0.74};
   for (int k = 0; k < 3; ++k) {
-    const auto b = estimate_ball_bearing(8 + 4 * k, 0.03, 500, 0.0), r = estimate_roller_bearing(8 + 4 * k, 0.03, 500, 0.0);
+    const auto b = estimate_ball_bearing(8 + 4 * k, 0.03, 500, 0.0),
+               r = estimate_roller_bearing(8 + 4 * k, 0.03, 500, 0.0);
     EXPECT_NEAR(b.across / b.along, balls[k], 1e-12);
     EXPECT_NEAR(r.across / r.along, rollers[k], 1e-12);
   }
@@ -275,19 +339,27 @@ TEST(RollingBearing, EstimatesOfFriswell) {
 TEST(RollingBearing, BadGeometry) {
   const auto code = [](auto change) {
     BallGeometry g;
-    g.balls = 8; g.ball_diameter = 0.0119; g.pitch_diameter = 0.052;
+    g.balls = 8;
+    g.ball_diameter = 0.0119;
+    g.pitch_diameter = 0.052;
     change(g);
     try {
       make_ball_bearing(g);
       return std::string("none");
-    } catch (const Error& e) { return e.diagnostics().front().code; }
+    } catch (const Error& e) {
+      return e.diagnostics().front().code;
+    }
   };
   EXPECT_EQ(code([](BallGeometry&) {}), "none");
   EXPECT_EQ(code([](BallGeometry& g) { g.balls = 1; }), "E83");
   EXPECT_EQ(code([](BallGeometry& g) { g.balls = 40; }), "E83");
   EXPECT_EQ(code([](BallGeometry& g) { g.f_inner = 0.5; }), "E83");
   EXPECT_EQ(code([](BallGeometry& g) { g.radial_clearance = 1e-3; }), "E83");
-  EXPECT_EQ(code([](BallGeometry& g) { g.contact_angle = 0.4; g.radial_clearance = 1e-6; }), "E83");
+  EXPECT_EQ(code([](BallGeometry& g) {
+              g.contact_angle = 0.4;
+              g.radial_clearance = 1e-6;
+            }),
+            "E83");
   EXPECT_EQ(code([](BallGeometry& g) { g.stiffness = -1; }), "E83");
   auto deep = fukata(0);
   EXPECT_THROW(set_axial_preload(deep, 10), Error);

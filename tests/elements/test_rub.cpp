@@ -1,4 +1,5 @@
-// Rub: conformance, sign of friction, synchronous full annular rub (exact branches) and its transients.
+// Rub: conformance, sign of friction, synchronous full annular rub (exact branches) and its
+// transients.
 #include "conformance.hpp"
 #include <elements/supports/rub.hpp>
 #include <complex>
@@ -9,20 +10,26 @@ using namespace whirl::elements;
 
 namespace {
 
-// Jeffcott rotor in a compliant ring: closed form of Black, J. Mech. Eng. Sci. 10 (1968) 1-12, doi 10.1243/JMES_JOUR_1968_010_003_02:
-// |k - m O^2 + i c O + kc (1 + i mu)(1 - gap/R)| R = m e O^2
+// Jeffcott rotor in a compliant ring: closed form of Black, J. Mech. Eng. Sci. 10 (1968) 1-12,
+// doi 10.1243/JMES_JOUR_1968_010_003_02: |k - m O^2 + i c O + kc (1 + i mu)(1 - gap/R)| R = m e O^2
 constexpr double m = 10, k = 1e6, c = 400, ecc = 1e-4, kc = 4e6, gap = 3e-4;
 
 RubLaw ring(double mu) {
   RubLaw r;
-  r.gap = gap; r.stiffness = kc; r.friction = mu; r.radius = 0.05; r.slip_speed = 1e-2;
+  r.gap = gap;
+  r.stiffness = kc;
+  r.friction = mu;
+  r.radius = 0.05;
+  r.slip_speed = 1e-2;
   return r;
 }
 
 /// Synchronous equation with the contact force taken from the kernel; zero on a branch.
 double imbalance(const RubLaw& rub, double Omega, double R) {
   LateralMotion x;
-  x.r = Vec2(R, 0); x.v = Vec2(0, Omega * R); x.spin = Omega;
+  x.r = Vec2(R, 0);
+  x.v = Vec2(0, Omega * R);
+  x.spin = Omega;
   Vector<4> z;
   rub.force(x, z);
   const Complex dynamic = (Complex(k - m * Omega * Omega, c * Omega)) * R - Complex(z[0], z[1]);
@@ -33,8 +40,11 @@ double root(const RubLaw& rub, double Omega, double lo, double hi) {
   double a = imbalance(rub, Omega, lo);
   for (int i = 0; i < 200; ++i) {
     const double mid = 0.5 * (lo + hi), v = imbalance(rub, Omega, mid);
-    if ((v > 0) == (a > 0)) { lo = mid; a = v; }
-    else hi = mid;
+    if ((v > 0) == (a > 0)) {
+      lo = mid;
+      a = v;
+    } else
+      hi = mid;
   }
   return 0.5 * (lo + hi);
 }
@@ -45,14 +55,19 @@ double settle(const RubLaw& rub, double Omega, Vec2 r, Vec2 v, int turns, int st
   double t = 0;
   const auto accel = [&](double s, const Vec2& x, const Vec2& w) {
     LateralMotion q;
-    q.r = x; q.v = w; q.spin = Omega;
+    q.r = x;
+    q.v = w;
+    q.spin = Omega;
     Vector<4> z;
     rub.force(q, z);
-    return Vec2((m * ecc * Omega * Omega * Vec2(std::cos(Omega * s), std::sin(Omega * s)) - k * x - c * w + z.head<2>()) / m);
+    return Vec2((m * ecc * Omega * Omega * Vec2(std::cos(Omega * s), std::sin(Omega * s)) - k * x -
+                 c * w + z.head<2>()) /
+                m);
   };
   for (int i = 0; i < turns * steps_per_turn; ++i, t += h) {
     const Vec2 k1 = accel(t, r, v), k2 = accel(t + h / 2, r + h / 2 * v, v + h / 2 * k1),
-               k3 = accel(t + h / 2, r + h / 2 * v + h * h / 4 * k1, v + h / 2 * k2), k4 = accel(t + h, r + h * v + h * h / 2 * k2, v + h * k3);
+               k3 = accel(t + h / 2, r + h / 2 * v + h * h / 4 * k1, v + h / 2 * k2),
+               k4 = accel(t + h, r + h * v + h * h / 2 * k2, v + h * k3);
     r += h * v + h * h / 6 * (k1 + k2 + k3);
     v += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
   }
@@ -63,22 +78,37 @@ double settle(const RubLaw& rub, double Omega, Vec2 r, Vec2 v, int turns, int st
 
 TEST(Rub, Conformance) {
   RubLaw law;
-  law.gap = 0.05; law.stiffness = 1e3; law.damping = 0.1; law.friction = 0.3; law.radius = 0.4; law.slip_speed = 2.0;
+  law.gap = 0.05;
+  law.stiffness = 1e3;
+  law.damping = 0.1;
+  law.friction = 0.3;
+  law.radius = 0.4;
+  law.slip_speed = 2.0;
   ConformanceOptions o;
   o.chart = tilted_chart();
-  o.u = 0.03; o.du = 0.3; o.tilt = 0.3; o.dtilt = 0.5; o.dphi = 1.0;
-  o.q0.assign(12, 0.0); o.v0.assign(12, 0.0);
-  o.q0[1] = 0.1; o.q0[2] = -0.12;   // always in contact
+  o.u = 0.03;
+  o.du = 0.3;
+  o.tilt = 0.3;
+  o.dtilt = 0.5;
+  o.dphi = 1.0;
+  o.q0.assign(12, 0.0);
+  o.v0.assign(12, 0.0);
+  o.q0[1] = 0.1;
+  o.q0[2] = -0.12;  // always in contact
   for (double spin : {4.0, -6.0, 0.0}) {
-    o.v0[3] = spin; o.v0[9] = 0.4 * spin + 1;
+    o.v0[3] = spin;
+    o.v0[9] = 0.4 * spin + 1;
     check_kernel(Rub{{law}}, o);
     check_kernel(LateralJoint<RubLaw, true>{{law}, {0.02, 0.03}}, o);
   }
   // apart: nothing
-  o.q0.assign(12, 0.0); o.u = 0.01;
+  o.q0.assign(12, 0.0);
+  o.u = 0.01;
   check_kernel(Rub{{law}}, o);
   // released faster than the contact relaxes: N = 0, the stored energy is lost
-  o.q0[1] = 0.1; o.v0[1] = -25; o.u = 0.005;
+  o.q0[1] = 0.1;
+  o.v0[1] = -25;
+  o.u = 0.005;
   check_kernel(Rub{{law}}, o);
 }
 
@@ -88,7 +118,10 @@ TEST(Rub, FrictionOpposesSlipAndTakesPower) {
   Random random(17);
   for (int n = 0; n < 2000; ++n) {
     LateralMotion x;
-    x.r = 1e-3 * random.vector<2>(); x.v = random.vector<2>(); x.spin = 50 * random.vector<1>()[0]; x.housing_spin = 10 * random.vector<1>()[0];
+    x.r = 1e-3 * random.vector<2>();
+    x.v = random.vector<2>();
+    x.spin = 50 * random.vector<1>()[0];
+    x.housing_spin = 10 * random.vector<1>()[0];
     Vector<4> z;
     law.force(x, z);
     const auto contact = law.contact(x);
@@ -131,8 +164,9 @@ TEST(Rub, OnsetAndBranches) {
   for (const auto& p : fold)
     for (double side : {-1e-4, 1e-4}) {
       const double O = (1 + side) * p[1] * wn;
-      double least = infinity;   // along R the contact branch is where the imbalance dips below zero
-      for (double R = 4.5e-4; R < 2e-3; R += 2e-8) least = std::min(least, imbalance(ring(p[0]), O, R));
+      double least = infinity;  // along R the contact branch is where the imbalance dips below zero
+      for (double R = 4.5e-4; R < 2e-3; R += 2e-8)
+        least = std::min(least, imbalance(ring(p[0]), O, R));
       EXPECT_EQ(least < 0, side < 0) << "mu " << p[0];
     }
 }
@@ -140,12 +174,16 @@ TEST(Rub, OnsetAndBranches) {
 TEST(Rub, TransientsFallOnTheBranches) {
   const double wn = std::sqrt(k / m);
   // from rest into contact: RK4 with 400 steps a turn, error 1e-8 of the radius
-  EXPECT_NEAR(settle(ring(0.05), 1.1 * wn, Vec2::Zero(), Vec2::Zero(), 150, 400), 0.000344793882, 1e-6 * 3.4e-4);
+  EXPECT_NEAR(settle(ring(0.05), 1.1 * wn, Vec2::Zero(), Vec2::Zero(), 150, 400), 0.000344793882,
+              1e-6 * 3.4e-4);
   // at 1.5 from rest: no contact; from the upper branch: stays there
-  EXPECT_NEAR(settle(ring(0.05), 1.5 * wn, Vec2::Zero(), Vec2::Zero(), 200, 400), 0.000177961557, 1e-6 * 1.8e-4);
+  EXPECT_NEAR(settle(ring(0.05), 1.5 * wn, Vec2::Zero(), Vec2::Zero(), 200, 400), 0.000177961557,
+              1e-6 * 1.8e-4);
   const double R = 0.000501675563, O = 1.5 * wn;
   // phase of the whirl behind the unbalance from the closed form
   const Complex z = Complex(k - m * O * O, c * O) + kc * Complex(1, 0.05) * (1 - gap / R);
   const double lag = -std::arg(z);
-  EXPECT_NEAR(settle(ring(0.05), O, R * Vec2(std::cos(lag), std::sin(lag)), O * R * Vec2(-std::sin(lag), std::cos(lag)), 150, 400), R, 1e-6 * R);
+  EXPECT_NEAR(settle(ring(0.05), O, R * Vec2(std::cos(lag), std::sin(lag)),
+                     O * R * Vec2(-std::sin(lag), std::cos(lag)), 150, 400),
+              R, 1e-6 * R);
 }

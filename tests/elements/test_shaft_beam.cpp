@@ -1,4 +1,5 @@
-// The corotational shaft element in q-space: exact tangents, invariance under rigid motion, power balance, small-tilt digits.
+// The corotational shaft element in q-space: exact tangents, invariance under rigid motion, power
+// balance, small-tilt digits.
 #include <core/rotation.hpp>
 #include <elements/shaft/shaft_beam.hpp>
 #include <elements/shaft/shaft_damping.hpp>
@@ -19,21 +20,32 @@ namespace {
 // A stubby steel-like element with every constant different from zero and no accidental symmetry.
 // stiffness: factor on all of it; a soft element lets the inertia's share of K stand out.
 ShaftElementConstants constants(bool offsets, double stiffness = 1.0) {
-  const double L = 0.4, EA = 3e5 * stiffness, EI = 120.0 * stiffness, GJ = 90.0 * stiffness, Phi = 0.3, rhoA = 2.0, rhoI = 0.01;
+  const double L = 0.4, EA = 3e5 * stiffness, EI = 120.0 * stiffness, GJ = 90.0 * stiffness,
+               Phi = 0.3, rhoA = 2.0, rhoI = 0.01;
   ShaftElementConstants c;
   c.length = L;
-  if (offsets) { c.o1 = 0.1; c.o2 = -0.07; }
-  c.EA_l = EA / L; c.GJ_l = GJ / L;
-  c.k11 = EI * (4 + Phi) / (L * (1 + Phi)); c.k22 = 1.1 * c.k11; c.k12 = EI * (2 - Phi) / (L * (1 + Phi));
+  if (offsets) {
+    c.o1 = 0.1;
+    c.o2 = -0.07;
+  }
+  c.EA_l = EA / L;
+  c.GJ_l = GJ / L;
+  c.k11 = EI * (4 + Phi) / (L * (1 + Phi));
+  c.k22 = 1.1 * c.k11;
+  c.k12 = EI * (2 - Phi) / (L * (1 + Phi));
   const double q = (1 + Phi) * (1 + Phi);
-  c.b11 = (2.0 / 15 + Phi / 6 + Phi * Phi / 12) / q; c.b22 = 1.2 * c.b11; c.b12 = -(1.0 / 30 + Phi / 6 + Phi * Phi / 12) / q;
+  c.b11 = (2.0 / 15 + Phi / 6 + Phi * Phi / 12) / q;
+  c.b22 = 1.2 * c.b11;
+  c.b12 = -(1.0 / 30 + Phi / 6 + Phi * Phi / 12) / q;
   c.tau_c = 0.5 * (1 - Phi) / (1 + Phi);
-  // any symmetric matrix of a rigid body's form is good enough for derivatives; use the cubic beam's
-  c.M4 << 156, 22 * L, 54, -13 * L, 22 * L, 4 * L * L, 13 * L, -3 * L * L, 54, 13 * L, 156, -22 * L, -13 * L, -3 * L * L,
-      -22 * L, 4 * L * L;
+  // any symmetric matrix of a rigid body's form is good enough for derivatives; use the cubic
+  // beam's
+  c.M4 << 156, 22 * L, 54, -13 * L, 22 * L, 4 * L * L, 13 * L, -3 * L * L, 54, 13 * L, 156, -22 * L,
+      -13 * L, -3 * L * L, -22 * L, 4 * L * L;
   c.M4 *= rhoA * L / 420;
   Matrix<4> R;
-  R << 36, 3 * L, -36, 3 * L, 3 * L, 4 * L * L, -3 * L, -L * L, -36, -3 * L, 36, -3 * L, 3 * L, -L * L, -3 * L, 4 * L * L;
+  R << 36, 3 * L, -36, 3 * L, 3 * L, 4 * L * L, -3 * L, -L * L, -36, -3 * L, 36, -3 * L, 3 * L,
+      -L * L, -3 * L, 4 * L * L;
   R *= rhoI / (30 * L);
   c.M4 += R;
   c.G4 = 2 * R;
@@ -46,7 +58,8 @@ ShaftElementConstants constants(bool offsets, double stiffness = 1.0) {
 enum class With { nothing, rotating, external };
 
 template <bool Offsets>
-System make_system(const Mat3& triad = Mat3::Identity(), With damping = With::nothing, double stiffness = 1.0) {
+System make_system(const Mat3& triad = Mat3::Identity(), With damping = With::nothing,
+                   double stiffness = 1.0) {
   Builder b;
   const Index line = b.add_line("shaft", triad);
   const auto c = constants(Offsets, stiffness);
@@ -54,9 +67,11 @@ System make_system(const Mat3& triad = Mat3::Identity(), With damping = With::no
   const Index n1 = b.add_node({Vec3::Zero(), line, "node 1", false});
   const Index n2 = b.add_node({Vec3((c.length + c.o1 - c.o2) * e0), line, "node 2", false});
   ShaftBeam<Offsets> beam(c, e0);
-  beam.preload = 40.0 * stiffness; beam.psi0 = 0.05;
+  beam.preload = 40.0 * stiffness;
+  beam.psi0 = 0.05;
   b.add(beam, {n1, n2}, "shaft elements");
-  if (damping == With::rotating) b.add(elements::ShaftDamping<true>(c, e0, 2e-3, 1e-3, 5e-4), {n1, n2}, "internal damping");
+  if (damping == With::rotating)
+    b.add(elements::ShaftDamping<true>(c, e0, 2e-3, 1e-3, 5e-4), {n1, n2}, "internal damping");
   if (damping == With::external) {
     b.add(elements::ShaftDamping<false>(c, e0, 2e-3, 1e-3, 5e-4), {n1, n2}, "external damping");
     b.add(elements::ShaftMassDamping{3.0 * c.M4}, {n1, n2}, "mass damping");
@@ -65,7 +80,9 @@ System make_system(const Mat3& triad = Mat3::Identity(), With damping = With::no
   return b.finalize();
 }
 
-struct Point { VecX q, v, a; };
+struct Point {
+  VecX q, v, a;
+};
 
 Point random_point(std::mt19937& rng, double tilt) {
   std::normal_distribution<double> d;
@@ -84,7 +101,10 @@ Point random_point(std::mt19937& rng, double tilt) {
 template <class F>
 VecX derivative(F&& f, VecX x, Index k, double h) {
   const double x0 = x[k];
-  auto at = [&](double s) { x[k] = x0 + s * h; return f(x); };
+  auto at = [&](double s) {
+    x[k] = x0 + s * h;
+    return f(x);
+  };
   return (8.0 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12.0 * h);
 }
 
@@ -102,20 +122,24 @@ void check_tangent(double tilt, unsigned seed, const Mat3& triad, With damping =
   for (Index i = 0; i < 2; ++i)
     for (Index j = 0; j < 2; ++j) {
       const Index s = sys.pattern().slot(i, j);
-      M.block<6, 6>(6 * i, 6 * j) = m.M.block(s); C.block<6, 6>(6 * i, 6 * j) = m.C.block(s); K.block<6, 6>(6 * i, 6 * j) = m.K.block(s);
+      M.block<6, 6>(6 * i, 6 * j) = m.M.block(s);
+      C.block<6, 6>(6 * i, 6 * j) = m.C.block(s);
+      K.block<6, 6>(6 * i, 6 * j) = m.K.block(s);
     }
   auto R = [&](const VecX& q, const VecX& v, const VecX& a) {
     VecX r(12);
     EXPECT_TRUE(sys.residual(w, f, 0, q, v, a, r));
     return r;
   };
-  // The residual is linear in a and quadratic in v: differences with step 1 are exact but for round-off (1e-16 of forces of 1e5).
-  // In q, order 4 with h = 5e-4 rad: truncation and round-off both below 1e-9.
+  // The residual is linear in a and quadratic in v: differences with step 1 are exact but for
+  // round-off (1e-16 of forces of 1e5). In q, order 4 with h = 5e-4 rad: truncation and round-off
+  // both below 1e-9.
   MatX Mn(12, 12), Cn(12, 12), Kn(12, 12);
   for (Index k = 0; k < 12; ++k) {
     Mn.col(k) = derivative([&](const VecX& a) { return R(p.q, p.v, a); }, p.a, k, 1.0);
     Cn.col(k) = derivative([&](const VecX& v) { return R(p.q, v, p.a); }, p.v, k, 1.0);
-    Kn.col(k) = derivative([&](const VecX& q) { return R(q, p.v, p.a); }, p.q, k, 5e-4 * (k % 6 < 3 ? 0.1 : 1.0));
+    Kn.col(k) = derivative([&](const VecX& q) { return R(q, p.v, p.a); }, p.q, k,
+                           5e-4 * (k % 6 < 3 ? 0.1 : 1.0));
   }
   EXPECT_LT((M - Mn).norm(), 1e-9 * M.norm());
   EXPECT_LT((C - Cn).norm(), 1e-9 * C.norm() + 1e-10);
@@ -141,25 +165,29 @@ TEST(ShaftBeam, StaticTangentIsSymmetric) {
   Workspace w = sys.make_workspace();
   std::mt19937 rng(3);
   Point p = random_point(rng, 0.5);
-  p.v.setZero(); p.a.setZero();
+  p.v.setZero();
+  p.a.setZero();
   la::MCK m = sys.make_matrices();
   // gravity-free: inertia loads vanish and K is a true Hessian in the global chart (u, phi, gamma)
   p.a.segment<3>(0) = p.a.segment<3>(6) = Vec3(1, -2, -9.81);
   ASSERT_TRUE(sys.tangent(w, sys.make_state().frames, 0, p.q, p.v, p.a, m));
   for (Index i = 0; i < 2; ++i)
     for (Index j = 0; j < 2; ++j) {
-      const Matrix<6> A = m.K.block(sys.pattern().slot(i, j)), B = m.K.block(sys.pattern().slot(j, i));
+      const Matrix<6> A = m.K.block(sys.pattern().slot(i, j)),
+                      B = m.K.block(sys.pattern().slot(j, i));
       EXPECT_LT((A - B.transpose()).norm(), 1e-13 * A.norm());
     }
 }
 
 TEST(ShaftBeam, RigidMotionStoresNoEnergy) {
-  // Any rotation of the straight, untwisted element: elastic energy to round-off of EA and GJ, 1e-12 of 1/2 GJ (1 rad)^2.
+  // Any rotation of the straight, untwisted element: elastic energy to round-off of EA and GJ,
+  // 1e-12 of 1/2 GJ (1 rad)^2.
   Builder b;
   const Index line = b.add_line("shaft");
   auto c = constants(true);
   const Vec3 X2((c.length + c.o1 - c.o2), 0, 0);
-  const Index n1 = b.add_node({Vec3::Zero(), line, "1", false}), n2 = b.add_node({X2, line, "2", false});
+  const Index n1 = b.add_node({Vec3::Zero(), line, "1", false}),
+              n2 = b.add_node({X2, line, "2", false});
   b.add(ShaftBeam<true>(c, Vec3::UnitX()), {n1, n2}, "shaft elements");
   const System sys = b.finalize();
   Workspace w = sys.make_workspace();
@@ -173,12 +201,13 @@ TEST(ShaftBeam, RigidMotionStoresNoEnergy) {
     rotation::director(gamma, dir);
     VecX q = VecX::Zero(12), z = VecX::Zero(12), r(12);
     const Vec3 shift(d(rng), d(rng), d(rng));
-    q.head<3>() = shift; q.segment<3>(6) = shift + X2.x() * dir.t;
+    q.head<3>() = shift;
+    q.segment<3>(6) = shift + X2.x() * dir.t;
     q[3] = q[9] = 10 * d(rng);
     q.segment<2>(4) = q.segment<2>(10) = gamma;
     ASSERT_TRUE(sys.residual(w, f, 0, q, z, z, r));
     EXPECT_LT(sys.energy(w).elastic, 1e-12 * 0.5 * c.GJ_l);
-    EXPECT_LT(r.norm(), 1e-9);   // EA_l 1e-16 x lever
+    EXPECT_LT(r.norm(), 1e-9);  // EA_l 1e-16 x lever
   }
 }
 
@@ -212,7 +241,8 @@ TEST(ShaftBeam, RigidRotationOfABentTwistedElementKeepsEnergyAndTorque) {
     }
     // phi is only known modulo 2 pi from R: keep the two continuous with each other
     const double dphi = phi[1] - phi[0], old = p.q[9] - p.q[3];
-    q[3] = phi[0]; q[9] = phi[0] + dphi + two_pi * std::round((old - dphi) / two_pi);
+    q[3] = phi[0];
+    q[9] = phi[0] + dphi + two_pi * std::round((old - dphi) / two_pi);
     ASSERT_TRUE(sys.residual(w, f, 0, q, z, z, r));
     EXPECT_NEAR(sys.energy(w).elastic, V, 1e-12 * V);
   }
@@ -228,11 +258,13 @@ TEST(ShaftDamping, TangentsAreExact) {
 }
 
 TEST(ShaftDamping, PowerAndRigidSpin) {
-  // The damping part of the residual, found as the difference to the undamped element, loses exactly the reported power, never
-  // gains, and a bent element turning rigidly loses nothing to rotating damping while the external one does.
+  // The damping part of the residual, found as the difference to the undamped element, loses
+  // exactly the reported power, never gains, and a bent element turning rigidly loses nothing to
+  // rotating damping while the external one does.
   std::mt19937 rng(21);
   for (With kind : {With::rotating, With::external}) {
-    const System damped = make_system<true>(tilted_triad(), kind), bare = make_system<true>(tilted_triad());
+    const System damped = make_system<true>(tilted_triad(), kind),
+                 bare = make_system<true>(tilted_triad());
     Workspace wd = damped.make_workspace(), wb = bare.make_workspace();
     const Frames f = damped.make_state().frames;
     for (int i = 0; i < 20; ++i) {
@@ -251,19 +283,24 @@ TEST(ShaftDamping, PowerAndRigidSpin) {
     for (Index i = 0; i < 2; ++i) {
       const Vec3 X = damped.node(i).position;
       p.v.segment<3>(6 * i) = omega.cross(X + p.q.segment<3>(6 * i));
-      const rotation::ChartRates rate = rotation::rates_of_omega(p.q.segment<2>(6 * i + 4), E.transpose() * omega);
-      p.v[6 * i + 3] = rate.phi; p.v.segment<2>(6 * i + 4) = rate.gamma;
+      const rotation::ChartRates rate =
+          rotation::rates_of_omega(p.q.segment<2>(6 * i + 4), E.transpose() * omega);
+      p.v[6 * i + 3] = rate.phi;
+      p.v.segment<2>(6 * i + 4) = rate.gamma;
     }
     ASSERT_TRUE(damped.evaluate_nodes(wd, f, 0, p.q, p.v, p.a));
     const double lost = damped.energy(wd).dissipated;
-    if (kind == With::rotating) EXPECT_LT(lost, 1e-20 * 1e6);   // round-off of rates of 30 rad/s squared, times moduli of 1e3
-    else EXPECT_GT(lost, 1.0);
+    if (kind == With::rotating)
+      EXPECT_LT(lost, 1e-20 * 1e6);  // round-off of rates of 30 rad/s squared, times moduli of 1e3
+    else
+      EXPECT_GT(lost, 1.0);
   }
 }
 
 TEST(ShaftBeam, PowerBalance) {
-  // d(T + V)/dt = f . v for the inertial and elastic force along any motion (no external power): checked by differencing
-  // the energy along q(t) = q + v t + a t^2/2, where every term of the residual contributes.
+  // d(T + V)/dt = f . v for the inertial and elastic force along any motion (no external power):
+  // checked by differencing the energy along q(t) = q + v t + a t^2/2, where every term of the
+  // residual contributes.
   const System sys = make_system<true>(tilted_triad());
   Workspace w = sys.make_workspace();
   const Frames f = sys.make_state().frames;
@@ -277,31 +314,41 @@ TEST(ShaftBeam, PowerBalance) {
       return e.kinetic + e.elastic + e.gravity;
     };
     const double h = 1e-3;
-    const double dE = (45.0 * (energy(h) - energy(-h)) - 9.0 * (energy(2 * h) - energy(-2 * h)) + (energy(3 * h) - energy(-3 * h))) / (60.0 * h);
+    const double dE = (45.0 * (energy(h) - energy(-h)) - 9.0 * (energy(2 * h) - energy(-2 * h)) +
+                       (energy(3 * h) - energy(-3 * h))) /
+                      (60.0 * h);
     VecX r(12);
     ASSERT_TRUE(sys.residual(w, f, 0, p.q, p.v, p.a, r));
-    EXPECT_NEAR(dE, r.dot(p.v), 1e-8 * r.norm() * p.v.norm());   // sixth-order difference, h^6 of rates of about 10/s
+    EXPECT_NEAR(
+        dE, r.dot(p.v),
+        1e-8 * r.norm() * p.v.norm());  // sixth-order difference, h^6 of rates of about 10/s
   }
 }
 
 TEST(ShaftBeam, SmallTiltKeepsItsDigits) {
-  // Linear response at 1e-3 and at 1e-12 agree to 1e-6 (the cubic terms at 1e-3): digits of a tiny tilt are not lost.
+  // Linear response at 1e-3 and at 1e-12 agree to 1e-6 (the cubic terms at 1e-3): digits of a tiny
+  // tilt are not lost.
   const System sys = make_system<false>();
   Workspace w = sys.make_workspace();
   const Frames f = sys.make_state().frames;
   VecX z = VecX::Zero(12), r1(12), r2(12), r0(12);
   VecX a = VecX::Zero(12);
-  a.segment<3>(0) = a.segment<3>(6) = Vec3(1, -2, -9.81);   // cancels gravity exactly
+  a.segment<3>(0) = a.segment<3>(6) = Vec3(1, -2, -9.81);  // cancels gravity exactly
   VecX q = VecX::Zero(12);
-  q[9] = 0.05;   // psi0: no torque
+  q[9] = 0.05;  // psi0: no torque
   VecX dq = VecX::Zero(12);
-  dq[1] = 0.1; dq[5] = 1.0; dq[10] = -0.7; dq[8] = 0.05;
+  dq[1] = 0.1;
+  dq[5] = 1.0;
+  dq[10] = -0.7;
+  dq[8] = 0.05;
   const auto response = [&](double s, VecX& r) {
     VecX x = q + s * dq;
     sys.residual(w, f, 0, x, z, a, r);
     sys.residual(w, f, 0, q, z, a, r0);
     r = (r - r0) / s;
   };
-  response(1e-4, r1); response(1e-12, r2);
-  for (int k : {1, 2, 4, 5, 7, 8, 10, 11}) EXPECT_NEAR(r1[k], r2[k], 1e-6 * r1.norm());
+  response(1e-4, r1);
+  response(1e-12, r2);
+  for (int k : {1, 2, 4, 5, 7, 8, 10, 11})
+    EXPECT_NEAR(r1[k], r2[k], 1e-6 * r1.norm());
 }

@@ -90,7 +90,8 @@ TEST(StiffnessRate, RigidMotionGivesNone) {
   section.given = {1e8, 1e6, 80, 100, 1, 0, 0};
   const int n = 4;
   const auto c = elements::make_shaft_constants(section, 0.25);
-  for (int i = 0; i <= n; ++i) b.add_node({Vec3(0.25 * i, 0, 0), 0, "node", false});
+  for (int i = 0; i <= n; ++i)
+    b.add_node({Vec3(0.25 * i, 0, 0), 0, "node", false});
   for (int i = 0; i < n; ++i)
     b.add(elements::ShaftBeam<false>(c, Vec3::UnitX()), {i, i + 1}, "shaft elements");
   const System s = b.finalize();
@@ -101,7 +102,7 @@ TEST(StiffnessRate, RigidMotionGivesNone) {
   VecX u(s.size());
   for (Index i = 0; i <= n; ++i) {
     u.segment<3>(6 * i) = Vec3(1, 2, 3) + turn.cross(s.node(i).position);
-    u.segment<3>(6 * i + 3) = turn; // about x, y, z: phi, gamma
+    u.segment<3>(6 * i + 3) = turn;  // about x, y, z: phi, gamma
   }
   la::BlockMatrix<6> out(s.pattern());
   out.set_zero();
@@ -112,14 +113,15 @@ TEST(StiffnessRate, RigidMotionGivesNone) {
       1e-13 * stiffest);
   // stretching by the strain s makes the stiffness of a string: N/L, N = EA s
   u.setZero();
-  for (Index i = 0; i <= n; ++i) u[6 * i] = 1e-3 * s.node(i).position.x();
+  for (Index i = 0; i <= n; ++i)
+    u[6 * i] = 1e-3 * s.node(i).position.x();
   out.set_zero();
   add_stiffness_rate({s, w, rest.frames, rest.q, u}, 1.0, out);
   VecX sideways = VecX::Zero(s.size()), force = sideways;
   for (Index i = 0; i <= n; ++i) {
     sideways[6 * i + 1] = s.node(i).position.x();
-    sideways[6 * i + 5] = 1.0; // turns with the line
+    sideways[6 * i + 5] = 1.0;  // turns with the line
   }
   out.add_multiply(1.0, sideways, force);
-  EXPECT_NEAR(sideways.dot(force), 1e5, 1e-6); // N times the length
+  EXPECT_NEAR(sideways.dot(force), 1e5, 1e-6);  // N times the length
 }

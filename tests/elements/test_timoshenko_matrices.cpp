@@ -1,4 +1,5 @@
-// Element constants against closed forms, and the natural frequencies of small beams built from them.
+// Element constants against closed forms, and the natural frequencies of small beams built from
+// them.
 #include <elements/shaft/timoshenko_matrices.hpp>
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -13,14 +14,16 @@ namespace {
 ElementSection cylinder(double d, ShearRule shear = ShearRule::cowper, bool rotary = true) {
   ElementSection s;
   s.od1 = s.od2 = s.mass_od1 = s.mass_od2 = d;
-  s.E = 2.1e11; s.G = 2.1e11 / 2.6; s.rho = 7850;
+  s.E = 2.1e11;
+  s.G = 2.1e11 / 2.6;
+  s.rho = 7850;
   s.shear = shear;
   s.rotary_inertia = rotary;
   return s;
 }
 
-ElementSection cone(double d1, double d2, double bore1 = 0, double bore2 = 0, ShearRule shear = ShearRule::cowper,
-                    bool rotary = true) {
+ElementSection cone(double d1, double d2, double bore1 = 0, double bore2 = 0,
+                    ShearRule shear = ShearRule::cowper, bool rotary = true) {
   ElementSection s = cylinder(d1, shear, rotary);
   s.od2 = s.mass_od2 = d2;
   s.id1 = s.mass_id1 = bore1;
@@ -32,7 +35,8 @@ ElementSection cone(double d1, double d2, double bore1 = 0, double bore2 = 0, Sh
 double integrate(const std::function<double(double)>& f, double a, double b) {
   const auto mid = [&](int n) {
     double s = 0, h = (b - a) / n;
-    for (int i = 0; i < n; ++i) s += f(a + (i + 0.5) * h);
+    for (int i = 0; i < n; ++i)
+      s += f(a + (i + 0.5) * h);
     return s * h;
   };
   const double m1 = mid(2000), m2 = mid(4000), m4 = mid(8000);
@@ -49,7 +53,8 @@ TEST(TimoshenkoElement, UniformClosedForms) {
     const double Phi = 12 * p.EI / (p.kGA * l * l), q = 1 + Phi;
     const ShaftElementConstants c = make_shaft_constants(s, l);
     SCOPED_TRACE(Phi);
-    const double k = p.EI / (l * q), tol = 1e-13 * (1 + Phi);  // k12 is a difference of terms of size Phi
+    const double k = p.EI / (l * q),
+                 tol = 1e-13 * (1 + Phi);  // k12 is a difference of terms of size Phi
     EXPECT_NEAR(c.k11 / k, 4 + Phi, tol * 4);
     EXPECT_NEAR(c.k22 / k, 4 + Phi, tol * 4);
     EXPECT_NEAR(c.k12 / k, 2 - Phi, tol * 4);
@@ -63,8 +68,8 @@ TEST(TimoshenkoElement, UniformClosedForms) {
     EXPECT_NEAR(c.polar(0, 0), 5.0 / 12 * p.rhoIp * l, 1e-14 * p.rhoIp * l);
     EXPECT_NEAR(c.polar(0, 1), 1.0 / 12 * p.rhoIp * l, 1e-14 * p.rhoIp * l);
     Matrix<4> add;
-    add << 12, 6 * l, -12, 6 * l, 6 * l, (4 + Phi) * l * l, -6 * l, (2 - Phi) * l * l, -12, -6 * l, 12, -6 * l, 6 * l,
-        (2 - Phi) * l * l, -6 * l, (4 + Phi) * l * l;
+    add << 12, 6 * l, -12, 6 * l, 6 * l, (4 + Phi) * l * l, -6 * l, (2 - Phi) * l * l, -12, -6 * l,
+        12, -6 * l, 6 * l, (2 - Phi) * l * l, -6 * l, (4 + Phi) * l * l;
     const double cw = p.rhoA * std::pow(l, 4) * (1 + 5 * Phi) / (720 * p.EI);
     const double cp = p.rhoIp * l * l / (12 * p.EI) * Phi / q, cth = 0.5 * cp;
     const double share = p.rhoI / (p.rhoI + p.rhoA * l * l / 15), cd = cw - share * (cw - cth);
@@ -73,34 +78,45 @@ TEST(TimoshenkoElement, UniformClosedForms) {
     EXPECT_LT((bending_stiffness(c) - K).cwiseAbs().maxCoeff(), tol * K.cwiseAbs().maxCoeff());
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
-        const double ci = i % 2 ? cd : cw, cj = j % 2 ? cd : cw, size = std::sqrt(c.M4(i, i) * c.M4(j, j));
+        const double ci = i % 2 ? cd : cw, cj = j % 2 ? cd : cw,
+                     size = std::sqrt(c.M4(i, i) * c.M4(j, j));
         EXPECT_NEAR(c.M4(i, j) - plain.M4(i, j), 0.5 * (ci + cj) * K(i, j), 1e-13 * size);
-        const double gi = i % 2 ? cp : 0, gj = j % 2 ? cp : 0, gsize = std::sqrt(c.G4(i, i) * c.G4(j, j));
+        const double gi = i % 2 ? cp : 0, gj = j % 2 ? cp : 0,
+                     gsize = std::sqrt(c.G4(i, i) * c.G4(j, j));
         EXPECT_NEAR(c.G4(i, j) - plain.G4(i, j), 0.5 * (gi + gj) * K(i, j), 1e-12 * gsize);
       }
     // Without rotary inertia: rhoA l (1+5 Phi)/(720 (1+Phi)) [12 6l -12 6l; ...].
     const ElementSection e = cylinder(0.06, ShearRule::cowper, false);
-    const Matrix<4> got = make_shaft_constants(e, l).M4 - make_shaft_constants(e, l, 0, 0, MassKind::consistent).M4;
+    const Matrix<4> got =
+        make_shaft_constants(e, l).M4 - make_shaft_constants(e, l, 0, 0, MassKind::consistent).M4;
     add *= p.rhoA * l * (1 + 5 * Phi) / (720 * q);
     EXPECT_LT((got - add).cwiseAbs().maxCoeff(), 1e-13 * q * c.M4.cwiseAbs().maxCoeff());
   }
 }
 
-// Consistent Timoshenko mass: Friedman & Kosmatka, Computers & Structures 47 (1993) 473-481, doi 10.1016/0045-7949(93)90243-7.
+// Consistent Timoshenko mass: Friedman & Kosmatka, Computers & Structures 47 (1993) 473-481,
+// doi 10.1016/0045-7949(93)90243-7.
 TEST(TimoshenkoElement, UniformConsistentMassIsTheKnownOne) {
   const ElementSection s = cylinder(0.06);
   const double l = 0.1;
   const SectionProperties p = s.at(0);
   const double Phi = 12 * p.EI / (p.kGA * l * l);
   const Matrix<4> M = make_shaft_constants(s, l, 0, 0, MassKind::consistent).M4;
-  const double a = p.rhoA * l / (210 * (1 + Phi) * (1 + Phi)), b = p.rhoI / (30 * (1 + Phi) * (1 + Phi) * l);
+  const double a = p.rhoA * l / (210 * (1 + Phi) * (1 + Phi)),
+               b = p.rhoI / (30 * (1 + Phi) * (1 + Phi) * l);
   const double P = Phi;
   EXPECT_NEAR(M(0, 0), a * (70 * P * P + 147 * P + 78) + b * 36, 1e-13 * M(0, 0));
-  EXPECT_NEAR(M(0, 1), a * l / 4 * (35 * P * P + 77 * P + 44) - b * l * (15 * P - 3), 1e-13 * M(0, 0));
+  EXPECT_NEAR(M(0, 1), a * l / 4 * (35 * P * P + 77 * P + 44) - b * l * (15 * P - 3),
+              1e-13 * M(0, 0));
   EXPECT_NEAR(M(0, 2), a * (35 * P * P + 63 * P + 27) - b * 36, 1e-13 * M(0, 0));
-  EXPECT_NEAR(M(0, 3), -a * l / 4 * (35 * P * P + 63 * P + 26) - b * l * (15 * P - 3), 1e-13 * M(0, 0));
-  EXPECT_NEAR(M(1, 1), a * l * l / 4 * (7 * P * P + 14 * P + 8) + b * l * l * (10 * P * P + 5 * P + 4), 1e-13 * M(0, 0));
-  EXPECT_NEAR(M(1, 3), -a * l * l / 4 * (7 * P * P + 14 * P + 6) + b * l * l * (5 * P * P - 5 * P - 1), 1e-13 * M(0, 0));
+  EXPECT_NEAR(M(0, 3), -a * l / 4 * (35 * P * P + 63 * P + 26) - b * l * (15 * P - 3),
+              1e-13 * M(0, 0));
+  EXPECT_NEAR(M(1, 1),
+              a * l * l / 4 * (7 * P * P + 14 * P + 8) + b * l * l * (10 * P * P + 5 * P + 4),
+              1e-13 * M(0, 0));
+  EXPECT_NEAR(M(1, 3),
+              -a * l * l / 4 * (7 * P * P + 14 * P + 6) + b * l * l * (5 * P * P - 5 * P - 1),
+              1e-13 * M(0, 0));
 }
 
 TEST(TimoshenkoElement, EulerBernoulliIsTheLimitOfStiffShear) {
@@ -113,9 +129,11 @@ TEST(TimoshenkoElement, EulerBernoulliIsTheLimitOfStiffShear) {
 
 // One conical element, clamped at its left end, is exact under a tip force and a tip moment.
 TEST(TimoshenkoElement, ConicalCantileverIsExact) {
-  struct Case { double d1, d2, b1, b2, l; };
-  for (const Case k : {Case{0.10, 0.05, 0, 0, 0.8}, Case{0.02, 0.20, 0, 0.1, 0.4}, Case{0.1, 0.1, 0.0, 0.095, 0.5},
-                       Case{0.3, 0.003, 0, 0, 0.5}}) {
+  struct Case {
+    double d1, d2, b1, b2, l;
+  };
+  for (const Case k : {Case{0.10, 0.05, 0, 0, 0.8}, Case{0.02, 0.20, 0, 0.1, 0.4},
+                       Case{0.1, 0.1, 0.0, 0.095, 0.5}, Case{0.3, 0.003, 0, 0, 0.5}}) {
     const ElementSection s = cone(k.d1, k.d2, k.b1, k.b2);
     const ShaftElementConstants c = make_shaft_constants(s, k.l);
     const Matrix<4> K = bending_stiffness(c);
@@ -151,13 +169,16 @@ TEST(TimoshenkoElement, SolidConeClosedForms) {
   EXPECT_NEAR(c.mass, s.rho * pi * l / 12 * (d1 * d1 + d1 * d2 + d2 * d2), 1e-13 * c.mass);
   const Mat2 flex = bending_stiffness(c).bottomRightCorner<2, 2>().inverse();
   EXPECT_NEAR(flex(1, 1), l / s.at(0).EI * (1 - std::pow(r, -3)) / (3 * q), 1e-12 * flex(1, 1));
-  EXPECT_NEAR(flex(0, 0), l * l * l / (3 * s.at(0).EI * r), 1e-12 * flex(0, 0));  // P l^3/(3 E I1 (d2/d1)), load at end 2
+  EXPECT_NEAR(flex(0, 0), l * l * l / (3 * s.at(0).EI * r),
+              1e-12 * flex(0, 0));  // P l^3/(3 E I1 (d2/d1)), load at end 2
 }
 
 TEST(TimoshenkoElement, PanelsDoNotMatter) {
-  // A very slight cone goes through the 16-point rule; it must agree with the cylinder's 4-point rule.
+  // A very slight cone goes through the 16-point rule; it must agree with the cylinder's 4-point
+  // rule.
   const ShaftElementConstants a = make_shaft_constants(cylinder(0.06), 0.2, 0.03, -0.02);
-  const ShaftElementConstants b = make_shaft_constants(cone(0.06, 0.06 * (1 + 1e-15)), 0.2, 0.03, -0.02);
+  const ShaftElementConstants b =
+      make_shaft_constants(cone(0.06, 0.06 * (1 + 1e-15)), 0.2, 0.03, -0.02);
   EXPECT_LT((a.M4 - b.M4).cwiseAbs().maxCoeff(), 1e-13 * a.M4.cwiseAbs().maxCoeff());
   EXPECT_LT((a.G4 - b.G4).cwiseAbs().maxCoeff(), 1e-12 * a.G4.cwiseAbs().maxCoeff());
   EXPECT_LT((a.polar - b.polar).cwiseAbs().maxCoeff(), 1e-13 * a.polar(0, 0));
@@ -172,7 +193,8 @@ TEST(TimoshenkoElement, ConicalBowingAndTwistCouplingFromShapes) {
   const ShaftElementConstants c = make_shaft_constants(s, l);
   const int n = 2000;
   std::vector<double> xi;
-  for (int i = 0; i <= n; ++i) xi.push_back(static_cast<double>(i) / n);
+  for (int i = 0; i <= n; ++i)
+    xi.push_back(static_cast<double>(i) / n);
   const auto f = shape_functions(s, l, xi);
   double b11 = 0, b12 = 0, b22 = 0, area = 0;
   for (int i = 0; i <= n; ++i) {
@@ -216,7 +238,9 @@ TEST(TimoshenkoElement, RigidInertiaIsExact) {
       const ElementSection s = cone(0.06, d2, 0.01, 0.015);
       const double l = 0.21, o1 = 0.04, o2 = -0.03;
       const ShaftElementConstants c = make_shaft_constants(s, l, o1, o2, kind);
-      const auto I = [&](auto f) { return integrate([&](double x) { return f(x, s.at(x / l)); }, 0, l); };
+      const auto I = [&](auto f) {
+        return integrate([&](double x) { return f(x, s.at(x / l)); }, 0, l);
+      };
       const double m = I([](double, const auto& p) { return p.rhoA; });
       const double S = I([](double x, const auto& p) { return p.rhoA * x; });
       const double J = I([](double x, const auto& p) { return p.rhoA * x * x + p.rhoI; });
@@ -241,7 +265,8 @@ TEST(TimoshenkoElement, RigidInertiaIsExact) {
 TEST(TimoshenkoElement, MasslessAndTorsionlessConstants) {
   ElementSection s;
   s.constants = true;
-  s.given.EI = 1000; s.given.EA = 1e6;
+  s.given.EI = 1000;
+  s.given.EA = 1e6;
   const ShaftElementConstants c = make_shaft_constants(s, 0.5);
   EXPECT_EQ(c.M4.norm(), 0.0);
   EXPECT_EQ(c.polar.norm(), 0.0);

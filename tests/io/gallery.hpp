@@ -1,4 +1,5 @@
-// One of each of the field's plots, from closed forms: what the tests check and what one can look at.
+// One of each of the field's plots, from closed forms: what the tests check and what one can look
+// at.
 #pragma once
 #include <plot/plots.hpp>
 #include <cmath>
@@ -7,7 +8,8 @@ namespace whirl::io {
 
 inline std::vector<double> grid(double a, double b, int n) {
   std::vector<double> v;
-  for (int i = 0; i < n; ++i) v.push_back(a + (b - a) * i / (n - 1));
+  for (int i = 0; i < n; ++i)
+    v.push_back(a + (b - a) * i / (n - 1));
   return v;
 }
 
@@ -16,61 +18,90 @@ inline Complex jeffcott(double r, double zeta) { return r * r / Complex(1 - r * 
 
 inline std::vector<plot::Figure> gallery() {
   std::vector<plot::Figure> all;
-  const double w1 = 480, w2 = 1350;   // criticals, rad/s
+  const double w1 = 480, w2 = 1350;  // criticals, rad/s
 
-  {   // history: run-up through a critical, 60,000 points
+  {  // history: run-up through a critical, 60,000 points
     std::vector<double> t = grid(0, 6, 60000), speed, y, z, torque;
     for (const double x : t) {
       const double omega = 200 * x, phi = 100 * x * x;
       const Complex a = 40e-6 * jeffcott(omega / w1, 0.03) * std::polar(1.0, phi);
-      speed.push_back(omega); y.push_back(a.real()); z.push_back(a.imag() - 12e-6);
+      speed.push_back(omega);
+      y.push_back(a.real());
+      z.push_back(a.imag() - 12e-6);
       torque.push_back(20 + 3 * std::sin(30 * x));
     }
-    const plot::HistoryCurve c[] = {{"y", "m", y, "displacement DE"}, {"z", "m", z, "displacement DE"}, {"spin", "rad/s", speed, "speed"}, {"torque", "N m", torque, "drive torque"}};
+    const plot::HistoryCurve c[] = {{"y", "m", y, "displacement DE"},
+                                    {"z", "m", z, "displacement DE"},
+                                    {"spin", "rad/s", speed, "speed"},
+                                    {"torque", "N m", torque, "drive torque"}};
     all.push_back(plot::plot_history("history", "Run-up: drive end", t, c));
     all.back().caption = "60,000 rows; every extreme survives the thinning.";
   }
-  {   // orbits
+  {  // orbits
     plot::Orbit a{"2400 rpm", {}, {}, {}}, b{"4600 rpm", {}, {}, {}};
     for (int k = 0; k <= 720; ++k) {
       const double p = two_pi * k / 240;
-      a.y.push_back(30e-6 * std::cos(p) + 4e-6 * std::cos(2 * p)); a.z.push_back(18e-6 * std::sin(p + 0.4));
-      b.y.push_back(62e-6 * std::cos(p + 1) + 9e-6 * std::cos(0.48 * p)); b.z.push_back(55e-6 * std::sin(p + 1.2) + 9e-6 * std::sin(0.48 * p));
-      if (k % 240 == 0) { a.keyphasor.push_back(static_cast<std::size_t>(k)); b.keyphasor.push_back(static_cast<std::size_t>(k)); }
+      a.y.push_back(30e-6 * std::cos(p) + 4e-6 * std::cos(2 * p));
+      a.z.push_back(18e-6 * std::sin(p + 0.4));
+      b.y.push_back(62e-6 * std::cos(p + 1) + 9e-6 * std::cos(0.48 * p));
+      b.z.push_back(55e-6 * std::sin(p + 1.2) + 9e-6 * std::sin(0.48 * p));
+      if (k % 240 == 0) {
+        a.keyphasor.push_back(static_cast<std::size_t>(k));
+        b.keyphasor.push_back(static_cast<std::size_t>(k));
+      }
     }
     const plot::Orbit o[] = {a, b};
     all.push_back(plot::plot_orbit("orbit", "Orbits at the drive-end bearing", o, 75e-6));
   }
-  {   // a path in the plane and in space: a slow spiral with a whirl
+  {  // a path in the plane and in space: a slow spiral with a whirl
     std::vector<double> x, y, z;
     for (const double t : grid(0, 10, 20000)) {
-      x.push_back(0.75 - 0.012 * (1 - std::cos(3 * t)) + 0.001 * t); y.push_back(0.09 * std::sin(0.9 * t) * std::cos(7 * t)); z.push_back(-0.09 + 0.06 * std::cos(7 * t) * std::cos(0.5 * t));
+      x.push_back(0.75 - 0.012 * (1 - std::cos(3 * t)) + 0.001 * t);
+      y.push_back(0.09 * std::sin(0.9 * t) * std::cos(7 * t));
+      z.push_back(-0.09 + 0.06 * std::cos(7 * t) * std::cos(0.5 * t));
     }
     const plot::Curve c[] = {{"centre of the disk", y, z}};
     all.push_back(plot::plot_path("path", "Path of the disk in the yz plane", "y", "z", c));
     all.push_back(plot::plot_path_in_space("space", "Path of the disk in space", x, y, z));
   }
-  {   // Campbell and stability
+  {  // Campbell and stability
     std::vector<plot::CampbellLine> lines;
     std::vector<plot::CriticalMark> marks;
     const auto speeds = grid(0, 1500, 61);
     int k = 1;
     for (const double w : {w1, w2}) {
-      plot::CampbellLine b{"mode " + std::to_string(k++), plot::Whirl::backward, {}, {}, {}, {}}, f{"mode " + std::to_string(k++), plot::Whirl::forward, {}, {}, {}, {}};
+      plot::CampbellLine b{"mode " + std::to_string(k++), plot::Whirl::backward, {}, {}, {}, {}},
+          f{"mode " + std::to_string(k++), plot::Whirl::forward, {}, {}, {}, {}};
       for (const double s : speeds) {
         const double g = 0.00025 * s * w / 1000 * (w / w1);
-        b.speed.push_back(s); b.frequency.push_back(w * (std::sqrt(1 + g * g) - g)); b.log_decrement.push_back(0.25 + 0.0001 * s);
-        f.speed.push_back(s); f.frequency.push_back(w * (std::sqrt(1 + g * g) + g)); f.log_decrement.push_back(0.3 - 0.00028 * s * w1 / w);
-        if (s < 250 && w < 1000) { f.whirl_at.push_back(plot::Whirl::mixed); b.whirl_at.push_back(plot::Whirl::mixed); }
-        else { f.whirl_at.push_back(plot::Whirl::forward); b.whirl_at.push_back(plot::Whirl::backward); }
+        b.speed.push_back(s);
+        b.frequency.push_back(w * (std::sqrt(1 + g * g) - g));
+        b.log_decrement.push_back(0.25 + 0.0001 * s);
+        f.speed.push_back(s);
+        f.frequency.push_back(w * (std::sqrt(1 + g * g) + g));
+        f.log_decrement.push_back(0.3 - 0.00028 * s * w1 / w);
+        if (s < 250 && w < 1000) {
+          f.whirl_at.push_back(plot::Whirl::mixed);
+          b.whirl_at.push_back(plot::Whirl::mixed);
+        } else {
+          f.whirl_at.push_back(plot::Whirl::forward);
+          b.whirl_at.push_back(plot::Whirl::backward);
+        }
       }
-      lines.push_back(b); lines.push_back(f);
+      lines.push_back(b);
+      lines.push_back(f);
     }
-    plot::CampbellLine torsion{"torsion 1", plot::Whirl::none, speeds, std::vector<double>(speeds.size(), 1010.0), std::vector<double>(speeds.size(), 0.02), {}};
+    plot::CampbellLine torsion{"torsion 1",
+                               plot::Whirl::none,
+                               speeds,
+                               std::vector<double>(speeds.size(), 1010.0),
+                               std::vector<double>(speeds.size(), 0.02),
+                               {}};
     lines.push_back(torsion);
     for (const auto& l : lines)
       for (std::size_t i = 1; i < l.speed.size(); ++i)
-        if (const double a = l.frequency[i - 1] - l.speed[i - 1], b = l.frequency[i] - l.speed[i]; a > 0 && b <= 0 && l.whirl != plot::Whirl::none) {
+        if (const double a = l.frequency[i - 1] - l.speed[i - 1], b = l.frequency[i] - l.speed[i];
+            a > 0 && b <= 0 && l.whirl != plot::Whirl::none) {
           const double s = l.speed[i - 1] + (l.speed[i] - l.speed[i - 1]) * a / (a - b);
           marks.push_back({s, s, 1, ""});
         }
@@ -79,87 +110,124 @@ inline std::vector<plot::Figure> gallery() {
     const double onset[] = {0.3 / 0.00028};
     all.push_back(plot::plot_stability("stability", "Stability map", lines, onset));
   }
-  {   // Bode and polar
+  {  // Bode and polar
     std::vector<plot::ResponseCurve> curves;
-    for (const auto& [label, gain, lag] : {std::tuple{"DE 45°", 1.0, 0.0}, {"NDE 45°", 0.45, 0.35}}) {
+    for (const auto& [label, gain, lag] :
+         {std::tuple{"DE 45°", 1.0, 0.0}, {"NDE 45°", 0.45, 0.35}}) {
       plot::ResponseCurve c{label, {}, {}, {}};
       for (const double s : grid(30, 1500, 400)) {
-        const Complex a = 25e-6 * gain * (jeffcott(s / w1, 0.04) - 0.6 * jeffcott(s / w2, 0.05)) * std::polar(1.0, -lag);
-        c.speed.push_back(s); c.amplitude.push_back(std::abs(a)); c.phase_lag.push_back(-std::arg(a));
+        const Complex a = 25e-6 * gain * (jeffcott(s / w1, 0.04) - 0.6 * jeffcott(s / w2, 0.05)) *
+                          std::polar(1.0, -lag);
+        c.speed.push_back(s);
+        c.amplitude.push_back(std::abs(a));
+        c.phase_lag.push_back(-std::arg(a));
       }
       curves.push_back(c);
     }
     const plot::CriticalMark marks[] = {{w1, w1, 1, ""}, {w2, w2, 1, ""}};
-    all.push_back(plot::plot_bode("bode", "Unbalance response", curves, plot::Amplitude::peak_to_peak, marks));
-    all.push_back(plot::plot_polar("polar", "Unbalance response, polar", curves, plot::Amplitude::peak_to_peak));
+    all.push_back(plot::plot_bode("bode", "Unbalance response", curves,
+                                  plot::Amplitude::peak_to_peak, marks));
+    all.push_back(plot::plot_polar("polar", "Unbalance response, polar", curves,
+                                   plot::Amplitude::peak_to_peak));
   }
-  {   // spectra
+  {  // spectra
     std::vector<plot::SpectrumTrace> traces;
     for (const double s : grid(100, 1400, 53)) {
       plot::SpectrumTrace t{s, grid(0, 2000, 400), {}};
       for (const double w : t.frequency) {
         const auto line = [&](double at, double a) { return a / (1 + std::pow((w - at) / 9, 2)); };
-        t.amplitude.push_back(line(s, 30e-6 * std::abs(jeffcott(s / w1, 0.06))) + line(2 * s, 5e-6) + (s > 950 ? line(485, 60e-6 * (s - 950) / 450) : 0) + 2e-7);
+        t.amplitude.push_back(line(s, 30e-6 * std::abs(jeffcott(s / w1, 0.06))) +
+                              line(2 * s, 5e-6) +
+                              (s > 950 ? line(485, 60e-6 * (s - 950) / 450) : 0) + 2e-7);
       }
       traces.push_back(std::move(t));
     }
     const double orders[] = {1, 2};
-    all.push_back(plot::plot_waterfall("waterfall", "Cascade of the run-up", traces, "displacement DE", "m", plot::Amplitude::zero_to_peak, orders));
-    all.push_back(plot::plot_spectrogram("spectrogram", "Spectra of the run-up", traces, "displacement DE", "m", plot::Amplitude::zero_to_peak));
+    all.push_back(plot::plot_waterfall("waterfall", "Cascade of the run-up", traces,
+                                       "displacement DE", "m", plot::Amplitude::zero_to_peak,
+                                       orders));
+    all.push_back(plot::plot_spectrogram("spectrogram", "Spectra of the run-up", traces,
+                                         "displacement DE", "m", plot::Amplitude::zero_to_peak));
   }
-  {   // critical-speed map
+  {  // critical-speed map
     std::vector<plot::Curve> modes, supports;
     for (int m = 1; m <= 4; ++m) {
       plot::Curve c{"mode " + std::to_string(m), {}, {}};
       for (const double e : grid(5, 10, 80)) {
         const double k = std::pow(10, e), limit = 450.0 * m * m;
-        c.x.push_back(k); c.y.push_back(limit / std::sqrt(1 + 3e7 * m * m / k) + (m > 2 ? 0.5 * limit : 0));
+        c.x.push_back(k);
+        c.y.push_back(limit / std::sqrt(1 + 3e7 * m * m / k) + (m > 2 ? 0.5 * limit : 0));
       }
       modes.push_back(c);
     }
     plot::Curve b{"bearing kyy", {}, {}};
-    for (const double s : grid(100, 6000, 50)) { b.x.push_back(4e7 * (1 + s / 3000)); b.y.push_back(s); }
+    for (const double s : grid(100, 6000, 50)) {
+      b.x.push_back(4e7 * (1 + s / 3000));
+      b.y.push_back(s);
+    }
     supports.push_back(b);
     all.push_back(plot::plot_critical_map("criticals", "Critical-speed map", modes, supports));
   }
-  {   // mode shape
-    plot::ModeShape m{"mode 2, forward, 76.4 Hz, log decrement 0.12", {}, {}, {}, {{"DE", 0.15}, {"impeller", 0.7}, {"NDE", 1.2}}};
+  {  // mode shape
+    plot::ModeShape m{"mode 2, forward, 76.4 Hz, log decrement 0.12",
+                      {},
+                      {},
+                      {},
+                      {{"DE", 0.15}, {"impeller", 0.7}, {"NDE", 1.2}}};
     for (const double s : grid(0, 1.4, 60)) {
       const double w = std::sin(pi * (s - 0.1) / 1.1) + 0.1;
-      m.s.push_back(s); m.y.push_back(w * Complex(1, 0.2)); m.z.push_back(w * Complex(0.15, -0.7));
+      m.s.push_back(s);
+      m.y.push_back(w * Complex(1, 0.2));
+      m.z.push_back(w * Complex(0.15, -0.7));
     }
     all.push_back(plot::plot_mode_shape("mode", "Mode shape", m));
   }
-  {   // energies
+  {  // energies
     std::vector<double> t = grid(0, 10, 4000), kinetic, potential, error;
-    for (const double x : t) { kinetic.push_back(49 + 1.2 * std::sin(5 * x) * std::sin(x)); potential.push_back(-1.2 * std::sin(5 * x) * std::sin(x)); error.push_back(2e-7 * std::sin(40 * x) * x); }
+    for (const double x : t) {
+      kinetic.push_back(49 + 1.2 * std::sin(5 * x) * std::sin(x));
+      potential.push_back(-1.2 * std::sin(5 * x) * std::sin(x));
+      error.push_back(2e-7 * std::sin(40 * x) * x);
+    }
     const plot::Curve e[] = {{"kinetic", {}, kinetic}, {"potential", {}, potential}};
     all.push_back(plot::plot_energy("energy", "Energies", t, e, error));
   }
-  {   // error against run time
+  {  // error against run time
     std::vector<plot::StudyCurve> curves;
-    for (const auto& [label, order, cost] : {std::tuple{"Radau IIA 5", 5.0, 0.02}, {"generalized-α", 2.0, 0.004}, {"Gauss 6", 6.0, 0.018}, {"IDA", 1.6, 0.3}}) {
+    for (const auto& [label, order, cost] : {std::tuple{"Radau IIA 5", 5.0, 0.02},
+                                             {"generalized-α", 2.0, 0.004},
+                                             {"Gauss 6", 6.0, 0.018},
+                                             {"IDA", 1.6, 0.3}}) {
       plot::StudyCurve c{label, {}};
       for (int k = 0; k < 7; ++k) {
         const double h = std::pow(2.0, -k);
-        c.points.push_back({cost / h, 0.02 * std::pow(h, order) + 1e-11, "step " + std::to_string(h) + " ms"});
+        c.points.push_back(
+            {cost / h, 0.02 * std::pow(h, order) + 1e-11, "step " + std::to_string(h) + " ms"});
       }
       curves.push_back(c);
     }
-    all.push_back(plot::plot_study("study", "Error against run time", curves, "error / peak", "-", 1e-4));
+    all.push_back(
+        plot::plot_study("study", "Error against run time", curves, "error / peak", "-", 1e-4));
   }
-  {   // rotor
+  {  // rotor
     plot::RotorDrawing r;
     r.title = "Overhung compressor rotor";
     double s = 0;
-    for (const auto& [name, l, a, b, bore] : {std::tuple{"thrust_end", 0.08, 0.06, 0.06, 0.0}, {"brg_de", 0.09, 0.08, 0.08, 0.0}, {"body1", 0.26, 0.11, 0.11, 0.04}, {"taper", 0.06, 0.11, 0.14, 0.04}, {"body2", 0.42, 0.14, 0.14, 0.04}, {"brg_nde", 0.09, 0.08, 0.08, 0.0}, {"overhang", 0.14, 0.07, 0.07, 0.0}}) {
+    for (const auto& [name, l, a, b, bore] : {std::tuple{"thrust_end", 0.08, 0.06, 0.06, 0.0},
+                                              {"brg_de", 0.09, 0.08, 0.08, 0.0},
+                                              {"body1", 0.26, 0.11, 0.11, 0.04},
+                                              {"taper", 0.06, 0.11, 0.14, 0.04},
+                                              {"body2", 0.42, 0.14, 0.14, 0.04},
+                                              {"brg_nde", 0.09, 0.08, 0.08, 0.0},
+                                              {"overhang", 0.14, 0.07, 0.07, 0.0}}) {
       r.sections.push_back({s, s + l, a / 2, b / 2, bore / 2, bore / 2, name});
       s += l;
     }
     r.disks = {{1.14, 0.21, 0.035, 0.07, "impeller"}, {0.7, 0.13, 0.07, 0.055, "balance piston"}};
     r.bearings = {{0.125, 0.04, "DE"}, {0.955, 0.04, "NDE"}};
     r.probes = {{0.17, 0.04, "DE-XY"}, {1.0, 0.04, "NDE-XY"}};
-    for (const double x : grid(0, 1.14, 20)) r.nodes.push_back(x);
+    for (const double x : grid(0, 1.14, 20))
+      r.nodes.push_back(x);
     all.push_back(plot::plot_rotor("rotor", r));
   }
   return all;

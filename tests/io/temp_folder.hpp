@@ -12,7 +12,8 @@ class TempFolder {
   TempFolder() {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
     path_ = std::filesystem::temp_directory_path() /
-            ("whirl_" + std::string(info->test_suite_name()) + "_" + info->name() + "_" + std::to_string(::getpid()));
+            ("whirl_" + std::string(info->test_suite_name()) + "_" + info->name() + "_" +
+             std::to_string(::getpid()));
     std::filesystem::create_directories(path_);
   }
   ~TempFolder() {
@@ -28,7 +29,8 @@ class TempFolder {
 
 inline std::size_t file_count(const std::filesystem::path& p) {
   std::size_t n = 0;
-  for (const auto& f : std::filesystem::directory_iterator(p)) n += f.is_regular_file() ? 1 : 0;
+  for (const auto& f : std::filesystem::directory_iterator(p))
+    n += f.is_regular_file() ? 1 : 0;
   return n;
 }
 

@@ -1,4 +1,5 @@
-// Frames for ParaView: times, sets, caps, continuation; read back by VTK itself where its Python module is there.
+// Frames for ParaView: times, sets, caps, continuation; read back by VTK itself where its Python
+// module is there.
 #include "temp_folder.hpp"
 #include <core/error.hpp>
 #include <core/plugin.hpp>
@@ -17,16 +18,21 @@ namespace fs = std::filesystem;
 // A shaft of three nodes with a disk in the middle, two bearings, one trail.
 Scene small_rotor() {
   Scene s;
-  for (int k = 0; k < 3; ++k) { s.nodes.emplace_back(0.5 * k, 0, 0); s.node_line.push_back(0); }
+  for (int k = 0; k < 3; ++k) {
+    s.nodes.emplace_back(0.5 * k, 0, 0);
+    s.node_line.push_back(0);
+  }
   Scene::Line line;
   line.name = "shaft";
   line.points = {{0, 0}, {1, 0}, {2, 0}};
   line.radius = {0.03, 0.03, 0.03};
-  line.pieces = {{{0, 0}, {1, 0}, 0.03, 0.03, 0.01, 0.01}, {{1, 0}, {2, 0}, 0.03, 0.03, 0.01, 0.01}};
+  line.pieces = {{{0, 0}, {1, 0}, 0.03, 0.03, 0.01, 0.01},
+                 {{1, 0}, {2, 0}, 0.03, 0.03, 0.01, 0.01}};
   line.disks = {{"disk", {1, 0}, 0.2, 0.03, 0.05}};
   s.lines = {line};
   using Kind = meshes::SupportShape::Kind;
-  s.supports = {{"DE", Kind::bearing, {0, 0}, false, {}, 0.03}, {"NDE", Kind::spring, {2, 0}, false, {}, 0.03}};
+  s.supports = {{"DE", Kind::bearing, {0, 0}, false, {}, 0.03},
+                {"NDE", Kind::spring, {2, 0}, false, {}, 0.03}};
   s.trails = {{"mid", {1, 0}}};
   return s;
 }
@@ -42,7 +48,10 @@ std::vector<Pose> poses_at(const Scene& s, double t) {
   return p;
 }
 
-struct Listed { double time; std::string file; };
+struct Listed {
+  double time;
+  std::string file;
+};
 std::vector<Listed> read_pvd(const fs::path& p) {
   std::vector<Listed> out;
   std::ifstream in(p);
@@ -64,7 +73,11 @@ class Frames : public ::testing::Test {
     const std::vector<Vec3> v(3, Vec3(0, 1, 2)), f(2, Vec3(0, 0, 500));
     FrameState s;
     const double stress[] = {1e6, 3e6, 1e6};
-    s.time = t; s.nodes = p; s.velocity = v; s.support_force = f; s.stress = stress;
+    s.time = t;
+    s.nodes = p;
+    s.velocity = v;
+    s.support_force = f;
+    s.stress = stress;
     w.frame(s);
   }
   TempFolder dir_;
@@ -79,17 +92,20 @@ TEST_F(Frames, VtkReadsWhatIsWritten) {
   o.deformation_scale = 10;
   auto w = make_vtk_frames(o);
   w->begin(scene);
-  for (int k = 0; k < 5; ++k) write(*w, scene, 0.1 * k);
+  for (int k = 0; k < 5; ++k)
+    write(*w, scene, 0.1 * k);
   w->end();
   EXPECT_EQ(w->frames(), 5u);
   for (const char* set : {"line", "surface", "bearings", "orbits"}) {
     const auto list = read_pvd(dir_ / (std::string("run_up_") + set + ".pvd"));
     ASSERT_EQ(list.size(), 5u) << set;
-    for (int k = 0; k < 5; ++k) EXPECT_EQ(list[static_cast<std::size_t>(k)].time, 0.1 * k);
+    for (int k = 0; k < 5; ++k)
+      EXPECT_EQ(list[static_cast<std::size_t>(k)].time, 0.1 * k);
     EXPECT_TRUE(fs::exists(dir_ / list[4].file));
     EXPECT_EQ(list[4].file, std::string("run_up_") + set + "/frame_000004.vtp");
   }
-  if (std::system("/usr/bin/python3 -c 'import vtkmodules.vtkIOXML' 2>/dev/null") != 0) GTEST_SKIP() << "no python3-vtk9";
+  if (std::system("/usr/bin/python3 -c 'import vtkmodules.vtkIOXML' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no python3-vtk9";
   EXPECT_EQ(std::system(("/usr/bin/python3 read_frames.py " + dir_.path().string()).c_str()), 0);
 }
 
@@ -137,7 +153,8 @@ TEST_F(Frames, ContinuedRunKeepsEarlierFramesAndDropsLaterOnes) {
   o.surface = false;
   auto w = make_vtk_frames(o);
   w->begin(scene);
-  for (int k = 0; k < 10; ++k) write(*w, scene, k);
+  for (int k = 0; k < 10; ++k)
+    write(*w, scene, k);
   o.keep_until = 5.5;
   w = make_vtk_frames(o);
   w->begin(scene);
@@ -183,16 +200,21 @@ TEST_F(Frames, ModesHavePhasesOfOnePeriod) {
   write_harmonic(*w, scene, mode, 0.05);
   EXPECT_EQ(read_pvd(dir_ / "modes/mode_01_surface.pvd").size(), 24u);
   // Re(u exp(i theta)) of (1, -i) is (cos, sin): forward.
-  std::vector<Pose> rest{{scene.nodes[0], Vec3::UnitX(), 0}, {scene.nodes[1], Vec3::UnitX(), 0}, {scene.nodes[2], Vec3::UnitX(), 0}}, now;
+  std::vector<Pose> rest{{scene.nodes[0], Vec3::UnitX(), 0},
+                         {scene.nodes[1], Vec3::UnitX(), 0},
+                         {scene.nodes[2], Vec3::UnitX(), 0}},
+      now;
   pose_of_phase(rest, mode, 0.05, pi / 2, now);
   EXPECT_LT((now[1].r - Vec3(0.5, 0, 0.05)).norm(), 1e-15);
 }
 
 TEST_F(Frames, VtkIsLoadedOnlyWhenAsked) {
-  ::testing::FLAGS_gtest_death_test_style = "threadsafe";   // a fresh process
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // a fresh process
   EXPECT_EXIT(
       {
-        const auto mapped = [] { return read_text("/proc/self/maps").find("libvtk") != std::string::npos; };
+        const auto mapped = [] {
+          return read_text("/proc/self/maps").find("libvtk") != std::string::npos;
+        };
         const bool before = mapped();
         auto w = make_vtk_frames({});
         ::_exit(!before && mapped() ? 0 : 1);
@@ -212,7 +234,8 @@ TEST(FrameSchedule, TimesAreExactAndEndAtTheWindow) {
   EXPECT_EQ(s.planned(), 501u);
   EXPECT_EQ(s.stretch(), 1.0);
   std::vector<double> t;
-  for (; s.next_time() < infinity; s.advance()) t.push_back(s.next_time());
+  for (; s.next_time() < infinity; s.advance())
+    t.push_back(s.next_time());
   ASSERT_EQ(t.size(), 501u);
   EXPECT_EQ(t.front(), 4.0);
   EXPECT_EQ(t[300], 4.0 + 300 * 0.001);
@@ -226,7 +249,8 @@ TEST(FrameSchedule, CapStretchesTheIntervalOverTheWholeWindow) {
   EXPECT_GT(s.stretch(), 2000);
   double last = 0;
   int n = 0;
-  for (; s.next_time() < infinity; s.advance(), ++n) last = s.next_time();
+  for (; s.next_time() < infinity; s.advance(), ++n)
+    last = s.next_time();
   EXPECT_EQ(n, 5000);
   EXPECT_NEAR(last, 12, 1e-9);
 }
@@ -234,7 +258,8 @@ TEST(FrameSchedule, CapStretchesTheIntervalOverTheWholeWindow) {
 TEST(FrameSchedule, DefaultCountOverTheWindowAndEmptyWindow) {
   FrameSchedule s({.frames = 3}, 1, 2);
   std::vector<double> t;
-  for (; s.next_time() < infinity; s.advance()) t.push_back(s.next_time());
+  for (; s.next_time() < infinity; s.advance())
+    t.push_back(s.next_time());
   EXPECT_EQ(t, (std::vector<double>{1, 1.5, 2}));
   FrameSchedule outside({.t0 = 20, .t1 = 30}, 0, 12);
   EXPECT_EQ(outside.next_time(), infinity);
@@ -248,7 +273,7 @@ TEST(FrameSchedule, ByRevolutionInBothDirections) {
   double phi = 0;
   for (int k = 1; k <= 100000; ++k) {
     phi = s.next_angle(phi);
-    ASSERT_NEAR(phi, k * step, 1e-10);   // a multiple, not a sum
+    ASSERT_NEAR(phi, k * step, 1e-10);  // a multiple, not a sum
   }
   EXPECT_NEAR(s.next_angle(-0.5 * step, -1), -step, 1e-12);
   EXPECT_NEAR(s.next_angle(-step, -1), -2 * step, 1e-12);

@@ -1,4 +1,5 @@
-// Figures: thinning keeps extremes, ticks are where a reader expects them, SVG is well-formed, axes name their units.
+// Figures: thinning keeps extremes, ticks are where a reader expects them, SVG is well-formed, axes
+// name their units.
 #include "gallery.hpp"
 #include "temp_folder.hpp"
 #include "xml_check.hpp"
@@ -20,15 +21,26 @@ TEST(Decimate, EveryColumnKeepsItsLowestAndHighestPoint) {
   std::mt19937 rng(7);
   std::normal_distribution<double> noise;
   std::vector<double> x, y;
-  for (int i = 0; i < 1000000; ++i) { x.push_back(i * 1e-5); y.push_back(noise(rng) * (i == 123456 ? 1000 : 1)); }
+  for (int i = 0; i < 1000000; ++i) {
+    x.push_back(i * 1e-5);
+    y.push_back(noise(rng) * (i == 123456 ? 1000 : 1));
+  }
   constexpr std::size_t columns = 700;
   const auto keep = plot::decimate_columns(x, y, 0, 10, columns);
   EXPECT_LE(keep.size(), 4 * columns);
   EXPECT_TRUE(std::is_sorted(keep.begin(), keep.end()));
   std::vector<double> lo(columns, 1e9), hi(columns, -1e9), klo = lo, khi = hi;
-  const auto column = [&](double v) { return std::min(columns - 1, static_cast<std::size_t>(v * columns / 10)); };
-  for (std::size_t i = 0; i < x.size(); ++i) { lo[column(x[i])] = std::min(lo[column(x[i])], y[i]); hi[column(x[i])] = std::max(hi[column(x[i])], y[i]); }
-  for (const auto i : keep) { klo[column(x[i])] = std::min(klo[column(x[i])], y[i]); khi[column(x[i])] = std::max(khi[column(x[i])], y[i]); }
+  const auto column = [&](double v) {
+    return std::min(columns - 1, static_cast<std::size_t>(v * columns / 10));
+  };
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    lo[column(x[i])] = std::min(lo[column(x[i])], y[i]);
+    hi[column(x[i])] = std::max(hi[column(x[i])], y[i]);
+  }
+  for (const auto i : keep) {
+    klo[column(x[i])] = std::min(klo[column(x[i])], y[i]);
+    khi[column(x[i])] = std::max(khi[column(x[i])], y[i]);
+  }
   EXPECT_EQ(lo, klo);
   EXPECT_EQ(hi, khi);
   EXPECT_EQ(keep.front(), 0u);
@@ -37,8 +49,10 @@ TEST(Decimate, EveryColumnKeepsItsLowestAndHighestPoint) {
 
 TEST(Decimate, GapsStayGaps) {
   std::vector<double> x(1000), y(1000, 1.0);
-  for (std::size_t i = 0; i < 1000; ++i) x[i] = static_cast<double>(i);
-  for (std::size_t i = 400; i < 500; ++i) y[i] = nan;
+  for (std::size_t i = 0; i < 1000; ++i)
+    x[i] = static_cast<double>(i);
+  for (std::size_t i = 400; i < 500; ++i)
+    y[i] = nan;
   const auto keep = plot::decimate_columns(x, y, 0, 1000, 10);
   EXPECT_EQ(std::count_if(keep.begin(), keep.end(), [&](auto i) { return std::isnan(y[i]); }), 1);
   EXPECT_TRUE(std::find(keep.begin(), keep.end(), 399u) != keep.end());
@@ -47,12 +61,16 @@ TEST(Decimate, GapsStayGaps) {
 
 TEST(Decimate, RepeatedOrbitIsDrawnOnce) {
   std::vector<double> x, y;
-  for (int i = 0; i < 100000; ++i) { x.push_back(100 * std::cos(two_pi * i / 500)); y.push_back(100 * std::sin(two_pi * i / 500)); }
+  for (int i = 0; i < 100000; ++i) {
+    x.push_back(100 * std::cos(two_pi * i / 500));
+    y.push_back(100 * std::sin(two_pi * i / 500));
+  }
   std::size_t points = 0;
   double far = 0;
   for (const auto& run : plot::decimate_path(x, y)) {
     points += run.size();
-    for (const auto i : run) far = std::max(far, x[i]);
+    for (const auto i : run)
+      far = std::max(far, x[i]);
   }
   EXPECT_LT(points, 600u);
   EXPECT_EQ(far, 100.0);
@@ -65,7 +83,10 @@ TEST(plot::Envelope, BoundedMemoryExactExtremes) {
   double lo = 0, hi = 0, t_hi = 0;
   for (int i = 0; i < 1000000; ++i) {
     const double v = noise(rng);
-    if (v > hi) { hi = v; t_hi = i; }
+    if (v > hi) {
+      hi = v;
+      t_hi = i;
+    }
     lo = std::min(lo, v);
     e.add(i, v);
   }
@@ -85,7 +106,8 @@ TEST(Collector, KeepsEnvelopeAndLastRowsInWrittenUnits) {
   const Channel channels[] = {{"time", "s", "", {}, 1, ""}, {"speed", "rpm", "", {}, 10, ""}};
   Collector c(64, 5);
   c.begin(channels);
-  for (int i = 0; i < 1000; ++i) c.append(std::array{0.1 * i, static_cast<double>(i)});
+  for (int i = 0; i < 1000; ++i)
+    c.append(std::array{0.1 * i, static_cast<double>(i)});
   std::vector<double> x, y;
   c.curve(1, x, y);
   EXPECT_EQ(y.back(), 9990);
@@ -105,13 +127,14 @@ TEST(plot::Ticks, RoundNumbersInsideTheRange) {
   EXPECT_EQ(b.labels.front(), "−2");
   EXPECT_EQ(b.labels[b.labels.size() / 2], "0");
   const plot::Ticks c = plot::linear_ticks(49.9931, 50.0012, 4);
-  EXPECT_EQ(c.labels.front(), "49.9950");   // steps of 0.0025
+  EXPECT_EQ(c.labels.front(), "49.9950");  // steps of 0.0025
   for (const double span : {1e-300, 1e-9, 1.0, 7.3, 1e9, 1e300})
     for (const double at : {0.0, 1.0, -3.0}) {
       const plot::Ticks t = plot::linear_ticks(at * span, (at + 1) * span, 6);
       EXPECT_GE(t.major.size(), 3u) << span;
       EXPECT_LE(t.major.size(), 13u) << span;
-      for (const double v : t.major) EXPECT_TRUE(v >= (at - 1e-6) * span && v <= (at + 1 + 1e-6) * span);
+      for (const double v : t.major)
+        EXPECT_TRUE(v >= (at - 1e-6) * span && v <= (at + 1 + 1e-6) * span);
     }
 }
 
@@ -119,8 +142,10 @@ TEST(plot::Ticks, DecadesAndTheirFractions) {
   const plot::Ticks a = plot::log_ticks(2e-8, 3, 5);
   EXPECT_EQ(a.labels.size(), a.major.size());
   EXPECT_LE(a.major.size(), 6u);
-  for (const double v : a.major) EXPECT_NEAR(std::log10(v), std::round(std::log10(v)), 1e-9);
-  EXPECT_EQ(plot::log_ticks(1, 100, 6).labels, (std::vector<std::string>{"1", "2", "5", "10", "20", "50", "100"}));
+  for (const double v : a.major)
+    EXPECT_NEAR(std::log10(v), std::round(std::log10(v)), 1e-9);
+  EXPECT_EQ(plot::log_ticks(1, 100, 6).labels,
+            (std::vector<std::string>{"1", "2", "5", "10", "20", "50", "100"}));
 }
 
 TEST(Text, EscapesAndRepairs) {
@@ -140,9 +165,12 @@ TEST(Palette, MapGrowsLighterInEqualSteps) {
   double last = -1;
   for (const auto& c : plot::color_map()) {
     // Relative luminance, sRGB.
-    const auto lin = [](unsigned char v) { const double x = v / 255.0; return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); };
+    const auto lin = [](unsigned char v) {
+      const double x = v / 255.0;
+      return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+    };
     const double y = 0.2126 * lin(c.r) + 0.7152 * lin(c.g) + 0.0722 * lin(c.b);
-    EXPECT_GT(y, last - 2e-3);   // one step of 8-bit rounding
+    EXPECT_GT(y, last - 2e-3);  // one step of 8-bit rounding
     last = std::max(last, y);
   }
   EXPECT_GT(last, 0.8);
@@ -150,16 +178,21 @@ TEST(Palette, MapGrowsLighterInEqualSteps) {
 
 TEST(Png, CellsStandInTheFileAsTheyAre) {
   std::vector<std::uint8_t> cells(70000);
-  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = static_cast<std::uint8_t>(i * 31);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    cells[i] = static_cast<std::uint8_t>(i * 31);
   const std::string png = plot::make_png(700, 100, cells, plot::color_map());
   EXPECT_EQ(png.substr(1, 3), "PNG");
-  EXPECT_NE(png.find(std::string("\0", 1) + std::string(cells.begin() + 700, cells.begin() + 1400)), std::string::npos);
-  EXPECT_NE(png.find("IEND\xae\x42\x60\x82"), std::string::npos);   // the one checksum everybody knows
+  EXPECT_NE(png.find(std::string("\0", 1) + std::string(cells.begin() + 700, cells.begin() + 1400)),
+            std::string::npos);
+  EXPECT_NE(png.find("IEND\xae\x42\x60\x82"),
+            std::string::npos);  // the one checksum everybody knows
 }
 
 TEST(XmlCheck, FindsFaults) {
   EXPECT_EQ(xml_fault("<a b=\"1\"><c/>x &amp; y</a>"), "");
-  for (const char* bad : {"<a><b></a></b>", "<a b=1/>", "<a>&nbsp;</a>", "<a/><b/>", "<a", "x", "<a b=\"<\"/>", "<a b=\"1\" b=\"2\"/>"}) EXPECT_NE(xml_fault(bad), "") << bad;
+  for (const char* bad : {"<a><b></a></b>", "<a b=1/>", "<a>&nbsp;</a>", "<a/><b/>", "<a", "x",
+                          "<a b=\"<\"/>", "<a b=\"1\" b=\"2\"/>"})
+    EXPECT_NE(xml_fault(bad), "") << bad;
 }
 
 class Gallery : public ::testing::TestWithParam<std::size_t> {
@@ -169,7 +202,8 @@ class Gallery : public ::testing::TestWithParam<std::size_t> {
     return f;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Plots, Gallery, ::testing::Range<std::size_t>(0, 15), [](const auto& i) { return gallery()[i.param].name; });
+INSTANTIATE_TEST_SUITE_P(Plots, Gallery, ::testing::Range<std::size_t>(0, 15),
+                         [](const auto& i) { return gallery()[i.param].name; });
 
 TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
   ASSERT_EQ(figures().size(), 15u);
@@ -183,7 +217,8 @@ TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
     EXPECT_LT(svg.size(), 500000u);
     // No reference to the outside but the name of the SVG namespace.
     std::size_t urls = 0;
-    for (std::size_t at = svg.find("http"); at != std::string::npos; at = svg.find("http", at + 1)) ++urls;
+    for (std::size_t at = svg.find("http"); at != std::string::npos; at = svg.find("http", at + 1))
+      ++urls;
     EXPECT_EQ(urls, standalone ? 1u : 0u);
   }
   for (const auto& a : f.axes) {
@@ -194,7 +229,8 @@ TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
   // Ids are unique: several figures share a page.
   const std::string svg = plot::render_svg(f);
   std::set<std::string> ids;
-  for (std::size_t at = svg.find(" id=\""); at != std::string::npos; at = svg.find(" id=\"", at + 1)) {
+  for (std::size_t at = svg.find(" id=\""); at != std::string::npos;
+       at = svg.find(" id=\"", at + 1)) {
     const auto id = svg.substr(at + 5, svg.find('"', at + 5) - at - 5);
     EXPECT_TRUE(ids.insert(id).second) << id;
     EXPECT_EQ(id.find(f.name), 0u);
@@ -205,10 +241,15 @@ TEST(Svg, OneMillionPointsMakeASmallFileWithThePeakInIt) {
   plot::Figure f;
   f.name = "long";
   plot::Axes a;
-  a.x = plot::Axis("time", "s"); a.y = plot::Axis("displacement", "µm");
-  a.y.min = 0; a.y.max = 100;
+  a.x = plot::Axis("time", "s");
+  a.y = plot::Axis("displacement", "µm");
+  a.y.min = 0;
+  a.y.max = 100;
   plot::Series s;
-  for (int i = 0; i < 1000000; ++i) { s.x.push_back(1e-3 * i); s.y.push_back(40 + 10 * std::sin(i * 0.7) + (i == 654321 ? 50 : 0)); }
+  for (int i = 0; i < 1000000; ++i) {
+    s.x.push_back(1e-3 * i);
+    s.y.push_back(40 + 10 * std::sin(i * 0.7) + (i == 654321 ? 50 : 0));
+  }
   a.series.push_back(s);
   f.axes.push_back(a);
   const std::string svg = plot::render_svg(f);
@@ -222,12 +263,15 @@ TEST(Svg, OneMillionPointsMakeASmallFileWithThePeakInIt) {
   double highest = 1e9, x = 0, y = 0, at_x = 0;
   const char* p = d.c_str();
   for (int n = 0; std::sscanf(p, "%lf %lf%n", &x, &y, &n) == 2; p += *p == '"' ? 0 : 1) {
-    if (y < highest) { highest = y; at_x = x; }
+    if (y < highest) {
+      highest = y;
+      at_x = x;
+    }
     p += n;
     if (*p == '"') break;
   }
   const double peak = 40 + 10 * std::sin(654321 * 0.7) + 50;
-  EXPECT_NEAR(highest, by + bh * (1 - peak / 100), 0.006);   // two decimals of a px
+  EXPECT_NEAR(highest, by + bh * (1 - peak / 100), 0.006);  // two decimals of a px
   EXPECT_NEAR(at_x, bx + bw * 654.321 / 999.999, 0.006);
 }
 
@@ -236,14 +280,21 @@ TEST(Svg, EmptyConstantAndBrokenDataAreDrawn) {
     plot::Figure f;
     f.name = "odd";
     plot::Axes a;
-    a.x = plot::Axis("x", "-", log); a.y = plot::Axis("y", "-", log);
+    a.x = plot::Axis("x", "-", log);
+    a.y = plot::Axis("y", "-", log);
     f.axes.push_back(a);
     EXPECT_EQ(xml_fault(plot::render_svg(f)), "");
-    for (const auto& y : {std::vector<double>{3, 3, 3}, {nan, nan, nan}, {1, nan, 2}, {0, 0, 0}, {-1, 1e300, 2}, {infinity, 1, 2}}) {
+    for (const auto& y : {std::vector<double>{3, 3, 3},
+                          {nan, nan, nan},
+                          {1, nan, 2},
+                          {0, 0, 0},
+                          {-1, 1e300, 2},
+                          {infinity, 1, 2}}) {
       f.axes[0].series.clear();
       plot::Series s;
       s.label = "<&\">";
-      s.x = {1, 2, 3}; s.y = y;
+      s.x = {1, 2, 3};
+      s.y = y;
       s.style.marker = plot::Marker::circle;
       f.axes[0].series.push_back(s);
       const std::string svg = plot::render_svg(f);
@@ -282,7 +333,8 @@ TEST(Units, SuitTheSize) {
 }
 
 TEST(Pareto, FrontIsTheLowerLeftStaircase) {
-  const plot::StudyCurve c[] = {{"a", {{1, 1e-2, ""}, {2, 1e-3, ""}, {8, 5e-3, ""}}}, {"b", {{4, 1e-6, ""}, {3, 1e-2, ""}}}};
+  const plot::StudyCurve c[] = {{"a", {{1, 1e-2, ""}, {2, 1e-3, ""}, {8, 5e-3, ""}}},
+                                {"b", {{4, 1e-6, ""}, {3, 1e-2, ""}}}};
   const plot::Figure f = plot::plot_study("s", "s", c, "error", "-");
   const auto& front = f.axes[0].series.back();
   EXPECT_EQ(front.label, "Pareto front");

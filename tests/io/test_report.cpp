@@ -25,7 +25,8 @@ Report sample() {
   a.tables.push_back(t);
   ReportSection b{"Step 'two'", "", {}, {}, {}};
   int k = 0;
-  for (auto& f : gallery()) (k++ % 2 ? a : b).figures.push_back(f);
+  for (auto& f : gallery())
+    (k++ % 2 ? a : b).figures.push_back(f);
   r.sections = {a, b};
   r.deck = "title = \"<x>\"\n";
   r.summary["steps"]["accepted"] = 12;
@@ -40,7 +41,8 @@ TEST(Report, IsSelfContained) {
   EXPECT_EQ(html.find("<link"), std::string::npos);
   EXPECT_EQ(html.find(" src="), std::string::npos);
   EXPECT_EQ(html.find("@import"), std::string::npos);
-  for (std::size_t at = html.find("href=\""); at != std::string::npos; at = html.find("href=\"", at + 1)) {
+  for (std::size_t at = html.find("href=\""); at != std::string::npos;
+       at = html.find("href=\"", at + 1)) {
     const auto target = html.substr(at + 6, 5);
     EXPECT_TRUE(target[0] == '#' || target == "data:" || target == "one.c") << target;
   }
@@ -54,15 +56,18 @@ TEST(Report, ScriptAndStyleAreTheFilesOfTheSource) {
 TEST(Report, HoldsEverythingInOrderAndEscaped) {
   const std::string html = render_report(sample());
   std::size_t last = 0;
-  for (const char* part : {"<title>Test &lt;rotor&gt; &amp; more</title>", "run time", "look &amp; see", "Step 'one'</h2>", "First paragraph.</p>", "<p>Second.", "12.3457", "one.csv",
-                           "Step 'two'</h2>", "accepted", "torsion", "title = &quot;&lt;x&gt;&quot;", "<script>"}) {
+  for (const char* part :
+       {"<title>Test &lt;rotor&gt; &amp; more</title>", "run time", "look &amp; see",
+        "Step 'one'</h2>", "First paragraph.</p>", "<p>Second.", "12.3457", "one.csv",
+        "Step 'two'</h2>", "accepted", "torsion", "title = &quot;&lt;x&gt;&quot;", "<script>"}) {
     const auto at = html.find(part, last);
     ASSERT_NE(at, std::string::npos) << part;
     last = at;
   }
   // Every figure's SVG is well-formed on its own.
   std::size_t figures = 0;
-  for (std::size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1), ++figures)
+  for (std::size_t at = html.find("<svg"); at != std::string::npos;
+       at = html.find("<svg", at + 1), ++figures)
     EXPECT_EQ(xml_fault(html.substr(at, html.find("</svg>", at) + 6 - at)), "");
   EXPECT_EQ(figures, gallery().size());
 }
@@ -74,10 +79,12 @@ TEST(Report, SameFigureInTwoStepsGetsTwoIds) {
   const std::string html = render_report(r);
   std::set<std::string> ids;
   std::size_t figures = 0;
-  for (std::size_t at = html.find(" id=\""); at != std::string::npos; at = html.find(" id=\"", at + 1)) {
+  for (std::size_t at = html.find(" id=\""); at != std::string::npos;
+       at = html.find(" id=\"", at + 1)) {
     const auto id = html.substr(at + 5, html.find('"', at + 5) - at - 5);
     EXPECT_TRUE(ids.insert(id).second) << id;
-    figures += html.compare(at - 6, 6, "figure") == 0 || html.compare(at - 7, 7, "figure\"") == 0 ? 1 : 0;
+    figures +=
+        html.compare(at - 6, 6, "figure") == 0 || html.compare(at - 7, 7, "figure\"") == 0 ? 1 : 0;
   }
   EXPECT_EQ(figures, 2u);
 }
@@ -91,21 +98,26 @@ TEST(Report, OneSectionAndNothingElse) {
   EXPECT_EQ(html.find("<details"), std::string::npos);
 }
 
-// In a real browser, where there is one: no script error, the readout shows the values that were plotted, the wheel zooms,
-// the legend hides a curve, dragging turns a figure in space, double click brings everything back.
+// In a real browser, where there is one: no script error, the readout shows the values that were
+// plotted, the wheel zooms, the legend hides a curve, dragging turns a figure in space, double
+// click brings everything back.
 TEST(Report, LivesInABrowser) {
   if (std::system("chromium --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no chromium";
   TempFolder dir;
   std::string html = render_report(sample());
-  html.insert(html.find("<style>"), "<script>window.faults=[];window.onerror=(m)=>{faults.push(m)};</script>");
+  html.insert(html.find("<style>"),
+              "<script>window.faults=[];window.onerror=(m)=>{faults.push(m)};</script>");
   html.insert(html.find("</body>"), "<script>" + read_text("report_probe.js") + "</script>");
   write_atomic(dir / "report.html", html);
-  const std::string run = "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
-                          "--disable-component-update --disable-sync --window-size=1300,1000 --user-data-dir=" + (dir / "profile").string() +
-                          " --dump-dom file://" + (dir / "report.html").string() + " > " + (dir / "dom.html").string() + " 2>/dev/null";
+  const std::string run =
+      "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
+      "--disable-background-networking "
+      "--disable-component-update --disable-sync --window-size=1300,1000 --user-data-dir=" +
+      (dir / "profile").string() + " --dump-dom file://" + (dir / "report.html").string() + " > " +
+      (dir / "dom.html").string() + " 2>/dev/null";
   ASSERT_EQ(std::system(run.c_str()), 0);
   const std::string dom = read_text(dir / "dom.html");
-  const auto at = dom.rfind("<pre id=\"probe\">");   // the script itself names it too
+  const auto at = dom.rfind("<pre id=\"probe\">");  // the script itself names it too
   ASSERT_NE(at, std::string::npos);
   const std::string outcome = dom.substr(at + 16, dom.find("</pre>", at) - at - 16);
   EXPECT_EQ(outcome, "ok") << outcome;

@@ -31,7 +31,8 @@ std::vector<Channel> some_channels() {
 std::array<double, 4> row_of(std::uint64_t k) {
   std::mt19937_64 rng(k);
   std::uniform_real_distribution<double> u(-1, 1);
-  return {1e-4 * static_cast<double>(k), u(rng) * 1e-6, std::ldexp(u(rng), static_cast<int>(k % 2000) - 1000), 1000 * u(rng)};
+  return {1e-4 * static_cast<double>(k), u(rng) * 1e-6,
+          std::ldexp(u(rng), static_cast<int>(k % 2000) - 1000), 1000 * u(rng)};
 }
 
 TEST(ResultsFolder, HalfWrittenFilesOfKilledRunsGo) {
@@ -42,9 +43,13 @@ TEST(ResultsFolder, HalfWrittenFilesOfKilledRunsGo) {
   const auto make = [&](const std::string& name) { std::ofstream(dir / name) << "x"; };
   fs::create_directory(dir / "vtk");
   const std::string gone = "." + std::string("run.csv.") + std::to_string(dead) + ".3.part";
-  make(gone); make("vtk/" + gone);
+  make(gone);
+  make("vtk/" + gone);
   const std::string living = ".run.csv." + std::to_string(::getppid()) + ".0.part";
-  for (const std::string& name : {living, std::string("run.csv"), std::string(".hidden"), std::string(".a.part"), std::string(".part"), "a.csv." + std::to_string(dead) + ".3.part"}) make(name);
+  for (const std::string& name :
+       {living, std::string("run.csv"), std::string(".hidden"), std::string(".a.part"),
+        std::string(".part"), "a.csv." + std::to_string(dead) + ".3.part"})
+    make(name);
   const ResultsFolder folder(dir.path());
   EXPECT_FALSE(fs::exists(dir / gone));
   EXPECT_FALSE(fs::exists(dir / ("vtk/" + gone)));
@@ -57,8 +62,10 @@ TEST(Csv, EveryDoubleComesBackBitForBit) {
   auto series = make_csv_series(dir / "a.csv");
   series->begin(channels);
   constexpr std::uint64_t n = 5000;
-  for (std::uint64_t k = 0; k < n; ++k) series->append(row_of(k));
-  const double extreme[] = {std::numeric_limits<double>::denorm_min(), -std::numeric_limits<double>::max(), -0.0, 1e308};
+  for (std::uint64_t k = 0; k < n; ++k)
+    series->append(row_of(k));
+  const double extreme[] = {std::numeric_limits<double>::denorm_min(),
+                            -std::numeric_limits<double>::max(), -0.0, 1e308};
   series->append(extreme);
   series->close();
   EXPECT_EQ(series->rows(), n + 1);
@@ -69,13 +76,14 @@ TEST(Csv, EveryDoubleComesBackBitForBit) {
   ASSERT_EQ(c.rows(), n + 1);
   for (std::uint64_t k = 0; k < n; ++k) {
     const auto r = row_of(k);
-    for (std::size_t j = 0; j < 3; ++j) ASSERT_EQ(std::bit_cast<std::uint64_t>(c.values[j][k]), std::bit_cast<std::uint64_t>(r[j]));
+    for (std::size_t j = 0; j < 3; ++j)
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(c.values[j][k]), std::bit_cast<std::uint64_t>(r[j]));
     ASSERT_EQ(c.values[3][k], r[3] * channels[2].scale);
   }
   EXPECT_EQ(c.values[0][n], extreme[0]);
   EXPECT_EQ(c.values[1][n], extreme[1]);
   EXPECT_TRUE(std::signbit(c.values[2][n]));
-  EXPECT_TRUE(std::isinf(c.values[3][n]));   // 1e308 rad/s in rpm
+  EXPECT_TRUE(std::isinf(c.values[3][n]));  // 1e308 rad/s in rpm
 }
 
 TEST(Csv, NotANumberIsWrittenAndReadAsSuch) {
@@ -99,7 +107,7 @@ TEST(Csv, OldFileStaysUntilTheNewOneHasItsHeader) {
   EXPECT_EQ(text.substr(0, 9), "time [s],");
   EXPECT_EQ(text.back(), '\n');
   std::string line;
-  std::getline(old, line);   // a reader of the old file is not disturbed
+  std::getline(old, line);  // a reader of the old file is not disturbed
   EXPECT_EQ(line, "old [m]");
   EXPECT_EQ(file_count(dir.path()), 1u);
 }
@@ -136,34 +144,40 @@ TEST(Csv, FullDiskIsAnIoError) {
   EXPECT_FALSE(fs::exists(dir / "b"));
   ::setrlimit(RLIMIT_FSIZE, &before);
   ::signal(SIGXFSZ, handler);
-  EXPECT_EQ(file_count(dir.path()), 1u);   // the series, and no temporary
+  EXPECT_EQ(file_count(dir.path()), 1u);  // the series, and no temporary
 }
 
 class plot::Series : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (GetParam() == std::string("hdf5") && !hdf5_available()) GTEST_SKIP() << "built without HDF5";
+    if (GetParam() == std::string("hdf5") && !hdf5_available())
+      GTEST_SKIP() << "built without HDF5";
   }
   TimeSeriesPtr make(const fs::path& p, SeriesOptions o = {}) const {
     return GetParam() == std::string("hdf5") ? make_hdf5_series(p, o) : make_csv_series(p, o);
   }
-  Columns read(const fs::path& p) const { return GetParam() == std::string("hdf5") ? read_hdf5(p) : read_csv(p); }
+  Columns read(const fs::path& p) const {
+    return GetParam() == std::string("hdf5") ? read_hdf5(p) : read_csv(p);
+  }
   void expect_rows(const Columns& c, std::uint64_t n) const {
     ASSERT_EQ(c.rows(), n);
     for (std::uint64_t k = 0; k < n; ++k) {
       const auto r = row_of(k);
-      for (std::size_t j = 0; j < 3; ++j) ASSERT_EQ(c.values[j][k], r[j]) << "row " << k;
+      for (std::size_t j = 0; j < 3; ++j)
+        ASSERT_EQ(c.values[j][k], r[j]) << "row " << k;
     }
   }
 };
-INSTANTIATE_TEST_SUITE_P(Formats, plot::Series, ::testing::Values("csv", "hdf5"), [](const auto& i) { return std::string(i.param); });
+INSTANTIATE_TEST_SUITE_P(Formats, plot::Series, ::testing::Values("csv", "hdf5"),
+                         [](const auto& i) { return std::string(i.param); });
 
 TEST_P(plot::Series, RoundTripOverManyChunks) {
   TempFolder dir;
   auto s = make(dir / "a");
   s->begin(some_channels());
-  constexpr std::uint64_t n = 20000;   // several chunks of 4096 rows and a part
-  for (std::uint64_t k = 0; k < n; ++k) s->append(row_of(k));
+  constexpr std::uint64_t n = 20000;  // several chunks of 4096 rows and a part
+  for (std::uint64_t k = 0; k < n; ++k)
+    s->append(row_of(k));
   s->close();
   const Columns c = read(dir / "a");
   EXPECT_EQ(c.names[1], "DE-XY.y");
@@ -177,7 +191,8 @@ TEST_P(plot::Series, ReadableWhileItGrows) {
   s->begin(some_channels());
   std::uint64_t k = 0;
   for (const std::uint64_t upto : {0u, 1u, 300u, 4096u, 4097u, 9000u}) {
-    while (k < upto) s->append(row_of(k++));
+    while (k < upto)
+      s->append(row_of(k++));
     s->flush();
     expect_rows(read(dir / "a"), upto);
   }
@@ -189,12 +204,14 @@ TEST_P(plot::Series, ResumeCutsAtTheCheckpointAndContinues) {
   for (const std::uint64_t keep : {0u, 1u, 4095u, 4096u, 5000u, 8192u, 9000u}) {
     auto s = make(dir / "a");
     s->begin(channels);
-    for (std::uint64_t k = 0; k < 9000; ++k) s->append(row_of(k));
+    for (std::uint64_t k = 0; k < 9000; ++k)
+      s->append(row_of(k));
     s->close();
     s = make(dir / "a");
     s->resume(channels, keep);
     EXPECT_EQ(s->rows(), keep);
-    for (std::uint64_t k = keep; k < 13000; ++k) s->append(row_of(k));
+    for (std::uint64_t k = keep; k < 13000; ++k)
+      s->append(row_of(k));
     s->close();
     EXPECT_EQ(s->rows(), 13000u);
     expect_rows(read(dir / "a"), 13000);
@@ -206,7 +223,8 @@ TEST_P(plot::Series, ResumeRefusesOtherColumnsAndMissingRows) {
   auto channels = some_channels();
   auto s = make(dir / "a");
   s->begin(channels);
-  for (std::uint64_t k = 0; k < 10; ++k) s->append(row_of(k));
+  for (std::uint64_t k = 0; k < 10; ++k)
+    s->append(row_of(k));
   s->close();
   EXPECT_THROW(make(dir / "a")->resume(channels, 11), Error);
   channels[1].unit = "um";
@@ -214,7 +232,8 @@ TEST_P(plot::Series, ResumeRefusesOtherColumnsAndMissingRows) {
   EXPECT_THROW(make(dir / "missing")->resume(channels, 0), Error);
 }
 
-// A child writes as fast as it can and is killed; all rows it had flushed must be there, and none invented.
+// A child writes as fast as it can and is killed; all rows it had flushed must be there, and none
+// invented.
 TEST_P(plot::Series, KilledWriterLeavesAllFlushedRows) {
   TempFolder dir;
   const auto channels = some_channels();
@@ -249,7 +268,8 @@ TEST_P(plot::Series, KilledWriterLeavesAllFlushedRows) {
   // And the run can go on from its checkpoint.
   auto s = make(dir / "a");
   s->resume(channels, flushed);
-  for (std::uint64_t k = flushed; k < flushed + 3000; ++k) s->append(row_of(k));
+  for (std::uint64_t k = flushed; k < flushed + 3000; ++k)
+    s->append(row_of(k));
   s->close();
   expect_rows(read(dir / "a"), flushed + 3000);
 }
@@ -269,16 +289,19 @@ TEST(Hdf5, IsCompactAndFlushesDoNotGrowTheFile) {
     return fs::file_size(dir / name);
   };
   const auto seldom = run("seldom.h5", 1000000), often = run("often.h5", 50);
-  EXPECT_LT(seldom, 40000u * 4 * 8);             // smaller than the bare doubles
-  EXPECT_LT(often, seldom + 4 * 4096 * 8 + 8192); // at most the tail more, whatever the number of flushes
+  EXPECT_LT(seldom, 40000u * 4 * 8);  // smaller than the bare doubles
+  EXPECT_LT(often,
+            seldom + 4 * 4096 * 8 + 8192);  // at most the tail more, whatever the number of flushes
 }
 
 TEST(Hdf5, IsLoadedOnlyWhenAsked) {
   if (!hdf5_available()) GTEST_SKIP() << "built without HDF5";
-  ::testing::FLAGS_gtest_death_test_style = "threadsafe";   // a fresh process
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // a fresh process
   EXPECT_EXIT(
       {
-        const auto mapped = [] { return read_text("/proc/self/maps").find("libhdf5") != std::string::npos; };
+        const auto mapped = [] {
+          return read_text("/proc/self/maps").find("libhdf5") != std::string::npos;
+        };
         TempFolder dir;
         auto csv = make_csv_series(dir / "a.csv");
         const bool before = mapped() || Plugin::loaded("hdf5");
@@ -305,7 +328,8 @@ TEST(Tee, FeedsAllSinks) {
   sinks.push_back(make_csv_series(dir / "b.csv"));
   auto s = make_tee(std::move(sinks));
   s->begin(some_channels());
-  for (std::uint64_t k = 0; k < 3; ++k) s->append(row_of(k));
+  for (std::uint64_t k = 0; k < 3; ++k)
+    s->append(row_of(k));
   s->close();
   EXPECT_EQ(s->rows(), 3u);
   EXPECT_EQ(read_text(dir / "a.csv"), read_text(dir / "b.csv"));
@@ -320,8 +344,9 @@ TEST(Table, NumbersTextAndQuotes) {
   EXPECT_THROW(t.add({1.0}), std::logic_error);
   ResultsFolder folder(dir / "deep/er");
   folder.write_table("tables/modes.csv", t);
-  EXPECT_EQ(read_text(dir / "deep/er/tables/modes.csv"),
-            "\"mode, damped\",frequency [Hz]\n\"1st \"\"forward\"\"\",0.30000000000000004\n2nd,12\n");
+  EXPECT_EQ(
+      read_text(dir / "deep/er/tables/modes.csv"),
+      "\"mode, damped\",frequency [Hz]\n\"1st \"\"forward\"\"\",0.30000000000000004\n2nd,12\n");
   EXPECT_EQ(read_csv(dir / "deep/er/tables/modes.csv")["frequency"][0], 0.1 + 0.2);
 }
 
@@ -329,7 +354,7 @@ TEST(Json, KeepsOrderAndDigits) {
   TempFolder dir;
   Value v;
   v["zeta"] = 0.1 + 0.2;
-  v["alpha"]["steps"] = std::int64_t{9007199254740993};   // not a double
+  v["alpha"]["steps"] = std::int64_t{9007199254740993};  // not a double
   v["alpha"]["left out"].push("torsion");
   v["alpha"]["left out"].push(true);
   v["nothing"] = std::nan("");
@@ -356,7 +381,8 @@ TEST(Atomic, ReaderSeesOldOrNew) {
   const std::string a(300000, 'a'), b(200000, 'b');
   write_atomic(dir / "f", a);
   std::jthread writer([&](std::stop_token stop) {
-    for (int k = 0; !stop.stop_requested(); ++k) write_atomic(dir / "f", k % 2 ? a : b);
+    for (int k = 0; !stop.stop_requested(); ++k)
+      write_atomic(dir / "f", k % 2 ? a : b);
   });
   for (int k = 0; k < 200; ++k) {
     const std::string s = read_text(dir / "f");
@@ -364,7 +390,7 @@ TEST(Atomic, ReaderSeesOldOrNew) {
   }
   writer.request_stop();
   writer.join();
-  EXPECT_EQ(file_count(dir.path()), 1u);   // no temporary left
+  EXPECT_EQ(file_count(dir.path()), 1u);  // no temporary left
 }
 
 }  // namespace

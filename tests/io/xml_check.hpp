@@ -1,4 +1,5 @@
-// Is a text well-formed XML? Enough of the grammar for what we write: declaration, elements, attributes, text, entities.
+// Is a text well-formed XML? Enough of the grammar for what we write: declaration, elements,
+// attributes, text, entities.
 #pragma once
 #include <cctype>
 #include <string>
@@ -13,15 +14,21 @@ inline std::string xml_fault(std::string_view s) {
   std::size_t i = 0;
   bool root = false;
   const auto fault = [&](const std::string& what) {
-    return what + " at byte " + std::to_string(i) + ": " + std::string(s.substr(i > 40 ? i - 40 : 0, 80));
+    return what + " at byte " + std::to_string(i) + ": " +
+           std::string(s.substr(i > 40 ? i - 40 : 0, 80));
   };
   const auto name = [&] {
     const std::size_t a = i;
-    while (i < s.size() && (std::isalnum(static_cast<unsigned char>(s[i])) || s[i] == '-' || s[i] == '_' || s[i] == ':' || s[i] == '.')) ++i;
+    while (i < s.size() && (std::isalnum(static_cast<unsigned char>(s[i])) || s[i] == '-' ||
+                            s[i] == '_' || s[i] == ':' || s[i] == '.'))
+      ++i;
     return std::string(s.substr(a, i - a));
   };
-  const auto space = [&] { while (i < s.size() && std::isspace(static_cast<unsigned char>(s[i]))) ++i; };
-  const auto entity = [&] {   // at '&'
+  const auto space = [&] {
+    while (i < s.size() && std::isspace(static_cast<unsigned char>(s[i])))
+      ++i;
+  };
+  const auto entity = [&] {  // at '&'
     for (const std::string_view e : {"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"})
       if (s.substr(i, e.size()) == e) return true;
     return false;
@@ -31,14 +38,16 @@ inline std::string xml_fault(std::string_view s) {
     if (s[i] != '<') {
       if (open.empty()) {
         if (!std::isspace(static_cast<unsigned char>(s[i]))) return fault("text outside the root");
-      } else if (s[i] == '&' && !entity()) return fault("bare &");
+      } else if (s[i] == '&' && !entity())
+        return fault("bare &");
       ++i;
       continue;
     }
     if (s.substr(i, 2) == "</") {
       i += 2;
       const std::string n = name();
-      if (open.empty() || open.back() != n || s[i] != '>') return fault("</" + n + "> does not match");
+      if (open.empty() || open.back() != n || s[i] != '>')
+        return fault("</" + n + "> does not match");
       open.pop_back();
       ++i;
       continue;

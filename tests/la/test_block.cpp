@@ -15,7 +15,8 @@ TEST(BlockPattern, SortsMergesAndMirrorsCouplings) {
   EXPECT_EQ(p.slot(2, 0), 5);
   EXPECT_EQ(p.slot(1, 2), -1);
   EXPECT_EQ(p.slot(4, 0), -1);
-  for (Index i = 0; i < 4; ++i) EXPECT_EQ(p.diagonal(i), p.slot(i, i));
+  for (Index i = 0; i < 4; ++i)
+    EXPECT_EQ(p.diagonal(i), p.slot(i, i));
   EXPECT_FALSE(p.is_tridiagonal());
 }
 
@@ -27,7 +28,9 @@ TEST(BlockPattern, KnowsAChain) {
   EXPECT_EQ(BlockPattern(0, {}).blocks(), 0);
 }
 
-TEST(BlockPattern, RejectsUnknownNodes) { EXPECT_THROW(BlockPattern(2, {{0, 2}}), std::out_of_range); }
+TEST(BlockPattern, RejectsUnknownNodes) {
+  EXPECT_THROW(BlockPattern(2, {{0, 2}}), std::out_of_range);
+}
 
 TEST(BlockMatrix, MultipliesAsItsDenseForm) {
   std::mt19937 rng(1);
@@ -67,7 +70,8 @@ TEST(Multiply, MatchesDense) {
 }
 
 TEST(Multiply, ExactSumsSurviveCancellation) {
-  // Rows whose terms cancel to 1e-12 of their size: plain sums keep four digits, these all of them (long double as reference).
+  // Rows whose terms cancel to 1e-12 of their size: plain sums keep four digits, these all of them
+  // (long double as reference).
   std::mt19937 rng(8);
   const BlockPattern p(12, chain(12));
   MCK m = random_matrices(p, 0.0, rng);
@@ -77,7 +81,8 @@ TEST(Multiply, ExactSumsSurviveCancellation) {
     auto d = m.K.block(p.diagonal(i));
     VecX y = VecX::Zero(72);
     m.K.add_multiply(1.0, x, y);
-    for (int r = 0; r < 6; ++r) d(r, 0) -= y(6 * i + r) / x(6 * i) * (1.0 - 1e-12);
+    for (int r = 0; r < 6; ++r)
+      d(r, 0) -= y(6 * i + r) / x(6 * i) * (1.0 - 1e-12);
   }
   VecXc w(72), plain(72);
   multiply_exact(m.K, z, w);
@@ -92,7 +97,8 @@ TEST(Multiply, ExactSumsSurviveCancellation) {
     }
     worst = std::max(worst, static_cast<double>(std::abs(s - w(r).real()) / size));
     worst_plain = std::max(worst_plain, static_cast<double>(std::abs(s - plain(r).real()) / size));
-    EXPECT_NEAR(static_cast<double>(s), w(r).real(), 1e-18 * static_cast<double>(size) + 1e-15 * std::abs(w(r).real()));
+    EXPECT_NEAR(static_cast<double>(s), w(r).real(),
+                1e-18 * static_cast<double>(size) + 1e-15 * std::abs(w(r).real()));
   }
   VecX real(72);
   multiply_exact(m.K, x, real);

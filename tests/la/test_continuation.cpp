@@ -8,8 +8,9 @@ using namespace whirl::la;
 
 namespace {
 
-/// Shallow two-bar arch under a dead load P = mu: rise w0 - q, half span 1, EA = 1 (von Mises). Equilibrium
-/// mu = 2 (w0 - q) (1/sqrt(1 + (w0-q)^2) - 1/sqrt(1 + w0^2)), with a linear spring to a second unknown that hangs on it.
+/// Shallow two-bar arch under a dead load P = mu: rise w0 - q, half span 1, EA = 1 (von Mises).
+/// Equilibrium mu = 2 (w0 - q) (1/sqrt(1 + (w0-q)^2) - 1/sqrt(1 + w0^2)), with a linear spring to a
+/// second unknown that hangs on it.
 struct Arch : ContinuationProblem {
   double w0 = 0.3, hanger = 5.0;
   VecX unit = VecX::Constant(2, 0.3);
@@ -27,7 +28,10 @@ struct Arch : ContinuationProblem {
     f(1) = hanger * (q(1) - q(0)) - mu;
     return true;
   }
-  void load(const VecX&, double, VecX& f) override { f(0) = 0.0; f(1) = -1.0; }
+  void load(const VecX&, double, VecX& f) override {
+    f(0) = 0.0;
+    f(1) = -1.0;
+  }
   bool factor(const VecX& q, double) override {
     K << stiffness(q(0)) + hanger, -hanger, -hanger, hanger;
     return std::abs(K.determinant()) > 1e-13;
@@ -52,7 +56,7 @@ TEST(Continuation, FollowsSnapThroughByArcLength) {
     EXPECT_NEAR(p.mu, arch.force(x(0)), 1e-11);
     EXPECT_NEAR(arch.hanger * (x(1) - x(0)), p.mu, 1e-11);
     limits += p.limit_point;
-    if (x(0) < arch.w0) highest = std::max(highest, p.mu);   // beyond, the arch hangs and stiffens
+    if (x(0) < arch.w0) highest = std::max(highest, p.mu);  // beyond, the arch hangs and stiffens
     lowest = std::min(lowest, p.mu);
     return x(0) < 0.8;
   });
@@ -74,7 +78,8 @@ TEST(Continuation, DisplacementControlAndALastLoad) {
   o.controlled = 0;
   o.first_step = 0.07;
   Continuation c;
-  auto result = c.run(arch, q, mu, o, [&](const VecX& x, const ContinuationPoint&) { return x(0) < 0.7; });
+  auto result =
+      c.run(arch, q, mu, o, [&](const VecX& x, const ContinuationPoint&) { return x(0) < 0.7; });
   EXPECT_EQ(result.status, ContinuationStatus::stopped);
   EXPECT_NEAR(mu, arch.force(q(0)), 1e-11);
   // Load to an exact value on the first branch.

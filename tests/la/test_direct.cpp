@@ -11,27 +11,35 @@ using namespace whirl::la::test;
 
 namespace {
 
-template <class Scalar> using Vec = Eigen::Matrix<Scalar, -1, 1>;
+template <class Scalar>
+using Vec = Eigen::Matrix<Scalar, -1, 1>;
 
 Complex some_scalar(Complex, double a, double b) { return {a, b}; }
 double some_scalar(double, double a, double) { return a; }
 
-/// Relative difference of two solutions that must agree but for rounding times the condition of random matrices.
-template <class Scalar> double difference(const Vec<Scalar>& a, const Vec<Scalar>& b) { return (a - b).norm() / b.norm(); }
+/// Relative difference of two solutions that must agree but for rounding times the condition of
+/// random matrices.
+template <class Scalar>
+double difference(const Vec<Scalar>& a, const Vec<Scalar>& b) {
+  return (a - b).norm() / b.norm();
+}
 
 template <class Scalar>
-void expect_solves(DirectSolver<Scalar>& solver, const MCK& m, const Mask& active, Scalar cm, Scalar cc, Scalar ck,
-                   double growth = 1.0) {
+void expect_solves(DirectSolver<Scalar>& solver, const MCK& m, const Mask& active, Scalar cm,
+                   Scalar cc, Scalar ck, double growth = 1.0) {
   ASSERT_EQ(solver.factor(m, cm, cc, ck), Status::ok) << solver.name();
   const auto s = dense<Scalar>(m, active, cm, cc, ck);
   const Vec<Scalar> b = Vec<Scalar>::Random(s.rows());
   Vec<Scalar> x = b;
   solver.solve(x);
   const Vec<Scalar> expected = s.partialPivLu().solve(b);
-  const double condition = s.cwiseAbs().rowwise().sum().maxCoeff() * s.inverse().cwiseAbs().rowwise().sum().maxCoeff();
-  // Both answers carry an error of about eps times the condition number; 30 covers the sums of some tens of terms.
-  // Where diagonal blocks do not dominate, the block LU promises no more than its growth (not recorded below 1e3).
-  EXPECT_LT(difference(x, expected), 30.0 * 2.2e-16 * condition * growth) << solver.name() << " condition " << condition;
+  const double condition =
+      s.cwiseAbs().rowwise().sum().maxCoeff() * s.inverse().cwiseAbs().rowwise().sum().maxCoeff();
+  // Both answers carry an error of about eps times the condition number; 30 covers the sums of some
+  // tens of terms. Where diagonal blocks do not dominate, the block LU promises no more than its
+  // growth (not recorded below 1e3).
+  EXPECT_LT(difference(x, expected), 30.0 * 2.2e-16 * condition * growth)
+      << solver.name() << " condition " << condition;
   for (Index u = 0; u < s.rows(); ++u) {
     if (!active[static_cast<std::size_t>(u)]) {
       EXPECT_EQ(x(u), b(u));
@@ -39,7 +47,8 @@ void expect_solves(DirectSolver<Scalar>& solver, const MCK& m, const Mask& activ
   }
 }
 
-template <class Scalar> class Direct : public testing::Test {};
+template <class Scalar>
+class Direct : public testing::Test {};
 using Scalars = testing::Types<double, Complex>;
 TYPED_TEST_SUITE(Direct, Scalars);
 
@@ -59,14 +68,18 @@ TYPED_TEST(Direct, MatchesDenseOnChainsTreesAndGraphs) {
   std::mt19937 rng(7);
   for (int round = 0; round < 40; ++round) {
     const Index n = 1 + round % 13;
-    const Pairs pairs = round % 3 == 0 ? chain(n) : round % 3 == 1 ? random_tree(n, rng) : random_graph(n, n, rng);
+    const Pairs pairs = round % 3 == 0   ? chain(n)
+                        : round % 3 == 1 ? random_tree(n, rng)
+                                         : random_graph(n, n, rng);
     const BlockPattern p(n, pairs);
     // Diagonally heavy, barely so, and not at all.
     const MCK m = random_matrices(p, round % 4 == 0 ? 30.0 : round % 4 == 1 ? 5.0 : 0.0, rng);
     const Mask active = round % 2 ? random_mask(p, 0.3, rng) : all_active(p);
-    const S cm = some_scalar(S(), 0.7, -1.3), cc = some_scalar(S(), -0.4, 0.9), ck = some_scalar(S(), 1.1, 0.2);
+    const S cm = some_scalar(S(), 0.7, -1.3), cc = some_scalar(S(), -0.4, 0.9),
+            ck = some_scalar(S(), 1.1, 0.2);
     const double growth = round % 4 == 0 ? 1.0 : 1e3;
-    expect_solves<S>(*make_direct_solver<S>(p, active, SolverKind::automatic), m, active, cm, cc, ck, growth);
+    expect_solves<S>(*make_direct_solver<S>(p, active, SolverKind::automatic), m, active, cm, cc,
+                     ck, growth);
     expect_solves<S>(*make_direct_solver<S>(p, active, SolverKind::klu), m, active, cm, cc, ck);
     if (round % 4 != 0) continue;
     for (const auto* k : all_kernels())
@@ -84,12 +97,14 @@ TYPED_TEST(Direct, LeavesOutAbsentTerms) {
   const BlockPattern p(6, chain(6));
   MCK m = random_matrices(p, 0.0, rng);
   for (BlockMatrix<6>* a : {&m.M, &m.C, &m.K})
-    for (Index i = 0; i < 6; ++i) a->block(p.diagonal(i)) += 20.0 * Matrix<6>::Identity();
+    for (Index i = 0; i < 6; ++i)
+      a->block(p.diagonal(i)) += 20.0 * Matrix<6>::Identity();
   const Mask active = all_active(p);
   for (const auto kind : {SolverKind::block, SolverKind::klu}) {
     const auto solver = make_direct_solver<S>(p, active, kind);
     for (int which = 1; which < 8; ++which)
-      expect_solves<S>(*solver, m, active, S(which & 1 ? 1.5 : 0.0), S(which & 2 ? 0.5 : 0.0), S(which & 4 ? 2.0 : 0.0));
+      expect_solves<S>(*solver, m, active, S(which & 1 ? 1.5 : 0.0), S(which & 2 ? 0.5 : 0.0),
+                       S(which & 4 ? 2.0 : 0.0));
   }
 }
 
@@ -99,17 +114,21 @@ TYPED_TEST(Direct, HeldUnknownsHideWhateverStandsThere) {
   const BlockPattern p(4, chain(4));
   MCK m = random_matrices(p, 20.0, rng);
   Mask active = all_active(p);
-  for (int c = 0; c < 6; ++c) active[static_cast<std::size_t>(6 + c)] = 0;    // node 1 held altogether
-  for (int c = 1; c < 6; ++c) active[static_cast<std::size_t>(18 + c)] = 0;   // node 3: one unknown left
+  for (int c = 0; c < 6; ++c)
+    active[static_cast<std::size_t>(6 + c)] = 0;  // node 1 held altogether
+  for (int c = 1; c < 6; ++c)
+    active[static_cast<std::size_t>(18 + c)] = 0;  // node 3: one unknown left
   const MCK clean = m;
   m.K.block(p.diagonal(1)).setConstant(whirl::nan);
   m.K.block(p.slot(1, 2)).setConstant(infinity);
   for (const auto kind : {SolverKind::block, SolverKind::klu}) {
-    const auto a = make_direct_solver<S>(p, active, kind), b = make_direct_solver<S>(p, active, kind);
+    const auto a = make_direct_solver<S>(p, active, kind),
+               b = make_direct_solver<S>(p, active, kind);
     ASSERT_EQ(a->factor(m, S(0.1), S(0.2), S(1.0)), Status::ok);
     ASSERT_EQ(b->factor(clean, S(0.1), S(0.2), S(1.0)), Status::ok);
     Vec<S> x = Vec<S>::Random(24), y = x;
-    a->solve(x); b->solve(y);
+    a->solve(x);
+    b->solve(y);
     EXPECT_EQ(x, y);
   }
   const Mask none(24, 0);
@@ -125,11 +144,13 @@ TYPED_TEST(Direct, HeldUnknownsHideWhateverStandsThere) {
 
 TYPED_TEST(Direct, PivotsInsideABlock) {
   using S = TypeParam;
-  // Diagonal blocks with zero diagonals: a permutation. Only exchanges inside the block can handle them.
+  // Diagonal blocks with zero diagonals: a permutation. Only exchanges inside the block can handle
+  // them.
   const BlockPattern p(3, chain(3));
   MCK m(p);
   for (Index i = 0; i < 3; ++i)
-    for (int c = 0; c < 6; ++c) m.K.block(p.diagonal(i))((c + 1 + i) % 6, c) = 1.0 + c;
+    for (int c = 0; c < 6; ++c)
+      m.K.block(p.diagonal(i))((c + 1 + i) % 6, c) = 1.0 + c;
   m.K.block(p.slot(0, 1)).setConstant(0.1);
   m.K.block(p.slot(2, 1)).setConstant(-0.2);
   const Mask active = all_active(p);
@@ -140,7 +161,8 @@ TYPED_TEST(Direct, PivotsInsideABlock) {
 
 TYPED_TEST(Direct, UnitsDoNotMatter) {
   using S = TypeParam;
-  // The same matrix with unknowns and equations in units that differ by up to 1e12, and all of it times 1e-12.
+  // The same matrix with unknowns and equations in units that differ by up to 1e12, and all of it
+  // times 1e-12.
   std::mt19937 rng(11);
   const BlockPattern p(8, chain(8));
   const MCK m = random_matrices(p, 4.0, rng);
@@ -148,52 +170,65 @@ TYPED_TEST(Direct, UnitsDoNotMatter) {
   Vector<6> unit;
   unit << 1e6, 1e6, 1e6, 1e-6, 1e-6, 1.0;
   MCK scaled(p);
-  for (Index k = 0; k < p.blocks(); ++k) scaled.K.block(k) = 1e-12 * unit.asDiagonal() * m.K.block(k) * unit.asDiagonal();
+  for (Index k = 0; k < p.blocks(); ++k)
+    scaled.K.block(k) = 1e-12 * unit.asDiagonal() * m.K.block(k) * unit.asDiagonal();
   for (const auto kind : {SolverKind::block, SolverKind::klu}) {
-    const auto a = make_direct_solver<S>(p, active, kind), b = make_direct_solver<S>(p, active, kind);
+    const auto a = make_direct_solver<S>(p, active, kind),
+               b = make_direct_solver<S>(p, active, kind);
     ASSERT_EQ(a->factor(m, S(0.0), S(0.0), S(1.0)), Status::ok);
     ASSERT_EQ(b->factor(scaled, S(0.0), S(0.0), S(1.0)), Status::ok);
     Vec<S> x = Vec<S>::Random(48), y = x;
-    for (Index i = 0; i < 8; ++i) y.template segment<6>(6 * i) = (1e-12 * unit.asDiagonal() * y.template segment<6>(6 * i)).eval();
-    a->solve(x); b->solve(y);
-    for (Index i = 0; i < 8; ++i) y.template segment<6>(6 * i) = (unit.asDiagonal() * y.template segment<6>(6 * i)).eval();
+    for (Index i = 0; i < 8; ++i)
+      y.template segment<6>(6 * i) =
+          (1e-12 * unit.asDiagonal() * y.template segment<6>(6 * i)).eval();
+    a->solve(x);
+    b->solve(y);
+    for (Index i = 0; i < 8; ++i)
+      y.template segment<6>(6 * i) = (unit.asDiagonal() * y.template segment<6>(6 * i)).eval();
     EXPECT_LT(difference(y, x), 1e-12);  // condition number below 100
   }
 }
 
 TYPED_TEST(Direct, AutomaticFallsBackWhenAPivotMustComeFromAnotherNode) {
   using S = TypeParam;
-  // Node 0 has no stiffness of its own but is tied to node 1: the first diagonal block is zero, the matrix regular.
+  // Node 0 has no stiffness of its own but is tied to node 1: the first diagonal block is zero, the
+  // matrix regular.
   const BlockPattern p(2, chain(2));
   MCK m(p);
   m.K.block(p.slot(0, 1)).setIdentity();
   m.K.block(p.slot(1, 0)).setIdentity();
   m.K.block(p.diagonal(1)).setIdentity();
   const Mask active = all_active(p);
-  EXPECT_EQ(BlockLu<S>(p, active, lu::Ordering::natural).factor(m, S(0.0), S(0.0), S(1.0)), Status::singular);
+  EXPECT_EQ(BlockLu<S>(p, active, lu::Ordering::natural).factor(m, S(0.0), S(0.0), S(1.0)),
+            Status::singular);
   const auto solver = make_direct_solver<S>(p, active);
   expect_solves<S>(*solver, m, active, S(0.0), S(0.0), S(1.0));
   EXPECT_EQ(solver->name(), "klu");
-  // Nearly zero: the block LU goes through, with growth, and the automatic solver does not accept it.
-  for (int c = 0; c < 6; ++c) m.K.block(p.diagonal(0))(c, c) = 1e-9;
+  // Nearly zero: the block LU goes through, with growth, and the automatic solver does not accept
+  // it.
+  for (int c = 0; c < 6; ++c)
+    m.K.block(p.diagonal(0))(c, c) = 1e-9;
   BlockLu<S> block(p, active, lu::Ordering::natural);
   ASSERT_EQ(block.factor(m, S(0.0), S(0.0), S(1.0)), Status::ok);
   EXPECT_GT(block.growth(), 1e8);
   expect_solves<S>(*solver, m, active, S(0.0), S(0.0), S(1.0));
   EXPECT_EQ(solver->name(), "klu");
   // And back to the block solver when it serves again.
-  for (int c = 0; c < 6; ++c) m.K.block(p.diagonal(0))(c, c) = 3.0;
+  for (int c = 0; c < 6; ++c)
+    m.K.block(p.diagonal(0))(c, c) = 3.0;
   expect_solves<S>(*solver, m, active, S(0.0), S(0.0), S(1.0));
   EXPECT_EQ(solver->name(), "block");
 }
 
 TYPED_TEST(Direct, FindsTheUnknownNothingResists) {
   using S = TypeParam;
-  // A rod chain fixed in everything but the axial direction (component 0), which is free: singular there.
+  // A rod chain fixed in everything but the axial direction (component 0), which is free: singular
+  // there.
   for (const Index n : {1, 2, 3, 10, 400}) {
     const BlockPattern p(n, chain(n));
     MCK m(p);
-    for (Index i = 0; i < n; ++i) m.K.block(p.diagonal(i)).diagonal().tail<5>().setConstant(2.5);
+    for (Index i = 0; i < n; ++i)
+      m.K.block(p.diagonal(i)).diagonal().tail<5>().setConstant(2.5);
     for (Index i = 0; i + 1 < n; ++i) {
       const double k = 1e9 / (1.0 + static_cast<double>(i % 3));
       m.K.block(p.diagonal(i))(0, 0) += k;
@@ -203,14 +238,17 @@ TYPED_TEST(Direct, FindsTheUnknownNothingResists) {
     Mask active = all_active(p);
     for (const auto kind : {SolverKind::block, SolverKind::klu, SolverKind::automatic}) {
       const auto solver = make_direct_solver<S>(p, active, kind);
-      ASSERT_EQ(solver->factor(m, S(0.0), S(0.0), S(1.0)), Status::singular) << n << " " << solver->name();
+      ASSERT_EQ(solver->factor(m, S(0.0), S(0.0), S(1.0)), Status::singular)
+          << n << " " << solver->name();
       EXPECT_EQ(solver->singular_unknown() % 6, 0) << n << " " << solver->name();
       EXPECT_GE(solver->singular_unknown(), 0);
     }
     // A support a million million times softer than the rods is enough.
     m.K.block(p.diagonal(0))(0, 0) += 1e-3;
     for (const auto kind : {SolverKind::block, SolverKind::klu, SolverKind::automatic})
-      EXPECT_EQ(make_direct_solver<S>(p, active, kind)->factor(m, S(0.0), S(0.0), S(1.0)), Status::ok) << n;
+      EXPECT_EQ(make_direct_solver<S>(p, active, kind)->factor(m, S(0.0), S(0.0), S(1.0)),
+                Status::ok)
+          << n;
   }
 }
 
@@ -223,7 +261,8 @@ TYPED_TEST(Direct, ReportsWhatIsNotFinite) {
     m.K.block(p.diagonal(3))(2, 2) = poison;
     const Mask active = all_active(p);
     for (const auto kind : {SolverKind::block, SolverKind::klu, SolverKind::automatic})
-      EXPECT_EQ(make_direct_solver<S>(p, active, kind)->factor(m, S(0.0), S(0.0), S(1.0)), Status::singular);
+      EXPECT_EQ(make_direct_solver<S>(p, active, kind)->factor(m, S(0.0), S(0.0), S(1.0)),
+                Status::singular);
   }
   const MCK zero(p);
   for (const auto kind : {SolverKind::block, SolverKind::klu, SolverKind::automatic}) {
@@ -235,7 +274,8 @@ TYPED_TEST(Direct, ReportsWhatIsNotFinite) {
 
 TYPED_TEST(Direct, GyroscopicAndIndefiniteChainsKeepTheirAccuracy) {
   using S = TypeParam;
-  // Weak stiffness, strong skew coupling in the diagonal blocks, shifted into the spectrum: pivots inside blocks matter.
+  // Weak stiffness, strong skew coupling in the diagonal blocks, shifted into the spectrum: pivots
+  // inside blocks matter.
   std::mt19937 rng(21);
   const BlockPattern p(60, chain(60));
   MCK m = random_matrices(p, 0.0, rng);
@@ -260,8 +300,9 @@ TYPED_TEST(Direct, RefactorsWithoutRememberingTheLastMatrix) {
     for (int round = 0; round < 12; ++round) {
       // The shift changes sign and size, so that pivots KLU chose before no longer serve.
       const MCK m = random_matrices(p, round % 3 == 0 ? 1e4 : round % 3 == 1 ? 0.0 : -10.0, rng);
-      expect_solves<S>(*solver, m, active, some_scalar(S(), 1.0, 0.5), some_scalar(S(), 0.1, -0.5), S(1.0),
-                       kind == SolverKind::klu || round % 3 == 0 ? 1.0 : 1e3 * std::max(1.0, solver->growth()));
+      expect_solves<S>(
+          *solver, m, active, some_scalar(S(), 1.0, 0.5), some_scalar(S(), 0.1, -0.5), S(1.0),
+          kind == SolverKind::klu || round % 3 == 0 ? 1.0 : 1e3 * std::max(1.0, solver->growth()));
     }
   }
 }
@@ -274,7 +315,8 @@ TEST(BlockLu, DeterminantAndInertiaMatchDense) {
     MCK m = random_matrices(p, 0.0, rng);
     // symmetric K, skew C: K + i s C is Hermitian
     for (Index i = 0; i < n; ++i)
-      for (Index k = p.row_start()[static_cast<std::size_t>(i)]; k < p.row_start()[static_cast<std::size_t>(i) + 1]; ++k) {
+      for (Index k = p.row_start()[static_cast<std::size_t>(i)];
+           k < p.row_start()[static_cast<std::size_t>(i) + 1]; ++k) {
         const Index j = p.cols()[static_cast<std::size_t>(k)];
         if (j < i) continue;
         const Index t = p.slot(j, i);
@@ -298,7 +340,8 @@ TEST(BlockLu, DeterminantAndInertiaMatchDense) {
     EXPECT_EQ(z.negative_eigenvalues(), (eig.eigenvalues().array() < 0.0).count());
     BlockLu<double> r(p, active);
     ASSERT_EQ(r.factor(m, 0.0, 0.0, 1.0), Status::ok);
-    const Eigen::SelfAdjointEigenSolver<MatX> eigr(dense<double>(m, active, 0.0, 0.0, 1.0), Eigen::EigenvaluesOnly);
+    const Eigen::SelfAdjointEigenSolver<MatX> eigr(dense<double>(m, active, 0.0, 0.0, 1.0),
+                                                   Eigen::EigenvaluesOnly);
     EXPECT_EQ(r.negative_eigenvalues(), (eigr.eigenvalues().array() < 0.0).count());
   }
 }

@@ -13,7 +13,8 @@ using namespace whirl::la::test;
 
 namespace {
 
-/// All finite eigenvalues with Im >= 0 of the active part, from a dense linearisation of its own: 1/lambda is an eigenvalue of
+/// All finite eigenvalues with Im >= 0 of the active part, from a dense linearisation of its own:
+/// 1/lambda is an eigenvalue of
 /// [-K^-1 C, -K^-1 M; I, 0].
 std::vector<Complex> dense_eigenvalues(const MCK& m, const Mask& active) {
   std::vector<Index> u;
@@ -33,37 +34,48 @@ std::vector<Complex> dense_eigenvalues(const MCK& m, const Mask& active) {
   const VecXc mu = a.eigenvalues();
   std::vector<Complex> lambda;
   for (const Complex x : mu)
-    if (std::abs(x) > 1e-7 * mu.cwiseAbs().maxCoeff() && (1.0 / x).imag() >= 0.0) lambda.push_back(1.0 / x);
-  std::sort(lambda.begin(), lambda.end(), [](Complex x, Complex y) { return std::abs(x) < std::abs(y); });
+    if (std::abs(x) > 1e-7 * mu.cwiseAbs().maxCoeff() && (1.0 / x).imag() >= 0.0)
+      lambda.push_back(1.0 / x);
+  std::sort(lambda.begin(), lambda.end(),
+            [](Complex x, Complex y) { return std::abs(x) < std::abs(y); });
   return lambda;
 }
 
-/// Every one of the first `modes.size()` dense eigenvalues is among the modes, within `tolerance` relative; conjugates once.
+/// Every one of the first `modes.size()` dense eigenvalues is among the modes, within `tolerance`
+/// relative; conjugates once.
 void expect_same(std::vector<Mode> modes, const std::vector<Complex>& reference, double tolerance) {
-  std::sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return std::abs(a.lambda) < std::abs(b.lambda); });
+  std::sort(modes.begin(), modes.end(),
+            [](const Mode& a, const Mode& b) { return std::abs(a.lambda) < std::abs(b.lambda); });
   ASSERT_LE(modes.size(), reference.size());
   std::vector<bool> used(reference.size(), false);
   for (const Mode& mode : modes) {
     std::size_t best = 0;
     double distance = infinity;
     for (std::size_t j = 0; j < std::min(reference.size(), modes.size() + 2); ++j)
-      if (!used[j] && std::abs(reference[j] - mode.lambda) < distance) { distance = std::abs(reference[j] - mode.lambda); best = j; }
+      if (!used[j] && std::abs(reference[j] - mode.lambda) < distance) {
+        distance = std::abs(reference[j] - mode.lambda);
+        best = j;
+      }
     used[best] = true;
-    EXPECT_LE(distance, tolerance * std::abs(mode.lambda)) << mode.lambda << " nearest " << reference[best];
+    EXPECT_LE(distance, tolerance * std::abs(mode.lambda))
+        << mode.lambda << " nearest " << reference[best];
   }
   // None below the largest was passed over.
   for (std::size_t j = 0; j < modes.size(); ++j)
-    EXPECT_TRUE(used[j] || std::abs(std::abs(reference[j]) - std::abs(modes.back().lambda)) < 1e-6 * std::abs(reference[j])) << reference[j];
+    EXPECT_TRUE(used[j] || std::abs(std::abs(reference[j]) - std::abs(modes.back().lambda)) <
+                               1e-6 * std::abs(reference[j]))
+        << reference[j];
 }
 
 double residual(const MCK& m, const Mask& active, const Mode& mode) {
   const MatXc q = dense<Complex>(m, active, mode.lambda * mode.lambda, mode.lambda, 1.0);
-  const MatX size = std::norm(mode.lambda) * dense(m.M).cwiseAbs() + std::abs(mode.lambda) * dense(m.C).cwiseAbs() + dense(m.K).cwiseAbs();
+  const MatX size = std::norm(mode.lambda) * dense(m.M).cwiseAbs() +
+                    std::abs(mode.lambda) * dense(m.C).cwiseAbs() + dense(m.K).cwiseAbs();
   return (q * mode.x).norm() / (size * mode.x.cwiseAbs()).norm();
 }
 
-/// Number of whirl frequencies below omega of an undamped gyroscopic system: the negative eigenvalues of the Hermitian matrix
-/// K + i omega C - omega^2 M, which cross zero downwards only.
+/// Number of whirl frequencies below omega of an undamped gyroscopic system: the negative
+/// eigenvalues of the Hermitian matrix K + i omega C - omega^2 M, which cross zero downwards only.
 Index frequencies_below(const MCK& m, const Mask& active, double omega) {
   BlockLu<Complex> lu(m.K.pattern(), active);
   EXPECT_EQ(lu.factor(m, -omega * omega, Complex(0.0, omega), 1.0), Status::ok);
@@ -73,26 +85,41 @@ Index frequencies_below(const MCK& m, const Mask& active, double omega) {
 Mask pinned(const BlockPattern& p, bool only_bending) {
   Mask a = all_active(p);
   const auto hold = [&](Index node, int c) { a[static_cast<std::size_t>(6 * node + c)] = 0; };
-  for (const Index end : {Index(0), p.size() - 1}) { hold(end, 1); hold(end, 2); }
+  for (const Index end : {Index(0), p.size() - 1}) {
+    hold(end, 1);
+    hold(end, 2);
+  }
   if (only_bending)
-    for (Index i = 0; i < p.size(); ++i) { hold(i, 0); hold(i, 3); }
+    for (Index i = 0; i < p.size(); ++i) {
+      hold(i, 0);
+      hold(i, 3);
+    }
   return a;
 }
 
 }  // namespace
 
 TEST(QuadraticModes, GyroscopicRotorOnSpringsInClosedForm) {
-  // One node: u_y and u_z on springs, tilt with Jt w^2 -+ Jp Omega w - kt = 0, everything else held.
+  // One node: u_y and u_z on springs, tilt with Jt w^2 -+ Jp Omega w - kt = 0, everything else
+  // held.
   const BlockPattern p(1, {});
   MCK m(p);
   const double mass = 3.0, k = 2.7e4, jt = 0.02, jp = 0.034, kt = 150.0, Omega = 800.0;
-  for (int c : {1, 2}) { m.M.block(0)(c, c) = mass; m.K.block(0)(c, c) = k; }
-  for (int c : {4, 5}) { m.M.block(0)(c, c) = jt; m.K.block(0)(c, c) = kt; }
-  m.C.block(0)(4, 5) = jp * Omega; m.C.block(0)(5, 4) = -jp * Omega;
+  for (int c : {1, 2}) {
+    m.M.block(0)(c, c) = mass;
+    m.K.block(0)(c, c) = k;
+  }
+  for (int c : {4, 5}) {
+    m.M.block(0)(c, c) = jt;
+    m.K.block(0)(c, c) = kt;
+  }
+  m.C.block(0)(4, 5) = jp * Omega;
+  m.C.block(0)(5, 4) = -jp * Omega;
   Mask a(6, 1);
   a[0] = a[3] = 0;
   const double g = jp * Omega, root = std::sqrt(g * g + 4.0 * jt * kt);
-  const double expected[] = {(root - g) / (2.0 * jt), std::sqrt(k / mass), std::sqrt(k / mass), (root + g) / (2.0 * jt)};
+  const double expected[] = {(root - g) / (2.0 * jt), std::sqrt(k / mass), std::sqrt(k / mass),
+                             (root + g) / (2.0 * jt)};
   for (const Index dense_below : {0, 36}) {
     ModeOptions o;
     o.count = 4;
@@ -107,7 +134,8 @@ TEST(QuadraticModes, GyroscopicRotorOnSpringsInClosedForm) {
     // The double one comes with two independent vectors.
     EXPECT_GT(std::abs(modes[1].x(1) * modes[2].x(2) - modes[1].x(2) * modes[2].x(1)), 0.1);
     // Backward and forward precession: u_phi_z / u_phi_y = -+ i.
-    EXPECT_NEAR(std::abs(modes[0].x(5) / modes[0].x(4) - modes[3].x(4) / modes[3].x(5)), 0.0, 1e-12);
+    EXPECT_NEAR(std::abs(modes[0].x(5) / modes[0].x(4) - modes[3].x(4) / modes[3].x(5)), 0.0,
+                1e-12);
   }
 }
 
@@ -125,9 +153,11 @@ TEST(QuadraticModes, SpinningRayleighShaftInClosedForm) {
     ASSERT_EQ(modes.size(), 8u);
     std::vector<double> exact;
     for (int j = 1; j <= 6; ++j) {
-      const double k = j * pi / s.length, mm = s.rho * (s.area() + s.I() * k * k), g = 2.0 * s.rho * s.I() * k * k * Omega;
+      const double k = j * pi / s.length, mm = s.rho * (s.area() + s.I() * k * k),
+                   g = 2.0 * s.rho * s.I() * k * k * Omega;
       const double root = std::sqrt(g * g + 4.0 * mm * s.E * s.I() * std::pow(k, 4));
-      exact.push_back((root - g) / (2.0 * mm)); exact.push_back((root + g) / (2.0 * mm));
+      exact.push_back((root - g) / (2.0 * mm));
+      exact.push_back((root + g) / (2.0 * mm));
     }
     std::sort(exact.begin(), exact.end());
     for (std::size_t i = 0; i < 8; ++i) {
@@ -145,15 +175,21 @@ TEST(QuadraticModes, MatchesDenseOnRandomProblems) {
     const Index n = 3 + round % 7;
     const BlockPattern p(n, round % 2 ? chain(n) : random_graph(n, 2, rng));
     MCK m = random_matrices(p, 6.0, rng);
-    for (Index i = 0; i < n; ++i) m.M.block(p.diagonal(i)) += 4.0 * Matrix<6>::Identity();
+    for (Index i = 0; i < n; ++i)
+      m.M.block(p.diagonal(i)) += 4.0 * Matrix<6>::Identity();
     const Mask a = round % 3 ? random_mask(p, 0.25, rng) : all_active(p);
     if (round % 4 == 3)  // a massless, damped node and one without anything but stiffness
       for (Index j = 0; j < n; ++j) {
         const bool first = p.slot(0, j) >= 0, last = p.slot(n - 1, j) >= 0;
-        if (first) { m.M.block(p.slot(0, j)).setZero(); m.M.block(p.slot(j, 0)).setZero(); }
+        if (first) {
+          m.M.block(p.slot(0, j)).setZero();
+          m.M.block(p.slot(j, 0)).setZero();
+        }
         if (last) {
-          m.M.block(p.slot(n - 1, j)).setZero(); m.M.block(p.slot(j, n - 1)).setZero();
-          m.C.block(p.slot(n - 1, j)).setZero(); m.C.block(p.slot(j, n - 1)).setZero();
+          m.M.block(p.slot(n - 1, j)).setZero();
+          m.M.block(p.slot(j, n - 1)).setZero();
+          m.C.block(p.slot(n - 1, j)).setZero();
+          m.C.block(p.slot(j, n - 1)).setZero();
         }
       }
     const auto reference = dense_eigenvalues(m, a);
@@ -184,8 +220,9 @@ TEST(QuadraticModes, RotorsMatchDenseInAllRegimes) {
     for (const double kz : {1e7, 0.8e7})
       for (const double damping : {0.0, 300.0, 1e5, 3e6}) {
         MCK m = rotor(p, 8, Omega, kz, damping);
-        add_bearing(m, 0, 0.0, 0.0, 0.0, 0.0, damping > 0.0 ? 2e6 : 0.0);  // cross-coupled: unstable
-        m.K.block(p.diagonal(3))(3, 3) += 1e4;  // the dense reference needs K regular
+        add_bearing(m, 0, 0.0, 0.0, 0.0, 0.0,
+                    damping > 0.0 ? 2e6 : 0.0);  // cross-coupled: unstable
+        m.K.block(p.diagonal(3))(3, 3) += 1e4;   // the dense reference needs K regular
         const auto reference = dense_eigenvalues(m, a);
         ModeOptions o;
         o.count = 10;
@@ -194,7 +231,9 @@ TEST(QuadraticModes, RotorsMatchDenseInAllRegimes) {
         ASSERT_EQ(modes.size(), 10u);
         // The dense reference loses half the digits of double roots.
         expect_same(modes, reference, 1e-6);
-        for (const Mode& mode : modes) EXPECT_LT(mode.residual, 1e-14) << Omega << " " << kz << " " << damping << " " << mode.lambda;
+        for (const Mode& mode : modes)
+          EXPECT_LT(mode.residual, 1e-14)
+              << Omega << " " << kz << " " << damping << " " << mode.lambda;
       }
 }
 
@@ -215,13 +254,16 @@ TEST(QuadraticModes, FreeShaftHasSixRigidMotionsAndTheTextbookBendingModes) {
     EXPECT_LT(modes[i].residual, 1e-13);
     rigid.col(static_cast<Index>(i)) = modes[i].x.real().normalized();
   }
-  EXPECT_GT((rigid.transpose() * rigid).eval().eigenvalues().real().minCoeff(), 1e-3);  // independent
+  EXPECT_GT((rigid.transpose() * rigid).eval().eigenvalues().real().minCoeff(),
+            1e-3);  // independent
   const double beta[] = {4.73004074, 4.73004074, 7.85320462, 7.85320462};
   for (std::size_t i = 0; i < 4; ++i) {
-    const double omega = std::pow(beta[i] / s.length, 2) * std::sqrt(s.E * s.I() / (s.rho * s.area()));
+    const double omega =
+        std::pow(beta[i] / s.length, 2) * std::sqrt(s.E * s.I() / (s.rho * s.area()));
     EXPECT_NEAR(modes[6 + i].lambda.imag(), omega, 3e-5 * omega);  // rotary inertia 2e-5, mesh 4e-6
   }
-  // A stiff one that spins with a heavy disk precesses as a whole at Jp Omega / Jt; an axis that stands still is a motion as well.
+  // A stiff one that spins with a heavy disk precesses as a whole at Jp Omega / Jt; an axis that
+  // stands still is a motion as well.
   s.diameter = 0.3;
   const double Omega = 10.0;
   MCK spinning = shaft_matrices(p, s, Omega);
@@ -229,11 +271,14 @@ TEST(QuadraticModes, FreeShaftHasSixRigidMotionsAndTheTextbookBendingModes) {
   const auto whirl = quadratic_modes(spinning, a, o);
   ASSERT_EQ(whirl.size(), 10u);
   std::size_t zero = 0;
-  for (const Mode& mode : whirl) zero += mode.lambda == 0.0;
+  for (const Mode& mode : whirl)
+    zero += mode.lambda == 0.0;
   const double mass = s.rho * s.area() * s.length, jp = 2.0 * s.rho * s.I() * s.length;
-  const double jt = mass * s.length * s.length / 12.0 + 0.5 * jp, precession = (jp + 60.0) * Omega / (jt + 31.0);
+  const double jt = mass * s.length * s.length / 12.0 + 0.5 * jp,
+               precession = (jp + 60.0) * Omega / (jt + 31.0);
   EXPECT_EQ(zero, 6u);
-  EXPECT_NEAR(whirl[6].lambda.imag(), precession, 1e-5 * precession);  // bending: (precession / first bending frequency)^2 = 2e-6
+  EXPECT_NEAR(whirl[6].lambda.imag(), precession,
+              1e-5 * precession);  // bending: (precession / first bending frequency)^2 = 2e-6
 }
 
 TEST(QuadraticModes, DraggedRigidMotionHasARealRoot) {
@@ -247,7 +292,8 @@ TEST(QuadraticModes, DraggedRigidMotionHasARealRoot) {
     m.C.block(p.diagonal(i))(0, 0) = 0.5;
     if (i == 0) continue;
     const double k = 1e3;
-    m.K.block(p.diagonal(i))(0, 0) += k; m.K.block(p.diagonal(i - 1))(0, 0) += k;
+    m.K.block(p.diagonal(i))(0, 0) += k;
+    m.K.block(p.diagonal(i - 1))(0, 0) += k;
     m.K.block(p.slot(i, i - 1))(0, 0) = m.K.block(p.slot(i - 1, i))(0, 0) = -k;
   }
   for (const Index dense_below : {0, 36}) {
@@ -265,7 +311,8 @@ TEST(QuadraticModes, DraggedRigidMotionHasARealRoot) {
     o.real_roots = false;
     const auto whirl = quadratic_modes(m, a, o);
     ASSERT_EQ(whirl.size(), 3u);
-    for (const Mode& mode : whirl) EXPECT_GT(mode.lambda.imag(), 1.0);
+    for (const Mode& mode : whirl)
+      EXPECT_GT(mode.lambda.imag(), 1.0);
   }
 }
 
@@ -282,7 +329,8 @@ TEST(QuadraticModes, CountIsCompleteBelowAFrequency) {
       o.max_frequency = limit;
       const auto modes = quadratic_modes(m, a, o);
       EXPECT_EQ(static_cast<Index>(modes.size()), frequencies_below(m, a, limit)) << Omega;
-      for (const Mode& mode : modes) EXPECT_LE(mode.lambda.imag(), limit);
+      for (const Mode& mode : modes)
+        EXPECT_LE(mode.lambda.imag(), limit);
     }
 }
 
@@ -300,11 +348,15 @@ TEST(QuadraticModes, ComplexShiftFindsTheNeighbours) {
   const auto modes = quadratic_modes(m, a, o);
   ASSERT_EQ(modes.size(), 4u);
   std::vector<Complex> nearest;
-  for (const Mode& r : reference) nearest.push_back(r.lambda);
-  std::sort(nearest.begin(), nearest.end(), [&](Complex x, Complex y) { return std::abs(x - *o.shift) < std::abs(y - *o.shift); });
+  for (const Mode& r : reference)
+    nearest.push_back(r.lambda);
+  std::sort(nearest.begin(), nearest.end(),
+            [&](Complex x, Complex y) { return std::abs(x - *o.shift) < std::abs(y - *o.shift); });
   nearest.resize(4);
-  std::sort(nearest.begin(), nearest.end(), [](Complex x, Complex y) { return x.imag() < y.imag(); });
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_LT(std::abs(modes[i].lambda - nearest[i]), 1e-9 * std::abs(nearest[i]));
+  std::sort(nearest.begin(), nearest.end(),
+            [](Complex x, Complex y) { return x.imag() < y.imag(); });
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_LT(std::abs(modes[i].lambda - nearest[i]), 1e-9 * std::abs(nearest[i]));
 }
 
 TEST(QuadraticModes, ExactlyTheLowestOfALongChain) {
@@ -323,13 +375,15 @@ TEST(QuadraticModes, ExactlyTheLowestOfALongChain) {
     if (modes[i + 1].lambda.imag() - modes[i].lambda.imag() < 1e-3 * between) continue;
     EXPECT_EQ(frequencies_below(m, a, between), static_cast<Index>(i + 1));
   }
-  // The same rotor in 250 elements: meshes this fine agree to 1e-4 (their rods' lumped ends differ by h).
+  // The same rotor in 250 elements: meshes this fine agree to 1e-4 (their rods' lumped ends differ
+  // by h).
   const BlockPattern coarse(251, chain(251));
   Mask b = all_active(coarse);
   b[3] = 0;
   const auto reference = quadratic_modes(rotor(coarse, 250, 400.0, 1e7), b, o);
   for (std::size_t i = 0; i < 8; ++i)
-    EXPECT_NEAR(modes[i].lambda.imag(), reference[i].lambda.imag(), 5e-3 * reference[i].lambda.imag());
+    EXPECT_NEAR(modes[i].lambda.imag(), reference[i].lambda.imag(),
+                5e-3 * reference[i].lambda.imag());
 }
 
 TEST(QuadraticModes, AMatrixWithNothingInItIsDiagnosed) {
@@ -366,13 +420,16 @@ TEST(ModeSolver, SweepsGiveWhatSingleSpeedsGive) {
         ASSERT_EQ(modes.size(), 11u);
         ASSERT_EQ(fresh.size(), 11u);
         for (std::size_t i = 0; i < 11; ++i)
-          EXPECT_LT(std::abs(modes[i].lambda - fresh[i].lambda), 1e-8 * std::abs(fresh[i].lambda) + 1e-8) << kz << " " << damping << " speed " << k;
+          EXPECT_LT(std::abs(modes[i].lambda - fresh[i].lambda),
+                    1e-8 * std::abs(fresh[i].lambda) + 1e-8)
+              << kz << " " << damping << " speed " << k;
       }
     }
 }
 
 TEST(ModeSolver, FollowsModesThroughCrossings) {
-  // Torsion and stretching do not feel the spin; forward whirl rises through them. `from` keeps them apart.
+  // Torsion and stretching do not feel the spin; forward whirl rises through them. `from` keeps
+  // them apart.
   const Index n = 20;
   const BlockPattern p(n + 1, chain(n + 1));
   const Mask a = all_active(p);
@@ -438,12 +495,14 @@ TEST(SymmetricModes, PinnedBeamAndDenseReference) {
   MatX X(p.size() * 6, 9);
   for (Index i = 0; i < 9; ++i) {
     // The dense solver is good to eps times the ratio of extreme eigenvalues, 1e7.
-    EXPECT_NEAR(modes[static_cast<std::size_t>(i)].omega2, reference.eigenvalues()(i), 1e-8 * reference.eigenvalues()(i));
+    EXPECT_NEAR(modes[static_cast<std::size_t>(i)].omega2, reference.eigenvalues()(i),
+                1e-8 * reference.eigenvalues()(i));
     EXPECT_LT(modes[static_cast<std::size_t>(i)].residual, 1e-14);
     X.col(i) = modes[static_cast<std::size_t>(i)].x;
   }
   EXPECT_LT((X.transpose() * dense(m.M) * X - MatX::Identity(9, 9)).cwiseAbs().maxCoeff(), 1e-8);
-  const double k = pi / s.length, exact = s.E * s.I() * std::pow(k, 4) / (s.rho * (s.area() + s.I() * k * k));
+  const double k = pi / s.length,
+               exact = s.E * s.I() * std::pow(k, 4) / (s.rho * (s.area() + s.I() * k * k));
   EXPECT_NEAR(modes[0].omega2, exact, 5e-6 * exact);  // (k h)^4 / 720 = 2e-6
 }
 
@@ -466,5 +525,6 @@ TEST(LinearModes, EulerBucklingOfAPinnedColumn) {
   const double second = modes[2].lambda.real();
   const auto near = linear_modes(m.K, g, a, 2, 1.02 * second);
   ASSERT_EQ(near.size(), 2u);
-  for (const Mode& mode : near) EXPECT_NEAR(mode.lambda.real(), second, 1e-10 * second);
+  for (const Mode& mode : near)
+    EXPECT_NEAR(mode.lambda.real(), second, 1e-10 * second);
 }

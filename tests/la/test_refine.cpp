@@ -18,14 +18,18 @@ TEST(Refinement, BackwardErrorIsTheRelativeChangeOfOneEntry) {
   VecXc x = b;
   solver->solve(x);
   Refinement<Complex> refinement(p, active);
-  EXPECT_LT(refinement.backward_error(m, cm, cc, ck, x, b), 1e-14);  // diagonally dominant, 30 unknowns
+  EXPECT_LT(refinement.backward_error(m, cm, cc, ck, x, b),
+            1e-14);  // diagonally dominant, 30 unknowns
   const MatXc s = dense<Complex>(m, active, cm, cc, ck);
   Index u = 7;
-  while (!active[static_cast<std::size_t>(u)]) ++u;
+  while (!active[static_cast<std::size_t>(u)])
+    ++u;
   x(u) *= 1.0 + 1e-6;
   const VecXc r = b - s * x;
-  const double expected = (r.cwiseAbs().array() / (s.cwiseAbs() * x.cwiseAbs() + b.cwiseAbs()).array()).maxCoeff();
-  EXPECT_NEAR(refinement.backward_error(m, cm, cc, ck, x, b), expected, 1e-5 * expected);  // residuals of 1e-6 hold 9 digits
+  const double expected =
+      (r.cwiseAbs().array() / (s.cwiseAbs() * x.cwiseAbs() + b.cwiseAbs()).array()).maxCoeff();
+  EXPECT_NEAR(refinement.backward_error(m, cm, cc, ck, x, b), expected,
+              1e-5 * expected);  // residuals of 1e-6 hold 9 digits
   EXPECT_LT((refinement.residual() - r).norm(), 1e-13);
 }
 
@@ -37,7 +41,8 @@ TEST(Refinement, RecoversFromAnInaccurateFactorisation) {
   const auto solver = make_direct_solver<double>(p, active);
   ASSERT_EQ(solver->factor(m, 0.0, 0.0, 1.0), Status::ok);
   const MCK old = m;
-  for (std::size_t i = 0; i < m.K.value_count(); ++i) m.K.data()[i] *= 1.0 + 1e-6 * std::sin(static_cast<double>(i));
+  for (std::size_t i = 0; i < m.K.value_count(); ++i)
+    m.K.data()[i] *= 1.0 + 1e-6 * std::sin(static_cast<double>(i));
   const VecX b = VecX::Random(120);
   VecX x = b;
   solver->solve(x);

@@ -1,4 +1,5 @@
-// The root counter by itself, against all eigenvalues of small systems and against systems whose roots were chosen.
+// The root counter by itself, against all eigenvalues of small systems and against systems whose
+// roots were chosen.
 #include "beam_chain.hpp"
 #include "dense_spectrum.hpp"
 #include <gtest/gtest.h>
@@ -9,13 +10,16 @@ using namespace whirl::la::test;
 
 namespace {
 
-/// One node for every two roots: lambda^2 - (a + b) lambda + a b on its first unknown, all coupled by random congruences that keep the roots.
+/// One node for every two roots: lambda^2 - (a + b) lambda + a b on its first unknown, all coupled
+/// by random congruences that keep the roots.
 struct Chosen {
   BlockPattern pattern;
   MCK m;
   Mask active;
   Chosen(const std::vector<std::array<Complex, 2>>& roots, std::mt19937& rng)
-      : pattern(static_cast<Index>((roots.size() + 5) / 6), chain(static_cast<Index>((roots.size() + 5) / 6))), m(pattern),
+      : pattern(static_cast<Index>((roots.size() + 5) / 6),
+                chain(static_cast<Index>((roots.size() + 5) / 6))),
+        m(pattern),
         active(static_cast<std::size_t>(6 * pattern.size()), 0) {
     const Index n = 6 * pattern.size();
     MatX M = MatX::Identity(n, n), C = MatX::Zero(n, n), K = MatX::Identity(n, n);
@@ -31,11 +35,14 @@ struct Chosen {
       Matrix<6> left = Matrix<6>::Identity(), right = left;
       for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j)
-          if (active[static_cast<std::size_t>(6 * b + i)] && active[static_cast<std::size_t>(6 * b + j)]) {
+          if (active[static_cast<std::size_t>(6 * b + i)] &&
+              active[static_cast<std::size_t>(6 * b + j)]) {
             left(i, j) += 0.4 * u(rng);
             right(i, j) += 0.4 * u(rng);
           }
-      const auto put = [&](BlockMatrix<6>& to, const MatX& from) { to.block(pattern.diagonal(b)) = left * from.block<6, 6>(6 * b, 6 * b) * right; };
+      const auto put = [&](BlockMatrix<6>& to, const MatX& from) {
+        to.block(pattern.diagonal(b)) = left * from.block<6, 6>(6 * b, 6 * b) * right;
+      };
       put(m.M, M);
       put(m.C, C);
       put(m.K, K);
@@ -50,15 +57,19 @@ Index inside(const std::vector<Complex>& roots, const CountRegion& r) {
 }  // namespace
 
 TEST(RootCounter, CountsChosenRootsOfEveryKind) {
-  // Conjugate pairs of either damping, double and defective pairs, overdamped and diverging roots, double roots at zero and near it.
+  // Conjugate pairs of either damping, double and defective pairs, overdamped and diverging roots,
+  // double roots at zero and near it.
   const Complex i(0, 1);
   const std::vector<std::array<Complex, 2>> roots = {
-      {-1e-9 + 10.0 * i, -1e-9 - 10.0 * i}, {-1e-9 + 10.0 * i, -1e-9 - 10.0 * i}, {0.5 + 30.0 * i, 0.5 - 30.0 * i},
-      {-40.0 + 21.0 * i, -40.0 - 21.0 * i}, {Complex(0.0), Complex(0.0)},         {Complex(0.0), Complex(-1e-3)},
-      {Complex(25.0), Complex(-300.0)},     {Complex(-60.0), Complex(-60.0)},     {-1.0 + 80.0 * i, -1.0 - 80.0 * i},
-      {-1e-12 + 95.0 * i, -1e-12 - 95.0 * i}, {Complex(-5e5), Complex(-3.0)},     {-500.0 + 10.0 * i, -500.0 - 10.0 * i}};
+      {-1e-9 + 10.0 * i, -1e-9 - 10.0 * i}, {-1e-9 + 10.0 * i, -1e-9 - 10.0 * i},
+      {0.5 + 30.0 * i, 0.5 - 30.0 * i},     {-40.0 + 21.0 * i, -40.0 - 21.0 * i},
+      {Complex(0.0), Complex(0.0)},         {Complex(0.0), Complex(-1e-3)},
+      {Complex(25.0), Complex(-300.0)},     {Complex(-60.0), Complex(-60.0)},
+      {-1.0 + 80.0 * i, -1.0 - 80.0 * i},   {-1e-12 + 95.0 * i, -1e-12 - 95.0 * i},
+      {Complex(-5e5), Complex(-3.0)},       {-500.0 + 10.0 * i, -500.0 - 10.0 * i}};
   std::vector<Complex> all;
-  for (const auto& pair : roots) all.insert(all.end(), pair.begin(), pair.end());
+  for (const auto& pair : roots)
+    all.insert(all.end(), pair.begin(), pair.end());
   std::mt19937 rng(3);
   const Chosen system(roots, rng);
   RootCounter counter(system.pattern, system.active);
@@ -71,8 +82,10 @@ TEST(RootCounter, CountsChosenRootsOfEveryKind) {
       // Each root left out in turn is missed and found where it is.
       std::vector<Complex> known;
       for (const auto& pair : roots) {
-        if (pair[0].imag() != 0.0) known.push_back(pair[0]);
-        else known.insert(known.end(), pair.begin(), pair.end());
+        if (pair[0].imag() != 0.0)
+          known.push_back(pair[0]);
+        else
+          known.insert(known.end(), pair.begin(), pair.end());
       }
       const RootCount complete = counter.count(system.m, region, known);
       EXPECT_TRUE(complete.certain);
@@ -86,7 +99,8 @@ TEST(RootCounter, CountsChosenRootsOfEveryKind) {
         EXPECT_EQ(c.unknown, expected) << known[k];
         if (expected > 0) {
           double nearest = infinity;
-          for (const Complex z : counter.locate(c.unknown)) nearest = std::min(nearest, std::abs(z - known[k]));
+          for (const Complex z : counter.locate(c.unknown))
+            nearest = std::min(nearest, std::abs(z - known[k]));
           EXPECT_LT(nearest, 0.05 * radius) << known[k];
         }
       }
@@ -101,7 +115,8 @@ TEST(RootCounter, AgreesWithDenseEigenvaluesOfRandomSystems) {
     const Index n = 2 + round % 9;
     const BlockPattern p(n, round % 3 ? chain(n) : random_graph(n, 2, rng));
     MCK m = random_matrices(p, round % 2 ? 6.0 : 1.0, rng);
-    for (Index i = 0; i < n; ++i) m.M.block(p.diagonal(i)) += 4.0 * Matrix<6>::Identity();
+    for (Index i = 0; i < n; ++i)
+      m.M.block(p.diagonal(i)) += 4.0 * Matrix<6>::Identity();
     if (round % 5 == 4) m.M.block(p.diagonal(n - 1)).setZero();
     const Mask a = round % 4 ? random_mask(p, 0.25, rng) : all_active(p);
     const std::vector<Complex> all = dense_spectrum(m, a, 0.731 + u(rng));
@@ -113,8 +128,10 @@ TEST(RootCounter, AgreesWithDenseEigenvaluesOfRandomSystems) {
       for (const Complex s : all) {
         if (s.imag() < -1e-12) continue;
         const Complex root = std::abs(s.imag()) <= 1e-12 ? Complex(s.real()) : s;
-        if (u(rng) < 0.7) known.push_back(root);
-        else if (region.contains(root)) missing += root.imag() != 0.0 ? 2 : 1;
+        if (u(rng) < 0.7)
+          known.push_back(root);
+        else if (region.contains(root))
+          missing += root.imag() != 0.0 ? 2 : 1;
       }
       const RootCount c = counter.count(m, region, known);
       ++counted;
@@ -128,19 +145,23 @@ TEST(RootCounter, AgreesWithDenseEigenvaluesOfRandomSystems) {
 }
 
 TEST(RootCounter, SpinningShaftsNeedFewFactorizations) {
-  // 100 elements, the lowest modes known: the count is settled by two dozen factorisations however many roots lie beyond.
+  // 100 elements, the lowest modes known: the count is settled by two dozen factorisations however
+  // many roots lie beyond.
   Shaft s;
   s.elements = 100;
   const BlockPattern p(101, chain(101));
   Mask a = all_active(p);
-  for (int c : {0, 1, 2, 3}) a[static_cast<std::size_t>(c)] = 0;
-  for (int c : {1, 2}) a[static_cast<std::size_t>(600 + c)] = 0;
+  for (int c : {0, 1, 2, 3})
+    a[static_cast<std::size_t>(c)] = 0;
+  for (int c : {1, 2})
+    a[static_cast<std::size_t>(600 + c)] = 0;
   const MCK m = shaft_matrices(p, s, 2000.0);
   ModeOptions o;
   o.count = 14;
   const auto modes = quadratic_modes(m, a, o);
   std::vector<Complex> known;
-  for (const Mode& mode : modes) known.push_back(mode.lambda);
+  for (const Mode& mode : modes)
+    known.push_back(mode.lambda);
   const double radius = 0.5 * (modes[11].lambda.imag() + modes[12].lambda.imag());
   RootCounter counter(p, a);
   const RootCount c = counter.count(m, {radius, 5.0 * radius}, known);

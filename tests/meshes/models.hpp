@@ -8,11 +8,15 @@ namespace whirl::test {
 inline model::Material steel() {
   model::Material s;
   s.name = "steel";
-  s.E = 2.1e11; s.nu = 0.3; s.G = 2.1e11 / 2.6; s.rho = 7850;
+  s.E = 2.1e11;
+  s.nu = 0.3;
+  s.G = 2.1e11 / 2.6;
+  s.rho = 7850;
   return s;
 }
 
-inline model::Section cylinder(std::string name, double length, double od, double id = 0, int elements = 1) {
+inline model::Section cylinder(std::string name, double length, double od, double id = 0,
+                               int elements = 1) {
   model::Section s;
   s.name = std::move(name);
   s.length = length;
@@ -30,25 +34,31 @@ inline model::Section rigid(std::string name, double length, double od = 0) {
 
 inline model::Location place(double s, std::size_t shaft = 0) {
   model::Location l;
-  l.shaft = shaft; l.s = s;
+  l.shaft = shaft;
+  l.s = s;
   return l;
 }
 
-template <class T> T named(std::string name, double s, std::size_t shaft = 0) {
+template <class T>
+T named(std::string name, double s, std::size_t shaft = 0) {
   T x;
   x.name = std::move(name);
   x.at = place(s, shaft);
   return x;
 }
 
-inline model::Disk disk(std::string name, double s, double mass, double Ip, double Id, std::size_t shaft = 0) {
+inline model::Disk disk(std::string name, double s, double mass, double Ip, double Id,
+                        std::size_t shaft = 0) {
   auto d = named<model::Disk>(std::move(name), s, shaft);
-  d.mass = mass; d.Ip = Ip; d.Id = Id;
+  d.mass = mass;
+  d.Ip = Ip;
+  d.Id = Id;
   return d;
 }
 
 /// Isotropic spring-damper to ground in y and z.
-inline model::Bearing spring(std::string name, double s, double k, double c = 0, std::size_t shaft = 0) {
+inline model::Bearing spring(std::string name, double s, double k, double c = 0,
+                             std::size_t shaft = 0) {
   auto b = named<model::Bearing>(std::move(name), s, shaft);
   model::LinearBearing law;
   law.K(1, 1) = law.K(2, 2) = k;
@@ -57,7 +67,8 @@ inline model::Bearing spring(std::string name, double s, double k, double c = 0,
   return b;
 }
 
-inline model::Bearing held(std::string name, double s, std::array<bool, 6> directions, std::size_t shaft = 0) {
+inline model::Bearing held(std::string name, double s, std::array<bool, 6> directions,
+                           std::size_t shaft = 0) {
   auto b = named<model::Bearing>(std::move(name), s, shaft);
   b.law = model::RigidSupport{directions};
   return b;

@@ -20,7 +20,7 @@ void check_invariants(const model::Model& m, const Mesh& mesh) {
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
     const Line& line = mesh.lines[l];
     double last = -1;
-    for (Index i = line.first_node; i < line.first_node + line.nodes; ++i) {   // left to right
+    for (Index i = line.first_node; i < line.first_node + line.nodes; ++i) {  // left to right
       const Node& n = mesh.nodes[static_cast<std::size_t>(i)];
       EXPECT_EQ(n.line, static_cast<Index>(l));
       EXPECT_GT(n.s, last);
@@ -31,23 +31,29 @@ void check_invariants(const model::Model& m, const Mesh& mesh) {
     double s = 0;
     for (Index k = line.first_element; k < line.first_element + line.elements; ++k) {
       const Element& e = mesh.elements[static_cast<std::size_t>(k)];
-      EXPECT_EQ(e.right.node, e.left.node + 1);              // block tridiagonal
+      EXPECT_EQ(e.right.node, e.left.node + 1);  // block tridiagonal
       EXPECT_GE(e.left.node, node);
       EXPECT_GE(e.s1, s);
       EXPECT_GT(e.s2, e.s1);
-      for (const auto& [p, x] : {std::pair{e.left, e.s1}, std::pair{e.right, e.s2}})   // node + offset is the end point
-        EXPECT_NEAR(mesh.nodes[static_cast<std::size_t>(p.node)].s + p.offset, x, 1e-12 * line.length);
+      for (const auto& [p, x] :
+           {std::pair{e.left, e.s1}, std::pair{e.right, e.s2}})  // node + offset is the end point
+        EXPECT_NEAR(mesh.nodes[static_cast<std::size_t>(p.node)].s + p.offset, x,
+                    1e-12 * line.length);
       const model::Section& sec = m.shafts[l].sections[e.section];
       EXPECT_NEAR((e.xi2 - e.xi1) * sec.length, e.s2 - e.s1, 1e-12 * line.length);
       EXPECT_LE(e.s2 - e.s1, std::min(sec.max_element_length, m.max_element_length) * (1 + 1e-9));
-      node = e.left.node; s = e.s2;
+      node = e.left.node;
+      s = e.s2;
     }
     // Every section once, elements and rigid parts together.
     for (std::size_t k = 0; k < m.shafts[l].sections.size(); ++k) {
       double covered = 0;
       int count = 0;
       for (const Element& e : mesh.elements)
-        if (e.line == static_cast<Index>(l) && e.section == k) { covered += e.s2 - e.s1; ++count; }
+        if (e.line == static_cast<Index>(l) && e.section == k) {
+          covered += e.s2 - e.s1;
+          ++count;
+        }
       for (const RigidPart& r : mesh.rigid_parts)
         if (r.line == static_cast<Index>(l) && r.section == k) covered += r.o2 - r.o1;
       EXPECT_NEAR(covered, m.shafts[l].sections[k].length, 1e-12 * line.length);
@@ -57,13 +63,15 @@ void check_invariants(const model::Model& m, const Mesh& mesh) {
     }
     for (Index k = line.first_station; k < line.first_station + line.stations; ++k) {
       const Station& st = mesh.stations[static_cast<std::size_t>(k)];
-      EXPECT_NEAR(mesh.nodes[static_cast<std::size_t>(st.at.node)].s + st.at.offset, st.s, 1e-9 * line.length);
+      EXPECT_NEAR(mesh.nodes[static_cast<std::size_t>(st.at.node)].s + st.at.offset, st.s,
+                  1e-9 * line.length);
     }
   }
 }
 
 TEST(Mesh, NodeAtEverySectionEndAndAttachment) {
-  model::Model m = one_shaft({cylinder("a", 0.2, 0.04), cylinder("b", 0.3, 0.06), cylinder("c", 0.1, 0.05)});
+  model::Model m =
+      one_shaft({cylinder("a", 0.2, 0.04), cylinder("b", 0.3, 0.06), cylinder("c", 0.1, 0.05)});
   m.disks.push_back(disk("wheel", 0.35, 3, 0.02, 0.01));
   m.bearings.push_back(spring("left", 0.0, 1e7));
   m.bearings.push_back(spring("right", 0.55, 1e7));
@@ -75,14 +83,17 @@ TEST(Mesh, NodeAtEverySectionEndAndAttachment) {
     if (n.kind == NodeKind::shaft) s.push_back(n.s);
   const std::vector<double> expected{0, 0.1, 0.2, 0.35, 0.5, 0.55, 0.6};
   ASSERT_EQ(s.size(), expected.size());
-  for (std::size_t i = 0; i < s.size(); ++i) EXPECT_NEAR(s[i], expected[i], 1e-15);
+  for (std::size_t i = 0; i < s.size(); ++i)
+    EXPECT_NEAR(s[i], expected[i], 1e-15);
   EXPECT_EQ(mesh.elements.size(), 6u);
   EXPECT_EQ(mesh.station(m.disks[0].at).at.node, 3);
   EXPECT_EQ(mesh.station(m.disks[0].at).label(), "disk 'wheel'");
   EXPECT_EQ(mesh.station(m.bearings[0].at).label(), "a:start, bearing 'left'");
   EXPECT_EQ(mesh.bearings.size(), 2u);
-  EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(mesh.bearings[1].other.node)].kind, NodeKind::ground);
-  EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(mesh.bearings[1].ground)].position, Vec3(0.55, 0, 0));
+  EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(mesh.bearings[1].other.node)].kind,
+            NodeKind::ground);
+  EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(mesh.bearings[1].ground)].position,
+            Vec3(0.55, 0, 0));
 }
 
 TEST(Mesh, RefinementByCountAndSize) {
@@ -90,12 +101,15 @@ TEST(Mesh, RefinementByCountAndSize) {
   m.disks.push_back(disk("third", 1.0 / 3, 1, 1e-3, 1e-3));
   Mesh mesh = make_mesh(m);
   check_invariants(m, mesh);
-  EXPECT_EQ(mesh.elements.size(), 8u);   // 3 + 5: as even as the attachment allows
+  EXPECT_EQ(mesh.elements.size(), 8u);  // 3 + 5: as even as the attachment allows
   double longest = 0, shortest = 1;
-  for (const Element& e : mesh.elements) { longest = std::max(longest, e.s2 - e.s1); shortest = std::min(shortest, e.s2 - e.s1); }
+  for (const Element& e : mesh.elements) {
+    longest = std::max(longest, e.s2 - e.s1);
+    shortest = std::min(shortest, e.s2 - e.s1);
+  }
   EXPECT_NEAR(longest, 2.0 / 15, 1e-14);
   EXPECT_NEAR(shortest, 1.0 / 9, 1e-14);
-  m.max_element_length = 0.1;            // exactly a tenth: no extra element from round-off
+  m.max_element_length = 0.1;  // exactly a tenth: no extra element from round-off
   m.disks.clear();
   EXPECT_EQ(make_mesh(m).elements.size(), 10u);
   m.shafts[0].sections[0].max_element_length = 0.03;
@@ -107,7 +121,8 @@ TEST(Mesh, RefinementByCountAndSize) {
 }
 
 TEST(Mesh, AttachmentsAtRoundOffOfASectionEndShareItsNode) {
-  model::Model m = one_shaft({cylinder("a", 0.1, 0.04), cylinder("b", 0.2, 0.04), cylinder("c", 0.3, 0.04)});
+  model::Model m =
+      one_shaft({cylinder("a", 0.1, 0.04), cylinder("b", 0.2, 0.04), cylinder("c", 0.3, 0.04)});
   m.disks.push_back(disk("d", 0.3, 1, 1e-3, 1e-3));            // 0.1 + 0.2 = 0.30000000000000004
   m.disks.push_back(disk("end", 0.6, 1, 1e-3, 1e-3));          // the sum is 0.6000000000000001
   m.disks.push_back(disk("near", 0.1 + 1e-7, 1, 1e-3, 1e-3));  // a place of its own
@@ -124,14 +139,16 @@ TEST(Mesh, ConicalSectionsSplitConsistently) {
   m.shafts[0].sections[0].od_r = 0.1;
   const Mesh mesh = make_mesh(m);
   const std::string csv = elements_csv(m, mesh);
-  EXPECT_NE(csv.find("0.08,0.01,0.1,0.01"), std::string::npos) << csv;   // last third
+  EXPECT_NE(csv.find("0.08,0.01,0.1,0.01"), std::string::npos) << csv;  // last third
   EXPECT_NEAR(mesh.radius(m, 0, 0.3), 0.035, 1e-15);
-  for (std::size_t k = 0; k + 1 < mesh.elements.size(); ++k) EXPECT_EQ(mesh.elements[k].xi2, mesh.elements[k + 1].xi1);
+  for (std::size_t k = 0; k + 1 < mesh.elements.size(); ++k)
+    EXPECT_EQ(mesh.elements[k].xi2, mesh.elements[k + 1].xi1);
 }
 
 // ---------------------------------------------------------------- rigid stretches
 
-// The paper's rotor: a rigid massless rod, springs at its left end, the disk at its right end: one node, at the disk.
+// The paper's rotor: a rigid massless rod, springs at its left end, the disk at its right end: one
+// node, at the disk.
 TEST(Mesh, RigidRodIsOneNodeAtTheHeaviestBody) {
   model::Model m = one_shaft({rigid("rod", 0.75)});
   m.disks.push_back(disk("light", 0.2, 0.1, 1e-3, 1e-3));
@@ -151,13 +168,14 @@ TEST(Mesh, RigidRodIsOneNodeAtTheHeaviestBody) {
 }
 
 TEST(Mesh, RigidStretchBetweenFlexibleSections) {
-  model::Model m = one_shaft({rigid("stub", 0.1), cylinder("a", 0.2, 0.04, 0, 2), rigid("hub1", 0.05), rigid("hub2", 0.15, 0.2),
-                              cylinder("b", 0.3, 0.04)});
+  model::Model m =
+      one_shaft({rigid("stub", 0.1), cylinder("a", 0.2, 0.04, 0, 2), rigid("hub1", 0.05),
+                 rigid("hub2", 0.15, 0.2), cylinder("b", 0.3, 0.04)});
   Mesh mesh = make_mesh(m);
   check_invariants(m, mesh);
-  ASSERT_EQ(mesh.lines[0].nodes, 4);   // stub, middle of a, hub, right end
-  EXPECT_NEAR(mesh.nodes[0].s, 0.05, 1e-15);   // the middle of the stub
-  EXPECT_NEAR(mesh.nodes[2].s, 0.4, 1e-15);    // the middle of the hub
+  ASSERT_EQ(mesh.lines[0].nodes, 4);          // stub, middle of a, hub, right end
+  EXPECT_NEAR(mesh.nodes[0].s, 0.05, 1e-15);  // the middle of the stub
+  EXPECT_NEAR(mesh.nodes[2].s, 0.4, 1e-15);   // the middle of the hub
   EXPECT_EQ(mesh.elements[0].left.node, 0);
   EXPECT_NEAR(mesh.elements[0].left.offset, 0.05, 1e-15);
   EXPECT_NEAR(mesh.elements[1].right.offset, -0.1, 1e-15);
@@ -198,18 +216,20 @@ TEST(Mesh, TwoSpoolsCasingAndPedestals) {
   m.bearings.push_back(pinned);
   const Mesh mesh = make_mesh(m);
   check_invariants(m, mesh);
-  EXPECT_EQ(mesh.lines[0].nodes, 5);   // 3 elements left of the bearing at 0.7 m, 1 right of it
+  EXPECT_EQ(mesh.lines[0].nodes, 5);  // 3 elements left of the bearing at 0.7 m, 1 right of it
   EXPECT_EQ(mesh.lines[1].first_node, 5);
   EXPECT_FALSE(mesh.lines[2].rotating);
   EXPECT_EQ(mesh.bearings[0].other.node, mesh.lines[1].first_node + 2);
   EXPECT_EQ(mesh.bearings[0].ground, -1);
-  EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(mesh.bearings[1].pedestal)].kind, NodeKind::pedestal);
+  EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(mesh.bearings[1].pedestal)].kind,
+            NodeKind::pedestal);
   EXPECT_EQ(mesh.bearings[1].other.node, mesh.bearings[1].pedestal);
   EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(mesh.bearings[1].ground)].kind, NodeKind::ground);
   EXPECT_GT(mesh.bearings[1].ground, mesh.bearings[1].pedestal);
   EXPECT_EQ(mesh.bearings[2].other.node, -1);
   EXPECT_EQ(mesh.bearings[2].ground, -1);
-  EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(mesh.lines[2].first_node)].name, "node at 0 m of casing 'casing'");
+  EXPECT_EQ(mesh.nodes[static_cast<std::size_t>(mesh.lines[2].first_node)].name,
+            "node at 0 m of casing 'casing'");
 }
 
 TEST(Mesh, RandomShaftsKeepTheInvariants) {
@@ -221,12 +241,14 @@ TEST(Mesh, RandomShaftsKeepTheInvariants) {
     for (int k = 0; k < n; ++k) {
       const double length = std::pow(10, -4 + 4 * u(random));
       sections.push_back(u(random) < 0.3 ? rigid(fmt::format("r{}", k), length)
-                                         : cylinder(fmt::format("f{}", k), length, 0.05, 0, 1 + static_cast<int>(3 * u(random))));
+                                         : cylinder(fmt::format("f{}", k), length, 0.05, 0,
+                                                    1 + static_cast<int>(3 * u(random))));
     }
     model::Model m = one_shaft(sections);
     if (u(random) < 0.5) m.max_element_length = 0.02 + u(random);
     const double L = m.shafts[0].length();
-    for (int k = 0; k < 6; ++k) m.disks.push_back(disk(fmt::format("d{}", k), L * u(random), u(random), 1e-3, 1e-3));
+    for (int k = 0; k < 6; ++k)
+      m.disks.push_back(disk(fmt::format("d{}", k), L * u(random), u(random), 1e-3, 1e-3));
     m.disks.push_back(disk("left", 0, 1, 1, 1));
     m.disks.push_back(disk("right", L, 1, 1, 1));
     SCOPED_TRACE(trial);
@@ -262,17 +284,21 @@ TEST(Mesh, AllErrorsAtOnceWithPlaceAndName) {
   const auto e = errors_of(m);
   ASSERT_EQ(e.size(), 3u);
   EXPECT_EQ(e[0].code, "E23");
-  EXPECT_EQ(e[0].message, "section 'b' of shaft 'rotor': the bore, 0.06 m, is not smaller than the outer diameter, 0.06 m");
+  EXPECT_EQ(e[0].message,
+            "section 'b' of shaft 'rotor': the bore, 0.06 m, is not smaller than the outer "
+            "diameter, 0.06 m");
   EXPECT_EQ(e[1].code, "E19");
-  EXPECT_EQ(e[1].message, "disk 'wheel' stands at 0.51 m, but shaft 'rotor' reaches from 0 to 0.5 m");
+  EXPECT_EQ(e[1].message,
+            "disk 'wheel' stands at 0.51 m, but shaft 'rotor' reaches from 0 to 0.5 m");
   EXPECT_EQ(e[2].code, "E19");
 }
 
 TEST(Mesh, ImpossibleSections) {
-  for (auto spoil : {+[](model::Section& s) { s.length = 0; }, +[](model::Section& s) { s.length = whirl::nan; },
-                     +[](model::Section& s) { s.od_r = 0; }, +[](model::Section& s) { s.min_elements = 0; },
-                     +[](model::Section& s) { s.max_element_length = 1e-9; },
-                     +[](model::Section& s) { s.constants = model::Section::Constants{}; }}) {
+  for (auto spoil :
+       {+[](model::Section& s) { s.length = 0; }, +[](model::Section& s) { s.length = whirl::nan; },
+        +[](model::Section& s) { s.od_r = 0; }, +[](model::Section& s) { s.min_elements = 0; },
+        +[](model::Section& s) { s.max_element_length = 1e-9; },
+        +[](model::Section& s) { s.constants = model::Section::Constants{}; }}) {
     model::Model m = one_shaft({cylinder("a", 0.2, 0.04)});
     spoil(m.shafts[0].sections[0]);
     const auto e = errors_of(m);
@@ -303,7 +329,8 @@ TEST(Mesh, Tables) {
             "3,ground of bearing 'b',ground,,0,0,0,0\n");
   EXPECT_EQ(stations_csv(mesh),
             "station,line,s[m],node,offset[m],element,labels\n"
-            "0,rotor,0,0,0,0,\"a, left:start, bearing 'b'\"\n1,rotor,0.1,1,0,1,\n2,rotor,0.2,2,0,1,\"a, left:end\"\n");
+            "0,rotor,0,0,0,0,\"a, left:start, bearing "
+            "'b'\"\n1,rotor,0.1,1,0,1,\n2,rotor,0.2,2,0,1,\"a, left:end\"\n");
   EXPECT_NE(station_table(m, mesh).find("a, left:start, bearing 'b'"), std::string::npos);
 }
 

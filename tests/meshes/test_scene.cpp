@@ -11,7 +11,7 @@ namespace {
 
 TEST(Scene, PaperRotor) {
   model::Model m = one_shaft({rigid("rod", 0.75)});
-  m.disks.push_back(disk("disk", 0.75, 5, 5 * 0.25 / 8, 5 * 0.25 / 16));   // thin, D = 0.5 m
+  m.disks.push_back(disk("disk", 0.75, 5, 5 * 0.25 / 8, 5 * 0.25 / 16));  // thin, D = 0.5 m
   auto b = named<model::Bearing>("block", 0.0);
   b.law = model::SpringBlock{2000, 500};
   m.bearings.push_back(b);
@@ -25,7 +25,7 @@ TEST(Scene, PaperRotor) {
   EXPECT_NEAR(s.lines[0].pieces[0].outer_left, 0.0075, 1e-15);
   ASSERT_EQ(s.lines[0].disks.size(), 1u);
   EXPECT_NEAR(s.lines[0].disks[0].outer, 0.25, 1e-15);
-  EXPECT_NEAR(s.lines[0].disks[0].width, 0.01, 1e-9);   // thin: the least drawn
+  EXPECT_NEAR(s.lines[0].disks[0].width, 0.01, 1e-9);  // thin: the least drawn
   EXPECT_EQ(s.supports[0].kind, SupportShape::Kind::spring);
   EXPECT_FALSE(s.supports[0].to_node);
   EXPECT_EQ(s.trails[0].at.node, 0);
@@ -34,7 +34,8 @@ TEST(Scene, PaperRotor) {
 }
 
 TEST(Scene, StepsConesRigidPartsAndPedestalsInOrder) {
-  model::Model m = one_shaft({cylinder("a", 0.2, 0.04, 0.01, 2), rigid("hub", 0.1, 0.12), cylinder("cone", 0.3, 0.04, 0, 3)});
+  model::Model m = one_shaft({cylinder("a", 0.2, 0.04, 0.01, 2), rigid("hub", 0.1, 0.12),
+                              cylinder("cone", 0.3, 0.04, 0, 3)});
   m.shafts[0].sections[2].od_r = 0.1;
   auto b = spring("b", 0.0, 1e7);
   b.pedestal = model::Pedestal{10, 1e8 * Mat3::Identity(), Mat3::Zero()};
@@ -46,7 +47,7 @@ TEST(Scene, StepsConesRigidPartsAndPedestalsInOrder) {
   EXPECT_EQ(s.node_line.size(), mesh.nodes.size());
   ASSERT_EQ(s.lines[0].pieces.size(), 6u);
   double at = 0;
-  for (const ShaftPiece& p : s.lines[0].pieces) {   // one follows the other
+  for (const ShaftPiece& p : s.lines[0].pieces) {  // one follows the other
     EXPECT_NEAR(s.nodes[static_cast<std::size_t>(p.left.node)].x() + p.left.offset, at, 1e-15);
     at = s.nodes[static_cast<std::size_t>(p.right.node)].x() + p.right.offset;
   }

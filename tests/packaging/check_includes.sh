@@ -3,23 +3,55 @@
 set -u
 cd "$1" || exit 2
 declare -A may=(
-  [core]="core" [la]="core la" [model]="core model" [deck]="core model deck" [meshes]="core model meshes"
-  [time]="core time" [system]="core la time system" [elements]="core system elements"
-  [assembly]="core la model meshes system elements assembly" [io]="core meshes io model" [analysis]="core la time system analysis"
+  [core]="core"
+  [la]="core la"
+  [model]="core model"
+  [deck]="core model deck"
+  [time]="core time"
+  [system]="core la time system"
+  [meshes]="core model meshes"
+  [elements]="core system elements"
+  [assembly]="core la model meshes system elements assembly"
+  [plot]="core meshes model plot"
+  [io]="core meshes model plot io"
+  [analysis]="core la time system analysis"
+  [run]="core la model deck time system meshes assembly io analysis run"
+  [results]="core la model time system meshes assembly plot io analysis run results"
+  [steps]="core la model time system meshes assembly plot io analysis run results steps"
+  [study]="core la model deck time system meshes assembly plot io analysis run results steps study"
+  [app]="core model deck meshes assembly plot io run steps study app"
 )
 bad=0
-for c in "${!may[@]}"; do
-  dir=src/$c; [ -d "$dir" ] || dir=$c; [ -d "$dir" ] || continue
+for folder in src/* elements meshes; do
+  [ -d "$folder" ] || continue
+  component=${folder##*/}
+  if [ -z "${may[$component]:-}" ]; then
+    echo "$folder has no rule in $0"
+    bad=1
+    continue
+  fi
   while IFS=: read -r file line text; do
     to=$(sed -E 's/.*<([a-z]+)\/.*/\1/' <<<"$text")
-    case " ${may[$c]} " in *" $to "*) ;; *) echo "$file:$line: $c may not include $to: $text"; bad=1 ;; esac
-  done < <(grep -rnE '#include [<"](core|la|model|deck|meshes|time|system|elements|assembly|io|analysis|app)/' "$dir" --include='*.hpp' --include='*.cpp' --include='*.inl')
+    case " ${may[$component]} " in
+      *" $to "*) ;;
+      *) echo "$file:$line: $component may not include $to: $text"; bad=1 ;;
+    esac
+  done < <(grep -rnE "#include [<\"]($(IFS='|'; echo "${!may[*]}"))/" "$folder" --include='*.hpp' --include='*.cpp' --include='*.inl')
 done
 # libraries with one door each
-for rule in 'vtk:src/io/vtk' 'ida/|arkode/|sundials/:src/time/sundials' 'klu\.h|amd\.h|Spectra/:src/la' 'toml\+\+:src/deck' 'CLI/:src/app' 'nlohmann/:src/io' 'hdf5\.h:src/io/hdf5'; do
+for rule in 'vtk:src/io/vtk' 'ida/|arkode/|sundials/:src/time/sundials' 'klu\.h|amd\.h|Spectra/:src/la' 'toml\+\+:src/deck/text' \
+            'CLI/:src/app' 'nlohmann/:src/io' 'hdf5\.h:src/io/hdf5' 'png\.h|zlib\.h:src/plot'; do
   pattern=${rule%:*} home=${rule##*:}
   if out=$(grep -rnE "#include <($pattern)" src elements meshes --include='*.hpp' --include='*.cpp' | grep -v "^$home/"); then
-    echo "only $home may include $pattern:"; echo "$out"; bad=1
+    echo "only $home may include $pattern:"
+    echo "$out"
+    bad=1
   fi
+done
+# nothing undeclared: every folder of sources belongs to a component
+for folder in $(find src elements meshes -name '*.cpp' -printf '%h\n' | sort -u); do
+  case $folder in
+    src/*/*/* | elements/*/*) echo "$folder: a component has one level of sub-folders"; bad=1 ;;
+  esac
 done
 exit $bad

@@ -13,9 +13,10 @@ using namespace whirl::test;
 
 namespace {
 
-constexpr double speed = 300.0;   // rad/s
+constexpr double speed = 300.0;  // rad/s
 
-/// A shaft on two unequal springs with a disk beside its middle, an unbalance, and weight; a motor holds the speed.
+/// A shaft on two unequal springs with a disk beside its middle, an unbalance, and weight; a motor
+/// holds the speed.
 system::System rotor(double unbalance, bool driven = true) {
   system::Builder b;
   b.add_line("shaft");
@@ -39,24 +40,29 @@ struct Track final : analysis::Observer {
   Vec2 first = Vec2::Zero();
   double largest = 0;
   void begin(const analysis::Snapshot& s) override { first = s.node(2).u.tail<2>(); }
-  void step(analysis::StepAccess& s) override { largest = std::max(largest, (s.end().node(2).u.tail<2>() - first).norm()); }
+  void step(analysis::StepAccess& s) override {
+    largest = std::max(largest, (s.end().node(2).u.tail<2>() - first).norm());
+  }
 };
 
 }  // namespace
 
-// The unbalance appears at once on the turning rotor in static equilibrium. What the linear equations leave out is the square of the
-// motion: 1e-6 of the response at tilts of 1e-6, and the nonlinear run is that much closer as the unbalance falls.
+// The unbalance appears at once on the turning rotor in static equilibrium. What the linear
+// equations leave out is the square of the motion: 1e-6 of the response at tilts of 1e-6, and the
+// nonlinear run is that much closer as the unbalance falls.
 TEST(Linear, LimitOfTheGeneralRotor) {
   double before = infinity;
-  for (double unbalance : {1e-3, 1e-5, 1e-7}) {   // kg m: 50 um, 0.5 um, 5 nm of the disk
+  for (double unbalance : {1e-3, 1e-5, 1e-7}) {  // kg m: 50 um, 0.5 um, 5 nm of the disk
     const system::System s = rotor(unbalance);
     const system::State start = settled(s);
     analysis::TransientOptions o;
-    o.integrator.tolerance = 1e-9; o.integrator.t_end = 0.3;
+    o.integrator.tolerance = 1e-9;
+    o.integrator.t_end = 0.3;
     system::SystemProblem general(s);
     analysis::LinearMotion small(s, {}, speed, start);
     Track a, b;
-    const analysis::TransientResult x = run_transient(general, start, o, {&a}), y = run_transient(small, start, o, {&b});
+    const analysis::TransientResult x = run_transient(general, start, o, {&a}),
+                                    y = run_transient(small, start, o, {&b});
     ASSERT_EQ(x.reason, analysis::StopReason::end_time) << x.detail;
     ASSERT_EQ(y.reason, analysis::StopReason::end_time) << y.detail;
     const double difference = (x.end.q - y.end.q).segment<3>(6 * 2).norm() / a.largest;
@@ -79,13 +85,16 @@ TEST(Linear, EqualStepsUseOneFactorisation) {
     analysis::LinearMotion problem(s, {}, speed, start);
     analysis::TransientOptions o;
     o.method = method;
-    o.integrator.t_end = 1.0; o.integrator.dt_fixed = 1e-3;
+    o.integrator.t_end = 1.0;
+    o.integrator.dt_fixed = 1e-3;
     const analysis::TransientResult r = run_transient(problem, start, o, {});
     ASSERT_EQ(r.reason, analysis::StopReason::end_time) << method << ": " << r.detail;
     EXPECT_EQ(r.statistics.accepted, 1000) << method;
-    EXPECT_LE(r.statistics.factorizations_real, 2) << method;      // one more finds the initial acceleration
+    EXPECT_LE(r.statistics.factorizations_real, 2)
+        << method;  // one more finds the initial acceleration
     EXPECT_LE(r.statistics.factorizations_complex, 1) << method;
-    EXPECT_NEAR(r.end.total_phi(2, 0), speed, 1e-6 * speed) << method;   // the unbalance under gravity swings the free spin
+    EXPECT_NEAR(r.end.total_phi(2, 0), speed, 1e-6 * speed)
+        << method;  // the unbalance under gravity swings the free spin
     EXPECT_GT(r.end.frames.turns[0], 40.0) << method;
   }
 }
@@ -101,12 +110,16 @@ TEST(Linear, FoundFromWhatTheSceneContains) {
   b.add(elements::RigidDisk{10.0, 0.05, 0.05, 0.0}, {n}, "rigid disks");
   b.add(elements::UnbalanceMass(1e-3, 0.0), {n}, "unbalances");
   add_spring(b, n, isotropic(1e5), isotropic(20.0));
-  b.hold(n, 0); b.hold(n, 4); b.hold(n, 5);
+  b.hold(n, 0);
+  b.hold(n, 4);
+  b.hold(n, 5);
   b.hold(n, system::spin_phi, make_polynomial({0.0, 0.0, 10.0}));
   const system::System s = b.finalize();
   EXPECT_TRUE(s.linear());
   analysis::TransientOptions o;
-  o.integrator.tolerance = 1e-7; o.integrator.t_end = 5.4238694;   // F. M. Lewis 1932: largest r/e 23.5842911 at 1.084738806 omega_n
+  o.integrator.tolerance = 1e-7;
+  o.integrator.t_end =
+      5.4238694;  // F. M. Lewis 1932: largest r/e 23.5842911 at 1.084738806 omega_n
   system::SystemProblem problem(s);
   analysis::PeakTracker peaks({{"disk", {n, 0.0}}}, n);
   const analysis::TransientResult r = run_transient(problem, s.make_state(), o, {&peaks});
@@ -121,10 +134,12 @@ TEST(Linear, TurningMatricesAreRefused) {
   system::Builder b;
   b.add_line("shaft");
   const Index n = b.add_node({Vec3::Zero(), 0, "body", false});
-  b.add(elements::RigidBody(5.0, Vec3::Zero(), Vec3(0.02, 0.01, 0.03).asDiagonal()), {n}, "rigid bodies");
+  b.add(elements::RigidBody(5.0, Vec3::Zero(), Vec3(0.02, 0.01, 0.03).asDiagonal()), {n},
+        "rigid bodies");
   Matrix<6> K = Matrix<6>::Identity() * 1e4, none = Matrix<6>::Zero();
   K(3, 3) = 0.0;
-  b.add(elements::LinearBearing(K, none, none, Vector<6>::Zero(), Vector<6>::Zero()), {n, b.add_ground(Vec3::Zero(), "ground")}, "springs");
+  b.add(elements::LinearBearing(K, none, none, Vector<6>::Zero(), Vector<6>::Zero()),
+        {n, b.add_ground(Vec3::Zero(), "ground")}, "springs");
   const system::System s = b.finalize();
   try {
     analysis::LinearMotion problem(s, {}, speed, settled(s));
@@ -134,8 +149,9 @@ TEST(Linear, TurningMatricesAreRefused) {
   }
 }
 
-// The map of a step against the integrator that makes it: on the conservative rotor Gauss keeps every energy over 1e5 steps, Radau and
-// generalized-alpha lose what their spectral radius says, and no scheme gains at any step.
+// The map of a step against the integrator that makes it: on the conservative rotor Gauss keeps
+// every energy over 1e5 steps, Radau and generalized-alpha lose what their spectral radius says,
+// and no scheme gains at any step.
 TEST(Schemes, EnergyOverAHundredThousandSteps) {
   const system::System s = rotor(0.0);
   analysis::Linearizer linear(s);
@@ -149,14 +165,17 @@ TEST(Schemes, EnergyOverAHundredThousandSteps) {
   for (const char* method : {"radau5", "gauss4", "gauss6", "generalized_alpha"}) {
     const double ratio = analysis::energy_ratio(r, method, h, 100000, 0.9);
     if (std::string(method).starts_with("gauss")) {
-      EXPECT_NEAR(ratio, 1.0, 1e-8) << method;   // rounding of 1e5 steps
+      EXPECT_NEAR(ratio, 1.0, 1e-8) << method;  // rounding of 1e5 steps
     } else {
       EXPECT_LT(ratio, 1.0) << method;
       EXPECT_GT(ratio, 0.0) << method;
     }
-    for (double x = 1e-3; x < 1e5; x *= 3.0) EXPECT_LE(analysis::spectral_radius(r, method, x / fast, 0.9), 1.0 + 1e-6) << method << " " << x;
+    for (double x = 1e-3; x < 1e5; x *= 3.0)
+      EXPECT_LE(analysis::spectral_radius(r, method, x / fast, 0.9), 1.0 + 1e-6)
+          << method << " " << x;
     // short runs: the loss of energy is that of the modes, each by its own root
-    const double once = analysis::energy_ratio(r, method, h, 2000, 0.9), twice = analysis::energy_ratio(r, method, h, 4000, 0.9);
+    const double once = analysis::energy_ratio(r, method, h, 2000, 0.9),
+                 twice = analysis::energy_ratio(r, method, h, 4000, 0.9);
     EXPECT_LE(twice, once * (1.0 + 1e-10)) << method;
   }
   EXPECT_NEAR(analysis::spectral_radius(r, "generalized_alpha", 1e6 / fast, 0.9), 0.9, 1e-2);

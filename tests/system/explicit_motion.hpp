@@ -25,7 +25,9 @@ class Motion {
 /// y = (r, v, phi, gamma, K): src/system/momentum.hpp.
 class MomentumMotion final : public Motion {
  public:
-  MomentumMotion(const System& s, const State& start) : p_(s), y_(p_.size()), t_(start.t) { p_.set_state(start, y_); }
+  MomentumMotion(const System& s, const State& start) : p_(s), y_(p_.size()), t_(start.t) {
+    p_.set_state(start, y_);
+  }
   void advance(double t1, int steps) override {
     const double H = (t1 - t_) / steps, t0 = t_;
     const auto f = [&](double t, const VecX& y) {
@@ -58,7 +60,12 @@ class MomentumMotion final : public Motion {
 class SecondOrderMotion final : public Motion {
  public:
   SecondOrderMotion(const System& s, const State& start)
-      : s_(s), p_(s), w_(s.make_workspace()), m_(s.make_matrices()), y_(2 * s.size()), t_(start.t) {
+      : s_(s),
+        p_(s),
+        w_(s.make_workspace()),
+        m_(s.make_matrices()),
+        y_(2 * s.size()),
+        t_(start.t) {
     p_.frames = start.frames;
     y_ << start.q, start.v;
     for (Index k = 0; k < s.size(); ++k)
@@ -117,7 +124,8 @@ class SecondOrderMotion final : public Motion {
 };
 
 /// Both forms, for tests that run twice.
-inline std::vector<std::pair<const char*, std::unique_ptr<Motion>>> both_forms(const System& s, const State& start) {
+inline std::vector<std::pair<const char*, std::unique_ptr<Motion>>> both_forms(const System& s,
+                                                                               const State& start) {
   std::vector<std::pair<const char*, std::unique_ptr<Motion>>> m;
   m.emplace_back("momentum form", std::make_unique<MomentumMotion>(s, start));
   m.emplace_back("second-order form", std::make_unique<SecondOrderMotion>(s, start));
@@ -127,14 +135,15 @@ inline std::vector<std::pair<const char*, std::unique_ptr<Motion>>> both_forms(c
 /// Body axes of node i in a state, columns (d, b_2, b_3), global axes.
 inline Mat3 attitude(const System& s, const State& x, Index i) {
   const Vec2 g = x.q.segment<2>(6 * i + 4);
-  return x.frames.chart[static_cast<std::size_t>(s.node(i).line)] * rotation::L(Vec3(0, g.x(), g.y())) *
-         rotation::L(Vec3(x.q[6 * i + 3], 0, 0));
+  return x.frames.chart[static_cast<std::size_t>(s.node(i).line)] *
+         rotation::L(Vec3(0, g.x(), g.y())) * rotation::L(Vec3(x.q[6 * i + 3], 0, 0));
 }
 
 /// Angular velocity of node i, global axes.
 inline Vec3 angular_velocity(const System& s, const State& x, Index i) {
   return x.frames.chart[static_cast<std::size_t>(s.node(i).line)] *
-         rotation::omega_of_rates(x.q.segment<2>(6 * i + 4), x.v[6 * i + 3], x.v.segment<2>(6 * i + 4));
+         rotation::omega_of_rates(x.q.segment<2>(6 * i + 4), x.v[6 * i + 3],
+                                  x.v.segment<2>(6 * i + 4));
 }
 
 inline double energy(const System& s, const State& x) {

@@ -37,7 +37,8 @@ VecX run(MomentumProblem& p, double t0, double t1, VecX y, int steps) {
 
 Matrix<6> random_spd(Random& r, double size) {
   Matrix<6> m;
-  for (int i = 0; i < 6; ++i) m.row(i) = r.vector<6>().transpose();
+  for (int i = 0; i < 6; ++i)
+    m.row(i) = r.vector<6>().transpose();
   return size * (m * m.transpose());
 }
 
@@ -45,9 +46,12 @@ Matrix<6> random_spd(Random& r, double size) {
 System mixed(Random& r) {
   Builder b;
   const Index line = b.add_line("rotor", r.rotation());
-  const Index free = b.add_node({Vec3(0.1, 0, 0), line, "free body"}), pivot = b.add_node({Vec3(1, 0, 0), line, "top"});
-  const Index point = b.add_node({Vec3(0.1, 0, 0.2), line, "pedestal"}), ground = b.add_ground(Vec3::Zero(), "ground");
-  for (int c = 0; c < 3; ++c) b.hold(pivot, c);
+  const Index free = b.add_node({Vec3(0.1, 0, 0), line, "free body"}),
+              pivot = b.add_node({Vec3(1, 0, 0), line, "top"});
+  const Index point = b.add_node({Vec3(0.1, 0, 0.2), line, "pedestal"}),
+              ground = b.add_ground(Vec3::Zero(), "ground");
+  for (int c = 0; c < 3; ++c)
+    b.hold(pivot, c);
   b.set_gravity(Vec3(1, 2, -9));
   b.set_base_acceleration(1, make_harmonic(0, 3, 4, 0.5));
   Mat3 J;
@@ -58,13 +62,20 @@ System mixed(Random& r) {
   b.add(PointMass{1.5}, {point}, "mass");
   b.add(SpringBlock{200, 50, -0.2, Vec3(0.6, 0, 0.8)}, {free}, "spring");
   const Matrix<6> zero = Matrix<6>::Zero();
-  b.add(LinearBearing(random_spd(r, 100), random_spd(r, 2), zero, r.vector<6>(), r.vector<6>(), 0.1, 0.2), {free, pivot}, "bearing");
-  b.add(LinearBearing(random_spd(r, 100), random_spd(r, 2), zero, r.vector<6>(), r.vector<6>(), 0.1, 0), {free, ground}, "bearing");
+  b.add(LinearBearing(random_spd(r, 100), random_spd(r, 2), zero, r.vector<6>(), r.vector<6>(), 0.1,
+                      0.2),
+        {free, pivot}, "bearing");
+  b.add(LinearBearing(random_spd(r, 100), random_spd(r, 2), zero, r.vector<6>(), r.vector<6>(), 0.1,
+                      0),
+        {free, ground}, "bearing");
   const Mat3 K = 50 * Mat3::Identity();
-  b.add(TranslationalBearing{K, 0.1 * K, Mat3::Zero(), Vec3::Zero(), Vec3::Zero()}, {free, point}, "support");
-  b.add(BodyLoad{Vec3(1, 2, 3), Vec3(0.1, -0.2, 0.3), 0.1, make_harmonic(1, 1, 3, 0)}, {free}, "load");
+  b.add(TranslationalBearing{K, 0.1 * K, Mat3::Zero(), Vec3::Zero(), Vec3::Zero()}, {free, point},
+        "support");
+  b.add(BodyLoad{Vec3(1, 2, 3), Vec3(0.1, -0.2, 0.3), 0.1, make_harmonic(1, 1, 3, 0)}, {free},
+        "load");
   TorqueLaw law;
-  law.of_time = make_constant(0.7); law.viscous = 0.1;
+  law.of_time = make_constant(0.7);
+  law.viscous = 0.1;
   b.add(JointTorque{law, Vec3::UnitX()}, {pivot}, "drive");
   b.add(FixedTorque{law, Vec3::UnitY()}, {free}, "drive");
   return b.finalize();
@@ -101,8 +112,9 @@ TEST(Momentum, SatisfiesTheSecondOrderEquations) {
 }
 
 TEST(Momentum, OneDiskRotorOfThePaper) {
-  // Sorokin & Zhang 2018, doi 10.18698/2308-6033-2018-10-1815: D = 0.5 m, m = 5 kg, l = 0.75 m, C1 = 2000 N/m, C2 = 500 N m,
-  // 50 rad/s; table: two independent formulations integrated at order 8, rtol 1e-12.
+  // Sorokin & Zhang 2018, doi 10.18698/2308-6033-2018-10-1815: D = 0.5 m, m = 5 kg, l = 0.75 m, C1
+  // = 2000 N/m, C2 = 500 N m, 50 rad/s; table: two independent formulations integrated at order 8,
+  // rtol 1e-12.
   const double D = 0.5, m = 5, l = 0.75, J = m * D * D / 16;
   Builder b;
   const Index line = b.add_line("rotor"), disk = b.add_node({Vec3(l, 0, 0), line, "disk"});
@@ -117,10 +129,11 @@ TEST(Momentum, OneDiskRotorOfThePaper) {
   p.set_state(x, y);
   EXPECT_NEAR(y[9], 2 * J * 50, 1e-12);  // K = J_c . e omega0
 
-  const double table[4][7] = {{1, 0.739505515, -0.00613730358, -0.0785390156, 49.9972956, 0.0749684786, -0.00826746605},
-                              {2, 0.753673251, 0.0742199631, -0.0987913595, 99.9977928, 0.0910020105, 0.0677597893},
-                              {5, 0.737350448, 0.00925074668, -0.104446011, 249.988669, 0.0968815038, 0.0116157341},
-                              {10, 0.745250642, 0.0181325644, -0.136435971, 499.977124, 0.126412517, 0.0145155382}};
+  const double table[4][7] = {
+      {1, 0.739505515, -0.00613730358, -0.0785390156, 49.9972956, 0.0749684786, -0.00826746605},
+      {2, 0.753673251, 0.0742199631, -0.0987913595, 99.9977928, 0.0910020105, 0.0677597893},
+      {5, 0.737350448, 0.00925074668, -0.104446011, 249.988669, 0.0968815038, 0.0116157341},
+      {10, 0.745250642, 0.0181325644, -0.136435971, 499.977124, 0.126412517, 0.0145155382}};
   double t = 0;
   Workspace w = s.make_workspace();
   const auto energy = [&](const State& z) {
@@ -136,9 +149,12 @@ TEST(Momentum, OneDiskRotorOfThePaper) {
     y = run(p, t, row[0], y, static_cast<int>(200 * (row[0] - t)));
     t = row[0];
     ASSERT_TRUE(p.get_state(t, y, x));
-    const double computed[6] = {l + x.q[0], x.q[1], x.q[2], x.total_phi(disk, line), x.q[4], x.q[5]};
+    const double computed[6] = {l + x.q[0], x.q[1], x.q[2], x.total_phi(disk, line),
+                                x.q[4],     x.q[5]};
     // nine figures are printed
-    for (int i = 0; i < 6; ++i) EXPECT_NEAR(computed[i], row[i + 1], 6e-9 * std::abs(row[i + 1])) << "t " << t << " column " << i;
+    for (int i = 0; i < 6; ++i)
+      EXPECT_NEAR(computed[i], row[i + 1], 6e-9 * std::abs(row[i + 1]))
+          << "t " << t << " column " << i;
     EXPECT_NEAR(energy(x), E0, 1e-9) << "energy, J";
     s.evaluate_nodes(w, x.frames, t, x.q, x.v, x.a);
     EXPECT_NEAR(w.nodes[0].spin(), 50.0, 1e-10);  // omega.d is an invariant of this rotor
@@ -160,28 +176,48 @@ TEST(Momentum, RefusesWhatItDoesNotCover) {
     return std::string("covered");
   };
   const RigidDisk disk{1, 1, 2, 0};
-  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  const auto has = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+  };
   EXPECT_EQ(refusal([&](Builder& b, Index n) { b.add(disk, {n}, "disk"); }), "covered");
-  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) { b.add(disk, {n}, "disk"); b.hold(n, 1); }), "partly held"));
-  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) { b.add(SpringBlock{1, 1, 0, Vec3::UnitX()}, {n}, "spring"); }), "without mass"));
-  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) { b.add(RigidDisk{1, 0, 0, 0}, {n}, "disk"); }), "rotary inertia"));
-  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
-                    b.add(disk, {n}, "disk"); b.add(UnbalanceMass(1, 0, make_ramp(0, 1, 0, 1)), {n}, "unbalance");
-                  }), "changes in time"));
   EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
                     b.add(disk, {n}, "disk");
-                    for (int c = 0; c < 3; ++c) b.hold(n, c, make_harmonic(0, 1, 1, 0));
-                  }), "prescribed"));
+                    b.hold(n, 1);
+                  }),
+                  "partly held"));
+  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
+                    b.add(SpringBlock{1, 1, 0, Vec3::UnitX()}, {n}, "spring");
+                  }),
+                  "without mass"));
+  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
+                    b.add(RigidDisk{1, 0, 0, 0}, {n}, "disk");
+                  }),
+                  "rotary inertia"));
   EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
                     b.add(disk, {n}, "disk");
-                    b.add(TranslationalBearing{Mat3::Zero(), Mat3::Zero(), Mat3::Identity(), Vec3::Zero(), Vec3::Zero()},
+                    b.add(UnbalanceMass(1, 0, make_ramp(0, 1, 0, 1)), {n}, "unbalance");
+                  }),
+                  "changes in time"));
+  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
+                    b.add(disk, {n}, "disk");
+                    for (int c = 0; c < 3; ++c)
+                      b.hold(n, c, make_harmonic(0, 1, 1, 0));
+                  }),
+                  "prescribed"));
+  EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
+                    b.add(disk, {n}, "disk");
+                    b.add(TranslationalBearing{Mat3::Zero(), Mat3::Zero(), Mat3::Identity(),
+                                               Vec3::Zero(), Vec3::Zero()},
                           {n, b.add_ground(Vec3::Zero(), "ground")}, "bearing");
-                  }), "mass in bearing"));
-  EXPECT_TRUE(has(refusal([](Builder& b, Index) { b.add_ground(Vec3::Zero(), "ground"); }), "nothing that moves"));
+                  }),
+                  "mass in bearing"));
+  EXPECT_TRUE(has(refusal([](Builder& b, Index) { b.add_ground(Vec3::Zero(), "ground"); }),
+                  "nothing that moves"));
 }
 
 TEST(Momentum, ChartsAndTurnsDoNotChangeTheMotion) {
-  // A fast tumbling body: with charts moved, against the same body integrated in the one chart that never needs it.
+  // A fast tumbling body: with charts moved, against the same body integrated in the one chart that
+  // never needs it.
   Builder b;
   const Index line = b.add_line("body"), n = b.add_node({Vec3::Zero(), line, "body"});
   Mat3 J;
@@ -223,7 +259,8 @@ TEST(Momentum, ChartsAndTurnsDoNotChangeTheMotion) {
   const Y q = extrapolate(rate, Real(0), Real(20), Y(Y(1, 0, 0, 0)), 1000);
   const RVec3 u = q.tail<3>();
   const RMat3 S = r_skew(u), R = RMat3::Identity() + 2 * (q[0] * S + S * S) / q.squaredNorm();
-  const Mat3 attitude = p.frames.chart[0] * rotation::L(Vec3(0, y[7], y[8])) * rotation::L(Vec3(y[6], 0, 0));
+  const Mat3 attitude =
+      p.frames.chart[0] * rotation::L(Vec3(0, y[7], y[8])) * rotation::L(Vec3(y[6], 0, 0));
   EXPECT_LT((attitude - R.cast<double>()).norm(), 1e-10);
   const Vec3 K = y.segment<3>(9);
   EXPECT_LT((K - K0).norm(), 1e-15);

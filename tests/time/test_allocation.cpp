@@ -14,7 +14,9 @@ std::atomic<bool> counting{false};
 std::atomic<long> allocations{0};
 void* get(std::size_t size, std::size_t alignment) {
   if (counting) ++allocations;
-  void* p = alignment ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment) : std::malloc(size ? size : 1);
+  void* p = alignment
+                ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                : std::malloc(size ? size : 1);
   if (!p) throw std::bad_alloc();
   return p;
 }
@@ -22,8 +24,12 @@ void* get(std::size_t size, std::size_t alignment) {
 
 void* operator new(std::size_t size) { return get(size, 0); }
 void* operator new[](std::size_t size) { return get(size, 0); }
-void* operator new(std::size_t size, std::align_val_t a) { return get(size, static_cast<std::size_t>(a)); }
-void* operator new[](std::size_t size, std::align_val_t a) { return get(size, static_cast<std::size_t>(a)); }
+void* operator new(std::size_t size, std::align_val_t a) {
+  return get(size, static_cast<std::size_t>(a));
+}
+void* operator new[](std::size_t size, std::align_val_t a) {
+  return get(size, static_cast<std::size_t>(a));
+}
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete[](void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
@@ -57,7 +63,12 @@ TEST(Allocation, TheCounterCounts) {
 TEST(Allocation, StepsDoNotAllocate) {
   for (const char* name : {"radau5", "gauss4", "gauss6", "generalized_alpha"}) {
     LavalRotor p;
-    p.m = 1.0; p.e = 0.05; p.J = 0.02; p.k = 100.0; p.c = 0.3; p.torque = 3.0;
+    p.m = 1.0;
+    p.e = 0.05;
+    p.J = 0.02;
+    p.k = 100.0;
+    p.c = 0.3;
+    p.torque = 3.0;
     Options o;
     o.tolerance = 1e-4;
     o.breakpoints = {0.3, 0.77};

@@ -1,4 +1,5 @@
-// The loop around one step: stops hit exactly, rejections of every kind, discontinuities, chart changes, failures.
+// The loop around one step: stops hit exactly, rejections of every kind, discontinuities, chart
+// changes, failures.
 #include "toys.hpp"
 #include <core/error.hpp>
 #include <time/step_control.hpp>
@@ -41,14 +42,15 @@ TEST(Control, BreakpointsAndEndAreHitExactly) {
     }
 }
 
-// Steps that grow back from a short one leave proposals behind that are short against the steps that follow: those must not take a step back whose
-// own error asks for a longer one.
+// Steps that grow back from a short one leave proposals behind that are short against the steps
+// that follow: those must not take a step back whose own error asks for a longer one.
 TEST(Control, GrowingStepsAreNotTakenBack) {
   StepControl c;
   c.configure(4);
   double h = 1e-6;
-  for (int k = 0; k < 8; ++k) h = c.accepted(h, 1e-8, 2, 10);
-  for (double error : {0.3, 0.05, 0.2, 0.3}) {   // proposals of 1.2 to 1.9
+  for (int k = 0; k < 8; ++k)
+    h = c.accepted(h, 1e-8, 2, 10);
+  for (double error : {0.3, 0.05, 0.2, 0.3}) {  // proposals of 1.2 to 1.9
     const double next = c.accepted(h, error, 2, 10);
     EXPECT_GE(next, h) << error;
     h = next;
@@ -56,7 +58,8 @@ TEST(Control, GrowingStepsAreNotTakenBack) {
   EXPECT_LT(c.accepted(h, 0.98, 2, 10), h);
 }
 
-// Newton failed at h: for some steps nothing as long as h is proposed, however small the error; then it is tried again.
+// Newton failed at h: for some steps nothing as long as h is proposed, however small the error;
+// then it is tried again.
 TEST(Control, NewtonFailuresAreRemembered) {
   StepControl c;
   c.configure(4);
@@ -74,12 +77,14 @@ TEST(Control, NewtonFailuresAreRemembered) {
   EXPECT_LE(steps, 10);
 }
 
-// A force that switches on and off: with breakpoints the order is kept although the law is right-continuous (the step that
-// ends at the switch must see the left limit).
+// A force that switches on and off: with breakpoints the order is kept although the law is
+// right-continuous (the step that ends at the switch must see the left limit).
 TEST(Control, JumpsAtBreakpointsKeepTheOrder) {
   auto error = [](const char* name, int n) {
     MatX one = MatX::Ones(1, 1);
-    LinearProblem p(all(1), one, 0.2 * one, 25.0 * one, [](double t, Ref f) { f[0] = t >= 0.3 && t < 0.8 ? 10.0 : 0.0; }, false);
+    LinearProblem p(
+        all(1), one, 0.2 * one, 25.0 * one,
+        [](double t, Ref f) { f[0] = t >= 0.3 && t < 0.8 ? 10.0 : 0.0; }, false);
     Options o;
     o.dt_fixed = 0.1 / n;
     o.tolerance = 1e-10;
@@ -90,7 +95,10 @@ TEST(Control, JumpsAtBreakpointsKeepTheOrder) {
     EXPECT_EQ(run(*integrator, 1.0), StepStatus::ok);
     // q = sum of free decay and two step responses
     const double d = 0.1, w = std::sqrt(25.0 - d * d);
-    auto step = [&](double t) { return t < 0 ? 0.0 : (1.0 - std::exp(-d * t) * (std::cos(w * t) + d / w * std::sin(w * t))) / 25.0; };
+    auto step = [&](double t) {
+      return t < 0 ? 0.0
+                   : (1.0 - std::exp(-d * t) * (std::cos(w * t) + d / w * std::sin(w * t))) / 25.0;
+    };
     const double exact = 0.1 * (1.0 - 25.0 * step(1.0)) + 10.0 * (step(0.7) - step(0.2));
     return std::abs(integrator->q()[0] - exact);
   };
@@ -104,7 +112,9 @@ TEST(Control, JumpsAtBreakpointsKeepTheOrder) {
 TEST(Control, ErrorTestRejects) {
   // a sharp pulse nobody announced
   MatX one = MatX::Ones(1, 1);
-  LinearProblem p(all(1), one, one, one, [](double t, Ref f) { f[0] = std::exp(-1e6 * (t - 0.5) * (t - 0.5)) * 1e3; }, false);
+  LinearProblem p(
+      all(1), one, one, one,
+      [](double t, Ref f) { f[0] = std::exp(-1e6 * (t - 0.5) * (t - 0.5)) * 1e3; }, false);
   for (const char* name : {"radau5", "gauss6"}) {
     Options o;
     o.tolerance = 1e-5;
@@ -121,7 +131,8 @@ TEST(Control, ErrorTestRejects) {
   }
 }
 
-/// q'' = -1 above the floor q = 0, where residual() refuses to go: a spring of growing stiffness, film-like.
+/// q'' = -1 above the floor q = 0, where residual() refuses to go: a spring of growing stiffness,
+/// film-like.
 class Film final : public DenseProblem {
  public:
   Film() : DenseProblem(all(1)) { M.setOnes(); }
@@ -145,7 +156,7 @@ TEST(Control, RefusedConfigurationsShortenTheStep) {
     Film p;
     Options o;
     o.tolerance = name == std::string_view("generalized_alpha") ? 1e-3 : 1e-5;
-    o.dt_first = 3.0;   // falls through the floor at once
+    o.dt_first = 3.0;  // falls through the floor at once
     auto integrator = make_integrator(name, p, o);
     integrator->start(0.0, VecX::Constant(1, 0.5), VecX::Constant(1, -2.0));
     EXPECT_EQ(run(*integrator, 1.0), StepStatus::ok) << name;
@@ -163,7 +174,8 @@ TEST(Control, RefusedConfigurationsShortenTheStep) {
   }
 }
 
-/// Becomes impassable at q >= 1: every scheme must give up with a reason, at once, and stay where it was.
+/// Becomes impassable at q >= 1: every scheme must give up with a reason, at once, and stay where
+/// it was.
 class Wall final : public DenseProblem {
  public:
   Wall() : DenseProblem(all(1)) { M.setOnes(); }
@@ -184,15 +196,19 @@ TEST(Control, ImpassableStatesAreReported) {
     integrator->start(0.0, VecX::Zero(1), VecX::Ones(1));
     StepReport s;
     int steps = 0;
-    do { s = integrator->advance(); ++steps; }
-    while (s.ok() && steps < 10000);
+    do {
+      s = integrator->advance();
+      ++steps;
+    } while (s.ok() && steps < 10000);
     EXPECT_EQ(s.status, StepStatus::domain) << name;
     EXPECT_NEAR(integrator->time(), 1.0, 1e-8) << name;
     EXPECT_EQ(integrator->time(), s.t0);
     EXPECT_NEAR(integrator->q()[0], integrator->time(), 1e-12);
     // asked again it may creep on by steps of dt_min, with the same end
-    do { s = integrator->advance(); ++steps; }
-    while (s.ok() && steps < 10000);
+    do {
+      s = integrator->advance();
+      ++steps;
+    } while (s.ok() && steps < 10000);
     EXPECT_EQ(s.status, StepStatus::domain) << name;
     EXPECT_LT(integrator->q()[0], 1.0);
   }
@@ -203,7 +219,7 @@ class Lying final : public DenseProblem {
  public:
   Lying() : DenseProblem(all(1)) {}
   bool residual(double t, CRef, CRef, CRef a, Ref r) override {
-    r[0] = t < 0.5 ? a[0] : -a[0] + 1.0;   // M changes sign behind the tangent's back
+    r[0] = t < 0.5 ? a[0] : -a[0] + 1.0;  // M changes sign behind the tangent's back
     return true;
   }
   void tangent(double, CRef, CRef, CRef) override { M.setOnes(); }
@@ -218,17 +234,19 @@ TEST(Control, NewtonFailureIsReported) {
     auto integrator = make_integrator(name, p, o);
     integrator->start(0.0, VecX::Zero(1), VecX::Ones(1));
     StepReport s;
-    do s = integrator->advance();
+    do
+      s = integrator->advance();
     while (s.ok() && integrator->time() < 1.0);
     EXPECT_EQ(s.status, StepStatus::newton) << name;
-    EXPECT_NEAR(integrator->time(), 0.5, 5e-3) << name;   // the last stage of a Gauss step stands before its end
+    EXPECT_NEAR(integrator->time(), 0.5, 5e-3)
+        << name;  // the last stage of a Gauss step stands before its end
   }
 }
 
 TEST(Control, SingularMatricesAreReported) {
   for (const char* name : names) {
     MatX zero = MatX::Zero(2, 2), M = zero;
-    M(0, 0) = 1.0;   // the second unknown is in no equation
+    M(0, 0) = 1.0;  // the second unknown is in no equation
     LinearProblem p(all(2), M, zero, zero);
     auto integrator = make_integrator(name, p, Options{});
     EXPECT_THROW(integrator->start(0.0, VecX::Zero(2), VecX::Zero(2)), Error) << name;
@@ -256,8 +274,8 @@ TEST(Control, FixedStepsRecoverByHalving) {
   EXPECT_GT(integrator->statistics().rejected_newton, 0);
 }
 
-// A support that is hit: its prescribed velocity jumps by dv at a breakpoint. The pendulum's angle rate must jump by
-// -cos(theta) dv (impulse of the rigid drive), nothing else.
+// A support that is hit: its prescribed velocity jumps by dv at a breakpoint. The pendulum's angle
+// rate must jump by -cos(theta) dv (impulse of the rigid drive), nothing else.
 class Jolt final : public DenseProblem {
  public:
   Jolt() : DenseProblem({Kind::held, Kind::tilt}) {}
@@ -306,28 +324,33 @@ TEST(Control, JumpOfAPrescribedVelocityIsAnImpulse) {
 TEST(Control, AMillionRevolutions) {
   for (const char* name : {"radau5", "gauss4", "generalized_alpha"}) {
     LavalRotor p;
-    p.e = 0.0; p.torque = 0.0;
+    p.e = 0.0;
+    p.torque = 0.0;
     Options o;
     const double omega = 523.6, dt = 0.93 * two_pi / omega;
     o.dt_fixed = dt;
     auto integrator = make_integrator(name, p, o);
     integrator->start(0.0, VecX::Zero(3), Vec3(0.0, 0.0, omega));
     long steps = 0;
-    for (; p.turns < 1e6; ++steps) ASSERT_TRUE(integrator->advance().ok());
+    for (; p.turns < 1e6; ++steps)
+      ASSERT_TRUE(integrator->advance().ok());
     EXPECT_EQ(integrator->v()[2], omega) << name;
-    const long double exact = static_cast<long double>(omega) * static_cast<long double>(dt) * static_cast<long double>(steps);
-    const long double phi = static_cast<long double>(p.turns) * static_cast<long double>(two_pi) + integrator->q()[2];
-    // h v0 is rounded once a step, always alike: 1e-16 of the angle; taking turns out rounds randomly
+    const long double exact = static_cast<long double>(omega) * static_cast<long double>(dt) *
+                              static_cast<long double>(steps);
+    const long double phi =
+        static_cast<long double>(p.turns) * static_cast<long double>(two_pi) + integrator->q()[2];
+    // h v0 is rounded once a step, always alike: 1e-16 of the angle; taking turns out rounds
+    // randomly
     EXPECT_NEAR(static_cast<double>(phi - exact), 0.0, 3e-9) << name;
   }
 }
 
-/// A rotation angle kept in a chart: q is re-expressed (q -> q - 1, all rates doubled in a second unknown's unit) at every
-/// crossing of 1; the exact solution is known.
+/// A rotation angle kept in a chart: q is re-expressed (q -> q - 1, all rates doubled in a second
+/// unknown's unit) at every crossing of 1; the exact solution is known.
 class Charted final : public DenseProblem {
  public:
   Charted() : DenseProblem(all(1, Kind::tilt)) { M.setOnes(); }
-  double shift = 0.0, unit = 1.0;   // true angle = shift + unit q
+  double shift = 0.0, unit = 1.0;  // true angle = shift + unit q
   bool residual(double, CRef q, CRef, CRef a, Ref r) override {
     r[0] = a[0] + 4.0 * (shift / unit + q[0]);
     return true;
@@ -337,7 +360,9 @@ class Charted final : public DenseProblem {
     if (std::abs(q[0]) < 0.5) return false;
     const double f = unit == 1.0 ? 2.0 : 0.5;
     shift += 0.7 * unit * q[0];
-    q *= 0.3 / f; v /= f; a /= f;
+    q *= 0.3 / f;
+    v /= f;
+    a /= f;
     unit *= f;
     ++changes;
     return true;
@@ -354,7 +379,9 @@ TEST(Control, ChartChangesLoseNothing) {
     integrator->start(0.0, VecX::Constant(1, 0.4), VecX::Constant(1, 1.5));
     EXPECT_EQ(run(*integrator, 10.0), StepStatus::ok);
     EXPECT_GE(p.changes, 3);
-    EXPECT_NEAR(p.shift + p.unit * integrator->q()[0], 0.4 * std::cos(20.0) + 0.75 * std::sin(20.0), 1e-6) << name;
+    EXPECT_NEAR(p.shift + p.unit * integrator->q()[0], 0.4 * std::cos(20.0) + 0.75 * std::sin(20.0),
+                1e-6)
+        << name;
   }
 }
 
@@ -362,9 +389,15 @@ TEST(Control, BadOptionsAreRefused) {
   auto p = oscillator(1.0);
   EXPECT_THROW(make_integrator("radau7", p, Options{}), Error);
   for (auto spoil : std::vector<std::function<void(Options&)>>{
-           [](Options& o) { o.tolerance = 0.0; }, [](Options& o) { o.tolerance = nan; }, [](Options& o) { o.rho_inf = 1.1; },
-           [](Options& o) { o.dt_fixed = -1.0; }, [](Options& o) { o.dt_max = 0.0; }, [](Options& o) { o.dt_min = 1.0; o.dt_max = 0.5; },
-           [](Options& o) { o.t_end = nan; }, [](Options& o) { o.scales.length = 0.0; }, [](Options& o) { o.max_newton = 0; }}) {
+           [](Options& o) { o.tolerance = 0.0; }, [](Options& o) { o.tolerance = nan; },
+           [](Options& o) { o.rho_inf = 1.1; }, [](Options& o) { o.dt_fixed = -1.0; },
+           [](Options& o) { o.dt_max = 0.0; },
+           [](Options& o) {
+             o.dt_min = 1.0;
+             o.dt_max = 0.5;
+           },
+           [](Options& o) { o.t_end = nan; }, [](Options& o) { o.scales.length = 0.0; },
+           [](Options& o) { o.max_newton = 0; }}) {
     Options o;
     spoil(o);
     EXPECT_THROW(make_integrator("radau5", p, o), Error);

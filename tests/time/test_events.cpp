@@ -16,7 +16,8 @@ TEST(Events, CrossingsAreFoundInOrder) {
     integrator->start(0.0, VecX::Constant(1, 1.0), VecX::Zero(1));
     for (int direction : {0, 1, -1}) {
       integrator->start(0.0, VecX::Constant(1, 1.0), VecX::Zero(1));
-      EventLocator locator(1, {[](double, CRef q, CRef, CRef) { return q[0] - 0.5; }, direction, 1e-12});
+      EventLocator locator(
+          1, {[](double, CRef q, CRef, CRef) { return q[0] - 0.5; }, direction, 1e-12});
       locator.begin(*integrator);
       std::vector<double> found;
       integrator->set_end(14.0);
@@ -37,7 +38,8 @@ TEST(Events, CrossingsAreFoundInOrder) {
       }
       std::erase_if(exact, [](double t) { return t > 14.0; });
       ASSERT_EQ(found.size(), exact.size()) << name << " " << direction;
-      for (std::size_t k = 0; k < exact.size(); ++k) EXPECT_NEAR(found[k], exact[k], 10.0 * o.tolerance) << name;
+      for (std::size_t k = 0; k < exact.size(); ++k)
+        EXPECT_NEAR(found[k], exact[k], 10.0 * o.tolerance) << name;
     }
   }
 }
@@ -54,7 +56,7 @@ TEST(Events, TwoCrossingsInOneStep) {
   const StepReport s = integrator->advance();
   double t = 0.0;
   ASSERT_TRUE(locator.find(*integrator, s, t));
-  EXPECT_NEAR(t, -std::acos(0.9), 2e-2);   // the interpolant of a step of 2.5 rad
+  EXPECT_NEAR(t, -std::acos(0.9), 2e-2);  // the interpolant of a step of 2.5 rad
 }
 
 TEST(Events, TheTimeLiesBeyondTheCrossing) {
@@ -68,7 +70,8 @@ TEST(Events, TheTimeLiesBeyondTheCrossing) {
   locator.begin(*integrator);
   double t = 0.0;
   StepReport s;
-  do s = integrator->advance();
+  do
+    s = integrator->advance();
   while (!locator.find(*integrator, s, t));
   VecX q(1), v(1), a(1);
   integrator->interpolate(t, q, v, a);
@@ -76,10 +79,16 @@ TEST(Events, TheTimeLiesBeyondTheCrossing) {
   EXPECT_LT(g(t, q, v, a), 1e-9);
 }
 
-// Landing on an event: the step made again is a step of the scheme, not a point of its interpolant, and the run goes on.
+// Landing on an event: the step made again is a step of the scheme, not a point of its interpolant,
+// and the run goes on.
 TEST(Events, StepsMadeAgainEndOnTheEvent) {
   LavalRotor model;
-  model.m = 1.0; model.e = 0.05; model.J = 0.02; model.k = 100.0; model.c = 0.3; model.torque = 0.5;
+  model.m = 1.0;
+  model.e = 0.05;
+  model.J = 0.02;
+  model.k = 100.0;
+  model.c = 0.3;
+  model.torque = 0.5;
   VecX y0(6);
   y0 << 0.02, -0.01, 0.3, 0.1, 0.2, 2.0;
   for (const char* name : {"radau5", "gauss4", "gauss6", "generalized_alpha"}) {
@@ -116,8 +125,10 @@ TEST(Events, StepsMadeAgainEndOnTheEvent) {
       }
     }
     EXPECT_TRUE(landed);
-    const VecX y = reference([&](double, const VecX& x) { return model.rate(x); }, 0.0, 2.0, y0, 800);
-    EXPECT_NEAR((integrator->q().head(2) - y.head(2)).norm(), 0.0, 50.0 * o.tolerance * 0.1) << name;
+    const VecX y =
+        reference([&](double, const VecX& x) { return model.rate(x); }, 0.0, 2.0, y0, 800);
+    EXPECT_NEAR((integrator->q().head(2) - y.head(2)).norm(), 0.0, 50.0 * o.tolerance * 0.1)
+        << name;
     EXPECT_NEAR(p.phi(integrator->q()), y[2], 50.0 * o.tolerance) << name;
   }
 }

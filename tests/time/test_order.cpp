@@ -1,4 +1,5 @@
-// Measured orders of every scheme on nonlinear problems with M(q), gyroscopic terms, prescribed motion and massless rows.
+// Measured orders of every scheme on nonlinear problems with M(q), gyroscopic terms, prescribed
+// motion and massless rows.
 #include "toys.hpp"
 #include <gtest/gtest.h>
 #include <cmath>
@@ -10,15 +11,19 @@ struct Scheme {
   const char* name;
   double order;
 };
-constexpr Scheme schemes[] = {{"radau5", 5}, {"gauss4", 4}, {"gauss6", 6}, {"generalized_alpha", 2}};
+constexpr Scheme schemes[] = {
+    {"radau5", 5}, {"gauss4", 4}, {"gauss6", 6}, {"generalized_alpha", 2}};
 
-/// Slope of log(error) over log(steps) between the two finest of three runs; errors(n) runs with n equal steps.
-double slope(const std::function<double(int)>& error, int n) { return std::log2(error(n) / error(2 * n)); }
+/// Slope of log(error) over log(steps) between the two finest of three runs; errors(n) runs with n
+/// equal steps.
+double slope(const std::function<double(int)>& error, int n) {
+  return std::log2(error(n) / error(2 * n));
+}
 
 Options fixed(double dt) {
   Options o;
   o.dt_fixed = dt;
-  o.tolerance = 1e-10;   // Newton converges far below the errors measured
+  o.tolerance = 1e-10;  // Newton converges far below the errors measured
   o.max_newton = 30;
   return o;
 }
@@ -50,7 +55,13 @@ TEST(Order, DoublePendulum) {
 
 TEST(Order, LavalRotorWithFreeSpinAndGyroscopicCoupling) {
   LavalRotor model;
-  model.m = 1.0; model.e = 0.05; model.J = 0.02; model.k = 100.0; model.c = 0.3; model.b = 2.0; model.torque = 0.5;
+  model.m = 1.0;
+  model.e = 0.05;
+  model.J = 0.02;
+  model.k = 100.0;
+  model.c = 0.3;
+  model.b = 2.0;
+  model.torque = 0.5;
   VecX y0(6);
   y0 << 0.02, -0.01, 0.3, 0.1, 0.2, 12.0;
   const VecX y = reference([&](double, const VecX& x) { return model.rate(x); }, 0.0, 1.0, y0, 400);
@@ -72,14 +83,16 @@ TEST(Order, PrescribedMotion) {
   DrivenPendulum model;
   VecX y0(2);
   y0 << 0.8, 0.0;
-  const VecX y = reference([&](double t, const VecX& x) { return model.rate(t, x); }, 0.0, 2.0, y0, 200);
+  const VecX y =
+      reference([&](double t, const VecX& x) { return model.rate(t, x); }, 0.0, 2.0, y0, 200);
   for (const Scheme& s : schemes) {
     auto error = [&](int n) {
       DrivenPendulum p;
       auto integrator = make_integrator(s.name, p, fixed(2.0 / n));
       integrator->start(0.0, Vec2(0.0, y0[0]), Vec2(0.0, y0[1]));
       EXPECT_EQ(run(*integrator, 2.0), StepStatus::ok);
-      EXPECT_EQ(integrator->q()[0], p.amplitude * std::cos(p.w * 2.0));   // the law itself, to the last bit
+      EXPECT_EQ(integrator->q()[0],
+                p.amplitude * std::cos(p.w * 2.0));  // the law itself, to the last bit
       EXPECT_EQ(integrator->v()[0], -p.amplitude * p.w * std::sin(p.w * 2.0));
       return std::abs(integrator->q()[1] - y[0]) + 0.2 * std::abs(integrator->v()[1] - y[1]);
     };
@@ -87,25 +100,33 @@ TEST(Order, PrescribedMotion) {
   }
 }
 
-// A mass on a spring in series with a damper and a massless joint: unknowns (mass, joint, follower). Joint: first order
-// (c x2' + k x2 = k x1); follower: algebraic (x3 = x1 + x2, no C, no M).
+// A mass on a spring in series with a damper and a massless joint: unknowns (mass, joint,
+// follower). Joint: first order (c x2' + k x2 = k x1); follower: algebraic (x3 = x1 + x2, no C, no
+// M).
 LinearProblem maxwell() {
   MatX M = MatX::Zero(3, 3), C = M, K = M;
   M(0, 0) = 1.0;
-  K(0, 0) = 30.0; K(0, 1) = -20.0;
-  C(1, 1) = 5.0; K(1, 1) = 20.0; K(1, 0) = -20.0;
-  K(2, 0) = -1.0; K(2, 1) = -1.0; K(2, 2) = 1.0;
-  return LinearProblem({Kind::displacement, Kind::displacement, Kind::internal}, M, C, K,
-                       [](double t, Ref f) { f[0] = std::cos(2.0 * t); }, false);
+  K(0, 0) = 30.0;
+  K(0, 1) = -20.0;
+  C(1, 1) = 5.0;
+  K(1, 1) = 20.0;
+  K(1, 0) = -20.0;
+  K(2, 0) = -1.0;
+  K(2, 1) = -1.0;
+  K(2, 2) = 1.0;
+  return LinearProblem(
+      {Kind::displacement, Kind::displacement, Kind::internal}, M, C, K,
+      [](double t, Ref f) { f[0] = std::cos(2.0 * t); }, false);
 }
 
 TEST(Order, MasslessUnknowns) {
   VecX y0(3);
-  y0 << 0.1, 0.05, 0.0;   // mass, joint, velocity of the mass
+  y0 << 0.1, 0.05, 0.0;  // mass, joint, velocity of the mass
   const VecX y = reference(
       [](double t, const VecX& x) {
         VecX dy(3);
-        dy << x[2], (20.0 * x[0] - 20.0 * x[1]) / 5.0, std::cos(2.0 * t) - 30.0 * x[0] + 20.0 * x[1];
+        dy << x[2], (20.0 * x[0] - 20.0 * x[1]) / 5.0,
+            std::cos(2.0 * t) - 30.0 * x[0] + 20.0 * x[1];
         return dy;
       },
       0.0, 2.0, y0, 200);
@@ -118,7 +139,8 @@ TEST(Order, MasslessUnknowns) {
       EXPECT_NEAR(integrator->q()[2], 0.15, 1e-12);
       EXPECT_NEAR(integrator->v()[1], 0.2, 1e-9);
       EXPECT_EQ(run(*integrator, 2.0), StepStatus::ok);
-      // Radau and generalized-alpha satisfy algebraic rows at every step's end, Gauss only to its stage order
+      // Radau and generalized-alpha satisfy algebraic rows at every step's end, Gauss only to its
+      // stage order
       if (std::string_view(s.name).starts_with("gauss")) {
         EXPECT_NEAR(integrator->q()[2], y[0] + y[1], 1e-4);
       } else {
@@ -130,7 +152,8 @@ TEST(Order, MasslessUnknowns) {
   }
 }
 
-// A change of step must not cost generalized-alpha its second order, nor disturb the others: alternating steps h, 2h.
+// A change of step must not cost generalized-alpha its second order, nor disturb the others:
+// alternating steps h, 2h.
 TEST(Order, UnequalSteps) {
   VecX y0(4);
   y0 << 1.0, 0.5, 0.0, 0.3;

@@ -8,7 +8,13 @@ namespace {
 
 LavalRotor rotor() {
   LavalRotor p;
-  p.m = 1.0; p.e = 0.02; p.J = 0.02; p.k = 400.0; p.c = 0.3; p.b = 1.0; p.torque = 0.8;
+  p.m = 1.0;
+  p.e = 0.02;
+  p.J = 0.02;
+  p.k = 400.0;
+  p.c = 0.3;
+  p.b = 1.0;
+  p.torque = 0.8;
   return p;
 }
 
@@ -35,12 +41,14 @@ void check(const char* name, double dt_fixed) {
   original->start(0.0, Vec3(0.01, 0.0, 0.0), Vec3(0.0, 0.1, 5.0));
   std::vector<double> saved_at;
   for (int cut = 0; cut < 6; ++cut) {
-    // cuts: after start, after a few steps, right on a breakpoint, after a whole turn was taken out, near the end
+    // cuts: after start, after a few steps, right on a breakpoint, after a whole turn was taken
+    // out, near the end
     const double until[] = {0.0, 0.05, 0.9, 1.3, 2.2, 2.9};
-    while (original->time() < until[cut]) ASSERT_TRUE(original->advance().ok());
+    while (original->time() < until[cut])
+      ASSERT_TRUE(original->advance().ok());
     const std::vector<double> file = original->save().serialize();
     LavalRotor p2 = rotor();
-    p2.turns = p.turns;   // the problem's own state is its owner's business
+    p2.turns = p.turns;  // the problem's own state is its owner's business
     auto resumed = make_integrator(name, p2, o);
     resumed->restore(IntegratorState::deserialize(file));
     expect_same(*original, *resumed, what + " at once");
@@ -62,7 +70,8 @@ void check(const char* name, double dt_fixed) {
 
 TEST(SaveRestore, BitIdentical) {
   for (const char* name : {"radau5", "gauss4", "gauss6", "generalized_alpha"})
-    for (double dt : {0.0, 0.013}) check(name, dt);
+    for (double dt : {0.0, 0.013})
+      check(name, dt);
 }
 
 TEST(SaveRestore, BitIdenticalIda) {
@@ -70,8 +79,9 @@ TEST(SaveRestore, BitIdenticalIda) {
   check("ida", 0.0);
 }
 
-/// One integrator that saves every `marks` steps, and one that is made anew from what was saved there each time, as a run that is killed
-/// again and again: all states are equal. (Weights that remember the step of IDA's life before show in a few of a hundred marks.)
+/// One integrator that saves every `marks` steps, and one that is made anew from what was saved
+/// there each time, as a run that is killed again and again: all states are equal. (Weights that
+/// remember the step of IDA's life before show in a few of a hundred marks.)
 void check_many_marks(const char* name, double tolerance, int marks) {
   Options o;
   o.tolerance = tolerance;
@@ -100,7 +110,9 @@ TEST(SaveRestore, BitIdenticalOverManyMarks) {
     if (std::string(name) == "ida" && !Plugin::available("sundials")) continue;
     for (const double tolerance : {1e-2, 1e-3, 1e-4})
       // IDA begins at order 1 and a tenth of its step again: far between, or it would not get on
-      for (const int marks : std::string(name) == "ida" ? std::vector<int>{20, 33, 60} : std::vector<int>{1, 5, 20}) check_many_marks(name, tolerance, marks);
+      for (const int marks :
+           std::string(name) == "ida" ? std::vector<int>{20, 33, 60} : std::vector<int>{1, 5, 20})
+        check_many_marks(name, tolerance, marks);
   }
 }
 

@@ -47,7 +47,7 @@ TEST_F(Sundials, IdaOnAFreeSpinThroughResonance) {
     spin = std::max(spin, std::abs(p.phi(integrator->q()) - y[2]));
   }
   EXPECT_LT(error, 0.015 * peak);
-  EXPECT_LT(spin, 1e-2);   // absolute, after 320 rad
+  EXPECT_LT(spin, 1e-2);  // absolute, after 320 rad
   EXPECT_GT(p.turns, 40.0);
 }
 
@@ -82,12 +82,18 @@ TEST_F(Sundials, IdaMasslessUnknowns) {
   // as in the order tests: mass, first-order joint, algebraic follower
   MatX M = MatX::Zero(3, 3), C = M, K = M;
   M(0, 0) = 1.0;
-  K(0, 0) = 30.0; K(0, 1) = -20.0;
-  C(1, 1) = 5.0; K(1, 1) = 20.0; K(1, 0) = -20.0;
-  K(2, 0) = -1.0; K(2, 1) = -1.0; K(2, 2) = 1.0;
+  K(0, 0) = 30.0;
+  K(0, 1) = -20.0;
+  C(1, 1) = 5.0;
+  K(1, 1) = 20.0;
+  K(1, 0) = -20.0;
+  K(2, 0) = -1.0;
+  K(2, 1) = -1.0;
+  K(2, 2) = 1.0;
   auto make = [&] {
-    return LinearProblem({Kind::displacement, Kind::displacement, Kind::internal}, M, C, K,
-                         [](double t, Ref f) { f[0] = std::cos(2.0 * t); }, false);
+    return LinearProblem(
+        {Kind::displacement, Kind::displacement, Kind::internal}, M, C, K,
+        [](double t, Ref f) { f[0] = std::cos(2.0 * t); }, false);
   };
   Options o;
   o.tolerance = 1e-4;
@@ -120,7 +126,8 @@ TEST_F(Sundials, IdaReportsAndRefuses) {
   integrator->start(0.0, VecX::Zero(1), VecX::Ones(1));
   integrator->set_end(2.0);
   StepReport s;
-  do s = integrator->advance();
+  do
+    s = integrator->advance();
   while (s.ok());
   EXPECT_EQ(s.status, StepStatus::domain);
   EXPECT_LT(integrator->q()[0], 1.0);
@@ -144,7 +151,8 @@ TEST_F(Sundials, ExplicitRungeKuttaAgrees) {
   p.model.torque = 0.4;
   VecX y0(6);
   y0 << 1e-3, 0.0, 0.2, 0.0, 0.0, 50.0;
-  const VecX y = reference([&](double, const VecX& x) { return p.model.rate(x); }, 0.0, 1.0, y0, 400);
+  const VecX y =
+      reference([&](double, const VecX& x) { return p.model.rate(x); }, 0.0, 1.0, y0, 400);
   for (int order : {3, 4, 5, 8}) {
     Options o;
     o.tolerance = order == 3 ? 1e-7 : 1e-10;
@@ -168,10 +176,13 @@ TEST_F(Sundials, ExplicitRungeKuttaAgrees) {
 
 TEST_F(Sundials, ExplicitRungeKuttaOrder) {
   LavalRates p;
-  p.model.e = 0.05; p.model.k = 100.0; p.model.torque = 0.5;
+  p.model.e = 0.05;
+  p.model.k = 100.0;
+  p.model.torque = 0.5;
   VecX y0(6);
   y0 << 0.02, -0.01, 0.3, 0.1, 0.2, 12.0;
-  const VecX y = reference([&](double, const VecX& x) { return p.model.rate(x); }, 0.0, 1.0, y0, 400);
+  const VecX y =
+      reference([&](double, const VecX& x) { return p.model.rate(x); }, 0.0, 1.0, y0, 400);
   for (int order : {4, 5, 8}) {
     auto error = [&](int n) {
       Options o;
@@ -179,7 +190,8 @@ TEST_F(Sundials, ExplicitRungeKuttaOrder) {
       o.t_end = 1.0;
       auto erk = make_explicit_integrator(p, o, order);
       erk->start(0.0, y0);
-      while (erk->time() < 1.0) EXPECT_TRUE(erk->advance().ok());
+      while (erk->time() < 1.0)
+        EXPECT_TRUE(erk->advance().ok());
       return (erk->y() - y).norm();
     };
     const int n = order == 8 ? 20 : 150;
@@ -202,7 +214,8 @@ TEST_F(Sundials, ExplicitInterpolation) {
     if (k % 10) continue;
     const double t = 0.4 * s.t0 + 0.6 * s.t1;
     erk->interpolate(t, middle);
-    const VecX y = reference([&](double, const VecX& x) { return p.model.rate(x); }, 0.0, t, y0, 100);
+    const VecX y =
+        reference([&](double, const VecX& x) { return p.model.rate(x); }, 0.0, t, y0, 100);
     EXPECT_NEAR((middle - y).cwiseAbs().maxCoeff(), 0.0, 1e-6);
     erk->interpolate(s.t1, middle);
     EXPECT_EQ(middle, erk->y());
@@ -212,7 +225,8 @@ TEST_F(Sundials, ExplicitInterpolation) {
 TEST(WithoutPlugin, TheBuiltInSchemesLoadNone) {
   auto p = oscillator(1.0);
   const bool before = Plugin::loaded("sundials");
-  for (const char* name : {"radau5", "gauss4", "gauss6", "generalized_alpha"}) make_integrator(name, p, {});
+  for (const char* name : {"radau5", "gauss4", "gauss6", "generalized_alpha"})
+    make_integrator(name, p, {});
   EXPECT_EQ(Plugin::loaded("sundials"), before);
 }
 

@@ -1,14 +1,18 @@
-// Nonlinear problems with M(q): pendulums, a Laval rotor with free spin, a Kepler orbit, stiff and massless systems.
+// Nonlinear problems with M(q): pendulums, a Laval rotor with free spin, a Kepler orbit, stiff and
+// massless systems.
 #pragma once
 #include "dense_problem.hpp"
 
 namespace whirl::time::test {
 
-/// Plane double pendulum, unit masses and lengths, angles from the downward vertical (Kind::tilt), gravity g, viscous
-/// friction c on both angles.
+/// Plane double pendulum, unit masses and lengths, angles from the downward vertical (Kind::tilt),
+/// gravity g, viscous friction c on both angles.
 class DoublePendulum final : public DenseProblem {
  public:
-  explicit DoublePendulum(double g = 9.81, double c = 0.0) : DenseProblem(all(2, Kind::tilt)), g_(g), c_(c) {}
+  explicit DoublePendulum(double g = 9.81, double c = 0.0)
+      : DenseProblem(all(2, Kind::tilt)),
+        g_(g),
+        c_(c) {}
   bool residual(double, CRef q, CRef v, CRef a, Ref r) override {
     const double s = std::sin(q[0] - q[1]), k = std::cos(q[0] - q[1]);
     r[0] = 2.0 * a[0] + k * a[1] + s * v[1] * v[1] + 2.0 * g_ * std::sin(q[0]) + c_ * v[0];
@@ -23,7 +27,8 @@ class DoublePendulum final : public DenseProblem {
     K << k0 + 2.0 * g_ * std::cos(q[0]), -k0, k1, -k1 + g_ * std::cos(q[1]);
   }
   double energy(const VecX& q, const VecX& v) const {
-    return v[0] * v[0] + 0.5 * v[1] * v[1] + std::cos(q[0] - q[1]) * v[0] * v[1] - g_ * (2.0 * std::cos(q[0]) + std::cos(q[1]));
+    return v[0] * v[0] + 0.5 * v[1] * v[1] + std::cos(q[0] - q[1]) * v[0] * v[1] -
+           g_ * (2.0 * std::cos(q[0]) + std::cos(q[1]));
   }
   /// y = (q, v)
   VecX rate(const VecX& y) const {
@@ -40,8 +45,9 @@ class DoublePendulum final : public DenseProblem {
   double g_, c_;
 };
 
-/// Laval rotor with free spin: shaft centre (y, z), angle phi, mass m eccentric by e, polar inertia J, stiffness k,
-/// damping c, gyroscopic coupling b (as of a rotating frame), torque T. phi is kept small by accept().
+/// Laval rotor with free spin: shaft centre (y, z), angle phi, mass m eccentric by e, polar inertia
+/// J, stiffness k, damping c, gyroscopic coupling b (as of a rotating frame), torque T. phi is kept
+/// small by accept().
 class LavalRotor final : public DenseProblem {
  public:
   double m = 1.0, e = 1e-3, J = 1e-2, k = 1e4, c = 2.0, b = 0.0, torque = 0.1;
@@ -58,7 +64,8 @@ class LavalRotor final : public DenseProblem {
     const double S = m * e * std::sin(q[2]), D = m * e * std::cos(q[2]);
     M << m, 0.0, -S, 0.0, m, D, -S, D, J + m * e * e;
     C << c, b, -2.0 * D * v[2], -b, c, -2.0 * S * v[2], 0.0, 0.0, 0.0;
-    K << k, 0.0, -D * a[2] + S * v[2] * v[2], 0.0, k, -S * a[2] - D * v[2] * v[2], 0.0, 0.0, -D * a[0] - S * a[1];
+    K << k, 0.0, -D * a[2] + S * v[2] * v[2], 0.0, k, -S * a[2] - D * v[2] * v[2], 0.0, 0.0,
+        -D * a[0] - S * a[1];
   }
   bool accept(double, Ref q, Ref, Ref) override {
     const double n = std::round(q[2] / two_pi);
@@ -70,11 +77,13 @@ class LavalRotor final : public DenseProblem {
   double phi(const VecX& q) const { return q[2] + turns * two_pi; }
   double energy(const VecX& q, const VecX& v) const {
     const double y = v[0] - e * std::sin(q[2]) * v[2], z = v[1] + e * std::cos(q[2]) * v[2];
-    return 0.5 * m * (y * y + z * z) + 0.5 * J * v[2] * v[2] + 0.5 * k * (q[0] * q[0] + q[1] * q[1]);
+    return 0.5 * m * (y * y + z * z) + 0.5 * J * v[2] * v[2] +
+           0.5 * k * (q[0] * q[0] + q[1] * q[1]);
   }
   VecX rate(const VecX& y) const {
     const double S = m * e * std::sin(y[2]), D = m * e * std::cos(y[2]), w2 = y[5] * y[5];
-    const double f0 = D * w2 - c * y[3] - b * y[4] - k * y[0], f1 = S * w2 - c * y[4] + b * y[3] - k * y[1];
+    const double f0 = D * w2 - c * y[3] - b * y[4] - k * y[0],
+                 f1 = S * w2 - c * y[4] + b * y[3] - k * y[1];
     // eliminate the translations: inertia about the mass centre is J
     const double a2 = (torque + (S * f0 - D * f1) / m) / J;
     VecX dy(6);
@@ -83,7 +92,8 @@ class LavalRotor final : public DenseProblem {
   }
 };
 
-/// Kepler orbit of eccentricity ecc, unit gravitational parameter and semi-major axis, from its pericentre.
+/// Kepler orbit of eccentricity ecc, unit gravitational parameter and semi-major axis, from its
+/// pericentre.
 class Kepler final : public DenseProblem {
  public:
   Kepler() : DenseProblem(all(2)) { M.setIdentity(); }
@@ -101,7 +111,8 @@ class Kepler final : public DenseProblem {
   static VecX start_v(double ecc) { return Vec2(0.0, std::sqrt((1.0 + ecc) / (1.0 - ecc))); }
 };
 
-/// Pendulum of unit mass and length whose support is driven along x by x = amplitude cos(w t) exactly: q = (x, theta).
+/// Pendulum of unit mass and length whose support is driven along x by x = amplitude cos(w t)
+/// exactly: q = (x, theta).
 class DrivenPendulum final : public DenseProblem {
  public:
   double amplitude = 0.2, w = 3.0, g = 9.81;

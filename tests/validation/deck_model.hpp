@@ -30,7 +30,8 @@ struct DeckModel {
   }
   analysis::SteadyRotation running() const {
     analysis::SteadyRotation r;
-    for (const auto& s : deck.model.shafts) r.ratio.push_back(s.rotating ? s.speed_ratio : 0.0);
+    for (const auto& s : deck.model.shafts)
+      r.ratio.push_back(s.rotating ? s.speed_ratio : 0.0);
     r.table_frequencies = built.table_frequencies;
     return r;
   }
@@ -38,8 +39,8 @@ struct DeckModel {
   Index disk() const { return mesh.place(deck.model.disks[0].at).node; }
 };
 
-/// Largest distance of a node from `centre` in each window of time and when it was first reached, with extremes and mean of its (y, z) there (the mean of
-/// steps that lie wholly in the window).
+/// Largest distance of a node from `centre` in each window of time and when it was first reached,
+/// with extremes and mean of its (y, z) there (the mean of steps that lie wholly in the window).
 struct Windows final : analysis::Observer {
   Index node;
   Vec2 centre;
@@ -48,25 +49,40 @@ struct Windows final : analysis::Observer {
   std::vector<Vec2> least, most, mean;
   double dissipated_least = infinity;
   Windows(Index n, Vec2 c, std::vector<std::array<double, 2>> w)
-      : node(n), centre(c), windows(std::move(w)), peak(windows.size(), 0.0), peak_time(windows.size(), 0.0), span(windows.size(), 0.0), least(windows.size(), Vec2::Constant(infinity)), most(windows.size(), Vec2::Constant(-infinity)), mean(windows.size(), Vec2::Zero()) {}
+      : node(n),
+        centre(c),
+        windows(std::move(w)),
+        peak(windows.size(), 0.0),
+        peak_time(windows.size(), 0.0),
+        span(windows.size(), 0.0),
+        least(windows.size(), Vec2::Constant(infinity)),
+        most(windows.size(), Vec2::Constant(-infinity)),
+        mean(windows.size(), Vec2::Zero()) {}
   void look(const analysis::Snapshot& s) {
     const Vec2 u = s.node(node).u.tail<2>();
     for (std::size_t k = 0; k < windows.size(); ++k)
       if (s.t() >= windows[k][0] && s.t() <= windows[k][1]) {
-        if (const double away = (u - centre).norm(); away > peak[k]) { peak[k] = away; peak_time[k] = s.t(); }
-        least[k] = least[k].cwiseMin(u); most[k] = most[k].cwiseMax(u);
+        if (const double away = (u - centre).norm(); away > peak[k]) {
+          peak[k] = away;
+          peak_time[k] = s.t();
+        }
+        least[k] = least[k].cwiseMin(u);
+        most[k] = most[k].cwiseMax(u);
       }
     dissipated_least = std::min(dissipated_least, s.energy().dissipated);
   }
   void begin(const analysis::Snapshot& s) override { look(s); }
   void step(analysis::StepAccess& s) override {
     const double dt = s.t1() - s.t0();
-    for (int k = 1; k <= 8; ++k) look(s.at(s.t0() + dt * k / 8));   // peaks of a smooth orbit to 1e-3 of the step's arc
+    for (int k = 1; k <= 8; ++k)
+      look(s.at(s.t0() + dt * k / 8));  // peaks of a smooth orbit to 1e-3 of the step's arc
     for (std::size_t k = 0; k < windows.size(); ++k) {
       if (s.t0() < windows[k][0] || s.t1() > windows[k][1]) continue;
       Vec2 sum = Vec2::Zero();
-      for (int i = 0; i < 8; ++i) sum += s.at(s.t0() + dt * (i + 0.5) / 8).node(node).u.tail<2>();
-      span[k] += dt; mean[k] += (dt / span[k]) * (sum / 8 - mean[k]);
+      for (int i = 0; i < 8; ++i)
+        sum += s.at(s.t0() + dt * (i + 0.5) / 8).node(node).u.tail<2>();
+      span[k] += dt;
+      mean[k] += (dt / span[k]) * (sum / 8 - mean[k]);
     }
   }
 };

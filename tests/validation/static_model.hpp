@@ -14,10 +14,16 @@ struct Solved {
   std::unique_ptr<system::SystemProblem> problem;
   std::vector<assembly::SectionPoint> sections;
 
-  const system::NodeState& node(Index n) const { return problem->workspace().nodes[static_cast<std::size_t>(n)]; }
-  const system::NodeState& node_at(const model::Location& l) const { return node(mesh.place(l).node); }
+  const system::NodeState& node(Index n) const {
+    return problem->workspace().nodes[static_cast<std::size_t>(n)];
+  }
+  const system::NodeState& node_at(const model::Location& l) const {
+    return node(mesh.place(l).node);
+  }
   Vec3 support(std::size_t i) const {
-    return built.support_forces[i].force([this](Index n) -> const system::NodeState& { return node(n); }, system::Context{}, [this](Index k) { return r[k]; });
+    return built.support_forces[i].force(
+        [this](Index n) -> const system::NodeState& { return node(n); }, system::Context{},
+        [this](Index k) { return r[k]; });
   }
   VecX r;
 };
@@ -27,7 +33,8 @@ inline Solved solve(const model::Model& m, double Omega = 0.0, double load = 1.0
   Solved s{meshes::make_mesh(m), {}, {}, nullptr, {}, {}};
   s.built = assembly::build_system(m, s.mesh);
   analysis::SteadyRotation running;
-  for (const model::Shaft& shaft : m.shafts) running.ratio.push_back(shaft.rotating ? shaft.speed_ratio : 0.0);
+  for (const model::Shaft& shaft : m.shafts)
+    running.ratio.push_back(shaft.rotating ? shaft.speed_ratio : 0.0);
   analysis::SteadySystem turning(s.built.system, running);
   turning.set_load(load);
   analysis::EquilibriumSolver solver(turning);
@@ -39,7 +46,9 @@ inline Solved solve(const model::Model& m, double Omega = 0.0, double load = 1.0
   const system::State& x = s.found.state;
   s.problem->residual(0.0, x.q, x.v, x.a, s.r);
   s.problem->power(0.0, x.q, x.v, x.a, s.r);
-  s.sections = assembly::calc_section_results(m, s.mesh, s.built, [&s](Index n) -> const system::NodeState& { return s.node(n); }, s.problem->workspace().context);
+  s.sections = assembly::calc_section_results(
+      m, s.mesh, s.built, [&s](Index n) -> const system::NodeState& { return s.node(n); },
+      s.problem->workspace().context);
   return s;
 }
 

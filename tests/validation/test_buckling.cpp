@@ -34,22 +34,27 @@ TEST(Buckling, EulerColumn) {
   const auto m = factors(r.b.finalize());
   ASSERT_EQ(m.size(), 2u);
   // cubic bowing of eight elements: (pi/8)^4/720 = 3.3e-5
-  for (const BucklingMode& k : m) record.check("buckling load over pi^2 EI/L^2", "-", k.factor.real() * L * L / (EI * pi * pi), 1.0, 3.5e-5);
+  for (const BucklingMode& k : m)
+    record.check("buckling load over pi^2 EI/L^2", "-", k.factor.real() * L * L / (EI * pi * pi),
+                 1.0, 3.5e-5);
 }
 
 // With shear: Engesser's P = Pe/(1 + Pe/kGA).
 TEST(Buckling, ColumnSoftInShear) {
-  test::Record record("Pinned column soft in shear", "F. Engesser 1889: P = Pe/(1 + Pe/kGA); 32 elements");
+  test::Record record("Pinned column soft in shear",
+                      "F. Engesser 1889: P = Pe/(1 + Pe/kGA); 32 elements");
   const double kGA = 1e5, Pe = EI * pi * pi / (L * L);
   Rotor r;
   r.add_shaft(constants(1e9, kGA, GJ, EI, 1), L, 32).pin(0, true).pin(L);
   r.b.hold(r.at(0), 3);
   r.b.add(elements::FixedLoad{Vec3(-1, 0, 0), Vec3::Zero(), 0, nullptr}, {r.at(L)}, "thrust");
-  record.check("buckling load", "N", factors(r.b.finalize())[0].factor.real(), Pe / (1 + Pe / kGA), 2e-4 * Pe);
+  record.check("buckling load", "N", factors(r.b.finalize())[0].factor.real(), Pe / (1 + Pe / kGA),
+               2e-4 * Pe);
 }
 
-// A. G. Greenhill 1883: a shaft under an end torque of fixed direction buckles at M L/EI = 2 pi between pins, at 8.986818916 between clamps
-// that may slide along and turn about the axis at one end.
+// A. G. Greenhill 1883: a shaft under an end torque of fixed direction buckles at M L/EI = 2 pi
+// between pins, at 8.986818916 between clamps that may slide along and turn about the axis at one
+// end.
 TEST(Buckling, ShaftUnderTorque) {
   for (const auto& [clamped, expected] : {std::pair{false, two_pi}, {true, 8.986818916}}) {
     double error[2];
@@ -59,7 +64,8 @@ TEST(Buckling, ShaftUnderTorque) {
       r.b.hold(r.at(0), 3);
       if (clamped)
         for (double x : {0.0, L})
-          for (int c : {4, 5}) r.b.hold(r.at(x), c);
+          for (int c : {4, 5})
+            r.b.hold(r.at(x), c);
       // fixed direction at both ends; the held angle then carries nothing
       r.b.add(elements::FixedLoad{Vec3::Zero(), Vec3(1, 0, 0), 0, nullptr}, {r.at(L)}, "torque");
       r.b.add(elements::FixedLoad{Vec3::Zero(), Vec3(-1, 0, 0), 0, nullptr}, {r.at(0)}, "torque");
@@ -68,7 +74,8 @@ TEST(Buckling, ShaftUnderTorque) {
       error[k] = std::abs(std::abs(m[0].factor.real()) * L / EI / expected - 1.0);
     }
     EXPECT_LT(error[1], 2e-4) << clamped;
-    EXPECT_GT(std::log2(error[0] / error[1]), 3.5) << clamped;   // fourth order, less what the next one leaves at 12 elements
+    EXPECT_GT(std::log2(error[0] / error[1]), 3.5)
+        << clamped;  // fourth order, less what the next one leaves at 12 elements
   }
 }
 

@@ -20,14 +20,17 @@ std::vector<Complex> eigenvalues(const DeckModel& m, double Omega, int count) {
   analysis::ModesOptions options;
   options.count = count;
   std::vector<Complex> out;
-  for (const auto& mode : analysis::whirl_modes(linear, Omega, options)) out.push_back(mode.lambda);
+  for (const auto& mode : analysis::whirl_modes(linear, Omega, options))
+    out.push_back(mode.lambda);
   return out;
 }
 
 }  // namespace
 
-// A mass m1 on k1, c1 on a foundation of mass m2 with circulatory stiffness s and gyroscopic damping g. With w = y + i z
-//   m1 l^2 w1 + (c1 l + k1)(w1 - w2) = 0,   m2 l^2 w2 + (c2 - i g) l w2 + (k2 - i s) w2 = (c1 l + k1)(w1 - w2)
+// A mass m1 on k1, c1 on a foundation of mass m2 with circulatory stiffness s and gyroscopic
+// damping g. With w = y + i z
+//   m1 l^2 w1 + (c1 l + k1)(w1 - w2) = 0,   m2 l^2 w2 + (c2 - i g) l w2 + (k2 - i s) w2 = (c1 l +
+//   k1)(w1 - w2)
 // s and g move the forward and the backward modes apart, and one of them grows.
 TEST(Foundation, CirculatoryAndGyroscopicPartsOfAPoint) {
   const double m1 = 20, k1 = 3e6, c1 = 400, m2 = 60, k2 = 8e6, c2 = 300, s = 6e5, g = 9e3;
@@ -52,20 +55,24 @@ rows = [[1, 1, 8e6, 300, 60], [2, 2, 8e6, 300, 60], [1, 2, 6e5, 9e3, 0], [2, 1, 
   K << k1, -k1, -k1, Complex(k1 + k2, -s);
   Eigen::Matrix4cd A = Eigen::Matrix4cd::Zero();
   A.topRightCorner<2, 2>().setIdentity();
-  A.bottomLeftCorner<2, 2>() = -M.inverse() * K; A.bottomRightCorner<2, 2>() = -M.inverse() * C;
-  const Eigen::Vector4cd exact = Eigen::ComplexEigenSolver<Eigen::Matrix4cd>(A, false).eigenvalues();
-  EXPECT_GT(exact.real().maxCoeff(), 1.0);   // it does grow
+  A.bottomLeftCorner<2, 2>() = -M.inverse() * K;
+  A.bottomRightCorner<2, 2>() = -M.inverse() * C;
+  const Eigen::Vector4cd exact =
+      Eigen::ComplexEigenSolver<Eigen::Matrix4cd>(A, false).eigenvalues();
+  EXPECT_GT(exact.real().maxCoeff(), 1.0);  // it does grow
   const auto found = eigenvalues(m, 100.0, 4);
   ASSERT_EQ(found.size(), 4u);
   for (Index i = 0; i < 4; ++i) {
     double nearest = infinity;
-    for (const Complex& l : found) nearest = std::min({nearest, std::abs(l - exact[i]), std::abs(std::conj(l) - exact[i])});
+    for (const Complex& l : found)
+      nearest = std::min({nearest, std::abs(l - exact[i]), std::abs(std::conj(l) - exact[i])});
     EXPECT_LT(nearest, 1e-10 * std::abs(exact[i])) << exact[i];
   }
 }
 
-// Six directions of a support point: a rigid casing of mass m, centre 50 mm beside the bearing, on an unsymmetric 6 x 6 spring and damper,
-// once as a casing shaft and once as matrices. The casing turns with exact angles, the matrices with their sines: 1e-8 at tilts of 1e-4.
+// Six directions of a support point: a rigid casing of mass m, centre 50 mm beside the bearing, on
+// an unsymmetric 6 x 6 spring and damper, once as a casing shaft and once as matrices. The casing
+// turns with exact angles, the matrices with their sines: 1e-8 at tilts of 1e-4.
 TEST(Foundation, SixDirectionsAreARigidCasing) {
   const std::string rotor = R"(format = 1
 [model]
@@ -132,10 +139,12 @@ rows = [[1, 1, "3e7 N/m", "900 N.s/m", "30 kg"], [2, 2, "2e7 N/m", "800 N.s/m", 
   const auto one = eigenvalues(casing, 400.0, 10), two = eigenvalues(matrices, 400.0, 10);
   ASSERT_EQ(one.size(), two.size());
   ASSERT_GE(one.size(), 8u);
-  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_LT(std::abs(one[i] - two[i]), 1e-8 * std::abs(one[i])) << one[i];
+  for (std::size_t i = 0; i < one.size(); ++i)
+    EXPECT_LT(std::abs(one[i] - two[i]), 1e-8 * std::abs(one[i])) << one[i];
 }
 
-// On a base that turns, masses at the support points are pedestals to rounding; other mass matrices are refused.
+// On a base that turns, masses at the support points are pedestals to rounding; other mass matrices
+// are refused.
 TEST(Foundation, OnATurningBase) {
   const std::string rotor = R"(format = 1
 [model]
@@ -157,7 +166,8 @@ directions = ["x"]
   const auto bearings = [](const char* support) {
     std::string out;
     for (const char* place : {"a:start", "b:end"})
-      out += std::string("[[bearing]]\nname = \"") + place[0] + "\"\nat = \"" + place + "\"\ntype = \"linear\"\nkyy = \"5e7 N/m\"\nkzz = \"5e7 N/m\"\n" + support;
+      out += std::string("[[bearing]]\nname = \"") + place[0] + "\"\nat = \"" + place +
+             "\"\ntype = \"linear\"\nkyy = \"5e7 N/m\"\nkzz = \"5e7 N/m\"\n" + support;
     return out;
   };
   const auto table = [](const char* more) {
@@ -165,26 +175,33 @@ directions = ["x"]
 name = "table"
 coordinates = ["a.y", "a.z", "b.y", "b.z"]
 columns = ["row", "column", "K[N/m]", "C[N.s/m]", "M[kg]"]
-rows = [[1, 1, 4e7, 500, 12], [2, 2, 6e7, 500, 12], [3, 3, 4e7, 500, 12], [4, 4, 6e7, 500, 12])") + more + "]\n";
+rows = [[1, 1, 4e7, 500, 12], [2, 2, 6e7, 500, 12], [3, 3, 4e7, 500, 12], [4, 4, 6e7, 500, 12])") +
+           more + "]\n";
   };
-  const DeckModel pedestals(rotor + bearings("support = { mass = \"12 kg\", kyy = \"4e7 N/m\", kzz = \"6e7 N/m\", cyy = \"500 N.s/m\", czz = \"500 N.s/m\" }\n"));
+  const DeckModel pedestals(rotor +
+                            bearings("support = { mass = \"12 kg\", kyy = \"4e7 N/m\", kzz = \"6e7 "
+                                     "N/m\", cyy = \"500 N.s/m\", czz = \"500 N.s/m\" }\n"));
   const DeckModel matrices(rotor + bearings("") + table(""));
   const system::System &p = pedestals.built.system, &f = matrices.built.system;
   // nodes in the order of the mesh; pedestals have a ground node each behind them
   std::vector<Index> same;
   for (Index i = 0, j = 0; i < f.nodes(); ++i) {
-    while (j < p.nodes() && p.node(j).name != f.node(i).name) ++j;
+    while (j < p.nodes() && p.node(j).name != f.node(i).name)
+      ++j;
     ASSERT_LT(j, p.nodes()) << f.node(i).name;
     same.push_back(j++);
   }
   std::mt19937 rng(5);
   std::normal_distribution<double> normal;
   VecX q[2], v[2], a[2], r[2];
-  for (int k = 0; k < 2; ++k) q[k] = v[k] = a[k] = r[k] = VecX::Zero((k == 0 ? p : f).size());
+  for (int k = 0; k < 2; ++k)
+    q[k] = v[k] = a[k] = r[k] = VecX::Zero((k == 0 ? p : f).size());
   for (Index i = 0; i < f.nodes(); ++i)
     for (Index c = 0; c < 6; ++c) {
       const Index from = 6 * i + c, to = 6 * same[static_cast<std::size_t>(i)] + c;
-      q[0][to] = q[1][from] = 1e-4 * normal(rng); v[0][to] = v[1][from] = 0.1 * normal(rng); a[0][to] = a[1][from] = 10 * normal(rng);
+      q[0][to] = q[1][from] = 1e-4 * normal(rng);
+      v[0][to] = v[1][from] = 0.1 * normal(rng);
+      a[0][to] = a[1][from] = 10 * normal(rng);
     }
   const system::System* systems[2] = {&p, &f};
   for (int k = 0; k < 2; ++k) {
@@ -197,13 +214,15 @@ rows = [[1, 1, 4e7, 500, 12], [2, 2, 6e7, 500, 12], [3, 3, 4e7, 500, 12], [4, 4,
   for (Index i = 0; i < f.nodes(); ++i)
     for (Index c = 0; c < 6; ++c) {
       if (!f.active()[static_cast<std::size_t>(6 * i + c)]) continue;
-      EXPECT_NEAR(r[0][6 * same[static_cast<std::size_t>(i)] + c], r[1][6 * i + c], 1e-14 * size) << f.node(i).name << " " << c;
+      EXPECT_NEAR(r[0][6 * same[static_cast<std::size_t>(i)] + c], r[1][6 * i + c], 1e-14 * size)
+          << f.node(i).name << " " << c;
     }
 
   try {
     DeckModel refused(rotor + bearings("") + table(", [1, 3, 0, 0, 2]"));
     FAIL() << "masses that couple two places are not refused";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("does not say where the mass is"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("does not say where the mass is"), std::string::npos)
+        << e.what();
   }
 }

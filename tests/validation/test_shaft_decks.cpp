@@ -1,4 +1,5 @@
-// Shafts, casings and sleeves from the text of a deck to their frequencies and deflections, against closed forms.
+// Shafts, casings and sleeves from the text of a deck to their frequencies and deflections, against
+// closed forms.
 #include <analysis/spectra/whirl_modes.hpp>
 #include <assembly/build_system.hpp>
 #include <deck/deck.hpp>
@@ -25,7 +26,8 @@ struct Deck {
   }
   SteadyRotation running() const {
     SteadyRotation r;
-    for (std::size_t l = 0; l < mesh.lines.size(); ++l) r.ratio.push_back(mesh.lines[l].rotating ? model.shafts[l].speed_ratio : 0.0);
+    for (std::size_t l = 0; l < mesh.lines.size(); ++l)
+      r.ratio.push_back(mesh.lines[l].rotating ? model.shafts[l].speed_ratio : 0.0);
     return r;
   }
   std::vector<WhirlMode> modes(double Omega, Index count) {
@@ -66,7 +68,8 @@ rotary_inertia = false
 name = "body"
 length = "1 m"
 {}
-)", more, section);
+)",
+                     more, section);
 }
 
 double I(double d) { return pi / 64 * std::pow(d, 4); }
@@ -74,18 +77,23 @@ double A(double d) { return pi / 4 * d * d; }
 
 }  // namespace
 
-// A sleeve shrunk on: it has mass but does not stiffen. omega_k = (k pi/L)^2 sqrt(E I/(rho A)) with I of 40 mm and A of 60 mm.
+// A sleeve shrunk on: it has mass but does not stiffen. omega_k = (k pi/L)^2 sqrt(E I/(rho A)) with
+// I of 40 mm and A of 60 mm.
 TEST(ShaftDecks, SeparateMassAndStiffnessDiameters) {
   Deck d(shaft("od = \"60 mm\"\nstiffness_od = \"40 mm\"") + pins);
   const auto modes = d.modes(0.0, 6);
   for (int k = 1; k <= 3; ++k) {
     const double exact = std::pow(k * pi, 2) * std::sqrt(2e11 * I(0.04) / (8000 * A(0.06)));
     // order 6 with 20 elements: 1e-9 for the first
-    for (const std::size_t i : {2 * k - 2, 2 * k - 1}) EXPECT_NEAR(modes.at(i).frequency, exact, 1e-6 * exact) << k;
+    for (const std::size_t i : {2 * k - 2, 2 * k - 1})
+      EXPECT_NEAR(modes.at(i).frequency, exact, 1e-6 * exact) << k;
   }
   // a bore in the mass alone: a liner that carries no load
-  Deck bored(shaft("od = \"60 mm\"\nid = \"20 mm\"\nstiffness_od = \"40 mm\"\nstiffness_id = \"30 mm\"") + pins);
-  const double exact = pi * pi * std::sqrt(2e11 * (I(0.04) - I(0.03)) / (8000 * (A(0.06) - A(0.02))));
+  Deck bored(
+      shaft("od = \"60 mm\"\nid = \"20 mm\"\nstiffness_od = \"40 mm\"\nstiffness_id = \"30 mm\"") +
+      pins);
+  const double exact =
+      pi * pi * std::sqrt(2e11 * (I(0.04) - I(0.03)) / (8000 * (A(0.06) - A(0.02))));
   EXPECT_NEAR(bored.modes(0.0, 1).at(0).frequency, exact, 1e-8 * exact);
 }
 
@@ -96,7 +104,8 @@ TEST(ShaftDecks, AddedMass) {
   EXPECT_NEAR(d.modes(0.0, 1).at(0).frequency, exact, 1e-8 * exact);
 }
 
-// A casing is a beam that does not turn: no splitting at any speed of the rotor inside; the rotor's own frequencies split.
+// A casing is a beam that does not turn: no splitting at any speed of the rotor inside; the rotor's
+// own frequencies split.
 TEST(ShaftDecks, CasingsDoNotTurn) {
   std::string text = shaft("od = \"60 mm\"");
   text.replace(text.find("rotary_inertia = false"), 22, "rotary_inertia = true");
@@ -115,31 +124,43 @@ id = "180 mm"
   std::string supports;
   for (const char* line : {"shaft", "casing"})
     for (const char* end : {"left", "right"})
-      supports += fmt::format("[[bearing]]\nname = \"{} {}\"\nat = \"{}/{}\"\ntype = \"rigid\"\ndirections = [{}\"y\", \"z\"]\n", line, end, line,
-                              end == std::string("left") ? "0 m" : "1 m", end == std::string("left") ? (line == std::string("casing") ? "\"x\", \"rx\", " : "\"x\", ") : "");
+      supports += fmt::format(
+          "[[bearing]]\nname = \"{} {}\"\nat = \"{}/{}\"\ntype = \"rigid\"\ndirections = [{}\"y\", "
+          "\"z\"]\n",
+          line, end, line, end == std::string("left") ? "0 m" : "1 m",
+          end == std::string("left")
+              ? (line == std::string("casing") ? "\"x\", \"rx\", " : "\"x\", ")
+              : "");
   Deck d(text + casing + supports);
   const double Omega = 1000;
   const auto modes = d.modes(Omega, 8);
-  // Rayleigh's beam: omega^2 (rho A + rho I k^2) = E I k^4; rotating, rho I k^2 (omega^2 - 2 omega Omega) in its place
+  // Rayleigh's beam: omega^2 (rho A + rho I k^2) = E I k^4; rotating, rho I k^2 (omega^2 - 2 omega
+  // Omega) in its place
   const auto rayleigh = [](double EI, double rhoA, double rhoI, double speed) {
     const double k2 = pi * pi, a = rhoA + rhoI * k2, b = rhoI * k2 * speed;
     return (b + std::sqrt(b * b + a * EI * k2 * k2)) / a;
   };
   const double I_casing = I(0.2) - I(0.18), A_casing = A(0.2) - A(0.18);
   std::vector<double> exact;
-  for (const double speed : {-Omega, Omega}) exact.push_back(rayleigh(2e11 * I(0.06), 8000 * A(0.06), 8000 * I(0.06), speed));
-  for (int twice = 0; twice < 2; ++twice) exact.push_back(rayleigh(2e11 * I_casing, 8000 * A_casing, 8000 * I_casing, 0));
+  for (const double speed : {-Omega, Omega})
+    exact.push_back(rayleigh(2e11 * I(0.06), 8000 * A(0.06), 8000 * I(0.06), speed));
+  for (int twice = 0; twice < 2; ++twice)
+    exact.push_back(rayleigh(2e11 * I_casing, 8000 * A_casing, 8000 * I_casing, 0));
   EXPECT_GT(exact[1] - exact[0], 1.0);
   for (const double w : exact) {
     double nearest = infinity;
     int hits = 0;
-    for (const WhirlMode& m : modes) { nearest = std::min(nearest, std::abs(m.frequency - w)); hits += std::abs(m.frequency - w) < 1e-7 * w; }
-    EXPECT_LT(nearest, 1e-7 * w) << w;   // 20 elements: 1e-8
-    EXPECT_EQ(hits, w == exact.back() ? 2 : 1) << w;   // the casing's two planes alike
+    for (const WhirlMode& m : modes) {
+      nearest = std::min(nearest, std::abs(m.frequency - w));
+      hits += std::abs(m.frequency - w) < 1e-7 * w;
+    }
+    EXPECT_LT(nearest, 1e-7 * w) << w;                // 20 elements: 1e-8
+    EXPECT_EQ(hits, w == exact.back() ? 2 : 1) << w;  // the casing's two planes alike
   }
 }
 
-// A rotor hung in a casing by a bearing at mid-span: springs in series, 48 EI/L^3 of both beams and the bearing.
+// A rotor hung in a casing by a bearing at mid-span: springs in series, 48 EI/L^3 of both beams and
+// the bearing.
 TEST(ShaftDecks, RotorInACasing) {
   const std::string casing = R"([[shaft]]
 name = "casing"
@@ -177,13 +198,16 @@ directions = ["x"]
 at = "shaft/0.5 m"
 force = ["0 N", "1 N", "0 N"]
 )";
-  Deck d(shaft("od = \"60 mm\"") + casing + "[[bearing]]\nname = \"guide\"\nat = \"shaft/0.5 m\"\ntype = \"linear\"\nkrr = \"1e4 N.m/rad\"\n");
+  Deck d(shaft("od = \"60 mm\"") + casing +
+         "[[bearing]]\nname = \"guide\"\nat = \"shaft/0.5 m\"\ntype = \"linear\"\nkrr = \"1e4 "
+         "N.m/rad\"\n");
   SteadySystem running(d.built.system, d.running());
   const Equilibrium e = EquilibriumSolver(running).solve(0.0);
   const double exact = 1e-6 + 1.0 / (48 * 2e11 * (I(0.1) - I(0.09)));
   const auto at = [&](const char* line) {
     for (const meshes::Station& s : d.mesh.stations)
-      if (d.mesh.lines[static_cast<std::size_t>(s.line)].name == line && std::abs(s.s - 0.5) < 1e-9) return e.state.q[6 * s.at.node + 1];
+      if (d.mesh.lines[static_cast<std::size_t>(s.line)].name == line && std::abs(s.s - 0.5) < 1e-9)
+        return e.state.q[6 * s.at.node + 1];
     return whirl::nan;
   };
   EXPECT_NEAR(at("shaft"), exact, 1e-9 * exact);

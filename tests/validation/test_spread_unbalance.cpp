@@ -1,5 +1,7 @@
-// A pinned slender shaft whose mass centres all lie e beside it, no transverse but polar inertia, in turning axes:
-//   EI d4w/dx4 - rhoIp W^2 d2w/dx2 - rhoA W^2 w = rhoA e W^2,   w(L/2) = e ((b^2/cosh(a L/2) + a^2/cos(b L/2))/(a^2 + b^2) - 1),
+// A pinned slender shaft whose mass centres all lie e beside it, no transverse but polar inertia,
+// in turning axes:
+//   EI d4w/dx4 - rhoIp W^2 d2w/dx2 - rhoA W^2 w = rhoA e W^2,   w(L/2) = e ((b^2/cosh(a L/2) +
+//   a^2/cos(b L/2))/(a^2 + b^2) - 1),
 // a^2 and -b^2 the roots of EI r^2 - rhoIp W^2 r - rhoA W^2 = 0.
 #include "../app/deck_run.hpp"
 #include "record.hpp"
@@ -25,7 +27,8 @@ material = "own steel"
 shear = "none"
 rotary_inertia = false
 columns = ["name", "length[mm]", "od[mm]", "min_elements"]
-rows = [["a", 500, 30, )" + std::to_string(elements) + R"(], ["b", 500, 30, )" + std::to_string(elements) + R"(]]
+rows = [["a", 500, 30, )" +
+         std::to_string(elements) + R"(], ["b", 500, 30, )" + std::to_string(elements) + R"(]]
 [[bearing]]
 name = "L"
 at = "a:start"
@@ -36,7 +39,8 @@ name = "R"
 at = "b:end"
 type = "rigid"
 directions = ["y", "z"]
-)" + unbalance + R"(
+)" + unbalance +
+         R"(
 [[probe]]
 name = "middle"
 at = "a:end"
@@ -52,19 +56,29 @@ report = false
 }  // namespace
 
 TEST(SpreadUnbalance, UniformEccentricityOfAPinnedShaft) {
-  whirl::test::Record record("Unbalance spread over a shaft", "closed form of a pinned slender shaft with a uniform eccentricity");
-  const double A = pi / 4 * 0.03 * 0.03, I = pi / 64 * std::pow(0.03, 4), e = 20e-6, amount = 7850 * A * e * 1.0;
-  const whirl::test::DeckRun r(deck("[[unbalance]]\nname = \"all along\"\nat = \"a:start\"\nto = \"b:end\"\namount = \"" + std::to_string(amount * 1e6) + " g.mm\"\n", 4));
+  whirl::test::Record record("Unbalance spread over a shaft",
+                             "closed form of a pinned slender shaft with a uniform eccentricity");
+  const double A = pi / 4 * 0.03 * 0.03, I = pi / 64 * std::pow(0.03, 4), e = 20e-6,
+               amount = 7850 * A * e * 1.0;
+  const whirl::test::DeckRun r(
+      deck("[[unbalance]]\nname = \"all along\"\nat = \"a:start\"\nto = \"b:end\"\namount = \"" +
+               std::to_string(amount * 1e6) + " g.mm\"\n",
+           4));
   ASSERT_EQ(r.exit, 0) << r.log;
   const auto rows = r.csv("response_response.csv");
   ASSERT_EQ(rows.rows.size(), 2u);
   for (const auto& row : rows.rows) {
     const auto x = rows.named(row);
-    const double W = x.at("speed [rpm]") * pi / 30, p = 7850 * 2 * I * W * W / (210e9 * I), q = 7850 * A * W * W / (210e9 * I);
+    const double W = x.at("speed [rpm]") * pi / 30, p = 7850 * 2 * I * W * W / (210e9 * I),
+                 q = 7850 * A * W * W / (210e9 * I);
     const double a2 = 0.5 * (p + std::sqrt(p * p + 4 * q)), b2 = a2 - p;
-    const double exact = e * ((b2 / std::cosh(0.5 * std::sqrt(a2)) + a2 / std::cos(0.5 * std::sqrt(b2))) / (a2 + b2) - 1);
+    const double exact =
+        e *
+        ((b2 / std::cosh(0.5 * std::sqrt(a2)) + a2 / std::cos(0.5 * std::sqrt(b2))) / (a2 + b2) -
+         1);
     // 8 elements; the error of order 4 and more
-    record.check(std::to_string(static_cast<int>(x.at("speed [rpm]") + 0.5)) + " rpm: middle", "m", x.at("middle major [m]"), std::abs(exact), 2e-5 * std::abs(exact));
+    record.check(std::to_string(static_cast<int>(x.at("speed [rpm]") + 0.5)) + " rpm: middle", "m",
+                 x.at("middle major [m]"), std::abs(exact), 2e-5 * std::abs(exact));
   }
 }
 

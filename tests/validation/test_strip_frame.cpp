@@ -62,7 +62,8 @@ struct Frame {
   DeckModel model;
   SteadySystem running;
   Frame(int n, double out_of_plane)
-      : model(deck(n, out_of_plane)), running(model.built.system, model.running()) {}
+      : model(deck(n, out_of_plane)),
+        running(model.built.system, model.running()) {}
   Index tip() const { return model.mesh.lines[0].first_node + model.mesh.lines[0].nodes - 1; }
   LoadPathResult follow(LoadPathOptions o,
                         const std::function<bool(const LoadPathPoint&)>& accept = {}) {
@@ -79,7 +80,7 @@ Vec3 exact_tip(const Vec3& force, const Vec3& near, int steps) {
   one.length = leg;
   one.steps = steps;
   Mat3 corner;
-  corner << 0, 1, 0, -1, 0, 0, 0, 0, 1; // columns: the tangent turns from x to -y
+  corner << 0, 1, 0, -1, 0, 0, 0, 0, 1;  // columns: the tangent turns from x to -y
   const auto march = [&](const Vec3& m) {
     const ExactRod::End bend = one.march(force, m);
     ExactRod two = one;
@@ -108,9 +109,9 @@ Vec3 exact_tip(const Vec3& force, const Vec3& near, int steps) {
 
 // Far beyond buckling: no limit points, and order 4 in the length of the elements.
 TEST(StripFrame, PostBucklingOfOrderFour) {
-  Record record(
-      "Strip frame far beyond buckling",
-      "exact shear-deformable rod by shooting; tip force 1 N in the plane and 1 mN across, times the load factor");
+  Record record("Strip frame far beyond buckling",
+                "exact shear-deformable rod by shooting; tip force 1 N in the plane and 1 mN "
+                "across, times the load factor");
   for (const double load : {2.0, 6.0}) {
     const Vec3 force = load * Vec3(1.0, 0.0, 1e-3);
     double error[3];
@@ -128,7 +129,7 @@ TEST(StripFrame, PostBucklingOfOrderFour) {
       const Vec3 tip = Vec3(leg, -leg, 0) + r.last.state.q.segment<3>(6 * f.tip());
       if (k == 2) {
         exact = exact_tip(force, tip, 4000);
-        EXPECT_LT((exact - exact_tip(force, tip, 2000)).norm(), 1e-10); // Runge-Kutta of order 4
+        EXPECT_LT((exact - exact_tip(force, tip, 2000)).norm(), 1e-10);  // Runge-Kutta of order 4
       }
       error[k] = (tip - exact).norm();
       record.below(
@@ -146,9 +147,9 @@ TEST(StripFrame, PostBucklingOfOrderFour) {
 // of the load inside elements), without rounding; and the path, of order 4, has its bifurcation
 // where the exact rod has it.
 TEST(StripFrame, BucklingUnderRefinement) {
-  Record record(
-      "Strip frame: buckling",
-      "bifurcation of the exact rod's path at 1.08752; the linearised factor leaves out the bending before buckling");
+  Record record("Strip frame: buckling",
+                "bifurcation of the exact rod's path at 1.08752; the linearised factor leaves out "
+                "the bending before buckling");
   std::vector<double> factor;
   for (const int n : {8, 16, 32, 64, 128, 256}) {
     Frame f(n, 0.0);
@@ -200,10 +201,10 @@ TEST(StripFrame, BranchAtTheBifurcation) {
   ASSERT_EQ(flat.end, LoadPathEnd::reached) << describe(flat);
   ASSERT_GE(flat.critical.size(), 1u);
   EXPECT_FALSE(flat.critical[0].limit);
-  EXPECT_NEAR(flat.critical[0].load, 1.08752, 1e-5); // 16 elements
+  EXPECT_NEAR(flat.critical[0].load, 1.08752, 1e-5);  // 16 elements
   EXPECT_EQ(flat.critical[0].before, 0);
   EXPECT_EQ(flat.critical[0].after, 1);
-  EXPECT_LT(std::abs(flat.last.state.q[6 * primary.tip() + 2]), 1e-9); // stays in its plane
+  EXPECT_LT(std::abs(flat.last.state.q[6 * primary.tip() + 2]), 1e-9);  // stays in its plane
   EXPECT_GE(flat.tangent.negative, 1);
   // out of the plane alone
   const VecX& d = flat.critical[0].direction;
@@ -219,10 +220,10 @@ TEST(StripFrame, BranchAtTheBifurcation) {
     const Vec3 tip = Vec3(leg, -leg, 0) + r.last.state.q.segment<3>(6 * f.tip());
     across[k] = tip.z();
     const Vec3 exact = exact_tip(Vec3(3.0, 0.0, 0.0), tip, 1000);
-    EXPECT_LT((tip - exact).norm(), 5e-5); // 16 elements, see above
+    EXPECT_LT((tip - exact).norm(), 5e-5);  // 16 elements, see above
     EXPECT_GT(std::abs(exact.z()), 0.03);
   }
-  EXPECT_NEAR(across[0], -across[1], 1e-9); // mirror images
+  EXPECT_NEAR(across[0], -across[1], 1e-9);  // mirror images
   Frame none(16, 1e-3);
   o.branch = 1;
   EXPECT_EQ(none.follow(o).end, LoadPathEnd::no_branch);

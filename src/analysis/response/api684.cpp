@@ -10,21 +10,28 @@ double required_margin(double amplification, bool above) {
   return above ? 0.10 + sm : sm;
 }
 
-std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks, const std::vector<ResponseProbe>& probes,
+std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks,
+                                          const std::vector<ResponseProbe>& probes,
                                           const OperatingRange& range, std::size_t order) {
   std::vector<MarginRow> rows;
   for (const ResponsePeak& p : peaks) {
     if (p.order != order) continue;
     MarginRow r;
     r.probe = probes[p.probe].name;
-    r.speed = p.speed; r.amplitude = p.amplitude; r.amplification = p.amplification(); r.low = p.low; r.high = p.high;
-    // A peak without half-power points is too flat to have an AF of 2.5, or is cut off by the range of speeds.
+    r.speed = p.speed;
+    r.amplitude = p.amplitude;
+    r.amplification = p.amplification();
+    r.low = p.low;
+    r.high = p.high;
+    // A peak without half-power points is too flat to have an AF of 2.5, or is cut off by the range
+    // of speeds.
     r.critically_damped = !(r.amplification >= 2.5);
     const bool above = p.speed > range.max;
     r.required = required_margin(r.amplification, above);
-    r.actual = above               ? (p.speed - range.max) / range.max
-               : p.speed < range.min ? (range.min - p.speed) / range.min
-                                     : -std::min(p.speed - range.min, range.max - p.speed) / p.speed;
+    r.actual = above ? (p.speed - range.max) / range.max
+               : p.speed < range.min
+                   ? (range.min - p.speed) / range.min
+                   : -std::min(p.speed - range.min, range.max - p.speed) / p.speed;
     r.passed = r.critically_damped || r.actual >= r.required;
     rows.push_back(r);
   }

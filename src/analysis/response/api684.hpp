@@ -1,21 +1,25 @@
-// Tables as API RP 684 (rotordynamic tutorial) and API 617 ask for: critical speeds as response peaks, amplification factors by
-// half-power points, separation margins.
+// Tables as API RP 684 (rotordynamic tutorial) and API 617 ask for: critical speeds as response
+// peaks, amplification factors by half-power points, separation margins.
 //
-//   AF = Nc/(N2 - N1), N1 and N2 the speeds with 0.707 of the peak. AF < 2.5: critically damped, no margin required.
-//   Required margin (% of the nearer end of the operating range):
-//     peak below it:  SM = 17 (1 - 1/(AF - 1.5))          peak above it:  SM = 10 + 17 (1 - 1/(AF - 1.5))
+//   AF = Nc/(N2 - N1), N1 and N2 the speeds with 0.707 of the peak. AF < 2.5: critically damped, no
+//   margin required. Required margin (% of the nearer end of the operating range):
+//     peak below it:  SM = 17 (1 - 1/(AF - 1.5))          peak above it:  SM = 10 + 17 (1 - 1/(AF
+//     - 1.5))
 #pragma once
 #include <analysis/response/unbalance.hpp>
 
 namespace whirl::analysis {
 
-struct OperatingRange { double min = 0, max = 0; };   ///< rad/s
+struct OperatingRange {
+  double min = 0, max = 0;
+};  ///< rad/s
 
 struct MarginRow {
   std::string probe;
-  double speed = 0, amplitude = 0, amplification = nan;   ///< rad/s, m, -
-  double low = nan, high = nan;                           ///< half-power speeds, rad/s
-  double required = 0, actual = 0;                        ///< margins, fraction (0.17 = 17 %); actual < 0: inside the range
+  double speed = 0, amplitude = 0, amplification = nan;  ///< rad/s, m, -
+  double low = nan, high = nan;                          ///< half-power speeds, rad/s
+  double required = 0,
+         actual = 0;  ///< margins, fraction (0.17 = 17 %); actual < 0: inside the range
   bool critically_damped = false;
   bool passed = true;
 };
@@ -23,7 +27,8 @@ struct MarginRow {
 /// Required margin as a fraction.
 double required_margin(double amplification, bool above);
 
-std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks, const std::vector<ResponseProbe>& probes,
+std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks,
+                                          const std::vector<ResponseProbe>& probes,
                                           const OperatingRange& range, std::size_t order = 0);
 
 }  // namespace whirl::analysis

@@ -3,37 +3,50 @@
 namespace whirl::analysis {
 
 HarmonicResponder::HarmonicResponder(Linearizer& linear, FrequencyResponseOptions options)
-    : linear_(linear), options_(std::move(options)), solver_(linear, options_.motion) {
+    : linear_(linear),
+      options_(std::move(options)),
+      solver_(linear, options_.motion) {
   if (!options_.outputs.empty()) meter_ = std::make_unique<VariationMeter>(linear);
 }
 
 FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
   FrequencyPoint p;
-  p.Omega = Omega; p.frequency = w;
+  p.Omega = Omega;
+  p.frequency = w;
   VecXc a = VecXc::Zero(linear_.system().size());
-  for (const HarmonicForce& f : options_.forces) a[f.unknown] += scale * f.amplitude;
-  if (solver_.prepare(Omega, w)) solver_.solve(a);
-  else a.setConstant(Complex(nan, nan));   // undamped resonance met exactly
-  for (const ResponseProbe& probe : options_.probes) p.probe.push_back(amplitude_at(linear_, a, probe.point));
-  for (Index k : options_.unknowns) p.unknown.push_back(a[k]);
+  for (const HarmonicForce& f : options_.forces)
+    a[f.unknown] += scale * f.amplitude;
+  if (solver_.prepare(Omega, w))
+    solver_.solve(a);
+  else
+    a.setConstant(Complex(nan, nan));  // undamped resonance met exactly
+  for (const ResponseProbe& probe : options_.probes)
+    p.probe.push_back(amplitude_at(linear_, a, probe.point));
+  for (Index k : options_.unknowns)
+    p.unknown.push_back(a[k]);
   if (meter_) meter_->measure(a, w, options_.outputs, p.output);
   if (options_.shapes) p.shape = std::move(a);
   return p;
 }
 
-std::vector<FrequencyPoint> frequency_response(Linearizer& linear, double Omega, const std::vector<double>& frequencies,
+std::vector<FrequencyPoint> frequency_response(Linearizer& linear, double Omega,
+                                               const std::vector<double>& frequencies,
                                                const FrequencyResponseOptions& options) {
   HarmonicResponder r(linear, options);
   std::vector<FrequencyPoint> out;
-  for (double w : frequencies) out.push_back(r.at(Omega, w, 1.0));
+  for (double w : frequencies)
+    out.push_back(r.at(Omega, w, 1.0));
   return out;
 }
 
-std::vector<FrequencyPoint> order_response(Linearizer& linear, double order, const std::vector<double>& speeds,
-                                           const FrequencyResponseOptions& options, const std::function<double(double)>& factor) {
+std::vector<FrequencyPoint> order_response(Linearizer& linear, double order,
+                                           const std::vector<double>& speeds,
+                                           const FrequencyResponseOptions& options,
+                                           const std::function<double(double)>& factor) {
   HarmonicResponder r(linear, options);
   std::vector<FrequencyPoint> out;
-  for (double Omega : speeds) out.push_back(r.at(Omega, order * Omega, factor ? factor(Omega) : 1.0));
+  for (double Omega : speeds)
+    out.push_back(r.at(Omega, order * Omega, factor ? factor(Omega) : 1.0));
   return out;
 }
 

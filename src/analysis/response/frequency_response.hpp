@@ -1,23 +1,28 @@
-// Response to given harmonic forces: at one speed against the excitation frequency (asynchronous), or at n times the speed.
+// Response to given harmonic forces: at one speed against the excitation frequency (asynchronous),
+// or at n times the speed.
 #pragma once
 #include <analysis/response/unbalance.hpp>
 
 namespace whirl::analysis {
 
-/// Force (N) or moment (N m) amplitude on one unknown, f(t) = Re(amplitude exp(i w t)); a moment on phi acts along the spin.
-struct HarmonicForce { Index unknown = 0; Complex amplitude; };
+/// Force (N) or moment (N m) amplitude on one unknown, f(t) = Re(amplitude exp(i w t)); a moment on
+/// phi acts along the spin.
+struct HarmonicForce {
+  Index unknown = 0;
+  Complex amplitude;
+};
 
 struct FrequencyResponseOptions {
   std::vector<HarmonicForce> forces;
   std::vector<ResponseProbe> probes;
-  std::vector<Index> unknowns;         ///< amplitudes of these are returned too (twist angles and so on)
+  std::vector<Index> unknowns;  ///< amplitudes of these are returned too (twist angles and so on)
   std::vector<Measurement> outputs;
   Motion motion = Motion::all;
   bool shapes = false;
 };
 
 struct FrequencyPoint {
-  double Omega = 0, frequency = 0;     ///< rad/s
+  double Omega = 0, frequency = 0;  ///< rad/s
   std::vector<PointAmplitude> probe;
   std::vector<Complex> unknown;
   std::vector<std::vector<Complex>> output;
@@ -28,7 +33,8 @@ struct FrequencyPoint {
 class HarmonicResponder {
  public:
   HarmonicResponder(Linearizer& linear, FrequencyResponseOptions options);
-  /// At speed Omega and excitation frequency w, rad/s; scale: factor on all forces. nan everywhere at an undamped resonance.
+  /// At speed Omega and excitation frequency w, rad/s; scale: factor on all forces. nan everywhere
+  /// at an undamped resonance.
   FrequencyPoint at(double Omega, double w, double scale = 1.0);
 
  private:
@@ -39,10 +45,14 @@ class HarmonicResponder {
 };
 
 /// At the speed Omega, for each excitation frequency (rad/s).
-std::vector<FrequencyPoint> frequency_response(Linearizer& linear, double Omega, const std::vector<double>& frequencies,
+std::vector<FrequencyPoint> frequency_response(Linearizer& linear, double Omega,
+                                               const std::vector<double>& frequencies,
                                                const FrequencyResponseOptions& options);
-/// At each speed with excitation frequency order x speed; amplitudes may be scaled with the speed: factor(Omega), empty = 1.
-std::vector<FrequencyPoint> order_response(Linearizer& linear, double order, const std::vector<double>& speeds,
-                                           const FrequencyResponseOptions& options, const std::function<double(double)>& factor = {});
+/// At each speed with excitation frequency order x speed; amplitudes may be scaled with the speed:
+/// factor(Omega), empty = 1.
+std::vector<FrequencyPoint> order_response(Linearizer& linear, double order,
+                                           const std::vector<double>& speeds,
+                                           const FrequencyResponseOptions& options,
+                                           const std::function<double(double)>& factor = {});
 
 }  // namespace whirl::analysis

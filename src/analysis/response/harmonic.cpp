@@ -12,7 +12,8 @@ namespace whirl::analysis {
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Size of a variation: differences of second order in it drop out by symmetry, third order is below rounding.
+/// Size of a variation: differences of second order in it drop out by symmetry, third order is
+/// below rounding.
 double variation_step(const VecXc& a) {
   const double largest = a.cwiseAbs().maxCoeff();
   return largest > 0 ? 1e-7 / largest : 0.0;
@@ -88,7 +89,8 @@ bool HarmonicSolver::hold(const la::MCK& m, double w, std::vector<Index> unknown
   if (held.at != unknowns || !held.solver) {
     held.at = std::move(unknowns);
     held.active.assign(motion_.active().begin(), motion_.active().end());
-    for (const Index k : held.at) held.active[at(k)] = 0;
+    for (const Index k : held.at)
+      held.active[at(k)] = 0;
     held.solver = la::make_direct_solver<Complex>(linear_.system().pattern(), held.active);
   }
   return held.solver->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok;
@@ -113,7 +115,8 @@ void HarmonicSolver::solve_held(VecXc& x) {
   const VecXc f = x;
   const auto answer = [&](Held& held) {
     VecXc y = f;
-    for (const Index k : held.at) y[k] = 0;
+    for (const Index k : held.at)
+      y[k] = 0;
     held.solver->solve(y);
     return y;
   };
@@ -128,7 +131,8 @@ void HarmonicSolver::solve_held(VecXc& x) {
                         .solve(spins.transpose().cast<Complex>() * rest);
     VecXc turned = spins.cast<Complex>() * c;
     VecXc left = rest - inertia_and_damping(turned);
-    for (const Index k : first_.at) left[k] = 0;
+    for (const Index k : first_.at)
+      left[k] = 0;
     first_.solver->solve(left);
     x += turned + left;
     return;
@@ -150,7 +154,8 @@ void HarmonicSolver::solve_held(VecXc& x) {
     largest[k % 6 < 3 ? 0 : 1] = std::max(largest[k % 6 < 3 ? 0 : 1], std::abs(x[k]));
   for (Index k = 0; k < x.size(); ++k)
     if (!(std::abs(x[k] - other[k]) <= 1e-9 * largest[k % 6 < 3 ? 0 : 1])) x[k] = Complex(nan, nan);
-  for (const Index k : first_.at) x[k] = Complex(nan, nan);
+  for (const Index k : first_.at)
+    x[k] = Complex(nan, nan);
 }
 
 VecXc HarmonicSolver::inertia_and_damping(const VecXc& x) const {
@@ -217,17 +222,25 @@ PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Poin
   return {u[1] + p.offset * a[6 * p.node + 5], u[2] - p.offset * a[6 * p.node + 4], sense};
 }
 
-VariationMeter::VariationMeter(Linearizer& linear) : linear_(linear), problem_(linear.system()), snapshot_(problem_) {}
+VariationMeter::VariationMeter(Linearizer& linear)
+    : linear_(linear),
+      problem_(linear.system()),
+      snapshot_(problem_) {}
 
-void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measurement>& what, std::vector<std::vector<Complex>>& out) {
+void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measurement>& what,
+                             std::vector<std::vector<Complex>>& out) {
   const system::State& s = linear_.equilibrium().state;
   problem_.frames = s.frames;
   system::Context& context = problem_.workspace().context;
-  context.hysteretic = linear_.hysteretic(); context.whirl = context.whirl_side = w;
+  context.hysteretic = linear_.hysteretic();
+  context.whirl = context.whirl_side = w;
   out.resize(what.size());
-  for (std::size_t m = 0; m < what.size(); ++m) out[m].assign(what[m].width(), Complex(0, 0));
-  if (!a.allFinite()) {   // no response: an undamped resonance, or a motion that nothing resists at 0 Hz
-    for (auto& values : out) std::fill(values.begin(), values.end(), Complex(nan, nan));
+  for (std::size_t m = 0; m < what.size(); ++m)
+    out[m].assign(what[m].width(), Complex(0, 0));
+  if (!a.allFinite()) {  // no response: an undamped resonance, or a motion that nothing resists at
+                         // 0 Hz
+    for (auto& values : out)
+      std::fill(values.begin(), values.end(), Complex(nan, nan));
     return;
   }
   const double eps = variation_step(a);
@@ -237,7 +250,8 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
   for (int part = 0; part < 2; ++part) {
     // the motion at phase 0 and a quarter period earlier: Re and Im of the amplitude
     const Complex turn = part == 0 ? Complex(1, 0) : Complex(0, -1);
-    const VecX q = (turn * a).real(), v = (turn * Complex(0, w) * a).real(), acc = (turn * (-w * w) * a).real();
+    const VecX q = (turn * a).real(), v = (turn * Complex(0, w) * a).real(),
+               acc = (turn * (-w * w) * a).real();
     for (int sign : {1, -1}) {
       const double h = sign * eps;
       const VecX q1 = s.q + h * q, v1 = s.v + h * v, a1 = s.a + h * acc;
@@ -258,7 +272,8 @@ VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const Ve
   const system::System& system = linear.system();
   const system::State& s = linear.equilibrium().state;
   system::Workspace workspace = system.make_workspace();
-  workspace.context.hysteretic = linear.hysteretic(); workspace.context.whirl = workspace.context.whirl_side = w;
+  workspace.context.hysteretic = linear.hysteretic();
+  workspace.context.whirl = workspace.context.whirl_side = w;
   VecXc out = VecXc::Zero(a.size());
   const double eps = variation_step(a);
   VecX r(a.size());

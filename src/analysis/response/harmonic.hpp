@@ -20,8 +20,8 @@ class HarmonicSolver {
   /// resists.
   bool prepare(double Omega, double w);
   /// x := S^-1 x; entries of x at unknowns that take no part are not looked at, those of held ones
-  /// become zero. At w = 0 a force that turns a free rotor has no finite answer: the entries that it
-  /// moves without bound become NaN, the others are right.
+  /// become zero. At w = 0 a force that turns a free rotor has no finite answer: the entries that
+  /// it moves without bound become NaN, the others are right.
   void solve(VecXc& x);
   Linearizer& linear() { return linear_; }
 
@@ -54,7 +54,8 @@ class HarmonicSolver {
   Held first_, last_;  ///< free spins held at the first and at the last node of their lines
 };
 
-/// Amplitudes (Y, Z) along e2, e3 of a point of a shaft. sense: +1 where the spin there is from e2 to e3, else -1.
+/// Amplitudes (Y, Z) along e2, e3 of a point of a shaft. sense: +1 where the spin there is from e2
+/// to e3, else -1.
 struct PointAmplitude {
   Complex y, z;
   double sense = 1;
@@ -66,12 +67,14 @@ struct PointAmplitude {
 };
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p);
 
-/// Complex amplitudes of anything that can be measured on the system (bearing forces, torques, velocities): its exact first
-/// variation along a, by central differences about the equilibrium. The measurement must be smooth there.
+/// Complex amplitudes of anything that can be measured on the system (bearing forces, torques,
+/// velocities): its exact first variation along a, by central differences about the equilibrium.
+/// The measurement must be smooth there.
 class VariationMeter {
  public:
   explicit VariationMeter(Linearizer& linear);
-  void measure(const VecXc& a, double w, const std::vector<Measurement>& what, std::vector<std::vector<Complex>>& out);
+  void measure(const VecXc& a, double w, const std::vector<Measurement>& what,
+               std::vector<std::vector<Complex>>& out);
 
  private:
   Linearizer& linear_;
@@ -79,7 +82,8 @@ class VariationMeter {
   Snapshot snapshot_;
 };
 
-/// Forces and moments that supports exert at held unknowns, complex amplitudes (zero at free unknowns); f: what stands in the residual.
+/// Forces and moments that supports exert at held unknowns, complex amplitudes (zero at free
+/// unknowns); f: what stands in the residual.
 VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const VecXc& f);
 
 }  // namespace whirl::analysis

@@ -15,7 +15,9 @@ double ResponsePeak::amplification() const {
 }
 
 UnbalanceSolver::UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& options)
-    : linear_(linear), options_(options), solver_(linear) {
+    : linear_(linear),
+      options_(options),
+      solver_(linear) {
   if (!options_.outputs.empty()) meter_ = std::make_unique<VariationMeter>(linear);
 }
 
@@ -27,17 +29,19 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     const double w = orders[k] * std::abs(Omega);
     VecXc a;
     if (w == 0.0) {
-      a = VecXc::Zero(linear_.system().size());   // nothing turns
+      a = VecXc::Zero(linear_.system().size());  // nothing turns
       linear_.at(Omega);
     } else if (solver_.prepare(Omega, w)) {
-      // forcing is given as Re(f exp(i order theta)) with theta = Omega t: backward rotation runs the phase backward
+      // forcing is given as Re(f exp(i order theta)) with theta = Omega t: backward rotation runs
+      // the phase backward
       a = Omega > 0 ? VecXc(-linear_.forcing()[k]) : VecXc(-linear_.forcing()[k].conjugate());
       solver_.solve(a);
     } else {
       a = VecXc::Constant(linear_.system().size(), Complex(nan, nan));
     }
     p.probe.emplace_back();
-    for (const ResponseProbe& probe : options_.probes) p.probe.back().push_back(amplitude_at(linear_, a, probe.point));
+    for (const ResponseProbe& probe : options_.probes)
+      p.probe.back().push_back(amplitude_at(linear_, a, probe.point));
     if (meter_ && with_outputs) {
       p.output.emplace_back();
       meter_->measure(a, w, options_.outputs, p.output.back());
@@ -47,18 +51,23 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
   return p;
 }
 
-void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe, const std::vector<SteadyPoint>& coarse, std::vector<SteadyPoint>& extra) {
+void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
+                                 const std::vector<SteadyPoint>& coarse,
+                                 std::vector<SteadyPoint>& extra) {
   const auto size = [&](const SteadyPoint& p) { return p.probe[order][probe].orbit().major; };
   const auto evaluate = [&](double Omega) { return size(at(Omega, false)); };
   double top = 0;
-  for (const SteadyPoint& p : coarse) top = std::max(top, size(p));
+  for (const SteadyPoint& p : coarse)
+    top = std::max(top, size(p));
   for (std::size_t i = 1; i + 1 < coarse.size(); ++i) {
     const double f0 = size(coarse[i - 1]), f1 = size(coarse[i]), f2 = size(coarse[i + 1]);
     // a peak of rounding on a plateau is none
     if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-7 * top) continue;
     ResponsePeak peak;
-    peak.order = order; peak.probe = probe;
-    peak.speed = find_maximum(coarse[i - 1].Omega, coarse[i].Omega, f1, coarse[i + 1].Omega, 3e-9, evaluate);
+    peak.order = order;
+    peak.probe = probe;
+    peak.speed =
+        find_maximum(coarse[i - 1].Omega, coarse[i].Omega, f1, coarse[i + 1].Omega, 3e-9, evaluate);
     const SteadyPoint top_point = at(peak.speed);
     peak.amplitude = size(top_point);
     peak.phase_lag = -std::arg(top_point.probe[order][probe].forward());
@@ -72,10 +81,12 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe, const std
         peak.low = find_crossing(inner, f_inner, coarse[j].Omega, f, 1e-9, excess);
         break;
       }
-      if (size(coarse[j]) > peak.amplitude) break;   // the flank of a higher peak
-      inner = coarse[j].Omega; f_inner = f;
+      if (size(coarse[j]) > peak.amplitude) break;  // the flank of a higher peak
+      inner = coarse[j].Omega;
+      f_inner = f;
     }
-    inner = peak.speed; f_inner = peak.amplitude - half;
+    inner = peak.speed;
+    f_inner = peak.amplitude - half;
     for (std::size_t j = i; j < coarse.size(); ++j) {
       if (coarse[j].Omega <= peak.speed) continue;
       const double f = size(coarse[j]) - half;
@@ -84,7 +95,8 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe, const std
         break;
       }
       if (size(coarse[j]) > peak.amplitude) break;
-      inner = coarse[j].Omega; f_inner = f;
+      inner = coarse[j].Omega;
+      f_inner = f;
     }
     peaks_.push_back(peak);
     if (!options_.refine_peaks) continue;
@@ -94,7 +106,8 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe, const std
     for (double x : {0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0})
       for (double sign : {-1.0, 1.0}) {
         const double Omega = peak.speed + sign * x * width;
-        if (width > 0 && Omega > coarse.front().Omega && Omega < coarse.back().Omega && x * width < coarse[i + 1].Omega - coarse[i - 1].Omega)
+        if (width > 0 && Omega > coarse.front().Omega && Omega < coarse.back().Omega &&
+            x * width < coarse[i + 1].Omega - coarse[i - 1].Omega)
           extra.push_back(at(Omega));
       }
   }
@@ -105,15 +118,20 @@ UnbalanceResponse UnbalanceSolver::run() {
   const auto orders = linear_.running().orders();
   out.orders.assign(orders.begin(), orders.end());
   peaks_.clear();
-  for (double Omega : options_.speeds) out.points.push_back(at(Omega));
+  for (double Omega : options_.speeds)
+    out.points.push_back(at(Omega));
   std::vector<SteadyPoint> extra;
   for (std::size_t k = 0; k < orders.size(); ++k)
-    for (std::size_t p = 0; p < options_.probes.size(); ++p) find_peaks(k, p, out.points, extra);
+    for (std::size_t p = 0; p < options_.probes.size(); ++p)
+      find_peaks(k, p, out.points, extra);
   std::move(extra.begin(), extra.end(), std::back_inserter(out.points));
-  std::sort(out.points.begin(), out.points.end(), [](const SteadyPoint& a, const SteadyPoint& b) { return a.Omega < b.Omega; });
+  std::sort(out.points.begin(), out.points.end(),
+            [](const SteadyPoint& a, const SteadyPoint& b) { return a.Omega < b.Omega; });
   // the same peak seen by two probes: keep speeds apart by 1e-7
   out.points.erase(std::unique(out.points.begin(), out.points.end(),
-                               [](const SteadyPoint& a, const SteadyPoint& b) { return b.Omega - a.Omega < 1e-7 * b.Omega; }),
+                               [](const SteadyPoint& a, const SteadyPoint& b) {
+                                 return b.Omega - a.Omega < 1e-7 * b.Omega;
+                               }),
                    out.points.end());
   return out;
 }

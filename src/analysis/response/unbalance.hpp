@@ -1,5 +1,6 @@
-// Steady response to what turns with the rotor: unbalance, skew, bow (and 1X gravity effects), found from the exact residual.
-// Bode and polar data of probes, operating shapes, forces of bearings; peaks and their half-power points solved for.
+// Steady response to what turns with the rotor: unbalance, skew, bow (and 1X gravity effects),
+// found from the exact residual. Bode and polar data of probes, operating shapes, forces of
+// bearings; peaks and their half-power points solved for.
 #pragma once
 #include <analysis/response/harmonic.hpp>
 
@@ -8,36 +9,39 @@ namespace whirl::analysis {
 struct ResponseProbe {
   std::string name;
   Point point;
-  std::vector<double> angles;          ///< rad from e2 towards e3; what "amplitude" means to the user; empty: major axis
+  std::vector<double>
+      angles;  ///< rad from e2 towards e3; what "amplitude" means to the user; empty: major axis
 };
 
 struct UnbalanceOptions {
-  std::vector<double> speeds;          ///< rad/s, ascending
+  std::vector<double> speeds;  ///< rad/s, ascending
   std::vector<ResponseProbe> probes;
-  std::vector<Measurement> outputs;    ///< bearing forces and the like
-  bool refine_peaks = true;            ///< add speeds at and around the peaks of the probes to the response
-  bool shapes = false;                 ///< keep the amplitudes of all unknowns
+  std::vector<Measurement> outputs;  ///< bearing forces and the like
+  bool refine_peaks = true;  ///< add speeds at and around the peaks of the probes to the response
+  bool shapes = false;       ///< keep the amplitudes of all unknowns
 };
 
-/// Amplitudes at one speed; [order] first: a rotor whose lines turn at different speeds responds with each of them.
+/// Amplitudes at one speed; [order] first: a rotor whose lines turn at different speeds responds
+/// with each of them.
 struct SteadyPoint {
   double Omega = 0;
-  std::vector<std::vector<PointAmplitude>> probe;              ///< [order][probe]
-  std::vector<std::vector<std::vector<Complex>>> output;       ///< [order][output][component]
-  std::vector<VecXc> shape;                                    ///< [order], when asked for
+  std::vector<std::vector<PointAmplitude>> probe;         ///< [order][probe]
+  std::vector<std::vector<std::vector<Complex>>> output;  ///< [order][output][component]
+  std::vector<VecXc> shape;                               ///< [order], when asked for
 };
 
 struct UnbalanceResponse {
-  std::vector<double> orders;          ///< excitation frequency / reference speed
-  std::vector<SteadyPoint> points;     ///< ascending speeds
+  std::vector<double> orders;       ///< excitation frequency / reference speed
+  std::vector<SteadyPoint> points;  ///< ascending speeds
 };
 
 /// A peak of the major axis of a probe's orbit.
 struct ResponsePeak {
-  std::size_t order = 0, probe = 0;    ///< numbers in UnbalanceResponse::orders and the probes
-  double speed = 0, amplitude = 0;     ///< rad/s, m
-  double phase_lag = 0;                ///< of the forward circle behind the rotor mark, rad
-  double low = nan, high = nan;        ///< speeds with 1/sqrt(2) of the amplitude; nan: not within the range
+  std::size_t order = 0, probe = 0;  ///< numbers in UnbalanceResponse::orders and the probes
+  double speed = 0, amplitude = 0;   ///< rad/s, m
+  double phase_lag = 0;              ///< of the forward circle behind the rotor mark, rad
+  double low = nan,
+         high = nan;  ///< speeds with 1/sqrt(2) of the amplitude; nan: not within the range
   /// Nc/(N2 - N1); from one side, Nc/(2 |N - Nc|), when the other is missing; nan without either.
   double amplification() const;
 };
@@ -48,11 +52,13 @@ class UnbalanceSolver {
   /// Response at one speed; with_outputs = false: probes only.
   SteadyPoint at(double Omega, bool with_outputs = true);
   UnbalanceResponse run();
-  /// Peaks of the last run, by order, probe, speed. Found to 1e-9 of the speed, half-power points too.
+  /// Peaks of the last run, by order, probe, speed. Found to 1e-9 of the speed, half-power points
+  /// too.
   const std::vector<ResponsePeak>& peaks() const { return peaks_; }
 
  private:
-  void find_peaks(std::size_t order, std::size_t probe, const std::vector<SteadyPoint>& coarse, std::vector<SteadyPoint>& extra);
+  void find_peaks(std::size_t order, std::size_t probe, const std::vector<SteadyPoint>& coarse,
+                  std::vector<SteadyPoint>& extra);
   Linearizer& linear_;
   UnbalanceOptions options_;
   HarmonicSolver solver_;

@@ -9,24 +9,32 @@ namespace whirl::analysis {
 
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}
+}  // namespace
 
-CampbellRecorder::CampbellRecorder(std::vector<double> speeds, bool shapes) : shapes_(shapes) { out_.speeds = std::move(speeds); }
+CampbellRecorder::CampbellRecorder(std::vector<double> speeds, bool shapes) : shapes_(shapes) {
+  out_.speeds = std::move(speeds);
+}
 
 void CampbellRecorder::take(std::size_t k, const std::vector<TrackedMode>& modes, Index lines) {
   const std::size_t n = out_.speeds.size();
   for (Index id = static_cast<Index>(out_.lines.size()); id < lines; ++id) {
     CampbellLine line;
-    line.frequency.assign(n, nan); line.damping_ratio.assign(n, nan); line.log_decrement.assign(n, nan);
-    line.direction_at.assign(n, Direction::none); line.lambda.assign(n, Complex(nan, nan));
+    line.frequency.assign(n, nan);
+    line.damping_ratio.assign(n, nan);
+    line.log_decrement.assign(n, nan);
+    line.direction_at.assign(n, Direction::none);
+    line.lambda.assign(n, Complex(nan, nan));
     if (shapes_) line.shape.resize(n);
     out_.lines.push_back(std::move(line));
     votes_.push_back({0, 0, 0});
   }
   for (const TrackedMode& m : modes) {
     CampbellLine& line = out_.lines[at(m.id)];
-    line.frequency[k] = m.now.frequency; line.damping_ratio[k] = m.now.damping_ratio; line.log_decrement[k] = m.now.log_decrement;
-    line.direction_at[k] = m.now.direction; line.lambda[k] = m.now.lambda;
+    line.frequency[k] = m.now.frequency;
+    line.damping_ratio[k] = m.now.damping_ratio;
+    line.log_decrement[k] = m.now.log_decrement;
+    line.direction_at[k] = m.now.direction;
+    line.lambda[k] = m.now.lambda;
     if (shapes_) line.shape[k] = m.now.x;
     ++votes_[at(m.id)][static_cast<std::size_t>(m.now.kind)];
   }
@@ -41,16 +49,22 @@ Campbell CampbellRecorder::finish(long speeds_solved) {
   std::vector<CampbellLine> kept;
   for (std::size_t l = 0; l < out.lines.size(); ++l) {
     CampbellLine& line = out.lines[l];
-    if (std::all_of(line.frequency.begin(), line.frequency.end(), [](double f) { return std::isnan(f); })) continue;
-    line.kind = static_cast<ModeKind>(std::max_element(votes[l].begin(), votes[l].end()) - votes[l].begin());
+    if (std::all_of(line.frequency.begin(), line.frequency.end(),
+                    [](double f) { return std::isnan(f); }))
+      continue;
+    line.kind = static_cast<ModeKind>(std::max_element(votes[l].begin(), votes[l].end()) -
+                                      votes[l].begin());
     std::array<int, 5> directions{};
     for (std::size_t k = 0; k < n; ++k)
-      if (!std::isnan(line.frequency[k])) ++directions[static_cast<std::size_t>(line.direction_at[k])];
+      if (!std::isnan(line.frequency[k]))
+        ++directions[static_cast<std::size_t>(line.direction_at[k])];
     // planar (at rest) decides only when there is nothing else
     const int planar = directions[3];
     directions[3] = 0;
-    line.direction = static_cast<Direction>(std::max_element(directions.begin(), directions.end()) - directions.begin());
-    if (directions[static_cast<std::size_t>(line.direction)] == 0 && planar > 0) line.direction = Direction::planar;
+    line.direction = static_cast<Direction>(std::max_element(directions.begin(), directions.end()) -
+                                            directions.begin());
+    if (directions[static_cast<std::size_t>(line.direction)] == 0 && planar > 0)
+      line.direction = Direction::planar;
     kept.push_back(std::move(line));
   }
   out.lines = std::move(kept);
@@ -63,22 +77,32 @@ Campbell CampbellRecorder::finish(long speeds_solved) {
     double s = 0;
     int c = 0;
     for (double f : l.frequency)
-      if (!std::isnan(f)) { s += f; ++c; }
+      if (!std::isnan(f)) {
+        s += f;
+        ++c;
+      }
     return s / std::max(c, 1);
   };
   // Lines that start together (a pair at rest) go on by their mean: backward before forward.
-  std::stable_sort(out.lines.begin(), out.lines.end(), [&](const CampbellLine& a, const CampbellLine& b) { return first(a) < first(b); });
+  std::stable_sort(
+      out.lines.begin(), out.lines.end(),
+      [&](const CampbellLine& a, const CampbellLine& b) { return first(a) < first(b); });
   for (auto i = out.lines.begin(); i != out.lines.end();) {
     auto j = i + 1;
-    while (j != out.lines.end() && first(*j) - first(*i) <= 1e-9 * first(*j)) ++j;
-    std::stable_sort(i, j, [&](const CampbellLine& a, const CampbellLine& b) { return mean(a) < mean(b); });
+    while (j != out.lines.end() && first(*j) - first(*i) <= 1e-9 * first(*j))
+      ++j;
+    std::stable_sort(
+        i, j, [&](const CampbellLine& a, const CampbellLine& b) { return mean(a) < mean(b); });
     i = j;
   }
   std::map<std::string, int> count;
   for (CampbellLine& l : out.lines) {
-    const std::string letter = l.kind == ModeKind::torsional ? "T" : l.kind == ModeKind::axial ? "A"
-                               : l.direction == Direction::forward ? "F" : l.direction == Direction::backward ? "B"
-                               : l.direction == Direction::mixed ? "M" : "L";
+    const std::string letter = l.kind == ModeKind::torsional        ? "T"
+                               : l.kind == ModeKind::axial          ? "A"
+                               : l.direction == Direction::forward  ? "F"
+                               : l.direction == Direction::backward ? "B"
+                               : l.direction == Direction::mixed    ? "M"
+                                                                    : "L";
     const std::string number = std::to_string(++count[letter]);
     l.label = l.kind == ModeKind::lateral ? number + " " + letter : letter + number;
   }

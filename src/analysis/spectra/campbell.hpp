@@ -1,4 +1,5 @@
-// Campbell diagram: natural frequencies, damping and direction of the modes against speed, each line one mode.
+// Campbell diagram: natural frequencies, damping and direction of the modes against speed, each
+// line one mode.
 #pragma once
 #include <analysis/spectra/track.hpp>
 #include <array>
@@ -7,27 +8,27 @@
 namespace whirl::analysis {
 
 struct CampbellOptions {
-  std::vector<double> speeds;      ///< rad/s, monotonic
+  std::vector<double> speeds;  ///< rad/s, monotonic
   TrackOptions track;
-  bool shapes = false;             ///< keep the shapes (memory: speeds x modes x unknowns)
+  bool shapes = false;  ///< keep the shapes (memory: speeds x modes x unknowns)
 };
 
 /// Entries are per speed; nan where the mode is not among those asked for.
 struct CampbellLine {
-  std::string label;               ///< "1 F", "1 B", "2 M", "T1", "A1": number within its kind and direction
+  std::string label;  ///< "1 F", "1 B", "2 M", "T1", "A1": number within its kind and direction
   ModeKind kind = ModeKind::lateral;
-  Direction direction = Direction::none;              ///< at most of the speeds
-  std::vector<double> frequency, damping_ratio, log_decrement;   ///< rad/s, -, -
+  Direction direction = Direction::none;                        ///< at most of the speeds
+  std::vector<double> frequency, damping_ratio, log_decrement;  ///< rad/s, -, -
   std::vector<Direction> direction_at;
   std::vector<Complex> lambda;
-  std::vector<VecXc> shape;        ///< when asked for
+  std::vector<VecXc> shape;  ///< when asked for
 };
 
 struct Campbell {
   std::vector<double> speeds;
-  std::vector<CampbellLine> lines; ///< by frequency at the first speed they appear
-  long speeds_solved = 0;          ///< with those put in to keep the lines apart
-  std::vector<SpectrumCertificate> certificates;   ///< one a speed
+  std::vector<CampbellLine> lines;                ///< by frequency at the first speed they appear
+  long speeds_solved = 0;                         ///< with those put in to keep the lines apart
+  std::vector<SpectrumCertificate> certificates;  ///< one a speed
 };
 
 /// Collects the modes a tracker finds at the speeds of a diagram.
@@ -42,7 +43,7 @@ class CampbellRecorder {
  private:
   Campbell out_;
   bool shapes_;
-  std::vector<std::array<int, 3>> votes_;   ///< kinds, by line
+  std::vector<std::array<int, 3>> votes_;  ///< kinds, by line
 };
 
 Campbell campbell(Linearizer& linear, const CampbellOptions& options);

@@ -21,7 +21,9 @@ constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 class Counter {
  public:
   Counter(Linearizer& linear, const CriticalOptions& o)
-      : linear_(linear), options_(o), motion_(linear.system(), o.motion),
+      : linear_(linear),
+        options_(o),
+        motion_(linear.system(), o.motion),
         lu_(linear.system().pattern(), motion_.active()) {}
   Index count(double Omega) { return count(Omega, options_.order * Omega); }
   /// tables: frequency of supports tabulated against it.
@@ -30,14 +32,21 @@ class Counter {
     for (double beside = 1e-12; beside < 1e-6; beside *= 2) {
       const double w = options_.order * Omega;
       const la::MCK& m = matrices(Omega, tables);
-      if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok) return lu_.negative_eigenvalues();
+      if (lu_.factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok)
+        return lu_.negative_eigenvalues();
       Omega *= 1 + beside;
     }
-    throw run_error("E77", fmt::format("critical speeds cannot be counted near {:.6g} rpm: the matrix is singular at every speed tried", Omega * 30.0 / pi),
-                    "parts without mass, or stiffnesses too far apart for the digits of the computer");
+    throw run_error(
+        "E77",
+        fmt::format("critical speeds cannot be counted near {:.6g} rpm: the matrix is singular at "
+                    "every speed tried",
+                    Omega * 30.0 / pi),
+        "parts without mass, or stiffnesses too far apart for the digits of the computer");
   }
   std::span<const unsigned char> active() const { return motion_.active(); }
-  const la::MCK& matrices(double Omega, double tables) { return motion_.reduce(linear_.conservative_at(Omega, tables)); }
+  const la::MCK& matrices(double Omega, double tables) {
+    return motion_.reduce(linear_.conservative_at(Omega, tables));
+  }
 
  private:
   Linearizer& linear_;
@@ -46,13 +55,18 @@ class Counter {
   la::BlockLu<Complex> lu_;
 };
 
-struct Bracket { double a, b; Index na, nb; };
+struct Bracket {
+  double a, b;
+  Index na, nb;
+};
 
-/// Halves brackets until each holds one change, or changes that cannot be told apart (a double root).
+/// Halves brackets until each holds one change, or changes that cannot be told apart (a double
+/// root).
 void isolate(Counter& counter, const Bracket& k, double scale, std::vector<Bracket>& out) {
   const Index changes = std::abs(k.nb - k.na);
   if (changes == 0) return;
-  // one root: until it lies within 1e-3, so that the nearest eigenvalue is the right one; several: until 1e-6
+  // one root: until it lies within 1e-3, so that the nearest eigenvalue is the right one; several:
+  // until 1e-6
   const double width = k.b - k.a;
   if (width < (changes == 1 ? 1e-3 : 1e-6) * k.b) {
     out.push_back(k);
@@ -70,8 +84,11 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
   double a = low;
   Index na = counter.count(a);
   std::vector<double> grid;
-  for (Index k = 1; k <= o.grid; ++k) grid.push_back(low + (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid));
-  // Coefficients against frequency can raise a mode through n Omega (frequency_dependent_modes.hpp: left out) near where it comes down: apart at the rows.
+  for (Index k = 1; k <= o.grid; ++k)
+    grid.push_back(low +
+                   (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid));
+  // Coefficients against frequency can raise a mode through n Omega (frequency_dependent_modes.hpp:
+  // left out) near where it comes down: apart at the rows.
   const std::vector<double>& rows = linear.running().running().table_frequencies;
   for (const double w : rows)
     if (w > o.order * low && w < o.order * o.max_speed) grid.push_back(w / o.order);
@@ -79,15 +96,19 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
   for (const double b : grid) {
     const Index nb = counter.count(b);
     isolate(counter, {a, b, na, nb}, o.max_speed, brackets);
-    a = b; na = nb;
+    a = b;
+    na = nb;
   }
   ModesOptions mo;
-  mo.damped = false; mo.motion = o.motion;
+  mo.damped = false;
+  mo.motion = o.motion;
   WhirlSolver follower(linear, mo);
   std::vector<Critical> out;
   for (const Bracket& k : brackets) {
     const double middle = 0.5 * (k.a + k.b);
-    if (!rows.empty() && k.nb < k.na && counter.count(k.b, o.order * middle) >= counter.count(k.a, o.order * middle)) continue;   // the table raised it
+    if (!rows.empty() && k.nb < k.na &&
+        counter.count(k.b, o.order * middle) >= counter.count(k.a, o.order * middle))
+      continue;  // the table raised it
     const Index wanted = std::abs(k.nb - k.na);
     // The modes of the bracket's middle nearest to i n Omega.
     const la::MCK& m = counter.matrices(middle, o.order * middle);
@@ -98,21 +119,30 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     std::sort(near.begin(), near.end(), [&](const la::Mode& x, const la::Mode& y) {
       return std::abs(x.lambda - *lo.shift) < std::abs(y.lambda - *lo.shift);
     });
-    if (static_cast<Index>(near.size()) < wanted) throw run_error("E77", "a critical speed was counted but its mode not found");
+    if (static_cast<Index>(near.size()) < wanted)
+      throw run_error("E77", "a critical speed was counted but its mode not found");
     for (Index j = 0; j < wanted; ++j) {
-      // Newton's method on Omega: the frequency of the mode less n Omega, by secant from two neighbouring speeds.
-      const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
-      WhirlMode mode = describe_mode(near[at(j)], counter.matrices(middle, o.order * middle), linear);
+      // Newton's method on Omega: the frequency of the mode less n Omega, by secant from two
+      // neighbouring speeds.
+      const auto gap = [&](double Omega, const WhirlMode& w) {
+        return w.frequency - o.order * Omega;
+      };
+      WhirlMode mode =
+          describe_mode(near[at(j)], counter.matrices(middle, o.order * middle), linear);
       double x0 = middle, f0 = gap(x0, mode);
       double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
       for (int it = 0; it < 40 && f1 != 0.0; ++it) {
         const auto next = follower.follow(x1, mode);
-        if (!next) throw run_error("E77", "a critical speed was isolated but its mode was lost on the way");
-        mode = *next; f1 = gap(x1, mode);
+        if (!next)
+          throw run_error("E77", "a critical speed was isolated but its mode was lost on the way");
+        mode = *next;
+        f1 = gap(x1, mode);
         if (f1 == f0 || x1 == x0) break;
         const double x2 = x1 - f1 * (x1 - x0) / (f1 - f0);
         const bool done = std::abs(x2 - x1) <= o.tolerance * x1;
-        x0 = x1; f0 = f1; x1 = x2;
+        x0 = x1;
+        f0 = f1;
+        x1 = x2;
         if (done) break;
       }
       out.push_back({x1, o.order * x1, o.order, mode});
@@ -121,14 +151,17 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
   return out;
 }
 
-std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, double low, SpectrumCertificate* certificate) {
+std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, double low,
+                             SpectrumCertificate* certificate) {
   TrackOptions t;
   t.modes.motion = o.motion;
   t.modes.count = 0;
-  t.modes.max_frequency = 1.1 * o.order * o.max_speed;   // only modes that reach the order line within the range matter
+  t.modes.max_frequency =
+      1.1 * o.order * o.max_speed;  // only modes that reach the order line within the range matter
   ModeTracker tracker(linear, t);
   ModesOptions mo = t.modes;
-  mo.max_frequency = infinity; mo.count = 2;
+  mo.max_frequency = infinity;
+  mo.count = 2;
   WhirlSolver follower(linear, mo);
   const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
   std::vector<Critical> out;
@@ -137,13 +170,14 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
       if (!m.has_before || m.now.frequency == 0.0) continue;
       const double ga = gap(a, m.before), gb = gap(b, m.now);
       if ((ga > 0) == (gb > 0) && gb != 0.0) continue;
-      if (ga == 0.0) continue;   // counted at the end of the step before
+      if (ga == 0.0) continue;  // counted at the end of the step before
       if (const auto root = find_on_mode(follower, a, m.before, b, m.now, gap, o.tolerance))
         out.push_back({root->speed, o.order * root->speed, o.order, root->mode});
     }
   };
   for (Index k = 0; k <= o.grid; ++k) {
-    tracker.advance(low + (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid), visit);
+    tracker.advance(
+        low + (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid), visit);
     const SpectrumCertificate& now = tracker.solver().certificate();
     if (certificate && (k == 0 || (certificate->complete() && !now.complete()))) *certificate = now;
   }
@@ -151,16 +185,20 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
 }
 }  // namespace
 
-std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options, SpectrumCertificate* certificate) {
+std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options,
+                                      SpectrumCertificate* certificate) {
   if (!(options.max_speed > options.min_speed) || !(options.order > 0))
     throw run_error("E77", "critical speeds need an order above zero and a range of speeds");
-  // At standstill every rotor that turns freely has the frequency 0 = n x 0: that is no critical speed.
+  // At standstill every rotor that turns freely has the frequency 0 = n x 0: that is no critical
+  // speed.
   const double low = options.min_speed > 0 ? options.min_speed : 1e-3 * options.max_speed;
   CriticalOptions o = options;
   o.max_speed = std::min(o.max_speed, o.max_frequency / o.order);
   if (!(o.max_speed > low)) return {};
-  std::vector<Critical> out = o.damped ? damped(linear, o, low, certificate) : undamped(linear, o, low);
-  std::sort(out.begin(), out.end(), [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
+  std::vector<Critical> out =
+      o.damped ? damped(linear, o, low, certificate) : undamped(linear, o, low);
+  std::sort(out.begin(), out.end(),
+            [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
   return out;
 }
 
@@ -170,15 +208,17 @@ namespace {
 struct MapPoint {
   struct Entry {
     Critical critical;
-    MatXc space;      ///< shapes of all critical speeds here, this one first
+    MatXc space;  ///< shapes of all critical speeds here, this one first
     Index line = -1;
   };
   std::unique_ptr<system::System> system;
-  la::MCK matrices;   ///< mass: the metric
+  la::MCK matrices;  ///< mass: the metric
   std::vector<Entry> entries;
 };
 
-bool same_speed(const Critical& a, const Critical& b) { return std::abs(a.speed - b.speed) <= 1e-9 * b.speed; }
+bool same_speed(const Critical& a, const Critical& b) {
+  return std::abs(a.speed - b.speed) <= 1e-9 * b.speed;
+}
 
 /// Share of x within the space, 0 .. 1, in the metric of the mass.
 double share_in(const la::MCK& m, const VecXc& x, const MatXc& space) {
@@ -198,7 +238,9 @@ double share_in(const la::MCK& m, const VecXc& x, const MatXc& space) {
 
 class MapTracker {
  public:
-  MapTracker(const std::function<system::System(double)>& build, const CriticalMapOptions& options) : build_(build), options_(options) {}
+  MapTracker(const std::function<system::System(double)>& build, const CriticalMapOptions& options)
+      : build_(build),
+        options_(options) {}
 
   CriticalMap run() {
     const std::vector<double>& k = options_.stiffness;
@@ -206,14 +248,18 @@ class MapTracker {
       MapPoint next = solve(k[i]);
       if (i > 0) advance(k[i - 1], k[i], next, 4);
       number(next);
-      for (const MapPoint::Entry& e : next.entries) lines_[static_cast<std::size_t>(e.line)].speed[i] = e.critical.speed;
+      for (const MapPoint::Entry& e : next.entries)
+        lines_[static_cast<std::size_t>(e.line)].speed[i] = e.critical.speed;
       last_ = std::move(next);
     }
     return finish();
   }
 
  private:
-  struct Pair { double score, like; std::size_t old, now; };
+  struct Pair {
+    double score, like;
+    std::size_t old, now;
+  };
 
   MapPoint solve(double stiffness) const {
     MapPoint p;
@@ -233,7 +279,8 @@ class MapTracker {
       for (std::size_t j = 0; j < all.size(); ++j)
         if (j != i && same_speed(all[i], all[j])) group.push_back(j);
       e.space.resize(all[i].mode.x.size(), static_cast<Index>(group.size()));
-      for (std::size_t j = 0; j < group.size(); ++j) e.space.col(static_cast<Index>(j)) = all[group[j]].mode.x;
+      for (std::size_t j = 0; j < group.size(); ++j)
+        e.space.col(static_cast<Index>(j)) = all[group[j]].mode.x;
       p.entries.push_back(std::move(e));
     }
     return p;
@@ -249,7 +296,9 @@ class MapTracker {
     if (m.direction == Direction::backward) return false;
     // without gyroscopic effect both planes have the same speed: one line
     for (std::size_t j = 0; j < i; ++j)
-      if (same_speed(all[j], all[i]) && all[j].mode.kind == ModeKind::lateral && all[j].mode.direction != Direction::backward) return false;
+      if (same_speed(all[j], all[i]) && all[j].mode.kind == ModeKind::lateral &&
+          all[j].mode.direction != Direction::backward)
+        return false;
     return true;
   }
 
@@ -260,13 +309,16 @@ class MapTracker {
       for (std::size_t j = 0; j < next.entries.size(); ++j) {
         const Critical& a = last_.entries[i].critical;
         const Critical& b = next.entries[j].critical;
-        if ((a.mode.direction == Direction::backward) != (b.mode.direction == Direction::backward)) continue;
+        if ((a.mode.direction == Direction::backward) != (b.mode.direction == Direction::backward))
+          continue;
         const double like = share_in(next.matrices, a.mode.x, next.entries[j].space);
         const double apart = std::abs(a.speed - b.speed) / (a.speed + b.speed);
         if (like >= 0.05) pairs.push_back({like - 0.5 * apart, like, i, j});
       }
-    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.score > b.score; });
-    std::vector<unsigned char> old_taken(last_.entries.size(), 0), now_taken(next.entries.size(), 0);
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& a, const Pair& b) { return a.score > b.score; });
+    std::vector<unsigned char> old_taken(last_.entries.size(), 0),
+        now_taken(next.entries.size(), 0);
     bool sure = true;
     for (const Pair& p : pairs) {
       if (old_taken[p.old] || now_taken[p.now]) continue;
@@ -289,7 +341,8 @@ class MapTracker {
       advance(middle, b, next, halvings - 1);
       return;
     }
-    for (const Pair& p : pairs) next.entries[p.now].line = last_.entries[p.old].line;
+    for (const Pair& p : pairs)
+      next.entries[p.now].line = last_.entries[p.old].line;
   }
 
   /// New lines for what continues none.
@@ -297,7 +350,8 @@ class MapTracker {
     for (MapPoint::Entry& e : p.entries) {
       if (e.line >= 0) continue;
       e.line = static_cast<Index>(lines_.size());
-      lines_.push_back({e.critical.mode.kind, e.critical.mode.direction, std::vector<double>(options_.stiffness.size(), nan)});
+      lines_.push_back({e.critical.mode.kind, e.critical.mode.direction,
+                        std::vector<double>(options_.stiffness.size(), nan)});
     }
   }
 
@@ -305,14 +359,19 @@ class MapTracker {
     CriticalMap map;
     map.stiffness = options_.stiffness;
     const auto first = [](const CriticalMapLine& l) {
-      return std::find_if(l.speed.begin(), l.speed.end(), [](double x) { return !std::isnan(x); }) - l.speed.begin();
+      return std::find_if(l.speed.begin(), l.speed.end(), [](double x) { return !std::isnan(x); }) -
+             l.speed.begin();
     };
-    for (CriticalMapLine& l : lines_)   // met between the stiffnesses asked for alone: nothing to show
+    for (CriticalMapLine& l :
+         lines_)  // met between the stiffnesses asked for alone: nothing to show
       if (first(l) < static_cast<std::ptrdiff_t>(l.speed.size())) map.lines.push_back(std::move(l));
-    std::stable_sort(map.lines.begin(), map.lines.end(), [&](const CriticalMapLine& a, const CriticalMapLine& b) {
-      const auto i = first(a), j = first(b);
-      return i != j ? i < j : a.speed[static_cast<std::size_t>(i)] < b.speed[static_cast<std::size_t>(j)];
-    });
+    std::stable_sort(map.lines.begin(), map.lines.end(),
+                     [&](const CriticalMapLine& a, const CriticalMapLine& b) {
+                       const auto i = first(a), j = first(b);
+                       return i != j ? i < j
+                                     : a.speed[static_cast<std::size_t>(i)] <
+                                           b.speed[static_cast<std::size_t>(j)];
+                     });
     return map;
   }
 
@@ -324,7 +383,8 @@ class MapTracker {
 
 }  // namespace
 
-CriticalMap critical_map(const std::function<system::System(double)>& build, const CriticalMapOptions& options) {
+CriticalMap critical_map(const std::function<system::System(double)>& build,
+                         const CriticalMapOptions& options) {
   return MapTracker(build, options).run();
 }
 

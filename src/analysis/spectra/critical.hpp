@@ -1,14 +1,16 @@
-// Critical speeds of any excitation order n, solved for directly: a whirl frequency equal to n Omega.
+// Critical speeds of any excitation order n, solved for directly: a whirl frequency equal to n
+// Omega.
 //
 // Undamped (the conservative part M, skew C, symmetric K): speeds at which the Hermitian matrix
 //   S(Omega) = K(Omega) + i n Omega C(Omega) - (n Omega)^2 M
-// is singular. The number of its negative eigenvalues (Sylvester, from the block factorisation) changes by one at each, so none
-// is missed between the speeds of the search grid; bisection on that number isolates it and a secant on the eigenvalue finds it
-// to rounding. K and C are linearised anew at every trial speed: bearings that depend on speed are included exactly.
+// is singular. The number of its negative eigenvalues (Sylvester, from the block factorisation)
+// changes by one at each, so none is missed between the speeds of the search grid; bisection on
+// that number isolates it and a secant on the eigenvalue finds it to rounding. K and C are
+// linearised anew at every trial speed: bearings that depend on speed are included exactly.
 //
-// Damped: speeds at which Im lambda(Omega) = n Omega for a damped mode, i.e. crossings in the Campbell diagram of the damped
-// frequency. Modes are followed over the speed and the crossing solved for by secant. (Peaks of the response lie a little
-// elsewhere; see api684.hpp for those.)
+// Damped: speeds at which Im lambda(Omega) = n Omega for a damped mode, i.e. crossings in the
+// Campbell diagram of the damped frequency. Modes are followed over the speed and the crossing
+// solved for by secant. (Peaks of the response lie a little elsewhere; see api684.hpp for those.)
 #pragma once
 #include <analysis/spectra/track.hpp>
 #include <string>
@@ -16,52 +18,59 @@
 namespace whirl::analysis {
 
 struct CriticalOptions {
-  double order = 1;             ///< excitations a revolution
-  double min_speed = 0;         ///< rad/s; 0 stands for a thousandth of the highest
-  double max_speed = 0;         ///< rad/s
+  double order = 1;      ///< excitations a revolution
+  double min_speed = 0;  ///< rad/s; 0 stands for a thousandth of the highest
+  double max_speed = 0;  ///< rad/s
   bool damped = false;
   Motion motion = Motion::all;
-  Index grid = 40;              ///< speeds of the search
-  double max_frequency = infinity;   ///< rad/s: critical speeds beyond it are left out
-  double tolerance = 1e-13;     ///< relative
+  Index grid = 40;                  ///< speeds of the search
+  double max_frequency = infinity;  ///< rad/s: critical speeds beyond it are left out
+  double tolerance = 1e-13;         ///< relative
 };
 
 struct Critical {
-  double speed = 0;             ///< rad/s
-  double frequency = 0;         ///< order x speed, rad/s
+  double speed = 0;      ///< rad/s
+  double frequency = 0;  ///< order x speed, rad/s
   double order = 1;
-  WhirlMode mode;               ///< at that speed
-  /// Of the eigenvalue there, 1/(2 zeta): what a half-power measurement would give for a lone mode. inf when undamped.
-  double amplification() const { return mode.damping_ratio > 0 ? 0.5 / mode.damping_ratio : infinity; }
+  WhirlMode mode;  ///< at that speed
+  /// Of the eigenvalue there, 1/(2 zeta): what a half-power measurement would give for a lone mode.
+  /// inf when undamped.
+  double amplification() const {
+    return mode.damping_ratio > 0 ? 0.5 / mode.damping_ratio : infinity;
+  }
 };
 
-/// In ascending order. certificate: of the damped modes they are crossings of, at the speed of the search where least is known (undamped ones are
-/// counted by inertia: none is missed).
-std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options, SpectrumCertificate* certificate = nullptr);
+/// In ascending order. certificate: of the damped modes they are crossings of, at the speed of the
+/// search where least is known (undamped ones are counted by inertia: none is missed).
+std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options,
+                                      SpectrumCertificate* certificate = nullptr);
 
-/// Undamped critical speeds against the stiffness of the supports. build: the system with that stiffness (N/m) in its supports,
-/// the same nodes at every stiffness.
+/// Undamped critical speeds against the stiffness of the supports. build: the system with that
+/// stiffness (N/m) in its supports, the same nodes at every stiffness.
 ///
-/// From one stiffness to the next the critical speeds are paired by shape: |projection|^2 on the other one's modes in the metric
-/// of the mass, less half the relative distance of the speeds, best pairs first. Where two shapes are less than 0.6 alike a
-/// stiffness in between is put in (down to 1/16 of the step on a logarithmic scale).
+/// From one stiffness to the next the critical speeds are paired by shape: |projection|^2 on the
+/// other one's modes in the metric of the mass, less half the relative distance of the speeds, best
+/// pairs first. Where two shapes are less than 0.6 alike a stiffness in between is put in (down to
+/// 1/16 of the step on a logarithmic scale).
 struct CriticalMapOptions {
   CriticalOptions critical;
   SteadyRotation running;
-  std::vector<double> stiffness;        ///< N/m, ascending
-  bool forward_only = true;             ///< what unbalance can excite; false: backward ones as lines of their own
-  bool undeformed = false;              ///< Linearizer::stay_undeformed()
+  std::vector<double> stiffness;  ///< N/m, ascending
+  bool forward_only =
+      true;  ///< what unbalance can excite; false: backward ones as lines of their own
+  bool undeformed = false;  ///< Linearizer::stay_undeformed()
 };
 struct CriticalMapLine {
   ModeKind kind = ModeKind::lateral;
-  Direction direction = Direction::forward;   ///< where it was met first
-  std::vector<double> speed;            ///< rad/s, one a stiffness; nan: not between min_speed and max_speed
+  Direction direction = Direction::forward;  ///< where it was met first
+  std::vector<double> speed;  ///< rad/s, one a stiffness; nan: not between min_speed and max_speed
 };
 struct CriticalMap {
   std::vector<double> stiffness;
-  std::vector<CriticalMapLine> lines;   ///< by speed at the first stiffness they appear at
+  std::vector<CriticalMapLine> lines;  ///< by speed at the first stiffness they appear at
 };
 /// With a motion other than all, of that kind of modes alone.
-CriticalMap critical_map(const std::function<system::System(double stiffness)>& build, const CriticalMapOptions& options);
+CriticalMap critical_map(const std::function<system::System(double stiffness)>& build,
+                         const CriticalMapOptions& options);
 
 }  // namespace whirl::analysis

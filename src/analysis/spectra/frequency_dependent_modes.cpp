@@ -23,18 +23,22 @@ bool covered(const OwnFrequency::Matrices& at, double w) {
   }
 }
 
-/// Entries of the matrices that change from row to row, of unknowns that move: column k of the table is entry k, scaled to a stiffness by
-/// 1, w, w^2; unit k says with which others it compares (forces and moments over displacements and angles).
+/// Entries of the matrices that change from row to row, of unknowns that move: column k of the
+/// table is entry k, scaled to a stiffness by 1, w, w^2; unit k says with which others it compares
+/// (forces and moments over displacements and angles).
 struct Changes {
   MatX value;
   std::vector<int> power, unit;
 };
 
-Changes changes_between(const OwnFrequency::Matrices& at, const std::vector<double>& rows, std::span<const unsigned char> active) {
+Changes changes_between(const OwnFrequency::Matrices& at, const std::vector<double>& rows,
+                        std::span<const unsigned char> active) {
   const la::MCK base = at(rows.front());
   const la::BlockPattern& p = base.K.pattern();
   const std::size_t n = base.K.value_count();
-  const auto part = [](const la::MCK& m, std::size_t k) { return (k == 0 ? m.K : k == 1 ? m.C : m.M).data(); };
+  const auto part = [](const la::MCK& m, std::size_t k) {
+    return (k == 0 ? m.K : k == 1 ? m.C : m.M).data();
+  };
   std::vector<std::vector<std::pair<std::size_t, double>>> differs(rows.size());
   std::vector<std::size_t> ids;
   for (std::size_t r = 1; r < rows.size(); ++r) {
@@ -42,14 +46,20 @@ Changes changes_between(const OwnFrequency::Matrices& at, const std::vector<doub
     for (std::size_t k = 0; k < 3; ++k) {
       const double *a = part(base, k), *b = part(m, k);
       for (std::size_t e = 0; e < n; ++e)
-        if (a[e] != b[e]) { differs[r].emplace_back(k * n + e, b[e]); ids.push_back(k * n + e); }
+        if (a[e] != b[e]) {
+          differs[r].emplace_back(k * n + e, b[e]);
+          ids.push_back(k * n + e);
+        }
     }
   }
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   const auto unknowns = [&](std::size_t id) {
     const Index slot = static_cast<Index>(id % n / 36), local = static_cast<Index>(id % n % 36);
-    const Index i = static_cast<Index>(std::upper_bound(p.row_start().begin(), p.row_start().end(), slot) - p.row_start().begin()) - 1;
+    const Index i =
+        static_cast<Index>(std::upper_bound(p.row_start().begin(), p.row_start().end(), slot) -
+                           p.row_start().begin()) -
+        1;
     return std::pair<Index, Index>(6 * i + local % 6, 6 * p.cols()[at_(slot)] + local / 6);
   };
   std::erase_if(ids, [&](std::size_t id) {
@@ -72,12 +82,14 @@ Changes changes_between(const OwnFrequency::Matrices& at, const std::vector<doub
   return out;
 }
 
-/// What a straight line from row i to row j makes wrong at row r, relative to the largest entries there.
+/// What a straight line from row i to row j makes wrong at row r, relative to the largest entries
+/// there.
 double deviation(const Changes& c, const std::vector<double>& rows, Index i, Index j, Index r) {
   const double w = rows[at_(r)], t = (w - rows[at_(i)]) / (rows[at_(j)] - rows[at_(i)]);
   std::array<double, 3> size{}, off{};
   for (Index k = 0; k < c.value.cols(); ++k) {
-    const double f = std::pow(w, c.power[at_(k)]), v = f * c.value(r, k), line = f * (c.value(i, k) + t * (c.value(j, k) - c.value(i, k)));
+    const double f = std::pow(w, c.power[at_(k)]), v = f * c.value(r, k),
+                 line = f * (c.value(i, k) + t * (c.value(j, k) - c.value(i, k)));
     const std::size_t u = static_cast<std::size_t>(c.unit[at_(k)]);
     size[u] = std::max({size[u], std::abs(v), std::abs(line)});
     off[u] = std::max(off[u], std::abs(v - line));
@@ -97,8 +109,13 @@ la::ModeOptions of_count(la::ModeOptions o, Index count) {
 }
 }  // namespace
 
-OwnFrequency::OwnFrequency(const la::BlockPattern& pattern, std::span<const unsigned char> active, const la::ModeOptions& wanted, std::vector<double> frequencies)
-    : pattern_(pattern), active_(active.begin(), active.end()), wanted_(wanted), frequencies_(std::move(frequencies)), follower_(pattern, active_, wanted) {
+OwnFrequency::OwnFrequency(const la::BlockPattern& pattern, std::span<const unsigned char> active,
+                           const la::ModeOptions& wanted, std::vector<double> frequencies)
+    : pattern_(pattern),
+      active_(active.begin(), active.end()),
+      wanted_(wanted),
+      frequencies_(std::move(frequencies)),
+      follower_(pattern, active_, wanted) {
   std::sort(frequencies_.begin(), frequencies_.end());
   frequencies_.erase(std::unique(frequencies_.begin(), frequencies_.end()), frequencies_.end());
   // Four more than wanted: a mode may lie behind others of the problem with its own coefficients.
@@ -113,7 +130,7 @@ void OwnFrequency::find_range(const Matrices& at) {
   } else {
     const auto first = std::find_if(frequencies_.begin(), frequencies_.end(), reached);
     if (first == frequencies_.end()) {
-      at(frequencies_.front());   // says what is wrong
+      at(frequencies_.front());  // says what is wrong
       return;
     }
     lowest_ = *first;
@@ -132,18 +149,22 @@ void OwnFrequency::choose_rows(const Matrices& at) {
   std::vector<double> all{lowest_};
   for (const double w : frequencies_)
     if (w > lowest_ && w <= highest_ && w < wanted_.max_frequency) all.push_back(w);
-  if (wanted_.max_frequency < highest_ && wanted_.max_frequency > lowest_) all.push_back(wanted_.max_frequency);
+  if (wanted_.max_frequency < highest_ && wanted_.max_frequency > lowest_)
+    all.push_back(wanted_.max_frequency);
   rows_.assign(1, all.front());
   if (all.size() == 1) return;
   const Changes c = changes_between(at, all, active_);
   std::vector<std::pair<Index, Index>> open{{0, static_cast<Index>(all.size()) - 1}};
-  while (!open.empty()) {   // the lower part on top: rows come out in order
+  while (!open.empty()) {  // the lower part on top: rows come out in order
     const auto [i, j] = open.back();
     open.pop_back();
     Index worst = -1;
     double most = enough;
     for (Index r = i + 1; r < j; ++r)
-      if (const double d = deviation(c, all, i, j, r); d > most) { most = d; worst = r; }
+      if (const double d = deviation(c, all, i, j, r); d > most) {
+        most = d;
+        worst = r;
+      }
     if (worst < 0) {
       rows_.push_back(all[at_(j)]);
     } else {
@@ -163,27 +184,36 @@ OwnFrequency::Node OwnFrequency::node(const Matrices& at, double w, double radiu
     n.reach = infinity;
     if (scan_count_ == 0 || static_cast<Index>(n.modes.size()) < scan_count_) return n;
     n.reach = 0;
-    for (const la::Mode& m : n.modes) n.reach = std::max(n.reach, std::abs(m.lambda));
+    for (const la::Mode& m : n.modes)
+      n.reach = std::max(n.reach, std::abs(m.lambda));
     if (n.reach >= radius) return n;
     scan_count_ += scan_count_ / 2 + 1;
     scan_.reset();
   }
 }
 
-std::optional<OwnFrequency::Point> OwnFrequency::step(const Matrices& at, const Point& from, double w) {
+std::optional<OwnFrequency::Point> OwnFrequency::step(const Matrices& at, const Point& from,
+                                                      double w) {
   const la::MCK& m = at(w);
   auto found = follower_.follow(m, from.mode);
-  if (!found || !(found->lambda.imag() > 0.0) || likeness(m, found->x, from.mode.x) < 0.4) return std::nullopt;
+  if (!found || !(found->lambda.imag() > 0.0) || likeness(m, found->x, from.mode.x) < 0.4)
+    return std::nullopt;
   return Point{w, std::move(*found)};
 }
 
 std::optional<OwnFrequency::Root> OwnFrequency::root(const Matrices& at, Point low, Point high) {
   double w0 = low.w, f0 = low.gap(), w1 = high.w, f1 = high.gap(), width = high.w - low.w;
   if (f0 == 0.0) return Root{std::move(low), false};
-  if (std::abs(f0) < std::abs(f1)) { std::swap(w0, w1); std::swap(f0, f1); }
+  if (std::abs(f0) < std::abs(f1)) {
+    std::swap(w0, w1);
+    std::swap(f0, f1);
+  }
   for (int it = 0, slow = 0; it < 200; ++it) {
     double w = f1 != f0 ? w1 - f1 * (w1 - w0) / (f1 - f0) : nan;
-    if (!(w > low.w && w < high.w) || slow >= 3) { w = 0.5 * (low.w + high.w); slow = 0; }
+    if (!(w > low.w && w < high.w) || slow >= 3) {
+      w = 0.5 * (low.w + high.w);
+      slow = 0;
+    }
     const bool lower = w - low.w < high.w - w;
     auto p = step(at, lower ? low : high, w);
     if (!p) p = step(at, lower ? high : low, w);
@@ -192,7 +222,10 @@ std::optional<OwnFrequency::Root> OwnFrequency::root(const Matrices& at, Point l
     const bool rising = (f - f1) * (w - w1) > 0.0 && std::abs(f1) > 1e-9 * std::abs(p->mode.lambda);
     // The eigenvalue itself is known to 1e-12.
     if (std::abs(f) <= 1e-11 * std::abs(p->mode.lambda)) return Root{std::move(*p), rising};
-    w0 = w1; f0 = f1; w1 = w; f1 = f;
+    w0 = w1;
+    f0 = f1;
+    w1 = w;
+    f1 = f;
     (f > 0.0 ? low : high) = std::move(*p);
     const double now = high.w - low.w;
     if (now <= 1e-15 * high.w) return Root{low, false};
@@ -214,7 +247,8 @@ bool OwnFrequency::add_roots(const Matrices& at, const Point& low, const Point& 
   const double beside = 1e-3 * std::min(r->at.w - low.w, high.w - r->at.w);
   const auto left = step(at, r->at, r->at.w - beside), right = step(at, r->at, r->at.w + beside);
   if (!left || !right) return false;
-  const bool both[2] = {left->gap() >= 0.0 || add_roots(at, low, *left, depth - 1), right->gap() <= 0.0 || add_roots(at, *right, high, depth - 1)};
+  const bool both[2] = {left->gap() >= 0.0 || add_roots(at, low, *left, depth - 1),
+                        right->gap() <= 0.0 || add_roots(at, *right, high, depth - 1)};
   return both[0] && both[1];
 }
 
@@ -235,7 +269,9 @@ std::optional<OwnFrequency::Point> OwnFrequency::trace(const Matrices& at, Point
     const bool above[2] = {low.gap() >= 0.0, high.gap() >= 0.0};
     const double moved = std::abs(q->mode.lambda - p.mode.lambda);
     // Calm: nothing can have happened on the way that the ends do not show.
-    const bool calm = moved < 0.5 * (above[0] == above[1] ? std::min(std::abs(low.gap()), std::abs(high.gap())) : stride);
+    const bool calm =
+        moved <
+        0.5 * (above[0] == above[1] ? std::min(std::abs(low.gap()), std::abs(high.gap())) : stride);
     if (!calm && stride > whole / 12) {
       goal = middle;
       continue;
@@ -249,20 +285,29 @@ std::optional<OwnFrequency::Point> OwnFrequency::trace(const Matrices& at, Point
 }
 
 void OwnFrequency::search(const Matrices& at, const Node& a, const Node& b) {
-  // Pairs on one side of the line that have moved less than half their distance from it need no second look.
-  struct Pair { double moved; std::size_t i, k; };
+  // Pairs on one side of the line that have moved less than half their distance from it need no
+  // second look.
+  struct Pair {
+    double moved;
+    std::size_t i, k;
+  };
   const la::MCK& m = at(b.w);
   std::vector<bool> of_a(a.modes.size(), false), of_b(b.modes.size(), false);
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < a.modes.size(); ++i)
     for (std::size_t k = 0; k < b.modes.size(); ++k) {
-      const double ga = a.modes[i].lambda.imag() - a.w, gb = b.modes[k].lambda.imag() - b.w, moved = std::abs(a.modes[i].lambda - b.modes[k].lambda);
-      if ((ga >= 0.0) == (gb >= 0.0) && moved < 0.5 * std::min(std::abs(ga), std::abs(gb)) && likeness(m, a.modes[i].x, b.modes[k].x) > 0.4) pairs.push_back({moved, i, k});
+      const double ga = a.modes[i].lambda.imag() - a.w, gb = b.modes[k].lambda.imag() - b.w,
+                   moved = std::abs(a.modes[i].lambda - b.modes[k].lambda);
+      if ((ga >= 0.0) == (gb >= 0.0) && moved < 0.5 * std::min(std::abs(ga), std::abs(gb)) &&
+          likeness(m, a.modes[i].x, b.modes[k].x) > 0.4)
+        pairs.push_back({moved, i, k});
     }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.moved < y.moved; });
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& x, const Pair& y) { return x.moved < y.moved; });
   for (const Pair& p : pairs)
     if (!of_a[p.i] && !of_b[p.k]) of_a[p.i] = of_b[p.k] = true;
-  // A root that falls through the line has its branch above it at a and below it at b; it is looked for from both where they do not meet.
+  // A root that falls through the line has its branch above it at a and below it at b; it is looked
+  // for from both where they do not meet.
   for (std::size_t i = 0; i < a.modes.size(); ++i) {
     if (of_a[i] || a.modes[i].lambda.imag() < a.w) continue;
     const auto end = trace(at, {a.w, a.modes[i]}, b.w);
@@ -270,7 +315,10 @@ void OwnFrequency::search(const Matrices& at, const Node& a, const Node& b) {
     std::size_t nearest = b.modes.size();
     double least = 1e-9 * std::abs(end->mode.lambda);
     for (std::size_t k = 0; k < b.modes.size(); ++k)
-      if (const double d = std::abs(b.modes[k].lambda - end->mode.lambda); !of_b[k] && d < least) { least = d; nearest = k; }
+      if (const double d = std::abs(b.modes[k].lambda - end->mode.lambda); !of_b[k] && d < least) {
+        least = d;
+        nearest = k;
+      }
     if (nearest < b.modes.size()) of_b[nearest] = true;
   }
   for (std::size_t k = 0; k < b.modes.size(); ++k)
@@ -283,24 +331,35 @@ bool OwnFrequency::feels_tables(const Matrices& at, const la::Mode& mode) {
   return std::any_of(rows_.begin(), rows_.end(), [&](double w) {
     const la::MCK& m = at(w);
     const auto there = follower_.follow(m, mode);
-    return !there || std::abs(there->lambda - mode.lambda) > 1e-10 * std::abs(mode.lambda) || likeness(m, there->x, mode.x) < 0.5;
+    return !there || std::abs(there->lambda - mode.lambda) > 1e-10 * std::abs(mode.lambda) ||
+           likeness(m, there->x, mode.x) < 0.5;
   });
 }
 
 void OwnFrequency::search_above(const Matrices& at, Node top) {
-  const auto above = [&] { return std::count_if(top.modes.begin(), top.modes.end(), [&](const la::Mode& m) { return m.lambda.imag() >= top.w; }); };
-  while (wanted_.count > 0 && std::isfinite(top.reach) && within(top.reach) + above() < wanted_.count) top = node(at, top.w, 1.5 * top.reach);
-  std::stable_sort(top.modes.begin(), top.modes.end(), [](const la::Mode& a, const la::Mode& b) { return std::abs(a.lambda) < std::abs(b.lambda); });
+  const auto above = [&] {
+    return std::count_if(top.modes.begin(), top.modes.end(),
+                         [&](const la::Mode& m) { return m.lambda.imag() >= top.w; });
+  };
+  while (wanted_.count > 0 && std::isfinite(top.reach) &&
+         within(top.reach) + above() < wanted_.count)
+    top = node(at, top.w, 1.5 * top.reach);
+  std::stable_sort(top.modes.begin(), top.modes.end(), [](const la::Mode& a, const la::Mode& b) {
+    return std::abs(a.lambda) < std::abs(b.lambda);
+  });
   for (const la::Mode& m : top.modes) {
-    if (m.lambda.imag() < top.w || (wanted_.count > 0 ? m.lambda.imag() : std::abs(m.lambda)) > wanted_.max_frequency) continue;
+    if (m.lambda.imag() < top.w ||
+        (wanted_.count > 0 ? m.lambda.imag() : std::abs(m.lambda)) > wanted_.max_frequency)
+      continue;
     if (wanted_.count > 0 && within(std::abs(m.lambda)) >= wanted_.count) break;
-    if (!held_ && m.lambda.imag() > top.w && feels_tables(at, m)) at(m.lambda.imag());   // an error
+    if (!held_ && m.lambda.imag() > top.w && feels_tables(at, m)) at(m.lambda.imag());  // an error
     add(m);
   }
 }
 
 Index OwnFrequency::within(double radius) const {
-  return std::count_if(found_.begin(), found_.end(), [&](const la::Mode& m) { return std::abs(m.lambda) <= radius; });
+  return std::count_if(found_.begin(), found_.end(),
+                       [&](const la::Mode& m) { return std::abs(m.lambda) <= radius; });
 }
 
 void OwnFrequency::add(const la::Mode& mode) {
@@ -310,7 +369,8 @@ void OwnFrequency::add(const la::Mode& mode) {
     if (std::abs(k.lambda - mode.lambda) <= 1e-7 * std::abs(mode.lambda)) close.push_back(&k);
   if (!close.empty()) {
     MatXc a(mode.x.size(), static_cast<Index>(close.size()));
-    for (std::size_t j = 0; j < close.size(); ++j) a.col(static_cast<Index>(j)) = close[j]->x.normalized();
+    for (std::size_t j = 0; j < close.size(); ++j)
+      a.col(static_cast<Index>(j)) = close[j]->x.normalized();
     const VecXc x = mode.x.normalized(), rest = x - a * a.colPivHouseholderQr().solve(x);
     if (rest.norm() < 0.05) return;
   }
@@ -328,7 +388,7 @@ std::vector<la::Mode> OwnFrequency::solve(const Matrices& at) {
   // Below all tables.
   for (const la::Mode& m : a.modes)
     if (m.lambda.imag() < a.w) {
-      if (feels_tables(at, m)) at(m.lambda.imag());   // an error
+      if (feels_tables(at, m)) at(m.lambda.imag());  // an error
       add(m);
     }
   const auto enough = [&] { return wanted_.count > 0 && within(a.w) >= wanted_.count; };
@@ -342,12 +402,18 @@ std::vector<la::Mode> OwnFrequency::solve(const Matrices& at) {
   if (!enough() && end < wanted_.max_frequency) search_above(at, std::move(a));
 
   const bool counted = wanted_.count > 0;
-  std::erase_if(found_, [&](const la::Mode& m) { return (counted ? m.lambda.imag() : std::abs(m.lambda)) > wanted_.max_frequency; });
+  std::erase_if(found_, [&](const la::Mode& m) {
+    return (counted ? m.lambda.imag() : std::abs(m.lambda)) > wanted_.max_frequency;
+  });
   if (counted && static_cast<Index>(found_.size()) > wanted_.count) {
-    std::stable_sort(found_.begin(), found_.end(), [](const la::Mode& x, const la::Mode& y) { return std::abs(x.lambda) < std::abs(y.lambda); });
+    std::stable_sort(found_.begin(), found_.end(), [](const la::Mode& x, const la::Mode& y) {
+      return std::abs(x.lambda) < std::abs(y.lambda);
+    });
     found_.resize(at_(wanted_.count));
   }
-  std::stable_sort(found_.begin(), found_.end(), [](const la::Mode& x, const la::Mode& y) { return x.lambda.imag() < y.lambda.imag(); });
+  std::stable_sort(found_.begin(), found_.end(), [](const la::Mode& x, const la::Mode& y) {
+    return x.lambda.imag() < y.lambda.imag();
+  });
   return found_;
 }
 
@@ -384,10 +450,11 @@ std::optional<la::Mode> OwnFrequency::settle(const Matrices& at, const la::Mode&
     if (!(next > 0.5 * w && next < 2.0 * w)) next = w + f;
     next = inside(next);
     if (next == w) {
-      if (feels_tables(at, p->mode)) at(p->mode.lambda.imag());   // an error
+      if (feels_tables(at, p->mode)) at(p->mode.lambda.imag());  // an error
       return std::move(p->mode);
     }
-    w0 = w; f0 = f;
+    w0 = w;
+    f0 = f;
     p = step(at, *p, next);
   }
   return std::nullopt;

@@ -1,18 +1,22 @@
-// Modes on supports that answer by frequency: every lambda with (lambda^2 M(w) + lambda C(w) + K(w)) x = 0 at w = Im lambda.
+// Modes on supports that answer by frequency: every lambda with (lambda^2 M(w) + lambda C(w) +
+// K(w)) x = 0 at w = Im lambda.
 //
-// With the coefficients held at some w this is an ordinary quadratic problem. Its eigenvalues lambda_k(w) are continuous in w, and a mode is
-// where Im lambda_k(w) = w. Every branch that oscillates at w = 0 begins above the line w; the search goes up through the range of the tables,
-// solves for all eigenvalues of least size at its nodes, and follows each branch that can have come through the line between two of them
-// (Newton; the step is halved while the shape turns or the branch moves as fast as the line). The root is found in its bracket by secant,
-// with bisection as the last resort: it cannot cycle.
+// With the coefficients held at some w this is an ordinary quadratic problem. Its eigenvalues
+// lambda_k(w) are continuous in w, and a mode is where Im lambda_k(w) = w. Every branch that
+// oscillates at w = 0 begins above the line w; the search goes up through the range of the tables,
+// solves for all eigenvalues of least size at its nodes, and follows each branch that can have come
+// through the line between two of them (Newton; the step is halved while the shape turns or the
+// branch moves as fast as the line). The root is found in its bracket by secant, with bisection as
+// the last resort: it cannot cycle.
 //
-// Nodes: zero, those frequencies of the tables that straight lines between the others do not replace to 1 % (of the largest entry there), and
-// where the eigenvalues known so far end.
+// Nodes: zero, those frequencies of the tables that straight lines between the others do not
+// replace to 1 % (of the largest entry there), and where the eigenvalues known so far end.
 //
-// Left out: roots at which Im lambda_k rises through the line, d Im lambda_k/dw > 1. The mass of a motion seen through an undamped table is
-// m - K'/(2 w), negative there. No passive support has such a mode: where nothing is lost K falls with w (Foster's theorem). They come from
-// poles of the support that lie between two rows of its table or are heavily damped. Not found: two roots of one branch closer together
-// than 1/16 of the distance of two nodes.
+// Left out: roots at which Im lambda_k rises through the line, d Im lambda_k/dw > 1. The mass of a
+// motion seen through an undamped table is m - K'/(2 w), negative there. No passive support has
+// such a mode: where nothing is lost K falls with w (Foster's theorem). They come from poles of the
+// support that lie between two rows of its table or are heavily damped. Not found: two roots of one
+// branch closer together than 1/16 of the distance of two nodes.
 #pragma once
 #include <la/eigen.hpp>
 #include <functional>
@@ -21,19 +25,25 @@ namespace whirl::analysis {
 
 class OwnFrequency {
  public:
-  /// Matrices with the coefficients at w, rad/s; valid until the next call. Error E81: a table does not reach w.
+  /// Matrices with the coefficients at w, rad/s; valid until the next call. Error E81: a table does
+  /// not reach w.
   using Matrices = std::function<const la::MCK&(double w)>;
-  /// frequencies: of the tables, rad/s, at least one; wanted: count and max_frequency as for la::ModeSolver.
-  OwnFrequency(const la::BlockPattern& pattern, std::span<const unsigned char> active, const la::ModeOptions& wanted, std::vector<double> frequencies);
+  /// frequencies: of the tables, rad/s, at least one; wanted: count and max_frequency as for
+  /// la::ModeSolver.
+  OwnFrequency(const la::BlockPattern& pattern, std::span<const unsigned char> active,
+               const la::ModeOptions& wanted, std::vector<double> frequencies);
 
-  /// All modes that oscillate, ascending in frequency; with a count, those of least |lambda|. Error E81: a mode wanted lies where a table
-  /// does not reach (one that does not feel the tables may).
+  /// All modes that oscillate, ascending in frequency; with a count, those of least |lambda|. Error
+  /// E81: a mode wanted lies where a table does not reach (one that does not feel the tables may).
   std::vector<la::Mode> solve(const Matrices& at);
-  /// The mode near `start`, an eigenpair of a neighbouring problem. nullopt: lost. Error E81 as above.
+  /// The mode near `start`, an eigenpair of a neighbouring problem. nullopt: lost. Error E81 as
+  /// above.
   std::optional<la::Mode> settle(const Matrices& at, const la::Mode& start);
-  /// Where coefficients at a real w are used, the decay of the motion is left out of them. Continued to its complex frequency w - i g,
-  /// lambda = g + i w, they change by -i g d/dw to first order, and lambda by -i g l'/(1 + i l'), l' = d lambda_k/dw of its branch (differences
-  /// over a quarter of the distance of the rows it lies between, at most w/100). Error of second order in g over the distance of poles.
+  /// Where coefficients at a real w are used, the decay of the motion is left out of them.
+  /// Continued to its complex frequency w - i g, lambda = g + i w, they change by -i g d/dw to
+  /// first order, and lambda by -i g l'/(1 + i l'), l' = d lambda_k/dw of its branch (differences
+  /// over a quarter of the distance of the rows it lies between, at most w/100). Error of second
+  /// order in g over the distance of poles.
   Complex continued(const Matrices& at, const la::Mode& mode);
   /// The tables reach down to zero frequency, or are held there.
   bool reaches_zero(const Matrices& at);
@@ -48,20 +58,28 @@ class OwnFrequency {
     double gap() const { return mode.lambda.imag() - w; }
   };
   /// All that oscillates with the coefficients at w, to the radius `reach`.
-  struct Node { double w = 0; std::vector<la::Mode> modes; double reach = 0; };
+  struct Node {
+    double w = 0;
+    std::vector<la::Mode> modes;
+    double reach = 0;
+  };
 
   void find_range(const Matrices& at);
   void choose_rows(const Matrices& at);
   Node node(const Matrices& at, double w, double radius);
   void search(const Matrices& at, const Node& a, const Node& b);
   void search_above(const Matrices& at, Node top);
-  /// Goes along a branch to another w and adds the modes it meets. The place it ends at; nullopt: it goes over to the real axis, or a
-  /// root was lost.
+  /// Goes along a branch to another w and adds the modes it meets. The place it ends at; nullopt:
+  /// it goes over to the real axis, or a root was lost.
   std::optional<Point> trace(const Matrices& at, Point p, double to);
   std::optional<Point> step(const Matrices& at, const Point& from, double w);
-  /// Every root between two places of a branch at which it falls through the line; false: not all were found.
+  /// Every root between two places of a branch at which it falls through the line; false: not all
+  /// were found.
   bool add_roots(const Matrices& at, const Point& low, const Point& high, int depth);
-  struct Root { Point at; bool rising; };
+  struct Root {
+    Point at;
+    bool rising;
+  };
   std::optional<Root> root(const Matrices& at, Point low, Point high);
   bool feels_tables(const Matrices& at, const la::Mode& mode);
   void add(const la::Mode& mode);
@@ -70,10 +88,10 @@ class OwnFrequency {
   const la::BlockPattern& pattern_;
   std::vector<unsigned char> active_;
   la::ModeOptions wanted_;
-  std::vector<double> frequencies_;        ///< ascending, all different
-  double lowest_ = nan, highest_ = nan;    ///< what the tables cover, rad/s
-  bool held_ = false;                      ///< coefficients stay as they are beyond highest_
-  std::vector<double> rows_;               ///< frequencies worth a node, ascending
+  std::vector<double> frequencies_;      ///< ascending, all different
+  double lowest_ = nan, highest_ = nan;  ///< what the tables cover, rad/s
+  bool held_ = false;                    ///< coefficients stay as they are beyond highest_
+  std::vector<double> rows_;             ///< frequencies worth a node, ascending
   la::ModeSolver follower_;
   std::optional<la::ModeSolver> scan_;
   Index scan_count_ = 0;

@@ -22,7 +22,10 @@ void take_part(const la::BlockMatrix<6>& a, double sign, la::BlockMatrix<6>& out
 }  // namespace
 
 GrowthBound::GrowthBound(const la::BlockPattern& pattern, std::span<const unsigned char> active)
-    : real_(pattern, active), complex_(pattern, active), parts_(pattern), work_(pattern) {}
+    : real_(pattern, active),
+      complex_(pattern, active),
+      parts_(pattern),
+      work_(pattern) {}
 
 void GrowthBound::split(const la::MCK& m) {
   take_part(m.M, -1.0, work_.M);
@@ -41,17 +44,21 @@ void GrowthBound::split(const la::MCK& m) {
 }
 
 bool GrowthBound::positive_stiffness(double w) {
-  return real_.factor(parts_, w * w, 0.0, 1.0) == la::Status::ok && real_.negative_eigenvalues() == 0;
+  return real_.factor(parts_, w * w, 0.0, 1.0) == la::Status::ok &&
+         real_.negative_eigenvalues() == 0;
 }
 
 bool GrowthBound::positive_damping(double w, double eta) {
-  return real_.factor(parts_, eta * w, 1.0, eta / w) == la::Status::ok && real_.negative_eigenvalues() == 0;
+  return real_.factor(parts_, eta * w, 1.0, eta / w) == la::Status::ok &&
+         real_.negative_eigenvalues() == 0;
 }
 
 bool GrowthBound::damping_beats_circulation(double w, double eta) {
   for (std::size_t k = 0; k < parts_.M.value_count(); ++k)
-    work_.M.data()[k] = w * parts_.C.data()[k] + eta * (w * w * parts_.M.data()[k] + parts_.K.data()[k]);
-  const la::Status status = complex_.factor(work_, Complex(1.0, 0.0), Complex(0.0, 0.0), Complex(0.0, -1.0));
+    work_.M.data()[k] =
+        w * parts_.C.data()[k] + eta * (w * w * parts_.M.data()[k] + parts_.K.data()[k]);
+  const la::Status status =
+      complex_.factor(work_, Complex(1.0, 0.0), Complex(0.0, 0.0), Complex(0.0, -1.0));
   return status == la::Status::ok && complex_.negative_eigenvalues() == 0;
 }
 

@@ -1,9 +1,11 @@
-// Where the energy of a mode is: strain energy by shaft element and by support, kinetic energy by node.
+// Where the energy of a mode is: strain energy by shaft element and by support, kinetic energy by
+// node.
 //
-// Strain energy of a shaft element between nodes i and j: with G the rigid motion that carries node i's unknowns to node j, the part of
-// x_j that deforms the element is e = x_j - G x_i, and its energy 1/2 e^H D e with D = -K_ij^T G^-1, for K of an element does not see rigid
-// motions. So the assembled matrix of all elements is enough. Everything else (bearings, springs) keeps its energy at its nodes.
-// Taken about the equilibrium at rest (v = 0): circulatory parts store nothing.
+// Strain energy of a shaft element between nodes i and j: with G the rigid motion that carries node
+// i's unknowns to node j, the part of x_j that deforms the element is e = x_j - G x_i, and its
+// energy 1/2 e^H D e with D = -K_ij^T G^-1, for K of an element does not see rigid motions. So the
+// assembled matrix of all elements is enough. Everything else (bearings, springs) keeps its energy
+// at its nodes. Taken about the equilibrium at rest (v = 0): circulatory parts store nothing.
 #pragma once
 #include <analysis/spectra/whirl_modes.hpp>
 
@@ -19,7 +21,8 @@ struct EnergyPart {
 };
 
 struct ModeEnergy {
-  std::vector<EnergyPart> strain, kinetic;   ///< shares above 1e-6, in the order of the batches and nodes; each sums to 1
+  std::vector<EnergyPart> strain,
+      kinetic;  ///< shares above 1e-6, in the order of the batches and nodes; each sums to 1
 };
 
 ModeEnergy energy_distribution(Linearizer& linear, const VecXc& x);

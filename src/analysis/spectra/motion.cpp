@@ -9,11 +9,12 @@ namespace {
 
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Of the stiffness an unknown has by itself, the part left when all others give way: below this it is rounding. The pivot of
-/// a chain that nothing holds ends at 1e-16 to 1e-13 of it.
+/// Of the stiffness an unknown has by itself, the part left when all others give way: below this it
+/// is rounding. The pivot of a chain that nothing holds ends at 1e-16 to 1e-13 of it.
 constexpr double unresisted = 1e-11;
 
-void copy_without(const la::BlockMatrix<6>& in, std::span<const unsigned char> out_of, la::BlockMatrix<6>& out) {
+void copy_without(const la::BlockMatrix<6>& in, std::span<const unsigned char> out_of,
+                  la::BlockMatrix<6>& out) {
   const la::BlockPattern& p = in.pattern();
   for (Index i = 0; i < p.size(); ++i)
     for (Index s = p.row_start()[at(i)]; s < p.row_start()[at(i) + 1]; ++s) {
@@ -32,24 +33,32 @@ void copy_without(const la::BlockMatrix<6>& in, std::span<const unsigned char> o
 Motion kind_of_unknown(const system::System& system, Index unknown) {
   if (system.node(unknown / 6).scalar) return Motion::lateral;
   const Index c = unknown % 6;
-  return c == system::spin_phi ? Motion::torsional : c == system::ux ? Motion::axial : Motion::lateral;
+  return c == system::spin_phi ? Motion::torsional
+         : c == system::ux     ? Motion::axial
+                               : Motion::lateral;
 }
 
 MotionReduction::MotionReduction(const system::System& system, Motion motion, Twist twist)
-    : system_(system), motion_(motion), active_(system.active().begin(), system.active().end()), follows_(active_.size(), 0) {
+    : system_(system),
+      motion_(motion),
+      active_(system.active().begin(), system.active().end()),
+      follows_(active_.size(), 0) {
   if (motion == Motion::all) return;
   for (Index k = 0; k < system.size(); ++k) {
     const Motion kind = kind_of_unknown(system, k);
     if (!active_[at(k)] || kind == motion) continue;
-    if (motion == Motion::lateral && (kind == Motion::axial || twist == Twist::follows)) follows_[at(k)] = 1;
-    else active_[at(k)] = 0;
+    if (motion == Motion::lateral && (kind == Motion::axial || twist == Twist::follows))
+      follows_[at(k)] = 1;
+    else
+      active_[at(k)] = 0;
   }
   any_ = std::find(follows_.begin(), follows_.end(), 1) != follows_.end();
   if (!any_) return;
   reduced_ = system.make_matrices();
   scratch_.resize(system.size());
   // in natural order a step of the elimination is a node
-  followers_ = std::make_unique<la::BlockLu<double>>(system.pattern(), follows_, la::lu::Ordering::natural);
+  followers_ =
+      std::make_unique<la::BlockLu<double>>(system.pattern(), follows_, la::lu::Ordering::natural);
 }
 
 const la::MCK& MotionReduction::reduce(const la::MCK& m) {
@@ -68,7 +77,8 @@ double& MotionReduction::own_stiffness(Index unknown) {
 
 void MotionReduction::restrain(Index unknown) {
   double& stiffness = own_stiffness(unknown);
-  const double spring = stiffness != 0.0 ? std::abs(stiffness) : 1.0;   // what nothing resists at all: any spring will do
+  const double spring = stiffness != 0.0 ? std::abs(stiffness)
+                                         : 1.0;  // what nothing resists at all: any spring will do
   stiffness += spring;
   restraints_.push_back(unknown);
   springs_.push_back(spring);
@@ -111,10 +121,12 @@ void MotionReduction::find_restraints() {
   std::vector<Index> last;
   last.swap(restraints_);
   springs_.clear();
-  for (const Index k : last) restrain(k);
+  for (const Index k : last)
+    restrain(k);
   bool regular = factor();
   if (!last.empty() && (!regular || !restraints_still_free())) {
-    for (std::size_t i = 0; i < restraints_.size(); ++i) own_stiffness(restraints_[i]) -= springs_[i];
+    for (std::size_t i = 0; i < restraints_.size(); ++i)
+      own_stiffness(restraints_[i]) -= springs_[i];
     restraints_.clear();
     springs_.clear();
     regular = factor();

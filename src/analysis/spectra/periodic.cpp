@@ -15,16 +15,22 @@ namespace {
 constexpr std::size_t idx(Index i) { return static_cast<std::size_t>(i); }
 
 /// The turn of one node's unknowns about its axis by an angle; derivative: d/d theta.
-Matrix<6> turn(const system::System& s, const Mat3& chart, Index node, double theta, bool derivative) {
+Matrix<6> turn(const system::System& s, const Mat3& chart, Index node, double theta,
+               bool derivative) {
   Matrix<6> T = Matrix<6>::Zero();
   if (s.node(node).scalar) return derivative ? T : Matrix<6>(Matrix<6>::Identity());
   const double c = std::cos(theta), k = std::sin(theta);
   Mat3 R = Mat3::Zero();
   Eigen::Matrix2d r;
-  if (derivative) r << -k, -c, c, -k;
-  else r << c, -k, k, c;
+  if (derivative)
+    r << -k, -c, c, -k;
+  else
+    r << c, -k, k, c;
   R.block<2, 2>(1, 1) = r;
-  if (!derivative) { R(0, 0) = 1.0; T(3, 3) = 1.0; }
+  if (!derivative) {
+    R(0, 0) = 1.0;
+    T(3, 3) = 1.0;
+  }
   T.block<3, 3>(0, 0) = chart * R * chart.transpose();
   T.block<2, 2>(4, 4) = r;
   return T;
@@ -32,28 +38,36 @@ Matrix<6> turn(const system::System& s, const Mat3& chart, Index node, double th
 
 double largest(const la::BlockMatrix<6>& a) {
   double m = 0;
-  for (std::size_t i = 0; i < a.value_count(); ++i) m = std::max(m, std::abs(a.data()[i]));
+  for (std::size_t i = 0; i < a.value_count(); ++i)
+    m = std::max(m, std::abs(a.data()[i]));
   return m;
 }
 
 double difference(const la::BlockMatrix<6>& a, const la::BlockMatrix<6>& b) {
   double m = 0;
-  for (std::size_t i = 0; i < a.value_count(); ++i) m = std::max(m, std::abs(a.data()[i] - b.data()[i]));
+  for (std::size_t i = 0; i < a.value_count(); ++i)
+    m = std::max(m, std::abs(a.data()[i] - b.data()[i]));
   return m / std::max(largest(a), 1e-300);
 }
 
-/// Differences below this are no periodicity: sagging rotors and their unbalance leave parts per million.
+/// Differences below this are no periodicity: sagging rotors and their unbalance leave parts per
+/// million.
 constexpr double steady = 1e-6;
 
 }  // namespace
 
 RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Motion motion)
-    : linear_(linear), motion_(linear.system(), motion, MotionReduction::Twist::held), turned_(linear.system().make_matrices()),
+    : linear_(linear),
+      motion_(linear.system(), motion, MotionReduction::Twist::held),
+      turned_(linear.system().make_matrices()),
       raw_(linear.system().make_matrices()) {
   if (linear.running().orders().size() > 1)
-    throw run_error("E88", "an asymmetric shaft among shafts of different speeds: no axes exist in which the matrices are constant or have one period",
+    throw run_error("E88",
+                    "an asymmetric shaft among shafts of different speeds: no axes exist in which "
+                    "the matrices are constant or have one period",
                     "give the shafts one speed_ratio, or use a transient step");
-  // What varies: in fixed axes (then there is something to do), and in rotating ones, over one and half a revolution.
+  // What varies: in fixed axes (then there is something to do), and in rotating ones, over one and
+  // half a revolution.
   sample(Omega, 0.0, {});
   const la::MCK first = turned_;
   const la::MCK fixed = raw_;
@@ -61,7 +75,8 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
   for (const double theta : {0.7, 1.9, 2.6}) {
     sample(Omega, theta, {});
     varies = std::max({varies, difference(first.M, turned_.M), difference(first.K, turned_.K)});
-    turning_ = turning_ || difference(fixed.K, raw_.K) > steady || difference(fixed.M, raw_.M) > steady;
+    turning_ =
+        turning_ || difference(fixed.K, raw_.K) > steady || difference(fixed.M, raw_.M) > steady;
     const la::MCK here = turned_;
     sample(Omega, theta + pi, {});
     half = std::max({half, difference(here.M, turned_.M), difference(here.K, turned_.K)});
@@ -80,23 +95,26 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
   for (Index i = 0; i < p.size(); ++i)
     for (Index s = p.row_start()[idx(i)]; s < p.row_start()[idx(i) + 1]; ++s)
       for (Index a = 0; a < parts; ++a)
-        for (Index b = 0; b < parts; ++b) couplings.emplace_back(parts * i + a, parts * p.cols()[idx(s)] + b);
+        for (Index b = 0; b < parts; ++b)
+          couplings.emplace_back(parts * i + a, parts * p.cols()[idx(s)] + b);
   own_pattern_ = std::make_unique<la::BlockPattern>(parts * p.size(), couplings);
   pattern_ = own_pattern_.get();
   hill_ = la::MCK(*own_pattern_);
   for (Index i = 0; i < p.size(); ++i)
     for (Index a = 0; a < parts; ++a)
-      for (int c = 0; c < 6; ++c) active_.push_back(motion_.active()[idx(6 * i + c)]);
+      for (int c = 0; c < 6; ++c)
+        active_.push_back(motion_.active()[idx(6 * i + c)]);
 }
 
 void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
-  if (linear_.Omega() != Omega || Omega == 0.0) linear_.at(Omega);   // the equilibrium
+  if (linear_.Omega() != Omega || Omega == 0.0) linear_.at(Omega);  // the equilibrium
   const Equilibrium& e = linear_.equilibrium();
   SteadySystem& running = linear_.running();
   running.set_whirl(lambda, true);
   const bool inside = running.tangent_at(e.state.frames, Omega, e.state.q, theta, raw_);
   running.set_whirl(0.0);
-  if (!inside) throw run_error("E76", "no linearisation: the state lies outside the range of an element");
+  if (!inside)
+    throw run_error("E76", "no linearisation: the state lies outside the range of an element");
   const system::System& s = linear_.system();
   const la::BlockPattern& p = s.pattern();
   const la::MCK& fixed = motion_.reduce(raw_);
@@ -109,11 +127,13 @@ void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   for (Index i = 0; i < p.size(); ++i)
     for (Index k = p.row_start()[idx(i)]; k < p.row_start()[idx(i) + 1]; ++k) {
       const Index j = p.cols()[idx(k)];
-      const Matrix<6> M = T[idx(i)].transpose() * fixed.M.block(k) * T[idx(j)], C = T[idx(i)].transpose() * fixed.C.block(k) * T[idx(j)];
+      const Matrix<6> M = T[idx(i)].transpose() * fixed.M.block(k) * T[idx(j)],
+                      C = T[idx(i)].transpose() * fixed.C.block(k) * T[idx(j)];
       const Matrix<6> MJ = M * D[idx(j)];
       turned_.M.block(k) = M;
       turned_.C.block(k) = C + 2.0 * Omega * MJ;
-      turned_.K.block(k) = T[idx(i)].transpose() * fixed.K.block(k) * T[idx(j)] + Omega * C * D[idx(j)] + Omega * Omega * MJ * D[idx(j)];
+      turned_.K.block(k) = T[idx(i)].transpose() * fixed.K.block(k) * T[idx(j)] +
+                           Omega * C * D[idx(j)] + Omega * Omega * MJ * D[idx(j)];
     }
 }
 
@@ -122,19 +142,27 @@ const la::MCK& RotatingAxes::at(double Omega, Complex lambda) {
     sample(Omega, 0.0, lambda);
     return turned_;
   }
-  // Galerkin in 1, cos h b theta, sin h b theta, by the trapezoidal rule: exact up to the harmonic of its points less those of the product.
+  // Galerkin in 1, cos h b theta, sin h b theta, by the trapezoidal rule: exact up to the harmonic
+  // of its points less those of the product.
   const Index parts = 2 * harmonics_ + 1, points = 4 * harmonics_ + 8;
   const la::BlockPattern& p = linear_.system().pattern();
-  for (la::BlockMatrix<6>* m : {&hill_.M, &hill_.C, &hill_.K}) m->set_zero();
+  for (la::BlockMatrix<6>* m : {&hill_.M, &hill_.C, &hill_.K})
+    m->set_zero();
   VecX f(parts), g(parts), gg(parts);
   for (Index n = 0; n < points; ++n) {
     const double theta = two_pi / static_cast<double>(step_ * points) * static_cast<double>(n);
     sample(Omega, theta, lambda);
-    f[0] = 1.0; g[0] = gg[0] = 0.0;
+    f[0] = 1.0;
+    g[0] = gg[0] = 0.0;
     for (Index h = 1; h <= harmonics_; ++h) {
-      const double w = static_cast<double>(step_ * h), c = std::cos(w * theta), s = std::sin(w * theta);
-      f[2 * h - 1] = c; g[2 * h - 1] = -w * Omega * s; gg[2 * h - 1] = -w * w * Omega * Omega * c;
-      f[2 * h] = s; g[2 * h] = w * Omega * c; gg[2 * h] = -w * w * Omega * Omega * s;
+      const double w = static_cast<double>(step_ * h), c = std::cos(w * theta),
+                   s = std::sin(w * theta);
+      f[2 * h - 1] = c;
+      g[2 * h - 1] = -w * Omega * s;
+      gg[2 * h - 1] = -w * w * Omega * Omega * c;
+      f[2 * h] = s;
+      g[2 * h] = w * Omega * c;
+      gg[2 * h] = -w * w * Omega * Omega * s;
     }
     for (Index i = 0; i < p.size(); ++i)
       for (Index k = p.row_start()[idx(i)]; k < p.row_start()[idx(i) + 1]; ++k) {
@@ -158,7 +186,8 @@ VecXc RotatingAxes::constant_part(const VecXc& x) const {
   if (harmonics_ == 0) return x;
   const Index parts = 2 * harmonics_ + 1, n = linear_.system().nodes();
   VecXc out(6 * n);
-  for (Index i = 0; i < n; ++i) out.segment<6>(6 * i) = x.segment<6>(6 * parts * i);
+  for (Index i = 0; i < n; ++i)
+    out.segment<6>(6 * i) = x.segment<6>(6 * parts * i);
   return out;
 }
 
@@ -169,7 +198,8 @@ double RotatingAxes::constant_share(const VecXc& x) const {
   const Index parts = 2 * harmonics_ + 1;
   for (Index i = 0; i < linear_.system().nodes(); ++i) {
     own += c.segment<3>(6 * i).squaredNorm();
-    for (Index a = 0; a < parts; ++a) all += (a == 0 ? 1.0 : 0.5) * x.segment<3>(6 * (parts * i + a)).squaredNorm();
+    for (Index a = 0; a < parts; ++a)
+      all += (a == 0 ? 1.0 : 0.5) * x.segment<3>(6 * (parts * i + a)).squaredNorm();
   }
   return all > 0 ? own / all : 0.0;
 }
@@ -177,35 +207,45 @@ double RotatingAxes::constant_share(const VecXc& x) const {
 Index RotatingAxes::negative_stiffnesses(double Omega) {
   sample(Omega, 0.0, Complex(0, infinity));
   la::MCK symmetric = linear_.system().make_matrices();
-  if (harmonics_ > 0) {   // mean of the two principal positions of the supports
+  if (harmonics_ > 0) {  // mean of the two principal positions of the supports
     const la::MCK one = turned_;
     sample(Omega, 0.5 * pi, Complex(0, infinity));
-    for (std::size_t i = 0; i < turned_.K.value_count(); ++i) turned_.K.data()[i] = 0.5 * (turned_.K.data()[i] + one.K.data()[i]);
+    for (std::size_t i = 0; i < turned_.K.value_count(); ++i)
+      turned_.K.data()[i] = 0.5 * (turned_.K.data()[i] + one.K.data()[i]);
   }
   take_conservative_part(turned_, symmetric);
   la::BlockLu<double> lu(linear_.system().pattern(), motion_.active());
-  if (lu.factor(symmetric, 0.0, 0.0, 1.0) != la::Status::ok) return negative_stiffnesses(Omega * (1 + 1e-12));
+  if (lu.factor(symmetric, 0.0, 0.0, 1.0) != la::Status::ok)
+    return negative_stiffnesses(Omega * (1 + 1e-12));
   return lu.negative_eigenvalues();
 }
 
 namespace {
 
-struct Growth { double rate = 0, frequency = 0; };
+struct Growth {
+  double rate = 0, frequency = 0;
+};
 
 class BandSearch {
  public:
-  BandSearch(RotatingAxes& axes, const BandOptions& o) : axes_(axes), solver_(axes.pattern(), axes.active(), options(axes, o)) {}
+  BandSearch(RotatingAxes& axes, const BandOptions& o)
+      : axes_(axes),
+        solver_(axes.pattern(), axes.active(), options(axes, o)) {}
 
   Growth at(double Omega) {
     const la::MCK& m = axes_.at(Omega, Complex(0, infinity));
     Growth best{-infinity, 0};
     for (la::Mode x : solver_.solve(m)) {
-      if (axes_.constant_share(x.x) < 0.2 || std::abs(x.lambda) == 0.0) continue;   // a copy; a rigid motion
-      // hysteretic damping at the rate of the motion itself; a motion that stands in the rotor loses nothing
+      if (axes_.constant_share(x.x) < 0.2 || std::abs(x.lambda) == 0.0)
+        continue;  // a copy; a rigid motion
+      // hysteretic damping at the rate of the motion itself; a motion that stands in the rotor
+      // loses nothing
       for (int round = 0; round < 40 && axes_.hysteretic() && x.lambda.imag() != 0.0; ++round) {
         const Complex rate = x.lambda;
-        if (const auto next = solver_.follow(axes_.at(Omega, rate), x)) x = *next;
-        else break;
+        if (const auto next = solver_.follow(axes_.at(Omega, rate), x))
+          x = *next;
+        else
+          break;
         if (std::abs(x.lambda - rate) <= 1e-12 * std::abs(rate)) break;
       }
       if (x.lambda.real() > best.rate) best = {x.lambda.real(), std::abs(x.lambda.imag())};
@@ -223,11 +263,14 @@ class BandSearch {
   la::ModeSolver solver_;
 };
 
-/// Speeds between which the rotation has taken one stiffness more than it should have: pairs of zeros of the symmetric stiffness.
-void add_seeds(RotatingAxes& axes, double a, Index na, double b, Index nb, std::vector<double>& edges, int depth) {
+/// Speeds between which the rotation has taken one stiffness more than it should have: pairs of
+/// zeros of the symmetric stiffness.
+void add_seeds(RotatingAxes& axes, double a, Index na, double b, Index nb,
+               std::vector<double>& edges, int depth) {
   if (na == nb) return;
   if (depth == 0 || b - a < 1e-7 * b) {
-    for (Index k = 0; k < std::abs(nb - na); ++k) edges.push_back(0.5 * (a + b));
+    for (Index k = 0; k < std::abs(nb - na); ++k)
+      edges.push_back(0.5 * (a + b));
     return;
   }
   const double middle = 0.5 * (a + b);
@@ -242,9 +285,11 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
   std::vector<double> speeds = o.speeds, edges;
   for (std::size_t k = 0; k + 1 < o.speeds.size(); ++k)
     if (o.speeds[k] > 0)
-      add_seeds(axes, o.speeds[k], axes.negative_stiffnesses(o.speeds[k]), o.speeds[k + 1], axes.negative_stiffnesses(o.speeds[k + 1]), edges, 40);
+      add_seeds(axes, o.speeds[k], axes.negative_stiffnesses(o.speeds[k]), o.speeds[k + 1],
+                axes.negative_stiffnesses(o.speeds[k + 1]), edges, 40);
   for (std::size_t k = 0; k + 1 < edges.size(); ++k)
-    if (edges[k + 1] - edges[k] > 1e-6 * edges[k]) speeds.push_back(0.5 * (edges[k] + edges[k + 1]));
+    if (edges[k + 1] - edges[k] > 1e-6 * edges[k])
+      speeds.push_back(0.5 * (edges[k] + edges[k + 1]));
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
 
@@ -252,15 +297,20 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
   BandResult out;
   for (const double Omega : speeds) {
     const Growth g = search.at(Omega);
-    out.speeds.push_back(Omega); out.growth.push_back(g.rate); out.frequency.push_back(g.frequency);
+    out.speeds.push_back(Omega);
+    out.growth.push_back(g.rate);
+    out.frequency.push_back(g.frequency);
   }
-  // At an edge the growth crosses zero, or, without damping, two frequencies merge and it rises as a square root from the rounding of a double
-  // eigenvalue. Neutral motions (growth zero at every speed) hide the crossing, so it is extrapolated from within the band.
-  // Harmonics left out of Hill's equations leave a false growth of some 1e-5 of the speed.
-  const auto noise = [&](double Omega) { return (axes.constant() ? 1e-6 : 3e-5) * std::abs(Omega); };
+  // At an edge the growth crosses zero, or, without damping, two frequencies merge and it rises as
+  // a square root from the rounding of a double eigenvalue. Neutral motions (growth zero at every
+  // speed) hide the crossing, so it is extrapolated from within the band. Harmonics left out of
+  // Hill's equations leave a false growth of some 1e-5 of the speed.
+  const auto noise = [&](double Omega) {
+    return (axes.constant() ? 1e-6 : 3e-5) * std::abs(Omega);
+  };
   const auto grows = [&](std::size_t k) { return out.growth[k] > noise(speeds[k]); };
   const auto edge = [&](std::size_t stable, std::size_t unstable) {
-    const auto where = [&](double s, double u, double level) {   // the growth passes this level
+    const auto where = [&](double s, double u, double level) {  // the growth passes this level
       for (int k = 0; k < 60 && std::abs(u - s) > o.tolerance * std::abs(u); ++k) {
         const double m = 0.5 * (s + u);
         (search.at(m).rate > level ? u : s) = m;
@@ -273,10 +323,15 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
     const double b = where(a, speeds[unstable], 3.0 * level);
     const double x[3] = {a, 0.5 * (a + b), b};
     double r[3];
-    for (int k = 0; k < 3; ++k) r[k] = search.at(x[k]).rate;
-    const auto bend = [](double f0, double f1, double f2) { return std::abs(f2 - 2.0 * f1 + f0) / std::abs(f2 - f0); };
+    for (int k = 0; k < 3; ++k)
+      r[k] = search.at(x[k]).rate;
+    const auto bend = [](double f0, double f1, double f2) {
+      return std::abs(f2 - 2.0 * f1 + f0) / std::abs(f2 - f0);
+    };
     const bool root = bend(r[0] * r[0], r[1] * r[1], r[2] * r[2]) < bend(r[0], r[1], r[2]);
-    if (root) for (double& v : r) v *= v;
+    if (root)
+      for (double& v : r)
+        v *= v;
     // the parabola x(r) at r = 0
     double zero = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -289,19 +344,23 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
     if (!grows(k)) continue;
     InstabilityBand band;
     std::size_t last = k;
-    while (last + 1 < speeds.size() && grows(last + 1)) ++last;
+    while (last + 1 < speeds.size() && grows(last + 1))
+      ++last;
     if (k > 0) band.low = edge(k - 1, k);
     if (last + 1 < speeds.size()) band.high = edge(last + 1, last);
     std::size_t top = k;
     for (std::size_t j = k; j <= last; ++j)
       if (out.growth[j] > out.growth[top]) top = j;
     // the largest growth between the neighbours of the largest sample, where the band has ends
-    const double a = top > k ? speeds[top - 1] : band.low, b = top < last ? speeds[top + 1] : band.high;
+    const double a = top > k ? speeds[top - 1] : band.low,
+                 b = top < last ? speeds[top + 1] : band.high;
     band.speed = speeds[top];
     if (std::isfinite(a) && std::isfinite(b))
-      band.speed = find_maximum(a, speeds[top], out.growth[top], b, 1e-8, [&](double Omega) { return search.at(Omega).rate; });
+      band.speed = find_maximum(a, speeds[top], out.growth[top], b, 1e-8,
+                                [&](double Omega) { return search.at(Omega).rate; });
     const Growth g = search.at(band.speed);
-    band.growth = g.rate; band.frequency = g.frequency;
+    band.growth = g.rate;
+    band.frequency = g.frequency;
     out.bands.push_back(band);
     k = last;
   }

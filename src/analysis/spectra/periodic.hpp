@@ -1,15 +1,19 @@
-// Rotors whose matrices turn with them (shafts with unequal principal stiffnesses, tilted or unequal bodies): small motions in axes that rotate
-// with the reference speed, where they are constant on isotropic supports.
+// Rotors whose matrices turn with them (shafts with unequal principal stiffnesses, tilted or
+// unequal bodies): small motions in axes that rotate with the reference speed, where they are
+// constant on isotropic supports.
 //
-// q = T(theta) x, theta = Omega t: T turns (u_y, u_z) and (gamma2, gamma3) of every node about the axis by theta and leaves axial motion and
-// twist alone. With J the quarter turn, T' = Omega J T,
+// q = T(theta) x, theta = Omega t: T turns (u_y, u_z) and (gamma2, gamma3) of every node about the
+// axis by theta and leaves axial motion and twist alone. With J the quarter turn, T' = Omega J T,
 //   M~ = T^T M T,   C~ = T^T C T + 2 Omega M~ J,   K~ = T^T K T + Omega T^T C T J + Omega^2 M~ J^2.
-// On isotropic supports these do not depend on theta: a quadratic eigenvalue problem on the pattern of the system, exact. Where the supports are
-// unequal too they have period pi (or 2 pi) in theta. Then G. W. Hill's determinant: motions exp(lambda t) sum_h x_h exp(i h b theta), b = 2 or 1
-// harmonics apart, h = -H .. H, written in real sines and cosines and balanced by Galerkin's method: (2H+1) times the unknowns, still
-// sparse. Each characteristic exponent turns up 2H+1 times, i b Omega apart; the copy with the largest constant part is kept (harmonics above
-// H are neglected: the error falls by the ratio of the anisotropy a harmonic).
-// Sources: F. M. Dimentberg, Flexural Vibrations of Rotating Shafts, 1961; Friswell et al., Dynamics of Rotating Machines, 2010, ch. 7.
+// On isotropic supports these do not depend on theta: a quadratic eigenvalue problem on the pattern
+// of the system, exact. Where the supports are unequal too they have period pi (or 2 pi) in theta.
+// Then G. W. Hill's determinant: motions exp(lambda t) sum_h x_h exp(i h b theta), b = 2 or 1
+// harmonics apart, h = -H .. H, written in real sines and cosines and balanced by Galerkin's
+// method: (2H+1) times the unknowns, still sparse. Each characteristic exponent turns up 2H+1
+// times, i b Omega apart; the copy with the largest constant part is kept (harmonics above H are
+// neglected: the error falls by the ratio of the anisotropy a harmonic). Sources: F. M. Dimentberg,
+// Flexural Vibrations of Rotating Shafts, 1961; Friswell et al., Dynamics of Rotating Machines,
+// 2010, ch. 7.
 #pragma once
 #include <analysis/linearizer.hpp>
 
@@ -17,11 +21,13 @@ namespace whirl::analysis {
 
 class RotatingAxes {
  public:
-  /// harmonics: H where the matrices are periodic; 0 is enough on isotropic supports and is chosen then whatever is asked for.
-  /// Errors: E88, the lines turn at different speeds.
-  RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3, Motion motion = Motion::lateral);
+  /// harmonics: H where the matrices are periodic; 0 is enough on isotropic supports and is chosen
+  /// then whatever is asked for. Errors: E88, the lines turn at different speeds.
+  RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3,
+               Motion motion = Motion::lateral);
 
-  /// Matrices at Omega on pattern(); valid until the next call. lambda: rate in rotating axes, for hysteretic damping.
+  /// Matrices at Omega on pattern(); valid until the next call. lambda: rate in rotating axes, for
+  /// hysteretic damping.
   const la::MCK& at(double Omega, Complex lambda = {});
   const la::BlockPattern& pattern() const { return *pattern_; }
   std::span<const unsigned char> active() const { return active_; }
@@ -35,7 +41,8 @@ class RotatingAxes {
   double constant_share(const VecXc& x) const;
   /// Constant part of a motion, on the unknowns of the system, rotating axes.
   VecXc constant_part(const VecXc& x) const;
-  /// Symmetric part of the mean K~ (negative eigenvalues: what the rotation has made unstable if nothing gyroscopic held it).
+  /// Symmetric part of the mean K~ (negative eigenvalues: what the rotation has made unstable if
+  /// nothing gyroscopic held it).
   Index negative_stiffnesses(double Omega);
 
  private:
@@ -53,24 +60,28 @@ class RotatingAxes {
 
 /// A range of speeds in which a motion grows.
 struct InstabilityBand {
-  double low = nan, high = nan;       ///< rad/s; nan: beyond the speeds looked at
-  double growth = 0, speed = 0;       ///< 1/s, largest found within, and where (rad/s)
-  double frequency = 0;               ///< there, in rotating axes, rad/s; 0: the rotor bends out at its own speed
+  double low = nan, high = nan;  ///< rad/s; nan: beyond the speeds looked at
+  double growth = 0, speed = 0;  ///< 1/s, largest found within, and where (rad/s)
+  double frequency =
+      0;  ///< there, in rotating axes, rad/s; 0: the rotor bends out at its own speed
 };
 
 struct BandOptions {
-  std::vector<double> speeds;         ///< rad/s, ascending; more are put in where rotation takes the last stiffness
-  Index modes = 8;                    ///< of least frequency in rotating axes
-  double tolerance = 1e-11;           ///< relative, of the edges
+  std::vector<double>
+      speeds;       ///< rad/s, ascending; more are put in where rotation takes the last stiffness
+  Index modes = 8;  ///< of least frequency in rotating axes
+  double tolerance = 1e-11;  ///< relative, of the edges
 };
 
 struct BandResult {
-  std::vector<double> speeds, growth, frequency;   ///< largest real part (1/s) of the motions, and its frequency in rotating axes
+  std::vector<double> speeds, growth,
+      frequency;  ///< largest real part (1/s) of the motions, and its frequency in rotating axes
   std::vector<InstabilityBand> bands;
 };
 
-/// Bands of parametric instability. Edges are solved for; bands narrower than the distance of the speeds are found where they belong to a
-/// critical speed (whirl at the speed itself); combination bands must be as wide as that distance to be seen.
+/// Bands of parametric instability. Edges are solved for; bands narrower than the distance of the
+/// speeds are found where they belong to a critical speed (whirl at the speed itself); combination
+/// bands must be as wide as that distance to be seen.
 BandResult find_bands(RotatingAxes& axes, const BandOptions& options);
 
 }  // namespace whirl::analysis

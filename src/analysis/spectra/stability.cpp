@@ -11,8 +11,10 @@ namespace {
 
 ModesOptions mode_options(const StabilityOptions& o) {
   ModesOptions m;
-  m.count = o.modes; m.motion = o.motion;
-  m.real_roots = true; m.judge = true;
+  m.count = o.modes;
+  m.motion = o.motion;
+  m.real_roots = true;
+  m.judge = true;
   return m;
 }
 
@@ -26,7 +28,8 @@ std::vector<double> speeds_of(const StabilityOptions& o) {
   return speeds;
 }
 
-SpeedVerdict verdict_of(double speed, const std::vector<WhirlMode>& modes, const SpectrumCertificate& certificate) {
+SpeedVerdict verdict_of(double speed, const std::vector<WhirlMode>& modes,
+                        const SpectrumCertificate& certificate) {
   SpeedVerdict v;
   v.speed = speed;
   v.certificate = certificate;
@@ -42,18 +45,24 @@ SpeedVerdict verdict_of(double speed, const std::vector<WhirlMode>& modes, const
 class Sweep {
  public:
   Sweep(Linearizer& linear, const StabilityOptions& options)
-      : options_(options), track_{mode_options(options)}, tracker_(linear, track_), follower_(linear, track_.modes), fresh_(linear, track_.modes) {}
+      : options_(options),
+        track_{mode_options(options)},
+        tracker_(linear, track_),
+        follower_(linear, track_.modes),
+        fresh_(linear, track_.modes) {}
 
   /// Goes on to a speed and finds the onsets on the way.
   const std::vector<TrackedMode>& advance(double speed) {
     const double from = tracker_.speed();
     const std::size_t before = onsets.size();
     const auto visit = [&](double a, double b, const std::vector<TrackedMode>& modes) {
-      for (const TrackedMode& m : modes) visit_mode(a, b, m);
+      for (const TrackedMode& m : modes)
+        visit_mode(a, b, m);
     };
     const auto& modes = tracker_.advance(speed, visit);
     std::vector<WhirlMode> now;
-    for (const TrackedMode& m : modes) now.push_back(m.now);
+    for (const TrackedMode& m : modes)
+      now.push_back(m.now);
     const SpeedVerdict verdict = verdict_of(speed, now, tracker_.solver().certificate());
     if (!verdicts.empty()) account(from, speed, verdicts.back(), verdict, before);
     verdicts.push_back(verdict);
@@ -69,18 +78,22 @@ class Sweep {
   void visit_mode(double a, double b, const TrackedMode& m) {
     if (!m.has_before || !m.now.oscillates() || !m.before.oscillates()) return;
     if ((m.before.growth() > 0) == (m.now.growth() > 0)) return;
-    // From exactly undamped to unstable (a conservative mode gaining damping from rotation) there is no sign change to find.
+    // From exactly undamped to unstable (a conservative mode gaining damping from rotation) there
+    // is no sign change to find.
     if ((m.before.lambda.real() > 0) == (m.now.lambda.real() > 0)) return;
     const auto rate = [](double, const WhirlMode& w) { return w.lambda.real(); };
     if (const auto root = find_on_mode(follower_, a, m.before, b, m.now, rate, options_.tolerance))
       onsets.push_back({root->speed, root->mode.frequency, m.now.growth() > 0, root->mode});
   }
 
-  /// Onsets between two speeds that the modes followed do not account for are isolated by the number of growing roots. A pair of real roots
-  /// that becomes an oscillating one, or the reverse, is no onset: both grow before and after.
-  void account(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb, std::size_t first_onset) {
+  /// Onsets between two speeds that the modes followed do not account for are isolated by the
+  /// number of growing roots. A pair of real roots that becomes an oscillating one, or the reverse,
+  /// is no onset: both grow before and after.
+  void account(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb,
+               std::size_t first_onset) {
     Index change = growing(vb) - growing(va);
-    for (std::size_t k = first_onset; k < onsets.size(); ++k) change -= onsets[k].gains ? 2 : -2;
+    for (std::size_t k = first_onset; k < onsets.size(); ++k)
+      change -= onsets[k].gains ? 2 : -2;
     if (change == 0) return;
     onsets.resize(first_onset);
     isolate(a, b, va, vb);
@@ -95,14 +108,16 @@ class Sweep {
 
   void isolate(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb) {
     if (growing(va) == growing(vb)) return;
-    if (std::abs(b - a) <= 1e-10 * std::max(std::abs(a), std::abs(b))) return add_isolated(a, b, va, vb);
+    if (std::abs(b - a) <= 1e-10 * std::max(std::abs(a), std::abs(b)))
+      return add_isolated(a, b, va, vb);
     const double middle = 0.5 * (a + b);
     const SpeedVerdict vm = look_at(middle);
     isolate(a, middle, va, vm);
     isolate(middle, b, vm, vb);
   }
 
-  /// The root that crosses in a bracket of no width: the one nearest to the axis at the end at which more grow.
+  /// The root that crosses in a bracket of no width: the one nearest to the axis at the end at
+  /// which more grow.
   void add_isolated(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb) {
     const bool gains = growing(vb) > growing(va);
     look_at(gains ? b : a);
@@ -112,7 +127,8 @@ class Sweep {
     if (nearest) onsets.push_back({0.5 * (a + b), nearest->frequency, gains, *nearest});
   }
 
-  /// A growth ratio that bends towards zero between three speeds is looked at where the parabola through them is highest.
+  /// A growth ratio that bends towards zero between three speeds is looked at where the parabola
+  /// through them is highest.
   void look_between(const std::vector<TrackedMode>& modes) {
     for (const TrackedMode& m : modes) {
       std::vector<Vec2>& h = history_[m.id];
@@ -127,7 +143,8 @@ class Sweep {
       const std::vector<Vec2>& h = history_[m.id];
       if (h.size() < 3 || h[0][0] != verdicts[n - 3].speed) continue;
       const auto peak = vertex(h);
-      if (!peak || peak->second < 0.3 * h[1][1]) continue;   // does not come much nearer to zero than the middle one
+      if (!peak || peak->second < 0.3 * h[1][1])
+        continue;  // does not come much nearer to zero than the middle one
       look_at_peak(peak->first);
     }
   }
@@ -147,8 +164,10 @@ class Sweep {
     const SpeedVerdict peak = look_at(speed);
     if (peak.stable()) return;
     const std::size_t n = verdicts.size();
-    const bool late = (speed - verdicts[n - 2].speed) * (verdicts[n - 1].speed - verdicts[n - 2].speed) > 0;
-    const SpeedVerdict &below = verdicts[late ? n - 2 : n - 3], &above = verdicts[late ? n - 1 : n - 2];
+    const bool late =
+        (speed - verdicts[n - 2].speed) * (verdicts[n - 1].speed - verdicts[n - 2].speed) > 0;
+    const SpeedVerdict &below = verdicts[late ? n - 2 : n - 3],
+                       &above = verdicts[late ? n - 1 : n - 2];
     isolate(below.speed, speed, below, peak);
     isolate(speed, above.speed, peak, above);
   }
@@ -158,12 +177,14 @@ class Sweep {
   ModeTracker tracker_;
   WhirlSolver follower_, fresh_;
   std::vector<WhirlMode> modes_there_;
-  std::map<Index, std::vector<Vec2>> history_;   ///< by line: speed and growth ratio of the last three
+  std::map<Index, std::vector<Vec2>>
+      history_;  ///< by line: speed and growth ratio of the last three
 };
 
 /// One sweep: onsets, and what `each` wants to see at the grid's speeds.
-StabilityResult sweep(Linearizer& linear, const StabilityOptions& o,
-                      const std::function<void(std::size_t, const std::vector<TrackedMode>&)>& each) {
+StabilityResult sweep(
+    Linearizer& linear, const StabilityOptions& o,
+    const std::function<void(std::size_t, const std::vector<TrackedMode>&)>& each) {
   StabilityResult out;
   Sweep search(linear, o);
   const std::vector<double> speeds = speeds_of(o);
@@ -181,9 +202,11 @@ StabilityResult sweep(Linearizer& linear, const StabilityOptions& o,
   out.stable_at_start = out.verdicts.front().stable();
   out.onsets = std::move(search.onsets);
   out.diagram = recorder.finish(search.tracker().speeds_solved());
-  std::sort(out.onsets.begin(), out.onsets.end(), [](const Onset& a, const Onset& b) { return a.speed < b.speed; });
+  std::sort(out.onsets.begin(), out.onsets.end(),
+            [](const Onset& a, const Onset& b) { return a.speed < b.speed; });
   const auto same = [](const Onset& a, const Onset& b) {
-    return a.gains == b.gains && std::abs(a.speed - b.speed) <= 1e-9 * std::abs(b.speed) && std::abs(a.frequency - b.frequency) <= 1e-6 * b.frequency;
+    return a.gains == b.gains && std::abs(a.speed - b.speed) <= 1e-9 * std::abs(b.speed) &&
+           std::abs(a.frequency - b.frequency) <= 1e-6 * b.frequency;
   };
   out.onsets.erase(std::unique(out.onsets.begin(), out.onsets.end(), same), out.onsets.end());
   return out;
@@ -191,30 +214,38 @@ StabilityResult sweep(Linearizer& linear, const StabilityOptions& o,
 
 }  // namespace
 
-StabilityResult find_instability(Linearizer& linear, const StabilityOptions& options) { return sweep(linear, options, {}); }
+StabilityResult find_instability(Linearizer& linear, const StabilityOptions& options) {
+  return sweep(linear, options, {});
+}
 
-StabilityMap stability_map(const std::function<system::System(double)>& build, const SteadyRotation& running,
-                           const std::vector<double>& parameter, const StabilityOptions& options) {
+StabilityMap stability_map(const std::function<system::System(double)>& build,
+                           const SteadyRotation& running, const std::vector<double>& parameter,
+                           const StabilityOptions& options) {
   StabilityMap map;
   map.parameter = parameter;
   map.speeds = speeds_of(options);
   for (double p : parameter) {
     const system::System system = build(p);
     SteadyRotation r = running;
-    for (const double Omega : map.speeds) r.top_speed = std::max(r.top_speed, std::abs(Omega));
+    for (const double Omega : map.speeds)
+      r.top_speed = std::max(r.top_speed, std::abs(Omega));
     Linearizer linear(system, r);
     std::vector<double> least(map.speeds.size(), nan);
-    const StabilityResult result = sweep(linear, options, [&](std::size_t k, const std::vector<TrackedMode>& modes) {
-      for (const TrackedMode& m : modes)
-        if (m.now.kind == ModeKind::lateral && m.now.frequency > 0 && !(least[k] <= m.now.log_decrement)) least[k] = m.now.log_decrement;
-    });
+    const StabilityResult result =
+        sweep(linear, options, [&](std::size_t k, const std::vector<TrackedMode>& modes) {
+          for (const TrackedMode& m : modes)
+            if (m.now.kind == ModeKind::lateral && m.now.frequency > 0 &&
+                !(least[k] <= m.now.log_decrement))
+              least[k] = m.now.log_decrement;
+        });
     map.least_log_decrement.push_back(std::move(least));
     map.certain.push_back(result.certain());
     map.onset.push_back(result.stable_at_start ? nan : -infinity);
     map.frequency.push_back(nan);
     for (const Onset& o : result.onsets)
       if (o.gains && result.stable_at_start) {
-        map.onset.back() = o.speed; map.frequency.back() = o.frequency;
+        map.onset.back() = o.speed;
+        map.frequency.back() = o.frequency;
         break;
       }
   }

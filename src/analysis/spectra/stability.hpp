@@ -1,10 +1,13 @@
-// Stability: log decrement against speed, and the onset speeds of instability, at which a root crosses the imaginary axis: a whirl mode
-// (whirl, flutter) or a motion that does not oscillate (divergence).
+// Stability: log decrement against speed, and the onset speeds of instability, at which a root
+// crosses the imaginary axis: a whirl mode (whirl, flutter) or a motion that does not oscillate
+// (divergence).
 //
-// At every speed the roots are counted (la/root_count.hpp) up to the frequency above which nothing can grow (growth_bound.hpp), so that "stable" is
-// a statement about all of them. Modes are followed over the speed (track.hpp); where the real part of one changes sign the speed is solved for by
-// secant, with the equilibrium and all coefficients of bearings linearised anew at every trial. Where what is followed does not account for the
-// change in the number of growing roots, the speed is bisected on that number. Between the speeds of the search a mode whose growth rate bends
+// At every speed the roots are counted (la/root_count.hpp) up to the frequency above which nothing
+// can grow (growth_bound.hpp), so that "stable" is a statement about all of them. Modes are
+// followed over the speed (track.hpp); where the real part of one changes sign the speed is solved
+// for by secant, with the equilibrium and all coefficients of bearings linearised anew at every
+// trial. Where what is followed does not account for the change in the number of growing roots, the
+// speed is bisected on that number. Between the speeds of the search a mode whose growth rate bends
 // towards zero is looked at where it comes nearest.
 #pragma once
 #include <algorithm>
@@ -13,56 +16,66 @@
 namespace whirl::analysis {
 
 struct StabilityOptions {
-  double min_speed = 0, max_speed = 0;   ///< rad/s
-  Index grid = 40;                       ///< speeds of the search
-  std::vector<double> speeds;            ///< or these, monotonic
-  Index modes = 12;                      ///< modes followed, of least frequency
+  double min_speed = 0, max_speed = 0;  ///< rad/s
+  Index grid = 40;                      ///< speeds of the search
+  std::vector<double> speeds;           ///< or these, monotonic
+  Index modes = 12;                     ///< modes followed, of least frequency
   Motion motion = Motion::all;
-  double tolerance = 1e-12;              ///< relative, of the speed
-  bool all = false;                      ///< go on after the first crossing; else stop there
+  double tolerance = 1e-12;  ///< relative, of the speed
+  bool all = false;          ///< go on after the first crossing; else stop there
 };
 
 struct Onset {
-  double speed = 0;                      ///< rad/s
-  double frequency = 0;                  ///< whirl frequency there, rad/s; 0: divergence
-  bool gains = true;                     ///< unstable above (true) or below (false) this speed
+  double speed = 0;      ///< rad/s
+  double frequency = 0;  ///< whirl frequency there, rad/s; 0: divergence
+  bool gains = true;     ///< unstable above (true) or below (false) this speed
   WhirlMode mode;
-  double ratio() const { return frequency / speed; }   ///< whirl ratio
+  double ratio() const { return frequency / speed; }  ///< whirl ratio
   bool divergence() const { return frequency == 0.0; }
 };
 
 /// What is known of one speed.
 struct SpeedVerdict {
-  double speed = 0;                      ///< rad/s
-  Index whirling = 0, diverging = 0;     ///< growing roots: pairs that oscillate, real ones
-  double fastest = 0;                    ///< 1/s: largest growth rate; 0 where nothing grows
+  double speed = 0;                   ///< rad/s
+  Index whirling = 0, diverging = 0;  ///< growing roots: pairs that oscillate, real ones
+  double fastest = 0;                 ///< 1/s: largest growth rate; 0 where nothing grows
   SpectrumCertificate certificate;
   bool stable() const { return whirling + diverging == 0; }
 };
 
 struct StabilityResult {
-  bool stable_at_start = true;           ///< at min_speed
-  std::vector<SpeedVerdict> verdicts;    ///< one a speed
+  bool stable_at_start = true;         ///< at min_speed
+  std::vector<SpeedVerdict> verdicts;  ///< one a speed
   /// Every verdict accounts for all roots at all frequencies.
-  bool certain() const { return std::all_of(verdicts.begin(), verdicts.end(), [](const SpeedVerdict& v) { return v.certificate.stability_certain(); }); }
+  bool certain() const {
+    return std::all_of(verdicts.begin(), verdicts.end(),
+                       [](const SpeedVerdict& v) { return v.certificate.stability_certain(); });
+  }
   /// Every verdict accounts for all roots of its band.
-  bool complete() const { return std::all_of(verdicts.begin(), verdicts.end(), [](const SpeedVerdict& v) { return v.certificate.complete(); }); }
-  std::vector<Onset> onsets;             ///< ascending
-  Campbell diagram;                      ///< of the modes followed, at the speeds of the search
+  bool complete() const {
+    return std::all_of(verdicts.begin(), verdicts.end(),
+                       [](const SpeedVerdict& v) { return v.certificate.complete(); });
+  }
+  std::vector<Onset> onsets;  ///< ascending
+  Campbell diagram;           ///< of the modes followed, at the speeds of the search
 };
 
 StabilityResult find_instability(Linearizer& linear, const StabilityOptions& options);
 
-/// Log decrement of the least stable modes over speed and one parameter (a clearance, a viscosity, a stiffness).
+/// Log decrement of the least stable modes over speed and one parameter (a clearance, a viscosity,
+/// a stiffness).
 struct StabilityMap {
   std::vector<double> speeds, parameter;
-  std::vector<std::vector<double>> least_log_decrement;   ///< [parameter][speed], of oscillating lateral modes
-  /// [parameter]: first onset within the speeds, solved for, rad/s; nan: stable at all of them; -inf: unstable at the first one already.
+  std::vector<std::vector<double>>
+      least_log_decrement;  ///< [parameter][speed], of oscillating lateral modes
+  /// [parameter]: first onset within the speeds, solved for, rad/s; nan: stable at all of them;
+  /// -inf: unstable at the first one already.
   std::vector<double> onset;
-  std::vector<bool> certain;                              ///< [parameter]: StabilityResult::certain()
-  std::vector<double> frequency;                          ///< of the whirl there, rad/s; nan without
+  std::vector<bool> certain;      ///< [parameter]: StabilityResult::certain()
+  std::vector<double> frequency;  ///< of the whirl there, rad/s; nan without
 };
-StabilityMap stability_map(const std::function<system::System(double)>& build, const SteadyRotation& running,
-                           const std::vector<double>& parameter, const StabilityOptions& options);
+StabilityMap stability_map(const std::function<system::System(double)>& build,
+                           const SteadyRotation& running, const std::vector<double>& parameter,
+                           const StabilityOptions& options);
 
 }  // namespace whirl::analysis

@@ -9,18 +9,22 @@ namespace whirl::analysis {
 
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}
+}  // namespace
 
 ModeTracker::ModeTracker(Linearizer& linear, const TrackOptions& options)
-    : linear_(linear), options_(options), solver_(linear, options.modes) {}
+    : linear_(linear),
+      options_(options),
+      solver_(linear, options.modes) {}
 
 bool ModeTracker::step(double Omega, bool last_chance) {
   const std::vector<WhirlMode>& found = solver_.solve(Omega);
   ++solved_;
   const Index n = static_cast<Index>(found.size()), p = static_cast<Index>(modes_.size());
   if (!started_) {
-    for (const WhirlMode& m : found) modes_.push_back({next_id_++, m, {}, false});
-    started_ = true; speed_ = Omega;
+    for (const WhirlMode& m : found)
+      modes_.push_back({next_id_++, m, {}, false});
+    started_ = true;
+    speed_ = Omega;
     return true;
   }
   // Likeness of all pairs within reach: M products of the new modes once.
@@ -31,7 +35,10 @@ bool ModeTracker::step(double Omega, bool last_chance) {
     la::multiply(m.M, found[at(j)].x, mx[at(j)]);
     norm[at(j)] = std::abs(found[at(j)].x.dot(mx[at(j)]));
   }
-  struct Pair { double score, like; Index old, now; };
+  struct Pair {
+    double score, like;
+    Index old, now;
+  };
   std::vector<Pair> pairs;
   VecXc my;
   for (Index i = 0; i < p; ++i) {
@@ -39,30 +46,38 @@ bool ModeTracker::step(double Omega, bool last_chance) {
     la::multiply(m.M, old.x, my);
     const double size = std::abs(old.x.dot(my));
     for (Index j = 0; j < n; ++j) {
-      const double like = size > 0 && norm[at(j)] > 0 ? std::norm(old.x.dot(mx[at(j)])) / (size * norm[at(j)]) : 0.0;
+      const double like = size > 0 && norm[at(j)] > 0
+                              ? std::norm(old.x.dot(mx[at(j)])) / (size * norm[at(j)])
+                              : 0.0;
       if (like < 0.05) continue;
-      const double apart = std::abs(found[at(j)].lambda - old.lambda) / (std::abs(old.lambda) + std::abs(found[at(j)].lambda) + 1e-300);
+      const double apart = std::abs(found[at(j)].lambda - old.lambda) /
+                           (std::abs(old.lambda) + std::abs(found[at(j)].lambda) + 1e-300);
       pairs.push_back({like - 0.5 * apart, like, i, j});
     }
   }
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.score > b.score; });
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& a, const Pair& b) { return a.score > b.score; });
   std::vector<Index> of_old(at(p), -1), of_new(at(n), -1);
   bool sure = true;
   for (const Pair& k : pairs) {
     if (of_old[at(k.old)] >= 0 || of_new[at(k.now)] >= 0) continue;
-    // A planar pair at rest splits into two circles, each 0.5 like both: no doubt, whichever way they are paired.
+    // A planar pair at rest splits into two circles, each 0.5 like both: no doubt, whichever way
+    // they are paired.
     const bool split = modes_[at(k.old)].now.direction == Direction::planar;
     // What does not oscillate is followed as well as may be, not at the price of more speeds.
     const bool matters = modes_[at(k.old)].now.oscillates() && found[at(k.now)].oscillates();
     if (matters && k.like < options_.doubt && !(split && k.like > 0.45)) sure = false;
-    of_old[at(k.old)] = k.now; of_new[at(k.now)] = k.old;
+    of_old[at(k.old)] = k.now;
+    of_new[at(k.now)] = k.old;
   }
   if (!sure && !last_chance) return false;
   std::vector<TrackedMode> next;
   for (Index j = 0; j < n; ++j) {
     const Index i = of_new[at(j)];
-    if (i >= 0) next.push_back({modes_[at(i)].id, found[at(j)], modes_[at(i)].now, true});
-    else next.push_back({next_id_++, found[at(j)], {}, false});
+    if (i >= 0)
+      next.push_back({modes_[at(i)].id, found[at(j)], modes_[at(i)].now, true});
+    else
+      next.push_back({next_id_++, found[at(j)], {}, false});
   }
   modes_ = std::move(next);
   speed_ = Omega;
@@ -79,7 +94,8 @@ const std::vector<TrackedMode>& ModeTracker::advance(double Omega, const Visit& 
   int doubts = 0;
   while (speed_ != Omega) {
     const double from = speed_;
-    const bool last_chance = doubts >= options_.most_doubts || std::abs(goal - from) <= whole * std::ldexp(1.0, -options_.halvings);
+    const bool last_chance = doubts >= options_.most_doubts ||
+                             std::abs(goal - from) <= whole * std::ldexp(1.0, -options_.halvings);
     if (step(goal, last_chance)) {
       if (visit) visit(from, speed_, modes_);
       goal = Omega;
@@ -91,23 +107,31 @@ const std::vector<TrackedMode>& ModeTracker::advance(double Omega, const Visit& 
   return modes_;
 }
 
-std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const WhirlMode& start_a, double b, const WhirlMode& start_b,
-                                        const std::function<double(double, const WhirlMode&)>& g, double tolerance) {
+std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const WhirlMode& start_a,
+                                        double b, const WhirlMode& start_b,
+                                        const std::function<double(double, const WhirlMode&)>& g,
+                                        double tolerance) {
   TrackedRoot lo{a, start_a}, hi{b, start_b};
   double ga = g(a, start_a), gb = g(b, start_b);
   if (ga == 0.0) return lo;
   if (gb == 0.0) return hi;
   if ((ga > 0) == (gb > 0)) return std::nullopt;
   const double enough = tolerance * std::max(std::abs(a), std::abs(b));
-  // Trials come from the secant through the last two points, kept inside the bracket; a bisection whenever the bracket has not
-  // shrunk to half in three trials.
+  // Trials come from the secant through the last two points, kept inside the bracket; a bisection
+  // whenever the bracket has not shrunk to half in three trials.
   TrackedRoot best = std::abs(ga) < std::abs(gb) ? lo : hi;
   double x0 = lo.speed, f0 = ga, x1 = hi.speed, f1 = gb, width = std::abs(b - a);
-  if (std::abs(f0) < std::abs(f1)) { std::swap(x0, x1); std::swap(f0, f1); }
+  if (std::abs(f0) < std::abs(f1)) {
+    std::swap(x0, x1);
+    std::swap(f0, f1);
+  }
   for (int it = 0, slow = 0; it < 100; ++it) {
     double x = f1 != f0 ? x1 - f1 * (x1 - x0) / (f1 - f0) : 0.5 * (lo.speed + hi.speed);
     const double low = std::min(lo.speed, hi.speed), high = std::max(lo.speed, hi.speed);
-    if (!(x > low && x < high) || slow >= 3) { x = 0.5 * (low + high); slow = 0; }
+    if (!(x > low && x < high) || slow >= 3) {
+      x = 0.5 * (low + high);
+      slow = 0;
+    }
     const TrackedRoot& near = std::abs(x - lo.speed) < std::abs(x - hi.speed) ? lo : hi;
     auto mode = solver.follow(x, near.mode);
     if (!mode) mode = solver.follow(x, (&near == &lo ? hi : lo).mode);
@@ -115,10 +139,15 @@ std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const Whi
     const double f = g(x, *mode);
     const double step = std::abs(x - x1);
     best = {x, *mode};
-    x0 = x1; f0 = f1; x1 = x; f1 = f;
+    x0 = x1;
+    f0 = f1;
+    x1 = x;
+    f1 = f;
     if (f == 0.0 || step <= enough) return best;
-    if ((f > 0) == (ga > 0)) lo = best;
-    else hi = best;
+    if ((f > 0) == (ga > 0))
+      lo = best;
+    else
+      hi = best;
     const double now = std::abs(hi.speed - lo.speed);
     if (now <= enough) return best;
     slow = now < 0.5 * width ? 0 : slow + 1;

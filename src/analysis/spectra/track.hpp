@@ -1,9 +1,9 @@
-// Modes followed over the speed through crossings and veerings: what the Campbell diagram, damped critical speeds and the onset
-// of instability share.
+// Modes followed over the speed through crossings and veerings: what the Campbell diagram, damped
+// critical speeds and the onset of instability share.
 //
-// From one speed to the next the modes are paired by likeness of shape and nearness of frequency (best pairs first). When the
-// pairing is in doubt, a speed in between is put in, down to 1/256 of the step: at a crossing the shapes then keep apart, at a
-// veering they turn gradually.
+// From one speed to the next the modes are paired by likeness of shape and nearness of frequency
+// (best pairs first). When the pairing is in doubt, a speed in between is put in, down to 1/256 of
+// the step: at a crossing the shapes then keep apart, at a veering they turn gradually.
 #pragma once
 #include <analysis/spectra/whirl_modes.hpp>
 #include <functional>
@@ -14,7 +14,8 @@ struct TrackOptions {
   ModesOptions modes;
   double doubt = 0.6;    ///< likeness below which an intermediate speed is put in
   int halvings = 8;      ///< at most
-  int most_doubts = 64;  ///< between two speeds asked for; then pairs are taken as they are (a rotor whose modes change beyond recognition)
+  int most_doubts = 64;  ///< between two speeds asked for; then pairs are taken as they are (a
+                         ///< rotor whose modes change beyond recognition)
 };
 
 /// One mode on its way. id counts lines in order of appearance; before is valid when has_before.
@@ -49,11 +50,16 @@ class ModeTracker {
   std::vector<TrackedMode> modes_;
 };
 
-/// The speed between a and b at which g(Omega, lambda) of one followed mode is zero, to `tolerance` relative to the larger speed:
-/// secant safeguarded by bisection, with a mode solved for at each trial. start_a, start_b: the mode at
-/// both ends. nullopt: the mode was lost.
-struct TrackedRoot { double speed = 0; WhirlMode mode; };
-std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const WhirlMode& start_a, double b, const WhirlMode& start_b,
-                                        const std::function<double(double, const WhirlMode&)>& g, double tolerance = 1e-13);
+/// The speed between a and b at which g(Omega, lambda) of one followed mode is zero, to `tolerance`
+/// relative to the larger speed: secant safeguarded by bisection, with a mode solved for at each
+/// trial. start_a, start_b: the mode at both ends. nullopt: the mode was lost.
+struct TrackedRoot {
+  double speed = 0;
+  WhirlMode mode;
+};
+std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const WhirlMode& start_a,
+                                        double b, const WhirlMode& start_b,
+                                        const std::function<double(double, const WhirlMode&)>& g,
+                                        double tolerance = 1e-13);
 
 }  // namespace whirl::analysis

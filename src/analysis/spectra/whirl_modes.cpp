@@ -18,19 +18,24 @@ constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// How far beyond the modes asked for the search goes on to where nothing can grow.
 constexpr double furthest_search = 16.0;
-constexpr double whirl_of_speed = 2.0;   ///< and at least to this multiple of the speed
+constexpr double whirl_of_speed = 2.0;  ///< and at least to this multiple of the speed
 
-
-/// Entries of the matrices are sums of some dozen rounded terms, and the equilibrium they are taken at is known to a multiple of eps.
+/// Entries of the matrices are sums of some dozen rounded terms, and the equilibrium they are taken
+/// at is known to a multiple of eps.
 constexpr double roundings_an_entry = 64.0;
 
-/// Growth that rounding can cause: what it does to lambda, and what the eigenvector's own error leaves.
-double rounding_of(const la::Mode& m) { return roundings_an_entry * m.uncertainty + 1e-13 * std::abs(m.lambda); }
+/// Growth that rounding can cause: what it does to lambda, and what the eigenvector's own error
+/// leaves.
+double rounding_of(const la::Mode& m) {
+  return roundings_an_entry * m.uncertainty + 1e-13 * std::abs(m.lambda);
+}
 
 la::ModeOptions la_options(const ModesOptions& o, bool hysteretic) {
   la::ModeOptions l;
   l.certify = o.certify;
-  l.count = o.count > 0 && hysteretic ? o.count + 2 : o.count;   // partners of modes that hysteretic damping will tell apart
+  l.count = o.count > 0 && hysteretic
+                ? o.count + 2
+                : o.count;  // partners of modes that hysteretic damping will tell apart
   l.max_frequency = o.max_frequency;
   l.real_roots = o.real_roots;
   l.growing = o.judge;
@@ -68,7 +73,8 @@ Eigen::Vector3cd local_displacement(const Linearizer& linear, const VecXc& x, In
 
 double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
   VecXc mx, my;
-  la::multiply(m.M, x, mx); la::multiply(m.M, y, my);
+  la::multiply(m.M, x, mx);
+  la::multiply(m.M, y, my);
   const double a = std::abs(x.dot(mx)), b = std::abs(y.dot(my));
   return a > 0 && b > 0 ? std::norm(x.dot(my)) / (a * b) : 0.0;
 }
@@ -76,19 +82,23 @@ double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
 WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer& linear) {
   const system::System& s = linear.system();
   WhirlMode w;
-  w.lambda = w.continued = mode.lambda; w.x = mode.x; w.residual = mode.residual; w.from = mode.from;
+  w.lambda = w.continued = mode.lambda;
+  w.x = mode.x;
+  w.residual = mode.residual;
+  w.from = mode.from;
   w.rounding = rounding_of(mode);
   w.frequency = std::abs(mode.lambda.imag());
   const double size = std::abs(mode.lambda);
   w.damping_ratio = size > 0 ? -mode.lambda.real() / size : 0.0;
-  w.log_decrement = w.frequency > 0       ? -two_pi * mode.lambda.real() / w.frequency
+  w.log_decrement = w.frequency > 0          ? -two_pi * mode.lambda.real() / w.frequency
                     : mode.lambda.real() < 0 ? infinity
                     : mode.lambda.real() > 0 ? -infinity
                                              : 0.0;
 
   // Energy by component, in axes of the line (e, e2, e3).
   VecXc mx, kx;
-  la::multiply(m.M, w.x, mx); la::multiply(m.K, w.x, kx);
+  la::multiply(m.M, w.x, mx);
+  la::multiply(m.K, w.x, kx);
   double lateral = 0, torsional = 0, axial = 0;
   const double w2 = std::norm(w.lambda);
   for (Index i = 0; i < s.nodes(); ++i) {
@@ -105,20 +115,29 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
     lateral += share(u[1], g[1]) + share(u[2], g[2]) + share(x[4], f[4]) + share(x[5], f[5]);
     torsional += share(x[3], f[3]);
   }
-  lateral = std::max(lateral, 0.0); torsional = std::max(torsional, 0.0); axial = std::max(axial, 0.0);
+  lateral = std::max(lateral, 0.0);
+  torsional = std::max(torsional, 0.0);
+  axial = std::max(axial, 0.0);
   const double total = lateral + torsional + axial;
-  if (total > 0) { w.lateral = lateral / total; w.torsional = torsional / total; w.axial = axial / total; }
+  if (total > 0) {
+    w.lateral = lateral / total;
+    w.torsional = torsional / total;
+    w.axial = axial / total;
+  }
   w.kind = w.torsional > w.lateral && w.torsional >= w.axial ? ModeKind::torsional
            : w.axial > w.lateral                             ? ModeKind::axial
                                                              : ModeKind::lateral;
-  if (total == 0.0 || w.lambda == 0.0) {   // a rigid motion without stiffness: by its largest part
+  if (total == 0.0 || w.lambda == 0.0) {  // a rigid motion without stiffness: by its largest part
     double twist = 0, along = 0, across = 0;
     for (Index i = 0; i < s.nodes(); ++i) {
       const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
-      twist = std::max(twist, std::abs(w.x[6 * i + 3])); along = std::max(along, std::abs(u[0]));
+      twist = std::max(twist, std::abs(w.x[6 * i + 3]));
+      along = std::max(along, std::abs(u[0]));
       across = std::max({across, std::abs(u[1]), std::abs(u[2])});
     }
-    w.kind = twist > std::max(along, across) ? ModeKind::torsional : along > across ? ModeKind::axial : ModeKind::lateral;
+    w.kind = twist > std::max(along, across) ? ModeKind::torsional
+             : along > across                ? ModeKind::axial
+                                             : ModeKind::lateral;
   }
 
   // Scale: largest displacement (or twist) real and 1.
@@ -130,7 +149,8 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
       if (std::abs(x[3]) > std::abs(largest)) largest = x[3];
     } else {
       for (int c = 0; c < 3; ++c)
-        if (std::abs(x[c]) > std::abs(largest) * (1.0 + 1e-9)) largest = x[c];   // the first of equals
+        if (std::abs(x[c]) > std::abs(largest) * (1.0 + 1e-9))
+          largest = x[c];  // the first of equals
     }
   }
   if (std::abs(largest) > 1e-12) w.x /= largest;
@@ -138,29 +158,37 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   if (w.kind != ModeKind::lateral || w.frequency == 0.0) return w;
   // Orbits of displacements; of directors (d = e + gamma x e) where the mode hardly moves sideways.
   double top[2] = {0, 0};
-  std::vector<std::array<Vec2, 2>> radius(at(s.nodes()), {Vec2::Zero(), Vec2::Zero()});   // (forward, backward) seen along the spin
+  std::vector<std::array<Vec2, 2>> radius(
+      at(s.nodes()), {Vec2::Zero(), Vec2::Zero()});  // (forward, backward) seen along the spin
   for (Index i = 0; i < s.nodes(); ++i) {
     if (s.node(i).scalar) continue;
     const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
     const double sense = linear.sense(i);
-    const Orbit o[2] = {orbit_of(u[1], u[2], sense), orbit_of(w.x[6 * i + 5], -w.x[6 * i + 4], sense)};
+    const Orbit o[2] = {orbit_of(u[1], u[2], sense),
+                        orbit_of(w.x[6 * i + 5], -w.x[6 * i + 4], sense)};
     for (int k = 0; k < 2; ++k) {
       radius[at(i)][k] = Vec2(o[k].forward, o[k].backward);
       top[k] = std::max(top[k], o[k].major);
     }
   }
   double length = 0;
-  for (Index i = 0; i < s.nodes(); ++i) length = std::max(length, (s.node(i).position - s.node(0).position).norm());
+  for (Index i = 0; i < s.nodes(); ++i)
+    length = std::max(length, (s.node(i).position - s.node(0).position).norm());
   const int k = top[0] < 1e-3 * top[1] * (length > 0 ? length : 1.0) ? 1 : 0;
   double area = 0, sum = 0, most = 0, least = 0;
   for (const auto& r : radius) {
     const double f = r[k][0] * r[k][0], b = r[k][1] * r[k][1];
-    area += f - b; sum += f + b;
+    area += f - b;
+    sum += f + b;
     // The direction of orbits below 3 % of the largest decides nothing.
-    if (std::sqrt(f) + std::sqrt(b) > 0.03 * top[k]) { most = std::max(most, (f - b) / (f + b)); least = std::min(least, (f - b) / (f + b)); }
+    if (std::sqrt(f) + std::sqrt(b) > 0.03 * top[k]) {
+      most = std::max(most, (f - b) / (f + b));
+      least = std::min(least, (f - b) / (f + b));
+    }
   }
   w.forwardness = sum > 0 ? area / sum : 0.0;
-  const double flat = 1e-6;   // far above the rounding of eigenvectors, far below any orbit one could see
+  const double flat =
+      1e-6;  // far above the rounding of eigenvectors, far below any orbit one could see
   w.direction = most <= flat && least >= -flat ? Direction::planar
                 : most > flat && least < -flat ? Direction::mixed
                 : most > flat                  ? Direction::forward
@@ -169,23 +197,28 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
 }
 
 WhirlSolver::WhirlSolver(Linearizer& linear, const ModesOptions& options)
-    : linear_(linear), options_(options), motion_(linear.system(), options.motion),
-      solver_(linear.system().pattern(), motion_.active(), la_options(options, options.damped && linear.hysteretic())) {
+    : linear_(linear),
+      options_(options),
+      motion_(linear.system(), options.motion),
+      solver_(linear.system().pattern(), motion_.active(),
+              la_options(options, options.damped && linear.hysteretic())) {
   const SteadyRotation& r = linear.running().running();
   if (!r.frequency_dependent()) return;
   la::ModeOptions by_size = la_options(options, options.damped && linear.hysteretic());
-  by_size.certify = by_size.growing = false;   // its search goes by |lambda|
+  by_size.certify = by_size.growing = false;  // its search goes by |lambda|
   own_.emplace(linear.system().pattern(), motion_.active(), by_size, r.table_frequencies);
 }
 
 const la::MCK& WhirlSolver::matrices_at(double Omega, Complex lambda, double side) {
-  matrices_ = &motion_.reduce(options_.damped ? linear_.at(Omega, lambda, side) : linear_.conservative_at(Omega, lambda.imag()));
+  matrices_ = &motion_.reduce(options_.damped ? linear_.at(Omega, lambda, side)
+                                              : linear_.conservative_at(Omega, lambda.imag()));
   return *matrices_;
 }
 
 OwnFrequency::Matrices WhirlSolver::at_frequency(double Omega) {
   return [this, Omega](double w) -> const la::MCK& {
-    matrices_ = &motion_.reduce(options_.damped ? linear_.at_frequency(Omega, w) : linear_.conservative_at(Omega, w));
+    matrices_ = &motion_.reduce(options_.damped ? linear_.at_frequency(Omega, w)
+                                                : linear_.conservative_at(Omega, w));
     return *matrices_;
   };
 }
@@ -194,15 +227,17 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
   const Index from = mode.from;
   // Supports that answer by frequency do so within each round.
   const auto follow = [&](Complex rate, double side, const la::Mode& start) {
-    if (!by_frequency() || start.lambda.imag() == 0.0) return solver_.follow(matrices_at(Omega, rate, side), start);
+    if (!by_frequency() || start.lambda.imag() == 0.0)
+      return solver_.follow(matrices_at(Omega, rate, side), start);
     const auto at_rate = [&](double w) -> const la::MCK& {
       matrices_ = &motion_.reduce(linear_.at(Omega, rate, side, w));
       return *matrices_;
     };
     return own_->settle(at_rate, start);
   };
-  // Where forward whirl passes the speed its damping changes sign. The side is settled in an outer loop; where the frequency jumps from one side to
-  // the other with it (planes mixed by unequal supports), the last one found stands.
+  // Where forward whirl passes the speed its damping changes sign. The side is settled in an outer
+  // loop; where the frequency jumps from one side to the other with it (planes mixed by unequal
+  // supports), the last one found stands.
   for (int sides = 0; sides < 6 && mode.lambda.imag() != 0.0; ++sides) {
     const double side = std::abs(mode.lambda.imag());
     bool steady = false;
@@ -210,8 +245,10 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
       const Complex rate = mode.lambda;
       auto next = follow(rate, side, mode);
       if (!next) return std::nullopt;
-      steady = std::abs(next->lambda - rate) <= (by_frequency() ? 1e-10 : 1e-13) * std::abs(rate);   // own frequencies are known to 1e-11
-      if (steady && round == 0 && sides > 0) {   // the new side changes nothing
+      steady =
+          std::abs(next->lambda - rate) <=
+          (by_frequency() ? 1e-10 : 1e-13) * std::abs(rate);  // own frequencies are known to 1e-11
+      if (steady && round == 0 && sides > 0) {                // the new side changes nothing
         mode = std::move(*next);
         mode.from = from;
         return mode;
@@ -227,10 +264,12 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
 void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
   const Index k = static_cast<Index>(group.size()), n = group.front().x.size();
   Complex rate = 0.0;
-  for (const la::Mode& m : group) rate += m.lambda / static_cast<double>(k);
+  for (const la::Mode& m : group)
+    rate += m.lambda / static_cast<double>(k);
   const la::MCK& m = matrices_at(Omega, rate);
   MatXc X(n, k), Y(n, k);
-  for (Index j = 0; j < k; ++j) X.col(j) = group[at(j)].x.normalized();
+  for (Index j = 0; j < k; ++j)
+    X.col(j) = group[at(j)].x.normalized();
   const auto project = [&](const la::BlockMatrix<6>& a) {
     VecXc y;
     for (Index j = 0; j < k; ++j) {
@@ -246,8 +285,11 @@ void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
   companion.bottomRightCorner(k, k) = -mass.solve(project(m.C));
   const Eigen::ComplexEigenSolver<MatXc> eig(companion);
   std::vector<Index> order(at(2 * k));
-  for (Index j = 0; j < 2 * k; ++j) order[at(j)] = j;
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return std::abs(eig.eigenvalues()(a) - rate) < std::abs(eig.eigenvalues()(b) - rate); });
+  for (Index j = 0; j < 2 * k; ++j)
+    order[at(j)] = j;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::abs(eig.eigenvalues()(a) - rate) < std::abs(eig.eigenvalues()(b) - rate);
+  });
   for (Index j = 0; j < k; ++j) {
     const VecXc y = eig.eigenvectors().col(order[at(j)]).head(k);
     group[at(j)].x = X * y;
@@ -258,48 +300,71 @@ void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
 void WhirlSolver::solve_by_frequency(double Omega) {
   const OwnFrequency::Matrices at = at_frequency(Omega);
   const auto own = [&](const la::Mode& m) -> const la::MCK& {
-    return m.lambda.imag() != 0.0 ? at(m.lambda.imag()) : own_->reaches_zero(at) ? at(0.0) : matrices_at(Omega, Complex(0, nan));
+    return m.lambda.imag() != 0.0   ? at(m.lambda.imag())
+           : own_->reaches_zero(at) ? at(0.0)
+                                    : matrices_at(Omega, Complex(0, nan));
   };
   std::vector<la::Mode> modes = own_->solve(at);
   if (options_.real_roots) {
     const la::Mode at_rest;
     for (const la::Mode& m : solver_.solve(own(at_rest)))
       if (m.lambda.imag() == 0.0) modes.push_back(m);
-    const auto by_size = [](const la::Mode& a, const la::Mode& b) { return std::abs(a.lambda) < std::abs(b.lambda); };
+    const auto by_size = [](const la::Mode& a, const la::Mode& b) {
+      return std::abs(a.lambda) < std::abs(b.lambda);
+    };
     std::stable_sort(modes.begin(), modes.end(), by_size);
     Index oscillating = 0;
-    std::erase_if(modes, [&](const la::Mode& m) { return options_.count > 0 && m.lambda.imag() != 0.0 && ++oscillating > options_.count; });
-    std::stable_sort(modes.begin(), modes.end(), [](const la::Mode& a, const la::Mode& b) { return a.lambda.imag() < b.lambda.imag(); });
+    std::erase_if(modes, [&](const la::Mode& m) {
+      return options_.count > 0 && m.lambda.imag() != 0.0 && ++oscillating > options_.count;
+    });
+    std::stable_sort(modes.begin(), modes.end(), [](const la::Mode& a, const la::Mode& b) {
+      return a.lambda.imag() < b.lambda.imag();
+    });
   }
   for (const la::Mode& m : modes) {
     modes_.push_back(describe_mode(m, own(m), linear_));
     modes_.back().from = -1;
-    if (options_.continued && options_.damped && m.lambda.imag() != 0.0) modes_.back().continued = own_->continued(at, m);
+    if (options_.continued && options_.damped && m.lambda.imag() != 0.0)
+      modes_.back().continued = own_->continued(at, m);
   }
 }
 
 void WhirlSolver::solve_hysteretic(double Omega) {
-  // Forward and backward whirl of one frequency are any two motions of their plane until the damping tells them apart.
-  std::vector<la::Mode> known = by_frequency() ? own_->solve(at_frequency(Omega)) : solver_.solve(matrices_at(Omega, Complex(0, infinity))), group;
+  // Forward and backward whirl of one frequency are any two motions of their plane until the
+  // damping tells them apart.
+  std::vector<la::Mode> known = by_frequency()
+                                    ? own_->solve(at_frequency(Omega))
+                                    : solver_.solve(matrices_at(Omega, Complex(0, infinity))),
+                        group;
   for (const la::Mode& mode : known)
     if (mode.lambda.imag() == 0.0) modes_.push_back(describe_mode(mode, *matrices_, linear_));
   std::erase_if(known, [](const la::Mode& mode) { return mode.lambda.imag() == 0.0; });
-  // Coefficients against frequency keep modes apart that are not of one frequency, and may change much between them.
+  // Coefficients against frequency keep modes apart that are not of one frequency, and may change
+  // much between them.
   const double close = by_frequency() ? 1e-4 : 0.05;
   for (std::size_t i = 0; i < known.size();) {
     group.clear();
-    do group.push_back(known[i++]);
-    while (i < known.size() && group.size() < 6 && std::abs(known[i].lambda - known[i - 1].lambda) < close * std::abs(known[i].lambda));
+    do
+      group.push_back(known[i++]);
+    while (i < known.size() && group.size() < 6 &&
+           std::abs(known[i].lambda - known[i - 1].lambda) < close * std::abs(known[i].lambda));
     if (group.size() > 1) separate(Omega, group);
     for (const la::Mode& mode : group) {
       const auto settled = settle_rate(Omega, mode);
-      if (!settled) throw run_error("E77", "hysteretic damping: a whirl mode was lost on the way to its own frequency", "use a smaller internal_loss_factor, or internal_beta");
+      if (!settled)
+        throw run_error("E77",
+                        "hysteretic damping: a whirl mode was lost on the way to its own frequency",
+                        "use a smaller internal_loss_factor, or internal_beta");
       modes_.push_back(describe_mode(*settled, *matrices_, linear_));
     }
   }
-  std::stable_sort(modes_.begin(), modes_.end(), [](const WhirlMode& a, const WhirlMode& b) { return a.frequency < b.frequency; });
+  std::stable_sort(modes_.begin(), modes_.end(), [](const WhirlMode& a, const WhirlMode& b) {
+    return a.frequency < b.frequency;
+  });
   Index oscillating = 0;
-  std::erase_if(modes_, [&](const WhirlMode& m) { return options_.count > 0 && m.oscillates() && ++oscillating > options_.count; });
+  std::erase_if(modes_, [&](const WhirlMode& m) {
+    return options_.count > 0 && m.oscillates() && ++oscillating > options_.count;
+  });
 }
 
 void WhirlSolver::solve_counted(double Omega) {
@@ -314,21 +379,25 @@ void WhirlSolver::solve_counted(double Omega) {
       certificate_.quiet_above = quiet->above;
       certificate_.quiet_ratio = quiet->ratio;
     }
-    // Where nothing excludes growth at high frequencies, at least those that rotors whirl at are searched.
+    // Where nothing excludes growth at high frequencies, at least those that rotors whirl at are
+    // searched.
     const double wanted = quiet ? quiet->above : whirl_of_speed * std::abs(Omega);
     if (wanted > reached) {
       modes = &solver_.solve_to(m, wanted);
       certificate_.list = solver_.certificate();
     }
   }
-  for (const la::Mode& mode : *modes) modes_.push_back(describe_mode(mode, m, linear_));
+  for (const la::Mode& mode : *modes)
+    modes_.push_back(describe_mode(mode, m, linear_));
 }
 
 const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
   modes_.clear();
   certificate_ = {};
   if (options_.damped && linear_.hysteretic()) {
-    certificate_.open = "hysteretic damping depends on the frequency of each mode (counted without it, each then followed to its own frequency)";
+    certificate_.open =
+        "hysteretic damping depends on the frequency of each mode (counted without it, each then "
+        "followed to its own frequency)";
     solve_hysteretic(Omega);
   } else if (by_frequency()) {
     certificate_.open = "supports depend on the frequency of each mode";
@@ -343,27 +412,41 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
 std::string SpectrumCertificate::text() const {
   if (!open.empty()) return "completeness not certified: " + open;
   const double top = list.radius / two_pi;
-  if (!list.counted) return fmt::format("completeness not certified: the roots up to {:.5g} Hz could not be counted", top);
-  const std::string band = fmt::format("all roots up to {:.5g} Hz and damping ratio {:.2g}", top, list.damping_ratio());
+  if (!list.counted)
+    return fmt::format("completeness not certified: the roots up to {:.5g} Hz could not be counted",
+                       top);
+  const std::string band =
+      fmt::format("all roots up to {:.5g} Hz and damping ratio {:.2g}", top, list.damping_ratio());
   if (list.missing == 0) return band + " counted and found";
   std::string out = fmt::format("INCOMPLETE: {} of {} not found", list.missing, band);
-  for (const Complex z : list.where) out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", z.imag() / two_pi, z.real());
+  for (const Complex z : list.where)
+    out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", z.imag() / two_pi, z.real());
   return out;
 }
 
 std::optional<WhirlMode> WhirlSolver::follow(double Omega, const WhirlMode& start) {
   la::Mode from;
-  from.lambda = start.lambda; from.x = start.x;
+  from.lambda = start.lambda;
+  from.x = start.x;
   std::optional<la::Mode> found;
-  if (options_.damped && linear_.hysteretic()) found = settle_rate(Omega, from);
-  else if (by_frequency() && from.lambda.imag() != 0.0) found = own_->settle(at_frequency(Omega), from);
-  else if (by_frequency()) found = solver_.follow(own_->reaches_zero(at_frequency(Omega)) ? at_frequency(Omega)(0.0) : matrices_at(Omega, Complex(0, nan)), from);
-  else found = solver_.follow(matrices_at(Omega, Complex(0, nan)), from);
-  if (!found || likeness(*matrices_, found->x, start.x) < 0.3) return std::nullopt;   // a planar start and the circle it becomes are 0.5 alike
+  if (options_.damped && linear_.hysteretic())
+    found = settle_rate(Omega, from);
+  else if (by_frequency() && from.lambda.imag() != 0.0)
+    found = own_->settle(at_frequency(Omega), from);
+  else if (by_frequency())
+    found = solver_.follow(own_->reaches_zero(at_frequency(Omega))
+                               ? at_frequency(Omega)(0.0)
+                               : matrices_at(Omega, Complex(0, nan)),
+                           from);
+  else
+    found = solver_.follow(matrices_at(Omega, Complex(0, nan)), from);
+  if (!found || likeness(*matrices_, found->x, start.x) < 0.3)
+    return std::nullopt;  // a planar start and the circle it becomes are 0.5 alike
   return describe_mode(*found, *matrices_, linear_);
 }
 
-std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const ModesOptions& options, SpectrumCertificate* certificate) {
+std::vector<WhirlMode> whirl_modes(Linearizer& linear, double Omega, const ModesOptions& options,
+                                   SpectrumCertificate* certificate) {
   WhirlSolver solver(linear, options);
   std::vector<WhirlMode> modes = solver.solve(Omega);
   if (certificate) *certificate = solver.certificate();

@@ -106,7 +106,8 @@ void scale(VecXc& x, Index nodes) {
 
 }  // namespace
 
-std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count, const EquilibriumOptions& options) {
+std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
+                                   const EquilibriumOptions& options) {
   const system::System& system = running.system();
   EquilibriumSolver solver(running, options);
   const double full = running.load();
@@ -181,7 +182,7 @@ PathCheck check_on_path(SteadySystem& running, double Omega, double factor,
     out.limit = r.critical.front().limit;
     out.load = r.critical.front().load / full;
   } else if (r.end == LoadPathEnd::stopped) {
-    out.found = true; // unstable from the beginning
+    out.found = true;  // unstable from the beginning
   } else if (r.end != LoadPathEnd::reached) {
     out.ended = describe(r);
   }

@@ -16,21 +16,23 @@
 namespace whirl::analysis {
 
 struct BucklingMode {
-  Complex factor;          ///< on the loads; negative: loads reversed
-  VecXc x;                 ///< (u, phi, gamma) a node; largest displacement 1
-  double rotation = 0;     ///< largest tilt or twist of the linear response at this load, rad
-  double displacement = 0; ///< its largest displacement over the size of the model
+  Complex factor;           ///< on the loads; negative: loads reversed
+  VecXc x;                  ///< (u, phi, gamma) a node; largest displacement 1
+  double rotation = 0;      ///< largest tilt or twist of the linear response at this load, rad
+  double displacement = 0;  ///< its largest displacement over the size of the model
 };
 
-/// The `count` factors of least size, ascending. Errors: as EquilibriumSolver::solve; E79 no load changes the stiffness.
-std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count, const EquilibriumOptions& options = {});
+/// The `count` factors of least size, ascending. Errors: as EquilibriumSolver::solve; E79 no load
+/// changes the stiffness.
+std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
+                                   const EquilibriumOptions& options = {});
 
 /// What the nonlinear equilibria under growing loads say about a factor.
 struct PathCheck {
-  bool found = false; ///< the tangent loses definiteness
-  bool limit = false; ///< at a limit point; else equilibria branch off
-  double load = 0;    ///< there; not found: as far as was looked
-  std::string ended;  ///< why the path ended before that, else empty
+  bool found = false;  ///< the tangent loses definiteness
+  bool limit = false;  ///< at a limit point; else equilibria branch off
+  double load = 0;     ///< there; not found: as far as was looked
+  std::string ended;   ///< why the path ended before that, else empty
 };
 
 /// Follows the path to 1.25 times `factor`, until its tangent gains a negative direction.

@@ -60,7 +60,8 @@ double symmetrise(const la::BlockMatrix<6>& K, const VecX& rows,
 class Shifted {
  public:
   Shifted(const la::BlockMatrix<6>& K, const VecX& diagonal, std::span<const unsigned char> free)
-      : m_(K.pattern()), lu_(K.pattern(), free) {
+      : m_(K.pattern()),
+        lu_(K.pattern(), free) {
     std::copy_n(K.data(), K.value_count(), m_.K.data());
     m_.M.set_zero();
     const la::BlockPattern& p = K.pattern();
@@ -132,12 +133,13 @@ void find_lowest(const la::BlockMatrix<6>& K, std::span<const unsigned char> fre
                  const system::System& system, double length, Definiteness& out) {
   const VecX D = metric(system, length);
   Shifted shifted(K, D, free);
-  double up = 1.0; // K + up D is definite; a start from what one row holds
+  double up = 1.0;  // K + up D is definite; a start from what one row holds
   VecX x = generic_start(D.size(), free);
   VecX Kx = VecX::Zero(D.size());
   K.add_multiply(1.0, x, Kx);
   up = std::max(1e-12 * std::abs(Kx.dot(x)) / x.dot(D.cwiseProduct(x)), 1e-300);
-  while (shifted.negative(up) > 0 && up < 1e30) up *= 16.0;
+  while (shifted.negative(up) > 0 && up < 1e30)
+    up *= 16.0;
   double down = 0.0;
   for (int k = 0; k < 60 && up - down > 0.02 * up; ++k) {
     const double middle = down > 0.0 && up > 4.0 * down ? std::sqrt(up * down)
@@ -176,7 +178,9 @@ void count_real(const la::BlockMatrix<6>& K, std::span<const unsigned char> free
       out.shape = (m.x / m.x[largest]).real();
       scale_shape(out.shape, system);
     }
-  } catch (const Error&) { out.negative = 0; }
+  } catch (const Error&) {
+    out.negative = 0;
+  }
   // one more than were found where the sign of det K says so
   if ((out.negative % 2 != 0) != (out.sign < 0)) ++out.negative;
 }
@@ -238,7 +242,8 @@ double model_length(const system::System& s) {
 
 std::vector<unsigned char> free_unknowns(const system::System& s, std::span<const Index> holds) {
   std::vector<unsigned char> out(s.active().begin(), s.active().end());
-  for (Index k : holds) out[at(k)] = 0;
+  for (Index k : holds)
+    out[at(k)] = 0;
   return out;
 }
 

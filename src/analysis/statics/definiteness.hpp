@@ -5,9 +5,10 @@
 // Sylvester's law from one factorisation. In each of these directions the potential energy falls,
 // at any speed.
 // Unsymmetric K (films, cross-coupling, internal damping that turns, torques of fixed direction) is
-// the derivative of no energy. What is claimed then, for lambda^2 M + lambda C + K with any positive
-// M and any C:
-//   x' K x > 0 for every x (inertia of the symmetric part): no real root lambda >= 0, no divergence;
+// the derivative of no energy. What is claimed then, for lambda^2 M + lambda C + K with any
+// positive M and any C:
+//   x' K x > 0 for every x (inertia of the symmetric part): no real root lambda >= 0, no
+//   divergence;
 //     certain
 //   det K < 0: an odd number of real roots lambda > 0, unstable; certain
 //   otherwise: the negative real eigenvalues among those of least size; counted, not proved
@@ -21,13 +22,14 @@
 namespace whirl::analysis {
 
 struct Definiteness {
-  Index negative = 0; ///< directions (symmetric K) or negative real eigenvalues (unsymmetric K)
+  Index negative = 0;  ///< directions (symmetric K) or negative real eigenvalues (unsymmetric K)
   bool symmetric = true;
-  bool certain = true; ///< false: counted, not proved
-  int sign = 1;        ///< of det K
-  double lowest = 0;   ///< the lowest eigenvalue of K x = mu D x, D = 1 for displacements and
-                       ///< (length/10)^2 for rotations, N/m
-  VecX shape; ///< its vector (u, phi, gamma) a node, largest displacement 1; only when negative > 0
+  bool certain = true;  ///< false: counted, not proved
+  int sign = 1;         ///< of det K
+  double lowest = 0;    ///< the lowest eigenvalue of K x = mu D x, D = 1 for displacements and
+                        ///< (length/10)^2 for rotations, N/m
+  VecX
+      shape;  ///< its vector (u, phi, gamma) a node, largest displacement 1; only when negative > 0
 
   bool stable() const { return negative == 0; }
 };

@@ -14,10 +14,10 @@ namespace whirl::analysis {
 namespace {
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Whether the residual r at s is small against the load. Pressed against its wall a film is so stiff that corrections vanish long
-/// before the forces balance.
-bool balanced(SteadySystem& running, double Omega, const system::State& s, const VecX& r, const la::MCK& matrices,
-              std::span<const unsigned char> free) {
+/// Whether the residual r at s is small against the load. Pressed against its wall a film is so
+/// stiff that corrections vanish long before the forces balance.
+bool balanced(SteadySystem& running, double Omega, const system::State& s, const VecX& r,
+              const la::MCK& matrices, std::span<const unsigned char> free) {
   const system::System& sys = running.system();
   const double factor = running.load();
   VecX unloaded(r.size());
@@ -34,9 +34,10 @@ bool balanced(SteadySystem& running, double Omega, const system::State& s, const
     if (sys.node(i).scalar) continue;
     for (Index k = 6 * i; k < 6 * i + 3; ++k) {
       if (!free[at(k)] || std::abs(r[k]) <= 1e-3 * load) continue;
-      double products = 0.0;   // rounding of the forces that cancel here
+      double products = 0.0;  // rounding of the forces that cancel here
       for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b)
-        products += matrices.K.block(b).row(k % 6).cwiseAbs().dot(s.q.segment<6>(6 * cols[at(b)]).cwiseAbs());
+        products += matrices.K.block(b).row(k % 6).cwiseAbs().dot(
+            s.q.segment<6>(6 * cols[at(b)]).cwiseAbs());
       if (std::abs(r[k]) > 1e-3 * load + std::min(1e-15 * products, 1e-2 * load)) return false;
     }
   }
@@ -45,25 +46,32 @@ bool balanced(SteadySystem& running, double Omega, const system::State& s, const
 }  // namespace
 
 EquilibriumSolver::EquilibriumSolver(SteadySystem& running, EquilibriumOptions options)
-    : running_(running), options_(options), free_(running.system().active().begin(), running.system().active().end()),
-      matrices_(running.system().make_matrices()), r_(running.system().size()) {
+    : running_(running),
+      options_(options),
+      free_(running.system().active().begin(), running.system().active().end()),
+      matrices_(running.system().make_matrices()),
+      r_(running.system().size()) {
   const system::System& s = running.system();
   Vec3 low = Vec3::Constant(infinity), high = -low;
   for (Index i = 0; i < s.nodes(); ++i)
-    if (!s.node(i).scalar) { low = low.cwiseMin(s.node(i).position); high = high.cwiseMax(s.node(i).position); }
+    if (!s.node(i).scalar) {
+      low = low.cwiseMin(s.node(i).position);
+      high = high.cwiseMax(s.node(i).position);
+    }
   length_ = (high - low).norm();
-  if (!(length_ > 0)) length_ = 1.0;   // one body: metre and radian weigh alike
+  if (!(length_ > 0)) length_ = 1.0;  // one body: metre and radian weigh alike
 }
 
 void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
-  // A rotor turns freely when K times the motion "all its phi by its ratio" vanishes to rounding. What sees phi (weight on an
-  // unbalance) holds it in no useful sense and is left out.
+  // A rotor turns freely when K times the motion "all its phi by its ratio" vanishes to rounding.
+  // What sees phi (weight on an unbalance) holds it in no useful sense and is left out.
   const system::System& sys = running_.system();
   const Index L = sys.lines();
   if (!running_.blind_tangent(s.frames, Omega, s.q, matrices_)) return;
   std::vector<Index> first(at(L), -1);
   std::vector<VecX> e(at(L)), ke(at(L)), size(at(L));
-  for (Index l = 0; l < L; ++l) e[at(l)] = VecX::Zero(sys.size());
+  for (Index l = 0; l < L; ++l)
+    e[at(l)] = VecX::Zero(sys.size());
   for (Index i = 0; i < sys.nodes(); ++i) {
     const Index l = sys.node(i).line, k = 6 * i + system::spin_phi;
     if (!running_.spinning()[at(i)]) continue;
@@ -74,24 +82,29 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
   const auto& start = sys.pattern().row_start();
   const auto& cols = sys.pattern().cols();
   for (Index l = 0; l < L; ++l) {
-    ke[at(l)] = VecX::Zero(sys.size()); size[at(l)] = VecX::Zero(sys.size());
+    ke[at(l)] = VecX::Zero(sys.size());
+    size[at(l)] = VecX::Zero(sys.size());
     if (first[at(l)] < 0) continue;
     matrices_.K.add_multiply(1.0, e[at(l)], ke[at(l)]);
     for (Index i = 0; i < sys.nodes(); ++i)
       for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b)
-        size[at(l)].segment<6>(6 * i) += matrices_.K.block(b).cwiseAbs() * e[at(l)].segment<6>(6 * cols[at(b)]).cwiseAbs();
+        size[at(l)].segment<6>(6 * i) +=
+            matrices_.K.block(b).cwiseAbs() * e[at(l)].segment<6>(6 * cols[at(b)]).cwiseAbs();
   }
   // Lines whose torques meet (gears, couplings) are one rotor.
   std::vector<Index> group(at(L));
-  for (Index l = 0; l < L; ++l) group[at(l)] = l;
+  for (Index l = 0; l < L; ++l)
+    group[at(l)] = l;
   auto root = [&](Index l) {
-    while (group[at(l)] != l) l = group[at(l)];
+    while (group[at(l)] != l)
+      l = group[at(l)];
     return l;
   };
   for (Index l = 0; l < L; ++l)
     for (Index m = 0; m < l; ++m) {
       bool meet = false;
-      for (Index k = 0; k < sys.size() && !meet; ++k) meet = e[at(m)][k] != 0.0 && std::abs(ke[at(l)][k]) > 1e-9 * size[at(l)][k];
+      for (Index k = 0; k < sys.size() && !meet; ++k)
+        meet = e[at(m)][k] != 0.0 && std::abs(ke[at(l)][k]) > 1e-9 * size[at(l)][k];
       if (meet) group[at(root(l))] = root(m);
     }
   for (Index g = 0; g < L; ++g) {
@@ -101,21 +114,30 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
     bool held = false;
     for (Index l = 0; l < L; ++l) {
       if (root(l) != g) continue;
-      sum += ke[at(l)]; scale += size[at(l)];
+      sum += ke[at(l)];
+      scale += size[at(l)];
       if (lead < 0) lead = first[at(l)];
     }
-    for (Index i = 0; i < sys.nodes(); ++i)   // a prescribed angle holds its whole group
-      if (running_.spinning()[at(i)] && root(sys.node(i).line) == g && !sys.active()[at(6 * i + 3)]) held = true;
+    for (Index i = 0; i < sys.nodes(); ++i)  // a prescribed angle holds its whole group
+      if (running_.spinning()[at(i)] && root(sys.node(i).line) == g && !sys.active()[at(6 * i + 3)])
+        held = true;
     if (lead < 0 || held) continue;
     double torque = 0;
-    for (Index k = 3; k < sys.size(); k += 6) torque = std::max(torque, scale[k]);
+    for (Index k = 3; k < sys.size(); k += 6)
+      torque = std::max(torque, scale[k]);
     bool resisted = false;
     for (Index k = 0; k < sys.size(); ++k)
-      resisted = resisted || (free_[at(k)] && std::abs(sum[k]) > 1e-9 * std::max(scale[k], k % 6 < 3 ? torque / length_ : torque));
-    if (!resisted) { spin_holds_.push_back(lead); free_[at(lead)] = 0; }
+      resisted = resisted || (free_[at(k)] &&
+                              std::abs(sum[k]) >
+                                  1e-9 * std::max(scale[k], k % 6 < 3 ? torque / length_ : torque));
+    if (!resisted) {
+      spin_holds_.push_back(lead);
+      free_[at(lead)] = 0;
+    }
   }
   group_.resize(at(L));
-  for (Index l = 0; l < L; ++l) group_[at(l)] = root(l);
+  for (Index l = 0; l < L; ++l)
+    group_[at(l)] = root(l);
 }
 
 std::string EquilibriumSolver::name_motion(Index singular) const {
@@ -123,7 +145,8 @@ std::string EquilibriumSolver::name_motion(Index singular) const {
   const system::System& sys = running_.system();
   const auto& start = sys.pattern().row_start();
   const auto& cols = sys.pattern().cols();
-  constexpr const char* motion[4] = {"axial motion", "lateral motion along y", "lateral motion along z", "turning about its axis"};
+  constexpr const char* motion[4] = {"axial motion", "lateral motion along y",
+                                     "lateral motion along z", "turning about its axis"};
   std::string free;
   VecX e(sys.size());
   for (Index l = 0; l < sys.lines(); ++l)
@@ -131,49 +154,64 @@ std::string EquilibriumSolver::name_motion(Index singular) const {
       e.setZero();
       bool any = false;
       for (Index i = 0; i < sys.nodes(); ++i)
-        if (const Index k = 6 * i + c; sys.node(i).line == l && !sys.node(i).scalar && free_[at(k)]) { e[k] = 1.0; any = true; }
+        if (const Index k = 6 * i + c;
+            sys.node(i).line == l && !sys.node(i).scalar && free_[at(k)]) {
+          e[k] = 1.0;
+          any = true;
+        }
       if (!any) continue;
       bool resisted = false;
       for (Index i = 0; i < sys.nodes() && !resisted; ++i) {
         Vector<6> sum = Vector<6>::Zero(), size = sum;
         for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b) {
           const auto x = e.segment<6>(6 * cols[at(b)]);
-          sum += matrices_.K.block(b) * x; size += matrices_.K.block(b).cwiseAbs() * x;
+          sum += matrices_.K.block(b) * x;
+          size += matrices_.K.block(b).cwiseAbs() * x;
         }
-        // forces against forces, moments against moments: small couplings are not rounding of each other
+        // forces against forces, moments against moments: small couplings are not rounding of each
+        // other
         const double force = size.head<3>().maxCoeff(), moment = size.tail<3>().maxCoeff();
         for (Index k = 0; k < 6; ++k)
-          resisted = resisted || (free_[at(6 * i + k)] && std::abs(sum[k]) > 1e-9 * (k < 3 ? force : moment));
+          resisted = resisted ||
+                     (free_[at(6 * i + k)] && std::abs(sum[k]) > 1e-9 * (k < 3 ? force : moment));
       }
-      if (!resisted) free += fmt::format("{}{} of shaft '{}'", free.empty() ? "" : ", nor ", motion[c], sys.line_name(l));
+      if (!resisted)
+        free += fmt::format("{}{} of shaft '{}'", free.empty() ? "" : ", nor ", motion[c],
+                            sys.line_name(l));
     }
   if (!free.empty()) return "nothing resists " + free;
   if (singular < 0) return "the stiffness matrix is singular";
-  return fmt::format("nothing resists a motion along {} of {}", system::component_name(static_cast<int>(singular % 6)), sys.node(singular / 6).name);
+  return fmt::format("nothing resists a motion along {} of {}",
+                     system::component_name(static_cast<int>(singular % 6)),
+                     sys.node(singular / 6).name);
 }
 
 double EquilibriumSolver::correction_size(const VecX& d) const {
   double m = 0;
   const system::System& s = running_.system();
-  for (Index k = 0; k < d.size(); ++k) m = std::max(m, std::abs(d[k]) / (k % 6 < 3 && !s.node(k / 6).scalar ? length_ : 1.0));
+  for (Index k = 0; k < d.size(); ++k)
+    m = std::max(m, std::abs(d[k]) / (k % 6 < 3 && !s.node(k / 6).scalar ? length_ : 1.0));
   return m;
 }
 
 bool EquilibriumSolver::is_small(const VecX& d, const VecX& q) const {
-  // Displacements against the largest displacement, tilts against the largest tilt, twists against the largest twist. Below
-  // 1e-15 of the model's size (rad) nothing more can be asked.
+  // Displacements against the largest displacement, tilts against the largest tilt, twists against
+  // the largest twist. Below 1e-15 of the model's size (rad) nothing more can be asked.
   const system::System& s = running_.system();
   double now[4] = {}, all[4] = {};
   for (Index k = 0; k < d.size(); ++k) {
     const int c = s.node(k / 6).scalar ? 3 : k % 6 < 3 ? 0 : k % 6 == 3 ? 1 : 2;
-    now[c] = std::max(now[c], std::abs(d[k])); all[c] = std::max(all[c], std::abs(q[k]));
+    now[c] = std::max(now[c], std::abs(d[k]));
+    all[c] = std::max(all[c], std::abs(q[k]));
   }
   for (int c = 0; c < 4; ++c)
-    if (now[c] > std::max(options_.tolerance * all[c], c == 0 ? 1e-15 * length_ : 1e-15)) return false;
+    if (now[c] > std::max(options_.tolerance * all[c], c == 0 ? 1e-15 * length_ : 1e-15))
+      return false;
   return true;
 }
 
-EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State& s, int& iterations) {
+EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State& s,
+                                                     int& iterations) {
   const VecX begin = s.q;
   Outcome o = newton(Omega, s, iterations, Step::bold);
   if (o == Outcome::diverged) {
@@ -183,7 +221,8 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
   return o;
 }
 
-EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State& s, int& iterations, Step kind) {
+EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State& s,
+                                                     int& iterations, Step kind) {
   const system::System& sys = running_.system();
   if (!solver_) solver_ = la::make_direct_solver<double>(sys.pattern(), free_, options_.solver);
   const auto masked = [&](VecX& x) {
@@ -212,12 +251,17 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
       why_ = "a correction is not finite";
       return Outcome::diverged;
     }
-    // A start that needs no correction stays what it is to the last bit: sweeps over speed rely on it.
-    if (it == 0 && is_small(step_, s.q) && balanced(running_, Omega, s, r_, matrices_, free_)) return Outcome::converged;
+    // A start that needs no correction stays what it is to the last bit: sweeps over speed rely on
+    // it.
+    if (it == 0 && is_small(step_, s.q) && balanced(running_, Omega, s, r_, matrices_, free_))
+      return Outcome::converged;
     // Converged, or as small as rounding lets it become.
     if (is_small(step_, s.q) || (damping == 1.0 && size < 1e-8 && size > 0.25 * last)) {
       s.q += step_;
-      if (!running_.residual(s.frames, Omega, s.q, r_)) { s.q -= step_; running_.residual(s.frames, Omega, s.q, r_); }
+      if (!running_.residual(s.frames, Omega, s.q, r_)) {
+        s.q -= step_;
+        running_.residual(s.frames, Omega, s.q, r_);
+      }
       if (balanced(running_, Omega, s, r_, matrices_, free_)) return Outcome::converged;
       last = size;
       continue;
@@ -225,8 +269,8 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
     double alpha;
     bool taken = false;
     if (kind == Step::bold) {
-      // Whole steps, no turn of more than half a radian and no move of more than half the model: what slender structures in large
-      // rotation want, whose axial force rises before it falls.
+      // Whole steps, no turn of more than half a radian and no move of more than half the model:
+      // what slender structures in large rotation want, whose axial force rises before it falls.
       alpha = std::min(1.0, 0.5 / size);
       for (int halving = 0; halving < 10 && !taken; ++halving, alpha *= taken ? 1.0 : 0.5) {
         trial_ = s.q + alpha * step_;
@@ -234,7 +278,8 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
       }
       if (size > 1e4 * first) taken = false;
     } else {
-      // Natural monotonicity: the simplified Newton correction after the step must be shorter than the correction itself.
+      // Natural monotonicity: the simplified Newton correction after the step must be shorter than
+      // the correction itself.
       alpha = std::min(1.0, 2.0 * damping);
       for (int halving = 0; halving < 30; ++halving, alpha *= 0.5) {
         trial_ = s.q + alpha * step_;
@@ -255,15 +300,19 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
       return Outcome::diverged;
     }
     s.q = trial_;
-    damping = alpha; last = size;
+    damping = alpha;
+    last = size;
   }
   Index worst = 0;
   for (Index k = 0; k < step_.size(); ++k) {
-    const auto weight = [&](Index i) { return std::abs(step_[i]) / (i % 6 < 3 && !sys.node(i / 6).scalar ? length_ : 1.0); };
+    const auto weight = [&](Index i) {
+      return std::abs(step_[i]) / (i % 6 < 3 && !sys.node(i / 6).scalar ? length_ : 1.0);
+    };
     if (weight(k) > weight(worst)) worst = k;
   }
-  why_ = fmt::format("no convergence in {} iterations; the largest correction is that of {} of {}", options_.max_iterations,
-                     system::component_name(static_cast<int>(worst % 6)), sys.node(worst / 6).name);
+  why_ = fmt::format("no convergence in {} iterations; the largest correction is that of {} of {}",
+                     options_.max_iterations, system::component_name(static_cast<int>(worst % 6)),
+                     sys.node(worst / 6).name);
   return Outcome::diverged;
 }
 
@@ -290,12 +339,19 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
   running_.impose(s.frames, s.q);
   running_.set_rates(Omega, s.v);
   s.a.setZero();
-  if (!holds_known_) { find_spin_holds(s, Omega); holds_known_ = true; }
-  for (Index k : spin_holds_) s.q[k] = 0.0;
+  if (!holds_known_) {
+    find_spin_holds(s, Omega);
+    holds_known_ = true;
+  }
+  for (Index k : spin_holds_)
+    s.q[k] = 0.0;
 
   const system::State begin = s;
   Outcome o = options_.load_steps > 1 ? Outcome::diverged : newton(Omega, s, out.iterations);
-  if (o == Outcome::singular) { s = begin; o = close_gaps(Omega, s, out.iterations); }
+  if (o == Outcome::singular) {
+    s = begin;
+    o = close_gaps(Omega, s, out.iterations);
+  }
   if (o != Outcome::converged) {
     // Loads in steps from the unloaded state, doubled after an easy step, halved after a failure.
     const double full = running_.load();
@@ -314,10 +370,12 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
       s = kept;
       int n = 0;
       o = newton(Omega, s, n);
-      out.iterations += n; ++out.load_steps;
+      out.iterations += n;
+      ++out.load_steps;
       if (o == Outcome::converged) {
         if (options_.chart_change) change_charts(s);
-        kept = s; done = factor;
+        kept = s;
+        done = factor;
         if (factor == 1.0) break;
         if (!first && n <= 6) step = std::min(2.0 * step, largest);
         first = false;
@@ -347,8 +405,10 @@ Equilibrium EquilibriumSolver::solve(double Omega, const system::State* start) {
   if (out) return std::move(*out);
   const bool singular = why_.starts_with("nothing resists");
   throw run_error(singular ? "E75" : "E76", (singular ? "" : "no equilibrium found: ") + why_,
-                  singular ? "add a support in that direction, or hold it rigidly; at a high load: the structure is at a limit point or buckles"
-                           : "the load may lie beyond a limit point (try the buckling analysis), or a bearing beyond its capacity");
+                  singular ? "add a support in that direction, or hold it rigidly; at a high load: "
+                             "the structure is at a limit point or buckles"
+                           : "the load may lie beyond a limit point (try the buckling analysis), "
+                             "or a bearing beyond its capacity");
 }
 
 }  // namespace whirl::analysis

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// R(q, lambda) for la::Continuation. Loads are linear in lambda, so dR/dlambda is a difference of two residuals, exactly.
+/// R(q, lambda) for la::Continuation. Loads are linear in lambda, so dR/dlambda is a difference of
+/// two residuals, exactly.
 class Loaded final : public la::ContinuationProblem {
  public:
   /// free: unknowns of the path (those of the solver, but for what a branch holds).
@@ -30,11 +31,14 @@ class Loaded final : public la::ContinuationProblem {
         direct_(la::make_direct_solver<double>(running.system().pattern(), free,
                                                o.equilibrium.solver)) {
     const system::System& sys = running.system();
-    // Root mean square of displacements over the model's length, and of angles: 1 is as far as things can go.
+    // Root mean square of displacements over the model's length, and of angles: 1 is as far as
+    // things can go.
     double unknowns = 0;
-    for (unsigned char a : solver.free()) unknowns += a;
+    for (unsigned char a : solver.free())
+      unknowns += a;
     const double root = std::sqrt(std::max(unknowns, 1.0));
-    for (Index k = 0; k < scale_.size(); ++k) scale_[k] = root * (k % 6 < 3 && !sys.node(k / 6).scalar ? solver.length() : 1.0);
+    for (Index k = 0; k < scale_.size(); ++k)
+      scale_[k] = root * (k % 6 < 3 && !sys.node(k / 6).scalar ? solver.length() : 1.0);
     load_scale_ = std::abs(o.last_load) > 0 ? std::abs(o.last_load) : 1.0;
   }
   bool residual(const VecX& q, double lambda, VecX& f) override {
@@ -64,7 +68,9 @@ class Loaded final : public la::ContinuationProblem {
     }
     const Index k = direct_->singular_unknown();
     const system::System& s = running_.system();
-    why = k < 0 ? std::string("the tangent is singular") : fmt::format("the tangent is singular at {} of {}", system::component_name(static_cast<int>(k % 6)), s.node(k / 6).name);
+    why = k < 0 ? std::string("the tangent is singular")
+                : fmt::format("the tangent is singular at {} of {}",
+                              system::component_name(static_cast<int>(k % 6)), s.node(k / 6).name);
     return false;
   }
   void solve(VecX& b) override { direct_->solve(b); }
@@ -73,7 +79,7 @@ class Loaded final : public la::ContinuationProblem {
   /// K of the last factor().
   const la::BlockMatrix<6>& tangent() const { return matrices_.K; }
 
-  std::string why; ///< of the last failure; empty: Newton's iteration itself
+  std::string why;  ///< of the last failure; empty: Newton's iteration itself
 
  private:
   std::string reason_outside(const VecX& q) const {
@@ -105,14 +111,18 @@ class Follower {
   using Accept = std::function<bool(const LoadPathPoint&)>;
   Follower(SteadySystem& running, double Omega, const system::State& start,
            const LoadPathOptions& o, const Accept& accept)
-      : running_(running), Omega_(Omega), o_(o), accept_(accept), solver_(running, o.equilibrium) {
+      : running_(running),
+        Omega_(Omega),
+        o_(o),
+        accept_(accept),
+        solver_(running, o.equilibrium) {
     running.set_load(0.0);
     out_.last = solver_.solve(Omega, &start);
     free_.assign(solver_.free().begin(), solver_.free().end());
     c_.tolerance = o.equilibrium.tolerance;
     c_.first_step = 1.0 / std::max(o.steps, 1);
     c_.max_step = std::max(c_.first_step, 0.05);
-    c_.max_steps = std::numeric_limits<int>::max(); // max_points ends the path
+    c_.max_steps = std::numeric_limits<int>::max();  // max_points ends the path
   }
 
   LoadPathResult follow() {
@@ -125,7 +135,8 @@ class Follower {
     kept_ = s;
     bool going = accept_({0.0, false, out_.last.iterations, &s, now_});
     if (!going) out_.end = LoadPathEnd::stopped;
-    while (going) going = follow_on_one_chart();
+    while (going)
+      going = follow_on_one_chart();
     if (out_.end == LoadPathEnd::reached && o_.branch != 0 && out_.branched_at < 0)
       out_.end = LoadPathEnd::no_branch;
     return finish();
@@ -136,8 +147,8 @@ class Follower {
   /// A point between two points of the path.
   struct Probe {
     double part = 0, load = 0;
-    double mu = nan; ///< the eigenvalue nearest to zero
-    VecX q, shape;   ///< shape: of that eigenvalue
+    double mu = nan;  ///< the eigenvalue nearest to zero
+    VecX q, shape;    ///< shape: of that eigenvalue
     Definiteness tangent;
   };
 
@@ -174,16 +185,10 @@ class Follower {
     if (result.status == la::ContinuationStatus::finished && next == Next::go_on) return false;
     switch (next) {
       case Next::chart:
-      case Next::branch:
-        return true;
-      case Next::stop:
-        out_.end = LoadPathEnd::stopped;
-        return false;
-      case Next::enough:
-        out_.end = LoadPathEnd::too_many_points;
-        return false;
-      case Next::go_on:
-        break;
+      case Next::branch: return true;
+      case Next::stop: out_.end = LoadPathEnd::stopped; return false;
+      case Next::enough: out_.end = LoadPathEnd::too_many_points; return false;
+      case Next::go_on: break;
     }
     out_.end = LoadPathEnd::lost;
     out_.why = problem.why.empty()
@@ -320,7 +325,8 @@ class Follower {
     now_ = near.tangent;
     VecX along = here.direction;
     const Index together = std::abs(here.after - here.before);
-    for (Index k = 1; k < together; ++k) hold_one(along, problem);
+    for (Index k = 1; k < together; ++k)
+      hold_one(along, problem);
     leave_along_ = o_.branch < 0 ? VecX(-along) : along;
     return true;
   }
@@ -373,14 +379,14 @@ class Follower {
   la::Continuation continuation_;
   la::ContinuationOptions c_;
   LoadPathResult out_;
-  Definiteness now_;   ///< at the last point
-  system::State kept_; ///< the last point, with its load, slope of the load and arc length
+  Definiteness now_;    ///< at the last point
+  system::State kept_;  ///< the last point, with its load, slope of the load and arc length
   double kept_load_ = 0, kept_slope_ = 0, kept_arc_ = 0;
   double load_ = 0, sign_ = 1;
   int bifurcations_ = 0;
-  std::vector<unsigned char> free_; ///< unknowns of the path
-  std::vector<Index> held_;         ///< displacements held to choose one of a family of branches
-  VecX leave_along_;                ///< the next stretch starts this way
+  std::vector<unsigned char> free_;  ///< unknowns of the path
+  std::vector<Index> held_;          ///< displacements held to choose one of a family of branches
+  VecX leave_along_;                 ///< the next stretch starts this way
 };
 
 }  // namespace
@@ -407,10 +413,10 @@ std::string describe(const LoadPathResult& r) {
                          limits);
     case LoadPathEnd::no_branch:
       return fmt::format(
-          "reached its end at load factor {:.6g} after {} points without the bifurcation it should branch at",
+          "reached its end at load factor {:.6g} after {} points without the bifurcation it should "
+          "branch at",
           r.load, r.points);
-    case LoadPathEnd::lost:
-      break;
+    case LoadPathEnd::lost: break;
   }
   return fmt::format("was lost at load factor {:.6g} after {} points: {}{}", r.load, r.points,
                      r.why, limits);

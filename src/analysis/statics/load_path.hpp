@@ -18,45 +18,46 @@ namespace whirl::analysis {
 
 struct LoadPathOptions {
   EquilibriumOptions equilibrium;
-  Index controlled = -1;          ///< unknown in control; -1: arc length
-  double controlled_to = 0;       ///< its last value, m or rad (controlled >= 0)
-  double last_load = 1;           ///< arc length: the path ends where lambda first passes this; both kinds: it starts towards its sign
-  int steps = 20;                 ///< arc length: first step about last_load/steps; control: equal steps
+  Index controlled = -1;     ///< unknown in control; -1: arc length
+  double controlled_to = 0;  ///< its last value, m or rad (controlled >= 0)
+  double last_load = 1;  ///< arc length: the path ends where lambda first passes this; both kinds:
+                         ///< it starts towards its sign
+  int steps = 20;        ///< arc length: first step about last_load/steps; control: equal steps
   int max_points = 400;
-  int branch = 0; ///< follow the branch that leaves at the bifurcation of this number (1 the
-                  ///< first), negative: to its other side
+  int branch = 0;  ///< follow the branch that leaves at the bifurcation of this number (1 the
+                   ///< first), negative: to its other side
 };
 
 struct LoadPathPoint {
-  double load = 0;                ///< lambda
-  bool limit = false;             ///< a limit point was passed since the last point
+  double load = 0;     ///< lambda
+  bool limit = false;  ///< a limit point was passed since the last point
   int iterations = 0;
   const system::State* state = nullptr;
-  Definiteness tangent;     ///< without its shape
-  bool bifurcation = false; ///< located: other equilibria branch off here
+  Definiteness tangent;      ///< without its shape
+  bool bifurcation = false;  ///< located: other equilibria branch off here
 };
 
 /// A point at which the path turns in load (limit) or other equilibria branch off.
 struct CriticalPoint {
   bool limit = false;
   double load = 0;
-  Index before = 0, after = 0; ///< negative directions of the tangent
-  system::State state;         ///< of a bifurcation
-  VecX direction; ///< of a bifurcation: the motion along which it branches, largest displacement 1;
-                  ///< (u, phi, gamma) a node
+  Index before = 0, after = 0;  ///< negative directions of the tangent
+  system::State state;          ///< of a bifurcation
+  VecX direction;  ///< of a bifurcation: the motion along which it branches, largest displacement
+                   ///< 1; (u, phi, gamma) a node
 };
 
 enum class LoadPathEnd { reached, stopped, too_many_points, lost, no_branch };
 
 struct LoadPathResult {
   LoadPathEnd end = LoadPathEnd::reached;
-  Equilibrium last;               ///< the last point; reactions at its load
+  Equilibrium last;  ///< the last point; reactions at its load
   double load = 0;
   int points = 0;
-  std::string why;                ///< when lost: node, direction
-  std::vector<CriticalPoint> critical; ///< in the order passed
-  int branched_at = -1;                ///< which of them the path left on a branch
-  Definiteness tangent;                ///< at the last point, without its shape
+  std::string why;                      ///< when lost: node, direction
+  std::vector<CriticalPoint> critical;  ///< in the order passed
+  int branched_at = -1;                 ///< which of them the path left on a branch
+  Definiteness tangent;                 ///< at the last point, without its shape
 };
 
 /// "reached its end at load factor 1 after 41 points", or where it ended instead and why.
@@ -65,7 +66,8 @@ std::string describe(const LoadPathResult& r);
 /// accept sees every point (located bifurcations too), lambda = 0 first, and ends the path by
 /// returning false. The load factor of `running` is left at the last one. Error when there is no
 /// equilibrium at lambda = 0.
-LoadPathResult follow_load_path(SteadySystem& running, double Omega, const system::State& start, const LoadPathOptions& options,
+LoadPathResult follow_load_path(SteadySystem& running, double Omega, const system::State& start,
+                                const LoadPathOptions& options,
                                 const std::function<bool(const LoadPathPoint&)>& accept);
 
 }  // namespace whirl::analysis

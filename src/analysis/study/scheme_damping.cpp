@@ -11,11 +11,12 @@ namespace whirl::analysis {
 
 namespace {
 
-constexpr double shortest = 1e-16;   // s
+constexpr double shortest = 1e-16;  // s
 
 Complex generalized_alpha(double rho, Complex lambda, double h) {
   // Chung and Hulbert; the undamped oscillator of frequency |lambda|, in (q, h v, h^2 a)
-  const double am = (2.0 * rho - 1.0) / (rho + 1.0), af = rho / (rho + 1.0), gamma = 0.5 - am + af, beta = 0.25 * (1.0 - am + af) * (1.0 - am + af);
+  const double am = (2.0 * rho - 1.0) / (rho + 1.0), af = rho / (rho + 1.0), gamma = 0.5 - am + af,
+               beta = 0.25 * (1.0 - am + af) * (1.0 - am + af);
   const double w2 = std::norm(lambda) * h * h;
   Mat3 left, right;
   left << 1, 0, -beta, 0, 1, -gamma, (1 - af) * w2, 0, 1 - am;
@@ -33,7 +34,8 @@ Complex generalized_alpha(double rho, Complex lambda, double h) {
 }  // namespace
 
 Complex amplification(std::string_view method, double rho_inf, Complex lambda, double h) {
-  if (method == "radau5" || method == "gauss4" || method == "gauss6") return time::stability_function(method, lambda * h);
+  if (method == "radau5" || method == "gauss4" || method == "gauss6")
+    return time::stability_function(method, lambda * h);
   if (method == "generalized_alpha") return generalized_alpha(rho_inf, lambda, h);
   return {nan, nan};
 }
@@ -42,12 +44,16 @@ double numerical_decay(std::string_view method, double rho_inf, Complex lambda, 
   return -std::log(std::abs(amplification(method, rho_inf, lambda, h))) / h + lambda.real();
 }
 
-void StepHistogram::look(const Snapshot& s) { spin_ = std::max(spin_, std::abs(s.node(reference_).spin())); }
+void StepHistogram::look(const Snapshot& s) {
+  spin_ = std::max(spin_, std::abs(s.node(reference_).spin()));
+}
 
 void StepHistogram::step(StepAccess& s) {
   const double h = s.t1() - s.t0();
-  const auto bin = static_cast<std::size_t>(std::clamp(std::log2(h / shortest) * per_octave, 0.0, static_cast<double>(time_.size() - 1)));
-  time_[bin] += h; seconds_ += h;
+  const auto bin = static_cast<std::size_t>(
+      std::clamp(std::log2(h / shortest) * per_octave, 0.0, static_cast<double>(time_.size() - 1)));
+  time_[bin] += h;
+  seconds_ += h;
   look(s.end());
 }
 
@@ -56,16 +62,23 @@ double StepHistogram::mean_decay(std::string_view method, double rho_inf, Comple
   for (std::size_t k = 0; k < time_.size() && counted < 0.5 * seconds_; ++k) {
     const double part = std::min(time_[k], 0.5 * seconds_ - counted);
     if (!(part > 0.0)) continue;
-    sum += part * numerical_decay(method, rho_inf, lambda, shortest * std::exp2((static_cast<double>(k) + 0.5) / per_octave));
+    sum +=
+        part * numerical_decay(method, rho_inf, lambda,
+                               shortest * std::exp2((static_cast<double>(k) + 0.5) / per_octave));
     counted += part;
   }
   return counted > 0.0 ? sum / counted : 0.0;
 }
 
-void StepHistogram::save(OutArchive& out) const { out.put(spin_); out.put(seconds_); out.put(time_); }
+void StepHistogram::save(OutArchive& out) const {
+  out.put(spin_);
+  out.put(seconds_);
+  out.put(time_);
+}
 
 void StepHistogram::restore(InArchive& in) {
-  spin_ = in.number(); seconds_ = in.number();
+  spin_ = in.number();
+  seconds_ = in.number();
   time_ = in.numbers();
   time_.resize(per_octave * octaves);
 }

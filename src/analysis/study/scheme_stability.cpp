@@ -18,7 +18,9 @@ using MatXc = Eigen::MatrixXcd;
 /// The reduced rotor as the integrators see one.
 class Dense final : public time::Problem {
  public:
-  explicit Dense(const ReducedRotor& r) : r_(r), kinds_(static_cast<std::size_t>(r.M.rows()), time::Kind::displacement) {}
+  explicit Dense(const ReducedRotor& r)
+      : r_(r),
+        kinds_(static_cast<std::size_t>(r.M.rows()), time::Kind::displacement) {}
   Index size() const override { return r_.M.rows(); }
   std::span<const time::Kind> kinds() const override { return kinds_; }
   bool is_linear() const override { return true; }
@@ -38,14 +40,16 @@ class Dense final : public time::Problem {
     return true;
   }
   bool factor(Complex cm, Complex cc, Complex ck) override {
-    complex_.compute(cm * r_.M.cast<Complex>() + cc * r_.C.cast<Complex>() + ck * r_.K.cast<Complex>());
+    complex_.compute(cm * r_.M.cast<Complex>() + cc * r_.C.cast<Complex>() +
+                     ck * r_.K.cast<Complex>());
     return true;
   }
   void solve(time::Ref b) const override { b = real_.solve(b).eval(); }
   void solve(time::RefC b) const override { b = complex_.solve(b).eval(); }
   Power power(double, time::CRef q, time::CRef v, time::CRef, time::CRef) override {
     Power p;
-    p.kinetic = 0.5 * v.dot(r_.M * v); p.stored = p.kinetic + 0.5 * q.dot(r_.K * q);
+    p.kinetic = 0.5 * v.dot(r_.M * v);
+    p.stored = p.kinetic + 0.5 * q.dot(r_.K * q);
     return p;
   }
 
@@ -71,27 +75,30 @@ std::vector<Complex> eigenvalues_of(const MatX& M, const MatX& C, const MatX& K)
   return out;
 }
 
-/// (q, h v, h^2 b) -> the same a step later; b is the algorithmic acceleration (J. Chung, G. M. Hulbert 1993).
+/// (q, h v, h^2 b) -> the same a step later; b is the algorithmic acceleration (J. Chung, G. M.
+/// Hulbert 1993).
 MatX generalized_alpha_map(const ReducedRotor& r, double h, double rho) {
-  const double am = (2.0 * rho - 1.0) / (rho + 1.0), af = rho / (rho + 1.0), g = 0.5 - am + af, b = 0.25 * (g + 0.5) * (g + 0.5);
+  const double am = (2.0 * rho - 1.0) / (rho + 1.0), af = rho / (rho + 1.0), g = 0.5 - am + af,
+               b = 0.25 * (g + 0.5) * (g + 0.5);
   const Index n = r.M.rows();
   const MatX C = h * r.C, K = (h * h) * r.K;
   const MatX left = (1.0 - am) * r.M + (1.0 - af) * (g * C + b * K);
   // b1 = Q q0 + V h v0 + B h^2 b0
   const Eigen::PartialPivLU<MatX> lu(left);
-  const MatX Q = -lu.solve(K), V = -lu.solve(C + (1.0 - af) * K), B = -lu.solve(am * r.M + (1.0 - af) * ((1.0 - g) * C + (0.5 - b) * K));
+  const MatX Q = -lu.solve(K), V = -lu.solve(C + (1.0 - af) * K),
+             B = -lu.solve(am * r.M + (1.0 - af) * ((1.0 - g) * C + (0.5 - b) * K));
   MatX A = MatX::Zero(3 * n, 3 * n);
   const MatX I = MatX::Identity(n, n);
-  A << I + b * Q, I + b * V, (0.5 - b) * I + b * B,
-       g * Q, I + g * V, (1.0 - g) * I + g * B,
-       Q, V, B;
+  A << I + b * Q, I + b * V, (0.5 - b) * I + b * B, g * Q, I + g * V, (1.0 - g) * I + g * B, Q, V,
+      B;
   return A;
 }
 
 }  // namespace
 
 ReducedRotor ReducedRotor::conservative() const {
-  ReducedRotor r{0.5 * (M + M.transpose()), 0.5 * (C - C.transpose()), 0.5 * (K + K.transpose()), {}};
+  ReducedRotor r{
+      0.5 * (M + M.transpose()), 0.5 * (C - C.transpose()), 0.5 * (K + K.transpose()), {}};
   r.lambda = eigenvalues_of(r.M, r.C, r.K);
   return r;
 }
@@ -99,12 +106,16 @@ ReducedRotor ReducedRotor::conservative() const {
 ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count) {
   ModesOptions options;
   const auto active = linear.active();
-  options.count = std::min<Index>(count + 6, std::count(active.begin(), active.end(), 1));   // rigid motions are left out afterwards
+  options.count = std::min<Index>(
+      count + 6,
+      std::count(active.begin(), active.end(), 1));  // rigid motions are left out afterwards
   const std::vector<WhirlMode> modes = whirl_modes(linear, Omega, options);
   const la::MCK& m = linear.at(Omega);
   double largest = 0.0;
-  for (const WhirlMode& x : modes) largest = std::max(largest, x.frequency);
-  // a basis that is orthonormal in the absolute diagonal of M, so that shapes of very different size keep their digits
+  for (const WhirlMode& x : modes)
+    largest = std::max(largest, x.frequency);
+  // a basis that is orthonormal in the absolute diagonal of M, so that shapes of very different
+  // size keep their digits
   const Index n = linear.system().size();
   MatX V(n, 2 * static_cast<Index>(modes.size()));
   Index columns = 0, taken = 0;
@@ -116,7 +127,8 @@ ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count) {
       VecX s = imaginary ? VecX(x.x.imag()) : VecX(x.x.real());
       const double before = s.norm();
       for (int pass = 0; pass < 2; ++pass)
-        for (Index k = 0; k < columns; ++k) s -= V.col(k).dot(s) * V.col(k);
+        for (Index k = 0; k < columns; ++k)
+          s -= V.col(k).dot(s) * V.col(k);
       if (!(s.norm() > 1e-8 * before) || !(before > 0.0)) continue;
       V.col(columns++) = s.normalized();
     }
@@ -125,9 +137,13 @@ ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count) {
     // a single body: all of its unknowns but the spin
     V.resize(n, options.count);
     for (Index k = 0; k < n; ++k)
-      if (active[static_cast<std::size_t>(k)] && k % 6 != system::spin_phi && columns < options.count) V.col(columns++) = VecX::Unit(n, k);
+      if (active[static_cast<std::size_t>(k)] && k % 6 != system::spin_phi &&
+          columns < options.count)
+        V.col(columns++) = VecX::Unit(n, k);
   }
-  if (columns == 0) throw run_error("E95", "the rotor has no mode that oscillates", "a stability study needs elastic supports or shafts");
+  if (columns == 0)
+    throw run_error("E95", "the rotor has no mode that oscillates",
+                    "a stability study needs elastic supports or shafts");
   V.conservativeResize(n, columns);
   const auto project = [&](const la::BlockMatrix<6>& x) {
     MatX y = MatX::Zero(n, columns);
@@ -143,16 +159,22 @@ ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count) {
   return r;
 }
 
-double spectral_radius(const ReducedRotor& rotor, std::string_view method, double h, double rho_inf) {
+double spectral_radius(const ReducedRotor& rotor, std::string_view method, double h,
+                       double rho_inf) {
   if (method == "generalized_alpha")
-    return Eigen::EigenSolver<MatX>(generalized_alpha_map(rotor, h, rho_inf), false).eigenvalues().cwiseAbs().maxCoeff();
+    return Eigen::EigenSolver<MatX>(generalized_alpha_map(rotor, h, rho_inf), false)
+        .eigenvalues()
+        .cwiseAbs()
+        .maxCoeff();
   double radius = 0.0;
   for (const Complex& l : rotor.lambda)
-    radius = std::max(radius, method == "ida" ? time::bdf2_radius(h * l) : std::abs(time::stability_function(method, h * l)));
+    radius = std::max(radius, method == "ida" ? time::bdf2_radius(h * l)
+                                              : std::abs(time::stability_function(method, h * l)));
   return radius;
 }
 
-double energy_ratio(const ReducedRotor& rotor, std::string_view method, double h, long steps, double rho_inf) {
+double energy_ratio(const ReducedRotor& rotor, std::string_view method, double h, long steps,
+                    double rho_inf) {
   Dense problem(rotor);
   time::Options o;
   o.dt_fixed = h;
@@ -163,9 +185,12 @@ double energy_ratio(const ReducedRotor& rotor, std::string_view method, double h
   VecX q = VecX::Zero(rotor.M.rows());
   const double stiffest = shapes.eigenvalues().maxCoeff();
   for (Index k = 0; k < q.size(); ++k)
-    if (shapes.eigenvalues()[k] > 1e-14 * stiffest) q += shapes.eigenvectors().col(k) / std::sqrt(shapes.eigenvalues()[k]);
+    if (shapes.eigenvalues()[k] > 1e-14 * stiffest)
+      q += shapes.eigenvectors().col(k) / std::sqrt(shapes.eigenvalues()[k]);
   integrator->start(0.0, q, VecX::Zero(q.size()));
-  const auto energy = [&] { return problem.power(0.0, integrator->q(), integrator->v(), integrator->a(), q).stored; };
+  const auto energy = [&] {
+    return problem.power(0.0, integrator->q(), integrator->v(), integrator->a(), q).stored;
+  };
   const double before = energy();
   for (long k = 0; k < steps; ++k)
     if (!integrator->advance().ok() || !std::isfinite(integrator->q().sum())) return infinity;

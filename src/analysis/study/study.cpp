@@ -11,8 +11,10 @@
 namespace whirl::analysis {
 
 std::string StudyCase::label() const {
-  if (method.empty()) return mesh_factor == 1 ? "the deck's mesh" : fmt::format("{} times the elements", mesh_factor);
-  std::string s = tolerance > 0 ? fmt::format("{} tol {:.0e}", method, tolerance) : fmt::format("{} dt {:.3g} s", method, dt);
+  if (method.empty())
+    return mesh_factor == 1 ? "the deck's mesh" : fmt::format("{} times the elements", mesh_factor);
+  std::string s = tolerance > 0 ? fmt::format("{} tol {:.0e}", method, tolerance)
+                                : fmt::format("{} dt {:.3g} s", method, dt);
   if (mesh_factor != 1) s += fmt::format(" mesh x{}", mesh_factor);
   return s;
 }
@@ -20,7 +22,8 @@ std::string StudyCase::label() const {
 double StudySample::worst() const {
   double w = 0.0;
   for (std::size_t i = 0; i < errors.size(); ++i)
-    if (i >= counted.size() || counted[i]) w = std::isfinite(errors[i]) ? std::max(w, errors[i]) : infinity;
+    if (i >= counted.size() || counted[i])
+      w = std::isfinite(errors[i]) ? std::max(w, errors[i]) : infinity;
   return errors.empty() ? infinity : w;
 }
 
@@ -30,12 +33,13 @@ std::vector<double> errors_of(const std::vector<Quantity>& x, const std::vector<
   std::vector<double> out;
   for (std::size_t i = 0; i < ref.size(); ++i) {
     if (i >= x.size() || x[i].values.size() != ref[i].values.size()) {
-      out.push_back(infinity);   // the run ended early
+      out.push_back(infinity);  // the run ended early
       continue;
     }
     double scale = ref[i].scale, error = 0.0;
     if (scale <= 0.0)
-      for (double v : ref[i].values) scale = std::max(scale, std::abs(v));
+      for (double v : ref[i].values)
+        scale = std::max(scale, std::abs(v));
     for (std::size_t k = 0; k < ref[i].values.size(); ++k) {
       const double d = std::abs(x[i].values[k] - ref[i].values[k]);
       error = std::isfinite(d) ? std::max(error, d) : infinity;
@@ -50,13 +54,15 @@ StudySample timed(const StudyRunner& run, const StudyCase& c, int repeats) {
   best.setting = c;
   // short runs: the fastest of a few, since the first pays for caches and page faults
   for (int k = 1; k < repeats && best.ok && best.seconds < 0.2; ++k)
-    if (StudySample again = run(c); again.ok && again.seconds < best.seconds) best.seconds = again.seconds;
+    if (StudySample again = run(c); again.ok && again.seconds < best.seconds)
+      best.seconds = again.seconds;
   return best;
 }
 
 }  // namespace
 
-StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const std::vector<Quantity>* exact) {
+StudyResult run_study(const StudyRunner& run, const StudyOptions& options,
+                      const std::vector<Quantity>* exact) {
   StudyResult result;
   if (exact) {
     result.reference.quantities = *exact;
@@ -67,30 +73,37 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
       throw run_error("R20", "the reference run of the study failed: " + result.reference.note,
                       "the deck does not run at " + options.reference.label());
     const StudySample check = timed(run, options.cross_check, 1);
-    result.uncertainty = check.ok ? errors_of(check.quantities, result.reference.quantities)
-                                  : std::vector<double>(result.reference.quantities.size(), infinity);
+    result.uncertainty = check.ok
+                             ? errors_of(check.quantities, result.reference.quantities)
+                             : std::vector<double>(result.reference.quantities.size(), infinity);
   }
-  for (const Quantity& q : result.reference.quantities) result.quantities.push_back(q.name);
+  for (const Quantity& q : result.reference.quantities)
+    result.quantities.push_back(q.name);
 
   for (const StudyCase& c : options.ladder) {
     StudySample s = timed(run, c, options.repeats);
     if (s.ok) s.errors = errors_of(s.quantities, result.reference.quantities);
     for (std::size_t i = 0; i < result.uncertainty.size(); ++i)
-      s.counted.push_back(result.uncertainty[i] <= resolved && result.reference.quantities[i].counts);
+      s.counted.push_back(result.uncertainty[i] <= resolved &&
+                          result.reference.quantities[i].counts);
     if (options.progress) options.progress(s);
     result.samples.push_back(std::move(s));
   }
 
-  // Slope of log(worst error) against log(step) by least squares over equal steps from the coarsest on, as long as the slope
-  // holds: finer ones stand on another error (the mesh, motion too fast for any of these steps, the reference itself).
+  // Slope of log(worst error) against log(step) by least squares over equal steps from the coarsest
+  // on, as long as the slope holds: finer ones stand on another error (the mesh, motion too fast
+  // for any of these steps, the reference itself).
   double floor = 1e-13;
   for (std::size_t i = 0; i < result.uncertainty.size(); ++i)
-    if (const double u = result.uncertainty[i]; u <= resolved && result.reference.quantities[i].counts) floor = std::max(floor, 3.0 * u);
-  std::map<std::string, std::vector<std::pair<double, double>>> points;   // -log(steps), log(error)
+    if (const double u = result.uncertainty[i];
+        u <= resolved && result.reference.quantities[i].counts)
+      floor = std::max(floor, 3.0 * u);
+  std::map<std::string, std::vector<std::pair<double, double>>> points;  // -log(steps), log(error)
   for (const StudySample& s : result.samples) {
-    if (s.setting.tolerance > 0) continue;   // the steps of adaptive runs are not proportional
+    if (s.setting.tolerance > 0) continue;  // the steps of adaptive runs are not proportional
     if (!s.ok || !(s.worst() > floor) || !(s.worst() < 0.3) || s.steps <= 0) continue;
-    points[s.setting.method].emplace_back(-std::log(static_cast<double>(s.steps)), std::log(s.worst()));
+    points[s.setting.method].emplace_back(-std::log(static_cast<double>(s.steps)),
+                                          std::log(s.worst()));
   }
   for (auto& [name, p] : points) {
     std::sort(p.rbegin(), p.rend());
@@ -98,14 +111,18 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
     for (std::size_t i = 0; i < p.size(); ++i) {
       if (i > 0) {
         const double slope = (p[i - 1].second - p[i].second) / (p[i - 1].first - p[i].first);
-        if (slope > 8.0) {   // no scheme has it: the coarser step was too long to be anything
+        if (slope > 8.0) {  // no scheme has it: the coarser step was too long to be anything
           n = x = y = xx = xy = steepest = 0;
         } else {
           if (!(slope > std::max(1.0, 0.6 * steepest))) break;
           steepest = std::max(steepest, slope);
         }
       }
-      n += 1; x += p[i].first; y += p[i].second; xx += p[i].first * p[i].first; xy += p[i].first * p[i].second;
+      n += 1;
+      x += p[i].first;
+      y += p[i].second;
+      xx += p[i].first * p[i].first;
+      xy += p[i].first * p[i].second;
     }
     const double d = n * xx - x * x;
     result.orders.push_back({name, n >= 2 && d > 1e-12 ? (n * xy - x * y) / d : 0.0});
@@ -114,19 +131,23 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options, const
   for (std::size_t i = 0; i < result.samples.size(); ++i) {
     const StudySample& a = result.samples[i];
     if (!a.ok) continue;
-    const bool beaten = std::any_of(result.samples.begin(), result.samples.end(), [&](const StudySample& b) {
-      return b.ok && &a != &b && b.worst() <= a.worst() && b.seconds <= a.seconds && (b.worst() < a.worst() || b.seconds < a.seconds);
-    });
+    const bool beaten =
+        std::any_of(result.samples.begin(), result.samples.end(), [&](const StudySample& b) {
+          return b.ok && &a != &b && b.worst() <= a.worst() && b.seconds <= a.seconds &&
+                 (b.worst() < a.worst() || b.seconds < a.seconds);
+        });
     if (!beaten) result.pareto.push_back(i);
   }
-  std::sort(result.pareto.begin(), result.pareto.end(),
-            [&](std::size_t a, std::size_t b) { return result.samples[a].seconds < result.samples[b].seconds; });
+  std::sort(result.pareto.begin(), result.pareto.end(), [&](std::size_t a, std::size_t b) {
+    return result.samples[a].seconds < result.samples[b].seconds;
+  });
   for (double target : options.targets) {
     StudyResult::Advice advice{target, 0, false};
     for (std::size_t i : result.pareto)
       if (result.samples[i].worst() <= target) {
-        advice.sample = i; advice.found = true;
-        break;   // pareto is sorted by time
+        advice.sample = i;
+        advice.found = true;
+        break;  // pareto is sorted by time
       }
     result.advice.push_back(advice);
   }

@@ -8,13 +8,15 @@
 namespace whirl::analysis {
 
 namespace {
-// quarters, and the stages of Radau IIA 5, Gauss 4 and Gauss 6: a force that acts at a stage is seen there
-constexpr double looks[] = {0.1127016653792583, 0.1550510257216822, 0.2113248654051871, 0.25, 0.5, 0.6449489742783178, 0.7886751345948129, 0.8872983346207417, 1.0};
-constexpr double at_start = 1e-6;   ///< of a step: what passes there passed at its start
-}
+// quarters, and the stages of Radau IIA 5, Gauss 4 and Gauss 6: a force that acts at a stage is
+// seen there
+constexpr double looks[] = {0.1127016653792583, 0.1550510257216822, 0.2113248654051871, 0.25, 0.5,
+                            0.6449489742783178, 0.7886751345948129, 0.8872983346207417, 1.0};
+constexpr double at_start = 1e-6;  ///< of a step: what passes there passed at its start
+}  // namespace
 
 bool Corners::moved(StepAccess& step, double t) {
-  step.at(t);   // evaluates the nodes
+  step.at(t);  // evaluates the nodes
   problem_.system().list_regions(problem_.workspace(), now_);
   return now_ != start_;
 }

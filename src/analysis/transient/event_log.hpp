@@ -1,4 +1,5 @@
-// Events of a run: sign changes of a function of the state, located on the dense output, written down as they happen.
+// Events of a run: sign changes of a function of the state, located on the dense output, written
+// down as they happen.
 #pragma once
 #include <analysis/transient/observer.hpp>
 #include <functional>
@@ -11,12 +12,19 @@ class EventLog final : public Observer {
  public:
   struct Watch {
     std::string name;
-    std::function<double(const Snapshot&)> g;   ///< happens where g passes zero
-    int direction = 0;                          ///< +1 rising, -1 falling, 0 both
+    std::function<double(const Snapshot&)> g;  ///< happens where g passes zero
+    int direction = 0;                         ///< +1 rising, -1 falling, 0 both
   };
-  struct Happened { std::size_t watch; double t, speed; bool rising; };
+  struct Happened {
+    std::size_t watch;
+    double t, speed;
+    bool rising;
+  };
 
-  EventLog(std::vector<Watch> watches, Index reference) : watches_(std::move(watches)), reference_(reference), last_(watches_.size()) {}
+  EventLog(std::vector<Watch> watches, Index reference)
+      : watches_(std::move(watches)),
+        reference_(reference),
+        last_(watches_.size()) {}
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
   void save(OutArchive& out) const override;

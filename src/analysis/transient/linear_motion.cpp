@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Largest difference of the lateral entries of two matrices, relative to the diagonals they stand between.
+/// Largest difference of the lateral entries of two matrices, relative to the diagonals they stand
+/// between.
 double difference(const la::BlockMatrix<6>& x, const la::BlockMatrix<6>& y, const VecX& diagonal) {
   const la::BlockPattern& p = x.pattern();
   double worst = 0.0;
@@ -23,7 +24,8 @@ double difference(const la::BlockMatrix<6>& x, const la::BlockMatrix<6>& y, cons
         for (int b = 0; b < 6; ++b) {
           if (a == system::spin_phi || b == system::spin_phi) continue;
           const double size = std::sqrt(diagonal[6 * i + a] * diagonal[6 * j + b]);
-          if (size > 0.0) worst = std::max(worst, std::abs(x.block(s)(a, b) - y.block(s)(a, b)) / size);
+          if (size > 0.0)
+            worst = std::max(worst, std::abs(x.block(s)(a, b) - y.block(s)(a, b)) / size);
         }
     }
   return worst;
@@ -32,17 +34,23 @@ double difference(const la::BlockMatrix<6>& x, const la::BlockMatrix<6>& y, cons
 VecX diagonal_of(const la::BlockMatrix<6>& x) {
   const la::BlockPattern& p = x.pattern();
   VecX d = VecX::Zero(6 * p.size());
-  for (Index i = 0; i < p.size(); ++i) d.segment<6>(6 * i) = x.block(p.slot(i, i)).diagonal().cwiseAbs();
+  for (Index i = 0; i < p.size(); ++i)
+    d.segment<6>(6 * i) = x.block(p.slot(i, i)).diagonal().cwiseAbs();
   return d;
 }
 
-/// An unbalance moves the mass of a station by a share of 1e-6 or so; a key way or a second moment of area shows more.
+/// An unbalance moves the mass of a station by a share of 1e-6 or so; a key way or a second moment
+/// of area shows more.
 constexpr double turning_share = 1e-3;
 
 }  // namespace
 
-LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& running, double Omega, const system::State& start, EquilibriumOptions options)
-    : SystemProblem(system, {la::SolverKind::automatic, false, 2.0}), q_(system.size()), v_(system.size()), a_(VecX::Zero(system.size())),
+LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& running,
+                           double Omega, const system::State& start, EquilibriumOptions options)
+    : SystemProblem(system, {la::SolverKind::automatic, false, 2.0}),
+      q_(system.size()),
+      v_(system.size()),
+      a_(VecX::Zero(system.size())),
       steady_(system.make_workspace()) {
   Linearizer linear(system, running, options);
   linear.start_from(start);
@@ -50,7 +58,8 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
   const system::State& e = linear.equilibrium().state;
   for (std::size_t l = 0; l < e.frames.chart.size(); ++l)
     if (!e.frames.chart[l].isApprox(start.frames.chart[l], 1e-12))
-      throw run_error("E39", "the rotor tilts too far for small motions", "leave linear out of the step");
+      throw run_error("E39", "the rotor tilts too far for small motions",
+                      "leave linear out of the step");
   if (linear.running().phase_dependent()) {
     la::MCK turned = system.make_matrices();
     const VecX K = diagonal_of(m.K), M = diagonal_of(m.M);
@@ -60,19 +69,24 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
       worst = std::max({worst, difference(turned.K, m.K, K), difference(turned.M, m.M, M)});
     }
     if (worst > turning_share)
-      throw run_error("E39", "the matrices turn with the rotor: its stiffness or inertia is not the same in all directions",
+      throw run_error("E39",
+                      "the matrices turn with the rotor: its stiffness or inertia is not the same "
+                      "in all directions",
                       "leave linear out of the step");
   }
   la::MCK& kept = kept_matrices();
-  for (auto [to, from] : {std::pair(&kept.M, &m.M), std::pair(&kept.C, &m.C), std::pair(&kept.K, &m.K)})
+  for (auto [to, from] :
+       {std::pair(&kept.M, &m.M), std::pair(&kept.C, &m.C), std::pair(&kept.K, &m.K)})
     std::copy_n(from->data(), from->value_count(), to->data());
 
-  q0_ = e.q; v0_ = e.v;
+  q0_ = e.q;
+  v0_ = e.v;
   const auto spinning = linear.running().spinning();
   turns_.assign(spinning.begin(), spinning.end());
   angle_ = VecX::Zero(system.lines());
   std::vector<unsigned char> seen(at(system.lines()), 0);
-  for (Index l = 0; l < system.lines(); ++l) rate_.push_back(Omega * linear.running().ratio(l));
+  for (Index l = 0; l < system.lines(); ++l)
+    rate_.push_back(Omega * linear.running().ratio(l));
   for (Index i = 0; i < system.nodes(); ++i) {
     const Index l = system.node(i).line;
     if (!turns_[at(i)] || seen[at(l)]) continue;
@@ -84,28 +98,41 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
 }
 
 void LinearMotion::find_changing(double t) {
-  // A term is constant when its force is the same at all angles of the rotor and all times: at the breakpoints of the laws there are, between
-  // them, and at times from microseconds to weeks. Small generic motions about the steady one show what cancels in it.
+  // A term is constant when its force is the same at all angles of the rotor and all times: at the
+  // breakpoints of the laws there are, between them, and at times from microseconds to weeks. Small
+  // generic motions about the steady one show what cancels in it.
   std::vector<double> times = system().breakpoints();
-  for (std::size_t k = times.size(); k-- > 1;) times.push_back(0.5 * (times[k] + times[k - 1]));
-  for (double x = 1e-6; x < 1e7; x *= 3.7) times.push_back(t + x);
+  for (std::size_t k = times.size(); k-- > 1;)
+    times.push_back(0.5 * (times[k] + times[k - 1]));
+  for (double x = 1e-6; x < 1e7; x *= 3.7)
+    times.push_back(t + x);
   std::mt19937 rng(7);
   std::normal_distribution<double> normal;
   VecX q = q0_, v = v0_, a(q0_.size());
-  for (Index k = 0; k < q.size(); ++k) { q[k] += 1e-6 * normal(rng); v[k] += 1e-4 * normal(rng); a[k] = normal(rng); }
+  for (Index k = 0; k < q.size(); ++k) {
+    q[k] += 1e-6 * normal(rng);
+    v[k] += 1e-4 * normal(rng);
+    a[k] = normal(rng);
+  }
   const auto& terms = system().terms();
   std::vector<std::vector<Vector<7>>> base(terms.size());
   std::vector<unsigned char> changes(terms.size(), 0);
   times.insert(times.begin(), t);
   VecX turned = q;
   for (std::size_t sample = 0; sample < times.size(); ++sample) {
-    const double theta = std::fmod(1.3 * static_cast<double>(sample), two_pi);   // small angles: rounding of their differences stays small
+    const double theta =
+        std::fmod(1.3 * static_cast<double>(sample),
+                  two_pi);  // small angles: rounding of their differences stays small
     for (Index i = 0; i < system().nodes(); ++i)
-      if (turns_[at(i)]) turned[6 * i + system::spin_phi] = q[6 * i + system::spin_phi] + theta * (rate_[at(system().node(i).line)] < 0 ? -1.0 : 1.0);
+      if (turns_[at(i)])
+        turned[6 * i + system::spin_phi] =
+            q[6 * i + system::spin_phi] +
+            theta * (rate_[at(system().node(i).line)] < 0 ? -1.0 : 1.0);
     if (!system().evaluate_nodes(steady_, frames, times[sample], turned, v, a)) continue;
     for (std::size_t k = 0; k < terms.size(); ++k) {
       if (changes[k]) continue;
-      for (auto& x : steady_.force) x.setZero();
+      for (auto& x : steady_.force)
+        x.setZero();
       terms[k]->add_force(steady_);
       if (sample == 0) {
         base[k] = steady_.force;
@@ -115,9 +142,11 @@ void LinearMotion::find_changing(double t) {
     }
   }
   std::vector<std::size_t> still;
-  for (std::size_t k = 0; k < terms.size(); ++k) (changes[k] ? changing_ : still).push_back(k);
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    (changes[k] ? changing_ : still).push_back(k);
   constant_ = VecX::Zero(system().size());
-  if (!system().residual(steady_, frames, t, q0_, v0_, a_, constant_, &still)) {   // leave it to residual() to say so
+  if (!system().residual(steady_, frames, t, q0_, v0_, a_, constant_,
+                         &still)) {  // leave it to residual() to say so
     changing_.insert(changing_.end(), still.begin(), still.end());
     constant_.setZero();
   }
@@ -126,8 +155,10 @@ void LinearMotion::find_changing(double t) {
 double LinearMotion::power_beside(time::CRef v, time::CRef residual) {
   // the general residual at the node states of the last evaluation
   system::Workspace& w = workspace();
-  for (auto& x : w.force) x.setZero();
-  for (const auto& term : system().terms()) term->add_force(w);
+  for (auto& x : w.force)
+    x.setZero();
+  for (const auto& term : system().terms())
+    term->add_force(w);
   general_.resize(v.size());
   for (Index i = 0; i < system().nodes(); ++i) {
     const Vector<7>& f = w.force[at(i)];
@@ -152,7 +183,8 @@ time::Problem::Power LinearMotion::exchange_here(time::CRef v, time::CRef reacti
 }
 
 bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
-  q_ = q0_; v_ = v0_;
+  q_ = q0_;
+  v_ = v0_;
   for (Index i = 0; i < system().nodes(); ++i)
     if (turns_[at(i)]) {
       const Index l = system().node(i).line;
@@ -160,7 +192,8 @@ bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, 
     }
   if (!system().residual(steady_, frames, t, q_, v_, a_, r, &changing_)) return false;
   r += constant_;
-  q_ = q - q_; v_ = v - v_;
+  q_ = q - q_;
+  v_ = v - v_;
   const la::MCK& m = matrices();
   m.M.add_multiply(1.0, a, r);
   m.C.add_multiply(1.0, v_, r);

@@ -1,16 +1,18 @@
 // Small motions in time about a rotor that turns at constant speed in its static equilibrium:
 //   R(steady motion, t) + M (a - a0) + C (v - v0) + K (q - q0(t)) = 0
-// with the residual of the general model along the steady motion (unbalance, gravity, given forces as they act at t) and the
-// constant matrices of the Linearizer. Terms whose force does not change along the steady motion (the shaft, its damping, its
-// weight) are evaluated once. One linearisation serves the run, one factorisation each length of step, and Newton's
-// first iteration is exact. Held unknowns follow their laws. What is left out is of second order in the motion: with tilts of
-// 1e-3 the response is right to about 1e-6.
+// with the residual of the general model along the steady motion (unbalance, gravity, given forces
+// as they act at t) and the constant matrices of the Linearizer. Terms whose force does not change
+// along the steady motion (the shaft, its damping, its weight) are evaluated once. One
+// linearisation serves the run, one factorisation each length of step, and Newton's first iteration
+// is exact. Held unknowns follow their laws. What is left out is of second order in the motion:
+// with tilts of 1e-3 the response is right to about 1e-6.
 //
 // q is the whole state, not the deviation: whatever reads a SystemProblem reads this one.
 //
-// Energies are those of the general model at this state, so that they can be compared with those of a general run. The speed is kept
-// by assumption; the torque that keeps it is of second order and stands in none of the equations, but its work is of the order of the
-// energies themselves. The power of all that the general equations R_g have beside these, R,
+// Energies are those of the general model at this state, so that they can be compared with those of
+// a general run. The speed is kept by assumption; the torque that keeps it is of second order and
+// stands in none of the equations, but its work is of the order of the energies themselves. The
+// power of all that the general equations R_g have beside these, R,
 //   v . (R_g - R) = Omega (torque that keeps the speed) + third order,
 // counts as supplied: then the balance closes as exactly as these equations are integrated.
 #pragma once
@@ -22,9 +24,11 @@ namespace whirl::analysis {
 
 class LinearMotion final : public system::SystemProblem {
  public:
-  /// Omega: rad/s of the lines with ratio 1. start: state the run begins with; its angles say where the lines stand at start.t.
-  /// Errors: as Linearizer::at; E39 when the matrices turn with a rotor.
-  LinearMotion(const system::System& system, const SteadyRotation& running, double Omega, const system::State& start, EquilibriumOptions options = {});
+  /// Omega: rad/s of the lines with ratio 1. start: state the run begins with; its angles say where
+  /// the lines stand at start.t. Errors: as Linearizer::at; E39 when the matrices turn with a
+  /// rotor.
+  LinearMotion(const system::System& system, const SteadyRotation& running, double Omega,
+               const system::State& start, EquilibriumOptions options = {});
 
   bool is_linear() const override { return true; }
   bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
@@ -35,22 +39,34 @@ class LinearMotion final : public system::SystemProblem {
   bool power_needs_reactions() const override { return true; }
 
   /// The steady motion, for checkpoints.
-  void save(OutArchive& out) const { out.put(q0_); out.put(v0_); out.put(angle_); out.put(constant_); }
-  void restore(InArchive& in) { q0_ = in.vector(); v0_ = in.vector(); angle_ = in.vector(); constant_ = in.vector(); }
+  void save(OutArchive& out) const {
+    out.put(q0_);
+    out.put(v0_);
+    out.put(angle_);
+    out.put(constant_);
+  }
+  void restore(InArchive& in) {
+    q0_ = in.vector();
+    v0_ = in.vector();
+    angle_ = in.vector();
+    constant_ = in.vector();
+  }
 
  private:
   void find_changing(double t);
   /// W, of what keeps the motion to these equations; nan outside the range of an element.
   double power_beside(time::CRef v, time::CRef residual);
 
-  VecX q0_, v0_;       ///< equilibrium; steady rates
-  VecX angle_;         ///< per line: angle of the steady motion at t = 0 over that of q0_, rad, whole turns included
-  std::vector<double> rate_;            ///< per line, rad/s
-  std::vector<unsigned char> turns_;    ///< per node: its phi turns
-  VecX q_, v_, a_, general_;            // scratch
+  VecX q0_, v0_;  ///< equilibrium; steady rates
+  VecX angle_;    ///< per line: angle of the steady motion at t = 0 over that of q0_, rad, whole
+                  ///< turns included
+  std::vector<double> rate_;          ///< per line, rad/s
+  std::vector<unsigned char> turns_;  ///< per node: its phi turns
+  VecX q_, v_, a_, general_;          // scratch
   system::Workspace steady_;
-  std::vector<std::size_t> changing_;   ///< terms whose force changes along the steady motion; the others:
-  VecX constant_;                       ///< their residual
+  std::vector<std::size_t>
+      changing_;   ///< terms whose force changes along the steady motion; the others:
+  VecX constant_;  ///< their residual
 };
 
 }  // namespace whirl::analysis

@@ -1,4 +1,5 @@
-// What can be read off a moving system at an instant, as named, unit-carrying numbers: probes, spins, energies, reactions.
+// What can be read off a moving system at an instant, as named, unit-carrying numbers: probes,
+// spins, energies, reactions.
 #pragma once
 #include <system/problem.hpp>
 #include <functional>
@@ -7,10 +8,13 @@
 
 namespace whirl::analysis {
 
-/// The system at one instant, node states evaluated. Reactions and energy are computed when first asked for.
+/// The system at one instant, node states evaluated. Reactions and energy are computed when first
+/// asked for.
 class Snapshot {
  public:
-  explicit Snapshot(system::SystemProblem& problem) : problem_(problem), reactions_(problem.size()) {}
+  explicit Snapshot(system::SystemProblem& problem)
+      : problem_(problem),
+        reactions_(problem.size()) {}
   /// Points it at a state and evaluates the nodes.
   void set(double t, const VecX& q, const VecX& v, const VecX& a);
   double t() const { return t_; }
@@ -19,7 +23,9 @@ class Snapshot {
   const VecX& a() const { return *a_; }
   const system::System& system() const { return problem_.system(); }
   const system::Frames& frames() const { return problem_.frames; }
-  const system::NodeState& node(Index i) const { return problem_.workspace().nodes[static_cast<std::size_t>(i)]; }
+  const system::NodeState& node(Index i) const {
+    return problem_.workspace().nodes[static_cast<std::size_t>(i)];
+  }
   /// Time, gravity and load factor as elements see them.
   const system::Context& context() const { return problem_.workspace().context; }
   const Vec2 gamma(Index i) const { return q_->segment<2>(6 * i + 4); }
@@ -44,28 +50,33 @@ class Snapshot {
 /// One channel: a few numbers of one unit.
 struct Measurement {
   std::string name, unit, description;
-  std::vector<std::string> components;   ///< empty: scalar
-  double scale = 1.0;                    ///< written value = scale * SI value
-  std::function<void(const Snapshot&, double*)> evaluate;   ///< SI values
+  std::vector<std::string> components;                     ///< empty: scalar
+  double scale = 1.0;                                      ///< written value = scale * SI value
+  std::function<void(const Snapshot&, double*)> evaluate;  ///< SI values
   std::size_t width() const { return components.empty() ? 1 : components.size(); }
 };
 
 /// A point on a shaft: a node and the axial offset along its director, m.
-struct Point { Index node = 0; double offset = 0; };
-Vec3 displacement(const Snapshot& s, const Point& p);   ///< of the section's centre, global axes, m
+struct Point {
+  Index node = 0;
+  double offset = 0;
+};
+Vec3 displacement(const Snapshot& s, const Point& p);  ///< of the section's centre, global axes, m
 Vec3 velocity(const Snapshot& s, const Point& p);
-Vec3 acceleration(const Snapshot& s, const Point& p);   ///< gravity-free (true) acceleration
+Vec3 acceleration(const Snapshot& s, const Point& p);  ///< gravity-free (true) acceleration
 
-/// Displacement along directions in the lateral plane, angle from +y towards +z; empty angles: y and z.
+/// Displacement along directions in the lateral plane, angle from +y towards +z; empty angles: y
+/// and z.
 Measurement measure_displacement(std::string name, Point p, const std::vector<double>& angles = {});
 Measurement measure_velocity(std::string name, Point p);
 Measurement measure_acceleration(std::string name, Point p);
-Measurement measure_position(std::string name, Point p);             ///< x, y, z, m, global
-Measurement measure_spin(std::string name, Index node);              ///< s = omega . d, written in rpm
-Measurement measure_phi(std::string name, Index node);               ///< total axial angle, rad
-Measurement measure_phi_rate(std::string name, Index node);          ///< omega_phi = phi', rad/s
-Measurement measure_gamma(std::string name, Index node);             ///< gamma2, gamma3, rad
-Measurement measure_reaction(std::string name, std::vector<Index> unknowns, std::vector<std::string> components, std::string unit);
-Measurement measure_energy();                                        ///< kinetic, elastic, gravity, J
+Measurement measure_position(std::string name, Point p);     ///< x, y, z, m, global
+Measurement measure_spin(std::string name, Index node);      ///< s = omega . d, written in rpm
+Measurement measure_phi(std::string name, Index node);       ///< total axial angle, rad
+Measurement measure_phi_rate(std::string name, Index node);  ///< omega_phi = phi', rad/s
+Measurement measure_gamma(std::string name, Index node);     ///< gamma2, gamma3, rad
+Measurement measure_reaction(std::string name, std::vector<Index> unknowns,
+                             std::vector<std::string> components, std::string unit);
+Measurement measure_energy();  ///< kinetic, elastic, gravity, J
 
 }  // namespace whirl::analysis

@@ -5,10 +5,18 @@
 
 namespace whirl::analysis {
 
-Recorder::Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0, double t1, Gate gate)
-    : channels_(std::move(channels)), sink_(std::move(sink)), gate_(std::move(gate)), ticker_(t_begin, every), every_(every), t0_(t0), t1_(t1) {
+Recorder::Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every,
+                   double t0, double t1, Gate gate)
+    : channels_(std::move(channels)),
+      sink_(std::move(sink)),
+      gate_(std::move(gate)),
+      ticker_(t_begin, every),
+      every_(every),
+      t0_(t0),
+      t1_(t1) {
   std::size_t n = 1;
-  for (const Measurement& m : channels_) n += m.width();
+  for (const Measurement& m : channels_)
+    n += m.width();
   row_.resize(n);
 }
 
@@ -16,7 +24,10 @@ void Recorder::write(const Snapshot& s) {
   if (gate_ && !gate_(s)) return;
   row_[0] = s.t();
   double* out = row_.data() + 1;
-  for (const Measurement& m : channels_) { m.evaluate(s, out); out += m.width(); }
+  for (const Measurement& m : channels_) {
+    m.evaluate(s, out);
+    out += m.width();
+  }
   sink_(row_);
   ++rows_;
 }
@@ -33,7 +44,7 @@ void Recorder::step(StepAccess& s) {
   }
   // a tick within round-off of the step's end belongs to this step
   const double slack = 1e-12 * std::max(std::abs(s.t1()), every_);
-  if (s.t1() < t0_ || s.t0() > t1_) {   // outside the window nothing is evaluated
+  if (s.t1() < t0_ || s.t0() > t1_) {  // outside the window nothing is evaluated
     ticker_.pass(s.t1() + slack);
     return;
   }
@@ -43,16 +54,22 @@ void Recorder::step(StepAccess& s) {
 }
 
 void Recorder::save(OutArchive& out) const {
-  out.put_count(static_cast<std::uint64_t>(ticker_.count())); out.put_count(static_cast<std::uint64_t>(rows_));
+  out.put_count(static_cast<std::uint64_t>(ticker_.count()));
+  out.put_count(static_cast<std::uint64_t>(rows_));
 }
 
 void Recorder::restore(InArchive& in) {
-  ticker_.set_count(static_cast<long>(in.count())); rows_ = static_cast<long>(in.count());
+  ticker_.set_count(static_cast<long>(in.count()));
+  rows_ = static_cast<long>(in.count());
 }
 
-PeakTracker::PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from)
-    : points_(std::move(points)), reference_(reference), t_from_(t_from) {
-  for (const auto& p : points_) peaks_.push_back({p.first, 0.0, 0.0, 0.0});
+PeakTracker::PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference,
+                         double t_from)
+    : points_(std::move(points)),
+      reference_(reference),
+      t_from_(t_from) {
+  for (const auto& p : points_)
+    peaks_.push_back({p.first, 0.0, 0.0, 0.0});
 }
 
 void PeakTracker::begin(const Snapshot& s) {
@@ -66,7 +83,8 @@ namespace {
 
 /// Weights of the polynomial through n + 1 equally spaced values at x in [0, n] (barycentric form:
 /// J.-P. Berrut and L. N. Trefethen, SIAM Review 46, 2004).
-template <std::size_t N> std::array<double, N> lagrange(double x) {
+template <std::size_t N>
+std::array<double, N> lagrange(double x) {
   static const auto signed_binomials = [] {
     std::array<double, N> w{};
     double c = 1;
@@ -88,7 +106,8 @@ template <std::size_t N> std::array<double, N> lagrange(double x) {
     w[k] = signed_binomials[k] / d;
     sum += w[k];
   }
-  for (double& x_k : w) x_k /= sum;
+  for (double& x_k : w)
+    x_k /= sum;
   return w;
 }
 
@@ -107,7 +126,8 @@ void PeakTracker::look(StepAccess& s, int k) {
 void PeakTracker::step(StepAccess& s) {
   if (s.t1() < t_from_) return;
   // Four looks a step bracket a maximum; golden section finishes a new one.
-  for (int k = 2; k < looks; k += 2) look(s, k);
+  for (int k = 2; k < looks; k += 2)
+    look(s, k);
   bool complete = false;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     double best = 0.0, where = looks - 1;
@@ -128,7 +148,8 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
   const auto radius = [&](double x) {
     const std::array<double, looks> w = lagrange<looks>(x);
     Vec2 u = Vec2::Zero();
-    for (std::size_t k = 0; k < looks; ++k) u += w[k] * seen_[k][point];
+    for (std::size_t k = 0; k < looks; ++k)
+      u += w[k] * seen_[k][point];
     return u.norm();
   };
   Peak& peak = peaks_[point];
@@ -150,22 +171,37 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
       r2 = radius(x2);
     }
   }
-  if (r1 > best) { best = r1; where = x1; }
-  if (r2 > best) { best = r2; where = x2; }
+  if (r1 > best) {
+    best = r1;
+    where = x1;
+  }
+  if (r2 > best) {
+    best = r2;
+    where = x2;
+  }
   if (!(best > peak.amplitude)) return;
   const std::array<double, looks> w = lagrange<looks>(where);
   double spin = 0;
-  for (std::size_t k = 0; k < looks; ++k) spin += w[k] * spin_[k];
+  for (std::size_t k = 0; k < looks; ++k)
+    spin += w[k] * spin_[k];
   const double t = where == looks - 1 ? s.t1() : s.t0() + (s.t1() - s.t0()) * where / (looks - 1);
   peak = {points_[point].first, best, t, spin};
 }
 
 void PeakTracker::save(OutArchive& out) const {
-  for (const Peak& p : peaks_) { out.put(p.amplitude); out.put(p.time); out.put(p.speed); }
+  for (const Peak& p : peaks_) {
+    out.put(p.amplitude);
+    out.put(p.time);
+    out.put(p.speed);
+  }
 }
 
 void PeakTracker::restore(InArchive& in) {
-  for (Peak& p : peaks_) { p.amplitude = in.number(); p.time = in.number(); p.speed = in.number(); }
+  for (Peak& p : peaks_) {
+    p.amplitude = in.number();
+    p.time = in.number();
+    p.speed = in.number();
+  }
 }
 
 void EnergyBalance::begin(const Snapshot& s) {
@@ -177,7 +213,8 @@ void EnergyBalance::begin(const Snapshot& s) {
 }
 
 void EnergyBalance::step(StepAccess& s) {
-  // Powers at the Radau points of the step: the collocation polynomial is most accurate there, and the quadrature has order 5.
+  // Powers at the Radau points of the step: the collocation polynomial is most accurate there, and
+  // the quadrature has order 5.
   static const double r6 = std::sqrt(6.0);
   const double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
   const double b[3] = {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0};
@@ -207,26 +244,43 @@ void EnergyBalance::look(const time::Problem::Power& p) {
   largest_potential_ = std::max(largest_potential_, std::abs(p.stored - p.kinetic));
   const double kinetic = p.kinetic - kinetic0_;
   const double stored = p.stored - e0_;
-  for (const double x : {kinetic, stored - kinetic, stored, supplied_, dissipated_}) exchanged_ = std::max(exchanged_, std::abs(x));
+  for (const double x : {kinetic, stored - kinetic, stored, supplied_, dissipated_})
+    exchanged_ = std::max(exchanged_, std::abs(x));
   worst_ = std::max(worst_, std::abs(defect()));
 }
 
 void EnergyBalance::save(OutArchive& out) const {
-  for (double x : {e0_, kinetic0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_, largest_potential_, exchanged_, rounding_}) out.put(x);
+  for (double x : {e0_, kinetic0_, e1_, supplied_, dissipated_, worst_, largest_kinetic_,
+                   largest_potential_, exchanged_, rounding_})
+    out.put(x);
   out.put_count(known_ ? 1 : 0);
 }
 
 void EnergyBalance::restore(InArchive& in) {
-  for (double* x : {&e0_, &kinetic0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_, &largest_potential_, &exchanged_, &rounding_}) *x = in.number();
+  for (double* x : {&e0_, &kinetic0_, &e1_, &supplied_, &dissipated_, &worst_, &largest_kinetic_,
+                    &largest_potential_, &exchanged_, &rounding_})
+    *x = in.number();
   known_ = in.count() != 0;
 }
 
-void TiltWatch::save(OutArchive& out) const { out.put(tilt_); out.put(time_); out.put_count(static_cast<std::uint64_t>(node_)); }
-void TiltWatch::restore(InArchive& in) { tilt_ = in.number(); time_ = in.number(); node_ = static_cast<Index>(in.count()); }
+void TiltWatch::save(OutArchive& out) const {
+  out.put(tilt_);
+  out.put(time_);
+  out.put_count(static_cast<std::uint64_t>(node_));
+}
+void TiltWatch::restore(InArchive& in) {
+  tilt_ = in.number();
+  time_ = in.number();
+  node_ = static_cast<Index>(in.count());
+}
 
 void TiltWatch::look(const Snapshot& s) {
   for (Index i = 0; i < s.system().nodes(); ++i)
-    if (const double g = s.gamma(i).norm(); g > tilt_) { tilt_ = g; time_ = s.t(); node_ = i; }
+    if (const double g = s.gamma(i).norm(); g > tilt_) {
+      tilt_ = g;
+      time_ = s.t();
+      node_ = i;
+    }
 }
 
 }  // namespace whirl::analysis

@@ -1,5 +1,6 @@
-// Observers watch a transient step by step: time histories, frames, peaks, energy balance, checkpoints. The stepping loop
-// knows none of them; what a deck does not ask for is an observer that does not exist.
+// Observers watch a transient step by step: time histories, frames, peaks, energy balance,
+// checkpoints. The stepping loop knows none of them; what a deck does not ask for is an observer
+// that does not exist.
 #pragma once
 #include <analysis/transient/measurement.hpp>
 #include <core/archive.hpp>
@@ -12,8 +13,8 @@
 
 namespace whirl::analysis {
 
-/// The accepted step [t0, t1] with its dense output. at() evaluates a state inside it; the reference is good until the next
-/// call.
+/// The accepted step [t0, t1] with its dense output. at() evaluates a state inside it; the
+/// reference is good until the next call.
 class StepAccess {
  public:
   virtual ~StepAccess() = default;
@@ -30,7 +31,8 @@ class Observer {
   virtual void begin(const Snapshot& s) { (void)s; }
   virtual void step(StepAccess& s) = 0;
   virtual void end() {}
-  /// What it knows so far, for a checkpoint; restore() of an observer made alike instead of begin() continues bit for bit.
+  /// What it knows so far, for a checkpoint; restore() of an observer made alike instead of begin()
+  /// continues bit for bit.
   virtual void save(OutArchive& out) const { (void)out; }
   virtual void restore(InArchive& in) { (void)in; }
 };
@@ -45,7 +47,8 @@ class Ticker {
   void pass(double t) {
     const double turns = every_ > 0 ? std::floor((t - t0_) / every_) - 1 : 0;
     if (turns > static_cast<double>(k_) && turns < 9e18) k_ = static_cast<long>(turns);
-    while (next() <= t) advance();
+    while (next() <= t)
+      advance();
   }
   long count() const { return k_; }
   void set_count(long k) { k_ = k; }
@@ -58,13 +61,14 @@ class Ticker {
 /// Receives rows of measured values.
 using RowSink = std::function<void(const std::vector<double>&)>;
 
-/// Rows of measurements (time first) at fixed intervals, or at every accepted step (every = 0). Decimation by interval; window by
-/// [t0, t1]. Values are SI and unscaled.
+/// Rows of measurements (time first) at fixed intervals, or at every accepted step (every = 0).
+/// Decimation by interval; window by [t0, t1]. Values are SI and unscaled.
 class Recorder final : public Observer {
  public:
   /// gate: rows only where it says so (null: everywhere).
   using Gate = std::function<bool(const Snapshot&)>;
-  Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every, double t0 = -infinity, double t1 = infinity, Gate gate = {});
+  Recorder(std::vector<Measurement> channels, RowSink sink, double t_begin, double every,
+           double t0 = -infinity, double t1 = infinity, Gate gate = {});
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
   void save(OutArchive& out) const override;
@@ -83,16 +87,19 @@ class Recorder final : public Observer {
   std::vector<double> row_;
 };
 
-/// Largest lateral amplitude of a point, where on the speed axis it happened, refined inside steps by golden section.
+/// Largest lateral amplitude of a point, where on the speed axis it happened, refined inside steps
+/// by golden section.
 struct Peak {
   std::string name;
-  double amplitude = 0, time = 0, speed = 0;   ///< m, s, rad/s
+  double amplitude = 0, time = 0, speed = 0;  ///< m, s, rad/s
 };
 class PeakTracker final : public Observer {
  public:
-  /// reference: node whose spin is the speed axis. All points share the looks at the dense output of a step, four of them and nine where
-  /// one comes near its peak; between looks each point moves by the polynomial through them (a thousand points cost little more than one).
-  PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference, double t_from = -infinity);
+  /// reference: node whose spin is the speed axis. All points share the looks at the dense output
+  /// of a step, four of them and nine where one comes near its peak; between looks each point moves
+  /// by the polynomial through them (a thousand points cost little more than one).
+  PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference,
+              double t_from = -infinity);
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
   void save(OutArchive& out) const override;
@@ -100,7 +107,7 @@ class PeakTracker final : public Observer {
   const std::vector<Peak>& peaks() const { return peaks_; }
 
  private:
-  static constexpr int looks = 9;   ///< at k/8 of the step, k = 0 .. 8
+  static constexpr int looks = 9;  ///< at k/8 of the step, k = 0 .. 8
   void look(StepAccess& s, int k);
   void refine(StepAccess& s, std::size_t point, double best, double where);
 
@@ -108,12 +115,13 @@ class PeakTracker final : public Observer {
   std::vector<Peak> peaks_;
   Index reference_;
   double t_from_;
-  std::array<std::vector<Vec2>, looks> seen_;   ///< lateral displacements of all points
+  std::array<std::vector<Vec2>, looks> seen_;  ///< lateral displacements of all points
   std::array<double, looks> spin_{};
 };
 
-/// Work and energy: E(t) - E(0) = work supplied - energy dissipated; the defect is the run's own measure of accuracy.
-/// Where a law jumps, mass may come or go at an instant (blade loss): the energy it brings counts as supplied.
+/// Work and energy: E(t) - E(0) = work supplied - energy dissipated; the defect is the run's own
+/// measure of accuracy. Where a law jumps, mass may come or go at an instant (blade loss): the
+/// energy it brings counts as supplied.
 class EnergyBalance final : public Observer {
  public:
   /// jumps: times, increasing, at which laws jump and steps end.
@@ -129,26 +137,32 @@ class EnergyBalance final : public Observer {
   double defect() const { return e1_ - e0_ - supplied_ + dissipated_; }
   double worst_defect() const { return worst_; }
   double largest_kinetic() const { return largest_kinetic_; }
-  /// Energy that changed its place, J: the largest of what was supplied, what was dissipated, and how far the kinetic, the potential
-  /// and the stored energy departed from their starts. What a defect is measured by: in a conservative motion nothing but the
-  /// exchange between kinetic and potential energy. The defect itself is no part of it.
+  /// Energy that changed its place, J: the largest of what was supplied, what was dissipated, and
+  /// how far the kinetic, the potential and the stored energy departed from their starts. What a
+  /// defect is measured by: in a conservative motion nothing but the exchange between kinetic and
+  /// potential energy. The defect itself is no part of it.
   double exchanged() const { return exchanged_; }
-  /// Largest kinetic or potential energy, J: the measure of a motion that turns over nothing (a steady whirl without damping).
+  /// Largest kinetic or potential energy, J: the measure of a motion that turns over nothing (a
+  /// steady whirl without damping).
   double largest_energy() const { return std::max(largest_kinetic_, largest_potential_); }
-  /// False when the motion left the range in which the energies of its elements are defined (a film's clearance).
+  /// False when the motion left the range in which the energies of its elements are defined (a
+  /// film's clearance).
   bool known() const { return known_; }
-  /// What the defect may reach by rounding alone: twenty last digits of the stored energy, a sum over elements, a step.
+  /// What the defect may reach by rounding alone: twenty last digits of the stored energy, a sum
+  /// over elements, a step.
   double rounding() const { return rounding_; }
 
  private:
   std::vector<double> jumps_;
   void look(const time::Problem::Power& p);
   double rounding_ = 0;
-  double e0_ = 0, kinetic0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0, largest_kinetic_ = 0, largest_potential_ = 0, exchanged_ = 0;
+  double e0_ = 0, kinetic0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0,
+         largest_kinetic_ = 0, largest_potential_ = 0, exchanged_ = 0;
   bool known_ = true;
 };
 
-/// Largest tilt |gamma| of any node, where and when: how far the run was from the limit of the chart (pi).
+/// Largest tilt |gamma| of any node, where and when: how far the run was from the limit of the
+/// chart (pi).
 class TiltWatch final : public Observer {
  public:
   void begin(const Snapshot& s) override { look(s); }

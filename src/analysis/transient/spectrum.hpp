@@ -1,7 +1,9 @@
-// Spectra of a long motion, block by block: uniform samples of probes, Hann window, half overlap, complex FFT of y + iz.
+// Spectra of a long motion, block by block: uniform samples of probes, Hann window, half overlap,
+// complex FFT of y + iz.
 //
-// The two-sided spectrum of z = y + iz separates forward (positive frequencies) from backward whirl (negative ones): a motion
-// r exp(i w t) of radius r gives r at +w. Amplitudes are 0-peak, corrected for the window's mean (1/2).
+// The two-sided spectrum of z = y + iz separates forward (positive frequencies) from backward whirl
+// (negative ones): a motion r exp(i w t) of radius r gives r at +w. Amplitudes are 0-peak,
+// corrected for the window's mean (1/2).
 #pragma once
 #include <analysis/transient/observer.hpp>
 #include <functional>
@@ -14,22 +16,24 @@ namespace whirl::analysis {
 void fft(std::vector<Complex>& x);
 
 struct SpectrumOptions {
-  double max_frequency = 0;   ///< rad/s: highest one reported
-  int lines = 400;            ///< frequencies from 0 to the highest; a block lasts lines * 2 pi / max_frequency
+  double max_frequency = 0;  ///< rad/s: highest one reported
+  int lines =
+      400;  ///< frequencies from 0 to the highest; a block lasts lines * 2 pi / max_frequency
 };
 
 /// One block of one probe: amplitudes at frequencies k dw, k = -lines .. lines, 0-peak, m.
 struct SpectrumBlock {
-  double t = 0, speed = 0;                 ///< middle of the block; mean spin of the reference, rad/s
-  double resolution = 0;                   ///< dw, rad/s
-  std::vector<std::vector<double>> full;   ///< [probe][2 lines + 1]: |amplitude| of y + iz
-  std::vector<std::vector<double>> y, z;   ///< [probe][lines + 1]: one-sided, of the two directions
+  double t = 0, speed = 0;  ///< middle of the block; mean spin of the reference, rad/s
+  double resolution = 0;    ///< dw, rad/s
+  std::vector<std::vector<double>> full;  ///< [probe][2 lines + 1]: |amplitude| of y + iz
+  std::vector<std::vector<double>> y, z;  ///< [probe][lines + 1]: one-sided, of the two directions
 };
 
 class Spectra final : public Observer {
  public:
   using Sink = std::function<void(const SpectrumBlock&)>;
-  Spectra(std::vector<Point> probes, Index reference, double t_begin, SpectrumOptions options, Sink sink);
+  Spectra(std::vector<Point> probes, Index reference, double t_begin, SpectrumOptions options,
+          Sink sink);
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
   void save(OutArchive& out) const override;
@@ -44,12 +48,12 @@ class Spectra final : public Observer {
   Index reference_;
   SpectrumOptions options_;
   Sink sink_;
-  std::size_t length_;        ///< samples a block, a power of two
-  double interval_;           ///< s
+  std::size_t length_;  ///< samples a block, a power of two
+  double interval_;     ///< s
   Ticker ticker_;
   std::size_t filled_ = 0;
   std::vector<std::vector<double>> y_, z_;
-  std::vector<double> phi_;   ///< angle of the reference at the samples
+  std::vector<double> phi_;  ///< angle of the reference at the samples
   std::vector<double> window_;
   std::vector<Complex> work_;
   SpectrumBlock block_;

@@ -26,9 +26,9 @@ std::string_view to_string(StopReason r) {
 
 namespace {
 
-constexpr double least_wait = 0.5;     // seconds an interruption waits for the next mark in any case
-constexpr double longest_wait = 3.0;   // and at most
-constexpr double keep_every = 2.0;     // seconds at least between states that are kept
+constexpr double least_wait = 0.5;    // seconds an interruption waits for the next mark in any case
+constexpr double longest_wait = 3.0;  // and at most
+constexpr double keep_every = 2.0;    // seconds at least between states that are kept
 
 double cpu_seconds() {
   timespec t;
@@ -41,8 +41,17 @@ class Dense final : public StepAccess {
  public:
   /// look: called before every evaluation; throws to stop.
   Dense(system::SystemProblem& p, time::Integrator& i, std::function<void()> look)
-      : integrator_(i), look_(std::move(look)), snapshot_(p), q_(p.size()), v_(p.size()), a_(p.size()) {}
-  void set(double t0, double t1) { t0_ = t0; t1_ = t1; at_end_ = false; }
+      : integrator_(i),
+        look_(std::move(look)),
+        snapshot_(p),
+        q_(p.size()),
+        v_(p.size()),
+        a_(p.size()) {}
+  void set(double t0, double t1) {
+    t0_ = t0;
+    t1_ = t1;
+    at_end_ = false;
+  }
   double t0() const override { return t0_; }
   double t1() const override { return t1_; }
   const Snapshot& at(double t) override {
@@ -75,7 +84,8 @@ double crossing(Dense& step, F&& f, double f0) {
   constexpr int looks = 4;
   double a = step.t0(), fa = f0;
   for (int k = 1; k <= looks; ++k) {
-    const double b = k == looks ? step.t1() : step.t0() + (step.t1() - step.t0()) * k / looks, fb = f(step.at(b));
+    const double b = k == looks ? step.t1() : step.t0() + (step.t1() - step.t0()) * k / looks,
+                 fb = f(step.at(b));
     if ((fa < 0.0) != (fb < 0.0)) {
       double lo = a, hi = b;
       for (int i = 0; i < 60 && hi - lo > 1e-14 * std::abs(hi); ++i) {
@@ -84,7 +94,8 @@ double crossing(Dense& step, F&& f, double f0) {
       }
       return hi;
     }
-    a = b; fa = fb;
+    a = b;
+    fa = fb;
   }
   return -1.0;
 }
@@ -92,30 +103,40 @@ double crossing(Dense& step, F&& f, double f0) {
 std::string failure(const system::SystemProblem& problem, const time::StepReport& report) {
   std::string text = fmt::format("at t = {:.9g} s: {}", report.t0, time::message(report.status));
   if (problem.outside() >= 0)
-    text += fmt::format("; tilt of {} at the limit of its chart ({} rad of pi)", problem.system().node(problem.outside()).name,
-                        rotation::chart_limit);
-  else if (const std::string s = problem.singular_unknown(); report.status == time::StepStatus::singular && !s.empty())
+    text += fmt::format("; tilt of {} at the limit of its chart ({} rad of pi)",
+                        problem.system().node(problem.outside()).name, rotation::chart_limit);
+  else if (const std::string s = problem.singular_unknown();
+           report.status == time::StepStatus::singular && !s.empty())
     text += "; nothing determines " + s;
   return text;
 }
 
 }  // namespace
 
-TransientResult run_transient(system::SystemProblem& problem, const system::State& start, const TransientOptions& options,
-                              const std::vector<Observer*>& observers, const time::IntegratorState* resume) {
+TransientResult run_transient(system::SystemProblem& problem, const system::State& start,
+                              const TransientOptions& options,
+                              const std::vector<Observer*>& observers,
+                              const time::IntegratorState* resume) {
   TransientResult result;
   const double cpu0 = cpu_seconds();
   problem.frames = start.frames;
-  auto integrator = options.method == "momentum_rk" ? make_momentum_integrator(problem, options.integrator)
-                                                   : time::make_integrator(options.method, problem, options.integrator);
-  if (resume) integrator->restore(*resume);
-  else integrator->start(start.t, start.q, start.v);
+  auto integrator = options.method == "momentum_rk"
+                        ? make_momentum_integrator(problem, options.integrator)
+                        : time::make_integrator(options.method, problem, options.integrator);
+  if (resume)
+    integrator->restore(*resume);
+  else
+    integrator->start(start.t, start.q, start.v);
   // what the steps themselves call may not unwind: this loop looks for interruptions
   const interrupt::Shield shield;
   using Clock = std::chrono::steady_clock;
-  const auto seconds_since = [](Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); };
+  const auto seconds_since = [](Clock::time_point t) {
+    return std::chrono::duration<double>(Clock::now() - t).count();
+  };
   auto last_checkpoint = Clock::now(), last_mark = last_checkpoint, last_kept = last_checkpoint;
-  const auto interrupted = [&] { return options.interrupt && options.interrupt->load(std::memory_order_relaxed); };
+  const auto interrupted = [&] {
+    return options.interrupt && options.interrupt->load(std::memory_order_relaxed);
+  };
   // Seconds to the next mark, were the steps to it like those since the last one.
   const auto seconds_to_mark = [&] {
     const double between = static_cast<double>(std::max(options.steps_between_marks, 1L));
@@ -123,24 +144,29 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
     return seconds_since(last_mark) / std::max(made, 0.5) * (between - made);
   };
   Dense step(problem, *integrator, [&] {
-    if (interrupted() && seconds_since(last_mark) > least_wait && seconds_to_mark() > longest_wait) throw Interrupted();
+    if (interrupted() && seconds_since(last_mark) > least_wait && seconds_to_mark() > longest_wait)
+      throw Interrupted();
   });
 
   auto state_now = [&] {
-    return system::State{integrator->time(), integrator->q(), integrator->v(), integrator->a(), problem.frames};
+    return system::State{integrator->time(), integrator->q(), integrator->v(), integrator->a(),
+                         problem.frames};
   };
   step.set(integrator->time(), integrator->time());
-  for (Observer* o : resume ? options.new_observers : observers) o->begin(step.end());
+  for (Observer* o : resume ? options.new_observers : observers)
+    o->begin(step.end());
 
   std::vector<double> speed_before(options.speed_stops.size());
   for (std::size_t i = 0; i < speed_before.size(); ++i)
-    speed_before[i] = step.end().node(options.speed_stops[i].node).spin() - options.speed_stops[i].speed;
+    speed_before[i] =
+        step.end().node(options.speed_stops[i].node).spin() - options.speed_stops[i].speed;
 
   const double t_end = options.integrator.t_end;
   // equal steps are the user's own choice, and the momentum form knows no contacts
   Corners corners(problem);
   bool passed = false;
-  const bool land_on_corners = corners.any() && options.integrator.dt_fixed <= 0.0 && options.method != "momentum_rk";
+  const bool land_on_corners =
+      corners.any() && options.integrator.dt_fixed <= 0.0 && options.method != "momentum_rk";
 
   Progress progress{integrator->time(), t_end, 0, 0, 0, 0};
   bool stop = false, between_marks = false;
@@ -150,7 +176,10 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         result.reason = StopReason::interrupted;
         break;
       }
-      if (land_on_corners) { step.end(); corners.begin(); }
+      if (land_on_corners) {
+        step.end();
+        corners.begin();
+      }
       time::StepReport report = integrator->advance();
       if (!report.ok()) {
         result.reason = StopReason::failed;
@@ -160,8 +189,9 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
       step.set(report.t0, report.t1);
       bool corner = false;
       if (land_on_corners) {
-        // A step that straddles a corner is wrong before it too: made again to the passage, and if it still passes inside, ever
-        // shorter, until it is smooth. The next one then begins closer.
+        // A step that straddles a corner is wrong before it too: made again to the passage, and if
+        // it still passes inside, ever shorter, until it is smooth. The next one then begins
+        // closer.
         for (int again = 0; again < 60; ++again) {
           const double passage = corners.find(step);
           if (passage < 0.0) break;
@@ -180,7 +210,8 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
           step.set(report.t0, report.t1);
         }
         if (!report.ok()) {
-          result.reason = StopReason::failed; result.detail = failure(problem, report);
+          result.reason = StopReason::failed;
+          result.detail = failure(problem, report);
           break;
         }
       }
@@ -191,16 +222,20 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         auto f = [&](const Snapshot& x) { return x.node(s.node).spin() - s.speed; };
         const double t = crossing(step, f, speed_before[i]);
         if (t >= 0.0 && t < t_stop) {
-          t_stop = t; result.reason = StopReason::speed_reached;
+          t_stop = t;
+          result.reason = StopReason::speed_reached;
           result.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", s.speed * 30.0 / pi, t);
         }
         speed_before[i] = f(step.end());
       }
       for (const AmplitudeStop& s : options.amplitude_stops) {
-        auto f = [&](const Snapshot& x) { return displacement(x, s.point).tail<2>().norm() - s.limit; };
+        auto f = [&](const Snapshot& x) {
+          return displacement(x, s.point).tail<2>().norm() - s.limit;
+        };
         const double t = crossing(step, f, -1.0);
         if (t >= 0.0 && t < t_stop) {
-          t_stop = t; result.reason = StopReason::amplitude_limit;
+          t_stop = t;
+          result.reason = StopReason::amplitude_limit;
           result.detail = fmt::format("{} passes {:.4g} m at t = {:.9g} s", s.name, s.limit, t);
         }
       }
@@ -209,15 +244,18 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         if (t_stop < report.t1 && t_stop > report.t0) {
           report = integrator->shorten_to(t_stop);
           if (!report.ok()) {
-            result.reason = StopReason::failed; result.detail = failure(problem, report);
+            result.reason = StopReason::failed;
+            result.detail = failure(problem, report);
             break;
           }
           step.set(report.t0, report.t1);
         }
       }
 
-      for (Observer* o : observers) o->step(step);
-      // the state after a corner stands just before it: the matrices of the other side are taken a step later
+      for (Observer* o : observers)
+        o->step(step);
+      // the state after a corner stands just before it: the matrices of the other side are taken a
+      // step later
       if (passed) integrator->refresh();
       passed = corner;
       if (corner) {
@@ -226,12 +264,15 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         step.set(report.t1, report.t1);
       }
       if (options.progress) {
-        progress.t = report.t1; progress.dt = report.t1 - report.t0; ++progress.steps;
+        progress.t = report.t1;
+        progress.dt = report.t1 - report.t0;
+        ++progress.steps;
         progress.newton = integrator->statistics().newton_iterations;
         progress.spin = step.end().node(options.reference).spin();
         options.progress(progress);
       }
-      if (options.steps_between_marks > 0 && integrator->statistics().accepted % options.steps_between_marks == 0) {
+      if (options.steps_between_marks > 0 &&
+          integrator->statistics().accepted % options.steps_between_marks == 0) {
         const time::IntegratorState s = integrator->save();
         if (interrupted() && !stop && report.t1 < t_end) {
           result.reason = StopReason::interrupted;
@@ -259,7 +300,8 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
   }
   result.end = state_now();
   result.statistics = integrator->statistics();
-  for (Observer* o : observers) o->end();
+  for (Observer* o : observers)
+    o->end();
   result.seconds = cpu_seconds() - cpu0;
   return result;
 }

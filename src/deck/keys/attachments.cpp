@@ -9,17 +9,24 @@
 namespace whirl::deck {
 namespace {
 
-constexpr const char* place = "place on a shaft: \"section:mid\", \"section:end - 20 mm\", \"1.14 m\"";
+constexpr const char* place =
+    "place on a shaft: \"section:mid\", \"section:end - 20 mm\", \"1.14 m\"";
 
-/// Principal moments of a symmetric 3x3 tensor satisfy the triangle inequality when it belongs to a body.
+/// Principal moments of a symmetric 3x3 tensor satisfy the triangle inequality when it belongs to a
+/// body.
 bool physical(const Mat3& J) {
-  // trace/2 - J is the tensor of second moments of mass: positive semidefinite for a body (leading minors suffice with slack)
+  // trace/2 - J is the tensor of second moments of mass: positive semidefinite for a body (leading
+  // minors suffice with slack)
   const Mat3 P = 0.5 * J.trace() * Mat3::Identity() - J;
   const double slack = -1e-9 * std::max(J.trace(), 1e-300);
-  const double m2a = P(0, 0) * P(1, 1) - P(0, 1) * P(0, 1), m2b = P(0, 0) * P(2, 2) - P(0, 2) * P(0, 2), m2c = P(1, 1) * P(2, 2) - P(1, 2) * P(1, 2);
-  const double det = P(0, 0) * m2c - P(0, 1) * (P(0, 1) * P(2, 2) - P(1, 2) * P(0, 2)) + P(0, 2) * (P(0, 1) * P(1, 2) - P(1, 1) * P(0, 2));
+  const double m2a = P(0, 0) * P(1, 1) - P(0, 1) * P(0, 1),
+               m2b = P(0, 0) * P(2, 2) - P(0, 2) * P(0, 2),
+               m2c = P(1, 1) * P(2, 2) - P(1, 2) * P(1, 2);
+  const double det = P(0, 0) * m2c - P(0, 1) * (P(0, 1) * P(2, 2) - P(1, 2) * P(0, 2)) +
+                     P(0, 2) * (P(0, 1) * P(1, 2) - P(1, 1) * P(0, 2));
   const double t = std::max(J.trace(), 1e-300);
-  return P(0, 0) >= slack && P(1, 1) >= slack && P(2, 2) >= slack && m2a >= slack * t && m2b >= slack * t && m2c >= slack * t && det >= slack * t * t;
+  return P(0, 0) >= slack && P(1, 1) >= slack && P(2, 2) >= slack && m2a >= slack * t &&
+         m2b >= slack * t && m2c >= slack * t && det >= slack * t * t;
 }
 
 }  // namespace
@@ -27,59 +34,103 @@ bool physical(const Mat3& J) {
 void describe(Visitor& v, model::Disk& d) {
   v.name(d, "disk");
   v.location(required("at"), d.at, place);
-  const bool by_mass = v.quantity(optional("mass", "from the shape"), d.mass, "kg", not_negative, "mass");
-  const bool Ip = v.quantity(optional("Ip", "from the shape, or 0"), d.Ip, "kg.m^2", not_negative, "polar moment of inertia, about the shaft axis through the mass centre");
-  const bool Id = v.quantity(optional("Id", "from the shape, or Ip/2"), d.Id, "kg.m^2", not_negative, "diametral moment of inertia, about an axis across through the mass centre");
+  const bool by_mass =
+      v.quantity(optional("mass", "from the shape"), d.mass, "kg", not_negative, "mass");
+  const bool Ip =
+      v.quantity(optional("Ip", "from the shape, or 0"), d.Ip, "kg.m^2", not_negative,
+                 "polar moment of inertia, about the shaft axis through the mass centre");
+  const bool Id =
+      v.quantity(optional("Id", "from the shape, or Ip/2"), d.Id, "kg.m^2", not_negative,
+                 "diametral moment of inertia, about an axis across through the mass centre");
   std::vector<double> J;
-  const bool tensor = v.quantities(optional("inertia", "from Ip and Id"), J, "kg.m^2", any, 6,
-                                   "full tensor about the mass centre in body axes (x along the shaft): Jxx, Jyy, Jzz, Jxy, Jxz, Jyz; off-diagonal entries are those of the tensor");
+  const bool tensor =
+      v.quantities(optional("inertia", "from Ip and Id"), J, "kg.m^2", any, 6,
+                   "full tensor about the mass centre in body axes (x along the shaft): Jxx, Jyy, "
+                   "Jzz, Jxy, Jxz, Jyz; off-diagonal entries are those of the tensor");
   double od = 0, id = 0, width = 0;
   std::size_t material = 0;
-  const bool by_shape = v.quantity(optional("od", "mass is given"), od, "mm", positive, "outer diameter of a cylindrical disk");
+  const bool by_shape = v.quantity(optional("od", "mass is given"), od, "mm", positive,
+                                   "outer diameter of a cylindrical disk");
   v.quantity(optional("id", "solid"), id, "mm", not_negative, "bore");
-  const bool has_width = v.quantity(optional("width", "mass is given"), width, "mm", positive, "axial width of a cylindrical disk");
-  const bool has_material = v.material(optional("material", "mass is given"), material, "material of a cylindrical disk");
-  v.vector("offset", d.offset, "mm", "mass centre from the station in body axes (x along the shaft, y and z across): across it is an unbalance of mass times offset");
-  v.quantity("skew", d.skew, "deg", between(0, pi / 2), "tilt of the principal axis from the shaft axis");
-  v.quantity("skew_phase", d.skew_phase, "deg", any, "body angle towards which it is tilted, from y towards z");
-  v.table(optional("draw", "from the shape or the inertia"), [&](Visitor& w) {
-    w.quantity(required("od"), d.draw_od, "mm", positive, "outer diameter");
-    w.quantity(optional("id", "the shaft"), d.draw_id, "mm", not_negative, "inner diameter");
-    w.quantity(required("width"), d.draw_width, "mm", positive, "width");
-  }, "shape for pictures only");
+  const bool has_width = v.quantity(optional("width", "mass is given"), width, "mm", positive,
+                                    "axial width of a cylindrical disk");
+  const bool has_material =
+      v.material(optional("material", "mass is given"), material, "material of a cylindrical disk");
+  v.vector("offset", d.offset, "mm",
+           "mass centre from the station in body axes (x along the shaft, y and z across): across "
+           "it is an unbalance of mass times offset");
+  v.quantity("skew", d.skew, "deg", between(0, pi / 2),
+             "tilt of the principal axis from the shaft axis");
+  v.quantity("skew_phase", d.skew_phase, "deg", any,
+             "body angle towards which it is tilted, from y towards z");
+  v.table(
+      optional("draw", "from the shape or the inertia"),
+      [&](Visitor& w) {
+        w.quantity(required("od"), d.draw_od, "mm", positive, "outer diameter");
+        w.quantity(optional("id", "the shaft"), d.draw_id, "mm", not_negative, "inner diameter");
+        w.quantity(required("width"), d.draw_width, "mm", positive, "width");
+      },
+      "shape for pictures only");
   if (!v.clean()) return;
   if (by_mass && (by_shape || has_width || has_material)) {
-    v.error("E26", by_shape ? "od" : has_width ? "width" : "material", "the disk is given by mass and by shape", "keep mass, Ip, Id or od, id, width, material; a shape for pictures goes into draw = { ... }");
+    v.error("E26",
+            by_shape    ? "od"
+            : has_width ? "width"
+                        : "material",
+            "the disk is given by mass and by shape",
+            "keep mass, Ip, Id or od, id, width, material; a shape for pictures goes into draw = { "
+            "... }");
   } else if (!by_mass && !by_shape) {
-    v.error("E05", nullptr, fmt::format("disk '{}' has no mass", d.name), "give mass, Ip, Id, or od, width, material");
+    v.error("E05", nullptr, fmt::format("disk '{}' has no mass", d.name),
+            "give mass, Ip, Id, or od, width, material");
   } else if (by_shape && (Ip || Id || tensor)) {
-    v.error("E26", Ip ? "Ip" : Id ? "Id" : "inertia", "the inertia is given and the disk has a shape", "leave one of them out");
+    v.error("E26",
+            Ip   ? "Ip"
+            : Id ? "Id"
+                 : "inertia",
+            "the inertia is given and the disk has a shape", "leave one of them out");
   } else if (by_shape && (!has_width || !has_material)) {
-    v.error("E05", nullptr, fmt::format("disk '{}' lacks '{}'", d.name, has_width ? "material" : "width"), "a shape is od, width and material");
+    v.error("E05", nullptr,
+            fmt::format("disk '{}' lacks '{}'", d.name, has_width ? "material" : "width"),
+            "a shape is od, width and material");
   } else if (by_shape && id >= od) {
-    v.error("E23", "id", fmt::format("the bore of {} is not smaller than the outer diameter of {}", units::display(id, "mm"), units::display(od, "mm")), "these are diameters, not radii");
+    v.error("E23", "id",
+            fmt::format("the bore of {} is not smaller than the outer diameter of {}",
+                        units::display(id, "mm"), units::display(od, "mm")),
+            "these are diameters, not radii");
   } else if (tensor && (Ip || Id)) {
-    v.error("E26", "inertia", "the inertia is given by 'inertia' and by Ip or Id", "keep one of the two");
+    v.error("E26", "inertia", "the inertia is given by 'inertia' and by Ip or Id",
+            "keep one of the two");
   }
   if (!v.clean()) return;
   if (by_shape) {
     d.mass = v.model().materials[material].rho * pi / 4 * (od * od - id * id) * width;
     d.Ip = d.mass * (od * od + id * id) / 8;
     d.Id = d.Ip / 2 + d.mass * width * width / 12;
-    if (d.draw_od == 0) { d.draw_od = od; d.draw_id = id; d.draw_width = width; }
+    if (d.draw_od == 0) {
+      d.draw_od = od;
+      d.draw_id = id;
+      d.draw_width = width;
+    }
   } else if (tensor) {
     Mat3 m;
     m << J[0], J[3], J[4], J[3], J[1], J[5], J[4], J[5], J[2];
     d.inertia = m;
     d.Ip = J[0];
     d.Id = 0.5 * (J[1] + J[2]);
-    if (!physical(m)) v.error("E24", "inertia", "no body has this inertia tensor", "the sum of two principal moments is at least the third");
+    if (!physical(m))
+      v.error("E24", "inertia", "no body has this inertia tensor",
+              "the sum of two principal moments is at least the third");
   } else {
     if (!Id) d.Id = d.Ip / 2;
     // rounded inputs of a thin disk may miss equality by their last digit
     if (d.Id < 0.5 * d.Ip * (1 - 1e-6))
-      v.error("E24", "Id", fmt::format("no body has Id = {} with Ip = {}: Id is at least Ip/2", units::display(d.Id, "kg.m^2"), units::display(d.Ip, "kg.m^2")),
-              d.Ip > 0 && d.Id > 0 ? "equality holds for an infinitely thin disk; are Ip and Id interchanged?" : "");
+      v.error("E24", "Id",
+              fmt::format("no body has Id = {} with Ip = {}: Id is at least Ip/2",
+                          units::display(d.Id, "kg.m^2"), units::display(d.Ip, "kg.m^2")),
+              d.Ip > 0 && d.Id > 0
+                  ? "equality holds for an infinitely thin disk; are Ip and Id interchanged?"
+                  : "");
   }
 }
 
@@ -87,25 +138,43 @@ void describe(Visitor& v, model::Unbalance& u) {
   v.name(u, "unbalance");
   v.location(required("at"), u.at, place);
   model::Location to;
-  if (v.location(optional("to", "at one place"), to, "the amount is spread evenly from 'at' to here, on the same shaft")) u.to = to;
-  const bool amount = v.quantity(optional("amount", "from the grade"), u.amount, "g.mm", not_negative, "mass times eccentricity, in all");
+  if (v.location(optional("to", "at one place"), to,
+                 "the amount is spread evenly from 'at' to here, on the same shaft"))
+    u.to = to;
+  const bool amount = v.quantity(optional("amount", "from the grade"), u.amount, "g.mm",
+                                 not_negative, "mass times eccentricity, in all");
   std::string grade;
   double speed = 0, mass = 0;
-  const bool has_grade = v.text(optional("grade", "amount is given"), grade, "balance quality grade after ISO 21940-11, \"G2.5\": eccentricity times speed in mm/s at grade_speed");
-  const bool has_speed = v.quantity(optional("grade_speed", "amount is given"), speed, "rpm", positive, "service speed of the grade");
-  const bool has_mass = v.quantity(optional("grade_mass", "the whole shaft with its disks"), mass, "kg", positive, "mass the grade refers to");
+  const bool has_grade = v.text(optional("grade", "amount is given"), grade,
+                                "balance quality grade after ISO 21940-11, \"G2.5\": eccentricity "
+                                "times speed in mm/s at grade_speed");
+  const bool has_speed = v.quantity(optional("grade_speed", "amount is given"), speed, "rpm",
+                                    positive, "service speed of the grade");
+  const bool has_mass = v.quantity(optional("grade_mass", "the whole shaft with its disks"), mass,
+                                   "kg", positive, "mass the grade refers to");
   v.quantity("phase", u.phase, "deg", any, "body angle of the heavy spot, from y towards z");
-  describe_law(v, optional("factor", "1"), u.factor, "", "law of time that multiplies the amount (blade loss, growth)");
+  describe_law(v, optional("factor", "1"), u.factor, "",
+               "law of time that multiplies the amount (blade loss, growth)");
   if (!v.clean()) return;
-  if (amount && (has_grade || has_speed || has_mass)) v.error("E26", has_grade ? "grade" : has_speed ? "grade_speed" : "grade_mass", "the unbalance is given by amount and by grade", "keep one of the two");
-  else if (!amount && !has_grade) v.error("E05", nullptr, fmt::format("unbalance '{}' has no amount", u.name), "give amount = \"12 g.mm\", or grade = \"G2.5\" and grade_speed");
-  else if (has_grade && !has_speed) v.error("E05", "grade", "a grade needs 'grade_speed'");
+  if (amount && (has_grade || has_speed || has_mass))
+    v.error("E26",
+            has_grade   ? "grade"
+            : has_speed ? "grade_speed"
+                        : "grade_mass",
+            "the unbalance is given by amount and by grade", "keep one of the two");
+  else if (!amount && !has_grade)
+    v.error("E05", nullptr, fmt::format("unbalance '{}' has no amount", u.name),
+            "give amount = \"12 g.mm\", or grade = \"G2.5\" and grade_speed");
+  else if (has_grade && !has_speed)
+    v.error("E05", "grade", "a grade needs 'grade_speed'");
   if (!v.clean() || !has_grade) return;
   double g = 0;
   const std::string_view number = std::string_view(grade).substr(grade.empty() ? 0 : 1);
   const auto r = std::from_chars(number.data(), number.data() + number.size(), g);
-  if (grade.empty() || grade[0] != 'G' || r.ec != std::errc() || r.ptr != number.data() + number.size() || !(g > 0)) {
-    v.error("E10", "grade", fmt::format("\"{}\" is not a balance quality grade", grade), "write \"G2.5\"");
+  if (grade.empty() || grade[0] != 'G' || r.ec != std::errc() ||
+      r.ptr != number.data() + number.size() || !(g > 0)) {
+    v.error("E10", "grade", fmt::format("\"{}\" is not a balance quality grade", grade),
+            "write \"G2.5\"");
     return;
   }
   if (!has_mass) mass = model::mass(v.model(), u.at.shaft);
@@ -115,17 +184,22 @@ void describe(Visitor& v, model::Unbalance& u) {
 void describe(Visitor& v, model::PointLoad& l) {
   v.name(l, "load");
   v.location(required("at"), l.at, place);
-  v.choice("frame", l.frame, {{"fixed", "directions fixed in space"}, {"rotating", "directions turn with the shaft"}}, "axes of force and moment");
+  v.choice("frame", l.frame,
+           {{"fixed", "directions fixed in space"}, {"rotating", "directions turn with the shaft"}},
+           "axes of force and moment");
   v.vector("force", l.force, "N", "force along x, y, z");
   v.vector("moment", l.moment, "N.m", "moment about x, y, z");
-  describe_law(v, optional("factor", "1"), l.factor, "", "law of time that multiplies force and moment");
-  if (v.clean() && !v.given("force") && !v.given("moment")) v.error("E05", nullptr, fmt::format("load '{}' has neither 'force' nor 'moment'", l.name));
+  describe_law(v, optional("factor", "1"), l.factor, "",
+               "law of time that multiplies force and moment");
+  if (v.clean() && !v.given("force") && !v.given("moment"))
+    v.error("E05", nullptr, fmt::format("load '{}' has neither 'force' nor 'moment'", l.name));
 }
 
 void describe(Visitor& v, model::Probe& p) {
   v.name(p, "probe");
   v.location(required("at"), p.at, place);
-  v.quantities(optional("angles", "y and z"), p.angles, "deg", any, -1, "directions of the probe, from y towards z");
+  v.quantities(optional("angles", "y and z"), p.angles, "deg", any, -1,
+               "directions of the probe, from y towards z");
 }
 
 void describe(Visitor& v, model::InitialMotion& m) {
@@ -135,10 +209,14 @@ void describe(Visitor& v, model::InitialMotion& m) {
   std::vector<double> gamma{0, 0};
   v.quantities("tilt", gamma, "deg", any, 2, "transverse rotation (Euler vector) about y and z");
   v.vector("velocity", m.velocity, "m/s", "velocity of the point 'about'");
-  v.vector("angular_velocity", m.omega, "rad/s", "angular velocity about x, y, z in space, the spin included");
-  v.vector("about", m.about, "mm", "point that rotation and velocity refer to, in the undeformed position");
+  v.vector("angular_velocity", m.omega, "rad/s",
+           "angular velocity about x, y, z in space, the spin included");
+  v.vector("about", m.about, "mm",
+           "point that rotation and velocity refer to, in the undeformed position");
   m.gamma = Vec2(gamma[0], gamma[1]);
-  if (v.clean() && m.gamma.norm() >= pi) v.error("E14", "tilt", "the tilt must be less than 180 deg", "beyond it the same direction is reached the other way round");
+  if (v.clean() && m.gamma.norm() >= pi)
+    v.error("E14", "tilt", "the tilt must be less than 180 deg",
+            "beyond it the same direction is reached the other way round");
 }
 
 }  // namespace whirl::deck

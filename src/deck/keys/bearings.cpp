@@ -1,16 +1,21 @@
 // [[bearing]]: whatever connects a shaft with the ground or another shaft.
 //
 // To add a kind:
-//   1. its parameters as a plain struct in SI in model.hpp, and the struct in the variant BearingLaw;
-//   2. a function `void describe(Visitor&, model::NewBearing&)` here or in the file of its family, declared in
-//      bearing_kinds.hpp: one line per key with unit, range and explanation, then the checks between keys;
+//   1. its parameters as a plain struct in SI in model.hpp, and the struct in the variant
+//   BearingLaw;
+//   2. a function `void describe(Visitor&, model::NewBearing&)` here or in the file of its family,
+//   declared in
+//      bearing_kinds.hpp: one line per key with unit, range and explanation, then the checks
+//      between keys;
 //   3. one line in the list in describe(Visitor&, model::Bearing&).
-// Reading, error messages, the JSON schema, the reference documentation and the resolved deck follow from these.
+// Reading, error messages, the JSON schema, the reference documentation and the resolved deck
+// follow from these.
 //
 //   void describe(Visitor& v, model::SqueezeFilm& b) {
 //     v.quantity(required("diameter"), b.diameter, "mm", positive, "journal diameter");
 //     v.quantity(required("clearance"), b.clearance, "um", positive, "radial clearance");
-//     if (v.clean() && b.clearance > 0.1 * b.diameter) v.error("E14", "clearance", "the clearance is not small against the diameter");
+//     if (v.clean() && b.clearance > 0.1 * b.diameter) v.error("E14", "clearance", "the clearance
+//     is not small against the diameter");
 //   }
 #include <core/units.hpp>
 #include <deck/keys/bearing_kinds.hpp>
@@ -20,13 +25,15 @@
 namespace whirl::deck {
 namespace {
 
-constexpr const char* place = "place on a shaft: \"section:mid\", \"section:end - 20 mm\", \"1.14 m\"";
+constexpr const char* place =
+    "place on a shaft: \"section:mid\", \"section:end - 20 mm\", \"1.14 m\"";
 std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
 
 }  // namespace
 
-/// Names of the entries of a 6x6 matrix, row by row: kxx .. kzz; krxx, kryy, krzz, kryz, krzy (moment about y from rotation about z, ..);
-/// the rest with both directions written out: ky_rz (force along y from rotation about z), krz_y (moment about z from motion along y), krx_ry.
+/// Names of the entries of a 6x6 matrix, row by row: kxx .. kzz; krxx, kryy, krzz, kryz, krzy
+/// (moment about y from rotation about z, ..); the rest with both directions written out: ky_rz
+/// (force along y from rotation about z), krz_y (moment about z from motion along y), krx_ry.
 const std::array<std::string, 36>& entry_names(char prefix) {
   static const auto names = [] {
     std::array<std::array<std::string, 36>, 3> r;
@@ -36,9 +43,12 @@ const std::array<std::string, 36>& entry_names(char prefix) {
         const std::size_t row = i / 6, column = i % 6;
         const std::string letter(1, "kcm"[p]);
         const bool tilt = row >= 3 && column >= 3 && (row == column || (row > 3 && column > 3));
-        if (row < 3 && column < 3) r[p][i] = letter + axes[row] + axes[column];
-        else if (tilt) r[p][i] = letter + axes[row] + axes[column - 3];
-        else r[p][i] = letter + axes[row] + "_" + axes[column];
+        if (row < 3 && column < 3)
+          r[p][i] = letter + axes[row] + axes[column];
+        else if (tilt)
+          r[p][i] = letter + axes[row] + axes[column - 3];
+        else
+          r[p][i] = letter + axes[row] + "_" + axes[column];
       }
     return r;
   }();
@@ -46,7 +56,8 @@ const std::array<std::string, 36>& entry_names(char prefix) {
 }
 
 void describe_entries(Visitor& v, Matrix<6>& m, char prefix) {
-  static constexpr const char* units[3][3] = {{"N/m", "N/rad", "N.m/rad"}, {"N.s/m", "N.s/rad", "N.m.s/rad"}, {"kg", "kg.m", "kg.m^2"}};
+  static constexpr const char* units[3][3] = {
+      {"N/m", "N/rad", "N.m/rad"}, {"N.s/m", "N.s/rad", "N.m.s/rad"}, {"kg", "kg.m", "kg.m^2"}};
   static constexpr const char* what[3] = {"stiffness", "damping", "mass"};
   static constexpr const char* both_names[3] = {"krr", "crr", "mrr"};
   const std::size_t p = prefix == 'k' ? 0 : prefix == 'c' ? 1 : 2;
@@ -56,19 +67,28 @@ void describe_entries(Visitor& v, Matrix<6>& m, char prefix) {
     const bool turn = row >= 3, turned = column >= 3;
     Key key = optional(names[static_cast<std::size_t>(6 * row + column)].c_str(), absent);
     key.listed = listed;
-    const std::string doc = fmt::format("{}: {} {} from {} {}", what[p], turn ? "moment about" : "force along", axes[row % 3], turned ? "rotation about" : "motion along", axes[column % 3]);
-    return v.quantity(key, m(row, column), units[p][static_cast<std::size_t>(turn) + static_cast<std::size_t>(turned)], any, doc.c_str());
+    const std::string doc =
+        fmt::format("{}: {} {} from {} {}", what[p], turn ? "moment about" : "force along",
+                    axes[row % 3], turned ? "rotation about" : "motion along", axes[column % 3]);
+    return v.quantity(key, m(row, column),
+                      units[p][static_cast<std::size_t>(turn) + static_cast<std::size_t>(turned)],
+                      any, doc.c_str());
   };
-  for (const auto& [row, column] : {std::pair{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 1}, {0, 1}, {0, 2}, {1, 0}, {2, 0}}) entry(row, column, "0", true);
+  for (const auto& [row, column] :
+       {std::pair{0, 0}, {1, 1}, {2, 2}, {1, 2}, {2, 1}, {0, 1}, {0, 2}, {1, 0}, {2, 0}})
+    entry(row, column, "0", true);
   double both = 0;
-  const bool all = v.quantity(optional(both_names[p], "0"), both, units[p][2], any, fmt::format("{}: tilting, the same about y and z", what[p]).c_str());
+  const bool all = v.quantity(optional(both_names[p], "0"), both, units[p][2], any,
+                              fmt::format("{}: tilting, the same about y and z", what[p]).c_str());
   const bool y = entry(4, 4, both_names[p], true), z = entry(5, 5, both_names[p], true);
   if (all && !y) m(4, 4) = both;
   if (all && !z) m(5, 5) = both;
-  for (const auto& [row, column] : {std::pair{4, 5}, {5, 4}, {3, 3}}) entry(row, column, "0", true);
+  for (const auto& [row, column] : {std::pair{4, 5}, {5, 4}, {3, 3}})
+    entry(row, column, "0", true);
   for (Index row = 0; row < 6; ++row)
     for (Index column = 0; column < 6; ++column)
-      if ((row < 3) != (column < 3) || (row >= 3 && row != column && (row == 3 || column == 3))) entry(row, column, "0", false);
+      if ((row < 3) != (column < 3) || (row >= 3 && row != column && (row == 3 || column == 3)))
+        entry(row, column, "0", false);
 }
 
 bool only_matrix(Visitor& v, char letter) {
@@ -76,7 +96,10 @@ bool only_matrix(Visitor& v, char letter) {
   names.push_back(letter + std::string("rr"));
   for (const std::string& key : names) {
     if (!v.given(key.c_str())) continue;
-    v.error("E26", key.c_str(), fmt::format("'{}' and the full matrix '{}' are both given", key, static_cast<char>(letter - 'a' + 'A')), "keep one of the two");
+    v.error("E26", key.c_str(),
+            fmt::format("'{}' and the full matrix '{}' are both given", key,
+                        static_cast<char>(letter - 'a' + 'A')),
+            "keep one of the two");
     return false;
   }
   return true;
@@ -84,7 +107,10 @@ bool only_matrix(Visitor& v, char letter) {
 
 namespace {
 
-constexpr const char* other_entries = "entries that couple displacements and rotations have both directions in their name: ky_rz (N/rad) force along y from rotation about z, krz_y (N) moment about z from motion along y, krx_ry";
+constexpr const char* other_entries =
+    "entries that couple displacements and rotations have both directions in their name: ky_rz "
+    "(N/rad) force along y from rotation about z, krz_y (N) moment about z from motion along y, "
+    "krx_ry";
 
 void describe_rest(Visitor& v, Vector<6>& setpoint, Vector<6>& preload) {
   std::vector<double> position{0, 0, 0}, tilt{0, 0, 0}, force{0, 0, 0}, moment{0, 0, 0};
@@ -94,29 +120,38 @@ void describe_rest(Visitor& v, Vector<6>& setpoint, Vector<6>& preload) {
   v.quantities("preload_moment", moment, "N.m", any, 3, "constant moment on the shaft");
   for (Index i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    setpoint[i] = position[k]; setpoint[i + 3] = tilt[k];
-    preload[i] = force[k]; preload[i + 3] = moment[k];
+    setpoint[i] = position[k];
+    setpoint[i + 3] = tilt[k];
+    preload[i] = force[k];
+    preload[i + 3] = moment[k];
   }
 }
 
 }  // namespace
 
 void describe(Visitor& v, model::SpringBlock& b) {
-  v.quantity(required("C1"), b.C1, "N/m", not_negative, "stiffness against displacement, the same in all directions: force -C1 r");
-  v.quantity(required("C2"), b.C2, "N.m/rad", not_negative, "stiffness against tilt: moment -C2 gamma, gamma the Euler vector of the tilt");
+  v.quantity(required("C1"), b.C1, "N/m", not_negative,
+             "stiffness against displacement, the same in all directions: force -C1 r");
+  v.quantity(required("C2"), b.C2, "N.m/rad", not_negative,
+             "stiffness against tilt: moment -C2 gamma, gamma the Euler vector of the tilt");
 }
 
 void describe(Visitor& v, model::LinearBearing& b) {
-  for (const auto& [m, letter] : {std::pair(&b.K, 'k'), std::pair(&b.C, 'c'), std::pair(&b.M, 'm')}) describe_entries(v, *m, letter);
-  const bool K = v.matrix(optional("K", "the entries"), b.K, "N/m", "N/rad", "N.m/rad", "full stiffness in the order x, y, z, rx, ry, rz, instead of the entries");
-  const bool C = v.matrix(optional("C", "the entries"), b.C, "N.s/m", "N.s/rad", "N.m.s/rad", "full damping");
+  for (const auto& [m, letter] : {std::pair(&b.K, 'k'), std::pair(&b.C, 'c'), std::pair(&b.M, 'm')})
+    describe_entries(v, *m, letter);
+  const bool K =
+      v.matrix(optional("K", "the entries"), b.K, "N/m", "N/rad", "N.m/rad",
+               "full stiffness in the order x, y, z, rx, ry, rz, instead of the entries");
+  const bool C =
+      v.matrix(optional("C", "the entries"), b.C, "N.s/m", "N.s/rad", "N.m.s/rad", "full damping");
   const bool M = v.matrix(optional("M", "the entries"), b.M, "kg", "kg.m", "kg.m^2", "full mass");
   describe_rest(v, b.setpoint, b.preload);
   if (!v.clean()) return;
   for (const auto& [matrix, letter] : {std::pair(K, 'k'), std::pair(C, 'c'), std::pair(M, 'm')})
     if (matrix && !only_matrix(v, letter)) return;
   if (b.K.isZero(0) && b.C.isZero(0) && b.M.isZero(0) && b.preload.isZero(0))
-    v.error("E05", nullptr, "the bearing has no stiffness, damping, mass or preload", "give kyy = \"1e8 N/m\", kzz, kxx, cyy, ...");
+    v.error("E05", nullptr, "the bearing has no stiffness, damping, mass or preload",
+            "give kyy = \"1e8 N/m\", kzz, kxx, cyy, ...");
 }
 
 namespace {
@@ -129,24 +164,34 @@ struct TableRow {
 void describe(Visitor& v, TableRow& r) {
   v.quantity(required("speed"), r.speed, "rpm", any, "speed of the shaft");
   v.quantity(Key("frequency"), r.frequency, "rad/s", not_negative,
-             "frequency of the motion (Hz, rpm or rad/s): the rows are then a grid, speed by speed, with the same frequencies for every speed");
-  for (const auto& [m, letter] : {std::pair(&r.K, 'k'), std::pair(&r.C, 'c'), std::pair(&r.M, 'm')}) describe_entries(v, *m, letter);
+             "frequency of the motion (Hz, rpm or rad/s): the rows are then a grid, speed by "
+             "speed, with the same frequencies for every speed");
+  for (const auto& [m, letter] : {std::pair(&r.K, 'k'), std::pair(&r.C, 'c'), std::pair(&r.M, 'm')})
+    describe_entries(v, *m, letter);
 }
 
 /// Columns that are there: looked at in the first row.
 void check_columns(Visitor& v) {
   bool stiffness = v.given("krr");
-  for (const std::string& key : entry_names('k')) stiffness = stiffness || v.given(key.c_str());
-  if (!stiffness) v.error("E05", nullptr, "the table has no stiffness", "columns such as kyy[N/m] and kzz[N/m]; write 0 where there is none");
+  for (const std::string& key : entry_names('k'))
+    stiffness = stiffness || v.given(key.c_str());
+  if (!stiffness)
+    v.error("E05", nullptr, "the table has no stiffness",
+            "columns such as kyy[N/m] and kzz[N/m]; write 0 where there is none");
   for (const auto& [one, other] : {std::pair("kyy", "kzz"), std::pair("kzz", "kyy")})
-    if (v.given(one) && !v.given(other)) v.error("E05", one, fmt::format("'{}' without '{}'", one, other), "write 0 where there is none");
+    if (v.given(one) && !v.given(other))
+      v.error("E05", one, fmt::format("'{}' without '{}'", one, other),
+              "write 0 where there is none");
 }
 
 }  // namespace
 
 void describe(Visitor& v, model::TableBearing& b) {
-  static constexpr Option interpolations[] = {{"pchip", "monotone cubic"}, {"linear", "straight lines"}};
-  static constexpr Option ends[] = {{"error", "a speed or frequency outside the table is a mistake"}, {"hold", "the coefficients at the edge hold outside"}};
+  static constexpr Option interpolations[] = {{"pchip", "monotone cubic"},
+                                              {"linear", "straight lines"}};
+  static constexpr Option ends[] = {
+      {"error", "a speed or frequency outside the table is a mistake"},
+      {"hold", "the coefficients at the edge hold outside"}};
   int interpolation = 0, outside = 0;
   v.option("interpolation", interpolation, interpolations, "between the rows");
   v.option("extrapolate", outside, ends, "outside the table");
@@ -154,7 +199,7 @@ void describe(Visitor& v, model::TableBearing& b) {
   b.extrapolate_hold = outside == 1;
   bool mass = false;
   int rows = 0;
-  std::size_t column = 0;   // place of the next row in its speed's frequencies
+  std::size_t column = 0;  // place of the next row in its speed's frequencies
   const auto add = [&](Visitor& w) {
     TableRow r;
     describe(w, r);
@@ -168,20 +213,32 @@ void describe(Visitor& v, model::TableBearing& b) {
     const bool same_speed = by_frequency && !b.speed.empty() && r.speed == b.speed.back();
     if (!same_speed) {
       if (!b.speed.empty() && !(r.speed > b.speed.back()))
-        w.error("E21", "speed", fmt::format("the speeds do not increase: {} after {}", units::display(r.speed, "rpm"), units::display(b.speed.back(), "rpm")));
+        w.error("E21", "speed",
+                fmt::format("the speeds do not increase: {} after {}",
+                            units::display(r.speed, "rpm"), units::display(b.speed.back(), "rpm")));
       if (column < b.frequency.size() && !b.speed.empty())
-        w.error("E26", "frequency", fmt::format("{} has {} frequencies, the first speed has {}", units::display(b.speed.back(), "rpm"), column, b.frequency.size()), "every speed needs the same frequencies");
+        w.error("E26", "frequency",
+                fmt::format("{} has {} frequencies, the first speed has {}",
+                            units::display(b.speed.back(), "rpm"), column, b.frequency.size()),
+                "every speed needs the same frequencies");
       b.speed.push_back(r.speed);
       column = 0;
     }
     if (by_frequency) {
       if (b.speed.size() == 1) {
         if (!b.frequency.empty() && !(r.frequency > b.frequency.back()))
-          w.error("E21", "frequency", fmt::format("the frequencies do not increase: {} after {}", hertz(r.frequency), hertz(b.frequency.back())));
+          w.error("E21", "frequency",
+                  fmt::format("the frequencies do not increase: {} after {}", hertz(r.frequency),
+                              hertz(b.frequency.back())));
         b.frequency.push_back(r.frequency);
-      } else if (column >= b.frequency.size() || std::abs(b.frequency[column] - r.frequency) > 1e-9 * r.frequency) {
-        w.error("E26", "frequency", column >= b.frequency.size() ? fmt::format("{} has more frequencies than the first speed", units::display(r.speed, "rpm"))
-                                                                : fmt::format("the frequencies differ from those of the first speed: {} for {}", hertz(r.frequency), hertz(b.frequency[column])),
+      } else if (column >= b.frequency.size() ||
+                 std::abs(b.frequency[column] - r.frequency) > 1e-9 * r.frequency) {
+        w.error("E26", "frequency",
+                column >= b.frequency.size()
+                    ? fmt::format("{} has more frequencies than the first speed",
+                                  units::display(r.speed, "rpm"))
+                    : fmt::format("the frequencies differ from those of the first speed: {} for {}",
+                                  hertz(r.frequency), hertz(b.frequency[column])),
                 "every speed needs the same frequencies, in the same order");
       }
       ++column;
@@ -191,43 +248,66 @@ void describe(Visitor& v, model::TableBearing& b) {
     b.M.push_back(r.M);
     mass = mass || !r.M.isZero(0.0);
   };
-  static const std::string doc = fmt::format("coefficients against speed (and frequency), one row per speed (and frequency); {}", other_entries);
-  v.rows({add, [](Visitor& w) { TableRow r; describe(w, r); }}, true, doc.c_str());
+  static const std::string doc = fmt::format(
+      "coefficients against speed (and frequency), one row per speed (and frequency); {}",
+      other_entries);
+  v.rows({add,
+          [](Visitor& w) {
+            TableRow r;
+            describe(w, r);
+          }},
+         true, doc.c_str());
   describe_rest(v, b.setpoint, b.preload);
   if (v.clean() && b.K.size() != b.speed.size() * std::max<std::size_t>(b.frequency.size(), 1))
-    v.error("E26", nullptr, fmt::format("the table has {} rows for {} speeds and {} frequencies", b.K.size(), b.speed.size(), b.frequency.size()), "every speed needs the same frequencies");
+    v.error("E26", nullptr,
+            fmt::format("the table has {} rows for {} speeds and {} frequencies", b.K.size(),
+                        b.speed.size(), b.frequency.size()),
+            "every speed needs the same frequencies");
   if (!mass) b.M.clear();
 }
 
 void describe(Visitor& v, model::RigidSupport& b) {
-  static constexpr Option words[] = {{"x", "axial"}, {"y", "lateral"}, {"z", "lateral"}, {"rx", "the spin"}, {"ry", "tilt about y"}, {"rz", "tilt about z"}};
+  static constexpr Option words[] = {{"x", "axial"},         {"y", "lateral"},
+                                     {"z", "lateral"},       {"rx", "the spin"},
+                                     {"ry", "tilt about y"}, {"rz", "tilt about z"}};
   std::vector<std::string> held;
-  v.options(required("directions"), held, words, "motions held, exactly (constraints, no penalty stiffness)");
+  v.options(required("directions"), held, words,
+            "motions held, exactly (constraints, no penalty stiffness)");
   for (const auto& h : held)
-    for (std::size_t i = 0; i < 6; ++i) b.held[i] = b.held[i] || h == words[i].name;
-  if (v.clean() && held.empty()) v.error("E05", "directions", "no direction is held", "directions = [\"y\", \"z\"]");
+    for (std::size_t i = 0; i < 6; ++i)
+      b.held[i] = b.held[i] || h == words[i].name;
+  if (v.clean() && held.empty())
+    v.error("E05", "directions", "no direction is held", "directions = [\"y\", \"z\"]");
 }
 
 void describe(Visitor& v, model::Pedestal& p) {
   v.quantity(required("mass"), p.mass, "kg", not_negative, "mass of the pedestal");
-  static constexpr const char* keys[2][9] = {{"kxx", "kxy", "kxz", "kyx", "kyy", "kyz", "kzx", "kzy", "kzz"}, {"cxx", "cxy", "cxz", "cyx", "cyy", "cyz", "czx", "czy", "czz"}};
-  for (Index i = 0; i < 9; ++i) v.quantity(keys[0][i], p.K(i / 3, i % 3), "N/m", any, "stiffness between pedestal and ground");
-  for (Index i = 0; i < 9; ++i) v.quantity(keys[1][i], p.C(i / 3, i % 3), "N.s/m", any, "damping between pedestal and ground");
-  if (v.clean() && (!(p.K(1, 1) > 0) || !(p.K(2, 2) > 0))) v.error("E05", nullptr, "the support needs 'kyy' and 'kzz'", "leave 'support' out for a rigid pedestal");
+  static constexpr const char* keys[2][9] = {
+      {"kxx", "kxy", "kxz", "kyx", "kyy", "kyz", "kzx", "kzy", "kzz"},
+      {"cxx", "cxy", "cxz", "cyx", "cyy", "cyz", "czx", "czy", "czz"}};
+  for (Index i = 0; i < 9; ++i)
+    v.quantity(keys[0][i], p.K(i / 3, i % 3), "N/m", any, "stiffness between pedestal and ground");
+  for (Index i = 0; i < 9; ++i)
+    v.quantity(keys[1][i], p.C(i / 3, i % 3), "N.s/m", any, "damping between pedestal and ground");
+  if (v.clean() && (!(p.K(1, 1) > 0) || !(p.K(2, 2) > 0)))
+    v.error("E05", nullptr, "the support needs 'kyy' and 'kzz'",
+            "leave 'support' out for a rigid pedestal");
 }
 
 namespace {
 
 Alternative spring(const char* word, model::BearingLaw& law, bool angular, const char* doc) {
   return {word, doc, [&law, angular](Visitor& v) {
-            if (!std::holds_alternative<model::NonlinearSpring>(law)) law = model::NonlinearSpring{};
+            if (!std::holds_alternative<model::NonlinearSpring>(law))
+              law = model::NonlinearSpring{};
             describe_spring(v, std::get<model::NonlinearSpring>(law), angular);
           }};
 }
 
 Alternative estimate(const char* word, model::BearingLaw& law, bool roller, const char* doc) {
   return {word, doc, [&law, roller](Visitor& v) {
-            if (!std::holds_alternative<model::RollingEstimate>(law)) law = model::RollingEstimate{};
+            if (!std::holds_alternative<model::RollingEstimate>(law))
+              law = model::RollingEstimate{};
             std::get<model::RollingEstimate>(law).roller = roller;
             describe_rolling_estimate(v, std::get<model::RollingEstimate>(law));
           }};
@@ -239,35 +319,75 @@ void describe(Visitor& v, model::Bearing& b) {
   v.name(b, "bearing");
   v.location(required("at"), b.at, place);
   model::Location to;
-  if (v.location(optional("to", "the ground"), to, "place on another shaft that it connects with")) b.to = to;
-  static const std::string linear_doc = fmt::format("constant stiffness, damping and mass, up to 6x6, fixed axes; force on the shaft = preload - K (q - setpoint) - C q'; {}", other_entries);
+  if (v.location(optional("to", "the ground"), to, "place on another shaft that it connects with"))
+    b.to = to;
+  static const std::string linear_doc = fmt::format(
+      "constant stiffness, damping and mass, up to 6x6, fixed axes; force on the shaft = preload - "
+      "K (q - setpoint) - C q'; {}",
+      other_entries);
   const Alternative kinds[] = {
       Visitor::alternative<model::LinearBearing>("linear", b.law, linear_doc.c_str()),
-      Visitor::alternative<model::SpringBlock>("spring_block", b.law, "isotropic spring at a point and isotropic spring against tilt"),
-      Visitor::alternative<model::TableBearing>("table", b.law, "stiffness, damping and mass as type = \"linear\" has them, tabulated against speed, and where given against the frequency of the motion: modes take them at their own frequency, responses at that of the excitation, statics and transients at that of the spin (synchronous, held at the table's ends)"),
+      Visitor::alternative<model::SpringBlock>(
+          "spring_block", b.law, "isotropic spring at a point and isotropic spring against tilt"),
+      Visitor::alternative<model::TableBearing>(
+          "table", b.law,
+          "stiffness, damping and mass as type = \"linear\" has them, tabulated against speed, and "
+          "where given against the frequency of the motion: modes take them at their own "
+          "frequency, responses at that of the excitation, statics and transients at that of the "
+          "spin (synchronous, held at the table's ends)"),
       Visitor::alternative<model::RigidSupport>("rigid", b.law, "directions held exactly"),
-      spring("nonlinear_spring", b.law, false, "spring and damper along one direction: polynomial, table, clearance, one-sided"),
+      spring("nonlinear_spring", b.law, false,
+             "spring and damper along one direction: polynomial, table, clearance, one-sided"),
       spring("nonlinear_angular_spring", b.law, true, "the same for a tilt or the twist"),
-      Visitor::alternative<model::ShortJournal>("short_journal", b.law, "plain journal bearing, short-bearing theory, cavitated half film; nonlinear in displacement and velocity"),
-      Visitor::alternative<model::FiniteJournal>("journal", b.law, "journal bearing of finite length with cavitation: plain, with axial grooves, multi-lobe; nonlinear"),
-      Visitor::alternative<model::SqueezeFilm>("squeeze_film", b.law, "squeeze-film damper, with a centring spring or without"),
-      Visitor::alternative<model::BallBearing>("ball", b.law, "deep-groove or angular-contact ball bearing: Hertz contact, clearance or preload, varying compliance"),
+      Visitor::alternative<model::ShortJournal>(
+          "short_journal", b.law,
+          "plain journal bearing, short-bearing theory, cavitated half film; nonlinear in "
+          "displacement and velocity"),
+      Visitor::alternative<model::FiniteJournal>(
+          "journal", b.law,
+          "journal bearing of finite length with cavitation: plain, with axial grooves, "
+          "multi-lobe; nonlinear"),
+      Visitor::alternative<model::SqueezeFilm>(
+          "squeeze_film", b.law, "squeeze-film damper, with a centring spring or without"),
+      Visitor::alternative<model::BallBearing>("ball", b.law,
+                                               "deep-groove or angular-contact ball bearing: Hertz "
+                                               "contact, clearance or preload, varying compliance"),
       Visitor::alternative<model::RollerBearing>("roller", b.law, "cylindrical roller bearing"),
-      estimate("ball_estimate", b.law, false, "ball bearing as a linear spring at its static load: estimated stiffness along and across the load (Friswell, Penny, Garvey & Lees 2010, doi 10.1017/CBO9780511780509, 5.5.4)"),
-      estimate("roller_estimate", b.law, true, "cylindrical roller bearing, estimated in the same way"),
-      Visitor::alternative<model::Rub>("rub", b.law, "rub, stop or catcher bearing: one-sided contact with friction; with 'support' the stator has mass and springs"),
-      Visitor::alternative<model::AnnularSeal>("annular_seal", b.law, "liquid annular seal, coefficients after Black and Childs that follow the speed"),
-      Visitor::alternative<model::CrossCoupling>("cross_coupling", b.law, "destabilising force of a stage: given, Alford or Wachel"),
-      Visitor::alternative<model::Coupling>("coupling", b.law, "flexible coupling between two shafts, 6x6, with misalignment; needs 'to'"),
-      Visitor::alternative<model::GearPair>("gear", b.law, "spur or helical gear pair between two shafts: mesh stiffness, backlash, transmission error; needs 'to'"),
+      estimate("ball_estimate", b.law, false,
+               "ball bearing as a linear spring at its static load: estimated stiffness along and "
+               "across the load (Friswell, Penny, Garvey & Lees 2010, doi "
+               "10.1017/CBO9780511780509, 5.5.4)"),
+      estimate("roller_estimate", b.law, true,
+               "cylindrical roller bearing, estimated in the same way"),
+      Visitor::alternative<model::Rub>("rub", b.law,
+                                       "rub, stop or catcher bearing: one-sided contact with "
+                                       "friction; with 'support' the stator has mass and springs"),
+      Visitor::alternative<model::AnnularSeal>(
+          "annular_seal", b.law,
+          "liquid annular seal, coefficients after Black and Childs that follow the speed"),
+      Visitor::alternative<model::CrossCoupling>(
+          "cross_coupling", b.law, "destabilising force of a stage: given, Alford or Wachel"),
+      Visitor::alternative<model::Coupling>(
+          "coupling", b.law,
+          "flexible coupling between two shafts, 6x6, with misalignment; needs 'to'"),
+      Visitor::alternative<model::GearPair>("gear", b.law,
+                                            "spur or helical gear pair between two shafts: mesh "
+                                            "stiffness, backlash, transmission error; needs 'to'"),
   };
   v.alternatives(required("type"), kinds, "kind of bearing");
-  v.table(optional("support", "rigid"), b.pedestal, "a pedestal: mass on springs between the bearing and the ground");
-  if (v.clean() && b.to && b.to->shaft == b.at.shaft && b.to->s == b.at.s) v.error("E14", "to", "the bearing connects a station with itself");
-  const bool pair = std::holds_alternative<model::Coupling>(b.law) || std::holds_alternative<model::GearPair>(b.law);
+  v.table(optional("support", "rigid"), b.pedestal,
+          "a pedestal: mass on springs between the bearing and the ground");
+  if (v.clean() && b.to && b.to->shaft == b.at.shaft && b.to->s == b.at.s)
+    v.error("E14", "to", "the bearing connects a station with itself");
+  const bool pair = std::holds_alternative<model::Coupling>(b.law) ||
+                    std::holds_alternative<model::GearPair>(b.law);
   if (v.clean() && pair && (!b.to || b.to->shaft == b.at.shaft))
-    v.error("E26", b.to ? "to" : nullptr, fmt::format("'{}' connects two shafts, but {}", b.name, b.to ? "both its places are on one" : "'to' is missing"), "to = \"other_shaft/section:start\"");
-  if (v.clean() && b.to && b.pedestal) v.error("E26", "support", "a bearing between two shafts has no pedestal");
+    v.error("E26", b.to ? "to" : nullptr,
+            fmt::format("'{}' connects two shafts, but {}", b.name,
+                        b.to ? "both its places are on one" : "'to' is missing"),
+            "to = \"other_shaft/section:start\"");
+  if (v.clean() && b.to && b.pedestal)
+    v.error("E26", "support", "a bearing between two shafts has no pedestal");
 }
 
 }  // namespace whirl::deck

@@ -7,25 +7,41 @@ namespace whirl::deck {
 namespace {
 
 void oil(Visitor& v, model::Oil& o) {
-  const bool viscosity = v.quantity(optional("viscosity", "from iso_vg"), o.viscosity, "mPa.s", positive, "dynamic viscosity");
-  const bool grade = v.number(optional("iso_vg", "viscosity is given"), o.grade, Range{1, 5000, false, false}, "ISO VG grade of the oil: its viscosity in mm2/s at 40 degC");
-  const bool temperature = v.quantity(optional("temperature", "viscosity is given"), o.temperature, "degC", any, "temperature of the film, -30 to 200 degC, with iso_vg");
+  const bool viscosity = v.quantity(optional("viscosity", "from iso_vg"), o.viscosity, "mPa.s",
+                                    positive, "dynamic viscosity");
+  const bool grade =
+      v.number(optional("iso_vg", "viscosity is given"), o.grade, Range{1, 5000, false, false},
+               "ISO VG grade of the oil: its viscosity in mm2/s at 40 degC");
+  const bool temperature =
+      v.quantity(optional("temperature", "viscosity is given"), o.temperature, "degC", any,
+                 "temperature of the film, -30 to 200 degC, with iso_vg");
   v.quantity("density", o.density, "kg/m^3", positive, "density of the oil, with iso_vg");
   if (!v.clean()) return;
   if (temperature && !(o.temperature >= 243.15 && o.temperature <= 473.15))
-    v.error("E14", "temperature", fmt::format("{} is outside -30 to 200 degC, where the viscosity of oils is known", units::display(o.temperature, "degC")), "the temperature of the film, in degC");
-  else if (viscosity && grade) v.error("E26", "iso_vg", "the viscosity is given directly and by a grade", "keep one of the two");
-  else if (!viscosity && !grade) v.error("E05", nullptr, "the oil has no viscosity", "viscosity = \"20 mPa.s\", or iso_vg = 46 and temperature = \"50 degC\"");
-  else if (grade && !temperature) v.error("E05", "iso_vg", "a grade needs 'temperature'", "temperature = \"50 degC\"");
+    v.error("E14", "temperature",
+            fmt::format("{} is outside -30 to 200 degC, where the viscosity of oils is known",
+                        units::display(o.temperature, "degC")),
+            "the temperature of the film, in degC");
+  else if (viscosity && grade)
+    v.error("E26", "iso_vg", "the viscosity is given directly and by a grade",
+            "keep one of the two");
+  else if (!viscosity && !grade)
+    v.error("E05", nullptr, "the oil has no viscosity",
+            "viscosity = \"20 mPa.s\", or iso_vg = 46 and temperature = \"50 degC\"");
+  else if (grade && !temperature)
+    v.error("E05", "iso_vg", "a grade needs 'temperature'", "temperature = \"50 degC\"");
 }
 
 template <class Film>
 void dimensions(Visitor& v, Film& b) {
   v.quantity(required("diameter"), b.diameter, "mm", positive, "journal diameter");
   v.quantity(required("length"), b.length, "mm", positive, "axial length of the film");
-  v.quantity(required("clearance"), b.clearance, "um", positive, "radial clearance (half the difference of diameters)");
+  v.quantity(required("clearance"), b.clearance, "um", positive,
+             "radial clearance (half the difference of diameters)");
   if (v.clean() && b.clearance > 0.02 * b.diameter)
-    v.error("E14", "clearance", fmt::format("the clearance {} is not small against the diameter {}: no film", units::display(b.clearance, "um"), units::display(b.diameter, "mm")),
+    v.error("E14", "clearance",
+            fmt::format("the clearance {} is not small against the diameter {}: no film",
+                        units::display(b.clearance, "um"), units::display(b.diameter, "mm")),
             "the radial clearance is usually about a thousandth of the radius");
 }
 
@@ -35,7 +51,9 @@ void describe(Visitor& v, model::ShortJournal& b) {
   dimensions(v, b);
   oil(v, b.oil);
   if (v.clean() && b.length > b.diameter)
-    v.warning("W03", "length", "the short-bearing theory is for lengths below about half the diameter", "type = \"journal\" has no such limit");
+    v.warning("W03", "length",
+              "the short-bearing theory is for lengths below about half the diameter",
+              "type = \"journal\" has no such limit");
 }
 
 void describe(Visitor& v, model::FiniteJournal& b) {
@@ -44,21 +62,29 @@ void describe(Visitor& v, model::FiniteJournal& b) {
   oil(v, b.oil);
   const Alternative shapes[] = {
       {"plain", "a cylinder without grooves", [&](Visitor&) { b.shape = Shape::plain; }},
-      {"two_grooves", "a cylinder with two axial grooves, opposite each other", [&](Visitor& w) {
+      {"two_grooves", "a cylinder with two axial grooves, opposite each other",
+       [&](Visitor& w) {
          b.shape = Shape::two_grooves;
          b.groove = 20 * pi / 180;
          w.quantity("groove", b.groove, "deg", Range{0, pi / 2, true, true}, "width of a groove");
-         w.quantity("groove_at", b.groove_at, "deg", any, "angle of the first groove, from y towards z");
+         w.quantity("groove_at", b.groove_at, "deg", any,
+                    "angle of the first groove, from y towards z");
        }},
-      {"lobes", "equal lobes with grooves between them", [&](Visitor& w) {
+      {"lobes", "equal lobes with grooves between them",
+       [&](Visitor& w) {
          b.shape = Shape::lobes;
          b.groove = 20 * pi / 180;
          w.integer("lobes", b.lobes, between(2, 8), "number of lobes");
-         w.number("preload", b.preload, Range{0, 1, false, true}, "1 - (assembled clearance)/(clearance of the lobes); 0: a cylinder");
+         w.number("preload", b.preload, Range{0, 1, false, true},
+                  "1 - (assembled clearance)/(clearance of the lobes); 0: a cylinder");
          w.quantity("groove", b.groove, "deg", Range{0, pi / 2, false, true}, "width of a groove");
-         w.quantity("lobe_at", b.lobe_at, "deg", any, "angle of the middle of the first lobe, from y towards z");
-         w.number("lobe_offset", b.lobe_offset, fraction, "where the lobe is tightest: 0 its start, 0.5 its middle, 1 its end in the sense of rotation y -> z");
-         if (w.clean() && b.lobes * b.groove >= two_pi) w.error("E14", "groove", "the grooves leave nothing of the lobes");
+         w.quantity("lobe_at", b.lobe_at, "deg", any,
+                    "angle of the middle of the first lobe, from y towards z");
+         w.number("lobe_offset", b.lobe_offset, fraction,
+                  "where the lobe is tightest: 0 its start, 0.5 its middle, 1 its end in the sense "
+                  "of rotation y -> z");
+         if (w.clean() && b.lobes * b.groove >= two_pi)
+           w.error("E14", "groove", "the grooves leave nothing of the lobes");
        }},
   };
   v.alternatives(required("shape"), shapes, "shape of the bearing surface");
@@ -70,18 +96,23 @@ void describe(Visitor& v, model::SqueezeFilm& b) {
   oil(v, b.oil);
   using Film = model::SqueezeFilm::Film;
   const Alternative films[] = {
-      {"cavitated", "open ends, short, cavitated at ambient pressure (pi film)", [&](Visitor&) { b.film = Film::cavitated; }},
-      {"full", "open ends, short, fed at a pressure that keeps it from cavitating (2 pi film)", [&](Visitor&) { b.film = Film::full; }},
+      {"cavitated", "open ends, short, cavitated at ambient pressure (pi film)",
+       [&](Visitor&) { b.film = Film::cavitated; }},
+      {"full", "open ends, short, fed at a pressure that keeps it from cavitating (2 pi film)",
+       [&](Visitor&) { b.film = Film::full; }},
       {"finite", "open ends, any length, cavitated", [&](Visitor&) { b.film = Film::finite; }},
-      {"sealed", "sealed ends, fed by an axial groove", [&](Visitor& w) {
+      {"sealed", "sealed ends, fed by an axial groove",
+       [&](Visitor& w) {
          b.film = Film::sealed;
          b.groove = 10 * pi / 180;
-         w.quantity("groove", b.groove, "deg", Range{0, pi, true, true}, "width of the feeding groove");
+         w.quantity("groove", b.groove, "deg", Range{0, pi, true, true},
+                    "width of the feeding groove");
          w.quantity("groove_at", b.groove_at, "deg", any, "its angle, from y towards z");
        }},
   };
   v.alternatives(required("film"), films, "boundary conditions of the film");
-  v.quantity("stiffness", b.stiffness, "N/m", not_negative, "centring spring, the same along y and z; 0: none");
+  v.quantity("stiffness", b.stiffness, "N/m", not_negative,
+             "centring spring, the same along y and z; 0: none");
   v.quantity("damping", b.damping, "N.s/m", not_negative, "damping of the centring spring");
 }
 
@@ -89,33 +120,50 @@ void describe(Visitor& v, model::AnnularSeal& b) {
   dimensions(v, b);
   v.quantity(required("pressure_drop"), b.pressure_drop, "bar", positive, "over the seal");
   v.quantity(required("density"), b.density, "kg/m^3", positive, "density of the liquid");
-  v.quantity(required("viscosity"), b.viscosity, "mPa.s", positive, "dynamic viscosity of the liquid");
+  v.quantity(required("viscosity"), b.viscosity, "mPa.s", positive,
+             "dynamic viscosity of the liquid");
   v.number("inlet_loss", b.inlet_loss, not_negative, "inlet loss coefficient xi");
-  v.number("inlet_swirl", b.inlet_swirl, between(-2, 2), "circumferential inlet velocity over surface speed; 0.5: fully developed");
+  v.number("inlet_swirl", b.inlet_swirl, between(-2, 2),
+           "circumferential inlet velocity over surface speed; 0.5: fully developed");
 }
 
 void describe(Visitor& v, model::CrossCoupling& b) {
   using From = model::CrossCoupling::From;
-  const bool given = v.quantity(optional("k", "from alford or wachel"), b.k, "N/m", any, "cross-coupled stiffness: force k times the displacement, a quarter turn ahead in the sense y -> z");
-  const bool alford = v.table(optional("alford", "none"), [&](Visitor& w) {
-    w.number("beta", b.alford.beta, positive, "efficiency factor");
-    w.quantity(required("torque"), b.alford.torque, "N.m", any, "torque of the stage; its sign is the sense of the driven whirl");
-    w.quantity(required("diameter"), b.alford.diameter, "mm", positive, "mean blade diameter");
-    w.quantity(required("blade_height"), b.alford.blade_height, "mm", positive, "blade height");
-  }, "Alford: k = beta torque/(diameter blade_height)");
-  const bool wachel = v.table(optional("wachel", "none"), [&](Visitor& w) {
-    w.quantity(required("power"), b.wachel.power, "kW", not_negative, "power of the stage");
-    w.quantity(required("speed"), b.wachel.speed, "rpm", any, "speed at which it has that power; its sign is the sense of the driven whirl");
-    w.quantity(required("diameter"), b.wachel.diameter, "mm", positive, "impeller diameter");
-    w.quantity(required("width"), b.wachel.width, "mm", positive, "smallest flow width");
-    w.quantity("molar_mass", b.wachel.molar_mass, "kg", positive, "molar mass of the gas: mass of one mole");
-    w.number("density_ratio", b.wachel.density_ratio, positive, "density at discharge over density at suction");
-    if (w.clean() && b.wachel.speed == 0) w.error("E14", "speed", "the speed must not be zero");
-  }, "Wachel (API 617), for impellers");
+  const bool given = v.quantity(optional("k", "from alford or wachel"), b.k, "N/m", any,
+                                "cross-coupled stiffness: force k times the displacement, a "
+                                "quarter turn ahead in the sense y -> z");
+  const bool alford = v.table(
+      optional("alford", "none"),
+      [&](Visitor& w) {
+        w.number("beta", b.alford.beta, positive, "efficiency factor");
+        w.quantity(required("torque"), b.alford.torque, "N.m", any,
+                   "torque of the stage; its sign is the sense of the driven whirl");
+        w.quantity(required("diameter"), b.alford.diameter, "mm", positive, "mean blade diameter");
+        w.quantity(required("blade_height"), b.alford.blade_height, "mm", positive, "blade height");
+      },
+      "Alford: k = beta torque/(diameter blade_height)");
+  const bool wachel = v.table(
+      optional("wachel", "none"),
+      [&](Visitor& w) {
+        w.quantity(required("power"), b.wachel.power, "kW", not_negative, "power of the stage");
+        w.quantity(required("speed"), b.wachel.speed, "rpm", any,
+                   "speed at which it has that power; its sign is the sense of the driven whirl");
+        w.quantity(required("diameter"), b.wachel.diameter, "mm", positive, "impeller diameter");
+        w.quantity(required("width"), b.wachel.width, "mm", positive, "smallest flow width");
+        w.quantity("molar_mass", b.wachel.molar_mass, "kg", positive,
+                   "molar mass of the gas: mass of one mole");
+        w.number("density_ratio", b.wachel.density_ratio, positive,
+                 "density at discharge over density at suction");
+        if (w.clean() && b.wachel.speed == 0) w.error("E14", "speed", "the speed must not be zero");
+      },
+      "Wachel (API 617), for impellers");
   if (alford) b.from = From::alford;
   if (wachel) b.from = From::wachel;
   if (v.clean() && given + alford + wachel != 1)
-    v.error(given + alford + wachel == 0 ? "E05" : "E26", nullptr, given + alford + wachel == 0 ? "the cross coupling is not given" : "the cross coupling is given more than once", "give one of k, alford and wachel");
+    v.error(given + alford + wachel == 0 ? "E05" : "E26", nullptr,
+            given + alford + wachel == 0 ? "the cross coupling is not given"
+                                         : "the cross coupling is given more than once",
+            "give one of k, alford and wachel");
 }
 
 }  // namespace whirl::deck

@@ -6,28 +6,46 @@ namespace whirl::deck {
 namespace {
 
 void describe_settings(Visitor& v, model::Model& m) {
-  static constexpr Option directions[] = {{"+x", "along the shaft"}, {"-x", "against it"}, {"+y", ""}, {"-y", ""}, {"+z", "up"}, {"-z", "down"}};
-  static constexpr Option axes[] = {{"x", "shaft lines run along +x; y and z are the lateral directions"}};
+  static constexpr Option directions[] = {{"+x", "along the shaft"},
+                                          {"-x", "against it"},
+                                          {"+y", ""},
+                                          {"-y", ""},
+                                          {"+z", "up"},
+                                          {"-z", "down"}};
+  static constexpr Option axes[] = {
+      {"x", "shaft lines run along +x; y and z are the lateral directions"}};
   int axis = 0, direction = 5;
   double g = 9.80665;
   std::vector<double> components;
   v.option("axis", axis, axes, "direction of the shaft lines");
-  const bool vector = v.quantities(optional("gravity_vector", "from gravity and gravity_direction"), components, "m/s^2", any, 3, "gravity as three components, for inclined shafts");
-  v.quantity(vector ? optional("gravity", "") : Key("gravity"), g, "m/s^2", not_negative, "acceleration of gravity; \"0 m/s^2\" switches it off");
-  v.option(vector ? optional("gravity_direction", "") : Key("gravity_direction"), direction, directions, "where gravity points");
+  const bool vector =
+      v.quantities(optional("gravity_vector", "from gravity and gravity_direction"), components,
+                   "m/s^2", any, 3, "gravity as three components, for inclined shafts");
+  v.quantity(vector ? optional("gravity", "") : Key("gravity"), g, "m/s^2", not_negative,
+             "acceleration of gravity; \"0 m/s^2\" switches it off");
+  v.option(vector ? optional("gravity_direction", "") : Key("gravity_direction"), direction,
+           directions, "where gravity points");
   m.gravity = Vec3::Zero();
   m.gravity[direction / 2] = direction % 2 == 0 ? g : -g;
   if (components.size() == 3) m.gravity = Vec3(components[0], components[1], components[2]);
   if (v.clean() && !components.empty() && (v.given("gravity") || v.given("gravity_direction")))
-    v.error("E26", "gravity_vector", "gravity is given by components and by magnitude or direction", "keep one of the two");
+    v.error("E26", "gravity_vector", "gravity is given by components and by magnitude or direction",
+            "keep one of the two");
   v.flag("chart_change", m.chart_change,
-         "move the reference axes of a shaft line before its tilt reaches the limit of the split rotation (pi); only tumbling bodies need it");
+         "move the reference axes of a shaft line before its tilt reaches the limit of the split "
+         "rotation (pi); only tumbling bodies need it");
   v.flag("keep_everything", m.keep_everything,
-         "build the general model: kernels, damping and unknowns that this deck does not need are kept instead of left out; slower, with the same results");
-  v.table("mesh", [&](Visitor& w) {
-    w.quantity(optional("max_element_length", "no limit"), m.max_element_length, "mm", positive, "longest shaft element");
-    w.integer("min_elements_per_section", m.min_elements, between(1, 10000), "least number of elements of each section");
-  }, "refinement; a node stands at every section end and at everything attached in any case");
+         "build the general model: kernels, damping and unknowns that this deck does not need are "
+         "kept instead of left out; slower, with the same results");
+  v.table(
+      "mesh",
+      [&](Visitor& w) {
+        w.quantity(optional("max_element_length", "no limit"), m.max_element_length, "mm", positive,
+                   "longest shaft element");
+        w.integer("min_elements_per_section", m.min_elements, between(1, 10000),
+                  "least number of elements of each section");
+      },
+      "refinement; a node stands at every section end and at everything attached in any case");
 }
 
 }  // namespace
@@ -35,25 +53,45 @@ void describe_settings(Visitor& v, model::Model& m) {
 void describe(Visitor& v, model::Model& m) {
   v.integer(required("format"), m.format, any, "version of the deck format: 1");
   if (v.clean() && m.format != 1)
-    v.error("E31", "format", fmt::format("the deck has format {}, this program reads format 1", m.format), m.format > 1 ? "a newer program is needed" : "write format = 1");
+    v.error("E31", "format",
+            fmt::format("the deck has format {}, this program reads format 1", m.format),
+            m.format > 1 ? "a newer program is needed" : "write format = 1");
   v.text(optional("title", "none"), m.title, "one line for reports");
   std::vector<std::string> include;
   v.texts(optional("include", "none"), include,
-          "files merged before this one: lists of tables are joined, a key set in both is a mistake; paths are relative to this file");
-  v.free_table(optional("parameters", "none"), "named values, used as \"${name}\" anywhere; --set parameters.name=value overrides them");
-  v.table("model", [&](Visitor& w) { describe_settings(w, m); }, "settings of the whole model");
-  v.list(optional("material", "built-in materials"), m.materials, "materials besides the built-in ones (steel, stainless_steel, titanium, aluminium, inconel_718, cast_iron)");
+          "files merged before this one: lists of tables are joined, a key set in both is a "
+          "mistake; paths are relative to this file");
+  v.free_table(
+      optional("parameters", "none"),
+      "named values, used as \"${name}\" anywhere; --set parameters.name=value overrides them");
+  v.table(
+      "model", [&](Visitor& w) { describe_settings(w, m); }, "settings of the whole model");
+  v.list(optional("material", "built-in materials"), m.materials,
+         "materials besides the built-in ones (steel, stainless_steel, titanium, aluminium, "
+         "inconel_718, cast_iron)");
   v.list(required("shaft"), m.shafts, "a shaft line: sections from left to right along +x");
-  if (v.clean() && v.given("shaft") && m.shafts.empty()) v.error("E35", "shaft", "the list of shafts is empty", "a deck needs a [shaft] with its sections");
-  v.list(optional("disk", "none"), m.disks, "a rigid disk or body fixed to a shaft, by mass and inertia or by its shape");
-  v.list(optional("bearing", "none"), m.bearings, "whatever connects a shaft with the ground or another shaft");
-  v.list(optional("foundation", "none"), m.foundations, "a foundation or casing as reduced stiffness, damping and mass matrices, under one or more bearings");
-  v.list(optional("unbalance", "none"), m.unbalances, "a mass times eccentricity that turns with the shaft");
+  if (v.clean() && v.given("shaft") && m.shafts.empty())
+    v.error("E35", "shaft", "the list of shafts is empty",
+            "a deck needs a [shaft] with its sections");
+  v.list(optional("disk", "none"), m.disks,
+         "a rigid disk or body fixed to a shaft, by mass and inertia or by its shape");
+  v.list(optional("bearing", "none"), m.bearings,
+         "whatever connects a shaft with the ground or another shaft");
+  v.list(optional("foundation", "none"), m.foundations,
+         "a foundation or casing as reduced stiffness, damping and mass matrices, under one or "
+         "more bearings");
+  v.list(optional("unbalance", "none"), m.unbalances,
+         "a mass times eccentricity that turns with the shaft");
   v.list(optional("load", "none"), m.loads, "forces and moments at a station");
-  v.list(optional("drive", "none"), m.drives, "what turns a shaft: a prescribed speed or angle, or a torque");
-  v.table(optional("base", "at rest"), [&](Visitor& w) { describe(w, m.base); }, "motion of the base all supports stand on");
-  v.list(optional("event", "none"), m.events, "what a transient run reports or stops at, located on its dense output");
-  v.list(optional("initial", "at rest, straight"), m.initial, "initial motion of a shaft line as a rigid body");
+  v.list(optional("drive", "none"), m.drives,
+         "what turns a shaft: a prescribed speed or angle, or a torque");
+  v.table(
+      optional("base", "at rest"), [&](Visitor& w) { describe(w, m.base); },
+      "motion of the base all supports stand on");
+  v.list(optional("event", "none"), m.events,
+         "what a transient run reports or stops at, located on its dense output");
+  v.list(optional("initial", "at rest, straight"), m.initial,
+         "initial motion of a shaft line as a rigid body");
   v.list(optional("probe", "none"), m.probes, "a place whose motion is recorded");
   v.list(optional("step", "none"), m.steps, "analyses, run in this order");
   v.table("output", m.output, "what is written, and where");

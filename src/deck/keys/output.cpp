@@ -15,48 +15,80 @@ void describe(Visitor& v, model::VtkOutput& o) {
   o.where = v.where();
   v.step(optional("step", "all transient steps"), o.step, "the step it belongs to");
   std::vector<double> window;
-  const bool has_window = v.quantities(optional("window", "the whole run"), window, "s", any, 2, "first and last time");
-  const bool every = v.quantity(optional("every", "see frames"), o.every, "ms", positive, "time between frames");
-  const bool per_rev = v.number(optional("frames_per_revolution", "see frames"), o.frames_per_revolution, positive, "frames per turn of the reference shaft");
-  const bool frames = v.integer(every || per_rev ? optional("frames", "") : Key("frames"), o.frames, between(1, 1000000), "number of frames, when neither of the two is given");
-  v.integer("max_frames", o.max_frames, between(1, 1000000), "no more frames than this are written");
+  const bool has_window =
+      v.quantities(optional("window", "the whole run"), window, "s", any, 2, "first and last time");
+  const bool every =
+      v.quantity(optional("every", "see frames"), o.every, "ms", positive, "time between frames");
+  const bool per_rev =
+      v.number(optional("frames_per_revolution", "see frames"), o.frames_per_revolution, positive,
+               "frames per turn of the reference shaft");
+  const bool frames =
+      v.integer(every || per_rev ? optional("frames", "") : Key("frames"), o.frames,
+                between(1, 1000000), "number of frames, when neither of the two is given");
+  v.integer("max_frames", o.max_frames, between(1, 1000000),
+            "no more frames than this are written");
   v.options("content", o.content, content, "what the files hold");
-  v.number("deformation_scale", o.deformation_scale, positive, "exaggeration of the lateral displacement in 'surface'");
-  v.integer("points_around", o.points_around, between(3, 1000), "points on the circumference of 'surface'");
+  v.number("deformation_scale", o.deformation_scale, positive,
+           "exaggeration of the lateral displacement in 'surface'");
+  v.integer("points_around", o.points_around, between(3, 1000),
+            "points on the circumference of 'surface'");
   if (has_window && v.clean()) {
     if (!(window[1] > window[0])) v.error("E21", "window", "the window ends before it starts");
     o.t0 = window[0];
     o.t1 = window[1];
   }
   if (v.clean() && int(every) + int(per_rev) + int(frames) > 1)
-    v.error("E26", every ? "every" : "frames_per_revolution", "the number of frames is given in more than one way", "keep one of every, frames_per_revolution and frames");
+    v.error("E26", every ? "every" : "frames_per_revolution",
+            "the number of frames is given in more than one way",
+            "keep one of every, frames_per_revolution and frames");
 }
 
 void describe(Visitor& v, model::Output& o) {
   static constexpr Option quantities[] = {
-      {"speed", "spin of each shaft"},         {"probes", "displacements of the probes"}, {"positions", "positions of the probes in space"}, {"velocity", "velocities of the probes"}, {"acceleration", "accelerations of the probes, relative to the base"}, {"rotation", "gamma, phi and its rate at the probes"}, {"bearing_force", "forces of the bearings on the shaft"},
-      {"bearing_moment", "moments and torques of the bearings that give any (tilting or torsional stiffness, friction), about their places"},
-      {"torque", "torques of the drives"},     {"energy", "energies and their balance"},
+      {"speed", "spin of each shaft"},
+      {"probes", "displacements of the probes"},
+      {"positions", "positions of the probes in space"},
+      {"velocity", "velocities of the probes"},
+      {"acceleration", "accelerations of the probes, relative to the base"},
+      {"rotation", "gamma, phi and its rate at the probes"},
+      {"bearing_force", "forces of the bearings on the shaft"},
+      {"bearing_moment",
+       "moments and torques of the bearings that give any (tilting or torsional stiffness, "
+       "friction), about their places"},
+      {"torque", "torques of the drives"},
+      {"energy", "energies and their balance"},
   };
   static constexpr Option amplitudes[] = {{"zero_to_peak", ""}, {"peak_to_peak", ""}};
   int amplitude = o.peak_to_peak ? 1 : 0;
   v.text("directory", o.directory, "folder of the results; ${deck} is the name of the deck");
-  v.quantity(optional("every", "each accepted step"), o.every, "ms", positive, "time between rows of the histories");
+  v.quantity(optional("every", "each accepted step"), o.every, "ms", positive,
+             "time between rows of the histories");
   v.options("quantities", o.quantities, quantities, "columns of the histories");
   std::vector<double> window, speeds;
-  const bool has_window = v.quantities(optional("window", "the whole run"), window, "s", any, 2, "rows of the histories only from the first to the second time");
-  const bool has_speeds = v.quantities(optional("speed_window", "all speeds"), speeds, "rpm", any, 2, "rows of the histories only while the reference spin is between these");
-  v.quantity(optional("above", "always"), o.above, "mm", positive, "rows of the histories only while a probe is displaced by more than this");
+  const bool has_window =
+      v.quantities(optional("window", "the whole run"), window, "s", any, 2,
+                   "rows of the histories only from the first to the second time");
+  const bool has_speeds =
+      v.quantities(optional("speed_window", "all speeds"), speeds, "rpm", any, 2,
+                   "rows of the histories only while the reference spin is between these");
+  v.quantity(optional("above", "always"), o.above, "mm", positive,
+             "rows of the histories only while a probe is displaced by more than this");
   if (has_window && v.clean()) {
     if (!(window[1] > window[0])) v.error("E21", "window", "the window ends before it starts");
-    o.t0 = window[0]; o.t1 = window[1];
+    o.t0 = window[0];
+    o.t1 = window[1];
   }
   if (has_speeds && v.clean()) {
-    if (!(speeds[1] > speeds[0])) v.error("E21", "speed_window", "the window ends before it starts");
-    o.speed_low = speeds[0]; o.speed_high = speeds[1];
+    if (!(speeds[1] > speeds[0]))
+      v.error("E21", "speed_window", "the window ends before it starts");
+    o.speed_low = speeds[0];
+    o.speed_high = speeds[1];
   }
-  v.table("tracking", o.tracking, "tracking filter: synchronous amplitude and phase, envelope and orbits of the probes, turn by turn");
-  v.table(optional("spectra", "none"), o.spectra, "spectra of the probes, block by block: waterfall and full spectrum");
+  v.table("tracking", o.tracking,
+          "tracking filter: synchronous amplitude and phase, envelope and orbits of the probes, "
+          "turn by turn");
+  v.table(optional("spectra", "none"), o.spectra,
+          "spectra of the probes, block by block: waterfall and full spectrum");
   v.flag("csv", o.csv, "histories as CSV");
   v.flag("binary", o.binary, "histories as HDF5");
   v.flag("report", o.report, "a report in HTML with the figures");

@@ -17,20 +17,32 @@ struct Diameters {
 /// od and id for a cylinder, or the four ends of a cone; `keys`: od, id, od_l, id_l, od_r, id_r.
 void describe_diameters(Visitor& v, Diameters& d, const char* const (&keys)[6], const char* what) {
   double od = 0, id = 0;
-  const bool cylinder = v.quantity(optional(keys[0], "see od_l and od_r"), od, "mm", positive, what);
-  const bool bore = v.quantity(optional(keys[1], "solid"), id, "mm", not_negative, "inner diameter");
-  const bool left = v.quantity(optional(keys[2], "od"), d.od_l, "mm", positive, "outer diameter at the left end of a cone");
-  const bool left_bore = v.quantity(optional(keys[3], "id"), d.id_l, "mm", not_negative, "inner diameter at the left end");
-  const bool right = v.quantity(optional(keys[4], "od, or od_l"), d.od_r, "mm", positive, "outer diameter at the right end");
-  const bool right_bore = v.quantity(optional(keys[5], "id, or id_l"), d.id_r, "mm", not_negative, "inner diameter at the right end");
+  const bool cylinder =
+      v.quantity(optional(keys[0], "see od_l and od_r"), od, "mm", positive, what);
+  const bool bore =
+      v.quantity(optional(keys[1], "solid"), id, "mm", not_negative, "inner diameter");
+  const bool left = v.quantity(optional(keys[2], "od"), d.od_l, "mm", positive,
+                               "outer diameter at the left end of a cone");
+  const bool left_bore = v.quantity(optional(keys[3], "id"), d.id_l, "mm", not_negative,
+                                    "inner diameter at the left end");
+  const bool right = v.quantity(optional(keys[4], "od, or od_l"), d.od_r, "mm", positive,
+                                "outer diameter at the right end");
+  const bool right_bore = v.quantity(optional(keys[5], "id, or id_l"), d.id_r, "mm", not_negative,
+                                     "inner diameter at the right end");
   d.given = cylinder || left || right;
   if (!v.clean()) return;
   if ((cylinder && (left || right)) || (bore && (left_bore || right_bore)))
-    v.error("E26", cylinder && (left || right) ? keys[0] : keys[1], "the diameter is given once for the section and once for its ends", "keep od, or od_l and od_r");
+    v.error("E26", cylinder && (left || right) ? keys[0] : keys[1],
+            "the diameter is given once for the section and once for its ends",
+            "keep od, or od_l and od_r");
   else if (right && !left)
     v.error("E26", keys[4], fmt::format("'{}' needs '{}'", keys[4], keys[2]));
   else if ((bore || left_bore || right_bore) && !d.given)
-    v.error("E26", bore ? keys[1] : left_bore ? keys[3] : keys[5], "an inner diameter needs an outer one");
+    v.error("E26",
+            bore        ? keys[1]
+            : left_bore ? keys[3]
+                        : keys[5],
+            "an inner diameter needs an outer one");
   if (!v.clean()) return;
   if (cylinder) d.od_l = d.od_r = od;
   if (left && !right) d.od_r = d.od_l;
@@ -38,33 +50,60 @@ void describe_diameters(Visitor& v, Diameters& d, const char* const (&keys)[6], 
   if (left_bore && !right_bore) d.id_r = d.id_l;
   const auto bore_fits = [&](double outer, double inner, const char* key, const char* end) {
     if (d.given && inner >= outer)
-      v.error("E23", key, fmt::format("the bore of {} is not smaller than the outer diameter of {}{}", units::display(inner, "mm"), units::display(outer, "mm"), end),
+      v.error("E23", key,
+              fmt::format("the bore of {} is not smaller than the outer diameter of {}{}",
+                          units::display(inner, "mm"), units::display(outer, "mm"), end),
               "these are diameters, not radii");
   };
-  if (bore && cylinder) bore_fits(od, id, keys[1], "");
+  if (bore && cylinder)
+    bore_fits(od, id, keys[1], "");
   else {
     bore_fits(d.od_l, d.id_l, bore ? keys[1] : keys[3], " at the left end");
-    if (v.clean()) bore_fits(d.od_r, d.id_r, bore ? keys[1] : right_bore ? keys[5] : keys[3], " at the right end");
+    if (v.clean())
+      bore_fits(d.od_r, d.id_r,
+                bore         ? keys[1]
+                : right_bore ? keys[5]
+                             : keys[3],
+                " at the right end");
   }
 }
 
 void describe_damping(Visitor& v, model::ShaftDamping& d) {
-  v.quantity("rayleigh_alpha", d.alpha, "1/s", not_negative, "mass-proportional damping, external (acts on the motion in fixed axes)");
-  v.quantity("external_beta", d.beta_external, "s", not_negative, "stiffness-proportional damping, external: damps at every speed");
-  v.quantity("internal_beta", d.beta_internal, "s", not_negative, "stiffness-proportional viscous damping of the shaft itself, in its rotating axes: destabilises forward whirl above the critical speed");
-  v.number("internal_loss_factor", d.loss_factor, fraction, "hysteretic damping of the shaft itself, in its rotating axes: the same loss a cycle at every frequency. Steps in the frequency domain apply it as a complex stiffness; it drives forward whirl above the critical speed");
-  const bool stand_in = v.quantity(optional("internal_loss_frequency", "no hysteretic damping in transients"), d.loss_frequency, "rad/s", positive,
-                                   "transients, where hysteretic damping has no form: viscous damping stands for it that loses as much a cycle at this frequency (Hz, rpm or rad/s), seen in rotating axes: |whirl frequency - spin|");
-  if (v.clean() && stand_in && d.loss_factor == 0) v.error("E26", "internal_loss_frequency", "'internal_loss_frequency' belongs to an internal_loss_factor");
-  v.quantity("torsion_beta", d.beta_torsion, "s", not_negative, "stiffness-proportional damping of the twist");
+  v.quantity("rayleigh_alpha", d.alpha, "1/s", not_negative,
+             "mass-proportional damping, external (acts on the motion in fixed axes)");
+  v.quantity("external_beta", d.beta_external, "s", not_negative,
+             "stiffness-proportional damping, external: damps at every speed");
+  v.quantity("internal_beta", d.beta_internal, "s", not_negative,
+             "stiffness-proportional viscous damping of the shaft itself, in its rotating axes: "
+             "destabilises forward whirl above the critical speed");
+  v.number("internal_loss_factor", d.loss_factor, fraction,
+           "hysteretic damping of the shaft itself, in its rotating axes: the same loss a cycle at "
+           "every frequency. Steps in the frequency domain apply it as a complex stiffness; it "
+           "drives forward whirl above the critical speed");
+  const bool stand_in =
+      v.quantity(optional("internal_loss_frequency", "no hysteretic damping in transients"),
+                 d.loss_frequency, "rad/s", positive,
+                 "transients, where hysteretic damping has no form: viscous damping stands for it "
+                 "that loses as much a cycle at this frequency (Hz, rpm or rad/s), seen in "
+                 "rotating axes: |whirl frequency - spin|");
+  if (v.clean() && stand_in && d.loss_factor == 0)
+    v.error("E26", "internal_loss_frequency",
+            "'internal_loss_frequency' belongs to an internal_loss_factor");
+  v.quantity("torsion_beta", d.beta_torsion, "s", not_negative,
+             "stiffness-proportional damping of the twist");
 }
 
 void describe_shear(Visitor& v, model::Section& s) {
   v.choice("shear", s.shear,
-           {{"cowper", "shear factor after Cowper (1966)"}, {"hutchinson", "after Hutchinson (2001)"}, {"none", "no shear deformation (Euler-Bernoulli)"}, {"given", "the value of kappa"}},
+           {{"cowper", "shear factor after Cowper (1966)"},
+            {"hutchinson", "after Hutchinson (2001)"},
+            {"none", "no shear deformation (Euler-Bernoulli)"},
+            {"given", "the value of kappa"}},
            "shear deformation of the sections");
-  const bool kappa = v.number(optional("kappa", "from shear"), s.kappa, Range{0, 2, true, false}, "shear factor, with shear = \"given\"");
-  v.flag("rotary_inertia", s.rotary_inertia, "rotary inertia of the cross-sections (false: as in the Euler-Bernoulli beam)");
+  const bool kappa = v.number(optional("kappa", "from shear"), s.kappa, Range{0, 2, true, false},
+                              "shear factor, with shear = \"given\"");
+  v.flag("rotary_inertia", s.rotary_inertia,
+         "rotary inertia of the cross-sections (false: as in the Euler-Bernoulli beam)");
   if (!v.clean()) return;
   const bool wanted = s.shear == model::ShearFactor::given;
   if (kappa && !wanted) v.error("E26", "kappa", "'kappa' is given, but shear is not \"given\"");
@@ -74,20 +113,39 @@ void describe_shear(Visitor& v, model::Section& s) {
 void describe_piece(Visitor& v, Path& path) {
   Vec3 to = Vec3::Zero(), through = Vec3::Zero(), centre = Vec3::Zero(), axis = Vec3::UnitZ();
   double angle = 0;
-  const bool has_to = v.vector(optional("to", "an arc of an angle about a centre"), to, "mm", "end of the piece: a straight one unless 'through' is given");
-  const bool has_through = v.vector(optional("through", "straight"), through, "mm", "a point on the way: a circular arc through it");
-  const bool has_centre = v.vector(optional("centre", "not used"), centre, "mm", "a point on the axis of an arc that begins where the piece before ends");
-  v.vector(optional("axis", "[0, 0, 1]"), axis, "", "direction of that axis; the arc turns about it by the right-hand rule");
-  const bool has_angle = v.quantity(optional("angle", "not used"), angle, "deg", any, "of the arc about that axis");
+  const bool has_to = v.vector(optional("to", "an arc of an angle about a centre"), to, "mm",
+                               "end of the piece: a straight one unless 'through' is given");
+  const bool has_through = v.vector(optional("through", "straight"), through, "mm",
+                                    "a point on the way: a circular arc through it");
+  const bool has_centre =
+      v.vector(optional("centre", "not used"), centre, "mm",
+               "a point on the axis of an arc that begins where the piece before ends");
+  v.vector(optional("axis", "[0, 0, 1]"), axis, "",
+           "direction of that axis; the arc turns about it by the right-hand rule");
+  const bool has_angle =
+      v.quantity(optional("angle", "not used"), angle, "deg", any, "of the arc about that axis");
   if (!v.clean()) return;
-  if (has_to == has_centre) v.error("E26", has_to ? "centre" : nullptr, has_to ? "the piece has an end and a centre" : "the piece has neither an end nor a centre", "give 'to' (and 'through' for an arc), or 'centre' and 'angle'");
-  else if (has_centre != has_angle) v.error("E26", has_angle ? "angle" : "centre", "an arc about a centre needs 'centre' and 'angle'");
-  else if (has_through && has_centre) v.error("E26", "through", "'through' goes with 'to', not with 'centre'");
+  if (has_to == has_centre)
+    v.error(
+        "E26", has_to ? "centre" : nullptr,
+        has_to ? "the piece has an end and a centre" : "the piece has neither an end nor a centre",
+        "give 'to' (and 'through' for an arc), or 'centre' and 'angle'");
+  else if (has_centre != has_angle)
+    v.error("E26", has_angle ? "angle" : "centre",
+            "an arc about a centre needs 'centre' and 'angle'");
+  else if (has_through && has_centre)
+    v.error("E26", "through", "'through' goes with 'to', not with 'centre'");
   if (!v.clean()) return;
   if (has_centre) {
-    if (!path.add_arc_about(centre, axis, angle)) v.error("E26", "centre", "there is no such arc: the axis goes through its start, or has no direction, or the angle is zero or more than two turns");
+    if (!path.add_arc_about(centre, axis, angle))
+      v.error("E26", "centre",
+              "there is no such arc: the axis goes through its start, or has no direction, or the "
+              "angle is zero or more than two turns");
   } else if (has_through) {
-    if (!path.add_arc_through(through, to)) v.error("E26", "through", "there is no such arc: its three points are in one line, or two of them are one", "leave 'through' out for a straight piece");
+    if (!path.add_arc_through(through, to))
+      v.error("E26", "through",
+              "there is no such arc: its three points are in one line, or two of them are one",
+              "leave 'through' out for a straight piece");
   } else if (!path.add_line(to)) {
     v.error("E26", "to", "the piece ends where it starts");
   }
@@ -97,14 +155,24 @@ void describe_piece(Visitor& v, Path& path) {
 constexpr double length_digits = 1e-6;
 
 void check_path(Visitor& v, const model::Shaft& s) {
-  const std::string who = s.name.empty() ? std::string("the shaft") : fmt::format("shaft '{}'", s.name);
-  if (s.rotating) v.error("E26", "path", fmt::format("{} has a path: a line that is not straight cannot turn about itself", who), "write rotating = false");
-  if (s.bow.amount != 0) v.error("E26", "bow", fmt::format("{} has a path and a bow", who), "put the bow into the path");
+  const std::string who =
+      s.name.empty() ? std::string("the shaft") : fmt::format("shaft '{}'", s.name);
+  if (s.rotating)
+    v.error("E26", "path",
+            fmt::format("{} has a path: a line that is not straight cannot turn about itself", who),
+            "write rotating = false");
+  if (s.bow.amount != 0)
+    v.error("E26", "bow", fmt::format("{} has a path and a bow", who), "put the bow into the path");
   for (const auto& x : s.sections)
-    if (x.rigid) v.error("E26", "path", fmt::format("section '{}' is rigid: on a path every section is elastic", x.name), "give it a large stiffness by constants");
+    if (x.rigid)
+      v.error("E26", "path",
+              fmt::format("section '{}' is rigid: on a path every section is elastic", x.name),
+              "give it a large stiffness by constants");
   const double have = s.length(), want = s.path.length();
   if (v.clean() && std::abs(have - want) > length_digits * want)
-    v.error("E25", "path", fmt::format("the path is {:.10g} m long, the sections together {:.10g} m", want, have), "lengths of sections are measured along the path");
+    v.error("E25", "path",
+            fmt::format("the path is {:.10g} m long, the sections together {:.10g} m", want, have),
+            "lengths of sections are measured along the path");
 }
 
 }  // namespace
@@ -121,64 +189,105 @@ void describe(Visitor& v, model::Material& m) {
   if (!(m.E > 0)) v.error("E36", "E", "Young's modulus must be positive");
   if (G && !(m.G > 0)) v.error("E36", "G", "the shear modulus must be positive");
   if (!(m.rho >= 0)) v.error("E36", "density", "the density must not be negative");
-  if (nu && !(m.nu > -1 && m.nu <= 0.5)) v.error("E36", "nu", fmt::format("Poisson's ratio {} lies outside -1 to 0.5", m.nu));
+  if (nu && !(m.nu > -1 && m.nu <= 0.5))
+    v.error("E36", "nu", fmt::format("Poisson's ratio {} lies outside -1 to 0.5", m.nu));
   if (!v.clean()) return;
-  if (!G) m.G = m.E / (2 * (1 + m.nu));
-  else if (!nu) m.nu = m.E / (2 * m.G) - 1;
-  else if (std::abs(m.G * 2 * (1 + m.nu) / m.E - 1) > 0.02)   // rounded handbook values agree to better than 2 %
-    v.error("E36", "G", fmt::format("G and nu contradict each other: E/(2(1+nu)) is {}", units::display(m.E / (2 * (1 + m.nu)), "GPa")), "leave one of them out");
-  if (G && !nu && !(m.nu > -1 && m.nu <= 0.5)) v.error("E36", "G", fmt::format("E and G give Poisson's ratio {:.3g}, outside -1 to 0.5", m.nu), "check both moduli");
+  if (!G)
+    m.G = m.E / (2 * (1 + m.nu));
+  else if (!nu)
+    m.nu = m.E / (2 * m.G) - 1;
+  else if (std::abs(m.G * 2 * (1 + m.nu) / m.E - 1) >
+           0.02)  // rounded handbook values agree to better than 2 %
+    v.error("E36", "G",
+            fmt::format("G and nu contradict each other: E/(2(1+nu)) is {}",
+                        units::display(m.E / (2 * (1 + m.nu)), "GPa")),
+            "leave one of them out");
+  if (G && !nu && !(m.nu > -1 && m.nu <= 0.5))
+    v.error("E36", "G", fmt::format("E and G give Poisson's ratio {:.3g}, outside -1 to 0.5", m.nu),
+            "check both moduli");
 }
 
 void describe(Visitor& v, model::Section& s) {
   static constexpr const char* keys[6] = {"od", "id", "od_l", "id_l", "od_r", "id_r"};
-  static constexpr const char* stiffness_keys[6] = {"stiffness_od", "stiffness_id", "stiffness_od_l", "stiffness_id_l", "stiffness_od_r", "stiffness_id_r"};
+  static constexpr const char* stiffness_keys[6] = {"stiffness_od",   "stiffness_id",
+                                                    "stiffness_od_l", "stiffness_id_l",
+                                                    "stiffness_od_r", "stiffness_id_r"};
   v.name(s, "section");
   double from = 0;
-  v.quantity(optional("from", "the end of the section before"), from, "mm", any, "start of the section, checked against the end of the one before");
+  v.quantity(optional("from", "the end of the section before"), from, "mm", any,
+             "start of the section, checked against the end of the one before");
   v.quantity(required("length"), s.length, "mm", positive, "length along the shaft");
   Diameters d;
   describe_diameters(v, d, keys, "outer diameter (mass and stiffness)");
   Diameters stiffness;
-  describe_diameters(v, stiffness, stiffness_keys, "outer diameter for the stiffness, where it differs from that for the mass (sleeves, shrink fits)");
-  if (v.material(optional("material", "that of the shaft"), s.material, "name of a material") && s.material == no_material) s.material = 0;
+  describe_diameters(v, stiffness, stiffness_keys,
+                     "outer diameter for the stiffness, where it differs from that for the mass "
+                     "(sleeves, shrink fits)");
+  if (v.material(optional("material", "that of the shaft"), s.material, "name of a material") &&
+      s.material == no_material)
+    s.material = 0;
   v.flag("rigid", s.rigid, "a rigid link: no deformation, and no mass unless it has diameters");
   describe_shear(v, s);
-  v.quantity("temperature_rise", s.temperature_rise, "K", any, "above the temperature at which the section has its length; needs the expansion of the material");
-  v.quantity("added_mass", s.added_mass_per_length, "kg/m", not_negative, "distributed mass without stiffness");
-  v.integer(optional("min_elements", "model.mesh"), s.min_elements, between(1, 10000), "least number of elements");
-  v.quantity(optional("max_element_length", "model.mesh"), s.max_element_length, "mm", positive, "longest element");
-  v.table(optional("general", "a round section"), [&](Visitor& w) {
-    model::Section::General g;
-    w.quantity(required("A"), g.A, "mm^2", positive, "area");
-    w.quantity(required("Iy"), g.Iy, "mm^4", positive, "second moment of area about the section's y axis (bending in the x-z plane)");
-    w.quantity(required("Iz"), g.Iz, "mm^4", positive, "second moment of area about the section's z axis");
-    w.quantity(required("J"), g.J, "mm^4", positive, "torsion constant");
-    w.number(required("kappa_y"), g.kappa_y, positive, "shear factor along y");
-    w.number(required("kappa_z"), g.kappa_z, positive, "shear factor along z");
-    w.quantity("angle", g.angle, "deg", any, "of the section's y axis from that of the shaft, towards z");
-    if (w.clean()) s.general = g;
-  }, "a section that is not round: keyed, slotted, rectangular");
-  v.table(optional("constants", "from diameters and material"), [&](Visitor& w) {
-    model::Section::Constants c;
-    w.quantity(required("EA"), c.EA, "N", positive, "axial stiffness");
-    w.quantity(required("kGA"), c.kGA, "N", positive, "shear stiffness");
-    w.quantity(required("GJ"), c.GJ, "N.m^2", positive, "torsional stiffness");
-    w.quantity(required("EI"), c.EI, "N.m^2", positive, "bending stiffness");
-    w.quantity(required("rhoA"), c.rhoA, "kg/m", not_negative, "mass per length");
-    w.quantity(required("rhoI"), c.rhoI, "kg.m", not_negative, "transverse inertia per length");
-    w.quantity(required("rhoIp"), c.rhoIp, "kg.m", not_negative, "polar inertia per length");
-    if (w.clean()) s.constants = c;
-  }, "stiffness and inertia of the section given directly; diameters are then for pictures only");
+  v.quantity("temperature_rise", s.temperature_rise, "K", any,
+             "above the temperature at which the section has its length; needs the expansion of "
+             "the material");
+  v.quantity("added_mass", s.added_mass_per_length, "kg/m", not_negative,
+             "distributed mass without stiffness");
+  v.integer(optional("min_elements", "model.mesh"), s.min_elements, between(1, 10000),
+            "least number of elements");
+  v.quantity(optional("max_element_length", "model.mesh"), s.max_element_length, "mm", positive,
+             "longest element");
+  v.table(
+      optional("general", "a round section"),
+      [&](Visitor& w) {
+        model::Section::General g;
+        w.quantity(required("A"), g.A, "mm^2", positive, "area");
+        w.quantity(required("Iy"), g.Iy, "mm^4", positive,
+                   "second moment of area about the section's y axis (bending in the x-z plane)");
+        w.quantity(required("Iz"), g.Iz, "mm^4", positive,
+                   "second moment of area about the section's z axis");
+        w.quantity(required("J"), g.J, "mm^4", positive, "torsion constant");
+        w.number(required("kappa_y"), g.kappa_y, positive, "shear factor along y");
+        w.number(required("kappa_z"), g.kappa_z, positive, "shear factor along z");
+        w.quantity("angle", g.angle, "deg", any,
+                   "of the section's y axis from that of the shaft, towards z");
+        if (w.clean()) s.general = g;
+      },
+      "a section that is not round: keyed, slotted, rectangular");
+  v.table(
+      optional("constants", "from diameters and material"),
+      [&](Visitor& w) {
+        model::Section::Constants c;
+        w.quantity(required("EA"), c.EA, "N", positive, "axial stiffness");
+        w.quantity(required("kGA"), c.kGA, "N", positive, "shear stiffness");
+        w.quantity(required("GJ"), c.GJ, "N.m^2", positive, "torsional stiffness");
+        w.quantity(required("EI"), c.EI, "N.m^2", positive, "bending stiffness");
+        w.quantity(required("rhoA"), c.rhoA, "kg/m", not_negative, "mass per length");
+        w.quantity(required("rhoI"), c.rhoI, "kg.m", not_negative, "transverse inertia per length");
+        w.quantity(required("rhoIp"), c.rhoIp, "kg.m", not_negative, "polar inertia per length");
+        if (w.clean()) s.constants = c;
+      },
+      "stiffness and inertia of the section given directly; diameters are then for pictures only");
   if (!v.clean()) return;
-  s.od_l = d.od_l; s.id_l = d.id_l; s.od_r = d.od_r; s.id_r = d.id_r;
-  if (stiffness.given) s.stiffness_diameters = {stiffness.od_l, stiffness.id_l, stiffness.od_r, stiffness.id_r};
-  if (s.general && s.constants) v.error("E26", "constants", "the section is given by 'general' and by 'constants'", "keep one of the two");
-  else if (!s.rigid && !s.general && !s.constants && !d.given) v.error("E05", nullptr, fmt::format("section '{}' has no diameter", s.name), "give od, or od_l and od_r");
-  else if (s.rigid && (s.general || s.constants)) v.error("E26", "rigid", "a rigid section has no stiffness of its own");
+  s.od_l = d.od_l;
+  s.id_l = d.id_l;
+  s.od_r = d.od_r;
+  s.id_r = d.id_r;
+  if (stiffness.given)
+    s.stiffness_diameters = {stiffness.od_l, stiffness.id_l, stiffness.od_r, stiffness.id_r};
+  if (s.general && s.constants)
+    v.error("E26", "constants", "the section is given by 'general' and by 'constants'",
+            "keep one of the two");
+  else if (!s.rigid && !s.general && !s.constants && !d.given)
+    v.error("E05", nullptr, fmt::format("section '{}' has no diameter", s.name),
+            "give od, or od_l and od_r");
+  else if (s.rigid && (s.general || s.constants))
+    v.error("E26", "rigid", "a rigid section has no stiffness of its own");
   const bool needs_material = !s.constants && (!s.rigid || d.given);
   if (s.material == no_material) {
-    if (needs_material && v.clean()) v.error("E05", nullptr, fmt::format("section '{}' has no material", s.name), "give material = \"steel\" here or for the whole shaft");
+    if (needs_material && v.clean())
+      v.error("E05", nullptr, fmt::format("section '{}' has no material", s.name),
+              "give material = \"steel\" here or for the whole shaft");
     s.material = 0;
   }
 }
@@ -190,26 +299,49 @@ void describe(Visitor& v, model::Shaft& s) {
   start.min_elements = v.model().min_elements;
   start.max_element_length = v.model().max_element_length;
   v.vector("origin", s.origin, "mm", "position of the left end");
-  if (v.material(optional("material", "given by each section"), start.material, "material of all sections that do not name another") && start.material == no_material)
-    start.material = 0;   // unknown, and reported: not to be reported again for each section
+  if (v.material(optional("material", "given by each section"), start.material,
+                 "material of all sections that do not name another") &&
+      start.material == no_material)
+    start.material = 0;  // unknown, and reported: not to be reported again for each section
   const auto piece = [&](Visitor& w) { describe_piece(w, s.path); };
-  const auto piece_prototype = [](Visitor& w) { Path p; describe_piece(w, p); };
+  const auto piece_prototype = [](Visitor& w) {
+    Path p;
+    describe_piece(w, p);
+  };
   s.path = Path(s.origin);
-  v.list(optional("path", "straight along x"), {piece, piece_prototype}, "the line of a casing, frame or pipe that is not straight, piece by piece from the origin; needs rotating = false. Section axes y, z are carried along it without twist from the global axes turned to its first direction; supports, loads and probes act in global axes");
+  v.list(
+      optional("path", "straight along x"), {piece, piece_prototype},
+      "the line of a casing, frame or pipe that is not straight, piece by piece from the origin; "
+      "needs rotating = false. Section axes y, z are carried along it without twist from the "
+      "global axes turned to its first direction; supports, loads and probes act in global axes");
   describe_shear(v, start);
   v.flag("rotating", s.rotating, "false: a casing or foundation beam that does not turn");
-  v.number("speed_ratio", s.speed_ratio, any, "speed relative to the reference speed of frequency-domain steps; negative: turns the other way");
-  v.quantity("initial_spin", s.spin0, "rpm", any, "spin at the start of transients, unless the step or a drive says otherwise");
+  v.number("speed_ratio", s.speed_ratio, any,
+           "speed relative to the reference speed of frequency-domain steps; negative: turns the "
+           "other way");
+  v.quantity("initial_spin", s.spin0, "rpm", any,
+             "spin at the start of transients, unless the step or a drive says otherwise");
   v.quantity("axial_preload", s.axial_preload, "N", any,
-             "axial force in the undeformed shaft, tension positive, as of a shaft clamped between supports under tension: what holds its ends along the axis must "
+             "axial force in the undeformed shaft, tension positive, as of a shaft clamped between "
+             "supports under tension: what holds its ends along the axis must "
              "balance it, and where an end is free it relaxes");
-  v.quantity("axial_force", s.axial_force, "N", any, "axial force that pulls at both ends of the shaft, tension positive: a load that stays whatever the shaft does");
-  v.quantity("temperature_rise", start.temperature_rise, "K", any, "of all sections that do not give another: the shaft grows, or its supports hold it back");
-  v.table(optional("bow", "straight"), [&](Visitor& w) {
-    w.quantity(required("amount"), s.bow.amount, "um", positive, "largest deviation, at mid-length");
-    w.quantity("phase", s.bow.phase, "deg", any, "angle on the shaft from e2 towards e3");
-  }, "residual bow of the unloaded shaft, half a sine from end to end; it turns with the shaft");
-  v.table("damping", [&](Visitor& w) { describe_damping(w, s.damping); }, "damping of the shaft material and its surroundings");
+  v.quantity("axial_force", s.axial_force, "N", any,
+             "axial force that pulls at both ends of the shaft, tension positive: a load that "
+             "stays whatever the shaft does");
+  v.quantity(
+      "temperature_rise", start.temperature_rise, "K", any,
+      "of all sections that do not give another: the shaft grows, or its supports hold it back");
+  v.table(
+      optional("bow", "straight"),
+      [&](Visitor& w) {
+        w.quantity(required("amount"), s.bow.amount, "um", positive,
+                   "largest deviation, at mid-length");
+        w.quantity("phase", s.bow.phase, "deg", any, "angle on the shaft from e2 towards e3");
+      },
+      "residual bow of the unloaded shaft, half a sine from end to end; it turns with the shaft");
+  v.table(
+      "damping", [&](Visitor& w) { describe_damping(w, s.damping); },
+      "damping of the shaft material and its surroundings");
 
   // sections, with the checks that need the one before
   double end = 0;
@@ -222,17 +354,28 @@ void describe(Visitor& v, model::Shaft& s) {
       w.quantity(optional("from", ""), from, "mm", any, "");
       // positions written with three decimals of a millimetre agree to half a micrometre
       if (std::abs(from - end) > 0.5e-6)
-        w.error("E25", "from", fmt::format("section '{}' starts at {}, but the one before ends at {}: {}", x.name, units::display(from, "mm"), units::display(end, "mm"),
-                                           from < end ? "they overlap" : "there is a gap"));
+        w.error("E25", "from",
+                fmt::format("section '{}' starts at {}, but the one before ends at {}: {}", x.name,
+                            units::display(from, "mm"), units::display(end, "mm"),
+                            from < end ? "they overlap" : "there is a gap"));
     }
     end += x.length;
   };
-  const auto prototype = [&](Visitor& w) { model::Section x = start; describe(w, x); };
+  const auto prototype = [&](Visitor& w) {
+    model::Section x = start;
+    describe(w, x);
+  };
   const bool rows = v.rows({add, prototype}, false, "the sections as a table");
   const bool tables = v.given("section");
-  if (rows && tables && v.clean()) v.error("E26", "section", "the sections are given by rows and by [[shaft.section]]", "keep one of the two");
-  v.list(optional("section", "the rows"), {add, prototype}, "the sections one by one, from left to right; needed for rigid links, general sections and constants");
-  if (v.clean() && s.sections.empty()) v.error("E05", nullptr, fmt::format("shaft '{}' has no sections", s.name), "give columns and rows, file = \"shaft.csv\", or [[shaft.section]]");
+  if (rows && tables && v.clean())
+    v.error("E26", "section", "the sections are given by rows and by [[shaft.section]]",
+            "keep one of the two");
+  v.list(optional("section", "the rows"), {add, prototype},
+         "the sections one by one, from left to right; needed for rigid links, general sections "
+         "and constants");
+  if (v.clean() && s.sections.empty())
+    v.error("E05", nullptr, fmt::format("shaft '{}' has no sections", s.name),
+            "give columns and rows, file = \"shaft.csv\", or [[shaft.section]]");
   if (v.clean() && !s.path.empty()) check_path(v, s);
 }
 

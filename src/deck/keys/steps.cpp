@@ -8,22 +8,37 @@
 namespace whirl::deck {
 
 void describe(Visitor& v, model::SpeedRange& r) {
-  static constexpr Option refine[] = {{"no", "the points alone"}, {"peaks", "more points where the response peaks"}};
+  static constexpr Option refine[] = {{"no", "the points alone"},
+                                      {"peaks", "more points where the response peaks"}};
   int i = 0;
   v.quantity(optional("start", "\"0 rpm\""), r.start, "rpm", any, "first speed");
-  const bool stop = v.quantity(optional("stop", "values are given"), r.stop, "rpm", any, "last speed");
-  const bool points = v.integer(optional("points", "values are given"), r.points, between(1, 1000000), "number of speeds, equally spaced");
-  const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "rpm", any, -1, "the speeds one by one");
+  const bool stop =
+      v.quantity(optional("stop", "values are given"), r.stop, "rpm", any, "last speed");
+  const bool points = v.integer(optional("points", "values are given"), r.points,
+                                between(1, 1000000), "number of speeds, equally spaced");
+  const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "rpm", any,
+                                   -1, "the speeds one by one");
   v.option("refine", i, refine, "refinement");
   r.refine_peaks = i == 1;
   if (!v.clean()) return;
-  if (values && (stop || points || v.given("start"))) v.error("E26", "values", "the speeds are given by 'values' and by 'start', 'stop', 'points'", "keep one of the two");
-  else if (!values && (!stop || !points)) v.error("E05", nullptr, fmt::format("the speeds lack '{}'", stop ? "points" : "stop"), "speed = { start = \"0 rpm\", stop = \"14000 rpm\", points = 71 }");
-  else if (values && r.values.empty()) v.error("E20", "values", "at least one speed is needed");
+  if (values && (stop || points || v.given("start")))
+    v.error("E26", "values", "the speeds are given by 'values' and by 'start', 'stop', 'points'",
+            "keep one of the two");
+  else if (!values && (!stop || !points))
+    v.error("E05", nullptr, fmt::format("the speeds lack '{}'", stop ? "points" : "stop"),
+            "speed = { start = \"0 rpm\", stop = \"14000 rpm\", points = 71 }");
+  else if (values && r.values.empty())
+    v.error("E20", "values", "at least one speed is needed");
   else if (!values && r.points > 1 && !(r.stop > r.start))
-    v.error("E21", "stop", fmt::format("the range ends at {}, not above its start at {}", units::display(r.stop, "rpm"), units::display(r.start, "rpm")));
+    v.error("E21", "stop",
+            fmt::format("the range ends at {}, not above its start at {}",
+                        units::display(r.stop, "rpm"), units::display(r.start, "rpm")));
   for (std::size_t k = 1; v.clean() && k < r.values.size(); ++k)
-    if (!(r.values[k] > r.values[k - 1])) v.error("E21", "values", fmt::format("the speeds do not increase: {} after {}", units::display(r.values[k], "rpm"), units::display(r.values[k - 1], "rpm")));
+    if (!(r.values[k] > r.values[k - 1]))
+      v.error(
+          "E21", "values",
+          fmt::format("the speeds do not increase: {} after {}", units::display(r.values[k], "rpm"),
+                      units::display(r.values[k - 1], "rpm")));
 }
 
 void describe(Visitor& v, model::IntegratorOptions& o) {
@@ -40,14 +55,27 @@ void describe(Visitor& v, model::IntegratorOptions& o) {
     if (o.method == methods[k].name) i = static_cast<int>(k);
   v.option("method", i, methods, "integration scheme");
   o.method = methods[i].name;
-  v.number("tolerance", o.tolerance, Range{0, 1, true, true}, "accuracy wanted, relative to the peak response of each kind of quantity; in films, to the clearance where that is less");
-  v.number("rho_inf", o.rho_inf, fraction, "spectral radius at infinite frequency, of generalized_alpha");
-  const bool fixed = v.quantity(optional("dt", "adaptive"), o.dt, "ms", positive, "fixed time step");
-  const bool max = v.quantity(optional("dt_max", "no limit"), o.dt_max, "ms", positive, "largest adaptive step");
-  const bool min = v.quantity(optional("dt_min", "no limit"), o.dt_min, "ms", positive, "smallest adaptive step");
-  const bool first = v.quantity(optional("dt_first", "chosen"), o.dt_first, "ms", positive, "first adaptive step");
-  if (v.clean() && fixed && (max || min || first)) v.error("E26", max ? "dt_max" : min ? "dt_min" : "dt_first", "'dt' fixes the step, so there is nothing to adapt", "leave one of them out");
-  if (v.clean() && max && min && o.dt_min > o.dt_max) v.error("E26", "dt_min", "'dt_min' is larger than 'dt_max'");
+  v.number("tolerance", o.tolerance, Range{0, 1, true, true},
+           "accuracy wanted, relative to the peak response of each kind of quantity; in films, to "
+           "the clearance where that is less");
+  v.number("rho_inf", o.rho_inf, fraction,
+           "spectral radius at infinite frequency, of generalized_alpha");
+  const bool fixed =
+      v.quantity(optional("dt", "adaptive"), o.dt, "ms", positive, "fixed time step");
+  const bool max =
+      v.quantity(optional("dt_max", "no limit"), o.dt_max, "ms", positive, "largest adaptive step");
+  const bool min = v.quantity(optional("dt_min", "no limit"), o.dt_min, "ms", positive,
+                              "smallest adaptive step");
+  const bool first =
+      v.quantity(optional("dt_first", "chosen"), o.dt_first, "ms", positive, "first adaptive step");
+  if (v.clean() && fixed && (max || min || first))
+    v.error("E26",
+            max   ? "dt_max"
+            : min ? "dt_min"
+                  : "dt_first",
+            "'dt' fixes the step, so there is nothing to adapt", "leave one of them out");
+  if (v.clean() && max && min && o.dt_min > o.dt_max)
+    v.error("E26", "dt_min", "'dt_min' is larger than 'dt_max'");
 }
 
 namespace {
@@ -61,43 +89,86 @@ void check_orders(Visitor& v, const std::vector<double>& orders) {
 }  // namespace
 
 void describe(Visitor& v, model::LoadPath& p) {
-  v.choice("control", p.control, {{"arc_length", "steps along the path, in load and displacements together"}, {"displacement", "equal steps of one displacement or angle"}}, "what is stepped");
-  const bool load = v.number(optional("load", "1, with arc_length"), p.last_load, any, "arc_length: load factor at which the path ends (1 = the loads of the deck)");
-  const bool at = v.location(optional("at", "control = \"arc_length\""), p.at, "displacement: where the controlled displacement is");
-  const bool which = v.choice(optional("direction", "y"), p.direction, {{"x", "along the shaft"}, {"y", "along y"}, {"z", "along z"}, {"rx", "turn about the axis"}}, "displacement: which one");
-  const bool along = v.quantity(optional("to", "control = \"arc_length\", or an angle"), p.to, "mm", any, "displacement: its last value");
-  const bool turn = v.quantity(optional("to_angle", "control = \"arc_length\", or a displacement"), p.to, "deg", any, "displacement with direction = \"rx\": its last value");
-  v.integer("steps", p.steps, between(1, 100000), "displacement: number of steps; arc_length: about as many for a straight path");
+  v.choice("control", p.control,
+           {{"arc_length", "steps along the path, in load and displacements together"},
+            {"displacement", "equal steps of one displacement or angle"}},
+           "what is stepped");
+  const bool load =
+      v.number(optional("load", "1, with arc_length"), p.last_load, any,
+               "arc_length: load factor at which the path ends (1 = the loads of the deck)");
+  const bool at = v.location(optional("at", "control = \"arc_length\""), p.at,
+                             "displacement: where the controlled displacement is");
+  const bool which = v.choice(
+      optional("direction", "y"), p.direction,
+      {{"x", "along the shaft"}, {"y", "along y"}, {"z", "along z"}, {"rx", "turn about the axis"}},
+      "displacement: which one");
+  const bool along = v.quantity(optional("to", "control = \"arc_length\", or an angle"), p.to, "mm",
+                                any, "displacement: its last value");
+  const bool turn =
+      v.quantity(optional("to_angle", "control = \"arc_length\", or a displacement"), p.to, "deg",
+                 any, "displacement with direction = \"rx\": its last value");
+  v.integer("steps", p.steps, between(1, 100000),
+            "displacement: number of steps; arc_length: about as many for a straight path");
   v.integer("max_points", p.max_points, between(2, 1000000), "the path ends here at the latest");
-  const bool branch = v.integer(optional("branch", "the primary path"), p.branch, between(-100, 100), "arc_length: follow what branches off at the bifurcation of this number on the path (1 the first), negative: to its other side");
+  const bool branch =
+      v.integer(optional("branch", "the primary path"), p.branch, between(-100, 100),
+                "arc_length: follow what branches off at the bifurcation of this number on the "
+                "path (1 the first), negative: to its other side");
   if (!v.clean()) return;
   const bool control = p.control == model::LoadPath::Control::displacement;
-  const auto odd = [&](const char* key, const char* other) { v.error("E26", key, fmt::format("'{}' belongs to control = \"{}\"", key, other)); };
+  const auto odd = [&](const char* key, const char* other) {
+    v.error("E26", key, fmt::format("'{}' belongs to control = \"{}\"", key, other));
+  };
   if (control && load) odd("load", "arc_length");
   if (control && branch) return odd("branch", "arc_length");
-  if (branch && p.branch == 0) return v.error("E14", "branch", "bifurcations are numbered from 1", "branch = 1, or branch = -1 for the other side");
+  if (branch && p.branch == 0)
+    return v.error("E14", "branch", "bifurcations are numbered from 1",
+                   "branch = 1, or branch = -1 for the other side");
   if (!control)
-    for (const auto& [given, key] : {std::pair{at, "at"}, {which, "direction"}, {along, "to"}, {turn, "to_angle"}})
+    for (const auto& [given, key] :
+         {std::pair{at, "at"}, {which, "direction"}, {along, "to"}, {turn, "to_angle"}})
       if (given) return odd(key, "displacement");
   if (!control) {
     if (p.last_load == 0) v.error("E14", "load", "a path to load factor 0 is no path");
     return;
   }
   const bool angle = p.direction == 3;
-  if (!at) v.error("E05", nullptr, "displacement control lacks 'at'", "at = \"disk\", direction = \"y\", to = \"-5 mm\"");
+  if (!at)
+    v.error("E05", nullptr, "displacement control lacks 'at'",
+            "at = \"disk\", direction = \"y\", to = \"-5 mm\"");
   else if (angle ? !turn || along : !along || turn)
-    v.error("E05", nullptr, fmt::format("displacement control with direction = \"{}\" needs '{}'", angle ? "rx" : p.direction == 0 ? "x" : p.direction == 1 ? "y" : "z", angle ? "to_angle" : "to"));
-  else if (p.to == 0) v.error("E14", angle ? "to_angle" : "to", "a path to displacement 0 is no path");
+    v.error("E05", nullptr,
+            fmt::format("displacement control with direction = \"{}\" needs '{}'",
+                        angle              ? "rx"
+                        : p.direction == 0 ? "x"
+                        : p.direction == 1 ? "y"
+                                           : "z",
+                        angle ? "to_angle" : "to"));
+  else if (p.to == 0)
+    v.error("E14", angle ? "to_angle" : "to", "a path to displacement 0 is no path");
 }
 
 void describe(Visitor& v, model::StaticStep& s) {
-  v.integer("load_steps", s.load_steps, between(1, 100000), "number of parts in which gravity and the loads are put on (more where needed)");
-  s.speed_given = v.quantity(optional("speed", "what the drives prescribe at time 0, else the shafts' initial_spin"), s.speed, "rpm", any,
-                             "speed of the rotor, whatever drives prescribe: every shaft at its speed_ratio");
-  v.table(optional("speeds", "speed alone"), s.speeds, "equilibria at these speeds instead, one after another: locus, eccentricity, load and the eight coefficients of each bearing against speed; later steps start from the last one");
-  v.table(optional("path", "one equilibrium, at the full load"), s.path, "follow the equilibria from no load past limit points (snap-through) and, with branch, off bifurcations (buckling); a path that does not reach its load is an error");
-  if (v.clean() && s.path && s.load_steps > 1) v.error("E26", "load_steps", "a path has its own steps", "use path.steps");
-  if (v.clean() && s.speeds && (s.path || v.given("speed"))) v.error("E26", "speeds", s.path ? "a path is followed at one speed" : "the speed is given by 'speed' and by 'speeds'", "keep one of the two");
+  v.integer("load_steps", s.load_steps, between(1, 100000),
+            "number of parts in which gravity and the loads are put on (more where needed)");
+  s.speed_given = v.quantity(
+      optional("speed", "what the drives prescribe at time 0, else the shafts' initial_spin"),
+      s.speed, "rpm", any,
+      "speed of the rotor, whatever drives prescribe: every shaft at its speed_ratio");
+  v.table(
+      optional("speeds", "speed alone"), s.speeds,
+      "equilibria at these speeds instead, one after another: locus, eccentricity, load and the "
+      "eight coefficients of each bearing against speed; later steps start from the last one");
+  v.table(optional("path", "one equilibrium, at the full load"), s.path,
+          "follow the equilibria from no load past limit points (snap-through) and, with branch, "
+          "off bifurcations (buckling); a path that does not reach its load is an error");
+  if (v.clean() && s.path && s.load_steps > 1)
+    v.error("E26", "load_steps", "a path has its own steps", "use path.steps");
+  if (v.clean() && s.speeds && (s.path || v.given("speed")))
+    v.error("E26", "speeds",
+            s.path ? "a path is followed at one speed"
+                   : "the speed is given by 'speed' and by 'speeds'",
+            "keep one of the two");
 }
 
 namespace {
@@ -114,13 +185,17 @@ void describe_motion(Visitor& v, model::MotionKind& motion) {
 void describe_about(Visitor& v, model::About& about) {
   v.choice("about", about,
            {{"equilibrium", "the static equilibrium at the speed, under gravity and loads"},
-            {"undeformed", "the rotor as drawn: no gravity, no loads, no deflection; not with supports whose stiffness is that of their load"}},
+            {"undeformed",
+             "the rotor as drawn: no gravity, no loads, no deflection; not with supports whose "
+             "stiffness is that of their load"}},
            "state that the equations are linearised about");
 }
 
 void describe_damping(Visitor& v, bool& damped) {
   int i = damped ? 0 : 1;
-  static constexpr Option kinds[] = {{"damped", "with damping, cross-coupling and circulation"}, {"undamped", "mass, gyroscopic effects and symmetric stiffness alone"}};
+  static constexpr Option kinds[] = {
+      {"damped", "with damping, cross-coupling and circulation"},
+      {"undamped", "mass, gyroscopic effects and symmetric stiffness alone"}};
   v.option("damping", i, kinds, "what the modes include");
   damped = i == 0;
 }
@@ -128,34 +203,50 @@ void describe_damping(Visitor& v, bool& damped) {
 }  // namespace
 
 void describe(Visitor& v, model::FrequencyRange& r) {
-  v.quantity(optional("start", "\"0 Hz\""), r.start, "rad/s", not_negative, "first frequency (Hz, rpm or rad/s)");
-  const bool stop = v.quantity(optional("stop", "values are given"), r.stop, "rad/s", positive, "last frequency (Hz, rpm or rad/s)");
-  const bool points = v.integer(optional("points", "values are given"), r.points, between(1, 1000000), "number of frequencies, equally spaced");
-  const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "rad/s", not_negative, -1, "the frequencies one by one (Hz, rpm or rad/s)");
+  v.quantity(optional("start", "\"0 Hz\""), r.start, "rad/s", not_negative,
+             "first frequency (Hz, rpm or rad/s)");
+  const bool stop = v.quantity(optional("stop", "values are given"), r.stop, "rad/s", positive,
+                               "last frequency (Hz, rpm or rad/s)");
+  const bool points = v.integer(optional("points", "values are given"), r.points,
+                                between(1, 1000000), "number of frequencies, equally spaced");
+  const bool values =
+      v.quantities(optional("values", "start, stop, points"), r.values, "rad/s", not_negative, -1,
+                   "the frequencies one by one (Hz, rpm or rad/s)");
   if (!v.clean()) return;
-  if (values && (stop || points || v.given("start"))) v.error("E26", "values", "the frequencies are given by 'values' and by 'start', 'stop', 'points'", "keep one of the two");
-  else if (!values && (!stop || !points)) v.error("E05", nullptr, fmt::format("the frequencies lack '{}'", stop ? "points" : "stop"), "frequency = { start = \"0 Hz\", stop = \"200 Hz\", points = 201 }");
-  else if (values && r.values.empty()) v.error("E20", "values", "at least one frequency is needed");
-  else if (!values && r.points > 1 && !(r.stop > r.start)) v.error("E21", "stop", "the frequencies end below their start");
+  if (values && (stop || points || v.given("start")))
+    v.error("E26", "values",
+            "the frequencies are given by 'values' and by 'start', 'stop', 'points'",
+            "keep one of the two");
+  else if (!values && (!stop || !points))
+    v.error("E05", nullptr, fmt::format("the frequencies lack '{}'", stop ? "points" : "stop"),
+            "frequency = { start = \"0 Hz\", stop = \"200 Hz\", points = 201 }");
+  else if (values && r.values.empty())
+    v.error("E20", "values", "at least one frequency is needed");
+  else if (!values && r.points > 1 && !(r.stop > r.start))
+    v.error("E21", "stop", "the frequencies end below their start");
   for (std::size_t k = 1; v.clean() && k < r.values.size(); ++k)
-    if (!(r.values[k] > r.values[k - 1])) v.error("E21", "values", "the frequencies do not increase");
+    if (!(r.values[k] > r.values[k - 1]))
+      v.error("E21", "values", "the frequencies do not increase");
 }
 
 void describe(Visitor& v, model::ModalStep& s) {
   v.quantity("speed", s.speed, "rpm", any, "speed of the rotor");
   v.integer("modes", s.modes, between(1, 10000), "number of modes, from the lowest frequency");
-  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "rad/s", positive, "modes up to this frequency only (Hz, rpm or rad/s)");
+  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "rad/s", positive,
+             "modes up to this frequency only (Hz, rpm or rad/s)");
   describe_damping(v, s.damped);
   describe_motion(v, s.motion);
   describe_about(v, s.about);
-  v.integer("shapes", s.shapes, between(0, 1000), "number of mode shapes drawn, and animated where [[output.vtk]] asks for this step");
+  v.integer("shapes", s.shapes, between(0, 1000),
+            "number of mode shapes drawn, and animated where [[output.vtk]] asks for this step");
 }
 
 void describe(Visitor& v, model::CampbellStep& s) {
   v.table(required("speed"), s.speed, "the speeds");
   v.integer("modes", s.modes, between(1, 10000), "number of modes followed");
   v.quantities("orders", s.orders, "", positive, -1, orders_doc);
-  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "rad/s", positive, "modes up to this frequency only (Hz, rpm or rad/s)");
+  v.quantity(optional("max_frequency", "no limit"), s.max_frequency, "rad/s", positive,
+             "modes up to this frequency only (Hz, rpm or rad/s)");
   describe_damping(v, s.damped);
   describe_motion(v, s.motion);
   describe_about(v, s.about);
@@ -164,30 +255,40 @@ void describe(Visitor& v, model::CampbellStep& s) {
 
 void describe(Visitor& v, model::CriticalStep& s) {
   v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "critical speeds up to this one");
-  v.quantity(optional("min_speed", "a thousandth of max_speed"), s.min_speed, "rpm", not_negative, "critical speeds from this one on");
+  v.quantity(optional("min_speed", "a thousandth of max_speed"), s.min_speed, "rpm", not_negative,
+             "critical speeds from this one on");
   v.quantities("orders", s.orders, "", positive, -1, orders_doc);
-  v.integer("modes", s.modes, between(1, 10000), "critical speeds listed of each order, from the lowest");
+  v.integer("modes", s.modes, between(1, 10000),
+            "critical speeds listed of each order, from the lowest");
   describe_motion(v, s.motion);
   describe_about(v, s.about);
   v.integer("shapes", s.shapes, between(0, 1000), "number of mode shapes drawn");
   check_orders(v, s.orders);
-  if (v.clean() && s.min_speed >= s.max_speed) v.error("E21", "min_speed", "min_speed is not below max_speed");
+  if (v.clean() && s.min_speed >= s.max_speed)
+    v.error("E21", "min_speed", "min_speed is not below max_speed");
 }
 
 void describe(Visitor& v, model::UnbalanceStep& s) {
   v.table(required("speed"), s.speed, "the speeds");
   std::vector<double> range;
-  const bool given = v.quantities(optional("operating_speed", "no separation margins"), range, "rpm", positive, 2, "lowest and highest operating speed: separation margins as in API RP 684");
-  v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "rpm", positive, -1, "speeds at which the deflected rotor is drawn");
+  const bool given =
+      v.quantities(optional("operating_speed", "no separation margins"), range, "rpm", positive, 2,
+                   "lowest and highest operating speed: separation margins as in API RP 684");
+  v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "rpm", positive, -1,
+               "speeds at which the deflected rotor is drawn");
   describe_about(v, s.about);
   if (!v.clean() || !given) return;
-  if (range[1] < range[0]) v.error("E21", "operating_speed", "the highest operating speed is below the lowest");
-  else s.operating = {range[0], range[1]};
+  if (range[1] < range[0])
+    v.error("E21", "operating_speed", "the highest operating speed is below the lowest");
+  else
+    s.operating = {range[0], range[1]};
 }
 
 void describe(Visitor& v, model::StabilityMap& m) {
   v.text(required("parameter"), m.parameter, "name of the parameter, as in [parameters]");
-  v.texts(required("values"), m.values, "its values, each with its unit as in [parameters], ascending: \"60 um\", \"75 um\", ...");
+  v.texts(
+      required("values"), m.values,
+      "its values, each with its unit as in [parameters], ascending: \"60 um\", \"75 um\", ...");
   if (!v.clean()) return;
   if (m.values.size() < 2) v.error("E20", "values", "a map needs at least two values");
   double last = -infinity;
@@ -196,110 +297,187 @@ void describe(Visitor& v, model::StabilityMap& m) {
     char* end = nullptr;
     const double x = std::strtod(text.c_str(), &end);
     const std::string rest = *end == ' ' ? end + 1 : end;
-    if (end == text.c_str()) return v.error("E20", "values", fmt::format("'{}' is not a number with a unit", text), "values = [\"60 um\", \"75 um\"]");
-    if (last != -infinity && rest != unit) return v.error("E26", "values", fmt::format("the values have different units: '{}' and '{}'", unit, rest), "write all of them in one unit");
-    if (!(x > last)) return v.error("E21", "values", fmt::format("the values do not increase: '{}'", text));
-    last = x; unit = rest;
+    if (end == text.c_str())
+      return v.error("E20", "values", fmt::format("'{}' is not a number with a unit", text),
+                     "values = [\"60 um\", \"75 um\"]");
+    if (last != -infinity && rest != unit)
+      return v.error("E26", "values",
+                     fmt::format("the values have different units: '{}' and '{}'", unit, rest),
+                     "write all of them in one unit");
+    if (!(x > last))
+      return v.error("E21", "values", fmt::format("the values do not increase: '{}'", text));
+    last = x;
+    unit = rest;
   }
 }
 
 void describe(Visitor& v, model::StabilityStep& s) {
   v.table(required("speed"), s.speed, "the speeds");
-  v.integer("modes", s.modes, between(1, 10000), "number of modes followed, from the lowest frequency");
-  v.table(optional("map", "the deck as it is"), s.map, "stability over a parameter of the deck as well: onset speed and log decrement at each of its values");
+  v.integer("modes", s.modes, between(1, 10000),
+            "number of modes followed, from the lowest frequency");
+  v.table(optional("map", "the deck as it is"), s.map,
+          "stability over a parameter of the deck as well: onset speed and log decrement at each "
+          "of its values");
   describe_about(v, s.about);
 }
 
 void describe(Visitor& v, model::CriticalMapStep& s) {
-  v.quantity(required("stiffness_min"), s.stiffness_min, "N/m", positive, "lowest stiffness of the supports, in y and z alike");
+  v.quantity(required("stiffness_min"), s.stiffness_min, "N/m", positive,
+             "lowest stiffness of the supports, in y and z alike");
   v.quantity(required("stiffness_max"), s.stiffness_max, "N/m", positive, "highest stiffness");
-  v.integer("points", s.points, between(2, 10000), "number of stiffnesses, equally spaced on a logarithmic scale");
+  v.integer("points", s.points, between(2, 10000),
+            "number of stiffnesses, equally spaced on a logarithmic scale");
   v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "critical speeds up to this one");
   v.number("order", s.order, positive, "excitations a revolution");
   v.flag("backward", s.backward, "backward critical speeds as lines of their own");
   describe_motion(v, s.motion);
   describe_about(v, s.about);
-  v.texts(optional("bearings", "all that carry laterally from a shaft to the ground, but rigid ones"), s.bearings, "names of the bearings whose lateral stiffness is varied; what they do along and about the shaft stays");
-  if (v.clean() && s.stiffness_max <= s.stiffness_min) v.error("E21", "stiffness_max", "stiffness_max is not above stiffness_min");
+  v.texts(
+      optional("bearings", "all that carry laterally from a shaft to the ground, but rigid ones"),
+      s.bearings,
+      "names of the bearings whose lateral stiffness is varied; what they do along and about the "
+      "shaft stays");
+  if (v.clean() && s.stiffness_max <= s.stiffness_min)
+    v.error("E21", "stiffness_max", "stiffness_max is not above stiffness_min");
 }
 
 void describe(Visitor& v, model::HarmonicForce& f) {
   v.location(required("at"), f.at, "where it acts, on which shaft");
   v.vector("force", f.force, "N", "amplitude of the force along x, y, z");
-  v.vector("moment", f.moment, "N.m", "amplitude of the moment about x, y, z; about x it twists the shaft");
+  v.vector("moment", f.moment, "N.m",
+           "amplitude of the moment about x, y, z; about x it twists the shaft");
   v.quantity("phase", f.phase, "deg", any, "lead of this force: cos(w t + phase)");
-  v.choice("whirl", f.whirl, {{"none", "along fixed directions"}, {"forward", "turning at the frequency as the shaft spins (from y towards z where its spin is positive)"}, {"backward", "turning against the spin"}},
+  v.choice("whirl", f.whirl,
+           {{"none", "along fixed directions"},
+            {"forward",
+             "turning at the frequency as the shaft spins (from y towards z where its spin is "
+             "positive)"},
+            {"backward", "turning against the spin"}},
            "a lateral force or moment that turns starts in the direction given");
   if (!v.clean()) return;
-  if (!v.given("force") && !v.given("moment")) v.error("E05", nullptr, "a harmonic force has neither 'force' nor 'moment'");
+  if (!v.given("force") && !v.given("moment"))
+    v.error("E05", nullptr, "a harmonic force has neither 'force' nor 'moment'");
   else if (f.whirl != model::HarmonicForce::Whirl::none && (f.force.x() != 0 || f.moment.x() != 0))
-    v.error("E26", "whirl", "a force or moment along the axis cannot turn about it", "give the axial part a force of its own");
+    v.error("E26", "whirl", "a force or moment along the axis cannot turn about it",
+            "give the axial part a force of its own");
 }
 
 void describe(Visitor& v, model::HarmonicStep& s) {
   v.list("force", s.forces, "the harmonic forces");
-  v.quantity(optional("rotor_speed", "\"0 rpm\""), s.speed, "rpm", any, "speed of the rotor while the frequency varies");
-  v.table(optional("frequency", "order times the speed"), s.frequency, "excitation frequencies at one rotor speed");
-  v.table(optional("speed", "rotor_speed"), s.speeds, "rotor speeds, with the excitation frequency order times the speed");
+  v.quantity(optional("rotor_speed", "\"0 rpm\""), s.speed, "rpm", any,
+             "speed of the rotor while the frequency varies");
+  v.table(optional("frequency", "order times the speed"), s.frequency,
+          "excitation frequencies at one rotor speed");
+  v.table(optional("speed", "rotor_speed"), s.speeds,
+          "rotor speeds, with the excitation frequency order times the speed");
   v.number(optional("order", "1"), s.order, positive, "excitation frequency relative to the speed");
-  v.flag("speed_squared", s.speed_squared, "amplitudes grow with the square of the speed; they are given for the highest speed");
+  v.flag("speed_squared", s.speed_squared,
+         "amplitudes grow with the square of the speed; they are given for the highest speed");
   describe_motion(v, s.motion);
   describe_about(v, s.about);
-  v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "rad/s", positive, -1, "excitation frequencies at which the deflected rotor is drawn");
+  v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "rad/s", positive, -1,
+               "excitation frequencies at which the deflected rotor is drawn");
   if (!v.clean()) return;
-  if (s.forces.empty()) v.error("E05", nullptr, "a harmonic response needs at least one force", "[[step.force]] with at, force or moment");
+  if (s.forces.empty())
+    v.error("E05", nullptr, "a harmonic response needs at least one force",
+            "[[step.force]] with at, force or moment");
   else if (s.frequency.has_value() == s.speeds.has_value())
-    v.error(s.frequency ? "E26" : "E05", s.frequency ? "frequency" : nullptr, s.frequency ? "'frequency' and 'speed' cannot both be varied" : "neither 'frequency' nor 'speed' is given",
+    v.error(s.frequency ? "E26" : "E05", s.frequency ? "frequency" : nullptr,
+            s.frequency ? "'frequency' and 'speed' cannot both be varied"
+                        : "neither 'frequency' nor 'speed' is given",
             "frequency = { start = \"0 Hz\", stop = \"200 Hz\", points = 201 }");
-  else if (s.frequency && v.given("order")) v.error("E26", "order", "'order' belongs to a range of speeds");
-  else if (s.speeds && v.given("rotor_speed")) v.error("E26", "rotor_speed", "'rotor_speed' belongs to a range of frequencies");
+  else if (s.frequency && v.given("order"))
+    v.error("E26", "order", "'order' belongs to a range of speeds");
+  else if (s.speeds && v.given("rotor_speed"))
+    v.error("E26", "rotor_speed", "'rotor_speed' belongs to a range of frequencies");
 }
 
 void describe(Visitor& v, model::TorsionalStep& s) {
-  v.integer("modes", s.modes, between(1, 10000), "number of torsional modes, from the lowest frequency");
-  v.quantity(required("max_speed"), s.max_speed, "rpm", positive, "end of the interference diagram");
+  v.integer("modes", s.modes, between(1, 10000),
+            "number of torsional modes, from the lowest frequency");
+  v.quantity(required("max_speed"), s.max_speed, "rpm", positive,
+             "end of the interference diagram");
   v.quantities("orders", s.orders, "", positive, -1, orders_doc);
   describe_about(v, s.about);
   check_orders(v, s.orders);
 }
 
 void describe(Visitor& v, model::BucklingStep& s) {
-  v.integer("modes", s.modes, between(1, 10000), "number of buckling loads, from the smallest factor");
+  v.integer("modes", s.modes, between(1, 10000),
+            "number of buckling loads, from the smallest factor");
   v.quantity("speed", s.speed, "rpm", any, "speed of the rotor");
 }
 
 void describe(Visitor& v, model::TransientStep& s) {
-  v.quantity(required("duration"), s.duration, "s", positive, "length of the run; it begins at time 0, or where the step named by 'from' ended");
-  v.choice("start", s.start, {{"rest", "straight and unstressed, loads applied at once"}, {"static", "in static equilibrium"}, {"unbalance_response", "in the steady response to the unbalance at the initial speed"}, {"mode", "in static equilibrium plus a whirl mode at the initial speed"}}, "state at the start, unless 'from' names a transient step");
-  v.integer("mode", s.mode, between(1, 10000), "of start = \"mode\": its number from the lowest frequency, among the modes of its kind");
-  v.choice("mode_kind", s.mode_kind, {{"all", "every kind, in one row"}, {"lateral", "bending"}, {"torsional", "twist"}, {"axial", "along the shafts"}},
-           "of start = \"mode\": kind of the modes that are counted, by the largest share of their energy");
-  v.quantity("mode_amplitude", s.mode_amplitude, "mm", positive, "of start = \"mode\": its largest displacement");
-  v.text(optional("previous", "none"), s.previous, "results folder of an earlier run of the same rotor; this step starts from its last state (of the checkpoint written at its end)");
-  v.text(optional("previous_step", "the only one"), s.previous_step, "which of its transient steps");
-  s.speed0_given = v.quantity(optional("initial_speed", "what the drives prescribe, else the shafts' initial_spin"), s.speed0, "rpm", any,
-                              "spin at the start of every rotating line (times its speed_ratio)");
-  v.quantity(optional("stop_speed", "never"), s.stop_speed, "rpm", any, "the run ends when the reference spin passes this value");
-  v.quantity(optional("amplitude_limit", "none"), s.amplitude_limit, "mm", positive, "the run ends when a probe exceeds this displacement");
-  v.flag("linear", s.linear, "small motions about the rotor that turns at constant speed in static equilibrium: constant matrices, one factorisation for each length of step; loads and unbalance act as they are");
-  v.quantity("checkpoint", s.checkpoint, "s", not_negative, "wall-clock time between checkpoints, from which --resume continues; 0 s: none");
+  v.quantity(required("duration"), s.duration, "s", positive,
+             "length of the run; it begins at time 0, or where the step named by 'from' ended");
+  v.choice("start", s.start,
+           {{"rest", "straight and unstressed, loads applied at once"},
+            {"static", "in static equilibrium"},
+            {"unbalance_response", "in the steady response to the unbalance at the initial speed"},
+            {"mode", "in static equilibrium plus a whirl mode at the initial speed"}},
+           "state at the start, unless 'from' names a transient step");
+  v.integer(
+      "mode", s.mode, between(1, 10000),
+      "of start = \"mode\": its number from the lowest frequency, among the modes of its kind");
+  v.choice("mode_kind", s.mode_kind,
+           {{"all", "every kind, in one row"},
+            {"lateral", "bending"},
+            {"torsional", "twist"},
+            {"axial", "along the shafts"}},
+           "of start = \"mode\": kind of the modes that are counted, by the largest share of their "
+           "energy");
+  v.quantity("mode_amplitude", s.mode_amplitude, "mm", positive,
+             "of start = \"mode\": its largest displacement");
+  v.text(optional("previous", "none"), s.previous,
+         "results folder of an earlier run of the same rotor; this step starts from its last state "
+         "(of the checkpoint written at its end)");
+  v.text(optional("previous_step", "the only one"), s.previous_step,
+         "which of its transient steps");
+  s.speed0_given = v.quantity(
+      optional("initial_speed", "what the drives prescribe, else the shafts' initial_spin"),
+      s.speed0, "rpm", any, "spin at the start of every rotating line (times its speed_ratio)");
+  v.quantity(optional("stop_speed", "never"), s.stop_speed, "rpm", any,
+             "the run ends when the reference spin passes this value");
+  v.quantity(optional("amplitude_limit", "none"), s.amplitude_limit, "mm", positive,
+             "the run ends when a probe exceeds this displacement");
+  v.flag(
+      "linear", s.linear,
+      "small motions about the rotor that turns at constant speed in static equilibrium: constant "
+      "matrices, one factorisation for each length of step; loads and unbalance act as they are");
+  v.quantity("checkpoint", s.checkpoint, "s", not_negative,
+             "wall-clock time between checkpoints, from which --resume continues; 0 s: none");
   v.table("integrator", s.integrator, "time integration");
 }
 
 void describe(Visitor& v, model::Step& s) {
   v.name(s, "step");
-  v.step(optional("from", "the undeformed model"), s.from, "an earlier static or transient step whose result this one starts from");
+  v.step(optional("from", "the undeformed model"), s.from,
+         "an earlier static or transient step whose result this one starts from");
   const Alternative kinds[] = {
-      Visitor::alternative<model::StaticStep>("static", s.law, "static equilibrium under gravity, loads and preloads"),
+      Visitor::alternative<model::StaticStep>(
+          "static", s.law, "static equilibrium under gravity, loads and preloads"),
       Visitor::alternative<model::ModalStep>("modal", s.law, "whirl modes at one speed"),
-      Visitor::alternative<model::CampbellStep>("campbell", s.law, "whirl frequencies and damping against speed"),
-      Visitor::alternative<model::CriticalStep>("critical_speeds", s.law, "critical speeds, solved for directly"),
-      Visitor::alternative<model::UnbalanceStep>("unbalance_response", s.law, "steady response to the unbalances against speed"),
-      Visitor::alternative<model::StabilityStep>("stability", s.law, "log decrement against speed, and the onset speeds of instability, solved for directly"),
-      Visitor::alternative<model::CriticalMapStep>("critical_map", s.law, "undamped critical speeds against the stiffness of the supports"),
-      Visitor::alternative<model::HarmonicStep>("harmonic_response", s.law, "steady response to harmonic forces, synchronous or not"),
-      Visitor::alternative<model::TorsionalStep>("torsional", s.law, "torsional natural frequencies and where orders of the speed meet them"),
-      Visitor::alternative<model::BucklingStep>("buckling", s.law, "factors on gravity and all loads at which the rotor buckles, linearised about the unloaded state"),
+      Visitor::alternative<model::CampbellStep>("campbell", s.law,
+                                                "whirl frequencies and damping against speed"),
+      Visitor::alternative<model::CriticalStep>("critical_speeds", s.law,
+                                                "critical speeds, solved for directly"),
+      Visitor::alternative<model::UnbalanceStep>("unbalance_response", s.law,
+                                                 "steady response to the unbalances against speed"),
+      Visitor::alternative<model::StabilityStep>(
+          "stability", s.law,
+          "log decrement against speed, and the onset speeds of instability, solved for directly"),
+      Visitor::alternative<model::CriticalMapStep>(
+          "critical_map", s.law, "undamped critical speeds against the stiffness of the supports"),
+      Visitor::alternative<model::HarmonicStep>(
+          "harmonic_response", s.law, "steady response to harmonic forces, synchronous or not"),
+      Visitor::alternative<model::TorsionalStep>(
+          "torsional", s.law,
+          "torsional natural frequencies and where orders of the speed meet them"),
+      Visitor::alternative<model::BucklingStep>(
+          "buckling", s.law,
+          "factors on gravity and all loads at which the rotor buckles, linearised about the "
+          "unloaded state"),
       Visitor::alternative<model::TransientStep>("transient", s.law, "motion in time, nonlinear"),
   };
   v.alternatives(required("type"), kinds, "kind of analysis");

@@ -11,23 +11,30 @@ constexpr int max_include_depth = 16;
 constexpr int max_files = 64;
 
 std::string place(const Sources& sources, const Spot& s) {
-  return s.source >= 0 ? fmt::format("{}:{}", sources[s.source].name, s.line) : std::string("elsewhere");
+  return s.source >= 0 ? fmt::format("{}:{}", sources[s.source].name, s.line)
+                       : std::string("elsewhere");
 }
 
 bool list_of_tables(const Value& v) {
-  return v.is_array() && std::any_of(v.items.begin(), v.items.end(), [](const Value& x) { return x.is_table(); });
+  return v.is_array() &&
+         std::any_of(v.items.begin(), v.items.end(), [](const Value& x) { return x.is_table(); });
 }
 
 /// Adds what `from` holds to `into`; lists of tables are joined (those of `into` first).
 void merge(Value& into, Value from, const Sources& sources, Diagnostics& diagnostics) {
   for (auto& m : from.members) {
     Member* have = into.find(m.key);
-    if (!have) into.members.push_back(std::move(m));
-    else if (have->value.is_table() && m.value.is_table()) merge(have->value, std::move(m.value), sources, diagnostics);
+    if (!have)
+      into.members.push_back(std::move(m));
+    else if (have->value.is_table() && m.value.is_table())
+      merge(have->value, std::move(m.value), sources, diagnostics);
     else if (list_of_tables(have->value) && list_of_tables(m.value))
-      for (auto& x : m.value.items) have->value.items.push_back(std::move(x));
+      for (auto& x : m.value.items)
+        have->value.items.push_back(std::move(x));
     else
-      diagnostics.error("E29", m.spot, fmt::format("'{}' is set here and in an included file", m.key), fmt::format("the other is in {}", place(sources, have->spot)));
+      diagnostics.error("E29", m.spot,
+                        fmt::format("'{}' is set here and in an included file", m.key),
+                        fmt::format("the other is in {}", place(sources, have->spot)));
   }
 }
 
@@ -35,7 +42,7 @@ struct Files {
   Sources& sources;
   Diagnostics& diagnostics;
   const AssembleOptions& options;
-  std::vector<std::filesystem::path> open;   ///< the chain of files being read
+  std::vector<std::filesystem::path> open;  ///< the chain of files being read
   int count = 0;
 };
 
@@ -50,37 +57,59 @@ Document parse_with_includes(int source, Files& files) {
   Value merged = Value::make_table(doc.root.spot);
   for (const auto& name : names) {
     if (!name.is_text()) {
-      if (name.kind != Value::Kind::unreadable) files.diagnostics.error("E06", name.spot, fmt::format("'include' must be a list of file names, not {}", name_of(name.kind)));
+      if (name.kind != Value::Kind::unreadable)
+        files.diagnostics.error(
+            "E06", name.spot,
+            fmt::format("'include' must be a list of file names, not {}", name_of(name.kind)));
       continue;
     }
-    if (!files.options.files_allowed) { files.diagnostics.error("E02", name.spot, fmt::format("cannot read '{}': files are not allowed here", name.text)); continue; }
+    if (!files.options.files_allowed) {
+      files.diagnostics.error(
+          "E02", name.spot, fmt::format("cannot read '{}': files are not allowed here", name.text));
+      continue;
+    }
     const std::filesystem::path path = files.sources[source].folder / name.text;
     std::error_code ec;
     const auto canonical = std::filesystem::weakly_canonical(path, ec);
     if (std::find(files.open.begin(), files.open.end(), canonical) != files.open.end()) {
-      files.diagnostics.error("E28", name.spot, fmt::format("'{}' includes itself", name.text), "remove one 'include' of the circle");
+      files.diagnostics.error("E28", name.spot, fmt::format("'{}' includes itself", name.text),
+                              "remove one 'include' of the circle");
       continue;
     }
     if (static_cast<int>(files.open.size()) > max_include_depth || ++files.count > max_files) {
-      files.diagnostics.error("E28", name.spot, fmt::format("more than {} files, or more than {} levels, are included", max_files, max_include_depth));
+      files.diagnostics.error(
+          "E28", name.spot,
+          fmt::format("more than {} files, or more than {} levels, are included", max_files,
+                      max_include_depth));
       continue;
     }
     if (!may_be_read(files.sources, path, {".toml"})) {
-      files.diagnostics.error("E02", name.spot, fmt::format("cannot read '{}': it lies outside the deck's folder and is not named *.toml", name.text),
-                              "move it beside the deck, or give it the name of a deck");
+      files.diagnostics.error(
+          "E02", name.spot,
+          fmt::format("cannot read '{}': it lies outside the deck's folder and is not named *.toml",
+                      name.text),
+          "move it beside the deck, or give it the name of a deck");
       continue;
     }
     FileText text = read_file(path, max_deck_bytes);
-    if (!text.ok()) { files.diagnostics.error(text.code, name.spot, text.message, text.hint); continue; }
+    if (!text.ok()) {
+      files.diagnostics.error(text.code, name.spot, text.message, text.hint);
+      continue;
+    }
     const TextProblem bad = check_text(text.text, TextKind::deck);
     const int added = files.sources.add(path.string(), path.parent_path(), std::move(text.text));
-    if (!bad.ok()) { files.diagnostics.error("E03", Spot{added, bad.line, bad.column, 1}, bad.message, bad.hint); continue; }
+    if (!bad.ok()) {
+      files.diagnostics.error("E03", Spot{added, bad.line, bad.column, 1}, bad.message, bad.hint);
+      continue;
+    }
     files.open.push_back(canonical);
     Document part = parse_with_includes(added, files);
     files.open.pop_back();
     doc.damaged = doc.damaged || part.damaged || !part.complete;
     if (!part.complete) continue;
-    part.root.members.erase(std::remove_if(part.root.members.begin(), part.root.members.end(), [](const Member& m) { return m.key == "format"; }), part.root.members.end());
+    part.root.members.erase(std::remove_if(part.root.members.begin(), part.root.members.end(),
+                                           [](const Member& m) { return m.key == "format"; }),
+                            part.root.members.end());
     merge(merged, std::move(part.root), files.sources, files.diagnostics);
   }
   merge(merged, std::move(doc.root), files.sources, files.diagnostics);
@@ -91,11 +120,13 @@ Document parse_with_includes(int source, Files& files) {
 
 }  // namespace
 
-bool may_be_read(const Sources& sources, const std::filesystem::path& file, std::initializer_list<std::string_view> extensions) {
+bool may_be_read(const Sources& sources, const std::filesystem::path& file,
+                 std::initializer_list<std::string_view> extensions) {
   const std::string extension = file.extension().string();
   if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return true;
   std::error_code ec;
-  const std::filesystem::path folder = sources[0].folder.empty() ? std::filesystem::path(".") : sources[0].folder;
+  const std::filesystem::path folder =
+      sources[0].folder.empty() ? std::filesystem::path(".") : sources[0].folder;
   const auto deck = std::filesystem::weakly_canonical(std::filesystem::absolute(folder, ec), ec);
   const auto whole = std::filesystem::weakly_canonical(std::filesystem::absolute(file, ec), ec);
   const auto [end, rest] = std::mismatch(deck.begin(), deck.end(), whole.begin(), whole.end());
@@ -105,11 +136,13 @@ bool may_be_read(const Sources& sources, const std::filesystem::path& file, std:
 Document assemble(Sources& sources, Diagnostics& diagnostics, const AssembleOptions& options) {
   Files files{sources, diagnostics, options, {}, 0};
   std::error_code ec;
-  files.open.push_back(std::filesystem::weakly_canonical(sources[0].folder / std::filesystem::path(sources[0].name).filename(), ec));
+  files.open.push_back(std::filesystem::weakly_canonical(
+      sources[0].folder / std::filesystem::path(sources[0].name).filename(), ec));
   return parse_with_includes(0, files);
 }
 
-void apply_overrides(Document& document, const std::vector<std::string>& arguments, Sources& sources, Diagnostics& diagnostics) {
+void apply_overrides(Document& document, const std::vector<std::string>& arguments,
+                     Sources& sources, Diagnostics& diagnostics) {
   if (arguments.empty()) return;
   std::string text;
   for (const auto& a : arguments) {
@@ -120,16 +153,25 @@ void apply_overrides(Document& document, const std::vector<std::string>& argumen
   const int source = sources.add("--set", sources[0].folder, text);
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     const std::string argument(sources.line(source, static_cast<int>(k) + 1));
-    const auto spot = [&](std::size_t begin, std::size_t end) { return Spot{source, static_cast<int>(k) + 1, static_cast<int>(begin) + 1, static_cast<int>(std::max<std::size_t>(end - begin, 1))}; };
+    const auto spot = [&](std::size_t begin, std::size_t end) {
+      return Spot{source, static_cast<int>(k) + 1, static_cast<int>(begin) + 1,
+                  static_cast<int>(std::max<std::size_t>(end - begin, 1))};
+    };
     const std::size_t equal = argument.find('=');
     if (equal == std::string::npos || equal == 0) {
-      diagnostics.error("E34", spot(0, argument.size()), "a --set has the form path=value", "for example --set parameters.clearance=90um");
+      diagnostics.error("E34", spot(0, argument.size()), "a --set has the form path=value",
+                        "for example --set parameters.clearance=90um");
       continue;
     }
     const TextProblem bad = check_text(argument, TextKind::argument);
-    if (!bad.ok()) { diagnostics.error("E34", spot(0, argument.size()), bad.message); continue; }
+    if (!bad.ok()) {
+      diagnostics.error("E34", spot(0, argument.size()), bad.message);
+      continue;
+    }
     const std::size_t first = argument.find_first_not_of(' ', equal + 1);
-    Value value = parse_set_value(first == std::string::npos ? std::string_view() : std::string_view(argument).substr(first), spot(std::min(first, argument.size()), argument.size()));
+    Value value = parse_set_value(
+        first == std::string::npos ? std::string_view() : std::string_view(argument).substr(first),
+        spot(std::min(first, argument.size()), argument.size()));
     Value* at = &document.root;
     std::size_t begin = 0;
     bool good = true;
@@ -138,10 +180,16 @@ void apply_overrides(Document& document, const std::vector<std::string>& argumen
       // a name in a list may itself contain points when it is quoted
       if (argument[begin] == '"') end = std::min(argument.find('"', begin + 1), equal - 1) + 1;
       std::string part = argument.substr(begin, end - begin);
-      while (!part.empty() && part.back() == ' ') part.pop_back();
-      if (part.size() >= 2 && part.front() == '"' && part.back() == '"') part = part.substr(1, part.size() - 2);
+      while (!part.empty() && part.back() == ' ')
+        part.pop_back();
+      if (part.size() >= 2 && part.front() == '"' && part.back() == '"')
+        part = part.substr(1, part.size() - 2);
       const bool last = end >= equal;
-      if (part.empty()) { diagnostics.error("E34", spot(0, equal), "the path has an empty part"); good = false; break; }
+      if (part.empty()) {
+        diagnostics.error("E34", spot(0, equal), "the path has an empty part");
+        good = false;
+        break;
+      }
       if (at->is_array()) {
         Value* found = nullptr;
         std::size_t index = 0;
@@ -157,24 +205,35 @@ void apply_overrides(Document& document, const std::vector<std::string>& argumen
         if (!found && number && index < at->items.size()) found = &at->items[index];
         if (!found) {
           const auto near = nearest(part, names);
-          diagnostics.error("E34", spot(begin, end), fmt::format("the list has no member '{}'", part),
-                            !near.empty() ? fmt::format("did you mean '{}'?", near.front()) : names.empty() ? fmt::format("it has {} members, numbered from 0", at->items.size()) : fmt::format("known: {}", fmt::join(names, ", ")));
+          diagnostics.error(
+              "E34", spot(begin, end), fmt::format("the list has no member '{}'", part),
+              !near.empty()   ? fmt::format("did you mean '{}'?", near.front())
+              : names.empty() ? fmt::format("it has {} members, numbered from 0", at->items.size())
+                              : fmt::format("known: {}", fmt::join(names, ", ")));
           good = false;
           break;
         }
-        if (last) { *found = value; break; }
+        if (last) {
+          *found = value;
+          break;
+        }
         at = found;
       } else if (at->is_table()) {
         Member* m = at->find(part);
         if (last) {
-          if (m) { m->value = value; m->spot = spot(begin, end); }
-          else at->add(part, value, spot(begin, end));
+          if (m) {
+            m->value = value;
+            m->spot = spot(begin, end);
+          } else
+            at->add(part, value, spot(begin, end));
           break;
         }
         if (!m) m = &at->add(part, Value::make_table(spot(begin, end)), spot(begin, end));
         at = &m->value;
       } else {
-        diagnostics.error("E34", spot(begin, end), fmt::format("'{}' stands below {}, which has no members", part, name_of(at->kind)));
+        diagnostics.error(
+            "E34", spot(begin, end),
+            fmt::format("'{}' stands below {}, which has no members", part, name_of(at->kind)));
         good = false;
         break;
       }

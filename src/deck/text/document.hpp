@@ -1,4 +1,5 @@
-// A deck as a tree of values, each with its place in the text. Independent of the TOML library (toml.cpp alone knows it).
+// A deck as a tree of values, each with its place in the text. Independent of the TOML library
+// (toml.cpp alone knows it).
 #pragma once
 #include <deck/text/sources.hpp>
 #include <cstdint>
@@ -11,16 +12,26 @@ namespace whirl::deck {
 struct Member;
 
 struct Value {
-  enum class Kind { boolean, integer, real, text, date, array, table, unreadable /* reported already */ };
+  enum class Kind {
+    boolean,
+    integer,
+    real,
+    text,
+    date,
+    array,
+    table,
+    unreadable /* reported already */
+  };
   Kind kind = Kind::table;
   Spot spot;
   bool boolean = false;
   std::int64_t integer = 0;
   double real = 0;
   std::string text;
-  std::vector<Value> items;        ///< of an array
-  std::vector<Member> members;     ///< of a table, in the order of the text
-  /// Cells of a table with a header: the unit in the column title, and the title's place. Null elsewhere.
+  std::vector<Value> items;     ///< of an array
+  std::vector<Member> members;  ///< of a table, in the order of the text
+  /// Cells of a table with a header: the unit in the column title, and the title's place. Null
+  /// elsewhere.
   const struct ColumnUnit* column = nullptr;
 
   bool is_table() const { return kind == Kind::table; }
@@ -42,26 +53,29 @@ struct Value {
 
 struct ColumnUnit {
   std::string unit;
-  bool given = false;   ///< the title has a unit
-  Spot spot;            ///< of the title
+  bool given = false;  ///< the title has a unit
+  Spot spot;           ///< of the title
 };
 
 struct Member {
   std::string key;
-  Spot spot;            ///< of the key
+  Spot spot;  ///< of the key
   Value value;
 };
 
 /// "a number", "text", "a list", ...
 const char* name_of(Value::Kind k);
 
-/// Diagnostics of one reading, sorted by place and without repetitions when taken. Errors beyond the first `limit` are counted
-/// and not kept: nobody reads them, and a wholly wrong table has a million.
+/// Diagnostics of one reading, sorted by place and without repetitions when taken. Errors beyond
+/// the first `limit` are counted and not kept: nobody reads them, and a wholly wrong table has a
+/// million.
 class Diagnostics {
  public:
   static constexpr int limit = 200;
-  void error(std::string code, const Spot& spot, std::string message, std::string hint = {}, std::string entity = {});
-  void warning(std::string code, const Spot& spot, std::string message, std::string hint = {}, std::string entity = {});
+  void error(std::string code, const Spot& spot, std::string message, std::string hint = {},
+             std::string entity = {});
+  void warning(std::string code, const Spot& spot, std::string message, std::string hint = {},
+               std::string entity = {});
   int errors() const { return errors_; }
   /// Long lists need not be read further: what is wrong with them would not be shown.
   bool full() const { return kept_ >= limit; }
@@ -71,19 +85,25 @@ class Diagnostics {
  private:
   /// Whether this is said for the first time.
   bool fresh(const std::string& code, const Spot& spot, const std::string& message);
-  void add(Diagnostic::Severity severity, std::string code, const Spot& spot, std::string message, std::string hint, std::string entity);
-  struct Entry { Diagnostic d; Spot spot; };
+  void add(Diagnostic::Severity severity, std::string code, const Spot& spot, std::string message,
+           std::string hint, std::string entity);
+  struct Entry {
+    Diagnostic d;
+    Spot spot;
+  };
   std::vector<Entry> list_;
-  std::unordered_set<std::string> seen_;   ///< place, code and message of what is in list_
-  int errors_ = 0;                         ///< repetitions included
+  std::unordered_set<std::string> seen_;  ///< place, code and message of what is in list_
+  int errors_ = 0;                        ///< repetitions included
   int kept_ = 0, warnings_ = 0;
 };
 
-/// A text as a document. Mistakes are reported and stepped over, so that one reading finds them all.
+/// A text as a document. Mistakes are reported and stepped over, so that one reading finds them
+/// all.
 struct Document {
   Value root;
-  bool complete = true;    ///< false: reading stopped at a mistake; what is in root is not to be judged
-  bool damaged = false;    ///< lines were left out: missing keys are not to be reported
+  bool complete =
+      true;  ///< false: reading stopped at a mistake; what is in root is not to be judged
+  bool damaged = false;  ///< lines were left out: missing keys are not to be reported
 };
 Document parse_toml(const Sources& sources, int source, Diagnostics& diagnostics);
 /// The value of a --set argument: TOML when it is that, else the text itself.
@@ -93,6 +113,7 @@ Value parse_set_value(std::string_view text, const Spot& spot);
 std::string write_toml(const Value& root);
 
 /// The names nearest in spelling to `word`, best first (at most `count`), for "did you mean".
-std::vector<std::string> nearest(std::string_view word, const std::vector<std::string>& names, std::size_t count = 1);
+std::vector<std::string> nearest(std::string_view word, const std::vector<std::string>& names,
+                                 std::size_t count = 1);
 
 }  // namespace whirl::deck

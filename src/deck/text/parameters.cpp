@@ -6,7 +6,7 @@
 namespace whirl::deck {
 namespace {
 
-constexpr std::size_t longest = 4096;   // bytes a text may grow to
+constexpr std::size_t longest = 4096;  // bytes a text may grow to
 
 std::string as_text(const Value& v, Parameters::Use use) {
   switch (v.kind) {
@@ -22,9 +22,11 @@ std::string as_text(const Value& v, Parameters::Use use) {
 
 }  // namespace
 
-Parameters::Parameters(const Value* table, std::map<std::string, std::string> builtin) : builtin_(std::move(builtin)) {
+Parameters::Parameters(const Value* table, std::map<std::string, std::string> builtin)
+    : builtin_(std::move(builtin)) {
   if (!table) return;
-  for (const auto& m : table->members) entries_[m.key] = {m.value, m.spot, false, false};
+  for (const auto& m : table->members)
+    entries_[m.key] = {m.value, m.spot, false, false};
 }
 
 Value Parameters::value_of(const std::string& name, const Spot& use_at, Diagnostics& diagnostics) {
@@ -34,24 +36,29 @@ Value Parameters::value_of(const std::string& name, const Spot& use_at, Diagnost
   if (it == entries_.end()) {
     if (auto b = builtin_.find(name); b != builtin_.end()) return Value::of_text(b->second, use_at);
     std::vector<std::string> names;
-    for (const auto& [n, e] : entries_) names.push_back(n);
-    for (const auto& [n, e] : builtin_) names.push_back(n);
+    for (const auto& [n, e] : entries_)
+      names.push_back(n);
+    for (const auto& [n, e] : builtin_)
+      names.push_back(n);
     const auto near = nearest(name, names);
     diagnostics.error("E27", use_at, fmt::format("the parameter ${{{}}} is not defined", name),
-                      near.empty() ? "define it under [parameters]" : fmt::format("did you mean ${{{}}}?", near.front()));
+                      near.empty() ? "define it under [parameters]"
+                                   : fmt::format("did you mean ${{{}}}?", near.front()));
     return bad;
   }
   Entry& e = it->second;
   e.used = true;
   if (e.expanding) {
-    diagnostics.error("E27", e.spot, fmt::format("the parameter '{}' refers to itself", name), "break the circle of ${...}");
+    diagnostics.error("E27", e.spot, fmt::format("the parameter '{}' refers to itself", name),
+                      "break the circle of ${...}");
     return bad;
   }
   e.expanding = true;
   Value v = expand(e.value, Use::quantity, diagnostics);
   e.expanding = false;
   const Spot spot = e.value.spot;
-  e.value = v;   // expanded once: chains cost no more than their length, and a mistake is reported once
+  e.value =
+      v;  // expanded once: chains cost no more than their length, and a mistake is reported once
   e.value.spot = spot;
   return v;
 }
@@ -67,24 +74,30 @@ Value Parameters::expand(const Value& v, Use use, Diagnostics& diagnostics) {
   while (open != std::string::npos) {
     const std::size_t close = v.text.find('}', open);
     if (close == std::string::npos) {
-      diagnostics.error("E27", v.spot, fmt::format("\"{}\" has a ${{ that is not closed", v.text), "write ${name}");
+      diagnostics.error("E27", v.spot, fmt::format("\"{}\" has a ${{ that is not closed", v.text),
+                        "write ${name}");
       return bad;
     }
     std::string name = v.text.substr(open + 2, close - open - 2);
     const Value p = value_of(name, v.spot, diagnostics);
     if (p.kind == Value::Kind::unreadable) return bad;
-    if (open == 0 && close + 1 == v.text.size()) {   // the parameter alone: its value, whatever kind
+    if (open == 0 && close + 1 == v.text.size()) {  // the parameter alone: its value, whatever kind
       Value r = p;
       r.spot = v.spot;
       return r;
     }
     if (p.is_array() || p.is_table() || p.kind == Value::Kind::date) {
-      diagnostics.error("E27", v.spot, fmt::format("the parameter ${{{}}} is {} and cannot be part of a text", name, name_of(p.kind)), "use it alone");
+      diagnostics.error("E27", v.spot,
+                        fmt::format("the parameter ${{{}}} is {} and cannot be part of a text",
+                                    name, name_of(p.kind)),
+                        "use it alone");
       return bad;
     }
     out += v.text.substr(done, open - done) + as_text(p, use);
     if (out.size() > longest) {
-      diagnostics.error("E27", v.spot, fmt::format("\"{}\" grows beyond {} bytes", v.text.substr(0, 40), longest), "");
+      diagnostics.error("E27", v.spot,
+                        fmt::format("\"{}\" grows beyond {} bytes", v.text.substr(0, 40), longest),
+                        "");
       return bad;
     }
     done = close + 1;
@@ -97,7 +110,9 @@ Value Parameters::expand(const Value& v, Use use, Diagnostics& diagnostics) {
 
 void Parameters::warn_unused(Diagnostics& diagnostics) const {
   for (const auto& [name, e] : entries_)
-    if (!e.used) diagnostics.warning("W01", e.spot, fmt::format("the parameter '{}' is never used", name), fmt::format("use it as \"${{{}}}\" or remove it", name));
+    if (!e.used)
+      diagnostics.warning("W01", e.spot, fmt::format("the parameter '{}' is never used", name),
+                          fmt::format("use it as \"${{{}}}\" or remove it", name));
 }
 
 }  // namespace whirl::deck

@@ -77,22 +77,31 @@ FileText read_file(const std::filesystem::path& path, std::size_t limit) {
   const auto status = std::filesystem::status(path, ec);
   if (ec || !std::filesystem::exists(status)) {
     r.code = "E02";
-    r.message = fmt::format("cannot read '{}': {}", path.string(), ec && ec != std::errc::no_such_file_or_directory ? ec.message() : "no such file");
+    r.message = fmt::format(
+        "cannot read '{}': {}", path.string(),
+        ec && ec != std::errc::no_such_file_or_directory ? ec.message() : "no such file");
     // a near name in the same folder is the usual mistake
     const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
     std::vector<std::string> near;
-    for (std::filesystem::directory_iterator it(folder, ec), none; !ec && it != none && near.size() < 200; it.increment(ec)) near.push_back(it->path().filename().string());
+    for (std::filesystem::directory_iterator it(folder, ec), none;
+         !ec && it != none && near.size() < 200; it.increment(ec))
+      near.push_back(it->path().filename().string());
     std::sort(near.begin(), near.end());
     const std::string want = path.filename().string();
     for (const auto& n : near)
-      if (n != want && n.size() == want.size() && std::equal(n.begin(), n.end(), want.begin(), [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b)); }))
+      if (n != want && n.size() == want.size() &&
+          std::equal(n.begin(), n.end(), want.begin(), [](char a, char b) {
+            return std::tolower(static_cast<unsigned char>(a)) ==
+                   std::tolower(static_cast<unsigned char>(b));
+          }))
         r.hint = fmt::format("there is a file '{}' in that folder", n);
     return r;
   }
   if (std::filesystem::is_directory(status)) {
     r.code = "E02";
     r.message = fmt::format("cannot read '{}': it is a folder", path.string());
-    if (std::filesystem::exists(path / "deck.toml", ec)) r.hint = fmt::format("did you mean '{}'?", (path / "deck.toml").string());
+    if (std::filesystem::exists(path / "deck.toml", ec))
+      r.hint = fmt::format("did you mean '{}'?", (path / "deck.toml").string());
     return r;
   }
   std::ifstream in(path, std::ios::binary);
@@ -118,12 +127,18 @@ namespace {
 
 /// Bytes of the UTF-8 sequence at s, or 0 when there is none.
 std::size_t sequence(std::string_view s) {
-  const auto b = [&](std::size_t k) { return k < s.size() ? static_cast<unsigned char>(s[k]) : 0u; };
+  const auto b = [&](std::size_t k) {
+    return k < s.size() ? static_cast<unsigned char>(s[k]) : 0u;
+  };
   const auto tail = [&](std::size_t k) { return (b(k) & 0xC0u) == 0x80u; };
   if (b(0) < 0x80) return 1;
   if (b(0) >= 0xC2 && b(0) < 0xE0 && tail(1)) return 2;
-  if ((b(0) & 0xF0u) == 0xE0u && tail(1) && tail(2) && !(b(0) == 0xE0 && b(1) < 0xA0) && !(b(0) == 0xED && b(1) >= 0xA0)) return 3;
-  if (b(0) >= 0xF0 && b(0) < 0xF5 && tail(1) && tail(2) && tail(3) && !(b(0) == 0xF0 && b(1) < 0x90) && !(b(0) == 0xF4 && b(1) >= 0x90)) return 4;
+  if ((b(0) & 0xF0u) == 0xE0u && tail(1) && tail(2) && !(b(0) == 0xE0 && b(1) < 0xA0) &&
+      !(b(0) == 0xED && b(1) >= 0xA0))
+    return 3;
+  if (b(0) >= 0xF0 && b(0) < 0xF5 && tail(1) && tail(2) && tail(3) &&
+      !(b(0) == 0xF0 && b(1) < 0x90) && !(b(0) == 0xF4 && b(1) >= 0x90))
+    return 4;
   return 0;
 }
 
@@ -133,7 +148,8 @@ TextProblem check_text(std::string_view text, TextKind kind) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     return {"the file is UTF-16 text", "save it as UTF-8", 0, 0};
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return {"the file is empty", "`whirl new` writes a deck to start from", 0, 0};
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    return {"the file is empty", "`whirl new` writes a deck to start from", 0, 0};
   int line = 1, column = 1, depth = 0, dots = 0;
   enum { plain, comment, basic, literal, long_basic, long_literal } state = plain;
   for (std::size_t i = 0; i < text.size();) {
@@ -141,7 +157,8 @@ TextProblem check_text(std::string_view text, TextKind kind) {
     const char c = text[i];
     const auto u = static_cast<unsigned char>(c);
     if (n == 0 || (u < 0x20 && c != '\n' && c != '\r' && c != '\t') || u == 0x7F)
-      return {n == 0 ? "the file is not UTF-8 text" : "the file holds control characters: it is not a text file",
+      return {n == 0 ? "the file is not UTF-8 text"
+                     : "the file holds control characters: it is not a text file",
               "a deck is a UTF-8 text file", line, column};
     std::size_t advance = n;
     if (kind != TextKind::table) {
@@ -150,40 +167,68 @@ TextProblem check_text(std::string_view text, TextKind kind) {
         case plain:
           // Not TOML, and one of the parser's character tables does not cover them.
           if (n > 1 && kind == TextKind::deck)
-            return {fmt::format("'{}' stands outside quotes", text.substr(i, n)), "put names and values with such letters in quotes", line, column};
-          if (c == '#') state = comment;
-          else if (triple("\"\"\"")) { state = long_basic; advance = 3; }
-          else if (triple("'''")) { state = long_literal; advance = 3; }
-          else if (c == '"') state = basic;
-          else if (c == '\'') state = literal;
-          else if (c == '[' || c == '{') { ++depth; dots = 0; }
-          else if (c == ']' || c == '}') { depth = std::max(0, depth - 1); dots = 0; }
-          else if (c == '.') ++dots;
-          else if (c == '=' || c == ',' || c == '\n') dots = 0;
+            return {fmt::format("'{}' stands outside quotes", text.substr(i, n)),
+                    "put names and values with such letters in quotes", line, column};
+          if (c == '#')
+            state = comment;
+          else if (triple("\"\"\"")) {
+            state = long_basic;
+            advance = 3;
+          } else if (triple("'''")) {
+            state = long_literal;
+            advance = 3;
+          } else if (c == '"')
+            state = basic;
+          else if (c == '\'')
+            state = literal;
+          else if (c == '[' || c == '{') {
+            ++depth;
+            dots = 0;
+          } else if (c == ']' || c == '}') {
+            depth = std::max(0, depth - 1);
+            dots = 0;
+          } else if (c == '.')
+            ++dots;
+          else if (c == '=' || c == ',' || c == '\n')
+            dots = 0;
           if (depth > max_depth || dots > max_depth)
-            return {fmt::format("{} nested deeper than {} levels", depth > max_depth ? "brackets are" : "a dotted key is", max_depth), "no deck needs that", line, column};
+            return {fmt::format("{} nested deeper than {} levels",
+                                depth > max_depth ? "brackets are" : "a dotted key is", max_depth),
+                    "no deck needs that", line, column};
           break;
         case comment:
           if (c == '\n') state = plain;
           break;
         case basic:
-          if (triple("\\\"") || triple("\\\\")) advance = 2;
-          else if (c == '"' || c == '\n') state = plain;
+          if (triple("\\\"") || triple("\\\\"))
+            advance = 2;
+          else if (c == '"' || c == '\n')
+            state = plain;
           break;
         case literal:
           if (c == '\'' || c == '\n') state = plain;
           break;
         case long_basic:
-          if (triple("\\\"") || triple("\\\\")) advance = 2;
-          else if (triple("\"\"\"")) { state = plain; advance = 3; }
+          if (triple("\\\"") || triple("\\\\"))
+            advance = 2;
+          else if (triple("\"\"\"")) {
+            state = plain;
+            advance = 3;
+          }
           break;
         case long_literal:
-          if (triple("'''")) { state = plain; advance = 3; }
+          if (triple("'''")) {
+            state = plain;
+            advance = 3;
+          }
           break;
       }
     }
-    if (c == '\n') { ++line; column = 1; }
-    else column += advance == n ? 1 : static_cast<int>(advance);
+    if (c == '\n') {
+      ++line;
+      column = 1;
+    } else
+      column += advance == n ? 1 : static_cast<int>(advance);
     i += advance;
   }
   return {};

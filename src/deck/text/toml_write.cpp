@@ -16,8 +16,10 @@ std::string quote_text(std::string_view s) {
       case '\t': r += "\\t"; break;
       case '\r': r += "\\r"; break;
       default:
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) r += fmt::format("\\u{:04X}", static_cast<unsigned char>(c));
-        else r += c;
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
+          r += fmt::format("\\u{:04X}", static_cast<unsigned char>(c));
+        else
+          r += c;
     }
   }
   return r + '"';
@@ -25,13 +27,15 @@ std::string quote_text(std::string_view s) {
 
 std::string key_text(std::string_view k) {
   const bool bare = !k.empty() && std::all_of(k.begin(), k.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
   });
   return bare ? std::string(k) : quote_text(k);
 }
 
 bool list_of_tables(const Value& v) {
-  return v.is_array() && !v.items.empty() && std::all_of(v.items.begin(), v.items.end(), [](const Value& x) { return x.is_table(); });
+  return v.is_array() && !v.items.empty() &&
+         std::all_of(v.items.begin(), v.items.end(), [](const Value& x) { return x.is_table(); });
 }
 
 std::string inline_text(const Value& v) {
@@ -45,12 +49,15 @@ std::string inline_text(const Value& v) {
     }
     case Value::Kind::array: {
       std::string r = "[";
-      for (const auto& x : v.items) r += (r.size() > 1 ? ", " : "") + inline_text(x);
+      for (const auto& x : v.items)
+        r += (r.size() > 1 ? ", " : "") + inline_text(x);
       return r + "]";
     }
     case Value::Kind::table: {
       std::string r = "{";
-      for (const auto& m : v.members) r += fmt::format("{} {} = {}", r.size() > 1 ? "," : "", key_text(m.key), inline_text(m.value));
+      for (const auto& m : v.members)
+        r += fmt::format("{} {} = {}", r.size() > 1 ? "," : "", key_text(m.key),
+                         inline_text(m.value));
       return r + (v.members.empty() ? "}" : " }");
     }
     default: return quote_text(v.text);
@@ -60,13 +67,15 @@ std::string inline_text(const Value& v) {
 void write_table(std::string& out, const Value& t, const std::string& path) {
   for (const auto& m : t.members) {
     if (m.value.is_table() || list_of_tables(m.value)) continue;
-    const bool rows = m.value.is_array() && !m.value.items.empty() && m.value.items.front().is_array();
+    const bool rows =
+        m.value.is_array() && !m.value.items.empty() && m.value.items.front().is_array();
     if (!rows) {
       out += fmt::format("{} = {}\n", key_text(m.key), inline_text(m.value));
       continue;
     }
     out += key_text(m.key) + " = [\n";
-    for (const auto& row : m.value.items) out += "  " + inline_text(row) + ",\n";
+    for (const auto& row : m.value.items)
+      out += "  " + inline_text(row) + ",\n";
     out += "]\n";
   }
   for (const auto& m : t.members) {

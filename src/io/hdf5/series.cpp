@@ -1,9 +1,10 @@
 // Time series in HDF5. The only file that sees the HDF5 library (C API, 1.10).
 //
-// The file is written in single-writer multiple-reader mode, so others may read while it grows, and a killed run leaves a
-// readable file. Compressed chunks cannot be rewritten in place without leaking space, so only full chunks go to the
-// compressed data sets; the rows after the last full chunk wait in `tail`, which is not compressed. `state` says what
-// counts. close() moves the tail into the data sets.
+// The file is written in single-writer multiple-reader mode, so others may read while it grows, and
+// a killed run leaves a readable file. Compressed chunks cannot be rewritten in place without
+// leaking space, so only full chunks go to the compressed data sets; the rows after the last full
+// chunk wait in `tail`, which is not compressed. `state` says what counts. close() moves the tail
+// into the data sets.
 #include <core/error.hpp>
 #include <core/plugin.hpp>
 #include <hdf5.h>
@@ -24,10 +25,14 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* layout_text =
-    "Time series written by Whirl. Every data set of the root but 'tail' and 'state' is rows x columns (double); its "
-    "attributes 'columns', 'units' and 'descriptions' name the columns. While the program runs, or after it was killed, "
-    "state = (rows valid in the data sets, row number of the first row of tail, rows in tail), and tail holds the newest "
-    "rows, all columns side by side in the order of the attribute 'order'; open such a file in SWMR read mode (h5py: "
+    "Time series written by Whirl. Every data set of the root but 'tail' and 'state' is rows x "
+    "columns (double); its "
+    "attributes 'columns', 'units' and 'descriptions' name the columns. While the program runs, or "
+    "after it was killed, "
+    "state = (rows valid in the data sets, row number of the first row of tail, rows in tail), and "
+    "tail holds the newest "
+    "rows, all columns side by side in the order of the attribute 'order'; open such a file in "
+    "SWMR read mode (h5py: "
     "swmr=True) or make it an ordinary file with h5clear -s -i. After a normal end tail is empty.";
 
 // The library is not thread-safe.
@@ -37,7 +42,9 @@ std::mutex library;
 class Handle {
  public:
   Handle() = default;
-  Handle(hid_t id, herr_t (*close)(hid_t), const fs::path& file, const char* what) : id_(id), close_(close) {
+  Handle(hid_t id, herr_t (*close)(hid_t), const fs::path& file, const char* what)
+      : id_(id),
+        close_(close) {
     if (id < 0) io_failure(file, what);
   }
   Handle(Handle&& o) noexcept : id_(std::exchange(o.id_, -1)), close_(o.close_) {}
@@ -48,7 +55,9 @@ class Handle {
     return *this;
   }
   ~Handle() { reset(); }
-  void reset() { if (id_ >= 0) close_(std::exchange(id_, -1)); }
+  void reset() {
+    if (id_ >= 0) close_(std::exchange(id_, -1));
+  }
   operator hid_t() const { return id_; }
   bool open() const { return id_ >= 0; }
 
@@ -59,7 +68,7 @@ class Handle {
 
 struct Group {
   std::string name;
-  std::vector<hsize_t> columns;   // columns of the row that go here
+  std::vector<hsize_t> columns;  // columns of the row that go here
   std::vector<std::string> titles, units, descriptions;
   Handle data;
 };
@@ -69,7 +78,8 @@ std::vector<Group> groups_of(std::span<const Channel> channels) {
   hsize_t column = 0;
   for (const auto& c : channels) {
     const std::string name = c.group.empty() ? "series" : c.group;
-    auto g = std::find_if(groups.begin(), groups.end(), [&](const Group& x) { return x.name == name; });
+    auto g =
+        std::find_if(groups.begin(), groups.end(), [&](const Group& x) { return x.name == name; });
     if (g == groups.end()) g = groups.insert(groups.end(), Group{name, {}, {}, {}, {}, {}});
     for (std::size_t k = 0; k < c.width(); ++k) {
       g->columns.push_back(column++);
@@ -88,13 +98,16 @@ Handle string_type() {
   return t;
 }
 
-void write_strings(const fs::path& file, hid_t where, const char* name, const std::vector<std::string>& values) {
+void write_strings(const fs::path& file, hid_t where, const char* name,
+                   const std::vector<std::string>& values) {
   const hsize_t n = values.size();
   Handle type = string_type();
   Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, file, "cannot write");
-  Handle a(H5Acreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file, "cannot write");
+  Handle a(H5Acreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, file,
+           "cannot write");
   std::vector<const char*> p;
-  for (const auto& v : values) p.push_back(v.c_str());
+  for (const auto& v : values)
+    p.push_back(v.c_str());
   if (H5Awrite(a, type, p.data()) < 0) io_failure(file, "cannot write");
 }
 
@@ -109,11 +122,11 @@ std::vector<std::string> read_strings(const fs::path& file, hid_t where, const c
   return out;
 }
 
-using State = std::array<std::uint64_t, 3>;   // rows valid in data, first row of tail, rows in tail
+using State = std::array<std::uint64_t, 3>;  // rows valid in data, first row of tail, rows in tail
 
 struct Opened {
   Handle file, tail, state;
-  std::vector<Group> groups;   // in the order of the attribute "order"
+  std::vector<Group> groups;  // in the order of the attribute "order"
   hsize_t width = 0, chunk = 0;
   State s{};
 };
@@ -129,7 +142,8 @@ Opened open_series(const fs::path& path, bool writing) {
     H5Pset(access, "clear_status_flags", &clear);
     H5Pset(access, "skip_eof_check", &clear);
     // Nor did a killed writer record where the file ends; what it wrote is beyond the recorded end.
-    Handle first(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose, path, "cannot open the HDF5 file");
+    Handle first(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose, path,
+                 "cannot open the HDF5 file");
     if (H5Fincrement_filesize(first, 0) < 0) io_failure(path, "cannot repair the HDF5 file");
     first.reset();
     id = H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
@@ -139,33 +153,41 @@ Opened open_series(const fs::path& path, bool writing) {
   }
   o.file = Handle(id, H5Fclose, path, "cannot open the HDF5 file");
   o.tail = Handle(H5Dopen2(o.file, "tail", H5P_DEFAULT), H5Dclose, path, "not a series of Whirl:");
-  o.state = Handle(H5Dopen2(o.file, "state", H5P_DEFAULT), H5Dclose, path, "not a series of Whirl:");
-  if (H5Dread(o.state, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, o.s.data()) < 0) io_failure(path, "cannot read");
+  o.state =
+      Handle(H5Dopen2(o.file, "state", H5P_DEFAULT), H5Dclose, path, "not a series of Whirl:");
+  if (H5Dread(o.state, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, o.s.data()) < 0)
+    io_failure(path, "cannot read");
   Handle space(H5Dget_space(o.tail), H5Sclose, path, "cannot read");
   hsize_t dims[2] = {0, 0};
   H5Sget_simple_extent_dims(space, dims, nullptr);
-  o.chunk = dims[0]; o.width = dims[1];
+  o.chunk = dims[0];
+  o.width = dims[1];
   // "order" holds, column by column of the tail, the data set it belongs to.
   const auto order = read_strings(path, o.file, "order");
   if (order.size() != o.width) io_failure(path, "not a series of Whirl:");
   for (hsize_t k = 0; k < o.width; ++k) {
-    auto g = std::find_if(o.groups.begin(), o.groups.end(), [&](const Group& x) { return x.name == order[k]; });
-    if (g == o.groups.end()) g = o.groups.insert(o.groups.end(), Group{order[k], {}, {}, {}, {}, {}});
+    auto g = std::find_if(o.groups.begin(), o.groups.end(),
+                          [&](const Group& x) { return x.name == order[k]; });
+    if (g == o.groups.end())
+      g = o.groups.insert(o.groups.end(), Group{order[k], {}, {}, {}, {}, {}});
     g->columns.push_back(k);
   }
   for (auto& g : o.groups) {
-    g.data = Handle(H5Dopen2(o.file, g.name.c_str(), H5P_DEFAULT), H5Dclose, path, "not a series of Whirl:");
+    g.data = Handle(H5Dopen2(o.file, g.name.c_str(), H5P_DEFAULT), H5Dclose, path,
+                    "not a series of Whirl:");
     g.titles = read_strings(path, g.data, "columns");
     g.units = read_strings(path, g.data, "units");
     g.descriptions = read_strings(path, g.data, "descriptions");
-    if (g.titles.size() != g.columns.size() || g.units.size() != g.columns.size()) io_failure(path, "not a series of Whirl:");
+    if (g.titles.size() != g.columns.size() || g.units.size() != g.columns.size())
+      io_failure(path, "not a series of Whirl:");
   }
   return o;
 }
 
-// Rows [first, first + count) of one data set into a row-major table of `width` columns, at row `to`.
-void read_rows(const fs::path& path, const Group& g, hsize_t first, hsize_t count, hsize_t width, hsize_t to,
-               std::vector<double>& table) {
+// Rows [first, first + count) of one data set into a row-major table of `width` columns, at row
+// `to`.
+void read_rows(const fs::path& path, const Group& g, hsize_t first, hsize_t count, hsize_t width,
+               hsize_t to, std::vector<double>& table) {
   if (count == 0) return;
   const hsize_t w = g.columns.size();
   std::vector<double> block(count * w);
@@ -173,18 +195,22 @@ void read_rows(const fs::path& path, const Group& g, hsize_t first, hsize_t coun
   const hsize_t start[2] = {first, 0}, size[2] = {count, w};
   H5Sselect_hyperslab(fspace, H5S_SELECT_SET, start, nullptr, size, nullptr);
   Handle mspace(H5Screate_simple(2, size, nullptr), H5Sclose, path, "cannot read");
-  if (H5Dread(g.data, H5T_NATIVE_DOUBLE, mspace, fspace, H5P_DEFAULT, block.data()) < 0) io_failure(path, "cannot read");
+  if (H5Dread(g.data, H5T_NATIVE_DOUBLE, mspace, fspace, H5P_DEFAULT, block.data()) < 0)
+    io_failure(path, "cannot read");
   for (hsize_t i = 0; i < count; ++i)
-    for (hsize_t k = 0; k < w; ++k) table[(to + i) * width + g.columns[k]] = block[i * w + k];
+    for (hsize_t k = 0; k < w; ++k)
+      table[(to + i) * width + g.columns[k]] = block[i * w + k];
 }
 
 // Rows of the tail from `first` (row number of the series) on.
 std::vector<double> read_tail(const fs::path& path, const Opened& o, std::uint64_t first) {
   if (o.s[1] + o.s[2] <= first) return {};
   std::vector<double> all(o.chunk * o.width);
-  if (H5Dread(o.tail, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) io_failure(path, "cannot read");
+  if (H5Dread(o.tail, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
+    io_failure(path, "cannot read");
   const auto from = (first > o.s[1] ? first - o.s[1] : 0) * o.width;
-  return {all.begin() + static_cast<std::ptrdiff_t>(from), all.begin() + static_cast<std::ptrdiff_t>(o.s[2] * o.width)};
+  return {all.begin() + static_cast<std::ptrdiff_t>(from),
+          all.begin() + static_cast<std::ptrdiff_t>(o.s[2] * o.width)};
 }
 
 class Hdf5Series final : public TimeSeries {
@@ -234,27 +260,36 @@ class Hdf5Series final : public TimeSeries {
     buffer_.assign(chunk_ * width_, 0.0);
     base_ = rows / chunk_ * chunk_;
     used_ = rows - base_;
-    // What remains of the rows after the last full chunk goes into the tail before the data sets are cut.
+    // What remains of the rows after the last full chunk goes into the tail before the data sets
+    // are cut.
     const std::uint64_t in_data = std::min<std::uint64_t>(rows, o.s[0]);
     if (in_data < base_) io_failure(path_, "rows are missing in");
-    for (const auto& g : o.groups) read_rows(path_, g, base_, in_data - base_, width_, 0, buffer_);
+    for (const auto& g : o.groups)
+      read_rows(path_, g, base_, in_data - base_, width_, 0, buffer_);
     const auto tail = read_tail(path_, o, in_data);
     const std::size_t from = (in_data - base_) * width_;
-    std::copy_n(tail.begin(), std::min<std::size_t>(tail.size(), used_ * width_ - from), buffer_.begin() + static_cast<std::ptrdiff_t>(from));
+    std::copy_n(tail.begin(), std::min<std::size_t>(tail.size(), used_ * width_ - from),
+                buffer_.begin() + static_cast<std::ptrdiff_t>(from));
     groups_ = std::move(o.groups);
-    file_ = std::move(o.file); tail_ = std::move(o.tail); state_ = std::move(o.state);
+    file_ = std::move(o.file);
+    tail_ = std::move(o.tail);
+    state_ = std::move(o.state);
     make_spaces();
     flushed_ = 0;
     write_tail();
     if (H5Fflush(file_, H5F_SCOPE_LOCAL) < 0) io_failure(path_, "cannot write");
-    for (auto& g : groups_) extend(g, base_);
-    if (H5Fflush(file_, H5F_SCOPE_LOCAL) < 0 || H5Fstart_swmr_write(file_) < 0) io_failure(path_, "cannot continue");
+    for (auto& g : groups_)
+      extend(g, base_);
+    if (H5Fflush(file_, H5F_SCOPE_LOCAL) < 0 || H5Fstart_swmr_write(file_) < 0)
+      io_failure(path_, "cannot continue");
   }
 
   void append(std::span<const double> row) override {
-    if (row.size() != width_ || !file_.open()) throw std::logic_error("TimeSeries: row of the wrong length, or not begun");
+    if (row.size() != width_ || !file_.open())
+      throw std::logic_error("TimeSeries: row of the wrong length, or not begun");
     double* p = buffer_.data() + used_ * width_;
-    for (std::size_t k = 0; k < width_; ++k) p[k] = scale_[k] == 1.0 ? row[k] : scale_[k] * row[k];
+    for (std::size_t k = 0; k < width_; ++k)
+      p[k] = scale_[k] == 1.0 ? row[k] : scale_[k] * row[k];
     if (++used_ == chunk_) {
       const std::lock_guard lock(library);
       write_data();
@@ -277,8 +312,9 @@ class Hdf5Series final : public TimeSeries {
     if (!file_.open()) return;
     if (used_ > 0) write_data();
     const State s{base_, base_, 0};
-    const bool ok = H5Dwrite(state_, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, s.data()) >= 0 &&
-                    H5Fflush(file_, H5F_SCOPE_LOCAL) >= 0;
+    const bool ok =
+        H5Dwrite(state_, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, s.data()) >= 0 &&
+        H5Fflush(file_, H5F_SCOPE_LOCAL) >= 0;
     release();
     if (!ok) io_failure(path_, "cannot write");
   }
@@ -289,55 +325,70 @@ class Hdf5Series final : public TimeSeries {
   void prepare(std::span<const Channel> channels) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     scale_.clear();
-    for (const auto& c : channels) scale_.insert(scale_.end(), c.width(), c.scale);
+    for (const auto& c : channels)
+      scale_.insert(scale_.end(), c.width(), c.scale);
     width_ = scale_.size();
     if (width_ == 0) throw std::logic_error("TimeSeries: no channels");
     groups_ = groups_of(channels);
     for (const auto& g : groups_)
       if (g.name == "tail" || g.name == "state" || g.name.find('/') != std::string::npos)
         throw std::logic_error("TimeSeries: '" + g.name + "' cannot name a group");
-    flush_every_ = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.flush_seconds));
+    flush_every_ = std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(options_.flush_seconds));
     last_flush_ = Clock::now();
   }
 
   void release() {
     memory_.reset();
     groups_.clear();
-    tail_.reset(); state_.reset(); file_.reset();
+    tail_.reset();
+    state_.reset();
+    file_.reset();
   }
 
-  Handle make_dataset(const char* name, hid_t type, std::array<hsize_t, 2> dims, std::array<hsize_t, 2> most,
-                      std::array<hsize_t, 2> chunk, bool compress) {
+  Handle make_dataset(const char* name, hid_t type, std::array<hsize_t, 2> dims,
+                      std::array<hsize_t, 2> most, std::array<hsize_t, 2> chunk, bool compress) {
     Handle space(H5Screate_simple(2, dims.data(), most.data()), H5Sclose, path_, "cannot write");
     Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, path_, "cannot write");
     H5Pset_chunk(how, 2, chunk.data());
     const double missing = std::numeric_limits<double>::quiet_NaN();
     const std::uint64_t zero = 0;
-    if (type == H5T_IEEE_F64LE) H5Pset_fill_value(how, H5T_NATIVE_DOUBLE, &missing);
-    else H5Pset_fill_value(how, H5T_NATIVE_UINT64, &zero);
-    if (compress) { H5Pset_shuffle(how); H5Pset_deflate(how, 4); }
-    return Handle(H5Dcreate2(file_, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose, path_, "cannot write");
+    if (type == H5T_IEEE_F64LE)
+      H5Pset_fill_value(how, H5T_NATIVE_DOUBLE, &missing);
+    else
+      H5Pset_fill_value(how, H5T_NATIVE_UINT64, &zero);
+    if (compress) {
+      H5Pset_shuffle(how);
+      H5Pset_deflate(how, 4);
+    }
+    return Handle(H5Dcreate2(file_, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose,
+                  path_, "cannot write");
   }
 
   void make_file(const fs::path& at, std::span<const Channel> channels) {
     Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path_, "cannot write");
     H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-    file_ = Handle(H5Fcreate(at.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, path_, "cannot write");
+    file_ = Handle(H5Fcreate(at.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, path_,
+                   "cannot write");
     write_strings(path_, file_, "layout", {layout_text});
     std::vector<std::string> order;
-    for (const auto& c : channels) order.insert(order.end(), c.width(), c.group.empty() ? "series" : c.group);
+    for (const auto& c : channels)
+      order.insert(order.end(), c.width(), c.group.empty() ? "series" : c.group);
     write_strings(path_, file_, "order", order);
     for (auto& g : groups_) {
       const hsize_t w = g.columns.size();
-      g.data = make_dataset(g.name.c_str(), H5T_IEEE_F64LE, {0, w}, {H5S_UNLIMITED, w}, {chunk_, 1}, true);
+      g.data = make_dataset(g.name.c_str(), H5T_IEEE_F64LE, {0, w}, {H5S_UNLIMITED, w}, {chunk_, 1},
+                            true);
       write_strings(path_, g.data, "columns", g.titles);
       write_strings(path_, g.data, "units", g.units);
       write_strings(path_, g.data, "descriptions", g.descriptions);
     }
-    tail_ = make_dataset("tail", H5T_IEEE_F64LE, {chunk_, width_}, {chunk_, width_}, {std::min<hsize_t>(chunk_, 64), width_}, false);
+    tail_ = make_dataset("tail", H5T_IEEE_F64LE, {chunk_, width_}, {chunk_, width_},
+                         {std::min<hsize_t>(chunk_, 64), width_}, false);
     state_ = make_dataset("state", H5T_STD_U64LE, {1, 3}, {1, 3}, {1, 3}, false);
     const State none{};
-    if (H5Dwrite(state_, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, none.data()) < 0) io_failure(path_, "cannot write");
+    if (H5Dwrite(state_, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, none.data()) < 0)
+      io_failure(path_, "cannot write");
     make_spaces();
     if (H5Fstart_swmr_write(file_) < 0) io_failure(path_, "cannot write");
   }
@@ -362,9 +413,11 @@ class Hdf5Series final : public TimeSeries {
       H5Sselect_hyperslab(fspace, H5S_SELECT_SET, start, nullptr, size, nullptr);
       block_.resize(used_ * w);
       for (hsize_t i = 0; i < used_; ++i)
-        for (hsize_t k = 0; k < w; ++k) block_[i * w + k] = buffer_[i * width_ + g.columns[k]];
+        for (hsize_t k = 0; k < w; ++k)
+          block_[i * w + k] = buffer_[i * width_ + g.columns[k]];
       Handle mspace(H5Screate_simple(2, size, nullptr), H5Sclose, path_, "cannot write");
-      if (H5Dwrite(g.data, H5T_NATIVE_DOUBLE, mspace, fspace, H5P_DEFAULT, block_.data()) < 0) io_failure(path_, "cannot write");
+      if (H5Dwrite(g.data, H5T_NATIVE_DOUBLE, mspace, fspace, H5P_DEFAULT, block_.data()) < 0)
+        io_failure(path_, "cannot write");
     }
     base_ += used_;
     used_ = flushed_ = 0;
@@ -377,12 +430,14 @@ class Hdf5Series final : public TimeSeries {
       const hsize_t start[2] = {flushed_, 0}, size[2] = {used_ - flushed_, width_};
       H5Sselect_hyperslab(fspace, H5S_SELECT_SET, start, nullptr, size, nullptr);
       H5Sselect_hyperslab(memory_, H5S_SELECT_SET, start, nullptr, size, nullptr);
-      if (H5Dwrite(tail_, H5T_NATIVE_DOUBLE, memory_, fspace, H5P_DEFAULT, buffer_.data()) < 0 || H5Dflush(tail_) < 0)
+      if (H5Dwrite(tail_, H5T_NATIVE_DOUBLE, memory_, fspace, H5P_DEFAULT, buffer_.data()) < 0 ||
+          H5Dflush(tail_) < 0)
         io_failure(path_, "cannot write");
       flushed_ = used_;
     }
     const State s{base_, base_, used_};
-    if (H5Dwrite(state_, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, s.data()) < 0) io_failure(path_, "cannot write");
+    if (H5Dwrite(state_, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, s.data()) < 0)
+      io_failure(path_, "cannot write");
   }
 
   fs::path path_;
@@ -391,9 +446,9 @@ class Hdf5Series final : public TimeSeries {
   std::vector<Group> groups_;
   Handle file_, tail_, state_, memory_;
   hsize_t width_ = 0, chunk_ = 0;
-  std::uint64_t base_ = 0;      // rows in the data sets
-  std::uint64_t used_ = 0;      // rows waiting in buffer_
-  std::uint64_t flushed_ = 0;   // of those, rows already in the tail
+  std::uint64_t base_ = 0;     // rows in the data sets
+  std::uint64_t used_ = 0;     // rows waiting in buffer_
+  std::uint64_t flushed_ = 0;  // of those, rows already in the tail
   Clock::time_point last_flush_;
   Clock::duration flush_every_{};
 };
@@ -405,14 +460,19 @@ void read(const fs::path& path, Columns& out) {
   const auto tail = read_tail(path, o, o.s[0]);
   const std::size_t rows = o.s[0] + tail.size() / o.width;
   std::vector<double> all(rows * o.width);
-  for (const auto& g : o.groups) read_rows(path, g, 0, o.s[0], o.width, 0, all);
+  for (const auto& g : o.groups)
+    read_rows(path, g, 0, o.s[0], o.width, 0, all);
   std::copy(tail.begin(), tail.end(), all.begin() + static_cast<std::ptrdiff_t>(o.s[0] * o.width));
-  out.names.resize(o.width); out.units.resize(o.width); out.values.assign(o.width, std::vector<double>(rows));
+  out.names.resize(o.width);
+  out.units.resize(o.width);
+  out.values.assign(o.width, std::vector<double>(rows));
   for (const auto& g : o.groups)
     for (std::size_t k = 0; k < g.columns.size(); ++k) {
       const auto c = g.columns[k];
-      out.names[c] = g.titles[k]; out.units[c] = g.units[k];
-      for (std::size_t i = 0; i < rows; ++i) out.values[c][i] = all[i * o.width + c];
+      out.names[c] = g.titles[k];
+      out.units[c] = g.units[k];
+      for (std::size_t i = 0; i < rows; ++i)
+        out.values[c][i] = all[i * o.width + c];
     }
 }
 
@@ -421,11 +481,12 @@ void read(const fs::path& path, Columns& out) {
 
 WHIRL_DEFINE_PLUGIN
 
-WHIRL_PLUGIN_EXPORT whirl::io::TimeSeries* whirl_hdf5_make_series(const std::filesystem::path& file,
-                                                                  const whirl::io::SeriesOptions& options) {
+WHIRL_PLUGIN_EXPORT whirl::io::TimeSeries* whirl_hdf5_make_series(
+    const std::filesystem::path& file, const whirl::io::SeriesOptions& options) {
   return new whirl::io::Hdf5Series(file, options);
 }
 
-WHIRL_PLUGIN_EXPORT void whirl_hdf5_read(const std::filesystem::path& file, whirl::io::Columns& out) {
+WHIRL_PLUGIN_EXPORT void whirl_hdf5_read(const std::filesystem::path& file,
+                                         whirl::io::Columns& out) {
   whirl::io::read(file, out);
 }

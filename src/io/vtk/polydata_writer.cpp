@@ -35,8 +35,12 @@ vtkSmartPointer<vtkDataArray> lend(const std::vector<T>& v, int components, cons
 vtkSmartPointer<vtkDataArray> lend(const PolyData::Array& a) {
   struct Visitor {
     const PolyData::Array& a;
-    vtkSmartPointer<vtkDataArray> operator()(const std::vector<float>& v) const { return lend<vtkFloatArray>(v, a.components, a.name.c_str()); }
-    vtkSmartPointer<vtkDataArray> operator()(const std::vector<std::int32_t>& v) const { return lend<vtkIntArray>(v, a.components, a.name.c_str()); }
+    vtkSmartPointer<vtkDataArray> operator()(const std::vector<float>& v) const {
+      return lend<vtkFloatArray>(v, a.components, a.name.c_str());
+    }
+    vtkSmartPointer<vtkDataArray> operator()(const std::vector<std::int32_t>& v) const {
+      return lend<vtkIntArray>(v, a.components, a.name.c_str());
+    }
   };
   return std::visit(Visitor{a}, a.values);
 }
@@ -55,17 +59,19 @@ vtkSmartPointer<vtkCellArray> copy(const PolyData::Cells& c) {
 class Writer final : public PolyDataWriter {
  public:
   Writer() {
-    vtkObject::GlobalWarningDisplayOff();   // failures come back as an error code
+    vtkObject::GlobalWarningDisplayOff();  // failures come back as an error code
     writer_->SetDataModeToAppended();
     writer_->EncodeAppendedDataOff();
-    writer_->SetCompressorTypeToLZ4();   // a third of the time of zlib, for 1.7 times the size
+    writer_->SetCompressorTypeToLZ4();  // a third of the time of zlib, for 1.7 times the size
     time_->SetName("TimeValue");
     time_->SetNumberOfValues(1);
   }
 
   void write(const std::filesystem::path& file, const PolyData& data, double time) override {
     if (topology_ != data.topology) {
-      vertices_ = copy(data.vertices); lines_ = copy(data.lines); polygons_ = copy(data.polygons);
+      vertices_ = copy(data.vertices);
+      lines_ = copy(data.lines);
+      polygons_ = copy(data.polygons);
       topology_ = data.topology;
     }
     vtkNew<vtkPolyData> poly;
@@ -76,12 +82,15 @@ class Writer final : public PolyDataWriter {
     if (data.lines.size()) poly->SetLines(lines_);
     if (data.polygons.size()) poly->SetPolys(polygons_);
     for (const auto& a : data.point_data) {
-      if (a.name == data.normals) poly->GetPointData()->SetNormals(lend(a));
-      else poly->GetPointData()->AddArray(lend(a));
+      if (a.name == data.normals)
+        poly->GetPointData()->SetNormals(lend(a));
+      else
+        poly->GetPointData()->AddArray(lend(a));
     }
-    for (const auto& a : data.cell_data) poly->GetCellData()->AddArray(lend(a));
+    for (const auto& a : data.cell_data)
+      poly->GetCellData()->AddArray(lend(a));
     time_->SetValue(0, time);
-    time_->Modified();   // or the range in the file stays that of the first frame
+    time_->Modified();  // or the range in the file stays that of the first frame
     poly->GetFieldData()->AddArray(time_);
     const auto temporary = temporary_beside(file);
     writer_->SetFileName(temporary.c_str());
@@ -92,7 +101,8 @@ class Writer final : public PolyDataWriter {
     if (!ok) {
       std::error_code ec;
       std::filesystem::remove(temporary, ec);
-      io_failure(file, std::string("VTK cannot write (") + vtkErrorCode::GetStringFromErrorCode(code) + ")");
+      io_failure(file, std::string("VTK cannot write (") +
+                           vtkErrorCode::GetStringFromErrorCode(code) + ")");
     }
     rename_into_place(temporary, file);
   }
@@ -108,4 +118,6 @@ class Writer final : public PolyDataWriter {
 }  // namespace whirl::io
 
 WHIRL_DEFINE_PLUGIN
-WHIRL_PLUGIN_EXPORT whirl::io::PolyDataWriter* whirl_vtk_make_writer() { return new whirl::io::Writer; }
+WHIRL_PLUGIN_EXPORT whirl::io::PolyDataWriter* whirl_vtk_make_writer() {
+  return new whirl::io::Writer;
+}

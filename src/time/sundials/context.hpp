@@ -13,7 +13,8 @@ namespace whirl::time::sundials {
 
 struct Context {
   Context() {
-    if (SUNContext_Create(nullptr, &handle) != 0) throw run_error("N30", "SUNDIALS cannot be started");
+    if (SUNContext_Create(nullptr, &handle) != 0)
+      throw run_error("N30", "SUNDIALS cannot be started");
   }
   ~Context() { SUNContext_Free(&handle); }
   Context(const Context&) = delete;
@@ -40,7 +41,9 @@ class SerialVector {
   Index n_;
 };
 
-inline Eigen::Map<VecX> view(N_Vector x) { return {N_VGetArrayPointer(x), static_cast<Index>(N_VGetLength(x))}; }
+inline Eigen::Map<VecX> view(N_Vector x) {
+  return {N_VGetArrayPointer(x), static_cast<Index>(N_VGetLength(x))};
+}
 
 /// Breakpoints and end time.
 class Stops {
@@ -68,6 +71,7 @@ class Stops {
 inline void silent(int, const char*, const char*, char*, void*) {}
 
 std::unique_ptr<Integrator> make_ida(Problem& problem, const Options& options);
-std::unique_ptr<ExplicitIntegrator> make_erk(FirstOrderProblem& problem, const Options& options, int order);
+std::unique_ptr<ExplicitIntegrator> make_erk(FirstOrderProblem& problem, const Options& options,
+                                             int order);
 
 }  // namespace whirl::time::sundials

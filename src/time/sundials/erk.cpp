@@ -1,5 +1,6 @@
-// Explicit Runge-Kutta with automatic step for y' = F(t, y): ERKStep of ARKODE (SUNDIALS). Error weights: relative to the
-// larger of the entry and its scale; entries that grow without bound (angles) relative to their scale alone.
+// Explicit Runge-Kutta with automatic step for y' = F(t, y): ERKStep of ARKODE (SUNDIALS). Error
+// weights: relative to the larger of the entry and its scale; entries that grow without bound
+// (angles) relative to their scale alone.
 #include <arkode/arkode_erkstep.h>
 #include <time/sundials/context.hpp>
 
@@ -11,7 +12,12 @@ namespace {
 class Erk final : public ExplicitIntegrator {
  public:
   Erk(FirstOrderProblem& problem, const Options& options, int order)
-      : problem_(problem), options_(options), order_(order), n_(problem.size()), work_(n_, context_.handle), y_(VecX::Zero(n_)),
+      : problem_(problem),
+        options_(options),
+        order_(order),
+        n_(problem.size()),
+        work_(n_, context_.handle),
+        y_(VecX::Zero(n_)),
         y0_(VecX::Zero(n_)) {
     stops_.set_end(options.t_end);
     stops_.set_breaks(options.breakpoints);
@@ -42,7 +48,8 @@ class Erk final : public ExplicitIntegrator {
     const auto x = view(y);
     auto out = view(w);
     for (Index i = 0; i < n_; ++i) {
-      const double size = problem_.is_unbounded(i) ? problem_.scale(i) : std::max(problem_.scale(i), std::abs(x[i]));
+      const double size = problem_.is_unbounded(i) ? problem_.scale(i)
+                                                   : std::max(problem_.scale(i), std::abs(x[i]));
       out[i] = 1.0 / (options_.tolerance * size);
     }
     return 0;
@@ -72,21 +79,26 @@ void Erk::start(double t, CRef y) {
   t_stop_eval_ = infinity;
   work_.map() = y;
   if (ark_) ERKStepFree(&ark_);
-  ark_ = ERKStepCreate(
-      [](realtype time, N_Vector x, N_Vector dx, void* self) { return static_cast<Erk*>(self)->rate(time, x, dx); }, t,
-      work_.handle(), context_.handle);
+  ark_ = ERKStepCreate([](realtype time, N_Vector x, N_Vector dx,
+                          void* self) { return static_cast<Erk*>(self)->rate(time, x, dx); },
+                       t, work_.handle(), context_.handle);
   if (!ark_) throw run_error("N30", "ERKStep cannot be created");
   check(ERKStepSetUserData(ark_, this), "ERKStepSetUserData");
   check(ERKStepSetErrHandlerFn(ark_, silent, nullptr), "ERKStepSetErrHandlerFn");
   check(ERKStepSetOrder(ark_, order_), "ERKStepSetOrder");
-  check(ERKStepWFtolerances(ark_, [](N_Vector x, N_Vector w, void* self) { return static_cast<const Erk*>(self)->weights(x, w); }),
+  check(ERKStepWFtolerances(ark_,
+                            [](N_Vector x, N_Vector w, void* self) {
+                              return static_cast<const Erk*>(self)->weights(x, w);
+                            }),
         "ERKStepWFtolerances");
   check(ERKStepSetMaxErrTestFails(ark_, options_.max_attempts), "ERKStepSetMaxErrTestFails");
   if (options_.dt_fixed > 0.0) {
     check(ERKStepSetFixedStep(ark_, options_.dt_fixed), "ERKStepSetFixedStep");
   } else {
-    if (options_.dt_first > 0.0) check(ERKStepSetInitStep(ark_, options_.dt_first), "ERKStepSetInitStep");
-    if (std::isfinite(options_.dt_max)) check(ERKStepSetMaxStep(ark_, options_.dt_max), "ERKStepSetMaxStep");
+    if (options_.dt_first > 0.0)
+      check(ERKStepSetInitStep(ark_, options_.dt_first), "ERKStepSetInitStep");
+    if (std::isfinite(options_.dt_max))
+      check(ERKStepSetMaxStep(ark_, options_.dt_max), "ERKStepSetMaxStep");
     if (options_.dt_min > 0.0) check(ERKStepSetMinStep(ark_, options_.dt_min), "ERKStepSetMinStep");
   }
 }
@@ -98,7 +110,7 @@ StepReport Erk::advance() {
     report.status = StepStatus::finished;
     return report;
   }
-  if (at_break_) {   // the rate kept from the last step is that of the left side
+  if (at_break_) {  // the rate kept from the last step is that of the left side
     at_break_ = false;
     work_.map() = y_;
     check(ERKStepReset(ark_, t_, work_.handle()), "ERKStepReset");
@@ -151,7 +163,8 @@ void Erk::interpolate(double t, Ref y) const {
 
 }  // namespace
 
-std::unique_ptr<ExplicitIntegrator> make_erk(FirstOrderProblem& problem, const Options& options, int order) {
+std::unique_ptr<ExplicitIntegrator> make_erk(FirstOrderProblem& problem, const Options& options,
+                                             int order) {
   return std::make_unique<Erk>(problem, options, order);
 }
 

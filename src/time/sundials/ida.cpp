@@ -1,17 +1,21 @@
 // IDA (SUNDIALS) on the first-order form: y = (q, v),
 //     F1 = q' - v,      F2 = R(t, q, v, v'),
-// and for held entries F1 = q - q(t), F2 = v - v(t). Variable-order BDF, held at order <= 2 by default: BDF of order 3 to 5
-// has negative numerical damping on lightly damped modes.
+// and for held entries F1 = q - q(t), F2 = v - v(t). Variable-order BDF, held at order <= 2 by
+// default: BDF of order 3 to 5 has negative numerical damping on lightly damped modes.
 //
-// Linear algebra: IDA's matrix and linear solver are shells around the Problem. With b = (b1, b2) and c = cj,
-//     [c 1  -1; K  C + c M] (dq, dv) = (b1, b2)   <=>   (c^2 M + c C + K) dq = b2 + (C + c M) b1,   dv = c dq - b1.
+// Linear algebra: IDA's matrix and linear solver are shells around the Problem. With b = (b1, b2)
+// and c = cj,
+//     [c 1  -1; K  C + c M] (dq, dv) = (b1, b2)   <=>   (c^2 M + c C + K) dq = b2 + (C + c M) b1,
+//     dv = c dq - b1.
 //
-// Whole turns that accept() takes out of phi stay in IDA's own vector (its history would otherwise have to start anew each
-// revolution): y = q + offset. Spin angles have absolute tolerances, so the turns do not loosen them.
+// Whole turns that accept() takes out of phi stay in IDA's own vector (its history would otherwise
+// have to start anew each revolution): y = q + offset. Spin angles have absolute tolerances, so the
+// turns do not loosen them.
 //
-// Tolerance: BDF2 has global order 2, so the local weights follow tolerance^(3/2); ten periods of an undamped oscillator end
-// with an error of the tolerance, as with generalized-alpha. The norm is the Euclidean one of the scaled errors (IDA's mean
-// square would let one bad node hide among many).
+// Tolerance: BDF2 has global order 2, so the local weights follow tolerance^(3/2); ten periods of
+// an undamped oscillator end with an error of the tolerance, as with generalized-alpha. The norm is
+// the Euclidean one of the scaled errors (IDA's mean square would let one bad node hide among
+// many).
 #include <ida/ida.h>
 #include <ida/ida_ls.h>
 #include <sundials/sundials_linearsolver.h>
@@ -28,7 +32,7 @@ namespace whirl::time::sundials {
 namespace {
 
 constexpr double allowance_factor = 0.015;
-constexpr double weight_of_held = 1e-30;   // positive, as IDA demands; held entries are exact
+constexpr double weight_of_held = 1e-30;  // positive, as IDA demands; held entries are exact
 
 class Ida final : public Integrator {
  public:
@@ -125,7 +129,9 @@ int Ida::linearize(double t, double cj, N_Vector y, N_Vector yp) {
   t_lin_ = std::min(t, t_stop_eval_);
   cj_ = cj;
   split(t_lin_, y, yp);
-  q_lin_ = qs_; v_lin_ = vs_; a_lin_ = as_;
+  q_lin_ = qs_;
+  v_lin_ = vs_;
+  a_lin_ = as_;
   ++statistics_.linearizations;
   problem_.linearize(t_lin_, q_lin_, v_lin_, a_lin_);
   have_matrices_ = true;
@@ -140,11 +146,13 @@ int Ida::factor() {
 int Ida::solve(N_Vector x, N_Vector b) {
   const auto rhs = view(b);
   w_ = rhs.head(n_);
-  for (Index i : held_) w_[i] = 0.0;
+  for (Index i : held_)
+    w_[i] = 0.0;
   r_ = rhs.tail(n_);
   problem_.add_C(1.0, w_, r_);
   problem_.add_M(cj_, w_, r_);
-  for (Index i : held_) r_[i] = 0.0;
+  for (Index i : held_)
+    r_[i] = 0.0;
   problem_.solve(Ref(r_));
   ++statistics_.solves_real;
   auto out = view(x);
@@ -152,13 +160,15 @@ int Ida::solve(N_Vector x, N_Vector b) {
   out.head(n_) = r_;
   for (Index i : held_) {
     const double b1 = rhs[i], b2 = rhs[n_ + i];
-    out[i] = b1; out[n_ + i] = b2;
+    out[i] = b1;
+    out[n_ + i] = b2;
   }
   return out.allFinite() ? 0 : 1;
 }
 
 int Ida::weights(N_Vector w) {
-  // After IDAReInit IDA still reports the step of its life before, which a run that was continued does not know.
+  // After IDAReInit IDA still reports the step of its life before, which a run that was continued
+  // does not know.
   double h = h_init_;
   long steps = 0;
   IDAGetNumSteps(ida_, &steps);
@@ -172,7 +182,8 @@ int Ida::weights(N_Vector w) {
   // IDA refuses weights finer than the rounding of y
   const auto y = y_.map();
   for (Index i = 0; i < 2 * n_; ++i) {
-    const double rounding = 0.1 / (std::numeric_limits<double>::epsilon() * std::abs(y[i]) + 1e-300);
+    const double rounding =
+        0.1 / (std::numeric_limits<double>::epsilon() * std::abs(y[i]) + 1e-300);
     out[i] = std::max(std::min(out[i], rounding), weight_of_held);
   }
   return 0;
@@ -182,14 +193,23 @@ int Ida::weights(N_Vector w) {
 // Set-up
 
 Ida::Ida(Problem& problem, const Options& options)
-    : problem_(problem), options_(options), n_(problem.size()), y_(2 * n_, context_.handle), yp_(2 * n_, context_.handle) {
+    : problem_(problem),
+      options_(options),
+      n_(problem.size()),
+      y_(2 * n_, context_.handle),
+      yp_(2 * n_, context_.handle) {
   if (options.dt_fixed > 0.0)
-    throw Error(Exit::usage, Diagnostic{Diagnostic::Severity::error, "N11", "IDA chooses its own steps: a fixed step is not possible",
-                                        "use radau5, gauss4, gauss6 or generalized_alpha for equal steps", {}});
+    throw Error(Exit::usage,
+                Diagnostic{Diagnostic::Severity::error,
+                           "N11",
+                           "IDA chooses its own steps: a fixed step is not possible",
+                           "use radau5, gauss4, gauss6 or generalized_alpha for equal steps",
+                           {}});
   const auto kinds = problem.kinds();
   for (Index i = 0; i < n_; ++i)
     if (kinds[static_cast<std::size_t>(i)] == Kind::held) held_.push_back(i);
-  for (VecX* x : {&q0_, &v0_, &a0_, &q_, &v_, &a_, &offset_, &qs_, &vs_, &as_, &r_, &w_, &increments_, &q_lin_, &v_lin_, &a_lin_})
+  for (VecX* x : {&q0_, &v0_, &a0_, &q_, &v_, &a_, &offset_, &qs_, &vs_, &as_, &r_, &w_,
+                  &increments_, &q_lin_, &v_lin_, &a_lin_})
     *x = VecX::Zero(n_);
   stops_.set_end(options.t_end);
   stops_.set_breaks(options.breakpoints);
@@ -205,7 +225,9 @@ Ida::Ida(Problem& problem, const Options& options)
   solver_->content = this;
   solver_->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; };
   solver_->ops->getid = [](SUNLinearSolver) { return SUNLINEARSOLVER_CUSTOM; };
-  solver_->ops->setup = [](SUNLinearSolver s, SUNMatrix) { return static_cast<Ida*>(s->content)->factor(); };
+  solver_->ops->setup = [](SUNLinearSolver s, SUNMatrix) {
+    return static_cast<Ida*>(s->content)->factor();
+  };
   solver_->ops->solve = [](SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) {
     return static_cast<Ida*>(s->content)->solve(x, b);
   };
@@ -222,15 +244,18 @@ Ida::~Ida() {
 void Ida::initial_acceleration() {
   const StepStatus status = initial_.solve(problem_, t_, q_, v_, a_, statistics_);
   if (status != StepStatus::ok)
-    throw run_error("N20", fmt::format("no acceleration satisfies the equations at t = {} s: {}", t_, message(status)),
-                    "a part without mass that nothing holds, or a state outside the model's range");
+    throw run_error(
+        "N20",
+        fmt::format("no acceleration satisfies the equations at t = {} s: {}", t_, message(status)),
+        "a part without mass that nothing holds, or a state outside the model's range");
   reinitialize_ = true;
 }
 
 void Ida::start(double t, CRef q, CRef v) {
   statistics_ = {};
   t_ = t0_ = t;
-  q_ = q; v_ = v;
+  q_ = q;
+  v_ = v;
   a_.setZero();
   accept_pending_ = at_break_ = have_step_ = false;
   problem_.impose(t, q_, v_, a_);
@@ -239,17 +264,23 @@ void Ida::start(double t, CRef q, CRef v) {
   bool is_break;
   const double stop = stops_.next(t_, is_break), span = std::isfinite(stop) ? stop - t_ : 1.0;
   h_next_ = options_.dt_first > 0.0 ? options_.dt_first : 1e-6 * span;
-  q0_ = q_; v0_ = v_; a0_ = a_;
+  q0_ = q_;
+  v0_ = v_;
+  a0_ = a_;
 }
 
 void Ida::restart(CRef q, CRef v, bool) {
-  q_ = q; v_ = v;
+  q_ = q;
+  v_ = v;
   accept_pending_ = at_break_ = have_step_ = false;
   problem_.impose(t_, q_, v_, a_);
   initial_acceleration();
   for (Index i = 0; i < n_; ++i)
     if (q_[i] != q0_[i]) scale_.rebase(i, q_[i]);
-  q0_ = q_; v0_ = v_; a0_ = a_; t0_ = t_;
+  q0_ = q_;
+  v0_ = v_;
+  a0_ = a_;
+  t0_ = t_;
 }
 
 void Ida::reinitialize() {
@@ -260,28 +291,33 @@ void Ida::reinitialize() {
   // order 1 takes shorter steps than the order 2 that proposed this one
   h_init_ = std::min(0.1 * h_next_, options_.dt_max);
   if (!initialized_) {
-    check(IDAInit(ida_,
-                  [](realtype t, N_Vector yy, N_Vector yd, N_Vector r, void* self) {
-                    return static_cast<Ida*>(self)->residual(t, yy, yd, r);
-                  },
-                  t_, y_.handle(), yp_.handle()),
+    check(IDAInit(
+              ida_,
+              [](realtype t, N_Vector yy, N_Vector yd, N_Vector r, void* self) {
+                return static_cast<Ida*>(self)->residual(t, yy, yd, r);
+              },
+              t_, y_.handle(), yp_.handle()),
           "IDAInit");
     check(IDASetUserData(ida_, this), "IDASetUserData");
     check(IDASetErrHandlerFn(ida_, silent, nullptr), "IDASetErrHandlerFn");
-    check(IDAWFtolerances(ida_, [](N_Vector, N_Vector w, void* self) { return static_cast<Ida*>(self)->weights(w); }),
+    check(IDAWFtolerances(ida_, [](N_Vector, N_Vector w,
+                                   void* self) { return static_cast<Ida*>(self)->weights(w); }),
           "IDAWFtolerances");
     check(IDASetMaxOrd(ida_, options_.max_order), "IDASetMaxOrd");
     check(IDASetLinearSolver(ida_, solver_, matrix_), "IDASetLinearSolver");
     check(IDASetJacFn(ida_,
-                      [](realtype t, realtype cj, N_Vector yy, N_Vector yd, N_Vector, SUNMatrix, void* self, N_Vector, N_Vector,
+                      [](realtype t, realtype cj, N_Vector yy, N_Vector yd, N_Vector, SUNMatrix,
+                         void* self, N_Vector, N_Vector,
                          N_Vector) { return static_cast<Ida*>(self)->linearize(t, cj, yy, yd); }),
           "IDASetJacFn");
     check(IDASetMaxNonlinIters(ida_, std::max(4, options_.max_newton)), "IDASetMaxNonlinIters");
     check(IDASetMaxErrTestFails(ida_, options_.max_attempts), "IDASetMaxErrTestFails");
     check(IDASetMaxConvFails(ida_, options_.max_attempts), "IDASetMaxConvFails");
-    // the iteration error is to be small against the local error: it adds up coherently in a free spin
+    // the iteration error is to be small against the local error: it adds up coherently in a free
+    // spin
     check(IDASetNonlinConvCoef(ida_, 0.01), "IDASetNonlinConvCoef");
-    if (std::isfinite(options_.dt_max)) check(IDASetMaxStep(ida_, options_.dt_max), "IDASetMaxStep");
+    if (std::isfinite(options_.dt_max))
+      check(IDASetMaxStep(ida_, options_.dt_max), "IDASetMaxStep");
     initialized_ = true;
   } else {
     check(IDAReInit(ida_, t_, y_.handle(), yp_.handle()), "IDAReInit");
@@ -297,7 +333,9 @@ void Ida::reinitialize() {
 void Ida::begin_step() {
   if (accept_pending_) {
     accept_pending_ = false;
-    q0_ = q_; v0_ = v_; a0_ = a_;
+    q0_ = q_;
+    v0_ = v_;
+    a0_ = a_;
     if (problem_.accept(t_, q_, v_, a_)) {
       for (Index i = 0; i < n_; ++i) {
         if (v_[i] != v0_[i] || a_[i] != a0_[i]) reinitialize_ = true;
@@ -311,7 +349,10 @@ void Ida::begin_step() {
     problem_.impose(t_, q_, v_, a_);
     initial_acceleration();
   }
-  q0_ = q_; v0_ = v_; a0_ = a_; t0_ = t_;
+  q0_ = q_;
+  v0_ = v_;
+  a0_ = a_;
+  t0_ = t_;
   if (reinitialize_) reinitialize();
   if (matrices_lost_ && have_matrices_) {
     problem_.linearize(t_lin_, q_lin_, v_lin_, a_lin_);
@@ -339,7 +380,8 @@ StepReport Ida::step_to(double stop, bool is_break) {
   t_stop_eval_ = is_break ? std::nextafter(stop, t0_) : infinity;
   if (std::isfinite(stop)) check(IDASetStopTime(ida_, stop), "IDASetStopTime");
   // without a least step IDA creeps towards an impassable state for ever
-  const double least = options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
+  const double least =
+      options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
   check(IDASetMinStep(ida_, std::min(least, options_.dt_max)), "IDASetMinStep");
   realtype reached = t0_;
   const double far = std::isfinite(stop) ? stop : t0_ + 1e3 * std::max(1.0, std::abs(t0_));
@@ -350,34 +392,40 @@ StepReport Ida::step_to(double stop, bool is_break) {
   report.rejected_error = static_cast<int>(errors - errors_before_);
   report.rejected_newton = static_cast<int>(failures - failures_before_);
   report.newton_iterations = static_cast<int>(iterations - iterations_before_);
-  errors_before_ = errors; failures_before_ = failures; iterations_before_ = iterations;
+  errors_before_ = errors;
+  failures_before_ = failures;
+  iterations_before_ = iterations;
   statistics_.rejected_error += report.rejected_error;
   statistics_.rejected_newton += report.rejected_newton;
   statistics_.newton_iterations += report.newton_iterations;
   if (flag < 0) {
-    report.status = flag == IDA_ERR_FAIL                                   ? StepStatus::error_test
-                    : flag == IDA_LSETUP_FAIL || flag == IDA_LSOLVE_FAIL   ? StepStatus::singular
-                    : flag == IDA_REP_RES_ERR || flag == IDA_RES_FAIL || flag == IDA_FIRST_RES_FAIL ? StepStatus::domain
-                                                                           : StepStatus::newton;
-    reinitialize_ = true;   // the state stays at t0
+    report.status = flag == IDA_ERR_FAIL                                 ? StepStatus::error_test
+                    : flag == IDA_LSETUP_FAIL || flag == IDA_LSOLVE_FAIL ? StepStatus::singular
+                    : flag == IDA_REP_RES_ERR || flag == IDA_RES_FAIL || flag == IDA_FIRST_RES_FAIL
+                        ? StepStatus::domain
+                        : StepStatus::newton;
+    reinitialize_ = true;  // the state stays at t0
     return report;
   }
   const bool landed = flag == IDA_TSTOP_RETURN;
   t_ = landed ? stop : reached;
   split(std::min(t_, t_stop_eval_), y_.handle(), yp_.handle());
-  q_ = qs_; v_ = vs_; a_ = as_;
+  q_ = qs_;
+  v_ = vs_;
+  a_ = as_;
   report.t1 = t_;
   report.at_breakpoint = at_break_ = landed && is_break;
   have_step_ = accept_pending_ = true;
   scale_.observe(q_);
   IDAGetCurrentStep(ida_, &h_next_);
   const double h = t_ - t0_;
-  SerialVector& error = yp_;   // its values were read above, IDA writes it anew
+  SerialVector& error = yp_;  // its values were read above, IDA writes it anew
   if (IDAGetEstLocalErrors(ida_, error.handle()) == IDA_SUCCESS) {
     const double factor = 1.0 / allowance_;
     increments_ = error.map().head(n_).cwiseProduct(scale_.weights());
     const double eq = increments_.squaredNorm();
-    increments_ = h * error.map().tail(n_).cwiseProduct(scale_.weights()).cwiseProduct(initial_.dynamic());
+    increments_ =
+        h * error.map().tail(n_).cwiseProduct(scale_.weights()).cwiseProduct(initial_.dynamic());
     report.error = factor * std::sqrt(eq + increments_.squaredNorm());
   }
   ++statistics_.accepted;
@@ -390,7 +438,8 @@ StepReport Ida::step_to(double stop, bool is_break) {
 }
 
 StepReport Ida::shorten_to(double t) {
-  if (!have_step_ || !(t > t0_ && t < t_)) throw std::invalid_argument("shorten_to: t outside the last step");
+  if (!have_step_ || !(t > t0_ && t < t_))
+    throw std::invalid_argument("shorten_to: t outside the last step");
   // IDA cannot step back: its solution at t is that of its interpolant, from which it starts anew.
   const double h_before = t_ - t0_, wanted = h_next_;
   t_stop_eval_ = infinity;
@@ -410,11 +459,15 @@ StepReport Ida::shorten_to(double t) {
 
 void Ida::interpolate(double t, Ref q, Ref v, Ref a) const {
   if (!have_step_ || t == t_) {
-    q = q_; v = v_; a = a_;
+    q = q_;
+    v = v_;
+    a = a_;
     return;
   }
   if (t == t0_) {
-    q = q0_; v = v0_; a = a0_;
+    q = q0_;
+    v = v0_;
+    a = a0_;
     return;
   }
   const double h = t_ - t0_;
@@ -423,41 +476,50 @@ void Ida::interpolate(double t, Ref q, Ref v, Ref a) const {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// IDA's history cannot be written back: both the saving and the restored integrator start anew from the same state, and nothing of IDA's
-// memory from before that may reach what comes after (weights()).
+// IDA's history cannot be written back: both the saving and the restored integrator start anew from
+// the same state, and nothing of IDA's memory from before that may reach what comes after
+// (weights()).
 
 IntegratorState Ida::save() {
   reinitialize_ = true;
   IntegratorState s;
   s.t = t_;
-  s.q = q_; s.v = v_; s.a = a_;
+  s.q = q_;
+  s.v = v_;
+  s.a = a_;
   auto& out = s.history;
   const Statistics& k = statistics_;
-  for (long c : {k.accepted, k.rejected_error, k.rejected_newton, k.newton_iterations, k.linearizations, k.factorizations_real,
-                 k.factorizations_complex, k.residuals, k.solves_real, k.solves_complex})
+  for (long c : {k.accepted, k.rejected_error, k.rejected_newton, k.newton_iterations,
+                 k.linearizations, k.factorizations_real, k.factorizations_complex, k.residuals,
+                 k.solves_real, k.solves_complex})
     out.push_back(static_cast<double>(c));
-  out.insert(out.end(), {k.step_min, k.step_max, k.step_sum, k.error_max, k.error_sum, h_next_, accept_pending_ ? 1.0 : 0.0,
-                         at_break_ ? 1.0 : 0.0});
+  out.insert(out.end(), {k.step_min, k.step_max, k.step_sum, k.error_max, k.error_sum, h_next_,
+                         accept_pending_ ? 1.0 : 0.0, at_break_ ? 1.0 : 0.0});
   scale_.save(out);
   initial_.save(out);
   return s;
 }
 
 void Ida::restore(const IntegratorState& s) {
-  if (s.q.size() != n_ || s.v.size() != n_ || s.a.size() != n_ || s.history.size() != save().history.size())
+  if (s.q.size() != n_ || s.v.size() != n_ || s.a.size() != n_ ||
+      s.history.size() != save().history.size())
     throw std::invalid_argument("integrator state of another problem or scheme");
   const double* in = s.history.data();
   Statistics& k = statistics_;
-  for (long* c : {&k.accepted, &k.rejected_error, &k.rejected_newton, &k.newton_iterations, &k.linearizations,
-                  &k.factorizations_real, &k.factorizations_complex, &k.residuals, &k.solves_real, &k.solves_complex})
+  for (long* c : {&k.accepted, &k.rejected_error, &k.rejected_newton, &k.newton_iterations,
+                  &k.linearizations, &k.factorizations_real, &k.factorizations_complex,
+                  &k.residuals, &k.solves_real, &k.solves_complex})
     *c = static_cast<long>(*in++);
-  for (double* c : {&k.step_min, &k.step_max, &k.step_sum, &k.error_max, &k.error_sum, &h_next_}) *c = *in++;
+  for (double* c : {&k.step_min, &k.step_max, &k.step_sum, &k.error_max, &k.error_sum, &h_next_})
+    *c = *in++;
   accept_pending_ = *in++ != 0.0;
   at_break_ = *in++ != 0.0;
   in = scale_.restore(in);
   initial_.restore(in);
   t_ = t0_ = s.t;
-  q_ = q0_ = s.q; v_ = v0_ = s.v; a_ = a0_ = s.a;
+  q_ = q0_ = s.q;
+  v_ = v0_ = s.v;
+  a_ = a0_ = s.a;
   have_step_ = false;
   reinitialize_ = true;
 }
