@@ -14,9 +14,8 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME whirl)
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Dynamics of rotor-shaft systems, exact in large rotation
- Reads a shaft-model deck; computes statics, whirl modes, Campbell diagrams,
- stability, unbalance response and run-up transients.")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "The program: reads a shaft-model deck; computes statics, whirl modes, Campbell diagrams,
+stability, unbalance response and run-up transients.")
 list(TRANSFORM plugins PREPEND "whirl-" OUTPUT_VARIABLE recommended)
 list(JOIN recommended ", " CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS)
 
@@ -24,15 +23,13 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libwhirl-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)   # nothing linked in it: what a user's program needs is named
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libsuitesparse-dev")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Dynamics of rotor-shaft systems: C++ library
- Headers, static libraries and the CMake package of whirl.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers, static libraries and the CMake package of whirl.")
 
 foreach(plugin ${plugins})
   string(TOUPPER ${plugin} P)
   set(CPACK_DEBIAN_${P}_PACKAGE_NAME whirl-${plugin})
   # a plug-in fits the program it was built with and no other
   set(CPACK_DEBIAN_${P}_PACKAGE_DEPENDS "whirl (= ${PROJECT_VERSION})")
-  set(CPACK_COMPONENT_${P}_DESCRIPTION "Dynamics of rotor-shaft systems: plug-in ${plugin}
- Loaded by whirl when a deck asks for it.")
+  set(CPACK_COMPONENT_${P}_DESCRIPTION "Plug-in ${plugin}: loaded by whirl when a deck asks for it.")
 endforeach()
 include(CPack)

@@ -30,7 +30,7 @@ for plugin in "$build"/plugins/libwhirl_*.so; do
   [ -e "$plugin" ] || continue
   name=$(basename "$plugin" .so)
   name=${name#libwhirl_}
-  "$whirl" version | grep -q "$name yes" || { echo "plug-in $name is not found"; exit 1; }
+  grep -q "$name yes" <<<"$("$whirl" version)" || { echo "plug-in $name is not found"; exit 1; }
 done
 if [ -e "$build/plugins/libwhirl_vtk.so" ]; then
   ls results/vtk/*.pvd >/dev/null
