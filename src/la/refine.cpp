@@ -2,10 +2,6 @@
 
 namespace whirl::la {
 
-namespace {
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}  // namespace
-
 template <class Scalar>
 Refinement<Scalar>::Refinement(const BlockPattern& pattern, std::span<const unsigned char> active)
     : active_(active.begin(), active.end()),

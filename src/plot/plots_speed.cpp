@@ -9,7 +9,8 @@
 namespace whirl::plot {
 namespace {
 
-constexpr double rpm = 30 / pi, hertz = 1 / two_pi;
+constexpr double rpm = to_rpm(1.0);
+constexpr double hertz = to_hz(1.0);
 
 struct Look {
   Whirl whirl;

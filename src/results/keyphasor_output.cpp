@@ -112,7 +112,7 @@ std::size_t KeyphasorOutput::column(std::size_t probe, std::size_t direction,
 
 std::vector<io::Channel> KeyphasorOutput::channels() const {
   std::vector<io::Channel> c{{"t", "s", "middle of the turn", {}, 1.0, {}},
-                             {"speed", "rpm", "mean spin of the turn", {}, 30.0 / pi, {}}};
+                             {"speed", "rpm", "mean spin of the turn", {}, to_rpm(1.0), {}}};
   for (const Tracked& p : probes_) {
     for (const Direction& d : p.directions) {
       const std::string name = p.name + "." + d.name;
@@ -406,7 +406,7 @@ void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section) const
         for (const std::size_t k : peaks_of(y, 0.2)) {
           const auto& r = rows[from + k];
           t.add({probes_[p].name, probes_[p].directions[d].name, rising ? "rising" : "falling",
-                 r[1] * 30.0 / pi, y[k], r[column(p, d, 1)] * 180.0 / pi, r[0]});
+                 to_rpm(r[1]), y[k], r[column(p, d, 1)] * 180.0 / pi, r[0]});
         }
       }
   if (t.rows.empty()) return;
@@ -426,7 +426,7 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
   const auto n = static_cast<std::size_t>(out_.tracking.samples);
   const auto list = [&](const Orbit& o) {
     for (std::size_t j = 0; j < o.y.size(); ++j)
-      t.add({probes_[o.probe].name, o.speed * 30.0 / pi, o.t,
+      t.add({probes_[o.probe].name, to_rpm(o.speed), o.t,
              360.0 * static_cast<double>(j) / static_cast<double>(n), o.y[j], o.z[j]});
   };
   const auto drawn = [&](const Orbit& o, std::string label) {
@@ -447,7 +447,7 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
     const bool moves = std::any_of(o.y.begin(), o.y.end(), [](double x) { return x != 0.0; }) ||
                        std::any_of(o.z.begin(), o.z.end(), [](double x) { return x != 0.0; });
     if (moves) {
-      const plot::Orbit d = drawn(o, fmt::format("{:.0f} rpm", o.speed * 30.0 / pi));
+      const plot::Orbit d = drawn(o, fmt::format("{:.0f} rpm", to_rpm(o.speed)));
       plot::Figure f = plot::plot_orbit(
           id + "_orbit", fmt::format("{}: largest orbit, t = {:.4g} s", probes_[p].name, o.t),
           std::span(&d, 1));
@@ -458,8 +458,7 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
     std::vector<plot::Orbit> at_speeds;
     for (const Orbit& o : passed_)
       if (o.probe == p) {
-        at_speeds.push_back(
-            drawn(o, fmt::format("{:.0f} rpm, {:.3g} s", o.speed * 30.0 / pi, o.t)));
+        at_speeds.push_back(drawn(o, fmt::format("{:.0f} rpm, {:.3g} s", to_rpm(o.speed), o.t)));
         list(o);
       }
     if (!at_speeds.empty())

@@ -44,7 +44,7 @@ SpectraOutput::SpectraOutput(const run::Job& job, const model::Step& step, doubl
 
 std::vector<io::Channel> SpectraOutput::channels() const {
   std::vector<io::Channel> c{{"t", "s", "middle of the block", {}, 1.0, {}},
-                             {"speed", "rpm", "mean spin of the block", {}, 30.0 / pi, {}}};
+                             {"speed", "rpm", "mean spin of the block", {}, to_rpm(1.0), {}}};
   for (int k = -options_.lines; k <= options_.lines; ++k)
     c.push_back({fmt::format("{:.6g} Hz", k * options_.max_frequency / options_.lines / two_pi),
                  "m",
@@ -158,7 +158,7 @@ void SpectraOutput::report(io::ReportSection& section) const {
     plot::Figure f;
     f.name = id + "_full_spectrum";
     f.title = fmt::format("{}: full spectrum of the largest block, {:.0f} rpm, t = {:.4g} s",
-                          probes_[p], traces_[best].speed * 30.0 / pi, traces_[best].t);
+                          probes_[p], to_rpm(traces_[best].speed), traces_[best].t);
     f.caption =
         "Spectrum of y + iz: positive frequencies whirl with the spin of the shaft there, negative "
         "ones against it.";

@@ -12,7 +12,6 @@ namespace whirl::results {
 namespace {
 
 using assembly::SectionPoint;
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Axis in the unit that suits the largest value of its curves; scales them.
 void finish(plot::Axes& a, const std::string& si) {

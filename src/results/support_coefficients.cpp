@@ -231,7 +231,7 @@ io::Table support_table(std::span<const SupportCoefficients> list) {
                        "at this speed; empty: never"});
   t.columns.push_back({"whirl / speed", "-", "whirl frequency over speed at that threshold"});
   for (const SupportCoefficients& c : list)
-    t.add({c.name, c.spin * 30.0 / pi, c.load, c.place.x(), c.place.y(), c.place.norm(),
+    t.add({c.name, to_rpm(c.spin), c.load, c.place.x(), c.place.y(), c.place.norm(),
            c.place.norm() / c.clearance, c.attitude, c.K(0, 0), c.K(0, 1), c.K(1, 0), c.K(1, 1),
            c.C(0, 0), c.C(0, 1), c.C(1, 0), c.C(1, 1), c.sommerfeld, c.threshold_mass,
            c.whirl_ratio});

@@ -93,7 +93,7 @@ std::vector<std::string> state_accuracy(run::Job& job, const AccuracyInputs& in,
   }
   io::Table t;
   t.title = fmt::format("Damping of the modes at {:.0f} rpm: physical, and what the steps add",
-                        in.speed * 30.0 / pi);
+                        to_rpm(in.speed));
   t.columns = {
       {"frequency", "Hz", ""},
       {"motion", "-", ""},

@@ -28,9 +28,9 @@ io::Table make_table(const analysis::Campbell& c) {
     t.columns.push_back({l.label + " direction", "-", ""});
   }
   for (std::size_t k = 0; k < c.speeds.size(); ++k) {
-    std::vector<io::Table::Cell> row{results::to_rpm(c.speeds[k])};
+    std::vector<io::Table::Cell> row{to_rpm(c.speeds[k])};
     for (const analysis::CampbellLine& l : c.lines) {
-      row.emplace_back(results::to_hz(l.frequency[k]));
+      row.emplace_back(to_hz(l.frequency[k]));
       row.emplace_back(results::tidy(l.log_decrement[k]));
       row.emplace_back(results::tidy(l.damping_ratio[k]));
       row.emplace_back(std::isnan(l.frequency[k]) ? std::string()
@@ -84,7 +84,7 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
       q.max_frequency = highest;
       for (const analysis::Critical& k : analysis::critical_speeds(s.linear, q)) {
         marks.push_back({k.speed, k.frequency, order, {}});
-        criticals.add({order, results::to_rpm(k.speed), results::to_hz(k.frequency),
+        criticals.add({order, to_rpm(k.speed), to_hz(k.frequency),
                        std::string(to_string(k.mode.kind)), results::direction_text(k.mode),
                        results::tidy(k.mode.log_decrement), results::tidy(k.mode.damping_ratio)});
       }
@@ -97,7 +97,7 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   v["speeds"] = c.speeds.size();
   v["speeds solved"] = c.speeds_solved;
   for (const plot::CriticalMark& m : marks)
-    v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(results::to_rpm(m.speed));
+    v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(to_rpm(m.speed));
   s.add_table("campbell", make_table(c), false);
   s.add_table("critical_speeds", std::move(criticals));
   const std::vector<plot::CampbellLine> lines = results::drawn_lines(c);
@@ -116,8 +116,7 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   std::size_t weakest = 0;
   for (std::size_t k = 1; k < c.certificates.size(); ++k)
     if (!c.certificates[k].complete() && c.certificates[weakest].complete()) weakest = k;
-  s.certify(c.certificates[weakest],
-            fmt::format("at {:.6g} rpm", results::to_rpm(c.speeds[weakest])));
+  s.certify(c.certificates[weakest], fmt::format("at {:.6g} rpm", to_rpm(c.speeds[weakest])));
   s.section.text += c.certificates[weakest].complete()
                         ? " At every speed the roots were counted: the list of modes is complete."
                         : " " + results::capital(c.certificates[weakest].text()) + ".";

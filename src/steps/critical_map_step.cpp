@@ -237,7 +237,7 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
   for (std::size_t i = 0; i < map.stiffness.size(); ++i) {
     std::vector<io::Table::Cell> row{map.stiffness[i]};
     for (const analysis::CriticalMapLine& l : map.lines)
-      row.emplace_back(results::to_rpm(l.speed[i]));
+      row.emplace_back(to_rpm(l.speed[i]));
     table.add(std::move(row));
   }
   std::string names;
@@ -260,10 +260,10 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
   if (!rolling.empty())
     s.section.text +=
         fmt::format(" Rolling bearings keep the stiffness of the equilibrium at {:.6g} rpm.",
-                    results::to_rpm(law.max_speed));
+                    to_rpm(law.max_speed));
   if (map.lines.empty())
     s.section.text +=
-        fmt::format(" No critical speed lies below {:.6g} rpm.", results::to_rpm(law.max_speed));
+        fmt::format(" No critical speed lies below {:.6g} rpm.", to_rpm(law.max_speed));
   s.finish(
       fmt::format("{} critical speeds at {} stiffnesses", map.lines.size(), map.stiffness.size()));
 }

@@ -34,7 +34,7 @@ bool is_damped(analysis::Linearizer& linear, double Omega) {
 void run_critical_step(run::Job& job, const model::Step& step, const model::CriticalStep& law) {
   results::FrequencyStep s(job, step, "critical_speeds", "critical speeds", law.max_speed);
   io::Value& v = s.summary();
-  v["max speed [rpm]"] = results::to_rpm(law.max_speed);
+  v["max speed [rpm]"] = to_rpm(law.max_speed);
   std::string line;
   const run::PhaseTimer timer(job, "critical speeds");
   const bool damping = is_damped(s.linear, law.max_speed);
@@ -76,8 +76,8 @@ void run_critical_step(run::Job& job, const model::Step& step, const model::Crit
         const analysis::Critical& c = list[k];
         std::vector<io::Table::Cell> row{order,
                                          static_cast<int>(k + 1),
-                                         results::to_rpm(c.speed),
-                                         results::to_hz(c.frequency),
+                                         to_rpm(c.speed),
+                                         to_hz(c.frequency),
                                          std::string(to_string(c.mode.kind)),
                                          results::direction_text(c.mode)};
         if (damped) {
@@ -86,35 +86,32 @@ void run_critical_step(run::Job& job, const model::Step& step, const model::Crit
           row.emplace_back(c.amplification());
         }
         table.add(std::move(row));
-        speeds.push(results::to_rpm(c.speed));
+        speeds.push(to_rpm(c.speed));
         if (damped != damping || drawn >= law.shapes)
           continue;  // shapes once: with damping where there is any
         ++drawn;
         const std::string name = fmt::format("critical_{}", drawn);
         s.linear.at(c.speed);  // the equilibrium the shape belongs to
-        results::add_shape_figures(
-            s, {name,
-                fmt::format("{:g}x critical speed {:.6g} rpm, {}", order, results::to_rpm(c.speed),
-                            results::description(c.mode)),
-                {},
-                &c.mode.x,
-                c.mode.kind});
+        results::add_shape_figures(s, {name,
+                                       fmt::format("{:g}x critical speed {:.6g} rpm, {}", order,
+                                                   to_rpm(c.speed), results::description(c.mode)),
+                                       {},
+                                       &c.mode.x,
+                                       c.mode.kind});
         results::write_shape_frames(s, name, c.mode.x);
       }
       if (damped == damping && line.size() < 60)
         for (std::size_t k = 0; k < std::min<std::size_t>(list.size(), 4); ++k)
-          line +=
-              fmt::format("{}{:.6g} ({})", line.empty() ? "" : ", ", results::to_rpm(list[k].speed),
-                          list[k].mode.direction == analysis::Direction::none
-                              ? to_string(list[k].mode.kind)
-                              : to_string(list[k].mode.direction));
+          line += fmt::format("{}{:.6g} ({})", line.empty() ? "" : ", ", to_rpm(list[k].speed),
+                              list[k].mode.direction == analysis::Direction::none
+                                  ? to_string(list[k].mode.kind)
+                                  : to_string(list[k].mode.direction));
     }
     if (found == 0)
       s.section.text += fmt::format(
           "No {} critical speed lies {} {:.6g} rpm. ", word,
-          law.min_speed > 0 ? fmt::format("between {:.6g} and", results::to_rpm(law.min_speed))
-                            : "below",
-          results::to_rpm(law.max_speed));
+          law.min_speed > 0 ? fmt::format("between {:.6g} and", to_rpm(law.min_speed)) : "below",
+          to_rpm(law.max_speed));
     s.add_table(word, std::move(table));
   }
   if (!damping)
@@ -123,9 +120,8 @@ void run_critical_step(run::Job& job, const model::Step& step, const model::Crit
     s.section.text +=
         "Damped: the damped natural frequency meets the order line. Undamped: damping and "
         "circulation left out.";
-  s.finish(line.empty()
-               ? fmt::format("no critical speed below {:.0f} rpm", results::to_rpm(law.max_speed))
-               : line + " rpm");
+  s.finish(line.empty() ? fmt::format("no critical speed below {:.0f} rpm", to_rpm(law.max_speed))
+                        : line + " rpm");
 }
 
 }  // namespace whirl::steps

@@ -182,7 +182,7 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
         {fmt::format("largest torque in {}", l.name), "N.m", "0-peak, in any element"});
   for (std::size_t k = 0; k < points.size(); ++k) {
     const FrequencyPoint& x = points[k];
-    std::vector<io::Table::Cell> row{results::to_rpm(x.Omega), results::to_hz(x.frequency)};
+    std::vector<io::Table::Cell> row{to_rpm(x.Omega), to_hz(x.frequency)};
     for (std::size_t p = 0; p < o.probes.size(); ++p) {
       results::add_probe_cells(row, x.probe[p]);
       row.emplace_back(std::abs(x.unknown[p]));
@@ -222,11 +222,10 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
       const double x = analysis::find_maximum(grid[k - 1], grid[k], f1, grid[k + 1], 3e-9,
                                               [&](double y) { return size(respond(y)); });
       const FrequencyPoint peak = respond(x);
-      peaks.add({o.probes[p].name, results::to_rpm(peak.Omega), results::to_hz(peak.frequency),
-                 size(peak)});
+      peaks.add({o.probes[p].name, to_rpm(peak.Omega), to_hz(peak.frequency), size(peak)});
       io::Value e = io::Value::object();
-      e["frequency [Hz]"] = results::to_hz(peak.frequency);
-      e["speed [rpm]"] = results::to_rpm(peak.Omega);
+      e["frequency [Hz]"] = to_hz(peak.frequency);
+      e["speed [rpm]"] = to_rpm(peak.Omega);
       e["amplitude"] = size(peak);
       v["peaks"][o.probes[p].name].push(std::move(e));
       all.push_back({x, size(peak)});
@@ -281,7 +280,7 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
       plot::Series y;
       y.label = o.probes[p].name;
       for (std::size_t k = 0; k < points.size(); ++k) {
-        y.x.push_back(asynchronous ? results::to_hz(axis[k]) : results::to_rpm(axis[k]));
+        y.x.push_back(asynchronous ? to_hz(axis[k]) : to_rpm(axis[k]));
         y.y.push_back(twist(points[k], p));
       }
       axes[0].series.push_back(std::move(y));
@@ -290,7 +289,7 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
       plot::Series y;
       y.label = job.mesh.lines[l].name;
       for (std::size_t k = 0; k < points.size(); ++k) {
-        y.x.push_back(asynchronous ? results::to_hz(axis[k]) : results::to_rpm(axis[k]));
+        y.x.push_back(asynchronous ? to_hz(axis[k]) : to_rpm(axis[k]));
         y.y.push_back(torques[k][l]);
       }
       axes[1].series.push_back(std::move(y));
@@ -317,11 +316,11 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
   std::sort(shapes_at.begin(), shapes_at.end());
   for (const double x : shapes_at) {
     const FrequencyPoint p = respond(x);
-    const std::string name = fmt::format("shape_{:.6g}Hz", results::to_hz(p.frequency));
+    const std::string name = fmt::format("shape_{:.6g}Hz", to_hz(p.frequency));
     results::add_shape_figures(
         s, {name,
-            fmt::format("Operating shape at {:.5g} Hz, {:.5g} rpm", results::to_hz(p.frequency),
-                        results::to_rpm(p.Omega)),
+            fmt::format("Operating shape at {:.5g} Hz, {:.5g} rpm", to_hz(p.frequency),
+                        to_rpm(p.Omega)),
             {},
             &p.shape,
             twists ? analysis::ModeKind::torsional : analysis::ModeKind::lateral});
@@ -334,11 +333,10 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
   s.section.text =
       asynchronous
           ? fmt::format("Steady response at {:.6g} rpm against the excitation frequency.",
-                        results::to_rpm(law.speed))
+                        to_rpm(law.speed))
           : fmt::format("Steady response with the excitation at {:g} times the speed.", law.order);
   s.finish(fmt::format("{} points, {} at {:.5g} {}", points.size(), what,
-                       asynchronous ? results::to_hz(at) : results::to_rpm(at),
-                       asynchronous ? "Hz" : "rpm"));
+                       asynchronous ? to_hz(at) : to_rpm(at), asynchronous ? "Hz" : "rpm"));
 }
 
 }  // namespace whirl::steps

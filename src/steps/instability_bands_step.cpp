@@ -50,25 +50,24 @@ void run_instability_bands(run::Job& job, const model::Step& step,
   v["bands"] = io::Value::array();
   std::string line;
   for (const analysis::InstabilityBand& b : r.bands) {
-    table.add({results::to_rpm(b.low), results::to_rpm(b.high), b.growth, results::to_rpm(b.speed),
-               results::to_hz(results::tidy(b.frequency))});
+    table.add({to_rpm(b.low), to_rpm(b.high), b.growth, to_rpm(b.speed),
+               to_hz(results::tidy(b.frequency))});
     io::Value e = io::Value::object();
-    e["from [rpm]"] = results::to_rpm(b.low);
-    e["to [rpm]"] = results::to_rpm(b.high);
+    e["from [rpm]"] = to_rpm(b.low);
+    e["to [rpm]"] = to_rpm(b.high);
     e["largest growth [1/s]"] = b.growth;
-    e["at [rpm]"] = results::to_rpm(b.speed);
+    e["at [rpm]"] = to_rpm(b.speed);
     v["bands"].push(std::move(e));
-    const std::string from =
-        std::isnan(b.low) ? "below" : fmt::format("{:.8g}", results::to_rpm(b.low));
+    const std::string from = std::isnan(b.low) ? "below" : fmt::format("{:.8g}", to_rpm(b.low));
     line += fmt::format(
         "{}{} to {} rpm", line.empty() ? "unstable from " : ", ",
-        std::isnan(b.low) ? fmt::format("below {:.6g}", results::to_rpm(r.speeds.front())) : from,
-        std::isnan(b.high) ? fmt::format("above {:.6g}", results::to_rpm(r.speeds.back()))
-                           : fmt::format("{:.8g}", results::to_rpm(b.high)));
+        std::isnan(b.low) ? fmt::format("below {:.6g}", to_rpm(r.speeds.front())) : from,
+        std::isnan(b.high) ? fmt::format("above {:.6g}", to_rpm(r.speeds.back()))
+                           : fmt::format("{:.8g}", to_rpm(b.high)));
   }
   if (r.bands.empty())
-    line = fmt::format("stable from {:.6g} to {:.6g} rpm", results::to_rpm(r.speeds.front()),
-                       results::to_rpm(r.speeds.back()));
+    line = fmt::format("stable from {:.6g} to {:.6g} rpm", to_rpm(r.speeds.front()),
+                       to_rpm(r.speeds.back()));
   s.add_table("bands", std::move(table));
 
   io::Table rates;
@@ -97,8 +96,8 @@ void run_instability_bands(run::Job& job, const model::Step& step,
   double top = 0, bottom = 0;
   for (std::size_t k = 0; k < r.speeds.size(); ++k) {
     points.push_back({r.speeds[k], r.growth[k], r.frequency[k]});
-    rates.add({results::to_rpm(r.speeds[k]), results::tidy(r.growth[k]),
-               results::to_hz(results::tidy(r.frequency[k]))});
+    rates.add(
+        {to_rpm(r.speeds[k]), results::tidy(r.growth[k]), to_hz(results::tidy(r.frequency[k]))});
     bottom = std::min(bottom, r.growth[k]);
   }
   for (const analysis::InstabilityBand& b : r.bands) {
@@ -110,15 +109,15 @@ void run_instability_bands(run::Job& job, const model::Step& step,
   std::sort(points.begin(), points.end(),
             [](const Point& x, const Point& y) { return x.speed < y.speed; });
   for (const Point& p : points) {
-    curve.x.push_back(results::to_rpm(p.speed));
+    curve.x.push_back(to_rpm(p.speed));
     curve.y.push_back(p.growth);
-    hertz.values.push_back(results::to_hz(p.frequency));
+    hertz.values.push_back(to_hz(p.frequency));
   }
   curve.extra.push_back(std::move(hertz));
   a.y.max = top > 0 ? 1.15 * top : nan;
   for (const analysis::InstabilityBand& b : r.bands) {
-    const double from = results::to_rpm(std::isnan(b.low) ? r.speeds.front() : b.low),
-                 to = results::to_rpm(std::isnan(b.high) ? r.speeds.back() : b.high);
+    const double from = to_rpm(std::isnan(b.low) ? r.speeds.front() : b.low),
+                 to = to_rpm(std::isnan(b.high) ? r.speeds.back() : b.high);
     plot::Patch p;
     p.x = {from, to, to, from};
     p.y = {bottom, bottom, 1.15 * top, 1.15 * top};

@@ -127,25 +127,30 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
         {"continued log decrement", "-",
          "with coefficients continued from the frequency to the decay of the motion, first order"});
   io::Value& v = s.summary();
-  v["speed [rpm]"] = results::to_rpm(law.speed);
+  v["speed [rpm]"] = to_rpm(law.speed);
   io::Value list = io::Value::array();
   int unstable = 0;
   const std::vector<std::string> labels = results::labels_of(modes);
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::WhirlMode& m = modes[k];
-    std::vector<io::Table::Cell> row{
-        static_cast<int>(k + 1),        labels[k],
-        std::string(to_string(m.kind)), results::direction_text(m),
-        results::to_hz(m.frequency),    results::to_rpm(m.frequency),
-        results::tidy(m.log_decrement), results::tidy(m.damping_ratio),
-        100 * results::tidy(m.lateral), 100 * results::tidy(m.torsional),
-        100 * results::tidy(m.axial),   results::tidy(m.forwardness)};
+    std::vector<io::Table::Cell> row{static_cast<int>(k + 1),
+                                     labels[k],
+                                     std::string(to_string(m.kind)),
+                                     results::direction_text(m),
+                                     to_hz(m.frequency),
+                                     to_rpm(m.frequency),
+                                     results::tidy(m.log_decrement),
+                                     results::tidy(m.damping_ratio),
+                                     100 * results::tidy(m.lateral),
+                                     100 * results::tidy(m.torsional),
+                                     100 * results::tidy(m.axial),
+                                     results::tidy(m.forwardness)};
     const double continued = -two_pi * m.continued.real() / m.continued.imag();
     if (o.continued) row.emplace_back(results::tidy(continued));
     table.add(std::move(row));
     io::Value e = io::Value::object();
     e["label"] = labels[k];
-    e["frequency [Hz]"] = results::to_hz(m.frequency);
+    e["frequency [Hz]"] = to_hz(m.frequency);
     e["log decrement"] = results::tidy(m.log_decrement);
     e["damping ratio"] = results::tidy(m.damping_ratio);
     if (o.continued) e["continued log decrement"] = results::tidy(continued);
@@ -177,7 +182,7 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
     const std::string name = fmt::format("mode_{}", k + 1);
     results::ShapeDrawing d{name,
                             fmt::format("Mode {} ({}): {:.5g} Hz, {}", k + 1, labels[k],
-                                        results::to_hz(m.frequency), results::description(m)),
+                                        to_hz(m.frequency), results::description(m)),
                             {},
                             &m.x,
                             m.kind};
@@ -187,8 +192,8 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
     results::add_shape_figures(s, d);
     results::write_shape_frames(s, name, m.x);
   }
-  s.section.text = fmt::format("{} whirl modes at {:.6g} rpm, {}.", modes.size(),
-                               results::to_rpm(law.speed), law.damped ? "damped" : "undamped");
+  s.section.text = fmt::format("{} whirl modes at {:.6g} rpm, {}.", modes.size(), to_rpm(law.speed),
+                               law.damped ? "damped" : "undamped");
   if (unstable > 0) s.section.text += fmt::format(" {} of them unstable.", unstable);
   if (diverging > 0)
     s.section.text += fmt::format(" {} motion{} without oscillating.", diverging,
@@ -196,10 +201,9 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
   s.section.text += " " + results::capital(certificate.text()) + ".";
   if (law.damped && unstable + diverging == 0)
     s.section.text += " " + results::capital(results::stability_text(certificate)) + ".";
-  std::string line =
-      fmt::format("{} modes at {:.0f} rpm", modes.size(), results::to_rpm(law.speed));
+  std::string line = fmt::format("{} modes at {:.0f} rpm", modes.size(), to_rpm(law.speed));
   for (std::size_t k = 0; k < std::min<std::size_t>(modes.size(), 4); ++k)
-    line += fmt::format("{}{:.4g}", k ? ", " : ": ", results::to_hz(modes[k].frequency));
+    line += fmt::format("{}{:.4g}", k ? ", " : ": ", to_hz(modes[k].frequency));
   s.finish(line +
            (modes.empty()      ? ""
             : modes.size() > 4 ? " ... Hz"

@@ -98,31 +98,28 @@ std::string add_stability_map(results::FrequencyStep& s, const model::StabilityM
   for (std::size_t k = 0; k < place.size(); ++k) {
     const double o = map.onset[k];
     const bool at_once = std::isinf(o), never = std::isnan(o);
-    onset.add({values.number[k], at_once || never ? nan : results::to_rpm(o),
-               results::to_hz(map.frequency[k]),
+    onset.add({values.number[k], at_once || never ? nan : to_rpm(o), to_hz(map.frequency[k]),
                std::string(at_once ? "unstable at all speeds from the first"
                            : never ? "stable at all speeds"
                                    : "")});
     io::Value e = io::Value::object();
     e[law.parameter] = law.values[k];
-    e["onset [rpm]"] = at_once || never ? nan : results::to_rpm(o);
+    e["onset [rpm]"] = at_once || never ? nan : to_rpm(o);
     v.push(std::move(e));
     found += !at_once && !never;
     edge.x.push_back(values.number[k]);
-    edge.y.push_back(at_once ? results::to_rpm(map.speeds.front())
-                     : never ? nan
-                             : results::to_rpm(o));
+    edge.y.push_back(at_once ? to_rpm(map.speeds.front()) : never ? nan : to_rpm(o));
     rates.columns.push_back({law.parameter + " = " + law.values[k], "-", "log decrement"});
     plot::Series line;
     line.label = law.values[k];
     for (std::size_t i = 0; i < map.speeds.size(); ++i) {
-      line.x.push_back(results::to_rpm(map.speeds[i]));
+      line.x.push_back(to_rpm(map.speeds[i]));
       line.y.push_back(map.least_log_decrement[k][i]);
     }
     lines.series.push_back(std::move(line));
   }
   for (std::size_t i = 0; i < map.speeds.size(); ++i) {
-    std::vector<io::Table::Cell> row{results::to_rpm(map.speeds[i])};
+    std::vector<io::Table::Cell> row{to_rpm(map.speeds[i])};
     for (std::size_t k = 0; k < place.size(); ++k)
       row.emplace_back(map.least_log_decrement[k][i]);
     rates.add(std::move(row));
@@ -132,14 +129,14 @@ std::string add_stability_map(results::FrequencyStep& s, const model::StabilityM
   if (equally_spaced(values.number) && equally_spaced(map.speeds)) {
     // cells round each value and speed; the onset drawn over them
     const double dx = values.number[1] - values.number[0],
-                 dy = results::to_rpm(map.speeds[1] - map.speeds[0]);
+                 dy = to_rpm(map.speeds[1] - map.speeds[0]);
     plot::HeatMap heat;
     heat.nx = static_cast<int>(place.size());
     heat.ny = static_cast<int>(map.speeds.size());
     heat.x0 = values.number.front() - 0.5 * dx;
     heat.x1 = values.number.back() + 0.5 * dx;
-    heat.y0 = results::to_rpm(map.speeds.front()) - 0.5 * dy;
-    heat.y1 = results::to_rpm(map.speeds.back()) + 0.5 * dy;
+    heat.y0 = to_rpm(map.speeds.front()) - 0.5 * dy;
+    heat.y1 = to_rpm(map.speeds.back()) + 0.5 * dy;
     for (std::size_t i = 0; i < map.speeds.size(); ++i)
       for (std::size_t k = 0; k < place.size(); ++k)
         heat.values.push_back(map.least_log_decrement[k][i]);
@@ -149,8 +146,8 @@ std::string add_stability_map(results::FrequencyStep& s, const model::StabilityM
     curve.heat.push_back(std::move(heat));
     curve.x.min = values.number.front() - 0.5 * dx;
     curve.x.max = values.number.back() + 0.5 * dx;
-    curve.y.min = std::max(0.0, results::to_rpm(map.speeds.front()) - 0.5 * dy);
-    curve.y.max = results::to_rpm(map.speeds.back()) + 0.5 * dy;
+    curve.y.min = std::max(0.0, to_rpm(map.speeds.front()) - 0.5 * dy);
+    curve.y.max = to_rpm(map.speeds.back()) + 0.5 * dy;
   }
   s.add_table("map_onset", std::move(onset));
   s.add_table("map", std::move(rates), false);

@@ -28,7 +28,7 @@ struct Sweep {
     plot::Series s;
     s.label = std::move(label);
     for (const results::SupportCoefficients& c : at) {
-      s.x.push_back(results::to_rpm(c.spin));
+      s.x.push_back(to_rpm(c.spin));
       s.y.push_back(of(c));
     }
     s.keep_all = true;
@@ -75,7 +75,7 @@ plot::Figure draw_locus(const std::string& name, const std::vector<Sweep>& all) 
     for (const results::SupportCoefficients& c : b.at) {
       locus.x.push_back(unit * c.place.x());
       locus.y.push_back(unit * c.place.y());
-      locus.point_names.push_back(fmt::format("{:.6g} rpm", results::to_rpm(c.spin)));
+      locus.point_names.push_back(fmt::format("{:.6g} rpm", to_rpm(c.spin)));
     }
     const auto mark = [&](std::size_t k, plot::Marker m) {
       plot::Series s;
@@ -175,7 +175,7 @@ void run_static_speeds(run::Job& job, const model::Step& step, const std::vector
   for (const double& Omega : speeds) {
     progress.update(
         static_cast<double>(&Omega - speeds.data()) / static_cast<double>(speeds.size()),
-        fmt::format("{:.6g} rpm", results::to_rpm(Omega)));
+        fmt::format("{:.6g} rpm", to_rpm(Omega)));
     try {
       s.linear.at(Omega);
     } catch (const Error& e) {
@@ -184,25 +184,25 @@ void run_static_speeds(run::Job& job, const model::Step& step, const std::vector
         s.linear.running().set_rates(Omega, start.state.v);
         first_error = run::explain_no_equilibrium(job, s.linear.running(), start, e);
       }
-      judged.add({results::to_rpm(Omega), 0, "", "", ""});
-      missing += fmt::format("{}{:.6g}", missing.empty() ? "" : ", ", results::to_rpm(Omega));
+      judged.add({to_rpm(Omega), 0, "", "", ""});
+      missing += fmt::format("{}{:.6g}", missing.empty() ? "" : ", ", to_rpm(Omega));
       continue;
     }
     run::StepState at{s.linear.equilibrium().state, Omega};
     const analysis::Definiteness tangent = results::judge_state(
         s.linear.running(), at.state, Omega, s.linear.equilibrium().spin_holds, unstable == 0);
-    judged.add({results::to_rpm(Omega), 1, static_cast<int>(tangent.negative),
-                tangent.symmetric ? 1 : 0, tangent.certain ? 1 : 0});
+    judged.add({to_rpm(Omega), 1, static_cast<int>(tangent.negative), tangent.symmetric ? 1 : 0,
+                tangent.certain ? 1 : 0});
     if (!tangent.stable() && unstable++ == 0) {
       results::add_stability(s.summary(), tangent, Omega);
-      results::warn_of_unstable(
-          job, fmt::format("{}, {:.6g} rpm", step.name, results::to_rpm(Omega)), tangent, Omega);
+      results::warn_of_unstable(job, fmt::format("{}, {:.6g} rpm", step.name, to_rpm(Omega)),
+                                tangent, Omega);
       if (tangent.shape.size() > 0)
         s.add_table("unstable_direction",
                     results::shape_table(
                         job,
                         fmt::format("Direction in which the equilibrium at {:.6g} rpm is left",
-                                    results::to_rpm(Omega)),
+                                    to_rpm(Omega)),
                         at.state.frames, at.state.q, tangent.shape),
                     false);
     }
@@ -226,7 +226,7 @@ void run_static_speeds(run::Job& job, const model::Step& step, const std::vector
   v["equilibria"] = static_cast<int>(found);
   s.section.text = fmt::format(
       "Equilibria at {} of {} speeds from {:.6g} to {:.6g} rpm, each started from the one before.",
-      found, speeds.size(), results::to_rpm(speeds.front()), results::to_rpm(speeds.back()));
+      found, speeds.size(), to_rpm(speeds.front()), to_rpm(speeds.back()));
   if (!missing.empty())
     s.section.text +=
         fmt::format(" None at {} rpm: {}.", missing, first_error->diagnostics().front().message);

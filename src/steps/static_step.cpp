@@ -120,7 +120,7 @@ void run_static_step(run::Job& job, const model::Step& step, const model::Static
   run::StepState s = job.start_of(step, law.own_speed());
   io::Value& v = job.summary["steps"][step.name];
   v["type"] = "static";
-  v["speed [rpm]"] = s.speed * 30.0 / pi;
+  v["speed [rpm]"] = to_rpm(s.speed);
   results::StaticFrames frames(job, step.name);
 
   analysis::EquilibriumOptions options;
@@ -207,17 +207,16 @@ void run_static_step(run::Job& job, const model::Step& step, const model::Static
   const std::string kind = tangent.stable() ? "equilibrium" : results::stability_line(tangent, 0.0);
   const std::string ended = law.path ? notes.front()
                                      : fmt::format("{} at {:.0f} rpm, {} Newton iterations", kind,
-                                                   s.speed * 30.0 / pi, found.iterations);
+                                                   to_rpm(s.speed), found.iterations);
   run::ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}", ended, time.text()));
   io::ReportSection section;
   results::say_held(job, step, results::held_in_step(job, step, found.spin_holds), section);
   if (job.model.output.report) {
     const std::string held = std::move(section.text);
     section.title = fmt::format("{}: static equilibrium", step.name);
-    section.text =
-        fmt::format("At {:.6g} rpm, load factor {:.6g}: {} Newton iterations, {} load step{}.",
-                    s.speed * 30.0 / pi, load, found.iterations, found.load_steps,
-                    found.load_steps == 1 ? "" : "s");
+    section.text = fmt::format(
+        "At {:.6g} rpm, load factor {:.6g}: {} Newton iterations, {} load step{}.", to_rpm(s.speed),
+        load, found.iterations, found.load_steps, found.load_steps == 1 ? "" : "s");
     if (!tangent.stable())
       section.text += fmt::format("\n\nIt is an {}.", results::stability_line(tangent, s.speed));
     for (const std::string& n : notes)

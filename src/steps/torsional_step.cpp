@@ -34,9 +34,9 @@ void run_torsional_step(run::Job& job, const model::Step& step, const model::Tor
   double highest = 0;
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::WhirlMode& m = modes[k];
-    table.add({static_cast<int>(k + 1), results::to_hz(m.frequency), results::to_rpm(m.frequency),
+    table.add({static_cast<int>(k + 1), to_hz(m.frequency), to_rpm(m.frequency),
                results::tidy(m.log_decrement), results::tidy(m.damping_ratio)});
-    v["frequencies [Hz]"].push(results::to_hz(m.frequency));
+    v["frequencies [Hz]"].push(to_hz(m.frequency));
     highest = std::max(highest, m.frequency);
     plot::CampbellLine l;
     l.label = fmt::format("T{}", k + 1);
@@ -46,7 +46,7 @@ void run_torsional_step(run::Job& job, const model::Step& step, const model::Tor
     lines.push_back(std::move(l));
     results::add_shape_figures(
         s, {fmt::format("mode_{}", k + 1),
-            fmt::format("Torsional mode {}: {:.5g} Hz", k + 1, results::to_hz(m.frequency)),
+            fmt::format("Torsional mode {}: {:.5g} Hz", k + 1, to_hz(m.frequency)),
             {},
             &m.x,
             analysis::ModeKind::torsional});
@@ -66,8 +66,8 @@ void run_torsional_step(run::Job& job, const model::Step& step, const model::Tor
     q.max_frequency = 1.0001 * highest;
     if (modes.empty()) break;
     for (const analysis::Critical& c : analysis::critical_speeds(s.linear, q)) {
-      criticals.add({order, results::to_rpm(c.speed), results::to_hz(c.frequency)});
-      v["critical speeds [rpm]"][fmt::format("{:g}x", order)].push(results::to_rpm(c.speed));
+      criticals.add({order, to_rpm(c.speed), to_hz(c.frequency)});
+      v["critical speeds [rpm]"][fmt::format("{:g}x", order)].push(to_rpm(c.speed));
       marks.push_back({c.speed, c.frequency, order, {}});
     }
   }

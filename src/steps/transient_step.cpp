@@ -27,7 +27,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 
 namespace whirl::steps {
 
@@ -156,12 +155,6 @@ std::unique_ptr<system::SystemProblem> transient_problem(const run::Job& job,
 
 namespace {
 
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 /// What [[event]] names.
 std::vector<analysis::EventLog::Watch> watches_of(const run::Job& job) {
   std::vector<analysis::EventLog::Watch> out;
@@ -201,8 +194,8 @@ void warn_of_jumps(run::Job& job, const model::Step& step, const run::StepState&
     warn(job, step,
          fmt::format("drive '{}' prescribes {:.6g} rpm at t = {:.6g} s, where shaft '{}' turns at "
                      "{:.6g} rpm: its speed jumps",
-                     d.name, wanted * 30.0 / pi, start.state.t, job.model.shafts[d.at.shaft].name,
-                     now * 30.0 / pi));
+                     d.name, to_rpm(wanted), start.state.t, job.model.shafts[d.at.shaft].name,
+                     to_rpm(now)));
   }
 }
 
@@ -382,11 +375,11 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
     sink->begin(results::io_channels(channels));
   }
   const std::string deck = run::what_moves(job.model, step.name);
-  const double cpu0 = cpu_seconds();
+  const double cpu0 = thread_cpu_seconds();
   std::optional<run::Checkpoint> kept;
   const auto checkpoint_of = [&](const system::State& state,
                                  const time::IntegratorState& integrator) {
-    run::Checkpoint c{deck, t0,    start.speed, seconds_before + cpu_seconds() - cpu0,
+    run::Checkpoint c{deck, t0,    start.speed, seconds_before + thread_cpu_seconds() - cpu0,
                       {},   state, integrator,  {}};
     parts.save(c);
     return c;
@@ -407,7 +400,7 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
   options.progress = [&](const analysis::Progress& p) {
     line.update((p.t - t0) / law.duration,
                 fmt::format("t {:.4g} s  {:.0f} rpm  dt {:.2e} s  {} steps  {} Newton", p.t,
-                            p.spin * 30.0 / pi, p.dt, p.steps, p.newton));
+                            to_rpm(p.spin), p.dt, p.steps, p.newton));
   };
   analysis::TransientResult r = [&] {
     const run::PhaseTimer timer(job, "stepping and histories");
@@ -459,7 +452,7 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
     io::Value& q = v["peaks"][p.name];
     q["amplitude 0-peak [m]"] = p.amplitude;
     q["time [s]"] = p.time;
-    q["speed [rpm]"] = p.speed * 30.0 / pi;
+    q["speed [rpm]"] = to_rpm(p.speed);
   }
   v["largest tilt"]["|gamma| [rad]"] = tilt.tilt();
   v["largest tilt"]["time [s]"] = tilt.time();
@@ -500,8 +493,8 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
     t.title = "Events";
     t.columns = {{"event", "-", ""}, {"passage", "-", ""}, {"time", "s", ""}, {"speed", "rpm", ""}};
     for (const auto& e : events.events())
-      t.add({events.watches()[e.watch].name, e.rising ? "rising" : "falling", e.t,
-             e.speed * 30.0 / pi});
+      t.add(
+          {events.watches()[e.watch].name, e.rising ? "rising" : "falling", e.t, to_rpm(e.speed)});
     job.folder.write_table(step.name + "_events.csv", t);
     v["events"] = events.events().size() + events.more();
     if (t.rows.size() > 100) {
@@ -521,7 +514,7 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
                    {"speed", "rpm", ""},
                    {"time", "s", ""}};
       for (const analysis::Peak& p : peaks.peaks())
-        t.add({p.name, p.amplitude, p.speed * 30.0 / pi, p.time});
+        t.add({p.name, p.amplitude, to_rpm(p.speed), p.time});
       job.folder.write_table(step.name + "_peaks.csv", t);
       section.tables.push_back(std::move(t));
     }

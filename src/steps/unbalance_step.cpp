@@ -80,7 +80,7 @@ void add_force_figure(results::FrequencyStep& s, const UnbalanceResponse& r,
       y.label = s.job.built.support_forces[m].name + order_suffix(r, k);
       for (const SteadyPoint& x : r.points) {
         const auto& f = x.output[k][m];
-        y.x.push_back(results::to_rpm(x.Omega));
+        y.x.push_back(to_rpm(x.Omega));
         y.y.push_back(unit.factor * analysis::orbit_of(f[1], f[2]).major);
       }
       axes.series.push_back(std::move(y));
@@ -106,7 +106,7 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k,
       t.columns.push_back({fmt::format("{} {} phase lag", m.name, c), "deg", ""});
     }
   for (const SteadyPoint& x : r.points) {
-    std::vector<io::Table::Cell> row{results::to_rpm(x.Omega)};
+    std::vector<io::Table::Cell> row{to_rpm(x.Omega)};
     for (const analysis::PointAmplitude& a : x.probe[k])
       results::add_probe_cells(row, a);
     for (std::size_t m = 0; m < outputs.size(); ++m)
@@ -179,11 +179,10 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
                    {"N1", "rpm", "lower half-power speed"},
                    {"N2", "rpm", "upper half-power speed"}};
   for (const analysis::ResponsePeak& p : peaks) {
-    table.add({o.probes[p.probe].name, r.orders[p.order], results::to_rpm(p.speed), p.amplitude,
-               p.phase_lag * 180 / pi, p.amplification(), results::to_rpm(p.low),
-               results::to_rpm(p.high)});
+    table.add({o.probes[p.probe].name, r.orders[p.order], to_rpm(p.speed), p.amplitude,
+               p.phase_lag * 180 / pi, p.amplification(), to_rpm(p.low), to_rpm(p.high)});
     io::Value e = io::Value::object();
-    e["speed [rpm]"] = results::to_rpm(p.speed);
+    e["speed [rpm]"] = to_rpm(p.speed);
     e["amplitude 0-peak [m]"] = p.amplitude;
     e["amplification factor"] = p.amplification();
     v["peaks"][o.probes[p.probe].name].push(std::move(e));
@@ -221,8 +220,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
     for (std::size_t k = 0; k < r.orders.size(); ++k)
       for (const analysis::MarginRow& m :
            analysis::separation_margins(peaks, o.probes, {law.operating[0], law.operating[1]}, k)) {
-        margins.add({m.probe, results::to_rpm(m.speed), m.amplification, 100 * m.required,
-                     100 * m.actual,
+        margins.add({m.probe, to_rpm(m.speed), m.amplification, 100 * m.required, 100 * m.actual,
                      m.critically_damped ? "critically damped"
                      : m.passed          ? "passed"
                                          : "FAILED"});
@@ -250,8 +248,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   for (const double Omega : shapes_at) {
     const SteadyPoint x = shape_solver.at(Omega);
     for (std::size_t k = 0; k < r.orders.size(); ++k) {
-      const std::string name =
-          fmt::format("shape_{:.0f}rpm{}", results::to_rpm(Omega), order_suffix(r, k));
+      const std::string name = fmt::format("shape_{:.0f}rpm{}", to_rpm(Omega), order_suffix(r, k));
       double most = 0;
       for (Index n = 0; n < s.linear.system().nodes(); ++n)
         if (!s.linear.system().node(n).scalar) {
@@ -260,12 +257,12 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
         }
       if (!(most > 0)) continue;
       const plot::DisplayUnit unit = plot::length_unit(most);
-      results::add_shape_figures(s, {name,
-                                     fmt::format("Operating shape at {:.6g} rpm{}",
-                                                 results::to_rpm(Omega), order_suffix(r, k)),
-                                     fmt::format("Largest amplitude {} {}, 0-peak, drawn as 1.",
-                                                 readable(unit.factor * most), unit.name),
-                                     &x.shape[k]});
+      results::add_shape_figures(
+          s,
+          {name, fmt::format("Operating shape at {:.6g} rpm{}", to_rpm(Omega), order_suffix(r, k)),
+           fmt::format("Largest amplitude {} {}, 0-peak, drawn as 1.", readable(unit.factor * most),
+                       unit.name),
+           &x.shape[k]});
       results::write_shape_frames(s, name, x.shape[k], 1.0);
     }
   }
@@ -277,8 +274,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
                     o.refine_peaks ? ", with more of them where it peaks" : "");
   const plot::DisplayUnit unit = plot::length_unit(largest);
   s.finish(fmt::format("{} speeds, {} peaks, largest {} {} at {:.0f} rpm", r.points.size(),
-                       peaks.size(), readable(unit.factor * largest), unit.name,
-                       results::to_rpm(at)));
+                       peaks.size(), readable(unit.factor * largest), unit.name, to_rpm(at)));
 }
 
 }  // namespace whirl::steps

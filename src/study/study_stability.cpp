@@ -56,7 +56,7 @@ Scheme examine(const analysis::ReducedRotor& rotor, const char* name, double rho
   for (int k = 0; k <= points; ++k) {
     const double h = first * std::pow(last / first, static_cast<double>(k) / points);
     const double r = analysis::spectral_radius(rotor, name, h, rho);
-    s.radius.x.push_back(h * slow / two_pi);
+    s.radius.x.push_back(to_hz(h * slow));
     s.radius.y.push_back(r);
     s.largest_radius = std::max(s.largest_radius, r);
     s.limit = r;
@@ -150,10 +150,10 @@ int study_stability(const StudyOptions& options) {
                     {"step / period of the first mode", "-", ""},
                     {"spectral radius", "-", ""}};
   io::Value json = io::Value::object();
-  json["speed [rpm]"] = Omega * 30.0 / pi;
+  json["speed [rpm]"] = to_rpm(Omega);
   json["unknowns kept"] = static_cast<double>(rotor.M.rows());
-  json["frequencies kept, lowest [Hz]"] = slow / two_pi;
-  json["frequencies kept, highest [Hz]"] = fast / two_pi;
+  json["frequencies kept, lowest [Hz]"] = to_hz(slow);
+  json["frequencies kept, highest [Hz]"] = to_hz(fast);
   plot::Figure figure;
   figure.name = "stability";
   figure.title = model.title + ": stability of the integrators";
@@ -161,7 +161,7 @@ int study_stability(const StudyOptions& options) {
   figure.caption = fmt::format(
       "Above: one step on the undamped rotor at {:.0f} rpm. Below: what a step adds to the damping "
       "ratio of a mode.",
-      Omega * 30.0 / pi);
+      to_rpm(Omega));
   plot::Axes above, below;
   above.x = plot::Axis("step / period of the first mode", "-", true);
   above.y = plot::Axis("spectral radius", "-");
@@ -225,7 +225,7 @@ int study_stability(const StudyOptions& options) {
       "{:.4g} Hz. Energy is constant in truth: a spectral radius above 1 "
       "makes energy, one below 1 takes it. Damping ratios added and frequency errors hold for any "
       "undamped mode.",
-      Omega * 30.0 / pi, slow / two_pi, fast / two_pi);
+      to_rpm(Omega), to_hz(slow), to_hz(fast));
   section.figures.push_back(figure);
   section.tables.push_back(table);
   report.sections.push_back(std::move(section));
@@ -234,8 +234,8 @@ int study_stability(const StudyOptions& options) {
   io::write_report(job.folder.path("stability.html"), report);
 
   if (!options.run.quiet) {
-    std::printf("%.0f rpm, %ld unknowns, modes from %.4g to %.4g Hz, undamped\n\n",
-                Omega * 30.0 / pi, static_cast<long>(rotor.M.rows()), slow / two_pi, fast / two_pi);
+    std::printf("%.0f rpm, %ld unknowns, modes from %.4g to %.4g Hz, undamped\n\n", to_rpm(Omega),
+                static_cast<long>(rotor.M.rows()), to_hz(slow), to_hz(fast));
     std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "largest radius", "long steps",
                 "unstable from", "energy, 1e5", "damping added", "frequency err");
     std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "", "", "s", "steps", "20 a period",
