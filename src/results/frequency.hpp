@@ -5,7 +5,7 @@
 #include <analysis/response/harmonic.hpp>
 #include <analysis/spectra/stability.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
-#include <results/transient_outputs.hpp>
+#include <results/channels.hpp>
 #include <plot/plots.hpp>
 
 #include <cmath>

@@ -2,6 +2,7 @@
 #include <run/job.hpp>
 #include <run/results_folder.hpp>
 #include <study/study_parts.hpp>
+#include <results/channels.hpp>
 #include <steps/transient_step.hpp>
 #include <study/study.hpp>
 #include <core/table.hpp>
@@ -170,7 +171,7 @@ struct Bench {
         c.tolerance > 0 ? c.tolerance : 1e-8;  // fixed steps: Newton well below the step's error
     o.integrator.dt_fixed = c.dt;
     o.integrator.t_end = start.state.t + share * law.duration;
-    const auto points = steps::watched_points(job);
+    const auto points = results::watched_points(job);
     Sampler sampler(job, points, exact, start.state.t, o.integrator.t_end, 200);
     analysis::PeakTracker peaks(points, job.reference());
     analysis::StudySample s;
@@ -230,7 +231,7 @@ StudyPart study_transient(const model::Model& model, std::size_t which, const St
   std::unique_ptr<Exact> exact;
   if (!options.exact.empty())
     exact = std::make_unique<Exact>(read_exact(
-        options.exact, steps::watched_points(benches[1]->job), benches[1]->law.duration));
+        options.exact, results::watched_points(benches[1]->job), benches[1]->law.duration));
   const bool flexible = !benches[1]->job.mesh.elements.empty();
   const bool rigid_bodies = system::MomentumProblem::obstacle(benches[1]->job.system()).empty();
 
