@@ -76,7 +76,7 @@ TEST(Decimate, RepeatedOrbitIsDrawnOnce) {
   EXPECT_EQ(far, 100.0);
 }
 
-TEST(plot::Envelope, BoundedMemoryExactExtremes) {
+TEST(Envelope, BoundedMemoryExactExtremes) {
   std::mt19937 rng(3);
   std::normal_distribution<double> noise;
   plot::Envelope e(256);
@@ -118,7 +118,7 @@ TEST(Collector, KeepsEnvelopeAndLastRowsInWrittenUnits) {
   EXPECT_EQ(again.last()["time"], c.last()["time"]);
 }
 
-TEST(plot::Ticks, RoundNumbersInsideTheRange) {
+TEST(Ticks, RoundNumbersInsideTheRange) {
   const plot::Ticks a = plot::linear_ticks(0.3, 9.7, 5);
   EXPECT_EQ(a.major, (std::vector<double>{2, 4, 6, 8}));
   EXPECT_EQ(a.labels, (std::vector<std::string>{"2", "4", "6", "8"}));
@@ -138,7 +138,7 @@ TEST(plot::Ticks, RoundNumbersInsideTheRange) {
     }
 }
 
-TEST(plot::Ticks, DecadesAndTheirFractions) {
+TEST(Ticks, DecadesAndTheirFractions) {
   const plot::Ticks a = plot::log_ticks(2e-8, 3, 5);
   EXPECT_EQ(a.labels.size(), a.major.size());
   EXPECT_LE(a.major.size(), 6u);
