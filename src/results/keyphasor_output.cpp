@@ -1,6 +1,7 @@
 // Tracking filter of a transient's probes: CSV turn by turn, Bode and polar figures against speed,
 // response peaks, orbits with keyphasor marks. Memory is bounded: long runs are thinned for the
 // figures, the CSV holds every turn.
+#include <analysis/spectra/whirl_modes.hpp>
 #include <analysis/transient/revolutions.hpp>
 #include <plot/plots.hpp>
 #include <results/plot_buffer.hpp>
