@@ -26,8 +26,8 @@ namespace {
 using analysis::BandResult;
 using analysis::InstabilityBand;
 
-BandResult solve_bands(results::FrequencyStep& s, const model::StabilityStep& law,
-                       analysis::RotatingAxes& axes, const std::vector<double>& speeds) {
+BandResult solve_bands(const model::StabilityStep& law, analysis::RotatingAxes& axes,
+                       const std::vector<double>& speeds) {
   analysis::BandOptions o;
   o.modes = law.modes;
   for (const double Omega : speeds)
@@ -159,7 +159,7 @@ void run_instability_bands(run::Job& job, const model::Step& step,
   const run::PhaseTimer timer(job, "stability");
   if (law.map) throw no_map_of_bands(step);
   analysis::RotatingAxes axes(s.linear, speeds.back());
-  const BandResult r = solve_bands(s, law, axes, speeds);
+  const BandResult r = solve_bands(law, axes, speeds);
   s.summary()["supports"] = axes.constant() ? "isotropic" : "unequal";
   add_band_table(s, r);
   add_growth_table(s, r);
