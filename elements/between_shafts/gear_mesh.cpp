@@ -73,11 +73,6 @@ Vector<14> gradient(const GearMesh& g, const Mesh& m) {
 
 double GearMesh::compression(const Nodes<2>& x) const { return Mesh(*this, x).delta; }
 
-double GearMesh::normal_force(const Nodes<2>& x) const {
-  const Mesh m(*this, x);
-  return m.k * m.delta + c * m.rate;
-}
-
 void GearMesh::add_force(const Nodes<2>& x, const Context& context, ForceX<14>& f) const {
   const Mesh m(*this, x, context.averaged);
   f += (m.k * m.delta + c * m.rate) * gradient(*this, m);

@@ -60,8 +60,7 @@ struct GearMesh {
   void add_tangent(const system::Nodes<2>& x, const system::Context&,
                    system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const;
-  double compression(const system::Nodes<2>& x) const;   ///< delta, m
-  double normal_force(const system::Nodes<2>& x) const;  ///< N, compressive positive
+  double compression(const system::Nodes<2>& x) const;  ///< delta, m
 
   /// b: d delta/dX; rotation = cos beta r_b1/z_1: metres of delta a radian of z_1 phi_1 + z_2
   /// phi_2.

@@ -130,7 +130,4 @@ struct RollerGeometry {
 };
 RollerBearing make_roller_bearing(const RollerGeometry& g);
 
-/// Ball passes per revolution of the shaft with the outer ring at rest (BPFO/f): Z (1 - lambda)/2.
-double outer_pass_per_turn(int elements, double lambda);
-
 }  // namespace whirl::elements

@@ -364,13 +364,6 @@ bool SteadySystem::visit_revolution(
   return true;
 }
 
-bool SteadySystem::residual_at(const system::Frames& f, double Omega, const VecX& q, double theta,
-                               VecX& r) {
-  workspace_.context.averaged = false;
-  const bool inside = evaluate_residual(f, Omega, q, theta, r, all_);
-  workspace_.context.averaged = running_.mean;
-  return inside;
-}
 bool SteadySystem::tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta,
                               la::MCK& out) {
   workspace_.context.averaged = false;

@@ -95,7 +95,6 @@ class SteadySystem {
   /// Samples of tangents over the revolution, for periodic systems: f(theta) with theta = 2 pi k/n,
   /// k = 0 .. n-1.
   bool tangent_at(const system::Frames& f, double Omega, const VecX& q, double theta, la::MCK& out);
-  bool residual_at(const system::Frames& f, double Omega, const VecX& q, double theta, VecX& r);
 
  private:
   using Terms = std::vector<std::size_t>;

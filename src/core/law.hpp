@@ -27,6 +27,10 @@ class Law {
 };
 
 using LawPtr = std::shared_ptr<const Law>;
+/// None where there is no law.
+inline std::vector<double> breakpoints_of(const LawPtr& law) {
+  return law ? law->breakpoints() : std::vector<double>{};
+}
 
 /// f = c
 LawPtr make_constant(double c);
@@ -53,8 +57,6 @@ LawPtr make_polynomial(std::vector<double> coefficients);
 LawPtr make_piecewise(std::vector<double> start, std::vector<LawPtr> laws);
 /// The sum of laws.
 LawPtr make_sum(std::vector<LawPtr> laws);
-/// scale * law(t)
-LawPtr make_scaled(double scale, LawPtr law);
 /// The angle law phi0 + integral of a speed law (its value is the angle, df the speed, ddf the
 /// acceleration). Its own integral is by quadrature, to round-off.
 LawPtr make_angle_of_speed(LawPtr speed, double phi0);

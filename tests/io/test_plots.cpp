@@ -3,7 +3,6 @@
 #include "gallery.hpp"
 #include "temp_folder.hpp"
 #include "xml_check.hpp"
-#include <io/collector.hpp>
 #include <io/file.hpp>
 #include <plot/palette.hpp>
 #include <plot/png.hpp>
@@ -75,48 +74,6 @@ TEST(Decimate, RepeatedOrbitIsDrawnOnce) {
   }
   EXPECT_LT(points, 600u);
   EXPECT_EQ(far, 100.0);
-}
-
-TEST(plot::Envelope, BoundedMemoryExactExtremes) {
-  std::mt19937 rng(3);
-  std::normal_distribution<double> noise;
-  plot::Envelope e(256);
-  double lo = 0, hi = 0, t_hi = 0;
-  for (int i = 0; i < 1000000; ++i) {
-    const double v = noise(rng);
-    if (v > hi) {
-      hi = v;
-      t_hi = i;
-    }
-    lo = std::min(lo, v);
-    e.add(i, v);
-  }
-  std::vector<double> x, y;
-  e.points(x, y);
-  EXPECT_LE(x.size(), 4u * 256);
-  EXPECT_GT(x.size(), 2u * 128);
-  EXPECT_TRUE(std::is_sorted(x.begin(), x.end()));
-  EXPECT_EQ(*std::max_element(y.begin(), y.end()), hi);
-  EXPECT_EQ(*std::min_element(y.begin(), y.end()), lo);
-  EXPECT_EQ(x[static_cast<std::size_t>(std::max_element(y.begin(), y.end()) - y.begin())], t_hi);
-  EXPECT_EQ(x.front(), 0);
-  EXPECT_EQ(x.back(), 999999);
-}
-
-TEST(Collector, KeepsEnvelopeAndLastRowsInWrittenUnits) {
-  const Channel channels[] = {{"time", "s", "", {}, 1, ""}, {"speed", "rpm", "", {}, 10, ""}};
-  Collector c(64, 5);
-  c.begin(channels);
-  for (int i = 0; i < 1000; ++i)
-    c.append(std::array{0.1 * i, static_cast<double>(i)});
-  std::vector<double> x, y;
-  c.curve(1, x, y);
-  EXPECT_EQ(y.back(), 9990);
-  EXPECT_EQ(c.last()["speed"], (std::vector<double>{9950, 9960, 9970, 9980, 9990}));
-  Collector again(64, 5);
-  again.resume(channels, 5);
-  replay(c.last(), channels, 5, again);
-  EXPECT_EQ(again.last()["time"], c.last()["time"]);
 }
 
 TEST(plot::Ticks, RoundNumbersInsideTheRange) {

@@ -268,31 +268,4 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
   }
 }
 
-VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const VecXc& f) {
-  const system::System& system = linear.system();
-  const system::State& s = linear.equilibrium().state;
-  system::Workspace workspace = system.make_workspace();
-  workspace.context.hysteretic = linear.hysteretic();
-  workspace.context.whirl = workspace.context.whirl_side = w;
-  VecXc out = VecXc::Zero(a.size());
-  const double eps = variation_step(a);
-  VecX r(a.size());
-  const system::FrequencyScope ask(w);
-  if (eps > 0)
-    for (int part = 0; part < 2; ++part) {
-      const Complex turn = part == 0 ? Complex(1, 0) : Complex(0, -1);
-      for (int sign : {1, -1}) {
-        const double h = sign * eps;
-        const VecX q = s.q + h * (turn * a).real(), v = s.v + h * (turn * Complex(0, w) * a).real(),
-                   acc = s.a + h * (turn * (-w * w) * a).real();
-        system.residual(workspace, s.frames, s.t, q, v, acc, r);
-        out += (part == 0 ? Complex(1, 0) : Complex(0, 1)) * (sign / (2.0 * eps)) * r;
-      }
-    }
-  out += f;
-  for (Index k = 0; k < a.size(); ++k)
-    if (system.active()[at(k)]) out[k] = 0;
-  return out;
-}
-
 }  // namespace whirl::analysis
