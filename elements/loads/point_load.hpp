@@ -24,9 +24,7 @@ struct PointForce {
   void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<3>& f) const;
   void add_tangent(const system::Nodes<1>&, const system::Context&, system::TangentX<3>&) const {}
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const {
-    return factor ? factor->breakpoints() : std::vector<double>{};
-  }
+  std::vector<double> breakpoints() const { return breakpoints_of(factor); }
 };
 
 /// Force and moment of fixed direction (global axes) at an offset point.
@@ -43,9 +41,7 @@ struct FixedLoad {
   void add_tangent(const system::Nodes<1>& x, const system::Context& c,
                    system::TangentX<7>& t) const;
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const {
-    return factor ? factor->breakpoints() : std::vector<double>{};
-  }
+  std::vector<double> breakpoints() const { return breakpoints_of(factor); }
 };
 
 /// Force and moment given in body axes (d, b_2, b_3): they turn with tilt and spin (follower
@@ -63,9 +59,7 @@ struct BodyLoad {
   void add_tangent(const system::Nodes<1>& x, const system::Context& c,
                    system::TangentX<7>& t) const;
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const {
-    return factor ? factor->breakpoints() : std::vector<double>{};
-  }
+  std::vector<double> breakpoints() const { return breakpoints_of(factor); }
 };
 
 }  // namespace whirl::elements

@@ -32,9 +32,7 @@ struct UnbalanceMass {
   void add_tangent(const system::Nodes<1>& x, const system::Context& c,
                    system::TangentX<7>& t) const;
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const {
-    return factor ? factor->breakpoints() : std::vector<double>{};
-  }
+  std::vector<double> breakpoints() const { return breakpoints_of(factor); }
   system::RigidInertia inertia(double time) const;
 };
 

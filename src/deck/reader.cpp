@@ -32,6 +32,8 @@ Reader::Reader(Sources& sources, Diagnostics& diagnostics, Parameters& parameter
       document_(document),
       model_(model) {}
 
+const model::Model& Reader::model() const { return model_; }
+
 void Reader::read() {
   in_table("", document_.root, &resolved_, nullptr, [&](Visitor& v) { describe(v, model_); });
   settle_steps();
