@@ -4,7 +4,6 @@
 #include <core/interrupt.hpp>
 #include <system/frequency.hpp>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <queue>

@@ -1,5 +1,5 @@
-#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <la/dense.hpp>
 #include <la/eigen.hpp>
 #include <la/eigenpairs.hpp>
 #include <la/ritz.hpp>
@@ -149,17 +149,17 @@ struct ModeSolver::Impl : Eigenpairs {
       apply<double>(VecX::Unit(d, j), out, *real, s, x_, t_, y_);
       op.col(j) = out;
     }
-    const Eigen::EigenSolver<MatX> eig(op);
+    const DenseEigenpairs eig = eigenpairs(op);
     double largest = 0.0;
     for (Index j = 0; j < d; ++j)
-      largest = std::max(largest, std::abs(eig.eigenvalues()(j)));
+      largest = std::max(largest, std::abs(eig.values(j)));
     std::vector<Pair> found;
     for (Index j = 0; j < d; ++j) {
-      const Complex theta = eig.eigenvalues()(j);
+      const Complex theta = eig.values(j);
       // Eigenvalues at infinity come out as rounding; double ones as its square root.
       if (!(std::abs(theta) > 1e-9 * largest)) continue;
       const Complex lambda = s + 1.0 / theta;
-      if (lambda.imag() >= 0.0) suggest(found, lambda, eig.eigenvectors().col(j), true, nullptr);
+      if (lambda.imag() >= 0.0) suggest(found, lambda, eig.vectors.col(j), true, nullptr);
     }
     take(found, true);
     sort_known();

@@ -4,6 +4,7 @@
 #include "temp_folder.hpp"
 #include "xml_check.hpp"
 #include <io/file.hpp>
+#include <plot/decimate.hpp>
 #include <plot/palette.hpp>
 #include <plot/png.hpp>
 #include <plot/svg.hpp>
@@ -76,7 +77,7 @@ TEST(Decimate, RepeatedOrbitIsDrawnOnce) {
   EXPECT_EQ(far, 100.0);
 }
 
-TEST(plot::Ticks, RoundNumbersInsideTheRange) {
+TEST(Ticks, RoundNumbersInsideTheRange) {
   const plot::Ticks a = plot::linear_ticks(0.3, 9.7, 5);
   EXPECT_EQ(a.major, (std::vector<double>{2, 4, 6, 8}));
   EXPECT_EQ(a.labels, (std::vector<std::string>{"2", "4", "6", "8"}));
@@ -96,7 +97,7 @@ TEST(plot::Ticks, RoundNumbersInsideTheRange) {
     }
 }
 
-TEST(plot::Ticks, DecadesAndTheirFractions) {
+TEST(Ticks, DecadesAndTheirFractions) {
   const plot::Ticks a = plot::log_ticks(2e-8, 3, 5);
   EXPECT_EQ(a.labels.size(), a.major.size());
   EXPECT_LE(a.major.size(), 6u);

@@ -4,8 +4,6 @@
 #include <la/block_lu.hpp>
 #include <la/multiply.hpp>
 
-#include <Eigen/QR>
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <la/dense.hpp>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -278,22 +278,22 @@ void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
     }
     return MatXc(X.adjoint() * Y);
   };
-  const Eigen::PartialPivLU<MatXc> mass(project(m.M));
+  const la::DenseLu<Complex> mass(project(m.M));
   MatXc companion = MatXc::Zero(2 * k, 2 * k);
   companion.topRightCorner(k, k).setIdentity();
   companion.bottomLeftCorner(k, k) = -mass.solve(project(m.K));
   companion.bottomRightCorner(k, k) = -mass.solve(project(m.C));
-  const Eigen::ComplexEigenSolver<MatXc> eig(companion);
+  const la::DenseEigenpairs eig = la::eigenpairs(companion);
   std::vector<Index> order(at(2 * k));
   for (Index j = 0; j < 2 * k; ++j)
     order[at(j)] = j;
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::abs(eig.eigenvalues()(a) - rate) < std::abs(eig.eigenvalues()(b) - rate);
+    return std::abs(eig.values(a) - rate) < std::abs(eig.values(b) - rate);
   });
   for (Index j = 0; j < k; ++j) {
-    const VecXc y = eig.eigenvectors().col(order[at(j)]).head(k);
+    const VecXc y = eig.vectors.col(order[at(j)]).head(k);
     group[at(j)].x = X * y;
-    group[at(j)].lambda = eig.eigenvalues()(order[at(j)]);
+    group[at(j)].lambda = eig.values(order[at(j)]);
   }
 }
 
