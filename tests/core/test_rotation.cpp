@@ -65,6 +65,21 @@ Motion random_motion(Random& r, double g) {
           g * r.direction<2>(), r.vector<2>(),  r.vector<2>()};
 }
 
+/// Zhilin tensor, omega = B(v) v' (1): B = 1 + (1-cos g)/g^2 [v] + (g-sin g)/g^3 [v]^2.
+Mat3 B(const Vec3& v) {
+  const double x = v.squaredNorm();
+  const Mat3 s = skew(v);
+  return Mat3::Identity() + rot::one_minus_cos_ratio(x) * s + rot::g_minus_sin_ratio(x) * s * s;
+}
+
+/// Inverse of B: 1 - [v]/2 + (1/g^2 - cot(g/2)/(2g)) [v]^2; singular at g = 2 pi.
+Mat3 B_inverse(const Vec3& v) {
+  // (1 - h cot h)/(4 h^2) = b1/(4 b0) at h = g/2: no difference of large terms.
+  const rot::BesselRatios h = rot::bessel_ratios(0.25 * v.squaredNorm());
+  const Mat3 s = skew(v);
+  return Mat3::Identity() - 0.5 * s + (0.25 * h.b1 / h.b0) * s * s;
+}
+
 /// Takes all whole turns out of phi and returns their number.
 double take_whole_turns(double& phi) {
   const double n = std::nearbyint(phi / two_pi);
@@ -98,12 +113,12 @@ TEST(Rotation, BesselRatiosAgreeWithTheirSeries) {
   }
 }
 
-TEST(Rotation, TensorsAgainstMatrixExponential) {  // (2)
+TEST(Rotation, TensorsAgainstMatrixExponential) {  // (1), (2): L and omega = B v'
   Random r(1);
   for (double g : norms)
     for (int n = 0; n < 4; ++n) {
-      const Vec3 v = g * r.direction<3>();
-      const RVec3 rv = v.cast<Real>();
+      const Vec3 v = g * r.direction<3>(), dv = r.vector<3>();
+      const RVec3 rv = v.cast<Real>(), rdv = dv.cast<Real>();
       const RMat3 ref = exponential(rv);
       EXPECT_LT((rot::L(v).cast<Real>() - ref).cwiseAbs().maxCoeff(), 1e-15L * 4) << g;
       // small rotations keep their digits off the diagonal
@@ -111,6 +126,13 @@ TEST(Rotation, TensorsAgainstMatrixExponential) {  // (2)
       EXPECT_NEAR(off.norm(), static_cast<double>(std::sqrt(2.0L) * std::sin(Real(g)) / Real(g)),
                   1e-14)
           << g;
+      const RMat3 rate = central([&](Real h) { return exponential(rv + h * rdv); }, 1e-2L);
+      const RVec3 omega = axial(rate * ref.transpose());
+      EXPECT_LT((B(v) * dv - omega.cast<double>()).norm(), 1e-14) << g;
+      EXPECT_LT((B_inverse(v) * B(v) - Mat3::Identity()).norm(), 1e-14) << g;
+      // L = B B^-T, and B v = v
+      EXPECT_LT((B(v) * B_inverse(v).transpose() - rot::L(v)).norm(), 1e-14) << g;
+      EXPECT_LT((B(v) * v - v).norm(), 1e-15 * g);
     }
 }
 
@@ -210,11 +232,16 @@ TEST(Rotation, DirectorDerivativesKeepRelativeDigitsForSmallTilt) {
   }
 }
 
-TEST(Rotation, AngularVelocityOfTheSplit) {  // (6)-(8): omega = d x d' + s d
+TEST(Rotation, AngularVelocityOfTheSplit) {  // (6)-(8): omega = B(gamma) gamma' + phi' L(gamma) e =
+                                             // d x d' + s d
   Random r(5);
   for (double g : norms) {
     const Motion m = random_motion(r, g);
     const RVec3 omega = m.omega(0);
+    const Vec3 gamma(0, m.g.x(), m.g.y()), dgamma(0, m.dg.x(), m.dg.y());
+    EXPECT_LT((B(gamma) * dgamma + m.dphi * rot::L(gamma).col(0) - omega.cast<double>()).norm(),
+              1e-14)
+        << g;
     EXPECT_LT((rot::omega_of_rates(m.g, m.dphi, m.dg) - omega.cast<double>()).norm(), 1e-14) << g;
     const RVec3 domega = central([&](Real t) { return m.omega(t); }, 1e-2L);
     EXPECT_LT((rot::omega_rate_of_rates(m.g, m.dphi, m.dg, m.ddphi, m.ddg) - domega.cast<double>())
@@ -236,7 +263,7 @@ TEST(Rotation, RatesFromOmega) {  // (9), (10), (11) in the paper's own form and
     const Motion m = random_motion(r, g);
     const Vec3 omega = m.omega(0).cast<double>();
     const Vec3 gamma(0, m.g.x(), m.g.y()), e = Vec3::UnitX();
-    const Mat3 Bi = rot::B_inverse(gamma);
+    const Mat3 Bi = B_inverse(gamma);
     const double denominator = e.dot(Bi * rot::L(gamma) * e);
     // condition of the map bounds what rounding in omega does to the rates
     const double tolerance = 2e-15 * rot::chart_condition(g) * (1 + omega.norm());
