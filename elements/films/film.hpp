@@ -46,6 +46,7 @@ struct FilmTangent {
 template <class Film>
 struct FilmLaw {
   static constexpr bool inertia = false;
+  static constexpr system::Dependence depends{.spin = true};
   Film film;
 
   static FilmPoint point(const LateralMotion& m) {
