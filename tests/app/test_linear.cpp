@@ -1,5 +1,6 @@
 // linear = true in a deck: what the summary says of it, and the same motion as the general run.
 #include <run/options.hpp>
+#include <steps/run_deck.hpp>
 #include <core/error.hpp>
 #include <deck/deck.hpp>
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ using namespace whirl;
 
 namespace {
 
-nlohmann::json run(const fs::path& folder, bool linear, double scale) {
+nlohmann::json run_loss(const fs::path& folder, bool linear, double scale) {
   model::Model m =
       deck::load_model(fs::path(WHIRL_SOURCE) / "examples/12_blade_loss/deck.toml", {});
   for (model::Unbalance& u : m.unbalances)
@@ -40,8 +41,8 @@ nlohmann::json run(const fs::path& folder, bool linear, double scale) {
 TEST(LinearStep, BladeLossInTheSummary) {
   const fs::path folder =
       fs::temp_directory_path() / ("whirl_linear_" + std::to_string(::getpid()));
-  const nlohmann::json general = run(folder / "general", false, 0.1),
-                       linear = run(folder / "linear", true, 0.1);
+  const nlohmann::json general = run_loss(folder / "general", false, 0.1),
+                       linear = run_loss(folder / "linear", true, 0.1);
   EXPECT_EQ(general.count("equations"), 0u);
   ASSERT_EQ(linear.count("equations"), 1u);
   const auto& i = linear["integrator"];
