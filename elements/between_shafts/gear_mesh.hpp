@@ -50,6 +50,9 @@ struct GearGeometry {
 struct GearMesh {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the teeth that pass, and which tooth is in mesh unless means are asked for.
+  system::Dependence depends(const system::Context& context) const;
   static constexpr int max_harmonics = 5;
 
   double k0 = 0, c = 0;  ///< N/m, N s/m
@@ -73,6 +76,8 @@ struct GearMesh {
 struct BacklashGearMesh {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  system::Dependence depends(const system::Context& context) const;
 
   GearMesh drive, back;   ///< the flanks; c is not used
   double backlash = 0;    ///< j, m, along n

@@ -60,6 +60,7 @@ inline void set_outside(FilmForce& f, FilmTangent& t) {
 template <class Film>
 struct FilmLaw {
   static constexpr bool inertia = false;
+  static constexpr system::Dependence depends{.spin = true};
   Film film;
 
   static FilmPoint point(const LateralMotion& m) {

@@ -71,6 +71,11 @@ template <class Contact>
 struct RollingBearing {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the angle of the cage, unless means are asked for.
+  system::Dependence depends(const system::Context& c) const {
+    return {.angle = c.averaged ? system::no_angle : system::angle_sum(cage[0], cage[1])};
+  }
 
   Contact contact;
   int elements = 0;                      ///< Z

@@ -24,6 +24,8 @@ class Law {
   /// Times, increasing, at which the law or one of its derivatives jumps; the time integrator lands
   /// a step on each.
   virtual std::vector<double> breakpoints() const { return {}; }
+  /// The same value at all times, known without asking for any.
+  virtual bool constant() const { return false; }
 };
 
 using LawPtr = std::shared_ptr<const Law>;
@@ -31,6 +33,9 @@ using LawPtr = std::shared_ptr<const Law>;
 inline std::vector<double> breakpoints_of(const LawPtr& law) {
   return law ? law->breakpoints() : std::vector<double>{};
 }
+
+/// There is a law, and it is not constant.
+inline bool varies(const LawPtr& law) { return law && !law->constant(); }
 
 /// f = c
 LawPtr make_constant(double c);

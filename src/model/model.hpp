@@ -477,12 +477,20 @@ struct Event : Entity {
   bool stop = false;           ///< ends the run
 };
 
+/// The part of a resolved deck that motion depends on, TOML text: without titles, outputs, probes
+/// and what ends a run. Each key of the deck declares whether it belongs to it.
+struct MovingDeck {
+  std::string machine;             ///< all but the steps
+  std::vector<std::string> steps;  ///< in their order
+};
+
 struct Model {
   int format = 1;
   std::string title;
   std::string deck_path;  ///< as given by the user
   std::string deck_name;  ///< file name without extension
   std::string resolved;  ///< the resolved deck (parameters substituted, includes merged), TOML text
+  MovingDeck moving;
   Vec3 gravity = Vec3::Zero();  ///< m/s2, global axes; +x along the shaft
   bool chart_change = true;     ///< re-chart rotations beyond 2 rad of tilt
   bool keep_everything = false;

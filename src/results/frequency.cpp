@@ -66,6 +66,7 @@ std::vector<analysis::Measurement> support_measurements(const run::Job& job) {
       system::Context mean;
       mean.time = s.t();
       mean.averaged = true;
+      mean.frequency = s.context().frequency;
       Eigen::Map<Vec3>{v} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); },
                                     mean, [&s](Index k) { return s.reactions()[k]; });
     };

@@ -78,12 +78,12 @@ KeyphasorOutput::KeyphasorOutput(const run::Job& job, const model::Step& step,
                    [this](const analysis::Turn& t) { take(t); }) {
   per_direction_ = 2 * out_.tracking.orders.size() + 2;
   columns_ = 2;  // t, speed
-  key_ = fmt::format("keyphasor {}", out_.tracking.samples);
+  content_ = fmt::format("{}", out_.tracking.samples);
   for (double k : out_.tracking.orders)
-    key_ += fmt::format(" {}X", k);
+    content_ += fmt::format(" {}X", k);
   for (double s : out_.tracking.orbit_speeds)
-    key_ += fmt::format(" @{}", s);
-  key_ += fmt::format(" turns {}", out_.tracking.orbit_turns);
+    content_ += fmt::format(" @{}", s);
+  content_ += fmt::format(" turns {}", out_.tracking.orbit_turns);
   for (const model::Probe& p : job.model.probes) {
     Tracked t;
     t.name = p.name;
@@ -93,9 +93,9 @@ KeyphasorOutput::KeyphasorOutput(const run::Job& job, const model::Step& step,
       t.directions.push_back({fmt::format("{:.0f}deg", a * 180.0 / pi), std::cos(a), std::sin(a)});
     t.column = columns_;
     columns_ += t.directions.size() * per_direction_ + 2;
-    key_ += " " + p.name;
+    content_ += " " + p.name;
     for (const Direction& d : t.directions)
-      key_ += "." + d.name;
+      content_ += "." + d.name;
     probes_.push_back(std::move(t));
   }
   row_.resize(columns_);

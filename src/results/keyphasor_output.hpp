@@ -28,7 +28,7 @@ class KeyphasorOutput {
   /// Writes the tables and adds the figures.
   void report(run::Job& job, io::ReportSection& section) const;
   /// What decides whether a checkpoint's part fits.
-  const std::string& key() const { return key_; }
+  run::PartKey key() const { return {run::Part::keyphasor, content_}; }
 
  private:
   struct Direction {
@@ -57,7 +57,7 @@ class KeyphasorOutput {
 
   static constexpr std::size_t most_orbits = 64;
   const model::Output& out_;
-  std::string step_, key_;
+  std::string step_, content_;
   std::vector<Tracked> probes_;
   std::size_t per_direction_ = 0, columns_ = 0;
   io::TimeSeriesPtr sink_;

@@ -31,10 +31,10 @@ SpectraOutput::SpectraOutput(const run::Job& job, const model::Step& step, doubl
       senses_(std::move(senses)),
       spectra_(points_of(job), job.reference(), t_begin, {options_.max_frequency, options_.lines},
                [this](const analysis::SpectrumBlock& b) { take(b); }) {
-  key_ = fmt::format("spectra {} {} {}", options_.max_frequency, options_.lines, options_.traces);
+  content_ = fmt::format("{} {} {}", options_.max_frequency, options_.lines, options_.traces);
   for (const model::Probe& p : job.model.probes) {
     probes_.push_back(p.name);
-    key_ += " " + p.name;
+    content_ += " " + p.name;
     if (out_.csv)
       sinks_.push_back(io::make_csv_series(
           job.folder.path(fmt::format("{}_{}_spectra.csv", step_, safe_name(p.name)))));

@@ -17,7 +17,7 @@ class SpectraOutput {
   void restore(InArchive& in);
   void close();
   void report(io::ReportSection& section) const;
-  const std::string& key() const { return key_; }
+  run::PartKey key() const { return {run::Part::spectra, content_}; }
 
  private:
   struct Trace {
@@ -28,7 +28,7 @@ class SpectraOutput {
   std::vector<io::Channel> channels() const;
   const model::Output& out_;
   model::SpectraOutput options_;
-  std::string step_, key_;
+  std::string step_, content_;
   std::vector<std::string> probes_;
   std::vector<double> senses_;
   std::vector<io::TimeSeriesPtr> sinks_;  ///< one a probe

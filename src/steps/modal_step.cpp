@@ -61,13 +61,9 @@ void add_energy_tables(results::FrequencyStep& s, const std::vector<analysis::Wh
                  sys.node(p.node).name, p.other >= 0 ? sys.node(p.other).name : std::string(),
                  100 * p.share});
         const std::vector<std::string>& own = kinetic ? names.disk : names.bearing;
-        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty() &&
-                           p.kind.find("shaft") == std::string::npos &&
-                           p.kind.find("beam") == std::string::npos;
-        const std::string part = known ? own[at(p.node)]
-                                 : p.kind == "shaft elements" || p.kind == "general beam elements"
-                                     ? "shaft"
-                                     : p.kind;
+        const bool shaft = p.family == system::Family::shaft;
+        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty();
+        const std::string part = shaft ? "shaft" : known ? own[at(p.node)] : p.kind;
         column((kinetic ? "kinetic: " : "strain: ") + part)[k] += p.share;
       }
   }

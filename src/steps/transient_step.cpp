@@ -277,11 +277,11 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
   for (const auto& w : watched)
     watching += w.first + " ";
   bool series_continues = false;
-  const std::string series_key =
-      fmt::format("series {}{}: {}", out.csv ? "csv " : "", out.binary ? "hdf5 " : "", columns);
+  const std::string series_content =
+      fmt::format("{}{}: {}", out.csv ? "csv " : "", out.binary ? "hdf5 " : "", columns);
   if (sink)
     parts.add(
-        series_key,
+        {run::Part::series, series_content},
         [&](OutArchive& a) {
           sink->flush();
           a.put_count(sink->rows());
@@ -291,7 +291,7 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
           series_continues = true;
         });
   parts.add(
-      "plot buffer " + columns, [&](OutArchive& a) { buffer.save(a); },
+      {run::Part::plot_buffer, columns}, [&](OutArchive& a) { buffer.save(a); },
       [&](InArchive& a) { buffer.restore(a); });
   analysis::Recorder recorder(
       channels.all,
@@ -302,22 +302,23 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
       t0, out.every, out.t0, out.t1, gate_of(job, watched));
   if (channels.columns > 0 && (sink || out.report)) {
     observers.push_back(&recorder);
-    parts.add(fmt::format("recorder every {} {}", out.every, series_key), recorder);
+    parts.add({run::Part::recorder, fmt::format("every {} {}", out.every, series_content)},
+              recorder);
   }
   analysis::PeakTracker peaks(watched, job.reference());
   if (!watched.empty()) {
     observers.push_back(&peaks);
-    parts.add("peaks " + watching, peaks);
+    parts.add({run::Part::peaks, watching}, peaks);
   }
   analysis::EnergyBalance energy(options.integrator.breakpoints);
   observers.push_back(&energy);
-  parts.add("energy", energy);
+  parts.add({run::Part::energy}, energy);
   analysis::TiltWatch tilt;
   observers.push_back(&tilt);
-  parts.add("tilt", tilt);
+  parts.add({run::Part::tilt}, tilt);
   analysis::StepHistogram lengths(job.reference());
   observers.push_back(&lengths);
-  parts.add("step lengths", lengths);
+  parts.add({run::Part::step_lengths}, lengths);
   std::vector<std::unique_ptr<results::Frames>> frames;
   for (const model::VtkOutput& v : out.vtk)
     if (v.step.empty() || v.step == step.name) {
@@ -329,19 +330,19 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
       std::string content;
       for (const std::string& c : v.content)
         content += " " + c;
-      parts.add(
-          fmt::format("frames {} window {} {} every {} per revolution {} scale {} around {}{}",
-                      frames.size(), v.t0, v.t1, v.every, v.frames_per_revolution,
-                      v.deformation_scale, v.points_around, content),
-          *frames.back());
+      parts.add({run::Part::frames,
+                 fmt::format("{} window {} {} every {} per revolution {} scale {} around {}{}",
+                             frames.size(), v.t0, v.t1, v.every, v.frames_per_revolution,
+                             v.deformation_scale, v.points_around, content)},
+                *frames.back());
     }
   analysis::EventLog events(watches_of(job), job.reference());
   if (!events.watches().empty()) {
     observers.push_back(&events);
-    std::string what = "events";
+    std::string what;
     for (const model::Event& e : job.model.events)
       what += fmt::format(" {} {} {}", e.name, e.value, e.direction);
-    parts.add(what, events);
+    parts.add({run::Part::events, what}, events);
   }
   std::unique_ptr<results::KeyphasorOutput> keyphasor;
   if (out.tracking.on && !job.model.probes.empty() && (out.csv || out.report)) {
@@ -359,18 +360,18 @@ void run_transient_step(run::Job& job, const model::Step& step, const model::Tra
   }
   if (auto* small = dynamic_cast<analysis::LinearMotion*>(equations.get()))
     parts.add(
-        "steady motion", [small](OutArchive& a) { small->save(a); },
+        {run::Part::steady_motion}, [small](OutArchive& a) { small->save(a); },
         [small](InArchive& a) { small->restore(a); });
   if (!job.built.governors.empty())
     parts.add(
-        governors_part, [&start](OutArchive& a) { save_governors(a, start); },
+        {run::Part::governors}, [&start](OutArchive& a) { save_governors(a, start); },
         [&](InArchive& a) {
           restore_governors(a, start);
           begin_governors(job, start);
         });
   double seconds_before = 0.0, wall_before = 0.0;
   parts.add(
-      "wall clock", [&](OutArchive& a) { a.put(wall_before + watch.elapsed().wall); },
+      {run::Part::wall_clock}, [&](OutArchive& a) { a.put(wall_before + watch.elapsed().wall); },
       [&](InArchive& a) { wall_before = a.number(); });
   parts.restore(resumed ? &*resumed : nullptr);
   if (resumed) {

@@ -56,7 +56,7 @@ void describe(Visitor& v, model::Model& m) {
     v.error("E31", "format",
             fmt::format("the deck has format {}, this program reads format 1", m.format),
             m.format > 1 ? "a newer program is needed" : "write format = 1");
-  v.text(optional("title", "none"), m.title, "one line for reports");
+  v.text(beside_motion(optional("title", "none")), m.title, "one line for reports");
   std::vector<std::string> include;
   v.texts(optional("include", "none"), include,
           "files merged before this one: lists of tables are joined, a key set in both is a "
@@ -92,9 +92,9 @@ void describe(Visitor& v, model::Model& m) {
          "what a transient run reports or stops at, located on its dense output");
   v.list(optional("initial", "at rest, straight"), m.initial,
          "initial motion of a shaft line as a rigid body");
-  v.list(optional("probe", "none"), m.probes, "a place whose motion is recorded");
+  v.list(beside_motion(optional("probe", "none")), m.probes, "a place whose motion is recorded");
   v.list(optional("step", "none"), m.steps, "analyses, run in this order");
-  v.table("output", m.output, "what is written, and where");
+  v.table(beside_motion("output"), m.output, "what is written, and where");
 }
 
 }  // namespace whirl::deck
