@@ -20,8 +20,6 @@ constexpr double same_place = 1e-9;
 /// More elements than this in one section are a mistake in units, not a mesh.
 constexpr double most_elements = 1e6;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 struct Attached {
   const Location* where;
   std::string label;

@@ -108,7 +108,7 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
     throw run_error(
         "E81",
         fmt::format("a bearing table does not cover the frequency {:.6g} Hz at {:.6g} rpm",
-                    std::abs(tables) / two_pi, Omega * 30.0 / pi),
+                    to_hz(std::abs(tables)), to_rpm(Omega)),
         "extend its frequencies, narrow the step (max_frequency, modes), or write extrapolate = "
         "\"hold\"");
   return matrices_;

@@ -11,8 +11,6 @@ namespace whirl::analysis {
 
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 void add_scaled(la::BlockMatrix<6>& y, double s, const la::BlockMatrix<6>& x) {
   Eigen::Map<VecX>(y.data(), static_cast<Index>(y.value_count())) +=
       s * Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count()));

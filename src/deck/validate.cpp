@@ -206,7 +206,7 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
   return {};  // critical speeds look inside the table only
 }
 
-std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
+std::string hertz(double w) { return fmt::format("{:.6g} Hz", to_hz(w)); }
 
 /// Frequencies of excitation of a step, rad/s: least and largest, or nothing.
 std::optional<std::pair<double, double>> frequencies_of(const model::Model& m,

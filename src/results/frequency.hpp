@@ -5,7 +5,7 @@
 #include <analysis/response/harmonic.hpp>
 #include <analysis/spectra/stability.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
-#include <results/transient_outputs.hpp>
+#include <results/channels.hpp>
 #include <plot/plots.hpp>
 
 #include <cmath>
@@ -20,8 +20,6 @@ std::vector<double> speeds_of(const model::SpeedRange& range);
 std::vector<double> frequencies_of(const model::FrequencyRange& range);
 analysis::Motion motion_of(model::MotionKind kind);
 plot::Whirl whirl_of(analysis::Direction d);
-inline double to_rpm(double omega) { return omega * 30.0 / pi; }
-inline double to_hz(double omega) { return omega / two_pi; }
 /// Rounding of what is zero, as zero: ratios and shares of 1 (or 100 %).
 inline double tidy(double x) { return std::abs(x) < 1e-12 ? 0.0 : x; }
 /// "lateral, forward", "torsional"

@@ -131,7 +131,7 @@ std::string supports_at_their_limit(const Job& job, const system::State& s) {
     out += fmt::format(
         "; the table of bearing '{}' covers {:.6g} to {:.6g} rpm, and its shaft turns at {:.6g} "
         "rpm",
-        b.name, low * 30 / pi, high * 30 / pi, spin * 30 / pi);
+        b.name, to_rpm(low), to_rpm(high), to_rpm(spin));
   }
   const Conditions now(job, s);
   for (const SupportCondition& c : job.built.conditions)

@@ -64,7 +64,7 @@ void start_in_unbalance_response(const run::Job& job, run::StepState& start) {
       throw run_error(
           "E76",
           fmt::format("no steady unbalance response at {:.6g} rpm: resonance without damping",
-                      start.speed * 30.0 / pi),
+                      to_rpm(start.speed)),
           "start from static equilibrium, or give the model damping");
     solver.solve(a);
     const Complex turn = std::polar(1.0, orders[k] * theta);

@@ -8,7 +8,6 @@
 namespace whirl::analysis {
 
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Size of a variation: differences of second order in it drop out by symmetry, third order is
 /// below rounding.

@@ -9,8 +9,6 @@ namespace whirl::analysis {
 
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// Largest difference of the lateral entries of two matrices, relative to the diagonals they stand
 /// between.
 double difference(const la::BlockMatrix<6>& x, const la::BlockMatrix<6>& y, const VecX& diagonal) {
