@@ -89,8 +89,8 @@ struct BacklashGearMesh {
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const;
 };
 
-/// Errors E86: teeth or radius not possible, angles out of range, negative stiffness or backlash,
-/// stiffness that turns negative, more than max_harmonics.
+/// @throws Error E86: teeth or radius not possible, angles out of range, negative stiffness or
+/// backlash, stiffness that turns negative, more than max_harmonics.
 GearMesh make_gear_mesh(const GearGeometry& g, double k0, double c,
                         const std::vector<GearHarmonic>& stiffness = {},
                         const std::vector<GearHarmonic>& error = {});

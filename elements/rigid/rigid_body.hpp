@@ -33,8 +33,8 @@ struct RigidBody {
   Mat3 G = Mat3::Zero();  ///< kg m2, symmetric, G_11 = 0
 
   RigidBody() = default;
-  /// Errors: mass < 0, J not symmetric or no body has it (a principal moment above the sum of the
-  /// others).
+  /// @throws Error if mass < 0, J not symmetric or no body has it (a principal moment above the sum
+  /// of the others).
   RigidBody(double mass, const Vec3& offset, const Mat3& J);
 
   void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<7>& f) const;

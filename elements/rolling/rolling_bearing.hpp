@@ -120,8 +120,8 @@ struct BallGeometry {
   int direction = 1;  ///< angular contact: +1 carries a push of the shaft towards +x, -1 towards -x
   double stiffness = 0;  ///< K, N/m^1.5; 0: from Hertz (steel)
 };
-/// Errors E83: fewer than 2 balls, sizes not positive, balls that do not fit, f <= 0.5, |alpha| >=
-/// 80 deg, clearance beyond the grooves.
+/// @throws Error E83: fewer than 2 balls, sizes not positive, balls that do not fit, f <= 0.5,
+/// |alpha| >= 80 deg, clearance beyond the grooves.
 BallBearing make_ball_bearing(const BallGeometry& g);
 /// Shifts the reference position so that the bearing pushes back with `force` (N, >= 0) axially
 /// when undisplaced. E83 when deep groove.

@@ -24,8 +24,8 @@ class CoefficientGrid {
   using Between = typename CoefficientTable<N>::Between;
   using Outside = typename CoefficientTable<N>::Outside;
   /// spin, frequency: rad/s, strictly increasing, frequency not negative; rows: spin by spin,
-  /// frequencies within. Errors (E81): no rows, lengths that differ, not increasing, a value not
-  /// finite.
+  /// frequencies within.
+  /// @throws Error E81: no rows, lengths that differ, not increasing, a value not finite.
   CoefficientGrid(std::vector<double> spin, std::vector<double> frequency,
                   const std::vector<Values>& rows, Between between, Outside outside);
   /// Values for the spin s at the frequency asked about (NaN: none, synchronous), and their

@@ -44,8 +44,8 @@ class CoefficientTable {
   using Values = CoefficientValues<N>;
   enum class Between { linear, monotone_cubic };
   enum class Outside { undefined, hold };
-  /// spin: rad/s, strictly increasing. Errors (E81): no rows, lengths that differ, spin not
-  /// increasing, a value not finite.
+  /// spin: rad/s, strictly increasing.
+  /// @throws Error E81: no rows, lengths that differ, spin not increasing, a value not finite.
   CoefficientTable(std::vector<double> spin, std::vector<Values> rows, Between between,
                    Outside outside);
   /// Values at spin s with their derivatives in s; NaN outside an undefined range.

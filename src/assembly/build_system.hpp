@@ -109,8 +109,9 @@ struct Built {
 };
 
 /// step: name of the step whose drives act (drives without a step always act); "" = only those
-/// without. Errors (Exit::deck): unrestrained motion named with its shaft, attachments off the
-/// shaft, impossible bodies.
+/// without.
+/// @throws Error (Exit::deck) unrestrained motion named with its shaft, attachments off the shaft,
+/// impossible bodies.
 Built build_system(const model::Model& model, const meshes::Mesh& mesh,
                    const std::string& step = {});
 

@@ -82,8 +82,8 @@ struct Certificate {
 };
 
 /// Modes sorted by |Im lambda|, then |lambda|; overdamped roots are kept, each on its own; a
-/// rigid-body motion (K x = 0, C x = 0) comes once, with lambda = 0. Throws Error when the problem
-/// has no eigenvalues or cannot be factored.
+/// rigid-body motion (K x = 0, C x = 0) comes once, with lambda = 0.
+/// @throws Error when the problem has no eigenvalues or cannot be factored.
 std::vector<Mode> quadratic_modes(const MCK& m, std::span<const unsigned char> active,
                                   const ModeOptions& options = {});
 

@@ -439,7 +439,7 @@ struct SpectraOutput {
 };
 
 struct Output {
-  std::string directory;  ///< default results/<deck name>
+  std::string directory;  ///< default `results/<deck name>`
   double every = 0;       ///< s between rows of time histories; 0 = every accepted step
   std::vector<std::string> quantities{"speed", "probes", "energy"};
   double t0 = -infinity, t1 = infinity;  ///< rows only inside this window, s

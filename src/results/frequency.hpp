@@ -50,14 +50,14 @@ class FrequencyStep {
   io::ReportSection section;
 
   io::Value& summary() { return job.summary["steps"][step.name]; }
-  /// Writes <step>_<name>.csv and shows the table in the report, its title with about() (only as a
-  /// file when `shown` is false).
+  /// Writes `<step>_<name>.csv` and shows the table in the report, its title with about() (only as
+  /// a file when `shown` is false).
   void add_table(const std::string& name, io::Table table, bool shown = true);
   void add_figure(plot::Figure f);
   /// "about the static equilibrium at 3000 rpm": the state that everything here is linearised
   /// about.
   const std::string& about() const { return about_; }
-  /// A name for files: <step>_<name>.
+  /// A name for files: `<step>_<name>`.
   std::string file(const std::string& name) const;
   /// Puts what is known of a list of modes into the summary and the section; what is missing also
   /// into the terminal and the exit code. where: "at 3000 rpm", or empty.
