@@ -3,6 +3,8 @@
 #include <analysis/spectra/campbell.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <results/campbell_lines.hpp>
 #include <steps/step_kinds.hpp>
@@ -98,6 +100,12 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   v["speeds solved"] = c.speeds_solved;
   for (const plot::CriticalMark& m : marks)
     v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(results::to_rpm(m.speed));
+  results::MeshAccuracy mesh(s);
+  analysis::ModesOptions at_top = o.track.modes;
+  at_top.certify = false;
+  mesh.look_at(analysis::whirl_modes(s.linear, o.speeds.back(), at_top), o.speeds.back());
+  mesh.report();
+  results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
   s.add_table("campbell", make_table(c), false);
   s.add_table("critical_speeds", std::move(criticals));
   const std::vector<plot::CampbellLine> lines = results::drawn_lines(c);

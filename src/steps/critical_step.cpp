@@ -1,6 +1,8 @@
 // A critical-speed step: undamped and damped critical speeds of any order, solved for directly.
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -36,9 +38,11 @@ void run_critical_step(run::Job& job, const model::Step& step, const model::Crit
   io::Value& v = s.summary();
   v["max speed [rpm]"] = results::to_rpm(law.max_speed);
   std::string line;
+  results::MeshAccuracy mesh(s);
   const run::PhaseTimer timer(job, "critical speeds");
   const bool damping = is_damped(s.linear, law.max_speed);
   int drawn = 0;
+  results::warn_of_held_tables(job, step.name, law.min_speed, law.max_speed);
   for (const bool damped : {false, true}) {
     if (damped && !damping) continue;
     const char* word = damped ? "damped" : "undamped";
@@ -74,6 +78,7 @@ void run_critical_step(run::Job& job, const model::Step& step, const model::Crit
       if (list.empty()) speeds = io::Value::array();
       for (std::size_t k = 0; k < list.size(); ++k) {
         const analysis::Critical& c = list[k];
+        mesh.of(c.mode, c.speed, fmt::format("{} critical speed {}", word, k + 1));
         std::vector<io::Table::Cell> row{order,
                                          static_cast<int>(k + 1),
                                          results::to_rpm(c.speed),
@@ -115,6 +120,7 @@ void run_critical_step(run::Job& job, const model::Step& step, const model::Crit
           law.min_speed > 0 ? fmt::format("between {:.6g} and", results::to_rpm(law.min_speed))
                             : "below",
           results::to_rpm(law.max_speed));
+    mesh.report();
     s.add_table(word, std::move(table));
   }
   if (!damping)

@@ -3,6 +3,8 @@
 #include <analysis/response/frequency_response.hpp>
 #include <analysis/search.hpp>
 #include <results/response.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/rotation.hpp>
@@ -195,6 +197,10 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
       row.emplace_back(torque);
     t.add(std::move(row));
   }
+  double top_frequency = 0;
+  for (const FrequencyPoint& x : points)
+    top_frequency = std::max(top_frequency, std::abs(x.frequency));
+  results::report_mesh_accuracy(s, points.back().Omega, 1.2 * top_frequency);
   s.add_table("response", std::move(t), false);
 
   // Peaks, found between the points.
@@ -315,8 +321,10 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
                      [&](double x) { return std::abs(x - p.at) < 0.01 * p.at; }))
       shapes_at.push_back(p.at);
   std::sort(shapes_at.begin(), shapes_at.end());
+  results::GapCheck gaps(s);
   for (const double x : shapes_at) {
     const FrequencyPoint p = respond(x);
+    gaps.look(p.Omega, std::span(&p.shape, 1), p.frequency);
     const std::string name = fmt::format("shape_{:.6g}Hz", results::to_hz(p.frequency));
     results::add_shape_figures(
         s, {name,
@@ -327,6 +335,12 @@ void run_harmonic_step(run::Job& job, const model::Step& step, const model::Harm
             twists ? analysis::ModeKind::torsional : analysis::ModeKind::lateral});
     results::write_shape_frames(s, name, p.shape, 1.0);
   }
+  if (largest > 0) {
+    const FrequencyPoint p = respond(at);
+    gaps.look(p.Omega, std::span(&p.shape, 1), p.frequency);
+  }
+  gaps.report();
+  results::warn_of_held_tables(job, step.name, points.front().Omega, points.back().Omega);
   const plot::DisplayUnit unit = plot::length_unit(largest);
   const std::string what =
       twists ? fmt::format("largest twist {} rad", readable(largest_twist))

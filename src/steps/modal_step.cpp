@@ -1,6 +1,8 @@
 // A modal step: whirl modes at one speed.
 #include <analysis/spectra/mode_energy.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -110,18 +112,21 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
 
   io::Table table;
   table.title = "Modes";
-  table.columns = {{"mode", "-", ""},
-                   {"label", "-", "number within its kind"},
-                   {"kind", "-", "by the largest share of energy"},
-                   {"direction", "-", "of the orbits, seen along the spin"},
-                   {"frequency", "Hz", "damped natural frequency"},
-                   {"frequency", "rpm", ""},
-                   {"log decrement", "-", "per cycle; negative: unstable"},
-                   {"damping ratio", "-", "of the critical damping of the mode"},
-                   {"lateral", "%", "share of the energy"},
-                   {"torsional", "%", ""},
-                   {"axial", "%", ""},
-                   {"forwardness", "-", "1: forward circles, -1: backward circles"}};
+  table.columns = {
+      {"mode", "-", ""},
+      {"label", "-", "number within its kind"},
+      {"kind", "-", "by the largest share of energy"},
+      {"direction", "-", "of the orbits, seen along the spin"},
+      {"frequency", "Hz", "damped natural frequency"},
+      {"frequency", "rpm", ""},
+      {"log decrement", "-", "per cycle; negative: unstable"},
+      {"damping ratio", "-", "of the critical damping of the mode"},
+      {"lateral", "%", "share of the energy"},
+      {"torsional", "%", ""},
+      {"axial", "%", ""},
+      {"forwardness", "-", "1: forward circles, -1: backward circles"},
+      {"mesh error", "-", "of the frequency, relative, by the length of the elements; estimated"}};
+  results::MeshAccuracy mesh(s);
   if (o.continued)
     table.columns.push_back(
         {"continued log decrement", "-",
@@ -134,12 +139,13 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::WhirlMode& m = modes[k];
     std::vector<io::Table::Cell> row{
-        static_cast<int>(k + 1),        labels[k],
-        std::string(to_string(m.kind)), results::direction_text(m),
-        results::to_hz(m.frequency),    results::to_rpm(m.frequency),
-        results::tidy(m.log_decrement), results::tidy(m.damping_ratio),
-        100 * results::tidy(m.lateral), 100 * results::tidy(m.torsional),
-        100 * results::tidy(m.axial),   results::tidy(m.forwardness)};
+        static_cast<int>(k + 1),         labels[k],
+        std::string(to_string(m.kind)),  results::direction_text(m),
+        results::to_hz(m.frequency),     results::to_rpm(m.frequency),
+        results::tidy(m.log_decrement),  results::tidy(m.damping_ratio),
+        100 * results::tidy(m.lateral),  100 * results::tidy(m.torsional),
+        100 * results::tidy(m.axial),    results::tidy(m.forwardness),
+        mesh.of(m, law.speed, labels[k])};
     const double continued = -two_pi * m.continued.real() / m.continued.imag();
     if (o.continued) row.emplace_back(results::tidy(continued));
     table.add(std::move(row));
@@ -165,6 +171,8 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
   v["rates of motions that do not oscillate [1/s]"] = rates;
   v["unstable modes"] = unstable;
   v["diverging motions"] = diverging;
+  mesh.report();
+  results::warn_of_held_tables(job, step.name, law.speed, law.speed);
   s.add_table("modes", std::move(table));
   io::Table real_roots = results::real_root_table(all);
   if (!real_roots.rows.empty()) s.add_table("real_roots", std::move(real_roots));

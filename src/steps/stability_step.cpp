@@ -2,6 +2,8 @@
 // directly.
 #include <analysis/spectra/stability.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <results/campbell_lines.hpp>
 #include <steps/step_kinds.hpp>
@@ -101,6 +103,13 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   v["list complete"] = r.complete();
   const analysis::SpeedVerdict& judged = weakest(r);
   s.certify(judged.certificate, fmt::format("at {:.6g} rpm", results::to_rpm(judged.speed)));
+  analysis::ModesOptions listed;
+  listed.count = law.modes;
+  listed.certify = false;
+  results::MeshAccuracy mesh(s);
+  mesh.look_at(analysis::whirl_modes(s.linear, speeds.back(), listed), speeds.back());
+  mesh.report();
+  results::warn_of_held_tables(job, step.name, speeds.front(), speeds.back());
   s.add_table("verdicts", verdict_table(r), false);
   v["onsets"] = io::Value::array();
   io::Table table;

@@ -2,6 +2,7 @@
 // the speed meet them.
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -52,6 +53,9 @@ void run_torsional_step(run::Job& job, const model::Step& step, const model::Tor
             analysis::ModeKind::torsional});
     results::write_shape_frames(s, fmt::format("mode_{}", k + 1), m.x);
   }
+  results::MeshAccuracy mesh(s);
+  mesh.look_at(modes, law.max_speed);
+  mesh.report();
   s.add_table("torsional", std::move(table));
   io::Table criticals;
   criticals.title = "Torsional critical speeds";

@@ -3,6 +3,8 @@
 #include <analysis/response/api684.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <results/response.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/text.hpp>
@@ -202,6 +204,8 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
         }
     v["largest amplitude 0-peak [m]"][o.probes[p].name] = most;
   }
+  constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
+  results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
                 make_table(r, k, o.probes, o.outputs), false);
@@ -247,8 +251,10 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   analysis::UnbalanceOptions one = o;
   one.shapes = true;
   analysis::UnbalanceSolver shape_solver(s.linear, one);
+  results::GapCheck gaps(s);
   for (const double Omega : shapes_at) {
     const SteadyPoint x = shape_solver.at(Omega);
+    gaps.look(Omega, x.shape);
     for (std::size_t k = 0; k < r.orders.size(); ++k) {
       const std::string name =
           fmt::format("shape_{:.0f}rpm{}", results::to_rpm(Omega), order_suffix(r, k));
@@ -269,6 +275,9 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
       results::write_shape_frames(s, name, x.shape[k], 1.0);
     }
   }
+  if (largest > 0) gaps.look(at, shape_solver.at(at).shape);
+  gaps.report();
+  results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
   if (largest == 0)
     s.section.text = "Nothing turns that is out of balance: the response is zero.";
   else
