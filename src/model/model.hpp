@@ -44,7 +44,7 @@ struct Section : Entity {
   bool rotary_inertia = true;        ///< false: Euler-Bernoulli mass
   double added_mass_per_length = 0;  ///< kg/m without stiffness
   double temperature_rise = 0;       ///< K above the state in which the shaft has its lengths
-  int min_elements = 1;
+  int min_elements = 0;  ///< 0, and no length given: chosen (model/resolution.hpp)
   double max_element_length = infinity;
   /// General sections (not axisymmetric): stiffnesses given directly; I about the section's own y
   /// and z axes.
@@ -495,7 +495,8 @@ struct Model {
   bool chart_change = true;     ///< re-chart rotations beyond 2 rad of tilt
   bool keep_everything = false;
   double max_element_length = infinity;
-  int min_elements = 1;
+  int min_elements = 0;         ///< 0: chosen where the sections say nothing
+  double mesh_accuracy = 1e-3;  ///< of frequencies, where the mesh is chosen
   std::vector<Material> materials;
   std::vector<Shaft> shafts;
   std::vector<Disk> disks;

@@ -42,10 +42,13 @@ void describe_settings(Visitor& v, model::Model& m) {
       [&](Visitor& w) {
         w.quantity(optional("max_element_length", "no limit"), m.max_element_length, "mm", positive,
                    "longest shaft element");
-        w.integer("min_elements_per_section", m.min_elements, between(1, 10000),
-                  "least number of elements of each section");
+        w.integer(optional("min_elements_per_section", "chosen by the program"), m.min_elements,
+                  between(1, 10000), "least number of elements of each section");
+        w.number("accuracy", m.mesh_accuracy, between(1e-8, 0.1),
+                 "of frequencies, where the program chooses the elements: sections without "
+                 "min_elements or max_element_length, here or of their own");
       },
-      "refinement; a node stands at every section end and at everything attached in any case");
+      "elements; a node stands at every section end and at everything attached in any case");
 }
 
 }  // namespace
