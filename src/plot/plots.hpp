@@ -116,10 +116,6 @@ struct ModeShape {
 };
 Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mode);
 
-/// Energies (J) and the error of their balance against time (s).
-Figure plot_energy(std::string name, std::string title, std::span<const double> time,
-                   std::span<const Curve> energies, std::span<const double> balance_error);
-
 /// Error against run time, log-log; the Pareto front is drawn through the best points.
 struct StudyPoint {
   double seconds = 0, error = 0;

@@ -213,23 +213,4 @@ Figure plot_path_in_space(std::string name, std::string title, std::span<const d
   return f;
 }
 
-Figure plot_energy(std::string name, std::string title, std::span<const double> time,
-                   std::span<const Curve> energies, std::span<const double> balance_error) {
-  std::vector<HistoryCurve> curves;
-  for (const auto& e : energies)
-    curves.push_back({e.label, "J", e.y, "energy"});
-  Figure f = plot_history(std::move(name), std::move(title), time, curves);
-  if (!balance_error.empty()) {
-    const HistoryCurve e{
-        "balance error", "J", {balance_error.begin(), balance_error.end()}, "balance error"};
-    Axes a = std::move(plot_history("", "", time, std::span(&e, 1)).axes[0]);
-    a.share_x = !f.axes.empty();
-    a.weight = 0.6;
-    a.series[0].style.color = 1;
-    f.axes.push_back(std::move(a));
-    f.height += 130;
-  }
-  return f;
-}
-
 }  // namespace whirl::plot

@@ -22,7 +22,7 @@ class EnergyOutput final : public TransientOutput {
 
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     observers.push_back(&balance_);
-    parts.add("energy", balance_);
+    parts.add({run::Part::energy}, balance_);
   }
 
   void summarize(TransientEnd& end) override {
@@ -49,7 +49,7 @@ class TiltOutput final : public TransientOutput {
 
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     observers.push_back(&tilt_);
-    parts.add("tilt", tilt_);
+    parts.add({run::Part::tilt}, tilt_);
   }
 
   void summarize(TransientEnd& end) override {
@@ -102,7 +102,7 @@ class AccuracyOutput final : public TransientOutput {
 
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     observers.push_back(&steps_);
-    parts.add("step lengths", steps_);
+    parts.add({run::Part::step_lengths}, steps_);
   }
 
   void summarize(TransientEnd& end) override {

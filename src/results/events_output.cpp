@@ -27,16 +27,14 @@ std::vector<analysis::EventLog::Watch> watches_of(const run::Job& job) {
 
 class EventsOutput final : public TransientOutput {
  public:
-  explicit EventsOutput(const TransientSetup& s)
-      : key_("events"),
-        log_(watches_of(s.job), s.job.reference()) {
+  explicit EventsOutput(const TransientSetup& s) : log_(watches_of(s.job), s.job.reference()) {
     for (const model::Event& e : s.job.model.events)
-      key_ += fmt::format(" {} {} {}", e.name, e.value, e.direction);
+      content_ += fmt::format(" {} {} {}", e.name, e.value, e.direction);
   }
 
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     observers.push_back(&log_);
-    parts.add(key_, log_);
+    parts.add({run::Part::events, content_}, log_);
   }
 
   void report(TransientEnd& end) override {
@@ -57,7 +55,7 @@ class EventsOutput final : public TransientOutput {
   }
 
  private:
-  std::string key_;
+  std::string content_;
   analysis::EventLog log_;
 };
 

@@ -136,19 +136,19 @@ class FramesOutput final : public TransientOutput {
 
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     observers.push_back(&frames_);
-    parts.add(key(), frames_);
+    parts.add({run::Part::frames, content()}, frames_);
   }
 
   void summarize(TransientEnd& end) override { end.summary["frames"] = frames_.frames(); }
 
  private:
-  std::string key() const {
-    std::string content;
+  std::string content() const {
+    std::string shown;
     for (const std::string& c : law_.content)
-      content += " " + c;
-    return fmt::format("frames {} window {} {} every {} per revolution {} scale {} around {}{}",
-                       number_, law_.t0, law_.t1, law_.every, law_.frames_per_revolution,
-                       law_.deformation_scale, law_.points_around, content);
+      shown += " " + c;
+    return fmt::format("{} window {} {} every {} per revolution {} scale {} around {}{}", number_,
+                       law_.t0, law_.t1, law_.every, law_.frames_per_revolution,
+                       law_.deformation_scale, law_.points_around, shown);
   }
 
   const model::VtkOutput& law_;

@@ -200,9 +200,9 @@ void HistoryFigures::add_amplitude(const std::string& probe, const Radii& radii,
                                    const plot::DisplayUnit& unit) {
   plot::Axes a;
   a.x = plot::Axis("spin", "rpm");
-  a.y = plot::Axis(fmt::format("orbit radius about the place at the start, {}",
-                               plot::to_string(convention_)),
-                   unit.name);
+  a.y = plot::Axis(
+      fmt::format("orbit radius about the place at the start, {}", plot::to_string(convention_)),
+      unit.name);
   a.y.include_zero = true;
   // up and down apart: they differ by the beat of the passage
   const std::size_t top = turning_row();
@@ -270,9 +270,8 @@ void HistoryFigures::add_path(const model::Probe& probe) {
     y.push_back(r[c + 1]);
     z.push_back(r[c + 2]);
   }
-  section_.figures.push_back(plot::plot_path_in_space(step_.name + "_" + probe.name + "_space",
-                                                      probe.name + ": trajectory in space", x, y,
-                                                      z));
+  section_.figures.push_back(plot::plot_path_in_space(
+      step_.name + "_" + probe.name + "_space", probe.name + ": trajectory in space", x, y, z));
   const plot::Curve path{"", y, z};
   section_.figures.push_back(plot::plot_path(step_.name + "_" + probe.name + "_yz",
                                              probe.name + ": trajectory in the yz plane", "y", "z",

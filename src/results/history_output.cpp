@@ -68,17 +68,17 @@ class HistoryOutput final : public TransientOutput {
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     const std::string columns = column_names();
     const std::string series =
-        fmt::format("series {}{}: {}", out_.csv ? "csv " : "", out_.binary ? "hdf5 " : "", columns);
+        fmt::format("{}{}: {}", out_.csv ? "csv " : "", out_.binary ? "hdf5 " : "", columns);
     if (sink_)
       parts.add(
-          series, [this](OutArchive& a) { save_series(a); },
+          {run::Part::series, series}, [this](OutArchive& a) { save_series(a); },
           [this](InArchive& a) { restore_series(a); });
     parts.add(
-        "plot buffer " + columns, [this](OutArchive& a) { buffer_.save(a); },
+        {run::Part::plot_buffer, columns}, [this](OutArchive& a) { buffer_.save(a); },
         [this](InArchive& a) { buffer_.restore(a); });
     if (channels_.columns == 0 || !(sink_ || out_.report)) return;
     observers.push_back(&recorder_);
-    parts.add(fmt::format("recorder every {} {}", out_.every, series), recorder_);
+    parts.add({run::Part::recorder, fmt::format("every {} {}", out_.every, series)}, recorder_);
   }
 
   void open() override {

@@ -92,7 +92,7 @@ class KeyphasorOutput final : public TransientOutput {
   explicit KeyphasorOutput(const TransientSetup& s);
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     observers.push_back(&revolutions_);
-    parts.add_output(key_, *this);
+    parts.add_output({run::Part::keyphasor, content_}, *this);
   }
   analysis::Observer& observer() { return revolutions_; }
   void begin();
@@ -135,7 +135,7 @@ class KeyphasorOutput final : public TransientOutput {
   static constexpr std::size_t most_orbits = 64;
   const model::Output& out_;
   const plot::Amplitude convention_ = plot::amplitude(out_.peak_to_peak);
-  std::string step_, key_;  ///< key_: what decides whether a part of a checkpoint fits
+  std::string step_, content_;  ///< content_: what decides whether a part of a checkpoint fits
   std::vector<Tracked> probes_;
   std::size_t per_direction_ = 0, columns_ = 0;
   io::TimeSeriesPtr sink_;
@@ -155,12 +155,12 @@ KeyphasorOutput::KeyphasorOutput(const TransientSetup& s)
                    [this](const analysis::Turn& t) { take(t); }) {
   per_direction_ = 2 * out_.tracking.orders.size() + 2;
   columns_ = 2;  // t, speed
-  key_ = fmt::format("keyphasor {}", out_.tracking.samples);
+  content_ = fmt::format("{}", out_.tracking.samples);
   for (double order : out_.tracking.orders)
-    key_ += fmt::format(" {}X", order);
+    content_ += fmt::format(" {}X", order);
   for (double speed : out_.tracking.orbit_speeds)
-    key_ += fmt::format(" @{}", speed);
-  key_ += fmt::format(" turns {}", out_.tracking.orbit_turns);
+    content_ += fmt::format(" @{}", speed);
+  content_ += fmt::format(" turns {}", out_.tracking.orbit_turns);
   const std::vector<double> senses = probe_senses(s.job, s.start);
   for (std::size_t p = 0; p < senses.size(); ++p)
     add_probe(s.job.model.probes[p], senses[p]);
@@ -180,9 +180,9 @@ void KeyphasorOutput::add_probe(const model::Probe& probe, double sense) {
     t.directions.push_back({fmt::format("{:.0f}deg", a * 180.0 / pi), std::cos(a), std::sin(a)});
   t.column = columns_;
   columns_ += t.directions.size() * per_direction_ + 2;
-  key_ += " " + probe.name;
+  content_ += " " + probe.name;
   for (const Direction& d : t.directions)
-    key_ += "." + d.name;
+    content_ += "." + d.name;
   probes_.push_back(std::move(t));
 }
 

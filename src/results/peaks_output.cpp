@@ -17,7 +17,7 @@ class PeaksOutput final : public TransientOutput {
     std::string names;
     for (const analysis::Peak& p : peaks_.peaks())
       names += p.name + " ";
-    parts.add("peaks " + names, peaks_);
+    parts.add({run::Part::peaks, names}, peaks_);
   }
 
   void summarize(TransientEnd& end) override {

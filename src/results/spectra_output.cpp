@@ -20,7 +20,7 @@ class SpectraOutput final : public TransientOutput {
   explicit SpectraOutput(const TransientSetup& s);
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     observers.push_back(&spectra_);
-    parts.add_output(key_, *this);
+    parts.add_output({run::Part::spectra, content_}, *this);
   }
   analysis::Observer& observer() { return spectra_; }
   void begin();
@@ -46,7 +46,7 @@ class SpectraOutput final : public TransientOutput {
   const model::Output& out_;
   const plot::Amplitude convention_ = plot::amplitude(out_.peak_to_peak);
   model::SpectraOutput options_;
-  std::string step_, key_;
+  std::string step_, content_;
   std::vector<std::string> probes_;
   std::vector<double> senses_;
   std::vector<io::TimeSeriesPtr> sinks_;  ///< one a probe
@@ -64,10 +64,10 @@ SpectraOutput::SpectraOutput(const TransientSetup& s)
       spectra_(probe_points(s.job), s.job.reference(), s.t_begin,
                {options_.max_frequency, options_.lines},
                [this](const analysis::SpectrumBlock& b) { take(b); }) {
-  key_ = fmt::format("spectra {} {} {}", options_.max_frequency, options_.lines, options_.traces);
+  content_ = fmt::format("{} {} {}", options_.max_frequency, options_.lines, options_.traces);
   for (const model::Probe& p : s.job.model.probes) {
     probes_.push_back(p.name);
-    key_ += " " + p.name;
+    content_ += " " + p.name;
     if (out_.csv) sinks_.push_back(io::make_csv_series(s.job.folder.path(csv_name(p.name))));
   }
   row_.resize(2 + 2 * static_cast<std::size_t>(options_.lines) + 1);

@@ -3,6 +3,8 @@
 #include <analysis/spectra/campbell.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <results/campbell_lines.hpp>
 #include <steps/step_kinds.hpp>
@@ -83,6 +85,16 @@ std::vector<plot::CriticalMark> find_criticals(results::FrequencyStep& s,
   return marks;
 }
 
+/// Of the lines at the highest speed.
+void report_mesh(results::FrequencyStep& s, const analysis::CampbellOptions& o) {
+  analysis::ModesOptions modes = o.track.modes;
+  modes.certify = false;
+  const double Omega = o.speeds.back();
+  results::MeshAccuracy accuracy(s);
+  accuracy.look_at(analysis::whirl_modes(s.linear, Omega, modes), Omega);
+  accuracy.report();
+}
+
 bool any_damping(const analysis::Campbell& c) {
   return std::any_of(c.lines.begin(), c.lines.end(), [](const analysis::CampbellLine& l) {
     return std::any_of(l.log_decrement.begin(), l.log_decrement.end(),
@@ -119,6 +131,8 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   v["speeds solved"] = c.speeds_solved;
   for (const plot::CriticalMark& m : marks)
     v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(to_rpm(m.speed));
+  report_mesh(s, o);
+  results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
   s.add_table("campbell", make_table(c), false);
   s.add_table("critical_speeds", std::move(criticals));
   const std::vector<plot::CampbellLine> lines = results::drawn_lines(c);

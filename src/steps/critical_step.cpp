@@ -1,6 +1,8 @@
 // A critical-speed step: undamped and damped critical speeds of any order, solved for directly.
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -34,7 +36,8 @@ class CriticalRun {
  public:
   CriticalRun(run::Job& job, const model::Step& step, const model::CriticalStep& law)
       : law_(law),
-        s_(job, step, "critical_speeds", "critical speeds", law.max_speed) {}
+        s_(job, step, "critical_speeds", "critical speeds", law.max_speed),
+        mesh_(s_) {}
   void execute();
 
  private:
@@ -47,6 +50,7 @@ class CriticalRun {
 
   const model::CriticalStep& law_;
   results::FrequencyStep s_;
+  results::MeshAccuracy mesh_;
   bool damping_ = false;  ///< the model has any
   int drawn_ = 0;
   std::string line_;
@@ -91,6 +95,7 @@ void CriticalRun::add_rows(double order, bool damped, const std::vector<analysis
   if (list.empty()) speeds = io::Value::array();
   for (std::size_t k = 0; k < list.size(); ++k) {
     const analysis::Critical& c = list[k];
+    mesh_.of(c.mode, c.speed, fmt::format("critical speed {}", k + 1));
     std::vector<io::Table::Cell> row{order,
                                      static_cast<int>(k + 1),
                                      to_rpm(c.speed),
@@ -147,11 +152,13 @@ void CriticalRun::find(bool damped) {
         "No {} critical speed lies {} {:.6g} rpm. ", word,
         law_.min_speed > 0 ? fmt::format("between {:.6g} and", to_rpm(law_.min_speed)) : "below",
         to_rpm(law_.max_speed));
+  mesh_.report();
   s_.add_table(word, std::move(table));
 }
 
 void CriticalRun::execute() {
   s_.summary()["max speed [rpm]"] = to_rpm(law_.max_speed);
+  results::warn_of_held_tables(s_.job, s_.step.name, law_.min_speed, law_.max_speed);
   const run::PhaseTimer timer(s_.job, "critical speeds");
   damping_ = is_damped(s_.linear, law_.max_speed);
   find(false);

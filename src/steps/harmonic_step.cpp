@@ -3,6 +3,8 @@
 #include <analysis/response/frequency_response.hpp>
 #include <analysis/search.hpp>
 #include <results/response.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/rotation.hpp>
@@ -123,6 +125,8 @@ class HarmonicRun {
   static double twist(const FrequencyPoint& x, std::size_t probe) {
     return std::abs(x.unknown[probe]);
   }
+  void judge_mesh();
+  void judge_gaps();
   void add_table();
   void add_peaks();
   void find_peaks(std::size_t probe, double most, io::Table& table);
@@ -142,6 +146,7 @@ class HarmonicRun {
   const std::vector<double> grid_;
   const double top_;  ///< highest |speed|, rad/s
   results::FrequencyStep s_;
+  results::GapCheck gaps_;
   analysis::FrequencyResponseOptions options_;
   /// Forces that whirl do so with the spin, whichever way that is: by whether it is reversed.
   std::map<bool, analysis::HarmonicResponder> responders_;
@@ -160,7 +165,8 @@ HarmonicRun::HarmonicRun(run::Job& job, const model::Step& step, const model::Ha
                           : results::speeds_of(*law.speeds)),
       top_(asynchronous_ ? std::abs(law.speed)
                          : std::max(std::abs(grid_.front()), std::abs(grid_.back()))),
-      s_(job, step, "harmonic_response", "harmonic response", top_) {
+      s_(job, step, "harmonic_response", "harmonic response", top_),
+      gaps_(s_) {
   s_.linear.at(asynchronous_ ? law.speed : grid_.front());
   options_.probes = results::response_probes(job);
   for (const analysis::ResponseProbe& p : options_.probes)
@@ -208,6 +214,24 @@ void HarmonicRun::find_largest() {
   for (std::size_t k = 0; k < points_.size(); ++k)
     for (std::size_t p = 0; p < options_.probes.size(); ++p)
       if (twist(points_[k], p) == largest_twist_) largest_at_ = grid_[k];
+}
+
+void HarmonicRun::judge_mesh() {
+  double top = 0;
+  for (const FrequencyPoint& x : points_)
+    top = std::max(top, std::abs(x.frequency));
+  constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
+  results::report_mesh_accuracy(s_, points_.back().Omega, beyond * top);
+  results::warn_of_held_tables(job_, s_.step.name, points_.front().Omega, points_.back().Omega);
+}
+
+/// At the largest response, beside the shapes.
+void HarmonicRun::judge_gaps() {
+  if (largest_ > 0) {
+    const FrequencyPoint p = respond(largest_at_);
+    gaps_.look(p.Omega, std::span(&p.shape, 1), p.frequency);
+  }
+  gaps_.report();
 }
 
 void HarmonicRun::add_table() {
@@ -274,9 +298,8 @@ void HarmonicRun::find_peaks(std::size_t probe, double most, io::Table& table) {
     const bool rises = here > before && here >= after;
     if (!rises || here - std::min(before, after) < 1e-7 * most)
       continue;  // a peak of rounding is none
-    const double x =
-        analysis::find_maximum(grid_[k - 1], grid_[k], here, grid_[k + 1], 3e-9,
-                               [&](double y) { return size_of(respond(y), probe); });
+    const double x = analysis::find_maximum(grid_[k - 1], grid_[k], here, grid_[k + 1], 3e-9,
+                                            [&](double y) { return size_of(respond(y), probe); });
     const FrequencyPoint peak = respond(x);
     const double size = size_of(peak, probe);
     table.add({name, to_rpm(peak.Omega), to_hz(peak.frequency), size});
@@ -356,9 +379,8 @@ std::vector<double> HarmonicRun::shape_places() {
     std::sort(peaks_.begin(), peaks_.end(),
               [](const Peak& a, const Peak& b) { return a.size > b.size; });
     for (const Peak& p : peaks_) {
-      const bool known = std::any_of(places.begin(), places.end(), [&](double x) {
-        return std::abs(x - p.at) < 0.01 * p.at;
-      });
+      const bool known = std::any_of(places.begin(), places.end(),
+                                     [&](double x) { return std::abs(x - p.at) < 0.01 * p.at; });
       if (places.size() < 4 && !known) places.push_back(p.at);
     }
   }
@@ -368,14 +390,15 @@ std::vector<double> HarmonicRun::shape_places() {
 
 void HarmonicRun::add_shape(double x) {
   const FrequencyPoint p = respond(x);
+  gaps_.look(p.Omega, std::span(&p.shape, 1), p.frequency);
   const std::string name = fmt::format("shape_{:.6g}Hz", to_hz(p.frequency));
   results::add_shape_figures(
-      s_, {name,
-           fmt::format("Operating shape at {:.5g} Hz, {:.5g} rpm", to_hz(p.frequency),
-                       to_rpm(p.Omega)),
-           {},
-           &p.shape,
-           twists_ ? analysis::ModeKind::torsional : analysis::ModeKind::lateral});
+      s_,
+      {name,
+       fmt::format("Operating shape at {:.5g} Hz, {:.5g} rpm", to_hz(p.frequency), to_rpm(p.Omega)),
+       {},
+       &p.shape,
+       twists_ ? analysis::ModeKind::torsional : analysis::ModeKind::lateral});
   results::write_shape_frames(s_, name, p.shape, 1.0);
 }
 
@@ -388,15 +411,15 @@ void HarmonicRun::finish() {
       asynchronous_
           ? fmt::format("Steady response at {:.6g} rpm against the excitation frequency.",
                         to_rpm(law_.speed))
-          : fmt::format("Steady response with the excitation at {:g} times the speed.",
-                        law_.order);
-  s_.finish(fmt::format("{} points, {} at {:.5g} {}", points_.size(), what,
-                        displayed(largest_at_), asynchronous_ ? "Hz" : "rpm"));
+          : fmt::format("Steady response with the excitation at {:g} times the speed.", law_.order);
+  s_.finish(fmt::format("{} points, {} at {:.5g} {}", points_.size(), what, displayed(largest_at_),
+                        asynchronous_ ? "Hz" : "rpm"));
 }
 
 void HarmonicRun::execute() {
   solve_grid();
   find_largest();
+  judge_mesh();
   add_table();
   add_peaks();
   for (std::size_t p = 0; p < options_.probes.size() && !twists_; ++p)
@@ -404,6 +427,7 @@ void HarmonicRun::execute() {
   add_torsion_figure();
   for (const double x : shape_places())
     add_shape(x);
+  judge_gaps();
   finish();
 }
 

@@ -1,6 +1,8 @@
 // A modal step: whirl modes at one speed.
 #include <analysis/spectra/mode_energy.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -61,13 +63,9 @@ void add_energy_tables(results::FrequencyStep& s, const std::vector<analysis::Wh
                  sys.node(p.node).name, p.other >= 0 ? sys.node(p.other).name : std::string(),
                  100 * p.share});
         const std::vector<std::string>& own = kinetic ? names.disk : names.bearing;
-        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty() &&
-                           p.kind.find("shaft") == std::string::npos &&
-                           p.kind.find("beam") == std::string::npos;
-        const std::string part = known ? own[at(p.node)]
-                                 : p.kind == "shaft elements" || p.kind == "general beam elements"
-                                     ? "shaft"
-                                     : p.kind;
+        const bool shaft = p.family == system::Family::shaft;
+        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty();
+        const std::string part = shaft ? "shaft" : known ? own[at(p.node)] : p.kind;
         column((kinetic ? "kinetic: " : "strain: ") + part)[k] += p.share;
       }
   }
@@ -139,18 +137,20 @@ void ModalRun::solve() {
 io::Table ModalRun::empty_table() const {
   io::Table table;
   table.title = "Modes";
-  table.columns = {{"mode", "-", ""},
-                   {"label", "-", "number within its kind"},
-                   {"kind", "-", "by the largest share of energy"},
-                   {"direction", "-", "of the orbits, seen along the spin"},
-                   {"frequency", "Hz", "damped natural frequency"},
-                   {"frequency", "rpm", ""},
-                   {"log decrement", "-", "per cycle; negative: unstable"},
-                   {"damping ratio", "-", "of the critical damping of the mode"},
-                   {"lateral", "%", "share of the energy"},
-                   {"torsional", "%", ""},
-                   {"axial", "%", ""},
-                   {"forwardness", "-", "1: forward circles, -1: backward circles"}};
+  table.columns = {
+      {"mode", "-", ""},
+      {"label", "-", "number within its kind"},
+      {"kind", "-", "by the largest share of energy"},
+      {"direction", "-", "of the orbits, seen along the spin"},
+      {"frequency", "Hz", "damped natural frequency"},
+      {"frequency", "rpm", ""},
+      {"log decrement", "-", "per cycle; negative: unstable"},
+      {"damping ratio", "-", "of the critical damping of the mode"},
+      {"lateral", "%", "share of the energy"},
+      {"torsional", "%", ""},
+      {"axial", "%", ""},
+      {"forwardness", "-", "1: forward circles, -1: backward circles"},
+      {"mesh error", "-", "of the frequency, relative, by the length of the elements; estimated"}};
   if (options_.continued)
     table.columns.push_back(
         {"continued log decrement", "-",
@@ -160,6 +160,7 @@ io::Table ModalRun::empty_table() const {
 
 void ModalRun::add_modes() {
   io::Table table = empty_table();
+  results::MeshAccuracy mesh(s_);
   io::Value list = io::Value::array();
   for (std::size_t k = 0; k < modes_.size(); ++k) {
     const analysis::WhirlMode& m = modes_[k];
@@ -174,7 +175,8 @@ void ModalRun::add_modes() {
                                      100 * results::tidy(m.lateral),
                                      100 * results::tidy(m.torsional),
                                      100 * results::tidy(m.axial),
-                                     results::tidy(m.forwardness)};
+                                     results::tidy(m.forwardness),
+                                     mesh.of(m, law_.speed, labels_[k])};
     const double continued = -two_pi * m.continued.real() / m.continued.imag();
     if (options_.continued) row.emplace_back(results::tidy(continued));
     table.add(std::move(row));
@@ -190,6 +192,7 @@ void ModalRun::add_modes() {
     unstable_ += m.growth() > 0;
   }
   s_.summary()["modes"] = list;
+  mesh.report();
   s_.add_table("modes", std::move(table));
 }
 
@@ -254,6 +257,7 @@ std::string ModalRun::line() const {
 void ModalRun::execute() {
   solve();
   s_.summary()["speed [rpm]"] = to_rpm(law_.speed);
+  results::warn_of_held_tables(s_.job, s_.step.name, law_.speed, law_.speed);
   add_modes();
   add_rates();
   s_.certify(certificate_);

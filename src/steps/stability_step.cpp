@@ -2,6 +2,8 @@
 // directly.
 #include <analysis/spectra/stability.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <results/campbell_lines.hpp>
 #include <steps/step_kinds.hpp>
@@ -79,6 +81,16 @@ std::string verdict_line(const analysis::StabilityResult& r, const std::vector<d
     return line + fmt::format(" (certified up to {:.5g} Hz; above it growth is not excluded)",
                               to_hz(c.list.radius));
   return line + " (not certified: " + c.text() + ")";
+}
+
+/// Of the modes judged, at the highest speed.
+void report_mesh(results::FrequencyStep& s, int modes, double Omega) {
+  analysis::ModesOptions o;
+  o.count = modes;
+  o.certify = false;
+  results::MeshAccuracy accuracy(s);
+  accuracy.look_at(analysis::whirl_modes(s.linear, Omega, o), Omega);
+  accuracy.report();
 }
 
 void add_onsets(results::FrequencyStep& s, const analysis::StabilityResult& r) {
@@ -172,6 +184,8 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   v["list complete"] = r.complete();
   const analysis::SpeedVerdict& judged = weakest(r);
   s.certify(judged.certificate, fmt::format("at {:.6g} rpm", to_rpm(judged.speed)));
+  report_mesh(s, law.modes, speeds.back());
+  results::warn_of_held_tables(job, step.name, speeds.front(), speeds.back());
   s.add_table("verdicts", verdict_table(r), false);
   const std::vector<plot::CampbellLine> lines = results::drawn_lines(r.diagram);
   add_onsets(s, r);

@@ -2,6 +2,7 @@
 // the speed meet them.
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -58,6 +59,9 @@ std::vector<plot::CampbellLine> add_modes(results::FrequencyStep& s,
             analysis::ModeKind::torsional});
     results::write_shape_frames(s, name, m.x);
   }
+  results::MeshAccuracy mesh(s);
+  mesh.look_at(modes, law.max_speed);
+  mesh.report();
   s.add_table("torsional", std::move(table));
   return lines;
 }

@@ -230,17 +230,18 @@ void TransientRun::warn_of_start() const {
 void TransientRun::add_own_parts() {
   if (auto* small = dynamic_cast<analysis::LinearMotion*>(problem_.get()))
     parts_.add(
-        "steady motion", [small](OutArchive& a) { small->save(a); },
+        {run::Part::steady_motion}, [small](OutArchive& a) { small->save(a); },
         [small](InArchive& a) { small->restore(a); });
   if (!job_.built.governors.empty())
     parts_.add(
-        governors_part, [this](OutArchive& a) { save_governors(a, start_); },
+        {run::Part::governors}, [this](OutArchive& a) { save_governors(a, start_); },
         [this](InArchive& a) {
           restore_governors(a, start_);
           begin_governors(job_, start_);
         });
   parts_.add(
-      "wall clock", [this](OutArchive& a) { a.put(wall_before_ + watch_.elapsed().wall); },
+      {run::Part::wall_clock},
+      [this](OutArchive& a) { a.put(wall_before_ + watch_.elapsed().wall); },
       [this](InArchive& a) { wall_before_ = a.number(); });
 }
 

@@ -3,6 +3,8 @@
 #include <analysis/response/api684.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <results/response.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/text.hpp>
@@ -239,11 +241,15 @@ double largest_radius(analysis::Linearizer& linear, const VecXc& shape) {
 }
 
 void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
-                analysis::UnbalanceOptions options, const std::vector<double>& speeds) {
+                analysis::UnbalanceOptions options, const std::vector<double>& speeds,
+                const Largest& largest) {
   options.shapes = true;
   analysis::UnbalanceSolver solver(s.linear, options);
+  results::GapCheck gaps(s);
+  if (largest.amplitude > 0) gaps.look(largest.speed, solver.at(largest.speed).shape);
   for (const double Omega : speeds) {
     const SteadyPoint x = solver.at(Omega);
+    gaps.look(Omega, x.shape);
     for (std::size_t k = 0; k < r.orders.size(); ++k) {
       const std::string name = fmt::format("shape_{:.0f}rpm{}", to_rpm(Omega), order_suffix(r, k));
       const double most = largest_radius(s.linear, x.shape[k]);
@@ -258,6 +264,7 @@ void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
       results::write_shape_frames(s, name, x.shape[k], 1.0);
     }
   }
+  gaps.report();
 }
 
 analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::UnbalanceStep& law) {
@@ -289,6 +296,9 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   s.summary()["speeds"] = r.points.size();
   io::Table found = peak_table(s, r, o.probes, peaks);
   const Largest largest = find_largest(r, o.probes, s.summary());
+  constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
+  results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
+  results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
                 make_table(r, k, o.probes, o.outputs), false);
@@ -296,7 +306,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   add_margins(s, r, o.probes, peaks, law);
   add_probe_figures(s, r, o.probes, peaks);
   add_force_figure(s, r, o.outputs);
-  add_shapes(s, r, o, shape_speeds(law, peaks));
+  add_shapes(s, r, o, shape_speeds(law, peaks), largest);
 
   s.section.text = largest.amplitude == 0
                        ? "Nothing turns that is out of balance: the response is zero."

@@ -207,15 +207,6 @@ Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned
   return out;
 }
 
-std::string describe(const Definiteness& d) {
-  if (d.negative == 0) return "stable";
-  const std::string count =
-      fmt::format("unstable in {} direction{}", d.negative, d.negative == 1 ? "" : "s");
-  if (d.symmetric) return count;
-  return count + (d.certain ? " (divergence, for any mass and damping)"
-                            : " (negative real eigenvalues found)");
-}
-
 void scale_shape(VecX& x, const system::System& s) {
   double top = 0, turn = 0;
   for (Index k = 0; k < x.size(); ++k) {

@@ -142,19 +142,6 @@ Measurement measure_gamma(std::string name, Index node) {
           [node](const Snapshot& s, double* out) { Eigen::Map<Vec2>{out} = s.gamma(node); }};
 }
 
-Measurement measure_reaction(std::string name, std::vector<Index> unknowns,
-                             std::vector<std::string> components, std::string unit) {
-  return {std::move(name),
-          std::move(unit),
-          "force or torque of the support on the model",
-          std::move(components),
-          1.0,
-          [unknowns](const Snapshot& s, double* out) {
-            for (Index k : unknowns)
-              *out++ = s.reactions()[k];
-          }};
-}
-
 Measurement measure_energy() {
   return {"energy",
           "J",
