@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libsundials-dev libgtest-dev libtomlplusplus-dev
-          libcli11-dev libfmt-dev nlohmann-json3-dev libhdf5-dev libspectra-dev)
+          libcli11-dev libfmt-dev nlohmann-json3-dev libhdf5-dev libpng-dev libmd-dev)
 [ "${WHIRL_NO_VTK:-0}" = 1 ] || packages+=(libvtk9-dev)
 
 install_missing() {

@@ -24,6 +24,9 @@ struct RigidBody {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         inertial = true, powerless = true, linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::body;
+  /// Sees the angle unless the body is axisymmetric.
+  system::Dependence depends(const system::Context& c) const;
 
   RigidDisk disk;
   Vec2 S = Vec2::Zero();  ///< static moments about b_2, b_3, kg m

@@ -71,6 +71,11 @@ template <class Contact>
 struct RollingBearing {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the angle of the cage, unless means are asked for.
+  system::Dependence depends(const system::Context& c) const {
+    return {.angle = c.averaged ? system::no_angle : system::angle_sum(cage[0], cage[1])};
+  }
 
   Contact contact;
   int elements = 0;                      ///< Z
@@ -129,8 +134,5 @@ struct RollerGeometry {
   double stiffness = 0;  ///< K, N/m^(10/9); 0: Palmgren (steel)
 };
 RollerBearing make_roller_bearing(const RollerGeometry& g);
-
-/// Ball passes per revolution of the shaft with the outer ring at rest (BPFO/f): Z (1 - lambda)/2.
-double outer_pass_per_turn(int elements, double lambda);
 
 }  // namespace whirl::elements

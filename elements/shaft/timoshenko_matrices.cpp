@@ -88,7 +88,7 @@ std::vector<double> panels(const ElementSection& s, const std::vector<double>& c
   return out;
 }
 
-/// SteadyRotation integrals over the panels: value at every node, and at the end of the panel.
+/// Running integrals over the panels: value at every node, and at the end of the panel.
 struct Sampled {
   const GaussRule& rule;
   std::vector<double> ends;

@@ -99,7 +99,7 @@ struct Built {
                                    ///< each, for the summary
   std::vector<double>
       table_frequencies;  ///< rad/s, in no order: of supports with coefficients against the
-                          ///< frequency of the motion (system/frequency.hpp)
+                          ///< frequency of the motion (Context::frequency)
   std::vector<std::string>
       held;  ///< motions that nothing resists and that are held for it, one line each
   std::vector<std::string>

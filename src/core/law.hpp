@@ -24,9 +24,18 @@ class Law {
   /// Times, increasing, at which the law or one of its derivatives jumps; the time integrator lands
   /// a step on each.
   virtual std::vector<double> breakpoints() const { return {}; }
+  /// The same value at all times, known without asking for any.
+  virtual bool constant() const { return false; }
 };
 
 using LawPtr = std::shared_ptr<const Law>;
+/// None where there is no law.
+inline std::vector<double> breakpoints_of(const LawPtr& law) {
+  return law ? law->breakpoints() : std::vector<double>{};
+}
+
+/// There is a law, and it is not constant.
+inline bool varies(const LawPtr& law) { return law && !law->constant(); }
 
 /// f = c
 LawPtr make_constant(double c);
@@ -55,8 +64,6 @@ LawPtr make_polynomial(std::vector<double> coefficients);
 LawPtr make_piecewise(std::vector<double> start, std::vector<LawPtr> laws);
 /// The sum of laws.
 LawPtr make_sum(std::vector<LawPtr> laws);
-/// scale * law(t)
-LawPtr make_scaled(double scale, LawPtr law);
 /// The angle law phi0 + integral of a speed law (its value is the angle, df the speed, ddf the
 /// acceleration). Its own integral is by quadrature, to round-off.
 LawPtr make_angle_of_speed(LawPtr speed, double phi0);

@@ -15,12 +15,6 @@ namespace whirl::rotation {
 
 /// Rotation tensor of the Euler vector v, rad: L = 1 + sin g/g [v] + (1-cos g)/g^2 [v]^2.
 Mat3 L(const Vec3& v);
-/// Zhilin tensor, omega = B(v) v' (1): B = 1 + (1-cos g)/g^2 [v] + (g-sin g)/g^3 [v]^2.
-Mat3 B(const Vec3& v);
-/// Inverse of B: 1 - [v]/2 + (1/g^2 - cot(g/2)/(2g)) [v]^2; singular at g = 2 pi.
-Mat3 B_inverse(const Vec3& v);
-/// Euler vector of a rotation tensor, norm in [0, pi].
-Vec3 euler_vector(const Mat3& R);
 /// Minimal rotation taking unit vector a to unit vector b.
 /// @throws Error if a = -b.
 Mat3 minimal_rotation(const Vec3& a, const Vec3& b);
@@ -37,14 +31,6 @@ BesselRatios bessel_ratios(double x);
 /// (1 - cos g)/g^2 and (g - sin g)/g^3 as functions of x = g^2.
 double one_minus_cos_ratio(double x);
 double g_minus_sin_ratio(double x);
-
-/// The even functions of g as functions of x = g^2 with their first three x-derivatives, free of
-/// cancellation: cosine: cos g; sinc: sin g / g.
-struct Even {
-  double f, f1, f2, f3;
-};
-Even cosine_of_square(double x);
-Even sinc_of_square(double x);
 
 /// The director d(gamma) = e cos g + (sin g/g) gamma x e and what the node Jacobian needs, in chart
 /// axes (e, e2, e3) = (x, y, z), gamma = (gamma2, gamma3).
@@ -91,8 +77,6 @@ double chart_condition(double g);
 /// condition number is about 100, a chart that may not be moved is given up.
 inline constexpr double chart_switch = 2.0;
 inline constexpr double chart_limit = 3.1;
-/// The error of a tilt beyond chart_limit. node: "node 3 of shaft 'top'"; time in s.
-[[noreturn]] void throw_beyond_chart(double g, const std::string& node, double time);
 
 /// Orientation of one node in a chart: values, rates and accelerations of phi and gamma.
 struct Angles {
@@ -118,9 +102,6 @@ class ChartChange {
 
 /// phi less a number of whole turns, 2 pi carried to 107 bits.
 double without_turns(double phi, double turns);
-/// Takes the whole turns out of phi, leaving |phi| <= pi, and returns their number: the azimuth
-/// stays right to the last digit after any number of turns.
-double take_turns(double& phi);
 /// Takes n whole turns out of phi, with the same care.
 void take_turns(double& phi, double n);
 

@@ -61,7 +61,6 @@ struct VtkFrameOptions {
 /// Sets from deck names: "line", "surface", "bearings", "orbits". Error for any other.
 void set_content(VtkFrameOptions& options, std::span<const std::string> names);
 
-bool vtk_available();
 /// Loads the VTK plug-in. Error (Exit::io) when it was not built or cannot be loaded.
 std::unique_ptr<FrameWriter> make_vtk_frames(VtkFrameOptions options);
 

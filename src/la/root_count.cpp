@@ -49,8 +49,6 @@ bool CountRegion::contains(Complex s) const {
   return s.real() >= -reach && std::abs(s.imag()) <= radius;
 }
 
-double CountRegion::damping_ratio() const { return reach / std::hypot(reach, radius); }
-
 RootCounter::RootCounter(const BlockPattern& pattern, std::span<const unsigned char> active)
     : lu_(pattern, active) {}
 

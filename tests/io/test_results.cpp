@@ -150,7 +150,7 @@ TEST(Csv, FullDiskIsAnIoError) {
 class Series : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (GetParam() == std::string("hdf5") && !hdf5_available())
+    if (GetParam() == std::string("hdf5") && !Plugin::available("hdf5"))
       GTEST_SKIP() << "built without HDF5";
   }
   TimeSeriesPtr make(const fs::path& p, SeriesOptions o = {}) const {
@@ -275,7 +275,7 @@ TEST_P(Series, KilledWriterLeavesAllFlushedRows) {
 }
 
 TEST(Hdf5, IsCompactAndFlushesDoNotGrowTheFile) {
-  if (!hdf5_available()) GTEST_SKIP() << "built without HDF5";
+  if (!Plugin::available("hdf5")) GTEST_SKIP() << "built without HDF5";
   TempFolder dir;
   const auto run = [&](const std::string& name, std::uint64_t flush_each) {
     auto s = make_hdf5_series(dir / name);
@@ -295,7 +295,7 @@ TEST(Hdf5, IsCompactAndFlushesDoNotGrowTheFile) {
 }
 
 TEST(Hdf5, IsLoadedOnlyWhenAsked) {
-  if (!hdf5_available()) GTEST_SKIP() << "built without HDF5";
+  if (!Plugin::available("hdf5")) GTEST_SKIP() << "built without HDF5";
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // a fresh process
   EXPECT_EXIT(
       {
