@@ -9,7 +9,8 @@ namespace whirl::results {
 plot::Series curve_of(std::string label);
 /// Largest |y|.
 double largest_of(const plot::Series& s);
-/// An empty figure of one line of the mesh: <step>_<what>, numbered where there are several lines.
+/// An empty figure of one line of the mesh: `<step>_<what>`, numbered where there are several
+/// lines.
 plot::Figure figure_of_line(const run::Job& job, const std::string& step, const char* what,
                             std::size_t line);
 /// Adds a row of axes, supports marked. curves: SI in `unit`, drawn in the one that suits (angles
