@@ -44,7 +44,7 @@ struct Section : Entity {
   bool rotary_inertia = true;        ///< false: Euler-Bernoulli mass
   double added_mass_per_length = 0;  ///< kg/m without stiffness
   double temperature_rise = 0;       ///< K above the state in which the shaft has its lengths
-  int min_elements = 0;  ///< 0, and no length given: chosen (model/resolution.hpp)
+  int min_elements = 0;              ///< 0, and no length given: chosen (model/resolution.hpp)
   double max_element_length = infinity;
   /// General sections (not axisymmetric): stiffnesses given directly; I about the section's own y
   /// and z axes.
