@@ -41,7 +41,8 @@ std::vector<Attached> attachments(const Model& m) {
     if (x.to) out.push_back({&*x.to, named("unbalance", x)});
   }
   for (const auto& x : m.bearings) {
-    const bool held = std::holds_alternative<model::RigidSupport>(x.law) && !x.to && !x.pedestal;
+    const bool held =
+        model::traits_of(x.law).acts == model::Acts::as_constraint && !x.to && !x.pedestal;
     out.push_back({&x.at, named("bearing", x), 0.0, held});
     if (x.to) out.push_back({&*x.to, named("bearing", x), 0.0, false});
   }
@@ -384,7 +385,7 @@ void add_supports(const Model& m, Mesh& mesh) {
     BearingNodes x;
     x.shaft = mesh.place(b.at);
     x.other.node = -1;
-    const bool rigid = std::holds_alternative<model::RigidSupport>(b.law);
+    const bool rigid = model::traits_of(b.law).acts == model::Acts::as_constraint;
     if (b.to)
       x.other = mesh.place(*b.to);
     else if ((b.pedestal || m.foundation_of(k) >= 0) && !rigid) {
@@ -397,8 +398,7 @@ void add_supports(const Model& m, Mesh& mesh) {
   for (std::size_t k = 0; k < m.bearings.size(); ++k) {
     const auto& b = m.bearings[k];
     BearingNodes& x = mesh.bearings[k];
-    const bool alone = std::holds_alternative<model::RigidSupport>(b.law) ||
-                       std::holds_alternative<model::SpringBlock>(b.law);
+    const bool alone = model::traits_of(b.law).acts != model::Acts::between_nodes;
     if (!b.pedestal && (b.to || alone)) continue;
     x.ground = add_fixed(mesh, mesh.station(b.at).position, NodeKind::ground,
                          fmt::format("ground of {}", named("bearing", b)));

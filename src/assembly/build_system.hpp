@@ -33,6 +33,7 @@ struct SupportCondition {
     double gap = 0, displacement = 0;  ///< m
     double load = 0, capacity = 0;     ///< N; capacity of a film: at the believed eccentricity
   };
+  std::size_t bearing = 0;  ///< of the model
   std::string name;
   Where where;
   std::function<State(const NodeAt&)> state;
@@ -81,7 +82,10 @@ struct Built {
   std::vector<ElementForce> element_forces;  ///< one an element of the mesh
   std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors),
                                     ///< sorted: integrator steps land on them
-  std::vector<SupportForce> support_forces;
+  std::vector<SupportForce> support_forces;  ///< one a bearing of the model, in its order
+  std::vector<std::vector<std::size_t>>
+      support_terms;  ///< of each bearing the terms of the system in which its law stands, without
+                      ///< constant springs and dampers; they may hold other bearings' elements
   std::vector<SupportCondition> conditions;
   struct Fine {
     Index node;

@@ -145,11 +145,6 @@ struct InitialMotion : Entity {
 
 // ---------------------------------------------------------------- supports and bearings
 
-using BearingLaw =
-    std::variant<SpringBlock, LinearBearing, TableBearing, RigidSupport, NonlinearSpring,
-                 ShortJournal, FiniteJournal, SqueezeFilm, BallBearing, RollerBearing,
-                 RollingEstimate, Rub, AnnularSeal, CrossCoupling, Coupling, GearPair>;
-
 /// A mass-spring-damper pedestal under a bearing: mass with its own y, z (and x) motion.
 struct Pedestal {
   double mass = 0;

@@ -88,18 +88,10 @@ Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& runni
   for (const SupportCondition& c : job.built.conditions)
     films = films || Conditions(job, start.state).of(c).film;
   if (!films) {
-    const auto has_gap = [](const model::Bearing& b) {
-      using Shape = model::ForceLaw::Shape;
-      if (const auto* x = std::get_if<model::BallBearing>(&b.law)) return x->clearance > 0;
-      if (const auto* x = std::get_if<model::RollerBearing>(&b.law)) return x->clearance > 0;
-      if (const auto* x = std::get_if<model::NonlinearSpring>(&b.law))
-        return x->force.shape == Shape::clearance || x->force.shape == Shape::one_sided;
-      return std::holds_alternative<model::Rub>(b.law);
-    };
     Diagnostic d = failed.diagnostics().front();
     std::string names;
     for (const model::Bearing& b : job.model.bearings)
-      if (has_gap(b)) {
+      if (model::traits_of(b.law).gap) {
         names += fmt::format("{}'{}'", names.empty() ? "" : ", ", b.name);
         d.where = names.find(',') == std::string::npos ? b.where : d.where;
       }

@@ -60,7 +60,7 @@ std::vector<plot::CampbellLine> add_modes(results::FrequencyStep& s,
     results::write_shape_frames(s, name, m.x);
   }
   results::MeshAccuracy mesh(s);
-  mesh.look_at(modes, law.max_speed);
+  mesh.look_at(modes, max_speed);
   mesh.report();
   s.add_table("torsional", std::move(table));
   return lines;

@@ -23,13 +23,12 @@ namespace whirl::steps {
 
 /// Films, and nothing else whose stiffness comes and goes within a step.
 bool only_films(const run::Job& job) {
-  const auto gap = [](const model::Bearing& b) {
-    const auto* gear = std::get_if<model::GearPair>(&b.law);
-    return std::holds_alternative<model::BallBearing>(b.law) ||
-           std::holds_alternative<model::RollerBearing>(b.law) || (gear && gear->backlash >= 0);
+  const auto comes_and_goes = [](const model::Bearing& b) {
+    const model::SupportTraits t = model::traits_of(b.law);
+    return t.gap || t.rolling;
   };
   return !job.built.fine.empty() &&
-         std::none_of(job.model.bearings.begin(), job.model.bearings.end(), gap);
+         std::none_of(job.model.bearings.begin(), job.model.bearings.end(), comes_and_goes);
 }
 
 analysis::TransientOptions transient_options(const run::Job& job, const model::TransientStep& law,
