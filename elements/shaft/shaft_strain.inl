@@ -217,8 +217,8 @@ WHIRL_INLINE typename S::T bowing(const ShaftStiffness<S>& c, const Strain<S>& s
          (0.5 * (c.b11 * s.end1.angle.F + 2.0 * c.b12 * s.theta12 + c.b22 * s.end2.angle.F));
 }
 
-/// g = N^2/(1 + N/kGA), g1 = g'/2, g2 = g1' where it is a parabola or N = 0; below the limit,
-/// -kGA/2, the parabola that continues it. softness = 1/kGA.
+/// g = N^2/(1 + N/kGA), g1 = g'/2, g2 = g''/2; below the limit, -kGA/2, the parabola that continues
+/// it. softness = 1/kGA.
 template <class T>
 struct ShearGive {
   T g, g1, g2;
