@@ -50,6 +50,9 @@ struct GearGeometry {
 struct GearMesh {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the teeth that pass, and which tooth is in mesh unless means are asked for.
+  system::Dependence depends(const system::Context& context) const;
   static constexpr int max_harmonics = 5;
 
   double k0 = 0, c = 0;  ///< N/m, N s/m
@@ -60,8 +63,7 @@ struct GearMesh {
   void add_tangent(const system::Nodes<2>& x, const system::Context&,
                    system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const;
-  double compression(const system::Nodes<2>& x) const;   ///< delta, m
-  double normal_force(const system::Nodes<2>& x) const;  ///< N, compressive positive
+  double compression(const system::Nodes<2>& x) const;  ///< delta, m
 
   /// b: d delta/dX; rotation = cos beta r_b1/z_1: metres of delta a radian of z_1 phi_1 + z_2
   /// phi_2.
@@ -74,6 +76,8 @@ struct GearMesh {
 struct BacklashGearMesh {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  system::Dependence depends(const system::Context& context) const;
 
   GearMesh drive, back;   ///< the flanks; c is not used
   double backlash = 0;    ///< j, m, along n
@@ -85,8 +89,8 @@ struct BacklashGearMesh {
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const;
 };
 
-/// Errors E86: teeth or radius not possible, angles out of range, negative stiffness or backlash,
-/// stiffness that turns negative, more than max_harmonics.
+/// @throws Error E86: teeth or radius not possible, angles out of range, negative stiffness or
+/// backlash, stiffness that turns negative, more than max_harmonics.
 GearMesh make_gear_mesh(const GearGeometry& g, double k0, double c,
                         const std::vector<GearHarmonic>& stiffness = {},
                         const std::vector<GearHarmonic>& error = {});

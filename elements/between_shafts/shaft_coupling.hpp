@@ -22,6 +22,9 @@ namespace whirl::elements {
 struct ShaftCoupling {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees each angle unless it is the same all round; its twist in any case.
+  system::Dependence depends(const system::Context& c) const;
 
   Matrix<6> K = Matrix<6>::Zero(), C = Matrix<6>::Zero();  ///< N/m, N/rad, N m/rad; turning axes
                                                            ///< (x, y, z, rx, ry, rz), symmetric

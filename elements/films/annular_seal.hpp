@@ -28,6 +28,7 @@ namespace whirl::elements {
 
 struct AnnularSeal {
   static constexpr bool inertia = true;
+  static constexpr system::Dependence depends{.spin = true};
   double radius = 0, length = 0, clearance = 0;  ///< R, L, C (radial), m
   double pressure_drop = 0;                      ///< dp, Pa
   double density = 0, viscosity = 0;             ///< kg/m3, dynamic Pa s

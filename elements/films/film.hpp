@@ -43,9 +43,24 @@ struct FilmTangent {
   double T_slip = 0;
 };
 
+/// What a film returns outside its domain.
+inline void set_outside(FilmForce& f) {
+  f.F.setConstant(nan);
+  f.T = nan;
+}
+inline void set_outside(FilmForce& f, FilmTangent& t) {
+  set_outside(f);
+  t.F_r.setConstant(nan);
+  t.F_w = t.F_r;
+  t.F_slip.setConstant(nan);
+  t.T_r = t.T_w = t.F_slip;
+  t.T_slip = nan;
+}
+
 template <class Film>
 struct FilmLaw {
   static constexpr bool inertia = false;
+  static constexpr system::Dependence depends{.spin = true};
   Film film;
 
   static FilmPoint point(const LateralMotion& m) {

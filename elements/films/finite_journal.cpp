@@ -82,13 +82,9 @@ bool FiniteJournal::inside(const FilmPoint& p) const {
 }
 
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
+  if (!inside(p)) return set_outside(f);
   f.F.setZero();
   f.T = 0.0;
-  if (!inside(p)) {
-    f.F.setConstant(nan);
-    f.T = nan;
-    return;
-  }
   const double c = surface->pad_clearance();
   const double unit = source * viscosity * std::pow(radius / c, 3) * length;  // N per m/s of W
   const double drag = viscosity * std::pow(radius, 3) * length / c;
@@ -105,16 +101,7 @@ void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
 }
 
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
-  if (!inside(p)) {
-    f.F.setConstant(nan);
-    f.T = nan;
-    t.F_r.setConstant(nan);
-    t.F_w = t.F_r;
-    t.F_slip.setConstant(nan);
-    t.T_r = t.T_w = t.F_slip;
-    t.T_slip = nan;
-    return;
-  }
+  if (!inside(p)) return set_outside(f, t);
   f.F.setZero();
   f.T = 0.0;
   t.F_r.setZero();

@@ -45,8 +45,9 @@ class JournalSurface {
  public:
   static constexpr int max_nodes = 360;
   /// clearance: assembled c_b, m; preload m in [0, 1): c_p = c_b/(1 - m). nodes: grid points over
-  /// all pads; no pads: one uninterrupted cylinder. Errors E84: no clearance, preload outside [0,
-  /// 1), pads that overlap or are empty, too many or too few nodes.
+  /// all pads; no pads: one uninterrupted cylinder.
+  /// @throws Error E84: no clearance, preload outside [0, 1), pads that overlap or are empty, too
+  /// many or too few nodes.
   JournalSurface(double clearance, double preload, const std::vector<JournalPad>& pads,
                  int nodes = 72);
 

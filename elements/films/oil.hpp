@@ -11,10 +11,4 @@ namespace whirl::elements {
 /// Errors E85: grade or density not positive, temperature outside the range.
 double iso_vg_viscosity(double grade, double temperature, double density = 900.0);
 
-/// Walther (ASTM D341): log10 log10(nu + 0.7) linear in log10 T through two measured points (T1,
-/// nu1), (T2, nu2); nu in m2/s, T in kelvin. Returns density * nu, Pa s. Errors E85: equal
-/// temperatures, viscosities not positive or not above 0.3 mm2/s at T, T outside 223 to 523 K.
-double walther_viscosity(double T1, double nu1, double T2, double nu2, double T,
-                         double density = 900.0);
-
 }  // namespace whirl::elements

@@ -26,16 +26,11 @@ Mat2 axes_of(const Vec2& w, double speed) {
   return A;
 }
 
-void outside(FilmForce& f) {
-  f.F.setConstant(nan);
-  f.T = nan;
-}
-
 }  // namespace
 
 void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
   const double c2 = clearance * clearance, u = 1.0 - p.r.squaredNorm() / c2;
-  if (!(u > 0.0)) return outside(f);
+  if (!(u > 0.0)) return set_outside(f);
   const double speed = p.w.norm();
   const Mat2 A = axes_of(p.w, speed);
   const Vec2 e = A.transpose() * p.r / clearance;
@@ -48,15 +43,7 @@ void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
 
 void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
   const double c2 = clearance * clearance, u = 1.0 - p.r.squaredNorm() / c2;
-  if (!(u > 0.0)) {
-    outside(f);
-    t.F_r.setConstant(nan);
-    t.F_w = t.F_r;
-    t.F_slip.setConstant(nan);
-    t.T_r = t.T_w = t.F_slip;
-    t.T_slip = nan;
-    return;
-  }
+  if (!(u > 0.0)) return set_outside(f, t);
   const double speed = p.w.norm();
   const Mat2 A = axes_of(p.w, speed);
   const Vec2 e = A.transpose() * p.r / clearance;

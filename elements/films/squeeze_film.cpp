@@ -11,16 +11,7 @@ void ShortFullFilm::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) c
   const double c = clearance;
   const Vec2 e = p.r / c;
   const double u = 1.0 - e.squaredNorm(), k = pi * viscosity * radius * std::pow(length / c, 3);
-  if (!(u > 0.0)) {
-    f.F.setConstant(nan);
-    f.T = nan;
-    t.F_r.setConstant(nan);
-    t.F_w = t.F_r;
-    t.F_slip.setConstant(nan);
-    t.T_r = t.T_w = t.F_slip;
-    t.T_slip = nan;
-    return;
-  }
+  if (!(u > 0.0)) return set_outside(f, t);
   const double a = std::pow(u, -1.5), b = 3.0 * a / u, ew = e.dot(p.w);
   f.F = -k * (a * p.w + b * ew * e);
   t.F_w = -k * (a * Mat2::Identity() + b * e * e.transpose());

@@ -29,6 +29,8 @@ template <class Film>
 struct SqueezeFilm {
   static constexpr int n_nodes = 2, width = 3;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  static constexpr system::Dependence depends{};
 
   Film film;
 

@@ -13,7 +13,6 @@ namespace whirl::elements {
 
 using Mat34 = Matrix<3, 4>;
 using Mat4 = Matrix<4>;
-using Vec4 = Vector<4>;
 
 /// What the vectors of one body share at a state: axis, director, their rates, cos and sin of phi.
 struct BodyFrame {

@@ -17,6 +17,8 @@ namespace whirl::elements {
 struct PointForce {
   static constexpr int n_nodes = 1, width = 3;
   static constexpr bool has_M = false, has_C = false, has_K = false, linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::load;
+  system::Dependence depends(const system::Context&) const { return {.time = varies(factor)}; }
 
   Vec3 force = Vec3::Zero();
   LawPtr factor;
@@ -24,9 +26,7 @@ struct PointForce {
   void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<3>& f) const;
   void add_tangent(const system::Nodes<1>&, const system::Context&, system::TangentX<3>&) const {}
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const {
-    return factor ? factor->breakpoints() : std::vector<double>{};
-  }
+  std::vector<double> breakpoints() const { return breakpoints_of(factor); }
 };
 
 /// Force and moment of fixed direction (global axes) at an offset point.
@@ -34,6 +34,8 @@ struct FixedLoad {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::load;
+  system::Dependence depends(const system::Context&) const { return {.time = varies(factor)}; }
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;
@@ -43,9 +45,7 @@ struct FixedLoad {
   void add_tangent(const system::Nodes<1>& x, const system::Context& c,
                    system::TangentX<7>& t) const;
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const {
-    return factor ? factor->breakpoints() : std::vector<double>{};
-  }
+  std::vector<double> breakpoints() const { return breakpoints_of(factor); }
 };
 
 /// Force and moment given in body axes (d, b_2, b_3): they turn with tilt and spin (follower
@@ -54,6 +54,9 @@ struct BodyLoad {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::load;
+  /// Sees the angle while it has a part across the axis.
+  system::Dependence depends(const system::Context& c) const;
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;
@@ -63,9 +66,7 @@ struct BodyLoad {
   void add_tangent(const system::Nodes<1>& x, const system::Context& c,
                    system::TangentX<7>& t) const;
   void add_energy(const system::Nodes<1>& x, const system::Context& c, system::Energy& e) const;
-  std::vector<double> breakpoints() const {
-    return factor ? factor->breakpoints() : std::vector<double>{};
-  }
+  std::vector<double> breakpoints() const { return breakpoints_of(factor); }
 };
 
 }  // namespace whirl::elements

@@ -24,14 +24,17 @@ struct RigidBody {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         inertial = true, powerless = true, linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::body;
+  /// Sees the angle unless the body is axisymmetric.
+  system::Dependence depends(const system::Context& c) const;
 
   RigidDisk disk;
   Vec2 S = Vec2::Zero();  ///< static moments about b_2, b_3, kg m
   Mat3 G = Mat3::Zero();  ///< kg m2, symmetric, G_11 = 0
 
   RigidBody() = default;
-  /// Errors: mass < 0, J not symmetric or no body has it (a principal moment above the sum of the
-  /// others).
+  /// @throws Error if mass < 0, J not symmetric or no body has it (a principal moment above the sum
+  /// of the others).
   RigidBody(double mass, const Vec3& offset, const Mat3& J);
 
   void add_force(const system::Nodes<1>& x, const system::Context& c, system::ForceX<7>& f) const;

@@ -17,6 +17,8 @@ struct RigidDisk {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = true, has_C = true, has_K = true, inertial = true,
                         quadratic_in_rates = true, powerless = true, linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::body;
+  static constexpr system::Dependence depends{.spin = true, .weight = true};
 
   double mass = 0, Jt = 0, Jp = 0, offset = 0;
 

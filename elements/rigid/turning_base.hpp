@@ -57,6 +57,18 @@ template <class K>
 struct OnTurningBase {
   static constexpr int n_nodes = K::n_nodes, width = K::width;
   static constexpr bool has_M = false, has_C = true, has_K = true, quadratic_in_rates = true;
+  static constexpr system::Family family = system::Family::body;
+  /// As the inertia in its kernel, and on time: a twist is elastic and cancels, and so does a
+  /// common acceleration. While the base stands and has not turned, nothing is added.
+  system::Dependence depends(const system::Context& c) const {
+    system::Dependence d = system::dependence_of(kernel, c);
+    const TurningBase::Motion b = base->at(c.time);
+    const bool stands = b.omega.isZero(0.0) && b.alpha.isZero(0.0) && b.gravity_change.isZero(0.0);
+    if (stands || d.angle.form == system::SeenAngle::Form::sum) d.angle = system::no_angle;
+    d.time = true;
+    d.weight = false;
+    return d;
+  }
 
   K kernel;
   TurningBasePtr base;

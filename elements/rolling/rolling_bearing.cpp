@@ -282,6 +282,4 @@ RollerBearing make_roller_bearing(const RollerGeometry& g) {
   return b;
 }
 
-double outer_pass_per_turn(int elements, double lambda) { return 0.5 * elements * (1.0 - lambda); }
-
 }  // namespace whirl::elements

@@ -71,6 +71,11 @@ template <class Contact>
 struct RollingBearing {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the angle of the cage, unless means are asked for.
+  system::Dependence depends(const system::Context& c) const {
+    return {.angle = c.averaged ? system::no_angle : system::angle_sum(cage[0], cage[1])};
+  }
 
   Contact contact;
   int elements = 0;                      ///< Z
@@ -115,8 +120,8 @@ struct BallGeometry {
   int direction = 1;  ///< angular contact: +1 carries a push of the shaft towards +x, -1 towards -x
   double stiffness = 0;  ///< K, N/m^1.5; 0: from Hertz (steel)
 };
-/// Errors E83: fewer than 2 balls, sizes not positive, balls that do not fit, f <= 0.5, |alpha| >=
-/// 80 deg, clearance beyond the grooves.
+/// @throws Error E83: fewer than 2 balls, sizes not positive, balls that do not fit, f <= 0.5,
+/// |alpha| >= 80 deg, clearance beyond the grooves.
 BallBearing make_ball_bearing(const BallGeometry& g);
 /// Shifts the reference position so that the bearing pushes back with `force` (N, >= 0) axially
 /// when undisplaced. E83 when deep groove.
@@ -129,8 +134,5 @@ struct RollerGeometry {
   double stiffness = 0;  ///< K, N/m^(10/9); 0: Palmgren (steel)
 };
 RollerBearing make_roller_bearing(const RollerGeometry& g);
-
-/// Ball passes per revolution of the shaft with the outer ring at rest (BPFO/f): Z (1 - lambda)/2.
-double outer_pass_per_turn(int elements, double lambda);
 
 }  // namespace whirl::elements

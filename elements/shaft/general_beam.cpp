@@ -550,6 +550,17 @@ GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chor
   if (p01.squaredNorm() + p02.squaredNorm() > 1e-20) psi_r = psi0;
 }
 
+bool GeneralBeam::axisymmetric() const {
+  const auto equal = [](double a, double b) {
+    return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
+  };
+  const auto along_axis = [](const Vec3& v) { return v.tail<2>().norm() <= 1e-10 * v.norm(); };
+  return equal(c.ky_def11, c.kz_def11) && equal(c.ky_def12, c.kz_def12) &&
+         equal(c.ky_def22, c.kz_def22) && equal(c.rhoIy_l, c.rhoIz_l) && along_axis(body1.col(0)) &&
+         along_axis(body2.col(0)) && along_axis(arm1) && along_axis(arm2) &&
+         p01.squaredNorm() + p02.squaredNorm() <= 1e-20;
+}
+
 void GeneralBeam::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
   const NodeT<double> n1(*x[0]), n2(*x[1]);
   const Motion<double> m1(n1), m2(n2);

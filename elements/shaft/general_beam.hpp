@@ -76,6 +76,13 @@ struct GeneralBeamConstants {
 struct GeneralBeam {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true;
+  static constexpr system::Family family = system::Family::shaft;
+  /// Sees the angle unless it is axisymmetric; its twist in any case.
+  system::Dependence depends(const system::Context&) const {
+    return {.angle = axisymmetric() ? system::twist_angle : system::each_angle,
+            .spin = true,
+            .weight = true};
+  }
 
   GeneralBeamConstants c;
   Vec3 chord = Vec3::UnitX();  ///< r2 - r1 in the reference configuration, m
@@ -100,6 +107,9 @@ struct GeneralBeam {
               const Mat3& triad2, const Vec3& offset1 = Vec3::Zero(),
               const Vec3& offset2 = Vec3::Zero(), const Mat3& chart1 = Mat3::Identity(),
               const Mat3& chart2 = Mat3::Identity());
+
+  /// Nothing in it tells one direction across the axes of its nodes from another.
+  bool axisymmetric() const;
 
   void add_force(const system::Nodes<2>& x, const system::Context& ctx,
                  system::ForceX<14>& f) const;

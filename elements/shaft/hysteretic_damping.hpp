@@ -31,6 +31,9 @@ struct GeneralBeamDamping {
   GeneralBeamDamping() = default;
   /// Damping with the coefficients given (s), of the beam without any.
   GeneralBeamDamping(const GeneralBeam& beam, double beta, double beta_twist);
+  system::Dependence depends(const system::Context&) const {
+    return {.angle = with.axisymmetric() ? system::no_angle : system::each_angle, .spin = true};
+  }
   void add_force(const system::Nodes<2>& x, const system::Context& ctx,
                  system::ForceX<14>& f) const;
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx,
@@ -42,7 +45,10 @@ struct GeneralBeamDamping {
 template <class Viscous>
 struct HystereticDamping {
   static constexpr int n_nodes = 2, width = 7;
-  static constexpr bool has_M = false, has_C = true, has_K = true, hysteretic = true;
+  static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::damping;
+  /// The rate of a small motion counts where hysteretic damping has its own form.
+  system::Dependence depends(const system::Context& ctx) const;
 
   Viscous bending;      ///< lateral strains
   Viscous along;        ///< twist and axial strain

@@ -48,6 +48,9 @@ struct ShaftBeam {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         powerless = true;
+  static constexpr system::Family family = system::Family::shaft;
+  static constexpr system::Dependence depends{
+      .angle = system::twist_angle, .spin = true, .weight = true};
 
   ShaftElementConstants c;
   Matrix<4> G4c = Matrix<4>::Zero();  ///< G4 - diag(0, polar row sum 1, 0, polar row sum 2)

@@ -24,6 +24,10 @@ template <bool Rotating>
 struct ShaftDamping {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true, quadratic_in_rates = true;
+  static constexpr system::Family family = system::Family::damping;
+  system::Dependence depends(const system::Context&) const {
+    return {.spin = Rotating || d_twist != 0.0};
+  }
 
   double length = 0, o1 = 0, o2 = 0;
   Vec3 e0 = Vec3::UnitX();
@@ -51,6 +55,8 @@ extern template struct ShaftDamping<true>;
 struct ShaftMassDamping {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = false, quadratic_in_rates = true;
+  static constexpr system::Family family = system::Family::damping;
+  static constexpr system::Dependence depends{};
   Matrix<4> C4 = Matrix<4>::Zero();  ///< alpha M4
   void add_force(const system::Nodes<2>& x, const system::Context& ctx,
                  system::ForceX<14>& f) const;

@@ -11,6 +11,10 @@ template <class K>
 struct AtOffset {
   static constexpr int n_nodes = K::n_nodes, width = 7, inner = K::width;
   static constexpr bool has_M = K::has_M, has_C = K::has_C, has_K = K::has_K;
+  static constexpr system::Family family = K::family;
+  system::Dependence depends(const system::Context& c) const {
+    return system::dependence_of(kernel, c);
+  }
 
   K kernel;
   std::array<double, n_nodes> offset{};  ///< o_i, m

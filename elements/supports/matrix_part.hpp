@@ -20,6 +20,17 @@ struct MatrixPart {
   static constexpr int n_nodes = N, width = W;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the angles that its stiffness resists.
+  system::Dependence depends(const system::Context&) const {
+    system::Dependence d{.weight = !M.isZero(0.0)};
+    if constexpr (W == 7)
+      for (int i = 0; i < N; ++i) {
+        if (!K.col(7 * i + 6).isZero(0.0)) d.angle = system::each_angle;
+        d.spin = d.spin || !C.col(7 * i + 6).isZero(0.0);
+      }
+    return d;
+  }
   using Part = Matrix<W * N>;
 
   Part K = Part::Zero(), C = Part::Zero(), M = Part::Zero();

@@ -25,6 +25,14 @@ template <int W>
 struct ScalarSpring {
   static constexpr int n_nodes = 2, width = W;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// A torsional spring sees the angles it acts between.
+  system::Dependence depends(const system::Context&) const {
+    if constexpr (W == 7)
+      if (b0[6] != 0.0 || b1[6] != 0.0)
+        return {.angle = system::angle_sum(b0[6], -b1[6]), .spin = true};
+    return {};
+  }
 
   Vector<W> b0, b1;
   ForceCurvePtr force, damping;  ///< neither null
@@ -50,6 +58,8 @@ struct ScalarSpring {
 struct RadialSpring {
   static constexpr int n_nodes = 2, width = 3;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  static constexpr system::Dependence depends{};
 
   ForceCurvePtr force, damping;  ///< neither null; force(0) = 0
 

@@ -24,6 +24,8 @@ namespace whirl::elements {
 
 struct RubLaw {
   static constexpr bool inertia = false;
+  /// The spin enters by friction.
+  system::Dependence depends(const system::Context&) const { return {.spin = friction != 0.0}; }
   double gap = 0;            ///< radial, m, >= 0
   double stiffness = 0;      ///< k, N/m
   double damping = 0;        ///< beta, s/m

@@ -99,7 +99,7 @@ struct Built {
                                    ///< each, for the summary
   std::vector<double>
       table_frequencies;  ///< rad/s, in no order: of supports with coefficients against the
-                          ///< frequency of the motion (system/frequency.hpp)
+                          ///< frequency of the motion (Context::frequency)
   std::vector<std::string>
       held;  ///< motions that nothing resists and that are held for it, one line each
   std::vector<std::string>
@@ -109,8 +109,9 @@ struct Built {
 };
 
 /// step: name of the step whose drives act (drives without a step always act); "" = only those
-/// without. Errors (Exit::deck): unrestrained motion named with its shaft, attachments off the
-/// shaft, impossible bodies.
+/// without.
+/// @throws Error (Exit::deck) unrestrained motion named with its shaft, attachments off the shaft,
+/// impossible bodies.
 Built build_system(const model::Model& model, const meshes::Mesh& mesh,
                    const std::string& step = {});
 

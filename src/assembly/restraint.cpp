@@ -8,7 +8,7 @@
 #include <elements/supports/linear_bearing.hpp>
 #include <meshes/mass_properties.hpp>
 
-#include <Eigen/Eigenvalues>
+#include <la/dense.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -252,11 +252,11 @@ class Restraint {
         A += row * row.transpose();
       }
     // Two supports at a distance of 1e-6 of the shaft still count as two.
-    const Eigen::SelfAdjointEigenSolver<MatX> eig(A);
-    const Index free = (eig.eigenvalues().array() < 1e-12).count();
+    const la::SymmetricEigenpairs eig = la::symmetric_eigenpairs(A);
+    const Index free = (eig.values.array() < 1e-12).count();
     if (free == 0) return {};
     if (free >= 2) return "lateral motion of {}";
-    const VecX v = eig.eigenvectors().col(0);
+    const VecX v = eig.vectors.col(0);
     const double side = v[0], tilt = v[1];
     if (std::abs(tilt) < 1e-6 * std::abs(side)) return "sideways motion of {}";
     const double h = half(lines.front()),

@@ -46,9 +46,9 @@ void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNode
     joint.offset = {n.shaft.offset, n.other.offset};
     a.builder.add(joint, nodes, kind);
     a.built.support_forces.push_back(
-        {b.name, [joint, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
+        {b.name, [joint, nodes](const NodeAt& at, const system::Context& c, const ReactionAt&) {
            Vector<4> z;
-           joint.law.force(joint.motion_of(nodes_of(at, nodes)), z);
+           joint.law.force(joint.motion_of(nodes_of(at, nodes), c), z);
            return Vec3(0, z[0], z[1]);
          }});
     if (friction == Friction::none) return;

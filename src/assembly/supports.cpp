@@ -110,11 +110,11 @@ void add_table_law(Assembly& a, const model::Bearing& b, const meshes::BearingNo
       a.builder.add(k, nodes, kind);
       a.built.support_forces.push_back(
           {b.name,
-           [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
-             return Vec3(k.load_on_first(nodes_of(at, nodes)).template head<3>());
+           [k, nodes](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+             return Vec3(k.load_on_first(nodes_of(at, nodes), c).template head<3>());
            },
-           [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
-             return Vec3(k.load_on_first(nodes_of(at, nodes)).template tail<3>());
+           [k, nodes](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+             return Vec3(k.load_on_first(nodes_of(at, nodes), c).template tail<3>());
            }});
     }
   };

@@ -65,7 +65,6 @@ class InArchive {
     const std::vector<double> x = numbers();
     return Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.size()));
   }
-  bool at_end() const { return data_.empty(); }
 
  private:
   std::size_t sized(std::size_t unit) {

@@ -66,6 +66,10 @@ class PiecewisePolynomial final : public Law {
   }
   double integral(double t) const override { return primitive(piece(t), t); }
   std::vector<double> breakpoints() const override { return knots_; }
+  bool constant() const override {
+    return pieces_.size() == 1 && std::all_of(pieces_[0].c.begin() + (pieces_[0].c.empty() ? 0 : 1),
+                                              pieces_[0].c.end(), [](double x) { return x == 0; });
+  }
 
  private:
   const Piece& piece(double t) const {
@@ -210,24 +214,12 @@ class Sum final : public Law {
     b.erase(std::unique(b.begin(), b.end()), b.end());
     return b;
   }
+  bool constant() const override {
+    return std::all_of(laws_.begin(), laws_.end(), [](const LawPtr& l) { return l->constant(); });
+  }
 
  private:
   std::vector<LawPtr> laws_;
-};
-
-class Scaled final : public Law {
- public:
-  Scaled(double scale, LawPtr law) : scale_(scale), law_(std::move(law)) {}
-  LawValue at(double t) const override {
-    const LawValue v = law_->at(t);
-    return {scale_ * v.f, scale_ * v.df, scale_ * v.ddf};
-  }
-  double integral(double t) const override { return scale_ * law_->integral(t); }
-  std::vector<double> breakpoints() const override { return law_->breakpoints(); }
-
- private:
-  double scale_;
-  LawPtr law_;
 };
 
 // Gauss-Legendre with 10 points on [-1, 1]: exact to degree 19.
@@ -369,10 +361,6 @@ LawPtr make_piecewise(std::vector<double> start, std::vector<LawPtr> laws) {
 }
 
 LawPtr make_sum(std::vector<LawPtr> laws) { return std::make_shared<Sum>(std::move(laws)); }
-
-LawPtr make_scaled(double scale, LawPtr law) {
-  return std::make_shared<Scaled>(scale, std::move(law));
-}
 
 LawPtr make_angle_of_speed(LawPtr speed, double phi0) {
   return std::make_shared<AngleOfSpeed>(std::move(speed), phi0);

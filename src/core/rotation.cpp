@@ -75,60 +75,10 @@ double g_minus_sin_ratio(double x) {
   return x <= 4.0 ? horner<13>(series_gs.data(), x) : (1.0 - bessel_ratios(x).b0) / x;
 }
 
-Even cosine_of_square(double x) {
-  const BesselRatios b = bessel_ratios(x);
-  return {b.cosine, -0.5 * b.b0, 0.25 * b.b1, -0.125 * b.b2};
-}
-
-Even sinc_of_square(double x) {
-  const BesselRatios b = bessel_ratios(x);
-  return {b.b0, -0.5 * b.b1, 0.25 * b.b2, -0.125 * b.b3};
-}
-
 Mat3 L(const Vec3& v) {
   const double x = v.squaredNorm();
   const Mat3 s = skew(v);
   return Mat3::Identity() + bessel_ratios(x).b0 * s + one_minus_cos_ratio(x) * s * s;
-}
-
-Mat3 B(const Vec3& v) {
-  const double x = v.squaredNorm();
-  const Mat3 s = skew(v);
-  return Mat3::Identity() + one_minus_cos_ratio(x) * s + g_minus_sin_ratio(x) * s * s;
-}
-
-Mat3 B_inverse(const Vec3& v) {
-  // (1 - h cot h)/(4 h^2) = b1/(4 b0) at h = g/2: no difference of large terms.
-  const BesselRatios h = bessel_ratios(0.25 * v.squaredNorm());
-  const Mat3 s = skew(v);
-  return Mat3::Identity() - 0.5 * s + (0.25 * h.b1 / h.b0) * s * s;
-}
-
-Vec3 euler_vector(const Mat3& R) {
-  // Quaternion by its largest component, which is at least 1/2: accurate for every angle.
-  const double tr = R.trace();
-  const std::array<double, 4> c{tr, R(0, 0), R(1, 1), R(2, 2)};
-  std::size_t k = 0;
-  for (std::size_t i = 1; i < 4; ++i)
-    if (c[i] > c[k]) k = i;
-  double w;
-  Vec3 v;
-  if (k == 0) {
-    w = 1.0 + tr;
-    v << R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1);
-  } else {
-    const int i = static_cast<int>(k) - 1, j = (i + 1) % 3, l = (i + 2) % 3;
-    w = R(l, j) - R(j, l);
-    v[i] = 1.0 + R(i, i) - R(j, j) - R(l, l);
-    v[j] = R(j, i) + R(i, j);
-    v[l] = R(l, i) + R(i, l);
-  }
-  if (w < 0.0) {
-    w = -w;
-    v = -v;
-  }
-  const double n = v.stableNorm();
-  return n > 0.0 ? Vec3(v * (2.0 * std::atan2(n, w) / n)) : Vec3(Vec3::Zero());
 }
 
 Mat3 minimal_rotation(const Vec3& a, const Vec3& b) {
@@ -246,16 +196,6 @@ double chart_condition(double g) {
   return largest * largest / b;
 }
 
-void throw_beyond_chart(double g, const std::string& node, double time) {
-  throw run_error(
-      "E71",
-      fmt::format(
-          "transverse rotation |gamma| = {:.6g} rad of {} at t = {:.9g} s is beyond the chart "
-          "(limit {} rad; the split into phi and gamma is singular at pi)",
-          g, node, time, chart_limit),
-      "turn on the change of chart (model.chart_change = true)", node);
-}
-
 ChartChange::ChartChange(const Mat3& triad, const Vec3& new_e) : from_(triad) {
   // Orthonormal to the last digit again: rounding would grow by a factor at every change and turn
   // up as energy.
@@ -296,12 +236,6 @@ void take_turns(double& phi, double n) {
 double without_turns(double phi, double turns) {
   constexpr double low = 2.4492935982947064e-16;  // 2 pi - two_pi
   return turns == 0.0 ? phi : std::fma(-turns, two_pi, phi) - turns * low;
-}
-
-double take_turns(double& phi) {
-  const double n = std::nearbyint(phi / two_pi);
-  phi = without_turns(phi, n);
-  return n;
 }
 
 }  // namespace whirl::rotation

@@ -15,13 +15,8 @@ namespace whirl::rotation {
 
 /// Rotation tensor of the Euler vector v, rad: L = 1 + sin g/g [v] + (1-cos g)/g^2 [v]^2.
 Mat3 L(const Vec3& v);
-/// Zhilin tensor, omega = B(v) v' (1): B = 1 + (1-cos g)/g^2 [v] + (g-sin g)/g^3 [v]^2.
-Mat3 B(const Vec3& v);
-/// Inverse of B: 1 - [v]/2 + (1/g^2 - cot(g/2)/(2g)) [v]^2; singular at g = 2 pi.
-Mat3 B_inverse(const Vec3& v);
-/// Euler vector of a rotation tensor, norm in [0, pi].
-Vec3 euler_vector(const Mat3& R);
-/// Minimal rotation taking unit vector a to unit vector b. Errors: a = -b.
+/// Minimal rotation taking unit vector a to unit vector b.
+/// @throws Error if a = -b.
 Mat3 minimal_rotation(const Vec3& a, const Vec3& b);
 /// Signed solid angle of the spherical triangle of unit vectors (u, v, w), in (-2 pi, 2 pi).
 double solid_angle(const Vec3& u, const Vec3& v, const Vec3& w);
@@ -36,14 +31,6 @@ BesselRatios bessel_ratios(double x);
 /// (1 - cos g)/g^2 and (g - sin g)/g^3 as functions of x = g^2.
 double one_minus_cos_ratio(double x);
 double g_minus_sin_ratio(double x);
-
-/// The even functions of g as functions of x = g^2 with their first three x-derivatives, free of
-/// cancellation: cosine: cos g; sinc: sin g / g.
-struct Even {
-  double f, f1, f2, f3;
-};
-Even cosine_of_square(double x);
-Even sinc_of_square(double x);
 
 /// The director d(gamma) = e cos g + (sin g/g) gamma x e and what the node Jacobian needs, in chart
 /// axes (e, e2, e3) = (x, y, z), gamma = (gamma2, gamma3).
@@ -65,7 +52,8 @@ void director(const Vec2& gamma, Director& out);
 void director(const Vec2& gamma, const Vec2& dgamma, const Vec2& ddgamma, Director& out);
 
 /// gamma of a director in chart axes (d != -e): gamma = angle(e, d) (e x d)/|e x d|, from the
-/// offset t = d - e. Errors: d = -e.
+/// offset t = d - e.
+/// @throws Error if d = -e.
 Vec2 gamma_of_director(const Vec3& t);
 /// (phi', gamma') of an angular velocity omega, chart axes: (11) phi' = (e+d).omega/(1+e.d), (9)
 /// gamma' = D+ (omega x d).
@@ -89,8 +77,6 @@ double chart_condition(double g);
 /// condition number is about 100, a chart that may not be moved is given up.
 inline constexpr double chart_switch = 2.0;
 inline constexpr double chart_limit = 3.1;
-/// The error of a tilt beyond chart_limit. node: "node 3 of shaft 'top'"; time in s.
-[[noreturn]] void throw_beyond_chart(double g, const std::string& node, double time);
 
 /// Orientation of one node in a chart: values, rates and accelerations of phi and gamma.
 struct Angles {
@@ -103,10 +89,11 @@ struct Angles {
 /// continuous: phi' = phi + Omega(e, d, e'). All nodes of a shaft line change together.
 class ChartChange {
  public:
-  /// Errors: new_e = -e.
+  /// @throws Error if new_e = -e.
   ChartChange(const Mat3& triad, const Vec3& new_e);
   const Mat3& new_triad() const { return to_; }
-  /// The same orientation, angular velocity and acceleration in the new chart. Errors: d = -new_e.
+  /// The same orientation, angular velocity and acceleration in the new chart.
+  /// @throws Error if d = -new_e.
   Angles apply(const Angles& old) const;
 
  private:
@@ -115,9 +102,6 @@ class ChartChange {
 
 /// phi less a number of whole turns, 2 pi carried to 107 bits.
 double without_turns(double phi, double turns);
-/// Takes the whole turns out of phi, leaving |phi| <= pi, and returns their number: the azimuth
-/// stays right to the last digit after any number of turns.
-double take_turns(double& phi);
 /// Takes n whole turns out of phi, with the same care.
 void take_turns(double& phi, double n);
 

@@ -186,6 +186,11 @@ bool Describer::either(const Key& k, double&, const char* unit, bool&,
   return false;
 }
 
+bool Describer::clean() const { return false; }
+bool Describer::given(const char*) const { return false; }
+void Describer::error(const char*, const char*, std::string, std::string) {}
+void Describer::warning(const char*, const char*, std::string, std::string) {}
+Where Describer::where() const { return {}; }
 const model::Model& Describer::model() const {
   static const model::Model empty;
   return empty;

@@ -60,35 +60,7 @@ class Describer : public Visitor {
  public:
   explicit Describer(TableInfo& root) { tables_.push_back(&root); }
 
-  bool quantity(const Key&, double&, const char* unit, Range, const char*) override;
-  bool integer(const Key&, int&, Range, const char*) override;
-  bool flag(const Key&, bool&, const char*) override;
-  bool text(const Key&, std::string&, const char*) override;
-  bool texts(const Key&, std::vector<std::string>&, const char*) override;
-  bool quantities(const Key&, std::vector<double>&, const char* unit, Range, int count, const char*,
-                  const char* per) override;
-  bool matrix(const Key&, Matrix<6>&, const char*, const char*, const char*, const char*) override;
-  bool option(const Key&, int& index, std::span<const Option>, const char*) override;
-  bool options(const Key&, std::vector<std::string>&, std::span<const Option>,
-               const char*) override;
-  bool name(model::Entity&, const char* kind) override;
-  bool location(const Key&, model::Location&, const char*) override;
-  bool material(const Key&, std::size_t&, const char*) override;
-  bool shaft(const Key&, std::size_t&, const char*) override;
-  bool step(const Key&, std::string&, const char*) override;
-  void free_table(const Key&, const char*) override;
-  bool table(const Key&, const std::function<void(Visitor&)>&, const char*) override;
-  void list(const Key&, const ListBody&, const char*) override;
-  bool rows(const ListBody&, bool must, const char*) override;
-  void alternatives(const Key&, std::span<const Alternative>, const char*) override;
-  bool either(const Key&, double&, const char* unit, bool&, const std::function<void(Visitor&)>&,
-              const char*) override;
-  bool clean() const override { return false; }
-  bool given(const char*) const override { return false; }
-  void error(const char*, const char*, std::string, std::string) override {}
-  void warning(const char*, const char*, std::string, std::string) override {}
-  Where where() const override { return {}; }
-  const model::Model& model() const override;
+#include <deck/visitor_overrides.inl>
 
  private:
   KeyInfo& add(const Key&, KeyInfo::Kind, const char* doc);

@@ -32,6 +32,8 @@ Reader::Reader(Sources& sources, Diagnostics& diagnostics, Parameters& parameter
       document_(document),
       model_(model) {}
 
+const model::Model& Reader::model() const { return model_; }
+
 void Reader::read() {
   in_table("", document_.root, &resolved_, nullptr, [&](Visitor& v) { describe(v, model_); });
   settle_steps();
@@ -60,10 +62,12 @@ const Member* Reader::find(const Key& k) {
 
 void Reader::put(const Key& k, Value v) {
   if (!scope().resolved || v.kind == Value::Kind::unreadable) return;
-  if (Member* m = scope().resolved->find(k.name))
+  Member* m = scope().resolved->find(k.name);
+  if (m)
     m->value = std::move(v);
   else
-    scope().resolved->add(k.name, std::move(v));
+    m = &scope().resolved->add(k.name, std::move(v));
+  m->moves = k.moves;
 }
 
 void Reader::problem(const char* code, const Spot& spot, std::string message, std::string hint) {

@@ -1,3 +1,4 @@
+#include <model/resolution.hpp>
 #include <algorithm>
 #include <cmath>
 #include <core/units.hpp>
@@ -206,7 +207,7 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
   return {};  // critical speeds look inside the table only
 }
 
-std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
+std::string hertz(double w) { return fmt::format("{:.6g} Hz", to_hz(w)); }
 
 /// Frequencies of excitation of a step, rad/s: least and largest, or nothing.
 std::optional<std::pair<double, double>> frequencies_of(const model::Model& m,
@@ -705,12 +706,13 @@ std::map<std::string, Interval> times_of_steps(const model::Model& m) {
 
 double count_of_nodes(const model::Model& m) {
   double sections = 0;
+  const model::Resolution resolution = model::resolution_of(m);
   for (const auto& s : m.shafts)
     for (const auto& x : s.sections) {
-      const bool limited = std::isfinite(x.max_element_length);
-      const int parts =
-          limited ? static_cast<int>(std::min(1e6, std::ceil(x.length / x.max_element_length))) : 1;
-      sections += std::max(x.min_elements, parts);
+      const double longest = model::longest_element(m, s, x, resolution);
+      const double parts =
+          std::isfinite(longest) ? std::min(1e6, std::ceil(x.length / longest)) : 1.0;
+      sections += std::max<double>(x.min_elements, parts);
     }
   return sections + static_cast<double>(m.shafts.size() + m.disks.size() + m.bearings.size());
 }

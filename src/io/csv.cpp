@@ -169,13 +169,6 @@ double number(const std::string& cell) {
 
 }  // namespace
 
-std::size_t row_width(std::span<const Channel> channels) {
-  std::size_t n = 0;
-  for (const auto& c : channels)
-    n += c.width();
-  return n;
-}
-
 TimeSeriesPtr make_plain_csv_series(fs::path file, SeriesOptions options) {
   return std::make_unique<CsvSeries>(std::move(file), options);
 }

@@ -39,7 +39,6 @@ class AppendFile {
   /// Space for at least n more bytes (n <= buffer size), to be filled and then committed.
   char* reserve(std::size_t n);
   void commit(std::size_t n) { used_ += n; }
-  std::size_t waiting() const { return used_; }
   void flush();
   /// As flush(), and safe from a power cut: before something else counts on it.
   void sync();

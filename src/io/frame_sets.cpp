@@ -12,8 +12,6 @@ using meshes::pose_at;
 using meshes::section_axes;
 using meshes::Skin;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 void put(std::vector<float>& v, std::size_t i, const Vec3& x) {
   for (std::size_t c = 0; c < 3; ++c)
     v[3 * i + c] = static_cast<float>(x[static_cast<Index>(c)]);

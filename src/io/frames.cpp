@@ -278,8 +278,6 @@ void set_content(VtkFrameOptions& o, std::span<const std::string> names) {
   }
 }
 
-bool vtk_available() { return Plugin::available("vtk"); }
-
 std::unique_ptr<FrameWriter> make_vtk_frames(VtkFrameOptions options) {
   return std::make_unique<VtkFrames>(std::move(options));
 }

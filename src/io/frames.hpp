@@ -47,7 +47,7 @@ class FrameWriter {
 
 struct VtkFrameOptions {
   std::filesystem::path
-      directory;                ///< gets <name>_line.pvd ... and a folder of frames for each set
+      directory;                ///< gets `<name>_line.pvd` ... and a folder of frames for each set
   std::string name = "frames";  ///< characters that do not belong in file names become '_'
   bool line = true, surface = true, bearings = false, orbits = false;
   double deformation_scale = 1.0;  ///< magnifies displacement and tilt, not the spin
@@ -61,7 +61,6 @@ struct VtkFrameOptions {
 /// Sets from deck names: "line", "surface", "bearings", "orbits". Error for any other.
 void set_content(VtkFrameOptions& options, std::span<const std::string> names);
 
-bool vtk_available();
 /// Loads the VTK plug-in. Error (Exit::io) when it was not built or cannot be loaded.
 std::unique_ptr<FrameWriter> make_vtk_frames(VtkFrameOptions options);
 

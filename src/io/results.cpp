@@ -108,8 +108,6 @@ TimeSeriesPtr make_tee(std::vector<TimeSeriesPtr> sinks) {
   return std::make_unique<Tee>(std::move(sinks));
 }
 
-bool hdf5_available() { return Plugin::available("hdf5"); }
-
 TimeSeriesPtr make_hdf5_series(fs::path file, SeriesOptions options) {
   TimeSeriesPtr sink(
       Plugin::load("hdf5").function<Hdf5MakeSeries>(hdf5_make_series)(file, options));

@@ -36,9 +36,6 @@ struct Channel {
   }
 };
 
-/// Number of values in a row.
-std::size_t row_width(std::span<const Channel> channels);
-
 /// A sink for rows. begin() or resume() once, append() per row, close() at the end (also done by
 /// the destructor, which swallows errors). Errors: Error with Exit::io.
 class TimeSeries {
@@ -50,7 +47,7 @@ class TimeSeries {
   /// Continues a file: keeps its first `rows` rows, drops what follows (a run killed after its last
   /// checkpoint). Error when its channels differ or when it holds fewer rows.
   virtual void resume(std::span<const Channel> channels, std::uint64_t rows) = 0;
-  /// Appends one row of row_width(channels) values, unscaled. Does not allocate.
+  /// Appends one row, a value for every column of the channels, unscaled. Does not allocate.
   virtual void append(std::span<const double> row) = 0;
   /// Everything appended so far becomes readable by others and, in text files, safe from a power
   /// cut: what a checkpoint counts on.
@@ -73,7 +70,6 @@ TimeSeriesPtr make_csv_series(std::filesystem::path file, SeriesOptions options 
 /// HDF5 (plug-in, loaded by this call): one compressed rows x columns data set a group; the file
 /// explains itself in its attribute "layout". Error when the plug-in was not built.
 TimeSeriesPtr make_hdf5_series(std::filesystem::path file, SeriesOptions options = {});
-bool hdf5_available();
 
 /// Sends every row to several sinks.
 TimeSeriesPtr make_tee(std::vector<TimeSeriesPtr> sinks);

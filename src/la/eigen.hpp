@@ -82,8 +82,8 @@ struct Certificate {
 };
 
 /// Modes sorted by |Im lambda|, then |lambda|; overdamped roots are kept, each on its own; a
-/// rigid-body motion (K x = 0, C x = 0) comes once, with lambda = 0. Throws Error when the problem
-/// has no eigenvalues or cannot be factored.
+/// rigid-body motion (K x = 0, C x = 0) comes once, with lambda = 0.
+/// @throws Error when the problem has no eigenvalues or cannot be factored.
 std::vector<Mode> quadratic_modes(const MCK& m, std::span<const unsigned char> active,
                                   const ModeOptions& options = {});
 
@@ -117,19 +117,6 @@ class ModeSolver {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// A mode of K x = omega^2 M x with symmetric K and M, M positive semidefinite.
-struct RealMode {
-  double omega2 = 0.0;    ///< (rad/s)^2; negative beyond buckling
-  VecX x;                 ///< x^T M x = 1
-  double residual = 0.0;  ///< backward error as in Mode
-};
-
-/// The `count` eigenvalues omega^2 of least size in ascending order (undamped, at rest). C is not
-/// looked at. That none is missing below the last is proved by the inertia of K - s M (Sylvester),
-/// which needs K with few negative eigenvalues, or none.
-std::vector<RealMode> symmetric_modes(const MCK& m, std::span<const unsigned char> active,
-                                      Index count, double tolerance = 1e-12);
 
 /// Eigenvalues mu of A x = mu B x nearest to the shift, sorted by |mu - shift|: buckling (A
 /// stiffness, B minus the geometric stiffness per unit load). Complex pairs (Im mu > 0 listed) mean

@@ -1,8 +1,7 @@
+#include <la/dense.hpp>
 #include <la/eigenpairs.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 
@@ -38,12 +37,12 @@ Index Eigenpairs::count_slow_companions(const std::vector<std::size_t>& free) co
   MatX span(6 * pattern.size(), static_cast<Index>(free.size()));
   for (std::size_t j = 0; j < free.size(); ++j)
     span.col(static_cast<Index>(j)) = known[free[j]].x.real();
-  const Eigen::ColPivHouseholderQR<MatX> qr(span);
+  const ColumnSpan<double> free_motions(span);
   return std::count_if(known.begin(), known.end(), [&](const Pair& p) {
     if (p.rigid || p.lambda.imag() != 0.0 || std::abs(p.lambda) > 1e-2 * std::abs(shift))
       return false;
     const VecX x = p.x.real();
-    return (x - span * qr.solve(x)).norm() < 1e-2 * x.norm();
+    return free_motions.outside(x).norm() < 1e-2 * x.norm();
   });
 }
 
@@ -66,11 +65,10 @@ void Eigenpairs::add_companions() {
     rounding = std::max(rounding,
                         polisher.rounding_of_stiffness(p) / std::max(std::abs(mass(i, i)), 1e-300));
   }
-  const Eigen::PartialPivLU<MatX> lu(mass);
-  const Eigen::EigenSolver<MatX> eig(MatX(-lu.solve(drag)));
+  const DenseEigenpairs eig = eigenpairs(MatX(-DenseLu<double>(mass).solve(drag)));
   Index slow_found = count_slow_companions(free);
   for (Index j = 0; j < r; ++j) {
-    const Complex rate = eig.eigenvalues()(j);
+    const Complex rate = eig.values(j);
     if (rate.imag() == 0.0 && slow_found > 0) {  // the search has told it from zero
       --slow_found;
       continue;
@@ -86,7 +84,7 @@ void Eigenpairs::add_companions() {
     p.lambda = rate.imag() == 0.0 ? Complex(rate.real()) : rate;
     p.x = VecXc::Zero(6 * pattern.size());
     for (Index i = 0; i < r; ++i) {
-      const Complex part = eig.eigenvectors()(i, j);
+      const Complex part = eig.vectors(i, j);
       p.x += (rate.imag() == 0.0 ? Complex(part.real()) : part) * known[free[at(i)]].x;
     }
     // The projection is an estimate only (the left vector is another one); what does not polish is
@@ -127,7 +125,7 @@ bool Eigenpairs::add(Pair&& p) {
       a.col(static_cast<Index>(j)).normalize();
     }
     const VecXc x = weight.cwiseProduct(p.x);
-    const VecXc rest = x - a * a.colPivHouseholderQr().solve(x);
+    const VecXc rest = ColumnSpan<Complex>(a).outside(x);
     if (rest.norm() < 0.05 * x.norm()) return false;
   }
   known.push_back(std::move(p));

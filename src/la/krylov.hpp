@@ -29,8 +29,6 @@ class Krylov {
     locked_ = next_ = size_;
     return true;
   }
-  /// Drops the searched part.
-  void unsearch() { size_ = next_ = locked_; }
 
   /// Adds a random vector to the search; false when the whole space is spanned.
   bool inject() {
@@ -79,7 +77,6 @@ class Krylov {
   /// Rows of H below it: norm of (rest * y) is the residual of a Ritz pair with H y = theta y.
   auto rest() const { return h_.block(processed(), 0, searched() - processed(), processed()); }
   auto searched_basis() const { return basis_.middleCols(locked_, processed()); }
-  auto locked_basis() const { return basis_.leftCols(locked_); }
 
  private:
   void grow() {

@@ -1,6 +1,6 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
+#include <la/dense.hpp>
 #include <la/multiply.hpp>
 #include <la/polish.hpp>
 
@@ -8,7 +8,6 @@ namespace whirl::la {
 
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 void diagonal_of(const BlockMatrix<6>& a, VecX& d) {
@@ -259,31 +258,29 @@ void Polisher::separate(std::span<Pair*> group) {
   // A shift off the group, so that none of its eigenvalues is hit.
   const Complex c = centre + 0.3 * std::max(radius, 1e-2 * std::abs(centre)) * Complex(1.0, 0.2);
   const MatXc gram = X.adjoint() * X;
-  const Eigen::SelfAdjointEigenSolver<MatXc> independence(gram, Eigen::EigenvaluesOnly);
-  if (independence.eigenvalues()(0) < 1e-8) return;
+  if (hermitian_eigenvalues(gram)(0) < 1e-8) return;
   const MatXc a2 = X.adjoint() * MX, a1 = X.adjoint() * CX, a0 = X.adjoint() * KX;
-  const Eigen::PartialPivLU<MatXc> q(c * c * a2 + c * a1 + a0);
+  const DenseLu<Complex> q(c * c * a2 + c * a1 + a0);
   const double alpha = std::max(std::abs(c), 1e-300);
   MatXc op(2 * k, 2 * k);
-  op.topLeftCorner(k, k) = -q.solve(a1 + c * a2);
+  op.topLeftCorner(k, k) = -q.solve(MatXc(a1 + c * a2));
   op.topRightCorner(k, k) = -alpha * q.solve(a2);
   op.bottomLeftCorner(k, k) = (MatXc::Identity(k, k) + c * op.topLeftCorner(k, k)) / alpha;
   op.bottomRightCorner(k, k) = c * op.topRightCorner(k, k) / alpha;
   if (!op.allFinite()) return;
-  const Eigen::ComplexEigenSolver<MatXc> eig(op);
+  const DenseEigenpairs eig = eigenpairs(op);
   std::vector<Index> order(at(2 * k));
   for (Index j = 0; j < 2 * k; ++j)
     order[at(j)] = j;
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::abs(eig.eigenvalues()(a)) > std::abs(eig.eigenvalues()(b));
-  });
+  std::sort(order.begin(), order.end(),
+            [&](Index a, Index b) { return std::abs(eig.values(a)) > std::abs(eig.values(b)); });
   // The k nearest to the centre, each given to the old vector it contains most of.
   MatXc y(k, k);
   VecXc lambda(k);
   for (Index j = 0; j < k; ++j) {
     const Index e = order[at(j)];
-    lambda(j) = c + 1.0 / eig.eigenvalues()(e);
-    y.col(j) = eig.eigenvectors().col(e).head(k);
+    lambda(j) = c + 1.0 / eig.values(e);
+    y.col(j) = eig.vectors.col(e).head(k);
     y.col(j) /= y.col(j).norm();
   }
   if (!lambda.allFinite() || !y.allFinite()) return;

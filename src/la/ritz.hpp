@@ -1,10 +1,9 @@
 // What one look at the projected matrix of a Krylov space gives.
 #pragma once
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <la/dense.hpp>
 #include <la/krylov.hpp>
-#include <type_traits>
 #include <vector>
 
 namespace whirl::la {
@@ -19,23 +18,20 @@ struct Ritz {
 template <class Scalar>
 Ritz look(const Krylov<Scalar>& krylov) {
   const Index p = krylov.processed();
-  using Solver = std::conditional_t<std::is_same_v<Scalar, double>, Eigen::EigenSolver<MatX>,
-                                    Eigen::ComplexEigenSolver<MatXc>>;
-  const Solver eig(typename Krylov<Scalar>::Mat(krylov.projected()));
-  const VecXc values = eig.eigenvalues();
-  const MatXc vectors = eig.eigenvectors();
+  const DenseEigenpairs eig = eigenpairs(typename Krylov<Scalar>::Mat(krylov.projected()));
   std::vector<Index> order(static_cast<std::size_t>(p));
   for (Index j = 0; j < p; ++j)
     order[static_cast<std::size_t>(j)] = j;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return std::abs(values(a)) > std::abs(values(b)); });
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::abs(eig.values(a)) > std::abs(eig.values(b));
+  });
   Ritz r;
   r.y.resize(p, p);
   const typename Krylov<Scalar>::Mat rest = krylov.rest();
   for (Index j = 0; j < p; ++j) {
     const Index e = order[static_cast<std::size_t>(j)];
-    r.theta.push_back(values(e));
-    r.y.col(j) = vectors.col(e) / vectors.col(e).norm();
+    r.theta.push_back(eig.values(e));
+    r.y.col(j) = eig.vectors.col(e) / eig.vectors.col(e).norm();
     r.residual.push_back(rest.rows() == 0 ? 0.0
                                           : (rest.template cast<Complex>() * r.y.col(j)).norm());
   }

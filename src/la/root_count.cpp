@@ -1,6 +1,5 @@
+#include <la/dense.hpp>
 #include <la/root_count.hpp>
-
-#include <Eigen/Eigenvalues>
 
 #include <cmath>
 
@@ -36,7 +35,7 @@ std::vector<Complex> roots_of_moments(const std::vector<double>& p) {
   for (Index k = 1; k < n; ++k)
     companion(k, k - 1) = 1.0;
   if (!companion.allFinite()) return {};
-  const VecXc values = companion.eigenvalues();
+  const VecXc values = eigenvalues(companion);
   std::vector<Complex> out;
   for (const Complex v : values)
     if (v.imag() >= 0.0) out.push_back(v);
@@ -49,8 +48,6 @@ bool CountRegion::contains(Complex s) const {
   if (s.real() >= 0.0) return std::abs(s) <= radius;
   return s.real() >= -reach && std::abs(s.imag()) <= radius;
 }
-
-double CountRegion::damping_ratio() const { return reach / std::hypot(reach, radius); }
 
 RootCounter::RootCounter(const BlockPattern& pattern, std::span<const unsigned char> active)
     : lu_(pattern, active) {}

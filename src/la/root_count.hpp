@@ -24,8 +24,6 @@ struct CountRegion {
   double radius = 0.0;  ///< rad/s, > 0
   double reach = 0.0;   ///< 1/s, > 0
   bool contains(Complex s) const;
-  /// Damping ratio up to which roots of the frequency `radius` are inside.
-  double damping_ratio() const;
 };
 
 struct RootCount {

@@ -1,5 +1,6 @@
 #include <plot/decimate.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <array>
 #include <cmath>
 #include <unordered_set>
@@ -111,50 +112,6 @@ std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px,
   }
   if (runs.empty() && have) runs.push_back({from});
   return runs;
-}
-
-Envelope::Envelope(std::size_t bins) : most_(std::max<std::size_t>(2, bins + bins % 2)) {
-  bins_.reserve(most_);
-}
-
-void Envelope::add(double x, double y) {
-  const Point p{x, y, count_++};
-  if (!bins_.empty() && in_last_ < per_bin_) {
-    Bin& b = bins_.back();
-    if (!(p.y >= b.low.y)) b.low = p;
-    if (!(p.y <= b.high.y)) b.high = p;
-    b.last = p;
-    ++in_last_;
-    return;
-  }
-  if (bins_.size() == most_) {
-    for (std::size_t k = 0; k < most_ / 2; ++k) {
-      Bin a = bins_[2 * k];
-      const Bin& b = bins_[2 * k + 1];
-      if (b.low.y < a.low.y) a.low = b.low;
-      if (b.high.y > a.high.y) a.high = b.high;
-      a.last = b.last;
-      bins_[k] = a;
-    }
-    bins_.resize(most_ / 2);
-    per_bin_ *= 2;
-  }
-  bins_.push_back({p, p, p, p});
-  in_last_ = 1;
-}
-
-void Envelope::points(std::vector<double>& x, std::vector<double>& y) const {
-  x.clear();
-  y.clear();
-  for (const auto& b : bins_) {
-    std::array<Point, 4> k{b.first, b.low, b.high, b.last};
-    std::sort(k.begin(), k.end(), [](const Point& a, const Point& c) { return a.order < c.order; });
-    for (std::size_t j = 0; j < 4; ++j)
-      if (j == 0 || k[j].order != k[j - 1].order) {
-        x.push_back(k[j].x);
-        y.push_back(k[j].y);
-      }
-  }
 }
 
 }  // namespace whirl::plot

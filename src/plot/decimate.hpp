@@ -1,7 +1,6 @@
 // Fewer points, the same picture.
 #pragma once
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -22,29 +21,5 @@ std::vector<std::vector<std::size_t>> decimate_path(std::span<const double> px,
 
 /// True when no value is below its predecessor (nan ignored).
 bool is_increasing(std::span<const double> x);
-
-/// Keeps the picture of an endless curve in bounded memory: at most `bins` bins of equally many
-/// points, each with its first, lowest, highest and last point; when full, neighbours merge.
-/// Extremes survive exactly.
-class Envelope {
- public:
-  explicit Envelope(std::size_t bins = 4096);
-  void add(double x, double y);
-  /// The points kept so far, in order.
-  void points(std::vector<double>& x, std::vector<double>& y) const;
-  std::uint64_t count() const { return count_; }
-
- private:
-  struct Point {
-    double x, y;
-    std::uint64_t order;
-  };
-  struct Bin {
-    Point first, low, high, last;
-  };
-  std::size_t most_;
-  std::uint64_t per_bin_ = 1, in_last_ = 0, count_ = 0;
-  std::vector<Bin> bins_;
-};
 
 }  // namespace whirl::plot

@@ -1,7 +1,6 @@
 #include <plot/palette.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace whirl::plot {
 namespace {
@@ -47,12 +46,6 @@ const std::array<Rgb, 256>& color_map() {
     return m;
   }();
   return map;
-}
-
-std::string hex(const Rgb& c) {
-  char b[8];
-  std::snprintf(b, sizeof b, "#%02x%02x%02x", c.r, c.g, c.b);
-  return b;
 }
 
 }  // namespace whirl::plot

@@ -22,6 +22,5 @@ struct Rgb {
 /// Map of 256 colours for maps, dark blue over green to light yellow: lightness grows in equal
 /// steps (Oklab), so it reads in grey as well.
 const std::array<Rgb, 256>& color_map();
-std::string hex(const Rgb& c);
 
 }  // namespace whirl::plot

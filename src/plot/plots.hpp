@@ -12,6 +12,11 @@ namespace whirl::plot {
 enum class Amplitude { zero_to_peak, peak_to_peak };
 /// "0-peak" or "peak-to-peak".
 const char* to_string(Amplitude a);
+constexpr Amplitude amplitude(bool peak_to_peak) {
+  return peak_to_peak ? Amplitude::peak_to_peak : Amplitude::zero_to_peak;
+}
+/// On amplitudes 0-peak: 1 or 2.
+constexpr double factor_of(Amplitude a) { return a == Amplitude::peak_to_peak ? 2.0 : 1.0; }
 
 /// A length in the unit that suits its size (m, mm, um): factor and name.
 struct DisplayUnit {
@@ -110,10 +115,6 @@ struct ModeShape {
   std::vector<std::pair<std::string, double>> stations;  ///< bearings, disks: name and s
 };
 Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mode);
-
-/// Energies (J) and the error of their balance against time (s).
-Figure plot_energy(std::string name, std::string title, std::span<const double> time,
-                   std::span<const Curve> energies, std::span<const double> balance_error);
 
 /// Error against run time, log-log; the Pareto front is drawn through the best points.
 struct StudyPoint {

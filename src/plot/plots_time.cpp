@@ -37,7 +37,7 @@ DisplayUnit length_unit(double m) {
 
 DisplayUnit unit_for(const std::string& si, double m) {
   if (si == "m") return length_unit(m);
-  if (si == "rad/s") return {30 / pi, "rpm"};
+  if (si == "rad/s") return {to_rpm(1.0), "rpm"};
   if (si == "m/s") return m < 0.5 && m > 0 ? DisplayUnit{1e3, "mm/s"} : DisplayUnit{1, si};
   if (si == "N" || si == "N m" || si == "N·m" || si == "W" || si == "J" || si == "Pa" ||
       si == "s" || si == "Hz") {
@@ -210,25 +210,6 @@ Figure plot_path_in_space(std::string name, std::string title, std::span<const d
     a.space.push_back(last);
   }
   f.axes.push_back(std::move(a));
-  return f;
-}
-
-Figure plot_energy(std::string name, std::string title, std::span<const double> time,
-                   std::span<const Curve> energies, std::span<const double> balance_error) {
-  std::vector<HistoryCurve> curves;
-  for (const auto& e : energies)
-    curves.push_back({e.label, "J", e.y, "energy"});
-  Figure f = plot_history(std::move(name), std::move(title), time, curves);
-  if (!balance_error.empty()) {
-    const HistoryCurve e{
-        "balance error", "J", {balance_error.begin(), balance_error.end()}, "balance error"};
-    Axes a = std::move(plot_history("", "", time, std::span(&e, 1)).axes[0]);
-    a.share_x = !f.axes.empty();
-    a.weight = 0.6;
-    a.series[0].style.color = 1;
-    f.axes.push_back(std::move(a));
-    f.height += 130;
-  }
   return f;
 }
 

@@ -7,9 +7,9 @@
 
 namespace whirl::plot {
 
-/// nx columns, ny rows from the top, one byte a cell. Stored without compression: the cells stand
-/// in the file as they are, ny rows of one zero byte and nx indices, so that a script can read them
-/// back.
+/// nx columns, ny rows from the top, one byte a cell: an index into the palette of at most 256
+/// colors. Written without compression (deflate's stored blocks, no filter): a script can read the
+/// cells back. @throws std::runtime_error when libpng refuses.
 std::string make_png(int nx, int ny, std::span<const std::uint8_t> cells,
                      std::span<const Rgb> palette);
 

@@ -77,6 +77,30 @@ void find_threshold(SupportCoefficients& b) {
   b.whirl_ratio = std::sqrt(w2) / std::abs(b.spin);
 }
 
+/// Spin, place, load and its attitude, gap of a support in an evaluated state.
+void describe_state(SupportCoefficients& c, const run::Job& job, const meshes::BearingNodes& n,
+                    const assembly::SupportForce& force, const system::Workspace& w) {
+  const auto node = [&](Index k) -> const system::NodeState& { return w.nodes[at(k)]; };
+  const auto place = [&](const meshes::Place& p) {
+    return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>());
+  };
+  c.spin = node(n.shaft.node).spin();
+  c.place = place(n.shaft) - place(n.other);
+  const Vec2 F = force.force(node, w.context, [](Index) { return 0.0; }).tail<2>();
+  c.load = F.norm();
+  if (c.load > 0 && c.place.norm() > 0) {
+    c.attitude = (std::atan2(c.place.y(), c.place.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
+    c.attitude -= 360.0 * std::floor(c.attitude / 360.0);
+    if (c.attitude > 360.0 - 1e-9) c.attitude = 0.0;
+  }
+  for (const assembly::SupportCondition& x : job.built.conditions) {
+    if (x.name != c.name) continue;
+    c.clearance = x.state(node).gap;
+    if (x.sommerfeld > 0 && c.load > 0)
+      c.sommerfeld = x.sommerfeld * std::abs(c.spin) / two_pi / c.load;
+  }
+}
+
 }  // namespace
 
 std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
@@ -122,29 +146,8 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
       c.K = differences(*force, w, n.shaft.node, &system::NodeState::u, 1e-9);
       c.C = differences(*force, w, n.shaft.node, &system::NodeState::du, 1e-6);
     }
-    const auto node = [&](Index k) -> const system::NodeState& {
-      return w.nodes[static_cast<std::size_t>(k)];
-    };
-    const auto place = [&](const meshes::Place& p) {
-      return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>());
-    };
-    const Vec2 r = place(n.shaft) - place(n.other);
     c.name = b.name;
-    c.spin = node(n.shaft.node).spin();
-    c.place = r;
-    const Vec2 F = force->force(node, w.context, [](Index) { return 0.0; }).tail<2>();
-    c.load = F.norm();
-    if (c.load > 0 && r.norm() > 0) {
-      c.attitude = (std::atan2(r.y(), r.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
-      c.attitude -= 360.0 * std::floor(c.attitude / 360.0);
-      if (c.attitude > 360.0 - 1e-9) c.attitude = 0.0;
-    }
-    for (const assembly::SupportCondition& x : job.built.conditions)
-      if (x.name == b.name) {
-        c.clearance = x.state(node).gap;
-        if (x.sommerfeld > 0 && c.load > 0)
-          c.sommerfeld = x.sommerfeld * std::abs(c.spin) / two_pi / c.load;
-      }
+    describe_state(c, job, n, *force, w);
     find_threshold(c);
     out.push_back(std::move(c));
   }
@@ -231,7 +234,7 @@ io::Table support_table(std::span<const SupportCoefficients> list) {
                        "at this speed; empty: never"});
   t.columns.push_back({"whirl / speed", "-", "whirl frequency over speed at that threshold"});
   for (const SupportCoefficients& c : list)
-    t.add({c.name, c.spin * 30.0 / pi, c.load, c.place.x(), c.place.y(), c.place.norm(),
+    t.add({c.name, to_rpm(c.spin), c.load, c.place.x(), c.place.y(), c.place.norm(),
            c.place.norm() / c.clearance, c.attitude, c.K(0, 0), c.K(0, 1), c.K(1, 0), c.K(1, 1),
            c.C(0, 0), c.C(0, 1), c.C(1, 0), c.C(1, 1), c.sommerfeld, c.threshold_mass,
            c.whirl_ratio});

@@ -1,17 +1,24 @@
 #include <run/results_folder.hpp>
-#include <run/sha256.hpp>
 #include <core/version.hpp>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <fmt/format.h>
+#include <sha2.h>
 #include <io/results.hpp>
 #include <io/value.hpp>
+#include <new>
 #include <system_error>
 
 namespace whirl::run {
 
-std::string deck_hash(const model::Model& model) { return sha256_hex(model.resolved); }
+std::string deck_hash(const model::Model& model) {
+  char digits[SHA256_DIGEST_STRING_LENGTH];
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(model.resolved.data());
+  if (!SHA256Data(bytes, model.resolved.size(), digits)) throw std::bad_alloc();
+  return digits;
+}
 
 namespace {
 

@@ -197,6 +197,36 @@ void add_own_curves(const model::Bearing& b, double max_speed, std::vector<plot:
   }
 }
 
+/// Table and figure, with what the bearings have themselves.
+void add_map(results::FrequencyStep& s, const model::Model& model,
+             const std::vector<std::size_t>& chosen, const analysis::CriticalMap& map,
+             const model::CriticalMapStep& law) {
+  io::Table table;
+  table.title = "Critical speeds against support stiffness";
+  table.nan_means = "no such critical speed at this stiffness";
+  table.columns.push_back({"stiffness", "N/m", "of each support, in y and z"});
+  std::vector<plot::Curve> curves;
+  std::map<std::string, int> count;
+  for (const analysis::CriticalMapLine& l : map.lines) {
+    const std::string name = line_label(l, law);
+    const std::string label = fmt::format("{} {}", name, ++count[name]);
+    table.columns.push_back({label, "rpm", ""});
+    curves.push_back({label, map.stiffness, l.speed});
+  }
+  for (std::size_t i = 0; i < map.stiffness.size(); ++i) {
+    std::vector<io::Table::Cell> row{map.stiffness[i]};
+    for (const analysis::CriticalMapLine& l : map.lines)
+      row.emplace_back(to_rpm(l.speed[i]));
+    table.add(std::move(row));
+  }
+  s.add_table("critical_map", std::move(table), false);
+  std::vector<plot::Curve> own;
+  for (const std::size_t i : chosen)
+    add_own_curves(model.bearings[i], law.max_speed, own);
+  s.add_figure(plot::plot_critical_map(
+      s.file("critical_map"), "Undamped critical speeds against support stiffness", curves, own));
+}
+
 }  // namespace
 
 void run_critical_map_step(run::Job& job, const model::Step& step,
@@ -222,36 +252,14 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
       },
       o);
 
-  io::Table table;
-  table.title = "Critical speeds against support stiffness";
-  table.nan_means = "no such critical speed at this stiffness";
-  table.columns.push_back({"stiffness", "N/m", "of each support, in y and z"});
-  std::vector<plot::Curve> curves, own;
-  std::map<std::string, int> count;
-  for (const analysis::CriticalMapLine& l : map.lines) {
-    const std::string name = line_label(l, law);
-    const std::string label = fmt::format("{} {}", name, ++count[name]);
-    table.columns.push_back({label, "rpm", ""});
-    curves.push_back({label, map.stiffness, l.speed});
-  }
-  for (std::size_t i = 0; i < map.stiffness.size(); ++i) {
-    std::vector<io::Table::Cell> row{map.stiffness[i]};
-    for (const analysis::CriticalMapLine& l : map.lines)
-      row.emplace_back(results::to_rpm(l.speed[i]));
-    table.add(std::move(row));
-  }
+  add_map(s, job.model, chosen, map, law);
   std::string names;
   for (const std::size_t i : chosen) {
     names += fmt::format("{}'{}'", names.empty() ? "" : ", ", job.model.bearings[i].name);
     s.summary()["bearings varied"].push(job.model.bearings[i].name);
   }
-  for (const std::size_t i : chosen)
-    add_own_curves(job.model.bearings[i], law.max_speed, own);
   s.summary()["lines"] = map.lines.size();
   s.summary()["stiffnesses"] = map.stiffness.size();
-  s.add_table("critical_map", std::move(table), false);
-  s.add_figure(plot::plot_critical_map(
-      s.file("critical_map"), "Undamped critical speeds against support stiffness", curves, own));
   s.section.text = fmt::format(
       "Lateral stiffness of {} supports varied together: {}. What else they do along and about the "
       "shaft stays;"
@@ -260,10 +268,10 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
   if (!rolling.empty())
     s.section.text +=
         fmt::format(" Rolling bearings keep the stiffness of the equilibrium at {:.6g} rpm.",
-                    results::to_rpm(law.max_speed));
+                    to_rpm(law.max_speed));
   if (map.lines.empty())
     s.section.text +=
-        fmt::format(" No critical speed lies below {:.6g} rpm.", results::to_rpm(law.max_speed));
+        fmt::format(" No critical speed lies below {:.6g} rpm.", to_rpm(law.max_speed));
   s.finish(
       fmt::format("{} critical speeds at {} stiffnesses", map.lines.size(), map.stiffness.size()));
 }

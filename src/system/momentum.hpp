@@ -28,7 +28,7 @@ struct MomentumOptions {
 
 class MomentumProblem final : public time::FirstOrderProblem {
  public:
-  /// Errors: E74, the system has something this form does not cover.
+  /// @throws Error E74, the system has something this form does not cover.
   MomentumProblem(const System& system, MomentumOptions options = {});
   /// Empty when the momentum form covers the system, else what stands against it.
   static std::string obstacle(const System& system);

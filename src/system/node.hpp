@@ -14,6 +14,7 @@
 #include <system/node_places.hpp>
 #include <array>
 #include <cstddef>
+#include <limits>
 
 namespace whirl::system {
 
@@ -78,6 +79,11 @@ struct Context {
   double whirl = 0.0, growth = 0.0;
   double whirl_side =
       0.0;  ///< compared with the spin in place of whirl (which may still be an iterate)
+  /// rad/s, not negative: frequency w of the small motions a exp(i w t) that are asked about.
+  /// Coefficients that were measured or computed by shaking (tables of bearings and seals) may
+  /// depend on it beside the spin. NaN: none is asked about, as in a motion in time; such elements
+  /// then answer for the frequency of the shaft's own spin (synchronous reduction).
+  double frequency = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Force contribution in X: 3 (u) or 7 (u, d, phi) entries a node.

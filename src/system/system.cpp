@@ -11,7 +11,6 @@
 namespace whirl::system {
 
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// One 7x7 block in X (columns u, d, phi) to the 6x6 block in q (u, phi, gamma): y = J_i^T x J_j,
 /// where gamma_column(k, r) is row r of column gamma_k. Column-major, spelled out: it runs for

@@ -59,6 +59,8 @@ class System {
   const std::vector<Hold>& holds() const { return holds_; }
   const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
   const Vec3& gravity() const { return gravity_; }
+  /// The base accelerates as time goes on.
+  bool base_moves() const { return varies(base_[0]) || varies(base_[1]) || varies(base_[2]); }
   /// The equations are affine in the unknowns with constant M, C, K: no rotation is unknown, and
   /// every kernel says so.
   bool linear() const { return linear_; }

@@ -1,9 +1,25 @@
-// Cubic Hermite interpolation of a step: q from (q, v) at both ends, v = q', a = q''.
+// Dense output of a step: its ends, and cubic Hermite interpolation between them.
 #pragma once
 #include <time/problem.hpp>
 
 namespace whirl::time {
 
+/// State at one end of a step.
+struct StepEnd {
+  double t;
+  const VecX &q, &v, &a;
+};
+
+/// Whether t is that end; then its state, to the last bit.
+inline bool take_end(double t, const StepEnd& end, Ref q, Ref v, Ref a) {
+  if (t != end.t) return false;
+  q = end.q;
+  v = end.v;
+  a = end.a;
+  return true;
+}
+
+/// q from (q, v) at both ends, v = q', a = q''.
 inline void hermite(double theta, double h, const VecX& q0, const VecX& v0, const VecX& q1,
                     const VecX& v1, Ref q, Ref v, Ref a) {
   const double x = theta, y = 1.0 - theta;

@@ -1,4 +1,5 @@
 #include <time/stepper.hpp>
+#include <time/hermite.hpp>
 
 #include <core/error.hpp>
 #include <fmt/format.h>
@@ -9,7 +10,6 @@
 
 namespace whirl::time {
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 /// A stop this close to the step's end (relative to the step) is the step's end: no slivers of a
 /// step remain.
 constexpr double landing_slack = 1e-9;
@@ -327,13 +327,7 @@ StepReport Stepper::advance() {
       control_.newton_failed(target.h);
     }
     if (h_wanted < dt_min || tries + 1 >= options_.max_attempts) {
-      q_ = q0_;
-      v_ = v0_;
-      a_ = a0_;
-      q_low_ = q0_low_;
-      v_low_ = v0_low_;
-      t_ = t0_;
-      t_low_ = t0_low_;
+      return_to_start();
       report.status = result.status;
       h_next_ = std::max(h_wanted, dt_min);
       return report;
@@ -374,6 +368,16 @@ StepReport Stepper::advance() {
   return report;
 }
 
+void Stepper::return_to_start() {
+  q_ = q0_;
+  v_ = v0_;
+  a_ = a0_;
+  q_low_ = q0_low_;
+  v_low_ = v0_low_;
+  t_ = t0_;
+  t_low_ = t0_low_;
+}
+
 StepReport Stepper::shorten_to(double t) {
   StepReport report;
   if (!have_step_ || !(t > t0_ && t < t_))
@@ -390,14 +394,7 @@ StepReport Stepper::shorten_to(double t) {
   report.newton_iterations = result.iterations;
   report.error = result.error;
   if (result.status != StepStatus::ok) {
-    // back to the start of the step; the caller may go on with advance()
-    q_ = q0_;
-    v_ = v0_;
-    a_ = a0_;
-    q_low_ = q0_low_;
-    v_low_ = v0_low_;
-    t_ = t0_;
-    t_low_ = t0_low_;
+    return_to_start();  // the caller may go on with advance()
     have_step_ = false;
     accept_pending_ = false;
     report.t1 = t_;
@@ -416,18 +413,8 @@ StepReport Stepper::shorten_to(double t) {
 }
 
 void Stepper::interpolate(double t, Ref q, Ref v, Ref a) const {
-  if (!have_step_ || t == t_) {
-    q = q_;
-    v = v_;
-    a = a_;
-    return;
-  }
-  if (t == t0_) {
-    q = q0_;
-    v = v0_;
-    a = a0_;
-    return;
-  }
+  if (take_end(have_step_ ? t : t_, {t_, q_, v_, a_}, q, v, a)) return;
+  if (take_end(t, {t0_, q0_, v0_, a0_}, q, v, a)) return;
   dense(((t - t0_) - t0_low_) / h_, q, v, a);
   problem_.impose(t, q, v, a);
 }

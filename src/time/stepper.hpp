@@ -106,6 +106,8 @@ class Stepper : public Integrator {
   void linearize(double h, bool inside);
   Attempt attempt_with_recovery(double h);
   void begin_step();
+  /// The state of the step's start is the present one again.
+  void return_to_start();
   void after_discontinuity(bool impulse);
   void choose_first_step();
   void next_stop(double& t, bool& is_break) const;

@@ -286,10 +286,10 @@ struct Assembled {
 // M, C and K of every kind of element in the assembled system are the derivatives of what it adds
 // to the residual, to 1e-7 of the largest term in the row (terms in force units: entry times the
 // size of its motion). Each kind alone, so that the shaft's elastic forces do not hide a film in
-// their rounding. Eighth-order differences of a hundredth of the motion leave 1e-12. Where a border
-// of cavitation passes a node of the film's grid within that step the force has a bend in its
-// slope: then the limit is taken with steps of a thousandth and a ten-thousandth, which leave
-// 1e-10.
+// their rounding. Eighth-order differences of a hundredth of the motion leave 1e-12. The ends of a
+// film move without a grid to pass, but where one reaches the edge of its pad within that step the
+// force has a bend in its slope: then the limit is taken with steps of a thousandth and a
+// ten-thousandth, which leave 1e-10.
 class SupportTangents : public ::testing::TestWithParam<Case> {};
 
 TEST_P(SupportTangents, AreDerivativesInTheAssembledSystem) {

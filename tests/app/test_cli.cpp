@@ -1,6 +1,5 @@
 // The program as the user meets it: exit codes, streams, and files, through the real executable.
 #include <run/results_folder.hpp>
-#include <run/sha256.hpp>
 #include <core/error.hpp>
 #include <gtest/gtest.h>
 #include <io/value.hpp>
@@ -170,7 +169,7 @@ TEST_F(Cli, ResolvedDeckChecksAndHashes) {
   write("resolved.toml", r.out);
   EXPECT_EQ(whirl("check resolved.toml --resolved").out, r.out);
   const auto model = deck::load_model(folder_ / "resolved.toml");
-  EXPECT_EQ(run::deck_hash(model), run::sha256_hex(r.out));
+  EXPECT_EQ(model.resolved, r.out);
 }
 
 TEST_F(Cli, ResultsFolder) {
@@ -181,7 +180,7 @@ TEST_F(Cli, ResultsFolder) {
   const auto where = run::prepare_results(model, o);
   EXPECT_EQ(read(where / "resolved.toml"), model.resolved);
   const auto run = io::read_json(where / "run.json");
-  EXPECT_EQ(run.at("sha256").text(), run::sha256_hex(model.resolved));
+  EXPECT_EQ(run.at("sha256").text(), run::deck_hash(model));
   EXPECT_EQ(run.at("title").text(), "Two sections");
   for (const auto& e : fs::directory_iterator(where))
     EXPECT_NE(e.path().filename().string()[0], '.') << "left behind: " << e.path();
@@ -265,15 +264,14 @@ TEST_F(Cli, ManPageNamesEveryCommandAndOption) {
   }
 }
 
-TEST(Sha256, KnownDigests) {  // FIPS 180-4 examples
-  EXPECT_EQ(run::sha256_hex(""),
-            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(run::sha256_hex("abc"),
-            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  EXPECT_EQ(run::sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+TEST(DeckHash, IsTheSha256OfTheResolvedText) {  // examples of FIPS 180-4
+  model::Model model;
+  model.resolved = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
+  EXPECT_EQ(run::deck_hash(model),
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
-  EXPECT_EQ(run::sha256_hex(std::string(1000000, 'a')),
-            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  model.resolved.clear();
+  EXPECT_EQ(run::deck_hash(model),
+            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
 // whatever code a message can carry is explained

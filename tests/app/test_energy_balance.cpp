@@ -3,10 +3,8 @@
 #include "deck_run.hpp"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <fstream>
 
 using whirl::test::DeckRun;
 
@@ -21,16 +19,15 @@ Energy run(const std::string& deck) {
   const DeckRun d(deck);
   EXPECT_EQ(d.exit, 0) << d.log;
   if (d.exit != 0) return {};
-  const nlohmann::json s =
-      nlohmann::json::parse(std::ifstream(d.folder / "r" / "summary.json"))["steps"]["t"];
-  const nlohmann::json& e = s["energy"];
-  return {e["stored at start [J]"],
-          e["stored at end [J]"],
-          e["supplied [J]"],
-          e["dissipated [J]"],
-          e["largest defect [J]"],
-          s["accuracy"]["energy defect / energy turned over"],
-          s.count("warnings") ? s["warnings"].dump() : std::string()};
+  const io::Value s = d.summary("t");
+  const io::Value& e = s.at("energy");
+  return {e.at("stored at start [J]").number(),
+          e.at("stored at end [J]").number(),
+          e.at("supplied [J]").number(),
+          e.at("dissipated [J]").number(),
+          e.at("largest defect [J]").number(),
+          s.at("accuracy").at("energy defect / energy turned over").number(),
+          io::to_json(s.at("warnings"))};
 }
 
 /// A disk of 20 kg between two bearings on a damped shaft, unbalanced; parts: drives and the like;

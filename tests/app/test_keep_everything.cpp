@@ -2,6 +2,7 @@
 // numbers it writes, to the accuracy asked for. Transients run for at most `longest` seconds of
 // their time.
 #include <run/options.hpp>
+#include <steps/run_deck.hpp>
 #include <deck/deck.hpp>
 #include <gtest/gtest.h>
 #include <io/value.hpp>

@@ -5,7 +5,6 @@
 #include <core/types.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cmath>
@@ -15,11 +14,6 @@ using test::Columns;
 using test::DeckRun;
 
 namespace {
-
-nlohmann::json summary_of(const DeckRun& run) {
-  std::ifstream in(run.folder / "r" / "summary.json");
-  return nlohmann::json::parse(in);
-}
 
 /// A shaft of 6 m that sags by 10 mm under its weight, free to shorten: both planes are alike.
 std::string sagging(const std::string& steps) {
@@ -124,10 +118,9 @@ max_speed = "500 rpm"
 about = "undeformed"
 )"));
   ASSERT_EQ(run.exit, 0) << run.log;
-  const auto steps = summary_of(run)["steps"];
-  EXPECT_EQ(steps["sag"]["linearised"], "about the static equilibrium at 300 rpm");
-  EXPECT_EQ(steps["straight"]["linearised"], "about the undeformed rotor");
-  EXPECT_EQ(steps["c"]["linearised"], "about the undeformed rotor");
+  EXPECT_EQ(run.summary("sag").at("linearised").text(), "about the static equilibrium at 300 rpm");
+  EXPECT_EQ(run.summary("straight").at("linearised").text(), "about the undeformed rotor");
+  EXPECT_EQ(run.summary("c").at("linearised").text(), "about the undeformed rotor");
   EXPECT_TRUE(run.says("about the static equilibrium at 300 rpm")) << run.log;
   EXPECT_TRUE(run.says("about the undeformed rotor")) << run.log;
   // pinned straight beam of 6 m by Euler-Bernoulli: pi/2 sqrt(EI/(rho A))/L^2; shear and rotary
@@ -205,14 +198,7 @@ max_speed = "30000 rpm"
 )" + more;
 }
 
-}  // namespace
-
-// Tables and linear bearings of the same coefficients have the same map, tilting stiffness
-// included: 1740 rpm at 1e7 N/m. A thrust bearing and a stop carry nothing laterally and are not
-// varied. (The mesh shares an element's mass with a support of constant stiffness in another way
-// than with a table: 4e-5 of the highest critical speeds here.)
-TEST(CriticalMap, KeepsEveryStiffnessButTheOneVaried) {
-  const std::string linear = map_deck(R"([[bearing]]
+const std::string two_supports = R"([[bearing]]
 name = "A"
 at = "a:start"
 type = "linear"
@@ -227,7 +213,16 @@ type = "linear"
 kyy = "1e7 N/m"
 kzz = "1e7 N/m"
 krr = "2e5 N.m/rad"
-)");
+)";
+
+}  // namespace
+
+// Tables and linear bearings of the same coefficients have the same map, tilting stiffness
+// included: 1740 rpm at 1e7 N/m. A thrust bearing and a stop carry nothing laterally and are not
+// varied. (The mesh shares an element's mass with a support of constant stiffness in another way
+// than with a table: 4e-5 of the highest critical speeds here.)
+TEST(CriticalMap, KeepsEveryStiffnessButTheOneVaried) {
+  const std::string linear = map_deck(two_supports);
   const std::string table = map_deck(R"([[bearing]]
 name = "A"
 at = "a:start"
@@ -353,22 +348,7 @@ report = false
 // Two rotors, one on supports that are varied, one on others: the critical speed of the second is a
 // level line through which that of the first goes.
 TEST(CriticalMap, LinesGoByShapeThroughCrossings) {
-  const DeckRun run(map_deck(R"([[bearing]]
-name = "A"
-at = "a:start"
-type = "linear"
-kxx = "1e8 N/m"
-kyy = "1e7 N/m"
-kzz = "1e7 N/m"
-krr = "2e5 N.m/rad"
-[[bearing]]
-name = "B"
-at = "a:mid"
-type = "linear"
-kyy = "1e7 N/m"
-kzz = "1e7 N/m"
-krr = "2e5 N.m/rad"
-[[shaft]]
+  const DeckRun run(map_deck(two_supports + R"([[shaft]]
 name = "second"
 material = "steel"
 origin = ["0 m", "1 m", "0 m"]
@@ -429,12 +409,12 @@ at = "d"
   };
   const DeckRun run(start("mode_kind = \"torsional\"\n"));
   ASSERT_EQ(run.exit, 0) << run.log;
-  const auto modes = summary_of(run)["steps"]["modes"]["modes"];
+  const io::Value modes = run.summary("modes").at("modes");
   int torsional = 0;
-  for (const auto& m : modes) {
-    EXPECT_TRUE(m.contains("damping ratio"));
-    if (m["kind"] != "torsional") continue;
-    EXPECT_EQ(m["label"], fmt::format("torsional {}", ++torsional));
+  for (const io::Value& m : modes.items()) {
+    EXPECT_FALSE(m.at("damping ratio").is_null());
+    if (m.at("kind").text() != "torsional") continue;
+    EXPECT_EQ(m.at("label").text(), fmt::format("torsional {}", ++torsional));
   }
   EXPECT_GE(torsional, 1);
   // the twist of the first torsional mode moves no probe: the disk stays where the weight puts it

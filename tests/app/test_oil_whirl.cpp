@@ -6,11 +6,9 @@
 #include <core/types.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <tuple>
 
 using namespace whirl;
@@ -195,10 +193,9 @@ TEST(OilWhirlRuns, WhipAtLooseTolerances) {
   const auto whip = [](double tolerance) {
     const DeckRun d(run_in_mode(1.02 * onset, 26.0, "100 um", tolerance));
     EXPECT_EQ(d.exit, 0) << d.log;
-    std::ifstream in(d.folder / "r" / "summary.json");
-    const auto run = nlohmann::json::parse(in).at("steps").at("run");
-    return std::pair(run.at("peaks").at("journal").at("amplitude 0-peak [m]").get<double>(),
-                     run.at("integrator").at("steps").get<double>());
+    const io::Value run = d.summary("run");
+    return std::pair(run.at("peaks").at("journal").at("amplitude 0-peak [m]").number(),
+                     run.at("integrator").at("steps").number());
   };
   const auto [exact, most] = whip(1e-6);
   for (const double tolerance : {1e-3, 1e-4}) {

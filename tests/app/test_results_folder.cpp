@@ -1,5 +1,6 @@
 // A results folder belongs to its user: runs replace and remove what runs made and leave everything
 // else alone; one run at a time.
+#include "unbalanced_rotor.hpp"
 #include <gtest/gtest.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -30,46 +31,14 @@ void write(const fs::path& p, const std::string& text) {
   std::ofstream(p, std::ios::binary) << text;
 }
 
-constexpr const char* rotor = R"(format = 1
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "od[mm]", "min_elements"]
-rows = [["left", 300, 20, 3], ["right", 300, 20, 3]]
-[[disk]]
-name = "disk"
-at = "left:end"
-mass = "3 kg"
-Ip = "0.015 kg.m^2"
-Id = "0.0076 kg.m^2"
-[[unbalance]]
-at = "disk"
-amount = "60 g.mm"
-[[bearing]]
-name = "A"
-at = "left:start"
-type = "linear"
-kxx = "1e7 N/m"
-kyy = "2e6 N/m"
-kzz = "1e6 N/m"
-cyy = "200 N.s/m"
-czz = "200 N.s/m"
-[[bearing]]
-name = "B"
-at = "right:end"
-type = "linear"
-kyy = "2e6 N/m"
-kzz = "1e6 N/m"
-cyy = "200 N.s/m"
-czz = "200 N.s/m"
-[[probe]]
+constexpr const char* probe = R"([[probe]]
 name = "PROBE"
 at = "disk"
 )";
 
-std::string deck(const std::string& rest, const std::string& probe = "P") {
-  std::string text = rotor;
-  text.replace(text.find("PROBE"), 5, probe);
+std::string deck(const std::string& rest, const std::string& name = "P") {
+  std::string text = std::string(whirl::test::unbalanced_rotor) + probe;
+  text.replace(text.find("PROBE"), 5, name);
   return text + rest;
 }
 

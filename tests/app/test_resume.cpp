@@ -1,4 +1,5 @@
 // A run that is killed, interrupted and continued leaves the files of an uninterrupted one.
+#include "unbalanced_rotor.hpp"
 #include <core/plugin.hpp>
 #include <gtest/gtest.h>
 #include <fcntl.h>
@@ -26,39 +27,7 @@ std::string read(const fs::path& p) {
 
 /// Unbalanced rotor on soft bearings through its critical speed under a motor torque: events of
 /// every kind, some seconds of work.
-constexpr const char* deck = R"(format = 1
-[shaft]
-name = "rotor"
-material = "steel"
-columns = ["name", "length[mm]", "od[mm]", "min_elements"]
-rows = [["left", 300, 20, 3], ["right", 300, 20, 3]]
-[[disk]]
-name = "disk"
-at = "left:end"
-mass = "3 kg"
-Ip = "0.015 kg.m^2"
-Id = "0.0076 kg.m^2"
-[[unbalance]]
-at = "disk"
-amount = "60 g.mm"
-[[bearing]]
-name = "A"
-at = "left:start"
-type = "linear"
-kxx = "1e7 N/m"
-kyy = "2e6 N/m"
-kzz = "1e6 N/m"
-cyy = "200 N.s/m"
-czz = "200 N.s/m"
-[[bearing]]
-name = "B"
-at = "right:end"
-type = "linear"
-kyy = "2e6 N/m"
-kzz = "1e6 N/m"
-cyy = "200 N.s/m"
-czz = "200 N.s/m"
-[[drive]]
+const std::string deck = std::string(whirl::test::unbalanced_rotor) + R"([[drive]]
 name = "motor"
 at = "left:start"
 type = "torque"
@@ -261,6 +230,19 @@ TEST_F(Resume, DamagedCheckpointIsAnError) {
   std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << c;
   EXPECT_EQ(run("a.toml", "r", true), 5);
   EXPECT_NE(read("log.txt").find("damaged checkpoint"), std::string::npos) << read("log.txt");
+}
+
+TEST_F(Resume, CheckpointOfAnotherVersionIsAnError) {
+  write_deck("a.toml", "0.1 s");
+  ASSERT_EQ(run("a.toml", "r", false), 0);
+  std::string c = read("r/checkpoint/run_up.whirl");
+  const std::string head = "whirl checkpoint ";
+  ASSERT_EQ(c.substr(0, head.size()), head);
+  c[head.size()] = '1';
+  std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << c;
+  EXPECT_EQ(run("a.toml", "r", true), 5);
+  EXPECT_NE(read("log.txt").find("error[E91]"), std::string::npos) << read("log.txt");
+  EXPECT_NE(read("log.txt").find("another version"), std::string::npos) << read("log.txt");
 }
 
 TEST_F(Resume, WithoutACheckpointStartsAnew) {

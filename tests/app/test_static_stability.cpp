@@ -41,6 +41,44 @@ report = false
 )" + more;
 }
 
+/// Two bars of half span 1 m and rise 0.1 m under a load at the apex; `elements` a bar, a step.
+std::string shallow_arch(int elements, const std::string& step) {
+  const std::string n = std::to_string(elements);
+  return R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "soft"
+E = "1 MPa"
+nu = 0.3
+density = "1000 kg/m^3"
+[[shaft]]
+name = "bars"
+material = "soft"
+rotating = false
+path = [{ to = ["1 m", "0.1 m", "0 m"] }, { to = ["2 m", "0 m", "0 m"] }]
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 1004.98756211209, 20, )" +
+         n + R"(], ["b", 1004.98756211209, 20, )" + n +
+         R"(]]
+[[bearing]]
+name = "left"
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+[[bearing]]
+name = "right"
+at = "b:end"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+[[load]]
+at = "b:start"
+force = ["0 N", "-1 N", "0 N"]
+[output]
+report = false
+)" + step;
+}
+
 /// The text of a file.
 std::string text_of(const std::filesystem::path& file) {
   std::ostringstream out;
@@ -118,43 +156,12 @@ kzz = "-1e5 N/m"
 }
 
 TEST(StaticStability, PathThatMissesItsLoad) {
-  // two bars of half span 1 m and rise 0.1 m that snap through; too few points to get to the load
-  const std::string bars = R"(format = 1
-[model]
-gravity = "0 m/s^2"
-[[material]]
-name = "soft"
-E = "1 MPa"
-nu = 0.3
-density = "1000 kg/m^3"
-[[shaft]]
-name = "bars"
-material = "soft"
-rotating = false
-path = [{ to = ["1 m", "0.1 m", "0 m"] }, { to = ["2 m", "0 m", "0 m"] }]
-columns = ["name", "length[mm]", "od[mm]", "min_elements"]
-rows = [["a", 1004.98756211209, 20, 4], ["b", 1004.98756211209, 20, 4]]
-[[bearing]]
-name = "left"
-at = "a:start"
-type = "rigid"
-directions = ["x", "y", "z", "rx", "ry", "rz"]
-[[bearing]]
-name = "right"
-at = "b:end"
-type = "rigid"
-directions = ["x", "y", "z", "rx", "ry", "rz"]
-[[load]]
-at = "b:start"
-force = ["0 N", "-1 N", "0 N"]
-[output]
-report = false
-[[step]]
+  // they snap through; too few points to get to the load
+  const DeckRun run(shallow_arch(4, R"([[step]]
 name = "snap"
 type = "static"
 path = { load = 10, steps = 100, max_points = 30 }
-)";
-  const DeckRun run(bars);
+)"));
   EXPECT_EQ(run.exit, 4) << run.log;
   EXPECT_TRUE(run.says("error[E69]")) << run.log;
   EXPECT_TRUE(run.says("max_points")) << run.log;
@@ -200,41 +207,11 @@ TEST(StaticStability, BucklingAndItsPath) {
   EXPECT_FALSE(run.says("W09")) << run.log;
   // a shallow arch: the state before buckling is not small, and the path has a limit point long
   // before the factor
-  const DeckRun arch(R"(format = 1
-[model]
-gravity = "0 m/s^2"
-[[material]]
-name = "soft"
-E = "1 MPa"
-nu = 0.3
-density = "1000 kg/m^3"
-[[shaft]]
-name = "bars"
-material = "soft"
-rotating = false
-path = [{ to = ["1 m", "0.1 m", "0 m"] }, { to = ["2 m", "0 m", "0 m"] }]
-columns = ["name", "length[mm]", "od[mm]", "min_elements"]
-rows = [["a", 1004.98756211209, 20, 8], ["b", 1004.98756211209, 20, 8]]
-[[bearing]]
-name = "left"
-at = "a:start"
-type = "rigid"
-directions = ["x", "y", "z", "rx", "ry", "rz"]
-[[bearing]]
-name = "right"
-at = "b:end"
-type = "rigid"
-directions = ["x", "y", "z", "rx", "ry", "rz"]
-[[load]]
-at = "b:start"
-force = ["0 N", "-1 N", "0 N"]
-[output]
-report = false
-[[step]]
+  const DeckRun arch(shallow_arch(8, R"([[step]]
 name = "b"
 type = "buckling"
 modes = 2
-)");
+)"));
   EXPECT_EQ(arch.exit, 0) << arch.log;
   EXPECT_TRUE(arch.says("W09")) << arch.log;
 }

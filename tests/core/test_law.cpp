@@ -28,7 +28,6 @@ std::vector<Case> all() {
           {"piecewise",
            make_piecewise({-0.5, 0.8, 2.0}, {table, make_harmonic(0, 1, 2, 0), make_constant(7)})},
           {"sum", make_sum({table, make_smooth_step(0, 2, 0, 3)})},
-          {"scaled", make_scaled(-2.5, table)},
           {"angle", make_angle_of_speed(make_smooth_step(0.2, 1.7, 1, -4), 0.7)},
           {"angle of harmonic", make_angle_of_speed(make_harmonic(1, 2, 5, 0.3), 0.7)}};
 }
@@ -81,7 +80,6 @@ TEST(Law, IntegralsAgainstClosedForms) {
   EXPECT_DOUBLE_EQ(make_piecewise({0, 1}, {make_constant(2), make_constant(5)})->integral(3), 12.0);
   EXPECT_DOUBLE_EQ(make_piecewise({0, 1}, {make_constant(2), make_constant(5)})->integral(-3),
                    -6.0);
-  EXPECT_DOUBLE_EQ(make_scaled(3, make_polynomial({0, 1}))->integral(2), 6.0);
   // double integral of a linear ramp: t^3/6
   EXPECT_NEAR(make_angle_of_speed(make_ramp(0, 10, 0, 10), 1)->integral(3), 3 + 4.5, 1e-14);
   EXPECT_NEAR(make_angle_of_speed(make_ramp(0, 10, 0, 10), 1)->integral(-3), -3, 1e-14);
@@ -138,7 +136,6 @@ TEST(Law, BreakpointsAreListedOnce) {
             (std::vector<double>{1, 1.5}));
   EXPECT_TRUE(make_harmonic(0, 1, 1, 0)->breakpoints().empty());
   EXPECT_EQ(make_angle_of_speed(a, 0)->breakpoints(), a->breakpoints());
-  EXPECT_EQ(make_scaled(2, a)->breakpoints(), a->breakpoints());
 }
 
 TEST(Law, BadInputIsRefused) {

@@ -1,7 +1,7 @@
 // Short journal bearing: film integrals, published and exact loci, coefficients and whirl onsets.
 #include "conformance.hpp"
+#include "journal_statics.hpp"
 #include <core/error.hpp>
-#include <elements/films/journal_statics.hpp>
 #include <elements/films/short_journal.hpp>
 
 using namespace whirl;

@@ -182,16 +182,6 @@ inline std::vector<plot::Figure> gallery() {
     }
     all.push_back(plot::plot_mode_shape("mode", "Mode shape", m));
   }
-  {  // energies
-    std::vector<double> t = grid(0, 10, 4000), kinetic, potential, error;
-    for (const double x : t) {
-      kinetic.push_back(49 + 1.2 * std::sin(5 * x) * std::sin(x));
-      potential.push_back(-1.2 * std::sin(5 * x) * std::sin(x));
-      error.push_back(2e-7 * std::sin(40 * x) * x);
-    }
-    const plot::Curve e[] = {{"kinetic", {}, kinetic}, {"potential", {}, potential}};
-    all.push_back(plot::plot_energy("energy", "Energies", t, e, error));
-  }
   {  // error against run time
     std::vector<plot::StudyCurve> curves;
     for (const auto& [label, order, cost] : {std::tuple{"Radau IIA 5", 5.0, 0.02},

@@ -66,7 +66,7 @@ std::vector<Listed> read_pvd(const fs::path& p) {
 class Frames : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!vtk_available()) GTEST_SKIP() << "built without VTK";
+    if (!Plugin::available("vtk")) GTEST_SKIP() << "built without VTK";
   }
   void write(FrameWriter& w, const Scene& scene, double t) {
     const auto p = poses_at(scene, t);

@@ -3,13 +3,14 @@
 #include "gallery.hpp"
 #include "temp_folder.hpp"
 #include "xml_check.hpp"
-#include <io/collector.hpp>
 #include <io/file.hpp>
+#include <plot/decimate.hpp>
 #include <plot/palette.hpp>
 #include <plot/png.hpp>
 #include <plot/svg.hpp>
 #include <core/text.hpp>
 #include <plot/ticks.hpp>
+#include <png.h>
 #include <algorithm>
 #include <random>
 #include <set>
@@ -76,49 +77,7 @@ TEST(Decimate, RepeatedOrbitIsDrawnOnce) {
   EXPECT_EQ(far, 100.0);
 }
 
-TEST(plot::Envelope, BoundedMemoryExactExtremes) {
-  std::mt19937 rng(3);
-  std::normal_distribution<double> noise;
-  plot::Envelope e(256);
-  double lo = 0, hi = 0, t_hi = 0;
-  for (int i = 0; i < 1000000; ++i) {
-    const double v = noise(rng);
-    if (v > hi) {
-      hi = v;
-      t_hi = i;
-    }
-    lo = std::min(lo, v);
-    e.add(i, v);
-  }
-  std::vector<double> x, y;
-  e.points(x, y);
-  EXPECT_LE(x.size(), 4u * 256);
-  EXPECT_GT(x.size(), 2u * 128);
-  EXPECT_TRUE(std::is_sorted(x.begin(), x.end()));
-  EXPECT_EQ(*std::max_element(y.begin(), y.end()), hi);
-  EXPECT_EQ(*std::min_element(y.begin(), y.end()), lo);
-  EXPECT_EQ(x[static_cast<std::size_t>(std::max_element(y.begin(), y.end()) - y.begin())], t_hi);
-  EXPECT_EQ(x.front(), 0);
-  EXPECT_EQ(x.back(), 999999);
-}
-
-TEST(Collector, KeepsEnvelopeAndLastRowsInWrittenUnits) {
-  const Channel channels[] = {{"time", "s", "", {}, 1, ""}, {"speed", "rpm", "", {}, 10, ""}};
-  Collector c(64, 5);
-  c.begin(channels);
-  for (int i = 0; i < 1000; ++i)
-    c.append(std::array{0.1 * i, static_cast<double>(i)});
-  std::vector<double> x, y;
-  c.curve(1, x, y);
-  EXPECT_EQ(y.back(), 9990);
-  EXPECT_EQ(c.last()["speed"], (std::vector<double>{9950, 9960, 9970, 9980, 9990}));
-  Collector again(64, 5);
-  again.resume(channels, 5);
-  replay(c.last(), channels, 5, again);
-  EXPECT_EQ(again.last()["time"], c.last()["time"]);
-}
-
-TEST(plot::Ticks, RoundNumbersInsideTheRange) {
+TEST(Ticks, RoundNumbersInsideTheRange) {
   const plot::Ticks a = plot::linear_ticks(0.3, 9.7, 5);
   EXPECT_EQ(a.major, (std::vector<double>{2, 4, 6, 8}));
   EXPECT_EQ(a.labels, (std::vector<std::string>{"2", "4", "6", "8"}));
@@ -138,7 +97,7 @@ TEST(plot::Ticks, RoundNumbersInsideTheRange) {
     }
 }
 
-TEST(plot::Ticks, DecadesAndTheirFractions) {
+TEST(Ticks, DecadesAndTheirFractions) {
   const plot::Ticks a = plot::log_ticks(2e-8, 3, 5);
   EXPECT_EQ(a.labels.size(), a.major.size());
   EXPECT_LE(a.major.size(), 6u);
@@ -176,16 +135,74 @@ TEST(Palette, MapGrowsLighterInEqualSteps) {
   EXPECT_GT(last, 0.8);
 }
 
-TEST(Png, CellsStandInTheFileAsTheyAre) {
-  std::vector<std::uint8_t> cells(70000);
+struct Picture {
+  std::vector<std::uint8_t> cells, palette;
+  png_uint_32 width = 0, height = 0;
+};
+
+Picture read_png(const std::string& png) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  Picture p;
+  if (!png_image_begin_read_from_memory(&image, png.data(), png.size())) return p;
+  image.format = PNG_FORMAT_RGB_COLORMAP;
+  p.width = image.width;
+  p.height = image.height;
+  p.cells.resize(PNG_IMAGE_SIZE(image));
+  p.palette.resize(PNG_IMAGE_COLORMAP_SIZE(image));
+  if (!png_image_finish_read(&image, nullptr, p.cells.data(), 0, p.palette.data())) p.cells.clear();
+  return p;
+}
+
+std::uint32_t big_endian(const std::string& s, std::size_t at) {
+  std::uint32_t v = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    v = v << 8 | static_cast<unsigned char>(s[at + k]);
+  return v;
+}
+
+/// Cells as the report's script takes them (report.js, cellsOf): stored blocks and nothing else.
+std::string stored_rows(const std::string& png) {
+  std::string stream, rows;
+  for (std::size_t i = 8; i < png.size(); i += 12 + big_endian(png, i))
+    if (png.substr(i + 4, 4) == "IDAT") stream += png.substr(i + 8, big_endian(png, i));
+  const auto byte = [&](std::size_t j) { return static_cast<unsigned char>(stream.at(j)); };
+  std::size_t j = 2;
+  for (bool last = false; !last;) {
+    last = byte(j) & 1;
+    EXPECT_EQ(byte(j) & 6, 0) << "a compressed block";
+    const std::size_t n = byte(j + 1) | static_cast<std::size_t>(byte(j + 2)) << 8;
+    rows += stream.substr(j + 5, n);
+    j += 5 + n;
+  }
+  return rows;
+}
+
+TEST(Png, CellsAreReadBackByLibraryAndScript) {
+  constexpr std::size_t width = 700, height = 100;
+  std::vector<std::uint8_t> cells(width * height);
   for (std::size_t i = 0; i < cells.size(); ++i)
-    cells[i] = static_cast<std::uint8_t>(i * 31);
-  const std::string png = plot::make_png(700, 100, cells, plot::color_map());
-  EXPECT_EQ(png.substr(1, 3), "PNG");
-  EXPECT_NE(png.find(std::string("\0", 1) + std::string(cells.begin() + 700, cells.begin() + 1400)),
-            std::string::npos);
-  EXPECT_NE(png.find("IEND\xae\x42\x60\x82"),
-            std::string::npos);  // the one checksum everybody knows
+    cells[i] = static_cast<std::uint8_t>(i * 31 + i / 97);
+  const std::string png = plot::make_png(width, height, cells, plot::color_map());
+  const Picture p = read_png(png);
+  EXPECT_EQ(p.width, width);
+  EXPECT_EQ(p.height, height);
+  EXPECT_EQ(p.cells, cells);
+  ASSERT_EQ(p.palette.size(), 3 * plot::color_map().size());
+  const plot::Rgb color = plot::color_map()[200];
+  EXPECT_EQ(p.palette[600], color.r);
+  EXPECT_EQ(p.palette[601], color.g);
+  EXPECT_EQ(p.palette[602], color.b);
+  std::string rows;
+  for (std::size_t y = 0; y < height; ++y)
+    rows += '\0' + std::string(cells.begin() + static_cast<std::ptrdiff_t>(y * width),
+                               cells.begin() + static_cast<std::ptrdiff_t>((y + 1) * width));
+  EXPECT_EQ(stored_rows(png), rows);
+}
+
+TEST(Png, TooManyColorsAreRefused) {
+  const std::vector<std::uint8_t> cells(4);
+  EXPECT_THROW(plot::make_png(2, 2, cells, std::vector<plot::Rgb>(300)), std::runtime_error);
 }
 
 TEST(XmlCheck, FindsFaults) {

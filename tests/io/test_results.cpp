@@ -147,10 +147,10 @@ TEST(Csv, FullDiskIsAnIoError) {
   EXPECT_EQ(file_count(dir.path()), 1u);  // the series, and no temporary
 }
 
-class plot::Series : public ::testing::TestWithParam<const char*> {
+class Series : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (GetParam() == std::string("hdf5") && !hdf5_available())
+    if (GetParam() == std::string("hdf5") && !Plugin::available("hdf5"))
       GTEST_SKIP() << "built without HDF5";
   }
   TimeSeriesPtr make(const fs::path& p, SeriesOptions o = {}) const {
@@ -168,10 +168,10 @@ class plot::Series : public ::testing::TestWithParam<const char*> {
     }
   }
 };
-INSTANTIATE_TEST_SUITE_P(Formats, plot::Series, ::testing::Values("csv", "hdf5"),
+INSTANTIATE_TEST_SUITE_P(Formats, Series, ::testing::Values("csv", "hdf5"),
                          [](const auto& i) { return std::string(i.param); });
 
-TEST_P(plot::Series, RoundTripOverManyChunks) {
+TEST_P(Series, RoundTripOverManyChunks) {
   TempFolder dir;
   auto s = make(dir / "a");
   s->begin(some_channels());
@@ -185,7 +185,7 @@ TEST_P(plot::Series, RoundTripOverManyChunks) {
   expect_rows(c, n);
 }
 
-TEST_P(plot::Series, ReadableWhileItGrows) {
+TEST_P(Series, ReadableWhileItGrows) {
   TempFolder dir;
   auto s = make(dir / "a");
   s->begin(some_channels());
@@ -198,7 +198,7 @@ TEST_P(plot::Series, ReadableWhileItGrows) {
   }
 }
 
-TEST_P(plot::Series, ResumeCutsAtTheCheckpointAndContinues) {
+TEST_P(Series, ResumeCutsAtTheCheckpointAndContinues) {
   TempFolder dir;
   const auto channels = some_channels();
   for (const std::uint64_t keep : {0u, 1u, 4095u, 4096u, 5000u, 8192u, 9000u}) {
@@ -218,7 +218,7 @@ TEST_P(plot::Series, ResumeCutsAtTheCheckpointAndContinues) {
   }
 }
 
-TEST_P(plot::Series, ResumeRefusesOtherColumnsAndMissingRows) {
+TEST_P(Series, ResumeRefusesOtherColumnsAndMissingRows) {
   TempFolder dir;
   auto channels = some_channels();
   auto s = make(dir / "a");
@@ -234,7 +234,7 @@ TEST_P(plot::Series, ResumeRefusesOtherColumnsAndMissingRows) {
 
 // A child writes as fast as it can and is killed; all rows it had flushed must be there, and none
 // invented.
-TEST_P(plot::Series, KilledWriterLeavesAllFlushedRows) {
+TEST_P(Series, KilledWriterLeavesAllFlushedRows) {
   TempFolder dir;
   const auto channels = some_channels();
   int pipe_ends[2];
@@ -275,7 +275,7 @@ TEST_P(plot::Series, KilledWriterLeavesAllFlushedRows) {
 }
 
 TEST(Hdf5, IsCompactAndFlushesDoNotGrowTheFile) {
-  if (!hdf5_available()) GTEST_SKIP() << "built without HDF5";
+  if (!Plugin::available("hdf5")) GTEST_SKIP() << "built without HDF5";
   TempFolder dir;
   const auto run = [&](const std::string& name, std::uint64_t flush_each) {
     auto s = make_hdf5_series(dir / name);
@@ -295,7 +295,7 @@ TEST(Hdf5, IsCompactAndFlushesDoNotGrowTheFile) {
 }
 
 TEST(Hdf5, IsLoadedOnlyWhenAsked) {
-  if (!hdf5_available()) GTEST_SKIP() << "built without HDF5";
+  if (!Plugin::available("hdf5")) GTEST_SKIP() << "built without HDF5";
   ::testing::FLAGS_gtest_death_test_style = "threadsafe";  // a fresh process
   EXPECT_EXIT(
       {

@@ -18,7 +18,7 @@ model::Section section(const char* name, double length, double od, double id) {
   return s;
 }
 
-TEST(plot::RotorDrawing, FollowsTheModel) {
+TEST(RotorDrawing, FollowsTheModel) {
   model::Model m;
   model::Material steel;
   steel.name = "steel";

@@ -29,7 +29,7 @@ inline std::string xml_fault(std::string_view s) {
       ++i;
   };
   const auto entity = [&] {  // at '&'
-    for (const std::string_view e : {"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"})
+    for (const std::string_view e : {"&amp;", "&lt;", "&gt;", "&quot;", "&apos;", "&#9;", "&#10;"})
       if (s.substr(i, e.size()) == e) return true;
     return false;
   };

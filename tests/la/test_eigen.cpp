@@ -1,3 +1,4 @@
+#include "symmetric_modes.hpp"
 #include "beam_chain.hpp"
 #include "fixtures.hpp"
 #include <Eigen/Eigenvalues>

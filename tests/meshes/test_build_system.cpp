@@ -1,8 +1,8 @@
+#include "mass_of_system.hpp"
 #include "models.hpp"
 
 #include <assembly/build_system.hpp>
 #include <assembly/element_section.hpp>
-#include <assembly/mass_of_system.hpp>
 #include <elements/shaft/general_beam.hpp>
 #include <elements/supports/linear_bearing.hpp>
 #include <elements/loads/point_load.hpp>

@@ -1,7 +1,7 @@
 // Events on the dense output, and steps made again to end on them.
+#include "sign_watch.hpp"
 #include "toys.hpp"
 #include <gtest/gtest.h>
-#include <time/event.hpp>
 #include <cmath>
 
 namespace whirl::time::test {
@@ -16,16 +16,16 @@ TEST(Events, CrossingsAreFoundInOrder) {
     integrator->start(0.0, VecX::Constant(1, 1.0), VecX::Zero(1));
     for (int direction : {0, 1, -1}) {
       integrator->start(0.0, VecX::Constant(1, 1.0), VecX::Zero(1));
-      EventLocator locator(
-          1, {[](double, CRef q, CRef, CRef) { return q[0] - 0.5; }, direction, 1e-12});
-      locator.begin(*integrator);
+      SignWatch watch(
+          1, [](CRef q, CRef) { return q[0] - 0.5; }, direction);
+      watch.begin(*integrator);
       std::vector<double> found;
       integrator->set_end(14.0);
       while (integrator->time() < 14.0) {
         const StepReport s = integrator->advance();
         ASSERT_TRUE(s.ok());
         double t = 0.0;
-        if (locator.find(*integrator, s, t)) {
+        if (watch.find(*integrator, s, t)) {
           found.push_back(t);
           EXPECT_GT(t, s.t0);
           EXPECT_LE(t, s.t1);
@@ -51,11 +51,12 @@ TEST(Events, TwoCrossingsInOneStep) {
   o.dt_fixed = 2.5;
   auto integrator = make_integrator("gauss6", p, o);
   integrator->start(-1.25, VecX::Constant(1, std::cos(1.25)), VecX::Constant(1, std::sin(1.25)));
-  EventLocator locator(1, {[](double, CRef q, CRef, CRef) { return q[0] - 0.9; }, 0, 1e-12});
-  locator.begin(*integrator);
+  SignWatch watch(
+      1, [](CRef q, CRef) { return q[0] - 0.9; }, 0);
+  watch.begin(*integrator);
   const StepReport s = integrator->advance();
   double t = 0.0;
-  ASSERT_TRUE(locator.find(*integrator, s, t));
+  ASSERT_TRUE(watch.find(*integrator, s, t));
   EXPECT_NEAR(t, -std::acos(0.9), 2e-2);  // the interpolant of a step of 2.5 rad
 }
 
@@ -65,18 +66,87 @@ TEST(Events, TheTimeLiesBeyondTheCrossing) {
   o.dt_fixed = 0.1;
   auto integrator = make_integrator("radau5", p, o);
   integrator->start(0.0, VecX::Zero(1), VecX::Ones(1));
-  auto g = [](double, CRef q, CRef, CRef) { return q[0] - 0.45; };
-  EventLocator locator(1, {g, +1, 1e-9});
-  locator.begin(*integrator);
+  auto g = [](CRef q, CRef) { return q[0] - 0.45; };
+  SignWatch watch(1, g, +1);
+  watch.begin(*integrator);
   double t = 0.0;
   StepReport s;
   do
     s = integrator->advance();
-  while (!locator.find(*integrator, s, t));
+  while (!watch.find(*integrator, s, t));
   VecX q(1), v(1), a(1);
   integrator->interpolate(t, q, v, a);
-  EXPECT_GE(g(t, q, v, a), 0.0);
-  EXPECT_LT(g(t, q, v, a), 1e-9);
+  EXPECT_GE(g(q, v), 0.0);
+  EXPECT_LT(g(q, v), 1e-9);
+}
+
+// Every sign change of a step is reported in order, each on its bracket's two sides; what changes
+// twice between neighbouring looks is not seen.
+TEST(Events, AllSignChangesOfAStepInOrder) {
+  constexpr EventLocator locator(quarters, {1e-12, 1e-15});
+  const auto g = [](double t) { return (t - 2.1) * (t - 2.4) * (t - 2.8); };
+  double last = g(2.0);
+  std::vector<double> at;
+  std::vector<bool> rises;
+  locator.sign_changes(2.0, 3.0, last, g, [&](const Passage& p, bool rising) {
+    EXPECT_LE(p.after - p.before, 1e-12);
+    EXPECT_NE(g(p.before) < 0.0, g(p.after) < 0.0);
+    at.push_back(p.after);
+    rises.push_back(rising);
+    return true;
+  });
+  ASSERT_EQ(at.size(), 3u);
+  EXPECT_NEAR(at[0], 2.1, 1e-12);
+  EXPECT_NEAR(at[1], 2.4, 1e-12);
+  EXPECT_NEAR(at[2], 2.8, 1e-12);
+  EXPECT_EQ(rises, (std::vector<bool>{true, false, true}));
+  EXPECT_GT(last, 0.0);
+
+  last = 1.0;
+  locator.sign_changes(
+      2.0, 3.0, last, [](double t) { return (t - 2.3) * (t - 2.4); },
+      [](const Passage&, bool) {
+        ADD_FAILURE() << "two passages between looks";
+        return true;
+      });
+  EXPECT_GT(last, 0.0);
+}
+
+// An event exactly at the end of a step belongs to it, not to the next one.
+TEST(Events, AnEventBetweenTwoStepsIsFoundOnce) {
+  constexpr EventLocator locator(quarters, {1e-12, 1e-15});
+  double last = -1.0;
+  int events = 0;
+  for (double t0 : {0.0, 1.0})
+    locator.sign_changes(
+        t0, t0 + 1.0, last, [](double t) { return t - 1.0; },
+        [&](const Passage& p, bool rising) {
+          EXPECT_TRUE(rising);
+          EXPECT_EQ(p.after, 1.0);
+          ++events;
+          return true;
+        });
+  EXPECT_EQ(events, 1);
+}
+
+// Pieces instead of signs: three of them, two boundaries between the same two looks.
+TEST(Events, EveryPieceOfThreeIsEntered) {
+  constexpr EventLocator locator(quarters, {1e-12, 1e-15});
+  const auto piece = [](double t) { return t < 0.05 ? 0 : t < 0.2 ? 1 : 2; };
+  int side = 0;
+  std::vector<double> near;
+  locator.search(
+      0.0, 1.0, [&](double t) { return piece(t) != side; },
+      [&](const Passage& p) {
+        EXPECT_EQ(piece(p.before), side);
+        side = piece(p.after);
+        near.push_back(p.before);
+        return true;
+      });
+  ASSERT_EQ(near.size(), 2u);
+  EXPECT_NEAR(near[0], 0.05, 1e-12);
+  EXPECT_NEAR(near[1], 0.2, 1e-12);
+  EXPECT_EQ(side, 2);
 }
 
 // Landing on an event: the step made again is a step of the scheme, not a point of its interpolant,
@@ -99,14 +169,15 @@ TEST(Events, StepsMadeAgainEndOnTheEvent) {
     o.t_end = 2.0;
     auto integrator = make_integrator(name, p, o);
     integrator->start(0.0, y0.head(3), y0.tail(3));
-    EventLocator locator(3, {[](double, CRef, CRef v, CRef) { return v[2] - 8.0; }, +1, 1e-12});
-    locator.begin(*integrator);
+    SignWatch watch(
+        3, [](CRef, CRef v) { return v[2] - 8.0; }, +1);
+    watch.begin(*integrator);
     double t = 0.0;
     bool landed = false;
     while (integrator->time() < 2.0) {
       const StepReport s = integrator->advance();
       ASSERT_TRUE(s.ok());
-      if (!landed && locator.find(*integrator, s, t)) {
+      if (!landed && watch.find(*integrator, s, t)) {
         const long accepted = integrator->statistics().accepted;
         if (t < s.t1) {
           const StepReport again = integrator->shorten_to(t);
@@ -144,19 +215,20 @@ TEST(Events, RestartAfterAnImpact) {
     o.dt_max = 0.05;
     auto integrator = make_integrator(name, p, o);
     integrator->start(0.0, VecX::Constant(1, 1.0), VecX::Zero(1));
-    EventLocator locator(1, {[](double, CRef q, CRef, CRef) { return q[0]; }, -1, 1e-13});
-    locator.begin(*integrator);
+    SignWatch watch(
+        1, [](CRef q, CRef) { return q[0]; }, -1);
+    watch.begin(*integrator);
     int bounces = 0;
     while (integrator->time() < 2.0) {
       const StepReport s = integrator->advance();
       ASSERT_TRUE(s.ok());
       double t = 0.0;
-      if (locator.find(*integrator, s, t)) {
+      if (watch.find(*integrator, s, t)) {
         if (t < s.t1) {
           ASSERT_TRUE(integrator->shorten_to(t).ok());
         }
         integrator->restart(integrator->q(), -0.8 * integrator->v());
-        locator.begin(*integrator);
+        watch.begin(*integrator);
         ++bounces;
       }
     }

@@ -7,6 +7,7 @@
 // doi 10.1016/0045-7825(88)90073-4; flexible arm: the same, J. Appl. Mech. 53 (1986) 849,
 // doi 10.1115/1.3171870. Their histories: Richardson extrapolation of an explicit code of its own,
 // uncertainty below 1e-5.
+#include "../la/symmetric_modes.hpp"
 #include "beam_line.hpp"
 #include "record.hpp"
 

@@ -29,25 +29,4 @@ FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
   return p;
 }
 
-std::vector<FrequencyPoint> frequency_response(Linearizer& linear, double Omega,
-                                               const std::vector<double>& frequencies,
-                                               const FrequencyResponseOptions& options) {
-  HarmonicResponder r(linear, options);
-  std::vector<FrequencyPoint> out;
-  for (double w : frequencies)
-    out.push_back(r.at(Omega, w, 1.0));
-  return out;
-}
-
-std::vector<FrequencyPoint> order_response(Linearizer& linear, double order,
-                                           const std::vector<double>& speeds,
-                                           const FrequencyResponseOptions& options,
-                                           const std::function<double(double)>& factor) {
-  HarmonicResponder r(linear, options);
-  std::vector<FrequencyPoint> out;
-  for (double Omega : speeds)
-    out.push_back(r.at(Omega, order * Omega, factor ? factor(Omega) : 1.0));
-  return out;
-}
-
 }  // namespace whirl::analysis

@@ -44,15 +44,4 @@ class HarmonicResponder {
   std::unique_ptr<VariationMeter> meter_;
 };
 
-/// At the speed Omega, for each excitation frequency (rad/s).
-std::vector<FrequencyPoint> frequency_response(Linearizer& linear, double Omega,
-                                               const std::vector<double>& frequencies,
-                                               const FrequencyResponseOptions& options);
-/// At each speed with excitation frequency order x speed; amplitudes may be scaled with the speed:
-/// factor(Omega), empty = 1.
-std::vector<FrequencyPoint> order_response(Linearizer& linear, double order,
-                                           const std::vector<double>& speeds,
-                                           const FrequencyResponseOptions& options,
-                                           const std::function<double(double)>& factor = {});
-
 }  // namespace whirl::analysis

@@ -1,7 +1,5 @@
 #include <analysis/response/harmonic.hpp>
 
-#include <system/frequency.hpp>
-
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -10,7 +8,6 @@
 namespace whirl::analysis {
 
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Size of a variation: differences of second order in it drop out by symmetry, third order is
 /// below rounding.
@@ -234,6 +231,7 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
   system::Context& context = problem_.workspace().context;
   context.hysteretic = linear_.hysteretic();
   context.whirl = context.whirl_side = w;
+  context.frequency = std::abs(w);
   out.resize(what.size());
   for (std::size_t m = 0; m < what.size(); ++m)
     out[m].assign(what[m].width(), Complex(0, 0));
@@ -245,7 +243,6 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
   }
   const double eps = variation_step(a);
   if (eps == 0.0) return;
-  const system::FrequencyScope ask(w);
   std::vector<double> value;
   for (int part = 0; part < 2; ++part) {
     // the motion at phase 0 and a quarter period earlier: Re and Im of the amplitude
@@ -266,33 +263,6 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
       }
     }
   }
-}
-
-VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const VecXc& f) {
-  const system::System& system = linear.system();
-  const system::State& s = linear.equilibrium().state;
-  system::Workspace workspace = system.make_workspace();
-  workspace.context.hysteretic = linear.hysteretic();
-  workspace.context.whirl = workspace.context.whirl_side = w;
-  VecXc out = VecXc::Zero(a.size());
-  const double eps = variation_step(a);
-  VecX r(a.size());
-  const system::FrequencyScope ask(w);
-  if (eps > 0)
-    for (int part = 0; part < 2; ++part) {
-      const Complex turn = part == 0 ? Complex(1, 0) : Complex(0, -1);
-      for (int sign : {1, -1}) {
-        const double h = sign * eps;
-        const VecX q = s.q + h * (turn * a).real(), v = s.v + h * (turn * Complex(0, w) * a).real(),
-                   acc = s.a + h * (turn * (-w * w) * a).real();
-        system.residual(workspace, s.frames, s.t, q, v, acc, r);
-        out += (part == 0 ? Complex(1, 0) : Complex(0, 1)) * (sign / (2.0 * eps)) * r;
-      }
-    }
-  out += f;
-  for (Index k = 0; k < a.size(); ++k)
-    if (system.active()[at(k)]) out[k] = 0;
-  return out;
 }
 
 }  // namespace whirl::analysis

@@ -82,8 +82,4 @@ class VariationMeter {
   Snapshot snapshot_;
 };
 
-/// Forces and moments that supports exert at held unknowns, complex amplitudes (zero at free
-/// unknowns); f: what stands in the residual.
-VecXc reaction_amplitudes(Linearizer& linear, const VecXc& a, double w, const VecXc& f);
-
 }  // namespace whirl::analysis

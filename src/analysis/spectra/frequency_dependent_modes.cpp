@@ -3,7 +3,7 @@
 #include <analysis/spectra/whirl_modes.hpp>
 #include <core/error.hpp>
 
-#include <Eigen/QR>
+#include <la/dense.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -371,8 +371,7 @@ void OwnFrequency::add(const la::Mode& mode) {
     MatXc a(mode.x.size(), static_cast<Index>(close.size()));
     for (std::size_t j = 0; j < close.size(); ++j)
       a.col(static_cast<Index>(j)) = close[j]->x.normalized();
-    const VecXc x = mode.x.normalized(), rest = x - a * a.colPivHouseholderQr().solve(x);
-    if (rest.norm() < 0.05) return;
+    if (la::ColumnSpan<Complex>(a).outside(mode.x.normalized()).norm() < 0.05) return;
   }
   found_.push_back(mode);
   found_.back().from = -1;

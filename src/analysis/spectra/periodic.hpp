@@ -22,7 +22,8 @@ namespace whirl::analysis {
 class RotatingAxes {
  public:
   /// harmonics: H where the matrices are periodic; 0 is enough on isotropic supports and is chosen
-  /// then whatever is asked for. Errors: E88, the lines turn at different speeds.
+  /// then whatever is asked for.
+  /// @throws Error E88, the lines turn at different speeds.
   RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3,
                Motion motion = Motion::lateral);
 

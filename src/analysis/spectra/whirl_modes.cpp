@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <la/dense.hpp>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -14,7 +14,6 @@
 namespace whirl::analysis {
 
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// How far beyond the modes asked for the search goes on to where nothing can grow.
 constexpr double furthest_search = 16.0;
@@ -278,22 +277,22 @@ void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
     }
     return MatXc(X.adjoint() * Y);
   };
-  const Eigen::PartialPivLU<MatXc> mass(project(m.M));
+  const la::DenseLu<Complex> mass(project(m.M));
   MatXc companion = MatXc::Zero(2 * k, 2 * k);
   companion.topRightCorner(k, k).setIdentity();
   companion.bottomLeftCorner(k, k) = -mass.solve(project(m.K));
   companion.bottomRightCorner(k, k) = -mass.solve(project(m.C));
-  const Eigen::ComplexEigenSolver<MatXc> eig(companion);
+  const la::DenseEigenpairs eig = la::eigenpairs(companion);
   std::vector<Index> order(at(2 * k));
   for (Index j = 0; j < 2 * k; ++j)
     order[at(j)] = j;
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::abs(eig.eigenvalues()(a) - rate) < std::abs(eig.eigenvalues()(b) - rate);
+    return std::abs(eig.values(a) - rate) < std::abs(eig.values(b) - rate);
   });
   for (Index j = 0; j < k; ++j) {
-    const VecXc y = eig.eigenvectors().col(order[at(j)]).head(k);
+    const VecXc y = eig.vectors.col(order[at(j)]).head(k);
     group[at(j)].x = X * y;
-    group[at(j)].lambda = eig.eigenvalues()(order[at(j)]);
+    group[at(j)].lambda = eig.values(order[at(j)]);
   }
 }
 
@@ -411,7 +410,7 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
 
 std::string SpectrumCertificate::text() const {
   if (!open.empty()) return "completeness not certified: " + open;
-  const double top = list.radius / two_pi;
+  const double top = to_hz(list.radius);
   if (!list.counted)
     return fmt::format("completeness not certified: the roots up to {:.5g} Hz could not be counted",
                        top);
@@ -420,7 +419,7 @@ std::string SpectrumCertificate::text() const {
   if (list.missing == 0) return band + " counted and found";
   std::string out = fmt::format("INCOMPLETE: {} of {} not found", list.missing, band);
   for (const Complex z : list.where)
-    out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", z.imag() / two_pi, z.real());
+    out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", to_hz(z.imag()), z.real());
   return out;
 }
 

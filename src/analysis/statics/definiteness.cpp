@@ -12,8 +12,6 @@
 namespace whirl::analysis {
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// Below this share of what the rows of K hold a direction is indifferent.
 constexpr double rounding = 2e-14;
 /// Above this asymmetry, relative to what the rows hold, K is unsymmetric.
@@ -207,15 +205,6 @@ Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned
   count_real(K, free, system, length, out);
   out.certain = out.sign < 0;
   return out;
-}
-
-std::string describe(const Definiteness& d) {
-  if (d.negative == 0) return "stable";
-  const std::string count =
-      fmt::format("unstable in {} direction{}", d.negative, d.negative == 1 ? "" : "s");
-  if (d.symmetric) return count;
-  return count + (d.certain ? " (divergence, for any mass and damping)"
-                            : " (negative real eigenvalues found)");
 }
 
 void scale_shape(VecX& x, const system::System& s) {

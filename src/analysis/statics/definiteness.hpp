@@ -49,9 +49,6 @@ double model_length(const system::System& system);
 std::vector<unsigned char> free_unknowns(const system::System& system,
                                          std::span<const Index> spin_holds);
 
-/// "unstable in 2 directions", "stable", for unsymmetric tangents with what is claimed
-std::string describe(const Definiteness& d);
-
 /// The eigenvalue of K x = mu D x nearest to zero, and its vector, by inverse iteration from x (or
 /// a start of its own when x is empty). NaN: K cannot be factored.
 double eigenvalue_near_zero(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,

@@ -2,7 +2,7 @@
 
 #include <time/stability.hpp>
 
-#include <Eigen/Eigenvalues>
+#include <la/dense.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ Complex generalized_alpha(double rho, Complex lambda, double h) {
   left << 1, 0, -beta, 0, 1, -gamma, (1 - af) * w2, 0, 1 - am;
   right << 1, 1, 0.5 - beta, 0, 1, 1 - gamma, -af * w2, 0, -am;
   const Mat3 A = left.inverse() * right;
-  const Eigen::Vector3cd roots = Eigen::EigenSolver<Mat3>(A, false).eigenvalues();
+  const VecXc roots = la::eigenvalues(A);
   // the principal pair is the one nearest to the exact factor
   const Complex exact = std::polar(1.0, std::sqrt(w2));
   Complex best = roots[0];

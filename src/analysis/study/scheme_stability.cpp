@@ -4,7 +4,7 @@
 #include <time/integrator.hpp>
 #include <time/stability.hpp>
 
-#include <Eigen/Eigenvalues>
+#include <la/dense.hpp>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -36,16 +36,16 @@ class Dense final : public time::Problem {
   void add_C(double s, time::CRef x, time::Ref y) const override { y.noalias() += s * (r_.C * x); }
   void add_K(double s, time::CRef x, time::Ref y) const override { y.noalias() += s * (r_.K * x); }
   bool factor(double cm, double cc, double ck) override {
-    real_.compute(cm * r_.M + cc * r_.C + ck * r_.K);
+    real_.factor(cm * r_.M + cc * r_.C + ck * r_.K);
     return true;
   }
   bool factor(Complex cm, Complex cc, Complex ck) override {
-    complex_.compute(cm * r_.M.cast<Complex>() + cc * r_.C.cast<Complex>() +
-                     ck * r_.K.cast<Complex>());
+    complex_.factor(cm * r_.M.cast<Complex>() + cc * r_.C.cast<Complex>() +
+                    ck * r_.K.cast<Complex>());
     return true;
   }
-  void solve(time::Ref b) const override { b = real_.solve(b).eval(); }
-  void solve(time::RefC b) const override { b = complex_.solve(b).eval(); }
+  void solve(time::Ref b) const override { b = real_.solve(VecX(b)); }
+  void solve(time::RefC b) const override { b = complex_.solve(VecXc(b)); }
   Power power(double, time::CRef q, time::CRef v, time::CRef, time::CRef) override {
     Power p;
     p.kinetic = 0.5 * v.dot(r_.M * v);
@@ -56,18 +56,18 @@ class Dense final : public time::Problem {
  private:
   const ReducedRotor& r_;
   std::vector<time::Kind> kinds_;
-  Eigen::PartialPivLU<MatX> real_;
-  Eigen::PartialPivLU<MatXc> complex_;
+  la::DenseLu<double> real_;
+  la::DenseLu<Complex> complex_;
 };
 
 std::vector<Complex> eigenvalues_of(const MatX& M, const MatX& C, const MatX& K) {
   const Index n = M.rows();
   MatX A = MatX::Zero(2 * n, 2 * n);
-  const Eigen::PartialPivLU<MatX> lu(M);
+  const la::DenseLu<double> lu(M);
   A.topRightCorner(n, n).setIdentity();
   A.bottomLeftCorner(n, n) = -lu.solve(K);
   A.bottomRightCorner(n, n) = -lu.solve(C);
-  const VecXc e = Eigen::EigenSolver<MatX>(A, false).eigenvalues();
+  const VecXc e = la::eigenvalues(A);
   std::vector<Complex> out;
   for (Index i = 0; i < e.size(); ++i)
     if (e[i].imag() >= 0.0) out.push_back(e[i]);
@@ -84,9 +84,9 @@ MatX generalized_alpha_map(const ReducedRotor& r, double h, double rho) {
   const MatX C = h * r.C, K = (h * h) * r.K;
   const MatX left = (1.0 - am) * r.M + (1.0 - af) * (g * C + b * K);
   // b1 = Q q0 + V h v0 + B h^2 b0
-  const Eigen::PartialPivLU<MatX> lu(left);
-  const MatX Q = -lu.solve(K), V = -lu.solve(C + (1.0 - af) * K),
-             B = -lu.solve(am * r.M + (1.0 - af) * ((1.0 - g) * C + (0.5 - b) * K));
+  const la::DenseLu<double> lu(left);
+  const MatX Q = -lu.solve(K), V = -lu.solve(MatX(C + (1.0 - af) * K)),
+             B = -lu.solve(MatX(am * r.M + (1.0 - af) * ((1.0 - g) * C + (0.5 - b) * K)));
   MatX A = MatX::Zero(3 * n, 3 * n);
   const MatX I = MatX::Identity(n, n);
   A << I + b * Q, I + b * V, (0.5 - b) * I + b * B, g * Q, I + g * V, (1.0 - g) * I + g * B, Q, V,
@@ -162,10 +162,7 @@ ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count) {
 double spectral_radius(const ReducedRotor& rotor, std::string_view method, double h,
                        double rho_inf) {
   if (method == "generalized_alpha")
-    return Eigen::EigenSolver<MatX>(generalized_alpha_map(rotor, h, rho_inf), false)
-        .eigenvalues()
-        .cwiseAbs()
-        .maxCoeff();
+    return la::eigenvalues(generalized_alpha_map(rotor, h, rho_inf)).cwiseAbs().maxCoeff();
   double radius = 0.0;
   for (const Complex& l : rotor.lambda)
     radius = std::max(radius, method == "ida" ? time::bdf2_radius(h * l)
@@ -181,12 +178,12 @@ double energy_ratio(const ReducedRotor& rotor, std::string_view method, double h
   o.rho_inf = rho_inf;
   const auto integrator = time::make_integrator(method, problem, o);
   // unit energy in every natural motion of the rotor at rest
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> shapes(rotor.K, rotor.M);
+  const la::SymmetricEigenpairs shapes = la::symmetric_eigenpairs(rotor.K, rotor.M);
   VecX q = VecX::Zero(rotor.M.rows());
-  const double stiffest = shapes.eigenvalues().maxCoeff();
+  const double stiffest = shapes.values.maxCoeff();
   for (Index k = 0; k < q.size(); ++k)
-    if (shapes.eigenvalues()[k] > 1e-14 * stiffest)
-      q += shapes.eigenvectors().col(k) / std::sqrt(shapes.eigenvalues()[k]);
+    if (shapes.values[k] > 1e-14 * stiffest)
+      q += shapes.vectors.col(k) / std::sqrt(shapes.values[k]);
   integrator->start(0.0, q, VecX::Zero(q.size()));
   const auto energy = [&] {
     return problem.power(0.0, integrator->q(), integrator->v(), integrator->a(), q).stored;

@@ -1,9 +1,7 @@
 #include <analysis/transient/corners.hpp>
 
 #include <analysis/transient/observer.hpp>
-
-#include <algorithm>
-#include <cmath>
+#include <time/event.hpp>
 
 namespace whirl::analysis {
 
@@ -22,26 +20,23 @@ bool Corners::moved(StepAccess& step, double t) {
 }
 
 double Corners::find(StepAccess& step) {
+  static constexpr time::EventLocator locator(looks, {1e-12, 4e-16});
   const double h = step.t1() - step.t0();
-  double before = step.t0();
-  for (const double part : looks) {
-    const double look = part == 1.0 ? step.t1() : step.t0() + h * part;
-    while (moved(step, look)) {
-      double lo = before, hi = look;
-      while (hi - lo > 1e-12 * h && hi - lo > 4e-16 * std::abs(hi)) {
-        const double m = 0.5 * (lo + hi);
-        (moved(step, m) ? hi : lo) = m;
-      }
-      if (lo - step.t0() > at_start * h) return lo;
-      // the passage the step before ended at: the rest of this one is looked at from the other side
-      moved(step, hi);
-      start_ = now_;
-      before = hi;
-      if (hi >= look) break;
-    }
-    before = std::max(before, look);
-  }
-  return -1.0;
+  double first = -1.0;
+  locator.search(
+      step.t0(), step.t1(), [&](double t) { return moved(step, t); },
+      [&](const time::Passage& passage) {
+        if (passage.before - step.t0() > at_start * h) {
+          first = passage.before;
+          return false;
+        }
+        // the passage the step before ended at: the rest of this one is looked at from the other
+        // side
+        moved(step, passage.after);
+        start_ = now_;
+        return true;
+      });
+  return first;
 }
 
 }  // namespace whirl::analysis

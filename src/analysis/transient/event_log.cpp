@@ -1,6 +1,5 @@
 #include <analysis/transient/event_log.hpp>
-
-#include <cmath>
+#include <time/event.hpp>
 
 namespace whirl::analysis {
 
@@ -10,35 +9,21 @@ void EventLog::begin(const Snapshot& s) {
 }
 
 void EventLog::step(StepAccess& s) {
-  // a step may span a good part of a whirl: four looks, as for stops
-  constexpr int looks = 4;
+  // to the round-off of the dense output
+  static constexpr time::EventLocator locator(time::quarters, {1e-12, 1e-12});
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     const Watch& w = watches_[i];
-    double a = s.t0(), ga = last_[i];
-    for (int k = 1; k <= looks; ++k) {
-      const double b = k == looks ? s.t1() : s.t0() + (s.t1() - s.t0()) * k / looks,
-                   gb = w.g(s.at(b));
-      if ((ga < 0.0) != (gb < 0.0)) {
-        const bool rising = ga < 0.0;
-        if (w.direction == 0 || rising == (w.direction > 0)) {
-          double lo = a, hi = b;
-          // to 1e-12 of the time or the step, whichever is coarser: round-off of the dense output
-          const double width = 1e-12 * std::max(std::abs(hi), s.t1() - s.t0());
-          while (hi - lo > width) {
-            const double m = 0.5 * (lo + hi);
-            if (m == lo || m == hi) break;
-            ((w.g(s.at(m)) < 0.0) == rising ? lo : hi) = m;
-          }
+    locator.sign_changes(
+        s.t0(), s.t1(), last_[i], [&](double t) { return w.g(s.at(t)); },
+        [&](const time::Passage& passage, bool rising) {
+          if (w.direction != 0 && rising != (w.direction > 0)) return true;
+          const double t = passage.after;
           if (events_.size() < most)
-            events_.push_back({i, hi, s.at(hi).node(reference_).spin(), rising});
+            events_.push_back({i, t, s.at(t).node(reference_).spin(), rising});
           else
             ++more_;
-        }
-      }
-      a = b;
-      ga = gb;
-    }
-    last_[i] = ga;
+          return true;
+        });
   }
 }
 

@@ -38,7 +38,7 @@ class EventLog final : public Observer {
   static constexpr std::size_t most = 10000;
   std::vector<Watch> watches_;
   Index reference_;
-  std::vector<double> last_;
+  std::vector<double> last_;  ///< of the sign each g had last
   std::vector<Happened> events_;
   std::size_t more_ = 0;
 };

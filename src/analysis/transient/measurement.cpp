@@ -111,7 +111,7 @@ Measurement measure_spin(std::string name, Index node) {
           "rpm",
           "spin about the section's own normal, omega . d",
           {},
-          30.0 / pi,
+          to_rpm(1.0),
           [node](const Snapshot& s, double* out) { *out = s.node(node).spin(); }};
 }
 
@@ -140,19 +140,6 @@ Measurement measure_gamma(std::string name, Index node) {
           {"2", "3"},
           1.0,
           [node](const Snapshot& s, double* out) { Eigen::Map<Vec2>{out} = s.gamma(node); }};
-}
-
-Measurement measure_reaction(std::string name, std::vector<Index> unknowns,
-                             std::vector<std::string> components, std::string unit) {
-  return {std::move(name),
-          std::move(unit),
-          "force or torque of the support on the model",
-          std::move(components),
-          1.0,
-          [unknowns](const Snapshot& s, double* out) {
-            for (Index k : unknowns)
-              *out++ = s.reactions()[k];
-          }};
 }
 
 Measurement measure_energy() {

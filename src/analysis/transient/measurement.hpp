@@ -75,8 +75,6 @@ Measurement measure_spin(std::string name, Index node);      ///< s = omega . d,
 Measurement measure_phi(std::string name, Index node);       ///< total axial angle, rad
 Measurement measure_phi_rate(std::string name, Index node);  ///< omega_phi = phi', rad/s
 Measurement measure_gamma(std::string name, Index node);     ///< gamma2, gamma3, rad
-Measurement measure_reaction(std::string name, std::vector<Index> unknowns,
-                             std::vector<std::string> components, std::string unit);
-Measurement measure_energy();  ///< kinetic, elastic, gravity, J
+Measurement measure_energy();                                ///< kinetic, elastic, gravity, J
 
 }  // namespace whirl::analysis

@@ -74,7 +74,6 @@ class Recorder final : public Observer {
   void save(OutArchive& out) const override;
   void restore(InArchive& in) override;
   long rows() const { return rows_; }
-  Ticker& ticker() { return ticker_; }
 
  private:
   void write(const Snapshot& s);
@@ -136,7 +135,6 @@ class EnergyBalance final : public Observer {
   double dissipated() const { return dissipated_; }
   double defect() const { return e1_ - e0_ - supplied_ + dissipated_; }
   double worst_defect() const { return worst_; }
-  double largest_kinetic() const { return largest_kinetic_; }
   /// Energy that changed its place, J: the largest of what was supplied, what was dissipated, and
   /// how far the kinetic, the potential and the stored energy departed from their starts. What a
   /// defect is measured by: in a conservative motion nothing but the exchange between kinetic and

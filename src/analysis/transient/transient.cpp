@@ -3,13 +3,14 @@
 #include <analysis/transient/transient.hpp>
 
 #include <core/interrupt.hpp>
+#include <core/stopwatch.hpp>
 #include <core/rotation.hpp>
+#include <time/event.hpp>
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cmath>
-#include <ctime>
 
 namespace whirl::analysis {
 
@@ -29,12 +30,6 @@ namespace {
 constexpr double least_wait = 0.5;    // seconds an interruption waits for the next mark in any case
 constexpr double longest_wait = 3.0;  // and at most
 constexpr double keep_every = 2.0;    // seconds at least between states that are kept
-
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// The integrator's last step as observers see it.
 class Dense final : public StepAccess {
@@ -77,27 +72,18 @@ class Dense final : public StepAccess {
   bool at_end_ = false;
 };
 
-/// First time in the step where f changes sign from its value at t0, or a negative number.
+/// First time in the step where f changes sign, or infinity; last: see time::EventLocator.
 template <class F>
-double crossing(Dense& step, F&& f, double f0) {
-  // four looks: a step may span a good part of a whirl
-  constexpr int looks = 4;
-  double a = step.t0(), fa = f0;
-  for (int k = 1; k <= looks; ++k) {
-    const double b = k == looks ? step.t1() : step.t0() + (step.t1() - step.t0()) * k / looks,
-                 fb = f(step.at(b));
-    if ((fa < 0.0) != (fb < 0.0)) {
-      double lo = a, hi = b;
-      for (int i = 0; i < 60 && hi - lo > 1e-14 * std::abs(hi); ++i) {
-        const double m = 0.5 * (lo + hi);
-        ((f(step.at(m)) < 0.0) == (fa < 0.0) ? lo : hi) = m;
-      }
-      return hi;
-    }
-    a = b;
-    fa = fb;
-  }
-  return -1.0;
+double crossing(Dense& step, F&& f, double& last) {
+  static constexpr time::EventLocator locator(time::quarters, {1e-18, 1e-14});
+  double first = infinity;
+  locator.sign_changes(
+      step.t0(), step.t1(), last, [&](double t) { return f(step.at(t)); },
+      [&](const time::Passage& passage, bool) {
+        first = passage.after;
+        return false;
+      });
+  return first;
 }
 
 std::string failure(const system::SystemProblem& problem, const time::StepReport& report) {
@@ -118,7 +104,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
                               const std::vector<Observer*>& observers,
                               const time::IntegratorState* resume) {
   TransientResult result;
-  const double cpu0 = cpu_seconds();
+  const double cpu0 = thread_cpu_seconds();
   problem.frames = start.frames;
   auto integrator = options.method == "momentum_rk"
                         ? make_momentum_integrator(problem, options.integrator)
@@ -221,19 +207,19 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         const SpeedStop& s = options.speed_stops[i];
         auto f = [&](const Snapshot& x) { return x.node(s.node).spin() - s.speed; };
         const double t = crossing(step, f, speed_before[i]);
-        if (t >= 0.0 && t < t_stop) {
+        if (t < t_stop) {
           t_stop = t;
           result.reason = StopReason::speed_reached;
-          result.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", s.speed * 30.0 / pi, t);
+          result.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", to_rpm(s.speed), t);
         }
-        speed_before[i] = f(step.end());
       }
       for (const AmplitudeStop& s : options.amplitude_stops) {
         auto f = [&](const Snapshot& x) {
           return displacement(x, s.point).tail<2>().norm() - s.limit;
         };
-        const double t = crossing(step, f, -1.0);
-        if (t >= 0.0 && t < t_stop) {
+        double within = -1.0;
+        const double t = crossing(step, f, within);
+        if (t < t_stop) {
           t_stop = t;
           result.reason = StopReason::amplitude_limit;
           result.detail = fmt::format("{} passes {:.4g} m at t = {:.9g} s", s.name, s.limit, t);
@@ -302,7 +288,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
   result.statistics = integrator->statistics();
   for (Observer* o : observers)
     o->end();
-  result.seconds = cpu_seconds() - cpu0;
+  result.seconds = thread_cpu_seconds() - cpu0;
   return result;
 }
 

@@ -27,7 +27,7 @@ namespace {
 
 constexpr const char* place =
     "place on a shaft: \"section:mid\", \"section:end - 20 mm\", \"1.14 m\"";
-std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
+std::string hertz(double w) { return fmt::format("{:.6g} Hz", to_hz(w)); }
 
 }  // namespace
 

@@ -144,19 +144,18 @@
   const box = (name, rows) => ((name ? `<b>${esc(name)}</b>` : "") + rows.replace(/^<br>/, ""));
   const row = (axis, v) => `<br><span>${esc(axis.label)}</span> ${show(v)} ${esc(axis.unit)}`;
 
-  // A map's cells, from its uncompressed PNG.
+  // A map's cells, from its PNG: stored blocks (plot/png.hpp), in as many chunks as the library likes.
   function cellsOf(image) {
     const bin = atob(image.getAttribute("href").split(",")[1]);
     const u32 = (i) => ((bin.charCodeAt(i) << 24) | (bin.charCodeAt(i + 1) << 16) | (bin.charCodeAt(i + 2) << 8) | bin.charCodeAt(i + 3)) >>> 0;
-    let raw = "";
-    for (let i = 8; i < bin.length; i += 12 + u32(i)) {
-      if (bin.substr(i + 4, 4) !== "IDAT") continue;
-      for (let j = i + 10, last = 0; !last;) {
-        last = bin.charCodeAt(j);
-        const n = bin.charCodeAt(j + 1) | (bin.charCodeAt(j + 2) << 8);
-        raw += bin.substr(j + 5, n);
-        j += 5 + n;
-      }
+    let stream = "", raw = "";
+    for (let i = 8; i < bin.length; i += 12 + u32(i))
+      if (bin.substr(i + 4, 4) === "IDAT") stream += bin.substr(i + 8, u32(i));
+    for (let j = 2, last = 0; !last;) {
+      last = stream.charCodeAt(j) & 1;
+      const n = stream.charCodeAt(j + 1) | (stream.charCodeAt(j + 2) << 8);
+      raw += stream.substr(j + 5, n);
+      j += 5 + n;
     }
     return raw;
   }

@@ -458,18 +458,8 @@ StepReport Ida::shorten_to(double t) {
 }
 
 void Ida::interpolate(double t, Ref q, Ref v, Ref a) const {
-  if (!have_step_ || t == t_) {
-    q = q_;
-    v = v_;
-    a = a_;
-    return;
-  }
-  if (t == t0_) {
-    q = q0_;
-    v = v0_;
-    a = a0_;
-    return;
-  }
+  if (take_end(have_step_ ? t : t_, {t_, q_, v_, a_}, q, v, a)) return;
+  if (take_end(t, {t0_, q0_, v0_, a0_}, q, v, a)) return;
   const double h = t_ - t0_;
   hermite((t - t0_) / h, h, q0_, v0_, q_, v_, q, v, a);
   problem_.impose(t, q, v, a);

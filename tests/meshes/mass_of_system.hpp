@@ -1,10 +1,15 @@
-#include <assembly/mass_of_system.hpp>
-
+// Mass properties of the assembled system: the kinetic energy of its elements in rigid motions. The
+// counterpart of meshes::mass_properties, which knows no mesh: the two must agree to round-off.
+#pragma once
+#include <meshes/mass_properties.hpp>
+#include <system/system.hpp>
 #include <algorithm>
 
 namespace whirl::assembly {
 
-meshes::MassProperties mass_of_system(const system::System& s, Index line) {
+/// Of the nodes of one line (line < 0: of all nodes, pedestals too) in the reference state, phi =
+/// 0: r^T M r over the six rigid motions r. Includes added masses of bearings on those nodes.
+inline meshes::MassProperties mass_of_system(const system::System& s, Index line = -1) {
   system::State state = s.make_state();
   system::Workspace w = s.make_workspace();
   MatX R =
@@ -41,8 +46,10 @@ meshes::MassProperties mass_of_system(const system::System& s, Index line) {
   return p;
 }
 
-double mass_disagreement(const meshes::MassProperties& a, const meshes::MassProperties& b,
-                         double length) {
+/// Largest disagreement between the assembled matrix and the closed form: |mass difference|/mass,
+/// and likewise of the first moments and inertias over mass x length and mass x length^2.
+inline double mass_disagreement(const meshes::MassProperties& a, const meshes::MassProperties& b,
+                                double length) {
   if (!(b.mass > 0)) return a.mass;
   const double l = length > 0 ? length : 1.0;
   return std::max({std::abs(a.mass - b.mass) / b.mass, (a.moment - b.moment).norm() / (b.mass * l),

@@ -1,0 +1,94 @@
+#include <la/dense.hpp>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+namespace whirl::la {
+
+DenseEigenpairs eigenpairs(const MatX& a) {
+  const Eigen::EigenSolver<MatX> solver(a);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+DenseEigenpairs eigenpairs(const MatXc& a) {
+  const Eigen::ComplexEigenSolver<MatXc> solver(a);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+VecXc eigenvalues(const MatX& a) { return Eigen::EigenSolver<MatX>(a, false).eigenvalues(); }
+
+SymmetricEigenpairs symmetric_eigenpairs(const MatX& a) {
+  const Eigen::SelfAdjointEigenSolver<MatX> solver(a);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+SymmetricEigenpairs symmetric_eigenpairs(const MatX& k, const MatX& m) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> solver(k, m);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+VecX hermitian_eigenvalues(const MatXc& a) {
+  return Eigen::SelfAdjointEigenSolver<MatXc>(a, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+template <class Scalar>
+struct DenseLu<Scalar>::Factors {
+  Eigen::PartialPivLU<Mat> lu;
+};
+
+template <class Scalar>
+DenseLu<Scalar>::DenseLu() : factors_(std::make_unique<Factors>()) {}
+template <class Scalar>
+DenseLu<Scalar>::DenseLu(const Mat& a) : DenseLu() {
+  factor(a);
+}
+template <class Scalar>
+DenseLu<Scalar>::~DenseLu() = default;
+template <class Scalar>
+DenseLu<Scalar>::DenseLu(DenseLu&&) noexcept = default;
+template <class Scalar>
+DenseLu<Scalar>& DenseLu<Scalar>::operator=(DenseLu&&) noexcept = default;
+
+template <class Scalar>
+void DenseLu<Scalar>::factor(const Mat& a) {
+  factors_->lu.compute(a);
+}
+
+template <class Scalar>
+typename DenseLu<Scalar>::Vec DenseLu<Scalar>::solve(const Vec& b) const {
+  return factors_->lu.solve(b);
+}
+
+template <class Scalar>
+typename DenseLu<Scalar>::Mat DenseLu<Scalar>::solve(const Mat& b) const {
+  return factors_->lu.solve(b);
+}
+
+template <class Scalar>
+struct ColumnSpan<Scalar>::Factors {
+  Mat a;
+  Eigen::ColPivHouseholderQR<Mat> qr;
+};
+
+template <class Scalar>
+ColumnSpan<Scalar>::ColumnSpan(const Mat& a)
+    : factors_(std::make_unique<Factors>(Factors{a, Eigen::ColPivHouseholderQR<Mat>(a)})) {}
+template <class Scalar>
+ColumnSpan<Scalar>::~ColumnSpan() = default;
+
+template <class Scalar>
+typename ColumnSpan<Scalar>::Vec ColumnSpan<Scalar>::coordinates(const Vec& x) const {
+  return factors_->qr.solve(x);
+}
+
+template <class Scalar>
+typename ColumnSpan<Scalar>::Vec ColumnSpan<Scalar>::outside(const Vec& x) const {
+  return x - factors_->a * factors_->qr.solve(x);
+}
+
+template class DenseLu<double>;
+template class DenseLu<Complex>;
+template class ColumnSpan<double>;
+template class ColumnSpan<Complex>;
+
+}  // namespace whirl::la
