@@ -53,6 +53,7 @@ struct ShaftBeam {
       .angle = system::twist_angle, .spin = true, .weight = true};
 
   ShaftElementConstants c;
+  Matrix<4> G4c = Matrix<4>::Zero();  ///< G4 - diag(0, polar row sum 1, 0, polar row sum 2)
   Vec3 e0 = Vec3::UnitX();            ///< unit vector of the unstressed element, global axes
   double psi0 = 0;                    ///< twist at zero torque, rad
   double preload = 0;                 ///< axial force at w = 0, N, tension positive
@@ -60,7 +61,6 @@ struct ShaftBeam {
   double soft_axial = 0;              ///< r, m/N
   double soft_shear = 0;              ///< 1/kGA, 1/N
   double soft_limit = -infinity;      ///< -kGA/2, N
-  Matrix<4> G4c = Matrix<4>::Zero();  ///< G4 - diag(0, polar row sum 1, 0, polar row sum 2)
 
   ShaftBeam() = default;
   ShaftBeam(const ShaftElementConstants& constants, const Vec3& direction);

@@ -12,7 +12,9 @@
 
 namespace whirl::elements {
 
-struct ShaftElementConstants {
+/// Aligned so that its numbers stand in the same places whatever alignment matrices have
+/// (shaft_lanes.hpp).
+struct alignas(32) ShaftElementConstants {
   double length = 0;  ///< unstressed length between the end points, m
   double o1 = 0;      ///< end point 1 = node 1 + o1 d1, m
   double o2 = 0;      ///< end point 2 = node 2 + o2 d2, m

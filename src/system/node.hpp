@@ -9,11 +9,19 @@
 // with J' = d(Xdot)/dq and J'' = d(Xddot)/dq. Any smooth extension of an element's force off |d| =
 // 1 gives the same result, because J maps to the tangent space of the sphere.
 #pragma once
+#include <core/single.hpp>
 #include <core/types.hpp>
+#include <system/node_places.hpp>
 #include <array>
+#include <cstddef>
 #include <limits>
 
 namespace whirl::system {
+
+namespace of_one {
+using namespace single;
+#include <system/spin.inl>
+}  // namespace of_one
 
 struct NodeState {
   Vec3 u, du;    ///< displacement from the reference position, m, and its rate, m/s (global axes)
@@ -29,12 +37,26 @@ struct NodeState {
   Vec3 e() const { return chart->col(0); }
   Vec3 d() const { return chart->col(0) + t; }
   /// w with s = phi' - w . d': w = (e x d)/(1 + e.d)   (paper eq. (11) with d' = omega x d)
-  Vec3 spin_form() const { return e().cross(t) / (2.0 + e().dot(t)); }
+  Vec3 spin_form() const { return of_one::spin_form(e(), t, of_one::spin_divisor(e(), t)); }
   /// Spin rate about the section's own normal, s = omega . d, rad/s.
   double spin() const { return dphi - spin_form().dot(dd); }
   /// Whole angular velocity, d x d' + s d, rad/s.
   Vec3 omega() const { return d().cross(dd) + spin() * d(); }
 };
+
+static_assert(offsetof(NodeState, u) == NodePlaces::u * sizeof(double));
+static_assert(offsetof(NodeState, du) == NodePlaces::du * sizeof(double));
+static_assert(offsetof(NodeState, ddu) == NodePlaces::ddu * sizeof(double));
+static_assert(offsetof(NodeState, t) == NodePlaces::t * sizeof(double));
+static_assert(offsetof(NodeState, dd) == NodePlaces::dd * sizeof(double));
+static_assert(offsetof(NodeState, ddd) == NodePlaces::ddd * sizeof(double));
+static_assert(offsetof(NodeState, phi) == NodePlaces::phi * sizeof(double));
+static_assert(offsetof(NodeState, dphi) == NodePlaces::dphi * sizeof(double));
+static_assert(offsetof(NodeState, ddphi) == NodePlaces::ddphi * sizeof(double));
+static_assert(offsetof(NodeState, turns) == NodePlaces::turns * sizeof(double));
+static_assert(offsetof(NodeState, chart) == NodePlaces::chart * sizeof(double));
+static_assert(sizeof(NodeState) == NodePlaces::size * sizeof(double));
+static_assert(sizeof(Mat3) == 9 * sizeof(double) && sizeof(Vec3) == 3 * sizeof(double));
 
 template <int N>
 using Nodes = std::array<const NodeState*, N>;

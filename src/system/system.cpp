@@ -198,9 +198,7 @@ void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<Ve
 
 bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                             Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
-  static_assert(offsetof(NodeState, turns) == 21 * sizeof(double) &&
-                offsetof(NodeState, chart) == 22 * sizeof(double));
-  static_assert(sizeof(Mat3) == 9 * sizeof(double) && sizeof(Mat32) == 6 * sizeof(double));
+  static_assert(sizeof(Mat32) == 6 * sizeof(double));
   w.context.time = t;
   w.context.gravity = w.context.load * gravity_at(t);
   lanes::Motion m;
@@ -216,8 +214,9 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
     m.gravity[k] = w.context.gravity[k];
   m.limit_squared = rotation::chart_limit * rotation::chart_limit;
   m.state = w.nodes.data()->u.data();
-  m.stride = sizeof(NodeState) / sizeof(double);
   m.D = w.D.data()->data();
+  for (std::size_t i = 0; i < w.nodes.size(); ++i)
+    w.nodes[i].chart = &f.chart[at(line_of_[i])];
   static const lanes::Kernels& kernels = lanes::kernels();
   w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
   return w.outside < 0;
