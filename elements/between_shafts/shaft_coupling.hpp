@@ -5,9 +5,9 @@
 // - u_1 + o and difference of the axes d_0 - d_1 + alpha in fixed axes (o, alpha: parallel and
 // angular misalignment of the hubs as assembled, fixed in space), and the twist theta = phi_0 -
 // phi_1 with whole turns. In the frame turning with psi = (phi_0 + phi_1)/2,
-//   p = (x, r', theta, t'),  r' = R(-psi)(y, z),  t' = R(-psi)(tilt about y, tilt about z) =
-//   R(-psi)(-tau_z, tau_y), V = 1/2 p^T K p,   generalized force J^T (K p + C p'),  J =
-//   dp/d(nodes):
+//   p = (x, r', theta, t'),   r' = R(-psi)(y, z),
+//       t' = R(-psi)(tilt about y, tilt about z) = R(-psi)(-tau_z, tau_y),
+//   V = 1/2 p^T K p,   generalized force J^T (K p + C p'),  J = dp/d(nodes):
 // the order of K and C is (x, y, z, rx, ry, rz). Conservative but for C (rotating, internal
 // damping: it drives forward whirl above the critical speed). With K_yy != K_zz a misaligned
 // coupling shakes at twice the spin; isotropic ones pass a constant load. A coupling whose

@@ -23,9 +23,10 @@
 // eccentricities to 0.6; 3 % at L/D = 1 and 0.9. Grid: force within 1e-3 and coefficients within
 // 2e-3 of the converged ones at the default of 72 points, to an eccentricity of 0.9, most within
 // 1e-4 (test CoefficientsAreConverged). About 8 us a force and 13 us a tangent on one core. Limits:
-// isoviscous, laminar, no inertia, aligned. Sources: Reynolds equation Szeri 2011,
-// doi 10.1017/CBO9780511782022; published coefficients Lund & Thomsen, ASME 1978 (Topics in Fluid
-// Film Bearing and Rotor Bearing System Design and Optimization, pp. 1-28).
+// isoviscous, laminar, no inertia, aligned.
+// Sources: Reynolds equation Szeri 2011, doi 10.1017/CBO9780511782022; published coefficients Lund
+// & Thomsen, ASME 1978 (Topics in Fluid Film Bearing and Rotor Bearing System Design and
+// Optimization, pp. 1-28).
 #pragma once
 #include <elements/films/film.hpp>
 #include <elements/films/pad_film.hpp>

@@ -1,9 +1,9 @@
 // Axisymmetric rigid disk: one node, seven coordinates.
-//   T = 1/2 m |u' + z d'|^2 + 1/2 Jt |d'|^2 + 1/2 Jp s^2,   s = omega.d = phi' - w.d',  w = (e x
-//   d)/(1 + e.d)
+//   T = 1/2 m |u' + z d'|^2 + 1/2 Jt |d'|^2 + 1/2 Jp s^2,   s = omega.d = phi' - w.d',
+//       w = (e x d)/(1 + e.d)
 // Lagrange's equations (f = left side; gravity stands in the acceleration u'' - g):
-//   f_u = m (u'' + z d''),  f_d = m z (u'' + z d'') + Jt d'' - Jp s' w - Jp s d x d',  f_phi = Jp
-//   s'
+//   f_u = m (u'' + z d''),   f_d = m z (u'' + z d'') + Jt d'' - Jp s' w - Jp s d x d',
+//       f_phi = Jp s'
 // Nothing contains phi. m kg; Jt (transverse) and Jp (polar) about the mass centre, kg m2; z: mass
 // centre from the node along d, m. Source of the kinematics: doi 10.18698/2308-6033-2018-10-1815,
 // eq. (11).

@@ -5,11 +5,11 @@
 // the point `about`, angle the integral of the rate from 0. Displacements, directors and spins stay
 // relative to the base; bearings stand on it. An element of kernel K has, in inertial axes that
 // coincide with the base's at the instant,
-//   u_abs' = u' + omega x r,   u_abs'' = u'' + 2 omega x u' + omega x (omega x r) + omega' x r,   r
-//   = reference + u - about
+//   u_abs' = u' + omega x r,   u_abs'' = u'' + 2 omega x u' + omega x (omega x r) + omega' x r,
+//       r = reference + u - about
 // (directors alike, with r = d), and with w = (e x d)/(1 + e.d) of the spin s = phi' - w.d'
-//   s_abs = s + omega.d,   phi_abs' = phi' + omega.(e + d)/(1 + e.d),   phi_abs'' from s_abs' = s'
-//   + omega'.d + omega.d'.
+//   s_abs = s + omega.d,   phi_abs' = phi' + omega.(e + d)/(1 + e.d),
+//       phi_abs'' from s_abs' = s' + omega'.d + omega.d'.
 // The weight turns against the base. Added is f_K(absolute) - f_K(relative), exactly: Coriolis,
 // centrifugal and Euler forces, and gyroscopic moments Ip Omega omega. Its power is counted as
 // supplied. One template for every inertia, so that scenes without a turning base carry nothing of

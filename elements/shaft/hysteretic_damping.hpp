@@ -6,8 +6,8 @@
 // a backward one nu = -(w + s), s the spin of the element; twist and axial strain have nu = w. With
 // the viscous law of unit coefficient, f = C X' and its derivative K = s S at steady spin (S:
 // circulatory), this is, for w > 0,
-//   f = eta (a/w C X' + b S X),   a = (sign(w - s) + sign(w + s))/2,  b = (sign(w + s) - sign(w -
-//   s))/2,
+//   f = eta (a/w C X' + b S X),   a = (sign(w - s) + sign(w + s))/2,
+//       b = (sign(w + s) - sign(w - s))/2,
 // so above the spin (w > |s|) an ordinary complex stiffness i eta k, below it a circulatory
 // stiffness of constant size, which drives forward whirl: a shaft is destabilised above its
 // critical speed and not below. At the synchronous rate (w = |s|, circular) the strain stands still

@@ -232,7 +232,7 @@ struct ChordHessian {
     add_outer(l2, a, EA_l * w.d2 - il * (h.d2a * a));
   }
 
-  /// d lambda = dx2 - dx1 + o2 dd2 - o1 dd1
+  // d lambda = dx2 - dx1 + o2 dd2 - o1 dd1
   void add_offsets(double o1, double o2) {
     d1d1 += -o1 * (l1 + l1.transpose()) + o1 * o1 * ll;
     d2d2 += o2 * (l2 + l2.transpose()) + o2 * o2 * ll;

@@ -41,8 +41,7 @@ struct alignas(32) ShaftElementConstants {
   /// Contracted with a rigid rotation it gives polar.sum().
   Matrix<4> G4 = Matrix<4>::Zero();
   /// T = 1/2 s^T polar s on the end spin rates (s1, s2): polar inertia, averaged of consistent and
-  /// lumped
-  /// ([5/12 1/12; 1/12 5/12] rho I_p length when uniform), kg m^2.
+  /// lumped ([5/12 1/12; 1/12 5/12] rho I_p length when uniform), kg m^2.
   Matrix<2> polar = Matrix<2>::Zero();
 
   double mass = 0;  ///< kg (= the sum of M4 entries 11, 13, 31, 33)

@@ -4,9 +4,9 @@
 //
 // p_i: rotation-like vector from the chord a towards the director d_i, |p_i| = theta_i,
 // perpendicular to a. Its rate is
-//   p_i o = p_i' - (a x a' + c sigma a) x p_i,  c = 1 rotating, 0 not,  sigma = (sigma_1 +
-//   sigma_2)/2, sigma_i = (a + d_i).(omega_i - a x a')/(1 + a.d_i): the spin of end i about the
-//   chord.
+//   p_i o = p_i' - (a x a' + c sigma a) x p_i,   c = 1 rotating, 0 not,
+//       sigma = (sigma_1 + sigma_2)/2,
+//   sigma_i = (a + d_i).(omega_i - a x a')/(1 + a.d_i): the spin of end i about the chord.
 // f = dP^T (beta k) p o with p o = P(X) X', so the power lost, beta p o^T k p o, is never negative;
 // a rigidly turning bent shaft loses nothing when rotating, and feeds the forward whirl above
 // omega_crit (1 + c_ext/c_int) as it must (Kimball 1924). The rate of twist, sigma_2 - sigma_1, and

@@ -1,6 +1,6 @@
 // A kernel acting at points off its nodes: on rigid stubs o_i along the nodes' axes.
 //   u_i -> u_i + o_i (d_i - e_i), rates alike; what the kernel gives in these coordinates goes back
-//   by the transposed map, which is
+//       by the transposed map, which is
 // constant in X: f_d += o f_u, tangents by congruence.
 #pragma once
 #include <system/kernel.hpp>

@@ -1,8 +1,8 @@
 // A scalar force-deflection curve F(x) as polynomial pieces, with its slope and its energy: what
 // nonlinear springs share. x in m, F in N and the energy in J, or rad, N m and J; F is the force
 // that resists x (the load on the shaft is -F). Piecewise smooth and conservative, defined for
-// every x; F need not vanish at 0. Monotone cubics: F. N. Fritsch & R. E. Carlson,
-// doi 10.1137/0717021.
+// every x; F need not vanish at 0. Monotone cubics: F. N. Fritsch & R. E. Carlson, doi
+// 10.1137/0717021.
 #pragma once
 #include <array>
 #include <memory>

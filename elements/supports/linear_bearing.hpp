@@ -1,12 +1,12 @@
 // Linear spring, damper and added mass between two nodes (shaft and ground, housing or another
 // shaft), fixed axes.
-//   q = q_1 - q_2,  force on node 1 = preload - K (q - setpoint) - C q' - M q'',  on node 2 the
-//   opposite
+//   q = q_1 - q_2,   force on node 1 = preload - K (q - setpoint) - C q' - M q'',
+//       on node 2 the opposite
 //
 // Two kernels:
 //   TranslationalBearing: q = u, 3 x 3 matrices (the usual case);
 //   LinearBearing: q = (x, y, z, rx, ry, rz) of six_motion.hpp at points off the nodes, 6 x 6
-//   matrices; linear in X, so its tangents
+//       matrices; linear in X, so its tangents
 //     are constant.
 //
 // Matrices need not be symmetric: the skew parts of K

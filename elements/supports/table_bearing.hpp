@@ -1,15 +1,15 @@
 // Bearing or seal with coefficients tabulated against spin. The usual case are the lateral ones
 // (TableBearingLaw):
-//   F = -K(s) r - C(s) v - M(s) a,  F on the journal, (r, v, a) relative to the housing, (y, z), s
-//   the journal's spin;
+//   F = -K(s) r - C(s) v - M(s) a,
+//       F on the journal, (r, v, a) relative to the housing, (y, z), s the journal's spin;
 // 6x6 matrices, a set point or a preload take SpatialTableBearing.
 // The tangents contain dK/ds, dC/ds and dM/ds: a run-up with free spin sees them. A table gives no
 // torque on the shaft, so what its cross coupling (skew K) feeds into whirl counts as supplied
 // power; symmetric K and M store energy, symmetric C dissipates.
 //
-// Interpolation: linear, or monotone cubic (Fritsch & Carlson, SIAM J. Numer. Anal. 17, 1980,
-// doi 10.1137/0717021) per coefficient. Outside the table: held at its ends, or not defined (NaN:
-// the step is rejected and the run says so).
+// Interpolation: linear, or monotone cubic (Fritsch & Carlson, SIAM J. Numer. Anal. 17, 1980, doi
+// 10.1137/0717021) per coefficient. Outside the table: held at its ends, or not defined (NaN: the
+// step is rejected and the run says so).
 #pragma once
 #include <elements/supports/lateral_joint.hpp>
 #include <elements/supports/six_motion.hpp>

@@ -169,7 +169,8 @@ namespace {
 
 /// What rigid supports hold of one node. A second one on the same rigid stretch, `arm` away, holds
 /// the tilts instead: with u held, u + arm (d - e) = 0 means d_y = gamma3 sin g/g = 0, d_z =
-/// -gamma2 sin g/g = 0. The reaction of a displacement is then the sum of both supports' forces.
+/// -gamma2 sin g/g = 0.
+/// The reaction of a displacement is then the sum of both supports' forces.
 struct HeldNode {
   struct Share {
     std::size_t direction;

@@ -1,7 +1,6 @@
 // Finite rotations split into an axial and a transverse part, R = L(gamma) L(phi e), gamma
 // perpendicular to e. F. D. Sorokin, H. Zhang, Engineering Journal: Science and Innovation 2018 no.
-// 10, doi 10.18698/2308-6033-2018-10-1815
-// ("the paper"; equation numbers are its).
+// 10, doi 10.18698/2308-6033-2018-10-1815 ("the paper"; equation numbers are its).
 //
 // The chart (phi, gamma) is good for |gamma| < pi: the map (phi', gamma') -> omega has determinant
 // sin g / g. (The paper says 2 pi, where B alone degenerates; but at g = pi, d = -e, every azimuth

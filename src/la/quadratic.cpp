@@ -34,8 +34,7 @@ void ModeSolver::Impl::lock_known(Krylov<Scalar>& k) {
       if (p.lambda.imag() != 0.0) lock(p.x.conjugate(), std::conj(p.lambda));
     if (!p.rigid || first_order) continue;
     // Steady drift (0, x) belongs to the invariant space of a free motion when nothing damps it:
-    // the operator then makes
-    // -(alpha / shift^2) x and the like of it.
+    // the operator then makes -(alpha / shift^2) x and the like of it.
     for (Index i = 0; i < n; ++i) {
       z(i) = 0.0;
       if constexpr (std::is_same_v<Scalar, double>)

@@ -226,7 +226,7 @@ void RotorPicture::find_extent() {
   if (!(r1_ > 0)) r1_ = (s1_ - s0_) / 50;
 }
 
-/// An outer and an inner radius along s: two halves, or one area when there is no bore.
+// An outer and an inner radius along s: two halves, or one area when there is no bore.
 void RotorPicture::add_outline(double sa, double sb, std::array<double, 2> outer,
                                std::array<double, 2> inner, const Style& style, double opacity,
                                const std::string& tip, const std::string& label) {

@@ -56,7 +56,7 @@ io::Table empty_critical_table() {
   return t;
 }
 
-/// Intersections with the orders, solved for.
+// Intersections with the orders, solved for.
 std::vector<plot::CriticalMark> find_criticals(results::FrequencyStep& s,
                                                const model::CampbellStep& law,
                                                const analysis::CampbellOptions& o,

@@ -267,7 +267,7 @@ void HarmonicRun::add_table() {
   s_.add_table("response", std::move(t), false);
 }
 
-/// Peaks, found between the points.
+// Peaks, found between the points.
 void HarmonicRun::add_peaks() {
   io::Table table;
   table.title = "Peaks of the response";

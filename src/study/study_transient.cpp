@@ -250,8 +250,8 @@ struct Ground {
   int finest = 1;               ///< mesh factor of the reference
 };
 
-/// What the default accuracy costs says how tight a reference may be: one to 1e-10 on four times
-/// the elements takes a hundred times as long.
+// What the default accuracy costs says how tight a reference may be: one to 1e-10 on four times the
+// elements takes a hundred times as long.
 Ground survey(Benches& benches) {
   Bench& bench = benches.at(1);
   Ground g;

@@ -4,8 +4,8 @@
 // d(gamma), its offset t = d - e from the chart axis (kept separately, so that a tilt of 1e-12 rad
 // keeps its digits), and phi. The system converts forces and tangents once per node with the
 // Jacobian J = dX/dq:
-//   r_q = J^T f_X,   M_q = J^T M J,   C_q = J^T (C J + 2 M J'),   K_q = J^T (K J + C J' + M J'') +
-//   f_d . d2d/dgamma2
+//   r_q = J^T f_X,   M_q = J^T M J,   C_q = J^T (C J + 2 M J'),
+//       K_q = J^T (K J + C J' + M J'') + f_d . d2d/dgamma2
 // with J' = d(Xdot)/dq and J'' = d(Xddot)/dq. Any smooth extension of an element's force off |d| =
 // 1 gives the same result, because J maps to the tangent space of the sphere.
 #pragma once

@@ -75,8 +75,8 @@ TEST(Hertz, KnownContacts) {
   }
   const double rho = (1 / 0.004 - 1 / 0.09) / (1 / 0.004 + 1 / 0.09), k2 = kappa * kappa;
   EXPECT_NEAR(((k2 + 1) * S - 2 * F) / ((k2 - 1) * S), rho, 1e-9);
-  // the handbook form K = (2 sqrt 2/3) E/(1-nu^2) (sum of curvatures)^(-1/2) delta*^(-3/2)
-  // (Harris: 2.15e5 N/mm^1.5 for steel)
+  // the handbook form K = (2 sqrt 2/3) E/(1-nu^2) (sum of curvatures)^(-1/2) delta*^(-3/2) (Harris:
+  // 2.15e5 N/mm^1.5 for steel)
   const double star = 2 * F / pi * std::cbrt(pi / (2 * k2 * S)),
                handbook = 2 * std::sqrt(2.0) / 3 * E / std::sqrt(1 / 0.004 + 1 / 0.09) /
                           std::pow(star, 1.5);
