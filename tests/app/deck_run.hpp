@@ -93,10 +93,9 @@ struct DeckRun {
     std::filesystem::remove_all(folder, ec);
   }
   Columns csv(const std::string& name) const { return Columns(folder / "r" / name); }
+  io::Value summary() const { return io::read_json(folder / "r" / "summary.json"); }
   /// What the summary says of a step.
-  io::Value summary(const std::string& step) const {
-    return io::read_json(folder / "r" / "summary.json").at("steps").at(step);
-  }
+  io::Value summary(const std::string& step) const { return summary().at("steps").at(step); }
   bool says(const std::string& text) const { return log.find(text) != std::string::npos; }
 
  private:

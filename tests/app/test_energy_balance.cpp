@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+namespace io = whirl::io;
 using whirl::test::DeckRun;
 
 namespace {

@@ -303,9 +303,10 @@ TEST(StepSpeeds, RunTimesAreNamed) {
     const std::size_t line = d.log.find(std::string(step) + ": ");
     ASSERT_NE(line, std::string::npos) << step;
   }
+  const io::Value whole = d.summary();
   for (const char* key : {"run time, CPU [s]", "run time, wall [s]", "run time by phase, CPU [s]",
                           "run time by phase, wall [s]"})
-    EXPECT_EQ(s.count(key), 1u) << key;
+    EXPECT_FALSE(whole.at(key).is_null()) << key;
   std::size_t said = 0;
   for (std::size_t p = d.log.find(" s CPU, "); p != std::string::npos;
        p = d.log.find(" s CPU, ", p + 1))

@@ -219,11 +219,11 @@ class Gallery : public ::testing::TestWithParam<std::size_t> {
     return f;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Plots, Gallery, ::testing::Range<std::size_t>(0, 15),
+INSTANTIATE_TEST_SUITE_P(Plots, Gallery, ::testing::Range<std::size_t>(0, 14),
                          [](const auto& i) { return gallery()[i.param].name; });
 
 TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
-  ASSERT_EQ(figures().size(), 15u);
+  ASSERT_EQ(figures().size(), 14u);
   const plot::Figure& f = figures()[GetParam()];
   for (const bool standalone : {true, false}) {
     const std::string svg = plot::render_svg(f, {standalone, "", 1.0});
