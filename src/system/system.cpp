@@ -1,4 +1,5 @@
 #include <system/system.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <core/rotation.hpp>
@@ -198,6 +199,8 @@ void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<Ve
 
 bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                             Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
+  WHIRL_EXPECTS(q.size() == size() && v.size() == size() && a.size() == size());
+  WHIRL_EXPECTS(w.nodes.size() == at(nodes()) && f.chart.size() == at(lines()));
   static_assert(sizeof(Mat32) == 6 * sizeof(double));
   w.context.time = t;
   w.context.gravity = w.context.load * gravity_at(t);
@@ -235,6 +238,7 @@ void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::R
 }
 
 void System::project_force(const Workspace& w, Eigen::Ref<VecX> r) const {
+  WHIRL_EXPECTS(r.size() == size());
   for (Index i = 0; i < nodes(); ++i) {
     const Vector<7>& f = w.force[at(i)];
     r.segment<3>(6 * i) = f.head<3>();
