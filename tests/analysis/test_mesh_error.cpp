@@ -84,11 +84,10 @@ TEST(MeshError, EstimateAgreesWithAFinerMesh) {
         const double real = moved(a.modes[k], b), said = a.error[k];
         if (real > 0.03 || said > 0.03) continue;  // beyond first order
         ++compared;
-        // What is missing: the left vector's difference, the second order, and a root that another
-        // is closer to.
-        EXPECT_LT(said, 1.5 * real + 0.1 * std::sqrt(real) * real + 2e-6)
-            << "machine " << seed << ", mode " << k + 1 << ": " << real;
-        EXPECT_LT(real, 1.5 * said + 2e-6) << "machine " << seed << ", mode " << k + 1;
+        // Films and internal damping make the left vector another than the right one, by up to
+        // the whole of it in heavily damped modes: the size of the error is what is told.
+        EXPECT_LT(said, 4.0 * real + 2e-6) << "machine " << seed << ", mode " << k + 1;
+        EXPECT_LT(real, 3.0 * said + 2e-6) << "machine " << seed << ", mode " << k + 1;
         worst_under = std::max(worst_under, real / (said + 2e-6));
         small += real < 1e-3;
       }
@@ -100,6 +99,56 @@ TEST(MeshError, EstimateAgreesWithAFinerMesh) {
   EXPECT_GT(compared, 40);
   EXPECT_GT(compared - small, 5);  // errors worth estimating were among them
   std::printf("%d modes compared, at most %.2f times the estimate\n", compared, worst_under);
+}
+
+// Without damping the left vector is the right one: but for the second order the estimate is the
+// error.
+TEST(MeshError, OfAConservativeRotorIsTheErrorItself) {
+  const auto deck = [](int elements) {
+    return fmt::format(R"(format = 1
+[[shaft]]
+name = "s"
+material = "steel"
+[[shaft.section]]
+name = "p"
+length = "0.6 m"
+od = "30 mm"
+min_elements = {0}
+[[shaft.section]]
+name = "q"
+length = "0.4 m"
+od_l = "30 mm"
+od_r = "50 mm"
+min_elements = {0}
+[[disk]]
+at = "p:end"
+mass = "8 kg"
+Ip = "0.2 kg.m^2"
+Id = "0.1 kg.m^2"
+[[bearing]]
+at = "p:start"
+type = "linear"
+kyy = "2e7 N/m"
+kzz = "2e7 N/m"
+[[bearing]]
+at = "q:end"
+type = "linear"
+kyy = "1e7 N/m"
+kzz = "1e7 N/m"
+)",
+                       elements);
+  };
+  const DeckModel coarse(deck(1)), fine(deck(8));
+  const double Omega = 6000 * rpm;
+  const Spectrum a = spectrum_of(coarse, Omega, 6), b = spectrum_of(fine, Omega, 8);
+  int compared = 0;
+  for (std::size_t k = 0; k < a.modes.size(); ++k) {
+    const double real = moved(a.modes[k], b);
+    if (!(a.modes[k].frequency > 1.0) || real > 0.05 || real < 1e-5) continue;
+    EXPECT_NEAR(a.error[k] / real, 1.0, 0.1 + 2.0 * real) << "mode " << k + 1 << ": " << real;
+    ++compared;
+  }
+  EXPECT_GE(compared, 3);
 }
 
 TEST(MeshError, ChosenMeshesKeepTheirAccuracy) {
@@ -147,6 +196,7 @@ rotary_inertia = false
 [[bearing]]
 at = "p:start"
 type = "rigid"
+directions = ["x", "y", "z"]
 [[bearing]]
 at = "p:end"
 type = "rigid"

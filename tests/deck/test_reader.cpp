@@ -246,6 +246,7 @@ at = "wheel"
 [[step]]
 name = "first"
 type = "transient"
+start = "rest"
 duration = "1 s"
 stop_speed = "900 rpm"
 amplitude_limit = "1 mm"
