@@ -1,13 +1,17 @@
 # One folder is one component: a static library of its *.cpp files (or an interface, when it has none).
 #   whirl_component(NAME DIR <dir> [FOLDERS <sub-folders>] [EXCLUDE <regex>] [PCH <header>] [DEPS <targets>])
 # FOLDERS: sub-folders that belong to the component. PCH: header precompiled for it (cmake/pch/<header>.hpp).
+# Installed, it is the target whirl::NAME, and its headers stand in include/whirl/NAME (cmake/WhirlInstall.cmake).
 add_library(whirl_flags INTERFACE)
-target_compile_options(whirl_flags INTERFACE -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+target_compile_options(whirl_flags INTERFACE
+  $<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>>)
+target_compile_features(whirl_flags INTERFACE cxx_std_20)
 # Eigen's alignment is pinned so that code built for different instruction sets shares one binary layout.
 target_compile_definitions(whirl_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=32 EIGEN_DONT_PARALLELIZE)
-target_include_directories(whirl_flags INTERFACE ${CMAKE_SOURCE_DIR}/src ${CMAKE_SOURCE_DIR})
+target_include_directories(whirl_flags INTERFACE
+  $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src> $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}> $<INSTALL_INTERFACE:include/whirl>)
 if(WHIRL_MARCH)
-  target_compile_options(whirl_flags INTERFACE -march=${WHIRL_MARCH})
+  target_compile_options(whirl_flags INTERFACE $<BUILD_INTERFACE:-march=${WHIRL_MARCH}>)
 endif()
 
 # Headers that most files of several components parse anyway, parsed once for all of them: cmake/pch/<header>.hpp
@@ -53,6 +57,8 @@ function(whirl_component NAME)
     add_library(whirl_${NAME} INTERFACE)
     target_link_libraries(whirl_${NAME} INTERFACE whirl_flags Eigen3::Eigen ${A_DEPS})
   endif()
+  set_property(GLOBAL APPEND PROPERTY WHIRL_COMPONENTS ${NAME})
+  set_property(GLOBAL PROPERTY WHIRL_FOLDER_${NAME} ${A_DIR})
 endfunction()
 
 # A test program of all test_*.cpp in a folder; each GoogleTest case becomes a CTest test.

@@ -8,5 +8,6 @@ function(whirl_plugin NAME)
     OUTPUT_NAME whirl_${NAME} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/plugins
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_link_libraries(whirl_plugin_${NAME} PRIVATE whirl_flags Eigen3::Eigen ${A_LIBS})
-  install(TARGETS whirl_plugin_${NAME} LIBRARY DESTINATION lib/whirl)
+  install(TARGETS whirl_plugin_${NAME} LIBRARY DESTINATION lib/whirl COMPONENT ${NAME})
+  set_property(GLOBAL APPEND PROPERTY WHIRL_PLUGINS ${NAME})
 endfunction()

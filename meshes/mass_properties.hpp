@@ -3,8 +3,9 @@
 //
 // Frustum of length L, diameters D1, D2 (hollow: outer less inner): V = pi L/12 (D1^2 + D1 D2 +
 // D2^2),
-//   int A s ds = pi L^2/48 (D1^2 + 2 D1 D2 + 3 D2^2),  int A s^2 ds = pi L^3/120 (D1^2 + 3 D1 D2 +
-//   6 D2^2), int J ds = pi L/160 (D1^4 + D1^3 D2 + D1^2 D2^2 + D1 D2^3 + D2^4),  J = pi D^4/32.
+//   int A s ds = pi L^2/48 (D1^2 + 2 D1 D2 + 3 D2^2),
+//       int A s^2 ds = pi L^3/120 (D1^2 + 3 D1 D2 + 6 D2^2),
+//   int J ds = pi L/160 (D1^4 + D1^3 D2 + D1^2 D2^2 + D1 D2^3 + D2^4),  J = pi D^4/32.
 #pragma once
 #include <model/model.hpp>
 #include <string>

@@ -1,4 +1,5 @@
 #include <meshes/mesh.hpp>
+#include <model/resolution.hpp>
 
 #include <fmt/format.h>
 
@@ -20,8 +21,6 @@ constexpr double same_place = 1e-9;
 /// More elements than this in one section are a mistake in units, not a mesh.
 constexpr double most_elements = 1e6;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 struct Attached {
   const Location* where;
   std::string label;
@@ -42,7 +41,8 @@ std::vector<Attached> attachments(const Model& m) {
     if (x.to) out.push_back({&*x.to, named("unbalance", x)});
   }
   for (const auto& x : m.bearings) {
-    const bool held = std::holds_alternative<model::RigidSupport>(x.law) && !x.to && !x.pedestal;
+    const bool held =
+        model::traits_of(x.law).acts == model::Acts::as_constraint && !x.to && !x.pedestal;
     out.push_back({&x.at, named("bearing", x), 0.0, held});
     if (x.to) out.push_back({&*x.to, named("bearing", x), 0.0, false});
   }
@@ -93,7 +93,7 @@ void check_section(const Shaft& shaft, const Section& s, double model_largest, C
               fmt::format("{}: elements of {} m would be {:.3g} of them", who, largest,
                           s.length / largest),
               "more than a million elements in one section", s.where, who);
-  if (s.min_elements < 1 || !(s.max_element_length > 0))
+  if (s.min_elements < 0 || !(s.max_element_length > 0))
     check.add("E14", fmt::format("{}: at least one element of positive length is needed", who), {},
               s.where, who);
   const bool wants_circle = !s.rigid && !s.constants && !s.general;
@@ -170,8 +170,10 @@ std::vector<int> element_counts(const std::vector<double>& cuts, double largest,
 /// One shaft line: walks its sections from left to right.
 class LineMesher {
  public:
-  LineMesher(const Model& m, std::size_t index, const std::vector<Attached>& attached, Mesh& mesh)
+  LineMesher(const Model& m, std::size_t index, const std::vector<Attached>& attached,
+             const model::Resolution& resolution, Mesh& mesh)
       : model_(m),
+        resolution_(resolution),
         shaft_(m.shafts[index]),
         mesh_(mesh),
         index_(static_cast<Index>(index)) {
@@ -259,8 +261,8 @@ class LineMesher {
       if (s > cuts.back() + tolerance_ && s < b - tolerance_) cuts.push_back(s);
     cuts.push_back(b);
     const std::vector<int> n =
-        element_counts(cuts, std::min(s.max_element_length, model_.max_element_length),
-                       std::max(s.min_elements, model_.min_elements));
+        element_counts(cuts, model::longest_element(model_, shaft_, s, resolution_),
+                       std::max({s.min_elements, model_.min_elements, 1}));
     if (k == 0) end_ = {add_node(a), 0.0};
     const bool rigid_next = k + 1 < shaft_.sections.size() && shaft_.sections[k + 1].rigid;
     for (std::size_t c = 0; c < n.size(); ++c)
@@ -355,6 +357,7 @@ class LineMesher {
     double where;
   };
   const Model& model_;
+  const model::Resolution& resolution_;
   const Shaft& shaft_;
   Mesh& mesh_;
   Index index_;
@@ -382,7 +385,7 @@ void add_supports(const Model& m, Mesh& mesh) {
     BearingNodes x;
     x.shaft = mesh.place(b.at);
     x.other.node = -1;
-    const bool rigid = std::holds_alternative<model::RigidSupport>(b.law);
+    const bool rigid = model::traits_of(b.law).acts == model::Acts::as_constraint;
     if (b.to)
       x.other = mesh.place(*b.to);
     else if ((b.pedestal || m.foundation_of(k) >= 0) && !rigid) {
@@ -395,8 +398,7 @@ void add_supports(const Model& m, Mesh& mesh) {
   for (std::size_t k = 0; k < m.bearings.size(); ++k) {
     const auto& b = m.bearings[k];
     BearingNodes& x = mesh.bearings[k];
-    const bool alone = std::holds_alternative<model::RigidSupport>(b.law) ||
-                       std::holds_alternative<model::SpringBlock>(b.law);
+    const bool alone = model::traits_of(b.law).acts != model::Acts::between_nodes;
     if (!b.pedestal && (b.to || alone)) continue;
     x.ground = add_fixed(mesh, mesh.station(b.at).position, NodeKind::ground,
                          fmt::format("ground of {}", named("bearing", b)));
@@ -442,8 +444,9 @@ Mesh make_mesh(const Model& m) {
   const std::vector<Attached> attached = attachments(m);
   check_model(m, attached);
   Mesh mesh;
+  const model::Resolution resolution = model::resolution_of(m);
   for (std::size_t k = 0; k < m.shafts.size(); ++k)
-    LineMesher(m, k, attached, mesh).run();
+    LineMesher(m, k, attached, resolution, mesh).run();
   add_supports(m, mesh);
   return mesh;
 }

@@ -92,7 +92,7 @@ struct Mesh {
   double radius(const model::Model& m, std::size_t line, double s) const;
 };
 
-/// Errors (all of a model at once, Exit::deck): E19 attachment beyond its shaft; E14, E23
+/// @throws Error (all of a model at once, Exit::deck) E19 attachment beyond its shaft; E14, E23
 /// impossible section dimensions; E35 no shaft.
 Mesh make_mesh(const model::Model& m);
 

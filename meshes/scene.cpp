@@ -125,8 +125,7 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
     const BearingNodes& n = mesh.bearings[i];
     SupportShape s;
     s.name = b.name;
-    s.kind = std::holds_alternative<model::SpringBlock>(b.law) ? SupportShape::Kind::spring
-                                                               : SupportShape::Kind::bearing;
+    s.picture = model::traits_of(b.law).picture;
     s.at = n.shaft;
     s.to_node = n.other.node >= 0 && n.other.node != n.ground;
     if (s.to_node) s.to = n.other;

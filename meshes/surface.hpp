@@ -7,6 +7,7 @@
 // directors as end slopes; the sections stand normal to it.
 #pragma once
 #include <core/types.hpp>
+#include <model/support_traits.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,9 +46,8 @@ struct DiskShape {
 
 /// A spring, bearing or support glyph.
 struct SupportShape {
-  enum class Kind { spring, bearing };
   std::string name;
-  Kind kind = Kind::bearing;
+  model::Picture picture = model::Picture::bearing;
   Place at;              ///< on the shaft
   bool to_node = false;  ///< the far end is a place too (intershaft bearing, coupling, pedestal);
                          ///< else the ground

@@ -1,4 +1,5 @@
-// Precompiled for components that compute: Eigen's dense part and the standard library's parts that most of their files use.
+// Precompiled for components that compute: Eigen's dense part and the standard library's parts that
+// most of their files use.
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/LU>

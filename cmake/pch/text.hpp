@@ -1,4 +1,5 @@
-// Precompiled for components that handle text and files: the standard library's parts that most of their files use.
+// Precompiled for components that handle text and files: the standard library's parts that most of
+// their files use.
 #include <algorithm>
 #include <array>
 #include <cmath>

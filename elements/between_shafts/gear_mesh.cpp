@@ -71,6 +71,11 @@ Vector<14> gradient(const GearMesh& g, const Mesh& m) {
 
 }  // namespace
 
+system::Dependence GearMesh::depends(const Context& context) const {
+  const bool one_tooth = harmonics > 0 && !context.averaged;
+  return {.angle = one_tooth ? system::each_angle : system::angle_sum(z1, z2), .spin = c != 0.0};
+}
+
 double GearMesh::compression(const Nodes<2>& x) const { return Mesh(*this, x).delta; }
 
 void GearMesh::add_force(const Nodes<2>& x, const Context& context, ForceX<14>& f) const {
@@ -110,6 +115,10 @@ struct Flank {
 };
 
 }  // namespace
+
+system::Dependence BacklashGearMesh::depends(const Context& context) const {
+  return {.angle = drive.depends(context).angle, .spin = relaxation != 0.0};
+}
 
 void BacklashGearMesh::add_force(const Nodes<2>& x, const Context& context, ForceX<14>& f) const {
   for (const GearMesh* g : {&drive, &back}) {

@@ -74,6 +74,25 @@ struct Motion {
 
 }  // namespace
 
+namespace {
+
+/// m is the same in all axes turned about x.
+bool same_all_round(const Matrix<6>& m) {
+  Matrix<6> turn = Matrix<6>::Zero();
+  turn(1, 2) = turn(4, 5) = 1.0;
+  turn(2, 1) = turn(5, 4) = -1.0;
+  const Matrix<6> change = m * turn - turn * m;
+  const Matrix<6> size = m.cwiseAbs() * turn.cwiseAbs() + turn.cwiseAbs() * m.cwiseAbs();
+  return (change.cwiseAbs().array() <= 1e-12 * size.array()).all();
+}
+
+}  // namespace
+
+system::Dependence ShaftCoupling::depends(const Context&) const {
+  const bool round = same_all_round(K) && same_all_round(C);
+  return {.angle = round ? system::twist_angle : system::each_angle, .spin = !C.isZero(0.0)};
+}
+
 void ShaftCoupling::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
   const Motion<double> m(*this, relative(*this, x));
   for (int a = 0; a < 2; ++a)

@@ -20,8 +20,8 @@
 //     void evaluate(const FilmPoint&, FilmForce&, FilmTangent&) const;
 //   };
 // Outside its domain (film thickness <= 0) a film returns NaN: the time step or the Newton step is
-// then shortened. Source: Szeri, Fluid Film Lubrication, 2nd ed., 2011,
-// doi 10.1017/CBO9780511782022, ch. 2-4.
+// then shortened. Source: Szeri, Fluid Film Lubrication, 2nd ed., 2011, doi
+// 10.1017/CBO9780511782022, ch. 2-4.
 #pragma once
 #include <elements/supports/lateral_joint.hpp>
 #include <cmath>
@@ -60,6 +60,7 @@ inline void set_outside(FilmForce& f, FilmTangent& t) {
 template <class Film>
 struct FilmLaw {
   static constexpr bool inertia = false;
+  static constexpr system::Dependence depends{.spin = true};
   Film film;
 
   static FilmPoint point(const LateralMotion& m) {

@@ -23,9 +23,10 @@
 // eccentricities to 0.6; 3 % at L/D = 1 and 0.9. Grid: force within 1e-3 and coefficients within
 // 2e-3 of the converged ones at the default of 72 points, to an eccentricity of 0.9, most within
 // 1e-4 (test CoefficientsAreConverged). About 8 us a force and 13 us a tangent on one core. Limits:
-// isoviscous, laminar, no inertia, aligned. Sources: Reynolds equation Szeri 2011,
-// doi 10.1017/CBO9780511782022; published coefficients Lund & Thomsen, ASME 1978 (Topics in Fluid
-// Film Bearing and Rotor Bearing System Design and Optimization, pp. 1-28).
+// isoviscous, laminar, no inertia, aligned.
+// Sources: Reynolds equation Szeri 2011, doi 10.1017/CBO9780511782022; published coefficients Lund
+// & Thomsen, ASME 1978 (Topics in Fluid Film Bearing and Rotor Bearing System Design and
+// Optimization, pp. 1-28).
 #pragma once
 #include <elements/films/film.hpp>
 #include <elements/films/pad_film.hpp>
@@ -45,8 +46,9 @@ class JournalSurface {
  public:
   static constexpr int max_nodes = 360;
   /// clearance: assembled c_b, m; preload m in [0, 1): c_p = c_b/(1 - m). nodes: grid points over
-  /// all pads; no pads: one uninterrupted cylinder. Errors E84: no clearance, preload outside [0,
-  /// 1), pads that overlap or are empty, too many or too few nodes.
+  /// all pads; no pads: one uninterrupted cylinder.
+  /// @throws Error E84: no clearance, preload outside [0, 1), pads that overlap or are empty, too
+  /// many or too few nodes.
   JournalSurface(double clearance, double preload, const std::vector<JournalPad>& pads,
                  int nodes = 72);
 

@@ -5,8 +5,8 @@ namespace whirl::elements {
 
 /// Dynamic viscosity of an ISO VG oil (ISO 3448: kinematic viscosity `grade` mm2/s at 40 C),
 /// viscosity index near 100, Pa s:
-///   eta = eta_x exp[(159.55657/(T + 95) - 0.181913) ln(rho grade 1e-6/eta_x)],  eta_x = 0.18e-3 Pa
-///   s, T in degrees Celsius
+///   eta = eta_x exp[(159.55657/(T + 95) - 0.181913) ln(rho grade 1e-6/eta_x)],
+///       eta_x = 0.18e-3 Pa s, T in degrees Celsius
 /// (Vogel form of DIN 31652-2 / DIN 31654-2). temperature: kelvin, 243 to 473 K; density: kg/m3.
 /// Errors E85: grade or density not positive, temperature outside the range.
 double iso_vg_viscosity(double grade, double temperature, double density = 900.0);

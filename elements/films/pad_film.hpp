@@ -3,8 +3,8 @@
 //
 // Clearance 1 - e.n(theta), n = (cos, sin); source W.n. The pressure P solves the complementarity
 // problem of Reynolds (Swift-Stieber):
-//   (h^3 P')' - beta h^3 P = -W.n where P > 0,  P' = 0 where the film forms or ruptures,  P = 0 at
-//   the ends of the pad.
+//   (h^3 P')' - beta h^3 P = -W.n where P > 0,   P' = 0 where the film forms or ruptures,
+//       P = 0 at the ends of the pad.
 // W.n is one wave, so the film is where W.n > 0 (half a circle) and a little further, the core.
 // Every core lies in one stretch of film, a pad has at most two (both at its ends, when it is
 // longer than half a circle), and the unknowns are the free ends of those.
@@ -32,8 +32,8 @@ class PadFilm {
   static constexpr int order = 4;
   static constexpr int points_of_element = 6;  ///< points of the grid an element stands for
 
-  /// start, arc: rad. round: a whole circle without ends. beta: leakage at the sides, (R/L)^2
-  /// times 10. points: over the arc.
+  /// start, arc: rad. round: a whole circle without ends. beta: leakage at the sides, (R/L)^2 times
+  /// 10. points: over the arc.
   PadFilm(double start, double arc, bool round, double beta, double points);
 
   /// Smallest clearance 1 - e.n on the pad; the film exists where it is positive.

@@ -7,7 +7,7 @@
 // contribute). In the axes (w/|w|, J w/|w|) with a, b the components of r/c the integrals are
 // derivatives of
 //   G(a, b) = int_{-pi/2}^{pi/2} dpsi/(1 - a cos psi - b sin psi) = 2/q [atan((1+a-b)/q) +
-//   atan((1+a+b)/q)], q^2 = 1-a^2-b^2,
+//       atan((1+a+b)/q)], q^2 = 1-a^2-b^2,
 // 1/2 G_jk for h^-3 and 1/6 G_jkl for h^-4, which follow from (1-a^2-b^2) G_a = 2 + a G and its b
 // counterpart. No case distinction on signs is needed anywhere. Equivalent to Capone's form, La
 // Houille Blanche 41 (1986), and to Ocvirk's equilibrium NACA TN 2808 (1953). Shear torque of the

@@ -4,14 +4,15 @@
 //
 // Films: ShortJournal     open ends, pi film (cavitated at ambient pressure): half Sommerfeld
 //        ShortFullFilm    open ends, 2 pi film (feed pressure keeps it from cavitating)
-//        FiniteJournal    any length, Swift-Stieber cavitation; sealed ends with
-//        FiniteJournal::seal_ends
+//        FiniteJournal
+//            any length, Swift-Stieber cavitation; sealed ends with FiniteJournal::seal_ends
 // A centring spring is a bearing of its own in parallel (linear_bearing.hpp); without one the ring
 // lies at the bottom at rest and needs a stop (rub.hpp) short of the clearance. Power F.v <= 0 is
-// dissipated. For circular centred orbits of whirl omega the pi film gives the classical F_r = -2
-// eta R L^3 omega eps^2/(c^2 (1-eps^2)^2) and F_t = -pi eta R L^3 omega eps/(2 c^2 (1-eps^2)^1.5)
-// (Gunter, Barrett & Allaire, ASME J. Lubr. Tech. 99 (1977), doi 10.1115/1.3452979). Limits: no
-// fluid inertia (squeeze Reynolds number rho omega c^2/eta below about 1), isoviscous.
+// dissipated.
+// For circular centred orbits of whirl omega the pi film gives the classical F_r = -2 eta R L^3
+// omega eps^2/(c^2 (1-eps^2)^2) and F_t = -pi eta R L^3 omega eps/(2 c^2 (1-eps^2)^1.5) (Gunter,
+// Barrett & Allaire, ASME J. Lubr. Tech. 99 (1977), doi 10.1115/1.3452979). Limits: no fluid
+// inertia (squeeze Reynolds number rho omega c^2/eta below about 1), isoviscous.
 #pragma once
 #include <elements/films/film.hpp>
 
@@ -29,6 +30,8 @@ template <class Film>
 struct SqueezeFilm {
   static constexpr int n_nodes = 2, width = 3;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  static constexpr system::Dependence depends{};
 
   Film film;
 

@@ -49,6 +49,12 @@ void FixedLoad::add_energy(const Nodes<1>& x, const Context& c, Energy& e) const
   e.supplied += value(factor, c) * (force.dot(n.du + offset * n.dd) + moment.dot(n.omega()));
 }
 
+Dependence BodyLoad::depends(const Context& c) const {
+  const bool across = !force.tail<2>().isZero(0.0) || !moment.tail<2>().isZero(0.0);
+  return {.angle = across && value(factor, c) != 0.0 ? each_angle : no_angle,
+          .time = varies(factor)};
+}
+
 void BodyLoad::add_force(const Nodes<1>& x, const Context& c, ForceX<7>& f) const {
   const NodeState& n = *x[0];
   const BodyFrame frame(n);

@@ -17,6 +17,8 @@ namespace whirl::elements {
 struct PointForce {
   static constexpr int n_nodes = 1, width = 3;
   static constexpr bool has_M = false, has_C = false, has_K = false, linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::load;
+  system::Dependence depends(const system::Context&) const { return {.time = varies(factor)}; }
 
   Vec3 force = Vec3::Zero();
   LawPtr factor;
@@ -32,6 +34,8 @@ struct FixedLoad {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::load;
+  system::Dependence depends(const system::Context&) const { return {.time = varies(factor)}; }
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;
@@ -50,6 +54,9 @@ struct BodyLoad {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::load;
+  /// Sees the angle while it has a part across the axis.
+  system::Dependence depends(const system::Context& c) const;
 
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double offset = 0;

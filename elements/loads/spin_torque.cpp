@@ -61,6 +61,11 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) con
   return v;
 }
 
+bool TorqueLaw::follows_speed() const {
+  return !speed.empty() || friction != 0.0 || viscous != 0.0 || quadratic != 0.0 || induction ||
+         power || dc || brake || governor;
+}
+
 std::vector<double> TorqueLaw::breakpoints() const {
   std::vector<double> out;
   for (const LawPtr& l : {of_time, brake})
@@ -89,6 +94,14 @@ double angle_of(const NodeState& n) { return n.phi + two_pi * n.turns; }
 template <TorqueAction A>
 TorqueLaw::Value SpinTorque<A>::value(const NodeState& n, const Context& c) const {
   return law.at(c.time, speed_of<A>(n, e0), angle_of(n), c.averaged);
+}
+
+template <TorqueAction A>
+Dependence SpinTorque<A>::depends(const Context& c) const {
+  const bool counts = law.governor && law.governor->ki != 0.0 && !c.averaged;
+  return {.angle = counts ? each_angle : no_angle,
+          .spin = law.follows_speed(),
+          .time = counts || varies(law.of_time) || varies(law.brake)};
 }
 
 template <TorqueAction A>

@@ -64,6 +64,8 @@ struct TorqueLaw {
   /// about the state.
   Value at(double t, double x, double phi, bool settled = false) const;
   std::vector<double> breakpoints() const;
+  /// T depends on x.
+  bool follows_speed() const;
 };
 
 enum class TorqueAction { joint, normal, fixed };
@@ -72,6 +74,9 @@ template <TorqueAction A>
 struct SpinTorque {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::load;
+  /// What counts the turns (the integral of a governor) sees the angle, unless means are asked for.
+  system::Dependence depends(const system::Context& c) const;
 
   TorqueLaw law;
   Vec3 e0 = Vec3::UnitX();  ///< direction of a fixed moment, unit, global axes

@@ -18,6 +18,14 @@ struct UnbalanceMass {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         inertial = true, linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::load;
+  /// Sees the angle while there is an unbalance.
+  system::Dependence depends(const system::Context& c) const {
+    return {.angle = at(c.time) != 0.0 ? system::each_angle : system::no_angle,
+            .spin = true,
+            .time = varies(factor),
+            .weight = true};
+  }
 
   double amount = 0, cos_beta = 1, sin_beta = 0;
   LawPtr factor;

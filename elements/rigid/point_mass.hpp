@@ -9,6 +9,8 @@ struct PointMass {
   static constexpr int n_nodes = 1, width = 3;
   static constexpr bool has_M = true, has_C = false, has_K = false, quadratic_in_rates = true,
                         inertial = true, powerless = true, linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::body;
+  static constexpr system::Dependence depends{.weight = true};
 
   double mass = 0;
 

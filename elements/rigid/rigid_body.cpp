@@ -57,6 +57,13 @@ RigidBody::RigidBody(double mass, const Vec3& offset, const Mat3& J) {
   G(2, 2) += disk.Jt;
 }
 
+Dependence RigidBody::depends(const Context&) const {
+  const double size = disk.Jp + disk.Jt;  // the moments of inertia are known to their rounding only
+  const bool axisymmetric =
+      S.squaredNorm() <= 1e-24 * disk.mass * size && G.cwiseAbs().maxCoeff() <= 1e-12 * size;
+  return {.angle = axisymmetric ? no_angle : each_angle, .spin = true, .weight = true};
+}
+
 void RigidBody::add_force(const Nodes<1>& x, const Context& c, ForceX<7>& f) const {
   disk.add_force(x, c, f);
   const NodeState& n = *x[0];

@@ -5,11 +5,11 @@
 // the point `about`, angle the integral of the rate from 0. Displacements, directors and spins stay
 // relative to the base; bearings stand on it. An element of kernel K has, in inertial axes that
 // coincide with the base's at the instant,
-//   u_abs' = u' + omega x r,   u_abs'' = u'' + 2 omega x u' + omega x (omega x r) + omega' x r,   r
-//   = reference + u - about
+//   u_abs' = u' + omega x r,   u_abs'' = u'' + 2 omega x u' + omega x (omega x r) + omega' x r,
+//       r = reference + u - about
 // (directors alike, with r = d), and with w = (e x d)/(1 + e.d) of the spin s = phi' - w.d'
-//   s_abs = s + omega.d,   phi_abs' = phi' + omega.(e + d)/(1 + e.d),   phi_abs'' from s_abs' = s'
-//   + omega'.d + omega.d'.
+//   s_abs = s + omega.d,   phi_abs' = phi' + omega.(e + d)/(1 + e.d),
+//       phi_abs'' from s_abs' = s' + omega'.d + omega.d'.
 // The weight turns against the base. Added is f_K(absolute) - f_K(relative), exactly: Coriolis,
 // centrifugal and Euler forces, and gyroscopic moments Ip Omega omega. Its power is counted as
 // supplied. One template for every inertia, so that scenes without a turning base carry nothing of
@@ -57,6 +57,18 @@ template <class K>
 struct OnTurningBase {
   static constexpr int n_nodes = K::n_nodes, width = K::width;
   static constexpr bool has_M = false, has_C = true, has_K = true, quadratic_in_rates = true;
+  static constexpr system::Family family = system::Family::body;
+  /// As the inertia in its kernel, and on time: a twist is elastic and cancels, and so does a
+  /// common acceleration. While the base stands and has not turned, nothing is added.
+  system::Dependence depends(const system::Context& c) const {
+    system::Dependence d = system::dependence_of(kernel, c);
+    const TurningBase::Motion b = base->at(c.time);
+    const bool stands = b.omega.isZero(0.0) && b.alpha.isZero(0.0) && b.gravity_change.isZero(0.0);
+    if (stands || d.angle.form == system::SeenAngle::Form::sum) d.angle = system::no_angle;
+    d.time = true;
+    d.weight = false;
+    return d;
+  }
 
   K kernel;
   TurningBasePtr base;

@@ -45,25 +45,4 @@ double hertz_series(double K1, double K2, double n) {
   return std::pow(std::pow(K1, -1.0 / n) + std::pow(K2, -1.0 / n), -n);
 }
 
-namespace {
-
-double interpolate(int n, double at8, double at12, double at16) {
-  const double x = std::clamp(static_cast<double>(n), 8.0, 16.0);
-  return x < 12.0 ? at8 + (x - 8.0) / 4.0 * (at12 - at8) : at12 + (x - 12.0) / 4.0 * (at16 - at12);
-}
-
-}  // namespace
-
-BearingEstimate estimate_ball_bearing(int balls, double diameter, double load, double alpha) {
-  const double k = 13e6 * std::pow(balls, 2.0 / 3.0) * std::cbrt(diameter * load) *
-                   std::pow(std::cos(alpha), 5.0 / 3.0);
-  return {k, k * interpolate(balls, 0.46, 0.64, 0.73)};
-}
-
-BearingEstimate estimate_roller_bearing(int rollers, double length, double load, double alpha) {
-  const double k = 1e9 * std::pow(rollers, 0.9) * std::pow(length, 0.8) * std::pow(load, 0.1) *
-                   std::pow(std::cos(alpha), 1.9);
-  return {k, k * interpolate(rollers, 0.49, 0.66, 0.74)};
-}
-
 }  // namespace whirl::elements

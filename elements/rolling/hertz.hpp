@@ -1,4 +1,4 @@
-// Hertz stiffness of rolling contacts, and closed-form estimates of bearing stiffness.
+// Hertz stiffness of rolling contacts.
 //
 // Point contact, Q = K delta^(3/2):  K = pi kappa E' sqrt(R E/(4.5 F^3)), with F, E the complete
 // elliptic integrals of modulus sqrt(1 - 1/kappa^2) and the ellipticity kappa (>= 1) from the exact
@@ -26,16 +26,5 @@ double hertz_ellipticity(double Rx, double Ry);
 double hertz_line_stiffness(double length);
 /// Two contacts in series, exponent n: (K1^(-1/n) + K2^(-1/n))^(-n).
 double hertz_series(double K1, double K2, double n);
-
-/// Stiffness along the load (kyy) and across it (kxx) of a loaded bearing, N/m: kyy = 13e6 n^(2/3)
-/// d^(1/3) F^(1/3) cos^(5/3) alpha (balls, d: ball diameter), kyy = 1e9 n^0.9 l^0.8 F^0.1 cos^1.9
-/// alpha (rollers, l: length); kxx/kyy interpolated in n from 8: 0.46, 12: 0.64, 16: 0.73 (balls),
-/// 0.49, 0.66, 0.74 (rollers). F: static load, N; alpha: contact angle, rad. Friswell, Penny,
-/// Garvey & Lees 2010, doi 10.1017/CBO9780511780509, pp. 182-185.
-struct BearingEstimate {
-  double along, across;
-};
-BearingEstimate estimate_ball_bearing(int balls, double diameter, double load, double alpha);
-BearingEstimate estimate_roller_bearing(int rollers, double length, double load, double alpha);
 
 }  // namespace whirl::elements

@@ -4,17 +4,19 @@
 // Everything is a potential of the relative motion q = (x, y, z, tau_y, tau_z, psi): displacement
 // of the inner ring against the outer, difference of the ring normals d_0 - d_1 in (y, z) (tau_y:
 // rotation about +z, tau_z: about -y), and the cage angle
-//   psi = [(1 - lambda) phi_0 + (1 + lambda) phi_1]/2,  lambda = (D/d_m) cos alpha     (rolling
-//   without slip) V = sum over elements, K/(n+1) delta_+^(n+1)
+//   psi = [(1 - lambda) phi_0 + (1 + lambda) phi_1]/2,   lambda = (D/d_m) cos alpha
+//       (rolling without slip)
+//   V = sum over elements, K/(n+1) delta_+^(n+1)
 // so the tangent is a Hessian, the torque that varying compliance puts on the shaft is in it, and
 // motion is conservative but for the damper below. With n_j = (cos, sin)(psi + 2 pi j/Z), rho =
 // r.n_j, t = tau.n_j:
-//   ball:    s_a = a_0 + x - R t,  s_r = r_0 + rho,  delta = |s| - A_0, exponent 3/2: distance of
-//   the groove centres against the
+//   ball:   s_a = a_0 + x - R t,   s_r = r_0 + rho,
+//       delta = |s| - A_0, exponent 3/2: distance of the groove centres against the
 //            unloaded one A_0 = (f_i + f_o - 1) D; (a_0, r_0) holds contact angle, clearance and
-//            preload
-//   roller:  delta = rho + s_k t - clearance over `slices` laminae at axial positions s_k, exponent
-//   10/9, load K/slices each
+//                preload
+//   roller:
+//       delta = rho + s_k t - clearance over `slices` laminae at axial positions s_k, exponent
+//       10/9, load K/slices each
 // Damping: -c_r v lateral, -c_a v axial (grease, mounting; N s/m).
 //
 // Frequency-domain analyses (Context::averaged) see the mean over the cage angle: the elements
@@ -23,9 +25,10 @@
 // Limits: no centrifugal force or gyroscopic moment of the elements (ball bearings: n d_m below
 // about 5e5 mm/min), rings round and rigid, cage exactly at the rolling speed, tilts small (tau <<
 // 1). The onset of contact is C1 (3/2) or C1 with an unbounded second derivative (10/9): no
-// smoothing is used. Sources: Harris & Kotzalas, Rolling Bearing Analysis, 5th ed.,
-// doi 10.1201/9781482275148; Jones, ASME J. Basic Eng. 82 (1960), doi 10.1115/1.3662587; varying
-// compliance: Fukata et al., Trans. JSME 51 (1985).
+// smoothing is used.
+// Sources: Harris & Kotzalas, Rolling Bearing Analysis, 5th ed., doi 10.1201/9781482275148; Jones,
+// ASME J. Basic Eng. 82 (1960), doi 10.1115/1.3662587; varying compliance: Fukata et al., Trans.
+// JSME 51 (1985).
 #pragma once
 #include <system/kernel.hpp>
 #include <array>
@@ -71,6 +74,11 @@ template <class Contact>
 struct RollingBearing {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the angle of the cage, unless means are asked for.
+  system::Dependence depends(const system::Context& c) const {
+    return {.angle = c.averaged ? system::no_angle : system::angle_sum(cage[0], cage[1])};
+  }
 
   Contact contact;
   int elements = 0;                      ///< Z
@@ -115,8 +123,8 @@ struct BallGeometry {
   int direction = 1;  ///< angular contact: +1 carries a push of the shaft towards +x, -1 towards -x
   double stiffness = 0;  ///< K, N/m^1.5; 0: from Hertz (steel)
 };
-/// Errors E83: fewer than 2 balls, sizes not positive, balls that do not fit, f <= 0.5, |alpha| >=
-/// 80 deg, clearance beyond the grooves.
+/// @throws Error E83: fewer than 2 balls, sizes not positive, balls that do not fit, f <= 0.5,
+/// |alpha| >= 80 deg, clearance beyond the grooves.
 BallBearing make_ball_bearing(const BallGeometry& g);
 /// Shifts the reference position so that the bearing pushes back with `force` (N, >= 0) axially
 /// when undisplaced. E83 when deep groove.

@@ -1,12 +1,9 @@
 #include <elements/shaft/general_beam.hpp>
 
-#include <core/dual.hpp>
 #include <core/dual_rate.hpp>
-#include <elements/shaft/shaft_strain.hpp>
 #include <system/stiffness_rate.hpp>
-
+#include <math.h>
 #include <array>
-#include <type_traits>
 
 namespace whirl::elements {
 
@@ -18,6 +15,8 @@ using system::NodeState;
 using system::TangentX;
 
 namespace {
+
+#include <elements/shaft/shaft_single.inl>
 
 template <class T>
 using V3 = Vec3T<T>;
@@ -54,11 +53,11 @@ struct Motion {
         e3(Vec3(n.chart->col(2))) {
     using std::cos;
     using std::sin;
-    const T D = T(2.0) + e.dot(n.t);
-    w = (T(1.0) / D) * e.cross(n.t);
-    s2 = (T(1.0) / D) * (e + d);
-    const T wd = w.dot(n.dd), ed = e.dot(n.dd);
-    const T s = n.dphi - wd, sdot = n.ddphi - w.dot(n.ddd) + wd * ed / D;
+    const T one_plus_cosine = spin_divisor(e, n.t);
+    w = spin_form(e, n.t, one_plus_cosine);
+    s2 = (e + d) / one_plus_cosine;
+    const T s = spin_rate(w, n.dd, n.dphi);
+    const T sdot = spin_acceleration(e, w, n.dd, n.ddd, n.ddphi, one_plus_cosine);
     omega = d.cross(n.dd) + s * d;
     alpha = d.cross(n.ddd) + sdot * d + s * n.dd;
     cphi = cos(n.phi);
@@ -72,20 +71,6 @@ struct Motion {
   }
   V3<T> accel(const V3<T>& r) const { return alpha.cross(r) + omega.cross(omega.cross(r)); }
 };
-
-/// Third derivative of theta/sin theta in n = 1 - cos theta: n (2 - n) G''' = 4 G' - 5 (1 - n) G''
-/// (see AngleRatio).
-double third_of_angle_ratio(double n, const AngleRatio& r) {
-  if (n >= 0.02) return (4.0 * r.G1 - 5.0 * (1.0 - n) * r.G2) / (n * (2.0 - n));
-  double g = 1.0, power = 1.0, sum = 0.0;  // power = n^(k-3)
-  for (int k = 1; k <= 11; ++k) {
-    g *= k / (2.0 * k + 1.0);
-    if (k < 3) continue;
-    sum += k * (k - 1.0) * (k - 2.0) * g * power;
-    power *= n;
-  }
-  return sum;
-}
 
 /// Bending stiffness of each plane and what shear takes of it: 1/(1 + Phi) = 1 - phi, slope of the
 /// curvature per p1 + p2, 1/kGA.
@@ -110,17 +95,16 @@ struct Planes {
 /// Deformation at a configuration and the rates that go with it.
 template <class T>
 struct Shape {
-  V3<T> a, D[2], delta[2], q[2], p[2], y, z, ro[2];
-  T l, stretch, n[2], G[2], G1[2], psi;
+  V3<T> a, D[2], q[2], p[2], y, z, ro[2];  // q, p: to the directors (shaft_strain.inl)
+  End<NumbersOf<T>> end[2];
+  T l, stretch, psi;
   struct Components {
     T y, z;
   };
   Components P[2];   // of p
   T My, Mz, Ky, Kz;  // mean curvature, and how much it changes from end to end
-  AngleRatio ratio[2];
   Shape(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1,
         const Motion<T>& m2) {
-    using std::atan2;
     using std::sqrt;
     ro[0] = m1.turn(b.arm1);
     ro[1] = m2.turn(b.arm2);
@@ -132,25 +116,27 @@ struct Shape {
     D[0] = m1.turn(b.body1.col(0));
     D[1] = m2.turn(b.body2.col(0));
     const V3<T> B[2] = {m1.turn(b.body1.col(1)), m2.turn(b.body2.col(1))};
-    V3<T> Bt[2];
+    V3<T> transported[2];  // B to the chord
     for (int i = 0; i < 2; ++i) {
-      delta[i] = D[i] - a;
-      n[i] = 0.5 * delta[i].dot(delta[i]);
-      ratio[i] = AngleRatio(value(n[i]));
-      if constexpr (std::is_same_v<T, DualRate<14>>) {
-        G[i] = chain(n[i], ratio[i].G, ratio[i].G1, ratio[i].G2);
-        G1[i] = chain(n[i], ratio[i].G1, ratio[i].G2, third_of_angle_ratio(n[i].v, ratio[i]));
-      } else {
-        G[i] = chain(n[i], ratio[i].G, ratio[i].G1);
-        G1[i] = chain(n[i], ratio[i].G1, ratio[i].G2);
-      }
-      q[i] = delta[i] + n[i] * a;
-      p[i] = G[i] * q[i];
-      Bt[i] = B[i] - (a.dot(B[i]) / (T(2.0) - n[i])) * (a + D[i]);
+      end[i].delta = D[i] - a;
+      end[i].n = 0.5 * end[i].delta.dot(end[i].delta);
+      end[i].angle = angle_ratio(end[i].n);
+      q[i] = end[i].delta + end[i].n * a;
+      p[i] = end[i].angle.G * q[i];
+      transported[i] = B[i] - (a.dot(B[i]) / (T(2.0) - end[i].n)) * (a + D[i]);
     }
-    const V3<T> sum = Bt[0] + Bt[1];
+    const V3<T> sum = transported[0] + transported[1];
     y = (T(1.0) / sqrt(sum.dot(sum))) * sum;
     z = a.cross(y);
+    set_curvatures(b);
+    set_twist(b.c.length, transported);
+  }
+  T bow(const GeneralBeamConstants& c) const {
+    return 0.5 * (c.b11 * p[0].dot(p[0]) + 2.0 * c.b12 * p[0].dot(p[1]) + c.b22 * p[1].dot(p[1]));
+  }
+
+ private:
+  void set_curvatures(const GeneralBeam& b) {
     for (int i = 0; i < 2; ++i)
       P[i] = {p[i].dot(y), p[i].dot(z)};
     const Planes plane(b.c);
@@ -160,12 +146,12 @@ struct Shape {
     const Vec2 rest = b.p01 + b.p02;  // the unstressed shape has no shear
     Ky = plane.fa * (P[0].y + P[1].y - T(rest[0])) + T(6.0 * il * rest[0]);
     Kz = plane.fb * (P[0].z + P[1].z - T(rest[1])) + T(6.0 * il * rest[1]);
-    psi = atan2(a.dot(Bt[0].cross(Bt[1])), Bt[0].dot(Bt[1])) -
-          0.5 * (P[0].y * P[1].z - P[0].z * P[1].y) -
-          (b.c.length * b.c.length / 12.0) * (My * Kz - Mz * Ky);
   }
-  T bow(const GeneralBeamConstants& c) const {
-    return 0.5 * (c.b11 * p[0].dot(p[0]) + 2.0 * c.b12 * p[0].dot(p[1]) + c.b22 * p[1].dot(p[1]));
+  void set_twist(double length, const V3<T> (&B)[2]) {
+    using std::atan2;
+    psi = atan2(a.dot(B[0].cross(B[1])), B[0].dot(B[1])) -
+          0.5 * (P[0].y * P[1].z - P[0].z * P[1].y) -
+          (length * length / 12.0) * (My * Kz - Mz * Ky);
   }
 };
 
@@ -173,20 +159,6 @@ double bow0(const GeneralBeam& b) {
   return 0.5 * (b.c.b11 * b.p01.squaredNorm() + 2.0 * b.c.b12 * b.p01.dot(b.p02) +
                 b.c.b22 * b.p02.squaredNorm());
 }
-
-/// g = N^2/(1 + N/kGA) and half its derivative; its parabola below N = -kGA/2. As in
-/// shaft_beam.cpp.
-template <class T>
-struct Give {
-  T g, g1;
-  Give(double soft, const T& N) {
-    const bool usual = soft * value(N) > -0.5;
-    const T n = usual ? N : T(-0.5 / soft), d = N - n, rho = T(1.0) / (T(1.0) + soft * n),
-            slope = 0.5 * (n * rho * (T(1.0) + rho));
-    g1 = slope + rho * rho * rho * d;
-    g = n * n * rho + (slope + g1) * d;
-  }
-};
 
 /// 1/(GJ + more) and its derivative in `more`; its parabola below more = -GJ/2.
 template <class T>
@@ -206,6 +178,76 @@ struct TwistGive {
   }
 };
 
+/// Mean curvatures and their changes: m, k of the header, and m^e, k^e of the deformation.
+template <class T>
+struct Curvatures {
+  const T &My, &Mz, &Ky, &Kz;
+  T Ey, Ez, Sy, Sz;
+  Curvatures(const Shape<T>& p, const Planes& n, double il, const T (&ky)[2], const T (&kz)[2])
+      : My(p.My),
+        Mz(p.Mz),
+        Ky(p.Ky),
+        Kz(p.Kz),
+        Ey(il * (ky[1] - ky[0])),
+        Ez(il * (kz[1] - kz[0])),
+        Sy(n.fa * (ky[0] + ky[1])),
+        Sz(n.fb * (kz[0] + kz[1])) {}
+};
+
+/// c(x) = c0 + c1 x + c2 x^2 and s(x) = s0 + s1 x + s2 x^2 over x = xi - 1/2: what turning the
+/// sections inside costs.
+template <class T>
+struct TurningCost {
+  T c0, c1, c2, s0, s1, s2;
+  // derivatives in (My, Ey) together and in (Ky, Sy) together; c1 has those of c0 and c2 crossed,
+  // s1 those of s0 and s2
+  T c0y, c0z, c2y, c2z, s0y, s0z, s2y, s2z;
+  TurningCost(double EIa, double EIb, const Curvatures<T>& k) {
+    const T &My = k.My, &Mz = k.Mz, &Ky = k.Ky, &Kz = k.Kz;
+    const T &Ey = k.Ey, &Ez = k.Ez, &Sy = k.Sy, &Sz = k.Sz;
+    c0 = EIa * (Mz * Ey) - EIb * (My * Ez);
+    c1 = EIa * (Kz * Ey + Mz * Sy) - EIb * (Ky * Ez + My * Sz);
+    c2 = EIa * (Kz * Sy) - EIb * (Ky * Sz);
+    s0 = EIa * (Mz * Mz - My * Ey) + EIb * (My * My - Mz * Ez);
+    s1 = EIa * (2.0 * (Mz * Kz) - My * Sy - Ky * Ey) + EIb * (2.0 * (My * Ky) - Mz * Sz - Kz * Ez);
+    s2 = EIa * (Kz * Kz - Ky * Sy) + EIb * (Ky * Ky - Kz * Sz);
+    c0y = EIa * Mz - EIb * Ez;
+    c0z = EIa * Ey - EIb * My;
+    c2y = EIa * Kz - EIb * Sz;
+    c2z = EIa * Sy - EIb * Ky;
+    s0y = 2.0 * EIb * My - EIa * (Ey + My);
+    s0z = 2.0 * EIa * Mz - EIb * (Ez + Mz);
+    s2y = 2.0 * EIb * Ky - EIa * (Sy + Ky);
+    s2z = 2.0 * EIa * Kz - EIb * (Sz + Kz);
+  }
+};
+
+/// The sections inside turn by t x, and by a parabola out of the way of c, against GJ and against
+/// s: energy and its derivatives in the coefficients of c and s. on_parabola: on c2, and on t s1.
+template <class T>
+struct Turning {
+  T V, on_c0{}, on_c1, on_parabola{}, on_s0, on_s1, on_s2;
+  Turning(double L, double GJ, const T& t, const TurningCost<T>& k) {
+    on_c1 = L / 12.0 * t;
+    on_s0 = 0.5 * (on_c1 * t);
+    on_s2 = (L / 160.0) * (t * t);
+    V = on_c1 * k.c1 + on_s0 * k.s0 + on_s2 * k.s2;
+    if (GJ > 0.0) {
+      const TwistGive<T> give(GJ, (L * L) * (0.1 * k.s0 + (1.0 / 280.0) * k.s2));
+      const T load = (2.0 / 3.0) * k.c0 + (1.0 / 30.0) * (k.c2 + t * k.s1);
+      const double scale = 3.0 / 16.0 * L * L * L;
+      const T on_load = -scale * (load * give.g);
+      const T on_more = (-0.5 * scale * L * L) * (load * load * give.slope);
+      V += 0.5 * (load * on_load);
+      on_c0 = (2.0 / 3.0) * on_load;
+      on_parabola = (1.0 / 30.0) * on_load;
+      on_s0 += 0.1 * on_more;
+      on_s2 += (1.0 / 280.0) * on_more;
+    }
+    on_s1 = on_parabola * t;
+  }
+};
+
 /// What the element does inside (general_beam.hpp): energy, and forces on (p1.y, p2.y), (p1.z,
 /// p2.z); the torque and axial force that act on the rates of psi and w. ky, kz: deformations.
 template <class T>
@@ -214,76 +256,58 @@ struct Inner {
   Inner(const GeneralBeam& b, const Shape<T>& p, const T (&ky)[2], const T (&kz)[2], const T& N) {
     const GeneralBeamConstants& c = b.c;
     const Planes n(c);
-    const double L = c.length, il = 1.0 / L, h = L / 12.0, GJ = c.GJ_l * L, EIa = n.EIa,
-                 EIb = n.EIb;
-    const T Ey = il * (ky[1] - ky[0]), Ez = il * (kz[1] - kz[0]), Sy = n.fa * (ky[0] + ky[1]),
-            Sz = n.fb * (kz[0] + kz[1]);
-    const T &My = p.My, &Mz = p.Mz, &Ky = p.Ky, &Kz = p.Kz;
+    const double L = c.length, h = L / 12.0, GJ = c.GJ_l * L;
+    const Curvatures<T> k(p, n, 1.0 / L, ky, kz);
+    const TurningCost<T> cost(n.EIa, n.EIb, k);
     const T t = p.psi - T(b.psi_r), twist = p.psi - T(b.psi0);
-    const T th = h * t;
-
-    // c(x) = c0 + c1 x + c2 x^2 and s(x) = s0 + s1 x + s2 x^2 over x = xi - 1/2
-    const T c0 = EIa * (Mz * Ey) - EIb * (My * Ez);
-    const T c1 = EIa * (Kz * Ey + Mz * Sy) - EIb * (Ky * Ez + My * Sz);
-    const T c2 = EIa * (Kz * Sy) - EIb * (Ky * Sz);
-    const T s0 = EIa * (Mz * Mz - My * Ey) + EIb * (My * My - Mz * Ez);
-    const T s1 =
-        EIa * (2.0 * (Mz * Kz) - My * Sy - Ky * Ey) + EIb * (2.0 * (My * Ky) - Mz * Sz - Kz * Ez);
-    const T s2 = EIa * (Kz * Kz - Ky * Sy) + EIb * (Ky * Ky - Kz * Sz);
-    // derivatives in (My, Ey) together and in (Ky, Sy) together; c1 has those of c0 and c2 crossed,
-    // s1 those of s0 and s2
-    const T c0y = EIa * Mz - EIb * Ez, c0z = EIa * Ey - EIb * My;
-    const T c2y = EIa * Kz - EIb * Sz, c2z = EIa * Sy - EIb * Ky;
-    const T s0y = 2.0 * EIb * My - EIa * (Ey + My), s0z = 2.0 * EIa * Mz - EIb * (Ez + Mz);
-    const T s2y = 2.0 * EIb * Ky - EIa * (Sy + Ky), s2z = 2.0 * EIa * Kz - EIb * (Sz + Kz);
-
-    // the sections inside turn by t x, and by a parabola out of the way of c, against GJ and
-    // against s
-    T on_c0{}, on_parabola{}, on_s0 = 0.5 * (th * t), on_s2 = (L / 160.0) * (t * t);
-    V = th * c1 + on_s0 * s0 + on_s2 * s2;
-    if (GJ > 0.0) {
-      const TwistGive<T> give(GJ, (L * L) * (0.1 * s0 + (1.0 / 280.0) * s2));
-      const T load = (2.0 / 3.0) * c0 + (1.0 / 30.0) * (c2 + t * s1);
-      const double scale = 3.0 / 16.0 * L * L * L;
-      const T on_load = -scale * (load * give.g);
-      const T on_more = (-0.5 * scale * L * L) * (load * load * give.slope);
-      V += 0.5 * (load * on_load);
-      on_c0 = (2.0 / 3.0) * on_load;
-      on_parabola = (1.0 / 30.0) * on_load;  // on c2, and on t s1
-      on_s0 += 0.1 * on_more;
-      on_s2 += (1.0 / 280.0) * on_more;
-    }
-    const T on_s1 = on_parabola * t;
+    const Turning<T> turning(L, GJ, t, cost);
+    V = turning.V;
 
     // slopes of curvature and shear that the end moments do not make
-    const T xy = t * c0y + GJ * (twist * Mz), xz = t * c0z - GJ * (twist * My);
-    const double qa = L / 12.0 * n.phia / n.EIa,
-                 qb = L / 12.0 * n.phib / n.EIb;  // L^3/kGA/144 (1 - phi)
+    const T xy = t * cost.c0y + GJ * (twist * k.Mz), xz = t * cost.c0z - GJ * (twist * k.My);
+    const double qa = h * n.phia / n.EIa, qb = h * n.phib / n.EIb;  // L^3/kGA/144 (1 - phi)
     const double na = L * L * L / 12.0 * n.softa, nb = L * L * L / 12.0 * n.softb;
-    const Give<T> ga(n.softa, N),
-        gb(n.softb, N);  // the slope of the shear lengthens the line too: kGA + N
+    // the slope of the shear lengthens the line too: kGA + N
+    const ShearGive<T> ga = shear_give(N, n.softa, -0.5 / n.softa);
+    const ShearGive<T> gb = shear_give(N, n.softb, -0.5 / n.softb);
     V -= 0.5 * (qa * (xy * xy) + qb * (xz * xz)) +
-         0.5 * (na * ga.g * (My * My) + nb * gb.g * (Mz * Mz));
-    axial = N - c.EA_l * (na * ga.g1 * (My * My) + nb * gb.g1 * (Mz * Mz));
+         0.5 * (na * ga.g * (k.My * k.My) + nb * gb.g * (k.Mz * k.Mz));
+    axial = N - c.EA_l * (na * ga.g1 * (k.My * k.My) + nb * gb.g1 * (k.Mz * k.Mz));
     const T ax = qa * xy, az = qb * xz;
-    torque = T(c.GJ_l) * twist + h * (c1 + t * s0) + (L / 80.0) * (t * s2) + on_parabola * s1;
-    torque = torque - ax * ((n.EIa + GJ) * Mz - n.EIb * Ez) - az * (n.EIa * Ey - (n.EIb + GJ) * My);
-    T gy = on_c0 * c0y + th * c2y + on_s0 * s0y + on_s1 * s2y;
-    T gz = on_c0 * c0z + th * c2z + on_s0 * s0z + on_s1 * s2z;
-    gy = gy - az * (t * (n.EIa - n.EIb) - GJ * twist) - na * ga.g * My;
-    gz = gz - ax * (t * (n.EIa - n.EIb) + GJ * twist) - nb * gb.g * Mz;
-    T ly = th * c0y + on_parabola * c2y + on_s1 * s0y + on_s2 * s2y;
-    T lz = th * c0z + on_parabola * c2z + on_s1 * s0z + on_s2 * s2z;
-    // and of the area in psi
+    torque = T(c.GJ_l) * twist + h * (cost.c1 + t * cost.s0) + (L / 80.0) * (t * cost.s2) +
+             turning.on_parabola * cost.s1;
+    torque = torque - ax * ((n.EIa + GJ) * k.Mz - n.EIb * k.Ez) -
+             az * (n.EIa * k.Ey - (n.EIb + GJ) * k.My);
+
+    Slopes on = slopes(cost, turning);
+    on.My = on.My - az * (t * (n.EIa - n.EIb) - GJ * twist) - na * ga.g * k.My;
+    on.Mz = on.Mz - ax * (t * (n.EIa - n.EIb) + GJ * twist) - nb * gb.g * k.Mz;
+    set_moments(n, L, p, on);
+  }
+
+ private:
+  /// Derivatives of V in the mean curvatures and in their changes.
+  struct Slopes {
+    T My, Mz, Ky, Kz;
+  };
+  static Slopes slopes(const TurningCost<T>& c, const Turning<T>& t) {
+    return {t.on_c0 * c.c0y + t.on_c1 * c.c2y + t.on_s0 * c.s0y + t.on_s1 * c.s2y,
+            t.on_c0 * c.c0z + t.on_c1 * c.c2z + t.on_s0 * c.s0z + t.on_s1 * c.s2z,
+            t.on_c1 * c.c0y + t.on_parabola * c.c2y + t.on_s1 * c.s0y + t.on_s2 * c.s2y,
+            t.on_c1 * c.c0z + t.on_parabola * c.c2z + t.on_s1 * c.s0z + t.on_s2 * c.s2z};
+  }
+  /// With what the torque does through the area in psi.
+  void set_moments(const Planes& n, double L, const Shape<T>& p, Slopes on) {
+    const double il = 1.0 / L;
     const T area = (L * L / 12.0) * torque, half = 0.5 * torque;
-    gy = gy - area * Kz;
-    gz = gz + area * Ky;
-    ly = ly + area * Mz;
-    lz = lz - area * My;
-    my[0] = n.fa * ly - il * gy - half * p.P[1].z;
-    my[1] = n.fa * ly + il * gy + half * p.P[0].z;
-    mz[0] = n.fb * lz - il * gz + half * p.P[1].y;
-    mz[1] = n.fb * lz + il * gz - half * p.P[0].y;
+    on.My = on.My - area * p.Kz;
+    on.Mz = on.Mz + area * p.Ky;
+    on.Ky = on.Ky + area * p.Mz;
+    on.Kz = on.Kz - area * p.My;
+    my[0] = n.fa * on.Ky - il * on.My - half * p.P[1].z;
+    my[1] = n.fa * on.Ky + il * on.My + half * p.P[0].z;
+    mz[0] = n.fb * on.Kz - il * on.Mz + half * p.P[1].y;
+    mz[1] = n.fb * on.Kz + il * on.Mz - half * p.P[0].y;
   }
 };
 
@@ -293,15 +317,31 @@ struct ForceOut {
   T dissipated{};
 };
 
+/// A configuration and its motion.
 template <class T>
-ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2,
-                       const Motion<T>& m1, const Motion<T>& m2) {
-  const GeneralBeamConstants& c = b.c;
-  const Shape<T> s(b, n1, n2, m1, m2);
-  const Motion<T>* mo[2] = {&m1, &m2};
-  const NodeT<T>* no[2] = {&n1, &n2};
-  ForceOut<T> out;
+struct Moving {
+  const NodeT<T>* node[2];
+  const Motion<T>* motion[2];
+  Shape<T> shape;
+  V3<T> ad[2];  // (a x D)/(1 + a.D)
+  Moving(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1,
+         const Motion<T>& m2)
+      : node{&n1, &n2},
+        motion{&m1, &m2},
+        shape(b, n1, n2, m1, m2) {
+    for (int i = 0; i < 2; ++i)
+      ad[i] = (T(1.0) / (T(2.0) - shape.end[i].n)) * shape.a.cross(shape.end[i].delta);
+  }
+};
 
+/// On the rates of (p1, p2) along y and z, of psi and of w.
+template <class T>
+struct BeamStresses {
+  T my[2], mz[2], twist, N, dissipated{};
+};
+template <class T>
+BeamStresses<T> elastic_stresses(const GeneralBeam& b, const Shape<T>& s) {
+  const GeneralBeamConstants& c = b.c;
   const T N0 = T(b.preload) + c.EA_l * (s.stretch + c.length * (s.bow(c) - T(bow0(b))));
   T ky[2], kz[2];  // deformations along y and z
   for (int i = 0; i < 2; ++i) {
@@ -309,78 +349,95 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
     ky[i] = s.P[i].y - T(p0[0]);
     kz[i] = s.P[i].z - T(p0[1]);
   }
-  T my[2] = {c.ky_def11 * ky[0] + c.ky_def12 * ky[1], c.ky_def12 * ky[0] + c.ky_def22 * ky[1]};
-  T mz[2] = {c.kz_def11 * kz[0] + c.kz_def12 * kz[1], c.kz_def12 * kz[0] + c.kz_def22 * kz[1]};
   const Inner<T> inner(b, s, ky, kz, N0);
+  BeamStresses<T> r{
+      {c.ky_def11 * ky[0] + c.ky_def12 * ky[1], c.ky_def12 * ky[0] + c.ky_def22 * ky[1]},
+      {c.kz_def11 * kz[0] + c.kz_def12 * kz[1], c.kz_def12 * kz[0] + c.kz_def22 * kz[1]},
+      inner.torque,
+      inner.axial};
   for (int i = 0; i < 2; ++i) {
-    my[i] += inner.my[i];
-    mz[i] += inner.mz[i];
+    r.my[i] += inner.my[i];
+    r.mz[i] += inner.mz[i];
   }
-  const T N = inner.axial, NL = c.length * N;
-  T twist = inner.torque;
-  V3<T> ad[2];
-  for (int i = 0; i < 2; ++i)
-    ad[i] = (T(1.0) / (T(2.0) - s.n[i])) * s.a.cross(s.delta[i]);
-  if (c.beta > 0.0 || c.beta_twist > 0.0) {
-    // objective rates of the same measures
-    const V3<T> rdot = n2.du + m2.omega.cross(s.ro[1]) - n1.du - m1.omega.cross(s.ro[0]);
-    const T ldot = s.a.dot(rdot);
-    const V3<T> adot = (T(1.0) / s.l) * (rdot - ldot * s.a);
-    T sigma[2];
-    V3<T> rate[2];
-    for (int i = 0; i < 2; ++i) {
-      const V3<T> Dd = mo[i]->omega.cross(s.D[i]);
-      sigma[i] = (s.a + s.D[i]).dot(mo[i]->omega) / (T(2.0) - s.n[i]) + ad[i].dot(adot);
-      const T ndot = s.delta[i].dot(Dd - adot);
-      rate[i] =
-          (s.G1[i] * ndot) * s.q[i] + s.G[i] * (Dd - s.a.dot(Dd) * s.a - (T(1.0) - s.n[i]) * adot);
-    }
-    const T mean = 0.5 * (sigma[0] + sigma[1]);
-    T ry[2], rz[2];
-    for (int i = 0; i < 2; ++i) {
-      rate[i] = rate[i] - mean * s.a.cross(s.p[i]);
-      ry[i] = rate[i].dot(s.y);
-      rz[i] = rate[i].dot(s.z);
-    }
-    const T dy[2] = {c.beta * (c.ky_def11 * ry[0] + c.ky_def12 * ry[1]),
-                     c.beta * (c.ky_def12 * ry[0] + c.ky_def22 * ry[1])};
-    const T dz[2] = {c.beta * (c.kz_def11 * rz[0] + c.kz_def12 * rz[1]),
-                     c.beta * (c.kz_def12 * rz[0] + c.kz_def22 * rz[1])};
-    const T psidot = sigma[1] - sigma[0], dt = (c.beta_twist * c.GJ_l) * psidot;
-    twist += dt;
-    out.dissipated = dt * psidot;
-    for (int i = 0; i < 2; ++i) {
-      my[i] += dy[i];
-      mz[i] += dz[i];
-      out.dissipated += dy[i] * ry[i] + dz[i] * rz[i];
-    }
-  }
+  return r;
+}
 
-  // power of the stresses -> forces on chord rate and spins (see shaft_damping.cpp for the same
-  // chain)
+/// Damping of the objective rates of the same measures.
+template <class T>
+void add_damping(const GeneralBeamConstants& c, const Moving<T>& x, BeamStresses<T>& r) {
+  const Shape<T>& s = x.shape;
+  const V3<T>&omega1 = x.motion[0]->omega, &omega2 = x.motion[1]->omega;
+  const V3<T> rdot = x.node[1]->du + omega2.cross(s.ro[1]) - x.node[0]->du - omega1.cross(s.ro[0]);
+  const T ldot = s.a.dot(rdot);
+  const V3<T> adot = (T(1.0) / s.l) * (rdot - ldot * s.a);
+  T sigma[2];
+  V3<T> rate[2];
+  for (int i = 0; i < 2; ++i) {
+    const V3<T>& omega = x.motion[i]->omega;
+    sigma[i] = (s.a + s.D[i]).dot(omega) / (T(2.0) - s.end[i].n) + x.ad[i].dot(adot);
+    rate[i] = bending_rate(s.end[i], s.q[i], s.a, adot, omega.cross(s.D[i]));
+  }
+  const T mean = 0.5 * (sigma[0] + sigma[1]);
+  T ry[2], rz[2];
+  for (int i = 0; i < 2; ++i) {
+    rate[i] = rate[i] - mean * s.a.cross(s.p[i]);
+    ry[i] = rate[i].dot(s.y);
+    rz[i] = rate[i].dot(s.z);
+  }
+  const T dy[2] = {c.beta * (c.ky_def11 * ry[0] + c.ky_def12 * ry[1]),
+                   c.beta * (c.ky_def12 * ry[0] + c.ky_def22 * ry[1])};
+  const T dz[2] = {c.beta * (c.kz_def11 * rz[0] + c.kz_def12 * rz[1]),
+                   c.beta * (c.kz_def12 * rz[0] + c.kz_def22 * rz[1])};
+  const T psidot = sigma[1] - sigma[0], torque = (c.beta_twist * c.GJ_l) * psidot;
+  r.twist += torque;
+  r.dissipated = torque * psidot;
+  for (int i = 0; i < 2; ++i) {
+    r.my[i] += dy[i];
+    r.mz[i] += dz[i];
+    r.dissipated += dy[i] * ry[i] + dz[i] * rz[i];
+  }
+}
+
+/// From the power of the stresses to forces on the end points and moments on the spins (the chain
+/// of shaft_damping.inl).
+template <class T>
+ForceOut<T> force_of_stresses(const GeneralBeamConstants& c, const Moving<T>& x,
+                              const BeamStresses<T>& r) {
+  const Shape<T>& s = x.shape;
+  const T NL = c.length * r.N;
   V3<T> M[2];
-  M[0] = my[0] * s.y + mz[0] * s.z + NL * (T(c.b11) * s.p[0] + T(c.b12) * s.p[1]);
-  M[1] = my[1] * s.y + mz[1] * s.z + NL * (T(c.b12) * s.p[0] + T(c.b22) * s.p[1]);
-  const T S = -0.5 * (M[0].dot(s.a.cross(s.p[0])) + M[1].dot(s.a.cross(s.p[1])));
-  const T spin[2] = {S - twist, S + twist};
-  V3<T> fa = spin[0] * ad[0] + spin[1] * ad[1];
+  M[0] = r.my[0] * s.y + r.mz[0] * s.z + NL * (T(c.b11) * s.p[0] + T(c.b12) * s.p[1]);
+  M[1] = r.my[1] * s.y + r.mz[1] * s.z + NL * (T(c.b12) * s.p[0] + T(c.b22) * s.p[1]);
+  const T turning = -0.5 * (M[0].dot(s.a.cross(s.p[0])) + M[1].dot(s.a.cross(s.p[1])));
+  const T spin[2] = {turning - r.twist, turning + r.twist};
+  V3<T> fa = spin[0] * x.ad[0] + spin[1] * x.ad[1];
+  ForceOut<T> out;
   for (int i = 0; i < 2; ++i) {
-    const V3<T> k = (s.G1[i] * M[i].dot(s.q[i])) * s.delta[i];
-    fa = fa - k - (s.G[i] * (T(1.0) - s.n[i])) * M[i];
-    const V3<T> FD = k + s.G[i] * (M[i] - s.a.dot(M[i]) * s.a);
-    out.m[i] = s.D[i].cross(FD) + (spin[i] / (T(2.0) - s.n[i])) * (s.a + s.D[i]);
+    const End<NumbersOf<T>>& end = s.end[i];
+    const V3<T> k = cosine_force(end, s.q[i], M[i]);
+    fa = fa - k - (end.angle.G * (T(1.0) - end.n)) * M[i];
+    const V3<T> on_D = k + end.angle.G * perpendicular(s.a, M[i]);
+    out.m[i] = s.D[i].cross(on_D) + (spin[i] / (T(2.0) - end.n)) * (s.a + s.D[i]);
   }
-  const V3<T> fl = N * s.a + (T(1.0) / s.l) * (fa - s.a.dot(fa) * s.a);
-  V3<T> fr[2] = {T(-1.0) * fl, fl};
+  out.f[1] = r.N * s.a + (T(1.0) / s.l) * perpendicular(s.a, fa);
+  out.f[0] = T(-1.0) * out.f[1];
+  out.dissipated = r.dissipated;
+  return out;
+}
 
-  // inertia
+/// M4 on the end points and directors; out: the moments on these are added, the forces on the end
+/// points get their lever to the nodes.
+template <class T>
+void add_beam_inertia(const GeneralBeamConstants& c, const Moving<T>& x, ForceOut<T>& out) {
+  const Shape<T>& s = x.shape;
   V3<T> acc[4], g[4];
   for (int i = 0; i < 2; ++i) {
-    acc[2 * i] = no[i]->ddu + mo[i]->accel(s.ro[i]);
-    acc[2 * i + 1] = mo[i]->accel(s.D[i]);
+    const Motion<T>& m = *x.motion[i];
+    acc[2 * i] = x.node[i]->ddu + m.accel(s.ro[i]);
+    acc[2 * i + 1] = m.accel(s.D[i]);
     if (c.alpha > 0.0) {
-      acc[2 * i] = acc[2 * i] + T(c.alpha) * (no[i]->du + mo[i]->omega.cross(s.ro[i]));
-      acc[2 * i + 1] = acc[2 * i + 1] + T(c.alpha) * mo[i]->omega.cross(s.D[i]);
+      acc[2 * i] = acc[2 * i] + T(c.alpha) * (x.node[i]->du + m.omega.cross(s.ro[i]));
+      acc[2 * i + 1] = acc[2 * i + 1] + T(c.alpha) * m.omega.cross(s.D[i]);
     }
   }
   for (int k = 0; k < 4; ++k) {
@@ -388,21 +445,43 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
     for (int j = 1; j < 4; ++j)
       g[k] = g[k] + T(c.M4(k, j)) * acc[j];
   }
+  for (int i = 0; i < 2; ++i) {
+    out.f[i] = out.f[i] + g[2 * i];
+    out.m[i] = out.m[i] + s.D[i].cross(g[2 * i + 1]) + s.ro[i].cross(out.f[i]);
+  }
+}
+
+/// Moments of inertia about the triads' axes (general_beam.hpp).
+double axis_inertia(const GeneralBeamConstants& c, int axis) {
+  return axis == 0 ? -c.rhoI_l : axis == 1 ? c.rhoIz_l : c.rhoIy_l;
+}
+
+/// Rotary inertia on the triads.
+template <class T>
+void add_triad_inertia(const GeneralBeam& b, const Moving<T>& x, ForceOut<T>& out) {
+  const Motion<T>&m1 = *x.motion[0], &m2 = *x.motion[1];
   for (int axis = 0; axis < 3; ++axis) {
-    const double J = axis == 0 ? -c.rhoI_l : axis == 1 ? c.rhoIz_l : c.rhoIy_l;
+    const double J = axis_inertia(b.c, axis);
     const V3<T> b1 = m1.turn(b.body1.col(axis)), b2 = m2.turn(b.body2.col(axis));
     V3<T> a1 = m1.accel(b1), a2 = m2.accel(b2);
-    if (c.alpha > 0.0) {
-      a1 = a1 + T(c.alpha) * m1.omega.cross(b1);
-      a2 = a2 + T(c.alpha) * m2.omega.cross(b2);
+    if (b.c.alpha > 0.0) {
+      a1 = a1 + T(b.c.alpha) * m1.omega.cross(b1);
+      a2 = a2 + T(b.c.alpha) * m2.omega.cross(b2);
     }
     out.m[0] = out.m[0] + b1.cross(T(J * 5.0 / 12.0) * a1 + T(J / 12.0) * a2);
     out.m[1] = out.m[1] + b2.cross(T(J / 12.0) * a1 + T(J * 5.0 / 12.0) * a2);
   }
-  for (int i = 0; i < 2; ++i) {
-    out.f[i] = fr[i] + g[2 * i];
-    out.m[i] = out.m[i] + s.D[i].cross(g[2 * i + 1]) + s.ro[i].cross(out.f[i]);
-  }
+}
+
+template <class T>
+ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2,
+                       const Motion<T>& m1, const Motion<T>& m2) {
+  const Moving<T> x(b, n1, n2, m1, m2);
+  BeamStresses<T> stresses = elastic_stresses(b, x.shape);
+  if (b.c.beta > 0.0 || b.c.beta_twist > 0.0) add_damping(b.c, x, stresses);
+  ForceOut<T> out = force_of_stresses(b.c, x, stresses);
+  add_triad_inertia(b, x, out);
+  add_beam_inertia(b.c, x, out);
   return out;
 }
 
@@ -469,6 +548,17 @@ GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chor
   p02 = Vec2(s.P[1].y, s.P[1].z);
   psi0 = Shape<double>(*this, n1, n2, m1, m2).psi;  // with the area of the unstressed shape
   if (p01.squaredNorm() + p02.squaredNorm() > 1e-20) psi_r = psi0;
+}
+
+bool GeneralBeam::axisymmetric() const {
+  const auto equal = [](double a, double b) {
+    return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
+  };
+  const auto along_axis = [](const Vec3& v) { return v.tail<2>().norm() <= 1e-10 * v.norm(); };
+  return equal(c.ky_def11, c.kz_def11) && equal(c.ky_def12, c.kz_def12) &&
+         equal(c.ky_def22, c.kz_def22) && equal(c.rhoIy_l, c.rhoIz_l) && along_axis(body1.col(0)) &&
+         along_axis(body2.col(0)) && along_axis(arm1) && along_axis(arm2) &&
+         p01.squaredNorm() + p02.squaredNorm() <= 1e-20;
 }
 
 void GeneralBeam::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
@@ -544,7 +634,7 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
     for (int j = 0; j < 4; ++j)
       en.kinetic += 0.5 * c.M4(k, j) * v[k].dot(v[j]);
   for (int axis = 0; axis < 3; ++axis) {
-    const double J = axis == 0 ? -c.rhoI_l : axis == 1 ? c.rhoIz_l : c.rhoIy_l;
+    const double J = axis_inertia(c, axis);
     const Vec3 b1 = w1.cross(vec(m1.turn(body1.col(axis)))),
                b2 = w2.cross(vec(m2.turn(body2.col(axis))));
     en.kinetic += 0.5 * J * (5.0 / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) + b1.dot(b2) / 6.0);

@@ -69,6 +69,14 @@ struct Rule {
 }  // namespace
 
 template <class Viscous>
+system::Dependence HystereticDamping<Viscous>::depends(const Context& ctx) const {
+  if (!ctx.hysteretic && stand_in == 0.0) return {};
+  system::Dependence d = bending.depends(ctx) | along.depends(ctx);
+  d.rate = ctx.hysteretic;
+  return d;
+}
+
+template <class Viscous>
 void HystereticDamping<Viscous>::add_force(const Nodes<2>& x, const Context& ctx,
                                            ForceX<14>& f) const {
   if (!ctx.hysteretic) {

@@ -6,8 +6,8 @@
 // a backward one nu = -(w + s), s the spin of the element; twist and axial strain have nu = w. With
 // the viscous law of unit coefficient, f = C X' and its derivative K = s S at steady spin (S:
 // circulatory), this is, for w > 0,
-//   f = eta (a/w C X' + b S X),   a = (sign(w - s) + sign(w + s))/2,  b = (sign(w + s) - sign(w -
-//   s))/2,
+//   f = eta (a/w C X' + b S X),   a = (sign(w - s) + sign(w + s))/2,
+//       b = (sign(w + s) - sign(w - s))/2,
 // so above the spin (w > |s|) an ordinary complex stiffness i eta k, below it a circulatory
 // stiffness of constant size, which drives forward whirl: a shaft is destabilised above its
 // critical speed and not below. At the synchronous rate (w = |s|, circular) the strain stands still
@@ -31,6 +31,9 @@ struct GeneralBeamDamping {
   GeneralBeamDamping() = default;
   /// Damping with the coefficients given (s), of the beam without any.
   GeneralBeamDamping(const GeneralBeam& beam, double beta, double beta_twist);
+  system::Dependence depends(const system::Context&) const {
+    return {.angle = with.axisymmetric() ? system::no_angle : system::each_angle, .spin = true};
+  }
   void add_force(const system::Nodes<2>& x, const system::Context& ctx,
                  system::ForceX<14>& f) const;
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx,
@@ -42,7 +45,10 @@ struct GeneralBeamDamping {
 template <class Viscous>
 struct HystereticDamping {
   static constexpr int n_nodes = 2, width = 7;
-  static constexpr bool has_M = false, has_C = true, has_K = true, hysteretic = true;
+  static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::damping;
+  /// The rate of a small motion counts where hysteretic damping has its own form.
+  system::Dependence depends(const system::Context& ctx) const;
 
   Viscous bending;      ///< lateral strains
   Viscous along;        ///< twist and axial strain

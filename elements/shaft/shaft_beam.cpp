@@ -1,10 +1,11 @@
 #include <elements/shaft/shaft_beam.hpp>
 
+#include <core/dual_rate.hpp>
 #include <elements/shaft/general_beam.hpp>
 #include <elements/shaft/shaft_lanes.hpp>
-#include <elements/shaft/shaft_strain.hpp>
 #include <system/spin.hpp>
 #include <system/stiffness_rate.hpp>
+#include <math.h>
 #include <algorithm>
 #include <cstddef>
 
@@ -20,123 +21,41 @@ using system::TangentX;
 
 namespace {
 
-/// Chord and strain scalars at a configuration.
-struct Strain {
-  Vec3 a, d1, d2, delta1, delta2;
-  double l, stretch;  // stretch = l - length
-  double n1, n2, m, tau, S;
-  AngleRatio r1, r2;
+#include <elements/shaft/shaft_single.inl>
+
+using One = Numbers;
+
+/// An element at a configuration.
+struct Deformed {
+  ShaftStiffness<One> c;
+  Strain<One> strain;
+  Twist<One> twist;
+  double psi;
+  Stresses<One> stress;
 
   template <bool Offsets>
-  Strain(const ShaftBeam<Offsets>& b, const NodeState& x1, const NodeState& x2) {
+  Deformed(const ShaftBeam<Offsets>& b, const NodeState& x1, const NodeState& x2)
+      : c{b.c.length, b.c.EA_l,      b.c.b11,      b.c.b12,      b.c.b22,
+          b.c.k11,    b.c.k12,       b.c.k22,      b.c.GJ_l,     b.c.tau_c,
+          b.preload,  b.soft_torque, b.soft_axial, b.soft_shear, b.soft_limit} {
     Vec3 du = x2.u - x1.u;
     if constexpr (Offsets) du += b.c.o2 * x2.t - b.c.o1 * x1.t;
-    const double L = b.c.length;
-    l = (L * b.e0 + du).norm();
-    stretch = (2.0 * L * b.e0.dot(du) + du.squaredNorm()) / (l + L);
-    const Vec3 alpha = (du - stretch * b.e0) / l;  // a - e0
-    a = b.e0 + alpha;
-    d1 = x1.d();
-    d2 = x2.d();
-    const Vec3 shift = x1.e() - b.e0 - alpha;  // e - e0 is exactly zero in the line's own chart
-    delta1 = x1.t + shift;
-    delta2 = x2.t + shift;
-    n1 = 0.5 * delta1.squaredNorm();
-    n2 = 0.5 * delta2.squaredNorm();
-    m = delta1.dot(delta2);
-    tau = a.dot(delta1.cross(delta2));
-    r1 = AngleRatio(n1);
-    r2 = AngleRatio(n2);
-    S = r1.G * r2.G * (m - n1 * n2);
-  }
-  double bow(const ShaftElementConstants& c) const {
-    return 0.5 * (c.b11 * r1.F + 2.0 * c.b12 * S + c.b22 * r2.F);
+    strain = strain_of<One>(c.length, b.e0, x1.e(), du, x1.t, x2.t);
+    twist = twist_of(x1.e(), c.tau_c, strain);
+    psi = x2.phi - x1.phi + twist.geometric - b.psi0;
+    stress = stresses_of(c, strain, psi);
   }
 };
 
-/// Derivatives of c11/2 F1 + c12 S + c22/2 F2 in (n1, n2, m).
-struct Form {
-  double g1, g2, gm, h11, h22, h12, h1m, h2m;
-  Form(double c11, double c12, double c22, const Strain& s) {
-    const double G1 = s.r1.G, G2 = s.r2.G, D1 = s.r1.G1, D2 = s.r2.G1, P = s.m - s.n1 * s.n2;
-    g1 = c11 * G1 + c12 * (D1 * G2 * P - G1 * G2 * s.n2);
-    g2 = c22 * G2 + c12 * (G1 * D2 * P - G1 * G2 * s.n1);
-    gm = c12 * G1 * G2;
-    h11 = c11 * D1 + c12 * (s.r1.G2 * G2 * P - 2.0 * D1 * G2 * s.n2);
-    h22 = c22 * D2 + c12 * (G1 * s.r2.G2 * P - 2.0 * G1 * D2 * s.n1);
-    h12 = c12 * (D1 * D2 * P - D1 * G2 * s.n1 - G1 * D2 * s.n2 - G1 * G2);
-    h1m = c12 * D1 * G2;
-    h2m = c12 * G1 * D2;
-  }
-};
-
-/// g(N) of the header and half its derivative, and half its second one.
-struct Give {
-  double g, g1, g2;
-  template <class Beam>
-  Give(const Beam& b, double N) {
-    const double n = std::max(N, b.soft_limit), d = N - n, rho = 1.0 / (1.0 + b.soft_shear * n),
-                 slope = 0.5 * n * rho * (1.0 + rho);
-    g2 = rho * rho * rho;
-    g1 = slope + g2 * d;
-    g = n * n * rho + (slope + g1) * d;
-  }
-};
-
-/// What acts on the rates of w, psi and |th2 - th1|^2/2 once the inside has given way: V = .. - B/2
-/// (q psi^2 + r g), B = |th2 - th1|^2.
-struct Inside {
-  double psi, B, N, torque, Q;
-  Give give;
-  template <class Beam>
-  Inside(const Beam& b, const Strain& s, double N0, double twist)
-      : psi(twist),
-        B(s.r1.F + s.r2.F - 2.0 * s.S),
-        torque((b.c.GJ_l - b.soft_torque * B) * twist),
-        give(b, N0) {
-    N = N0 - b.c.EA_l * b.soft_axial * B * give.g1;
-    Q = b.soft_torque * twist * twist + b.soft_axial * give.g;
-  }
-};
-
-using Vector9 = Vector<9>;  // (a, d1, d2)
-
-/// Gradient of a Form in (a, d1, d2).
-Vector9 gradient(const Form& f, const Strain& s) {
-  Vector9 g;
-  g.segment<3>(3) = f.g1 * s.delta1 + f.gm * s.delta2;
-  g.segment<3>(6) = f.g2 * s.delta2 + f.gm * s.delta1;
-  g.head<3>() = -g.segment<3>(3) - g.segment<3>(6);
-  return g;
+/// m += a b^T. Spelled out: small fixed sizes that general product code would not unroll.
+void add_outer(Mat3& m, const Vec3& a, const Vec3& b) {
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+      m(i, j) += a[i] * b[j];
 }
 
-/// Geometric part of the twist and its gradient in (a, d1, d2).
-struct Twist {
-  SolidAngle o1, o2;  // Omega(e, d1, a), Omega(e, a, d2)
-  double geometric;
-  Vector9 g;
-  Vec3 tau_a, tau_1, tau_2;
-  Twist(const Vec3& e, const Strain& s, double tau_c) : o1(e, s.d1, s.a), o2(e, s.a, s.d2) {
-    const double G = s.r1.G * s.r2.G;
-    geometric = -(o1.value + o2.value) + tau_c * G * s.tau;
-    tau_1 = s.delta2.cross(s.a);
-    tau_2 = s.a.cross(s.delta1);
-    tau_a = s.a.cross(s.delta2 - s.delta1) + s.delta1.cross(s.delta2);
-    const double c1 = tau_c * s.r1.G1 * s.r2.G * s.tau, c2 = tau_c * s.r1.G * s.r2.G1 * s.tau;
-    g.head<3>() = -o1.grad_w() - o2.grad_v() + tau_c * G * tau_a - c1 * s.delta1 - c2 * s.delta2;
-    g.segment<3>(3) = -o1.grad_v() + tau_c * G * tau_1 + c1 * s.delta1;
-    g.segment<3>(6) = -o2.grad_w() + tau_c * G * tau_2 + c2 * s.delta2;
-  }
-};
-
-/// From (a, d1, d2) and the derivative Vl in l to (lambda, d1, d2), lambda = r2 - r1.
-void chain_gradient(const Strain& s, double Vl, Vector9& g) {
-  const Vec3 ga = g.head<3>();
-  g.head<3>() = Vl * s.a + (ga - s.a.dot(ga) * s.a) / s.l;
-}
-
-/// m += s [v]
-inline void add_skew(Mat3& m, double f, const Vec3& v) {
+/// m += f [v]
+void add_skew(Mat3& m, double f, const Vec3& v) {
   m(0, 1) -= f * v.z();
   m(0, 2) += f * v.y();
   m(1, 0) += f * v.z();
@@ -145,221 +64,211 @@ inline void add_skew(Mat3& m, double f, const Vec3& v) {
   m(2, 1) += f * v.x();
 }
 
-/// Start of (x1, d1, x2, d2) in the element's 14.
-constexpr int pos[4] = {0, 3, 7, 10};
-
-}  // namespace
-
-template <bool Offsets>
-ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3& direction)
-    : c(constants),
-      e0(direction) {
-  G4c = c.G4;
-  G4c(1, 1) -= c.polar.row(0).sum();
-  G4c(3, 3) -= c.polar.row(1).sum();
-  const double mean = 0.5 * (c.k11 + c.k22), EI = 0.5 * c.length * (mean - c.k12);
-  if (!(EI > 0)) return;
-  const double stiff =
-      std::min((mean + c.k12) / (3.0 * (mean - c.k12)),
-               1.0);  // 1/(1 + Phi); a cone without shear gives a little more or less than one
-  soft_torque = c.GJ_l * c.GJ_l * c.length * (1.0 - stiff) / (12.0 * EI);
-  soft_shear = (1.0 - stiff) / stiff * c.length * c.length / (12.0 * EI);
-  soft_axial = soft_shear * c.length / 12.0;
-  soft_limit = -0.5 / soft_shear;  // -infinity without shear
-}
-
-template <bool Offsets>
-void ShaftBeam<Offsets>::add_forces(std::span<const ShaftBeam> elements,
-                                    const std::array<Index, 2>* nodes, const NodeState* states,
-                                    const Context&, Vector<7>* force) {
-  if (elements.empty()) return;
-  static_assert(sizeof(ShaftBeam) % sizeof(double) == 0 &&
-                sizeof(NodeState) % sizeof(double) == 0 && sizeof(Vector<7>) == 7 * sizeof(double));
-  static_assert(offsetof(NodeState, ddphi) == 20 * sizeof(double) &&
-                offsetof(ShaftElementConstants, tau_c) - offsetof(ShaftElementConstants, length) ==
-                    11 * sizeof(double));
-  const ShaftBeam& k = elements[0];
-  const double* const start = reinterpret_cast<const double*>(&k);
-  lanes::ShaftElements b;
-  b.element = start;
-  b.stride = sizeof(ShaftBeam) / sizeof(double);
-  b.count = elements.size();
-  b.scalars = &k.c.length - start;
-  b.M4 = k.c.M4.data() - start;
-  b.G4c = k.G4c.data() - start;
-  b.polar = k.c.polar.data() - start;
-  b.e0 = k.e0.data() - start;
-  b.psi0 = &k.psi0 - start;
-  b.preload = &k.preload - start;
-  b.soft = &k.soft_torque - start;
-  b.nodes = nodes->data();
-  b.state = states[0].u.data();
-  b.state_stride = sizeof(NodeState) / sizeof(double);
-  b.chart = offsetof(NodeState, chart) / sizeof(double);
-  b.force = force->data();
-  static const lanes::Kernels& kernels = lanes::kernels();
-  (Offsets ? kernels.add_force_offset : kernels.add_force)(b);
-}
-
-template <bool Offsets>
-void ShaftBeam<Offsets>::add_force(const Nodes<2>& x, const Context& ctx, ForceX<14>& f) const {
-  const NodeState states[2] = {*x[0], *x[1]};
-  const std::array<Index, 2> nodes{0, 1};
-  Vector<7> force[2] = {f.template head<7>(), f.template tail<7>()};
-  add_forces({this, 1}, &nodes, states, ctx, force);
-  f << force[0], force[1];
-}
-
-template <bool Offsets>
-void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& out) const {
-  const NodeState &x1 = *x[0], &x2 = *x[1];
-  const Strain s(*this, x1, x2);
-  const double L = c.length, N0 = preload + c.EA_l * (s.stretch + L * s.bow(c));
-  Twist t(x1.e(), s, c.tau_c);
-  const Inside in(*this, s, N0, x2.phi - x1.phi + t.geometric - psi0);
-  const double N = in.N, NL = N * L, T = in.torque;
-  const Form bend(c.k11 + NL * c.b11 - in.Q, c.k12 + NL * c.b12 + in.Q, c.k22 + NL * c.b22 - in.Q,
-                  s);
-  Vector9 gw = L * gradient(Form(c.b11, c.b12, c.b22, s), s);  // dw = dl + gw . d(a, d1, d2)
-  const Vector9 ga = gradient(bend, s) + T * t.g;
-  // Second derivatives of V in (w, psi, beta), beta = |th2 - th1|^2/2: squares of gw and t.g
-  // shifted along the gradient of beta, and one of that.
-  const Vector9 gb = gradient(Form(1.0, -1.0, 1.0, s), s);
-  const double EA_l = c.EA_l * (1.0 - in.B * soft_axial * c.EA_l * in.give.g2),
-               GJ_l = c.GJ_l - in.B * soft_torque;
-  const double shift_w = 2.0 * soft_axial * in.give.g1 * c.EA_l / EA_l,
-               shift_t = GJ_l > 0.0 ? 2.0 * soft_torque * in.psi / GJ_l : 0.0;
-  const double bb = -(EA_l * shift_w * shift_w + GJ_l * shift_t * shift_t);
-  gw -= shift_w * gb;
-  t.g -= shift_t * gb;
-
-  // Hessian in (a, d1, d2), by blocks: rank-one parts of w and psi, the form in (n1, n2, m, tau),
-  // the curvature of these scalars. Outer products are spelled out (add_outer): small fixed sizes
-  // that general product code would not unroll.
-  const double TG = T * c.tau_c;
-  const double G1 = s.r1.G, G2 = s.r2.G, D1 = s.r1.G1, D2 = s.r2.G1;
-  const double w1 = bend.g1 + TG * D1 * G2 * s.tau, w2 = bend.g2 + TG * G1 * D2 * s.tau,
-               wm = bend.gm, wt = TG * G1 * G2;
-  const double h11 = bend.h11 + TG * s.r1.G2 * G2 * s.tau,
-               h22 = bend.h22 + TG * G1 * s.r2.G2 * s.tau;
-  const double h12 = bend.h12 + TG * D1 * D2 * s.tau, h1t = TG * D1 * G2, h2t = TG * G1 * D2;
-  // rows of h g for the gradients g of (n1, n2, m, tau) in d1, d2 and a
-  const Vec3 &p1 = s.delta1, &p2 = s.delta2, ps = p1 + p2;
-  const Vec3 y11 = h11 * p1 + bend.h1m * p2 + h1t * t.tau_1,
-             y12 = h12 * p1 + bend.h2m * p2 + h2t * t.tau_1;
-  const Vec3 y1m = bend.h1m * p1, y1t = h1t * p1;
-  const Vec3 y21 = h12 * p2 + bend.h1m * p1 + h1t * t.tau_2,
-             y22 = h22 * p2 + bend.h2m * p1 + h2t * t.tau_2;
-  const Vec3 y2m = bend.h2m * p2, y2t = h2t * p2;
-  const Vec3 ya1 = -h11 * p1 - h12 * p2 - bend.h1m * ps + h1t * t.tau_a,
-             ya2 = -h12 * p1 - h22 * p2 - bend.h2m * ps + h2t * t.tau_a;
-  const Vec3 yam = -bend.h1m * p1 - bend.h2m * p2, yat = -h1t * p1 - h2t * p2;
-  const Vec3 wa = gw.head<3>(), wd1 = gw.segment<3>(3), wd2 = gw.tail<3>();
-  const Vec3 ta = t.g.head<3>(), td1 = t.g.segment<3>(3), td2 = t.g.tail<3>();
-  const Vec3 ba = gb.head<3>(), b1 = gb.segment<3>(3), b2 = gb.tail<3>();
-  auto start = [&](const Vec3& wx, const Vec3& tx, const Vec3& bx, const Vec3& wy, const Vec3& ty,
-                   const Vec3& by) {
-    Mat3 m = Mat3::Zero();
-    add_outer(m, EA_l * wx, wy);
-    add_outer(m, GJ_l * tx, ty);
-    if (bb != 0.0) add_outer(m, bb * bx, by);
-    return m;
-  };
-  const Vec3 e = x1.e();
-  Mat3 H11 = start(wd1, td1, b1, wd1, td1, b1), H12 = start(wd1, td1, b1, wd2, td2, b2),
-       H22 = start(wd2, td2, b2, wd2, td2, b2);
-  Mat3 H1a = start(wd1, td1, b1, wa, ta, ba), H2a = start(wd2, td2, b2, wa, ta, ba),
-       Haa = start(wa, ta, ba, wa, ta, ba);
-  add_outer(H11, y11, p1);
-  add_outer(H11, y1m, p2);
-  add_outer(H11, y1t, t.tau_1);
-  add_outer(H12, y12, p2);
-  add_outer(H12, y1m, p1);
-  add_outer(H12, y1t, t.tau_2);
-  add_outer(H22, y22, p2);
-  add_outer(H22, y2m, p1);
-  add_outer(H22, y2t, t.tau_2);
-  add_outer(H1a, -y11 - y1m, p1);
-  add_outer(H1a, -y12 - y1m, p2);
-  add_outer(H1a, y1t, t.tau_a);
-  add_outer(H2a, -y21 - y2m, p1);
-  add_outer(H2a, -y22 - y2m, p2);
-  add_outer(H2a, y2t, t.tau_a);
-  add_outer(Haa, -ya1 - yam, p1);
-  add_outer(Haa, -ya2 - yam, p2);
-  add_outer(Haa, yat, t.tau_a);
-  t.o1.add_vv(-T, H11);
-  t.o1.add_ww(-T, Haa);
-  t.o1.add_vw(-T, e, H1a);
-  t.o2.add_ww(-T, H22);
-  t.o2.add_vv(-T, Haa);
-  t.o2.add_wv(-T, e, H2a);
-  H11.diagonal().array() += w1;
-  H22.diagonal().array() += w2;
-  H12.diagonal().array() += wm;
-  Haa.diagonal().array() += w1 + w2 + 2.0 * wm;
-  H1a.diagonal().array() -= w1 + wm;
-  H2a.diagonal().array() -= w2 + wm;
-  add_skew(H1a, wt, s.d2);
-  add_skew(H2a, -wt, s.d1);
-  add_skew(H12, -wt, s.a);
-
-  // from (a, l) to lambda: da = P dlambda, P = (1 - a a^T)/l
-  const Vec3 va = ga.head<3>(), Pva = (va - s.a.dot(va) * s.a) / s.l,
-             Pcw = (EA_l / s.l) * (wa - s.a.dot(wa) * s.a);
-  // P Haa P = (Haa - a (a^T Haa) - (Haa a) a^T + (a^T Haa a) a a^T)/l^2
-  const Vec3 Ha = Haa * s.a;
-  const double il = 1.0 / s.l, il2 = il * il, aHa = s.a.dot(Ha),
-               tension = (N - s.a.dot(va) * il) * il;
-  Mat3 Hll = il2 * Haa;
-  Hll.diagonal().array() += tension;
-  const Vec3 side = Pcw - il2 * Ha - il * Pva;
-  add_outer(Hll, s.a, side);
-  add_outer(Hll, side + (il2 * aHa + EA_l - tension) * s.a, s.a);
-  // Hl_i = P Haa_i + EA a gw_i^T, i = 1, 2
-  auto lambda_d = [&](const Mat3& Hda, const Vec3& wd) {
-    Mat3 m = il * Hda.transpose();
-    add_outer(m, s.a, EA_l * wd - il * (Hda * s.a));
-    return m;
-  };
-  Mat3 H1 = lambda_d(H1a, wd1), H2 = lambda_d(H2a, wd2);
-  Vector9 tg = t.g;
-  chain_gradient(s, 0.0, tg);
-  Vec3 tg1 = tg.segment<3>(3), tg2 = tg.segment<3>(6);
-  if constexpr (Offsets) {
-    // d lambda = dx2 - dx1 + o2 dd2 - o1 dd1
-    const double o1 = c.o1, o2 = c.o2;
-    H11 += -o1 * (H1 + H1.transpose()) + o1 * o1 * Hll;
-    H22 += o2 * (H2 + H2.transpose()) + o2 * o2 * Hll;
-    H12 += -o1 * H2 + o2 * H1.transpose() - o1 * o2 * Hll;
-    H1 -= o1 * Hll;
-    H2 += o2 * Hll;
-    tg1 -= o1 * tg.head<3>();
-    tg2 += o2 * tg.head<3>();
+/// Second derivative of a solid angle Omega(e, v, w) in (v, w), from dOmega = p dN + r dD: N is
+/// bilinear with d2N/dv dw = -[e], D with 1; dp = -c2 dN - c1 dD, dr = -c1 dN + c2 dD with
+/// c1 = (p^2 - r^2)/2, c2 = -p r.
+class SolidAngleCurvature {
+ public:
+  explicit SolidAngleCurvature(const SolidAngle<One>& angle)
+      : o(angle),
+        c1(0.5 * (o.p * o.p - o.r * o.r)),
+        c2(-o.p * o.r) {}
+  /// m += f times the second derivative.
+  void add_vv(double f, Mat3& m) const { add(f, o.Nv, o.Dv, o.Nv, o.Dv, m); }
+  void add_ww(double f, Mat3& m) const { add(f, o.Nw, o.Dw, o.Nw, o.Dw, m); }
+  void add_vw(double f, const Vec3& e, Mat3& m) const {
+    add(f, o.Nv, o.Dv, o.Nw, o.Dw, m);
+    add_mixed(f, -1.0, e, m);
   }
-  auto& K = out.K;
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i) {
-      const double ll = Hll(i, j), l1 = H1(i, j), l2 = H2(i, j), m12 = H12(i, j);
-      K(i, j) += ll;
-      K(7 + i, 7 + j) += ll;
-      K(i, 7 + j) -= ll;
-      K(7 + i, j) -= ll;
-      K(i, 3 + j) -= l1;
-      K(7 + i, 3 + j) += l1;
-      K(3 + j, i) -= l1;
-      K(3 + j, 7 + i) += l1;
-      K(i, 10 + j) -= l2;
-      K(7 + i, 10 + j) += l2;
-      K(10 + j, i) -= l2;
-      K(10 + j, 7 + i) += l2;
-      K(3 + i, 3 + j) += H11(i, j);
-      K(10 + i, 10 + j) += H22(i, j);
-      K(3 + i, 10 + j) += m12;
-      K(10 + j, 3 + i) += m12;
-    }
-  for (int i = 0; i < 3; ++i) {  // torque against phi
-    const double l = GJ_l * tg[i], d1 = GJ_l * tg1[i], d2 = GJ_l * tg2[i];
+  void add_wv(double f, const Vec3& e, Mat3& m) const {
+    add(f, o.Nw, o.Dw, o.Nv, o.Dv, m);
+    add_mixed(f, 1.0, e, m);
+  }
+
+ private:
+  void add(double f, const Vec3& Nx, const Vec3& Dx, const Vec3& Ny, const Vec3& Dy,
+           Mat3& m) const {
+    add_outer(m, f * (c2 * Dx - c1 * Nx), Dy);
+    add_outer(m, -f * (c1 * Dx + c2 * Nx), Ny);
+  }
+  void add_mixed(double f, double sign, const Vec3& e, Mat3& m) const {
+    add_skew(m, sign * f * o.p, e);
+    m.diagonal().array() += f * o.r;
+  }
+  const SolidAngle<One>& o;
+  double c1, c2;
+};
+
+/// V as a function of (n1, n2, m, tau) at given stresses: slopes and second derivatives.
+struct ScalarForm {
+  double n1, n2, m, tau;
+  double n1n1, n2n2, n1n2, n1m, n2m, n1tau, n2tau;
+};
+ScalarForm scalar_form(const BendingStiffness<double>& c, double torque_tau_c,
+                       const Strain<One>& s) {
+  const AngleRatio<double>&r1 = s.end1.angle, &r2 = s.end2.angle;
+  const double second1 = angle_ratio_second(s.end1.n, r1),
+               second2 = angle_ratio_second(s.end2.n, r2);
+  const double D1G2 = r1.G1 * r2.G, G1D2 = r1.G * r2.G1, D1D2 = r1.G1 * r2.G1;
+  const double along = torque_tau_c * s.tau;
+  const BendingSlopes<double> slope = bending_slopes(c.c11, c.c12, c.c22, s);
+  ScalarForm f;
+  f.n1 = slope.n1 + along * D1G2;
+  f.n2 = slope.n2 + along * G1D2;
+  f.m = slope.m;
+  f.tau = torque_tau_c * s.GG;
+  f.n1n1 = c.c11 * r1.G1 + c.c12 * (second1 * r2.G * s.P - 2.0 * D1G2 * s.end2.n) +
+           along * second1 * r2.G;
+  f.n2n2 = c.c22 * r2.G1 + c.c12 * (r1.G * second2 * s.P - 2.0 * G1D2 * s.end1.n) +
+           along * r1.G * second2;
+  f.n1n2 = c.c12 * (D1D2 * s.P - D1G2 * s.end1.n - G1D2 * s.end2.n - s.GG) + along * D1D2;
+  f.n1m = c.c12 * D1G2;
+  f.n2m = c.c12 * G1D2;
+  f.n1tau = torque_tau_c * D1G2;
+  f.n2tau = torque_tau_c * G1D2;
+  return f;
+}
+
+/// Second derivatives of V in (a, d1, d2) at constant l, by blocks (row, column).
+struct Hessian {
+  Mat3 aa = Mat3::Zero(), d1a = Mat3::Zero(), d2a = Mat3::Zero();
+  Mat3 d1d1 = Mat3::Zero(), d1d2 = Mat3::Zero(), d2d2 = Mat3::Zero();
+
+  /// += f g g^T
+  void add_square(double f, const Gradient<One>& g) {
+    add_outer(d1d1, f * g.d1, g.d1);
+    add_outer(d1d2, f * g.d1, g.d2);
+    add_outer(d2d2, f * g.d2, g.d2);
+    add_outer(d1a, f * g.d1, g.a);
+    add_outer(d2a, f * g.d2, g.a);
+    add_outer(aa, f * g.a, g.a);
+  }
+
+  /// += sum of h_xy dx dy^T over the scalars x, y of a ScalarForm: rows of h against the gradients.
+  void add_scalars(const ScalarForm& h, const Strain<One>& s, const Gradient<One>& tau) {
+    const Vec3 &p1 = s.end1.delta, &p2 = s.end2.delta, sum = p1 + p2;
+    const Vec3 y11 = h.n1n1 * p1 + h.n1m * p2 + h.n1tau * tau.d1;
+    const Vec3 y12 = h.n1n2 * p1 + h.n2m * p2 + h.n2tau * tau.d1;
+    const Vec3 y21 = h.n1n2 * p2 + h.n1m * p1 + h.n1tau * tau.d2;
+    const Vec3 y22 = h.n2n2 * p2 + h.n2m * p1 + h.n2tau * tau.d2;
+    const Vec3 y1m = h.n1m * p1, y1tau = h.n1tau * p1;
+    const Vec3 y2m = h.n2m * p2, y2tau = h.n2tau * p2;
+    const Vec3 ya1 = -h.n1n1 * p1 - h.n1n2 * p2 - h.n1m * sum + h.n1tau * tau.a;
+    const Vec3 ya2 = -h.n1n2 * p1 - h.n2n2 * p2 - h.n2m * sum + h.n2tau * tau.a;
+    const Vec3 yam = -h.n1m * p1 - h.n2m * p2, yatau = -h.n1tau * p1 - h.n2tau * p2;
+    add_outer(d1d1, y11, p1);
+    add_outer(d1d1, y1m, p2);
+    add_outer(d1d1, y1tau, tau.d1);
+    add_outer(d1d2, y12, p2);
+    add_outer(d1d2, y1m, p1);
+    add_outer(d1d2, y1tau, tau.d2);
+    add_outer(d2d2, y22, p2);
+    add_outer(d2d2, y2m, p1);
+    add_outer(d2d2, y2tau, tau.d2);
+    add_outer(d1a, -y11 - y1m, p1);
+    add_outer(d1a, -y12 - y1m, p2);
+    add_outer(d1a, y1tau, tau.a);
+    add_outer(d2a, -y21 - y2m, p1);
+    add_outer(d2a, -y22 - y2m, p2);
+    add_outer(d2a, y2tau, tau.a);
+    add_outer(aa, -ya1 - yam, p1);
+    add_outer(aa, -ya2 - yam, p2);
+    add_outer(aa, yatau, tau.a);
+  }
+
+  /// += slopes times the second derivatives of (n1, n2, m, tau).
+  void add_curvature(const ScalarForm& f, const Strain<One>& s) {
+    d1d1.diagonal().array() += f.n1;
+    d2d2.diagonal().array() += f.n2;
+    d1d2.diagonal().array() += f.m;
+    aa.diagonal().array() += f.n1 + f.n2 + 2.0 * f.m;
+    d1a.diagonal().array() -= f.n1 + f.m;
+    d2a.diagonal().array() -= f.n2 + f.m;
+    add_skew(d1a, f.tau, s.d2);
+    add_skew(d2a, -f.tau, s.d1);
+    add_skew(d1d2, -f.tau, s.chord.a);
+  }
+
+  /// += the torque on the solid angles in psi.
+  void add_solid_angles(double torque, const Vec3& e, const Twist<One>& t) {
+    const SolidAngleCurvature at1(t.at1), at2(t.at2);
+    at1.add_vv(-torque, d1d1);
+    at1.add_ww(-torque, aa);
+    at1.add_vw(-torque, e, d1a);
+    at2.add_ww(-torque, d2d2);
+    at2.add_vv(-torque, aa);
+    at2.add_wv(-torque, e, d2a);
+  }
+};
+
+/// The same in (lambda, d1, d2): blocks with lambda, and those of d1, d2.
+struct ChordHessian {
+  Mat3 ll, l1, l2;
+  Mat3 d1d1, d1d2, d2d2;
+
+  /// From (a, l): da = P dlambda, P = (1 - a a^T)/l. across: dV/da; w: gradient of w, beside
+  /// dw/dl = 1.
+  ChordHessian(const Chord<One>& c, const Hessian& h, double N, const Vec3& across, double EA_l,
+               const Gradient<One>& w)
+      : d1d1(h.d1d1),
+        d1d2(h.d1d2),
+        d2d2(h.d2d2) {
+    const Vec3& a = c.a;
+    const double il = c.inverse, il2 = il * il;
+    const Vec3 Pacross = il * perpendicular(a, across);
+    const Vec3 Pw = (EA_l * il) * perpendicular(a, w.a);
+    // P Haa P = (Haa - a (a^T Haa) - (Haa a) a^T + (a^T Haa a) a a^T)/l^2
+    const Vec3 Ha = h.aa * a;
+    const double tension = (N - a.dot(across) * il) * il;
+    ll = il2 * h.aa;
+    ll.diagonal().array() += tension;
+    const Vec3 side = Pw - il2 * Ha - il * Pacross;
+    add_outer(ll, a, side);
+    add_outer(ll, side + (il2 * a.dot(Ha) + EA_l - tension) * a, a);
+    // P Haa_i + EA a gw_i^T, i = 1, 2
+    l1 = il * h.d1a.transpose();
+    add_outer(l1, a, EA_l * w.d1 - il * (h.d1a * a));
+    l2 = il * h.d2a.transpose();
+    add_outer(l2, a, EA_l * w.d2 - il * (h.d2a * a));
+  }
+
+  // d lambda = dx2 - dx1 + o2 dd2 - o1 dd1
+  void add_offsets(double o1, double o2) {
+    d1d1 += -o1 * (l1 + l1.transpose()) + o1 * o1 * ll;
+    d2d2 += o2 * (l2 + l2.transpose()) + o2 * o2 * ll;
+    d1d2 += -o1 * l2 + o2 * l1.transpose() - o1 * o2 * ll;
+    l1 -= o1 * ll;
+    l2 += o2 * ll;
+  }
+
+  void add_to(Matrix<14>& K) const {
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) {
+        K(i, j) += ll(i, j);
+        K(7 + i, 7 + j) += ll(i, j);
+        K(i, 7 + j) -= ll(i, j);
+        K(7 + i, j) -= ll(i, j);
+        K(i, 3 + j) -= l1(i, j);
+        K(7 + i, 3 + j) += l1(i, j);
+        K(3 + j, i) -= l1(i, j);
+        K(3 + j, 7 + i) += l1(i, j);
+        K(i, 10 + j) -= l2(i, j);
+        K(7 + i, 10 + j) += l2(i, j);
+        K(10 + j, i) -= l2(i, j);
+        K(10 + j, 7 + i) += l2(i, j);
+        K(3 + i, 3 + j) += d1d1(i, j);
+        K(10 + i, 10 + j) += d2d2(i, j);
+        K(3 + i, 10 + j) += d1d2(i, j);
+        K(10 + j, 3 + i) += d1d2(i, j);
+      }
+  }
+};
+
+/// Stiffness GJ_l of the twist between phi and everything: g the gradient of psi in (lambda, d1,
+/// d2) with the nodes' offsets inside.
+void add_twist_coupling(double GJ_l, const Gradient<One>& g, Matrix<14>& K) {
+  for (int i = 0; i < 3; ++i) {
+    const double l = GJ_l * g.a[i], d1 = GJ_l * g.d1[i], d2 = GJ_l * g.d2[i];
     K(13, i) -= l;
     K(i, 13) -= l;
     K(6, i) += l;
@@ -381,37 +290,83 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   K(13, 13) += GJ_l;
   K(6, 13) -= GJ_l;
   K(13, 6) -= GJ_l;
+}
 
-  // inertia
-  const NodeState* n[2] = {&x1, &x2};
-  const SpinRate sp[2] = {SpinRate(x1), SpinRate(x2)};
-  const Vec3* vel[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
-  const double mean_spin = 0.5 * (sp[0].s + sp[1].s);
-  auto &C = out.C, &M = out.M;
-  const Vec3 ms = mean_spin * s.a;
+template <bool Offsets>
+void add_elastic_tangent(const ShaftBeam<Offsets>& b, const Vec3& e, const Deformed& x,
+                         Matrix<14>& K) {
+  const Strain<One>& s = x.strain;
+  const Stresses<One>& r = x.stress;
+  const BendingStiffness<double> c = bending_stiffness_of(x.c, r);
+  const ScalarForm form = scalar_form(c, r.torque * x.c.tau_c, s);
+  Gradient<One> psi = twist_gradient(x.twist, x.c.tau_c, s);
+  const Gradient<One> bending = bending_gradient(bending_slopes(c.c11, c.c12, c.c22, s), s);
+  const Vec3 across = elastic_gradient(bending, r.torque, psi).a;
+  // w = l - length + length e_b, and B/2 = |th2 - th1|^2/2
+  Gradient<One> w = bending_gradient(bending_slopes(x.c.b11, x.c.b12, x.c.b22, s), s);
+  const Gradient<One> half_B = bending_gradient(bending_slopes(1.0, -1.0, 1.0, s), s);
+  // Second derivatives of V in (w, psi, B/2): squares of dw and dpsi shifted along dB/2, and one of
+  // that.
+  const double EA_l = x.c.EA_l * (1.0 - r.B * x.c.soft_axial * x.c.EA_l * r.give.g2);
+  const double GJ_l = x.c.GJ_l - r.B * x.c.soft_torque;
+  const double shift_w = 2.0 * x.c.soft_axial * r.give.g1 * x.c.EA_l / EA_l;
+  const double shift_psi = GJ_l > 0.0 ? 2.0 * x.c.soft_torque * x.psi / GJ_l : 0.0;
+  w = {x.c.length * w.a - shift_w * half_B.a, x.c.length * w.d1 - shift_w * half_B.d1,
+       x.c.length * w.d2 - shift_w * half_B.d2};
+  psi = {psi.a - shift_psi * half_B.a, psi.d1 - shift_psi * half_B.d1,
+         psi.d2 - shift_psi * half_B.d2};
+
+  Hessian h;
+  h.add_square(EA_l, w);
+  h.add_square(GJ_l, psi);
+  const double softened = EA_l * shift_w * shift_w + GJ_l * shift_psi * shift_psi;
+  if (softened != 0.0) h.add_square(-softened, half_B);
+  h.add_scalars(form, s, tau_gradient(s));
+  h.add_solid_angles(r.torque, e, x.twist);
+  h.add_curvature(form, s);
+  ChordHessian in_chord(s.chord, h, r.N, across, EA_l, w);
+  psi.a = chord_gradient(s.chord, 0.0, psi.a);
+  if constexpr (Offsets) {
+    in_chord.add_offsets(b.c.o1, b.c.o2);
+    psi.d1 -= b.c.o1 * psi.a;
+    psi.d2 += b.c.o2 * psi.a;
+  }
+  in_chord.add_to(K);
+  add_twist_coupling(GJ_l, psi, K);
+}
+
+/// Start of (x1, d1, x2, d2) in the element's 14.
+constexpr int pos[4] = {0, 3, 7, 10};
+
+/// Of M4 X'' - s a x G4c X', s the mean spin.
+template <bool Offsets>
+void add_inertia_tangent(const ShaftBeam<Offsets>& b, const Nodes<2>& x, const SpinRate (&sp)[2],
+                         const Chord<One>& chord, TangentX<14>& out) {
+  const Vec3* velocity[4] = {&x[0]->du, &x[0]->dd, &x[1]->du, &x[1]->dd};
+  const double mean_spin = 0.5 * (sp[0].s + sp[1].s), rate = mean_spin * chord.inverse;
+  const Vec3 turning = mean_spin * chord.a;
+  auto &M = out.M, &C = out.C, &K = out.K;
   for (int k = 0; k < 4; ++k) {
     const int r = pos[k];
     Vec3 v = Vec3::Zero();
     for (int j = 0; j < 4; ++j) {
       const int q = pos[j];
-      v += G4c(k, j) * *vel[j];
-      const double m = c.M4(k, j), gx = G4c(k, j) * ms.x(), gy = G4c(k, j) * ms.y(),
-                   gz = G4c(k, j) * ms.z();
-      M(r, q) += m;
-      M(r + 1, q + 1) += m;
-      M(r + 2, q + 2) += m;
-      C(r, q + 1) += gz;
-      C(r, q + 2) -= gy;
-      C(r + 1, q) -= gz;
-      C(r + 1, q + 2) += gx;
-      C(r + 2, q) += gy;
-      C(r + 2, q + 1) -= gx;
+      v += b.G4c(k, j) * *velocity[j];
+      const Vec3 g = b.G4c(k, j) * turning;
+      for (int i = 0; i < 3; ++i)
+        M(r + i, q + i) += b.c.M4(k, j);
+      C(r, q + 1) += g.z();
+      C(r, q + 2) -= g.y();
+      C(r + 1, q) -= g.z();
+      C(r + 1, q + 2) += g.x();
+      C(r + 2, q) += g.y();
+      C(r + 2, q + 1) -= g.x();
     }
     // -s a x v through the spins, then through a: s [v] P = s ([v] - (v x a) a^T)/l
-    const Vec3 av = 0.5 * s.a.cross(v);
-    Mat3 B = Mat3::Zero();
-    add_skew(B, mean_spin * il, v);
-    add_outer(B, (-mean_spin * il) * v.cross(s.a), s.a);
+    const Vec3 av = 0.5 * chord.a.cross(v);
+    Mat3 through_a = Mat3::Zero();
+    add_skew(through_a, rate, v);
+    add_outer(through_a, -rate * v.cross(chord.a), chord.a);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 2; ++j)
         C(r + i, 7 * j + 6) -= av[i];
@@ -420,32 +375,39 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
         C(r + i, 10 + j) += av[i] * sp[1].w[j];
         K(r + i, 3 + j) -= av[i] * sp[0].s_d[j];
         K(r + i, 10 + j) -= av[i] * sp[1].s_d[j];
-        K(r + i, j) -= B(i, j);
-        K(r + i, 7 + j) += B(i, j);
+        K(r + i, j) -= through_a(i, j);
+        K(r + i, 7 + j) += through_a(i, j);
         if constexpr (Offsets) {
-          K(r + i, 3 + j) -= c.o1 * B(i, j);
-          K(r + i, 10 + j) += c.o2 * B(i, j);
+          K(r + i, 3 + j) -= b.c.o1 * through_a(i, j);
+          K(r + i, 10 + j) += b.c.o2 * through_a(i, j);
         }
       }
     }
   }
+}
+
+/// Of the polar inertia on the spins: h = polar s; f_phi = h', f_d = -h' w - h d x d'.
+void add_polar_tangent(const Mat2& polar, const Nodes<2>& x, const SpinRate (&sp)[2],
+                       TangentX<14>& out) {
+  auto &M = out.M, &C = out.C, &K = out.K;
   for (int i = 0; i < 2; ++i) {
+    const NodeState& node = *x[static_cast<std::size_t>(i)];
     const int r = 7 * i;
-    const double hi = c.polar(i, 0) * sp[0].s + c.polar(i, 1) * sp[1].s;
-    const double hdot = c.polar(i, 0) * sp[0].sdot + c.polar(i, 1) * sp[1].sdot;
-    const Vec3 d = n[i]->d(), dxd = d.cross(n[i]->dd);
+    const double h = polar(i, 0) * sp[0].s + polar(i, 1) * sp[1].s;
+    const double hdot = polar(i, 0) * sp[0].sdot + polar(i, 1) * sp[1].sdot;
+    const Vec3 d = node.d(), dxd = d.cross(node.dd);
     const Mat3 W = sp[i].W();
-    Mat3 A = Mat3::Zero(), B = Mat3::Zero();
-    add_skew(A, hi, n[i]->dd);
-    add_skew(B, -hi, d);
+    Mat3 on_d = Mat3::Zero(), on_dd = Mat3::Zero();
+    add_skew(on_d, h, node.dd);
+    add_skew(on_dd, -h, d);
     for (int b = 0; b < 3; ++b)
       for (int a = 0; a < 3; ++a) {
-        K(r + 3 + a, r + 3 + b) += A(a, b) - hdot * W(a, b);
-        C(r + 3 + a, r + 3 + b) += B(a, b);
+        K(r + 3 + a, r + 3 + b) += on_d(a, b) - hdot * W(a, b);
+        C(r + 3 + a, r + 3 + b) += on_dd(a, b);
       }
     for (int j = 0; j < 2; ++j) {
       const int q = 7 * j;
-      const double p = c.polar(i, j);
+      const double p = polar(i, j);
       const Vec3 &wi = sp[i].w, &wj = sp[j].w;
       M(r + 6, q + 6) += p;
       for (int b = 0; b < 3; ++b) {
@@ -464,19 +426,103 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   }
 }
 
+}  // namespace
+
+template <bool Offsets>
+ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3& direction)
+    : c(constants),
+      e0(direction) {
+  G4c = c.G4;
+  G4c(1, 1) -= c.polar.row(0).sum();
+  G4c(3, 3) -= c.polar.row(1).sum();
+  const double mean = 0.5 * (c.k11 + c.k22), EI = 0.5 * c.length * (mean - c.k12);
+  if (!(EI > 0)) return;
+  // 1/(1 + Phi); a cone without shear gives a little more or less than one
+  const double stiff = std::min((mean + c.k12) / (3.0 * (mean - c.k12)), 1.0);
+  soft_torque = c.GJ_l * c.GJ_l * c.length * (1.0 - stiff) / (12.0 * EI);
+  soft_shear = (1.0 - stiff) / stiff * c.length * c.length / (12.0 * EI);
+  soft_axial = soft_shear * c.length / 12.0;
+  soft_limit = -0.5 / soft_shear;  // -infinity without shear
+}
+
+/// What the kernels of shaft_lanes.hpp take for granted.
+template <bool Offsets>
+constexpr bool in_place() {
+  using Beam = ShaftBeam<Offsets>;
+  using Places = lanes::ShaftPlaces;
+  constexpr auto stands = [](std::size_t offset, int place) {
+    return offset == static_cast<std::size_t>(place) * sizeof(double);
+  };
+  static_assert(stands(offsetof(Beam, c.length), Places::length));
+  static_assert(stands(offsetof(Beam, c.o1), Places::o1));
+  static_assert(stands(offsetof(Beam, c.o2), Places::o2));
+  static_assert(stands(offsetof(Beam, c.EA_l), Places::EA_l));
+  static_assert(stands(offsetof(Beam, c.b11), Places::b11));
+  static_assert(stands(offsetof(Beam, c.b12), Places::b12));
+  static_assert(stands(offsetof(Beam, c.b22), Places::b22));
+  static_assert(stands(offsetof(Beam, c.k11), Places::k11));
+  static_assert(stands(offsetof(Beam, c.k12), Places::k12));
+  static_assert(stands(offsetof(Beam, c.k22), Places::k22));
+  static_assert(stands(offsetof(Beam, c.GJ_l), Places::GJ_l));
+  static_assert(stands(offsetof(Beam, c.tau_c), Places::tau_c));
+  static_assert(stands(offsetof(Beam, c.M4), Places::M4));
+  static_assert(stands(offsetof(Beam, c.polar), Places::polar));
+  static_assert(stands(offsetof(Beam, e0), Places::e0));
+  static_assert(stands(offsetof(Beam, psi0), Places::psi0));
+  static_assert(stands(offsetof(Beam, preload), Places::preload));
+  static_assert(stands(offsetof(Beam, soft_torque), Places::soft_torque));
+  static_assert(stands(offsetof(Beam, soft_axial), Places::soft_axial));
+  static_assert(stands(offsetof(Beam, soft_shear), Places::soft_shear));
+  static_assert(stands(offsetof(Beam, soft_limit), Places::soft_limit));
+  static_assert(stands(offsetof(Beam, G4c), Places::G4c));
+  static_assert(sizeof(Matrix<4>) == 16 * sizeof(double) && sizeof(Mat2) == 4 * sizeof(double));
+  return stands(sizeof(Beam), Places::size) && sizeof(Vector<7>) == 7 * sizeof(double);
+}
+
+template <bool Offsets>
+void ShaftBeam<Offsets>::add_forces(std::span<const ShaftBeam> elements,
+                                    const std::array<Index, 2>* nodes, const NodeState* states,
+                                    const Context&, Vector<7>* force) {
+  static_assert(in_place<Offsets>());
+  if (elements.empty()) return;
+  lanes::Elements b;
+  b.element = &elements[0].c.length;
+  b.count = elements.size();
+  b.nodes = nodes->data();
+  b.state = states[0].u.data();
+  b.force = force->data();
+  static const lanes::Kernels& kernels = lanes::kernels();
+  (Offsets ? kernels.add_force_offset : kernels.add_force)(b);
+}
+
+template <bool Offsets>
+void ShaftBeam<Offsets>::add_force(const Nodes<2>& x, const Context& ctx, ForceX<14>& f) const {
+  const NodeState states[2] = {*x[0], *x[1]};
+  const std::array<Index, 2> nodes{0, 1};
+  Vector<7> force[2] = {f.template head<7>(), f.template tail<7>()};
+  add_forces({this, 1}, &nodes, states, ctx, force);
+  f << force[0], force[1];
+}
+
+template <bool Offsets>
+void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& out) const {
+  const Deformed now(*this, *x[0], *x[1]);
+  const SpinRate spin[2] = {SpinRate(*x[0]), SpinRate(*x[1])};
+  add_elastic_tangent(*this, x[0]->e(), now, out.K);
+  add_inertia_tangent(*this, x, spin, now.strain.chord, out);
+  add_polar_tangent(c.polar, x, spin, out);
+}
+
 template <bool Offsets>
 void ShaftBeam<Offsets>::add_energy(const Nodes<2>& x, const Context& ctx, Energy& e) const {
   const NodeState &x1 = *x[0], &x2 = *x[1];
-  const Strain s(*this, x1, x2);
-  const double w = s.stretch + c.length * s.bow(c);
-  const Twist t(x1.e(), s, c.tau_c);
-  const double psi = x2.phi - x1.phi + t.geometric - psi0;
-  e.elastic += 0.5 * c.EA_l * w * w + preload * w +
-               0.5 * (c.k11 * s.r1.F + 2.0 * c.k12 * s.S + c.k22 * s.r2.F) +
-               0.5 * c.GJ_l * psi * psi;
-  const double N = preload + c.EA_l * w;
-  e.elastic -= 0.5 * (soft_torque * psi * psi + soft_axial * Give(*this, N).g) *
-               (s.r1.F + s.r2.F - 2.0 * s.S);
+  const Deformed now(*this, x1, x2);
+  const Stresses<One>& r = now.stress;
+  const double F1 = now.strain.end1.angle.F, F2 = now.strain.end2.angle.F;
+  e.elastic += 0.5 * c.EA_l * r.w * r.w + preload * r.w +
+               0.5 * (c.k11 * F1 + 2.0 * c.k12 * now.strain.theta12 + c.k22 * F2) +
+               0.5 * c.GJ_l * now.psi * now.psi;
+  e.elastic -= 0.5 * r.Q * r.B;
   const Vec3* vel[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
   double T = 0.0;
   for (int k = 0; k < 4; ++k)
@@ -494,19 +540,18 @@ void ShaftBeam<Offsets>::add_energy(const Nodes<2>& x, const Context& ctx, Energ
 
 template <bool Offsets>
 typename ShaftBeam<Offsets>::Internal ShaftBeam<Offsets>::internal(const Nodes<2>& x) const {
-  const NodeState &x1 = *x[0], &x2 = *x[1];
-  const Strain s(*this, x1, x2);
+  const Deformed now(*this, *x[0], *x[1]);
+  const Strain<One>& s = now.strain;
+  const Vec3& a = s.chord.a;
+  // rotation vectors from chord to normal
+  const Vec3 th1 = s.end1.angle.G * a.cross(s.d1), th2 = s.end2.angle.G * a.cross(s.d2);
+  const double Q = now.stress.Q;
   Internal r;
-  const Twist t(x1.e(), s, c.tau_c);
-  const Inside in(*this, s, preload + c.EA_l * (s.stretch + c.length * s.bow(c)),
-                  x2.phi - x1.phi + t.geometric - psi0);
-  r.N = in.N;
-  r.torque = in.torque;
-  const Vec3 th1 = s.r1.G * s.a.cross(s.d1),
-             th2 = s.r2.G * s.a.cross(s.d2);  // rotation vectors from chord to normal
-  r.moment1 = (c.k11 - in.Q) * th1 + (c.k12 + in.Q) * th2;
-  r.moment2 = (c.k12 + in.Q) * th1 + (c.k22 - in.Q) * th2;
-  r.shear = s.a.cross(r.moment1 + r.moment2) / s.l;
+  r.N = now.stress.N;
+  r.torque = now.stress.torque;
+  r.moment1 = (c.k11 - Q) * th1 + (c.k12 + Q) * th2;
+  r.moment2 = (c.k12 + Q) * th1 + (c.k22 - Q) * th2;
+  r.shear = a.cross(r.moment1 + r.moment2) / s.chord.l;
   return r;
 }
 

@@ -3,17 +3,20 @@
 //
 // Frame-free: with the chord a = (r2 - r1)/l (r_i = x_i + o_i d_i), delta_i = d_i - a, everything
 // elastic is a function of
-//   l,  n_i = |delta_i|^2/2 = 1 - cos theta_i,  m = delta_1.delta_2,  tau = a.(d1 x d2),  phi2 -
-//   phi1  and two solid angles: theta_i^2 = F(n_i),  G(n) = theta/sin theta,  th1.th2 = S = G1 G2
-//   (m - n1 n2),  a.(th1 x th2) = G1 G2 tau V = 1/2 EA_l w^2 + P w + 1/2 (k11 F1 + 2 k12 S + k22
-//   F2) + 1/2 GJ_l psi^2 - 1/2 (q psi^2 + r g(N)) |th2 - th1|^2,   N = P + EA_l w w = l - length +
-//   length/2 (b11 F1 + 2 b12 S + b22 F2)                    (bowing; tends to Engesser's column)
+//   l,   n_i = |delta_i|^2/2 = 1 - cos theta_i,   m = delta_1.delta_2,   tau = a.(d1 x d2),
+//       phi2 - phi1   and two solid angles:
+//   theta_i^2 = F(n_i),   G(n) = theta/sin theta,   th1.th2 = S = G1 G2 (m - n1 n2),
+//       a.(th1 x th2) = G1 G2 tau
+//   V = 1/2 EA_l w^2 + P w + 1/2 (k11 F1 + 2 k12 S + k22 F2) + 1/2 GJ_l psi^2 - 1/2 (q psi^2 + r
+//       g(N)) |th2 - th1|^2,
+//       N = P + EA_l w
+//   w = l - length + length/2 (b11 F1 + 2 b12 S + b22 F2)   (bowing; tends to Engesser's column)
 //   psi = phi2 - phi1 - [Omega(e,d1,a) + Omega(e,a,d2)] + tau_c G1 G2 tau - psi0
 // q and r are what shear leaves of the element's inside. On a bent beam torque and axial force make
 // moment and shear force vary, M' = -m T, Q' = -m N with the mean curvature m = |th2 - th1|/length,
 // which the shape under end moments does not contain; given back to the inside, they soften it:
-//   q = GJ^2/(12 EI length) Phi/(1 + Phi),   r = length/(12 kGA),   g = N^2/(1 + N/kGA),   below N
-//   = -kGA/2 (no shaft gets there) its parabola.
+//   q = GJ^2/(12 EI length) Phi/(1 + Phi),   r = length/(12 kGA),   g = N^2/(1 + N/kGA),
+//       below N = -kGA/2 (no shaft gets there) its parabola.
 // Without them the energy is wrong by 1/2 m^2 T^2/kGA per length on every mesh of elements longer
 // than the shaft is thick, and shear-soft columns converge with order 2; with them with order 4.
 // The differences delta_i keep a tilt of 1e-12 rad to its last digits, where cosines would lose it.
@@ -48,8 +51,12 @@ struct ShaftBeam {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         powerless = true;
+  static constexpr system::Family family = system::Family::shaft;
+  static constexpr system::Dependence depends{
+      .angle = system::twist_angle, .spin = true, .weight = true};
 
   ShaftElementConstants c;
+  Matrix<4> G4c = Matrix<4>::Zero();  ///< G4 - diag(0, polar row sum 1, 0, polar row sum 2)
   Vec3 e0 = Vec3::UnitX();            ///< unit vector of the unstressed element, global axes
   double psi0 = 0;                    ///< twist at zero torque, rad
   double preload = 0;                 ///< axial force at w = 0, N, tension positive
@@ -57,7 +64,6 @@ struct ShaftBeam {
   double soft_axial = 0;              ///< r, m/N
   double soft_shear = 0;              ///< 1/kGA, 1/N
   double soft_limit = -infinity;      ///< -kGA/2, N
-  Matrix<4> G4c = Matrix<4>::Zero();  ///< G4 - diag(0, polar row sum 1, 0, polar row sum 2)
 
   ShaftBeam() = default;
   ShaftBeam(const ShaftElementConstants& constants, const Vec3& direction);

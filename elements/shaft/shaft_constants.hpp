@@ -12,7 +12,9 @@
 
 namespace whirl::elements {
 
-struct ShaftElementConstants {
+/// Aligned so that its numbers stand in the same places whatever alignment matrices have
+/// (shaft_lanes.hpp).
+struct alignas(32) ShaftElementConstants {
   double length = 0;  ///< unstressed length between the end points, m
   double o1 = 0;      ///< end point 1 = node 1 + o1 d1, m
   double o2 = 0;      ///< end point 2 = node 2 + o2 d2, m
@@ -39,8 +41,7 @@ struct ShaftElementConstants {
   /// Contracted with a rigid rotation it gives polar.sum().
   Matrix<4> G4 = Matrix<4>::Zero();
   /// T = 1/2 s^T polar s on the end spin rates (s1, s2): polar inertia, averaged of consistent and
-  /// lumped
-  /// ([5/12 1/12; 1/12 5/12] rho I_p length when uniform), kg m^2.
+  /// lumped ([5/12 1/12; 1/12 5/12] rho I_p length when uniform), kg m^2.
   Matrix<2> polar = Matrix<2>::Zero();
 
   double mass = 0;  ///< kg (= the sum of M4 entries 11, 13, 31, 33)

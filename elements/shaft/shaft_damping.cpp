@@ -1,8 +1,8 @@
 #include <elements/shaft/shaft_damping.hpp>
 
-#include <core/dual.hpp>
+#include <core/dual_rate.hpp>
 #include <elements/shaft/shaft_lanes.hpp>
-#include <elements/shaft/shaft_strain.hpp>
+#include <math.h>
 #include <cstddef>
 
 namespace whirl::elements {
@@ -16,33 +16,8 @@ using system::TangentX;
 
 namespace {
 
-template <class X>
-struct Scalars {
-  using T = X;
-  using V = Vec3T<X>;
-};
-template <class T>
-T dot(const Vec3T<T>& a, const Vec3T<T>& b) {
-  return a.dot(b);
-}
-template <class T>
-Vec3T<T> cross(const Vec3T<T>& a, const Vec3T<T>& b) {
-  return a.cross(b);
-}
-template <class T>
-T root(const T& x) {
-  using std::sqrt;
-  return sqrt(x);
-}
-template <class T>
-void angle_ratio(const T& n, T& G, T& G1) {
-  const AngleRatio r(value(n));
-  G = chain(n, r.G, r.G1);
-  G1 = chain(n, r.G1, r.G2);
-}
-#define WHIRL_INLINE inline
+#include <elements/shaft/shaft_single.inl>
 #include <elements/shaft/shaft_damping.inl>
-#undef WHIRL_INLINE
 
 /// Rates as plain vectors.
 struct Rates {
@@ -50,15 +25,23 @@ struct Rates {
   double phi1 = 0, phi2 = 0;
 };
 
+/// One damper at a configuration, in any scalar.
 template <bool Rotating, class T>
-DampingForce<Scalars<T>> force_of(const ShaftDamping<Rotating>& p, const Vec3& e,
-                                  const Vec3T<T>& du, const Vec3T<T>& t1, const Vec3T<T>& t2,
-                                  const Rates& v) {
+class Damper {
+ public:
   using V = Vec3T<T>;
-  return damping_force<Rotating, Scalars<T>>(
-      {V(p.e0), p.length, p.d11, p.d12, p.d22, p.d_twist, p.d_axial}, V(e), du, t1, t2,
-      {V(v.lambda), V(v.d1), V(v.d2), v.phi1, v.phi2});
-}
+  Damper(const ShaftDamping<Rotating>& p, const Vec3& e, const V& du, const V& t1, const V& t2)
+      : p_{V(p.e0), p.length, p.d11, p.d12, p.d22, p.d_twist, p.d_axial},
+        x_(damping_kinematics(p_, V(e), du, t1, t2)) {}
+  DampingForce<NumbersOf<T>> force(const Rates& v) const {
+    return damping_force<Rotating>(
+        p_, x_, DampingRates<NumbersOf<T>>{V(v.lambda), V(v.d1), V(v.d2), v.phi1, v.phi2});
+  }
+
+ private:
+  DampingParameters<NumbersOf<T>> p_;
+  DampingKinematics<NumbersOf<T>> x_;
+};
 
 /// (lambda, d1, d2, phi1, phi2) forces into the element's 14 entries.
 template <class Out>
@@ -100,21 +83,37 @@ ShaftDamping<Rotating>::ShaftDamping(const ShaftElementConstants& c, const Vec3&
       d_twist(bt * c.GJ_l),
       d_axial(ba * c.EA_l) {}
 
+/// What the kernels of shaft_lanes.hpp take for granted.
+template <bool Rotating>
+constexpr bool in_place() {
+  using Damping = ShaftDamping<Rotating>;
+  using Places = lanes::DampingPlaces;
+  constexpr auto stands = [](std::size_t offset, int place) {
+    return offset == static_cast<std::size_t>(place) * sizeof(double);
+  };
+  static_assert(stands(offsetof(Damping, length), Places::length));
+  static_assert(stands(offsetof(Damping, o1), Places::o1));
+  static_assert(stands(offsetof(Damping, o2), Places::o2));
+  static_assert(stands(offsetof(Damping, e0), Places::e0));
+  static_assert(stands(offsetof(Damping, d11), Places::d11));
+  static_assert(stands(offsetof(Damping, d12), Places::d12));
+  static_assert(stands(offsetof(Damping, d22), Places::d22));
+  static_assert(stands(offsetof(Damping, d_twist), Places::d_twist));
+  static_assert(stands(offsetof(Damping, d_axial), Places::d_axial));
+  return stands(sizeof(Damping), Places::size);
+}
+
 template <bool Rotating>
 void ShaftDamping<Rotating>::add_forces(std::span<const ShaftDamping> elements,
                                         const std::array<Index, 2>* nodes, const NodeState* states,
                                         const Context&, Vector<7>* force) {
+  static_assert(in_place<Rotating>());
   if (elements.empty()) return;
-  static_assert(sizeof(ShaftDamping) % sizeof(double) == 0);
-  static_assert(offsetof(ShaftDamping, d_axial) == 10 * sizeof(double));
-  lanes::DampingElements b;
+  lanes::Elements b;
   b.element = &elements[0].length;
-  b.stride = sizeof(ShaftDamping) / sizeof(double);
   b.count = elements.size();
   b.nodes = nodes->data();
   b.state = states[0].u.data();
-  b.state_stride = sizeof(NodeState) / sizeof(double);
-  b.chart = offsetof(NodeState, chart) / sizeof(double);
   b.force = force->data();
   static const lanes::Kernels& kernels = lanes::kernels();
   (Rotating ? kernels.add_internal_damping : kernels.add_external_damping)(b);
@@ -135,7 +134,7 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&,
   using V = Vec3T<double>;
   const Vec3 e = x[0]->e(), du = du_of(*this, x);
   // C: the force is linear in the rates, one column per rate of (lambda, d1, d2, phi1, phi2)
-  const V vdu(du), vt1(x[0]->t), vt2(x[1]->t);
+  const Damper<Rotating, double> damper(*this, e, V(du), V(x[0]->t), V(x[1]->t));
   Eigen::Matrix<double, 14, 11> columns = Eigen::Matrix<double, 14, 11>::Zero();
   for (int k = 0; k < 11; ++k) {
     Rates v;
@@ -147,7 +146,7 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&,
       v.d2[k - 6] = 1.0;
     else
       (k == 9 ? v.phi1 : v.phi2) = 1.0;
-    const auto r = force_of<Rotating, double>(*this, e, vdu, vt1, vt2, v);
+    const auto r = damper.force(v);
     scatter(o1, o2, values(r.lambda), values(r.d1), values(r.d2), r.phi1, r.phi2, columns.col(k));
   }
   auto& C = out.C;
@@ -161,8 +160,9 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&,
   // K: nine directions at once (lambda, d1, d2)
   using D = Dual<9>;
   using W = Vec3T<D>;
-  const auto r = force_of<Rotating, D>(*this, e, W::variable(du, 0), W::variable(x[0]->t, 3),
-                                       W::variable(x[1]->t, 6), rates_of(*this, x));
+  const Damper<Rotating, D> moving(*this, e, W::variable(du, 0), W::variable(x[0]->t, 3),
+                                   W::variable(x[1]->t, 6));
+  const auto r = moving.force(rates_of(*this, x));
   Eigen::Matrix<double, 14, 9> g = Eigen::Matrix<double, 14, 9>::Zero();
   for (int k = 0; k < 9; ++k) {
     auto slope = [k](const W& v) { return Vec3(v.x.g[k], v.y.g[k], v.z.g[k]); };
@@ -178,9 +178,9 @@ void ShaftDamping<Rotating>::add_tangent(const Nodes<2>& x, const Context&,
 template <bool Rotating>
 void ShaftDamping<Rotating>::add_energy(const Nodes<2>& x, const Context&, Energy& e) const {
   using V = Vec3T<double>;
-  e.dissipated += force_of<Rotating, double>(*this, x[0]->e(), V(du_of(*this, x)), V(x[0]->t),
-                                             V(x[1]->t), rates_of(*this, x))
-                      .power;
+  const Damper<Rotating, double> damper(*this, x[0]->e(), V(du_of(*this, x)), V(x[0]->t),
+                                        V(x[1]->t));
+  e.dissipated += damper.force(rates_of(*this, x)).power;
 }
 
 template struct ShaftDamping<false>;

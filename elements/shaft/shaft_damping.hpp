@@ -4,9 +4,9 @@
 //
 // p_i: rotation-like vector from the chord a towards the director d_i, |p_i| = theta_i,
 // perpendicular to a. Its rate is
-//   p_i o = p_i' - (a x a' + c sigma a) x p_i,  c = 1 rotating, 0 not,  sigma = (sigma_1 +
-//   sigma_2)/2, sigma_i = (a + d_i).(omega_i - a x a')/(1 + a.d_i): the spin of end i about the
-//   chord.
+//   p_i o = p_i' - (a x a' + c sigma a) x p_i,   c = 1 rotating, 0 not,
+//       sigma = (sigma_1 + sigma_2)/2,
+//   sigma_i = (a + d_i).(omega_i - a x a')/(1 + a.d_i): the spin of end i about the chord.
 // f = dP^T (beta k) p o with p o = P(X) X', so the power lost, beta p o^T k p o, is never negative;
 // a rigidly turning bent shaft loses nothing when rotating, and feeds the forward whirl above
 // omega_crit (1 + c_ext/c_int) as it must (Kimball 1924). The rate of twist, sigma_2 - sigma_1, and
@@ -24,6 +24,10 @@ template <bool Rotating>
 struct ShaftDamping {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = true, quadratic_in_rates = true;
+  static constexpr system::Family family = system::Family::damping;
+  system::Dependence depends(const system::Context&) const {
+    return {.spin = Rotating || d_twist != 0.0};
+  }
 
   double length = 0, o1 = 0, o2 = 0;
   Vec3 e0 = Vec3::UnitX();
@@ -51,6 +55,8 @@ extern template struct ShaftDamping<true>;
 struct ShaftMassDamping {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = true, has_K = false, quadratic_in_rates = true;
+  static constexpr system::Family family = system::Family::damping;
+  static constexpr system::Dependence depends{};
   Matrix<4> C4 = Matrix<4>::Zero();  ///< alpha M4
   void add_force(const system::Nodes<2>& x, const system::Context& ctx,
                  system::ForceX<14>& f) const;

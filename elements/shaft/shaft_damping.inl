@@ -1,7 +1,6 @@
 // The force of internal and external damping (shaft_damping.hpp), for one element (double, Dual) or
-// several (a compiler vector). Included inside an anonymous namespace. S gives the scalar S::T and
-// the vector S::V with +, -, scalar *, and the free functions dot, cross, root(x) = sqrt,
-// constant<S>(x); angle_ratio(n, G, G1) gives G = theta/sin theta and dG/dn at n = 1 - cos theta.
+// several (a compiler vector). Included inside an anonymous namespace after shaft_strain.inl and
+// system/spin.inl.
 
 /// Parameters of ShaftDamping.
 template <class S>
@@ -17,84 +16,116 @@ struct DampingRates {
   typename S::T phi1{}, phi2{};
 };
 
-/// Force in (lambda, d1, d2, phi1, phi2), linear in the rates.
+/// Force in (lambda, d1, d2, phi1, phi2), linear in the rates, and the power it takes, W.
 template <class S>
 struct DampingForce {
   typename S::V lambda, d1, d2;
   typename S::T phi1, phi2, power;
 };
 
-/// What of the kinematics one end contributes.
+/// What of the kinematics one end contributes: p = G q; sigma = phi' + (ad - w).d' + ad.a'.
 template <class S>
 struct DampingEnd {
-  typename S::V delta, q, w, ad;  // d - a; d - (a.d) a; spin form; (a x d)/(1 + a.d)
-  typename S::T n, G, G1;
+  End<S> end;
+  typename S::V q;   // d - (a.d) a = delta + n a
+  typename S::V w;   // spin form (e x d)/(1 + e.d)
+  typename S::V ad;  // (a x d)/(1 + a.d)
 };
 template <class S>
 WHIRL_INLINE DampingEnd<S> damping_end(const typename S::V& e, const typename S::V& t,
-                                       const typename S::V& a, const typename S::V& shift) {
+                                       const Chord<S>& chord) {
   DampingEnd<S> r;
-  r.delta = t + shift;
-  r.n = 0.5 * dot(r.delta, r.delta);
-  angle_ratio(r.n, r.G, r.G1);
-  r.q = r.delta + r.n * a;
-  r.w = (1.0 / (2.0 + dot(e, t))) * cross(e, t);
-  r.ad = (1.0 / (2.0 - r.n)) * cross(a, r.delta);
+  r.end = end_of(chord, t);
+  r.q = r.end.delta + r.end.n * chord.a;
+  r.w = spin_form(e, t, spin_divisor(e, t));
+  r.ad = cross(chord.a, r.end.delta) / divisor(2.0 - r.end.n);
   return r;
 }
 
+/// sigma: spin of one end about the chord.
+template <class S>
+WHIRL_INLINE typename S::T spin_about_chord(const DampingEnd<S>& x, const typename S::V& adot,
+                                            const typename S::V& ddot,
+                                            const typename S::T& phi_rate) {
+  return phi_rate + dot(x.ad - x.w, ddot) + dot(x.ad, adot);
+}
+
+/// Moments and torque of the rates, and what the moments add to the forces on both sigma.
+template <class S>
+struct DampingStresses {
+  typename S::V m1, m2;
+  typename S::T torque, turning, power;
+};
 template <bool Rotating, class S>
-WHIRL_INLINE DampingForce<S> damping_force(const DampingParameters<S>& p, const typename S::V& e,
-                                           const typename S::V& du, const typename S::V& t1,
-                                           const typename S::V& t2, const DampingRates<S>& v) {
+WHIRL_INLINE DampingStresses<S> damping_stresses(const DampingParameters<S>& p,
+                                                 const DampingEnd<S>& e1, const DampingEnd<S>& e2,
+                                                 const Chord<S>& chord, const typename S::V& adot,
+                                                 const DampingRates<S>& v) {
   using T = typename S::T;
   using V = typename S::V;
-  const V chord = p.length * p.e0 + du;
-  const T l = root(dot(chord, chord)), il = 1.0 / l;
-  const T stretch = (2.0 * p.length * dot(p.e0, du) + dot(du, du)) / (l + p.length);
-  const V alpha = il * (du - stretch * p.e0), a = p.e0 + alpha,
-          shift = e - p.e0 - alpha;  // e - e0 is exactly zero in the line's own chart
-  const DampingEnd<S> e1 = damping_end<S>(e, t1, a, shift), e2 = damping_end<S>(e, t2, a, shift);
-  const T ldot = dot(a, v.lambda);
-  const V adot = il * (v.lambda - ldot * a);
-
-  auto strain_rate = [&](const DampingEnd<S>& x, const V& dd)
-      __attribute__((always_inline)) {  // p' perpendicular to a
-    const T ndot = dot(x.delta, dd - adot);
-    return (x.G1 * ndot) * x.q + x.G * (dd - dot(a, dd) * a - (1.0 - x.n) * adot);
-  };
-  auto spin = [&](const DampingEnd<S>& x, const V& dd, const T& phi)
-      __attribute__((always_inline)) {
-    return phi + dot(x.ad - x.w, dd) + dot(x.ad, adot);
-  };
-  const T s1 = spin(e1, v.d1, v.phi1), s2 = spin(e2, v.d2, v.phi2);
-  V r1 = strain_rate(e1, v.d1), r2 = strain_rate(e2, v.d2);
+  const V& a = chord.a;
+  const T s1 = spin_about_chord(e1, adot, v.d1, v.phi1);
+  const T s2 = spin_about_chord(e2, adot, v.d2, v.phi2);
+  V r1 = bending_rate(e1.end, e1.q, a, adot, v.d1), r2 = bending_rate(e2.end, e2.q, a, adot, v.d2);
   V turned1{}, turned2{};  // a x p
   if constexpr (Rotating) {
     const T sigma = 0.5 * (s1 + s2);
-    turned1 = e1.G * cross(a, e1.q);
-    turned2 = e2.G * cross(a, e2.q);
+    turned1 = e1.end.angle.G * cross(a, e1.q);
+    turned2 = e2.end.angle.G * cross(a, e2.q);
     r1 = r1 - sigma * turned1;
     r2 = r2 - sigma * turned2;
   }
-  const V m1 = p.d11 * r1 + p.d12 * r2, m2 = p.d12 * r1 + p.d22 * r2;
-  const T torque = p.d_twist * (s2 - s1);
-  T b1 = -torque, b2 = torque;  // conjugate to sigma_1, sigma_2
+  DampingStresses<S> o;
+  o.m1 = p.d11 * r1 + p.d12 * r2;
+  o.m2 = p.d12 * r1 + p.d22 * r2;
+  o.torque = p.d_twist * (s2 - s1);
+  if constexpr (Rotating) o.turning = -0.5 * (dot(o.m1, turned1) + dot(o.m2, turned2));
+  o.power = dot(o.m1, r1) + dot(o.m2, r2) + o.torque * (s2 - s1);
+  return o;
+}
+
+/// Both ends and the chord, which the rates do not change.
+template <class S>
+struct DampingKinematics {
+  Chord<S> chord;
+  DampingEnd<S> e1, e2;
+};
+template <class S>
+WHIRL_INLINE DampingKinematics<S> damping_kinematics(const DampingParameters<S>& p,
+                                                     const typename S::V& e,
+                                                     const typename S::V& du,
+                                                     const typename S::V& t1,
+                                                     const typename S::V& t2) {
+  const Chord<S> chord = chord_of<S>(p.length, p.e0, e, du);
+  return {chord, damping_end<S>(e, t1, chord), damping_end<S>(e, t2, chord)};
+}
+
+template <bool Rotating, class S>
+WHIRL_INLINE DampingForce<S> damping_force(const DampingParameters<S>& p,
+                                           const DampingKinematics<S>& x,
+                                           const DampingRates<S>& v) {
+  using T = typename S::T;
+  using V = typename S::V;
+  const V& a = x.chord.a;
+  const DampingEnd<S>&e1 = x.e1, &e2 = x.e2;
+  const T ldot = dot(a, v.lambda);
+  const V adot = x.chord.inverse * (v.lambda - ldot * a);
+  const DampingStresses<S> r = damping_stresses<Rotating>(p, e1, e2, x.chord, adot, v);
+  T b1 = -r.torque, b2 = r.torque;  // conjugate to sigma_1, sigma_2
   if constexpr (Rotating) {
-    const T s = -0.5 * (dot(m1, turned1) + dot(m2, turned2));
-    b1 = b1 + s;
-    b2 = b2 + s;
+    b1 = b1 + r.turning;
+    b2 = b2 + r.turning;
   }
+  const V k1 = cosine_force(e1.end, e1.q, r.m1), k2 = cosine_force(e2.end, e2.q, r.m2);
+  const T &G1 = e1.end.angle.G, &G2 = e2.end.angle.G;
   DampingForce<S> f;
-  const V k1 = (e1.G1 * dot(m1, e1.q)) * e1.delta, k2 = (e2.G1 * dot(m2, e2.q)) * e2.delta;
-  auto perpendicular = [&](const V& x) __attribute__((always_inline)) { return x - dot(a, x) * a; };
-  f.d1 = k1 + e1.G * perpendicular(m1) + b1 * (e1.ad - e1.w);
-  f.d2 = k2 + e2.G * perpendicular(m2) + b2 * (e2.ad - e2.w);
-  const V fa =
-      b1 * e1.ad + b2 * e2.ad - k1 - k2 - (e1.G * (1.0 - e1.n)) * m1 - (e2.G * (1.0 - e2.n)) * m2;
-  f.lambda = il * perpendicular(fa) + (p.d_axial * ldot) * a;
+  f.d1 = k1 + G1 * perpendicular(a, r.m1) + b1 * (e1.ad - e1.w);
+  f.d2 = k2 + G2 * perpendicular(a, r.m2) + b2 * (e2.ad - e2.w);
+  const V fa = b1 * e1.ad + b2 * e2.ad - k1 - k2 - (G1 * (1.0 - e1.end.n)) * r.m1 -
+               (G2 * (1.0 - e2.end.n)) * r.m2;
+  f.lambda = x.chord.inverse * perpendicular(a, fa) + (p.d_axial * ldot) * a;
   f.phi1 = b1;
   f.phi2 = b2;
-  f.power = dot(m1, r1) + dot(m2, r2) + torque * (s2 - s1) + p.d_axial * ldot * ldot;
+  f.power = r.power + p.d_axial * ldot * ldot;
   return f;
 }

@@ -1,43 +1,52 @@
 // The forces of the shaft element and of its damping, several elements at a time: one compiler
 // vector holds the same quantity of four elements (two on a baseline machine). Compiled once per
 // instruction set and chosen at run time, as the block LU is (la/lu_kernel.hpp). The formulas are
-// in shaft_lanes.inl and shaft_damping.inl; their exact derivatives are the kernels' add_tangent.
+// those of one element, in shaft_strain.inl and shaft_damping.inl; the exact derivatives are the
+// kernels' add_tangent.
 //
 // Only plain data crosses this interface, so that no inline function shared with other code is ever
-// compiled for an instruction set the machine may lack.
+// compiled for an instruction set the machine may lack: arrays of doubles, and the places of the
+// numbers in them, which shaft_beam.cpp, shaft_damping.cpp and system/node.hpp assert one by one.
 #pragma once
 #include <cstddef>
 
 namespace whirl::elements::lanes {
 
-/// Elements, nodes and forces as arrays of doubles; all distances are counted in doubles.
+/// Where the numbers of a ShaftBeam stand, in doubles from its start; matrices column-major.
+struct ShaftPlaces {
+  static constexpr int length = 0, o1 = 1, o2 = 2, EA_l = 3;
+  static constexpr int b11 = 4, b12 = 5, b22 = 6, k11 = 7, k12 = 8, k22 = 9, GJ_l = 10, tau_c = 11;
+  static constexpr int scalars = 12;  ///< so many of them
+  static constexpr int M4 = 12, polar = 44, G4c = 52;
+  static constexpr int rest = 68;  ///< start of those from e0 to soft_limit
+  static constexpr int e0 = 68, psi0 = 71, preload = 72;
+  static constexpr int soft_torque = 73, soft_axial = 74, soft_shear = 75, soft_limit = 76;
+  static constexpr int after_rest = 77;
+  static constexpr int size = 80;  ///< from one element to the next
+};
+
+/// Where the numbers of a ShaftDamping stand.
+struct DampingPlaces {
+  static constexpr int length = 0, o1 = 1, o2 = 2, e0 = 3;
+  static constexpr int d11 = 6, d12 = 7, d22 = 8, d_twist = 9, d_axial = 10;
+  static constexpr int size = 11;
+};
+
+/// A batch of elements, its nodes and their forces.
 struct Elements {
   const double* element = nullptr;  ///< the first element
-  std::ptrdiff_t stride = 0;        ///< from one element to the next
   std::size_t count = 0;
-  const std::ptrdiff_t* nodes = nullptr;  ///< two a element
-  const double* state =
-      nullptr;  ///< the first node: u, du, ddu, t, dd, ddd, phi, dphi, ddphi one after another
-  std::ptrdiff_t state_stride = 0,
-                 chart = 0;  ///< from one node to the next; from a node to its chart pointer
-  double* force = nullptr;   ///< 7 a node, added to
+  const std::ptrdiff_t* nodes = nullptr;  ///< two an element
+  const double* state = nullptr;          ///< the first node (system/node_places.hpp)
+  double* force = nullptr;                ///< 7 a node, added to
 };
-
-/// Where in a shaft element: the twelve scalars of ShaftElementConstants from `length` to `tau_c`;
-/// M4 and G4c (4x4, column-major); polar (2x2); e0; psi0; preload; soft (q, r, 1/kGA, -kGA/2).
-struct ShaftElements : Elements {
-  std::ptrdiff_t scalars = 0, M4 = 0, G4c = 0, polar = 0, e0 = 0, psi0 = 0, preload = 0, soft = 0;
-};
-
-/// `element` points to eleven doubles: length, o1, o2, e0, d11, d12, d22, d_twist, d_axial.
-struct DampingElements : Elements {};
 
 struct Kernels {
   const char* isa;
-  void (*add_force)(const ShaftElements&);         ///< nodes at the element's ends
-  void (*add_force_offset)(const ShaftElements&);  ///< with offsets o1, o2
-  void (*add_internal_damping)(const DampingElements&);
-  void (*add_external_damping)(const DampingElements&);
+  void (*add_force)(const Elements&);         ///< ShaftBeam, nodes at the element's ends
+  void (*add_force_offset)(const Elements&);  ///< ShaftBeam with offsets o1, o2
+  void (*add_internal_damping)(const Elements&);
+  void (*add_external_damping)(const Elements&);
 };
 
 /// The best set for the machine the program runs on.

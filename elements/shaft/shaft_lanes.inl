@@ -1,159 +1,60 @@
-// Body of the shaft element's force kernel; see shaft_lanes.hpp. Included by one .cpp per
+// Body of the shaft element's force kernels; see shaft_lanes.hpp. Included by one .cpp per
 // instruction set, which defines WHIRL_LANES_TABLE (name of the function that returns the table)
 // and WHIRL_LANES_ISA (its label). Everything here has internal linkage.
 #include <elements/shaft/shaft_lanes.hpp>
+#include <system/node_places.hpp>
 #include <math.h>
+#include <string.h>
 
 namespace whirl::elements::lanes {
 namespace {
 
 #include <core/lanes.inl>
+#include <core/series.inl>
+#include <system/spin.inl>
 
-struct Node {
-  V u, du, ddu, t, dd, ddd;
-  T phi, dphi, ddphi;
-};
-WHIRL_INLINE Node load_node(const double* const* at) {
-  const double* p[width];
-  for (int i = 0; i < width; ++i)
-    p[i] = at[i];
-  Node n;
-  load4(p, n.u.x, n.u.y, n.u.z, n.du.x);
-  advance(p, 4);
-  load4(p, n.du.y, n.du.z, n.ddu.x, n.ddu.y);
-  advance(p, 4);
-  load4(p, n.ddu.z, n.t.x, n.t.y, n.t.z);
-  advance(p, 4);
-  load4(p, n.dd.x, n.dd.y, n.dd.z, n.ddd.x);
-  advance(p, 4);
-  load4(p, n.ddd.y, n.ddd.z, n.phi, n.dphi);
-  advance(p, 4);
-  n.ddphi = load(p);
-  return n;
-}
-
-/// G(n) = theta/sin theta, n = 1 - cos theta, G1 = dG/dn, F = theta^2: as AngleRatio
-/// (shaft_strain.hpp), whose series coefficients g_k = k/(2k+1) g_(k-1) are spelled out.
-struct Ratio {
-  T F, G, G1;
-};
-WHIRL_INLINE Ratio ratio(T n) {
-  constexpr double g1 = 1.0 / 3, g2 = g1 * 2 / 5, g3 = g2 * 3 / 7, g4 = g3 * 4 / 9,
-                   g5 = g4 * 5 / 11, g6 = g5 * 6 / 13, g7 = g6 * 7 / 15, g8 = g7 * 8 / 17,
-                   g9 = g8 * 9 / 19, g10 = g9 * 10 / 21;
-  Ratio r;
-  if (every(n < 0.02)) {
-    if (every(n < 2e-4)) {  // fifth terms: 0.02 (2e-4)^5 < 1e-20
-      r.G = 1.0 + n * (g1 + n * (g2 + n * (g3 + n * g4)));
-      r.G1 = g1 + n * (2 * g2 + n * (3 * g3 + n * (4 * g4 + n * (5 * g5))));
-      r.F = 2.0 * n * (1.0 + n * (g1 / 2 + n * (g2 / 3 + n * (g3 / 4 + n * (g4 / 5)))));
-      return r;
-    }
-    r.G =
-        1.0 +
-        n * (g1 +
-             n * (g2 +
-                  n * (g3 +
-                       n * (g4 + n * (g5 + n * (g6 + n * (g7 + n * (g8 + n * (g9 + n * g10)))))))));
-    r.G1 =
-        g1 +
-        n * (2 * g2 +
-             n * (3 * g3 +
-                  n * (4 * g4 +
-                       n * (5 * g5 +
-                            n * (6 * g6 +
-                                 n * (7 * g7 + n * (8 * g8 + n * (9 * g9 + n * (10 * g10)))))))));
-    r.F = 2.0 * n *
-          (1.0 +
-           n * (g1 / 2 +
-                n * (g2 / 3 +
-                     n * (g3 / 4 +
-                          n * (g4 / 5 +
-                               n * (g5 / 6 +
-                                    n * (g6 / 7 +
-                                         n * (g7 / 8 +
-                                              n * (g8 / 9 + n * (g9 / 10 + n * (g10 / 11)))))))))));
-    return r;
-  }
-  for (int i = 0; i < width; ++i) {
-    const double x = n[i];
-    if (x < 0.02) {
-      r.G[i] =
-          1.0 +
-          x * (g1 +
-               x * (g2 +
-                    x * (g3 +
-                         x * (g4 +
-                              x * (g5 + x * (g6 + x * (g7 + x * (g8 + x * (g9 + x * g10)))))))));
-      r.G1[i] =
-          g1 +
-          x * (2 * g2 +
-               x * (3 * g3 +
-                    x * (4 * g4 +
-                         x * (5 * g5 +
-                              x * (6 * g6 +
-                                   x * (7 * g7 + x * (8 * g8 + x * (9 * g9 + x * (10 * g10)))))))));
-      r.F[i] =
-          2.0 * x *
-          (1.0 +
-           x * (g1 / 2 +
-                x * (g2 / 3 +
-                     x * (g3 / 4 +
-                          x * (g4 / 5 +
-                               x * (g5 / 6 +
-                                    x * (g6 / 7 +
-                                         x * (g7 / 8 +
-                                              x * (g8 / 9 + x * (g9 / 10 + x * (g10 / 11)))))))))));
-      continue;
-    }
-    const double theta = 2.0 * ::asin(__builtin_sqrt(0.5 * x)), q = x * (2.0 - x);
-    r.F[i] = theta * theta;
-    r.G[i] = theta / __builtin_sqrt(q);
-    r.G1[i] = (1.0 - (1.0 - x) * r.G[i]) / q;
-  }
-  return r;
-}
-
-/// atan2(y, x), x > 0 in all but extreme shapes.
-WHIRL_INLINE T angle(T y, T x) {
-  const T q = y / x, s = q * q;
-  if (every((s < 1e-3) & (x > 0.0)))  // eighth term: (1e-3)^8/17 < 1e-25
-    return q * (1.0 -
-                s * (1.0 / 3 -
-                     s * (1.0 / 5 -
-                          s * (1.0 / 7 -
-                               s * (1.0 / 9 - s * (1.0 / 11 - s * (1.0 / 13 - s * (1.0 / 15))))))));
+WHIRL_INLINE T arctangent_beyond(T y, T x) {
   T r{};
   for (int i = 0; i < width; ++i)
     r[i] = ::atan2(y[i], x[i]);
   return r;
 }
 
-/// Omega(e, v, w) = 2 atan2(N, D) with its gradients in v and w: as SolidAngle (shaft_strain.hpp).
-struct Solid {
-  T value;
-  V grad_v, grad_w;
-};
-WHIRL_INLINE Solid solid_angle(V e, V v, V w) {
-  const V Nv = cross(w, e), Nw = cross(e, v);
-  const T N = dot(v, Nv), D = 1.0 + dot(e, v) + dot(v, w) + dot(w, e), f = 2.0 / (N * N + D * D),
-          p = D * f, r = -(N * f);
-  return {2.0 * angle(N, D), p * Nv + r * (e + w), p * Nw + r * (e + v)};
+#include <elements/shaft/angle_ratio.inl>
+
+WHIRL_INLINE void angle_ratio_beyond(T n, AngleRatio<T>& r) {
+  for (int i = 0; i < width; ++i) {
+    AngleRatio<double> one;
+    angle_ratio_beyond(n[i], one);
+    r.F[i] = one.F;
+    r.G[i] = one.G;
+    r.G1[i] = one.G1;
+  }
 }
 
-/// Spin rate s = phi' - w . d', its rate, and w = (e x d)/(1 + e.d): as SpinRate (system/spin.hpp).
-struct Spin {
-  T s, sdot;
-  V w;
+#include <elements/shaft/shaft_strain.inl>
+#include <elements/shaft/shaft_damping.inl>
+
+using system::NodePlaces;
+
+struct Node {
+  V u, du, ddu, t, dd, ddd;
+  T phi, dphi, ddphi;
 };
-WHIRL_INLINE Spin spin_rate(const Node& n, V e) {
-  const T i = 1.0 / (2.0 + dot(e, n.t));
-  Spin r;
-  r.w = i * cross(e, n.t);
-  const T wd = dot(r.w, n.dd);
-  r.s = n.dphi - wd;
-  r.sdot = n.ddphi - dot(r.w, n.ddd) + wd * dot(e, n.dd) * i;
-  return r;
+WHIRL_INLINE Node load_node(const double* const* at) {
+  T r[NodePlaces::ddphi + 1];
+  load_record(at, r);
+  Node n;
+  n.u = vector_at(r, NodePlaces::u);
+  n.du = vector_at(r, NodePlaces::du);
+  n.ddu = vector_at(r, NodePlaces::ddu);
+  n.t = vector_at(r, NodePlaces::t);
+  n.dd = vector_at(r, NodePlaces::dd);
+  n.ddd = vector_at(r, NodePlaces::ddd);
+  n.phi = r[NodePlaces::phi];
+  n.dphi = r[NodePlaces::dphi];
+  n.ddphi = r[NodePlaces::ddphi];
+  return n;
 }
 
 /// Pointers of one group, the last element repeated beyond `used`, and its chart axes.
@@ -162,17 +63,19 @@ struct Group {
   double *f1[width], *f2[width];
   V e;
 };
+template <class Places>
 WHIRL_INLINE Group group_of(const Elements& b, std::size_t first, int used) {
   Group g;
   for (int i = 0; i < width; ++i) {
     const std::size_t k = first + static_cast<std::size_t>(i < used ? i : used - 1);
     const std::ptrdiff_t n1 = b.nodes[2 * k], n2 = b.nodes[2 * k + 1];
-    g.element[i] = b.element + static_cast<std::ptrdiff_t>(k) * b.stride;
-    g.s1[i] = b.state + n1 * b.state_stride;
-    g.s2[i] = b.state + n2 * b.state_stride;
+    g.element[i] = b.element + static_cast<std::ptrdiff_t>(k) * Places::size;
+    g.s1[i] = b.state + n1 * NodePlaces::size;
+    g.s2[i] = b.state + n2 * NodePlaces::size;
     g.f1[i] = b.force + 7 * n1;
     g.f2[i] = b.force + 7 * n2;
-    const double* const chart = *(const double* const*)(const void*)(g.s1[i] + b.chart);
+    const double* chart;
+    memcpy(&chart, g.s1[i] + NodePlaces::chart, sizeof chart);
     g.e.x[i] = chart[0];
     g.e.y[i] = chart[1];
     g.e.z[i] = chart[2];
@@ -188,166 +91,159 @@ WHIRL_INLINE void add_to_nodes(const Group& g, int used, V u1, V d1, T phi1, V u
   add4(g.f2, 3, used, zero, d2.y, d2.z, phi2);
 }
 
-template <bool Offsets>
-WHIRL_INLINE void add_group(const ShaftElements& b, std::size_t first, int used) {
-  const Group g = group_of(b, first, used);
-  const V e = g.e;
-  const double* p[width];
-  auto from = [&](std::ptrdiff_t offset) {
-    for (int i = 0; i < width; ++i)
-      p[i] = g.element[i] + offset;
-  };
-  T length, o1, o2, EA_l, b11, b12, b22, k11, k12, k22, GJ_l, tau_c;
-  from(b.scalars);
-  load4(p, length, o1, o2, EA_l);
-  advance(p, 4);
-  load4(p, b11, b12, b22, k11);
-  advance(p, 4);
-  load4(p, k12, k22, GJ_l, tau_c);
+/// What the elastic force of a ShaftBeam depends on.
+struct Shaft {
+  ShaftStiffness<Lanes> c;
   V e0;
-  from(b.e0);
-  e0.x = load(p);
-  advance(p, 1);
-  e0.y = load(p);
-  advance(p, 1);
-  e0.z = load(p);
-  from(b.psi0);
-  const T psi0 = load(p);
-  from(b.preload);
-  const T preload = load(p);
-  from(b.soft);
-  T soft_torque, soft_axial, soft_shear, soft_limit;
-  load4(p, soft_torque, soft_axial, soft_shear, soft_limit);
-  const Node x1 = load_node(g.s1), x2 = load_node(g.s2);
+  T o1, o2, psi0;
+};
+WHIRL_INLINE Shaft load_shaft(const double* const* at) {
+  using P = ShaftPlaces;
+  T r[P::scalars];
+  load_record(at, r);
+  const double* after[width];
+  for (int i = 0; i < width; ++i)
+    after[i] = at[i] + P::rest;
+  T q[P::after_rest - P::rest];
+  load_record(after, q);
+  Shaft s;
+  s.c = {r[P::length],
+         r[P::EA_l],
+         r[P::b11],
+         r[P::b12],
+         r[P::b22],
+         r[P::k11],
+         r[P::k12],
+         r[P::k22],
+         r[P::GJ_l],
+         r[P::tau_c],
+         q[P::preload - P::rest],
+         q[P::soft_torque - P::rest],
+         q[P::soft_axial - P::rest],
+         q[P::soft_shear - P::rest],
+         q[P::soft_limit - P::rest]};
+  s.o1 = r[P::o1];
+  s.o2 = r[P::o2];
+  s.e0 = vector_at(q, P::e0 - P::rest);
+  s.psi0 = q[P::psi0 - P::rest];
+  return s;
+}
 
-  // strain
+/// On (lambda, d1, d2), and the torque.
+struct ElasticForce {
+  V lambda, d1, d2, a;  // a: direction of the chord
+  T torque;
+};
+template <bool Offsets>
+WHIRL_INLINE ElasticForce elastic_force(const Shaft& k, V e, const Node& x1, const Node& x2) {
   V du = x2.u - x1.u;
-  if constexpr (Offsets) du = du + (o2 * x2.t - o1 * x1.t);
-  const V chord = length * e0 + du;
-  const T l = root(dot(chord, chord)), il = 1.0 / l;
-  const T stretch = (2.0 * length * dot(e0, du) + dot(du, du)) / (l + length);
-  const V alpha = il * (du - stretch * e0), a = e0 + alpha, shift = e - e0 - alpha, d1 = e + x1.t,
-          d2 = e + x2.t;
-  const V delta1 = x1.t + shift, delta2 = x2.t + shift;
-  const T n1 = 0.5 * dot(delta1, delta1), n2 = 0.5 * dot(delta2, delta2), m = dot(delta1, delta2);
-  const V cross12 = cross(delta1, delta2);
-  const T tau = dot(a, cross12);
-  const Ratio r1 = ratio(n1), r2 = ratio(n2);
-  const T GG = r1.G * r2.G, P = m - n1 * n2, S = GG * P;
-
-  // twist
-  const Solid w1 = solid_angle(e, d1, a), w2 = solid_angle(e, a, d2);
-  const T psi = x2.phi - x1.phi + (tau_c * GG * tau - (w1.value + w2.value)) - psi0;
-
-  // bending with the axial force and the torque it carries
-  const T N0 =
-      preload + EA_l * (stretch + length * (0.5 * (b11 * r1.F + 2.0 * b12 * S + b22 * r2.F)));
-  const T B = r1.F + r2.F - 2.0 * S, n = N0 > soft_limit ? N0 : soft_limit, beyond = N0 - n,
-          rho = 1.0 / (1.0 + soft_shear * n);
-  const T slope = 0.5 * n * rho * (1.0 + rho), give1 = slope + rho * rho * rho * beyond,
-          Q = soft_torque * psi * psi + soft_axial * (n * n * rho + (slope + give1) * beyond);
-  const T N = N0 - EA_l * soft_axial * B * give1, torque = (GJ_l - soft_torque * B) * psi;
-  const T NL = N * length, c11 = k11 + NL * b11 - Q, c12 = k12 + NL * b12 + Q,
-          c22 = k22 + NL * b22 - Q;
-  const T g1 = c11 * r1.G + c12 * (r1.G1 * r2.G * P - GG * n2),
-          g2 = c22 * r2.G + c12 * (r1.G * r2.G1 * P - GG * n1), gm = c12 * GG;
-  V gd1 = g1 * delta1 + gm * delta2, gd2 = g2 * delta2 + gm * delta1, ga = V{} - gd1 - gd2;
-
-  const T tG = tau_c * GG, t1 = tau_c * r1.G1 * r2.G * tau, t2 = tau_c * r1.G * r2.G1 * tau;
-  add(ga, torque * (tG * (cross(a, delta2 - delta1) + cross12) - t1 * delta1 - t2 * delta2 -
-                    w1.grad_w - w2.grad_v));
-  add(gd1, torque * (tG * cross(delta2, a) + t1 * delta1 - w1.grad_v));
-  add(gd2, torque * (tG * cross(a, delta1) + t2 * delta2 - w2.grad_w));
-  const V gl = N * a + il * (ga - dot(a, ga) * a);
+  if constexpr (Offsets) du = du + (k.o2 * x2.t - k.o1 * x1.t);
+  const Strain<Lanes> s = strain_of<Lanes>(k.c.length, k.e0, e, du, x1.t, x2.t);
+  const Twist<Lanes> twist = twist_of(e, k.c.tau_c, s);
+  const T psi = x2.phi - x1.phi + twist.geometric - k.psi0;
+  const Stresses<Lanes> stress = stresses_of(k.c, s, psi);
+  const BendingStiffness<T> c = bending_stiffness_of(k.c, stress);
+  const Gradient<Lanes> bending = bending_gradient(bending_slopes(c.c11, c.c12, c.c22, s), s);
+  const Gradient<Lanes> g =
+      elastic_gradient(bending, stress.torque, twist_gradient(twist, k.c.tau_c, s));
+  ElasticForce f{chord_gradient(s.chord, stress.N, g.a), g.d1, g.d2, s.chord.a, stress.torque};
   if constexpr (Offsets) {
-    add(gd1, V{} - o1 * gl);
-    add(gd2, o2 * gl);
+    add(f.d1, -(k.o1 * f.lambda));
+    add(f.d2, k.o2 * f.lambda);
   }
+  return f;
+}
 
-  // inertia
-  const Spin sp1 = spin_rate(x1, e), sp2 = spin_rate(x2, e);
-  const V sa = (0.5 * (sp1.s + sp2.s)) * a;
-  V f[4];
+/// Spin and its rate, spin form.
+struct NodeSpin {
+  T s, sdot;
+  V w;
+};
+WHIRL_INLINE NodeSpin spin_of(V e, const Node& n) {
+  const Divisor one_plus_cosine = spin_divisor(e, n.t);
+  const V w = spin_form(e, n.t, one_plus_cosine);
+  return {spin_rate(w, n.dd, n.dphi),
+          spin_acceleration(e, w, n.dd, n.ddd, n.ddphi, one_plus_cosine), w};
+}
+
+/// Four numbers of every element, a column of a matrix.
+WHIRL_INLINE void load_column(const double* const* element, int place, T (&column)[4]) {
+  const double* p[width];
+  for (int i = 0; i < width; ++i)
+    p[i] = element[i] + place;
+  load_record(p, column);
+}
+
+/// f += M4 X'' - (s1 + s2)/2 a x G4c X' on X = (x1, d1, x2, d2).
+WHIRL_INLINE void add_inertia(const Group& g, V mean_spin, const Node& x1, const Node& x2,
+                              V (&f)[4]) {
   const V* const acc[4] = {&x1.ddu, &x1.ddd, &x2.ddu, &x2.ddd};
   const V* const vel[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
   V v[4] = {};
-  f[0] = V{} - gl, f[1] = gd1, f[2] = gl, f[3] = gd2;
   for (int j = 0; j < 4; ++j) {
-    T c0, c1, c2, c3;
-    from(b.M4 + 4 * j);
-    load4(p, c0, c1, c2, c3);
-    add(f[0], c0 * *acc[j]);
-    add(f[1], c1 * *acc[j]);
-    add(f[2], c2 * *acc[j]);
-    add(f[3], c3 * *acc[j]);
-    from(b.G4c + 4 * j);
-    load4(p, c0, c1, c2, c3);
-    add(v[0], c0 * *vel[j]);
-    add(v[1], c1 * *vel[j]);
-    add(v[2], c2 * *vel[j]);
-    add(v[3], c3 * *vel[j]);
+    T column[4];
+    load_column(g.element, ShaftPlaces::M4 + 4 * j, column);
+    for (int k = 0; k < 4; ++k)
+      add(f[k], column[k] * *acc[j]);
+    load_column(g.element, ShaftPlaces::G4c + 4 * j, column);
+    for (int k = 0; k < 4; ++k)
+      add(v[k], column[k] * *vel[j]);
   }
   for (int k = 0; k < 4; ++k)
-    f[k] = f[k] - cross(sa, v[k]);
-  T p11, p21, p12, p22;
-  from(b.polar);
-  load4(p, p11, p21, p12, p22);
+    f[k] = f[k] - cross(mean_spin, v[k]);
+}
+
+template <bool Offsets>
+WHIRL_INLINE void add_shafts(const Elements& b, std::size_t first, int used) {
+  const Group g = group_of<ShaftPlaces>(b, first, used);
+  const Node x1 = load_node(g.s1), x2 = load_node(g.s2);
+  const ElasticForce elastic = elastic_force<Offsets>(load_shaft(g.element), g.e, x1, x2);
+  const NodeSpin sp1 = spin_of(g.e, x1), sp2 = spin_of(g.e, x2);
+  V f[4] = {-elastic.lambda, elastic.d1, elastic.lambda, elastic.d2};
+  add_inertia(g, (0.5 * (sp1.s + sp2.s)) * elastic.a, x1, x2, f);
+  T polar[4];
+  load_column(g.element, ShaftPlaces::polar, polar);
+  const T p11 = polar[0], p21 = polar[1], p12 = polar[2], p22 = polar[3];
   const T h1 = p11 * sp1.s + p12 * sp2.s, h2 = p21 * sp1.s + p22 * sp2.s;
   const T q1 = p11 * sp1.sdot + p12 * sp2.sdot, q2 = p21 * sp1.sdot + p22 * sp2.sdot;
-  f[1] = f[1] - (q1 * sp1.w + h1 * cross(d1, x1.dd));
-  f[3] = f[3] - (q2 * sp2.w + h2 * cross(d2, x2.dd));
-  add_to_nodes(g, used, f[0], f[1], q1 - torque, f[2], f[3], q2 + torque);
+  f[1] = f[1] - (q1 * sp1.w + h1 * cross(g.e + x1.t, x1.dd));
+  f[3] = f[3] - (q2 * sp2.w + h2 * cross(g.e + x2.t, x2.dd));
+  add_to_nodes(g, used, f[0], f[1], q1 - elastic.torque, f[2], f[3], q2 + elastic.torque);
 }
-
-struct Lanes {
-  using T = lanes::T;
-  using V = lanes::V;
-};
-WHIRL_INLINE void angle_ratio(T n, T& G, T& G1) {
-  const Ratio r = ratio(n);
-  G = r.G;
-  G1 = r.G1;
-}
-#include <elements/shaft/shaft_damping.inl>
 
 template <bool Rotating>
-WHIRL_INLINE void add_group(const DampingElements& b, std::size_t first, int used) {
-  const Group g = group_of(b, first, used);
-  const double* p[width];
-  for (int i = 0; i < width; ++i)
-    p[i] = g.element[i];
-  DampingParameters<Lanes> c;
-  T o1, o2;
-  load4(p, c.length, o1, o2, c.e0.x);
-  advance(p, 4);
-  load4(p, c.e0.y, c.e0.z, c.d11, c.d12);
-  advance(p, 3);
-  load4(p, c.d12, c.d22, c.d_twist,
-        c.d_axial);  // one over the last, so as not to read beyond the element
+WHIRL_INLINE void add_dampers(const Elements& b, std::size_t first, int used) {
+  using P = DampingPlaces;
+  const Group g = group_of<P>(b, first, used);
+  T r[P::size];
+  load_record(g.element, r);
+  const DampingParameters<Lanes> c{vector_at(r, P::e0), r[P::length],  r[P::d11],    r[P::d12],
+                                   r[P::d22],           r[P::d_twist], r[P::d_axial]};
+  const T o1 = r[P::o1], o2 = r[P::o2];
   const Node x1 = load_node(g.s1), x2 = load_node(g.s2);
   const V du = x2.u - x1.u + o2 * x2.t - o1 * x1.t;
   const DampingRates<Lanes> v{x2.du - x1.du + o2 * x2.dd - o1 * x1.dd, x1.dd, x2.dd, x1.dphi,
                               x2.dphi};
-  const auto f = damping_force<Rotating, Lanes>(c, g.e, du, x1.t, x2.t, v);
-  add_to_nodes(g, used, V{} - f.lambda, f.d1 - o1 * f.lambda, f.phi1, f.lambda,
-               f.d2 + o2 * f.lambda, f.phi2);
+  const DampingForce<Lanes> f =
+      damping_force<Rotating>(c, damping_kinematics(c, g.e, du, x1.t, x2.t), v);
+  add_to_nodes(g, used, -f.lambda, f.d1 - o1 * f.lambda, f.phi1, f.lambda, f.d2 + o2 * f.lambda,
+               f.phi2);
 }
 
-/// Flag: offsets of shaft elements, rotation of damping.
-template <bool Flag, class B>
-void add_all(const B& b) {
+using AddGroup = void(const Elements&, std::size_t first, int used);
+template <AddGroup Add>
+void add_all(const Elements& b) {
   std::size_t i = 0;
   for (; i + width <= b.count; i += width)
-    add_group<Flag>(b, i, width);
-  if (i < b.count) add_group<Flag>(b, i, static_cast<int>(b.count - i));
+    Add(b, i, width);
+  if (i < b.count) Add(b, i, static_cast<int>(b.count - i));
 }
 
 }  // namespace
 
 const Kernels* WHIRL_LANES_TABLE() {
-  static const Kernels table{WHIRL_LANES_ISA, add_all<false, ShaftElements>,
-                             add_all<true, ShaftElements>, add_all<true, DampingElements>,
-                             add_all<false, DampingElements>};
+  static const Kernels table{WHIRL_LANES_ISA, add_all<add_shafts<false>>, add_all<add_shafts<true>>,
+                             add_all<add_dampers<true>>, add_all<add_dampers<false>>};
   return &table;
 }
 

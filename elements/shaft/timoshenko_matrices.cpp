@@ -88,7 +88,7 @@ std::vector<double> panels(const ElementSection& s, const std::vector<double>& c
   return out;
 }
 
-/// SteadyRotation integrals over the panels: value at every node, and at the end of the panel.
+/// Running integrals over the panels: value at every node, and at the end of the panel.
 struct Sampled {
   const GaussRule& rule;
   std::vector<double> ends;
@@ -286,6 +286,50 @@ Mat2 polar_mass(const Sampled& sp, MassKind kind, const Vec2& share) {
   return m;
 }
 
+/// Integrals over the shapes of the static solution, on end points and directors.
+struct ShapeIntegrals {
+  Matrix<4> M = Matrix<4>::Zero(), G = Matrix<4>::Zero();  ///< consistent M4 and G4
+  double b11 = 0, b12 = 0, b22 = 0;                        ///< 1/l int w_i' w_j' ds
+  /// Between the curve of directors and its two arcs through the chord: 1/2 int (g1 g2' - g2 g1')
+  /// ds.
+  double area = 0;
+};
+ShapeIntegrals shape_integrals(const Sampled& sp, const Mat2& k) {
+  const double l = sp.l;
+  const std::array<StaticShape, 2> shape{static_shape(sp, k, 0), static_shape(sp, k, 1)};
+  ShapeIntegrals r;
+  for (std::size_t n = 0; n < sp.points.size(); ++n) {
+    const auto& q = sp.points[n];
+    const double g1 = shape[0].g[n], g2 = shape[1].g[n];
+    const double slope1 = shape[0].slope[n], slope2 = shape[1].slope[n];
+    const Vector<4> N = on_nodes(q.xi * l, shape[0].w[n], shape[1].w[n], l, true);
+    const Vector<4> G = on_nodes(1.0, g1, g2, l, false);
+    r.M += q.ds * (q.p.rhoA * N * N.transpose() + q.p.rhoI * G * G.transpose());
+    r.G += q.ds * q.p.rhoIp * G * G.transpose();
+    r.b11 += q.ds / l * slope1 * slope1;
+    r.b12 += q.ds / l * slope1 * slope2;
+    r.b22 += q.ds / l * slope2 * slope2;
+    const double from_end1 = 1 - q.xi;
+    const double dg1 = (-k(0, 0) * from_end1 + k(1, 0) * q.xi) / q.p.EI;
+    const double dg2 = (-k(0, 1) * from_end1 + k(1, 1) * q.xi) / q.p.EI;
+    r.area += q.ds * 0.5 * (g1 * dg2 - g2 * dg1);
+  }
+  return r;
+}
+
+/// The correction of the header on M4 and G4 at the nodes; T: offset_map.
+void correct_mass(const Sampled& sp, const Mat2& k, const Matrix<4>& T, const Vector<4>& share,
+                  ShaftElementConstants& c) {
+  const auto rhoI = [](const auto& q) { return q.p.rhoI; };
+  const auto rhoIp = [](const auto& q) { return q.p.rhoIp; };
+  const double l = sp.l;
+  const Matrix<4> K = end_point_stiffness(k, l);
+  const double I = sp.integral(rhoI), rotary = I > 0 ? 15 * I / (15 * I + c.mass * l * l) : 0.0;
+  const double cw = translation_softness(sp, k, c.mass), cd = rotation_softness(sp, k, rhoI);
+  c.M4 += weighted(K, cw, cw - rotary * (cw - cd), T, share);
+  c.G4 += weighted(K, 0.0, rotation_softness(sp, k, rhoIp), T, share);
+}
+
 }  // namespace
 
 ShaftElementConstants make_shaft_constants(const ElementSection& section, double l, double o1,
@@ -303,41 +347,15 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
   c.k11 = k(0, 0);
   c.k12 = k(0, 1);
   c.k22 = k(1, 1);
-  const std::array<StaticShape, 2> shape{static_shape(sp, k, 0), static_shape(sp, k, 1)};
-
-  Matrix<4> M = Matrix<4>::Zero(), G4 = Matrix<4>::Zero();
-  double area = 0;
-  for (std::size_t n = 0; n < sp.points.size(); ++n) {
-    const auto& q = sp.points[n];
-    const double g1 = shape[0].g[n], g2 = shape[1].g[n], w1 = shape[0].slope[n],
-                 w2 = shape[1].slope[n];
-    const Vector<4> N = on_nodes(q.xi * l, shape[0].w[n], shape[1].w[n], l, true);
-    const Vector<4> G = on_nodes(1.0, g1, g2, l, false);
-    M += q.ds * (q.p.rhoA * N * N.transpose() + q.p.rhoI * G * G.transpose());
-    G4 += q.ds * q.p.rhoIp * G * G.transpose();
-    c.b11 += q.ds / l * w1 * w1;
-    c.b12 += q.ds / l * w1 * w2;
-    c.b22 += q.ds / l * w2 * w2;
-    // Area between the curve of directors and its two arcs through the chord: 1/2 int (g1 g2' - g2
-    // g1') ds.
-    const double m = 1 - q.xi;
-    const double dg1 = (-k(0, 0) * m + k(1, 0) * q.xi) / q.p.EI,
-                 dg2 = (-k(0, 1) * m + k(1, 1) * q.xi) / q.p.EI;
-    area += q.ds * 0.5 * (g1 * dg2 - g2 * dg1);
-  }
-  c.tau_c = -area;
+  const ShapeIntegrals of_shapes = shape_integrals(sp, k);
+  c.b11 = of_shapes.b11;
+  c.b12 = of_shapes.b12;
+  c.b22 = of_shapes.b22;
+  c.tau_c = -of_shapes.area;
   const Matrix<4> T = offset_map(o1, o2);
-  c.M4 = T.transpose() * M * T;
-  c.G4 = T.transpose() * G4 * T;
-  if (kind == MassKind::corrected) {
-    const auto rhoI = [](const auto& q) { return q.p.rhoI; };
-    const auto rhoIp = [](const auto& q) { return q.p.rhoIp; };
-    const Matrix<4> K = end_point_stiffness(k, l);
-    const double I = sp.integral(rhoI), rotary = I > 0 ? 15 * I / (15 * I + c.mass * l * l) : 0.0;
-    const double cw = translation_softness(sp, k, c.mass), cd = rotation_softness(sp, k, rhoI);
-    c.M4 += weighted(K, cw, cw - rotary * (cw - cd), T, share.bending);
-    c.G4 += weighted(K, 0.0, rotation_softness(sp, k, rhoIp), T, share.bending);
-  }
+  c.M4 = T.transpose() * of_shapes.M * T;
+  c.G4 = T.transpose() * of_shapes.G * T;
+  if (kind == MassKind::corrected) correct_mass(sp, k, T, share.bending, c);
   c.polar = polar_mass(sp, kind, share.spin);
   return c;
 }

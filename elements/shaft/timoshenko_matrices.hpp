@@ -32,9 +32,10 @@
 // mass: 4 and 2). Limits: the argument needs c_w the same in neighbouring elements. Where it varies
 // (cones, unequal lengths) the leading order stays with a smaller constant: slender cones 4; thick
 // solid cones 4; thick hollow cones whose kappa changes 2, with a tenth of the consistent mass's
-// error. Bodies and bearings. The force in row i of K4 x accelerates all that is joined at the node
-// and holds against what loads it, and only the elements' part of it stands for their own inertia:
-// with the share w_i = (inertia of elements)/(of elements and bodies), of the mass for x and of the
+// error.
+// Bodies and bearings. The force in row i of K4 x accelerates all that is joined at the node and
+// holds against what loads it, and only the elements' part of it stands for their own inertia: with
+// the share w_i = (inertia of elements)/(of elements and bodies), of the mass for x and of the
 // transverse inertia for d, and w_i = 0 where a bearing acts,
 //   M4 += (w_i c_i K4_ij + K4_ij c_j w_j)/2.
 // Without the shares a body leaves the frequencies an error of order 4 on slender elements and 2 on

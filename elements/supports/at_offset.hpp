@@ -1,6 +1,6 @@
 // A kernel acting at points off its nodes: on rigid stubs o_i along the nodes' axes.
 //   u_i -> u_i + o_i (d_i - e_i), rates alike; what the kernel gives in these coordinates goes back
-//   by the transposed map, which is
+//       by the transposed map, which is
 // constant in X: f_d += o f_u, tangents by congruence.
 #pragma once
 #include <system/kernel.hpp>
@@ -11,6 +11,10 @@ template <class K>
 struct AtOffset {
   static constexpr int n_nodes = K::n_nodes, width = 7, inner = K::width;
   static constexpr bool has_M = K::has_M, has_C = K::has_C, has_K = K::has_K;
+  static constexpr system::Family family = K::family;
+  system::Dependence depends(const system::Context& c) const {
+    return system::dependence_of(kernel, c);
+  }
 
   K kernel;
   std::array<double, n_nodes> offset{};  ///< o_i, m

@@ -2,7 +2,6 @@
 
 #include <core/error.hpp>
 #include <elements/supports/monotone_slopes.hpp>
-#include <system/frequency.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -158,10 +157,23 @@ void CoefficientGrid<N>::at(double s, double w, Values& v, Values& ds, Values& d
 }
 
 template <int N>
-void CoefficientGrid<N>::at(double s, Values& v, Values& dv) const {
+bool CoefficientGrid<N>::resists(int motion) const {
+  return std::any_of(nodes_.begin(), nodes_.end(), [motion](const Node& n) {
+    return (Values::stiffness(n.f, motion) != 0.0).any();
+  });
+}
+
+template <int N>
+bool CoefficientGrid<N>::damps(int motion) const {
+  return std::any_of(nodes_.begin(), nodes_.end(), [motion](const Node& n) {
+    return (Values::damping(n.f, motion) != 0.0).any();
+  });
+}
+
+template <int N>
+void CoefficientGrid<N>::at(double s, double asked, Values& v, Values& dv) const {
   Values dw;
-  if (const double asked = system::asked_frequency(); !std::isnan(asked))
-    return at(s, asked, v, dv, dw);
+  if (!std::isnan(asked)) return at(s, asked, v, dv, dw);
   const double w = std::clamp(std::abs(s), frequency_.front(), frequency_.back());
   at(s, w, v, dv, dw);
   if (w != std::abs(s)) return;

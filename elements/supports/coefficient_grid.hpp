@@ -3,8 +3,8 @@
 //   F = -K r - C v - M a   for motions r exp(i w t),
 // as computed for tilting pads, gas seals and other supports with internal motion of their own.
 //
-// What w is: the frequency an analysis of small motions asks about (system/frequency.hpp); where
-// none asks - statics, transients - the frequency of the spin itself, w = |s| (synchronous
+// What w is: the frequency an analysis of small motions asks about (Context::frequency); where none
+// asks - statics, transients - the frequency of the spin itself, w = |s| (synchronous
 // reduction), held at the first and last frequency of the table.
 //
 // Interpolation: bilinear, or bicubic with monotone cubics along both families of grid lines and
@@ -24,16 +24,23 @@ class CoefficientGrid {
   using Between = typename CoefficientTable<N>::Between;
   using Outside = typename CoefficientTable<N>::Outside;
   /// spin, frequency: rad/s, strictly increasing, frequency not negative; rows: spin by spin,
-  /// frequencies within. Errors (E81): no rows, lengths that differ, not increasing, a value not
-  /// finite.
+  /// frequencies within.
+  /// @throws Error E81: no rows, lengths that differ, not increasing, a value not finite.
   CoefficientGrid(std::vector<double> spin, std::vector<double> frequency,
                   const std::vector<Values>& rows, Between between, Outside outside);
-  /// Values for the spin s at the frequency asked about (none: synchronous), and their derivatives
-  /// in s.
-  void at(double s, Values& v, Values& dv) const;
+  /// Values for the spin s at the frequency asked about (NaN: none, synchronous), and their
+  /// derivatives in s.
+  void at(double s, double asked, Values& v, Values& dv) const;
   /// Values at (s, w) with derivatives in s and w; NaN outside an undefined range.
   void at(double s, double w, Values& v, Values& ds, Values& dw) const;
   bool has_mass() const { return has_mass_; }
+  bool follows_frequency() const { return frequency_.size() > 1 || outside_ == Outside::undefined; }
+  bool follows_spin() const {
+    return spin_.size() > 1 || frequency_.size() > 1 || outside_ == Outside::undefined;
+  }
+  /// There is stiffness, or damping, against a motion of this number.
+  bool resists(int motion) const;
+  bool damps(int motion) const;
 
  private:
   using Row = typename Values::Row;

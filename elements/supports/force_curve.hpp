@@ -1,8 +1,8 @@
 // A scalar force-deflection curve F(x) as polynomial pieces, with its slope and its energy: what
 // nonlinear springs share. x in m, F in N and the energy in J, or rad, N m and J; F is the force
 // that resists x (the load on the shaft is -F). Piecewise smooth and conservative, defined for
-// every x; F need not vanish at 0. Monotone cubics: F. N. Fritsch & R. E. Carlson,
-// doi 10.1137/0717021.
+// every x; F need not vanish at 0. Monotone cubics: F. N. Fritsch & R. E. Carlson, doi
+// 10.1137/0717021.
 #pragma once
 #include <array>
 #include <memory>
@@ -22,16 +22,17 @@ class ForceCurve {
   int region(double x) const;
   bool cornered() const { return !corners_.empty(); }
 
-  /// F = sum c_k x^k, at most degree 7. Errors E82: more than 8 coefficients, a coefficient not
-  /// finite.
+  /// F = sum c_k x^k, at most degree 7.
+  /// @throws Error E82: more than 8 coefficients, a coefficient not finite.
   static ForceCurve polynomial(const std::vector<double>& c);
   /// Through (x_i, F_i), x strictly increasing: straight lines, or monotone cubics
-  /// (Fritsch-Carlson); outside straight on with the end slope. Errors E82: fewer than 2 points, x
-  /// not increasing.
+  /// (Fritsch-Carlson); outside straight on with the end slope.
+  /// @throws Error E82: fewer than 2 points, x not increasing.
   static ForceCurve table(const std::vector<double>& x, const std::vector<double>& F,
                           bool monotone_cubic);
   /// Play: no force in [-gap_minus, gap_plus], stiffness k outside, turned on over a length
-  /// `smooth` by a parabola (0: a corner). Errors E82: negative gap, stiffness or smooth.
+  /// `smooth` by a parabola (0: a corner).
+  /// @throws Error E82: negative gap, stiffness or smooth.
   static ForceCurve clearance(double gap_minus, double gap_plus, double k, double smooth = 0.0);
   /// One-sided: k (x - gap) for x > gap, nothing before; gap may be negative (preloaded).
   static ForceCurve one_sided(double gap, double k, double smooth = 0.0);

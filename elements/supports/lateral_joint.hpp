@@ -15,6 +15,7 @@
 //
 //   struct Law {
 //     static constexpr bool inertia = false;                           // force depends on a
+//     static constexpr system::Dependence depends{.spin = true};       // as in a kernel
 //     void force(const LateralMotion&, Vector<4>& z) const;            // sets z
 //     void tangent(const LateralMotion&, Vector<4>& z, LateralTangent& t) const;   // sets z and t
 //     void energy(const LateralMotion&, Energy&) const;                // adds
@@ -32,6 +33,7 @@ struct LateralMotion {
   Vec2 r, v, a;                                 ///< m, m/s, m/s2
   double spin = 0, housing_spin = 0;            ///< rad/s
   double spin_rate = 0, housing_spin_rate = 0;  ///< rad/s2, set for energy() only
+  double frequency = nan;                       ///< rad/s, Context::frequency
 };
 
 /// Derivatives of z = (F_y, F_z, T_0, T_1).
@@ -52,13 +54,17 @@ struct LateralJoint {
   using Law = Law_;
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = Law::inertia, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  system::Dependence depends(const system::Context& c) const {
+    return system::dependence_of(law, c);
+  }
 
   Law law;
   std::array<double, 2> offset{0.0, 0.0};  ///< o_0, o_1, m (used when Offsets)
 
-  void add_force(const system::Nodes<2>& x, const system::Context&, system::ForceX<14>& f) const {
+  void add_force(const system::Nodes<2>& x, const system::Context& c, system::ForceX<14>& f) const {
     const system::Spin s0(*x[0]), s1(*x[1]);
-    LateralMotion m = motion(x);
+    LateralMotion m = motion(x, c);
     m.spin = s0.s;
     m.housing_spin = s1.s;
     Vector<4> z;
@@ -66,10 +72,10 @@ struct LateralJoint {
     scatter(s0.w, s1.w, z, f);
   }
 
-  void add_tangent(const system::Nodes<2>& x, const system::Context&,
+  void add_tangent(const system::Nodes<2>& x, const system::Context& c,
                    system::TangentX<14>& k) const {
     const system::Spin s0(*x[0]), s1(*x[1]);
-    LateralMotion m = motion(x);
+    LateralMotion m = motion(x, c);
     m.spin = s0.s;
     m.housing_spin = s1.s;
     Vector<4> z;
@@ -94,9 +100,9 @@ struct LateralJoint {
     }
   }
 
-  void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const {
+  void add_energy(const system::Nodes<2>& x, const system::Context& c, system::Energy& e) const {
     const system::SpinRate s0(*x[0]), s1(*x[1]);
-    LateralMotion m = motion(x);
+    LateralMotion m = motion(x, c);
     m.spin = s0.s;
     m.housing_spin = s1.s;
     m.spin_rate = s0.sdot;
@@ -110,20 +116,21 @@ struct LateralJoint {
       requires(const Law& l, const LateralMotion& m) {
     l.region(m);
   }
-  { return law.region(motion(x)); }
+  { return law.region(motion(x, {})); }
 
   /// Relative motion with spins, for results.
-  LateralMotion motion_of(const system::Nodes<2>& x) const {
-    LateralMotion m = motion(x);
+  LateralMotion motion_of(const system::Nodes<2>& x, const system::Context& c) const {
+    LateralMotion m = motion(x, c);
     m.spin = x[0]->spin();
     m.housing_spin = x[1]->spin();
     return m;
   }
 
  private:
-  LateralMotion motion(const system::Nodes<2>& x) const {
+  LateralMotion motion(const system::Nodes<2>& x, const system::Context& c) const {
     const system::NodeState &n = *x[0], &h = *x[1];
     LateralMotion m;
+    m.frequency = c.frequency;
     m.r = (n.u - h.u).template tail<2>();
     m.v = (n.du - h.du).template tail<2>();
     if constexpr (has_M) m.a = (n.ddu - h.ddu).template tail<2>();

@@ -1,12 +1,12 @@
 // Linear spring, damper and added mass between two nodes (shaft and ground, housing or another
 // shaft), fixed axes.
-//   q = q_1 - q_2,  force on node 1 = preload - K (q - setpoint) - C q' - M q'',  on node 2 the
-//   opposite
+//   q = q_1 - q_2,   force on node 1 = preload - K (q - setpoint) - C q' - M q'',
+//       on node 2 the opposite
 //
 // Two kernels:
 //   TranslationalBearing: q = u, 3 x 3 matrices (the usual case);
 //   LinearBearing: q = (x, y, z, rx, ry, rz) of six_motion.hpp at points off the nodes, 6 x 6
-//   matrices; linear in X, so its tangents
+//       matrices; linear in X, so its tangents
 //     are constant.
 //
 // Matrices need not be symmetric: the skew parts of K
@@ -20,6 +20,8 @@ struct TranslationalBearing {
   static constexpr int n_nodes = 2, width = 3;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::support;
+  static constexpr system::Dependence depends{};
 
   Mat3 K = Mat3::Zero(), C = Mat3::Zero(), M = Mat3::Zero();  ///< global axes
   Vec3 setpoint = Vec3::Zero(), preload = Vec3::Zero();
@@ -36,6 +38,12 @@ struct LinearBearing {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the twist where it resists one.
+  system::Dependence depends(const system::Context&) const {
+    return {.angle = K_.col(3).isZero(0.0) ? system::no_angle : system::twist_angle,
+            .spin = !C_.col(3).isZero(0.0)};
+  }
 
   LinearBearing() = default;
   /// s1, s2: points from the nodes along their directors, m; axes: columns e0, e2, e3, orthonormal,

@@ -4,12 +4,12 @@
 // W = 3: q = u, the translations of the nodes (a scalar node: its first component); W = 7: q = X =
 // (u, d - e0, phi), into which with_rotations() carries matrices in (x, y, z, rx, ry, rz). The
 // rotations are phi and e0 x d, sines of the tilts, as in linear_bearing.hpp; so the part is linear
-// in X and its tangents are constant. Global axes, e0 = x; N/m, N s/m, kg, and N, N m/rad, .. where
-// a rotation takes part. K and C need not be symmetric: the skew part of K (circulatory) exchanges
-// energy and counts as supplied power, that of C (gyroscopic) has none. M is symmetric. Gravity
-// acts through M on what moves in space (u'' - g at the nodes), not on internal coordinates, which
-// is exact for reductions whose internal coordinates vanish in a rigid translation (Craig &
-// Bampton, AIAA J. 6, 1968, doi 10.2514/3.4741).
+// in X and its tangents are constant.
+// Global axes, e0 = x; N/m, N s/m, kg, and N, N m/rad, .. where a rotation takes part. K and C need
+// not be symmetric: the skew part of K (circulatory) exchanges energy and counts as supplied power,
+// that of C (gyroscopic) has none. M is symmetric. Gravity acts through M on what moves in space
+// (u'' - g at the nodes), not on internal coordinates, which is exact for reductions whose internal
+// coordinates vanish in a rigid translation (Craig & Bampton, AIAA J. 6, 1968, doi 10.2514/3.4741).
 #pragma once
 #include <system/kernel.hpp>
 
@@ -20,6 +20,17 @@ struct MatrixPart {
   static constexpr int n_nodes = N, width = W;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the angles that its stiffness resists.
+  system::Dependence depends(const system::Context&) const {
+    system::Dependence d{.weight = !M.isZero(0.0)};
+    if constexpr (W == 7)
+      for (int i = 0; i < N; ++i) {
+        if (!K.col(7 * i + 6).isZero(0.0)) d.angle = system::each_angle;
+        d.spin = d.spin || !C.col(7 * i + 6).isZero(0.0);
+      }
+    return d;
+  }
   using Part = Matrix<W * N>;
 
   Part K = Part::Zero(), C = Part::Zero(), M = Part::Zero();

@@ -1,7 +1,7 @@
 // Slopes of a monotone cubic through rows of values: weighted harmonic mean of the chords inside,
 // three-point one-sided slopes at the ends, limited (Fritsch & Carlson, SIAM J. Numer. Anal. 17,
-// 1980, doi 10.1137/0717021; Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5, 1984,
-// doi 10.1137/0905021). Where a column of values is monotone, so is the cubic.
+// 1980, doi 10.1137/0717021; Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5, 1984, doi
+// 10.1137/0905021). Where a column of values is monotone, so is the cubic.
 #pragma once
 #include <core/types.hpp>
 #include <cmath>

@@ -2,19 +2,20 @@
 //
 // ScalarSpring: along one generalized deflection q = b0.X_0 - b1.X_1 with constant b:
 //   translation along the unit vector n at points s_i on the nodes' axes:  b_i = (n, s_i n, 0)
-//   tilt about the unit vector n across the line e:  q = n.(e x d), b = (0, n x e, 0)  (sine of the
-//   tilt; the angle in first order) twist: b = (0, 0, 1), whole turns included
+//   tilt about the unit vector n across the line e:   q = n.(e x d), b = (0, n x e, 0)
+//       (sine of the tilt; the angle in first order)
+//   twist: b = (0, 0, 1), whole turns included
 // Load on node 0 along b: -(F(q) + D(q) q'), opposite on node 1. F, D: force curves, N and N s/m (N
 // m, N m s for angles).
 //
 // RadialSpring: central in the lateral plane, r relative displacement in (y, z), rho = |r|:
-//   force on node 0 = -(F(rho)/rho) r - D(rho) v,  F(0) = 0: no direction is preferred at the
-//   centre.
+//   force on node 0 = -(F(rho)/rho) r - D(rho) v,
+//       F(0) = 0: no direction is preferred at the centre.
 //
 // Dissipated power D q'^2 >= 0 for D >= 0; F is conservative. A corner in a curve is legal:
 // adaptive steps find it. Limits: directions fixed in space, tilts by their sine, no friction.
-// Source: Ishida & Yamamoto, Linear and Nonlinear Rotordynamics, 2nd ed., 2012,
-// doi 10.1002/9783527651894.
+// Source: Ishida & Yamamoto, Linear and Nonlinear Rotordynamics, 2nd ed., 2012, doi
+// 10.1002/9783527651894.
 #pragma once
 #include <elements/supports/force_curve.hpp>
 #include <system/kernel.hpp>
@@ -25,6 +26,14 @@ template <int W>
 struct ScalarSpring {
   static constexpr int n_nodes = 2, width = W;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// A torsional spring sees the angles it acts between.
+  system::Dependence depends(const system::Context&) const {
+    if constexpr (W == 7)
+      if (b0[6] != 0.0 || b1[6] != 0.0)
+        return {.angle = system::angle_sum(b0[6], -b1[6]), .spin = true};
+    return {};
+  }
 
   Vector<W> b0, b1;
   ForceCurvePtr force, damping;  ///< neither null
@@ -50,6 +59,8 @@ struct ScalarSpring {
 struct RadialSpring {
   static constexpr int n_nodes = 2, width = 3;
   static constexpr bool has_M = false, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  static constexpr system::Dependence depends{};
 
   ForceCurvePtr force, damping;  ///< neither null; force(0) = 0
 

@@ -3,13 +3,14 @@
 //
 // r: journal centre relative to the bore centre, rho = |r|, n = r/rho, t = J n (quarter turn y ->
 // z), delta = rho - gap.
-//   N   = k delta (1 + beta rho')  for delta > 0, never negative (no adhesion); 0 otherwise (Hunt &
-//   Crossley,
+//   N   = k delta (1 + beta rho')   for delta > 0, never negative (no adhesion); 0 otherwise
+//       (Hunt & Crossley,
 //         J. Appl. Mech. 42, 1975, doi 10.1115/1.3423596, with exponent 1): continuous at touch and
-//         at release
-//   v_t = v.t + R s_0 - (R + rho) s_1      true slip velocity of the surfaces in contact (orbit,
-//   spin, bore spin) F   = -N n - mu N tanh(v_t/v_0) t      friction opposes slip, whichever way it
-//   goes T_0 = R F.t,  T_1 = -(R + rho) F.t     about the two centres
+//             at release
+//   v_t = v.t + R s_0 - (R + rho) s_1
+//       true slip velocity of the surfaces in contact (orbit, spin, bore spin)
+//   F   = -N n - mu N tanh(v_t/v_0) t      friction opposes slip, whichever way it goes
+//   T_0 = R F.t,  T_1 = -(R + rho) F.t     about the two centres
 // Friction power mu N v_t tanh(v_t/v_0) >= 0 and contact damping k beta delta rho'^2 >= 0 (where N
 // > 0) are dissipated; k delta^2/2 is stored. With beta > 0 and N cut off at zero the dissipation
 // is k delta |rho'|, still positive.
@@ -24,6 +25,8 @@ namespace whirl::elements {
 
 struct RubLaw {
   static constexpr bool inertia = false;
+  /// The spin enters by friction.
+  system::Dependence depends(const system::Context&) const { return {.spin = friction != 0.0}; }
   double gap = 0;            ///< radial, m, >= 0
   double stiffness = 0;      ///< k, N/m
   double damping = 0;        ///< beta, s/m

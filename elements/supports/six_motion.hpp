@@ -1,7 +1,8 @@
 // Relative motion of two points in (x, y, z, rx, ry, rz), and the energies of what is linear in it:
 // what linear and tabulated bearings act on.
-//   q = q_0 - q_1,  q_i = (u + s (d - e0), phi, e0 x d along e2, e3) at points s from the nodes
-//   along their axes.
+//   q = q_0 - q_1,
+//       q_i = (u + s (d - e0), phi, e0 x d along e2, e3) at points s from the nodes along their
+//       axes.
 // The tilts are the director components (sin of the tilt angle, equal to gamma2 and gamma3 in first
 // order), so q is linear in X; spring_block.hpp has the exact angle. x, y, z are the columns of
 // `axes` (e0, e2, e3; usually the global axes).

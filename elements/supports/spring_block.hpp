@@ -14,6 +14,8 @@ struct SpringBlock {
   static constexpr int n_nodes = 1, width = 7;
   static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
                         powerless = true, linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::support;
+  static constexpr system::Dependence depends{};
 
   double C1 = 0, C2 = 0, offset = 0;
   Vec3 e0 = Vec3::UnitX();

@@ -50,6 +50,19 @@ CoefficientTable<N>::CoefficientTable(std::vector<double> spin, std::vector<Valu
 }
 
 template <int N>
+bool CoefficientTable<N>::resists(int motion) const {
+  return std::any_of(value_.begin(), value_.end(), [motion](const Row& r) {
+    return (Values::stiffness(r, motion) != 0.0).any();
+  });
+}
+
+template <int N>
+bool CoefficientTable<N>::damps(int motion) const {
+  return std::any_of(value_.begin(), value_.end(),
+                     [motion](const Row& r) { return (Values::damping(r, motion) != 0.0).any(); });
+}
+
+template <int N>
 void CoefficientTable<N>::at(double s, Values& v, Values& dv) const {
   Row x = Row::Zero(), dx = Row::Zero();
   if (outside_ == Outside::undefined && covers(s)) s = std::clamp(s, spin_.front(), spin_.back());
@@ -82,7 +95,7 @@ void CoefficientTable<N>::at(double s, Values& v, Values& dv) const {
 template <bool Mass, class Table>
 void TableBearingLaw<Mass, Table>::force(const LateralMotion& m, Vector<4>& z) const {
   CoefficientValues<2> v, dv;
-  table->at(m.spin, v, dv);
+  table->at(m.spin, m.frequency, v, dv);
   Vec2 F = -(v.K * m.r + v.C * m.v);
   if constexpr (Mass) F -= v.M * m.a;
   z << F, 0.0, 0.0;
@@ -92,7 +105,7 @@ template <bool Mass, class Table>
 void TableBearingLaw<Mass, Table>::tangent(const LateralMotion& m, Vector<4>& z,
                                            LateralTangent& t) const {
   CoefficientValues<2> v, dv;
-  table->at(m.spin, v, dv);
+  table->at(m.spin, m.frequency, v, dv);
   Vec2 F = -(v.K * m.r + v.C * m.v), F_s = -(dv.K * m.r + dv.C * m.v);
   t.set_zero();
   t.r.topRows<2>() = -v.K;
@@ -109,7 +122,7 @@ void TableBearingLaw<Mass, Table>::tangent(const LateralMotion& m, Vector<4>& z,
 template <bool Mass, class Table>
 void TableBearingLaw<Mass, Table>::energy(const LateralMotion& m, system::Energy& e) const {
   CoefficientValues<2> v, dv;
-  table->at(m.spin, v, dv);
+  table->at(m.spin, m.frequency, v, dv);
   e.elastic += 0.5 * m.r.dot(v.K * m.r);
   e.dissipated += m.v.dot(v.C * m.v);
   const double skew_K = 0.5 * (v.K(0, 1) - v.K(1, 0));
@@ -124,9 +137,10 @@ void TableBearingLaw<Mass, Table>::energy(const LateralMotion& m, system::Energy
 }
 
 template <bool Mass, class Table>
-Vector<6> SpatialTableBearing<Mass, Table>::load_on_first(const Nodes<2>& x) const {
+Vector<6> SpatialTableBearing<Mass, Table>::load_on_first(const Nodes<2>& x,
+                                                          const Context& c) const {
   CoefficientValues<6> v, dv;
-  table->at(Spin(*x[0]).s, v, dv);
+  table->at(Spin(*x[0]).s, c.frequency, v, dv);
   const SixMotion::Relative r = between.relative(x, setpoint);
   Vector<6> F = preload - v.K * r.q - v.C * r.v;
   if constexpr (Mass) F -= v.M * r.a;
@@ -134,17 +148,17 @@ Vector<6> SpatialTableBearing<Mass, Table>::load_on_first(const Nodes<2>& x) con
 }
 
 template <bool Mass, class Table>
-void SpatialTableBearing<Mass, Table>::add_force(const Nodes<2>& x, const Context&,
+void SpatialTableBearing<Mass, Table>::add_force(const Nodes<2>& x, const Context& c,
                                                  ForceX<14>& f) const {
-  between.add_load(load_on_first(x), f);
+  between.add_load(load_on_first(x, c), f);
 }
 
 template <bool Mass, class Table>
-void SpatialTableBearing<Mass, Table>::add_tangent(const Nodes<2>& x, const Context&,
+void SpatialTableBearing<Mass, Table>::add_tangent(const Nodes<2>& x, const Context& c,
                                                    TangentX<14>& t) const {
   const Spin s(*x[0]);
   CoefficientValues<6> v, dv;
-  table->at(s.s, v, dv);
+  table->at(s.s, c.frequency, v, dv);
   const SixMotion::Relative r = between.relative(x, setpoint);
   const Matrix<6, 14> B = between.B();
   Vector<6> F_s = -(dv.K * r.q + dv.C * r.v);
@@ -162,11 +176,11 @@ void SpatialTableBearing<Mass, Table>::add_tangent(const Nodes<2>& x, const Cont
 }
 
 template <bool Mass, class Table>
-void SpatialTableBearing<Mass, Table>::add_energy(const Nodes<2>& x, const Context&,
+void SpatialTableBearing<Mass, Table>::add_energy(const Nodes<2>& x, const Context& c,
                                                   Energy& e) const {
   const SpinRate s(*x[0]);
   CoefficientValues<6> v, dv;
-  table->at(s.s, v, dv);
+  table->at(s.s, c.frequency, v, dv);
   const SixMotion::Relative r = between.relative(x, setpoint);
   add_linear_energy<6>(v.K, v.C, v.M, preload, r.q, r.v, r.a, e);
   e.supplied += 0.5 * s.sdot * (r.q.dot(dv.K * r.q) + r.v.dot(dv.M * r.v));

@@ -1,15 +1,15 @@
 // Bearing or seal with coefficients tabulated against spin. The usual case are the lateral ones
 // (TableBearingLaw):
-//   F = -K(s) r - C(s) v - M(s) a,  F on the journal, (r, v, a) relative to the housing, (y, z), s
-//   the journal's spin;
+//   F = -K(s) r - C(s) v - M(s) a,
+//       F on the journal, (r, v, a) relative to the housing, (y, z), s the journal's spin;
 // 6x6 matrices, a set point or a preload take SpatialTableBearing.
 // The tangents contain dK/ds, dC/ds and dM/ds: a run-up with free spin sees them. A table gives no
 // torque on the shaft, so what its cross coupling (skew K) feeds into whirl counts as supplied
 // power; symmetric K and M store energy, symmetric C dissipates.
 //
-// Interpolation: linear, or monotone cubic (Fritsch & Carlson, SIAM J. Numer. Anal. 17, 1980,
-// doi 10.1137/0717021) per coefficient. Outside the table: held at its ends, or not defined (NaN:
-// the step is rejected and the run says so).
+// Interpolation: linear, or monotone cubic (Fritsch & Carlson, SIAM J. Numer. Anal. 17, 1980, doi
+// 10.1137/0717021) per coefficient. Outside the table: held at its ends, or not defined (NaN: the
+// step is rejected and the run says so).
 #pragma once
 #include <elements/supports/lateral_joint.hpp>
 #include <elements/supports/six_motion.hpp>
@@ -29,6 +29,11 @@ struct CoefficientValues {
   Matrix<N> K, C, M;
   Row row() const;
   void set(const Row& r);
+  /// Column of K and of C in a row.
+  static auto stiffness(const Row& r, int motion) { return r.template segment<N>(N * motion); }
+  static auto damping(const Row& r, int motion) {
+    return r.template segment<N>(entries + N * motion);
+  }
 };
 
 /// Coefficients against spin.
@@ -39,12 +44,14 @@ class CoefficientTable {
   using Values = CoefficientValues<N>;
   enum class Between { linear, monotone_cubic };
   enum class Outside { undefined, hold };
-  /// spin: rad/s, strictly increasing. Errors (E81): no rows, lengths that differ, spin not
-  /// increasing, a value not finite.
+  /// spin: rad/s, strictly increasing.
+  /// @throws Error E81: no rows, lengths that differ, spin not increasing, a value not finite.
   CoefficientTable(std::vector<double> spin, std::vector<Values> rows, Between between,
                    Outside outside);
   /// Values at spin s with their derivatives in s; NaN outside an undefined range.
   void at(double s, Values& v, Values& dv) const;
+  /// The same whatever frequency is asked about.
+  void at(double s, double /*asked*/, Values& v, Values& dv) const { at(s, v, dv); }
   /// A speed beyond the end by rounding (rpm to rad/s and back, a variation about the end) is that
   /// of the end.
   bool covers(double s) const {
@@ -54,6 +61,11 @@ class CoefficientTable {
   double first() const { return spin_.front(); }
   double last() const { return spin_.back(); }
   bool has_mass() const { return has_mass_; }
+  bool follows_spin() const { return spin_.size() > 1 || outside_ == Outside::undefined; }
+  static constexpr bool follows_frequency() { return false; }
+  /// There is stiffness, or damping, against a motion of this number.
+  bool resists(int motion) const;
+  bool damps(int motion) const;
 
  private:
   using Row = typename Values::Row;
@@ -72,6 +84,9 @@ class CoefficientGrid;  // coefficient_grid.hpp: against spin and frequency
 template <bool Mass, class Table = CoefficientTable<2>>
 struct TableBearingLaw {
   static constexpr bool inertia = Mass;
+  system::Dependence depends(const system::Context&) const {
+    return {.spin = table->follows_spin(), .frequency = table->follows_frequency()};
+  }
   std::shared_ptr<const Table> table;
 
   void force(const LateralMotion& m, Vector<4>& z) const;
@@ -88,6 +103,13 @@ template <bool Mass, class Table>
 struct SpatialTableBearing {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = Mass, has_C = true, has_K = true;
+  static constexpr system::Family family = system::Family::support;
+  /// Sees the twist where it resists one.
+  system::Dependence depends(const system::Context&) const {
+    return {.angle = table->resists(3) ? system::twist_angle : system::no_angle,
+            .spin = table->follows_spin() || table->damps(3),
+            .frequency = table->follows_frequency()};
+  }
 
   std::shared_ptr<const Table> table;
   SixMotion between;
@@ -98,7 +120,7 @@ struct SpatialTableBearing {
                    system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context& c, system::Energy& e) const;
   /// Force and moment on node 0's point, N, N m.
-  Vector<6> load_on_first(const system::Nodes<2>& x) const;
+  Vector<6> load_on_first(const system::Nodes<2>& x, const system::Context& c) const;
 };
 
 extern template struct CoefficientValues<2>;

@@ -14,6 +14,8 @@ struct WeightRest {
   static constexpr int n_nodes = 2, width = 7;
   static constexpr bool has_M = false, has_C = false, has_K = false, quadratic_in_rates = true,
                         powerless = true, linear_in_displacements = true;
+  static constexpr system::Family family = system::Family::load;
+  static constexpr system::Dependence depends{.weight = true};
 
   Vector<4> rest = Vector<4>::Zero();
 

@@ -2,7 +2,6 @@
 
 #include <core/error.hpp>
 #include <core/interrupt.hpp>
-#include <system/frequency.hpp>
 
 #include <fmt/format.h>
 
@@ -70,6 +69,7 @@ bool Linearizer::still_balanced(double Omega) {
 const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
   throw_if_interrupted();
   running_.set_whirl(0.0);
+  running_.set_frequency(nan);
   if (have_ && Omega == equilibrium_.Omega && running_.running().frequency_dependent()) {
     // One equilibrium at every frequency asked about.
   } else if (undeformed_) {
@@ -91,6 +91,7 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
     const bool inside =
         running_.tangent(equilibrium_.state.frames, Omega, equilibrium_.state.q, matrices_);
     running_.set_whirl(0.0);
+    running_.set_frequency(nan);
     if (!inside)
       throw run_error("E76", "no linearisation: the state lies outside the range of an element");
   };
@@ -98,7 +99,7 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
     linearise();
     return matrices_;
   }
-  const system::FrequencyScope ask(tables);
+  running_.set_frequency(tables);
   linearise();
   const auto finite = [](const la::BlockMatrix<6>& x) {
     return Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count())).allFinite();
@@ -107,7 +108,7 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
     throw run_error(
         "E81",
         fmt::format("a bearing table does not cover the frequency {:.6g} Hz at {:.6g} rpm",
-                    std::abs(tables) / two_pi, Omega * 30.0 / pi),
+                    to_hz(std::abs(tables)), to_rpm(Omega)),
         "extend its frequencies, narrow the step (max_frequency, modes), or write extrapolate = "
         "\"hold\"");
   return matrices_;

@@ -16,14 +16,16 @@ class Linearizer {
                       EquilibriumOptions options = {});
 
   /// Moves the equilibrium to Omega (rad/s, from the last one) and returns the matrices there;
-  /// valid until the next call. Errors: as EquilibriumSolver::solve.
+  /// valid until the next call.
+  /// @throws Error as EquilibriumSolver::solve.
   const la::MCK& at(double Omega) { return at(Omega, Complex(0, nan)); }
   /// The same as a motion x exp(lambda t) meets them, lambda = g + i w: supports that answer by
   /// frequency (SteadyRotation::table_frequencies) and hysteretic damping give real matrices that
   /// are exact for it alone. w NaN: synchronous values of tables, hysteretic damping of the steady
   /// state only; infinite: synchronous values, no hysteretic damping. The equilibrium is the same
   /// at every lambda. side: frequency that decides whether the whirl is faster than the spin; w
-  /// unless given. Errors: E81, a table does not cover w.
+  /// unless given.
+  /// @throws Error E81, a table does not cover w.
   const la::MCK& at(double Omega, Complex lambda, double side = nan) {
     return at(Omega, lambda, side, lambda.imag());
   }

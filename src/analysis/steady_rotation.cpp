@@ -2,18 +2,14 @@
 
 #include <core/error.hpp>
 #include <core/interrupt.hpp>
-#include <system/frequency.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <queue>
-#include <random>
 
 namespace whirl::analysis {
 
 namespace {
-
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void add_scaled(la::BlockMatrix<6>& y, double s, const la::BlockMatrix<6>& x) {
   Eigen::Map<VecX>(y.data(), static_cast<Index>(y.value_count())) +=
@@ -98,30 +94,7 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
       sample_(system.make_matrices()) {
   if (ratio_.empty()) ratio_.assign(at(system.lines()), 1.0);
   ratio_.resize(at(system.lines()), 0.0);
-  std::vector<unsigned char> turnable(at(system.nodes()), 0);
-  for (const auto& term : system.terms())
-    if (term->width() == 7) {
-      std::vector<Index> nodes;
-      term->list_nodes(nodes);
-      for (Index i : nodes)
-        turnable[at(i)] = 1;
-    }
-  spinning_.assign(at(system.nodes()), 0);
-  for (Index i = 0; i < system.nodes(); ++i)
-    spinning_[at(i)] =
-        turnable[at(i)] && !system.node(i).scalar && ratio_[at(system.node(i).line)] != 0.0;
-  // A line whose angle is held somewhere stands still. (The line of the ground points has nothing
-  // that could turn.)
-  std::vector<unsigned char> moves(at(system.lines()), 0);
-  for (Index k = 0; k < system.size(); ++k)
-    if (system.active()[at(k)]) moves[at(system.node(k / 6).line)] = 1;
-  for (const auto& h : system.holds()) {
-    const Index i = h.unknown / 6, line = system.node(i).line;
-    if (h.unknown % 6 != system::spin_phi || !spinning_[at(i)] || h.law) continue;
-    if (moves[at(line)]) held_.emplace_back(line, i);
-    for (Index j = 0; j < system.nodes(); ++j)
-      if (system.node(j).line == line) spinning_[at(j)] = 0;
-  }
+  find_spinning();
   for (Index i = 0; i < system.nodes(); ++i)
     if (spinning_[at(i)]) orders_.push_back(std::abs(ratio_[at(system.node(i).line)]));
   std::sort(orders_.begin(), orders_.end());
@@ -130,9 +103,36 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
   workspace_.context.averaged = running_.mean;
   workspace_.context.hysteretic = running_.hysteretic;
   for (const auto& term : system.terms())
-    hysteretic_ = hysteretic_ || (running_.hysteretic && term->hysteretic());
+    hysteretic_ = hysteretic_ || term->depends(workspace_.context).rate;
   make_samples();
   sort_terms();
+}
+
+void SteadySystem::find_spinning() {
+  std::vector<unsigned char> turnable(at(system_.nodes()), 0);
+  for (const auto& term : system_.terms())
+    if (term->width() == 7) {
+      std::vector<Index> nodes;
+      term->list_nodes(nodes);
+      for (Index i : nodes)
+        turnable[at(i)] = 1;
+    }
+  spinning_.assign(at(system_.nodes()), 0);
+  for (Index i = 0; i < system_.nodes(); ++i)
+    spinning_[at(i)] =
+        turnable[at(i)] && !system_.node(i).scalar && ratio_[at(system_.node(i).line)] != 0.0;
+  // A line whose angle is held somewhere stands still. (The line of the ground points has nothing
+  // that could turn.)
+  std::vector<unsigned char> moves(at(system_.lines()), 0);
+  for (Index k = 0; k < system_.size(); ++k)
+    if (system_.active()[at(k)]) moves[at(system_.node(k / 6).line)] = 1;
+  for (const auto& h : system_.holds()) {
+    const Index i = h.unknown / 6, line = system_.node(i).line;
+    if (h.unknown % 6 != system::spin_phi || !spinning_[at(i)] || h.law) continue;
+    if (moves[at(line)]) held_.emplace_back(line, i);
+    for (Index j = 0; j < system_.nodes(); ++j)
+      if (system_.node(j).line == line) spinning_[at(j)] = 0;
+  }
 }
 
 void SteadySystem::set_load(double factor) {
@@ -150,18 +150,21 @@ void SteadySystem::set_whirl(Complex lambda, bool rotates, double side) {
   c.whirl_side = std::isnan(side) ? c.whirl : side;
 }
 
+void SteadySystem::set_frequency(double w) { workspace_.context.frequency = std::abs(w); }
+
 void SteadySystem::make_samples() {
+  if (orders_.size() > 1) return make_samples_of_orders();
+  // four a revolution: exact up to the second harmonic, aliases of the third and fourth
+  theta_ = {0.0, 0.5 * pi, pi, 1.5 * pi};
+  if (orders_.size() == 1)
+    for (double& x : theta_)
+      x /= orders_[0];
+  weights_.resize(3, 4);
+  weights_ << 0.25, 0.25, 0.25, 0.25, 0.5, 0, -0.5, 0, 0, 0.5, 0, -0.5;
+}
+
+void SteadySystem::make_samples_of_orders() {
   const Index k = static_cast<Index>(orders_.size());
-  if (k <= 1) {
-    // four a revolution: exact up to the second harmonic, aliases of the third and fourth
-    theta_ = {0.0, 0.5 * pi, pi, 1.5 * pi};
-    if (k == 1)
-      for (double& x : theta_)
-        x /= orders_[0];
-    weights_.resize(3, 4);
-    weights_ << 0.25, 0.25, 0.25, 0.25, 0.5, 0, -0.5, 0, 0, 0.5, 0, -0.5;
-    return;
-  }
   std::vector<double> harmonics = orders_;
   for (double o : orders_)
     harmonics.push_back(2.0 * o);
@@ -196,67 +199,27 @@ void SteadySystem::make_samples() {
   }
 }
 
-bool same_forces(const std::vector<Vector<7>>& f, const std::vector<Vector<7>>& g) {
-  Vec3 size = Vec3::Zero(), change = Vec3::Zero();
-  const auto largest = [](const Vector<7>& x) {
-    return Vec3(x.head<3>().cwiseAbs().maxCoeff(), x.segment<3>(3).cwiseAbs().maxCoeff(),
-                std::abs(x[6]));
-  };
-  for (std::size_t i = 0; i < f.size(); ++i) {
-    size = size.cwiseMax(largest(f[i]));
-    change = change.cwiseMax(largest(g[i] - f[i]));
-  }
-  return (change.array() <= 1e-8 * size.array()).all();  // rounding of phi differences stays below
-}
-
 void SteadySystem::sort_terms() {
-  // A term sees phi when its force changes as all lines turn on together. Small generic motions,
-  // equal for all angles.
-  std::mt19937 rng(7);
-  std::normal_distribution<double> normal;
-  const system::Frames frames = system_.make_state().frames;
-  VecX q(system_.size()), v(system_.size()), a(system_.size());
-  for (Index k = 0; k < q.size(); ++k) {
-    q[k] = 1e-6 * normal(rng);
-    v[k] = 1e-4 * normal(rng);
-    a[k] = normal(rng);
-  }
-  VecX turned = q;
+  // A term sees phi when an element of it sees the lines turn on together, as they stand at
+  // running_.time, where means over the revolution are asked for.
+  std::vector<double> rate(at(system_.nodes()), 0.0);
   for (Index i = 0; i < system_.nodes(); ++i)
-    if (spinning_[at(i)]) v[6 * i + 3] += 10.0 * ratio_[at(system_.node(i).line)];
+    if (spinning_[at(i)]) rate[at(i)] = ratio_[at(system_.node(i).line)];
+  system::Context mean = workspace_.context;
+  mean.time = running_.time;
+  mean.averaged = true;
   const auto& terms = system_.terms();
-  std::vector<std::vector<Vector<7>>> base(terms.size());
-  std::vector<unsigned char> sees(terms.size(), 0);
-  workspace_.context.averaged = true;
-  for (double theta : {0.0, 1.0, 2.3}) {
-    for (Index i = 0; i < system_.nodes(); ++i)
-      if (spinning_[at(i)])
-        turned[6 * i + 3] = q[6 * i + 3] + theta * ratio_[at(system_.node(i).line)];
-    system_.evaluate_nodes(workspace_, frames, running_.time, turned, v, a);
-    for (std::size_t k = 0; k < terms.size(); ++k) {
-      for (auto& x : workspace_.force)
-        x.setZero();
-      terms[k]->add_force(workspace_);
-      if (theta == 0.0) {
-        base[k] = workspace_.force;
-        continue;
-      }
-      if (!same_forces(base[k], workspace_.force)) sees[k] = 1;
-    }
-  }
-  workspace_.context.averaged = running_.mean;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     all_.push_back(k);
+    const bool sees = terms[k]->sees_turning(mean, rate);
     // what acts on one node alone (the integral of a governor) holds no angle against anything
     std::vector<Index> touched;
     terms[k]->list_nodes(touched);
-    if (!sees[k] && touched.size() > terms[k]->count()) blind_.push_back(k);
-    if (sees[k])
+    if (!sees && touched.size() > terms[k]->count()) blind_.push_back(k);
+    if (sees)
       (terms[k]->quadratic_in_rates() ? turning_smooth_ : turning_).push_back(k);
-    else if (terms[k]->quadratic_in_rates())
-      smooth_.push_back(k);
     else
-      other_.push_back(k);
+      (terms[k]->quadratic_in_rates() ? smooth_ : other_).push_back(k);
   }
   if (!running_.mean) {
     // nothing is averaged: what turns is evaluated like the rest
@@ -265,31 +228,17 @@ void SteadySystem::sort_terms() {
     turning_.clear();
     turning_smooth_.clear();
   }
-  find_frequency_terms();
+  set_apart_frequency_terms();
 }
 
-void SteadySystem::find_frequency_terms() {
-  steady_ = other_;
-  if (!running_.frequency_dependent()) return;
-  // The motion of sort_terms, at every frequency a table has. Whatever is not equal to the last bit
-  // may depend on it, NaN included: a table that does not reach so far.
-  std::vector<std::vector<Vector<7>>> base;
-  std::vector<unsigned char> differs(other_.size(), 0);
-  for (const double w : running_.table_frequencies) {
-    const system::FrequencyScope ask(w);
-    for (std::size_t k = 0; k < other_.size(); ++k) {
-      if (differs[k]) continue;
-      for (auto& x : workspace_.force)
-        x.setZero();
-      system_.terms()[other_[k]]->add_force(workspace_);
-      if (base.size() <= k) base.push_back(workspace_.force);
-      for (std::size_t i = 0; i < base[k].size(); ++i)
-        if (base[k][i] != workspace_.force[i] || !workspace_.force[i].allFinite()) differs[k] = 1;
-    }
-  }
-  steady_.clear();
-  for (std::size_t k = 0; k < other_.size(); ++k)
-    (differs[k] ? by_frequency_ : steady_).push_back(other_[k]);
+void SteadySystem::set_apart_frequency_terms() {
+  const auto follows_frequency = [this](std::size_t k) {
+    return running_.frequency_dependent() &&
+           system_.terms()[k]->depends(workspace_.context).frequency;
+  };
+  for (const std::size_t k : other_)
+    (follows_frequency(k) ? by_frequency_ : steady_).push_back(k);
+  turning_by_frequency_ = std::any_of(turning_.begin(), turning_.end(), follows_frequency);
 }
 
 void SteadySystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
@@ -479,8 +428,8 @@ bool SteadySystem::tangent(const system::Frames& f, double Omega, const VecX& q,
   if (by_frequency_.empty()) return fixed_tangent(f, Omega, q, out);
   const system::Context& c = workspace_.context;
   const std::array<double, 4> whirl{c.whirl, c.growth, c.whirl_side, c.whirl_rotates ? 1.0 : 0.0};
-  if (!have_fixed_ || fixed_speed_ != Omega || fixed_load_ != c.load || fixed_whirl_ != whirl ||
-      fixed_q_ != q || fixed_charts_ != f.chart) {
+  if (!have_fixed_ || turning_by_frequency_ || fixed_speed_ != Omega || fixed_load_ != c.load ||
+      fixed_whirl_ != whirl || fixed_q_ != q || fixed_charts_ != f.chart) {
     if (fixed_.M.value_count() == 0) fixed_ = system_.make_matrices();
     have_fixed_ = fixed_tangent(f, Omega, q, fixed_);
     if (!have_fixed_) return false;

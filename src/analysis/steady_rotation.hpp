@@ -7,8 +7,9 @@
 //   distinct values,
 // found from samples of the exact residual over theta (four a revolution when all lines have one
 // speed, else a least-squares fit with first and second harmonics of every speed; exact for what
-// has no higher harmonics). No element is known by name. The same averages of the tangents are the
-// matrices M, C(Omega), K(Omega); an axisymmetric balanced rotor needs no average.
+// has no higher harmonics). No element is known by name: what it depends on, it declares
+// (system/dependence.hpp). The same averages of the tangents are the matrices M, C(Omega),
+// K(Omega); an axisymmetric balanced rotor needs no average.
 //
 // Terms that are quadratic in the rates keep their (mean) matrices and forcing as polynomials in
 // Omega (C linear, K and forcing quadratic: exact), so a sweep over speeds re-evaluates films and
@@ -33,7 +34,7 @@ struct SteadyRotation {
   double top_speed = 0;  ///< highest |Omega| expected, rad/s (keeps the polynomials from being made
                          ///< twice); 0 = unknown
   /// rad/s, in any order: frequencies at which coefficients are given of supports that answer
-  /// differently to motions of different frequency (system/frequency.hpp); between neighbours they
+  /// differently to motions of different frequency (Context::frequency); between neighbours they
   /// change smoothly. Empty: there are none.
   std::vector<double> table_frequencies;
   bool frequency_dependent() const { return !table_frequencies.empty(); }
@@ -62,7 +63,10 @@ class SteadySystem {
   /// state. rotates: lambda is seen in axes turning with the shaft. side: the frequency that
   /// decides whether the whirl is faster than the spin, Im lambda unless given.
   void set_whirl(Complex lambda, bool rotates = false, double side = nan);
-  /// Something in the system depends on it.
+  /// rad/s: the frequency of the small motions that are asked about (Context::frequency), either
+  /// sign; NaN: none.
+  void set_frequency(double w);
+  /// Something in the system depends on the rate of set_whirl().
   bool hysteretic() const { return hysteretic_; }
   double load() const { return workspace_.context.load; }
 
@@ -114,9 +118,11 @@ class SteadySystem {
   bool fixed_tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);
   bool make_polynomial(const system::Frames& f, double Omega, const VecX& q);
   bool fits_polynomial(const system::Frames& f, double Omega, const VecX& q) const;
+  void find_spinning();
   void sort_terms();
-  void find_frequency_terms();
+  void set_apart_frequency_terms();
   void make_samples();
+  void make_samples_of_orders();
 
   const system::System& system_;
   SteadyRotation running_;
@@ -128,10 +134,11 @@ class SteadySystem {
   Terms smooth_, other_;            ///< blind to phi: quadratic in the rates; the rest
   Terms turning_smooth_, turning_;  ///< that see phi: the same
   Terms blind_, all_;
-  Terms by_frequency_, steady_;  ///< of other_: those that answer differently to motions of
-                                 ///< different frequency; the rest
-  std::vector<double> theta_;    ///< samples
-  MatX weights_;                 ///< rows: mean, then cos and sin of each order; columns: samples
+  Terms by_frequency_, steady_;        ///< of other_: those that answer differently to motions of
+                                       ///< different frequency; the rest
+  bool turning_by_frequency_ = false;  ///< some of turning_ do too
+  std::vector<double> theta_;          ///< samples
+  MatX weights_;  ///< rows: mean, then cos and sin of each order; columns: samples
   bool hysteretic_ = false;
   system::Workspace workspace_;
   VecX q_, v_, a_, r_;  // scratch
@@ -163,9 +170,5 @@ class SteadySystem {
 /// So it does for parts that carry no shaft. Without any turning shaft all are +1. A mirrored
 /// machine has the opposite signs throughout.
 std::vector<double> spin_senses(const system::System& system, std::span<const double> ratio);
-
-/// Node forces f and g of one term are equal but for rounding: to 1e-8 of its largest force,
-/// director force and torque.
-bool same_forces(const std::vector<Vector<7>>& f, const std::vector<Vector<7>>& g);
 
 }  // namespace whirl::analysis

@@ -60,6 +60,104 @@ void check_environment() {
                          "it is baseline, avx2 or avx512; leave it out for the best one", Where{}});
 }
 
+/// What the subcommands are given.
+struct Given {
+  CheckOptions check;
+  RunCommand run;
+  bool keep_everything = false;
+  study::StudyOptions study;
+  bool stability = false;
+  bool reference = false, unit_list = false;
+  std::vector<std::string> codes;
+  NewOptions fresh;
+  std::string shell;
+};
+
+void add_check(CLI::App& app, Given& g) {
+  auto* c = app.add_subcommand("check",
+                               "read a deck; print stations, masses and everything that is wrong");
+  add_deck(c, g.check.deck, g.check.read);
+  c->add_option(
+       "--mesh", g.check.mesh,
+       "write nodes, elements and stations (CSV) and a drawing of the rotor (SVG) into this folder")
+      ->type_name("FOLDER");
+  c->add_flag("--json", g.check.json, "result as JSON on standard output");
+  c->add_flag("-q,--quiet", g.check.quiet, "errors only");
+  c->add_flag("--resolved", g.check.resolved,
+              "print the resolved deck: parameters put in, defaults explicit");
+}
+
+void add_run_command(CLI::App& app, Given& g) {
+  auto* c = app.add_subcommand("run", "run the steps of a deck");
+  add_deck(c, g.run.deck, g.run.read);
+  add_run(c, g.run.run);
+  c->add_flag("--resume", g.run.run.resume, "continue from the last checkpoint");
+  c->add_flag("--keep-everything", g.keep_everything,
+              "build the general model instead of leaving out what the deck does not need");
+}
+
+void add_study(CLI::App& app, Given& g) {
+  auto* c = app.add_subcommand(
+      "study", "error against run time of a deck over tolerances, steps, integrators and meshes");
+  add_deck(c, g.study.deck, g.study.read);
+  add_run(c, g.study.run);
+  c->add_option("--exact", g.study.exact,
+                "exact displacements of probes to measure against as well: CSV with columns \"t "
+                "[s]\", \"PROBE.y [m]\", ..")
+      ->type_name("FILE");
+  c->add_flag("--stability", g.stability,
+              "instead: spectral radius, numerical damping and energy over 1e5 steps of every "
+              "integrator on this rotor");
+}
+
+void add_texts(CLI::App& app, Given& g) {
+  auto* c = app.add_subcommand("schema", "JSON schema of decks, for editors");
+  auto* r = c->add_flag("--reference", g.reference, "all tables and keys as Markdown");
+  c->add_flag("--units", g.unit_list, "all units as Markdown")->excludes(r);
+
+  c = app.add_subcommand("explain", "what an error code means; without a code: the list");
+  c->add_option("codes", g.codes, "error codes")->type_name("CODE");
+
+  c = app.add_subcommand("new",
+                         "write a commented deck to start from; without --example: the list");
+  c->add_option("--example", g.fresh.example, "which one")->type_name("NAME");
+  c->add_option("file", g.fresh.file, "file to write (standard output when left out)");
+  c->add_flag("--force", g.fresh.force, "replace an existing file");
+
+  c = app.add_subcommand("completion", "completion script for a shell");
+  c->add_option("shell", g.shell, "bash or fish")
+      ->required()
+      ->check(CLI::IsMember({"bash", "fish"}));
+
+  app.add_subcommand("version", "version, compiler, plug-ins");
+}
+
+int execute(const CLI::App& app, Given& g) {
+  const auto is = [&](const char* name) { return app.got_subcommand(name); };
+  if (is("check")) return check_deck(g.check);
+  if (is("run")) {
+    g.run.run.terminal = run::is_terminal(2);
+    if (g.keep_everything) g.run.read.set.emplace_back("model.keep_everything=true");
+    return run_command(g.run);
+  }
+  if (is("study")) {
+    g.study.run.terminal = run::is_terminal(2);
+    return g.stability ? study::study_stability(g.study) : study::study_deck(g.study);
+  }
+  if (is("schema"))
+    return print_schema(g.reference   ? SchemaForm::reference
+                        : g.unit_list ? SchemaForm::units
+                                      : SchemaForm::json);
+  if (is("explain")) return explain(g.codes);
+  if (is("new")) return new_deck(g.fresh);
+  if (is("completion")) {
+    std::fputs(completion_script(g.shell, commands_of(app)).c_str(), stdout);
+    return static_cast<int>(Exit::ok);
+  }
+  std::fputs(version_text().c_str(), stdout);
+  return static_cast<int>(Exit::ok);
+}
+
 int command_line(int argc, char** argv) {
   check_environment();
   CLI::App app{"Whirl: dynamics of rotor-shaft systems, exact in large rotation", "whirl"};
@@ -74,93 +172,18 @@ int command_line(int argc, char** argv) {
       "  whirl run deck.toml                     run it\n  whirl explain E07                       "
       "what an error code means");
 
-  CheckOptions check;
-  auto* c = app.add_subcommand("check",
-                               "read a deck; print stations, masses and everything that is wrong");
-  add_deck(c, check.deck, check.read);
-  c->add_option(
-       "--mesh", check.mesh,
-       "write nodes, elements and stations (CSV) and a drawing of the rotor (SVG) into this folder")
-      ->type_name("FOLDER");
-  c->add_flag("--json", check.json, "result as JSON on standard output");
-  c->add_flag("-q,--quiet", check.quiet, "errors only");
-  c->add_flag("--resolved", check.resolved,
-              "print the resolved deck: parameters put in, defaults explicit");
-
-  RunCommand run;
-  c = app.add_subcommand("run", "run the steps of a deck");
-  add_deck(c, run.deck, run.read);
-  add_run(c, run.run);
-  c->add_flag("--resume", run.run.resume, "continue from the last checkpoint");
-  bool keep_everything = false;
-  c->add_flag("--keep-everything", keep_everything,
-              "build the general model instead of leaving out what the deck does not need");
-
-  study::StudyOptions study;
-  c = app.add_subcommand(
-      "study", "error against run time of a deck over tolerances, steps, integrators and meshes");
-  add_deck(c, study.deck, study.read);
-  add_run(c, study.run);
-  c->add_option("--exact", study.exact,
-                "exact displacements of probes to measure against as well: CSV with columns \"t "
-                "[s]\", \"PROBE.y [m]\", ..")
-      ->type_name("FILE");
-  bool stability = false;
-  c->add_flag("--stability", stability,
-              "instead: spectral radius, numerical damping and energy over 1e5 steps of every "
-              "integrator on this rotor");
-
-  bool reference = false, unit_list = false;
-  c = app.add_subcommand("schema", "JSON schema of decks, for editors");
-  auto* r = c->add_flag("--reference", reference, "all tables and keys as Markdown");
-  c->add_flag("--units", unit_list, "all units as Markdown")->excludes(r);
-
-  std::vector<std::string> codes;
-  c = app.add_subcommand("explain", "what an error code means; without a code: the list");
-  c->add_option("codes", codes, "error codes")->type_name("CODE");
-
-  NewOptions fresh;
-  c = app.add_subcommand("new",
-                         "write a commented deck to start from; without --example: the list");
-  c->add_option("--example", fresh.example, "which one")->type_name("NAME");
-  c->add_option("file", fresh.file, "file to write (standard output when left out)");
-  c->add_flag("--force", fresh.force, "replace an existing file");
-
-  std::string shell;
-  c = app.add_subcommand("completion", "completion script for a shell");
-  c->add_option("shell", shell, "bash or fish")->required()->check(CLI::IsMember({"bash", "fish"}));
-
-  app.add_subcommand("version", "version, compiler, plug-ins");
-
+  Given given;
+  add_check(app, given);
+  add_run_command(app, given);
+  add_study(app, given);
+  add_texts(app, given);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e);  // prints help, version or the message
     return code == 0 ? static_cast<int>(Exit::ok) : static_cast<int>(Exit::usage);
   }
-  const auto given = [&](const char* name) { return app.got_subcommand(name); };
-  if (given("check")) return check_deck(check);
-  if (given("run")) {
-    run.run.terminal = run::is_terminal(2);
-    if (keep_everything) run.read.set.emplace_back("model.keep_everything=true");
-    return run_command(run);
-  }
-  if (given("study")) {
-    study.run.terminal = run::is_terminal(2);
-    return stability ? study::study_stability(study) : study::study_deck(study);
-  }
-  if (given("schema"))
-    return print_schema(reference   ? SchemaForm::reference
-                        : unit_list ? SchemaForm::units
-                                    : SchemaForm::json);
-  if (given("explain")) return explain(codes);
-  if (given("new")) return new_deck(fresh);
-  if (given("completion")) {
-    std::fputs(completion_script(shell, commands_of(app)).c_str(), stdout);
-    return static_cast<int>(Exit::ok);
-  }
-  std::fputs(version_text().c_str(), stdout);
-  return static_cast<int>(Exit::ok);
+  return execute(app, given);
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ struct SupportCondition {
     double gap = 0, displacement = 0;  ///< m
     double load = 0, capacity = 0;     ///< N; capacity of a film: at the believed eccentricity
   };
+  std::size_t bearing = 0;  ///< of the model
   std::string name;
   Where where;
   std::function<State(const NodeAt&)> state;
@@ -81,7 +82,10 @@ struct Built {
   std::vector<ElementForce> element_forces;  ///< one an element of the mesh
   std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors),
                                     ///< sorted: integrator steps land on them
-  std::vector<SupportForce> support_forces;
+  std::vector<SupportForce> support_forces;  ///< one a bearing of the model, in its order
+  std::vector<std::vector<std::size_t>>
+      support_terms;  ///< of each bearing the terms of the system in which its law stands, without
+                      ///< constant springs and dampers; they may hold other bearings' elements
   std::vector<SupportCondition> conditions;
   struct Fine {
     Index node;
@@ -99,7 +103,7 @@ struct Built {
                                    ///< each, for the summary
   std::vector<double>
       table_frequencies;  ///< rad/s, in no order: of supports with coefficients against the
-                          ///< frequency of the motion (system/frequency.hpp)
+                          ///< frequency of the motion (Context::frequency)
   std::vector<std::string>
       held;  ///< motions that nothing resists and that are held for it, one line each
   std::vector<std::string>
@@ -109,8 +113,9 @@ struct Built {
 };
 
 /// step: name of the step whose drives act (drives without a step always act); "" = only those
-/// without. Errors (Exit::deck): unrestrained motion named with its shaft, attachments off the
-/// shaft, impossible bodies.
+/// without.
+/// @throws Error (Exit::deck) unrestrained motion named with its shaft, attachments off the shaft,
+/// impossible bodies.
 Built build_system(const model::Model& model, const meshes::Mesh& mesh,
                    const std::string& step = {});
 

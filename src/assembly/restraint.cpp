@@ -20,47 +20,14 @@ namespace {
 
 enum Direction { x, y, z, rx, ry, rz };
 
-/// Directions in which a bearing resists relative motion of its sides.
-std::array<bool, 6> resisted(const model::Bearing& b) {
-  std::array<bool, 6> out{};
-  if (const auto* linear = std::get_if<model::LinearBearing>(&b.law)) {
-    for (int c = 0; c < 6; ++c)
-      out[static_cast<std::size_t>(c)] = !linear->K.row(c).isZero(0.0);
-  } else if (const auto* table = std::get_if<model::TableBearing>(&b.law)) {
-    for (const auto& k : table->K)
-      for (int c = 0; c < 6; ++c)
-        out[static_cast<std::size_t>(c)] |= !k.row(c).isZero(0.0);
-  } else if (const auto* block = std::get_if<model::SpringBlock>(&b.law)) {
-    out[x] = out[y] = out[z] = block->C1 != 0;
-    out[ry] = out[rz] = block->C2 != 0;
-  } else if (const auto* rigid = std::get_if<model::RigidSupport>(&b.law)) {
-    out = rigid->held;
-    for (std::size_t c = 0; c < 3 && b.pedestal; ++c)  // through the spring of its pedestal
+/// Directions in which a bearing resists relative motion of its sides. A law that holds the shaft
+/// exactly to a pedestal does so through the pedestal's spring.
+model::Directions resisted(const model::Bearing& b) {
+  const model::SupportTraits t = model::traits_of(b.law);
+  model::Directions out = t.held;
+  if (t.acts == model::Acts::as_constraint && b.pedestal)
+    for (std::size_t c = 0; c < 3; ++c)
       out[c] = out[c] && !b.pedestal->K.row(static_cast<Index>(c)).isZero(0.0);
-  } else if (const auto* spring = std::get_if<model::NonlinearSpring>(&b.law)) {
-    using Along = model::NonlinearSpring::Along;
-    static constexpr Direction of[] = {y, z, y, x, ry, rz, rx};
-    out[of[static_cast<std::size_t>(spring->along)]] = true;
-    if (spring->along == Along::radial) out[z] = true;
-  } else if (const auto* damper = std::get_if<model::SqueezeFilm>(&b.law)) {
-    out[y] = out[z] = damper->stiffness > 0;  // the film alone carries nothing at rest
-  } else if (std::holds_alternative<model::BallBearing>(b.law)) {
-    out[x] = out[y] = out[z] = out[ry] = out[rz] = true;
-  } else if (const auto* estimate = std::get_if<model::RollingEstimate>(&b.law)) {
-    out[x] = estimate->kxx > 0;
-    out[y] = out[z] = true;
-  } else if (std::holds_alternative<model::RollerBearing>(b.law)) {
-    out[y] = out[z] = out[ry] = out[rz] = true;
-  } else if (const auto* coupling = std::get_if<model::Coupling>(&b.law)) {
-    for (int c = 0; c < 6; ++c)
-      out[static_cast<std::size_t>(c)] = !coupling->K.row(c).isZero(0.0);
-  } else if (const auto* gear = std::get_if<model::GearPair>(&b.law)) {
-    out[x] = gear->helix != 0;  // one direction in space: not counted as holding y and z
-  } else if (std::holds_alternative<model::CrossCoupling>(b.law)) {
-    // circulatory: holds nothing
-  } else {
-    out[y] = out[z] = true;  // a film, a seal or a contact carries load once it is displaced
-  }
   return out;
 }
 
@@ -189,7 +156,7 @@ class Restraint {
   }
   struct Link {
     End a, b;
-    std::array<bool, 6> in;
+    model::Directions in;
   };
 
   /// Groups of lines connected by links that act in one of the directions.
@@ -279,11 +246,7 @@ class Restraint {
     for (const model::PointLoad& l : a_.model.loads)
       if (contains(lines, static_cast<Index>(l.at.shaft)) && acts(l.force)) return true;
     for (const model::Bearing& b : a_.model.bearings) {
-      const auto* linear = std::get_if<model::LinearBearing>(&b.law);
-      const auto* table = std::get_if<model::TableBearing>(&b.law);
-      const Vec3 preload = linear  ? Vec3(linear->preload.head<3>())
-                           : table ? Vec3(table->preload.head<3>())
-                                   : Vec3(Vec3::Zero());
+      const Vec3 preload = model::traits_of(b.law).bias->preload.head<3>();
       if (contains(lines, static_cast<Index>(b.at.shaft)) && acts(preload)) return true;
     }
     for (const model::Step& s : a_.model.steps)

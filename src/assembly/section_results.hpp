@@ -4,7 +4,7 @@
 // axes: t along the section normal d, y and z the shaft's lateral axes carried to d by the minimal
 // rotation (they do not turn with the spin).
 //   N = F.t (tension positive), V = (F.y, F.z), T = M.t, M = (M.y, M.z); on a straight shaft
-//   dM_z/ds = -V_y, dM_y/ds = V_z,
+//       dM_z/ds = -V_y, dM_y/ds = V_z,
 // and M_z > 0 bends it hollow towards +y. On a line along a path y and z are the axes carried along
 // it, as they now stand. At element ends they are what the element puts on its nodes, loads and
 // inertia spread over it included: exact with respect to equilibrium for any mesh. Between them F
@@ -14,8 +14,9 @@
 // general ones), Pa:
 //   axial N/A, bending |M| c/I, torsion |T| c/J, and von Mises, the larger of
 //   sqrt((|N|/A + |M| c/I)^2 + 3 (T c/J)^2) at the surface and sqrt((N/A)^2 + 3 (T c/J + tau_V)^2)
-//   at the neutral fibre, with tau_V = 4 V (Ro^2 + Ro Ri + Ri^2)/(3 A (Ro^2 + Ri^2))   (S.
-//   Timoshenko, J. Gere, Mechanics of Materials, 3rd ed., 5.9)
+//       at the neutral fibre, with
+//   tau_V = 4 V (Ro^2 + Ro Ri + Ri^2)/(3 A (Ro^2 + Ri^2))
+//       (S. Timoshenko, J. Gere, Mechanics of Materials, 3rd ed., 5.9)
 // Nominal: no stress concentration.
 #pragma once
 #include <assembly/build_system.hpp>

@@ -14,6 +14,17 @@ using Pair = std::array<Index, 2>;
 inline std::string name_of(const model::Bearing& b) { return fmt::format("bearing '{}'", b.name); }
 inline system::Nodes<2> nodes_of(const NodeAt& at, const Pair& n) { return {&at(n[0]), &at(n[1])}; }
 
+inline std::size_t number_of(const Assembly& a, const model::Bearing& b) {
+  return static_cast<std::size_t>(&b - a.model.bearings.data());
+}
+
+/// Adds an element of a bearing whose coefficients may depend on the state.
+template <class Kernel>
+void add_element(Assembly& a, const model::Bearing& b, const Kernel& k, const Pair& nodes,
+                 const char* kind) {
+  a.built.support_terms[number_of(a, b)].push_back(a.builder.add(k, nodes, kind));
+}
+
 /// What a kernel's factory refuses becomes an error of the deck. Returns whether it went well.
 template <class Make>
 bool guarded(Assembly& a, const model::Bearing& b, Make make) {
@@ -44,11 +55,11 @@ void add_lateral(Assembly& a, const model::Bearing& b, const meshes::BearingNode
   const auto add = [&](auto joint) {
     joint.law = law;
     joint.offset = {n.shaft.offset, n.other.offset};
-    a.builder.add(joint, nodes, kind);
+    add_element(a, b, joint, nodes, kind);
     a.built.support_forces.push_back(
-        {b.name, [joint, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
+        {b.name, [joint, nodes](const NodeAt& at, const system::Context& c, const ReactionAt&) {
            Vector<4> z;
-           joint.law.force(joint.motion_of(nodes_of(at, nodes)), z);
+           joint.law.force(joint.motion_of(nodes_of(at, nodes), c), z);
            return Vec3(0, z[0], z[1]);
          }});
     if (friction == Friction::none) return;
@@ -73,7 +84,7 @@ void add_joint(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
   const Pair nodes{n.shaft.node, n.other.node};
   const auto add = [&](const auto& k) {
     using Kernel = std::decay_t<decltype(k)>;
-    a.builder.add(k, nodes, kind);
+    add_element(a, b, k, nodes, kind);
     const auto left_side = [k, nodes](const NodeAt& at, const system::Context& c) {
       system::ForceX<2 * Kernel::width> f = system::ForceX<2 * Kernel::width>::Zero();
       k.add_force(nodes_of(at, nodes), c, f);
@@ -105,8 +116,13 @@ inline std::function<Vec2(const NodeAt&)> displacement_of(const meshes::BearingN
   };
 }
 
-void add_linear(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
-                const model::LinearBearing&);  // supports.cpp
+// One a law: how it comes into the system. Rigid supports: supports.cpp.
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::LinearBearing&);  // supports.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::SpringBlock&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::TableBearing&);
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::NonlinearSpring&);  // supports_contact.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::Rub&);

@@ -17,8 +17,8 @@ namespace whirl::assembly {
 
 // ---------------------------------------------------------------- one function a law
 
-void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
-                const model::LinearBearing& law) {
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+             const model::LinearBearing& law) {
   const Pair nodes{n.shaft.node, n.other.node};
   const auto translations_only = [](const Matrix<6>& m) {
     return m.bottomRows<3>().isZero(0.0) && m.topRightCorner<3, 3>().isZero(0.0);
@@ -52,14 +52,10 @@ void add_linear(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
     };
 }
 
-namespace {
-
-void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
-               const model::SpringBlock& law) {
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+             const model::SpringBlock& law) {
   if (n.other.node >= 0) {  // relative to a moving point: the linear form
-    model::LinearBearing linear;
-    linear.K.diagonal() << law.C1, law.C1, law.C1, 0, law.C2, law.C2;
-    add_linear(a, b, n, linear);
+    add_law(a, b, n, linear_form(law));
     return;
   }
   elements::SpringBlock k;
@@ -80,6 +76,8 @@ void add_block(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     return moment_about_place(at(node), f, k.offset);
   };
 }
+
+namespace {
 
 template <int N>
 std::vector<elements::CoefficientValues<N>> table_rows(const model::TableBearing& law) {
@@ -107,14 +105,14 @@ void add_table_law(Assembly& a, const model::Bearing& b, const meshes::BearingNo
       const Pair nodes{n.shaft.node, n.other.node};
       const elements::SpatialTableBearing<mass.value, Table> k{
           table, {n.shaft.offset, n.other.offset}, law.setpoint, law.preload};
-      a.builder.add(k, nodes, kind);
+      add_element(a, b, k, nodes, kind);
       a.built.support_forces.push_back(
           {b.name,
-           [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
-             return Vec3(k.load_on_first(nodes_of(at, nodes)).template head<3>());
+           [k, nodes](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+             return Vec3(k.load_on_first(nodes_of(at, nodes), c).template head<3>());
            },
-           [k, nodes](const NodeAt& at, const system::Context&, const ReactionAt&) {
-             return Vec3(k.load_on_first(nodes_of(at, nodes)).template tail<3>());
+           [k, nodes](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+             return Vec3(k.load_on_first(nodes_of(at, nodes), c).template tail<3>());
            }});
     }
   };
@@ -147,8 +145,10 @@ void add_table_of(Assembly& a, const model::Bearing& b, const meshes::BearingNod
   });
 }
 
-void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
-               const model::TableBearing& law) {
+}  // namespace
+
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+             const model::TableBearing& law) {
   const auto lateral = [](const std::vector<Matrix<6>>& list) {
     return std::all_of(list.begin(), list.end(), [](Matrix<6> m) {
       m.block<2, 2>(1, 1).setZero();
@@ -165,9 +165,12 @@ void add_table(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
 
 // ---------------------------------------------------------------- rigid supports
 
+namespace {
+
 /// What rigid supports hold of one node. A second one on the same rigid stretch, `arm` away, holds
 /// the tilts instead: with u held, u + arm (d - e) = 0 means d_y = gamma3 sin g/g = 0, d_z =
-/// -gamma2 sin g/g = 0. The reaction of a displacement is then the sum of both supports' forces.
+/// -gamma2 sin g/g = 0.
+/// The reaction of a displacement is then the sum of both supports' forces.
 struct HeldNode {
   struct Share {
     std::size_t direction;
@@ -221,7 +224,7 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
     if (!whole) linear.M.topLeftCorner<3, 3>() = b.pedestal->mass * Mat3(on.asDiagonal());
     meshes::BearingNodes to_ground = n;
     to_ground.other = {n.ground, 0.0};
-    add_linear(a, b, to_ground, linear);
+    add_law(a, b, to_ground, linear);
     SupportForce& support = a.built.support_forces.back();
     if (whole && b.pedestal->mass > 0) {
       // its weight and inertia (ddu: less gravity) stand between the spring and the shaft
@@ -297,6 +300,7 @@ void add_pedestal(Assembly& a, const model::Bearing& b, const meshes::BearingNod
 
 void add_supports(Assembly& a) {
   std::map<Index, HeldNode> held;
+  a.built.support_terms.resize(a.model.bearings.size());
   for (std::size_t i = 0; i < a.model.bearings.size(); ++i) {
     const model::Bearing& b = a.model.bearings[i];
     const meshes::BearingNodes& n = a.mesh.bearings[i];
@@ -316,13 +320,7 @@ void add_supports(Assembly& a) {
     std::visit(
         [&](const auto& law) {
           using Law = std::decay_t<decltype(law)>;
-          if constexpr (std::is_same_v<Law, model::LinearBearing>)
-            add_linear(a, b, n, law);
-          else if constexpr (std::is_same_v<Law, model::SpringBlock>)
-            add_block(a, b, n, law);
-          else if constexpr (std::is_same_v<Law, model::TableBearing>)
-            add_table(a, b, n, law);
-          else if constexpr (std::is_same_v<Law, model::RigidSupport>)
+          if constexpr (std::is_same_v<Law, model::RigidSupport>)
             add_rigid(a, b, n, law, held);
           else
             add_law(a, b, n, law);

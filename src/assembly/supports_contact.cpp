@@ -72,13 +72,14 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     return;
   }
   add_lateral(a, b, n, k, "contacts");
-  a.built.conditions.push_back({b.name, b.where, [r = displacement_of(n), k](const NodeAt& at) {
-                                  SupportCondition::State s;
-                                  s.gap = k.gap;
-                                  s.displacement = r(at).norm();
-                                  s.load = k.stiffness * std::max(0.0, s.displacement - k.gap);
-                                  return s;
-                                }});
+  a.built.conditions.push_back(
+      {number_of(a, b), b.name, b.where, [r = displacement_of(n), k](const NodeAt& at) {
+         SupportCondition::State s;
+         s.gap = k.gap;
+         s.displacement = r(at).norm();
+         s.load = k.stiffness * std::max(0.0, s.displacement - k.gap);
+         return s;
+       }});
 }
 
 }  // namespace whirl::assembly

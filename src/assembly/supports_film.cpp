@@ -33,7 +33,7 @@ void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
   follow_closely(a, n, clearance);
   const Pair nodes{n.shaft.node, n.other.node};
   a.built.conditions.push_back(
-      {b.name, b.where,
+      {number_of(a, b), b.name, b.where,
        [r = displacement_of(n), law, clearance, nodes](const NodeAt& at) {
          elements::LateralMotion m;
          m.r = r(at);
@@ -121,16 +121,16 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
       add_damper(a, b, n, film);
     }
     follow_closely(a, n, law.clearance);
-    a.built.conditions.push_back({b.name, b.where, [r = displacement_of(n), law](const NodeAt& at) {
-                                    SupportCondition::State s;
-                                    s.film = true;
-                                    s.gap = law.clearance;
-                                    s.displacement = r(at).norm();
-                                    s.load = law.stiffness * s.displacement;
-                                    s.capacity =
-                                        law.stiffness * SupportCondition::believed * law.clearance;
-                                    return s;
-                                  }});
+    a.built.conditions.push_back(
+        {number_of(a, b), b.name, b.where, [r = displacement_of(n), law](const NodeAt& at) {
+           SupportCondition::State s;
+           s.film = true;
+           s.gap = law.clearance;
+           s.displacement = r(at).norm();
+           s.load = law.stiffness * s.displacement;
+           s.capacity = law.stiffness * SupportCondition::believed * law.clearance;
+           return s;
+         }});
     if (law.stiffness == 0 && law.damping == 0) return;
     // The centring spring acts beside the film: one support, two elements. Its force is added to
     // the film's.
@@ -140,7 +140,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
       spring.C(k, k) = law.damping;
     }
     auto film = a.built.support_forces.back().force;
-    add_linear(a, b, n, spring);
+    add_law(a, b, n, spring);
     auto centring = a.built.support_forces.back().force;
     a.built.support_forces.pop_back();
     a.built.support_forces.back().force =
@@ -179,7 +179,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
   model::LinearBearing linear;  // F = -K q: F_y = -k z, F_z = k y
   linear.K(1, 2) = k;
   linear.K(2, 1) = -k;
-  add_linear(a, b, n, linear);
+  add_law(a, b, n, linear);
 }
 
 }  // namespace whirl::assembly

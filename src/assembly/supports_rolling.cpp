@@ -3,8 +3,6 @@
 #include <elements/rolling/hertz.hpp>
 #include <elements/rolling/rolling_bearing.hpp>
 
-#include <Eigen/Geometry>
-
 #include <cmath>
 
 namespace whirl::assembly {
@@ -68,16 +66,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
              const model::RollingEstimate& law) {
-  const elements::BearingEstimate k =
-      law.roller
-          ? elements::estimate_roller_bearing(law.elements, law.size, law.load, law.contact_angle)
-          : elements::estimate_ball_bearing(law.elements, law.size, law.load, law.contact_angle);
-  const Mat2 turn = Eigen::Rotation2Dd(law.load_angle).toRotationMatrix();
-  model::LinearBearing linear;
-  linear.K.block<2, 2>(1, 1) = turn * Vec2(k.along, k.across).asDiagonal() * turn.transpose();
-  linear.K(0, 0) = law.kxx;
-  linear.C(1, 1) = linear.C(2, 2) = law.c_radial;
-  add_linear(a, b, n, linear);
+  add_law(a, b, n, linear_form(law));
 }
 
 }  // namespace whirl::assembly

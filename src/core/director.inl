@@ -1,7 +1,7 @@
 // The director d(gamma) = e cos g + (sin g/g) gamma x e and its motion, for one node (T = double)
 // or several (T a compiler vector). Included inside an anonymous namespace after <math.h>; the
-// includer gives bool every(mask) and WHIRL_INLINE. The functions b_k are those of BesselRatios
-// (core/rotation.hpp).
+// includer gives bool every(mask), WHIRL_INLINE and core/series.inl. The functions b_k are those of
+// BesselRatios (core/rotation.hpp).
 
 // b_m = sum_k (-x/2)^k / (k! (2m+2k+1)!!).
 template <int M>
@@ -20,14 +20,6 @@ struct BesselSeries {
 };
 constexpr BesselSeries<2> series_b2;
 constexpr BesselSeries<3> series_b3;
-
-template <int N, class T>
-WHIRL_INLINE T horner(const double* c, T x) {
-  T s = c[N - 2] + c[N - 1] * x;
-  for (int k = N - 3; k >= 0; --k)
-    s = s * x + c[k];
-  return s;
-}
 
 template <class T>
 struct Ratios {

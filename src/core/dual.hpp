@@ -79,6 +79,8 @@ struct Vec3T {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
   }
   friend Vec3T operator*(const T& s, const Vec3T& a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend Vec3T operator/(const Vec3T& a, const T& s) { return (T(1.0) / s) * a; }
+  friend Vec3T operator-(const Vec3T& a) { return {-a.x, -a.y, -a.z}; }
   T dot(const Vec3T& b) const { return x * b.x + y * b.y + z * b.z; }
   Vec3T cross(const Vec3T& b) const {
     return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x};

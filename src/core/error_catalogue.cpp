@@ -463,6 +463,22 @@ const std::vector<CodeInfo>& error_catalogue() {
        "all, because the load bends the structure on the way (a shallow "
        "arch, a column that is not straight, a force across the plane). The path is right.",
        "[[step]]\nname = \"path\"\ntype = \"static\"\npath = { load = 2 }"},
+      {"W10", "a mesh too coarse for its frequencies",
+       "The elements the deck asks for leave frequencies of the step an error above "
+       "[model.mesh] accuracy. The error is estimated mode by mode: what the mode would do on "
+       "elements a fourth as long, to first order. Without min_elements and max_element_length "
+       "the program chooses elements that are short enough.",
+       "[model.mesh]\naccuracy = 1e-3"},
+      {"W11", "a linear response larger than a gap",
+       "Steady responses are computed about the equilibrium, with the stiffness and damping the "
+       "supports have there. Where the motion found is larger than the clearance of a bearing or "
+       "the gap of a stop, the machine does something else: it touches, or its film stiffens. The "
+       "message says where, at which speed, and by how much.",
+       "[[step]]\ntype = \"transient\""},
+      {"W12", "a table of a bearing is held beyond its end",
+       "The step turns a shaft faster or slower than the table of its bearing covers, and the "
+       "bearing says that the coefficients at the edge hold there. They are a guess.",
+       "extrapolate = \"error\""},
   };
   return t;
 }

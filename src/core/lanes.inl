@@ -61,15 +61,20 @@ WHIRL_INLINE void load4(const double* const* p, T& a, T& b, T& c, T& d) {
   d = T{p[0][3], p[1][3]};
 #endif
 }
-WHIRL_INLINE void advance(const double** p, int n) {
-  for (int i = 0; i < width; ++i)
-    p[i] += n;
-}
-WHIRL_INLINE T load(const double* const* p) {
-  T r{};
-  for (int i = 0; i < width; ++i)
-    r[i] = *p[i];
-  return r;
+/// N >= 4 consecutive doubles of each into N vectors.
+template <int N, int K = 0>
+WHIRL_INLINE void load_record(const double* const* from, T (&r)[N]) {
+  if constexpr (K < N && N - K != 1) {
+    constexpr int first = K + 4 <= N ? K : N - 4;  // the last four may repeat some
+    const double* p[width];
+    for (int i = 0; i < width; ++i)
+      p[i] = from[i] + first;
+    load4(p, r[first], r[first + 1], r[first + 2], r[first + 3]);
+    load_record<N, K + 4>(from, r);
+  } else if constexpr (K < N) {
+    for (int i = 0; i < width; ++i)
+      r[K][i] = from[i][K];
+  }
 }
 /// Four components to four consecutive doubles of each, the first `used` only.
 WHIRL_INLINE void store4(double* const* p, int offset, int used, T a, T b, T c, T d) {
@@ -87,6 +92,18 @@ WHIRL_INLINE void store4(double* const* p, int offset, int used, T a, T b, T c, 
       p[i][offset + 3] = d[i];
     }
 #endif
+}
+/// N vectors to N consecutive doubles of each, the first `used` only.
+template <int N, int K = 0>
+WHIRL_INLINE void store_record(double* const* to, int used, const T (&r)[N]) {
+  if constexpr (K + 4 <= N) {
+    store4(to, K, used, r[K], r[K + 1], r[K + 2], r[K + 3]);
+    store_record<N, K + 4>(to, used, r);
+  } else {
+    for (int i = 0; i < used; ++i)
+      for (int k = K; k < N; ++k)
+        to[i][k] = r[k][i];
+  }
 }
 /// Adds four components to four consecutive doubles of each element, the first `used` elements
 /// only.
@@ -112,9 +129,34 @@ struct V {
 };
 WHIRL_INLINE V operator+(V a, V b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 WHIRL_INLINE V operator-(V a, V b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+WHIRL_INLINE V operator-(V a) { return V{} - a; }
 WHIRL_INLINE V operator*(T s, V a) { return {s * a.x, s * a.y, s * a.z}; }
 WHIRL_INLINE T dot(V a, V b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 WHIRL_INLINE V cross(V a, V b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 WHIRL_INLINE void add(V& a, V b) { a = a + b; }
+
+/// Three numbers of a record; those of a vector into a record.
+WHIRL_INLINE V vector_at(const T* r, int place) { return {r[place], r[place + 1], r[place + 2]}; }
+WHIRL_INLINE void put(V a, T* r, int place) {
+  r[place] = a.x;
+  r[place + 1] = a.y;
+  r[place + 2] = a.z;
+}
+
+// The names that formulas for one and for several have in common (core/single.hpp).
+template <class Scalar, class Vector>
+struct NumbersOf {
+  using T = Scalar;
+  using V = Vector;
+};
+using Lanes = NumbersOf<T, V>;
+WHIRL_INLINE T at_least(T x, T limit) { return x > limit ? x : limit; }
+/// What vectors and scalars are divided by: one division for all of them.
+struct Divisor {
+  T inverse;
+};
+WHIRL_INLINE Divisor divisor(T x) { return {1.0 / x}; }
+WHIRL_INLINE T operator/(T a, Divisor d) { return a * d.inverse; }
+WHIRL_INLINE V operator/(V a, Divisor d) { return d.inverse * a; }

@@ -66,6 +66,10 @@ class PiecewisePolynomial final : public Law {
   }
   double integral(double t) const override { return primitive(piece(t), t); }
   std::vector<double> breakpoints() const override { return knots_; }
+  bool constant() const override {
+    return pieces_.size() == 1 && std::all_of(pieces_[0].c.begin() + (pieces_[0].c.empty() ? 0 : 1),
+                                              pieces_[0].c.end(), [](double x) { return x == 0; });
+  }
 
  private:
   const Piece& piece(double t) const {
@@ -209,6 +213,9 @@ class Sum final : public Law {
     std::sort(b.begin(), b.end());
     b.erase(std::unique(b.begin(), b.end()), b.end());
     return b;
+  }
+  bool constant() const override {
+    return std::all_of(laws_.begin(), laws_.end(), [](const LawPtr& l) { return l->constant(); });
   }
 
  private:

@@ -24,6 +24,8 @@ class Law {
   /// Times, increasing, at which the law or one of its derivatives jumps; the time integrator lands
   /// a step on each.
   virtual std::vector<double> breakpoints() const { return {}; }
+  /// The same value at all times, known without asking for any.
+  virtual bool constant() const { return false; }
 };
 
 using LawPtr = std::shared_ptr<const Law>;
@@ -32,16 +34,20 @@ inline std::vector<double> breakpoints_of(const LawPtr& law) {
   return law ? law->breakpoints() : std::vector<double>{};
 }
 
+/// There is a law, and it is not constant.
+inline bool varies(const LawPtr& law) { return law && !law->constant(); }
+
 /// f = c
 LawPtr make_constant(double c);
-/// Straight lines through (t_i, f_i), held constant outside. Errors: no point, lengths differ, t
-/// not increasing, not finite.
+/// Straight lines through (t_i, f_i), held constant outside.
+/// @throws Error if there is no point, lengths differ, t not increasing, not finite.
 LawPtr make_table(std::vector<double> t, std::vector<double> f);
 /// Monotone piecewise cubic (Fritsch-Carlson conditions, slopes by the weighted harmonic mean of
 /// Fritsch and Butland, doi 10.1137/0905021) through (t_i, f_i), held constant outside. Errors as
 /// make_table.
 LawPtr make_pchip(std::vector<double> t, std::vector<double> f);
-/// f0 before t0, f1 after t1, between them: linear. Errors: t1 <= t0 (also the two that follow).
+/// f0 before t0, f1 after t1, between them: linear.
+/// @throws Error if t1 <= t0 (also the two that follow).
 LawPtr make_ramp(double t0, double t1, double f0, double f1);
 /// f0 before t0, f1 after t1, between them the quintic with zero first and second derivative at
 /// both ends.
@@ -53,7 +59,8 @@ LawPtr make_harmonic(double mean, double amplitude, double omega, double phase);
 /// Polynomial sum c_k t^k
 LawPtr make_polynomial(std::vector<double> coefficients);
 /// Pieces in time: law k holds from start[k] to start[k+1]; each sees the global time; the first
-/// also holds before start[0]. Errors: lengths differ or zero, start not increasing.
+/// also holds before start[0].
+/// @throws Error if lengths differ or zero, start not increasing.
 LawPtr make_piecewise(std::vector<double> start, std::vector<LawPtr> laws);
 /// The sum of laws.
 LawPtr make_sum(std::vector<LawPtr> laws);

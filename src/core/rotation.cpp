@@ -1,5 +1,6 @@
 #include <core/error.hpp>
 #include <core/rotation.hpp>
+#include <core/single.hpp>
 #include <array>
 #include <cmath>
 #include <math.h>
@@ -9,10 +10,9 @@ namespace whirl::rotation {
 
 namespace {
 
-#define WHIRL_INLINE static inline
-inline bool every(bool x) { return x; }
+using single::every;
+#include <core/series.inl>
 #include <core/director.inl>
-#undef WHIRL_INLINE
 
 // (g - sin g)/g^3 = sum_k (-x)^k / (2k+3)!
 template <int N>

@@ -1,7 +1,6 @@
 // Finite rotations split into an axial and a transverse part, R = L(gamma) L(phi e), gamma
 // perpendicular to e. F. D. Sorokin, H. Zhang, Engineering Journal: Science and Innovation 2018 no.
-// 10, doi 10.18698/2308-6033-2018-10-1815
-// ("the paper"; equation numbers are its).
+// 10, doi 10.18698/2308-6033-2018-10-1815 ("the paper"; equation numbers are its).
 //
 // The chart (phi, gamma) is good for |gamma| < pi: the map (phi', gamma') -> omega has determinant
 // sin g / g. (The paper says 2 pi, where B alone degenerates; but at g = pi, d = -e, every azimuth
@@ -15,7 +14,8 @@ namespace whirl::rotation {
 
 /// Rotation tensor of the Euler vector v, rad: L = 1 + sin g/g [v] + (1-cos g)/g^2 [v]^2.
 Mat3 L(const Vec3& v);
-/// Minimal rotation taking unit vector a to unit vector b. Errors: a = -b.
+/// Minimal rotation taking unit vector a to unit vector b.
+/// @throws Error if a = -b.
 Mat3 minimal_rotation(const Vec3& a, const Vec3& b);
 /// Signed solid angle of the spherical triangle of unit vectors (u, v, w), in (-2 pi, 2 pi).
 double solid_angle(const Vec3& u, const Vec3& v, const Vec3& w);
@@ -51,7 +51,8 @@ void director(const Vec2& gamma, Director& out);
 void director(const Vec2& gamma, const Vec2& dgamma, const Vec2& ddgamma, Director& out);
 
 /// gamma of a director in chart axes (d != -e): gamma = angle(e, d) (e x d)/|e x d|, from the
-/// offset t = d - e. Errors: d = -e.
+/// offset t = d - e.
+/// @throws Error if d = -e.
 Vec2 gamma_of_director(const Vec3& t);
 /// (phi', gamma') of an angular velocity omega, chart axes: (11) phi' = (e+d).omega/(1+e.d), (9)
 /// gamma' = D+ (omega x d).
@@ -87,10 +88,11 @@ struct Angles {
 /// continuous: phi' = phi + Omega(e, d, e'). All nodes of a shaft line change together.
 class ChartChange {
  public:
-  /// Errors: new_e = -e.
+  /// @throws Error if new_e = -e.
   ChartChange(const Mat3& triad, const Vec3& new_e);
   const Mat3& new_triad() const { return to_; }
-  /// The same orientation, angular velocity and acceleration in the new chart. Errors: d = -new_e.
+  /// The same orientation, angular velocity and acceleration in the new chart.
+  /// @throws Error if d = -new_e.
   Angles apply(const Angles& old) const;
 
  private:

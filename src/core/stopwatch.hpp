@@ -20,6 +20,13 @@ struct RunTime {
   std::string text() const { return fmt::format("{:.3f} s CPU, {:.3f} s wall", cpu, wall); }
 };
 
+/// CPU time of the calling thread so far, s.
+inline double thread_cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 /// Counts from its construction.
 class Stopwatch {
  public:

@@ -1,7 +1,6 @@
 // Text tables (CSV): cells with their place in the file. Separators: comma, semicolon or tab, found
-// from the header.
-// '#' starts a comment line; cells may be quoted ("" inside quotes is a quote); LF and CRLF; a
-// byte-order mark is skipped.
+// from the header. '#' starts a comment line; cells may be quoted ("" inside quotes is a quote); LF
+// and CRLF; a byte-order mark is skipped.
 #pragma once
 #include <string>
 #include <string_view>

@@ -1,4 +1,4 @@
-// Fixed-size linear algebra names used everywhere.
+// Names used everywhere: fixed-size linear algebra, constants, indices, display units.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -30,6 +30,13 @@ inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double two_pi = 2.0 * pi;
 inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// An index that is known not to be negative, for the standard containers.
+constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// For display: rad/s to revolutions a minute, and to cycles a second.
+constexpr double to_rpm(double omega) { return omega * 30.0 / pi; }
+constexpr double to_hz(double omega) { return omega / two_pi; }
 
 /// Cross-product matrix: skew(a) b = a x b.
 inline Mat3 skew(const Vec3& a) {

@@ -4,9 +4,10 @@
 // Grammar: sums of products; '*' or '.' between units, '/' for quotients, '^' for powers,
 // parentheses where wanted; a number before a unit multiplies it. After a '/' a further product
 // needs parentheses ("W/(m.K)"): the short form is read differently by different people, so it is
-// an error here. The radian is dimensionless in SI but tracked: "deg", "rpm", "rev" and "rad" are
-// angles, a plain number is not. Hz means 2 pi rad/s where an angular speed is wanted and 1/s where
-// a frequency is wanted.
+// an error here.
+// The radian is dimensionless in SI but tracked: "deg", "rpm", "rev" and "rad" are angles, a plain
+// number is not. Hz means 2 pi rad/s where an angular speed is wanted and 1/s where a frequency is
+// wanted.
 #pragma once
 #include <array>
 #include <optional>

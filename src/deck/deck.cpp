@@ -19,6 +19,33 @@ std::string stem_of(const std::filesystem::path& file) {
   return s.empty() ? "deck" : s;
 }
 
+/// Leaves out what no motion depends on.
+Value moving_part(const Value& v) {
+  Value out = v;
+  std::erase_if(out.members, [](const Member& m) { return !m.moves; });
+  for (Member& m : out.members)
+    m.value = moving_part(m.value);
+  for (Value& x : out.items)
+    x = moving_part(x);
+  return out;
+}
+
+model::MovingDeck moving_deck(const Value& resolved) {
+  Value machine = moving_part(resolved);
+  model::MovingDeck out;
+  if (const Member* steps = machine.find("step"))
+    for (const Value& s : steps->value.items) {
+      Value one = Value::make_table();
+      Value list = steps->value;
+      list.items = {s};
+      one.add("step", std::move(list));
+      out.steps.push_back(write_toml(one));
+    }
+  std::erase_if(machine.members, [](const Member& m) { return m.key == "step"; });
+  out.machine = write_toml(machine);
+  return out;
+}
+
 /// Built-in materials that were used go into the resolved deck, so that it stands alone.
 void add_builtin_materials(Value& resolved, const model::Model& m) {
   Member* list = resolved.find("material");
@@ -69,7 +96,10 @@ void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions&
       if (diagnostics.errors() == 0) names.warn_unused(diagnostics);
       Value resolved = reader.take_resolved();
       add_builtin_materials(resolved, deck.model);
-      if (diagnostics.errors() == 0) deck.model.resolved = write_toml(resolved);
+      if (diagnostics.errors() == 0) {
+        deck.model.resolved = write_toml(resolved);
+        deck.model.moving = moving_deck(resolved);
+      }
     }
   }
   deck.errors = diagnostics.errors();

@@ -62,10 +62,12 @@ const Member* Reader::find(const Key& k) {
 
 void Reader::put(const Key& k, Value v) {
   if (!scope().resolved || v.kind == Value::Kind::unreadable) return;
-  if (Member* m = scope().resolved->find(k.name))
+  Member* m = scope().resolved->find(k.name);
+  if (m)
     m->value = std::move(v);
   else
-    scope().resolved->add(k.name, std::move(v));
+    m = &scope().resolved->add(k.name, std::move(v));
+  m->moves = k.moves;
 }
 
 void Reader::problem(const char* code, const Spot& spot, std::string message, std::string hint) {

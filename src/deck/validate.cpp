@@ -1,3 +1,4 @@
+#include <model/resolution.hpp>
 #include <algorithm>
 #include <cmath>
 #include <core/units.hpp>
@@ -30,55 +31,21 @@ struct Restraint {
   }
 };
 
-/// What one bearing holds: x, y, z, tilt in x-y (about z), tilt in x-z (about y). A kind of bearing
-/// that is not listed here is a film, contact or the like and is taken to hold both lateral
-/// directions.
-std::array<bool, 5> held_by(const model::BearingLaw& law) {
-  if (const auto* b = std::get_if<model::SpringBlock>(&law))
-    return {b->C1 > 0, b->C1 > 0, b->C1 > 0, b->C2 > 0, b->C2 > 0};
-  if (const auto* b = std::get_if<model::LinearBearing>(&law))
-    return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
-  if (const auto* b = std::get_if<model::TableBearing>(&law)) {
-    const auto entry = [b](Index c) {
-      return std::any_of(b->K.begin(), b->K.end(),
-                         [c](const Matrix<6>& k) { return k(c, c) != 0; });
-    };
-    return {entry(0), entry(1), entry(2), entry(5), entry(4)};
-  }
-  if (const auto* b = std::get_if<model::RollingEstimate>(&law))
-    return {b->kxx > 0, true, true, false, false};
-  if (const auto* b = std::get_if<model::RigidSupport>(&law))
-    return {b->held[0], b->held[1], b->held[2], b->held[5], b->held[4]};
-  if (const auto* b = std::get_if<model::NonlinearSpring>(&law)) {
-    using Along = model::NonlinearSpring::Along;
-    const bool radial = b->along == Along::radial;
-    return {b->along == Along::x, radial || b->along == Along::y, radial || b->along == Along::z,
-            b->along == Along::rz, b->along == Along::ry};
-  }
-  if (const auto* b = std::get_if<model::SqueezeFilm>(&law))
-    return {false, b->stiffness > 0, b->stiffness > 0, false, false};
-  if (std::holds_alternative<model::BallBearing>(law)) return {true, true, true, true, true};
-  if (std::holds_alternative<model::RollerBearing>(law)) return {false, true, true, true, true};
-  if (const auto* b = std::get_if<model::Coupling>(&law))
-    return {b->K(0, 0) != 0, b->K(1, 1) != 0, b->K(2, 2) != 0, b->K(5, 5) != 0, b->K(4, 4) != 0};
-  if (const auto* b = std::get_if<model::GearPair>(&law))
-    return {b->helix != 0, false, false, false, false};
-  if (std::holds_alternative<model::CrossCoupling>(law)) return {};
-  return {false, true, true, false, false};
-}
+/// Direction of the tilt in the x-y and the x-z plane: about z, about y.
+constexpr std::array<std::size_t, 2> tilt_in_plane{5, 4};
 
 std::vector<Restraint> restraints(const model::Model& m) {
   std::vector<Restraint> r(m.shafts.size());
-  const auto apply = [&](const model::Location& at, const std::array<bool, 5>& held) {
+  const auto apply = [&](const model::Location& at, const model::Directions& held) {
     Restraint& x = r[at.shaft];
     x.axial = x.axial || held[0];
     for (std::size_t k = 0; k < 2; ++k) {
       if (held[1 + k]) x.stations[k].insert(at.s);
-      x.tilt[k] = x.tilt[k] || held[3 + k];
+      x.tilt[k] = x.tilt[k] || held[tilt_in_plane[k]];
     }
   };
   for (const auto& b : m.bearings)
-    if (!b.to) apply(b.at, held_by(b.law));
+    if (!b.to) apply(b.at, model::traits_of(b.law).held);
   // a bearing to another shaft holds as far as that shaft is held there; whole chains settle in as
   // many passes
   for (std::size_t pass = 0; pass < m.shafts.size(); ++pass)
@@ -87,13 +54,13 @@ std::vector<Restraint> restraints(const model::Model& m) {
       for (const auto& [here, there] : {std::pair(b.at, *b.to), std::pair(*b.to, b.at)}) {
         if (here.shaft == there.shaft) continue;
         const Restraint& other = r[there.shaft];
-        std::array<bool, 5> held = held_by(b.law);
+        model::Directions held = model::traits_of(b.law).held;
         held[0] = held[0] && other.axial;
         for (std::size_t k = 0; k < 2; ++k) {
           const bool fixed =
               other.lateral(static_cast<int>(k)) && other.tilting(static_cast<int>(k));
           held[1 + k] = held[1 + k] && fixed;
-          held[3 + k] = held[3 + k] && fixed;
+          held[tilt_in_plane[k]] = held[tilt_in_plane[k]] && fixed;
         }
         apply(here, held);
       }
@@ -206,7 +173,7 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
   return {};  // critical speeds look inside the table only
 }
 
-std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
+std::string hertz(double w) { return fmt::format("{:.6g} Hz", to_hz(w)); }
 
 /// Frequencies of excitation of a step, rad/s: least and largest, or nothing.
 std::optional<std::pair<double, double>> frequencies_of(const model::Model& m,
@@ -303,7 +270,7 @@ void check_maps(const model::Model& m, Problems& out) {
             fmt::format("step '{}' names bearing '{}', which the deck does not have", s.name, name),
             "", s.where);
     const bool any = std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) {
-      return !std::holds_alternative<model::RigidSupport>(b.law) && !b.to;
+      return model::traits_of(b.law).acts != model::Acts::as_constraint && !b.to;
     });
     if (map->bearings.empty() && !any)
       add(out, "E80", fmt::format("step '{}' has no bearing to vary: all are rigid", s.name),
@@ -394,38 +361,35 @@ void check_start_speeds(const model::Model& m, Problems& out) {
 /// Gears and couplings tie the speeds of two shafts together.
 void check_speeds_of_pairs(const model::Model& m, Problems& out) {
   for (const auto& b : m.bearings) {
-    const auto* g = std::get_if<model::GearPair>(&b.law);
-    if ((!g && !std::holds_alternative<model::Coupling>(b.law)) || !b.to) continue;
+    const std::optional<model::ShaftPair> pair = *model::traits_of(b.law).pair;
+    if (!pair || !b.to) continue;
     const auto &here = m.shafts[b.at.shaft], &there = m.shafts[b.to->shaft];
-    const double ratio = g ? -static_cast<double>(g->teeth) / g->other_teeth : 1.0;
+    const double ratio = pair->speed_ratio;
     const auto wrong = [ratio](double a, double c) {
       return std::abs(c - ratio * a) > 1e-6 * std::max(std::abs(c), std::abs(ratio * a));
     };
-    const std::string gears =
-        g ? fmt::format(
-                "gear pair '{}' ({} and {} teeth) turns shaft '{}' at {:.6g} times the speed of "
-                "'{}'",
-                b.name, g->teeth, g->other_teeth, there.name, ratio, here.name)
-          : fmt::format("coupling '{}' turns shaft '{}' at the speed of '{}'", b.name, there.name,
-                        here.name);
+    const std::string ties =
+        fmt::format("{} '{}'{}{} turns shaft '{}' at {}the speed of '{}'", pair->noun, b.name,
+                    pair->details.empty() ? "" : " ", pair->details, there.name,
+                    ratio == 1 ? std::string() : fmt::format("{:.6g} times ", ratio), here.name);
     if (!here.rotating || !there.rotating) {
       add(out, "E37",
-          fmt::format("{} '{}' turns with its shafts, but shaft '{}' does not rotate",
-                      g ? "gear pair" : "coupling", b.name, here.rotating ? there.name : here.name),
+          fmt::format("{} '{}' turns with its shafts, but shaft '{}' does not rotate", pair->noun,
+                      b.name, here.rotating ? there.name : here.name),
           "rotating = true for that shaft, or a bearing of type \"linear\" between the two",
           b.where);
       continue;
     }
     if (wrong(here.speed_ratio, there.speed_ratio))
       add(out, "E37",
-          fmt::format("{}, but their speed_ratio are {:.6g} and {:.6g}", gears, there.speed_ratio,
+          fmt::format("{}, but their speed_ratio are {:.6g} and {:.6g}", ties, there.speed_ratio,
                       here.speed_ratio),
           fmt::format("speed_ratio = {:.10g} for shaft '{}'", ratio * here.speed_ratio + 0.0,
                       there.name),
           there.where);
     else if (wrong(here.spin0, there.spin0))
       add(out, "E37",
-          fmt::format("{}, but their initial_spin are {} and {}", gears,
+          fmt::format("{}, but their initial_spin are {} and {}", ties,
                       units::display(there.spin0, "rpm"), units::display(here.spin0, "rpm")),
           fmt::format("initial_spin = \"{}\" for shaft '{}'",
                       units::display(ratio * here.spin0 + 0.0, "rpm"), there.name),
@@ -441,10 +405,10 @@ void check_speeds_of_pairs(const model::Model& m, Problems& out) {
                      c = q->angle->at(time).df;
         if (!wrong(a, c)) continue;
         add(out, "E37",
-            fmt::format("{}, but the drives of step '{}' prescribe {} and {} at {:.4g} s", gears,
+            fmt::format("{}, but the drives of step '{}' prescribe {} and {} at {:.4g} s", ties,
                         s.name, units::display(c, "rpm"), units::display(a, "rpm"), time),
-            g ? "prescribe the speed of one of the two: the other follows through the mesh"
-              : "prescribe the speed of one of the two: the other follows",
+            pair->mesh ? "prescribe the speed of one of the two: the other follows through the mesh"
+                       : "prescribe the speed of one of the two: the other follows",
             b.where);
         said = true;
       }
@@ -476,11 +440,12 @@ void check_places(const model::Model& m, Problems& out) {
     if (!b.to) continue;
     on_shaft(*b.to, "bearing");
     // forces on both sides are taken to meet in one point (gears: in one plane)
-    const bool gears = std::holds_alternative<model::GearPair>(b.law);
+    const std::optional<model::ShaftPair> pair = *model::traits_of(b.law).pair;
     if (b.at.housing >= 0 || b.to->housing >= 0) continue;
     const Vec3 apart =
         m.shafts[b.to->shaft].position(b.to->s) - m.shafts[b.at.shaft].position(b.at.s);
-    const double along = std::abs(apart.x()), across = gears ? 0.0 : apart.tail<2>().norm();
+    const double along = std::abs(apart.x()),
+                 across = pair && pair->mesh ? 0.0 : apart.tail<2>().norm();
     if (along > 1e-3)
       add(out, "W05",
           fmt::format("the two places of '{}' are {:.5g} mm apart along x: its forces on both "
@@ -494,9 +459,8 @@ void check_places(const model::Model& m, Problems& out) {
           fmt::format("the two places of '{}' are {:.5g} mm apart across the shafts: that distance "
                       "has no effect",
                       b.name, 1e3 * across),
-          std::holds_alternative<model::Coupling>(b.law)
-              ? "a misalignment is given by offset_y, offset_z, angle_y, angle_z"
-              : "a set point of the springs is given by 'setpoint'",
+          pair ? "a misalignment is given by offset_y, offset_z, angle_y, angle_z"
+               : "a set point of the springs is given by 'setpoint'",
           b.where, Diagnostic::Severity::warning);
   }
 }
@@ -543,7 +507,7 @@ void check_preloads(const model::Model& m, Problems& out) {
     if (m.shafts[k].axial_preload == 0) continue;
     std::set<double> places;
     for (const auto& b : m.bearings) {
-      if (!held_by(b.law)[0]) continue;
+      if (!(*model::traits_of(b.law).held)[0]) continue;
       if (b.at.shaft == k) places.insert(b.at.s);
       if (b.to && b.to->shaft == k) places.insert(b.to->s);
     }
@@ -600,17 +564,6 @@ void check_effects(const model::Model& m, Problems& out) {
     if (o.step.empty()) warn("a picture output", o.where);
 }
 
-/// Supports that have no coefficients without their load.
-bool needs_its_load(const model::BearingLaw& law) {
-  if (std::holds_alternative<model::ShortJournal>(law) ||
-      std::holds_alternative<model::FiniteJournal>(law))
-    return true;
-  if (const auto* b = std::get_if<model::BallBearing>(&law))
-    return b->preload == 0 && b->clearance >= 0;
-  if (const auto* b = std::get_if<model::RollerBearing>(&law)) return b->clearance >= 0;
-  return false;
-}
-
 /// Steps linearised about the rotor as drawn.
 void check_undeformed(const model::Model& m, Problems& out) {
   for (const model::Step& s : m.steps) {
@@ -639,15 +592,13 @@ void check_undeformed(const model::Model& m, Problems& out) {
     // a map puts its own stiffness in the place of the films it varies
     const auto* map = std::get_if<model::CriticalMapStep>(&s.law);
     const auto varied_film = [&](const model::Bearing& b) {
-      const bool film = std::holds_alternative<model::ShortJournal>(b.law) ||
-                        std::holds_alternative<model::FiniteJournal>(b.law);
-      return map && film &&
+      return map && model::traits_of(b.law).film &&
              (map->bearings.empty() ? !b.to
                                     : std::find(map->bearings.begin(), map->bearings.end(),
                                                 b.name) != map->bearings.end());
     };
     for (const model::Bearing& b : m.bearings)
-      if (needs_its_load(b.law) && !varied_film(b))
+      if (model::traits_of(b.law).needs_load && !varied_film(b))
         add(out, "E26",
             fmt::format("step '{}' is linearised about the undeformed rotor, where bearing '{}' "
                         "carries no load: its stiffness is that of its load",
@@ -705,12 +656,13 @@ std::map<std::string, Interval> times_of_steps(const model::Model& m) {
 
 double count_of_nodes(const model::Model& m) {
   double sections = 0;
+  const model::Resolution resolution = model::resolution_of(m);
   for (const auto& s : m.shafts)
     for (const auto& x : s.sections) {
-      const bool limited = std::isfinite(x.max_element_length);
-      const int parts =
-          limited ? static_cast<int>(std::min(1e6, std::ceil(x.length / x.max_element_length))) : 1;
-      sections += std::max(x.min_elements, parts);
+      const double longest = model::longest_element(m, s, x, resolution);
+      const double parts =
+          std::isfinite(longest) ? std::min(1e6, std::ceil(x.length / longest)) : 1.0;
+      sections += std::max<double>(x.min_elements, parts);
     }
   return sections + static_cast<double>(m.shafts.size() + m.disks.size() + m.bearings.size());
 }

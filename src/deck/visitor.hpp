@@ -30,12 +30,20 @@ struct Key {
       nullptr;  ///< what holds when the key is left out, where the default value does not say it
   bool plain_zero = false;  ///< a quantity: 0 needs no unit, nor the right one
   bool listed = true;       ///< false: one of a family that the reference explains as a whole
+  bool moves = true;        ///< motion may depend on it; false: it says what is written, or when
+                            ///< the run ends
 };
 inline Key required(const char* name) { return {name, true, nullptr}; }
 inline Key optional(const char* name, const char* absent) { return {name, false, absent}; }
 inline Key zero_without_unit(const char* name) {
   Key k(name);
   k.plain_zero = true;
+  return k;
+}
+
+/// A key that no motion depends on: a resumed run may change it.
+inline Key beside_motion(Key k) {
+  k.moves = false;
   return k;
 }
 

@@ -10,8 +10,7 @@ bool quantities(const Key&, std::vector<double>&, const char* unit, Range, int c
 bool matrix(const Key&, Matrix<6>&, const char* translation, const char* coupling,
             const char* rotation, const char*) override;
 bool option(const Key&, int& index, std::span<const Option>, const char*) override;
-bool options(const Key&, std::vector<std::string>&, std::span<const Option>,
-             const char*) override;
+bool options(const Key&, std::vector<std::string>&, std::span<const Option>, const char*) override;
 bool name(model::Entity&, const char* kind) override;
 bool location(const Key&, model::Location&, const char*) override;
 bool material(const Key&, std::size_t&, const char*) override;

@@ -12,8 +12,6 @@ using meshes::pose_at;
 using meshes::section_axes;
 using meshes::Skin;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 void put(std::vector<float>& v, std::size_t i, const Vec3& x) {
   for (std::size_t c = 0; c < 3; ++c)
     v[3 * i + c] = static_cast<float>(x[static_cast<Index>(c)]);
@@ -151,7 +149,7 @@ class SupportSet final : public FrameSet {
       const auto& s = scene_.supports[k];
       const std::int64_t vertex = grow(1);
       data_.vertices.add(&vertex, 1);
-      if (s.kind == meshes::SupportShape::Kind::bearing)
+      if (s.picture == model::Picture::bearing)
         for (int ring = 0; ring < 2; ++ring)
           polyline(ring_points + 1);
       polylines_of_springs(s);
@@ -164,7 +162,7 @@ class SupportSet final : public FrameSet {
       number.push_back(static_cast<std::int32_t>(k));
     for (std::size_t k = 0; k < scene_.supports.size(); ++k) {
       const auto& s = scene_.supports[k];
-      number.insert(number.end(), s.kind == meshes::SupportShape::Kind::bearing ? 6 : 2,
+      number.insert(number.end(), s.picture == model::Picture::bearing ? 6 : 2,
                     static_cast<std::int32_t>(k));
     }
     data_.cell_data.push_back({"support", 1, std::move(number)});
@@ -191,7 +189,7 @@ class SupportSet final : public FrameSet {
       put(data_.points, i++, journal.r);
       // Springs do not turn with the shaft: axes at phi = 0.
       const Mat3 axes = section_axes(triad, journal.d, 0.0) * bend;
-      if (s.kind == meshes::SupportShape::Kind::bearing) {
+      if (s.picture == model::Picture::bearing) {
         circle(journal.r, axes, 1.12 * r, i);
         circle(far, far_axes, 1.9 * r, i);
         for (int q = 0; q < 4; ++q) {
@@ -223,7 +221,7 @@ class SupportSet final : public FrameSet {
     data_.lines.add(id.data(), n);
   }
   void polylines_of_springs(const meshes::SupportShape& s) {
-    const int n = s.kind == meshes::SupportShape::Kind::bearing ? 4 : 2;
+    const int n = s.picture == model::Picture::bearing ? 4 : 2;
     for (int q = 0; q < n; ++q)
       polyline(spring_points);
   }

@@ -47,7 +47,7 @@ class FrameWriter {
 
 struct VtkFrameOptions {
   std::filesystem::path
-      directory;                ///< gets <name>_line.pvd ... and a folder of frames for each set
+      directory;                ///< gets `<name>_line.pvd` ... and a folder of frames for each set
   std::string name = "frames";  ///< characters that do not belong in file names become '_'
   bool line = true, surface = true, bearings = false, orbits = false;
   double deformation_scale = 1.0;  ///< magnifies displacement and tilt, not the spin

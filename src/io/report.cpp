@@ -82,6 +82,72 @@ std::string figure_html(const plot::Figure& f, const std::string& id) {
 
 std::string anchor(std::size_t k) { return "s" + std::to_string(k + 1); }
 
+using FigureIds = std::vector<std::vector<std::string>>;  ///< [section][figure]
+
+/// Their names, made different where two steps draw the same plot.
+FigureIds figure_ids(const Report& r) {
+  FigureIds ids(r.sections.size());
+  std::set<std::string> taken;
+  for (std::size_t k = 0; k < r.sections.size(); ++k)
+    for (const auto& f : r.sections[k].figures) {
+      std::string id = safe_name(f.name);
+      for (int n = 2; !taken.insert(id).second; ++n)
+        id = safe_name(f.name) + "-" + std::to_string(n) + "-";
+      ids[k].push_back(std::move(id));
+    }
+  return ids;
+}
+
+std::string contents_html(const Report& r, const FigureIds& ids) {
+  std::string s = "<nav aria-label=\"Contents\"><ol>";
+  for (std::size_t k = 0; k < r.sections.size(); ++k) {
+    s += "<li><a href=\"#" + anchor(k) + "\">" + escape(r.sections[k].title) + "</a>";
+    for (std::size_t i = 0; i < ids[k].size(); ++i)
+      s += "<span class=\"sub\"><a href=\"#" + ids[k][i] + "\">" +
+           escape(r.sections[k].figures[i].title) + "</a></span>";
+    s += "</li>";
+  }
+  return s + "</ol></nav>\n";
+}
+
+std::string facts_html(const Report& r) {
+  if (r.facts.empty()) return {};
+  std::string s = "<dl class=\"facts\">";
+  for (const auto& [name, value] : r.facts)
+    s += "<div><dt>" + escape(name) + "</dt><dd>" + escape(value) + "</dd></div>";
+  return s + "</dl>\n";
+}
+
+std::string warnings_html(const Report& r) {
+  if (r.warnings.empty()) return {};
+  std::string s = "<div class=\"warnings\">";
+  for (const auto& w : r.warnings)
+    s += "<p>" + escape(w) + "</p>";
+  return s + "</div>\n";
+}
+
+std::string section_html(const ReportSection& x, const std::string& id,
+                         const std::vector<std::string>& figure_ids) {
+  std::string s =
+      "<section id=\"" + id + "\"><h2>" + escape(x.title) + "</h2>\n" + paragraphs(x.text);
+  for (const auto& t : x.tables)
+    s += table_html(t);
+  if (!x.figures.empty()) {
+    s += "<div class=\"figures\">";
+    for (std::size_t i = 0; i < x.figures.size(); ++i)
+      s += figure_html(x.figures[i], figure_ids[i]);
+    s += "</div>\n";
+  }
+  if (!x.files.empty()) {
+    s += "<p class=\"files\">Files: ";
+    for (std::size_t i = 0; i < x.files.size(); ++i)
+      s += (i ? ", " : "") +
+           ("<a href=\"" + escape(x.files[i].second) + "\">" + escape(x.files[i].first) + "</a>");
+    s += "</p>\n";
+  }
+  return s + "</section>\n";
+}
+
 }  // namespace
 
 std::string render_report(const Report& r) {
@@ -92,65 +158,15 @@ std::string render_report(const Report& r) {
   s += report_css;
   s += "</style>\n</head>\n<body>\n";
   const bool nav = r.sections.size() > 1;
-  // Ids of figures: their names, made different where two steps draw the same plot.
-  std::vector<std::vector<std::string>> ids(r.sections.size());
-  std::set<std::string> taken;
-  for (std::size_t k = 0; k < r.sections.size(); ++k)
-    for (const auto& f : r.sections[k].figures) {
-      std::string id = safe_name(f.name);
-      for (int n = 2; !taken.insert(id).second; ++n)
-        id = safe_name(f.name) + "-" + std::to_string(n) + "-";
-      ids[k].push_back(std::move(id));
-    }
+  const FigureIds ids = figure_ids(r);
   s += nav ? "<div class=\"page with-nav\">\n" : "<div class=\"page\">\n";
   s += "<header><h1>" + escape(r.title) + "</h1>";
   if (!r.subtitle.empty()) s += "<p class=\"subtitle\">" + escape(r.subtitle) + "</p>";
   s += "</header>\n";
-  if (nav) {
-    s += "<nav aria-label=\"Contents\"><ol>";
-    for (std::size_t k = 0; k < r.sections.size(); ++k) {
-      s += "<li><a href=\"#" + anchor(k) + "\">" + escape(r.sections[k].title) + "</a>";
-      for (std::size_t i = 0; i < ids[k].size(); ++i)
-        s += "<span class=\"sub\"><a href=\"#" + ids[k][i] + "\">" +
-             escape(r.sections[k].figures[i].title) + "</a></span>";
-      s += "</li>";
-    }
-    s += "</ol></nav>\n";
-  }
-  s += "<main>\n";
-  if (!r.facts.empty()) {
-    s += "<dl class=\"facts\">";
-    for (const auto& [name, value] : r.facts)
-      s += "<div><dt>" + escape(name) + "</dt><dd>" + escape(value) + "</dd></div>";
-    s += "</dl>\n";
-  }
-  if (!r.warnings.empty()) {
-    s += "<div class=\"warnings\">";
-    for (const auto& w : r.warnings)
-      s += "<p>" + escape(w) + "</p>";
-    s += "</div>\n";
-  }
-  for (std::size_t k = 0; k < r.sections.size(); ++k) {
-    const auto& x = r.sections[k];
-    s +=
-        "<section id=\"" + anchor(k) + "\"><h2>" + escape(x.title) + "</h2>\n" + paragraphs(x.text);
-    for (const auto& t : x.tables)
-      s += table_html(t);
-    if (!x.figures.empty()) {
-      s += "<div class=\"figures\">";
-      for (std::size_t i = 0; i < x.figures.size(); ++i)
-        s += figure_html(x.figures[i], ids[k][i]);
-      s += "</div>\n";
-    }
-    if (!x.files.empty()) {
-      s += "<p class=\"files\">Files: ";
-      for (std::size_t i = 0; i < x.files.size(); ++i)
-        s += (i ? ", " : "") +
-             ("<a href=\"" + escape(x.files[i].second) + "\">" + escape(x.files[i].first) + "</a>");
-      s += "</p>\n";
-    }
-    s += "</section>\n";
-  }
+  if (nav) s += contents_html(r, ids);
+  s += "<main>\n" + facts_html(r) + warnings_html(r);
+  for (std::size_t k = 0; k < r.sections.size(); ++k)
+    s += section_html(r.sections[k], anchor(k), ids[k]);
   if (!r.summary.is_null())
     s += "<details><summary>Run summary</summary>" + value_html(r.summary) + "</details>\n";
   if (!r.deck.empty())

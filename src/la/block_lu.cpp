@@ -1,4 +1,5 @@
 #include <la/block_lu.hpp>
+#include <core/contract.hpp>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
@@ -110,6 +111,8 @@ Status BlockLu<Scalar>::factor(const MCK& m, Scalar cm, Scalar cc, Scalar ck) {
 
 template <class Scalar>
 void BlockLu<Scalar>::solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> b) {
+  WHIRL_EXPECTS(singular_ < 0);
+  WHIRL_EXPECTS(b.size() == 6 * symbolic_.plan().n);
   if constexpr (std::is_same_v<Scalar, double>)
     kernels_.solve_real(symbolic_.plan(), factors_, b.data());
   else

@@ -1,6 +1,6 @@
 // Continuation of f(q, mu) = 0 past limit points. The problem comes as callbacks; nothing here
-// throws or knows mechanics. Arc length: E. Riks, J. Appl. Mech. 39 (1972) 1060,
-// doi 10.1115/1.3422829; the corrector stays in the plane across the tangent.
+// throws or knows mechanics. Arc length: E. Riks, J. Appl. Mech. 39 (1972) 1060, doi
+// 10.1115/1.3422829; the corrector stays in the plane across the tangent.
 #pragma once
 #include <core/types.hpp>
 #include <functional>

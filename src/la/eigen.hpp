@@ -4,8 +4,8 @@
 // Method: shift-invert Arnoldi on the linearisation z = (x, lambda x / alpha) in real arithmetic.
 // The operator (A - sigma B)^-1 B needs only the N-sized factorisation Q(sigma) = sigma^2 M + sigma
 // C + K:
-//   p = -Q(sigma)^-1 (M (v + sigma x) + C x),  q = x + sigma p   for (x, v) -> (p, q),  eigenvalue
-//   1/(lambda - sigma).
+//   p = -Q(sigma)^-1 (M (v + sigma x) + C x),   q = x + sigma p   for (x, v) -> (p, q),
+//       eigenvalue 1/(lambda - sigma).
 // Massless unknowns (singular M) only add eigenvalues at infinity, which this operator maps to
 // zero. What Arnoldi finds is polished by Newton's method on the N-sized problem (F. Tisseur and K.
 // Meerbergen, doi 10.1137/S0036144500381988; A. Neumaier, doi 10.1137/0722055) and deflated; a new
@@ -82,8 +82,8 @@ struct Certificate {
 };
 
 /// Modes sorted by |Im lambda|, then |lambda|; overdamped roots are kept, each on its own; a
-/// rigid-body motion (K x = 0, C x = 0) comes once, with lambda = 0. Throws Error when the problem
-/// has no eigenvalues or cannot be factored.
+/// rigid-body motion (K x = 0, C x = 0) comes once, with lambda = 0.
+/// @throws Error when the problem has no eigenvalues or cannot be factored.
 std::vector<Mode> quadratic_modes(const MCK& m, std::span<const unsigned char> active,
                                   const ModeOptions& options = {});
 

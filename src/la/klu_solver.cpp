@@ -8,8 +8,6 @@ namespace whirl::la {
 
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// Pivots kept from an earlier factorisation are given up when entries grow by more than this
 /// (largest entry of U over largest of the matrix, by columns). That is measured when a pivot falls
 /// below its reciprocal times its column.

@@ -3,8 +3,8 @@
 // Left-looking: step k forms the blocks of its node from M, C and K, subtracts the products of
 // earlier factors, inverts the 6x6 diagonal block D_k and stores D_k^-1, U_ki and L_ik = A_ik
 // D_k^-1 for every later neighbour i:
-//   D_k  = S_kk - sum_j L_kj U_jk,   U_ki = S_ki - sum_j L_kj U_ji,   L_ik = (S_ik - sum_j L_ij
-//   U_jk) D_k^-1.
+//   D_k   = S_kk - sum_j L_kj U_jk,   U_ki = S_ki - sum_j L_kj U_ji,
+//       L_ik = (S_ik - sum_j L_ij U_jk) D_k^-1.
 // Pivoting stays inside a diagonal block. The usual case, diagonal pivots, is tested as it runs
 // (threshold pivoting, as in KLU); a block that fails is inverted again with complete pivoting.
 //

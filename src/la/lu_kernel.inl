@@ -487,8 +487,8 @@ void multiply_three(const Matrix6& m, const double* const a[3], const double* x,
   }
 }
 
-/// (sum, rest) += a b without rounding error but in rest: T. Ogita, S. Rump and S. Oishi,
-/// doi 10.1137/030601818.
+/// (sum, rest) += a b without rounding error but in rest: T. Ogita, S. Rump and S. Oishi, doi
+/// 10.1137/030601818.
 WHIRL_INLINE void add_exact(Col& sum, Col& rest, Col a, Col b) {
   const Col p = opaque(a * b);  // opaque: p must be the rounded product, not part of a fused sum
   const Col s = sum + p, z = s - sum;

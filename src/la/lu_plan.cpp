@@ -7,8 +7,6 @@ namespace whirl::la::lu {
 
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 std::vector<int> make_amd_order(const BlockPattern& pattern) {
   const int n = static_cast<int>(pattern.size());
   std::vector<int> start(at(n) + 1), cols, order(at(n));

@@ -1,4 +1,5 @@
 #include <la/lu_kernel.hpp>
+#include <core/contract.hpp>
 #include <la/multiply.hpp>
 
 namespace whirl::la {
@@ -11,28 +12,33 @@ lu::Matrix6 view(const BlockMatrix<6>& a) {
 }  // namespace
 
 void multiply(const BlockMatrix<6>& a, const VecX& x, VecX& y) {
+  WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());
   lu::kernels().multiply_real(view(a), x.data(), y.data());
 }
 
 void multiply(const BlockMatrix<6>& a, const VecXc& x, VecXc& y) {
+  WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());
   lu::kernels().multiply_complex(view(a), reinterpret_cast<const double*>(x.data()),
                                  reinterpret_cast<double*>(y.data()));
 }
 
 void multiply_exact(const BlockMatrix<6>& a, const VecX& x, VecX& y) {
+  WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());
   lu::kernels().multiply_exact_real(view(a), x.data(), y.data());
 }
 
 void multiply_exact(const BlockMatrix<6>& a, const VecXc& x, VecXc& y) {
+  WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());
   lu::kernels().multiply_exact_complex(view(a), reinterpret_cast<const double*>(x.data()),
                                        reinterpret_cast<double*>(y.data()));
 }
 
 void multiply(const MCK& m, const VecXc& x, VecXc& Mx, VecXc& Cx, VecXc& Kx) {
+  WHIRL_EXPECTS(x.size() == 6 * m.K.pattern().size());
   for (VecXc* y : {&Mx, &Cx, &Kx})
     y->resize(x.size());
   const double* const a[3] = {m.M.data(), m.C.data(), m.K.data()};
@@ -42,6 +48,7 @@ void multiply(const MCK& m, const VecXc& x, VecXc& Mx, VecXc& Cx, VecXc& Kx) {
 }
 
 void add_multiply_size(const BlockMatrix<6>& a, double s, const VecX& x, VecX& y) {
+  WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());
   lu::kernels().add_multiply_size(view(a), s, x.data(), y.data());
 }

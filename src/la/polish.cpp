@@ -8,7 +8,6 @@ namespace whirl::la {
 
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 void diagonal_of(const BlockMatrix<6>& a, VecX& d) {

@@ -9,8 +9,8 @@
 // derivative; samples are put in until the change from one to the next is what the derivatives at
 // both say, which no turn in between can hide from. By symmetry the upper half of the curve
 // suffices. The moments of the unknown roots,
-//   p_m = sum lambda^m = 1/(2 pi i) \oint s^m d log f   (L. M. Delves and J. N. Lyness,
-//   doi 10.1090/S0025-5718-1967-0228165-4),
+//   p_m = sum lambda^m = 1/(2 pi i) \oint s^m d log f
+//       (L. M. Delves and J. N. Lyness, doi 10.1090/S0025-5718-1967-0228165-4),
 // say where they are.
 #pragma once
 #include <la/block_lu.hpp>

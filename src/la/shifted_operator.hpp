@@ -46,7 +46,6 @@ struct ShiftedOperator {
     xc_ = tc_ = yc_ = VecXc::Zero(6 * p.size());
   }
 
-  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   bool complex_shift() const { return opt.shift && opt.shift->imag() != 0.0; }
   Index dimension() const { return first_order ? n : 2 * n; }
 

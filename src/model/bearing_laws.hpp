@@ -1,17 +1,15 @@
-// What a bearing, seal, damper, contact, coupling or gear pair is, as plain values in SI.
+// What a bearing, seal, damper, contact, coupling or gear pair is, as plain values in SI, and
+// beside each law its traits. How to add one: docs/developer/add_a_bearing_law.md.
 #pragma once
 #include <core/types.hpp>
+#include <model/support_traits.hpp>
 #include <array>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 namespace whirl::model {
-
-/// The paper's spring block at a point: force -C1 (r - r0), moment -C2 gamma (gamma: Euler vector
-/// of the axis tilt).
-struct SpringBlock {
-  double C1 = 0, C2 = 0;
-};
 
 /// Linear bearing or support between a shaft station and ground (or another station): 6x6 K, C, M
 /// in the order (x, y, z, rx, ry, rz), fixed axes; force on the shaft = preload - K (q - setpoint)
@@ -20,6 +18,16 @@ struct LinearBearing {
   Matrix<6> K = Matrix<6>::Zero(), C = Matrix<6>::Zero(), M = Matrix<6>::Zero();
   Vector<6> setpoint = Vector<6>::Zero(), preload = Vector<6>::Zero();
 };
+SupportTraits traits(const LinearBearing&);
+
+/// The paper's spring block at a point: force -C1 (r - r0), moment -C2 gamma (gamma: Euler vector
+/// of the axis tilt).
+struct SpringBlock {
+  double C1 = 0, C2 = 0;
+};
+SupportTraits traits(const SpringBlock&);
+/// The same for small motions, between any two points.
+LinearBearing linear_form(const SpringBlock&);
 
 /// The linear bearing with K, C (and M) tabulated against speed, and where given against the
 /// frequency of the motion. With frequencies the rows are a grid, speed by speed: row i f + j
@@ -33,11 +41,13 @@ struct TableBearing {
   bool extrapolate_hold = false;  ///< else outside the table is an error
   std::string file;
 };
+SupportTraits traits(const TableBearing&);
 
 /// Directions held rigidly (constraints, no penalty): x, y, z, rx (spin), ry, rz.
 struct RigidSupport {
   std::array<bool, 6> held{};
 };
+SupportTraits traits(const RigidSupport&);
 
 /// A force (or moment) against a deflection (or angle).
 struct ForceLaw {
@@ -57,6 +67,7 @@ struct NonlinearSpring {
   ForceLaw force;
   double damping = 0, damping2 = 0;
 };
+SupportTraits traits(const NonlinearSpring&);
 
 /// Viscosity of a lubricant: given, or an ISO VG oil at a temperature.
 struct Oil {
@@ -69,6 +80,7 @@ struct ShortJournal {
   double diameter = 0, length = 0, clearance = 0;  ///< m; clearance radial
   Oil oil;
 };
+SupportTraits traits(const ShortJournal&);
 
 /// Journal bearing of finite length with cavitation: plain, with axial grooves, or multi-lobe.
 struct FiniteJournal {
@@ -80,6 +92,7 @@ struct FiniteJournal {
   double groove = 0, groove_at = 0, lobe_at = 0, lobe_offset = 0.5;  ///< rad; from +y towards +z
   int nodes = 72;  ///< grid points round the circumference
 };
+SupportTraits traits(const FiniteJournal&);
 
 /// Squeeze-film damper, with its centring spring where it has one.
 struct SqueezeFilm {
@@ -89,6 +102,7 @@ struct SqueezeFilm {
   double groove = 0, groove_at = 0;   ///< feed of the sealed film, rad
   double stiffness = 0, damping = 0;  ///< centring spring, the same in y and z, N/m, N s/m
 };
+SupportTraits traits(const SqueezeFilm&);
 
 struct BallBearing {
   int balls = 0;
@@ -97,12 +111,14 @@ struct BallBearing {
   int direction = 1;
   double c_radial = 0, c_axial = 0;
 };
+SupportTraits traits(const BallBearing&);
 
 struct RollerBearing {
   int rollers = 0;
   double roller_diameter = 0, roller_length = 0, pitch_diameter = 0, clearance = 0, stiffness = 0;
   double c_radial = 0, c_axial = 0;
 };
+SupportTraits traits(const RollerBearing&);
 
 /// Ball or cylindrical roller bearing as the linear spring estimated for its static load.
 struct RollingEstimate {
@@ -113,6 +129,19 @@ struct RollingEstimate {
   double contact_angle = 0;         ///< rad
   double kxx = 0, c_radial = 0;     ///< given: axial stiffness, N/m; lateral damping, N s/m
 };
+SupportTraits traits(const RollingEstimate&);
+
+/// Stiffness of a loaded rolling bearing, N/m: kyy along the load = 13e6 n^(2/3) d^(1/3) F^(1/3)
+/// cos^(5/3) alpha (balls, d: ball diameter), kyy = 1e9 n^0.9 l^0.8 F^0.1 cos^1.9 alpha (rollers,
+/// l: length); across it kxx/kyy interpolated in n from 8: 0.46, 12: 0.64, 16: 0.73 (balls), 0.49,
+/// 0.66, 0.74 (rollers). F: static load, N; alpha: contact angle, rad. Friswell, Penny, Garvey &
+/// Lees 2010, doi 10.1017/CBO9780511780509, pp. 182-185.
+struct EstimatedStiffness {
+  double along, across;
+};
+EstimatedStiffness estimate_stiffness(const RollingEstimate&);
+/// The linear bearing it stands for.
+LinearBearing linear_form(const RollingEstimate&);
 
 /// One-sided contact with friction: rub, stop, catcher bearing. The stator is the pedestal.
 struct Rub {
@@ -120,11 +149,13 @@ struct Rub {
   double diameter = 0;                                       ///< 0: that of the shaft
   double slip_speed = 1e-3;                                  ///< m/s
 };
+SupportTraits traits(const Rub&);
 
 struct AnnularSeal {
   double diameter = 0, length = 0, clearance = 0, pressure_drop = 0, density = 0, viscosity = 0;
   double inlet_loss = 0.1, inlet_swirl = 0.5;
 };
+SupportTraits traits(const AnnularSeal&);
 
 /// Destabilising force k J r of a bladed stage or impeller.
 struct CrossCoupling {
@@ -139,6 +170,7 @@ struct CrossCoupling {
   Alford alford;
   Wachel wachel;
 };
+SupportTraits traits(const CrossCoupling&);
 
 /// Coupling between two shafts: K, C turn with them (order x, y, z, rx, ry, rz).
 struct Coupling {
@@ -146,6 +178,7 @@ struct Coupling {
   double offset_y = 0, offset_z = 0;  ///< parallel misalignment of hub 1 against hub 2, m
   double angle_y = 0, angle_z = 0;    ///< angular misalignment: slopes towards y and z, rad
 };
+SupportTraits traits(const Coupling&);
 
 /// Spur or helical gear pair between the shaft and a second one.
 struct GearPair {
@@ -159,5 +192,27 @@ struct GearPair {
   std::vector<double> stiffness_harmonics, stiffness_phases;  ///< relative to the mean; rad
   std::vector<double> error_harmonics, error_phases;          ///< m; rad
 };
+SupportTraits traits(const GearPair&);
+
+// ---------------------------------------------------------------- the list of laws
+
+/// In the order of the kinds in the deck's reference.
+using BearingLaw =
+    std::variant<LinearBearing, SpringBlock, TableBearing, RigidSupport, NonlinearSpring,
+                 ShortJournal, FiniteJournal, SqueezeFilm, BallBearing, RollerBearing,
+                 RollingEstimate, Rub, AnnularSeal, CrossCoupling, Coupling, GearPair>;
+
+inline SupportTraits traits_of(const BearingLaw& law) {
+  return std::visit([](const auto& x) { return traits(x); }, law);
+}
+
+/// Calls f(std::type_identity<Law>{}) for every law of the list, in its order.
+template <std::size_t I = 0, class F>
+void for_each_law(const F& f) {
+  if constexpr (I < std::variant_size_v<BearingLaw>) {
+    f(std::type_identity<std::variant_alternative_t<I, BearingLaw>>{});
+    for_each_law<I + 1>(f);
+  }
+}
 
 }  // namespace whirl::model

@@ -44,7 +44,7 @@ struct Section : Entity {
   bool rotary_inertia = true;        ///< false: Euler-Bernoulli mass
   double added_mass_per_length = 0;  ///< kg/m without stiffness
   double temperature_rise = 0;       ///< K above the state in which the shaft has its lengths
-  int min_elements = 1;
+  int min_elements = 0;              ///< 0, and no length given: chosen (model/resolution.hpp)
   double max_element_length = infinity;
   /// General sections (not axisymmetric): stiffnesses given directly; I about the section's own y
   /// and z axes.
@@ -144,11 +144,6 @@ struct InitialMotion : Entity {
 };
 
 // ---------------------------------------------------------------- supports and bearings
-
-using BearingLaw =
-    std::variant<SpringBlock, LinearBearing, TableBearing, RigidSupport, NonlinearSpring,
-                 ShortJournal, FiniteJournal, SqueezeFilm, BallBearing, RollerBearing,
-                 RollingEstimate, Rub, AnnularSeal, CrossCoupling, Coupling, GearPair>;
 
 /// A mass-spring-damper pedestal under a bearing: mass with its own y, z (and x) motion.
 struct Pedestal {
@@ -439,7 +434,7 @@ struct SpectraOutput {
 };
 
 struct Output {
-  std::string directory;  ///< default results/<deck name>
+  std::string directory;  ///< default `results/<deck name>`
   double every = 0;       ///< s between rows of time histories; 0 = every accepted step
   std::vector<std::string> quantities{"speed", "probes", "energy"};
   double t0 = -infinity, t1 = infinity;  ///< rows only inside this window, s
@@ -477,17 +472,26 @@ struct Event : Entity {
   bool stop = false;           ///< ends the run
 };
 
+/// The part of a resolved deck that motion depends on, TOML text: without titles, outputs, probes
+/// and what ends a run. Each key of the deck declares whether it belongs to it.
+struct MovingDeck {
+  std::string machine;             ///< all but the steps
+  std::vector<std::string> steps;  ///< in their order
+};
+
 struct Model {
   int format = 1;
   std::string title;
   std::string deck_path;  ///< as given by the user
   std::string deck_name;  ///< file name without extension
   std::string resolved;  ///< the resolved deck (parameters substituted, includes merged), TOML text
+  MovingDeck moving;
   Vec3 gravity = Vec3::Zero();  ///< m/s2, global axes; +x along the shaft
   bool chart_change = true;     ///< re-chart rotations beyond 2 rad of tilt
   bool keep_everything = false;
   double max_element_length = infinity;
-  int min_elements = 1;
+  int min_elements = 0;         ///< 0: chosen where the sections say nothing
+  double mesh_accuracy = 1e-3;  ///< of frequencies, where the mesh is chosen
   std::vector<Material> materials;
   std::vector<Shaft> shafts;
   std::vector<Disk> disks;

@@ -12,6 +12,11 @@ namespace whirl::plot {
 enum class Amplitude { zero_to_peak, peak_to_peak };
 /// "0-peak" or "peak-to-peak".
 const char* to_string(Amplitude a);
+constexpr Amplitude amplitude(bool peak_to_peak) {
+  return peak_to_peak ? Amplitude::peak_to_peak : Amplitude::zero_to_peak;
+}
+/// On amplitudes 0-peak: 1 or 2.
+constexpr double factor_of(Amplitude a) { return a == Amplitude::peak_to_peak ? 2.0 : 1.0; }
 
 /// A length in the unit that suits its size (m, mm, um): factor and name.
 struct DisplayUnit {

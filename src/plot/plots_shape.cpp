@@ -7,15 +7,17 @@
 
 namespace whirl::plot {
 
-Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mode) {
-  Figure f;
-  f.name = std::move(name);
-  f.title = std::move(title);
-  f.height = 640;
-  const std::size_t n = mode.s.size();
-  // Scale: the largest excursion is 1. Phase: the moment of that excursion.
+namespace {
+
+/// Factor and phase that make the largest excursion of a shape 1 and show it at that moment.
+struct Moment {
+  double scale;
+  Complex factor;  ///< of size `scale`
+};
+
+Moment largest_moment(const ModeShape& mode) {
   double largest = 0, theta0 = 0;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < mode.s.size(); ++i)
     for (int k = 0; k < 90; ++k) {
       const double theta = two_pi * k / 90;
       const Complex z = std::polar(1.0, theta);
@@ -26,10 +28,22 @@ Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mod
       }
     }
   const double scale = largest > 0 ? 1 / largest : 1;
-  const Complex at0 = std::polar(scale, theta0);
-  const double most = n ? std::max(std::abs(mode.s.front()), std::abs(mode.s.back())) : 1;
-  const DisplayUnit u = most >= 10 ? DisplayUnit{1, "m"} : DisplayUnit{1e3, "mm"};
+  return {scale, std::polar(scale, theta0)};
+}
 
+void append(SpaceSeries& s, double x, double y, double z) {
+  s.x.push_back(x);
+  s.y.push_back(y);
+  s.z.push_back(z);
+}
+
+void append(Series& s, double x, double y) {
+  s.x.push_back(x);
+  s.y.push_back(y);
+}
+
+/// The deflected shaft at a moment and orbits of some stations.
+Axes shape_in_space(const ModeShape& mode, const Moment& moment, const DisplayUnit& u) {
   Axes space;
   space.kind = AxesKind::space;
   space.space_aspect = {2.4, 1, 1};
@@ -44,6 +58,26 @@ Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mod
       line{"deflected shaft", {}, {}, {}, Style{0, Dash::solid, 2.4}},
       dots{"", {}, {}, {}, Style{0, Dash::solid, 0, Marker::circle, 4.5}};
   SpaceSeries orbits{"orbits of the stations", {}, {}, {}, Style{1, Dash::solid, 0.9}};
+  const std::size_t n = mode.s.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double s = u.factor * mode.s[i];
+    const double y = (moment.factor * mode.y[i]).real(), z = (moment.factor * mode.z[i]).real();
+    append(rest, s, 0, 0);
+    append(line, s, y, z);
+    if (n > 16 && i % (n / 13) != 0 && i + 1 != n) continue;
+    for (int k = 0; k <= 48; ++k) {
+      const Complex p = std::polar(1.0, two_pi * k / 48) * moment.factor;
+      append(orbits, s, (p * mode.y[i]).real(), (p * mode.z[i]).real());
+    }
+    append(orbits, nan, nan, nan);
+    append(dots, s, y, z);
+  }
+  space.space = {std::move(rest), std::move(orbits), std::move(line), std::move(dots)};
+  return space;
+}
+
+/// The same in the planes y and z, and the largest radius.
+Axes shape_in_planes(const ModeShape& mode, const Moment& moment, const DisplayUnit& u) {
   Series y, z, envelope;
   y.label = "y";
   z.label = "z";
@@ -51,41 +85,16 @@ Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mod
   y.style = {0, Dash::solid, 1.8};
   z.style = {1, Dash::dashed, 1.8};
   envelope.style = {7, Dash::dotted, 1.5};
-  for (std::size_t i = 0; i < n; ++i) {
-    const double s = u.factor * mode.s[i], ry = (at0 * mode.y[i]).real(),
-                 rz = (at0 * mode.z[i]).real();
-    rest.x.push_back(s);
-    rest.y.push_back(0);
-    rest.z.push_back(0);
-    line.x.push_back(s);
-    line.y.push_back(ry);
-    line.z.push_back(rz);
-    y.x.push_back(s);
-    y.y.push_back(ry);
-    z.x.push_back(s);
-    z.y.push_back(rz);
+  for (std::size_t i = 0; i < mode.s.size(); ++i) {
+    const double s = u.factor * mode.s[i];
+    append(y, s, (moment.factor * mode.y[i]).real());
+    append(z, s, (moment.factor * mode.z[i]).real());
     // Major semi-axis of the ellipse: the sum of the two circular parts.
     const Complex i1(0, 1);
-    envelope.x.push_back(s);
-    envelope.y.push_back(
-        scale * 0.5 *
-        (std::abs(mode.y[i] + i1 * mode.z[i]) + std::abs(mode.y[i] - i1 * mode.z[i])));
-    if (n > 16 && i % (n / 13) != 0 && i + 1 != n) continue;
-    for (int k = 0; k <= 48; ++k) {
-      const Complex p = std::polar(1.0, two_pi * k / 48) * at0;
-      orbits.x.push_back(s);
-      orbits.y.push_back((p * mode.y[i]).real());
-      orbits.z.push_back((p * mode.z[i]).real());
-    }
-    orbits.x.push_back(nan);
-    orbits.y.push_back(nan);
-    orbits.z.push_back(nan);
-    dots.x.push_back(s);
-    dots.y.push_back(ry);
-    dots.z.push_back(rz);
+    append(envelope, s,
+           moment.scale * 0.5 *
+               (std::abs(mode.y[i] + i1 * mode.z[i]) + std::abs(mode.y[i] - i1 * mode.z[i])));
   }
-  space.space = {std::move(rest), std::move(orbits), std::move(line), std::move(dots)};
-
   Axes planes;
   planes.x = Axis("axial position", u.name);
   planes.y = Axis("deflection, largest = 1", "-");
@@ -93,7 +102,21 @@ Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mod
   planes.rules.push_back({false, 0, "", {ink, Dash::solid, 0.8}});
   for (const auto& [text, s] : mode.stations)
     planes.rules.push_back({true, u.factor * s, text, {faint, Dash::dashed, 1.0}});
-  f.axes = {std::move(space), std::move(planes)};
+  return planes;
+}
+
+}  // namespace
+
+Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mode) {
+  Figure f;
+  f.name = std::move(name);
+  f.title = std::move(title);
+  f.height = 640;
+  const double most =
+      mode.s.empty() ? 1 : std::max(std::abs(mode.s.front()), std::abs(mode.s.back()));
+  const DisplayUnit u = most >= 10 ? DisplayUnit{1, "m"} : DisplayUnit{1e3, "mm"};
+  const Moment moment = largest_moment(mode);
+  f.axes = {shape_in_space(mode, moment, u), shape_in_planes(mode, moment, u)};
   if (!mode.label.empty()) f.caption = mode.label;
   return f;
 }
@@ -141,136 +164,189 @@ Figure plot_line(std::string name, const LineDrawing& line) {
   return f;
 }
 
-Figure plot_rotor(std::string name, const RotorDrawing& rotor) {
-  Figure f;
-  f.name = std::move(name);
-  f.title = rotor.title;
-  constexpr double mm = 1e3;
-  double s0 = infinity, s1 = -infinity, r1 = 0;
-  for (const auto& p : rotor.sections) {
-    s0 = std::min(s0, p.s0);
-    s1 = std::max(s1, p.s1);
-    r1 = std::max({r1, p.outer_left, p.outer_right});
+namespace {
+
+constexpr double mm = 1e3;
+
+/// A rotor in its plane: parts, supports and names.
+class RotorPicture {
+ public:
+  explicit RotorPicture(const RotorDrawing& rotor);
+  Figure figure(std::string name);
+
+ private:
+  void find_extent();
+  void add_outline(double sa, double sb, std::array<double, 2> outer, std::array<double, 2> inner,
+                   const Style& style, double opacity, const std::string& tip,
+                   const std::string& label);
+  void add_sections();
+  void add_disks();
+  void add_bearings();
+  void add_lines();
+  void add_names();
+  void add_name(double s, double radius, const std::string& text, double dy) {
+    axes_.notes.push_back({mm * s, mm * radius, text, false, -text_width(text, 11) / 2, dy});
   }
-  for (const auto& d : rotor.disks) {
-    s0 = std::min(s0, d.s - d.width / 2);
-    s1 = std::max(s1, d.s + d.width / 2);
-    r1 = std::max(r1, d.outer);
-  }
-  for (const auto& b : rotor.bearings) {
-    s0 = std::min(s0, b.s);
-    s1 = std::max(s1, b.s);
-  }
-  if (!(s1 > s0)) {
-    s0 -= 0.5 * std::max(r1, 1e-3);
-    s1 = s0 + std::max(r1, 1e-3);
-  }
-  if (!(r1 > 0)) r1 = (s1 - s0) / 50;
-  Axes a;
-  a.x = Axis("axial position", "mm");
-  a.y = Axis("radius", "mm");
-  const double glyph = std::max(0.12 * r1, 0.018 * (s1 - s0));
+
+  const RotorDrawing& rotor_;
+  double s0_ = infinity, s1_ = -infinity, r1_ = 0;  ///< ends and largest radius, m
+  double glyph_ = 0;                                ///< size of a symbol, m
+  Axes axes_;
+};
+
+RotorPicture::RotorPicture(const RotorDrawing& rotor) : rotor_(rotor) {
+  find_extent();
+  glyph_ = std::max(0.12 * r1_, 0.018 * (s1_ - s0_));
+  axes_.x = Axis("axial position", "mm");
+  axes_.y = Axis("radius", "mm");
   // Drawn to one scale unless that would make it a hair.
-  a.equal_aspect = s1 - s0 < 16 * r1;
-  a.legend = true;
-  // An outer and an inner radius along s: two halves, or one area when there is no bore.
-  const auto outline = [&](double sa, double sb, std::array<double, 2> outer,
-                           std::array<double, 2> inner, int color, double opacity,
-                           const std::string& tip, const std::string& label) {
-    const bool solid = inner[0] <= 0 && inner[1] <= 0;
-    for (const double side : {1.0, -1.0}) {
-      if (solid && side < 0) break;
-      Patch p;
-      p.label = side > 0 ? label : "";
-      p.x = {mm * sa, mm * sb, mm * sb, mm * sa};
-      p.y = {mm * side * outer[0], mm * side * outer[1], mm * side * (solid ? -outer[1] : inner[1]),
-             mm * side * (solid ? -outer[0] : inner[0])};
-      p.style = {color, Dash::solid, 1.1};
-      p.fill_opacity = opacity;
-      p.tooltip = tip;
-      a.patches.push_back(std::move(p));
-    }
-  };
-  const auto d = [](double radius) { return readable(2e3 * radius, 5); };
-  for (const auto& p : rotor.sections) {
+  axes_.equal_aspect = s1_ - s0_ < 16 * r1_;
+  axes_.legend = true;
+}
+
+void RotorPicture::find_extent() {
+  for (const auto& p : rotor_.sections) {
+    s0_ = std::min(s0_, p.s0);
+    s1_ = std::max(s1_, p.s1);
+    r1_ = std::max({r1_, p.outer_left, p.outer_right});
+  }
+  for (const auto& d : rotor_.disks) {
+    s0_ = std::min(s0_, d.s - d.width / 2);
+    s1_ = std::max(s1_, d.s + d.width / 2);
+    r1_ = std::max(r1_, d.outer);
+  }
+  for (const auto& b : rotor_.bearings) {
+    s0_ = std::min(s0_, b.s);
+    s1_ = std::max(s1_, b.s);
+  }
+  if (!(s1_ > s0_)) {
+    s0_ -= 0.5 * std::max(r1_, 1e-3);
+    s1_ = s0_ + std::max(r1_, 1e-3);
+  }
+  if (!(r1_ > 0)) r1_ = (s1_ - s0_) / 50;
+}
+
+// An outer and an inner radius along s: two halves, or one area when there is no bore.
+void RotorPicture::add_outline(double sa, double sb, std::array<double, 2> outer,
+                               std::array<double, 2> inner, const Style& style, double opacity,
+                               const std::string& tip, const std::string& label) {
+  const bool solid = inner[0] <= 0 && inner[1] <= 0;
+  for (const double side : {1.0, -1.0}) {
+    if (solid && side < 0) break;
+    Patch p;
+    p.label = side > 0 ? label : "";
+    p.x = {mm * sa, mm * sb, mm * sb, mm * sa};
+    p.y = {mm * side * outer[0], mm * side * outer[1], mm * side * (solid ? -outer[1] : inner[1]),
+           mm * side * (solid ? -outer[0] : inner[0])};
+    p.style = style;
+    p.fill_opacity = opacity;
+    p.tooltip = tip;
+    axes_.patches.push_back(std::move(p));
+  }
+}
+
+/// In mm.
+std::string diameter_text(double radius) { return readable(2e3 * radius, 5); }
+
+void RotorPicture::add_sections() {
+  for (const auto& p : rotor_.sections) {
     std::string tip = p.name + ": length " + readable(mm * (p.s1 - p.s0), 5) +
-                      " mm, outer diameter " + d(p.outer_left);
-    if (p.outer_right != p.outer_left) tip += " to " + d(p.outer_right);
+                      " mm, outer diameter " + diameter_text(p.outer_left);
+    if (p.outer_right != p.outer_left) tip += " to " + diameter_text(p.outer_right);
     tip += " mm";
     if (p.inner_left > 0 || p.inner_right > 0)
-      tip += ", bore " + d(p.inner_left) +
-             (p.inner_right != p.inner_left ? " to " + d(p.inner_right) : "") + " mm";
-    outline(p.s0, p.s1, {p.outer_left, p.outer_right}, {p.inner_left, p.inner_right}, 0, 0.22, tip,
-            &p == &rotor.sections.front() ? "shaft" : "");
+      tip += ", bore " + diameter_text(p.inner_left) +
+             (p.inner_right != p.inner_left ? " to " + diameter_text(p.inner_right) : "") + " mm";
+    add_outline(p.s0, p.s1, {p.outer_left, p.outer_right}, {p.inner_left, p.inner_right},
+                {0, Dash::solid, 1.1}, 0.22, tip, &p == &rotor_.sections.front() ? "shaft" : "");
   }
-  for (const auto& p : rotor.disks)
-    outline(p.s - p.width / 2, p.s + p.width / 2, {p.outer, p.outer}, {p.inner, p.inner}, 1, 0.35,
-            p.name + ": outer diameter " + d(p.outer) + " mm, width " + readable(mm * p.width, 4) +
-                " mm",
-            &p == &rotor.disks.front() ? "disks" : "");
-  for (const auto& b : rotor.bearings) {  // a support: triangle under the shaft
+}
+
+void RotorPicture::add_disks() {
+  for (const auto& p : rotor_.disks) {
+    const std::string tip = p.name + ": outer diameter " + diameter_text(p.outer) + " mm, width " +
+                            readable(mm * p.width, 4) + " mm";
+    add_outline(p.s - p.width / 2, p.s + p.width / 2, {p.outer, p.outer}, {p.inner, p.inner},
+                {1, Dash::solid, 1.1}, 0.35, tip, &p == &rotor_.disks.front() ? "disks" : "");
+  }
+}
+
+/// A support: a triangle under the shaft.
+void RotorPicture::add_bearings() {
+  for (const auto& b : rotor_.bearings) {
     Patch p;
-    p.label = &b == &rotor.bearings.front() ? "bearings" : "";
-    p.x = {mm * b.s, mm * (b.s + glyph), mm * (b.s - glyph)};
-    p.y = {-mm * b.radius, -mm * (b.radius + 1.6 * glyph), -mm * (b.radius + 1.6 * glyph)};
+    p.label = &b == &rotor_.bearings.front() ? "bearings" : "";
+    p.x = {mm * b.s, mm * (b.s + glyph_), mm * (b.s - glyph_)};
+    p.y = {-mm * b.radius, -mm * (b.radius + 1.6 * glyph_), -mm * (b.radius + 1.6 * glyph_)};
     p.style = {2, Dash::solid, 1.2};
     p.fill_opacity = 0.4;
     p.tooltip = b.name;
-    a.patches.push_back(std::move(p));
+    axes_.patches.push_back(std::move(p));
   }
+}
+
+/// The centre line, nodes and probes.
+void RotorPicture::add_lines() {
   Series centre;
   centre.trace_label = "centre line";
-  const double over = 0.02 * (s1 - s0);
-  centre.x = {mm * (s0 - over), mm * (s1 + over)};
+  const double over = 0.02 * (s1_ - s0_);
+  centre.x = {mm * (s0_ - over), mm * (s1_ + over)};
   centre.y = {0, 0};
   centre.style = {ink, Dash::dash_dot, 0.9};
-  a.series.push_back(std::move(centre));
-  if (!rotor.nodes.empty()) {
+  axes_.series.push_back(std::move(centre));
+  if (!rotor_.nodes.empty()) {
     Series nodes;
     nodes.label = "nodes";
-    for (const double s : rotor.nodes) {
-      nodes.x.push_back(mm * s);
-      nodes.y.push_back(0);
-    }
+    for (const double s : rotor_.nodes)
+      append(nodes, mm * s, 0);
     nodes.style = {ink, Dash::solid, 0, Marker::circle, 3.5};
-    a.series.push_back(std::move(nodes));
+    axes_.series.push_back(std::move(nodes));
   }
-  if (!rotor.probes.empty()) {
-    Series probes;
-    probes.label = "probes";
-    for (const auto& p : rotor.probes) {
-      probes.x.push_back(mm * p.s);
-      probes.y.push_back(mm * (p.radius + 0.6 * glyph));
-    }
-    probes.style = {3, Dash::solid, 0, Marker::triangle, 9};
-    a.series.push_back(std::move(probes));
-  }
-  // Names outside the outline: disks and bearings below, probes above.
-  const auto centred = [](const std::string& text, double dy) {
-    return std::pair{-text_width(text, 11) / 2, dy};
-  };
-  for (const auto& p : rotor.disks) {
-    const auto [dx, dy] = centred(p.name, 15);
-    a.notes.push_back({mm * p.s, -mm * p.outer, p.name, false, dx, dy});
-  }
-  for (const auto& p : rotor.bearings) {
-    const auto [dx, dy] = centred(p.name, 15);
-    a.notes.push_back({mm * p.s, -mm * (p.radius + 1.6 * glyph), p.name, false, dx, dy});
-  }
-  for (const auto& p : rotor.probes) {
-    const auto [dx, dy] = centred(p.name, -9);
-    a.notes.push_back({mm * p.s, mm * (p.radius + 0.6 * glyph), p.name, false, dx, dy});
-  }
-  const double reach = r1 + 3.2 * glyph;
-  a.y.min = -mm * reach;
-  a.y.max = mm * reach;
+  if (rotor_.probes.empty()) return;
+  Series probes;
+  probes.label = "probes";
+  for (const auto& p : rotor_.probes)
+    append(probes, mm * p.s, mm * (p.radius + 0.6 * glyph_));
+  probes.style = {3, Dash::solid, 0, Marker::triangle, 9};
+  axes_.series.push_back(std::move(probes));
+}
+
+/// Outside the outline: disks and bearings below, probes above.
+void RotorPicture::add_names() {
+  for (const auto& p : rotor_.disks)
+    add_name(p.s, -p.outer, p.name, 15);
+  for (const auto& p : rotor_.bearings)
+    add_name(p.s, -(p.radius + 1.6 * glyph_), p.name, 15);
+  for (const auto& p : rotor_.probes)
+    add_name(p.s, p.radius + 0.6 * glyph_, p.name, -9);
+}
+
+Figure RotorPicture::figure(std::string name) {
+  add_sections();
+  add_disks();
+  add_bearings();
+  add_lines();
+  add_names();
+  const double reach = r1_ + 3.2 * glyph_;
+  axes_.y.min = -mm * reach;
+  axes_.y.max = mm * reach;
+  Figure f;
+  f.name = std::move(name);
+  f.title = rotor_.title;
   f.width = 860;
-  // As high as one scale wants, within reason.
-  f.height =
-      a.equal_aspect ? std::clamp(110 + 780 * 2 * reach / (1.1 * (s1 - s0)), 240.0, 620.0) : 300;
-  if (!a.equal_aspect) f.caption = "Radii are drawn larger than lengths.";
-  f.axes.push_back(std::move(a));
+  f.height = 300;
+  if (axes_.equal_aspect)  // as high as one scale wants, within reason
+    f.height = std::clamp(110 + 780 * 2 * reach / (1.1 * (s1_ - s0_)), 240.0, 620.0);
+  else
+    f.caption = "Radii are drawn larger than lengths.";
+  f.axes.push_back(std::move(axes_));
   return f;
+}
+
+}  // namespace
+
+Figure plot_rotor(std::string name, const RotorDrawing& rotor) {
+  return RotorPicture(rotor).figure(std::move(name));
 }
 
 Figure plot_study(std::string name, std::string title, std::span<const StudyCurve> curves,

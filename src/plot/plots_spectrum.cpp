@@ -7,7 +7,8 @@
 namespace whirl::plot {
 namespace {
 
-constexpr double rpm = 30 / pi, hertz = 1 / two_pi;
+constexpr double rpm = to_rpm(1.0);
+constexpr double hertz = to_hz(1.0);
 
 struct Extent {
   double speed0 = infinity, speed1 = -infinity, frequency1 = 0, amplitude = 0;
@@ -37,78 +38,103 @@ double round_down(double x) {
   return x >= 5 * p ? 5 * p : x >= 2 * p ? 2 * p : p;
 }
 
-}  // namespace
-
-Figure plot_waterfall(std::string name, std::string title, std::span<const SpectrumTrace> traces,
-                      std::string quantity, std::string unit, Amplitude convention,
-                      std::span<const double> orders) {
-  Figure f;
-  f.name = std::move(name);
-  f.title = std::move(title);
-  f.height = 560;
-  Axes a;
-  a.x = Axis("frequency", "Hz");
-  a.y = Axis("speed", "rpm");
-  a.legend = false;
-  const Extent e = extent_of(traces);
-  const DisplayUnit u = unit_for(unit, e.amplitude);
+/// By falling speed, so that lower traces stand in front; at most about sixty can be told apart.
+std::vector<const SpectrumTrace*> distinct_traces(std::span<const SpectrumTrace> traces) {
   std::vector<const SpectrumTrace*> order;
   for (const auto& t : traces)
     order.push_back(&t);
   std::stable_sort(order.begin(), order.end(),
                    [](const auto* x, const auto* y) { return x->speed > y->speed; });
-  // At most about sixty traces can be told apart.
   std::vector<const SpectrumTrace*> shown;
-  const std::size_t stride = (order.size() + 59) / 60;
-  for (std::size_t i = 0; i < order.size(); i += std::max<std::size_t>(1, stride))
+  const std::size_t stride = std::max<std::size_t>(1, (order.size() + 59) / 60);
+  for (std::size_t i = 0; i < order.size(); i += stride)
     shown.push_back(order[i]);
+  return shown;
+}
+
+/// What the traces of a waterfall share.
+struct Waterfall {
+  Extent extent;
+  DisplayUnit unit;
+  std::string convention;
+  double height = 0, per_y = 1;  ///< of the largest amplitude, rpm; amplitude a unit of the axis
+};
+
+Series waterfall_trace(const SpectrumTrace& t, const Waterfall& w) {
+  Series s;
+  s.baseline = t.speed * rpm;
+  s.amplitude_per_y = w.per_y;
+  s.amplitude_unit = w.unit.name + " " + w.convention;
+  s.fill_to_baseline = true;
+  s.style = {0, Dash::solid, 1.0};
+  s.trace_label = readable(s.baseline, 5) + " rpm";
+  for (std::size_t i = 0; i < t.frequency.size(); ++i) {
+    s.x.push_back(t.frequency[i] * hertz);
+    s.y.push_back(s.baseline + t.amplitude[i] * w.unit.factor / w.per_y);
+  }
+  return s;
+}
+
+/// The line of an order of the speed, to a little beyond the last trace.
+void add_order_line(Axes& a, double order, const Waterfall& w) {
+  const Extent& e = w.extent;
+  const double end = e.speed1 + 0.6 * w.height;
+  const double last = std::min(end, e.frequency1 * 60 / order);
+  Series s;
+  s.x = {e.speed0 * order / 60, last * order / 60};
+  s.y = {e.speed0, last};
+  s.style = {1, Dash::dashed, 0.9};
+  s.trace_label = number_text(order, 3) + "×";
+  const bool at_edge = last < end;
+  a.notes.push_back(
+      {last * order / 60, last, s.trace_label, false, at_edge ? -20.0 : 3.0, at_edge ? -4.0 : 0.0});
+  a.series.push_back(std::move(s));
+}
+
+void add_amplitude_bar(Axes& a, const Waterfall& w) {
+  const Extent& e = w.extent;
+  if (!(e.amplitude > 0)) return;
+  const double bar = round_down(e.amplitude * w.unit.factor), x = 0.985 * e.frequency1,
+               y1 = e.speed1 + 1.0 * w.height, y0 = y1 - bar / w.per_y;
+  Series s;
+  s.x = {x, x};
+  s.y = {y0, y1};
+  s.style = {ink, Dash::solid, 2.5};
+  s.trace_label = "scale";
+  a.series.push_back(std::move(s));
+  const std::string text = number_text(bar, 6) + " " + w.unit.name + " " + w.convention;
+  a.notes.push_back({x, y1, text, false, -8 - text_width(text, 11), 10});
+}
+
+}  // namespace
+
+Figure plot_waterfall(std::string name, std::string title, std::span<const SpectrumTrace> traces,
+                      std::string quantity, std::string unit, Amplitude convention,
+                      std::span<const double> orders) {
+  const Extent e = extent_of(traces);
+  const std::vector<const SpectrumTrace*> shown = distinct_traces(traces);
   const double spacing = (e.speed1 - e.speed0) / std::max<std::size_t>(1, shown.size() - 1);
-  const double height = std::max(0.16 * (e.speed1 - e.speed0), 1.5 * spacing);
-  const double per_y = e.amplitude > 0 ? e.amplitude * u.factor / height : 1;
+  Waterfall w{e, unit_for(unit, e.amplitude), to_string(convention)};
+  w.height = std::max(0.16 * (e.speed1 - e.speed0), 1.5 * spacing);
+  if (e.amplitude > 0) w.per_y = e.amplitude * w.unit.factor / w.height;
+  Axes a;
+  a.x = Axis("frequency", "Hz");
+  a.y = Axis("speed", "rpm");
+  a.legend = false;
   a.y.min = e.speed0 - 0.02 * (e.speed1 - e.speed0);
-  a.y.max = e.speed1 + 1.05 * height;
+  a.y.max = e.speed1 + 1.05 * w.height;
   a.x.min = 0;
   a.x.max = e.frequency1;
-  for (const auto* t : shown) {  // the highest speed first: lower ones stand in front
-    Series s;
-    s.baseline = t->speed * rpm;
-    s.amplitude_per_y = per_y;
-    s.amplitude_unit = u.name + " " + to_string(convention);
-    s.fill_to_baseline = true;
-    s.style = {0, Dash::solid, 1.0};
-    s.trace_label = readable(s.baseline, 5) + " rpm";
-    for (std::size_t i = 0; i < t->frequency.size(); ++i) {
-      s.x.push_back(t->frequency[i] * hertz);
-      s.y.push_back(s.baseline + t->amplitude[i] * u.factor / per_y);
-    }
-    a.series.push_back(std::move(s));
-  }
-  for (const double k : orders) {
-    Series s;
-    const double last =
-        std::min(e.speed1 + 0.6 * height, e.frequency1 * 60 / k);  // a little beyond the last trace
-    s.x = {e.speed0 * k / 60, last * k / 60};
-    s.y = {e.speed0, last};
-    s.style = {1, Dash::dashed, 0.9};
-    s.trace_label = number_text(k, 3) + "×";
-    const bool at_edge = last < e.speed1 + 0.6 * height;
-    a.notes.push_back(
-        {last * k / 60, last, s.trace_label, false, at_edge ? -20.0 : 3.0, at_edge ? -4.0 : 0.0});
-    a.series.push_back(std::move(s));
-  }
-  if (e.amplitude > 0) {  // the scale of the amplitudes
-    const double bar = round_down(e.amplitude * u.factor), x = 0.985 * e.frequency1,
-                 y1 = e.speed1 + 1.0 * height, y0 = y1 - bar / per_y;
-    Series s;
-    s.x = {x, x};
-    s.y = {y0, y1};
-    s.style = {ink, Dash::solid, 2.5};
-    s.trace_label = "scale";
-    a.series.push_back(std::move(s));
-    const std::string text = number_text(bar, 6) + " " + u.name + " " + to_string(convention);
-    a.notes.push_back({x, y1, text, false, -8 - text_width(text, 11), 10});
-  }
-  f.caption = quantity_name(quantity, convention) + " [" + u.name +
+  for (const SpectrumTrace* t : shown)
+    a.series.push_back(waterfall_trace(*t, w));
+  for (const double order : orders)
+    add_order_line(a, order, w);
+  add_amplitude_bar(a, w);
+  Figure f;
+  f.name = std::move(name);
+  f.title = std::move(title);
+  f.height = 560;
+  f.caption = quantity_name(quantity, convention) + " [" + w.unit.name +
               "] above each trace's speed; the bar gives the scale.";
   f.axes.push_back(std::move(a));
   return f;

@@ -9,7 +9,8 @@
 namespace whirl::plot {
 namespace {
 
-constexpr double rpm = 30 / pi, hertz = 1 / two_pi;
+constexpr double rpm = to_rpm(1.0);
+constexpr double hertz = to_hz(1.0);
 
 struct Look {
   Whirl whirl;
@@ -158,7 +159,7 @@ Figure plot_bode(std::string name, std::string title, std::span<const ResponseCu
   f.name = std::move(name);
   f.title = std::move(title);
   f.height = 540;
-  const double factor = convention == Amplitude::peak_to_peak ? 2 : 1;
+  const double factor = factor_of(convention);
   const DisplayUnit u = amplitude_unit(curves, factor);
   Axes amplitude, phase;
   amplitude.x = phase.x = Axis("speed", "rpm");
@@ -198,7 +199,7 @@ Figure plot_polar(std::string name, std::string title, std::span<const ResponseC
   f.title = std::move(title);
   f.width = 620;
   f.height = 520;
-  const double factor = convention == Amplitude::peak_to_peak ? 2 : 1;
+  const double factor = factor_of(convention);
   const DisplayUnit u = amplitude_unit(curves, factor);
   Axes a;
   a.kind = AxesKind::polar;

@@ -4,73 +4,110 @@
 
 namespace whirl::plot {
 
+namespace {
+
+/// Makes the drawing of one line of the mesh.
+class RotorDrawer {
+ public:
+  RotorDrawer(const model::Model& model, const meshes::Mesh& mesh, const meshes::Scene& scene,
+              std::size_t line)
+      : model_(model),
+        mesh_(mesh),
+        scene_(scene),
+        number_(line) {}
+  RotorDrawing draw();
+
+ private:
+  double s_of(const meshes::Place& p) const { return mesh_.nodes[at(p.node)].s + p.offset; }
+  bool on_line(const meshes::Place& p) const {
+    return mesh_.nodes[at(p.node)].line == static_cast<Index>(number_);
+  }
+  double radius_at(double s) const;
+  void add_sections();
+  void add_bearing(const meshes::Place& p, const std::string& name);
+  void add_probe(const model::Probe& p);
+
+  const model::Model& model_;
+  const meshes::Mesh& mesh_;
+  const meshes::Scene& scene_;
+  std::size_t number_;
+  RotorDrawing d_;
+};
+
+void RotorDrawer::add_sections() {
+  double s = 0;
+  for (const auto& section : model_.shafts[number_].sections) {
+    DrawnSection x{s,
+                   s + section.length,
+                   section.od_l / 2,
+                   section.od_r / 2,
+                   section.id_l / 2,
+                   section.id_r / 2,
+                   section.name};
+    if (x.outer_left <= 0 && x.outer_right <= 0)  // constants instead of diameters
+      for (const auto& p : scene_.lines[number_].pieces)
+        if (const double m = (s_of(p.left) + s_of(p.right)) / 2; m > x.s0 && m < x.s1) {
+          x.outer_left = p.outer_left;
+          x.outer_right = p.outer_right;
+        }
+    d_.sections.push_back(std::move(x));
+    s += section.length;
+  }
+}
+
+double RotorDrawer::radius_at(double s) const {
+  double r = 0;
+  for (const auto& x : d_.sections)
+    if (s >= x.s0 - 1e-9 && s <= x.s1 + 1e-9) {
+      const double f = x.s1 > x.s0 ? std::clamp((s - x.s0) / (x.s1 - x.s0), 0.0, 1.0) : 0.0;
+      r = std::max(r, x.outer_left + f * (x.outer_right - x.outer_left));
+    }
+  return r;
+}
+
+/// Several at one place are one mark with all their names.
+void RotorDrawer::add_bearing(const meshes::Place& p, const std::string& name) {
+  const double s = s_of(p);
+  const auto same = std::find_if(d_.bearings.begin(), d_.bearings.end(),
+                                 [s](const auto& x) { return std::abs(x.s - s) < 1e-9; });
+  if (same != d_.bearings.end())
+    same->name += ", " + name;
+  else
+    d_.bearings.push_back({s, radius_at(s), name});
+}
+
+/// At a disk it is drawn at the rim.
+void RotorDrawer::add_probe(const model::Probe& p) {
+  double r = radius_at(p.at.s);
+  for (const auto& k : d_.disks)
+    if (std::abs(p.at.s - k.s) <= k.width / 2) r = std::max(r, k.outer);
+  d_.probes.push_back({p.at.s, r, p.name});
+}
+
+RotorDrawing RotorDrawer::draw() {
+  const meshes::Line& line = mesh_.lines[number_];
+  d_.title = model_.shafts[number_].path.empty() ? "Shaft ‘" + line.name + "’"
+                                                 : "Line ‘" + line.name + "’, laid out straight";
+  add_sections();
+  for (const auto& k : scene_.lines[number_].disks)
+    d_.disks.push_back({s_of(k.at), k.outer, k.inner, k.width, k.name});
+  for (const auto& b : scene_.supports)
+    for (const auto* p : {&b.at, b.to_node ? &b.to : nullptr})
+      if (p && on_line(*p)) add_bearing(*p, b.name);
+  for (const auto& p : model_.probes)
+    if (p.at.shaft == number_) add_probe(p);
+  for (Index k = line.first_node; k < line.first_node + line.nodes; ++k)
+    d_.nodes.push_back(mesh_.nodes[at(k)].s);
+  return std::move(d_);
+}
+
+}  // namespace
+
 std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const meshes::Mesh& mesh,
                                               const meshes::Scene& scene) {
   std::vector<RotorDrawing> all;
-  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
-    const auto& line = mesh.lines[l];
-    const auto& pieces = scene.lines[l].pieces;
-    const auto s_of = [&](const meshes::Place& p) {
-      return mesh.nodes[static_cast<std::size_t>(p.node)].s + p.offset;
-    };
-    const auto on_line = [&](const meshes::Place& p) {
-      return mesh.nodes[static_cast<std::size_t>(p.node)].line == static_cast<Index>(l);
-    };
-    RotorDrawing d;
-    d.title = model.shafts[l].path.empty() ? "Shaft ‘" + line.name + "’"
-                                           : "Line ‘" + line.name + "’, laid out straight";
-    double s = 0;
-    for (const auto& section : model.shafts[l].sections) {
-      DrawnSection x{s,
-                     s + section.length,
-                     section.od_l / 2,
-                     section.od_r / 2,
-                     section.id_l / 2,
-                     section.id_r / 2,
-                     section.name};
-      if (x.outer_left <= 0 && x.outer_right <= 0)  // constants instead of diameters
-        for (const auto& p : pieces)
-          if (const double m = (s_of(p.left) + s_of(p.right)) / 2; m > x.s0 && m < x.s1) {
-            x.outer_left = p.outer_left;
-            x.outer_right = p.outer_right;
-          }
-      d.sections.push_back(std::move(x));
-      s += section.length;
-    }
-    const auto radius = [&](double at) {
-      double r = 0;
-      for (const auto& x : d.sections)
-        if (at >= x.s0 - 1e-9 && at <= x.s1 + 1e-9) {
-          const double f = x.s1 > x.s0 ? std::clamp((at - x.s0) / (x.s1 - x.s0), 0.0, 1.0) : 0.0;
-          r = std::max(r, x.outer_left + f * (x.outer_right - x.outer_left));
-        }
-      return r;
-    };
-    for (const auto& k : scene.lines[l].disks)
-      d.disks.push_back({s_of(k.at), k.outer, k.inner, k.width, k.name});
-    for (const auto& b : scene.supports)
-      for (const auto* p : {&b.at, b.to_node ? &b.to : nullptr})
-        if (p && on_line(*p)) {
-          // several at one place are one mark with all their names
-          const double at = s_of(*p);
-          const auto same = std::find_if(d.bearings.begin(), d.bearings.end(),
-                                         [at](const auto& x) { return std::abs(x.s - at) < 1e-9; });
-          if (same != d.bearings.end())
-            same->name += ", " + b.name;
-          else
-            d.bearings.push_back({at, radius(at), b.name});
-        }
-    for (const auto& p : model.probes) {
-      if (p.at.shaft != l) continue;
-      double r = radius(p.at.s);  // a probe at a disk is drawn at its rim
-      for (const auto& k : d.disks)
-        if (std::abs(p.at.s - k.s) <= k.width / 2) r = std::max(r, k.outer);
-      d.probes.push_back({p.at.s, r, p.name});
-    }
-    for (Index k = line.first_node; k < line.first_node + line.nodes; ++k)
-      d.nodes.push_back(mesh.nodes[static_cast<std::size_t>(k)].s);
-    all.push_back(std::move(d));
-  }
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l)
+    all.push_back(RotorDrawer(model, mesh, scene, l).draw());
   return all;
 }
 

@@ -74,7 +74,7 @@ std::string path_of(const std::vector<double>& px, const std::vector<double>& py
 /// Name, further values and point names of a curve as attributes for the readout.
 std::string readout_attributes(const Series& s, const std::vector<double>& px,
                                const std::vector<double>& py);
-/// <use> markers at points; defines the marker's shape first.
+/// `<use>` markers at points; defines the marker's shape first.
 void draw_pins(Canvas& c, const std::vector<double>& px, const std::vector<double>& py,
                const Style& style, int color, int series, bool right, std::string_view rest,
                const Box* clip = nullptr);

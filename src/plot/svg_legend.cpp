@@ -34,6 +34,67 @@ Box legend_size_of(const std::vector<LegendEntry>& entries) {
   return {0, 0, w + sample + 2 * pad + 6, row * static_cast<double>(entries.size()) + 2 * pad - 4};
 }
 
+namespace {
+
+/// Of nine places in the frame the one where a legend of this size hides least: corners first, the
+/// upper right before the others.
+Box best_place(const Box& size, const Box& frame, const std::vector<Point>& seen,
+               const std::vector<Box>& taken) {
+  const double m = 8,
+               xs[3] = {frame.right() - size.w - m, frame.x + m, frame.x + (frame.w - size.w) / 2};
+  const double ys[3] = {frame.y + m, frame.bottom() - size.h - m, frame.y + (frame.h - size.h) / 2};
+  double least = infinity;
+  Box best = size;
+  for (int iy = 0; iy < 3; ++iy)
+    for (int ix = 0; ix < 3; ++ix) {
+      if (ix == 2 && iy == 2) continue;
+      const Box t{xs[ix], ys[iy], size.w, size.h};
+      double inside = 0;
+      for (const Point& p : seen)
+        if (p.x > t.x - 3 && p.x < t.right() + 3 && p.y > t.y - 3 && p.y < t.bottom() + 3) ++inside;
+      double cost = 0.002 * (3 * iy + ix) + inside / (1.0 + static_cast<double>(seen.size()));
+      for (const Box& o : taken)
+        cost += t.overlaps(o) ? 0.3 : 0;
+      if (cost < least) {
+        least = cost;
+        best = t;
+      }
+    }
+  return best;
+}
+
+void rectangle(Canvas& c, const Box& b) {
+  c.attr("x", b.x);
+  c.attr("y", b.y);
+  c.attr("width", b.w);
+  c.attr("height", b.h);
+}
+
+/// y: middle of its row.
+void draw_entry(Canvas& c, const LegendEntry& e, const Box& b, double y) {
+  c.add("<g class=\"entry\" data-s=\"" + std::to_string(e.series) +
+        "\"><rect fill=\"transparent\"");
+  rectangle(c, {b.x, y - row / 2, b.w, row});
+  c.add("/>");
+  const double x0 = b.x + pad, x1 = x0 + sample;
+  if (e.patch || e.bar) {
+    c.add("<rect");
+    rectangle(c, {x0 + 4, y - 5, sample - 8, 10});
+    c.add(" " + fill(e.color) + (e.patch ? " fill-opacity=\"0.4\"" : "") + "/>");
+  } else {
+    if (e.style.width > 0) c.line(x0, y, x1, y, stroke(e.color, e.style.width, e.style.dash));
+    if (e.style.marker != Marker::none) {
+      Style s = e.style;
+      s.marker_size = std::min(s.marker_size, 7.0);
+      draw_pins(c, {(x0 + x1) / 2}, {y}, s, e.color, e.series, false, " data-legend=\"1\"");
+    }
+  }
+  c.text(x1 + 6, y + 4, e.label, legend_size);
+  c.add("</g>\n");
+}
+
+}  // namespace
+
 void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& frame,
                  const std::vector<Point>& seen, const std::vector<Box>& taken,
                  const Box& outside) {
@@ -42,68 +103,16 @@ void draw_legend(Canvas& c, const std::vector<LegendEntry>& entries, const Box& 
   if (outside.w > 0) {
     b.x = outside.x;
     b.y = outside.y;
-  } else {
-    const double m = 8,
-                 xs[3] = {frame.right() - b.w - m, frame.x + m, frame.x + (frame.w - b.w) / 2};
-    const double ys[3] = {frame.y + m, frame.bottom() - b.h - m, frame.y + (frame.h - b.h) / 2};
-    double best = infinity;
-    Box at = b;
-    for (int iy = 0; iy < 3; ++iy)
-      for (int ix = 0; ix < 3; ++ix) {
-        if (ix == 2 && iy == 2) continue;
-        Box t = b;
-        t.x = xs[ix];
-        t.y = ys[iy];
-        double cost = 0.002 * (3 * iy + ix);  // prefers the corners, the upper right first
-        double inside = 0;
-        for (const auto& p : seen)
-          if (p.x > t.x - 3 && p.x < t.right() + 3 && p.y > t.y - 3 && p.y < t.bottom() + 3)
-            ++inside;
-        cost += inside / (1.0 + static_cast<double>(seen.size()));
-        for (const auto& o : taken)
-          cost += t.overlaps(o) ? 0.3 : 0;
-        if (cost < best) {
-          best = cost;
-          at = t;
-        }
-      }
-    b = at;
-  }
+  } else
+    b = best_place(b, frame, seen, taken);
   c.add("<g class=\"legend\"><rect rx=\"3\"");
-  c.attr("x", b.x);
-  c.attr("y", b.y);
-  c.attr("width", b.w);
-  c.attr("height", b.h);
+  rectangle(c, b);
   c.add(
       " class=\"fp cg\" fill=\"#ffffff\" fill-opacity=\"0.88\" stroke=\"#d9d9d9\" "
       "stroke-width=\"0.7\"/>\n");
   double y = b.y + pad + row / 2 - 2;
-  for (const auto& e : entries) {
-    c.add("<g class=\"entry\" data-s=\"" + std::to_string(e.series) +
-          "\"><rect fill=\"transparent\"");
-    c.attr("x", b.x);
-    c.attr("y", y - row / 2);
-    c.attr("width", b.w);
-    c.attr("height", row);
-    c.add("/>");
-    const double x0 = b.x + pad, x1 = x0 + sample;
-    if (e.patch || e.bar) {
-      c.add("<rect");
-      c.attr("x", x0 + 4);
-      c.attr("y", y - 5);
-      c.attr("width", sample - 8);
-      c.attr("height", 10);
-      c.add(" " + fill(e.color) + (e.patch ? " fill-opacity=\"0.4\"" : "") + "/>");
-    } else {
-      if (e.style.width > 0) c.line(x0, y, x1, y, stroke(e.color, e.style.width, e.style.dash));
-      if (e.style.marker != Marker::none) {
-        Style s = e.style;
-        s.marker_size = std::min(s.marker_size, 7.0);
-        draw_pins(c, {(x0 + x1) / 2}, {y}, s, e.color, e.series, false, " data-legend=\"1\"");
-      }
-    }
-    c.text(x1 + 6, y + 4, e.label, legend_size);
-    c.add("</g>\n");
+  for (const LegendEntry& e : entries) {
+    draw_entry(c, e, b, y);
     y += row;
   }
   c.add("</g>\n");

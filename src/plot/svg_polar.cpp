@@ -5,84 +5,143 @@
 
 namespace whirl::plot::svg {
 
-void draw_polar(Canvas& c, const Axes& a, const Box& cell) {
-  const Colors k = resolve_colors(a);
-  const auto entries = legend_entries(a, k);
-  const Box legend = legend_size_of(entries);
+namespace {
+
+/// Polar axes on the canvas.
+class PolarDrawing {
+ public:
+  PolarDrawing(Canvas& c, const Axes& a, const Box& cell);
+  void draw();
+
+ private:
+  double largest_radius() const;
+  /// degrees: of the axis; r: px.
+  Point place(double degrees, double r) const {
+    const double f = (a_.zero_at + (a_.clockwise ? -degrees : degrees)) * pi / 180;
+    return {cx_ + r * std::cos(f), cy_ - r * std::sin(f)};
+  }
+  void begin();
+  void draw_grid();
+  void draw_curve(std::size_t i);
+  void draw_radii();
+
+  Canvas& c_;
+  const Axes& a_;
+  const Box& cell_;
+  const Colors colors_;
+  const std::vector<LegendEntry> entries_;
+  const Box legend_;
+  Ticks ticks_;
+  double step_ = 1, full_ = 1;                ///< between circles, of the outermost one
+  double top_ = 0, R_ = 0, cx_ = 0, cy_ = 0;  ///< px
+  std::vector<Point> seen_;
+};
+
+PolarDrawing::PolarDrawing(Canvas& c, const Axes& a, const Box& cell)
+    : c_(c),
+      a_(a),
+      cell_(cell),
+      colors_(resolve_colors(a)),
+      entries_(legend_entries(a, colors_)),
+      legend_(legend_size_of(entries_)) {
+  const double largest = largest_radius();
+  ticks_ = linear_ticks(0, largest * 1.02, 4);
+  step_ = ticks_.major.size() > 1 ? ticks_.major[1] - ticks_.major[0] : largest;
+  full_ = std::isnan(a.y.max) ? step_ * std::ceil(largest / step_ - 0.02) : largest;
+  top_ = a.title.empty() ? 8 : 26;
+  const double right = entries_.empty() ? 0 : legend_.w + 10;
+  R_ = std::max(20.0, std::min((cell.w - right - 80) / 2, (cell.h - top_ - 76) / 2));
+  cx_ = cell.x + (cell.w - right) / 2;
+  cy_ = cell.y + top_ + 20 + R_;
+}
+
+double PolarDrawing::largest_radius() const {
+  if (!std::isnan(a_.y.max)) return a_.y.max;
   double largest = 0;
-  for (const auto& s : a.series)
+  for (const Series& s : a_.series)
     for (const double v : s.y)
       if (std::isfinite(v)) largest = std::max(largest, v);
-  if (!(largest > 0)) largest = 1;
-  if (!std::isnan(a.y.max)) largest = a.y.max;
-  const Ticks t = linear_ticks(0, largest * 1.02, 4);
-  const double step = t.major.size() > 1 ? t.major[1] - t.major[0] : largest;
-  const double full = std::isnan(a.y.max) ? step * std::ceil(largest / step - 0.02) : largest;
-  const double top = a.title.empty() ? 8 : 26;
-  const double right = entries.empty() ? 0 : legend.w + 10;
-  const double R = std::max(20.0, std::min((cell.w - right - 80) / 2, (cell.h - top - 76) / 2));
-  const double cx = cell.x + (cell.w - right) / 2, cy = cell.y + top + 20 + R;
-  const auto at = [&](double degrees, double r) {
-    const double f = (a.zero_at + (a.clockwise ? -degrees : degrees)) * pi / 180;
-    return Point{cx + r * std::cos(f), cy - r * std::sin(f)};
-  };
-  c.add("<g class=\"axes\" data-kind=\"polar\" data-box=\"" + number_text(cx - R) + " " +
-        number_text(cy - R) + " " + number_text(2 * R) + " " + number_text(2 * R) +
-        "\" data-zero=\"" + number_text(a.zero_at) + "\" data-cw=\"" + (a.clockwise ? "1" : "0") +
-        '"');
-  axis_attributes(c, "x", a.x, Scale{0, 360, false});
-  axis_attributes(c, "y", a.y, Scale{0, full, false});
-  c.add(">\n");
-  if (!a.title.empty())
-    c.text(cell.x + 8, cell.y + top - 9, a.title, title_size, "start", "font-weight=\"600\"");
-  c.add("<g class=\"gx\">");
-  for (int deg = 0; deg < 360; deg += 30) {
-    const Point p = at(deg, R), q = at(deg, R + 15);
-    c.line(cx, cy, p.x, p.y, stroke(faint, 0.8));
-    c.text(q.x, q.y + 4, std::to_string(deg) + "°", tick_size, "middle");
-  }
-  for (double r = step; r < full * 1.001; r += step) {
-    c.add("<circle");
-    c.attr("cx", cx);
-    c.attr("cy", cy);
-    c.attr("r", R * r / full);
-    c.add(" " + (r > full * 0.999 ? stroke(ink, 0.9) : stroke(faint, 0.8)) + "/>");
-  }
-  c.add("</g>\n<g class=\"plot\">\n");
-  std::vector<Point> seen;
-  for (std::size_t i = 0; i < a.series.size(); ++i) {
-    const auto& s = a.series[i];
-    std::vector<double> px(s.x.size(), nan), py(s.x.size(), nan);
-    for (std::size_t j = 0; j < s.x.size() && j < s.y.size(); ++j) {
-      if (!std::isfinite(s.x[j]) || !std::isfinite(s.y[j])) continue;
-      const Point p = at(s.x[j], R * s.y[j] / full);
-      px[j] = p.x;
-      py[j] = p.y;
-    }
-    const std::string rest = readout_attributes(s, px, py);
-    const bool keep = s.keep_all || !s.extra.empty() || !s.point_names.empty();
-    if (s.style.width > 0)
-      c.add("<path data-s=\"" + std::to_string(i) + "\"" + rest + " " +
-            stroke(k.series[i], s.style.width, s.style.dash) + " stroke-linejoin=\"round\" d=\"" +
-            path_of(px, py, keep, false, c.options.columns_per_px, &seen) + "\"/>\n");
-    draw_pins(c, px, py, s.style, k.series[i], static_cast<int>(i), false,
-              s.style.width > 0 ? std::string(" data-quiet=\"1\"") : rest);
-  }
-  c.add("</g>\n");
-  // Radii along the ray at 15 degrees, where no angle is labelled.
-  for (double r = step; r < full * 1.001; r += step) {
-    const Point p = at(a.clockwise ? -15 : 15, R * r / full);
-    const auto n = static_cast<std::size_t>(std::lround(r / step));
-    if (n < t.labels.size()) c.text(p.x, p.y + 4, t.labels[n], tick_size - 1, "middle");
-  }
-  std::vector<Box> taken;
-  const Box inside{cx - R - 30, cy - R, 2 * R + 60, 2 * R};
-  for (const auto& n : a.notes)
-    draw_note(c, at(n.x, R * n.y / full), n.text, inside, taken, seen);
-  c.text(cx, cy + R + 40, axis_title(a.y, t.exponent) + ", " + a.x.label, label_size, "middle");
-  draw_legend(c, entries, cell, seen, {},
-              {cell.right() - legend.w, cell.y + top, legend.w, legend.h});
-  c.add("</g>\n");
+  return largest > 0 ? largest : 1;
 }
+
+void PolarDrawing::begin() {
+  c_.add("<g class=\"axes\" data-kind=\"polar\" data-box=\"" + number_text(cx_ - R_) + " " +
+         number_text(cy_ - R_) + " " + number_text(2 * R_) + " " + number_text(2 * R_) +
+         "\" data-zero=\"" + number_text(a_.zero_at) + "\" data-cw=\"" +
+         (a_.clockwise ? "1" : "0") + '"');
+  axis_attributes(c_, "x", a_.x, Scale{0, 360, false});
+  axis_attributes(c_, "y", a_.y, Scale{0, full_, false});
+  c_.add(">\n");
+  if (!a_.title.empty())
+    c_.text(cell_.x + 8, cell_.y + top_ - 9, a_.title, title_size, "start", "font-weight=\"600\"");
+}
+
+void PolarDrawing::draw_grid() {
+  for (int deg = 0; deg < 360; deg += 30) {
+    const Point p = place(deg, R_), q = place(deg, R_ + 15);
+    c_.line(cx_, cy_, p.x, p.y, stroke(faint, 0.8));
+    c_.text(q.x, q.y + 4, std::to_string(deg) + "°", tick_size, "middle");
+  }
+  for (double r = step_; r < full_ * 1.001; r += step_) {
+    c_.add("<circle");
+    c_.attr("cx", cx_);
+    c_.attr("cy", cy_);
+    c_.attr("r", R_ * r / full_);
+    c_.add(" " + (r > full_ * 0.999 ? stroke(ink, 0.9) : stroke(faint, 0.8)) + "/>");
+  }
+}
+
+void PolarDrawing::draw_curve(std::size_t i) {
+  const Series& s = a_.series[i];
+  std::vector<double> px(s.x.size(), nan), py(s.x.size(), nan);
+  for (std::size_t j = 0; j < s.x.size() && j < s.y.size(); ++j) {
+    if (!std::isfinite(s.x[j]) || !std::isfinite(s.y[j])) continue;
+    const Point p = place(s.x[j], R_ * s.y[j] / full_);
+    px[j] = p.x;
+    py[j] = p.y;
+  }
+  const std::string rest = readout_attributes(s, px, py);
+  const bool keep = s.keep_all || !s.extra.empty() || !s.point_names.empty();
+  if (s.style.width > 0)
+    c_.add("<path data-s=\"" + std::to_string(i) + "\"" + rest + " " +
+           stroke(colors_.series[i], s.style.width, s.style.dash) +
+           " stroke-linejoin=\"round\" d=\"" +
+           path_of(px, py, keep, false, c_.options.columns_per_px, &seen_) + "\"/>\n");
+  draw_pins(c_, px, py, s.style, colors_.series[i], static_cast<int>(i), false,
+            s.style.width > 0 ? std::string(" data-quiet=\"1\"") : rest);
+}
+
+/// Along the ray at 15 degrees, where no angle is labelled.
+void PolarDrawing::draw_radii() {
+  for (double r = step_; r < full_ * 1.001; r += step_) {
+    const Point p = place(a_.clockwise ? -15 : 15, R_ * r / full_);
+    const auto n = static_cast<std::size_t>(std::lround(r / step_));
+    if (n < ticks_.labels.size()) c_.text(p.x, p.y + 4, ticks_.labels[n], tick_size - 1, "middle");
+  }
+}
+
+void PolarDrawing::draw() {
+  begin();
+  c_.add("<g class=\"gx\">");
+  draw_grid();
+  c_.add("</g>\n<g class=\"plot\">\n");
+  for (std::size_t i = 0; i < a_.series.size(); ++i)
+    draw_curve(i);
+  c_.add("</g>\n");
+  draw_radii();
+  std::vector<Box> taken;
+  const Box inside{cx_ - R_ - 30, cy_ - R_, 2 * R_ + 60, 2 * R_};
+  for (const auto& n : a_.notes)
+    draw_note(c_, place(n.x, R_ * n.y / full_), n.text, inside, taken, seen_);
+  c_.text(cx_, cy_ + R_ + 40, axis_title(a_.y, ticks_.exponent) + ", " + a_.x.label, label_size,
+          "middle");
+  draw_legend(c_, entries_, cell_, seen_, {},
+              {cell_.right() - legend_.w, cell_.y + top_, legend_.w, legend_.h});
+  c_.add("</g>\n");
+}
+
+}  // namespace
+
+void draw_polar(Canvas& c, const Axes& a, const Box& cell) { PolarDrawing(c, a, cell).draw(); }
 
 }  // namespace whirl::plot::svg

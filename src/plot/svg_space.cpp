@@ -38,207 +38,299 @@ std::vector<std::size_t> thin(const std::vector<Vec3>& p) {
   }
 }
 
-}  // namespace
+/// Range of one axis of the data, with margins; what the axis fixes stays.
+Scale scale_of(const Axes& a, std::size_t d) {
+  double lo = infinity, hi = -infinity;
+  for (const SpaceSeries& s : a.space)
+    for (const double v : d == 0 ? s.x : d == 1 ? s.y : s.z)
+      if (std::isfinite(v)) {
+        lo = std::min(lo, v);
+        hi = std::max(hi, v);
+      }
+  if (!(lo <= hi)) {
+    lo = 0;
+    hi = 1;
+  }
+  if (hi - lo < 1e-12 * std::max(std::abs(lo), std::abs(hi)) || hi == lo) {
+    lo -= 0.5 * std::max(std::abs(lo), 1e-3);
+    hi += 0.5 * std::max(std::abs(hi), 1e-3);
+  }
+  const double pad = 0.03 * (hi - lo);
+  const Axis& axis = d == 0 ? a.x : d == 1 ? a.y : a.z;
+  return {std::isnan(axis.min) ? lo - pad : axis.min, std::isnan(axis.max) ? hi + pad : axis.max,
+          false, -a.space_aspect[d] / 2, a.space_aspect[d] / 2};
+}
 
-void draw_space(Canvas& c, const Axes& a, const Box& cell) {
-  const Colors k = resolve_colors(a);
-  const std::array<const Axis*, 3> axis = {&a.x, &a.y, &a.z};
-  std::array<Scale, 3> scale;
+std::array<Scale, 3> scales_of(const Axes& a) {
+  std::array<Scale, 3> scale{scale_of(a, 0), scale_of(a, 1), scale_of(a, 2)};
+  if (!a.equal_aspect) return scale;
+  // one unit of length for all: the box follows the data
+  double longest = 0;
+  for (const Scale& s : scale)
+    longest = std::max(longest, s.hi - s.lo);
+  for (Scale& s : scale) {
+    s.p1 = (s.hi - s.lo) / longest;
+    s.p0 = -s.p1;
+  }
+  return scale;
+}
+
+const char* anchor_of(double outwards_x) {
+  return outwards_x > 0.35 ? "start" : outwards_x < -0.35 ? "end" : "middle";
+}
+
+/// Axes in space on the canvas.
+class SpaceDrawing {
+ public:
+  SpaceDrawing(Canvas& c, const Axes& a, const Box& cell);
+  void draw();
+
+ private:
+  /// An edge of the box that carries the labels of its axis, in px.
+  struct Edge {
+    Vec3 start;  ///< its place but for the axis's own coordinate
+    Point middle;
+    double length, ox, oy;  ///< ox, oy: unit vector outwards
+  };
+
+  void fit();
+  Point px(const Vec3& p) const {
+    const Vec3 q = view_(p);
+    return {cx_ + unit_ * q.x(), cy_ - unit_ * q.y()};
+  }
+  void segment(const Vec3& p, const Vec3& q, const std::string& style) {
+    const Point m = px(p), n = px(q);
+    c_.line(m.x, m.y, n.x, n.y, style);
+  }
+  void begin();
+  void draw_faces();
+  Vec3 labelled_edge(Index d) const;
+  Edge edge_of(Index d) const;
+  void draw_axis(Index d);
+  double draw_ticks(Index d, const Edge& edge);
+  void draw_curve(std::size_t i);
+
+  Canvas& c_;
+  const Axes& a_;
+  const Box& cell_;
+  const Colors colors_;
+  const std::array<const Axis*, 3> axis_;
+  const std::array<Scale, 3> scale_;
+  const Projection view_;
+  const double top_;
+  const Box box_;
+  double unit_ = 1, cx_ = 0, cy_ = 0;  ///< px a unit of the box, and where its middle stands
+  std::array<double, 3> back_{};       ///< where the faces behind the data stand
+  std::array<Ticks, 3> ticks_;
+  std::vector<Point> seen_;
+};
+
+SpaceDrawing::SpaceDrawing(Canvas& c, const Axes& a, const Box& cell)
+    : c_(c),
+      a_(a),
+      cell_(cell),
+      colors_(resolve_colors(a)),
+      axis_{&a.x, &a.y, &a.z},
+      scale_(scales_of(a)),
+      view_(a.view),
+      top_(a.title.empty() ? 6 : 26),
+      box_{cell.x + 56, cell.y + top_ + 2, cell.w - 112, cell.h - top_ - 48} {
+  fit();
+  const Vec3 towards(view_.ca * view_.ce, view_.sa * view_.ce, view_.se);
   for (std::size_t d = 0; d < 3; ++d) {
-    double lo = infinity, hi = -infinity;
-    for (const auto& s : a.space)
-      for (const double v : d == 0 ? s.x : d == 1 ? s.y : s.z)
-        if (std::isfinite(v)) {
-          lo = std::min(lo, v);
-          hi = std::max(hi, v);
-        }
-    if (!(lo <= hi)) {
-      lo = 0;
-      hi = 1;
-    }
-    if (hi - lo < 1e-12 * std::max(std::abs(lo), std::abs(hi)) || hi == lo) {
-      lo -= 0.5 * std::max(std::abs(lo), 1e-3);
-      hi += 0.5 * std::max(std::abs(hi), 1e-3);
-    }
-    const double pad = 0.03 * (hi - lo);
-    scale[d] = {std::isnan(axis[d]->min) ? lo - pad : axis[d]->min,
-                std::isnan(axis[d]->max) ? hi + pad : axis[d]->max, false, -a.space_aspect[d] / 2,
-                a.space_aspect[d] / 2};
+    back_[d] = towards[static_cast<Index>(d)] > 0 ? scale_[d].p0 : scale_[d].p1;
+    const double wanted = std::clamp(unit_ * 2 * scale_[d].p1 / 70, 2.0, 6.0);
+    ticks_[d] = linear_ticks(scale_[d].lo, scale_[d].hi, wanted);
   }
-  if (a.equal_aspect) {  // one unit of length for all: the box follows the data
-    double longest = 0;
-    for (const auto& s : scale)
-      longest = std::max(longest, s.hi - s.lo);
-    for (auto& s : scale) {
-      s.p1 = (s.hi - s.lo) / longest;
-      s.p0 = -s.p1;
-    }
-  }
-  const Projection view(a.view);
-  const double top = a.title.empty() ? 6 : 26;
-  const Box box{cell.x + 56, cell.y + top + 2, cell.w - 112, cell.h - top - 48};
+}
+
+/// The projected box into the cell.
+void SpaceDrawing::fit() {
   Vec3 lo = Vec3::Constant(infinity), hi = -lo;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 p = view(Vec3(i & 1 ? scale[0].p1 : scale[0].p0, i & 2 ? scale[1].p1 : scale[1].p0,
-                             i & 4 ? scale[2].p1 : scale[2].p0));
+    const Vec3 p =
+        view_(Vec3(i & 1 ? scale_[0].p1 : scale_[0].p0, i & 2 ? scale_[1].p1 : scale_[1].p0,
+                   i & 4 ? scale_[2].p1 : scale_[2].p0));
     lo = lo.cwiseMin(p);
     hi = hi.cwiseMax(p);
   }
-  const double unit = std::min(box.w / (hi.x() - lo.x()), box.h / (hi.y() - lo.y()));
-  const double cx = box.x + box.w / 2 - unit * (lo.x() + hi.x()) / 2,
-               cy = box.y + box.h / 2 + unit * (lo.y() + hi.y()) / 2;
-  const auto px = [&](const Vec3& p) {
-    const Vec3 q = view(p);
-    return Point{cx + unit * q.x(), cy - unit * q.y()};
-  };
+  unit_ = std::min(box_.w / (hi.x() - lo.x()), box_.h / (hi.y() - lo.y()));
+  cx_ = box_.x + box_.w / 2 - unit_ * (lo.x() + hi.x()) / 2;
+  cy_ = box_.y + box_.h / 2 + unit_ * (lo.y() + hi.y()) / 2;
+}
 
-  c.add("<g class=\"axes\" data-kind=\"space\" data-box=\"" + number_text(box.x) + " " +
-        number_text(box.y) + " " + number_text(box.w) + " " + number_text(box.h) +
-        "\" data-view=\"" + number_text(a.view[0]) + " " + number_text(a.view[1]) +
-        "\" data-half=\"" + number_text(scale[0].p1, 4) + " " + number_text(scale[1].p1, 4) + " " +
-        number_text(scale[2].p1, 4) + '"');
-  axis_attributes(c, "x", a.x, scale[0]);
-  axis_attributes(c, "y", a.y, scale[1]);
-  axis_attributes(c, "z", a.z, scale[2]);
-  c.add(">\n");
-  if (!a.title.empty())
-    c.text(cell.x + 8, cell.y + top - 9, a.title, title_size, "start", "font-weight=\"600\"");
+void SpaceDrawing::begin() {
+  c_.add("<g class=\"axes\" data-kind=\"space\" data-box=\"" + number_text(box_.x) + " " +
+         number_text(box_.y) + " " + number_text(box_.w) + " " + number_text(box_.h) +
+         "\" data-view=\"" + number_text(a_.view[0]) + " " + number_text(a_.view[1]) +
+         "\" data-half=\"" + number_text(scale_[0].p1, 4) + " " + number_text(scale_[1].p1, 4) +
+         " " + number_text(scale_[2].p1, 4) + '"');
+  axis_attributes(c_, "x", a_.x, scale_[0]);
+  axis_attributes(c_, "y", a_.y, scale_[1]);
+  axis_attributes(c_, "z", a_.z, scale_[2]);
+  c_.add(">\n");
+  if (!a_.title.empty())
+    c_.text(cell_.x + 8, cell_.y + top_ - 9, a_.title, title_size, "start", "font-weight=\"600\"");
+}
 
-  // The three faces of the box behind the data, with their grids; then labelled edges.
-  c.add("<g class=\"box\">\n");
-  const Vec3 towards(view.ca * view.ce, view.sa * view.ce, view.se);
-  std::array<double, 3> back;
-  for (std::size_t d = 0; d < 3; ++d)
-    back[d] = towards[static_cast<Index>(d)] > 0 ? scale[d].p0 : scale[d].p1;
-  std::array<Ticks, 3> ticks;
-  for (std::size_t d = 0; d < 3; ++d)
-    ticks[d] =
-        linear_ticks(scale[d].lo, scale[d].hi, std::clamp(unit * 2 * scale[d].p1 / 70, 2.0, 6.0));
-  const auto segment = [&](const Vec3& p, const Vec3& q, const std::string& s) {
-    const Point m = px(p), n = px(q);
-    c.line(m.x, m.y, n.x, n.y, s);
-  };
+/// The three faces of the box behind the data, with their grids.
+void SpaceDrawing::draw_faces() {
   for (Index d = 0; d < 3; ++d) {
     const Index u = (d + 1) % 3, v = (d + 2) % 3;  // grid lines of u and v on the back face of d
-    const auto at = [](Index i) { return static_cast<std::size_t>(i); };
     Vec3 p, q;
-    p[d] = q[d] = back[at(d)];
+    p[d] = q[d] = back_[at(d)];
     for (const auto& [i, j] : {std::pair{u, v}, {v, u}}) {
-      p[j] = scale[at(j)].p0;
-      q[j] = scale[at(j)].p1;
-      for (const double tick : ticks[at(i)].major) {
-        p[i] = q[i] = scale[at(i)](tick);
+      const Scale& along = scale_[at(i)];
+      p[j] = scale_[at(j)].p0;
+      q[j] = scale_[at(j)].p1;
+      for (const double tick : ticks_[at(i)].major) {
+        p[i] = q[i] = along(tick);
         segment(p, q, stroke(faint, 0.8));
       }
-      for (const double edge : {scale[at(i)].p0, scale[at(i)].p1}) {
+      for (const double edge : {along.p0, along.p1}) {
         p[i] = q[i] = edge;
         segment(p, q, stroke(faint, 1.2));
       }
     }
   }
-  for (Index d = 0; d < 3; ++d) {
-    // Labels along the edge on the outline: for x and y the lower one nearest the reader, for z the
-    // leftmost.
-    const auto at = [](Index i) { return static_cast<std::size_t>(i); };
-    const Index u = d == 0 ? 1 : 0, v = d == 2 ? 1 : 2;
-    Vec3 p = Vec3::Zero();
-    if (d < 2) {
-      p[u] = -back[at(u)];
-      p[v] = scale[2].p0;
-    } else {
-      double leftmost = infinity;
-      for (const double pu : {scale[0].p0, scale[0].p1})
-        for (const double pv : {scale[1].p0, scale[1].p1})
-          if (const double x = view(Vec3(pu, pv, 0)).x(); x < leftmost) {
-            leftmost = x;
-            p[0] = pu;
-            p[1] = pv;
-          }
-    }
-    Vec3 q = p;
-    p[d] = scale[at(d)].p0;
-    q[d] = scale[at(d)].p1;
-    segment(p, q, stroke(ink, 0.9));
-    const Point m = px(p), n = px(q), middle{(m.x + n.x) / 2, (m.y + n.y) / 2};
-    // Outwards: away from the middle of the box.
-    double ox = middle.x - (box.x + box.w / 2), oy = middle.y - (box.y + box.h / 2);
-    const double ex = n.x - m.x, ey = n.y - m.y, el = std::max(1e-9, std::hypot(ex, ey)),
-                 along = (ox * ex + oy * ey) / el;
-    ox -= along * ex / el;
-    oy -= along * ey / el;
-    const double ol = std::max(1e-9, std::hypot(ox, oy));
-    ox /= ol;
-    oy /= ol;
-    if (el < 12) continue;  // seen end on
-    double widest = 0;
-    for (std::size_t i = 0; i < ticks[at(d)].major.size(); ++i) {
-      Vec3 w = p;
-      w[d] = scale[at(d)](ticks[at(d)].major[i]);
-      const Point t = px(w);
-      c.line(t.x, t.y, t.x + 4 * ox, t.y + 4 * oy, stroke(ink, 0.9));
-      c.text(t.x + 9 * ox, t.y + 11 * oy + 4, ticks[at(d)].labels[i], tick_size - 0.5,
-             ox > 0.35    ? "start"
-             : ox < -0.35 ? "end"
-                          : "middle");
-      widest = std::max(widest, text_width(ticks[at(d)].labels[i], tick_size));
-    }
-    const double reach = 16 + std::abs(ox) * widest + 12 * std::abs(oy);
-    if (d == 2) {
-      const double x = middle.x + reach * ox - 6, y = middle.y;
-      c.text(x, y, axis_title(*axis[2], ticks[2].exponent), label_size, "middle",
-             "transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
-    } else
-      c.text(middle.x + reach * ox, middle.y + reach * oy + 6,
-             axis_title(*axis[at(d)], ticks[at(d)].exponent), label_size,
-             ox > 0.35    ? "start"
-             : ox < -0.35 ? "end"
-                          : "middle");
-  }
-  c.add("</g>\n<g class=\"plot\">\n");
-  std::vector<Point> seen;
-  for (std::size_t i = 0; i < a.space.size(); ++i) {
-    const auto& s = a.space[i];
-    std::vector<Vec3> p(s.x.size());
-    for (std::size_t j = 0; j < p.size(); ++j)
-      p[j] = {scale[0](s.x[j]), scale[1](s.y[j]), scale[2](s.z[j])};
-    std::vector<double> qx, qy;
-    std::string xyz;
-    for (const auto j : thin(p)) {
-      if (std::isnan(p[j].x() + p[j].y() + p[j].z())) {
-        qx.push_back(nan);
-        qy.push_back(nan);
-        xyz += "| ";
-        continue;
-      }
-      const Point q = px(p[j]);
-      qx.push_back(q.x);
-      qy.push_back(q.y);
-      for (Index d = 0; d < 3; ++d) {
-        append_number(xyz, p[j][d], 4);
-        xyz += ' ';
-      }
-    }
-    if (!xyz.empty()) xyz.pop_back();
-    std::string d = path_of(qx, qy, true, false, 1, &seen);
-    if (s.closed_fill) d += "Z";
-    c.add("<path data-s=\"" + std::to_string(i) + "\" data-name=\"" + escape(s.label) +
-          "\" data-xyz=\"" + xyz + "\" " + (s.closed_fill ? "data-quiet=\"1\" " : ""));
-    if (s.closed_fill)
-      c.add(fill(k.space[i]) + " fill-opacity=\"0.13\"");
-    else
-      c.add(stroke(k.space[i], s.style.width, s.style.dash) + " stroke-linejoin=\"round\"");
-    if (s.style.opacity < 1) c.attr("stroke-opacity", s.style.opacity);
-    c.add(" d=\"" + d + "\"/>\n");
-    if (s.style.marker != Marker::none)
-      draw_pins(c, qx, qy, s.style, k.space[i], static_cast<int>(i), false,
-                " data-name=\"" + escape(s.label) + "\" data-xyz=\"" + xyz + "\"");
-  }
-  c.add("</g>\n");
-  const auto entries = legend_entries(a, k);
-  const Box size = legend_size_of(entries);
-  draw_legend(c, entries, cell, seen, {},
-              {cell.right() - size.w - 4, cell.y + top, size.w, size.h});
-  c.add("</g>\n");
 }
+
+/// Labels stand along the edge on the outline: for x and y the lower one nearest the reader, for z
+/// the leftmost.
+Vec3 SpaceDrawing::labelled_edge(Index d) const {
+  Vec3 p = Vec3::Zero();
+  if (d < 2) {
+    const Index u = d == 0 ? 1 : 0;
+    p[u] = -back_[at(u)];
+    p[2] = scale_[2].p0;
+    return p;
+  }
+  double leftmost = infinity;
+  for (const double pu : {scale_[0].p0, scale_[0].p1})
+    for (const double pv : {scale_[1].p0, scale_[1].p1})
+      if (const double x = view_(Vec3(pu, pv, 0)).x(); x < leftmost) {
+        leftmost = x;
+        p[0] = pu;
+        p[1] = pv;
+      }
+  return p;
+}
+
+SpaceDrawing::Edge SpaceDrawing::edge_of(Index d) const {
+  Edge e;
+  e.start = labelled_edge(d);
+  Vec3 p = e.start, q = e.start;
+  p[d] = scale_[at(d)].p0;
+  q[d] = scale_[at(d)].p1;
+  const Point m = px(p), n = px(q);
+  e.middle = {(m.x + n.x) / 2, (m.y + n.y) / 2};
+  const double ex = n.x - m.x, ey = n.y - m.y;
+  e.length = std::max(1e-9, std::hypot(ex, ey));
+  // Outwards: away from the middle of the box.
+  e.ox = e.middle.x - (box_.x + box_.w / 2);
+  e.oy = e.middle.y - (box_.y + box_.h / 2);
+  const double along = (e.ox * ex + e.oy * ey) / e.length;
+  e.ox -= along * ex / e.length;
+  e.oy -= along * ey / e.length;
+  const double size = std::max(1e-9, std::hypot(e.ox, e.oy));
+  e.ox /= size;
+  e.oy /= size;
+  return e;
+}
+
+/// Returns the width of the widest label, px.
+double SpaceDrawing::draw_ticks(Index d, const Edge& edge) {
+  const Ticks& ticks = ticks_[at(d)];
+  double widest = 0;
+  for (std::size_t i = 0; i < ticks.major.size(); ++i) {
+    Vec3 w = edge.start;
+    w[d] = scale_[at(d)](ticks.major[i]);
+    const Point t = px(w);
+    c_.line(t.x, t.y, t.x + 4 * edge.ox, t.y + 4 * edge.oy, stroke(ink, 0.9));
+    c_.text(t.x + 9 * edge.ox, t.y + 11 * edge.oy + 4, ticks.labels[i], tick_size - 0.5,
+            anchor_of(edge.ox));
+    widest = std::max(widest, text_width(ticks.labels[i], tick_size));
+  }
+  return widest;
+}
+
+void SpaceDrawing::draw_axis(Index d) {
+  const Edge edge = edge_of(d);
+  Vec3 p = edge.start, q = edge.start;
+  p[d] = scale_[at(d)].p0;
+  q[d] = scale_[at(d)].p1;
+  segment(p, q, stroke(ink, 0.9));
+  if (edge.length < 12) return;  // seen end on
+  const double widest = draw_ticks(d, edge);
+  const double reach = 16 + std::abs(edge.ox) * widest + 12 * std::abs(edge.oy);
+  const std::string title = axis_title(*axis_[at(d)], ticks_[at(d)].exponent);
+  if (d == 2) {
+    const double x = edge.middle.x + reach * edge.ox - 6, y = edge.middle.y;
+    c_.text(x, y, title, label_size, "middle",
+            "transform=\"rotate(-90 " + number_text(x) + " " + number_text(y) + ")\"");
+  } else
+    c_.text(edge.middle.x + reach * edge.ox, edge.middle.y + reach * edge.oy + 6, title, label_size,
+            anchor_of(edge.ox));
+}
+
+void SpaceDrawing::draw_curve(std::size_t i) {
+  const SpaceSeries& s = a_.space[i];
+  std::vector<Vec3> p(s.x.size());
+  for (std::size_t j = 0; j < p.size(); ++j)
+    p[j] = {scale_[0](s.x[j]), scale_[1](s.y[j]), scale_[2](s.z[j])};
+  std::vector<double> qx, qy;
+  std::string xyz;
+  for (const std::size_t j : thin(p)) {
+    if (std::isnan(p[j].x() + p[j].y() + p[j].z())) {
+      qx.push_back(nan);
+      qy.push_back(nan);
+      xyz += "| ";
+      continue;
+    }
+    const Point q = px(p[j]);
+    qx.push_back(q.x);
+    qy.push_back(q.y);
+    for (const double x : p[j]) {
+      append_number(xyz, x, 4);
+      xyz += ' ';
+    }
+  }
+  if (!xyz.empty()) xyz.pop_back();
+  std::string d = path_of(qx, qy, true, false, 1, &seen_);
+  if (s.closed_fill) d += "Z";
+  const int color = colors_.space[i];
+  const std::string name = "data-name=\"" + escape(s.label) + "\" data-xyz=\"" + xyz + "\"";
+  c_.add("<path data-s=\"" + std::to_string(i) + "\" " + name + " " +
+         (s.closed_fill ? "data-quiet=\"1\" " : ""));
+  if (s.closed_fill)
+    c_.add(fill(color) + " fill-opacity=\"0.13\"");
+  else
+    c_.add(stroke(color, s.style.width, s.style.dash) + " stroke-linejoin=\"round\"");
+  if (s.style.opacity < 1) c_.attr("stroke-opacity", s.style.opacity);
+  c_.add(" d=\"" + d + "\"/>\n");
+  if (s.style.marker != Marker::none)
+    draw_pins(c_, qx, qy, s.style, color, static_cast<int>(i), false, " " + name);
+}
+
+void SpaceDrawing::draw() {
+  begin();
+  c_.add("<g class=\"box\">\n");
+  draw_faces();
+  for (Index d = 0; d < 3; ++d)
+    draw_axis(d);
+  c_.add("</g>\n<g class=\"plot\">\n");
+  for (std::size_t i = 0; i < a_.space.size(); ++i)
+    draw_curve(i);
+  c_.add("</g>\n");
+  const std::vector<LegendEntry> entries = legend_entries(a_, colors_);
+  const Box size = legend_size_of(entries);
+  draw_legend(c_, entries, cell_, seen_, {},
+              {cell_.right() - size.w - 4, cell_.y + top_, size.w, size.h});
+  c_.add("</g>\n");
+}
+
+}  // namespace
+
+void draw_space(Canvas& c, const Axes& a, const Box& cell) { SpaceDrawing(c, a, cell).draw(); }
 
 }  // namespace whirl::plot::svg

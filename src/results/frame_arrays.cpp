@@ -4,10 +4,6 @@
 
 namespace whirl::results {
 
-namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}  // namespace
-
 FrameArrays::FrameArrays(const run::Job& job)
     : job_(job),
       poses_(job.mesh.nodes.size()),

@@ -66,6 +66,7 @@ std::vector<analysis::Measurement> support_measurements(const run::Job& job) {
       system::Context mean;
       mean.time = s.t();
       mean.averaged = true;
+      mean.frequency = s.context().frequency;
       Eigen::Map<Vec3>{v} = f.force([&s](Index n) -> const system::NodeState& { return s.node(n); },
                                     mean, [&s](Index k) { return s.reactions()[k]; });
     };
@@ -186,7 +187,7 @@ void FrequencyStep::add_table(const std::string& name, io::Table table, bool sho
   job.folder.write_table(path, table);
   section.files.emplace_back(table.title.empty() ? name : table.title, path);
   if (!shown) return;
-  if (!table.title.empty()) table.title += ", " + about_;
+  if (!table.title.empty()) table.title += ", " + about_ + (claim_.empty() ? "" : "; " + claim_);
   section.tables.push_back(std::move(table));
 }
 
@@ -274,6 +275,7 @@ void FrequencyStep::finish(const std::string& line) {
   if (const auto motion = motion_asked(step.law); motion && *motion != model::MotionKind::all)
     section.text += " " + motion_text(*motion);
   section.text += fmt::format(" Linearised {}.", about_);
+  if (!claim_.empty()) section.text += " " + capital(claim_) + ".";
   if (turns_with_stiffness(job.model) && type_ != "stability")
     section.text +=
         " The stiffness of the asymmetric shaft enters as its mean over a revolution; a stability "

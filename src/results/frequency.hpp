@@ -5,7 +5,7 @@
 #include <analysis/response/harmonic.hpp>
 #include <analysis/spectra/stability.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
-#include <results/transient_outputs.hpp>
+#include <results/channels.hpp>
 #include <plot/plots.hpp>
 
 #include <cmath>
@@ -20,8 +20,6 @@ std::vector<double> speeds_of(const model::SpeedRange& range);
 std::vector<double> frequencies_of(const model::FrequencyRange& range);
 analysis::Motion motion_of(model::MotionKind kind);
 plot::Whirl whirl_of(analysis::Direction d);
-inline double to_rpm(double omega) { return omega * 30.0 / pi; }
-inline double to_hz(double omega) { return omega / two_pi; }
 /// Rounding of what is zero, as zero: ratios and shares of 1 (or 100 %).
 inline double tidy(double x) { return std::abs(x) < 1e-12 ? 0.0 : x; }
 /// "lateral, forward", "torsional"
@@ -52,24 +50,27 @@ class FrequencyStep {
   io::ReportSection section;
 
   io::Value& summary() { return job.summary["steps"][step.name]; }
-  /// Writes <step>_<name>.csv and shows the table in the report, its title with about() (only as a
-  /// file when `shown` is false).
+  /// Writes `<step>_<name>.csv` and shows the table in the report, its title with about() (only as
+  /// a file when `shown` is false).
   void add_table(const std::string& name, io::Table table, bool shown = true);
   void add_figure(plot::Figure f);
   /// "about the static equilibrium at 3000 rpm": the state that everything here is linearised
   /// about.
   const std::string& about() const { return about_; }
-  /// A name for files: <step>_<name>.
+  /// A name for files: `<step>_<name>`.
   std::string file(const std::string& name) const;
   /// Puts what is known of a list of modes into the summary and the section; what is missing also
   /// into the terminal and the exit code. where: "at 3000 rpm", or empty.
   void certify(const analysis::SpectrumCertificate& certificate, const std::string& where = {});
+  /// What the headers of all tables from here on say of their numbers ("frequencies right to
+  /// 2e-4"); also in the section's text.
+  void claim(std::string text) { claim_ = std::move(text); }
   /// Adds the section to the report, the run time to the summary, and a line to the terminal; each
   /// says about() and what the motion asked for leaves out.
   void finish(const std::string& line);
 
  private:
-  std::string type_, about_;
+  std::string type_, about_, claim_;
   Stopwatch watch_;
 };
 

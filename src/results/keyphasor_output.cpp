@@ -1,7 +1,11 @@
-#include <results/keyphasor_output.hpp>
-
+// Tracking filter of a transient's probes: CSV turn by turn, Bode and polar figures against speed,
+// response peaks, orbits with keyphasor marks. Memory is bounded: long runs are thinned for the
+// figures, the CSV holds every turn.
 #include <analysis/spectra/whirl_modes.hpp>
+#include <analysis/transient/revolutions.hpp>
 #include <plot/plots.hpp>
+#include <results/plot_buffer.hpp>
+#include <results/transient_output.hpp>
 #include <core/text.hpp>
 
 #include <fmt/format.h>
@@ -12,15 +16,6 @@
 namespace whirl::results {
 
 namespace {
-
-std::vector<analysis::Point> points_of(const run::Job& job) {
-  std::vector<analysis::Point> p;
-  for (const model::Probe& probe : job.model.probes) {
-    const meshes::Place at = job.mesh.place(probe.at);
-    p.push_back({at.node, at.offset});
-  }
-  return p;
-}
 
 /// Local maxima of y that stand above both sides by `share` of the largest value.
 std::vector<std::size_t> peaks_of(const std::vector<double>& y, double share) {
@@ -52,57 +47,143 @@ std::vector<std::size_t> peaks_of(const std::vector<double>& y, double share) {
   return out;
 }
 
-}  // namespace
-
-std::vector<double> probe_senses(const run::Job& job, const run::StepState& start) {
-  std::vector<double> ratio = job.steady_rotation_of(start).ratio;
-  const Index line = job.mesh.nodes[static_cast<std::size_t>(job.reference())].line;
-  const double of_reference = job.model.shafts[static_cast<std::size_t>(line)].speed_ratio;
-  for (std::size_t l = 0; l < job.model.shafts.size(); ++l)
-    if (ratio[l] == 0.0 && job.model.shafts[l].rotating)
-      ratio[l] = job.model.shafts[l].speed_ratio * of_reference;
-  const std::vector<double> all = analysis::spin_senses(job.system(), ratio);
-  std::vector<double> out;
-  for (const analysis::Point& p : points_of(job))
-    out.push_back(all[static_cast<std::size_t>(p.node)] *
-                  all[static_cast<std::size_t>(job.reference())]);
+/// A phase in degrees put into 0 .. 360; the line breaks where it leaves one side and comes back on
+/// the other. A beat may carry a phase round by a turn: unwrapped, the curves would part for good.
+plot::Series within_a_turn(const plot::Series& in) {
+  plot::Series out = in;
+  out.x.clear();
+  out.y.clear();
+  for (std::size_t i = 0; i < in.x.size(); ++i) {
+    double y = std::fmod(in.y[i], 360.0);
+    if (y < 0.0) y += 360.0;
+    if (!out.y.empty() && std::abs(y - out.y.back()) > 180.0) {
+      out.x.push_back(in.x[i]);
+      out.y.push_back(nan);
+    }
+    out.x.push_back(in.x[i]);
+    out.y.push_back(y);
+  }
   return out;
 }
 
-KeyphasorOutput::KeyphasorOutput(const run::Job& job, const model::Step& step,
-                                 std::span<const double> senses)
-    : out_(job.model.output),
-      step_(step.name),
+/// Where the speed turns back for good: rows up to it rise, later ones fall (or the other way
+/// round). While the speed is held it neither rises nor falls but for rounding: its end counts.
+std::size_t turning_row(const std::vector<std::vector<double>>& rows) {
+  double most = 0;
+  for (const auto& r : rows)
+    most = std::max(most, std::abs(r[1]));
+  std::size_t top = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    if (std::abs(rows[r][1]) >= (1 - 1e-6) * most) top = r;
+  return top;
+}
+
+bool speed_changes(const std::vector<std::vector<double>>& rows) {
+  double low = rows[0][1], high = low;
+  for (const auto& r : rows) {
+    low = std::min(low, r[1]);
+    high = std::max(high, r[1]);
+  }
+  return high - low > 0.02 * std::max(std::abs(low), std::abs(high));
+}
+
+class KeyphasorOutput final : public TransientOutput {
+ public:
+  explicit KeyphasorOutput(const TransientSetup& s);
+  void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
+    observers.push_back(&revolutions_);
+    parts.add_output({run::Part::keyphasor, content_}, *this);
+  }
+  analysis::Observer& observer() { return revolutions_; }
+  void begin();
+  void save(OutArchive& out);
+  void restore(InArchive& in);
+  void close() override {
+    if (sink_) sink_->close();
+  }
+  void report(TransientEnd& end) override;
+
+ private:
+  struct Direction {
+    std::string name;
+    double c = 1, s = 0;
+  };
+  struct Tracked {
+    std::string name;
+    std::vector<Direction> directions;
+    std::size_t column = 0;
+    double sense = 1;  ///< -1: the shaft there turns against the reference
+  };
+  /// Some turns of one probe.
+  struct Orbit {
+    std::size_t probe = 0;
+    double t = 0, speed = 0, size = 0;
+    std::vector<double> y, z;
+  };
+  void add_probe(const model::Probe& probe, double sense);
+  void take(const analysis::Turn& turn);
+  void take_orbit(std::size_t probe, const analysis::Turn& turn);
+  Orbit last_turns(std::size_t probe, double t, double speed, double size) const;
+  std::size_t column(std::size_t probe, std::size_t direction, std::size_t what) const;
+  std::vector<io::Channel> channels() const;
+  double largest_envelope(std::size_t probe) const;
+  void add_synchronous(io::ReportSection& section, std::size_t probe, double size) const;
+  void add_bode(io::ReportSection& section, std::size_t probe, double size) const;
+  void add_peaks(run::Job& job, io::ReportSection& section) const;
+  void add_orbits(run::Job& job, io::ReportSection& section) const;
+
+  static constexpr std::size_t most_orbits = 64;
+  const model::Output& out_;
+  const plot::Amplitude convention_ = plot::amplitude(out_.peak_to_peak);
+  std::string step_, content_;  ///< content_: what decides whether a part of a checkpoint fits
+  std::vector<Tracked> probes_;
+  std::size_t per_direction_ = 0, columns_ = 0;
+  io::TimeSeriesPtr sink_;
+  PlotBuffer rows_;
+  std::vector<double> row_, direction_values_;
+  std::vector<std::vector<Orbit>> recent_;  ///< [probe] last turns
+  std::vector<Orbit> largest_, passed_;
+  double last_speed_ = nan;
+  analysis::Revolutions revolutions_;
+};
+
+KeyphasorOutput::KeyphasorOutput(const TransientSetup& s)
+    : out_(s.job.model.output),
+      step_(s.step.name),
       rows_(0),
-      revolutions_(points_of(job), job.reference(), out_.tracking.samples,
+      revolutions_(probe_points(s.job), s.job.reference(), out_.tracking.samples,
                    [this](const analysis::Turn& t) { take(t); }) {
   per_direction_ = 2 * out_.tracking.orders.size() + 2;
   columns_ = 2;  // t, speed
-  key_ = fmt::format("keyphasor {}", out_.tracking.samples);
-  for (double k : out_.tracking.orders)
-    key_ += fmt::format(" {}X", k);
-  for (double s : out_.tracking.orbit_speeds)
-    key_ += fmt::format(" @{}", s);
-  key_ += fmt::format(" turns {}", out_.tracking.orbit_turns);
-  for (const model::Probe& p : job.model.probes) {
-    Tracked t;
-    t.name = p.name;
-    t.sense = senses[probes_.size()];
-    if (p.angles.empty()) t.directions = {{"y", 1.0, 0.0}, {"z", 0.0, 1.0}};
-    for (double a : p.angles)
-      t.directions.push_back({fmt::format("{:.0f}deg", a * 180.0 / pi), std::cos(a), std::sin(a)});
-    t.column = columns_;
-    columns_ += t.directions.size() * per_direction_ + 2;
-    key_ += " " + p.name;
-    for (const Direction& d : t.directions)
-      key_ += "." + d.name;
-    probes_.push_back(std::move(t));
-  }
+  content_ = fmt::format("{}", out_.tracking.samples);
+  for (double order : out_.tracking.orders)
+    content_ += fmt::format(" {}X", order);
+  for (double speed : out_.tracking.orbit_speeds)
+    content_ += fmt::format(" @{}", speed);
+  content_ += fmt::format(" turns {}", out_.tracking.orbit_turns);
+  const std::vector<double> senses = probe_senses(s.job, s.start);
+  for (std::size_t p = 0; p < senses.size(); ++p)
+    add_probe(s.job.model.probes[p], senses[p]);
   row_.resize(columns_);
   rows_ = PlotBuffer(columns_ - 1, 2);  // whole rows alone are wanted
   recent_.resize(probes_.size());
   largest_.resize(probes_.size());
-  if (out_.csv) sink_ = io::make_csv_series(job.folder.path(step_ + "_tracking.csv"));
+  if (out_.csv) sink_ = io::make_csv_series(s.job.folder.path(step_ + "_tracking.csv"));
+}
+
+void KeyphasorOutput::add_probe(const model::Probe& probe, double sense) {
+  Tracked t;
+  t.name = probe.name;
+  t.sense = sense;
+  if (probe.angles.empty()) t.directions = {{"y", 1.0, 0.0}, {"z", 0.0, 1.0}};
+  for (double a : probe.angles)
+    t.directions.push_back({fmt::format("{:.0f}deg", a * 180.0 / pi), std::cos(a), std::sin(a)});
+  t.column = columns_;
+  columns_ += t.directions.size() * per_direction_ + 2;
+  content_ += " " + probe.name;
+  for (const Direction& d : t.directions)
+    content_ += "." + d.name;
+  probes_.push_back(std::move(t));
 }
 
 std::size_t KeyphasorOutput::column(std::size_t probe, std::size_t direction,
@@ -112,7 +193,7 @@ std::size_t KeyphasorOutput::column(std::size_t probe, std::size_t direction,
 
 std::vector<io::Channel> KeyphasorOutput::channels() const {
   std::vector<io::Channel> c{{"t", "s", "middle of the turn", {}, 1.0, {}},
-                             {"speed", "rpm", "mean spin of the turn", {}, 30.0 / pi, {}}};
+                             {"speed", "rpm", "mean spin of the turn", {}, to_rpm(1.0), {}}};
   for (const Tracked& p : probes_) {
     for (const Direction& d : p.directions) {
       const std::string name = p.name + "." + d.name;
@@ -170,22 +251,27 @@ void KeyphasorOutput::take(const analysis::Turn& turn) {
         analysis::synchronous(turn, y, 1), analysis::synchronous(turn, z, 1), probes_[p].sense);
     *out++ = circles.forward;
     *out++ = circles.backward;
-
-    // orbits: about the mean of the turn, the last few turns
-    const analysis::Range ry = analysis::range_of(y), rz = analysis::range_of(z);
-    const double size = std::max(ry.high - ry.low, rz.high - rz.low);
-    auto& recent = recent_[p];
-    if (recent.size() == static_cast<std::size_t>(out_.tracking.orbit_turns))
-      recent.erase(recent.begin());
-    recent.push_back({p, t, speed, size, y, z});
-    if (size > largest_[p].size) largest_[p] = last_turns(p, t, speed, size);
-    for (double target : out_.tracking.orbit_speeds)
-      if (passed_.size() < most_orbits && (speed - target) * (last_speed_ - target) <= 0.0)
-        passed_.push_back(last_turns(p, t, target, size));
+    take_orbit(p, turn);
   }
   last_speed_ = speed;
   rows_.append(row_);
   if (sink_) sink_->append(row_);
+}
+
+/// Orbits: about the mean of the turn, the last few turns.
+void KeyphasorOutput::take_orbit(std::size_t probe, const analysis::Turn& turn) {
+  const double speed = turn.speed(), t = 0.5 * (turn.t0 + turn.t1);
+  const std::vector<double>&y = turn.y[probe], &z = turn.z[probe];
+  const analysis::Range ry = analysis::range_of(y), rz = analysis::range_of(z);
+  const double size = std::max(ry.high - ry.low, rz.high - rz.low);
+  auto& recent = recent_[probe];
+  if (recent.size() == static_cast<std::size_t>(out_.tracking.orbit_turns))
+    recent.erase(recent.begin());
+  recent.push_back({probe, t, speed, size, y, z});
+  if (size > largest_[probe].size) largest_[probe] = last_turns(probe, t, speed, size);
+  for (double target : out_.tracking.orbit_speeds)
+    if (passed_.size() < most_orbits && (speed - target) * (last_speed_ - target) <= 0.0)
+      passed_.push_back(last_turns(probe, t, target, size));
 }
 
 KeyphasorOutput::Orbit KeyphasorOutput::last_turns(std::size_t probe, double t, double speed,
@@ -246,110 +332,76 @@ void KeyphasorOutput::restore(InArchive& in) {
   revolutions_.restore(in);
 }
 
-void KeyphasorOutput::report(run::Job& job, io::ReportSection& section) const {
+void KeyphasorOutput::report(TransientEnd& end) {
+  if (!out_.report) return;
   const auto& rows = rows_.kept_rows();
   if (rows.size() < 3) return;
-  if (sink_) section.files.emplace_back("tracking filter", step_ + "_tracking.csv");
-  for (std::size_t p = 0; p < probes_.size(); ++p)
-    add_bode(section, p);
-  add_peaks(job, section);
-  add_orbits(job, section);
+  if (sink_) end.section.files.emplace_back("tracking filter", step_ + "_tracking.csv");
+  for (std::size_t p = 0; p < probes_.size(); ++p) {
+    const double size = largest_envelope(p);
+    if (size == 0.0) continue;  // torsion alone: nothing to see here
+    if (speed_changes(rows))
+      add_bode(end.section, p, size);
+    else
+      add_synchronous(end.section, p, size);
+  }
+  add_peaks(end.job, end.section);
+  add_orbits(end.job, end.section);
 }
 
-namespace {
+double KeyphasorOutput::largest_envelope(std::size_t probe) const {
+  double size = 0.0;
+  for (std::size_t d = 0; d < probes_[probe].directions.size(); ++d)
+    for (const auto& r : rows_.kept_rows())
+      size = std::max(size, r[column(probe, d, per_direction_ - 2)]);
+  return size;
+}
 
-/// A phase in degrees put into 0 .. 360; the line breaks where it leaves one side and comes back on
-/// the other. A beat may carry a phase round by a turn: unwrapped, the curves would part for good.
-plot::Series within_a_turn(const plot::Series& in) {
-  plot::Series out = in;
-  out.x.clear();
-  out.y.clear();
-  for (std::size_t i = 0; i < in.x.size(); ++i) {
-    double y = std::fmod(in.y[i], 360.0);
-    if (y < 0.0) y += 360.0;
-    if (!out.y.empty() && std::abs(y - out.y.back()) > 180.0) {
-      out.x.push_back(in.x[i]);
-      out.y.push_back(nan);
+/// At constant speed: amplitude and envelope against time.
+void KeyphasorOutput::add_synchronous(io::ReportSection& section, std::size_t p,
+                                      double size) const {
+  const Tracked& probe = probes_[p];
+  const plot::DisplayUnit unit = plot::length_unit(size);
+  plot::Figure f;
+  f.name = step_ + "_" + safe_name(probe.name) + "_synchronous";
+  f.title = probe.name + ": synchronous amplitude and envelope, turn by turn";
+  plot::Axes a;
+  a.x = plot::Axis("time", "s");
+  a.y = plot::Axis(std::string("amplitude, ") + plot::to_string(convention_), unit.name);
+  a.y.include_zero = true;
+  const double factor = unit.factor * plot::factor_of(convention_);
+  for (std::size_t d = 0; d < probe.directions.size(); ++d)
+    for (const std::size_t what : {std::size_t{0}, per_direction_ - 2}) {
+      plot::Series s;
+      s.label = probe.directions[d].name +
+                (what == 0 ? fmt::format(" {}X", out_.tracking.orders.front()) : " envelope");
+      if (what != 0) {
+        s.style.dash = plot::Dash::dashed;
+        s.style.width = 1.1;
+      }
+      for (const auto& r : rows_.kept_rows()) {
+        s.x.push_back(r[0]);
+        s.y.push_back(factor * r[column(p, d, what)]);
+      }
+      a.series.push_back(std::move(s));
     }
-    out.x.push_back(in.x[i]);
-    out.y.push_back(y);
-  }
-  return out;
+  f.axes.push_back(std::move(a));
+  section.figures.push_back(std::move(f));
 }
 
-/// Where the speed turns back for good: rows up to it rise, later ones fall (or the other way
-/// round). While the speed is held it neither rises nor falls but for rounding: its end counts.
-std::size_t turning_row(const std::vector<std::vector<double>>& rows) {
-  double most = 0;
-  for (const auto& r : rows)
-    most = std::max(most, std::abs(r[1]));
-  std::size_t top = 0;
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    if (std::abs(rows[r][1]) >= (1 - 1e-6) * most) top = r;
-  return top;
-}
-
-bool speed_changes(const std::vector<std::vector<double>>& rows) {
-  double low = rows[0][1], high = low;
-  for (const auto& r : rows) {
-    low = std::min(low, r[1]);
-    high = std::max(high, r[1]);
-  }
-  return high - low > 0.02 * std::max(std::abs(low), std::abs(high));
-}
-
-}  // namespace
-
-void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p) const {
+/// Against speed, rising and falling apart.
+void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double size) const {
   const auto& rows = rows_.kept_rows();
   const Tracked& probe = probes_[p];
-  const auto convention =
-      out_.peak_to_peak ? plot::Amplitude::peak_to_peak : plot::Amplitude::zero_to_peak;
   const std::string id = step_ + "_" + safe_name(probe.name);
   const std::size_t top = turning_row(rows);
-  const bool varies = speed_changes(rows);
-  double size = 0.0;
-  for (std::size_t d = 0; d < probe.directions.size(); ++d)
-    for (const auto& r : rows)
-      size = std::max(size, r[column(p, d, per_direction_ - 2)]);
-  if (size == 0.0) return;  // torsion alone: nothing to see here
-  if (!varies) {
-    // constant speed: amplitude and envelope against time
-    const plot::DisplayUnit unit = plot::length_unit(size);
-    plot::Figure f;
-    f.name = id + "_synchronous";
-    f.title = probe.name + ": synchronous amplitude and envelope, turn by turn";
-    plot::Axes a;
-    a.x = plot::Axis("time", "s");
-    a.y = plot::Axis(std::string("amplitude, ") + plot::to_string(convention), unit.name);
-    a.y.include_zero = true;
-    const double factor = unit.factor * (out_.peak_to_peak ? 2.0 : 1.0);
-    for (std::size_t d = 0; d < probe.directions.size(); ++d)
-      for (const std::size_t what : {std::size_t{0}, per_direction_ - 2}) {
-        plot::Series s;
-        s.label = probe.directions[d].name +
-                  (what == 0 ? fmt::format(" {}X", out_.tracking.orders.front()) : " envelope");
-        if (what != 0) {
-          s.style.dash = plot::Dash::dashed;
-          s.style.width = 1.1;
-        }
-        for (const auto& r : rows) {
-          s.x.push_back(r[0]);
-          s.y.push_back(factor * r[column(p, d, what)]);
-        }
-        a.series.push_back(std::move(s));
-      }
-    f.axes.push_back(std::move(a));
-    section.figures.push_back(std::move(f));
-    return;
-  }
+  const bool both = top >= 2 && rows.size() - top >= 3;
   std::vector<plot::ResponseCurve> curves, envelope;
   for (std::size_t d = 0; d < probe.directions.size(); ++d)
     for (const bool rising : {true, false}) {
       const std::size_t from = rising ? 0 : top, to = rising ? top + 1 : rows.size();
       if (to - from < 3) continue;
       plot::ResponseCurve c;
-      const bool both = top >= 2 && rows.size() - top >= 3;
       c.label = probe.directions[d].name + (both ? rising ? " rising" : " falling" : "");
       plot::ResponseCurve e = c;
       for (std::size_t r = from; r < to; ++r) {
@@ -369,7 +421,7 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p) const 
   plot::Figure bode = plot::plot_bode(
       id + "_bode",
       probe.name + ": " + order + " amplitude and phase against speed (tracking filter)", curves,
-      convention);
+      convention_);
   for (plot::Series& s : bode.axes[1].series)
     s = within_a_turn(s);
   bode.axes[1].y.min = 0.0;
@@ -377,10 +429,10 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p) const 
   bode.axes[1].y.ticks = {0, 90, 180, 270, 360};
   section.figures.push_back(std::move(bode));
   section.figures.push_back(plot::plot_polar(
-      id + "_polar", probe.name + ": " + order + " vector (polar)", curves, convention));
+      id + "_polar", probe.name + ": " + order + " vector (polar)", curves, convention_));
   plot::Figure all =
       plot::plot_bode(id + "_envelope", probe.name + ": envelope (all frequencies) against speed",
-                      envelope, convention);
+                      envelope, convention_);
   all.axes.resize(1);
   all.height = 360;
   section.figures.push_back(std::move(all));
@@ -406,7 +458,7 @@ void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section) const
         for (const std::size_t k : peaks_of(y, 0.2)) {
           const auto& r = rows[from + k];
           t.add({probes_[p].name, probes_[p].directions[d].name, rising ? "rising" : "falling",
-                 r[1] * 30.0 / pi, y[k], r[column(p, d, 1)] * 180.0 / pi, r[0]});
+                 to_rpm(r[1]), y[k], r[column(p, d, 1)] * 180.0 / pi, r[0]});
         }
       }
   if (t.rows.empty()) return;
@@ -426,7 +478,7 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
   const auto n = static_cast<std::size_t>(out_.tracking.samples);
   const auto list = [&](const Orbit& o) {
     for (std::size_t j = 0; j < o.y.size(); ++j)
-      t.add({probes_[o.probe].name, o.speed * 30.0 / pi, o.t,
+      t.add({probes_[o.probe].name, to_rpm(o.speed), o.t,
              360.0 * static_cast<double>(j) / static_cast<double>(n), o.y[j], o.z[j]});
   };
   const auto drawn = [&](const Orbit& o, std::string label) {
@@ -447,7 +499,7 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
     const bool moves = std::any_of(o.y.begin(), o.y.end(), [](double x) { return x != 0.0; }) ||
                        std::any_of(o.z.begin(), o.z.end(), [](double x) { return x != 0.0; });
     if (moves) {
-      const plot::Orbit d = drawn(o, fmt::format("{:.0f} rpm", o.speed * 30.0 / pi));
+      const plot::Orbit d = drawn(o, fmt::format("{:.0f} rpm", to_rpm(o.speed)));
       plot::Figure f = plot::plot_orbit(
           id + "_orbit", fmt::format("{}: largest orbit, t = {:.4g} s", probes_[p].name, o.t),
           std::span(&d, 1));
@@ -458,8 +510,7 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
     std::vector<plot::Orbit> at_speeds;
     for (const Orbit& o : passed_)
       if (o.probe == p) {
-        at_speeds.push_back(
-            drawn(o, fmt::format("{:.0f} rpm, {:.3g} s", o.speed * 30.0 / pi, o.t)));
+        at_speeds.push_back(drawn(o, fmt::format("{:.0f} rpm, {:.3g} s", to_rpm(o.speed), o.t)));
         list(o);
       }
     if (!at_speeds.empty())
@@ -470,6 +521,14 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
     job.folder.write_table(step_ + "_orbits.csv", t);
     section.files.emplace_back("orbits", step_ + "_orbits.csv");
   }
+}
+
+}  // namespace
+
+void add_keyphasor(const TransientSetup& setup, TransientOutputs& outputs) {
+  const model::Output& o = setup.job.model.output;
+  if (o.tracking.on && !setup.job.model.probes.empty() && (o.csv || o.report))
+    outputs.push_back(std::make_unique<KeyphasorOutput>(setup));
 }
 
 }  // namespace whirl::results

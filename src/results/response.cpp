@@ -36,6 +36,21 @@ ProbeCurves curves_of(const analysis::ResponseProbe& probe,
   return c;
 }
 
+std::vector<plot::ResponseCurve> response_curves(const std::vector<double>& axis,
+                                                 const ProbeCurves& curves,
+                                                 const std::string& suffix) {
+  std::vector<plot::ResponseCurve> out;
+  for (std::size_t i = 0; i < curves.label.size(); ++i) {
+    plot::ResponseCurve curve{curves.label[i] + suffix, axis, {}, {}};
+    for (const Complex a : curves.amplitude[i]) {
+      curve.amplitude.push_back(std::abs(a));
+      curve.phase_lag.push_back(lag(a));
+    }
+    out.push_back(std::move(curve));
+  }
+  return out;
+}
+
 void add_probe_columns(io::Table& t, const std::string& name) {
   t.columns.push_back({name + " y amplitude", "m", "0-peak"});
   t.columns.push_back({name + " y phase lag", "deg", "behind the rotor mark"});

@@ -17,6 +17,11 @@ struct ProbeCurves {
 ProbeCurves curves_of(const analysis::ResponseProbe& probe,
                       const std::vector<analysis::PointAmplitude>& amplitudes);
 
+/// The same as curves against speed (or frequency), rad/s. suffix: of their labels.
+std::vector<plot::ResponseCurve> response_curves(const std::vector<double>& axis,
+                                                 const ProbeCurves& curves,
+                                                 const std::string& suffix = {});
+
 /// Columns "amplitude [m]", "phase lag [deg]" of y and z, and the major and minor axis of the
 /// orbit.
 void add_probe_columns(io::Table& t, const std::string& name);

@@ -12,8 +12,6 @@ namespace whirl::results {
 
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// Change of the director of a node, global axes.
 Eigen::Vector3cd tilt_of(const analysis::Linearizer& linear, const VecXc& a, Index node) {
   const system::State& s = linear.equilibrium().state;

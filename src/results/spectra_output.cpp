@@ -1,4 +1,7 @@
-#include <results/spectra_output.hpp>
+// Spectra of a transient's probes: CSV block by block, waterfall, map and full spectrum (forward
+// and backward whirl apart).
+#include <analysis/transient/spectrum.hpp>
+#include <results/transient_output.hpp>
 
 #include <plot/plots.hpp>
 #include <core/text.hpp>
@@ -12,41 +15,69 @@ namespace whirl::results {
 
 namespace {
 
-std::vector<analysis::Point> points_of(const run::Job& job) {
-  std::vector<analysis::Point> p;
-  for (const model::Probe& probe : job.model.probes) {
-    const meshes::Place at = job.mesh.place(probe.at);
-    p.push_back({at.node, at.offset});
+class SpectraOutput final : public TransientOutput {
+ public:
+  explicit SpectraOutput(const TransientSetup& s);
+  void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
+    observers.push_back(&spectra_);
+    parts.add_output({run::Part::spectra, content_}, *this);
   }
-  return p;
-}
+  analysis::Observer& observer() { return spectra_; }
+  void begin();
+  void save(OutArchive& out);
+  void restore(InArchive& in);
+  void close() override;
+  void report(TransientEnd& end) override;
 
-}  // namespace
+ private:
+  struct Trace {
+    double t = 0, speed = 0;
+    std::vector<std::vector<double>> full, y;
+  };  ///< [probe][line]
+  void take(analysis::SpectrumBlock block);
+  std::vector<io::Channel> channels() const;
+  std::string csv_name(const std::string& probe) const;
+  bool speed_varies() const;
+  const Trace& largest_block(std::size_t probe) const;
+  plot::Figure full_spectrum(std::size_t probe) const;
+  std::vector<plot::SpectrumTrace> traces_of_y(std::size_t probe) const;
+  double factor() const { return plot::factor_of(convention_); }
+  double resolution() const { return options_.max_frequency / options_.lines; }  ///< rad/s
+  const model::Output& out_;
+  const plot::Amplitude convention_ = plot::amplitude(out_.peak_to_peak);
+  model::SpectraOutput options_;
+  std::string step_, content_;
+  std::vector<std::string> probes_;
+  std::vector<double> senses_;
+  std::vector<io::TimeSeriesPtr> sinks_;  ///< one a probe
+  std::vector<Trace> traces_;
+  std::size_t blocks_ = 0, stride_ = 1;
+  std::vector<double> row_;
+  analysis::Spectra spectra_;
+};
 
-SpectraOutput::SpectraOutput(const run::Job& job, const model::Step& step, double t_begin,
-                             std::vector<double> senses)
-    : out_(job.model.output),
-      options_(*job.model.output.spectra),
-      step_(step.name),
-      senses_(std::move(senses)),
-      spectra_(points_of(job), job.reference(), t_begin, {options_.max_frequency, options_.lines},
+SpectraOutput::SpectraOutput(const TransientSetup& s)
+    : out_(s.job.model.output),
+      options_(*out_.spectra),
+      step_(s.step.name),
+      senses_(probe_senses(s.job, s.start)),
+      spectra_(probe_points(s.job), s.job.reference(), s.t_begin,
+               {options_.max_frequency, options_.lines},
                [this](const analysis::SpectrumBlock& b) { take(b); }) {
-  key_ = fmt::format("spectra {} {} {}", options_.max_frequency, options_.lines, options_.traces);
-  for (const model::Probe& p : job.model.probes) {
+  content_ = fmt::format("{} {} {}", options_.max_frequency, options_.lines, options_.traces);
+  for (const model::Probe& p : s.job.model.probes) {
     probes_.push_back(p.name);
-    key_ += " " + p.name;
-    if (out_.csv)
-      sinks_.push_back(io::make_csv_series(
-          job.folder.path(fmt::format("{}_{}_spectra.csv", step_, safe_name(p.name)))));
+    content_ += " " + p.name;
+    if (out_.csv) sinks_.push_back(io::make_csv_series(s.job.folder.path(csv_name(p.name))));
   }
   row_.resize(2 + 2 * static_cast<std::size_t>(options_.lines) + 1);
 }
 
 std::vector<io::Channel> SpectraOutput::channels() const {
   std::vector<io::Channel> c{{"t", "s", "middle of the block", {}, 1.0, {}},
-                             {"speed", "rpm", "mean spin of the block", {}, 30.0 / pi, {}}};
+                             {"speed", "rpm", "mean spin of the block", {}, to_rpm(1.0), {}}};
   for (int k = -options_.lines; k <= options_.lines; ++k)
-    c.push_back({fmt::format("{:.6g} Hz", k * options_.max_frequency / options_.lines / two_pi),
+    c.push_back({fmt::format("{:.6g} Hz", to_hz(k * options_.max_frequency / options_.lines)),
                  "m",
                  "amplitude of y + iz, 0-peak; negative: against the spin",
                  {},
@@ -125,84 +156,110 @@ void SpectraOutput::restore(InArchive& in) {
   spectra_.restore(in);
 }
 
-void SpectraOutput::report(io::ReportSection& section) const {
+std::string SpectraOutput::csv_name(const std::string& probe) const {
+  return fmt::format("{}_{}_spectra.csv", step_, safe_name(probe));
+}
+
+bool SpectraOutput::speed_varies() const {
+  double low = infinity, high = -infinity;
+  for (const Trace& t : traces_) {
+    low = std::min(low, std::abs(t.speed));
+    high = std::max(high, std::abs(t.speed));
+  }
+  return traces_.size() > 2 && high - low > 0.02 * high;
+}
+
+void SpectraOutput::report(TransientEnd& end) {
+  if (!out_.report) return;
+  io::ReportSection& section = end.section;
   if (traces_.empty()) {
     section.text += fmt::format(
         "\n\nThe run is shorter than one block of the spectra ({:.3g} s): none is shown.",
         spectra_.block_seconds());
     return;
   }
-  const auto convention =
-      out_.peak_to_peak ? plot::Amplitude::peak_to_peak : plot::Amplitude::zero_to_peak;
-  const double factor = out_.peak_to_peak ? 2.0 : 1.0,
-               resolution = options_.max_frequency / options_.lines;
-  double low = infinity, high = -infinity;
-  for (const Trace& t : traces_) {
-    low = std::min(low, std::abs(t.speed));
-    high = std::max(high, std::abs(t.speed));
-  }
-  const bool varies = traces_.size() > 2 && high - low > 0.02 * high;
   const std::vector<double> orders{0.5, 1.0, 2.0};
   for (std::size_t p = 0; p < probes_.size(); ++p) {
-    const std::string id = step_ + "_" + safe_name(probes_[p]);
-    // the largest of the blocks, forward and backward
-    std::size_t best = 0;
-    double largest = 0.0;
-    for (std::size_t k = 0; k < traces_.size(); ++k)
-      if (const double m = *std::max_element(traces_[k].full[p].begin(), traces_[k].full[p].end());
-          m > largest) {
-        largest = m;
-        best = k;
-      }
-    const plot::DisplayUnit unit = plot::length_unit(factor * largest);
-    plot::Figure f;
-    f.name = id + "_full_spectrum";
-    f.title = fmt::format("{}: full spectrum of the largest block, {:.0f} rpm, t = {:.4g} s",
-                          probes_[p], traces_[best].speed * 30.0 / pi, traces_[best].t);
-    f.caption =
-        "Spectrum of y + iz: positive frequencies whirl with the spin of the shaft there, negative "
-        "ones against it.";
-    plot::Axes a;
-    a.x = plot::Axis("frequency, backward < 0 < forward", "Hz");
-    a.y = plot::Axis(std::string("amplitude, ") + plot::to_string(convention), unit.name);
-    a.y.include_zero = true;
-    plot::Series s;
-    s.style.width = 1.2;
-    for (std::size_t k = 0; k < traces_[best].full[p].size(); ++k) {
-      s.x.push_back((static_cast<double>(k) - options_.lines) * resolution / two_pi);
-      s.y.push_back(unit.factor * factor * traces_[best].full[p][k]);
-    }
-    a.series.push_back(std::move(s));
-    const double spin = std::abs(traces_[best].speed) / two_pi;
-    for (const double k : {-1.0, 1.0})
-      if (std::abs(k * spin) <= options_.max_frequency / two_pi)
-        a.rules.push_back(
-            {true, k * spin, k > 0 ? "1X" : "-1X", {plot::ink, plot::Dash::dotted, 1.0}});
-    f.axes.push_back(std::move(a));
-    section.figures.push_back(std::move(f));
-
-    std::vector<plot::SpectrumTrace> traces;
-    for (const Trace& t : traces_) {
-      plot::SpectrumTrace x;
-      x.speed = varies ? std::abs(t.speed) : t.t;
-      for (std::size_t k = 0; k < t.y[p].size(); ++k) {
-        x.frequency.push_back(static_cast<double>(k) * resolution);
-        x.amplitude.push_back(factor * t.y[p][k]);
-      }
-      traces.push_back(std::move(x));
-    }
-    if (varies) {
+    section.figures.push_back(full_spectrum(p));
+    if (speed_varies()) {
+      const std::string id = step_ + "_" + safe_name(probes_[p]);
+      const std::vector<plot::SpectrumTrace> traces = traces_of_y(p);
       section.figures.push_back(
           plot::plot_waterfall(id + "_waterfall", probes_[p] + ": spectra of y against speed",
-                               traces, "displacement y", "m", convention, orders));
+                               traces, "displacement y", "m", convention_, orders));
       section.figures.push_back(plot::plot_spectrogram(
           id + "_spectrogram", probes_[p] + ": spectra of y against speed, map", traces,
-          "displacement y", "m", convention));
+          "displacement y", "m", convention_));
     }
-    if (out_.csv)
-      section.files.emplace_back("spectra of " + probes_[p],
-                                 fmt::format("{}_{}_spectra.csv", step_, safe_name(probes_[p])));
+    if (out_.csv) section.files.emplace_back("spectra of " + probes_[p], csv_name(probes_[p]));
   }
+}
+
+const SpectraOutput::Trace& SpectraOutput::largest_block(std::size_t probe) const {
+  const Trace* best = &traces_.front();
+  double largest = 0.0;
+  for (const Trace& t : traces_)
+    if (const double m = *std::max_element(t.full[probe].begin(), t.full[probe].end());
+        m > largest) {
+      largest = m;
+      best = &t;
+    }
+  return *best;
+}
+
+/// Of the largest of the blocks, forward and backward.
+plot::Figure SpectraOutput::full_spectrum(std::size_t probe) const {
+  const Trace& block = largest_block(probe);
+  const std::vector<double>& amplitude = block.full[probe];
+  const double largest = std::max(0.0, *std::max_element(amplitude.begin(), amplitude.end()));
+  const plot::DisplayUnit unit = plot::length_unit(factor() * largest);
+  plot::Figure f;
+  f.name = step_ + "_" + safe_name(probes_[probe]) + "_full_spectrum";
+  f.title = fmt::format("{}: full spectrum of the largest block, {:.0f} rpm, t = {:.4g} s",
+                        probes_[probe], to_rpm(block.speed), block.t);
+  f.caption =
+      "Spectrum of y + iz: positive frequencies whirl with the spin of the shaft there, negative "
+      "ones against it.";
+  plot::Axes a;
+  a.x = plot::Axis("frequency, backward < 0 < forward", "Hz");
+  a.y = plot::Axis(std::string("amplitude, ") + plot::to_string(convention_), unit.name);
+  a.y.include_zero = true;
+  plot::Series s;
+  s.style.width = 1.2;
+  for (std::size_t k = 0; k < amplitude.size(); ++k) {
+    s.x.push_back(to_hz((static_cast<double>(k) - options_.lines) * resolution()));
+    s.y.push_back(unit.factor * factor() * amplitude[k]);
+  }
+  a.series.push_back(std::move(s));
+  const double spin = to_hz(std::abs(block.speed));
+  for (const double order : {-1.0, 1.0})
+    if (std::abs(order * spin) <= to_hz(options_.max_frequency))
+      a.rules.push_back(
+          {true, order * spin, order > 0 ? "1X" : "-1X", {plot::ink, plot::Dash::dotted, 1.0}});
+  f.axes.push_back(std::move(a));
+  return f;
+}
+
+std::vector<plot::SpectrumTrace> SpectraOutput::traces_of_y(std::size_t probe) const {
+  std::vector<plot::SpectrumTrace> traces;
+  for (const Trace& t : traces_) {
+    plot::SpectrumTrace x;
+    x.speed = std::abs(t.speed);
+    for (std::size_t k = 0; k < t.y[probe].size(); ++k) {
+      x.frequency.push_back(static_cast<double>(k) * resolution());
+      x.amplitude.push_back(factor() * t.y[probe][k]);
+    }
+    traces.push_back(std::move(x));
+  }
+  return traces;
+}
+
+}  // namespace
+
+void add_spectra(const TransientSetup& setup, TransientOutputs& outputs) {
+  const model::Output& o = setup.job.model.output;
+  if (o.spectra && !setup.job.model.probes.empty() && (o.csv || o.report))
+    outputs.push_back(std::make_unique<SpectraOutput>(setup));
 }
 
 }  // namespace whirl::results

@@ -3,31 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string_view>
 
 namespace whirl::results {
 
 namespace {
 
-/// Batches of system::System that hold the bearings of a law; null: its coefficients are constant.
-const char* kind_of(const model::BearingLaw& law) {
-  if (std::holds_alternative<model::ShortJournal>(law) ||
-      std::holds_alternative<model::FiniteJournal>(law))
-    return "journal bearings";
-  if (std::holds_alternative<model::SqueezeFilm>(law)) return "squeeze films";
-  if (std::holds_alternative<model::AnnularSeal>(law)) return "annular seals";
-  if (std::holds_alternative<model::BallBearing>(law)) return "ball bearings";
-  if (std::holds_alternative<model::RollerBearing>(law)) return "roller bearings";
-  if (std::holds_alternative<model::Rub>(law)) return "contacts";
-  if (const auto* spring = std::get_if<model::NonlinearSpring>(&law)) {
-    using Along = model::NonlinearSpring::Along;
-    return spring->along == Along::y || spring->along == Along::z || spring->along == Along::radial
-               ? "nonlinear springs"
-               : nullptr;
+/// Whether another bearing has an element at a node in one of the terms.
+bool shared(const run::Job& job, std::size_t bearing, Index node,
+            const std::vector<std::size_t>& terms) {
+  for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
+    const meshes::BearingNodes& n = job.mesh.bearings[i];
+    if (i == bearing || (n.shaft.node != node && n.other.node != node)) continue;
+    const std::vector<std::size_t>& own = job.built.support_terms[i];
+    if (std::find_first_of(own.begin(), own.end(), terms.begin(), terms.end()) != own.end())
+      return true;
   }
-  if (const auto* table = std::get_if<model::TableBearing>(&law))
-    return table->frequency.empty() ? "tabulated bearings" : "bearings tabulated against frequency";
-  return nullptr;
+  return false;
 }
 
 /// -dF/dr or -dF/dr' of a support's force on the shaft, by differences of fourth order. The steps,
@@ -77,6 +68,32 @@ void find_threshold(SupportCoefficients& b) {
   b.whirl_ratio = std::sqrt(w2) / std::abs(b.spin);
 }
 
+/// Spin, place, load and its attitude, gap of a support in an evaluated state.
+void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
+                    const system::Workspace& w) {
+  const meshes::BearingNodes& n = job.mesh.bearings[bearing];
+  const assembly::SupportForce& force = job.built.support_forces[bearing];
+  const auto node = [&](Index k) -> const system::NodeState& { return w.nodes[at(k)]; };
+  const auto place = [&](const meshes::Place& p) {
+    return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>());
+  };
+  c.spin = node(n.shaft.node).spin();
+  c.place = place(n.shaft) - place(n.other);
+  const Vec2 F = force.force(node, w.context, [](Index) { return 0.0; }).tail<2>();
+  c.load = F.norm();
+  if (c.load > 0 && c.place.norm() > 0) {
+    c.attitude = (std::atan2(c.place.y(), c.place.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
+    c.attitude -= 360.0 * std::floor(c.attitude / 360.0);
+    if (c.attitude > 360.0 - 1e-9) c.attitude = 0.0;
+  }
+  for (const assembly::SupportCondition& x : job.built.conditions) {
+    if (x.bearing != bearing) continue;
+    c.clearance = x.state(node).gap;
+    if (x.sommerfeld > 0 && c.load > 0)
+      c.sommerfeld = x.sommerfeld * std::abs(c.spin) / two_pi / c.load;
+  }
+}
+
 }  // namespace
 
 std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
@@ -89,62 +106,25 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
   const system::State& x = s.state;
   for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
     const model::Bearing& b = job.model.bearings[i];
-    const char* kind = kind_of(b.law);
-    if (!kind) continue;
-    std::vector<std::size_t> only;
-    for (std::size_t k = 0; k < system.terms().size(); ++k)
-      if (system.terms()[k]->kind() == kind) only.push_back(k);
+    const model::SupportTraits law = model::traits_of(b.law);
+    if (!(law.nonlinear || law.follows_spin) || law.pair->has_value()) continue;
+    const std::vector<std::size_t>& only = job.built.support_terms[i];
     const meshes::BearingNodes& n = job.mesh.bearings[i];
-    const bool alone =
-        std::count_if(
-            job.mesh.bearings.begin(), job.mesh.bearings.end(), [&](const meshes::BearingNodes& o) {
-              const model::Bearing& other =
-                  job.model.bearings[static_cast<std::size_t>(&o - job.mesh.bearings.data())];
-              const char* k = kind_of(other.law);
-              return k && std::string_view(k) == kind &&
-                     (o.shaft.node == n.shaft.node || o.other.node == n.shaft.node);
-            }) == 1;
-    const auto force =
-        std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(),
-                     [&](const auto& f) { return f.name == b.name; });
-    if (only.empty() || force == job.built.support_forces.end()) continue;
+    const assembly::SupportForce& support = job.built.support_forces[i];
     if (!system.tangent(w, x.frames, x.t, x.q, x.v, x.a, matrices, &only)) continue;
     const Index slot = matrices.K.pattern().slot(n.shaft.node, n.shaft.node);
     if (slot < 0) continue;
     SupportCoefficients c;
-    if (alone) {
+    if (!shared(job, i, n.shaft.node, only)) {
       c.K = matrices.K.block(slot).block<2, 2>(1, 1);
       c.C = matrices.C.block(slot).block<2, 2>(1, 1);
-      if (std::holds_alternative<model::BallBearing>(b.law) ||
-          std::holds_alternative<model::RollerBearing>(b.law))
-        c.K5 = at_point(matrices.K.block(slot), n.shaft.offset);
+      if (law.rolling) c.K5 = at_point(matrices.K.block(slot), n.shaft.offset);
     } else {  // two of a kind on one node stand in one block
-      c.K = differences(*force, w, n.shaft.node, &system::NodeState::u, 1e-9);
-      c.C = differences(*force, w, n.shaft.node, &system::NodeState::du, 1e-6);
+      c.K = differences(support, w, n.shaft.node, &system::NodeState::u, 1e-9);
+      c.C = differences(support, w, n.shaft.node, &system::NodeState::du, 1e-6);
     }
-    const auto node = [&](Index k) -> const system::NodeState& {
-      return w.nodes[static_cast<std::size_t>(k)];
-    };
-    const auto place = [&](const meshes::Place& p) {
-      return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>());
-    };
-    const Vec2 r = place(n.shaft) - place(n.other);
     c.name = b.name;
-    c.spin = node(n.shaft.node).spin();
-    c.place = r;
-    const Vec2 F = force->force(node, w.context, [](Index) { return 0.0; }).tail<2>();
-    c.load = F.norm();
-    if (c.load > 0 && r.norm() > 0) {
-      c.attitude = (std::atan2(r.y(), r.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
-      c.attitude -= 360.0 * std::floor(c.attitude / 360.0);
-      if (c.attitude > 360.0 - 1e-9) c.attitude = 0.0;
-    }
-    for (const assembly::SupportCondition& x : job.built.conditions)
-      if (x.name == b.name) {
-        c.clearance = x.state(node).gap;
-        if (x.sommerfeld > 0 && c.load > 0)
-          c.sommerfeld = x.sommerfeld * std::abs(c.spin) / two_pi / c.load;
-      }
+    describe_state(c, job, i, w);
     find_threshold(c);
     out.push_back(std::move(c));
   }
@@ -152,10 +132,7 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
 }
 
 Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::size_t bearing) {
-  const std::string& name = job.model.bearings[bearing].name;
-  const auto support =
-      std::find_if(job.built.support_forces.begin(), job.built.support_forces.end(),
-                   [&](const auto& f) { return f.name == name; });
+  const assembly::SupportForce& support = job.built.support_forces[bearing];
   const meshes::Place at = job.mesh.bearings[bearing].shaft;
   const system::System& system = job.system();
   system::Workspace w = system.make_workspace();
@@ -177,8 +154,8 @@ Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::s
     };
     const auto no_reaction = [](Index) { return 0.0; };
     Vector<6> out = Vector<6>::Zero();
-    out.head<3>() = support->force(node, w.context, no_reaction);
-    if (support->moment) out.tail<3>() = support->moment(node, w.context, no_reaction);
+    out.head<3>() = support.force(node, w.context, no_reaction);
+    if (support.moment) out.tail<3>() = support.moment(node, w.context, no_reaction);
     // from the node to the place
     out.tail<3>() -= (at.offset * moved.d()).cross(Vec3(out.head<3>()));
     return out;
@@ -231,7 +208,7 @@ io::Table support_table(std::span<const SupportCoefficients> list) {
                        "at this speed; empty: never"});
   t.columns.push_back({"whirl / speed", "-", "whirl frequency over speed at that threshold"});
   for (const SupportCoefficients& c : list)
-    t.add({c.name, c.spin * 30.0 / pi, c.load, c.place.x(), c.place.y(), c.place.norm(),
+    t.add({c.name, to_rpm(c.spin), c.load, c.place.x(), c.place.y(), c.place.norm(),
            c.place.norm() / c.clearance, c.attitude, c.K(0, 0), c.K(0, 1), c.K(1, 0), c.K(1, 1),
            c.C(0, 0), c.C(0, 1), c.C(1, 0), c.C(1, 1), c.sommerfeld, c.threshold_mass,
            c.whirl_ratio});

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view magic = "whirl checkpoint 1\n";
+constexpr std::string_view any_magic = "whirl checkpoint ";
+constexpr std::string_view magic = "whirl checkpoint 2\n";
 
 /// FNV-1a, 64 bits: finds a damaged file, not an ill-willed one.
 std::uint64_t check_sum(std::string_view s) {
@@ -26,8 +27,31 @@ std::uint64_t check_sum(std::string_view s) {
   return h;
 }
 
-bool starts_with_key(std::string_view line, std::string_view key) {
-  return line.starts_with(key) && line.substr(key.size()).starts_with(" =");
+struct PartName {
+  Part part;
+  std::string_view name;
+};
+constexpr PartName part_names[] = {
+    {Part::series, "series"},
+    {Part::plot_buffer, "plot buffer"},
+    {Part::recorder, "recorder"},
+    {Part::peaks, "peaks"},
+    {Part::energy, "energy"},
+    {Part::tilt, "tilt"},
+    {Part::step_lengths, "step lengths"},
+    {Part::frames, "frames"},
+    {Part::events, "events"},
+    {Part::keyphasor, "keyphasor"},
+    {Part::spectra, "spectra"},
+    {Part::steady_motion, "steady motion"},
+    {Part::governors, "governors"},
+    {Part::wall_clock, "wall clock"},
+};
+
+Part part_of(std::string_view name) {
+  for (const PartName& p : part_names)
+    if (p.name == name) return p.part;
+  throw std::invalid_argument("checkpoint: no part has this name");
 }
 
 std::string encode(const Checkpoint& c) {
@@ -48,7 +72,8 @@ std::string encode(const Checkpoint& c) {
   a.put(c.integrator.serialize());
   a.put_count(c.parts.size());
   for (const auto& [key, data] : c.parts) {
-    a.put(key);
+    a.put(to_string(key.part));
+    a.put(key.content);
     a.put(data);
   }
   return a.data();
@@ -75,7 +100,8 @@ Checkpoint decode(std::string_view data) {
   c.state.frames.turns = a.numbers();
   c.integrator = time::IntegratorState::deserialize(a.numbers());
   for (std::uint64_t n = a.count(); n > 0; --n) {
-    std::string key = a.text();
+    const Part part = part_of(a.text());
+    PartKey key{part, a.text()};
     c.parts[std::move(key)] = a.text();
   }
   return c;
@@ -83,30 +109,17 @@ Checkpoint decode(std::string_view data) {
 
 }  // namespace
 
+std::string_view to_string(Part p) {
+  return std::find_if(std::begin(part_names), std::end(part_names),
+                      [p](const PartName& n) { return n.part == p; })
+      ->name;
+}
+
 std::string what_moves(const model::Model& model, const std::string& step) {
-  std::size_t steps = 0;  // up to and including this one
-  while (steps < model.steps.size() && model.steps[steps].name != step)
-    ++steps;
-  ++steps;
-  std::istringstream in(model.resolved);
-  std::string out, line;
-  std::size_t seen = 0;
-  bool keep = true, in_step = false;
-  while (std::getline(in, line)) {
-    if (line.starts_with('[')) {
-      if (line == "[[step]]") ++seen;
-      in_step = line == "[[step]]";
-      const bool of_step = line.starts_with("[step.") || line.starts_with("[[step");
-      keep = !(line.starts_with("[output") || line.starts_with("[[output") ||
-               line.starts_with("[parameters") || line.starts_with("[[probe") ||
-               (of_step && seen > steps));
-    }
-    if (!keep || line.empty() || starts_with_key(line, "title")) continue;
-    if (in_step &&
-        (starts_with_key(line, "duration") || starts_with_key(line, "stop_speed") ||
-         starts_with_key(line, "amplitude_limit") || starts_with_key(line, "checkpoint")))
-      continue;
-    out += line + "\n";
+  std::string out = model.moving.machine;
+  for (std::size_t k = 0; k < model.moving.steps.size(); ++k) {
+    out += model.moving.steps[k];
+    if (model.steps[k].name == step) break;
   }
   return out;
 }
@@ -132,8 +145,11 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& file) {
   if (!fs::exists(file, ec)) return std::nullopt;
   const std::string data = io::read_text(file);
   std::uint64_t sum = 0;
+  if (data.starts_with(any_magic) && !data.starts_with(magic))
+    io::io_failure(file,
+                   "checkpoint of another version of the program, run anew without --resume:");
   if (data.size() < magic.size() + sizeof sum || !data.starts_with(magic))
-    io::io_failure(file, "not a checkpoint of this version:");
+    io::io_failure(file, "not a checkpoint:");
   std::memcpy(&sum, data.data() + data.size() - sizeof sum, sizeof sum);
   const std::string_view body = std::string_view(data).substr(0, data.size() - sizeof sum);
   if (sum != check_sum(body)) io::io_failure(file, "damaged checkpoint:");
@@ -183,21 +199,21 @@ bool has_checkpoint(const fs::path& results, const model::Model& model) {
   });
 }
 
-void Parts::add(std::string key, std::function<void(OutArchive&)> save,
+void Parts::add(PartKey key, std::function<void(OutArchive&)> save,
                 std::function<void(InArchive&)> restore) {
-  parts_.push_back({std::move(key), std::move(save), std::move(restore), nullptr, {}});
+  entries_.push_back({std::move(key), std::move(save), std::move(restore), nullptr, {}});
 }
 
-void Parts::add(std::string key, analysis::Observer& o) {
-  parts_.push_back({std::move(key),
-                    [&o](OutArchive& a) { o.save(a); },
-                    [&o](InArchive& a) { o.restore(a); },
-                    &o,
-                    {}});
+void Parts::add(PartKey key, analysis::Observer& o) {
+  entries_.push_back({std::move(key),
+                      [&o](OutArchive& a) { o.save(a); },
+                      [&o](InArchive& a) { o.restore(a); },
+                      &o,
+                      {}});
 }
 
 void Parts::save(Checkpoint& c) const {
-  for (const Part& p : parts_) {
+  for (const Entry& p : entries_) {
     OutArchive a;
     p.save(a);
     c.parts[p.key] = a.data();
@@ -205,7 +221,7 @@ void Parts::save(Checkpoint& c) const {
 }
 
 void Parts::restore(const Checkpoint* c) {
-  for (const Part& p : parts_) {
+  for (const Entry& p : entries_) {
     const auto it = c ? c->parts.find(p.key) : decltype(c->parts.end()){};
     if (!c || it == c->parts.end()) {
       if (p.begin) p.begin();

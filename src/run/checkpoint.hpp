@@ -17,6 +17,34 @@
 
 namespace whirl::run {
 
+/// What a checkpoint keeps a part of.
+enum class Part {
+  series,
+  plot_buffer,
+  recorder,
+  peaks,
+  energy,
+  tilt,
+  step_lengths,
+  frames,
+  events,
+  keyphasor,
+  spectra,
+  steady_motion,
+  governors,
+  wall_clock
+};
+
+/// A part and what decides whether the saved one fits: the columns of a series, the probes and
+/// settings of a filter. Those that always fit have no content.
+struct PartKey {
+  Part part;
+  std::string content{};
+  auto operator<=>(const PartKey&) const = default;
+};
+/// As it stands in the file.
+std::string_view to_string(Part p);
+
 struct Checkpoint {
   std::string deck;               ///< what_moves() of the deck that wrote it
   double t_begin = 0, speed = 0;  ///< where the step began; reference speed, rad/s
@@ -24,12 +52,11 @@ struct Checkpoint {
   std::string reason;             ///< why the run ended, empty: it did not
   system::State state;
   time::IntegratorState integrator;
-  std::map<std::string, std::string>
-      parts;  ///< archives of observers and outputs, by what they are
+  std::map<PartKey, std::string> parts;  ///< archives of observers and outputs
 };
 
-/// The lines of the resolved deck that the motion of a step depends on: without titles, outputs,
-/// probes, later steps, and the step's own duration and stop conditions.
+/// What of the resolved deck the motion of a step depends on: the machine and the steps up to this
+/// one, without the keys that declare that nothing moves by them (model::MovingDeck).
 std::string what_moves(const model::Model& model, const std::string& step);
 
 /// Name of a step's checkpoint in the results folder.
@@ -51,19 +78,19 @@ void check_checkpoints(const std::filesystem::path& results, const model::Model&
 /// True when there is a checkpoint of any step.
 bool has_checkpoint(const std::filesystem::path& results, const model::Model& model);
 
-/// Things that are saved and restored together, each under a key that says what it is: one whose
-/// key the checkpoint does not have is new and begins where the run continues.
+/// Things that are saved and restored together, each under its key: one whose key the checkpoint
+/// does not have is new and begins where the run continues.
 class Parts {
  public:
-  void add(std::string key, std::function<void(OutArchive&)> save,
+  void add(PartKey key, std::function<void(OutArchive&)> save,
            std::function<void(InArchive&)> restore);
   /// An observer; those restored from nothing are listed in fresh().
-  void add(std::string key, analysis::Observer& o);
+  void add(PartKey key, analysis::Observer& o);
   /// An output with files of its own: begin() opens them anew.
   template <class T>
-  void add_output(std::string key, T& x) {
-    parts_.push_back({std::move(key), [&x](OutArchive& a) { x.save(a); },
-                      [&x](InArchive& a) { x.restore(a); }, &x.observer(), [&x] { x.begin(); }});
+  void add_output(PartKey key, T& x) {
+    entries_.push_back({std::move(key), [&x](OutArchive& a) { x.save(a); },
+                        [&x](InArchive& a) { x.restore(a); }, &x.observer(), [&x] { x.begin(); }});
   }
   void save(Checkpoint& c) const;
   /// null: everything begins.
@@ -71,14 +98,14 @@ class Parts {
   const std::vector<analysis::Observer*>& fresh() const { return fresh_; }
 
  private:
-  struct Part {
-    std::string key;
+  struct Entry {
+    PartKey key;
     std::function<void(OutArchive&)> save;
     std::function<void(InArchive&)> restore;
     analysis::Observer* observer = nullptr;
     std::function<void()> begin;
   };
-  std::vector<Part> parts_;
+  std::vector<Entry> entries_;
   std::vector<analysis::Observer*> fresh_;
 };
 

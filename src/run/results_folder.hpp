@@ -7,9 +7,10 @@
 namespace whirl::run {
 
 /// Makes the folder (below the current directory unless absolute) and writes, each atomically:
-///   resolved.toml   the deck with parameters put in, includes merged, defaults explicit, tables
-///   inlined: runs by itself run.json        program version and build, deck path, SHA-256 of
-///   resolved.toml, start time
+///   resolved.toml
+///       the deck with parameters put in, includes merged, defaults explicit, tables inlined: runs
+///       by itself
+///   run.json        program version and build, deck path, SHA-256 of resolved.toml, start time
 /// Pictures and checkpoints that earlier runs made there are removed unless the run is resumed;
 /// files no run made are left alone. A large output is announced with its size. Error (Exit::io)
 /// when writing fails; Error (Exit::deck, E33) when the output would not fit on its disk.

@@ -30,38 +30,10 @@ class Conditions {
   system::Workspace workspace_;
 };
 
-}  // namespace
-
-Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& running,
-                             const StepState& start, const Error& failed) {
-  bool films = false;
-  for (const SupportCondition& c : job.built.conditions)
-    films = films || Conditions(job, start.state).of(c).film;
-  if (!films) {
-    const auto has_gap = [](const model::Bearing& b) {
-      using Shape = model::ForceLaw::Shape;
-      if (const auto* x = std::get_if<model::BallBearing>(&b.law)) return x->clearance > 0;
-      if (const auto* x = std::get_if<model::RollerBearing>(&b.law)) return x->clearance > 0;
-      if (const auto* x = std::get_if<model::NonlinearSpring>(&b.law))
-        return x->force.shape == Shape::clearance || x->force.shape == Shape::one_sided;
-      return std::holds_alternative<model::Rub>(b.law);
-    };
-    Diagnostic d = failed.diagnostics().front();
-    std::string names;
-    for (const model::Bearing& b : job.model.bearings)
-      if (has_gap(b)) {
-        names += fmt::format("{}'{}'", names.empty() ? "" : ", ", b.name);
-        d.where = names.find(',') == std::string::npos ? b.where : d.where;
-      }
-    if (d.code != "E75" || names.empty()) return failed;
-    d.message += fmt::format(
-        "; {} {} a gap, and moving the shaft along its load finds nothing that holds it", names,
-        names.find(',') == std::string::npos ? "has" : "have");
-    d.hint =
-        "in the middle of its gap a support carries nothing: give the rotor weight or a load that "
-        "presses it against the support, less gap, or another support";
-    return Error(failed.exit(), std::move(d));
-  }
+/// Why films do not hold the rotor: the share of the load that they carry, and where they stand
+/// then.
+Error explain_overload(const Job& job, const analysis::SteadySystem& running,
+                       const StepState& start, const Error& failed) {
   // The largest part of the load that has an equilibrium, to 1/256.
   analysis::SteadySystem part(job.system(), running.running());
   analysis::EquilibriumSolver solver(part);
@@ -108,6 +80,33 @@ Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& runni
   return Error(failed.exit(), std::move(d));
 }
 
+}  // namespace
+
+Error explain_no_equilibrium(const Job& job, const analysis::SteadySystem& running,
+                             const StepState& start, const Error& failed) {
+  bool films = false;
+  for (const SupportCondition& c : job.built.conditions)
+    films = films || Conditions(job, start.state).of(c).film;
+  if (!films) {
+    Diagnostic d = failed.diagnostics().front();
+    std::string names;
+    for (const model::Bearing& b : job.model.bearings)
+      if (model::traits_of(b.law).gap) {
+        names += fmt::format("{}'{}'", names.empty() ? "" : ", ", b.name);
+        d.where = names.find(',') == std::string::npos ? b.where : d.where;
+      }
+    if (d.code != "E75" || names.empty()) return failed;
+    d.message += fmt::format(
+        "; {} {} a gap, and moving the shaft along its load finds nothing that holds it", names,
+        names.find(',') == std::string::npos ? "has" : "have");
+    d.hint =
+        "in the middle of its gap a support carries nothing: give the rotor weight or a load that "
+        "presses it against the support, less gap, or another support";
+    return Error(failed.exit(), std::move(d));
+  }
+  return explain_overload(job, running, start, failed);
+}
+
 std::string supports_at_their_limit(const Job& job, const system::State& s) {
   std::string out;
   system::Workspace w = job.system().make_workspace();
@@ -124,7 +123,7 @@ std::string supports_at_their_limit(const Job& job, const system::State& s) {
     out += fmt::format(
         "; the table of bearing '{}' covers {:.6g} to {:.6g} rpm, and its shaft turns at {:.6g} "
         "rpm",
-        b.name, low * 30 / pi, high * 30 / pi, spin * 30 / pi);
+        b.name, to_rpm(low), to_rpm(high), to_rpm(spin));
   }
   const Conditions now(job, s);
   for (const SupportCondition& c : job.built.conditions)

@@ -89,7 +89,7 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
   if (!std::isnan(first))
     path = analysis::check_on_path(s.linear.running(), law.speed, first, options);
   io::Value& v = s.summary();
-  v["speed [rpm]"] = results::to_rpm(law.speed);
+  v["speed [rpm]"] = to_rpm(law.speed);
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::BucklingMode& m = modes[k];
     const bool checked = path && path->found && m.factor == Complex(first);

@@ -3,6 +3,8 @@
 #include <analysis/spectra/campbell.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <results/campbell_lines.hpp>
 #include <steps/step_kinds.hpp>
@@ -28,9 +30,9 @@ io::Table make_table(const analysis::Campbell& c) {
     t.columns.push_back({l.label + " direction", "-", ""});
   }
   for (std::size_t k = 0; k < c.speeds.size(); ++k) {
-    std::vector<io::Table::Cell> row{results::to_rpm(c.speeds[k])};
+    std::vector<io::Table::Cell> row{to_rpm(c.speeds[k])};
     for (const analysis::CampbellLine& l : c.lines) {
-      row.emplace_back(results::to_hz(l.frequency[k]));
+      row.emplace_back(to_hz(l.frequency[k]));
       row.emplace_back(results::tidy(l.log_decrement[k]));
       row.emplace_back(results::tidy(l.damping_ratio[k]));
       row.emplace_back(std::isnan(l.frequency[k]) ? std::string()
@@ -39,6 +41,65 @@ io::Table make_table(const analysis::Campbell& c) {
     t.add(std::move(row));
   }
   return t;
+}
+
+io::Table empty_critical_table() {
+  io::Table t;
+  t.title = "Critical speeds";
+  t.columns = {{"order", "-", "excitations a revolution"},
+               {"speed", "rpm", ""},
+               {"frequency", "Hz", ""},
+               {"kind", "-", ""},
+               {"direction", "-", ""},
+               {"log decrement", "-", ""},
+               {"damping ratio", "-", ""}};
+  return t;
+}
+
+// Intersections with the orders, solved for.
+std::vector<plot::CriticalMark> find_criticals(results::FrequencyStep& s,
+                                               const model::CampbellStep& law,
+                                               const analysis::CampbellOptions& o,
+                                               const analysis::Campbell& c, io::Table& table) {
+  double highest = 0;
+  for (const analysis::CampbellLine& l : c.lines)
+    for (double f : l.frequency)
+      highest = std::max(highest, std::isnan(f) ? 0.0 : f);
+  std::vector<plot::CriticalMark> marks;
+  for (const double order : law.orders) {
+    analysis::CriticalOptions q;
+    q.order = order;
+    q.max_speed = std::max(std::abs(o.speeds.front()), std::abs(o.speeds.back()));
+    q.min_speed = o.speeds.front();
+    q.motion = o.track.modes.motion;
+    q.damped = law.damped;
+    q.grid = static_cast<Index>(o.speeds.size());
+    q.max_frequency = highest;
+    for (const analysis::Critical& k : analysis::critical_speeds(s.linear, q)) {
+      marks.push_back({k.speed, k.frequency, order, {}});
+      table.add({order, to_rpm(k.speed), to_hz(k.frequency), std::string(to_string(k.mode.kind)),
+                 results::direction_text(k.mode), results::tidy(k.mode.log_decrement),
+                 results::tidy(k.mode.damping_ratio)});
+    }
+  }
+  return marks;
+}
+
+/// Of the lines at the highest speed.
+void report_mesh(results::FrequencyStep& s, const analysis::CampbellOptions& o) {
+  analysis::ModesOptions modes = o.track.modes;
+  modes.certify = false;
+  const double Omega = o.speeds.back();
+  results::MeshAccuracy accuracy(s);
+  accuracy.look_at(analysis::whirl_modes(s.linear, Omega, modes), Omega);
+  accuracy.report();
+}
+
+bool any_damping(const analysis::Campbell& c) {
+  return std::any_of(c.lines.begin(), c.lines.end(), [](const analysis::CampbellLine& l) {
+    return std::any_of(l.log_decrement.begin(), l.log_decrement.end(),
+                       [](double x) { return std::abs(x) > 1e-6; });
+  });
 }
 
 }  // namespace
@@ -56,39 +117,11 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
     const run::PhaseTimer timer(job, "Campbell diagram");
     return analysis::campbell(s.linear, o);
   }();
-  // Intersections with the orders, solved for.
+  io::Table criticals = empty_critical_table();
   std::vector<plot::CriticalMark> marks;
-  io::Table criticals;
-  criticals.title = "Critical speeds";
-  criticals.columns = {{"order", "-", "excitations a revolution"},
-                       {"speed", "rpm", ""},
-                       {"frequency", "Hz", ""},
-                       {"kind", "-", ""},
-                       {"direction", "-", ""},
-                       {"log decrement", "-", ""},
-                       {"damping ratio", "-", ""}};
   if (top > 0 && o.speeds.front() >= 0) {
     const run::PhaseTimer timer(job, "critical speeds");
-    for (const double order : law.orders) {
-      analysis::CriticalOptions q;
-      q.order = order;
-      q.max_speed = top;
-      q.min_speed = o.speeds.front();
-      q.motion = o.track.modes.motion;
-      q.damped = law.damped;
-      q.grid = static_cast<Index>(o.speeds.size());
-      double highest = 0;
-      for (const analysis::CampbellLine& l : c.lines)
-        for (double f : l.frequency)
-          highest = std::max(highest, std::isnan(f) ? 0.0 : f);
-      q.max_frequency = highest;
-      for (const analysis::Critical& k : analysis::critical_speeds(s.linear, q)) {
-        marks.push_back({k.speed, k.frequency, order, {}});
-        criticals.add({order, results::to_rpm(k.speed), results::to_hz(k.frequency),
-                       std::string(to_string(k.mode.kind)), results::direction_text(k.mode),
-                       results::tidy(k.mode.log_decrement), results::tidy(k.mode.damping_ratio)});
-      }
-    }
+    marks = find_criticals(s, law, o, c, criticals);
   }
   const std::size_t found = marks.size();
 
@@ -97,17 +130,15 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   v["speeds"] = c.speeds.size();
   v["speeds solved"] = c.speeds_solved;
   for (const plot::CriticalMark& m : marks)
-    v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(results::to_rpm(m.speed));
+    v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(to_rpm(m.speed));
+  report_mesh(s, o);
+  results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
   s.add_table("campbell", make_table(c), false);
   s.add_table("critical_speeds", std::move(criticals));
   const std::vector<plot::CampbellLine> lines = results::drawn_lines(c);
   s.add_figure(
       plot::plot_campbell(s.file("campbell"), "Campbell diagram", lines, law.orders, marks));
-  const bool any = std::any_of(c.lines.begin(), c.lines.end(), [](const analysis::CampbellLine& l) {
-    return std::any_of(l.log_decrement.begin(), l.log_decrement.end(),
-                       [](double x) { return std::abs(x) > 1e-6; });
-  });
-  if (any)
+  if (any_damping(c))
     s.add_figure(
         plot::plot_stability(s.file("log_decrement"), "Log decrement of the modes", lines));
   s.section.text = fmt::format(
@@ -116,8 +147,7 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   std::size_t weakest = 0;
   for (std::size_t k = 1; k < c.certificates.size(); ++k)
     if (!c.certificates[k].complete() && c.certificates[weakest].complete()) weakest = k;
-  s.certify(c.certificates[weakest],
-            fmt::format("at {:.6g} rpm", results::to_rpm(c.speeds[weakest])));
+  s.certify(c.certificates[weakest], fmt::format("at {:.6g} rpm", to_rpm(c.speeds[weakest])));
   s.section.text += c.certificates[weakest].complete()
                         ? " At every speed the roots were counted: the list of modes is complete."
                         : " " + results::capital(c.certificates[weakest].text()) + ".";

@@ -4,7 +4,6 @@
 #include <results/support_coefficients.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
-#include <elements/rolling/hertz.hpp>
 
 #include <fmt/format.h>
 
@@ -16,27 +15,6 @@ namespace whirl::steps {
 
 namespace {
 
-/// Whether a support carries laterally by a stiffness of its own, which a map can vary.
-bool carries_laterally(const model::BearingLaw& law) {
-  const auto lateral = [](const Matrix<6>& K) { return K(1, 1) != 0 || K(2, 2) != 0; };
-  if (const auto* b = std::get_if<model::LinearBearing>(&law)) return lateral(b->K);
-  if (const auto* b = std::get_if<model::TableBearing>(&law))
-    return std::any_of(b->K.begin(), b->K.end(), lateral);
-  if (const auto* b = std::get_if<model::SpringBlock>(&law)) return b->C1 != 0;
-  if (const auto* b = std::get_if<model::SqueezeFilm>(&law)) return b->stiffness != 0;
-  if (const auto* b = std::get_if<model::NonlinearSpring>(&law)) {
-    using Along = model::NonlinearSpring::Along;
-    using Shape = model::ForceLaw::Shape;
-    const bool gap = b->force.shape == Shape::clearance || b->force.shape == Shape::one_sided;
-    return !gap && (b->along == Along::y || b->along == Along::z || b->along == Along::radial);
-  }
-  return std::holds_alternative<model::ShortJournal>(law) ||
-         std::holds_alternative<model::FiniteJournal>(law) ||
-         std::holds_alternative<model::BallBearing>(law) ||
-         std::holds_alternative<model::RollerBearing>(law) ||
-         std::holds_alternative<model::RollingEstimate>(law);
-}
-
 /// Stiffness of the chosen rolling bearings in all motions at the equilibrium, by number of the
 /// bearing.
 using RollingStiffness = std::map<std::size_t, Matrix<6>>;
@@ -45,9 +23,7 @@ RollingStiffness stiffness_of_rolling(results::FrequencyStep& s,
                                       const std::vector<std::size_t>& chosen, double speed) {
   RollingStiffness out;
   const auto rolls = [&](std::size_t i) {
-    const model::BearingLaw& law = s.job.model.bearings[i].law;
-    return std::holds_alternative<model::BallBearing>(law) ||
-           std::holds_alternative<model::RollerBearing>(law);
+    return *model::traits_of(s.job.model.bearings[i].law).rolling;
   };
   if (std::none_of(chosen.begin(), chosen.end(), rolls)) return out;
   s.linear.at(speed);
@@ -88,18 +64,15 @@ model::BearingLaw law_with_stiffness(const model::BearingLaw& law, const Matrix<
     table.M.clear();
     return table;
   }
+  const model::SupportTraits t = model::traits_of(law);
   model::LinearBearing b;
-  if (const auto* linear = std::get_if<model::LinearBearing>(&law))
-    b = *linear;
-  else if (const auto* block = std::get_if<model::SpringBlock>(&law))
-    b.K.diagonal() << block->C1, k, k, 0, block->C2, block->C2;
-  else if (const auto* estimate = std::get_if<model::RollingEstimate>(&law))
-    b.K(0, 0) = estimate->kxx;
+  if (*t.stiffness)
+    b.K = **t.stiffness;
   else if (rolling)
     b.K = *rolling;
+  b.setpoint = t.bias->setpoint;
+  b.preload = t.bias->preload;
   set_lateral(b.K, k);
-  b.C.setZero();
-  b.M.setZero();
   return b;
 }
 
@@ -122,7 +95,7 @@ std::vector<std::size_t> chosen_bearings(const model::Model& m, const model::Ste
                                          const model::CriticalMapStep& law) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < m.bearings.size() && law.bearings.empty(); ++i)
-    if (carries_laterally(m.bearings[i].law) && !m.bearings[i].to) chosen.push_back(i);
+    if (model::traits_of(m.bearings[i].law).mapped && !m.bearings[i].to) chosen.push_back(i);
   for (const std::string& name : law.bearings) {
     const auto found = std::find_if(m.bearings.begin(), m.bearings.end(),
                                     [&](const model::Bearing& b) { return b.name == name; });
@@ -131,7 +104,7 @@ std::vector<std::size_t> chosen_bearings(const model::Model& m, const model::Ste
                       fmt::format("step '{}' names bearing '{}', which the deck does not have",
                                   step.name, name),
                       "", step.name);
-    if (!carries_laterally(found->law))
+    if (!model::traits_of(found->law).mapped)
       throw run_error(
           "E80",
           fmt::format("step '{}' names bearing '{}', which has no lateral stiffness to vary",
@@ -161,40 +134,42 @@ std::string line_label(const analysis::CriticalMapLine& l, const model::Critical
 /// Stiffness of a bearing as it is, for the map: vertical where it does not depend on speed.
 void add_own_curves(const model::Bearing& b, double max_speed, std::vector<plot::Curve>& out) {
   const double low = 0.01 * max_speed;
-  if (const auto* linear = std::get_if<model::LinearBearing>(&b.law)) {
-    out.push_back({b.name + " kyy", {linear->K(1, 1), linear->K(1, 1)}, {low, max_speed}});
-    if (linear->K(2, 2) != linear->K(1, 1))
-      out.push_back({b.name + " kzz", {linear->K(2, 2), linear->K(2, 2)}, {low, max_speed}});
-  } else if (const auto* block = std::get_if<model::SpringBlock>(&b.law)) {
-    out.push_back({b.name, {block->C1, block->C1}, {low, max_speed}});
-  } else if (const auto* rolling = std::get_if<model::RollingEstimate>(&b.law)) {
-    const elements::BearingEstimate k =
-        rolling->roller ? elements::estimate_roller_bearing(rolling->elements, rolling->size,
-                                                            rolling->load, rolling->contact_angle)
-                        : elements::estimate_ball_bearing(rolling->elements, rolling->size,
-                                                          rolling->load, rolling->contact_angle);
-    out.push_back({b.name + " along its load", {k.along, k.along}, {low, max_speed}});
-    out.push_back({b.name + " across", {k.across, k.across}, {low, max_speed}});
-  } else if (const auto* table = std::get_if<model::TableBearing>(&b.law)) {
-    for (const auto& [entry, name] : {std::pair{1, " kyy"}, std::pair{2, " kzz"}}) {
-      plot::Curve c{b.name + name, {}, {}};
-      const auto& f = table->frequency;
-      for (std::size_t i = 0; i < table->speed.size(); ++i) {
-        std::size_t row = i;
-        if (!f.empty()) {  // of a grid the synchronous values: the frequency nearest to the speed
-          std::size_t j = 0;
-          for (std::size_t k = 1; k < f.size(); ++k)
-            if (std::abs(f[k] - table->speed[i]) < std::abs(f[j] - table->speed[i])) j = k;
-          row = i * f.size() + j;
-        }
-        if (table->speed[i] > 0 && table->K[row](entry, entry) > 0) {
-          c.x.push_back(table->K[row](entry, entry));
-          c.y.push_back(table->speed[i]);
-        }
-      }
-      if (!c.x.empty()) out.push_back(std::move(c));
-    }
+  const model::SupportTraits law = model::traits_of(b.law);
+  for (const model::StiffnessCurve& c : *law.curves)
+    if (c.speed.empty())
+      out.push_back({b.name + c.label, {c.k.front(), c.k.front()}, {low, max_speed}});
+    else
+      out.push_back({b.name + c.label, c.k, c.speed});
+}
+
+/// Table and figure, with what the bearings have themselves.
+void add_map(results::FrequencyStep& s, const model::Model& model,
+             const std::vector<std::size_t>& chosen, const analysis::CriticalMap& map,
+             const model::CriticalMapStep& law) {
+  io::Table table;
+  table.title = "Critical speeds against support stiffness";
+  table.nan_means = "no such critical speed at this stiffness";
+  table.columns.push_back({"stiffness", "N/m", "of each support, in y and z"});
+  std::vector<plot::Curve> curves;
+  std::map<std::string, int> count;
+  for (const analysis::CriticalMapLine& l : map.lines) {
+    const std::string name = line_label(l, law);
+    const std::string label = fmt::format("{} {}", name, ++count[name]);
+    table.columns.push_back({label, "rpm", ""});
+    curves.push_back({label, map.stiffness, l.speed});
   }
+  for (std::size_t i = 0; i < map.stiffness.size(); ++i) {
+    std::vector<io::Table::Cell> row{map.stiffness[i]};
+    for (const analysis::CriticalMapLine& l : map.lines)
+      row.emplace_back(to_rpm(l.speed[i]));
+    table.add(std::move(row));
+  }
+  s.add_table("critical_map", std::move(table), false);
+  std::vector<plot::Curve> own;
+  for (const std::size_t i : chosen)
+    add_own_curves(model.bearings[i], law.max_speed, own);
+  s.add_figure(plot::plot_critical_map(
+      s.file("critical_map"), "Undamped critical speeds against support stiffness", curves, own));
 }
 
 }  // namespace
@@ -222,36 +197,14 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
       },
       o);
 
-  io::Table table;
-  table.title = "Critical speeds against support stiffness";
-  table.nan_means = "no such critical speed at this stiffness";
-  table.columns.push_back({"stiffness", "N/m", "of each support, in y and z"});
-  std::vector<plot::Curve> curves, own;
-  std::map<std::string, int> count;
-  for (const analysis::CriticalMapLine& l : map.lines) {
-    const std::string name = line_label(l, law);
-    const std::string label = fmt::format("{} {}", name, ++count[name]);
-    table.columns.push_back({label, "rpm", ""});
-    curves.push_back({label, map.stiffness, l.speed});
-  }
-  for (std::size_t i = 0; i < map.stiffness.size(); ++i) {
-    std::vector<io::Table::Cell> row{map.stiffness[i]};
-    for (const analysis::CriticalMapLine& l : map.lines)
-      row.emplace_back(results::to_rpm(l.speed[i]));
-    table.add(std::move(row));
-  }
+  add_map(s, job.model, chosen, map, law);
   std::string names;
   for (const std::size_t i : chosen) {
     names += fmt::format("{}'{}'", names.empty() ? "" : ", ", job.model.bearings[i].name);
     s.summary()["bearings varied"].push(job.model.bearings[i].name);
   }
-  for (const std::size_t i : chosen)
-    add_own_curves(job.model.bearings[i], law.max_speed, own);
   s.summary()["lines"] = map.lines.size();
   s.summary()["stiffnesses"] = map.stiffness.size();
-  s.add_table("critical_map", std::move(table), false);
-  s.add_figure(plot::plot_critical_map(
-      s.file("critical_map"), "Undamped critical speeds against support stiffness", curves, own));
   s.section.text = fmt::format(
       "Lateral stiffness of {} supports varied together: {}. What else they do along and about the "
       "shaft stays;"
@@ -260,10 +213,10 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
   if (!rolling.empty())
     s.section.text +=
         fmt::format(" Rolling bearings keep the stiffness of the equilibrium at {:.6g} rpm.",
-                    results::to_rpm(law.max_speed));
+                    to_rpm(law.max_speed));
   if (map.lines.empty())
     s.section.text +=
-        fmt::format(" No critical speed lies below {:.6g} rpm.", results::to_rpm(law.max_speed));
+        fmt::format(" No critical speed lies below {:.6g} rpm.", to_rpm(law.max_speed));
   s.finish(
       fmt::format("{} critical speeds at {} stiffnesses", map.lines.size(), map.stiffness.size()));
 }

@@ -1,6 +1,8 @@
 // A critical-speed step: undamped and damped critical speeds of any order, solved for directly.
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -29,103 +31,151 @@ bool is_damped(analysis::Linearizer& linear, double Omega) {
          distance(K, conservative.K) > 1e-12;  // rounding of the products
 }
 
+/// Critical speeds on their way, without damping and with it.
+class CriticalRun {
+ public:
+  CriticalRun(run::Job& job, const model::Step& step, const model::CriticalStep& law)
+      : law_(law),
+        s_(job, step, "critical_speeds", "critical speeds", law.max_speed),
+        mesh_(s_) {}
+  void execute();
+
+ private:
+  void find(bool damped);
+  std::vector<analysis::Critical> solve(double order, bool damped);
+  void add_rows(double order, bool damped, const std::vector<analysis::Critical>& list,
+                io::Table& table);
+  void add_shapes(double order, const std::vector<analysis::Critical>& list);
+  void add_to_line(const std::vector<analysis::Critical>& list);
+
+  const model::CriticalStep& law_;
+  results::FrequencyStep s_;
+  results::MeshAccuracy mesh_;
+  bool damping_ = false;  ///< the model has any
+  int drawn_ = 0;
+  std::string line_;
+};
+
+io::Table empty_table(bool damped) {
+  io::Table table;
+  table.title = damped ? "Damped critical speeds" : "Undamped critical speeds";
+  table.columns = {{"order", "-", "excitations a revolution"},
+                   {"number", "-", ""},
+                   {"speed", "rpm", ""},
+                   {"frequency", "Hz", ""},
+                   {"kind", "-", ""},
+                   {"direction", "-", ""}};
+  if (damped) {
+    table.columns.push_back({"log decrement", "-", ""});
+    table.columns.push_back({"damping ratio", "-", "of the mode"});
+    table.columns.push_back({"amplification", "-", "1/(2 damping ratio)"});
+  }
+  return table;
+}
+
+std::vector<analysis::Critical> CriticalRun::solve(double order, bool damped) {
+  analysis::CriticalOptions o;
+  o.order = order;
+  o.min_speed = law_.min_speed;
+  o.max_speed = law_.max_speed;
+  o.damped = damped;
+  o.motion = results::motion_of(law_.motion);
+  analysis::SpectrumCertificate certificate;
+  std::vector<analysis::Critical> list = analysis::critical_speeds(s_.linear, o, &certificate);
+  if (damped) s_.certify(certificate, fmt::format("damped, order {:g}", order));
+  if (list.size() > static_cast<std::size_t>(law_.modes))
+    list.resize(static_cast<std::size_t>(law_.modes));
+  return list;
+}
+
+void CriticalRun::add_rows(double order, bool damped, const std::vector<analysis::Critical>& list,
+                           io::Table& table) {
+  const std::string key = fmt::format("{} critical speeds [rpm]", damped ? "damped" : "undamped");
+  io::Value& speeds = s_.summary()[key][fmt::format("{:g}x", order)];
+  if (list.empty()) speeds = io::Value::array();
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const analysis::Critical& c = list[k];
+    mesh_.of(c.mode, c.speed, fmt::format("critical speed {}", k + 1));
+    std::vector<io::Table::Cell> row{order,
+                                     static_cast<int>(k + 1),
+                                     to_rpm(c.speed),
+                                     to_hz(c.frequency),
+                                     std::string(to_string(c.mode.kind)),
+                                     results::direction_text(c.mode)};
+    if (damped) {
+      row.emplace_back(results::tidy(c.mode.log_decrement));
+      row.emplace_back(results::tidy(c.mode.damping_ratio));
+      row.emplace_back(c.amplification());
+    }
+    table.add(std::move(row));
+    speeds.push(to_rpm(c.speed));
+  }
+}
+
+void CriticalRun::add_shapes(double order, const std::vector<analysis::Critical>& list) {
+  for (const analysis::Critical& c : list) {
+    if (drawn_ >= law_.shapes) return;
+    const std::string name = fmt::format("critical_{}", ++drawn_);
+    s_.linear.at(c.speed);  // the equilibrium the shape belongs to
+    results::add_shape_figures(s_, {name,
+                                    fmt::format("{:g}x critical speed {:.6g} rpm, {}", order,
+                                                to_rpm(c.speed), results::description(c.mode)),
+                                    {},
+                                    &c.mode.x,
+                                    c.mode.kind});
+    results::write_shape_frames(s_, name, c.mode.x);
+  }
+}
+
+void CriticalRun::add_to_line(const std::vector<analysis::Critical>& list) {
+  if (line_.size() >= 60) return;
+  for (std::size_t k = 0; k < std::min<std::size_t>(list.size(), 4); ++k) {
+    const analysis::WhirlMode& mode = list[k].mode;
+    line_ += fmt::format("{}{:.6g} ({})", line_.empty() ? "" : ", ", to_rpm(list[k].speed),
+                         mode.direction == analysis::Direction::none ? to_string(mode.kind)
+                                                                     : to_string(mode.direction));
+  }
+}
+
+void CriticalRun::find(bool damped) {
+  const char* word = damped ? "damped" : "undamped";
+  io::Table table = empty_table(damped);
+  for (const double order : law_.orders) {
+    const std::vector<analysis::Critical> list = solve(order, damped);
+    add_rows(order, damped, list, table);
+    if (damped != damping_) continue;  // shown once: with damping where there is any
+    add_shapes(order, list);
+    add_to_line(list);
+  }
+  if (table.rows.empty())
+    s_.section.text += fmt::format(
+        "No {} critical speed lies {} {:.6g} rpm. ", word,
+        law_.min_speed > 0 ? fmt::format("between {:.6g} and", to_rpm(law_.min_speed)) : "below",
+        to_rpm(law_.max_speed));
+  mesh_.report();
+  s_.add_table(word, std::move(table));
+}
+
+void CriticalRun::execute() {
+  s_.summary()["max speed [rpm]"] = to_rpm(law_.max_speed);
+  results::warn_of_held_tables(s_.job, s_.step.name, law_.min_speed, law_.max_speed);
+  const run::PhaseTimer timer(s_.job, "critical speeds");
+  damping_ = is_damped(s_.linear, law_.max_speed);
+  find(false);
+  if (damping_) find(true);
+  s_.section.text +=
+      damping_ ? "Damped: the damped natural frequency meets the order line. Undamped: damping and "
+                 "circulation left out."
+               : "The model has no damping: damped and undamped critical speeds are the same.";
+  s_.finish(line_.empty()
+                ? fmt::format("no critical speed below {:.0f} rpm", to_rpm(law_.max_speed))
+                : line_ + " rpm");
+}
+
 }  // namespace
 
 void run_critical_step(run::Job& job, const model::Step& step, const model::CriticalStep& law) {
-  results::FrequencyStep s(job, step, "critical_speeds", "critical speeds", law.max_speed);
-  io::Value& v = s.summary();
-  v["max speed [rpm]"] = results::to_rpm(law.max_speed);
-  std::string line;
-  const run::PhaseTimer timer(job, "critical speeds");
-  const bool damping = is_damped(s.linear, law.max_speed);
-  int drawn = 0;
-  for (const bool damped : {false, true}) {
-    if (damped && !damping) continue;
-    const char* word = damped ? "damped" : "undamped";
-    io::Table table;
-    table.title = damped ? "Damped critical speeds" : "Undamped critical speeds";
-    table.columns = {{"order", "-", "excitations a revolution"},
-                     {"number", "-", ""},
-                     {"speed", "rpm", ""},
-                     {"frequency", "Hz", ""},
-                     {"kind", "-", ""},
-                     {"direction", "-", ""}};
-    if (damped) {
-      table.columns.push_back({"log decrement", "-", ""});
-      table.columns.push_back({"damping ratio", "-", "of the mode"});
-      table.columns.push_back({"amplification", "-", "1/(2 damping ratio)"});
-    }
-    std::size_t found = 0;
-    for (const double order : law.orders) {
-      analysis::CriticalOptions o;
-      o.order = order;
-      o.min_speed = law.min_speed;
-      o.max_speed = law.max_speed;
-      o.damped = damped;
-      o.motion = results::motion_of(law.motion);
-      analysis::SpectrumCertificate certificate;
-      std::vector<analysis::Critical> list = analysis::critical_speeds(s.linear, o, &certificate);
-      if (damped) s.certify(certificate, fmt::format("damped, order {:g}", order));
-      if (list.size() > static_cast<std::size_t>(law.modes))
-        list.resize(static_cast<std::size_t>(law.modes));
-      found += list.size();
-      io::Value& speeds =
-          v[fmt::format("{} critical speeds [rpm]", word)][fmt::format("{:g}x", order)];
-      if (list.empty()) speeds = io::Value::array();
-      for (std::size_t k = 0; k < list.size(); ++k) {
-        const analysis::Critical& c = list[k];
-        std::vector<io::Table::Cell> row{order,
-                                         static_cast<int>(k + 1),
-                                         results::to_rpm(c.speed),
-                                         results::to_hz(c.frequency),
-                                         std::string(to_string(c.mode.kind)),
-                                         results::direction_text(c.mode)};
-        if (damped) {
-          row.emplace_back(results::tidy(c.mode.log_decrement));
-          row.emplace_back(results::tidy(c.mode.damping_ratio));
-          row.emplace_back(c.amplification());
-        }
-        table.add(std::move(row));
-        speeds.push(results::to_rpm(c.speed));
-        if (damped != damping || drawn >= law.shapes)
-          continue;  // shapes once: with damping where there is any
-        ++drawn;
-        const std::string name = fmt::format("critical_{}", drawn);
-        s.linear.at(c.speed);  // the equilibrium the shape belongs to
-        results::add_shape_figures(
-            s, {name,
-                fmt::format("{:g}x critical speed {:.6g} rpm, {}", order, results::to_rpm(c.speed),
-                            results::description(c.mode)),
-                {},
-                &c.mode.x,
-                c.mode.kind});
-        results::write_shape_frames(s, name, c.mode.x);
-      }
-      if (damped == damping && line.size() < 60)
-        for (std::size_t k = 0; k < std::min<std::size_t>(list.size(), 4); ++k)
-          line +=
-              fmt::format("{}{:.6g} ({})", line.empty() ? "" : ", ", results::to_rpm(list[k].speed),
-                          list[k].mode.direction == analysis::Direction::none
-                              ? to_string(list[k].mode.kind)
-                              : to_string(list[k].mode.direction));
-    }
-    if (found == 0)
-      s.section.text += fmt::format(
-          "No {} critical speed lies {} {:.6g} rpm. ", word,
-          law.min_speed > 0 ? fmt::format("between {:.6g} and", results::to_rpm(law.min_speed))
-                            : "below",
-          results::to_rpm(law.max_speed));
-    s.add_table(word, std::move(table));
-  }
-  if (!damping)
-    s.section.text += "The model has no damping: damped and undamped critical speeds are the same.";
-  else
-    s.section.text +=
-        "Damped: the damped natural frequency meets the order line. Undamped: damping and "
-        "circulation left out.";
-  s.finish(line.empty()
-               ? fmt::format("no critical speed below {:.0f} rpm", results::to_rpm(law.max_speed))
-               : line + " rpm");
+  CriticalRun(job, step, law).execute();
 }
 
 }  // namespace whirl::steps

@@ -3,6 +3,8 @@
 #include <analysis/response/frequency_response.hpp>
 #include <analysis/search.hpp>
 #include <results/response.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/rotation.hpp>
@@ -98,247 +100,341 @@ void use_frequency_axis(plot::Figure& f) {
   }
 }
 
-struct Peak {
-  double at, size;
-};  ///< rad/s of frequency or of speed
+/// A harmonic response on its way: forces, points of the grid, peaks.
+class HarmonicRun {
+ public:
+  HarmonicRun(run::Job& job, const model::Step& step, const model::HarmonicStep& law);
+  void execute();
 
-}  // namespace
+ private:
+  struct Peak {
+    double at, size;  ///< rad/s of frequency or of speed; m or rad
+  };
 
-void run_harmonic_step(run::Job& job, const model::Step& step, const model::HarmonicStep& law) {
-  const bool asynchronous = law.frequency.has_value();
-  const std::vector<double> grid =
-      asynchronous ? results::frequencies_of(*law.frequency) : results::speeds_of(*law.speeds);
-  const double top =
-      asynchronous ? std::abs(law.speed) : std::max(std::abs(grid.front()), std::abs(grid.back()));
-  results::FrequencyStep s(job, step, "harmonic_response", "harmonic response", top);
-  s.linear.at(asynchronous ? law.speed : grid.front());
-  analysis::FrequencyResponseOptions o;
-  o.probes = results::response_probes(job);
-  for (const analysis::ResponseProbe& p : o.probes)
-    o.unknowns.push_back(6 * p.point.node + system::spin_phi);
-  o.outputs = results::support_measurements(job);
-  o.motion = results::motion_of(law.motion);
-  o.shapes = true;
-  // Forces that whirl do so with the spin, whichever way that is.
-  std::map<bool, analysis::HarmonicResponder> responders;
-  const auto responder_at = [&](double Omega) -> analysis::HarmonicResponder& {
-    const bool reversed = Omega < 0;
-    if (const auto known = responders.find(reversed); known != responders.end())
-      return known->second;
-    o.forces.clear();
-    for (const model::HarmonicForce& f : law.forces)
-      add_force(s, f, reversed ? -1.0 : 1.0, o.forces);
-    return responders.try_emplace(reversed, s.linear, o).first->second;
-  };
-  const auto respond = [&](double x) {
-    const double scale = law.speed_squared && !asynchronous ? x * x / (top * top) : 1.0;
-    if (asynchronous) return responder_at(law.speed).at(law.speed, x);
-    return responder_at(x).at(x, law.order * std::abs(x), scale);
-  };
-  std::vector<FrequencyPoint> points;
-  std::vector<std::vector<double>> torques;
-  {
-    const run::PhaseTimer timer(job, "harmonic response");
-    for (const double x : grid) {
-      points.push_back(respond(x));
-      torques.push_back(line_torques(s, s.linear.at(points.back().Omega), points.back().shape));
-    }
+  analysis::HarmonicResponder& responder_at(double Omega);
+  /// Against the grid's variable: rad/s of frequency or of speed.
+  FrequencyPoint respond(double x);
+  void solve_grid();
+  void find_largest();
+  double size_of(const FrequencyPoint& x, std::size_t probe) const {
+    return twists_ ? twist(x, probe) : lateral(x, probe);
   }
-  const auto lateral = [](const FrequencyPoint& p, std::size_t probe) {
-    return p.probe[probe].orbit().major;
-  };
-  const auto twist = [](const FrequencyPoint& p, std::size_t probe) {
-    return std::abs(p.unknown[probe]);
-  };
-  double largest = 0, largest_twist = 0, at = 0;
-  for (std::size_t k = 0; k < points.size(); ++k)
-    for (std::size_t p = 0; p < o.probes.size(); ++p) {
-      if (lateral(points[k], p) > largest) {
-        largest = lateral(points[k], p);
-        at = grid[k];
-      }
-      largest_twist = std::max(largest_twist, twist(points[k], p));
-    }
-  const bool twists = law.motion == model::MotionKind::torsional || largest == 0;
-  if (twists)
-    for (std::size_t k = 0; k < points.size(); ++k)
-      for (std::size_t p = 0; p < o.probes.size(); ++p)
-        if (twist(points[k], p) == largest_twist) at = grid[k];
+  static double lateral(const FrequencyPoint& x, std::size_t probe) {
+    return x.probe[probe].orbit().major;
+  }
+  static double twist(const FrequencyPoint& x, std::size_t probe) {
+    return std::abs(x.unknown[probe]);
+  }
+  void judge_mesh();
+  void judge_gaps();
+  void add_table();
+  void add_peaks();
+  void find_peaks(std::size_t probe, double most, io::Table& table);
+  double place_on_axis(const FrequencyPoint& x) const {
+    return asynchronous_ ? x.frequency : x.Omega;
+  }
+  double displayed(double x) const { return asynchronous_ ? to_hz(x) : to_rpm(x); }
+  void add_response_figures(std::size_t probe);
+  void add_torsion_figure();
+  std::vector<double> shape_places();
+  void add_shape(double x);
+  void finish();
 
-  // Table
+  run::Job& job_;
+  const model::HarmonicStep& law_;
+  const bool asynchronous_;
+  const std::vector<double> grid_;
+  const double top_;  ///< highest |speed|, rad/s
+  results::FrequencyStep s_;
+  results::GapCheck gaps_;
+  analysis::FrequencyResponseOptions options_;
+  /// Forces that whirl do so with the spin, whichever way that is: by whether it is reversed.
+  std::map<bool, analysis::HarmonicResponder> responders_;
+  std::vector<FrequencyPoint> points_;
+  std::vector<std::vector<double>> torques_;  ///< [point][line], N m
+  double largest_ = 0, largest_twist_ = 0, largest_at_ = 0;
+  bool twists_ = false;  ///< the response is torsional
+  std::vector<Peak> peaks_;
+};
+
+HarmonicRun::HarmonicRun(run::Job& job, const model::Step& step, const model::HarmonicStep& law)
+    : job_(job),
+      law_(law),
+      asynchronous_(law.frequency.has_value()),
+      grid_(asynchronous_ ? results::frequencies_of(*law.frequency)
+                          : results::speeds_of(*law.speeds)),
+      top_(asynchronous_ ? std::abs(law.speed)
+                         : std::max(std::abs(grid_.front()), std::abs(grid_.back()))),
+      s_(job, step, "harmonic_response", "harmonic response", top_),
+      gaps_(s_) {
+  s_.linear.at(asynchronous_ ? law.speed : grid_.front());
+  options_.probes = results::response_probes(job);
+  for (const analysis::ResponseProbe& p : options_.probes)
+    options_.unknowns.push_back(6 * p.point.node + system::spin_phi);
+  options_.outputs = results::support_measurements(job);
+  options_.motion = results::motion_of(law.motion);
+  options_.shapes = true;
+}
+
+analysis::HarmonicResponder& HarmonicRun::responder_at(double Omega) {
+  const bool reversed = Omega < 0;
+  if (const auto known = responders_.find(reversed); known != responders_.end())
+    return known->second;
+  options_.forces.clear();
+  for (const model::HarmonicForce& f : law_.forces)
+    add_force(s_, f, reversed ? -1.0 : 1.0, options_.forces);
+  return responders_.try_emplace(reversed, s_.linear, options_).first->second;
+}
+
+FrequencyPoint HarmonicRun::respond(double x) {
+  if (asynchronous_) return responder_at(law_.speed).at(law_.speed, x);
+  const double scale = law_.speed_squared ? x * x / (top_ * top_) : 1.0;
+  return responder_at(x).at(x, law_.order * std::abs(x), scale);
+}
+
+void HarmonicRun::solve_grid() {
+  const run::PhaseTimer timer(job_, "harmonic response");
+  for (const double x : grid_) {
+    points_.push_back(respond(x));
+    torques_.push_back(line_torques(s_, s_.linear.at(points_.back().Omega), points_.back().shape));
+  }
+}
+
+void HarmonicRun::find_largest() {
+  for (std::size_t k = 0; k < points_.size(); ++k)
+    for (std::size_t p = 0; p < options_.probes.size(); ++p) {
+      if (lateral(points_[k], p) > largest_) {
+        largest_ = lateral(points_[k], p);
+        largest_at_ = grid_[k];
+      }
+      largest_twist_ = std::max(largest_twist_, twist(points_[k], p));
+    }
+  twists_ = law_.motion == model::MotionKind::torsional || largest_ == 0;
+  if (!twists_) return;
+  for (std::size_t k = 0; k < points_.size(); ++k)
+    for (std::size_t p = 0; p < options_.probes.size(); ++p)
+      if (twist(points_[k], p) == largest_twist_) largest_at_ = grid_[k];
+}
+
+void HarmonicRun::judge_mesh() {
+  double top = 0;
+  for (const FrequencyPoint& x : points_)
+    top = std::max(top, std::abs(x.frequency));
+  constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
+  results::report_mesh_accuracy(s_, points_.back().Omega, beyond * top);
+  results::warn_of_held_tables(job_, s_.step.name, points_.front().Omega, points_.back().Omega);
+}
+
+/// At the largest response, beside the shapes.
+void HarmonicRun::judge_gaps() {
+  if (largest_ > 0) {
+    const FrequencyPoint p = respond(largest_at_);
+    gaps_.look(p.Omega, std::span(&p.shape, 1), p.frequency);
+  }
+  gaps_.report();
+}
+
+void HarmonicRun::add_table() {
   io::Table t;
   t.title = "Harmonic response";
   t.columns = {{"speed", "rpm", ""}, {"frequency", "Hz", "of the excitation"}};
-  for (const analysis::ResponseProbe& p : o.probes) {
+  for (const analysis::ResponseProbe& p : options_.probes) {
     results::add_probe_columns(t, p.name);
     t.columns.push_back({p.name + " twist amplitude", "rad", "0-peak"});
     t.columns.push_back({p.name + " twist phase lag", "deg", "behind a force of phase 0"});
   }
-  for (const analysis::Measurement& m : o.outputs)
+  for (const analysis::Measurement& m : options_.outputs)
     for (const char* c : {"x", "y", "z"})
       t.columns.push_back({fmt::format("{} {}", m.name, c), "N", "0-peak"});
-  for (const meshes::Line& l : job.mesh.lines)
+  for (const meshes::Line& l : job_.mesh.lines)
     t.columns.push_back(
         {fmt::format("largest torque in {}", l.name), "N.m", "0-peak, in any element"});
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const FrequencyPoint& x = points[k];
-    std::vector<io::Table::Cell> row{results::to_rpm(x.Omega), results::to_hz(x.frequency)};
-    for (std::size_t p = 0; p < o.probes.size(); ++p) {
+  for (std::size_t k = 0; k < points_.size(); ++k) {
+    const FrequencyPoint& x = points_[k];
+    std::vector<io::Table::Cell> row{to_rpm(x.Omega), to_hz(x.frequency)};
+    for (std::size_t p = 0; p < options_.probes.size(); ++p) {
       results::add_probe_cells(row, x.probe[p]);
       row.emplace_back(std::abs(x.unknown[p]));
       row.emplace_back(results::lag(x.unknown[p]) * 180 / pi);
     }
-    for (std::size_t m = 0; m < o.outputs.size(); ++m)
+    for (std::size_t m = 0; m < options_.outputs.size(); ++m)
       for (std::size_t c = 0; c < 3; ++c)
         row.emplace_back(std::abs(x.output[m][c]));
-    for (const double torque : torques[k])
+    for (const double torque : torques_[k])
       row.emplace_back(torque);
     t.add(std::move(row));
   }
-  s.add_table("response", std::move(t), false);
+  s_.add_table("response", std::move(t), false);
+}
 
-  // Peaks, found between the points.
-  io::Table peaks;
-  peaks.title = "Peaks of the response";
-  peaks.columns = {{"probe", "-", ""},
+// Peaks, found between the points.
+void HarmonicRun::add_peaks() {
+  io::Table table;
+  table.title = "Peaks of the response";
+  table.columns = {{"probe", "-", ""},
                    {"speed", "rpm", ""},
                    {"frequency", "Hz", ""},
-                   {"amplitude", twists ? "rad" : "m",
-                    twists ? "0-peak, twist" : "0-peak, major axis of the orbit"}};
-  std::vector<Peak> all;
-  io::Value& v = s.summary();
-  v["points"] = points.size();
-  for (std::size_t p = 0; p < o.probes.size(); ++p) {
-    const auto size = [&](const FrequencyPoint& x) { return twists ? twist(x, p) : lateral(x, p); };
+                   {"amplitude", twists_ ? "rad" : "m",
+                    twists_ ? "0-peak, twist" : "0-peak, major axis of the orbit"}};
+  io::Value& v = s_.summary();
+  v["points"] = points_.size();
+  for (std::size_t p = 0; p < options_.probes.size(); ++p) {
     double most = 0;
-    for (const FrequencyPoint& x : points)
-      most = std::max(most, size(x));
-    v[twists ? "largest twist 0-peak [rad]" : "largest amplitude 0-peak [m]"][o.probes[p].name] =
-        most;
-    for (std::size_t k = 1; k + 1 < points.size(); ++k) {
-      const double f0 = size(points[k - 1]), f1 = size(points[k]), f2 = size(points[k + 1]);
-      if (!(f1 > f0 && f1 >= f2) || f1 - std::min(f0, f2) < 1e-7 * most)
-        continue;  // a peak of rounding is none
-      const double x = analysis::find_maximum(grid[k - 1], grid[k], f1, grid[k + 1], 3e-9,
-                                              [&](double y) { return size(respond(y)); });
-      const FrequencyPoint peak = respond(x);
-      peaks.add({o.probes[p].name, results::to_rpm(peak.Omega), results::to_hz(peak.frequency),
-                 size(peak)});
-      io::Value e = io::Value::object();
-      e["frequency [Hz]"] = results::to_hz(peak.frequency);
-      e["speed [rpm]"] = results::to_rpm(peak.Omega);
-      e["amplitude"] = size(peak);
-      v["peaks"][o.probes[p].name].push(std::move(e));
-      all.push_back({x, size(peak)});
-    }
+    for (const FrequencyPoint& x : points_)
+      most = std::max(most, size_of(x, p));
+    const char* what = twists_ ? "largest twist 0-peak [rad]" : "largest amplitude 0-peak [m]";
+    v[what][options_.probes[p].name] = most;
+    find_peaks(p, most, table);
   }
-  s.add_table("peaks", std::move(peaks));
+  s_.add_table("peaks", std::move(table));
+}
 
-  // Figures
-  const plot::Amplitude convention =
-      job.model.output.peak_to_peak ? plot::Amplitude::peak_to_peak : plot::Amplitude::zero_to_peak;
-  std::vector<double> axis;
-  for (const FrequencyPoint& x : points)
-    axis.push_back(asynchronous ? x.frequency : x.Omega);
-  for (std::size_t p = 0; p < o.probes.size() && !twists; ++p) {
-    std::vector<analysis::PointAmplitude> amplitudes;
-    for (const FrequencyPoint& x : points)
-      amplitudes.push_back(x.probe[p]);
-    const results::ProbeCurves c = results::curves_of(o.probes[p], amplitudes);
-    std::vector<plot::ResponseCurve> curves;
-    for (std::size_t i = 0; i < c.label.size(); ++i) {
-      plot::ResponseCurve curve{c.label[i], axis, {}, {}};
-      for (const Complex a : c.amplitude[i]) {
-        curve.amplitude.push_back(std::abs(a));
-        curve.phase_lag.push_back(results::lag(a));
-      }
-      curves.push_back(std::move(curve));
-    }
-    plot::Figure bode =
-        plot::plot_bode(s.file(o.probes[p].name + "_bode"),
-                        o.probes[p].name + ": response to harmonic forces", curves, convention);
-    plot::Figure polar = plot::plot_polar(s.file(o.probes[p].name + "_polar"),
-                                          o.probes[p].name + ": polar plot", curves, convention);
-    if (asynchronous) {
-      use_frequency_axis(bode);
-      use_frequency_axis(polar);
-    }
-    s.add_figure(std::move(bode));
-    s.add_figure(std::move(polar));
+/// most: largest of the probe's points.
+void HarmonicRun::find_peaks(std::size_t probe, double most, io::Table& table) {
+  const std::string& name = options_.probes[probe].name;
+  for (std::size_t k = 1; k + 1 < points_.size(); ++k) {
+    const double before = size_of(points_[k - 1], probe), here = size_of(points_[k], probe),
+                 after = size_of(points_[k + 1], probe);
+    const bool rises = here > before && here >= after;
+    if (!rises || here - std::min(before, after) < 1e-7 * most)
+      continue;  // a peak of rounding is none
+    const double x = analysis::find_maximum(grid_[k - 1], grid_[k], here, grid_[k + 1], 3e-9,
+                                            [&](double y) { return size_of(respond(y), probe); });
+    const FrequencyPoint peak = respond(x);
+    const double size = size_of(peak, probe);
+    table.add({name, to_rpm(peak.Omega), to_hz(peak.frequency), size});
+    io::Value e = io::Value::object();
+    e["frequency [Hz]"] = to_hz(peak.frequency);
+    e["speed [rpm]"] = to_rpm(peak.Omega);
+    e["amplitude"] = size;
+    s_.summary()["peaks"][name].push(std::move(e));
+    peaks_.push_back({x, size});
   }
+}
+
+void HarmonicRun::add_response_figures(std::size_t probe) {
+  const plot::Amplitude convention = plot::amplitude(job_.model.output.peak_to_peak);
+  const std::string& name = options_.probes[probe].name;
+  std::vector<double> axis;
+  std::vector<analysis::PointAmplitude> amplitudes;
+  for (const FrequencyPoint& x : points_) {
+    axis.push_back(place_on_axis(x));
+    amplitudes.push_back(x.probe[probe]);
+  }
+  const std::vector<plot::ResponseCurve> curves =
+      results::response_curves(axis, results::curves_of(options_.probes[probe], amplitudes));
+  plot::Figure bode = plot::plot_bode(s_.file(name + "_bode"),
+                                      name + ": response to harmonic forces", curves, convention);
+  plot::Figure polar =
+      plot::plot_polar(s_.file(name + "_polar"), name + ": polar plot", curves, convention);
+  if (asynchronous_) {
+    use_frequency_axis(bode);
+    use_frequency_axis(polar);
+  }
+  s_.add_figure(std::move(bode));
+  s_.add_figure(std::move(polar));
+}
+
+void HarmonicRun::add_torsion_figure() {
   // twist of the rounding of the lateral motion is no response: the arm that would make it visible
   // is longer than any rotor
-  if (largest_twist > 1e-9 * largest) {
-    std::vector<plot::Axes> axes(2);
-    axes[0].y = plot::Axis("twist amplitude, 0-peak", "rad");
-    axes[1].y = plot::Axis("largest vibratory torque, 0-peak", "N.m");
-    for (plot::Axes& a : axes) {
-      a.x = asynchronous ? plot::Axis("excitation frequency", "Hz") : plot::Axis("speed", "rpm");
-      a.y.include_zero = true;
-    }
-    axes[1].share_x = true;
-    for (std::size_t p = 0; p < o.probes.size(); ++p) {
-      plot::Series y;
-      y.label = o.probes[p].name;
-      for (std::size_t k = 0; k < points.size(); ++k) {
-        y.x.push_back(asynchronous ? results::to_hz(axis[k]) : results::to_rpm(axis[k]));
-        y.y.push_back(twist(points[k], p));
-      }
-      axes[0].series.push_back(std::move(y));
-    }
-    for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
-      plot::Series y;
-      y.label = job.mesh.lines[l].name;
-      for (std::size_t k = 0; k < points.size(); ++k) {
-        y.x.push_back(asynchronous ? results::to_hz(axis[k]) : results::to_rpm(axis[k]));
-        y.y.push_back(torques[k][l]);
-      }
-      axes[1].series.push_back(std::move(y));
-    }
-    plot::Figure f;
-    f.name = s.file("torsion");
-    f.title = "Torsional response";
-    f.axes = std::move(axes);
-    f.height = 540;
-    s.add_figure(std::move(f));
+  if (!(largest_twist_ > 1e-9 * largest_)) return;
+  plot::Axes twists, torques;
+  twists.y = plot::Axis("twist amplitude, 0-peak", "rad");
+  torques.y = plot::Axis("largest vibratory torque, 0-peak", "N.m");
+  for (plot::Axes* a : {&twists, &torques}) {
+    a->x = asynchronous_ ? plot::Axis("excitation frequency", "Hz") : plot::Axis("speed", "rpm");
+    a->y.include_zero = true;
   }
+  torques.share_x = true;
+  const auto curve = [&](const std::string& label, const auto& value) {
+    plot::Series y;
+    y.label = label;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      y.x.push_back(displayed(place_on_axis(points_[k])));
+      y.y.push_back(value(k));
+    }
+    return y;
+  };
+  for (std::size_t p = 0; p < options_.probes.size(); ++p)
+    twists.series.push_back(
+        curve(options_.probes[p].name, [&](std::size_t k) { return twist(points_[k], p); }));
+  for (std::size_t l = 0; l < job_.mesh.lines.size(); ++l)
+    torques.series.push_back(
+        curve(job_.mesh.lines[l].name, [&](std::size_t k) { return torques_[k][l]; }));
+  plot::Figure f;
+  f.name = s_.file("torsion");
+  f.title = "Torsional response";
+  f.axes = {std::move(twists), std::move(torques)};
+  f.height = 540;
+  s_.add_figure(std::move(f));
+}
 
-  // Shapes where asked for, else at the distinct peaks, the largest first.
-  std::vector<double> shapes_at;
-  if (!law.shapes_at.empty())
-    for (const double w : law.shapes_at)
-      shapes_at.push_back(asynchronous ? w : w / law.order);
-  std::sort(all.begin(), all.end(), [](const Peak& a, const Peak& b) { return a.size > b.size; });
-  for (const Peak& p : all)
-    if (law.shapes_at.empty() && shapes_at.size() < 4 &&
-        std::none_of(shapes_at.begin(), shapes_at.end(),
-                     [&](double x) { return std::abs(x - p.at) < 0.01 * p.at; }))
-      shapes_at.push_back(p.at);
-  std::sort(shapes_at.begin(), shapes_at.end());
-  for (const double x : shapes_at) {
-    const FrequencyPoint p = respond(x);
-    const std::string name = fmt::format("shape_{:.6g}Hz", results::to_hz(p.frequency));
-    results::add_shape_figures(
-        s, {name,
-            fmt::format("Operating shape at {:.5g} Hz, {:.5g} rpm", results::to_hz(p.frequency),
-                        results::to_rpm(p.Omega)),
-            {},
-            &p.shape,
-            twists ? analysis::ModeKind::torsional : analysis::ModeKind::lateral});
-    results::write_shape_frames(s, name, p.shape, 1.0);
+/// Where asked for, else at the distinct peaks, the largest first: four at most.
+std::vector<double> HarmonicRun::shape_places() {
+  std::vector<double> places;
+  for (const double w : law_.shapes_at)
+    places.push_back(asynchronous_ ? w : w / law_.order);
+  if (places.empty()) {
+    std::sort(peaks_.begin(), peaks_.end(),
+              [](const Peak& a, const Peak& b) { return a.size > b.size; });
+    for (const Peak& p : peaks_) {
+      const bool known = std::any_of(places.begin(), places.end(),
+                                     [&](double x) { return std::abs(x - p.at) < 0.01 * p.at; });
+      if (places.size() < 4 && !known) places.push_back(p.at);
+    }
   }
-  const plot::DisplayUnit unit = plot::length_unit(largest);
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+void HarmonicRun::add_shape(double x) {
+  const FrequencyPoint p = respond(x);
+  gaps_.look(p.Omega, std::span(&p.shape, 1), p.frequency);
+  const std::string name = fmt::format("shape_{:.6g}Hz", to_hz(p.frequency));
+  results::add_shape_figures(
+      s_,
+      {name,
+       fmt::format("Operating shape at {:.5g} Hz, {:.5g} rpm", to_hz(p.frequency), to_rpm(p.Omega)),
+       {},
+       &p.shape,
+       twists_ ? analysis::ModeKind::torsional : analysis::ModeKind::lateral});
+  results::write_shape_frames(s_, name, p.shape, 1.0);
+}
+
+void HarmonicRun::finish() {
+  const plot::DisplayUnit unit = plot::length_unit(largest_);
   const std::string what =
-      twists ? fmt::format("largest twist {} rad", readable(largest_twist))
-             : fmt::format("largest {} {}", readable(unit.factor * largest), unit.name);
-  s.section.text =
-      asynchronous
+      twists_ ? fmt::format("largest twist {} rad", readable(largest_twist_))
+              : fmt::format("largest {} {}", readable(unit.factor * largest_), unit.name);
+  s_.section.text =
+      asynchronous_
           ? fmt::format("Steady response at {:.6g} rpm against the excitation frequency.",
-                        results::to_rpm(law.speed))
-          : fmt::format("Steady response with the excitation at {:g} times the speed.", law.order);
-  s.finish(fmt::format("{} points, {} at {:.5g} {}", points.size(), what,
-                       asynchronous ? results::to_hz(at) : results::to_rpm(at),
-                       asynchronous ? "Hz" : "rpm"));
+                        to_rpm(law_.speed))
+          : fmt::format("Steady response with the excitation at {:g} times the speed.", law_.order);
+  s_.finish(fmt::format("{} points, {} at {:.5g} {}", points_.size(), what, displayed(largest_at_),
+                        asynchronous_ ? "Hz" : "rpm"));
+}
+
+void HarmonicRun::execute() {
+  solve_grid();
+  find_largest();
+  judge_mesh();
+  add_table();
+  add_peaks();
+  for (std::size_t p = 0; p < options_.probes.size() && !twists_; ++p)
+    add_response_figures(p);
+  add_torsion_figure();
+  for (const double x : shape_places())
+    add_shape(x);
+  judge_gaps();
+  finish();
+}
+
+}  // namespace
+
+void run_harmonic_step(run::Job& job, const model::Step& step, const model::HarmonicStep& law) {
+  HarmonicRun(job, step, law).execute();
 }
 
 }  // namespace whirl::steps

@@ -21,21 +21,37 @@ Error no_map_of_bands(const model::Step& step) {
                    "leave 'map' out, or give the shaft equal stiffnesses", step.name);
 }
 
-void run_instability_bands(run::Job& job, const model::Step& step,
-                           const model::StabilityStep& law) {
-  const std::vector<double> speeds = results::speeds_of(law.speed);
-  results::FrequencyStep s(job, step, "stability", "instability bands of the asymmetric shaft",
-                           std::max(std::abs(speeds.front()), std::abs(speeds.back())));
-  const run::PhaseTimer timer(job, "stability");
-  if (law.map) throw no_map_of_bands(step);
-  analysis::RotatingAxes axes(s.linear, speeds.back());
+namespace {
+
+using analysis::BandResult;
+using analysis::InstabilityBand;
+
+BandResult solve_bands(const model::StabilityStep& law, analysis::RotatingAxes& axes,
+                       const std::vector<double>& speeds) {
   analysis::BandOptions o;
   o.modes = law.modes;
   for (const double Omega : speeds)
     o.speeds.push_back(std::abs(Omega));
   std::sort(o.speeds.begin(), o.speeds.end());
-  const analysis::BandResult r = analysis::find_bands(axes, o);
+  return analysis::find_bands(axes, o);
+}
 
+/// "unstable from 2000 to 2100 rpm, 4000 to above 6000 rpm"
+std::string text_of(const BandResult& r) {
+  if (r.bands.empty())
+    return fmt::format("stable from {:.6g} to {:.6g} rpm", to_rpm(r.speeds.front()),
+                       to_rpm(r.speeds.back()));
+  std::string text;
+  for (const InstabilityBand& b : r.bands)
+    text += fmt::format("{}{} to {} rpm", text.empty() ? "unstable from " : ", ",
+                        std::isnan(b.low) ? fmt::format("below {:.6g}", to_rpm(r.speeds.front()))
+                                          : fmt::format("{:.8g}", to_rpm(b.low)),
+                        std::isnan(b.high) ? fmt::format("above {:.6g}", to_rpm(r.speeds.back()))
+                                           : fmt::format("{:.8g}", to_rpm(b.high)));
+  return text;
+}
+
+void add_band_table(results::FrequencyStep& s, const BandResult& r) {
   io::Table table;
   table.title = "Bands of instability";
   table.nan_means = "the band goes on beyond the speeds";
@@ -45,80 +61,76 @@ void run_instability_bands(run::Job& job, const model::Step& step,
                    {"at", "rpm", ""},
                    {"frequency there", "Hz",
                     "in axes turning with the rotor; 0: the rotor bends out at its own speed"}};
-  io::Value& v = s.summary();
-  v["supports"] = axes.constant() ? "isotropic" : "unequal";
-  v["bands"] = io::Value::array();
-  std::string line;
-  for (const analysis::InstabilityBand& b : r.bands) {
-    table.add({results::to_rpm(b.low), results::to_rpm(b.high), b.growth, results::to_rpm(b.speed),
-               results::to_hz(results::tidy(b.frequency))});
+  io::Value& list = s.summary()["bands"];
+  list = io::Value::array();
+  for (const InstabilityBand& b : r.bands) {
+    table.add({to_rpm(b.low), to_rpm(b.high), b.growth, to_rpm(b.speed),
+               to_hz(results::tidy(b.frequency))});
     io::Value e = io::Value::object();
-    e["from [rpm]"] = results::to_rpm(b.low);
-    e["to [rpm]"] = results::to_rpm(b.high);
+    e["from [rpm]"] = to_rpm(b.low);
+    e["to [rpm]"] = to_rpm(b.high);
     e["largest growth [1/s]"] = b.growth;
-    e["at [rpm]"] = results::to_rpm(b.speed);
-    v["bands"].push(std::move(e));
-    const std::string from =
-        std::isnan(b.low) ? "below" : fmt::format("{:.8g}", results::to_rpm(b.low));
-    line += fmt::format(
-        "{}{} to {} rpm", line.empty() ? "unstable from " : ", ",
-        std::isnan(b.low) ? fmt::format("below {:.6g}", results::to_rpm(r.speeds.front())) : from,
-        std::isnan(b.high) ? fmt::format("above {:.6g}", results::to_rpm(r.speeds.back()))
-                           : fmt::format("{:.8g}", results::to_rpm(b.high)));
+    e["at [rpm]"] = to_rpm(b.speed);
+    list.push(std::move(e));
   }
-  if (r.bands.empty())
-    line = fmt::format("stable from {:.6g} to {:.6g} rpm", results::to_rpm(r.speeds.front()),
-                       results::to_rpm(r.speeds.back()));
   s.add_table("bands", std::move(table));
+}
 
+void add_growth_table(results::FrequencyStep& s, const BandResult& r) {
   io::Table rates;
   rates.title = "Largest growth rate against speed";
   rates.columns = {
       {"speed", "rpm", ""},
       {"growth", "1/s", "largest real part of the eigenvalues; negative: all motions decay"},
       {"frequency", "Hz", "of that motion, in axes turning with the rotor"}};
-  plot::Figure f;
-  f.name = s.file("growth");
-  f.title = "Growth rate of the least stable motion";
-  f.caption = "Shaded: instability. Eigenvalues in axes that turn with the rotor.";
-  plot::Axes a;
-  a.x = plot::Axis("speed", "rpm");
-  a.y = plot::Axis("largest growth rate (unstable above 0)", "1/s");
-  a.y.include_zero = true;
-  plot::Series curve;
-  curve.label = "largest growth rate";
-  curve.style = {0, plot::Dash::solid, 1.8};
-  plot::Extra hertz{"frequency in rotating axes", "Hz", {}};
-  // the edges belong to the curve: growth zero there
+  for (std::size_t k = 0; k < r.speeds.size(); ++k)
+    rates.add(
+        {to_rpm(r.speeds[k]), results::tidy(r.growth[k]), to_hz(results::tidy(r.frequency[k]))});
+  s.add_table("growth", std::move(rates), false);
+}
+
+/// The edges of the bands belong to it: growth zero there.
+plot::Series growth_curve(const BandResult& r) {
   struct Point {
     double speed, growth, frequency;
   };
   std::vector<Point> points;
-  double top = 0, bottom = 0;
-  for (std::size_t k = 0; k < r.speeds.size(); ++k) {
+  for (std::size_t k = 0; k < r.speeds.size(); ++k)
     points.push_back({r.speeds[k], r.growth[k], r.frequency[k]});
-    rates.add({results::to_rpm(r.speeds[k]), results::tidy(r.growth[k]),
-               results::to_hz(results::tidy(r.frequency[k]))});
-    bottom = std::min(bottom, r.growth[k]);
-  }
-  for (const analysis::InstabilityBand& b : r.bands) {
+  for (const InstabilityBand& b : r.bands) {
     points.push_back({b.speed, b.growth, b.frequency});
     for (const double x : {b.low, b.high})
       if (!std::isnan(x)) points.push_back({x, 0.0, nan});
-    top = std::max(top, b.growth);
   }
   std::sort(points.begin(), points.end(),
             [](const Point& x, const Point& y) { return x.speed < y.speed; });
+  plot::Series curve;
+  curve.label = "largest growth rate";
+  curve.style = {0, plot::Dash::solid, 1.8};
+  plot::Extra hertz{"frequency in rotating axes", "Hz", {}};
   for (const Point& p : points) {
-    curve.x.push_back(results::to_rpm(p.speed));
+    curve.x.push_back(to_rpm(p.speed));
     curve.y.push_back(p.growth);
-    hertz.values.push_back(results::to_hz(p.frequency));
+    hertz.values.push_back(to_hz(p.frequency));
   }
   curve.extra.push_back(std::move(hertz));
+  return curve;
+}
+
+void add_growth_figure(results::FrequencyStep& s, const BandResult& r) {
+  double top = 0, bottom = 0;
+  for (const double growth : r.growth)
+    bottom = std::min(bottom, growth);
+  for (const InstabilityBand& b : r.bands)
+    top = std::max(top, b.growth);
+  plot::Axes a;
+  a.x = plot::Axis("speed", "rpm");
+  a.y = plot::Axis("largest growth rate (unstable above 0)", "1/s");
+  a.y.include_zero = true;
   a.y.max = top > 0 ? 1.15 * top : nan;
-  for (const analysis::InstabilityBand& b : r.bands) {
-    const double from = results::to_rpm(std::isnan(b.low) ? r.speeds.front() : b.low),
-                 to = results::to_rpm(std::isnan(b.high) ? r.speeds.back() : b.high);
+  for (const InstabilityBand& b : r.bands) {
+    const double from = to_rpm(std::isnan(b.low) ? r.speeds.front() : b.low),
+                 to = to_rpm(std::isnan(b.high) ? r.speeds.back() : b.high);
     plot::Patch p;
     p.x = {from, to, to, from};
     p.y = {bottom, bottom, 1.15 * top, 1.15 * top};
@@ -127,21 +139,40 @@ void run_instability_bands(run::Job& job, const model::Step& step,
     if (&b == &r.bands.front()) p.label = "instability";
     a.patches.push_back(std::move(p));
   }
-  a.series.push_back(std::move(curve));
+  a.series.push_back(growth_curve(r));
   a.rules.push_back({false, 0, "", {plot::ink, plot::Dash::solid, 1.0}});
+  plot::Figure f;
+  f.name = s.file("growth");
+  f.title = "Growth rate of the least stable motion";
+  f.caption = "Shaded: instability. Eigenvalues in axes that turn with the rotor.";
   f.axes.push_back(std::move(a));
-  s.add_table("growth", std::move(rates), false);
   s.add_figure(std::move(f));
-  s.section.text = line + ".";
-  s.section.text[0] =
-      static_cast<char>(std::toupper(static_cast<unsigned char>(s.section.text[0])));
-  s.section.text +=
+}
+
+}  // namespace
+
+void run_instability_bands(run::Job& job, const model::Step& step,
+                           const model::StabilityStep& law) {
+  const std::vector<double> speeds = results::speeds_of(law.speed);
+  results::FrequencyStep s(job, step, "stability", "instability bands of the asymmetric shaft",
+                           std::max(std::abs(speeds.front()), std::abs(speeds.back())));
+  const run::PhaseTimer timer(job, "stability");
+  if (law.map) throw no_map_of_bands(step);
+  analysis::RotatingAxes axes(s.linear, speeds.back());
+  const BandResult r = solve_bands(law, axes, speeds);
+  s.summary()["supports"] = axes.constant() ? "isotropic" : "unequal";
+  add_band_table(s, r);
+  add_growth_table(s, r);
+  add_growth_figure(s, r);
+  const std::string line = text_of(r);
+  const std::string why =
       axes.constant()
-          ? " The supports are isotropic: in axes turning with the rotor its matrices are constant."
+          ? "The supports are isotropic: in axes turning with the rotor its matrices are constant."
           : fmt::format(
-                " Neither the shaft nor its supports are isotropic: Hill's equations with {} "
+                "Neither the shaft nor its supports are isotropic: Hill's equations with {} "
                 "harmonics.",
                 axes.harmonics());
+  s.section.text = results::capital(line) + ". " + why;
   s.finish(line);
 }
 

@@ -1,6 +1,8 @@
 // A modal step: whirl modes at one speed.
 #include <analysis/spectra/mode_energy.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -61,13 +63,9 @@ void add_energy_tables(results::FrequencyStep& s, const std::vector<analysis::Wh
                  sys.node(p.node).name, p.other >= 0 ? sys.node(p.other).name : std::string(),
                  100 * p.share});
         const std::vector<std::string>& own = kinetic ? names.disk : names.bearing;
-        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty() &&
-                           p.kind.find("shaft") == std::string::npos &&
-                           p.kind.find("beam") == std::string::npos;
-        const std::string part = known ? own[at(p.node)]
-                                 : p.kind == "shaft elements" || p.kind == "general beam elements"
-                                     ? "shaft"
-                                     : p.kind;
+        const bool shaft = p.family == system::Family::shaft;
+        const bool known = at(p.node) < own.size() && !own[at(p.node)].empty();
+        const std::string part = shaft ? "shaft" : known ? own[at(p.node)] : p.kind;
         column((kinetic ? "kinetic: " : "strain: ") + part)[k] += p.share;
       }
   }
@@ -87,10 +85,7 @@ void add_energy_tables(results::FrequencyStep& s, const std::vector<analysis::Wh
   s.add_table("energy", std::move(all), false);
 }
 
-}  // namespace
-
-void run_modal_step(run::Job& job, const model::Step& step, const model::ModalStep& law) {
-  results::FrequencyStep s(job, step, "modal", "whirl modes", std::abs(law.speed));
+analysis::ModesOptions modes_options(const run::Job& job, const model::ModalStep& law) {
   analysis::ModesOptions o;
   o.count = law.modes;
   o.max_frequency = law.max_frequency;
@@ -99,114 +94,184 @@ void run_modal_step(run::Job& job, const model::Step& step, const model::ModalSt
   o.real_roots = true;
   o.judge = law.damped;
   o.continued = law.damped && !job.built.table_frequencies.empty();
-  analysis::SpectrumCertificate certificate;
-  const std::vector<analysis::WhirlMode> all = [&] {
-    const run::PhaseTimer timer(job, "modes");
-    return analysis::whirl_modes(s.linear, law.speed, o, &certificate);
-  }();
-  std::vector<analysis::WhirlMode> modes;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(modes),
-               [](const analysis::WhirlMode& m) { return m.oscillates(); });
+  return o;
+}
 
+/// Modes as a table and in the summary; what they are together.
+class ModalRun {
+ public:
+  ModalRun(run::Job& job, const model::Step& step, const model::ModalStep& law)
+      : law_(law),
+        options_(modes_options(job, law)),
+        s_(job, step, "modal", "whirl modes", std::abs(law.speed)) {}
+  void execute();
+
+ private:
+  void solve();
+  io::Table empty_table() const;
+  void add_modes();
+  void add_rates();
+  void add_shape(std::size_t k);
+  std::string text() const;
+  std::string line() const;
+
+  const model::ModalStep& law_;
+  const analysis::ModesOptions options_;
+  results::FrequencyStep s_;
+  analysis::SpectrumCertificate certificate_;
+  std::vector<analysis::WhirlMode> all_, modes_;  ///< modes_: those that oscillate
+  std::vector<std::string> labels_;               ///< of modes_
+  int unstable_ = 0, diverging_ = 0;
+};
+
+void ModalRun::solve() {
+  {
+    const run::PhaseTimer timer(s_.job, "modes");
+    all_ = analysis::whirl_modes(s_.linear, law_.speed, options_, &certificate_);
+  }
+  std::copy_if(all_.begin(), all_.end(), std::back_inserter(modes_),
+               [](const analysis::WhirlMode& m) { return m.oscillates(); });
+  labels_ = results::labels_of(modes_);
+}
+
+io::Table ModalRun::empty_table() const {
   io::Table table;
   table.title = "Modes";
-  table.columns = {{"mode", "-", ""},
-                   {"label", "-", "number within its kind"},
-                   {"kind", "-", "by the largest share of energy"},
-                   {"direction", "-", "of the orbits, seen along the spin"},
-                   {"frequency", "Hz", "damped natural frequency"},
-                   {"frequency", "rpm", ""},
-                   {"log decrement", "-", "per cycle; negative: unstable"},
-                   {"damping ratio", "-", "of the critical damping of the mode"},
-                   {"lateral", "%", "share of the energy"},
-                   {"torsional", "%", ""},
-                   {"axial", "%", ""},
-                   {"forwardness", "-", "1: forward circles, -1: backward circles"}};
-  if (o.continued)
+  table.columns = {
+      {"mode", "-", ""},
+      {"label", "-", "number within its kind"},
+      {"kind", "-", "by the largest share of energy"},
+      {"direction", "-", "of the orbits, seen along the spin"},
+      {"frequency", "Hz", "damped natural frequency"},
+      {"frequency", "rpm", ""},
+      {"log decrement", "-", "per cycle; negative: unstable"},
+      {"damping ratio", "-", "of the critical damping of the mode"},
+      {"lateral", "%", "share of the energy"},
+      {"torsional", "%", ""},
+      {"axial", "%", ""},
+      {"forwardness", "-", "1: forward circles, -1: backward circles"},
+      {"mesh error", "-", "of the frequency, relative, by the length of the elements; estimated"}};
+  if (options_.continued)
     table.columns.push_back(
         {"continued log decrement", "-",
          "with coefficients continued from the frequency to the decay of the motion, first order"});
-  io::Value& v = s.summary();
-  v["speed [rpm]"] = results::to_rpm(law.speed);
+  return table;
+}
+
+void ModalRun::add_modes() {
+  io::Table table = empty_table();
+  results::MeshAccuracy mesh(s_);
   io::Value list = io::Value::array();
-  int unstable = 0;
-  const std::vector<std::string> labels = results::labels_of(modes);
-  for (std::size_t k = 0; k < modes.size(); ++k) {
-    const analysis::WhirlMode& m = modes[k];
-    std::vector<io::Table::Cell> row{
-        static_cast<int>(k + 1),        labels[k],
-        std::string(to_string(m.kind)), results::direction_text(m),
-        results::to_hz(m.frequency),    results::to_rpm(m.frequency),
-        results::tidy(m.log_decrement), results::tidy(m.damping_ratio),
-        100 * results::tidy(m.lateral), 100 * results::tidy(m.torsional),
-        100 * results::tidy(m.axial),   results::tidy(m.forwardness)};
+  for (std::size_t k = 0; k < modes_.size(); ++k) {
+    const analysis::WhirlMode& m = modes_[k];
+    std::vector<io::Table::Cell> row{static_cast<int>(k + 1),
+                                     labels_[k],
+                                     std::string(to_string(m.kind)),
+                                     results::direction_text(m),
+                                     to_hz(m.frequency),
+                                     to_rpm(m.frequency),
+                                     results::tidy(m.log_decrement),
+                                     results::tidy(m.damping_ratio),
+                                     100 * results::tidy(m.lateral),
+                                     100 * results::tidy(m.torsional),
+                                     100 * results::tidy(m.axial),
+                                     results::tidy(m.forwardness),
+                                     mesh.of(m, law_.speed, labels_[k])};
     const double continued = -two_pi * m.continued.real() / m.continued.imag();
-    if (o.continued) row.emplace_back(results::tidy(continued));
+    if (options_.continued) row.emplace_back(results::tidy(continued));
     table.add(std::move(row));
     io::Value e = io::Value::object();
-    e["label"] = labels[k];
-    e["frequency [Hz]"] = results::to_hz(m.frequency);
+    e["label"] = labels_[k];
+    e["frequency [Hz]"] = to_hz(m.frequency);
     e["log decrement"] = results::tidy(m.log_decrement);
     e["damping ratio"] = results::tidy(m.damping_ratio);
-    if (o.continued) e["continued log decrement"] = results::tidy(continued);
+    if (options_.continued) e["continued log decrement"] = results::tidy(continued);
     e["kind"] = std::string(to_string(m.kind));
     e["direction"] = results::direction_text(m);
     list.push(std::move(e));
-    unstable += m.growth() > 0;
+    unstable_ += m.growth() > 0;
   }
-  int diverging = 0;
+  s_.summary()["modes"] = list;
+  mesh.report();
+  s_.add_table("modes", std::move(table));
+}
+
+/// Motions that do not oscillate.
+void ModalRun::add_rates() {
   io::Value rates = io::Value::array();
-  for (const analysis::WhirlMode& m : all) {
+  for (const analysis::WhirlMode& m : all_) {
     if (m.oscillates()) continue;
-    diverging += m.growth() > 0;
+    diverging_ += m.growth() > 0;
     rates.push(m.growth() == 0 ? 0.0 : m.lambda.real());
   }
-  v["modes"] = list;
+  io::Value& v = s_.summary();
   v["rates of motions that do not oscillate [1/s]"] = rates;
-  v["unstable modes"] = unstable;
-  v["diverging motions"] = diverging;
-  s.add_table("modes", std::move(table));
-  io::Table real_roots = results::real_root_table(all);
-  if (!real_roots.rows.empty()) s.add_table("real_roots", std::move(real_roots));
-  s.certify(certificate);
-  if (!modes.empty()) add_energy_tables(s, modes);
+  v["unstable modes"] = unstable_;
+  v["diverging motions"] = diverging_;
+  io::Table real_roots = results::real_root_table(all_);
+  if (!real_roots.rows.empty()) s_.add_table("real_roots", std::move(real_roots));
+}
 
-  const std::size_t drawn = std::min(modes.size(), static_cast<std::size_t>(law.shapes));
-  for (std::size_t k = 0; k < drawn; ++k) {
-    const analysis::WhirlMode& m = modes[k];
-    const std::string name = fmt::format("mode_{}", k + 1);
-    results::ShapeDrawing d{name,
-                            fmt::format("Mode {} ({}): {:.5g} Hz, {}", k + 1, labels[k],
-                                        results::to_hz(m.frequency), results::description(m)),
-                            {},
-                            &m.x,
-                            m.kind};
-    if (std::abs(m.log_decrement) > 1e-9)
-      d.caption = fmt::format("Log decrement {:.4g}, damping ratio {:.4g}.", m.log_decrement,
-                              m.damping_ratio);
-    results::add_shape_figures(s, d);
-    results::write_shape_frames(s, name, m.x);
-  }
-  s.section.text = fmt::format("{} whirl modes at {:.6g} rpm, {}.", modes.size(),
-                               results::to_rpm(law.speed), law.damped ? "damped" : "undamped");
-  if (unstable > 0) s.section.text += fmt::format(" {} of them unstable.", unstable);
-  if (diverging > 0)
-    s.section.text += fmt::format(" {} motion{} without oscillating.", diverging,
-                                  diverging == 1 ? " diverges" : "s diverge");
-  s.section.text += " " + results::capital(certificate.text()) + ".";
-  if (law.damped && unstable + diverging == 0)
-    s.section.text += " " + results::capital(results::stability_text(certificate)) + ".";
-  std::string line =
-      fmt::format("{} modes at {:.0f} rpm", modes.size(), results::to_rpm(law.speed));
-  for (std::size_t k = 0; k < std::min<std::size_t>(modes.size(), 4); ++k)
-    line += fmt::format("{}{:.4g}", k ? ", " : ": ", results::to_hz(modes[k].frequency));
-  s.finish(line +
-           (modes.empty()      ? ""
-            : modes.size() > 4 ? " ... Hz"
-                               : " Hz") +
-           (unstable ? fmt::format(", {} unstable", unstable) : "") +
-           (diverging ? fmt::format(", {} diverging", diverging) : "") +
-           (certificate.complete() ? ", complete" : ", not certified"));
+void ModalRun::add_shape(std::size_t k) {
+  const analysis::WhirlMode& m = modes_[k];
+  const std::string name = fmt::format("mode_{}", k + 1);
+  results::ShapeDrawing d{name,
+                          fmt::format("Mode {} ({}): {:.5g} Hz, {}", k + 1, labels_[k],
+                                      to_hz(m.frequency), results::description(m)),
+                          {},
+                          &m.x,
+                          m.kind};
+  if (std::abs(m.log_decrement) > 1e-9)
+    d.caption = fmt::format("Log decrement {:.4g}, damping ratio {:.4g}.", m.log_decrement,
+                            m.damping_ratio);
+  results::add_shape_figures(s_, d);
+  results::write_shape_frames(s_, name, m.x);
+}
+
+std::string ModalRun::text() const {
+  std::string text = fmt::format("{} whirl modes at {:.6g} rpm, {}.", modes_.size(),
+                                 to_rpm(law_.speed), law_.damped ? "damped" : "undamped");
+  if (unstable_ > 0) text += fmt::format(" {} of them unstable.", unstable_);
+  if (diverging_ > 0)
+    text += fmt::format(" {} motion{} without oscillating.", diverging_,
+                        diverging_ == 1 ? " diverges" : "s diverge");
+  text += " " + results::capital(certificate_.text()) + ".";
+  if (law_.damped && unstable_ + diverging_ == 0)
+    text += " " + results::capital(results::stability_text(certificate_)) + ".";
+  return text;
+}
+
+std::string ModalRun::line() const {
+  std::string line = fmt::format("{} modes at {:.0f} rpm", modes_.size(), to_rpm(law_.speed));
+  for (std::size_t k = 0; k < std::min<std::size_t>(modes_.size(), 4); ++k)
+    line += fmt::format("{}{:.4g}", k ? ", " : ": ", to_hz(modes_[k].frequency));
+  return line +
+         (modes_.empty()      ? ""
+          : modes_.size() > 4 ? " ... Hz"
+                              : " Hz") +
+         (unstable_ ? fmt::format(", {} unstable", unstable_) : "") +
+         (diverging_ ? fmt::format(", {} diverging", diverging_) : "") +
+         (certificate_.complete() ? ", complete" : ", not certified");
+}
+
+void ModalRun::execute() {
+  solve();
+  s_.summary()["speed [rpm]"] = to_rpm(law_.speed);
+  results::warn_of_held_tables(s_.job, s_.step.name, law_.speed, law_.speed);
+  add_modes();
+  add_rates();
+  s_.certify(certificate_);
+  if (!modes_.empty()) add_energy_tables(s_, modes_);
+  for (std::size_t k = 0; k < std::min(modes_.size(), static_cast<std::size_t>(law_.shapes)); ++k)
+    add_shape(k);
+  s_.section.text = text();
+  s_.finish(line());
+}
+
+}  // namespace
+
+void run_modal_step(run::Job& job, const model::Step& step, const model::ModalStep& law) {
+  ModalRun(job, step, law).execute();
 }
 
 }  // namespace whirl::steps

@@ -1,17 +1,10 @@
 #include <steps/savings.hpp>
 
 #include <algorithm>
-#include <ctime>
 
 namespace whirl::steps {
 
 namespace {
-
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 double evaluation(const system::System& s) {
   const system::State x = s.make_state();
@@ -20,10 +13,10 @@ double evaluation(const system::System& s) {
   VecX r(s.size());
   double best = infinity;
   for (int i = 0; i < 8; ++i) {  // the first ones fill the caches
-    const double t0 = cpu_seconds();
+    const double t0 = thread_cpu_seconds();
     s.residual(w, x.frames, 0.0, x.q, x.v, x.a, r);
     s.tangent(w, x.frames, 0.0, x.q, x.v, x.a, m);
-    best = std::min(best, cpu_seconds() - t0);
+    best = std::min(best, thread_cpu_seconds() - t0);
   }
   return best;
 }

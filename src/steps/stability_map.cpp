@@ -51,6 +51,175 @@ model::Model variant_of(const run::RunOptions& options, const model::Step& step,
   return m;
 }
 
+namespace {
+
+/// A parameter's values, what was found at each, and how that is shown.
+class MapResults {
+ public:
+  MapResults(results::FrequencyStep& s, const model::StabilityMap& law,
+             const analysis::StabilityOptions& options);
+  void add_onset_table();
+  void add_rate_table();
+  void add_map_figure();
+  void add_line_figure();
+  int found() const;
+
+ private:
+  bool at_once(std::size_t k) const { return std::isinf(map_.onset[k]); }
+  bool never(std::size_t k) const { return std::isnan(map_.onset[k]); }
+  /// nan where there is none.
+  double onset_rpm(std::size_t k) const {
+    return at_once(k) || never(k) ? nan : to_rpm(map_.onset[k]);
+  }
+  plot::Series edge() const;
+  void add_heat(plot::Axes& a) const;
+
+  results::FrequencyStep& s_;
+  const model::StabilityMap& law_;
+  const Values values_;
+  analysis::StabilityMap map_;
+};
+
+MapResults::MapResults(results::FrequencyStep& s, const model::StabilityMap& law,
+                       const analysis::StabilityOptions& options)
+    : s_(s),
+      law_(law),
+      values_(values_of(law)) {
+  std::vector<double> place(values_.number.size());
+  for (std::size_t k = 0; k < place.size(); ++k)
+    place[k] = static_cast<double>(k);
+  map_ = analysis::stability_map(
+      [&](double k) {
+        const model::Model m =
+            variant_of(s.job.options, s.step, law, law.values[static_cast<std::size_t>(k)]);
+        return std::move(assembly::build_system(m, meshes::make_mesh(m), s.step.name).system);
+      },
+      s.linear.running().running(), place, options);
+}
+
+int MapResults::found() const {
+  int n = 0;
+  for (std::size_t k = 0; k < map_.onset.size(); ++k)
+    n += !at_once(k) && !never(k);
+  return n;
+}
+
+void MapResults::add_onset_table() {
+  io::Table t;
+  t.title = "Onset of instability against " + law_.parameter;
+  t.nan_means = "there is no onset: see the remark";
+  t.columns = {{law_.parameter, values_.unit, ""},
+               {"onset speed", "rpm", "lowest at which a mode becomes unstable"},
+               {"whirl frequency", "Hz", ""},
+               {"remark", "-", ""}};
+  io::Value& v = s_.summary()["map"];
+  v = io::Value::array();
+  for (std::size_t k = 0; k < values_.number.size(); ++k) {
+    t.add({values_.number[k], onset_rpm(k), to_hz(map_.frequency[k]),
+           std::string(at_once(k) ? "unstable at all speeds from the first"
+                       : never(k) ? "stable at all speeds"
+                                  : "")});
+    io::Value e = io::Value::object();
+    e[law_.parameter] = law_.values[k];
+    e["onset [rpm]"] = onset_rpm(k);
+    v.push(std::move(e));
+  }
+  s_.add_table("map_onset", std::move(t));
+}
+
+void MapResults::add_rate_table() {
+  io::Table t;
+  t.title = "Least log decrement against speed and " + law_.parameter;
+  t.columns.push_back({"speed", "rpm", ""});
+  for (const std::string& value : law_.values)
+    t.columns.push_back({law_.parameter + " = " + value, "-", "log decrement"});
+  for (std::size_t i = 0; i < map_.speeds.size(); ++i) {
+    std::vector<io::Table::Cell> row{to_rpm(map_.speeds[i])};
+    for (std::size_t k = 0; k < values_.number.size(); ++k)
+      row.emplace_back(map_.least_log_decrement[k][i]);
+    t.add(std::move(row));
+  }
+  s_.add_table("map", std::move(t), false);
+}
+
+plot::Series MapResults::edge() const {
+  plot::Series edge;
+  edge.label = "onset";
+  edge.style = {1, plot::Dash::solid, 1.8, plot::Marker::circle};
+  for (std::size_t k = 0; k < values_.number.size(); ++k) {
+    edge.x.push_back(values_.number[k]);
+    edge.y.push_back(at_once(k) ? to_rpm(map_.speeds.front()) : onset_rpm(k));
+  }
+  return edge;
+}
+
+/// Cells round each value and speed; the onset is drawn over them.
+void MapResults::add_heat(plot::Axes& a) const {
+  if (!equally_spaced(values_.number) || !equally_spaced(map_.speeds)) return;
+  const double dx = values_.number[1] - values_.number[0],
+               dy = to_rpm(map_.speeds[1] - map_.speeds[0]);
+  plot::HeatMap heat;
+  heat.nx = static_cast<int>(values_.number.size());
+  heat.ny = static_cast<int>(map_.speeds.size());
+  heat.x0 = values_.number.front() - 0.5 * dx;
+  heat.x1 = values_.number.back() + 0.5 * dx;
+  heat.y0 = to_rpm(map_.speeds.front()) - 0.5 * dy;
+  heat.y1 = to_rpm(map_.speeds.back()) + 0.5 * dy;
+  for (std::size_t i = 0; i < map_.speeds.size(); ++i)
+    for (std::size_t k = 0; k < values_.number.size(); ++k)
+      heat.values.push_back(map_.least_log_decrement[k][i]);
+  heat.label = "least log decrement";
+  heat.unit = "-";
+  a.x.min = heat.x0;
+  a.x.max = heat.x1;
+  a.y.label = "speed";
+  a.y.min = std::max(0.0, heat.y0);
+  a.y.max = heat.y1;
+  a.heat.push_back(std::move(heat));
+}
+
+void MapResults::add_map_figure() {
+  plot::Axes a;
+  a.x = plot::Axis(law_.parameter, values_.unit);
+  a.y = plot::Axis("onset speed of instability", "rpm");
+  a.y.include_zero = true;
+  a.series.push_back(edge());
+  add_heat(a);
+  plot::Figure f;
+  f.name = s_.file("map");
+  f.title = "Stability against speed and " + law_.parameter;
+  f.caption =
+      "Line: onset of instability, solved for at each value" +
+      std::string(a.heat.empty() ? "." : "; colours: log decrement of the least stable mode.");
+  f.height = 460;
+  f.axes.push_back(std::move(a));
+  s_.add_figure(std::move(f));
+}
+
+void MapResults::add_line_figure() {
+  plot::Axes a;
+  a.x = plot::Axis("speed", "rpm");
+  a.y = plot::Axis("least log decrement (unstable below 0)", "-");
+  a.y.include_zero = true;
+  for (std::size_t k = 0; k < values_.number.size(); ++k) {
+    plot::Series line;
+    line.label = law_.values[k];
+    for (std::size_t i = 0; i < map_.speeds.size(); ++i) {
+      line.x.push_back(to_rpm(map_.speeds[i]));
+      line.y.push_back(map_.least_log_decrement[k][i]);
+    }
+    a.series.push_back(std::move(line));
+  }
+  a.rules.push_back({false, 0, "", {plot::ink, plot::Dash::solid, 1.0}});
+  plot::Figure f;
+  f.name = s_.file("map_lines");
+  f.title = "Log decrement of the least stable mode, for values of " + law_.parameter;
+  f.axes.push_back(std::move(a));
+  s_.add_figure(std::move(f));
+}
+
+}  // namespace
+
 std::string add_stability_map(results::FrequencyStep& s, const model::StabilityMap& law,
                               const analysis::StabilityOptions& options) {
   if (!s.job.options.variant)
@@ -60,115 +229,13 @@ std::string add_stability_map(results::FrequencyStep& s, const model::StabilityM
             "step '{}': the deck of this run cannot be read again with another value of '{}'",
             s.step.name, law.parameter),
         "", s.step.name);
-  const Values values = values_of(law);
-  std::vector<double> place(values.number.size());
-  for (std::size_t k = 0; k < place.size(); ++k)
-    place[k] = static_cast<double>(k);
-  const analysis::StabilityMap map = analysis::stability_map(
-      [&](double k) {
-        const model::Model m =
-            variant_of(s.job.options, s.step, law, law.values[static_cast<std::size_t>(k)]);
-        return std::move(assembly::build_system(m, meshes::make_mesh(m), s.step.name).system);
-      },
-      s.linear.running().running(), place, options);
-
-  const std::string unit = values.unit;
-  io::Table onset, rates;
-  onset.title = "Onset of instability against " + law.parameter;
-  onset.nan_means = "there is no onset: see the remark";
-  onset.columns = {{law.parameter, unit, ""},
-                   {"onset speed", "rpm", "lowest at which a mode becomes unstable"},
-                   {"whirl frequency", "Hz", ""},
-                   {"remark", "-", ""}};
-  rates.title = "Least log decrement against speed and " + law.parameter;
-  rates.columns.push_back({"speed", "rpm", ""});
-  plot::Axes curve, lines;
-  curve.x = plot::Axis(law.parameter, unit);
-  curve.y = plot::Axis("onset speed of instability", "rpm");
-  curve.y.include_zero = true;
-  lines.x = plot::Axis("speed", "rpm");
-  lines.y = plot::Axis("least log decrement (unstable below 0)", "-");
-  lines.y.include_zero = true;
-  plot::Series edge;
-  edge.label = "onset";
-  edge.style = {1, plot::Dash::solid, 1.8, plot::Marker::circle};
-  io::Value& v = s.summary()["map"];
-  v = io::Value::array();
-  int found = 0;
-  for (std::size_t k = 0; k < place.size(); ++k) {
-    const double o = map.onset[k];
-    const bool at_once = std::isinf(o), never = std::isnan(o);
-    onset.add({values.number[k], at_once || never ? nan : results::to_rpm(o),
-               results::to_hz(map.frequency[k]),
-               std::string(at_once ? "unstable at all speeds from the first"
-                           : never ? "stable at all speeds"
-                                   : "")});
-    io::Value e = io::Value::object();
-    e[law.parameter] = law.values[k];
-    e["onset [rpm]"] = at_once || never ? nan : results::to_rpm(o);
-    v.push(std::move(e));
-    found += !at_once && !never;
-    edge.x.push_back(values.number[k]);
-    edge.y.push_back(at_once ? results::to_rpm(map.speeds.front())
-                     : never ? nan
-                             : results::to_rpm(o));
-    rates.columns.push_back({law.parameter + " = " + law.values[k], "-", "log decrement"});
-    plot::Series line;
-    line.label = law.values[k];
-    for (std::size_t i = 0; i < map.speeds.size(); ++i) {
-      line.x.push_back(results::to_rpm(map.speeds[i]));
-      line.y.push_back(map.least_log_decrement[k][i]);
-    }
-    lines.series.push_back(std::move(line));
-  }
-  for (std::size_t i = 0; i < map.speeds.size(); ++i) {
-    std::vector<io::Table::Cell> row{results::to_rpm(map.speeds[i])};
-    for (std::size_t k = 0; k < place.size(); ++k)
-      row.emplace_back(map.least_log_decrement[k][i]);
-    rates.add(std::move(row));
-  }
-  curve.series.push_back(edge);
-  lines.rules.push_back({false, 0, "", {plot::ink, plot::Dash::solid, 1.0}});
-  if (equally_spaced(values.number) && equally_spaced(map.speeds)) {
-    // cells round each value and speed; the onset drawn over them
-    const double dx = values.number[1] - values.number[0],
-                 dy = results::to_rpm(map.speeds[1] - map.speeds[0]);
-    plot::HeatMap heat;
-    heat.nx = static_cast<int>(place.size());
-    heat.ny = static_cast<int>(map.speeds.size());
-    heat.x0 = values.number.front() - 0.5 * dx;
-    heat.x1 = values.number.back() + 0.5 * dx;
-    heat.y0 = results::to_rpm(map.speeds.front()) - 0.5 * dy;
-    heat.y1 = results::to_rpm(map.speeds.back()) + 0.5 * dy;
-    for (std::size_t i = 0; i < map.speeds.size(); ++i)
-      for (std::size_t k = 0; k < place.size(); ++k)
-        heat.values.push_back(map.least_log_decrement[k][i]);
-    heat.label = "least log decrement";
-    heat.unit = "-";
-    curve.y.label = "speed";
-    curve.heat.push_back(std::move(heat));
-    curve.x.min = values.number.front() - 0.5 * dx;
-    curve.x.max = values.number.back() + 0.5 * dx;
-    curve.y.min = std::max(0.0, results::to_rpm(map.speeds.front()) - 0.5 * dy);
-    curve.y.max = results::to_rpm(map.speeds.back()) + 0.5 * dy;
-  }
-  s.add_table("map_onset", std::move(onset));
-  s.add_table("map", std::move(rates), false);
-  plot::Figure f;
-  f.name = s.file("map");
-  f.title = "Stability against speed and " + law.parameter;
-  f.caption =
-      "Line: onset of instability, solved for at each value" +
-      std::string(curve.heat.empty() ? "." : "; colours: log decrement of the least stable mode.");
-  f.height = 460;
-  f.axes.push_back(std::move(curve));
-  s.add_figure(std::move(f));
-  plot::Figure g;
-  g.name = s.file("map_lines");
-  g.title = "Log decrement of the least stable mode, for values of " + law.parameter;
-  g.axes.push_back(std::move(lines));
-  s.add_figure(std::move(g));
-  return fmt::format("; onset found at {} of {} values of {}", found, place.size(), law.parameter);
+  MapResults map(s, law, options);
+  map.add_onset_table();
+  map.add_rate_table();
+  map.add_map_figure();
+  map.add_line_figure();
+  return fmt::format("; onset found at {} of {} values of {}", map.found(), law.values.size(),
+                     law.parameter);
 }
 
 }  // namespace whirl::steps

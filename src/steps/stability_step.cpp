@@ -2,6 +2,8 @@
 // directly.
 #include <analysis/spectra/stability.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <results/campbell_lines.hpp>
 #include <steps/step_kinds.hpp>
@@ -41,11 +43,11 @@ io::Table verdict_table(const analysis::StabilityResult& r) {
     const char* word = c.stability_certain() ? "all" : c.complete() ? "band" : "no";
     io::Table::Cell top = std::string(), missing = std::string();
     if (c.open.empty()) {
-      top = results::to_hz(c.list.radius);
+      top = to_hz(c.list.radius);
       missing = static_cast<int>(c.list.missing);
     }
-    t.add({results::to_rpm(v.speed), static_cast<int>(v.whirling), static_cast<int>(v.diverging),
-           v.fastest, std::move(top), std::move(missing), std::string(word)});
+    t.add({to_rpm(v.speed), static_cast<int>(v.whirling), static_cast<int>(v.diverging), v.fastest,
+           std::move(top), std::move(missing), std::string(word)});
   }
   return t;
 }
@@ -55,20 +57,20 @@ std::string verdict_line(const analysis::StabilityResult& r, const std::vector<d
   std::string line;
   const analysis::SpeedVerdict& first = r.verdicts.front();
   if (!r.stable_at_start)
-    line = fmt::format("unstable at {:.6g} rpm already ({})", results::to_rpm(speeds.front()),
+    line = fmt::format("unstable at {:.6g} rpm already ({})", to_rpm(speeds.front()),
                        first.diverging > 0
                            ? fmt::format("a motion diverges at {:.4g} 1/s", first.fastest)
                            : fmt::format("growth {:.4g} 1/s", first.fastest));
   else if (r.onsets.empty())
-    line = fmt::format("stable from {:.6g} to {:.6g} rpm", results::to_rpm(speeds.front()),
-                       results::to_rpm(speeds.back()));
+    line = fmt::format("stable from {:.6g} to {:.6g} rpm", to_rpm(speeds.front()),
+                       to_rpm(speeds.back()));
   for (const analysis::Onset& x : r.onsets) {
     if (!x.gains) continue;
-    const std::string what =
-        x.divergence() ? "diverging without whirl"
-                       : fmt::format("whirling at {:.5g} Hz", results::to_hz(x.frequency));
+    const std::string what = x.divergence()
+                                 ? "diverging without whirl"
+                                 : fmt::format("whirling at {:.5g} Hz", to_hz(x.frequency));
     line += fmt::format("{}instability above {:.8g} rpm, {}", line.empty() ? "" : "; ",
-                        results::to_rpm(x.speed), what);
+                        to_rpm(x.speed), what);
     break;
   }
   const analysis::SpectrumCertificate& c = weakest(r).certificate;
@@ -77,19 +79,100 @@ std::string verdict_line(const analysis::StabilityResult& r, const std::vector<d
            fmt::format(" (certified at {} speeds: all roots accounted for)", r.verdicts.size());
   if (r.complete())
     return line + fmt::format(" (certified up to {:.5g} Hz; above it growth is not excluded)",
-                              results::to_hz(c.list.radius));
+                              to_hz(c.list.radius));
   return line + " (not certified: " + c.text() + ")";
+}
+
+/// Of the modes judged, at the highest speed.
+void report_mesh(results::FrequencyStep& s, int modes, double Omega) {
+  analysis::ModesOptions o;
+  o.count = modes;
+  o.certify = false;
+  results::MeshAccuracy accuracy(s);
+  accuracy.look_at(analysis::whirl_modes(s.linear, Omega, o), Omega);
+  accuracy.report();
+}
+
+void add_onsets(results::FrequencyStep& s, const analysis::StabilityResult& r) {
+  io::Table table;
+  table.title = "Onset of instability";
+  table.columns = {{"speed", "rpm", ""},           {"whirl frequency", "Hz", ""},
+                   {"frequency / speed", "-", ""}, {"kind", "-", ""},
+                   {"direction", "-", ""},         {"above this speed", "-", ""}};
+  io::Value& list = s.summary()["onsets"];
+  list = io::Value::array();
+  for (const analysis::Onset& x : r.onsets) {
+    table.add({to_rpm(x.speed), to_hz(x.frequency), x.ratio(), std::string(to_string(x.mode.kind)),
+               results::direction_text(x.mode),
+               x.divergence() ? (x.gains ? "diverges" : "no longer diverges")
+               : x.gains      ? "unstable"
+                              : "stable again"});
+    io::Value e = io::Value::object();
+    e["speed [rpm]"] = to_rpm(x.speed);
+    e["whirl frequency [Hz]"] = to_hz(x.frequency);
+    e["becomes unstable"] = x.gains;
+    e["divergence"] = x.divergence();
+    list.push(std::move(e));
+  }
+  s.add_table("onset", std::move(table));
+}
+
+void add_rates(results::FrequencyStep& s, const analysis::StabilityResult& r,
+               const std::vector<plot::CampbellLine>& lines) {
+  io::Table rates;
+  rates.title = "Log decrement against speed";
+  rates.nan_means = "the mode is not there at this speed";
+  rates.columns.push_back({"speed", "rpm", ""});
+  for (const plot::CampbellLine& l : lines) {
+    rates.columns.push_back({l.label + " log decrement", "-", ""});
+    rates.columns.push_back({l.label + " damping ratio", "-", ""});
+    rates.columns.push_back({l.label + " frequency", "Hz", ""});
+  }
+  for (std::size_t k = 0; k < r.diagram.speeds.size(); ++k) {
+    std::vector<io::Table::Cell> row{to_rpm(r.diagram.speeds[k])};
+    for (const analysis::CampbellLine& l : r.diagram.lines) {
+      row.emplace_back(l.log_decrement[k]);
+      row.emplace_back(l.damping_ratio[k]);
+      row.emplace_back(to_hz(l.frequency[k]));
+    }
+    rates.add(std::move(row));
+  }
+  s.add_table("log_decrement", std::move(rates), false);
+}
+
+void add_figures(results::FrequencyStep& s, const analysis::StabilityResult& r,
+                 const std::vector<plot::CampbellLine>& lines) {
+  std::vector<double> thresholds;
+  for (const analysis::Onset& x : r.onsets)
+    thresholds.push_back(x.speed);
+  s.add_figure(plot::plot_stability(s.file("log_decrement"), "Log decrement of the modes", lines,
+                                    thresholds));
+  s.add_figure(plot::plot_campbell(s.file("frequencies"), "Frequencies of these modes", lines,
+                                   std::vector<double>{1.0}, {}));
+  for (std::size_t k = 0; k < r.onsets.size() && k < 3; ++k) {
+    const analysis::Onset& x = r.onsets[k];
+    const std::string name = fmt::format("onset_{}", k + 1);
+    s.linear.at(x.speed);
+    results::add_shape_figures(
+        s, {name,
+            fmt::format("Mode at the onset, {:.6g} rpm, {:.5g} Hz, {}", to_rpm(x.speed),
+                        to_hz(x.frequency), results::description(x.mode)),
+            {},
+            &x.mode.x,
+            x.mode.kind});
+    results::write_shape_frames(s, name, x.mode.x);
+  }
 }
 
 }  // namespace
 
 void run_stability_step(run::Job& job, const model::Step& step, const model::StabilityStep& law) {
-  analysis::StabilityOptions o;
-  const std::vector<double> speeds = results::speeds_of(law.speed);
   if (results::turns_with_stiffness(job.model)) return run_instability_bands(job, step, law);
+  analysis::StabilityOptions o;
+  o.speeds = results::speeds_of(law.speed);
+  const std::vector<double>& speeds = o.speeds;
   results::FrequencyStep s(job, step, "stability", "stability",
                            std::max(std::abs(speeds.front()), std::abs(speeds.back())));
-  o.speeds = speeds;
   o.modes = law.modes;
   o.all = true;
   const run::PhaseTimer timer(job, "stability");
@@ -100,67 +183,14 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   v["certified"] = r.certain();
   v["list complete"] = r.complete();
   const analysis::SpeedVerdict& judged = weakest(r);
-  s.certify(judged.certificate, fmt::format("at {:.6g} rpm", results::to_rpm(judged.speed)));
+  s.certify(judged.certificate, fmt::format("at {:.6g} rpm", to_rpm(judged.speed)));
+  report_mesh(s, law.modes, speeds.back());
+  results::warn_of_held_tables(job, step.name, speeds.front(), speeds.back());
   s.add_table("verdicts", verdict_table(r), false);
-  v["onsets"] = io::Value::array();
-  io::Table table;
-  table.title = "Onset of instability";
-  table.columns = {{"speed", "rpm", ""},           {"whirl frequency", "Hz", ""},
-                   {"frequency / speed", "-", ""}, {"kind", "-", ""},
-                   {"direction", "-", ""},         {"above this speed", "-", ""}};
-  std::vector<double> thresholds;
-  for (const analysis::Onset& x : r.onsets) {
-    table.add({results::to_rpm(x.speed), results::to_hz(x.frequency), x.ratio(),
-               std::string(to_string(x.mode.kind)), results::direction_text(x.mode),
-               x.divergence() ? (x.gains ? "diverges" : "no longer diverges")
-               : x.gains      ? "unstable"
-                              : "stable again"});
-    io::Value e = io::Value::object();
-    e["speed [rpm]"] = results::to_rpm(x.speed);
-    e["whirl frequency [Hz]"] = results::to_hz(x.frequency);
-    e["becomes unstable"] = x.gains;
-    e["divergence"] = x.divergence();
-    v["onsets"].push(std::move(e));
-    thresholds.push_back(x.speed);
-  }
   const std::vector<plot::CampbellLine> lines = results::drawn_lines(r.diagram);
-  std::vector<plot::CampbellLine> shown;
-  io::Table rates;
-  rates.title = "Log decrement against speed";
-  rates.nan_means = "the mode is not there at this speed";
-  rates.columns.push_back({"speed", "rpm", ""});
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    rates.columns.push_back({lines[l].label + " log decrement", "-", ""});
-    rates.columns.push_back({lines[l].label + " damping ratio", "-", ""});
-    rates.columns.push_back({lines[l].label + " frequency", "Hz", ""});
-  }
-  for (std::size_t k = 0; k < r.diagram.speeds.size(); ++k) {
-    std::vector<io::Table::Cell> row{results::to_rpm(r.diagram.speeds[k])};
-    for (const analysis::CampbellLine& l : r.diagram.lines) {
-      row.emplace_back(l.log_decrement[k]);
-      row.emplace_back(l.damping_ratio[k]);
-      row.emplace_back(results::to_hz(l.frequency[k]));
-    }
-    rates.add(std::move(row));
-  }
-  s.add_table("onset", std::move(table));
-  s.add_table("log_decrement", std::move(rates), false);
-  s.add_figure(plot::plot_stability(s.file("log_decrement"), "Log decrement of the modes", lines,
-                                    thresholds));
-  s.add_figure(plot::plot_campbell(s.file("frequencies"), "Frequencies of these modes", lines,
-                                   std::vector<double>{1.0}, {}));
-  for (std::size_t k = 0; k < r.onsets.size() && k < 3; ++k) {
-    const analysis::Onset& x = r.onsets[k];
-    s.linear.at(x.speed);
-    results::add_shape_figures(
-        s, {fmt::format("onset_{}", k + 1),
-            fmt::format("Mode at the onset, {:.6g} rpm, {:.5g} Hz, {}", results::to_rpm(x.speed),
-                        results::to_hz(x.frequency), results::description(x.mode)),
-            {},
-            &x.mode.x,
-            x.mode.kind});
-    results::write_shape_frames(s, fmt::format("onset_{}", k + 1), x.mode.x);
-  }
+  add_onsets(s, r);
+  add_rates(s, r, lines);
+  add_figures(s, r, lines);
   std::string line = verdict_line(r, speeds);
   if (law.map) line += add_stability_map(s, *law.map, o);
   s.section.text = results::capital(line) + ".";

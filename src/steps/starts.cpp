@@ -64,7 +64,7 @@ void start_in_unbalance_response(const run::Job& job, run::StepState& start) {
       throw run_error(
           "E76",
           fmt::format("no steady unbalance response at {:.6g} rpm: resonance without damping",
-                      start.speed * 30.0 / pi),
+                      to_rpm(start.speed)),
           "start from static equilibrium, or give the model damping");
     solver.solve(a);
     const Complex turn = std::polar(1.0, orders[k] * theta);
@@ -159,7 +159,7 @@ run::StepState start_of_other_run(const run::Job& job, const std::string& folder
   const run::Checkpoint c = run::last_state_of(folder, step);
   run::check_state_fits(c, folder, job.system(), job.model.deck_path);
   run::StepState start{c.state, c.speed, {}};
-  if (const auto governors = c.parts.find(governors_part); governors != c.parts.end()) {
+  if (const auto governors = c.parts.find({run::Part::governors}); governors != c.parts.end()) {
     InArchive in(governors->second);
     restore_governors(in, start);
   }

@@ -12,7 +12,6 @@ void start_in_mode(const run::Job&, run::StepState& start, const model::Transien
 /// here, without a jump of their torque.
 void begin_governors(const run::Job&, run::StepState& start);
 /// The part of a checkpoint that says where they began.
-inline constexpr const char* governors_part = "governors";
 void save_governors(OutArchive& out, const run::StepState& start);
 void restore_governors(InArchive& in, run::StepState& start);
 /// The last state of a transient step in another results folder.

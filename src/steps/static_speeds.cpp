@@ -28,7 +28,7 @@ struct Sweep {
     plot::Series s;
     s.label = std::move(label);
     for (const results::SupportCoefficients& c : at) {
-      s.x.push_back(results::to_rpm(c.spin));
+      s.x.push_back(to_rpm(c.spin));
       s.y.push_back(of(c));
     }
     s.keep_all = true;
@@ -75,7 +75,7 @@ plot::Figure draw_locus(const std::string& name, const std::vector<Sweep>& all) 
     for (const results::SupportCoefficients& c : b.at) {
       locus.x.push_back(unit * c.place.x());
       locus.y.push_back(unit * c.place.y());
-      locus.point_names.push_back(fmt::format("{:.6g} rpm", results::to_rpm(c.spin)));
+      locus.point_names.push_back(fmt::format("{:.6g} rpm", to_rpm(c.spin)));
     }
     const auto mark = [&](std::size_t k, plot::Marker m) {
       plot::Series s;
@@ -158,107 +158,156 @@ io::Table speeds_table() {
   return t;
 }
 
+/// Equilibria against speed on their way, each started from the one before.
+class SpeedSweep {
+ public:
+  SpeedSweep(run::Job& job, const model::Step& step, const std::vector<double>& speeds,
+             int load_steps)
+      : job_(job),
+        step_(step),
+        speeds_(speeds),
+        s_(job, step, "static", "equilibria against speed",
+           std::max(std::abs(speeds.front()), std::abs(speeds.back())), load_steps) {}
+  /// Throws the first error when no speed has an equilibrium.
+  void execute();
+
+ private:
+  void take(double Omega);
+  void miss(double Omega, const Error& e);
+  void judge(double Omega, const run::StepState& state);
+  void add_coefficients(const run::StepState& state);
+  void show_equilibria();
+  void show_bearings();
+
+  run::Job& job_;
+  const model::Step& step_;
+  const std::vector<double>& speeds_;
+  results::FrequencyStep s_;
+  io::Table judged_ = speeds_table();
+  std::vector<results::SupportCoefficients> rows_;
+  std::vector<Sweep> bearings_;
+  int unstable_ = 0;
+  std::size_t found_ = 0;
+  std::string missing_;  ///< speeds without an equilibrium
+  std::optional<Error> first_error_;
+};
+
+void SpeedSweep::take(double Omega) {
+  try {
+    s_.linear.at(Omega);
+  } catch (const Error& e) {
+    return miss(Omega, e);
+  }
+  run::StepState state{s_.linear.equilibrium().state, Omega};
+  judge(Omega, state);
+  if (found_++ == 0) run::warn_of_closed_contacts(job_, step_, state);
+  add_coefficients(state);
+  job_.states[step_.name] = std::move(state);
+}
+
+void SpeedSweep::miss(double Omega, const Error& e) {
+  if (!first_error_) {
+    run::StepState start{job_.system().make_state(), Omega};
+    s_.linear.running().set_rates(Omega, start.state.v);
+    first_error_ = run::explain_no_equilibrium(job_, s_.linear.running(), start, e);
+  }
+  judged_.add({to_rpm(Omega), 0, "", "", ""});
+  missing_ += fmt::format("{}{:.6g}", missing_.empty() ? "" : ", ", to_rpm(Omega));
+}
+
+/// The first unstable one is shown.
+void SpeedSweep::judge(double Omega, const run::StepState& state) {
+  const analysis::Definiteness tangent = results::judge_state(
+      s_.linear.running(), state.state, Omega, s_.linear.equilibrium().spin_holds, unstable_ == 0);
+  judged_.add({to_rpm(Omega), 1, static_cast<int>(tangent.negative), tangent.symmetric ? 1 : 0,
+               tangent.certain ? 1 : 0});
+  if (tangent.stable() || unstable_++ > 0) return;
+  results::add_stability(s_.summary(), tangent, Omega);
+  results::warn_of_unstable(job_, fmt::format("{}, {:.6g} rpm", step_.name, to_rpm(Omega)), tangent,
+                            Omega);
+  if (tangent.shape.size() == 0) return;
+  const std::string title =
+      fmt::format("Direction in which the equilibrium at {:.6g} rpm is left", to_rpm(Omega));
+  s_.add_table("unstable_direction",
+               results::shape_table(job_, title, state.state.frames, state.state.q, tangent.shape),
+               false);
+}
+
+void SpeedSweep::add_coefficients(const run::StepState& state) {
+  for (results::SupportCoefficients& c : results::calc_support_coefficients(job_, state)) {
+    auto b = std::find_if(bearings_.begin(), bearings_.end(),
+                          [&](const Sweep& x) { return x.name == c.name; });
+    if (b == bearings_.end()) b = bearings_.insert(b, Sweep{c.name, {}});
+    b->at.push_back(c);
+    rows_.push_back(std::move(c));
+  }
+}
+
+void SpeedSweep::show_equilibria() {
+  io::Value& v = s_.summary();
+  if (unstable_ == 0) v["stability"]["stable"] = true;
+  v["unstable equilibria"] = unstable_;
+  v["speeds"] = static_cast<int>(speeds_.size());
+  v["equilibria"] = static_cast<int>(found_);
+  s_.add_table("equilibria", std::move(judged_), unstable_ > 0);
+  s_.section.text = fmt::format(
+      "Equilibria at {} of {} speeds from {:.6g} to {:.6g} rpm, each started from the one before.",
+      found_, speeds_.size(), to_rpm(speeds_.front()), to_rpm(speeds_.back()));
+  if (!missing_.empty())
+    s_.section.text +=
+        fmt::format(" None at {} rpm: {}.", missing_, first_error_->diagnostics().front().message);
+}
+
+void SpeedSweep::show_bearings() {
+  if (rows_.empty()) {
+    s_.section.text += " No bearing of this model changes its coefficients with speed or load.";
+    return;
+  }
+  io::Table t = results::support_table(rows_);
+  t.title = "Bearings against speed";
+  s_.add_table("coefficients", std::move(t));
+  const std::size_t shown = std::min<std::size_t>(bearings_.size(), 8);
+  const std::vector<Sweep> drawn(bearings_.begin(),
+                                 bearings_.begin() + static_cast<std::ptrdiff_t>(shown));
+  s_.add_figure(draw_locus(s_.file("locus"), drawn));
+  s_.add_figure(draw_eccentricity(s_.file("eccentricity"), drawn));
+  s_.add_figure(draw_coefficients(s_.file("stiffness"), "stiffness", "k", "MN/m", 1e-6,
+                                  &results::SupportCoefficients::K, drawn));
+  s_.add_figure(draw_coefficients(s_.file("damping"), "damping", "c", "kN s/m", 1e-3,
+                                  &results::SupportCoefficients::C, drawn));
+  for (const Sweep& b : bearings_) {
+    io::Value e = io::Value::object();
+    e["bearing"] = b.name;
+    if (b.film()) {
+      e["eccentricity / clearance at the first speed"] =
+          b.at.front().place.norm() / b.at.front().clearance;
+      e["and at the last"] = b.at.back().place.norm() / b.at.back().clearance;
+    }
+    s_.summary()["bearings"].push(std::move(e));
+  }
+}
+
+void SpeedSweep::execute() {
+  run::ProgressLine progress(step_.name, job_.options.quiet);
+  for (std::size_t k = 0; k < speeds_.size(); ++k) {
+    progress.update(static_cast<double>(k) / static_cast<double>(speeds_.size()),
+                    fmt::format("{:.6g} rpm", to_rpm(speeds_[k])));
+    take(speeds_[k]);
+  }
+  if (found_ == 0) throw *first_error_;
+  show_equilibria();
+  show_bearings();
+  const std::string judgement =
+      unstable_ == 0 ? "" : fmt::format(", {} of them unstable", unstable_);
+  s_.finish(fmt::format("equilibria at {} speeds{}{}", found_, judgement,
+                        missing_.empty() ? "" : fmt::format(", none at {} rpm", missing_)));
+}
+
 }  // namespace
 
 void run_static_speeds(run::Job& job, const model::Step& step, const std::vector<double>& speeds,
                        int load_steps) {
-  results::FrequencyStep s(job, step, "static", "equilibria against speed",
-                           std::max(std::abs(speeds.front()), std::abs(speeds.back())), load_steps);
-  std::vector<results::SupportCoefficients> rows;
-  io::Table judged = speeds_table();
-  int unstable = 0;
-  std::vector<Sweep> bearings;
-  std::string missing;
-  std::optional<Error> first_error;
-  std::size_t found = 0;
-  run::ProgressLine progress(step.name, job.options.quiet);
-  for (const double& Omega : speeds) {
-    progress.update(
-        static_cast<double>(&Omega - speeds.data()) / static_cast<double>(speeds.size()),
-        fmt::format("{:.6g} rpm", results::to_rpm(Omega)));
-    try {
-      s.linear.at(Omega);
-    } catch (const Error& e) {
-      if (!first_error) {
-        run::StepState start{job.system().make_state(), Omega};
-        s.linear.running().set_rates(Omega, start.state.v);
-        first_error = run::explain_no_equilibrium(job, s.linear.running(), start, e);
-      }
-      judged.add({results::to_rpm(Omega), 0, "", "", ""});
-      missing += fmt::format("{}{:.6g}", missing.empty() ? "" : ", ", results::to_rpm(Omega));
-      continue;
-    }
-    run::StepState at{s.linear.equilibrium().state, Omega};
-    const analysis::Definiteness tangent = results::judge_state(
-        s.linear.running(), at.state, Omega, s.linear.equilibrium().spin_holds, unstable == 0);
-    judged.add({results::to_rpm(Omega), 1, static_cast<int>(tangent.negative),
-                tangent.symmetric ? 1 : 0, tangent.certain ? 1 : 0});
-    if (!tangent.stable() && unstable++ == 0) {
-      results::add_stability(s.summary(), tangent, Omega);
-      results::warn_of_unstable(
-          job, fmt::format("{}, {:.6g} rpm", step.name, results::to_rpm(Omega)), tangent, Omega);
-      if (tangent.shape.size() > 0)
-        s.add_table("unstable_direction",
-                    results::shape_table(
-                        job,
-                        fmt::format("Direction in which the equilibrium at {:.6g} rpm is left",
-                                    results::to_rpm(Omega)),
-                        at.state.frames, at.state.q, tangent.shape),
-                    false);
-    }
-    if (found++ == 0) run::warn_of_closed_contacts(job, step, at);
-    for (results::SupportCoefficients& c : results::calc_support_coefficients(job, at)) {
-      auto b = std::find_if(bearings.begin(), bearings.end(),
-                            [&](const Sweep& x) { return x.name == c.name; });
-      if (b == bearings.end()) b = bearings.insert(b, Sweep{c.name, {}});
-      b->at.push_back(c);
-      rows.push_back(std::move(c));
-    }
-    job.states[step.name] = std::move(at);
-  }
-  if (found == 0) throw *first_error;
-
-  io::Value& v = s.summary();
-  if (unstable == 0) v["stability"]["stable"] = true;
-  v["unstable equilibria"] = unstable;
-  s.add_table("equilibria", std::move(judged), unstable > 0);
-  v["speeds"] = static_cast<int>(speeds.size());
-  v["equilibria"] = static_cast<int>(found);
-  s.section.text = fmt::format(
-      "Equilibria at {} of {} speeds from {:.6g} to {:.6g} rpm, each started from the one before.",
-      found, speeds.size(), results::to_rpm(speeds.front()), results::to_rpm(speeds.back()));
-  if (!missing.empty())
-    s.section.text +=
-        fmt::format(" None at {} rpm: {}.", missing, first_error->diagnostics().front().message);
-  if (rows.empty()) {
-    s.section.text += " No bearing of this model changes its coefficients with speed or load.";
-  } else {
-    io::Table t = results::support_table(rows);
-    t.title = "Bearings against speed";
-    s.add_table("coefficients", std::move(t));
-    std::vector<Sweep> drawn(
-        bearings.begin(),
-        bearings.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(bearings.size(), 8)));
-    s.add_figure(draw_locus(s.file("locus"), drawn));
-    s.add_figure(draw_eccentricity(s.file("eccentricity"), drawn));
-    s.add_figure(draw_coefficients(s.file("stiffness"), "stiffness", "k", "MN/m", 1e-6,
-                                   &results::SupportCoefficients::K, drawn));
-    s.add_figure(draw_coefficients(s.file("damping"), "damping", "c", "kN s/m", 1e-3,
-                                   &results::SupportCoefficients::C, drawn));
-    for (const Sweep& b : bearings) {
-      io::Value e = io::Value::object();
-      e["bearing"] = b.name;
-      if (b.film()) {
-        e["eccentricity / clearance at the first speed"] =
-            b.at.front().place.norm() / b.at.front().clearance;
-        e["and at the last"] = b.at.back().place.norm() / b.at.back().clearance;
-      }
-      v["bearings"].push(std::move(e));
-    }
-  }
-  const std::string judgement = unstable == 0 ? "" : fmt::format(", {} of them unstable", unstable);
-  s.finish(fmt::format("equilibria at {} speeds{}{}", found, judgement,
-                       missing.empty() ? "" : fmt::format(", none at {} rpm", missing)));
+  SpeedSweep(job, step, speeds, load_steps).execute();
 }
 
 }  // namespace whirl::steps

@@ -109,154 +109,216 @@ void check_end(const std::string& step, const analysis::LoadPathResult& r) {
                   hint);
 }
 
+/// A static step on its way: the equilibrium, or the last one of a path, and what is shown of it.
+class StaticRun {
+ public:
+  StaticRun(run::Job& job, const model::Step& step, const model::StaticStep& law);
+  /// Error E69: a path did not get where the deck wants it.
+  void execute();
+
+ private:
+  void settle();
+  void follow_path();
+  void write_point(const analysis::LoadPathPoint& p);
+  void evaluate();
+  void judge();
+  void write_tables();
+  void say_end(const RunTime& time) const;
+  void add_section();
+  io::Value& summary() { return job_.summary["steps"][step_.name]; }
+  std::string file(const std::string& what) const { return step_.name + "_" + what + ".csv"; }
+
+  const Stopwatch watch_;
+  run::Job& job_;
+  const model::Step& step_;
+  const model::StaticStep& law_;
+  system::SystemProblem problem_;
+  run::StepState state_;
+  results::StaticFrames frames_;
+  analysis::EquilibriumOptions options_;
+  analysis::Equilibrium found_;
+  double load_ = 1.0;
+  std::optional<results::PathRecord> path_;
+  std::optional<analysis::LoadPathResult> followed_;
+  std::vector<std::string> notes_;
+  analysis::Definiteness tangent_;
+  results::StaticResults results_;
+  io::Table coefficients_, rolling_stiffness_;
+};
+
+StaticRun::StaticRun(run::Job& job, const model::Step& step, const model::StaticStep& law)
+    : job_(job),
+      step_(step),
+      law_(law),
+      problem_(job.system(), {la::SolverKind::automatic, job.model.chart_change, 2.0}),
+      state_(job.start_of(step, law.own_speed())),
+      frames_(job, step.name) {
+  options_.chart_change = job.model.chart_change;
+  options_.load_steps = law.load_steps;
+}
+
+void StaticRun::settle() {
+  found_ = job_.settle(state_, options_);
+  run::warn_of_closed_contacts(job_, step_, state_);
+}
+
+void StaticRun::follow_path() {
+  analysis::SteadySystem running(job_.system(), job_.steady_rotation_of(state_));
+  path_.emplace(job_, *law_.path);
+  run::ProgressLine progress(step_.name, job_.options.quiet);
+  const auto accept = [&](const analysis::LoadPathPoint& p) {
+    write_point(p);
+    progress.update(0.0, fmt::format("load factor {:.5g}", p.load));
+    return true;
+  };
+  followed_ = analysis::follow_load_path(running, state_.speed, state_.state,
+                                         path_options(job_, *law_.path, options_), accept);
+  load_ = followed_->load;
+  notes_ = describe_path(*followed_, summary()["path"]);
+  write_critical_points(job_, step_.name, *followed_);
+  found_ = followed_->last;
+}
+
+void StaticRun::write_point(const analysis::LoadPathPoint& p) {
+  path_->add(problem_, p);
+  if (!frames_.any()) return;
+  problem_.workspace().context.load = p.load;
+  const auto node = [&](Index n) -> const system::NodeState& {
+    return problem_.workspace().nodes[at(n)];
+  };
+  const auto points = assembly::calc_section_results(job_.model, job_.mesh, job_.built, node,
+                                                     problem_.workspace().context);
+  frames_.write(job_, problem_, *p.state, p.load, points);
+}
+
+/// Node states, reactions and energy of the state found.
+void StaticRun::evaluate() {
+  const system::State& x = state_.state;
+  VecX r(job_.system().size());
+  problem_.frames = x.frames;
+  problem_.workspace().context.load = load_;
+  if (!problem_.residual(x.t, x.q, x.v, x.a, r))
+    throw run_error("R11",
+                    fmt::format("step '{}': the state found cannot be evaluated", step_.name), {});
+  problem_.power(x.t, x.q, x.v, x.a, r);
+}
+
+/// Whether it is stable, and what its results are.
+void StaticRun::judge() {
+  const system::State& x = state_.state;
+  analysis::SteadySystem turning(job_.system(), job_.steady_rotation_of(state_));
+  turning.set_load(load_);
+  const std::vector<results::SupportLoad> loads =
+      results::calc_support_loads(job_, turning, x, state_.speed, found_.reactions);
+  tangent_ = results::judge_state(turning, x, state_.speed, found_.spin_holds, true);
+  results::add_stability(summary(), tangent_, state_.speed);
+  results::warn_of_unstable(job_, step_.name, tangent_, state_.speed);
+  if (!tangent_.stable() && tangent_.shape.size() > 0)
+    job_.folder.write_table(file("unstable_direction"),
+                            results::shape_table(job_, "Direction in which the equilibrium is left",
+                                                 x.frames, x.q, tangent_.shape));
+  results_ = results::make_static_results(job_, step_.name, problem_, loads, found_.reactions,
+                                          found_.spin_holds, summary());
+  if (!path_ && frames_.any()) frames_.write(job_, problem_, x, x.t, results_.points);
+  frames_.end();
+}
+
+void StaticRun::write_tables() {
+  const std::vector<results::SupportCoefficients> linear =
+      results::calc_support_coefficients(job_, state_);
+  coefficients_ = results::support_table(linear);
+  rolling_stiffness_ = results::rolling_stiffness_table(linear);
+  job_.folder.write_table(file("deflection"), results_.deflection);
+  job_.folder.write_table(file("supports"), results_.supports);
+  job_.folder.write_table(file("sections"), results_.sections);
+  if (path_) job_.folder.write_table(file("path"), path_->table());
+  const auto write = [&](const char* what, const io::Table& t) {
+    if (!t.rows.empty()) job_.folder.write_table(file(what), t);
+  };
+  write("rolling", results_.rolling);
+  write("rolling_stiffness", rolling_stiffness_);
+  write("coefficients", coefficients_);
+}
+
+void StaticRun::say_end(const RunTime& time) const {
+  const std::string kind =
+      tangent_.stable() ? "equilibrium" : results::stability_line(tangent_, 0.0);
+  const std::string ended = path_ ? notes_.front()
+                                  : fmt::format("{} at {:.0f} rpm, {} Newton iterations", kind,
+                                                to_rpm(state_.speed), found_.iterations);
+  run::ProgressLine(step_.name, job_.options.quiet).done(fmt::format("{}, {}", ended, time.text()));
+}
+
+/// Moves the tables and figures of the results into the report.
+void StaticRun::add_section() {
+  io::ReportSection section;
+  section.title = fmt::format("{}: static equilibrium", step_.name);
+  section.text =
+      fmt::format("At {:.6g} rpm, load factor {:.6g}: {} Newton iterations, {} load step{}.",
+                  to_rpm(state_.speed), load_, found_.iterations, found_.load_steps,
+                  found_.load_steps == 1 ? "" : "s");
+  if (!tangent_.stable())
+    section.text +=
+        fmt::format("\n\nIt is an {}.", results::stability_line(tangent_, state_.speed));
+  for (const std::string& n : notes_)
+    section.text += "\n\n" + n + ".";
+  results::say_held(job_, step_, results::held_in_step(job_, step_, found_.spin_holds), section);
+  if (!job_.model.output.report) return;
+  if (followed_ && !followed_->critical.empty())
+    section.tables.push_back(results::critical_table(*followed_));
+  if (path_) section.figures.push_back(path_->figure(step_.name));
+  for (plot::Figure& f : results_.figures)
+    section.figures.push_back(std::move(f));
+  section.tables.push_back(std::move(results_.supports));
+  section.tables.push_back(std::move(results_.extremes));
+  const auto add = [&](io::Table& t, const char* title, const char* what) {
+    if (t.rows.empty()) return;
+    section.tables.push_back(std::move(t));
+    section.files.emplace_back(title, file(what));
+  };
+  add(coefficients_, "bearing coefficients", "coefficients");
+  for (const char* what : {"deflection", "supports", "sections"})
+    section.files.emplace_back(what, file(what));
+  add(rolling_stiffness_, "stiffness of rolling bearings", "rolling_stiffness");
+  add(results_.rolling, "rolling elements", "rolling");
+  if (path_) section.files.emplace_back("load path", file("path"));
+  job_.report.sections.push_back(std::move(section));
+}
+
+void StaticRun::execute() {
+  summary()["type"] = "static";
+  summary()["speed [rpm]"] = to_rpm(state_.speed);
+  if (law_.path)
+    follow_path();
+  else
+    settle();
+  state_.state = found_.state;
+  summary()["Newton iterations"] = found_.iterations;
+  summary()["load steps"] = found_.load_steps;
+  evaluate();
+  judge();
+  write_tables();
+  const RunTime time = watch_.elapsed();
+  run::put_run_time(summary(), time);
+  say_end(time);
+  add_section();
+  if (!job_.options.quiet && !job_.options.json) {
+    for (std::size_t k = 1; k < notes_.size(); ++k)
+      std::fputs(("  " + notes_[k] + "\n").c_str(), stdout);
+    for (const std::string& line : results_.lines)
+      std::fputs(("  " + line + "\n").c_str(), stdout);
+  }
+  state_.governors.clear();  // an equilibrium: none of them has begun
+  job_.states[step_.name] = std::move(state_);
+  if (followed_) check_end(step_.name, *followed_);
+}
+
 }  // namespace
 
 void run_static_step(run::Job& job, const model::Step& step, const model::StaticStep& law) {
   if (law.speeds)
     return run_static_speeds(job, step, results::speeds_of(*law.speeds), law.load_steps);
-  const Stopwatch watch;
-  system::SystemProblem problem(job.system(),
-                                {la::SolverKind::automatic, job.model.chart_change, 2.0});
-  run::StepState s = job.start_of(step, law.own_speed());
-  io::Value& v = job.summary["steps"][step.name];
-  v["type"] = "static";
-  v["speed [rpm]"] = s.speed * 30.0 / pi;
-  results::StaticFrames frames(job, step.name);
-
-  analysis::EquilibriumOptions options;
-  options.chart_change = job.model.chart_change;
-  options.load_steps = law.load_steps;
-  analysis::Equilibrium found;
-  double load = 1.0;
-  std::optional<results::PathRecord> path;
-  std::optional<analysis::LoadPathResult> followed;
-  std::vector<std::string> notes;
-  if (law.path) {
-    analysis::SteadySystem running(job.system(), job.steady_rotation_of(s));
-    path.emplace(job, *law.path);
-    run::ProgressLine progress(step.name, job.options.quiet);
-    const auto accept = [&](const analysis::LoadPathPoint& p) {
-      path->add(problem, p);
-      if (frames.any()) {
-        problem.workspace().context.load = p.load;
-        const auto node = [&](Index n) -> const system::NodeState& {
-          return problem.workspace().nodes[static_cast<std::size_t>(n)];
-        };
-        const auto points = assembly::calc_section_results(job.model, job.mesh, job.built, node,
-                                                           problem.workspace().context);
-        frames.write(job, problem, *p.state, p.load, points);
-      }
-      progress.update(0.0, fmt::format("load factor {:.5g}", p.load));
-      return true;
-    };
-    followed = analysis::follow_load_path(running, s.speed, s.state,
-                                          path_options(job, *law.path, options), accept);
-    load = followed->load;
-    notes = describe_path(*followed, v["path"]);
-    write_critical_points(job, step.name, *followed);
-    found = followed->last;
-  } else {
-    found = job.settle(s, options);
-    run::warn_of_closed_contacts(job, step, s);
-  }
-  s.state = found.state;
-  v["Newton iterations"] = found.iterations;
-  v["load steps"] = found.load_steps;
-
-  // node states, reactions and energy of the state found
-  VecX r(job.system().size());
-  problem.frames = s.state.frames;
-  problem.workspace().context.load = load;
-  if (!problem.residual(s.state.t, s.state.q, s.state.v, s.state.a, r))
-    throw run_error("R11", fmt::format("step '{}': the state found cannot be evaluated", step.name),
-                    {});
-  problem.power(s.state.t, s.state.q, s.state.v, s.state.a, r);
-  analysis::SteadySystem turning(job.system(), job.steady_rotation_of(s));
-  turning.set_load(load);
-  const std::vector<results::SupportLoad> loads =
-      results::calc_support_loads(job, turning, s.state, s.speed, found.reactions);
-  const analysis::Definiteness tangent =
-      results::judge_state(turning, s.state, s.speed, found.spin_holds, true);
-  results::add_stability(v, tangent, s.speed);
-  results::warn_of_unstable(job, step.name, tangent, s.speed);
-  if (!tangent.stable() && tangent.shape.size() > 0)
-    job.folder.write_table(step.name + "_unstable_direction.csv",
-                           results::shape_table(job, "Direction in which the equilibrium is left",
-                                                s.state.frames, s.state.q, tangent.shape));
-  results::StaticResults results = results::make_static_results(
-      job, step.name, problem, loads, found.reactions, found.spin_holds, v);
-  if (!law.path && frames.any()) frames.write(job, problem, s.state, s.state.t, results.points);
-  frames.end();
-
-  job.folder.write_table(step.name + "_deflection.csv", results.deflection);
-  job.folder.write_table(step.name + "_supports.csv", results.supports);
-  job.folder.write_table(step.name + "_sections.csv", results.sections);
-  const bool rolling = !results.rolling.rows.empty();
-  if (rolling) job.folder.write_table(step.name + "_rolling.csv", results.rolling);
-  if (path) job.folder.write_table(step.name + "_path.csv", path->table());
-  const std::vector<results::SupportCoefficients> linear =
-      results::calc_support_coefficients(job, s);
-  io::Table coefficients = results::support_table(linear),
-            five = results::rolling_stiffness_table(linear);
-  const bool has_five = !five.rows.empty();
-  if (has_five) job.folder.write_table(step.name + "_rolling_stiffness.csv", five);
-  const bool linearised = !coefficients.rows.empty();
-  if (linearised) job.folder.write_table(step.name + "_coefficients.csv", coefficients);
-  const RunTime time = watch.elapsed();
-  run::put_run_time(v, time);
-  const std::string kind = tangent.stable() ? "equilibrium" : results::stability_line(tangent, 0.0);
-  const std::string ended = law.path ? notes.front()
-                                     : fmt::format("{} at {:.0f} rpm, {} Newton iterations", kind,
-                                                   s.speed * 30.0 / pi, found.iterations);
-  run::ProgressLine(step.name, job.options.quiet).done(fmt::format("{}, {}", ended, time.text()));
-  io::ReportSection section;
-  results::say_held(job, step, results::held_in_step(job, step, found.spin_holds), section);
-  if (job.model.output.report) {
-    const std::string held = std::move(section.text);
-    section.title = fmt::format("{}: static equilibrium", step.name);
-    section.text =
-        fmt::format("At {:.6g} rpm, load factor {:.6g}: {} Newton iterations, {} load step{}.",
-                    s.speed * 30.0 / pi, load, found.iterations, found.load_steps,
-                    found.load_steps == 1 ? "" : "s");
-    if (!tangent.stable())
-      section.text += fmt::format("\n\nIt is an {}.", results::stability_line(tangent, s.speed));
-    for (const std::string& n : notes)
-      section.text += "\n\n" + n + ".";
-    section.text += held;
-    if (followed && !followed->critical.empty())
-      section.tables.push_back(results::critical_table(*followed));
-    if (path) section.figures.push_back(path->figure(step.name));
-    for (plot::Figure& f : results.figures)
-      section.figures.push_back(std::move(f));
-    section.tables.push_back(std::move(results.supports));
-    section.tables.push_back(std::move(results.extremes));
-    if (linearised) {
-      section.tables.push_back(std::move(coefficients));
-      section.files.emplace_back("bearing coefficients", step.name + "_coefficients.csv");
-    }
-    for (const char* what : {"deflection", "supports", "sections"})
-      section.files.emplace_back(what, step.name + "_" + what + ".csv");
-    if (has_five) {
-      section.tables.push_back(std::move(five));
-      section.files.emplace_back("stiffness of rolling bearings",
-                                 step.name + "_rolling_stiffness.csv");
-    }
-    if (rolling) {
-      section.tables.push_back(std::move(results.rolling));
-      section.files.emplace_back("rolling elements", step.name + "_rolling.csv");
-    }
-    if (path) section.files.emplace_back("load path", step.name + "_path.csv");
-    job.report.sections.push_back(std::move(section));
-  }
-  if (!job.options.quiet && !job.options.json) {
-    for (std::size_t k = 1; k < notes.size(); ++k)
-      std::fputs(("  " + notes[k] + "\n").c_str(), stdout);
-    for (const std::string& line : results.lines)
-      std::fputs(("  " + line + "\n").c_str(), stdout);
-  }
-  s.governors.clear();  // an equilibrium: none of them has begun
-  job.states[step.name] = std::move(s);
-  if (followed) check_end(step.name, *followed);
+  StaticRun(job, step, law).execute();
 }
 
 }  // namespace whirl::steps

@@ -78,6 +78,56 @@ void describe_savings(run::Job& job, double seconds) {
         stderr);
 }
 
+void take_times(run::Job& job, const Stopwatch& watch) {
+  for (const auto& [name, time] : job.phases) {
+    job.summary["run time by phase, CPU [s]"][name] = time.cpu;
+    job.summary["run time by phase, wall [s]"][name] = time.wall;
+  }
+  run::put_run_time(job.summary, watch.elapsed());
+}
+
+void write_report(run::Job& job, const RunTime& time) {
+  job.report.summary = job.summary;
+  job.report.facts.emplace_back("run time, CPU", fmt::format("{:.3f} s", time.cpu));
+  job.report.facts.emplace_back("run time, wall", fmt::format("{:.3f} s", time.wall));
+  io::ReportSection rotor;
+  rotor.title = "Rotor";
+  rotor.figures = plot::draw_model(job.model, job.mesh, job.scene);
+  job.report.sections.insert(job.report.sections.begin(), std::move(rotor));
+  io::write_report(job.folder.path("report.html"), job.report);
+  for (const io::ReportSection& s : job.report.sections)
+    for (const plot::Figure& f : s.figures)
+      job.folder.write_text("plots/" + f.name + ".svg", plot::render_svg(f));
+}
+
+/// Summary and report of what has run.
+void finish(run::Job& job, const Stopwatch& watch) {
+  report_nonfinite(job);
+  take_times(job, watch);
+  if (job.model.output.report) {
+    const run::PhaseTimer timer(job, "report");
+    write_report(job, watch.elapsed());
+  }
+  take_times(job, watch);
+  job.folder.write_json("summary.json", job.summary);
+}
+
+void run_step(run::Job& job, const model::Step& step) {
+  job.build_for(step);
+  if (!job.summary.is_object() || job.summary.at("model").is_null()) describe_model(job);
+  std::visit(
+      [&](const auto& law) {
+        using T = std::decay_t<decltype(law)>;
+        if constexpr (std::is_same_v<T, model::TransientStep>)
+          run_transient_step(job, step, law);
+        else if constexpr (std::is_same_v<T, model::StaticStep>)
+          run_static_step(job, step, law);
+        else
+          run_frequency_step(job, step);
+      },
+      step.law);
+}
+
 }  // namespace
 
 void run_steps(run::Job& job) {
@@ -86,52 +136,12 @@ void run_steps(run::Job& job) {
   job.report.deck = job.model.resolved;
   for (const Diagnostic& w : job.model.warnings)
     job.report.warnings.push_back(w.message);
-  auto finish = [&] {
-    report_nonfinite(job);
-    auto take_times = [&] {
-      for (const auto& [name, time] : job.phases) {
-        job.summary["run time by phase, CPU [s]"][name] = time.cpu;
-        job.summary["run time by phase, wall [s]"][name] = time.wall;
-      }
-      run::put_run_time(job.summary, watch.elapsed());
-    };
-    take_times();
-    if (job.model.output.report) {
-      const run::PhaseTimer timer(job, "report");
-      job.report.summary = job.summary;
-      const RunTime time = watch.elapsed();
-      job.report.facts.emplace_back("run time, CPU", fmt::format("{:.3f} s", time.cpu));
-      job.report.facts.emplace_back("run time, wall", fmt::format("{:.3f} s", time.wall));
-      io::ReportSection rotor;
-      rotor.title = "Rotor";
-      rotor.figures = plot::draw_model(job.model, job.mesh, job.scene);
-      job.report.sections.insert(job.report.sections.begin(), std::move(rotor));
-      io::write_report(job.folder.path("report.html"), job.report);
-      for (const io::ReportSection& s : job.report.sections)
-        for (const plot::Figure& f : s.figures)
-          job.folder.write_text("plots/" + f.name + ".svg", plot::render_svg(f));
-    }
-    take_times();
-    job.folder.write_json("summary.json", job.summary);
-  };
   std::string running;
   try {
     for (const model::Step& step : job.model.steps) {
       running = step.name;
       if (run::interrupted()) break;
-      job.build_for(step);
-      if (!job.summary.is_object() || job.summary.at("model").is_null()) describe_model(job);
-      std::visit(
-          [&](const auto& law) {
-            using T = std::decay_t<decltype(law)>;
-            if constexpr (std::is_same_v<T, model::TransientStep>)
-              run_transient_step(job, step, law);
-            else if constexpr (std::is_same_v<T, model::StaticStep>)
-              run_static_step(job, step, law);
-            else
-              run_frequency_step(job, step);
-          },
-          step.law);
+      run_step(job, step);
     }
   } catch (const Interrupted&) {
     // steps before it are complete; of this one nothing is
@@ -141,11 +151,11 @@ void run_steps(run::Job& job) {
     io::Value& v = job.summary["error"];
     for (const Diagnostic& d : e.diagnostics())
       v.push(d.code + ": " + d.message);
-    finish();
+    finish(job, watch);
     throw;
   }
   describe_savings(job, watch.elapsed().wall);
-  finish();
+  finish(job, watch);
 }
 
 }  // namespace whirl::steps

@@ -2,6 +2,7 @@
 // the speed meet them.
 #include <analysis/spectra/critical.hpp>
 #include <results/frequency.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -12,16 +13,23 @@
 
 namespace whirl::steps {
 
-void run_torsional_step(run::Job& job, const model::Step& step, const model::TorsionalStep& law) {
-  results::FrequencyStep s(job, step, "torsional", "torsional vibration", law.max_speed);
-  const run::PhaseTimer timer(job, "modes");
+namespace {
+
+std::vector<analysis::WhirlMode> solve(results::FrequencyStep& s, const model::TorsionalStep& law) {
   analysis::ModesOptions o;
   o.count = law.modes;
   o.motion = analysis::Motion::torsional;
   analysis::SpectrumCertificate certificate;
-  const std::vector<analysis::WhirlMode> modes =
+  std::vector<analysis::WhirlMode> modes =
       analysis::whirl_modes(s.linear, law.max_speed, o, &certificate);
   s.certify(certificate);
+  return modes;
+}
+
+/// Tables and shapes of the modes; their lines in the interference diagram.
+std::vector<plot::CampbellLine> add_modes(results::FrequencyStep& s,
+                                          const std::vector<analysis::WhirlMode>& modes,
+                                          double max_speed) {
   io::Table table;
   table.title = "Torsional natural frequencies";
   table.columns = {{"mode", "-", ""},
@@ -29,49 +37,71 @@ void run_torsional_step(run::Job& job, const model::Step& step, const model::Tor
                    {"frequency", "rpm", ""},
                    {"log decrement", "-", ""},
                    {"damping ratio", "-", ""}};
-  io::Value& v = s.summary();
   std::vector<plot::CampbellLine> lines;
-  double highest = 0;
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const analysis::WhirlMode& m = modes[k];
-    table.add({static_cast<int>(k + 1), results::to_hz(m.frequency), results::to_rpm(m.frequency),
-               results::tidy(m.log_decrement), results::tidy(m.damping_ratio)});
-    v["frequencies [Hz]"].push(results::to_hz(m.frequency));
-    highest = std::max(highest, m.frequency);
+    const double decrement = results::tidy(m.log_decrement);
+    table.add({static_cast<int>(k + 1), to_hz(m.frequency), to_rpm(m.frequency), decrement,
+               results::tidy(m.damping_ratio)});
+    s.summary()["frequencies [Hz]"].push(to_hz(m.frequency));
     plot::CampbellLine l;
     l.label = fmt::format("T{}", k + 1);
-    l.speed = {0, law.max_speed};
+    l.speed = {0, max_speed};
     l.frequency = {m.frequency, m.frequency};
-    l.log_decrement = {results::tidy(m.log_decrement), results::tidy(m.log_decrement)};
+    l.log_decrement = {decrement, decrement};
     lines.push_back(std::move(l));
+    const std::string name = fmt::format("mode_{}", k + 1);
     results::add_shape_figures(
-        s, {fmt::format("mode_{}", k + 1),
-            fmt::format("Torsional mode {}: {:.5g} Hz", k + 1, results::to_hz(m.frequency)),
+        s, {name,
+            fmt::format("Torsional mode {}: {:.5g} Hz", k + 1, to_hz(m.frequency)),
             {},
             &m.x,
             analysis::ModeKind::torsional});
-    results::write_shape_frames(s, fmt::format("mode_{}", k + 1), m.x);
+    results::write_shape_frames(s, name, m.x);
   }
+  results::MeshAccuracy mesh(s);
+  mesh.look_at(modes, max_speed);
+  mesh.report();
   s.add_table("torsional", std::move(table));
-  io::Table criticals;
-  criticals.title = "Torsional critical speeds";
-  criticals.columns = {
+  return lines;
+}
+
+std::vector<plot::CriticalMark> add_criticals(results::FrequencyStep& s,
+                                              const std::vector<analysis::WhirlMode>& modes,
+                                              const model::TorsionalStep& law) {
+  io::Table table;
+  table.title = "Torsional critical speeds";
+  table.columns = {
       {"order", "-", "excitations a revolution"}, {"speed", "rpm", ""}, {"frequency", "Hz", ""}};
+  double highest = 0;
+  for (const analysis::WhirlMode& m : modes)
+    highest = std::max(highest, m.frequency);
   std::vector<plot::CriticalMark> marks;
   for (const double order : law.orders) {
+    if (modes.empty()) break;
     analysis::CriticalOptions q;
     q.order = order;
     q.max_speed = law.max_speed;
     q.motion = analysis::Motion::torsional;
     q.max_frequency = 1.0001 * highest;
-    if (modes.empty()) break;
     for (const analysis::Critical& c : analysis::critical_speeds(s.linear, q)) {
-      criticals.add({order, results::to_rpm(c.speed), results::to_hz(c.frequency)});
-      v["critical speeds [rpm]"][fmt::format("{:g}x", order)].push(results::to_rpm(c.speed));
+      table.add({order, to_rpm(c.speed), to_hz(c.frequency)});
+      s.summary()["critical speeds [rpm]"][fmt::format("{:g}x", order)].push(to_rpm(c.speed));
       marks.push_back({c.speed, c.frequency, order, {}});
     }
   }
-  s.add_table("critical_speeds", std::move(criticals));
+  s.add_table("critical_speeds", std::move(table));
+  return marks;
+}
+
+}  // namespace
+
+void run_torsional_step(run::Job& job, const model::Step& step, const model::TorsionalStep& law) {
+  results::FrequencyStep s(job, step, "torsional", "torsional vibration", law.max_speed);
+  const run::PhaseTimer timer(job, "modes");
+  const std::vector<analysis::WhirlMode> modes = solve(s, law);
+  const std::vector<plot::CampbellLine> lines = add_modes(s, modes, law.max_speed);
+  const std::vector<plot::CriticalMark> marks = add_criticals(s, modes, law);
   if (!lines.empty())
     s.add_figure(plot::plot_campbell(s.file("interference"), "Torsional interference diagram",
                                      lines, law.orders, marks));

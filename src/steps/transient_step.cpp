@@ -1,58 +1,34 @@
-// A transient step: initial state, observers for what the deck asks for, the run, and its results.
+// A transient step: initial state, what the deck asks for, the run, and its results.
 #include <analysis/statics/equilibrium.hpp>
-#include <analysis/transient/event_log.hpp>
 #include <analysis/transient/linear_motion.hpp>
 #include <analysis/transient/transient.hpp>
-#include <steps/accuracy.hpp>
-#include <run/checkpoint.hpp>
+#include <core/interrupt.hpp>
 #include <results/held.hpp>
+#include <results/transient_output.hpp>
+#include <run/checkpoint.hpp>
 #include <run/interrupt.hpp>
 #include <run/job.hpp>
-#include <results/keyphasor_output.hpp>
-#include <results/plot_buffer.hpp>
-#include <results/spectra_output.hpp>
-#include <run/support_diagnosis.hpp>
-#include <results/transient_outputs.hpp>
-#include <results/history_figures.hpp>
-#include <steps/transient_step.hpp>
-#include <steps/starts.hpp>
 #include <run/progress.hpp>
+#include <run/support_diagnosis.hpp>
+#include <steps/starts.hpp>
 #include <steps/step_kinds.hpp>
-#include <core/interrupt.hpp>
-#include <core/rotation.hpp>
-#include <plot/plots.hpp>
+#include <steps/transient_step.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
 
 namespace whirl::steps {
 
-using analysis::Measurement;
-using analysis::Point;
-
-std::vector<std::pair<std::string, Point>> watched_points(const run::Job& job) {
-  std::vector<std::pair<std::string, Point>> watched;
-  for (const model::Probe& p : job.model.probes)
-    watched.emplace_back(p.name, results::point_of(job, p.at));
-  if (watched.empty())
-    for (const model::Disk& d : job.model.disks)
-      watched.emplace_back("disk " + d.name, results::point_of(job, d.at));
-  return watched;
-}
-
 /// Films, and nothing else whose stiffness comes and goes within a step.
 bool only_films(const run::Job& job) {
-  const auto gap = [](const model::Bearing& b) {
-    const auto* gear = std::get_if<model::GearPair>(&b.law);
-    return std::holds_alternative<model::BallBearing>(b.law) ||
-           std::holds_alternative<model::RollerBearing>(b.law) || (gear && gear->backlash >= 0);
+  const auto comes_and_goes = [](const model::Bearing& b) {
+    const model::SupportTraits t = model::traits_of(b.law);
+    return t.gap || t.rolling;
   };
   return !job.built.fine.empty() &&
-         std::none_of(job.model.bearings.begin(), job.model.bearings.end(), gap);
+         std::none_of(job.model.bearings.begin(), job.model.bearings.end(), comes_and_goes);
 }
 
 analysis::TransientOptions transient_options(const run::Job& job, const model::TransientStep& law,
@@ -86,7 +62,7 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
       o.scales.limits.push_back({6 * f.node + c, f.length});
   if (law.stop_speed != 0.0) t.speed_stops.push_back({job.reference(), law.stop_speed});
   if (law.amplitude_limit < infinity)
-    for (const auto& [name, p] : watched_points(job))
+    for (const auto& [name, p] : results::watched_points(job))
       t.amplitude_stops.push_back({p, law.amplitude_limit, name});
   for (const model::Event& e : job.model.events) {
     if (!e.stop) continue;
@@ -156,39 +132,6 @@ std::unique_ptr<system::SystemProblem> transient_problem(const run::Job& job,
 
 namespace {
 
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// What [[event]] names.
-std::vector<analysis::EventLog::Watch> watches_of(const run::Job& job) {
-  std::vector<analysis::EventLog::Watch> out;
-  for (const model::Event& e : job.model.events) {
-    if (e.kind == model::Event::Kind::speed)
-      out.push_back({e.name,
-                     [n = job.reference(), x = e.value](const analysis::Snapshot& s) {
-                       return s.node(n).spin() - x;
-                     },
-                     e.direction});
-    else
-      out.push_back({e.name,
-                     [p = results::point_of(job, *e.at), x = e.value](const analysis::Snapshot& s) {
-                       return analysis::displacement(s, p).tail<2>().norm() - x;
-                     },
-                     e.direction});
-  }
-  return out;
-}
-
-void warn(run::Job& job, const model::Step& step, const std::string& what) {
-  job.summary["steps"][step.name]["warnings"].push(what);
-  job.report.warnings.push_back(step.name + ": " + what);
-  if (!job.options.quiet)
-    std::fputs(fmt::format("warning: {}: {}\n", step.name, what).c_str(), stderr);
-}
-
 /// A drive that prescribes another speed than the rotor has where the step goes on: an infinite
 /// torque for an instant.
 void warn_of_jumps(run::Job& job, const model::Step& step, const run::StepState& start) {
@@ -198,352 +141,233 @@ void warn_of_jumps(run::Job& job, const model::Step& step, const run::StepState&
     const double wanted = law->angle->at(start.state.t).df;
     const double now = start.state.v[6 * job.mesh.place(d.at).node + system::spin_phi];
     if (std::abs(wanted - now) <= 1e-3 * std::max(std::abs(wanted), std::abs(now))) continue;
-    warn(job, step,
-         fmt::format("drive '{}' prescribes {:.6g} rpm at t = {:.6g} s, where shaft '{}' turns at "
-                     "{:.6g} rpm: its speed jumps",
-                     d.name, wanted * 30.0 / pi, start.state.t, job.model.shafts[d.at.shaft].name,
-                     now * 30.0 / pi));
+    results::warn_of_step(
+        job, step,
+        fmt::format("drive '{}' prescribes {:.6g} rpm at t = {:.6g} s, where shaft '{}' turns at "
+                    "{:.6g} rpm: its speed jumps",
+                    d.name, to_rpm(wanted), start.state.t, job.model.shafts[d.at.shaft].name,
+                    to_rpm(now)));
   }
 }
 
-/// When rows of the histories are wanted, or nothing when always.
-analysis::Recorder::Gate gate_of(const run::Job& job,
-                                 const std::vector<std::pair<std::string, Point>>& watched) {
-  const model::Output& o = job.model.output;
-  const bool by_speed =
-      o.speed_low > -infinity || o.speed_high<infinity, by_size = o.above> 0.0 && !watched.empty();
-  if (!by_speed && !by_size) return {};
-  return [&job, &o, points = watched, by_size](const analysis::Snapshot& s) {
-    const double spin = s.node(job.reference()).spin();
-    if (spin < o.speed_low || spin > o.speed_high) return false;
-    return !by_size || std::any_of(points.begin(), points.end(), [&](const auto& p) {
-      return analysis::displacement(s, p.second).template tail<2>().norm() > o.above;
-    });
+/// A transient step on its way.
+class TransientRun {
+ public:
+  TransientRun(run::Job& job, const model::Step& step, const model::TransientStep& law);
+  /// Steps through time and writes what came of it. Error R10: no step is possible any more; what
+  /// came before is written.
+  void execute();
+
+ private:
+  void warn_of_start() const;
+  void add_own_parts();
+  run::Checkpoint checkpoint_of(const system::State& state,
+                                const time::IntegratorState& integrator) const;
+  void write_checkpoints();
+  analysis::TransientResult integrate(run::ProgressLine& line);
+  void summarize(const analysis::TransientResult& r, const RunTime& time) const;
+  io::ReportSection section_of(const analysis::TransientResult& r) const;
+  [[noreturn]] void say_failure(const analysis::TransientResult& r) const;
+
+  const Stopwatch watch_;
+  run::Job& job_;
+  const model::Step& step_;
+  const model::TransientStep& law_;
+  const std::filesystem::path checkpoint_path_;
+  const std::string deck_;  ///< what the motion depends on
+  std::optional<run::Checkpoint> resumed_, kept_;
+  run::StepState start_;
+  std::unique_ptr<system::SystemProblem> problem_;
+  double t_begin_;
+  analysis::TransientOptions options_;
+  results::TransientOutputs outputs_;
+  std::vector<analysis::Observer*> observers_;
+  run::Parts parts_;
+  double cpu_before_ = 0.0, wall_before_ = 0.0;  ///< of the earlier part of a resumed run, s
+  double cpu_begin_ = 0.0;                       ///< where this part began to step, s
+};
+
+TransientRun::TransientRun(run::Job& job, const model::Step& step, const model::TransientStep& law)
+    : job_(job),
+      step_(step),
+      law_(law),
+      checkpoint_path_(job.folder.path(run::checkpoint_name(step.name))),
+      deck_(run::what_moves(job.model, step.name)),
+      resumed_(job.options.resume ? run::read_checkpoint(checkpoint_path_) : std::nullopt),
+      start_(resumed_ ? run::StepState{resumed_->state, resumed_->speed, {}}
+                      : transient_start(job, step, law)),
+      problem_(transient_problem(job, law, start_)),
+      t_begin_(resumed_ ? resumed_->t_begin : start_.state.t),
+      options_(transient_options(job, law, t_begin_)) {
+  warn_of_start();
+  outputs_ = results::make_transient_outputs(
+      {job, step, law, start_, options_.integrator, t_begin_, resumed_.has_value()});
+  for (const auto& output : outputs_)
+    output->attach(observers_, parts_);
+  add_own_parts();
+  parts_.restore(resumed_ ? &*resumed_ : nullptr);
+  if (resumed_) {
+    options_.new_observers = parts_.fresh();
+    cpu_before_ = resumed_->seconds;
+  }
+  for (const auto& output : outputs_)
+    output->open();
+  if (law.checkpoint > 0.0) write_checkpoints();
+}
+
+void TransientRun::warn_of_start() const {
+  if (resumed_) return;
+  const bool other_run = !law_.previous.empty();
+  if (!step_.from.empty() || other_run) warn_of_jumps(job_, step_, start_);
+  if (law_.own_speed() && (goes_on_in_motion(job_, step_) || other_run))
+    results::warn_of_step(
+        job_, step_,
+        "initial_speed has no effect: the step goes on from a motion with its own speed");
+}
+
+/// What the motion itself needs to go on.
+void TransientRun::add_own_parts() {
+  if (auto* small = dynamic_cast<analysis::LinearMotion*>(problem_.get()))
+    parts_.add(
+        {run::Part::steady_motion}, [small](OutArchive& a) { small->save(a); },
+        [small](InArchive& a) { small->restore(a); });
+  if (!job_.built.governors.empty())
+    parts_.add(
+        {run::Part::governors}, [this](OutArchive& a) { save_governors(a, start_); },
+        [this](InArchive& a) {
+          restore_governors(a, start_);
+          begin_governors(job_, start_);
+        });
+  parts_.add(
+      {run::Part::wall_clock},
+      [this](OutArchive& a) { a.put(wall_before_ + watch_.elapsed().wall); },
+      [this](InArchive& a) { wall_before_ = a.number(); });
+}
+
+run::Checkpoint TransientRun::checkpoint_of(const system::State& state,
+                                            const time::IntegratorState& integrator) const {
+  const double cpu = cpu_before_ + thread_cpu_seconds() - cpu_begin_;
+  run::Checkpoint c{deck_, t_begin_, start_.speed, cpu, {}, state, integrator, {}};
+  parts_.save(c);
+  return c;
+}
+
+void TransientRun::write_checkpoints() {
+  options_.checkpoint = [this](const system::State& state,
+                               const time::IntegratorState& integrator) {
+    run::write_checkpoint(checkpoint_path_, checkpoint_of(state, integrator));
+  };
+  options_.keep = [this](const system::State& state, const time::IntegratorState& integrator) {
+    kept_ = checkpoint_of(state, integrator);
+  };
+  options_.fall_back = [this] {
+    if (kept_) run::write_checkpoint(checkpoint_path_, *kept_);
   };
 }
 
-/// Histories of other columns than those of the earlier part of the run: the file of that part gets
-/// a number.
-void keep_earlier_series(const run::Job& job, const std::string& name) {
-  for (const char* extension : {".csv", ".h5"}) {
-    const std::filesystem::path file = job.folder.path(name + extension);
-    std::error_code ec;
-    if (!std::filesystem::exists(file, ec)) continue;
-    int n = 1;
-    while (std::filesystem::exists(job.folder.path(fmt::format("{}.{}{}", name, n, extension)), ec))
-      ++n;
-    std::filesystem::rename(file, job.folder.path(fmt::format("{}.{}{}", name, n, extension)), ec);
+analysis::TransientResult TransientRun::integrate(run::ProgressLine& line) {
+  options_.progress = [this, &line](const analysis::Progress& p) {
+    line.update((p.t - t_begin_) / law_.duration,
+                fmt::format("t {:.4g} s  {:.0f} rpm  dt {:.2e} s  {} steps  {} Newton", p.t,
+                            to_rpm(p.spin), p.dt, p.steps, p.newton));
+  };
+  const run::PhaseTimer timer(job_, "stepping and histories");
+  cpu_begin_ = thread_cpu_seconds();
+  analysis::TransientResult r = analysis::run_transient(
+      *problem_, start_.state, options_, observers_, resumed_ ? &resumed_->integrator : nullptr);
+  r.seconds += cpu_before_;
+  return r;
+}
+
+void put_statistics(io::Value& v, const model::IntegratorOptions& scheme,
+                    const time::Statistics& s) {
+  v["method"] = scheme.method;
+  v["tolerance"] = scheme.tolerance;
+  v["steps"] = s.accepted;
+  v["rejected by error"] = s.rejected_error;
+  v["rejected by Newton"] = s.rejected_newton;
+  v["Newton iterations"] = s.newton_iterations;
+  v["linearisations"] = s.linearizations;
+  v["factorisations real"] = s.factorizations_real;
+  v["factorisations complex"] = s.factorizations_complex;
+  v["residual evaluations"] = s.residuals;
+  v["step min [s]"] = s.step_min;
+  v["step mean [s]"] = s.step_mean();
+  v["step max [s]"] = s.step_max;
+  v["local error / allowance, max"] = s.error_max;
+  v["local error / allowance, mean"] = s.error_mean();
+}
+
+void TransientRun::summarize(const analysis::TransientResult& r, const RunTime& time) const {
+  io::Value& v = job_.summary["steps"][step_.name];
+  v["type"] = "transient";
+  v["outcome"] = std::string(to_string(r.reason));
+  if (!r.detail.empty()) v["detail"] = r.detail;
+  v["t_end [s]"] = r.end.t;
+  if (resumed_) v["resumed at [s]"] = resumed_->state.t;
+  put_statistics(v["integrator"], law_.integrator, r.statistics);
+  if (problem_->is_linear())
+    v["equations"] = law_.linear ? "linear: small motions about the steadily turning equilibrium"
+                                 : "linear: constant matrices";
+  run::put_run_time(v, time);
+}
+
+io::ReportSection TransientRun::section_of(const analysis::TransientResult& r) const {
+  const time::Statistics& s = r.statistics;
+  io::ReportSection section;
+  section.title = fmt::format("{}: transient", step_.name);
+  section.text =
+      fmt::format("{} at t = {:.6g} s. {} steps of {} ({} rejected), {} Newton iterations.{}",
+                  to_string(r.reason), r.end.t, s.accepted, law_.integrator.method,
+                  s.rejected_error + s.rejected_newton, s.newton_iterations,
+                  r.detail.empty() ? "" : " " + r.detail + ".");
+  return section;
+}
+
+void TransientRun::say_failure(const analysis::TransientResult& r) const {
+  const std::string limits = run::supports_at_their_limit(job_, r.end);
+  const std::string hint =
+      !limits.empty() ? "extend the table or write extrapolate = \"hold\", or give the film more "
+                        "to carry with"
+      : law_.integrator.tolerance < 1e-7
+          ? "a tolerance of 1e-7 or more may be above the rounding of this model"
+          : "try a smaller tolerance, or look at the state before it in the frames";
+  throw run_error("R10", fmt::format("step '{}' stopped {}{}", step_.name, r.detail, limits),
+                  "results up to that time are complete; " + hint, step_.name);
+}
+
+void TransientRun::execute() {
+  run::ProgressLine line(step_.name, job_.options.quiet);
+  const analysis::TransientResult r = integrate(line);
+  const interrupt::Shield shield;  // an interrupted step too is written to its end
+  for (const auto& output : outputs_)
+    output->close();
+  job_.states[step_.name] = {r.end, start_.speed, start_.governors};
+
+  const RunTime time{r.seconds, wall_before_ + watch_.elapsed().wall};
+  summarize(r, time);
+  io::ReportSection section = section_of(r);
+  results::TransientEnd end{job_, step_, law_, r, job_.summary["steps"][step_.name], section};
+  std::string headline =
+      fmt::format("{}: {} steps, {} Newton iterations, {}", to_string(r.reason),
+                  r.statistics.accepted, r.statistics.newton_iterations, time.text());
+  for (const auto& output : outputs_) {
+    output->summarize(end);
+    if (const std::string words = output->headline(); !words.empty()) headline += ", " + words;
   }
+  line.done(headline);
+  results::say_held(job_, step_, results::held_in_step(job_, step_), section);
+  for (const auto& output : outputs_)
+    output->report(end);
+  if (job_.model.output.report) job_.report.sections.push_back(std::move(section));
+  if (r.reason == analysis::StopReason::failed) say_failure(r);
 }
 
 }  // namespace
 
 void run_transient_step(run::Job& job, const model::Step& step, const model::TransientStep& law) {
-  const Stopwatch watch;
   job.build_for(step);
-  const std::filesystem::path checkpoint_path = job.folder.path(run::checkpoint_name(step.name));
-  const std::optional<run::Checkpoint> resumed =
-      job.options.resume ? run::read_checkpoint(checkpoint_path) : std::nullopt;
-  run::StepState start = resumed ? run::StepState{resumed->state, resumed->speed, {}}
-                                 : transient_start(job, step, law);
-  const bool goes_on = !step.from.empty() || !law.previous.empty();
-  if (!resumed && goes_on) warn_of_jumps(job, step, start);
-  if (!resumed && law.own_speed() && (goes_on_in_motion(job, step) || !law.previous.empty()))
-    warn(job, step,
-         "initial_speed has no effect: the step goes on from a motion with its own speed");
-  const std::unique_ptr<system::SystemProblem> equations = transient_problem(job, law, start);
-  system::SystemProblem& problem = *equations;
-  const double t0 = resumed ? resumed->t_begin : start.state.t;
-  analysis::TransientOptions options = transient_options(job, law, t0);
-  const std::vector<std::pair<std::string, Point>> watched = watched_points(job);
-
-  // observers: only what the deck asks for
-  std::vector<analysis::Observer*> observers;
-  const model::Output& out = job.model.output;
-  results::Channels channels = results::make_channels(job);
-  results::PlotBuffer buffer(channels.columns);
-  std::vector<io::TimeSeriesPtr> sinks;
-  if (out.csv) sinks.push_back(io::make_csv_series(job.folder.path(step.name + ".csv")));
-  if (out.binary) sinks.push_back(io::make_hdf5_series(job.folder.path(step.name + ".h5")));
-  io::TimeSeriesPtr sink = sinks.empty()       ? nullptr
-                           : sinks.size() == 1 ? std::move(sinks.front())
-                                               : io::make_tee(std::move(sinks));
-  run::Parts parts;
-  // what a key says must be what decides whether the saved part fits
-  std::string columns, watching;
-  for (const Measurement& m : channels.all)
-    for (std::size_t k = 0; k < m.width(); ++k)
-      columns += m.name + "." + (m.components.empty() ? "" : m.components[k]) + " ";
-  for (const auto& w : watched)
-    watching += w.first + " ";
-  bool series_continues = false;
-  const std::string series_key =
-      fmt::format("series {}{}: {}", out.csv ? "csv " : "", out.binary ? "hdf5 " : "", columns);
-  if (sink)
-    parts.add(
-        series_key,
-        [&](OutArchive& a) {
-          sink->flush();
-          a.put_count(sink->rows());
-        },
-        [&](InArchive& a) {
-          sink->resume(results::io_channels(channels), a.count());
-          series_continues = true;
-        });
-  parts.add(
-      "plot buffer " + columns, [&](OutArchive& a) { buffer.save(a); },
-      [&](InArchive& a) { buffer.restore(a); });
-  analysis::Recorder recorder(
-      channels.all,
-      [&](const std::vector<double>& row) {
-        if (sink) sink->append(row);
-        if (out.report) buffer.append(row);
-      },
-      t0, out.every, out.t0, out.t1, gate_of(job, watched));
-  if (channels.columns > 0 && (sink || out.report)) {
-    observers.push_back(&recorder);
-    parts.add(fmt::format("recorder every {} {}", out.every, series_key), recorder);
-  }
-  analysis::PeakTracker peaks(watched, job.reference());
-  if (!watched.empty()) {
-    observers.push_back(&peaks);
-    parts.add("peaks " + watching, peaks);
-  }
-  analysis::EnergyBalance energy(options.integrator.breakpoints);
-  observers.push_back(&energy);
-  parts.add("energy", energy);
-  analysis::TiltWatch tilt;
-  observers.push_back(&tilt);
-  parts.add("tilt", tilt);
-  analysis::StepHistogram lengths(job.reference());
-  observers.push_back(&lengths);
-  parts.add("step lengths", lengths);
-  std::vector<std::unique_ptr<results::Frames>> frames;
-  for (const model::VtkOutput& v : out.vtk)
-    if (v.step.empty() || v.step == step.name) {
-      const std::string name =
-          frames.empty() ? step.name : fmt::format("{}_{}", step.name, frames.size() + 1);
-      frames.push_back(
-          std::make_unique<results::Frames>(job, v, name, t0, options.integrator.t_end));
-      observers.push_back(frames.back().get());
-      std::string content;
-      for (const std::string& c : v.content)
-        content += " " + c;
-      parts.add(
-          fmt::format("frames {} window {} {} every {} per revolution {} scale {} around {}{}",
-                      frames.size(), v.t0, v.t1, v.every, v.frames_per_revolution,
-                      v.deformation_scale, v.points_around, content),
-          *frames.back());
-    }
-  analysis::EventLog events(watches_of(job), job.reference());
-  if (!events.watches().empty()) {
-    observers.push_back(&events);
-    std::string what = "events";
-    for (const model::Event& e : job.model.events)
-      what += fmt::format(" {} {} {}", e.name, e.value, e.direction);
-    parts.add(what, events);
-  }
-  std::unique_ptr<results::KeyphasorOutput> keyphasor;
-  if (out.tracking.on && !job.model.probes.empty() && (out.csv || out.report)) {
-    keyphasor =
-        std::make_unique<results::KeyphasorOutput>(job, step, results::probe_senses(job, start));
-    observers.push_back(&keyphasor->observer());
-    parts.add_output(keyphasor->key(), *keyphasor);
-  }
-  std::unique_ptr<results::SpectraOutput> spectra;
-  if (out.spectra && !job.model.probes.empty() && (out.csv || out.report)) {
-    spectra =
-        std::make_unique<results::SpectraOutput>(job, step, t0, results::probe_senses(job, start));
-    observers.push_back(&spectra->observer());
-    parts.add_output(spectra->key(), *spectra);
-  }
-  if (auto* small = dynamic_cast<analysis::LinearMotion*>(equations.get()))
-    parts.add(
-        "steady motion", [small](OutArchive& a) { small->save(a); },
-        [small](InArchive& a) { small->restore(a); });
-  if (!job.built.governors.empty())
-    parts.add(
-        governors_part, [&start](OutArchive& a) { save_governors(a, start); },
-        [&](InArchive& a) {
-          restore_governors(a, start);
-          begin_governors(job, start);
-        });
-  double seconds_before = 0.0, wall_before = 0.0;
-  parts.add(
-      "wall clock", [&](OutArchive& a) { a.put(wall_before + watch.elapsed().wall); },
-      [&](InArchive& a) { wall_before = a.number(); });
-  parts.restore(resumed ? &*resumed : nullptr);
-  if (resumed) {
-    options.new_observers = parts.fresh();
-    seconds_before = resumed->seconds;
-  }
-  if (sink && !series_continues) {
-    if (resumed) keep_earlier_series(job, step.name);
-    sink->begin(results::io_channels(channels));
-  }
-  const std::string deck = run::what_moves(job.model, step.name);
-  const double cpu0 = cpu_seconds();
-  std::optional<run::Checkpoint> kept;
-  const auto checkpoint_of = [&](const system::State& state,
-                                 const time::IntegratorState& integrator) {
-    run::Checkpoint c{deck, t0,    start.speed, seconds_before + cpu_seconds() - cpu0,
-                      {},   state, integrator,  {}};
-    parts.save(c);
-    return c;
-  };
-  if (law.checkpoint > 0.0) {
-    options.checkpoint = [&](const system::State& state, const time::IntegratorState& integrator) {
-      run::write_checkpoint(checkpoint_path, checkpoint_of(state, integrator));
-    };
-    options.keep = [&](const system::State& state, const time::IntegratorState& integrator) {
-      kept = checkpoint_of(state, integrator);
-    };
-    options.fall_back = [&] {
-      if (kept) run::write_checkpoint(checkpoint_path, *kept);
-    };
-  }
-
-  run::ProgressLine line(step.name, job.options.quiet);
-  options.progress = [&](const analysis::Progress& p) {
-    line.update((p.t - t0) / law.duration,
-                fmt::format("t {:.4g} s  {:.0f} rpm  dt {:.2e} s  {} steps  {} Newton", p.t,
-                            p.spin * 30.0 / pi, p.dt, p.steps, p.newton));
-  };
-  analysis::TransientResult r = [&] {
-    const run::PhaseTimer timer(job, "stepping and histories");
-    return analysis::run_transient(problem, start.state, options, observers,
-                                   resumed ? &resumed->integrator : nullptr);
-  }();
-  const interrupt::Shield shield;  // an interrupted step too is written to its end
-  r.seconds += seconds_before;
-  if (sink) sink->close();
-  if (keyphasor) keyphasor->close();
-  if (spectra) spectra->close();
-  job.states[step.name] = {r.end, start.speed, start.governors};
-
-  // summary
-  const time::Statistics& s = r.statistics;
-  io::Value& v = job.summary["steps"][step.name];
-  v["type"] = "transient";
-  v["outcome"] = std::string(to_string(r.reason));
-  if (!r.detail.empty()) v["detail"] = r.detail;
-  v["t_end [s]"] = r.end.t;
-  if (resumed) v["resumed at [s]"] = resumed->state.t;
-  v["integrator"]["method"] = law.integrator.method;
-  v["integrator"]["tolerance"] = law.integrator.tolerance;
-  v["integrator"]["steps"] = s.accepted;
-  v["integrator"]["rejected by error"] = s.rejected_error;
-  v["integrator"]["rejected by Newton"] = s.rejected_newton;
-  v["integrator"]["Newton iterations"] = s.newton_iterations;
-  if (problem.is_linear())
-    v["equations"] = law.linear ? "linear: small motions about the steadily turning equilibrium"
-                                : "linear: constant matrices";
-  v["integrator"]["linearisations"] = s.linearizations;
-  v["integrator"]["factorisations real"] = s.factorizations_real;
-  v["integrator"]["factorisations complex"] = s.factorizations_complex;
-  v["integrator"]["residual evaluations"] = s.residuals;
-  v["integrator"]["step min [s]"] = s.step_min;
-  v["integrator"]["step mean [s]"] = s.step_mean();
-  v["integrator"]["step max [s]"] = s.step_max;
-  v["integrator"]["local error / allowance, max"] = s.error_max;
-  v["integrator"]["local error / allowance, mean"] = s.error_mean();
-  const RunTime time{r.seconds, wall_before + watch.elapsed().wall};
-  run::put_run_time(v, time);
-  v["energy"]["stored at start [J]"] = energy.stored0();
-  v["energy"]["stored at end [J]"] = energy.stored();
-  v["energy"]["supplied [J]"] = energy.supplied();
-  v["energy"]["dissipated [J]"] = energy.dissipated();
-  v["energy"]["defect [J]"] = energy.defect();
-  v["energy"]["largest defect [J]"] = energy.worst_defect();
-  for (const analysis::Peak& p : peaks.peaks()) {
-    io::Value& q = v["peaks"][p.name];
-    q["amplitude 0-peak [m]"] = p.amplitude;
-    q["time [s]"] = p.time;
-    q["speed [rpm]"] = p.speed * 30.0 / pi;
-  }
-  v["largest tilt"]["|gamma| [rad]"] = tilt.tilt();
-  v["largest tilt"]["time [s]"] = tilt.time();
-  v["largest tilt"]["node"] = job.system().node(tilt.node()).name;
-  v["largest tilt"]["condition of (phi', gamma') -> omega"] =
-      rotation::chart_condition(tilt.tilt());
-  io::ReportSection section;
-  section.title = fmt::format("{}: transient", step.name);
-  section.text =
-      fmt::format("{} at t = {:.6g} s. {} steps of {} ({} rejected), {} Newton iterations.{}",
-                  to_string(r.reason), r.end.t, s.accepted, law.integrator.method,
-                  s.rejected_error + s.rejected_newton, s.newton_iterations,
-                  r.detail.empty() ? "" : " " + r.detail + ".");
-  {
-    const run::PhaseTimer timer(job, "accuracy");
-    const double speed = r.end.v[6 * job.reference() + system::spin_phi];
-    for (const std::string& w :
-         state_accuracy(job, {law, r, energy, lengths, speed}, v["accuracy"], section))
-      warn(job, step, w);
-  }
-  // second-order terms: the square of the tilt
-  if (law.linear && tilt.tilt() * tilt.tilt() > 0.01) {
-    warn(job, step,
-         fmt::format("linear = true, but {} tilts by {:.2g} rad: the terms left out are {:.2g} of "
-                     "those kept",
-                     job.system().node(tilt.node()).name, tilt.tilt(), tilt.tilt() * tilt.tilt()));
-  }
-  for (const auto& f : frames)
-    v["frames"] = f->frames();
-
-  line.done(fmt::format("{}: {} steps, {} Newton iterations, {}, energy defect {:.2e} J",
-                        to_string(r.reason), s.accepted, s.newton_iterations, time.text(),
-                        energy.worst_defect()));
-  results::say_held(job, step, results::held_in_step(job, step), section);
-
-  if (!events.watches().empty()) {
-    io::Table t;
-    t.title = "Events";
-    t.columns = {{"event", "-", ""}, {"passage", "-", ""}, {"time", "s", ""}, {"speed", "rpm", ""}};
-    for (const auto& e : events.events())
-      t.add({events.watches()[e.watch].name, e.rising ? "rising" : "falling", e.t,
-             e.speed * 30.0 / pi});
-    job.folder.write_table(step.name + "_events.csv", t);
-    v["events"] = events.events().size() + events.more();
-    if (t.rows.size() > 100) {
-      t.title = "Events (the first 100)";
-      t.rows.resize(100);
-    }
-    section.tables.push_back(std::move(t));
-    section.files.emplace_back("events", step.name + "_events.csv");
-  }
-
-  if (out.report) {
-    if (!peaks.peaks().empty()) {
-      io::Table t;
-      t.title = "Peaks";
-      t.columns = {{"probe", "-", ""},
-                   {"amplitude 0-peak", "m", ""},
-                   {"speed", "rpm", ""},
-                   {"time", "s", ""}};
-      for (const analysis::Peak& p : peaks.peaks())
-        t.add({p.name, p.amplitude, p.speed * 30.0 / pi, p.time});
-      job.folder.write_table(step.name + "_peaks.csv", t);
-      section.tables.push_back(std::move(t));
-    }
-    results::add_history_figures(job, step, channels.all, channels.start, buffer, section);
-    if (keyphasor) keyphasor->report(job, section);
-    if (spectra) spectra->report(section);
-    if (sink && out.csv) section.files.emplace_back("time history", step.name + ".csv");
-    job.report.sections.push_back(std::move(section));
-  }
-  if (r.reason == analysis::StopReason::failed) {
-    const std::string limits = run::supports_at_their_limit(job, r.end);
-    throw run_error("R10", fmt::format("step '{}' stopped {}{}", step.name, r.detail, limits),
-                    !limits.empty()
-                        ? "results up to that time are complete; extend the table or write "
-                          "extrapolate = \"hold\", or give the film more to carry with"
-                    : law.integrator.tolerance < 1e-7
-                        ? "results up to that time are complete; a tolerance of 1e-7 or more may "
-                          "be above the rounding of this model"
-                        : "results up to that time are complete; try a smaller tolerance, or look "
-                          "at the state before it in the frames",
-                    step.name);
-  }
+  TransientRun(job, step, law).execute();
 }
 
 }  // namespace whirl::steps

@@ -5,8 +5,6 @@
 
 namespace whirl::steps {
 
-/// Where a transient's peaks are looked for: the probes, or the disks when there are none.
-std::vector<std::pair<std::string, analysis::Point>> watched_points(const run::Job&);
 /// Scheme, accuracy, breakpoints and stops of a transient step.
 analysis::TransientOptions transient_options(const run::Job&, const model::TransientStep&,
                                              double t0);

@@ -3,6 +3,8 @@
 #include <analysis/response/api684.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <results/response.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/text.hpp>
@@ -26,9 +28,7 @@ std::string order_suffix(const UnbalanceResponse& r, std::size_t k) {
 void add_probe_figures(results::FrequencyStep& s, const UnbalanceResponse& r,
                        const std::vector<analysis::ResponseProbe>& probes,
                        const std::vector<analysis::ResponsePeak>& peaks) {
-  const plot::Amplitude convention = s.job.model.output.peak_to_peak
-                                         ? plot::Amplitude::peak_to_peak
-                                         : plot::Amplitude::zero_to_peak;
+  const plot::Amplitude convention = plot::amplitude(s.job.model.output.peak_to_peak);
   for (std::size_t p = 0; p < probes.size(); ++p) {
     std::vector<plot::ResponseCurve> curves;
     for (std::size_t k = 0; k < r.orders.size(); ++k) {
@@ -38,15 +38,9 @@ void add_probe_figures(results::FrequencyStep& s, const UnbalanceResponse& r,
         speeds.push_back(x.Omega);
         amplitudes.push_back(x.probe[k][p]);
       }
-      const results::ProbeCurves c = results::curves_of(probes[p], amplitudes);
-      for (std::size_t i = 0; i < c.label.size(); ++i) {
-        plot::ResponseCurve curve{c.label[i] + order_suffix(r, k), speeds, {}, {}};
-        for (const Complex a : c.amplitude[i]) {
-          curve.amplitude.push_back(std::abs(a));
-          curve.phase_lag.push_back(results::lag(a));
-        }
-        curves.push_back(std::move(curve));
-      }
+      const std::vector<plot::ResponseCurve> of_order = results::response_curves(
+          speeds, results::curves_of(probes[p], amplitudes), order_suffix(r, k));
+      curves.insert(curves.end(), of_order.begin(), of_order.end());
     }
     std::vector<plot::CriticalMark> marks;
     for (const analysis::ResponsePeak& k : peaks)
@@ -80,7 +74,7 @@ void add_force_figure(results::FrequencyStep& s, const UnbalanceResponse& r,
       y.label = s.job.built.support_forces[m].name + order_suffix(r, k);
       for (const SteadyPoint& x : r.points) {
         const auto& f = x.output[k][m];
-        y.x.push_back(results::to_rpm(x.Omega));
+        y.x.push_back(to_rpm(x.Omega));
         y.y.push_back(unit.factor * analysis::orbit_of(f[1], f[2]).major);
       }
       axes.series.push_back(std::move(y));
@@ -106,7 +100,7 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k,
       t.columns.push_back({fmt::format("{} {} phase lag", m.name, c), "deg", ""});
     }
   for (const SteadyPoint& x : r.points) {
-    std::vector<io::Table::Cell> row{results::to_rpm(x.Omega)};
+    std::vector<io::Table::Cell> row{to_rpm(x.Omega)};
     for (const analysis::PointAmplitude& a : x.probe[k])
       results::add_probe_cells(row, a);
     for (std::size_t m = 0; m < outputs.size(); ++m)
@@ -144,29 +138,10 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
                speeds.end());
 }
 
-}  // namespace
-
-void run_unbalance_step(run::Job& job, const model::Step& step, const model::UnbalanceStep& law) {
-  analysis::UnbalanceOptions o;
-  o.speeds = results::speeds_of(law.speed);
-  o.refine_peaks = law.speed.refine_peaks;
-  const double top = std::max(std::abs(o.speeds.front()), std::abs(o.speeds.back()));
-  results::FrequencyStep s(job, step, "unbalance_response", "unbalance response", top);
-  if (o.refine_peaks) {
-    const run::PhaseTimer timer(job, "critical speeds");
-    add_critical_speeds(s, o.speeds);
-  }
-  o.probes = results::response_probes(job);
-  o.outputs = results::support_measurements(job);
-  analysis::UnbalanceSolver solver(s.linear, o);
-  const UnbalanceResponse r = [&] {
-    const run::PhaseTimer timer(job, "unbalance response");
-    return solver.run();
-  }();
-  const std::vector<analysis::ResponsePeak>& peaks = solver.peaks();
-
-  io::Value& v = s.summary();
-  v["speeds"] = r.points.size();
+/// The same into the summary.
+io::Table peak_table(results::FrequencyStep& s, const UnbalanceResponse& r,
+                     const std::vector<analysis::ResponseProbe>& probes,
+                     const std::vector<analysis::ResponsePeak>& peaks) {
   io::Table table;
   table.title = "Peaks of the response";
   table.nan_means = "no half-power point on this side within the speeds";
@@ -179,106 +154,169 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
                    {"N1", "rpm", "lower half-power speed"},
                    {"N2", "rpm", "upper half-power speed"}};
   for (const analysis::ResponsePeak& p : peaks) {
-    table.add({o.probes[p.probe].name, r.orders[p.order], results::to_rpm(p.speed), p.amplitude,
-               p.phase_lag * 180 / pi, p.amplification(), results::to_rpm(p.low),
-               results::to_rpm(p.high)});
+    const std::string& name = probes[p.probe].name;
+    table.add({name, r.orders[p.order], to_rpm(p.speed), p.amplitude, p.phase_lag * 180 / pi,
+               p.amplification(), to_rpm(p.low), to_rpm(p.high)});
     io::Value e = io::Value::object();
-    e["speed [rpm]"] = results::to_rpm(p.speed);
+    e["speed [rpm]"] = to_rpm(p.speed);
     e["amplitude 0-peak [m]"] = p.amplitude;
     e["amplification factor"] = p.amplification();
-    v["peaks"][o.probes[p.probe].name].push(std::move(e));
+    s.summary()["peaks"][name].push(std::move(e));
   }
-  double largest = 0, at = 0;
-  for (std::size_t p = 0; p < o.probes.size(); ++p) {
+  return table;
+}
+
+/// Largest amplitude of all probes, and the speed there.
+struct Largest {
+  double amplitude = 0, speed = 0;  ///< m 0-peak, rad/s
+};
+
+/// The same of each probe into the summary.
+Largest find_largest(const UnbalanceResponse& r, const std::vector<analysis::ResponseProbe>& probes,
+                     io::Value& summary) {
+  Largest largest;
+  for (std::size_t p = 0; p < probes.size(); ++p) {
     double most = 0;
     for (const SteadyPoint& x : r.points)
-      for (const auto& order : x.probe)
-        if (const double a = order[p].orbit().major; a > most) {
-          most = a;
-          if (a > largest) {
-            largest = a;
-            at = x.Omega;
-          }
-        }
-    v["largest amplitude 0-peak [m]"][o.probes[p].name] = most;
-  }
-  for (std::size_t k = 0; k < r.orders.size(); ++k)
-    s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
-                make_table(r, k, o.probes, o.outputs), false);
-  s.add_table("peaks", std::move(table));
-
-  if (law.operating[1] > 0) {
-    io::Table margins;
-    margins.title = "Separation margins (API RP 684)";
-    margins.nan_means = "no half-power point within the speeds";
-    margins.columns = {{"probe", "-", ""},
-                       {"peak", "rpm", ""},
-                       {"amplification factor", "-", ""},
-                       {"required", "%", ""},
-                       {"actual", "%", "negative: inside the operating range"},
-                       {"result", "-", ""}};
-    int failed = 0;
-    for (std::size_t k = 0; k < r.orders.size(); ++k)
-      for (const analysis::MarginRow& m :
-           analysis::separation_margins(peaks, o.probes, {law.operating[0], law.operating[1]}, k)) {
-        margins.add({m.probe, results::to_rpm(m.speed), m.amplification, 100 * m.required,
-                     100 * m.actual,
-                     m.critically_damped ? "critically damped"
-                     : m.passed          ? "passed"
-                                         : "FAILED"});
-        failed += !m.passed;
+      for (const auto& order : x.probe) {
+        const double a = order[p].orbit().major;
+        if (a > most) most = a;
+        if (a > largest.amplitude) largest = {a, x.Omega};
       }
-    v["separation margins failed"] = failed;
-    s.add_table("margins", std::move(margins));
+    summary["largest amplitude 0-peak [m]"][probes[p].name] = most;
   }
-  add_probe_figures(s, r, o.probes, peaks);
-  add_force_figure(s, r, o.outputs);
+  return largest;
+}
 
-  // Operating shapes: where asked for, else at the distinct peaks.
-  std::vector<double> shapes_at = law.shapes_at;
-  if (shapes_at.empty()) {
-    for (const analysis::ResponsePeak& p : peaks)
-      shapes_at.push_back(p.speed);
-    std::sort(shapes_at.begin(), shapes_at.end());
-    shapes_at.erase(std::unique(shapes_at.begin(), shapes_at.end(),
-                                [](double a, double b) { return b - a < 0.01 * b; }),
-                    shapes_at.end());
+void add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
+                 const std::vector<analysis::ResponseProbe>& probes,
+                 const std::vector<analysis::ResponsePeak>& peaks,
+                 const model::UnbalanceStep& law) {
+  if (!(law.operating[1] > 0)) return;
+  io::Table margins;
+  margins.title = "Separation margins (API RP 684)";
+  margins.nan_means = "no half-power point within the speeds";
+  margins.columns = {{"probe", "-", ""},
+                     {"peak", "rpm", ""},
+                     {"amplification factor", "-", ""},
+                     {"required", "%", ""},
+                     {"actual", "%", "negative: inside the operating range"},
+                     {"result", "-", ""}};
+  int failed = 0;
+  for (std::size_t k = 0; k < r.orders.size(); ++k)
+    for (const analysis::MarginRow& m :
+         analysis::separation_margins(peaks, probes, {law.operating[0], law.operating[1]}, k)) {
+      margins.add({m.probe, to_rpm(m.speed), m.amplification, 100 * m.required, 100 * m.actual,
+                   m.critically_damped ? "critically damped"
+                   : m.passed          ? "passed"
+                                       : "FAILED"});
+      failed += !m.passed;
+    }
+  s.summary()["separation margins failed"] = failed;
+  s.add_table("margins", std::move(margins));
+}
+
+/// Where asked for, else at the distinct peaks.
+std::vector<double> shape_speeds(const model::UnbalanceStep& law,
+                                 const std::vector<analysis::ResponsePeak>& peaks) {
+  if (!law.shapes_at.empty()) return law.shapes_at;
+  std::vector<double> speeds;
+  for (const analysis::ResponsePeak& p : peaks)
+    speeds.push_back(p.speed);
+  std::sort(speeds.begin(), speeds.end());
+  speeds.erase(std::unique(speeds.begin(), speeds.end(),
+                           [](double a, double b) { return b - a < 0.01 * b; }),
+               speeds.end());
+  return speeds;
+}
+
+double largest_radius(analysis::Linearizer& linear, const VecXc& shape) {
+  double most = 0;
+  for (Index n = 0; n < linear.system().nodes(); ++n) {
+    if (linear.system().node(n).scalar) continue;
+    const Eigen::Vector3cd u = analysis::local_displacement(linear, shape, n);
+    most = std::max(most, analysis::orbit_of(u[1], u[2]).major);
   }
-  analysis::UnbalanceOptions one = o;
-  one.shapes = true;
-  analysis::UnbalanceSolver shape_solver(s.linear, one);
-  for (const double Omega : shapes_at) {
-    const SteadyPoint x = shape_solver.at(Omega);
+  return most;
+}
+
+void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
+                analysis::UnbalanceOptions options, const std::vector<double>& speeds,
+                const Largest& largest) {
+  options.shapes = true;
+  analysis::UnbalanceSolver solver(s.linear, options);
+  results::GapCheck gaps(s);
+  if (largest.amplitude > 0) gaps.look(largest.speed, solver.at(largest.speed).shape);
+  for (const double Omega : speeds) {
+    const SteadyPoint x = solver.at(Omega);
+    gaps.look(Omega, x.shape);
     for (std::size_t k = 0; k < r.orders.size(); ++k) {
-      const std::string name =
-          fmt::format("shape_{:.0f}rpm{}", results::to_rpm(Omega), order_suffix(r, k));
-      double most = 0;
-      for (Index n = 0; n < s.linear.system().nodes(); ++n)
-        if (!s.linear.system().node(n).scalar) {
-          const Eigen::Vector3cd u = analysis::local_displacement(s.linear, x.shape[k], n);
-          most = std::max(most, analysis::orbit_of(u[1], u[2]).major);
-        }
+      const std::string name = fmt::format("shape_{:.0f}rpm{}", to_rpm(Omega), order_suffix(r, k));
+      const double most = largest_radius(s.linear, x.shape[k]);
       if (!(most > 0)) continue;
       const plot::DisplayUnit unit = plot::length_unit(most);
-      results::add_shape_figures(s, {name,
-                                     fmt::format("Operating shape at {:.6g} rpm{}",
-                                                 results::to_rpm(Omega), order_suffix(r, k)),
-                                     fmt::format("Largest amplitude {} {}, 0-peak, drawn as 1.",
-                                                 readable(unit.factor * most), unit.name),
-                                     &x.shape[k]});
+      results::add_shape_figures(
+          s,
+          {name, fmt::format("Operating shape at {:.6g} rpm{}", to_rpm(Omega), order_suffix(r, k)),
+           fmt::format("Largest amplitude {} {}, 0-peak, drawn as 1.", readable(unit.factor * most),
+                       unit.name),
+           &x.shape[k]});
       results::write_shape_frames(s, name, x.shape[k], 1.0);
     }
   }
-  if (largest == 0)
-    s.section.text = "Nothing turns that is out of balance: the response is zero.";
-  else
-    s.section.text =
-        fmt::format("Steady response to what turns out of balance, {} speeds{}.", r.points.size(),
-                    o.refine_peaks ? ", with more of them where it peaks" : "");
-  const plot::DisplayUnit unit = plot::length_unit(largest);
+  gaps.report();
+}
+
+analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::UnbalanceStep& law) {
+  analysis::UnbalanceOptions o;
+  o.speeds = results::speeds_of(law.speed);
+  o.refine_peaks = law.speed.refine_peaks;
+  o.probes = results::response_probes(job);
+  o.outputs = results::support_measurements(job);
+  return o;
+}
+
+}  // namespace
+
+void run_unbalance_step(run::Job& job, const model::Step& step, const model::UnbalanceStep& law) {
+  analysis::UnbalanceOptions o = unbalance_options(job, law);
+  const double top = std::max(std::abs(o.speeds.front()), std::abs(o.speeds.back()));
+  results::FrequencyStep s(job, step, "unbalance_response", "unbalance response", top);
+  if (o.refine_peaks) {
+    const run::PhaseTimer timer(job, "critical speeds");
+    add_critical_speeds(s, o.speeds);
+  }
+  analysis::UnbalanceSolver solver(s.linear, o);
+  const UnbalanceResponse r = [&] {
+    const run::PhaseTimer timer(job, "unbalance response");
+    return solver.run();
+  }();
+  const std::vector<analysis::ResponsePeak>& peaks = solver.peaks();
+
+  s.summary()["speeds"] = r.points.size();
+  io::Table found = peak_table(s, r, o.probes, peaks);
+  const Largest largest = find_largest(r, o.probes, s.summary());
+  constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
+  results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
+  results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
+  for (std::size_t k = 0; k < r.orders.size(); ++k)
+    s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
+                make_table(r, k, o.probes, o.outputs), false);
+  s.add_table("peaks", std::move(found));
+  add_margins(s, r, o.probes, peaks, law);
+  add_probe_figures(s, r, o.probes, peaks);
+  add_force_figure(s, r, o.outputs);
+  add_shapes(s, r, o, shape_speeds(law, peaks), largest);
+
+  s.section.text = largest.amplitude == 0
+                       ? "Nothing turns that is out of balance: the response is zero."
+                       : fmt::format("Steady response to what turns out of balance, {} speeds{}.",
+                                     r.points.size(),
+                                     o.refine_peaks ? ", with more of them where it peaks" : "");
+  const plot::DisplayUnit unit = plot::length_unit(largest.amplitude);
   s.finish(fmt::format("{} speeds, {} peaks, largest {} {} at {:.0f} rpm", r.points.size(),
-                       peaks.size(), readable(unit.factor * largest), unit.name,
-                       results::to_rpm(at)));
+                       peaks.size(), readable(unit.factor * largest.amplitude), unit.name,
+                       to_rpm(largest.speed)));
 }
 
 }  // namespace whirl::steps

@@ -43,11 +43,11 @@ void print_study_sample(const analysis::StudySample& s) {
   std::fflush(stdout);
 }
 
-StudyPart write_study(const std::filesystem::path& root, const analysis::StudyResult& r,
-                      const StudyText& text, bool talk) {
-  io::ResultsFolder folder(root);
+namespace {
+
+io::Table empty_table(const std::string& title, const std::vector<std::string>& quantities) {
   io::Table table;
-  table.title = text.heading;
+  table.title = title;
   table.columns = {{"method", "-", ""},
                    {"tolerance", "-", ""},
                    {"dt", "s", ""},
@@ -58,98 +58,142 @@ StudyPart write_study(const std::filesystem::path& root, const analysis::StudyRe
                    {"factorisations", "-", ""},
                    {"Pareto", "-", "1: no other setting is both faster and more accurate"},
                    {"largest error", "-", "of the quantities that count"}};
-  for (const std::string& q : r.quantities)
+  for (const std::string& q : quantities)
     table.columns.push_back({"error of " + q, "-", "relative to its largest value"});
-  io::Value json = io::Value::object();
+  return table;
+}
+
+bool is_on_front(const analysis::StudyResult& r, std::size_t sample) {
+  return std::find(r.pareto.begin(), r.pareto.end(), sample) != r.pareto.end();
+}
+
+void add_row(io::Table& table, const analysis::StudySample& s, bool front) {
+  std::vector<io::Table::Cell> row{s.setting.method,
+                                   s.setting.tolerance,
+                                   s.setting.dt,
+                                   s.setting.mesh_factor,
+                                   s.seconds,
+                                   static_cast<double>(s.steps),
+                                   static_cast<double>(s.newton),
+                                   static_cast<double>(s.factorizations),
+                                   front ? 1.0 : 0.0,
+                                   s.worst()};
+  for (double e : s.errors)
+    row.emplace_back(e);
+  table.add(std::move(row));
+}
+
+io::Value json_of(const analysis::StudySample& s, const std::vector<std::string>& quantities,
+                  bool front) {
+  io::Value sample;
+  sample["setting"] = s.setting.label();
+  sample["CPU [s]"] = s.seconds;
+  sample["Pareto"] = front;
+  sample["largest error"] = s.worst();
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    sample["errors"][quantities[i]] = s.errors[i];
+  return sample;
+}
+
+/// The curve of the figure that a setting belongs to.
+std::string curve_name(const analysis::StudyCase& c) {
+  if (c.method.empty()) return "meshes";
+  return c.method + (c.tolerance > 0 ? "" : ", equal steps") +
+         (c.mesh_factor > 1 ? ", finer mesh" : "");
+}
+
+plot::Figure draw_study(const analysis::StudyResult& r, const StudyText& text) {
   std::map<std::string, plot::StudyCurve> curves;
-  for (std::size_t k = 0; k < r.samples.size(); ++k) {
-    const analysis::StudySample& s = r.samples[k];
+  for (const analysis::StudySample& s : r.samples) {
     if (!s.ok) continue;
-    const double front =
-        std::find(r.pareto.begin(), r.pareto.end(), k) != r.pareto.end() ? 1.0 : 0.0;
-    std::vector<io::Table::Cell> row{s.setting.method,
-                                     s.setting.tolerance,
-                                     s.setting.dt,
-                                     s.setting.mesh_factor,
-                                     s.seconds,
-                                     static_cast<double>(s.steps),
-                                     static_cast<double>(s.newton),
-                                     static_cast<double>(s.factorizations),
-                                     front,
-                                     s.worst()};
-    for (double e : s.errors)
-      row.emplace_back(e);
-    io::Value sample;
-    sample["setting"] = s.setting.label();
-    sample["CPU [s]"] = s.seconds;
-    sample["Pareto"] = front > 0.0;
-    sample["largest error"] = s.worst();
-    for (std::size_t i = 0; i < r.quantities.size(); ++i)
-      sample["errors"][r.quantities[i]] = s.errors[i];
-    json["settings"].push(sample);
-    table.add(std::move(row));
-    const std::string key = s.setting.method.empty()
-                                ? "meshes"
-                                : s.setting.method +
-                                      (s.setting.tolerance > 0 ? "" : ", equal steps") +
-                                      (s.setting.mesh_factor > 1 ? ", finer mesh" : "");
-    curves[key].label = key;
+    plot::StudyCurve& curve = curves[curve_name(s.setting)];
+    curve.label = curve_name(s.setting);
     if (s.worst() < 10.0)
-      curves[key].points.push_back({s.seconds, std::max(s.worst(), 1e-16), s.setting.label()});
+      curve.points.push_back({s.seconds, std::max(s.worst(), 1e-16), s.setting.label()});
   }
-  folder.write_table(text.stem + ".csv", table);
+  std::vector<plot::StudyCurve> list;
+  for (auto& [name, c] : curves) {
+    if (c.points.empty()) continue;
+    std::sort(c.points.begin(), c.points.end(),
+              [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
+    list.push_back(std::move(c));
+  }
+  return plot::plot_study(text.stem, text.title, list, "largest relative error of all quantities",
+                          "-", text.target);
+}
+
+/// Uncertainty of the reference and observed orders.
+void add_orders(io::Value& json, const analysis::StudyResult& r) {
   io::Value& u = json["uncertainty of the reference"];
   for (std::size_t i = 0; i < r.quantities.size(); ++i)
     u[r.quantities[i]] = r.uncertainty[i];
-  for (const auto& order : r.orders)
-    if (order.order > 0)
-      json[order.method.empty() ? "observed order" : "observed order, equal steps"]
-          [order.method.empty() ? "meshes" : order.method] = order.order;
-  std::string advice_text;
+  for (const auto& order : r.orders) {
+    if (!(order.order > 0)) continue;
+    const bool meshes = order.method.empty();
+    json[meshes ? "observed order" : "observed order, equal steps"]
+        [meshes ? "meshes" : order.method] = order.order;
+  }
+}
+
+/// The advice as text; and into the JSON.
+std::string add_advice(io::Value& json, const analysis::StudyResult& r) {
+  std::string text;
   for (const auto& a : r.advice) {
     const std::string target = fmt::format("{:g}", a.target);
-    const std::string best = a.found
-                                 ? fmt::format("{}: {:.3g} s", r.samples[a.sample].setting.label(),
-                                               r.samples[a.sample].seconds)
-                                 : std::string("none of the settings");
+    std::string best = "none of the settings";
+    if (a.found) {
+      const analysis::StudySample& s = r.samples[a.sample];
+      best = fmt::format("{}: {:.3g} s", s.setting.label(), s.seconds);
+    }
     json["advice"][target] = best;
-    advice_text += fmt::format("for an error of {} of the largest value use {}\n", target, best);
+    text += fmt::format("for an error of {} of the largest value use {}\n", target, best);
   }
-  folder.write_json(text.stem + ".json", json);
-  std::vector<plot::StudyCurve> list;
-  for (auto& [name, c] : curves)
-    if (!c.points.empty()) {
-      std::sort(c.points.begin(), c.points.end(),
-                [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
-      list.push_back(std::move(c));
-    }
-  const plot::Figure figure = plot::plot_study(
-      text.stem, text.title, list, "largest relative error of all quantities", "-", text.target);
-  io::write_atomic(folder.path("plots/" + text.stem + ".svg"), plot::render_svg(figure));
+  return text;
+}
+
+void print_orders(const analysis::StudyResult& r, const StudyText& text) {
+  std::printf("\nreference: %s; they differ by\n", text.reference.c_str());
+  for (std::size_t i = 0; i < r.quantities.size(); ++i)
+    if (r.uncertainty[i] > 0.0)
+      std::printf("  %-28s %.1e%s\n", r.quantities[i].c_str(), r.uncertainty[i],
+                  r.uncertainty[i] > analysis::resolved
+                      ? "   not resolved by the model itself: listed, not counted"
+                      : "");
+  for (const auto& order : r.orders) {
+    const std::string of = order.method.empty() ? "meshes" : "equal steps: " + order.method;
+    if (order.order > 0)
+      std::printf("observed order, %s: %.2f\n", of.c_str(), order.order);
+    else
+      std::printf("observed order, %s: none, its error is not that of the step\n", of.c_str());
+  }
+}
+
+}  // namespace
+
+StudyPart write_study(const std::filesystem::path& root, const analysis::StudyResult& r,
+                      const StudyText& text, bool talk) {
+  io::ResultsFolder folder(root);
   StudyPart part;
+  io::Table table = empty_table(text.heading, r.quantities);
+  part.json = io::Value::object();
+  for (std::size_t k = 0; k < r.samples.size(); ++k) {
+    if (!r.samples[k].ok) continue;
+    const bool front = is_on_front(r, k);
+    add_row(table, r.samples[k], front);
+    part.json["settings"].push(json_of(r.samples[k], r.quantities, front));
+  }
+  add_orders(part.json, r);
+  part.section.text = add_advice(part.json, r);
+  folder.write_table(text.stem + ".csv", table);
+  folder.write_json(text.stem + ".json", part.json);
+  const plot::Figure figure = draw_study(r, text);
+  io::write_atomic(folder.path("plots/" + text.stem + ".svg"), plot::render_svg(figure));
   part.section.title = text.heading;
-  part.section.text = advice_text;
   part.section.figures.push_back(figure);
-  part.section.tables.push_back(table);
-  part.json = json;
+  part.section.tables.push_back(std::move(table));
   if (talk) {
-    std::printf("\nreference: %s; they differ by\n", text.reference.c_str());
-    for (std::size_t i = 0; i < r.quantities.size(); ++i)
-      if (r.uncertainty[i] > 0.0)
-        std::printf("  %-28s %.1e%s\n", r.quantities[i].c_str(), r.uncertainty[i],
-                    r.uncertainty[i] > analysis::resolved
-                        ? "   not resolved by the model itself: listed, not counted"
-                        : "");
-    for (const auto& order : r.orders) {
-      if (order.order > 0)
-        std::printf("observed order, %s: %.2f\n",
-                    order.method.empty() ? "meshes" : ("equal steps: " + order.method).c_str(),
-                    order.order);
-      else
-        std::printf("observed order, %s: none, its error is not that of the step\n",
-                    order.method.empty() ? "meshes" : ("equal steps: " + order.method).c_str());
-    }
-    std::fputs(advice_text.c_str(), stdout);
+    print_orders(r, text);
+    std::fputs(part.section.text.c_str(), stdout);
   }
   return part;
 }

@@ -62,6 +62,88 @@ std::vector<analysis::Quantity> quantities_of(const std::filesystem::path& folde
   return out;
 }
 
+/// The deck's steps on meshes of several finenesses.
+class MeshRuns {
+ public:
+  MeshRuns(const model::Model& model, const StudyOptions& options,
+           const std::filesystem::path& root);
+  ~MeshRuns() { std::filesystem::remove_all(run_.output); }
+  MeshRuns(const MeshRuns&) = delete;
+  MeshRuns& operator=(const MeshRuns&) = delete;
+  long elements() const { return static_cast<long>(mesh_.elements.size()); }
+  /// Of the finest mesh: beyond 3000 elements rounding is what is seen.
+  int finest() const;
+  analysis::StudySample operator()(const analysis::StudyCase& c);
+
+ private:
+  analysis::StudySample run_on(int factor) const;
+  void drop_rows_unlike(const analysis::StudySample& s);
+
+  model::Model base_;
+  meshes::Mesh mesh_;
+  run::RunOptions run_;
+  /// Tables with as many rows on every mesh: the others belong to nodes.
+  std::map<std::string, std::size_t> rows_;
+  bool first_ = true;
+};
+
+MeshRuns::MeshRuns(const model::Model& model, const StudyOptions& options,
+                   const std::filesystem::path& root)
+    : base_(model),
+      mesh_(meshes::make_mesh(model)),
+      run_(options.run) {
+  base_.steps = mesh_steps(model);
+  base_.output.report = base_.output.binary = false;
+  base_.output.csv = true;
+  base_.output.vtk.clear();
+  run_.quiet = true;
+  run_.json = run_.terminal = false;
+  run_.output = root / "mesh_study";
+  for (const auto& q : run_on(1).quantities)
+    rows_[q.name] = q.values.size();
+}
+
+int MeshRuns::finest() const {
+  int factor = 16;
+  while (factor > 2 && factor * elements() > 3000)
+    factor /= 2;
+  return factor;
+}
+
+analysis::StudySample MeshRuns::run_on(int factor) const {
+  std::filesystem::remove_all(run_.output);
+  analysis::StudySample s;
+  s.steps = elements() * factor;
+  const model::Model m = refined(base_, mesh_, factor);
+  const std::clock_t start = std::clock();
+  steps::run_deck(m, run_);
+  s.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  s.quantities = quantities_of(run_.output);
+  return s;
+}
+
+void MeshRuns::drop_rows_unlike(const analysis::StudySample& s) {
+  std::erase_if(rows_, [&](const auto& r) {
+    return std::none_of(s.quantities.begin(), s.quantities.end(), [&](const auto& q) {
+      return q.name == r.first && q.values.size() == r.second;
+    });
+  });
+}
+
+analysis::StudySample MeshRuns::operator()(const analysis::StudyCase& c) {
+  analysis::StudySample s;
+  try {
+    s = run_on(c.mesh_factor);
+    if (first_) drop_rows_unlike(s);
+    first_ = false;
+    std::erase_if(s.quantities, [&](const auto& q) { return rows_.count(q.name) == 0; });
+  } catch (const Error& e) {
+    s.ok = false;
+    s.note = e.what();
+  }
+  return s;
+}
+
 }  // namespace
 
 bool has_mesh_study(const model::Model& model) {
@@ -70,76 +152,27 @@ bool has_mesh_study(const model::Model& model) {
 
 StudyPart study_meshes(const model::Model& model, const StudyOptions& options,
                        const std::filesystem::path& root) {
-  model::Model base = model;
-  base.steps = mesh_steps(model);
-  base.output.report = base.output.binary = false;
-  base.output.csv = true;
-  base.output.vtk.clear();
-  const meshes::Mesh mesh = meshes::make_mesh(model);
-  run::RunOptions run = options.run;
-  run.quiet = true;
-  run.json = run.terminal = false;
-  run.output = root / "mesh_study";
   const bool talk = !options.run.quiet;
-
-  const auto elements = static_cast<long>(mesh.elements.size());
-  int finest = 16;
-  while (finest > 2 && finest * elements > 3000)
-    finest /= 2;  // beyond, rounding is what is seen
+  if (talk) print_study_head();
+  MeshRuns runs(model, options, root);
+  const int finest = runs.finest();
   analysis::StudyOptions o;
   o.reference = {"", 0.0, 0.0, finest};
   o.cross_check = {"", 0.0, 0.0, finest / 2};
   for (int factor = 1; factor < finest; factor *= 2)
     o.ladder.push_back({"", 0.0, 0.0, factor});
-  if (talk) print_study_head();
   o.progress = [&](const analysis::StudySample& s) {
     if (talk) print_study_sample(s);
   };
-
-  const auto run_on = [&](int factor) {
-    std::filesystem::remove_all(run.output);
-    analysis::StudySample s;
-    s.steps = elements * factor;
-    const model::Model m = refined(base, mesh, factor);
-    const std::clock_t start = std::clock();
-    steps::run_deck(m, run);
-    s.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    s.quantities = quantities_of(run.output);
-    return s;
-  };
-  // tables with as many rows on every mesh: the others belong to nodes
-  std::map<std::string, std::size_t> rows;
-  for (const auto& q : run_on(1).quantities)
-    rows[q.name] = q.values.size();
-  bool first = true;
-  const auto result = analysis::run_study(
-      [&](const analysis::StudyCase& c) {
-        analysis::StudySample s;
-        try {
-          s = run_on(c.mesh_factor);
-          if (first)
-            std::erase_if(rows, [&](const auto& r) {
-              return std::none_of(s.quantities.begin(), s.quantities.end(), [&](const auto& q) {
-                return q.name == r.first && q.values.size() == r.second;
-              });
-            });
-          first = false;
-          std::erase_if(s.quantities, [&](const auto& q) { return rows.count(q.name) == 0; });
-        } catch (const Error& e) {
-          s.ok = false;
-          s.note = e.what();
-        }
-        return s;
-      },
-      o);
-  std::filesystem::remove_all(run.output);
+  const analysis::StudyResult result =
+      analysis::run_study([&](const analysis::StudyCase& c) { return runs(c); }, o);
   StudyText text;
   text.stem = "study_mesh";
   text.heading = "Error of the mesh against run time";
   text.title = fmt::format("{}: error of the mesh against run time",
                            model.title.empty() ? model.deck_name : model.title);
-  text.reference =
-      fmt::format("{} elements, checked by {}", finest * elements, finest * elements / 2);
+  text.reference = fmt::format("{} elements, checked by {}", finest * runs.elements(),
+                               finest * runs.elements() / 2);
   return write_study(root, result, text, talk);
 }
 

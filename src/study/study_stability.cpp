@@ -56,7 +56,7 @@ Scheme examine(const analysis::ReducedRotor& rotor, const char* name, double rho
   for (int k = 0; k <= points; ++k) {
     const double h = first * std::pow(last / first, static_cast<double>(k) / points);
     const double r = analysis::spectral_radius(rotor, name, h, rho);
-    s.radius.x.push_back(h * slow / two_pi);
+    s.radius.x.push_back(to_hz(h * slow));
     s.radius.y.push_back(r);
     s.largest_radius = std::max(s.largest_radius, r);
     s.limit = r;
@@ -92,46 +92,46 @@ double speed_of(run::Job& job) {
   return 0.0;
 }
 
-}  // namespace
+/// Error E95: what the study needs and the deck has not.
+Error unfit(const StudyOptions& options, const char* what, const char* hint) {
+  return Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95", what, hint,
+                                      Where{options.deck.string(), 0, 0, 0, ""}});
+}
 
-int study_stability(const StudyOptions& options) {
-  const model::Model model = deck::load_model(options.deck, options.read);
-  if (model.steps.empty())
-    throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95", "the deck has no step",
-                                       "a stability study takes the speed from the first step",
-                                       Where{options.deck.string(), 0, 0, 0, ""}});
-  run::RunOptions run = options.run;
-  run.quiet = true;
-  run::Job job(model, run, run::prepare_results(model, run));
-  const double Omega = speed_of(job);
-  double rho = 0.9;
-  for (const model::Step& step : model.steps)
-    if (const auto* t = std::get_if<model::TransientStep>(&step.law)) rho = t->integrator.rho_inf;
+/// The undamped rotor on its lowest modes, and what the schemes do to it.
+struct Findings {
+  double Omega = 0, rho = 0.9;         ///< rad/s; of generalized_alpha
+  double slow = infinity, fast = 0.0;  ///< rad/s, of the modes kept
+  long unknowns = 0;                   ///< kept
+  std::vector<Scheme> schemes;
+};
 
-  run::StepState standing =
-      job.start_of(model.steps.front(), Omega != 0.0 ? std::optional(Omega) : std::nullopt);
+Findings examine_schemes(run::Job& job, const StudyOptions& options) {
+  Findings f;
+  f.Omega = speed_of(job);
+  for (const model::Step& step : job.model.steps)
+    if (const auto* t = std::get_if<model::TransientStep>(&step.law)) f.rho = t->integrator.rho_inf;
+  const run::StepState standing =
+      job.start_of(job.model.steps.front(), f.Omega != 0.0 ? std::optional(f.Omega) : std::nullopt);
   analysis::EquilibriumOptions equilibrium;
-  equilibrium.chart_change = model.chart_change;
-  analysis::SteadyRotation running = job.steady_rotation_of(standing);
-  analysis::Linearizer linear(job.system(), running, equilibrium);
-  const analysis::ReducedRotor damped = analysis::reduce_rotor(linear, Omega),
-                               rotor = damped.conservative();
-  double slow = infinity, fast = 0.0;
+  equilibrium.chart_change = job.model.chart_change;
+  analysis::Linearizer linear(job.system(), job.steady_rotation_of(standing), equilibrium);
+  const analysis::ReducedRotor rotor = analysis::reduce_rotor(linear, f.Omega).conservative();
   for (const Complex& l : rotor.lambda)
     if (l.imag() > 0.0) {
-      slow = std::min(slow, l.imag());
-      fast = std::max(fast, l.imag());
+      f.slow = std::min(f.slow, l.imag());
+      f.fast = std::max(f.fast, l.imag());
     }
-  if (!(fast > 0.0))
-    throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E95",
-                                       "the rotor has no mode that oscillates",
-                                       "a stability study needs elastic supports or shafts",
-                                       Where{options.deck.string(), 0, 0, 0, ""}});
-
-  std::vector<Scheme> found;
+  if (!(f.fast > 0.0))
+    throw unfit(options, "the rotor has no mode that oscillates",
+                "a stability study needs elastic supports or shafts");
+  f.unknowns = static_cast<long>(rotor.M.rows());
   for (const char* name : schemes)
-    found.push_back(examine(rotor, name, rho, slow, fast));
+    f.schemes.push_back(examine(rotor, name, f.rho, f.slow, f.fast));
+  return f;
+}
 
+io::Table scheme_table(const Findings& f) {
   io::Table table;
   table.title = "Schemes on the undamped rotor";
   table.columns = {{"method", "-", ""},
@@ -144,37 +144,40 @@ int study_stability(const StudyOptions& options) {
     table.columns.push_back({fmt::format("damping ratio added, {:g} steps a period", n), "-", ""});
     table.columns.push_back({fmt::format("frequency error, {:g} steps a period", n), "-", ""});
   }
+  for (const Scheme& s : f.schemes) {
+    std::vector<io::Table::Cell> row{
+        label_of(s.name, f.rho), s.largest_radius, s.limit,
+        std::isfinite(s.first_unstable) ? io::Table::Cell(s.first_unstable)
+                                        : io::Table::Cell(std::string("none")),
+        std::isnan(s.energy) ? io::Table::Cell(std::string("-")) : io::Table::Cell(s.energy)};
+    for (const time::ModeResponse& r : s.response) {
+      row.emplace_back(r.damping);
+      row.emplace_back(r.frequency_error);
+    }
+    table.add(std::move(row));
+  }
+  return table;
+}
+
+io::Table curve_table(const Findings& f) {
   io::Table curves;
   curves.columns = {{"method", "-", ""},
                     {"step", "s", ""},
                     {"step / period of the first mode", "-", ""},
                     {"spectral radius", "-", ""}};
+  for (const Scheme& s : f.schemes)
+    for (std::size_t k = 0; k < s.radius.x.size(); ++k)
+      curves.add({s.name, s.radius.x[k] * two_pi / f.slow, s.radius.x[k], s.radius.y[k]});
+  return curves;
+}
+
+io::Value json_of(const Findings& f) {
   io::Value json = io::Value::object();
-  json["speed [rpm]"] = Omega * 30.0 / pi;
-  json["unknowns kept"] = static_cast<double>(rotor.M.rows());
-  json["frequencies kept, lowest [Hz]"] = slow / two_pi;
-  json["frequencies kept, highest [Hz]"] = fast / two_pi;
-  plot::Figure figure;
-  figure.name = "stability";
-  figure.title = model.title + ": stability of the integrators";
-  figure.height = 820;
-  figure.caption = fmt::format(
-      "Above: one step on the undamped rotor at {:.0f} rpm. Below: what a step adds to the damping "
-      "ratio of a mode.",
-      Omega * 30.0 / pi);
-  plot::Axes above, below;
-  above.x = plot::Axis("step / period of the first mode", "-", true);
-  above.y = plot::Axis("spectral radius", "-");
-  above.rules.push_back({false, 1.0, "energy is kept"});
-  below.x = plot::Axis("steps a period of the mode", "-", true);
-  below.y = plot::Axis("damping ratio added by the scheme", "-", true);
-  int colour = 0;
-  for (Scheme& s : found) {
-    std::vector<io::Table::Cell> row{
-        label_of(s.name, rho), s.largest_radius, s.limit,
-        std::isfinite(s.first_unstable) ? io::Table::Cell(s.first_unstable)
-                                        : io::Table::Cell(std::string("none")),
-        std::isnan(s.energy) ? io::Table::Cell(std::string("-")) : io::Table::Cell(s.energy)};
+  json["speed [rpm]"] = to_rpm(f.Omega);
+  json["unknowns kept"] = static_cast<double>(f.unknowns);
+  json["frequencies kept, lowest [Hz]"] = to_hz(f.slow);
+  json["frequencies kept, highest [Hz]"] = to_hz(f.fast);
+  for (const Scheme& s : f.schemes) {
     io::Value& v = json["schemes"][s.name];
     v["largest spectral radius"] = s.largest_radius;
     v["spectral radius of the longest step"] = s.limit;
@@ -182,42 +185,65 @@ int study_stability(const StudyOptions& options) {
     if (std::isfinite(s.first_unstable)) v["unstable from step [s]"] = s.first_unstable;
     if (!std::isnan(s.energy)) v["energy ratio after many steps"] = s.energy;
     for (std::size_t i = 0; i < s.response.size(); ++i) {
-      row.emplace_back(s.response[i].damping);
-      row.emplace_back(s.response[i].frequency_error);
       io::Value& at = v["steps a period"][fmt::format("{:g}", resolutions[i])];
       at["damping ratio added"] = s.response[i].damping;
       at["frequency error"] = s.response[i].frequency_error;
     }
-    table.add(std::move(row));
-    for (std::size_t k = 0; k < s.radius.x.size(); ++k)
-      curves.add({s.name, s.radius.x[k] * two_pi / slow, s.radius.x[k], s.radius.y[k]});
-    plot::Series damping;
-    damping.label = s.radius.label;
-    s.radius.style.color = damping.style.color = colour++;
-    for (double n = 400.0; n >= 4.0; n /= 1.1) {
-      const double d = time::mode_response(s.name, 1.0, 0.0, two_pi / n, rho).damping;
-      if (d > 1e-12) {
-        damping.x.push_back(n);
-        damping.y.push_back(d);
-      }
-    }
-    if (!damping.x.empty()) below.series.push_back(std::move(damping));
-    above.series.push_back(std::move(s.radius));
   }
+  return json;
+}
+
+plot::Series damping_curve(const Scheme& s, double rho, int color) {
+  plot::Series damping;
+  damping.label = s.radius.label;
+  damping.style.color = color;
+  for (double n = 400.0; n >= 4.0; n /= 1.1) {
+    const double d = time::mode_response(s.name, 1.0, 0.0, two_pi / n, rho).damping;
+    if (d > 1e-12) {
+      damping.x.push_back(n);
+      damping.y.push_back(d);
+    }
+  }
+  return damping;
+}
+
+plot::Figure draw(const Findings& f, const std::string& title) {
+  plot::Axes above, below;
+  above.x = plot::Axis("step / period of the first mode", "-", true);
+  above.y = plot::Axis("spectral radius", "-");
+  above.rules.push_back({false, 1.0, "energy is kept"});
+  below.x = plot::Axis("steps a period of the mode", "-", true);
+  below.y = plot::Axis("damping ratio added by the scheme", "-", true);
   above.y.min = 0.0;
   above.y.max = 1.1;
-  for (const Scheme& s : found)
+  int color = 0;
+  for (const Scheme& s : f.schemes) {
+    plot::Series damping = damping_curve(s, f.rho, color);
+    if (!damping.x.empty()) below.series.push_back(std::move(damping));
+    above.series.push_back(s.radius);
+    above.series.back().style.color = color++;
     if (s.largest_radius > 1.05) above.y.max = std::min(3.0, 1.05 * s.largest_radius);
-  figure.axes.push_back(std::move(above));
-  figure.axes.push_back(std::move(below));
+  }
+  plot::Figure figure;
+  figure.name = "stability";
+  figure.title = title + ": stability of the integrators";
+  figure.height = 820;
+  figure.caption = fmt::format(
+      "Above: one step on the undamped rotor at {:.0f} rpm. Below: what a step adds to the damping "
+      "ratio of a mode.",
+      to_rpm(f.Omega));
+  figure.axes = {std::move(above), std::move(below)};
+  return figure;
+}
 
+void write_findings(const run::Job& job, const Findings& f) {
+  const io::Table table = scheme_table(f);
+  const io::Value json = json_of(f);
+  const plot::Figure figure = draw(f, job.model.title);
   job.folder.write_table("stability.csv", table);
-  job.folder.write_table("stability_curves.csv", curves);
+  job.folder.write_table("stability_curves.csv", curve_table(f));
   job.folder.write_json("stability.json", json);
   io::write_atomic(job.folder.path("plots/stability.svg"), plot::render_svg(figure));
-  io::Report report;
-  report.title =
-      "Stability of the integrators: " + (model.title.empty() ? model.deck_name : model.title);
   io::ReportSection section;
   section.title = "Stability";
   section.text = fmt::format(
@@ -225,28 +251,48 @@ int study_stability(const StudyOptions& options) {
       "{:.4g} Hz. Energy is constant in truth: a spectral radius above 1 "
       "makes energy, one below 1 takes it. Damping ratios added and frequency errors hold for any "
       "undamped mode.",
-      Omega * 30.0 / pi, slow / two_pi, fast / two_pi);
+      to_rpm(f.Omega), to_hz(f.slow), to_hz(f.fast));
   section.figures.push_back(figure);
   section.tables.push_back(table);
+  io::Report report;
+  report.title = "Stability of the integrators: " +
+                 (job.model.title.empty() ? job.model.deck_name : job.model.title);
   report.sections.push_back(std::move(section));
-  report.deck = model.resolved;
+  report.deck = job.model.resolved;
   report.summary = json;
   io::write_report(job.folder.path("stability.html"), report);
+}
 
+void print(const Findings& f) {
+  std::printf("%.0f rpm, %ld unknowns, modes from %.4g to %.4g Hz, undamped\n\n", to_rpm(f.Omega),
+              f.unknowns, to_hz(f.slow), to_hz(f.fast));
+  std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "largest radius", "long steps",
+              "unstable from", "energy, 1e5", "damping added", "frequency err");
+  std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "", "", "s", "steps", "20 a period",
+              "20 a period");
+  for (const Scheme& s : f.schemes)
+    std::printf(
+        "%-26s %14.8f %14.3g %16s %16s %14.2e %14.2e\n", label_of(s.name, f.rho).c_str(),
+        s.largest_radius, s.limit,
+        std::isfinite(s.first_unstable) ? fmt::format("{:.3g}", s.first_unstable).c_str() : "none",
+        std::isnan(s.energy) ? "-" : fmt::format("{:.6g}", s.energy).c_str(), s.response[2].damping,
+        s.response[2].frequency_error);
+}
+
+}  // namespace
+
+int study_stability(const StudyOptions& options) {
+  const model::Model model = deck::load_model(options.deck, options.read);
+  if (model.steps.empty())
+    throw unfit(options, "the deck has no step",
+                "a stability study takes the speed from the first step");
+  run::RunOptions run = options.run;
+  run.quiet = true;
+  run::Job job(model, run, run::prepare_results(model, run));
+  const Findings findings = examine_schemes(job, options);
+  write_findings(job, findings);
   if (!options.run.quiet) {
-    std::printf("%.0f rpm, %ld unknowns, modes from %.4g to %.4g Hz, undamped\n\n",
-                Omega * 30.0 / pi, static_cast<long>(rotor.M.rows()), slow / two_pi, fast / two_pi);
-    std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "largest radius", "long steps",
-                "unstable from", "energy, 1e5", "damping added", "frequency err");
-    std::printf("%-26s %14s %14s %16s %16s %14s %14s\n", "", "", "", "s", "steps", "20 a period",
-                "20 a period");
-    for (const Scheme& s : found)
-      std::printf("%-26s %14.8f %14.3g %16s %16s %14.2e %14.2e\n", label_of(s.name, rho).c_str(),
-                  s.largest_radius, s.limit,
-                  std::isfinite(s.first_unstable) ? fmt::format("{:.3g}", s.first_unstable).c_str()
-                                                  : "none",
-                  std::isnan(s.energy) ? "-" : fmt::format("{:.6g}", s.energy).c_str(),
-                  s.response[2].damping, s.response[2].frequency_error);
+    print(findings);
     std::printf("\nresults: %s\n", job.folder.root().string().c_str());
   }
   return static_cast<int>(Exit::ok);

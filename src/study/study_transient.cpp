@@ -2,6 +2,7 @@
 #include <run/job.hpp>
 #include <run/results_folder.hpp>
 #include <study/study_parts.hpp>
+#include <results/channels.hpp>
 #include <steps/transient_step.hpp>
 #include <study/study.hpp>
 #include <core/table.hpp>
@@ -170,7 +171,7 @@ struct Bench {
         c.tolerance > 0 ? c.tolerance : 1e-8;  // fixed steps: Newton well below the step's error
     o.integrator.dt_fixed = c.dt;
     o.integrator.t_end = start.state.t + share * law.duration;
-    const auto points = steps::watched_points(job);
+    const auto points = results::watched_points(job);
     Sampler sampler(job, points, exact, start.state.t, o.integrator.t_end, 200);
     analysis::PeakTracker peaks(points, job.reference());
     analysis::StudySample s;
@@ -215,105 +216,160 @@ struct Bench {
   }
 };
 
-}  // namespace
-
-StudyPart study_transient(const model::Model& model, std::size_t which, const StudyOptions& options,
-                          const run::RunOptions& run, const std::filesystem::path& root) {
-  std::map<int, std::unique_ptr<Bench>> benches;
-  benches[1] = std::make_unique<Bench>(model, run, root, which);
-  auto bench = [&](int factor) -> Bench& {
-    auto& b = benches[factor];
+/// Benches of one deck, by mesh factor, made when first asked for.
+class Benches {
+ public:
+  Benches(const model::Model& model, std::size_t which, const run::RunOptions& run,
+          const std::filesystem::path& root)
+      : model_(model),
+        which_(which),
+        run_(run),
+        root_(root) {}
+  Bench& at(int factor) {
+    auto& b = known_[factor];
+    if (!b && factor == 1) b = std::make_unique<Bench>(model_, run_, root_, which_);
     if (!b)
-      b = std::make_unique<Bench>(refined(model, benches[1]->job.mesh, factor), run, root, which);
+      b = std::make_unique<Bench>(refined(model_, at(1).job.mesh, factor), run_, root_, which_);
     return *b;
-  };
-  std::unique_ptr<Exact> exact;
-  if (!options.exact.empty())
-    exact = std::make_unique<Exact>(read_exact(
-        options.exact, steps::watched_points(benches[1]->job), benches[1]->law.duration));
-  const bool flexible = !benches[1]->job.mesh.elements.empty();
-  const bool rigid_bodies = system::MomentumProblem::obstacle(benches[1]->job.system()).empty();
-
-  analysis::StudyOptions o;
-  // What the default accuracy costs says how tight a reference may be: one to 1e-10 on four times
-  // the elements takes a hundred times as long.
-  const analysis::StudySample probe = bench(1).run({"radau5", 1e-4, 0.0, 1}, nullptr);
-  double tight = probe.seconds < 0.2 ? 1e-10 : probe.seconds < 2.0 ? 1e-8 : 1e-7;
-  const int finest = !flexible ? 1 : probe.seconds < 0.5 ? 4 : 2;
-  for (;; tight *= 10.0) {
-    o.reference = {"gauss6", tight, 0.0, finest};
-    o.cross_check = rigid_bodies ? analysis::StudyCase{"momentum_rk", 0.1 * tight, 0.0, 1}
-                                 : analysis::StudyCase{"radau5", 10.0 * tight, 0.0, finest};
-    // what starts from rest in a large sag has rounding above the tightest accuracies: found out on
-    // a hundredth of the run
-    if (tight > 5e-8 || (bench(finest).run(o.reference, nullptr, 0.01).ok &&
-                         bench(o.cross_check.mesh_factor).run(o.cross_check, nullptr, 0.01).ok))
-      break;
   }
+
+ private:
+  const model::Model& model_;
+  std::size_t which_;
+  const run::RunOptions& run_;
+  const std::filesystem::path& root_;
+  std::map<int, std::unique_ptr<Bench>> known_;
+};
+
+/// What a ladder of settings is built on.
+struct Ground {
+  bool flexible = false, rigid_bodies = false;
+  analysis::StudySample probe;  ///< what the default accuracy costs
+  double duration = 0;          ///< s
+  double tight = 0;             ///< accuracy of the reference
+  int finest = 1;               ///< mesh factor of the reference
+};
+
+// What the default accuracy costs says how tight a reference may be: one to 1e-10 on four times the
+// elements takes a hundred times as long.
+Ground survey(Benches& benches) {
+  Bench& bench = benches.at(1);
+  Ground g;
+  g.flexible = !bench.job.mesh.elements.empty();
+  g.rigid_bodies = system::MomentumProblem::obstacle(bench.job.system()).empty();
+  g.duration = bench.law.duration;
+  g.probe = bench.run({"radau5", 1e-4, 0.0, 1}, nullptr);
+  g.tight = g.probe.seconds < 0.2 ? 1e-10 : g.probe.seconds < 2.0 ? 1e-8 : 1e-7;
+  g.finest = !g.flexible ? 1 : g.probe.seconds < 0.5 ? 4 : 2;
+  return g;
+}
+
+/// What starts from rest in a large sag has rounding above the tightest accuracies: found out on a
+/// hundredth of the run.
+void choose_reference(Benches& benches, Ground& g, analysis::StudyOptions& o) {
+  for (;; g.tight *= 10.0) {
+    o.reference = {"gauss6", g.tight, 0.0, g.finest};
+    o.cross_check = g.rigid_bodies ? analysis::StudyCase{"momentum_rk", 0.1 * g.tight, 0.0, 1}
+                                   : analysis::StudyCase{"radau5", 10.0 * g.tight, 0.0, g.finest};
+    const auto runs = [&](const analysis::StudyCase& c) {
+      return benches.at(c.mesh_factor).run(c, nullptr, 0.01).ok;
+    };
+    if (g.tight > 5e-8 || (runs(o.reference) && runs(o.cross_check))) return;
+  }
+}
+
+std::vector<analysis::StudyCase> make_ladder(const Ground& g) {
+  std::vector<analysis::StudyCase> ladder;
   for (const char* m : {"radau5", "gauss4", "gauss6"})
     for (double tol : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8})
-      if (tol > 5.0 * tight)
-        o.ladder.push_back({m, tol, 0.0, 1});  // nothing as tight as the reference
-  for (double tol : {1e-2, 1e-3, 1e-4, 1e-5})
-    o.ladder.push_back({"generalized_alpha", tol, 0.0, 1});
-  for (double tol : {1e-2, 1e-3, 1e-4, 1e-5})
-    o.ladder.push_back({"ida", tol, 0.0, 1});
-  if (rigid_bodies)
+      if (tol > 5.0 * g.tight)
+        ladder.push_back({m, tol, 0.0, 1});  // nothing as tight as the reference
+  for (const char* m : {"generalized_alpha", "ida"})
+    for (double tol : {1e-2, 1e-3, 1e-4, 1e-5})
+      ladder.push_back({m, tol, 0.0, 1});
+  if (g.rigid_bodies)
     for (double tol : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9})
-      o.ladder.push_back({"momentum_rk", tol, 0.0, 1});
+      ladder.push_back({"momentum_rk", tol, 0.0, 1});
   // equal steps around the one the default accuracy takes, on the reference's mesh: observed orders
-  const double T = benches[1]->law.duration;
-  const double h = T / static_cast<double>(std::max(probe.steps, 10L));
+  const double h = g.duration / static_cast<double>(std::max(g.probe.steps, 10L));
   for (const char* m : {"radau5", "gauss4", "gauss6", "generalized_alpha"})
     for (double f : {2.0, 1.0, 0.5, 0.25}) {
       // of second order, it would need a hundred times these steps; on long runs it fights for each
       // of them
-      if (probe.seconds > 0.2 && std::string_view(m) == "generalized_alpha") continue;
-      o.ladder.push_back({m, 0.0, f * h, finest});
+      if (g.probe.seconds > 0.2 && std::string_view(m) == "generalized_alpha") continue;
+      ladder.push_back({m, 0.0, f * h, g.finest});
     }
-  if (flexible)
-    for (int factor = 2; factor <= finest; factor *= 2)
+  if (g.flexible)
+    for (int factor = 2; factor <= g.finest; factor *= 2)
       for (double tol : {1e-2, 1e-3, 1e-4, 1e-5})
-        o.ladder.push_back({"radau5", tol, 0.0, factor});
+        ladder.push_back({"radau5", tol, 0.0, factor});
+  return ladder;
+}
 
+/// Runs the settings as they come: the reference, its check, the ladder.
+class Runner {
+ public:
+  Runner(Benches& benches, const Exact* exact) : benches_(benches), exact_(exact) {}
+  analysis::StudySample operator()(const analysis::StudyCase& c) {
+    const int number = runs_++;
+    if (number < 2) {
+      analysis::StudySample s = benches_.at(c.mesh_factor).run(c, exact_);
+      if (number == 0 && exact_ && s.ok) take_exact(s);
+      return s;
+    }
+    double& spent =
+        spent_[c.method + (c.tolerance > 0 ? "" : " fixed") + (c.mesh_factor > 1 ? " finer" : "")];
+    if (spent > patience) return left_out(c);
+    analysis::StudySample s = benches_.at(c.mesh_factor).run(c, exact_);
+    spent = std::max(spent, s.seconds);
+    return s;
+  }
+
+ private:
+  /// s: a finer setting than one that took this long would take longer.
+  static constexpr double patience = 4.0;
+
+  static analysis::StudySample left_out(const analysis::StudyCase& c) {
+    analysis::StudySample s;
+    s.setting = c;
+    s.ok = false;
+    s.note = "left out: the setting before it took long";
+    return s;
+  }
+  /// The exact solution is the reference.
+  void take_exact(analysis::StudySample& s) const {
+    const std::size_t first = s.quantities.size() - exact_->columns.size();
+    for (std::size_t k = 0; k < exact_->columns.size(); ++k)
+      s.quantities[first + k].values = exact_->columns[k].values;
+  }
+
+  Benches& benches_;
+  const Exact* exact_;
+  std::map<std::string, double> spent_;
+  int runs_ = 0;
+};
+
+}  // namespace
+
+StudyPart study_transient(const model::Model& model, std::size_t which, const StudyOptions& options,
+                          const run::RunOptions& run, const std::filesystem::path& root) {
+  Benches benches(model, which, run, root);
+  std::unique_ptr<Exact> exact;
+  if (!options.exact.empty())
+    exact = std::make_unique<Exact>(read_exact(
+        options.exact, results::watched_points(benches.at(1).job), benches.at(1).law.duration));
+  Ground ground = survey(benches);
+  analysis::StudyOptions o;
+  choose_reference(benches, ground, o);
+  o.ladder = make_ladder(ground);
   const bool talk = !options.run.quiet;
-  constexpr double patience =
-      4.0;  // s: a finer setting than one that took this long would take longer
-  std::map<std::string, double> spent;
-  int runs = 0;  // the first two are the reference and its check
-  if (talk)
-    std::printf("%-34s %10s %9s %9s  %10s\n", "setting", "CPU s", "steps", "Newton", "worst error");
+  if (talk) print_study_head();
   o.progress = [&](const analysis::StudySample& s) {
-    if (!talk) return;
-    if (s.ok)
-      std::printf("%-34s %10.4f %9ld %9ld  %10.2e\n", s.setting.label().c_str(), s.seconds, s.steps,
-                  s.newton, s.worst());
-    else
-      std::printf("%-34s %s\n", s.setting.label().c_str(), s.note.c_str());
-    std::fflush(stdout);
+    if (talk) print_study_sample(s);
   };
-  const analysis::StudyResult r = analysis::run_study(
-      [&](const analysis::StudyCase& c) {
-        const std::string key =
-            c.method + (c.tolerance > 0 ? "" : " fixed") + (c.mesh_factor > 1 ? " finer" : "");
-        const int number = runs++;
-        const bool ladder = number >= 2;
-        if (ladder && spent[key] > patience) {
-          analysis::StudySample s;
-          s.setting = c;
-          s.ok = false;
-          s.note = "left out: the setting before it took long";
-          return s;
-        }
-        analysis::StudySample s = bench(c.mesh_factor).run(c, exact.get());
-        if (number == 0 && exact && s.ok)  // the reference itself
-          for (std::size_t k = 0, first = s.quantities.size() - exact->columns.size();
-               k < exact->columns.size(); ++k)
-            s.quantities[first + k].values = exact->columns[k].values;
-        if (ladder) spent[key] = std::max(spent[key], s.seconds);
-        return s;
-      },
-      o);
+  Runner runner(benches, exact.get());
+  const analysis::StudyResult r =
+      analysis::run_study([&](const analysis::StudyCase& c) { return runner(c); }, o);
 
   StudyText text;
   text.stem = "study";
@@ -322,7 +378,7 @@ StudyPart study_transient(const model::Model& model, std::size_t which, const St
                            model.title.empty() ? model.deck_name : model.title);
   text.reference = fmt::format("{}{}, checked by {}", o.reference.label(),
                                exact ? " and the exact solution given" : "", o.cross_check.label());
-  text.target = bench(1).law.integrator.tolerance;
+  text.target = benches.at(1).law.integrator.tolerance;
   return write_study(root, r, text, talk);
 }
 

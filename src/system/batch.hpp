@@ -43,9 +43,11 @@ class Term {
   virtual bool cornered() const = 0;
   /// Appends, for every element of a cornered() term, on which smooth piece of its force it stands.
   virtual void list_regions(const Workspace& w, std::vector<int>& out) const = 0;
-  /// Tangents depend on the rate of the small motion, Context::whirl (kernels that say hysteretic =
-  /// true).
-  virtual bool hysteretic() const = 0;
+  virtual Family family() const = 0;
+  /// What its forces depend on in a context, all elements together.
+  virtual Dependence depends(const Context& c) const = 0;
+  /// An element sees its angles as the nodes turn at these rates (any unit), one a node.
+  virtual bool sees_turning(const Context& c, std::span<const double> rate) const = 0;
   /// Adds the inertia of an inertial() term to its nodes; false when it is not constant in time.
   virtual bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const = 0;
   virtual void add_force(Workspace& w) const = 0;
@@ -123,11 +125,21 @@ class Batch final : public Term {
       (void)out;
     }
   }
-  bool hysteretic() const override {
-    if constexpr (requires { K::hysteretic; })
-      return K::hysteretic;
-    else
-      return false;
+  Family family() const override { return K::family; }
+  Dependence depends(const Context& c) const override {
+    Dependence all;
+    for (const K& k : elements_)
+      all = all | dependence_of(k, c);
+    return all;
+  }
+  bool sees_turning(const Context& c, std::span<const double> rate) const override {
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      std::array<double, N> of_nodes;
+      for (std::size_t a = 0; a < of_nodes.size(); ++a)
+        of_nodes[a] = rate[static_cast<std::size_t>(nodes_[i][a])];
+      if (dependence_of(elements_[i], c).angle.changes(of_nodes)) return true;
+    }
+    return false;
   }
   std::vector<K>& elements() { return elements_; }
   const std::vector<K>& elements() const { return elements_; }

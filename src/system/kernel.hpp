@@ -3,12 +3,19 @@
 //   struct RigidDisk {
 //     static constexpr int n_nodes = 1;       // nodes it touches
 //     static constexpr int width = 7;         // coordinates a node: 3 = (u), 7 = (u, d, phi)
-//     static constexpr bool has_M = true, has_C = true, has_K = true;   // tangents that exist at
-//     all void add_force(const Nodes<1>&, const Context&, ForceX<7>& f) const;        // f += left
+//     static constexpr bool has_M = true, has_C = true, has_K = true;   // tangents that exist
+//     static constexpr Family family = Family::body;      // what it stands for in results
+//     static constexpr Dependence depends{.spin = true, .weight = true};
+//     void add_force(const Nodes<1>&, const Context&, ForceX<7>& f) const;        // f += left
 //     side of M a + f = 0 void add_tangent(const Nodes<1>&, const Context&, TangentX<7>& k) const;
 //     // += exact derivatives of f void add_energy(const Nodes<1>&, const Context&, Energy& e)
 //     const;
 //   };
+//
+// depends says what the force depends on beside position and lateral motion (dependence.hpp). Where
+// that depends on the parameters it is a member function, Dependence depends(const Context&) const,
+// for the time and the means (Context::averaged) of a context. A kernel that says nothing is none.
+// The conformance suite of the tests holds every kernel to its word.
 //
 // Optional: static void add_forces(std::span<const K>, const std::array<Index, n_nodes>* nodes,
 // const NodeState*, const Context&, Vector<7>* force), the same for all elements of a batch at
@@ -16,8 +23,6 @@
 //
 // Optional: powerless = true says that add_energy never adds to supplied or dissipated, so that a
 // power balance skips it.
-//
-// Optional: hysteretic = true says that the tangents depend on Context::whirl.
 //
 // Optional: quadratic_in_rates = true says that f is a polynomial of degree <= 2 in u', d', phi' at
 // fixed u, d, phi, with constant M: frequency-domain analyses then combine its matrices for any
@@ -35,19 +40,55 @@
 // (has_* false) are never touched. Kernels do not allocate, throw, or branch on physics that the
 // deck could have left out: that is another kernel.
 #pragma once
+#include <system/dependence.hpp>
 #include <system/node.hpp>
 #include <concepts>
+#include <type_traits>
 
 namespace whirl::system {
 
+/// What the elements of a kernel stand for in results.
+enum class Family {
+  shaft,    ///< stress and mass of a shaft
+  damping,  ///< what a shaft loses
+  body,     ///< masses that are not the shaft's
+  support,  ///< joints to ground, housings and other shafts, and what they stand on
+  load      ///< forces, torques, unbalance, weight
+};
+
+/// A constant declaration.
 template <class K>
-concept Kernel = requires(const K& k, const Nodes<K::n_nodes>& x, const Context& c,
-                          ForceX<K::n_nodes * K::width>& f, TangentX<K::n_nodes * K::width>& t,
-                          Energy& e) {
+concept DependsAlike = std::same_as<decltype(K::depends), const Dependence> && requires {
+  typename std::bool_constant<K::depends.spin>;
+};
+
+/// One that follows the parameters of the element.
+template <class K>
+concept DependsByParameters = requires(const K& k, const Context& c) {
+  { k.depends(c) } -> std::same_as<Dependence>;
+};
+
+/// What the force of an element, or of the law in one, depends on in a context.
+template <class K>
+requires DependsAlike<K> || DependsByParameters<K> Dependence dependence_of(const K& k,
+                                                                            const Context& c) {
+  if constexpr (DependsByParameters<K>)
+    return k.depends(c);
+  else
+    return K::depends;
+}
+
+template <class K>
+concept Kernel = (DependsAlike<K> ||
+                  DependsByParameters<K>)&&requires(const K& k, const Nodes<K::n_nodes>& x,
+                                                    const Context& c,
+                                                    ForceX<K::n_nodes * K::width>& f,
+                                                    TangentX<K::n_nodes * K::width>& t, Energy& e) {
   requires K::width == 3 || K::width == 7;
   { K::has_M } -> std::convertible_to<bool>;
   { K::has_C } -> std::convertible_to<bool>;
   { K::has_K } -> std::convertible_to<bool>;
+  { K::family } -> std::convertible_to<Family>;
   k.add_force(x, c, f);
   k.add_tangent(x, c, t);
   k.add_energy(x, c, e);

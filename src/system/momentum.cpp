@@ -9,8 +9,6 @@ namespace whirl::system {
 
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 Index entries(int form) { return form == 0 ? 12 : 6; }
 
 /// Rotation of the body axes, L(gamma) L(phi e) in global axes.

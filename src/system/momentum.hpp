@@ -1,7 +1,7 @@
 // Momentum form of systems whose only inertia is that of rigid bodies and point masses: y' = F(t,
 // y) with, for each body,
-//   r' = v,  m v' = F,  phi' = (e + d).omega/(1 + e.d)  (11),  gamma' = D+ (omega x d)  (9),  K' =
-//   Mo,  omega = J^-1 K
+//   r' = v,   m v' = F,   phi' = (e + d).omega/(1 + e.d)   (11),   gamma' = D+ (omega x d)   (9),
+//       K' = Mo,   omega = J^-1 K
 // (the system (12) of Sorokin & Zhang 2018, doi 10.18698/2308-6033-2018-10-1815). r and v belong to
 // the mass centre, K is the angular momentum about it, F and Mo are collected from all elements
 // that are not inertia. A second route to the same motion: it shares the elements' forces with the
@@ -28,7 +28,7 @@ struct MomentumOptions {
 
 class MomentumProblem final : public time::FirstOrderProblem {
  public:
-  /// Errors: E74, the system has something this form does not cover.
+  /// @throws Error E74, the system has something this form does not cover.
   MomentumProblem(const System& system, MomentumOptions options = {});
   /// Empty when the momentum form covers the system, else what stands against it.
   static std::string obstacle(const System& system);

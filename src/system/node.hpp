@@ -4,15 +4,24 @@
 // d(gamma), its offset t = d - e from the chart axis (kept separately, so that a tilt of 1e-12 rad
 // keeps its digits), and phi. The system converts forces and tangents once per node with the
 // Jacobian J = dX/dq:
-//   r_q = J^T f_X,   M_q = J^T M J,   C_q = J^T (C J + 2 M J'),   K_q = J^T (K J + C J' + M J'') +
-//   f_d . d2d/dgamma2
+//   r_q = J^T f_X,   M_q = J^T M J,   C_q = J^T (C J + 2 M J'),
+//       K_q = J^T (K J + C J' + M J'') + f_d . d2d/dgamma2
 // with J' = d(Xdot)/dq and J'' = d(Xddot)/dq. Any smooth extension of an element's force off |d| =
 // 1 gives the same result, because J maps to the tangent space of the sphere.
 #pragma once
+#include <core/single.hpp>
 #include <core/types.hpp>
+#include <system/node_places.hpp>
 #include <array>
+#include <cstddef>
+#include <limits>
 
 namespace whirl::system {
+
+namespace of_one {
+using namespace single;
+#include <system/spin.inl>
+}  // namespace of_one
 
 struct NodeState {
   Vec3 u, du;    ///< displacement from the reference position, m, and its rate, m/s (global axes)
@@ -28,12 +37,26 @@ struct NodeState {
   Vec3 e() const { return chart->col(0); }
   Vec3 d() const { return chart->col(0) + t; }
   /// w with s = phi' - w . d': w = (e x d)/(1 + e.d)   (paper eq. (11) with d' = omega x d)
-  Vec3 spin_form() const { return e().cross(t) / (2.0 + e().dot(t)); }
+  Vec3 spin_form() const { return of_one::spin_form(e(), t, of_one::spin_divisor(e(), t)); }
   /// Spin rate about the section's own normal, s = omega . d, rad/s.
   double spin() const { return dphi - spin_form().dot(dd); }
   /// Whole angular velocity, d x d' + s d, rad/s.
   Vec3 omega() const { return d().cross(dd) + spin() * d(); }
 };
+
+static_assert(offsetof(NodeState, u) == NodePlaces::u * sizeof(double));
+static_assert(offsetof(NodeState, du) == NodePlaces::du * sizeof(double));
+static_assert(offsetof(NodeState, ddu) == NodePlaces::ddu * sizeof(double));
+static_assert(offsetof(NodeState, t) == NodePlaces::t * sizeof(double));
+static_assert(offsetof(NodeState, dd) == NodePlaces::dd * sizeof(double));
+static_assert(offsetof(NodeState, ddd) == NodePlaces::ddd * sizeof(double));
+static_assert(offsetof(NodeState, phi) == NodePlaces::phi * sizeof(double));
+static_assert(offsetof(NodeState, dphi) == NodePlaces::dphi * sizeof(double));
+static_assert(offsetof(NodeState, ddphi) == NodePlaces::ddphi * sizeof(double));
+static_assert(offsetof(NodeState, turns) == NodePlaces::turns * sizeof(double));
+static_assert(offsetof(NodeState, chart) == NodePlaces::chart * sizeof(double));
+static_assert(sizeof(NodeState) == NodePlaces::size * sizeof(double));
+static_assert(sizeof(Mat3) == 9 * sizeof(double) && sizeof(Vec3) == 3 * sizeof(double));
 
 template <int N>
 using Nodes = std::array<const NodeState*, N>;
@@ -56,6 +79,11 @@ struct Context {
   double whirl = 0.0, growth = 0.0;
   double whirl_side =
       0.0;  ///< compared with the spin in place of whirl (which may still be an iterate)
+  /// rad/s, not negative: frequency w of the small motions a exp(i w t) that are asked about.
+  /// Coefficients that were measured or computed by shaking (tables of bearings and seals) may
+  /// depend on it beside the spin. NaN: none is asked about, as in a motion in time; such elements
+  /// then answer for the frequency of the shaft's own spin (synchronous reduction).
+  double frequency = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Force contribution in X: 3 (u) or 7 (u, d, phi) entries a node.

@@ -17,9 +17,8 @@ struct Motion {
   const double* turns = nullptr;  ///< 1 a line
   double gravity[3] = {};         ///< m/s2
   double limit_squared = 0.0;     ///< of |gamma|
-  double* state = nullptr;  ///< out: u, du, ddu, t, dd, ddd, phi, dphi, ddphi, turns, chart pointer
-  std::ptrdiff_t stride = 0;
-  double* D = nullptr;  ///< out: 3x2 a node, column-major, global axes
+  double* state = nullptr;        ///< out: the numbers of the NodeStates (system/node_places.hpp)
+  double* D = nullptr;            ///< out: 3x2 a node, column-major, global axes
 };
 
 struct Kernels {

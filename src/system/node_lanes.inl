@@ -2,12 +2,13 @@
 // defines WHIRL_LANES_TABLE and WHIRL_LANES_ISA. Everything here has internal linkage.
 #include <math.h>
 #include <system/node_lanes.hpp>
+#include <system/node_places.hpp>
 
 namespace whirl::system::lanes {
 namespace {
 
 #include <core/lanes.inl>
-
+#include <core/series.inl>
 #include <core/director.inl>
 
 WHIRL_INLINE void redo_large(T x, Ratios<T>& r) {
@@ -30,40 +31,69 @@ WHIRL_INLINE T cosine_less_one(T x, const Ratios<T>& b) {
 }
 
 /// One node's unknowns: six doubles.
-struct Six {
+struct Unknowns {
   V u;
   T phi, g2, g3;
 };
-WHIRL_INLINE Six load6(const double* const* from) {
-  const double* p[width];
-  for (int i = 0; i < width; ++i)
-    p[i] = from[i];
-  Six s;
-  T skip;
-  load4(p, s.u.x, s.u.y, s.u.z, s.phi);
-  advance(p, 2);
-  load4(p, skip, skip, s.g2, s.g3);
-  return s;
+WHIRL_INLINE Unknowns load_unknowns(const double* const* from) {
+  T r[6];
+  load_record(from, r);
+  return {vector_at(r, 0), r[3], r[4], r[5]};
 }
 
-WHIRL_INLINE std::ptrdiff_t evaluate_group(const Motion& m, std::ptrdiff_t first, int used) {
-  const double *pq[width], *pv[width], *pa[width];
+/// Pointers of one group, the last node repeated beyond `used`.
+struct Group {
+  const double *q[width], *v[width], *a[width];
   double *state[width], *D[width];
   int line[width];
   T falling{};
-  bool same = true;
+  bool one_line = true;
+};
+WHIRL_INLINE Group group_of(const Motion& m, std::ptrdiff_t first, int used) {
+  Group g;
   for (int i = 0; i < width; ++i) {
     const std::ptrdiff_t k = first + (i < used ? i : used - 1);
-    pq[i] = m.q + 6 * k;
-    pv[i] = m.v + 6 * k;
-    pa[i] = m.a + 6 * k;
-    state[i] = m.state + k * m.stride;
-    D[i] = m.D + 6 * k;
-    line[i] = m.line[k];
-    falling[i] = m.falling[k];
-    same = same && line[i] == line[0];
+    g.q[i] = m.q + 6 * k;
+    g.v[i] = m.v + 6 * k;
+    g.a[i] = m.a + 6 * k;
+    g.state[i] = m.state + k * NodePlaces::size;
+    g.D[i] = m.D + 6 * k;
+    g.line[i] = m.line[k];
+    g.falling[i] = m.falling[k];
+    g.one_line = g.one_line && g.line[i] == g.line[0];
   }
-  const Six q = load6(pq), v = load6(pv), a = load6(pa);
+  return g;
+}
+
+/// The chart triad: columns e, e2, e3.
+struct Triad {
+  V axis[3];
+};
+WHIRL_INLINE Triad triad_of(const Motion& m, const Group& g) {
+  Triad r;
+  if (g.one_line) {
+    const double* const c = m.chart + 9 * g.line[0];
+    for (int k = 0; k < 3; ++k)
+      r.axis[k] = {all(c[3 * k]), all(c[3 * k + 1]), all(c[3 * k + 2])};
+    return r;
+  }
+  for (int i = 0; i < width; ++i) {
+    const double* const c = m.chart + 9 * g.line[i];
+    for (int k = 0; k < 3; ++k) {
+      r.axis[k].x[i] = c[3 * k];
+      r.axis[k].y[i] = c[3 * k + 1];
+      r.axis[k].z[i] = c[3 * k + 2];
+    }
+  }
+  return r;
+}
+WHIRL_INLINE V turned(const Triad& c, T x, T y, T z) {
+  return x * c.axis[0] + y * c.axis[1] + z * c.axis[2];
+}
+
+WHIRL_INLINE std::ptrdiff_t evaluate_group(const Motion& m, std::ptrdiff_t first, int used) {
+  const Group g = group_of(m, first, used);
+  const Unknowns q = load_unknowns(g.q), v = load_unknowns(g.v), a = load_unknowns(g.a);
   const T x = q.g2 * q.g2 + q.g3 * q.g3;
   const Mask inside = x < m.limit_squared;  // false for NaN too
   if (!every(inside))
@@ -75,43 +105,26 @@ WHIRL_INLINE std::ptrdiff_t evaluate_group(const Motion& m, std::ptrdiff_t first
   jacobian_rate(q.g2, q.g3, v.g2, v.g3, b, D_rate);
   motion_of(o, D_rate, v.g2, v.g3, a.g2, a.g3, rate, accel);
 
-  V axis[3];  // columns e, e2, e3
-  if (same) {
-    const double* const c = m.chart + 9 * line[0];
-    for (int k = 0; k < 3; ++k)
-      axis[k] = {all(c[3 * k]), all(c[3 * k + 1]), all(c[3 * k + 2])};
-  } else {
-    for (int i = 0; i < width; ++i) {
-      const double* const c = m.chart + 9 * line[i];
-      for (int k = 0; k < 3; ++k) {
-        axis[k].x[i] = c[3 * k];
-        axis[k].y[i] = c[3 * k + 1];
-        axis[k].z[i] = c[3 * k + 2];
-      }
-    }
-  }
-  auto turned = [&](T cx, T cy, T cz) { return cx * axis[0] + cy * axis[1] + cz * axis[2]; };
-  const V t = turned(o.t[0], o.t[1], o.t[2]), dd = turned(rate[0], rate[1], rate[2]),
-          ddd = turned(accel[0], accel[1], accel[2]);
-  const V D2 = turned(o.D[0][0], o.D[1][0], o.D[2][0]),
-          D3 = turned(o.D[0][1], o.D[1][1], o.D[2][1]);
-  const V ddu = {a.u.x - falling * m.gravity[0], a.u.y - falling * m.gravity[1],
-                 a.u.z - falling * m.gravity[2]};
-
-  store4(state, 0, used, q.u.x, q.u.y, q.u.z, v.u.x);
-  store4(state, 4, used, v.u.y, v.u.z, ddu.x, ddu.y);
-  store4(state, 8, used, ddu.z, t.x, t.y, t.z);
-  store4(state, 12, used, dd.x, dd.y, dd.z, ddd.x);
-  store4(state, 16, used, ddd.y, ddd.z, q.phi, v.phi);
-  store4(D, 0, used, D2.x, D2.y, D2.z, D3.x);
-  for (int i = 0; i < width; ++i) {
-    if (i >= used) break;
-    state[i][20] = a.phi[i];
-    state[i][21] = m.turns[line[i]];
-    *(const double**)(void*)(state[i] + 22) = m.chart + 9 * line[i];
-    D[i][4] = D3.y[i];
-    D[i][5] = D3.z[i];
-  }
+  const Triad triad = triad_of(m, g);
+  const V ddu = {a.u.x - g.falling * m.gravity[0], a.u.y - g.falling * m.gravity[1],
+                 a.u.z - g.falling * m.gravity[2]};
+  T state[NodePlaces::numbers];
+  put(q.u, state, NodePlaces::u);
+  put(v.u, state, NodePlaces::du);
+  put(ddu, state, NodePlaces::ddu);
+  put(turned(triad, o.t[0], o.t[1], o.t[2]), state, NodePlaces::t);
+  put(turned(triad, rate[0], rate[1], rate[2]), state, NodePlaces::dd);
+  put(turned(triad, accel[0], accel[1], accel[2]), state, NodePlaces::ddd);
+  state[NodePlaces::phi] = q.phi;
+  state[NodePlaces::dphi] = v.phi;
+  state[NodePlaces::ddphi] = a.phi;
+  for (int i = 0; i < width; ++i)
+    state[NodePlaces::turns][i] = m.turns[g.line[i]];
+  store_record(g.state, used, state);
+  T D[6];
+  put(turned(triad, o.D[0][0], o.D[1][0], o.D[2][0]), D, 0);
+  put(turned(triad, o.D[0][1], o.D[1][1], o.D[2][1]), D, 3);
+  store_record(g.D, used, D);
   return -1;
 }
 

@@ -1,5 +1,5 @@
-// Node states in vectors of four with the 32 registers of AVX-512VL: fewer spills than with
-// AVX2's 16.
+// Node states in vectors of four with the 32 registers of AVX-512VL: fewer spills than with AVX2's
+// 16.
 #if defined(__AVX512VL__) && defined(__FMA__)
 #define WHIRL_LANES_TABLE avx512_kernels
 #define WHIRL_LANES_ISA "avx512vl"

@@ -6,10 +6,6 @@
 
 namespace whirl::system {
 
-namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}  // namespace
-
 SystemProblem::SystemProblem(const System& system, ProblemOptions options)
     : system_(system),
       options_(options),

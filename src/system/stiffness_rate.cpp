@@ -7,8 +7,6 @@
 namespace whirl::system {
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 std::map<std::type_index, AddStiffnessRates>& known() {
   static std::map<std::type_index, AddStiffnessRates> table;
   return table;

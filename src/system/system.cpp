@@ -1,4 +1,5 @@
 #include <system/system.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <core/rotation.hpp>
@@ -11,7 +12,6 @@
 namespace whirl::system {
 
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// One 7x7 block in X (columns u, d, phi) to the 6x6 block in q (u, phi, gamma): y = J_i^T x J_j,
 /// where gamma_column(k, r) is row r of column gamma_k. Column-major, spelled out: it runs for
@@ -199,9 +199,9 @@ void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<Ve
 
 bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                             Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
-  static_assert(offsetof(NodeState, turns) == 21 * sizeof(double) &&
-                offsetof(NodeState, chart) == 22 * sizeof(double));
-  static_assert(sizeof(Mat3) == 9 * sizeof(double) && sizeof(Mat32) == 6 * sizeof(double));
+  WHIRL_EXPECTS(q.size() == size() && v.size() == size() && a.size() == size());
+  WHIRL_EXPECTS(w.nodes.size() == at(nodes()) && f.chart.size() == at(lines()));
+  static_assert(sizeof(Mat32) == 6 * sizeof(double));
   w.context.time = t;
   w.context.gravity = w.context.load * gravity_at(t);
   lanes::Motion m;
@@ -217,8 +217,9 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
     m.gravity[k] = w.context.gravity[k];
   m.limit_squared = rotation::chart_limit * rotation::chart_limit;
   m.state = w.nodes.data()->u.data();
-  m.stride = sizeof(NodeState) / sizeof(double);
   m.D = w.D.data()->data();
+  for (std::size_t i = 0; i < w.nodes.size(); ++i)
+    w.nodes[i].chart = &f.chart[at(line_of_[i])];
   static const lanes::Kernels& kernels = lanes::kernels();
   w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
   return w.outside < 0;
@@ -237,6 +238,7 @@ void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::R
 }
 
 void System::project_force(const Workspace& w, Eigen::Ref<VecX> r) const {
+  WHIRL_EXPECTS(r.size() == size());
   for (Index i = 0; i < nodes(); ++i) {
     const Vector<7>& f = w.force[at(i)];
     r.segment<3>(6 * i) = f.head<3>();

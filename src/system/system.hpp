@@ -59,6 +59,8 @@ class System {
   const std::vector<Hold>& holds() const { return holds_; }
   const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
   const Vec3& gravity() const { return gravity_; }
+  /// The base accelerates as time goes on.
+  bool base_moves() const { return varies(base_[0]) || varies(base_[1]) || varies(base_[2]); }
   /// The equations are affine in the unknowns with constant M, C, K: no rotation is unknown, and
   /// every kernel says so.
   bool linear() const { return linear_; }
@@ -148,8 +150,9 @@ class Builder {
     system_.base_[static_cast<std::size_t>(axis)] = std::move(law);
   }
   /// `kind` names the batch in summaries ("shaft elements"); the first call for a type decides.
+  /// Returns the number of the batch in System::terms().
   template <Kernel K>
-  void add(const K& k, const std::array<Index, K::n_nodes>& nodes, const char* kind) {
+  std::size_t add(const K& k, const std::array<Index, K::n_nodes>& nodes, const char* kind) {
     const std::type_index key(typeid(K));
     auto it = system_.by_type_.find(key);
     if (it == system_.by_type_.end()) {
@@ -157,6 +160,7 @@ class Builder {
       system_.terms_.push_back(std::make_unique<Batch<K>>(kind));
     }
     static_cast<Batch<K>&>(*system_.terms_[it->second]).add(k, nodes);
+    return it->second;
   }
   /// Elements of a kernel type so far: the next one's place in its batch.
   template <Kernel K>

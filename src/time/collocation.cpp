@@ -3,8 +3,8 @@
 // Equations and stages. On a step from (t0, q0, v0) to t0 + h the first-order form q' = v, v' = a
 // is collocated at t_i = t0 + c_i h: Q_i = q0 + h sum a_ij V_j, V_i = v0 + h sum a_ij A_j. The
 // unknowns are the increments over free motion,
-//     Y_i = Q_i - q0 - c_i h v0,      V_i = v0 + (1/h) sum (A^-1)_ij Y_j,      A_i = (1/h^2) sum
-//     (A^-2)_ij Y_j,
+//     Y_i = Q_i - q0 - c_i h v0,   V_i = v0 + (1/h) sum (A^-1)_ij Y_j,
+//         A_i = (1/h^2) sum (A^-2)_ij Y_j,
 // which keep the digits of the acceleration when phi turns by radians a step, and R(t_i, Q_i, V_i,
 // A_i) = 0 at every stage. Rows of M may be zero: a first-order unknown then follows exactly the
 // classical scheme for C v + f = 0, because V_i is (A^-1 (Q - q0))_i / h whatever v0 was. Held
@@ -26,13 +26,12 @@
 //
 // Error. Of all embedded formulas on {t0, t_1..t_s} of order s only one exists up to a factor: its
 // defect is that of the collocation polynomials u (of q) and w (of v) at the step's start,
-//     rho_q = v0 - u'(0),    rho_v = a0 - w'(0),    u'(0) = sum l_j(0) V_j,  w'(0) = sum l_j(0)
-//     A_j.
+//     rho_q = v0 - u'(0),   rho_v = a0 - w'(0),   u'(0) = sum l_j(0) V_j,   w'(0) = sum l_j(0) A_j.
 // For Radau IIA 5 it is Hairer's estimate. Filtered by (mu/h - J)^-1, J the first-order Jacobian,
 // so that stiff modes do not count:   (mu/h) e_q - e_v = rho_q,   M (mu/h) e_v + C e_v + K e_q = M
 // rho_v,   hence
-//     [ (mu/h)^2 M + (mu/h) C + K ] e_q = M (rho_v + (mu/h) rho_q) + C rho_q,    e_v = (mu/h) e_q -
-//     rho_q.
+//     [ (mu/h)^2 M + (mu/h) C + K ] e_q = M (rho_v + (mu/h) rho_q) + C rho_q,
+//         e_v = (mu/h) e_q - rho_q.
 // Radau: mu is the real eigenvalue, the matrix is Newton's, and a0 is the last stage of the step
 // before (the state is consistent). Gauss 6: likewise, but (q0, v0) is not a stage, so M a0 is
 // replaced by M a0 - R(t0, q0, v0, a0), one residual a step (which also shows whether the model

@@ -38,7 +38,8 @@ class ExplicitIntegrator {
 
 /// Explicit Runge-Kutta with automatic step, ARKODE ERKStep (SUNDIALS plug-in). order 2..8. options
 /// used: tolerance (relative local tolerance), t_end, dt_first, dt_min, dt_max, dt_fixed,
-/// breakpoints. Throws Error when the plug-in is missing.
+/// breakpoints.
+/// @throws Error when the plug-in is missing.
 std::unique_ptr<ExplicitIntegrator> make_explicit_integrator(FirstOrderProblem& problem,
                                                              const Options& options, int order = 5);
 

@@ -1,13 +1,12 @@
 // Generalized-alpha: J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371, doi 10.1115/1.2900803,
-// in the form of M. Arnold, O. Bruls, Multibody Syst. Dyn. 18 (2007) 185,
-// doi 10.1007/s11044-007-9084-0: the equations hold exactly at the step's end,
+// in the form of M. Arnold, O. Bruls, Multibody Syst. Dyn. 18 (2007) 185, doi
+// 10.1007/s11044-007-9084-0: the equations hold exactly at the step's end,
 //     R(t1, q1, v1, a1) = 0,
 //     (1 - alpha_m) b1 + alpha_m b0 = (1 - alpha_f) a1 + alpha_f a0,
-//     q1 = q0 + h v0 + h^2 ((1/2 - beta) b0 + beta b1),     v1 = v0 + h ((1 - gamma) b0 + gamma
-//     b1),
+//     q1 = q0 + h v0 + h^2 ((1/2 - beta) b0 + beta b1),   v1 = v0 + h ((1 - gamma) b0 + gamma b1),
 // with an acceleration-like b carried beside a. So M(q) and prescribed entries keep order 2.
 //     alpha_m = (2 rho - 1)/(rho + 1), alpha_f = rho/(rho + 1), gamma = 1/2 - alpha_m + alpha_f,
-//     beta = (gamma + 1/2)^2/4.
+//         beta = (gamma + 1/2)^2/4.
 // Newton's unknown is q1: q1 = q* + B a1, v1 = v* + G a1, matrix (1/B) M + (G/B) C + K, B = h^2
 // beta (1-alpha_f)/(1-alpha_m), G = h gamma (1-alpha_f)/(1-alpha_m).
 //
@@ -16,11 +15,10 @@
 // is kept.
 //
 // Error. Local error in q: (beta - 1/6 + (alpha_m - alpha_f)/2) h^3 q''' = c h^2 (a1 - a0),
-// filtered by
-// ((1/B) M + (G/B) C + K)^-1 ((1/B) M + (G/B) C) so that stiff modes do not count. The global error
-// is of order 2, so the local allowance is taken proportional to tolerance^(3/2): ten periods of an
-// undamped oscillator end with an error of the tolerance. (A hundred periods would need ten
-// thousand steps each: for such runs the other schemes are the cheaper ones.)
+// filtered by ((1/B) M + (G/B) C + K)^-1 ((1/B) M + (G/B) C) so that stiff modes do not count. The
+// global error is of order 2, so the local allowance is taken proportional to tolerance^(3/2): ten
+// periods of an undamped oscillator end with an error of the tolerance. (A hundred periods would
+// need ten thousand steps each: for such runs the other schemes are the cheaper ones.)
 //
 // Dense output: q the cubic Hermite polynomial, v = q', a = q''.
 #include <time/generalized_alpha.hpp>

@@ -3,9 +3,6 @@
 #include <cmath>
 
 namespace whirl::time {
-namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}  // namespace
 
 void InitialSolver::resize(Problem& problem) {
   const Index n = problem.size();

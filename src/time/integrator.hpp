@@ -115,8 +115,8 @@ class Integrator {
   virtual int order() const = 0;
 
   /// Begins at (t, q, v): held entries are imposed, a (and, of massless unknowns, what the
-  /// equations determine) computed. Statistics and scales start anew. Throws Error when the initial
-  /// acceleration cannot be found.
+  /// equations determine) computed. Statistics and scales start anew.
+  /// @throws Error when the initial acceleration cannot be found.
   virtual void start(double t, CRef q, CRef v) = 0;
   /// The problem changed its equations, or the caller the state, at the present time: continues
   /// from (q, v) without history. Scales and statistics go on. corner: the force has one here (a
@@ -155,7 +155,8 @@ class Integrator {
 };
 
 /// name: radau5, gauss4, gauss6, generalized_alpha, ida (loads the SUNDIALS plug-in). The problem
-/// must outlive it. Throws Error for an unknown name or options out of range.
+/// must outlive it.
+/// @throws Error for an unknown name or options out of range.
 std::unique_ptr<Integrator> make_integrator(std::string_view name, Problem& problem,
                                             const Options& options);
 /// The names make_integrator knows.

@@ -14,8 +14,8 @@ class NewtonMonitor {
  public:
   enum class Verdict { iterate, converged, failed };
   /// limit: largest number of iterations; allowance: largest iteration error of a step; acceptable:
-  /// what is still taken when round-off stops the iteration before the allowance is reached. Part
-  /// of `acceptable` that rounding may reach.
+  /// what is still taken when round-off stops the iteration before the allowance is reached.
+  /// Part of `acceptable` that rounding may reach.
   static constexpr double rounding_share = 3.0;
   void configure(int limit, double allowance, double acceptable) {
     limit_ = limit;

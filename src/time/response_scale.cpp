@@ -7,7 +7,6 @@
 namespace whirl::time {
 namespace {
 constexpr std::size_t of(Kind k) { return static_cast<std::size_t>(k); }
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 /// Motion below this share of a coordinate's size (a sag, a pre-deflection) is at rest: round-off
 /// of the size is near.
 constexpr double least_share = 1e-6;

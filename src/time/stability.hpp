@@ -19,7 +19,7 @@ struct ModeResponse {
 };
 
 /// name as in make_integrator (ida: BDF of order 2). omega > 0 rad/s, zeta in (-1, 1), h > 0 s.
-/// Throws Error for an unknown name.
+/// @throws Error for an unknown name.
 ModeResponse mode_response(std::string_view name, double omega, double zeta, double h,
                            double rho_inf = 0.9);
 

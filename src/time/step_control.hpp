@@ -1,5 +1,5 @@
-// Step length control: K. Gustafsson's predictive controller (ACM TOMS 20 (1994) 496-517,
-// doi 10.1145/198429.198437) as in Hairer & Wanner II, IV.8, with a dead band that spares
+// Step length control: K. Gustafsson's predictive controller (ACM TOMS 20 (1994) 496-517, doi
+// 10.1145/198429.198437) as in Hairer & Wanner II, IV.8, with a dead band that spares
 // refactorisations.
 #pragma once
 #include <array>

@@ -10,7 +10,6 @@
 
 namespace whirl::time {
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 /// A stop this close to the step's end (relative to the step) is the step's end: no slivers of a
 /// step remain.
 constexpr double landing_slack = 1e-9;

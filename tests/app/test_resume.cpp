@@ -232,6 +232,19 @@ TEST_F(Resume, DamagedCheckpointIsAnError) {
   EXPECT_NE(read("log.txt").find("damaged checkpoint"), std::string::npos) << read("log.txt");
 }
 
+TEST_F(Resume, CheckpointOfAnotherVersionIsAnError) {
+  write_deck("a.toml", "0.1 s");
+  ASSERT_EQ(run("a.toml", "r", false), 0);
+  std::string c = read("r/checkpoint/run_up.whirl");
+  const std::string head = "whirl checkpoint ";
+  ASSERT_EQ(c.substr(0, head.size()), head);
+  c[head.size()] = '1';
+  std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << c;
+  EXPECT_EQ(run("a.toml", "r", true), 5);
+  EXPECT_NE(read("log.txt").find("error[E91]"), std::string::npos) << read("log.txt");
+  EXPECT_NE(read("log.txt").find("another version"), std::string::npos) << read("log.txt");
+}
+
 TEST_F(Resume, WithoutACheckpointStartsAnew) {
   write_deck("a.toml", "0.1 s");
   ASSERT_EQ(run("a.toml", "whole", false), 0);

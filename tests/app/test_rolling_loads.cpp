@@ -26,8 +26,8 @@ std::string deck(const std::string& held, const std::string& force, const std::s
 
 }  // namespace
 
-// Stribeck: Z Qmax/F without clearance, the load over one
-// element: 4.345708935, 4.364492313, 4.368085065 for 8, 12, 16 balls, 4.077006838, .. for rollers.
+// Stribeck: Z Qmax/F without clearance, the load over one element: 4.345708935, 4.364492313,
+// 4.368085065 for 8, 12, 16 balls, 4.077006838, .. for rollers.
 TEST(RollingLoads, StribeckNumber) {
   const int Z[] = {8, 12, 16};
   const double ball[] = {4.345708935, 4.364492313, 4.368085065},

@@ -174,9 +174,9 @@ TEST(StaticSpeeds, LundThomsenTable) {
   }
 }
 
-// A speed at which the film carries too little is left out and named; the others are there.
-// At rest a film carries nothing. (At any speed above it an equilibrium exists, ever nearer to the
-// wall; beyond what is believed of a film, W03.)
+// A speed at which the film carries too little is left out and named; the others are there. At rest
+// a film carries nothing. (At any speed above it an equilibrium exists, ever nearer to the wall;
+// beyond what is believed of a film, W03.)
 TEST(StaticSpeeds, SpeedsWithoutEquilibriumAreNamed) {
   const DeckRun d(
       deck("type = \"journal\"\nshape = \"plain\"\nlength = \"30 mm\"\nviscosity = \"1 mPa.s\"\n",

@@ -1,5 +1,5 @@
-// The kinematics against independent computations. Equation numbers:
-// doi 10.18698/2308-6033-2018-10-1815.
+// The kinematics against independent computations. Equation numbers: doi
+// 10.18698/2308-6033-2018-10-1815.
 #include "reference.hpp"
 #include <core/error.hpp>
 #include <core/rotation.hpp>

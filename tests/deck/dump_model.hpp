@@ -75,28 +75,6 @@ class ModelDump {
     at("at", b.at);
     if (b.to) at("to", *b.to);
     put("law", double(b.law.index()));
-    if (const auto* x = std::get_if<model::SpringBlock>(&b.law))
-      each("C", std::array{x->C1, x->C2});
-    if (const auto* x = std::get_if<model::LinearBearing>(&b.law)) {
-      matrix("K", x->K);
-      matrix("C", x->C);
-      matrix("M", x->M);
-      matrix("setpoint", x->setpoint);
-      matrix("preload", x->preload);
-    }
-    if (const auto* x = std::get_if<model::TableBearing>(&b.law)) {
-      each("speed", x->speed);
-      for (const auto& r : x->K)
-        matrix("K", r);
-      for (const auto& r : x->C)
-        matrix("C", r);
-      for (const auto& r : x->M)
-        matrix("M", r);
-      matrix("setpoint", x->setpoint);
-      matrix("preload", x->preload);
-      each("how", std::array{x->monotone_cubic, x->extrapolate_hold});
-    }
-    if (const auto* x = std::get_if<model::RigidSupport>(&b.law)) each("held", x->held);
     std::visit([this](const auto& x) { law(x); }, b.law);
     if (b.pedestal) {
       put("mass", b.pedestal->mass);
@@ -105,8 +83,32 @@ class ModelDump {
     }
   }
 
-  template <class T>
-  void law(const T&) {}  // those above
+  void law(const model::LinearBearing& x) {
+    matrix("K", x.K);
+    matrix("C", x.C);
+    matrix("M", x.M);
+    matrix("setpoint", x.setpoint);
+    matrix("preload", x.preload);
+  }
+  void law(const model::SpringBlock& x) { each("C", std::array{x.C1, x.C2}); }
+  void law(const model::TableBearing& x) {
+    each("speed", x.speed);
+    each("frequency", x.frequency);
+    for (const auto& r : x.K)
+      matrix("K", r);
+    for (const auto& r : x.C)
+      matrix("C", r);
+    for (const auto& r : x.M)
+      matrix("M", r);
+    matrix("setpoint", x.setpoint);
+    matrix("preload", x.preload);
+    each("how", std::array{x.monotone_cubic, x.extrapolate_hold});
+  }
+  void law(const model::RigidSupport& x) { each("held", x.held); }
+  void law(const model::RollingEstimate& x) {
+    each("estimate", std::array{double(x.roller), double(x.elements), x.size, x.load, x.load_angle,
+                                x.contact_angle, x.kxx, x.c_radial});
+  }
   void law(const model::NonlinearSpring& x) {
     const auto& f = x.force;
     each("spring",

@@ -231,6 +231,70 @@ TEST(Reader, ResolvedDeckSaysTheSame) {
   }
 }
 
+// Each key declares whether motion depends on it.
+TEST(Reader, WhatMotionDependsOn) {
+  const std::string base = std::string("format = 1\ntitle = \"one\"\n") + shaft_text + R"(
+[[disk]]
+name = "wheel"
+at = "left:end"
+mass = "3 kg"
+Ip = "0.02 kg.m^2"
+Id = "0.01 kg.m^2"
+[[probe]]
+name = "p"
+at = "wheel"
+[[step]]
+name = "first"
+type = "transient"
+start = "rest"
+duration = "1 s"
+stop_speed = "900 rpm"
+amplitude_limit = "1 mm"
+checkpoint = "3 s"
+[step.integrator]
+tolerance = 1e-6
+[[step]]
+name = "second"
+type = "transient"
+duration = "1 s"
+initial_speed = "100 rpm"
+[output]
+every = "2 ms"
+)";
+  const auto moving = [](const std::string& text) {
+    const auto d = read(text);
+    EXPECT_TRUE(d.ok()) << d.report();
+    return d.model.moving;
+  };
+  const model::MovingDeck before = moving(base);
+  ASSERT_EQ(before.steps.size(), 2u);
+  const auto change = [&](const std::string& from, const std::string& to) {
+    std::string text = base;
+    text.replace(text.find(from), from.size(), to);
+    return moving(text);
+  };
+  const std::pair<const char*, const char*> idle[] = {{"\"one\"", "\"two\""},
+                                                      {"name = \"p\"", "name = \"q\""},
+                                                      {"duration = \"1 s\"", "duration = \"2 s\""},
+                                                      {"900 rpm", "800 rpm"},
+                                                      {"\"1 mm\"", "\"2 mm\""},
+                                                      {"\"3 s\"", "\"4 s\""},
+                                                      {"every = \"2 ms\"", "every = \"3 ms\""}};
+  for (const auto& [from, to] : idle) {
+    const model::MovingDeck after = change(from, to);
+    EXPECT_EQ(after.machine, before.machine) << from;
+    EXPECT_EQ(after.steps, before.steps) << from;
+  }
+  EXPECT_NE(change("\"3 kg\"", "\"4 kg\"").machine, before.machine);
+  EXPECT_NE(change("300, 40", "300, 41").machine, before.machine);
+  const model::MovingDeck finer = change("1e-6", "1e-7"), faster = change("100 rpm", "200 rpm");
+  EXPECT_NE(finer.steps[0], before.steps[0]);
+  EXPECT_EQ(finer.steps[1], before.steps[1]);
+  EXPECT_EQ(faster.steps[0], before.steps[0]);
+  EXPECT_NE(faster.steps[1], before.steps[1]);
+  EXPECT_EQ(faster.machine, before.machine);
+}
+
 TEST(Reader, EveryEntityKeepsItsPlace) {
   const auto d = read(std::string("format = 1\n") + shaft_text +
                       "\n[[disk]]\nname = \"wheel\"\nat = \"left:end\"\nmass = \"1 kg\"\n");

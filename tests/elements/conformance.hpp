@@ -10,6 +10,9 @@
 //   - power balance d(kinetic + elastic + gravity)/dt = f.X' + supplied - dissipated along smooth
 //   motions on |d| = 1
 //     (f.X' is the power of the forces that a motion off the solution needs);
+//   - what the kernel declares to depend on (system/dependence.hpp): force and tangents stay as
+//   they are when anything else changes, in motions and where means are asked for, and change with
+//   what is declared at some of the states, unless `over_declared` says why not;
 //   - where declared: M symmetric and not negative, K symmetric at rest, dissipation not negative,
 //   and objectivity:
 //     turning a motion (and gravity) as a whole turns node forces and moments with it and keeps the
@@ -20,6 +23,8 @@
 #include "../core/reference.hpp"
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace whirl::test {
@@ -39,7 +44,10 @@ struct ConformanceOptions {
   std::vector<Vec3> position;  ///< reference positions of the nodes, m (objectivity only)
   Mat3 chart = Mat3::Identity();  ///< columns e, e2, e3
   Vec3 gravity = Vec3(0.3, -2.0, -9.0);
-  double time = 0.7;  ///< laws are evaluated from here on
+  double time = 0.7;       ///< laws are evaluated from here on
+  double frequency = nan;  ///< rad/s, asked about (Context::frequency)
+  /// Of what the element declares: what these parameters and states do not show.
+  system::Dependence over_declared{};
   double tangent_tolerance =
       1e-9;                       ///< of the largest term in the row; differences reach about 1e-12
   double power_tolerance = 1e-9;  ///< of the largest power; as above
@@ -111,7 +119,8 @@ class Conformance {
   Conformance(const K& kernel, const ConformanceOptions& options)
       : k_(kernel),
         o_(options),
-        random_(options.seed) {
+        random_(options.seed),
+        turning_(options.seed + 1000) {
     for (int i = 0; i < N; ++i) {
       const auto fill = [i](Q& s, double u, double phi, double tilt) {
         s.template segment<3>(6 * i).setConstant(u);
@@ -124,6 +133,7 @@ class Conformance {
     }
     context_.gravity = o_.gravity;
     context_.time = o_.time;
+    context_.frequency = o_.frequency;
   }
 
   void run() {
@@ -132,8 +142,10 @@ class Conformance {
       check_accumulation();
       check_tangents();
       check_power();
+      check_dependence();
       if (o_.objective) check_objectivity();
     }
+    check_declared_is_seen();
   }
 
  private:
@@ -405,9 +417,127 @@ class Conformance {
     EXPECT_NEAR(e0.dissipated, e1.dissipated, 1e-9 * std::abs(e0.dissipated));
   }
 
+  /// Force and tangents, one after another.
+  using Answer = Eigen::Matrix<double, Eigen::Dynamic, 1>;
+  Answer answer(const NodeFrame<N, W>& x, const system::Context& c) const {
+    constexpr int size = N * W;
+    system::TangentX<size> t;
+    t.set_zero();
+    k_.add_tangent(x.nodes(), c, t);
+    Answer a(size + 3 * size * size);
+    a << force(x, c), t.M.reshaped(), t.C.reshaped(), t.K.reshaped();
+    return a;
+  }
+  /// Parts of an answer that differ by more than rounding; what is no number in one of them
+  /// differs.
+  bool differ(const Answer& a, const Answer& b) const {
+    constexpr int size = N * W;
+    bool out = false;
+    for (int part = 0; part < 4; ++part) {
+      const int first = part == 0 ? 0 : size + (part - 1) * size * size;
+      const int length = part == 0 ? size : size * size;
+      const auto x = a.segment(first, length), y = b.segment(first, length);
+      if (x.allFinite() != y.allFinite()) return true;
+      if (!x.allFinite()) continue;
+      const double large = std::max(x.cwiseAbs().maxCoeff(), y.cwiseAbs().maxCoeff());
+      out = out || (x - y).cwiseAbs().maxCoeff() > o_.tangent_tolerance * large;
+    }
+    return out;
+  }
+
+  /// An answer that changes must be declared; what is declared and changes is noted.
+  void judge(const char* what, bool declared, const Answer& before, const Answer& after) {
+    const bool changes = differ(before, after);
+    EXPECT_TRUE(declared || !changes) << "depends on " << what << " and does not declare it";
+    seen_[what].declared = seen_[what].declared || declared;
+    seen_[what].changes = seen_[what].changes || changes;
+  }
+
+  void check_dependence() {
+    for (const bool averaged : {false, true})
+      for (const bool hysteretic : {false, true}) {
+        system::Context c = context_;
+        c.averaged = averaged;
+        c.hysteretic = hysteretic;
+        check_angle_and_spin(c);
+        check_surroundings(c);
+      }
+  }
+
+  void check_angle_and_spin(const system::Context& c) {
+    const system::Dependence d = system::dependence_of(k_, c);
+    const auto x = frame(q_, v_, a_);
+    const Answer before = answer(x, c);
+    const auto turned = [&](const Vector<N>& by) {
+      auto y = x;
+      for (int i = 0; i < N; ++i)
+        y.state[static_cast<std::size_t>(i)].phi += by[i];
+      return answer(y, c);
+    };
+    Vector<N> by = 2.0 * turning_.vector<N>();
+    judge("the angle", d.angle.form != system::SeenAngle::Form::none, before, turned(by));
+    if (d.angle.form == system::SeenAngle::Form::sum) {
+      Vector<N> weight;
+      for (int i = 0; i < N; ++i)
+        weight[i] = d.angle.weight[static_cast<std::size_t>(i)];
+      by -= weight * (weight.dot(by) / weight.squaredNorm());
+      EXPECT_FALSE(differ(before, turned(by))) << "sees more than the declared sum of the angles";
+    }
+    auto y = x;
+    for (auto& n : y.state)
+      n.dphi += (o_.dphi > 0 ? o_.dphi : 1.0) * turning_.vector<1>()[0];
+    judge("the spin", d.spin, before, answer(y, c));
+  }
+
+  void check_surroundings(const system::Context& c) {
+    const system::Dependence d = system::dependence_of(k_, c);
+    const auto x = frame(q_, v_, a_);
+    const Answer before = answer(x, c);
+    for (const double w : {1.0, 60.0, 200.0, 500.0}) {
+      system::Context asked = c;
+      asked.frequency = w;
+      judge("the frequency", d.frequency, before, answer(x, asked));
+      system::Context shaken = c;
+      shaken.whirl = shaken.whirl_side = w;
+      shaken.growth = -0.1 * w;
+      judge("the rate", d.rate, before, answer(x, shaken));
+    }
+    for (const double dt : {0.013, 0.31, 1.7, 20.0}) {
+      system::Context later = c;
+      later.time += dt;
+      judge("the time", d.time, before, answer(x, later));
+    }
+    const Vec3 more(0.4, 1.3, -2.1);
+    system::Context heavier = c;
+    heavier.gravity += more;
+    auto y = x;
+    for (auto& n : y.state)
+      n.ddu -= more;
+    judge("the weight", d.weight, before, answer(y, heavier));
+  }
+
+  void check_declared_is_seen() {
+    const std::map<std::string, bool> excused{
+        {"the angle", o_.over_declared.angle.form != system::SeenAngle::Form::none},
+        {"the spin", o_.over_declared.spin},
+        {"the frequency", o_.over_declared.frequency},
+        {"the rate", o_.over_declared.rate},
+        {"the time", o_.over_declared.time},
+        {"the weight", o_.over_declared.weight}};
+    for (const auto& [what, seen] : seen_)
+      EXPECT_TRUE(seen.changes || !seen.declared || excused.at(what))
+          << "declares to depend on " << what << " and does not";
+  }
+
+  struct Seen {
+    bool declared = false, changes = false;
+  };
+
   const K& k_;
   const ConformanceOptions& o_;
+  std::map<std::string, Seen> seen_;
   Random random_;
+  Random turning_;  ///< its own, so that the states are those of the other checks alone
   Q q_, v_, a_, q_scale_, v_scale_, a_scale_;
   system::Context context_;
 };

@@ -3,7 +3,6 @@
 #include "conformance.hpp"
 #include <core/error.hpp>
 #include <elements/supports/coefficient_grid.hpp>
-#include <system/frequency.hpp>
 
 using namespace whirl;
 using namespace whirl::test;
@@ -102,26 +101,22 @@ TEST(CoefficientGrid, AskedAndSynchronous) {
   const Grid g = grid(Grid::Between::monotone_cubic, Grid::Outside::undefined, spins,
                       {100, 200, 300, 450, 800});
   CoefficientValues<2> v, dv, x, ds, dw;
-  g.at(320.0, v, dv);
+  const double none = whirl::nan;
+  g.at(320.0, none, v, dv);
   g.at(320.0, 320.0, x, ds, dw);
   EXPECT_EQ(v.K, x.K);
   EXPECT_LT((dv.K - ds.K - dw.K).norm(), 1e-15 * dv.K.norm());
-  g.at(40.0, v, dv);  // below the first frequency: held there
+  g.at(40.0, none, v, dv);  // below the first frequency: held there
   g.at(40.0, 100.0, x, ds, dw);
   EXPECT_EQ(v.K, x.K);
   EXPECT_EQ(dv.K, ds.K);
-  {
-    const system::FrequencyScope ask(-600.0);
-    g.at(320.0, v, dv);
-    g.at(320.0, 600.0, x, ds, dw);
-    EXPECT_EQ(v.C, x.C);
-    EXPECT_EQ(dv.C, ds.C);
-    const system::FrequencyScope inner(50.0);  // asked, and not in the table
-    g.at(320.0, v, dv);
-    EXPECT_TRUE(v.K.hasNaN());
-  }
-  EXPECT_TRUE(std::isnan(system::asked_frequency()));
-  g.at(701.0, v, dv);
+  g.at(320.0, 600.0, v, dv);
+  g.at(320.0, 600.0, x, ds, dw);
+  EXPECT_EQ(v.C, x.C);
+  EXPECT_EQ(dv.C, ds.C);
+  g.at(320.0, 50.0, v, dv);  // asked, and not in the table
+  EXPECT_TRUE(v.K.hasNaN());
+  g.at(701.0, none, v, dv);
   EXPECT_TRUE(v.K.hasNaN());
   const Grid held = grid(Grid::Between::linear, Grid::Outside::hold);
   held.at(900.0, 2000.0, v, ds, dw);
@@ -143,8 +138,9 @@ TEST(CoefficientGrid, Conformance) {
   for (const auto between : {Grid::Between::linear, Grid::Between::monotone_cubic}) {
     const auto g = std::make_shared<Grid>(grid(between, Grid::Outside::hold));
     check_kernel(LateralJoint<TableBearingLaw<true, Grid>, true>{{g}, {0.2, -0.1}}, o);
-    const system::FrequencyScope ask(500.0);
+    o.frequency = 500.0;
     check_kernel(LateralJoint<TableBearingLaw<true, Grid>>{{g}}, o);
+    o.frequency = whirl::nan;
   }
 }
 

@@ -460,8 +460,8 @@ TEST(Oil, ViscosityAgainstTemperature) {
   // at 40 C the grade itself
   EXPECT_NEAR(iso_vg_viscosity(46, 313.15, 870), 870 * 46e-6,
               2e-4 * 870 * 46e-6);  // the constants have six digits
-  // usual data-sheet values at 100 C of mineral oils of viscosity index near 100: VG 32 5.4, VG
-  // 46 6.8, VG 68 8.7 mm2/s, density there 0.955 of that at 15 C
+  // usual data-sheet values at 100 C of mineral oils of viscosity index near 100: VG 32 5.4, VG 46
+  // 6.8, VG 68 8.7 mm2/s, density there 0.955 of that at 15 C
   for (const auto& [grade, nu] : {std::pair{32.0, 5.4}, std::pair{46.0, 6.8}, std::pair{68.0, 8.7}})
     EXPECT_NEAR(iso_vg_viscosity(grade, 373.15, 875) / (875 * 0.955) * 1e6, nu, 0.05 * nu);
   for (auto bad :

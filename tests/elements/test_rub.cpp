@@ -10,8 +10,8 @@ using namespace whirl::elements;
 
 namespace {
 
-// Jeffcott rotor in a compliant ring: closed form of Black, J. Mech. Eng. Sci. 10 (1968) 1-12,
-// doi 10.1243/JMES_JOUR_1968_010_003_02: |k - m O^2 + i c O + kc (1 + i mu)(1 - gap/R)| R = m e O^2
+// Jeffcott rotor in a compliant ring: closed form of Black, J. Mech. Eng. Sci. 10 (1968) 1-12, doi
+// 10.1243/JMES_JOUR_1968_010_003_02: |k - m O^2 + i c O + kc (1 + i mu)(1 - gap/R)| R = m e O^2
 constexpr double m = 10, k = 1e6, c = 400, ecc = 1e-4, kc = 4e6, gap = 3e-4;
 
 RubLaw ring(double mu) {

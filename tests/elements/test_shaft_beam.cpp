@@ -149,6 +149,23 @@ void check_tangent(double tilt, unsigned seed, const Mat3& triad, With damping =
 
 Mat3 tilted_triad() { return rotation::L(Vec3(0.3, -0.8, 1.1)); }
 
+/// Elements first to last of a line of `count`, undamped and damped.
+System part_of_line(Index count, Index first, Index last) {
+  const auto c = constants(true);
+  Builder b;
+  const Index line = b.add_line("shaft");
+  for (Index i = 0; i <= count; ++i)
+    b.add_node({Vec3(0.57 * static_cast<double>(i), 0, 0), line, "", false});
+  for (Index i = first; i <= last; ++i) {
+    ShaftBeam<true> beam(c, Vec3::UnitX());
+    beam.preload = 10.0 * static_cast<double>(i);
+    b.add(beam, {i, i + 1}, "shaft elements");
+    b.add(elements::ShaftDamping<true>(c, Vec3::UnitX(), 2e-3, 1e-3, 5e-4), {i, i + 1},
+          "internal damping");
+  }
+  return b.finalize();
+}
+
 }  // namespace
 
 TEST(ShaftBeam, TangentsAreExact) {
@@ -322,6 +339,32 @@ TEST(ShaftBeam, PowerBalance) {
     EXPECT_NEAR(
         dE, r.dot(p.v),
         1e-8 * r.norm() * p.v.norm());  // sixth-order difference, h^6 of rates of about 10/s
+  }
+}
+
+TEST(ShaftBeam, SeveralAtOnceAreSeveralOneByOne) {
+  // Groups of every fill against systems of one element each: round-off, another series in a group
+  // of unlike bends.
+  std::mt19937 rng(11);
+  std::normal_distribution<double> d;
+  for (Index count = 1; count <= 9; ++count) {
+    const System whole = part_of_line(count, 0, count - 1);
+    VecX q(whole.size()), v(whole.size()), a(whole.size()), r(whole.size());
+    for (Index k = 0; k < whole.size(); ++k) {
+      q[k] = 0.05 * d(rng);
+      v[k] = d(rng);
+      a[k] = d(rng);
+    }
+    Workspace w = whole.make_workspace();
+    ASSERT_TRUE(whole.residual(w, whole.make_state().frames, 0, q, v, a, r));
+    VecX sum = VecX::Zero(whole.size()), one(whole.size());
+    for (Index i = 0; i < count; ++i) {
+      const System part = part_of_line(count, i, i);
+      Workspace x = part.make_workspace();
+      ASSERT_TRUE(part.residual(x, part.make_state().frames, 0, q, v, a, one));
+      sum += one;
+    }
+    EXPECT_LT((r - sum).norm(), 1e-14 * sum.norm()) << count;
   }
 }
 

@@ -161,7 +161,7 @@ TEST(SpatialTableBearing, IsTheLinearOneWhereNothingChanges) {
   table.add_force(frame.nodes(), {}, f);
   linear.add_force(frame.nodes(), {}, g);
   EXPECT_LT((f - g).norm(), 1e-14 * g.norm());
-  EXPECT_EQ(table.load_on_first(frame.nodes()), linear.load_on_first(frame.nodes()));
+  EXPECT_EQ(table.load_on_first(frame.nodes(), {}), linear.load_on_first(frame.nodes()));
 }
 
 TEST(TableBearing, BadTables) {

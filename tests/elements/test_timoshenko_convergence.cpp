@@ -160,8 +160,8 @@ double order(double coarse, double fine) { return std::log2(std::abs(coarse / fi
 // ---------------------------------------------------------------- slender shafts: the numbers
 // everyone quotes
 
-// Euler-Bernoulli, first mode, 8 elements. Reference roots:
-// pi, 1.875104068711961, 4.730040744862704.
+// Euler-Bernoulli, first mode, 8 elements. Reference roots: pi, 1.875104068711961,
+// 4.730040744862704.
 TEST(TimoshenkoConvergence, SlenderEightElements) {
   const ElementSection s = cylinder(0.02, ShearRule::rigid, false);
   const double w = std::sqrt(s.at(0).EI / s.at(0).rhoA);

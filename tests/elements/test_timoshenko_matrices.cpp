@@ -94,8 +94,8 @@ TEST(TimoshenkoElement, UniformClosedForms) {
   }
 }
 
-// Consistent Timoshenko mass: Friedman & Kosmatka, Computers & Structures 47 (1993) 473-481,
-// doi 10.1016/0045-7949(93)90243-7.
+// Consistent Timoshenko mass: Friedman & Kosmatka, Computers & Structures 47 (1993) 473-481, doi
+// 10.1016/0045-7949(93)90243-7.
 TEST(TimoshenkoElement, UniformConsistentMassIsTheKnownOne) {
   const ElementSection s = cylinder(0.06);
   const double l = 0.1;

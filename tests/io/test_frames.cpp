@@ -30,9 +30,9 @@ Scene small_rotor() {
                  {{1, 0}, {2, 0}, 0.03, 0.03, 0.01, 0.01}};
   line.disks = {{"disk", {1, 0}, 0.2, 0.03, 0.05}};
   s.lines = {line};
-  using Kind = meshes::SupportShape::Kind;
-  s.supports = {{"DE", Kind::bearing, {0, 0}, false, {}, 0.03},
-                {"NDE", Kind::spring, {2, 0}, false, {}, 0.03}};
+  using model::Picture;
+  s.supports = {{"DE", Picture::bearing, {0, 0}, false, {}, 0.03},
+                {"NDE", Picture::spring, {2, 0}, false, {}, 0.03}};
   s.trails = {{"mid", {1, 0}}};
   return s;
 }

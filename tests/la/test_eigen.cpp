@@ -15,8 +15,7 @@ using namespace whirl::la::test;
 namespace {
 
 /// All finite eigenvalues with Im >= 0 of the active part, from a dense linearisation of its own:
-/// 1/lambda is an eigenvalue of
-/// [-K^-1 C, -K^-1 M; I, 0].
+/// 1/lambda is an eigenvalue of [-K^-1 C, -K^-1 M; I, 0].
 std::vector<Complex> dense_eigenvalues(const MCK& m, const Mask& active) {
   std::vector<Index> u;
   for (std::size_t i = 0; i < active.size(); ++i)

@@ -8,7 +8,8 @@
 namespace whirl::assembly {
 
 /// Of the nodes of one line (line < 0: of all nodes, pedestals too) in the reference state, phi =
-/// 0: r^T M r over the six rigid motions r. Includes added masses of bearings on those nodes.
+/// 0: r^T M r over the six rigid motions r.
+/// Includes added masses of bearings on those nodes.
 inline meshes::MassProperties mass_of_system(const system::System& s, Index line = -1) {
   system::State state = s.make_state();
   system::Workspace w = s.make_workspace();

@@ -192,6 +192,21 @@ TEST(BuildSystem, AbsentPhysicsIsAnAbsentBatch) {
   EXPECT_EQ(ex.d_twist, 0.0);
 }
 
+// A stiffness that only couples another motion into a direction does not hold it.
+TEST(BuildSystem, CouplingStiffnessHoldsNothing) {
+  model::Model m = one_shaft({cylinder("a", 0.4, 0.04, 0, 4)});
+  auto b = spring("b", 0.0, 1e7);
+  std::get<model::LinearBearing>(b.law).K(0, 1) = 1e5;
+  m.bearings = {b, spring("c", 0.4, 1e7)};
+  model::Step modes;
+  modes.name = "modes";
+  modes.law = model::ModalStep{};
+  m.steps = {modes};
+  EXPECT_EQ(build(m).held.size(), 1u);  // the axial motion
+  std::get<model::LinearBearing>(m.bearings[0].law).K(0, 0) = 1e6;
+  EXPECT_TRUE(build(m).held.empty());
+}
+
 TEST(BuildSystem, DrivesOfTheStepOnly) {
   model::Model m = one_shaft({cylinder("a", 0.4, 0.04, 0, 4)});
   m.shafts[0].spin0 = 12;

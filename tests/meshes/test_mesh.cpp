@@ -296,7 +296,7 @@ TEST(Mesh, AllErrorsAtOnceWithPlaceAndName) {
 TEST(Mesh, ImpossibleSections) {
   for (auto spoil :
        {+[](model::Section& s) { s.length = 0; }, +[](model::Section& s) { s.length = whirl::nan; },
-        +[](model::Section& s) { s.od_r = 0; }, +[](model::Section& s) { s.min_elements = 0; },
+        +[](model::Section& s) { s.od_r = 0; }, +[](model::Section& s) { s.min_elements = -1; },
         +[](model::Section& s) { s.max_element_length = 1e-9; },
         +[](model::Section& s) { s.constants = model::Section::Constants{}; }}) {
     model::Model m = one_shaft({cylinder("a", 0.2, 0.04)});

@@ -26,7 +26,7 @@ TEST(Scene, PaperRotor) {
   ASSERT_EQ(s.lines[0].disks.size(), 1u);
   EXPECT_NEAR(s.lines[0].disks[0].outer, 0.25, 1e-15);
   EXPECT_NEAR(s.lines[0].disks[0].width, 0.01, 1e-9);  // thin: the least drawn
-  EXPECT_EQ(s.supports[0].kind, SupportShape::Kind::spring);
+  EXPECT_EQ(s.supports[0].picture, model::Picture::spring);
   EXPECT_FALSE(s.supports[0].to_node);
   EXPECT_EQ(s.trails[0].at.node, 0);
   const Skin skin(s, 12);

@@ -21,8 +21,8 @@ inline RigidCase finish(system::Builder& b) {
 
 /// Heavy top of Geradin, Cardona, Bruels: m = 15 kg, mass centre 1 m from the fixed point along
 /// body y, J = (0.234375, 0.46875, 0.234375) kg m2 about it, g = 9.81 along -z, omega = (0, 150,
-/// -4.61538) rad/s. Bruels, Cardona, Arnold, Mech. Mach. Theory 48 (2012) 121,
-/// doi 10.1016/j.mechmachtheory.2011.07.017. The chart axis e is y: (e, e2, e3) = (y, z, x).
+/// -4.61538) rad/s. Bruels, Cardona, Arnold, Mech. Mach. Theory 48 (2012) 121, doi
+/// 10.1016/j.mechmachtheory.2011.07.017. The chart axis e is y: (e, e2, e3) = (y, z, x).
 inline RigidCase heavy_top() {
   system::Builder b;
   Mat3 triad;
@@ -82,8 +82,8 @@ inline RigidCase symmetric_top() {
   return c;
 }
 
-/// Rigid rotor on two isotropic springs: m = 122.68 kg, Id = 2.8625, Ip = 0.6134 kg m2, 1.0e6
-/// and 1.3e6 N/m at -0.25 and +0.25 m from the mass centre (a rotor of the size of Friswell et al.,
+/// Rigid rotor on two isotropic springs: m = 122.68 kg, Id = 2.8625, Ip = 0.6134 kg m2, 1.0e6 and
+/// 1.3e6 N/m at -0.25 and +0.25 m from the mass centre (a rotor of the size of Friswell et al.,
 /// Dynamics of Rotating Machines, 2010, ch. 3).
 inline RigidCase rigid_rotor(double spin) {
   system::Builder b;

@@ -1,8 +1,8 @@
-// The shear-deformable, extensible rod in exact kinematics (E. Reissner 1973; J. C. Simo 1985,
-// doi 10.1016/0045-7825(85)90050-7), clamped at s = 0 under a dead force at its end, by shooting:
-// an independent reference for beam elements.
-//   r' = R (1 + N/EA, Q_B/kGA_B, Q_C/kGA_C),   R' = R [kappa0 + (T/GJ, M_B/EI_B, M_C/EI_C)],   m' =
-//   -r' x n,   n = F,
+// The shear-deformable, extensible rod in exact kinematics (E. Reissner 1973; J. C. Simo 1985, doi
+// 10.1016/0045-7825(85)90050-7), clamped at s = 0 under a dead force at its end, by shooting: an
+// independent reference for beam elements.
+//   r' = R (1 + N/EA, Q_B/kGA_B, Q_C/kGA_C),   R' = R [kappa0 + (T/GJ, M_B/EI_B, M_C/EI_C)],
+//       m' = -r' x n,   n = F,
 // all stresses in the axes R = (D, B, C) of the section. Fourth-order Runge-Kutta, Newton on the
 // moment at the clamp.
 #pragma once

@@ -3,9 +3,9 @@
 // Torque buckling: A. Greenhill, Proc. Inst. Mech. Eng. 34 (1883) 182. Lateral-torsional buckling:
 // S. Timoshenko, J. Gere, Theory of Elastic Stability, 2nd ed., ch. 6; the values with finite
 // EI_strong by bifurcation of the exact rod (prebuckling deflection included). Right-angle
-// cantilever: J. Simo, L. Vu-Quoc, Comput. Methods Appl. Mech. Eng. 66 (1988) 125,
-// doi 10.1016/0045-7825(88)90073-4; flexible arm: the same, J. Appl. Mech. 53 (1986) 849,
-// doi 10.1115/1.3171870. Their histories: Richardson extrapolation of an explicit code of its own,
+// cantilever: J. Simo, L. Vu-Quoc, Comput. Methods Appl. Mech. Eng. 66 (1988) 125, doi
+// 10.1016/0045-7825(88)90073-4; flexible arm: the same, J. Appl. Mech. 53 (1986) 849, doi
+// 10.1115/1.3171870. Their histories: Richardson extrapolation of an explicit code of its own,
 // uncertainty below 1e-5.
 #include "../la/symmetric_modes.hpp"
 #include "beam_line.hpp"

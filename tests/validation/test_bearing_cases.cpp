@@ -322,8 +322,8 @@ TEST(AnnularRubDeck, RadiiOnTheBranches) {
   EXPECT_GE(power, 0.0);
 }
 
-// The free motion reaches the stator at 0.87688784 of the natural frequency and leaves it again
-// at 1.20957336: a thousandth on one side of these speeds it is the free motion, on the other the
+// The free motion reaches the stator at 0.87688784 of the natural frequency and leaves it again at
+// 1.20957336: a thousandth on one side of these speeds it is the free motion, on the other the
 // circle in contact. Started from rest below, on the circle of the free motion above, where the
 // circle in contact exists beside it; 80 turns leave e^-27 of what the start is off.
 TEST(AnnularRubDeck, OnsetAndReentry) {

@@ -3,10 +3,11 @@
 // Oil whirl: rotor on the short journal bearings of Friswell, Penny, Garvey & Lees, Dynamics of
 // Rotating Machines (2010), examples 5.5.1 and 5.9.6; onsets from the closed form of the short
 // bearing's coefficients and Routh's criterion, transients from an independent integration of
-// Capone's film force. Blade loss: a Jeffcott rotor whose unbalance is switched on while it turns;
-// the exact superposition of steady and free motion,
-//   r = H e^(iOt) + a e^(s1 t) + b e^(s2 t),  H = O^2/(1 - O^2 + 2 i zeta O),  a = H (s2 - iO)/(s1
-//   - s2),  b = -H - a   (units of e and omega_n).
+// Capone's film force.
+// Blade loss: a Jeffcott rotor whose unbalance is switched on while it turns; the exact
+// superposition of steady and free motion,
+//   r = H e^(iOt) + a e^(s1 t) + b e^(s2 t),   H = O^2/(1 - O^2 + 2 i zeta O),
+//       a = H (s2 - iO)/(s1 - s2),   b = -H - a   (units of e and omega_n).
 #include <analysis/spectra/stability.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
 #include "deck_model.hpp"

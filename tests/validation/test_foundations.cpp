@@ -29,8 +29,8 @@ std::vector<Complex> eigenvalues(const DeckModel& m, double Omega, int count) {
 
 // A mass m1 on k1, c1 on a foundation of mass m2 with circulatory stiffness s and gyroscopic
 // damping g. With w = y + i z
-//   m1 l^2 w1 + (c1 l + k1)(w1 - w2) = 0,   m2 l^2 w2 + (c2 - i g) l w2 + (k2 - i s) w2 = (c1 l +
-//   k1)(w1 - w2)
+//   m1 l^2 w1 + (c1 l + k1)(w1 - w2) = 0,
+//       m2 l^2 w2 + (c2 - i g) l w2 + (k2 - i s) w2 = (c1 l + k1)(w1 - w2)
 // s and g move the forward and the backward modes apart, and one of them grows.
 TEST(Foundation, CirculatoryAndGyroscopicPartsOfAPoint) {
   const double m1 = 20, k1 = 3e6, c1 = 400, m2 = 60, k2 = 8e6, c2 = 300, s = 6e5, g = 9e3;

@@ -1,8 +1,8 @@
 // Hysteretic damping of the shaft material in its rotating axes, against closed forms of a Jeffcott
 // rotor (G. Genta, Dynamics of Rotating Systems, 2005, ch. 3; the law in fixed axes: E. S. Zorzi,
 // H. D. Nelson 1977, doi 10.1115/1.3446254).
-//   z = y + i z, forward z ~ exp(lambda t):  m lambda^2 + c lambda + k (1 + i eta sign(w - Omega))
-//   = 0,   backward: sign = -1.
+//   z = y + i z, forward z ~ exp(lambda t):
+//       m lambda^2 + c lambda + k (1 + i eta sign(w - Omega)) = 0,   backward: sign = -1.
 #include "../analysis/rotors.hpp"
 #include "record.hpp"
 

@@ -129,8 +129,8 @@ TEST(Sommerfeld, CaptureAtTheExactBalance) {
 }
 
 TEST(Sommerfeld, ThresholdBetweenCaptureAndPassage) {
-  // from rest: captured at 1.9551 N m, passes at 1.9552 (bisection of the reference: 1.955158
-  // ... 1.95516)
+  // from rest: captured at 1.9551 N m, passes at 1.9552 (bisection of the reference: 1.955158 ...
+  // 1.95516)
   EXPECT_EQ(run(sommerfeld(1.9551), 30.0, 1e-8, 0.0, {}, "radau5", {{0, 200.0}}).result.reason,
             analysis::StopReason::end_time);
   EXPECT_EQ(run(sommerfeld(1.9552), 30.0, 1e-8, 0.0, {}, "radau5", {{0, 200.0}}).result.reason,

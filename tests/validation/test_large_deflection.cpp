@@ -1,11 +1,11 @@
 // Beams in large rotation against exact solutions of the shear-deformable, extensible rod.
 //
-// Bend: K.-J. Bathe, S. Bolourchi, Int. J. Numer. Methods Eng. 14 (1979) 961,
-// doi 10.1002/nme.1620140703; reference values by shooting on the exact rod equations (8th order,
-// residual 1e-9), which other codes confirm to 0.1 %. Strip: E. Dowell, J. Traybar, An experimental
-// study of the nonlinear stiffness of a rotor blade (Princeton, 1975); O. Bauchau et al., Multibody
-// Syst Dyn 37 (2016) 29, doi 10.1007/s11044-016-9514-y; values by shooting for the stiffnesses
-// stated here.
+// Bend: K.-J. Bathe, S. Bolourchi, Int. J. Numer. Methods Eng. 14 (1979) 961, doi
+// 10.1002/nme.1620140703; reference values by shooting on the exact rod equations (8th order,
+// residual 1e-9), which other codes confirm to 0.1 %.
+// Strip: E. Dowell, J. Traybar, An experimental study of the nonlinear stiffness of a rotor blade
+// (Princeton, 1975); O. Bauchau et al., Multibody Syst Dyn 37 (2016) 29, doi
+// 10.1007/s11044-016-9514-y; values by shooting for the stiffnesses stated here.
 #include "beam_line.hpp"
 #include "exact_rod.hpp"
 

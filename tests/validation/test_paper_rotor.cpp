@@ -1,7 +1,7 @@
-// The one-element validation case: the single-disk rotor of Sorokin & Zhang 2018
-// (doi 10.18698/2308-6033-2018-10-1815), eq. (12). Thin disk (D = 0.5 m, m = 5 kg) on a massless
-// rigid rod (l = 0.75 m) held at its left end by C1 = 2000 N/m, C2 = 500 N m/rad, spinning at 50
-// rad/s, released horizontal under gravity 9.81 m/s2 along -z.
+// The one-element validation case: the single-disk rotor of Sorokin & Zhang 2018 (doi
+// 10.18698/2308-6033-2018-10-1815), eq. (12). Thin disk (D = 0.5 m, m = 5 kg) on a massless rigid
+// rod (l = 0.75 m) held at its left end by C1 = 2000 N/m, C2 = 500 N m/rad, spinning at 50 rad/s,
+// released horizontal under gravity 9.81 m/s2 along -z.
 //
 // Reference: two independent formulations integrated at order 8 with rtol 1e-12, which agree to
 // 5e-13 m over 10 s (nine printed digits).

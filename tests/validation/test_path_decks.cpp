@@ -1,9 +1,9 @@
 // Lines along a path through the deck: the 45-degree bend, a right-angle frame, a half ring; and
 // the Princeton strip, straight with a general section.
 //
-// Bend: K. J. Bathe, S. Bolourchi, Int. J. Numer. Meth. Engng 14 (1979) 961,
-// doi 10.1002/nme.1620140703. Strip: E. H. Dowell, J. Traybar 1975. Values by shooting with the
-// exact rod.
+// Bend: K. J. Bathe, S. Bolourchi, Int. J. Numer. Meth. Engng 14 (1979) 961, doi
+// 10.1002/nme.1620140703. Strip: E. H. Dowell, J. Traybar 1975. Values by shooting with the exact
+// rod.
 #include "deck_model.hpp"
 #include "exact_rod.hpp"
 #include "record.hpp"
@@ -143,8 +143,8 @@ force = ["0 N", "{:.17g} N", "{:.17g} N"]
 }
 
 TEST(PathDecks, RightAngleFrame) {
-  // Legs a along x and b along y, force along z at the end, so small that the frame is linear:
-  // w = F (a^3 + b^3)/(3 EI) + F a b^2/GJ + F (a + b)/kGA.
+  // Legs a along x and b along y, force along z at the end, so small that the frame is linear: w =
+  // F (a^3 + b^3)/(3 EI) + F a b^2/GJ + F (a + b)/kGA.
   const double a = 0.6, b = 0.4, E = 2e11, nu = 0.25, d = 0.02, F = 1e-3;
   const std::string deck = fmt::format(R"(format = 1
 [model]

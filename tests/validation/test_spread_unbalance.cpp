@@ -1,7 +1,7 @@
 // A pinned slender shaft whose mass centres all lie e beside it, no transverse but polar inertia,
 // in turning axes:
-//   EI d4w/dx4 - rhoIp W^2 d2w/dx2 - rhoA W^2 w = rhoA e W^2,   w(L/2) = e ((b^2/cosh(a L/2) +
-//   a^2/cos(b L/2))/(a^2 + b^2) - 1),
+//   EI d4w/dx4 - rhoIp W^2 d2w/dx2 - rhoA W^2 w = rhoA e W^2,
+//       w(L/2) = e ((b^2/cosh(a L/2) + a^2/cos(b L/2))/(a^2 + b^2) - 1),
 // a^2 and -b^2 the roots of EI r^2 - rhoIp W^2 r - rhoA W^2 = 0.
 #include "../app/deck_run.hpp"
 #include "record.hpp"

@@ -2,9 +2,10 @@
 // peaks, amplification factors by half-power points, separation margins.
 //
 //   AF = Nc/(N2 - N1), N1 and N2 the speeds with 0.707 of the peak. AF < 2.5: critically damped, no
-//   margin required. Required margin (% of the nearer end of the operating range):
-//     peak below it:  SM = 17 (1 - 1/(AF - 1.5))          peak above it:  SM = 10 + 17 (1 - 1/(AF
-//     - 1.5))
+//       margin required.
+//   Required margin (% of the nearer end of the operating range):
+//     peak below it:   SM = 17 (1 - 1/(AF - 1.5))   peak above it:
+//         SM = 10 + 17 (1 - 1/(AF - 1.5))
 #pragma once
 #include <analysis/response/unbalance.hpp>
 

@@ -1,7 +1,5 @@
 #include <analysis/response/harmonic.hpp>
 
-#include <system/frequency.hpp>
-
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -10,7 +8,6 @@
 namespace whirl::analysis {
 
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Size of a variation: differences of second order in it drop out by symmetry, third order is
 /// below rounding.
@@ -234,6 +231,7 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
   system::Context& context = problem_.workspace().context;
   context.hysteretic = linear_.hysteretic();
   context.whirl = context.whirl_side = w;
+  context.frequency = std::abs(w);
   out.resize(what.size());
   for (std::size_t m = 0; m < what.size(); ++m)
     out[m].assign(what[m].width(), Complex(0, 0));
@@ -245,7 +243,6 @@ void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measure
   }
   const double eps = variation_step(a);
   if (eps == 0.0) return;
-  const system::FrequencyScope ask(w);
   std::vector<double> value;
   for (int part = 0; part < 2; ++part) {
     // the motion at phase 0 and a quarter period earlier: Re and Im of the amplitude

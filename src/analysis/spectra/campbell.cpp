@@ -7,10 +7,6 @@
 
 namespace whirl::analysis {
 
-namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}  // namespace
-
 CampbellRecorder::CampbellRecorder(std::vector<double> speeds, bool shapes) : shapes_(shapes) {
   out_.speeds = std::move(speeds);
 }

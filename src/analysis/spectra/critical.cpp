@@ -13,7 +13,6 @@
 namespace whirl::analysis {
 
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Undamped: counts the negative eigenvalues of S(Omega).
 class Counter {
@@ -38,7 +37,7 @@ class Counter {
         "E77",
         fmt::format("critical speeds cannot be counted near {:.6g} rpm: the matrix is singular at "
                     "every speed tried",
-                    Omega * 30.0 / pi),
+                    to_rpm(Omega)),
         "parts without mass, or stiffnesses too far apart for the digits of the computer");
   }
   std::span<const unsigned char> active() const { return motion_.active(); }

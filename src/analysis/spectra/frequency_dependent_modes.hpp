@@ -25,8 +25,8 @@ namespace whirl::analysis {
 
 class OwnFrequency {
  public:
-  /// Matrices with the coefficients at w, rad/s; valid until the next call. Error E81: a table does
-  /// not reach w.
+  /// Matrices with the coefficients at w, rad/s; valid until the next call.
+  /// @throws Error E81: a table does not reach w.
   using Matrices = std::function<const la::MCK&(double w)>;
   /// frequencies: of the tables, rad/s, at least one; wanted: count and max_frequency as for
   /// la::ModeSolver.
@@ -36,8 +36,8 @@ class OwnFrequency {
   /// All modes that oscillate, ascending in frequency; with a count, those of least |lambda|. Error
   /// E81: a mode wanted lies where a table does not reach (one that does not feel the tables may).
   std::vector<la::Mode> solve(const Matrices& at);
-  /// The mode near `start`, an eigenpair of a neighbouring problem. nullopt: lost. Error E81 as
-  /// above.
+  /// The mode near `start`, an eigenpair of a neighbouring problem. nullopt: lost.
+  /// @throws Error E81 as above.
   std::optional<la::Mode> settle(const Matrices& at, const la::Mode& start);
   /// Where coefficients at a real w are used, the decay of the motion is left out of them.
   /// Continued to its complex frequency w - i g, lambda = g + i w, they change by -i g d/dw to

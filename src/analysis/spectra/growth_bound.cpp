@@ -7,8 +7,6 @@ namespace whirl::analysis {
 
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// out = (a + sign a^T)/2.
 void take_part(const la::BlockMatrix<6>& a, double sign, la::BlockMatrix<6>& out) {
   const la::BlockPattern& p = a.pattern();

@@ -8,8 +8,8 @@
 // n < 0 at W = |lambda|^2/w, or if the stiffness is negative. When at some W1
 //   (1) K_s + W1^2 M > 0,
 //   (2) C_s + eta (W1 M + K_s/W1) > 0,
-//   (3) W1 C_s - i K_a + eta (W1^2 M + K_s) > 0      (K_s, K_a: symmetric and skew part; -i K_a is
-//   Hermitian, x^H (-i K_a) x = n)
+//   (3) W1 C_s - i K_a + eta (W1^2 M + K_s) > 0
+//       (K_s, K_a: symmetric and skew part; -i K_a is Hermitian, x^H (-i K_a) x = n)
 // then no root with |lambda| >= W1 has a > eta |lambda|^2/W1. Each is settled by the inertia of one
 // block factorisation. eta is above zero because rounding is, and because rotors carry circulatory
 // moments that nothing damps at their place (a torque on a tilted section): they are small, and so

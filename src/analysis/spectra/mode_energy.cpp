@@ -42,18 +42,18 @@ ModeEnergy energy_distribution(Linearizer& linear, const VecXc& x) {
   VecXc y;
   for (std::size_t k = 0; k < s.terms().size(); ++k) {
     const std::string kind(s.terms()[k]->kind());
+    const system::Family family = s.terms()[k]->family();
     const std::vector<std::size_t> only{k};
     if (!s.tangent(workspace, state.frames, state.t, state.q, zero, zero, part, &only)) continue;
     la::multiply(part.M, x, y);
     for (Index i = 0; i < s.nodes(); ++i)
       if (const double e = x.segment<6>(6 * i).dot(y.segment<6>(6 * i)).real(); e != 0)
-        out.kinetic.push_back({kind, i, -1, e});
-    const bool shaft = kind == "shaft elements" || kind == "general beam elements";
-    if (!shaft) {
+        out.kinetic.push_back({family, kind, i, -1, e});
+    if (family != system::Family::shaft) {
       la::multiply(part.K, x, y);
       for (Index i = 0; i < s.nodes(); ++i)
         if (const double e = x.segment<6>(6 * i).dot(y.segment<6>(6 * i)).real(); e != 0)
-          out.strain.push_back({kind, i, -1, e});
+          out.strain.push_back({family, kind, i, -1, e});
       continue;
     }
     for (Index i = 0; i < s.nodes(); ++i)
@@ -67,7 +67,7 @@ ModeEnergy energy_distribution(Linearizer& linear, const VecXc& x) {
         const Eigen::Matrix<Complex, 6, 1> e =
             x.segment<6>(6 * j) - carry(arm, E) * x.segment<6>(6 * i);
         const Matrix<6> D = -part.K.block(b).transpose() * carry(-arm, E);
-        out.strain.push_back({kind, i, j, e.dot(D * e).real()});
+        out.strain.push_back({family, kind, i, j, e.dot(D * e).real()});
       }
   }
   normalise(out.strain);

@@ -15,7 +15,8 @@
 namespace whirl::analysis {
 
 struct EnergyPart {
-  std::string kind;            ///< of the batch: "shaft elements", "bearings", "rigid disks"
+  system::Family family = system::Family::body;
+  std::string kind;            ///< of the batch, for display: "shaft elements", "rigid disks"
   Index node = 0, other = -1;  ///< other >= 0: the element between the two
   double share = 0;            ///< of the whole strain or kinetic energy
 };

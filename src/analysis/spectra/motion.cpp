@@ -7,8 +7,6 @@ namespace whirl::analysis {
 
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// Of the stiffness an unknown has by itself, the part left when all others give way: below this it
 /// is rounding. The pivot of a chain that nothing holds ends at 1e-16 to 1e-13 of it.
 constexpr double unresisted = 1e-11;

@@ -11,9 +11,9 @@
 // harmonics apart, h = -H .. H, written in real sines and cosines and balanced by Galerkin's
 // method: (2H+1) times the unknowns, still sparse. Each characteristic exponent turns up 2H+1
 // times, i b Omega apart; the copy with the largest constant part is kept (harmonics above H are
-// neglected: the error falls by the ratio of the anisotropy a harmonic). Sources: F. M. Dimentberg,
-// Flexural Vibrations of Rotating Shafts, 1961; Friswell et al., Dynamics of Rotating Machines,
-// 2010, ch. 7.
+// neglected: the error falls by the ratio of the anisotropy a harmonic).
+// Sources: F. M. Dimentberg, Flexural Vibrations of Rotating Shafts, 1961; Friswell et al.,
+// Dynamics of Rotating Machines, 2010, ch. 7.
 #pragma once
 #include <analysis/linearizer.hpp>
 
@@ -22,7 +22,8 @@ namespace whirl::analysis {
 class RotatingAxes {
  public:
   /// harmonics: H where the matrices are periodic; 0 is enough on isotropic supports and is chosen
-  /// then whatever is asked for. Errors: E88, the lines turn at different speeds.
+  /// then whatever is asked for.
+  /// @throws Error E88, the lines turn at different speeds.
   RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3,
                Motion motion = Motion::lateral);
 

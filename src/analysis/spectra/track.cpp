@@ -7,10 +7,6 @@
 
 namespace whirl::analysis {
 
-namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}  // namespace
-
 ModeTracker::ModeTracker(Linearizer& linear, const TrackOptions& options)
     : linear_(linear),
       options_(options),

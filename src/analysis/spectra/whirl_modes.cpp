@@ -14,7 +14,6 @@
 namespace whirl::analysis {
 
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// How far beyond the modes asked for the search goes on to where nothing can grow.
 constexpr double furthest_search = 16.0;
@@ -411,7 +410,7 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
 
 std::string SpectrumCertificate::text() const {
   if (!open.empty()) return "completeness not certified: " + open;
-  const double top = list.radius / two_pi;
+  const double top = to_hz(list.radius);
   if (!list.counted)
     return fmt::format("completeness not certified: the roots up to {:.5g} Hz could not be counted",
                        top);
@@ -420,7 +419,7 @@ std::string SpectrumCertificate::text() const {
   if (list.missing == 0) return band + " counted and found";
   std::string out = fmt::format("INCOMPLETE: {} of {} not found", list.missing, band);
   for (const Complex z : list.where)
-    out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", z.imag() / two_pi, z.real());
+    out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", to_hz(z.imag()), z.real());
   return out;
 }
 

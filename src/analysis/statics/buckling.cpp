@@ -11,8 +11,6 @@ namespace whirl::analysis {
 
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// Largest displacement relative to the model's size, and largest rotation.
 struct Size {
   double displacement = 0, rotation = 0;

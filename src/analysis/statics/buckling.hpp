@@ -22,8 +22,8 @@ struct BucklingMode {
   double displacement = 0;  ///< its largest displacement over the size of the model
 };
 
-/// The `count` factors of least size, ascending. Errors: as EquilibriumSolver::solve; E79 no load
-/// changes the stiffness.
+/// The `count` factors of least size, ascending.
+/// @throws Error as EquilibriumSolver::solve; E79 no load changes the stiffness.
 std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
                                    const EquilibriumOptions& options = {});
 

@@ -12,8 +12,6 @@
 namespace whirl::analysis {
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// Below this share of what the rows of K hold a direction is indifferent.
 constexpr double rounding = 2e-14;
 /// Above this asymmetry, relative to what the rows hold, K is unsymmetric.

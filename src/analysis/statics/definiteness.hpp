@@ -8,7 +8,7 @@
 // the derivative of no energy. What is claimed then, for lambda^2 M + lambda C + K with any
 // positive M and any C:
 //   x' K x > 0 for every x (inertia of the symmetric part): no real root lambda >= 0, no
-//   divergence;
+//       divergence;
 //     certain
 //   det K < 0: an odd number of real roots lambda > 0, unstable; certain
 //   otherwise: the negative real eigenvalues among those of least size; counted, not proved

@@ -12,7 +12,6 @@
 namespace whirl::analysis {
 
 namespace {
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Whether the residual r at s is small against the load. Pressed against its wall a film is so
 /// stiff that corrections vanish long before the forces balance.

@@ -42,9 +42,9 @@ class EquilibriumSolver {
  public:
   EquilibriumSolver(SteadySystem& running, EquilibriumOptions options = {});
 
-  /// From `start` (null: the reference configuration). Errors: E75 nothing resists a motion (node
-  /// and direction named), or the structure is at a limit point; E76 no equilibrium found (load
-  /// factor reached).
+  /// From `start` (null: the reference configuration).
+  /// @throws Error E75 nothing resists a motion (node and direction named), or the structure is at
+  /// a limit point; E76 no equilibrium found (load factor reached).
   Equilibrium solve(double Omega, const system::State* start = nullptr);
   /// As a status: nullopt when there is none, why() tells.
   std::optional<Equilibrium> try_solve(double Omega, const system::State* start = nullptr);

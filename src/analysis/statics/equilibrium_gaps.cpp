@@ -120,9 +120,9 @@ void EquilibriumSolver::close_backlash(double Omega, system::State& s, int& iter
   }
 }
 
-// Pseudo-transient continuation (C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35, 1998,
-// doi 10.1137/S0036142996304796): the implicit Euler steps (D/tau + K) d = -r of the motion D q' =
-// -r, in which everything moves along the generalised force on it (moments too), stiff parts as a
+// Pseudo-transient continuation (C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35, 1998, doi
+// 10.1137/S0036142996304796): the implicit Euler steps (D/tau + K) d = -r of the motion D q' = -r,
+// in which everything moves along the generalised force on it (moments too), stiff parts as a
 // whole. D is 1 for displacements and the square of a tenth of the model for rotations. tau grows
 // while the way of a step at most doubles the way so far, and shrinks where a step runs too far
 // into a contact; with the residual gone the last steps are Newton's.

@@ -12,8 +12,6 @@
 namespace whirl::analysis {
 namespace {
 
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 /// R(q, lambda) for la::Continuation. Loads are linear in lambda, so dR/dlambda is a difference of
 /// two residuals, exactly.
 class Loaded final : public la::ContinuationProblem {

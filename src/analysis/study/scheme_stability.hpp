@@ -20,8 +20,8 @@ struct ReducedRotor {
   ReducedRotor conservative() const;
 };
 
-/// count: number of modes, rigid motions apart. Errors: as Linearizer::at; E95 when the rotor has
-/// no mode that oscillates.
+/// count: number of modes, rigid motions apart.
+/// @throws Error as Linearizer::at; E95 when the rotor has no mode that oscillates.
 ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count = 12);
 
 /// Largest |eigenvalue| of one step of length h, s; above 1 + rounding a step multiplies some

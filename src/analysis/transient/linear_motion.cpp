@@ -4,13 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace whirl::analysis {
 
 namespace {
-
-constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Largest difference of the lateral entries of two matrices, relative to the diagonals they stand
 /// between.
@@ -98,52 +95,21 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
 }
 
 void LinearMotion::find_changing(double t) {
-  // A term is constant when its force is the same at all angles of the rotor and all times: at the
-  // breakpoints of the laws there are, between them, and at times from microseconds to weeks. Small
-  // generic motions about the steady one show what cancels in it.
-  std::vector<double> times = system().breakpoints();
-  for (std::size_t k = times.size(); k-- > 1;)
-    times.push_back(0.5 * (times[k] + times[k - 1]));
-  for (double x = 1e-6; x < 1e7; x *= 3.7)
-    times.push_back(t + x);
-  std::mt19937 rng(7);
-  std::normal_distribution<double> normal;
-  VecX q = q0_, v = v0_, a(q0_.size());
-  for (Index k = 0; k < q.size(); ++k) {
-    q[k] += 1e-6 * normal(rng);
-    v[k] += 1e-4 * normal(rng);
-    a[k] = normal(rng);
-  }
-  const auto& terms = system().terms();
-  std::vector<std::vector<Vector<7>>> base(terms.size());
-  std::vector<unsigned char> changes(terms.size(), 0);
-  times.insert(times.begin(), t);
-  VecX turned = q;
-  for (std::size_t sample = 0; sample < times.size(); ++sample) {
-    const double theta =
-        std::fmod(1.3 * static_cast<double>(sample),
-                  two_pi);  // small angles: rounding of their differences stays small
-    for (Index i = 0; i < system().nodes(); ++i)
-      if (turns_[at(i)])
-        turned[6 * i + system::spin_phi] =
-            q[6 * i + system::spin_phi] +
-            theta * (rate_[at(system().node(i).line)] < 0 ? -1.0 : 1.0);
-    if (!system().evaluate_nodes(steady_, frames, times[sample], turned, v, a)) continue;
-    for (std::size_t k = 0; k < terms.size(); ++k) {
-      if (changes[k]) continue;
-      for (auto& x : steady_.force)
-        x.setZero();
-      terms[k]->add_force(steady_);
-      if (sample == 0) {
-        base[k] = steady_.force;
-        continue;
-      }
-      if (!same_forces(base[k], steady_.force)) changes[k] = 1;
-    }
-  }
+  // A term is constant when it sees neither the angles of the rotor nor the time, nor the weight
+  // where the base accelerates.
+  std::vector<double> rate(at(system().nodes()), 0.0);
+  for (Index i = 0; i < system().nodes(); ++i)
+    if (turns_[at(i)]) rate[at(i)] = rate_[at(system().node(i).line)];
+  system::Context now = steady_.context;
+  now.time = t;
   std::vector<std::size_t> still;
-  for (std::size_t k = 0; k < terms.size(); ++k)
-    (changes[k] ? changing_ : still).push_back(k);
+  const auto& terms = system().terms();
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const system::Dependence d = terms[k]->depends(now);
+    const bool changes =
+        d.time || (d.weight && system().base_moves()) || terms[k]->sees_turning(now, rate);
+    (changes ? changing_ : still).push_back(k);
+  }
   constant_ = VecX::Zero(system().size());
   if (!system().residual(steady_, frames, t, q0_, v0_, a_, constant_,
                          &still)) {  // leave it to residual() to say so

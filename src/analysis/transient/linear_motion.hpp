@@ -25,8 +25,8 @@ namespace whirl::analysis {
 class LinearMotion final : public system::SystemProblem {
  public:
   /// Omega: rad/s of the lines with ratio 1. start: state the run begins with; its angles say where
-  /// the lines stand at start.t. Errors: as Linearizer::at; E39 when the matrices turn with a
-  /// rotor.
+  /// the lines stand at start.t.
+  /// @throws Error as Linearizer::at; E39 when the matrices turn with a rotor.
   LinearMotion(const system::System& system, const SteadyRotation& running, double Omega,
                const system::State& start, EquilibriumOptions options = {});
 

@@ -111,7 +111,7 @@ Measurement measure_spin(std::string name, Index node) {
           "rpm",
           "spin about the section's own normal, omega . d",
           {},
-          30.0 / pi,
+          to_rpm(1.0),
           [node](const Snapshot& s, double* out) { *out = s.node(node).spin(); }};
 }
 

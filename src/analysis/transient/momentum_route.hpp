@@ -9,7 +9,8 @@ namespace whirl::analysis {
 
 /// problem: shares its frames with the momentum form, so that observers read the same charts.
 /// order: of the Runge-Kutta pair. options.tolerance is the pair's relative local tolerance.
-/// Errors: E74, the system has inertia other than rigid bodies'; the SUNDIALS plug-in is missing.
+/// @throws Error E74, the system has inertia other than rigid bodies'; the SUNDIALS plug-in is
+/// missing.
 std::unique_ptr<time::Integrator> make_momentum_integrator(system::SystemProblem& problem,
                                                            const time::Options& options,
                                                            int order = 8);

@@ -4,8 +4,7 @@
 //
 // The keyphasor fires when the axial angle phi of the reference node passes a whole turn. A turn is
 // sampled at N + 1 equally spaced angles on the dense output; the order-k amplitude of x is
-//   X_k = (1/pi) int_0^{2 pi} x exp(-i k phi) dphi,      x(phi) = mean + sum_k Re(X_k exp(i k
-//   phi)),
+//   X_k = (1/pi) int_0^{2 pi} x exp(-i k phi) dphi,   x(phi) = mean + sum_k Re(X_k exp(i k phi)),
 // by the trapezoidal rule, which is exact for orders below N - k when x repeats. |X_k| is 0-peak;
 // the phase lag behind the keyphasor is -arg X_k where phi rises and arg X_k where it falls: later
 // in time, whichever way the rotor turns. While the speed changes within a turn the filter is as

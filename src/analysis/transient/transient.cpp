@@ -3,6 +3,7 @@
 #include <analysis/transient/transient.hpp>
 
 #include <core/interrupt.hpp>
+#include <core/stopwatch.hpp>
 #include <core/rotation.hpp>
 #include <time/event.hpp>
 
@@ -10,7 +11,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <ctime>
 
 namespace whirl::analysis {
 
@@ -30,12 +30,6 @@ namespace {
 constexpr double least_wait = 0.5;    // seconds an interruption waits for the next mark in any case
 constexpr double longest_wait = 3.0;  // and at most
 constexpr double keep_every = 2.0;    // seconds at least between states that are kept
-
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// The integrator's last step as observers see it.
 class Dense final : public StepAccess {
@@ -110,7 +104,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
                               const std::vector<Observer*>& observers,
                               const time::IntegratorState* resume) {
   TransientResult result;
-  const double cpu0 = cpu_seconds();
+  const double cpu0 = thread_cpu_seconds();
   problem.frames = start.frames;
   auto integrator = options.method == "momentum_rk"
                         ? make_momentum_integrator(problem, options.integrator)
@@ -216,7 +210,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
         if (t < t_stop) {
           t_stop = t;
           result.reason = StopReason::speed_reached;
-          result.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", s.speed * 30.0 / pi, t);
+          result.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", to_rpm(s.speed), t);
         }
       }
       for (const AmplitudeStop& s : options.amplitude_stops) {
@@ -294,7 +288,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
   result.statistics = integrator->statistics();
   for (Observer* o : observers)
     o->end();
-  result.seconds = cpu_seconds() - cpu0;
+  result.seconds = thread_cpu_seconds() - cpu0;
   return result;
 }
 

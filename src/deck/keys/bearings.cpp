@@ -1,22 +1,7 @@
 // [[bearing]]: whatever connects a shaft with the ground or another shaft.
 //
-// To add a kind:
-//   1. its parameters as a plain struct in SI in model.hpp, and the struct in the variant
-//   BearingLaw;
-//   2. a function `void describe(Visitor&, model::NewBearing&)` here or in the file of its family,
-//   declared in
-//      bearing_kinds.hpp: one line per key with unit, range and explanation, then the checks
-//      between keys;
-//   3. one line in the list in describe(Visitor&, model::Bearing&).
-// Reading, error messages, the JSON schema, the reference documentation and the resolved deck
-// follow from these.
-//
-//   void describe(Visitor& v, model::SqueezeFilm& b) {
-//     v.quantity(required("diameter"), b.diameter, "mm", positive, "journal diameter");
-//     v.quantity(required("clearance"), b.clearance, "um", positive, "radial clearance");
-//     if (v.clean() && b.clearance > 0.1 * b.diameter) v.error("E14", "clearance", "the clearance
-//     is not small against the diameter");
-//   }
+// To add a kind: docs/developer/add_a_bearing_law.md. Reading, error messages, the JSON schema, the
+// reference documentation and the resolved deck follow from its describe().
 #include <core/units.hpp>
 #include <deck/keys/bearing_kinds.hpp>
 #include <cmath>
@@ -27,7 +12,7 @@ namespace {
 
 constexpr const char* place =
     "place on a shaft: \"section:mid\", \"section:end - 20 mm\", \"1.14 m\"";
-std::string hertz(double w) { return fmt::format("{:.6g} Hz", w / two_pi); }
+std::string hertz(double w) { return fmt::format("{:.6g} Hz", to_hz(w)); }
 
 }  // namespace
 
@@ -280,6 +265,32 @@ void describe(Visitor& v, model::RigidSupport& b) {
     v.error("E05", "directions", "no direction is held", "directions = [\"y\", \"z\"]");
 }
 
+void add_kinds(Kinds& k, As<model::LinearBearing>) {
+  static const std::string doc = fmt::format(
+      "constant stiffness, damping and mass, up to 6x6, fixed axes; force on the shaft = preload - "
+      "K (q - setpoint) - C q'; {}",
+      other_entries);
+  k.add<model::LinearBearing>("linear", doc.c_str());
+}
+
+void add_kinds(Kinds& k, As<model::SpringBlock>) {
+  k.add<model::SpringBlock>("spring_block",
+                            "isotropic spring at a point and isotropic spring against tilt");
+}
+
+void add_kinds(Kinds& k, As<model::TableBearing>) {
+  k.add<model::TableBearing>(
+      "table",
+      "stiffness, damping and mass as type = \"linear\" has them, tabulated against speed, and "
+      "where given against the frequency of the motion: modes take them at their own "
+      "frequency, responses at that of the excitation, statics and transients at that of the "
+      "spin (synchronous, held at the table's ends)");
+}
+
+void add_kinds(Kinds& k, As<model::RigidSupport>) {
+  k.add<model::RigidSupport>("rigid", "directions held exactly");
+}
+
 void describe(Visitor& v, model::Pedestal& p) {
   v.quantity(required("mass"), p.mass, "kg", not_negative, "mass of the pedestal");
   static constexpr const char* keys[2][9] = {
@@ -294,94 +305,21 @@ void describe(Visitor& v, model::Pedestal& p) {
             "leave 'support' out for a rigid pedestal");
 }
 
-namespace {
-
-Alternative spring(const char* word, model::BearingLaw& law, bool angular, const char* doc) {
-  return {word, doc, [&law, angular](Visitor& v) {
-            if (!std::holds_alternative<model::NonlinearSpring>(law))
-              law = model::NonlinearSpring{};
-            describe_spring(v, std::get<model::NonlinearSpring>(law), angular);
-          }};
-}
-
-Alternative estimate(const char* word, model::BearingLaw& law, bool roller, const char* doc) {
-  return {word, doc, [&law, roller](Visitor& v) {
-            if (!std::holds_alternative<model::RollingEstimate>(law))
-              law = model::RollingEstimate{};
-            std::get<model::RollingEstimate>(law).roller = roller;
-            describe_rolling_estimate(v, std::get<model::RollingEstimate>(law));
-          }};
-}
-
-}  // namespace
-
 void describe(Visitor& v, model::Bearing& b) {
   v.name(b, "bearing");
   v.location(required("at"), b.at, place);
   model::Location to;
   if (v.location(optional("to", "the ground"), to, "place on another shaft that it connects with"))
     b.to = to;
-  static const std::string linear_doc = fmt::format(
-      "constant stiffness, damping and mass, up to 6x6, fixed axes; force on the shaft = preload - "
-      "K (q - setpoint) - C q'; {}",
-      other_entries);
-  const Alternative kinds[] = {
-      Visitor::alternative<model::LinearBearing>("linear", b.law, linear_doc.c_str()),
-      Visitor::alternative<model::SpringBlock>(
-          "spring_block", b.law, "isotropic spring at a point and isotropic spring against tilt"),
-      Visitor::alternative<model::TableBearing>(
-          "table", b.law,
-          "stiffness, damping and mass as type = \"linear\" has them, tabulated against speed, and "
-          "where given against the frequency of the motion: modes take them at their own "
-          "frequency, responses at that of the excitation, statics and transients at that of the "
-          "spin (synchronous, held at the table's ends)"),
-      Visitor::alternative<model::RigidSupport>("rigid", b.law, "directions held exactly"),
-      spring("nonlinear_spring", b.law, false,
-             "spring and damper along one direction: polynomial, table, clearance, one-sided"),
-      spring("nonlinear_angular_spring", b.law, true, "the same for a tilt or the twist"),
-      Visitor::alternative<model::ShortJournal>(
-          "short_journal", b.law,
-          "plain journal bearing, short-bearing theory, cavitated half film; nonlinear in "
-          "displacement and velocity"),
-      Visitor::alternative<model::FiniteJournal>(
-          "journal", b.law,
-          "journal bearing of finite length with cavitation: plain, with axial grooves, "
-          "multi-lobe; nonlinear"),
-      Visitor::alternative<model::SqueezeFilm>(
-          "squeeze_film", b.law, "squeeze-film damper, with a centring spring or without"),
-      Visitor::alternative<model::BallBearing>("ball", b.law,
-                                               "deep-groove or angular-contact ball bearing: Hertz "
-                                               "contact, clearance or preload, varying compliance"),
-      Visitor::alternative<model::RollerBearing>("roller", b.law, "cylindrical roller bearing"),
-      estimate("ball_estimate", b.law, false,
-               "ball bearing as a linear spring at its static load: estimated stiffness along and "
-               "across the load (Friswell, Penny, Garvey & Lees 2010, doi "
-               "10.1017/CBO9780511780509, 5.5.4)"),
-      estimate("roller_estimate", b.law, true,
-               "cylindrical roller bearing, estimated in the same way"),
-      Visitor::alternative<model::Rub>("rub", b.law,
-                                       "rub, stop or catcher bearing: one-sided contact with "
-                                       "friction; with 'support' the stator has mass and springs"),
-      Visitor::alternative<model::AnnularSeal>(
-          "annular_seal", b.law,
-          "liquid annular seal, coefficients after Black and Childs that follow the speed"),
-      Visitor::alternative<model::CrossCoupling>(
-          "cross_coupling", b.law, "destabilising force of a stage: given, Alford or Wachel"),
-      Visitor::alternative<model::Coupling>(
-          "coupling", b.law,
-          "flexible coupling between two shafts, 6x6, with misalignment; needs 'to'"),
-      Visitor::alternative<model::GearPair>("gear", b.law,
-                                            "spur or helical gear pair between two shafts: mesh "
-                                            "stiffness, backlash, transmission error; needs 'to'"),
-  };
-  v.alternatives(required("type"), kinds, "kind of bearing");
+  Kinds kinds(b.law);
+  model::for_each_law([&](auto law) { add_kinds(kinds, law); });
+  v.alternatives(required("type"), kinds.list(), "kind of bearing");
   v.table(optional("support", "rigid"), b.pedestal,
           "a pedestal: mass on springs between the bearing and the ground");
   if (v.clean() && b.to && b.to->shaft == b.at.shaft && b.to->s == b.at.s)
     v.error("E14", "to", "the bearing connects a station with itself");
-  const bool pair = std::holds_alternative<model::Coupling>(b.law) ||
-                    std::holds_alternative<model::GearPair>(b.law);
-  if (v.clean() && pair && (!b.to || b.to->shaft == b.at.shaft))
+  if (v.clean() && model::traits_of(b.law).pair->has_value() &&
+      (!b.to || b.to->shaft == b.at.shaft))
     v.error("E26", b.to ? "to" : nullptr,
             fmt::format("'{}' connects two shafts, but {}", b.name,
                         b.to ? "both its places are on one" : "'to' is missing"),

@@ -92,8 +92,6 @@ void shape(Visitor& v, model::ForceLaw& f, const Units& u) {
   v.alternatives(required("shape"), kinds, "force against deflection");
 }
 
-}  // namespace
-
 void describe_spring(Visitor& v, model::NonlinearSpring& b, bool angular) {
   using Along = model::NonlinearSpring::Along;
   static constexpr Option straight_words[] = {
@@ -128,6 +126,8 @@ void describe_spring(Visitor& v, model::NonlinearSpring& b, bool angular) {
             "the deflection is the distance from the centre");
 }
 
+}  // namespace
+
 void describe(Visitor& v, model::Rub& b) {
   v.quantity(required("gap"), b.gap, "um", not_negative,
              "radial clearance between shaft and stator");
@@ -140,6 +140,22 @@ void describe(Visitor& v, model::Rub& b) {
              "of the rubbing surface: its circumferential speed decides about slip");
   v.quantity("slip_speed", b.slip_speed, "m/s", positive,
              "slip speed within which friction is viscous: mu tanh(v/slip_speed)");
+}
+
+void add_kinds(Kinds& k, As<model::NonlinearSpring>) {
+  k.add<model::NonlinearSpring>(
+      "nonlinear_spring",
+      "spring and damper along one direction: polynomial, table, clearance, one-sided",
+      [](Visitor& v, model::NonlinearSpring& b) { describe_spring(v, b, false); });
+  k.add<model::NonlinearSpring>(
+      "nonlinear_angular_spring", "the same for a tilt or the twist",
+      [](Visitor& v, model::NonlinearSpring& b) { describe_spring(v, b, true); });
+}
+
+void add_kinds(Kinds& k, As<model::Rub>) {
+  k.add<model::Rub>("rub",
+                    "rub, stop or catcher bearing: one-sided contact with "
+                    "friction; with 'support' the stator has mass and springs");
 }
 
 }  // namespace whirl::deck

@@ -166,4 +166,34 @@ void describe(Visitor& v, model::CrossCoupling& b) {
             "give one of k, alford and wachel");
 }
 
+void add_kinds(Kinds& k, As<model::ShortJournal>) {
+  k.add<model::ShortJournal>(
+      "short_journal",
+      "plain journal bearing, short-bearing theory, cavitated half film; nonlinear in "
+      "displacement and velocity");
+}
+
+void add_kinds(Kinds& k, As<model::FiniteJournal>) {
+  k.add<model::FiniteJournal>(
+      "journal",
+      "journal bearing of finite length with cavitation: plain, with axial grooves, "
+      "multi-lobe; nonlinear");
+}
+
+void add_kinds(Kinds& k, As<model::SqueezeFilm>) {
+  k.add<model::SqueezeFilm>("squeeze_film",
+                            "squeeze-film damper, with a centring spring or without");
+}
+
+void add_kinds(Kinds& k, As<model::AnnularSeal>) {
+  k.add<model::AnnularSeal>(
+      "annular_seal",
+      "liquid annular seal, coefficients after Black and Childs that follow the speed");
+}
+
+void add_kinds(Kinds& k, As<model::CrossCoupling>) {
+  k.add<model::CrossCoupling>("cross_coupling",
+                              "destabilising force of a stage: given, Alford or Wachel");
+}
+
 }  // namespace whirl::deck

@@ -74,7 +74,10 @@ void describe(Visitor& v, model::RollerBearing& b) {
   fit(v, b.rollers, b.roller_diameter, b.pitch_diameter, "roller_diameter", "rollers");
 }
 
-void describe_rolling_estimate(Visitor& v, model::RollingEstimate& b) {
+namespace {
+
+void describe_estimate(Visitor& v, model::RollingEstimate& b, bool roller) {
+  b.roller = roller;
   const char* elements = b.roller ? "rollers" : "balls";
   v.integer(required(elements), b.elements, between(2, 200),
             b.roller ? "number of rollers" : "number of balls");
@@ -94,6 +97,30 @@ void describe_rolling_estimate(Visitor& v, model::RollingEstimate& b) {
                           b.elements),
               fmt::format("taken for {}; type = \"{}\" follows the contacts one by one",
                           b.elements < 8 ? 8 : 16, b.roller ? "roller" : "ball"));
+}
+
+}  // namespace
+
+void add_kinds(Kinds& k, As<model::BallBearing>) {
+  k.add<model::BallBearing>("ball",
+                            "deep-groove or angular-contact ball bearing: Hertz "
+                            "contact, clearance or preload, varying compliance");
+}
+
+void add_kinds(Kinds& k, As<model::RollerBearing>) {
+  k.add<model::RollerBearing>("roller", "cylindrical roller bearing");
+}
+
+void add_kinds(Kinds& k, As<model::RollingEstimate>) {
+  k.add<model::RollingEstimate>(
+      "ball_estimate",
+      "ball bearing as a linear spring at its static load: estimated stiffness along and "
+      "across the load (Friswell, Penny, Garvey & Lees 2010, doi "
+      "10.1017/CBO9780511780509, 5.5.4)",
+      [](Visitor& v, model::RollingEstimate& b) { describe_estimate(v, b, false); });
+  k.add<model::RollingEstimate>(
+      "roller_estimate", "cylindrical roller bearing, estimated in the same way",
+      [](Visitor& v, model::RollingEstimate& b) { describe_estimate(v, b, true); });
 }
 
 }  // namespace whirl::deck

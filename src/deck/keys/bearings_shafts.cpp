@@ -95,4 +95,15 @@ void describe(Visitor& v, model::GearPair& b) {
             "the mesh stiffness would become negative: the harmonics add up to 1 or more");
 }
 
+void add_kinds(Kinds& k, As<model::Coupling>) {
+  k.add<model::Coupling>(
+      "coupling", "flexible coupling between two shafts, 6x6, with misalignment; needs 'to'");
+}
+
+void add_kinds(Kinds& k, As<model::GearPair>) {
+  k.add<model::GearPair>("gear",
+                         "spur or helical gear pair between two shafts: mesh "
+                         "stiffness, backlash, transmission error; needs 'to'");
+}
+
 }  // namespace whirl::deck

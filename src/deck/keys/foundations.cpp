@@ -70,8 +70,7 @@ void find_coordinate(Visitor& v, model::Foundation::Coordinate& c) {
             "keep one of 'support' and the foundation");
   else if (b.to)
     v.error("E26", "coordinates", fmt::format("bearing '{}' is between two shafts", b.name));
-  else if (std::holds_alternative<model::RigidSupport>(b.law) ||
-           std::holds_alternative<model::SpringBlock>(b.law))
+  else if (model::traits_of(b.law).acts != model::Acts::between_nodes)
     v.error("E26", "coordinates", fmt::format("bearing '{}' holds the shaft to the ground", b.name),
             "a bearing on a foundation needs a stiffness of its own: type = \"linear\", ...");
 }

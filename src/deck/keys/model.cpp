@@ -42,10 +42,13 @@ void describe_settings(Visitor& v, model::Model& m) {
       [&](Visitor& w) {
         w.quantity(optional("max_element_length", "no limit"), m.max_element_length, "mm", positive,
                    "longest shaft element");
-        w.integer("min_elements_per_section", m.min_elements, between(1, 10000),
-                  "least number of elements of each section");
+        w.integer(optional("min_elements_per_section", "chosen by the program"), m.min_elements,
+                  between(1, 10000), "least number of elements of each section");
+        w.number("accuracy", m.mesh_accuracy, between(1e-8, 0.1),
+                 "of frequencies, where the program chooses the elements: sections without "
+                 "min_elements or max_element_length, here or of their own");
       },
-      "refinement; a node stands at every section end and at everything attached in any case");
+      "elements; a node stands at every section end and at everything attached in any case");
 }
 
 }  // namespace
@@ -56,7 +59,7 @@ void describe(Visitor& v, model::Model& m) {
     v.error("E31", "format",
             fmt::format("the deck has format {}, this program reads format 1", m.format),
             m.format > 1 ? "a newer program is needed" : "write format = 1");
-  v.text(optional("title", "none"), m.title, "one line for reports");
+  v.text(beside_motion(optional("title", "none")), m.title, "one line for reports");
   std::vector<std::string> include;
   v.texts(optional("include", "none"), include,
           "files merged before this one: lists of tables are joined, a key set in both is a "
@@ -92,9 +95,9 @@ void describe(Visitor& v, model::Model& m) {
          "what a transient run reports or stops at, located on its dense output");
   v.list(optional("initial", "at rest, straight"), m.initial,
          "initial motion of a shaft line as a rigid body");
-  v.list(optional("probe", "none"), m.probes, "a place whose motion is recorded");
+  v.list(beside_motion(optional("probe", "none")), m.probes, "a place whose motion is recorded");
   v.list(optional("step", "none"), m.steps, "analyses, run in this order");
-  v.table("output", m.output, "what is written, and where");
+  v.table(beside_motion("output"), m.output, "what is written, and where");
 }
 
 }  // namespace whirl::deck

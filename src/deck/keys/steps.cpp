@@ -8,8 +8,9 @@
 namespace whirl::deck {
 
 void describe(Visitor& v, model::SpeedRange& r) {
-  static constexpr Option refine[] = {{"no", "the points alone"},
-                                      {"peaks", "more points where the response peaks"}};
+  static constexpr Option refine[] = {
+      {"peaks", "unbalance response: more points where the response peaks"},
+      {"no", "the points alone"}};
   int i = 0;
   v.quantity(optional("start", "\"0 rpm\""), r.start, "rpm", any, "first speed");
   const bool stop =
@@ -19,7 +20,7 @@ void describe(Visitor& v, model::SpeedRange& r) {
   const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "rpm", any,
                                    -1, "the speeds one by one");
   v.option("refine", i, refine, "refinement");
-  r.refine_peaks = i == 1;
+  r.refine_peaks = i == 0;
   if (!v.clean()) return;
   if (values && (stop || points || v.given("start")))
     v.error("E26", "values", "the speeds are given by 'values' and by 'start', 'stop', 'points'",
@@ -409,7 +410,7 @@ void describe(Visitor& v, model::BucklingStep& s) {
 }
 
 void describe(Visitor& v, model::TransientStep& s) {
-  v.quantity(required("duration"), s.duration, "s", positive,
+  v.quantity(beside_motion(required("duration")), s.duration, "s", positive,
              "length of the run; it begins at time 0, or where the step named by 'from' ended");
   v.choice("start", s.start,
            {{"rest", "straight and unstressed, loads applied at once"},
@@ -437,15 +438,15 @@ void describe(Visitor& v, model::TransientStep& s) {
   s.speed0_given = v.quantity(
       optional("initial_speed", "what the drives prescribe, else the shafts' initial_spin"),
       s.speed0, "rpm", any, "spin at the start of every rotating line (times its speed_ratio)");
-  v.quantity(optional("stop_speed", "never"), s.stop_speed, "rpm", any,
+  v.quantity(beside_motion(optional("stop_speed", "never")), s.stop_speed, "rpm", any,
              "the run ends when the reference spin passes this value");
-  v.quantity(optional("amplitude_limit", "none"), s.amplitude_limit, "mm", positive,
+  v.quantity(beside_motion(optional("amplitude_limit", "none")), s.amplitude_limit, "mm", positive,
              "the run ends when a probe exceeds this displacement");
   v.flag(
       "linear", s.linear,
       "small motions about the rotor that turns at constant speed in static equilibrium: constant "
       "matrices, one factorisation for each length of step; loads and unbalance act as they are");
-  v.quantity("checkpoint", s.checkpoint, "s", not_negative,
+  v.quantity(beside_motion("checkpoint"), s.checkpoint, "s", not_negative,
              "wall-clock time between checkpoints, from which --resume continues; 0 s: none");
   v.table("integrator", s.integrator, "time integration");
 }

@@ -61,6 +61,7 @@ struct Member {
   std::string key;
   Spot spot;  ///< of the key
   Value value;
+  bool moves = true;  ///< of a resolved deck: motion may depend on it (Key::moves)
 };
 
 /// "a number", "text", "a list", ...

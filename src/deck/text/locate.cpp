@@ -175,7 +175,7 @@ Located locate(const model::Model& m, std::string_view given) {
                                         [&](const auto& b) { return b.name == best->name; });
       const std::size_t k = static_cast<std::size_t>(bearing - m.bearings.begin());
       if (bearing == m.bearings.end() ||
-          std::holds_alternative<model::RigidSupport>(bearing->law) ||
+          model::traits_of(bearing->law).acts == model::Acts::as_constraint ||
           (!bearing->pedestal && m.foundation_of(k) < 0))
         return fail("E18", fmt::format("'{}' has no support that moves", best->name),
                     "give the bearing support = { mass = ..., kyy = ..., kzz = ... }",

@@ -5,8 +5,8 @@
 //
 // Linear algebra: IDA's matrix and linear solver are shells around the Problem. With b = (b1, b2)
 // and c = cj,
-//     [c 1  -1; K  C + c M] (dq, dv) = (b1, b2)   <=>   (c^2 M + c C + K) dq = b2 + (C + c M) b1,
-//     dv = c dq - b1.
+//     [c 1   -1; K   C + c M] (dq, dv) = (b1, b2)   <=>   (c^2 M + c C + K) dq = b2 + (C + c M) b1,
+//         dv = c dq - b1.
 //
 // Whole turns that accept() takes out of phi stay in IDA's own vector (its history would otherwise
 // have to start anew each revolution): y = q + offset. Spin angles have absolute tolerances, so the

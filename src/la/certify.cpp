@@ -1,0 +1,160 @@
+// The certificate of a list of modes: the roots of a region are counted, those that are missing are
+// looked for, and what remains is said.
+#include <la/mode_search.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::la {
+
+double ModeSolver::Impl::count_radius() const {
+  std::vector<double> f;
+  for (const Pair& p : known)
+    if (oscillates(p.lambda)) f.push_back(p.lambda.imag());
+  std::sort(f.begin(), f.end());
+  if (opt.count <= 0) return std::max(1.01 * opt.max_frequency, least_radius);
+  const Index n = static_cast<Index>(f.size());
+  double radius = n > 0 ? 1.1 * f.back() : 4.0 * sigma;
+  double widest = 0.0;
+  for (Index i = opt.count; i < n; ++i) {
+    const double low = f[at(i - 1)], high = f[at(i)];
+    if (high / low > widest) {
+      widest = high / low;
+      radius = std::sqrt(high * low);
+    }
+  }
+  return std::max(std::min(radius, 1.01 * opt.max_frequency), 1.01 * least_radius);
+}
+
+void ModeSolver::Impl::drop_unproved() {
+  std::erase_if(known, [](const Pair& p) {
+    return !p.rigid && (!(p.residual < unproved) || std::abs(p.lambda) <= p.uncertainty);
+  });
+}
+
+std::vector<Complex> ModeSolver::Impl::known_roots() const {
+  std::vector<Complex> roots(static_cast<std::size_t>(double_zeros), 0.0);
+  for (const Pair& p : known)
+    roots.push_back(p.lambda);
+  return roots;
+}
+
+bool ModeSolver::Impl::look_near(Complex place, double distance) {
+  ModeOptions o;
+  o.count = 0;
+  o.max_frequency = distance;
+  o.shift = Complex(place.real(), std::max(place.imag(), 1e-2 * distance));
+  o.tolerance = opt.tolerance;
+  o.dense_below = 0;
+  Impl near(pattern, active, o);
+  constexpr Index old = 1 << 20;  // marks what was known before
+  near.set(*m);
+  near.known = known;
+  for (Pair& p : near.known)
+    p.from = old;
+  near.prepare_operator(false);
+  for (unsigned seed = 1; seed < 12; ++seed)
+    if (!near.search(near.krylov_complex, seed)) break;
+  bool any = false;
+  for (Pair& p : near.known)
+    if (!p.rigid && p.from != old && std::abs(p.lambda) > p.uncertainty)
+      any = add(std::move(p)) || any;
+  sort_known();
+  return any;
+}
+
+bool ModeSolver::Impl::look_everywhere(const CountRegion& region) {
+  bool any = false;
+  for (const double height : {0.0, 0.5, 1.0})
+    for (const double left : {0.0, 0.7, 1.4, 2.1, 2.8})
+      any = look_near(region.radius * Complex(-left, height), 0.5 * region.radius) || any;
+  return any;
+}
+
+Index ModeSolver::Impl::count_oscillating() const {
+  return std::count_if(known.begin(), known.end(),
+                       [](const Pair& p) { return oscillates(p.lambda); });
+}
+
+void ModeSolver::Impl::extend_to_count() {
+  const double given = least_radius;
+  for (int more = 0; more < 4 && count_oscillating() < opt.count; ++more) {
+    least_radius =
+        2.0 * std::max(certificate.radius, wanted_radius() < infinity ? wanted_radius() : 0.0);
+    search_all();
+    certify();
+  }
+  least_radius = given;
+}
+
+bool ModeSolver::Impl::further_copies(const std::vector<Complex>& places) const {
+  const auto is_copy = [&](Complex place) {
+    return std::any_of(known.begin(), known.end(), [&](const Pair& p) {
+      return !oscillates(p.lambda) && p.lambda.real() < 0.0 &&
+             std::abs(p.lambda - place) < 1e-2 * std::abs(p.lambda);
+    });
+  };
+  return !places.empty() && std::all_of(places.begin(), places.end(), is_copy);
+}
+
+bool ModeSolver::Impl::only_zeros_missing() {
+  std::vector<double> sizes;
+  for (const Pair& p : known)
+    if (!p.rigid) sizes.push_back(std::abs(p.lambda));
+  const double scale = scale_of(sizes);
+  if (!(scale < infinity)) return false;
+  for (const double share : {1e-6, 1e-5}) {
+    const double small = share * scale;
+    std::vector<Complex> others;
+    for (const Pair& p : known)
+      if (!p.rigid && std::abs(p.lambda) > small) others.push_back(p.lambda);
+    const RootCount zeros = counter->count(*m, {small, small}, others);
+    certificate.factorizations += zeros.factorizations;
+    if (!zeros.certain || zeros.unknown <= 0) continue;
+    others.insert(others.end(), static_cast<std::size_t>(zeros.unknown), Complex(0.0));
+    const RootCount all = counter->count(*m, {certificate.radius, certificate.reach}, others);
+    certificate.factorizations += all.factorizations;
+    if (all.certain && all.unknown == 0) return true;
+  }
+  return false;
+}
+
+void ModeSolver::Impl::certify() {
+  certificate = {};
+  if (!counter) counter.emplace(pattern, active);
+  const std::size_t before = known.size();
+  double radius = count_radius();
+  for (int round = 0; round < 6; ++round) {
+    drop_unproved();
+    const CountRegion region{radius, oscillating_reach * radius};
+    const RootCount c = counter->count(*m, region, known_roots());
+    certificate.factorizations += c.factorizations;
+    certificate.radius = region.radius;
+    certificate.reach = region.reach;
+    certificate.counted = c.certain;
+    certificate.missing = c.certain ? std::abs(c.unknown) : 0;
+    if (!c.certain) {  // a root on the curve itself
+      radius *= 1.023;
+      continue;
+    }
+    if (c.unknown <= 0) break;
+    certificate.where = counter->locate(c.unknown);
+    if (further_copies(certificate.where)) {
+      certificate.missing = 0;
+      break;
+    }
+    bool any = false;
+    for (const Complex place : certificate.where)
+      any = look_near(place, 0.1 * (round + 1) * radius) || any;
+    if (!any) any = look_everywhere(region);
+    if (!any) break;
+  }
+  if (certificate.counted && certificate.missing > 0 && only_zeros_missing())
+    certificate.missing = 0;
+  if (certificate.complete()) certificate.where.clear();
+  certificate.recovered =
+      std::max<Index>(0, static_cast<Index>(known.size()) - static_cast<Index>(before));
+  work.factorizations += certificate.factorizations;
+}
+
+}  // namespace whirl::la

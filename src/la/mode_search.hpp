@@ -1,0 +1,82 @@
+// The search behind ModeSolver (eigen.hpp): Krylov runs about one shift with all that is known out
+// of the way, and the count that certifies what they found. Internal to src/la.
+#pragma once
+#include <la/eigen.hpp>
+#include <la/eigenpairs.hpp>
+#include <la/root_count.hpp>
+
+#include <optional>
+
+namespace whirl::la {
+
+struct ModeSolver::Impl : Eigenpairs {
+  using Eigenpairs::Eigenpairs;
+  Krylov<Complex> krylov_complex;
+  std::vector<VecXc> deflated;  ///< Ritz vectors z that polishing could not make anything new of;
+                                ///< out of the way of the searches of this call
+  std::vector<Mode> result;
+  std::optional<RootCounter> counter;
+  Certificate certificate;
+  static constexpr double unproved = 1e-8;  ///< backward error
+
+  template <class Scalar>
+  void lock_known(Krylov<Scalar>& k);
+  /// What a run has converged to, from the largest Ritz value to the first that has not converged
+  /// or lies beyond the radius.
+  struct Harvest {
+    std::vector<Pair> found;
+    std::vector<VecXc> vectors;  ///< Ritz vectors, one a pair
+    Index counted = 0;           ///< of those asked for
+    bool all = true;             ///< nothing within the radius is left to converge
+  };
+  template <class Scalar>
+  Harvest harvest(Krylov<Scalar>& k, bool exhausted, double radius);
+  /// One Arnoldi run in the complement of what is known. False: nothing unknown is left within the
+  /// wanted radius.
+  template <class Scalar>
+  bool search(Krylov<Scalar>& k, unsigned seed);
+  /// Everything dense: for a handful of unknowns.
+  void solve_dense();
+  void start_from_known();
+  /// Indices of the known pairs to be returned.
+  std::vector<std::size_t> choose() const;
+  void sort_by_frequency(std::vector<std::size_t>& chosen) const;
+  /// The same of a counted list: all that oscillates up to the frequency or the number asked for,
+  /// and the real roots of the region.
+  std::vector<std::size_t> choose_counted() const;
+  void collect();
+  /// A radius for the count: at least what is asked for, where the frequencies known leave the
+  /// widest gap.
+  double count_radius() const;
+  /// A pair that is no root, or a zero root counted with the free motions already, would hide one
+  /// that is missing.
+  void drop_unproved();
+  std::vector<Complex> known_roots() const;
+  /// Looks for roots within a distance from a place of the complex plane, in complex arithmetic,
+  /// with all that is known out of the way. True: something new.
+  bool look_near(Complex place, double distance);
+  /// Looks round a grid over the region, for roots that lie too close together for their moments to
+  /// tell them apart.
+  bool look_everywhere(const CountRegion& region);
+  Index count_oscillating() const;
+  /// All searches that lead to something new.
+  void search_all();
+  /// Pairs counted on the way may have turned out to be real: the search goes on until as many
+  /// modes oscillate as are wanted.
+  void extend_to_count();
+  /// The missing roots are further copies of overdamped ones that are known: massless unknowns
+  /// under damping in proportion to their stiffness all have the one rate -1/beta. Their number
+  /// says nothing about the machine.
+  bool further_copies(const std::vector<Complex>& places) const;
+  /// Free motions whose zero roots the search could not tell apart (several at once are defective):
+  /// they are counted by themselves, within a circle round zero that is small beside every other
+  /// root, and the region once more with as many zeros. True: nothing else is missing.
+  bool only_zeros_missing();
+  /// Counts the roots of the region, looks for those that are missing, and leaves the certificate.
+  void certify();
+  void set(const MCK& matrices);
+  void solve(const MCK& matrices);
+  void rescale_shift();
+};
+
+}  // namespace whirl::la

@@ -1,0 +1,402 @@
+#include <model/bearing_laws.hpp>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::model {
+namespace {
+
+constexpr std::nullopt_t none = std::nullopt;
+using Curves = std::vector<StiffnessCurve>;
+
+Directions on_diagonal(const Matrix<6>& K) {
+  Directions out{};
+  for (Index c = 0; c < 6; ++c)
+    out[static_cast<std::size_t>(c)] = K(c, c) != 0;
+  return out;
+}
+
+NodeLoads loads_of(const Matrix<6>& K, const Matrix<6>& C) {
+  const auto row = [&](Index c) { return !K.row(c).isZero(0.0) || !C.row(c).isZero(0.0); };
+  return {row(1) || row(2), K(4, 4) + K(5, 5) > 0, K(3, 3) > 0};
+}
+
+/// A film round a journal that turns: it carries by turning.
+SupportTraits traits_of_journal() {
+  return {.held = lateral_directions,
+          .loads = NodeLoads{.lateral = true},
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = true,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = true,
+          .nonlinear = true,
+          .needs_load = true,
+          .mapped = true,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+}  // namespace
+
+SupportTraits traits(const LinearBearing& b) {
+  Curves curves{{" kyy", {b.K(1, 1)}, {}}};
+  if (b.K(2, 2) != b.K(1, 1)) curves.push_back({" kzz", {b.K(2, 2)}, {}});
+  return {.held = on_diagonal(b.K),
+          .loads = loads_of(b.K, b.C),
+          .stiffness = b.K,
+          .bias = Bias{b.setpoint, b.preload},
+          .curves = curves,
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = false,
+          .nonlinear = false,
+          .needs_load = false,
+          .mapped = b.K(1, 1) != 0 || b.K(2, 2) != 0,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+LinearBearing linear_form(const SpringBlock& b) {
+  LinearBearing linear;
+  linear.K.diagonal() << b.C1, b.C1, b.C1, 0, b.C2, b.C2;
+  return linear;
+}
+
+SupportTraits traits(const SpringBlock& b) {
+  return {.held = on_diagonal(linear_form(b).K),
+          .loads = NodeLoads{.lateral = true, .tilting = true},
+          .stiffness = linear_form(b).K,
+          .bias = Bias{},
+          .curves = Curves{{"", {b.C1}, {}}},
+          .acts = Acts::on_the_shaft,
+          .film = false,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = false,
+          .nonlinear = false,
+          .needs_load = false,
+          .mapped = b.C1 != 0,
+          .pair = none,
+          .picture = Picture::spring};
+}
+
+namespace {
+
+/// Of a table against frequency the synchronous values: the frequency nearest to the speed.
+std::size_t synchronous_row(const TableBearing& b, std::size_t speed) {
+  const auto& f = b.frequency;
+  if (f.empty()) return speed;
+  std::size_t j = 0;
+  for (std::size_t k = 1; k < f.size(); ++k)
+    if (std::abs(f[k] - b.speed[speed]) < std::abs(f[j] - b.speed[speed])) j = k;
+  return speed * f.size() + j;
+}
+
+Curves curves_of(const TableBearing& b) {
+  Curves out;
+  for (const auto& [entry, label] : {std::pair{1, " kyy"}, std::pair{2, " kzz"}}) {
+    StiffnessCurve c{label, {}, {}};
+    for (std::size_t i = 0; i < b.speed.size(); ++i) {
+      const double k = b.K[synchronous_row(b, i)](entry, entry);
+      if (!(b.speed[i] > 0) || !(k > 0)) continue;
+      c.k.push_back(k);
+      c.speed.push_back(b.speed[i]);
+    }
+    if (!c.k.empty()) out.push_back(std::move(c));
+  }
+  return out;
+}
+
+}  // namespace
+
+SupportTraits traits(const TableBearing& b) {
+  Directions held{};
+  NodeLoads loads;
+  for (std::size_t i = 0; i < b.K.size(); ++i) {
+    const Directions here = on_diagonal(b.K[i]);
+    for (std::size_t c = 0; c < 6; ++c)
+      held[c] = held[c] || here[c];
+    const NodeLoads l = loads_of(b.K[i], i < b.C.size() ? b.C[i] : Matrix<6>(Matrix<6>::Zero()));
+    loads = {loads.lateral || l.lateral, loads.tilting || l.tilting, loads.torque || l.torque};
+  }
+  return {.held = held,
+          .loads = loads,
+          .stiffness = none,
+          .bias = Bias{b.setpoint, b.preload},
+          .curves = curves_of(b),
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = true,
+          .nonlinear = false,
+          .needs_load = false,
+          .mapped = held[1] || held[2],
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const RigidSupport& b) {
+  return {.held = b.held,
+          .loads = NodeLoads{},  // what is held does not move
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::as_constraint,
+          .film = false,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = false,
+          .nonlinear = false,
+          .needs_load = false,
+          .mapped = false,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const NonlinearSpring& b) {
+  using Along = NonlinearSpring::Along;
+  using Shape = ForceLaw::Shape;
+  const bool radial = b.along == Along::radial;
+  const Directions held{b.along == Along::x,           radial || b.along == Along::y,
+                        radial || b.along == Along::z, b.along == Along::rx,
+                        b.along == Along::ry,          b.along == Along::rz};
+  const bool lateral = held[1] || held[2];
+  const bool gap = b.force.shape == Shape::clearance || b.force.shape == Shape::one_sided;
+  return {.held = held,
+          .loads = NodeLoads{lateral, held[4] || held[5], held[3]},
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = gap,
+          .rolling = false,
+          .follows_spin = false,
+          .nonlinear = lateral,
+          .needs_load = false,
+          .mapped = lateral && !gap,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const ShortJournal&) { return traits_of_journal(); }
+
+SupportTraits traits(const FiniteJournal&) { return traits_of_journal(); }
+
+SupportTraits traits(const SqueezeFilm& b) {
+  // the film alone carries nothing at rest
+  return {.held = b.stiffness > 0 ? lateral_directions : no_direction,
+          .loads = NodeLoads{.lateral = true},
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = true,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = false,
+          .nonlinear = true,
+          .needs_load = false,
+          .mapped = b.stiffness != 0,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const BallBearing& b) {
+  return {.held = Directions{true, true, true, false, true, true},
+          .loads = NodeLoads{.lateral = true, .tilting = true},
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = b.clearance > 0,
+          .rolling = true,
+          .follows_spin = false,
+          .nonlinear = true,
+          .needs_load = b.preload == 0 && b.clearance >= 0,
+          .mapped = true,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const RollerBearing& b) {
+  return {.held = Directions{false, true, true, false, true, true},
+          .loads = NodeLoads{.lateral = true, .tilting = true},
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = b.clearance > 0,
+          .rolling = true,
+          .follows_spin = false,
+          .nonlinear = true,
+          .needs_load = b.clearance >= 0,
+          .mapped = true,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const RollingEstimate& b) {
+  const EstimatedStiffness k = estimate_stiffness(b);
+  return {.held = Directions{b.kxx > 0, true, true, false, false, false},
+          .loads = NodeLoads{.lateral = true},
+          .stiffness = linear_form(b).K,
+          .bias = Bias{},
+          .curves = Curves{{" along its load", {k.along}, {}}, {" across", {k.across}, {}}},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = false,
+          .nonlinear = false,
+          .needs_load = false,
+          .mapped = true,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+namespace {
+
+double interpolate(int n, double at8, double at12, double at16) {
+  const double x = std::clamp(static_cast<double>(n), 8.0, 16.0);
+  return x < 12.0 ? at8 + (x - 8.0) / 4.0 * (at12 - at8) : at12 + (x - 12.0) / 4.0 * (at16 - at12);
+}
+
+EstimatedStiffness estimate_ball_bearing(int balls, double diameter, double load, double alpha) {
+  const double k = 13e6 * std::pow(balls, 2.0 / 3.0) * std::cbrt(diameter * load) *
+                   std::pow(std::cos(alpha), 5.0 / 3.0);
+  return {k, k * interpolate(balls, 0.46, 0.64, 0.73)};
+}
+
+EstimatedStiffness estimate_roller_bearing(int rollers, double length, double load, double alpha) {
+  const double k = 1e9 * std::pow(rollers, 0.9) * std::pow(length, 0.8) * std::pow(load, 0.1) *
+                   std::pow(std::cos(alpha), 1.9);
+  return {k, k * interpolate(rollers, 0.49, 0.66, 0.74)};
+}
+
+}  // namespace
+
+EstimatedStiffness estimate_stiffness(const RollingEstimate& b) {
+  return b.roller ? estimate_roller_bearing(b.elements, b.size, b.load, b.contact_angle)
+                  : estimate_ball_bearing(b.elements, b.size, b.load, b.contact_angle);
+}
+
+LinearBearing linear_form(const RollingEstimate& b) {
+  const EstimatedStiffness k = estimate_stiffness(b);
+  const Mat2 turn = Eigen::Rotation2Dd(b.load_angle).toRotationMatrix();
+  LinearBearing linear;
+  linear.K.block<2, 2>(1, 1) = turn * Vec2(k.along, k.across).asDiagonal() * turn.transpose();
+  linear.K(0, 0) = b.kxx;
+  linear.C(1, 1) = linear.C(2, 2) = b.c_radial;
+  return linear;
+}
+
+SupportTraits traits(const Rub& b) {
+  return {.held = lateral_directions,
+          .loads = NodeLoads{},  // stops are left most of the time
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = true,
+          .rolling = false,
+          .follows_spin = b.friction > 0,
+          .nonlinear = true,
+          .needs_load = false,
+          .mapped = false,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const AnnularSeal&) {
+  return {.held = lateral_directions,
+          .loads = NodeLoads{.lateral = true},
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = true,
+          .nonlinear = false,
+          .needs_load = false,
+          .mapped = false,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const CrossCoupling&) {
+  // circulatory: it holds nothing
+  return {.held = no_direction,
+          .loads = NodeLoads{.lateral = true},
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = false,
+          .nonlinear = false,
+          .needs_load = false,
+          .mapped = false,
+          .pair = none,
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const Coupling& b) {
+  return {.held = on_diagonal(b.K),
+          .loads = NodeLoads{.lateral = true, .tilting = true, .torque = true},
+          .stiffness = none,  // it turns with its shafts
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = !b.C.isZero(0.0),
+          .nonlinear = false,
+          .needs_load = false,
+          .mapped = false,
+          .pair = ShaftPair{.speed_ratio = 1, .noun = "coupling", .details = {}},
+          .picture = Picture::bearing};
+}
+
+SupportTraits traits(const GearPair& b) {
+  ShaftPair pair{.noun = "gear pair",
+                 .details = fmt::format("({} and {} teeth)", b.teeth, b.other_teeth),
+                 .mesh = true};
+  pair.speed_ratio = -static_cast<double>(b.teeth) / b.other_teeth;
+  // one direction in space: not counted as holding y and z
+  return {.held = Directions{b.helix != 0, false, false, false, false, false},
+          .loads = NodeLoads{.lateral = true, .tilting = b.helix != 0, .torque = true},
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = b.backlash >= 0,
+          .rolling = false,
+          .follows_spin = false,
+          .nonlinear = b.backlash >= 0,
+          .needs_load = false,
+          .mapped = false,
+          .pair = std::move(pair),
+          .picture = Picture::bearing};
+}
+
+}  // namespace whirl::model

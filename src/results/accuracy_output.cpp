@@ -1,0 +1,265 @@
+// What a transient says about its own accuracy: energy balance, largest tilt, local errors,
+// numerical against physical damping, warnings.
+#include <analysis/spectra/whirl_modes.hpp>
+#include <analysis/study/scheme_damping.hpp>
+#include <core/rotation.hpp>
+#include <results/transient_output.hpp>
+#include <run/progress.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::results {
+
+namespace {
+
+class EnergyOutput final : public TransientOutput {
+ public:
+  explicit EnergyOutput(const TransientSetup& s) : balance_(s.integration.breakpoints) {}
+  const analysis::EnergyBalance& balance() const { return balance_; }
+
+  void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
+    observers.push_back(&balance_);
+    parts.add({run::Part::energy}, balance_);
+  }
+
+  void summarize(TransientEnd& end) override {
+    io::Value& v = end.summary["energy"];
+    v["stored at start [J]"] = balance_.stored0();
+    v["stored at end [J]"] = balance_.stored();
+    v["supplied [J]"] = balance_.supplied();
+    v["dissipated [J]"] = balance_.dissipated();
+    v["defect [J]"] = balance_.defect();
+    v["largest defect [J]"] = balance_.worst_defect();
+  }
+
+  std::string headline() const override {
+    return fmt::format("energy defect {:.2e} J", balance_.worst_defect());
+  }
+
+ private:
+  analysis::EnergyBalance balance_;
+};
+
+class TiltOutput final : public TransientOutput {
+ public:
+  const analysis::TiltWatch& tilt() const { return tilt_; }
+
+  void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
+    observers.push_back(&tilt_);
+    parts.add({run::Part::tilt}, tilt_);
+  }
+
+  void summarize(TransientEnd& end) override {
+    io::Value& v = end.summary["largest tilt"];
+    v["|gamma| [rad]"] = tilt_.tilt();
+    v["time [s]"] = tilt_.time();
+    v["node"] = end.job.system().node(tilt_.node()).name;
+    v["condition of (phi', gamma') -> omega"] = rotation::chart_condition(tilt_.tilt());
+  }
+
+ private:
+  analysis::TiltWatch tilt_;
+};
+
+/// Modes the motion can contain at the end of the run: up to twice the largest spin, and the four
+/// lowest in any case.
+std::vector<analysis::WhirlMode> modes_that_matter(const TransientEnd& end, double speed,
+                                                   double largest_spin) {
+  const run::Job& job = end.job;
+  const system::State& state = end.result.end;
+  analysis::SteadyRotation running;
+  for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
+    const Index n = job.mesh.lines[l].first_node;
+    const double spin = state.v[6 * n + system::spin_phi];
+    running.ratio.push_back(!job.model.shafts[l].rotating ? 0.0
+                            : speed != 0.0                ? spin / speed
+                                                          : job.model.shafts[l].speed_ratio);
+  }
+  running.ratio.resize(at(job.system().lines()), 0.0);
+  running.time = state.t;
+  analysis::EquilibriumOptions o;
+  o.chart_change = job.model.chart_change;
+  analysis::Linearizer linear(job.system(), running, o);
+  analysis::ModesOptions options;
+  options.count = 8;
+  std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, speed, options), out;
+  for (analysis::WhirlMode& m : modes)
+    if (m.frequency > 0.0 && (out.size() < 4 || m.frequency <= 2.0 * largest_spin))
+      out.push_back(std::move(m));
+  return out;
+}
+
+class AccuracyOutput final : public TransientOutput {
+ public:
+  AccuracyOutput(const TransientSetup& s, const analysis::EnergyBalance& energy,
+                 const analysis::TiltWatch& tilt)
+      : energy_(energy),
+        tilt_(tilt),
+        steps_(s.job.reference()) {}
+
+  void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
+    observers.push_back(&steps_);
+    parts.add({run::Part::step_lengths}, steps_);
+  }
+
+  void summarize(TransientEnd& end) override {
+    {
+      const run::PhaseTimer timer(end.job, "accuracy");
+      std::vector<std::string> warnings;
+      judge_energy(end, warnings);
+      judge_steps(end, warnings);
+      judge_damping(end, warnings);
+      for (const std::string& w : warnings)
+        warn_of_step(end.job, end.step, w);
+    }
+    warn_of_second_order(end);
+  }
+
+ private:
+  void judge_energy(TransientEnd& end, std::vector<std::string>& warnings) const;
+  void judge_steps(const TransientEnd& end, std::vector<std::string>& warnings) const;
+  void judge_damping(TransientEnd& end, std::vector<std::string>& warnings) const;
+  void add_damping_row(TransientEnd& end, const analysis::WhirlMode& m, io::Table& t,
+                       std::vector<std::string>& warnings) const;
+  void warn_of_second_order(TransientEnd& end) const;
+
+  const analysis::EnergyBalance& energy_;
+  const analysis::TiltWatch& tilt_;
+  analysis::StepHistogram steps_;
+};
+
+/// How far the energy balance is off, of the energy turned over.
+void AccuracyOutput::judge_energy(TransientEnd& end, std::vector<std::string>& warnings) const {
+  const double tolerance = end.law.integrator.tolerance;
+  const time::Statistics& s = end.result.statistics;
+  // a motion that turns over next to nothing (a steady whirl without damping) is measured by the
+  // energy it has
+  const bool exchanges = energy_.exchanged() > energy_.worst_defect();
+  const double turned = exchanges ? energy_.exchanged() : energy_.largest_energy();
+  const double defect = turned > 0.0 ? energy_.worst_defect() / turned : 0.0;
+  const char* measure = exchanges ? "turned over" : "of the motion, which turns over none";
+  io::Value& v = end.summary["accuracy"];
+  v["aimed at, of the peak response"] = tolerance;
+  v["energy defect / energy turned over"] = defect;
+  v["local error / allowance, mean"] = s.error_mean();
+  v["local error / allowance, max"] = s.error_max;
+  end.section.text += fmt::format(
+      "\n\nAccuracy: aimed at {:.2g} of the peak response with {:.3f} s CPU; local errors {:.2g} "
+      "of what they may be on average, {:.2g} at most. The energy balance "
+      "(stored - supplied + dissipated) is off by {:.2g} J at most, {:.2g} of the energy {}.",
+      tolerance, end.result.seconds, s.error_mean(), s.error_max, energy_.worst_defect(), defect,
+      measure);
+  // an amplitude error of a percent is an energy error of two
+  if (!energy_.known())
+    warnings.push_back(
+        "the motion leaves the range in which the energies of its supports are defined (a film's "
+        "clearance, a table): its energy balance is not known");
+  else if (defect > 0.02 && energy_.worst_defect() > energy_.rounding())
+    warnings.push_back(
+        fmt::format("the energy balance is off by {:.2g} of the energy {}: do not trust the "
+                    "amplitudes; try a smaller tolerance",
+                    defect, measure));
+}
+
+/// Steps that are too long for the accuracy asked for, or rejected again and again.
+void AccuracyOutput::judge_steps(const TransientEnd& end,
+                                 std::vector<std::string>& warnings) const {
+  const model::IntegratorOptions& scheme = end.law.integrator;
+  const time::Statistics& s = end.result.statistics;
+  if (scheme.dt > 0.0 && s.error_max > 1.0)
+    warnings.push_back(
+        fmt::format("the fixed step is too long for the accuracy asked for: local errors up to "
+                    "{:.2g} times the allowance for {:.2g} of the peak",
+                    s.error_max, scheme.tolerance));
+  const double accepted = static_cast<double>(s.accepted);
+  const double all = static_cast<double>(s.accepted + s.rejected_error + s.rejected_newton);
+  if (s.accepted > 100 && accepted < 0.7 * all)
+    warnings.push_back(fmt::format(
+        "{:.0f} % of the steps were rejected: the model is not smooth at the scale of the steps",
+        100.0 * (1.0 - accepted / all)));
+}
+
+/// The damping that the steps add to the modes at the end of the run.
+void AccuracyOutput::judge_damping(TransientEnd& end, std::vector<std::string>& warnings) const {
+  const model::IntegratorOptions& scheme = end.law.integrator;
+  const bool unknown =
+      !std::isfinite(analysis::numerical_decay(scheme.method, scheme.rho_inf, Complex(0, 1), 1e-3));
+  if (unknown || end.result.reason == analysis::StopReason::failed) return;
+  const double speed = end.result.end.v[6 * end.job.reference() + system::spin_phi];
+  std::vector<analysis::WhirlMode> modes;
+  try {
+    modes = modes_that_matter(end, speed, steps_.largest_spin());
+  } catch (const Error& e) {
+    end.summary["accuracy"]["modes"] = std::string("not found at the end of the run: ") + e.what();
+    return;
+  }
+  io::Table t;
+  t.title = fmt::format("Damping of the modes at {:.0f} rpm: physical, and what the steps add",
+                        to_rpm(speed));
+  t.columns = {
+      {"frequency", "Hz", ""},
+      {"motion", "-", ""},
+      {"physical damping ratio", "-", ""},
+      {"numerical damping ratio", "-", "mean over the half of the run with the shortest steps"},
+      {"amplitude lost to it over the run", "-", ""}};
+  for (const analysis::WhirlMode& m : modes)
+    add_damping_row(end, m, t, warnings);
+  if (!t.rows.empty()) end.section.tables.push_back(std::move(t));
+}
+
+void AccuracyOutput::add_damping_row(TransientEnd& end, const analysis::WhirlMode& m, io::Table& t,
+                                     std::vector<std::string>& warnings) const {
+  const model::IntegratorOptions& scheme = end.law.integrator;
+  // the mode's own damping is left out where it would not last: of a growing or heavily damped
+  // mode only the frequency counts
+  const double decay = steps_.mean_decay(scheme.method, scheme.rho_inf, Complex(0.0, m.frequency));
+  const double physical = m.damping_ratio, numerical = decay / m.frequency;
+  const double lost = 1.0 - std::exp(-std::max(decay, 0.0) * steps_.seconds());
+  io::Value q;
+  q["frequency [Hz]"] = to_hz(m.frequency);
+  q["physical damping ratio"] = physical;
+  q["numerical damping ratio"] = numerical;
+  end.summary["accuracy"]["modes"].push(q);
+  const std::string motion = m.kind == analysis::ModeKind::lateral
+                                 ? fmt::format("lateral, {}", analysis::to_string(m.direction))
+                                 : std::string(analysis::to_string(m.kind));
+  t.add({to_hz(m.frequency), motion, physical, numerical, lost});
+  // it matters when it is not small against the physical one, and has the time to show
+  if (numerical > 0.1 * std::abs(physical) && lost > 0.01 &&
+      m.frequency <= 1.2 * steps_.largest_spin())
+    warnings.push_back(fmt::format(
+        "numerical damping of the mode at {:.4g} Hz (ratio {:.2g}) is not small against its "
+        "physical damping ({:.2g}): try a smaller tolerance, or method = \"gauss6\"",
+        to_hz(m.frequency), numerical, physical));
+}
+
+/// Small motions leave out the square of the tilt.
+void AccuracyOutput::warn_of_second_order(TransientEnd& end) const {
+  const double tilt = tilt_.tilt();
+  if (!end.law.linear || tilt * tilt <= 0.01) return;
+  warn_of_step(end.job, end.step,
+               fmt::format("linear = true, but {} tilts by {:.2g} rad: the terms left out are "
+                           "{:.2g} of those kept",
+                           end.job.system().node(tilt_.node()).name, tilt, tilt * tilt));
+}
+
+}  // namespace
+
+void add_energy(const TransientSetup& setup, TransientOutputs& outputs) {
+  outputs.push_back(std::make_unique<EnergyOutput>(setup));
+}
+
+void add_tilt(const TransientSetup&, TransientOutputs& outputs) {
+  outputs.push_back(std::make_unique<TiltOutput>());
+}
+
+void add_accuracy(const TransientSetup& setup, TransientOutputs& outputs) {
+  const auto& energy = find_output<EnergyOutput>(outputs).balance();
+  const auto& tilt = find_output<TiltOutput>(outputs).tilt();
+  outputs.push_back(std::make_unique<AccuracyOutput>(setup, energy, tilt));
+}
+
+}  // namespace whirl::results

@@ -1,0 +1,162 @@
+#include <results/channels.hpp>
+
+#include <analysis/spectra/whirl_modes.hpp>
+
+#include <algorithm>
+
+namespace whirl::results {
+
+using analysis::Measurement;
+using analysis::Point;
+using analysis::Snapshot;
+
+namespace {
+
+bool wants(const model::Output& o, std::string_view quantity) {
+  return std::find(o.quantities.begin(), o.quantities.end(), quantity) != o.quantities.end();
+}
+
+/// Node states of a snapshot, as the assembly asks for them.
+auto nodes_of(const Snapshot& s) {
+  return [&s](Index n) -> const system::NodeState& { return s.node(n); };
+}
+
+auto reactions_of(const Snapshot& s) {
+  return [&s](Index k) { return s.reactions()[k]; };
+}
+
+void add_speeds(const run::Job& job, Channels& c) {
+  if (!wants(job.model.output, "speed")) return;
+  c.add(analysis::measure_spin("speed", job.reference()));
+  c.add(analysis::measure_phi("phi", job.reference()));
+  if (job.mesh.lines.size() == 1) return;
+  for (const meshes::Line& line : job.mesh.lines)
+    if (line.rotating) c.add(analysis::measure_spin("speed " + line.name, line.first_node));
+}
+
+void add_probes(const run::Job& job, Channels& c) {
+  const model::Output& o = job.model.output;
+  const std::vector<model::Probe>& probes = job.model.probes;
+  if (wants(o, "probes"))
+    for (const model::Probe& p : probes)
+      c.add(analysis::measure_displacement(p.name, point_of(job, p.at), p.angles));
+  if (wants(o, "positions"))
+    for (const model::Probe& p : probes)
+      c.add(analysis::measure_position(p.name + " position", point_of(job, p.at)));
+  if (wants(o, "velocity"))
+    for (const model::Probe& p : probes)
+      c.add(analysis::measure_velocity(p.name + " velocity", point_of(job, p.at)));
+  if (wants(o, "acceleration"))
+    for (const model::Probe& p : probes)
+      c.add(analysis::measure_acceleration(p.name + " acceleration", point_of(job, p.at)));
+  if (wants(o, "rotation"))
+    for (const model::Probe& p : probes) {
+      const Index node = point_of(job, p.at).node;
+      c.add(analysis::measure_gamma(p.name + " gamma", node));
+      c.add(analysis::measure_phi(p.name + " phi", node));
+      c.add(analysis::measure_phi_rate(p.name + " omega_phi", node));
+    }
+}
+
+void add_support_forces(const run::Job& job, Channels& c) {
+  if (!wants(job.model.output, "bearing_force")) return;
+  for (const assembly::SupportForce& f : job.built.support_forces) {
+    Measurement x{"bearing " + f.name + " force",
+                  "N",
+                  "force of the support on the shaft, fixed axes",
+                  {"x", "y", "z"},
+                  1.0,
+                  {}};
+    x.evaluate = [&f](const Snapshot& s, double* out) {
+      Eigen::Map<Vec3>{out} = f.force(nodes_of(s), s.context(), reactions_of(s));
+    };
+    c.add(std::move(x));
+  }
+}
+
+void add_support_moments(const run::Job& job, Channels& c) {
+  if (!wants(job.model.output, "bearing_moment")) return;
+  for (const assembly::SupportForce& f : job.built.support_forces) {
+    if (!f.moment) continue;
+    Measurement x{"bearing " + f.name + " moment",
+                  "N.m",
+                  "moment of the support on the shaft about its place, fixed axes; about x: torque",
+                  {"x", "y", "z"},
+                  1.0,
+                  {}};
+    x.evaluate = [&f](const Snapshot& s, double* out) {
+      Eigen::Map<Vec3>{out} = f.moment(nodes_of(s), s.context(), reactions_of(s));
+    };
+    c.add(std::move(x));
+  }
+}
+
+void add_drive_torques(const run::Job& job, Channels& c) {
+  if (!wants(job.model.output, "torque")) return;
+  for (const assembly::DriveTorque& d : job.built.drive_torques) {
+    Measurement x{
+        "drive " + d.name + " torque", "N.m", "torque of the drive on the shaft", {}, 1.0, {}};
+    x.evaluate = [&d](const Snapshot& s, double* out) {
+      *out = d.torque(nodes_of(s), s.t(), reactions_of(s));
+    };
+    c.add(std::move(x));
+  }
+}
+
+}  // namespace
+
+Point point_of(const run::Job& job, const model::Location& at) {
+  const meshes::Place p = job.mesh.place(at);
+  return {p.node, p.offset};
+}
+
+std::vector<Point> probe_points(const run::Job& job) {
+  std::vector<Point> points;
+  for (const model::Probe& p : job.model.probes)
+    points.push_back(point_of(job, p.at));
+  return points;
+}
+
+std::vector<double> probe_senses(const run::Job& job, const run::StepState& start) {
+  std::vector<double> ratio = job.steady_rotation_of(start).ratio;
+  const Index line = job.mesh.nodes[at(job.reference())].line;
+  const double of_reference = job.model.shafts[at(line)].speed_ratio;
+  for (std::size_t l = 0; l < job.model.shafts.size(); ++l)
+    if (ratio[l] == 0.0 && job.model.shafts[l].rotating)
+      ratio[l] = job.model.shafts[l].speed_ratio * of_reference;
+  const std::vector<double> all = analysis::spin_senses(job.system(), ratio);
+  std::vector<double> out;
+  for (const Point& p : probe_points(job))
+    out.push_back(all[at(p.node)] * all[at(job.reference())]);
+  return out;
+}
+
+std::vector<std::pair<std::string, Point>> watched_points(const run::Job& job) {
+  std::vector<std::pair<std::string, Point>> watched;
+  for (const model::Probe& p : job.model.probes)
+    watched.emplace_back(p.name, point_of(job, p.at));
+  if (watched.empty())
+    for (const model::Disk& d : job.model.disks)
+      watched.emplace_back("disk " + d.name, point_of(job, d.at));
+  return watched;
+}
+
+Channels make_channels(const run::Job& job) {
+  Channels c;
+  add_speeds(job, c);
+  add_probes(job, c);
+  add_support_forces(job, c);
+  add_support_moments(job, c);
+  add_drive_torques(job, c);
+  if (wants(job.model.output, "energy")) c.add(analysis::measure_energy());
+  return c;
+}
+
+std::vector<io::Channel> io_channels(const Channels& c) {
+  std::vector<io::Channel> out{{"t", "s", "time", {}, 1.0, {}}};
+  for (const Measurement& m : c.all)
+    out.push_back({m.name, m.unit, m.description, m.components, m.scale, {}});
+  return out;
+}
+
+}  // namespace whirl::results

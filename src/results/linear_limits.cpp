@@ -1,0 +1,116 @@
+#include <results/linear_limits.hpp>
+#include <run/diagnose.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::results {
+
+void warn(run::Job& job, Diagnostic d) {
+  d.severity = Diagnostic::Severity::warning;
+  job.report.warnings.push_back(d.message);
+  job.summary["warnings"].push(d.code + ": " + d.message);
+  if (!job.options.quiet) run::print_diagnostics({d});
+}
+
+void GapCheck::look(double Omega, std::span<const VecXc> amplitudes, double frequency) {
+  const run::Job& job = step_.job;
+  if (job.built.conditions.empty() || amplitudes.empty()) return;
+  step_.linear.at(Omega);
+  const system::State& still = step_.linear.equilibrium().state;
+  system::Workspace w = job.system().make_workspace();
+  constexpr int looks = 24;  // a period: the extreme is met to 1 %
+  for (int k = 0; k < looks; ++k) {
+    const Complex turn = std::polar(1.0, two_pi * k / looks);
+    VecX q = still.q;
+    for (const VecXc& a : amplitudes)
+      q += (a * turn).real();
+    job.system().evaluate_nodes(w, still.frames, still.t, q, still.v, still.a);
+    const auto node = [&](Index n) -> const system::NodeState& {
+      return w.nodes[static_cast<std::size_t>(n)];
+    };
+    for (const assembly::SupportCondition& c : job.built.conditions) {
+      const assembly::SupportCondition::State s = c.state(node);
+      if (!(s.gap > 0)) continue;
+      Worst& x = worst_[c.name];
+      if (x.gap > 0 && s.displacement * x.gap <= x.displacement * s.gap) continue;
+      x = {s.displacement, s.gap, Omega, frequency, s.film, c.where};
+    }
+  }
+}
+
+void GapCheck::report() {
+  for (const auto& [name, x] : worst_) {
+    if (!(x.gap > 0)) continue;
+    io::Value& v = step_.summary()["gaps"][name];
+    v["gap [m]"] = x.gap;
+    v["largest displacement [m]"] = x.displacement;
+    v["at [rpm]"] = to_rpm(x.speed);
+    if (!(x.displacement > x.gap)) continue;
+    const std::string at =
+        std::isnan(x.frequency)
+            ? fmt::format("at {:.6g} rpm", to_rpm(x.speed))
+            : fmt::format("at {:.6g} rpm and {:.5g} Hz", to_rpm(x.speed), to_hz(x.frequency));
+    Diagnostic d;
+    d.code = "W11";
+    d.message = fmt::format(
+        "step '{}': {} the response would take the shaft {:.4g} mm from the middle of '{}', whose "
+        "{} is {:.4g} mm ({:.3g} times): a linear response does not know it",
+        step_.step.name, at, 1e3 * x.displacement, name, x.film ? "clearance" : "gap", 1e3 * x.gap,
+        x.displacement / x.gap);
+    d.hint =
+        "a transient step meets the contact or the film as it is; less unbalance, more damping "
+        "or another speed keeps the response linear";
+    d.where = x.where;
+    warn(step_.job, std::move(d));
+  }
+}
+
+namespace {
+
+/// How far a shaft turns beyond the ends of a bearing's table, rad/s; 0: not, or none is held.
+double beyond_table(const run::Job& job, const model::Bearing& b, double low, double high) {
+  const auto* table = std::get_if<model::TableBearing>(&b.law);
+  if (!table || !table->extrapolate_hold || table->speed.empty()) return 0.0;
+  const double ratio = job.model.shafts[b.at.shaft].speed_ratio;
+  const double below = table->speed.front() - std::min(ratio * low, ratio * high);
+  const double above = std::max(ratio * low, ratio * high) - table->speed.back();
+  const double slack =
+      1e-9 * std::max(std::abs(table->speed.front()), std::abs(table->speed.back()));
+  const double most = std::max(below, above);
+  return most > slack ? most : 0.0;
+}
+
+}  // namespace
+
+void warn_of_held_tables(run::Job& job, const std::string& step, double low, double high) {
+  const model::Bearing* worst = nullptr;
+  double most = 0;
+  std::string others;
+  for (const model::Bearing& b : job.model.bearings) {
+    const double beyond = beyond_table(job, b, low, high);
+    if (beyond == 0.0) continue;
+    others += fmt::format("{}'{}'", others.empty() ? "" : ", ", b.name);
+    if (beyond <= most) continue;
+    most = beyond;
+    worst = &b;
+  }
+  if (!worst) return;
+  const auto& table = std::get<model::TableBearing>(worst->law);
+  const double ratio = job.model.shafts[worst->at.shaft].speed_ratio;
+  Diagnostic d;
+  d.code = "W12";
+  d.message = fmt::format(
+      "step '{}': the coefficients at the edge of their tables are held beyond them for {}; most "
+      "for '{}', whose table covers {:.6g} to {:.6g} rpm and whose shaft turns at {:.6g} to {:.6g} "
+      "rpm",
+      step, others, worst->name, to_rpm(table.speed.front()), to_rpm(table.speed.back()),
+      to_rpm(ratio * low), to_rpm(ratio * high));
+  d.hint = "a table over all speeds of the step, or extrapolate = \"error\"";
+  d.where = worst->where;
+  warn(job, std::move(d));
+}
+
+}  // namespace whirl::results

@@ -1,0 +1,103 @@
+#include <results/mesh_accuracy.hpp>
+#include <results/linear_limits.hpp>
+#include <la/multiply.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::results {
+namespace {
+
+/// x^H (2 lambda M + C) x
+Complex slope_of(const la::MCK& m, Complex lambda, const VecXc& x) {
+  VecXc y;
+  la::multiply(m.M, x, y);
+  const Complex by_mass = 2.0 * lambda * x.dot(y);
+  la::multiply(m.C, x, y);
+  return by_mass + x.dot(y);
+}
+
+}  // namespace
+
+std::string error_text(double relative) {
+  constexpr double least = 1e-6;
+  const double x = std::max(relative, least);
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  double digit = std::ceil(x / power * (1.0 - 1e-9));
+  double unit = power;
+  if (digit >= 10.0) {
+    digit = 1.0;
+    unit *= 10.0;
+  }
+  return fmt::format("{:.0e}", digit * unit);
+}
+
+MeshAccuracy::MeshAccuracy(FrequencyStep& s)
+    : step_(s),
+      error_(s.job.model, s.job.mesh, s.job.built) {}
+
+double MeshAccuracy::of(const analysis::WhirlMode& mode, double Omega, const std::string& name) {
+  if (error_.empty() || std::abs(mode.lambda) == 0.0) return 0.0;
+  std::vector<double> spin;
+  for (const model::Shaft& shaft : step_.job.model.shafts)
+    spin.push_back(shaft.rotating ? shaft.speed_ratio * Omega : 0.0);
+  const Complex defect = error_.defect(mode.lambda, mode.x, spin);
+  const Complex slope = slope_of(step_.linear.at(Omega), mode.lambda, mode.x);
+  const double error = std::abs(defect) / std::abs(slope * mode.lambda);
+  looked_ = true;
+  if (!(error <= largest_)) {
+    largest_ = error;
+    worst_ = name;
+  }
+  return error;
+}
+
+void MeshAccuracy::look_at(std::span<const analysis::WhirlMode> modes, double Omega) {
+  std::vector<analysis::WhirlMode> oscillating;
+  std::copy_if(modes.begin(), modes.end(), std::back_inserter(oscillating),
+               [](const analysis::WhirlMode& m) { return m.oscillates(); });
+  const std::vector<std::string> labels = labels_of(oscillating);
+  for (std::size_t k = 0; k < oscillating.size(); ++k)
+    of(oscillating[k], Omega, labels[k]);
+}
+
+void MeshAccuracy::report() {
+  if (!looked_) return;
+  run::Job& job = step_.job;
+  io::Value& v = step_.summary()["mesh"];
+  v["elements"] = job.mesh.elements.size();
+  v["relative error of frequencies"] = largest_;
+  v["largest at"] = worst_;
+  std::string text = fmt::format("frequencies right to {} (elements)", error_text(largest_));
+  if (!error_.left_out().empty()) {
+    for (const std::string& shaft : error_.left_out())
+      v["not judged"].push(shaft);
+    text += fmt::format(", but for the general sections of '{}'", error_.left_out().front());
+  }
+  step_.claim(text);
+  if (largest_ <= job.model.mesh_accuracy || warned_) return;
+  warned_ = true;
+  Diagnostic w;
+  w.code = "W10";
+  w.message = fmt::format(
+      "step '{}': the mesh is too coarse: the frequency of {} is off by about {}, {} wanted",
+      step_.step.name, worst_, error_text(largest_), error_text(job.model.mesh_accuracy));
+  w.hint =
+      "leave min_elements and max_element_length out and the program chooses the elements, or give "
+      "more of them";
+  warn(job, std::move(w));
+}
+
+void report_mesh_accuracy(FrequencyStep& s, double Omega, double max_frequency) {
+  MeshAccuracy accuracy(s);
+  analysis::ModesOptions o;
+  o.count = 0;
+  o.max_frequency = max_frequency;
+  o.certify = false;
+  accuracy.look_at(analysis::whirl_modes(s.linear, Omega, o), Omega);
+  accuracy.report();
+}
+
+}  // namespace whirl::results

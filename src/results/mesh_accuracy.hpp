@@ -1,0 +1,40 @@
+// How right the frequencies of a step are on its mesh, estimated mode by mode
+// (assembly/mesh_error.hpp), said in table headers, summary and report; W10 where they are not to
+// Model::mesh_accuracy.
+#pragma once
+#include <analysis/spectra/whirl_modes.hpp>
+#include <assembly/mesh_error.hpp>
+#include <results/frequency.hpp>
+#include <span>
+#include <string>
+
+namespace whirl::results {
+
+class MeshAccuracy {
+ public:
+  explicit MeshAccuracy(FrequencyStep& s);
+
+  /// Relative error of the frequency of a mode found at a reference speed, rad/s; 0 on a rotor
+  /// without elements. Remembers the largest, with its name.
+  double of(const analysis::WhirlMode& mode, double Omega, const std::string& name);
+  /// All oscillating modes of a list, named by their labels.
+  void look_at(std::span<const analysis::WhirlMode> modes, double Omega);
+  /// Into the summary ("mesh"), the headers of the tables still to come, and a warning.
+  void report();
+
+ private:
+  FrequencyStep& step_;
+  assembly::MeshError error_;
+  double largest_ = 0;
+  std::string worst_;
+  bool looked_ = false, warned_ = false;
+};
+
+/// Looks at the modes of a step that lists none (responses): those up to a frequency, rad/s, at a
+/// reference speed, and reports.
+void report_mesh_accuracy(FrequencyStep& s, double Omega, double max_frequency);
+
+/// "2e-4": one digit, rounded up, never below 1e-6.
+std::string error_text(double relative);
+
+}  // namespace whirl::results

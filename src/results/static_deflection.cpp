@@ -1,0 +1,161 @@
+// Deflected centre lines of a static state.
+#include <results/along_shaft.hpp>
+#include <results/static_parts.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::results {
+
+namespace {
+
+/// The deflected centre line of one line of the mesh.
+class DeflectedLine {
+ public:
+  DeflectedLine(const run::Job& job, const system::Workspace& state, std::size_t line)
+      : job_(job),
+        state_(state),
+        number_(line),
+        line_(job.mesh.lines[line]),
+        path_(job.model.shafts[line].path) {}
+  void add_stations(io::Table& t);
+  void add_elements();
+  /// No axes where nothing moves.
+  plot::Figure figure(const std::string& step) const;
+  /// The largest deflection, where there is one.
+  void say_largest(std::vector<std::string>& lines, io::Value& summary) const;
+
+ private:
+  const system::NodeState& node(Index n) const { return state_.nodes[at(n)]; }
+  double size_of(const Vec3& u) const {
+    return path_.empty() ? std::hypot(u.y(), u.z()) : u.norm();
+  }
+  /// Direction of a line along a path, now.
+  Vec3 tangent(const system::NodeState& n, const Path::Point& p) const {
+    return Vec3(meshes::section_axes(*n.chart, n.d(), n.phi) * p.triad.col(0));
+  }
+  meshes::Pose pose(const meshes::Place& p) const {
+    const system::NodeState& n = node(p.node);
+    return {job_.mesh.nodes[at(p.node)].position + n.u + p.offset * n.d(), n.d(), n.phi};
+  }
+  void add_point(double s, const Vec3& u);
+
+  const run::Job& job_;
+  const system::Workspace& state_;
+  std::size_t number_;
+  const meshes::Line& line_;
+  const Path& path_;
+  plot::Series x_ = curve_of("axial"), y_ = curve_of("y"), z_ = curve_of("z"),
+               phi_ = curve_of("angle");
+  double largest_ = 0, where_ = 0;                    ///< m
+  const meshes::Station* largest_station_ = nullptr;  ///< null: between stations
+};
+
+void DeflectedLine::add_stations(io::Table& t) {
+  const double phi0 = node(line_.first_node).phi;
+  for (Index k = line_.first_station; k < line_.first_station + line_.stations; ++k) {
+    const meshes::Station& station = job_.mesh.stations[at(k)];
+    const system::NodeState& n = node(station.at.node);
+    const Vec3 u = n.u + station.at.offset * (n.d() - Vec3::UnitX());
+    const Vec3 d = path_.empty() ? n.d() : tangent(n, path_.after(station.s));
+    t.add({line_.name, station.s, station.label(), u.x(), u.y(), u.z(), d.y(), d.z(), n.phi});
+    phi_.x.push_back(station.s);
+    phi_.y.push_back(n.phi - phi0);
+    if (const double size = size_of(u); size > largest_) {
+      largest_ = size;
+      where_ = station.s;
+      largest_station_ = &station;
+    }
+  }
+}
+
+/// Between nodes: the cubic with the directors as end slopes.
+void DeflectedLine::add_elements() {
+  for (Index k = line_.first_element; k < line_.first_element + line_.elements; ++k) {
+    const meshes::Element& e = job_.mesh.elements[at(k)];
+    meshes::Pose a = pose(e.left), b = pose(e.right);
+    if (!path_.empty()) {
+      a.d = tangent(node(e.left.node), path_.after(e.s1));
+      b.d = tangent(node(e.right.node), path_.before(e.s2));
+    }
+    // end slopes for the stretched length (thermal growth): chord, and the arc over it
+    const double arc = (b.r - a.r).norm() * (1.0 + (b.d - a.d).squaredNorm() / 24.0);
+    for (int i = k == line_.first_element ? 0 : 1; i <= 8; ++i) {
+      const double xi = i / 8.0, s = e.s1 + xi * (e.s2 - e.s1);
+      add_point(s, meshes::interpolate(a, b, arc, xi).r - job_.model.shafts[number_].position(s));
+    }
+  }
+}
+
+void DeflectedLine::add_point(double s, const Vec3& u) {
+  x_.x.push_back(s);
+  x_.y.push_back(u.x());
+  y_.x.push_back(s);
+  y_.y.push_back(u.y());
+  z_.x.push_back(s);
+  z_.y.push_back(u.z());
+  if (const double size = size_of(u); size > largest_ * (1 + 1e-9)) {
+    largest_ = size;
+    where_ = s;
+    largest_station_ = nullptr;
+  }
+}
+
+plot::Figure DeflectedLine::figure(const std::string& step) const {
+  plot::Figure f = figure_of_line(job_, step, "deflection", number_);
+  f.title = job_.mesh.lines.size() > 1 ? "Deflected centre line of " + line_.name
+                                       : "Deflected centre line";
+  const auto row = [&](const char* label, const std::vector<plot::Series>& curves, const char* unit,
+                       double limit) {
+    std::vector<plot::Series> shown;
+    std::copy_if(curves.begin(), curves.end(), std::back_inserter(shown),
+                 [&](const plot::Series& s) { return largest_of(s) > limit; });
+    if (!shown.empty()) add_row(f, job_, number_, label, unit, std::move(shown), curves.size() > 1);
+  };
+  const double lateral = std::max(largest_of(y_), largest_of(z_));
+  const double size = std::max(lateral, largest_of(x_));
+  row("lateral displacement", {y_, z_}, "m", std::max(1e-9 * lateral, 1e-15));
+  row("axial displacement", {x_}, "m", std::max(1e-6 * size, 1e-15));
+  row("twist from the left end", {phi_}, "rad", std::max(1e-9 * largest_of(phi_), 1e-13));
+  f.height = 110.0 + 200.0 * static_cast<double>(std::max<std::size_t>(f.axes.size(), 1));
+  return f;
+}
+
+void DeflectedLine::say_largest(std::vector<std::string>& lines, io::Value& summary) const {
+  if (!(largest_ > 0)) return;
+  const plot::DisplayUnit u = plot::length_unit(largest_);
+  const bool named = largest_station_ && !largest_station_->labels.empty();
+  lines.push_back(fmt::format("{} '{}': largest deflection {:.4g} {} at {:.4g} m{}",
+                              line_.rotating ? "shaft" : "casing", line_.name, largest_ * u.factor,
+                              u.name, where_,
+                              named ? " (" + largest_station_->label() + ")" : std::string()));
+  summary["deflection"][line_.name]["largest [m]"] = largest_;
+  summary["deflection"][line_.name]["at [m]"] = where_;
+}
+
+}  // namespace
+
+void add_deflection(const run::Job& job, const std::string& step, const system::Workspace& state,
+                    StaticResults& out, io::Value& summary) {
+  out.deflection.title = "Deflection";
+  out.deflection.columns = {{"shaft", "-", ""},
+                            {"s", "m", "from the left end"},
+                            {"station", "-", ""},
+                            {"u_x", "m", "displacement of the centre line"},
+                            {"u_y", "m", ""},
+                            {"u_z", "m", ""},
+                            {"slope_y", "rad", "d_y of the section normal"},
+                            {"slope_z", "rad", "d_z"},
+                            {"phi", "rad", "axial angle"}};
+  for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
+    DeflectedLine line(job, state, l);
+    line.add_stations(out.deflection);
+    line.add_elements();
+    if (plot::Figure f = line.figure(step); !f.axes.empty()) out.figures.push_back(std::move(f));
+    line.say_largest(out.lines, summary);
+  }
+}
+
+}  // namespace whirl::results
