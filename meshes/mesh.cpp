@@ -257,8 +257,8 @@ class LineMesher {
     for (const Attached* x : attached_)
       inside.push_back(x->where->s);
     std::sort(inside.begin(), inside.end());
-    for (const double s : inside)
-      if (s > cuts.back() + tolerance_ && s < b - tolerance_) cuts.push_back(s);
+    for (const double cut : inside)
+      if (cut > cuts.back() + tolerance_ && cut < b - tolerance_) cuts.push_back(cut);
     cuts.push_back(b);
     const std::vector<int> n =
         element_counts(cuts, model::longest_element(model_, shaft_, s, resolution_),

@@ -65,8 +65,8 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
     // axes of a line along a path; the same on both sides of a smooth joint
     const auto bends = [&](double s) {
       const Mat3 before = shaft.path.before(s).triad, after = shaft.path.after(s).triad;
-      const auto add = [&](const Mat3& m) {
-        scene.bends.push_back(m);
+      const auto add = [&](const Mat3& triad) {
+        scene.bends.push_back(triad);
         return static_cast<Index>(scene.bends.size()) - 1;
       };
       const Index b = add(before);

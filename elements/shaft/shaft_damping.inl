@@ -61,15 +61,14 @@ WHIRL_INLINE DampingStresses<S> damping_stresses(const DampingParameters<S>& p,
                                                  const DampingEnd<S>& e1, const DampingEnd<S>& e2,
                                                  const Chord<S>& chord, const typename S::V& adot,
                                                  const DampingRates<S>& v) {
-  using T = typename S::T;
-  using V = typename S::V;
-  const V& a = chord.a;
-  const T s1 = spin_about_chord(e1, adot, v.d1, v.phi1);
-  const T s2 = spin_about_chord(e2, adot, v.d2, v.phi2);
-  V r1 = bending_rate(e1.end, e1.q, a, adot, v.d1), r2 = bending_rate(e2.end, e2.q, a, adot, v.d2);
-  V turned1{}, turned2{};  // a x p
+  const typename S::V& a = chord.a;
+  const typename S::T s1 = spin_about_chord(e1, adot, v.d1, v.phi1);
+  const typename S::T s2 = spin_about_chord(e2, adot, v.d2, v.phi2);
+  typename S::V r1 = bending_rate(e1.end, e1.q, a, adot, v.d1),
+                r2 = bending_rate(e2.end, e2.q, a, adot, v.d2);
+  typename S::V turned1{}, turned2{};  // a x p
   if constexpr (Rotating) {
-    const T sigma = 0.5 * (s1 + s2);
+    const typename S::T sigma = 0.5 * (s1 + s2);
     turned1 = e1.end.angle.G * cross(a, e1.q);
     turned2 = e2.end.angle.G * cross(a, e2.q);
     r1 = r1 - sigma * turned1;
@@ -104,25 +103,23 @@ template <bool Rotating, class S>
 WHIRL_INLINE DampingForce<S> damping_force(const DampingParameters<S>& p,
                                            const DampingKinematics<S>& x,
                                            const DampingRates<S>& v) {
-  using T = typename S::T;
-  using V = typename S::V;
-  const V& a = x.chord.a;
+  const typename S::V& a = x.chord.a;
   const DampingEnd<S>&e1 = x.e1, &e2 = x.e2;
-  const T ldot = dot(a, v.lambda);
-  const V adot = x.chord.inverse * (v.lambda - ldot * a);
+  const typename S::T ldot = dot(a, v.lambda);
+  const typename S::V adot = x.chord.inverse * (v.lambda - ldot * a);
   const DampingStresses<S> r = damping_stresses<Rotating>(p, e1, e2, x.chord, adot, v);
-  T b1 = -r.torque, b2 = r.torque;  // conjugate to sigma_1, sigma_2
+  typename S::T b1 = -r.torque, b2 = r.torque;  // conjugate to sigma_1, sigma_2
   if constexpr (Rotating) {
     b1 = b1 + r.turning;
     b2 = b2 + r.turning;
   }
-  const V k1 = cosine_force(e1.end, e1.q, r.m1), k2 = cosine_force(e2.end, e2.q, r.m2);
-  const T &G1 = e1.end.angle.G, &G2 = e2.end.angle.G;
+  const typename S::V k1 = cosine_force(e1.end, e1.q, r.m1), k2 = cosine_force(e2.end, e2.q, r.m2);
+  const typename S::T &G1 = e1.end.angle.G, &G2 = e2.end.angle.G;
   DampingForce<S> f;
   f.d1 = k1 + G1 * perpendicular(a, r.m1) + b1 * (e1.ad - e1.w);
   f.d2 = k2 + G2 * perpendicular(a, r.m2) + b2 * (e2.ad - e2.w);
-  const V fa = b1 * e1.ad + b2 * e2.ad - k1 - k2 - (G1 * (1.0 - e1.end.n)) * r.m1 -
-               (G2 * (1.0 - e2.end.n)) * r.m2;
+  const typename S::V fa = b1 * e1.ad + b2 * e2.ad - k1 - k2 - (G1 * (1.0 - e1.end.n)) * r.m1 -
+                           (G2 * (1.0 - e2.end.n)) * r.m2;
   f.lambda = x.chord.inverse * perpendicular(a, fa) + (p.d_axial * ldot) * a;
   f.phi1 = b1;
   f.phi2 = b2;

@@ -20,13 +20,12 @@ struct Chord {
 template <class S>
 WHIRL_INLINE Chord<S> chord_of(const typename S::T& length, const typename S::V& e0,
                                const typename S::V& e, const typename S::V& du) {
-  using V = typename S::V;
   Chord<S> c;
-  const V lambda = length * e0 + du;
+  const typename S::V lambda = length * e0 + du;
   c.l = root(dot(lambda, lambda));
   c.inverse = 1.0 / c.l;
   c.stretch = (2.0 * length * dot(e0, du) + dot(du, du)) / (c.l + length);
-  const V alpha = c.inverse * (du - c.stretch * e0);
+  const typename S::V alpha = c.inverse * (du - c.stretch * e0);
   c.a = e0 + alpha;
   c.shift = e - e0 - alpha;  // e - e0 is exactly zero in the line's own chart
   return c;
@@ -137,13 +136,13 @@ struct SolidAngle {
 template <class S>
 WHIRL_INLINE SolidAngle<S> solid_angle(const typename S::V& e, const typename S::V& v,
                                        const typename S::V& w) {
-  using T = typename S::T;
   SolidAngle<S> o;
   o.Nv = cross(w, e);
   o.Nw = cross(e, v);
   o.Dv = e + w;
   o.Dw = e + v;
-  const T N = dot(v, o.Nv), D = 1.0 + dot(e, v) + dot(v, w) + dot(w, e), f = 2.0 / (N * N + D * D);
+  const typename S::T N = dot(v, o.Nv), D = 1.0 + dot(e, v) + dot(v, w) + dot(w, e),
+                      f = 2.0 / (N * N + D * D);
   o.p = D * f;
   o.r = -(N * f);
   o.value = 2.0 * arctangent(N, D);

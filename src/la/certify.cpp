@@ -13,10 +13,10 @@ double ModeSolver::Impl::count_radius() const {
     if (oscillates(p.lambda)) f.push_back(p.lambda.imag());
   std::sort(f.begin(), f.end());
   if (opt.count <= 0) return std::max(1.01 * opt.max_frequency, least_radius);
-  const Index n = static_cast<Index>(f.size());
-  double radius = n > 0 ? 1.1 * f.back() : 4.0 * sigma;
+  const Index found = static_cast<Index>(f.size());
+  double radius = found > 0 ? 1.1 * f.back() : 4.0 * sigma;
   double widest = 0.0;
-  for (Index i = opt.count; i < n; ++i) {
+  for (Index i = opt.count; i < found; ++i) {
     const double low = f[at(i - 1)], high = f[at(i)];
     if (high / low > widest) {
       widest = high / low;

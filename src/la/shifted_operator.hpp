@@ -58,23 +58,23 @@ struct ShiftedOperator {
   /// t += Q(s)^-1 (b - Q(s) t) with K t in sums of twice the precision. Returns the size of the
   /// correction relative to t.
   template <class Scalar, class Vec>
-  double refine(Vec& t, const Vec& b, DirectSolver<Scalar>& solver, Scalar s, Vec& work) {
+  double refine(Vec& t, const Vec& b, DirectSolver<Scalar>& solver, Scalar s, Vec& product) {
     Vec r = b;
-    multiply_exact(m->K, t, work);
-    r -= work;
+    multiply_exact(m->K, t, product);
+    r -= product;
     if (!first_order) {
-      multiply(m->M, t, work);
-      r -= s * s * work;
+      multiply(m->M, t, product);
+      r -= s * s * product;
     }
     if (damped) {
-      multiply(m->C, t, work);
-      r -= s * work;
+      multiply(m->C, t, product);
+      r -= s * product;
     }
     for (std::size_t u = 0; u < active.size(); ++u)
       if (!active[u]) r(static_cast<Index>(u)) = 0.0;
     solver.solve(r);
     t += r;
-    work.setZero();
+    product.setZero();
     return r.norm() / t.norm();
   }
 
@@ -84,7 +84,7 @@ struct ShiftedOperator {
   template <class Scalar>
   void measure_accuracy(DirectSolver<Scalar>& solver, Scalar s) {
     using Vec = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
-    Vec b = Vec::Zero(6 * pattern.size()), work = b;
+    Vec b = Vec::Zero(6 * pattern.size()), product = b;
     for (const Index u : unknown)
       b(u) = u % 6 < 3 ? 1.0 : 0.0;
     Vec mass = b;
@@ -95,7 +95,7 @@ struct ShiftedOperator {
     if (b.norm() == 0.0) return;
     Vec t = b;
     solver.solve(t);
-    const double error = refine(t, b, solver, s, work);
+    const double error = refine(t, b, solver, s, product);
     refinements = error > 1e-3 ? 2 : error > 1e-7 ? 1 : 0;
   }
 

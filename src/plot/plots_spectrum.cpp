@@ -113,7 +113,8 @@ Figure plot_waterfall(std::string name, std::string title, std::span<const Spect
                       std::span<const double> orders) {
   const Extent e = extent_of(traces);
   const std::vector<const SpectrumTrace*> shown = distinct_traces(traces);
-  const double spacing = (e.speed1 - e.speed0) / std::max<std::size_t>(1, shown.size() - 1);
+  const double spacing =
+      (e.speed1 - e.speed0) / std::max(1.0, static_cast<double>(shown.size()) - 1.0);
   Waterfall w{e, unit_for(unit, e.amplitude), to_string(convention)};
   w.height = std::max(0.16 * (e.speed1 - e.speed0), 1.5 * spacing);
   if (e.amplitude > 0) w.per_y = e.amplitude * w.unit.factor / w.height;

@@ -154,8 +154,8 @@ std::string path_of(const std::vector<double>& px, const std::vector<double>& py
     for (const auto i : decimate_columns(px, py, lo, hi, n))
       put(px[i], py[i]);
   } else {
-    for (const auto& run : decimate_path(px, py, 0.5 / std::max(1.0, columns))) {
-      for (const auto i : run)
+    for (const auto& piece : decimate_path(px, py, 0.5 / std::max(1.0, columns))) {
+      for (const auto i : piece)
         put(px[i], py[i]);
       lift();
     }

@@ -508,10 +508,11 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
       list(o);
     }
     std::vector<plot::Orbit> at_speeds;
-    for (const Orbit& o : passed_)
-      if (o.probe == p) {
-        at_speeds.push_back(drawn(o, fmt::format("{:.0f} rpm, {:.3g} s", to_rpm(o.speed), o.t)));
-        list(o);
+    for (const Orbit& passing : passed_)
+      if (passing.probe == p) {
+        at_speeds.push_back(
+            drawn(passing, fmt::format("{:.0f} rpm, {:.3g} s", to_rpm(passing.speed), passing.t)));
+        list(passing);
       }
     if (!at_speeds.empty())
       section.figures.push_back(plot::plot_orbit(

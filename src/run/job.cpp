@@ -102,13 +102,13 @@ analysis::SteadyRotation Job::steady_rotation_of(const StepState& start) const {
   return running;
 }
 
-analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions options,
+analysis::Equilibrium Job::settle(StepState& start, analysis::EquilibriumOptions asked,
                                   bool in_time) const {
   analysis::SteadyRotation running = steady_rotation_of(start);
   running.hysteretic = !in_time;
   analysis::SteadySystem turning(system(), running);
-  options.chart_change = model.chart_change;
-  analysis::EquilibriumSolver solver(turning, options);
+  asked.chart_change = model.chart_change;
+  analysis::EquilibriumSolver solver(turning, asked);
   analysis::Equilibrium found;
   try {
     found = solver.solve(start.speed, &start.state);

@@ -30,7 +30,7 @@ struct StepState {
   struct Began {
     double time = 0, angle = 0;
   };
-  std::map<std::string, Began> governors;
+  std::map<std::string, Began> governors{};
 };
 
 struct Job {

@@ -27,7 +27,7 @@ RollingStiffness stiffness_of_rolling(results::FrequencyStep& s,
   };
   if (std::none_of(chosen.begin(), chosen.end(), rolls)) return out;
   s.linear.at(speed);
-  const run::StepState state{s.linear.equilibrium().state, speed};
+  const run::StepState state{s.linear.equilibrium().state, speed, {}};
   for (const std::size_t i : chosen)
     if (rolls(i)) out[i] = results::support_stiffness(s.job, state, i);
   return out;

@@ -198,7 +198,7 @@ void SpeedSweep::take(double Omega) {
   } catch (const Error& e) {
     return miss(Omega, e);
   }
-  run::StepState state{s_.linear.equilibrium().state, Omega};
+  run::StepState state{s_.linear.equilibrium().state, Omega, {}};
   judge(Omega, state);
   if (found_++ == 0) run::warn_of_closed_contacts(job_, step_, state);
   add_coefficients(state);
@@ -207,7 +207,7 @@ void SpeedSweep::take(double Omega) {
 
 void SpeedSweep::miss(double Omega, const Error& e) {
   if (!first_error_) {
-    run::StepState start{job_.system().make_state(), Omega};
+    run::StepState start{job_.system().make_state(), Omega, {}};
     s_.linear.running().set_rates(Omega, start.state.v);
     first_error_ = run::explain_no_equilibrium(job_, s_.linear.running(), start, e);
   }
