@@ -14,6 +14,14 @@ void append(png_structp png, png_bytep bytes, std::size_t count) {
 
 void no_flush(png_structp) {}
 
+/// Keeps the message and jumps out of the library.
+void fail(png_structp png, png_const_charp message) {
+  *static_cast<std::string*>(png_get_error_ptr(png)) = message;
+  png_longjmp(png, 1);
+}
+
+void ignore(png_structp, png_const_charp) {}
+
 /// False when the library gives up: it jumps back here, so nothing in this frame has a destructor.
 bool write(png_structp png, png_infop info, std::string& target, std::uint32_t nx,
            std::span<png_bytep> rows, std::span<const png_color> palette) {
@@ -42,13 +50,13 @@ std::string make_png(int nx, int ny, std::span<const std::uint8_t> cells,
   std::vector<png_bytep> rows;
   for (std::size_t y = 0; y < height; ++y)
     rows.push_back(writable.data() + y * width);
-  std::string target;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  std::string target, error;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &error, fail, ignore);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   const bool written =
       info && write(png, info, target, static_cast<std::uint32_t>(nx), rows, colors);
   png_destroy_write_struct(&png, &info);
-  if (!written) throw std::runtime_error("libpng cannot write a picture");
+  if (!written) throw std::runtime_error("picture not written: " + error);
   return target;
 }
 

@@ -266,7 +266,10 @@ void check_state_fits(const Checkpoint& c, const std::string& folder, const syst
   throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94",
                                      fmt::format("the run in '{}' has {} unknowns, this model {}",
                                                  folder, c.state.q.size(), system.size()),
-                                     "both must have the same mesh", Where{deck, 0, 0, 0, {}}});
+                                     "both must have the same mesh: where the program chose it, "
+                                     "the steps of the two decks differ; "
+                                     "write min_elements into both",
+                                     Where{deck, 0, 0, 0, {}}});
 }
 
 }  // namespace whirl::run

@@ -282,7 +282,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   analysis::UnbalanceOptions o = unbalance_options(job, law);
   const double top = std::max(std::abs(o.speeds.front()), std::abs(o.speeds.back()));
   results::FrequencyStep s(job, step, "unbalance_response", "unbalance response", top);
-  if (o.refine_peaks) {
+  if (o.refine_peaks && o.speeds.back() > o.speeds.front()) {
     const run::PhaseTimer timer(job, "critical speeds");
     add_critical_speeds(s, o.speeds);
   }

@@ -47,6 +47,8 @@ std::string rotor(const std::string& parts) {
   return R"(format = 1
 [parameters]
 unused = "1 mm"
+[model.mesh]
+min_elements_per_section = 2
 [[shaft]]
 name = "r"
 material = "steel"

@@ -110,7 +110,7 @@ modes = 10
 [[step]]
 name = "u"
 type = "unbalance_response"
-speed = {{ start = "{1} rpm", stop = "{0} rpm", points = 7 }}
+speed = {{ start = "{1} rpm", stop = "{0} rpm", points = 7, refine = "no" }}
 [[step]]
 name = "h"
 type = "harmonic_response"

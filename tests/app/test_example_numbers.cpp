@@ -326,6 +326,10 @@ TEST(ExampleNumbers, ATableReachesToItsEnds) {
   std::string deck = text.str();
   const std::string held = "extrapolate = \"hold\"\n";
   ASSERT_NE(deck.find(held), std::string::npos);
+  // rows at the peaks stand at speeds that agree to 1e-9, where phases do not to 1e-6
+  const std::string refined = ", refine = \"peaks\"";
+  deck.replace(deck.find(refined), refined.size(), ", refine = \"no\"");
+  std::ofstream(folder / "deck.toml") << deck;
   deck.erase(deck.find(held), held.size());
   std::ofstream(folder / "one.toml") << deck;
   const auto response = [](const fs::path& deck_file) {

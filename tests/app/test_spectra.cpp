@@ -153,6 +153,7 @@ TEST(Spectra, OnsetOfDivergenceIsLocated) {
 report = false
 [model]
 gravity = "0 m/s^2"
+mesh = { min_elements_per_section = 1 }
 [[shaft]]
 material = "steel"
 columns = ["name", "length[mm]", "od[mm]"]

@@ -91,7 +91,7 @@ phase = "60 deg"
 [[step]]
 name = "u"
 type = "unbalance_response"
-speed = { start = "1000 rpm", stop = "6000 rpm", points = 51 }
+speed = { start = "1000 rpm", stop = "6000 rpm", points = 51, refine = "no" }
 )")},
     {"limited", mass_on_springs(push + "duration = \"1 s\"\namplitude_limit = \"1.2 mm\"\n")},
     {"short steps",

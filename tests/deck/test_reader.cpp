@@ -256,6 +256,7 @@ tolerance = 1e-6
 [[step]]
 name = "second"
 type = "transient"
+start = "rest"
 duration = "1 s"
 initial_speed = "100 rpm"
 [output]

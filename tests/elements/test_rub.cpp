@@ -102,6 +102,7 @@ TEST(Rub, Conformance) {
     check_kernel(LateralJoint<RubLaw, true>{{law}, {0.02, 0.03}}, o);
   }
   // apart: nothing
+  o.over_declared.spin = true;
   o.q0.assign(12, 0.0);
   o.u = 0.01;
   check_kernel(Rub{{law}}, o);

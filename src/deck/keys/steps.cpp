@@ -9,7 +9,9 @@ namespace whirl::deck {
 
 void describe(Visitor& v, model::SpeedRange& r) {
   static constexpr Option refine[] = {
-      {"peaks", "unbalance response: more points where the response peaks"},
+      {"peaks",
+       "unbalance response: more points where the response peaks (default of a range, not of "
+       "speeds one by one)"},
       {"no", "the points alone"}};
   int i = 0;
   v.quantity(optional("start", "\"0 rpm\""), r.start, "rpm", any, "first speed");
@@ -20,7 +22,7 @@ void describe(Visitor& v, model::SpeedRange& r) {
   const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "rpm", any,
                                    -1, "the speeds one by one");
   v.option("refine", i, refine, "refinement");
-  r.refine_peaks = i == 0;
+  r.refine_peaks = i == 0 && (!values || v.given("refine"));
   if (!v.clean()) return;
   if (values && (stop || points || v.given("start")))
     v.error("E26", "values", "the speeds are given by 'values' and by 'start', 'stop', 'points'",
