@@ -66,7 +66,8 @@ def compiles(build, source):
     """Whether a source file of the copy passes the compiler; what it says otherwise."""
     for entry in json.loads((build / "compile_commands.json").read_text()):
         if entry["file"].endswith("/" + source):
-            done = subprocess.run(entry["command"] + " -fsyntax-only", shell=True, cwd=entry["directory"], capture_output=True, text=True)
+            include = f" -I{build.parents[1] / 'cmake'} -fsyntax-only"  # the precompiled header is not there yet
+            done = subprocess.run(entry["command"] + include, shell=True, cwd=entry["directory"], capture_output=True, text=True)
             return done.returncode == 0, done.stderr
     raise SystemExit(f"{source} is not compiled")
 
