@@ -8,9 +8,10 @@
 //   d lambda = - y^H dD x / y^H (2 lambda M + C) x,
 // y the left vector, for which x stands (exact for conservative rotors, gyroscopic or not). So one
 // product of the shape with dD says what a mesh of elements a fourth as long would give: the error
-// of the mesh but for a few per cent of itself. Bending in two planes goes by q = y +- i z, for
-// which the gyroscopic couples read -+ i lambda Omega G; twist and axial motion are chains by
-// themselves.
+// of the mesh to first order. Measured: within a quarter on conservative rotors; from 2.4 times too
+// small to 5 times too large where films or internal damping make y another vector. Bending in two
+// planes goes by q = y +- i z, for which the gyroscopic couples read -+ i lambda Omega G; twist and
+// axial motion are chains by themselves.
 //
 // Not judged: general sections, lines with bends (left_out()).
 #pragma once
