@@ -8,7 +8,7 @@ namespace whirl::elements {
 
 namespace {
 
-[[noreturn]] void fail(const char* what) {
+[[noreturn]] void journal_fault(const char* what) {
   throw run_error("E84", std::string("journal bearing: ") + what);
 }
 
@@ -20,10 +20,10 @@ JournalSurface::JournalSurface(double clearance, double preload,
                                const std::vector<JournalPad>& pads, int nodes)
     : clearance_(clearance),
       lift_(0.0) {
-  if (!(clearance > 0)) fail("the clearance must be positive");
-  if (!(preload >= 0 && preload < 1)) fail("the preload must be at least 0 and below 1");
-  if (nodes < 8 || nodes > max_nodes) fail("the grid needs 8 to 360 points");
-  if (pads.empty() && preload != 0.0) fail("a preload needs pads");
+  if (!(clearance > 0)) journal_fault("the clearance must be positive");
+  if (!(preload >= 0 && preload < 1)) journal_fault("the preload must be at least 0 and below 1");
+  if (nodes < 8 || nodes > max_nodes) journal_fault("the grid needs 8 to 360 points");
+  if (pads.empty() && preload != 0.0) journal_fault("a preload needs pads");
   lift_ = clearance / (1.0 - preload) - clearance;
   std::vector<JournalPad> all = pads;
   const bool round = all.empty() || (all.size() == 1 && all[0].end - all[0].start > two_pi - 1e-9);
@@ -31,9 +31,9 @@ JournalSurface::JournalSurface(double clearance, double preload,
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.start < b.start; });
   double total = 0.0;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (!(all[k].end > all[k].start)) fail("a pad is empty");
+    if (!(all[k].end > all[k].start)) journal_fault("a pad is empty");
     const double next = k + 1 < all.size() ? all[k + 1].start : all[0].start + two_pi;
-    if (all[k].end > next + 1e-9) fail("pads overlap");
+    if (all[k].end > next + 1e-9) journal_fault("pads overlap");
     total += all[k].end - all[k].start;
   }
   for (const JournalPad& a : all) {

@@ -138,8 +138,8 @@ std::vector<double> RollingBearing<Contact>::loads(const Vector<6>& q) const {
 
 namespace {
 
-// q_m = sum over nodes of sign[node][m] X[at[m]]
-constexpr int at[6] = {0, 1, 2, 4, 5, 6};
+// q_m = sum over nodes of sign[node][m] X[rows[m]]
+constexpr int rows[6] = {0, 1, 2, 4, 5, 6};
 
 Vec3 damping_of(double c_axial, double c_radial) { return Vec3(c_axial, c_radial, c_radial); }
 
@@ -169,7 +169,7 @@ void RollingBearing<Contact>::add_tangent(const Nodes<2>& x, const Context& cont
     for (int b = 0; b < 2; ++b)
       for (int m = 0; m < 6; ++m)
         for (int n = 0; n < 6; ++n)
-          t.K(7 * a + at[m], 7 * b + at[n]) += sign[a][m] * sign[b][n] * p.H(m, n);
+          t.K(7 * a + rows[m], 7 * b + rows[n]) += sign[a][m] * sign[b][n] * p.H(m, n);
   const Vec3 c = damping_of(c_axial, c_radial);
   for (int k = 0; k < 3; ++k) {
     t.C(k, k) += c[k];
@@ -194,16 +194,16 @@ template struct RollingBearing<RollerContact>;
 
 namespace {
 
-[[noreturn]] void fail(const std::string& what) {
+[[noreturn]] void bearing_fault(const std::string& what) {
   throw run_error("E83", "rolling bearing: " + what);
 }
 
 void check_ring(int n, double D, double d_m, const char* what) {
-  if (n < 2) fail(std::string("at least two ") + what + " are needed");
+  if (n < 2) bearing_fault(std::string("at least two ") + what + " are needed");
   if (!(D > 0) || !(d_m > D))
-    fail("element diameter must be positive and smaller than the pitch diameter");
+    bearing_fault("element diameter must be positive and smaller than the pitch diameter");
   if (n > 2 && D > d_m * std::sin(pi / n))
-    fail(std::string("the ") + what + " do not fit side by side on the pitch circle");
+    bearing_fault(std::string("the ") + what + " do not fit side by side on the pitch circle");
 }
 
 }  // namespace
@@ -211,13 +211,14 @@ void check_ring(int n, double D, double d_m, const char* what) {
 BallBearing make_ball_bearing(const BallGeometry& g) {
   check_ring(g.balls, g.ball_diameter, g.pitch_diameter, "balls");
   if (!(g.f_inner > 0.5) || !(g.f_outer > 0.5))
-    fail("groove radii must exceed half the ball diameter (f > 0.5)");
+    bearing_fault("groove radii must exceed half the ball diameter (f > 0.5)");
   if (!(std::abs(g.contact_angle) < 80.0 * pi / 180.0))
-    fail("the contact angle must be below 80 degrees");
+    bearing_fault("the contact angle must be below 80 degrees");
   const double D = g.ball_diameter, A0 = (g.f_inner + g.f_outer - 1.0) * D;
-  if (!(g.radial_clearance < A0)) fail("the radial clearance is larger than the grooves allow");
+  if (!(g.radial_clearance < A0))
+    bearing_fault("the radial clearance is larger than the grooves allow");
   if (g.contact_angle != 0.0 && g.radial_clearance != 0.0)
-    fail("give either a contact angle or a radial clearance, not both");
+    bearing_fault("give either a contact angle or a radial clearance, not both");
   const double cos_alpha = std::cos(g.contact_angle), lambda = D * cos_alpha / g.pitch_diameter;
   BallBearing b;
   b.elements = g.balls;
@@ -238,15 +239,15 @@ BallBearing make_ball_bearing(const BallGeometry& g) {
     c.K = hertz_series(hertz_point_stiffness(inner, across_i),
                        hertz_point_stiffness(outer, across_o), 1.5);
   }
-  if (!(c.K > 0)) fail("the contact stiffness must be positive");
+  if (!(c.K > 0)) bearing_fault("the contact stiffness must be positive");
   return b;
 }
 
 void set_axial_preload(BallBearing& b, double force) {
   BallContact& c = b.contact;
-  if (!(force >= 0)) fail("the preload must not be negative");
+  if (!(force >= 0)) bearing_fault("the preload must not be negative");
   if (c.a0 == 0.0)
-    fail("a deep-groove bearing has no side to be preloaded on: give a contact angle");
+    bearing_fault("a deep-groove bearing has no side to be preloaded on: give a contact angle");
   const double side = c.a0 > 0 ? 1.0 : -1.0, start = c.a0;
   const auto push = [&](double shift) {
     BallContact::Local l;
@@ -266,7 +267,7 @@ void set_axial_preload(BallBearing& b, double force) {
 
 RollerBearing make_roller_bearing(const RollerGeometry& g) {
   check_ring(g.rollers, g.roller_diameter, g.pitch_diameter, "rollers");
-  if (!(g.roller_length > 0)) fail("the roller length must be positive");
+  if (!(g.roller_length > 0)) bearing_fault("the roller length must be positive");
   const double lambda = g.roller_diameter / g.pitch_diameter;
   RollerBearing b;
   b.elements = g.rollers;
@@ -278,7 +279,7 @@ RollerBearing make_roller_bearing(const RollerGeometry& g) {
     const double k = hertz_line_stiffness(g.roller_length);
     b.contact.K = hertz_series(k, k, 10.0 / 9.0);
   }
-  if (!(b.contact.K > 0)) fail("the contact stiffness must be positive");
+  if (!(b.contact.K > 0)) bearing_fault("the contact stiffness must be positive");
   return b;
 }
 

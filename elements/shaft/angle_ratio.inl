@@ -5,6 +5,7 @@
 // For one element (double) or several (a compiler vector). Included inside an anonymous namespace;
 // the includer gives WHIRL_INLINE, every, core/series.inl, <math.h>, and for vectors
 // angle_ratio_beyond(n, ratio), called where not every n is within the series.
+#pragma once
 
 /// Coefficients of G, of its derivatives, and of F/(2 n).
 struct AngleSeries {

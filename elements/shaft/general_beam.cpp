@@ -42,11 +42,11 @@ struct NodeT {
 
 /// Rotation, angular velocity and acceleration of a node.
 template <class T>
-struct Motion {
+struct SectionMotion {
   V3<T> e, d, s2, omega, alpha, w;  // s2 = (e + d)/(1 + e.d)
   V3<T> e2, e3;
   T cphi, sphi;
-  explicit Motion(const NodeT<T>& n)
+  explicit SectionMotion(const NodeT<T>& n)
       : e(Vec3(n.chart->col(0))),
         d(e + n.t),
         e2(Vec3(n.chart->col(1))),
@@ -103,8 +103,8 @@ struct Shape {
   };
   Components P[2];   // of p
   T My, Mz, Ky, Kz;  // mean curvature, and how much it changes from end to end
-  Shape(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1,
-        const Motion<T>& m2) {
+  Shape(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const SectionMotion<T>& m1,
+        const SectionMotion<T>& m2) {
     using std::sqrt;
     ro[0] = m1.turn(b.arm1);
     ro[1] = m2.turn(b.arm2);
@@ -321,11 +321,11 @@ struct ForceOut {
 template <class T>
 struct Moving {
   const NodeT<T>* node[2];
-  const Motion<T>* motion[2];
+  const SectionMotion<T>* motion[2];
   Shape<T> shape;
   V3<T> ad[2];  // (a x D)/(1 + a.D)
-  Moving(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const Motion<T>& m1,
-         const Motion<T>& m2)
+  Moving(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2, const SectionMotion<T>& m1,
+         const SectionMotion<T>& m2)
       : node{&n1, &n2},
         motion{&m1, &m2},
         shape(b, n1, n2, m1, m2) {
@@ -432,7 +432,7 @@ void add_beam_inertia(const GeneralBeamConstants& c, const Moving<T>& x, ForceOu
   const Shape<T>& s = x.shape;
   V3<T> acc[4], g[4];
   for (int i = 0; i < 2; ++i) {
-    const Motion<T>& m = *x.motion[i];
+    const SectionMotion<T>& m = *x.motion[i];
     acc[2 * i] = x.node[i]->ddu + m.accel(s.ro[i]);
     acc[2 * i + 1] = m.accel(s.D[i]);
     if (c.alpha > 0.0) {
@@ -459,7 +459,7 @@ double axis_inertia(const GeneralBeamConstants& c, int axis) {
 /// Rotary inertia on the triads.
 template <class T>
 void add_triad_inertia(const GeneralBeam& b, const Moving<T>& x, ForceOut<T>& out) {
-  const Motion<T>&m1 = *x.motion[0], &m2 = *x.motion[1];
+  const SectionMotion<T>&m1 = *x.motion[0], &m2 = *x.motion[1];
   for (int axis = 0; axis < 3; ++axis) {
     const double J = axis_inertia(b.c, axis);
     const V3<T> b1 = m1.turn(b.body1.col(axis)), b2 = m2.turn(b.body2.col(axis));
@@ -475,7 +475,7 @@ void add_triad_inertia(const GeneralBeam& b, const Moving<T>& x, ForceOut<T>& ou
 
 template <class T>
 ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>& n2,
-                       const Motion<T>& m1, const Motion<T>& m2) {
+                       const SectionMotion<T>& m1, const SectionMotion<T>& m2) {
   const Moving<T> x(b, n1, n2, m1, m2);
   BeamStresses<T> stresses = elastic_stresses(b, x.shape);
   if (b.c.beta > 0.0 || b.c.beta_twist > 0.0) add_damping(b.c, x, stresses);
@@ -487,9 +487,10 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
 
 /// Moment on omega -> (f_d, f_phi): delta theta = d x delta d + (delta phi - w . delta d) d.
 template <class T>
-std::array<T, 14> to_X(const ForceOut<T>& f, const Motion<T>& m1, const Motion<T>& m2) {
+std::array<T, 14> to_X(const ForceOut<T>& f, const SectionMotion<T>& m1,
+                       const SectionMotion<T>& m2) {
   std::array<T, 14> r;
-  const Motion<T>* mo[2] = {&m1, &m2};
+  const SectionMotion<T>* mo[2] = {&m1, &m2};
   for (int i = 0; i < 2; ++i) {
     const T along = f.m[i].dot(mo[i]->d);
     const V3<T> fd = f.m[i].cross(mo[i]->d) - along * mo[i]->w;
@@ -512,7 +513,7 @@ Matrix<14> differentiate(const GeneralBeam& b, const Nodes<2>& x, Seed&& seed) {
   NodeT<D14> n[2] = {NodeT<D14>(*x[0]), NodeT<D14>(*x[1])};
   for (int i = 0; i < 2; ++i)
     seed(n[i], *x[i], 7 * i);
-  const Motion<D14> m1(n[0]), m2(n[1]);
+  const SectionMotion<D14> m1(n[0]), m2(n[1]);
   const auto f = to_X(beam_force(b, n[0], n[1], m1, m2), m1, m2);
   Matrix<14> J;
   for (int k = 0; k < 14; ++k)
@@ -542,7 +543,7 @@ GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chor
   rest1.chart = &chart1;
   rest2.chart = &chart2;
   const NodeT<double> n1(rest1), n2(rest2);
-  const Motion<double> m1(n1), m2(n2);
+  const SectionMotion<double> m1(n1), m2(n2);
   const Shape<double> s(*this, n1, n2, m1, m2);
   p01 = Vec2(s.P[0].y, s.P[0].z);
   p02 = Vec2(s.P[1].y, s.P[1].z);
@@ -563,7 +564,7 @@ bool GeneralBeam::axisymmetric() const {
 
 void GeneralBeam::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
   const NodeT<double> n1(*x[0]), n2(*x[1]);
-  const Motion<double> m1(n1), m2(n2);
+  const SectionMotion<double> m1(n1), m2(n2);
   const auto r = to_X(beam_force(*this, n1, n2, m1, m2), m1, m2);
   f += Eigen::Map<const Vector<14>>(r.data());
 }
@@ -600,7 +601,7 @@ void GeneralBeam::add_stiffness_rate(const Nodes<2>& x, const Nodes<2>& rate, co
     n[i].t = moving(x[a]->t, rate[a]->t, 7 * i + 3);
     n[i].phi = D::variable(x[a]->phi, rate[a]->phi, 7 * i + 6);
   }
-  const Motion<D> m1(n[0]), m2(n[1]);
+  const SectionMotion<D> m1(n[0]), m2(n[1]);
   const auto f = to_X(beam_force(*this, n[0], n[1], m1, m2), m1, m2);
   for (int k = 0; k < 14; ++k) {
     const D& r = f[static_cast<std::size_t>(k)];
@@ -613,7 +614,7 @@ void GeneralBeam::add_stiffness_rate(const Nodes<2>& x, const Nodes<2>& rate, co
 
 void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) const {
   const NodeT<double> n1(*x[0]), n2(*x[1]);
-  const Motion<double> m1(n1), m2(n2);
+  const SectionMotion<double> m1(n1), m2(n2);
   const Shape<double> s(*this, n1, n2, m1, m2);
   const double w = s.stretch + c.length * (s.bow(c) - bow0(*this));
   const double N = preload + c.EA_l * w;

@@ -447,7 +447,7 @@ ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3
 
 /// What the kernels of shaft_lanes.hpp take for granted.
 template <bool Offsets>
-constexpr bool in_place() {
+constexpr bool beam_in_place() {
   using Beam = ShaftBeam<Offsets>;
   using Places = lanes::ShaftPlaces;
   constexpr auto stands = [](std::size_t offset, int place) {
@@ -483,7 +483,7 @@ template <bool Offsets>
 void ShaftBeam<Offsets>::add_forces(std::span<const ShaftBeam> elements,
                                     const std::array<Index, 2>* nodes, const NodeState* states,
                                     const Context&, Vector<7>* force) {
-  static_assert(in_place<Offsets>());
+  static_assert(beam_in_place<Offsets>());
   if (elements.empty()) return;
   lanes::Elements b;
   b.element = &elements[0].c.length;

@@ -85,7 +85,7 @@ ShaftDamping<Rotating>::ShaftDamping(const ShaftElementConstants& c, const Vec3&
 
 /// What the kernels of shaft_lanes.hpp take for granted.
 template <bool Rotating>
-constexpr bool in_place() {
+constexpr bool damping_in_place() {
   using Damping = ShaftDamping<Rotating>;
   using Places = lanes::DampingPlaces;
   constexpr auto stands = [](std::size_t offset, int place) {
@@ -107,7 +107,7 @@ template <bool Rotating>
 void ShaftDamping<Rotating>::add_forces(std::span<const ShaftDamping> elements,
                                         const std::array<Index, 2>* nodes, const NodeState* states,
                                         const Context&, Vector<7>* force) {
-  static_assert(in_place<Rotating>());
+  static_assert(damping_in_place<Rotating>());
   if (elements.empty()) return;
   lanes::Elements b;
   b.element = &elements[0].length;
@@ -187,20 +187,20 @@ template struct ShaftDamping<false>;
 template struct ShaftDamping<true>;
 
 namespace {
-constexpr int pos[4] = {0, 3, 7, 10};
+constexpr int vector_rows[4] = {0, 3, 7, 10};
 }
 
 void ShaftMassDamping::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {
   const Vec3* vel[4] = {&x[0]->du, &x[0]->dd, &x[1]->du, &x[1]->dd};
   for (int k = 0; k < 4; ++k)
     for (int j = 0; j < 4; ++j)
-      f.segment<3>(pos[k]) += C4(k, j) * *vel[j];
+      f.segment<3>(vector_rows[k]) += C4(k, j) * *vel[j];
 }
 
 void ShaftMassDamping::add_tangent(const Nodes<2>&, const Context&, TangentX<14>& t) const {
   for (int k = 0; k < 4; ++k)
     for (int j = 0; j < 4; ++j)
-      t.C.block<3, 3>(pos[k], pos[j]).diagonal().array() += C4(k, j);
+      t.C.block<3, 3>(vector_rows[k], vector_rows[j]).diagonal().array() += C4(k, j);
 }
 
 void ShaftMassDamping::add_energy(const Nodes<2>& x, const Context&, Energy& e) const {

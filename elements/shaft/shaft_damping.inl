@@ -1,6 +1,7 @@
 // The force of internal and external damping (shaft_damping.hpp), for one element (double, Dual) or
 // several (a compiler vector). Included inside an anonymous namespace after shaft_strain.inl and
 // system/spin.inl.
+#pragma once
 
 /// Parameters of ShaftDamping.
 template <class S>

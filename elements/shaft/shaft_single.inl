@@ -1,6 +1,7 @@
 // The formulas of shaft_strain.inl for one element, with double, Dual or DualRate for its scalars.
 // Included inside an anonymous namespace after <core/dual_rate.hpp>, <system/kernel.hpp> and
 // <math.h>.
+#pragma once
 
 using namespace single;
 using namespace system::of_one;

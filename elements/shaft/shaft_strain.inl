@@ -3,6 +3,7 @@
 // sources: shaft_beam.hpp. Included inside an anonymous namespace after angle_ratio.inl; the
 // includer gives the names of core/single.hpp or core/lanes.inl, and arctangent_beyond(y, x) where
 // its series ends. S: kind of numbers, S::T scalars and S::V vectors.
+#pragma once
 
 /// x less its part along the unit vector a.
 template <class V>

@@ -24,7 +24,10 @@ struct AtOffset {
     const Shifted s(*this, x);
     system::ForceX<inner* n_nodes> g = system::ForceX<inner * n_nodes>::Zero();
     kernel.add_force(s.nodes, c, g);
-    f.noalias() += map().transpose() * g;
+    for (int i = 0; i < n_nodes; ++i) {
+      f.template segment<inner>(7 * i) += g.template segment<inner>(inner * i);
+      f.template segment<3>(7 * i + 3) += arm(i) * g.template segment<3>(inner * i);
+    }
   }
   void add_tangent(const system::Nodes<n_nodes>& x, const system::Context& c,
                    system::TangentX<7 * n_nodes>& t) const {
@@ -32,10 +35,9 @@ struct AtOffset {
     system::TangentX<inner * n_nodes> g;
     g.set_zero();
     kernel.add_tangent(s.nodes, c, g);
-    const Map T = map();
-    if constexpr (has_M) t.M.noalias() += T.transpose() * g.M * T;
-    if constexpr (has_C) t.C.noalias() += T.transpose() * g.C * T;
-    if constexpr (has_K) t.K.noalias() += T.transpose() * g.K * T;
+    if constexpr (has_M) add_carried(g.M, t.M);
+    if constexpr (has_C) add_carried(g.C, t.C);
+    if constexpr (has_K) add_carried(g.K, t.K);
   }
   void add_energy(const system::Nodes<n_nodes>& x, const system::Context& c,
                   system::Energy& e) const {
@@ -60,16 +62,20 @@ struct AtOffset {
   };
 
  private:
-  using Map = Matrix<inner * n_nodes, 7 * n_nodes>;
-  Map map() const {
-    Map T = Map::Zero();
-    for (int i = 0; i < n_nodes; ++i) {
-      for (int k = 0; k < inner; ++k)
-        T(inner * i + k, 7 * i + k) = 1.0;
-      for (int k = 0; k < 3; ++k)
-        T(inner * i + k, 7 * i + 3 + k) = offset[static_cast<std::size_t>(i)];
-    }
-    return T;
+  double arm(int node) const { return offset[static_cast<std::size_t>(node)]; }
+
+  /// Adds T' g T, with T u = u_i + o_i d_i at every node.
+  void add_carried(const Matrix<inner * n_nodes>& g, Matrix<7 * n_nodes>& t) const {
+    for (int i = 0; i < n_nodes; ++i)
+      for (int j = 0; j < n_nodes; ++j) {
+        const auto block = g.template block<inner, inner>(inner * i, inner * j);
+        auto carried = t.template block<7, 7>(7 * i, 7 * j);
+        carried.template topLeftCorner<inner, inner>() += block;
+        carried.template block<3, inner>(3, 0) += arm(i) * block.template topRows<3>();
+        carried.template block<inner, 3>(0, 3) += arm(j) * block.template leftCols<3>();
+        carried.template block<3, 3>(3, 3) +=
+            arm(i) * arm(j) * block.template topLeftCorner<3, 3>();
+      }
   }
 };
 

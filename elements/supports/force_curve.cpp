@@ -9,7 +9,7 @@ namespace whirl::elements {
 
 namespace {
 
-[[noreturn]] void fail(const char* what) {
+[[noreturn]] void curve_fault(const char* what) {
   throw run_error("E82", std::string("force curve: ") + what);
 }
 
@@ -68,11 +68,11 @@ int ForceCurve::region(double x) const {
 }
 
 ForceCurve ForceCurve::polynomial(const std::vector<double>& c) {
-  if (c.empty() || c.size() > 8) fail("a polynomial has 1 to 8 coefficients");
+  if (c.empty() || c.size() > 8) curve_fault("a polynomial has 1 to 8 coefficients");
   ForceCurve f;
   f.pieces_.push_back({0.0});
   for (std::size_t k = 0; k < c.size(); ++k) {
-    if (!std::isfinite(c[k])) fail("a coefficient is not finite");
+    if (!std::isfinite(c[k])) curve_fault("a coefficient is not finite");
     f.pieces_[0].c[k] = c[k];
   }
   return f;
@@ -81,10 +81,11 @@ ForceCurve ForceCurve::polynomial(const std::vector<double>& c) {
 ForceCurve ForceCurve::table(const std::vector<double>& x, const std::vector<double>& F,
                              bool monotone_cubic) {
   const std::size_t n = x.size();
-  if (n < 2 || F.size() != n) fail("a table has at least 2 points, as many deflections as forces");
+  if (n < 2 || F.size() != n)
+    curve_fault("a table has at least 2 points, as many deflections as forces");
   for (std::size_t i = 0; i < n; ++i)
     if (!std::isfinite(x[i]) || !std::isfinite(F[i]) || (i > 0 && !(x[i] > x[i - 1])))
-      fail("deflections must be finite and increase");
+      curve_fault("deflections must be finite and increase");
   std::vector<double> d(n - 1), m(n);
   for (std::size_t i = 0; i + 1 < n; ++i)
     d[i] = (F[i + 1] - F[i]) / (x[i + 1] - x[i]);
@@ -115,7 +116,7 @@ ForceCurve ForceCurve::table(const std::vector<double>& x, const std::vector<dou
 
 ForceCurve ForceCurve::one_sided(double gap, double k, double smooth) {
   if (!(k >= 0) || !(smooth >= 0) || !std::isfinite(gap))
-    fail("stiffness and smoothing length must not be negative");
+    curve_fault("stiffness and smoothing length must not be negative");
   ForceCurve f;
   f.pieces_.push_back({gap});
   f.breaks_.push_back(gap);
@@ -130,7 +131,7 @@ ForceCurve ForceCurve::one_sided(double gap, double k, double smooth) {
 }
 
 ForceCurve ForceCurve::clearance(double gap_minus, double gap_plus, double k, double smooth) {
-  if (!(gap_minus >= 0) || !(gap_plus >= 0)) fail("a clearance must not be negative");
+  if (!(gap_minus >= 0) || !(gap_plus >= 0)) curve_fault("a clearance must not be negative");
   const ForceCurve plus = one_sided(gap_plus, k, smooth), minus = one_sided(gap_minus, k, smooth);
   ForceCurve f;
   for (std::size_t i = minus.pieces_.size(); i-- > 1;) {  // mirrored: F(-x) -> -F(x)

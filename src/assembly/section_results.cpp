@@ -11,7 +11,7 @@ namespace {
 
 using system::NodeState;
 
-struct End {
+struct SectionEnd {
   Vec3 r, d, F, M;
 };
 
@@ -51,7 +51,7 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
     system::ForceX<14> f = system::ForceX<14>::Zero();
     built.element_forces.at(k)(built.system, {&n1, &n2}, context, f);
     const double L = e.s2 - e.s1;
-    End a, b;
+    SectionEnd a, b;
     a.d = n1.d();
     b.d = n2.d();
     a.r = mesh.nodes[static_cast<std::size_t>(e.left.node)].position + n1.u + e.left.offset * a.d;

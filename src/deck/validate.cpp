@@ -173,7 +173,7 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
   return {};  // critical speeds look inside the table only
 }
 
-std::string hertz(double w) { return fmt::format("{:.6g} Hz", to_hz(w)); }
+std::string in_hertz(double w) { return fmt::format("{:.6g} Hz", to_hz(w)); }
 
 /// Frequencies of excitation of a step, rad/s: least and largest, or nothing.
 std::optional<std::pair<double, double>> frequencies_of(const model::Model& m,
@@ -299,7 +299,8 @@ void check_tables(const model::Model& m, Problems& out) {
           add(out, "E22",
               fmt::format(
                   "the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}",
-                  b.name, hertz(least), hertz(most), s.name, hertz(w->first), hertz(w->second)),
+                  b.name, in_hertz(least), in_hertz(most), s.name, in_hertz(w->first),
+                  in_hertz(w->second)),
               "extend the table, narrow the step, or write extrapolate = \"hold\"", b.where);
       }
       const auto range = speeds_of(m, s, b.at.shaft);

@@ -2,12 +2,16 @@
 // in and rpm on the axis.
 #pragma once
 #include <plot/plot.hpp>
+#include <core/types.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace whirl::plot {
+
+inline constexpr double rpm = to_rpm(1.0);   ///< of a speed of 1 rad/s
+inline constexpr double hertz = to_hz(1.0);  ///< of a frequency of 1 rad/s
 
 enum class Amplitude { zero_to_peak, peak_to_peak };
 /// "0-peak" or "peak-to-peak".

@@ -7,9 +7,6 @@
 namespace whirl::plot {
 namespace {
 
-constexpr double rpm = to_rpm(1.0);
-constexpr double hertz = to_hz(1.0);
-
 struct Extent {
   double speed0 = infinity, speed1 = -infinity, frequency1 = 0, amplitude = 0;
 };

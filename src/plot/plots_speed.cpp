@@ -9,9 +9,6 @@
 namespace whirl::plot {
 namespace {
 
-constexpr double rpm = to_rpm(1.0);
-constexpr double hertz = to_hz(1.0);
-
 struct Look {
   Whirl whirl;
   const char* name;

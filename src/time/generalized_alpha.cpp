@@ -28,8 +28,8 @@
 
 namespace whirl::time {
 namespace {
-constexpr double allowance_factor = 7e-3;
-constexpr double newton_share =
+constexpr double alpha_allowance = 7e-3;
+constexpr double alpha_newton_share =
     0.01;  // largest Newton error of a step over its largest local error
 }  // namespace
 
@@ -41,8 +41,8 @@ GeneralizedAlpha::GeneralizedAlpha(Problem& problem, const Options& options)
   gamma_ = 0.5 - alpha_m_ + alpha_f_;
   beta_ = 0.25 * (gamma_ + 0.5) * (gamma_ + 0.5);
   error_constant_ = beta_ - 1.0 / 6.0 + 0.5 * (alpha_m_ - alpha_f_);
-  allowance_ = allowance_factor * std::pow(options.tolerance, 1.5);
-  newton_.configure(options.max_newton, newton_share * allowance_, 0.03 * allowance_);
+  allowance_ = alpha_allowance * std::pow(options.tolerance, 1.5);
+  newton_.configure(options.max_newton, alpha_newton_share * allowance_, 0.03 * allowance_);
   scale_.resolve(NewtonMonitor::rounding_share * 0.03 * allowance_);
   control_.configure(3);
   for (VecX* x : {&algorithmic0_, &algorithmic_, &algorithmic_before_, &difference_,

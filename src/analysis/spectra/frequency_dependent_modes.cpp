@@ -11,7 +11,7 @@
 namespace whirl::analysis {
 
 namespace {
-constexpr std::size_t at_(Index i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t entry(Index i) { return static_cast<std::size_t>(i); }
 
 bool covered(const OwnFrequency::Matrices& at, double w) {
   try {
@@ -60,11 +60,11 @@ Changes changes_between(const OwnFrequency::Matrices& at, const std::vector<doub
         static_cast<Index>(std::upper_bound(p.row_start().begin(), p.row_start().end(), slot) -
                            p.row_start().begin()) -
         1;
-    return std::pair<Index, Index>(6 * i + local % 6, 6 * p.cols()[at_(slot)] + local / 6);
+    return std::pair<Index, Index>(6 * i + local % 6, 6 * p.cols()[entry(slot)] + local / 6);
   };
   std::erase_if(ids, [&](std::size_t id) {
     const auto [i, j] = unknowns(id);
-    return !active[at_(i)] || !active[at_(j)];
+    return !active[entry(i)] || !active[entry(j)];
   });
   Changes out;
   out.value.resize(static_cast<Index>(rows.size()), static_cast<Index>(ids.size()));
@@ -85,12 +85,12 @@ Changes changes_between(const OwnFrequency::Matrices& at, const std::vector<doub
 /// What a straight line from row i to row j makes wrong at row r, relative to the largest entries
 /// there.
 double deviation(const Changes& c, const std::vector<double>& rows, Index i, Index j, Index r) {
-  const double w = rows[at_(r)], t = (w - rows[at_(i)]) / (rows[at_(j)] - rows[at_(i)]);
+  const double w = rows[entry(r)], t = (w - rows[entry(i)]) / (rows[entry(j)] - rows[entry(i)]);
   std::array<double, 3> size{}, off{};
   for (Index k = 0; k < c.value.cols(); ++k) {
-    const double f = std::pow(w, c.power[at_(k)]), v = f * c.value(r, k),
+    const double f = std::pow(w, c.power[entry(k)]), v = f * c.value(r, k),
                  line = f * (c.value(i, k) + t * (c.value(j, k) - c.value(i, k)));
-    const std::size_t u = static_cast<std::size_t>(c.unit[at_(k)]);
+    const std::size_t u = static_cast<std::size_t>(c.unit[entry(k)]);
     size[u] = std::max({size[u], std::abs(v), std::abs(line)});
     off[u] = std::max(off[u], std::abs(v - line));
   }
@@ -166,7 +166,7 @@ void OwnFrequency::choose_rows(const Matrices& at) {
         worst = r;
       }
     if (worst < 0) {
-      rows_.push_back(all[at_(j)]);
+      rows_.push_back(all[entry(j)]);
     } else {
       open.emplace_back(worst, j);
       open.emplace_back(i, worst);
@@ -408,7 +408,7 @@ std::vector<la::Mode> OwnFrequency::solve(const Matrices& at) {
     std::stable_sort(found_.begin(), found_.end(), [](const la::Mode& x, const la::Mode& y) {
       return std::abs(x.lambda) < std::abs(y.lambda);
     });
-    found_.resize(at_(wanted_.count));
+    found_.resize(entry(wanted_.count));
   }
   std::stable_sort(found_.begin(), found_.end(), [](const la::Mode& x, const la::Mode& y) {
     return x.lambda.imag() < y.lambda.imag();

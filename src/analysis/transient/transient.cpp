@@ -32,10 +32,10 @@ constexpr double longest_wait = 3.0;  // and at most
 constexpr double keep_every = 2.0;    // seconds at least between states that are kept
 
 /// The integrator's last step as observers see it.
-class Dense final : public StepAccess {
+class StepDense final : public StepAccess {
  public:
   /// look: called before every evaluation; throws to stop.
-  Dense(system::SystemProblem& p, time::Integrator& i, std::function<void()> look)
+  StepDense(system::SystemProblem& p, time::Integrator& i, std::function<void()> look)
       : integrator_(i),
         look_(std::move(look)),
         snapshot_(p),
@@ -74,7 +74,7 @@ class Dense final : public StepAccess {
 
 /// First time in the step where f changes sign, or infinity; last: see time::EventLocator.
 template <class F>
-double crossing(Dense& step, F&& f, double& last) {
+double crossing(StepDense& step, F&& f, double& last) {
   static constexpr time::EventLocator locator(time::quarters, {1e-18, 1e-14});
   double first = infinity;
   locator.sign_changes(
@@ -129,7 +129,7 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
     const double made = std::fmod(static_cast<double>(integrator->statistics().accepted), between);
     return seconds_since(last_mark) / std::max(made, 0.5) * (between - made);
   };
-  Dense step(problem, *integrator, [&] {
+  StepDense step(problem, *integrator, [&] {
     if (interrupted() && seconds_since(last_mark) > least_wait && seconds_to_mark() > longest_wait)
       throw Interrupted();
   });

@@ -10,7 +10,7 @@
 namespace whirl::deck {
 namespace {
 
-constexpr const char* place =
+constexpr const char* bearing_place =
     "place on a shaft: \"section:mid\", \"section:end - 20 mm\", \"1.14 m\"";
 std::string hertz(double w) { return fmt::format("{:.6g} Hz", to_hz(w)); }
 
@@ -307,7 +307,7 @@ void describe(Visitor& v, model::Pedestal& p) {
 
 void describe(Visitor& v, model::Bearing& b) {
   v.name(b, "bearing");
-  v.location(required("at"), b.at, place);
+  v.location(required("at"), b.at, bearing_place);
   model::Location to;
   if (v.location(optional("to", "the ground"), to, "place on another shaft that it connects with"))
     b.to = to;

@@ -10,12 +10,12 @@ namespace {
 constexpr int max_include_depth = 16;
 constexpr int max_files = 64;
 
-std::string place(const Sources& sources, const Spot& s) {
+std::string file_and_line(const Sources& sources, const Spot& s) {
   return s.source >= 0 ? fmt::format("{}:{}", sources[s.source].name, s.line)
                        : std::string("elsewhere");
 }
 
-bool list_of_tables(const Value& v) {
+bool holds_tables(const Value& v) {
   return v.is_array() &&
          std::any_of(v.items.begin(), v.items.end(), [](const Value& x) { return x.is_table(); });
 }
@@ -28,13 +28,13 @@ void merge(Value& into, Value from, const Sources& sources, Diagnostics& diagnos
       into.members.push_back(std::move(m));
     else if (have->value.is_table() && m.value.is_table())
       merge(have->value, std::move(m.value), sources, diagnostics);
-    else if (list_of_tables(have->value) && list_of_tables(m.value))
+    else if (holds_tables(have->value) && holds_tables(m.value))
       for (auto& x : m.value.items)
         have->value.items.push_back(std::move(x));
     else
       diagnostics.error("E29", m.spot,
                         fmt::format("'{}' is set here and in an included file", m.key),
-                        fmt::format("the other is in {}", place(sources, have->spot)));
+                        fmt::format("the other is in {}", file_and_line(sources, have->spot)));
   }
 }
 
