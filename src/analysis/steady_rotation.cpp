@@ -2,6 +2,7 @@
 
 #include <core/error.hpp>
 #include <core/interrupt.hpp>
+#include <la/dense.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -188,7 +189,7 @@ void SteadySystem::make_samples_of_orders() {
       A(j, 2 + 2 * h) = std::sin(harmonics[at(h)] * theta_[at(j)]);
     }
   }
-  const MatX inverse = A.completeOrthogonalDecomposition().pseudoInverse();
+  const MatX inverse = la::pseudo_inverse(A);
   weights_.resize(1 + 2 * k, samples);
   weights_.row(0) = inverse.row(0);
   for (Index o = 0; o < k; ++o) {

@@ -31,6 +31,26 @@ VecX hermitian_eigenvalues(const MatXc& a) {
   return Eigen::SelfAdjointEigenSolver<MatXc>(a, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
+VecXc least_norm_solution(const MatXc& a, const VecXc& b) {
+  return a.completeOrthogonalDecomposition().solve(b);
+}
+
+MatX pseudo_inverse(const MatX& a) { return a.completeOrthogonalDecomposition().pseudoInverse(); }
+
+VecXc pivoted_solution(const MatXc& a, const VecXc& b) { return a.colPivHouseholderQr().solve(b); }
+
+std::optional<MatX> pivoted_solution(const MatX& a, const MatX& b, double least) {
+  const Eigen::ColPivHouseholderQR<MatX> qr(a);
+  if (!(qr.maxPivot() > least) || !qr.isInvertible()) return {};
+  return qr.solve(b);
+}
+
+MatX orthonormal_span(const MatX& a, double threshold) {
+  Eigen::ColPivHouseholderQR<MatX> qr(a);
+  qr.setThreshold(threshold);
+  return qr.householderQ() * MatX::Identity(a.rows(), qr.rank());
+}
+
 template <class Scalar>
 struct DenseLu<Scalar>::Factors {
   Eigen::PartialPivLU<Mat> lu;

@@ -3,6 +3,7 @@
 #pragma once
 #include <core/types.hpp>
 #include <memory>
+#include <optional>
 
 namespace whirl::la {
 
@@ -30,6 +31,19 @@ SymmetricEigenpairs symmetric_eigenpairs(const MatX& a);
 SymmetricEigenpairs symmetric_eigenpairs(const MatX& k, const MatX& m);
 /// Of a Hermitian matrix, ascending.
 VecX hermitian_eigenvalues(const MatXc& a);
+
+/// x of least length that minimises |A x - b|, A of any rank.
+VecXc least_norm_solution(const MatXc& a, const VecXc& b);
+/// Moore-Penrose inverse.
+MatX pseudo_inverse(const MatX& a);
+/// x with A x = b by full pivoting; A square, perhaps nearly singular.
+VecXc pivoted_solution(const MatXc& a, const VecXc& b);
+/// The same; nothing when no pivot exceeds `least` or A is singular in rounding.
+std::optional<MatX> pivoted_solution(const MatX& a, const MatX& b, double least);
+
+/// Orthonormal columns that span those of A; columns that add less than `threshold` of the largest
+/// are left out.
+MatX orthonormal_span(const MatX& a, double threshold);
 
 /// A = P L U with partial pivoting. Scalar: double or Complex.
 template <class Scalar>

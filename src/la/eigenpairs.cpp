@@ -1,8 +1,6 @@
 #include <la/dense.hpp>
 #include <la/eigenpairs.hpp>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 
 namespace whirl::la {
@@ -153,13 +151,13 @@ bool Eigenpairs::add_rigid(const std::vector<Pair>& candidates) {
   MatX a(6 * pattern.size(), static_cast<Index>(columns.size()));
   for (Index j = 0; j < a.cols(); ++j)
     a.col(j) = columns[at(j)];
-  const Eigen::JacobiSVD<MatX> svd(a, Eigen::ComputeThinU);
+  const MatX span = orthonormal_span(a, 1e-5);
   std::erase_if(known, [](const Pair& p) { return p.rigid; });
   Index after = 0;
-  for (Index j = 0; j < a.cols() && svd.singularValues()(j) > 1e-5 * svd.singularValues()(0); ++j) {
+  for (Index j = 0; j < span.cols(); ++j) {
     Pair p;
     p.lambda = 0.0;
-    p.x = svd.matrixU().col(j);
+    p.x = span.col(j);
     p.rigid = true;
     if (!polisher.evaluate(p) || !polisher.is_unresisted(p)) continue;
     known.push_back(std::move(p));

@@ -62,6 +62,26 @@ class Term {
   virtual void bind(const la::BlockPattern& p, const std::vector<Index>& row) = 0;
 };
 
+/// Adds the blocks of an element's tangent at the slots of its node pairs (-1: nothing unknown).
+template <int N, int W>
+[[gnu::noinline]] void scatter(const Matrix<N * W>& tangent, const std::array<Index, N * N>& slots,
+                               la::BlockMatrix<7>& into) {
+  for (int a = 0; a < N; ++a)
+    for (int b = 0; b < N; ++b) {
+      const Index s = slots[static_cast<std::size_t>(a * N + b)];
+      if (s < 0) continue;
+      into.block(s).template topLeftCorner<W, W>() += tangent.template block<W, W>(W * a, W * b);
+    }
+}
+extern template void scatter<1, 3>(const Matrix<3>&, const std::array<Index, 1>&,
+                                   la::BlockMatrix<7>&);
+extern template void scatter<1, 7>(const Matrix<7>&, const std::array<Index, 1>&,
+                                   la::BlockMatrix<7>&);
+extern template void scatter<2, 3>(const Matrix<6>&, const std::array<Index, 4>&,
+                                   la::BlockMatrix<7>&);
+extern template void scatter<2, 7>(const Matrix<14>&, const std::array<Index, 4>&,
+                                   la::BlockMatrix<7>&);
+
 template <Kernel K>
 class Batch final : public Term {
  public:
@@ -169,17 +189,9 @@ class Batch final : public Term {
         if constexpr (K::has_C) t.C.setZero();
         if constexpr (K::has_K) t.K.setZero();
         elements_[i].add_tangent(gather(w, i), w.context, t);
-        for (int a = 0; a < N; ++a)
-          for (int b = 0; b < N; ++b) {
-            const Index s = slots_[i][static_cast<std::size_t>(a * N + b)];
-            if (s < 0) continue;
-            if constexpr (K::has_M)
-              w.M.block(s).template topLeftCorner<W, W>() += t.M.template block<W, W>(W * a, W * b);
-            if constexpr (K::has_C)
-              w.C.block(s).template topLeftCorner<W, W>() += t.C.template block<W, W>(W * a, W * b);
-            if constexpr (K::has_K)
-              w.K.block(s).template topLeftCorner<W, W>() += t.K.template block<W, W>(W * a, W * b);
-          }
+        if constexpr (K::has_M) scatter<N, W>(t.M, slots_[i], w.M);
+        if constexpr (K::has_C) scatter<N, W>(t.C, slots_[i], w.C);
+        if constexpr (K::has_K) scatter<N, W>(t.K, slots_[i], w.K);
       }
     }
   }

@@ -11,6 +11,11 @@
 
 namespace whirl::system {
 
+template void scatter<1, 3>(const Matrix<3>&, const std::array<Index, 1>&, la::BlockMatrix<7>&);
+template void scatter<1, 7>(const Matrix<7>&, const std::array<Index, 1>&, la::BlockMatrix<7>&);
+template void scatter<2, 3>(const Matrix<6>&, const std::array<Index, 4>&, la::BlockMatrix<7>&);
+template void scatter<2, 7>(const Matrix<14>&, const std::array<Index, 4>&, la::BlockMatrix<7>&);
+
 namespace {
 
 /// One 7x7 block in X (columns u, d, phi) to the 6x6 block in q (u, phi, gamma): y = J_i^T x J_j,

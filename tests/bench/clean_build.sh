@@ -7,7 +7,7 @@ shift
 build=$(mktemp -d)
 trap 'rm -rf "$build"' EXIT
 export CCACHE_DISABLE=1
-cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DWHIRL_BUILD_TESTS=OFF "$@" >"$build/configure.log" ||
+cmake --preset release -S "$source" -B "$build" -DWHIRL_BUILD_TESTS=OFF "$@" >"$build/configure.log" ||
   { cat "$build/configure.log"; exit 1; }
 TIMEFORMAT='%R %U %S'
 times=$( { time cmake --build "$build" >"$build/build.log" 2>&1; } 2>&1 ) || { tail -50 "$build/build.log"; exit 1; }

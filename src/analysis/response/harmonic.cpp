@@ -1,6 +1,6 @@
 #include <analysis/response/harmonic.hpp>
 
-#include <Eigen/LU>
+#include <la/dense.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -123,9 +123,8 @@ void HarmonicSolver::solve_held(VecXc& x) {
   if (w_ != 0.0) {
     // Their inertia and damping take the torque up: turning by c, then what that does to the twist.
     const MatX spins = free_spins();
-    const VecXc c = spin_matrix(spins, matrices_->M, matrices_->C)
-                        .fullPivLu()
-                        .solve(spins.transpose().cast<Complex>() * rest);
+    const VecXc c = la::pivoted_solution(spin_matrix(spins, matrices_->M, matrices_->C),
+                                         spins.transpose().cast<Complex>() * rest);
     VecXc turned = spins.cast<Complex>() * c;
     VecXc left = rest - inertia_and_damping(turned);
     for (const Index k : first_.at)
@@ -202,10 +201,12 @@ void HarmonicSolver::add_free_spin(VecXc& x) const {
       size = std::max(size, spins.col(j).cwiseAbs().dot(image.cwiseAbs()));
     }
     const VecXc on_x = spins.transpose().cast<Complex>() * times(*matrix, x);
-    const Eigen::FullPivLU<MatX> lu(on_spins);
-    if (!(size > 0) || !(lu.maxPivot() > 1e-9 * size) || !lu.isInvertible()) continue;
-    const VecXc turn = lu.solve(MatX(on_x.real())).cast<Complex>() +
-                       Complex(0, 1) * lu.solve(MatX(on_x.imag())).cast<Complex>();
+    if (!(size > 0)) continue;
+    MatX parts(on_x.size(), 2);
+    parts << on_x.real(), on_x.imag();
+    const auto turns = la::pivoted_solution(on_spins, parts, 1e-9 * size);
+    if (!turns) continue;
+    const VecXc turn = turns->col(0).cast<Complex>() + Complex(0, 1) * turns->col(1);
     x -= spins.cast<Complex>() * turn;
     return;
   }

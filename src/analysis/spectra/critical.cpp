@@ -2,6 +2,7 @@
 
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
+#include <la/dense.hpp>
 #include <la/multiply.hpp>
 
 #include <fmt/format.h>
@@ -230,7 +231,7 @@ double share_in(const la::MCK& m, const VecXc& x, const MatXc& space) {
   if (!(size > 0)) return 0.0;
   const VecXc product = mass_space.adjoint() * x;
   const MatXc gram = space.adjoint() * mass_space;
-  return std::abs(product.dot(gram.completeOrthogonalDecomposition().solve(product))) / size;
+  return std::abs(product.dot(la::least_norm_solution(gram, product))) / size;
 }
 
 class MapTracker {
