@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 
 namespace whirl::la {
 
@@ -46,9 +47,12 @@ std::optional<MatX> pivoted_solution(const MatX& a, const MatX& b, double least)
 }
 
 MatX orthonormal_span(const MatX& a, double threshold) {
-  Eigen::ColPivHouseholderQR<MatX> qr(a);
-  qr.setThreshold(threshold);
-  return qr.householderQ() * MatX::Identity(a.rows(), qr.rank());
+  const Eigen::JacobiSVD<MatX> svd(a, Eigen::ComputeThinU);
+  const VecX& size = svd.singularValues();
+  Index rank = 0;
+  while (rank < size.size() && size[rank] > threshold * size[0])
+    ++rank;
+  return svd.matrixU().leftCols(rank);
 }
 
 template <class Scalar>

@@ -41,8 +41,7 @@ VecXc pivoted_solution(const MatXc& a, const VecXc& b);
 /// The same; nothing when no pivot exceeds `least` or A is singular in rounding.
 std::optional<MatX> pivoted_solution(const MatX& a, const MatX& b, double least);
 
-/// Orthonormal columns that span those of A; columns that add less than `threshold` of the largest
-/// are left out.
+/// Orthonormal columns that span those of A, directions below `threshold` of the largest left out.
 MatX orthonormal_span(const MatX& a, double threshold);
 
 /// A = P L U with partial pivoting. Scalar: double or Complex.
