@@ -32,6 +32,7 @@ struct PointForce {
 /// Force and moment of fixed direction (global axes) at an offset point.
 struct FixedLoad {
   static constexpr int n_nodes = 1, width = 7;
+  static constexpr system::Axes axes = system::Axes::any;
   static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
   static constexpr system::Family family = system::Family::load;
@@ -52,6 +53,7 @@ struct FixedLoad {
 /// loads).
 struct BodyLoad {
   static constexpr int n_nodes = 1, width = 7;
+  static constexpr system::Axes axes = system::Axes::any;
   static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
                         linear_in_displacements = true;
   static constexpr system::Family family = system::Family::load;

@@ -22,6 +22,7 @@ namespace whirl::elements {
 
 struct RigidBody {
   static constexpr int n_nodes = 1, width = 7;
+  static constexpr system::Axes axes = system::Axes::any;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         inertial = true, powerless = true, linear_in_displacements = true;
   static constexpr system::Family family = system::Family::body;

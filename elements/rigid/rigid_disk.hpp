@@ -15,6 +15,7 @@ namespace whirl::elements {
 
 struct RigidDisk {
   static constexpr int n_nodes = 1, width = 7;
+  static constexpr system::Axes axes = system::Axes::any;
   static constexpr bool has_M = true, has_C = true, has_K = true, inertial = true,
                         quadratic_in_rates = true, powerless = true, linear_in_displacements = true;
   static constexpr system::Family family = system::Family::body;

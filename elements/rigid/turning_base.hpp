@@ -56,6 +56,7 @@ struct AbsoluteNode {
 template <class K>
 struct OnTurningBase {
   static constexpr int n_nodes = K::n_nodes, width = K::width;
+  static constexpr system::Axes axes = system::axes_of<K>();
   static constexpr bool has_M = false, has_C = true, has_K = true, quadratic_in_rates = true;
   static constexpr system::Family family = system::Family::body;
   /// As the inertia in its kernel, and on time: a twist is elastic and cancels, and so does a

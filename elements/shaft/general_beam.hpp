@@ -77,6 +77,7 @@ struct GeneralBeamConstants {
 
 struct GeneralBeam {
   static constexpr int n_nodes = 2, width = 7;
+  static constexpr system::Axes axes = system::Axes::any;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true;
   static constexpr system::Family family = system::Family::shaft;
   /// Sees the angle unless it is axisymmetric; its twist in any case.

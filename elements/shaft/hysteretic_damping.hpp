@@ -45,6 +45,7 @@ struct GeneralBeamDamping {
 template <class Viscous>
 struct HystereticDamping {
   static constexpr int n_nodes = 2, width = 7;
+  static constexpr system::Axes axes = system::Axes::common;
   static constexpr bool has_M = false, has_C = true, has_K = true;
   static constexpr system::Family family = system::Family::damping;
   /// The rate of a small motion counts where hysteretic damping has its own form.

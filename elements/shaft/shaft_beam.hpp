@@ -49,6 +49,7 @@ namespace whirl::elements {
 template <bool Offsets>
 struct ShaftBeam {
   static constexpr int n_nodes = 2, width = 7;
+  static constexpr system::Axes axes = system::Axes::common;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true,
                         powerless = true;
   static constexpr system::Family family = system::Family::shaft;

@@ -23,6 +23,7 @@ namespace whirl::elements {
 template <bool Rotating>
 struct ShaftDamping {
   static constexpr int n_nodes = 2, width = 7;
+  static constexpr system::Axes axes = system::Axes::common;
   static constexpr bool has_M = false, has_C = true, has_K = true, quadratic_in_rates = true;
   static constexpr system::Family family = system::Family::damping;
   system::Dependence depends(const system::Context&) const {
@@ -54,6 +55,7 @@ extern template struct ShaftDamping<true>;
 /// 1/s.
 struct ShaftMassDamping {
   static constexpr int n_nodes = 2, width = 7;
+  static constexpr system::Axes axes = system::Axes::any;
   static constexpr bool has_M = false, has_C = true, has_K = false, quadratic_in_rates = true;
   static constexpr system::Family family = system::Family::damping;
   static constexpr system::Dependence depends{};

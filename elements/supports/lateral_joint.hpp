@@ -53,6 +53,7 @@ template <class Law_, bool Offsets = false>
 struct LateralJoint {
   using Law = Law_;
   static constexpr int n_nodes = 2, width = 7;
+  static constexpr system::Axes axes = Offsets ? system::Axes::own : system::Axes::any;
   static constexpr bool has_M = Law::inertia, has_C = true, has_K = true;
   static constexpr system::Family family = system::Family::support;
   system::Dependence depends(const system::Context& c) const {

@@ -12,6 +12,7 @@ namespace whirl::elements {
 
 struct SpringBlock {
   static constexpr int n_nodes = 1, width = 7;
+  static constexpr system::Axes axes = system::Axes::any;
   static constexpr bool has_M = false, has_C = false, has_K = true, quadratic_in_rates = true,
                         powerless = true, linear_in_displacements = true;
   static constexpr system::Family family = system::Family::support;

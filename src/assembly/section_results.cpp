@@ -41,15 +41,15 @@ void add_stress(const elements::ElementSection& s, double xi, SectionPoint& p) {
 }  // namespace
 
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
-                                               const Built& built, const NodeAt& at,
-                                               const system::Context& context, int inner) {
+                                               const Built& built, const system::Workspace& w,
+                                               int inner) {
   std::vector<SectionPoint> out;
   out.reserve(mesh.elements.size() * static_cast<std::size_t>(inner + 2));
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
     const meshes::Element& e = mesh.elements[k];
-    const NodeState &n1 = at(e.left.node), &n2 = at(e.right.node);
+    const auto [n1, n2] = system::seen_together(built.system, w, e.left.node, e.right.node);
     system::ForceX<14> f = system::ForceX<14>::Zero();
-    built.element_forces.at(k)(built.system, {&n1, &n2}, context, f);
+    built.element_forces.at(k)(built.system, {&n1, &n2}, w.context, f);
     const double L = e.s2 - e.s1;
     SectionEnd a, b;
     a.d = n1.d();
@@ -84,7 +84,7 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
                  x * y * (y * dM1 - x * dM2);
       const Vec3 d =
           (bent ? Vec3(y * t1.col(0) + x * t2.col(0)) : Vec3(y * a.d + x * b.d)).normalized();
-      const Mat3& chart = *n1.chart;
+      const Mat3& chart = *w.in_own_axes(e.left.node).chart;
       Vec3 ey, ez;
       if (bent) {  // turning with the twist from end to end
         const Vec3 mean = y * t1.col(1) + x * t2.col(1);

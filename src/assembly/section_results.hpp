@@ -34,10 +34,10 @@ struct SectionPoint {
   double axial = 0, bending = 0, torsion = 0, von_mises = 0;  ///< Pa; axial is signed
 };
 
-/// By line and element, `inner` points inside each element beside its two ends. Context: time,
-/// gravity, load of the state.
+/// By line and element, `inner` points inside each element beside its two ends.
+/// @param w nodes and context of the state
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
-                                               const Built& built, const NodeAt& at,
-                                               const system::Context& context, int inner = 3);
+                                               const Built& built, const system::Workspace& w,
+                                               int inner = 3);
 
 }  // namespace whirl::assembly

@@ -240,10 +240,8 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"E71", "the split of the rotation reached its limit",
        "A section normal turned by pi from the axis of its shaft: the axial angle and the azimuth "
        "of the transverse rotation then describe the same "
-       "motion. With model.chart_change = true (the default) the reference axes are moved before "
-       "that happens; without, the run ends "
-       "here. Tumbling free bodies need the change of chart; a shaft that gets there has failed "
-       "long before.",
+       "motion. With model.chart_change = true (the default) a node goes on in other axes before "
+       "that happens; without, and where a tilt is held, the run ends here.",
        ""},
       {"E72", "a time law cannot be built",
        "The points of a law must increase in time, be finite and number at least one; a transition "

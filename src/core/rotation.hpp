@@ -74,7 +74,7 @@ double chart_condition(double g);
 
 /// Beyond chart_switch the reference triad is moved (see ChartChange); at chart_limit, where the
 /// condition number is about 100, a chart that may not be moved is given up.
-inline constexpr double chart_switch = 2.0;
+inline constexpr double chart_switch = 1.5;
 inline constexpr double chart_limit = 3.1;
 
 /// Orientation of one node in a chart: values, rates and accelerations of phi and gamma.

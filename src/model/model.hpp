@@ -487,7 +487,7 @@ struct Model {
   std::string resolved;  ///< the resolved deck (parameters substituted, includes merged), TOML text
   MovingDeck moving;
   Vec3 gravity = Vec3::Zero();  ///< m/s2, global axes; +x along the shaft
-  bool chart_change = true;     ///< re-chart rotations beyond 2 rad of tilt
+  bool chart_change = true;     ///< nodes tilted beyond 1.5 rad get axes of their own
   bool keep_everything = false;
   double max_element_length = infinity;
   int min_elements = 0;         ///< 0: chosen where the sections say nothing

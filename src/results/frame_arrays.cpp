@@ -53,7 +53,6 @@ io::FrameState FrameArrays::state(double time, const system::Frames& frames, boo
   io::FrameState frame;
   frame.time = time;
   frame.nodes = poses_;
-  frame.charts = std::span<const Mat3>(frames.chart).first(job_.mesh.lines.size());
   if (in_motion) {
     frame.velocity = velocity_;
     frame.angular_velocity = omega_;

@@ -118,7 +118,7 @@ void Frames::write(const Snapshot& s) {
   arrays_.take_nodes(node);
   if (line_)
     arrays_.take_sections(
-        assembly::calc_section_results(job_.model, job_.mesh, job_.built, node, s.context(), 0));
+        assembly::calc_section_results(job_.model, job_.mesh, job_.built, s.workspace(), 0));
   if (bearings_)
     arrays_.take_supports(node, s.context(), [&s](Index k) { return s.reactions()[k]; });
   writer_->frame(arrays_.state(s.t(), s.frames(), true));

@@ -28,9 +28,7 @@ void GapCheck::look(double Omega, std::span<const VecXc> amplitudes, double freq
     for (const VecXc& a : amplitudes)
       q += (a * turn).real();
     job.system().evaluate_nodes(w, still.frames, still.t, q, still.v, still.a);
-    const auto node = [&](Index n) -> const system::NodeState& {
-      return w.nodes[static_cast<std::size_t>(n)];
-    };
+    const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
     for (const assembly::SupportCondition& c : job.built.conditions) {
       const assembly::SupportCondition::State s = c.state(node);
       if (!(s.gap > 0)) continue;

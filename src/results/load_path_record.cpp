@@ -40,7 +40,7 @@ void PathRecord::add(system::SystemProblem& problem, const analysis::LoadPathPoi
                                    static_cast<int>(p.tangent.negative)};
   std::vector<double> u;
   for (const Watched& w : watched_) {
-    const system::NodeState& n = problem.workspace().nodes[at(w.at.node)];
+    const system::NodeState& n = problem.workspace().in_own_axes(w.at.node);
     const Vec3 x = n.u + w.at.offset * (n.d() - Vec3::UnitX());
     for (double v : x) {
       row.emplace_back(v);
@@ -48,7 +48,7 @@ void PathRecord::add(system::SystemProblem& problem, const analysis::LoadPathPoi
     }
   }
   for (const Watched& w : watched_)
-    row.emplace_back(problem.workspace().nodes[at(w.at.node)].phi);
+    row.emplace_back(problem.workspace().in_own_axes(w.at.node).phi);
   table_.add(std::move(row));
   load_.push_back(p.load);
   u_.push_back(std::move(u));

@@ -17,7 +17,7 @@ Eigen::Vector3cd tilt_of(const analysis::Linearizer& linear, const VecXc& a, Ind
   const system::State& s = linear.equilibrium().state;
   rotation::Director d;
   rotation::director(s.q.segment<2>(6 * node + 4), d);
-  return s.frames.chart[at(linear.system().node(node).line)] * (d.D * a.segment<2>(6 * node + 4));
+  return s.frames.axes(node) * (d.D * a.segment<2>(6 * node + 4));
 }
 
 struct Station {

@@ -87,7 +87,7 @@ io::Table shape_table(const run::Job& job, const std::string& title, const syste
     if (node.scalar) continue;
     rotation::Director d;
     rotation::director(q.segment<2>(6 * i + 4), d);
-    const Mat3& chart = frames.chart[static_cast<std::size_t>(node.line)];
+    const Mat3& chart = frames.axes(i);
     const Vec3 tilt = chart * (d.D * shape.segment<2>(6 * i + 4));
     const auto u = shape.segment<3>(6 * i);
     t.add({node.name, node.position.x(), node.position.y(), node.position.z(), u.x(), u.y(), u.z(),

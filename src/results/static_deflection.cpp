@@ -28,7 +28,7 @@ class DeflectedLine {
   void say_largest(std::vector<std::string>& lines, io::Value& summary) const;
 
  private:
-  const system::NodeState& node(Index n) const { return state_.nodes[at(n)]; }
+  const system::NodeState& node(Index n) const { return state_.in_own_axes(n); }
   double size_of(const Vec3& u) const {
     return path_.empty() ? std::hypot(u.y(), u.z()) : u.norm();
   }

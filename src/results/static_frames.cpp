@@ -22,7 +22,7 @@ void StaticFrames::write(const run::Job& job, system::SystemProblem& problem,
                          const system::State& s, double time,
                          const std::vector<assembly::SectionPoint>& points) {
   const auto node = [&](Index k) -> const system::NodeState& {
-    return problem.workspace().nodes[at(k)];
+    return problem.workspace().in_own_axes(k);
   };
   VecX r(job.system().size());
   job.system().residual(problem.workspace(), s.frames, s.t, s.q, s.v, s.a, r);

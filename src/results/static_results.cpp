@@ -16,7 +16,7 @@ void add_rolling_loads(const run::Job& job, const system::Workspace& state, Stat
                          {"element", "-", ""},
                          {"angle", "deg", "from +y towards +z"},
                          {"load", "N", ""}};
-  const auto node = [&](Index n) -> const system::NodeState& { return state.nodes[at(n)]; };
+  const auto node = [&](Index n) -> const system::NodeState& { return state.in_own_axes(n); };
   for (const assembly::RollingLoads& b : job.built.rolling_loads) {
     double most = 0;
     int number = 0, loaded = 0;
@@ -89,7 +89,7 @@ std::vector<SupportLoad> calc_support_loads(const run::Job& job, analysis::Stead
   const auto reaction = [&](Index k) { return reactions[k]; };
   const bool inside = running.visit_revolution(
       state.frames, Omega, state.q, [&](double weight, const system::Workspace& w) {
-        const auto node = [&](Index n) -> const system::NodeState& { return w.nodes[at(n)]; };
+        const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
         for (std::size_t i = 0; i < supports.size(); ++i) {
           out[i].force += weight * supports[i].force(node, w.context, reaction);
           if (supports[i].moment)
@@ -111,8 +111,7 @@ StaticResults make_static_results(run::Job& job, const std::string& step,
   add_supports(job, loads, out, summary);
   add_spin_holds(job, spin_holds, reactions, out, summary);
   summary["elastic energy [J]"] = problem.energy().elastic;
-  const auto node = [&](Index n) -> const system::NodeState& { return state.nodes[at(n)]; };
-  out.points = assembly::calc_section_results(job.model, job.mesh, job.built, node, state.context);
+  out.points = assembly::calc_section_results(job.model, job.mesh, job.built, state);
   add_sections(job, step, out, summary);
   return out;
 }

@@ -29,11 +29,11 @@ Mat2 differences(const assembly::SupportForce& f, const system::Workspace& w, In
   Mat2 out;
   for (Index j = 0; j < 2; ++j) {
     const auto at = [&](double x) {
-      system::NodeState moved = w.nodes[static_cast<std::size_t>(shaft)];
+      system::NodeState moved = w.in_own_axes(shaft);
       (moved.*motion)[1 + j] += x;
       return Vec2(f.force(
                        [&](Index k) -> const system::NodeState& {
-                         return k == shaft ? moved : w.nodes[static_cast<std::size_t>(k)];
+                         return k == shaft ? moved : w.in_own_axes(k);
                        },
                        w.context, [](Index) { return 0.0; })
                       .tail<2>());
@@ -73,7 +73,7 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
                     const system::Workspace& w) {
   const meshes::BearingNodes& n = job.mesh.bearings[bearing];
   const assembly::SupportForce& force = job.built.support_forces[bearing];
-  const auto node = [&](Index k) -> const system::NodeState& { return w.nodes[at(k)]; };
+  const auto node = [&](Index k) -> const system::NodeState& { return w.in_own_axes(k); };
   const auto place = [&](const meshes::Place& p) {
     return Vec2((node(p.node).u + p.offset * node(p.node).t).tail<2>());
   };
@@ -142,7 +142,7 @@ Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::s
   // Force and moment on the shaft at the bearing's place, with the shaft moved (e, e2, e3) or
   // tilted there about it.
   const auto load = [&](Index motion, double by) {
-    system::NodeState moved = w.nodes[static_cast<std::size_t>(at.node)];
+    system::NodeState moved = w.in_own_axes(at.node);
     if (motion < 3) moved.u[motion] += by;
     // a turn by ry takes the axis to -z, one by rz to +y; the place of the bearing stays where it
     // is
@@ -150,7 +150,7 @@ Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::s
     moved.t += turn;
     moved.u -= at.offset * turn;
     const auto node = [&](Index k) -> const system::NodeState& {
-      return k == at.node ? moved : w.nodes[static_cast<std::size_t>(k)];
+      return k == at.node ? moved : w.in_own_axes(k);
     };
     const auto no_reaction = [](Index) { return 0.0; };
     Vector<6> out = Vector<6>::Zero();

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view any_magic = "whirl checkpoint ";
-constexpr std::string_view magic = "whirl checkpoint 2\n";
+constexpr std::string_view magic = "whirl checkpoint 3\n";
 
 /// FNV-1a, 64 bits: finds a damaged file, not an ill-willed one.
 std::uint64_t check_sum(std::string_view s) {
@@ -69,6 +69,10 @@ std::string encode(const Checkpoint& c) {
   for (const Mat3& m : c.state.frames.chart)
     a.put(std::span<const double>(m.data(), 9));
   a.put(c.state.frames.turns);
+  a.put(std::vector<double>(c.state.frames.of_node.begin(), c.state.frames.of_node.end()));
+  a.put(c.state.frames.shift);
+  a.put(c.state.frames.lead);
+  a.put(c.state.frames.link);
   a.put(c.integrator.serialize());
   a.put_count(c.parts.size());
   for (const auto& [key, data] : c.parts) {
@@ -98,6 +102,11 @@ Checkpoint decode(std::string_view data) {
     m = Eigen::Map<const Mat3>(x.data());
   }
   c.state.frames.turns = a.numbers();
+  for (const double chart : a.numbers())
+    c.state.frames.of_node.push_back(static_cast<int>(chart));
+  c.state.frames.shift = a.numbers();
+  c.state.frames.lead = a.numbers();
+  c.state.frames.link = a.numbers();
   c.integrator = time::IntegratorState::deserialize(a.numbers());
   for (std::uint64_t n = a.count(); n > 0; --n) {
     const Part part = part_of(a.text());
@@ -261,7 +270,7 @@ Checkpoint last_state_of(const std::string& folder, const std::string& step) {
 void check_state_fits(const Checkpoint& c, const std::string& folder, const system::System& system,
                       const std::string& deck) {
   if (c.state.q.size() == system.size() &&
-      c.state.frames.chart.size() == static_cast<std::size_t>(system.lines()))
+      c.state.frames.turns.size() == static_cast<std::size_t>(system.lines()))
     return;
   throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94",
                                      fmt::format("the run in '{}' has {} unknowns, this model {}",

@@ -116,7 +116,7 @@ std::string supports_at_their_limit(const Job& job, const system::State& s) {
     const model::Bearing& b = job.model.bearings[i];
     const auto* table = std::get_if<model::TableBearing>(&b.law);
     if (!table || table->extrapolate_hold || table->speed.empty()) continue;
-    const double spin = w.nodes[static_cast<std::size_t>(job.mesh.bearings[i].shaft.node)].spin(),
+    const double spin = w.in_own_axes(job.mesh.bearings[i].shaft.node).spin(),
                  low = table->speed.front(), high = table->speed.back();
     const double slack = near * std::max(std::abs(low), std::abs(high));
     if (spin < high - slack && spin > low + slack) continue;

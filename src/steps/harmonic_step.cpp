@@ -28,8 +28,7 @@ void add_force(results::FrequencyStep& s, const model::HarmonicForce& f, double 
                std::vector<analysis::HarmonicForce>& out) {
   const analysis::Point p = results::point_of(s.job, f.at);
   const system::State& state = s.linear.equilibrium().state;
-  const Mat3& chart =
-      state.frames.chart[static_cast<std::size_t>(s.linear.system().node(p.node).line)];
+  const Mat3& chart = state.frames.axes(p.node);
   const Vec2 gamma = state.q.segment<2>(6 * p.node + 4);
   rotation::Director d;
   rotation::director(gamma, d);

@@ -137,8 +137,7 @@ class Obstacles {
       const run::Checkpoint c = run::last_state_of(law.previous, law.previous_step);
       run::check_state_fits(c, law.previous, built.system, model_.deck_path);
     }
-    system::SystemProblem problem(built.system,
-                                  {la::SolverKind::automatic, model_.chart_change, 2.0});
+    system::SystemProblem problem(built.system, {la::SolverKind::automatic, model_.chart_change});
     time::Options o;
     o.t_end = law.duration;
     o.tolerance = law.integrator.tolerance;

@@ -150,7 +150,7 @@ StaticRun::StaticRun(run::Job& job, const model::Step& step, const model::Static
     : job_(job),
       step_(step),
       law_(law),
-      problem_(job.system(), {la::SolverKind::automatic, job.model.chart_change, 2.0}),
+      problem_(job.system(), {la::SolverKind::automatic, job.model.chart_change}),
       state_(job.start_of(step, law.own_speed())),
       frames_(job, step.name) {
   options_.chart_change = job.model.chart_change;
@@ -183,11 +183,8 @@ void StaticRun::write_point(const analysis::LoadPathPoint& p) {
   path_->add(problem_, p);
   if (!frames_.any()) return;
   problem_.workspace().context.load = p.load;
-  const auto node = [&](Index n) -> const system::NodeState& {
-    return problem_.workspace().nodes[at(n)];
-  };
-  const auto points = assembly::calc_section_results(job_.model, job_.mesh, job_.built, node,
-                                                     problem_.workspace().context);
+  const auto points =
+      assembly::calc_section_results(job_.model, job_.mesh, job_.built, problem_.workspace());
   frames_.write(job_, problem_, *p.state, p.load, points);
 }
 

@@ -123,8 +123,7 @@ std::unique_ptr<system::SystemProblem> transient_problem(const run::Job& job,
                                                          const run::StepState& start) {
   if (!law.linear)
     return std::make_unique<system::SystemProblem>(
-        job.system(),
-        system::ProblemOptions{la::SolverKind::automatic, job.model.chart_change, 2.0});
+        job.system(), system::ProblemOptions{la::SolverKind::automatic, job.model.chart_change});
   analysis::SteadyRotation running = job.steady_rotation_of(start);
   running.time = start.state.t;
   return std::make_unique<analysis::LinearMotion>(job.system(), running, start.speed, start.state);

@@ -3,6 +3,7 @@
 #pragma once
 #include <core/rotation.hpp>
 #include <la/block.hpp>
+#include <system/frames.hpp>
 #include <system/kernel.hpp>
 #include <system/rigid_inertia.hpp>
 #include <span>
@@ -21,6 +22,16 @@ struct Workspace {
   la::BlockMatrix<7> M, C, K;                ///< X-space tangents
   Context context;
   Index outside = -1;  ///< node that left the chart (|gamma| >= pi), or -1
+  /// Once nodes have moved to other axes (frames.hpp): each as its line's own axes see it.
+  const Frames* frames = nullptr;
+  std::vector<NodeState> own;
+  std::vector<AngleTransport::At> own_carried;
+
+  bool moved() const { return frames && frames->moved(); }
+  /// The node in the line's own axes: what its angle and tilt mean to everything outside it.
+  const NodeState& in_own_axes(Index node) const {
+    return moved() ? own[static_cast<std::size_t>(node)] : nodes[static_cast<std::size_t>(node)];
+  }
 };
 
 /// All elements of one kind.
@@ -58,42 +69,89 @@ class Term {
   virtual void list_nodes(std::vector<Index>& out) const = 0;
   /// Appends the breakpoints of the time laws in the elements (kernels that have a breakpoints()).
   virtual void list_breakpoints(std::vector<double>& out) const = 0;
+  /// Pairs of nodes, lower number first, whose angles the elements compare.
+  virtual void list_links(std::vector<std::pair<Index, Index>>& out) const = 0;
+  /// links: those of the system, sorted.
+  virtual void bind_links(std::span<const std::pair<Index, Index>> links) = 0;
   /// row[i]: matrix row of node i or -1 when nothing of it is unknown.
   virtual void bind(const la::BlockPattern& p, const std::vector<Index>& row) = 0;
 };
 
-/// Adds the blocks of an element's tangent at the slots of its node pairs (-1: nothing unknown).
+/// All elements of one kind on N nodes with W coordinates each: what does not need to know which.
 template <int N, int W>
-[[gnu::noinline]] void scatter(const Matrix<N * W>& tangent, const std::array<Index, N * N>& slots,
-                               la::BlockMatrix<7>& into) {
-  for (int a = 0; a < N; ++a)
-    for (int b = 0; b < N; ++b) {
-      const Index s = slots[static_cast<std::size_t>(a * N + b)];
-      if (s < 0) continue;
-      into.block(s).template topLeftCorner<W, W>() += tangent.template block<W, W>(W * a, W * b);
-    }
-}
-extern template void scatter<1, 3>(const Matrix<3>&, const std::array<Index, 1>&,
-                                   la::BlockMatrix<7>&);
-extern template void scatter<1, 7>(const Matrix<7>&, const std::array<Index, 1>&,
-                                   la::BlockMatrix<7>&);
-extern template void scatter<2, 3>(const Matrix<6>&, const std::array<Index, 4>&,
-                                   la::BlockMatrix<7>&);
-extern template void scatter<2, 7>(const Matrix<14>&, const std::array<Index, 4>&,
-                                   la::BlockMatrix<7>&);
+class Elements : public Term {
+ public:
+  explicit Elements(std::string kind) : kind_(std::move(kind)) {}
+  std::string_view kind() const override { return kind_; }
+  int width() const override { return W; }
+  const std::vector<std::array<Index, N>>& nodes() const { return nodes_; }
+  void list_couplings(std::vector<std::pair<Index, Index>>& out) const override;
+  void list_nodes(std::vector<Index>& out) const override;
+  void bind(const la::BlockPattern& p, const std::vector<Index>& row) override;
+  void list_links(std::vector<std::pair<Index, Index>>& out) const override;
+  void bind_links(std::span<const std::pair<Index, Index>> links) override;
+
+ protected:
+  /// Nodes as an element sees them. carried[a]: how node a's angle was brought to other axes, or
+  /// null where it stands as it is.
+  struct Seen {
+    Nodes<N> x;
+    std::array<const AngleTransport::At*, N> carried{};
+    NodeState second;
+    AngleTransport::At second_carried;
+  };
+  Nodes<N> gather(const Workspace& w, std::size_t i) const {
+    Nodes<N> x;
+    for (std::size_t a = 0; a < N; ++a)
+      x[a] = &w.nodes[static_cast<std::size_t>(nodes_[i][a])];
+    return x;
+  }
+  void see(const Workspace& w, std::size_t i, Seen& out) const;
+  /// Nodes have moved, but an element still sees its own as they stand.
+  bool stands(const Workspace& w, std::size_t i) const;
+  void scatter(const Matrix<N * W>& tangent, std::size_t i, la::BlockMatrix<7>& into) const;
+  void add_forces_moved(Workspace& w) const;
+  void add_tangents_moved(Workspace& w) const;
+
+  virtual Axes axes() const = 0;
+  virtual void element_force(std::size_t i, const Nodes<N>& x, const Context& c,
+                             ForceX<N * W>& f) const = 0;
+  virtual void element_tangent(std::size_t i, const Nodes<N>& x, const Context& c,
+                               TangentX<N * W>& t) const = 0;
+  /// The forces of elements first .. last - 1, where the kernel computes several at once.
+  virtual bool forces_at_once(std::size_t first, std::size_t last, Workspace& w) const = 0;
+
+  std::string kind_;
+  std::vector<std::array<Index, N>> nodes_;
+  std::vector<std::array<Index, N * N>> slots_;
+  std::vector<Index> links_;  ///< per element, of kinds that compare their nodes' angles
+};
+
+/// Two nodes of a line as a kernel that compares their angles sees them: the higher number in the
+/// axes of the lower.
+std::array<NodeState, 2> seen_together(const System& system, const Workspace& w, Index first,
+                                       Index second);
+/// Re-expresses a node in other axes: phi becomes phi + turn.
+void carry(NodeState& n, const AngleTransport::At& carried, double turn, const Mat3& axes);
+
+extern template class Elements<1, 3>;
+extern template class Elements<1, 7>;
+extern template class Elements<2, 3>;
+extern template class Elements<2, 7>;
 
 template <Kernel K>
-class Batch final : public Term {
+class Batch final : public Elements<K::n_nodes, K::width> {
  public:
   static constexpr int N = K::n_nodes, W = K::width;
-  explicit Batch(std::string kind) : kind_(std::move(kind)) {}
+  using Base = Elements<N, W>;
+  using Base::gather;
+  using Base::nodes_;
+  explicit Batch(std::string kind) : Base(std::move(kind)) {}
   void add(const K& k, const std::array<Index, N>& nodes) {
     elements_.push_back(k);
     nodes_.push_back(nodes);
   }
-  std::string_view kind() const override { return kind_; }
   std::size_t count() const override { return elements_.size(); }
-  int width() const override { return W; }
   bool inertial() const override {
     if constexpr (requires { K::inertial; })
       return K::inertial;
@@ -138,8 +196,11 @@ class Batch final : public Term {
   }
   void list_regions(const Workspace& w, std::vector<int>& out) const override {
     if constexpr (has_regions)
-      for (std::size_t i = 0; i < elements_.size(); ++i)
-        out.push_back(elements_[i].region(gather(w, i)));
+      for (std::size_t i = 0; i < elements_.size(); ++i) {
+        typename Base::Seen seen;
+        Base::see(w, i, seen);
+        out.push_back(elements_[i].region(seen.x));
+      }
     else {
       (void)w;
       (void)out;
@@ -163,16 +224,10 @@ class Batch final : public Term {
   }
   std::vector<K>& elements() { return elements_; }
   const std::vector<K>& elements() const { return elements_; }
-  const std::vector<std::array<Index, N>>& nodes() const { return nodes_; }
 
   void add_force(Workspace& w) const override {
-    if constexpr (requires {
-                    K::add_forces(std::span<const K>(elements_), nodes_.data(), w.nodes.data(),
-                                  w.context, w.force.data());
-                  }) {
-      K::add_forces(elements_, nodes_.data(), w.nodes.data(), w.context, w.force.data());
-      return;
-    }
+    if (axes_of<K>() != Axes::any && w.moved()) return Base::add_forces_moved(w);
+    if (forces_at_once(0, elements_.size(), w)) return;
     for (std::size_t i = 0; i < elements_.size(); ++i) {
       ForceX<N* W> f = ForceX<N * W>::Zero();
       elements_[i].add_force(gather(w, i), w.context, f);
@@ -182,6 +237,7 @@ class Batch final : public Term {
     }
   }
   void add_tangent(Workspace& w) const override {
+    if (axes_of<K>() != Axes::any && w.moved()) return Base::add_tangents_moved(w);
     if constexpr (K::has_M || K::has_C || K::has_K) {
       TangentX<N * W> t;
       for (std::size_t i = 0; i < elements_.size(); ++i) {
@@ -189,26 +245,22 @@ class Batch final : public Term {
         if constexpr (K::has_C) t.C.setZero();
         if constexpr (K::has_K) t.K.setZero();
         elements_[i].add_tangent(gather(w, i), w.context, t);
-        if constexpr (K::has_M) scatter<N, W>(t.M, slots_[i], w.M);
-        if constexpr (K::has_C) scatter<N, W>(t.C, slots_[i], w.C);
-        if constexpr (K::has_K) scatter<N, W>(t.K, slots_[i], w.K);
+        if constexpr (K::has_M) Base::scatter(t.M, i, w.M);
+        if constexpr (K::has_C) Base::scatter(t.C, i, w.C);
+        if constexpr (K::has_K) Base::scatter(t.K, i, w.K);
       }
     }
   }
   void add_energy(const Workspace& w, const Context& c, Energy& e) const override {
-    for (std::size_t i = 0; i < elements_.size(); ++i)
-      elements_[i].add_energy(gather(w, i), c, e);
-  }
-  void list_couplings(std::vector<std::pair<Index, Index>>& out) const override {
-    if constexpr (N > 1)
-      for (const auto& n : nodes_)
-        for (int a = 0; a < N; ++a)
-          for (int b = a + 1; b < N; ++b)
-            out.emplace_back(n[a], n[b]);
-  }
-  void list_nodes(std::vector<Index>& out) const override {
-    for (const auto& n : nodes_)
-      out.insert(out.end(), n.begin(), n.end());
+    const bool moved = axes_of<K>() != Axes::any && w.moved();
+    typename Base::Seen seen;
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      if (moved)
+        Base::see(w, i, seen);
+      else
+        seen.x = gather(w, i);
+      elements_[i].add_energy(seen.x, c, e);
+    }
   }
   void list_breakpoints(std::vector<double>& out) const override {
     if constexpr (requires(const K& k) { k.breakpoints(); })
@@ -218,31 +270,35 @@ class Batch final : public Term {
     else
       (void)out;
   }
-  void bind(const la::BlockPattern& p, const std::vector<Index>& row) override {
-    slots_.resize(elements_.size());
-    for (std::size_t i = 0; i < elements_.size(); ++i)
-      for (int a = 0; a < N; ++a)
-        for (int b = 0; b < N; ++b) {
-          const Index ra = row[static_cast<std::size_t>(nodes_[i][a])],
-                      rb = row[static_cast<std::size_t>(nodes_[i][b])];
-          slots_[i][static_cast<std::size_t>(a * N + b)] = ra < 0 || rb < 0 ? -1 : p.slot(ra, rb);
-        }
-  }
 
  private:
   static constexpr bool has_regions = requires(const K& k, const Nodes<K::n_nodes>& x) {
     k.region(x);
   };
-  Nodes<N> gather(const Workspace& w, std::size_t i) const {
-    Nodes<N> x;
-    for (int a = 0; a < N; ++a)
-      x[a] = &w.nodes[static_cast<std::size_t>(nodes_[i][a])];
-    return x;
+  Axes axes() const override { return axes_of<K>(); }
+  void element_force(std::size_t i, const Nodes<N>& x, const Context& c,
+                     ForceX<N * W>& f) const override {
+    elements_[i].add_force(x, c, f);
   }
-  std::string kind_;
+  void element_tangent(std::size_t i, const Nodes<N>& x, const Context& c,
+                       TangentX<N * W>& t) const override {
+    elements_[i].add_tangent(x, c, t);
+  }
+  bool forces_at_once(std::size_t first, std::size_t last, Workspace& w) const override {
+    if constexpr (requires {
+                    K::add_forces(std::span<const K>(elements_), nodes_.data(), w.nodes.data(),
+                                  w.context, w.force.data());
+                  }) {
+      const std::span<const K> some = std::span<const K>(elements_).subspan(first, last - first);
+      K::add_forces(some, nodes_.data() + first, w.nodes.data(), w.context, w.force.data());
+      return true;
+    }
+    (void)first;
+    (void)last;
+    (void)w;
+    return false;
+  }
   std::vector<K> elements_;
-  std::vector<std::array<Index, N>> nodes_;
-  std::vector<std::array<Index, N * N>> slots_;
 };
 
 }  // namespace whirl::system

@@ -21,6 +21,8 @@
 // const NodeState*, const Context&, Vector<7>* force), the same for all elements of a batch at
 // once, where a kernel is fast that way.
 //
+// Optional: static constexpr Axes axes says what it takes the axes of its nodes for (below).
+//
 // Optional: powerless = true says that add_energy never adds to supplied or dissipated, so that a
 // power balance skips it.
 //
@@ -55,6 +57,24 @@ enum class Family {
   support,  ///< joints to ground, housings and other shafts, and what they stand on
   load      ///< forces, torques, unbalance, weight
 };
+
+/// What an element of width 7 takes the axes of its nodes for (frames.hpp), once they have moved.
+enum class Axes {
+  any,     ///< its force is the same vector whatever the axes
+  common,  ///< compares its two nodes' angles: both must be in the same axes
+  own      ///< phi, or t = d - e, means something about the axes of the line as they began
+};
+
+/// A kernel that says nothing means its line's own axes.
+template <class K>
+constexpr Axes axes_of() {
+  if constexpr (K::width < 7)
+    return Axes::any;
+  else if constexpr (requires { K::axes; })
+    return K::axes;
+  else
+    return Axes::own;
+}
 
 /// A constant declaration.
 template <class K>

@@ -58,7 +58,7 @@ std::string MomentumProblem::list_bodies(const System& system, std::vector<Body>
         return "a node without rotary inertia (" + def.name + ")";
       b.J_inverse = b.J.inverse();
     }
-    b.centre0 = start.frames.chart[at(def.line)] * b.centre;
+    b.centre0 = start.frames.axes(i) * b.centre;
     next += entries(static_cast<int>(b.form));
     bodies.push_back(b);
   }
@@ -128,7 +128,7 @@ MomentumProblem::MomentumProblem(const System& system, MomentumOptions options)
 MomentumProblem::Attitude MomentumProblem::attitude(const Body& b, time::CRef y) const {
   const Index k = angles(b);
   Attitude r;
-  r.R = body_axes(frames.chart[at(b.line)], y[k], y.segment<2>(k + 1));
+  r.R = body_axes(frames.axes(b.node), y[k], y.segment<2>(k + 1));
   r.omega = r.R * (b.J_inverse * (r.R.transpose() * y.segment<3>(k + 3)));
   return r;
 }
@@ -152,7 +152,7 @@ bool MomentumProblem::evaluate(double t, time::CRef y) {
     const Attitude x = attitude(b, y);
     q_.segment<3>(n + 3) = y.segment<3>(k);
     const rotation::ChartRates rate =
-        rotation::rates_of_omega(gamma, frames.chart[at(b.line)].transpose() * x.omega);
+        rotation::rates_of_omega(gamma, frames.axes(b.node).transpose() * x.omega);
     v_[n + 3] = rate.phi;
     v_.segment<2>(n + 4) = rate.gamma;
     if (b.form == Form::free) {
@@ -206,7 +206,7 @@ void MomentumProblem::set_state(const State& s, time::Ref y) {
     if (b.form == Form::point) continue;
     const Index k = angles(b);
     const Vec2 gamma = s.q.segment<2>(n + 4);
-    const Mat3& chart = frames.chart[at(b.line)];
+    const Mat3& chart = frames.axes(b.node);
     const Mat3 R = body_axes(chart, s.q[n + 3], gamma);
     const Vec3 omega = chart * rotation::omega_of_rates(gamma, s.v[n + 3], s.v.segment<2>(n + 4)),
                arm = R * b.centre;
@@ -243,8 +243,8 @@ bool MomentumProblem::get_state(double t, time::CRef y, State& s) {
       s.a.segment<3>(n) -= domega.cross(arm) + x.omega.cross(x.omega.cross(arm));
     }
     const Vec2 gamma = y.segment<2>(k + 1), dgamma = s.v.segment<2>(n + 4);
-    const auto acc = rotation::accelerations_of_omega(
-        gamma, s.v[n + 3], dgamma, frames.chart[at(b.line)].transpose() * domega);
+    const auto acc = rotation::accelerations_of_omega(gamma, s.v[n + 3], dgamma,
+                                                      frames.axes(b.node).transpose() * domega);
     s.a[n + 3] = acc.phi;
     s.a.segment<2>(n + 4) = acc.gamma;
   }
@@ -252,43 +252,52 @@ bool MomentumProblem::get_state(double t, time::CRef y, State& s) {
 }
 
 bool MomentumProblem::accept(time::Ref y) {
+  bool changed = take_turns(y);
+  bool far = false;
+  for (const Body& b : bodies_)
+    far = far ||
+          (b.form != Form::point && y.segment<2>(angles(b) + 1).norm() > rotation::chart_switch);
+  far = far && options_.chart_change;
+  if (!far && !frames.moved()) return changed;
+  normals_.resize(at(system_.nodes()), Vec3::UnitX());
+  for (const Body& b : bodies_) {
+    if (b.form == Form::point) continue;
+    const Vec2 gamma = y.segment<2>(angles(b) + 1);
+    normals_[at(b.node)] = frames.axes(b.node) * rotation::L(Vec3(0, gamma.x(), gamma.y())).col(0);
+  }
+  frames.follow(system_, normals_);
+  if (!far) return changed;
+  for (const Body& b : bodies_) {
+    if (b.form == Form::point) continue;
+    const Index k = angles(b);
+    if (y.segment<2>(k + 1).norm() <= rotation::chart_switch) continue;
+    rotation::Angles angle;
+    angle.phi = y[k];
+    angle.gamma = y.segment<2>(k + 1);
+    frames.move(system_, {&b.node, 1}, normals_[at(b.node)], normals_, {&angle, 1});
+    y[k] = angle.phi;
+    y.segment<2>(k + 1) = angle.gamma;
+  }
+  return true;
+}
+
+bool MomentumProblem::take_turns(time::Ref y) {
   bool changed = false;
   for (Index line = 0; line < system_.lines(); ++line) {
-    double largest = 0.0, turns = 0.0;
-    Vec3 axis = Vec3::Zero();
+    double turns = 0.0;
     bool first = true;
-    const Mat3 chart = frames.chart[at(line)];
     for (const Body& b : bodies_) {
       if (b.line != line || b.form == Form::point) continue;
       const Index k = angles(b);
-      if (first) {
-        turns = std::nearbyint(y[k] / two_pi);
-        first = false;
-      }
-      const Vec2 gamma = y.segment<2>(k + 1);
-      largest = std::max(largest, gamma.norm());
-      axis += chart * rotation::L(Vec3(0, gamma.x(), gamma.y())).col(0);
-    }
-    // each removal restarts the integrator; 64 turns cost phi six bits, 6e-14 rad
-    if (std::abs(turns) < 64.0) turns = 0.0;
-    const bool move =
-        options_.chart_change && largest > rotation::chart_switch && axis.norm() > 1e-3;
-    if (!move && turns == 0.0) continue;
-    changed = true;
-    frames.turns[at(line)] += turns;
-    if (move) frames.chart[at(line)] = rotation::ChartChange(chart, axis).new_triad();
-    for (const Body& b : bodies_) {
-      if (b.line != line || b.form == Form::point) continue;
-      const Index k = angles(b);
+      if (first) turns = std::nearbyint(y[k] / two_pi);
+      first = false;
+      // each removal restarts the integrator; 64 turns cost phi six bits, 6e-14 rad
+      if (std::abs(turns) < 64.0) break;
       y[k] = rotation::without_turns(y[k], turns);
-      if (!move) continue;
-      rotation::Angles angle;
-      angle.phi = y[k];
-      angle.gamma = y.segment<2>(k + 1);
-      angle = rotation::ChartChange(chart, axis).apply(angle);
-      y[k] = angle.phi;
-      y.segment<2>(k + 1) = angle.gamma;
     }
+    if (std::abs(turns) < 64.0) continue;
+    frames.turns[at(line)] += turns;
+    changed = true;
   }
   return changed;
 }

@@ -64,6 +64,7 @@ class MomentumProblem final : public time::FirstOrderProblem {
   };  ///< body axes to global; global
   Attitude attitude(const Body& b, time::CRef y) const;
   bool evaluate(double t, time::CRef y);
+  bool take_turns(time::Ref y);
   static Index angles(const Body& b) { return b.start + (b.form == Form::free ? 6 : 0); }
   /// The bodies the form covers; returns the obstacle, if any.
   static std::string list_bodies(const System& system, std::vector<Body>& bodies);
@@ -76,6 +77,7 @@ class MomentumProblem final : public time::FirstOrderProblem {
   std::vector<unsigned char> unbounded_;
   Workspace w_;
   VecX q_, v_, a_, dy_;
+  std::vector<Vec3> normals_;
 };
 
 }  // namespace whirl::system

@@ -11,9 +11,10 @@ struct Motion {
   std::ptrdiff_t count = 0;
   const double *q = nullptr, *v = nullptr, *a = nullptr;  ///< 6 a node: u, phi, gamma2, gamma3
   const int* line = nullptr;                              ///< per node
+  const int* axes = nullptr;                              ///< per node: number of its chart
   const double* falling =
       nullptr;  ///< per node: 1, or 0 for scalar degrees of freedom, which gravity does not touch
-  const double* chart = nullptr;  ///< 9 a line, column-major
+  const double* chart = nullptr;  ///< 9 a chart, column-major
   const double* turns = nullptr;  ///< 1 a line
   double gravity[3] = {};         ///< m/s2
   double limit_squared = 0.0;     ///< of |gamma|

@@ -45,9 +45,9 @@ WHIRL_INLINE Unknowns load_unknowns(const double* const* from) {
 struct Group {
   const double *q[width], *v[width], *a[width];
   double *state[width], *D[width];
-  int line[width];
+  int line[width], axes[width];
   T falling{};
-  bool one_line = true;
+  bool same_axes = true;
 };
 WHIRL_INLINE Group group_of(const Motion& m, std::ptrdiff_t first, int used) {
   Group g;
@@ -59,8 +59,9 @@ WHIRL_INLINE Group group_of(const Motion& m, std::ptrdiff_t first, int used) {
     g.state[i] = m.state + k * NodePlaces::size;
     g.D[i] = m.D + 6 * k;
     g.line[i] = m.line[k];
+    g.axes[i] = m.axes[k];
     g.falling[i] = m.falling[k];
-    g.one_line = g.one_line && g.line[i] == g.line[0];
+    g.same_axes = g.same_axes && g.axes[i] == g.axes[0];
   }
   return g;
 }
@@ -71,14 +72,14 @@ struct Triad {
 };
 WHIRL_INLINE Triad triad_of(const Motion& m, const Group& g) {
   Triad r;
-  if (g.one_line) {
-    const double* const c = m.chart + 9 * g.line[0];
+  if (g.same_axes) {
+    const double* const c = m.chart + 9 * g.axes[0];
     for (int k = 0; k < 3; ++k)
       r.axis[k] = {all(c[3 * k]), all(c[3 * k + 1]), all(c[3 * k + 2])};
     return r;
   }
   for (int i = 0; i < width; ++i) {
-    const double* const c = m.chart + 9 * g.line[i];
+    const double* const c = m.chart + 9 * g.axes[i];
     for (int k = 0; k < 3; ++k) {
       r.axis[k].x[i] = c[3 * k];
       r.axis[k].y[i] = c[3 * k + 1];

@@ -2,6 +2,7 @@
 
 #include <core/rotation.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::system {
@@ -25,9 +26,9 @@ SystemProblem::SystemProblem(const System& system, ProblemOptions options)
   for (const Hold& h : system.holds())
     driven_by_law_ = driven_by_law_ || h.law;
   line_nodes_.resize(at(system.lines()));
-  rechartable_.assign(at(system.lines()), 1);
+  movable_.resize(at(system.lines()));
   lead_.assign(at(system.lines()), -1);
-  // A fixed angle or a clamped end shares chart and turns of its line: such a line keeps both.
+  // A fixed angle or a clamped end shares the turns of its line: such a line keeps them.
   std::vector<unsigned char> clamped(at(system.lines()), 0), rotates(at(system.nodes()), 0);
   for (const auto& term : system.terms()) {
     std::vector<Index> touched;
@@ -48,12 +49,12 @@ SystemProblem::SystemProblem(const System& system, ProblemOptions options)
     if (rotates[at(i)] && !active[at(6 * i + spin_phi)] && !law) clamped[at(def.line)] = 1;
     if (!any && !law) continue;
     line_nodes_[at(def.line)].push_back(i);
-    // a held tilt or angle is held in this chart: such a line keeps it
-    if (rotation_held) rechartable_[at(def.line)] = 0;
+    // a held tilt or angle is held in these axes: such a node keeps them
+    if (!rotation_held) movable_[at(def.line)].push_back(i);
     if (lead_[at(def.line)] < 0) lead_[at(def.line)] = i;
   }
   for (Index l = 0; l < system.lines(); ++l)
-    if (clamped[at(l)]) line_nodes_[at(l)].clear();
+    if (clamped[at(l)]) lead_[at(l)] = -1;
 }
 
 bool SystemProblem::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
@@ -106,57 +107,80 @@ time::Problem::Power SystemProblem::exchange_here(time::CRef v, time::CRef react
 
 bool SystemProblem::accept(double, time::Ref q, time::Ref v, time::Ref a) {
   bool changed = false;
+  if (frames.moved()) {
+    list_normals(q);
+    frames.follow(system_, normals_);
+  }
   for (Index l = 0; l < system_.lines(); ++l) {
     const auto& nodes = line_nodes_[at(l)];
-    if (nodes.empty()) continue;
     // Whole turns leave phi, all nodes of the line together: differences and trigonometry see no
     // change, and phi keeps its last digit over any number of revolutions. 2 pi is taken out in two
     // parts, so that the turns are true turns.
-    const double turns = std::round(q[6 * lead_[at(l)] + spin_phi] / two_pi);
+    const Index lead = lead_[at(l)];
+    const double turns = lead < 0 ? 0.0 : std::round(q[6 * lead + spin_phi] / two_pi);
     if (std::abs(turns) >= 1.0) {
       for (Index i : nodes)
         rotation::take_turns(q[6 * i + spin_phi], turns);
       frames.turns[at(l)] += turns;
       changed = true;
     }
-    if (!options_.chart_change || !rechartable_[at(l)]) continue;
-    for (Index i : nodes)
-      if (q.segment<2>(6 * i + 4).squaredNorm() > options_.chart_limit * options_.chart_limit) {
-        changed = rechart(l, q, v, a) || changed;
-        break;
-      }
+    if (options_.chart_change) changed = rechart(l, q, v, a) || changed;
   }
   return changed;
 }
 
-bool SystemProblem::rechart(Index line, time::Ref q, time::Ref v, time::Ref a) {
-  // New axis: along the first node's present director, so that every node of the line starts near
-  // the middle of it.
-  const auto& nodes = line_nodes_[at(line)];
-  const Mat3 old_chart = frames.chart[at(line)];
-  auto director_of = [&](Index i) {
-    rotation::Director d;
-    rotation::director(q.segment<2>(6 * i + 4), d);
-    return Vec3(old_chart * (d.t + Vec3::UnitX()));
-  };
-  Vec3 mean = Vec3::Zero();
-  for (Index i : nodes)
-    mean += director_of(i);
-  if (mean.norm() < 1e-3 * static_cast<double>(nodes.size())) return false;
-  const rotation::ChartChange change(old_chart, mean.normalized());
-  for (Index i : nodes) {
-    const rotation::Angles n =
-        change.apply({q[6 * i + 3], v[6 * i + 3], a[6 * i + 3], q.segment<2>(6 * i + 4),
-                      v.segment<2>(6 * i + 4), a.segment<2>(6 * i + 4)});
-    q[6 * i + 3] = n.phi;
-    v[6 * i + 3] = n.dphi;
-    a[6 * i + 3] = n.ddphi;
-    q.segment<2>(6 * i + 4) = n.gamma;
-    v.segment<2>(6 * i + 4) = n.dgamma;
-    a.segment<2>(6 * i + 4) = n.ddgamma;
+void SystemProblem::list_normals(time::CRef q) {
+  normals_.resize(at(system_.nodes()));
+  rotation::Director d;
+  for (Index i = 0; i < system_.nodes(); ++i) {
+    rotation::director(q.segment<2>(6 * i + gamma2), d);
+    normals_[at(i)] = frames.axes(i) * (d.t + Vec3::UnitX());
   }
-  frames.chart[at(line)] = change.new_triad();
+}
+
+bool SystemProblem::rechart(Index line, time::Ref q, time::Ref v, time::Ref a) {
+  const auto& nodes = movable_[at(line)];
+  const auto tilt = [&](Index i) { return q.segment<2>(6 * i + gamma2).norm(); };
+  if (std::none_of(nodes.begin(), nodes.end(),
+                   [&](Index i) { return tilt(i) > options_.chart_limit; }))
+    return false;
+  list_normals(q);
+  // A line that stays nearly straight moves as one: its elements then compare angles as they stand.
+  Vec3 mean = Vec3::Zero();
+  bool together = nodes.size() == line_nodes_[at(line)].size();
+  for (Index i : nodes) {
+    mean += normals_[at(i)];
+    together = together && frames.same_axes(i, nodes.front());
+  }
+  mean.normalize();
+  for (Index i : nodes)
+    together = together && mean.dot(normals_[at(i)]) > 0.5;
+  if (together) {
+    move(nodes, mean, q, v, a);
+    return true;
+  }
+  for (const Index i : nodes)
+    if (tilt(i) > options_.chart_limit) move({&i, 1}, normals_[at(i)], q, v, a);
   return true;
+}
+
+void SystemProblem::move(std::span<const Index> nodes, const Vec3& axis, time::Ref q, time::Ref v,
+                         time::Ref a) {
+  std::vector<rotation::Angles> x;
+  for (const Index i : nodes)
+    x.push_back({q[6 * i + spin_phi], v[6 * i + spin_phi], a[6 * i + spin_phi],
+                 q.segment<2>(6 * i + gamma2), v.segment<2>(6 * i + gamma2),
+                 a.segment<2>(6 * i + gamma2)});
+  frames.move(system_, nodes, axis, normals_, x);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const Index i = 6 * nodes[k];
+    q[i + spin_phi] = x[k].phi;
+    v[i + spin_phi] = x[k].dphi;
+    a[i + spin_phi] = x[k].ddphi;
+    q.segment<2>(i + gamma2) = x[k].gamma;
+    v.segment<2>(i + gamma2) = x[k].dgamma;
+    a.segment<2>(i + gamma2) = x[k].ddgamma;
+  }
 }
 
 }  // namespace whirl::system

@@ -4,13 +4,14 @@
 #include <system/system.hpp>
 #include <time/problem.hpp>
 #include <memory>
+#include <span>
 
 namespace whirl::system {
 
 struct ProblemOptions {
   la::SolverKind solver = la::SolverKind::automatic;
-  bool chart_change = true;  ///< re-chart a line when a node's tilt passes chart_limit
-  double chart_limit = 2.0;  ///< rad
+  bool chart_change = true;  ///< nodes whose tilt passes chart_limit move to other axes
+  double chart_limit = rotation::chart_switch;  ///< rad
 };
 
 /// Owns frames, workspace, matrices and factorisations; borrows the System.
@@ -69,12 +70,15 @@ class SystemProblem : public time::Problem {
 
  private:
   bool rechart(Index line, time::Ref q, time::Ref v, time::Ref a);
+  void move(std::span<const Index> nodes, const Vec3& axis, time::Ref q, time::Ref v, time::Ref a);
+  void list_normals(time::CRef q);
 
   const System& system_;
   ProblemOptions options_;
   std::vector<time::Kind> kinds_;
   std::vector<std::vector<Index>> line_nodes_;
-  std::vector<unsigned char> rechartable_;
+  std::vector<std::vector<Index>> movable_;  ///< nodes whose axes may change, per line
+  std::vector<Vec3> normals_;
   std::vector<Index> lead_;  ///< node whose phi decides about whole turns, per line
   Workspace workspace_;
   la::MCK matrices_;

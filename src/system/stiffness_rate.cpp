@@ -47,7 +47,7 @@ RelativeMotion::RelativeMotion(const StiffnessMotion& m, const std::array<Index,
   for (std::size_t a = 0; a < 2; ++a) {
     const Index k = 6 * nodes[a];
     const NodeDef& node = m.system.node(nodes[a]);
-    chart[a] = m.frames.chart[at(node.line)];
+    chart[a] = m.frames.axes(nodes[a]);
     gamma[a] = m.q.segment<2>(k + 4);
     gamma_rate[a] = m.direction.segment<2>(k + 4);
     phi_rate[a] = m.direction[k + spin_phi];

@@ -11,11 +11,6 @@
 
 namespace whirl::system {
 
-template void scatter<1, 3>(const Matrix<3>&, const std::array<Index, 1>&, la::BlockMatrix<7>&);
-template void scatter<1, 7>(const Matrix<7>&, const std::array<Index, 1>&, la::BlockMatrix<7>&);
-template void scatter<2, 3>(const Matrix<6>&, const std::array<Index, 4>&, la::BlockMatrix<7>&);
-template void scatter<2, 7>(const Matrix<14>&, const std::array<Index, 4>&, la::BlockMatrix<7>&);
-
 namespace {
 
 /// One 7x7 block in X (columns u, d, phi) to the 6x6 block in q (u, phi, gamma): y = J_i^T x J_j,
@@ -120,8 +115,14 @@ System Builder::finalize() {
   for (auto [i, j] : all)
     if (row[at(i)] >= 0 && row[at(j)] >= 0) kept.emplace_back(i, j);
   s.pattern_ = std::make_unique<la::BlockPattern>(s.nodes(), kept);
-  for (auto& term : s.terms_)
+  for (auto& term : s.terms_) {
     term->bind(*s.pattern_, row);
+    term->list_links(s.links_);
+  }
+  std::sort(s.links_.begin(), s.links_.end());
+  s.links_.erase(std::unique(s.links_.begin(), s.links_.end()), s.links_.end());
+  for (auto& term : s.terms_)
+    term->bind_links(s.links_);
   s.linear_ = true;
   for (const auto& term : s.terms_)
     s.linear_ = s.linear_ && term->linear_in_displacements();
@@ -161,7 +162,29 @@ State System::make_state() const {
   s.q = s.v = s.a = VecX::Zero(size());
   s.frames.chart = charts_;
   s.frames.turns.assign(charts_.size(), 0.0);
+  s.frames.of_node = line_of_;
   return s;
+}
+
+std::vector<Vec3> State::normals() const {
+  std::vector<Vec3> d(frames.of_node.size());
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    const Index node = static_cast<Index>(i);
+    rotation::Director o;
+    rotation::director(q.segment<2>(6 * node + gamma2), o);
+    d[i] = frames.axes(node) * (o.t + Vec3::UnitX());
+  }
+  return d;
+}
+
+double State::total_phi(Index node, Index line) const {
+  const double phi = q[6 * node + spin_phi];
+  const double turns = two_pi * frames.turns[at(line)];
+  if (!frames.moved()) return phi + turns;
+  rotation::Director o;
+  rotation::director(q.segment<2>(6 * node + gamma2), o);
+  const Vec3 d = frames.axes(node) * (o.t + Vec3::UnitX());
+  return phi + frames.own_angle(node, line, d) + turns;
 }
 
 Workspace System::make_workspace() const {
@@ -205,7 +228,7 @@ void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<Ve
 bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                             Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
   WHIRL_EXPECTS(q.size() == size() && v.size() == size() && a.size() == size());
-  WHIRL_EXPECTS(w.nodes.size() == at(nodes()) && f.chart.size() == at(lines()));
+  WHIRL_EXPECTS(w.nodes.size() == at(nodes()) && f.of_node.size() == at(nodes()));
   static_assert(sizeof(Mat32) == 6 * sizeof(double));
   w.context.time = t;
   w.context.gravity = w.context.load * gravity_at(t);
@@ -215,6 +238,7 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   m.v = v.data();
   m.a = a.data();
   m.line = line_of_.data();
+  m.axes = f.of_node.data();
   m.falling = falling_.data();
   m.chart = f.chart.data()->data();
   m.turns = f.turns.data();
@@ -224,10 +248,26 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   m.state = w.nodes.data()->u.data();
   m.D = w.D.data()->data();
   for (std::size_t i = 0; i < w.nodes.size(); ++i)
-    w.nodes[i].chart = &f.chart[at(line_of_[i])];
+    w.nodes[i].chart = &f.chart[static_cast<std::size_t>(f.of_node[i])];
   static const lanes::Kernels& kernels = lanes::kernels();
   w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
+  w.frames = &f;
+  if (w.outside < 0 && f.moved()) evaluate_own_axes(w, f);
   return w.outside < 0;
+}
+
+void System::evaluate_own_axes(Workspace& w, const Frames& f) const {
+  w.own = w.nodes;
+  w.own_carried.resize(w.nodes.size());
+  for (std::size_t i = 0; i < w.own.size(); ++i) {
+    const Index node = static_cast<Index>(i);
+    if (f.of_node[i] == line_of_[i]) continue;
+    const Mat3& own = f.chart[static_cast<std::size_t>(line_of_[i])];
+    NodeState& n = w.own[i];
+    const Vec3 d = n.d();
+    w.own_carried[i] = AngleTransport(n.e(), own.col(0)).at(d, n.dd, n.ddd);
+    carry(n, w.own_carried[i], f.own_angle(node, line_of_[i], d), own);
+  }
 }
 
 void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,

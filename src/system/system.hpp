@@ -24,21 +24,15 @@ struct NodeDef {
   bool scalar = false;  ///< an internal unknown: only component 0 exists, gravity does not act
 };
 
-/// Chart triad and whole turns of each shaft line: part of the state, changed between steps only.
-struct Frames {
-  std::vector<Mat3> chart;    ///< columns e, e2, e3
-  std::vector<double> turns;  ///< whole turns taken out of phi
-};
-
 /// A complete state: copy it to checkpoint.
 struct State {
   double t = 0;
   VecX q, v, a;
   Frames frames;
-  /// phi of node i with its whole turns, rad.
-  double total_phi(Index node, Index line) const {
-    return q[6 * node + spin_phi] + two_pi * frames.turns[static_cast<std::size_t>(line)];
-  }
+  /// Angle of a node about its line's own axes with its whole turns, rad.
+  double total_phi(Index node, Index line) const;
+  /// The normals of all nodes, global axes.
+  std::vector<Vec3> normals() const;
 };
 
 struct Hold {
@@ -59,6 +53,8 @@ class System {
   const std::vector<Hold>& holds() const { return holds_; }
   const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
   const Vec3& gravity() const { return gravity_; }
+  /// Pairs of nodes, lower number first, whose angles elements compare, sorted.
+  std::span<const std::pair<Index, Index>> links() const { return links_; }
   /// The base accelerates as time goes on.
   bool base_moves() const { return varies(base_[0]) || varies(base_[1]) || varies(base_[2]); }
   /// The equations are affine in the unknowns with constant M, C, K: no rotation is unknown, and
@@ -110,6 +106,7 @@ class System {
 
  private:
   friend class Builder;
+  void evaluate_own_axes(Workspace& w, const Frames& f) const;
   void project_force(const Workspace& w, Eigen::Ref<VecX> r) const;
   Vec3 gravity_at(double t) const;
   /// W, what the change of the base's acceleration adds to the potential of the weight in it.
@@ -124,6 +121,7 @@ class System {
   std::vector<double> falling_;  ///< per node: 1, or 0 for scalar degrees of freedom
   std::vector<std::string> line_names_;
   std::vector<Mat3> charts_;
+  std::vector<std::pair<Index, Index>> links_;
   std::vector<Hold> holds_;
   std::vector<unsigned char> active_;
   std::unique_ptr<la::BlockPattern> pattern_;

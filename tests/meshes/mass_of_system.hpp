@@ -18,7 +18,7 @@ inline meshes::MassProperties mass_of_system(const system::System& s, Index line
   for (Index i = 0; i < s.nodes(); ++i) {
     const system::NodeDef& n = s.node(i);
     if ((line >= 0 && n.line != line) || n.scalar) continue;
-    const Mat3& E = state.frames.chart[static_cast<std::size_t>(n.line)];
+    const Mat3& E = state.frames.axes(i);
     for (int k = 0; k < 3; ++k) {
       const Vec3 axis = Vec3::Unit(k);
       R(6 * i + k, k) = 1.0;

@@ -101,7 +101,7 @@ TEST(Rotation, TiltsFromTinyToTheChartLimit) {
       const system::State end = run_ok(s, start, {t, 1.0, method}, what);
       rotation::Director d;
       rotation::director(end.q.segment<2>(4), d);
-      const Vec3 axis = end.frames.chart[0] * (d.t + Vec3::UnitX());
+      const Vec3 axis = end.frames.axes(0) * (d.t + Vec3::UnitX());
       const double angle = std::atan2(std::hypot(axis.y(), axis.z()), axis.x());
       EXPECT_NEAR(angle, std::abs(g0 * std::cos(w * t)), aimed * (g0 + 1e-13))
           << what;  // 1e-13 rad: floor of error control
@@ -123,7 +123,7 @@ TEST(Rotation, BeyondTheChartIsDiagnosed) {
   const system::State end = run_ok(s, start, {1.0}, "tumbling");
   rotation::Director d;
   rotation::director(end.q.segment<2>(4), d);
-  const Vec3 axis = end.frames.chart[0] * (d.t + Vec3::UnitX());
+  const Vec3 axis = end.frames.axes(0) * (d.t + Vec3::UnitX());
   EXPECT_NEAR(axis.x(), std::cos(10.0), aimed);
   EXPECT_NEAR(std::abs(axis.z()), std::abs(std::sin(10.0)), aimed);
 }

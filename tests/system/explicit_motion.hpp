@@ -36,10 +36,10 @@ class MomentumMotion final : public Motion {
       return dy;
     };
     for (int i = 0; i < steps; ++i) {
-      const Mat3 before = p_.frames.chart[0];
+      const Mat3 before = p_.frames.axes(0);
       y_ = extrapolate(f, t0 + i * H, t0 + (i + 1) * H, y_, 1);
       p_.accept(y_);
-      chart_changes += before != p_.frames.chart[0];
+      chart_changes += before != p_.frames.axes(0);
     }
     t_ = t1;
   }
@@ -82,9 +82,9 @@ class SecondOrderMotion final : public Motion {
     for (int i = 0; i < steps; ++i) {
       y_ = extrapolate(f, t0 + i * H, t0 + (i + 1) * H, y_, 1);
       VecX q = y_.head(n), v = y_.tail(n), a = VecX::Zero(n);
-      const Mat3 before = p_.frames.chart[0];
+      const Mat3 before = p_.frames.axes(0);
       p_.accept(t0 + (i + 1) * H, q, v, a);
-      chart_changes += before != p_.frames.chart[0];
+      chart_changes += before != p_.frames.axes(0);
       y_ << q, v;
     }
     t_ = t1;
@@ -133,17 +133,16 @@ inline std::vector<std::pair<const char*, std::unique_ptr<Motion>>> both_forms(c
 }
 
 /// Body axes of node i in a state, columns (d, b_2, b_3), global axes.
-inline Mat3 attitude(const System& s, const State& x, Index i) {
+inline Mat3 attitude(const System&, const State& x, Index i) {
   const Vec2 g = x.q.segment<2>(6 * i + 4);
-  return x.frames.chart[static_cast<std::size_t>(s.node(i).line)] *
-         rotation::L(Vec3(0, g.x(), g.y())) * rotation::L(Vec3(x.q[6 * i + 3], 0, 0));
+  return x.frames.axes(i) * rotation::L(Vec3(0, g.x(), g.y())) *
+         rotation::L(Vec3(x.q[6 * i + 3], 0, 0));
 }
 
 /// Angular velocity of node i, global axes.
-inline Vec3 angular_velocity(const System& s, const State& x, Index i) {
-  return x.frames.chart[static_cast<std::size_t>(s.node(i).line)] *
-         rotation::omega_of_rates(x.q.segment<2>(6 * i + 4), x.v[6 * i + 3],
-                                  x.v.segment<2>(6 * i + 4));
+inline Vec3 angular_velocity(const System&, const State& x, Index i) {
+  return x.frames.axes(i) * rotation::omega_of_rates(x.q.segment<2>(6 * i + 4), x.v[6 * i + 3],
+                                                     x.v.segment<2>(6 * i + 4));
 }
 
 inline double energy(const System& s, const State& x) {

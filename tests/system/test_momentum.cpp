@@ -234,9 +234,9 @@ TEST(Momentum, ChartsAndTurnsDoNotChangeTheMotion) {
   int moved = 0;
   const int steps = 2000;
   for (int i = 0; i < steps; ++i) {
-    const Mat3 before = p.frames.chart[0];
+    const Mat3 before = p.frames.axes(0);
     y = run(p, i * 0.01, (i + 1) * 0.01, y, 1);
-    moved += before != p.frames.chart[0];
+    moved += before != p.frames.axes(0);
     EXPECT_LE(y.segment<2>(7).norm(), rotation::chart_switch + 1e-12);
   }
   EXPECT_GT(moved, 10);
@@ -260,7 +260,7 @@ TEST(Momentum, ChartsAndTurnsDoNotChangeTheMotion) {
   const RVec3 u = q.tail<3>();
   const RMat3 S = r_skew(u), R = RMat3::Identity() + 2 * (q[0] * S + S * S) / q.squaredNorm();
   const Mat3 attitude =
-      p.frames.chart[0] * rotation::L(Vec3(0, y[7], y[8])) * rotation::L(Vec3(y[6], 0, 0));
+      p.frames.axes(0) * rotation::L(Vec3(0, y[7], y[8])) * rotation::L(Vec3(y[6], 0, 0));
   EXPECT_LT((attitude - R.cast<double>()).norm(), 1e-10);
   const Vec3 K = y.segment<3>(9);
   EXPECT_LT((K - K0).norm(), 1e-15);

@@ -92,10 +92,10 @@ inline Vec3 displacement(const system::State& s, Index n) { return s.q.segment<3
 /// Rotation of a node against the reference configuration, from its angles in the present chart.
 /// `chart0`: the chart at rest.
 inline Mat3 rotation_of(const system::State& s, Index n, Index line, const Mat3& chart0) {
-  const Mat3& T = s.frames.chart[static_cast<std::size_t>(line)];
+  const Mat3& T = s.frames.axes(n);
+  const double phi = s.q[6 * n + 3] + two_pi * s.frames.turns[static_cast<std::size_t>(line)];
   const Vec2 g = s.q.segment<2>(6 * n + 4);
-  return T * rotation::L(Vec3(0, g[0], g[1])) * rotation::L(Vec3(s.total_phi(n, line), 0, 0)) *
-         chart0.transpose();
+  return T * rotation::L(Vec3(0, g[0], g[1])) * rotation::L(Vec3(phi, 0, 0)) * chart0.transpose();
 }
 
 }  // namespace whirl::test

@@ -53,22 +53,22 @@ struct ExactRod {
     return x;
   }
 
-  /// End under the force F, put on in `parts`.
-  End solve(const Vec3& F, int parts = 10) const {
+  /// End under the force F and the moment M there, put on in `parts`.
+  End solve(const Vec3& F, int parts = 10, const Vec3& M = Vec3::Zero()) const {
     Vec3 m = Vec3::Zero();
     End x{};
-    const double size = F.norm() * length;
+    const double size = F.norm() * length + M.norm();
     for (int p = 1; p <= parts; ++p) {
       const Vec3 f = F * p / parts;
       for (int it = 0; it < 50; ++it) {
         x = march(f, m);
-        if (x.m.norm() < 1e-12 * size) break;
+        if ((x.m - M * p / parts).norm() < 1e-12 * size) break;
         Mat3 J;
         for (int c = 0; c < 3; ++c) {
           const Vec3 e = 1e-6 * size * Vec3::Unit(c);
           J.col(c) = (march(f, m + e).m - march(f, m - e).m) / (2e-6 * size);
         }
-        m -= J.inverse() * x.m;
+        m -= J.inverse() * (x.m - M * p / parts);
       }
     }
     return x;

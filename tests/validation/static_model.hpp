@@ -46,9 +46,7 @@ inline Solved solve(const model::Model& m, double Omega = 0.0, double load = 1.0
   const system::State& x = s.found.state;
   s.problem->residual(0.0, x.q, x.v, x.a, s.r);
   s.problem->power(0.0, x.q, x.v, x.a, s.r);
-  s.sections = assembly::calc_section_results(
-      m, s.mesh, s.built, [&s](Index n) -> const system::NodeState& { return s.node(n); },
-      s.problem->workspace().context);
+  s.sections = assembly::calc_section_results(m, s.mesh, s.built, s.problem->workspace());
   return s;
 }
 

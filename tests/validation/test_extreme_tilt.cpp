@@ -85,7 +85,7 @@ TEST(ExtremeTilt, WithChartChangeItTumblesOn) {
   ASSERT_EQ(r.reason, StopReason::end_time) << r.detail;
   rotation::Director d;
   rotation::director(r.end.q.segment<2>(4), d);
-  const Vec3 director = r.end.frames.chart[0] * (d.t + Vec3::UnitX());
+  const Vec3 director = r.end.frames.axes(0) * (d.t + Vec3::UnitX());
   // 18 turns through pi: the error asked for, 1e-8 of a radian of response, grows with the number
   // of charts (about 50)
   EXPECT_LT((director - director_at(omega, 100.0)).norm(), 1e-6);

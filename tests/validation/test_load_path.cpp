@@ -67,7 +67,7 @@ TEST(LoadPath, ColumnFollowsTheElastica) {
           rotation::Director d;
           const Index tip = 6 * 20;
           rotation::director(q.segment<2>(tip + 4), d);
-          const Vec3 normal = p.state->frames.chart[0] * (d.t + Vec3::UnitX());
+          const Vec3 normal = p.state->frames.axes(20) * (d.t + Vec3::UnitX());
           const double alpha = std::atan2(normal.y(), normal.x());
           largest_tilt = std::max(largest_tilt, std::abs(alpha));
           last = p.load;

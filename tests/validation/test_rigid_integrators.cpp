@@ -41,10 +41,10 @@ Outcome integrate(
   };
   look(state());
   while (integrator->time() < t_end) {
-    const Mat3 before = problem.frames.chart[0];
+    const Mat3 before = problem.frames.axes(0);
     const time::StepReport step = integrator->advance();
     r.status = step.status;
-    r.chart_changes += before != problem.frames.chart[0];
+    r.chart_changes += before != problem.frames.axes(0);
     if (!step.ok()) break;
     look(state());
   }

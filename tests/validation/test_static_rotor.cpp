@@ -193,7 +193,7 @@ TEST(StaticRotor, WeightOfAConeDoesNotDependOnTheChart) {
     };
     const double before = gravity();
     ASSERT_TRUE(problem.accept(0, s.q, s.v, s.a));
-    EXPECT_GT((problem.frames.chart[0].col(0) - Vec3::UnitX()).norm(), 0.5);
+    EXPECT_GT((problem.frames.axes(0).col(0) - Vec3::UnitX()).norm(), 0.5);
     EXPECT_NEAR(gravity(), before, 1e-12 * std::abs(before)) << general;  // rounding
   }
 }

@@ -61,7 +61,7 @@ ModeEnergy energy_distribution(Linearizer& linear, const VecXc& x) {
            b < pattern.row_start()[static_cast<std::size_t>(i) + 1]; ++b) {
         const Index j = pattern.cols()[static_cast<std::size_t>(b)];
         if (j <= i || part.K.block(b).isZero(0.0)) continue;
-        const Mat3& E = state.frames.chart[static_cast<std::size_t>(s.node(i).line)];
+        const Mat3& E = state.frames.axes(i);
         const Vec3 arm = s.node(j).position + state.q.segment<3>(6 * j) - s.node(i).position -
                          state.q.segment<3>(6 * i);
         const Eigen::Matrix<Complex, 6, 1> e =

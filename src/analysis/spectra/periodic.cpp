@@ -120,7 +120,7 @@ void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   const la::MCK& fixed = motion_.reduce(raw_);
   std::vector<Matrix<6>> T(idx(s.nodes())), D(idx(s.nodes()));
   for (Index i = 0; i < s.nodes(); ++i) {
-    const Mat3& chart = e.state.frames.chart[idx(s.node(i).line)];
+    const Mat3& chart = e.state.frames.axes(i);
     T[idx(i)] = turn(s, chart, i, theta, false);
     D[idx(i)] = turn(s, chart, i, 0.0, true);
   }

@@ -108,7 +108,7 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
     if (w.oscillates()) f += kx.segment<6>(6 * i);
     const auto share = [](Complex a, Complex b) { return (std::conj(a) * b).real(); };
     if (s.node(i).scalar) continue;
-    const Mat3& E = linear.equilibrium().state.frames.chart[at(s.node(i).line)];
+    const Mat3& E = linear.equilibrium().state.frames.axes(i);
     const Eigen::Vector3cd u = E.transpose() * x.head<3>(), g = E.transpose() * f.head<3>();
     axial += share(u[0], g[0]);
     lateral += share(u[1], g[1]) + share(u[2], g[2]) + share(x[4], f[4]) + share(x[5], f[5]);

@@ -111,6 +111,11 @@ std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index co
   const double full = running.load();
   running.set_load(0.0);
   const system::State rest = solver.solve(Omega).state;
+  if (rest.frames.moved())
+    throw run_error("E76",
+                    "no linearised buckling: without the loads a section is already tilted by more "
+                    "than 1.5 rad from its line",
+                    "follow the load path: it has no such limit");
   la::MCK K0 = system.make_matrices(), loaded = K0;
   VecX r0(system.size()), u(system.size());
   running.residual(rest.frames, Omega, rest.q, r0);

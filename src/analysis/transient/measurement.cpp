@@ -40,8 +40,12 @@ const system::Energy& Snapshot::energy() const {
   return problem_.energy();
 }
 
-double Snapshot::total_phi(Index i) const {
-  return (*q_)[6 * i + system::spin_phi] + two_pi * node(i).turns;
+double Snapshot::total_phi(Index i) const { return node(i).phi + two_pi * node(i).turns; }
+
+Vec2 Snapshot::gamma(Index i) const {
+  if (!frames().moved()) return q_->segment<2>(6 * i + system::gamma2);
+  const system::NodeState& n = node(i);
+  return rotation::gamma_of_director(n.chart->transpose() * n.t);
 }
 
 Vec3 displacement(const Snapshot& s, const Point& p) {
@@ -136,7 +140,7 @@ Measurement measure_phi_rate(std::string name, Index node) {
 Measurement measure_gamma(std::string name, Index node) {
   return {std::move(name),
           "rad",
-          "transverse Euler vector gamma in the chart axes",
+          "transverse Euler vector gamma in the axes of the line",
           {"2", "3"},
           1.0,
           [node](const Snapshot& s, double* out) { Eigen::Map<Vec2>{out} = s.gamma(node); }};

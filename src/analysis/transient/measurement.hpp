@@ -23,12 +23,13 @@ class Snapshot {
   const VecX& a() const { return *a_; }
   const system::System& system() const { return problem_.system(); }
   const system::Frames& frames() const { return problem_.frames; }
-  const system::NodeState& node(Index i) const {
-    return problem_.workspace().nodes[static_cast<std::size_t>(i)];
-  }
+  const system::NodeState& node(Index i) const { return problem_.workspace().in_own_axes(i); }
+  /// Nodes as elements see them.
+  const system::Workspace& workspace() const { return problem_.workspace(); }
   /// Time, gravity and load factor as elements see them.
   const system::Context& context() const { return problem_.workspace().context; }
-  const Vec2 gamma(Index i) const { return q_->segment<2>(6 * i + 4); }
+  /// In the axes of the line, rad.
+  Vec2 gamma(Index i) const;
   /// Residual of the state: its held entries are the forces the supports exert, N and N m.
   const VecX& reactions() const;
   const system::Energy& energy() const;

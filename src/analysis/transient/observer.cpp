@@ -276,7 +276,7 @@ void TiltWatch::restore(InArchive& in) {
 
 void TiltWatch::look(const Snapshot& s) {
   for (Index i = 0; i < s.system().nodes(); ++i)
-    if (const double g = s.gamma(i).norm(); g > tilt_) {
+    if (const double g = s.q().segment<2>(6 * i + system::gamma2).norm(); g > tilt_) {
       tilt_ = g;
       time_ = s.t();
       node_ = i;

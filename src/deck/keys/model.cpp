@@ -31,9 +31,10 @@ void describe_settings(Visitor& v, model::Model& m) {
   if (v.clean() && !components.empty() && (v.given("gravity") || v.given("gravity_direction")))
     v.error("E26", "gravity_vector", "gravity is given by components and by magnitude or direction",
             "keep one of the two");
-  v.flag("chart_change", m.chart_change,
-         "move the reference axes of a shaft line before its tilt reaches the limit of the split "
-         "rotation (pi); only tumbling bodies need it");
+  v.flag(
+      "chart_change", m.chart_change,
+      "move the axes that a node's angles refer to before its tilt reaches the limit of the "
+      "split rotation (pi): results do not depend on it; only what tumbles or rolls up needs it");
   v.flag("keep_everything", m.keep_everything,
          "build the general model: kernels, damping and unknowns that this deck does not need are "
          "kept instead of left out; slower, with the same results");
