@@ -1,6 +1,7 @@
 #include <run/diagnose.hpp>
 #include <results/frequency.hpp>
 #include <results/held.hpp>
+#include <results/linear_limits.hpp>
 #include <run/progress.hpp>
 
 #include <fmt/format.h>
@@ -270,6 +271,8 @@ void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::s
 }
 
 void FrequencyStep::finish(const std::string& line) {
+  if (const system::State& still = linear.equilibrium().state; still.q.size() > 0)
+    warn_of_short_bearings(job, step.name, still);
   const RunTime time = watch_.elapsed();
   run::put_run_time(summary(), time);
   if (const auto motion = motion_asked(step.law); motion && *motion != model::MotionKind::all)

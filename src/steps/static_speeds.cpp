@@ -1,6 +1,7 @@
 // A static step at a series of speeds: where each journal runs in its bearing, and the coefficients
 // of the bearings against speed.
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
 #include <results/stability_results.hpp>
 #include <results/static_results.hpp>
 #include <results/support_coefficients.hpp>
@@ -295,6 +296,7 @@ void SpeedSweep::execute() {
     take(speeds_[k]);
   }
   if (found_ == 0) throw *first_error_;
+  results::warn_of_held_tables(job_, step_.name, speeds_.front(), speeds_.back());
   show_equilibria();
   show_bearings();
   const std::string judgement =

@@ -3,6 +3,7 @@
 #include <analysis/statics/load_path.hpp>
 #include <results/frequency.hpp>
 #include <results/held.hpp>
+#include <results/linear_limits.hpp>
 #include <results/stability_results.hpp>
 #include <results/static_results.hpp>
 #include <results/support_coefficients.hpp>
@@ -297,6 +298,8 @@ void StaticRun::execute() {
   summary()["load steps"] = found_.load_steps;
   evaluate();
   judge();
+  results::warn_of_held_tables(job_, step_.name, state_.speed, state_.speed);
+  results::warn_of_short_bearings(job_, step_.name, state_.state);
   write_tables();
   const RunTime time = watch_.elapsed();
   run::put_run_time(summary(), time);
