@@ -266,6 +266,10 @@ void SpeedSweep::show_bearings() {
   }
   io::Table t = results::support_table(rows_);
   t.title = "Bearings against speed";
+  if (const std::string grid = results::report_grid_error(s_.summary(), rows_); !grid.empty()) {
+    t.title += "; " + grid;
+    s_.section.text += " " + results::capital(grid) + ".";
+  }
   s_.add_table("coefficients", std::move(t));
   const std::size_t shown = std::min<std::size_t>(bearings_.size(), 8);
   const std::vector<Sweep> drawn(bearings_.begin(),

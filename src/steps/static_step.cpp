@@ -228,6 +228,10 @@ void StaticRun::write_tables() {
   const std::vector<results::SupportCoefficients> linear =
       results::calc_support_coefficients(job_, state_);
   coefficients_ = results::support_table(linear);
+  if (const std::string grid = results::report_grid_error(summary(), linear); !grid.empty()) {
+    coefficients_.title += "; " + grid;
+    results_.lines.push_back(grid);
+  }
   rolling_stiffness_ = results::rolling_stiffness_table(linear);
   job_.folder.write_table(file("deflection"), results_.deflection);
   job_.folder.write_table(file("supports"), results_.supports);
