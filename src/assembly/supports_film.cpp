@@ -1,4 +1,5 @@
 // Journal bearings, squeeze-film dampers, seals.
+#include <assembly/film_kernels.hpp>
 #include <assembly/support_parts.hpp>
 #include <elements/films/annular_seal.hpp>
 #include <elements/films/finite_journal.hpp>
@@ -74,6 +75,16 @@ void add_damper(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
 
 }  // namespace
 
+elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int nodes) {
+  elements::FiniteJournal film;
+  film.radius = 0.5 * law.diameter;
+  film.length = law.length;
+  film.viscosity = viscosity_of(law.oil);
+  film.surface =
+      std::make_shared<elements::JournalSurface>(law.clearance, law.preload, pads_of(law), nodes);
+  return film;
+}
+
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
              const model::ShortJournal& law) {
   guarded(a, b, [&] {
@@ -86,15 +97,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
              const model::FiniteJournal& law) {
-  guarded(a, b, [&] {
-    elements::FiniteJournal film;
-    film.radius = 0.5 * law.diameter;
-    film.length = law.length;
-    film.viscosity = viscosity_of(law.oil);
-    film.surface = std::make_shared<elements::JournalSurface>(law.clearance, law.preload,
-                                                              pads_of(law), law.nodes);
-    add_film(a, b, n, film, law.clearance);
-  });
+  guarded(a, b, [&] { add_film(a, b, n, make_finite_journal(law, law.nodes), law.clearance); });
 }
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,

@@ -414,8 +414,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        ""},
       {"W03", "outside the range of a theory",
        "The model is computed as asked, but the formulas behind it are known to be inaccurate for "
-       "these dimensions. The message says what fits "
-       "better.",
+       "these dimensions, or in this state: a film pressed beyond an eccentricity of 0.99, a "
+       "bearing of the short theory that is longer than half its diameter or has more force beyond "
+       "that of a finite one than at L/D = 0.5 and an eccentricity of 0.7. The message says what "
+       "fits better.",
        ""},
       {"W04", "a contact is closed at rest",
        "A rub, stop or catcher bearing touches already in the state a step starts from, because "
@@ -469,13 +471,15 @@ const std::vector<CodeInfo>& error_catalogue() {
        "[model.mesh]\naccuracy = 1e-3"},
       {"W11", "a linear response larger than a gap",
        "Steady responses are computed about the equilibrium, with the stiffness and damping the "
-       "supports have there. Where the motion found is larger than the clearance of a bearing or "
+       "supports have there; so are motions in time with linear = true. Where the motion found is "
+       "larger than the clearance of a bearing or "
        "the gap of a stop, the machine does something else: it touches, or its film stiffens. The "
        "message says where, at which speed, and by how much.",
        "[[step]]\ntype = \"transient\""},
       {"W12", "a table of a bearing is held beyond its end",
        "The step turns a shaft faster or slower than the table of its bearing covers, and the "
-       "bearing says that the coefficients at the edge hold there. They are a guess.",
+       "bearing says that the coefficients at the edge hold there. They are a guess. A transient "
+       "says from when on; its summary holds the range of speeds (\"held tables\").",
        "extrapolate = \"error\""},
   };
   return t;

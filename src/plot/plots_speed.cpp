@@ -24,23 +24,37 @@ const std::array<Look, 4>& looks() {
 }
 const Look& look(Whirl w) { return looks()[static_cast<std::size_t>(w)]; }
 
+/// A decrement of 2 pi is a damping ratio of 0.707: beyond it no excitation finds a resonance.
+constexpr double heavy_decrement = two_pi;
+const Style heavy_style{ink, Dash::dotted, 0.7};
+constexpr const char* heavy_name = "damping ratio above 0.7: no resonance";
+
 // One series for each stretch of a line with the same whirl direction; stretches share their end
-// points.
+// points. heavy: stretches so heavily damped that they have no resonance are drawn thin; null: none
+// is; else whether one was.
 void add_line(Axes& a, const CampbellLine& line, std::span<const double> y, const char* extra_label,
-              const char* extra_unit, std::span<const double> extra, std::array<bool, 4>& used) {
+              const char* extra_unit, std::span<const double> extra, std::array<bool, 4>& used,
+              bool* heavy = nullptr) {
   const auto whirl = [&](std::size_t i) {
     return i < line.whirl_at.size() ? line.whirl_at[i] : line.whirl;
+  };
+  const auto is_heavy = [&](std::size_t i) {
+    return heavy && i < line.log_decrement.size() && line.log_decrement[i] > heavy_decrement;
   };
   const std::size_t n = std::min(line.speed.size(), y.size());
   for (std::size_t i = 0; i < n;) {
     std::size_t j = i + 1;
-    while (j < n && whirl(j) == whirl(i))
+    while (j < n && whirl(j) == whirl(i) && is_heavy(j) == is_heavy(i))
       ++j;
     const Look& l = look(whirl(i));
     Series s;
-    s.style = l.style;
+    s.style = is_heavy(i) ? heavy_style : l.style;
     s.trace_label = line.label + (whirl(i) == Whirl::none ? "" : std::string(", ") + l.name);
-    if (!std::exchange(used[static_cast<std::size_t>(l.whirl)], true)) s.label = l.name;
+    if (is_heavy(i)) {
+      if (!std::exchange(*heavy, true)) s.label = heavy_name;
+    } else if (!std::exchange(used[static_cast<std::size_t>(l.whirl)], true)) {
+      s.label = l.name;
+    }
     Extra e{extra_label, extra_unit, {}};
     for (std::size_t k = i; k < std::min(n, j + 1); ++k) {
       s.x.push_back(rpm * line.speed[k]);
@@ -50,6 +64,23 @@ void add_line(Axes& a, const CampbellLine& line, std::span<const double> y, cons
     if (!e.values.empty()) s.extra.push_back(std::move(e));
     a.series.push_back(std::move(s));
     i = j;
+  }
+}
+
+// Where a line ends because its motion no longer oscillates, that is written.
+void mark_overdamped(Axes& a, const CampbellLine& line) {
+  const std::size_t n = std::min(line.frequency.size(), line.log_decrement.size());
+  const auto there = [&](std::size_t k) { return line.frequency[k] > 0; };
+  for (std::size_t k = 0; k < n; ++k) {
+    if (!there(k) || !(line.log_decrement[k] > heavy_decrement)) continue;
+    const bool ends = (k + 1 < n && !there(k + 1)) || (k > 0 && !there(k - 1));
+    const double x = rpm * line.speed[k];
+    const double y = hertz * line.frequency[k];
+    // forward and backward whirl of one frequency end at one place
+    const bool said = std::any_of(a.notes.begin(), a.notes.end(), [&](const auto& n) {
+      return n.text == "overdamped" && n.x == x && std::abs(n.y - y) <= 0.02 * y;
+    });
+    if (ends && !said) a.notes.push_back({x, y, "overdamped"});
   }
 }
 
@@ -69,6 +100,7 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
   a.x.include_zero = a.y.include_zero = true;
   double top = 0, end = 0;
   std::array<bool, 4> used{};
+  bool heavy = false;
   for (const auto& l : lines) {
     std::vector<double> y(l.frequency);
     for (double& v : y)
@@ -77,7 +109,8 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
       if (v > top) top = v;
     for (const double v : l.speed)
       end = std::max(end, v);
-    add_line(a, l, y, "log decrement", "-", l.log_decrement, used);
+    add_line(a, l, y, "log decrement", "-", l.log_decrement, used, &heavy);
+    mark_overdamped(a, l);
   }
   a.y.max = top > 0 ? 1.06 * top : nan;
   for (const double order : orders) {

@@ -3,6 +3,8 @@
 #include <analysis/spectra/whirl_modes.hpp>
 #include <analysis/study/scheme_damping.hpp>
 #include <core/rotation.hpp>
+#include <results/frequency.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <results/transient_output.hpp>
 #include <run/progress.hpp>
 
@@ -64,10 +66,16 @@ class TiltOutput final : public TransientOutput {
   analysis::TiltWatch tilt_;
 };
 
+/// A mode that the motion can contain, and the relative error of its frequency on the mesh.
+struct Contained {
+  analysis::WhirlMode mode;
+  double mesh_error = 0;
+};
+
 /// Modes the motion can contain at the end of the run: up to twice the largest spin, and the four
 /// lowest in any case.
-std::vector<analysis::WhirlMode> modes_that_matter(const TransientEnd& end, double speed,
-                                                   double largest_spin) {
+std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
+                                         double largest_spin) {
   const run::Job& job = end.job;
   const system::State& state = end.result.end;
   analysis::SteadyRotation running;
@@ -85,10 +93,16 @@ std::vector<analysis::WhirlMode> modes_that_matter(const TransientEnd& end, doub
   analysis::Linearizer linear(job.system(), running, o);
   analysis::ModesOptions options;
   options.count = 8;
-  std::vector<analysis::WhirlMode> modes = analysis::whirl_modes(linear, speed, options), out;
-  for (analysis::WhirlMode& m : modes)
-    if (m.frequency > 0.0 && (out.size() < 4 || m.frequency <= 2.0 * largest_spin))
-      out.push_back(std::move(m));
+  const assembly::MeshError mesh(job.model, job.mesh, job.built);
+  std::vector<double> spin;
+  for (std::size_t l = 0; l < job.mesh.lines.size(); ++l)
+    spin.push_back(speed * running.ratio[l]);
+  std::vector<Contained> out;
+  for (analysis::WhirlMode& m : analysis::whirl_modes(linear, speed, options)) {
+    if (!(m.frequency > 0.0) || (out.size() >= 4 && m.frequency > 2.0 * largest_spin)) continue;
+    const double error = relative_mesh_error(mesh, linear.at(speed), m, spin);
+    out.push_back({std::move(m), error});
+  }
   return out;
 }
 
@@ -111,7 +125,7 @@ class AccuracyOutput final : public TransientOutput {
       std::vector<std::string> warnings;
       judge_energy(end, warnings);
       judge_steps(end, warnings);
-      judge_damping(end, warnings);
+      judge_modes(end, warnings);
       for (const std::string& w : warnings)
         warn_of_step(end.job, end.step, w);
     }
@@ -121,7 +135,10 @@ class AccuracyOutput final : public TransientOutput {
  private:
   void judge_energy(TransientEnd& end, std::vector<std::string>& warnings) const;
   void judge_steps(const TransientEnd& end, std::vector<std::string>& warnings) const;
-  void judge_damping(TransientEnd& end, std::vector<std::string>& warnings) const;
+  void judge_modes(TransientEnd& end, std::vector<std::string>& warnings) const;
+  void judge_mesh(TransientEnd& end, const std::vector<Contained>& modes) const;
+  void judge_damping(TransientEnd& end, const std::vector<Contained>& modes, double speed,
+                     std::vector<std::string>& warnings) const;
   void add_damping_row(TransientEnd& end, const analysis::WhirlMode& m, io::Table& t,
                        std::vector<std::string>& warnings) const;
   void warn_of_second_order(TransientEnd& end) const;
@@ -182,20 +199,56 @@ void AccuracyOutput::judge_steps(const TransientEnd& end,
         100.0 * (1.0 - accepted / all)));
 }
 
-/// The damping that the steps add to the modes at the end of the run.
-void AccuracyOutput::judge_damping(TransientEnd& end, std::vector<std::string>& warnings) const {
-  const model::IntegratorOptions& scheme = end.law.integrator;
-  const bool unknown =
-      !std::isfinite(analysis::numerical_decay(scheme.method, scheme.rho_inf, Complex(0, 1), 1e-3));
-  if (unknown || end.result.reason == analysis::StopReason::failed) return;
+/// What the mesh and the steps do to the modes at the end of the run.
+void AccuracyOutput::judge_modes(TransientEnd& end, std::vector<std::string>& warnings) const {
+  if (end.result.reason == analysis::StopReason::failed) return;
   const double speed = end.result.end.v[6 * end.job.reference() + system::spin_phi];
-  std::vector<analysis::WhirlMode> modes;
+  std::vector<Contained> modes;
   try {
     modes = modes_that_matter(end, speed, steps_.largest_spin());
   } catch (const Error& e) {
     end.summary["accuracy"]["modes"] = std::string("not found at the end of the run: ") + e.what();
     return;
   }
+  judge_mesh(end, modes);
+  judge_damping(end, modes, speed, warnings);
+}
+
+/// Of the modes up to 1.5 times the fastest spin (model::resolution_of), the lowest one in any case.
+void AccuracyOutput::judge_mesh(TransientEnd& end, const std::vector<Contained>& modes) const {
+  constexpr double above_the_spin = 1.5;
+  std::vector<analysis::WhirlMode> listed;
+  for (const Contained& c : modes)
+    listed.push_back(c.mode);
+  const std::vector<std::string> labels = labels_of(listed);
+  double largest = 0;
+  std::string worst;
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    const bool asked = k == 0 || modes[k].mode.frequency <= above_the_spin * steps_.largest_spin();
+    if (!asked || modes[k].mesh_error < largest) continue;
+    largest = modes[k].mesh_error;
+    worst = labels[k];
+  }
+  if (worst.empty()) return;
+  io::Value& v = end.summary["mesh"];
+  v["elements"] = end.job.mesh.elements.size();
+  v["relative error of frequencies"] = largest;
+  v["largest at"] = worst;
+  end.section.text += fmt::format(
+      "\n\nOn its elements the rotor has the frequencies up to {} times its fastest spin right to "
+      "{}.",
+      above_the_spin, error_text(largest));
+  if (largest > end.job.model.mesh_accuracy)
+    warn_of_coarse_mesh(end.job, end.step.name, worst, largest);
+}
+
+/// The damping that the steps add.
+void AccuracyOutput::judge_damping(TransientEnd& end, const std::vector<Contained>& modes,
+                                   double speed, std::vector<std::string>& warnings) const {
+  const model::IntegratorOptions& scheme = end.law.integrator;
+  const bool unknown =
+      !std::isfinite(analysis::numerical_decay(scheme.method, scheme.rho_inf, Complex(0, 1), 1e-3));
+  if (unknown) return;
   io::Table t;
   t.title = fmt::format("Damping of the modes at {:.0f} rpm: physical, and what the steps add",
                         to_rpm(speed));
@@ -205,8 +258,8 @@ void AccuracyOutput::judge_damping(TransientEnd& end, std::vector<std::string>& 
       {"physical damping ratio", "-", ""},
       {"numerical damping ratio", "-", "mean over the half of the run with the shortest steps"},
       {"amplitude lost to it over the run", "-", ""}};
-  for (const analysis::WhirlMode& m : modes)
-    add_damping_row(end, m, t, warnings);
+  for (const Contained& c : modes)
+    add_damping_row(end, c.mode, t, warnings);
   if (!t.rows.empty()) end.section.tables.push_back(std::move(t));
 }
 

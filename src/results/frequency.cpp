@@ -1,6 +1,7 @@
 #include <run/diagnose.hpp>
 #include <results/frequency.hpp>
 #include <results/held.hpp>
+#include <results/linear_limits.hpp>
 #include <run/progress.hpp>
 
 #include <fmt/format.h>
@@ -201,6 +202,8 @@ std::string capital(std::string text) {
 }
 
 std::string stability_text(const analysis::SpectrumCertificate& c) {
+  if (c.axis && c.axis->certain())
+    return "no motion grows: growing roots counted along the imaginary axis, none there";
   if (c.stability_certain())
     return fmt::format(
         "no motion grows at any frequency: all roots up to {:.5g} Hz counted, above it energy "
@@ -252,8 +255,16 @@ void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::s
     e["nothing grows above [Hz]"] = to_hz(c.quiet_above);
     e["by more than, of its frequency"] = c.quiet_ratio;
   }
+  if (c.axis) {
+    e["growing roots counted"] = c.axis->counted;
+    e["growing roots not found"] = static_cast<int>(c.axis->unknown);
+    e["tables end at [Hz]"] = to_hz(c.axis->top);
+    e["tables held beyond their ends"] = c.axis->held_beyond;
+    e["factorizations"] = static_cast<int>(c.axis->factorizations);
+  }
   v.push(std::move(e));
-  if (c.complete() || !c.open.empty()) return;
+  const bool contradicted = c.axis && c.axis->counted && c.axis->unknown != 0;
+  if (c.complete() || (!c.open.empty() && !contradicted)) return;
   const std::string message =
       fmt::format("step '{}'{}{}: {}", step.name, where.empty() ? "" : " ", where, c.text());
   job.uncertified.push_back(message);
@@ -270,6 +281,8 @@ void FrequencyStep::certify(const analysis::SpectrumCertificate& c, const std::s
 }
 
 void FrequencyStep::finish(const std::string& line) {
+  if (const system::State& still = linear.equilibrium().state; still.q.size() > 0)
+    warn_of_short_bearings(job, step.name, still);
   const RunTime time = watch_.elapsed();
   run::put_run_time(summary(), time);
   if (const auto motion = motion_asked(step.law); motion && *motion != model::MotionKind::all)

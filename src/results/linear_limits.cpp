@@ -1,4 +1,6 @@
 #include <results/linear_limits.hpp>
+#include <elements/films/finite_journal.hpp>
+#include <elements/films/short_journal.hpp>
 #include <run/diagnose.hpp>
 
 #include <fmt/format.h>
@@ -66,6 +68,10 @@ void GapCheck::report() {
   }
 }
 
+double table_slack(const model::TableBearing& table) {
+  return 1e-9 * std::max(std::abs(table.speed.front()), std::abs(table.speed.back()));
+}
+
 namespace {
 
 /// How far a shaft turns beyond the ends of a bearing's table, rad/s; 0: not, or none is held.
@@ -75,10 +81,8 @@ double beyond_table(const run::Job& job, const model::Bearing& b, double low, do
   const double ratio = job.model.shafts[b.at.shaft].speed_ratio;
   const double below = table->speed.front() - std::min(ratio * low, ratio * high);
   const double above = std::max(ratio * low, ratio * high) - table->speed.back();
-  const double slack =
-      1e-9 * std::max(std::abs(table->speed.front()), std::abs(table->speed.back()));
   const double most = std::max(below, above);
-  return most > slack ? most : 0.0;
+  return most > table_slack(*table) ? most : 0.0;
 }
 
 }  // namespace
@@ -109,6 +113,84 @@ void warn_of_held_tables(run::Job& job, const std::string& step, double low, dou
   d.hint = "a table over all speeds of the step, or extrapolate = \"error\"";
   d.where = worst->where;
   warn(job, std::move(d));
+}
+
+double short_bearing_excess(double length_over_diameter, double eccentricity) {
+  constexpr double clearance = 1e-3;  // of a journal of radius 1; the force goes by its ratio alone
+  const double length = 2.0 * length_over_diameter;
+  const elements::ShortJournal brief{1.0, length, clearance, 1.0};
+  elements::FiniteJournal finite;
+  finite.radius = 1.0;
+  finite.length = length;
+  finite.viscosity = 1.0;
+  finite.surface = std::make_shared<elements::JournalSurface>(clearance, 0.0,
+                                                              std::vector<elements::JournalPad>{});
+  // near the middle both are proportional to the displacement
+  constexpr double least = 1e-3;
+  constexpr double most = 0.999;
+  elements::LateralMotion m;
+  m.r = Vec2(clearance * std::clamp(eccentricity, least, most), 0.0);
+  m.v.setZero();
+  m.a.setZero();
+  m.spin = 1.0;
+  m.housing_spin = 0.0;
+  Vector<4> of_short, of_finite;
+  elements::FilmLaw<elements::ShortJournal>{brief}.force(m, of_short);
+  elements::FilmLaw<elements::FiniteJournal>{finite}.force(m, of_finite);
+  return of_short.head<2>().norm() / of_finite.head<2>().norm();
+}
+
+double admitted_excess() {
+  static const double corner = short_bearing_excess(longest_short_bearing, 0.7);
+  return corner;
+}
+
+void warn_of_short_bearings(run::Job& job, const std::string& step,
+                            std::span<const ShortFilm> films) {
+  double worst = 0.0;
+  const ShortFilm* named = nullptr;
+  std::string others;
+  for (const ShortFilm& f : films) {
+    const model::Bearing& b = job.model.bearings[f.bearing];
+    const auto* law = std::get_if<model::ShortJournal>(&b.law);
+    if (!law) continue;
+    const double excess = short_bearing_excess(law->length / law->diameter, f.eccentricity);
+    job.summary["steps"][step]["force of short bearings over finite ones"][b.name] = excess;
+    const bool too_long = law->length > longest_short_bearing * law->diameter * (1.0 + 1e-9);
+    if (!too_long && excess <= admitted_excess() * (1.0 + 1e-9)) continue;
+    others += fmt::format("{}'{}'", others.empty() ? "" : ", ", b.name);
+    if (excess <= worst) continue;
+    worst = excess;
+    named = &f;
+  }
+  if (!named) return;
+  const model::Bearing& b = job.model.bearings[named->bearing];
+  const auto& law = std::get<model::ShortJournal>(b.law);
+  Diagnostic d;
+  d.code = "W03";
+  d.message = fmt::format(
+      "step '{}': too long for the theory of short bearings: {}; '{}' with L/D = {:.3g} at "
+      "eccentricity {:.3f} has {:.3g} times the force of a bearing of finite length",
+      step, others, b.name, law.length / law.diameter, named->eccentricity, worst);
+  d.hint = "type = \"journal\" has no such limit";
+  d.where = b.where;
+  warn(job, std::move(d));
+}
+
+void warn_of_short_bearings(run::Job& job, const std::string& step, const system::State& s) {
+  const auto is_short = [](const model::Bearing& b) {
+    return std::holds_alternative<model::ShortJournal>(b.law);
+  };
+  if (std::none_of(job.model.bearings.begin(), job.model.bearings.end(), is_short)) return;
+  system::Workspace w = job.system().make_workspace();
+  job.system().evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a);
+  std::vector<ShortFilm> films;
+  for (const assembly::SupportCondition& c : job.built.conditions) {
+    if (!is_short(job.model.bearings[c.bearing])) continue;
+    const auto x = c.state([&](Index n) -> const system::NodeState& { return w.nodes[at(n)]; });
+    films.push_back({c.bearing, x.displacement / x.gap});
+  }
+  warn_of_short_bearings(job, step, films);
 }
 
 }  // namespace whirl::results

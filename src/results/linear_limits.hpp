@@ -1,5 +1,6 @@
-// Where linear results leave what they stand on: responses larger than the gaps of supports, tables
-// asked beyond their ends. Each is said once a step, with place and size (W11, W12).
+// Where results leave what they stand on: linear responses larger than the gaps of supports, tables
+// asked beyond their ends, bearings too long for the theory of short ones. Each is said once a step,
+// with place and size (W11, W12, W03). Motions in time: limits_output.cpp.
 #pragma once
 #include <results/frequency.hpp>
 #include <map>
@@ -34,6 +35,31 @@ class GapCheck {
 /// W12: bearings whose table ends within low .. high (reference speed, rad/s) and whose edge
 /// coefficients are held beyond.
 void warn_of_held_tables(run::Job& job, const std::string& step, double low, double high);
+
+/// Rounding of the speeds at the ends of a table, rad/s.
+double table_slack(const model::TableBearing& table);
+
+/// A journal in its bearing.
+struct ShortFilm {
+  std::size_t bearing = 0;  ///< of the model
+  double eccentricity = 0;  ///< displacement over clearance
+};
+
+/// Force of the theory of short bearings over that of the finite bearing (finite_journal.hpp), both
+/// plain and in steady rotation. It depends on L/D and the eccentricity alone: viscosity and speed
+/// are factors of either force.
+double short_bearing_excess(double length_over_diameter, double eccentricity);
+/// L/D up to which the usual rule takes a bearing for short, at eccentricities to 0.7.
+inline constexpr double longest_short_bearing = 0.5;
+/// What that rule admits: the excess at its corner.
+double admitted_excess();
+
+/// W03: bearings of the short theory that are longer than the rule has it, or whose films carry more
+/// than admitted_excess() times those of finite length. Other films are passed over.
+void warn_of_short_bearings(run::Job& job, const std::string& step,
+                            std::span<const ShortFilm> films);
+/// The same of all journals of a state.
+void warn_of_short_bearings(run::Job& job, const std::string& step, const system::State& s);
 
 /// A warning of a step: terminal, report and summary.
 void warn(run::Job& job, Diagnostic d);

@@ -43,9 +43,7 @@ double MeshAccuracy::of(const analysis::WhirlMode& mode, double Omega, const std
   std::vector<double> spin;
   for (const model::Shaft& shaft : step_.job.model.shafts)
     spin.push_back(shaft.rotating ? shaft.speed_ratio * Omega : 0.0);
-  const Complex defect = error_.defect(mode.lambda, mode.x, spin);
-  const Complex slope = slope_of(step_.linear.at(Omega), mode.lambda, mode.x);
-  const double error = std::abs(defect) / std::abs(slope * mode.lambda);
+  const double error = relative_mesh_error(error_, step_.linear.at(Omega), mode, spin);
   looked_ = true;
   if (!(error <= largest_)) {
     largest_ = error;
@@ -79,11 +77,23 @@ void MeshAccuracy::report() {
   step_.claim(text);
   if (largest_ <= job.model.mesh_accuracy || warned_) return;
   warned_ = true;
+  warn_of_coarse_mesh(job, step_.step.name, worst_, largest_);
+}
+
+double relative_mesh_error(const assembly::MeshError& error, const la::MCK& m,
+                           const analysis::WhirlMode& mode, std::span<const double> spin) {
+  if (error.empty() || std::abs(mode.lambda) == 0.0) return 0.0;
+  const Complex defect = error.defect(mode.lambda, mode.x, spin);
+  return std::abs(defect) / std::abs(slope_of(m, mode.lambda, mode.x) * mode.lambda);
+}
+
+void warn_of_coarse_mesh(run::Job& job, const std::string& step, const std::string& worst,
+                         double error) {
   Diagnostic w;
   w.code = "W10";
   w.message = fmt::format(
-      "step '{}': the mesh is too coarse: the frequency of {} is off by about {}, {} wanted",
-      step_.step.name, worst_, error_text(largest_), error_text(job.model.mesh_accuracy));
+      "step '{}': the mesh is too coarse: the frequency of {} is off by about {}, {} wanted", step,
+      worst, error_text(error), error_text(job.model.mesh_accuracy));
   w.hint =
       "leave min_elements and max_element_length out and the program chooses the elements, or give "
       "more of them";

@@ -34,6 +34,15 @@ class MeshAccuracy {
 /// reference speed, and reports.
 void report_mesh_accuracy(FrequencyStep& s, double Omega, double max_frequency);
 
+/// Relative error that the elements leave to the frequency of a mode of the matrices m. spin: of
+/// each line, rad/s.
+double relative_mesh_error(const assembly::MeshError& error, const la::MCK& m,
+                           const analysis::WhirlMode& mode, std::span<const double> spin);
+
+/// W10: the frequency of `worst` is right to `error` only.
+void warn_of_coarse_mesh(run::Job& job, const std::string& step, const std::string& worst,
+                         double error);
+
 /// "2e-4": one digit, rounded up, never below 1e-6.
 std::string error_text(double relative);
 

@@ -1,4 +1,8 @@
+#include <assembly/film_kernels.hpp>
+#include <results/mesh_accuracy.hpp>
 #include <results/support_coefficients.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -68,6 +72,30 @@ void find_threshold(SupportCoefficients& b) {
   b.whirl_ratio = std::sqrt(w2) / std::abs(b.spin);
 }
 
+/// -dF/dr and -dF/dr' of a journal at rest in its bearing.
+std::array<Mat2, 2> film_tangent(const elements::FiniteJournal& film,
+                                 const elements::LateralMotion& m) {
+  Vector<4> z;
+  elements::LateralTangent t;
+  t.set_zero();
+  elements::FilmLaw<elements::FiniteJournal>{film}.tangent(m, z, t);
+  return {-t.r.topRows<2>(), -t.v.topRows<2>()};
+}
+
+double grid_error_of(const model::FiniteJournal& law, const elements::LateralMotion& m) {
+  const int finest = elements::JournalSurface::max_nodes;
+  // twice the points need not be twice the elements: a pad has four at least
+  const int other = 2 * law.nodes <= finest ? finest : law.nodes / 2;
+  const auto own = film_tangent(assembly::make_finite_journal(law, law.nodes), m);
+  const auto beside = film_tangent(assembly::make_finite_journal(law, other), m);
+  double worst = 0;
+  for (int k = 0; k < 2; ++k) {
+    const double size = beside[at(k)].norm();
+    if (size > 0) worst = std::max(worst, (own[at(k)] - beside[at(k)]).norm() / size);
+  }
+  return worst;
+}
+
 /// Spin, place, load and its attitude, gap of a support in an evaluated state.
 void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
                     const system::Workspace& w) {
@@ -85,6 +113,15 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
     c.attitude = (std::atan2(c.place.y(), c.place.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
     c.attitude -= 360.0 * std::floor(c.attitude / 360.0);
     if (c.attitude > 360.0 - 1e-9) c.attitude = 0.0;
+  }
+  if (const auto* law = std::get_if<model::FiniteJournal>(&job.model.bearings[bearing].law)) {
+    elements::LateralMotion m;
+    m.r = c.place;
+    m.v.setZero();
+    m.a.setZero();
+    m.spin = c.spin;
+    m.housing_spin = node(n.other.node).spin();
+    c.grid_error = grid_error_of(*law, m);
   }
   for (const assembly::SupportCondition& x : job.built.conditions) {
     if (x.bearing != bearing) continue;
@@ -187,6 +224,17 @@ io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list) {
   return t;
 }
 
+std::string report_grid_error(io::Value& summary, std::span<const SupportCoefficients> list) {
+  const SupportCoefficients* worst = nullptr;
+  for (const SupportCoefficients& c : list)
+    if (!std::isnan(c.grid_error) && !(worst && c.grid_error <= worst->grid_error)) worst = &c;
+  if (!worst) return {};
+  io::Value& v = summary["film grid"];
+  v["relative error of coefficients"] = worst->grid_error;
+  v["largest at"] = worst->name;
+  return fmt::format("coefficients right to {} (film grid)", error_text(worst->grid_error));
+}
+
 io::Table support_table(std::span<const SupportCoefficients> list) {
   io::Table t;
   t.title = "Bearings about the equilibrium";
@@ -207,11 +255,29 @@ io::Table support_table(std::span<const SupportCoefficients> list) {
                        "share of a rigid rotor's mass on this bearing beyond which it is unstable "
                        "at this speed; empty: never"});
   t.columns.push_back({"whirl / speed", "-", "whirl frequency over speed at that threshold"});
+  t.columns.push_back(
+      {"grid error", "-", "of k and c, relative, by the film's grid; empty: no grid"});
   for (const SupportCoefficients& c : list)
-    t.add({c.name, to_rpm(c.spin), c.load, c.place.x(), c.place.y(), c.place.norm(),
-           c.place.norm() / c.clearance, c.attitude, c.K(0, 0), c.K(0, 1), c.K(1, 0), c.K(1, 1),
-           c.C(0, 0), c.C(0, 1), c.C(1, 0), c.C(1, 1), c.sommerfeld, c.threshold_mass,
-           c.whirl_ratio});
+    t.add({c.name,
+           to_rpm(c.spin),
+           c.load,
+           c.place.x(),
+           c.place.y(),
+           c.place.norm(),
+           c.place.norm() / c.clearance,
+           c.attitude,
+           c.K(0, 0),
+           c.K(0, 1),
+           c.K(1, 0),
+           c.K(1, 1),
+           c.C(0, 0),
+           c.C(0, 1),
+           c.C(1, 0),
+           c.C(1, 1),
+           c.sommerfeld,
+           c.threshold_mass,
+           c.whirl_ratio,
+           c.grid_error});
   return t;
 }
 

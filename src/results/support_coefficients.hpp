@@ -27,6 +27,11 @@ struct SupportCoefficients {
   /// mass on this bearing beyond which the equilibrium is unstable at this speed, kg, and whirl
   /// frequency over speed there. NaN: no mass makes it unstable.
   double threshold_mass = nan, whirl_ratio = nan;
+  /// Of journals of finite length: how far K and C are from those on the finest grid
+  /// (elements::JournalSurface::max_nodes) at the same place, the larger of both in the Frobenius
+  /// norm; of grids more than half as fine, from those on one half as fine, which is more than the
+  /// error. NaN: no grid.
+  double grid_error = nan;
 };
 
 /// In the order of the deck; empty when there is none.
@@ -36,6 +41,9 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
 /// tilt) on the shaft at the place of the bearing, N/m, N, N m, rad; the spin (rx) resists nothing.
 /// By differences of fourth order.
 Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::size_t bearing);
+/// The largest grid error of a list into the summary of a step; "coefficients right to 2e-4 (film
+/// grid)", or nothing where no bearing has a grid.
+std::string report_grid_error(io::Value& summary, std::span<const SupportCoefficients> list);
 /// A row each; empty title and no rows when there is none.
 io::Table support_table(std::span<const SupportCoefficients> list);
 /// Five rows a rolling bearing.

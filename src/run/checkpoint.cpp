@@ -46,6 +46,7 @@ constexpr PartName part_names[] = {
     {Part::steady_motion, "steady motion"},
     {Part::governors, "governors"},
     {Part::wall_clock, "wall clock"},
+    {Part::limits, "limits"},
 };
 
 Part part_of(std::string_view name) {

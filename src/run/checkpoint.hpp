@@ -32,7 +32,8 @@ enum class Part {
   spectra,
   steady_motion,
   governors,
-  wall_clock
+  wall_clock,
+  limits
 };
 
 /// A part and what decides whether the saved one fits: the columns of a series, the probes and

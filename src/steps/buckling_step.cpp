@@ -3,6 +3,7 @@
 #include <analysis/statics/buckling.hpp>
 #include <run/diagnose.hpp>
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -66,6 +67,36 @@ void compare(results::FrequencyStep& s, double factor, const analysis::BucklingM
   if (!s.job.options.quiet) run::print_diagnostics({d});
 }
 
+/// What is known of the completeness of the list, everywhere; W07 where factors are missing.
+std::string certify(results::FrequencyStep& s, const analysis::BucklingCount& c) {
+  std::string text =
+      c.counted ? fmt::format(
+                      "{} load factors of size below {:.6g} ({} positive, {} negative), counted by "
+                      "inertia",
+                      c.missing == 0 ? "complete: all" : "INCOMPLETE: not all", c.up_to, c.positive,
+                      c.negative)
+                : fmt::format("completeness not certified: {}", c.why_not);
+  if (c.counted && c.missing != 0) text += fmt::format("; {} not in the list", c.missing);
+  io::Value& v = s.summary()["certificate"];
+  v["complete"] = c.complete();
+  v["text"] = text;
+  if (c.counted) {
+    v["size up to"] = c.up_to;
+    v["positive factors"] = static_cast<int>(c.positive);
+    v["negative factors"] = static_cast<int>(c.negative);
+    v["factors not found"] = static_cast<int>(c.missing);
+  }
+  s.section.text += " " + results::capital(text) + ".";
+  if (c.complete() || !c.counted) return text;
+  Diagnostic d;
+  d.code = "W07";
+  d.message = fmt::format("step '{}': {}", s.step.name, text);
+  d.hint = "ask for more or fewer modes; the list is not to be relied on as it is";
+  s.job.uncertified.push_back(d.message);
+  results::warn(s.job, std::move(d));
+  return text;
+}
+
 }  // namespace
 
 void run_buckling_step(run::Job& job, const model::Step& step, const model::BucklingStep& law) {
@@ -73,7 +104,8 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
   const run::PhaseTimer timer(job, "buckling");
   analysis::EquilibriumOptions options;
   options.chart_change = job.model.chart_change;
-  const auto modes = analysis::buckling(s.linear.running(), law.speed, law.modes, options);
+  analysis::BucklingCount count;
+  const auto modes = analysis::buckling(s.linear.running(), law.speed, law.modes, options, &count);
   io::Table table;
   table.title = "Buckling";
   table.columns = {
@@ -111,6 +143,7 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
   s.section.text =
       "Factors on gravity and all loads at which the stiffness of the rotor vanishes, from its "
       "derivative with the loads at the unloaded state.";
+  const std::string known = certify(s, count);
   std::string line = modes.empty()
                          ? "no buckling load"
                          : fmt::format("smallest load factor {:.6g}",
@@ -122,7 +155,7 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
     compare(s, first, *std::find_if(modes.begin(), modes.end(), of_first), *path);
     line += "; " + describe(*path);
   }
-  s.finish(line);
+  s.finish(line + "; " + known);
 }
 
 }  // namespace whirl::steps

@@ -214,11 +214,20 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
     s.section.text +=
         fmt::format(" Rolling bearings keep the stiffness of the equilibrium at {:.6g} rpm.",
                     to_rpm(law.max_speed));
+  const std::string known = fmt::format(
+      "at each stiffness counted by inertia at {} speeds: none is missing but pairs that come and "
+      "go "
+      "between two of them; lines between the stiffnesses are paired by shape, not counted",
+      o.critical.grid + 1);
+  s.summary()["certificate"]["text"] = known;
+  s.summary()["certificate"]["counted at each stiffness"] = true;
+  s.summary()["certificate"]["counted between stiffnesses"] = false;
+  s.section.text += " Critical speeds are " + known + ".";
   if (map.lines.empty())
     s.section.text +=
         fmt::format(" No critical speed lies below {:.6g} rpm.", to_rpm(law.max_speed));
-  s.finish(
-      fmt::format("{} critical speeds at {} stiffnesses", map.lines.size(), map.stiffness.size()));
+  s.finish(fmt::format("{} critical speeds at {} stiffnesses, counted at each, not between them",
+                       map.lines.size(), map.stiffness.size()));
 }
 
 }  // namespace whirl::steps

@@ -251,7 +251,9 @@ std::string ModalRun::line() const {
                               : " Hz") +
          (unstable_ ? fmt::format(", {} unstable", unstable_) : "") +
          (diverging_ ? fmt::format(", {} diverging", diverging_) : "") +
-         (certificate_.complete() ? ", complete" : ", not certified");
+         (certificate_.complete()            ? ", complete"
+          : certificate_.stability_certain() ? ", growing ones certified"
+                                             : ", not certified");
 }
 
 void ModalRun::execute() {

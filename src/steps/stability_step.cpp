@@ -74,6 +74,10 @@ std::string verdict_line(const analysis::StabilityResult& r, const std::vector<d
     break;
   }
   const analysis::SpectrumCertificate& c = weakest(r).certificate;
+  if (r.certain() && c.axis)
+    return line +
+           fmt::format(" (certified at {} speeds: growing roots counted along the imaginary axis)",
+                       r.verdicts.size());
   if (r.certain())
     return line +
            fmt::format(" (certified at {} speeds: all roots accounted for)", r.verdicts.size());

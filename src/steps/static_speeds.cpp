@@ -1,6 +1,7 @@
 // A static step at a series of speeds: where each journal runs in its bearing, and the coefficients
 // of the bearings against speed.
 #include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
 #include <results/stability_results.hpp>
 #include <results/static_results.hpp>
 #include <results/support_coefficients.hpp>
@@ -265,6 +266,10 @@ void SpeedSweep::show_bearings() {
   }
   io::Table t = results::support_table(rows_);
   t.title = "Bearings against speed";
+  if (const std::string grid = results::report_grid_error(s_.summary(), rows_); !grid.empty()) {
+    t.title += "; " + grid;
+    s_.section.text += " " + results::capital(grid) + ".";
+  }
   s_.add_table("coefficients", std::move(t));
   const std::size_t shown = std::min<std::size_t>(bearings_.size(), 8);
   const std::vector<Sweep> drawn(bearings_.begin(),
@@ -295,6 +300,7 @@ void SpeedSweep::execute() {
     take(speeds_[k]);
   }
   if (found_ == 0) throw *first_error_;
+  results::warn_of_held_tables(job_, step_.name, speeds_.front(), speeds_.back());
   show_equilibria();
   show_bearings();
   const std::string judgement =

@@ -3,6 +3,7 @@
 #include <analysis/statics/load_path.hpp>
 #include <results/frequency.hpp>
 #include <results/held.hpp>
+#include <results/linear_limits.hpp>
 #include <results/stability_results.hpp>
 #include <results/static_results.hpp>
 #include <results/support_coefficients.hpp>
@@ -224,6 +225,10 @@ void StaticRun::write_tables() {
   const std::vector<results::SupportCoefficients> linear =
       results::calc_support_coefficients(job_, state_);
   coefficients_ = results::support_table(linear);
+  if (const std::string grid = results::report_grid_error(summary(), linear); !grid.empty()) {
+    coefficients_.title += "; " + grid;
+    results_.lines.push_back(grid);
+  }
   rolling_stiffness_ = results::rolling_stiffness_table(linear);
   job_.folder.write_table(file("deflection"), results_.deflection);
   job_.folder.write_table(file("supports"), results_.supports);
@@ -294,6 +299,8 @@ void StaticRun::execute() {
   summary()["load steps"] = found_.load_steps;
   evaluate();
   judge();
+  results::warn_of_held_tables(job_, step_.name, state_.speed, state_.speed);
+  results::warn_of_short_bearings(job_, step_.name, state_.state);
   write_tables();
   const RunTime time = watch_.elapsed();
   run::put_run_time(summary(), time);

@@ -3,6 +3,7 @@
 #include "deck_run.hpp"
 
 using whirl::test::DeckRun;
+namespace io = whirl::io;
 
 namespace {
 
@@ -103,4 +104,121 @@ TEST(LinearLimits, PeaksAreRefinedUnlessSpeedsAreListed) {
       "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"500 rpm\", "
       "\"4000 rpm\"] }\n"));
   EXPECT_EQ(listed.csv("u_response.csv").rows.size(), 2u) << listed.log;
+}
+
+namespace {
+
+/// A run-up at 1000 rpm/s from 2000 rpm to 4000 rpm;
+std::string run_up() {
+  return R"([[drive]]
+at = "a:start"
+type = "speed"
+speed = { type = "table", time = ["0 s", "2 s"], value = ["2000 rpm", "4000 rpm"] }
+[[step]]
+name = "t"
+type = "transient"
+duration = "2 s"
+)";
+}
+
+std::string held_table(const char* last) {
+  return std::string(
+             "[[bearing]]\nname = \"seal\"\nat = \"a:end\"\ntype = \"table\"\n"
+             "extrapolate = \"hold\"\ncolumns = [\"speed[rpm]\", \"kyy[N/m]\", "
+             "\"kzz[N/m]\"]\nrows = [[0, 1e4, 1e4], [") +
+         last + ", 2e4, 2e4]]\n";
+}
+
+/// A rotor of 5 kg on two short journals of 30 mm diameter at 3000 rpm.
+std::string on_films(double length_mm, double clearance_um) {
+  std::string d = R"(format = 1
+[output]
+report = false
+[[shaft]]
+name = "r"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 200, 30], ["b", 200, 30]]
+[[disk]]
+name = "d"
+at = "a:end"
+mass = "5 kg"
+Ip = "0.05 kg.m^2"
+Id = "0.025 kg.m^2"
+[[bearing]]
+name = "thrust"
+at = "a:start"
+type = "rigid"
+directions = ["x"]
+)";
+  for (const char* at : {"a:start", "b:end"})
+    d += std::string("[[bearing]]\nname = \"film ") + at[0] + "\"\nat = \"" + at +
+         "\"\ntype = \"short_journal\"\ndiameter = \"30 mm\"\nlength = \"" +
+         std::to_string(length_mm) + " mm\"\nclearance = \"" + std::to_string(clearance_um) +
+         " um\"\nviscosity = \"20 mPa.s\"\n";
+  return d;
+}
+
+}  // namespace
+
+TEST(LinearLimits, AHeldTableIsNamedInStatics) {
+  const std::string still = "[[step]]\nname = \"s\"\ntype = \"static\"\nspeed = \"3500 rpm\"\n";
+  EXPECT_TRUE(DeckRun(rotor("", held_table("3000") + still)).says("W12"));
+  EXPECT_FALSE(DeckRun(rotor("", held_table("3600") + still)).says("W12"));
+  const std::string sweep =
+      "[[step]]\nname = \"s\"\ntype = \"static\"\nspeeds = { start = \"500 rpm\", stop = \"4000 "
+      "rpm\", points = 4 }\n";
+  EXPECT_TRUE(DeckRun(rotor("", held_table("3000") + sweep)).says("W12"));
+}
+
+TEST(LinearLimits, ATransientSaysFromWhenATableIsHeld) {
+  const DeckRun beyond(rotor("", held_table("3000") + run_up()));
+  EXPECT_EQ(beyond.exit, 0) << beyond.log;
+  EXPECT_TRUE(beyond.says("W12")) << beyond.log;
+  const io::Value held = beyond.summary("t").at("held tables").at("seal");
+  // 3000 rpm is passed at 1 s; the step that ends beyond it is seen
+  EXPECT_NEAR(held.at("from [s]").number(), 1.0, 0.05);
+  EXPECT_GE(held.at("from [s]").number(), 1.0);
+  EXPECT_NEAR(held.at("fastest [rpm]").number(), 4000.0, 5.0);  // the shaft twists
+  const DeckRun within(rotor("", held_table("4020") + run_up()));
+  EXPECT_FALSE(within.says("W12")) << within.log;
+}
+
+TEST(LinearLimits, ALinearTransientBeyondAGapIsNamed) {
+  const std::string stop =
+      "[[bearing]]\nname = \"stop\"\nat = \"a:end\"\ntype = \"rub\"\ngap = \"0.05 "
+      "mm\"\nstiffness = \"1e7 N/m\"\n";
+  const std::string near_critical =
+      "[[drive]]\nat = \"a:start\"\ntype = \"speed\"\nspeed = \"2100 rpm\"\n[[step]]\nname = "
+      "\"t\"\ntype = \"transient\"\nduration = \"0.3 s\"\n";
+  const DeckRun small(rotor("", stop + near_critical + "linear = true\n"));
+  EXPECT_TRUE(small.says("W11")) << small.log;
+  const io::Value gap = small.summary("t").at("gaps").at("stop");
+  EXPECT_GT(gap.at("largest displacement [m]").number(), 5e-5);
+  // the contact itself acts where motion is not linear
+  EXPECT_FALSE(DeckRun(rotor("", stop + near_critical)).says("W11"));
+}
+
+TEST(LinearLimits, ACoarseMeshIsNamedInTransients) {
+  const DeckRun coarse(
+      rotor("[model.mesh]\nmin_elements_per_section = 1\naccuracy = 1e-6\n", run_up()));
+  EXPECT_TRUE(coarse.says("W10")) << coarse.log;
+  const DeckRun chosen(rotor("", run_up()));
+  EXPECT_FALSE(chosen.says("W10")) << chosen.log;
+  EXPECT_LT(chosen.summary("t").at("mesh").at("relative error of frequencies").number(), 1e-3);
+}
+
+TEST(LinearLimits, ABearingTooLongForTheShortTheoryIsNamedInEveryStep) {
+  const std::string steps[] = {"[[step]]\nname = \"x\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n",
+                               "[[step]]\nname = \"x\"\ntype = \"modal\"\nspeed = \"3000 rpm\"\n",
+                               "[[drive]]\nat = \"a:start\"\ntype = \"speed\"\nspeed = \"3000 "
+                               "rpm\"\n[[step]]\nname = \"x\"\ntype = "
+                               "\"transient\"\nduration = \"20 ms\"\n"};
+  for (const std::string& step : steps) {
+    const DeckRun longer(on_films(24, 40) + step);
+    EXPECT_EQ(longer.exit, 0) << longer.log;
+    EXPECT_TRUE(longer.says("short bearings")) << longer.log;
+    const DeckRun brief(on_films(9, 40) + step);
+    EXPECT_FALSE(brief.says("short bearings")) << brief.log;
+  }
 }

@@ -105,6 +105,9 @@ backward = true
   ASSERT_EQ(t.names.size(), 3u) << run.log;  // both planes
   EXPECT_NEAR(t.rows.at(1)[1], 338.35, 0.06);
   EXPECT_NEAR(t.rows.at(1)[2], 338.46, 0.06);
+  // what its list is worth
+  EXPECT_TRUE(run.summary("map").at("certificate").at("counted at each stiffness").boolean());
+  EXPECT_TRUE(run.says("counted at each")) << run.log;
 }
 
 // What a step is about stands in the summary and on the terminal, and a deck chooses.

@@ -185,3 +185,44 @@ TEST(StaticSpeeds, SpeedsWithoutEquilibriumAreNamed) {
   EXPECT_TRUE(d.says("none at 0 rpm")) << d.log;
   EXPECT_EQ(d.csv("films_coefficients.csv").rows.size(), 2u);
 }
+
+// What a film's grid leaves of K and C is estimated on one twice as fine, and that is about the
+// distance to a grid so fine that it leaves nothing.
+TEST(StaticSpeeds, CoefficientsSayWhatTheirGridLeaves) {
+  struct Found {
+    std::array<double, 8> entries;
+    double error;
+  };
+  const auto solve = [](const char* grid) {
+    const DeckRun d(deck(std::string("type = \"journal\"\nshape = \"two_grooves\"\ngroove = \"20 "
+                                     "deg\"\nlength = \"50 mm\"\nviscosity = \"20 mPa.s\"\n") +
+                             grid,
+                         R"("1500 rpm")"));
+    EXPECT_EQ(d.exit, 0) << d.log;
+    const Columns csv = d.csv("films_coefficients.csv");
+    const auto row = csv.named(csv.rows.at(0));
+    Found f;
+    std::size_t k = 0;
+    for (const char* unit : {"k", "c"})
+      for (const char* e : {"yy", "yz", "zy", "zz"})
+        f.entries[k++] = row.at(std::string(unit) + e + (unit[0] == 'k' ? " [N/m]" : " [N s/m]"));
+    f.error = row.at("grid error [-]");
+    EXPECT_EQ(d.summary("films").at("film grid").at("relative error of coefficients").number(),
+              f.error);
+    return f;
+  };
+  const Found coarse = solve("grid = 24\n"), chosen = solve(""), fine = solve("grid = 180\n");
+  const auto apart = [&](const Found& f, std::size_t first) {
+    double d = 0, size = 0;
+    for (std::size_t k = first; k < first + 4; ++k) {
+      d += std::pow(f.entries[k] - fine.entries[k], 2);
+      size += std::pow(fine.entries[k], 2);
+    }
+    return std::sqrt(d / size);
+  };
+  const double measured = std::max(apart(coarse, 0), apart(coarse, 4));
+  EXPECT_GT(coarse.error, 0.2 * measured);
+  EXPECT_LT(coarse.error, 5.0 * measured);
+  EXPECT_LT(chosen.error, 5e-3);
+  EXPECT_LT(chosen.error, coarse.error);
+}

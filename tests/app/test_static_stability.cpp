@@ -215,3 +215,32 @@ modes = 2
   EXPECT_EQ(arch.exit, 0) << arch.log;
   EXPECT_TRUE(arch.says("W09")) << arch.log;
 }
+
+// Euler loads of a round cantilever, (2 k - 1)^2 times the first and each double: four lie below the
+// fifth in the list, and inertia counts them.
+TEST(StaticStability, BucklingFactorsAreCounted) {
+  const DeckRun run(column(1.0, "[[step]]\nname = \"b\"\ntype = \"buckling\"\nmodes = 5\n"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const whirl::io::Value c = run.summary("b").at("certificate");
+  EXPECT_TRUE(c.at("complete").boolean()) << c.at("text").text();
+  EXPECT_EQ(c.at("positive factors").number(), 4);
+  EXPECT_EQ(c.at("negative factors").number(), 0);
+  EXPECT_NEAR(c.at("size up to").number(), 25.0, 0.1);
+  EXPECT_TRUE(run.says("counted by inertia")) << run.log;
+}
+
+// A torque of fixed direction changes the stiffness unsymmetrically: nothing is claimed.
+TEST(StaticStability, BucklingUnderTorqueIsNotCounted) {
+  const DeckRun run(column(1.0, R"([[load]]
+at = "column:end"
+moment = ["1 N.m", "0 N.m", "0 N.m"]
+[[step]]
+name = "b"
+type = "buckling"
+modes = 4
+)"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const whirl::io::Value c = run.summary("b").at("certificate");
+  EXPECT_FALSE(c.at("complete").boolean()) << c.at("text").text();
+  EXPECT_NE(c.at("text").text().find("not symmetric"), std::string::npos);
+}

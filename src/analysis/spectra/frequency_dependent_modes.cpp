@@ -139,6 +139,11 @@ void OwnFrequency::find_range(const Matrices& at) {
   held_ = reached(2.0 * highest_ + 1.0);
 }
 
+OwnFrequency::Range OwnFrequency::range(const Matrices& at) {
+  find_range(at);
+  return {lowest_, highest_, held_};
+}
+
 bool OwnFrequency::reaches_zero(const Matrices& at) {
   find_range(at);
   return lowest_ == 0.0;

@@ -45,6 +45,13 @@ class OwnFrequency {
   /// over a quarter of the distance of the rows it lies between, at most w/100). Error of second
   /// order in g over the distance of poles.
   Complex continued(const Matrices& at, const la::Mode& mode);
+  /// What all tables cover together, rad/s; held: coefficients stay as they are beyond `high`.
+  struct Range {
+    double low, high;
+    bool held;
+  };
+  Range range(const Matrices& at);
+  const std::vector<double>& frequencies() const { return frequencies_; }
   /// The tables reach down to zero frequency, or are held there.
   bool reaches_zero(const Matrices& at);
   /// Problems with held coefficients that the last solve() solved for all modes.

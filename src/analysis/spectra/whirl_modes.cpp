@@ -304,10 +304,12 @@ void WhirlSolver::solve_by_frequency(double Omega) {
                                     : matrices_at(Omega, Complex(0, nan));
   };
   std::vector<la::Mode> modes = own_->solve(at);
+  la::Certificate rest;
   if (options_.real_roots) {
     const la::Mode at_rest;
     for (const la::Mode& m : solver_.solve(own(at_rest)))
       if (m.lambda.imag() == 0.0) modes.push_back(m);
+    rest = solver_.certificate();
     const auto by_size = [](const la::Mode& a, const la::Mode& b) {
       return std::abs(a.lambda) < std::abs(b.lambda);
     };
@@ -326,6 +328,7 @@ void WhirlSolver::solve_by_frequency(double Omega) {
     if (options_.continued && options_.damped && m.lambda.imag() != 0.0)
       modes_.back().continued = own_->continued(at, m);
   }
+  if (options_.judge && options_.damped && options_.certify) count_along_axis(Omega, rest);
 }
 
 void WhirlSolver::solve_hysteretic(double Omega) {
@@ -366,28 +369,65 @@ void WhirlSolver::solve_hysteretic(double Omega) {
   });
 }
 
+const std::vector<la::Mode>& WhirlSolver::judged(const la::MCK& m, double Omega,
+                                                 SpectrumCertificate& known) {
+  const std::vector<la::Mode>* modes = &solver_.solve(m);
+  known.list = solver_.certificate();
+  if (!options_.judge || !options_.damped) return *modes;
+  if (!bound_) bound_.emplace(linear_.system().pattern(), motion_.active());
+  const double reached = known.list.radius;
+  const auto quiet = bound_->first(m, reached, furthest_search * reached);
+  if (quiet) {
+    known.quiet_above = quiet->above;
+    known.quiet_ratio = quiet->ratio;
+  }
+  // Where nothing excludes growth at high frequencies, at least those that rotors whirl at are
+  // searched.
+  const double wanted = quiet ? quiet->above : whirl_of_speed * std::abs(Omega);
+  if (wanted > reached) {
+    modes = &solver_.solve_to(m, wanted);
+    known.list = solver_.certificate();
+  }
+  return *modes;
+}
+
 void WhirlSolver::solve_counted(double Omega) {
   const la::MCK& m = matrices_at(Omega, Complex(0, nan));
-  const std::vector<la::Mode>* modes = &solver_.solve(m);
-  certificate_.list = solver_.certificate();
-  if (options_.judge && options_.damped) {
-    if (!bound_) bound_.emplace(linear_.system().pattern(), motion_.active());
-    const double reached = certificate_.list.radius;
-    const auto quiet = bound_->first(m, reached, furthest_search * reached);
-    if (quiet) {
-      certificate_.quiet_above = quiet->above;
-      certificate_.quiet_ratio = quiet->ratio;
-    }
-    // Where nothing excludes growth at high frequencies, at least those that rotors whirl at are
-    // searched.
-    const double wanted = quiet ? quiet->above : whirl_of_speed * std::abs(Omega);
-    if (wanted > reached) {
-      modes = &solver_.solve_to(m, wanted);
-      certificate_.list = solver_.certificate();
-    }
-  }
-  for (const la::Mode& mode : *modes)
+  for (const la::Mode& mode : judged(m, Omega, certificate_))
     modes_.push_back(describe_mode(mode, m, linear_));
+}
+
+void WhirlSolver::count_along_axis(double Omega, const la::Certificate& rest) {
+  const OwnFrequency::Matrices at = at_frequency(Omega);
+  const OwnFrequency::Range range = own_->range(at);
+  const la::MCK held = at(range.high);
+  SpectrumCertificate of_held;
+  la::AxisProblem p;
+  p.held = &held;
+  p.at = [&](double w) -> const la::MCK& { return at(std::clamp(w, range.low, range.high)); };
+  p.stations = own_->frequencies();
+  double slowest = infinity;
+  const auto add = [&](Complex lambda, double rounding, std::vector<Complex>& to) {
+    if (lambda.real() <= rounding) lambda.real(-std::abs(lambda.real()));
+    if (lambda.imag() != 0.0) slowest = std::min(slowest, std::abs(lambda));
+    to.push_back(lambda);
+  };
+  for (const la::Mode& m : judged(held, Omega, of_held))
+    add(m.lambda, rounding_of(m), p.known_held);
+  for (const WhirlMode& m : modes_)
+    add(m.lambda, m.rounding, p.known);
+  // what is slower is left to the count with the coefficients of zero frequency
+  p.rho = 0.1 * std::min(slowest, std::max(range.high, 1.0));
+  p.top = std::max(range.high, 2.0 * p.rho);
+  if (!axis_) axis_.emplace(linear_.system().pattern(), motion_.active());
+  const la::AxisCount c = axis_->count(p);
+  SpectrumCertificate::Axis& out = certificate_.axis.emplace();
+  out.counted = c.certain && of_held.stability_certain() && rest.complete();
+  out.unknown = c.unknown;
+  out.held_beyond = range.held && range.low == 0.0;
+  out.top = range.high;
+  out.factorizations = c.factorizations;
+  at(range.low);
 }
 
 const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
@@ -408,7 +448,27 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
   return modes_;
 }
 
+namespace {
+
+std::string text_of(const SpectrumCertificate::Axis& a) {
+  if (!a.counted)
+    return "growing roots not certified: their count did not settle, or growth above the tables is "
+           "not excluded";
+  std::string out =
+      a.unknown == 0 ? std::string("all growing roots counted (along the imaginary axis) and found")
+      : a.unknown > 0 ? fmt::format("INCOMPLETE: {} growing roots more than found", a.unknown)
+                      : fmt::format("IN DOUBT: {} growing roots fewer than found", -a.unknown);
+  if (!a.held_beyond)
+    out += fmt::format(", with the ends of the tables held beyond them ({:.5g} Hz)", to_hz(a.top));
+  return out;
+}
+
+}  // namespace
+
 std::string SpectrumCertificate::text() const {
+  if (axis)
+    return text_of(*axis) +
+           "; that no decaying mode is missing cannot be certified on tables against frequency";
   if (!open.empty()) return "completeness not certified: " + open;
   const double top = to_hz(list.radius);
   if (!list.counted)

@@ -9,7 +9,9 @@
 #include <analysis/spectra/growth_bound.hpp>
 #include <analysis/linearizer.hpp>
 #include <analysis/spectra/frequency_dependent_modes.hpp>
+#include <la/axis_count.hpp>
 #include <la/eigen.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -72,9 +74,23 @@ struct SpectrumCertificate {
   /// frequency over this one; nan: not excluded, or not asked for.
   double quiet_above = nan;
   double quiet_ratio = 0;
+  /// Supports tabulated against frequency: growing roots counted along the imaginary axis, on which
+  /// alone the tables say what the supports do (la/axis_count.hpp). It certifies that every growing
+  /// motion is in the list; that all decaying ones of a band are cannot be said.
+  struct Axis {
+    bool counted = false;  ///< the samples settle, and the problem at the tables' end is certified
+    Index unknown = 0;     ///< growing roots beyond those found
+    bool held_beyond = true;  ///< false: the tables end, and were held beyond for the count
+    double top = 0;           ///< rad/s: where they end
+    Index factorizations = 0;
+    bool certain() const { return counted && unknown == 0; }
+  };
+  std::optional<Axis> axis;
   bool complete() const { return open.empty() && list.complete(); }
   /// Every growing motion is in the list, at any frequency.
-  bool stability_certain() const { return complete() && quiet_above <= list.radius; }
+  bool stability_certain() const {
+    return axis ? axis->certain() : complete() && quiet_above <= list.radius;
+  }
   /// "every root up to 1234 Hz (damping ratio to 0.95) counted"; what is missing and where; or why
   /// not.
   std::string text() const;
@@ -121,6 +137,11 @@ class WhirlSolver {
   /// damping at their mean rate.
   void separate(double Omega, std::vector<la::Mode>& group);
   void solve_counted(double Omega);
+  /// Modes with one set of matrices and, where stability is judged, all that grows.
+  const std::vector<la::Mode>& judged(const la::MCK& m, double Omega, SpectrumCertificate& known);
+  /// Growing roots on supports that answer by frequency. rest: what is known of the roots with the
+  /// coefficients of zero frequency.
+  void count_along_axis(double Omega, const la::Certificate& rest);
   Linearizer& linear_;
   ModesOptions options_;
   MotionReduction motion_;
@@ -128,6 +149,7 @@ class WhirlSolver {
   std::optional<GrowthBound> bound_;  ///< where stability is judged
   SpectrumCertificate certificate_;
   std::optional<OwnFrequency> own_;  ///< where supports answer by frequency
+  std::optional<la::AxisCounter> axis_;
   const la::MCK* matrices_ = nullptr;
   std::vector<WhirlMode> modes_;
 };

@@ -1,6 +1,7 @@
 #include <analysis/statics/buckling.hpp>
 
 #include <core/error.hpp>
+#include <la/block_lu.hpp>
 #include <la/eigen.hpp>
 #include <system/stiffness_rate.hpp>
 
@@ -102,10 +103,65 @@ void scale(VecXc& x, Index nodes) {
   if (std::abs(top) > 0) x /= top;
 }
 
+/// Largest |a_ij - a_ji| over the largest |a_ij| among free unknowns.
+double asymmetry(const la::BlockMatrix<6>& a, std::span<const unsigned char> free) {
+  const la::BlockPattern& p = a.pattern();
+  double apart = 0, size = 0;
+  for (Index i = 0; i < p.size(); ++i)
+    for (Index k = p.row_start()[at(i)]; k < p.row_start()[at(i) + 1]; ++k) {
+      const Index j = p.cols()[at(k)];
+      const Matrix<6> here = a.block(k);
+      const Matrix<6> there = a.block(p.slot(j, i)).transpose();
+      for (Index r = 0; r < 6; ++r)
+        for (Index c = 0; c < 6; ++c) {
+          if (!free[at(6 * i + r)] || !free[at(6 * j + c)]) continue;
+          apart = std::max(apart, std::abs(here(r, c) - there(r, c)));
+          size = std::max(size, std::abs(here(r, c)));
+        }
+    }
+  return size > 0 ? apart / size : 0.0;
+}
+
+/// Negative eigenvalues of K0 - mu B; -1: singular.
+Index negative_at(const la::MCK& K0, const la::BlockMatrix<6>& B, double mu, la::MCK& work,
+                  la::BlockLu<double>& lu) {
+  values(work.K) = Eigen::Map<const VecX>(K0.K.data(), static_cast<Index>(K0.K.value_count())) -
+                   mu * Eigen::Map<const VecX>(B.data(), static_cast<Index>(B.value_count()));
+  if (lu.factor(work, 0.0, 0.0, 1.0) != la::Status::ok) return -1;
+  return lu.negative_eigenvalues();
+}
+
+/// Factors of K0 x = mu B x against those listed.
+BucklingCount count_factors(const la::MCK& K0, const la::BlockMatrix<6>& B,
+                            std::span<const unsigned char> free,
+                            const std::vector<BucklingMode>& listed) {
+  constexpr double rounding = 1e-10;   // of a symmetric matrix
+  constexpr double below_last = 1e-6;  // relative
+  BucklingCount out;
+  if (listed.empty()) return {false, "there is none"};
+  if (asymmetry(K0.K, free) > rounding || asymmetry(B, free) > rounding)
+    return {false,
+            "stiffness or its change with the loads is not symmetric, factors may be complex"};
+  la::MCK work = K0;
+  la::BlockLu<double> lu(K0.K.pattern(), free);
+  if (negative_at(K0, B, 0.0, work, lu) != 0)
+    return {false, "the unloaded rotor is not in stable equilibrium"};
+  out.up_to = (1.0 - below_last) * std::abs(listed.back().factor);
+  out.positive = negative_at(K0, B, out.up_to, work, lu);
+  out.negative = negative_at(K0, B, -out.up_to, work, lu);
+  if (out.positive < 0 || out.negative < 0) return {false, "a factorisation failed"};
+  out.counted = true;
+  const Index found = std::count_if(listed.begin(), listed.end(), [&](const BucklingMode& m) {
+    return std::abs(m.factor) < out.up_to;
+  });
+  out.missing = out.positive + out.negative - found;
+  return out;
+}
+
 }  // namespace
 
 std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
-                                   const EquilibriumOptions& options) {
+                                   const EquilibriumOptions& options, BucklingCount* counted) {
   const system::System& system = running.system();
   EquilibriumSolver solver(running, options);
   const double full = running.load();
@@ -161,6 +217,7 @@ std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index co
     scale(b.x, system.nodes());
     out.push_back(std::move(b));
   }
+  if (counted) *counted = count_factors(K0, B, solver.free(), out);
   return out;
 }
 

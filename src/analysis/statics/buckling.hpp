@@ -22,10 +22,25 @@ struct BucklingMode {
   double displacement = 0;  ///< its largest displacement over the size of the model
 };
 
-/// The `count` factors of least size, ascending.
+/// Whether a list of factors is complete. With symmetric K1 and a positive K0 the factors are real,
+/// and K0 + mu K1 has as many negative eigenvalues as factors lie between 0 and mu (Sylvester): two
+/// factorisations count those of either sign. Between them the last of the list itself is left out,
+/// for a factor may be a double one of which the list ends with the first.
+struct BucklingCount {
+  bool counted = false;  ///< false: why_not says why
+  const char* why_not = "";
+  double up_to = 0;    ///< size of the factors counted, a little below that of the last listed
+  Index positive = 0;  ///< factors in (0, up_to)
+  Index negative = 0;  ///< factors in (-up_to, 0)
+  Index missing = 0;   ///< of these, not in the list
+  bool complete() const { return counted && missing == 0; }
+};
+
+/// The `count` factors of least size, ascending. counted: how many there are, by inertia.
 /// @throws Error as EquilibriumSolver::solve; E79 no load changes the stiffness.
 std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
-                                   const EquilibriumOptions& options = {});
+                                   const EquilibriumOptions& options = {},
+                                   BucklingCount* counted = nullptr);
 
 /// What the nonlinear equilibria under growing loads say about a factor.
 struct PathCheck {

@@ -1,0 +1,215 @@
+// Where a motion in time leaves what its supports are known for: tables held beyond their ends
+// (W12), films pressed further than they are believed (W03), gaps that small motions do not know
+// (W11).
+#include <results/transient_output.hpp>
+#include <results/linear_limits.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::results {
+
+namespace {
+
+/// What an extreme is reached by, and when.
+struct Extreme {
+  double value = 0, time = nan;
+  void take(double x, double t) {
+    if (!(x > value)) return;
+    value = x;
+    time = t;
+  }
+};
+
+/// A held table on its way.
+struct HeldTable {
+  std::size_t bearing;
+  Index node;                                 ///< of the shaft
+  double low, high, slack;                    ///< rad/s: what the table covers, and rounding
+  double begin = nan;                         ///< s: first step that ended beyond; NaN: none
+  double least = infinity, most = -infinity;  ///< rad/s, of the shaft over the run
+};
+
+/// A gap or a film on its way.
+struct Gap {
+  const assembly::SupportCondition* condition;
+  meshes::BearingNodes at;
+  double size;  ///< m
+  bool film;
+  double limit;        ///< m: displacement beyond which the law is not believed
+  Extreme largest{};   ///< m
+  double begin = nan;  ///< s: first step that ended beyond
+};
+
+/// Looks at the end of every accepted step at the supports that have a limit, and at nothing else.
+class LimitWatch final : public analysis::Observer {
+ public:
+  LimitWatch(const run::Job& job, bool small_motion);
+  void begin(const analysis::Snapshot& s) override { look(s); }
+  void step(analysis::StepAccess& s) override { look(s.end()); }
+  void save(OutArchive& out) const override;
+  void restore(InArchive& in) override;
+  const std::vector<HeldTable>& tables() const { return tables_; }
+  const std::vector<Gap>& gaps() const { return gaps_; }
+  bool empty() const { return tables_.empty() && gaps_.empty(); }
+
+ private:
+  void look(const analysis::Snapshot& s);
+  std::vector<HeldTable> tables_;
+  std::vector<Gap> gaps_;
+};
+
+LimitWatch::LimitWatch(const run::Job& job, bool small_motion) {
+  for (std::size_t i = 0; i < job.model.bearings.size(); ++i) {
+    const auto* table = std::get_if<model::TableBearing>(&job.model.bearings[i].law);
+    if (!table || !table->extrapolate_hold || table->speed.empty()) continue;
+    const double slack = table_slack(*table);
+    tables_.push_back(
+        {i, job.mesh.bearings[i].shaft.node, table->speed.front(), table->speed.back(), slack});
+  }
+  const system::State still = job.system().make_state();
+  system::Workspace w = job.system().make_workspace();
+  job.system().evaluate_nodes(w, still.frames, still.t, still.q, still.v, still.a);
+  const auto node = [&](Index n) -> const system::NodeState& { return w.nodes[at(n)]; };
+  for (const assembly::SupportCondition& c : job.built.conditions) {
+    const assembly::SupportCondition::State x = c.state(node);
+    const meshes::BearingNodes& nodes = job.mesh.bearings[c.bearing];
+    if (!(x.gap > 0) || nodes.other.node < 0 || !(x.film || small_motion)) continue;
+    const double share = x.film ? assembly::SupportCondition::believed : 1.0;
+    gaps_.push_back({&c, nodes, x.gap, x.film, share * x.gap});
+  }
+}
+
+void LimitWatch::look(const analysis::Snapshot& s) {
+  for (HeldTable& x : tables_) {
+    const double spin = s.node(x.node).spin();
+    x.least = std::min(x.least, spin);
+    x.most = std::max(x.most, spin);
+    if (std::isnan(x.begin) && (spin < x.low - x.slack || spin > x.high + x.slack)) x.begin = s.t();
+  }
+  for (Gap& x : gaps_) {
+    const system::NodeState& shaft = s.node(x.at.shaft.node);
+    const system::NodeState& other = s.node(x.at.other.node);
+    const Vec3 apart =
+        shaft.u + x.at.shaft.offset * shaft.t - other.u - x.at.other.offset * other.t;
+    const double displacement = apart.tail<2>().norm();
+    x.largest.take(displacement, s.t());
+    if (std::isnan(x.begin) && displacement > x.limit) x.begin = s.t();
+  }
+}
+
+void LimitWatch::save(OutArchive& out) const {
+  for (const HeldTable& x : tables_)
+    for (const double v : {x.begin, x.least, x.most})
+      out.put(v);
+  for (const Gap& x : gaps_)
+    for (const double v : {x.begin, x.largest.value, x.largest.time})
+      out.put(v);
+}
+
+void LimitWatch::restore(InArchive& in) {
+  for (HeldTable& x : tables_)
+    for (double* v : {&x.begin, &x.least, &x.most})
+      *v = in.number();
+  for (Gap& x : gaps_)
+    for (double* v : {&x.begin, &x.largest.value, &x.largest.time})
+      *v = in.number();
+}
+
+class LimitsOutput final : public TransientOutput {
+ public:
+  explicit LimitsOutput(const TransientSetup& s) : watch_(s.job, s.law.linear) {
+    for (const HeldTable& x : watch_.tables())
+      content_ += fmt::format(" {} {} {}", x.bearing, x.low, x.high);
+    for (const Gap& x : watch_.gaps())
+      content_ += fmt::format(" {} {}", x.condition->name, x.size);
+  }
+  bool empty() const { return watch_.empty(); }
+
+  void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
+    observers.push_back(&watch_);
+    parts.add({run::Part::limits, content_}, watch_);
+  }
+
+  void summarize(TransientEnd& end) override {
+    for (const HeldTable& x : watch_.tables())
+      judge_table(end, x);
+    std::vector<ShortFilm> films;
+    for (const Gap& x : watch_.gaps()) {
+      judge_gap(end, x);
+      if (x.film) films.push_back({x.condition->bearing, x.largest.value / x.size});
+    }
+    warn_of_short_bearings(end.job, end.step.name, films);
+  }
+
+ private:
+  static void judge_table(TransientEnd& end, const HeldTable& x);
+  static void judge_gap(TransientEnd& end, const Gap& x);
+
+  std::string content_;
+  LimitWatch watch_;
+};
+
+void LimitsOutput::judge_table(TransientEnd& end, const HeldTable& x) {
+  if (std::isnan(x.begin)) return;
+  const model::Bearing& b = end.job.model.bearings[x.bearing];
+  io::Value& v = end.summary["held tables"][b.name];
+  v["from [s]"] = x.begin;
+  v["table from [rpm]"] = to_rpm(x.low);
+  v["table to [rpm]"] = to_rpm(x.high);
+  v["slowest [rpm]"] = to_rpm(x.least);
+  v["fastest [rpm]"] = to_rpm(x.most);
+  Diagnostic d;
+  d.code = "W12";
+  d.message = fmt::format(
+      "step '{}': from t = {:.6g} s the coefficients at the edge of its table are held for '{}': "
+      "the table covers {:.6g} to {:.6g} rpm, and the shaft turns at {:.6g} to {:.6g} rpm",
+      end.step.name, x.begin, b.name, to_rpm(x.low), to_rpm(x.high), to_rpm(x.least),
+      to_rpm(x.most));
+  d.hint = "a table over all speeds of the step, or extrapolate = \"error\"";
+  d.where = b.where;
+  warn(end.job, std::move(d));
+}
+
+void LimitsOutput::judge_gap(TransientEnd& end, const Gap& x) {
+  io::Value& v = end.summary["gaps"][x.condition->name];
+  v["gap [m]"] = x.size;
+  v["largest displacement [m]"] = x.largest.value;
+  v["at [s]"] = x.largest.time;
+  if (std::isnan(x.begin)) return;
+  v["beyond from [s]"] = x.begin;
+  Diagnostic d;
+  d.where = x.condition->where;
+  if (end.law.linear) {
+    d.code = "W11";
+    d.message = fmt::format(
+        "step '{}': at t = {:.6g} s the shaft is {:.4g} mm from the middle of '{}', whose {} is "
+        "{:.4g} mm ({:.3g} times; first beyond at t = {:.6g} s): linear motion does not know it",
+        end.step.name, x.largest.time, 1e3 * x.largest.value, x.condition->name,
+        x.film ? "clearance" : "gap", 1e3 * x.size, x.largest.value / x.size, x.begin);
+    d.hint = "without linear = true the step meets the contact or the film as it is";
+  } else {
+    d.code = "W03";
+    d.message = fmt::format(
+        "step '{}': bearing '{}' runs at eccentricities up to {:.5f} (at t = {:.6g} s; first "
+        "beyond "
+        "at t = {:.6g} s): its film is believed up to {}",
+        end.step.name, x.condition->name, x.largest.value / x.size, x.largest.time, x.begin,
+        assembly::SupportCondition::believed);
+    d.hint =
+        "the film is thinner than roughness and tilt allow: more speed or viscosity, less "
+        "clearance, a longer bearing, less load";
+  }
+  warn(end.job, std::move(d));
+}
+
+}  // namespace
+
+void add_limits(const TransientSetup& setup, TransientOutputs& outputs) {
+  auto limits = std::make_unique<LimitsOutput>(setup);
+  if (!limits->empty()) outputs.push_back(std::move(limits));
+}
+
+}  // namespace whirl::results
