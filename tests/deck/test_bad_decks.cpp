@@ -17,7 +17,7 @@ using namespace whirl;
 
 namespace {
 
-std::string read(const fs::path& p) {
+std::string file_text(const fs::path& p) {
   std::ifstream in(p, std::ios::binary);
   std::ostringstream s;
   s << in.rdbuf();
@@ -34,7 +34,7 @@ std::vector<fs::path> decks() {
 
 deck::Deck read_with_overrides(const fs::path& p) {
   deck::ReadOptions o;
-  std::istringstream lines(read(p));
+  std::istringstream lines(file_text(p));
   std::string line;
   while (std::getline(lines, line) && line.starts_with("#--set "))
     o.set.push_back(line.substr(7));
@@ -50,7 +50,7 @@ TEST(BadDecks, PrintTheirMessages) {
     fs::path golden = p;
     golden.replace_extension(".txt");
     if (update) std::ofstream(golden, std::ios::binary) << report;
-    EXPECT_EQ(report, read(golden)) << p;
+    EXPECT_EQ(report, file_text(golden)) << p;
   }
 }
 

@@ -97,7 +97,7 @@ TEST_F(NotDecks, HundredMegabytesOfBrackets) {
 
 TEST_F(NotDecks, DeepBrackets) {
   const auto begin = std::chrono::steady_clock::now();
-  const std::string r = report("a.toml", "a = " + std::string(4 << 20, '['));
+  const std::string r = report("a.toml", std::string("a = ").append(4 << 20, '['));
   EXPECT_EQ(r.substr(0, r.find('\n') + 1),
             "a.toml:1:69: error[E03]: brackets are nested deeper than 64 levels\n");
   EXPECT_LT(r.size(), 500u);  // the line of 4 MiB is shown in part

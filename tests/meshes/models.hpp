@@ -5,6 +5,8 @@
 
 namespace whirl::test {
 
+inline std::size_t S(Index i) { return static_cast<std::size_t>(i); }
+
 inline model::Material steel() {
   model::Material s;
   s.name = "steel";

@@ -25,8 +25,6 @@ using namespace whirl::test;
 
 namespace {
 
-std::size_t S(Index i) { return static_cast<std::size_t>(i); }
-
 Built build(const model::Model& m, const std::string& step = {}) {
   return build_system(m, meshes::make_mesh(m), step);
 }

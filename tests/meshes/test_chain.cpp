@@ -16,8 +16,6 @@ using namespace whirl::test;
 
 namespace {
 
-std::size_t S(Index i) { return static_cast<std::size_t>(i); }
-
 struct Matrices {
   MatX M, C, K;
 };

@@ -264,7 +264,7 @@ TEST(Mesh, RandomShaftsKeepTheInvariants) {
 
 // ---------------------------------------------------------------- bad input
 
-std::vector<Diagnostic> errors_of(const model::Model& m) {
+std::vector<Diagnostic> meshing_errors_of(const model::Model& m) {
   try {
     make_mesh(m);
   } catch (const Error& e) {
@@ -281,7 +281,7 @@ TEST(Mesh, AllErrorsAtOnceWithPlaceAndName) {
   m.disks[0].at.where.line = 12;
   m.probes.push_back(named<model::Probe>("p", -0.1));
   m.probes[0].at.where.line = 20;
-  const auto e = errors_of(m);
+  const auto e = meshing_errors_of(m);
   ASSERT_EQ(e.size(), 3u);
   EXPECT_EQ(e[0].code, "E23");
   EXPECT_EQ(e[0].message,
@@ -301,12 +301,12 @@ TEST(Mesh, ImpossibleSections) {
         +[](model::Section& s) { s.constants = model::Section::Constants{}; }}) {
     model::Model m = one_shaft({cylinder("a", 0.2, 0.04)});
     spoil(m.shafts[0].sections[0]);
-    const auto e = errors_of(m);
+    const auto e = meshing_errors_of(m);
     ASSERT_EQ(e.size(), 1u);
     EXPECT_EQ(e[0].code, "E14");
   }
   model::Model none;
-  EXPECT_EQ(errors_of(none).at(0).code, "E35");
+  EXPECT_EQ(meshing_errors_of(none).at(0).code, "E35");
 }
 
 TEST(Mesh, BodyWithoutSections) {
