@@ -72,7 +72,7 @@ LimitWatch::LimitWatch(const run::Job& job, bool small_motion) {
   const system::State still = job.system().make_state();
   system::Workspace w = job.system().make_workspace();
   job.system().evaluate_nodes(w, still.frames, still.t, still.q, still.v, still.a);
-  const auto node = [&](Index n) -> const system::NodeState& { return w.nodes[at(n)]; };
+  const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
   for (const assembly::SupportCondition& c : job.built.conditions) {
     const assembly::SupportCondition::State x = c.state(node);
     const meshes::BearingNodes& nodes = job.mesh.bearings[c.bearing];

@@ -187,7 +187,7 @@ void warn_of_short_bearings(run::Job& job, const std::string& step, const system
   std::vector<ShortFilm> films;
   for (const assembly::SupportCondition& c : job.built.conditions) {
     if (!is_short(job.model.bearings[c.bearing])) continue;
-    const auto x = c.state([&](Index n) -> const system::NodeState& { return w.nodes[at(n)]; });
+    const auto x = c.state([&](Index n) -> const system::NodeState& { return w.in_own_axes(n); });
     films.push_back({c.bearing, x.displacement / x.gap});
   }
   warn_of_short_bearings(job, step, films);

@@ -21,7 +21,7 @@ class Conditions {
   }
   SupportCondition::State of(const SupportCondition& c) const {
     return c.state([this](Index n) -> const system::NodeState& {
-      return workspace_.nodes[static_cast<std::size_t>(n)];
+      return workspace_.in_own_axes(n);
     });
   }
 
