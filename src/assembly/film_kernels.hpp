@@ -9,4 +9,9 @@ namespace whirl::assembly {
 /// @throws Error E84 as JournalSurface.
 elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int nodes);
 
+/// Force of the theory of short bearings over that of one of finite length, both plain and in steady
+/// rotation. It depends on L/D and the eccentricity alone: viscosity and speed are factors of either
+/// force.
+double short_bearing_excess(double length_over_diameter, double eccentricity);
+
 }  // namespace whirl::assembly

