@@ -68,14 +68,21 @@ function(whirl_component NAME)
 endfunction()
 
 # A test program of all test_*.cpp in a folder; each GoogleTest case becomes a CTest test.
+# UNITY: so many files a unit, where WHIRL_UNITY joins files at all and the folder's files share no names.
 function(whirl_tests NAME)
-  cmake_parse_arguments(A "" "DIR;LABEL;TIMEOUT;PCH" "DEPS;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(A "" "DIR;LABEL;TIMEOUT;PCH;UNITY" "DEPS;PROPERTIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${A_DIR}/test_*.cpp)
   if(sources)
     add_executable(test_${NAME} ${sources})
     target_link_libraries(test_${NAME} PRIVATE ${A_DEPS} GTest::gtest_main)
     if(A_PCH)
       whirl_precompile(test_${NAME} ${A_PCH} GTest::gtest)
+    endif()
+    if(A_UNITY)
+      set_target_properties(test_${NAME} PROPERTIES UNITY_BUILD ${WHIRL_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${A_UNITY})
+      if(WHIRL_UNITY_BUILD)   # fixtures in unnamed namespaces stand in an included file then
+        target_compile_options(test_${NAME} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+      endif()
     endif()
     set(timeout)
     if(A_TIMEOUT)

@@ -113,6 +113,12 @@ TEST_F(NotDecks, ManyMistakesEndSomewhere) {
   EXPECT_LE(d.errors, 60);  // reading gives up after 50 mistakes of syntax
 }
 
+// the parser's own assertion ended the program where assertions are on
+TEST_F(NotDecks, HeadersThatBeginAsNoKeyDoes) {
+  for (const char* text : {"format = 1\n[@]\n", "format = 1\n[[@]]\n", "format = 1\n[a.@]\n"})
+    EXPECT_NE(deck::read_deck_text(text).report().find("saw '@'"), std::string::npos) << text;
+}
+
 TEST_F(NotDecks, ParametersThatMultiply) {
   // each level doubles: 2^40 without a limit
   std::string text = "format = 1\n[parameters]\np0 = \"ab\"\n";
