@@ -3,8 +3,11 @@
 #include "deck_run.hpp"
 #include "written_decks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <regex>
+#include <set>
 
 namespace {
 
@@ -287,6 +290,34 @@ const Number numbers[] = {
     {"orbits", "t_orbits.csv", 32, "angle [deg]", 720, 1e-9, "the 33rd point ends the second turn"},
     {"orbits", "t_orbits.csv", -1, "angle [deg]", 720, 1e-9, "and is the last"},
     {"orbits", "t_orbits.csv", 17, "angle [deg]", 382.5, 1e-9, "the seam is there once"},
+    {"limited", "t.csv", -1, "P.z [m]", 0, 1e-15, "pushed along y"},
+    {"turned about the left end", "t.csv", 0, "far velocity.x [m/s]", 0, 1e-15, "w x r across"},
+    {"turned about the left end", "t.csv", 0, "far position.y [m]", 0, 1e-15, "not tilted yet"},
+    {"turned about the left end", "t.csv", 0, "far position.z [m]", 0, 1e-15, "not tilted yet"},
+    {"tilted", "t.csv", 0, "P gamma.2 [rad]", 0.523598775598, 1e-12, "30 degrees"},
+    {"tilted", "t.csv", 0, "P gamma.3 [rad]", 0, 1e-15, "about y alone"},
+    {"damping2 of the twist", "t.csv", 0, "P omega_phi [rad/s]", 10, 1e-12, "given"},
+    {"short rectangle", "st_deflection.csv", -1, "s [m]", 0.2, 1e-15, "the tip"},
+    {"short rectangle", "st_deflection.csv", -1, "slope_y [rad]", 3.125e-4, 1e-9, "F L^2/(2 E Iz)"},
+    {"short rectangle", "st_deflection.csv", -1, "slope_z [rad]", 1.388888889e-4, 1e-9,
+     "F L^2/(2 E Iy)"},
+    {"short rectangle", "st_supports.csv", 0, "F_x [N]", 0, 1e-9, "across alone"},
+    {"short rectangle", "st_supports.csv", 0, "M_x [N m]", -0.02222222222, 1e-7,
+     "the forces at the moved tip: -(u_y F_z - u_z F_y)"},
+    {"cantilever", "st_deflection.csv", -1, "phi [rad]", 0, 1e-9, "forces through the axis"},
+    {"cantilever", "st_sections.csv", 0, "s [m]", 0, 0, "at the wall"},
+    {"cantilever", "st_sections.csv", 0, "N [N]", 0, 1e-9, "across alone"},
+    {"cantilever", "st_sections.csv", 0, "T [N m]", 0, 1e-9, "forces through the axis"},
+    {"cantilever", "st_sections.csv", 0, "axial stress [Pa]", 0, 1e-6, "across alone"},
+    {"cantilever", "st_sections.csv", 0, "bending stress [Pa]", 16799043.61, 50, "32 M/(pi d^3)"},
+    {"cantilever", "st_sections.csv", 0, "torsion stress [Pa]", 0, 1e-6, "no torque"},
+    {"cantilever", "st_sections.csv", 0, "von Mises stress [Pa]", 16799043.61, 50, "bending alone"},
+    {"circle", "t_P_spectra.csv", 0, "t [s]", 0.2490234375, 1e-12,
+     "256 samples in 0.5 s: half of 255 intervals"},
+    {"circle", "t_tracking.csv", -1, "t [s]", 1.09, 1e-9, "middle of the last turn of 1.1 s"},
+    {"circle", "t_tracking.csv", -1, "P.z 1X [m]", 5.223504239706786e-4, 1e-10, "the circle"},
+    {"circle", "t_tracking.csv", -1, "P.z 2X [m]", 0, 1e-10, "linear"},
+    {"circle", "t_tracking.csv", -1, "P.z mean [m]", 0, 1e-10, "no weight"},
     {"orbits", "t_orbits.csv", 0, "speed [rpm]", 3000, 1e-6, "the drive's"},
 };
 
@@ -327,11 +358,13 @@ TEST(WrittenNumbers, AreThoseOfClosedForms) {
 // Stiffness of a bearing about its own place does not depend on where the node is that carries it.
 TEST(WrittenNumbers, StiffnessOfABallBearingIsThatOfItsPlace) {
   const auto decks = whirl::test::written_decks();
-  const DeckRun at(decks.at("ball bearing at its node")),
-      off(decks.at("ball bearing off its node"));
-  const auto a = at.csv("st_rolling_stiffness.csv"), b = off.csv("st_rolling_stiffness.csv");
-  ASSERT_EQ(a.rows.size(), 5u) << at.log;
-  ASSERT_EQ(b.rows.size(), 5u) << off.log;
+  const auto stiffness_of = [&](const char* deck) {  // one run at a time: they share a folder
+    return DeckRun(decks.at(deck)).csv("st_rolling_stiffness.csv");
+  };
+  const auto a = stiffness_of("ball bearing at its node"),
+             b = stiffness_of("ball bearing off its node");
+  ASSERT_EQ(a.rows.size(), 5u);
+  ASSERT_EQ(b.rows.size(), 5u);
   // rows and columns x, y, z, ry, rz; columns 0 and 1 are words
   const double force = a.rows[1][3], arm = 0.025;  // N/m; the pitch radius
   for (std::size_t i = 0; i < 5; ++i)
@@ -340,4 +373,129 @@ TEST(WrittenNumbers, StiffnessOfABallBearingIsThatOfItsPlace) {
                   1e-12 * force * (i < 3 ? 1 : arm) * (j < 3 ? 1 : arm))
           << i << " " << j;
   EXPECT_GT(std::abs(a.rows[1][6]), 1e-3 * force * arm);  // a push across tilts: an arm would show
+}
+
+namespace {
+
+/// "st_sections.csv" -> "sections"; the history of a step: "history".
+std::string kind_of(const std::string& file) {
+  const std::string stem = file.substr(0, file.rfind('.'));
+  const std::size_t end_of_step = stem.find('_');
+  return end_of_step == std::string::npos ? "history" : stem.substr(end_of_step + 1);
+}
+
+/// Heading without what a deck names and counts: "P.y 1X [m]" -> "#.y 1X [m]".
+std::string general(std::string heading, const std::string& deck) {
+  std::vector<std::string> names;
+  const std::regex name("name = \"([^\"]*)\"");
+  for (std::sregex_iterator i(deck.begin(), deck.end(), name), end; i != end; ++i)
+    names.push_back((*i)[1]);
+  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
+    return a.size() != b.size() ? a.size() > b.size() : a < b;
+  });
+  std::erase(names, "t");             // a step; the time is called so too
+  for (const std::string& n : names)  // whole words, but the unit
+    heading = std::regex_replace(heading, std::regex("(^|[ :,])" + n + "($|[ .,_])"), "$1#$2");
+  heading = std::regex_replace(heading, std::regex("^[0-9]+ [FB] "), "mode ");
+  heading = std::regex_replace(heading, std::regex("^critical [0-9]+"), "critical");
+  heading = std::regex_replace(heading, std::regex("^(c = .*|c) \\[.*"), "parameter");
+  return std::regex_replace(heading, std::regex("^-?[0-9.]+ Hz"), "line");
+}
+
+struct Elsewhere {
+  const char* kind;
+  const char* heading;
+  const char* where;
+};
+
+/// Columns that no row of `numbers` reads, and what reads them; "open": nothing does yet.
+const Elsewhere elsewhere[] = {
+    {"campbell", "mode direction [-]", "app/test_direction.cpp"},
+    {"coefficients", "Sommerfeld number [-]", "app/test_support_decks.cpp, test_step_speeds.cpp"},
+    {"coefficients", "eccentricity / clearance [-]",
+     "app/test_support_decks.cpp, test_step_speeds.cpp"},
+    {"coefficients", "bearing [-]", "open: a name"},
+    {"critical_speeds", "direction [-]", "app/test_direction.cpp"},
+    {"critical_speeds", "kind [-]", "app/test_direction.cpp"},
+    {"damped", "direction [-]", "app/test_direction.cpp"},
+    {"damped", "kind [-]", "app/test_direction.cpp"},
+    {"undamped", "direction [-]", "app/test_direction.cpp"},
+    {"undamped", "kind [-]", "app/test_direction.cpp"},
+    {"onset", "direction [-]", "app/test_direction.cpp"},
+    {"onset", "kind [-]", "app/test_direction.cpp"},
+    {"modes", "direction [-]", "app/test_direction.cpp"},
+    {"modes", "kind [-]", "app/test_direction.cpp"},
+    {"onset", "above this speed [-]", "app/test_spectra.cpp"},
+    {"modes", "forwardness [-]", "app/test_direction.cpp"},
+    {"modes", "label [-]", "app/test_direction.cpp"},
+    {"deflection", "shaft [-]", "open: names"},
+    {"deflection", "station [-]", "open: names"},
+    {"deflection", "u_x [m]", "app/test_keys_matter.cpp"},
+    {"energy", "energy [-]", "above, as text"},
+    {"energy", "part [-]", "above, as text"},
+    {"energy", "from [-]", "open: places"},
+    {"energy", "to [-]", "open: places"},
+    {"energy_parts", "kinetic: shaft [%]", "open: shares of a flexible shaft"},
+    {"energy_parts", "strain: shaft [%]", "open: shares of a flexible shaft"},
+    {"equilibria", "proved [-]", "app/test_static_stability.cpp"},
+    {"events", "event [-]", "open: names"},
+    {"events", "passage [-]", "open: names"},
+    {"history", "energy.gravity [J]", "app/test_energy_balance.cpp"},
+    {"map_onset", "remark [-]", "open: words"},
+    {"margins", "probe [-]", "open: words"},
+    {"margins", "result [-]", "open: words"},
+    {"orbits", "probe [-]", "open: a name"},
+    {"orbits", "time [s]", "open: the orbit itself"},
+    {"orbits", "y [m]", "open: the orbit itself"},
+    {"orbits", "z [m]", "open: the orbit itself"},
+    {"peaks", "probe [-]", "open: a name"},
+    {"peaks", "amplitude 0-peak [m]", "the examples in tests/CMakeLists.txt, from the summary"},
+    {"peaks", "time [s]", "the examples in tests/CMakeLists.txt, from the summary"},
+    {"peaks", "amplitude [rad]", "open: peaks of harmonic responses"},
+    {"peaks", "frequency [Hz]", "open: peaks of harmonic responses"},
+    {"response", "bearing # force x [N]", "open: twisting and axial responses"},
+    {"response", "largest torque in # [N.m]", "open: twisting and axial responses"},
+    {"response", "frequency [Hz]", "app/test_direction.cpp"},
+    {"rolling", "angle [deg]", "app/test_rolling_loads.cpp"},
+    {"rolling", "bearing [-]", "app/test_rolling_loads.cpp"},
+    {"rolling", "element [-]", "app/test_rolling_loads.cpp"},
+    {"rolling", "load [N]", "app/test_rolling_loads.cpp"},
+    {"rolling_stiffness", "bearing [-]", "StiffnessOfABallBearingIsThatOfItsPlace"},
+    {"rolling_stiffness", "force or moment [-]", "StiffnessOfABallBearingIsThatOfItsPlace"},
+    {"rolling_stiffness", "per ry [N/rad, N m/rad]", "StiffnessOfABallBearingIsThatOfItsPlace"},
+    {"rolling_stiffness", "per rz [N/rad, N m/rad]", "StiffnessOfABallBearingIsThatOfItsPlace"},
+    {"rolling_stiffness", "per x [N/m, N]", "StiffnessOfABallBearingIsThatOfItsPlace"},
+    {"rolling_stiffness", "per y [N/m, N]", "StiffnessOfABallBearingIsThatOfItsPlace"},
+    {"rolling_stiffness", "per z [N/m, N]", "StiffnessOfABallBearingIsThatOfItsPlace"},
+    {"sections", "element [-]", "open: names"},
+    {"sections", "shaft [-]", "open: names"},
+    {"supports", "support [-]", "open: a name"},
+    {"tracking", "#.y 2X lag [deg]", "analysis/test_postprocess.cpp"},
+    {"tracking", "#.z 2X lag [deg]", "analysis/test_postprocess.cpp"},
+    {"tracking", "#.y envelope [m]", "analysis/test_postprocess.cpp"},
+    {"tracking", "#.z envelope [m]", "analysis/test_postprocess.cpp"},
+    {"verdicts", "certified [-]", "analysis/test_certificates.cpp"},
+    {"verdicts", "roots counted up to [Hz]", "analysis/test_certificates.cpp"},
+};
+
+}  // namespace
+
+// The list of columns is what the program writes: a new one needs a row above or a line here.
+TEST(WrittenNumbers, EveryColumnIsReadByATest) {
+  using Column = std::pair<std::string, std::string>;
+  std::set<Column> read, written;
+  for (const Elsewhere& e : elsewhere)
+    read.insert({e.kind, e.heading});
+  const auto decks = whirl::test::written_decks();
+  for (const Number& n : numbers)
+    read.insert({general(kind_of(n.file), decks.at(n.deck)), general(n.column, decks.at(n.deck))});
+  for (const auto& [name, deck] : decks) {
+    const DeckRun run(deck);
+    for (const auto& entry : std::filesystem::directory_iterator(run.folder / "r"))
+      if (entry.path().extension() == ".csv")
+        for (const std::string& heading : run.csv(entry.path().filename()).names)
+          written.insert({general(kind_of(entry.path().filename()), deck), general(heading, deck)});
+  }
+  for (const Column& c : written)
+    EXPECT_TRUE(read.contains(c)) << "{\"" << c.first << "\", \"" << c.second << "\", \"\"},";
 }
