@@ -96,6 +96,8 @@ const Number numbers[] = {
     {"damping2 of the twist", "t.csv", -1, "P phi [rad]", 1, 1e-7, "(3 Ip w/c2)^(1/3)"},
     {"ball bearing pushed along", "t.csv", -1, "P position.x [m]", 0.10004006737947, 1e-11,
      "0.1 m + F/c (t - m/c (1 - exp(-c t/m))): within its play"},
+    {"roller bearing pushed along", "t.csv", -1, "P position.x [m]", 0.10004006737947, 1e-11,
+     "the same, without any play"},
     // (k - m w^2) y = k p; (k + K - M w^2) p - i w C p' = k y
     {"coupled casing", "h_response.csv", 0, "P y amplitude [m]", 2.873071864957560e-4, 1e-15,
      "four equations"},

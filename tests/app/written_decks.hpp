@@ -364,6 +364,20 @@ c_axial = "1e4 N.s/m"
 at = "mass"
 force = ["100 N", "0 N", "0 N"]
 )" + transient("duration = \"5 ms\"\nstart = \"rest\"\n"))},
+      {"roller bearing pushed along", loose_mass(R"("y", "z", "ry", "rz")", "\"positions\"",
+                                                 R"([[bearing]]
+name = "roller"
+at = "mass"
+type = "roller"
+rollers = 13
+roller_diameter = "10 mm"
+roller_length = "10 mm"
+pitch_diameter = "50 mm"
+c_axial = "1e4 N.s/m"
+[[load]]
+at = "mass"
+force = ["100 N", "0 N", "0 N"]
+)" + transient("duration = \"5 ms\"\nstart = \"rest\"\n"))},
       {"coupled casing", coupled_casing},
       {"window", spinning_mass("every = \"1 ms\"\nwindow = [\"5 ms\", \"10 ms\"]\n",
                                transient("duration = \"20 ms\"\n"))},
