@@ -48,14 +48,18 @@ Mat2 differences(const assembly::SupportForce& f, const system::Workspace& w, In
 }
 
 /// Stiffness in (x, y, z, ry, rz) of the point o along the axis from the node, from that of the
-/// node in (x, y, z, phi, ry, rz).
-Matrix<5> at_point(const Matrix<6>& node, double o) {
+/// node in (x, y, z, phi, ry, rz). axial: force on the shaft there, which gives the node a moment
+/// when the arm o tilts.
+Matrix<5> at_point(const Matrix<6>& node, double o, double axial) {
   // of a shift and a turn of the point: u_y at the node = u_y - o rz, u_z = u_z + o ry
   Matrix<6, 5> A = Matrix<6, 5>::Zero();
   A(0, 0) = A(1, 1) = A(2, 2) = A(4, 3) = A(5, 4) = 1.0;
   A(1, 4) = -o;
   A(2, 3) = o;
-  return A.transpose() * node * A;
+  Matrix<5> K = A.transpose() * node * A;
+  K(3, 3) -= o * axial;
+  K(4, 4) -= o * axial;
+  return K;
 }
 
 /// Threshold of a rigid rotor in translation on K, C: at the onset (m l^2 + C l + K) x = 0 has l =
@@ -96,6 +100,12 @@ double grid_error_of(const model::FiniteJournal& law, const elements::LateralMot
   return worst;
 }
 
+/// Of a support without a constraint, in an evaluated state.
+Vec3 force_on_shaft(const assembly::SupportForce& support, const system::Workspace& w) {
+  return support.force([&](Index k) -> const system::NodeState& { return w.in_own_axes(k); },
+                       w.context, [](Index) { return 0.0; });
+}
+
 /// Spin, place, load and its attitude, gap of a support in an evaluated state.
 void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
                     const system::Workspace& w) {
@@ -107,7 +117,7 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
   };
   c.spin = node(n.shaft.node).spin();
   c.place = place(n.shaft) - place(n.other);
-  const Vec2 F = force.force(node, w.context, [](Index) { return 0.0; }).tail<2>();
+  const Vec2 F = force_on_shaft(force, w).tail<2>();
   c.load = F.norm();
   if (c.load > 0 && c.place.norm() > 0) {
     c.attitude = (std::atan2(c.place.y(), c.place.x()) - std::atan2(-F.y(), -F.x())) * 180.0 / pi;
@@ -155,7 +165,10 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
     if (!shared(job, i, n.shaft.node, only)) {
       c.K = matrices.K.block(slot).block<2, 2>(1, 1);
       c.C = matrices.C.block(slot).block<2, 2>(1, 1);
-      if (law.rolling) c.K5 = at_point(matrices.K.block(slot), n.shaft.offset);
+      if (law.rolling) {
+        const double axial = force_on_shaft(support, w).x();
+        c.K5 = at_point(matrices.K.block(slot), n.shaft.offset, axial);
+      }
     } else {  // two of a kind on one node stand in one block
       c.K = differences(support, w, n.shaft.node, &system::NodeState::u, 1e-9);
       c.C = differences(support, w, n.shaft.node, &system::NodeState::du, 1e-6);

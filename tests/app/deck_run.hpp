@@ -25,15 +25,27 @@ struct Columns {
     std::ifstream in(csv);
     std::string line;
     std::getline(in, line);
-    std::istringstream head(line);
-    for (std::string name; std::getline(head, name, ',');)
-      names.push_back(name);
+    names = cells_of(line);
     while (std::getline(in, line)) {
-      std::istringstream cells(line);
       rows.emplace_back();
-      for (std::string cell; std::getline(cells, cell, ',');)
+      for (const std::string& cell : cells_of(line))
         rows.back().push_back(number(cell));
     }
+  }
+  /// Of a line; a comma within quotes parts nothing.
+  static std::vector<std::string> cells_of(const std::string& line) {
+    std::vector<std::string> cells;
+    bool quoted = false;
+    for (const char c : line) {
+      if (cells.empty()) cells.emplace_back();
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
+    }
+    return cells;
   }
   static double number(const std::string& cell) {
     char* end = nullptr;

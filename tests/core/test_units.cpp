@@ -2,8 +2,10 @@
 // of roundings is named.
 #include <core/types.hpp>
 #include <core/units.hpp>
+#include <core/units_table.hpp>
 #include <gtest/gtest.h>
 #include <cmath>
+#include <map>
 #include <random>
 
 using namespace whirl;
@@ -111,6 +113,84 @@ TEST(Units, Values) {
     // four roundings at most: the number, two scales, the quotient
     EXPECT_NEAR(c.value, g.value, 4 * 1.2e-16 * std::abs(g.value)) << g.text;
   }
+}
+
+// Every unit of the table by what it is defined as; one that is added needs its line here.
+TEST(Units, EveryUnitOfTheTableIsWhatItIsDefinedAs) {
+  struct Definition {
+    const char* si;
+    double value;  ///< of "1 <unit>"
+  };
+  const double inch = 0.0254, foot = 12 * inch, pound = 0.45359237, gravity = 9.80665;
+  const double pound_force = pound * gravity;
+  const std::map<std::string, Definition> definitions = {
+      {"m", {"m", 1}},
+      {"in", {"m", inch}},
+      {"inch", {"m", inch}},
+      {"ft", {"m", foot}},
+      {"mil", {"m", inch / 1000}},
+      {"thou", {"m", inch / 1000}},
+      {"L", {"m^3", 0.1 * 0.1 * 0.1}},
+      {"kg", {"kg", 1}},
+      {"g", {"kg", 1e-3}},
+      {"t", {"kg", 1e3}},
+      {"lbm", {"kg", pound}},
+      {"oz", {"kg", pound / 16}},
+      {"slug", {"kg", pound_force / foot}},
+      {"s", {"s", 1}},
+      {"min", {"s", 60}},
+      {"h", {"s", 60 * 60}},
+      {"day", {"s", 24 * 60 * 60}},
+      {"rad", {"rad", 1}},
+      {"deg", {"rad", two_pi / 360}},
+      {"rev", {"rad", two_pi}},
+      {"turn", {"rad", two_pi}},
+      {"rpm", {"rad/s", two_pi / 60}},
+      {"Hz", {"1/s", 1}},
+      {"cpm", {"1/s", 1.0 / 60}},
+      {"N", {"kg.m/s^2", 1}},
+      {"kgf", {"N", gravity}},
+      {"lbf", {"N", pound_force}},
+      {"ozf", {"N", pound_force / 16}},
+      {"Pa", {"N/m^2", 1}},
+      {"bar", {"Pa", 1e5}},
+      {"atm", {"Pa", 101325}},
+      {"psi", {"Pa", pound_force / (inch * inch)}},
+      {"ksi", {"Pa", 1000 * pound_force / (inch * inch)}},
+      {"J", {"N.m", 1}},
+      {"W", {"N.m/s", 1}},
+      {"hp", {"W", 550 * foot * pound_force}},
+      {"P", {"Pa.s", 0.1}},
+      {"reyn", {"Pa.s", pound_force / (inch * inch)}},
+      {"St", {"m^2/s", 0.01 * 0.01}},
+      {"gn", {"m/s^2", gravity}},
+      {"K", {"K", 1}},
+      {"degC", {"K", 1 + 273.15}},
+      {"degF", {"K", (1 - 32) / 1.8 + 273.15}},
+      {"A", {"A", 1}},
+      {"V", {"W/A", 1}},
+      {"Ohm", {"V/A", 1}},
+      {"%", {"", 0.01}},
+      {"ppm", {"", 1e-6}},
+  };
+  const std::map<char, double> prefixes = {{'n', 1e-9}, {'u', 1e-6}, {'m', 1e-3}, {'c', 1e-2},
+                                           {'d', 1e-1}, {'k', 1e3},  {'M', 1e6},  {'G', 1e9}};
+  for (const units::Entry& unit : units::entries()) {
+    const auto known = definitions.find(unit.name);
+    ASSERT_NE(known, definitions.end()) << unit.name << ": what is it defined as?";
+    const auto expect = [&](const std::string& name, double value) {
+      const auto c = units::convert("1 " + name, known->second.si);
+      ASSERT_FALSE(c.problem) << name << ": " << c.problem->message;
+      // products and quotients of four factors at most
+      EXPECT_NEAR(c.value, value, 8 * 1.2e-16 * value) << name;
+    };
+    expect(unit.name, known->second.value);
+    for (const char prefix : std::string(unit.prefixes)) {
+      ASSERT_TRUE(prefixes.contains(prefix)) << unit.name << ": " << prefix;
+      expect(prefix + std::string(unit.name), prefixes.at(prefix) * known->second.value);
+    }
+  }
+  EXPECT_EQ(definitions.size(), units::entries().size());
 }
 
 TEST(Units, DecimalLiteralsAreExact) {

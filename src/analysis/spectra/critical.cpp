@@ -270,7 +270,6 @@ class MapTracker {
     MotionReduction motion(*p.system, options_.critical.motion);
     p.matrices = motion.reduce(linear.conservative_at(options_.critical.max_speed));
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (!wanted(all, i)) continue;
       MapPoint::Entry e;
       e.critical = all[i];
       std::vector<std::size_t> group{i};
@@ -279,23 +278,34 @@ class MapTracker {
       e.space.resize(all[i].mode.x.size(), static_cast<Index>(group.size()));
       for (std::size_t j = 0; j < group.size(); ++j)
         e.space.col(static_cast<Index>(j)) = all[group[j]].mode.x;
+      if (!wanted(all, i, p.matrices, e.space)) continue;
+      if (options_.forward_only && e.critical.mode.direction == Direction::backward)
+        e.critical.mode.direction = Direction::forward;  // as turns_forward() says
       p.entries.push_back(std::move(e));
     }
     return p;
   }
 
-  bool wanted(const std::vector<Critical>& all, std::size_t i) const {
+  /// Without gyroscopic effect the shapes of a double root are any two motions of their plane, be
+  /// they found as backward both: with a shape its mirror image is there, which turns forward.
+  static bool turns_forward(const WhirlMode& mode, const la::MCK& matrices, const MatXc& space) {
+    return mode.direction != Direction::backward ||
+           share_in(matrices, mode.x.conjugate(), space) > 1.0 - 1e-6;
+  }
+
+  bool wanted(const std::vector<Critical>& all, std::size_t i, const la::MCK& matrices,
+              const MatXc& space) const {
     const WhirlMode& m = all[i].mode;
     const Motion motion = options_.critical.motion;
     if (motion == Motion::lateral && m.kind != ModeKind::lateral) return false;
     if (motion == Motion::torsional && m.kind != ModeKind::torsional) return false;
     if (motion == Motion::axial && m.kind != ModeKind::axial) return false;
     if (!options_.forward_only || m.kind != ModeKind::lateral) return true;
-    if (m.direction == Direction::backward) return false;
+    if (!turns_forward(m, matrices, space)) return false;
     // without gyroscopic effect both planes have the same speed: one line
     for (std::size_t j = 0; j < i; ++j)
       if (same_speed(all[j], all[i]) && all[j].mode.kind == ModeKind::lateral &&
-          all[j].mode.direction != Direction::backward)
+          turns_forward(all[j].mode, matrices, space))
         return false;
     return true;
   }

@@ -1,0 +1,583 @@
+// Every key of a deck matters: pairs of decks that differ in one key, and the number the second one
+// must then write, from a closed form. The list of keys is that of the program.
+#include "deck_run.hpp"
+#include "written_decks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+namespace {
+
+using whirl::test::DeckRun;
+
+/// A round cantilever, 200 mm by 50 mm, 200 GPa, 80 GPa, with 1 kN along y at its tip.
+const std::string bar = R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "m"
+E = "200 GPa"
+G = "80 GPa"
+density = "8000 kg/m^3"
+expansion = "1e-5 1/K"
+[[material]]
+name = "soft"
+E = "100 GPa"
+G = "40 GPa"
+density = "8000 kg/m^3"
+[[shaft]]
+name = "r"
+material = "m"
+[[shaft.section]]
+name = "a"
+length = "200 mm"
+od = "50 mm"
+[[bearing]]
+name = "wall"
+at = "r/0 mm"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+[[load]]
+at = "r/200 mm"
+force = ["0 N", "1 kN", "0 N"]
+[[step]]
+name = "st"
+type = "static"
+[output]
+report = false
+)";
+
+std::string hot_bar() {
+  const std::string od = "od = \"50 mm\"\n";
+  std::string deck = bar;
+  return deck.insert(deck.find(od), "temperature_rise = \"100 K\"\n");
+}
+
+/// The mass on springs under its own weight.
+const std::string weight =
+    whirl::test::mass_on_springs("[[step]]\nname = \"st\"\ntype = \"static\"\n");
+
+struct Pair {
+  const char* table;  ///< as the reference calls it
+  const char* key;
+  const char* deck;  ///< "bar", "hot bar", "weight" or one of the written decks
+  const char* from;  ///< text of the deck, once there
+  const char* to;
+  const char* file;
+  int row;  ///< from 0; negative: from the end
+  const char* column;
+  double after, tolerance;
+  const char* why;
+};
+
+const Pair pairs[] = {
+    {"[model]", "gravity", "weight", "\"0 m/s^2\"", "\"10 m/s^2\"", "st_deflection.csv", 1,
+     "u_z [m]", -1e-4, 1e-12, "-m g/k"},
+    {"[model]", "gravity_direction", "weight", "\"0 m/s^2\"",
+     "\"10 m/s^2\"\ngravity_direction = \"+y\"", "st_deflection.csv", 1, "u_y [m]", 1e-4, 1e-12,
+     "m g/k"},
+    {"[model]", "gravity_vector", "weight", "gravity = \"0 m/s^2\"",
+     "gravity_vector = [\"0 m/s^2\", \"3 m/s^2\", \"0 m/s^2\"]", "st_deflection.csv", 1, "u_y [m]",
+     3e-5, 1e-12, "m g/k"},
+    // F L^3/(3 E I) + F L/(kappa G A), kappa = 6 (1 + nu)/(7 + 6 nu) after Cowper
+    {"[[material]]", "E", "laden rectangle", "E = \"200 GPa\"\nG = \"80 GPa\"",
+     "E = \"800 GPa\"\nG = \"320 GPa\"", "m_modes.csv", 0, "frequency [Hz]", 147.0782432796, 1e-3,
+     "pi/2 sqrt(E I/(29.2 kg/m))"},
+    {"[[material]]", "G", "short rectangle", "80 GPa", "160 GPa", "st_deflection.csv", -1,
+     "u_y [m]", 4.224537037e-5, 5e-11, "half the shear"},
+    {"[[material]]", "nu", "short rectangle", "G = \"80 GPa\"", "nu = 0", "st_deflection.csv", -1,
+     "u_y [m]", 4.259259259e-5, 5e-11, "G = E/2"},
+    {"[[material]]", "density", "laden rectangle", "8000 kg", "2000 kg", "m_modes.csv", 0,
+     "frequency [Hz]", 103.2949, 1e-3, "pi/2 sqrt(E I/(14.8 kg/m))"},
+    {"[[material]]", "expansion", "hot bar", "1e-5 1/K", "2e-5 1/K", "st_deflection.csv", -1,
+     "u_x [m]", 4e-4, 1e-8, "expansion 100 K L"},
+    {"[[shaft]]", "material", "bar", "material = \"m\"", "material = \"soft\"", "st_deflection.csv",
+     -1, "u_y [m]", 8.980582922e-5, 1e-10, "half the moduli"},
+    {"[[shaft]]", "shear", "bar", "material = \"m\"", "material = \"m\"\nshear = \"none\"",
+     "st_deflection.csv", -1, "u_y [m]", 4.345990979e-5, 5e-11, "F L^3/(3 E I)"},
+    {"[[shaft]]", "kappa", "bar", "material = \"m\"",
+     "material = \"m\"\nshear = \"given\"\nkappa = 0.5", "st_deflection.csv", -1, "u_y [m]",
+     4.600638888e-5, 5e-11, "F L/(0.5 G A)"},
+    {"[[shaft]]", "temperature_rise", "bar", "material = \"m\"",
+     "material = \"m\"\ntemperature_rise = \"100 K\"", "st_deflection.csv", -1, "u_x [m]", 2e-4,
+     1e-8, "expansion 100 K L"},
+    {"[[shaft]]", "axial_force", "bar", "material = \"m\"",
+     "material = \"m\"\naxial_force = \"100 kN\"", "st_deflection.csv", -1, "u_x [m]",
+     5.0929581789e-5, 2e-8, "F L/(E A)"},
+    {"[[shaft]]", "speed_ratio", "unbalance", "[shaft]\n", "[shaft]\nspeed_ratio = 2\n",
+     "u_response.csv", 0, "P major [m]", 7.625437462229e-5, 1e-16, "of 2000 rpm"},
+    {"[[shaft]]", "initial_spin", "events", "[shaft]\n", "[shaft]\ninitial_spin = \"100 rpm\"\n",
+     "t.csv", 0, "speed [rpm]", 100, 1e-9, "the speed at the start"},
+    {"[[shaft.section]]", "length", "bar", "length = \"200 mm\"", "length = \"300 mm\"",
+     "st_deflection.csv", -1, "u_y [m]", 7.749784696e-05, 1e-10,
+     "and the slope at the load times 100 mm"},
+    {"[[shaft.section]]", "od", "bar", "od = \"50 mm\"", "od = \"60 mm\"", "st_deflection.csv", -1,
+     "u_y [m]", 2.196076231e-5, 5e-11, "closed form"},
+    {"[[shaft.section]]", "id", "bar", "od = \"50 mm\"", "od = \"50 mm\"\nid = \"25 mm\"",
+     "st_deflection.csv", -1, "u_y [m]", 4.911422514e-5, 5e-11, "closed form"},
+    {"[[shaft.section]]", "stiffness_od", "bar", "od = \"50 mm\"",
+     "od = \"50 mm\"\nstiffness_od = \"60 mm\"", "st_deflection.csv", -1, "u_y [m]", 2.196076231e-5,
+     5e-11, "stiff as 60 mm"},
+    {"[[shaft.section]]", "stiffness_id", "bar", "od = \"50 mm\"",
+     "od = \"50 mm\"\nstiffness_od = \"50 mm\"\nstiffness_id = \"25 mm\"", "st_deflection.csv", -1,
+     "u_y [m]", 4.911422514e-5, 5e-11, "stiff as a tube"},
+    {"[[shaft.section]]", "material", "bar", "od = \"50 mm\"",
+     "od = \"50 mm\"\nmaterial = \"soft\"", "st_deflection.csv", -1, "u_y [m]", 8.980582922e-5,
+     1e-10, "half the moduli"},
+    {"[[shaft.section]]", "rigid", "bar", "od = \"50 mm\"", "rigid = true", "st_deflection.csv", -1,
+     "u_y [m]", 0, 1e-15, "does not bend"},
+    {"[[shaft.section]]", "shear", "bar", "od = \"50 mm\"",
+     "od = \"50 mm\"\nshear = \"hutchinson\"", "st_deflection.csv", -1, "u_y [m]", 4.485198503e-5,
+     5e-11, "6 (1 + nu)^2/(7 + 12 nu + 4 nu^2)"},
+    {"[[shaft.section]]", "kappa", "bar", "od = \"50 mm\"",
+     "od = \"50 mm\"\nshear = \"given\"\nkappa = 0.5", "st_deflection.csv", -1, "u_y [m]",
+     4.600638888e-5, 5e-11, "F L/(0.5 G A)"},
+    {"[[shaft.section]]", "temperature_rise", "bar", "od = \"50 mm\"",
+     "od = \"50 mm\"\ntemperature_rise = \"100 K\"", "st_deflection.csv", -1, "u_x [m]", 2e-4, 1e-8,
+     "expansion 100 K L"},
+    {"[[shaft.section]]", "added_mass", "laden rectangle", "10 kg/m", "20 kg/m", "m_modes.csv", 0,
+     "frequency [Hz]", 63.46975626, 1e-3, "pi/2 sqrt(E I/(39.2 kg/m))"},
+    {"[shaft.section.general]", "kappa_y", "short rectangle", "kappa_y = 0.9", "kappa_y = 0.5",
+     "st_deflection.csv", -1, "u_y [m]", 4.375e-5, 5e-11, "F L/(kappa G A)"},
+    {"[shaft.section.general]", "kappa_z", "short rectangle", "kappa_z = 0.5", "kappa_z = 1",
+     "st_deflection.csv", -1, "u_z [m]", 1.956018519e-5, 5e-11, "F L/(kappa G A)"},
+    {"[shaft.section.general]", "Iy", "short rectangle", "720000", "320000", "st_deflection.csv",
+     -1, "u_z [m]", 4.375e-5, 5e-11, "F L^3/(3 E Iy)"},
+    {"[shaft.section.general]", "Iz", "short rectangle", "320000", "720000", "st_deflection.csv",
+     -1, "u_y [m]", 1.967592593e-5, 5e-11, "F L^3/(3 E Iz)"},
+    {"[shaft.section.general]", "A", "short rectangle", "2400", "4800", "st_deflection.csv", -1,
+     "u_y [m]", 4.224537037e-5, 5e-11, "half the shear"},
+    {"[shaft.section.general]", "angle", "short rectangle", "kappa_z = 0.5",
+     "kappa_z = 0.5\nangle = \"90 deg\"", "st_deflection.csv", -1, "u_y [m]", 2.060185185e-5, 5e-11,
+     "the section's z along -y"},
+    {"[[disk]]", "mass", "campbell", "10 kg\"", "40 kg\"", "c_campbell.csv", 0,
+     "1 F frequency [Hz]", 25.136279928017, 1e-9, "sqrt(k/m - (c/2m)^2)"},
+    {"[[disk]]", "Ip", "campbell", "0.1 kg.m^2", "0.12 kg.m^2", "m_modes.csv", 0, "frequency [Hz]",
+     45.46297157, 1e-3, "sqrt(k/Ip - (c/2Ip)^2)"},
+    {"[[bearing]], type = \"linear\"", "kyy", "backward", "kyy = \"1e6", "kyy = \"2e6",
+     "h_response.csv", 0, "P y amplitude [m]", 1.423859477e-05, 2e-8, "F/|k - m w^2 + i c w|"},
+    {"[[bearing]], type = \"linear\"", "setpoint", "weight", "kyy = \"1e6",
+     "setpoint = [\"0 mm\", \"0.3 mm\", \"0 mm\"]\nkyy = \"1e6", "st_deflection.csv", 1, "u_y [m]",
+     3e-4, 1e-12, "where the spring is free"},
+    {"[[bearing]], type = \"linear\"", "preload", "weight", "kyy = \"1e6",
+     "preload = [\"0 N\", \"0 N\", \"40 N\"]\nkyy = \"1e6", "st_deflection.csv", 1, "u_z [m]", 4e-5,
+     1e-12, "preload/k"},
+    {"[[bearing]], type = \"linear\"", "krxx", "campbell", "krxx = \"1e4", "krxx = \"4e4",
+     "m_modes.csv", 0, "frequency [Hz]", 100.343373595157, 1e-8, "sqrt(k/Ip - (c/2Ip)^2)"},
+    {"[[bearing]], type = \"linear\"", "crxx", "campbell", "crxx = \"10", "crxx = \"20",
+     "m_modes.csv", 0, "frequency [Hz]", 47.746482927569, 1e-8, "sqrt(k/Ip - (c/2Ip)^2)"},
+    {"[[bearing]], type = \"nonlinear_spring\"", "damping2", "damping2", "3e7 N.s", "2.4e8 N.s",
+     "t.csv", -1, "P.y [m]", 0.005, 1e-9, "(3 m v/c2)^(1/3)"},
+    {"[[bearing]], type = \"nonlinear_angular_spring\"", "damping2", "damping2 of the twist",
+     "3 N.m.s", "24 N.m.s", "t.csv", -1, "P phi [rad]", 0.5, 1e-7, "(3 Ip w/c2)^(1/3)"},
+    {"[[bearing]], type = \"ball\"", "c_axial", "ball bearing pushed along", "1e4 N.s", "2e4 N.s",
+     "t.csv", -1, "P position.x [m]", 0.10002250011350, 1e-10, "F/c (t - m/c (1 - exp(-c t/m)))"},
+    {"[[load]]", "force", "bar", "\"1 kN\"", "\"2 kN\"", "st_deflection.csv", -1, "u_y [m]",
+     8.980582922e-5, 1e-10, "twice"},
+    {"[[load]]", "at", "bar", "\"r/200 mm\"", "\"r/100 mm\"", "st_deflection.csv", -1, "u_y [m]",
+     1.430272422e-5, 5e-11, "F a^3/(3 E I) + F a/(kappa G A) + F a^2/(2 E I) a"},
+    {"[[load]]", "moment", "bar", "force = [",
+     "moment = [\"0 N.m\", \"0 N.m\", \"100 N.m\"]\nforce = [", "st_deflection.csv", -1, "u_y [m]",
+     7.749784696e-05, 5e-10, "and M L^2/(2 E I)"},
+    {"[[unbalance]]", "amount", "unbalance", "1 kg.mm", "2 kg.mm", "u_response.csv", 0,
+     "P major [m]", 2.457274608863e-5, 1e-16, "twice"},
+    {"[[unbalance]]", "phase", "unbalance", "60 deg", "0 deg", "u_response.csv", 0,
+     "P y phase lag [deg]", 4.036717069707, 1e-9, "atan2(c w, k - m w^2)"},
+    {"[[drive]], type = \"torque\"", "torque", "events", "1 N.m", "2 N.m", "t.csv", -1, "phi [rad]",
+     10, 1e-10, "T t^2/(2 Ip)"},
+    {"[[drive]], type = \"speed\"", "speed", "orbits", "3000 rpm", "1500 rpm", "t.csv", -1,
+     "speed [rpm]", 1500, 1e-6, "held"},
+    {"[[event]], type = \"speed\"", "value", "events", "\"5 rad/s\"", "\"2 rad/s\"", "t_events.csv",
+     0, "time [s]", 0.2, 1e-11, "w Ip/T"},
+    {"[[event]]", "stop", "events", "type = \"speed\"", "type = \"speed\"\nstop = true", "t.csv",
+     -1, "t [s]", 0.5, 1e-9, "the passage ends the run"},
+    {"[[initial]]", "about", "turned about the left end", "velocity = [\"0 m/s\"",
+     "about = [\"200 mm\", \"0 mm\", \"0 mm\"]\nvelocity = [\"0 m/s\"", "t.csv", 0,
+     "far velocity.y [m/s]", 0.1, 1e-14, "the velocity of the point itself"},
+    {"[[initial]]", "velocity", "turned about the left end", "\"0.1 m/s\"", "\"0.2 m/s\"", "t.csv",
+     0, "far velocity.y [m/s]", 0.8, 1e-14, "v + w r"},
+    {"[[initial]]", "displacement", "turned about the left end", "velocity = [\"0 m/s\"",
+     "displacement = [\"0 mm\", \"3 mm\", \"0 mm\"]\nvelocity = [\"0 m/s\"", "t.csv", 0,
+     "P position.y [m]", 3e-3, 1e-14, "shifted"},
+    {"[[initial]]", "tilt", "tilted", "30 deg", "60 deg", "t.csv", 0, "speed [rpm]", 312.0661606,
+     1e-4, "100 cos 60 - 20 sin 60 rad/s"},
+    {"[[step]], type = \"transient\"", "duration", "events", "\"1 s\"", "\"2 s\"", "t.csv", -1,
+     "speed [rpm]", 190.985931710274, 1e-8, "T t/Ip"},
+    {"[[step]], type = \"transient\"", "initial_speed", "events", "start = \"rest\"",
+     "start = \"rest\"\ninitial_speed = \"60 rpm\"", "t.csv", 0, "speed [rpm]", 60, 1e-9,
+     "the speed at the start"},
+    {"[[step]], type = \"transient\"", "stop_speed", "events", "start = \"rest\"",
+     "start = \"rest\"\nstop_speed = \"2 rad/s\"", "t.csv", -1, "t [s]", 0.2, 1e-9, "w Ip/T"},
+    {"[step.integrator]", "dt", "events", "tolerance = 1e-8", "dt = \"50 ms\"", "t.csv", 1, "t [s]",
+     0.05, 1e-14, "the first step"},
+    {"[step.integrator]", "dt_first", "events", "tolerance = 1e-8",
+     "tolerance = 1e-8\ndt_first = \"3 ms\"", "t.csv", 1, "t [s]", 0.003, 1e-14, "the first step"},
+    {"[output]", "every", "window", "every = \"1 ms\"", "every = \"2 ms\"", "t.csv", 1, "t [s]",
+     8e-3, 1e-14, "6 ms, 8 ms"},
+    {"[output]", "window", "window", "\"10 ms\"", "\"8 ms\"", "t.csv", -1, "t [s]", 8e-3, 1e-14,
+     "its end"},
+    {"[output.tracking]", "samples", "orbits", "samples = 16", "samples = 32", "t_orbits.csv", 1,
+     "angle [deg]", 11.25, 1e-9, "of 360 deg"},
+    {"[output.tracking]", "orbit_turns", "orbits", "orbit_turns = 2", "orbit_turns = 3",
+     "t_orbits.csv", -1, "angle [deg]", 1080, 1e-9, "three turns"},
+};
+
+double number_of(const std::string& deck, const Pair& p) {
+  const DeckRun run(deck);
+  EXPECT_EQ(run.exit, 0) << run.log;
+  const auto csv = run.csv(p.file);
+  const std::size_t rows = csv.rows.size();
+  const std::size_t row =
+      p.row < 0 ? rows - static_cast<std::size_t>(-p.row) : static_cast<std::size_t>(p.row);
+  EXPECT_LT(row, rows) << p.file;
+  return row < rows ? csv.rows[row][csv.column(p.column)] : std::nan("");
+}
+
+struct Elsewhere {
+  const char* table;
+  const char* key;  ///< "*": every key of the table
+  const char* where;
+};
+
+/// Keys without a pair: tests whose decks have the table, or why none is needed; "open": nothing
+/// reads what the key changes yet.
+const Elsewhere elsewhere[] = {
+    {"Top level", "*", "open"},
+    {"[model]", "axis", "open"},
+    {"[model]", "chart_change", "open"},
+    {"[model]", "keep_everything", "open"},
+    {"[model]", "mesh", "open"},
+    {"[model.mesh]", "*", "app/test_spectra.cpp, app/test_check_refuses.cpp"},
+    {"[[material]]", "name", "a name"},
+    {"[[material]]", "yield", "open"},
+    {"[[shaft]]", "name", "a name"},
+    {"[[shaft]]", "origin", "open"},
+    {"[[shaft]]", "path", "open"},
+    {"[[shaft]]", "rotary_inertia", "open"},
+    {"[[shaft]]", "rotating", "open"},
+    {"[[shaft]]", "axial_preload", "open"},
+    {"[[shaft]]", "bow", "open"},
+    {"[[shaft]]", "damping", "open"},
+    {"[[shaft]]", "section", "open"},
+    {"[[shaft]]", "from", "open"},
+    {"[[shaft]]", "length", "open"},
+    {"[[shaft]]", "od", "open"},
+    {"[[shaft]]", "id", "open"},
+    {"[[shaft]]", "od_l", "open"},
+    {"[[shaft]]", "id_l", "open"},
+    {"[[shaft]]", "od_r", "open"},
+    {"[[shaft]]", "id_r", "open"},
+    {"[[shaft]]", "stiffness_od", "open"},
+    {"[[shaft]]", "stiffness_id", "open"},
+    {"[[shaft]]", "stiffness_od_l", "open"},
+    {"[[shaft]]", "stiffness_id_l", "open"},
+    {"[[shaft]]", "stiffness_od_r", "open"},
+    {"[[shaft]]", "stiffness_id_r", "open"},
+    {"[[shaft]]", "rigid", "open"},
+    {"[[shaft]]", "added_mass", "open"},
+    {"[[shaft]]", "min_elements", "open"},
+    {"[[shaft]]", "max_element_length", "open"},
+    {"[[shaft.path]]", "*", "app/test_static_stability.cpp"},
+    {"[shaft.bow]", "*", "validation/test_static_rotor.cpp"},
+    {"[shaft.damping]", "*", "app/test_support_decks.cpp"},
+    {"[[shaft.section]]", "name", "a name"},
+    {"[[shaft.section]]", "from", "open"},
+    {"[[shaft.section]]", "od_l", "open"},
+    {"[[shaft.section]]", "id_l", "open"},
+    {"[[shaft.section]]", "od_r", "open"},
+    {"[[shaft.section]]", "id_r", "open"},
+    {"[[shaft.section]]", "stiffness_od_l", "open"},
+    {"[[shaft.section]]", "stiffness_id_l", "open"},
+    {"[[shaft.section]]", "stiffness_od_r", "open"},
+    {"[[shaft.section]]", "stiffness_id_r", "open"},
+    {"[[shaft.section]]", "rotary_inertia", "open"},
+    {"[[shaft.section]]", "min_elements", "open"},
+    {"[[shaft.section]]", "max_element_length", "open"},
+    {"[[shaft.section]]", "general", "open"},
+    {"[[shaft.section]]", "constants", "open"},
+    {"[shaft.section.general]", "J", "open"},
+    {"[shaft.section.constants]", "*", "open"},
+    {"[[disk]]", "name", "a name"},
+    {"[[disk]]", "at", "open"},
+    {"[[disk]]", "Id", "open"},
+    {"[[disk]]", "inertia", "open"},
+    {"[[disk]]", "od", "open"},
+    {"[[disk]]", "id", "open"},
+    {"[[disk]]", "width", "open"},
+    {"[[disk]]", "material", "open"},
+    {"[[disk]]", "offset", "open"},
+    {"[[disk]]", "skew", "open"},
+    {"[[disk]]", "skew_phase", "open"},
+    {"[[disk]]", "draw", "open"},
+    {"[disk.draw]", "*", "open"},
+    {"[[bearing]]", "*", "app/test_cli.cpp, app/test_spectra.cpp"},
+    {"[[bearing]], type = \"linear\"", "kxx", "open"},
+    {"[[bearing]], type = \"linear\"", "kzz", "open"},
+    {"[[bearing]], type = \"linear\"", "kyz", "open"},
+    {"[[bearing]], type = \"linear\"", "kzy", "open"},
+    {"[[bearing]], type = \"linear\"", "kxy", "open"},
+    {"[[bearing]], type = \"linear\"", "kxz", "open"},
+    {"[[bearing]], type = \"linear\"", "kyx", "open"},
+    {"[[bearing]], type = \"linear\"", "kzx", "open"},
+    {"[[bearing]], type = \"linear\"", "krr", "open"},
+    {"[[bearing]], type = \"linear\"", "kryy", "open"},
+    {"[[bearing]], type = \"linear\"", "krzz", "open"},
+    {"[[bearing]], type = \"linear\"", "kryz", "open"},
+    {"[[bearing]], type = \"linear\"", "krzy", "open"},
+    {"[[bearing]], type = \"linear\"", "cxx", "open"},
+    {"[[bearing]], type = \"linear\"", "cyy", "open"},
+    {"[[bearing]], type = \"linear\"", "czz", "open"},
+    {"[[bearing]], type = \"linear\"", "cyz", "open"},
+    {"[[bearing]], type = \"linear\"", "czy", "open"},
+    {"[[bearing]], type = \"linear\"", "cxy", "open"},
+    {"[[bearing]], type = \"linear\"", "cxz", "open"},
+    {"[[bearing]], type = \"linear\"", "cyx", "open"},
+    {"[[bearing]], type = \"linear\"", "czx", "open"},
+    {"[[bearing]], type = \"linear\"", "crr", "open"},
+    {"[[bearing]], type = \"linear\"", "cryy", "open"},
+    {"[[bearing]], type = \"linear\"", "crzz", "open"},
+    {"[[bearing]], type = \"linear\"", "cryz", "open"},
+    {"[[bearing]], type = \"linear\"", "crzy", "open"},
+    {"[[bearing]], type = \"linear\"", "mxx", "open"},
+    {"[[bearing]], type = \"linear\"", "myy", "open"},
+    {"[[bearing]], type = \"linear\"", "mzz", "open"},
+    {"[[bearing]], type = \"linear\"", "myz", "open"},
+    {"[[bearing]], type = \"linear\"", "mzy", "open"},
+    {"[[bearing]], type = \"linear\"", "mxy", "open"},
+    {"[[bearing]], type = \"linear\"", "mxz", "open"},
+    {"[[bearing]], type = \"linear\"", "myx", "open"},
+    {"[[bearing]], type = \"linear\"", "mzx", "open"},
+    {"[[bearing]], type = \"linear\"", "mrr", "open"},
+    {"[[bearing]], type = \"linear\"", "mryy", "open"},
+    {"[[bearing]], type = \"linear\"", "mrzz", "open"},
+    {"[[bearing]], type = \"linear\"", "mryz", "open"},
+    {"[[bearing]], type = \"linear\"", "mrzy", "open"},
+    {"[[bearing]], type = \"linear\"", "mrxx", "open"},
+    {"[[bearing]], type = \"linear\"", "K", "open"},
+    {"[[bearing]], type = \"linear\"", "C", "open"},
+    {"[[bearing]], type = \"linear\"", "M", "open"},
+    {"[[bearing]], type = \"linear\"", "setpoint_tilt", "open"},
+    {"[[bearing]], type = \"linear\"", "preload_moment", "open"},
+    {"[[bearing]], type = \"spring_block\"", "*", "app/test_cli.cpp, app/test_support_balance.cpp"},
+    {"[[bearing]], type = \"table\"", "*", "app/test_spectra.cpp, app/test_linear_limits.cpp"},
+    {"[[bearing]], type = \"rigid\"", "*", "app/test_spectra.cpp, app/lateral_mass.hpp"},
+    {"[[bearing]], type = \"nonlinear_spring\"", "direction", "open"},
+    {"[[bearing]], type = \"nonlinear_spring\"", "shape", "open"},
+    {"[[bearing]], type = \"nonlinear_spring\"", "damping", "open"},
+    {"[[bearing]], type = \"nonlinear_spring\", shape = \"polynomial\"", "*",
+     "app/test_support_decks.cpp, app/test_support_balance.cpp"},
+    {"[[bearing]], type = \"nonlinear_spring\", shape = \"table\"", "*", "open"},
+    {"[[bearing]], type = \"nonlinear_spring\", shape = \"clearance\"", "*", "open"},
+    {"[[bearing]], type = \"nonlinear_spring\", shape = \"one_sided\"", "*",
+     "app/test_support_runs.cpp, app/test_support_decks.cpp"},
+    {"[[bearing]], type = \"nonlinear_angular_spring\"", "direction", "open"},
+    {"[[bearing]], type = \"nonlinear_angular_spring\"", "shape", "open"},
+    {"[[bearing]], type = \"nonlinear_angular_spring\"", "damping", "open"},
+    {"[[bearing]], type = \"nonlinear_angular_spring\", shape = \"polynomial\"", "*",
+     "app/test_support_decks.cpp, app/test_support_balance.cpp"},
+    {"[[bearing]], type = \"nonlinear_angular_spring\", shape = \"table\"", "*", "open"},
+    {"[[bearing]], type = \"nonlinear_angular_spring\", shape = \"clearance\"", "*", "open"},
+    {"[[bearing]], type = \"nonlinear_angular_spring\", shape = \"one_sided\"", "*",
+     "app/test_support_runs.cpp, app/test_support_decks.cpp"},
+    {"[[bearing]], type = \"short_journal\"", "*", "app/test_spectra.cpp, app/test_oil_whirl.cpp"},
+    {"[[bearing]], type = \"journal\"", "*",
+     "app/test_support_decks.cpp, app/test_static_speeds.cpp"},
+    {"[[bearing]], type = \"journal\", shape = \"two_grooves\"", "*",
+     "app/test_support_decks.cpp, app/test_static_speeds.cpp"},
+    {"[[bearing]], type = \"journal\", shape = \"lobes\"", "*", "app/test_support_decks.cpp"},
+    {"[[bearing]], type = \"squeeze_film\"", "*",
+     "app/test_support_decks.cpp, app/test_support_balance.cpp"},
+    {"[[bearing]], type = \"squeeze_film\", film = \"sealed\"", "*", "open"},
+    {"[[bearing]], type = \"ball\"", "balls", "open"},
+    {"[[bearing]], type = \"ball\"", "ball_diameter", "open"},
+    {"[[bearing]], type = \"ball\"", "pitch_diameter", "open"},
+    {"[[bearing]], type = \"ball\"", "contact_angle", "open"},
+    {"[[bearing]], type = \"ball\"", "clearance", "open"},
+    {"[[bearing]], type = \"ball\"", "f_inner", "open"},
+    {"[[bearing]], type = \"ball\"", "f_outer", "open"},
+    {"[[bearing]], type = \"ball\"", "direction", "open"},
+    {"[[bearing]], type = \"ball\"", "stiffness", "open"},
+    {"[[bearing]], type = \"ball\"", "preload", "open"},
+    {"[[bearing]], type = \"ball\"", "c_radial", "open"},
+    {"[[bearing]], type = \"roller\"", "*",
+     "app/test_support_decks.cpp, app/test_rolling_loads.cpp"},
+    {"[[bearing]], type = \"ball_estimate\"", "*", "app/test_support_balance.cpp"},
+    {"[[bearing]], type = \"roller_estimate\"", "*", "open"},
+    {"[[bearing]], type = \"rub\"", "*", "app/test_support_runs.cpp, app/test_support_decks.cpp"},
+    {"[[bearing]], type = \"annular_seal\"", "*",
+     "app/test_support_decks.cpp, app/test_support_balance.cpp"},
+    {"[[bearing]], type = \"cross_coupling\"", "*",
+     "app/test_support_decks.cpp, app/test_support_balance.cpp"},
+    {"[bearing.alford]", "*", "open"},
+    {"[bearing.wachel]", "*", "open"},
+    {"[[bearing]], type = \"coupling\"", "*",
+     "app/test_support_decks.cpp, app/test_support_balance.cpp"},
+    {"[[bearing]], type = \"gear\"", "*", "app/test_support_runs.cpp, app/test_support_decks.cpp"},
+    {"[bearing.support]", "*", "app/test_direction.cpp, app/test_support_runs.cpp"},
+    {"[[foundation]]", "*", "app/test_support_decks.cpp, app/test_foundation_motion.cpp"},
+    {"[[unbalance]]", "name", "a name"},
+    {"[[unbalance]]", "at", "open"},
+    {"[[unbalance]]", "to", "open"},
+    {"[[unbalance]]", "grade", "open"},
+    {"[[unbalance]]", "grade_speed", "open"},
+    {"[[unbalance]]", "grade_mass", "open"},
+    {"[[unbalance]]", "factor", "open"},
+    {"[[load]]", "name", "a name"},
+    {"[[load]]", "frame", "open"},
+    {"[[load]]", "factor", "open"},
+    {"[[drive]]", "*", "app/test_resume.cpp, app/test_governor.cpp"},
+    {"[[drive]], type = \"speed\"", "angle", "open"},
+    {"[[drive]], type = \"angle\"", "*", "app/test_step_speeds.cpp, app/test_energy_balance.cpp"},
+    {"[[drive]], type = \"torque\"", "kind", "open"},
+    {"[[drive]], type = \"torque\"", "load", "open"},
+    {"[[drive]], type = \"torque\"", "induction", "open"},
+    {"[[drive]], type = \"torque\"", "dc", "open"},
+    {"[[drive]], type = \"torque\"", "constant_power", "open"},
+    {"[[drive]], type = \"torque\"", "governor", "open"},
+    {"[[drive]], type = \"torque\"", "brake", "open"},
+    {"[[drive]], type = \"torque\"", "speed", "open"},
+    {"[drive.load]", "*", "app/test_resume.cpp"},
+    {"[drive.induction]", "*", "validation/test_drives.cpp"},
+    {"[drive.dc]", "*", "validation/test_drives.cpp"},
+    {"[drive.constant_power]", "*", "open"},
+    {"[drive.governor]", "*", "app/test_governor.cpp, validation/test_drives.cpp"},
+    {"[base]", "*", "app/test_energy_balance.cpp"},
+    {"[base.turn]", "*", "app/test_energy_balance.cpp, validation/test_foundations.cpp"},
+    {"[[event]]", "name", "a name"},
+    {"[[event]]", "direction", "open"},
+    {"[[event]]", "type", "open"},
+    {"[[event]], type = \"amplitude\"", "*", "open"},
+    {"[[initial]]", "name", "a name"},
+    {"[[initial]]", "shaft", "open"},
+    {"[[initial]]", "angular_velocity", "open"},
+    {"[[probe]]", "*", "app/test_cli.cpp, app/test_resume.cpp"},
+    {"[[step]]", "*", "app/test_cli.cpp, app/test_resume.cpp"},
+    {"[[step]], type = \"static\"", "*", "app/test_resume.cpp, app/test_governor.cpp"},
+    {"[step.speeds]", "*", "app/written_decks.hpp"},
+    {"[step.path]", "*", "app/test_static_stability.cpp, app/written_decks.hpp"},
+    {"[[step]], type = \"modal\"", "*", "app/test_cli.cpp, app/test_spectra.cpp"},
+    {"[[step]], type = \"campbell\"", "*", "app/test_direction.cpp, app/test_support_decks.cpp"},
+    {"[step.speed]", "*", "app/test_spectra.cpp, app/test_oil_whirl.cpp"},
+    {"[[step]], type = \"critical_speeds\"", "*",
+     "app/test_support_decks.cpp, app/test_linearised_about.cpp"},
+    {"[[step]], type = \"unbalance_response\"", "*",
+     "app/test_direction.cpp, app/test_support_decks.cpp"},
+    {"[[step]], type = \"stability\"", "*", "app/test_spectra.cpp, app/test_oil_whirl.cpp"},
+    {"[step.map]", "*", "app/written_decks.hpp"},
+    {"[[step]], type = \"critical_map\"", "*",
+     "app/test_check_refuses.cpp, app/test_support_decks.cpp"},
+    {"[[step]], type = \"harmonic_response\"", "*",
+     "app/test_direction.cpp, app/test_harmonic_limits.cpp"},
+    {"[[step.force]]", "*", "app/test_direction.cpp, app/test_harmonic_limits.cpp"},
+    {"[step.frequency]", "*", "app/test_direction.cpp, app/written_decks.hpp"},
+    {"[[step]], type = \"torsional\"", "*", "app/written_decks.hpp"},
+    {"[[step]], type = \"buckling\"", "*",
+     "app/test_axial_force.cpp, app/test_static_stability.cpp"},
+    {"[[step]], type = \"transient\"", "start", "open"},
+    {"[[step]], type = \"transient\"", "mode", "open"},
+    {"[[step]], type = \"transient\"", "mode_kind", "open"},
+    {"[[step]], type = \"transient\"", "mode_amplitude", "open"},
+    {"[[step]], type = \"transient\"", "previous", "open"},
+    {"[[step]], type = \"transient\"", "previous_step", "open"},
+    {"[[step]], type = \"transient\"", "amplitude_limit", "open"},
+    {"[[step]], type = \"transient\"", "linear", "open"},
+    {"[[step]], type = \"transient\"", "checkpoint", "open"},
+    {"[[step]], type = \"transient\"", "integrator", "open"},
+    {"[step.integrator]", "method", "open"},
+    {"[step.integrator]", "tolerance", "open"},
+    {"[step.integrator]", "rho_inf", "open"},
+    {"[step.integrator]", "dt_max", "open"},
+    {"[step.integrator]", "dt_min", "open"},
+    {"[output]", "directory", "open"},
+    {"[output]", "quantities", "open"},
+    {"[output]", "speed_window", "open"},
+    {"[output]", "above", "open"},
+    {"[output]", "tracking", "open"},
+    {"[output]", "spectra", "open"},
+    {"[output]", "csv", "open"},
+    {"[output]", "binary", "open"},
+    {"[output]", "report", "open"},
+    {"[output]", "amplitude", "open"},
+    {"[output]", "vtk", "open"},
+    {"[output.tracking]", "on", "open"},
+    {"[output.tracking]", "orders", "open"},
+    {"[output.tracking]", "orbit_speeds", "open"},
+    {"[output.spectra]", "*", "app/written_decks.hpp"},
+    {"[[output.vtk]]", "*", "app/test_resume.cpp, app/test_frames_in_motion.cpp"},
+    {"Laws of time", "*", "app/test_cli.cpp"},
+    {"law, type = \"table\"", "*", "app/test_spectra.cpp, app/test_linear_limits.cpp"},
+    {"law, type = \"ramp\"", "*", "app/test_energy_balance.cpp"},
+    {"law, type = \"smooth\"", "*", "app/test_step_speeds.cpp, app/test_energy_balance.cpp"},
+    {"law, type = \"cosine\"", "*", "open"},
+    {"law, type = \"harmonic\"", "*", "app/test_energy_balance.cpp"},
+    {"law, type = \"polynomial\"", "*", "app/test_step_speeds.cpp, app/test_energy_balance.cpp"},
+    {"law, type = \"piecewise\"", "*", "validation/test_bearing_rotors.cpp"},
+    {"[[pieces]]", "*", "open"},
+    {"law, type = \"sum\"", "*", "open"},
+    {"[[terms]]", "*", "open"},
+};
+
+/// The tables of the reference that the program writes, with their keys.
+std::set<std::pair<std::string, std::string>> keys_of_the_program() {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("whirl_keys_" + std::to_string(::getpid()));
+  std::set<std::pair<std::string, std::string>> keys;
+  if (std::system(("'" WHIRL_EXE "' schema --reference >'" + file.string() + "'").c_str()) != 0)
+    return keys;
+  std::ifstream in(file);
+  std::string table;
+  const std::regex key("^\\| `([^`]+)` \\|.*");
+  std::smatch found;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("#"))
+      table = line.substr(line.find_first_not_of("# "));
+    else if (std::regex_match(line, found, key))
+      keys.insert({table, found[1]});
+  }
+  std::filesystem::remove(file);
+  return keys;
+}
+
+}  // namespace
+
+TEST(KeysMatter, TheOtherDeckWritesWhatItsKeySays) {
+  std::map<std::string, std::string> decks = whirl::test::written_decks();
+  decks["bar"] = bar;
+  decks["hot bar"] = hot_bar();
+  decks["weight"] = weight;
+  for (const Pair& p : pairs) {
+    const std::string of = std::string(p.table) + " " + p.key + " in '" + p.deck + "'";
+    std::string deck = decks.at(p.deck);
+    const std::size_t place = deck.find(p.from);
+    ASSERT_NE(place, std::string::npos) << of;
+    const double before = number_of(deck, p);
+    const double after = number_of(deck.replace(place, std::string(p.from).size(), p.to), p);
+    EXPECT_NEAR(after, p.after, p.tolerance) << of << ": " << p.why;
+    EXPECT_GT(std::abs(before - p.after), 10 * p.tolerance) << of << ": the key changes nothing";
+  }
+}
+
+// The list of keys is the program's: a new one needs a pair or a line in the list, and what is
+// listed exists.
+TEST(KeysMatter, EveryKeyHasAPairOrALine) {
+  const auto keys = keys_of_the_program();
+  ASSERT_GT(keys.size(), 300u);
+  std::set<std::pair<std::string, std::string>> known;
+  for (const Pair& p : pairs)
+    known.insert({p.table, p.key});
+  for (const Elsewhere& e : elsewhere)
+    known.insert({e.table, e.key});
+  for (const auto& [table, key] : keys)
+    EXPECT_TRUE(known.contains({table, key}) || known.contains({table, "*"}))
+        << table << " " << key;
+  for (const auto& [table, key] : known)
+    EXPECT_TRUE(
+        keys.contains({table, key}) ||
+        (key == "*" && std::any_of(keys.begin(), keys.end(),
+                                   [&, of = table](const auto& k) { return k.first == of; })))
+        << table << " " << key << " is no key";
+}
