@@ -20,9 +20,8 @@ class Conditions {
     job.system().evaluate_nodes(workspace_, s.frames, s.t, s.q, s.v, s.a);
   }
   SupportCondition::State of(const SupportCondition& c) const {
-    return c.state([this](Index n) -> const system::NodeState& {
-      return workspace_.in_own_axes(n);
-    });
+    return c.state(
+        [this](Index n) -> const system::NodeState& { return workspace_.in_own_axes(n); });
   }
 
  private:
