@@ -27,7 +27,7 @@ const Look& look(Whirl w) { return looks()[static_cast<std::size_t>(w)]; }
 /// A decrement of 2 pi is a damping ratio of 0.707: beyond it no excitation finds a resonance.
 constexpr double heavy_decrement = two_pi;
 const Style heavy_style{ink, Dash::dotted, 0.7};
-constexpr const char* heavy_name = "damping ratio above 0.7: no resonance";
+constexpr const char* heavy_name = "damping ratio above 0.7";
 
 // One series for each stretch of a line with the same whirl direction; stretches share their end
 // points. heavy: stretches so heavily damped that they have no resonance are drawn thin; null: none

@@ -26,11 +26,14 @@ std::vector<LegendEntry> legend_entries(const Axes& a, const Colors& k) {
   return e;
 }
 
+/// A browser without the fonts asked for takes others, which are wider.
+constexpr double wide_fonts = 1.15;
+
 Box legend_size_of(const std::vector<LegendEntry>& entries) {
   if (entries.empty()) return {};
   double w = 0;
   for (const auto& e : entries)
-    w = std::max(w, text_width(e.label, legend_size));
+    w = std::max(w, wide_fonts * text_width(e.label, legend_size));
   return {0, 0, w + sample + 2 * pad + 6, row * static_cast<double>(entries.size()) + 2 * pad - 4};
 }
 

@@ -53,7 +53,7 @@ TEST(OverdampedLines, EndWithAWordAndAreDrawnThin) {
   ASSERT_EQ(d.exit, 0) << d.log;
   const std::string text = report(d);
   EXPECT_NE(text.find("overdamped"), std::string::npos);
-  EXPECT_NE(text.find("no resonance"), std::string::npos);
+  EXPECT_NE(text.find("damping ratio above 0.7"), std::string::npos);
 }
 
 TEST(OverdampedLines, LightDampingIsDrawnAsEver) {
@@ -61,5 +61,5 @@ TEST(OverdampedLines, LightDampingIsDrawnAsEver) {
   ASSERT_EQ(d.exit, 0) << d.log;
   const std::string text = report(d);
   EXPECT_EQ(text.find("overdamped"), std::string::npos);
-  EXPECT_EQ(text.find("no resonance"), std::string::npos);
+  EXPECT_EQ(text.find("damping ratio above 0.7"), std::string::npos);
 }

@@ -32,7 +32,7 @@ bool ModeTracker::step(double Omega, bool last_chance) {
     norm[at(j)] = std::abs(found[at(j)].x.dot(mx[at(j)]));
   }
   struct Pair {
-    double score, like;
+    double score, like, apart;
     Index old, now;
   };
   std::vector<Pair> pairs;
@@ -48,7 +48,7 @@ bool ModeTracker::step(double Omega, bool last_chance) {
       if (like < 0.05) continue;
       const double apart = std::abs(found[at(j)].lambda - old.lambda) /
                            (std::abs(old.lambda) + std::abs(found[at(j)].lambda) + 1e-300);
-      pairs.push_back({like - 0.5 * apart, like, i, j});
+      pairs.push_back({like - 0.5 * apart, like, apart, i, j});
     }
   }
   std::sort(pairs.begin(), pairs.end(),
@@ -62,7 +62,11 @@ bool ModeTracker::step(double Omega, bool last_chance) {
     const bool split = modes_[at(k.old)].now.direction == Direction::planar;
     // What does not oscillate is followed as well as may be, not at the price of more speeds.
     const bool matters = modes_[at(k.old)].now.oscillates() && found[at(k.now)].oscillates();
-    if (matters && k.like < options_.doubt && !(split && k.like > 0.45)) sure = false;
+    if (matters && k.like < options_.doubt && !(split && k.like > 0.45)) {
+      sure = false;
+      // No mode goes so far in the smallest step: one ends here, another begins.
+      if (last_chance && k.apart > 0.2) continue;
+    }
     of_old[at(k.old)] = k.now;
     of_new[at(k.now)] = k.old;
   }
