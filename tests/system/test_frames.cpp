@@ -53,8 +53,8 @@ System everything() {
   law.governor = elements::TorqueLaw::Governor{100.0, 0.2, 0.5};
   b.add(elements::JointTorque{law}, {0}, "drive");
   b.add(elements::NormalTorque{law}, {3}, "drag");
-  b.add(elements::FixedLoad{Vec3(1, 2, 3), Vec3(4, 5, 6), 0.1}, {3}, "load");
-  b.add(elements::BodyLoad{Vec3(3, -2, 1), Vec3(1, 5, -6), 0.1}, {1}, "follower");
+  b.add(elements::FixedLoad{Vec3(1, 2, 3), Vec3(4, 5, 6), 0.1, nullptr}, {3}, "load");
+  b.add(elements::BodyLoad{Vec3(3, -2, 1), Vec3(1, 5, -6), 0.1, nullptr}, {1}, "follower");
   Matrix<6> K = Matrix<6>::Random();
   K = (K * K.transpose() * 1e3).eval();
   b.add(elements::LinearBearing(K, 1e-3 * K, Matrix<6>::Zero(), Vector<6>::Zero(),
