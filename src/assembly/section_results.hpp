@@ -34,8 +34,8 @@ struct SectionPoint {
   double axial = 0, bending = 0, torsion = 0, von_mises = 0;  ///< Pa; axial is signed
 };
 
-/// By line and element, `inner` points inside each element beside its two ends.
-/// @param w nodes and context of the state
+/// By line and element, `inner` points inside each element beside its two ends; in the state that
+/// the workspace holds.
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
                                                const Built& built, const system::Workspace& w,
                                                int inner = 3);

@@ -39,8 +39,7 @@ struct Frames {
   double own_angle(Index node, Index line, const Vec3& d) const;
 
   /// Moves nodes to axes along e (P(e <- e_old) applied to those they stand in) and re-expresses
-  /// their angles. normals: of all nodes, global axes.
-  /// @param x angles of the nodes, in their order
+  /// their angles x, which come in the order of `nodes`. normals: of all nodes, global axes.
   void move(const System& system, std::span<const Index> nodes, const Vec3& e,
             std::span<const Vec3> normals, std::span<rotation::Angles> x);
   /// After an accepted state: what the continuous angles have become.
