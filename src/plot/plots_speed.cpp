@@ -77,8 +77,8 @@ void mark_overdamped(Axes& a, const CampbellLine& line) {
     const double x = rpm * line.speed[k];
     const double y = hertz * line.frequency[k];
     // forward and backward whirl of one frequency end at one place
-    const bool said = std::any_of(a.notes.begin(), a.notes.end(), [&](const auto& n) {
-      return n.text == "overdamped" && n.x == x && std::abs(n.y - y) <= 0.02 * y;
+    const bool said = std::any_of(a.notes.begin(), a.notes.end(), [&](const auto& note) {
+      return note.text == "overdamped" && note.x == x && std::abs(note.y - y) <= 0.02 * y;
     });
     if (ends && !said) a.notes.push_back({x, y, "overdamped"});
   }

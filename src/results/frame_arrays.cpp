@@ -49,7 +49,7 @@ void FrameArrays::take_supports(const assembly::NodeAt& node, const system::Cont
   }
 }
 
-io::FrameState FrameArrays::state(double time, const system::Frames& frames, bool in_motion) const {
+io::FrameState FrameArrays::state(double time, bool in_motion) const {
   io::FrameState frame;
   frame.time = time;
   frame.nodes = poses_;

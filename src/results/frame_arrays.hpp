@@ -22,7 +22,7 @@ class FrameArrays {
 
   /// The frame; valid until something is taken again. Charts: of the state, or its pictures turn
   /// with the old ones. In motion: with velocities.
-  io::FrameState state(double time, const system::Frames& frames, bool in_motion) const;
+  io::FrameState state(double time, bool in_motion) const;
 
  private:
   const run::Job& job_;

@@ -121,7 +121,7 @@ void Frames::write(const Snapshot& s) {
         assembly::calc_section_results(job_.model, job_.mesh, job_.built, s.workspace(), 0));
   if (bearings_)
     arrays_.take_supports(node, s.context(), [&s](Index k) { return s.reactions()[k]; });
-  writer_->frame(arrays_.state(s.t(), s.frames(), true));
+  writer_->frame(arrays_.state(s.t(), true));
 }
 
 /// The files of one [[output.vtk]].

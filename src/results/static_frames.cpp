@@ -30,7 +30,7 @@ void StaticFrames::write(const run::Job& job, system::SystemProblem& problem,
   arrays.take_nodes(node);
   arrays.take_sections(points);
   arrays.take_supports(node, problem.workspace().context, [&](Index k) { return r[k]; });
-  const io::FrameState frame = arrays.state(time, s.frames, false);
+  const io::FrameState frame = arrays.state(time, false);
   for (auto& w : writers_)
     w->frame(frame);
 }
