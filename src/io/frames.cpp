@@ -53,7 +53,9 @@ class Collection {
       io_failure(folder_, "nothing is written through a symbolic link:");
     fs::create_directories(folder_, ec);
     if (ec) io_failure(folder_, "cannot make the folder", ec.value());
-    const bool earlier = fs::exists(pvd_, ec) && read_text(pvd_).starts_with(pvd_head);
+    const bool there = fs::exists(pvd_, ec);
+    const bool earlier = there && read_text(pvd_).starts_with(pvd_head);
+    if (there && !earlier) io_failure(pvd_, "no list of frames of an earlier run:");
     if (next_ == 0 && keep_until > -infinity && earlier) recover(keep_until);
     write_list();          // before files go: the list never names a missing one
     if (!earlier) return;  // no run made frames here: whatever is in the folder is somebody else's

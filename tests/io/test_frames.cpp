@@ -173,6 +173,16 @@ TEST_F(Frames, ContinuedRunKeepsEarlierFramesAndDropsLaterOnes) {
   EXPECT_EQ(file_count(dir_ / "frames_line"), 1u);
 }
 
+TEST_F(Frames, AListOfSomebodyElseStays) {
+  write_atomic(dir_ / "frames_line.pvd", "<VTKFile type=\"Collection\">mine</VTKFile>\n");
+  VtkFrameOptions o;
+  o.directory = dir_.path();
+  o.surface = false;
+  const auto w = make_vtk_frames(o);
+  EXPECT_THROW(w->begin(small_rotor()), Error);
+  EXPECT_EQ(read_text(dir_ / "frames_line.pvd"), "<VTKFile type=\"Collection\">mine</VTKFile>\n");
+}
+
 TEST_F(Frames, NamesOfDecksStayInTheFolder) {
   VtkFrameOptions o;
   o.directory = dir_.path();

@@ -12,11 +12,13 @@
 #include <io/hdf5/entry.hpp>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
+#include <unistd.h>
 
 namespace whirl::io {
 namespace {
@@ -294,17 +296,12 @@ class Hdf5Series final : public TimeSeries {
       const std::lock_guard lock(library);
       write_data();
     }
-    if (Clock::now() - last_flush_ > flush_every_) flush();
+    if (Clock::now() - last_flush_ > flush_every_) hand_over();
   }
 
   void flush() override {
-    const std::lock_guard lock(library);
-    last_flush_ = Clock::now();
-    if (!file_.open()) return;
-    for (auto& g : groups_)
-      if (H5Dflush(g.data) < 0) io_failure(path_, "cannot write");
-    write_tail();
-    if (H5Dflush(tail_) < 0 || H5Dflush(state_) < 0) io_failure(path_, "cannot write");
+    hand_over();
+    sync();
   }
 
   void close() override {
@@ -315,6 +312,7 @@ class Hdf5Series final : public TimeSeries {
     const bool ok =
         H5Dwrite(state_, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, s.data()) >= 0 &&
         H5Fflush(file_, H5F_SCOPE_LOCAL) >= 0;
+    if (ok) sync();
     release();
     if (!ok) io_failure(path_, "cannot write");
   }
@@ -322,6 +320,25 @@ class Hdf5Series final : public TimeSeries {
   std::uint64_t rows() const override { return base_ + used_; }
 
  private:
+  /// To the kernel: other programs see it, a power cut may lose it.
+  void hand_over() {
+    const std::lock_guard lock(library);
+    last_flush_ = Clock::now();
+    if (!file_.open()) return;
+    for (auto& g : groups_)
+      if (H5Dflush(g.data) < 0) io_failure(path_, "cannot write");
+    write_tail();
+    if (H5Dflush(tail_) < 0 || H5Dflush(state_) < 0) io_failure(path_, "cannot write");
+  }
+  /// To the disk: what a checkpoint counts on.
+  void sync() {
+    void* descriptor = nullptr;
+    if (!file_.open() || H5Fget_vfd_handle(file_, H5P_DEFAULT, &descriptor) < 0) return;
+    const int fd = *static_cast<const int*>(descriptor);
+    if (::fdatasync(fd) != 0 && errno != EINVAL && errno != EROFS)
+      io_failure(path_, "cannot write", errno);
+  }
+
   void prepare(std::span<const Channel> channels) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     scale_.clear();
