@@ -1,10 +1,25 @@
 #!/usr/bin/env bash
-# Every source of the product parses without a warning under -Wall -Wextra -Wshadow -Wconversion -Werror, each by itself: a
-# missing #include that the precompiled headers hide fails here too. Warnings that need optimisation are the builds' own.
-#   check_warnings.sh SOURCE
+# Sources and headers of the product parse each by itself, without precompiled headers and without a warning: a missing #include
+# fails here. Warnings that need whole builds are the builds' own (WHIRL_WERROR=ON).
+#   check_warnings.sh SOURCE                   all sources
+#   check_warnings.sh SOURCE --since COMMIT    sources and headers that differ from a commit
+#   check_warnings.sh SOURCE FILE...
 set -euo pipefail
 cd "$1"
-git ls-files 'src/*.cpp' 'elements/*.cpp' 'meshes/*.cpp' | grep -v '/sundials/\|/vtk/\|/hdf5/' |
-  xargs -P "$(nproc)" -I{} g++ -std=c++20 -fsyntax-only -Wall -Wextra -Wshadow -Wconversion -Wno-psabi -Werror \
-    -Isrc -I. -isystem /usr/include/eigen3 -isystem /usr/include/suitesparse -DEIGEN_MAX_ALIGN_BYTES=32 \
-    '-DWHIRL_VERSION=""' '-DWHIRL_BUILD_TYPE=""' {}
+shift
+kinds=('src/*.cpp' 'elements/*.cpp' 'meshes/*.cpp')
+case "${1:-}" in
+  --since) mapfile -t files < <(git diff --name-only --no-renames --diff-filter=AM "$2" -- "${kinds[@]}" 'src/*.hpp' 'elements/*.hpp' 'meshes/*.hpp') ;;
+  '')      mapfile -t files < <(git ls-files "${kinds[@]}") ;;
+  *)       files=("$@") ;;
+esac
+mapfile -t files < <(printf '%s\n' "${files[@]}" | grep -v '/sundials/\|/vtk/\|/hdf5/\|\.in$\|^$' || true)
+[ ${#files[@]} -gt 0 ] || { echo "no source differs"; exit 0; }
+parse() {
+  echo "#include \"$1\"" |
+    g++ -x c++ - -std=c++20 -fsyntax-only -Wall -Wextra -Wshadow -Wconversion -Wno-psabi -Wno-unused-function -Werror \
+      -Isrc -I. -isystem /usr/include/eigen3 -isystem /usr/include/suitesparse -DEIGEN_MAX_ALIGN_BYTES=32 \
+      '-DWHIRL_VERSION=""' '-DWHIRL_BUILD_TYPE=""'
+}
+export -f parse
+printf '%s\0' "${files[@]}" | xargs -0 -P "$(nproc)" -I{} bash -c 'parse {}'
