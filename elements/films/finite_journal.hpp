@@ -64,7 +64,6 @@ class JournalSurface {
   double pad_clearance() const { return clearance_ + lift_; }  ///< c_p, m
   double lift() const { return lift_; }                        ///< c_p - c_b, m
   double clearance() const { return clearance_; }
-  bool lobed() const { return lift_ != 0.0; }
 
  private:
   double clearance_, lift_;

@@ -22,12 +22,14 @@ struct Workspace {
   la::BlockMatrix<7> M, C, K;                ///< X-space tangents
   Context context;
   Index outside = -1;  ///< node that left the chart (|gamma| >= pi), or -1
-  /// Once nodes have moved to other axes (frames.hpp): each as its line's own axes see it.
+  /// Once nodes have moved to other axes (frames.hpp): each as its line's own axes see it. Of the
+  /// last evaluation, and empty where it found no node moved or one outside its chart.
   const Frames* frames = nullptr;
   std::vector<NodeState> own;
   std::vector<AngleTransport::At> own_carried;
 
-  bool moved() const { return frames && frames->moved(); }
+  /// The last evaluation saw moved nodes; what `frames` has become since does not count.
+  bool moved() const { return !own.empty(); }
   /// The node in the line's own axes: what its angle and tilt mean to everything outside it.
   const NodeState& in_own_axes(Index node) const {
     return moved() ? own[static_cast<std::size_t>(node)] : nodes[static_cast<std::size_t>(node)];

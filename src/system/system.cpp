@@ -252,6 +252,8 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   static const lanes::Kernels& kernels = lanes::kernels();
   w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
   w.frames = &f;
+  w.own.clear();
+  w.own_carried.clear();
   if (w.outside < 0 && f.moved()) evaluate_own_axes(w, f);
   return w.outside < 0;
 }
