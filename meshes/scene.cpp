@@ -1,4 +1,5 @@
 #include <meshes/scene.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -52,6 +53,7 @@ DiskShape disk_shape(const model::Disk& d, Place at, double shaft_radius) {
 }  // namespace
 
 Scene make_scene(const model::Model& m, const Mesh& mesh) {
+  WHIRL_EXPECTS(mesh.lines.size() == m.shafts.size());
   Scene scene;
   for (const Node& n : mesh.nodes) {
     scene.nodes.push_back(n.position);

@@ -1,4 +1,5 @@
 #include <elements/shaft/timoshenko_matrices.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <array>
@@ -324,6 +325,8 @@ void correct_mass(const Sampled& sp, const Mat2& k, const Matrix<4>& T, const Ve
 
 ShaftElementConstants make_shaft_constants(const ElementSection& section, double l, double o1,
                                            double o2, MassKind kind, const MassShare& share) {
+  WHIRL_EXPECTS(l > 0.0 && std::isfinite(l));
+  WHIRL_EXPECTS(std::isfinite(o1) && std::isfinite(o2));
   const Sampled sp(section, l);
   ShaftElementConstants c;
   c.length = l;
@@ -351,6 +354,7 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
 }
 
 Matrix<4> bending_stiffness(const ShaftElementConstants& c) {
+  WHIRL_EXPECTS(c.length > 0.0);
   const Matrix<4> T = offset_map(c.o1, c.o2);
   return T.transpose() *
          end_point_stiffness((Mat2() << c.k11, c.k12, c.k12, c.k22).finished(), c.length) * T;

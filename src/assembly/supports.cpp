@@ -1,6 +1,7 @@
 // Bearings, supports and pedestals. A bearing acts between its shaft node and the other side:
 // ground, pedestal, or a second station. Rigid supports hold unknowns of the shaft node itself; no
 // penalty stiffness anywhere.
+#include <core/contract.hpp>
 #include <assembly/support_parts.hpp>
 #include <elements/supports/coefficient_grid.hpp>
 #include <elements/supports/linear_bearing.hpp>
@@ -97,6 +98,7 @@ template <class Table>
 void add_table_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
                    const model::TableBearing& law, std::shared_ptr<const Table> table,
                    const char* kind) {
+  WHIRL_EXPECTS(n.shaft.node >= 0 && n.other.node >= 0);
   const auto add = [&](auto mass) {
     if constexpr (Table::size == 2) {
       add_lateral(a, b, n, elements::TableBearingLaw<mass.value, Table>{table}, kind,
@@ -195,6 +197,7 @@ SupportForce::Law moment_of_held(Index node, const model::RigidSupport& law) {
 
 void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
                const model::RigidSupport& law, std::map<Index, HeldNode>& held) {
+  WHIRL_EXPECTS(n.shaft.node >= 0);
   const std::string who = name_of(b);
   if (n.other.node >= 0) {
     a.error("E26",
@@ -288,6 +291,7 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
 // ---------------------------------------------------------------- pedestals
 
 void add_pedestal(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n) {
+  WHIRL_EXPECTS(n.pedestal >= 0 && n.ground >= 0);
   const model::Pedestal& p = *b.pedestal;
   if (p.mass > 0) a.builder.add(elements::PointMass{p.mass}, {n.pedestal}, "point masses");
   a.builder.add(elements::TranslationalBearing{p.K, p.C, Mat3::Zero(), Vec3::Zero(), Vec3::Zero()},

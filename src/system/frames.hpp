@@ -11,6 +11,7 @@
 //     turns as the element is wound up by.
 // While no node has moved all of this is absent.
 #pragma once
+#include <core/contract.hpp>
 #include <core/rotation.hpp>
 #include <core/types.hpp>
 #include <cmath>
@@ -32,7 +33,10 @@ struct Frames {
 
   bool moved() const { return chart.size() > turns.size(); }
   /// The axes that a node's phi and gamma refer to.
-  const Mat3& axes(Index node) const { return chart[at(of_node[at(node)])]; }
+  const Mat3& axes(Index node) const {
+    WHIRL_EXPECTS(node >= 0 && at(node) < of_node.size());
+    return chart[at(of_node[at(node)])];
+  }
   /// Nodes stand in the same axes.
   bool same_axes(Index a, Index b) const { return of_node[at(a)] == of_node[at(b)]; }
   /// The angle about its line's own axes less phi, of a node with the normal d, rad.

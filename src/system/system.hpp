@@ -1,8 +1,10 @@
 // The assembled equations of motion R(t, q, v, a) = M(q) a + f(q, v, t) of nodes and element
 // batches. A System is const once built; what changes lives in State, scratch in Workspace.
 #pragma once
+#include <core/contract.hpp>
 #include <core/law.hpp>
 #include <system/batch.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,8 +47,14 @@ class System {
   Index nodes() const { return static_cast<Index>(defs_.size()); }
   Index size() const { return 6 * nodes(); }
   Index lines() const { return static_cast<Index>(line_names_.size()); }
-  const NodeDef& node(Index i) const { return defs_[static_cast<std::size_t>(i)]; }
-  const std::string& line_name(Index l) const { return line_names_[static_cast<std::size_t>(l)]; }
+  const NodeDef& node(Index i) const {
+    WHIRL_EXPECTS(i >= 0 && i < nodes());
+    return defs_[static_cast<std::size_t>(i)];
+  }
+  const std::string& line_name(Index l) const {
+    WHIRL_EXPECTS(l >= 0 && l < lines());
+    return line_names_[static_cast<std::size_t>(l)];
+  }
   const la::BlockPattern& pattern() const { return *pattern_; }
   /// 1 where q[k] is unknown, 0 where it is held.
   std::span<const unsigned char> active() const { return active_; }
@@ -143,14 +151,21 @@ class Builder {
   void hold(Index node, int component, LawPtr law = nullptr);
   /// A node that never moves (a ground point).
   Index add_ground(const Vec3& position, std::string name);
-  void set_gravity(const Vec3& g) { system_.gravity_ = g; }
+  void set_gravity(const Vec3& g) {
+    WHIRL_EXPECTS(g.allFinite());
+    system_.gravity_ = g;
+  }
   void set_base_acceleration(int axis, LawPtr law) {
+    WHIRL_EXPECTS(axis >= 0 && axis < 3);
     system_.base_[static_cast<std::size_t>(axis)] = std::move(law);
   }
   /// `kind` names the batch in summaries ("shaft elements"); the first call for a type decides.
   /// Returns the number of the batch in System::terms().
   template <Kernel K>
   std::size_t add(const K& k, const std::array<Index, K::n_nodes>& nodes, const char* kind) {
+    WHIRL_EXPECTS(kind != nullptr);
+    WHIRL_EXPECTS(std::all_of(nodes.begin(), nodes.end(),
+                              [this](Index n) { return n >= 0 && n < this->nodes(); }));
     const std::type_index key(typeid(K));
     auto it = system_.by_type_.find(key);
     if (it == system_.by_type_.end()) {
@@ -171,7 +186,7 @@ class Builder {
   const Batch<K>* batch() const {
     return system_.batch<K>();
   }
-  const NodeDef& node(Index i) const { return system_.defs_[static_cast<std::size_t>(i)]; }
+  const NodeDef& node(Index i) const { return system_.node(i); }
   Index nodes() const { return static_cast<Index>(system_.defs_.size()); }
   /// Holds every rotational unknown no element resists or loads, then freezes pattern and slots.
   System finalize();

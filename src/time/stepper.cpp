@@ -1,4 +1,5 @@
 #include <time/stepper.hpp>
+#include <core/contract.hpp>
 #include <time/hermite.hpp>
 
 #include <core/error.hpp>
@@ -19,6 +20,8 @@ Stepper::Stepper(Problem& problem, const Options& options)
     : problem_(problem),
       options_(options),
       n_(problem.size()) {
+  WHIRL_EXPECTS(problem.kinds().size() == at(n_));
+  WHIRL_EXPECTS(options.tolerance > 0.0 && options.max_attempts > 0);
   scale_.resize(problem.kinds(), options.scales);
   initial_.resize(problem);
   for (Index i = 0; i < n_; ++i)
@@ -32,6 +35,8 @@ Stepper::Stepper(Problem& problem, const Options& options)
 // Start and discontinuities
 
 void Stepper::start(double t, CRef q, CRef v) {
+  WHIRL_EXPECTS(std::isfinite(t));
+  WHIRL_EXPECTS(q.size() == n_ && v.size() == n_);
   statistics_ = {};
   longest_ = rate_span_ = rate_steps_ = 0.0;
   t_ = t0_ = t1_eval_ = t;
@@ -60,6 +65,7 @@ void Stepper::start(double t, CRef q, CRef v) {
 }
 
 void Stepper::restart(CRef q, CRef v, bool corner) {
+  WHIRL_EXPECTS(q.size() == n_ && v.size() == n_);
   if (corner) {
     rate_span_ = std::max(rate_span_, longest_);
     longest_ = rate_steps_ = 0.0;
@@ -165,6 +171,7 @@ void Stepper::next_stop(double& t, bool& is_break) const {
 }
 
 void Stepper::plan_segment() {
+  WHIRL_EXPECTS(options_.dt_fixed > 0.0);
   bool is_break;
   segment_start_ = t_;
   next_stop(segment_end_, is_break);
@@ -182,6 +189,7 @@ void Stepper::plan_segment() {
 }
 
 Stepper::Target Stepper::plan(double h) {
+  WHIRL_EXPECTS(h > 0.0);
   double target;
   if (options_.dt_fixed > 0.0) {
     target = segment_k_ + 1.0 >= segment_count_
@@ -240,6 +248,7 @@ void Stepper::begin_step() {
 }
 
 void Stepper::linearize(double h, bool inside) {
+  WHIRL_EXPECTS(h > 0.0);
   // In films the stages differ from the start as much as from each other: the middle of the step,
   // as far as the present acceleration tells it, is nearer to all of them.
   if (inside) {
@@ -259,6 +268,7 @@ void Stepper::linearize(double h, bool inside) {
 }
 
 Stepper::Attempt Stepper::attempt_with_recovery(double h) {
+  WHIRL_EXPECTS(h > 0.0);
   for (;;) {
     const bool inside = linearize_ && smooth();
     if (linearize_) linearize(h, inside);
@@ -413,6 +423,7 @@ StepReport Stepper::shorten_to(double t) {
 }
 
 void Stepper::interpolate(double t, Ref q, Ref v, Ref a) const {
+  WHIRL_EXPECTS(q.size() == n_ && v.size() == n_ && a.size() == n_);
   if (take_end(have_step_ ? t : t_, {t_, q_, v_, a_}, q, v, a)) return;
   if (take_end(t, {t0_, q0_, v0_, a0_}, q, v, a)) return;
   dense(((t - t0_) - t0_low_) / h_, q, v, a);
@@ -421,6 +432,8 @@ void Stepper::interpolate(double t, Ref q, Ref v, Ref a) const {
 
 void Stepper::add_compensated(const VecX& x, const VecX& x_low, const VecX& dx, VecX& sum,
                               VecX& low) {
+  WHIRL_EXPECTS(dx.size() == x.size() && x_low.size() == x.size());
+  WHIRL_EXPECTS(sum.size() == x.size() && low.size() == x.size());
   // two-sum (Knuth): exact for any order of magnitudes
   for (Index i = 0; i < x.size(); ++i) {
     const double d = dx[i] + x_low[i];

@@ -1,4 +1,5 @@
 #include <analysis/spectra/whirl_modes.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <la/multiply.hpp>
@@ -66,11 +67,13 @@ Orbit orbit_of(Complex Y, Complex Z, double sense) {
 }
 
 Eigen::Vector3cd local_displacement(const Linearizer& linear, const VecXc& x, Index node) {
+  WHIRL_EXPECTS(x.size() == linear.system().size());
   const Index line = linear.system().node(node).line;
   return linear.equilibrium().state.frames.chart[at(line)].transpose() * x.segment<3>(6 * node);
 }
 
 double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
+  WHIRL_EXPECTS(x.size() == y.size());
   VecXc mx, my;
   la::multiply(m.M, x, mx);
   la::multiply(m.M, y, my);
@@ -79,6 +82,7 @@ double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
 }
 
 WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer& linear) {
+  WHIRL_EXPECTS(mode.x.size() == linear.system().size());
   const system::System& s = linear.system();
   WhirlMode w;
   w.lambda = w.continued = mode.lambda;
@@ -431,6 +435,7 @@ void WhirlSolver::count_along_axis(double Omega, const la::Certificate& rest) {
 }
 
 const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
+  WHIRL_EXPECTS(std::isfinite(Omega));
   modes_.clear();
   certificate_ = {};
   if (options_.damped && linear_.hysteretic()) {

@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <analysis/transient/corners.hpp>
 #include <analysis/transient/momentum_route.hpp>
 #include <analysis/transient/transient.hpp>
@@ -103,6 +104,9 @@ TransientResult run_transient(system::SystemProblem& problem, const system::Stat
                               const TransientOptions& options,
                               const std::vector<Observer*>& observers,
                               const time::IntegratorState* resume) {
+  WHIRL_EXPECTS(start.q.size() == problem.size() && start.v.size() == problem.size());
+  WHIRL_EXPECTS(std::find(observers.begin(), observers.end(), nullptr) == observers.end());
+  WHIRL_EXPECTS(options.reference >= 0 && options.reference < problem.system().nodes());
   TransientResult result;
   const double cpu0 = thread_cpu_seconds();
   problem.frames = start.frames;
