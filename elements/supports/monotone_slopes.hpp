@@ -11,6 +11,7 @@
 namespace whirl::elements {
 
 /// x increasing; Row: a fixed-size Eigen array, taken entry by entry. One row: zero slope.
+/// @pre as many values as places, x strictly increasing.
 template <class Row>
 std::vector<Row> monotone_slopes(const std::vector<double>& x, const std::vector<Row>& value) {
   WHIRL_EXPECTS(value.size() == x.size());

@@ -15,12 +15,15 @@ class BlockPattern {
   BlockPattern() = default;
   /// n nodes, couplings given as pairs (any order, duplicates allowed; (i,j) implies (j,i);
   /// diagonals are added).
+  /// @throws std::out_of_range for a coupling to a node outside 0 .. n-1.
   BlockPattern(Index n, const std::vector<std::pair<Index, Index>>& couplings);
 
   Index size() const { return n_; }
   Index blocks() const { return static_cast<Index>(cols_.size()); }
   /// Slot of block (i,j), or -1 when it is not in the pattern.
   Index slot(Index i, Index j) const;
+  /// Slot of the diagonal block of row i.
+  /// @pre 0 <= i < size().
   Index diagonal(Index i) const {
     WHIRL_EXPECTS(i >= 0 && i < n_);
     return diagonal_[static_cast<std::size_t>(i)];
@@ -66,6 +69,7 @@ class BlockMatrix {
   const Scalar* data() const { return values_.data(); }
   std::size_t value_count() const { return values_.size(); }
   /// y += s A x, x and y of length B * size().
+  /// @pre x and y of that length.
   template <class VecIn, class VecOut>
   void add_multiply(Scalar s, const VecIn& x, VecOut&& y) const {
     WHIRL_EXPECTS(x.size() == B * pattern().size() && y.size() == x.size());

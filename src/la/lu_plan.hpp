@@ -21,6 +21,7 @@ std::vector<int> make_order(const BlockPattern& pattern, Ordering ordering);
 
 class Symbolic {
  public:
+  /// @throws std::invalid_argument when there are not 6 flags a node.
   Symbolic(const BlockPattern& pattern, std::span<const unsigned char> active, Ordering ordering);
   Symbolic(const Symbolic&) = delete;
   Symbolic& operator=(const Symbolic&) = delete;

@@ -94,6 +94,8 @@ class System {
   void impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v,
               Eigen::Ref<VecX> a) const;
   /// Node states only (for probes, pictures). False when a node is outside its chart.
+  /// @pre q, v, a of length size() (as in all that follow), w of make_workspace(), f of a state of
+  /// this system; f must live while w is read.
   bool evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                       Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const;
   /// Some of the terms, as numbers into terms(); a null pointer means all.
@@ -104,10 +106,12 @@ class System {
                 Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r,
                 Selection only = nullptr) const;
   /// M = dR/da, C = dR/dv, K = dR/dq, exact.
+  /// @pre out of make_matrices().
   bool tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
                Selection only = nullptr) const;
   /// Energies and powers of the elements at the node states of the last evaluation.
+  /// @pre w was evaluated.
   Energy energy(const Workspace& w) const;
   /// Only what is supplied and dissipated, W: asks no element that does neither.
   Energy exchange(const Workspace& w) const;
@@ -146,6 +150,7 @@ class Builder {
  public:
   /// A shaft line with its reference triad (columns e, e2, e3).
   Index add_line(std::string name, const Mat3& triad = Mat3::Identity());
+  /// @pre finite position.
   Index add_node(NodeDef def);
   /// Holds component c of a node: at zero, or on a law (value, rate, acceleration all exact).
   void hold(Index node, int component, LawPtr law = nullptr);

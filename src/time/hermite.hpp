@@ -21,6 +21,7 @@ inline bool take_end(double t, const StepEnd& end, Ref q, Ref v, Ref a) {
 }
 
 /// q from (q, v) at both ends, v = q', a = q''.
+/// @pre h > 0, vectors of one length.
 inline void hermite(double theta, double h, const VecX& q0, const VecX& v0, const VecX& q1,
                     const VecX& v1, Ref q, Ref v, Ref a) {
   WHIRL_EXPECTS(h > 0.0);
