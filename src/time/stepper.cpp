@@ -315,27 +315,10 @@ StepReport Stepper::advance() {
   Attempt result;
   for (int tries = 0;; ++tries) {
     target = plan(h_wanted);
-    const double stop = target.t1;
-    t_ = target.t1;
-    t_low_ = target.landing ? 0.0 : (t0_ - t_) + (target.h + t0_low_);
-    const bool lands_on_break =
-        target.landing && std::binary_search(breaks_.begin(), breaks_.end(), stop);
-    t1_eval_ = lands_on_break ? std::nextafter(stop, t0_) : stop;
-    report.at_breakpoint = lands_on_break;
+    report.at_breakpoint = aim_at(target);
     result = attempt_with_recovery(target.h);
     if (result.status == StepStatus::ok && (fixed || result.error <= 1.0)) break;
-    if (result.status == StepStatus::ok) {
-      result.status = StepStatus::error_test;
-      ++report.rejected_error;
-      ++statistics_.rejected_error;
-      h_wanted = control_.rejected(target.h, result.error);
-      retrying_ = true;
-    } else {
-      ++report.rejected_newton;
-      ++statistics_.rejected_newton;
-      h_wanted = target.h * (result.status == StepStatus::domain ? 0.25 : 0.5);
-      control_.newton_failed(target.h);
-    }
+    h_wanted = shorter_after(result, target.h, report);
     if (h_wanted < dt_min || tries + 1 >= options_.max_attempts) {
       return_to_start();
       report.status = result.status;
@@ -343,27 +326,10 @@ StepReport Stepper::advance() {
       return report;
     }
   }
-
-  commit(target.h);
-  h_ = target.h;
-  have_step_ = accept_pending_ = true;
-  first_ = false;
-  at_break_ = report.at_breakpoint;
-  scale_.observe(q_);
   report.t1 = t_;
   report.error = result.error;
   report.newton_iterations = result.iterations;
-  ++statistics_.accepted;
-  statistics_.step_min = std::min(statistics_.step_min, target.h);
-  statistics_.step_max = std::max(statistics_.step_max, target.h);
-  statistics_.step_sum += target.h;
-  longest_ = std::max(longest_, target.h);
-  // a rotor at rest in a contact that rings without damping would be followed for ever
-  constexpr double ringing = 1000.0;
-  if (rate_span_ > 0.0 && (target.h >= rate_span_ || ++rate_steps_ >= ringing)) rate_span_ = 0.0;
-  statistics_.error_max = std::max(statistics_.error_max, result.error);
-  statistics_.error_sum += result.error;
-
+  take_step(target.h, report);
   const bool smooth = report.rejected_error == 0 && report.rejected_newton == 0;
   if (fixed) {
     inside_part_ = !target.landing;
@@ -376,6 +342,49 @@ StepReport Stepper::advance() {
     h_next_ = target.clipped && smooth ? std::max(proposal, h_wanted) : proposal;
   }
   return report;
+}
+
+bool Stepper::aim_at(const Target& target) {
+  t_ = target.t1;
+  t_low_ = target.landing ? 0.0 : (t0_ - t_) + (target.h + t0_low_);
+  const bool lands_on_break =
+      target.landing && std::binary_search(breaks_.begin(), breaks_.end(), target.t1);
+  t1_eval_ = lands_on_break ? std::nextafter(target.t1, t0_) : target.t1;
+  return lands_on_break;
+}
+
+double Stepper::shorter_after(Attempt& failed, double h, StepReport& report) {
+  if (failed.status == StepStatus::ok) {
+    failed.status = StepStatus::error_test;
+    ++report.rejected_error;
+    ++statistics_.rejected_error;
+    const double shorter = control_.rejected(h, failed.error);
+    retrying_ = true;
+    return shorter;
+  }
+  ++report.rejected_newton;
+  ++statistics_.rejected_newton;
+  control_.newton_failed(h);
+  return h * (failed.status == StepStatus::domain ? 0.25 : 0.5);
+}
+
+void Stepper::take_step(double h, const StepReport& report) {
+  commit(h);
+  h_ = h;
+  have_step_ = accept_pending_ = true;
+  first_ = false;
+  at_break_ = report.at_breakpoint;
+  scale_.observe(q_);
+  ++statistics_.accepted;
+  statistics_.step_min = std::min(statistics_.step_min, h);
+  statistics_.step_max = std::max(statistics_.step_max, h);
+  statistics_.step_sum += h;
+  longest_ = std::max(longest_, h);
+  // a rotor at rest in a contact that rings without damping would be followed for ever
+  constexpr double ringing = 1000.0;
+  if (rate_span_ > 0.0 && (h >= rate_span_ || ++rate_steps_ >= ringing)) rate_span_ = 0.0;
+  statistics_.error_max = std::max(statistics_.error_max, report.error);
+  statistics_.error_sum += report.error;
 }
 
 void Stepper::return_to_start() {
