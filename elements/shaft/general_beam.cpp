@@ -539,7 +539,6 @@ GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chor
       arm2(chart2.transpose() * o2),
       l0(chord_.norm()) {
   WHIRL_EXPECTS(c.length > 0.0 && l0 > 0.0);
-  WHIRL_EXPECTS(c.beta >= 0.0 && c.beta_twist >= 0.0);
   NodeState rest1, rest2;
   for (NodeState* r : {&rest1, &rest2})
     r->u = r->du = r->ddu = r->t = r->dd = r->ddd = Vec3::Zero();

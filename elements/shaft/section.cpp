@@ -25,7 +25,7 @@ double hutchinson_factor(double m, double nu) {
 }
 
 SectionProperties ElementSection::at(double xi) const {
-  WHIRL_EXPECTS(constants || (E > 0.0 && G > 0.0 && rho >= 0.0));
+  WHIRL_EXPECTS(constants || (E > 0.0 && rho >= 0.0));
   if (constants) {
     SectionProperties p = given;
     if (!(p.kGA > 0) || shear == ShearRule::rigid) p.kGA = infinity;

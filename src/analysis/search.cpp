@@ -7,7 +7,7 @@ namespace whirl::analysis {
 
 double find_maximum(double a, double m, double fm, double b, double tolerance,
                     const std::function<double(double)>& f) {
-  WHIRL_EXPECTS(a < m && m < b && tolerance > 0.0);
+  WHIRL_EXPECTS(((a < m && m < b) || (b < m && m < a)) && tolerance > 0.0);
   const double golden = 0.3819660112501051;
   double x = m, w = m, v = m, fx = fm, fw = fm, fv = fm, d = 0, e = 0;
   for (int it = 0; it < 80; ++it) {

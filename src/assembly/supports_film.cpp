@@ -89,7 +89,7 @@ elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int
 
 double short_bearing_excess(double length_over_diameter, double eccentricity) {
   WHIRL_EXPECTS(length_over_diameter > 0.0);
-  WHIRL_EXPECTS(eccentricity > 0.0 && eccentricity < 1.0);
+  WHIRL_EXPECTS(eccentricity >= 0.0 && eccentricity < 1.0);
   constexpr double clearance = 1e-3;  // of a journal of radius 1; the force goes by its ratio alone
   const double length = 2.0 * length_over_diameter;
   const elements::ShortJournal brief{1.0, length, clearance, 1.0};

@@ -116,7 +116,6 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
 }
 
 UnbalanceResponse UnbalanceSolver::run() {
-  WHIRL_EXPECTS(std::is_sorted(options_.speeds.begin(), options_.speeds.end()));
   UnbalanceResponse out;
   const auto orders = linear_.running().orders();
   out.orders.assign(orders.begin(), orders.end());

@@ -51,7 +51,6 @@ class UnbalanceSolver {
   UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& options);
   /// Response at one speed; with_outputs = false: probes only.
   SteadyPoint at(double Omega, bool with_outputs = true);
-  /// @pre ascending speeds.
   UnbalanceResponse run();
   /// Peaks of the last run, by order, probe, speed. Found to 1e-9 of the speed, half-power points
   /// too.
