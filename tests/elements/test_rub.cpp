@@ -126,8 +126,8 @@ TEST(Rub, FrictionOpposesSlipAndTakesPower) {
     Vector<4> z;
     law.force(x, z);
     const double rho = x.r.norm();
-    const Vec2 n(x.r / rho), t(-n.y(), n.x());
-    const double normal = -z.head<2>().dot(n), friction = z.head<2>().dot(t);
+    const Vec2 out(x.r / rho), t(-out.y(), out.x());
+    const double normal = -z.head<2>().dot(out), friction = z.head<2>().dot(t);
     const double slip = x.v.dot(t) + law.radius * x.spin - (law.radius + rho) * x.housing_spin;
     EXPECT_GE(normal, 0.0);
     EXPECT_LE(friction * slip, 0.0);
