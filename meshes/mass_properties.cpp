@@ -1,4 +1,5 @@
 #include <meshes/mass_properties.hpp>
+#include <core/contract.hpp>
 
 #include <core/rotation.hpp>
 #include <fmt/format.h>
@@ -136,6 +137,7 @@ MassProperties disk_mass(const model::Disk& d, const Vec3& station) {
 }
 
 MassProperties shaft_mass(const model::Model& m, std::size_t shaft) {
+  WHIRL_EXPECTS(shaft < m.shafts.size());
   const model::Shaft& s = m.shafts.at(shaft);
   MassProperties p;
   double x = 0;

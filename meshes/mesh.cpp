@@ -1,4 +1,5 @@
 #include <meshes/mesh.hpp>
+#include <core/contract.hpp>
 #include <model/resolution.hpp>
 
 #include <fmt/format.h>
@@ -150,6 +151,8 @@ void check_model(const Model& m, const std::vector<Attached>& attached) {
 
 /// Numbers of equal elements in the pieces of a section between its attachments.
 std::vector<int> element_counts(const std::vector<double>& cuts, double largest, int least) {
+  WHIRL_EXPECTS(cuts.size() > 1 && largest > 0.0 && least > 0);
+  WHIRL_EXPECTS(std::is_sorted(cuts.begin(), cuts.end()));
   std::vector<int> n;
   int total = 0;
   for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
@@ -371,6 +374,7 @@ class LineMesher {
 };
 
 Index add_fixed(Mesh& mesh, const Vec3& position, NodeKind kind, std::string name) {
+  WHIRL_EXPECTS(position.allFinite());
   Node n;
   n.position = position;
   n.kind = kind;
@@ -427,6 +431,7 @@ const Station& Mesh::station(const model::Location& where) const {
 }
 
 double Mesh::radius(const model::Model& m, std::size_t line, double s) const {
+  WHIRL_EXPECTS(line < lines.size());
   const Shaft& shaft = m.shafts.at(line);
   const double tolerance = same_place * lines.at(line).length;
   double start = 0, r = 0;

@@ -1,4 +1,5 @@
 #include <meshes/scene.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -49,93 +50,140 @@ DiskShape disk_shape(const model::Disk& d, Place at, double shaft_radius) {
   return out;
 }
 
+/// Draws one line of a scene.
+class LineDrawing {
+ public:
+  LineDrawing(const model::Model& m, const Mesh& mesh, std::size_t l, Scene& scene)
+      : model_(m),
+        mesh_(mesh),
+        number_(l),
+        line_(mesh.lines[l]),
+        shaft_(m.shafts[l]),
+        bent_(!shaft_.path.empty()),
+        scene_(scene) {}
+
+  Scene::Line draw() {
+    out_.name = line_.name;
+    add_stations();
+    add_pieces();
+    add_disks();
+    return std::move(out_);
+  }
+
+ private:
+  struct Piece {
+    double s;
+    ShaftPiece shape;
+  };
+
+  /// Axes of a line along a path, before and after s; the same on both sides of a smooth joint.
+  std::pair<Index, Index> bends(double s) {
+    const Mat3 before = shaft_.path.before(s).triad, after = shaft_.path.after(s).triad;
+    const auto add = [&](const Mat3& triad) {
+      scene_.bends.push_back(triad);
+      return static_cast<Index>(scene_.bends.size()) - 1;
+    };
+    const Index b = add(before);
+    return std::pair(b, (after - before).norm() < 1e-6 ? b : add(after));
+  }
+
+  void add_stations() {
+    for (Index k = line_.first_station; k < line_.first_station + line_.stations; ++k) {
+      const Station& s = mesh_.stations[static_cast<std::size_t>(k)];
+      out_.points.push_back(s.at);
+      out_.radius.push_back(radius_at(shaft_, line_.length, s.s));
+      if (!bent_) continue;
+      const auto [before, after] = bends(s.s);
+      out_.bend_before.push_back(before);
+      out_.bend_after.push_back(after);
+    }
+  }
+
+  void add_piece(std::size_t section, double s, Place a, Place b, double xi1, double xi2) {
+    const Radii r1 = radii(shaft_.sections[section], line_.length, xi1),
+                r2 = radii(shaft_.sections[section], line_.length, xi2);
+    pieces_.push_back({s, {a, b, r1.outer, r2.outer, r1.inner, r2.inner}});
+  }
+
+  /// Elements and rigid parts in order of their left ends.
+  void add_pieces() {
+    for (Index k = line_.first_element; k < line_.first_element + line_.elements; ++k) {
+      const Element& e = mesh_.elements[static_cast<std::size_t>(k)];
+      add_piece(e.section, e.s1, e.left, e.right, e.xi1, e.xi2);
+      if (bent_) bend_last_piece(e);
+    }
+    for (const RigidPart& r : mesh_.rigid_parts)
+      if (r.line == static_cast<Index>(number_))
+        add_piece(r.section, mesh_.nodes[static_cast<std::size_t>(r.node)].s + r.o1, {r.node, r.o1},
+                  {r.node, r.o2}, 0, 1);
+    std::stable_sort(pieces_.begin(), pieces_.end(),
+                     [](const Piece& a, const Piece& b) { return a.s < b.s; });
+    for (Piece& p : pieces_)
+      out_.pieces.push_back(p.shape);
+  }
+
+  void bend_last_piece(const Element& e) {
+    ShaftPiece& p = pieces_.back().shape;
+    const Index last = pieces_.size() > 1 ? pieces_[pieces_.size() - 2].shape.bend_right : -1;
+    const Mat3 from = shaft_.path.after(e.s1).triad;
+    p.bend_left = last >= 0 && (scene_.bends[static_cast<std::size_t>(last)] - from).norm() < 1e-6
+                      ? last
+                      : bends(e.s1).second;
+    p.bend_right = bends(e.s2).first;
+  }
+
+  void add_disks() {
+    for (const auto& d : model_.disks) {
+      if (d.at.shaft != number_) continue;
+      const double inside = radius_at(shaft_, line_.length, d.at.s);
+      out_.disks.push_back(disk_shape(d, mesh_.place(d.at), inside));
+      if (bent_ && d.at.housing < 0) out_.disks.back().bend = bends(d.at.s).second;
+    }
+  }
+
+  const model::Model& model_;
+  const Mesh& mesh_;
+  std::size_t number_;
+  const Line& line_;
+  const model::Shaft& shaft_;
+  bool bent_;
+  Scene& scene_;
+  Scene::Line out_;
+  std::vector<Piece> pieces_;
+};
+
+SupportShape support_shape(const model::Model& m, const Mesh& mesh, std::size_t bearing,
+                           Scene& scene) {
+  const model::Bearing& b = m.bearings[bearing];
+  const BearingNodes& n = mesh.bearings[bearing];
+  SupportShape s;
+  s.name = b.name;
+  s.picture = model::traits_of(b.law).picture;
+  s.at = n.shaft;
+  s.to_node = n.other.node >= 0 && n.other.node != n.ground;
+  if (s.to_node) s.to = n.other;
+  s.radius = radius_at(m.shafts[b.at.shaft], mesh.lines[b.at.shaft].length, b.at.s);
+  if (const Path& path = m.shafts[b.at.shaft].path; !path.empty()) {
+    s.bend = static_cast<Index>(scene.bends.size());
+    scene.bends.push_back(path.after(b.at.s).triad);
+  }
+  return s;
+}
+
 }  // namespace
 
 Scene make_scene(const model::Model& m, const Mesh& mesh) {
+  WHIRL_EXPECTS(mesh.lines.size() == m.shafts.size());
+  WHIRL_EXPECTS(mesh.bearings.size() == m.bearings.size());
   Scene scene;
   for (const Node& n : mesh.nodes) {
     scene.nodes.push_back(n.position);
     scene.node_line.push_back(std::max<Index>(n.line, 0));
   }
-  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
-    const Line& line = mesh.lines[l];
-    const model::Shaft& shaft = m.shafts[l];
-    Scene::Line out;
-    out.name = line.name;
-    // axes of a line along a path; the same on both sides of a smooth joint
-    const auto bends = [&](double s) {
-      const Mat3 before = shaft.path.before(s).triad, after = shaft.path.after(s).triad;
-      const auto add = [&](const Mat3& triad) {
-        scene.bends.push_back(triad);
-        return static_cast<Index>(scene.bends.size()) - 1;
-      };
-      const Index b = add(before);
-      return std::pair(b, (after - before).norm() < 1e-6 ? b : add(after));
-    };
-    const bool bent = !shaft.path.empty();
-    for (Index k = line.first_station; k < line.first_station + line.stations; ++k) {
-      const Station& s = mesh.stations[static_cast<std::size_t>(k)];
-      out.points.push_back(s.at);
-      out.radius.push_back(radius_at(shaft, line.length, s.s));
-      if (!bent) continue;
-      const auto [before, after] = bends(s.s);
-      out.bend_before.push_back(before);
-      out.bend_after.push_back(after);
-    }
-    // Elements and rigid parts in order of their left ends.
-    struct Piece {
-      double s;
-      ShaftPiece shape;
-    };
-    std::vector<Piece> pieces;
-    const auto add = [&](std::size_t section, double s, Place a, Place b, double xi1, double xi2) {
-      const Radii r1 = radii(shaft.sections[section], line.length, xi1),
-                  r2 = radii(shaft.sections[section], line.length, xi2);
-      pieces.push_back({s, {a, b, r1.outer, r2.outer, r1.inner, r2.inner}});
-    };
-    for (Index k = line.first_element; k < line.first_element + line.elements; ++k) {
-      const Element& e = mesh.elements[static_cast<std::size_t>(k)];
-      add(e.section, e.s1, e.left, e.right, e.xi1, e.xi2);
-      if (!bent) continue;
-      ShaftPiece& p = pieces.back().shape;
-      const Index last = pieces.size() > 1 ? pieces[pieces.size() - 2].shape.bend_right : -1;
-      const Mat3 from = shaft.path.after(e.s1).triad;
-      p.bend_left = last >= 0 && (scene.bends[static_cast<std::size_t>(last)] - from).norm() < 1e-6
-                        ? last
-                        : bends(e.s1).second;
-      p.bend_right = bends(e.s2).first;
-    }
-    for (const RigidPart& r : mesh.rigid_parts)
-      if (r.line == static_cast<Index>(l))
-        add(r.section, mesh.nodes[static_cast<std::size_t>(r.node)].s + r.o1, {r.node, r.o1},
-            {r.node, r.o2}, 0, 1);
-    std::stable_sort(pieces.begin(), pieces.end(),
-                     [](const Piece& a, const Piece& b) { return a.s < b.s; });
-    for (Piece& p : pieces)
-      out.pieces.push_back(p.shape);
-    for (const auto& d : m.disks)
-      if (d.at.shaft == l) {
-        out.disks.push_back(disk_shape(d, mesh.place(d.at), radius_at(shaft, line.length, d.at.s)));
-        if (bent && d.at.housing < 0) out.disks.back().bend = bends(d.at.s).second;
-      }
-    scene.lines.push_back(std::move(out));
-  }
-  for (std::size_t i = 0; i < m.bearings.size(); ++i) {
-    const model::Bearing& b = m.bearings[i];
-    const BearingNodes& n = mesh.bearings[i];
-    SupportShape s;
-    s.name = b.name;
-    s.picture = model::traits_of(b.law).picture;
-    s.at = n.shaft;
-    s.to_node = n.other.node >= 0 && n.other.node != n.ground;
-    if (s.to_node) s.to = n.other;
-    s.radius = radius_at(m.shafts[b.at.shaft], mesh.lines[b.at.shaft].length, b.at.s);
-    if (const Path& path = m.shafts[b.at.shaft].path; !path.empty()) {
-      s.bend = static_cast<Index>(scene.bends.size());
-      scene.bends.push_back(path.after(b.at.s).triad);
-    }
-    scene.supports.push_back(std::move(s));
-  }
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l)
+    scene.lines.push_back(LineDrawing(m, mesh, l, scene).draw());
+  for (std::size_t i = 0; i < m.bearings.size(); ++i)
+    scene.supports.push_back(support_shape(m, mesh, i, scene));
   for (const auto& p : m.probes)
     scene.trails.push_back({p.name, mesh.place(p.at)});
   return scene;

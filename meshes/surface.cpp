@@ -1,4 +1,5 @@
 #include <meshes/surface.hpp>
+#include <core/contract.hpp>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -27,12 +28,14 @@ Pose magnified(const Pose& p, const Vec3& r0, const Vec3& e, double s) {
 }
 
 Pose pose_at(std::span<const Pose> nodes, const Place& p) {
+  WHIRL_EXPECTS(p.node >= 0 && at(p.node) < nodes.size());
   Pose q = nodes[static_cast<std::size_t>(p.node)];
   q.r += p.offset * q.d;
   return q;
 }
 
 Pose interpolate(const Pose& a, const Pose& b, double length, double xi) {
+  WHIRL_EXPECTS(length >= 0.0 && xi >= 0.0 && xi <= 1.0);
   if (xi <= 0.0) return a;
   if (xi >= 1.0) return b;
   const double x2 = xi * xi, x3 = x2 * xi;
@@ -64,6 +67,8 @@ Mat3 section_axes(const Mat3& triad, const Vec3& d, double phi) {
 
 Spot make_spot(const Scene& scene, Index line, const Place& a, const Place& b, double xi,
                Index bend_a, Index bend_b) {
+  WHIRL_EXPECTS(line >= 0 && at(line) < scene.lines.size());
+  WHIRL_EXPECTS(at(a.node) < scene.nodes.size() && at(b.node) < scene.nodes.size());
   const Mat3& triad = scene.lines[static_cast<std::size_t>(line)].triad;
   Spot s;
   s.line = line;
@@ -175,6 +180,7 @@ void Skin::add_disk(const Scene& scene, Index line, const DiskShape& disk, int p
 }
 
 void Skin::revolve(const std::vector<Vertex>& profile, int part) {
+  WHIRL_EXPECTS(profile.size() > 2);
   const Index stripe_width = std::max<Index>(1, around_ / 16);
   double last_axial = 0, last_radial = 0;
   std::size_t last_vertex = profile.size();  // where the strip that may go on ends
@@ -209,6 +215,7 @@ void Skin::revolve(const std::vector<Vertex>& profile, int part) {
 
 void Skin::update(std::span<const Pose> nodes, std::vector<float>& points,
                   std::vector<float>& normals) const {
+  WHIRL_EXPECTS(nodes.size() > 0 || stations_.empty());
   points.resize(static_cast<std::size_t>(3 * point_count()));
   normals.resize(points.size());
   float* p = points.data();

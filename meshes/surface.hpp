@@ -89,6 +89,7 @@ struct Scene {
 Pose magnified(const Pose& p, const Vec3& r0, const Vec3& e, double s);
 
 /// Pose of a place given the poses of all nodes.
+/// @pre p names one of the nodes.
 Pose pose_at(std::span<const Pose> nodes, const Place& p);
 
 /// Pose at fraction xi in [0,1] between two poses `length` apart in the reference state.
@@ -107,6 +108,7 @@ struct Spot {
   Mat3 bend_a = Mat3::Identity(), bend_b = Mat3::Identity();
   bool bent = false;
 };
+/// @pre line, a and b are of the scene.
 Spot make_spot(const Scene& scene, Index line, const Place& a, const Place& b, double xi,
                Index bend_a = -1, Index bend_b = -1);
 
@@ -125,6 +127,7 @@ Frame frame_of(std::span<const Pose> nodes, const Mat3& triad, const Spot& s);
 class Skin {
  public:
   /// points_around >= 3 points on each circle.
+  /// @throws std::invalid_argument for fewer.
   Skin(const Scene& scene, int points_around);
 
   Index point_count() const { return static_cast<Index>(rings_.size()) * around_; }

@@ -44,7 +44,7 @@ Relative<double> relative(const ShaftCoupling& k, const Nodes<2>& x) {
 /// p, p' and the generalized force on y.
 template <class T>
 struct Motion {
-  std::array<T, 6> p, rate, load;
+  std::array<T, 6> p, rate;
   std::array<T, 7> force;
   Motion(const ShaftCoupling& k, const Relative<T>& r) {
     using std::cos, std::sin;
@@ -55,6 +55,7 @@ struct Motion {
     rate = {
         r.v[0], c * r.v[1] + s * r.v[2] + r.v[6] * p[2], c * r.v[2] - s * r.v[1] - r.v[6] * p[1],
         r.v[5], c * vry + s * r.v[3] + r.v[6] * p[5],    c * r.v[3] - s * vry - r.v[6] * p[4]};
+    std::array<T, 6> load;
     for (int i = 0; i < 6; ++i) {
       T q = 0.0;
       for (int j = 0; j < 6; ++j)
@@ -125,11 +126,6 @@ void ShaftCoupling::add_energy(const Nodes<2>& x, const Context&, Energy& e) con
   const Eigen::Map<const Vector<6>> p(m.p.data()), rate(m.rate.data());
   e.elastic += 0.5 * p.dot(K * p);
   e.dissipated += rate.dot(C * rate);
-}
-
-Vector<6> ShaftCoupling::load(const Nodes<2>& x) const {
-  const Motion<double> m(*this, relative(*this, x));
-  return -Eigen::Map<const Vector<6>>(m.load.data());
 }
 
 }  // namespace whirl::elements

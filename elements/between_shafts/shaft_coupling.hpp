@@ -35,8 +35,6 @@ struct ShaftCoupling {
   void add_tangent(const system::Nodes<2>& x, const system::Context&,
                    system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context&, system::Energy& e) const;
-  /// Load on hub 0 in the turning axes: forces N, moments N m.
-  Vector<6> load(const system::Nodes<2>& x) const;
 };
 
 }  // namespace whirl::elements

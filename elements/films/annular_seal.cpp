@@ -1,4 +1,5 @@
 #include <elements/films/annular_seal.hpp>
+#include <core/contract.hpp>
 
 #include <core/dual.hpp>
 
@@ -17,6 +18,8 @@ double friction(const AnnularSeal& k, double V, double x) {
 }  // namespace
 
 AnnularSeal::Flow AnnularSeal::flow(double spin) const {
+  WHIRL_EXPECTS(radius > 0.0 && length > 0.0 && clearance > 0.0);
+  WHIRL_EXPECTS(density > 0.0 && viscosity > 0.0);
   const double unit = std::sqrt(2.0 * pressure_drop / density);
   double V = unit / std::sqrt(1.0 + inlet_loss), lambda = 0.0;
   // dp = rho V^2/2 (1 + xi + 2 lambda L/C): the left side grows with V and is convex in log V;
@@ -106,11 +109,13 @@ void AnnularSeal::energy(const LateralMotion& m, system::Energy& e) const {
 }
 
 double alford_stiffness(double beta, double torque, double mean_diameter, double blade_height) {
+  WHIRL_EXPECTS(mean_diameter > 0.0 && blade_height > 0.0);
   return beta * torque / (mean_diameter * blade_height);
 }
 
 double wachel_stiffness(double power, double speed, double diameter, double width,
                         double molar_mass, double density_ratio) {
+  WHIRL_EXPECTS(speed != 0.0 && diameter > 0.0 && width > 0.0);
   return power / (speed * diameter * width) * (molar_mass / 0.010) * density_ratio;
 }
 

@@ -56,10 +56,12 @@ using SealJoint = LateralJoint<AnnularSeal>;
 /// Cross-coupled stiffness of flow in a bladed stage, N/m: K_yz = +k, K_zy = -k for spin y -> z (F
 /// = -K r drives forward whirl). Alford, ASME J. Eng. Power 87 (1965), doi 10.1115/1.3678270: k =
 /// beta torque/(mean diameter * blade height).
+/// @pre mean_diameter and blade_height positive.
 double alford_stiffness(double beta, double torque, double mean_diameter, double blade_height);
 /// Wachel's formula (Wachel & von Nimitz 1981; API 617) in SI: k = power/(speed diameter width) *
 /// molar_mass/(10 g/mol) * density_ratio; power W, speed rad/s, impeller diameter and smallest flow
 /// width m, molar mass kg/mol, discharge over suction density.
+/// @pre speed not zero, diameter and width positive.
 double wachel_stiffness(double power, double speed, double diameter, double width,
                         double molar_mass, double density_ratio);
 

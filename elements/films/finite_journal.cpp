@@ -1,4 +1,5 @@
 #include <elements/films/finite_journal.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <algorithm>
@@ -43,6 +44,7 @@ JournalSurface::JournalSurface(double clearance, double preload,
 }
 
 std::vector<JournalPad> two_groove_pads(double groove_at, double groove) {
+  WHIRL_EXPECTS(groove >= 0.0 && groove < pi);
   std::vector<JournalPad> pads;
   for (int k = 0; k < 2; ++k) {
     const double a = groove_at + k * pi + 0.5 * groove, b = groove_at + (k + 1) * pi - 0.5 * groove;
@@ -52,6 +54,7 @@ std::vector<JournalPad> two_groove_pads(double groove_at, double groove) {
 }
 
 std::vector<JournalPad> lobe_pads(int n, double first, double groove, double offset) {
+  WHIRL_EXPECTS(n > 0 && groove >= 0.0 && groove * n < two_pi);
   std::vector<JournalPad> pads;
   const double arc = two_pi / n - groove;
   for (int k = 0; k < n; ++k) {
@@ -62,12 +65,15 @@ std::vector<JournalPad> lobe_pads(int n, double first, double groove, double off
 }
 
 PadFilm FiniteJournal::pad(std::size_t k) const {
+  WHIRL_EXPECTS(surface && k < surface->arcs().size());
+  WHIRL_EXPECTS(radius > 0.0 && length > 0.0);
   const JournalSurface::Arc& arc = surface->arcs()[k];
   return PadFilm(arc.start, arc.length, arc.round, leakage * radius * radius / (length * length),
                  arc.points);
 }
 
 FiniteJournal::PadPlace FiniteJournal::place(std::size_t k, const FilmPoint& p) const {
+  WHIRL_EXPECTS(surface && k < surface->arcs().size());
   const Vec2& n = surface->arcs()[k].thinnest;
   const double lift = surface->lift();
   return {(p.r + lift * n) / surface->pad_clearance(),
@@ -75,6 +81,7 @@ FiniteJournal::PadPlace FiniteJournal::place(std::size_t k, const FilmPoint& p) 
 }
 
 bool FiniteJournal::inside(const FilmPoint& p) const {
+  WHIRL_EXPECTS(surface != nullptr);
   if (!p.r.allFinite() || !p.w.allFinite() || !std::isfinite(p.slip)) return false;
   for (std::size_t k = 0; k < surface->arcs().size(); ++k)
     if (!(pad(k).smallest_clearance(place(k, p).e) > 0.0)) return false;
@@ -82,6 +89,7 @@ bool FiniteJournal::inside(const FilmPoint& p) const {
 }
 
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
+  WHIRL_EXPECTS(radius > 0.0 && length > 0.0 && viscosity >= 0.0);
   if (!inside(p)) return set_outside(f);
   f.F.setZero();
   f.T = 0.0;

@@ -64,7 +64,6 @@ class JournalSurface {
   double pad_clearance() const { return clearance_ + lift_; }  ///< c_p, m
   double lift() const { return lift_; }                        ///< c_p - c_b, m
   double clearance() const { return clearance_; }
-  bool lobed() const { return lift_ != 0.0; }
 
  private:
   double clearance_, lift_;
@@ -73,9 +72,11 @@ class JournalSurface {
 
 /// Two pads between axial grooves of `groove` rad at theta = groove_at and opposite (the usual
 /// split bearing).
+/// @pre 0 <= groove < pi.
 std::vector<JournalPad> two_groove_pads(double groove_at, double groove);
 /// n equal lobes, the first centred at theta = first; grooves of `groove` rad between them; offset:
 /// (theta_k - start)/(arc) (0.5: centred).
+/// @pre n > 0; the grooves leave something of the circle.
 std::vector<JournalPad> lobe_pads(int n, double first, double groove, double offset = 0.5);
 
 struct FiniteJournal {
@@ -98,6 +99,7 @@ struct FiniteJournal {
   void evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
 
   /// The film of pad k in its own terms, at its displacement e and source W (in m/s).
+  /// @pre k below surface->arcs().size(); radius and length positive.
   PadFilm pad(std::size_t k) const;
   struct PadPlace {
     Vec2 e, W;

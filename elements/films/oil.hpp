@@ -9,6 +9,8 @@ namespace whirl::elements {
 ///       eta_x = 0.18e-3 Pa s, T in degrees Celsius
 /// (Vogel form of DIN 31652-2 / DIN 31654-2). temperature: kelvin, 243 to 473 K; density: kg/m3.
 /// Errors E85: grade or density not positive, temperature outside the range.
+/// @throws Error (E85) when grade or density are not positive or the temperature is beyond -30 ..
+/// 200 deg C.
 double iso_vg_viscosity(double grade, double temperature, double density = 900.0);
 
 }  // namespace whirl::elements

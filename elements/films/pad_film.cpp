@@ -1,4 +1,5 @@
 #include <elements/films/pad_film.hpp>
+#include <core/contract.hpp>
 
 #include <core/dual.hpp>
 
@@ -237,6 +238,9 @@ PadFilm::PadFilm(double start, double arc, bool round, double beta, double point
       arc_(arc),
       beta_(beta),
       round_(round) {
+  WHIRL_EXPECTS(arc > 0.0 && arc <= two_pi + 1e-9);
+  WHIRL_EXPECTS(beta >= 0.0 && std::isfinite(beta));
+  WHIRL_EXPECTS(points_on_arc > 0.0);
   // at the ends of short pads the pressure falls within 1/sqrt(beta): an element is at most three
   // of those
   const double asked = std::round(points_on_arc / points_of_element),
@@ -367,6 +371,7 @@ int PadFilm::solve(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out, int& 
 }
 
 Vec2 PadFilm::load(const Vec2& e, const Vec2& W) const {
+  WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
   Vec2 G = Vec2::Zero();
   if (W.isZero(0.0)) return G;
   std::array<Ends, 2> films;
@@ -382,6 +387,7 @@ Vec2 PadFilm::load(const Vec2& e, const Vec2& W) const {
 }
 
 PadLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W) const {
+  WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
   PadLoad out{Vec2::Zero(), Mat2::Zero(), Mat2::Zero()};
   if (W.isZero(0.0)) {
     out.by_W = mean_slope(e);
@@ -437,6 +443,7 @@ Mat2 PadFilm::mean_slope(const Vec2& e) const {
 }
 
 double PadFilm::shear(const Vec2& e, Vec2& gradient) const {
+  WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
   // in Sommerfeld's angle the integrands are a constant and a wave: two panels of eight points are
   // exact to rounding
   static const Gauss<8> gauss;

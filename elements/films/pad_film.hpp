@@ -34,10 +34,12 @@ class PadFilm {
 
   /// start, arc: rad. round: a whole circle without ends. beta: leakage at the sides, (R/L)^2 times
   /// 10. points: over the arc.
+  /// @pre 0 < arc <= 2 pi, beta >= 0, points > 0.
   PadFilm(double start, double arc, bool round, double beta, double points);
 
   /// Smallest clearance 1 - e.n on the pad; the film exists where it is positive.
   double smallest_clearance(const Vec2& e) const;
+  /// @pre smallest_clearance(e) > 0 (also load_and_slopes, mean_slope and shear).
   Vec2 load(const Vec2& e, const Vec2& W) const;
   PadLoad load_and_slopes(const Vec2& e, const Vec2& W) const;
   /// dG/dW in the mean over the directions n of W, 1/pi int G(n) n^T dphi: a film without a source

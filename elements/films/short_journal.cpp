@@ -1,4 +1,5 @@
 #include <elements/films/short_journal.hpp>
+#include <core/contract.hpp>
 
 namespace whirl::elements {
 
@@ -29,6 +30,7 @@ Mat2 axes_of(const Vec2& w, double speed) {
 }  // namespace
 
 void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
+  WHIRL_EXPECTS(radius > 0.0 && length > 0.0 && clearance > 0.0);
   const double c2 = clearance * clearance, u = 1.0 - p.r.squaredNorm() / c2;
   if (!(u > 0.0)) return set_outside(f);
   const double speed = p.w.norm();
@@ -42,6 +44,7 @@ void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
 }
 
 void ShortJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
+  WHIRL_EXPECTS(radius > 0.0 && length > 0.0 && clearance > 0.0);
   const double c2 = clearance * clearance, u = 1.0 - p.r.squaredNorm() / c2;
   if (!(u > 0.0)) return set_outside(f, t);
   const double speed = p.w.norm();

@@ -1,13 +1,16 @@
 #include <elements/films/squeeze_film.hpp>
+#include <core/contract.hpp>
 
 namespace whirl::elements {
 
 void ShortFullFilm::evaluate(const FilmPoint& p, FilmForce& f) const {
+  WHIRL_EXPECTS(radius > 0.0 && length > 0.0 && clearance > 0.0);
   FilmTangent t;
   evaluate(p, f, t);
 }
 
 void ShortFullFilm::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
+  WHIRL_EXPECTS(radius > 0.0 && length > 0.0 && clearance > 0.0);
   const double c = clearance;
   const Vec2 e = p.r / c;
   const double u = 1.0 - e.squaredNorm(), k = pi * viscosity * radius * std::pow(length / c, 3);

@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <elements/loads/moment.hpp>
 #include <elements/loads/spin_torque.hpp>
 #include <algorithm>
@@ -8,6 +9,8 @@ namespace whirl::elements {
 using namespace system;
 
 TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) const {
+  WHIRL_EXPECTS(speed.size() == torque.size());
+  WHIRL_EXPECTS(friction_speed > 0.0);
   Value v;
   if (of_time) v.T += of_time->at(t).f;
   if (!speed.empty()) {

@@ -1,4 +1,5 @@
 #include <elements/rigid/rigid_disk.hpp>
+#include <core/contract.hpp>
 #include <system/spin.hpp>
 
 namespace whirl::elements {
@@ -50,6 +51,7 @@ void RigidDisk::add_energy(const Nodes<1>& x, const Context& c, Energy& e) const
 }
 
 RigidInertia RigidDisk::inertia(double) const {
+  WHIRL_EXPECTS(mass >= 0.0 && Jp >= 0.0 && Jt >= 0.0);
   RigidInertia r;
   r.mass = mass;
   r.moment = Vec3(mass * offset, 0, 0);

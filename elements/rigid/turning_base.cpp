@@ -1,4 +1,5 @@
 #include <elements/rigid/turning_base.hpp>
+#include <core/contract.hpp>
 
 #include <core/rotation.hpp>
 
@@ -7,6 +8,7 @@ namespace whirl::elements {
 AbsoluteNode::AbsoluteNode(const system::NodeState& n, const TurningBase::Motion& b, double load,
                            const Vec3& arm)
     : state(n) {
+  WHIRL_EXPECTS(n.chart != nullptr && arm.allFinite());
   const Vec3 r = arm + n.u, d = n.d(), e = n.e();
   const Vec3 wr = b.omega.cross(r), wd = b.omega.cross(d);
   state.du += wr;

@@ -1,4 +1,5 @@
 #include <elements/rolling/hertz.hpp>
+#include <core/contract.hpp>
 
 #include <core/types.hpp>
 
@@ -8,6 +9,7 @@
 namespace whirl::elements {
 
 double hertz_ellipticity(double Rx, double Ry) {
+  WHIRL_EXPECTS(Rx > 0.0 && Ry > 0.0);
   const double ratio = std::max(Rx, Ry) / std::min(Rx, Ry), F_rho = (ratio - 1.0) / (ratio + 1.0);
   if (F_rho < 1e-5)
     return 1.0 + 4.0 / 3.0 * F_rho;  // nearly circular: kappa = ratio^(2/3), error F_rho^2
@@ -29,6 +31,8 @@ double hertz_ellipticity(double Rx, double Ry) {
 
 double hertz_point_stiffness(double Rx, double Ry, const ContactMaterial& a,
                              const ContactMaterial& b) {
+  WHIRL_EXPECTS(a.E > 0.0 && b.E > 0.0);
+  WHIRL_EXPECTS(std::abs(a.nu) < 1.0 && std::abs(b.nu) < 1.0);
   const double modulus = 2.0 / ((1.0 - a.nu * a.nu) / a.E + (1.0 - b.nu * b.nu) / b.E);
   const double R = 1.0 / (1.0 / Rx + 1.0 / Ry), kappa = hertz_ellipticity(Rx, Ry),
                m = std::sqrt(1.0 - 1.0 / (kappa * kappa));
@@ -37,11 +41,13 @@ double hertz_point_stiffness(double Rx, double Ry, const ContactMaterial& a,
 }
 
 double hertz_line_stiffness(double length) {
+  WHIRL_EXPECTS(length > 0.0);
   // N/mm^(10/9) with length in mm -> N/m^(10/9)
   return 8.06e4 * std::pow(1e3 * length, 8.0 / 9.0) * std::pow(1e3, 10.0 / 9.0);
 }
 
 double hertz_series(double K1, double K2, double n) {
+  WHIRL_EXPECTS(K1 > 0.0 && K2 > 0.0 && n > 0.0);
   return std::pow(std::pow(K1, -1.0 / n) + std::pow(K2, -1.0 / n), -n);
 }
 

@@ -21,10 +21,12 @@ struct ContactMaterial {
 double hertz_point_stiffness(double Rx, double Ry, const ContactMaterial& a = {},
                              const ContactMaterial& b = {});
 /// Ellipticity kappa >= 1 of the contact.
+/// @pre Rx, Ry > 0.
 double hertz_ellipticity(double Rx, double Ry);
 /// length: effective roller length, m. N/m^(10/9).
 double hertz_line_stiffness(double length);
 /// Two contacts in series, exponent n: (K1^(-1/n) + K2^(-1/n))^(-n).
+/// @pre K1, K2, n > 0.
 double hertz_series(double K1, double K2, double n);
 
 }  // namespace whirl::elements

@@ -1,4 +1,5 @@
 #include <elements/rolling/rolling_bearing.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <elements/rolling/hertz.hpp>
@@ -72,6 +73,7 @@ Vector<6> RollingBearing<Contact>::deflection(const Nodes<2>& x) const {
 template <class Contact>
 void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p, bool with_hessian,
                                         int copies) const {
+  WHIRL_EXPECTS(elements > 0 && copies > 0);
   p.V = 0;
   p.g.setZero();
   p.H.setZero();
@@ -128,6 +130,7 @@ void RollingBearing<Contact>::evaluate(const Nodes<2>& x, bool averaged, Rolling
 
 template <class Contact>
 std::vector<double> RollingBearing<Contact>::loads(const Vector<6>& q) const {
+  WHIRL_EXPECTS(elements > 0);
   std::vector<double> out;
   for (int j = 0; j < elements; ++j) {
     const double a = q[5] + two_pi * j / elements, c = std::cos(a), s = std::sin(a);

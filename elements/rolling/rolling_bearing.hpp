@@ -125,9 +125,11 @@ struct BallGeometry {
 };
 /// @throws Error E83: fewer than 2 balls, sizes not positive, balls that do not fit, f <= 0.5,
 /// |alpha| >= 80 deg, clearance beyond the grooves.
+/// @throws Error (E83) for a geometry that cannot be built.
 BallBearing make_ball_bearing(const BallGeometry& g);
 /// Shifts the reference position so that the bearing pushes back with `force` (N, >= 0) axially
 /// when undisplaced. E83 when deep groove.
+/// @throws Error (E83) when the force is negative or the bearing has no contact angle.
 void set_axial_preload(BallBearing& b, double force);
 
 struct RollerGeometry {
@@ -136,6 +138,7 @@ struct RollerGeometry {
   double radial_clearance = 0;
   double stiffness = 0;  ///< K, N/m^(10/9); 0: Palmgren (steel)
 };
+/// @throws Error (E83) for a geometry that cannot be built.
 RollerBearing make_roller_bearing(const RollerGeometry& g);
 
 }  // namespace whirl::elements

@@ -1,4 +1,5 @@
 #include <elements/shaft/general_beam.hpp>
+#include <core/contract.hpp>
 
 #include <core/dual_rate.hpp>
 #include <system/stiffness_rate.hpp>
@@ -537,6 +538,7 @@ GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chor
       arm1(chart1.transpose() * o1),
       arm2(chart2.transpose() * o2),
       l0(chord_.norm()) {
+  WHIRL_EXPECTS(c.length > 0.0 && l0 > 0.0);
   NodeState rest1, rest2;
   for (NodeState* r : {&rest1, &rest2})
     r->u = r->du = r->ddu = r->t = r->dd = r->ddd = Vec3::Zero();

@@ -106,6 +106,7 @@ struct GeneralBeam {
   /// The reference configuration is stress-free, whatever the angles between chord and triads.
   /// chart1, chart2: triads of the nodes' lines as given to the builder. The nodes may be on
   /// different lines; charts may be moved.
+  /// @pre positive length, chord not zero.
   GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chord, const Mat3& triad1,
               const Mat3& triad2, const Vec3& offset1 = Vec3::Zero(),
               const Vec3& offset2 = Vec3::Zero(), const Mat3& chart1 = Mat3::Identity(),

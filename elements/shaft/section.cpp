@@ -1,4 +1,5 @@
 #include <elements/shaft/section.hpp>
+#include <core/contract.hpp>
 
 namespace whirl::elements {
 
@@ -6,21 +7,25 @@ namespace whirl::elements {
 double annulus_area(double od, double id) { return pi / 4 * (od - id) * (od + id); }
 double annulus_I(double od, double id) { return annulus_J(od, id) / 2; }
 double annulus_J(double od, double id) {
+  WHIRL_EXPECTS(od >= id && id >= 0.0);
   return pi / 32 * (od - id) * (od + id) * (od * od + id * id);
 }
 
 double cowper_factor(double m, double nu) {
+  WHIRL_EXPECTS(m >= 0.0 && m <= 1.0);
   const double m2 = m * m, p = (1 + m2) * (1 + m2);
   return 6 * (1 + nu) * p / ((7 + 6 * nu) * p + (20 + 12 * nu) * m2);
 }
 
 double hutchinson_factor(double m, double nu) {
+  WHIRL_EXPECTS(m >= 0.0 && m <= 1.0);
   const double m2 = m * m, m4 = m2 * m2, p = (1 + m2) * (1 + m2);
   return 6 * (1 + nu) * (1 + nu) * p /
          (7 + 34 * m2 + 7 * m4 + nu * (12 + 48 * m2 + 12 * m4) + nu * nu * (4 + 16 * m2 + 4 * m4));
 }
 
 SectionProperties ElementSection::at(double xi) const {
+  WHIRL_EXPECTS(constants || (E > 0.0 && rho >= 0.0));
   if (constants) {
     SectionProperties p = given;
     if (!(p.kGA > 0) || shear == ShearRule::rigid) p.kGA = infinity;
@@ -53,6 +58,7 @@ bool ElementSection::uniform() const {
 }
 
 ElementSection ElementSection::part(double xi1, double xi2) const {
+  WHIRL_EXPECTS(0.0 <= xi1 && xi1 <= xi2 && xi2 <= 1.0);
   ElementSection s = *this;
   const auto cut = [&](double a, double b, double& out1, double& out2) {
     out1 = a == b ? a : a + xi1 * (b - a);

@@ -24,11 +24,13 @@ struct SectionProperties {
 };
 
 /// Area, transverse and polar second moments of a hollow circle, m2 and m4.
+/// @pre od >= id >= 0.
 double annulus_area(double od, double id);
 double annulus_I(double od, double id);
 double annulus_J(double od, double id);
 
 /// Shear factors of a hollow circle, m = id/od in [0, 1).
+/// @pre 0 <= m <= 1 (also hutchinson_factor).
 double cowper_factor(double m, double nu);
 double hutchinson_factor(double m, double nu);
 
@@ -52,6 +54,7 @@ struct ElementSection {
   /// Same properties at both ends and everywhere between.
   bool uniform() const;
   /// The part from xi1 to xi2 of this section, as a section of its own (diameters interpolated).
+  /// @pre 0 <= xi1 <= xi2 <= 1.
   ElementSection part(double xi1, double xi2) const;
 };
 

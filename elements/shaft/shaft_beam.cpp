@@ -1,4 +1,5 @@
 #include <elements/shaft/shaft_beam.hpp>
+#include <core/contract.hpp>
 
 #include <core/dual_rate.hpp>
 #include <elements/shaft/general_beam.hpp>
@@ -432,6 +433,8 @@ template <bool Offsets>
 ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3& direction)
     : c(constants),
       e0(direction) {
+  WHIRL_EXPECTS(constants.length > 0.0 && constants.mass >= 0.0);
+  WHIRL_EXPECTS(std::abs(direction.norm() - 1.0) < 1e-9);
   G4c = c.G4;
   G4c(1, 1) -= c.polar.row(0).sum();
   G4c(3, 3) -= c.polar.row(1).sum();

@@ -67,6 +67,7 @@ struct ShaftBeam {
   double soft_limit = -infinity;      ///< -kGA/2, N
 
   ShaftBeam() = default;
+  /// @pre positive length, direction a unit vector.
   ShaftBeam(const ShaftElementConstants& constants, const Vec3& direction);
 
   void add_force(const system::Nodes<2>& x, const system::Context& ctx,

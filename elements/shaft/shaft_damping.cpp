@@ -17,7 +17,9 @@ using system::TangentX;
 namespace {
 
 #include <elements/shaft/shaft_single.inl>
+#define WHIRL_INLINE inline
 #include <elements/shaft/shaft_damping.inl>
+#undef WHIRL_INLINE
 
 /// Rates as plain vectors.
 struct Rates {

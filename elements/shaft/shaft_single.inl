@@ -6,6 +6,7 @@
 using namespace single;
 using namespace system::of_one;
 
+#define WHIRL_INLINE inline
 #include <core/series.inl>
 #include <elements/shaft/angle_ratio.inl>
 
@@ -24,3 +25,4 @@ AngleRatio<DualRate<N>> angle_ratio(const DualRate<N>& n) {
 }
 
 #include <elements/shaft/shaft_strain.inl>
+#undef WHIRL_INLINE

@@ -1,4 +1,5 @@
 #include <elements/shaft/timoshenko_matrices.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <array>
@@ -61,34 +62,28 @@ const GaussRule& taper_rule() {
 }
 constexpr double panel_ratio = 1.5;
 
-/// Fractions xi at which the panels of an element begin and end; `cuts` are among them.
-std::vector<double> panels(const ElementSection& s, const std::vector<double>& cuts) {
-  std::vector<double> ends{0.0};
-  for (double c : cuts)
-    if (c > ends.back()) ends.push_back(c);
-  if (ends.back() < 1.0) ends.push_back(1.0);
-  if (s.uniform()) return ends;
+/// Fractions xi at which the panels of an element begin and end.
+std::vector<double> panels(const ElementSection& s) {
+  if (s.uniform()) return {0.0, 1.0};
   const auto ratio = [](double a, double b) { return std::max(a / b, b / a); };
   std::vector<double> out{0.0};
-  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-    std::vector<double> right{ends[k + 1]};  // ends still to be reached, nearest last
-    while (!right.empty()) {
-      const double a = out.back(), b = right.back();
-      const ElementSection p = s.part(a, b);
-      const bool fine =
-          ratio(p.od1, p.od2) <= panel_ratio && ratio(p.od1 - p.id1, p.od2 - p.id2) <= panel_ratio;
-      if (fine || right.size() > 60) {
-        out.push_back(b);
-        right.pop_back();
-      } else {
-        right.push_back(0.5 * (a + b));
-      }
+  std::vector<double> right{1.0};  // ends still to be reached, nearest last
+  while (!right.empty()) {
+    const double a = out.back(), b = right.back();
+    const ElementSection p = s.part(a, b);
+    const bool fine =
+        ratio(p.od1, p.od2) <= panel_ratio && ratio(p.od1 - p.id1, p.od2 - p.id2) <= panel_ratio;
+    if (fine || right.size() > 60) {
+      out.push_back(b);
+      right.pop_back();
+    } else {
+      right.push_back(0.5 * (a + b));
     }
   }
   return out;
 }
 
-/// Running integrals over the panels: value at every node, and at the end of the panel.
+/// Running integrals over the panels: value at every node.
 struct Sampled {
   const GaussRule& rule;
   std::vector<double> ends;
@@ -100,9 +95,9 @@ struct Sampled {
   };
   std::vector<Point> points;
 
-  Sampled(const ElementSection& s, double length, const std::vector<double>& cuts)
+  Sampled(const ElementSection& s, double length)
       : rule(s.uniform() ? polynomial_rule() : taper_rule()),
-        ends(panels(s, cuts)),
+        ends(panels(s)),
         l(length) {
     points.reserve((ends.size() - 1) * rule.x.size());
     for (std::size_t k = 0; k + 1 < ends.size(); ++k)
@@ -129,14 +124,11 @@ struct Sampled {
       v[n] = f(points[n]);
     return running(v, 0.0);
   }
-  /// start + integral of f (one value a point) from 0 to each point; at the panel ends in `at_ends`
-  /// when given.
-  std::vector<double> running(const std::vector<double>& f, double start,
-                              std::vector<double>* at_ends = nullptr) const {
+  /// start + integral of f (one value a point) from 0 to each point.
+  std::vector<double> running(const std::vector<double>& f, double start) const {
     std::vector<double> out(f.size());
     const int n = rule.size();
     double base = start;
-    if (at_ends) at_ends->assign(1, base);
     for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
       const double h = (ends[k + 1] - ends[k]) * l;
       const double* fk = f.data() + k * n;
@@ -149,7 +141,6 @@ struct Sampled {
         whole += rule.w[i] * fk[i];
       }
       base += h * whole;
-      if (at_ends) at_ends->push_back(base);
     }
     return out;
   }
@@ -171,10 +162,10 @@ Mat2 end_stiffness(const Sampled& sp) {
   return k;
 }
 
-/// Section rotation, deflection and slope of the static solution for th_i = 1 (i = 0, 1), at points
-/// and panel ends.
+/// Section rotation, deflection and slope of the static solution for th_i = 1 (i = 0, 1), at the
+/// points.
 struct StaticShape {
-  std::vector<double> g, w, slope, g_end, w_end;
+  std::vector<double> g, w, slope;
 };
 StaticShape static_shape(const Sampled& sp, const Mat2& k, int i) {
   const double m1 = k(0, i), m2 = k(1, i), Q = -(m1 + m2) / sp.l;
@@ -182,11 +173,11 @@ StaticShape static_shape(const Sampled& sp, const Mat2& k, int i) {
   std::vector<double> f(sp.points.size());
   for (std::size_t n = 0; n < f.size(); ++n)
     f[n] = (-m1 * (1 - sp.points[n].xi) + m2 * sp.points[n].xi) / sp.points[n].p.EI;
-  s.g = sp.running(f, i == 0 ? 1.0 : 0.0, &s.g_end);
+  s.g = sp.running(f, i == 0 ? 1.0 : 0.0);
   s.slope.resize(f.size());
   for (std::size_t n = 0; n < f.size(); ++n)
     s.slope[n] = s.g[n] + Q * shear_softness(sp.points[n].p);
-  s.w = sp.running(s.slope, 0.0, &s.w_end);
+  s.w = sp.running(s.slope, 0.0);
   return s;
 }
 
@@ -334,7 +325,9 @@ void correct_mass(const Sampled& sp, const Mat2& k, const Matrix<4>& T, const Ve
 
 ShaftElementConstants make_shaft_constants(const ElementSection& section, double l, double o1,
                                            double o2, MassKind kind, const MassShare& share) {
-  const Sampled sp(section, l, {});
+  WHIRL_EXPECTS(l > 0.0 && std::isfinite(l));
+  WHIRL_EXPECTS(std::isfinite(o1) && std::isfinite(o2));
+  const Sampled sp(section, l);
   ShaftElementConstants c;
   c.length = l;
   c.o1 = o1;
@@ -361,31 +354,10 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
 }
 
 Matrix<4> bending_stiffness(const ShaftElementConstants& c) {
+  WHIRL_EXPECTS(c.length > 0.0);
   const Matrix<4> T = offset_map(c.o1, c.o2);
   return T.transpose() *
          end_point_stiffness((Mat2() << c.k11, c.k12, c.k12, c.k22).finished(), c.length) * T;
-}
-
-std::vector<ShapeFunctions> shape_functions(const ElementSection& section, double l,
-                                            const std::vector<double>& xi) {
-  const Sampled sp(section, l, xi);
-  const Mat2 k = end_stiffness(sp);
-  const StaticShape s1 = static_shape(sp, k, 0), s2 = static_shape(sp, k, 1);
-  std::vector<ShapeFunctions> out;
-  for (double x : xi) {
-    const auto at = static_cast<std::size_t>(std::lower_bound(sp.ends.begin(), sp.ends.end(), x) -
-                                             sp.ends.begin());
-    const double soft = shear_softness(section.at(x));
-    const double v1 = s1.g_end[at] - (k(0, 0) + k(1, 0)) / l * soft,
-                 v2 = s2.g_end[at] - (k(0, 1) + k(1, 1)) / l * soft;
-    ShapeFunctions f;
-    f.xi = x;
-    f.N = on_nodes(x * l, s1.w_end[at], s2.w_end[at], l, true);
-    f.G = on_nodes(1.0, s1.g_end[at], s2.g_end[at], l, false);
-    f.slope = on_nodes(1.0, v1, v2, l, false);
-    out.push_back(f);
-  }
-  return out;
 }
 
 }  // namespace whirl::elements

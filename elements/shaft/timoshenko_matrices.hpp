@@ -74,18 +74,6 @@ ShaftElementConstants make_shaft_constants(const ElementSection& section, double
                                            double o2 = 0, MassKind mass = MassKind::corrected,
                                            const MassShare& share = {});
 
-/// Shape functions at one point: r = sum N_k X_k, d = sum G_k X_k on X = (r1, d1, r2, d2), and
-/// slope_k = dN_k/ds.
-struct ShapeFunctions {
-  double xi = 0;
-  Vector<4> N, G, slope;
-};
-
-/// Shape functions at fractions xi (increasing, in [0, 1]) of an element: for pictures and for
-/// stresses between nodes.
-std::vector<ShapeFunctions> shape_functions(const ElementSection& section, double l,
-                                            const std::vector<double>& xi);
-
 /// The bending stiffness on (r1, d1, r2, d2) of small motions about the straight state, node
 /// coordinates (offsets inside).
 Matrix<4> bending_stiffness(const ShaftElementConstants& c);

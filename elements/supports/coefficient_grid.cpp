@@ -1,4 +1,5 @@
 #include <elements/supports/coefficient_grid.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <elements/supports/monotone_slopes.hpp>
@@ -122,6 +123,7 @@ CoefficientGrid<N>::CoefficientGrid(std::vector<double> spin, std::vector<double
 
 template <int N>
 void CoefficientGrid<N>::at(double s, double w, Values& v, Values& ds, Values& dw) const {
+  WHIRL_EXPECTS(!nodes_.empty());
   const double s_in = std::clamp(s, spin_.front(), spin_.back()),
                w_in = std::clamp(w, frequency_.front(), frequency_.back());
   const bool cubic = between_ == Between::monotone_cubic;
@@ -158,6 +160,7 @@ void CoefficientGrid<N>::at(double s, double w, Values& v, Values& ds, Values& d
 
 template <int N>
 bool CoefficientGrid<N>::resists(int motion) const {
+  WHIRL_EXPECTS(motion >= 0 && motion < N);
   return std::any_of(nodes_.begin(), nodes_.end(), [motion](const Node& n) {
     return (Values::stiffness(n.f, motion) != 0.0).any();
   });
@@ -165,6 +168,7 @@ bool CoefficientGrid<N>::resists(int motion) const {
 
 template <int N>
 bool CoefficientGrid<N>::damps(int motion) const {
+  WHIRL_EXPECTS(motion >= 0 && motion < N);
   return std::any_of(nodes_.begin(), nodes_.end(), [motion](const Node& n) {
     return (Values::damping(n.f, motion) != 0.0).any();
   });

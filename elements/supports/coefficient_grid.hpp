@@ -39,6 +39,7 @@ class CoefficientGrid {
     return spin_.size() > 1 || frequency_.size() > 1 || outside_ == Outside::undefined;
   }
   /// There is stiffness, or damping, against a motion of this number.
+  /// @pre 0 <= motion < N (also of damps).
   bool resists(int motion) const;
   bool damps(int motion) const;
 

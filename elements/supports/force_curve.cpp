@@ -1,4 +1,5 @@
 #include <elements/supports/force_curve.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 
@@ -30,6 +31,7 @@ double slope_of(const std::array<double, 8>& c, double u) {
 }  // namespace
 
 const ForceCurve::Piece& ForceCurve::piece(double x) const {
+  WHIRL_EXPECTS(!pieces_.empty());
   return pieces_[static_cast<std::size_t>(std::upper_bound(breaks_.begin(), breaks_.end(), x) -
                                           breaks_.begin())];
 }
@@ -46,6 +48,7 @@ ForceCurve::Value ForceCurve::at(double x) const {
 }
 
 void ForceCurve::integrate() {
+  WHIRL_EXPECTS(pieces_.size() == breaks_.size() + 1);
   for (std::size_t i = 0; i + 1 < pieces_.size(); ++i) {
     const double b = breaks_[i];
     pieces_[i + 1].V0 = pieces_[i].V0 + energy_of(pieces_[i].c, b - pieces_[i].x0) -

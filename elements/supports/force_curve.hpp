@@ -35,6 +35,7 @@ class ForceCurve {
   /// @throws Error E82: negative gap, stiffness or smooth.
   static ForceCurve clearance(double gap_minus, double gap_plus, double k, double smooth = 0.0);
   /// One-sided: k (x - gap) for x > gap, nothing before; gap may be negative (preloaded).
+  /// @throws Error (E82) for a negative stiffness or smoothing length.
   static ForceCurve one_sided(double gap, double k, double smooth = 0.0);
 
  private:

@@ -1,4 +1,5 @@
 #include <elements/supports/linear_bearing.hpp>
+#include <core/contract.hpp>
 
 namespace whirl::elements {
 
@@ -41,6 +42,8 @@ LinearBearing::LinearBearing(const Matrix<6>& K, const Matrix<6>& C, const Matri
       setpoint_(setpoint),
       preload_(preload),
       between_(s1, s2, axes) {
+  WHIRL_EXPECTS(K.allFinite() && C.allFinite() && M.allFinite());
+  WHIRL_EXPECTS((axes.transpose() * axes - Mat3::Identity()).norm() < 1e-9);
   const Matrix<6, 14> B = between_.B();
   K14_ = B.transpose() * K_ * B;
   C14_ = B.transpose() * C_ * B;

@@ -48,6 +48,7 @@ struct LinearBearing {
   LinearBearing() = default;
   /// s1, s2: points from the nodes along their directors, m; axes: columns e0, e2, e3, orthonormal,
   /// global axes.
+  /// @pre finite matrices, orthonormal axes.
   LinearBearing(const Matrix<6>& K, const Matrix<6>& C, const Matrix<6>& M,
                 const Vector<6>& setpoint, const Vector<6>& preload, double s1 = 0, double s2 = 0,
                 const Mat3& axes = Mat3::Identity());

@@ -3,6 +3,7 @@
 // 1980, doi 10.1137/0717021; Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5, 1984, doi
 // 10.1137/0905021). Where a column of values is monotone, so is the cubic.
 #pragma once
+#include <core/contract.hpp>
 #include <core/types.hpp>
 #include <cmath>
 #include <vector>
@@ -10,8 +11,10 @@
 namespace whirl::elements {
 
 /// x increasing; Row: a fixed-size Eigen array, taken entry by entry. One row: zero slope.
+/// @pre as many values as places, x strictly increasing.
 template <class Row>
 std::vector<Row> monotone_slopes(const std::vector<double>& x, const std::vector<Row>& value) {
+  WHIRL_EXPECTS(value.size() == x.size());
   const std::size_t n = x.size();
   std::vector<Row> slope(n, Row::Zero());
   if (n < 2) return slope;

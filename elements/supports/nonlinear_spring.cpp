@@ -1,4 +1,5 @@
 #include <elements/supports/nonlinear_spring.hpp>
+#include <core/contract.hpp>
 
 namespace whirl::elements {
 
@@ -11,6 +12,8 @@ using system::TangentX;
 template <int W>
 ScalarSpring<W> ScalarSpring<W>::translation(const Vec3& n, ForceCurvePtr F, ForceCurvePtr D,
                                              double s0, double s1) {
+  WHIRL_EXPECTS(F && D);
+  WHIRL_EXPECTS(std::abs(n.norm() - 1.0) < 1e-9);
   ScalarSpring k;
   k.b0.setZero();
   k.b1.setZero();
@@ -28,6 +31,8 @@ ScalarSpring<W> ScalarSpring<W>::translation(const Vec3& n, ForceCurvePtr F, For
 template <int W>
 ScalarSpring<W> ScalarSpring<W>::tilt(const Vec3& n, const Vec3& e, ForceCurvePtr F,
                                       ForceCurvePtr D) requires(W == 7) {
+  WHIRL_EXPECTS(F && D);
+  WHIRL_EXPECTS(std::abs(n.norm() - 1.0) < 1e-9 && std::abs(e.norm() - 1.0) < 1e-9);
   ScalarSpring k;
   k.b0.setZero();
   k.b0.template segment<3>(3) = n.cross(e);
@@ -39,6 +44,7 @@ ScalarSpring<W> ScalarSpring<W>::tilt(const Vec3& n, const Vec3& e, ForceCurvePt
 
 template <int W>
 ScalarSpring<W> ScalarSpring<W>::twist(ForceCurvePtr F, ForceCurvePtr D) requires(W == 7) {
+  WHIRL_EXPECTS(F && D);
   ScalarSpring k;
   k.b0.setZero();
   k.b0[6] = 1.0;

@@ -38,6 +38,7 @@ struct ScalarSpring {
   Vector<W> b0, b1;
   ForceCurvePtr force, damping;  ///< neither null
 
+  /// @pre n (and e of a tilt) are unit vectors; no curve is null.
   static ScalarSpring translation(const Vec3& n, ForceCurvePtr F, ForceCurvePtr D, double s0 = 0,
                                   double s1 = 0);
   static ScalarSpring tilt(const Vec3& n, const Vec3& e, ForceCurvePtr F,

@@ -73,11 +73,4 @@ void RubLaw::energy(const LateralMotion& m, system::Energy& e) const {
                   friction * N * c.slip * std::tanh(c.slip / slip_speed);
 }
 
-RubLaw::Contact RubLaw::contact(const LateralMotion& m) const {
-  const Touch c(*this, m);
-  const double N =
-      c.delta > 0.0 ? stiffness * c.delta * std::max(0.0, 1.0 + damping * c.drho) : 0.0;
-  return {N, c.slip, friction * N * c.slip * std::tanh(c.slip / slip_speed)};
-}
-
 }  // namespace whirl::elements

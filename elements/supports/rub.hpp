@@ -38,12 +38,6 @@ struct RubLaw {
   void tangent(const LateralMotion& m, Vector<4>& z, LateralTangent& t) const;
   void energy(const LateralMotion& m, system::Energy& e) const;
   int region(const LateralMotion& m) const { return m.r.norm() > gap; }
-
-  /// Contact state, for results: normal force N, slip velocity m/s, friction power W.
-  struct Contact {
-    double normal, slip, power;
-  };
-  Contact contact(const LateralMotion& m) const;
 };
 
 using Rub = LateralJoint<RubLaw>;

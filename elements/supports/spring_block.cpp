@@ -11,8 +11,10 @@ namespace {
 
 using namespace single;
 
+#define WHIRL_INLINE inline
 #include <core/series.inl>
 #include <elements/shaft/angle_ratio.inl>
+#undef WHIRL_INLINE
 
 /// d - e0; in a chart that has not been moved it is t to the last digit.
 Vec3 tilt(const NodeState& n, const Vec3& e0) { return n.t + (n.e() - e0); }

@@ -1,4 +1,5 @@
 #include <elements/supports/table_bearing.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <elements/supports/coefficient_grid.hpp>
@@ -51,6 +52,7 @@ CoefficientTable<N>::CoefficientTable(std::vector<double> spin, std::vector<Valu
 
 template <int N>
 bool CoefficientTable<N>::resists(int motion) const {
+  WHIRL_EXPECTS(motion >= 0 && motion < N);
   return std::any_of(value_.begin(), value_.end(), [motion](const Row& r) {
     return (Values::stiffness(r, motion) != 0.0).any();
   });
@@ -58,6 +60,7 @@ bool CoefficientTable<N>::resists(int motion) const {
 
 template <int N>
 bool CoefficientTable<N>::damps(int motion) const {
+  WHIRL_EXPECTS(motion >= 0 && motion < N);
   return std::any_of(value_.begin(), value_.end(),
                      [motion](const Row& r) { return (Values::damping(r, motion) != 0.0).any(); });
 }

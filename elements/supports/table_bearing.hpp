@@ -64,6 +64,7 @@ class CoefficientTable {
   bool follows_spin() const { return spin_.size() > 1 || outside_ == Outside::undefined; }
   static constexpr bool follows_frequency() { return false; }
   /// There is stiffness, or damping, against a motion of this number.
+  /// @pre 0 <= motion < N (also of damps).
   bool resists(int motion) const;
   bool damps(int motion) const;
 

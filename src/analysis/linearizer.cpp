@@ -1,4 +1,5 @@
 #include <analysis/linearizer.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <core/interrupt.hpp>
@@ -32,6 +33,7 @@ Linearizer::Linearizer(const system::System& system, SteadyRotation running,
       matrices_(system.make_matrices()) {}
 
 void Linearizer::set_equilibrium(const Equilibrium& e) {
+  WHIRL_EXPECTS(e.state.q.size() == system().size());
   equilibrium_ = e;
   have_ = true;
   running_.residual(e.state.frames, e.Omega, e.state.q, r_);
@@ -67,6 +69,7 @@ bool Linearizer::still_balanced(double Omega) {
 }
 
 const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
+  WHIRL_EXPECTS(std::isfinite(Omega));
   throw_if_interrupted();
   running_.set_whirl(0.0);
   running_.set_frequency(nan);
@@ -122,6 +125,7 @@ const la::MCK& Linearizer::conservative_at(double Omega, double w) {
 }
 
 const std::vector<VecXc>& Linearizer::forcing() {
+  WHIRL_EXPECTS(have_);
   if (!have_forcing_) {
     running_.forcing(equilibrium_.state.frames, equilibrium_.Omega, equilibrium_.state.q, forcing_);
     have_forcing_ = true;
@@ -130,6 +134,7 @@ const std::vector<VecXc>& Linearizer::forcing() {
 }
 
 void take_conservative_part(const la::MCK& m, la::MCK& out) {
+  WHIRL_EXPECTS(out.K.value_count() == m.K.value_count() && &out != &m);
   const la::BlockPattern& p = m.M.pattern();
   std::copy_n(m.M.data(), m.M.value_count(), out.M.data());
   for (Index i = 0; i < p.size(); ++i)

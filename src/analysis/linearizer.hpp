@@ -42,6 +42,7 @@ class Linearizer {
   double Omega() const { return equilibrium_.Omega; }
   const Equilibrium& equilibrium() const { return equilibrium_; }
   /// Takes an equilibrium as found elsewhere.
+  /// @pre a state of this system.
   void set_equilibrium(const Equilibrium& e);
   /// The first equilibrium is sought from this state instead of the reference configuration.
   void start_from(const system::State& s) { first_ = s; }
@@ -49,6 +50,7 @@ class Linearizer {
   /// loads. Held unknowns stand at their laws; supports answer as they do there.
   void stay_undeformed();
   /// Forcing amplitudes at the last speed, one for each of running().orders().
+  /// @pre after at().
   const std::vector<VecXc>& forcing();
   SteadySystem& running() { return running_; }
   bool hysteretic() const { return running_.hysteretic(); }
@@ -74,6 +76,7 @@ class Linearizer {
 };
 
 /// M, (C - C^T)/2, (K + K^T)/2.
+/// @pre out stands on the pattern of m and is another object.
 void take_conservative_part(const la::MCK& m, la::MCK& out);
 
 }  // namespace whirl::analysis

@@ -1,4 +1,5 @@
 #include <analysis/search.hpp>
+#include <core/contract.hpp>
 
 #include <cmath>
 
@@ -6,6 +7,7 @@ namespace whirl::analysis {
 
 double find_maximum(double a, double m, double fm, double b, double tolerance,
                     const std::function<double(double)>& f) {
+  WHIRL_EXPECTS(((a < m && m < b) || (b < m && m < a)) && tolerance > 0.0);
   const double golden = 0.3819660112501051;
   double x = m, w = m, v = m, fx = fm, fw = fm, fv = fm, d = 0, e = 0;
   for (int it = 0; it < 80; ++it) {
@@ -53,6 +55,8 @@ double find_maximum(double a, double m, double fm, double b, double tolerance,
 
 double find_crossing(double a, double fa, double b, double fb, double tolerance,
                      const std::function<double(double)>& f) {
+  WHIRL_EXPECTS((fa < 0.0) != (fb < 0.0) || fa == 0.0 || fb == 0.0);
+  WHIRL_EXPECTS(tolerance > 0.0);
   for (int it = 0; it < 80 && std::abs(b - a) > tolerance * std::abs(b); ++it) {
     const double x = (a * fb - b * fa) / (fb - fa), fx = f(x);
     if (fx == 0.0) return x;

@@ -7,10 +7,12 @@ namespace whirl::analysis {
 /// Maximum of f in (a, b), f(m) = fm >= f(a), f(b): Brent's parabolic steps with golden sections
 /// (R. P. Brent, Algorithms for Minimization without Derivatives, 1973, ch. 5). tolerance:
 /// relative, of the place.
+/// @pre m between a and b, tolerance > 0.
 double find_maximum(double a, double m, double fm, double b, double tolerance,
                     const std::function<double(double)>& f);
 
 /// Zero of f in [a, b] with a sign change, by the Illinois variant of regula falsi.
+/// @pre fa and fb of different sign or zero, tolerance > 0.
 double find_crossing(double a, double fa, double b, double fb, double tolerance,
                      const std::function<double(double)>& f);
 

@@ -1,4 +1,5 @@
 #include <analysis/steady_rotation.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <core/interrupt.hpp>
@@ -93,6 +94,8 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
       r_(system.size()),
       part_(system.make_matrices()),
       sample_(system.make_matrices()) {
+  WHIRL_EXPECTS(std::all_of(running_.table_frequencies.begin(), running_.table_frequencies.end(),
+                            [](double w) { return std::isfinite(w); }));
   if (ratio_.empty()) ratio_.assign(at(system.lines()), 1.0);
   ratio_.resize(at(system.lines()), 0.0);
   find_spinning();
@@ -137,6 +140,7 @@ void SteadySystem::find_spinning() {
 }
 
 void SteadySystem::set_load(double factor) {
+  WHIRL_EXPECTS(std::isfinite(factor));
   if (workspace_.context.load != factor) {
     workspace_.context.load = factor;
     polynomial_ = seen_ = false;
@@ -243,6 +247,7 @@ void SteadySystem::set_apart_frequency_terms() {
 }
 
 void SteadySystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
+  WHIRL_EXPECTS(std::isfinite(Omega) && v.size() == system_.size());
   v.setZero();
   if (Omega != 0.0)
     for (const auto& [line, node] : held_)
@@ -256,6 +261,7 @@ void SteadySystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
 }
 
 void SteadySystem::impose(const system::Frames& f, Eigen::Ref<VecX> q) const {
+  WHIRL_EXPECTS(q.size() == system_.size());
   std::vector<double> lead(at(system_.lines()), nan);
   for (const auto& h : system_.holds()) {
     if (!h.law) {
@@ -277,6 +283,7 @@ void SteadySystem::impose(const system::Frames& f, Eigen::Ref<VecX> q) const {
 
 bool SteadySystem::evaluate_residual(const system::Frames& f, double Omega, const VecX& q,
                                      double theta, VecX& r, const Terms& only) {
+  WHIRL_EXPECTS(q.size() == system_.size() && std::isfinite(theta));
   throw_if_interrupted();
   set_rates(Omega, v_);
   if (theta == 0.0) return system_.residual(workspace_, f, running_.time, q, v_, a_, r, &only);
@@ -288,6 +295,7 @@ bool SteadySystem::evaluate_residual(const system::Frames& f, double Omega, cons
 
 bool SteadySystem::evaluate_tangent(const system::Frames& f, double Omega, const VecX& q,
                                     double theta, la::MCK& out, const Terms& only) {
+  WHIRL_EXPECTS(q.size() == system_.size() && std::isfinite(theta));
   throw_if_interrupted();
   set_rates(Omega, v_);
   if (theta == 0.0) return system_.tangent(workspace_, f, running_.time, q, v_, a_, out, &only);
@@ -300,6 +308,7 @@ bool SteadySystem::evaluate_tangent(const system::Frames& f, double Omega, const
 bool SteadySystem::visit_revolution(
     const system::Frames& f, double Omega, const VecX& q,
     const std::function<void(double, const system::Workspace&)>& visit) {
+  WHIRL_EXPECTS(visit != nullptr);
   const std::size_t visits = phase_dependent() ? theta_.size() : 1;
   for (std::size_t k = 0; k < visits; ++k) {
     set_rates(Omega, v_);
@@ -328,6 +337,7 @@ bool SteadySystem::fits_polynomial(const system::Frames& f, double Omega, const 
 
 bool SteadySystem::add_mean_residual(const system::Frames& f, double Omega, const VecX& q,
                                      const Terms& only, VecX& r) {
+  WHIRL_EXPECTS(weights_.cols() == static_cast<Index>(theta_.size()));
   if (only.empty()) return true;
   for (std::size_t k = 0; k < theta_.size(); ++k) {
     if (!evaluate_residual(f, Omega, q, theta_[k], r_, only)) return false;
@@ -338,6 +348,7 @@ bool SteadySystem::add_mean_residual(const system::Frames& f, double Omega, cons
 
 bool SteadySystem::add_mean_tangent(const system::Frames& f, double Omega, const VecX& q,
                                     const Terms& only, la::MCK& out) {
+  WHIRL_EXPECTS(weights_.cols() == static_cast<Index>(theta_.size()));
   if (only.empty()) return true;
   for (std::size_t k = 0; k < theta_.size(); ++k) {
     if (!evaluate_tangent(f, Omega, q, theta_[k], sample_, only)) return false;
@@ -348,6 +359,7 @@ bool SteadySystem::add_mean_tangent(const system::Frames& f, double Omega, const
 
 bool SteadySystem::add_forcing(const system::Frames& f, double Omega, const VecX& q,
                                const Terms& only, std::vector<VecXc>& out) {
+  WHIRL_EXPECTS(weights_.rows() == 1 + 2 * static_cast<Index>(orders_.size()));
   if (only.empty()) return true;
   for (std::size_t k = 0; k < theta_.size(); ++k) {
     if (!evaluate_residual(f, Omega, q, theta_[k], r_, only)) return false;

@@ -70,13 +70,15 @@ class SteadySystem {
   bool hysteretic() const { return hysteretic_; }
   double load() const { return workspace_.context.load; }
 
-  /// v of the steady motion: Omega ratio at spinning phi, else zero. Errors: E78, a line that shall
-  /// turn is held against it.
+  /// v of the steady motion: Omega ratio at spinning phi, else zero.
+  /// @pre v of length system().size().
+  /// @throws Error (E78) when a line that shall turn is held against it.
   void set_rates(double Omega, Eigen::Ref<VecX> v) const;
   /// Held unknowns at their laws (running.time), spinning phi that is prescribed: relative to the
   /// first prescribed one.
   void impose(const system::Frames& f, Eigen::Ref<VecX> q) const;
   /// Mean residual; held rows are the reactions. False outside the domain of charts or elements.
+  /// @pre q of length system().size(); the same of all that follow.
   bool residual(const system::Frames& f, double Omega, const VecX& q, VecX& r);
   /// Mean matrices.
   bool tangent(const system::Frames& f, double Omega, const VecX& q, la::MCK& out);

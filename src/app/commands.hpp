@@ -30,6 +30,7 @@ int print_schema(SchemaForm form);
 std::string json_schema();
 
 /// The long text of each code, or the list of all codes.
+/// @throws Error (Exit::usage) for a code there is not.
 int explain(const std::vector<std::string>& codes);
 
 struct NewOptions {
@@ -38,6 +39,7 @@ struct NewOptions {
   bool force = false;
 };
 /// Writes a commented deck to start from.
+/// @throws Error (E91, Exit::usage) for an example there is not, or a file that is there already.
 int new_deck(const NewOptions& options);
 
 /// One command as the shell completion needs it.

@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <assembly/parts.hpp>
 
 #include <fmt/format.h>
@@ -14,6 +15,8 @@ void Assembly::error(const char* code, std::string message, std::string hint,
 }
 
 Built build_system(const model::Model& model, const meshes::Mesh& mesh, const std::string& step) {
+  WHIRL_EXPECTS(mesh.lines.size() == model.shafts.size());
+  WHIRL_EXPECTS(mesh.bearings.size() == model.bearings.size());
   Assembly a{model, mesh, step, {}, {}, {}};
   // Nodes in the order of the mesh: indices agree everywhere.
   for (const meshes::Line& line : mesh.lines)

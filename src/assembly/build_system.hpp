@@ -116,6 +116,7 @@ struct Built {
 /// without.
 /// @throws Error (Exit::deck) unrestrained motion named with its shaft, attachments off the shaft,
 /// impossible bodies.
+/// @pre mesh = make_mesh(model).
 Built build_system(const model::Model& model, const meshes::Mesh& mesh,
                    const std::string& step = {});
 

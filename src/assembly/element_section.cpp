@@ -1,8 +1,10 @@
 #include <assembly/element_section.hpp>
+#include <core/contract.hpp>
 
 namespace whirl::assembly {
 
 elements::ElementSection element_section(const model::Model& m, const meshes::Element& e) {
+  WHIRL_EXPECTS(0.0 <= e.xi1 && e.xi1 < e.xi2 && e.xi2 <= 1.0);
   const model::Section& s = m.shafts.at(static_cast<std::size_t>(e.line)).sections.at(e.section);
   elements::ElementSection out;
   if (!m.materials.empty()) {

@@ -12,6 +12,7 @@ elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int
 /// Force of the theory of short bearings over that of one of finite length, both plain and in steady
 /// rotation. It depends on L/D and the eccentricity alone: viscosity and speed are factors of either
 /// force.
+/// @pre length_over_diameter > 0, 0 <= eccentricity < 1.
 double short_bearing_excess(double length_over_diameter, double eccentricity);
 
 }  // namespace whirl::assembly

@@ -1,6 +1,7 @@
 // Reduced foundations: a node for every support point and every internal coordinate, matrices in
 // parts between pairs of them.
 #include <assembly/parts.hpp>
+#include <core/contract.hpp>
 #include <elements/supports/matrix_part.hpp>
 #include <elements/rigid/point_mass.hpp>
 
@@ -69,13 +70,15 @@ std::map<Index, double> point_masses(const Foundation& f, const std::vector<Coor
   return out;
 }
 
-void add_foundation(Assembly& a, const Foundation& f) {
-  const std::string who = fmt::format("foundation '{}'", f.name);
+/// A node for every coordinate: the support points are there, the internal ones are added.
+std::vector<Coordinate> place_coordinates(Assembly& a, const Foundation& f,
+                                          const std::string& who) {
   std::vector<Coordinate> place;
   Index line = -1;
   std::map<Index, std::array<bool, 6>> used;
   for (const auto& c : f.coordinates) {
     if (c.bearing >= 0) {
+      WHIRL_EXPECTS(at(c.bearing) < a.mesh.bearings.size());
       place.push_back(
           {a.mesh.bearings[static_cast<std::size_t>(c.bearing)].pedestal, c.direction, false});
       used[place.back().node][static_cast<std::size_t>(c.direction)] = true;
@@ -90,25 +93,38 @@ void add_foundation(Assembly& a, const Foundation& f) {
   for (const auto& [node, directions] : used)  // a support point moves along its coordinates only
     for (int c = 0; c < 6; ++c)
       if (!directions[static_cast<std::size_t>(c)]) a.builder.hold(node, c);
+  return place;
+}
 
+/// Where the mass of a reduced body is, its matrices do not say, so the centrifugal and Coriolis
+/// forces of a turning base on it are known for points only. False: it is no such body.
+bool add_as_points(Assembly& a, const Foundation& f, const std::vector<Coordinate>& place,
+                   const std::string& who) {
+  const std::map<Index, double> points = point_masses(f, place);
+  if (points.empty()) {
+    a.error(
+        "E26",
+        fmt::format("{}: its mass matrix does not say where the mass is, so the forces of a "
+                    "turning base on it are not known",
+                    who),
+        "on a turning base give the support points one mass each, the same along their "
+        "directions and without couplings, or make the casing a [[shaft]] with rotating = false",
+        f, who);
+    return false;
+  }
+  for (const auto& [node, mass] : points)
+    if (mass != 0) a.builder.add(elements::PointMass{mass}, {node}, "point masses");
+  return true;
+}
+
+void add_foundation(Assembly& a, const Foundation& f) {
+  const Index n = static_cast<Index>(f.coordinates.size());
+  WHIRL_EXPECTS(f.M.rows() == n && f.M.cols() == n && f.K.rows() == n && f.C.rows() == n);
+  const std::string who = fmt::format("foundation '{}'", f.name);
+  const std::vector<Coordinate> place = place_coordinates(a, f, who);
   MatX M = f.M;
   if (a.model.base.turn && !M.isZero(0.0)) {
-    // Where the mass of a reduced body is, its matrices do not say, so the centrifugal and Coriolis
-    // forces on it are known for points only.
-    const std::map<Index, double> points = point_masses(f, place);
-    if (points.empty()) {
-      a.error(
-          "E26",
-          fmt::format("{}: its mass matrix does not say where the mass is, so the forces of a "
-                      "turning base on it are not known",
-                      who),
-          "on a turning base give the support points one mass each, the same along their "
-          "directions and without couplings, or make the casing a [[shaft]] with rotating = false",
-          f, who);
-      return;
-    }
-    for (const auto& [node, mass] : points)
-      if (mass != 0) a.builder.add(elements::PointMass{mass}, {node}, "point masses");
+    if (!add_as_points(a, f, place, who)) return;
     M.setZero();
   }
 

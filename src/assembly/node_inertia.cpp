@@ -1,4 +1,5 @@
 #include <assembly/node_inertia.hpp>
+#include <core/contract.hpp>
 
 #include <assembly/element_section.hpp>
 #include <meshes/mass_properties.hpp>
@@ -12,6 +13,7 @@ double NodeInertia::carries() const { return std::sqrt(mass * std::min(Id, Ip));
 
 std::vector<NodeInertia> element_inertias(const model::Model& model, const meshes::Mesh& mesh,
                                           const meshes::Line& line) {
+  WHIRL_EXPECTS(line.nodes > 0);
   std::vector<NodeInertia> out(static_cast<std::size_t>(line.nodes));
   for (Index i = line.first_element; i < line.first_element + line.elements; ++i) {
     const meshes::Element& e = mesh.elements[static_cast<std::size_t>(i)];
@@ -37,6 +39,7 @@ std::vector<NodeInertia> element_inertias(const model::Model& model, const meshe
 
 std::vector<NodeInertia> body_inertias(const model::Model& model, const meshes::Mesh& mesh,
                                        const meshes::Line& line) {
+  WHIRL_EXPECTS(line.nodes > 0);
   std::vector<NodeInertia> out(static_cast<std::size_t>(line.nodes));
   const auto add = [&](Index node, const NodeInertia& what) {
     const Index k = node - line.first_node;

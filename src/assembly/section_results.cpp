@@ -1,4 +1,5 @@
 #include <assembly/section_results.hpp>
+#include <core/contract.hpp>
 
 #include <assembly/element_section.hpp>
 #include <core/rotation.hpp>
@@ -43,6 +44,8 @@ void add_stress(const elements::ElementSection& s, double xi, SectionPoint& p) {
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
                                                const Built& built, const system::Workspace& w,
                                                int inner) {
+  WHIRL_EXPECTS(inner >= 0);
+  WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
   std::vector<SectionPoint> out;
   out.reserve(mesh.elements.size() * static_cast<std::size_t>(inner + 2));
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {

@@ -36,6 +36,7 @@ struct SectionPoint {
 
 /// By line and element, `inner` points inside each element beside its two ends; in the state that
 /// the workspace holds.
+/// @pre w was evaluated; inner >= 0.
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
                                                const Built& built, const system::Workspace& w,
                                                int inner = 3);

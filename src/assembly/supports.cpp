@@ -1,6 +1,7 @@
 // Bearings, supports and pedestals. A bearing acts between its shaft node and the other side:
 // ground, pedestal, or a second station. Rigid supports hold unknowns of the shaft node itself; no
 // penalty stiffness anywhere.
+#include <core/contract.hpp>
 #include <assembly/support_parts.hpp>
 #include <elements/supports/coefficient_grid.hpp>
 #include <elements/supports/linear_bearing.hpp>
@@ -97,6 +98,7 @@ template <class Table>
 void add_table_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
                    const model::TableBearing& law, std::shared_ptr<const Table> table,
                    const char* kind) {
+  WHIRL_EXPECTS(n.shaft.node >= 0 && n.other.node >= 0);
   const auto add = [&](auto mass) {
     if constexpr (Table::size == 2) {
       add_lateral(a, b, n, elements::TableBearingLaw<mass.value, Table>{table}, kind,
@@ -193,63 +195,62 @@ SupportForce::Law moment_of_held(Index node, const model::RigidSupport& law) {
   };
 }
 
-void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
-               const model::RigidSupport& law, std::map<Index, HeldNode>& held) {
-  const std::string who = name_of(b);
-  if (n.other.node >= 0) {
-    a.error("E26",
-            fmt::format("{}: a rigid bearing holds a shaft to the ground; between two shafts it "
-                        "must have a stiffness",
-                        who),
-            "use type = \"linear\" with the stiffness of the connection", b, who);
-    return;
-  }
+/// The shaft sits rigidly in the pedestal: its mass, spring and damper act on the shaft station, in
+/// the directions held.
+void add_rigid_on_pedestal(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                           const model::RigidSupport& law, HeldNode& h) {
+  WHIRL_EXPECTS(b.pedestal && n.ground >= 0);
   const Index node = n.shaft.node;
-  const double arm = n.shaft.offset;
-  HeldNode& h = held[node];
-  // x, y, z, rx, ry, rz in order are u, phi, gamma2, gamma3.
+  Vec3 on = Vec3::Zero();
+  for (int c = 0; c < 3; ++c)
+    on[c] = law.held[static_cast<std::size_t>(c)] ? 1.0 : 0.0;
+  model::LinearBearing linear;
+  linear.K.topLeftCorner<3, 3>() = on.asDiagonal() * b.pedestal->K * on.asDiagonal();
+  linear.C.topLeftCorner<3, 3>() = on.asDiagonal() * b.pedestal->C * on.asDiagonal();
+  const bool whole = on.sum() == 3 && n.shaft.offset == 0;
+  if (!whole) linear.M.topLeftCorner<3, 3>() = b.pedestal->mass * Mat3(on.asDiagonal());
+  meshes::BearingNodes to_ground = n;
+  to_ground.other = {n.ground, 0.0};
+  add_law(a, b, to_ground, linear);
+  SupportForce& support = a.built.support_forces.back();
+  if (whole && b.pedestal->mass > 0) {
+    // its weight and inertia (ddu: less gravity) stand between the spring and the shaft
+    a.builder.add(elements::PointMass{b.pedestal->mass}, {node}, "point masses");
+    support.force = [spring = support.force, m = b.pedestal->mass, node](
+                        const NodeAt& at, const system::Context& c, const ReactionAt& r) {
+      return Vec3(spring(at, c, r) - m * at(node).ddu);
+    };
+  }
+  for (std::size_t c = 3; c < 6; ++c)
+    if (law.held[c]) {
+      a.builder.hold(node, static_cast<int>(c));
+      h.held[c] = true;
+    }
+  if (const SupportForce::Law held_turns = moment_of_held(node, law)) support.moment = held_turns;
+}
+
+/// Where the forces of a rigid support are read.
+struct HeldForces {
   std::array<Index, 3> unknown{-1, -1, -1};  // whose reaction is the force along x, y, z
   std::array<double, 3> scale{1, 1, 1};
-  bool first = false;
-  if (b.pedestal) {
-    // The shaft sits rigidly in the pedestal: its mass, spring and damper act on the shaft station,
-    // in the directions held.
-    Vec3 on = Vec3::Zero();
-    for (int c = 0; c < 3; ++c)
-      on[c] = law.held[static_cast<std::size_t>(c)] ? 1.0 : 0.0;
-    model::LinearBearing linear;
-    linear.K.topLeftCorner<3, 3>() = on.asDiagonal() * b.pedestal->K * on.asDiagonal();
-    linear.C.topLeftCorner<3, 3>() = on.asDiagonal() * b.pedestal->C * on.asDiagonal();
-    const bool whole = on.sum() == 3 && arm == 0;
-    if (!whole) linear.M.topLeftCorner<3, 3>() = b.pedestal->mass * Mat3(on.asDiagonal());
-    meshes::BearingNodes to_ground = n;
-    to_ground.other = {n.ground, 0.0};
-    add_law(a, b, to_ground, linear);
-    SupportForce& support = a.built.support_forces.back();
-    if (whole && b.pedestal->mass > 0) {
-      // its weight and inertia (ddu: less gravity) stand between the spring and the shaft
-      a.builder.add(elements::PointMass{b.pedestal->mass}, {node}, "point masses");
-      support.force = [spring = support.force, m = b.pedestal->mass, node](
-                          const NodeAt& at, const system::Context& c, const ReactionAt& r) {
-        return Vec3(spring(at, c, r) - m * at(node).ddu);
-      };
-    }
-    for (std::size_t c = 3; c < 6; ++c)
-      if (law.held[c]) {
-        a.builder.hold(node, static_cast<int>(c));
-        h.held[c] = true;
-      }
-    if (const SupportForce::Law held_turns = moment_of_held(node, law)) support.moment = held_turns;
-    return;
-  }
+  bool first = false;  // it holds translations of the node itself
+};
+
+/// Holds the unknowns of the node that the support resists: x, y, z, rx, ry, rz in order are u, phi,
+/// gamma2, gamma3. Off the node a lateral direction is held by the tilt.
+HeldForces hold_directions(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+                           const model::RigidSupport& law, HeldNode& h) {
+  const Index node = n.shaft.node;
+  const double arm = n.shaft.offset;
+  HeldForces out;
   for (std::size_t c = 0; c < 6; ++c) {
     if (!law.held[c]) continue;
     if (c >= 3 || arm == 0) {
       h.held[c] = true;
       a.builder.hold(node, static_cast<int>(c));
       if (c < 3) {
-        unknown[c] = 6 * node + static_cast<Index>(c);
-        first = true;
+        out.unknown[c] = 6 * node + static_cast<Index>(c);
+        out.first = true;
       }
       continue;
     }
@@ -258,22 +259,40 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
       a.error("E26",
               fmt::format("{}: the rigid stretch it stands on is held elsewhere in a way that "
                           "leaves no room for holding {} here",
-                          who, "xyz"[c]),
+                          name_of(b), "xyz"[c]),
               "on a rigid stretch two rigid bearings may hold y and z both, x one of them, and no "
               "third one anything",
-              b, who);
+              b, name_of(b));
       continue;
     }
     h.held[tilt] = true;
     a.builder.hold(node, static_cast<int>(tilt));
-    unknown[c] = 6 * node + static_cast<Index>(tilt);
-    scale[c] = (c == 1 ? 1.0 : -1.0) / arm;  // Q_gamma3 = arm F_y, Q_gamma2 = -arm F_z
-    h.second->push_back({c, unknown[c], scale[c]});
+    out.unknown[c] = 6 * node + static_cast<Index>(tilt);
+    out.scale[c] = (c == 1 ? 1.0 : -1.0) / arm;  // Q_gamma3 = arm F_y, Q_gamma2 = -arm F_z
+    h.second->push_back({c, out.unknown[c], out.scale[c]});
   }
-  const auto others = first ? h.second : nullptr;
+  return out;
+}
+
+void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+               const model::RigidSupport& law, std::map<Index, HeldNode>& held) {
+  WHIRL_EXPECTS(n.shaft.node >= 0);
+  if (n.other.node >= 0) {
+    a.error("E26",
+            fmt::format("{}: a rigid bearing holds a shaft to the ground; between two shafts it "
+                        "must have a stiffness",
+                        name_of(b)),
+            "use type = \"linear\" with the stiffness of the connection", b, name_of(b));
+    return;
+  }
+  HeldNode& h = held[n.shaft.node];
+  if (b.pedestal) return add_rigid_on_pedestal(a, b, n, law, h);
+  const HeldForces forces = hold_directions(a, b, n, law, h);
+  const auto others = forces.first ? h.second : nullptr;
   a.built.support_forces.push_back(
       {b.name,
-       [unknown, scale, others](const NodeAt&, const system::Context&, const ReactionAt& r) {
+       [unknown = forces.unknown, scale = forces.scale, others](
+           const NodeAt&, const system::Context&, const ReactionAt& r) {
          Vec3 F = Vec3::Zero();
          for (std::size_t c = 0; c < 3; ++c)
            if (unknown[c] >= 0) F[static_cast<Index>(c)] = scale[c] * r(unknown[c]);
@@ -282,12 +301,13 @@ void add_rigid(Assembly& a, const model::Bearing& b, const meshes::BearingNodes&
              F[static_cast<Index>(o.direction)] -= o.scale * r(o.unknown);
          return F;
        },
-       moment_of_held(node, law)});
+       moment_of_held(n.shaft.node, law)});
 }
 
 // ---------------------------------------------------------------- pedestals
 
 void add_pedestal(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n) {
+  WHIRL_EXPECTS(n.pedestal >= 0 && n.ground >= 0);
   const model::Pedestal& p = *b.pedestal;
   if (p.mass > 0) a.builder.add(elements::PointMass{p.mass}, {n.pedestal}, "point masses");
   a.builder.add(elements::TranslationalBearing{p.K, p.C, Mat3::Zero(), Vec3::Zero(), Vec3::Zero()},

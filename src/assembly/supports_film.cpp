@@ -1,4 +1,5 @@
 // Journal bearings, squeeze-film dampers, seals.
+#include <core/contract.hpp>
 #include <assembly/film_kernels.hpp>
 #include <assembly/support_parts.hpp>
 #include <elements/films/annular_seal.hpp>
@@ -17,6 +18,7 @@ double viscosity_of(const model::Oil& o) {
 
 /// What a film does depends on the motion of both its sides against the clearance.
 void follow_closely(Assembly& a, const meshes::BearingNodes& n, double clearance) {
+  WHIRL_EXPECTS(clearance > 0.0);
   for (const Index node : {n.shaft.node, n.other.node})
     if (node >= 0) a.built.fine.push_back({node, clearance});
 }
@@ -86,6 +88,8 @@ elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int
 }
 
 double short_bearing_excess(double length_over_diameter, double eccentricity) {
+  WHIRL_EXPECTS(length_over_diameter > 0.0);
+  WHIRL_EXPECTS(eccentricity >= 0.0 && eccentricity < 1.0);
   constexpr double clearance = 1e-3;  // of a journal of radius 1; the force goes by its ratio alone
   const double length = 2.0 * length_over_diameter;
   const elements::ShortJournal brief{1.0, length, clearance, 1.0};

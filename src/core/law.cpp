@@ -332,11 +332,6 @@ LawPtr make_pchip(std::vector<double> t, std::vector<double> f) {
   return make_held(std::move(t), f.front(), f.back(), std::move(inner));
 }
 
-LawPtr make_ramp(double t0, double t1, double f0, double f1) {
-  require_interval(t0, t1, "ramp");
-  return make_table({t0, t1}, {f0, f1});
-}
-
 LawPtr make_smooth_step(double t0, double t1, double f0, double f1) {
   require_interval(t0, t1, "smooth step");
   require_finite({f0, f1}, "smooth step");

@@ -46,11 +46,9 @@ LawPtr make_table(std::vector<double> t, std::vector<double> f);
 /// Fritsch and Butland, doi 10.1137/0905021) through (t_i, f_i), held constant outside. Errors as
 /// make_table.
 LawPtr make_pchip(std::vector<double> t, std::vector<double> f);
-/// f0 before t0, f1 after t1, between them: linear.
-/// @throws Error if t1 <= t0 (also the two that follow).
-LawPtr make_ramp(double t0, double t1, double f0, double f1);
 /// f0 before t0, f1 after t1, between them the quintic with zero first and second derivative at
 /// both ends.
+/// @throws Error if t1 <= t0 or anything is not finite (also the next).
 LawPtr make_smooth_step(double t0, double t1, double f0, double f1);
 /// f0 before t0, f1 after t1, between them f0 + (f1-f0)(1-cos(pi (t-t0)/(t1-t0)))/2.
 LawPtr make_cosine_step(double t0, double t1, double f0, double f1);

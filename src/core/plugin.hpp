@@ -22,15 +22,17 @@ class Plugin {
  public:
   /// Opens libwhirl_<name>.so on first use and keeps it until the program ends. Looked for in
   /// ../lib/whirl of the program's own folder, or in ../plugins when the program stands in its
-  /// build tree. Error (Exit::io) when it is not there or cannot be opened, and, before anything of
-  /// it runs, when it was built by another compiler.
+  /// build tree.
+  /// @throws Error (Exit::io) when it is not there or cannot be opened, and, before anything of it
+  /// runs, when it was built by another compiler.
   static const Plugin& load(const std::string& name);
   /// Whether the file is there; opens nothing.
   static bool available(const std::string& name);
   /// Whether load(name) has been called with success.
   static bool loaded(const std::string& name);
 
-  /// Entry point of the plug-in. Error when it has none of that name.
+  /// Entry point of the plug-in.
+  /// @throws Error (Exit::io) when it has none of that name.
   template <class F>
   F* function(const char* symbol) const {
     return reinterpret_cast<F*>(address(symbol));

@@ -11,8 +11,10 @@ namespace whirl::rotation {
 namespace {
 
 using single::every;
+#define WHIRL_INLINE inline
 #include <core/series.inl>
 #include <core/director.inl>
+#undef WHIRL_INLINE
 
 // (g - sin g)/g^3 = sum_k (-x)^k / (2k+3)!
 template <int N>

@@ -1,13 +1,11 @@
 // What a formula needs that is written once for several nodes or elements at a time
 // (core/lanes.inl) and for one: the same names for one node or element, with double, Dual or
 // DualRate for a scalar. Such a formula stands in an .inl file, which each user includes in a
-// namespace of its own, so that no two instruction sets share a function. Not for files that
-// include core/lanes.inl.
+// namespace of its own, so that no two instruction sets share a function; around the .inl files the
+// user defines WHIRL_INLINE as inline. Not for files that include core/lanes.inl.
 #pragma once
 #include <core/dual.hpp>
 #include <cmath>
-
-#define WHIRL_INLINE inline
 
 namespace whirl::single {
 

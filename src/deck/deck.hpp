@@ -29,8 +29,10 @@ Deck read_deck(const std::filesystem::path& file, const ReadOptions& options = {
 /// The same from memory; `name` is shown in messages, relative paths start at `folder`.
 Deck read_deck_text(std::string text, const std::string& name = "deck.toml",
                     const ReadOptions& options = {}, const std::filesystem::path& folder = {});
-/// The model of a deck; throws Error(Exit::deck) with all diagnostics when there are errors.
+/// The model of a deck.
 /// Warnings are in the model.
+/// @throws Error (Exit::deck, or Exit::io for a file that cannot be read) with all diagnostics,
+/// when there are errors.
 model::Model load_model(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The exit code that fits the errors: Exit::usage for a bad --set, Exit::io for a deck that cannot

@@ -9,7 +9,8 @@
 namespace whirl::io {
 
 /// Writes `content` beside `file`, waits until it is on the disk and renames it into place. Makes
-/// missing folders. Error with Exit::io.
+/// missing folders.
+/// @throws Error (Exit::io) when it cannot be written; the old file is then as it was.
 void write_atomic(const std::filesystem::path& file, std::string_view content);
 /// Name of the file that write_atomic and others use before renaming: same folder, hidden, unique
 /// to this process.
@@ -19,7 +20,9 @@ std::filesystem::path temporary_beside(const std::filesystem::path& file);
 /// number is taken for a dead predecessor's.
 void remove_leftovers(const std::filesystem::path& folder);
 /// Renames; removes `from` and throws on failure.
+/// @throws Error (Exit::io) when it cannot be written.
 void rename_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
+/// @throws Error (Exit::io) when it cannot be read.
 std::string read_text(const std::filesystem::path& file);
 [[noreturn]] void io_failure(const std::filesystem::path& file, const std::string& what,
                              int error_number = 0);
@@ -32,6 +35,7 @@ class AppendFile {
   AppendFile(const AppendFile&) = delete;
   AppendFile& operator=(const AppendFile&) = delete;
   /// A new file holding `head`, put in place of an older one in one go.
+  /// @throws Error (Exit::io) when it cannot be written (also all that follow but the destructor).
   void create(const std::filesystem::path& file, std::string_view head);
   /// An existing file cut to `size` bytes; appends go there.
   void reopen(const std::filesystem::path& file, std::uint64_t size);

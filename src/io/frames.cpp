@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <core/error.hpp>
 #include <core/plugin.hpp>
 #include <io/file.hpp>
@@ -287,6 +288,8 @@ std::unique_ptr<FrameWriter> make_vtk_frames(VtkFrameOptions options) {
 FrameSchedule::FrameSchedule(const Options& o, double t_begin, double t_end)
     : t0_(std::max(o.t0, t_begin)),
       t1_(std::min(o.t1, t_end)) {
+  WHIRL_EXPECTS(t_begin <= t_end);
+  WHIRL_EXPECTS(o.max_frames > 0);
   const int cap = std::max(o.max_frames, 2);
   if (o.every <= 0.0 && o.frames_per_revolution > 0.0) {
     step_angle_ = two_pi / o.frames_per_revolution;
@@ -311,6 +314,7 @@ void FrameSchedule::set_taken(std::uint64_t n) {
 }
 
 double FrameSchedule::next_angle(double phi, double direction) const {
+  WHIRL_EXPECTS(by_revolution());
   // A frame at phi itself is behind us: the next multiple, a hair beyond for round-off.
   const double k = phi / step_angle_;
   return direction >= 0.0 ? (std::floor(k + 1e-9) + 1.0) * step_angle_
@@ -327,6 +331,8 @@ void FrameSchedule::advance() {
 
 void pose_of_phase(std::span<const Pose> rest, const HarmonicShape& shape, double amplitude,
                    double theta, std::vector<Pose>& out) {
+  WHIRL_EXPECTS(shape.u.size() == rest.size() && shape.tilt.size() == rest.size());
+  WHIRL_EXPECTS(shape.phi.empty() || shape.phi.size() == rest.size());
   const Complex z = amplitude * std::polar(1.0, theta);
   out.resize(rest.size());
   for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -339,6 +345,7 @@ void pose_of_phase(std::span<const Pose> rest, const HarmonicShape& shape, doubl
 
 void write_harmonic(FrameWriter& writer, const Scene& scene, const HarmonicShape& shape,
                     double amplitude, int phases) {
+  WHIRL_EXPECTS(phases > 0);
   if (shape.u.size() != scene.nodes.size() || shape.tilt.size() != scene.nodes.size())
     throw std::invalid_argument("write_harmonic: one u and one tilt a node");
   std::vector<Pose> rest(scene.nodes.size()), now;

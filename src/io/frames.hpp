@@ -35,6 +35,8 @@ class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
   virtual void begin(const Scene& scene) = 0;
+  /// @throws std::logic_error without one pose a node; Error (Exit::io) when a file cannot be
+  /// written.
   virtual void frame(const FrameState& state) = 0;
   /// The files are complete after every frame; end() only closes.
   virtual void end() = 0;
@@ -58,10 +60,12 @@ struct VtkFrameOptions {
   double keep_until = -infinity;  ///< continued run: frames of the earlier run up to this time stay
 };
 
-/// Sets from deck names: "line", "surface", "bearings", "orbits". Error for any other.
+/// Sets from deck names: "line", "surface", "bearings", "orbits".
+/// @throws Error (E93) for any other.
 void set_content(VtkFrameOptions& options, std::span<const std::string> names);
 
-/// Loads the VTK plug-in. Error (Exit::io) when it was not built or cannot be loaded.
+/// Loads the VTK plug-in.
+/// @throws Error (Exit::io) when it was not built or cannot be loaded.
 std::unique_ptr<FrameWriter> make_vtk_frames(VtkFrameOptions options);
 
 /// When frames are due. Either by time or by revolutions of a reference angle; window and cap as in
@@ -77,6 +81,7 @@ class FrameSchedule {
   };
   /// t_end: end of the run, to bound an open window. When the number of frames is known beforehand
   /// and above max_frames, the interval is stretched: stretch() tells by how much.
+  /// @pre t_begin <= t_end, max_frames > 0.
   FrameSchedule(const Options& options, double t_begin, double t_end);
 
   bool by_revolution() const { return step_angle_ > 0.0; }
@@ -84,6 +89,7 @@ class FrameSchedule {
   double next_time() const { return by_revolution() ? infinity : next_time_; }
   /// By revolution: the next angle above `phi` at which a frame is due; frames stand on multiples
   /// of 2 pi / n.
+  /// @pre by_revolution().
   double next_angle(double phi, double direction = 1.0) const;
   bool in_window(double t) const { return t >= t0_ && t <= t1_; }
   /// Call once the frame at next_time() is written.
@@ -107,9 +113,12 @@ struct HarmonicShape {
   std::vector<Eigen::Vector3cd> tilt;  ///< director change d - e
   std::vector<Complex> phi;            ///< rad; may be empty
 };
+/// @pre one u and one tilt a node; phi the same or empty.
 void pose_of_phase(std::span<const Pose> rest, const HarmonicShape& shape, double amplitude,
                    double theta, std::vector<Pose>& out);
 /// Writes `phases` frames of one period.
+/// @pre phases > 0.
+/// @throws std::invalid_argument without one u and one tilt a node; Error (Exit::io) as the writer.
 void write_harmonic(FrameWriter& writer, const Scene& scene, const HarmonicShape& shape,
                     double amplitude, int phases = 24);
 

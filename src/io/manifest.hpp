@@ -19,7 +19,8 @@ class Manifest {
 
   /// `name` (relative to the folder, '/' between parts) is going to be written: listed, at once and
   /// for good. A file of that name that no run made is moved aside to "NAME.kept", said on standard
-  /// error. Error (Exit::io, E91) when a folder on the way is a symbolic link, or the name leads
+  /// error.
+  /// @throws Error (Exit::io, E91) when a folder on the way is a symbolic link, or the name leads
   /// out of the results folder.
   void claim(std::string_view name);
   bool lists(std::string_view name) const { return names_.count(std::string(name)) != 0; }

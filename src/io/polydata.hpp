@@ -44,6 +44,7 @@ class PolyDataWriter {
  public:
   virtual ~PolyDataWriter() = default;
   /// Whole file or none (temporary and rename); `time` goes into the field data array TimeValue.
+  /// @throws Error (Exit::io) when it cannot be written.
   virtual void write(const std::filesystem::path& file, const PolyData& data, double time) = 0;
 };
 

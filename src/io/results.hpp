@@ -37,7 +37,7 @@ struct Channel {
 };
 
 /// A sink for rows. begin() or resume() once, append() per row, close() at the end (also done by
-/// the destructor, which swallows errors). Errors: Error with Exit::io.
+/// the destructor, which swallows errors). Errors while writing: Error (Exit::io).
 class TimeSeries {
  public:
   virtual ~TimeSeries() = default;
@@ -45,9 +45,11 @@ class TimeSeries {
   /// convention.
   virtual void begin(std::span<const Channel> channels) = 0;
   /// Continues a file: keeps its first `rows` rows, drops what follows (a run killed after its last
-  /// checkpoint). Error when its channels differ or when it holds fewer rows.
+  /// checkpoint).
+  /// @throws Error (Exit::io) when its channels differ or when it holds fewer rows.
   virtual void resume(std::span<const Channel> channels, std::uint64_t rows) = 0;
   /// Appends one row, a value for every column of the channels, unscaled. Does not allocate.
+  /// @throws std::logic_error for a row of another length, or before begin().
   virtual void append(std::span<const double> row) = 0;
   /// Everything appended so far becomes readable by others and, in text files, safe from a power
   /// cut: what a checkpoint counts on.
@@ -68,7 +70,8 @@ struct SeriesOptions {
 TimeSeriesPtr make_csv_series(std::filesystem::path file, SeriesOptions options = {});
 
 /// HDF5 (plug-in, loaded by this call): one compressed rows x columns data set a group; the file
-/// explains itself in its attribute "layout". Error when the plug-in was not built.
+/// explains itself in its attribute "layout".
+/// @throws Error (Exit::io) when the plug-in was not built.
 TimeSeriesPtr make_hdf5_series(std::filesystem::path file, SeriesOptions options = {});
 
 /// Sends every row to several sinks.
@@ -79,13 +82,16 @@ struct Columns {
   std::vector<std::string> names, units;
   std::vector<std::vector<double>> values;  ///< one vector a column
   std::size_t rows() const { return values.empty() ? 0 : values.front().size(); }
-  /// Column by title. Error when there is none.
+  /// Column by title.
+  /// @throws Error (Exit::io) when there is none.
   const std::vector<double>& operator[](std::string_view name) const;
 };
 /// Reads a CSV series or table; an unfinished last line (killed run) is left out. Text cells read
 /// as NaN.
+/// @throws Error (Exit::io) when it cannot be read or has no header.
 Columns read_csv(const std::filesystem::path& file);
 /// Reads an HDF5 series, also of a killed or still running program.
+/// @throws Error (Exit::io) when it cannot be read or the plug-in was not built.
 Columns read_hdf5(const std::filesystem::path& file);
 
 /// A finished table: Campbell lines, critical speeds, modes. Cells are numbers or text.
@@ -111,10 +117,12 @@ class Table {
   /// none, and one that is written all the same is reported (nonfinite.hpp).
   std::string nan_means;
 
-  /// Adds a row; it must have one cell a column.
+  /// Adds a row.
+  /// @throws std::logic_error when it has not one cell a column.
   void add(std::vector<Cell> row);
 };
 /// CSV, header "name [unit]", written atomically.
+/// @throws Error (Exit::io) when it cannot be written.
 void write_csv(const std::filesystem::path& file, const Table& table);
 
 /// A folder of results. Made on construction (with parents), and rid of half-written files of
@@ -122,11 +130,14 @@ void write_csv(const std::filesystem::path& file, const Table& table);
 /// (manifest.hpp), which keeps the user's own files in the same folder safe.
 class ResultsFolder {
  public:
+  /// @throws Error (Exit::io) when it cannot be made; of all members: when a file cannot be
+  /// written.
   explicit ResultsFolder(std::filesystem::path root);
   const std::filesystem::path& root() const { return root_; }
   /// Path of a file that will be written in it, and listed as such; makes the folders in between.
   std::filesystem::path path(std::string_view name) const;
-  /// Path of a folder in it, made when missing. Error as for a file when it is a symbolic link.
+  /// Path of a folder in it, made when missing.
+  /// @throws Error (Exit::io) when it is a symbolic link.
   std::filesystem::path subfolder(std::string_view name) const;
   /// Removes the files of earlier runs that `which` accepts, by their names; never a file that no
   /// run made.

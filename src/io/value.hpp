@@ -70,7 +70,7 @@ class Value {
 /// the infinities, which JSON lacks, become the strings "nan", "inf", "-inf". Text that is not
 /// UTF-8 has the bad bytes replaced.
 std::string to_json(const Value& v, int indent = 2);
-/// Error with Exit::io when the text is not JSON.
+/// @throws Error (E92, Exit::io) when the text is not JSON.
 Value parse_json(std::string_view text);
 Value read_json(const std::filesystem::path& file);
 

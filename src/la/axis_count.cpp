@@ -1,4 +1,5 @@
 #include <la/axis_count.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -115,6 +116,9 @@ bool AxisCounter::settle(const Sample& a, const Sample& b, Complex slope_a, Comp
 }
 
 AxisCount AxisCounter::count(const AxisProblem& problem) {
+  WHIRL_EXPECTS(problem.at && problem.held);
+  WHIRL_EXPECTS(0.0 < problem.rho && problem.rho < problem.top && std::isfinite(problem.top));
+  WHIRL_EXPECTS(std::is_sorted(problem.stations.begin(), problem.stations.end()));
   problem_ = &problem;
   factorizations_ = 0;
   AxisCount out;

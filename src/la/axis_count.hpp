@@ -48,6 +48,7 @@ struct AxisCount {
 class AxisCounter {
  public:
   AxisCounter(const BlockPattern& pattern, std::span<const unsigned char> active);
+  /// @pre 0 < rho < top, stations ascending, matrices given.
   AxisCount count(const AxisProblem& problem);
 
  private:

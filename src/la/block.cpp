@@ -1,9 +1,11 @@
 #include <la/block.hpp>
+#include <core/contract.hpp>
 #include <stdexcept>
 
 namespace whirl::la {
 
 BlockPattern::BlockPattern(Index n, const std::vector<std::pair<Index, Index>>& couplings) : n_(n) {
+  WHIRL_EXPECTS(n >= 0);
   std::vector<std::pair<Index, Index>> entries;
   entries.reserve(static_cast<std::size_t>(n) + 2 * couplings.size());
   for (Index i = 0; i < n; ++i)

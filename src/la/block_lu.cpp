@@ -95,6 +95,9 @@ BlockLu<Scalar>::BlockLu(const BlockPattern& pattern, std::span<const unsigned c
 
 template <class Scalar>
 Status BlockLu<Scalar>::factor(const MCK& m, Scalar cm, Scalar cc, Scalar ck) {
+  WHIRL_EXPECTS(m.K.pattern().size() == symbolic_.plan().n);
+  WHIRL_EXPECTS(cm == Scalar(0.0) || m.M.value_count() == m.K.value_count());
+  WHIRL_EXPECTS(cc == Scalar(0.0) || m.C.value_count() == m.K.value_count());
   lu::Terms t;
   add_term(t, m.M, cm);
   add_term(t, m.C, cc);
@@ -121,6 +124,8 @@ void BlockLu<Scalar>::solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>
 
 template <class Scalar>
 Eigen::Matrix<Scalar, 6, 6> BlockLu<Scalar>::inverse_pivot_block(Index step) const {
+  WHIRL_EXPECTS(singular_ < 0);
+  WHIRL_EXPECTS(step >= 0 && step < symbolic_.plan().n);
   const double* const p =
       inverse_.data() + static_cast<std::size_t>(step * lu::plane) * planes<Scalar>;
   Eigen::Matrix<Scalar, 6, 6> d;
@@ -136,6 +141,7 @@ Eigen::Matrix<Scalar, 6, 6> BlockLu<Scalar>::inverse_pivot_block(Index step) con
 
 template <class Scalar>
 std::pair<double, Complex> BlockLu<Scalar>::determinant() const {
+  WHIRL_EXPECTS(singular_ < 0);
   double log10_size = 0.0;
   Complex phase = 1.0;
   for (Index k = 0; k < symbolic_.plan().n; ++k) {
@@ -152,6 +158,7 @@ std::pair<double, Complex> BlockLu<Scalar>::determinant() const {
 
 template <class Scalar>
 Index BlockLu<Scalar>::negative_eigenvalues() const {
+  WHIRL_EXPECTS(singular_ < 0);
   Index count = 0;
   for (Index k = 0; k < symbolic_.plan().n; ++k) {
     // The inverse has the signs of D. Scaling by the diagonal keeps them and evens out the units.

@@ -41,6 +41,7 @@ class BlockLu final : public DirectSolver<Scalar> {
   /// Diagonal blocks that needed complete pivoting in the last factorisation.
   int repivoted_blocks() const { return outcome_.repivoted; }
   /// log10 |det S| and det S / |det S| of the last factorisation (held unknowns count as 1).
+  /// @pre it was regular (also of the two that follow).
   std::pair<double, Complex> determinant() const;
   /// Negative eigenvalues of S, which must be Hermitian: by Sylvester's law, those of the blocks
   /// D_k.

@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <algorithm>
 #include <cmath>
 #include <la/continuation.hpp>
@@ -85,6 +86,8 @@ void Continuation::prepare(ContinuationProblem& problem, Index n) {
 bool Continuation::between(ContinuationProblem& problem, const VecX& qa, double mua, const VecX& qb,
                            double mub, double part, const ContinuationOptions& o, VecX& q,
                            double& mu) {
+  WHIRL_EXPECTS(qb.size() == qa.size() && problem.scale().size() == qa.size());
+  WHIRL_EXPECTS(part >= 0.0 && part <= 1.0);
   prepare(problem, qa.size());
   direction_ = qb - qa;
   mu_direction_ = mub - mua;
@@ -103,6 +106,11 @@ bool Continuation::between(ContinuationProblem& problem, const VecX& qa, double 
 
 ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, double& mu,
                                      const ContinuationOptions& o, const Accept& accept) {
+  WHIRL_EXPECTS(problem.scale().size() == q.size() && problem.mu_scale() > 0.0);
+  WHIRL_EXPECTS(0.0 < o.min_step && o.min_step <= o.max_step);
+  WHIRL_EXPECTS(o.first_step != 0.0 && o.wanted_iterations > 0);
+  WHIRL_EXPECTS(o.controlled < q.size());
+  WHIRL_EXPECTS(!o.start_direction || o.start_direction->size() == q.size());
   ContinuationResult result;
   prepare(problem, q.size());
   double ds = std::abs(o.first_step), arc = 0.0;

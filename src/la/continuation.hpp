@@ -60,6 +60,8 @@ struct ContinuationResult {
 class Continuation {
  public:
   using Accept = std::function<bool(const VecX& q, const ContinuationPoint&)>;
+  /// @pre problem.scale() of the length of q and positive; 0 < min_step <= max_step; first_step not
+  /// 0.
   ContinuationResult run(ContinuationProblem& problem, VecX& q, double& mu,
                          const ContinuationOptions& options, const Accept& accept);
   /// The point of the path at `part` (0 .. 1) of the chord from (qa, mua) to (qb, mub), in the

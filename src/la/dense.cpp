@@ -1,4 +1,5 @@
 #include <la/dense.hpp>
+#include <core/contract.hpp>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -7,11 +8,13 @@
 namespace whirl::la {
 
 DenseEigenpairs eigenpairs(const MatX& a) {
+  WHIRL_EXPECTS(a.rows() == a.cols() && a.allFinite());
   const Eigen::EigenSolver<MatX> solver(a);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 DenseEigenpairs eigenpairs(const MatXc& a) {
+  WHIRL_EXPECTS(a.rows() == a.cols() && a.allFinite());
   const Eigen::ComplexEigenSolver<MatXc> solver(a);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
@@ -19,20 +22,24 @@ DenseEigenpairs eigenpairs(const MatXc& a) {
 VecXc eigenvalues(const MatX& a) { return Eigen::EigenSolver<MatX>(a, false).eigenvalues(); }
 
 SymmetricEigenpairs symmetric_eigenpairs(const MatX& a) {
+  WHIRL_EXPECTS(a.rows() == a.cols());
   const Eigen::SelfAdjointEigenSolver<MatX> solver(a);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 SymmetricEigenpairs symmetric_eigenpairs(const MatX& k, const MatX& m) {
+  WHIRL_EXPECTS(k.rows() == k.cols() && m.rows() == k.rows() && m.cols() == k.cols());
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> solver(k, m);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 VecX hermitian_eigenvalues(const MatXc& a) {
+  WHIRL_EXPECTS(a.rows() == a.cols());
   return Eigen::SelfAdjointEigenSolver<MatXc>(a, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 VecXc least_norm_solution(const MatXc& a, const VecXc& b) {
+  WHIRL_EXPECTS(a.rows() == b.size());
   return a.completeOrthogonalDecomposition().solve(b);
 }
 
@@ -41,12 +48,14 @@ MatX pseudo_inverse(const MatX& a) { return a.completeOrthogonalDecomposition().
 VecXc pivoted_solution(const MatXc& a, const VecXc& b) { return a.colPivHouseholderQr().solve(b); }
 
 std::optional<MatX> pivoted_solution(const MatX& a, const MatX& b, double least) {
+  WHIRL_EXPECTS(a.rows() == a.cols() && a.rows() == b.rows());
   const Eigen::ColPivHouseholderQR<MatX> qr(a);
   if (!(qr.maxPivot() > least) || !qr.isInvertible()) return {};
   return qr.solve(b);
 }
 
 MatX orthonormal_span(const MatX& a, double threshold) {
+  WHIRL_EXPECTS(threshold >= 0.0);
   const Eigen::JacobiSVD<MatX> svd(a, Eigen::ComputeThinU);
   const VecX& size = svd.singularValues();
   Index rank = 0;
@@ -75,16 +84,19 @@ DenseLu<Scalar>& DenseLu<Scalar>::operator=(DenseLu&&) noexcept = default;
 
 template <class Scalar>
 void DenseLu<Scalar>::factor(const Mat& a) {
+  WHIRL_EXPECTS(a.rows() == a.cols());
   factors_->lu.compute(a);
 }
 
 template <class Scalar>
 typename DenseLu<Scalar>::Vec DenseLu<Scalar>::solve(const Vec& b) const {
+  WHIRL_EXPECTS(factors_->lu.rows() == b.size());
   return factors_->lu.solve(b);
 }
 
 template <class Scalar>
 typename DenseLu<Scalar>::Mat DenseLu<Scalar>::solve(const Mat& b) const {
+  WHIRL_EXPECTS(factors_->lu.rows() == b.rows());
   return factors_->lu.solve(b);
 }
 
@@ -102,11 +114,13 @@ ColumnSpan<Scalar>::~ColumnSpan() = default;
 
 template <class Scalar>
 typename ColumnSpan<Scalar>::Vec ColumnSpan<Scalar>::coordinates(const Vec& x) const {
+  WHIRL_EXPECTS(x.size() == factors_->a.rows());
   return factors_->qr.solve(x);
 }
 
 template <class Scalar>
 typename ColumnSpan<Scalar>::Vec ColumnSpan<Scalar>::outside(const Vec& x) const {
+  WHIRL_EXPECTS(x.size() == factors_->a.rows());
   return x - factors_->a * factors_->qr.solve(x);
 }
 

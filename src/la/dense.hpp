@@ -14,6 +14,7 @@ struct DenseEigenpairs {
 };
 
 /// All eigenpairs of a square matrix (n x n).
+/// @pre square and finite.
 DenseEigenpairs eigenpairs(const MatX& a);
 DenseEigenpairs eigenpairs(const MatXc& a);
 /// Eigenvalues alone.
@@ -33,6 +34,7 @@ SymmetricEigenpairs symmetric_eigenpairs(const MatX& k, const MatX& m);
 VecX hermitian_eigenvalues(const MatXc& a);
 
 /// x of least length that minimises |A x - b|, A of any rank.
+/// @pre as many rows of A as entries of b, here and below.
 VecXc least_norm_solution(const MatXc& a, const VecXc& b);
 /// Moore-Penrose inverse.
 MatX pseudo_inverse(const MatX& a);

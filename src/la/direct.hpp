@@ -18,8 +18,11 @@ class DirectSolver {
  public:
   virtual ~DirectSolver() = default;
   /// Numeric factorisation of cm M + cc C + ck K. No allocation after the first call.
+  /// @pre matrices with a coefficient other than zero stand on the pattern of the solver.
+  /// @throws std::bad_alloc
   virtual Status factor(const MCK& m, Scalar cm, Scalar cc, Scalar ck) = 0;
   /// b := S^-1 b, length 6 * pattern.size().
+  /// @pre factor() went well the last time it was called.
   virtual void solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> b) = 0;
   /// After `singular`: the unknown (6 * node + component) whose pivot vanished, or -1.
   virtual Index singular_unknown() const { return -1; }
@@ -34,6 +37,7 @@ class DirectSolver {
 enum class SolverKind { automatic, block, klu };
 
 /// active: 6 * pattern.size() flags (1 = unknown, 0 = held). The pattern must outlive the solver.
+/// @throws std::invalid_argument when there are not that many flags.
 template <class Scalar>
 std::unique_ptr<DirectSolver<Scalar>> make_direct_solver(const BlockPattern& pattern,
                                                          std::span<const unsigned char> active,

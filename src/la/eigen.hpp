@@ -91,12 +91,14 @@ std::vector<Mode> quadratic_modes(const MCK& m, std::span<const unsigned char> a
 /// and guard modes.
 class ModeSolver {
  public:
+  /// @throws std::invalid_argument when there are not 6 flags a node.
   ModeSolver(const BlockPattern& pattern, std::span<const unsigned char> active,
              const ModeOptions& options = {});
   ~ModeSolver();
   ModeSolver(ModeSolver&&) noexcept;
   /// All modes wanted. From the second call on it starts from what the last call found (Mode::from
   /// counts in its result).
+  /// @throws Error (E61) as quadratic_modes().
   const std::vector<Mode>& solve(const MCK& m);
   /// The same, with ModeOptions::certify, for a region that reaches at least to the radius (rad/s).
   const std::vector<Mode>& solve_to(const MCK& m, double radius);
@@ -121,6 +123,8 @@ class ModeSolver {
 /// Eigenvalues mu of A x = mu B x nearest to the shift, sorted by |mu - shift|: buckling (A
 /// stiffness, B minus the geometric stiffness per unit load). Complex pairs (Im mu > 0 listed) mean
 /// flutter. Mode::lambda = mu.
+/// @pre matrices on patterns of one size, 6 flags a node, count > 0.
+/// @throws Error (E61) when the problem has no eigenvalues or cannot be factored.
 std::vector<Mode> linear_modes(const BlockMatrix<6>& A, const BlockMatrix<6>& B,
                                std::span<const unsigned char> active, Index count,
                                double shift = 0.0);

@@ -1,4 +1,5 @@
 #include <la/klu_solver.hpp>
+#include <core/contract.hpp>
 #include <klu.h>
 #include <cmath>
 #include <new>
@@ -21,6 +22,7 @@ class KluSolver final : public DirectSolver<Scalar> {
 
  public:
   KluSolver(const BlockPattern& pattern, std::span<const unsigned char> active) {
+    WHIRL_EXPECTS(active.size() == at(6 * pattern.size()));
     klu_defaults(&common_);
     common_.ordering = 0;  // AMD; COLAMD is up to three times slower on rotors
     common_.btf = 0;       // block patterns couple everything that is connected
@@ -104,6 +106,8 @@ class KluSolver final : public DirectSolver<Scalar> {
   }
 
   void solve(Eigen::Ref<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>> b) override {
+    WHIRL_EXPECTS(numeric_ || unknown_.empty());
+    WHIRL_EXPECTS(unknown_.empty() || b.size() > unknown_.back());
     if (unknown_.empty()) return;
     for (std::size_t i = 0; i < unknown_.size(); ++i)
       work_[i] = row_scale_[i] * b(unknown_[i]);

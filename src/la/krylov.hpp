@@ -1,6 +1,7 @@
 // Arnoldi's method with a locked (already known) invariant subspace, deflation of dependent
 // vectors, and restart from a fresh random vector when a Krylov space is exhausted.
 #pragma once
+#include <core/contract.hpp>
 #include <core/types.hpp>
 #include <random>
 
@@ -16,6 +17,7 @@ class Krylov {
 
   /// Forgets everything. dim: length of the vectors.
   void reset(Index dim, unsigned seed) {
+    WHIRL_EXPECTS(dim >= 0);
     dim_ = dim;
     locked_ = size_ = next_ = 0;
     rng_.seed(seed);
@@ -25,6 +27,7 @@ class Krylov {
   /// Adds a vector to the locked part; false when it depends on the ones already there. Only before
   /// a search.
   bool lock(const Vec& v) {
+    WHIRL_EXPECTS(v.size() == dim_ && size_ == locked_);
     if (!append(v, 1e-7)) return false;
     locked_ = next_ = size_;
     return true;

@@ -1,4 +1,5 @@
 // Linear problems, by way of the quadratic solver with M = 0 (an N-sized operator).
+#include <core/contract.hpp>
 #include <algorithm>
 #include <cmath>
 #include <la/eigen.hpp>
@@ -7,6 +8,9 @@ namespace whirl::la {
 
 std::vector<Mode> linear_modes(const BlockMatrix<6>& A, const BlockMatrix<6>& B,
                                std::span<const unsigned char> active, Index count, double shift) {
+  WHIRL_EXPECTS(A.pattern().size() == B.pattern().size());
+  WHIRL_EXPECTS(active.size() == at(6 * A.pattern().size()));
+  WHIRL_EXPECTS(count > 0);
   ModeOptions options;
   options.count = count;
   options.shift = shift;

@@ -48,9 +48,28 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
   step_.resize(at(n));
   for (int k = 0; k < n; ++k)
     step_[at(node_[at(k)])] = k;
+  number_entries(pattern, find_columns(pattern));
+  number_rows();
+  list_updates();
+  mark_held(active);
+  plan_ = Plan{n,
+               node_.data(),
+               diag_slot_.data(),
+               entry_start_.data(),
+               row_.data(),
+               lower_slot_.data(),
+               upper_slot_.data(),
+               row_start_.data(),
+               row_entry_.data(),
+               row_step_.data(),
+               update_start_.data(),
+               update_.data(),
+               partial_.data(),
+               mask_.data()};
+}
 
-  // Columns of the factor: neighbours eliminated later, merged with the columns of the children in
-  // the elimination tree.
+std::vector<std::vector<int>> Symbolic::find_columns(const BlockPattern& pattern) const {
+  const int n = static_cast<int>(node_.size());
   std::vector<std::vector<int>> column(at(n));
   std::vector<std::vector<int>> children(at(n));
   std::vector<int> seen(at(n), -1);
@@ -72,7 +91,12 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
     std::sort(col.begin(), col.end());
     if (!col.empty()) children[at(col.front())].push_back(k);
   }
+  return column;
+}
 
+void Symbolic::number_entries(const BlockPattern& pattern,
+                              const std::vector<std::vector<int>>& column) {
+  const int n = static_cast<int>(node_.size());
   entry_start_.assign(1, 0);
   for (int k = 0; k < n; ++k) {
     const Index node = node_[at(k)];
@@ -85,8 +109,10 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
     }
     entry_start_.push_back(static_cast<int>(row_.size()));
   }
+}
 
-  // Rows of the factor, by counting.
+void Symbolic::number_rows() {
+  const int n = static_cast<int>(node_.size());
   row_start_.assign(at(n) + 1, 0);
   for (const int i : row_)
     ++row_start_[at(i) + 1];
@@ -101,8 +127,10 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
       row_entry_[at(u)] = e;
       row_step_[at(u)] = k;
     }
+}
 
-  // Updates of entry (i,k): every earlier step j with both k and i in its column.
+void Symbolic::list_updates() {
+  const int n = static_cast<int>(node_.size());
   const auto find = [&](int j, int i) {
     const auto first = row_.begin() + entry_start_[at(j)],
                last = row_.begin() + entry_start_[at(j) + 1];
@@ -121,7 +149,10 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
       }
       update_start_.push_back(static_cast<int>(update_.size() / 2));
     }
+}
 
+void Symbolic::mark_held(std::span<const unsigned char> active) {
+  const int n = static_cast<int>(node_.size());
   partial_.assign(at(n), 0);
   mask_.assign(at(8 * n), 0);
   for (int k = 0; k < n; ++k)
@@ -130,21 +161,6 @@ Symbolic::Symbolic(const BlockPattern& pattern, std::span<const unsigned char> a
       mask_[at(8 * k + c)] = on ? -1LL : 0LL;
       if (!on) partial_[at(k)] = 1;
     }
-
-  plan_ = Plan{n,
-               node_.data(),
-               diag_slot_.data(),
-               entry_start_.data(),
-               row_.data(),
-               lower_slot_.data(),
-               upper_slot_.data(),
-               row_start_.data(),
-               row_entry_.data(),
-               row_step_.data(),
-               update_start_.data(),
-               update_.data(),
-               partial_.data(),
-               mask_.data()};
 }
 
 }  // namespace whirl::la::lu

@@ -1,5 +1,6 @@
 // Symbolic block LU: elimination order, fill and update lists for the kernels of lu_kernel.hpp.
 #pragma once
+#include <core/contract.hpp>
 #include <la/block.hpp>
 #include <la/lu_kernel.hpp>
 #include <span>
@@ -21,6 +22,7 @@ std::vector<int> make_order(const BlockPattern& pattern, Ordering ordering);
 
 class Symbolic {
  public:
+  /// @throws std::invalid_argument when there are not 6 flags a node.
   Symbolic(const BlockPattern& pattern, std::span<const unsigned char> active, Ordering ordering);
   Symbolic(const Symbolic&) = delete;
   Symbolic& operator=(const Symbolic&) = delete;
@@ -29,9 +31,22 @@ class Symbolic {
   /// Number of factor entries (L, U pairs).
   Index entries() const { return static_cast<Index>(row_.size()); }
   /// Step at which a node is eliminated.
-  int step(Index node) const { return step_[static_cast<std::size_t>(node)]; }
+  int step(Index node) const {
+    WHIRL_EXPECTS(node >= 0 && static_cast<std::size_t>(node) < step_.size());
+    return step_[static_cast<std::size_t>(node)];
+  }
 
  private:
+  /// Columns of the factor: neighbours eliminated later, merged with the columns of the children in
+  /// the elimination tree.
+  std::vector<std::vector<int>> find_columns(const BlockPattern& pattern) const;
+  void number_entries(const BlockPattern& pattern, const std::vector<std::vector<int>>& column);
+  /// Rows of the factor, by counting.
+  void number_rows();
+  /// Updates of entry (i,k): every earlier step j with both k and i in its column.
+  void list_updates();
+  void mark_held(std::span<const unsigned char> active);
+
   std::vector<int> node_, step_, diag_slot_, entry_start_, row_, lower_slot_, upper_slot_;
   std::vector<int> row_start_, row_entry_, row_step_, update_start_, update_;
   std::vector<unsigned char> partial_;

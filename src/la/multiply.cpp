@@ -12,12 +12,14 @@ lu::Matrix6 view(const BlockMatrix<6>& a) {
 }  // namespace
 
 void multiply(const BlockMatrix<6>& a, const VecX& x, VecX& y) {
+  WHIRL_EXPECTS(&x != &y);
   WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());
   lu::kernels().multiply_real(view(a), x.data(), y.data());
 }
 
 void multiply(const BlockMatrix<6>& a, const VecXc& x, VecXc& y) {
+  WHIRL_EXPECTS(&x != &y);
   WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());
   lu::kernels().multiply_complex(view(a), reinterpret_cast<const double*>(x.data()),
@@ -25,12 +27,14 @@ void multiply(const BlockMatrix<6>& a, const VecXc& x, VecXc& y) {
 }
 
 void multiply_exact(const BlockMatrix<6>& a, const VecX& x, VecX& y) {
+  WHIRL_EXPECTS(&x != &y);
   WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());
   lu::kernels().multiply_exact_real(view(a), x.data(), y.data());
 }
 
 void multiply_exact(const BlockMatrix<6>& a, const VecXc& x, VecXc& y) {
+  WHIRL_EXPECTS(&x != &y);
   WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());
   lu::kernels().multiply_exact_complex(view(a), reinterpret_cast<const double*>(x.data()),

@@ -5,6 +5,7 @@
 namespace whirl::la {
 
 /// y = A x. x of length 6 * nodes, y (resized) not overlapping it.
+/// @pre as said of x and y, here and below.
 void multiply(const BlockMatrix<6>& a, const VecX& x, VecX& y);
 void multiply(const BlockMatrix<6>& a, const VecXc& x, VecXc& y);
 /// The same with sums in twice the working precision: the error is that of rounding the result.

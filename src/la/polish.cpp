@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <Eigen/LU>
 #include <cmath>
 #include <la/dense.hpp>
@@ -24,6 +25,7 @@ Polisher::Polisher(const BlockPattern& pattern, std::span<const unsigned char> a
     : active_(active.begin(), active.end()),
       block_(make_direct_solver<Complex>(pattern, active, SolverKind::block)),
       pattern_(pattern) {
+  WHIRL_EXPECTS(active.size() == at(6 * pattern.size()));
   const Index n = 6 * pattern.size();
   for (VecX* v : {&abs_x_, &size_, &diagonal_k_, &diagonal_c_, &diagonal_m_})
     v->resize(n);
@@ -33,6 +35,7 @@ Polisher::Polisher(const BlockPattern& pattern, std::span<const unsigned char> a
 }
 
 void Polisher::set(const MCK& m) {
+  WHIRL_EXPECTS(m.K.pattern().size() == pattern_.size());
   m_ = &m;
   diagonal_of(m.M, diagonal_m_);
   diagonal_of(m.C, diagonal_c_);
@@ -54,6 +57,8 @@ void Polisher::mask(VecXc& v) const {
 }
 
 bool Polisher::evaluate(Pair& p, bool exact) {
+  WHIRL_EXPECTS(m_ != nullptr);
+  WHIRL_EXPECTS(p.x.size() == 6 * pattern_.size());
   mask(p.x);
   Index big = 0;
   double size = 0.0;
@@ -80,6 +85,8 @@ bool Polisher::evaluate(Pair& p, bool exact) {
 }
 
 Complex Polisher::rayleigh_root(const Pair& p, Complex s0) {
+  WHIRL_EXPECTS(p.Mx.size() == p.x.size() && p.Cx.size() == p.x.size() &&
+                p.Kx.size() == p.x.size());
   const Complex a = p.x.dot(p.Mx), b = p.x.dot(p.Cx), c = p.x.dot(p.Kx);
   // Both roots without cancellation: q = -(b + sign sqrt(b^2 - 4ac))/2, s = q/a and c/q.
   Complex d = std::sqrt(b * b - 4.0 * a * c);
@@ -113,6 +120,8 @@ double Polisher::residual_norm(const Pair& p, Complex lambda) {
 }
 
 bool Polisher::polish(Pair& p, double tolerance, bool near) {
+  WHIRL_EXPECTS(m_ != nullptr);
+  WHIRL_EXPECTS(tolerance > 0.0);
   if (p.Kx.size() == 0 && !evaluate(p)) return false;
   // What rounding of K x alone can do to lambda: beams of many elements need sums better than
   // working precision.
@@ -190,6 +199,7 @@ double Polisher::uncertainty(const Pair& p) {
 }
 
 void Polisher::assess(Pair& p) {
+  WHIRL_EXPECTS(p.Kx.size() == p.x.size());
   const double s = std::abs(p.lambda);
   p.uncertainty = uncertainty(p);
   if (s > 0.0) {
@@ -208,6 +218,7 @@ void Polisher::assess(Pair& p) {
 }
 
 double Polisher::rounding_of_stiffness(const Pair& p) {
+  WHIRL_EXPECTS(p.x.size() == 6 * pattern_.size());
   sizes(p, 0.0, 0.0, 1.0);
   // Rounding of n products of random sign; 16 eps is far below any support that could be told from
   // none.
@@ -224,15 +235,18 @@ double Polisher::rounding_of_stiffness(const Pair& p) {
 }
 
 VecX Polisher::weights(Complex lambda) const {
+  WHIRL_EXPECTS(m_ != nullptr);
   const double s = std::abs(lambda);
   return (diagonal_k_ + s * diagonal_c_ + s * s * diagonal_m_).cwiseSqrt();
 }
 
 bool Polisher::is_unresisted(const Pair& p) {
+  WHIRL_EXPECTS(p.Kx.size() == p.x.size());
   return std::abs(p.x.dot(p.Kx)) <= rounding_of_stiffness(p);
 }
 
 void Polisher::separate(std::span<Pair*> group) {
+  WHIRL_EXPECTS(!group.empty());
   const Index k = static_cast<Index>(group.size()), n = y_.size();
   if (k == 1) {
     const Complex root = rayleigh_root(*group[0], group[0]->lambda);

@@ -25,6 +25,7 @@ class Polisher {
 
   /// Scales x to largest component 1 and computes M x, C x, K x (K x exactly but for its own
   /// rounding). False when x is zero or not finite.
+  /// @pre after set(); p.x of length 6 * pattern.size(), as in all that follow.
   bool evaluate(Pair& p, bool exact = false);
   /// The root of x^H Q(s) x nearest to s0.
   static Complex rayleigh_root(const Pair& p, Complex s0);
@@ -41,6 +42,7 @@ class Polisher {
   bool is_unresisted(const Pair& p);
   /// Best vectors of a group of close eigenpairs within the space they span: the projected problem,
   /// solved densely. Leaves the group alone when its vectors are dependent.
+  /// @pre not empty.
   void separate(std::span<Pair*> group);
 
   /// Square roots of the diagonal entries of |lambda|^2 |M| + |lambda| |C| + |K|: with them

@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <la/dense.hpp>
 #include <la/root_count.hpp>
 
@@ -163,6 +164,8 @@ bool RootCounter::follow_curve(double surprise) {
 
 RootCount RootCounter::count(const MCK& m, const CountRegion& region,
                              std::span<const Complex> known) {
+  WHIRL_EXPECTS(region.radius > 0.0 && std::isfinite(region.radius));
+  WHIRL_EXPECTS(region.reach > 0.0 && std::isfinite(region.reach));
   m_ = &m;
   region_ = region;
   known_.assign(known.begin(), known.end());
@@ -179,6 +182,7 @@ RootCount RootCounter::count(const MCK& m, const CountRegion& region,
 }
 
 std::vector<Complex> RootCounter::locate(Index unknown) {
+  WHIRL_EXPECTS(m_ != nullptr);
   std::vector<Complex> out;
   if (unknown <= 0 || !follow_curve(moment_surprise)) return out;
   std::vector<double> moments(static_cast<std::size_t>(unknown), 0.0);

@@ -37,6 +37,7 @@ class RootCounter {
   RootCounter(const BlockPattern& pattern, std::span<const unsigned char> active);
   /// known: every root found so far, inside and outside; Im > 0 stands for the pair. Multiple roots
   /// come several times.
+  /// @pre a region of finite size above zero.
   RootCount count(const MCK& m, const CountRegion& region, std::span<const Complex> known);
   /// After count(): estimates of the unknown roots, Im >= 0, from their moments; a few per cent of
   /// the radius off, more where there are many. Empty when the curve does not settle.

@@ -36,16 +36,6 @@ struct Curve {
   std::vector<double> x, y;
 };
 
-/// Histories against time, s; one row of axes for each unit among `curves` (label, unit given per
-/// curve).
-struct HistoryCurve {
-  std::string label, unit;
-  std::vector<double> y;
-  std::string axis;
-};
-Figure plot_history(std::string name, std::string title, std::span<const double> time,
-                    std::span<const HistoryCurve> curves);
-
 /// Orbit of a probe in its two measuring directions, m; dots where the keyphasor fires (indices
 /// into y, z).
 struct Orbit {

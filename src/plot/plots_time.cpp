@@ -62,45 +62,6 @@ DisplayUnit unit_for(const std::string& si, double m) {
   return {1, si};
 }
 
-Figure plot_history(std::string name, std::string title, std::span<const double> time,
-                    std::span<const HistoryCurve> curves) {
-  Figure f;
-  f.name = std::move(name);
-  f.title = std::move(title);
-  const DisplayUnit s =
-      unit_for("s", time.empty() ? 0 : std::max(std::abs(time.front()), std::abs(time.back())));
-  const std::vector<double> t = scaled(time, s.factor);
-  std::vector<std::string> keys;
-  for (const auto& c : curves)
-    if (const std::string key = c.axis + '\n' + c.unit;
-        std::find(keys.begin(), keys.end(), key) == keys.end())
-      keys.push_back(key);
-  for (const auto& key : keys) {
-    double m = 0;
-    for (const auto& c : curves)
-      if (c.axis + '\n' + c.unit == key) m = std::max(m, largest(c.y));
-    Axes a;
-    a.x = Axis("time", s.name);
-    for (const auto& c : curves) {
-      if (c.axis + '\n' + c.unit != key) continue;
-      const DisplayUnit u = unit_for(c.unit, m);
-      a.y = Axis(c.axis.empty() ? c.label : c.axis, u.name);
-      Series line;
-      line.label = c.label;
-      line.x = t;
-      line.y = scaled(c.y, u.factor);
-      line.style.width = 1.2;
-      a.series.push_back(std::move(line));
-    }
-    if (a.series.size() == 1)
-      a.series[0].trace_label = std::exchange(a.series[0].label, "");  // the axis names it
-    a.share_x = !f.axes.empty();
-    f.axes.push_back(std::move(a));
-  }
-  f.height = 120 + 190 * static_cast<double>(std::max<std::size_t>(1, f.axes.size()));
-  return f;
-}
-
 Figure plot_orbit(std::string name, std::string title, std::span<const Orbit> orbits,
                   double clearance) {
   Figure f;

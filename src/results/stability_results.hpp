@@ -6,6 +6,7 @@
 namespace whirl::results {
 
 /// Judges the static tangent of a state at the load of `running`.
+/// @throws Error (E76) when the tangent of the state cannot be evaluated.
 analysis::Definiteness judge_state(analysis::SteadySystem& running, const system::State& state,
                                    double Omega, std::span<const Index> spin_holds, bool shape);
 

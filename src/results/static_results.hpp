@@ -23,6 +23,7 @@ struct SupportLoad {
 
 /// Of an equilibrium at speed the mean over the revolution, which is what is in balance. reactions:
 /// mean residual at held unknowns.
+/// @throws Error (R11) when the state cannot be evaluated.
 std::vector<SupportLoad> calc_support_loads(const run::Job& job, analysis::SteadySystem& running,
                                             const system::State& state, double Omega,
                                             const VecX& reactions);

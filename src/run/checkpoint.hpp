@@ -65,16 +65,18 @@ std::string checkpoint_name(const std::string& step);
 std::filesystem::path checkpoint_file(const std::filesystem::path& results,
                                       const std::string& step);
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& c);
-/// Nothing when there is no file. Error E91 when it is damaged or of another version.
+/// Nothing when there is no file.
+/// @throws Error (E91) when it is damaged or of another version.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& file);
 /// The state in which a transient step of another results folder ended (step: "" = its only one).
-/// Error E91: there is none, or several.
+/// @throws Error (E91): there is none, or several.
 Checkpoint last_state_of(const std::string& folder, const std::string& step);
-/// Error E94: the state is one of another mesh. deck: for the message.
+/// deck: for the message.
+/// @throws Error (E94): the state is one of another mesh.
 void check_state_fits(const Checkpoint& c, const std::string& folder, const system::System& system,
                       const std::string& deck);
-/// Error E94 with the first differing line when a checkpoint in the results folder is of another
-/// model.
+/// @throws Error (E94) with the first differing line when a checkpoint in the results folder is of
+/// another model.
 void check_checkpoints(const std::filesystem::path& results, const model::Model& model);
 /// True when there is a checkpoint of any step.
 bool has_checkpoint(const std::filesystem::path& results, const model::Model& model);

@@ -12,12 +12,13 @@ namespace whirl::run {
 ///       by itself
 ///   run.json        program version and build, deck path, SHA-256 of resolved.toml, start time
 /// Pictures and checkpoints that earlier runs made there are removed unless the run is resumed;
-/// files no run made are left alone. A large output is announced with its size. Error (Exit::io)
-/// when writing fails; Error (Exit::deck, E33) when the output would not fit on its disk.
+/// files no run made are left alone. A large output is announced with its size.
+/// @throws Error (Exit::io) when writing fails; (Exit::deck, E33) when the output would not fit on
+/// its disk.
 std::filesystem::path prepare_results(const model::Model& model, const RunOptions& options);
 
-/// Error (Exit::deck, E33): the output would not fit on the disk of the folder, which need not be
-/// there yet.
+/// @throws Error (Exit::deck, E33): the output would not fit on the disk of the folder, which need
+/// not be there yet.
 void check_space(const model::Model& model, const RunOptions& options);
 
 /// SHA-256 of the resolved deck, in hexadecimal: `sha256sum resolved.toml` gives the same.

@@ -6,7 +6,9 @@ namespace whirl::steps {
 
 /// Moves a start into the steady response to the unbalance at its speed; adds the whirl mode that
 /// the step names.
+/// @throws Error (E76) when there is no response to start in.
 void start_in_unbalance_response(const run::Job&, run::StepState& start);
+/// @throws Error (E76) when there is no such mode.
 void start_in_mode(const run::Job&, run::StepState& start, const model::TransientStep&);
 /// Lets the governors of the step begin: where those of the start did that acted before, the others
 /// here, without a jump of their torque.

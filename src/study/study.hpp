@@ -11,9 +11,11 @@ struct StudyOptions {
   std::filesystem::path exact;  ///< CSV of the exact displacements of probes; empty: none
 };
 /// Error against run time of a deck over a ladder of tolerances, steps, integrators and meshes.
+/// @throws Error (E95, E96) when the deck has nothing to study.
 int study_deck(const StudyOptions& options);
 /// Spectral radius, numerical damping and energy over very many steps of every integrator on the
 /// deck's rotor.
+/// @throws Error (E95) when the deck has nothing to study.
 int study_stability(const StudyOptions& options);
 
 }  // namespace whirl::study

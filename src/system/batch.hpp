@@ -1,6 +1,7 @@
 // A batch holds all elements of one kind with their nodes and the precomputed slots of their
 // blocks: one virtual call per kind and evaluation, none per element.
 #pragma once
+#include <core/contract.hpp>
 #include <core/rotation.hpp>
 #include <la/block.hpp>
 #include <system/frames.hpp>
@@ -22,14 +23,17 @@ struct Workspace {
   la::BlockMatrix<7> M, C, K;                ///< X-space tangents
   Context context;
   Index outside = -1;  ///< node that left the chart (|gamma| >= pi), or -1
-  /// Once nodes have moved to other axes (frames.hpp): each as its line's own axes see it.
+  /// Once nodes have moved to other axes (frames.hpp): each as its line's own axes see it. Of the
+  /// last evaluation, and empty where it found no node moved or one outside its chart.
   const Frames* frames = nullptr;
   std::vector<NodeState> own;
   std::vector<AngleTransport::At> own_carried;
 
-  bool moved() const { return frames && frames->moved(); }
+  /// The last evaluation saw moved nodes; what `frames` has become since does not count.
+  bool moved() const { return !own.empty(); }
   /// The node in the line's own axes: what its angle and tilt mean to everything outside it.
   const NodeState& in_own_axes(Index node) const {
+    WHIRL_EXPECTS(node >= 0 && at(node) < nodes.size());
     return moved() ? own[static_cast<std::size_t>(node)] : nodes[static_cast<std::size_t>(node)];
   }
 };
@@ -159,6 +163,7 @@ class Batch final : public Elements<K::n_nodes, K::width> {
       return false;
   }
   bool add_rigid_inertia(std::vector<RigidInertia>& of_node) const override {
+    WHIRL_EXPECTS(K::n_nodes == 1 || !inertial());
     bool constant = true;
     if constexpr (requires(const K& k) { k.inertia(0.0); })
       for (std::size_t i = 0; i < elements_.size(); ++i) {

@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <system/system.hpp>
 
 #include <algorithm>
@@ -53,6 +54,7 @@ void bring_back_tangent(const std::array<const AngleTransport::At*, N>& carried,
 
 std::array<NodeState, 2> seen_together(const System& system, const Workspace& w, Index first,
                                        Index second) {
+  WHIRL_EXPECTS(at(first) < w.nodes.size() && at(second) < w.nodes.size());
   std::array<NodeState, 2> out{w.nodes[at(first)], w.nodes[at(second)]};
   if (!w.moved()) return out;
   const std::pair<Index, Index> pair = std::minmax(first, second);
@@ -85,6 +87,7 @@ void Elements<N, W>::list_nodes(std::vector<Index>& out) const {
 
 template <int N, int W>
 void Elements<N, W>::bind(const la::BlockPattern& p, const std::vector<Index>& row) {
+  WHIRL_EXPECTS(row.size() == at(p.size()));
   slots_.resize(nodes_.size());
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     for (std::size_t a = 0; a < N; ++a)
@@ -104,6 +107,7 @@ void Elements<N, W>::list_links(std::vector<std::pair<Index, Index>>& out) const
 
 template <int N, int W>
 void Elements<N, W>::bind_links(std::span<const std::pair<Index, Index>> links) {
+  WHIRL_EXPECTS(std::is_sorted(links.begin(), links.end()));
   links_.clear();
   if constexpr (N == 2)
     if (axes() == Axes::common)
@@ -115,6 +119,7 @@ void Elements<N, W>::bind_links(std::span<const std::pair<Index, Index>> links) 
 
 template <int N, int W>
 bool Elements<N, W>::stands(const Workspace& w, std::size_t i) const {
+  WHIRL_EXPECTS(w.frames && w.moved());
   const Frames& f = *w.frames;
   if constexpr (N == 2)
     if (axes() == Axes::common)

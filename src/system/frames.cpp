@@ -45,6 +45,7 @@ AngleTransport::At AngleTransport::at(const Vec3& d, const Vec3& dd, const Vec3&
 }
 
 double Frames::own_angle(Index node, Index line, const Vec3& d) const {
+  WHIRL_EXPECTS(at(node) < of_node.size() && at(line) < turns.size());
   if (shift.empty()) return 0.0;
   const Vec3 own = chart[at(line)].col(0);
   const double raw = shift[at(node)] + solid_angle(axes(node).col(0), d, own);
@@ -53,6 +54,9 @@ double Frames::own_angle(Index node, Index line, const Vec3& d) const {
 
 void Frames::move(const System& system, std::span<const Index> nodes, const Vec3& e,
                   std::span<const Vec3> normals, std::span<rotation::Angles> x) {
+  WHIRL_EXPECTS(!nodes.empty() && x.size() == nodes.size());
+  WHIRL_EXPECTS(normals.size() == of_node.size());
+  WHIRL_EXPECTS(std::abs(e.norm() - 1.0) < 1e-9);
   if (shift.empty()) {
     shift.assign(of_node.size(), 0.0);
     lead = shift;
@@ -98,6 +102,7 @@ void Frames::update_links(const System& system, Index node, const Vec3& old_e, d
 }
 
 void Frames::follow(const System& system, std::span<const Vec3> normals) {
+  WHIRL_EXPECTS(normals.size() == of_node.size());
   for (std::size_t i = 0; i < shift.size(); ++i) {
     const Index node = static_cast<Index>(i);
     lead[i] = own_angle(node, system.node(node).line, normals[i]);

@@ -11,6 +11,7 @@
 //     turns as the element is wound up by.
 // While no node has moved all of this is absent.
 #pragma once
+#include <core/contract.hpp>
 #include <core/rotation.hpp>
 #include <core/types.hpp>
 #include <cmath>
@@ -32,14 +33,19 @@ struct Frames {
 
   bool moved() const { return chart.size() > turns.size(); }
   /// The axes that a node's phi and gamma refer to.
-  const Mat3& axes(Index node) const { return chart[at(of_node[at(node)])]; }
+  const Mat3& axes(Index node) const {
+    WHIRL_EXPECTS(node >= 0 && at(node) < of_node.size());
+    return chart[at(of_node[at(node)])];
+  }
   /// Nodes stand in the same axes.
   bool same_axes(Index a, Index b) const { return of_node[at(a)] == of_node[at(b)]; }
   /// The angle about its line's own axes less phi, of a node with the normal d, rad.
+  /// @pre a node and a line of the system.
   double own_angle(Index node, Index line, const Vec3& d) const;
 
   /// Moves nodes to axes along e (P(e <- e_old) applied to those they stand in) and re-expresses
   /// their angles x, which come in the order of `nodes`. normals: of all nodes, global axes.
+  /// @pre e is a unit vector, nodes not empty.
   void move(const System& system, std::span<const Index> nodes, const Vec3& e,
             std::span<const Vec3> normals, std::span<rotation::Angles> x);
   /// After an accepted state: what the continuous angles have become.

@@ -6,10 +6,11 @@
 //     static constexpr bool has_M = true, has_C = true, has_K = true;   // tangents that exist
 //     static constexpr Family family = Family::body;      // what it stands for in results
 //     static constexpr Dependence depends{.spin = true, .weight = true};
-//     void add_force(const Nodes<1>&, const Context&, ForceX<7>& f) const;        // f += left
-//     side of M a + f = 0 void add_tangent(const Nodes<1>&, const Context&, TangentX<7>& k) const;
-//     // += exact derivatives of f void add_energy(const Nodes<1>&, const Context&, Energy& e)
-//     const;
+//     // f += left side of M a + f = 0
+//     void add_force(const Nodes<1>&, const Context&, ForceX<7>& f) const;
+//     // t += exact derivatives of f
+//     void add_tangent(const Nodes<1>&, const Context&, TangentX<7>& t) const;
+//     void add_energy(const Nodes<1>&, const Context&, Energy& e) const;
 //   };
 //
 // depends says what the force depends on beside position and lateral motion (dependence.hpp). Where

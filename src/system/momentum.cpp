@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <core/error.hpp>
 #include <core/rotation.hpp>
 #include <system/momentum.hpp>
@@ -92,6 +93,7 @@ MomentumProblem::MomentumProblem(const System& system, MomentumOptions options)
     : system_(system),
       options_(options),
       w_(system.make_workspace()) {
+  WHIRL_EXPECTS(options.displacement > 0.0 && options.tilt > 0.0 && options.rate > 0.0);
   const std::string found = obstacle(system);
   if (!found.empty())
     throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error,
@@ -134,6 +136,7 @@ MomentumProblem::Attitude MomentumProblem::attitude(const Body& b, time::CRef y)
 }
 
 bool MomentumProblem::evaluate(double t, time::CRef y) {
+  WHIRL_EXPECTS(y.size() == size_);
   a_.setZero();
   system_.impose(frames, t, q_, v_, a_);
   for (const Body& b : bodies_) {
@@ -165,6 +168,7 @@ bool MomentumProblem::evaluate(double t, time::CRef y) {
 }
 
 bool MomentumProblem::rate(double t, time::CRef y, time::Ref dy) {
+  WHIRL_EXPECTS(dy.size() == size_);
   if (!evaluate(t, y)) return false;
   for (auto& f : w_.force)
     f.setZero();
@@ -196,6 +200,8 @@ bool MomentumProblem::rate(double t, time::CRef y, time::Ref dy) {
 }
 
 void MomentumProblem::set_state(const State& s, time::Ref y) {
+  WHIRL_EXPECTS(s.q.size() == system_.size() && s.v.size() == system_.size());
+  WHIRL_EXPECTS(y.size() == size_);
   frames = s.frames;
   for (const Body& b : bodies_) {
     const Index n = 6 * b.node;

@@ -20,7 +20,9 @@ namespace whirl::system {
 
 namespace of_one {
 using namespace single;
+#define WHIRL_INLINE inline
 #include <system/spin.inl>
+#undef WHIRL_INLINE
 }  // namespace of_one
 
 struct NodeState {

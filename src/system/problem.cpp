@@ -1,4 +1,5 @@
 #include <system/problem.hpp>
+#include <core/contract.hpp>
 
 #include <core/rotation.hpp>
 
@@ -12,6 +13,7 @@ SystemProblem::SystemProblem(const System& system, ProblemOptions options)
       options_(options),
       workspace_(system.make_workspace()),
       matrices_(system.make_matrices()) {
+  WHIRL_EXPECTS(options.chart_limit > 0.0 && options.chart_limit < rotation::chart_limit);
   frames = system.make_state().frames;
   kinds_.resize(at(system.size()));
   const auto active = system.active();
@@ -91,6 +93,7 @@ time::Problem::Power SystemProblem::power(double t, time::CRef q, time::CRef v, 
 }
 
 time::Problem::Power SystemProblem::power_here(time::CRef v, time::CRef reactions) {
+  WHIRL_EXPECTS(v.size() == system_.size());
   energy_ = system_.energy(workspace_);
   for (const Hold& h : system_.holds())
     if (h.law) energy_.supplied += reactions[h.unknown] * v[h.unknown];
@@ -99,6 +102,7 @@ time::Problem::Power SystemProblem::power_here(time::CRef v, time::CRef reaction
 }
 
 time::Problem::Power SystemProblem::exchange_here(time::CRef v, time::CRef reactions) {
+  WHIRL_EXPECTS(v.size() == system_.size());
   Energy e = system_.exchange(workspace_);
   for (const Hold& h : system_.holds())
     if (h.law) e.supplied += reactions[h.unknown] * v[h.unknown];
@@ -106,6 +110,7 @@ time::Problem::Power SystemProblem::exchange_here(time::CRef v, time::CRef react
 }
 
 bool SystemProblem::accept(double, time::Ref q, time::Ref v, time::Ref a) {
+  WHIRL_EXPECTS(q.size() == size() && v.size() == size() && a.size() == size());
   bool changed = false;
   if (frames.moved()) {
     list_normals(q);

@@ -39,17 +39,21 @@ inline void project_block(const Mat32& Di, const double* x, double* y, Column&& 
 }  // namespace
 
 std::string_view component_name(int c) {
+  WHIRL_EXPECTS(c >= 0 && c < 6);
   constexpr std::string_view names[] = {"x", "y", "z", "spin", "tilt gamma2", "tilt gamma3"};
   return names[c];
 }
 
 Index Builder::add_line(std::string name, const Mat3& triad) {
+  WHIRL_EXPECTS(triad.allFinite());
+  WHIRL_EXPECTS((triad.transpose() * triad - Mat3::Identity()).norm() < 1e-9);
   system_.line_names_.push_back(std::move(name));
   system_.charts_.push_back(triad);
   return static_cast<Index>(system_.charts_.size()) - 1;
 }
 
 Index Builder::add_node(NodeDef def) {
+  WHIRL_EXPECTS(def.position.allFinite());
   if (system_.charts_.empty()) add_line("model");
   system_.defs_.push_back(std::move(def));
   return nodes() - 1;
@@ -66,6 +70,8 @@ Index Builder::add_ground(const Vec3& position, std::string name) {
 }
 
 void Builder::hold(Index node, int component, LawPtr law) {
+  WHIRL_EXPECTS(node >= 0 && node < nodes());
+  WHIRL_EXPECTS(component >= 0 && component < 6);
   holds_.push_back({6 * node + component, std::move(law)});
 }
 
@@ -134,6 +140,7 @@ System Builder::finalize() {
 }
 
 void System::list_regions(const Workspace& w, std::vector<int>& out) const {
+  WHIRL_EXPECTS(w.nodes.size() == at(nodes()));
   out.clear();
   for (std::size_t i : cornered_)
     terms_[i]->list_regions(w, out);
@@ -178,6 +185,8 @@ std::vector<Vec3> State::normals() const {
 }
 
 double State::total_phi(Index node, Index line) const {
+  WHIRL_EXPECTS(line >= 0 && at(line) < frames.turns.size());
+  WHIRL_EXPECTS(node >= 0 && 6 * node < q.size());
   const double phi = q[6 * node + spin_phi];
   const double turns = two_pi * frames.turns[at(line)];
   if (!frames.moved()) return phi + turns;
@@ -211,6 +220,8 @@ Vec3 System::gravity_at(double t) const {
 
 void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v,
                     Eigen::Ref<VecX> a) const {
+  WHIRL_EXPECTS(q.size() == size() && v.size() == size() && a.size() == size());
+  WHIRL_EXPECTS(f.turns.size() == at(lines()));
   for (const Hold& h : holds_) {
     if (!h.law) {
       q[h.unknown] = v[h.unknown] = a[h.unknown] = 0.0;
@@ -252,11 +263,14 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   static const lanes::Kernels& kernels = lanes::kernels();
   w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
   w.frames = &f;
+  w.own.clear();
+  w.own_carried.clear();
   if (w.outside < 0 && f.moved()) evaluate_own_axes(w, f);
   return w.outside < 0;
 }
 
 void System::evaluate_own_axes(Workspace& w, const Frames& f) const {
+  WHIRL_EXPECTS(f.moved() && f.shift.size() == at(nodes()));
   w.own = w.nodes;
   w.own_carried.resize(w.nodes.size());
   for (std::size_t i = 0; i < w.own.size(); ++i) {
@@ -272,6 +286,7 @@ void System::evaluate_own_axes(Workspace& w, const Frames& f) const {
 
 void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::Ref<const VecX> v,
                                 Eigen::Ref<const VecX> a) const {
+  WHIRL_EXPECTS(w.outside < 0);
   for (Index i = 0; i < nodes(); ++i) {
     const Mat3& E = *w.nodes[at(i)].chart;
     rotation::Director& dir = w.director[at(i)];
@@ -283,6 +298,7 @@ void System::evaluate_jacobians(Workspace& w, Eigen::Ref<const VecX> q, Eigen::R
 }
 
 void System::project_force(const Workspace& w, Eigen::Ref<VecX> r) const {
+  WHIRL_EXPECTS(w.force.size() == at(nodes()));
   WHIRL_EXPECTS(r.size() == size());
   for (Index i = 0; i < nodes(); ++i) {
     const Vector<7>& f = w.force[at(i)];
@@ -311,6 +327,9 @@ bool System::residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const 
 bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                      Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
                      Selection only) const {
+  WHIRL_EXPECTS(out.M.value_count() == at(36 * pattern_->blocks()));
+  WHIRL_EXPECTS(out.C.value_count() == out.M.value_count() &&
+                out.K.value_count() == out.M.value_count());
   if (!evaluate_nodes(w, f, t, q, v, a)) return false;
   evaluate_jacobians(w, q, v, a);
   for (auto& x : w.force)
@@ -362,6 +381,7 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
 }
 
 Energy System::exchange(const Workspace& w) const {
+  WHIRL_EXPECTS(w.nodes.size() == at(nodes()));
   Energy e;
   for (const auto& term : terms_)
     if (!term->powerless()) term->add_energy(w, w.context, e);
@@ -370,6 +390,7 @@ Energy System::exchange(const Workspace& w) const {
 }
 
 Energy System::energy(const Workspace& w) const {
+  WHIRL_EXPECTS(w.nodes.size() == at(nodes()));
   Energy e;
   for (const auto& term : terms_)
     term->add_energy(w, w.context, e);

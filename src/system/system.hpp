@@ -1,8 +1,10 @@
 // The assembled equations of motion R(t, q, v, a) = M(q) a + f(q, v, t) of nodes and element
 // batches. A System is const once built; what changes lives in State, scratch in Workspace.
 #pragma once
+#include <core/contract.hpp>
 #include <core/law.hpp>
 #include <system/batch.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,8 +47,14 @@ class System {
   Index nodes() const { return static_cast<Index>(defs_.size()); }
   Index size() const { return 6 * nodes(); }
   Index lines() const { return static_cast<Index>(line_names_.size()); }
-  const NodeDef& node(Index i) const { return defs_[static_cast<std::size_t>(i)]; }
-  const std::string& line_name(Index l) const { return line_names_[static_cast<std::size_t>(l)]; }
+  const NodeDef& node(Index i) const {
+    WHIRL_EXPECTS(i >= 0 && i < nodes());
+    return defs_[static_cast<std::size_t>(i)];
+  }
+  const std::string& line_name(Index l) const {
+    WHIRL_EXPECTS(l >= 0 && l < lines());
+    return line_names_[static_cast<std::size_t>(l)];
+  }
   const la::BlockPattern& pattern() const { return *pattern_; }
   /// 1 where q[k] is unknown, 0 where it is held.
   std::span<const unsigned char> active() const { return active_; }
@@ -86,6 +94,8 @@ class System {
   void impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v,
               Eigen::Ref<VecX> a) const;
   /// Node states only (for probes, pictures). False when a node is outside its chart.
+  /// @pre q, v, a of length size() (as in all that follow), w of make_workspace(), f of a state of
+  /// this system; f must live while w is read.
   bool evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                       Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const;
   /// Some of the terms, as numbers into terms(); a null pointer means all.
@@ -96,10 +106,12 @@ class System {
                 Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r,
                 Selection only = nullptr) const;
   /// M = dR/da, C = dR/dv, K = dR/dq, exact.
+  /// @pre out of make_matrices().
   bool tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
                Selection only = nullptr) const;
   /// Energies and powers of the elements at the node states of the last evaluation.
+  /// @pre w was evaluated.
   Energy energy(const Workspace& w) const;
   /// Only what is supplied and dissipated, W: asks no element that does neither.
   Energy exchange(const Workspace& w) const;
@@ -138,19 +150,27 @@ class Builder {
  public:
   /// A shaft line with its reference triad (columns e, e2, e3).
   Index add_line(std::string name, const Mat3& triad = Mat3::Identity());
+  /// @pre finite position.
   Index add_node(NodeDef def);
   /// Holds component c of a node: at zero, or on a law (value, rate, acceleration all exact).
   void hold(Index node, int component, LawPtr law = nullptr);
   /// A node that never moves (a ground point).
   Index add_ground(const Vec3& position, std::string name);
-  void set_gravity(const Vec3& g) { system_.gravity_ = g; }
+  void set_gravity(const Vec3& g) {
+    WHIRL_EXPECTS(g.allFinite());
+    system_.gravity_ = g;
+  }
   void set_base_acceleration(int axis, LawPtr law) {
+    WHIRL_EXPECTS(axis >= 0 && axis < 3);
     system_.base_[static_cast<std::size_t>(axis)] = std::move(law);
   }
   /// `kind` names the batch in summaries ("shaft elements"); the first call for a type decides.
   /// Returns the number of the batch in System::terms().
   template <Kernel K>
   std::size_t add(const K& k, const std::array<Index, K::n_nodes>& nodes, const char* kind) {
+    WHIRL_EXPECTS(kind != nullptr);
+    WHIRL_EXPECTS(std::all_of(nodes.begin(), nodes.end(),
+                              [this](Index n) { return n >= 0 && n < this->nodes(); }));
     const std::type_index key(typeid(K));
     auto it = system_.by_type_.find(key);
     if (it == system_.by_type_.end()) {
@@ -171,7 +191,7 @@ class Builder {
   const Batch<K>* batch() const {
     return system_.batch<K>();
   }
-  const NodeDef& node(Index i) const { return system_.defs_[static_cast<std::size_t>(i)]; }
+  const NodeDef& node(Index i) const { return system_.node(i); }
   Index nodes() const { return static_cast<Index>(system_.defs_.size()); }
   /// Holds every rotational unknown no element resists or loads, then freezes pattern and slots.
   System finalize();

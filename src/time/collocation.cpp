@@ -53,6 +53,7 @@
 // b_j A_j. Dense output: a(theta) the polynomial through the A_j, v and q its integrals; exact at
 // both ends of the step in q and v.
 #include <time/collocation.hpp>
+#include <core/contract.hpp>
 
 #include <cmath>
 #include <stdexcept>
@@ -371,6 +372,7 @@ void Collocation::rewind() {
 void Collocation::drop_history() { have_history_ = have_start_residual_ = false; }
 
 void Collocation::dense(double theta, Ref q, Ref v, Ref a) const {
+  WHIRL_EXPECTS(h_ > 0.0);
   const Tableau::Basis b = tab_.basis(theta);
   q = q0_ + (theta * h_) * v0_;
   v = v0_;

@@ -1,6 +1,7 @@
 // Events: where inside a step the motion passes from one side of something to another (a function
 // changes sign, a gap closes), located on the step's dense output.
 #pragma once
+#include <core/contract.hpp>
 #include <array>
 #include <cmath>
 #include <span>
@@ -36,6 +37,7 @@ class EventLocator {
   /// returns whether to look on.
   template <class Moved, class Found>
   void search(double t0, double t1, Moved&& moved, Found&& found) const {
+    WHIRL_EXPECTS(t1 >= t0);
     double before = t0;
     for (const double part : looks_) {
       const double look = part == 1.0 ? t1 : t0 + (t1 - t0) * part;
@@ -65,6 +67,7 @@ class EventLocator {
  private:
   template <class Moved>
   Passage bracket(Passage p, double step, Moved&& moved) const {
+    WHIRL_EXPECTS(p.after >= p.before);
     while (p.after - p.before > precision_.of_step * step &&
            p.after - p.before > precision_.of_time * std::abs(p.after)) {
       const double middle = 0.5 * (p.before + p.after);

@@ -22,6 +22,7 @@
 //
 // Dense output: q the cubic Hermite polynomial, v = q', a = q''.
 #include <time/generalized_alpha.hpp>
+#include <core/contract.hpp>
 
 #include <time/hermite.hpp>
 #include <cmath>
@@ -147,6 +148,7 @@ void GeneralizedAlpha::rewind() {
 void GeneralizedAlpha::drop_history() { h_last_ = h_before_ = 0.0; }
 
 void GeneralizedAlpha::dense(double theta, Ref q, Ref v, Ref a) const {
+  WHIRL_EXPECTS(h_ > 0.0);
   hermite(theta, h_, q0_, v0_, q_, v_, q, v, a);
 }
 

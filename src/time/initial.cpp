@@ -1,10 +1,12 @@
 #include <time/initial.hpp>
+#include <core/contract.hpp>
 
 #include <cmath>
 
 namespace whirl::time {
 
 void InitialSolver::resize(Problem& problem) {
+  WHIRL_EXPECTS(problem.kinds().size() == at(problem.size()));
   const Index n = problem.size();
   row_.assign(at(n), Row::dynamic);
   r_ = probe_ = q_start_ = v_start_ = a_start_ = VecX::Zero(n);
@@ -16,6 +18,7 @@ void InitialSolver::resize(Problem& problem) {
 }
 
 void InitialSolver::classify(const Problem& problem) {
+  WHIRL_EXPECTS(problem.size() == r_.size());
   // A row is zero exactly when its product with a vector in general position is: entries of
   // different size and sign cancel to the last bit only in rows that hold nothing.
   for (Index i = 0; i < probe_.size(); ++i)
@@ -46,6 +49,7 @@ bool InitialSolver::factor(Problem& problem, double tau, Statistics& statistics)
 
 StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, VecX& a,
                                 Statistics& statistics) {
+  WHIRL_EXPECTS(q.size() == r_.size() && v.size() == r_.size() && a.size() == r_.size());
   ++statistics.linearizations;
   problem.linearize(t, q, v, a);
   classify(problem);
@@ -108,6 +112,7 @@ StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, Ve
 
 StepStatus InitialSolver::impulse(Problem& problem, const VecX& dv_held, VecX& v,
                                   Statistics& statistics) {
+  WHIRL_EXPECTS(dv_held.size() == r_.size() && v.size() == r_.size());
   if (!factor(problem, any_massless_ ? 1e-8 : 0.0, statistics)) return StepStatus::singular;
   r_.setZero();
   problem.add_M(-1.0, dv_held, r_);

@@ -18,7 +18,6 @@ class InitialSolver {
   /// Held velocities jumped by dv_held (zero elsewhere): M dv = 0 in the free rows, the velocity
   /// jump of a rigid impulsive drive. Adds it to v. Uses the kept matrices.
   StepStatus impulse(Problem& problem, const VecX& dv_held, VecX& v, Statistics& statistics);
-  bool massless(Index i) const { return row_[static_cast<std::size_t>(i)] != Row::dynamic; }
   /// 1 for unknowns with inertia, 0 for massless and held ones.
   const VecX& dynamic() const { return dynamic_; }
 

@@ -103,7 +103,7 @@ struct IntegratorState {
   VecX q, v, a;
   std::vector<double> history;  ///< scheme-specific, opaque
   std::vector<double> serialize() const;
-  /// Throws std::invalid_argument when the data are not what serialize() wrote.
+  /// @throws std::invalid_argument when the data are not what serialize() wrote.
   static IntegratorState deserialize(const std::vector<double>& data);
 };
 
@@ -117,6 +117,7 @@ class Integrator {
   /// Begins at (t, q, v): held entries are imposed, a (and, of massless unknowns, what the
   /// equations determine) computed. Statistics and scales start anew.
   /// @throws Error when the initial acceleration cannot be found.
+  /// @pre q and v of length Problem::size().
   virtual void start(double t, CRef q, CRef v) = 0;
   /// The problem changed its equations, or the caller the state, at the present time: continues
   /// from (q, v) without history. Scales and statistics go on. corner: the force has one here (a
@@ -127,9 +128,11 @@ class Integrator {
   virtual void restart(CRef q, CRef v, bool corner = false) = 0;
   /// One accepted step (or the reason why none is possible; the state is then that before the
   /// step).
+  /// @throws Error (N20, N21) where the data jump and no acceleration or velocity follows.
   virtual StepReport advance() = 0;
   /// Makes the last step again so that it ends at t, t0 < t < t1 of that step (to land on an
   /// event), before any other advance().
+  /// @throws std::invalid_argument for a t outside the last step.
   virtual StepReport shorten_to(double t) = 0;
 
   virtual double time() const = 0;
@@ -140,6 +143,7 @@ class Integrator {
   virtual double proposed_step() const = 0;
   /// State at t inside the last step, held entries exact from their laws. v = q', a = q'' of the
   /// same interpolant.
+  /// @pre vectors of length Problem::size().
   virtual void interpolate(double t, Ref q, Ref v, Ref a) const = 0;
 
   /// To be called by whoever used linearize() or factor() of the problem between steps.
@@ -151,6 +155,7 @@ class Integrator {
   /// Snapshot between steps. Marks a fresh linearisation for the next step, here and in whoever
   /// restores it: the two continue bit-identically (with equal options).
   virtual IntegratorState save() = 0;
+  /// @throws std::invalid_argument when it is the state of another problem or scheme.
   virtual void restore(const IntegratorState& state) = 0;
 };
 

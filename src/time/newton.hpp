@@ -1,6 +1,7 @@
 // When simplified Newton has converged, and when it will not: E. Hairer, G. Wanner, Solving ODEs
 // II, IV.8.
 #pragma once
+#include <core/contract.hpp>
 #include <time/problem.hpp>
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,7 @@ class NewtonMonitor {
   /// Part of `acceptable` that rounding may reach.
   static constexpr double rounding_share = 3.0;
   void configure(int limit, double allowance, double acceptable) {
+    WHIRL_EXPECTS(limit > 0 && allowance > 0.0);
     limit_ = limit;
     allowance_ = allowance;
     acceptable_ = std::max(acceptable, allowance);

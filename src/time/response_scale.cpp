@@ -1,4 +1,5 @@
 #include <time/response_scale.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,7 @@ constexpr double rounding_units = 4.0 * std::numeric_limits<double>::epsilon();
 }  // namespace
 
 void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
+  WHIRL_EXPECTS(options.length > 0.0 && options.spin_angle > 0.0);
   kinds_.assign(kinds.begin(), kinds.end());
   options_ = options;
   const auto n = static_cast<Index>(kinds_.size());
@@ -30,10 +32,12 @@ void ResponseScale::resize(std::span<const Kind> kinds, const Scales& options) {
 }
 
 void ResponseScale::resolve(double smallest) {
+  WHIRL_EXPECTS(smallest > 0.0);
   offset_share_ = std::max(least_share, rounding_units / smallest);
 }
 
 void ResponseScale::reset(CRef q) {
+  WHIRL_EXPECTS(q.size() == weight_.size());
   low_ = high_ = q;
   swept_.fill(0.0);
   size_.fill(0.0);
@@ -41,6 +45,7 @@ void ResponseScale::reset(CRef q) {
 }
 
 void ResponseScale::set_spin_inertia(CRef inertia) {
+  WHIRL_EXPECTS(inertia.size() == inertia_.size());
   double sum = 0.0;
   for (Index i : spin_)
     sum += std::abs(inertia[i]);
@@ -50,6 +55,7 @@ void ResponseScale::set_spin_inertia(CRef inertia) {
 }
 
 void ResponseScale::observe(CRef q) {
+  WHIRL_EXPECTS(q.size() == low_.size());
   for (Index i = 0; i < q.size(); ++i) {
     low_[i] = std::min(low_[i], q[i]);
     high_[i] = std::max(high_[i], q[i]);
@@ -63,6 +69,7 @@ void ResponseScale::observe(CRef q) {
 void ResponseScale::rebase(Index i, double q) { low_[i] = high_[i] = q; }
 
 void ResponseScale::begin_step(CRef dq) {
+  WHIRL_EXPECTS(dq.size() == weight_.size());
   std::array<double, kinds_count> s = swept_;
   for (Index i = 0; i < dq.size(); ++i) {
     double& k = s[of(kinds_[at(i)])];
@@ -108,6 +115,7 @@ double ResponseScale::rounding() const {
 }
 
 double ResponseScale::error_norm(CRef x) const {
+  WHIRL_EXPECTS(x.size() == weight_.size());
   double largest = 0.0, spin = 0.0;
   for (Index i = 0; i < x.size(); ++i) {
     if (kinds_[at(i)] == Kind::spin_angle) continue;

@@ -2,6 +2,7 @@
 // Hulbert, J. Appl. Mech. 60 (1993) 371, doi 10.1115/1.2900803, eliminated to the characteristic
 // cubic below. BDF2: (3/2 - z) r^2 - 2 r + 1/2 = 0.
 #include <time/stability.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <fmt/format.h>
@@ -75,6 +76,9 @@ double bdf2_radius(Complex z) {
 
 ModeResponse mode_response(std::string_view name, double omega, double zeta, double h,
                            double rho_inf) {
+  WHIRL_EXPECTS(omega > 0.0 && h > 0.0);
+  WHIRL_EXPECTS(std::abs(zeta) < 1.0);
+  WHIRL_EXPECTS(rho_inf >= 0.0 && rho_inf <= 1.0);
   const double wd = omega * std::sqrt(1.0 - zeta * zeta);
   const Complex lambda(-zeta * omega, wd), z = h * lambda, exact = std::exp(z);
   ModeResponse out;

@@ -20,11 +20,12 @@ struct ModeResponse {
 
 /// name as in make_integrator (ida: BDF of order 2). omega > 0 rad/s, zeta in (-1, 1), h > 0 s.
 /// @throws Error for an unknown name.
+/// @pre omega, h > 0, |zeta| < 1, 0 <= rho_inf <= 1.
 ModeResponse mode_response(std::string_view name, double omega, double zeta, double h,
                            double rho_inf = 0.9);
 
 /// Stability function of a collocation method (Pade approximants of exp), z = h lambda. Throws
-/// Error for other names.
+/// @throws Error (N10) for other names.
 Complex stability_function(std::string_view name, Complex z);
 
 /// Larger root of BDF of order 2 at equal steps, (3/2 - z) r^2 - 2 r + 1/2 = 0.

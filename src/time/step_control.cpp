@@ -1,4 +1,5 @@
 #include <time/step_control.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,8 @@ constexpr double error_floor =
 }  // namespace
 
 double StepControl::accepted(double h, double error, int iterations, int limit) {
+  WHIRL_EXPECTS(h > 0.0 && error >= 0.0);
+  WHIRL_EXPECTS(iterations >= 0 && limit > 0);
   error = std::max(error, error_floor);
   const double effort = safety * (1.0 + 2.0 * limit) / (iterations + 2.0 * limit);
   double ratio = std::min(safety, effort) * std::pow(error, -1.0 / exponent_);
@@ -58,11 +61,13 @@ double StepControl::accepted(double h, double error, int iterations, int limit) 
 }
 
 void StepControl::newton_failed(double h) {
+  WHIRL_EXPECTS(h > 0.0);
   rejected_ = true;
   newton_limit_ = newton_back * h;
 }
 
 double StepControl::rejected(double h, double error) {
+  WHIRL_EXPECTS(h > 0.0);
   rejected_ = true;
   for (double& r : recent_)
     r = large;

@@ -1,4 +1,5 @@
 #include <time/stepper.hpp>
+#include <core/contract.hpp>
 #include <time/hermite.hpp>
 
 #include <core/error.hpp>
@@ -19,6 +20,8 @@ Stepper::Stepper(Problem& problem, const Options& options)
     : problem_(problem),
       options_(options),
       n_(problem.size()) {
+  WHIRL_EXPECTS(problem.kinds().size() == at(n_));
+  WHIRL_EXPECTS(options.tolerance > 0.0 && options.max_attempts > 0);
   scale_.resize(problem.kinds(), options.scales);
   initial_.resize(problem);
   for (Index i = 0; i < n_; ++i)
@@ -32,6 +35,8 @@ Stepper::Stepper(Problem& problem, const Options& options)
 // Start and discontinuities
 
 void Stepper::start(double t, CRef q, CRef v) {
+  WHIRL_EXPECTS(std::isfinite(t));
+  WHIRL_EXPECTS(q.size() == n_ && v.size() == n_);
   statistics_ = {};
   longest_ = rate_span_ = rate_steps_ = 0.0;
   t_ = t0_ = t1_eval_ = t;
@@ -60,6 +65,7 @@ void Stepper::start(double t, CRef q, CRef v) {
 }
 
 void Stepper::restart(CRef q, CRef v, bool corner) {
+  WHIRL_EXPECTS(q.size() == n_ && v.size() == n_);
   if (corner) {
     rate_span_ = std::max(rate_span_, longest_);
     longest_ = rate_steps_ = 0.0;
@@ -165,6 +171,7 @@ void Stepper::next_stop(double& t, bool& is_break) const {
 }
 
 void Stepper::plan_segment() {
+  WHIRL_EXPECTS(options_.dt_fixed > 0.0);
   bool is_break;
   segment_start_ = t_;
   next_stop(segment_end_, is_break);
@@ -182,6 +189,7 @@ void Stepper::plan_segment() {
 }
 
 Stepper::Target Stepper::plan(double h) {
+  WHIRL_EXPECTS(h > 0.0);
   double target;
   if (options_.dt_fixed > 0.0) {
     target = segment_k_ + 1.0 >= segment_count_
@@ -240,6 +248,7 @@ void Stepper::begin_step() {
 }
 
 void Stepper::linearize(double h, bool inside) {
+  WHIRL_EXPECTS(h > 0.0);
   // In films the stages differ from the start as much as from each other: the middle of the step,
   // as far as the present acceleration tells it, is nearer to all of them.
   if (inside) {
@@ -259,6 +268,7 @@ void Stepper::linearize(double h, bool inside) {
 }
 
 Stepper::Attempt Stepper::attempt_with_recovery(double h) {
+  WHIRL_EXPECTS(h > 0.0);
   for (;;) {
     const bool inside = linearize_ && smooth();
     if (linearize_) linearize(h, inside);
@@ -305,27 +315,10 @@ StepReport Stepper::advance() {
   Attempt result;
   for (int tries = 0;; ++tries) {
     target = plan(h_wanted);
-    const double stop = target.t1;
-    t_ = target.t1;
-    t_low_ = target.landing ? 0.0 : (t0_ - t_) + (target.h + t0_low_);
-    const bool lands_on_break =
-        target.landing && std::binary_search(breaks_.begin(), breaks_.end(), stop);
-    t1_eval_ = lands_on_break ? std::nextafter(stop, t0_) : stop;
-    report.at_breakpoint = lands_on_break;
+    report.at_breakpoint = aim_at(target);
     result = attempt_with_recovery(target.h);
     if (result.status == StepStatus::ok && (fixed || result.error <= 1.0)) break;
-    if (result.status == StepStatus::ok) {
-      result.status = StepStatus::error_test;
-      ++report.rejected_error;
-      ++statistics_.rejected_error;
-      h_wanted = control_.rejected(target.h, result.error);
-      retrying_ = true;
-    } else {
-      ++report.rejected_newton;
-      ++statistics_.rejected_newton;
-      h_wanted = target.h * (result.status == StepStatus::domain ? 0.25 : 0.5);
-      control_.newton_failed(target.h);
-    }
+    h_wanted = shorter_after(result, target.h, report);
     if (h_wanted < dt_min || tries + 1 >= options_.max_attempts) {
       return_to_start();
       report.status = result.status;
@@ -333,27 +326,10 @@ StepReport Stepper::advance() {
       return report;
     }
   }
-
-  commit(target.h);
-  h_ = target.h;
-  have_step_ = accept_pending_ = true;
-  first_ = false;
-  at_break_ = report.at_breakpoint;
-  scale_.observe(q_);
   report.t1 = t_;
   report.error = result.error;
   report.newton_iterations = result.iterations;
-  ++statistics_.accepted;
-  statistics_.step_min = std::min(statistics_.step_min, target.h);
-  statistics_.step_max = std::max(statistics_.step_max, target.h);
-  statistics_.step_sum += target.h;
-  longest_ = std::max(longest_, target.h);
-  // a rotor at rest in a contact that rings without damping would be followed for ever
-  constexpr double ringing = 1000.0;
-  if (rate_span_ > 0.0 && (target.h >= rate_span_ || ++rate_steps_ >= ringing)) rate_span_ = 0.0;
-  statistics_.error_max = std::max(statistics_.error_max, result.error);
-  statistics_.error_sum += result.error;
-
+  take_step(target.h, report);
   const bool smooth = report.rejected_error == 0 && report.rejected_newton == 0;
   if (fixed) {
     inside_part_ = !target.landing;
@@ -366,6 +342,49 @@ StepReport Stepper::advance() {
     h_next_ = target.clipped && smooth ? std::max(proposal, h_wanted) : proposal;
   }
   return report;
+}
+
+bool Stepper::aim_at(const Target& target) {
+  t_ = target.t1;
+  t_low_ = target.landing ? 0.0 : (t0_ - t_) + (target.h + t0_low_);
+  const bool lands_on_break =
+      target.landing && std::binary_search(breaks_.begin(), breaks_.end(), target.t1);
+  t1_eval_ = lands_on_break ? std::nextafter(target.t1, t0_) : target.t1;
+  return lands_on_break;
+}
+
+double Stepper::shorter_after(Attempt& failed, double h, StepReport& report) {
+  if (failed.status == StepStatus::ok) {
+    failed.status = StepStatus::error_test;
+    ++report.rejected_error;
+    ++statistics_.rejected_error;
+    const double shorter = control_.rejected(h, failed.error);
+    retrying_ = true;
+    return shorter;
+  }
+  ++report.rejected_newton;
+  ++statistics_.rejected_newton;
+  control_.newton_failed(h);
+  return h * (failed.status == StepStatus::domain ? 0.25 : 0.5);
+}
+
+void Stepper::take_step(double h, const StepReport& report) {
+  commit(h);
+  h_ = h;
+  have_step_ = accept_pending_ = true;
+  first_ = false;
+  at_break_ = report.at_breakpoint;
+  scale_.observe(q_);
+  ++statistics_.accepted;
+  statistics_.step_min = std::min(statistics_.step_min, h);
+  statistics_.step_max = std::max(statistics_.step_max, h);
+  statistics_.step_sum += h;
+  longest_ = std::max(longest_, h);
+  // a rotor at rest in a contact that rings without damping would be followed for ever
+  constexpr double ringing = 1000.0;
+  if (rate_span_ > 0.0 && (h >= rate_span_ || ++rate_steps_ >= ringing)) rate_span_ = 0.0;
+  statistics_.error_max = std::max(statistics_.error_max, report.error);
+  statistics_.error_sum += report.error;
 }
 
 void Stepper::return_to_start() {
@@ -413,6 +432,7 @@ StepReport Stepper::shorten_to(double t) {
 }
 
 void Stepper::interpolate(double t, Ref q, Ref v, Ref a) const {
+  WHIRL_EXPECTS(q.size() == n_ && v.size() == n_ && a.size() == n_);
   if (take_end(have_step_ ? t : t_, {t_, q_, v_, a_}, q, v, a)) return;
   if (take_end(t, {t0_, q0_, v0_, a0_}, q, v, a)) return;
   dense(((t - t0_) - t0_low_) / h_, q, v, a);
@@ -421,6 +441,8 @@ void Stepper::interpolate(double t, Ref q, Ref v, Ref a) const {
 
 void Stepper::add_compensated(const VecX& x, const VecX& x_low, const VecX& dx, VecX& sum,
                               VecX& low) {
+  WHIRL_EXPECTS(dx.size() == x.size() && x_low.size() == x.size());
+  WHIRL_EXPECTS(sum.size() == x.size() && low.size() == x.size());
   // two-sum (Knuth): exact for any order of magnitudes
   for (Index i = 0; i < x.size(); ++i) {
     const double d = dx[i] + x_low[i];

@@ -106,6 +106,12 @@ class Stepper : public Integrator {
   void linearize(double h, bool inside);
   Attempt attempt_with_recovery(double h);
   void begin_step();
+  /// Sets the time of the step's end; whether that is a breakpoint.
+  bool aim_at(const Target& target);
+  /// Counts a failed attempt of length h, and names what failed; the length to try next.
+  double shorter_after(Attempt& failed, double h, StepReport& report);
+  /// The step of length h is accepted.
+  void take_step(double h, const StepReport& report);
   /// The state of the step's start is the present one again.
   void return_to_start();
   void after_discontinuity(bool impulse);

@@ -6,6 +6,7 @@
 //   Gauss 3:      x^3 - 12 x^2 + 60 x - 120
 //   Gauss 2:      x^2 -  6 x   + 12
 #include <time/tableau.hpp>
+#include <core/contract.hpp>
 
 #include <cmath>
 #include <vector>
@@ -19,6 +20,7 @@ template <class T>
 using Square = std::vector<std::vector<T>>;
 
 Square<Real> inverse(Square<Real> m) {
+  WHIRL_EXPECTS(m.empty() || m.front().size() == m.size());
   const std::size_t n = m.size();
   Square<Real> inv(n, std::vector<Real>(n, 0));
   for (std::size_t i = 0; i < n; ++i)
@@ -84,6 +86,7 @@ std::vector<Cplx> eigenvector(const Square<Real>& B, Cplx lambda, bool transpose
 
 /// nodes c; characteristic polynomial x^s + p[s-1] x^(s-1) + ... + p[0] of A^-1.
 Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, bool stiff) {
+  WHIRL_EXPECTS(c.size() == p.size() && (c.size() == 2 || c.size() == 3));
   const std::size_t s = c.size();
   Tableau t;
   t.stages = static_cast<int>(s);
@@ -177,6 +180,7 @@ Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, 
 }  // namespace
 
 Tableau::Basis Tableau::basis(double theta) const {
+  WHIRL_EXPECTS(std::isfinite(theta));
   Basis out;
   for (int j = 0; j < stages; ++j) {
     double l = 0, l1 = 0, l2 = 0;
@@ -195,6 +199,7 @@ Tableau::Basis Tableau::basis(double theta) const {
 }
 
 Tableau::Mat Tableau::extrapolation(double theta0, double r) const {
+  WHIRL_EXPECTS(std::isfinite(theta0) && r > 0.0);
   // Taylor shift of each l_j to theta0, then the double integral term by term: no cancellation.
   Mat out{};
   for (std::size_t j = 0; j < static_cast<std::size_t>(stages); ++j) {

@@ -19,7 +19,7 @@ std::vector<Case> all() {
   return {{"constant", make_constant(3.5)},
           {"table", table},
           {"pchip", make_pchip(t, f)},
-          {"ramp", make_ramp(0.2, 1.7, 1, -4)},
+          {"ramp", make_table({0.2, 1.7}, {1, -4})},
           {"smooth", make_smooth_step(0.2, 1.7, 1, -4)},
           {"cosine", make_cosine_step(0.2, 1.7, 1, -4)},
           {"harmonic", make_harmonic(1, 2, 5, 0.3)},
@@ -70,7 +70,7 @@ TEST(Law, IntegralsStartAtZeroAndAreContinuous) {
 }
 
 TEST(Law, IntegralsAgainstClosedForms) {
-  EXPECT_DOUBLE_EQ(make_ramp(1, 3, 2, 6)->integral(5), 2 + 8 + 12);
+  EXPECT_DOUBLE_EQ(make_table({1, 3}, {2, 6})->integral(5), 2 + 8 + 12);
   EXPECT_DOUBLE_EQ(make_smooth_step(1, 3, 2, 6)->integral(5), 2 + 8 + 12);
   EXPECT_DOUBLE_EQ(make_cosine_step(1, 3, 2, 6)->integral(5), 2 + 8 + 12);
   EXPECT_DOUBLE_EQ(make_table({0, 1, 2}, {0, 1, 0})->integral(2), 1.0);
@@ -81,13 +81,13 @@ TEST(Law, IntegralsAgainstClosedForms) {
   EXPECT_DOUBLE_EQ(make_piecewise({0, 1}, {make_constant(2), make_constant(5)})->integral(-3),
                    -6.0);
   // double integral of a linear ramp: t^3/6
-  EXPECT_NEAR(make_angle_of_speed(make_ramp(0, 10, 0, 10), 1)->integral(3), 3 + 4.5, 1e-14);
-  EXPECT_NEAR(make_angle_of_speed(make_ramp(0, 10, 0, 10), 1)->integral(-3), -3, 1e-14);
+  EXPECT_NEAR(make_angle_of_speed(make_table({0, 10}, {0, 10}), 1)->integral(3), 3 + 4.5, 1e-14);
+  EXPECT_NEAR(make_angle_of_speed(make_table({0, 10}, {0, 10}), 1)->integral(-3), -3, 1e-14);
 }
 
 TEST(Law, AngleOfSpeedIsExactOverALongRun) {
   // 10 s ramp to 1000 rad/s, then hold to 1e6 s: 1e9 rad with a relative rounding error only
-  const auto law = make_angle_of_speed(make_ramp(0, 10, 0, 1000), 0);
+  const auto law = make_angle_of_speed(make_table({0, 10}, {0, 1000}), 0);
   EXPECT_DOUBLE_EQ(law->at(1e6).f, 5000 + 1000 * (1e6 - 10));
   EXPECT_DOUBLE_EQ(law->at(5).f, 1250);
   EXPECT_DOUBLE_EQ(law->at(5).df, 500);
@@ -95,7 +95,7 @@ TEST(Law, AngleOfSpeedIsExactOverALongRun) {
 }
 
 TEST(Law, HeldOutsideAndRightContinuous) {
-  const auto ramp = make_ramp(1, 2, 3, 5);
+  const auto ramp = make_table({1, 2}, {3, 5});
   EXPECT_EQ(ramp->at(0).f, 3);
   EXPECT_EQ(ramp->at(9).f, 5);
   EXPECT_EQ(ramp->at(1).df, 2);
@@ -130,8 +130,9 @@ TEST(Law, PchipIsMonotoneAndHitsItsPoints) {
 }
 
 TEST(Law, BreakpointsAreListedOnce) {
-  const auto a = make_ramp(1, 2, 0, 1);
-  EXPECT_EQ(make_sum({a, make_ramp(2, 3, 0, 1)})->breakpoints(), (std::vector<double>{1, 2, 3}));
+  const auto a = make_table({1, 2}, {0, 1});
+  EXPECT_EQ(make_sum({a, make_table({2, 3}, {0, 1})})->breakpoints(),
+            (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(make_piecewise({0, 1.5}, {a, make_constant(0)})->breakpoints(),
             (std::vector<double>{1, 1.5}));
   EXPECT_TRUE(make_harmonic(0, 1, 1, 0)->breakpoints().empty());
@@ -145,7 +146,7 @@ TEST(Law, BadInputIsRefused) {
   EXPECT_THROW(make_table({1, 0}, {1, 2}), Error);
   EXPECT_THROW(make_table({0, whirl::nan}, {1, 2}), Error);
   EXPECT_THROW(make_pchip({0, 1, 2}, {0, infinity, 1}), Error);
-  EXPECT_THROW(make_ramp(1, 1, 0, 1), Error);
+  EXPECT_THROW(make_smooth_step(1, 1, 0, 1), Error);
   EXPECT_THROW(make_smooth_step(2, 1, 0, 1), Error);
   EXPECT_THROW(make_cosine_step(0, infinity, 0, 1), Error);
   EXPECT_THROW(make_piecewise({0, 1}, {make_constant(1)}), Error);

@@ -152,7 +152,7 @@ TEST(TorqueLaw, Terms) {
   EXPECT_DOUBLE_EQ(t.at(0, 10, 0).T, 6);
   EXPECT_DOUBLE_EQ(t.at(0, 10, 0).dx, -0.2);
   t = {};
-  t.brake = make_ramp(1, 2, 0, 6);
+  t.brake = make_table({1, 2}, {0, 6});
   EXPECT_DOUBLE_EQ(t.at(1.5, 10, 0).T, -3);
   EXPECT_DOUBLE_EQ(t.at(1.5, -10, 0).loss, 3);
   EXPECT_EQ(t.breakpoints(), (std::vector<double>{1, 2}));

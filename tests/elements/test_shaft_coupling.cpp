@@ -86,7 +86,9 @@ TEST(ShaftCoupling, AngularMisalignmentGivesAMoment) {
   Vector<12> q = Vector<12>::Zero();
   const Mat3 chart = Mat3::Identity();
   const NodeFrame<2, 7> x(q, q, q, chart, Vec3::Zero());
-  const Vector<6> load = k.load(x.nodes());
-  EXPECT_NEAR(load[4], -0.6, 1e-14);  // turns hub 0 back about y
-  EXPECT_NEAR(load[5], 0.0, 1e-14);
+  system::ForceX<14> f = Vector<14>::Zero();
+  k.add_force(x.nodes(), {}, f);
+  const Vec3 moment = -Vec3::UnitX().cross(f.segment<3>(3));  // on hub 0; f stands on the left
+  EXPECT_NEAR(moment.y(), -0.6, 1e-14);                       // turns it back about y
+  EXPECT_NEAR(moment.z(), 0.0, 1e-14);
 }

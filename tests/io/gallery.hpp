@@ -2,7 +2,10 @@
 // at.
 #pragma once
 #include <plot/plots.hpp>
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace whirl::io {
 
@@ -15,6 +18,33 @@ inline std::vector<double> grid(double a, double b, int n) {
 
 /// Unbalance response of a Jeffcott rotor, r = Omega/omega_n.
 inline Complex jeffcott(double r, double zeta) { return r * r / Complex(1 - r * r, 2 * zeta * r); }
+
+struct Curve {
+  std::string label;
+  const std::vector<double>* y;
+};
+/// One row of axes of a history, time in s.
+inline plot::Axes against_time(const std::string& name, const std::string& unit,
+                               const std::vector<double>& time, const std::vector<Curve>& curves) {
+  double most = 0;
+  for (const Curve& c : curves)
+    for (const double y : *c.y)
+      most = std::max(most, std::abs(y));
+  const plot::DisplayUnit u = plot::unit_for(unit, most);
+  plot::Axes a;
+  a.x = plot::Axis("time", "s");
+  a.y = plot::Axis(name, u.name);
+  for (const Curve& c : curves) {
+    plot::Series line;
+    (curves.size() == 1 ? line.trace_label : line.label) = c.label;  // one: the axis names it
+    line.x = time;
+    for (const double y : *c.y)
+      line.y.push_back(u.factor * y);
+    line.style.width = 1.2;
+    a.series.push_back(std::move(line));
+  }
+  return a;
+}
 
 inline std::vector<plot::Figure> gallery() {
   std::vector<plot::Figure> all;
@@ -30,12 +60,16 @@ inline std::vector<plot::Figure> gallery() {
       z.push_back(a.imag() - 12e-6);
       torque.push_back(20 + 3 * std::sin(30 * x));
     }
-    const plot::HistoryCurve c[] = {{"y", "m", y, "displacement DE"},
-                                    {"z", "m", z, "displacement DE"},
-                                    {"spin", "rad/s", speed, "speed"},
-                                    {"torque", "N m", torque, "drive torque"}};
-    all.push_back(plot::plot_history("history", "Run-up: drive end", t, c));
-    all.back().caption = "60,000 rows; every extreme survives the thinning.";
+    plot::Figure f;
+    f.name = "history";
+    f.title = "Run-up: drive end";
+    f.caption = "60,000 rows; every extreme survives the thinning.";
+    f.axes.push_back(against_time("displacement DE", "m", t, {{"y", &y}, {"z", &z}}));
+    f.axes.push_back(against_time("speed", "rad/s", t, {{"spin", &speed}}));
+    f.axes.push_back(against_time("drive torque", "N m", t, {{"torque", &torque}}));
+    f.axes[1].share_x = f.axes[2].share_x = true;
+    f.height = 120 + 190 * static_cast<double>(f.axes.size());
+    all.push_back(std::move(f));
   }
   {  // orbits
     plot::Orbit a{"2400 rpm", {}, {}, {}}, b{"4600 rpm", {}, {}, {}};

@@ -139,11 +139,11 @@ TEST(BuildSystem, AbsentPhysicsIsAnAbsentBatch) {
   m.disks[2].offset = Vec3(0, 1e-4, 0);
   auto u = named<model::Unbalance>("u", 0.2);
   u.amount = 1e-4;
-  u.factor = make_ramp(1, 2, 1, 0);
+  u.factor = make_table({1, 2}, {1, 0});
   m.unbalances = {u};
   auto force = named<model::PointLoad>("force", 0.2), moment = force, body = force;
   force.force = Vec3(0, 1, 0);
-  force.factor = make_ramp(0.5, 1, 0, 1);
+  force.factor = make_table({0.5, 1}, {0, 1});
   moment.moment = Vec3(0, 0, 1);
   body.force = Vec3(0, 1, 0);
   body.frame = model::LoadFrame::rotating;
@@ -210,7 +210,7 @@ TEST(BuildSystem, DrivesOfTheStepOnly) {
   m.shafts[0].spin0 = 12;
   auto up = named<model::Drive>("up", 0.4);
   up.step = "run_up";
-  up.law = model::PrescribedSpin{make_angle_of_speed(make_ramp(0, 5, 0, 300), 0.1)};
+  up.law = model::PrescribedSpin{make_angle_of_speed(make_table({0, 5}, {0, 300}), 0.1)};
   m.drives = {up};
   const meshes::Mesh mesh = meshes::make_mesh(m);
   const Built other = build_system(m, mesh, "other"), run = build_system(m, mesh, "run_up");

@@ -173,6 +173,35 @@ TEST(Frames, TangentsOfMovedNodesAreExact) {
     }
 }
 
+// Between a move of axes and the next evaluation, and after one that found a node outside its chart,
+// a workspace knows no node in other axes than those it was evaluated in.
+TEST(Frames, OwnAxesAreThoseOfTheLastEvaluation) {
+  const System s = everything();
+  std::mt19937 rng(7);
+  State x = random_state(s, rng);
+  Workspace w = s.make_workspace();
+  const auto evaluate = [&] { return s.evaluate_nodes(w, x.frames, 0.3, x.q, x.v, x.a); };
+  ASSERT_TRUE(evaluate());
+  EXPECT_FALSE(w.moved());
+  const double before = w.in_own_axes(2).phi;
+  move(s, x, 2, x.normals()[2]);
+  ASSERT_TRUE(x.frames.moved());
+  ASSERT_FALSE(w.moved());  // nothing is there yet
+  EXPECT_EQ(w.in_own_axes(2).phi, before);
+  ASSERT_TRUE(evaluate());
+  ASSERT_TRUE(w.moved());
+  EXPECT_NEAR(w.in_own_axes(2).phi, before, 1e-12);
+  // as far as the chart goes, and further
+  const Vec2 tilt = x.q.segment<2>(gamma2);
+  x.q.segment<2>(gamma2) = Vec2(0, 3.3);
+  EXPECT_FALSE(evaluate());
+  EXPECT_EQ(w.outside, 0);
+  EXPECT_FALSE(w.moved());
+  x.q.segment<2>(gamma2) = tilt;
+  ASSERT_TRUE(evaluate());
+  EXPECT_TRUE(w.moved());
+}
+
 // A body on a spring and a drive about its line's axis, tilted by 2.9 rad and precessing: axes are
 // changed a hundred times, or never.
 TEST(Frames, PrecessionNearTheAntipodeCountsItsTurns) {

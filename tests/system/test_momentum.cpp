@@ -195,7 +195,7 @@ TEST(Momentum, RefusesWhatItDoesNotCover) {
                   "rotary inertia"));
   EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {
                     b.add(disk, {n}, "disk");
-                    b.add(UnbalanceMass(1, 0, make_ramp(0, 1, 0, 1)), {n}, "unbalance");
+                    b.add(UnbalanceMass(1, 0, make_table({0, 1}, {0, 1})), {n}, "unbalance");
                   }),
                   "changes in time"));
   EXPECT_TRUE(has(refusal([&](Builder& b, Index n) {

@@ -1,4 +1,5 @@
 #include <analysis/response/api684.hpp>
+#include <core/contract.hpp>
 
 #include <cmath>
 
@@ -13,6 +14,7 @@ double required_margin(double amplification, bool above) {
 std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks,
                                           const std::vector<ResponseProbe>& probes,
                                           const OperatingRange& range, std::size_t order) {
+  WHIRL_EXPECTS(range.min <= range.max);
   std::vector<MarginRow> rows;
   for (const ResponsePeak& p : peaks) {
     if (p.order != order) continue;

@@ -28,6 +28,7 @@ struct MarginRow {
 /// Required margin as a fraction.
 double required_margin(double amplification, bool above);
 
+/// @pre range.min <= range.max; peaks name probes of the list.
 std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks,
                                           const std::vector<ResponseProbe>& probes,
                                           const OperatingRange& range, std::size_t order = 0);

@@ -1,4 +1,5 @@
 #include <analysis/response/frequency_response.hpp>
+#include <core/contract.hpp>
 
 namespace whirl::analysis {
 
@@ -10,6 +11,7 @@ HarmonicResponder::HarmonicResponder(Linearizer& linear, FrequencyResponseOption
 }
 
 FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
+  WHIRL_EXPECTS(w >= 0.0 && std::isfinite(Omega));
   FrequencyPoint p;
   p.Omega = Omega;
   p.frequency = w;

@@ -35,6 +35,7 @@ class HarmonicResponder {
   HarmonicResponder(Linearizer& linear, FrequencyResponseOptions options);
   /// At speed Omega and excitation frequency w, rad/s; scale: factor on all forces. nan everywhere
   /// at an undamped resonance.
+  /// @pre w >= 0.
   FrequencyPoint at(double Omega, double w, double scale = 1.0);
 
  private:

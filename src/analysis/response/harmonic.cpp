@@ -1,4 +1,5 @@
 #include <analysis/response/harmonic.hpp>
+#include <core/contract.hpp>
 
 #include <la/dense.hpp>
 
@@ -62,6 +63,7 @@ HarmonicSolver::HarmonicSolver(Linearizer& linear, Motion motion)
       solver_(la::make_direct_solver<Complex>(linear.system().pattern(), motion_.active())) {}
 
 bool HarmonicSolver::prepare(double Omega, double w) {
+  WHIRL_EXPECTS(std::isfinite(Omega) && std::isfinite(w));
   const la::MCK& m = motion_.reduce(linear_.at(Omega, Complex(0, w)));
   matrices_ = &m;
   w_ = w;
@@ -94,6 +96,8 @@ bool HarmonicSolver::hold(const la::MCK& m, double w, std::vector<Index> unknown
 }
 
 void HarmonicSolver::solve(VecXc& x) {
+  WHIRL_EXPECTS(matrices_ != nullptr);
+  WHIRL_EXPECTS(x.size() == linear_.system().size());
   for (Index k = 0; k < x.size(); ++k)
     if (!motion_.takes_part(k)) x[k] = 0;
   if (spin_free_)
@@ -103,6 +107,7 @@ void HarmonicSolver::solve(VecXc& x) {
 }
 
 VecXc HarmonicSolver::multiply(const VecXc& x) const {
+  WHIRL_EXPECTS(matrices_ != nullptr);
   VecXc out = times(matrices_->K, x);
   if (w_ != 0.0) out += inertia_and_damping(x);
   return out;
@@ -213,6 +218,8 @@ void HarmonicSolver::add_free_spin(VecXc& x) const {
 }
 
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p) {
+  WHIRL_EXPECTS(a.size() == linear.system().size());
+  WHIRL_EXPECTS(p.node >= 0 && p.node < linear.system().nodes());
   const Eigen::Vector3cd u = local_displacement(linear, a, p.node);
   const double sense = linear.sense(p.node);
   if (p.offset == 0.0) return {u[1], u[2], sense};
@@ -227,6 +234,7 @@ VariationMeter::VariationMeter(Linearizer& linear)
 
 void VariationMeter::measure(const VecXc& a, double w, const std::vector<Measurement>& what,
                              std::vector<std::vector<Complex>>& out) {
+  WHIRL_EXPECTS(a.size() == linear_.system().size());
   const system::State& s = linear_.equilibrium().state;
   problem_.frames = s.frames;
   system::Context& context = problem_.workspace().context;

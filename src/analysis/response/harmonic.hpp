@@ -22,6 +22,7 @@ class HarmonicSolver {
   /// x := S^-1 x; entries of x at unknowns that take no part are not looked at, those of held ones
   /// become zero. At w = 0 a force that turns a free rotor has no finite answer: the entries that
   /// it moves without bound become NaN, the others are right.
+  /// @pre prepare() went well; x of length system().size().
   void solve(VecXc& x);
   Linearizer& linear() { return linear_; }
 
@@ -65,6 +66,7 @@ struct PointAmplitude {
   /// Of the circle that turns with the spin.
   Complex forward() const { return 0.5 * (y + Complex(0, sense) * z); }
 };
+/// @pre a of length system().size(), p on one of its nodes.
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p);
 
 /// Complex amplitudes of anything that can be measured on the system (bearing forces, torques,
@@ -73,6 +75,7 @@ PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Poin
 class VariationMeter {
  public:
   explicit VariationMeter(Linearizer& linear);
+  /// @pre a of length system().size().
   void measure(const VecXc& a, double w, const std::vector<Measurement>& what,
                std::vector<std::vector<Complex>>& out);
 

@@ -1,4 +1,5 @@
 #include <analysis/response/unbalance.hpp>
+#include <core/contract.hpp>
 
 #include <analysis/search.hpp>
 
@@ -54,6 +55,7 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
 void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
                                  const std::vector<SteadyPoint>& coarse,
                                  std::vector<SteadyPoint>& extra) {
+  WHIRL_EXPECTS(probe < options_.probes.size());
   const auto size = [&](const SteadyPoint& p) { return p.probe[order][probe].orbit().major; };
   const auto evaluate = [&](double Omega) { return size(at(Omega, false)); };
   double top = 0;

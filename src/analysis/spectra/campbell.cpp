@@ -1,4 +1,5 @@
 #include <analysis/spectra/campbell.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,8 @@ CampbellRecorder::CampbellRecorder(std::vector<double> speeds, bool shapes) : sh
 }
 
 void CampbellRecorder::take(std::size_t k, const std::vector<TrackedMode>& modes, Index lines) {
+  WHIRL_EXPECTS(k < out_.speeds.size());
+  WHIRL_EXPECTS(lines >= 0);
   const std::size_t n = out_.speeds.size();
   for (Index id = static_cast<Index>(out_.lines.size()); id < lines; ++id) {
     CampbellLine line;

@@ -36,6 +36,7 @@ class CampbellRecorder {
  public:
   explicit CampbellRecorder(std::vector<double> speeds, bool shapes = false);
   /// Modes at speeds[k]; `lines`: number of lines the tracker has seen.
+  /// @pre k below the number of speeds.
   void take(std::size_t k, const std::vector<TrackedMode>& modes, Index lines);
   /// Names and sorts the lines.
   Campbell finish(long speeds_solved);

@@ -42,6 +42,7 @@ struct Critical {
 
 /// In ascending order. certificate: of the damped modes they are crossings of, at the speed of the
 /// search where least is known (undamped ones are counted by inertia: none is missed).
+/// @throws Error (E77) without an order above zero and a range of speeds.
 std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options,
                                       SpectrumCertificate* certificate = nullptr);
 

@@ -33,11 +33,12 @@ class OwnFrequency {
   OwnFrequency(const la::BlockPattern& pattern, std::span<const unsigned char> active,
                const la::ModeOptions& wanted, std::vector<double> frequencies);
 
-  /// All modes that oscillate, ascending in frequency; with a count, those of least |lambda|. Error
-  /// E81: a mode wanted lies where a table does not reach (one that does not feel the tables may).
+  /// All modes that oscillate, ascending in frequency; with a count, those of least |lambda|.
+  /// @throws Error (E81): a mode wanted lies where a table does not reach (one that does not feel
+  /// the tables may).
   std::vector<la::Mode> solve(const Matrices& at);
   /// The mode near `start`, an eigenpair of a neighbouring problem. nullopt: lost.
-  /// @throws Error E81 as above.
+  /// @throws Error (E81) as above.
   std::optional<la::Mode> settle(const Matrices& at, const la::Mode& start);
   /// Where coefficients at a real w are used, the decay of the motion is left out of them.
   /// Continued to its complex frequency w - i g, lambda = g + i w, they change by -i g d/dw to

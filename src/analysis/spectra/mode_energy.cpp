@@ -1,4 +1,5 @@
 #include <analysis/spectra/mode_energy.hpp>
+#include <core/contract.hpp>
 
 #include <la/multiply.hpp>
 
@@ -32,6 +33,7 @@ void normalise(std::vector<EnergyPart>& parts) {
 }  // namespace
 
 ModeEnergy energy_distribution(Linearizer& linear, const VecXc& x) {
+  WHIRL_EXPECTS(x.size() == linear.system().size());
   const system::System& s = linear.system();
   const system::State& state = linear.equilibrium().state;
   system::Workspace workspace = s.make_workspace();

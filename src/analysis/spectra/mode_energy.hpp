@@ -26,6 +26,7 @@ struct ModeEnergy {
       kinetic;  ///< shares above 1e-6, in the order of the batches and nodes; each sums to 1
 };
 
+/// @pre x of length system().size().
 ModeEnergy energy_distribution(Linearizer& linear, const VecXc& x);
 
 }  // namespace whirl::analysis

@@ -1,4 +1,5 @@
 #include <analysis/spectra/motion.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,7 @@ void copy_without(const la::BlockMatrix<6>& in, std::span<const unsigned char> o
 }  // namespace
 
 Motion kind_of_unknown(const system::System& system, Index unknown) {
+  WHIRL_EXPECTS(unknown >= 0 && unknown < system.size());
   if (system.node(unknown / 6).scalar) return Motion::lateral;
   const Index c = unknown % 6;
   return c == system::spin_phi ? Motion::torsional
@@ -60,6 +62,7 @@ MotionReduction::MotionReduction(const system::System& system, Motion motion, Tw
 }
 
 const la::MCK& MotionReduction::reduce(const la::MCK& m) {
+  WHIRL_EXPECTS(m.K.pattern().size() == system_.nodes());
   if (!any_) return m;
   copy_without(m.M, follows_, reduced_.M);
   copy_without(m.C, follows_, reduced_.C);
@@ -74,6 +77,7 @@ double& MotionReduction::own_stiffness(Index unknown) {
 }
 
 void MotionReduction::restrain(Index unknown) {
+  WHIRL_EXPECTS(unknown >= 0 && unknown < system_.size());
   double& stiffness = own_stiffness(unknown);
   const double spring = stiffness != 0.0 ? std::abs(stiffness)
                                          : 1.0;  // what nothing resists at all: any spring will do

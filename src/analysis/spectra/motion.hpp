@@ -25,6 +25,7 @@ enum class Motion { all, lateral, torsional, axial };
 
 /// What an unknown belongs to: u_x is axial, phi torsional, the rest (internal coordinates of
 /// foundations too) lateral.
+/// @pre 0 <= unknown < system.size().
 Motion kind_of_unknown(const system::System& system, Index unknown);
 
 class MotionReduction {
@@ -43,6 +44,7 @@ class MotionReduction {
            !follows_[static_cast<std::size_t>(unknown)];
   }
   /// Matrices of the motion; m itself where nothing follows, else valid until the next call.
+  /// @pre m stands on the pattern of the system.
   const la::MCK& reduce(const la::MCK& m);
   /// Unknowns whose free motion the last reduce() restrained.
   std::span<const Index> restraints() const { return restraints_; }

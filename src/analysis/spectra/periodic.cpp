@@ -1,4 +1,5 @@
 #include <analysis/spectra/periodic.hpp>
+#include <core/contract.hpp>
 
 #include <analysis/search.hpp>
 #include <core/error.hpp>
@@ -61,6 +62,7 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
       motion_(linear.system(), motion, MotionReduction::Twist::held),
       turned_(linear.system().make_matrices()),
       raw_(linear.system().make_matrices()) {
+  WHIRL_EXPECTS(harmonics >= 0);
   if (linear.running().orders().size() > 1)
     throw run_error("E88",
                     "an asymmetric shaft among shafts of different speeds: no axes exist in which "
@@ -107,6 +109,7 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
 }
 
 void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
+  WHIRL_EXPECTS(std::isfinite(theta));
   if (linear_.Omega() != Omega || Omega == 0.0) linear_.at(Omega);  // the equilibrium
   const Equilibrium& e = linear_.equilibrium();
   SteadySystem& running = linear_.running();
@@ -282,6 +285,8 @@ void add_seeds(RotatingAxes& axes, double a, Index na, double b, Index nb,
 }  // namespace
 
 BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
+  WHIRL_EXPECTS(o.modes > 0 && o.tolerance > 0.0);
+  WHIRL_EXPECTS(std::is_sorted(o.speeds.begin(), o.speeds.end()));
   std::vector<double> speeds = o.speeds, edges;
   for (std::size_t k = 0; k + 1 < o.speeds.size(); ++k)
     if (o.speeds[k] > 0)

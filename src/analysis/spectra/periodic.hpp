@@ -29,6 +29,7 @@ class RotatingAxes {
 
   /// Matrices at Omega on pattern(); valid until the next call. lambda: rate in rotating axes, for
   /// hysteretic damping.
+  /// @throws Error (E76) when the state lies outside the range of an element.
   const la::MCK& at(double Omega, Complex lambda = {});
   const la::BlockPattern& pattern() const { return *pattern_; }
   std::span<const unsigned char> active() const { return active_; }
@@ -83,6 +84,7 @@ struct BandResult {
 /// Bands of parametric instability. Edges are solved for; bands narrower than the distance of the
 /// speeds are found where they belong to a critical speed (whirl at the speed itself); combination
 /// bands must be as wide as that distance to be seen.
+/// @pre ascending speeds, at least one mode.
 BandResult find_bands(RotatingAxes& axes, const BandOptions& options);
 
 }  // namespace whirl::analysis

@@ -1,4 +1,5 @@
 #include <analysis/spectra/track.hpp>
+#include <core/contract.hpp>
 
 #include <la/multiply.hpp>
 
@@ -85,6 +86,7 @@ bool ModeTracker::step(double Omega, bool last_chance) {
 }
 
 const std::vector<TrackedMode>& ModeTracker::advance(double Omega, const Visit& visit) {
+  WHIRL_EXPECTS(std::isfinite(Omega));
   if (!started_) {
     step(Omega, true);
     return modes_;
@@ -111,6 +113,7 @@ std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const Whi
                                         double b, const WhirlMode& start_b,
                                         const std::function<double(double, const WhirlMode&)>& g,
                                         double tolerance) {
+  WHIRL_EXPECTS(a != b && tolerance > 0.0);
   TrackedRoot lo{a, start_a}, hi{b, start_b};
   double ga = g(a, start_a), gb = g(b, start_b);
   if (ga == 0.0) return lo;

@@ -57,6 +57,7 @@ struct TrackedRoot {
   double speed = 0;
   WhirlMode mode;
 };
+/// @pre a != b, tolerance > 0.
 std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const WhirlMode& start_a,
                                         double b, const WhirlMode& start_b,
                                         const std::function<double(double, const WhirlMode&)>& g,

@@ -1,4 +1,5 @@
 #include <analysis/spectra/whirl_modes.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <la/multiply.hpp>
@@ -66,11 +67,13 @@ Orbit orbit_of(Complex Y, Complex Z, double sense) {
 }
 
 Eigen::Vector3cd local_displacement(const Linearizer& linear, const VecXc& x, Index node) {
+  WHIRL_EXPECTS(x.size() == linear.system().size());
   const Index line = linear.system().node(node).line;
   return linear.equilibrium().state.frames.chart[at(line)].transpose() * x.segment<3>(6 * node);
 }
 
 double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
+  WHIRL_EXPECTS(x.size() == y.size());
   VecXc mx, my;
   la::multiply(m.M, x, mx);
   la::multiply(m.M, y, my);
@@ -78,23 +81,12 @@ double likeness(const la::MCK& m, const VecXc& x, const VecXc& y) {
   return a > 0 && b > 0 ? std::norm(x.dot(my)) / (a * b) : 0.0;
 }
 
-WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer& linear) {
-  const system::System& s = linear.system();
-  WhirlMode w;
-  w.lambda = w.continued = mode.lambda;
-  w.x = mode.x;
-  w.residual = mode.residual;
-  w.from = mode.from;
-  w.rounding = rounding_of(mode);
-  w.frequency = std::abs(mode.lambda.imag());
-  const double size = std::abs(mode.lambda);
-  w.damping_ratio = size > 0 ? -mode.lambda.real() / size : 0.0;
-  w.log_decrement = w.frequency > 0          ? -two_pi * mode.lambda.real() / w.frequency
-                    : mode.lambda.real() < 0 ? infinity
-                    : mode.lambda.real() > 0 ? -infinity
-                                             : 0.0;
+namespace {
 
-  // Energy by component, in axes of the line (e, e2, e3).
+/// Shares of the energy by component, in axes of the line (e, e2, e3), and the kind of motion they
+/// make it. Returns their sum.
+double find_energy_shares(const la::MCK& m, const Linearizer& linear, WhirlMode& w) {
+  const system::System& s = linear.system();
   VecXc mx, kx;
   la::multiply(m.M, w.x, mx);
   la::multiply(m.K, w.x, kx);
@@ -126,20 +118,26 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   w.kind = w.torsional > w.lateral && w.torsional >= w.axial ? ModeKind::torsional
            : w.axial > w.lateral                             ? ModeKind::axial
                                                              : ModeKind::lateral;
-  if (total == 0.0 || w.lambda == 0.0) {  // a rigid motion without stiffness: by its largest part
-    double twist = 0, along = 0, across = 0;
-    for (Index i = 0; i < s.nodes(); ++i) {
-      const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
-      twist = std::max(twist, std::abs(w.x[6 * i + 3]));
-      along = std::max(along, std::abs(u[0]));
-      across = std::max({across, std::abs(u[1]), std::abs(u[2])});
-    }
-    w.kind = twist > std::max(along, across) ? ModeKind::torsional
-             : along > across                ? ModeKind::axial
-                                             : ModeKind::lateral;
-  }
+  return total;
+}
 
-  // Scale: largest displacement (or twist) real and 1.
+/// The kind of a rigid motion without stiffness: by its largest part.
+ModeKind kind_by_size(const Linearizer& linear, const WhirlMode& w) {
+  const system::System& s = linear.system();
+  double twist = 0, along = 0, across = 0;
+  for (Index i = 0; i < s.nodes(); ++i) {
+    const Eigen::Vector3cd u = local_displacement(linear, w.x, i);
+    twist = std::max(twist, std::abs(w.x[6 * i + 3]));
+    along = std::max(along, std::abs(u[0]));
+    across = std::max({across, std::abs(u[1]), std::abs(u[2])});
+  }
+  return twist > std::max(along, across) ? ModeKind::torsional
+         : along > across                ? ModeKind::axial
+                                         : ModeKind::lateral;
+}
+
+/// Scale: largest displacement (or twist) real and 1.
+void scale_shape(const system::System& s, WhirlMode& w) {
   Complex largest = 0;
   for (Index i = 0; i < s.nodes(); ++i) {
     if (s.node(i).scalar) continue;
@@ -153,9 +151,12 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
     }
   }
   if (std::abs(largest) > 1e-12) w.x /= largest;
+}
 
-  if (w.kind != ModeKind::lateral || w.frequency == 0.0) return w;
-  // Orbits of displacements; of directors (d = e + gamma x e) where the mode hardly moves sideways.
+/// Direction of the whirl, from the orbits of displacements; of directors (d = e + gamma x e) where
+/// the mode hardly moves sideways.
+void find_direction(const Linearizer& linear, WhirlMode& w) {
+  const system::System& s = linear.system();
   double top[2] = {0, 0};
   std::vector<std::array<Vec2, 2>> radius(
       at(s.nodes()), {Vec2::Zero(), Vec2::Zero()});  // (forward, backward) seen along the spin
@@ -192,6 +193,29 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
                 : most > flat && least < -flat ? Direction::mixed
                 : most > flat                  ? Direction::forward
                                                : Direction::backward;
+}
+
+}  // namespace
+
+WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer& linear) {
+  WHIRL_EXPECTS(mode.x.size() == linear.system().size());
+  WhirlMode w;
+  w.lambda = w.continued = mode.lambda;
+  w.x = mode.x;
+  w.residual = mode.residual;
+  w.from = mode.from;
+  w.rounding = rounding_of(mode);
+  w.frequency = std::abs(mode.lambda.imag());
+  const double size = std::abs(mode.lambda);
+  w.damping_ratio = size > 0 ? -mode.lambda.real() / size : 0.0;
+  w.log_decrement = w.frequency > 0          ? -two_pi * mode.lambda.real() / w.frequency
+                    : mode.lambda.real() < 0 ? infinity
+                    : mode.lambda.real() > 0 ? -infinity
+                                             : 0.0;
+  const double total = find_energy_shares(m, linear, w);
+  if (total == 0.0 || w.lambda == 0.0) w.kind = kind_by_size(linear, w);
+  scale_shape(linear.system(), w);
+  if (w.kind == ModeKind::lateral && w.frequency != 0.0) find_direction(linear, w);
   return w;
 }
 
@@ -431,6 +455,7 @@ void WhirlSolver::count_along_axis(double Omega, const la::Certificate& rest) {
 }
 
 const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
+  WHIRL_EXPECTS(std::isfinite(Omega));
   modes_.clear();
   certificate_ = {};
   if (options_.damped && linear_.hysteretic()) {

@@ -1,4 +1,5 @@
 #include <analysis/statics/buckling.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
@@ -162,6 +163,7 @@ BucklingCount count_factors(const la::MCK& K0, const la::BlockMatrix<6>& B,
 
 std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
                                    const EquilibriumOptions& options, BucklingCount* counted) {
+  WHIRL_EXPECTS(count > 0);
   const system::System& system = running.system();
   EquilibriumSolver solver(running, options);
   const double full = running.load();

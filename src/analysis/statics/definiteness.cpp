@@ -1,4 +1,5 @@
 #include <analysis/statics/definiteness.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
@@ -91,6 +92,7 @@ VecX metric(const system::System& s, double length) {
 }
 
 void clear_held(VecX& x, std::span<const unsigned char> free) {
+  WHIRL_EXPECTS(x.size() == static_cast<Index>(free.size()));
   for (Index k = 0; k < x.size(); ++k)
     if (!free[at(k)]) x[k] = 0.0;
 }
@@ -109,6 +111,7 @@ VecX generic_start(Index n, std::span<const unsigned char> free) {
 double inverse_iteration(la::BlockLu<double>& lu, const VecX& D,
                          std::span<const unsigned char> free, VecX& x, int steps,
                          double tolerance) {
+  WHIRL_EXPECTS(x.size() == D.size() && steps > 0);
   double mu = nan;
   for (int k = 0; k < steps; ++k) {
     x /= std::sqrt(x.dot(D.cwiseProduct(x)));
@@ -187,6 +190,7 @@ void count_real(const la::BlockMatrix<6>& K, std::span<const unsigned char> free
 
 Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
                            const system::System& system, double length, bool shape) {
+  WHIRL_EXPECTS(free.size() == at(system.size()) && length > 0.0);
   Definiteness out;
   const VecX rows = row_sizes(K);
   la::BlockMatrix<6> symmetric(K.pattern());
@@ -208,6 +212,7 @@ Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned
 }
 
 void scale_shape(VecX& x, const system::System& s) {
+  WHIRL_EXPECTS(x.size() == s.size());
   double top = 0, turn = 0;
   for (Index k = 0; k < x.size(); ++k) {
     double& largest = k % 6 < 3 || s.node(k / 6).scalar ? top : turn;
@@ -238,6 +243,8 @@ std::vector<unsigned char> free_unknowns(const system::System& s, std::span<cons
 
 double eigenvalue_near_zero(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
                             const system::System& system, double length, VecX& x) {
+  WHIRL_EXPECTS(free.size() == at(system.size()));
+  WHIRL_EXPECTS(length > 0.0);
   const VecX D = metric(system, length);
   if (x.size() != D.size()) x = generic_start(D.size(), free);
   Shifted shifted(K, D, free);

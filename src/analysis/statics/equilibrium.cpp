@@ -1,4 +1,5 @@
 #include <analysis/statics/equilibrium.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <core/rotation.hpp>
@@ -194,6 +195,7 @@ double EquilibriumSolver::correction_size(const VecX& d) const {
 }
 
 bool EquilibriumSolver::is_small(const VecX& d, const VecX& q) const {
+  WHIRL_EXPECTS(d.size() == q.size());
   // Displacements against the largest displacement, tilts against the largest tilt, twists against
   // the largest twist. Below 1e-15 of the model's size (rad) nothing more can be asked.
   const system::System& s = running_.system();
@@ -400,6 +402,8 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
 }
 
 Equilibrium EquilibriumSolver::solve(double Omega, const system::State* start) {
+  WHIRL_EXPECTS(std::isfinite(Omega));
+  WHIRL_EXPECTS(!start || start->q.size() == running_.system().size());
   auto out = try_solve(Omega, start);
   if (out) return std::move(*out);
   const bool singular = why_.starts_with("nothing resists");

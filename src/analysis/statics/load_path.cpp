@@ -1,4 +1,5 @@
 #include <analysis/statics/load_path.hpp>
+#include <core/contract.hpp>
 
 #include <core/rotation.hpp>
 #include <la/continuation.hpp>
@@ -392,6 +393,7 @@ class Follower {
 LoadPathResult follow_load_path(SteadySystem& running, double Omega, const system::State& start,
                                 const LoadPathOptions& o,
                                 const std::function<bool(const LoadPathPoint&)>& accept) {
+  WHIRL_EXPECTS(start.q.size() == running.system().size());
   return Follower(running, Omega, start, o, accept).follow();
 }
 

@@ -64,8 +64,9 @@ struct LoadPathResult {
 std::string describe(const LoadPathResult& r);
 
 /// accept sees every point (located bifurcations too), lambda = 0 first, and ends the path by
-/// returning false. The load factor of `running` is left at the last one. Error when there is no
-/// equilibrium at lambda = 0.
+/// returning false. The load factor of `running` is left at the last one.
+/// @pre a state of the system.
+/// @throws Error as EquilibriumSolver::solve() without an equilibrium at lambda = 0.
 LoadPathResult follow_load_path(SteadySystem& running, double Omega, const system::State& start,
                                 const LoadPathOptions& options,
                                 const std::function<bool(const LoadPathPoint&)>& accept);

@@ -1,4 +1,5 @@
 #include <analysis/study/scheme_damping.hpp>
+#include <core/contract.hpp>
 
 #include <time/stability.hpp>
 
@@ -41,6 +42,7 @@ Complex amplification(std::string_view method, double rho_inf, Complex lambda, d
 }
 
 double numerical_decay(std::string_view method, double rho_inf, Complex lambda, double h) {
+  WHIRL_EXPECTS(h > 0.0);
   return -std::log(std::abs(amplification(method, rho_inf, lambda, h))) / h + lambda.real();
 }
 

@@ -1,4 +1,5 @@
 #include <analysis/study/scheme_stability.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 #include <time/integrator.hpp>
@@ -104,6 +105,7 @@ ReducedRotor ReducedRotor::conservative() const {
 }
 
 ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count) {
+  WHIRL_EXPECTS(count > 0);
   ModesOptions options;
   const auto active = linear.active();
   options.count = std::min<Index>(
@@ -161,6 +163,7 @@ ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count) {
 
 double spectral_radius(const ReducedRotor& rotor, std::string_view method, double h,
                        double rho_inf) {
+  WHIRL_EXPECTS(h > 0.0 && rotor.M.rows() == rotor.K.rows());
   if (method == "generalized_alpha")
     return la::eigenvalues(generalized_alpha_map(rotor, h, rho_inf)).cwiseAbs().maxCoeff();
   double radius = 0.0;
@@ -172,6 +175,7 @@ double spectral_radius(const ReducedRotor& rotor, std::string_view method, doubl
 
 double energy_ratio(const ReducedRotor& rotor, std::string_view method, double h, long steps,
                     double rho_inf) {
+  WHIRL_EXPECTS(h > 0.0 && steps > 0);
   Dense problem(rotor);
   time::Options o;
   o.dt_fixed = h;

@@ -26,6 +26,7 @@ ReducedRotor reduce_rotor(Linearizer& linear, double Omega, Index count = 12);
 
 /// Largest |eigenvalue| of one step of length h, s; above 1 + rounding a step multiplies some
 /// motion. method as in time::make_integrator; ida: BDF of order 2 at equal steps.
+/// @pre h > 0 (also energy_ratio).
 double spectral_radius(const ReducedRotor& rotor, std::string_view method, double h,
                        double rho_inf);
 

@@ -1,4 +1,5 @@
 #include <analysis/study/study.hpp>
+#include <core/contract.hpp>
 
 #include <core/error.hpp>
 
@@ -63,6 +64,7 @@ StudySample timed(const StudyRunner& run, const StudyCase& c, int repeats) {
 
 StudyResult run_study(const StudyRunner& run, const StudyOptions& options,
                       const std::vector<Quantity>* exact) {
+  WHIRL_EXPECTS(options.repeats > 0);
   StudyResult result;
   if (exact) {
     result.reference.quantities = *exact;

@@ -77,6 +77,7 @@ struct StudyResult {
 };
 
 /// exact: quantities of a closed form replace the reference run when given.
+/// @throws Error (R20) when the reference run fails.
 StudyResult run_study(const StudyRunner& run, const StudyOptions& options,
                       const std::vector<Quantity>* exact = nullptr);
 

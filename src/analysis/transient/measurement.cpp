@@ -1,10 +1,12 @@
 #include <analysis/transient/measurement.hpp>
+#include <core/contract.hpp>
 
 #include <cmath>
 
 namespace whirl::analysis {
 
 void Snapshot::set(double t, const VecX& q, const VecX& v, const VecX& a) {
+  WHIRL_EXPECTS(q.size() == system().size() && v.size() == q.size() && a.size() == q.size());
   t_ = t;
   q_ = &q;
   v_ = &v;
@@ -14,6 +16,7 @@ void Snapshot::set(double t, const VecX& q, const VecX& v, const VecX& a) {
 }
 
 const VecX& Snapshot::reactions() const {
+  WHIRL_EXPECTS(q_ != nullptr);
   if (!have_reactions_) {
     problem_.residual(t_, *q_, *v_, *a_, reactions_);
     have_reactions_ = true;
@@ -22,6 +25,7 @@ const VecX& Snapshot::reactions() const {
 }
 
 time::Problem::Power Snapshot::power() const {
+  WHIRL_EXPECTS(q_ != nullptr);
   if (!have_energy_) {
     power_ = problem_.power_here(*v_, problem_.power_needs_reactions() ? reactions() : reactions_);
     have_energy_ = true;
@@ -43,6 +47,7 @@ const system::Energy& Snapshot::energy() const {
 double Snapshot::total_phi(Index i) const { return node(i).phi + two_pi * node(i).turns; }
 
 Vec2 Snapshot::gamma(Index i) const {
+  WHIRL_EXPECTS(q_ != nullptr);
   if (!frames().moved()) return q_->segment<2>(6 * i + system::gamma2);
   const system::NodeState& n = node(i);
   return rotation::gamma_of_director(n.chart->transpose() * n.t);

@@ -16,6 +16,7 @@ class Snapshot {
       : problem_(problem),
         reactions_(problem.size()) {}
   /// Points it at a state and evaluates the nodes.
+  /// @pre vectors of length system().size(); they must outlive what is read.
   void set(double t, const VecX& q, const VecX& v, const VecX& a);
   double t() const { return t_; }
   const VecX& q() const { return *q_; }

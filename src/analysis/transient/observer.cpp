@@ -1,4 +1,5 @@
 #include <analysis/transient/observer.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@ Recorder::Recorder(std::vector<Measurement> channels, RowSink sink, double t_beg
       every_(every),
       t0_(t0),
       t1_(t1) {
+  WHIRL_EXPECTS(every >= 0.0 && sink_ != nullptr);
   std::size_t n = 1;
   for (const Measurement& m : channels_)
     n += m.width();

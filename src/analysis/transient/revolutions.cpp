@@ -1,4 +1,5 @@
 #include <analysis/transient/revolutions.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +7,8 @@
 namespace whirl::analysis {
 
 Complex synchronous(const Turn& turn, std::span<const double> x, int order) {
+  WHIRL_EXPECTS(x.size() == static_cast<std::size_t>(turn.n) + 1);
+  WHIRL_EXPECTS(order >= 0);
   Complex sum = 0.0;
   for (int j = 0; j <= turn.n; ++j) {
     const double phi = two_pi * (turn.backward ? turn.n - j : j) / turn.n;
@@ -21,6 +24,7 @@ double lag_of(const Turn& turn, Complex amplitude) {
 }
 
 Range range_of(std::span<const double> x) {
+  WHIRL_EXPECTS(!x.empty());
   Range r{x[0], x[0], 0.0};
   for (std::size_t j = 0; j < x.size(); ++j) {
     r.low = std::min(r.low, x[j]);
@@ -36,6 +40,7 @@ Revolutions::Revolutions(std::vector<Point> probes, Index reference, int samples
       reference_(reference),
       sink_(std::move(sink)),
       step_angle_(two_pi / samples) {
+  WHIRL_EXPECTS(samples > 0 && sink_ != nullptr);
   turn_.n = samples;
   turn_.y.assign(probes_.size(), std::vector<double>(static_cast<std::size_t>(samples) + 1));
   turn_.z = turn_.y;

@@ -31,18 +31,21 @@ struct Turn {
 };
 
 /// Order-k amplitude of samples of a turn (see above).
+/// @pre turn.n + 1 samples, order >= 0.
 Complex synchronous(const Turn& turn, std::span<const double> x, int order);
 /// Phase lag of an order behind the keyphasor, rad, 0 to 2 pi.
 double lag_of(const Turn& turn, Complex amplitude);
 struct Range {
   double low = 0, high = 0, mean = 0;
 };
+/// @pre not empty.
 Range range_of(std::span<const double> x);
 
 /// Samples turns and hands each whole one on.
 class Revolutions final : public Observer {
  public:
   using Sink = std::function<void(const Turn&)>;
+  /// @pre samples > 0, a sink.
   Revolutions(std::vector<Point> probes, Index reference, int samples, Sink sink);
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;

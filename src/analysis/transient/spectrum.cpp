@@ -1,4 +1,5 @@
 #include <analysis/transient/spectrum.hpp>
+#include <core/contract.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +7,7 @@
 namespace whirl::analysis {
 
 void fft(std::vector<Complex>& x) {
+  WHIRL_EXPECTS(!x.empty() && (x.size() & (x.size() - 1)) == 0);
   // Cooley and Tukey, radix 2: bit reversal, then butterflies.
   const std::size_t n = x.size();
   for (std::size_t i = 1, j = 0; i < n; ++i) {
@@ -34,6 +36,7 @@ namespace {
 /// At least four samples a period of the highest frequency reported: content up to three times it
 /// does not fold into view.
 std::size_t block_length(int lines) {
+  WHIRL_EXPECTS(lines > 0);
   std::size_t n = 1;
   while (n < 4 * static_cast<std::size_t>(lines))
     n <<= 1;
@@ -54,6 +57,7 @@ Spectra::Spectra(std::vector<Point> probes, Index reference, double t_begin,
       phi_(length_),
       window_(length_),
       work_(length_) {
+  WHIRL_EXPECTS(options_.max_frequency > 0.0 && sink_ != nullptr);
   y_.assign(probes_.size(), std::vector<double>(length_));
   z_ = y_;
   for (std::size_t k = 0; k < length_; ++k)

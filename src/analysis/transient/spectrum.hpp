@@ -13,6 +13,7 @@
 namespace whirl::analysis {
 
 /// In place, length a power of two: X_k = sum_n x_n exp(-2 pi i k n / N).
+/// @pre not empty.
 void fft(std::vector<Complex>& x);
 
 struct SpectrumOptions {

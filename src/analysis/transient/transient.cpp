@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <analysis/transient/corners.hpp>
 #include <analysis/transient/momentum_route.hpp>
 #include <analysis/transient/transient.hpp>
@@ -9,8 +10,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 
 namespace whirl::analysis {
 
@@ -97,197 +100,255 @@ std::string failure(const system::SystemProblem& problem, const time::StepReport
   return text;
 }
 
+/// One transient: the integrator, its last step, and what is watched in it.
+class Run {
+ public:
+  Run(system::SystemProblem& problem, const system::State& start, const TransientOptions& options,
+      const std::vector<Observer*>& observers, const time::IntegratorState* resume)
+      : problem_(problem),
+        options_(options),
+        observers_(observers),
+        integrator_(make_started(problem, start, options, resume)),
+        step_(problem, *integrator_, [this] { stop_when_interrupted(); }),
+        corners_(problem) {
+    step_.set(integrator_->time(), integrator_->time());
+    for (Observer* o : resume ? options.new_observers : observers)
+      o->begin(step_.end());
+    for (const SpeedStop& s : options.speed_stops)
+      speed_before_.push_back(step_.end().node(s.node).spin() - s.speed);
+    // equal steps are the user's own choice, and the momentum form knows no contacts
+    land_on_corners_ =
+        corners_.any() && options.integrator.dt_fixed <= 0.0 && options.method != "momentum_rk";
+    progress_ = {integrator_->time(), t_end(), 0, 0, 0, 0};
+  }
+
+  TransientResult go() {
+    bool between_marks = false;
+    try {
+      while (!stop_ && integrator_->time() < t_end())
+        if (!make_step()) break;
+    } catch (const Interrupted&) {
+      result_.reason = StopReason::interrupted;
+      between_marks = true;
+    }
+    if (between_marks && options_.fall_back) options_.fall_back();
+    if (options_.checkpoint && !between_marks && result_.reason != StopReason::failed) {
+      const time::IntegratorState s = integrator_->save();
+      options_.checkpoint(state_now(), s);
+    }
+    result_.end = state_now();
+    result_.statistics = integrator_->statistics();
+    for (Observer* o : observers_)
+      o->end();
+    return std::move(result_);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  static std::unique_ptr<time::Integrator> make_started(system::SystemProblem& problem,
+                                                        const system::State& start,
+                                                        const TransientOptions& options,
+                                                        const time::IntegratorState* resume) {
+    problem.frames = start.frames;
+    auto integrator = options.method == "momentum_rk"
+                          ? make_momentum_integrator(problem, options.integrator)
+                          : time::make_integrator(options.method, problem, options.integrator);
+    if (resume)
+      integrator->restore(*resume);
+    else
+      integrator->start(start.t, start.q, start.v);
+    return integrator;
+  }
+
+  double t_end() const { return options_.integrator.t_end; }
+  system::State state_now() const {
+    return {integrator_->time(), integrator_->q(), integrator_->v(), integrator_->a(),
+            problem_.frames};
+  }
+
+  static double seconds_since(Clock::time_point t) {
+    return std::chrono::duration<double>(Clock::now() - t).count();
+  }
+  bool interrupted() const {
+    return options_.interrupt && options_.interrupt->load(std::memory_order_relaxed);
+  }
+  /// Seconds to the next mark, were the steps to it like those since the last one.
+  double seconds_to_mark() const {
+    const double between = static_cast<double>(std::max(options_.steps_between_marks, 1L));
+    const double made = std::fmod(static_cast<double>(integrator_->statistics().accepted), between);
+    return seconds_since(last_mark_) / std::max(made, 0.5) * (between - made);
+  }
+  void stop_when_interrupted() const {
+    if (interrupted() && seconds_since(last_mark_) > least_wait && seconds_to_mark() > longest_wait)
+      throw Interrupted();
+  }
+
+  /// Whether the step was made; else the reason is in the result.
+  bool accepted(const time::StepReport& report) {
+    if (report.ok()) return true;
+    result_.reason = StopReason::failed;
+    result_.detail = failure(problem_, report);
+    return false;
+  }
+
+  /// One step with all that watches it; false: the run ends here.
+  bool make_step() {
+    if (options_.steps_between_marks == 0 && interrupted()) {
+      result_.reason = StopReason::interrupted;
+      return false;
+    }
+    if (land_on_corners_) {
+      step_.end();
+      corners_.begin();
+    }
+    time::StepReport report = integrator_->advance();
+    if (!accepted(report)) return false;
+    step_.set(report.t0, report.t1);
+    const bool corner = land_on_corners_ && land_on_corner(report);
+    if (!accepted(report) || !land_on_stop(report)) return false;
+    for (Observer* o : observers_)
+      o->step(step_);
+    // the state after a corner stands just before it: the matrices of the other side are taken a
+    // step later
+    if (passed_) integrator_->refresh();
+    passed_ = corner;
+    if (corner) {
+      // what was smooth before says nothing about what comes
+      integrator_->restart(VecX(integrator_->q()), VecX(integrator_->v()), true);
+      step_.set(report.t1, report.t1);
+    }
+    tell_progress(report);
+    return !at_mark() || make_mark(report);
+  }
+
+  /// A step that straddles a corner is wrong before it too: made again to the passage, and if it
+  /// still passes inside, ever shorter, until it is smooth. The next one then begins closer.
+  /// Returns whether the step ends on the corner.
+  bool land_on_corner(time::StepReport& report) {
+    bool corner = false;
+    for (int again = 0; again < 60; ++again) {
+      const double passage = corners_.find(step_);
+      if (passage < 0.0) break;
+      corner = again == 0;
+      if (passage >= report.t1) break;
+      const double t = corner ? passage : report.t0 + 0.7 * (passage - report.t0);
+      report = integrator_->shorten_to(t);
+      if (!report.ok()) {
+        // as far towards it as Newton's iteration goes
+        integrator_->set_end(t);
+        report = integrator_->advance();
+        integrator_->set_end(t_end());
+        corner = false;
+        if (!report.ok()) break;
+      }
+      step_.set(report.t0, report.t1);
+    }
+    return corner;
+  }
+
+  /// First passage of a stop in the step, or infinity; what stopped is in the result.
+  double first_stop() {
+    double t_stop = infinity;
+    for (std::size_t i = 0; i < options_.speed_stops.size(); ++i) {
+      const SpeedStop& s = options_.speed_stops[i];
+      auto f = [&](const Snapshot& x) { return x.node(s.node).spin() - s.speed; };
+      const double t = crossing(step_, f, speed_before_[i]);
+      if (t < t_stop) {
+        t_stop = t;
+        result_.reason = StopReason::speed_reached;
+        result_.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", to_rpm(s.speed), t);
+      }
+    }
+    for (const AmplitudeStop& s : options_.amplitude_stops) {
+      auto f = [&](const Snapshot& x) {
+        return displacement(x, s.point).tail<2>().norm() - s.limit;
+      };
+      double within = -1.0;
+      const double t = crossing(step_, f, within);
+      if (t < t_stop) {
+        t_stop = t;
+        result_.reason = StopReason::amplitude_limit;
+        result_.detail = fmt::format("{} passes {:.4g} m at t = {:.9g} s", s.name, s.limit, t);
+      }
+    }
+    return t_stop;
+  }
+
+  /// Ends the step, and the run with it, where a stop is passed; false: it cannot be shortened.
+  bool land_on_stop(time::StepReport& report) {
+    const double t_stop = first_stop();
+    if (!(t_stop < infinity)) return true;
+    stop_ = true;
+    if (!(t_stop < report.t1 && t_stop > report.t0)) return true;
+    report = integrator_->shorten_to(t_stop);
+    if (!accepted(report)) return false;
+    step_.set(report.t0, report.t1);
+    return true;
+  }
+
+  void tell_progress(const time::StepReport& report) {
+    if (!options_.progress) return;
+    progress_.t = report.t1;
+    progress_.dt = report.t1 - report.t0;
+    ++progress_.steps;
+    progress_.newton = integrator_->statistics().newton_iterations;
+    progress_.spin = step_.end().node(options_.reference).spin();
+    options_.progress(progress_);
+  }
+
+  bool at_mark() const {
+    return options_.steps_between_marks > 0 &&
+           integrator_->statistics().accepted % options_.steps_between_marks == 0;
+  }
+  /// The matrices are made anew, and what asks for it is saved; false: interrupted.
+  bool make_mark(const time::StepReport& report) {
+    const time::IntegratorState s = integrator_->save();
+    if (interrupted() && !stop_ && report.t1 < t_end()) {
+      result_.reason = StopReason::interrupted;
+      return false;
+    }
+    if (options_.checkpoint && seconds_since(last_checkpoint_) >= options_.checkpoint_seconds) {
+      options_.checkpoint(state_now(), s);
+      last_checkpoint_ = Clock::now();
+    }
+    if (options_.keep && seconds_since(last_kept_) > keep_every) {
+      options_.keep(state_now(), s);
+      last_kept_ = Clock::now();
+    }
+    last_mark_ = Clock::now();
+    return true;
+  }
+
+  system::SystemProblem& problem_;
+  const TransientOptions& options_;
+  const std::vector<Observer*>& observers_;
+  std::unique_ptr<time::Integrator> integrator_;
+  // what the steps themselves call may not unwind: the loop looks for interruptions
+  interrupt::Shield shield_;
+  Clock::time_point last_checkpoint_ = Clock::now(), last_mark_ = last_checkpoint_,
+                    last_kept_ = last_checkpoint_;
+  StepDense step_;
+  Corners corners_;
+  std::vector<double> speed_before_;
+  bool land_on_corners_ = false;
+  bool passed_ = false;  ///< the step before ended on a corner
+  bool stop_ = false;
+  Progress progress_;
+  TransientResult result_;
+};
+
 }  // namespace
 
 TransientResult run_transient(system::SystemProblem& problem, const system::State& start,
                               const TransientOptions& options,
                               const std::vector<Observer*>& observers,
                               const time::IntegratorState* resume) {
-  TransientResult result;
+  WHIRL_EXPECTS(start.q.size() == problem.size() && start.v.size() == problem.size());
+  WHIRL_EXPECTS(std::find(observers.begin(), observers.end(), nullptr) == observers.end());
+  WHIRL_EXPECTS(options.reference >= 0 && options.reference < problem.system().nodes());
   const double cpu0 = thread_cpu_seconds();
-  problem.frames = start.frames;
-  auto integrator = options.method == "momentum_rk"
-                        ? make_momentum_integrator(problem, options.integrator)
-                        : time::make_integrator(options.method, problem, options.integrator);
-  if (resume)
-    integrator->restore(*resume);
-  else
-    integrator->start(start.t, start.q, start.v);
-  // what the steps themselves call may not unwind: this loop looks for interruptions
-  const interrupt::Shield shield;
-  using Clock = std::chrono::steady_clock;
-  const auto seconds_since = [](Clock::time_point t) {
-    return std::chrono::duration<double>(Clock::now() - t).count();
-  };
-  auto last_checkpoint = Clock::now(), last_mark = last_checkpoint, last_kept = last_checkpoint;
-  const auto interrupted = [&] {
-    return options.interrupt && options.interrupt->load(std::memory_order_relaxed);
-  };
-  // Seconds to the next mark, were the steps to it like those since the last one.
-  const auto seconds_to_mark = [&] {
-    const double between = static_cast<double>(std::max(options.steps_between_marks, 1L));
-    const double made = std::fmod(static_cast<double>(integrator->statistics().accepted), between);
-    return seconds_since(last_mark) / std::max(made, 0.5) * (between - made);
-  };
-  StepDense step(problem, *integrator, [&] {
-    if (interrupted() && seconds_since(last_mark) > least_wait && seconds_to_mark() > longest_wait)
-      throw Interrupted();
-  });
-
-  auto state_now = [&] {
-    return system::State{integrator->time(), integrator->q(), integrator->v(), integrator->a(),
-                         problem.frames};
-  };
-  step.set(integrator->time(), integrator->time());
-  for (Observer* o : resume ? options.new_observers : observers)
-    o->begin(step.end());
-
-  std::vector<double> speed_before(options.speed_stops.size());
-  for (std::size_t i = 0; i < speed_before.size(); ++i)
-    speed_before[i] =
-        step.end().node(options.speed_stops[i].node).spin() - options.speed_stops[i].speed;
-
-  const double t_end = options.integrator.t_end;
-  // equal steps are the user's own choice, and the momentum form knows no contacts
-  Corners corners(problem);
-  bool passed = false;
-  const bool land_on_corners =
-      corners.any() && options.integrator.dt_fixed <= 0.0 && options.method != "momentum_rk";
-
-  Progress progress{integrator->time(), t_end, 0, 0, 0, 0};
-  bool stop = false, between_marks = false;
-  try {
-    while (!stop && integrator->time() < t_end) {
-      if (options.steps_between_marks == 0 && interrupted()) {
-        result.reason = StopReason::interrupted;
-        break;
-      }
-      if (land_on_corners) {
-        step.end();
-        corners.begin();
-      }
-      time::StepReport report = integrator->advance();
-      if (!report.ok()) {
-        result.reason = StopReason::failed;
-        result.detail = failure(problem, report);
-        break;
-      }
-      step.set(report.t0, report.t1);
-      bool corner = false;
-      if (land_on_corners) {
-        // A step that straddles a corner is wrong before it too: made again to the passage, and if
-        // it still passes inside, ever shorter, until it is smooth. The next one then begins
-        // closer.
-        for (int again = 0; again < 60; ++again) {
-          const double passage = corners.find(step);
-          if (passage < 0.0) break;
-          corner = again == 0;
-          if (passage >= report.t1) break;
-          const double t = corner ? passage : report.t0 + 0.7 * (passage - report.t0);
-          report = integrator->shorten_to(t);
-          if (!report.ok()) {
-            // as far towards it as Newton's iteration goes
-            integrator->set_end(t);
-            report = integrator->advance();
-            integrator->set_end(t_end);
-            corner = false;
-            if (!report.ok()) break;
-          }
-          step.set(report.t0, report.t1);
-        }
-        if (!report.ok()) {
-          result.reason = StopReason::failed;
-          result.detail = failure(problem, report);
-          break;
-        }
-      }
-
-      double t_stop = infinity;
-      for (std::size_t i = 0; i < options.speed_stops.size(); ++i) {
-        const SpeedStop& s = options.speed_stops[i];
-        auto f = [&](const Snapshot& x) { return x.node(s.node).spin() - s.speed; };
-        const double t = crossing(step, f, speed_before[i]);
-        if (t < t_stop) {
-          t_stop = t;
-          result.reason = StopReason::speed_reached;
-          result.detail = fmt::format("spin of {:.6g} rpm at t = {:.9g} s", to_rpm(s.speed), t);
-        }
-      }
-      for (const AmplitudeStop& s : options.amplitude_stops) {
-        auto f = [&](const Snapshot& x) {
-          return displacement(x, s.point).tail<2>().norm() - s.limit;
-        };
-        double within = -1.0;
-        const double t = crossing(step, f, within);
-        if (t < t_stop) {
-          t_stop = t;
-          result.reason = StopReason::amplitude_limit;
-          result.detail = fmt::format("{} passes {:.4g} m at t = {:.9g} s", s.name, s.limit, t);
-        }
-      }
-      if (t_stop < infinity) {
-        stop = true;
-        if (t_stop < report.t1 && t_stop > report.t0) {
-          report = integrator->shorten_to(t_stop);
-          if (!report.ok()) {
-            result.reason = StopReason::failed;
-            result.detail = failure(problem, report);
-            break;
-          }
-          step.set(report.t0, report.t1);
-        }
-      }
-
-      for (Observer* o : observers)
-        o->step(step);
-      // the state after a corner stands just before it: the matrices of the other side are taken a
-      // step later
-      if (passed) integrator->refresh();
-      passed = corner;
-      if (corner) {
-        // what was smooth before says nothing about what comes
-        integrator->restart(VecX(integrator->q()), VecX(integrator->v()), true);
-        step.set(report.t1, report.t1);
-      }
-      if (options.progress) {
-        progress.t = report.t1;
-        progress.dt = report.t1 - report.t0;
-        ++progress.steps;
-        progress.newton = integrator->statistics().newton_iterations;
-        progress.spin = step.end().node(options.reference).spin();
-        options.progress(progress);
-      }
-      if (options.steps_between_marks > 0 &&
-          integrator->statistics().accepted % options.steps_between_marks == 0) {
-        const time::IntegratorState s = integrator->save();
-        if (interrupted() && !stop && report.t1 < t_end) {
-          result.reason = StopReason::interrupted;
-          break;
-        }
-        if (options.checkpoint && seconds_since(last_checkpoint) >= options.checkpoint_seconds) {
-          options.checkpoint(state_now(), s);
-          last_checkpoint = Clock::now();
-        }
-        if (options.keep && seconds_since(last_kept) > keep_every) {
-          options.keep(state_now(), s);
-          last_kept = Clock::now();
-        }
-        last_mark = Clock::now();
-      }
-    }
-  } catch (const Interrupted&) {
-    result.reason = StopReason::interrupted;
-    between_marks = true;
-  }
-  if (between_marks && options.fall_back) options.fall_back();
-  if (options.checkpoint && !between_marks && result.reason != StopReason::failed) {
-    const time::IntegratorState s = integrator->save();
-    options.checkpoint(state_now(), s);
-  }
-  result.end = state_now();
-  result.statistics = integrator->statistics();
-  for (Observer* o : observers)
-    o->end();
+  TransientResult result = Run(problem, start, options, observers, resume).go();
   result.seconds = thread_cpu_seconds() - cpu0;
   return result;
 }

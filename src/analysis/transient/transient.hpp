@@ -67,6 +67,9 @@ struct TransientResult {
 /// step possible) is a result, with node and time in `detail`; the observers have seen all steps
 /// before it. resume: continue from a checkpoint (`start` gives the frames); observers are those of
 /// the earlier run restored, or named in new_observers.
+/// @pre a state of the problem; no observer is null.
+/// @throws Error (N10, N11) for an integrator that does not exist or options out of range; (N20)
+/// when there is no initial acceleration.
 TransientResult run_transient(system::SystemProblem& problem, const system::State& start,
                               const TransientOptions& options,
                               const std::vector<Observer*>& observers,

@@ -141,6 +141,131 @@ Document assemble(Sources& sources, Diagnostics& diagnostics, const AssembleOpti
   return parse_with_includes(0, files);
 }
 
+namespace {
+
+/// One --set: a path through the document, and the value at its end.
+class Override {
+ public:
+  Override(Document& document, std::string argument, int source, int line, Diagnostics& diagnostics)
+      : document_(document),
+        argument_(std::move(argument)),
+        source_(source),
+        line_(line),
+        diagnostics_(diagnostics) {}
+
+  void apply() {
+    equal_ = argument_.find('=');
+    if (equal_ == std::string::npos || equal_ == 0) {
+      diagnostics_.error("E34", spot(0, argument_.size()), "a --set has the form path=value",
+                         "for example --set parameters.clearance=90um");
+      return;
+    }
+    const TextProblem bad = check_text(argument_, TextKind::argument);
+    if (!bad.ok()) {
+      diagnostics_.error("E34", spot(0, argument_.size()), bad.message);
+      return;
+    }
+    const std::size_t first = argument_.find_first_not_of(' ', equal_ + 1);
+    const std::string_view given =
+        first == std::string::npos ? std::string_view() : std::string_view(argument_).substr(first);
+    value_ = parse_set_value(given, spot(std::min(first, argument_.size()), argument_.size()));
+    Value* at = &document_.root;
+    for (std::size_t begin = 0; at && begin < equal_;) {
+      const std::size_t end = end_of_part(begin);
+      at = step(*at, begin, end);
+      begin = end + 1;
+    }
+  }
+
+ private:
+  Spot spot(std::size_t begin, std::size_t end) const {
+    return Spot{source_, line_, static_cast<int>(begin) + 1,
+                static_cast<int>(std::max<std::size_t>(end - begin, 1))};
+  }
+
+  std::size_t end_of_part(std::size_t begin) const {
+    // a name in a list may itself contain points when it is quoted
+    if (argument_[begin] == '"') return std::min(argument_.find('"', begin + 1), equal_ - 1) + 1;
+    return std::min(argument_.find('.', begin), equal_);
+  }
+
+  std::string name_of_part(std::size_t begin, std::size_t end) const {
+    std::string part = argument_.substr(begin, end - begin);
+    while (!part.empty() && part.back() == ' ')
+      part.pop_back();
+    if (part.size() >= 2 && part.front() == '"' && part.back() == '"')
+      part = part.substr(1, part.size() - 2);
+    return part;
+  }
+
+  /// Into the member that the part from begin to end names; the last one is set. Null: the end of
+  /// the path, or a mistake.
+  Value* step(Value& at, std::size_t begin, std::size_t end) {
+    const std::string part = name_of_part(begin, end);
+    if (part.empty()) {
+      diagnostics_.error("E34", spot(0, equal_), "the path has an empty part");
+      return nullptr;
+    }
+    if (at.is_array()) return into_list(at, part, begin, end);
+    if (at.is_table()) return into_table(at, part, begin, end);
+    diagnostics_.error(
+        "E34", spot(begin, end),
+        fmt::format("'{}' stands below {}, which has no members", part, name_of(at.kind)));
+    return nullptr;
+  }
+
+  Value* into_list(Value& at, const std::string& part, std::size_t begin, std::size_t end) {
+    Value* found = nullptr;
+    std::size_t index = 0;
+    const auto r = std::from_chars(part.data(), part.data() + part.size(), index);
+    const bool number = r.ec == std::errc() && r.ptr == part.data() + part.size();
+    std::vector<std::string> names;
+    for (auto& item : at.items) {
+      const Member* name = item.is_table() ? item.find("name") : nullptr;
+      if (!name || !name->value.is_text()) continue;
+      names.push_back(name->value.text);
+      if (name->value.text == part) found = &item;
+    }
+    if (!found && number && index < at.items.size()) found = &at.items[index];
+    if (!found) {
+      const auto near = nearest(part, names);
+      diagnostics_.error("E34", spot(begin, end), fmt::format("the list has no member '{}'", part),
+                         !near.empty() ? fmt::format("did you mean '{}'?", near.front())
+                         : names.empty()
+                             ? fmt::format("it has {} members, numbered from 0", at.items.size())
+                             : fmt::format("known: {}", fmt::join(names, ", ")));
+      return nullptr;
+    }
+    if (end < equal_) return found;
+    *found = value_;
+    return nullptr;
+  }
+
+  Value* into_table(Value& at, const std::string& part, std::size_t begin, std::size_t end) {
+    Member* m = at.find(part);
+    if (end < equal_) {
+      if (!m) m = &at.add(part, Value::make_table(spot(begin, end)), spot(begin, end));
+      return &m->value;
+    }
+    if (m) {
+      m->value = value_;
+      m->spot = spot(begin, end);
+    } else {
+      at.add(part, value_, spot(begin, end));
+    }
+    return nullptr;
+  }
+
+  Document& document_;
+  std::string argument_;
+  int source_, line_;
+  Diagnostics& diagnostics_;
+  std::size_t equal_ = 0;  ///< place of the '='
+  Value value_;
+};
+
+}  // namespace
+
 void apply_overrides(Document& document, const std::vector<std::string>& arguments,
                      Sources& sources, Diagnostics& diagnostics) {
   if (arguments.empty()) return;
@@ -152,93 +277,8 @@ void apply_overrides(Document& document, const std::vector<std::string>& argumen
   }
   const int source = sources.add("--set", sources[0].folder, text);
   for (std::size_t k = 0; k < arguments.size(); ++k) {
-    const std::string argument(sources.line(source, static_cast<int>(k) + 1));
-    const auto spot = [&](std::size_t begin, std::size_t end) {
-      return Spot{source, static_cast<int>(k) + 1, static_cast<int>(begin) + 1,
-                  static_cast<int>(std::max<std::size_t>(end - begin, 1))};
-    };
-    const std::size_t equal = argument.find('=');
-    if (equal == std::string::npos || equal == 0) {
-      diagnostics.error("E34", spot(0, argument.size()), "a --set has the form path=value",
-                        "for example --set parameters.clearance=90um");
-      continue;
-    }
-    const TextProblem bad = check_text(argument, TextKind::argument);
-    if (!bad.ok()) {
-      diagnostics.error("E34", spot(0, argument.size()), bad.message);
-      continue;
-    }
-    const std::size_t first = argument.find_first_not_of(' ', equal + 1);
-    Value value = parse_set_value(
-        first == std::string::npos ? std::string_view() : std::string_view(argument).substr(first),
-        spot(std::min(first, argument.size()), argument.size()));
-    Value* at = &document.root;
-    std::size_t begin = 0;
-    bool good = true;
-    while (good && begin < equal) {
-      std::size_t end = std::min(argument.find('.', begin), equal);
-      // a name in a list may itself contain points when it is quoted
-      if (argument[begin] == '"') end = std::min(argument.find('"', begin + 1), equal - 1) + 1;
-      std::string part = argument.substr(begin, end - begin);
-      while (!part.empty() && part.back() == ' ')
-        part.pop_back();
-      if (part.size() >= 2 && part.front() == '"' && part.back() == '"')
-        part = part.substr(1, part.size() - 2);
-      const bool last = end >= equal;
-      if (part.empty()) {
-        diagnostics.error("E34", spot(0, equal), "the path has an empty part");
-        good = false;
-        break;
-      }
-      if (at->is_array()) {
-        Value* found = nullptr;
-        std::size_t index = 0;
-        const auto r = std::from_chars(part.data(), part.data() + part.size(), index);
-        const bool number = r.ec == std::errc() && r.ptr == part.data() + part.size();
-        std::vector<std::string> names;
-        for (auto& item : at->items) {
-          const Member* name = item.is_table() ? item.find("name") : nullptr;
-          if (!name || !name->value.is_text()) continue;
-          names.push_back(name->value.text);
-          if (name->value.text == part) found = &item;
-        }
-        if (!found && number && index < at->items.size()) found = &at->items[index];
-        if (!found) {
-          const auto near = nearest(part, names);
-          diagnostics.error(
-              "E34", spot(begin, end), fmt::format("the list has no member '{}'", part),
-              !near.empty()   ? fmt::format("did you mean '{}'?", near.front())
-              : names.empty() ? fmt::format("it has {} members, numbered from 0", at->items.size())
-                              : fmt::format("known: {}", fmt::join(names, ", ")));
-          good = false;
-          break;
-        }
-        if (last) {
-          *found = value;
-          break;
-        }
-        at = found;
-      } else if (at->is_table()) {
-        Member* m = at->find(part);
-        if (last) {
-          if (m) {
-            m->value = value;
-            m->spot = spot(begin, end);
-          } else
-            at->add(part, value, spot(begin, end));
-          break;
-        }
-        if (!m) m = &at->add(part, Value::make_table(spot(begin, end)), spot(begin, end));
-        at = &m->value;
-      } else {
-        diagnostics.error(
-            "E34", spot(begin, end),
-            fmt::format("'{}' stands below {}, which has no members", part, name_of(at->kind)));
-        good = false;
-        break;
-      }
-      begin = end + 1;
-    }
+    const int line = static_cast<int>(k) + 1;
+    Override(document, std::string(sources.line(source, line)), source, line, diagnostics).apply();
   }
 }
 

@@ -67,148 +67,200 @@ Located check(const model::Model& m, std::size_t shaft, double s, std::string_vi
   return r;
 }
 
-}  // namespace
+/// Reads one place: what `rest_` holds is still to be read.
+class PlaceReader {
+ public:
+  PlaceReader(const model::Model& m, std::string_view given)
+      : model_(m),
+        given_(given),
+        text_(trim(given)),
+        rest_(text_) {}
 
-Located locate(const model::Model& m, std::string_view given) {
-  const std::string_view text = trim(given);
-  if (m.shafts.empty()) {
-    return fail("E18", fmt::format("\"{}\" stands on no shaft: the deck has none", text),
-                "add [shaft]");
+  Located read() {
+    take_shaft();
+    if (is_distance())
+      if (std::optional<Located> r = read_distance()) return std::move(*r);
+    const std::vector<Named> names = names_of(model_, only_);
+    std::size_t same = 0;  // names as long on other shafts
+    const Named* best = longest_name(names, same);
+    if (!best) return unknown_name(names);
+    if (same > 0)
+      return fail("E18", fmt::format("'{}' stands on more than one shaft", best->name),
+                  fmt::format("write \"{}/{}\"", model_.shafts[best->shaft].name, rest_));
+    double s = best->start;
+    rest_ = rest_.substr(best->name.size());
+    if (rest_.starts_with(':')) {
+      rest_.remove_prefix(1);
+      if (std::optional<Located> r = read_word(*best, s)) return std::move(*r);
+    }
+    if (std::optional<Located> r = read_shift(s)) return std::move(*r);
+    return check(model_, best->shaft, s, text_);
   }
-  if (text.empty())
-    return fail("E18", "the place is empty",
-                "write \"section:mid\" or a distance such as \"1.14 m\"");
-  std::string_view rest = text;
-  std::optional<std::size_t> only;
-  // shaft/...
-  for (std::size_t k = 0; k < m.shafts.size(); ++k) {
-    const std::string& n = m.shafts[k].name;
-    if (!n.empty() && rest.size() > n.size() && rest.starts_with(n) && rest[n.size()] == '/') {
-      only = k;
-      rest = trim(rest.substr(n.size() + 1));
-      break;
+
+ private:
+  /// Where a part of the text begins.
+  std::size_t offset(std::string_view part) const {
+    return static_cast<std::size_t>(part.data() - given_.data());
+  }
+
+  /// shaft/...
+  void take_shaft() {
+    for (std::size_t k = 0; k < model_.shafts.size(); ++k) {
+      const std::string& n = model_.shafts[k].name;
+      if (!n.empty() && rest_.size() > n.size() && rest_.starts_with(n) && rest_[n.size()] == '/') {
+        only_ = k;
+        rest_ = trim(rest_.substr(n.size() + 1));
+        return;
+      }
     }
   }
-  // a distance
-  if (!rest.empty() && (std::isdigit(static_cast<unsigned char>(rest.front())) ||
-                        rest.front() == '.' || rest.front() == '-' || rest.front() == '(')) {
-    const auto c = units::convert(rest, "m");
-    const auto names = names_of(m, only);
+
+  bool is_distance() const {
+    return !rest_.empty() && (std::isdigit(static_cast<unsigned char>(rest_.front())) ||
+                              rest_.front() == '.' || rest_.front() == '-' || rest_.front() == '(');
+  }
+
+  /// Nothing where it is a name after all.
+  std::optional<Located> read_distance() {
+    const auto c = units::convert(rest_, "m");
+    const auto names = names_of(model_, only_);
     const bool is_name = std::any_of(names.begin(), names.end(),
-                                     [&](const Named& n) { return rest.starts_with(n.name); });
-    if (!c.problem || !is_name) {
-      if (c.problem)
-        return fail(c.problem->code, c.problem->message, c.problem->hint,
-                    static_cast<std::size_t>(rest.data() - given.data()) + c.problem->offset,
-                    c.problem->length);
-      if (!only && m.shafts.size() > 1)
-        return fail("E18", fmt::format("\"{}\" does not say on which shaft", text),
-                    fmt::format("write \"{}/{}\"", m.shafts.front().name, rest));
-      return check(m, only.value_or(0), c.value, text);
-    }
+                                     [&](const Named& n) { return rest_.starts_with(n.name); });
+    if (c.problem && is_name) return std::nullopt;
+    if (c.problem)
+      return fail(c.problem->code, c.problem->message, c.problem->hint,
+                  offset(rest_) + c.problem->offset, c.problem->length);
+    if (!only_ && model_.shafts.size() > 1)
+      return fail("E18", fmt::format("\"{}\" does not say on which shaft", text_),
+                  fmt::format("write \"{}/{}\"", model_.shafts.front().name, rest_));
+    return check(model_, only_.value_or(0), c.value, text_);
   }
-  // the longest name the text begins with, followed by nothing, ':', '+', '-' or a blank
-  const auto names = names_of(m, only);
-  const Named* best = nullptr;
-  std::size_t same = 0;
-  for (const auto& n : names) {
-    if (!rest.starts_with(n.name)) continue;
-    const char next = rest.size() > n.name.size() ? rest[n.name.size()] : '\0';
-    if (next != '\0' && next != ':' && next != '+' && next != '-' && next != ' ') continue;
-    if (best && n.name.size() == best->name.size() && n.rank == best->rank &&
-        n.shaft != best->shaft) {
-      ++same;
-      continue;
+
+  /// The longest name the text begins with, followed by nothing, ':', '+', '-' or a blank.
+  const Named* longest_name(const std::vector<Named>& names, std::size_t& same) const {
+    const Named* best = nullptr;
+    for (const auto& n : names) {
+      if (!rest_.starts_with(n.name)) continue;
+      const char next = rest_.size() > n.name.size() ? rest_[n.name.size()] : '\0';
+      if (next != '\0' && next != ':' && next != '+' && next != '-' && next != ' ') continue;
+      if (best && n.name.size() == best->name.size() && n.rank == best->rank &&
+          n.shaft != best->shaft) {
+        ++same;
+        continue;
+      }
+      if (!best || n.name.size() > best->name.size() ||
+          (n.name.size() == best->name.size() && n.rank < best->rank)) {
+        best = &n;
+        same = 0;
+      }
     }
-    if (!best || n.name.size() > best->name.size() ||
-        (n.name.size() == best->name.size() && n.rank < best->rank)) {
-      best = &n;
-      same = 0;
-    }
+    return best;
   }
-  if (!best) {
-    const std::size_t stop = std::min(rest.find_first_of(":+"), rest.size());
-    const std::string word(trim(rest.substr(0, stop)));
+
+  Located unknown_name(const std::vector<Named>& names) const {
+    const std::size_t stop = std::min(rest_.find_first_of(":+"), rest_.size());
+    const std::string word(trim(rest_.substr(0, stop)));
+    if (const std::size_t slash = word.find('/'); slash != std::string::npos)
+      return unknown_shaft(word.substr(0, slash));
     std::vector<std::string> all;
     for (const auto& n : names)
       all.emplace_back(n.name);
-    if (const std::size_t slash = word.find('/'); slash != std::string::npos) {
-      std::vector<std::string> shafts;
-      for (const auto& x : m.shafts)
-        shafts.push_back(x.name);
-      const std::string shaft = word.substr(0, slash);
-      const auto near_shaft = nearest(shaft, shafts);
-      return fail("E18", fmt::format("there is no shaft '{}'", shaft),
-                  near_shaft.empty() ? fmt::format("the shafts are: {}", fmt::join(shafts, ", "))
-                                     : fmt::format("did you mean '{}'?", near_shaft.front()),
-                  static_cast<std::size_t>(rest.data() - given.data()), shaft.size());
-    }
     const auto near = nearest(word, all);
     std::string known;
     for (std::size_t i = 0; i < all.size() && i < 12; ++i)
       known += (i ? ", " : "") + all[i];
     return fail("E18",
                 fmt::format("there is no section, disk or bearing '{}'{}", word,
-                            only ? " on shaft '" + m.shafts[*only].name + "'" : ""),
+                            only_ ? " on shaft '" + model_.shafts[*only_].name + "'" : ""),
                 !near.empty() ? fmt::format("did you mean '{}'?", near.front())
                 : all.empty() ? "the shaft has no named sections"
                               : fmt::format("known: {}{}", known, all.size() > 12 ? ", ..." : ""),
-                static_cast<std::size_t>(rest.data() - given.data()), word.size());
+                offset(rest_), word.size());
   }
-  if (same > 0)
-    return fail("E18", fmt::format("'{}' stands on more than one shaft", best->name),
-                fmt::format("write \"{}/{}\"", m.shafts[best->shaft].name, rest));
-  double s = best->start;
-  rest = rest.substr(best->name.size());
-  if (rest.starts_with(':')) {
-    rest.remove_prefix(1);
-    const std::size_t stop = std::min(rest.find_first_of("+- "), rest.size());
-    const std::string_view word = rest.substr(0, stop);
-    if (word == "start")
-      s = best->start;
-    else if (word == "mid")
-      s = 0.5 * (best->start + best->end);
-    else if (word == "end")
-      s = best->end;
-    else if (word == "support" && best->rank == 2) {
-      const auto bearing = std::find_if(m.bearings.begin(), m.bearings.end(),
-                                        [&](const auto& b) { return b.name == best->name; });
-      const std::size_t k = static_cast<std::size_t>(bearing - m.bearings.begin());
-      if (bearing == m.bearings.end() ||
-          model::traits_of(bearing->law).acts == model::Acts::as_constraint ||
-          (!bearing->pedestal && m.foundation_of(k) < 0))
-        return fail("E18", fmt::format("'{}' has no support that moves", best->name),
-                    "give the bearing support = { mass = ..., kyy = ..., kzz = ... }",
-                    static_cast<std::size_t>(word.data() - given.data()), word.size());
-      Located r = check(m, best->shaft, s, text);
-      if (r.at) r.at->housing = static_cast<int>(k);
-      return r;
+
+  Located unknown_shaft(const std::string& shaft) const {
+    std::vector<std::string> shafts;
+    for (const auto& x : model_.shafts)
+      shafts.push_back(x.name);
+    const auto near = nearest(shaft, shafts);
+    return fail("E18", fmt::format("there is no shaft '{}'", shaft),
+                near.empty() ? fmt::format("the shafts are: {}", fmt::join(shafts, ", "))
+                             : fmt::format("did you mean '{}'?", near.front()),
+                offset(rest_), shaft.size());
+  }
+
+  /// :start, :mid or :end; :support and mistakes end the reading.
+  std::optional<Located> read_word(const Named& named, double& s) {
+    const std::size_t stop = std::min(rest_.find_first_of("+- "), rest_.size());
+    const std::string_view word = rest_.substr(0, stop);
+    if (word == "start") {
+      s = named.start;
+    } else if (word == "mid") {
+      s = 0.5 * (named.start + named.end);
+    } else if (word == "end") {
+      s = named.end;
+    } else if (word == "support" && named.rank == 2) {
+      return support_of(named, s, word);
     } else {
       const auto near = nearest(word, {"start", "mid", "end"});
       return fail("E18", fmt::format("':{}' is not a place in a section", word),
                   near.empty()
                       ? "it is :start, :mid or :end"
                       : fmt::format("did you mean ':{}'? It is :start, :mid or :end", near.front()),
-                  static_cast<std::size_t>(word.data() - given.data()), word.size());
+                  offset(word), word.size());
     }
-    rest = rest.substr(stop);
+    rest_ = rest_.substr(stop);
+    return std::nullopt;
   }
-  rest = trim(rest);
-  if (!rest.empty()) {
-    const char sign = rest.front();
+
+  Located support_of(const Named& named, double s, std::string_view word) const {
+    const auto bearing = std::find_if(model_.bearings.begin(), model_.bearings.end(),
+                                      [&](const auto& b) { return b.name == named.name; });
+    const std::size_t k = static_cast<std::size_t>(bearing - model_.bearings.begin());
+    if (bearing == model_.bearings.end() ||
+        model::traits_of(bearing->law).acts == model::Acts::as_constraint ||
+        (!bearing->pedestal && model_.foundation_of(k) < 0))
+      return fail("E18", fmt::format("'{}' has no support that moves", named.name),
+                  "give the bearing support = { mass = ..., kyy = ..., kzz = ... }", offset(word),
+                  word.size());
+    Located r = check(model_, named.shaft, s, text_);
+    if (r.at) r.at->housing = static_cast<int>(k);
+    return r;
+  }
+
+  /// + or - a length, added to s.
+  std::optional<Located> read_shift(double& s) {
+    rest_ = trim(rest_);
+    if (rest_.empty()) return std::nullopt;
+    const char sign = rest_.front();
     if (sign != '+' && sign != '-')
-      return fail("E18", fmt::format("\"{}\" cannot be read as a place", text),
-                  "write \"section:mid + 20 mm\"",
-                  static_cast<std::size_t>(rest.data() - given.data()), rest.size());
-    const std::string_view number = trim(rest.substr(1));
+      return fail("E18", fmt::format("\"{}\" cannot be read as a place", text_),
+                  "write \"section:mid + 20 mm\"", offset(rest_), rest_.size());
+    const std::string_view number = trim(rest_.substr(1));
     const auto c = units::convert(number, "m");
     if (c.problem)
       return fail(c.problem->code, c.problem->message, c.problem->hint,
-                  static_cast<std::size_t>(number.data() - given.data()) + c.problem->offset,
-                  c.problem->length);
+                  offset(number) + c.problem->offset, c.problem->length);
     s += sign == '+' ? c.value : -c.value;
+    return std::nullopt;
   }
-  return check(m, best->shaft, s, text);
+
+  const model::Model& model_;
+  std::string_view given_, text_, rest_;
+  std::optional<std::size_t> only_;  ///< the shaft the text names
+};
+
+}  // namespace
+
+Located locate(const model::Model& m, std::string_view given) {
+  const std::string_view text = trim(given);
+  if (m.shafts.empty())
+    return fail("E18", fmt::format("\"{}\" stands on no shaft: the deck has none", text),
+                "add [shaft]");
+  if (text.empty())
+    return fail("E18", "the place is empty",
+                "write \"section:mid\" or a distance such as \"1.14 m\"");
+  return PlaceReader(m, given).read();
 }
 
 }  // namespace whirl::deck

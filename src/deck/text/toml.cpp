@@ -199,6 +199,120 @@ std::pair<std::string, std::string> explain_syntax(const std::string& descriptio
   return {fmt::format("not valid TOML ({})", lower_first(text)), ""};
 }
 
+/// A line of a deck that is no TOML: says what is wrong with it, and what may stand in its place so
+/// that the rest can be read.
+class LineMender {
+ public:
+  LineMender(const toml::parse_error& e, Spot at, std::string line, Diagnostics& diagnostics)
+      : at_(at),
+        line_(std::move(line)),
+        bare_(find_bare(line_)),
+        value_(value_of_line(line_)),
+        description_(e.description()),
+        diagnostics_(diagnostics),
+        replacement_(line_) {}
+
+  bool is_bare() const { return bare_.kind != Piece::none; }
+  /// Reports the mistake. False: nothing can stand in its place.
+  bool mend() {
+    if (is_bare()) return mend_bare();
+    if (says_redefined() && value_ != std::string::npos) return drop_second_key();
+    if (says_redefined() && first() != std::string::npos && line_[first()] == '[')
+      say_second_table();
+    else
+      say_syntax();
+    return replace_value();
+  }
+  /// A whole line is left out, and keys of it with it.
+  bool damaged() const { return damaged_; }
+  /// What stands for the line; the control character is written as an escape, since TOML forbids it
+  /// in the text.
+  std::string replacement() const {
+    std::string out = replacement_;
+    if (const auto k = out.find('\x01'); k != std::string::npos) out.replace(k, 1, "\\u0001");
+    return out;
+  }
+
+ private:
+  bool says_redefined() const { return description_.find("redefine") != std::string::npos; }
+  std::size_t first() const { return line_.find_first_not_of(" \t"); }
+
+  /// A value without quotes.
+  bool mend_bare() {
+    const std::string_view piece =
+        std::string_view(line_).substr(bare_.begin, bare_.end - bare_.begin);
+    at_.column = characters(std::string_view(line_).substr(0, bare_.begin)) + 1;
+    at_.length = characters(piece);
+    std::string quoted(piece);
+    if (bare_.kind == Piece::quantity) {
+      diagnostics_.error("E11", at_, fmt::format("the quantity {} is not in quotes", piece),
+                         fmt::format("write \"{}\"", piece));
+    } else {
+      const std::string point = with_point(piece);
+      const bool unit = point.find_first_not_of("+-.0123456789eE") != std::string::npos;
+      diagnostics_.error("E12", at_, fmt::format("{} has a comma inside a number", piece),
+                         fmt::format("write {}{}{} with a decimal point and no thousands separator",
+                                     unit ? "\"" : "", point, unit ? "\"" : ""));
+      quoted = std::string(bad_text);
+    }
+    replacement_ = line_.substr(0, bare_.begin) + '"' + quoted + '"' + line_.substr(bare_.end);
+    return true;
+  }
+
+  bool drop_second_key() {
+    const std::size_t k = first();
+    const std::string key = line_.substr(k, line_.find_first_of(" \t=", k) - k);
+    at_.column = static_cast<int>(k) + 1;
+    at_.length = static_cast<int>(key.size());
+    diagnostics_.error("E29", at_, fmt::format("'{}' is set twice in this table", key),
+                       "keep one of the two");
+    replacement_.clear();
+    return true;
+  }
+
+  void say_second_table() {
+    const std::size_t open = line_.find('['), close = line_.find_last_of(']');
+    const std::size_t length = close == std::string::npos ? 1 : close + 1 - open;
+    at_.column = static_cast<int>(open) + 1;
+    at_.length = static_cast<int>(std::max<std::size_t>(1, length));
+    diagnostics_.error("E29", at_,
+                       fmt::format("the table {} is given twice",
+                                   line_.substr(open, static_cast<std::size_t>(at_.length))),
+                       "join the two, or write [[...]] for a list of tables");
+  }
+
+  void say_syntax() {
+    const auto [message, hint] = explain_syntax(description_, line_);
+    diagnostics_.error("E01", at_, message, hint);
+  }
+
+  /// The value, or the line where there is none.
+  bool replace_value() {
+    if (value_ != std::string::npos && line_.find("\"\"\"") == std::string::npos) {
+      const std::size_t last = line_.find_last_not_of(" \t\r");
+      const bool continues = last != std::string::npos &&
+                             (line_[last] == '[' || line_[last] == '{' || line_[last] == ',');
+      replacement_ = line_.substr(0, value_) + " \"" + std::string(bad_text) + '"';
+      return !continues;  // a list over several lines: its end cannot be found
+    }
+    const bool header = first() != std::string::npos && line_[first()] == '[' &&
+                        value_ == std::string::npos && line_.find('=') == std::string::npos &&
+                        line_.find(',') == std::string::npos;
+    replacement_.clear();
+    damaged_ = true;
+    return !header && at_.line >= 1;  // the keys after it would land in another table
+  }
+
+  Spot at_;
+  std::string line_;
+  Piece bare_;
+  std::size_t value_;
+  std::string description_;
+  Diagnostics& diagnostics_;
+  std::string replacement_;
+  bool damaged_ = false;
+};
+
 }  // namespace
 
 Document parse_toml(const Sources& sources, int source, Diagnostics& diagnostics) {
@@ -212,93 +326,23 @@ Document parse_toml(const Sources& sources, int source, Diagnostics& diagnostics
       return doc;
     }
     const auto& e = result.error();
-    Spot at = spot_of(e.source(), source);
+    const Spot at = spot_of(e.source(), source);
     const auto number = static_cast<std::size_t>(std::max(at.line, 1));
     std::size_t begin = 0;
     for (std::size_t k = 1; k < number && begin < text.size(); ++k)
       begin = std::min(text.find('\n', begin), text.size() - 1) + 1;
     std::size_t end = std::min(text.find('\n', begin), text.size());
     if (end > begin && text[end - 1] == '\r') --end;
-    const std::string line = text.substr(begin, end - begin);
 
-    const Piece bare = find_bare(line);
-    const std::size_t value = value_of_line(line);
-    const std::string description(e.description());
-    const bool again = !mended.insert(number).second && bare.kind == Piece::none;
-    std::string replacement = line;
-    bool mendable = !again && mistakes < max_mistakes;
-    if (bare.kind != Piece::none) {
-      const std::string_view piece =
-          std::string_view(line).substr(bare.begin, bare.end - bare.begin);
-      at.column = characters(std::string_view(line).substr(0, bare.begin)) + 1;
-      at.length = characters(piece);
-      if (bare.kind == Piece::quantity) {
-        diagnostics.error("E11", at, fmt::format("the quantity {} is not in quotes", piece),
-                          fmt::format("write \"{}\"", piece));
-        replacement =
-            line.substr(0, bare.begin) + '"' + std::string(piece) + '"' + line.substr(bare.end);
-      } else {
-        const std::string point = with_point(piece);
-        const bool unit = point.find_first_not_of("+-.0123456789eE") != std::string::npos;
-        diagnostics.error(
-            "E12", at, fmt::format("{} has a comma inside a number", piece),
-            fmt::format("write {}{}{} with a decimal point and no thousands separator",
-                        unit ? "\"" : "", point, unit ? "\"" : ""));
-        replacement =
-            line.substr(0, bare.begin) + '"' + std::string(bad_text) + '"' + line.substr(bare.end);
-      }
-    } else if (description.find("redefine") != std::string::npos && value != std::string::npos) {
-      const std::size_t k = line.find_first_not_of(" \t");
-      const std::string key = line.substr(k, line.find_first_of(" \t=", k) - k);
-      at.column = static_cast<int>(k) + 1;
-      at.length = static_cast<int>(key.size());
-      diagnostics.error("E29", at, fmt::format("'{}' is set twice in this table", key),
-                        "keep one of the two");
-      replacement.clear();
-    } else {
-      const bool redefined = description.find("redefine") != std::string::npos &&
-                             line.find_first_not_of(" \t") != std::string::npos &&
-                             line[line.find_first_not_of(" \t")] == '[';
-      if (redefined) {
-        at.column = static_cast<int>(line.find('[')) + 1;
-        at.length = static_cast<int>(
-            std::max<std::size_t>(1, line.find_last_of(']') == std::string::npos
-                                         ? 1
-                                         : line.find_last_of(']') + 1 - line.find('[')));
-        diagnostics.error(
-            "E29", at,
-            fmt::format("the table {} is given twice",
-                        line.substr(line.find('['), static_cast<std::size_t>(at.length))),
-            "join the two, or write [[...]] for a list of tables");
-      } else {
-        const auto [message, hint] = explain_syntax(description, line);
-        diagnostics.error("E01", at, message, hint);
-      }
-      const std::size_t first = line.find_first_not_of(" \t");
-      const bool header = first != std::string::npos && line[first] == '[' &&
-                          value == std::string::npos && line.find('=') == std::string::npos &&
-                          line.find(',') == std::string::npos;
-      if (value != std::string::npos && line.find("\"\"\"") == std::string::npos) {
-        const std::size_t open = line.find_last_not_of(" \t\r");
-        const bool continues = open != std::string::npos &&
-                               (line[open] == '[' || line[open] == '{' || line[open] == ',');
-        if (continues) mendable = false;  // a list over several lines: its end cannot be found
-        replacement = line.substr(0, value) + " \"" + std::string(bad_text) + '"';
-      } else {
-        if (header || at.line < 1)
-          mendable = false;  // the keys after it would land in another table
-        replacement.clear();
-        doc.damaged = true;
-      }
-    }
+    LineMender mender(e, at, text.substr(begin, end - begin), diagnostics);
+    const bool again = !mended.insert(number).second && !mender.is_bare();
+    const bool mendable = mender.mend() && !again && mistakes < max_mistakes;
+    doc.damaged = doc.damaged || mender.damaged();
     if (!mendable) {
       doc.complete = false;
       return doc;
     }
-    // the control character is written as an escape, since TOML forbids it in the text
-    if (const auto k = replacement.find('\x01'); k != std::string::npos)
-      replacement.replace(k, 1, "\\u0001");
-    text.replace(begin, end - begin, replacement);
+    text.replace(begin, end - begin, mender.replacement());
   }
 }
 

@@ -1,0 +1,39 @@
+// The parts check_model() is made of, by subject. Internal to src/deck.
+#pragma once
+#include <deck/validate.hpp>
+
+#include <optional>
+#include <utility>
+
+namespace whirl::deck {
+
+using Problems = std::vector<WholeModelProblem>;
+
+/// Appends a problem.
+void report(Problems& p, const char* code, std::string message, std::string hint,
+            const Where& where, Diagnostic::Severity severity = Diagnostic::Severity::error);
+
+// validate_restraint.cpp: what holds the shafts
+void check_restraint(const model::Model& m, Problems& out);
+void check_preloads(const model::Model& m, Problems& out);
+
+// validate_speeds.cpp: speeds and frequencies the steps go through
+/// Speeds a step goes through: least and largest of the reference shaft, rad/s, or nothing.
+std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const model::Step& s,
+                                                   std::size_t shaft);
+void check_tables(const model::Model& m, Problems& out);
+void check_drives(const model::Model& m, Problems& out);
+/// A transient begins at the speed its drives prescribe.
+void check_start_speeds(const model::Model& m, Problems& out);
+/// Gears and couplings tie the speeds of two shafts together.
+void check_speeds_of_pairs(const model::Model& m, Problems& out);
+
+// validate_steps.cpp: what a step can be asked for
+void check_linear(const model::Model& m, Problems& out);
+void check_maps(const model::Model& m, Problems& out);
+/// A prescribed angle is held in small motions: the shaft is clamped there.
+void check_clamps(const model::Model& m, Problems& out);
+/// Steps linearised about the rotor as drawn.
+void check_undeformed(const model::Model& m, Problems& out);
+
+}  // namespace whirl::deck

@@ -1,0 +1,259 @@
+// The speeds and frequencies that the steps of a deck go through, and what they must agree with.
+#include <deck/validate_parts.hpp>
+
+#include <core/units.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::deck {
+
+namespace {
+
+/// Prescribed spin of a shaft in a step (null: none).
+const model::PrescribedSpin* prescribed(const model::Model& m, std::size_t shaft,
+                                        const model::Step* s) {
+  for (const auto& d : m.drives)
+    if (d.at.shaft == shaft && (d.step.empty() || (s && d.step == s->name)))
+      if (const auto* p = std::get_if<model::PrescribedSpin>(&d.law); p && p->angle) return p;
+  return nullptr;
+}
+
+/// Spin of a shaft, rad/s, where a step without a state to start from begins. own: speed of the
+/// reference the step gives.
+double spin_at_start(const model::Model& m, const model::Step& s, std::size_t shaft,
+                     std::optional<double> own) {
+  if (!m.shafts[shaft].rotating) return 0.0;
+  if (own) return *own * m.shafts[shaft].speed_ratio;
+  const auto* p = prescribed(m, shaft, &s);
+  return p ? p->angle->at(0.0).df : m.shafts[shaft].spin0;
+}
+
+}  // namespace
+
+/// Speeds a step goes through: least and largest of the reference shaft, or nothing.
+std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const model::Step& s,
+                                                   std::size_t shaft) {
+  const double ratio = m.shafts[shaft].speed_ratio;
+  const auto range = [&](const model::SpeedRange& r) {
+    const double a = r.values.empty() ? r.start : r.values.front(),
+                 b = r.values.empty() ? r.stop : r.values.back();
+    return std::pair(std::min(a * ratio, b * ratio), std::max(a * ratio, b * ratio));
+  };
+  if (const auto* x = std::get_if<model::StaticStep>(&s.law)) {
+    if (x->speeds) return range(*x->speeds);
+    if (!s.from.empty() && !x->own_speed()) return std::nullopt;  // that of the step it starts from
+    const double spin = spin_at_start(m, s, shaft, x->own_speed());
+    return std::pair(spin, spin);
+  }
+  if (const auto* x = std::get_if<model::ModalStep>(&s.law))
+    return std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::CampbellStep>(&s.law)) return range(x->speed);
+  if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) return range(x->speed);
+  if (const auto* x = std::get_if<model::StabilityStep>(&s.law)) return range(x->speed);
+  if (const auto* x = std::get_if<model::HarmonicStep>(&s.law))
+    return x->speeds ? range(*x->speeds) : std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::BucklingStep>(&s.law))
+    return std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {
+    for (const auto& d : m.drives) {
+      const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
+      if (!p || !p->angle || d.at.shaft != shaft || (!d.step.empty() && d.step != s.name)) continue;
+      // a law is smooth between its breakpoints; 1000 samples find its extremes well enough for a
+      // check
+      double low = infinity, high = -infinity;
+      std::vector<double> t = p->angle->breakpoints();
+      for (int i = 0; i <= 1000; ++i)
+        t.push_back(x->duration * i / 1000);
+      for (double ti : t) {
+        if (ti < 0 || ti > x->duration) continue;
+        const double w = p->angle->at(ti).df;
+        low = std::min(low, w);
+        high = std::max(high, w);
+      }
+      return std::pair(low, high);
+    }
+    // a free spin is known at its start only
+    const double start = spin_at_start(m, s, shaft, x->own_speed());
+    if (s.from.empty() && x->previous.empty()) return std::pair(start, start);
+  }
+  return {};  // critical speeds look inside the table only
+}
+
+namespace {
+
+std::string in_hertz(double w) { return fmt::format("{:.6g} Hz", to_hz(w)); }
+
+/// Frequencies of excitation of a step, rad/s: least and largest, or nothing.
+std::optional<std::pair<double, double>> frequencies_of(const model::Model& m,
+                                                        const model::Step& s) {
+  const auto speeds = [](const model::SpeedRange& r, double order) {
+    const double a = order * std::abs(r.values.empty() ? r.start : r.values.front()),
+                 b = order * std::abs(r.values.empty() ? r.stop : r.values.back());
+    return std::pair(std::min(a, b), std::max(a, b));
+  };
+  if (const auto* x = std::get_if<model::UnbalanceStep>(&s.law)) {
+    std::pair<double, double> all{infinity, 0.0};  // of all shafts that turn
+    for (const auto& shaft : m.shafts) {
+      if (!shaft.rotating || shaft.speed_ratio == 0) continue;
+      const auto own = speeds(x->speed, std::abs(shaft.speed_ratio));
+      if (own.first > 0 || own.second > 0)
+        all = {std::min(all.first, own.first), std::max(all.second, own.second)};
+    }
+    return all.second > 0 ? std::optional(all) : std::nullopt;
+  }
+  if (const auto* x = std::get_if<model::HarmonicStep>(&s.law)) {
+    if (x->speeds) return speeds(*x->speeds, x->order);
+    if (!x->frequency) return std::nullopt;
+    const auto& f = *x->frequency;
+    return f.values.empty() ? std::pair(f.start, f.stop)
+                            : std::pair(f.values.front(), f.values.back());
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void check_tables(const model::Model& m, Problems& out) {
+  for (const auto& b : m.bearings) {
+    const auto* table = std::get_if<model::TableBearing>(&b.law);
+    if (!table || table->speed.empty()) continue;
+    for (const auto& s : m.steps)
+      if (!table->frequency.empty() && std::holds_alternative<model::TransientStep>(s.law))
+        report(
+            out, "W03",
+            fmt::format("the table of bearing '{}' depends on frequency: step '{}' is a motion in "
+                        "time and takes its values at the frequency of the spin",
+                        b.name, s.name),
+            "true for synchronous motion; a motion at another frequency (subsynchronous whirl) "
+            "sees other coefficients",
+            b.where, Diagnostic::Severity::warning);
+    if (table->extrapolate_hold) continue;
+    for (const auto& s : m.steps) {
+      if (const auto w = frequencies_of(m, s); w && !table->frequency.empty()) {
+        const double least = table->frequency.front(), most = table->frequency.back();
+        if (w->first < least - 1e-9 * most || w->second > most + 1e-9 * most)
+          report(out, "E22",
+                 fmt::format(
+                     "the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}",
+                     b.name, in_hertz(least), in_hertz(most), s.name, in_hertz(w->first),
+                     in_hertz(w->second)),
+                 "extend the table, narrow the step, or write extrapolate = \"hold\"", b.where);
+      }
+      const auto range = speeds_of(m, s, b.at.shaft);
+      if (!range) continue;
+      // rounding of rpm to rad/s and back
+      const double slack =
+          1e-9 * std::max(std::abs(table->speed.front()), std::abs(table->speed.back()));
+      if (range->first < table->speed.front() - slack ||
+          range->second > table->speed.back() + slack)
+        report(out, "E22",
+               fmt::format(
+                   "the table of bearing '{}' covers {} to {}, but step '{}' goes from {} to {}",
+                   b.name, units::display(table->speed.front(), "rpm"),
+                   units::display(table->speed.back(), "rpm"), s.name,
+                   units::display(range->first, "rpm"), units::display(range->second, "rpm")),
+               "extend the table, narrow the step, or write extrapolate = \"hold\"", b.where);
+    }
+  }
+}
+
+void check_drives(const model::Model& m, Problems& out) {
+  for (std::size_t i = 0; i < m.drives.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto &a = m.drives[j], &b = m.drives[i];
+      const bool both = std::holds_alternative<model::PrescribedSpin>(a.law) &&
+                        std::holds_alternative<model::PrescribedSpin>(b.law);
+      if (both && a.at.shaft == b.at.shaft && a.at.s == b.at.s &&
+          (a.step.empty() || b.step.empty() || a.step == b.step))
+        report(out, "E26",
+               fmt::format("drives '{}' and '{}' both prescribe the spin of one station", a.name,
+                           b.name),
+               "keep one of the two, or give them different steps", b.where);
+    }
+}
+
+/// A transient begins at the speed its drives prescribe: another one given for it contradicts.
+/// (Where it goes on from another step the run says what jumps.)
+void check_start_speeds(const model::Model& m, Problems& out) {
+  for (const auto& s : m.steps) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    if (!t || !t->own_speed() || !s.from.empty() || !t->previous.empty()) continue;
+    for (const auto& d : m.drives) {
+      const auto* p = std::get_if<model::PrescribedSpin>(&d.law);
+      if (!p || !p->angle || (!d.step.empty() && d.step != s.name) ||
+          !m.shafts[d.at.shaft].rotating)
+        continue;
+      const double driven = p->angle->at(0.0).df,
+                   wanted = *t->own_speed() * m.shafts[d.at.shaft].speed_ratio;
+      if (std::abs(driven - wanted) <= 1e-6 * std::max(std::abs(driven), std::abs(wanted)))
+        continue;
+      report(out, "E26",
+             fmt::format("step '{}' begins at {}, but drive '{}' prescribes {} at time 0", s.name,
+                         units::display(wanted, "rpm"), d.name, units::display(driven, "rpm")),
+             "leave initial_speed out, or let the drive's law begin at it", d.where);
+    }
+  }
+}
+
+/// Gears and couplings tie the speeds of two shafts together.
+void check_speeds_of_pairs(const model::Model& m, Problems& out) {
+  for (const auto& b : m.bearings) {
+    const std::optional<model::ShaftPair> pair = *model::traits_of(b.law).pair;
+    if (!pair || !b.to) continue;
+    const auto &here = m.shafts[b.at.shaft], &there = m.shafts[b.to->shaft];
+    const double ratio = pair->speed_ratio;
+    const auto wrong = [ratio](double a, double c) {
+      return std::abs(c - ratio * a) > 1e-6 * std::max(std::abs(c), std::abs(ratio * a));
+    };
+    const std::string ties =
+        fmt::format("{} '{}'{}{} turns shaft '{}' at {}the speed of '{}'", pair->noun, b.name,
+                    pair->details.empty() ? "" : " ", pair->details, there.name,
+                    ratio == 1 ? std::string() : fmt::format("{:.6g} times ", ratio), here.name);
+    if (!here.rotating || !there.rotating) {
+      report(out, "E37",
+             fmt::format("{} '{}' turns with its shafts, but shaft '{}' does not rotate",
+                         pair->noun, b.name, here.rotating ? there.name : here.name),
+             "rotating = true for that shaft, or a bearing of type \"linear\" between the two",
+             b.where);
+      continue;
+    }
+    if (wrong(here.speed_ratio, there.speed_ratio))
+      report(out, "E37",
+             fmt::format("{}, but their speed_ratio are {:.6g} and {:.6g}", ties, there.speed_ratio,
+                         here.speed_ratio),
+             fmt::format("speed_ratio = {:.10g} for shaft '{}'", ratio * here.speed_ratio + 0.0,
+                         there.name),
+             there.where);
+    else if (wrong(here.spin0, there.spin0))
+      report(out, "E37",
+             fmt::format("{}, but their initial_spin are {} and {}", ties,
+                         units::display(there.spin0, "rpm"), units::display(here.spin0, "rpm")),
+             fmt::format("initial_spin = \"{}\" for shaft '{}'",
+                         units::display(ratio * here.spin0 + 0.0, "rpm"), there.name),
+             there.where);
+    for (const auto& s : m.steps) {
+      const auto* t = std::get_if<model::TransientStep>(&s.law);
+      const auto *p = prescribed(m, b.at.shaft, &s), *q = prescribed(m, b.to->shaft, &s);
+      if (!t || !p || !q) continue;
+      bool said = false;
+      for (int i = 0; i <= 200 && !said;
+           ++i) {  // enough to see a law that does not follow the other
+        const double time = t->duration * i / 200, a = p->angle->at(time).df,
+                     c = q->angle->at(time).df;
+        if (!wrong(a, c)) continue;
+        report(out, "E37",
+               fmt::format("{}, but the drives of step '{}' prescribe {} and {} at {:.4g} s", ties,
+                           s.name, units::display(c, "rpm"), units::display(a, "rpm"), time),
+               pair->mesh
+                   ? "prescribe the speed of one of the two: the other follows through the mesh"
+                   : "prescribe the speed of one of the two: the other follows",
+               b.where);
+        said = true;
+      }
+    }
+  }
+}
+
+}  // namespace whirl::deck

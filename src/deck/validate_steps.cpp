@@ -1,0 +1,174 @@
+// What a step is asked for that its model cannot give.
+#include <deck/validate_parts.hpp>
+
+#include <core/units.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::deck {
+
+namespace {
+
+/// A shaft whose bending stiffnesses differ by more than rounding of its data turns its matrices
+/// with it.
+bool turns_with_stiffness(const model::Shaft& s) {
+  constexpr double share = 0.02;
+  if (!s.rotating || s.speed_ratio == 0) return false;
+  return std::any_of(s.sections.begin(), s.sections.end(), [](const model::Section& x) {
+    return x.general &&
+           std::abs(x.general->Iy - x.general->Iz) > share * std::max(x.general->Iy, x.general->Iz);
+  });
+}
+
+/// A law has one value from 0 to `duration`, s: looked at where it may change and 1000 times
+/// between.
+bool is_constant(const Law& law, double duration) {
+  std::vector<double> times = law.breakpoints();
+  for (int i = 0; i <= 1000; ++i)
+    times.push_back(duration * i / 1000);
+  const double first = law.at(0.0).f;
+  return std::none_of(times.begin(), times.end(), [&](double t) {
+    return t >= 0 && t <= duration && std::abs(law.at(t).f - first) > 1e-9 * std::abs(first);
+  });
+}
+
+/// Torsion takes part in a step of small motions.
+bool twists(const model::StepLaw& law) {
+  return std::visit(
+      [](const auto& s) {
+        using T = std::decay_t<decltype(s)>;
+        if constexpr (std::is_same_v<T, model::StaticStep> ||
+                      std::is_same_v<T, model::TransientStep> ||
+                      std::is_same_v<T, model::CriticalMapStep>)
+          return false;
+        else if constexpr (requires { s.motion; })
+          return s.motion == model::MotionKind::all || s.motion == model::MotionKind::torsional;
+        else
+          return true;
+      },
+      law);
+}
+
+}  // namespace
+
+void check_linear(const model::Model& m, Problems& out) {
+  for (const auto& s : m.steps) {
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    if (!t || !t->linear) continue;
+    const auto say = [&](std::string what, const char* hint) {
+      report(out, "E39", fmt::format("step '{}' is linear, but {}", s.name, what), hint, s.where);
+    };
+    for (const auto& shaft : m.shafts)
+      if (turns_with_stiffness(shaft))
+        say(fmt::format("the stiffness of shaft '{}' turns with it", shaft.name),
+            "leave linear out of the step");
+    if (m.base.turn && m.base.turn->rate && !is_constant(*m.base.turn->rate, t->duration))
+      say("the base turns at a rate that changes, and the matrices with it",
+          "a constant rate, or leave linear out");
+    if (t->integrator.method == "momentum_rk")
+      say("momentum_rk integrates the general motion of rigid bodies",
+          "another method, or linear = false");
+    for (const auto& d : m.drives) {
+      if (!d.step.empty() && d.step != s.name) continue;
+      if (std::holds_alternative<model::TorqueCurve>(d.law)) {
+        say(fmt::format("drive '{}' is a torque: it changes the speed", d.name),
+            "give it another step, or leave linear out");
+      } else if (const auto range = speeds_of(m, s, d.at.shaft);
+                 range && range->second - range->first >
+                              1e-9 * std::max(std::abs(range->first), std::abs(range->second))) {
+        say(fmt::format("drive '{}' changes the speed from {} to {}", d.name,
+                        units::display(range->first, "rpm"), units::display(range->second, "rpm")),
+            "a constant speed, or leave linear out");
+      }
+    }
+  }
+}
+
+void check_maps(const model::Model& m, Problems& out) {
+  for (const auto& s : m.steps) {
+    const auto* map = std::get_if<model::CriticalMapStep>(&s.law);
+    if (!map) continue;
+    for (const std::string& name : map->bearings)
+      if (std::none_of(m.bearings.begin(), m.bearings.end(),
+                       [&](const model::Bearing& b) { return b.name == name; }))
+        report(
+            out, "E80",
+            fmt::format("step '{}' names bearing '{}', which the deck does not have", s.name, name),
+            "", s.where);
+    const bool any = std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) {
+      return model::traits_of(b.law).acts != model::Acts::as_constraint && !b.to;
+    });
+    if (map->bearings.empty() && !any)
+      report(out, "E80", fmt::format("step '{}' has no bearing to vary: all are rigid", s.name),
+             "give the bearing a stiffness (type \"linear\")", s.where);
+  }
+}
+
+/// A prescribed angle is held in small motions: the shaft is clamped there.
+void check_clamps(const model::Model& m, Problems& out) {
+  for (const auto& d : m.drives) {
+    if (!std::holds_alternative<model::PrescribedSpin>(d.law)) continue;
+    std::string steps;
+    for (const auto& s : m.steps)
+      if (twists(s.law) && (d.step.empty() || d.step == s.name))
+        steps += fmt::format("{}'{}'", steps.empty() ? "" : ", ", s.name);
+    if (steps.empty()) continue;
+    report(
+        out, "W06",
+        fmt::format("drive '{}' holds the twist of shaft '{}' at {} in step{} {}: torsional "
+                    "motions are those of a shaft clamped there; the speed is that of the step",
+                    d.name, m.shafts[d.at.shaft].name, d.at.text,
+                    steps.find(',') == std::string::npos ? "" : "s", steps),
+        "name the transient step it drives (step = \"..\") to leave the shaft free in the others",
+        d.where, Diagnostic::Severity::warning);
+  }
+}
+
+/// Steps linearised about the rotor as drawn.
+void check_undeformed(const model::Model& m, Problems& out) {
+  for (const model::Step& s : m.steps) {
+    const bool undeformed = std::visit(
+        [](const auto& law) {
+          if constexpr (requires { law.about; })
+            return law.about == model::About::undeformed;
+          else
+            return false;
+        },
+        s.law);
+    if (!undeformed) continue;
+    if (!s.from.empty())
+      report(out, "E26",
+             fmt::format(
+                 "step '{}' starts from step '{}', but is linearised about the undeformed rotor",
+                 s.name, s.from),
+             "leave out 'from', or about = \"equilibrium\"", s.where);
+    if (const auto* stability = std::get_if<model::StabilityStep>(&s.law);
+        stability && stability->map)
+      report(
+          out, "E26",
+          fmt::format("step '{}': a map of the stability over a parameter is about the equilibrium "
+                      "of each of its rotors",
+                      s.name),
+          "leave out 'map', or about = \"equilibrium\"", s.where);
+    // a map puts its own stiffness in the place of the films it varies
+    const auto* map = std::get_if<model::CriticalMapStep>(&s.law);
+    const auto varied_film = [&](const model::Bearing& b) {
+      return map && model::traits_of(b.law).film &&
+             (map->bearings.empty() ? !b.to
+                                    : std::find(map->bearings.begin(), map->bearings.end(),
+                                                b.name) != map->bearings.end());
+    };
+    for (const model::Bearing& b : m.bearings)
+      if (model::traits_of(b.law).needs_load && !varied_film(b))
+        report(out, "E26",
+               fmt::format("step '{}' is linearised about the undeformed rotor, where bearing '{}' "
+                           "carries no load: its stiffness is that of its load",
+                           s.name, b.name),
+               "about = \"equilibrium\", or a bearing of type \"linear\" or \"table\" in its place",
+               s.where);
+  }
+}
+
+}  // namespace whirl::deck
