@@ -22,7 +22,7 @@ if(WHIRL_MARCH)
   target_compile_options(whirl_flags INTERFACE $<BUILD_INTERFACE:-march=${WHIRL_MARCH}>)
 endif()
 
-# Components whose loops count are compiled at -O2; for the rest -O1 gives the same results in three quarters of the compilation.
+# Components whose loops count are compiled at -O3; for the rest -O1 gives the same results in three quarters of the compilation.
 function(whirl_optimize TARGET LEVEL)
   target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:${LEVEL}>)
 endfunction()
@@ -54,7 +54,7 @@ function(whirl_component NAME)
   cmake_parse_arguments(A "FAST" "DIR;EXCLUDE;PCH" "FOLDERS;DEPS" ${ARGN})
   set(level -O1)
   if(A_FAST)
-    set(level -O2)
+    set(level -O3)
   endif()
   set(patterns ${A_DIR}/*.cpp)
   foreach(folder ${A_FOLDERS})
