@@ -402,7 +402,7 @@ double axis_inertia(const GeneralBeamConstants& c, int axis) {
 template <class T>
 void add_triad_inertia(const GeneralBeam& b, const Moving<T>& x, ForceOut<T>& out) {
   const SectionMotion<T>&m1 = *x.motion[0], &m2 = *x.motion[1];
-  const double own = b.c.triad_own, other = 6.0 - own;
+  const double own1 = b.c.triad_own[0], own2 = b.c.triad_own[1], other = 6.0 - 0.5 * (own1 + own2);
   for (int axis = 0; axis < 3; ++axis) {
     const double J = axis_inertia(b.c, axis);
     const V3<T> b1 = m1.turn(b.body1.col(axis)), b2 = m2.turn(b.body2.col(axis));
@@ -411,8 +411,8 @@ void add_triad_inertia(const GeneralBeam& b, const Moving<T>& x, ForceOut<T>& ou
       a1 = a1 + T(b.c.alpha) * m1.omega.cross(b1);
       a2 = a2 + T(b.c.alpha) * m2.omega.cross(b2);
     }
-    out.m[0] = out.m[0] + b1.cross(T(J * own / 12.0) * a1 + T(J * other / 12.0) * a2);
-    out.m[1] = out.m[1] + b2.cross(T(J * other / 12.0) * a1 + T(J * own / 12.0) * a2);
+    out.m[0] = out.m[0] + b1.cross(T(J * own1 / 12.0) * a1 + T(J * other / 12.0) * a2);
+    out.m[1] = out.m[1] + b2.cross(T(J * other / 12.0) * a1 + T(J * own2 / 12.0) * a2);
   }
 }
 
@@ -560,8 +560,12 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
     const double J = axis_inertia(c, axis);
     const Vec3 b1 = w1.cross(vec(m1.turn(body1.col(axis)))),
                b2 = w2.cross(vec(m2.turn(body2.col(axis))));
-    en.kinetic += 0.5 * J * (c.triad_own / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) +
-                             (6.0 - c.triad_own) * b1.dot(b2) / 6.0);
+    const double mean = 0.5 * (c.triad_own[0] + c.triad_own[1]),
+                 apart = 0.5 * (c.triad_own[0] - c.triad_own[1]);
+    en.kinetic +=
+        0.5 * J *
+        (mean / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) +
+         apart / 12.0 * (b1.squaredNorm() - b2.squaredNorm()) + (6.0 - mean) * b1.dot(b2) / 6.0);
   }
   // Relative to the reference configuration, so that a change of chart leaves it alone.
   const Vec3 P[4] = {x[0]->u + X[0] - offset1, X[1] - triad1.col(0), x[1]->u + X[2] - offset2,

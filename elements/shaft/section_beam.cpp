@@ -180,14 +180,9 @@ struct Screw {
     // |theta|/2 = arcsin |v|, by its series in |v|^2 where that is small
     T ratio;
     if (value(square) < 0.01) {
-      static constexpr double c[] = {1.0,
-                                     1.0 / 6,
-                                     3.0 / 40,
-                                     15.0 / 336,
-                                     105.0 / 3456,
-                                     945.0 / 42240,
-                                     10395.0 / 599040,
-                                     135135.0 / 9676800};
+      static constexpr double c[] = {
+          1.0,          1.0 / 6,       3.0 / 40,         15.0 / 336,
+          105.0 / 3456, 945.0 / 42240, 10395.0 / 599040, 135135.0 / 9676800};
       ratio = c[7];
       for (int k = 6; k >= 0; --k)
         ratio = c[k] + square * ratio;
@@ -212,12 +207,6 @@ Six<T> inside(const V3<T>& v, const V3<T>& theta, const Six<T>& s) {
 template <class T>
 Six<T> outside(const V3<T>& v, const V3<T>& theta, const Six<T>& y) {
   return {y.u.cross(theta) + y.r.cross(v), y.r.cross(theta)};
-}
-
-Mat3 skew(const Vec3& x) {
-  Mat3 m;
-  m << 0, -x.z(), x.y(), x.z(), 0, -x.x(), -x.y(), x.x(), 0;
-  return m;
 }
 
 Matrix<6> inside_matrix(const Vec3& v, const Vec3& theta) {
@@ -252,22 +241,22 @@ struct Elastic {
     const V3<T> e1(1.0, 0.0, 0.0);
     q = moved;
     q.u = q.u + T(bow) * (a.dot(a) * e1 - a.x * a);
-    const V3<T> v = d.u - V3<T>(Vec3(b.d0.head<3>())) + V3<T>(c.length, 0.0, 0.0) +
-                    T(1.0 / 12.0) * e1.cross(a);
+    const V3<T> v =
+        d.u - V3<T>(Vec3(b.d0.head<3>())) + V3<T>(c.length, 0.0, 0.0) + T(1.0 / 12.0) * e1.cross(a);
     solve(c, v, d.r);
 
     const Six<T> y = times(c.S, inside(v, d.r, sigma));
     const V3<T>&F = sigma.u, &M = sigma.r;
     const double part = -c.length / 12.0;
     const V3<T> on_v = T(part) * F.cross(y.r);
-    const V3<T> on_a = T(bow) * (2.0 * (F.x * a) - a.x * F - F.dot(a) * e1) +
-                       T(1.0 / 12.0) * on_v.cross(e1);
+    const V3<T> on_a =
+        T(bow) * (2.0 * (F.x * a) - a.x * F - F.dot(a) * e1) + T(1.0 / 12.0) * on_v.cross(e1);
     on_d = sigma + Six<T>(on_v, T(part) * (F.cross(y.u) + M.cross(y.r)));
     const auto column = [&](int k) {
       return b.P(0, k) * on_a.x + b.P(1, k) * on_a.y + b.P(2, k) * on_a.z;
     };
-    on_d = on_d + Six<T>(V3<T>(column(0), column(1), column(2)),
-                         V3<T>(column(3), column(4), column(5)));
+    on_d = on_d +
+           Six<T>(V3<T>(column(0), column(1), column(2)), V3<T>(column(3), column(4), column(5)));
   }
   T energy() const { return 0.5 * q.dot(sigma); }
 
@@ -279,8 +268,8 @@ struct Elastic {
     sigma = Six<T>(Vector<6>(factor.solve(q.values())));
     for (int k = 0; k < orders<T>; ++k) {
       const Six<T> y = times(c.S, inside(v, theta, sigma));
-      const Six<T> rest = q - c.length * times(c.S, sigma) -
-                          (c.length / 12.0) * outside(v, theta, y);
+      const Six<T> rest =
+          q - c.length * times(c.S, sigma) - (c.length / 12.0) * outside(v, theta, y);
       sigma = sigma + times(inverse, rest);
     }
   }
@@ -306,8 +295,8 @@ struct Moving {
   Six<T> rate() const {
     const V3<T> o1 = screw.middle.turn_back(motion[0]->omega),
                 o2 = screw.middle.turn_back(motion[1]->omega);
-    const V3<T> rdot = node[1]->du + motion[1]->omega.cross(ro[1]) - node[0]->du -
-                       motion[0]->omega.cross(ro[0]);
+    const V3<T> rdot =
+        node[1]->du + motion[1]->omega.cross(ro[1]) - node[0]->du - motion[0]->omega.cross(ro[0]);
     const V3<T> turning = o2 - o1;
     const V3<T> mean = T(0.5) * (o1 + o2) - screw.j * screw.theta.cross(turning);
     const V3<T> de = screw.middle.turn_back(rdot) - mean.cross(screw.e);
@@ -403,83 +392,26 @@ Vector<6> screw_between(const Mat3& t1, const Mat3& t2, const Vec3& chord) {
   return s.d.values();
 }
 
-/// int rho y_a y_b dA about the mass centre of a mass matrix.
-struct Moments {
-  double m = 0;
-  Vec3 centre = Vec3::Zero();
-  Mat3 J = Mat3::Zero(), second = Mat3::Zero();  // about the centre
-  explicit Moments(const Matrix<6>& mass) : m(mass(0, 0)) {
-    if (m > 0) centre = Vec3(mass(1, 5), -mass(0, 5), mass(0, 4)) / m;
-    J = mass.bottomRightCorner<3, 3>() + m * skew(centre) * skew(centre);
-    second = 0.5 * J.trace() * Mat3::Identity() - J;
-  }
-  Matrix<6> matrix() const {
-    Matrix<6> r;
-    r << m * Mat3::Identity(), -m * skew(centre), m * skew(centre),
-        Mat3(J - m * skew(centre) * skew(centre));
-    return r;
-  }
-};
-
 }  // namespace
 
-Matrix<6> offset_stiffness(double EA, double kGAy, double kGAz, double GJ, double EIy, double EIz,
-                           const Vec2& centroid, const Vec2& shear_centre) {
-  // strains at the centres: ex + z_c ky - y_c kz; gy - z_s kx, gz + y_s kx
-  Matrix<6> T = Matrix<6>::Identity();
-  T(0, 4) = centroid[1];
-  T(0, 5) = -centroid[0];
-  T(1, 3) = -shear_centre[1];
-  T(2, 3) = shear_centre[0];
-  Vector<6> k;
-  k << EA, kGAy, kGAz, GJ, EIy, EIz;
-  return T.transpose() * k.asDiagonal() * T;
-}
-
-Matrix<6> offset_mass(double m, const Vec2& centre, double Jx, double Jy, double Jz, double Jyz) {
-  Moments x{Matrix<6>::Zero()};
-  x.m = m;
-  x.centre = Vec3(0, centre[0], centre[1]);
-  x.J << Jx, 0, 0, 0, Jy, -Jyz, 0, -Jyz, Jz;
-  return x.matrix();
-}
-
-FullSection turned(const FullSection& s, double angle) {
-  const Mat3 R = Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix();
-  Matrix<6> Q = Matrix<6>::Zero();
-  Q.topLeftCorner<3, 3>() = Q.bottomRightCorner<3, 3>() = R;
-  return {Q * s.stiffness * Q.transpose(), Q * s.mass * Q.transpose()};
-}
-
-Matrix<6> with_mean_rotary_inertia(const Matrix<6>& mass) {
-  Moments x(mass);
-  x.J(1, 1) = x.J(2, 2) = 0.5 * (x.J(1, 1) + x.J(2, 2));
-  x.J(1, 2) = x.J(2, 1) = 0;
-  return x.matrix();
-}
-
-Matrix<6> without_rotary_inertia(const Matrix<6>& mass) {
-  Moments x(mass);
-  x.J.setZero();
-  return x.matrix();
-}
-
 SectionBeamConstants make_section_constants(const FullSection& section, double l, double twist,
-                                            MassKind kind) {
+                                            MassKind kind, const Vec2& share) {
   SectionBeamConstants c;
   c.length = l;
   c.S = section.stiffness.llt().solve(Matrix<6>::Identity());
   c.S = Matrix<6>(0.5 * (c.S + c.S.transpose()));
-  const Moments mass(section.mass);
+  const SectionMoments mass(section.mass);
   const double rotary = 0.5 * (mass.second(1, 1) + mass.second(2, 2));
   const Matrix<6>& S = c.S;
   const Vec2 shear_centre(-S(2, 3) / S(3, 3), S(1, 3) / S(3, 3));
+  MassShare mass_share;
+  mass_share.bending = Vector<4>(1, share[0], 1, share[1]);
   const auto plane = [&](int shear, int bend, double rhoI) {
     const double softness = S(shear, shear) - S(shear, 3) * S(shear, 3) / S(3, 3);
     ElementSection e;
     e.constants = true;
     e.given = {1.0 / S(0, 0), 1.0 / softness, 1.0 / S(3, 3), 1.0 / S(bend, bend), mass.m, rhoI, 0};
-    return make_shaft_constants(e, l, 0, 0, kind).M4;
+    return make_shaft_constants(e, l, 0, 0, kind, mass_share).M4;
   };
   const auto mean = [&](double rhoI) {
     return Matrix<4>(0.5 * (plane(1, 5, rhoI) + plane(2, 4, rhoI)));
@@ -503,10 +435,12 @@ SectionBeamConstants make_section_constants(const FullSection& section, double l
   c.M8 = centres.transpose() * translation * centres + line.transpose() * rotation * line;
   Mat3 triads = mass.second;
   triads(0, 0) -= rotary;
-  const double own = (kind == MassKind::consistent ? 4.0 : 5.0) / 12.0 * l, other = 0.5 * l - own;
+  const bool consistent = kind == MassKind::consistent;
+  const Vec2 own = l / 12.0 * (consistent ? Vec2(4, 4) : Vec2(4 + share[0], 4 + share[1]));
+  const double other = 0.5 * (l - own.sum());
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < 2; ++k)
-      c.M8.block<3, 3>(4 * i + 1, 4 * k + 1) += (i == k ? own : other) * triads;
+      c.M8.block<3, 3>(4 * i + 1, 4 * k + 1) += (i == k ? own[i] : other) * triads;
   return c;
 }
 

@@ -41,6 +41,7 @@
 // Tangents by forward differentiation (core/dual.hpp). Units SI. Limits: relative rotation of the
 // ends of one element below pi; small strain.
 #pragma once
+#include <core/section_matrices.hpp>
 #include <elements/shaft/timoshenko_matrices.hpp>
 #include <system/kernel.hpp>
 
@@ -51,42 +52,19 @@ struct StiffnessRateX;
 
 namespace whirl::elements {
 
-/// A section, per length, about the line of nodes in its own axes (x along the shaft, y, z).
-struct FullSection {
-  /// Forces (Fx, Fy, Fz), N, and moments (Mx, My, Mz), N m, of strains (ex, gy, gz), - and (kx, ky,
-  /// kz), 1/m: symmetric, positive definite.
-  Matrix<6> stiffness = Matrix<6>::Zero();
-  /// Momenta of velocities and angular velocities: [m, -m c x; m c x, J], c the mass centre; kg/m,
-  /// kg, kg m.
-  Matrix<6> mass = Matrix<6>::Zero();
-};
-
-/// Stiffness of a section whose bending and axial stiffness are about `centroid` and whose torsion
-/// and shear are about `shear_centre` (y, z, m), on the line of nodes. EIy bends about y.
-Matrix<6> offset_stiffness(double EA, double kGAy, double kGAz, double GJ, double EIy, double EIz,
-                           const Vec2& centroid, const Vec2& shear_centre);
-/// Mass matrix of m (kg/m) at `centre` with moments about it, Jx about the axis, Jy, Jz, Jyz = int
-/// rho y z dA, kg m.
-Matrix<6> offset_mass(double m, const Vec2& centre, double Jx, double Jy, double Jz, double Jyz);
-/// The same section in axes turned by `angle` from the present y towards z: matrices in the old
-/// axes.
-FullSection turned(const FullSection& s, double angle);
-/// Transverse inertia replaced by its mean about the mass centre (no difference, no product).
-Matrix<6> with_mean_rotary_inertia(const Matrix<6>& mass);
-/// Without inertia of rotation about the mass centre.
-Matrix<6> without_rotary_inertia(const Matrix<6>& mass);
-
 struct SectionBeamConstants {
-  double length = 0;                         ///< m, arc length
-  Matrix<6> S = Matrix<6>::Zero();           ///< compliance per length
-  Matrix<8> M8 = Matrix<8>::Zero();          ///< inertia of the header, kg, kg m, kg m^2
-  Matrix<6> damping = Matrix<6>::Zero();     ///< on d', positive semi-definite
-  double alpha = 0;                          ///< mass-proportional damping, 1/s
+  double length = 0;                      ///< m, arc length
+  Matrix<6> S = Matrix<6>::Zero();        ///< compliance per length
+  Matrix<8> M8 = Matrix<8>::Zero();       ///< inertia of the header, kg, kg m, kg m^2
+  Matrix<6> damping = Matrix<6>::Zero();  ///< on d', positive semi-definite
+  double alpha = 0;                       ///< mass-proportional damping, 1/s
 };
 
-/// twist: angle of the section axes at the right end less that at the left, rad.
+/// twist: angle of the section axes at the right end less that at the left, rad. share: as of
+/// GeneralBeamConstants::triad_own, 1 or 0 an end.
 SectionBeamConstants make_section_constants(const FullSection& section, double length, double twist,
-                                            MassKind kind = MassKind::corrected);
+                                            MassKind kind = MassKind::corrected,
+                                            const Vec2& share = Vec2::Ones());
 
 struct SectionBeam {
   static constexpr int n_nodes = 2, width = 7;
