@@ -2,9 +2,7 @@
 // of their published times. What they must keep is exact: momentum is the impulse of the loads, and
 // after these momentum, angular momentum and energy stay.
 #include "deck_model.hpp"
-#include "record.hpp"
-
-#include <core/rotation.hpp>
+#include "free_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,36 +36,6 @@ at = "line:start"
                      n, EI, EI, loads);
 }
 
-struct Momenta {
-  Vec3 linear, angular;
-  double energy = 0;
-};
-
-/// Of the whole system about the global origin: of a kinetic energy T(q, q'), dT/dq' on the rates of
-/// rigid motions.
-Momenta momenta_of(const system::System& s, const system::State& x) {
-  system::Workspace w = s.make_workspace();
-  la::MCK m = s.make_matrices();
-  EXPECT_TRUE(s.tangent(w, x.frames, x.t, x.q, x.v, x.a, m));
-  VecX p = VecX::Zero(s.size());
-  m.M.add_multiply(1.0, x.v, p);
-  Momenta out{Vec3::Zero(), Vec3::Zero(), 0};
-  for (Index i = 0; i < s.nodes(); ++i) {
-    const Vec3 on_u = p.segment<3>(6 * i), r = s.node(i).position + x.q.segment<3>(6 * i);
-    out.linear += on_u;
-    out.angular += r.cross(on_u);
-    const Mat3& T = x.frames.axes(i);
-    for (int k = 0; k < 3; ++k) {
-      const rotation::ChartRates rate = rotation::rates_of_omega(
-          Vec2(x.q.segment<2>(6 * i + 4)), Vec3(T.transpose() * Vec3::Unit(k)));
-      out.angular[k] += p[6 * i + 3] * rate.phi + p.segment<2>(6 * i + 4).dot(rate.gamma);
-    }
-  }
-  const system::Energy e = s.energy(w);
-  out.energy = e.kinetic + e.elastic;
-  return out;
-}
-
 struct Flight {
   DeckModel model;
   system::SystemProblem problem;
@@ -87,7 +55,7 @@ struct Flight {
     ASSERT_EQ(r.reason, StopReason::end_time) << r.detail;
     x = r.end;
   }
-  Momenta momenta() const { return momenta_of(model.built.system, x); }
+  Kept momenta() const { return kept(model.built.system, x); }
   Vec3 end(bool right) const {
     const meshes::Line& line = model.mesh.lines[0];
     const Index n = line.first_node + (right ? line.nodes - 1 : 0);
@@ -114,9 +82,9 @@ TEST(FreeFlight, FlyingBeamInThePlane) {
   for (const int n : {10, 20, 40}) {
     Flight f(flying_beam(n, 100, in_the_plane));
     f.go(2.500000001, 1e-5, {2.5, 2.500000001});
-    const Momenta a = f.momenta();
+    const Kept a = f.momenta();
     f.go(13.0, 1e-5, {});
-    const Momenta b = f.momenta();
+    const Kept b = f.momenta();
     if (n == 20) {
       record.check("momentum after the load", "N s", a.linear.x(), 20.0, 1e-6);
       record.below("momentum lost from 2.5 to 13 s, relative", "-",
@@ -158,9 +126,9 @@ TEST(FreeFlight, FlyingBeamInSpace) {
   for (const int n : {10, 20, 40}) {
     Flight f(flying_beam(n, 500, in_space));
     f.go(5.0, 1e-5, {2.5, 5.0});
-    const Momenta a = f.momenta();
+    const Kept a = f.momenta();
     f.go(10.0, 1e-5, {});
-    const Momenta b = f.momenta();
+    const Kept b = f.momenta();
     if (n == 20) {
       record.check("momentum after the load", "N s", a.linear.x(), 50.0, 1e-6);
       record.below("momentum lost from 5 to 10 s, relative", "-",

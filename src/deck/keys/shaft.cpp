@@ -131,7 +131,7 @@ constexpr std::array<const char*, 6> section_directions{
 
 /// Symmetric, with eigenvalues (after scaling to a unit diagonal) above `least`.
 void check_definite(Visitor& v, const char* key, const Matrix<6>& A, double least,
-                    const char* kind) {
+                    const std::string& kind) {
   constexpr double digits = 1e-6;  // of matrices written with seven digits
   for (int i = 0; i < 6; ++i)
     for (int k = i + 1; k < 6; ++k)
@@ -161,7 +161,7 @@ void check_definite(Visitor& v, const char* key, const Matrix<6>& A, double leas
 }
 
 /// Of the form [m, -m c x; m c x, J], c in the plane of the section.
-void check_mass_form(Visitor& v, const Matrix<6>& M) {
+void check_mass_form(Visitor& v, const Matrix<6>& M, const std::string& section) {
   const Matrix<6> form = SectionMoments(M).matrix();
   const double m = std::abs(M(0, 0)), J = M.bottomRightCorner<3, 3>().cwiseAbs().maxCoeff();
   for (int i = 0; i < 3; ++i)
@@ -169,9 +169,10 @@ void check_mass_form(Visitor& v, const Matrix<6>& M) {
       const double size = k < 3 ? m : std::sqrt(m * J);
       if (std::abs(M(i, k) - form(i, k)) <= 1e-6 * size) continue;
       v.error("E36", "mass",
-              fmt::format("no section has this mass matrix: row {}, column {} is {:.7g} where a "
-                          "mass of {:.7g} per length at its centre makes {:.7g} (SI)",
-                          i + 1, k + 1, M(i, k), M(0, 0), form(i, k)),
+              fmt::format(
+                  "section '{}' cannot have this mass matrix: row {}, column {} is {:.7g} where a "
+                  "mass of {:.7g} per length at its centre makes {:.7g} (SI)",
+                  section, i + 1, k + 1, M(i, k), M(0, 0), form(i, k)),
               "[m, 0, 0, 0, m z, -m y], [0, m, 0, -m z, 0, 0], [0, 0, m, m y, 0, 0] and their "
               "mirror images, (y, z) the mass centre");
       return;
@@ -189,9 +190,12 @@ void describe_full(Visitor& v, model::Section& s) {
            "axes about the line of nodes; symmetric, positive semi-definite");
   describe_angles(v, f.angle, f.twist);
   if (!v.clean()) return;
-  check_definite(v, "stiffness", f.stiffness, 1e-12, "stiffness");
-  if (v.clean()) check_definite(v, "mass", f.mass, -1e-9, "mass");
-  if (v.clean()) check_mass_form(v, f.mass);
+  const auto of = [&](const char* what) {
+    return fmt::format("{} matrix of section '{}'", what, s.name);
+  };
+  check_definite(v, "stiffness", f.stiffness, 1e-12, of("stiffness"));
+  if (v.clean()) check_definite(v, "mass", f.mass, -1e-9, of("mass"));
+  if (v.clean()) check_mass_form(v, f.mass, s.name);
   if (!v.clean()) return;
   f.stiffness = Matrix<6>(0.5 * (f.stiffness + f.stiffness.transpose()));
   f.mass = SectionMoments(0.5 * (f.mass + f.mass.transpose())).matrix();
