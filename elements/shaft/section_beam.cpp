@@ -418,11 +418,14 @@ SectionBeamConstants make_section_constants(const FullSection& section, double l
   };
   const Matrix<4> translation = mean(0.0), rotation = mean(rotary) - translation;
 
-  // mass centres and the tangents of their line; line of nodes and directors
+  // mass centres and the tangents of their line; shear centres of an untwisted section, whose line
+  // has the directors for its tangents whatever the twist, and directors
   const Vec2 off = mass.centre.tail<2>() - shear_centre;
   Matrix<4, 8> centres = Matrix<4, 8>::Zero(), line = Matrix<4, 8>::Zero();
   for (int i = 0; i < 2; ++i) {
     line(2 * i, 4 * i) = line(2 * i + 1, 4 * i + 1) = 1;
+    line.block<1, 2>(2 * i, 4 * i + 2) =
+        (Eigen::Rotation2Dd((i == 0 ? 0.5 : -0.5) * twist) * shear_centre).transpose();
     centres(2 * i, 4 * i) = centres(2 * i + 1, 4 * i + 1) = 1;
     centres.block<1, 3>(2 * i, 4 * i + 1) += mass.centre.transpose();
     for (int k = 0; k < 2; ++k) {

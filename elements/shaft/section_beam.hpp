@@ -35,8 +35,10 @@
 // Inertia: M8 (x) 1 on (r1, D1, B1, C1, r2, D2, B2, C2), exact for rigid motion: translation along
 // the line of mass centres by the shape functions of timoshenko_matrices.hpp (mean of both planes;
 // its tangents are the directors and what the twist about the shear centre adds), transverse rotary
-// inertia on the directors with the mean of both planes, the rest and the polar one on the triads
-// with the mean of consistent and lumped.
+// inertia on the line of shear centres and its directors with the mean of both planes, the rest and
+// the polar one on the triads with the mean of consistent and lumped. Frequencies: order 4 where
+// sections are slender or alike in both planes; coupling and unequal planes of thick elements leave
+// a part of order 2 (the corrections are those of the mean plane), 1e-5 with 16 elements.
 //
 // Tangents by forward differentiation (core/dual.hpp). Units SI. Limits: relative rotation of the
 // ends of one element below pi; small strain.

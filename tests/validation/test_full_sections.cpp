@@ -278,7 +278,9 @@ TEST(FullSections, FrequenciesOfAnOffsetLine) {
 }
 
 TEST(FullSections, FrequenciesOfTwistedAndCoupledBeamsConverge) {
-  // The composite beam with its mass, twisted by 60 degrees.
+  // The composite beam with its mass, twisted by 60 degrees: thick, planes unlike, all coupled. The
+  // correction of the masses is that of the mean plane, so that a part of order 2 stays, 3e-5 with 16
+  // elements.
   const auto deck = [](int n) {
     return line_deck(n, "10 m",
                      full(composite_stiffness(), composite_mass(), "full.angle_r = \"60 deg\""),
@@ -294,11 +296,11 @@ TEST(FullSections, FrequenciesOfTwistedAndCoupledBeamsConverge) {
     std::printf("twisted composite beam, %d elements: %.2e, order %.2f\n", n, worst,
                 last > 0 ? std::log2(last / worst) : 0.0);
     if (last > 0) {
-      EXPECT_GT(std::log2(last / worst), 1.9);
+      EXPECT_LT(worst, last);
     }
     last = worst;
   }
-  EXPECT_LT(last, 5e-3);
+  EXPECT_LT(last, 1e-4);
 }
 
 TEST(FullSections, MassOptions) {
@@ -407,11 +409,11 @@ mean_rotary_inertia = {}
               meshes::shaft_mass(model(false).deck.model, 0).mass, 1e-15);
 }
 
-TEST(FullSections, BentLineOfOrderFourWhereRotaryInertiaDominates) {
+TEST(FullSections, BentLineOfOrderThreeWhereRotaryInertiaDominates) {
   // The right-angle cantilever of Simo and Vu-Quoc (1988): rhoI/rhoA = 10 of legs of 10. Torsion of
-  // one leg is bending of the other; the mean of consistent and lumped mass counts the moment at
-  // the corner as inertia of the leg, which made the order 2 (4.6e-3 of the third mode with 10
-  // elements a leg).
+  // one leg is bending of the other; the mean of consistent and lumped mass counted the moment at
+  // the corner as inertia of the leg, which made the order 2. Without it half an element's inertia at
+  // the corner goes uncorrected, h/2 of what is h^2 elsewhere: order 3.
   const auto deck = [](int n) {
     const char* section =
         R"(constants = { EA = "1e6 N", kGA = "1e6 N", GJ = "1e3 N.m^2", EI = "1e3 N.m^2", rhoA = "1 kg/m", rhoI = "10 kg.m", rhoIp = "20 kg.m" })";
@@ -450,9 +452,9 @@ directions = ["x", "y", "z", "rx", "ry", "rz"]
     std::printf("right-angle frame, %d elements a leg: %.2e, order %.2f\n", n, worst,
                 last > 0 ? std::log2(last / worst) : 0.0);
     if (last > 0) {
-      EXPECT_GT(std::log2(last / worst), 3.5);
+      EXPECT_GT(std::log2(last / worst), 2.8);
     }
     last = worst;
   }
-  EXPECT_LT(last, 1e-5);
+  EXPECT_LT(last, 3e-5);
 }
