@@ -2,6 +2,7 @@
 #include <core/contract.hpp>
 
 #include <core/rotation.hpp>
+#include <model/full_section.hpp>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -43,7 +44,40 @@ void MassProperties::add(double m, const Vec3& c, const Mat3& J) {
   about_origin += J + steiner(m, c);
 }
 
+namespace {
+
+/// Of a section that is_full, one metre of it at a fraction of its length: in the axes of its line.
+SectionMoments moments_at(const model::Model& m, const model::Section& s, double xi) {
+  SectionMoments x(model::full_section(m, s).mass);
+  const Mat3 R = rotation::L(Vec3(s.angle() + xi * s.twist(), 0, 0));
+  x.centre = R * x.centre;
+  x.J = R * x.J * R.transpose();
+  return x;
+}
+
+/// Gauss points on slices so thin that sines of the twist are exact to 1e-12.
+MassProperties full_section_mass(const model::Model& m, const model::Section& s,
+                                 const Vec3& left_end) {
+  static constexpr double x[] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
+                                 0.9305681557970263};
+  static constexpr double w[] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                                 0.1739274225687269};
+  const int n = 1 + static_cast<int>(8.0 * std::abs(s.twist()));
+  const double h = s.length / n;
+  MassProperties p;
+  for (int i = 0; i < 4 * n; ++i) {
+    const double at = (i / 4 + x[i % 4]) / n;
+    const SectionMoments unit = moments_at(m, s, at);
+    p.add(w[i % 4] * h * unit.m, left_end + Vec3(at * s.length, 0, 0) + unit.centre,
+          w[i % 4] * h * unit.J);
+  }
+  return p;
+}
+
+}  // namespace
+
 MassProperties section_mass(const model::Model& m, const model::Section& s, const Vec3& left_end) {
+  if (s.is_full()) return full_section_mass(m, s, left_end);
   const double L = s.length, rho = m.materials.empty() ? 0.0 : m.materials.at(s.material).rho;
   // line integrals about the left end: mass, first and second moment, inertia about y, z and the
   // axis, int yz
@@ -65,6 +99,10 @@ MassProperties section_mass(const model::Model& m, const model::Section& s, cons
     about_z = rho * L * (g.Iy * n * n + g.Iz * c * c);
     polar = rho * L * (g.Iy + g.Iz);
     product = rho * L * (g.Iz - g.Iy) * c * n;
+    if (s.mean_rotary_inertia) {
+      about_y = about_z = 0.5 * polar;
+      product = 0;
+    }
   } else if (s.od_l > 0 || s.od_r > 0) {
     const Frustum out(L, s.od_l, s.od_r), in(L, s.id_l, s.id_r);
     mass = rho * (out.V - in.V);
@@ -110,6 +148,13 @@ MassProperties mass_along(const model::Model& m, const model::Shaft& shaft,
     for (int i = 0; i < 4 * n; ++i) {
       const double h = whole / n, s = ends[k] + (i / 4 + x[i % 4]) * h,
                    xi = (s - s0) / section.length;
+      if (section.is_full()) {
+        const SectionMoments unit = moments_at(m, section, xi);
+        const Path::Point at = shaft.path.after(s);
+        p.add(w[i % 4] * h * unit.m, at.r + at.triad * unit.centre,
+              w[i % 4] * h * (at.triad * unit.J * at.triad.transpose()));
+        continue;
+      }
       model::Section slice = section;  // one metre of what stands there
       slice.od_l = slice.od_r = section.od_l + xi * (section.od_r - section.od_l);
       slice.id_l = slice.id_r = section.id_l + xi * (section.id_r - section.id_l);

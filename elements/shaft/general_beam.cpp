@@ -19,59 +19,7 @@ namespace {
 
 #include <elements/shaft/shaft_single.inl>
 
-template <class T>
-using V3 = Vec3T<T>;
-
-/// Node coordinates, rates and accelerations in any scalar.
-template <class T>
-struct NodeT {
-  const Mat3* chart;
-  V3<T> u, t, du, dd, ddu, ddd;
-  T phi, dphi, ddphi;
-  explicit NodeT(const NodeState& n)
-      : chart(n.chart),
-        u(n.u),
-        t(n.t),
-        du(n.du),
-        dd(n.dd),
-        ddu(n.ddu),
-        ddd(n.ddd),
-        phi(n.phi),
-        dphi(n.dphi),
-        ddphi(n.ddphi) {}
-};
-
-/// Rotation, angular velocity and acceleration of a node.
-template <class T>
-struct SectionMotion {
-  V3<T> e, d, s2, omega, alpha, w;  // s2 = (e + d)/(1 + e.d)
-  V3<T> e2, e3;
-  T cphi, sphi;
-  explicit SectionMotion(const NodeT<T>& n)
-      : e(Vec3(n.chart->col(0))),
-        d(e + n.t),
-        e2(Vec3(n.chart->col(1))),
-        e3(Vec3(n.chart->col(2))) {
-    using std::cos;
-    using std::sin;
-    const T one_plus_cosine = spin_divisor(e, n.t);
-    w = spin_form(e, n.t, one_plus_cosine);
-    s2 = (e + d) / one_plus_cosine;
-    const T s = spin_rate(w, n.dd, n.dphi);
-    const T sdot = spin_acceleration(e, w, n.dd, n.ddd, n.ddphi, one_plus_cosine);
-    omega = d.cross(n.dd) + s * d;
-    alpha = d.cross(n.ddd) + sdot * d + s * n.dd;
-    cphi = cos(n.phi);
-    sphi = sin(n.phi);
-  }
-  /// A vector fixed in the node, given by its components in the node's chart at rest.
-  V3<T> turn(const Vec3& c) const {
-    const V3<T> m =
-        (T(c.y()) * cphi - T(c.z()) * sphi) * e2 + (T(c.y()) * sphi + T(c.z()) * cphi) * e3;
-    return T(c.x()) * d + m - d.dot(m) * s2;
-  }
-  V3<T> accel(const V3<T>& r) const { return alpha.cross(r) + omega.cross(omega.cross(r)); }
-};
+#include <elements/shaft/beam_nodes.inl>
 
 /// Bending stiffness of each plane and what shear takes of it: 1/(1 + Phi) = 1 - phi, slope of the
 /// curvature per p1 + p2, 1/kGA.
@@ -312,12 +260,6 @@ struct Inner {
   }
 };
 
-template <class T>
-struct ForceOut {
-  V3<T> f[2], m[2];  // on u, and moment on omega
-  T dissipated{};
-};
-
 /// A configuration and its motion.
 template <class T>
 struct Moving {
@@ -461,6 +403,7 @@ double axis_inertia(const GeneralBeamConstants& c, int axis) {
 template <class T>
 void add_triad_inertia(const GeneralBeam& b, const Moving<T>& x, ForceOut<T>& out) {
   const SectionMotion<T>&m1 = *x.motion[0], &m2 = *x.motion[1];
+  const double own1 = b.c.triad_own[0], own2 = b.c.triad_own[1], other = 6.0 - 0.5 * (own1 + own2);
   for (int axis = 0; axis < 3; ++axis) {
     const double J = axis_inertia(b.c, axis);
     const V3<T> b1 = m1.turn(b.body1.col(axis)), b2 = m2.turn(b.body2.col(axis));
@@ -469,8 +412,8 @@ void add_triad_inertia(const GeneralBeam& b, const Moving<T>& x, ForceOut<T>& ou
       a1 = a1 + T(b.c.alpha) * m1.omega.cross(b1);
       a2 = a2 + T(b.c.alpha) * m2.omega.cross(b2);
     }
-    out.m[0] = out.m[0] + b1.cross(T(J * 5.0 / 12.0) * a1 + T(J / 12.0) * a2);
-    out.m[1] = out.m[1] + b2.cross(T(J / 12.0) * a1 + T(J * 5.0 / 12.0) * a2);
+    out.m[0] = out.m[0] + b1.cross(T(J * own1 / 12.0) * a1 + T(J * other / 12.0) * a2);
+    out.m[1] = out.m[1] + b2.cross(T(J * other / 12.0) * a1 + T(J * own2 / 12.0) * a2);
   }
 }
 
@@ -484,27 +427,6 @@ ForceOut<T> beam_force(const GeneralBeam& b, const NodeT<T>& n1, const NodeT<T>&
   add_triad_inertia(b, x, out);
   add_beam_inertia(b.c, x, out);
   return out;
-}
-
-/// Moment on omega -> (f_d, f_phi): delta theta = d x delta d + (delta phi - w . delta d) d.
-template <class T>
-std::array<T, 14> to_X(const ForceOut<T>& f, const SectionMotion<T>& m1,
-                       const SectionMotion<T>& m2) {
-  std::array<T, 14> r;
-  const SectionMotion<T>* mo[2] = {&m1, &m2};
-  for (int i = 0; i < 2; ++i) {
-    const T along = f.m[i].dot(mo[i]->d);
-    const V3<T> fd = f.m[i].cross(mo[i]->d) - along * mo[i]->w;
-    T* out = r.data() + 7 * i;
-    out[0] = f.f[i].x;
-    out[1] = f.f[i].y;
-    out[2] = f.f[i].z;
-    out[3] = fd.x;
-    out[4] = fd.y;
-    out[5] = fd.z;
-    out[6] = along;
-  }
-  return r;
 }
 
 using D14 = Dual<14>;
@@ -640,7 +562,12 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
     const double J = axis_inertia(c, axis);
     const Vec3 b1 = w1.cross(vec(m1.turn(body1.col(axis)))),
                b2 = w2.cross(vec(m2.turn(body2.col(axis))));
-    en.kinetic += 0.5 * J * (5.0 / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) + b1.dot(b2) / 6.0);
+    const double mean = 0.5 * (c.triad_own[0] + c.triad_own[1]),
+                 apart = 0.5 * (c.triad_own[0] - c.triad_own[1]);
+    en.kinetic +=
+        0.5 * J *
+        (mean / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) +
+         apart / 12.0 * (b1.squaredNorm() - b2.squaredNorm()) + (6.0 - mean) * b1.dot(b2) / 6.0);
   }
   // Relative to the reference configuration, so that a change of chart leaves it alone.
   const Vec3 P[4] = {x[0]->u + X[0] - offset1, X[1] - triad1.col(0), x[1]->u + X[2] - offset2,

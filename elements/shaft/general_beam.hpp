@@ -70,8 +70,12 @@ struct GeneralBeamConstants {
                                      ///< inertia rhoI_l/length; kg, kg m, kg m^2
   double rhoI_l = 0;                 ///< what of the rotary inertia below M4 contains, kg m^2
   double rhoIz_l = 0, rhoIy_l = 0;   ///< rho int y^2 dA length, rho int z^2 dA length, kg m^2
-  double beta = 0;                   ///< stiffness-proportional damping of bending, rotating, s
-  double beta_twist = 0;             ///< the same of the twist, s
+  /// 12 m_11 and 12 m_22 of the header; m_12 makes the sum one. 5: mean of consistent and lumped; 4,
+  /// consistent: where the twisting moment is not the element's own inertia alone (a bend of the
+  /// line), since what the mean adds is the inertia the moment at the node accelerates.
+  double triad_own[2] = {5, 5};
+  double beta = 0;        ///< stiffness-proportional damping of bending, rotating, s
+  double beta_twist = 0;  ///< the same of the twist, s
   double alpha = 0;  ///< mass-proportional damping, 1/s: of the velocities of the beam's own mass
 };
 

@@ -49,7 +49,11 @@ elements::ElementSection element_section(const model::Model& m, const meshes::El
 elements::ShaftElementConstants element_constants(const model::Model& m, const meshes::Element& e,
                                                   const elements::MassShare& share) {
   return elements::make_shaft_constants(element_section(m, e), e.s2 - e.s1, e.left.offset,
-                                        e.right.offset, elements::MassKind::corrected, share);
+                                        e.right.offset, mass_kind(m), share);
+}
+
+elements::MassKind mass_kind(const model::Model& m) {
+  return m.consistent_mass ? elements::MassKind::consistent : elements::MassKind::corrected;
 }
 
 }  // namespace whirl::assembly

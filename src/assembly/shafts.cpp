@@ -8,6 +8,7 @@
 #include <assembly/parts.hpp>
 #include <elements/shaft/general_beam.hpp>
 #include <elements/shaft/hysteretic_damping.hpp>
+#include <elements/shaft/section_beam.hpp>
 #include <elements/rigid/point_mass.hpp>
 #include <elements/rigid/rigid_body.hpp>
 #include <elements/rigid/rigid_disk.hpp>
@@ -15,9 +16,14 @@
 #include <elements/shaft/shaft_damping.hpp>
 #include <elements/supports/weight_rest.hpp>
 #include <meshes/mass_properties.hpp>
+#include <model/full_section.hpp>
 
+#include <core/rotation.hpp>
+
+#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::assembly {
@@ -108,14 +114,16 @@ void add_hysteresis(Assembly& a, const model::Shaft& shaft, const elements::Gene
       nodes, "hysteretic damping");
 }
 
+double thermal_strain(const Assembly& a, const model::Section& s) {
+  return s.constants || a.model.materials.empty()
+             ? 0.0
+             : a.model.materials.at(s.material).expansion * s.temperature_rise;
+}
+
 /// Force at unstressed length: preload, and what keeps the element from its thermal growth.
 double preload_of(const Assembly& a, const model::Shaft& shaft, const meshes::Element& e,
                   double EA) {
-  const model::Section& s = shaft.sections[e.section];
-  const double strain = s.constants || a.model.materials.empty()
-                            ? 0.0
-                            : a.model.materials.at(s.material).expansion * s.temperature_rise;
-  return shaft.axial_preload - EA * strain;
+  return shaft.axial_preload - EA * thermal_strain(a, shaft.sections[e.section]);
 }
 
 /// Preload and the unstressed shape of a bowed shaft: the slopes of w = A sin(pi s/L) against the
@@ -137,20 +145,40 @@ void finish_general(Assembly& a, const model::Shaft& shaft, const meshes::Elemen
   add_hysteresis(a, shaft, beam, nodes);
 }
 
+/// What part of the moments at the ends of an element is inertia of its own line: none at a bend,
+/// where torsion of one side is bending of the other.
+Vec2 moment_shares(const model::Shaft& shaft, const meshes::Element& e) {
+  const auto share = [&](double s) {
+    if (shaft.path.empty() || s <= 0 || s >= shaft.path.length()) return 1.0;
+    const Vec3 before = shaft.path.before(s).triad.col(0), after = shaft.path.after(s).triad.col(0);
+    return (after - before).norm() > 1e-6 ? 0.0 : 1.0;
+  };
+  return Vec2(share(e.s1), share(e.s2));
+}
+
+void set_triad_mass(const Assembly& a, const model::Shaft& shaft, const meshes::Element& e,
+                    elements::GeneralBeamConstants& c) {
+  const Vec2 share = a.model.consistent_mass ? Vec2::Zero() : moment_shares(shaft, e);
+  for (int k = 0; k < 2; ++k)
+    c.triad_own[k] = 4 + share[k];
+}
+
 /// Constants for a general beam, which has the offsets of its ends itself; the shares are those of
 /// nodes, so only without offsets.
 ShaftElementConstants between_nodes(Assembly& a, const MassShares& shares, const meshes::Element& e,
                                     const elements::ElementSection& section, double part) {
   const auto make = [&](const elements::MassShare& share) {
-    return elements::make_shaft_constants(section, e.s2 - e.s1, 0, 0, elements::MassKind::corrected,
-                                          share);
+    return elements::make_shaft_constants(section, e.s2 - e.s1, 0, 0, mass_kind(a.model), share);
   };
   const bool straight =
       a.model.shafts[static_cast<std::size_t>(e.line)]
           .path.empty();  // what is left of the weight acts on the directors of straight lines
-  return straight && e.left.offset == 0 && e.right.offset == 0
-             ? shared_constants(a, shares, e, make, part)
-             : make({});
+  if (straight && e.left.offset == 0 && e.right.offset == 0)
+    return shared_constants(a, shares, e, make, part);
+  const Vec2 moments = moment_shares(a.model.shafts[static_cast<std::size_t>(e.line)], e);
+  elements::MassShare share;
+  share.bending = Vector<4>(1, moments[0], 1, moments[1]);
+  return make(share);
 }
 
 /// A round section, or one given by constants, as a general beam.
@@ -172,6 +200,7 @@ elements::GeneralBeamConstants round_constants(Assembly& a, const MassShares& sh
   c.b22 = k.b22;
   c.M4 = k.M4;
   c.rhoIz_l = c.rhoIy_l = c.rhoI_l = 0.5 * k.polar.sum();
+  set_triad_mass(a, shaft, e, c);
   c.beta = shaft.damping.beta_internal;
   return c;
 }
@@ -229,13 +258,15 @@ elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& 
   c.rhoIz_l = rho * g.Iz;
   c.rhoIy_l = rho * g.Iy;
   c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
+  if (s.mean_rotary_inertia) c.rhoIz_l = c.rhoIy_l = c.rhoI_l;
+  set_triad_mass(a, shaft, e, c);
   c.beta = shaft.damping.beta_internal;
   return c;
 }
 
-/// Axes of a section against those of the line.
-Mat3 section_axes(const model::Section& s) {
-  const double angle = s.general ? s.general->angle : 0.0;
+/// Axes of a section against those of the line, at a fraction of its length.
+Mat3 section_axes(const model::Section& s, double xi = 0) {
+  const double angle = s.angle() + xi * s.twist();
   Mat3 axes;
   axes << Vec3::UnitX(), Vec3(0, std::cos(angle), std::sin(angle)),
       Vec3(0, -std::sin(angle), std::cos(angle));
@@ -286,6 +317,65 @@ void add_curved(Assembly& a, const MassShares& shares, const model::Shaft& shaft
   add_hysteresis(a, shaft, beam, nodes);
 }
 
+/// A round element with the mean bending stiffness of a section: for what acts in fixed axes.
+ShaftElementConstants mean_constants(const Assembly& a, const FullSection& section,
+                                     const meshes::Element& e) {
+  const Matrix<6> S = section.stiffness.llt().solve(Matrix<6>::Identity());
+  const SectionMoments mass(section.mass);
+  elements::ElementSection round;
+  round.constants = true;
+  round.given = {1.0 / S(0, 0), 2.0 / (S(1, 1) + S(2, 2)),
+                 1.0 / S(3, 3), 0.5 * (1.0 / S(4, 4) + 1.0 / S(5, 5)),
+                 mass.m,        std::max(0.0, 0.5 * (mass.second(1, 1) + mass.second(2, 2))),
+                 mass.J(0, 0)};
+  return elements::make_shaft_constants(round, e.s2 - e.s1, e.left.offset, e.right.offset,
+                                        mass_kind(a.model));
+}
+
+/// Slope of a bow at a place of its line.
+Mat3 bowed(const model::Shaft& shaft, double s, double chord_slope) {
+  const double k = pi / shaft.length(),
+               slope = shaft.bow.amount * k * std::cos(k * s) - chord_slope;
+  return rotation::L(slope * Vec3(0, -std::sin(shaft.bow.phase), std::cos(shaft.bow.phase)));
+}
+
+/// A section that is coupled, twisted or off the line.
+void add_full(Assembly& a, const model::Shaft& shaft, const meshes::Element& e) {
+  const model::Section& s = shaft.sections[e.section];
+  const model::ShaftDamping& d = shaft.damping;
+  const FullSection section = model::full_section(a.model, s);
+  const double l = e.s2 - e.s1;
+  elements::SectionBeamConstants c = elements::make_section_constants(
+      section, l, (e.xi2 - e.xi1) * s.twist(), mass_kind(a.model), moment_shares(shaft, e));
+  const Mat3 left = section_axes(s, e.xi1), right = section_axes(s, e.xi2);
+  const std::array<Index, 2> nodes{e.left.node, e.right.node};
+  const bool bent = !shaft.path.empty();
+  if (bent) c.alpha = d.alpha;
+  elements::SectionBeam beam;
+  if (bent) {
+    const Path::Point p = shaft.path.after(e.s1), q = shaft.path.before(e.s2);
+    beam = elements::SectionBeam(c, q.r - p.r, p.triad * left, q.triad * right);
+  } else {
+    beam = elements::SectionBeam(c, Vec3(l, 0, 0), left, right, Vec3(e.left.offset, 0, 0),
+                                 Vec3(e.right.offset, 0, 0));
+  }
+  if (shaft.bow.amount != 0) {
+    const double k = pi / shaft.length(),
+                 chord = shaft.bow.amount * (std::sin(k * e.s2) - std::sin(k * e.s1)) / l;
+    beam.set_unstressed(bowed(shaft, e.s1, chord) * left, bowed(shaft, e.s2, chord) * right);
+  }
+  beam.set_prestress(shaft.axial_preload, thermal_strain(a, s));
+  // a line that does not turn has one kind of damping; else the twist goes with the fixed axes
+  const double beta = d.beta_internal + (bent ? d.beta_external : 0.0),
+               beta_twist = bent ? d.beta_torsion : 0.0;
+  if (beta != 0 || beta_twist != 0) beam.set_damping(beta, beta_twist);
+  add_stressed(a, beam, nodes, "full section elements");
+  if (bent) return;
+  model::Shaft rest = shaft;
+  rest.damping.beta_internal = 0;  // in the beam, with its twist
+  add_damping(a, rest, mean_constants(a, section, e), nodes, false);
+}
+
 void add_rigid_part(Assembly& a, const model::Shaft& shaft, const meshes::RigidPart& r) {
   const meshes::MassProperties p =
       meshes::section_mass(a.model, shaft.sections[r.section], Vec3(r.o1, 0, 0));  // from the node
@@ -303,7 +393,8 @@ void add_rigid_part(Assembly& a, const model::Shaft& shaft, const meshes::RigidP
 void list_absent(Assembly& a, const model::Shaft& shaft, Index line) {
   int elements = 0, joined = 0;
   for (const meshes::Element& e : a.mesh.elements)
-    if (e.line == line && shaft.path.empty() && !shaft.sections[e.section].general) {
+    if (e.line == line && shaft.path.empty() && !shaft.sections[e.section].general &&
+        !shaft.sections[e.section].full) {
       ++elements;
       joined += e.left.offset == 0 && e.right.offset == 0;
     }
@@ -338,6 +429,10 @@ void add_shafts(Assembly& a) {
   for (const meshes::Element& e : a.mesh.elements) {
     a.built.element_forces.emplace_back();
     const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
+    if (shaft.sections[e.section].is_full()) {
+      add_full(a, shaft, e);
+      continue;
+    }
     if (!shaft.path.empty()) {
       add_curved(a, shares, shaft, e);
       continue;

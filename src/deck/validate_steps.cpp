@@ -2,6 +2,8 @@
 #include <deck/validate_parts.hpp>
 
 #include <core/units.hpp>
+#include <model/full_section.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,10 +18,8 @@ namespace {
 bool turns_with_stiffness(const model::Shaft& s) {
   constexpr double share = 0.02;
   if (!s.rotating || s.speed_ratio == 0) return false;
-  return std::any_of(s.sections.begin(), s.sections.end(), [](const model::Section& x) {
-    return x.general &&
-           std::abs(x.general->Iy - x.general->Iz) > share * std::max(x.general->Iy, x.general->Iz);
-  });
+  return std::any_of(s.sections.begin(), s.sections.end(),
+                     [](const model::Section& x) { return model::is_unequal(x, share); });
 }
 
 /// A law has one value from 0 to `duration`, s: looked at where it may change and 1000 times

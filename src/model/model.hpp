@@ -46,12 +46,27 @@ struct Section : Entity {
   double temperature_rise = 0;       ///< K above the state in which the shaft has its lengths
   int min_elements = 0;              ///< 0, and no length given: chosen (model/resolution.hpp)
   double max_element_length = infinity;
+  bool mean_rotary_inertia = false;  ///< both transverse inertias the mean of the two
   /// General sections (not axisymmetric): stiffnesses given directly; I about the section's own y
-  /// and z axes.
+  /// and z axes through the centroid, which is the mass centre.
   struct General {
     double A = 0, Iy = 0, Iz = 0, J = 0, kappa_y = 0, kappa_z = 0, angle = 0;
+    double twist = 0;  ///< angle at the right end less `angle`, rad
+    Vec2 centroid = Vec2::Zero(), shear_centre = Vec2::Zero();  ///< m, section axes
+    bool on_line() const { return centroid.isZero(0) && shear_centre.isZero(0); }
   };
   std::optional<General> general;
+  /// Stiffness and mass per length as full matrices in section axes (core/section_matrices.hpp).
+  /// `constants` then holds the round section nearest to them.
+  struct Full {
+    Matrix<6> stiffness = Matrix<6>::Zero(), mass = Matrix<6>::Zero();
+    double angle = 0, twist = 0;  ///< as of General
+  };
+  std::optional<Full> full;
+  double angle() const { return general ? general->angle : full ? full->angle : 0.0; }
+  double twist() const { return general ? general->twist : full ? full->twist : 0.0; }
+  /// Not a matter of two principal planes: coupled, twisted or off the line.
+  bool is_full() const { return full || (general && (general->twist != 0 || !general->on_line())); }
   /// Stiffness and inertia constants given directly (benchmarks that state them): EA, kGA, GJ, EI;
   /// rhoA, rhoI (transverse), rhoIp.
   struct Constants {
@@ -490,8 +505,9 @@ struct Model {
   bool chart_change = true;     ///< nodes tilted beyond 1.5 rad get axes of their own
   bool keep_everything = false;
   double max_element_length = infinity;
-  int min_elements = 0;         ///< 0: chosen where the sections say nothing
-  double mesh_accuracy = 1e-3;  ///< of frequencies, where the mesh is chosen
+  int min_elements = 0;          ///< 0: chosen where the sections say nothing
+  double mesh_accuracy = 1e-3;   ///< of frequencies, where the mesh is chosen
+  bool consistent_mass = false;  ///< element masses without the corrections that raise their order
   std::vector<Material> materials;
   std::vector<Shaft> shafts;
   std::vector<Disk> disks;

@@ -1,3 +1,4 @@
+#include <model/full_section.hpp>
 #include <run/diagnose.hpp>
 #include <results/frequency.hpp>
 #include <results/held.hpp>
@@ -302,8 +303,8 @@ void FrequencyStep::finish(const std::string& line) {
 bool turns_with_stiffness(const model::Model& m) {
   for (const model::Shaft& s : m.shafts)
     for (const model::Section& x : s.sections)
-      if (s.rotating && s.speed_ratio != 0 && x.general &&
-          (x.general->Iy != x.general->Iz || x.general->kappa_y != x.general->kappa_z))
+      if (s.rotating && s.speed_ratio != 0 &&
+          (model::is_unequal(x, 0) || (x.general && x.general->kappa_y != x.general->kappa_z)))
         return true;
   return false;
 }

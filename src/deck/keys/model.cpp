@@ -48,6 +48,11 @@ void describe_settings(Visitor& v, model::Model& m) {
         w.number("accuracy", m.mesh_accuracy, between(1e-8, 0.1),
                  "of frequencies, where the program chooses the elements: sections without "
                  "min_elements or max_element_length, here or of their own");
+        int mass = m.consistent_mass ? 1 : 0;
+        const Option kinds[] = {{"corrected", "consistent, with what raises the order"},
+                                {"consistent", "as in published meshes"}};
+        if (w.option("mass", mass, kinds, "mass matrices of shaft elements"))
+          m.consistent_mass = mass == 1;
       },
       "elements; a node stands at every section end and at everything attached in any case");
 }

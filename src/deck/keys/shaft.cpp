@@ -1,7 +1,9 @@
 // [[material]], [[shaft]] and their sections.
 #include <deck/visitor.hpp>
+#include <model/full_section.hpp>
 #include <cmath>
 #include <core/units.hpp>
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 namespace whirl::deck {
@@ -104,10 +106,100 @@ void describe_shear(Visitor& v, model::Section& s) {
                               "shear factor, with shear = \"given\"");
   v.flag("rotary_inertia", s.rotary_inertia,
          "rotary inertia of the cross-sections (false: as in the Euler-Bernoulli beam)");
+  v.flag("mean_rotary_inertia", s.mean_rotary_inertia,
+         "both transverse inertias of a section that is not round are the mean of the two, so that "
+         "no inertia turns with a spinning shaft; for slender shafts, where the difference is "
+         "small and costs excitation at twice the speed; not for blades and short flat beams");
   if (!v.clean()) return;
   const bool wanted = s.shear == model::ShearFactor::given;
   if (kappa && !wanted) v.error("E26", "kappa", "'kappa' is given, but shear is not \"given\"");
   if (wanted && s.kappa == 0) v.error("E26", "shear", "shear = \"given\" needs 'kappa'");
+}
+
+/// Angle of section axes at both ends, or at the left one for both.
+void describe_angles(Visitor& v, double& angle, double& twist) {
+  v.quantity("angle", angle, "deg", any,
+             "of the section's y axis from that of the shaft, towards z");
+  double right = angle;
+  if (v.quantity(optional("angle_r", "angle"), right, "deg", any,
+                 "at the right end of a section that is twisted evenly: blades, pre-twisted beams"))
+    twist = right - angle;
+}
+
+constexpr std::array<const char*, 6> section_directions{
+    "x", "y", "z", "rotation about x", "rotation about y", "rotation about z"};
+
+/// Symmetric, with eigenvalues (after scaling to a unit diagonal) above `least`.
+void check_definite(Visitor& v, const char* key, const Matrix<6>& A, double least,
+                    const std::string& kind) {
+  constexpr double digits = 1e-6;  // of matrices written with seven digits
+  for (int i = 0; i < 6; ++i)
+    for (int k = i + 1; k < 6; ++k)
+      if (std::abs(A(i, k) - A(k, i)) >
+          digits * std::sqrt(std::abs(A(i, i) * A(k, k))) + digits * std::abs(A(i, k))) {
+        v.error("E36", key,
+                fmt::format("the {} is not symmetric: row {}, column {} is {:.7g} and row {}, "
+                            "column {} is {:.7g} (SI)",
+                            kind, i + 1, k + 1, A(i, k), k + 1, i + 1, A(k, i)));
+        return;
+      }
+  Vector<6> scale = A.diagonal().cwiseAbs().cwiseSqrt();
+  for (int i = 0; i < 6; ++i)
+    scale[i] = scale[i] > 0 ? 1 / scale[i] : 1.0;
+  const Matrix<6> unit = scale.asDiagonal() * (0.5 * (A + A.transpose())) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix<6>> modes(unit);
+  const double lowest = modes.eigenvalues()[0];
+  if (lowest > least) return;
+  int main = 0;
+  modes.eigenvectors().col(0).cwiseAbs().maxCoeff(&main);
+  v.error("E36", key,
+          fmt::format("the {} is not positive {}: scaled to a diagonal of ones it has the "
+                      "eigenvalue {:.4g}, mainly {}",
+                      kind, least < 0 ? "semi-definite" : "definite", lowest,
+                      section_directions[static_cast<std::size_t>(main)]),
+          "check the signs of the entries beside the diagonal and their units");
+}
+
+/// Of the form [m, -m c x; m c x, J], c in the plane of the section.
+void check_mass_form(Visitor& v, const Matrix<6>& M, const std::string& section) {
+  const Matrix<6> form = SectionMoments(M).matrix();
+  const double m = std::abs(M(0, 0)), J = M.bottomRightCorner<3, 3>().cwiseAbs().maxCoeff();
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 6; ++k) {
+      const double size = k < 3 ? m : std::sqrt(m * J);
+      if (std::abs(M(i, k) - form(i, k)) <= 1e-6 * size) continue;
+      v.error("E36", "mass",
+              fmt::format(
+                  "section '{}' cannot have this mass matrix: row {}, column {} is {:.7g} where a "
+                  "mass of {:.7g} per length at its centre makes {:.7g} (SI)",
+                  section, i + 1, k + 1, M(i, k), M(0, 0), form(i, k)),
+              "[m, 0, 0, 0, m z, -m y], [0, m, 0, -m z, 0, 0], [0, 0, m, m y, 0, 0] and their "
+              "mirror images, (y, z) the mass centre");
+      return;
+    }
+}
+
+void describe_full(Visitor& v, model::Section& s) {
+  model::Section::Full f;
+  v.matrix(required("stiffness"), f.stiffness, "N", "N.m", "N.m^2",
+           "per length: force (x, y, z) and moment about (x, y, z) of strain (axial, shear along y "
+           "and z) and curvature (twist, bending about y and z), in section axes about the line of "
+           "nodes; symmetric, positive definite");
+  v.matrix(required("mass"), f.mass, "kg/m", "kg", "kg.m",
+           "per length: momentum and angular momentum of velocity and angular velocity, in section "
+           "axes about the line of nodes; symmetric, positive semi-definite");
+  describe_angles(v, f.angle, f.twist);
+  if (!v.clean()) return;
+  const auto of = [&](const char* what) {
+    return fmt::format("{} matrix of section '{}'", what, s.name);
+  };
+  check_definite(v, "stiffness", f.stiffness, 1e-12, of("stiffness"));
+  if (v.clean()) check_definite(v, "mass", f.mass, -1e-9, of("mass"));
+  if (v.clean()) check_mass_form(v, f.mass, s.name);
+  if (!v.clean()) return;
+  f.stiffness = Matrix<6>(0.5 * (f.stiffness + f.stiffness.transpose()));
+  f.mass = SectionMoments(0.5 * (f.mass + f.mass.transpose())).matrix();
+  s.full = f;
 }
 
 void describe_piece(Visitor& v, Path& path) {
@@ -249,11 +341,22 @@ void describe(Visitor& v, model::Section& s) {
         w.quantity(required("J"), g.J, "mm^4", positive, "torsion constant");
         w.number(required("kappa_y"), g.kappa_y, positive, "shear factor along y");
         w.number(required("kappa_z"), g.kappa_z, positive, "shear factor along z");
-        w.quantity("angle", g.angle, "deg", any,
-                   "of the section's y axis from that of the shaft, towards z");
+        describe_angles(w, g.angle, g.twist);
+        std::vector<double> centroid{0, 0}, shear_centre{0, 0};
+        w.quantities("centroid", centroid, "mm", any, 2,
+                     "(y, z) of the centroid, section axes, from the line of nodes: axial force "
+                     "and bending act about it, and the mass is there");
+        w.quantities("shear_centre", shear_centre, "mm", any, 2,
+                     "(y, z) of the point shear forces go through without twist");
+        g.centroid = Vec2(centroid[0], centroid[1]);
+        g.shear_centre = Vec2(shear_centre[0], shear_centre[1]);
         if (w.clean()) s.general = g;
       },
       "a section that is not round: keyed, slotted, rectangular");
+  v.table(
+      optional("full", "a round section"), [&](Visitor& w) { describe_full(w, s); },
+      "a section given by its full 6x6 stiffness and mass per length: composite beams, blades; "
+      "diameters are then for pictures only");
   v.table(
       optional("constants", "from diameters and material"),
       [&](Visitor& w) {
@@ -275,14 +378,17 @@ void describe(Visitor& v, model::Section& s) {
   s.id_r = d.id_r;
   if (stiffness.given)
     s.stiffness_diameters = {stiffness.od_l, stiffness.id_l, stiffness.od_r, stiffness.id_r};
-  if (s.general && s.constants)
-    v.error("E26", "constants", "the section is given by 'general' and by 'constants'",
+  if (int(s.general.has_value()) + s.constants.has_value() + s.full.has_value() > 1)
+    v.error("E26", s.constants ? "constants" : "full",
+            fmt::format("the section is given by '{}' and by '{}'", s.general ? "general" : "full",
+                        s.constants ? "constants" : "full"),
             "keep one of the two");
-  else if (!s.rigid && !s.general && !s.constants && !d.given)
+  else if (!s.rigid && !s.general && !s.constants && !s.full && !d.given)
     v.error("E05", nullptr, fmt::format("section '{}' has no diameter", s.name),
             "give od, or od_l and od_r");
-  else if (s.rigid && (s.general || s.constants))
+  else if (s.rigid && (s.general || s.constants || s.full))
     v.error("E26", "rigid", "a rigid section has no stiffness of its own");
+  if (v.clean() && s.full) s.constants = model::round_constants(*s.full);
   const bool needs_material = !s.constants && (!s.rigid || d.given);
   if (s.material == no_material) {
     if (needs_material && v.clean())
@@ -377,6 +483,14 @@ void describe(Visitor& v, model::Shaft& s) {
     v.error("E05", nullptr, fmt::format("shaft '{}' has no sections", s.name),
             "give columns and rows, file = \"shaft.csv\", or [[shaft.section]]");
   if (v.clean() && !s.path.empty()) check_path(v, s);
+  if (v.clean() && s.damping.loss_factor != 0)
+    for (const auto& x : s.sections)
+      if (x.is_full())
+        v.error("E26", "damping",
+                fmt::format("shaft '{}' has a loss factor, and section '{}' is coupled, twisted or "
+                            "off the line: the loss factor is for sections without that",
+                            s.name, x.name),
+                "viscous damping: internal_beta");
 }
 
 }  // namespace whirl::deck
