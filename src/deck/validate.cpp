@@ -80,6 +80,7 @@ void check_restraint(const model::Model& m, Problems& out) {
   if (needs == m.steps.end()) return;
   const auto r = restraints(m);
   for (std::size_t k = 0; k < m.shafts.size(); ++k) {
+    if (m.joined(k)) continue;  // the assembled model knows
     const auto say = [&](const char* motion, const char* hint) {
       add(out, "E32",
           fmt::format("nothing resists {} of shaft '{}', but step '{}' needs a static equilibrium",
@@ -436,6 +437,10 @@ void check_places(const model::Model& m, Problems& out) {
   }
   for (const auto& d : m.drives)
     on_shaft(d.at, "drive");
+  for (const auto& j : m.joints) {
+    on_shaft(j.at, "joint");
+    if (j.to) on_shaft(*j.to, "joint");
+  }
   for (const auto& b : m.bearings) {
     on_shaft(b.at, "bearing");
     if (!b.to) continue;
