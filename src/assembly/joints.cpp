@@ -22,9 +22,9 @@ using model::JointKind;
 
 std::string name_of(const Joint& j) { return fmt::format("joint '{}'", j.name); }
 
-/// Motions of one side against the other that a joint resists at its place, as rows on (velocity,
-/// angular velocity).
-MatX constraint_rows(const Joint& j) {
+/// Motions of one side against the other that a joint resists at `place`, as rows on (velocity of
+/// the point there would be at `centre`, angular velocity), lengths by `size`.
+MatX constraint_rows(const Joint& j, const Vec3& place, const Vec3& centre, double size) {
   const auto without = [](MatX free) {  // rows that span what is orthogonal to the columns
     const MatX P = Mat3::Identity() - free * la::pseudo_inverse(free);
     return P;
@@ -43,6 +43,11 @@ MatX constraint_rows(const Joint& j) {
       break;
     }
     case JointKind::spherical: break;
+  }
+  const Vec3 arm = (place - centre) / size;  // v = v0 + w x arm
+  for (Index r = 0; r < 3; ++r) {
+    const Vec3 along = rows.block<1, 3>(r, 0).transpose();
+    rows.block<1, 3>(r, 3) += arm.cross(along).transpose();
   }
   return rows;
 }
@@ -155,13 +160,20 @@ class Joints {
     return false;
   }
   void report_loop(const Edge& e, const std::vector<std::size_t>& way) {
-    // small motions: the loop's joints against the rigid motions of the sides between them
+    // small motions: the loop's joints against the rigid motions of the parts between them
     const Index n = static_cast<Index>(way.size());
+    const auto place = [this](const Joint& j) -> const Vec3& {
+      return a_.mesh.station(j.at).position;
+    };
+    double size = 0;
+    for (const std::size_t k : way)
+      size = std::max(size, (place(*edges_[k].joint) - place(*e.joint)).norm());
+    if (!(size > 0)) size = 1.0;
     MatX A = MatX::Zero(6 * (n + 1), 6 * n);
     std::string names;
     Index wanted = 0;
     const auto put = [&](Index row, const Joint& j, Index first, Index second) {
-      const MatX rows = constraint_rows(j);
+      const MatX rows = constraint_rows(j, place(j), place(*e.joint), size);
       wanted += rank_of(rows);
       if (first >= 0) A.block(6 * row, 6 * first, 6, 6) += rows;
       if (second >= 0) A.block(6 * row, 6 * second, 6, 6) -= rows;
@@ -173,14 +185,15 @@ class Joints {
     }
     put(n, *e.joint, n - 1, -1);
     const Index rank = rank_of(A);
-    const char* verdict = rank == 6 * n ? "together they leave no motion"
-                          : rank < wanted ? "some of what they hold is held twice"
-                                          : "together they are another joint";
+    std::string verdict;
+    if (rank == 6 * n) verdict += "; they lock";
+    if (rank < wanted) verdict += fmt::format("; {} held more than once", wanted - rank);
     error(*e.joint, "E40",
-          fmt::format("it closes a loop at one place with {} {}: {} directions held of {} motions, "
-                      "{} of them different; {}",
-                      n == 1 ? "joint" : "joints", names, wanted, 6 * n, rank, verdict),
-          "keep one joint between two lines at a place; loops of a linkage close through its lines");
+          fmt::format("it closes a loop of rigid parts with {} {}: {} directions held, {} of them "
+                      "independent, of {} motions{}",
+                      n == 1 ? "joint" : "joints", names, wanted, rank, 6 * n, verdict),
+          "at one place one joint is enough for two lines; a linkage needs one line in its loop "
+          "that deforms, with places of its joints on elements and not on one rigid stretch");
   }
 
   Index root_of(std::size_t start) const {
@@ -232,7 +245,7 @@ class Joints {
     } else if (parent_offset != 0.0) {
       const Index end =
           ghost(a_.builder.node(parent).position + Vec3(parent_offset, 0, 0), who);
-      follow({end, parent, false, -1, -1, Vec3::UnitX(), who});
+      follow({end, parent, false, -1, -1, Vec3::UnitX(), who, true});
       parent = end;
     }
     Index last = child;
@@ -243,23 +256,23 @@ class Joints {
     out.name = j.name;
     const double sense = from_at ? -1.0 : 1.0;  // of 'at' against the other
     switch (j.kind) {
-      case JointKind::rigid: follow({last, parent, false, -1, -1, Vec3::UnitX(), who}); break;
-      case JointKind::spherical: follow({last, parent, true, -1, -1, Vec3::UnitX(), who}); break;
+      case JointKind::rigid: follow({last, parent, false, -1, -1, Vec3::UnitX(), who, last != child}); break;
+      case JointKind::spherical: follow({last, parent, true, -1, -1, Vec3::UnitX(), who, last != child}); break;
       case JointKind::hinge:
         out.angles = {scalar(j, "angle")};
-        follow({last, parent, false, out.angles[0], -1, sense * j.axis, who});
+        follow({last, parent, false, out.angles[0], -1, sense * j.axis, who, last != child});
         break;
       case JointKind::slider:
         out.slide = scalar(j, "slide");
-        follow({last, parent, false, -1, out.slide, sense * j.axis, who});
+        follow({last, parent, false, -1, out.slide, sense * j.axis, who, last != child});
         break;
       case JointKind::universal: {
         out.angles = {scalar(j, "angle"), scalar(j, "second angle")};
         const Index cross = ghost(a_.builder.node(last).position, who);
         const std::size_t inner = from_at ? 0 : 1;
         const Vec3 axes[2] = {sense * j.axis, sense * j.second_axis};
-        follow({cross, parent, false, out.angles[inner], -1, axes[inner], who});
-        follow({last, cross, false, out.angles[1 - inner], -1, axes[1 - inner], who});
+        follow({cross, parent, false, out.angles[inner], -1, axes[inner], who, true});
+        follow({last, cross, false, out.angles[1 - inner], -1, axes[1 - inner], who, last != child});
         break;
       }
     }

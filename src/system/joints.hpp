@@ -33,6 +33,7 @@ struct FollowerDef {
   Index angle = -1, slide = -1;  ///< scalar nodes, rad and m; -1: none
   Vec3 axis = Vec3::UnitX();     ///< unit vector in the reference, of angle and slide
   std::string joint;             ///< for messages: "joint 'elbow'"
+  bool between = false;          ///< b only stands between others: it has no place of its own
 };
 
 /// All followers of a system, parents before those that follow them.
