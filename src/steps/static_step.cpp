@@ -243,6 +243,7 @@ void StaticRun::write_tables() {
   const auto write = [&](const char* what, const io::Table& t) {
     if (!t.rows.empty()) job_.folder.write_table(file(what), t);
   };
+  write("joints", results_.joints);
   write("rolling", results_.rolling);
   write("rolling_stiffness", rolling_stiffness_);
   write("coefficients", coefficients_);
@@ -279,6 +280,7 @@ void StaticRun::add_section() {
     section.figures.push_back(std::move(f));
   section.tables.push_back(std::move(results_.supports));
   section.tables.push_back(std::move(results_.extremes));
+  if (!results_.joints.rows.empty()) section.tables.push_back(std::move(results_.joints));
   const auto add = [&](io::Table& t, const char* title, const char* what) {
     if (t.rows.empty()) return;
     section.tables.push_back(std::move(t));

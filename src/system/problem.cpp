@@ -37,11 +37,6 @@ SystemProblem::SystemProblem(const System& system, ProblemOptions options)
       rotates[at(i)] = 1;
   }
   const Followers& followers = system.followers();
-  for (std::size_t k = 0; k < followers.count(); ++k) {
-    const FollowerDef& f = followers[k];
-    if (f.angle >= 0) kinds_[at(6 * f.angle)] = time::Kind::tilt;
-    if (f.slide >= 0) kinds_[at(6 * f.slide)] = time::Kind::displacement;
-  }
   for (Index i = 0; i < system.nodes(); ++i) {
     const NodeDef& def = system.node(i);
     if (def.scalar) continue;

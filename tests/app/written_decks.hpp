@@ -315,6 +315,9 @@ force = ["0 N", "30 N", "40 N"]
 [[load]]
 at = "ds"
 force = ["0 N", "5 N", "60 N"]
+[[step]]
+name = "st"
+type = "static"
 )") + transient("duration = \"1 ms\"\n")},
       {"arms in motion", arms("hs", R"(["0 m/s^2", "0 m/s^2", "0 m/s^2"])", R"([[joint]]
 name = "H"
@@ -337,8 +340,10 @@ force = ["0 N", "0 N", "40 N"]
 )") + transient("duration = \"1 s\"\nstart = \"rest\"\n")},
       {"arm on an arm", arms("pq", R"(["0 m/s^2", "0 m/s^2", "0 m/s^2"])", R"([[joint]]
 name = "G"
-kind = "rigid"
+kind = "slider"
 at = "p1:start"
+axis = [1, 0, 0]
+stiffness = "1e6 N/m"
 [[joint]]
 name = "A"
 kind = "rigid"
