@@ -20,7 +20,7 @@ namespace {
 using model::Joint;
 using model::JointKind;
 
-std::string name_of(const Joint& j) { return fmt::format("joint '{}'", j.name); }
+std::string joint_name(const Joint& j) { return fmt::format("joint '{}'", j.name); }
 
 /// Motions of one side against the other that a joint resists at `place`, as rows on (velocity of
 /// the point there would be at `centre`, angular velocity), lengths by `size`.
@@ -85,7 +85,7 @@ class Joints {
   };
 
   void error(const Joint& j, const char* code, const std::string& message, std::string hint = {}) {
-    a_.error(code, fmt::format("{}: {}", name_of(j), message), std::move(hint), j, name_of(j));
+    a_.error(code, fmt::format("{}: {}", joint_name(j), message), std::move(hint), j, joint_name(j));
   }
 
   void list_held() {
@@ -228,14 +228,14 @@ class Joints {
   Index scalar(const Joint& j, const char* what) {
     if (line_ < 0) line_ = a_.builder.add_line("joints");
     return a_.builder.add_node(
-        {Vec3::Zero(), line_, fmt::format("{} of {}", what, name_of(j)), true});
+        {Vec3::Zero(), line_, fmt::format("{} of {}", what, joint_name(j)), true});
   }
 
   /// `child` follows `parent` by the joint.
   void join(std::size_t k, Index parent, Index child) {
     const Edge& e = edges_[k];
     const Joint& j = *e.joint;
-    const std::string who = name_of(j);
+    const std::string who = joint_name(j);
     const bool from_at = parent == e.at;
     if (!check_held(j, child)) return;
     const double parent_offset = from_at ? e.at_offset : e.to_offset,
@@ -305,7 +305,7 @@ class Joints {
     spring.K(0, 0) = j.stiffness;
     spring.C(0, 0) = j.damping;
     a_.builder.add(
-        spring, {node, a_.builder.add_ground(Vec3::Zero(), "ground of " + name_of(j))},
+        spring, {node, a_.builder.add_ground(Vec3::Zero(), "ground of " + joint_name(j))},
         "linear bearings");
   }
 
