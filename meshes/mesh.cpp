@@ -47,6 +47,10 @@ std::vector<Attached> attachments(const Model& m) {
     out.push_back({&x.at, named("bearing", x), 0.0, held});
     if (x.to) out.push_back({&*x.to, named("bearing", x), 0.0, false});
   }
+  for (const auto& x : m.joints) {
+    out.push_back({&x.at, named("joint", x)});
+    if (x.to) out.push_back({&*x.to, named("joint", x)});
+  }
   for (const auto& x : m.loads)
     out.push_back({&x.at, named("load", x)});
   for (const auto& x : m.drives)

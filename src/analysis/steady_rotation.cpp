@@ -104,6 +104,7 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
   std::sort(orders_.begin(), orders_.end());
   orders_.erase(std::unique(orders_.begin(), orders_.end()), orders_.end());
   sense_ = spin_senses(system, ratio_);
+  find_unsteady_joint();
   workspace_.context.averaged = running_.mean;
   workspace_.context.hysteretic = running_.hysteretic;
   for (const auto& term : system.terms())
@@ -136,6 +137,22 @@ void SteadySystem::find_spinning() {
     if (moves[at(line)]) held_.emplace_back(line, i);
     for (Index j = 0; j < system_.nodes(); ++j)
       if (system_.node(j).line == line) spinning_[at(j)] = 0;
+  }
+}
+
+void SteadySystem::find_unsteady_joint() {
+  const system::Followers& followers = system_.followers();
+  for (std::size_t k = 0; k < followers.count() && unsteady_joint_.empty(); ++k) {
+    const system::FollowerDef& f = followers[k];
+    const auto rate = [&](Index i) {
+      return spinning_[at(i)] ? ratio_[at(system_.node(i).line)] : 0.0;
+    };
+    const double of_node = rate(f.node), of_parent = rate(f.parent);
+    if (f.pinned || (of_node == 0.0 && of_parent == 0.0)) continue;
+    const Vec3 arm = system_.node(f.node).position - system_.node(f.parent).position;
+    const bool one_shaft = f.angle < 0 && f.slide < 0 && of_node == of_parent &&
+                           arm.cross(Vec3::UnitX()).norm() <= 1e-9 * arm.norm();
+    if (!one_shaft) unsteady_joint_ = f.joint;
   }
 }
 
@@ -249,6 +266,11 @@ void SteadySystem::set_apart_frequency_terms() {
 void SteadySystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
   WHIRL_EXPECTS(std::isfinite(Omega) && v.size() == system_.size());
   v.setZero();
+  if (Omega != 0.0 && !unsteady_joint_.empty())
+    throw run_error("E41",
+                    unsteady_joint_ +
+                        " holds lines that do not turn as one shaft: there is no steady rotation",
+                    "a transient step follows them; lines that stand still have rotating = false");
   if (Omega != 0.0)
     for (const auto& [line, node] : held_)
       throw run_error("E78",

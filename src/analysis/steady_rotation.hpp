@@ -124,6 +124,7 @@ class SteadySystem {
   void sort_terms();
   void set_apart_frequency_terms();
   void make_samples();
+  void find_unsteady_joint();
   void make_samples_of_orders();
 
   const system::System& system_;
@@ -133,6 +134,7 @@ class SteadySystem {
   std::vector<unsigned char> spinning_;
   std::vector<std::pair<Index, Index>>
       held_;                        ///< line that cannot turn, and the node at which it is held
+  std::string unsteady_joint_;  ///< of lines that do not turn as one; empty: none
   Terms smooth_, other_;            ///< blind to phi: quadratic in the rates; the rest
   Terms turning_smooth_, turning_;  ///< that see phi: the same
   Terms blind_, all_;

@@ -40,6 +40,7 @@ Built build_system(const model::Model& model, const meshes::Mesh& mesh, const st
   add_bodies(a);
   add_unbalances(a);
   add_supports(a);
+  add_joints(a);
   add_foundations(a);
   add_loads(a);
   add_turning_base(a);

@@ -24,6 +24,14 @@ struct SupportForce {
   Law moment{};  ///< N m, about the place of the support; null where it gives none
 };
 
+/// What a joint does: its load on the line of `at`, about its place, and its coordinates.
+struct JointResult {
+  std::string name;
+  SupportForce::Law force, moment;  ///< N, N m, global axes; moment null: it gives none
+  std::vector<Index> angles;  ///< scalar nodes, rad: `at` against the other, about its axes
+  Index slide = -1;           ///< scalar node, m
+};
+
 /// How a support with a gap stands: films before their clearance is used up, contacts before they
 /// close.
 struct SupportCondition {
@@ -83,6 +91,7 @@ struct Built {
   std::vector<double> breakpoints;  ///< of all laws (holds, loads, drives, unbalance factors),
                                     ///< sorted: integrator steps land on them
   std::vector<SupportForce> support_forces;  ///< one a bearing of the model, in its order
+  std::vector<JointResult> joints;           ///< one a joint of the model, in its order
   std::vector<std::vector<std::size_t>>
       support_terms;  ///< of each bearing the terms of the system in which its law stands, without
                       ///< constant springs and dampers; they may hold other bearings' elements

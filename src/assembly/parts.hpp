@@ -32,6 +32,8 @@ void add_bodies(Assembly& a);
 void add_unbalances(Assembly& a);
 /// Bearings, rigid supports, pedestals.
 void add_supports(Assembly& a);
+/// Joints between lines, or to the ground.
+void add_joints(Assembly& a);
 /// Reduced foundations under bearings.
 void add_foundations(Assembly& a);
 /// Loads and drives, and what each line spins with.

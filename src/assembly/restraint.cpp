@@ -60,6 +60,7 @@ class Restraint {
 
   void check_axial() {
     for (const auto& lines : groups({x})) {
+      if (joined(lines)) continue;
       if (grounded(lines, x)) continue;
       if (loaded(lines, true) && (equilibrium_ || frequency_)) {
         complain(
@@ -84,7 +85,7 @@ class Restraint {
     for (int p = 0; p < 2; ++p) {
       const Direction along = p == 0 ? y : z, turn = p == 0 ? rz : ry;
       for (const auto& lines : groups({along, turn}))
-        if (const std::string what = free_motion(lines, along, turn);
+        if (const std::string what = joined(lines) ? "" : free_motion(lines, along, turn);
             !what.empty() && wrong(lines, what))
           found[p].push_back({lines, what});
     }
@@ -105,7 +106,7 @@ class Restraint {
     for (std::size_t l = 0; l < a_.mesh.lines.size(); ++l) {
       const meshes::Line& line = a_.mesh.lines[l];
       if (!line.rotating) {
-        if (grounded({l}, rx)) continue;
+        if (a_.model.joined(l) || grounded({l}, rx)) continue;
         a_.builder.hold(line.first_node, system::spin_phi);
         hold(fmt::format("turning of casing '{}' about its axis: held at its left end", line.name));
         continue;
@@ -187,6 +188,12 @@ class Restraint {
     return std::any_of(links_.begin(), links_.end(), [&](const Link& k) {
       return k.in[d] && k.b.line < 0 && contains(lines, k.a.line);
     });
+  }
+
+  /// Lines in joints: their restraint is the equilibrium's to find (E75).
+  bool joined(const std::vector<std::size_t>& lines) const {
+    return std::any_of(lines.begin(), lines.end(),
+                       [this](std::size_t l) { return a_.model.joined(l); });
   }
 
   double half(std::size_t l) const {

@@ -218,6 +218,20 @@ const std::vector<CodeInfo>& error_catalogue() {
        "the message then says so. Leave linear out: the general model does all of these.",
        "[[step]]\nname = \"release\"\ntype = \"transient\"\nlinear = true\ninitial_speed = \"3000 "
        "rpm\""},
+      {"E40", "joints that contradict each other or a support",
+       "A joint holds two places together exactly. Where two joints meet at the same two lines and "
+       "place, or a joint and a rigid support hold the same direction of a node, part of what they "
+       "hold is held twice, or no motion is left. The message counts directions held, motions, and "
+       "how many of the directions are different (the rank of the constraints). Linkages may close "
+       "as many loops as they like: through their lines, which deform.",
+       "[[joint]]\nname = \"elbow\"\nkind = \"hinge\"\nat = \"arm/end\"\nto = "
+       "\"forearm/start\"\naxis = [0, 0, 1]"},
+      {"E41", "an analysis that does not go with a joint",
+       "Joints are exact in statics, load paths, modes and motions in time. Analyses that suppose "
+       "what a joint breaks refuse it by name: rotors that turn steadily with a joint between "
+       "lines that do not turn as one, kinds of motion that are left out, linear transients, the "
+       "momentum form, linearised buckling, harmonic and unbalance response.",
+       "type = \"transient\""},
       {"E61", "an unknown with neither stiffness nor mass",
        "The eigenvalue problem cannot be factored at any shift: nothing in the model resists or "
        "carries the motion that the message names. Hold it, or give "

@@ -33,6 +33,10 @@ void check_places(const model::Model& m, Problems& out) {
   }
   for (const auto& d : m.drives)
     on_shaft(d.at, "drive");
+  for (const auto& j : m.joints) {
+    on_shaft(j.at, "joint");
+    if (j.to) on_shaft(*j.to, "joint");
+  }
   for (const auto& b : m.bearings) {
     on_shaft(b.at, "bearing");
     if (!b.to) continue;

@@ -75,6 +75,7 @@ void check_restraint(const model::Model& m, Problems& out) {
   if (needs == m.steps.end()) return;
   const auto r = restraints(m);
   for (std::size_t k = 0; k < m.shafts.size(); ++k) {
+    if (m.joined(k)) continue;  // the assembled model knows
     const auto say = [&](const char* motion, const char* hint) {
       report(
           out, "E32",

@@ -200,6 +200,7 @@ void describe(Visitor&, model::PointLoad&);
 void describe(Visitor&, model::Probe&);
 void describe(Visitor&, model::InitialMotion&);
 void describe(Visitor&, model::Bearing&);     // bearings.cpp
+void describe(Visitor&, model::Joint&);       // joints.cpp
 void describe(Visitor&, model::Foundation&);  // foundations.cpp
 void describe(Visitor&, model::Drive&);       // drives.cpp
 void describe(Visitor&, model::Step&);        // steps.cpp

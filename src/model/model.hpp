@@ -174,6 +174,22 @@ struct Bearing : Entity {
   std::optional<Pedestal> pedestal;
 };
 
+enum class JointKind { rigid, hinge, universal, spherical, slider };
+
+/// Holds two places of lines together exactly, or one to the ground, but for what its kind leaves
+/// free. Axes are of the undeformed model and fixed in the lines.
+struct Joint : Entity {
+  JointKind kind = JointKind::rigid;
+  Location at;
+  std::optional<Location> to;  ///< absent: the ground
+  Vec3 axis = Vec3::UnitX();   ///< unit vector; of a universal joint the one fixed in the line of
+                               ///< `at`
+  Vec3 second_axis = Vec3::UnitX();  ///< of a universal joint, fixed in the other
+  bool arm = false;  ///< rigid: the places may lie apart, joined by an arm without mass
+  double stiffness = 0, damping = 0;  ///< on the angle of a hinge, N m/rad, N m s/rad; on the slide
+                                      ///< of a slider, N/m, N s/m
+};
+
 /// A foundation or casing as reduced matrices: its coordinates are support points of bearings and
 /// internal ones.
 struct Foundation : Entity {
@@ -514,6 +530,13 @@ struct Model {
   std::vector<Unbalance> unbalances;
   std::vector<InitialMotion> initial;
   std::vector<Bearing> bearings;
+  std::vector<Joint> joints;
+  /// Lines that joints hold.
+  bool joined(std::size_t shaft) const {
+    for (const Joint& j : joints)
+      if (j.at.shaft == shaft || (j.to && j.to->shaft == shaft)) return true;
+    return false;
+  }
   std::vector<Foundation> foundations;
   /// Foundation a bearing stands on, or -1.
   int foundation_of(std::size_t bearing) const {

@@ -2,6 +2,8 @@
 
 #include <analysis/spectra/whirl_modes.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace whirl::results {
@@ -103,6 +105,37 @@ void add_drive_torques(const run::Job& job, Channels& c) {
   }
 }
 
+void add_joints(const run::Job& job, Channels& c) {
+  if (!wants(job.model.output, "joints")) return;
+  for (const assembly::JointResult& j : job.built.joints) {
+    const auto add_load = [&](const char* what, const char* unit, const char* about,
+                              const assembly::SupportForce::Law& law) {
+      Measurement x{fmt::format("joint {} {}", j.name, what), unit, about, {"x", "y", "z"}, 1.0,
+                    {}};
+      x.evaluate = [&law](const Snapshot& s, double* out) {
+        Eigen::Map<Vec3>{out} = law(nodes_of(s), s.context(), reactions_of(s));
+      };
+      c.add(std::move(x));
+    };
+    const auto add_coordinate = [&](const char* what, const char* unit, const char* about,
+                                    Index node) {
+      Measurement x{fmt::format("joint {} {}", j.name, what), unit, about, {}, 1.0, {}};
+      x.evaluate = [node](const Snapshot& s, double* out) { *out = s.q()[6 * node]; };
+      c.add(std::move(x));
+    };
+    add_load("force", "N", "force of the joint on the line of its 'at', fixed axes", j.force);
+    if (j.moment)
+      add_load("moment", "N.m", "moment on the line of its 'at' about that place, fixed axes",
+               j.moment);
+    const char* angles[] = {"angle", "second angle"};
+    for (std::size_t k = 0; k < j.angles.size(); ++k)
+      add_coordinate(angles[k], "rad", "of the line of 'at' against the other, whole turns counted",
+                     j.angles[k]);
+    if (j.slide >= 0)
+      add_coordinate("slide", "m", "of the line of 'at' against the other", j.slide);
+  }
+}
+
 }  // namespace
 
 Point point_of(const run::Job& job, const model::Location& at) {
@@ -148,6 +181,7 @@ Channels make_channels(const run::Job& job) {
   add_support_forces(job, c);
   add_support_moments(job, c);
   add_drive_torques(job, c);
+  add_joints(job, c);
   if (wants(job.model.output, "energy")) c.add(analysis::measure_energy());
   return c;
 }

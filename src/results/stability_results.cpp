@@ -67,8 +67,13 @@ void add_stability(io::Value& v, const analysis::Definiteness& d, double Omega) 
 }
 
 io::Table shape_table(const run::Job& job, const std::string& title, const system::Frames& frames,
-                      const VecX& q, const VecX& shape) {
+                      const VecX& q, const VecX& unknowns) {
   const system::System& system = job.system();
+  system::State state = system.make_state();
+  state.frames = frames;
+  state.q = q;
+  VecX shape = unknowns;
+  system.complete(state, shape);
   io::Table t;
   t.title = title;
   t.columns = {{"node", "-", ""},

@@ -67,6 +67,37 @@ void add_supports(const run::Job& job, const std::vector<SupportLoad>& loads, St
   }
 }
 
+void add_joints(const run::Job& job, const system::Workspace& state, const VecX& reactions,
+                StaticResults& out, io::Value& summary) {
+  out.joints.title = "Joints: force and moment on the line of 'at', about that place";
+  out.joints.columns = {{"joint", "-", ""},
+                        {"F_x", "N", ""},
+                        {"F_y", "N", ""},
+                        {"F_z", "N", ""},
+                        {"M_x", "N m", ""},
+                        {"M_y", "N m", ""},
+                        {"M_z", "N m", ""},
+                        {"angle", "rad", "of the line of 'at' against the other"},
+                        {"second angle", "rad", "of a universal joint"},
+                        {"slide", "m", ""}};
+  const auto node = [&](Index n) -> const system::NodeState& { return state.in_own_axes(n); };
+  const auto reaction = [&](Index k) { return reactions[k]; };
+  const auto coordinate = [&](Index n) { return state.nodes[at(n)].u[0]; };
+  for (const assembly::JointResult& j : job.built.joints) {
+    const Vec3 F = j.force(node, state.context, reaction);
+    const Vec3 M = j.moment ? j.moment(node, state.context, reaction) : Vec3(Vec3::Zero());
+    const auto angle = [&](std::size_t k) {
+      return k < j.angles.size() ? coordinate(j.angles[k]) : 0.0;
+    };
+    out.joints.add({j.name, F.x(), F.y(), F.z(), M.x(), M.y(), M.z(), angle(0), angle(1),
+                    j.slide >= 0 ? coordinate(j.slide) : 0.0});
+    push_components(summary["joint forces [N]"][j.name], F);
+    std::string line = fmt::format("joint '{}': {:.5g}, {:.5g}, {:.5g} N", j.name, F.x(), F.y(), F.z());
+    if (j.moment) line += fmt::format("; {:.5g}, {:.5g}, {:.5g} N m", M.x(), M.y(), M.z());
+    out.lines.push_back(std::move(line));
+  }
+}
+
 /// Torques of what keeps the speed of shafts that nothing else holds.
 void add_spin_holds(const run::Job& job, std::span<const Index> spin_holds, const VecX& reactions,
                     StaticResults& out, io::Value& summary) {
@@ -109,6 +140,7 @@ StaticResults make_static_results(run::Job& job, const std::string& step,
   add_deflection(job, step, state, out, summary);
   add_rolling_loads(job, state, out, summary);
   add_supports(job, loads, out, summary);
+  add_joints(job, state, reactions, out, summary);
   add_spin_holds(job, spin_holds, reactions, out, summary);
   summary["elastic energy [J]"] = problem.energy().elastic;
   out.points = assembly::calc_section_results(job.model, job.mesh, job.built, state);

@@ -10,6 +10,7 @@ namespace whirl::results {
 
 struct StaticResults {
   io::Table deflection, supports, sections, extremes;
+  io::Table joints;   ///< loads and coordinates of joints; no rows without joints
   io::Table rolling;  ///< load of every ball and roller; no rows without such bearings
   std::vector<plot::Figure> figures;
   std::vector<assembly::SectionPoint> points;

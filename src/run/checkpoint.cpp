@@ -74,6 +74,7 @@ std::string encode(const Checkpoint& c) {
   a.put(c.state.frames.shift);
   a.put(c.state.frames.lead);
   a.put(c.state.frames.link);
+  a.put(c.state.frames.joint);
   a.put(c.integrator.serialize());
   a.put_count(c.parts.size());
   for (const auto& [key, data] : c.parts) {
@@ -108,6 +109,7 @@ Checkpoint decode(std::string_view data) {
   c.state.frames.shift = a.numbers();
   c.state.frames.lead = a.numbers();
   c.state.frames.link = a.numbers();
+  c.state.frames.joint = a.numbers();
   c.integrator = time::IntegratorState::deserialize(a.numbers());
   for (std::uint64_t n = a.count(); n > 0; --n) {
     const Part part = part_of(a.text());

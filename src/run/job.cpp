@@ -4,6 +4,7 @@
 
 #include <analysis/statics/equilibrium.hpp>
 #include <core/rotation.hpp>
+#include <system/joint_start.hpp>
 
 #include <fmt/format.h>
 
@@ -83,6 +84,10 @@ StepState Job::start_of(const model::Step& step, std::optional<double> speed) co
       x.v.segment<3>(6 * n) += i.velocity + i.omega.cross(R * arm);
     }
   }
+  if (const std::string wrong = system::fit_joints(system(), x); !wrong.empty())
+    throw run_error("E40", wrong + ": the lines it holds would come apart at the start",
+                    "speeds, angles and initial motions of the two lines must be such as the "
+                    "joint allows");
   return s;
 }
 

@@ -31,6 +31,12 @@ analysis::LoadPathOptions path_options(const run::Job& job, const model::LoadPat
     const meshes::Place at = job.mesh.place(p.at);
     o.controlled = 6 * at.node + p.direction;
     o.controlled_to = p.to;
+    if (const system::FollowerDef* f = job.system().followers().find(at.node);
+        f && !(f->pinned && p.direction >= 3))
+      throw run_error("E41",
+                      fmt::format("the place of displacement control is carried along by {}",
+                                  f->joint),
+                      "control the place the joint hangs on, or another");
   } else {
     o.last_load = p.last_load;
     o.branch = p.branch;
@@ -237,6 +243,7 @@ void StaticRun::write_tables() {
   const auto write = [&](const char* what, const io::Table& t) {
     if (!t.rows.empty()) job_.folder.write_table(file(what), t);
   };
+  write("joints", results_.joints);
   write("rolling", results_.rolling);
   write("rolling_stiffness", rolling_stiffness_);
   write("coefficients", coefficients_);
@@ -273,6 +280,7 @@ void StaticRun::add_section() {
     section.figures.push_back(std::move(f));
   section.tables.push_back(std::move(results_.supports));
   section.tables.push_back(std::move(results_.extremes));
+  if (!results_.joints.rows.empty()) section.tables.push_back(std::move(results_.joints));
   const auto add = [&](io::Table& t, const char* title, const char* what) {
     if (t.rows.empty()) return;
     section.tables.push_back(std::move(t));

@@ -60,6 +60,10 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
   for (const auto& f : job.built.fine)
     for (const Index c : {1, 2})
       o.scales.limits.push_back({6 * f.node + c, f.length});
+  // an angle is right to the tolerance, however many turns it has made
+  for (const assembly::JointResult& j : job.built.joints)
+    for (const Index angle : j.angles)
+      o.scales.limits.push_back({6 * angle, 1.0});
   if (law.stop_speed != 0.0) t.speed_stops.push_back({job.reference(), law.stop_speed});
   if (law.amplitude_limit < infinity)
     for (const auto& [name, p] : results::watched_points(job))

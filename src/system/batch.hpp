@@ -21,6 +21,7 @@ struct Workspace {
   std::vector<rotation::Director> director;  ///< in chart axes
   std::vector<Vector<7>> force;              ///< X-space force of every node
   la::BlockMatrix<7> M, C, K;                ///< X-space tangents
+  VecX q, v, a, loads;  ///< with the places of followers, where there are any (joints.hpp)
   Context context;
   Index outside = -1;  ///< node that left the chart (|gamma| >= pi), or -1
   /// Once nodes have moved to other axes (frames.hpp): each as its line's own axes see it. Of the

@@ -30,6 +30,9 @@ struct Frames {
   /// and at the last accepted state.
   std::vector<double> shift, lead;
   std::vector<double> link;  ///< per pair in System::links(), rad; empty while no node has moved
+  /// Per follower of a joint, rad: its phi less what is expected of it (joints.hpp), which tells
+  /// whole turns.
+  std::vector<double> joint;
 
   bool moved() const { return chart.size() > turns.size(); }
   /// The axes that a node's phi and gamma refer to.

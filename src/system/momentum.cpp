@@ -20,6 +20,7 @@ Mat3 body_axes(const Mat3& chart, double phi, const Vec2& gamma) {
 }  // namespace
 
 std::string MomentumProblem::list_bodies(const System& system, std::vector<Body>& bodies) {
+  if (!system.followers().empty()) return "a joint (" + system.followers()[0].joint + ")";
   std::vector<RigidInertia> inertia(at(system.nodes()));
   for (const auto& term : system.terms()) {
     if (term->inertial() && !term->add_rigid_inertia(inertia))

@@ -38,9 +38,16 @@ SystemProblem::SystemProblem(const System& system, ProblemOptions options)
     for (Index i : touched)
       rotates[at(i)] = 1;
   }
+  const Followers& followers = system.followers();
   for (Index i = 0; i < system.nodes(); ++i) {
     const NodeDef& def = system.node(i);
     if (def.scalar) continue;
+    if (const FollowerDef* f = followers.find(i); f && !f->pinned) {
+      line_nodes_[at(def.line)].push_back(i);
+      movable_[at(def.line)].push_back(i);
+      if (lead_[at(def.line)] < 0) lead_[at(def.line)] = i;
+      continue;
+    }
     bool any = false, rotation_held = false;
     for (int c = 3; c < 6; ++c)
       (active[at(6 * i + c)] ? any : rotation_held) = true;
@@ -111,6 +118,14 @@ time::Problem::Power SystemProblem::exchange_here(time::CRef v, time::CRef react
 
 bool SystemProblem::accept(double, time::Ref q, time::Ref v, time::Ref a) {
   WHIRL_EXPECTS(q.size() == size() && v.size() == size() && a.size() == size());
+  if (system_.followers().empty()) return accept_nodes(q, v, a);
+  system_.follow(frames, q, v, a);
+  const bool changed = accept_nodes(q, v, a);
+  system_.followers().keep_turns(frames, q);
+  return changed;
+}
+
+bool SystemProblem::accept_nodes(time::Ref q, time::Ref v, time::Ref a) {
   bool changed = false;
   if (frames.moved()) {
     list_normals(q);

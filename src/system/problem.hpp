@@ -69,6 +69,7 @@ class SystemProblem : public time::Problem {
   la::MCK& kept_matrices() { return matrices_; }
 
  private:
+  bool accept_nodes(time::Ref q, time::Ref v, time::Ref a);
   bool rechart(Index line, time::Ref q, time::Ref v, time::Ref a);
   void move(std::span<const Index> nodes, const Vec3& axis, time::Ref q, time::Ref v, time::Ref a);
   void list_normals(time::CRef q);

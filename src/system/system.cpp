@@ -96,6 +96,12 @@ System Builder::finalize() {
       width[at(n)] = std::max(width[at(n)], term->width());
   }
   std::vector<LawPtr> law(at(s.size()));
+  for (const FollowerDef& f : followers_)  // what follows is touched through what it follows
+    for (const Index n : {f.node, f.parent})
+      width[at(n)] = 7;
+  for (const FollowerDef& f : followers_)
+    for (const Index n : {f.angle, f.slide})
+      if (n >= 0) width[at(n)] = std::max(width[at(n)], 3);
   for (Index i = 0; i < s.nodes(); ++i) {
     const int first_free = s.defs_[at(i)].scalar ? 1
                            : width[at(i)] == 7   ? 6
@@ -108,16 +114,30 @@ System Builder::finalize() {
     s.active_[at(h.unknown)] = 0;
     law[at(h.unknown)] = h.law;
   }
+  std::vector<unsigned char> follows(at(s.size()), 0);
+  for (const FollowerDef& f : followers_)
+    for (Index c = 0; c < (f.pinned ? 3 : 6); ++c)
+      follows[at(6 * f.node + c)] = 1;
   std::vector<Index> row(at(s.nodes()), -1);
   for (Index k = 0; k < s.size(); ++k) {
-    if (s.active_[at(k)])
+    if (s.active_[at(k)] || follows[at(k)])
       row[at(k / 6)] = k / 6;
     else
       s.holds_.push_back({k, law[at(k)]});
+    if (follows[at(k)]) s.active_[at(k)] = 0;
   }
   std::vector<std::pair<Index, Index>> all, kept;
   for (const auto& term : s.terms_)
     term->list_couplings(all);
+  if (!followers_.empty()) {
+    std::vector<Vec3> positions;
+    std::vector<Mat3> axes;
+    for (const NodeDef& d : s.defs_) {
+      positions.push_back(d.position);
+      axes.push_back(s.charts_[at(d.line)]);
+    }
+    s.followers_.arrange(followers_, positions, axes, all);
+  }
   for (auto [i, j] : all)
     if (row[at(i)] >= 0 && row[at(j)] >= 0) kept.emplace_back(i, j);
   s.pattern_ = std::make_unique<la::BlockPattern>(s.nodes(), kept);
@@ -125,11 +145,12 @@ System Builder::finalize() {
     term->bind(*s.pattern_, row);
     term->list_links(s.links_);
   }
+  s.followers_.bind(*s.pattern_);
   std::sort(s.links_.begin(), s.links_.end());
   s.links_.erase(std::unique(s.links_.begin(), s.links_.end()), s.links_.end());
   for (auto& term : s.terms_)
     term->bind_links(s.links_);
-  s.linear_ = true;
+  s.linear_ = followers_.empty();
   for (const auto& term : s.terms_)
     s.linear_ = s.linear_ && term->linear_in_displacements();
   for (Index k = 0; k < s.size(); ++k)
@@ -170,6 +191,11 @@ State System::make_state() const {
   s.frames.chart = charts_;
   s.frames.turns.assign(charts_.size(), 0.0);
   s.frames.of_node = line_of_;
+  if (!followers_.empty()) {
+    s.frames.joint.assign(followers_.count(), 0.0);
+    follow(s);
+    followers_.keep_turns(s.frames, s.q);
+  }
   return s;
 }
 
@@ -234,6 +260,7 @@ void System::impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<Ve
     if (h.unknown % 6 == spin_phi)
       q[h.unknown] -= two_pi * f.turns[at(defs_[at(h.unknown / 6)].line)];
   }
+  follow(f, q, v, a);
 }
 
 bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
@@ -245,9 +272,19 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   w.context.gravity = w.context.load * gravity_at(t);
   lanes::Motion m;
   m.count = nodes();
-  m.q = q.data();
-  m.v = v.data();
-  m.a = a.data();
+  if (followers_.empty()) {
+    m.q = q.data();
+    m.v = v.data();
+    m.a = a.data();
+  } else {
+    w.q = q;
+    w.v = v;
+    w.a = a;
+    if (!followers_.follow(f, w.q, w.v, w.a)) return false;
+    m.q = w.q.data();
+    m.v = w.v.data();
+    m.a = w.a.data();
+  }
   m.line = line_of_.data();
   m.axes = f.of_node.data();
   m.falling = falling_.data();
@@ -308,6 +345,17 @@ void System::project_force(const Workspace& w, Eigen::Ref<VecX> r) const {
   }
 }
 
+void System::loads_into(Workspace& w, const Frames& f, Eigen::Ref<VecX> r) const {
+  VecX& loads = w.loads;
+  loads.setZero(size());
+  followers_.carry_force(w, f, loads);
+  project_force(w, r);
+  for (std::size_t k = 0; k < followers_.count(); ++k) {
+    const Index i = 6 * followers_[k].node, entries = followers_[k].pinned ? 3 : 6;
+    r.segment(i, entries) = loads.segment(i, entries);
+  }
+}
+
 bool System::residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                       Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, Eigen::Ref<VecX> r,
                       Selection only) const {
@@ -320,7 +368,10 @@ bool System::residual(Workspace& w, const Frames& f, double t, Eigen::Ref<const 
   else
     for (const auto& term : terms_)
       term->add_force(w);
-  project_force(w, r);
+  if (followers_.empty())
+    project_force(w, r);
+  else
+    loads_into(w, f, r);
   return r.allFinite();
 }
 
@@ -331,7 +382,10 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
   WHIRL_EXPECTS(out.C.value_count() == out.M.value_count() &&
                 out.K.value_count() == out.M.value_count());
   if (!evaluate_nodes(w, f, t, q, v, a)) return false;
-  evaluate_jacobians(w, q, v, a);
+  if (followers_.empty())
+    evaluate_jacobians(w, q, v, a);
+  else
+    evaluate_jacobians(w, w.q, w.v, w.a);
   for (auto& x : w.force)
     x.setZero();
   w.M.set_zero();
@@ -348,6 +402,7 @@ bool System::tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const V
       term->add_tangent(w);
     }
 
+  if (!followers_.empty()) followers_.carry_tangent(w, f);
   // q-space blocks: columns of gamma through D and its rates (node.hpp), then rows through D^T.
   const auto& start = pattern_->row_start();
   const auto& cols = pattern_->cols();

@@ -4,6 +4,7 @@
 #include <core/contract.hpp>
 #include <core/law.hpp>
 #include <system/batch.hpp>
+#include <system/joints.hpp>
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -61,6 +62,20 @@ class System {
   const std::vector<Hold>& holds() const { return holds_; }
   const std::vector<std::unique_ptr<Term>>& terms() const { return terms_; }
   const Vec3& gravity() const { return gravity_; }
+  /// Nodes that joints carry along (joints.hpp).
+  const Followers& followers() const { return followers_; }
+  /// Writes places, rates and accelerations of followers into q, v, a. False outside their axes.
+  bool follow(const Frames& f, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v, Eigen::Ref<VecX> a) const {
+    return followers_.empty() || followers_.follow(f, q, v, a);
+  }
+  void follow(State& s) const { follow(s.frames, s.q, s.v, s.a); }
+  /// x, a small motion of the unknowns about s, gets that of followers. Scalar: double, Complex.
+  template <class Scalar>
+  void complete(const State& s, Eigen::Matrix<Scalar, -1, 1>& x) const {
+    if (followers_.empty()) return;
+    Workspace w = make_workspace();
+    if (evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a)) followers_.complete(w, s.frames, x);
+  }
   /// Pairs of nodes, lower number first, whose angles elements compare, sorted.
   std::span<const std::pair<Index, Index>> links() const { return links_; }
   /// The base accelerates as time goes on.
@@ -90,7 +105,8 @@ class System {
   Workspace make_workspace() const;
   la::MCK make_matrices() const { return la::MCK(*pattern_); }
 
-  /// Sets held entries of q, v, a at time t. phi laws are reduced by the line's whole turns.
+  /// Sets held entries of q, v, a at time t, and those of followers. phi laws are reduced by the
+  /// line's whole turns.
   void impose(const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v,
               Eigen::Ref<VecX> a) const;
   /// Node states only (for probes, pictures). False when a node is outside its chart.
@@ -120,6 +136,8 @@ class System {
   friend class Builder;
   void evaluate_own_axes(Workspace& w, const Frames& f) const;
   void project_force(const Workspace& w, Eigen::Ref<VecX> r) const;
+  /// What is left of the forces after joints have carried them, and the loads of joints.
+  void loads_into(Workspace& w, const Frames& f, Eigen::Ref<VecX> r) const;
   Vec3 gravity_at(double t) const;
   /// W, what the change of the base's acceleration adds to the potential of the weight in it.
   double field_power(const Workspace& w) const;
@@ -135,6 +153,7 @@ class System {
   std::vector<Mat3> charts_;
   std::vector<std::pair<Index, Index>> links_;
   std::vector<Hold> holds_;
+  Followers followers_;
   std::vector<unsigned char> active_;
   std::unique_ptr<la::BlockPattern> pattern_;
   std::vector<std::unique_ptr<Term>> terms_;
@@ -154,6 +173,8 @@ class Builder {
   Index add_node(NodeDef def);
   /// Holds component c of a node: at zero, or on a law (value, rate, acceleration all exact).
   void hold(Index node, int component, LawPtr law = nullptr);
+  /// A node that a joint carries along (joints.hpp). Nothing of it that follows may be held.
+  void add_follower(FollowerDef def) { followers_.push_back(std::move(def)); }
   /// A node that never moves (a ground point).
   Index add_ground(const Vec3& position, std::string name);
   void set_gravity(const Vec3& g) {
@@ -199,6 +220,7 @@ class Builder {
  private:
   System system_;
   std::vector<Hold> holds_;
+  std::vector<FollowerDef> followers_;
   Index ground_line_ = -1;
 };
 

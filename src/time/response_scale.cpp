@@ -99,6 +99,10 @@ void ResponseScale::begin_step(CRef dq) {
   const double floor = std::max(o.internal, o.floor_internal);
   for (Index i : internal_)
     weight_[i] = 1.0 / std::max({0.5 * (high_[i] - low_[i]), 0.5 * std::abs(dq[i]), floor});
+  if (!internal_.empty())
+    for (const Scales::Limit& l : o.limits)
+      if (kinds_[at(l.unknown)] == Kind::internal)
+        weight_[l.unknown] = std::max(weight_[l.unknown], 1.0 / l.scale);
 }
 
 double ResponseScale::norm(CRef x) const {

@@ -216,6 +216,24 @@ report = false
 )" + rest);
 }
 
+/// Rigid arms of 400 mm along x without mass, 10 kg at the end of each: `joints` hold them.
+inline std::string arms(const std::string& names, const std::string& gravity,
+                        const std::string& joints) {
+  std::string deck = "format = 1\n[model]\ngravity_vector = " + gravity + "\n";
+  for (const char name : names) {
+    const std::string n(1, name);
+    deck += "[[shaft]]\nname = \"" + n + "\"\nrotating = false\nmaterial = \"steel\"\n" +
+            "columns = [\"name\", \"length[mm]\", \"rigid\"]\nrows = [[\"" + n +
+            "1\", 400, true]]\n";
+  }
+  for (const char name : names) {
+    const std::string n(1, name);
+    deck += "[[disk]]\nname = \"d" + n + "\"\nat = \"" + n +
+            "1:end\"\nmass = \"10 kg\"\nIp = \"0.1 kg.m^2\"\nId = \"0.06 kg.m^2\"\n";
+  }
+  return deck + joints + "[output]\nreport = false\nquantities = [\"joints\"]\n";
+}
+
 inline std::map<std::string, std::string> written_decks() {
   const std::string push = R"([[load]]
 at = "mass"
@@ -270,6 +288,72 @@ type = "static"
 [output]
 report = false
 )"},
+      {"arms at rest", arms("hus", R"(["10 m/s^2", "0 m/s^2", "0 m/s^2"])", R"([[joint]]
+name = "H"
+kind = "hinge"
+at = "h1:start"
+axis = [0, 0, 1]
+stiffness = "1000 N.m/rad"
+[[joint]]
+name = "U"
+kind = "universal"
+at = "u1:start"
+axis = [0, 1, 0]
+second_axis = [0, 0, 1]
+[[joint]]
+name = "S"
+kind = "slider"
+at = "s1:start"
+axis = [0, 0, 1]
+stiffness = "2000 N/m"
+[[load]]
+at = "dh"
+force = ["0 N", "50 N", "20 N"]
+[[load]]
+at = "du"
+force = ["0 N", "30 N", "40 N"]
+[[load]]
+at = "ds"
+force = ["0 N", "5 N", "60 N"]
+[[step]]
+name = "st"
+type = "static"
+)") + transient("duration = \"1 ms\"\n")},
+      {"arms in motion", arms("hs", R"(["0 m/s^2", "0 m/s^2", "0 m/s^2"])", R"([[joint]]
+name = "H"
+kind = "hinge"
+at = "h1:start"
+axis = [0, 0, 1]
+damping = "2 N.m.s/rad"
+[[joint]]
+name = "S"
+kind = "slider"
+at = "s1:start"
+axis = [0, 0, 1]
+damping = "20 N.s/m"
+[[load]]
+at = "dh"
+moment = ["0 N.m", "0 N.m", "3 N.m"]
+[[load]]
+at = "ds"
+force = ["0 N", "0 N", "40 N"]
+)") + transient("duration = \"1 s\"\nstart = \"rest\"\n")},
+      {"arm on an arm", arms("pq", R"(["0 m/s^2", "0 m/s^2", "0 m/s^2"])", R"([[joint]]
+name = "G"
+kind = "slider"
+at = "p1:start"
+axis = [1, 0, 0]
+stiffness = "1e6 N/m"
+[[joint]]
+name = "A"
+kind = "rigid"
+at = "q1:end"
+to = "p1:start"
+arm = true
+[[load]]
+at = "dq"
+force = ["0 N", "50 N", "0 N"]
+)") + transient("duration = \"1 ms\"\n")},
       {"backward", mass_on_springs(R"([[step]]
 name = "h"
 type = "harmonic_response"

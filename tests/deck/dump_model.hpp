@@ -272,6 +272,14 @@ class ModelDump {
       matrix("about", m.base.turn->about);
       law("rate", m.base.turn->rate);
     }
+    for (const auto& j : m.joints) {
+      head("joint", j);
+      at("at", j.at);
+      if (j.to) at("to", *j.to);
+      matrix("axis", j.axis);
+      matrix("second axis", j.second_axis);
+      each("", std::array{double(j.kind), double(j.arm), j.stiffness, j.damping});
+    }
     for (const auto& f : m.foundations) {
       head("foundation", f);
       for (const auto& c : f.coordinates)

@@ -202,6 +202,7 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   WhirlMode w;
   w.lambda = w.continued = mode.lambda;
   w.x = mode.x;
+  linear.system().complete(linear.equilibrium().state, w.x);
   w.residual = mode.residual;
   w.from = mode.from;
   w.rounding = rounding_of(mode);

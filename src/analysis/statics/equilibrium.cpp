@@ -119,7 +119,8 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
       if (lead < 0) lead = first[at(l)];
     }
     for (Index i = 0; i < sys.nodes(); ++i)  // a prescribed angle holds its whole group
-      if (running_.spinning()[at(i)] && root(sys.node(i).line) == g && !sys.active()[at(6 * i + 3)])
+      if (running_.spinning()[at(i)] && root(sys.node(i).line) == g &&
+          !sys.active()[at(6 * i + 3)] && !sys.followers().find(i))
         held = true;
     if (lead < 0 || held) continue;
     double torque = 0;
@@ -319,6 +320,8 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
 
 bool EquilibriumSolver::change_charts(system::State& s) const {
   const system::System& sys = running_.system();
+  sys.follow(s);
+  sys.followers().keep_turns(s.frames, s.q);
   bool far = false;
   for (Index i = 0; i < sys.nodes() && !far; ++i)
     far = !sys.node(i).scalar && s.q.segment<2>(6 * i + 4).norm() > rotation::chart_switch;
@@ -394,6 +397,7 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
   }
   if (!spin_holds_.empty()) close_backlash(Omega, s, out.iterations);
   if (options_.chart_change) change_charts(s);
+  sys.follow(s);
   out.reactions = r_;
   for (Index k = 0; k < r_.size(); ++k)
     if (free_[at(k)]) out.reactions[k] = 0.0;

@@ -210,6 +210,7 @@ class Follower {
     if (change != (p.limit_point ? 1 : 0) && locate(before.negative)) return Next::branch;
     ++out_.points;
     running_.set_load(load_);
+    running_.system().follow(s);
     const bool moved = o_.equilibrium.chart_change && solver_.change_charts(s);
     kept_ = s;
     kept_load_ = load_;

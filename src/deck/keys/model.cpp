@@ -86,6 +86,9 @@ void describe(Visitor& v, model::Model& m) {
          "a rigid disk or body fixed to a shaft, by mass and inertia or by its shape");
   v.list(optional("bearing", "none"), m.bearings,
          "whatever connects a shaft with the ground or another shaft");
+  v.list(optional("joint", "none"), m.joints,
+         "what holds two shaft lines together exactly, or one to the ground, and leaves some of "
+         "their motions free: no stiffness, no play");
   v.list(optional("foundation", "none"), m.foundations,
          "a foundation or casing as reduced stiffness, damping and mass matrices, under one or "
          "more bearings");

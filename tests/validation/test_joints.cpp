@@ -1,0 +1,704 @@
+// Joints without penalty through the deck: welds against uncut lines, frames, linkages against
+// reduced models integrated here.
+#include "deck_model.hpp"
+#include "record.hpp"
+#include "static_model.hpp"
+
+#include <analysis/spectra/whirl_modes.hpp>
+#include <analysis/statics/load_path.hpp>
+#include <system/joint_start.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+using namespace whirl;
+using namespace whirl::analysis;
+using namespace whirl::test;
+
+namespace {
+
+const std::string head = R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "m"
+E = "200 GPa"
+G = "80 GPa"
+density = "8000 kg/m^3"
+)";
+
+std::string section(const std::string& name, double length, int elements) {
+  return fmt::format("[[shaft.section]]\nname = \"{}\"\nlength = \"{:.17g} m\"\nod = \"20 mm\"\n"
+                     "min_elements = {}\n",
+                     name, length, elements);
+}
+std::string rigid_line(const std::string& name, double x, double length, double od_mm = 20) {
+  return fmt::format("[[shaft]]\nname = \"{0}\"\nmaterial = \"m\"\nrotating = false\n"
+                     "origin = [\"{1:.17g} m\", \"0 m\", \"0 m\"]\n[[shaft.section]]\n"
+                     "name = \"{0}1\"\nlength = \"{2:.17g} m\"\nod = \"{3} mm\"\nrigid = true\n",
+                     name, x, length, od_mm);
+}
+
+Index last_node(const DeckModel& m, std::size_t line) {
+  return m.mesh.lines[line].first_node + m.mesh.lines[line].nodes - 1;
+}
+Vec3 place_of(const DeckModel& m, const system::State& x, Index node) {
+  return m.mesh.nodes[static_cast<std::size_t>(node)].position + x.q.segment<3>(6 * node);
+}
+
+/// Motion of a deck from `start` to t.
+system::State move_to(const DeckModel& m, const system::State& start, double t, double tolerance,
+                      const std::string& method = "radau5", double dt = 0.0,
+                      const std::vector<double>& breakpoints = {},
+                      std::vector<Observer*> observers = {}) {
+  system::SystemProblem problem(m.built.system);
+  TransientOptions o;
+  o.method = method;
+  o.integrator.tolerance = tolerance;
+  o.integrator.t_end = t;
+  o.integrator.dt_fixed = dt;
+  o.integrator.breakpoints = breakpoints;
+  const TransientResult r = run_transient(problem, start, o, observers);
+  EXPECT_EQ(r.reason, StopReason::end_time) << r.detail;
+  return r.end;
+}
+
+double energy_of(const system::System& s, const system::State& x) {
+  system::Workspace w = s.make_workspace();
+  EXPECT_TRUE(s.evaluate_nodes(w, x.frames, x.t, x.q, x.v, x.a));
+  const system::Energy e = s.energy(w);
+  return e.kinetic + e.elastic + e.gravity;
+}
+
+/// y' = f(y) by Runge-Kutta of order four.
+VecX integrate(const std::function<VecX(const VecX&)>& f, VecX y, double t, int steps) {
+  const double h = t / steps;
+  for (int i = 0; i < steps; ++i) {
+    const VecX a = f(y), b = f(y + 0.5 * h * a), c = f(y + 0.5 * h * b), d = f(y + h * c);
+    y += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  return y;
+}
+
+/// A rigid bar of the decks here: mass, moment of inertia across about its middle.
+struct Bar {
+  double m, I, polar;
+  explicit Bar(double length, double d = 0.02)
+      : m(8000 * pi / 4 * d * d * length),
+        I(m * (length * length / 12 + d * d / 16)),
+        polar(m * d * d / 8) {}
+};
+
+const char* const clamp = R"([[bearing]]
+name = "clamp"
+at = "one:start"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+)";
+
+}  // namespace
+
+// A bar cut in two and welded is the bar.
+TEST(Joints, AWeldedBarIsTheBar) {
+  const std::string line = "[[shaft]]\nname = \"bar\"\nmaterial = \"m\"\nrotating = false\n";
+  const std::string load = R"([[load]]
+at = "two:end"
+force = ["-20 N", "300 N", "200 N"]
+moment = ["40 N.m", "0 N.m", "0 N.m"]
+)";
+  const DeckModel whole(head + line + section("one", 0.6, 5) + section("two", 0.4, 4) + clamp + load);
+  const DeckModel cut(head + line + section("one", 0.6, 5) +
+                      "[[shaft]]\nname = \"rest\"\nmaterial = \"m\"\nrotating = false\n"
+                      "origin = [\"0.6 m\", \"0 m\", \"0 m\"]\n" +
+                      section("two", 0.4, 4) + clamp + load +
+                      "[[joint]]\nname = \"weld\"\nkind = \"rigid\"\nat = \"two:start\"\n"
+                      "to = \"one:end\"\n");
+  const Solved a = solve(whole.deck.model), b = solve(cut.deck.model);
+  const Vec3 one = a.node(last_node(whole, 0)).u, two = b.node(last_node(cut, 1)).u;
+  EXPECT_GT(one.norm(), 0.05);
+  EXPECT_LT((one - two).norm(), 1e-12 * one.norm());
+  EXPECT_LT((a.support(0) - b.support(0)).norm(), 1e-9 * 300);
+  const auto reaction = [&](Index k) { return b.r[k]; };
+  const auto node = [&](Index n) -> const system::NodeState& { return b.node(n); };
+  const assembly::JointResult& weld = b.built.joints[0];
+  // what the weld does to the outer part holds the load there
+  const Vec3 F(-20, 300, 200), M(40, 0, 0);
+  EXPECT_LT((weld.force(node, {}, reaction) + F).norm(), 1e-8 * F.norm());
+  const Vec3 arm = Vec3(0.4, 0, 0) + two - b.node(last_node(cut, 0)).u;
+  EXPECT_LT((weld.moment(node, {}, reaction) + M + arm.cross(F)).norm(), 1e-8 * arm.norm() * F.norm());
+
+  ModesOptions o;
+  o.count = 8;
+  Linearizer of_whole(whole.built.system, whole.running()), of_cut(cut.built.system, cut.running());
+  const auto modes = whirl_modes(of_whole, 0.0, o), same = whirl_modes(of_cut, 0.0, o);
+  ASSERT_EQ(modes.size(), same.size());
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    EXPECT_NEAR(same[k].frequency, modes[k].frequency, 1e-9 * modes[k].frequency) << k;
+    // shapes, the welded node too
+    const Index n = cut.mesh.lines[1].first_node;
+    const double of_first = same[k].x.segment<6>(6 * (n - 1)).norm();
+    EXPECT_LT((same[k].x.segment<6>(6 * n) - same[k].x.segment<6>(6 * (n - 1))).norm(),
+              1e-9 * (1e-6 + of_first));
+  }
+
+  const auto let_go = [](const DeckModel& m, const Solved& s) {
+    system::State x = s.found.state;
+    x.t = 0;
+    system::State y = m.built.system.make_state();
+    y.v = 3.0 * x.q;
+    m.built.system.follow(y);
+    return move_to(m, y, 0.05, 1e-6, "radau5", 1e-4);
+  };
+  const system::State u = let_go(whole, a), v = let_go(cut, b);
+  const Vec3 left = place_of(whole, u, last_node(whole, 0)), right = place_of(cut, v, last_node(cut, 1));
+  EXPECT_LT((left - right).norm(), 1e-9);
+}
+
+namespace {
+
+std::string elbow_deck(int n, bool joined) {
+  const std::string legs = fmt::format(
+      "length = \"10 m\"\nmin_elements = {}\nconstants = {{ EA = \"1e6 N\", kGA = \"1e6 N\", GJ = "
+      "\"1000 N.m^2\", EI = \"1000 N.m^2\", rhoA = \"1 kg/m\", rhoI = \"10 kg.m\", rhoIp = \"20 "
+      "kg.m\" }}\n",
+      n);
+  std::string out = "format = 1\n[model]\ngravity = \"0 m/s^2\"\n";
+  const auto line = [&](const char* name, const char* path) {
+    return fmt::format("[[shaft]]\nname = \"{}\"\nrotating = false\n{}\n", name, path);
+  };
+  const std::string one = "[[shaft.section]]\nname = \"one\"\n" + legs,
+                    two = "[[shaft.section]]\nname = \"two\"\n" + legs;
+  if (joined)
+    out += line("first", "path = [{ to = [\"10 m\", \"0 m\", \"0 m\"] }]") + one +
+           line("second",
+                "origin = [\"10 m\", \"0 m\", \"0 m\"]\npath = [{ to = [\"10 m\", \"10 m\", \"0 "
+                "m\"] }]") +
+           two +
+           "[[joint]]\nname = \"elbow\"\nkind = \"rigid\"\nat = \"one:end\"\nto = \"two:start\"\n";
+  else
+    out += line("frame",
+                "path = [{ to = [\"10 m\", \"0 m\", \"0 m\"] }, { to = [\"10 m\", \"10 m\", \"0 "
+                "m\"] }]") +
+           one + two;
+  return out + clamp +
+         "[[load]]\nat = \"one:end\"\nforce = [\"0 N\", \"0 N\", \"50 N\"]\nfactor = { type = \"table\", time = [\"0 "
+         "s\", \"1 s\", \"2 s\"], value = [0, 1, 0] }\n";
+}
+
+}  // namespace
+
+TEST(Joints, RightAngleCantileverOfTwoLines) {
+  Record record("Right-angle cantilever of two lines, welded at the elbow",
+                "J. C. Simo, L. Vu-Quoc 1988, doi 10.1016/0045-7825(88)90073-4; values of a "
+                "converged exact rod");
+  const DeckModel m(elbow_deck(20, true)), whole(elbow_deck(20, false));
+  struct Point {
+    double t;
+    Vec3 tip, elbow;
+  };
+  system::State x = m.built.system.make_state(), y = whole.built.system.make_state();
+  double worst = 0, apart = 0;
+  for (const Point& p :
+       {Point{1,
+              {9.996982923, 9.976611401, 0.05403185762},
+              {9.945803876, 0.02288157267, 0.9513144037}},
+        Point{2, {10.10626067, 9.307850017, 0.0692637757}, {8.9888861, 0.2673890374, 4.115245753}},
+        Point{4, {10.44198178, 9.29375872, 3.508934343}, {8.435605298, -0.4276576962, 4.642069082}},
+        Point{8,
+              {10.02320608, 7.355170441, 7.960555231},
+              {9.806106064, -0.3268247383, 1.633319188}}}) {
+    x = move_to(m, x, p.t, 1e-5, "radau5", 0.0, {1.0, 2.0});
+    y = move_to(whole, y, p.t, 1e-5, "radau5", 0.0, {1.0, 2.0});
+    const Vec3 tip = place_of(m, x, last_node(m, 1)), elbow = place_of(m, x, last_node(m, 0));
+    worst = std::max({worst, (tip - p.tip).norm(), (elbow - p.elbow).norm()});
+    apart = std::max(apart, (tip - place_of(whole, y, last_node(whole, 0))).norm());
+  }
+  record.below("tip and elbow to 8 s, largest distance, 20 elements a leg", "m", worst, 1.5e-3);
+  record.below("the same frame as one line", "m", apart, 1e-4);
+}
+
+namespace {
+
+/// Bars that hang on each other by hinges about y, the first on the ground.
+std::string pendulum_deck() {
+  std::string deck = head;
+  deck.replace(deck.find("\"0 m/s^2\""), 9, "\"10 m/s^2\"");
+  return deck + rigid_line("first", 0, 0.5) + rigid_line("second", 0.5, 0.3) + R"([[joint]]
+name = "shoulder"
+kind = "hinge"
+at = "first1:start"
+axis = [0, 1, 0]
+[[joint]]
+name = "elbow"
+kind = "hinge"
+at = "second1:start"
+to = "first1:end"
+axis = [0, 2, 0]
+)";
+}
+
+/// (a1, a2, a1', a2'): angles of both bars about y from x, weight along -z.
+VecX double_pendulum(const VecX& y) {
+  const double L1 = 0.5, L2 = 0.3, g = 10;
+  const Bar b1(L1), b2(L2);
+  const double c = std::cos(y[0] - y[1]), s = std::sin(y[0] - y[1]), k = 0.5 * b2.m * L1 * L2;
+  Mat2 M;
+  M << b1.I + b1.m * L1 * L1 / 4 + b2.m * L1 * L1, k * c, k * c, b2.I + b2.m * L2 * L2 / 4;
+  // z of a point at r along a bar is -r sin a
+  const Vec2 f((0.5 * b1.m + b2.m) * g * L1 * std::cos(y[0]) - k * s * y[3] * y[3],
+               0.5 * b2.m * g * L2 * std::cos(y[1]) + k * s * y[2] * y[2]);
+  const double det = M(0, 0) * M(1, 1) - M(0, 1) * M(1, 0);
+  VecX out(4);
+  out << y[2], y[3], (M(1, 1) * f[0] - M(0, 1) * f[1]) / det,
+      (M(0, 0) * f[1] - M(1, 0) * f[0]) / det;
+  return out;
+}
+
+}  // namespace
+
+TEST(Joints, DoublePendulum) {
+  Record record("Double pendulum of rigid bars, let go level",
+                "two equations of Lagrange, Runge-Kutta of order 4");
+  const DeckModel m(pendulum_deck());
+  const system::System& s = m.built.system;
+  const VecX exact = integrate(double_pendulum, VecX::Zero(4), 1.5, 60000);
+  const auto angles = [&](const system::State& x) {
+    const double a = x.q[6 * m.built.joints[0].angles[0]], b = x.q[6 * m.built.joints[1].angles[0]];
+    return Vec2(a, a + b);
+  };
+  const system::State start = s.make_state();
+  const double before = energy_of(s, start);
+  const system::State end = move_to(m, start, 1.5, 1e-8);
+  record.check("angle of the first bar at 1.5 s", "rad", angles(end)[0], exact[0], 1e-6);
+  record.check("angle of the second", "rad", angles(end)[1], exact[1], 1e-6);
+  record.below("change of the energy over that of one bar upside down", "-",
+               std::abs(energy_of(s, end) - before) / (Bar(0.5).m * 10 * 0.5), 1e-7);
+  // orders of the schemes
+  for (const auto& [method, order] : {std::pair("radau5", 5.0), std::pair("gauss4", 4.0)}) {
+    double last = 0;
+    for (const double dt : {1.5 / 150, 1.5 / 300}) {
+      const double error = (angles(move_to(m, start, 1.5, 1e-10, method, dt)) - Vec2(exact.head<2>())).norm();
+      std::printf("double pendulum, %s, dt %.4f: %.3e rad\n", method, dt, error);
+      if (last > 0) {
+        EXPECT_GT(std::log2(last / error), order - 0.6) << method;
+      }
+      last = error;
+    }
+  }
+}
+
+TEST(Joints, ForcesOfThePendulumBalance) {
+  const DeckModel m(pendulum_deck());
+  const system::System& s = m.built.system;
+  const system::State x = move_to(m, s.make_state(), 0.7, 1e-7);
+  system::SystemProblem p(s);
+  p.frames = x.frames;
+  VecX r(s.size());
+  ASSERT_TRUE(p.residual(x.t, x.q, x.v, x.a, r));
+  const auto node = [&](Index n) -> const system::NodeState& {
+    return p.workspace().nodes[static_cast<std::size_t>(n)];
+  };
+  const auto reaction = [&](Index k) { return r[k]; };
+  // accelerations of the centres, from the angles
+  const Vec2 a(x.q[6 * m.built.joints[0].angles[0]],
+               x.q[6 * m.built.joints[0].angles[0]] + x.q[6 * m.built.joints[1].angles[0]]);
+  const Vec2 v(x.v[6 * m.built.joints[0].angles[0]],
+               x.v[6 * m.built.joints[0].angles[0]] + x.v[6 * m.built.joints[1].angles[0]]);
+  VecX y(4);
+  y << a, v;
+  const Vec2 w = double_pendulum(y).tail<2>();
+  const auto accel = [&](std::size_t k, double r) {  // of a point at r from the bar's own hinge
+    const Index i = static_cast<Index>(k);
+    const Vec3 along(std::cos(a[i]), 0, -std::sin(a[i])), across(-std::sin(a[i]), 0, -std::cos(a[i]));
+    return Vec3(r * (w[i] * across - v[i] * v[i] * along));
+  };
+  const Vec3 g(0, 0, -10);
+  const Vec3 on_second = Bar(0.3).m * (accel(0, 0.5) + accel(1, 0.15) - g);
+  const Vec3 on_first = Bar(0.5).m * (accel(0, 0.25) - g) + on_second;
+  const Vec3 shoulder = m.built.joints[0].force(node, {}, reaction),
+             elbow = m.built.joints[1].force(node, {}, reaction);
+  EXPECT_GT(on_first.norm(), 5);
+  EXPECT_LT((shoulder - on_first).norm(), 1e-3 * on_first.norm());
+  EXPECT_LT((elbow - on_second).norm(), 1e-3 * on_second.norm());
+  // a hinge gives no moment about its axis, and nothing pulls the bars out of their plane
+  EXPECT_LT(m.built.joints[1].moment(node, {}, reaction).norm(), 1e-3);
+}
+
+TEST(Joints, FreeJointedBodyKeepsItsMomenta) {
+  // Three bars on a ball and a hinge, thrown, over a hundred tumbles.
+  const DeckModel m(head + rigid_line("first", 0, 0.5) + rigid_line("second", 0.5, 0.3) +
+                    rigid_line("third", 0.8, 0.4, 40) + R"([[joint]]
+name = "ball"
+kind = "spherical"
+at = "second1:start"
+to = "first1:end"
+[[joint]]
+name = "hinge"
+kind = "hinge"
+at = "third1:start"
+to = "second1:end"
+axis = [1, 2, 3]
+)");
+  const system::System& s = m.built.system;
+  const auto momenta = [&](const system::State& x) {
+    // of every bar about the origin, from its node and its own inertia
+    system::Workspace w = s.make_workspace();
+    EXPECT_TRUE(s.evaluate_nodes(w, x.frames, x.t, x.q, x.v, x.a));
+    Vector<6> out = Vector<6>::Zero();
+    const double length[] = {0.5, 0.3, 0.4}, d[] = {0.02, 0.02, 0.04}, x0[] = {0, 0.5, 0.8};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index i = m.mesh.lines[k].first_node;
+      const system::NodeState& n = w.nodes[static_cast<std::size_t>(i)];
+      const Bar bar(length[k], d[k]);
+      const double c = x0[k] + 0.5 * length[k] - s.node(i).position.x();
+      const Vec3 place = s.node(i).position + n.u + c * n.d(), speed = n.du + c * n.dd;
+      const Vec3 own = bar.I * n.d().cross(n.dd) + bar.polar * n.spin() * n.d();
+      out.head<3>() += bar.m * speed;
+      out.tail<3>() += bar.m * place.cross(speed) + own;
+    }
+    return out;
+  };
+  system::State x = s.make_state();
+  const Vec3 omega(3, 40, -25);
+  for (Index i = 0; i < s.nodes(); ++i)
+    if (!s.node(i).scalar) {
+      x.v.segment<3>(6 * i) = omega.cross(Vec3(s.node(i).position - Vec3(0.6, 0, 0)));
+      x.v.segment<3>(6 * i + 3) = omega;
+    }
+  ASSERT_EQ(system::fit_joints(s, x), "");
+  // the third bar turns about its hinge, the first about its axis
+  x.v[6 * m.built.joints[1].angles[0]] += 20;
+  s.follow(x);
+  const Vector<6> before = momenta(x);
+  const double energy = energy_of(s, x);
+  // what is lost is the integrator's and goes with its tolerance
+  double lost[2];
+  for (int k = 0; k < 2; ++k)
+    lost[k] = (momenta(move_to(m, x, 1.0, k == 0 ? 1e-6 : 1e-8, "gauss6")) - before).tail<3>().norm();
+  EXPECT_LT(lost[1], 0.1 * lost[0]);
+  const system::State end = move_to(m, x, 14.0, 1e-7, "gauss6");
+  EXPECT_TRUE(end.frames.moved());
+  const Vector<6> after = momenta(end);
+  EXPECT_LT((after - before).head<3>().norm(), 5e-5 * before.tail<3>().norm());
+  EXPECT_LT((after - before).tail<3>().norm(), 5e-5 * before.tail<3>().norm());
+  EXPECT_NEAR(energy_of(s, end), energy, 1e-5 * energy);
+}
+
+TEST(Joints, SphericalPendulum) {
+  Record record("Spherical pendulum, a rigid bar on a ball",
+                "its equation of motion, Runge-Kutta of order 4");
+  std::string deck = head;
+  deck.replace(deck.find("\"0 m/s^2\""), 9, "\"10 m/s^2\"");
+  const DeckModel m(deck + rigid_line("bar", 0, 0.5) +
+                    "[[joint]]\nname = \"ball\"\nkind = \"spherical\"\nat = \"bar1:start\"\n");
+  const system::System& s = m.built.system;
+  system::State x = s.make_state();
+  const Vec3 omega(0, 2.0, 3.0);
+  const Index i = m.mesh.lines[0].first_node;
+  x.v.segment<3>(6 * i) = omega.cross(s.node(i).position);
+  x.v.segment<3>(6 * i + 3) = omega;
+  for (std::size_t k = 0; k < s.followers().count(); ++k) {  // the ball's centre turns with it
+    const system::FollowerDef& f = s.followers()[k];
+    if (f.pinned) x.v.segment<3>(6 * f.node + 3) = omega;
+  }
+  s.follow(x);
+  const Bar bar(0.5);
+  const double I = bar.I + bar.m * 0.25 * 0.25;
+  // I d x d'' = m g l/2 d x (-z)
+  const auto rate = [&](const VecX& y) {
+    const Vec3 d = y.head<3>(), v = y.tail<3>();
+    const Vec3 pull = bar.m * 0.25 / I * Vec3(0, 0, -10);
+    VecX out(6);
+    out << v, pull - pull.dot(d) * d - v.squaredNorm() * d;
+    return out;
+  };
+  VecX y(6);
+  y << Vec3::UnitX(), omega.cross(Vec3::UnitX());
+  const VecX exact = integrate(rate, y, 3.0, 60000);
+  const system::State end = move_to(m, x, 3.0, 1e-8);
+  const Vec3 d = end.normals()[static_cast<std::size_t>(i)];
+  for (int c = 0; c < 3; ++c)
+    record.check(fmt::format("direction of the bar at 3 s, {}", "xyz"[c]), "-", d[c], exact[c], 1e-6);
+  EXPECT_NEAR(energy_of(s, end), energy_of(s, x), 1e-6 * bar.m * 10 * 0.5);
+}
+
+TEST(Joints, SliderOnARotatingArm) {
+  Record record("Bar that slides on a spring along a free rotating arm",
+                "two equations of Lagrange, Runge-Kutta of order 4");
+  const DeckModel m(head + rigid_line("arm", 0, 0.5) + rigid_line("mass", 0.5, 0.2, 40) +
+                    R"([[joint]]
+name = "hub"
+kind = "hinge"
+at = "arm1:start"
+axis = [0, 0, 1]
+[[joint]]
+name = "guide"
+kind = "slider"
+at = "mass1:start"
+to = "arm1:end"
+axis = [1, 0, 0]
+stiffness = "2000 N/m"
+)");
+  const system::System& s = m.built.system;
+  const Index hub = m.built.joints[0].angles[0], guide = m.built.joints[1].slide;
+  system::State x = s.make_state();
+  x.v[6 * hub] = 12.0;
+  s.follow(x);
+  const Bar arm(0.5), mass(0.2, 0.04);
+  const double J = arm.I + arm.m * 0.25 * 0.25 + mass.I;
+  // angle, slide: r = 0.6 + slide of the centre
+  const auto rate = [&](const VecX& y) {
+    const double r = 0.6 + y[1];
+    VecX out(4);
+    out << y[2], y[3], -2 * mass.m * r * y[3] * y[2] / (J + mass.m * r * r),
+        r * y[2] * y[2] - 2000 / mass.m * y[1];
+    return out;
+  };
+  VecX y(4);
+  y << 0, 0, 12, 0;
+  const VecX exact = integrate(rate, y, 2.0, 60000);
+  const system::State end = move_to(m, x, 2.0, 1e-9);
+  EXPECT_GT(exact[0], 3 * two_pi);  // the hinge counts its turns
+  record.check("angle of the arm at 2 s", "rad", end.q[6 * hub], exact[0], 1e-6);
+  record.check("slide", "m", end.q[6 * guide], exact[1], 1e-7);
+  EXPECT_NEAR(energy_of(s, end), energy_of(s, x), 1e-7 * energy_of(s, x));
+}
+
+namespace {
+
+/// A line between two points with a strong section, n elements.
+std::string bar_line(const std::string& name, const Vec3& from, const Vec3& to, int n,
+                     const std::string& section) {
+  return fmt::format(
+      "[[shaft]]\nname = \"{0}\"\nmaterial = \"m\"\nrotating = false\norigin = [\"{1:.17g} m\", "
+      "\"{2:.17g} m\", \"{3:.17g} m\"]\npath = [{{ to = [\"{4:.17g} m\", \"{5:.17g} m\", \"{6:.17g} "
+      "m\"] }}]\n[[shaft.section]]\nname = \"{0}1\"\nlength = \"{7:.17g} m\"\nmin_elements = "
+      "{8}\n{9}\n",
+      name, from.x(), from.y(), from.z(), to.x(), to.y(), to.z(), (to - from).norm(), n, section);
+}
+
+}  // namespace
+
+// A shaft drives another one at 30 degrees through a Cardan joint.
+TEST(Joints, UniversalJointTurnsUnevenly) {
+  Record record("Shaft driven through a Cardan joint at 30 degrees",
+                "tan b = tan a/cos 30 deg; b' = a' cos 30 deg/(1 - sin^2 30 deg cos^2 a)");
+  const double beta = pi / 6;
+  const Vec3 along(std::cos(beta), std::sin(beta), 0), side(-std::sin(beta), std::cos(beta), 0);
+  const auto deck = [&](const char* second_axis) {
+    return head + R"([[shaft]]
+name = "driver"
+material = "m"
+[[shaft.section]]
+name = "driver1"
+length = "300 mm"
+od = "30 mm"
+min_elements = 2
+[[bearing]]
+name = "left"
+at = "driver1:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "right"
+at = "driver1:end"
+type = "rigid"
+directions = ["y", "z"]
+[[drive]]
+name = "motor"
+at = "driver1:start"
+type = "speed"
+speed = "60 rpm"
+)" + bar_line("driven", Vec3(0.3, 0, 0), Vec3(0.3, 0, 0) + 0.3 * along, 2, "od = \"30 mm\"") +
+           fmt::format(R"([[joint]]
+name = "cross"
+kind = "universal"
+at = "driver1:end"
+to = "driven1:start"
+axis = [0, 1, 0]
+second_axis = {}
+[[joint]]
+name = "end"
+kind = "hinge"
+at = "driven1:end"
+axis = [{:.17g}, {:.17g}, 0]
+)",
+                       second_axis, along.x(), along.y());
+  };
+  const DeckModel m(deck("[0, 0, 1]"));
+  const system::System& s = m.built.system;
+  system::State x = s.make_state();
+  const double rate = two_pi;
+  for (Index n = 0; n < m.mesh.lines[0].nodes; ++n)
+    x.v[6 * n + 3] = rate;
+  // the arm y of the cross in the driver, z in the driven shaft: both across their shafts
+  const Index angle = m.built.joints[1].angles[0];
+  // the driven shaft starts at its own speed: at a = 0 the driver's arm lies in the plane of both
+  const double first = rate * std::cos(beta) / (1 - std::pow(std::sin(beta), 2));
+  const Index from = m.mesh.lines[1].first_node;
+  for (Index n = from; n < from + m.mesh.lines[1].nodes; ++n)
+    x.v.segment<3>(6 * n + 3) = first * along;
+  EXPECT_EQ(system::fit_joints(s, x), "");
+  double worst = 0, worst_rate = 0;
+  for (int k = 1; k <= 24; ++k) {
+    const double t = k / 12.0 + 0.01;
+    x = move_to(m, x, t, 1e-7);
+    const double a = rate * t;
+    const double b = std::atan2(std::sin(a), std::cos(a) * std::cos(beta));
+    const double b_rate = rate * std::cos(beta) /
+                          (1 - std::pow(std::sin(beta) * std::cos(a), 2));
+    worst = std::max(worst, std::abs(std::remainder(x.q[6 * angle] - b, two_pi)));
+    worst_rate = std::max(worst_rate, std::abs(x.v[6 * angle] - b_rate));
+  }
+  EXPECT_NEAR(x.q[6 * angle], 2 * two_pi, 0.3);
+  record.below("angle of the driven shaft over two turns, largest error", "rad", worst, 1e-5);
+  record.below("its speed", "rad/s", worst_rate, 1e-3);
+}
+
+// Crank, coupler and rocker of bars that deform little, set going: against one equation of motion.
+TEST(Joints, FourBarLinkage) {
+  Record record("Four-bar linkage, bars of 0.2, 0.6 and 0.45 m on pivots 0.5 m apart",
+                "one equation of motion of rigid bars, Runge-Kutta of order 4");
+  const double r1 = 0.2, r2 = 0.6, r3 = 0.45, base = 0.5, start_angle = 1.0, speed = 10.0;
+  const auto solve_loop = [&](double a, double& b, double& c) {  // coupler and rocker directions
+    const Vec2 A(r1 * std::cos(a), r1 * std::sin(a)), P(base, 0);
+    const Vec2 D = P - A;
+    const double d = D.norm();
+    const double at_A = std::acos((r2 * r2 + d * d - r3 * r3) / (2 * r2 * d));
+    b = std::atan2(D.y(), D.x()) + at_A;
+    const Vec2 B = A + r2 * Vec2(std::cos(b), std::sin(b));
+    c = std::atan2(B.y() - P.y(), B.x() - P.x());
+  };
+  double b0, c0;
+  solve_loop(start_angle, b0, c0);
+  const Vec3 A(r1 * std::cos(start_angle), r1 * std::sin(start_angle), 0), P(base, 0, 0);
+  const Vec3 B = A + r2 * Vec3(std::cos(b0), std::sin(b0), 0);
+  const auto deck = [&](double stiff, int n) {
+    const std::string s = fmt::format(
+        "constants = {{ EA = \"{0} N\", kGA = \"{0} N\", GJ = \"{1} N.m^2\", EI = \"{1} N.m^2\", "
+        "rhoA = \"2 kg/m\", rhoI = \"1e-5 kg.m\", rhoIp = \"2e-5 kg.m\" }}",
+        2e6 * stiff, 500 * stiff);
+    const auto hinge = [](const char* name, const char* at, const char* to) {
+      return fmt::format("[[joint]]\nname = \"{}\"\nkind = \"{}\"\nat = \"{}\"\n{}axis = [0, 0, 1]\n",
+                         name, "hinge", at, *to ? fmt::format("to = \"{}\"\n", to) : "");
+    };
+    return head + bar_line("crank", Vec3::Zero(), A, n, s) + bar_line("coupler", A, B, n, s) +
+           bar_line("rocker", B, P, n, s) + hinge("a", "crank1:start", "") +
+           hinge("b", "coupler1:start", "crank1:end") +
+           hinge("c", "rocker1:start", "coupler1:end") + hinge("d", "rocker1:end", "");
+  };
+  // reduced model: kinetic energy J(a) a'^2/2, J' from differences; a'' = -J' a'^2/(2 J)
+  const auto inertia = [&](double a) {
+    const double h = 1e-5;
+    double b1, c1, b2, c2;
+    solve_loop(a - h, b1, c1);
+    solve_loop(a + h, b2, c2);
+    const double db = (b2 - b1) / (2 * h), dc = (c2 - c1) / (2 * h);
+    double b, c;
+    solve_loop(a, b, c);
+    const double m1 = 2 * r1, m2 = 2 * r2, m3 = 2 * r3, rho = 1e-5;
+    const Vec2 v = r1 * Vec2(-std::sin(a), std::cos(a)) +
+                   0.5 * r2 * db * Vec2(-std::sin(b), std::cos(b));
+    return m1 * r1 * r1 / 3 + rho * r1 + m2 * v.squaredNorm() +
+           (m2 * r2 * r2 / 12 + rho * r2) * db * db + (m3 * r3 * r3 / 3 + rho * r3) * dc * dc;
+  };
+  const auto rate = [&](const VecX& y) {
+    const double h = 1e-3;  // differences of differences
+    const double slope = (8 * (inertia(y[0] + h) - inertia(y[0] - h)) -
+                          (inertia(y[0] + 2 * h) - inertia(y[0] - 2 * h))) /
+                         (12 * h);
+    VecX out(2);
+    out << y[1], -0.5 * slope * y[1] * y[1] / inertia(y[0]);
+    return out;
+  };
+  VecX y(2);
+  y << start_angle, speed;
+  const double t = 1.5;
+  const VecX exact = integrate(rate, y, t, 3000);
+  EXPECT_GT(exact[0], two_pi);
+  double last = 0;
+  for (const double stiff : {1.0, 10.0}) {
+    const DeckModel m(deck(stiff, 4));
+    const system::System& s = m.built.system;
+    system::State x = s.make_state();
+    double b1, c1, b2, c2;
+    const double h = 1e-6;
+    solve_loop(start_angle - h, b1, c1);
+    solve_loop(start_angle + h, b2, c2);
+    const double w[] = {speed, speed * (b2 - b1) / (2 * h), speed * (c2 - c1) / (2 * h)};
+    const Vec3 pivot[] = {Vec3::Zero(), A, P};
+    const Vec3 z = Vec3::UnitZ(), at_A = speed * z.cross(A);
+    const Vec3 v[] = {Vec3::Zero(), at_A, Vec3::Zero()};
+    for (std::size_t k = 0; k < 3; ++k)
+      for (Index n = m.mesh.lines[k].first_node; n < m.mesh.lines[k].first_node + m.mesh.lines[k].nodes; ++n) {
+        x.v.segment<3>(6 * n) = v[k] + w[k] * z.cross(Vec3(s.node(n).position - pivot[k]));
+        x.v[6 * n + 5] = w[k];
+      }
+    ASSERT_EQ(system::fit_joints(s, x), "");
+    const double energy = energy_of(s, x);
+    const system::State end = move_to(m, x, t, 1e-6);
+    const double a = start_angle + end.q[6 * m.built.joints[0].angles[0]];
+    const double error = std::abs(a - exact[0]);
+    std::printf("four-bar linkage, stiffness %g: %.3e rad of %.3f, energy %.1e\n", stiff, error,
+                exact[0], energy_of(s, end) / energy - 1);
+    EXPECT_LT(std::abs(energy_of(s, end) / energy - 1), 1e-4);
+    if (last > 0) {
+      record.below("angle of the crank after 1.5 s, bars ten times as stiff", "rad", error, 0.2 * last);
+    }
+    last = error;
+  }
+}
+
+// Legs of a strip on edge, end moments in the plane, ends on hinges: buckles sideways at
+// pi/L sqrt(EI GJ).
+TEST(Joints, HingedRightAngleFrameBucklesSideways) {
+  Record record("Hinged right-angle frame of strips under end moments",
+                "J. H. Argyris et al. 1979, doi 10.1016/0045-7825(79)90061-2; J. C. Simo, L. Vu-Quoc "
+                "1986, doi 10.1016/0045-7825(86)90079-4: 622.2 N mm = pi/L sqrt(EI GJ)");
+  const double side = 0.24 * std::sqrt(0.5);
+  const std::string strip =
+      "general = { A = \"18 mm^2\", Iy = \"0.54 mm^4\", Iz = \"1350 mm^4\", J = \"2.16 mm^4\", "
+      "kappa_y = 0.8333333333333333, kappa_z = 0.8333333333333333 }";
+  std::string deck = head;
+  deck.replace(deck.find("200 GPa"), 7, "71.24 GPa");
+  deck.replace(deck.find("80 GPa"), 6, "71.24 GPa / 2.62");
+  deck += bar_line("left", Vec3(-side, 0, 0), Vec3(0, side, 0), 16, strip) +
+          bar_line("right", Vec3(0, side, 0), Vec3(side, 0, 0), 16, strip) + R"([[joint]]
+name = "apex"
+kind = "rigid"
+at = "left1:end"
+to = "right1:start"
+[[joint]]
+name = "foot"
+kind = "hinge"
+at = "left1:start"
+axis = [0, 0, 1]
+[[bearing]]
+name = "roller"
+at = "right1:end"
+type = "rigid"
+directions = ["y", "z", "rx", "ry"]
+[[load]]
+at = "left1:start"
+moment = ["0 N.m", "0 N.m", "-0.1 N.m"]
+[[load]]
+at = "right1:end"
+moment = ["0 N.m", "0 N.m", "0.1 N.m"]
+)";
+  const DeckModel m(deck);
+  SteadySystem running(m.built.system, m.running());
+  for (const double sign : {1.0, -1.0}) {
+    LoadPathOptions o;
+    o.max_points = 400;
+    o.last_load = 8.0 * sign;
+    o.steps = 40;
+    const LoadPathResult r =
+        follow_load_path(running, 0.0, running.system().make_state(), o,
+                         [](const LoadPathPoint&) { return true; });
+    ASSERT_FALSE(r.critical.empty());
+    record.check(fmt::format("critical moment, {}", sign > 0 ? "positive" : "negative"), "N mm",
+                 100 * r.critical.front().load, sign * 622.2, 0.6);
+  }
+}
