@@ -267,10 +267,10 @@ void SteadySystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
   WHIRL_EXPECTS(std::isfinite(Omega) && v.size() == system_.size());
   v.setZero();
   if (Omega != 0.0 && !unsteady_joint_.empty())
-    throw run_error("E41",
-                    unsteady_joint_ +
-                        " holds lines that do not turn as one shaft: there is no steady rotation",
-                    "a transient step follows them; lines that stand still have rotating = false");
+    throw run_error(
+        "E41",
+        unsteady_joint_ + " holds lines that do not turn as one shaft: there is no steady rotation",
+        "a transient step follows them; lines that stand still have rotating = false");
   if (Omega != 0.0)
     for (const auto& [line, node] : held_)
       throw run_error("E78",

@@ -134,7 +134,7 @@ class SteadySystem {
   std::vector<unsigned char> spinning_;
   std::vector<std::pair<Index, Index>>
       held_;                        ///< line that cannot turn, and the node at which it is held
-  std::string unsteady_joint_;  ///< of lines that do not turn as one; empty: none
+  std::string unsteady_joint_;      ///< of lines that do not turn as one; empty: none
   Terms smooth_, other_;            ///< blind to phi: quadratic in the rates; the rest
   Terms turning_smooth_, turning_;  ///< that see phi: the same
   Terms blind_, all_;

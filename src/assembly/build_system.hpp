@@ -28,8 +28,8 @@ struct SupportForce {
 struct JointResult {
   std::string name;
   SupportForce::Law force, moment;  ///< N, N m, global axes; moment null: it gives none
-  std::vector<Index> angles;  ///< scalar nodes, rad: `at` against the other, about its axes
-  Index slide = -1;           ///< scalar node, m
+  std::vector<Index> angles;        ///< scalar nodes, rad: `at` against the other, about its axes
+  Index slide = -1;                 ///< scalar node, m
 };
 
 /// How a support with a gap stands: films before their clearance is used up, contacts before they

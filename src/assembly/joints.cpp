@@ -85,7 +85,8 @@ class Joints {
   };
 
   void error(const Joint& j, const char* code, const std::string& message, std::string hint = {}) {
-    a_.error(code, fmt::format("{}: {}", joint_name(j), message), std::move(hint), j, joint_name(j));
+    a_.error(code, fmt::format("{}: {}", joint_name(j), message), std::move(hint), j,
+             joint_name(j));
   }
 
   void list_held() {
@@ -243,8 +244,7 @@ class Joints {
     if (parent == ground) {
       parent = a_.builder.add_ground(a_.mesh.station(j.at).position, "ground of " + who);
     } else if (parent_offset != 0.0) {
-      const Index end =
-          ghost(a_.builder.node(parent).position + Vec3(parent_offset, 0, 0), who);
+      const Index end = ghost(a_.builder.node(parent).position + Vec3(parent_offset, 0, 0), who);
       follow({end, parent, false, -1, -1, Vec3::UnitX(), who, true});
       parent = end;
     }
@@ -256,8 +256,12 @@ class Joints {
     out.name = j.name;
     const double sense = from_at ? -1.0 : 1.0;  // of 'at' against the other
     switch (j.kind) {
-      case JointKind::rigid: follow({last, parent, false, -1, -1, Vec3::UnitX(), who, last != child}); break;
-      case JointKind::spherical: follow({last, parent, true, -1, -1, Vec3::UnitX(), who, last != child}); break;
+      case JointKind::rigid:
+        follow({last, parent, false, -1, -1, Vec3::UnitX(), who, last != child});
+        break;
+      case JointKind::spherical:
+        follow({last, parent, true, -1, -1, Vec3::UnitX(), who, last != child});
+        break;
       case JointKind::hinge:
         out.angles = {scalar(j, "angle")};
         follow({last, parent, false, out.angles[0], -1, sense * j.axis, who, last != child});
@@ -272,7 +276,8 @@ class Joints {
         const std::size_t inner = from_at ? 0 : 1;
         const Vec3 axes[2] = {sense * j.axis, sense * j.second_axis};
         follow({cross, parent, false, out.angles[inner], -1, axes[inner], who, true});
-        follow({last, cross, false, out.angles[1 - inner], -1, axes[1 - inner], who, last != child});
+        follow(
+            {last, cross, false, out.angles[1 - inner], -1, axes[1 - inner], who, last != child});
         break;
       }
     }
@@ -304,9 +309,9 @@ class Joints {
     elements::TranslationalBearing spring{};
     spring.K(0, 0) = j.stiffness;
     spring.C(0, 0) = j.damping;
-    a_.builder.add(
-        spring, {node, a_.builder.add_ground(Vec3::Zero(), "ground of " + joint_name(j))},
-        "linear bearings");
+    a_.builder.add(spring,
+                   {node, a_.builder.add_ground(Vec3::Zero(), "ground of " + joint_name(j))},
+                   "linear bearings");
   }
 
   /// The load on the line of 'at', about its place.

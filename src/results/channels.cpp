@@ -110,8 +110,8 @@ void add_joints(const run::Job& job, Channels& c) {
   for (const assembly::JointResult& j : job.built.joints) {
     const auto add_load = [&](const char* what, const char* unit, const char* about,
                               const assembly::SupportForce::Law& law) {
-      Measurement x{fmt::format("joint {} {}", j.name, what), unit, about, {"x", "y", "z"}, 1.0,
-                    {}};
+      Measurement x{
+          fmt::format("joint {} {}", j.name, what), unit, about, {"x", "y", "z"}, 1.0, {}};
       x.evaluate = [&law](const Snapshot& s, double* out) {
         Eigen::Map<Vec3>{out} = law(nodes_of(s), s.context(), reactions_of(s));
       };

@@ -92,7 +92,8 @@ void add_joints(const run::Job& job, const system::Workspace& state, const VecX&
     out.joints.add({j.name, F.x(), F.y(), F.z(), M.x(), M.y(), M.z(), angle(0), angle(1),
                     j.slide >= 0 ? coordinate(j.slide) : 0.0});
     push_components(summary["joint forces [N]"][j.name], F);
-    std::string line = fmt::format("joint '{}': {:.5g}, {:.5g}, {:.5g} N", j.name, F.x(), F.y(), F.z());
+    std::string line =
+        fmt::format("joint '{}': {:.5g}, {:.5g}, {:.5g} N", j.name, F.x(), F.y(), F.z());
     if (j.moment) line += fmt::format("; {:.5g}, {:.5g}, {:.5g} N m", M.x(), M.y(), M.z());
     out.lines.push_back(std::move(line));
   }

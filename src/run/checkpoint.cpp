@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view any_magic = "whirl checkpoint ";
-constexpr std::string_view magic = "whirl checkpoint 3\n";
+constexpr std::string_view magic = "whirl checkpoint 4\n";
 
 /// FNV-1a, 64 bits: finds a damaged file, not an ill-willed one.
 std::uint64_t check_sum(std::string_view s) {

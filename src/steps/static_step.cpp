@@ -33,10 +33,9 @@ analysis::LoadPathOptions path_options(const run::Job& job, const model::LoadPat
     o.controlled_to = p.to;
     if (const system::FollowerDef* f = job.system().followers().find(at.node);
         f && !(f->pinned && p.direction >= 3))
-      throw run_error("E41",
-                      fmt::format("the place of displacement control is carried along by {}",
-                                  f->joint),
-                      "control the place the joint hangs on, or another");
+      throw run_error(
+          "E41", fmt::format("the place of displacement control is carried along by {}", f->joint),
+          "control the place the joint hangs on, or another");
   } else {
     o.last_load = p.last_load;
     o.branch = p.branch;

@@ -118,15 +118,24 @@ std::string unfit_for_joints(const model::StepLaw& law) {
     if constexpr (requires { x.motion; }) return x.motion;
     return model::MotionKind::all;
   };
-  if (std::visit(kind, law) != model::MotionKind::all) return "the kinds of motion that are left out";
+  if (std::visit(kind, law) != model::MotionKind::all)
+    return "the kinds of motion that are left out";
   if (const auto* t = std::get_if<model::TransientStep>(&law))
     return t->linear ? "linear = true"
            : t->start == model::TransientStep::Start::unbalance_response
                ? "start = \"unbalance_response\""
                : "";
-  constexpr std::array<const char*, 11> names{
-      "", "", "", "critical speeds", "unbalance response", "", "a critical-speed map",
-      "harmonic response", "a torsional step", "linearised buckling", ""};
+  constexpr std::array<const char*, 11> names{"",
+                                              "",
+                                              "",
+                                              "critical speeds",
+                                              "unbalance response",
+                                              "",
+                                              "a critical-speed map",
+                                              "harmonic response",
+                                              "a torsional step",
+                                              "linearised buckling",
+                                              ""};
   return names[law.index()];
 }
 
@@ -135,10 +144,10 @@ void refuse_joints(const run::Job& job, const model::Step& step) {
   const std::string what = unfit_for_joints(step.law);
   if (what.empty()) return;
   const model::Joint& j = job.model.joints.front();
-  Diagnostic d{Diagnostic::Severity::error, "E41",
-               fmt::format("step '{}': {} and joint '{}' do not go together", step.name, what,
-                           j.name),
-               "statics, load paths, modes and transients take joints exactly", step.where};
+  Diagnostic d{
+      Diagnostic::Severity::error, "E41",
+      fmt::format("step '{}': {} and joint '{}' do not go together", step.name, what, j.name),
+      "statics, load paths, modes and transients take joints exactly", step.where};
   throw Error(Exit::deck, {std::move(d)});
 }
 

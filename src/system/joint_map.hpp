@@ -166,8 +166,8 @@ struct Inputs {
 };
 template <class S>
 struct Outputs {
-  Vec<S> u;   ///< u_b - u_a, m
-  Vec<S> t;   ///< d_b - e_b
+  Vec<S> u;           ///< u_b - u_a, m
+  Vec<S> t;           ///< d_b - e_b
   S real, imaginary;  ///< z
 };
 

@@ -91,7 +91,8 @@ class Fit {
   }
   /// How those poses change with each coordinate of a joint.
   MatX motions() {
-    MatX out = MatX::Zero(6 * static_cast<Index>(real_.size()), static_cast<Index>(scalars_.size()));
+    MatX out =
+        MatX::Zero(6 * static_cast<Index>(real_.size()), static_cast<Index>(scalars_.size()));
     s_.evaluate_nodes(w_, x_.frames, x_.t, x_.q, x_.v, x_.a);
     for (std::size_t c = 0; c < scalars_.size(); ++c) {
       VecX e = VecX::Zero(s_.size());

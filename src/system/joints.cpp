@@ -58,7 +58,7 @@ NodeState state_of(const Frames& f, Index i, const Eigen::Ref<const VecX>& q,
 }  // namespace
 
 struct Followers::Jacobians {
-  Jacobian a, a_rate, a_accel;             ///< dX_b/dX_a, dX_b'/dX_a, dX_b''/dX_a
+  Jacobian a, a_rate, a_accel;               ///< dX_b/dX_a, dX_b'/dX_a, dX_b''/dX_a
   std::array<Column, 2> c, c_rate, c_accel;  ///< of angle and slide
 };
 
@@ -76,7 +76,8 @@ void Followers::arrange(std::vector<FollowerDef> defs, const std::vector<Vec3>& 
     const auto next = std::find_if(defs.begin(), defs.end(), [&](const FollowerDef& d) {
       return !follows[at(d.parent)] || of_node_[at(d.parent)] >= 0;
     });
-    if (next == defs.end()) throw std::invalid_argument(defs[0].joint + ": nodes follow each other");
+    if (next == defs.end())
+      throw std::invalid_argument(defs[0].joint + ": nodes follow each other");
     Follower b;
     b.def = *next;
     b.def.axis.normalize();
@@ -195,15 +196,15 @@ bool Followers::follow(const Frames& f, Eigen::Ref<VecX> q, Eigen::Ref<VecX> v,
       v[i + c] = s.du[c] + u.d;
       a[i + c] = s.ddu[c] + u.dd;
     }
-    const double wanted =
-        expected(k, in.phi.v, in.angle.v) + (f.joint.empty() ? 0.0 : f.joint[n]);
+    const double wanted = expected(k, in.phi.v, in.angle.v) + (f.joint.empty() ? 0.0 : f.joint[n]);
     q[i + spin_phi] = x[6].v + two_pi * std::round((wanted - x[6].v) / two_pi);
     v[i + spin_phi] = x[6].d;
     a[i + spin_phi] = x[6].dd;
     const Vec2 gamma = rotation::gamma_of_director(t);
     rotation::Director o;
     rotation::director(gamma, o);
-    const Eigen::Matrix<double, 2, 3> back = Mat2(o.D.transpose() * o.D).inverse() * o.D.transpose();
+    const Eigen::Matrix<double, 2, 3> back =
+        Mat2(o.D.transpose() * o.D).inverse() * o.D.transpose();
     const Vec2 gamma_rate = back * rate;
     rotation::director(gamma, gamma_rate, Vec2::Zero(), o);
     q.segment<2>(i + gamma2) = gamma;
@@ -219,8 +220,7 @@ void Followers::keep_turns(Frames& f, Eigen::Ref<const VecX> q) const {
     const FollowerDef& d = b.def;
     if (d.pinned) continue;
     const double angle = d.angle < 0 ? 0.0 : q[6 * d.angle];
-    f.joint[n] = q[6 * d.node + spin_phi] -
-                 expected(axes(b, f), q[6 * d.parent + spin_phi], angle);
+    f.joint[n] = q[6 * d.node + spin_phi] - expected(axes(b, f), q[6 * d.parent + spin_phi], angle);
   }
 }
 
@@ -426,8 +426,7 @@ void Followers::complete(const Workspace& w, const Frames& f,
 }
 
 template <class Scalar>
-void Followers::reduce(const Workspace& w, const Frames& f,
-                       Eigen::Matrix<Scalar, -1, 1>& x) const {
+void Followers::reduce(const Workspace& w, const Frames& f, Eigen::Matrix<Scalar, -1, 1>& x) const {
   Jacobians J;
   for (std::size_t n = list_.size(); n-- > 0;) {
     const Follower& b = list_[n];

@@ -27,8 +27,8 @@ struct State;
 
 /// What a builder is told.
 struct FollowerDef {
-  Index node = -1;    ///< b; all of it that follows stops being unknown
-  Index parent = -1;  ///< a: may follow another node itself
+  Index node = -1;               ///< b; all of it that follows stops being unknown
+  Index parent = -1;             ///< a: may follow another node itself
   bool pinned = false;           ///< only the place follows
   Index angle = -1, slide = -1;  ///< scalar nodes, rad and m; -1: none
   Vec3 axis = Vec3::UnitX();     ///< unit vector in the reference, of angle and slide
@@ -75,7 +75,7 @@ class Followers {
  private:
   struct Follower {
     FollowerDef def;
-    Vec3 arm, normal;    ///< in the reference: from a to b, m; axis of b
+    Vec3 arm, normal;     ///< in the reference: from a to b, m; axis of b
     Mat3 start, start_b;  ///< axes of a and b in the reference
     /// Of every node j that b's block row holds: slots (b, j), (j, b), and for a, angle, slide
     /// those of (input, j), (j, input); -1: not there.
@@ -87,7 +87,9 @@ class Followers {
     std::array<std::array<Index, 3>, 3> among{};  ///< slots of pairs of inputs
   };
   struct Jacobians;
-  static std::array<Index, 3> inputs_of(const FollowerDef& d) { return {d.parent, d.angle, d.slide}; }
+  static std::array<Index, 3> inputs_of(const FollowerDef& d) {
+    return {d.parent, d.angle, d.slide};
+  }
   joints::Axes axes(const Follower& b, const Frames& f) const;
   static double expected(const joints::Axes& k, double phi, double angle);
   void jacobians(const Follower& b, const Workspace& w, const Frames& f, Jacobians& out) const;

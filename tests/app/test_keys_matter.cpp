@@ -224,6 +224,27 @@ const Pair pairs[] = {
      "angle [deg]", 11.25, 1e-9, "of 360 deg"},
     {"[output.tracking]", "orbit_turns", "orbits", "orbit_turns = 2", "orbit_turns = 3",
      "t_orbits.csv", -1, "angle [deg]", 1080, 1e-9, "three turns"},
+    {"[[joint]], kind = \"hinge\"", "axis", "arms at rest", "axis = [0, 0, 1]\nstiffness = \"1000",
+     "axis = [0, 1, 0]\nstiffness = \"1000", "t.csv", -1, "joint H angle [rad]",
+     -0.0076920830411221, 1e-9, "bends under the other force"},
+    {"[[joint]], kind = \"hinge\"", "stiffness", "arms at rest", "1000 N.m/rad", "2000 N.m/rad",
+     "t.csv", -1, "joint H angle [rad]", 0.0098034535352471, 1e-9, "in balance"},
+    {"[[joint]], kind = \"hinge\"", "damping", "arms in motion", "2 N.m.s/rad", "4 N.m.s/rad",
+     "t.csv", -1, "joint H angle [rad]", 0.466715116482535, 1e-7,
+     "M/c (t - I/c (1 - exp(-c t/I)))"},
+    {"[[joint]], kind = \"slider\"", "axis", "arms at rest", "axis = [0, 0, 1]\nstiffness = \"2000",
+     "axis = [0, 2, 0]\nstiffness = \"2000", "t.csv", -1, "joint S slide [m]", 0.0025, 1e-10,
+     "5 N/k"},
+    {"[[joint]], kind = \"slider\"", "stiffness", "arms at rest", "2000 N/m", "1000 N/m", "t.csv",
+     -1, "joint S slide [m]", 0.06, 1e-10, "F/k"},
+    {"[[joint]], kind = \"slider\"", "damping", "arms in motion", "20 N.s/m", "40 N.s/m", "t.csv",
+     -1, "joint S slide [m]", 0.754578909722184, 1e-7, "F/c (t - m/c (1 - exp(-c t/m)))"},
+    {"[[joint]], kind = \"universal\"", "axis", "arms at rest", "axis = [0, 1, 0]\nsecond",
+     "axis = [0, 1, 1]\nsecond", "t.csv", -1, "joint U angle [rad]", -0.530499703318932, 1e-9,
+     "-asin(sqrt(2) F_z/F)"},
+    {"[[joint]], kind = \"universal\"", "second_axis", "arms at rest", "second_axis = [0, 0, 1]",
+     "second_axis = [0, 1, 1]", "t.csv", -1, "joint U angle [rad]", -0.676540217694394, 1e-9,
+     "-asin (F_y + F_z)/F"},
 };
 
 double number_of(const std::string& deck, const Pair& p) {
@@ -241,25 +262,6 @@ struct Elsewhere {
   const char* table;
   const char* key;  ///< "*": every key of the table
   const char* where;
-    {"[[joint]], kind = \"hinge\"", "axis", "arms at rest", "axis = [0, 0, 1]\nstiffness = \"1000",
-     "axis = [0, 1, 0]\nstiffness = \"1000", "t.csv", -1, "joint H angle [rad]", -0.0076920830411221, 1e-9,
-     "bends under the other force"},
-    {"[[joint]], kind = \"hinge\"", "stiffness", "arms at rest", "1000 N.m/rad", "2000 N.m/rad",
-     "t.csv", -1, "joint H angle [rad]", 0.0098034535352471, 1e-9, "in balance"},
-    {"[[joint]], kind = \"hinge\"", "damping", "arms in motion", "2 N.m.s/rad", "4 N.m.s/rad",
-     "t.csv", -1, "joint H angle [rad]", 0.466715116482535, 1e-7, "M/c (t - I/c (1 - exp(-c t/I)))"},
-    {"[[joint]], kind = \"slider\"", "axis", "arms at rest", "axis = [0, 0, 1]\nstiffness = \"2000",
-     "axis = [0, 2, 0]\nstiffness = \"2000", "t.csv", -1, "joint S slide [m]", 0.0025, 1e-10, "5 N/k"},
-    {"[[joint]], kind = \"slider\"", "stiffness", "arms at rest", "2000 N/m", "1000 N/m", "t.csv", -1,
-     "joint S slide [m]", 0.06, 1e-10, "F/k"},
-    {"[[joint]], kind = \"slider\"", "damping", "arms in motion", "20 N.s/m", "40 N.s/m", "t.csv", -1,
-     "joint S slide [m]", 0.754578909722184, 1e-7, "F/c (t - m/c (1 - exp(-c t/m)))"},
-    {"[[joint]], kind = \"universal\"", "axis", "arms at rest", "axis = [0, 1, 0]\nsecond",
-     "axis = [0, 1, 1]\nsecond", "t.csv", -1, "joint U angle [rad]", -0.530499703318932, 1e-9,
-     "-asin(sqrt(2) F_z/F)"},
-    {"[[joint]], kind = \"universal\"", "second_axis", "arms at rest", "second_axis = [0, 0, 1]",
-     "second_axis = [0, 1, 1]", "t.csv", -1, "joint U angle [rad]", -0.676540217694394, 1e-9,
-     "-asin (F_y + F_z)/F"},
 };
 
 /// Keys without a pair: tests whose decks have the table, or why none is needed; "open": nothing

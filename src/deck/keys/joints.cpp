@@ -47,8 +47,8 @@ void describe_universal(Visitor& v, model::Joint& j) {
   const bool first = describe_direction(v, "axis", j.axis,
                                         "arm of the cross that is fixed in the line of 'at', in "
                                         "global axes of the undeformed model");
-  const bool second = describe_direction(
-      v, "second_axis", j.second_axis, "arm of the cross that is fixed in the other line");
+  const bool second = describe_direction(v, "second_axis", j.second_axis,
+                                         "arm of the cross that is fixed in the other line");
   if (first && second && j.axis.cross(j.second_axis).norm() < 1e-6)
     v.error("E26", "second_axis", "the two axes of the universal joint are parallel",
             "they cross, as a rule at right angles");
@@ -76,8 +76,9 @@ void describe(Visitor& v, model::Joint& j) {
            }),
       kind("hinge", "both turn against each other about one axis, any number of times",
            JointKind::hinge, describe_hinge),
-      kind("universal", "both turn against each other about two axes that cross, as in a Cardan "
-                        "joint",
+      kind("universal",
+           "both turn against each other about two axes that cross, as in a Cardan "
+           "joint",
            JointKind::universal, describe_universal),
       kind("spherical", "both turn against each other in any way: a ball in its socket",
            JointKind::spherical, [](Visitor&, model::Joint&) {}),
@@ -93,8 +94,7 @@ void describe(Visitor& v, model::Joint& j) {
   if (!v.clean() || !j.to) return;
   const auto& shafts = v.model().shafts;
   const Vec3 apart = shafts[j.at.shaft].position(j.at.s) - shafts[j.to->shaft].position(j.to->s);
-  const Vec3 wrong =
-      j.kind == JointKind::slider ? Vec3(apart - apart.dot(j.axis) * j.axis) : apart;
+  const Vec3 wrong = j.kind == JointKind::slider ? Vec3(apart - apart.dot(j.axis) * j.axis) : apart;
   if (!j.arm && wrong.norm() > 1e-6)
     v.error("E26", "to",
             fmt::format("the two places of the joint are {} apart{}",

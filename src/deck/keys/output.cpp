@@ -56,8 +56,9 @@ void describe(Visitor& v, model::Output& o) {
        "moments and torques of the bearings that give any (tilting or torsional stiffness, "
        "friction), about their places"},
       {"torque", "torques of the drives"},
-      {"joints", "forces and moments of the joints on the line of their 'at', their angles and "
-                 "slides"},
+      {"joints",
+       "forces and moments of the joints on the line of their 'at', their angles and "
+       "slides"},
       {"energy", "energies and their balance"},
   };
   static constexpr Option amplitudes[] = {{"zero_to_peak", ""}, {"peak_to_peak", ""}};
