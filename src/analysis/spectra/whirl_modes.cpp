@@ -137,7 +137,7 @@ ModeKind kind_by_size(const Linearizer& linear, const WhirlMode& w) {
 }
 
 /// Scale: largest displacement (or twist) real and 1.
-void scale_shape(const system::System& s, WhirlMode& w) {
+void normalise_shape(const system::System& s, WhirlMode& w) {
   Complex largest = 0;
   for (Index i = 0; i < s.nodes(); ++i) {
     if (s.node(i).scalar) continue;
@@ -215,7 +215,7 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
                                              : 0.0;
   const double total = find_energy_shares(m, linear, w);
   if (total == 0.0 || w.lambda == 0.0) w.kind = kind_by_size(linear, w);
-  scale_shape(linear.system(), w);
+  normalise_shape(linear.system(), w);
   if (w.kind == ModeKind::lateral && w.frequency != 0.0) find_direction(linear, w);
   return w;
 }

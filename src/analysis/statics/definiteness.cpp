@@ -204,10 +204,12 @@ Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned
     return out;
   }
   Shifted whole(K, rows, free);
-  for (double s = rounding; s < 1e-9 && !whole.factor(s); s *= 2.0) {}
-  out.sign = whole.lu().determinant().second.real() < 0.0 ? -1 : 1;
+  bool factored = false;
+  for (double s = rounding; s < 1e-9 && !factored; s *= 2.0)
+    factored = whole.factor(s);
+  if (factored) out.sign = whole.lu().determinant().second.real() < 0.0 ? -1 : 1;
   count_real(K, free, system, length, out);
-  out.certain = out.sign < 0;
+  out.certain = factored && out.sign < 0;
   return out;
 }
 
