@@ -25,7 +25,7 @@ std::string joint_name(const Joint& j) { return fmt::format("joint '{}'", j.name
 /// Motions of one side against the other that a joint resists at `place`, as rows on (velocity of
 /// the point there would be at `centre`, angular velocity), lengths by `size`.
 MatX constraint_rows(const Joint& j, const Vec3& place, const Vec3& centre, double size) {
-  const auto without = [](MatX free) {  // rows that span what is orthogonal to the columns
+  const auto without = [](const MatX& free) {  // rows that span what is orthogonal to the columns
     const MatX P = Mat3::Identity() - free * la::pseudo_inverse(free);
     return P;
   };
