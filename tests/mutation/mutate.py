@@ -160,6 +160,8 @@ def faulty_lines(log, work):
     """(file, line) of what the compiler refused, with where templates were called from."""
     out, context = set(), []
     for line in log.split("\n"):
+        if line.startswith(("FAILED", "[")):
+            context = []
         m = re.match(r"(?:In file included from )?(\S+?):(\d+):\d*:?\s*(.*)", line)
         path = Path(os.path.normpath(work.build / m.group(1))) if m else work.build
         if not m or not path.is_relative_to(work.tree):
@@ -274,7 +276,8 @@ def trace(work, options):
     folder.mkdir(exist_ok=True)
     known = work.load("trace/tests.json", {})
     again = re.compile(options.again) if options.again else None
-    todo = {n: t for n, t in list_tests(work).items() if n not in known or (again and again.search(n))}
+    todo = {n: t for n, t in list_tests(work).items()
+            if re.search(options.suites, n) and (n not in known or (again and again.search(n)))}
     numbers = [int(k) for k in data["sites"]]
     done = 0
 
@@ -456,7 +459,7 @@ def main():
     p.add_argument("--count", type=int, default=400, help="sites of each sample")
     p.add_argument("--folder", action="append", help="sites of this folder or file only; repeatable")
     p.add_argument("--jobs", type=int, default=os.cpu_count())
-    p.add_argument("--suites", default=".", help="run: tests whose name matches")
+    p.add_argument("--suites", default=".", help="trace, tests, run: tests whose name matches")
     p.add_argument("--again", help="run, trace, tests: these tests once more though they ran before")
     p.add_argument("--budget", type=float, default=0, help="run: seconds spent on one fault; then 'unfinished', which counts as survived")
     p.add_argument("--until", type=float, default=0, help="run: no new fault after this time (seconds since 1970)")

@@ -62,8 +62,9 @@ struct sign {
   int k;
   explicit sign(int site) : k(site) {}
 };
-template <class X>
-inline __attribute__((always_inline)) auto operator*(sign s, const X& x) {
+template <class Given>
+inline __attribute__((always_inline)) auto operator*(sign s, Given&& x) {
+  using X = plain<Given>;
   const bool flip = on(s.k);
   if constexpr (std::is_same_v<X, bool>)
     return x != flip;
@@ -78,11 +79,21 @@ inline __attribute__((always_inline)) auto operator*(sign s, const X& x) {
       return typename X::Scalar(flip ? -1 : 1) * x;
     }
   } else if constexpr (requires { X(-x); }) {
-    return flip ? X(-x) : x;
+    return flip ? X(-x) : X(x);
   } else {
     means_nothing(s.k);
-    return x;
+    return X(static_cast<Given&&>(x));
   }
+}
+
+/// x & flipped(k) ? a : b: what x stands for as a condition, or its opposite.
+struct flipped {
+  int k;
+  explicit flipped(int site) : k(site) {}
+};
+template <class X>
+bool operator&(const X& x, flipped f) {
+  return static_cast<bool>(x) != on(f.k);
 }
 
 /// a < less(k) < b and the like: at the border the other way for whole numbers, else the opposite.
@@ -103,12 +114,15 @@ struct half {
     return {c.k, a};                                                                  \
   }                                                                                   \
   template <class A, class B>                                                         \
-  bool operator SIGN(half<Op::NAME, A> h, const B& b) {                                \
-    if (!on(h.k)) return h.a SIGN b;                                                  \
-    if constexpr (std::is_integral_v<A> && std::is_integral_v<B>)                     \
-      return h.a SHIFTED b;                                                           \
-    else                                                                              \
-      return !(h.a SIGN b);                                                           \
+  auto operator SIGN(half<Op::NAME, A> h, const B& b) {                                \
+    if constexpr (is_eigen<plain<decltype(h.a SIGN b)>>) {                             \
+      means_nothing(h.k);                                                             \
+      return h.a SIGN b;                                                              \
+    } else if constexpr (std::is_integral_v<A> && std::is_integral_v<B>) {             \
+      return on(h.k) ? h.a SHIFTED b : h.a SIGN b;                                     \
+    } else {                                                                          \
+      return static_cast<bool>(h.a SIGN b) != on(h.k);                                 \
+    }                                                                                 \
   }
 WHIRL_MUTATION_COMPARE(lt, <, <=)
 WHIRL_MUTATION_COMPARE(le, <=, <)

@@ -273,7 +273,7 @@ class File:
             name = "also(@) |" if t.text == "&&" else "unless(@) &"
             self.add(i, "logic", (t.end, 0, f" {SWITCH}{name}"))
         elif t.text == "?":
-            self.add(i, "choice", (t.at, 0, f"!= {SWITCH}on(@) "))
+            self.add(i, "choice", (t.at, 0, f"& {SWITCH}flipped(@) "))
         elif t.text == "{" and self.kind[i] == "list":
             parts = self.parts(i)
             for a, b in zip(parts, parts[1:]):
