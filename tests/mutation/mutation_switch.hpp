@@ -40,7 +40,9 @@ namespace {  // kernels compiled for several instruction sets share no code
 template <class T>
 using plain = std::remove_cv_t<std::remove_reference_t<T>>;
 template <class T>
-constexpr bool is_eigen = requires { typename T::PlainObject; };
+constexpr bool is_eigen = requires {
+  typename T::PlainObject;
+};
 
 /// The fault k is in force.
 inline __attribute__((always_inline)) bool on(int k) {
@@ -108,21 +110,21 @@ struct half {
   int k;
   const A& a;
 };
-#define WHIRL_MUTATION_COMPARE(NAME, SIGN, SHIFTED)                                    \
-  template <class A>                                                                  \
-  half<Op::NAME, A> operator SIGN(const A& a, compare<Op::NAME> c) {                   \
-    return {c.k, a};                                                                  \
-  }                                                                                   \
-  template <class A, class B>                                                         \
-  auto operator SIGN(half<Op::NAME, A> h, const B& b) {                                \
-    if constexpr (is_eigen<plain<decltype(h.a SIGN b)>>) {                             \
-      means_nothing(h.k);                                                             \
-      return h.a SIGN b;                                                              \
-    } else if constexpr (std::is_integral_v<A> && std::is_integral_v<B>) {             \
-      return on(h.k) ? h.a SHIFTED b : h.a SIGN b;                                     \
-    } else {                                                                          \
-      return static_cast<bool>(h.a SIGN b) != on(h.k);                                 \
-    }                                                                                 \
+#define WHIRL_MUTATION_COMPARE(NAME, SIGN, SHIFTED)                        \
+  template <class A>                                                       \
+  half<Op::NAME, A> operator SIGN(const A& a, compare<Op::NAME> c) {       \
+    return {c.k, a};                                                       \
+  }                                                                        \
+  template <class A, class B>                                              \
+  auto operator SIGN(half<Op::NAME, A> h, const B& b) {                    \
+    if constexpr (is_eigen<plain<decltype(h.a SIGN b)>>) {                 \
+      means_nothing(h.k);                                                  \
+      return h.a SIGN b;                                                   \
+    } else if constexpr (std::is_integral_v<A> && std::is_integral_v<B>) { \
+      return on(h.k) ? h.a SHIFTED b : h.a SIGN b;                         \
+    } else {                                                               \
+      return static_cast<bool>(h.a SIGN b) != on(h.k);                     \
+    }                                                                      \
   }
 WHIRL_MUTATION_COMPARE(lt, <, <=)
 WHIRL_MUTATION_COMPARE(le, <=, <)
