@@ -327,3 +327,10 @@ TEST(Units, EveryUnitReadsAndHasAName) {
     EXPECT_FALSE(u.meaning.empty());
   }
 }
+
+TEST(Units, BaseUnitsInTheirUsualOrder) {
+  EXPECT_EQ(units::base_units({{1, 1, 1, 1, 1, 1}, 0}), "kg.m.rad.s.K.A");
+  EXPECT_EQ(units::base_units({{2, 1, -2, 0, 0, -1}, 0}), "kg.m^2.rad^-1.s^-2");  // N m/rad
+  EXPECT_EQ(units::base_units({{0, 0, 0, -1, 0.5, 0}, 0}), "K^-1.A^0.5");
+  EXPECT_EQ(units::base_units({}), "");
+}

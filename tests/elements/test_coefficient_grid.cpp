@@ -118,6 +118,10 @@ TEST(CoefficientGrid, AskedAndSynchronous) {
   EXPECT_TRUE(v.K.hasNaN());
   g.at(701.0, none, v, dv);
   EXPECT_TRUE(v.K.hasNaN());
+  // beyond the end by the rounding of the end is at the end, also where the table starts at zero
+  g.at(700.0 * (1 + 1e-12), 800.0 * (1 + 1e-12), v, ds, dw);
+  g.at(700.0, 800.0, x, ds, dw);
+  EXPECT_LT((v.K - x.K).norm(), 1e-9 * x.K.norm());
   const Grid held = grid(Grid::Between::linear, Grid::Outside::hold);
   held.at(900.0, 2000.0, v, ds, dw);
   held.at(700.0, 800.0, x, ds, dw);

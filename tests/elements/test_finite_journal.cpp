@@ -465,7 +465,8 @@ TEST(Oil, ViscosityAgainstTemperature) {
   for (const auto& [grade, nu] : {std::pair{32.0, 5.4}, std::pair{46.0, 6.8}, std::pair{68.0, 8.7}})
     EXPECT_NEAR(iso_vg_viscosity(grade, 373.15, 875) / (875 * 0.955) * 1e6, nu, 0.05 * nu);
   for (auto bad :
-       {+[] { iso_vg_viscosity(-46, 313, 900); }, +[] { iso_vg_viscosity(46, 40, 900); }})
+       {+[] { iso_vg_viscosity(-46, 313, 900); }, +[] { iso_vg_viscosity(46, 313, -900); },
+        +[] { iso_vg_viscosity(46, 40, 900); }, +[] { iso_vg_viscosity(46, 474, 900); }})
     try {
       bad();
       ADD_FAILURE() << "accepted";

@@ -159,6 +159,44 @@ TEST(StaticRotor, TorqueTensionAndBendingTogether) {
   EXPECT_NEAR((M - Vec3(-0.5, 0.008, 0.016)).norm(), 0.0, 1e-5);
 }
 
+TEST(StaticRotor, StressesAlongAHollowCone) {
+  // Cantilever, outer and inner diameter falling along it, under axial, transverse and torsional
+  // load at its free end: at every point the diameters of that point.
+  model::Model m;
+  m.materials = {steel()};
+  model::Shaft shaft;
+  shaft.name = "shaft";
+  model::Section cone = cylinder("cone", 0.6, 0.08, 0.05, 3);
+  cone.od_r = 0.05;
+  cone.id_r = 0.01;
+  shaft.sections = {cone};
+  m.shafts = {shaft};
+  m.bearings = {held("wall", 0, {true, true, true, true, true, true})};
+  auto load = named<model::PointLoad>("end", 0.6);
+  load.force = Vec3(-0.1, 0.3, -0.4);
+  load.moment = Vec3(0.02, 0, 0);
+  m.loads = {load};
+  const Solved s = solve(m);
+  bool surface_decides = false, middle_decides = false;
+  for (const assembly::SectionPoint& p : s.sections) {
+    const double x = p.s / 0.6, c = 0.5 * (0.08 - 0.03 * x), r = 0.5 * (0.05 - 0.04 * x);
+    const double A = pi * (c * c - r * r), I = pi / 4 * (std::pow(c, 4) - std::pow(r, 4));
+    // mean shear at the neutral axis: V Q/(I b), Q of the half ring, b both walls
+    const double Q = 2.0 / 3.0 * (std::pow(c, 3) - std::pow(r, 3)), b = 2 * (c - r);
+    const double axial = -0.1 / A, bending = 0.5 * (0.6 - p.s) * c / I,
+                 torsion = 0.02 * c / (2 * I), shear = 0.5 * Q / (I * b);
+    const double surface = std::hypot(std::abs(axial) + bending, std::sqrt(3.0) * torsion),
+                 middle = std::hypot(axial, std::sqrt(3.0) * (torsion + shear));
+    (surface > middle ? surface_decides : middle_decides) = true;
+    const double small = 1e-6 * std::max(surface, middle);  // large rotation: slopes of 1e-7
+    EXPECT_NEAR(p.axial, axial, small) << p.s;
+    EXPECT_NEAR(p.bending, bending, small) << p.s;
+    EXPECT_NEAR(p.torsion, torsion, small) << p.s;
+    EXPECT_NEAR(p.von_mises, std::max(surface, middle), small) << p.s;
+  }
+  EXPECT_TRUE(surface_decides && middle_decides);
+}
+
 TEST(StaticRotor, WeightOfAConeDoesNotDependOnTheChart) {
   // The energy of gravity is a potential of position: the same after the reference axes were moved.
   model::Model m;
