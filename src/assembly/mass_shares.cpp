@@ -4,6 +4,7 @@
 #include <assembly/node_inertia.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace whirl::assembly {
 namespace {
@@ -30,7 +31,22 @@ double stiffness_at(const Assembly& a, Index node) {
   return sum;
 }
 
+Vec3 tangent(const model::Shaft& shaft, double s) {
+  return shaft.path.empty() ? Vec3(Vec3::UnitX()) : Vec3(shaft.path.after(s).triad.col(0));
+}
+
 }  // namespace
+
+bool joined_at_angle(const model::Model& model, std::size_t line, double s) {
+  return std::any_of(model.joints.begin(), model.joints.end(), [&](const model::Joint& j) {
+    if (!j.to) return false;
+    const bool here = j.at.shaft == line && std::abs(j.at.s - s) < 1e-9;
+    const bool there = j.to->shaft == line && std::abs(j.to->s - s) < 1e-9;
+    const Vec3 a = tangent(model.shafts[j.at.shaft], j.at.s),
+               b = tangent(model.shafts[j.to->shaft], j.to->s);
+    return (here || there) && a.cross(b).norm() > 1e-6;
+  });
+}
 
 MassShares::MassShares(const Assembly& a) : of_(a.mesh.nodes.size(), Vec3(1, 1, 1)) {
   for (const meshes::Line& line : a.mesh.lines) {
@@ -43,6 +59,11 @@ MassShares::MassShares(const Assembly& a) : of_(a.mesh.nodes.size(), Vec3(1, 1, 
       of_[static_cast<std::size_t>(line.first_node) + i] = {part(elements[i].mass, bodies[i].mass),
                                                             part(elements[i].Id, bodies[i].Id),
                                                             part(elements[i].Ip, bodies[i].Ip)};
+  }
+  for (const model::Joint& j : a.model.joints) {
+    if (!j.to || !joined_at_angle(a.model, j.at.shaft, j.at.s)) continue;
+    for (const model::Location& place : {j.at, *j.to})
+      of_[static_cast<std::size_t>(a.mesh.place(place).node)].tail<2>().setZero();
   }
   // Of the force of a bearing nothing is inertia, and half an element's mass is little beside it:
   // 0. Where it is stiffer than the element it hardly moves, and 1 gives the better force.

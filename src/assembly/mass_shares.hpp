@@ -7,6 +7,9 @@
 
 namespace whirl::assembly {
 
+/// A joint at s (m) of a line holds another line there that runs in another direction.
+bool joined_at_angle(const model::Model& model, std::size_t line, double s);
+
 class MassShares {
  public:
   explicit MassShares(const Assembly& a);

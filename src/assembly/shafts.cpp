@@ -145,10 +145,12 @@ void finish_general(Assembly& a, const model::Shaft& shaft, const meshes::Elemen
   add_hysteresis(a, shaft, beam, nodes);
 }
 
-/// What part of the moments at the ends of an element is inertia of its own line: none at a bend,
-/// where torsion of one side is bending of the other.
-Vec2 moment_shares(const model::Shaft& shaft, const meshes::Element& e) {
+/// What part of the moments at the ends of an element is inertia of its own line: none at a bend or
+/// at a joint of lines that run elsewhere, where torsion of one side is bending of the other.
+Vec2 moment_shares(const model::Model& m, const meshes::Element& e) {
+  const model::Shaft& shaft = m.shafts[static_cast<std::size_t>(e.line)];
   const auto share = [&](double s) {
+    if (joined_at_angle(m, static_cast<std::size_t>(e.line), s)) return 0.0;
     if (shaft.path.empty() || s <= 0 || s >= shaft.path.length()) return 1.0;
     const Vec3 before = shaft.path.before(s).triad.col(0), after = shaft.path.after(s).triad.col(0);
     return (after - before).norm() > 1e-6 ? 0.0 : 1.0;
@@ -158,7 +160,7 @@ Vec2 moment_shares(const model::Shaft& shaft, const meshes::Element& e) {
 
 void set_triad_mass(const Assembly& a, const model::Shaft& shaft, const meshes::Element& e,
                     elements::GeneralBeamConstants& c) {
-  const Vec2 share = a.model.consistent_mass ? Vec2::Zero() : moment_shares(shaft, e);
+  const Vec2 share = a.model.consistent_mass ? Vec2::Zero() : moment_shares(a.model, e);
   for (int k = 0; k < 2; ++k)
     c.triad_own[k] = 4 + share[k];
 }
@@ -175,7 +177,7 @@ ShaftElementConstants between_nodes(Assembly& a, const MassShares& shares, const
           .path.empty();  // what is left of the weight acts on the directors of straight lines
   if (straight && e.left.offset == 0 && e.right.offset == 0)
     return shared_constants(a, shares, e, make, part);
-  const Vec2 moments = moment_shares(a.model.shafts[static_cast<std::size_t>(e.line)], e);
+  const Vec2 moments = moment_shares(a.model, e);
   elements::MassShare share;
   share.bending = Vector<4>(1, moments[0], 1, moments[1]);
   return make(share);
@@ -346,7 +348,7 @@ void add_full(Assembly& a, const model::Shaft& shaft, const meshes::Element& e) 
   const FullSection section = model::full_section(a.model, s);
   const double l = e.s2 - e.s1;
   elements::SectionBeamConstants c = elements::make_section_constants(
-      section, l, (e.xi2 - e.xi1) * s.twist(), mass_kind(a.model), moment_shares(shaft, e));
+      section, l, (e.xi2 - e.xi1) * s.twist(), mass_kind(a.model), moment_shares(a.model, e));
   const Mat3 left = section_axes(s, e.xi1), right = section_axes(s, e.xi2);
   const std::array<Index, 2> nodes{e.left.node, e.right.node};
   const bool bent = !shaft.path.empty();

@@ -426,7 +426,8 @@ std::string general(std::string heading, const std::string& deck) {
   std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
     return a.size() != b.size() ? a.size() > b.size() : a < b;
   });
-  std::erase(names, "t");             // a step; the time is called so too
+  for (const char* column : {"t", "s", "u"})  // time, place and displacement are called so too
+    std::erase(names, column);
   for (const std::string& n : names)  // whole words, but the unit
     heading = std::regex_replace(heading, std::regex("(^|[ :,])" + n + "($|[ .,_])"), "$1#$2");
   heading = std::regex_replace(heading, std::regex("^[0-9]+ [FB] "), "mode ");
