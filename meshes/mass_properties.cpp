@@ -66,7 +66,8 @@ MassProperties full_section_mass(const model::Model& m, const model::Section& s,
   const double h = s.length / n;
   MassProperties p;
   for (int i = 0; i < 4 * n; ++i) {
-    const double at = (i / 4 + x[i % 4]) / n;
+    const int stretch = i / 4;
+    const double at = (stretch + x[i % 4]) / n;
     const SectionMoments unit = moments_at(m, s, at);
     p.add(w[i % 4] * h * unit.m, left_end + Vec3(at * s.length, 0, 0) + unit.centre,
           w[i % 4] * h * unit.J);
@@ -146,7 +147,8 @@ MassProperties mass_along(const model::Model& m, const model::Shaft& shaft,
                half = shaft.path.after(ends[k] + 0.5 * whole).triad.col(0);
     const int n = 1 + static_cast<int>(8.0 * std::atan2(t0.cross(half).norm(), t0.dot(half)));
     for (int i = 0; i < 4 * n; ++i) {
-      const double h = whole / n, s = ends[k] + (i / 4 + x[i % 4]) * h,
+      const int stretch = i / 4;
+      const double h = whole / n, s = ends[k] + (stretch + x[i % 4]) * h,
                    xi = (s - s0) / section.length;
       if (section.is_full()) {
         const SectionMoments unit = moments_at(m, section, xi);

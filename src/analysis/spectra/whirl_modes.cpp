@@ -446,7 +446,7 @@ void WhirlSolver::count_along_axis(double Omega, const la::Certificate& rest) {
   p.top = std::max(range.high, 2.0 * p.rho);
   if (!axis_) axis_.emplace(linear_.system().pattern(), motion_.active());
   const la::AxisCount c = axis_->count(p);
-  SpectrumCertificate::Axis& out = certificate_.axis.emplace();
+  SpectrumCertificate::Axis& out = certificate_.axis.emplace(SpectrumCertificate::Axis{});
   out.counted = c.certain && of_held.stability_certain() && rest.complete();
   out.unknown = c.unknown;
   out.held_beyond = range.held && range.low == 0.0;
