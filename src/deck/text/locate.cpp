@@ -163,6 +163,7 @@ class PlaceReader {
     if (const std::size_t slash = word.find('/'); slash != std::string::npos)
       return unknown_shaft(word.substr(0, slash));
     std::vector<std::string> all;
+    all.reserve(names.size());
     for (const auto& n : names)
       all.emplace_back(n.name);
     const auto near = nearest(word, all);
