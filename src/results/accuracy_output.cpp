@@ -218,6 +218,7 @@ void AccuracyOutput::judge_modes(TransientEnd& end, std::vector<std::string>& wa
 void AccuracyOutput::judge_mesh(TransientEnd& end, const std::vector<Contained>& modes) const {
   constexpr double above_the_spin = 1.5;
   std::vector<analysis::WhirlMode> listed;
+  listed.reserve(modes.size());
   for (const Contained& c : modes)
     listed.push_back(c.mode);
   const std::vector<std::string> labels = labels_of(listed);
