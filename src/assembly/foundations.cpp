@@ -118,7 +118,7 @@ bool add_as_points(Assembly& a, const Foundation& f, const std::vector<Coordinat
 }
 
 void add_foundation(Assembly& a, const Foundation& f) {
-  const Index n = static_cast<Index>(f.coordinates.size());
+  [[maybe_unused]] const Index n = static_cast<Index>(f.coordinates.size());
   WHIRL_EXPECTS(f.M.rows() == n && f.M.cols() == n && f.K.rows() == n && f.C.rows() == n);
   const std::string who = fmt::format("foundation '{}'", f.name);
   const std::vector<Coordinate> place = place_coordinates(a, f, who);

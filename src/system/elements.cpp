@@ -160,9 +160,10 @@ void Elements<N, W>::see(const Workspace& w, std::size_t i, Seen& out) const {
 template <int N, int W>
 void Elements<N, W>::scatter(const Matrix<N * W>& tangent, std::size_t i,
                              la::BlockMatrix<7>& into) const {
+  std::size_t slot = 0;
   for (int a = 0; a < N; ++a)
     for (int b = 0; b < N; ++b) {
-      const Index s = slots_[i][static_cast<std::size_t>(a * N + b)];
+      const Index s = slots_[i][slot++];
       if (s < 0) continue;
       into.block(s).template topLeftCorner<W, W>() += tangent.template block<W, W>(W * a, W * b);
     }
