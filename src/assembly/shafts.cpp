@@ -158,7 +158,7 @@ Vec2 moment_shares(const model::Model& m, const meshes::Element& e) {
   return Vec2(share(e.s1), share(e.s2));
 }
 
-void set_triad_mass(const Assembly& a, const model::Shaft& shaft, const meshes::Element& e,
+void set_triad_mass(const Assembly& a, const meshes::Element& e,
                     elements::GeneralBeamConstants& c) {
   const Vec2 share = a.model.consistent_mass ? Vec2::Zero() : moment_shares(a.model, e);
   for (int k = 0; k < 2; ++k)
@@ -202,7 +202,7 @@ elements::GeneralBeamConstants round_constants(Assembly& a, const MassShares& sh
   c.b22 = k.b22;
   c.M4 = k.M4;
   c.rhoIz_l = c.rhoIy_l = c.rhoI_l = 0.5 * k.polar.sum();
-  set_triad_mass(a, shaft, e, c);
+  set_triad_mass(a, e, c);
   c.beta = shaft.damping.beta_internal;
   return c;
 }
@@ -261,7 +261,7 @@ elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& 
   c.rhoIy_l = rho * g.Iy;
   c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
   if (s.mean_rotary_inertia) c.rhoIz_l = c.rhoIy_l = c.rhoI_l;
-  set_triad_mass(a, shaft, e, c);
+  set_triad_mass(a, e, c);
   c.beta = shaft.damping.beta_internal;
   return c;
 }
