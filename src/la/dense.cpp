@@ -40,10 +40,14 @@ VecX hermitian_eigenvalues(const MatXc& a) {
 
 VecXc least_norm_solution(const MatXc& a, const VecXc& b) {
   WHIRL_EXPECTS(a.rows() == b.size());
+  if (a.size() == 0) return VecXc::Zero(a.cols());
   return a.completeOrthogonalDecomposition().solve(b);
 }
 
-MatX pseudo_inverse(const MatX& a) { return a.completeOrthogonalDecomposition().pseudoInverse(); }
+MatX pseudo_inverse(const MatX& a) {
+  if (a.size() == 0) return MatX::Zero(a.cols(), a.rows());
+  return a.completeOrthogonalDecomposition().pseudoInverse();
+}
 
 VecXc pivoted_solution(const MatXc& a, const VecXc& b) { return a.colPivHouseholderQr().solve(b); }
 

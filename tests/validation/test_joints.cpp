@@ -665,6 +665,22 @@ TEST(Joints, FourBarLinkage) {
   }
 }
 
+// Joints without coordinates of their own: clamped beam on a stiff post with a ball at its top.
+TEST(Joints, WithoutCoordinatesOfTheirOwnStart) {
+  std::string deck = head;
+  deck.replace(deck.find("\"0 m/s^2\""), 9, "\"10 m/s^2\"");
+  deck += bar_line("beam", Vec3::Zero(), Vec3(1, 0, 0), 4, "od = \"20 mm\"") +
+          bar_line("post", Vec3(1, 0, 0), Vec3(1, 0, -0.5), 4, "od = \"200 mm\"");
+  for (const char* joint : {"name = \"wall\"\nkind = \"rigid\"\nat = \"beam1:start\"\n",
+                            "name = \"ball\"\nkind = \"spherical\"\nat = \"post1:start\"\nto = "
+                            "\"beam1:end\"\n",
+                            "name = \"foot\"\nkind = \"rigid\"\nat = \"post1:end\"\n"})
+    deck += std::string("[[joint]]\n") + joint;
+  const DeckModel m(deck);
+  system::State x = m.built.system.make_state();
+  EXPECT_EQ(system::fit_joints(m.built.system, x), "");
+}
+
 // Legs of a strip on edge, end moments in the plane, ends on hinges: buckles sideways at
 // pi/L sqrt(EI GJ).
 TEST(Joints, HingedRightAngleFrameBucklesSideways) {
