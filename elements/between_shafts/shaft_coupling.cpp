@@ -16,7 +16,7 @@ using system::TangentX;
 namespace {
 
 // y = (x, y, z, tau_y, tau_z, theta, psi) and its rate: linear in the nodes with these signs.
-constexpr int at[7] = {0, 1, 2, 4, 5, 6, 6};
+constexpr int coordinate[7] = {0, 1, 2, 4, 5, 6, 6};
 constexpr double sign[2][7] = {{1, 1, 1, 1, 1, 1, 0.5}, {-1, -1, -1, -1, -1, -1, 0.5}};
 
 template <class T>
@@ -98,7 +98,7 @@ void ShaftCoupling::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) 
   const Motion<double> m(*this, relative(*this, x));
   for (int a = 0; a < 2; ++a)
     for (std::size_t i = 0; i < 7; ++i)
-      f[7 * a + at[i]] += sign[a][i] * m.force[i];
+      f[7 * a + coordinate[i]] += sign[a][i] * m.force[i];
 }
 
 void ShaftCoupling::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& t) const {
@@ -116,8 +116,8 @@ void ShaftCoupling::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>&
       for (int i = 0; i < 7; ++i)
         for (int j = 0; j < 7; ++j) {
           const double s = sign[a][i] * sign[b][j];
-          t.K(7 * a + at[i], 7 * b + at[j]) += s * m.force[static_cast<std::size_t>(i)].g[j];
-          t.C(7 * a + at[i], 7 * b + at[j]) += s * m.force[static_cast<std::size_t>(i)].g[7 + j];
+          t.K(7 * a + coordinate[i], 7 * b + coordinate[j]) += s * m.force[static_cast<std::size_t>(i)].g[j];
+          t.C(7 * a + coordinate[i], 7 * b + coordinate[j]) += s * m.force[static_cast<std::size_t>(i)].g[7 + j];
         }
 }
 
