@@ -23,6 +23,29 @@ Vec3 moment_of(const NodeState& n, const Vec3& f_d, double f_phi) {
   return d.cross(f_d) + f_phi / (2.0 + n.e().dot(n.t)) * (n.e() + d);
 }
 
+/// The second axis of sections that bend but do not turn: the smallest rotation that takes the axis
+/// of the line to the normal of the section. Where the normal is opposite to that axis (a beam bent
+/// by half a turn) there is no smallest: the axis of the section before it goes on.
+class SectionAxis {
+ public:
+  Vec3 axis(Index line, const Mat3& of_line, const Vec3& normal) {
+    const bool opposite = (of_line.col(0) + normal).squaredNorm() < opposite_within;
+    if (line != line_) ey_ = of_line.col(1);
+    if (!opposite)
+      ey_ = rotation::minimal_rotation(of_line.col(0), normal) * of_line.col(1);
+    else if (line == line_)
+      ey_ = rotation::minimal_rotation(normal_, normal) * ey_;
+    line_ = line;
+    normal_ = normal;
+    return ey_;
+  }
+
+ private:
+  static constexpr double opposite_within = 1e-16;
+  Index line_ = -1;
+  Vec3 normal_ = Vec3::Zero(), ey_ = Vec3::Zero();
+};
+
 void add_stress(const elements::ElementSection& s, double xi, SectionPoint& p) {
   if (s.constants) return;
   const double od = s.od1 + xi * (s.od2 - s.od1), id = s.id1 + xi * (s.id2 - s.id1);
@@ -47,6 +70,7 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
   WHIRL_EXPECTS(inner >= 0);
   WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
   std::vector<SectionPoint> out;
+  SectionAxis transported;
   out.reserve(mesh.elements.size() * static_cast<std::size_t>(inner + 2));
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
     const meshes::Element& e = mesh.elements[k];
@@ -94,9 +118,8 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
         ey = (mean - d.dot(mean) * d).normalized();
         ez = d.cross(ey);
       } else {
-        const Mat3 axes = rotation::minimal_rotation(chart.col(0), d);
-        ey = axes * chart.col(1);
-        ez = axes * chart.col(2);
+        ey = transported.axis(e.line, chart, d);
+        ez = d.cross(ey);
       }
       p.N = p.force.dot(d);
       p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
