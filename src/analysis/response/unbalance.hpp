@@ -61,6 +61,12 @@ class UnbalanceSolver {
  private:
   void find_peaks(std::size_t order, std::size_t probe, const std::vector<SteadyPoint>& coarse,
                   std::vector<SteadyPoint>& extra);
+  /// Half-power points of a peak near the sample i.
+  void find_half_power(const std::vector<SteadyPoint>& coarse, std::size_t i, ResponsePeak& peak);
+  /// Enough points to draw a peak: at fractions of the half-power width on both sides, between low
+  /// and high and nearer than `reach`.
+  void add_points(const ResponsePeak& peak, double low, double high, double reach,
+                  std::vector<SteadyPoint>& extra);
   Linearizer& linear_;
   UnbalanceOptions options_;
   HarmonicSolver solver_;

@@ -77,8 +77,11 @@ void isolate(Counter& counter, const Bracket& k, double scale, std::vector<Brack
   isolate(counter, {middle, k.b, n, k.nb}, scale, out);
 }
 
-std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, double low) {
-  Counter counter(linear, o);
+/// Brackets of all changes of the count from `low` on. Coefficients against frequency can raise a
+/// mode through n Omega (frequency_dependent_modes.hpp: left out) near where it comes down: apart
+/// at the rows of the tables.
+std::vector<Bracket> bracket(Counter& counter, const CriticalOptions& o, double low,
+                             const std::vector<double>& rows) {
   std::vector<Bracket> brackets;
   double a = low;
   Index na = counter.count(a);
@@ -86,9 +89,6 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
   for (Index k = 1; k <= o.grid; ++k)
     grid.push_back(low +
                    (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid));
-  // Coefficients against frequency can raise a mode through n Omega (frequency_dependent_modes.hpp:
-  // left out) near where it comes down: apart at the rows.
-  const std::vector<double>& rows = linear.running().running().table_frequencies;
   for (const double w : rows)
     if (w > o.order * low && w < o.order * o.max_speed) grid.push_back(w / o.order);
   std::sort(grid.begin(), grid.end());
@@ -98,6 +98,56 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     a = b;
     na = nb;
   }
+  return brackets;
+}
+
+/// The modes of the bracket's middle nearest to i n Omega, as many as were counted.
+std::vector<la::Mode> modes_within(Counter& counter, const CriticalOptions& o, const Bracket& k) {
+  const Index wanted = std::abs(k.nb - k.na);
+  const double middle = 0.5 * (k.a + k.b);
+  const la::MCK& m = counter.matrices(middle, o.order * middle);
+  la::ModeOptions lo;
+  lo.count = wanted + 2;
+  lo.shift = Complex(0, o.order * middle);
+  std::vector<la::Mode> near = la::quadratic_modes(m, counter.active(), lo);
+  std::sort(near.begin(), near.end(), [&](const la::Mode& x, const la::Mode& y) {
+    return std::abs(x.lambda - *lo.shift) < std::abs(y.lambda - *lo.shift);
+  });
+  if (static_cast<Index>(near.size()) < wanted)
+    throw run_error("E77", "a critical speed was counted but its mode not found");
+  near.resize(at(wanted));
+  return near;
+}
+
+/// Newton's method on Omega from the bracket's middle, where the mode is known: its frequency less
+/// n Omega, by secant from two neighbouring speeds.
+Critical find_critical(WhirlSolver& follower, const CriticalOptions& o, const Bracket& k,
+                       WhirlMode mode) {
+  const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
+  const double middle = 0.5 * (k.a + k.b);
+  double x0 = middle, f0 = gap(x0, mode);
+  double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
+  for (int it = 0; it < 40 && f1 != 0.0; ++it) {
+    const auto next = follower.follow(x1, mode);
+    if (!next)
+      throw run_error("E77", "a critical speed was isolated but its mode was lost on the way");
+    mode = *next;
+    f1 = gap(x1, mode);
+    if (f1 == f0 || x1 == x0) break;
+    const double x2 = x1 - f1 * (x1 - x0) / (f1 - f0);
+    const bool done = std::abs(x2 - x1) <= o.tolerance * x1;
+    x0 = x1;
+    f0 = f1;
+    x1 = x2;
+    if (done) break;
+  }
+  return {x1, o.order * x1, o.order, mode};
+}
+
+std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, double low) {
+  Counter counter(linear, o);
+  const std::vector<double>& rows = linear.running().running().table_frequencies;
+  const std::vector<Bracket> brackets = bracket(counter, o, low, rows);
   ModesOptions mo;
   mo.damped = false;
   mo.motion = o.motion;
@@ -108,43 +158,10 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     if (!rows.empty() && k.nb < k.na &&
         counter.count(k.b, o.order * middle) >= counter.count(k.a, o.order * middle))
       continue;  // the table raised it
-    const Index wanted = std::abs(k.nb - k.na);
-    // The modes of the bracket's middle nearest to i n Omega.
-    const la::MCK& m = counter.matrices(middle, o.order * middle);
-    la::ModeOptions lo;
-    lo.count = wanted + 2;
-    lo.shift = Complex(0, o.order * middle);
-    std::vector<la::Mode> near = la::quadratic_modes(m, counter.active(), lo);
-    std::sort(near.begin(), near.end(), [&](const la::Mode& x, const la::Mode& y) {
-      return std::abs(x.lambda - *lo.shift) < std::abs(y.lambda - *lo.shift);
-    });
-    if (static_cast<Index>(near.size()) < wanted)
-      throw run_error("E77", "a critical speed was counted but its mode not found");
-    for (Index j = 0; j < wanted; ++j) {
-      // Newton's method on Omega: the frequency of the mode less n Omega, by secant from two
-      // neighbouring speeds.
-      const auto gap = [&](double Omega, const WhirlMode& w) {
-        return w.frequency - o.order * Omega;
-      };
-      WhirlMode mode =
-          describe_mode(near[at(j)], counter.matrices(middle, o.order * middle), linear);
-      double x0 = middle, f0 = gap(x0, mode);
-      double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
-      for (int it = 0; it < 40 && f1 != 0.0; ++it) {
-        const auto next = follower.follow(x1, mode);
-        if (!next)
-          throw run_error("E77", "a critical speed was isolated but its mode was lost on the way");
-        mode = *next;
-        f1 = gap(x1, mode);
-        if (f1 == f0 || x1 == x0) break;
-        const double x2 = x1 - f1 * (x1 - x0) / (f1 - f0);
-        const bool done = std::abs(x2 - x1) <= o.tolerance * x1;
-        x0 = x1;
-        f0 = f1;
-        x1 = x2;
-        if (done) break;
-      }
-      out.push_back({x1, o.order * x1, o.order, mode});
+    for (const la::Mode& near : modes_within(counter, o, k)) {
+      const WhirlMode mode =
+          describe_mode(near, counter.matrices(middle, o.order * middle), linear);
+      out.push_back(find_critical(follower, o, k, mode));
     }
   }
   return out;
