@@ -35,7 +35,7 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
       a = VecXc::Zero(linear_.system().size());  // nothing turns
       linear_.at(Omega);
     } else if (axes_) {
-      linear_.at(Omega);
+      linear_.move_to(Omega);
       a = axes_->response(Omega, -linear_.forcing()[k]);
       if (Omega < 0) a = a.conjugate().eval();
     } else if (solver_.prepare(Omega, w)) {

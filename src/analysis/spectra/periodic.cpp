@@ -115,7 +115,7 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
 
 void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   WHIRL_EXPECTS(std::isfinite(theta));
-  if (linear_.Omega() != Omega || Omega == 0.0) linear_.at(Omega);  // the equilibrium
+  if (linear_.Omega() != Omega || Omega == 0.0) linear_.move_to(Omega);
   const Equilibrium& e = linear_.equilibrium();
   SteadySystem& running = linear_.running();
   running.set_whirl(lambda, true);
