@@ -498,7 +498,7 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"W13", "a steady response of an unstable rotor",
        "The steady response to unbalance or to a harmonic force is a motion about the equilibrium. "
        "At a speed where free motions grow it is never reached: oil whirl, divergence or another "
-       "motion takes its place. Looked at are the ends and the middle of the range and the highest "
+       "motion takes its place. Looked at are the middle and the end of the range and the highest "
        "response; a stability step finds the onset.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
       {"W14", "a mean of a stiffness that turns",

@@ -276,11 +276,13 @@ analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::U
   return o;
 }
 
-/// A few of the range, and that of the highest response.
-std::vector<double> speeds_to_judge(const std::vector<double>& speeds, double highest) {
-  constexpr int parts = 8;
+/// The middle and the end of the range, and the highest response. The bands of an asymmetric rotor
+/// are narrow, and a look at one is cheap.
+std::vector<double> speeds_to_judge(const std::vector<double>& speeds, double highest,
+                                    bool asymmetric) {
+  const int parts = asymmetric ? 16 : 2;
   std::vector<double> out{highest};
-  for (int k = 0; k <= parts; ++k)
+  for (int k = 1; k <= parts; ++k)
     out.push_back(speeds.front() + (speeds.back() - speeds.front()) * k / parts);
   return out;
 }
@@ -310,7 +312,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
   results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
-  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest.speed));
+  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest.speed, o.turns_with_rotor));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
                 make_table(r, k, o.probes, o.outputs), false);
