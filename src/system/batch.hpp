@@ -25,6 +25,7 @@ struct Workspace {
   Context context;
   Index outside = -1;        ///< node that left the chart (|gamma| >= pi), or -1
   std::vector<Mat3> charts;  ///< of the last evaluation: the nodes point at them
+  bool on_lines = false;     ///< each at that of its line
   /// Once nodes have moved to other axes (frames.hpp): those of the last evaluation, and each node
   /// as its line's own axes see it; empty where it found no node moved or one outside its chart.
   Frames frames;

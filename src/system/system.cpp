@@ -320,9 +320,13 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   m.limit_squared = rotation::chart_limit * rotation::chart_limit;
   m.state = w.nodes.data()->u.data();
   m.D = w.D.data()->data();
-  w.charts = f.chart;
-  for (std::size_t i = 0; i < w.nodes.size(); ++i)
-    w.nodes[i].chart = &w.charts[static_cast<std::size_t>(f.of_node[i])];
+  w.charts.resize(f.chart.size());
+  std::copy_n(f.chart.data()->data(), 9 * f.chart.size(), w.charts.data()->data());
+  if (f.moved() || !w.on_lines) {
+    for (std::size_t i = 0; i < w.nodes.size(); ++i)
+      w.nodes[i].chart = &w.charts[static_cast<std::size_t>(f.of_node[i])];
+    w.on_lines = !f.moved();
+  }
   static const lanes::Kernels& kernels = lanes::kernels();
   w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
   w.own.clear();

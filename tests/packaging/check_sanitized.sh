@@ -1,24 +1,32 @@
 #!/usr/bin/env bash
-# Unit tests of the components that handle memory and numbers, and some decks, under the address and undefined-behaviour
-# sanitizers. Preset asan: -O1, no VTK; null, alignment, object-size and vptr are left out of the undefined-behaviour checks, for
-# they cost a quarter of the compilation and the address sanitizer and the processor find what matters of them.
-#   check_sanitized.sh SOURCE
+# Unit tests, and decks of every kind of step and support, under the address and undefined-behaviour sanitizers and with the
+# contracts (WHIRL_EXPECTS) checked. Preset asan: -Og, no VTK; null, alignment, object-size, vptr and pointer-overflow are left
+# out of the undefined-behaviour checks: the address sanitizer and the processor find what matters of them, and without them, at
+# -Og, the compilation takes half as long as at -O1 with them.
+#   check_sanitized.sh SOURCE [SUITE ...]      (or the suites named: elements, time, analysis, app, ...)
 set -euo pipefail
 cd "$1"
-suites=(core la deck elements system time io)
-decks=(01_paper_rotor 06_unbalance_response 21_rub 22_varying_compliance 30_static_sag)
+shift
+[ $# -gt 0 ] || set -- core la deck meshes system io   # those of elements take as long to compile as all of these together
+suites=("$@")
+decks=(01_paper_rotor 03_rotating_shaft_benchmark 05_campbell_nelson_mcvaugh 06_unbalance_response 07_internal_damping
+       08_asymmetric_shaft 14_torsional_train 20_oil_whirl 21_rub 22_varying_compliance 23_dual_spool 24_geared_pair
+       25_casing_on_foundation 26_pad_dynamics 27_misaligned_coupling 30_static_sag 31_column_beyond_buckling 33_double_pendulum)
 
 cmake --preset asan -DWHIRL_BUILD_TESTS=ON >/dev/null
 cmake --build --preset asan --target whirl "${suites[@]/#/test_}"
 
-export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1 UBSAN_OPTIONS=print_stacktrace=1
+export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1:exitcode=99 UBSAN_OPTIONS=print_stacktrace=1
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
 export results build=$PWD/build/asan source=$PWD
 suite() { cd "$source/tests/$1" && "$build/bin/test_$1" --gtest_brief=1; }
+# 4: a list of modes says that it is incomplete; that is for the tests of numbers, which run the release build
 deck() {
-  "$build/bin/whirl" run "$source/examples/$1/deck.toml" --quiet --output "$results/$1" --set 'output.vtk=[]' &&
-    echo "$1: done"
+  local code=0
+  "$build/bin/whirl" run "$source/examples/$1/deck.toml" --quiet --output "$results/$1" --set 'output.vtk=[]' || code=$?
+  [ $code = 0 ] || [ $code = 4 ] || return 1
+  echo "$1: done"
 }
 export -f suite deck
 printf '%s\n' "${suites[@]/#/suite }" "${decks[@]/#/deck }" | xargs -P "$(nproc)" -I{} bash -c '{}'
