@@ -35,13 +35,16 @@ SymmetricEigenpairs symmetric_eigenpairs(const MatX& k, const MatX& m) {
 
 VecX hermitian_eigenvalues(const MatXc& a) {
   WHIRL_EXPECTS(a.rows() == a.cols());
-  return Eigen::SelfAdjointEigenSolver<MatXc>(a, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-VecXc least_norm_solution(const MatXc& a, const VecXc& b) {
-  WHIRL_EXPECTS(a.rows() == b.size());
-  if (a.size() == 0) return VecXc::Zero(a.cols());
-  return a.completeOrthogonalDecomposition().solve(b);
+  // [re -im; im re] has them twice: the complex solver would be compiled for this alone
+  const Index n = a.rows();
+  MatX real(2 * n, 2 * n);
+  real << a.real(), -a.imag(), a.imag(), a.real();
+  const VecX twice =
+      Eigen::SelfAdjointEigenSolver<MatX>(real, Eigen::EigenvaluesOnly).eigenvalues();
+  VecX out(n);
+  for (Index k = 0; k < n; ++k)
+    out[k] = twice[2 * k];
+  return out;
 }
 
 MatX pseudo_inverse(const MatX& a) {

@@ -33,12 +33,10 @@ SymmetricEigenpairs symmetric_eigenpairs(const MatX& k, const MatX& m);
 /// Of a Hermitian matrix, ascending.
 VecX hermitian_eigenvalues(const MatXc& a);
 
-/// x of least length that minimises |A x - b|, A of any rank.
-/// @pre as many rows of A as entries of b, here and below.
-VecXc least_norm_solution(const MatXc& a, const VecXc& b);
 /// Moore-Penrose inverse.
 MatX pseudo_inverse(const MatX& a);
 /// x with A x = b by full pivoting; A square, perhaps nearly singular.
+/// @pre as many rows of A as entries of b, here and below.
 VecXc pivoted_solution(const MatXc& a, const VecXc& b);
 /// The same; nothing when no pivot exceeds `least` or A is singular in rounding.
 std::optional<MatX> pivoted_solution(const MatX& a, const MatX& b, double least);

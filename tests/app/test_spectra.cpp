@@ -233,3 +233,78 @@ speed = { start = "0 rpm", stop = "12000 rpm", points = 13 }
       << d.log;
   EXPECT_TRUE(d.csv("s_onset.csv").rows.empty());
 }
+
+namespace {
+
+/// A disk in the middle of a shaft whose bearings differ: forward and backward critical speed stand
+/// 3e-4 apart.
+std::string nearly_isotropic(double stiffness, double mass, const std::string& step) {
+  char parameters[100];
+  std::snprintf(parameters, sizeof parameters, "k = \"%.15g N/m\"\nm = \"%.15g kg\"\n", stiffness,
+                mass);
+  return std::string("format = 1\n[output]\nreport = false\n[parameters]\n") + parameters +
+         R"([model]
+gravity = "9.81 m/s^2"
+[[material]]
+name = "steel 7850"
+E = "210 GPa"
+nu = 0.3
+density = "7850 kg/m^3"
+[shaft]
+name = "rotor"
+material = "steel 7850"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 500, 40], ["b", 500, 40]]
+[[disk]]
+at = "a:end"
+mass = "${m}"
+Ip = "0.4 kg.m^2"
+Id = "0.2 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "linear"
+kyy = "${k}"
+kzz = "${k}"
+cyy = "2e3 N.s/m"
+czz = "2e3 N.s/m"
+[[bearing]]
+at = "b:end"
+type = "linear"
+kyy = "1e7 N/m"
+kzz = "1e7 N/m"
+cyy = "2e3 N.s/m"
+czz = "2e3 N.s/m"
+[[step]]
+)" + step;
+}
+
+}  // namespace
+
+// At these values the modes of the two, followed through the crossing, were lost (E77).
+TEST(CriticalSpeeds, ForwardAndBackwardNearlyAtOneSpeed) {
+  for (const auto& [k, m] :
+       {std::pair{95931993.3527388, 31.9320275349431}, std::pair{63409656.265937, 29.6495962236838},
+        std::pair{85981658.8739267, 29.0810370688051},
+        std::pair{81287084.1187965, 29.1844538547032}}) {
+    const std::string range =
+        "name = \"c\"\ntype = \"critical_speeds\"\nmax_speed = \"8000 rpm\"\n";
+    const DeckRun criticals(nearly_isotropic(k, m, range));
+    ASSERT_EQ(criticals.exit, 0) << criticals.log;
+    const auto speeds = column(criticals.csv("c_undamped.csv"), "speed [rpm]");
+    ASSERT_EQ(speeds.size(), 3u);
+    for (const double speed : {speeds[0], speeds[1]}) {
+      char step[100];
+      std::snprintf(
+          step, sizeof step,
+          "name = \"m\"\ntype = \"modal\"\nspeed = \"%.15g rpm\"\nmodes = 3\nshapes = 0\n", speed);
+      // both steps: the mesh is chosen for them
+      const DeckRun modes(nearly_isotropic(k, m, range + "[[step]]\n" + step));
+      ASSERT_EQ(modes.exit, 0) << modes.log;
+      double off = 1;
+      for (const double f : column(modes.csv("m_modes.csv"), "frequency [Hz]"))
+        off = std::min(off, std::abs(60 * f / speed - 1));
+      EXPECT_LT(off, 1e-5) << speed;  // squares of the damping ratios, 6e-4 to 3e-3
+    }
+    EXPECT_GT(speeds[1] / speeds[0] - 1, 1e-4);
+  }
+}

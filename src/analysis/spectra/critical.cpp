@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace whirl::analysis {
 
@@ -120,17 +121,17 @@ std::vector<la::Mode> modes_within(Counter& counter, const CriticalOptions& o, c
 }
 
 /// Newton's method on Omega from the bracket's middle, where the mode is known: its frequency less
-/// n Omega, by secant from two neighbouring speeds.
-Critical find_critical(WhirlSolver& follower, const CriticalOptions& o, const Bracket& k,
-                       WhirlMode mode) {
+/// n Omega, by secant from two neighbouring speeds. Nothing when the mode is lost on the way, or
+/// when it leads out of the bracket: to the critical speed of another mode.
+std::optional<Critical> find_critical(WhirlSolver& follower, const CriticalOptions& o,
+                                      const Bracket& k, WhirlMode mode) {
   const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
   const double middle = 0.5 * (k.a + k.b);
   double x0 = middle, f0 = gap(x0, mode);
   double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
   for (int it = 0; it < 40 && f1 != 0.0; ++it) {
     const auto next = follower.follow(x1, mode);
-    if (!next)
-      throw run_error("E77", "a critical speed was isolated but its mode was lost on the way");
+    if (!next) return std::nullopt;
     mode = *next;
     f1 = gap(x1, mode);
     if (f1 == f0 || x1 == x0) break;
@@ -141,7 +142,45 @@ Critical find_critical(WhirlSolver& follower, const CriticalOptions& o, const Br
     x1 = x2;
     if (done) break;
   }
-  return {x1, o.order * x1, o.order, mode};
+  const double slack = 1e-9 * k.b;
+  if (!(x1 >= k.a - slack && x1 <= k.b + slack)) return std::nullopt;
+  return Critical{x1, o.order * x1, o.order, mode};
+}
+
+/// The same by halving the bracket where the count changes: modes whose frequencies nearly agree
+/// cannot always be followed, but they can always be counted.
+void find_by_count(Counter& counter, Linearizer& linear, const CriticalOptions& o, const Bracket& k,
+                   std::vector<Critical>& out) {
+  if (k.na == k.nb) return;
+  const double middle = 0.5 * (k.a + k.b);
+  constexpr double digits = 1e-12;  // of a count
+  if (k.b - k.a > std::max(o.tolerance, digits) * k.b) {
+    const Index n = counter.count(middle);
+    find_by_count(counter, linear, o, {k.a, middle, k.na, n}, out);
+    find_by_count(counter, linear, o, {middle, k.b, n, k.nb}, out);
+    return;
+  }
+  for (const la::Mode& near : modes_within(counter, o, k))
+    out.push_back({middle, o.order * middle, o.order,
+                   describe_mode(near, counter.matrices(middle, o.order * middle), linear)});
+}
+
+/// The critical speeds of a bracket, as many as its count changes.
+std::vector<Critical> criticals_of(Counter& counter, WhirlSolver& follower, Linearizer& linear,
+                                   const CriticalOptions& o, const Bracket& k) {
+  const double middle = 0.5 * (k.a + k.b);
+  std::vector<Critical> out;
+  for (const la::Mode& near : modes_within(counter, o, k)) {
+    const WhirlMode mode = describe_mode(near, counter.matrices(middle, o.order * middle), linear);
+    const auto found = find_critical(follower, o, k, mode);
+    if (!found) {
+      out.clear();
+      find_by_count(counter, linear, o, k, out);
+      return out;
+    }
+    out.push_back(*found);
+  }
+  return out;
 }
 
 std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, double low) {
@@ -158,11 +197,8 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     if (!rows.empty() && k.nb < k.na &&
         counter.count(k.b, o.order * middle) >= counter.count(k.a, o.order * middle))
       continue;  // the table raised it
-    for (const la::Mode& near : modes_within(counter, o, k)) {
-      const WhirlMode mode =
-          describe_mode(near, counter.matrices(middle, o.order * middle), linear);
-      out.push_back(find_critical(follower, o, k, mode));
-    }
+    for (Critical& c : criticals_of(counter, follower, linear, o, k))
+      out.push_back(std::move(c));
   }
   return out;
 }
@@ -301,7 +337,8 @@ double share_in(const la::MCK& m, const VecXc& x, const MatXc& space) {
   if (!(size > 0)) return 0.0;
   const VecXc product = mass_space.adjoint() * x;
   const MatXc gram = space.adjoint() * mass_space;
-  return std::abs(product.dot(la::least_norm_solution(gram, product))) / size;
+  // dependent columns of `space` leave the coordinates open, but not the sum
+  return std::abs(product.dot(la::ColumnSpan<Complex>(gram).coordinates(product))) / size;
 }
 
 class MapTracker {
