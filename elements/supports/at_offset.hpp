@@ -4,8 +4,18 @@
 // constant in X: f_d += o f_u, tangents by congruence.
 #pragma once
 #include <system/kernel.hpp>
+#include <array>
 
 namespace whirl::elements {
+
+/// Adds T' g T to t, with T u = u_i + o_i d_i at every node; a node has 3 or 7 coordinates in g.
+template <std::size_t Nodes, int Size>
+void add_at_offset(const std::array<double, Nodes>& offset, const Matrix<Size>& g,
+                   Matrix<7 * static_cast<int>(Nodes)>& t);
+extern template void add_at_offset(const std::array<double, 1>&, const Matrix<3>&, Matrix<7>&);
+extern template void add_at_offset(const std::array<double, 1>&, const Matrix<7>&, Matrix<7>&);
+extern template void add_at_offset(const std::array<double, 2>&, const Matrix<6>&, Matrix<14>&);
+extern template void add_at_offset(const std::array<double, 2>&, const Matrix<14>&, Matrix<14>&);
 
 template <class K>
 struct AtOffset {
@@ -35,9 +45,9 @@ struct AtOffset {
     system::TangentX<inner * n_nodes> g;
     g.set_zero();
     kernel.add_tangent(s.nodes, c, g);
-    if constexpr (has_M) add_carried(g.M, t.M);
-    if constexpr (has_C) add_carried(g.C, t.C);
-    if constexpr (has_K) add_carried(g.K, t.K);
+    if constexpr (has_M) add_at_offset(offset, g.M, t.M);
+    if constexpr (has_C) add_at_offset(offset, g.C, t.C);
+    if constexpr (has_K) add_at_offset(offset, g.K, t.K);
   }
   void add_energy(const system::Nodes<n_nodes>& x, const system::Context& c,
                   system::Energy& e) const {
@@ -63,20 +73,6 @@ struct AtOffset {
 
  private:
   double arm(int node) const { return offset[static_cast<std::size_t>(node)]; }
-
-  /// Adds T' g T, with T u = u_i + o_i d_i at every node.
-  void add_carried(const Matrix<inner * n_nodes>& g, Matrix<7 * n_nodes>& t) const {
-    for (int i = 0; i < n_nodes; ++i)
-      for (int j = 0; j < n_nodes; ++j) {
-        const auto block = g.template block<inner, inner>(inner * i, inner * j);
-        auto carried = t.template block<7, 7>(7 * i, 7 * j);
-        carried.template topLeftCorner<inner, inner>() += block;
-        carried.template block<3, inner>(3, 0) += arm(i) * block.template topRows<3>();
-        carried.template block<inner, 3>(0, 3) += arm(j) * block.template leftCols<3>();
-        carried.template block<3, 3>(3, 3) +=
-            arm(i) * arm(j) * block.template topLeftCorner<3, 3>();
-      }
-  }
 };
 
 }  // namespace whirl::elements

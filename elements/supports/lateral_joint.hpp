@@ -25,6 +25,7 @@
 #pragma once
 #include <system/kernel.hpp>
 #include <system/spin.hpp>
+#include <array>
 
 namespace whirl::elements {
 
@@ -49,6 +50,26 @@ struct LateralTangent {
   }
 };
 
+/// How every law is carried to the nodes. Offsets: the points stand off the nodes.
+template <bool Offsets>
+struct LateralLink {
+  using Nodes = system::Nodes<2>;
+  using Spins = std::array<system::Spin, 2>;
+  std::array<double, 2> offset;  ///< o_0, o_1, m
+
+  /// With the spins; accelerations: r'' too.
+  LateralMotion motion(const Nodes& x, const system::Context& c, const Spins& s,
+                       bool accelerations) const;
+  /// f += the left side of z.
+  void add_force(const Spins& s, const Vector<4>& z, system::ForceX<14>& f) const;
+  /// k += its derivatives; inertia: M too.
+  void add_tangent(const Spins& s, const Vector<4>& z, const LateralTangent& t, bool inertia,
+                   system::TangentX<14>& k) const;
+};
+
+extern template struct LateralLink<false>;
+extern template struct LateralLink<true>;
+
 template <class Law_, bool Offsets = false>
 struct LateralJoint {
   using Law = Law_;
@@ -64,48 +85,24 @@ struct LateralJoint {
   std::array<double, 2> offset{0.0, 0.0};  ///< o_0, o_1, m (used when Offsets)
 
   void add_force(const system::Nodes<2>& x, const system::Context& c, system::ForceX<14>& f) const {
-    const system::Spin s0(*x[0]), s1(*x[1]);
-    LateralMotion m = motion(x, c);
-    m.spin = s0.s;
-    m.housing_spin = s1.s;
+    const Spins s = spins(x);
     Vector<4> z;
-    law.force(m, z);
-    scatter(s0.w, s1.w, z, f);
+    law.force(link().motion(x, c, s, has_M), z);
+    link().add_force(s, z, f);
   }
 
   void add_tangent(const system::Nodes<2>& x, const system::Context& c,
                    system::TangentX<14>& k) const {
-    const system::Spin s0(*x[0]), s1(*x[1]);
-    LateralMotion m = motion(x, c);
-    m.spin = s0.s;
-    m.housing_spin = s1.s;
+    const Spins s = spins(x);
     Vector<4> z;
     LateralTangent t;
-    law.tangent(m, z, t);
-    Matrix<4, 14> y;
-    spread(t.v, y);
-    y.template middleCols<3>(3).noalias() -= t.spin * s0.w.transpose();
-    y.col(6) += t.spin;
-    y.template middleCols<3>(10).noalias() -= t.housing_spin * s1.w.transpose();
-    y.col(13) += t.housing_spin;
-    scatter(s0.w, s1.w, y, k.C);
-    spread(t.r, y);
-    y.template middleCols<3>(3).noalias() += t.spin * s0.s_d.transpose();
-    y.template middleCols<3>(10).noalias() += t.housing_spin * s1.s_d.transpose();
-    scatter(s0.w, s1.w, y, k.K);
-    k.K.template block<3, 3>(3, 3) += z[2] * s0.W();
-    k.K.template block<3, 3>(10, 10) += z[3] * s1.W();
-    if constexpr (has_M) {
-      spread(t.a, y);
-      scatter(s0.w, s1.w, y, k.M);
-    }
+    law.tangent(link().motion(x, c, s, has_M), z, t);
+    link().add_tangent(s, z, t, has_M, k);
   }
 
   void add_energy(const system::Nodes<2>& x, const system::Context& c, system::Energy& e) const {
     const system::SpinRate s0(*x[0]), s1(*x[1]);
-    LateralMotion m = motion(x, c);
-    m.spin = s0.s;
-    m.housing_spin = s1.s;
+    LateralMotion m = link().motion(x, c, {s0, s1}, has_M);
     m.spin_rate = s0.sdot;
     m.housing_spin_rate = s1.sdot;
     law.energy(m, e);
@@ -117,54 +114,19 @@ struct LateralJoint {
       requires(const Law& l, const LateralMotion& m) {
     l.region(m);
   }
-  { return law.region(motion(x, {})); }
+  { return law.region(motion_of(x, {})); }
 
   /// Relative motion with spins, for results.
   LateralMotion motion_of(const system::Nodes<2>& x, const system::Context& c) const {
-    LateralMotion m = motion(x, c);
-    m.spin = x[0]->spin();
-    m.housing_spin = x[1]->spin();
-    return m;
+    return link().motion(x, c, spins(x), has_M);
   }
 
  private:
-  LateralMotion motion(const system::Nodes<2>& x, const system::Context& c) const {
-    const system::NodeState &n = *x[0], &h = *x[1];
-    LateralMotion m;
-    m.frequency = c.frequency;
-    m.r = (n.u - h.u).template tail<2>();
-    m.v = (n.du - h.du).template tail<2>();
-    if constexpr (has_M) m.a = (n.ddu - h.ddu).template tail<2>();
-    if constexpr (Offsets) {
-      m.r += (offset[0] * n.t - offset[1] * h.t).template tail<2>();
-      m.v += (offset[0] * n.dd - offset[1] * h.dd).template tail<2>();
-      if constexpr (has_M) m.a += (offset[0] * n.ddd - offset[1] * h.ddd).template tail<2>();
-    }
-    return m;
-  }
-  /// y = g dr/dx
-  void spread(const Matrix<4, 2>& g, Matrix<4, 14>& y) const {
-    y.setZero();
-    y.template middleCols<2>(1) = g;
-    y.template middleCols<2>(8) = -g;
-    if constexpr (Offsets) {
-      y.template middleCols<2>(4) = offset[0] * g;
-      y.template middleCols<2>(11) = -offset[1] * g;
-    }
-  }
-  /// out += -B^T y, B the map from X' to (v, s_0, s_1).
-  template <class Y, class Out>
-  void scatter(const Vec3& w0, const Vec3& w1, const Y& y, Out& out) const {
-    out.template middleRows<2>(1) -= y.template topRows<2>();
-    out.template middleRows<2>(8) += y.template topRows<2>();
-    out.row(6) -= y.row(2);
-    out.row(13) -= y.row(3);
-    out.template middleRows<3>(3).noalias() += w0 * y.row(2);
-    out.template middleRows<3>(10).noalias() += w1 * y.row(3);
-    if constexpr (Offsets) {
-      out.template middleRows<2>(4) -= offset[0] * y.template topRows<2>();
-      out.template middleRows<2>(11) += offset[1] * y.template topRows<2>();
-    }
+  using Link = LateralLink<Offsets>;
+  using Spins = typename Link::Spins;
+  Link link() const { return {offset}; }
+  static Spins spins(const system::Nodes<2>& x) {
+    return {system::Spin(*x[0]), system::Spin(*x[1])};
   }
 };
 
