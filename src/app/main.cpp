@@ -6,6 +6,7 @@
 #include <run/terminal.hpp>
 #include <core/version.hpp>
 #include <study/study.hpp>
+#include <sweep/sweep.hpp>
 #include <core/interrupt.hpp>
 #include <core/isa.hpp>
 #include <cstdio>
@@ -67,6 +68,7 @@ struct Given {
   bool keep_everything = false;
   study::StudyOptions study;
   bool stability = false;
+  sweep::SweepOptions sweep;
   bool reference = false, unit_list = false;
   std::vector<std::string> codes;
   NewOptions fresh;
@@ -110,6 +112,41 @@ void add_study(CLI::App& app, Given& g) {
               "integrator on this rotor");
 }
 
+void add_sweep(CLI::App& app, Given& g) {
+  auto* c = app.add_subcommand("sweep", "many runs of a deck with some of its keys varied");
+  add_deck(c, g.sweep.deck, g.sweep.read);
+  c->add_option(
+       "--vary", g.sweep.vary,
+       "a key and its values: first:last:count (:log), a list, or uniform(low, high), "
+       "loguniform, triangular(low, mode, high), normal(mean, deviation), lognormal(median, "
+       "deviation); several keys are combined")
+      ->type_name("PATH=VALUES")
+      ->take_all()
+      ->allow_extra_args(false);
+  c->add_option("--response", g.sweep.responses,
+                "a number of a table of the run, PICK a row from 1, last, min, max, absmax or mean")
+      ->type_name("[NAME=]TABLE:COLUMN[:PICK]")
+      ->take_all()
+      ->allow_extra_args(false);
+  c->add_flag("--list", g.sweep.list, "run the deck as it is and list what can be a response");
+  c->add_option("--samples", g.sweep.samples, "samples of the distributions")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
+      ->type_name("N");
+  c->add_option("--sampling", g.sweep.sampling, "random, lhs (Latin hypercube, default) or sobol")
+      ->type_name("WORD");
+  c->add_option("--seed", g.sweep.seed, "of the samples: the same gives the same runs (default 1)")
+      ->type_name("N");
+  c->add_option("--shard", g.sweep.shard,
+                "every n-th run from the i-th, for several machines on one folder")
+      ->type_name("I/N");
+  c->add_option("--limit", g.sweep.limit, "seconds of wall time a run may take")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+  c->add_flag("--keep", g.sweep.keep, "keep the results folder of every run");
+  c->add_flag("--resume", g.sweep.run.resume, "do the runs that are not done yet");
+  add_run(c, g.sweep.run);
+}
+
 void add_texts(CLI::App& app, Given& g) {
   auto* c = app.add_subcommand("schema", "JSON schema of decks, for editors");
   auto* r = c->add_flag("--reference", g.reference, "all tables and keys as Markdown");
@@ -144,6 +181,10 @@ int execute(const CLI::App& app, Given& g) {
     g.study.run.terminal = run::is_terminal(2);
     return g.stability ? study::study_stability(g.study) : study::study_deck(g.study);
   }
+  if (is("sweep")) {
+    g.sweep.run.terminal = run::is_terminal(2);
+    return sweep::run_sweep(g.sweep);
+  }
   if (is("schema"))
     return print_schema(g.reference   ? SchemaForm::reference
                         : g.unit_list ? SchemaForm::units
@@ -176,6 +217,7 @@ int command_line(int argc, char** argv) {
   add_check(app, given);
   add_run_command(app, given);
   add_study(app, given);
+  add_sweep(app, given);
   add_texts(app, given);
   try {
     app.parse(argc, argv);

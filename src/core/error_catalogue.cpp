@@ -387,6 +387,16 @@ const std::vector<CodeInfo>& error_catalogue() {
        "best there is, also without the variable). A misspelt "
        "word would give other digits than those asked for.",
        "WHIRL_ISA=baseline whirl run deck.toml"},
+      {"E99", "a sweep that cannot be made",
+       "whirl sweep runs a deck with the values of --vary put in and reads the numbers of "
+       "--response "
+       "from the tables of each run. Keys are those of --set; tables and columns are listed by "
+       "--list. The folder of a sweep remembers what was asked for: --resume and --shard go on "
+       "with "
+       "the same sweep alone.",
+       "whirl sweep deck.toml --vary bearing.NDE.clearance=60um:90um:7 --vary "
+       "'parameters.k=normal(1e7 N/m, 5 %)' --samples 200 --response "
+       "'first=critical_damped:speed:1'"},
       {"N10", "unknown integrator",
        "The names of the schemes are those of [step.integrator] method.", "method = \"radau5\""},
       {"N11", "an integrator that cannot do what is asked",

@@ -19,7 +19,8 @@ declare -A may=(
   [results]="core la model time system meshes assembly plot io analysis run results"
   [steps]="core la model time system meshes assembly plot io analysis run results steps"
   [study]="core la model deck time system meshes assembly plot io analysis run results steps study"
-  [app]="core model deck meshes assembly plot io run steps study app"
+  [sweep]="core model deck plot io run steps sweep"
+  [app]="core model deck meshes assembly plot io run steps study sweep app"
 )
 bad=0
 for folder in src/* elements meshes; do

@@ -1,0 +1,28 @@
+// What a finished sweep shows: its table, statistics of the responses, and what they depend on.
+#pragma once
+#include <sweep/plan.hpp>
+#include <run/options.hpp>
+#include <map>
+
+namespace whirl::sweep {
+
+/// Writes sweep.csv, statistics.csv, effects.csv, summary.json and sweep.html; prints the statistics.
+/// @param rows one for every run
+void write_outcome(const Plan& plan, const std::map<std::int64_t, Row>& rows,
+                   const run::RunOptions& options);
+
+/// Of the runs that gave a value.
+struct Statistics {
+  std::size_t count = 0;
+  double mean = 0, deviation = 0;  ///< standard deviation of the sample
+  double least = 0, largest = 0;
+  double p05 = 0, median = 0, p95 = 0;  ///< quantiles, between order statistics
+};
+/// @pre at least one value
+Statistics statistics_of(std::vector<double> values);
+
+/// Rank correlation (Spearman) of two samples, -1 .. 1; ties share their mean rank; nan when one of
+/// them does not vary.
+double rank_correlation(const std::vector<double>& x, const std::vector<double>& y);
+
+}  // namespace whirl::sweep

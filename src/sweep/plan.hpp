@@ -1,0 +1,41 @@
+// A sweep as it was asked for, and its folder: plan.json, and one folder of rows for each shard.
+#pragma once
+#include <sweep/design.hpp>
+#include <sweep/rows.hpp>
+#include <sweep/sweep.hpp>
+#include <model/model.hpp>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace whirl::sweep {
+
+/// Which runs a process does: those whose number leaves `index` when divided by `count`.
+struct Shard {
+  std::int64_t index = 0, count = 1;
+  std::string folder() const;
+};
+/// "2/7" -> index 1 of 7; empty: the only one.
+/// @throws Error (E99, Exit::usage)
+Shard read_shard(const std::string& text);
+
+struct Plan {
+  Design design;
+  std::vector<Response> responses;
+  Shard shard;
+  std::filesystem::path root;
+  std::string text;  ///< of plan.json: the same for the same sweep
+};
+/// @throws Error (E99, Exit::usage)
+Plan make_plan(const SweepOptions& options, const model::Model& model);
+
+/// Makes the folder ready. Rows of an earlier sweep go, unless they are of this plan and it is
+/// resumed or one of several shards.
+/// @throws Error (E99, Exit::usage) when the folder holds another plan that others may still be at
+void prepare_folder(const Plan& plan, bool resume);
+
+/// The rows of all shards.
+std::map<std::int64_t, Row> all_rows(const Plan& plan);
+
+}  // namespace whirl::sweep

@@ -1,0 +1,137 @@
+// `whirl sweep` as a user calls it: its table against single runs, for any number of processes and
+// shards, after being cut off, and with runs that fail.
+#include "deck_run.hpp"
+#include "unbalanced_rotor.hpp"
+
+namespace fs = std::filesystem;
+
+namespace whirl::test {
+namespace {
+
+constexpr const char* steps = R"([[step]]
+name = "c"
+type = "critical_speeds"
+max_speed = "20000 rpm"
+[[step]]
+name = "r"
+type = "unbalance_response"
+speed = { start = "500 rpm", stop = "9000 rpm", points = 20 }
+[[probe]]
+name = "P"
+at = "disk"
+)";
+constexpr const char* asked =
+    " --vary disk.disk.mass=2kg:4kg:3 --vary 'bearing.A.kyy=uniform(1e6 N/m, 4e6 N/m)' --samples 4 "
+    "--response 'first=c_undamped:speed:1' --response 'peak=r_response:P major:max'";
+
+class Sweep : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() /
+              ("whirl_sweep_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "d.toml") << unbalanced_rotor << steps;
+  }
+  void TearDown() override {
+    std::error_code ec;
+    fs::remove_all(folder_, ec);
+  }
+  int whirl(const std::string& arguments) {
+    const int status = std::system(("cd '" + folder_.string() + "' && '" WHIRL_EXE "' " +
+                                    arguments + " >log.txt 2>&1 </dev/null")
+                                       .c_str());
+    log_ = read("log.txt");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string read(const std::string& name) const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  fs::path folder_;
+  std::string log_;
+};
+
+TEST_F(Sweep, TableIsThatOfSingleRuns) {
+  ASSERT_EQ(whirl(std::string("sweep d.toml -o s") + asked), 0) << log_;
+  const Columns table(folder_ / "s/sweep.csv");
+  ASSERT_EQ(table.rows.size(), 12u);
+  for (const std::size_t k : {0u, 5u, 11u}) {
+    const auto row = table.named(table.rows[k]);
+    EXPECT_EQ(row.at("run [-]"), static_cast<double>(k));
+    char sets[200];
+    std::snprintf(sets, sizeof sets,
+                  "--set 'disk.disk.mass=%.17g kg' --set 'bearing.A.kyy=%.17g N/m'",
+                  row.at("disk.disk.mass [kg]"), row.at("bearing.A.kyy [N/m]"));
+    ASSERT_EQ(whirl("run d.toml -q -o one " + std::string(sets)), 0) << log_;
+    const Columns criticals(folder_ / "one/c_undamped.csv");
+    EXPECT_EQ(criticals.rows[0][criticals.column("speed [rpm]")], row.at("first [rpm]"));
+    const Columns response(folder_ / "one/r_response.csv");
+    double peak = 0;
+    for (std::size_t c = 0; c < response.names.size(); ++c)
+      if (response.names[c].starts_with("P major ["))
+        for (const auto& r : response.rows)
+          peak = std::max(peak, r[c]);
+    EXPECT_GT(peak, 0);
+    EXPECT_EQ(peak, row.at(table.names[table.column("first [rpm]") + 2]));
+  }
+  for (const char* file : {"statistics.csv", "effects.csv", "summary.json", "sweep.html"})
+    EXPECT_FALSE(read(std::string("s/") + file).empty()) << file;
+}
+
+TEST_F(Sweep, SameTableForProcessesShardsAndAfterACut) {
+  ASSERT_EQ(whirl(std::string("sweep d.toml -j1 -o one") + asked), 0) << log_;
+  const std::string table = read("one/sweep.csv");
+  ASSERT_EQ(whirl(std::string("sweep d.toml -j3 -o three") + asked), 0) << log_;
+  EXPECT_EQ(read("three/sweep.csv"), table);
+  for (int k = 1; k <= 5; ++k) {
+    ASSERT_EQ(whirl("sweep d.toml -j1 -o shards --shard " + std::to_string(k) + "/5" + asked), 0)
+        << log_;
+    EXPECT_EQ(fs::exists(folder_ / "shards/sweep.csv"), k == 5);
+  }
+  EXPECT_EQ(read("shards/sweep.csv"), table);
+  const fs::path rows = folder_ / "one/shard_1_of_1/rows.tsv";
+  fs::resize_file(rows, fs::file_size(rows) / 2);
+  fs::remove(folder_ / "one/sweep.csv");
+  ASSERT_EQ(whirl(std::string("sweep d.toml -j2 --resume -o one") + asked), 0) << log_;
+  EXPECT_EQ(read("one/sweep.csv"), table);
+}
+
+TEST_F(Sweep, AFailedRunIsARow) {
+  ASSERT_EQ(whirl("sweep d.toml -o s --vary 'disk.disk.mass=3 kg,-1 kg,4 kg' --response "
+                  "'first=c_undamped:speed:1' --response 'none=c_undamped:speed:99'"),
+            0)
+      << log_;
+  const Columns table(folder_ / "s/sweep.csv");
+  ASSERT_EQ(table.rows.size(), 3u);
+  const auto first = table.column("first [rpm]"), exit = table.column("exit [-]");
+  EXPECT_EQ(table.rows[0][exit], 0);
+  EXPECT_EQ(table.rows[1][exit], 3);
+  EXPECT_TRUE(std::isnan(table.rows[1][first]));
+  EXPECT_GT(table.rows[0][first], table.rows[2][first]);
+  EXPECT_NE(read("s/sweep.csv").find("no row 99"), std::string::npos);
+  EXPECT_NE(log_.find("1 of 3 runs failed"), std::string::npos) << log_;
+}
+
+TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
+  const std::string response = " --response c_undamped:speed";
+  for (const std::string arguments :
+       {std::string(" --vary disk.disk.mass=2kg:4kg:3"),
+        " --vary disk.disk.mass=2kg" + response + " --shard 3/2", response,
+        " --vary disk.disk.mass=2kg,3kg --sampling best" + response})
+    EXPECT_EQ(whirl("sweep d.toml -o s" + arguments), 2) << arguments << log_;
+  EXPECT_EQ(whirl("sweep d.toml -o s --vary disk.disk.maas=2kg,3kg" + response), 3) << log_;
+  EXPECT_NE(log_.find("unknown key 'maas'"), std::string::npos) << log_;
+  ASSERT_EQ(whirl("sweep d.toml -o s --vary disk.disk.mass=2kg,3kg" + response), 0) << log_;
+  EXPECT_EQ(whirl("sweep d.toml -o s --vary disk.disk.mass=2kg,4kg --resume" + response), 2);
+  EXPECT_NE(log_.find("E99"), std::string::npos);
+}
+
+TEST_F(Sweep, ListsWhatCanBeAResponse) {
+  ASSERT_EQ(whirl("sweep d.toml --list -o s"), 0);
+  EXPECT_NE(log_.find("c_undamped:speed [rpm]"), std::string::npos) << log_;
+}
+
+}  // namespace
+}  // namespace whirl::test

@@ -1,0 +1,133 @@
+// Rows on the disk, statistics, and processes that crash or hang.
+#include <sweep/outcome.hpp>
+#include <sweep/response.hpp>
+#include <sweep/rows.hpp>
+#include <sweep/workers.hpp>
+#include <core/error.hpp>
+#include <core/types.hpp>
+#include <gtest/gtest.h>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <thread>
+#include <unistd.h>
+
+namespace whirl::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+Row row_number(std::int64_t run) {
+  return {
+      run, 4, "E77", "a message\twith a tab", 0.25, {{1.0 / 3, "rpm", ""}, {nan, "", "no row"}}};
+}
+
+TEST(SweepRows, ReadBackWhatWasWritten) {
+  const std::string line = line_of(row_number(12));
+  const auto row = row_of(std::string_view(line).substr(0, line.size() - 1));
+  ASSERT_TRUE(row);
+  EXPECT_EQ(row->run, 12);
+  EXPECT_EQ(row->exit, 4);
+  EXPECT_EQ(row->code, "E77");
+  EXPECT_EQ(row->message, "a message with a tab");
+  ASSERT_EQ(row->answers.size(), 2u);
+  EXPECT_EQ(row->answers[0].value, 1.0 / 3);
+  EXPECT_EQ(row->answers[0].unit, "rpm");
+  EXPECT_TRUE(std::isnan(row->answers[1].value));
+  EXPECT_EQ(row->answers[1].failure, "no row");
+}
+
+TEST(SweepRows, DamagedAndUnfinishedLinesEndTheFile) {
+  const fs::path file = fs::temp_directory_path() / ("whirl_rows_" + std::to_string(::getpid()));
+  std::string text;
+  for (int k = 0; k < 5; ++k)
+    text += line_of(row_number(k));
+  const std::string whole = text;
+  for (std::size_t cut = 0; cut < text.size(); cut += 7) {
+    std::ofstream(file, std::ios::binary) << text.substr(0, cut);
+    const RowsRead read = read_rows(file);
+    EXPECT_LE(read.bytes, cut);
+    EXPECT_EQ(read.rows.size(),
+              static_cast<std::size_t>(
+                  std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(cut), '\n')));
+  }
+  text[text.find("E77", text.size() / 2)] = 'W';
+  std::ofstream(file, std::ios::binary) << text;
+  EXPECT_LT(read_rows(file).rows.size(), 4u);
+  fs::remove(file);
+}
+
+TEST(SweepResponses, PickNumbersOutOfTables) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("whirl_answers_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "t.csv") << "name [-],speed [rpm]\na,-3\nb,nan\nc,2\n";
+  const auto value = [&](const char* text) { return answer(read_response(text), folder); };
+  EXPECT_EQ(value("t:speed").value, -3);
+  EXPECT_EQ(value("t:speed").unit, "rpm");
+  EXPECT_EQ(value("x=t.csv:speed [rpm]:3").value, 2);
+  EXPECT_EQ(value("t:speed:last").value, 2);
+  EXPECT_EQ(value("t:speed:min").value, -3);
+  EXPECT_EQ(value("t:speed:max").value, 2);
+  EXPECT_EQ(value("t:speed:absmax").value, 3);
+  EXPECT_EQ(value("t:speed:mean").value, -0.5);
+  for (const char* text : {"t:speed:2", "t:speed:4", "t:sped", "u:speed", "t:name:max"})
+    EXPECT_FALSE(value(text).failure.empty()) << text;
+  for (const char* text : {"t", ":speed", "t:", "t:speed:0", "t:speed:first", "../t:speed", "=t:x"})
+    EXPECT_THROW(read_response(text), Error) << text;
+  fs::remove_all(folder);
+}
+
+TEST(SweepStatistics, OfKnownSamples) {
+  const Statistics s = statistics_of({4, 1, 3, 2, 5});
+  EXPECT_DOUBLE_EQ(s.mean, 3);
+  EXPECT_DOUBLE_EQ(s.deviation, std::sqrt(2.5));
+  EXPECT_DOUBLE_EQ(s.median, 3);
+  EXPECT_DOUBLE_EQ(s.p05, 1.2);
+  EXPECT_DOUBLE_EQ(s.p95, 4.8);
+  EXPECT_DOUBLE_EQ(s.least, 1);
+  EXPECT_DOUBLE_EQ(s.largest, 5);
+  EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 3, 4}, {1, 8, 27, 64}), 1);
+  EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 3, 4}, {4, 3, 2, 1}), -1);
+  EXPECT_DOUBLE_EQ(rank_correlation({1, 2, 2, 3}, {1, 2, 2, 3}), 1);
+  EXPECT_NEAR(rank_correlation({1, 2, 3}, {2, 1, 3}), 0.5, 1e-15);
+  EXPECT_TRUE(std::isnan(rank_correlation({1, 1, 1}, {1, 2, 3})));
+}
+
+TEST(SweepWorkers, CrashesAndHangsCostTheirOwnRun) {
+  const std::vector<std::int64_t> tasks{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  std::map<std::int64_t, std::pair<Ended, int>> ended;
+  std::map<std::int64_t, std::string> texts;
+  const auto run = [](std::int64_t task, int) -> std::string {
+    if (task == 3) {
+      std::signal(SIGABRT, SIG_DFL);
+      std::abort();
+    }
+    if (task == 5) std::this_thread::sleep_for(std::chrono::hours(1));
+    if (task == 6) ::_exit(7);
+    return "task " + std::to_string(task) + std::string(20000, 'x');  // more than a pipe's buffer
+  };
+  run_in_workers(tasks, {3, 2.0}, run,
+                 [&](std::int64_t task, Ended how, const std::string& text, int signal) {
+                   ended[task] = {how, signal};
+                   texts[task] = text;
+                 });
+  ASSERT_EQ(ended.size(), tasks.size());
+  for (const auto& [task, how] : ended) {
+    if (task == 3)
+      EXPECT_EQ(how, (std::pair{Ended::crashed, SIGABRT}));
+    else if (task == 5)
+      EXPECT_EQ(how.first, Ended::out_of_time);
+    else if (task == 6)
+      EXPECT_EQ(how, (std::pair{Ended::crashed, 0}));
+    else
+      EXPECT_EQ(texts[task], "task " + std::to_string(task) + std::string(20000, 'x'));
+  }
+}
+
+}  // namespace
+}  // namespace whirl::sweep
