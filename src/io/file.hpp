@@ -12,6 +12,9 @@ namespace whirl::io {
 /// missing folders.
 /// @throws Error (Exit::io) when it cannot be written; the old file is then as it was.
 void write_atomic(const std::filesystem::path& file, std::string_view content);
+/// Whether this process waits until what it writes is on the disk (it does): a process whose results
+/// are read back at once and thrown away need not. Not while others write.
+void set_waiting_for_disk(bool wait);
 /// Name of the file that write_atomic and others use before renaming: same folder, hidden, unique
 /// to this process.
 std::filesystem::path temporary_beside(const std::filesystem::path& file);

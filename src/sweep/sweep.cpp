@@ -40,6 +40,7 @@ class Runner {
     row.run = run;
     const Stopwatch watch;
     const fs::path results = folder_of(run, worker);
+    io::set_waiting_for_disk(options_.keep);
     try {
       std::error_code ec;
       fs::remove_all(results, ec);  // tables of the run before must not be taken for this one's
@@ -212,6 +213,15 @@ int list_tables(const SweepOptions& options) {
   return code;
 }
 
+/// Some run gave a value for each of them.
+bool every_response_answered(const std::map<std::int64_t, Row>& rows) {
+  std::vector<bool> answered(rows.begin()->second.answers.size(), false);
+  for (const auto& [run, row] : rows)
+    for (std::size_t k = 0; k < answered.size(); ++k)
+      if (row.answers[k].failure.empty()) answered[k] = true;
+  return std::find(answered.begin(), answered.end(), false) == answered.end();
+}
+
 /// The keys that are varied are there. What is wrong with their values is for the rows to say.
 void require_keys(const SweepOptions& options, const Plan& plan) {
   deck::ReadOptions read = options.read;
@@ -257,9 +267,8 @@ int run_sweep(const SweepOptions& options) {
             .c_str(),
         stdout);
   if (run::interrupted()) return static_cast<int>(Exit::interrupted);
-  const bool all_failed =
-      std::all_of(rows.begin(), rows.end(), [](const auto& r) { return r.second.exit != 0; });
-  return static_cast<int>(all_failed && !rows.empty() ? Exit::no_convergence : Exit::ok);
+  return static_cast<int>(missing == 0 && !every_response_answered(rows) ? Exit::no_convergence
+                                                                         : Exit::ok);
 }
 
 }  // namespace whirl::sweep
