@@ -23,6 +23,29 @@ Vec3 moment_of(const NodeState& n, const Vec3& f_d, double f_phi) {
   return d.cross(f_d) + f_phi / (2.0 + n.e().dot(n.t)) * (n.e() + d);
 }
 
+/// The second axis of sections that bend but do not turn: the smallest rotation that takes the axis
+/// of the line to the normal of the section. Where the normal is opposite to that axis (a beam bent
+/// by half a turn) there is no smallest: the axis of the section before it goes on.
+class SectionAxis {
+ public:
+  Vec3 axis(Index line, const Mat3& of_line, const Vec3& normal) {
+    const bool opposite = (of_line.col(0) + normal).squaredNorm() < opposite_within;
+    if (line != line_) ey_ = of_line.col(1);
+    if (!opposite)
+      ey_ = rotation::minimal_rotation(of_line.col(0), normal) * of_line.col(1);
+    else if (line == line_)
+      ey_ = rotation::minimal_rotation(normal_, normal) * ey_;
+    line_ = line;
+    normal_ = normal;
+    return ey_;
+  }
+
+ private:
+  static constexpr double opposite_within = 1e-16;
+  Index line_ = -1;
+  Vec3 normal_ = Vec3::Zero(), ey_ = Vec3::Zero();
+};
+
 void add_stress(const elements::ElementSection& s, double xi, SectionPoint& p) {
   if (s.constants) return;
   const double od = s.od1 + xi * (s.od2 - s.od1), id = s.id1 + xi * (s.id2 - s.id1);
@@ -74,23 +97,22 @@ BentElement stand(const model::Shaft& shaft, const meshes::Mesh& mesh, const mes
 
 /// Forces and moments at the share x of the element, in the axes of the section there. chart: of
 /// the line.
-void resolve(const BentElement& e, const Mat3& chart, double x, SectionPoint& p) {
+void resolve(const BentElement& e, const Mat3& chart, double x, SectionAxis& transported,
+             SectionPoint& p) {
   const double y = 1.0 - x;
   p.force = y * e.a.F + x * e.b.F;
   p.moment = y * y * (1.0 + 2.0 * x) * e.a.M + x * x * (3.0 - 2.0 * x) * e.b.M +
              x * y * (y * e.dM1 - x * e.dM2);
   const Vec3 d =
       (e.bent ? Vec3(y * e.t1.col(0) + x * e.t2.col(0)) : Vec3(y * e.a.d + x * e.b.d)).normalized();
-  Vec3 ey, ez;
+  Vec3 ey;
   if (e.bent) {  // turning with the twist from end to end
     const Vec3 mean = y * e.t1.col(1) + x * e.t2.col(1);
     ey = (mean - d.dot(mean) * d).normalized();
-    ez = d.cross(ey);
   } else {
-    const Mat3 axes = rotation::minimal_rotation(chart.col(0), d);
-    ey = axes * chart.col(1);
-    ez = axes * chart.col(2);
+    ey = transported.axis(p.line, chart, d);
   }
+  const Vec3 ez = d.cross(ey);
   p.N = p.force.dot(d);
   p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
   p.T = p.moment.dot(d);
@@ -105,6 +127,7 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
   WHIRL_EXPECTS(inner >= 0);
   WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
   std::vector<SectionPoint> out;
+  SectionAxis transported;
   out.reserve(mesh.elements.size() * static_cast<std::size_t>(inner + 2));
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
     const meshes::Element& e = mesh.elements[k];
@@ -123,7 +146,7 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
       p.element = static_cast<Index>(k);
       p.s = j == 0 ? e.s1 : j == inner + 1 ? e.s2 : e.s1 + x * (e.s2 - e.s1);
       p.xi = x;
-      resolve(now, chart, x, p);
+      resolve(now, chart, x, transported, p);
       if (!section.general) add_stress(shape, x, p);
       out.push_back(p);
     }

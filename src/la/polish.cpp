@@ -193,7 +193,7 @@ bool Polisher::refine(Pair& p, double tolerance, bool exact, double floor, Compl
 }
 
 void Polisher::sizes(const Pair& p, double cm, double cc, double ck) {
-  abs_x_ = p.x.cwiseAbs();
+  abs_x_ = p.x.cwiseAbs2().cwiseSqrt();  // without the care of hypot: shapes are of size 1
   size_.setZero();
   if (cm > 0.0) add_multiply_size(m_->M, cm, abs_x_, size_);
   if (cc > 0.0) add_multiply_size(m_->C, cc, abs_x_, size_);

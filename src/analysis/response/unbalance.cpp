@@ -19,6 +19,8 @@ UnbalanceSolver::UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& opt
     : linear_(linear),
       options_(options),
       solver_(linear) {
+  if (options_.turns_with_rotor && !options_.speeds.empty())
+    axes_ = std::make_unique<RotatingAxes>(linear, options_.speeds.back());
   if (!options_.outputs.empty()) meter_ = std::make_unique<VariationMeter>(linear);
 }
 
@@ -32,6 +34,10 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     if (w == 0.0) {
       a = VecXc::Zero(linear_.system().size());  // nothing turns
       linear_.at(Omega);
+    } else if (axes_) {
+      linear_.move_to(Omega);
+      a = axes_->response(Omega, -linear_.forcing()[k]);
+      if (Omega < 0) a = a.conjugate().eval();
     } else if (solver_.prepare(Omega, w)) {
       // forcing is given as Re(f exp(i order theta)) with theta = Omega t: backward rotation runs
       // the phase backward

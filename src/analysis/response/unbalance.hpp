@@ -3,6 +3,7 @@
 // bearings; peaks and their half-power points solved for.
 #pragma once
 #include <analysis/response/harmonic.hpp>
+#include <analysis/spectra/periodic.hpp>
 
 namespace whirl::analysis {
 
@@ -19,6 +20,7 @@ struct UnbalanceOptions {
   std::vector<Measurement> outputs;  ///< bearing forces and the like
   bool refine_peaks = true;  ///< add speeds at and around the peaks of the probes to the response
   bool shapes = false;       ///< keep the amplitudes of all unknowns
+  bool turns_with_rotor = false;  ///< solve in axes that turn with an asymmetric rotor
 };
 
 /// Amplitudes at one speed; [order] first: a rotor whose lines turn at different speeds responds
@@ -68,6 +70,7 @@ class UnbalanceSolver {
   Linearizer& linear_;
   UnbalanceOptions options_;
   HarmonicSolver solver_;
+  std::unique_ptr<RotatingAxes> axes_;
   std::unique_ptr<VariationMeter> meter_;
   std::vector<ResponsePeak> peaks_;
 };

@@ -126,12 +126,13 @@ Campbell CampbellRecorder::finish(long speeds_solved) {
   return out;
 }
 
-Campbell campbell(Linearizer& linear, const CampbellOptions& options) {
+Campbell campbell(Linearizer& linear, const CampbellOptions& options,
+                  const ModeTracker::Visit& visit) {
   CampbellRecorder recorder(options.speeds, options.shapes);
   ModeTracker tracker(linear, options.track);
   std::vector<SpectrumCertificate> certificates;
   for (std::size_t k = 0; k < options.speeds.size(); ++k) {
-    const auto& modes = tracker.advance(options.speeds[k]);
+    const auto& modes = tracker.advance(options.speeds[k], visit);
     recorder.take(k, modes, tracker.lines());
     certificates.push_back(tracker.solver().certificate());
   }

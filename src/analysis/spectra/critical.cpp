@@ -1,5 +1,6 @@
 #include <analysis/spectra/critical.hpp>
 
+#include <core/contract.hpp>
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
 #include <la/dense.hpp>
@@ -174,21 +175,9 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
   t.modes.max_frequency =
       1.1 * o.order * o.max_speed;  // only modes that reach the order line within the range matter
   ModeTracker tracker(linear, t);
-  ModesOptions mo = t.modes;
-  mo.max_frequency = infinity;
-  mo.count = 2;
-  WhirlSolver follower(linear, mo);
-  const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
-  std::vector<Critical> out;
-  const auto visit = [&](double a, double b, const std::vector<TrackedMode>& modes) {
-    for (const TrackedMode& m : modes) {
-      if (!m.has_before || m.now.frequency == 0.0) continue;
-      const double ga = gap(a, m.before), gb = gap(b, m.now);
-      if ((ga > 0) == (gb > 0) && gb != 0.0) continue;
-      if (ga == 0.0) continue;  // counted at the end of the step before
-      if (const auto root = find_on_mode(follower, a, m.before, b, m.now, gap, o.tolerance))
-        out.push_back({root->speed, o.order * root->speed, o.order, root->mode});
-    }
+  OrderCrossings crossings(o.order, low, o.max_speed, t.modes);
+  const auto visit = [&](double from, double to, const std::vector<TrackedMode>& modes) {
+    crossings.look(from, to, modes);
   };
   for (Index k = 0; k <= o.grid; ++k) {
     tracker.advance(
@@ -196,9 +185,73 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
     const SpectrumCertificate& now = tracker.solver().certificate();
     if (certificate && (k == 0 || (certificate->complete() && !now.complete()))) *certificate = now;
   }
+  std::vector<Critical> out = crossings.solve(linear, o.tolerance);
+  if (certificate && crossings.sure_to() < o.max_speed)
+    certificate->open =
+        fmt::format("a mode was lost on the way to its critical speed above {:.6g} rpm",
+                    to_rpm(crossings.sure_to()));
   return out;
 }
 }  // namespace
+
+OrderCrossings::OrderCrossings(double order, double min_speed, double max_speed,
+                               const ModesOptions& modes)
+    : order_(order),
+      min_speed_(min_speed),
+      max_speed_(max_speed),
+      sure_to_(min_speed),
+      modes_(modes) {
+  WHIRL_EXPECTS(order > 0.0 && min_speed >= 0.0 && min_speed < max_speed);
+}
+
+double OrderCrossings::reach_of(const std::vector<TrackedMode>& modes) const {
+  Index oscillating = 0;
+  double highest = 0.0;
+  for (const TrackedMode& m : modes) {
+    if (!m.now.oscillates()) continue;
+    ++oscillating;
+    highest = std::max(highest, m.now.frequency);
+  }
+  return modes_.count > 0 && oscillating >= modes_.count ? highest : modes_.max_frequency;
+}
+
+void OrderCrossings::look(double from, double to, const std::vector<TrackedMode>& modes) {
+  if (to <= min_speed_ || from >= max_speed_) return;
+  if (reach_of(modes) < order_ * std::min(to, max_speed_)) sure_ = false;
+  for (const TrackedMode& m : modes) {
+    if (m.now.frequency == 0.0) continue;
+    const double now = gap(to, m.now);
+    // below the order line and not known before: it may have come from above the list
+    if (!m.has_before && m.now.oscillates() && now <= 0.0) sure_ = false;
+    if (!m.has_before) continue;
+    const double before = gap(from, m.before);
+    const bool passes = (before > 0.0) != (now > 0.0) || now == 0.0;
+    // on the line at `from`: kept at the end of the step before
+    if (passes && before != 0.0) steps_.push_back({from, to, m.before, m.now});
+  }
+  if (sure_) sure_to_ = std::min(to, max_speed_);
+}
+
+std::vector<Critical> OrderCrossings::solve(Linearizer& linear, double tolerance) {
+  ModesOptions one_at_a_time = modes_;
+  one_at_a_time.max_frequency = infinity;
+  one_at_a_time.count = 2;
+  WhirlSolver follower(linear, one_at_a_time);
+  const auto g = [this](double Omega, const WhirlMode& w) { return gap(Omega, w); };
+  std::vector<Critical> out;
+  for (const Step& s : steps_) {
+    const auto root = find_on_mode(follower, s.from, s.before, s.to, s.now, g, tolerance);
+    if (!root) {
+      sure_to_ = std::min(sure_to_, std::max(min_speed_, s.from));
+      continue;
+    }
+    if (root->speed >= min_speed_ && root->speed <= max_speed_)
+      out.push_back({root->speed, order_ * root->speed, order_, root->mode});
+  }
+  std::sort(out.begin(), out.end(),
+            [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
+  return out;
+}
 
 std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options,
                                       SpectrumCertificate* certificate) {

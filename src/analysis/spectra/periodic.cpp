@@ -4,6 +4,7 @@
 #include <analysis/search.hpp>
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
+#include <la/direct.hpp>
 #include <la/eigen.hpp>
 
 #include <algorithm>
@@ -57,17 +58,21 @@ constexpr double steady = 1e-6;
 
 }  // namespace
 
+void RotatingAxes::require(const SteadySystem& running) {
+  if (running.orders().size() > 1)
+    throw run_error("E88",
+                    "an asymmetric shaft among shafts of different speeds: no axes exist in which "
+                    "the matrices are constant or have one period",
+                    "give the shafts one speed_ratio, or use a transient step");
+}
+
 RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Motion motion)
     : linear_(linear),
       motion_(linear.system(), motion, MotionReduction::Twist::held),
       turned_(linear.system().make_matrices()),
       raw_(linear.system().make_matrices()) {
   WHIRL_EXPECTS(harmonics >= 0);
-  if (linear.running().orders().size() > 1)
-    throw run_error("E88",
-                    "an asymmetric shaft among shafts of different speeds: no axes exist in which "
-                    "the matrices are constant or have one period",
-                    "give the shafts one speed_ratio, or use a transient step");
+  require(linear.running());
   // What varies: in fixed axes (then there is something to do), and in rotating ones, over one and
   // half a revolution.
   sample(Omega, 0.0, {});
@@ -110,7 +115,7 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
 
 void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   WHIRL_EXPECTS(std::isfinite(theta));
-  if (linear_.Omega() != Omega || Omega == 0.0) linear_.at(Omega);  // the equilibrium
+  if (linear_.Omega() != Omega || Omega == 0.0) linear_.move_to(Omega);
   const Equilibrium& e = linear_.equilibrium();
   SteadySystem& running = linear_.running();
   running.set_whirl(lambda, true);
@@ -205,6 +210,57 @@ double RotatingAxes::constant_share(const VecXc& x) const {
       all += (a == 0 ? 1.0 : 0.5) * x.segment<3>(6 * (parts * i + a)).squaredNorm();
   }
   return all > 0 ? own / all : 0.0;
+}
+
+VecXc RotatingAxes::first_order_of(const VecX& x) const {
+  const system::System& s = linear_.system();
+  const Index parts = 2 * harmonics_ + 1;
+  const Complex i(0, 1);
+  VecXc a = VecXc::Zero(s.size());
+  for (Index n = 0; n < s.nodes(); ++n) {
+    const Matrix<6> J = turn(s, linear_.equilibrium().state.frames.axes(n), n, 0.0, true);
+    const Matrix<6> lateral = -J * J;
+    const auto part = [&](Index k) { return x.segment<6>(6 * (parts * n + k)).cast<Complex>(); };
+    Eigen::Matrix<Complex, 6, 1> sum = (lateral - i * J) * part(0);
+    for (Index h = 1; h <= harmonics_; ++h) {
+      // cos and sin of m theta within axes that turn: cos theta and sin theta times those
+      const auto c = part(2 * h - 1);
+      const auto d = part(2 * h);
+      if (step_ * h == 2) sum += 0.5 * ((lateral + i * J) * c + (J - i * lateral) * d);
+      if (step_ * h == 1) sum += (Matrix<6>::Identity() - lateral) * (c - i * d);
+    }
+    a.segment<6>(6 * n) = sum;
+  }
+  return a;
+}
+
+VecXc RotatingAxes::response(double Omega, const VecXc& f) {
+  WHIRL_EXPECTS(f.size() == linear_.system().size());
+  const la::MCK& m = at(Omega);
+  const system::System& s = linear_.system();
+  const Index parts = 2 * harmonics_ + 1;
+  VecX x = VecX::Zero(6 * pattern_->size());
+  double size = 0.0, other = 0.0;
+  for (Index n = 0; n < s.nodes(); ++n) {
+    const Matrix<6> J = turn(s, linear_.equilibrium().state.frames.axes(n), n, 0.0, true);
+    // what turns with the rotor is a quarter turn further on a quarter of a revolution later
+    const Vector<6> now = -J * J * f.segment<6>(6 * n).real();
+    const Vector<6> later = -f.segment<6>(6 * n).imag();
+    const Vector<6> turned_on = J * now;
+    size = std::max(size, now.head<3>().norm());
+    other = std::max(other, (-J * J * later - turned_on).head<3>().norm());
+    x.segment<6>(6 * parts * n) = now;
+  }
+  for (Index k = 0; k < x.size(); ++k)
+    if (!active_[idx(k)]) x[k] = 0.0;
+  if (other > 1e-6 * size)
+    throw run_error("E88", "forces once a revolution that do not turn with the asymmetric rotor",
+                    "a transient step has no such limit");
+  const auto direct = la::make_direct_solver<double>(*pattern_, active_);
+  if (direct->factor(m, 0.0, 0.0, 1.0) != la::Status::ok)
+    return VecXc::Constant(f.size(), Complex(nan, nan));
+  direct->solve(x);
+  return first_order_of(x);
 }
 
 Index RotatingAxes::negative_stiffnesses(double Omega) {
