@@ -112,20 +112,12 @@ std::function<model::Model(const std::string&)> variants_of(const std::filesyste
   };
 }
 
-/// A resolved deck has its parameters put in: what a map would vary there is gone, and no mistake
-/// of its writer.
-bool has_parameters(const deck::Deck& d) {
-  for (int k = 0; k < d.sources.size(); ++k)
-    if (d.sources[k].text.find("parameters") != std::string::npos) return true;
-  return false;
-}
-
 /// Mesh and whatever else a run would refuse. Error: what it would.
 meshes::Mesh prepare(const deck::Deck& d, const CheckOptions& o) {
   meshes::Mesh mesh = meshes::make_mesh(d.model);
   if (d.model.steps.empty()) return mesh;
   run::RunOptions run;
-  if (has_parameters(d)) run.variant = variants_of(o.deck, o.read);
+  run.variant = variants_of(o.deck, o.read);
   steps::check_steps(d.model, mesh, run);
   return mesh;
 }

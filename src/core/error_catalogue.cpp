@@ -485,7 +485,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "equilibria under growing loads were followed to 1.25 times the first "
        "factor; their tangent loses definiteness at another load (more than 2 % away), or not at "
        "all, because the load bends the structure on the way (a shallow "
-       "arch, a column that is not straight, a force across the plane). The path is right.",
+       "arch, a column that is not straight, a force across the plane). The path is right. Or the "
+       "model is unstable before any load acts: temperature, preload or forced places of supports "
+       "have buckled it already.",
        "[[step]]\nname = \"path\"\ntype = \"static\"\npath = { load = 2 }"},
       {"W10", "a mesh too coarse for its frequencies",
        "The elements the deck asks for leave frequencies of the step an error above "

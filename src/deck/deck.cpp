@@ -5,6 +5,7 @@
 #include <deck/validate.hpp>
 #include <algorithm>
 #include <fmt/format.h>
+#include <set>
 
 namespace whirl::deck {
 namespace {
@@ -22,6 +23,7 @@ std::string stem_of(const std::filesystem::path& file) {
 /// Leaves out what no motion depends on.
 Value moving_part(const Value& v) {
   Value out = v;
+  out.varied.clear();
   std::erase_if(out.members, [](const Member& m) { return !m.moves; });
   for (Member& m : out.members)
     m.value = moving_part(m.value);
@@ -74,6 +76,28 @@ void add_builtin_materials(Value& resolved, const model::Model& m) {
                           Member{"material", {}, std::move(all)});
 }
 
+/// Names of the parameters that maps of the steps vary.
+std::set<std::string> varied_names(const Value& root) {
+  std::set<std::string> names;
+  const Member* steps = root.find("step");
+  if (!steps) return names;
+  const std::vector<Value> one{steps->value};
+  for (const Value& step : steps->value.is_array() ? steps->value.items : one) {
+    const Member* map = step.find("map");
+    const Member* name = map && map->value.is_table() ? map->value.find("parameter") : nullptr;
+    if (name && name->value.is_text()) names.insert(name->value.text);
+  }
+  return names;
+}
+
+/// Maps of a resolved deck vary what they varied: their parameters stay.
+void add_varied_parameters(Value& resolved, Value table) {
+  if (table.members.empty()) return;
+  const auto first_table = std::find_if(resolved.members.begin(), resolved.members.end(),
+                                        [](const Member& m) { return m.value.is_table(); });
+  resolved.members.insert(first_table, Member{"parameters", {}, std::move(table), false});
+}
+
 void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions& options) {
   Diagnostics diagnostics;
   const TextProblem bad = check_text(deck.sources[0].text, TextKind::deck);
@@ -89,13 +113,14 @@ void read_into(Deck& deck, const std::filesystem::path& file, const ReadOptions&
       deck.model.output.directory = "results/" + deck.model.deck_name;
       const Member* parameters = document.root.find("parameters");
       Parameters names(parameters && parameters->value.is_table() ? &parameters->value : nullptr,
-                       {{"deck", deck.model.deck_name}});
+                       {{"deck", deck.model.deck_name}}, varied_names(document.root));
       Reader reader(deck.sources, diagnostics, names, document, deck.model);
       reader.files_allowed = options.files_allowed;
       reader.read();
       if (diagnostics.errors() == 0) names.warn_unused(diagnostics);
       Value resolved = reader.take_resolved();
       add_builtin_materials(resolved, deck.model);
+      add_varied_parameters(resolved, names.varied_table());
       if (diagnostics.errors() == 0) {
         deck.model.resolved = write_toml(resolved);
         deck.model.moving = moving_deck(resolved);

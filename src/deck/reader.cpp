@@ -62,6 +62,9 @@ const Member* Reader::find(const Key& k) {
 
 void Reader::put(const Key& k, Value v) {
   if (!scope().resolved || v.kind == Value::Kind::unreadable) return;
+  const Member* given = scope().table->find(k.name);
+  if (given && given->value.is_text() && v.varied.empty() && !v.is_array() && !v.is_table())
+    v.varied = expand(given->value).varied;
   Member* m = scope().resolved->find(k.name);
   if (m)
     m->value = std::move(v);

@@ -90,7 +90,7 @@ bool Reader::location(const Key& k, model::Location& target, const char*) {
   }
   target = *found.at;
   target.where = sources_.where(v.spot);
-  put(k, Value::of_text(v.text));
+  put(k, v);
   return true;
 }
 

@@ -128,6 +128,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_clamps(m, out);
   check_preloads(m, out);
   check_undeformed(m, out);
+  check_windows(m, out);
   check_effects(m, out);
   return out;
 }

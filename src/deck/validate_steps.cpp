@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace whirl::deck {
 
@@ -124,6 +125,30 @@ void check_clamps(const model::Model& m, Problems& out) {
         "name the transient step it drives (step = \"..\") to leave the shaft free in the others",
         d.where, Diagnostic::Severity::warning);
   }
+}
+
+/// Windows of time in which no step runs: nothing would be written.
+void check_windows(const model::Model& m, Problems& out) {
+  std::map<std::string, double> end;
+  double first = infinity, last = -infinity;
+  const model::Step* one = nullptr;
+  for (const model::Step& s : m.steps) {
+    const auto before = end.find(s.from);
+    const double begin = before == end.end() ? 0.0 : before->second;
+    const auto* t = std::get_if<model::TransientStep>(&s.law);
+    end[s.name] = begin + (t ? t->duration : 0.0);
+    if (!t) continue;
+    if (!t->previous.empty()) return;  // goes on at a time that another run knows
+    first = std::min(first, begin);
+    last = std::max(last, end[s.name]);
+    one = &s;
+  }
+  if (!one || (m.output.t0 < last && m.output.t1 > first)) return;
+  report(out, "W02",
+         fmt::format("the window of [output] from {:.6g} s to {:.6g} s holds nothing: transient "
+                     "steps run from {:.6g} s to {:.6g} s",
+                     m.output.t0, m.output.t1, first, last),
+         "no row of the histories would be written", one->where, Diagnostic::Severity::warning);
 }
 
 /// Steps linearised about the rotor as drawn.

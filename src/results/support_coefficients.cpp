@@ -68,10 +68,12 @@ Matrix<5> at_point(const Matrix<6>& node, double o, double axial) {
 /// Czy).
 void find_threshold(SupportCoefficients& b) {
   const Mat2 &K = b.K, &C = b.C;
-  const double k =
+  const double resisted =
       (K(0, 0) * C(1, 1) + K(1, 1) * C(0, 0) - K(0, 1) * C(1, 0) - K(1, 0) * C(0, 1)) / C.trace();
+  // an unloaded round journal resists nothing directly: no mass is stable on it
+  const double k = std::abs(resisted) < 1e-12 * K.norm() ? 0.0 : resisted;
   const double w2 = ((k - K(0, 0)) * (k - K(1, 1)) - K(0, 1) * K(1, 0)) / C.determinant();
-  if (!(C.trace() > 0) || !(C.determinant() > 0) || !(k > 0) || !(w2 > 0) || b.spin == 0) return;
+  if (!(C.trace() > 0) || !(C.determinant() > 0) || !(k >= 0) || !(w2 > 0) || b.spin == 0) return;
   b.threshold_mass = k / w2;
   b.whirl_ratio = std::sqrt(w2) / std::abs(b.spin);
 }
@@ -106,6 +108,13 @@ Vec3 force_on_shaft(const assembly::SupportForce& support, const system::Workspa
                        w.context, [](Index) { return 0.0; });
 }
 
+/// A journal in the middle of its gap by all but rounding carries nothing: no number can be divided
+/// by its load.
+bool is_loaded(const SupportCoefficients& c) {
+  constexpr double rounding = 1e-9;  // of the gap
+  return c.load > 0 && !(c.place.norm() <= rounding * c.clearance);
+}
+
 /// Spin, place, load and its attitude, gap of a support in an evaluated state.
 void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
                     const system::Workspace& w) {
@@ -136,9 +145,10 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
   for (const assembly::SupportCondition& x : job.built.conditions) {
     if (x.bearing != bearing) continue;
     c.clearance = x.state(node).gap;
-    if (x.sommerfeld > 0 && c.load > 0)
+    if (x.sommerfeld > 0 && is_loaded(c))
       c.sommerfeld = x.sommerfeld * std::abs(c.spin) / two_pi / c.load;
   }
+  if (!is_loaded(c)) c.attitude = nan;
 }
 
 }  // namespace

@@ -67,6 +67,24 @@ void compare(results::FrequencyStep& s, double factor, const analysis::BucklingM
   if (!s.job.options.quiet) run::print_diagnostics({d});
 }
 
+/// W09 where the model has buckled before any load acts.
+std::string say_unstable(results::FrequencyStep& s, const analysis::BucklingCount& c) {
+  if (c.unstable == 0) return "";
+  const std::string text = fmt::format(
+      "without its loads the model is unstable already, in {} direction{}{}: it has buckled",
+      c.unstable, c.unstable == 1 ? "" : "s", c.unstable_certain ? "" : " (counted, not proved)");
+  s.summary()["unstable directions without loads"] = static_cast<int>(c.unstable);
+  s.section.text += " " + results::capital(text) + ".";
+  Diagnostic d;
+  d.code = "W09";
+  d.message = fmt::format("step '{}': {}", s.step.name, text);
+  d.hint =
+      "factors on the loads do not say when it buckles; what is built in does (temperature, "
+      "preload, forced places of supports): a static step shows the direction";
+  results::warn(s.job, std::move(d));
+  return "; " + text;
+}
+
 /// What is known of the completeness of the list, everywhere; W07 where factors are missing.
 std::string certify(results::FrequencyStep& s, const analysis::BucklingCount& c) {
   std::string text =
@@ -143,6 +161,7 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
   s.section.text =
       "Factors on gravity and all loads at which the stiffness of the rotor vanishes, from its "
       "derivative with the loads at the unloaded state.";
+  const std::string unstable = say_unstable(s, count);
   const std::string known = certify(s, count);
   std::string line = modes.empty()
                          ? "no buckling load"
@@ -155,7 +174,7 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
     compare(s, first, *std::find_if(modes.begin(), modes.end(), of_first), *path);
     line += "; " + describe(*path);
   }
-  s.finish(line + "; " + known);
+  s.finish(line + unstable + "; " + known);
 }
 
 }  // namespace whirl::steps

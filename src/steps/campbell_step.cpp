@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace whirl::steps {
 
@@ -21,7 +22,7 @@ namespace {
 io::Table make_table(const analysis::Campbell& c) {
   io::Table t;
   t.title = "Campbell diagram";
-  t.nan_means = "the mode is not there at this speed";
+  t.nan_means = "the mode is not there at this speed, or above those listed";
   t.columns.push_back({"speed", "rpm", ""});
   for (const analysis::CampbellLine& l : c.lines) {
     t.columns.push_back({l.label + " frequency", "Hz", "damped natural frequency"});
@@ -138,6 +139,69 @@ bool any_damping(const analysis::Campbell& c) {
   });
 }
 
+/// Marks the lines that are among the `count` of least frequency at some speed.
+std::vector<bool> listed_lines(const analysis::Campbell& c, std::size_t count) {
+  std::vector<bool> listed(c.lines.size(), false);
+  for (std::size_t k = 0; k < c.speeds.size(); ++k) {
+    std::vector<std::size_t> there;
+    for (std::size_t l = 0; l < c.lines.size(); ++l)
+      if (!std::isnan(c.lines[l].frequency[k])) there.push_back(l);
+    std::stable_sort(there.begin(), there.end(), [&](std::size_t a, std::size_t b) {
+      return c.lines[a].frequency[k] < c.lines[b].frequency[k];
+    });
+    there.resize(std::min(there.size(), count));
+    for (const std::size_t l : there)
+      listed[l] = true;
+  }
+  return listed;
+}
+
+/// A line has no place at a speed: it was there at the one before or is there at the next, near the
+/// end of a list that holds `count` others here.
+bool is_cut(const analysis::Campbell& c, const analysis::CampbellLine& line, std::size_t count) {
+  constexpr double near_the_end = 0.9;
+  for (std::size_t k = 0; k < c.speeds.size(); ++k) {
+    if (!std::isnan(line.frequency[k])) continue;
+    const double before = k > 0 ? line.frequency[k - 1] : nan;
+    const double after = k + 1 < c.speeds.size() ? line.frequency[k + 1] : nan;
+    std::size_t there = 0;
+    double highest = 0.0;
+    for (const analysis::CampbellLine& other : c.lines)
+      if (!std::isnan(other.frequency[k])) {
+        ++there;
+        highest = std::max(highest, other.frequency[k]);
+      }
+    const double own = std::isnan(before) ? after : before;
+    if (there >= count && own >= near_the_end * highest) return true;
+  }
+  return false;
+}
+
+/// The diagram of the lines that belong to the modes asked for at some speed. Where one of them
+/// would end or begin because others take its place in the list, the list is made longer.
+analysis::Campbell follow_lines(Index asked,
+                                const std::function<analysis::Campbell(Index count)>& follow) {
+  Index count = asked;
+  analysis::Campbell c = follow(count);
+  if (asked <= 0) return c;
+  for (int longer = 0; longer < 4; ++longer) {
+    const std::vector<bool> listed = listed_lines(c, static_cast<std::size_t>(asked));
+    bool cut = false;
+    for (std::size_t l = 0; l < c.lines.size(); ++l)
+      cut = cut || (listed[l] && is_cut(c, c.lines[l], static_cast<std::size_t>(count)));
+    if (!cut) break;
+    count += std::max<Index>(4, asked / 2);
+    c = follow(count);
+  }
+  if (count == asked) return c;
+  const std::vector<bool> listed = listed_lines(c, static_cast<std::size_t>(asked));
+  std::vector<analysis::CampbellLine> kept;
+  for (std::size_t l = 0; l < c.lines.size(); ++l)
+    if (listed[l]) kept.push_back(std::move(c.lines[l]));
+  c.lines = std::move(kept);
+  return c;
+}
+
 }  // namespace
 
 void run_campbell_step(run::Job& job, const model::Step& step, const model::CampbellStep& law) {
@@ -152,16 +216,21 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   // At standstill every rotor that turns freely has the frequency 0 = n x 0: no critical speed.
   const double lowest = o.speeds.front() > 0 ? o.speeds.front() : 1e-3 * top;
   std::vector<analysis::OrderCrossings> crossings;
-  if (law.damped && o.speeds.front() >= 0 && rises(o.speeds))
-    for (const double order : law.orders)
-      crossings.emplace_back(order, lowest, top, o.track.modes);
   const auto visit = [&](double from, double to, const std::vector<analysis::TrackedMode>& modes) {
     for (analysis::OrderCrossings& order : crossings)
       order.look(from, to, modes);
   };
   const analysis::Campbell c = [&] {
     const run::PhaseTimer timer(job, "Campbell diagram");
-    return analysis::campbell(s.linear, o, visit);
+    return follow_lines(law.modes, [&](Index count) {
+      analysis::CampbellOptions longer = o;
+      longer.track.modes.count = count;
+      crossings.clear();
+      if (law.damped && o.speeds.front() >= 0 && rises(o.speeds))
+        for (const double order : law.orders)
+          crossings.emplace_back(order, lowest, top, longer.track.modes);
+      return analysis::campbell(s.linear, longer, visit);
+    });
   }();
   io::Table criticals = empty_critical_table();
   std::vector<plot::CriticalMark> marks;

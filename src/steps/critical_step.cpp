@@ -130,13 +130,15 @@ void CriticalRun::add_shapes(double order, const std::vector<analysis::Critical>
 }
 
 void CriticalRun::add_to_line(const std::vector<analysis::Critical>& list) {
-  if (line_.size() >= 60) return;
-  for (std::size_t k = 0; k < std::min<std::size_t>(list.size(), 4); ++k) {
+  constexpr std::size_t most = 4;
+  const bool full = line_.size() >= 60;
+  for (std::size_t k = 0; k < std::min(list.size(), full ? 0 : most); ++k) {
     const analysis::WhirlMode& mode = list[k].mode;
     line_ += fmt::format("{}{:.6g} ({})", line_.empty() ? "" : ", ", to_rpm(list[k].speed),
                          mode.direction == analysis::Direction::none ? to_string(mode.kind)
                                                                      : to_string(mode.direction));
   }
+  if (list.size() > (full ? 0 : most) && !line_.ends_with("..")) line_ += ", ..";
 }
 
 void CriticalRun::find(bool damped) {

@@ -27,9 +27,13 @@ using analysis::BandResult;
 using analysis::InstabilityBand;
 
 BandResult solve_bands(const model::StabilityStep& law, analysis::RotatingAxes& axes,
-                       const std::vector<double>& speeds) {
+                       const std::vector<double>& speeds, run::ProgressLine& line) {
   analysis::BandOptions o;
   o.modes = law.modes;
+  o.progress = [&](double share, double Omega) {
+    line.update(share, share < 1.0 ? fmt::format("{:.5g} rpm", to_rpm(Omega))
+                                   : fmt::format("band about {:.5g} rpm", to_rpm(Omega)));
+  };
   for (const double Omega : speeds)
     o.speeds.push_back(std::abs(Omega));
   std::sort(o.speeds.begin(), o.speeds.end());
@@ -159,7 +163,8 @@ void run_instability_bands(run::Job& job, const model::Step& step,
   const run::PhaseTimer timer(job, "stability");
   if (law.map) throw no_map_of_bands(step);
   analysis::RotatingAxes axes(s.linear, speeds.back());
-  const BandResult r = solve_bands(law, axes, speeds);
+  run::ProgressLine progress(step.name, job.options.quiet);
+  const BandResult r = solve_bands(law, axes, speeds, progress);
   s.summary()["supports"] = axes.constant() ? "isotropic" : "unequal";
   add_band_table(s, r);
   add_growth_table(s, r);

@@ -1,5 +1,6 @@
 #include <analysis/transient/momentum_route.hpp>
 #include <analysis/spectra/periodic.hpp>
+#include <analysis/statics/buckling.hpp>
 #include <analysis/steady_rotation.hpp>
 #include <core/plugin.hpp>
 #include <run/checkpoint.hpp>
@@ -44,6 +45,8 @@ class Obstacles {
       note(step.where, [&] { check_turning(step); });
       if (const auto* t = std::get_if<model::TransientStep>(&step.law))
         note(step.where, [&] { check_transient(step, *t); });
+      if (const auto* b = std::get_if<model::BucklingStep>(&step.law))
+        note(step.where, [&] { check_buckling(step, *b); });
       if (const auto* s = std::get_if<model::StabilityStep>(&step.law); s) {
         note(step.where, [&] { check_axes(step); });
         if (s->map) note(step.where, [&] { check_map(step, *s->map); });
@@ -138,6 +141,21 @@ class Obstacles {
     const analysis::SteadySystem turning(built.system, running);
     VecX v(built.system.size());
     turning.set_rates(reference, v);
+  }
+
+  /// E79: something can make it buckle. What else is wrong the run will say.
+  void check_buckling(const model::Step& step, const model::BucklingStep& law) {
+    const assembly::Built& built = system_of(step.name);
+    analysis::SteadyRotation rotation;
+    for (std::size_t l = 0; l < mesh_.lines.size(); ++l)
+      rotation.ratio.push_back(model_.shafts[l].rotating ? model_.shafts[l].speed_ratio : 0.0);
+    rotation.ratio.resize(static_cast<std::size_t>(built.system.lines()), 0.0);
+    analysis::SteadySystem running(built.system, rotation);
+    try {
+      analysis::require_loads(running, law.speed);
+    } catch (const Error& e) {
+      if (e.diagnostics().front().code == "E79") throw;
+    }
   }
 
   static std::optional<double> top_speed(const model::StepLaw& law) {

@@ -10,7 +10,13 @@ namespace whirl::tests {
 
 class RandomMachine {
  public:
-  explicit RandomMachine(unsigned seed) : rng_(seed) { build(); }
+  /// some: two of three machines stand on films; always: all, on films of every shape.
+  enum class Films { some, always };
+  explicit RandomMachine(unsigned seed, Films films = Films::some)
+      : rng_(seed),
+        always_films_(films == Films::always) {
+    build();
+  }
   const std::string& deck() const { return deck_; }
   double top_speed() const { return top_speed_; }  ///< rpm
   bool films() const { return films_; }
@@ -68,7 +74,14 @@ class RandomMachine {
     const double viscosity =
         modified * load * clearance * clearance * 4.0 * diameter_ * diameter_ /
         (speed / 6.283 * diameter_ * length * diameter_ * diameter_ / 4.0 * length * length) * 0.25;
-    const char* type = chance(0.7) ? "short_journal" : "journal\"\nshape = \"plain";
+    const bool short_film = chance(0.7);
+    std::string type = short_film ? "short_journal" : "journal\"\nshape = \"plain";
+    if (always_films_) {
+      const char* types[] = {"short_journal", "journal\"\nshape = \"plain",
+                             "journal\"\nshape = \"two_grooves",
+                             "journal\"\npreload = 0.4\nshape = \"lobes"};
+      type = types[pick(4)];
+    }
     return fmt::format(
         "type = \"{}\"\ndiameter = \"{} m\"\nlength = \"{} m\"\nclearance = \"{} m\"\nviscosity = "
         "\"{} Pa.s\"\n",
@@ -95,7 +108,7 @@ class RandomMachine {
     deck_ +=
         fmt::format("[[bearing]]\nat = \"p0:start\"\ntype = \"linear\"\nkxx = \"{} N/m\"\n", axial);
     if (chance(0.5)) deck_ += fmt::format("cxx = \"{} N.s/m\"\n", axial * 1e-4);
-    const bool film_machine = chance(0.65);
+    const bool film_machine = chance(0.65) || always_films_;
     const std::string places[] = {"p0:start", fmt::format("p{}:end", sections_ - 1)};
     for (const std::string& at : places)
       deck_ += fmt::format("[[bearing]]\nat = \"{}\"\n{}", at,
@@ -120,7 +133,7 @@ class RandomMachine {
   std::string deck_;
   double diameter_ = 0, top_speed_ = 0;
   int sections_ = 0;
-  bool films_ = false;
+  bool films_ = false, always_films_ = false;
 };
 
 }  // namespace whirl::tests

@@ -26,12 +26,13 @@ std::vector<Complex> all_roots(const la::MCK& m, std::span<const unsigned char> 
 
 struct Tally {
   int machines = 0, solved = 0, without_equilibrium = 0, certified = 0, certain = 0, unstable = 0,
-      diverging = 0, recovered = 0;
+      diverging = 0, recovered = 0, unresolved = 0;
 };
 
-/// One machine at one speed: what the list says against all roots.
+/// One machine at one speed: what the list says against all roots. strict: all lists are certified,
+/// and whatever is said to grow does by the dense method.
 void check_machine(const DeckModel& d, double Omega, Index count, const std::string& name,
-                   Tally& tally) {
+                   Tally& tally, bool strict) {
   Linearizer linear(d.built.system, d.running());
   ModesOptions o;
   o.count = count;
@@ -52,7 +53,9 @@ void check_machine(const DeckModel& d, double Omega, Index count, const std::str
   tally.certified += certificate.complete();
   tally.certain += certificate.stability_certain();
   tally.recovered += certificate.list.recovered > 0;
-  EXPECT_TRUE(certificate.complete()) << name << ": " << certificate.text();
+  if (!certificate.complete())
+    std::printf("%s at %g rpm: %s\n", name.c_str(), Omega / rpm, certificate.text().c_str());
+  EXPECT_TRUE(certificate.complete() || !strict) << name << ": " << certificate.text();
   const std::vector<Complex> all =
       all_roots(linear.at(Omega), linear.active(), 0.37 * certificate.list.radius);
   double largest = 0;
@@ -87,7 +90,13 @@ void check_machine(const DeckModel& d, double Omega, Index count, const std::str
   bool said = false;
   for (const WhirlMode& m : modes) {
     if (m.oscillates()) ++oscillating;
-    said = said || m.growth() > 0;
+    // In the long campaign what grows more slowly than the dense method can tell is not judged by
+    // it: films drive an axial mode that has no damping of its own by 1e-10 of its frequency.
+    const double resolved =
+        strict ? 0.0 : std::max(1e-6 * std::abs(m.lambda) + 1e4 * rounding, zero);
+    const bool grows_here = m.growth() > 0;
+    said = said || (grows_here && m.lambda.real() > resolved);
+    tally.unresolved += grows_here && m.lambda.real() <= resolved;
     tally.diverging += !m.oscillates() && m.growth() > 0;
     if (std::abs(m.lambda) < std::max(zero, 1e4 * rounding)) continue;
     const bool real = std::any_of(all.begin(), all.end(), [&](Complex s) {
@@ -101,17 +110,28 @@ void check_machine(const DeckModel& d, double Omega, Index count, const std::str
   EXPECT_EQ(said, grows) << name << " at " << Omega / rpm << " rpm";
 }
 
-Tally campaign(unsigned first, unsigned machines) {
+Tally campaign(unsigned first, unsigned machines,
+               tests::RandomMachine::Films films = tests::RandomMachine::Films::some) {
   Tally tally;
   for (unsigned seed = first; seed < first + machines; ++seed) {
-    const tests::RandomMachine machine(seed);
+    const tests::RandomMachine machine(seed, films);
     ++tally.machines;
     const DeckModel d(machine.deck());
     for (const double share : {0.15, 1.0})
       check_machine(d, share * machine.top_speed() * rpm, 8 + seed % 7,
-                    "machine " + std::to_string(seed), tally);
+                    "machine " + std::to_string(seed), tally,
+                    films == tests::RandomMachine::Films::some);
   }
   return tally;
+}
+
+void report(const Tally& t) {
+  std::printf(
+      "%d machines, %d spectra (%d without equilibrium), %d certified, %d certain at all "
+      "frequencies, %d unstable, %d divergences, %d recovered by the count, %d growths below what "
+      "the dense method tells\n",
+      t.machines, t.solved, t.without_equilibrium, t.certified, t.certain, t.unstable, t.diverging,
+      t.recovered, t.unresolved);
 }
 
 }  // namespace
@@ -120,9 +140,15 @@ TEST(Certificates, RandomMachinesLoseNoModeAndNoVerdictIsFalse) {
   const char* wanted = std::getenv("WHIRL_CAMPAIGN");  // the long campaign: so many machines
   const Tally t = campaign(1000, wanted ? static_cast<unsigned>(std::atoi(wanted)) : 25);
   EXPECT_EQ(t.certified, t.solved);
-  std::printf(
-      "%d machines, %d spectra (%d without equilibrium), %d certified, %d certain at all "
-      "frequencies, %d unstable, %d divergences, %d recovered by the count\n",
-      t.machines, t.solved, t.without_equilibrium, t.certified, t.certain, t.unstable, t.diverging,
-      t.recovered);
+  report(t);
+}
+
+// The long campaign: 500 machines, all on films. `ctest -L long`. A list that is not certified says
+// so; none of them lacks a mode that the dense method finds, and no certified verdict is false.
+TEST(Certificates, LongCampaignOfFilms) {
+  const char* wanted = std::getenv("WHIRL_FILM_CAMPAIGN");
+  const Tally t = campaign(20000, wanted ? static_cast<unsigned>(std::atoi(wanted)) : 4,
+                           tests::RandomMachine::Films::always);
+  EXPECT_GE(t.certified, t.solved - t.solved / 250);
+  report(t);
 }

@@ -310,4 +310,71 @@ TEST(CriticalSpeeds, ForwardAndBackwardNearlyAtOneSpeed) {
     }
     EXPECT_GT(speeds[1] / speeds[0] - 1, 1e-4);
   }
+
+// The resolved deck of a run keeps what its stability map varies: it passes, and draws the same map.
+TEST(Spectra, ResolvedDeckOfAMapRunsAgain) {
+  const DeckRun first(
+      std::filesystem::path(WHIRL_SOURCE "/examples/07_internal_damping/deck.toml"));
+  ASSERT_EQ(first.exit, 0) << first.log;
+  std::ostringstream resolved;
+  resolved << std::ifstream(first.folder / "r" / "resolved.toml").rdbuf();
+  EXPECT_NE(resolved.str().find("\"${c_external}\""), std::string::npos) << resolved.str();
+  const Columns before = first.csv("stability_map_onset.csv");
+  const DeckRun again(resolved.str());
+  ASSERT_EQ(again.exit, 0) << again.log;
+  EXPECT_EQ(again.csv("stability_map_onset.csv").rows.size(), 8u);
+  EXPECT_EQ(column(again.csv("stability_map_onset.csv"), before.names[1]),
+            column(before, before.names[1]));
+  std::ostringstream twice;
+  twice << std::ifstream(again.folder / "r" / "resolved.toml").rdbuf();
+  EXPECT_EQ(twice.str(), resolved.str());
+}
+
+// Gyroscopic effect lifts the third forward line of an overhung disk above the fourth backward one:
+// of six modes asked for both belong to the list somewhere, and neither ends where the other takes
+// its place.
+TEST(Spectra, CampbellLinesGoOnWhereOthersFillTheList) {
+  const DeckRun run(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "R"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 600, 30, 6], ["b", 200, 30, 3]]
+[[disk]]
+at = "b:end"
+mass = "8 kg"
+Ip = "0.12 kg.m^2"
+Id = "0.06 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "a:end"
+type = "rigid"
+directions = ["y", "z"]
+[[step]]
+name = "c"
+type = "campbell"
+speed = { start = "0 rpm", stop = "60000 rpm", points = 13 }
+modes = 6
+motion = "lateral"
+[output]
+report = false
+)");
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const Columns c = run.csv("c_campbell.csv");
+  int lines = 0;
+  for (const std::string& name : c.names) {
+    if (name.find(" frequency") == std::string::npos) continue;
+    ++lines;
+    for (const double f : column(c, name))
+      EXPECT_FALSE(std::isnan(f)) << name;
+  }
+  EXPECT_EQ(lines, 7);
+  const std::vector<double> forward = column(c, "3 F frequency [Hz]");
+  ASSERT_EQ(forward.size(), 13u);
+  EXPECT_GT(forward.back(), column(c, "4 B frequency [Hz]").back());
 }

@@ -244,3 +244,113 @@ modes = 4
   EXPECT_FALSE(c.at("complete").boolean()) << c.at("text").text();
   EXPECT_NE(c.at("text").text().find("not symmetric"), std::string::npos);
 }
+
+// Held at both ends and hot, a shaft has buckled before any load acts, in both planes: there is no
+// factor to find, and the step says why.
+TEST(StaticStability, BucklingOfWhatHasBuckledAlready) {
+  const std::string hot = R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "m"
+E = "210 GPa"
+nu = 0.3
+density = "7850 kg/m^3"
+expansion = "12e-6 1/K"
+[[shaft]]
+name = "R"
+material = "m"
+temperature_rise = "50 K"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 500, 20, 6], ["b", 500, 20, 6]]
+[[bearing]]
+at = "0 mm"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "1000 mm"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[step]]
+name = "b"
+type = "buckling"
+[output]
+report = false
+)";
+  const DeckRun run(hot);
+  EXPECT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(run.says("unstable already, in 2 directions")) << run.log;
+  EXPECT_TRUE(run.says("W09")) << run.log;
+  EXPECT_EQ(run.summary("b").at("unstable directions without loads").number(), 2);
+}
+
+// Where neither weight nor a load acts on a stable model, the deck alone tells it: `check` does.
+TEST(StaticStability, BucklingWithoutLoadsIsFoundByCheck) {
+  const DeckRun run(column(0.0, "[[step]]\nname = \"b\"\ntype = \"buckling\"\n"));
+  EXPECT_TRUE(run.says("E79")) << run.log;
+  const auto check = [&](const std::string& deck) {
+    return std::system(
+        ("cd '" + run.folder.string() + "' && '" WHIRL_EXE "' check " + deck + " >check.txt 2>&1")
+            .c_str());
+  };
+  EXPECT_NE(check("d.toml"), 0);
+  std::ostringstream said;
+  said << std::ifstream(run.folder / "check.txt").rdbuf();
+  EXPECT_NE(said.str().find("E79"), std::string::npos) << said.str();
+  EXPECT_EQ(check("d.toml --set 'parameters.P=-1 N'"), 0);
+}
+
+// A shaft that turns, rigidly joined to one that stands: not a missing support.
+TEST(StaticStability, JointThatContradictsTheRotationIsNamed) {
+  const DeckRun run(R"(format = 1
+[[shaft]]
+name = "R"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 400, 50, 2], ["b", 400, 50, 2]]
+[[shaft]]
+name = "S"
+material = "steel"
+rotating = false
+origin = ["400 mm", "0 mm", "0 mm"]
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["c", 400, 50, 2]]
+[[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "1e7 N/m"
+kzz = "1e7 N/m"
+[[bearing]]
+at = "b:end"
+type = "linear"
+kyy = "1e7 N/m"
+kzz = "1e7 N/m"
+[[joint]]
+name = "flange"
+kind = "rigid"
+at = "S/c:start"
+to = "R/a:end"
+[[step]]
+name = "s"
+type = "static"
+[output]
+report = false
+)");
+  EXPECT_NE(run.exit, 0);
+  EXPECT_TRUE(run.says("E75")) << run.log;
+  EXPECT_TRUE(run.says("flange")) << run.log;
+  EXPECT_TRUE(run.says("'rotating'")) << run.log;
+  EXPECT_FALSE(run.says("buckles")) << run.log;
+}
+
+// A window of time that no transient reaches is said before anything runs.
+TEST(StaticStability, WindowAfterTheEndIsNamed) {
+  const std::string run = "[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"1 ms\"\n";
+  const auto deck = [&](const std::string& window) {
+    std::string text = column(0.1, run);
+    return text.replace(text.find("report = false"), 14, "report = false\nwindow = " + window);
+  };
+  EXPECT_TRUE(DeckRun(deck("[\"1 s\", \"2 s\"]")).says("holds nothing"));
+  EXPECT_FALSE(DeckRun(deck("[\"0.5 ms\", \"2 s\"]")).says("holds nothing"));
+}

@@ -1,5 +1,6 @@
 // What a run says about supports that cannot do what is asked of them, and what it keeps of their
 // states.
+#include "deck_run.hpp"
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -294,4 +295,46 @@ quantities = ["speed", "probes", "bearing_force", "energy"]
       ASSERT_NEAR(a[i][k], b[i][k], 1e-8 * largest[k]) << "row " << i << " column " << k;
   // the stator is struck, the pedestal moves: there is something to keep
   EXPECT_GT(largest.size(), 8u);
+}
+
+// A vertical rotor does not load its journals: their load is rounding, no number is divided by it,
+// and no mass is stable on them.
+TEST(SupportCoefficients, UnloadedJournalHasNoSommerfeldNumber) {
+  const whirl::test::DeckRun run(R"(format = 1
+[model]
+gravity_direction = "-x"
+[[shaft]]
+name = "R"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 1500, 60, 6]]
+[[bearing]]
+name = "th"
+at = "a:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "1e8 N/m"
+kzz = "1e8 N/m"
+[[bearing]]
+name = "b1"
+at = "a:mid"
+type = "short_journal"
+diameter = "60 mm"
+length = "40 mm"
+clearance = "120 um"
+viscosity = "1 mPa.s"
+[[step]]
+name = "s"
+type = "static"
+speed = "1500 rpm"
+[output]
+report = false
+)");
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const std::map<std::string, double> row = run.csv("s_coefficients.csv").last();
+  EXPECT_TRUE(std::isnan(row.at("Sommerfeld number [-]")));
+  EXPECT_TRUE(std::isnan(row.at("attitude [deg]")));
+  EXPECT_EQ(row.at("threshold mass [kg]"), 0.0);
+  EXPECT_NEAR(row.at("whirl / speed [-]"), 0.5, 1e-9);
+  EXPECT_GT(row.at("kyz [N/m]"), 1e4);
 }

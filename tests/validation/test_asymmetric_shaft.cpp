@@ -8,6 +8,9 @@
 #include "record.hpp"
 
 #include <analysis/spectra/periodic.hpp>
+#include <assembly/build_system.hpp>
+#include <deck/deck.hpp>
+#include <meshes/mesh.hpp>
 #include <elements/supports/linear_bearing.hpp>
 #include <elements/rigid/rigid_disk.hpp>
 
@@ -150,6 +153,85 @@ TEST(AsymmetricShaft, BandsOnUnequalSupports) {
             << r.speeds[k];
       }
   }
+}
+
+namespace {
+
+/// A flat shaft of 1 m with a disk in its middle, of weight `gravity`, on supports of 1e8 N/m in y
+/// and of kz.
+system::System flat_shaft(const std::string& gravity, const std::string& kz) {
+  const deck::Deck d = deck::read_deck_text(R"(format = 1
+[model]
+gravity = ")" + gravity + R"("
+[[shaft]]
+name = "R"
+material = "steel"
+damping = { internal_beta = "2e-6 s", external_beta = "1e-5 s" }
+[[shaft.section]]
+name = "a"
+length = "1000 mm"
+min_elements = 8
+general = { A = "1200 mm^2", Iy = "150000 mm^4", Iz = "100000 mm^4", J = "170000 mm^4", kappa_y = 0.85, kappa_z = 0.85 }
+[[disk]]
+at = "a:mid"
+mass = "20 kg"
+Ip = "0.2 kg.m^2"
+Id = "0.11 kg.m^2"
+[[bearing]]
+at = "a:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "1e8 N/m"
+kzz = ")" + kz + R"("
+cyy = "100 N.s/m"
+czz = "100 N.s/m"
+[[bearing]]
+at = "a:end"
+type = "linear"
+kyy = "1e8 N/m"
+kzz = ")" + kz + R"("
+cyy = "100 N.s/m"
+czz = "100 N.s/m"
+)",
+                                            "flat shaft");
+  EXPECT_TRUE(d.ok()) << d.report();
+  return std::move(assembly::build_system(d.model, meshes::make_mesh(d.model), "").system);
+}
+
+}  // namespace
+
+// The sag of a rotor makes its matrices periodic, by so little that one harmonic is enough and the
+// band is that of the rotor without weight. Its edges and its top take some dozen speeds, not a
+// bisection each.
+TEST(AsymmetricShaft, SagTakesOneHarmonicAndFewSpeeds) {
+  const double from = 500 * pi / 30, to = 4000 * pi / 30;
+  BandResult found[2];
+  for (const bool heavy : {false, true}) {
+    const system::System s = flat_shaft(heavy ? "9.80665 m/s^2" : "0 m/s^2", "1e8 N/m");
+    Linearizer linear(s);
+    RotatingAxes axes(linear, to);
+    EXPECT_EQ(axes.harmonics(), heavy ? 1 : 0);
+    BandOptions o;
+    for (int k = 0; k < 8; ++k)
+      o.speeds.push_back(from + (to - from) * k / 7);
+    int told = 0;
+    o.progress = [&](double share, double) {
+      EXPECT_GE(share, 0.0);
+      EXPECT_LE(share, 1.0);
+      ++told;
+    };
+    found[heavy] = find_bands(axes, o);
+    ASSERT_EQ(found[heavy].bands.size(), 1u);
+    EXPECT_GE(told, 8);
+    EXPECT_LT(found[heavy].evaluations, 110);
+  }
+  const InstabilityBand &light = found[0].bands[0], &heavy = found[1].bands[0];
+  EXPECT_NEAR(heavy.low, light.low, 1e-6 * light.low);
+  EXPECT_NEAR(heavy.high, light.high, 1e-6 * light.high);
+  EXPECT_NEAR(heavy.growth, light.growth, 1e-4 * light.growth);
+  const system::System unequal = flat_shaft("9.80665 m/s^2", "2e6 N/m");
+  Linearizer linear(unequal);
+  EXPECT_EQ(RotatingAxes(linear, to).harmonics(), 3);
 }
 
 // Weight on an asymmetric shaft at half its critical speed, through the deck of an example: with w

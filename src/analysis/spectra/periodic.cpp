@@ -2,13 +2,16 @@
 #include <core/contract.hpp>
 
 #include <analysis/search.hpp>
+#include <analysis/statics/definiteness.hpp>
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
 #include <la/direct.hpp>
 #include <la/eigen.hpp>
+#include <la/multiply.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace whirl::analysis {
 
@@ -56,6 +59,50 @@ double difference(const la::BlockMatrix<6>& a, const la::BlockMatrix<6>& b) {
 /// million.
 constexpr double steady = 1e-6;
 
+/// Growth, relative to the speed, in a band that harmonics left out would have made. (They move
+/// eigenvalues by its square.)
+constexpr double negligible = 1e-6;
+
+/// Unbalanced force, relative to the largest reaction, up to which an equilibrium serves another
+/// speed: what varies with the speed in a sagging shaft is far smaller than the sag.
+constexpr double unbalanced_share = 1e-8;
+
+/// How strongly what changes over the revolution joins the motions of least frequency of the
+/// constant matrices.
+class Coupling {
+ public:
+  Coupling(const la::MCK& constant, std::span<const unsigned char> active) : constant_(constant) {
+    la::ModeOptions options;
+    options.count = 8;
+    for (la::Mode& m : la::quadratic_modes(constant, active, options)) {
+      VecXc Mx, Cx, Kx;
+      la::multiply(constant, m.x, Mx, Cx, Kx);
+      const double size = std::abs(m.x.dot(2.0 * m.lambda * Mx + Cx));
+      if (m.lambda.imag() == 0.0 || !(size > 0.0)) continue;
+      m.x /= std::sqrt(size);
+      modes_.push_back(std::move(m));
+    }
+  }
+  /// Largest rate, 1/s, that the difference to the constant matrices gives one of the motions from
+  /// another: |x_i^H (Q - Q0)(lambda_j) x_j| of motions with |x^H Q0' x| = 1.
+  double rate(const la::MCK& m) const {
+    double most = 0.0;
+    VecXc M1, C1, K1, M0, C0, K0;
+    for (const la::Mode& j : modes_) {
+      la::multiply(m, j.x, M1, C1, K1);
+      la::multiply(constant_, j.x, M0, C0, K0);
+      const VecXc y = j.lambda * (j.lambda * (M1 - M0) + (C1 - C0)) + (K1 - K0);
+      for (const la::Mode& i : modes_)
+        most = std::max({most, std::abs(i.x.dot(y)), std::abs(i.x.conjugate().dot(y))});
+    }
+    return most;
+  }
+
+ private:
+  const la::MCK& constant_;
+  std::vector<la::Mode> modes_;
+};
+
 }  // namespace
 
 void RotatingAxes::require(const SteadySystem& running) {
@@ -78,9 +125,11 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
   sample(Omega, 0.0, {});
   const la::MCK first = turned_;
   const la::MCK fixed = raw_;
-  double varies = 0, half = 0;
+  const Coupling coupling(first, motion_.active());
+  double varies = 0, half = 0, joined = 0;
   for (const double theta : {0.7, 1.9, 2.6}) {
     sample(Omega, theta, {});
+    joined = std::max(joined, coupling.rate(turned_));
     varies = std::max({varies, difference(first.M, turned_.M), difference(first.K, turned_.K)});
     turning_ =
         turning_ || difference(fixed.K, raw_.K) > steady || difference(fixed.M, raw_.M) > steady;
@@ -88,7 +137,12 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
     sample(Omega, theta + pi, {});
     half = std::max({half, difference(here.M, turned_.M), difference(here.K, turned_.K)});
   }
-  harmonics_ = varies > steady ? std::max<Index>(harmonics, 1) : 0;
+  harmonics_ = varies > steady ? 1 : 0;
+  // A harmonic left out is joined to the constant part by those before it.
+  const double share = joined / std::max(std::abs(Omega), 1e-300);
+  while (harmonics_ > 0 && harmonics_ < harmonics &&
+         !(std::pow(share, static_cast<double>(harmonics_ + 1)) < negligible))
+    ++harmonics_;
   step_ = half > steady ? 1 : 2;
   const la::BlockPattern& p = linear.system().pattern();
   if (harmonics_ == 0) {
@@ -113,9 +167,27 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
         active_.push_back(motion_.active()[idx(6 * i + c)]);
 }
 
+bool RotatingAxes::still_balanced(double Omega) {
+  if (!moved_) return false;
+  const Equilibrium& e = linear_.equilibrium();
+  if (e.Omega == Omega && Omega != 0.0) return true;
+  double force = 0.0;
+  for (Index k = 0; k < e.reactions.size(); ++k)
+    if (k % 6 < 3) force = std::max(force, std::abs(e.reactions[k]));
+  VecX r(e.state.q.size());
+  if (!linear_.running().residual(e.state.frames, Omega, e.state.q, r)) return false;
+  const double arm = 0.1 * model_length(linear_.system());
+  const std::vector<unsigned char> free = free_unknowns(linear_.system(), e.spin_holds);
+  for (Index k = 0; k < r.size(); ++k)
+    if (free[idx(k)] && std::abs(r[k]) > unbalanced_share * force * (k % 6 < 3 ? 1.0 : arm))
+      return false;
+  return true;
+}
+
 void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   WHIRL_EXPECTS(std::isfinite(theta));
-  if (linear_.Omega() != Omega || Omega == 0.0) linear_.move_to(Omega);
+  if (!still_balanced(Omega)) linear_.move_to(Omega);
+  moved_ = true;
   const Equilibrium& e = linear_.equilibrium();
   SteadySystem& running = linear_.running();
   running.set_whirl(lambda, true);
@@ -152,7 +224,7 @@ const la::MCK& RotatingAxes::at(double Omega, Complex lambda) {
   }
   // Galerkin in 1, cos h b theta, sin h b theta, by the trapezoidal rule: exact up to the harmonic
   // of its points less those of the product.
-  const Index parts = 2 * harmonics_ + 1, points = 4 * harmonics_ + 8;
+  const Index parts = 2 * harmonics_ + 1, points = 4 * harmonics_ + 4;
   const la::BlockPattern& p = linear_.system().pattern();
   for (la::BlockMatrix<6>* m : {&hill_.M, &hill_.C, &hill_.K})
     m->set_zero();
@@ -283,6 +355,13 @@ namespace {
 
 struct Growth {
   double rate = 0, frequency = 0;
+  std::optional<la::Mode> mode;
+};
+
+/// A speed and the growth there.
+struct Visited {
+  double speed = 0;
+  Growth growth;
 };
 
 class BandSearch {
@@ -292,67 +371,134 @@ class BandSearch {
         solver_(axes.pattern(), axes.active(), options(axes, o)),
         tolerance_(o.tolerance) {}
 
+  /// The motion that grows fastest, of all.
   Growth at(double Omega) {
+    ++evaluations;
     const la::MCK& m = axes_.at(Omega, Complex(0, infinity));
-    Growth best{-infinity, 0};
+    Growth best{-infinity, 0, {}};
     for (la::Mode x : solver_.solve(m)) {
-      if (axes_.constant_share(x.x) < 0.2 || std::abs(x.lambda) == 0.0)
-        continue;  // a copy; a rigid motion
-      // hysteretic damping at the rate of the motion itself; a motion that stands in the rotor
-      // loses nothing
-      for (int round = 0; round < 40 && axes_.hysteretic() && x.lambda.imag() != 0.0; ++round) {
-        const Complex rate = x.lambda;
-        if (const auto next = solver_.follow(axes_.at(Omega, rate), x))
-          x = *next;
-        else
-          break;
-        if (std::abs(x.lambda - rate) <= 1e-12 * std::abs(rate)) break;
-      }
-      if (x.lambda.real() > best.rate) best = {x.lambda.real(), std::abs(x.lambda.imag())};
+      if (!is_motion(x)) continue;
+      settle(Omega, x);
+      if (x.lambda.real() > best.rate) best = growth_of(x);
     }
     return best;
   }
+  /// The same motion as at a speed near by; where it cannot be followed, the fastest of all.
+  Growth follow(double Omega, const Growth& near) {
+    if (!near.mode) return at(Omega);
+    ++evaluations;
+    std::optional<la::Mode> x = solver_.follow(axes_.at(Omega, Complex(0, infinity)), *near.mode);
+    if (!x || !is_motion(*x)) return at(Omega);
+    // copies lie a speed or two apart
+    if (std::abs(x->lambda - near.mode->lambda) > 0.25 * std::abs(Omega)) return at(Omega);
+    settle(Omega, *x);
+    return growth_of(*x);
+  }
 
-  /// The speed between a stable and an unstable one, of this growth, where the growth is zero. It
-  /// crosses zero there, or, without damping, two frequencies merge and it rises as a square root
-  /// from the rounding of a double eigenvalue. Neutral motions (growth zero at every speed) hide
-  /// the crossing, so it is extrapolated from within the band.
-  double edge(double stable, double unstable, double growth) {
-    const double level = noise(unstable);
-    const double a = passage(stable, unstable, level);
-    if (growth < 4.0 * level) return a;
-    const double b = passage(a, unstable, 3.0 * level);
-    const double x[3] = {a, 0.5 * (a + b), b};
-    double r[3];
-    for (int k = 0; k < 3; ++k)
-      r[k] = at(x[k]).rate;
-    const auto bend = [](double f0, double f1, double f2) {
-      return std::abs(f2 - 2.0 * f1 + f0) / std::abs(f2 - f0);
-    };
+  /// The speed between a stable and an unstable one where the growth is zero. It crosses zero
+  /// there, or, without damping, two frequencies merge and it rises as a square root from the
+  /// rounding of a double eigenvalue. Neutral motions (growth zero at every speed) hide the
+  /// crossing, so it is extrapolated from within the band.
+  double edge(double stable, const Visited& unstable) {
+    const double level = noise(unstable.speed);
+    Visited from = unstable;
+    Visited inner = from;
+    Visited a = passage(stable, from, level, 1.001, &inner);
+    if (!(at(a.speed).rate > 0.5 * level)) {  // not followed: found by looking at all
+      inner = from;
+      a = passage(stable, from, level, 1.001, &inner, true);
+    }
+    // Another motion may go on growing where the one followed has ceased to.
+    for (int round = 0; round < 8; ++round) {
+      Visited outside{a.speed + 1e-4 * (stable - a.speed), {}};
+      outside.growth = at(outside.speed);
+      if (!(outside.growth.rate > 1.1 * std::max(level, a.growth.rate))) break;
+      from = inner = outside;
+      a = passage(stable, from, level, 1.001, &inner);
+    }
+    if (from.growth.rate < 4.0 * level) return a.speed;
+    const Visited b = passage(a.speed, inner, 3.0 * level, 2.0);
+    const double middle = 0.5 * (a.speed + b.speed);
+    return extrapolate(a, {middle, follow(middle, b.growth)}, b);
+  }
+  /// Growth that says nothing: harmonics left out of Hill's equations leave a false one of some
+  /// 1e-5 of the speed.
+  double noise(double Omega) const { return (axes_.constant() ? 1e-6 : 3e-5) * std::abs(Omega); }
+  Index evaluations = 0;
+
+ private:
+  /// Neither a copy nor a rigid motion.
+  bool is_motion(const la::Mode& x) const {
+    return axes_.constant_share(x.x) >= 0.2 && std::abs(x.lambda) != 0.0;
+  }
+  static Growth growth_of(const la::Mode& x) {
+    return {x.lambda.real(), std::abs(x.lambda.imag()), x};
+  }
+  /// Hysteretic damping at the rate of the motion itself; a motion that stands in the rotor loses
+  /// nothing.
+  void settle(double Omega, la::Mode& x) {
+    for (int round = 0; round < 40 && axes_.hysteretic() && x.lambda.imag() != 0.0; ++round) {
+      const Complex rate = x.lambda;
+      const auto next = solver_.follow(axes_.at(Omega, rate), x);
+      if (!next) break;
+      x = *next;
+      if (std::abs(x.lambda - rate) <= 1e-12 * std::abs(rate)) break;
+    }
+  }
+  static double bend(double f0, double f1, double f2) {
+    return std::abs(f2 - 2.0 * f1 + f0) / std::abs(f2 - f0);
+  }
+  /// The parabola of the speed over the growth, or over its square where that is straighter, at
+  /// growth zero.
+  static double extrapolate(const Visited& a, const Visited& middle, const Visited& b) {
+    const double x[3] = {a.speed, middle.speed, b.speed};
+    double r[3] = {a.growth.rate, middle.growth.rate, b.growth.rate};
     const bool root = bend(r[0] * r[0], r[1] * r[1], r[2] * r[2]) < bend(r[0], r[1], r[2]);
     if (root)
       for (double& v : r)
         v *= v;
-    // the parabola x(r) at r = 0
     double zero = 0.0;
     for (int k = 0; k < 3; ++k) {
       const int p = (k + 1) % 3, q = (k + 2) % 3;
       zero += x[k] * r[p] * r[q] / ((r[k] - r[p]) * (r[k] - r[q]));
     }
-    return std::abs(zero - a) < std::abs(b - a) + 1e-6 * std::abs(a) ? zero : a;
+    return std::abs(zero - x[0]) < std::abs(x[2] - x[0]) + 1e-6 * std::abs(x[0]) ? zero : x[0];
   }
-  /// Growth that says nothing: harmonics left out of Hill's equations leave a false one of some
-  /// 1e-5 of the speed.
-  double noise(double Omega) const { return (axes_.constant() ? 1e-6 : 3e-5) * std::abs(Omega); }
-
- private:
-  /// Where the growth passes this level.
-  double passage(double stable, double unstable, double level) {
-    for (int k = 0; k < 60 && std::abs(unstable - stable) > tolerance_ * std::abs(unstable); ++k) {
-      const double middle = 0.5 * (stable + unstable);
-      (at(middle).rate > level ? unstable : stable) = middle;
+  /// Where the growth passes this level, on the side where it is above, by less than the factor
+  /// `close`. The motion followed may not exist beyond its band, so secants go through places
+  /// within it alone, on the growth or its square by turns; what they do not bring into the
+  /// bracket, or not nearer, is halved. inner: the last place met with three times that growth.
+  /// all: nothing is followed, the fastest motion counts.
+  Visited passage(double stable, Visited unstable, double level, double close,
+                  Visited* inner = nullptr, bool all = false) {
+    std::optional<Visited> before;
+    bool halve = true;
+    for (int k = 0; k < 60; ++k) {
+      const double width = std::abs(unstable.speed - stable);
+      if (unstable.growth.rate <= close * level) break;
+      if (width <= tolerance_ * std::abs(unstable.speed)) break;
+      double next = 0.5 * (stable + unstable.speed);
+      if (before && !halve) {
+        const double x = secant(*before, unstable, 0.5 * (1.0 + close) * level, k % 4 < 2);
+        if ((x - stable) * (x - unstable.speed) < 0.0) next = x;
+      }
+      Visited there{next, all ? at(next) : follow(next, unstable.growth)};
+      if (there.growth.rate > level) {
+        if (inner && there.growth.rate >= 3.0 * level) *inner = there;
+        before = unstable;
+        unstable = std::move(there);
+        halve = false;
+      } else {
+        stable = next;
+        halve = !halve;
+      }
     }
     return unstable;
+  }
+  static double secant(const Visited& a, const Visited& b, double level, bool squared) {
+    const auto value = [squared](double r) { return squared ? r * r : r; };
+    const double fa = value(a.growth.rate), fb = value(b.growth.rate);
+    return b.speed + (b.speed - a.speed) * (value(level) - fb) / (fb - fa);
   }
   static la::ModeOptions options(const RotatingAxes& axes, const BandOptions& o) {
     la::ModeOptions l;
@@ -364,29 +510,62 @@ class BandSearch {
   double tolerance_;
 };
 
-/// Speeds between which the rotation has taken one stiffness more than it should have: pairs of
-/// zeros of the symmetric stiffness.
-void add_seeds(RotatingAxes& axes, double a, Index na, double b, Index nb,
-               std::vector<double>& edges, int depth) {
-  if (na == nb) return;
-  if (depth == 0 || b - a < 1e-7 * b) {
-    for (Index k = 0; k < std::abs(nb - na); ++k)
-      edges.push_back(0.5 * (a + b));
-    return;
+/// Between its ends the rotation takes stiffnesses: as many more or fewer are negative.
+struct Seed {
+  double low = 0, high = 0;
+  Index at_low = 0, at_high = 0;
+  double middle() const { return 0.5 * (low + high); }
+  double width() const { return high - low; }
+  bool narrow() const { return width() < 1e-7 * high; }
+};
+
+/// Halves a seed: the parts in which something changes take its place.
+std::size_t halve(RotatingAxes& axes, std::vector<Seed>& seeds, std::size_t k) {
+  const Seed s = seeds[k];
+  const Index n = axes.negative_stiffnesses(s.middle());
+  std::vector<Seed> parts;
+  if (n != s.at_low) parts.push_back({s.low, s.middle(), s.at_low, n});
+  if (n != s.at_high) parts.push_back({s.middle(), s.high, n, s.at_high});
+  seeds.erase(seeds.begin() + static_cast<std::ptrdiff_t>(k));
+  seeds.insert(seeds.begin() + static_cast<std::ptrdiff_t>(k), parts.begin(), parts.end());
+  return parts.size();
+}
+
+/// Zeros of the symmetric stiffness between neighbouring speeds, each to a thousandth of what is
+/// between them: damping may leave a band no wider than a hundredth of that.
+std::vector<double> zeros_of_stiffness(RotatingAxes& axes, const std::vector<double>& speeds) {
+  std::vector<Seed> seeds;
+  for (std::size_t k = 0; k + 1 < speeds.size(); ++k) {
+    if (!(speeds[k] > 0.0)) continue;
+    const Seed s{speeds[k], speeds[k + 1], axes.negative_stiffnesses(speeds[k]),
+                 axes.negative_stiffnesses(speeds[k + 1])};
+    if (s.at_low != s.at_high) seeds.push_back(s);
   }
-  const double middle = 0.5 * (a + b);
-  const Index n = axes.negative_stiffnesses(middle);
-  add_seeds(axes, a, na, middle, n, edges, depth - 1);
-  add_seeds(axes, middle, n, b, nb, edges, depth - 1);
+  for (std::size_t k = 0; k < seeds.size();)
+    if (std::abs(seeds[k].at_high - seeds[k].at_low) > 1 && !seeds[k].narrow())
+      halve(axes, seeds, k);
+    else
+      ++k;
+  for (std::size_t k = 0; k + 1 < seeds.size();) {
+    const Seed &a = seeds[k], &b = seeds[k + 1];
+    const bool apart = b.middle() - a.middle() > 1e3 * (a.width() + b.width());
+    const std::size_t wider = a.width() > b.width() ? k : k + 1;
+    if (apart || seeds[wider].narrow())
+      ++k;
+    else if (halve(axes, seeds, wider) != 1 || wider == k)
+      k = k > 0 ? k - 1 : 0;
+  }
+  std::vector<double> zeros;
+  for (const Seed& s : seeds)
+    for (Index n = 0; n < std::abs(s.at_high - s.at_low); ++n)
+      zeros.push_back(s.middle());
+  return zeros;
 }
 
 /// The speeds asked for, and one within each stretch between seeds.
 std::vector<double> list_speeds(RotatingAxes& axes, const BandOptions& o) {
-  std::vector<double> speeds = o.speeds, edges;
-  for (std::size_t k = 0; k + 1 < o.speeds.size(); ++k)
-    if (o.speeds[k] > 0)
-      add_seeds(axes, o.speeds[k], axes.negative_stiffnesses(o.speeds[k]), o.speeds[k + 1],
-                axes.negative_stiffnesses(o.speeds[k + 1]), edges, 40);
+  std::vector<double> speeds = o.speeds;
+  const std::vector<double> edges = zeros_of_stiffness(axes, o.speeds);
   for (std::size_t k = 0; k + 1 < edges.size(); ++k)
     if (edges[k + 1] - edges[k] > 1e-6 * edges[k])
       speeds.push_back(0.5 * (edges[k] + edges[k + 1]));
@@ -396,23 +575,23 @@ std::vector<double> list_speeds(RotatingAxes& axes, const BandOptions& o) {
 }
 
 /// The band of the samples first to last, which all grow while their neighbours do not.
-InstabilityBand measure_band(BandSearch& search, const BandResult& samples, std::size_t first,
-                             std::size_t last) {
-  const std::vector<double>&speeds = samples.speeds, &growth = samples.growth;
+InstabilityBand measure_band(BandSearch& search, const std::vector<Visited>& samples,
+                             std::size_t first, std::size_t last) {
   InstabilityBand band;
-  if (first > 0) band.low = search.edge(speeds[first - 1], speeds[first], growth[first]);
-  if (last + 1 < speeds.size())
-    band.high = search.edge(speeds[last + 1], speeds[last], growth[last]);
+  if (first > 0) band.low = search.edge(samples[first - 1].speed, samples[first]);
+  if (last + 1 < samples.size()) band.high = search.edge(samples[last + 1].speed, samples[last]);
   std::size_t top = first;
   for (std::size_t j = first; j <= last; ++j)
-    if (growth[j] > growth[top]) top = j;
+    if (samples[j].growth.rate > samples[top].growth.rate) top = j;
   // the largest growth between the neighbours of the largest sample, where the band has ends
-  const double a = top > first ? speeds[top - 1] : band.low,
-               b = top < last ? speeds[top + 1] : band.high;
-  band.speed = speeds[top];
+  const double a = top > first ? samples[top - 1].speed : band.low,
+               b = top < last ? samples[top + 1].speed : band.high;
+  const Visited& largest = samples[top];
+  band.speed = largest.speed;
   if (std::isfinite(a) && std::isfinite(b))
-    band.speed = find_maximum(a, speeds[top], growth[top], b, 1e-8,
-                              [&](double Omega) { return search.at(Omega).rate; });
+    band.speed = find_maximum(a, largest.speed, largest.growth.rate, b, 1e-8, [&](double Omega) {
+      return search.follow(Omega, largest.growth).rate;
+    });
   const Growth g = search.at(band.speed);
   band.growth = g.rate;
   band.frequency = g.frequency;
@@ -427,8 +606,12 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
   const std::vector<double> speeds = list_speeds(axes, o);
   BandSearch search(axes, o);
   BandResult out;
+  std::vector<Visited> samples;
   for (const double Omega : speeds) {
-    const Growth g = search.at(Omega);
+    if (o.progress)
+      o.progress(static_cast<double>(samples.size()) / static_cast<double>(speeds.size()), Omega);
+    samples.push_back({Omega, search.at(Omega)});
+    const Growth& g = samples.back().growth;
     out.speeds.push_back(Omega);
     out.growth.push_back(g.rate);
     out.frequency.push_back(g.frequency);
@@ -439,9 +622,11 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
     std::size_t last = k;
     while (last + 1 < speeds.size() && grows(last + 1))
       ++last;
-    out.bands.push_back(measure_band(search, out, k, last));
+    if (o.progress) o.progress(1.0, speeds[k]);
+    out.bands.push_back(measure_band(search, samples, k, last));
     k = last;
   }
+  out.evaluations = search.evaluations;
   return out;
 }
 

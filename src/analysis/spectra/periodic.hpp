@@ -16,13 +16,15 @@
 // Dynamics of Rotating Machines, 2010, ch. 7.
 #pragma once
 #include <analysis/linearizer.hpp>
+#include <functional>
 
 namespace whirl::analysis {
 
 class RotatingAxes {
  public:
-  /// harmonics: H where the matrices are periodic; 0 is enough on isotropic supports and is chosen
-  /// then whatever is asked for.
+  /// harmonics: most of H where the matrices are periodic; 0 is enough on isotropic supports and is
+  /// chosen then whatever is asked for, and fewer where what varies (a sagging shaft) joins motions so
+  /// little that bands of the rest would grow by less than 1e-6 of the speed.
   /// @throws Error E88, the lines turn at different speeds.
   RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3,
                Motion motion = Motion::lateral);
@@ -62,9 +64,11 @@ class RotatingAxes {
   VecXc first_order_of(const VecX& x) const;
   /// Matrices in rotating axes at one angle, on the system's pattern, into turned_.
   void sample(double Omega, double theta, Complex lambda);
+  /// The equilibrium at hand serves this speed too.
+  bool still_balanced(double Omega);
   Linearizer& linear_;
   MotionReduction motion_;
-  bool turning_ = false;
+  bool turning_ = false, moved_ = false;
   Index harmonics_ = 0, step_ = 2;
   const la::BlockPattern* pattern_ = nullptr;
   std::unique_ptr<la::BlockPattern> own_pattern_;
@@ -85,12 +89,15 @@ struct BandOptions {
       speeds;       ///< rad/s, ascending; more are put in where rotation takes the last stiffness
   Index modes = 8;  ///< of least frequency in rotating axes
   double tolerance = 1e-11;  ///< relative, of the edges
+  /// Told before each speed: the share of the speeds that is done, and the speed, rad/s.
+  std::function<void(double, double)> progress;
 };
 
 struct BandResult {
   std::vector<double> speeds, growth,
       frequency;  ///< largest real part (1/s) of the motions, and its frequency in rotating axes
   std::vector<InstabilityBand> bands;
+  Index evaluations = 0;  ///< speeds looked at on the way, edges and maxima included
 };
 
 /// Bands of parametric instability. Edges are solved for; bands narrower than the distance of the

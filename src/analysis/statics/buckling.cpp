@@ -132,6 +132,16 @@ Index negative_at(const la::MCK& K0, const la::BlockMatrix<6>& B, double mu, la:
   return lu.negative_eigenvalues();
 }
 
+Error nothing_buckles() {
+  return run_error("E79", "no load changes the stiffness of the model: nothing can buckle",
+                   "give a load along a shaft, or a moment");
+}
+
+Definiteness judge(const la::BlockMatrix<6>& K0, const EquilibriumSolver& solver,
+                   const system::System& system) {
+  return judge_tangent(K0, solver.free(), system, solver.length(), false);
+}
+
 /// Factors of K0 x = mu B x against those listed.
 BucklingCount count_factors(const la::MCK& K0, const la::BlockMatrix<6>& B,
                             std::span<const unsigned char> free,
@@ -146,7 +156,7 @@ BucklingCount count_factors(const la::MCK& K0, const la::BlockMatrix<6>& B,
   la::MCK work = K0;
   la::BlockLu<double> lu(K0.K.pattern(), free);
   if (negative_at(K0, B, 0.0, work, lu) != 0)
-    return {false, "the unloaded rotor is not in stable equilibrium"};
+    return {false, "the rotor is not in stable equilibrium without its loads"};
   out.up_to = (1.0 - below_last) * std::abs(listed.back().factor);
   out.positive = negative_at(K0, B, out.up_to, work, lu);
   out.negative = negative_at(K0, B, -out.up_to, work, lu);
@@ -215,9 +225,17 @@ std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index co
   const Size response = size_of(system, u);
   // against what a response of 1e-5 would change
   const double share = 1e-5 / std::max({response.displacement, response.rotation, 1e-300});
-  if (!(change * std::min(share, 1.0) > 1e-15 * stiffness))
-    throw run_error("E79", "no load changes the stiffness of the model: nothing can buckle",
-                    "give a load along a shaft, or a moment");
+  const Definiteness unloaded = judge(K0.K, solver, system);
+  const auto note_unloaded = [&] {
+    counted->unstable = unloaded.negative;
+    counted->unstable_certain = unloaded.certain;
+  };
+  if (!(change * std::min(share, 1.0) > 1e-15 * stiffness)) {
+    if (unloaded.stable() || !counted) throw nothing_buckles();
+    counted->why_not = "no load changes the stiffness of the model";
+    note_unloaded();
+    return {};
+  }
   values(B) *= -1.0;
   std::vector<BucklingMode> out;
   for (const la::Mode& m : la::linear_modes(K0.K, B, solver.free(), count)) {
@@ -226,8 +244,28 @@ std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index co
     scale(b.x, system.nodes());
     out.push_back(std::move(b));
   }
-  if (counted) *counted = count_factors(K0, B, solver.free(), out);
+  if (counted) {
+    *counted = count_factors(K0, B, solver.free(), out);
+    note_unloaded();
+  }
   return out;
+}
+
+void require_loads(SteadySystem& running, double Omega, const EquilibriumOptions& options) {
+  const system::System& system = running.system();
+  EquilibriumSolver solver(running, options);
+  const double full = running.load();
+  running.set_load(0.0);
+  const system::State rest = solver.solve(Omega).state;
+  VecX without(system.size()), with(system.size());
+  la::MCK K0 = system.make_matrices(), loaded = K0;
+  running.residual(rest.frames, Omega, rest.q, without);
+  running.tangent(rest.frames, Omega, rest.q, K0);
+  running.set_load(full);
+  running.residual(rest.frames, Omega, rest.q, with);
+  running.tangent(rest.frames, Omega, rest.q, loaded);
+  if (with == without && values(K0.K) == values(loaded.K) && judge(K0.K, solver, system).stable())
+    throw nothing_buckles();
 }
 
 PathCheck check_on_path(SteadySystem& running, double Omega, double factor,

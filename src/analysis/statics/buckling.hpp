@@ -33,14 +33,24 @@ struct BucklingCount {
   Index positive = 0;  ///< factors in (0, up_to)
   Index negative = 0;  ///< factors in (-up_to, 0)
   Index missing = 0;   ///< of these, not in the list
+  /// Negative directions of the stiffness without the loads: what is built in (temperature, preload)
+  /// has buckled the model before any of them acts, and the factors lead on from there.
+  Index unstable = 0;
+  bool unstable_certain = true;  ///< false: an unsymmetric stiffness, counted and not proved
   bool complete() const { return counted && missing == 0; }
 };
 
 /// The `count` factors of least size, ascending. counted: how many there are, by inertia.
-/// @throws Error as EquilibriumSolver::solve; E79 no load changes the stiffness.
+/// None where no load changes the stiffness of a model that is unstable without loads.
+/// @throws Error as EquilibriumSolver::solve; E79 no load changes the stiffness of a stable one.
 std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
                                    const EquilibriumOptions& options = {},
                                    BucklingCount* counted = nullptr);
+
+/// E79 where a look at the loads is enough: neither gravity nor a load acts, and without them the
+/// model is stable.
+/// @throws Error (E79); as EquilibriumSolver::solve.
+void require_loads(SteadySystem& running, double Omega, const EquilibriumOptions& options = {});
 
 /// What the nonlinear equilibria under growing loads say about a factor.
 struct PathCheck {

@@ -434,12 +434,33 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
   return out;
 }
 
+namespace {
+
+/// What stands against a steady rotation of the model, whatever the speed; empty: nothing.
+std::string obstacle_to_turning(const SteadySystem& running) {
+  VecX v(running.system().size());
+  try {
+    running.set_rates(1.0, v);
+  } catch (const Error& e) {
+    const Diagnostic& d = e.diagnostics().front();
+    if (d.code == "E41") return d.message;
+  }
+  return {};
+}
+
+}  // namespace
+
 Equilibrium EquilibriumSolver::solve(double Omega, const system::State* start) {
   WHIRL_EXPECTS(std::isfinite(Omega));
   WHIRL_EXPECTS(!start || start->q.size() == running_.system().size());
   auto out = try_solve(Omega, start);
   if (out) return std::move(*out);
   const bool singular = why_.starts_with("nothing resists");
+  const std::string contradiction = singular ? obstacle_to_turning(running_) : std::string();
+  if (!contradiction.empty())
+    throw run_error("E75", why_ + "; " + contradiction,
+                    "give lines that are joined rigidly the same 'rotating' and speed_ratio, or a "
+                    "joint that lets one turn in the other");
   throw run_error(singular ? "E75" : "E76", (singular ? "" : "no equilibrium found: ") + why_,
                   singular ? "add a support in that direction, or hold it rigidly; at a high load: "
                              "the structure is at a limit point or buckles"

@@ -28,6 +28,9 @@ struct Value {
   std::int64_t integer = 0;
   double real = 0;
   std::string text;
+  /// The same as text with the parameters that a map varies left in, "${c} N.s/m"; empty: none is in
+  /// it. What a resolved deck shows.
+  std::string varied;
   std::vector<Value> items;     ///< of an array
   std::vector<Member> members;  ///< of a table, in the order of the text
   /// Cells of a table with a header: the unit in the column title, and the title's place. Null

@@ -22,8 +22,10 @@ std::string as_text(const Value& v, Parameters::Use use) {
 
 }  // namespace
 
-Parameters::Parameters(const Value* table, std::map<std::string, std::string> builtin)
-    : builtin_(std::move(builtin)) {
+Parameters::Parameters(const Value* table, std::map<std::string, std::string> builtin,
+                       std::set<std::string> varied)
+    : builtin_(std::move(builtin)),
+      varied_(std::move(varied)) {
   if (!table) return;
   for (const auto& m : table->members)
     entries_[m.key] = {m.value, m.spot, false, false};
@@ -60,6 +62,7 @@ Value Parameters::value_of(const std::string& name, const Spot& use_at, Diagnost
   e.value =
       v;  // expanded once: chains cost no more than their length, and a mistake is reported once
   e.value.spot = spot;
+  if (varied_.contains(name) || !v.varied.empty()) v.varied = "${" + name + "}";
   return v;
 }
 
@@ -69,7 +72,8 @@ Value Parameters::expand(const Value& v, Use use, Diagnostics& diagnostics) {
   if (open == std::string::npos) return v;
   Value bad = v;
   bad.kind = Value::Kind::unreadable;
-  std::string out;
+  std::string out, left;
+  bool varies = false;
   std::size_t done = 0;
   while (open != std::string::npos) {
     const std::size_t close = v.text.find('}', open);
@@ -93,7 +97,10 @@ Value Parameters::expand(const Value& v, Use use, Diagnostics& diagnostics) {
                         "use it alone");
       return bad;
     }
-    out += v.text.substr(done, open - done) + as_text(p, use);
+    const std::string before = v.text.substr(done, open - done), inserted = as_text(p, use);
+    out += before + inserted;
+    left += before + (p.varied.empty() ? inserted : p.varied);
+    varies = varies || !p.varied.empty();
     if (out.size() > longest) {
       diagnostics.error("E27", v.spot,
                         fmt::format("\"{}\" grows beyond {} bytes", v.text.substr(0, 40), longest),
@@ -105,7 +112,15 @@ Value Parameters::expand(const Value& v, Use use, Diagnostics& diagnostics) {
   }
   Value r = v;
   r.text = out + v.text.substr(done);
+  if (varies) r.varied = left + v.text.substr(done);
   return r;
+}
+
+Value Parameters::varied_table() const {
+  Value table = Value::make_table();
+  for (const auto& [name, e] : entries_)
+    if (e.used && (varied_.contains(name) || !e.value.varied.empty())) table.add(name, e.value);
+  return table;
 }
 
 void Parameters::warn_unused(Diagnostics& diagnostics) const {

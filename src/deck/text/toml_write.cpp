@@ -39,6 +39,7 @@ bool list_of_tables(const Value& v) {
 }
 
 std::string inline_text(const Value& v) {
+  if (!v.varied.empty()) return quote_text(v.varied);
   switch (v.kind) {
     case Value::Kind::boolean: return v.boolean ? "true" : "false";
     case Value::Kind::integer: return fmt::format("{}", v.integer);
