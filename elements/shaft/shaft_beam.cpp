@@ -339,63 +339,143 @@ void add_elastic_tangent(const ShaftBeam<Offsets>& b, const Vec3& e, const Defor
 /// Start of (x1, d1, x2, d2) in the element's 14.
 constexpr int pos[4] = {0, 3, 7, 10};
 
-/// Of M4 X'' - s a x G4c X', s the mean spin.
-template <bool Offsets>
-void add_inertia_tangent(const ShaftBeam<Offsets>& b, const Nodes<2>& x, const SpinRate (&sp)[2],
-                         const Chord<One>& chord, TangentX<14>& out) {
-  const Vec3* velocity[4] = {&x[0]->du, &x[0]->dd, &x[1]->du, &x[1]->dd};
-  const double mean_spin = 0.5 * (sp[0].s + sp[1].s), rate = mean_spin * chord.inverse;
-  const Vec3 turning = mean_spin * chord.a;
-  auto &M = out.M, &C = out.C, &K = out.K;
-  for (int k = 0; k < 4; ++k) {
-    const int r = pos[k];
-    Vec3 v = Vec3::Zero();
-    for (int j = 0; j < 4; ++j) {
-      const int q = pos[j];
-      v += b.G4c(k, j) * *velocity[j];
-      const Vec3 g = b.G4c(k, j) * turning;
+/// Of M4 X''.
+void add_mass(const Matrix<4>& M4, Matrix<14>& M) {
+  for (int k = 0; k < 4; ++k)
+    for (int j = 0; j < 4; ++j)
       for (int i = 0; i < 3; ++i)
-        M(r + i, q + i) += b.c.M4(k, j);
-      C(r, q + 1) += g.z();
-      C(r, q + 2) -= g.y();
-      C(r + 1, q) -= g.z();
-      C(r + 1, q + 2) += g.x();
-      C(r + 2, q) += g.y();
-      C(r + 2, q + 1) -= g.x();
-    }
-    // -s a x v through the spins, then through a: s [v] P = s ([v] - (v x a) a^T)/l
-    const Vec3 av = 0.5 * chord.a.cross(v);
-    Mat3 through_a = Mat3::Zero();
-    add_skew(through_a, rate, v);
-    add_outer(through_a, -rate * v.cross(chord.a), chord.a);
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 2; ++j)
-        C(r + i, 7 * j + 6) -= av[i];
-      for (int j = 0; j < 3; ++j) {
-        C(r + i, 3 + j) += av[i] * sp[0].w[j];
-        C(r + i, 10 + j) += av[i] * sp[1].w[j];
-        K(r + i, 3 + j) -= av[i] * sp[0].s_d[j];
-        K(r + i, 10 + j) -= av[i] * sp[1].s_d[j];
-        K(r + i, j) -= through_a(i, j);
-        K(r + i, 7 + j) += through_a(i, j);
-        if constexpr (Offsets) {
-          K(r + i, 3 + j) -= b.c.o1 * through_a(i, j);
-          K(r + i, 10 + j) += b.c.o2 * through_a(i, j);
-        }
-      }
-    }
-  }
+        M(pos[k] + i, pos[j] + i) += M4(k, j);
 }
 
-/// Of the polar inertia on the spins: h = polar s; f_phi = h', f_d = -h' w - h d x d'.
-void add_polar_tangent(const Mat2& polar, const Nodes<2>& x, const SpinRate (&sp)[2],
-                       TangentX<14>& out) {
+using Rows = Eigen::Matrix<double, 3, 14>;
+
+/// The spin of a bent inside, Gamma = sum_i Z_i . c_i, c_i = a x d_i, with first and second
+/// derivatives in what it depends on (14 coordinates, phi among them for nothing).
+struct BentSpin {
+  double value = 0, rate = 0;
+  Vector<14> g = Vector<14>::Zero();       ///< dGamma/dX'
+  Vector<14> g_rate = Vector<14>::Zero();  ///< its rate
+  Vector<14> E = Vector<14>::Zero();       ///< dGamma/dX
+  Vector<14> rate_by_X = Vector<14>::Zero();
+  Matrix<14> D = Matrix<14>::Zero();       ///< dg/dX
+  Matrix<14> D_rate = Matrix<14>::Zero();  ///< dg_rate/dX
+  Matrix<14> H = Matrix<14>::Zero();       ///< dE/dX
+
+  template <bool Offsets>
+  BentSpin(const ShaftBeam<Offsets>& b, const Nodes<2>& x, const Strain<One>& s)
+      : o1(Offsets ? b.c.o1 : 0.0),
+        o2(Offsets ? b.c.o2 : 0.0),
+        a(s.chord.a),
+        il(s.chord.inverse) {
+    P = il * (Mat3::Identity() - a * a.transpose());
+    const Vec3* velocity[4] = {&x[0]->du, &x[0]->dd, &x[1]->du, &x[1]->dd};
+    const Vec3* accel[4] = {&x[0]->ddu, &x[0]->ddd, &x[1]->ddu, &x[1]->ddd};
+    Vector<14> v = Vector<14>::Zero();
+    for (int l = 0; l < 4; ++l)
+      v.segment<3>(pos[l]) = *velocity[l];
+    const Vec3 lambda_rate = x[1]->du - x[0]->du + o2 * x[1]->dd - o1 * x[0]->dd;
+    const Vec3 a_rate = P * lambda_rate;
+    const Mat3 P_rate = turned(a_rate, lambda_rate);
+    const Vec3 d[2] = {s.d1, s.d2}, delta[2] = {s.end1.delta, s.end2.delta};
+    Vec3 y = Vec3::Zero(), y_accel = Vec3::Zero();
+    for (int i = 0; i < 2; ++i) {
+      Vec3 z = Vec3::Zero(), z_rate = Vec3::Zero();
+      for (int l = 0; l < 4; ++l) {
+        z += b.spread(l, i) * *velocity[l];
+        z_rate += b.spread(l, i) * *accel[l];
+      }
+      const int at_d = pos[2 * i + 1];
+      const Vec3& d_rate = *velocity[2 * i + 1];
+      Rows J = Rows::Zero(), J_rate = Rows::Zero(), bend = Rows::Zero();
+      put_chord(-skew(d[i]) * P, J);
+      J.middleCols<3>(at_d) += skew(a);
+      put_chord(-skew(d[i]) * P_rate - skew(d_rate) * P, J_rate);
+      J_rate.middleCols<3>(at_d) += skew(a_rate);
+      put_chord(skew(z) * P, bend);
+      const Vec3 c = a.cross(delta[i]);
+      const Vec3 c_rate = a_rate.cross(delta[i]) + a.cross(d_rate - a_rate);
+      value += z.dot(c);
+      rate += z_rate.dot(c) + z.dot(c_rate);
+      for (int l = 0; l < 4; ++l) {
+        g.segment<3>(pos[l]) += b.spread(l, i) * c;
+        g_rate.segment<3>(pos[l]) += b.spread(l, i) * c_rate;
+        D.middleRows<3>(pos[l]) += b.spread(l, i) * J;
+        D_rate.middleRows<3>(pos[l]) += b.spread(l, i) * J_rate;
+      }
+      E.segment<3>(at_d) += z.cross(a);
+      rate_by_X.segment<3>(at_d) += z_rate.cross(a);
+      H.middleRows<3>(at_d) += bend;
+      H.middleCols<3>(at_d) += bend.transpose();
+      y += d[i].cross(z);
+      y_accel += d[i].cross(z_rate);
+    }
+    const Vec3 Py = P * y;
+    put_chord(Py, E);
+    put_chord(P * y_accel, rate_by_X);
+    Rows on_chord = Rows::Zero();
+    put_chord(turned(Py, y), on_chord);
+    const double share[4] = {-1.0, -o1, 1.0, o2};
+    for (int l = 0; l < 4; ++l)
+      H.middleRows<3>(pos[l]) += share[l] * on_chord;
+    rate_by_X += H * v;
+  }
+
+ private:
+  /// Derivative of P x in lambda, x fixed and Px = P x.
+  Mat3 turned(const Vec3& Px, const Vec3& x) const {
+    return -il * (Px * a.transpose() + a * Px.transpose() + a.dot(x) * P);
+  }
+  void put_chord(const Mat3& m, Rows& to) const {
+    to.middleCols<3>(0) -= m;
+    to.middleCols<3>(3) -= o1 * m;
+    to.middleCols<3>(7) += m;
+    to.middleCols<3>(10) += o2 * m;
+  }
+  void put_chord(const Vec3& f, Vector<14>& to) const {
+    to.segment<3>(0) -= f;
+    to.segment<3>(3) -= o1 * f;
+    to.segment<3>(7) += f;
+    to.segment<3>(10) += o2 * f;
+  }
+  double o1, o2;
+  Vec3 a;
+  double il;
+  Mat3 P;
+};
+
+/// Of the force of s Gamma, s the mean spin, s_v = ds/dX', but for what stands in the nodes' own
+/// Gamma/2 and Gamma'/2 (add_polar_tangent): f = s' g + s (g' - E) + s_v Gamma' - Gamma/2 d x d'.
+void add_bent_tangent(const BentSpin& b, const Nodes<2>& x, const SpinRate (&sp)[2],
+                      TangentX<14>& out) {
+  const double s = 0.5 * (sp[0].s + sp[1].s), s_rate = 0.5 * (sp[0].sdot + sp[1].sdot);
+  Vector<14> s_v = Vector<14>::Zero(), s_q = s_v, s_rate_v = s_v, s_rate_q = s_v, moment = s_v;
+  for (int i = 0; i < 2; ++i) {
+    const NodeState& node = *x[static_cast<std::size_t>(i)];
+    const int at_d = 7 * i + 3;
+    s_v[7 * i + 6] = 0.5;
+    s_v.segment<3>(at_d) = -0.5 * sp[i].w;
+    s_q.segment<3>(at_d) = 0.5 * sp[i].s_d;
+    s_rate_v.segment<3>(at_d) = 0.5 * sp[i].sdot_dd;
+    s_rate_q.segment<3>(at_d) = 0.5 * sp[i].sdot_d;
+    moment.segment<3>(at_d) = -0.5 * node.d().cross(node.dd);
+  }
+  const Vector<14> curl = b.g_rate - b.E, rate_v = b.g_rate + b.E;
+  out.M += b.g * s_v.transpose() + s_v * b.g.transpose();
+  out.C += b.g * s_rate_v.transpose() + curl * s_v.transpose() + s_v * rate_v.transpose() +
+           moment * b.g.transpose() + s * (b.D - b.D.transpose());
+  out.K += b.g * s_rate_q.transpose() + curl * s_q.transpose() + s_v * b.rate_by_X.transpose() +
+           moment * b.E.transpose() + s_rate * b.D + s * (b.D_rate - b.H);
+}
+
+/// Of the polar inertia on the spins: h = polar s + Gamma/2; f_phi = h', f_d = -h' w - h d x d'.
+void add_polar_tangent(const Mat2& polar, const BentSpin& bent, const Nodes<2>& x,
+                       const SpinRate (&sp)[2], TangentX<14>& out) {
   auto &M = out.M, &C = out.C, &K = out.K;
   for (int i = 0; i < 2; ++i) {
     const NodeState& node = *x[static_cast<std::size_t>(i)];
     const int r = 7 * i;
-    const double h = polar(i, 0) * sp[0].s + polar(i, 1) * sp[1].s;
-    const double hdot = polar(i, 0) * sp[0].sdot + polar(i, 1) * sp[1].sdot;
+    const double h = polar(i, 0) * sp[0].s + polar(i, 1) * sp[1].s + 0.5 * bent.value;
+    const double hdot = polar(i, 0) * sp[0].sdot + polar(i, 1) * sp[1].sdot + 0.5 * bent.rate;
     const Vec3 d = node.d(), dxd = d.cross(node.dd);
     const Mat3 W = sp[i].W();
     Mat3 on_d = Mat3::Zero(), on_dd = Mat3::Zero();
@@ -427,6 +507,25 @@ void add_polar_tangent(const Mat2& polar, const Nodes<2>& x, const SpinRate (&sp
   }
 }
 
+/// The matrix of Gamma. With a fixed, delta = Delta X and G = G4 - lumped, whose contractions with
+/// rigid motions vanish, the couple of s Gamma is -s a x G X' if Delta^T S + S^T Delta = -G, S =
+/// spread^T. Of the end rotations alone, X = R delta, S is -1/2 R^T G R (an antisymmetric part would
+/// be a rate, and vanishes where the ends are alike).
+Eigen::Matrix<double, 4, 2> spread_of(const ShaftElementConstants& c) {
+  Matrix<4> G = c.G4;
+  G(1, 1) -= c.polar.row(0).sum();
+  G(3, 3) -= c.polar.row(1).sum();
+  Eigen::Matrix<double, 4, 2> R;
+  R << -c.o1, 0.0, 1.0, 0.0, 0.0, -c.o2, 0.0, 1.0;
+  const Eigen::RowVector4d slope =
+      Eigen::RowVector4d(-1.0, -c.o1, 1.0, c.o2) / c.length;  // of the chord
+  Eigen::Matrix<double, 2, 4> Delta;
+  Delta.row(0) = Eigen::RowVector4d(0.0, 1.0, 0.0, 0.0) - slope;
+  Delta.row(1) = Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) - slope;
+  const Mat2 ends = R.transpose() * G * R;
+  return (-R.transpose() * G + 0.5 * ends * Delta).transpose();
+}
+
 }  // namespace
 
 template <bool Offsets>
@@ -435,9 +534,7 @@ ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3
       e0(direction) {
   WHIRL_EXPECTS(constants.length > 0.0 && constants.mass >= 0.0);
   WHIRL_EXPECTS(std::abs(direction.norm() - 1.0) < 1e-9);
-  G4c = c.G4;
-  G4c(1, 1) -= c.polar.row(0).sum();
-  G4c(3, 3) -= c.polar.row(1).sum();
+  spread = spread_of(c);
   const double mean = 0.5 * (c.k11 + c.k22), EI = 0.5 * c.length * (mean - c.k12);
   if (!(EI > 0)) return;
   // 1/(1 + Phi); a cone without shear gives a little more or less than one
@@ -477,7 +574,7 @@ constexpr bool beam_in_place() {
   static_assert(stands(offsetof(Beam, soft_axial), Places::soft_axial));
   static_assert(stands(offsetof(Beam, soft_shear), Places::soft_shear));
   static_assert(stands(offsetof(Beam, soft_limit), Places::soft_limit));
-  static_assert(stands(offsetof(Beam, G4c), Places::G4c));
+  static_assert(stands(offsetof(Beam, spread), Places::spread));
   static_assert(sizeof(Matrix<4>) == 16 * sizeof(double) && sizeof(Mat2) == 4 * sizeof(double));
   return stands(sizeof(Beam), Places::size) && sizeof(Vector<7>) == 7 * sizeof(double);
 }
@@ -512,8 +609,10 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   const Deformed now(*this, *x[0], *x[1]);
   const SpinRate spin[2] = {SpinRate(*x[0]), SpinRate(*x[1])};
   add_elastic_tangent(*this, x[0]->e(), now, out.K);
-  add_inertia_tangent(*this, x, spin, now.strain.chord, out);
-  add_polar_tangent(c.polar, x, spin, out);
+  add_mass(c.M4, out.M);
+  const BentSpin bent(*this, x, now.strain);
+  add_bent_tangent(bent, x, spin, out);
+  add_polar_tangent(c.polar, bent, x, spin, out);
 }
 
 template <bool Offsets>
@@ -532,7 +631,13 @@ void ShaftBeam<Offsets>::add_energy(const Nodes<2>& x, const Context& ctx, Energ
     for (int j = 0; j < 4; ++j)
       T += c.M4(k, j) * vel[k]->dot(*vel[j]);
   const Vec2 spin(x1.spin(), x2.spin());
-  e.kinetic += 0.5 * T + 0.5 * spin.dot(c.polar * spin);
+  const Vec3 arm[2] = {now.strain.chord.a.cross(now.strain.end1.delta),
+                       now.strain.chord.a.cross(now.strain.end2.delta)};
+  double bent = 0.0;
+  for (int i = 0; i < 2; ++i)
+    for (int l = 0; l < 4; ++l)
+      bent += spread(l, i) * vel[l]->dot(arm[i]);
+  e.kinetic += 0.5 * T + 0.5 * spin.dot(c.polar * spin) + 0.5 * spin.sum() * bent;
   // d - e0, not d - e: e moves with the chart, and the weight's moment on the directors of a cone
   // does not cancel.
   const Vec3 shift = x1.e() - e0;
