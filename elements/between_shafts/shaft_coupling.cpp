@@ -116,8 +116,10 @@ void ShaftCoupling::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>&
       for (int i = 0; i < 7; ++i)
         for (int j = 0; j < 7; ++j) {
           const double s = sign[a][i] * sign[b][j];
-          t.K(7 * a + coordinate[i], 7 * b + coordinate[j]) += s * m.force[static_cast<std::size_t>(i)].g[j];
-          t.C(7 * a + coordinate[i], 7 * b + coordinate[j]) += s * m.force[static_cast<std::size_t>(i)].g[7 + j];
+          t.K(7 * a + coordinate[i], 7 * b + coordinate[j]) +=
+              s * m.force[static_cast<std::size_t>(i)].g[j];
+          t.C(7 * a + coordinate[i], 7 * b + coordinate[j]) +=
+              s * m.force[static_cast<std::size_t>(i)].g[7 + j];
         }
 }
 

@@ -158,6 +158,81 @@ void add_load(Condensed<T>& c, const T& x, const T& y, const T& inverse) {
   c.S11 += inverse * y * y;
 }
 
+/// One element: stiffness (upper triangle by rows) and loads of its shapes, the bubbles first, then
+/// the shapes of its two ends.
+template <class T>
+struct FilmElement {
+  std::array<T, entries> A;
+  std::array<Pair<T>, shapes> B;
+};
+
+/// Integrates an element over its points zeta, which are turned on to those of the next one.
+template <class T>
+FilmElement<T> integrate_element(const Place<T>& at, const T& width, const T& over_width,
+                                 const Pair<T>& turn, double beta,
+                                 std::array<Pair<T>, points>& zeta) {
+  const Reference& ref = reference();
+  FilmElement<T> e;
+  e.A.fill(T(0.0));
+  e.B.fill({T(0.0), T(0.0)});
+  for (std::size_t q = 0; q < points; ++q) {
+    const AtPoint<T> x(at, zeta[q]);
+    const T flow = over_width * x.flow, arc = width * x.stretch,
+            leak = beta * (x.h * x.h * x.h) * arc;
+    const T sx = arc * x.n.x, sy = arc * x.n.y;
+    for (std::size_t m = 0; m < entries; ++m)
+      e.A[m] += ref.stiffness[q][m] * flow + ref.mass[q][m] * leak;
+    for (std::size_t i = 0; i < shapes; ++i) {
+      e.B[i].x += ref.source[q][i] * sx;
+      e.B[i].y += ref.source[q][i] * sy;
+    }
+    const Pair<T> z = zeta[q];
+    zeta[q] = {z.x * turn.x - z.y * turn.y, z.x * turn.y + z.y * turn.x};
+  }
+  return e;
+}
+
+/// Eliminates the bubbles of an element.
+template <class T>
+void drop_bubbles(FilmElement<T>& e, Condensed<T>& c) {
+  for (std::size_t i = 0, row = 0; i < bubbles; row += shapes - i, ++i) {
+    const T inverse = 1.0 / e.A[row];
+    add_load(c, e.B[i].x, e.B[i].y, inverse);
+    std::size_t below = row + shapes - i;
+    for (std::size_t j = 1; j < shapes - i; ++j) {
+      const T factor = e.A[row + j] * inverse;
+      for (std::size_t m = j; m < shapes - i; ++m)
+        e.A[below++] -= factor * e.A[row + m];
+      e.B[i + j].x -= factor * e.B[i].x;
+      e.B[i + j].y -= factor * e.B[i].y;
+    }
+  }
+}
+
+/// Joins an element to what is condensed so far, and eliminates the vertex between them.
+template <class T>
+void append_element(const FilmElement<T>& e, bool first, Condensed<T>& c) {
+  const T &ll = e.A[entries - 3], &lr = e.A[entries - 2], &rr = e.A[entries - 1];
+  const Pair<T>&left = e.B[bubbles], &right = e.B[bubbles + 1];
+  if (first) {
+    c.D_aa = ll;
+    c.D_ab = lr;
+    c.D_bb = rr;
+    c.out_a = left;
+    c.out_b = right;
+    return;
+  }
+  const T inverse = 1.0 / (c.D_bb + ll), x = c.out_b.x + left.x, y = c.out_b.y + left.y;
+  add_load(c, x, y, inverse);
+  const T back = c.D_ab * inverse, ahead = lr * inverse;
+  c.out_a.x -= back * x;
+  c.out_a.y -= back * y;
+  c.out_b = {right.x - ahead * x, right.y - ahead * y};
+  c.D_aa -= back * c.D_ab;
+  c.D_bb = rr - ahead * lr;
+  c.D_ab = -(back * lr);
+}
+
 template <class T>
 Condensed<T> condense(const Place<T>& at, const T& from, const T& to, double beta, int n) {
   using std::cos;
@@ -177,56 +252,9 @@ Condensed<T> condense(const Place<T>& at, const T& from, const T& to, double bet
   zeta[points / 2] = middle;
   Condensed<T> c{0.0, 0.0, 0.0, {0.0, 0.0}, {0.0, 0.0}, 0.0, 0.0, 0.0};
   for (int k = 0; k < n; ++k) {
-    std::array<T, entries> A;  // upper triangle by rows
-    std::array<Pair<T>, shapes> B;
-    A.fill(T(0.0));
-    B.fill({T(0.0), T(0.0)});
-    for (std::size_t q = 0; q < points; ++q) {
-      const AtPoint<T> x(at, zeta[q]);
-      const T flow = over_width * x.flow, arc = width * x.stretch,
-              leak = beta * (x.h * x.h * x.h) * arc;
-      const T sx = arc * x.n.x, sy = arc * x.n.y;
-      for (std::size_t m = 0; m < entries; ++m)
-        A[m] += ref.stiffness[q][m] * flow + ref.mass[q][m] * leak;
-      for (std::size_t i = 0; i < shapes; ++i) {
-        B[i].x += ref.source[q][i] * sx;
-        B[i].y += ref.source[q][i] * sy;
-      }
-      const Pair<T> z = zeta[q];
-      zeta[q] = {z.x * turn.x - z.y * turn.y, z.x * turn.y + z.y * turn.x};
-    }
-    for (std::size_t i = 0, row = 0; i < bubbles; row += shapes - i, ++i) {
-      const T inverse = 1.0 / A[row];
-      add_load(c, B[i].x, B[i].y, inverse);
-      std::size_t below = row + shapes - i;
-      for (std::size_t j = 1; j < shapes - i; ++j) {
-        const T factor = A[row + j] * inverse;
-        for (std::size_t m = j; m < shapes - i; ++m)
-          A[below++] -= factor * A[row + m];
-        B[i + j].x -= factor * B[i].x;
-        B[i + j].y -= factor * B[i].y;
-      }
-    }
-    const T &ll = A[entries - 3], &lr = A[entries - 2], &rr = A[entries - 1];
-    const Pair<T>&left = B[bubbles], &right = B[bubbles + 1];
-    if (k == 0) {
-      c.D_aa = ll;
-      c.D_ab = lr;
-      c.D_bb = rr;
-      c.out_a = left;
-      c.out_b = right;
-      continue;
-    }
-    // the vertex between what is condensed so far and this element
-    const T inverse = 1.0 / (c.D_bb + ll), x = c.out_b.x + left.x, y = c.out_b.y + left.y;
-    add_load(c, x, y, inverse);
-    const T back = c.D_ab * inverse, ahead = lr * inverse;
-    c.out_a.x -= back * x;
-    c.out_a.y -= back * y;
-    c.out_b = {right.x - ahead * x, right.y - ahead * y};
-    c.D_aa -= back * c.D_ab;
-    c.D_bb = rr - ahead * lr;
-    c.D_ab = -(back * lr);
+    FilmElement<T> e = integrate_element(at, width, over_width, turn, beta, zeta);
+    drop_bubbles(e, c);
+    append_element(e, k == 0, c);
   }
   return c;
 }
@@ -460,20 +488,6 @@ double PadFilm::shear(const Vec2& e, Vec2& gradient) const {
       gradient += part / x.h * Vec2(x.n.x, x.n.y);
     }
   return sum;
-}
-
-PadFilm::Film PadFilm::find_film(const Vec2& e, const Vec2& W) const {
-  Film out;
-  if (W.isZero(0.0)) return out;
-  std::array<Ends, 2> films;
-  out.count = solve(e, W, films, out.passes);
-  const Place<double> at(e.x(), e.y());
-  for (std::size_t i = 0; i < static_cast<std::size_t>(out.count); ++i) {
-    const Ends& s = films[i];
-    out.stretch[i] = {at.theta(s.a), at.theta(s.b), !s.held_a && s.a > s.low,
-                      !s.held_b && s.b < s.high};
-  }
-  return out;
 }
 
 }  // namespace whirl::elements

@@ -48,19 +48,8 @@ class PadFilm {
   /// int dtheta/(1 - e.n), and its gradient in e.
   double shear(const Vec2& e, Vec2& gradient) const;
 
-  /// One stretch of film between theta = from and to (to > from); a free end has P' = 0 there.
-  struct Stretch {
-    double from, to;
-    bool free_from, free_to;
-  };
-  struct Film {
-    std::array<Stretch, 2> stretch;
-    int count = 0;
-    int passes = 0;  ///< condensations it took
-  };
-  Film find_film(const Vec2& e, const Vec2& W) const;
-
  private:
+  friend struct PadFilmInside;  ///< tests look at where the film is
   /// In gamma: the ends, those of the core, and how far they may move.
   struct Ends {
     double a, b, core_a, core_b, low, high;

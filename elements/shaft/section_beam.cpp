@@ -22,6 +22,7 @@ namespace {
 
 #include <elements/shaft/shaft_single.inl>
 #include <elements/shaft/beam_nodes.inl>
+#include <elements/shaft/beam_derivatives.inl>
 
 /// A strain, stress or screw.
 template <class T>
@@ -496,47 +497,15 @@ void SectionBeam::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) co
 }
 
 void SectionBeam::add_tangent(const Nodes<2>& x, const Context&, TangentX<14>& out) const {
-  out.K += differentiate(*this, x, Parts::all, [](NodeT<D14>& n, const NodeState& s, int k) {
-    n.u = V3<D14>::variable(s.u, k);
-    n.t = V3<D14>::variable(s.t, k + 3);
-    n.phi = D14::variable(s.phi, k + 6);
-  });
+  out.K += differentiate(*this, x, Parts::all, VaryPlace());
   const Parts rest = Parts::inertia_and_damping;
-  out.C += differentiate(*this, x, rest, [](NodeT<D14>& n, const NodeState& s, int k) {
-    n.du = V3<D14>::variable(s.du, k);
-    n.dd = V3<D14>::variable(s.dd, k + 3);
-    n.dphi = D14::variable(s.dphi, k + 6);
-  });
-  out.M += differentiate(*this, x, rest, [](NodeT<D14>& n, const NodeState& s, int k) {
-    n.ddu = V3<D14>::variable(s.ddu, k);
-    n.ddd = V3<D14>::variable(s.ddd, k + 3);
-    n.ddphi = D14::variable(s.ddphi, k + 6);
-  });
+  out.C += differentiate(*this, x, rest, VaryRate());
+  out.M += differentiate(*this, x, rest, VaryAcceleration());
 }
 
 void SectionBeam::add_stiffness_rate(const Nodes<2>& x, const Nodes<2>& rate, const Context&,
                                      system::StiffnessRateX<14>& out) const {
-  using D = DualRate<14>;
-  const auto moving = [](const Vec3& v, const Vec3& dv, int k) {
-    return V3<D>(D::variable(v.x(), dv.x(), k), D::variable(v.y(), dv.y(), k + 1),
-                 D::variable(v.z(), dv.z(), k + 2));
-  };
-  NodeT<D> n[2] = {NodeT<D>(*x[0]), NodeT<D>(*x[1])};
-  for (int i = 0; i < 2; ++i) {
-    const auto a = static_cast<std::size_t>(i);
-    n[i].u = moving(x[a]->u, rate[a]->u, 7 * i);
-    n[i].t = moving(x[a]->t, rate[a]->t, 7 * i + 3);
-    n[i].phi = D::variable(x[a]->phi, rate[a]->phi, 7 * i + 6);
-  }
-  const SectionMotion<D> m1(n[0]), m2(n[1]);
-  const auto f = to_X(beam_force(*this, n[0], n[1], m1, m2), m1, m2);
-  for (int k = 0; k < 14; ++k) {
-    const D& r = f[static_cast<std::size_t>(k)];
-    out.f[k] += r.v;
-    out.df[k] += r.e;
-    out.K.row(k) += r.g.transpose();
-    out.dK.row(k) += r.h.transpose();
-  }
+  differentiate_in_motion(*this, x, rate, out);
 }
 
 void SectionBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) const {

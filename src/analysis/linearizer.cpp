@@ -68,7 +68,7 @@ bool Linearizer::still_balanced(double Omega) {
   return now[0] <= 4.0 * floor_[0] && now[1] <= 4.0 * floor_[1];
 }
 
-const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
+void Linearizer::move_to(double Omega) {
   WHIRL_EXPECTS(std::isfinite(Omega));
   throw_if_interrupted();
   running_.set_whirl(0.0);
@@ -89,6 +89,10 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
                                                   : nullptr));
   }
   have_forcing_ = false;
+}
+
+const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
+  move_to(Omega);
   const auto linearise = [&] {
     running_.set_whirl(std::isnan(lambda.imag()) ? Complex(0) : lambda, false, side);
     const bool inside =

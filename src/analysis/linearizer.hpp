@@ -36,6 +36,10 @@ class Linearizer {
   const la::MCK& at_frequency(double Omega, double w) {
     return at(Omega, Complex(0, infinity), nan, w);
   }
+  /// The equilibrium alone: without the matrices, which take a tangent at every angle where something
+  /// turns with the rotor.
+  /// @throws Error as at().
+  void move_to(double Omega);
   /// The part of them that keeps energy: M, skew part of C (gyroscopic), symmetric part of K. For
   /// "undamped" results.
   const la::MCK& conservative_at(double Omega, double w = nan);

@@ -102,8 +102,8 @@ void add_study(CLI::App& app, Given& g) {
   add_deck(c, g.study.deck, g.study.read);
   add_run(c, g.study.run);
   c->add_option("--exact", g.study.exact,
-                "exact displacements of probes to measure against as well: CSV with columns \"t "
-                "[s]\", \"PROBE.y [m]\", ..")
+                "exact displacements of probes to measure against as well: CSV, or HDF5 (*.h5), "
+                "with columns \"t [s]\", \"PROBE.y [m]\", ..")
       ->type_name("FILE");
   c->add_flag("--stability", g.stability,
               "instead: spectral radius, numerical damping and energy over 1e5 steps of every "

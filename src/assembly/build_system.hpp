@@ -121,8 +121,11 @@ struct Built {
                                      ///< Model::keep_everything keeps them
 };
 
-/// step: name of the step whose drives act (drives without a step always act); "" = only those
-/// without.
+/// Steps with one key have the same system: the same drives act, and the same free motions are held.
+std::string system_key(const model::Model& model, const model::Step& step);
+
+/// step: name of the step whose drives act (drives without a step always act) and that decides which
+/// free motions must be held; "" = only drives without a step, and the needs of all steps.
 /// @throws Error (Exit::deck) unrestrained motion named with its shaft, attachments off the shaft,
 /// impossible bodies.
 /// @pre mesh = make_mesh(model).

@@ -38,6 +38,13 @@ struct End {
   double s = 0;
 };
 
+/// The step that a chain of steps begins with: its kind says what the chain needs.
+const model::Step& first_of(const model::Model& m, const model::Step& s) {
+  for (const model::Step& other : m.steps)
+    if (!s.from.empty() && other.name == s.from) return first_of(m, other);
+  return s;
+}
+
 class Restraint {
  public:
   explicit Restraint(Assembly& a) : a_(a), group_(a.mesh.lines.size()) {
@@ -47,35 +54,31 @@ class Restraint {
       if (b.to) other = {static_cast<Index>(b.to->shaft), b.to->s};
       links_.push_back({{static_cast<Index>(b.at.shaft), b.at.s}, other, resisted(b)});
     }
-    for (const model::Step& s : a.model.steps) {
-      if (!s.from.empty()) continue;
-      if (std::holds_alternative<model::StaticStep>(s.law))
-        equilibrium_ = true;
-      else if (const auto* t = std::get_if<model::TransientStep>(&s.law))
-        equilibrium_ |= t->start == model::TransientStep::Start::static_equilibrium;
-      else
-        frequency_ = true;
-    }
+    for (const model::Step& s : a.model.steps)
+      if (a.step.empty() || s.name == a.step) look_at(s);
   }
 
   void check_axial() {
     for (const auto& lines : groups({x})) {
       if (joined(lines)) continue;
       if (grounded(lines, x)) continue;
-      if (loaded(lines, true) && (equilibrium_ || frequency_)) {
+      const bool moved = in_time_ && set_moving(lines);
+      if ((loaded(lines, true) && (equilibrium_ || frequency_)) || (moved && starts_settled_)) {
         complain(
             lines, "axial motion of {}",
             "add a thrust bearing (kxx), or a bearing of type \"rigid\" with directions = [\"x\"]");
-      } else if (equilibrium_ || frequency_) {
+      } else if ((equilibrium_ || frequency_) && !moved) {
         const Index node = a_.mesh.lines[lines.front()].first_node;
         if (a_.model.keep_everything && !frequency_) {  // there it would be one more mode
           keep_axial(lines, node);
           continue;
         }
         a_.builder.hold(node, x);
-        hold(fmt::format(
-            "axial motion of {} as a whole: nothing resists or loads it; held at the {}",
-            named(lines), a_.builder.node(node).name));
+        const bool damped = damped_axially(lines);
+        hold(fmt::format("axial motion of {} as a whole: nothing {} it; held at the {}{}",
+                         named(lines), damped ? "but damping resists" : "resists or loads",
+                         a_.builder.node(node).name,
+                         damped ? ", its decay is not among the motions" : ""));
       }
     }
   }
@@ -85,7 +88,8 @@ class Restraint {
     for (int p = 0; p < 2; ++p) {
       const Direction along = p == 0 ? y : z, turn = p == 0 ? rz : ry;
       for (const auto& lines : groups({along, turn}))
-        if (const std::string what = joined(lines) ? "" : free_motion(lines, along, turn);
+        if (const std::string what =
+                joined(lines) || bent(lines) ? "" : free_motion(lines, along, turn);
             !what.empty() && wrong(lines, what))
           found[p].push_back({lines, what});
     }
@@ -106,7 +110,7 @@ class Restraint {
     for (std::size_t l = 0; l < a_.mesh.lines.size(); ++l) {
       const meshes::Line& line = a_.mesh.lines[l];
       if (!line.rotating) {
-        if (a_.model.joined(l) || grounded({l}, rx)) continue;
+        if (!turns_freely(l)) continue;
         a_.builder.hold(line.first_node, system::spin_phi);
         hold(fmt::format("turning of casing '{}' about its axis: held at its left end", line.name));
         continue;
@@ -188,6 +192,65 @@ class Restraint {
     return std::any_of(links_.begin(), links_.end(), [&](const Link& k) {
       return k.in[d] && k.b.line < 0 && contains(lines, k.a.line);
     });
+  }
+
+  void look_at(const model::Step& s) {
+    const model::Step& first = first_of(a_.model, s);
+    if (std::holds_alternative<model::StaticStep>(first.law))
+      equilibrium_ = true;
+    else if (const auto* t = std::get_if<model::TransientStep>(&first.law))
+      equilibrium_ |= t->start == model::TransientStep::Start::static_equilibrium;
+    else
+      frequency_ = true;
+    if (std::holds_alternative<model::TransientStep>(s.law)) in_time_ = true;
+    starts_settled_ |= in_time_ && s.from.empty() && equilibrium_;
+  }
+
+  /// What moves the lines along x in time although nothing loads them.
+  bool set_moving(const std::vector<std::size_t>& lines) const {
+    const model::BaseMotion& base = a_.model.base;
+    if (base.acceleration[0] || base.turn) return true;
+    return std::any_of(a_.model.initial.begin(), a_.model.initial.end(),
+                       [&](const model::InitialMotion& i) {
+                         return contains(lines, static_cast<Index>(i.shaft)) &&
+                                (i.velocity.x() != 0.0 || i.displacement.x() != 0.0);
+                       });
+  }
+  bool damped_axially(const std::vector<std::size_t>& lines) const {
+    return std::any_of(
+        a_.model.bearings.begin(), a_.model.bearings.end(), [&](const model::Bearing& b) {
+          const auto* law = std::get_if<model::LinearBearing>(&b.law);
+          const bool here = contains(lines, static_cast<Index>(b.at.shaft)) ||
+                            (b.to && contains(lines, static_cast<Index>(b.to->shaft)));
+          return law && here && law->C(x, x) != 0.0;
+        });
+  }
+  bool bent(const std::vector<std::size_t>& lines) const {
+    return std::any_of(lines.begin(), lines.end(),
+                       [this](std::size_t l) { return !a_.model.shafts[l].path.empty(); });
+  }
+
+  /// A straight casing that could turn about its axis. One that has bends is no casing about an
+  /// axis: what holds it is the equilibrium's to find (E75); one that is set turning, or that
+  /// nothing holds in space, moves as it does.
+  bool turns_freely(std::size_t l) {
+    if (a_.model.joined(l) || bent({l})) return false;
+    const auto with = [&](const std::vector<std::size_t>& lines) {
+      return contains(lines, static_cast<Index>(l));
+    };
+    const auto all = groups({rx});
+    const std::vector<std::size_t>& lines = *std::find_if(all.begin(), all.end(), with);
+    if (grounded(lines, rx) || bent(lines) || joined(lines)) return false;
+    if (lines.front() != l && !a_.mesh.lines[lines.front()].rotating)
+      return false;  // holds this one
+    if (equilibrium_ || frequency_) return true;
+    const bool supported = std::any_of(links_.begin(), links_.end(), [&](const Link& k) {
+      return contains({l}, k.a.line) || contains({l}, k.b.line);
+    });
+    const bool set_turning = std::any_of(
+        a_.model.initial.begin(), a_.model.initial.end(),
+        [&](const model::InitialMotion& i) { return i.shaft == l && !i.omega.isZero(0.0); });
+    return supported && !set_turning;
   }
 
   /// Lines in joints: their restraint is the equilibrium's to find (E75).
@@ -285,10 +348,21 @@ class Restraint {
   Assembly& a_;
   std::vector<Link> links_;
   std::vector<std::size_t> group_;
-  bool equilibrium_ = false, frequency_ = false;
+  bool equilibrium_ = false, frequency_ = false, in_time_ = false, starts_settled_ = false;
 };
 
 }  // namespace
+
+std::string system_key(const model::Model& m, const model::Step& step) {
+  const bool drives = std::any_of(m.drives.begin(), m.drives.end(),
+                                  [&](const model::Drive& d) { return d.step == step.name; });
+  const auto* first = std::get_if<model::TransientStep>(&first_of(m, step).law);
+  const bool settled = !first || first->start == model::TransientStep::Start::static_equilibrium;
+  const bool set_moving = !m.initial.empty() || m.base.acceleration[0] || m.base.turn;
+  const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
+  return fmt::format("{}{}{}", drives ? step.name : "", settled ? "" : "; from rest",
+                     in_time && set_moving ? "; set moving" : "");
+}
 
 void check_restraint(Assembly& a) {
   Restraint r(a);

@@ -23,6 +23,29 @@ Vec3 moment_of(const NodeState& n, const Vec3& f_d, double f_phi) {
   return d.cross(f_d) + f_phi / (2.0 + n.e().dot(n.t)) * (n.e() + d);
 }
 
+/// The second axis of sections that bend but do not turn: the smallest rotation that takes the axis
+/// of the line to the normal of the section. Where the normal is opposite to that axis (a beam bent
+/// by half a turn) there is no smallest: the axis of the section before it goes on.
+class SectionAxis {
+ public:
+  Vec3 axis(Index line, const Mat3& of_line, const Vec3& normal) {
+    const bool opposite = (of_line.col(0) + normal).squaredNorm() < opposite_within;
+    if (line != line_) ey_ = of_line.col(1);
+    if (!opposite)
+      ey_ = rotation::minimal_rotation(of_line.col(0), normal) * of_line.col(1);
+    else if (line == line_)
+      ey_ = rotation::minimal_rotation(normal_, normal) * ey_;
+    line_ = line;
+    normal_ = normal;
+    return ey_;
+  }
+
+ private:
+  static constexpr double opposite_within = 1e-16;
+  Index line_ = -1;
+  Vec3 normal_ = Vec3::Zero(), ey_ = Vec3::Zero();
+};
+
 void add_stress(const elements::ElementSection& s, double xi, SectionPoint& p) {
   if (s.constants) return;
   const double od = s.od1 + xi * (s.od2 - s.od1), id = s.id1 + xi * (s.id2 - s.id1);
@@ -39,6 +62,63 @@ void add_stress(const elements::ElementSection& s, double xi, SectionPoint& p) {
   p.von_mises = std::max(surface, std::hypot(p.axial, std::sqrt(3.0) * (p.torsion + shear)));
 }
 
+/// An element as it stands now: its ends, and how moments change along it.
+struct BentElement {
+  SectionEnd a, b;
+  bool bent = false;  ///< along a path
+  Mat3 t1, t2;        ///< axes of such a line at the ends
+  Vec3 dM1, dM2;      ///< N m, L dM/ds at the ends
+};
+
+BentElement stand(const model::Shaft& shaft, const meshes::Mesh& mesh, const meshes::Element& e,
+                  const system::NodeState& n1, const system::NodeState& n2,
+                  const system::ForceX<14>& f) {
+  const double L = e.s2 - e.s1;
+  BentElement out;
+  SectionEnd &a = out.a, &b = out.b;
+  a.d = n1.d();
+  b.d = n2.d();
+  a.r = mesh.nodes[static_cast<std::size_t>(e.left.node)].position + n1.u + e.left.offset * a.d;
+  b.r = mesh.nodes[static_cast<std::size_t>(e.right.node)].position + n2.u + e.right.offset * b.d;
+  a.F = -f.segment<3>(0);
+  b.F = f.segment<3>(7);
+  a.M = -moment_of(n1, f.segment<3>(3), f[6]) - e.left.offset * a.d.cross(a.F);
+  b.M = moment_of(n2, f.segment<3>(10), f[13]) - e.right.offset * b.d.cross(b.F);
+  const Vec3 chord = (b.r - a.r) / L;
+  out.bent = !shaft.path.empty();
+  if (out.bent) {
+    out.t1 = meshes::section_axes(*n1.chart, a.d, n1.phi) * shaft.path.after(e.s1).triad;
+    out.t2 = meshes::section_axes(*n2.chart, b.d, n2.phi) * shaft.path.before(e.s2).triad;
+  }
+  out.dM1 = -L * (out.bent ? Vec3(out.t1.col(0)) : chord).cross(a.F);
+  out.dM2 = -L * (out.bent ? Vec3(out.t2.col(0)) : chord).cross(b.F);
+  return out;
+}
+
+/// Forces and moments at the share x of the element, in the axes of the section there. chart: of
+/// the line.
+void resolve(const BentElement& e, const Mat3& chart, double x, SectionAxis& transported,
+             SectionPoint& p) {
+  const double y = 1.0 - x;
+  p.force = y * e.a.F + x * e.b.F;
+  p.moment = y * y * (1.0 + 2.0 * x) * e.a.M + x * x * (3.0 - 2.0 * x) * e.b.M +
+             x * y * (y * e.dM1 - x * e.dM2);
+  const Vec3 d =
+      (e.bent ? Vec3(y * e.t1.col(0) + x * e.t2.col(0)) : Vec3(y * e.a.d + x * e.b.d)).normalized();
+  Vec3 ey;
+  if (e.bent) {  // turning with the twist from end to end
+    const Vec3 mean = y * e.t1.col(1) + x * e.t2.col(1);
+    ey = (mean - d.dot(mean) * d).normalized();
+  } else {
+    ey = transported.axis(p.line, chart, d);
+  }
+  const Vec3 ez = d.cross(ey);
+  p.N = p.force.dot(d);
+  p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
+  p.T = p.moment.dot(d);
+  p.M = Vec2(p.moment.dot(ey), p.moment.dot(ez));
+}
+
 }  // namespace
 
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
@@ -47,61 +127,26 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
   WHIRL_EXPECTS(inner >= 0);
   WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
   std::vector<SectionPoint> out;
+  SectionAxis transported;
   out.reserve(mesh.elements.size() * static_cast<std::size_t>(inner + 2));
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
     const meshes::Element& e = mesh.elements[k];
     const auto [n1, n2] = system::seen_together(built.system, w, e.left.node, e.right.node);
     system::ForceX<14> f = system::ForceX<14>::Zero();
     built.element_forces.at(k)(built.system, {&n1, &n2}, w.context, f);
-    const double L = e.s2 - e.s1;
-    SectionEnd a, b;
-    a.d = n1.d();
-    b.d = n2.d();
-    a.r = mesh.nodes[static_cast<std::size_t>(e.left.node)].position + n1.u + e.left.offset * a.d;
-    b.r = mesh.nodes[static_cast<std::size_t>(e.right.node)].position + n2.u + e.right.offset * b.d;
-    a.F = -f.segment<3>(0);
-    b.F = f.segment<3>(7);
-    a.M = -moment_of(n1, f.segment<3>(3), f[6]) - e.left.offset * a.d.cross(a.F);
-    b.M = moment_of(n2, f.segment<3>(10), f[13]) - e.right.offset * b.d.cross(b.F);
-    const Vec3 chord = (b.r - a.r) / L;
     const model::Shaft& shaft = m.shafts[static_cast<std::size_t>(e.line)];
-    const bool bent = !shaft.path.empty();
-    Mat3 t1, t2;  // axes of a line along a path now
-    if (bent) {
-      t1 = meshes::section_axes(*n1.chart, a.d, n1.phi) * shaft.path.after(e.s1).triad;
-      t2 = meshes::section_axes(*n2.chart, b.d, n2.phi) * shaft.path.before(e.s2).triad;
-    }
-    const Vec3 dM1 = -L * (bent ? Vec3(t1.col(0)) : chord).cross(a.F),
-               dM2 = -L * (bent ? Vec3(t2.col(0)) : chord).cross(b.F);
-    const model::Section& section = m.shafts[static_cast<std::size_t>(e.line)].sections[e.section];
+    const BentElement now = stand(shaft, mesh, e, n1, n2, f);
+    const Mat3& chart = *w.in_own_axes(e.left.node).chart;
+    const model::Section& section = shaft.sections[e.section];
     const elements::ElementSection shape = element_section(m, e);
     for (int j = 0; j <= inner + 1; ++j) {
-      const double x = static_cast<double>(j) / (inner + 1), y = 1.0 - x;
+      const double x = static_cast<double>(j) / (inner + 1);
       SectionPoint p;
       p.line = e.line;
       p.element = static_cast<Index>(k);
-      p.s = j == 0 ? e.s1 : j == inner + 1 ? e.s2 : e.s1 + x * L;
+      p.s = j == 0 ? e.s1 : j == inner + 1 ? e.s2 : e.s1 + x * (e.s2 - e.s1);
       p.xi = x;
-      p.force = y * a.F + x * b.F;
-      p.moment = y * y * (1.0 + 2.0 * x) * a.M + x * x * (3.0 - 2.0 * x) * b.M +
-                 x * y * (y * dM1 - x * dM2);
-      const Vec3 d =
-          (bent ? Vec3(y * t1.col(0) + x * t2.col(0)) : Vec3(y * a.d + x * b.d)).normalized();
-      const Mat3& chart = *w.in_own_axes(e.left.node).chart;
-      Vec3 ey, ez;
-      if (bent) {  // turning with the twist from end to end
-        const Vec3 mean = y * t1.col(1) + x * t2.col(1);
-        ey = (mean - d.dot(mean) * d).normalized();
-        ez = d.cross(ey);
-      } else {
-        const Mat3 axes = rotation::minimal_rotation(chart.col(0), d);
-        ey = axes * chart.col(1);
-        ez = axes * chart.col(2);
-      }
-      p.N = p.force.dot(d);
-      p.V = Vec2(p.force.dot(ey), p.force.dot(ez));
-      p.T = p.moment.dot(d);
-      p.M = Vec2(p.moment.dot(ey), p.moment.dot(ez));
+      resolve(now, chart, x, transported, p);
       if (!section.general) add_stress(shape, x, p);
       out.push_back(p);
     }

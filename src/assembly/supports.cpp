@@ -312,8 +312,15 @@ void add_pedestal(Assembly& a, const model::Bearing& b, const meshes::BearingNod
   if (p.mass > 0) a.builder.add(elements::PointMass{p.mass}, {n.pedestal}, "point masses");
   a.builder.add(elements::TranslationalBearing{p.K, p.C, Mat3::Zero(), Vec3::Zero(), Vec3::Zero()},
                 {n.pedestal, n.ground}, "pedestals");
-  for (int c = 0; c < 6; ++c)  // it does not turn, and where it has no spring it does not move
-    if (c >= 3 || (p.K.row(c).isZero(0.0) && p.K.col(c).isZero(0.0))) a.builder.hold(n.pedestal, c);
+  const model::Directions acts = model::traits_of(b.law).held;
+  for (int c = 0; c < 6; ++c) {  // it does not turn, and where it has no spring it does not move
+    const bool no_spring = c < 3 && p.K.row(c).isZero(0.0) && p.K.col(c).isZero(0.0);
+    if (c < 3 && !no_spring) continue;
+    a.builder.hold(n.pedestal, c);
+    if (no_spring && acts[static_cast<std::size_t>(c)])
+      a.built.held.push_back(
+          fmt::format("pedestal of {} along {}: it has no stiffness there", name_of(b), "xyz"[c]));
+  }
 }
 
 }  // namespace

@@ -495,6 +495,19 @@ const std::vector<CodeInfo>& error_catalogue() {
        "bearing says that the coefficients at the edge hold there. They are a guess. A transient "
        "says from when on; its summary holds the range of speeds (\"held tables\").",
        "extrapolate = \"error\""},
+      {"W13", "a steady response of an unstable rotor",
+       "The steady response to unbalance or to a harmonic force is a motion about the equilibrium. "
+       "At a speed where free motions grow it is never reached: oil whirl, divergence or another "
+       "motion takes its place. Looked at are the ends and the middle of the range and the highest "
+       "response; a stability step finds the onset.",
+       "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
+      {"W14", "a mean of a stiffness that turns",
+       "The rotor has unequal principal stiffnesses or moments of inertia. Modes, critical speeds "
+       "and harmonic responses "
+       "are computed in fixed axes with their mean over a revolution. In truth unbalance meets two "
+       "critical speeds, one a principal plane, and between them the rotor bends out: an unbalance "
+       "response and a stability step are computed in axes that turn with the shaft and show both.",
+       "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
   };
   return t;
 }

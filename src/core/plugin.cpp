@@ -49,6 +49,18 @@ fs::path find(const std::string& name) {
   return {};
 }
 
+/// @throws Error E90.
+fs::path find_fitting(const std::string& name) {
+  fs::path path = find(name);
+  if (path.empty())
+    fail(name, fmt::format("the component '{}' is not installed (no libwhirl_{}.so)", name, name),
+         "install the package that holds it, or build Whirl with it");
+  if (!fits(path))
+    fail(name, fmt::format("{} is not from this build of Whirl", path.string()),
+         "rebuild it with the program");
+  return path;
+}
+
 std::mutex mutex;
 std::map<std::string, Plugin>& registry() {
   static std::map<std::string, Plugin> r;
@@ -59,6 +71,8 @@ std::map<std::string, Plugin>& registry() {
 
 bool Plugin::available(const std::string& name) { return !find(name).empty(); }
 
+void Plugin::require(const std::string& name) { find_fitting(name); }
+
 bool Plugin::loaded(const std::string& name) {
   const std::lock_guard lock(mutex);
   return registry().count(name) != 0;
@@ -68,16 +82,9 @@ const Plugin& Plugin::load(const std::string& name) {
   const std::lock_guard lock(mutex);
   auto& all = registry();
   if (const auto it = all.find(name); it != all.end()) return it->second;
-  const fs::path path = find(name);
-  if (path.empty())
-    fail(name, fmt::format("the component '{}' is not installed (no libwhirl_{}.so)", name, name),
-         "install the package that holds it, or build Whirl with it");
-  if (!fits(path))
-    fail(name, fmt::format("{} is not from this build of Whirl", path.string()),
-         "rebuild it with the program");
   Plugin p;
   p.name_ = name;
-  p.path_ = path.string();
+  p.path_ = find_fitting(name).string();
   p.handle_ = dlopen(p.path_.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!p.handle_)
     fail(name, fmt::format("the component '{}' cannot be loaded: {}", name, dlerror()), {});

@@ -26,6 +26,8 @@ class Plugin {
   /// @throws Error (Exit::io) when it is not there or cannot be opened, and, before anything of it
   /// runs, when it was built by another compiler.
   static const Plugin& load(const std::string& name);
+  /// @throws Error (Exit::io), as load(): the file is not there or does not fit. Opens nothing.
+  static void require(const std::string& name);
   /// Whether the file is there; opens nothing.
   static bool available(const std::string& name);
   /// Whether load(name) has been called with success.

@@ -113,64 +113,67 @@ Where Reader::where() const {
 
 // ---------------------------------------------------------------- quantities and numbers
 
+std::optional<double> Reader::in_unit(const char* key, const Value& v, const char* unit) {
+  const double x = v.number();
+  if (!std::isfinite(x)) {
+    problem("E13", v.spot, fmt::format("'{}' is not a finite number", key),
+            "leave the key out where no limit is meant");
+    return std::nullopt;
+  }
+  if (v.column) {
+    auto it = factors_.find({v.column->unit, unit});
+    if (it == factors_.end())
+      it = factors_
+               .emplace(std::pair(v.column->unit, std::string(unit)),
+                        units::factor(v.column->unit, unit))
+               .first;
+    const units::Factor& f = it->second;
+    if (!f.problem) return f(x);
+    Spot spot = v.column->spot;
+    if (!v.column->given)
+      problem("E07", spot, fmt::format("the column '{}' has no unit", key),
+              fmt::format("write the unit in the title, for example \"{}[{}]\"", key, unit));
+    else
+      problem(f.problem->code.c_str(), spot,
+              fmt::format("column '{}': {}", key, f.problem->message), f.problem->hint);
+    return std::nullopt;
+  }
+  if (*unit && !units::unit(unit).dimension.dimensionless()) {
+    problem("E07", v.spot,
+            fmt::format("'{}' is a number without a unit where {} is needed", key,
+                        units::name_of(units::unit(unit).dimension)),
+            fmt::format("write the unit, for example {} = \"{} {}\"", key, shown_text(v), unit));
+    return std::nullopt;
+  }
+  return x;
+}
+
+std::optional<double> Reader::convert(const char* key, const Value& v, const Value& given,
+                                      const char* unit) {
+  const units::Converted c = units::convert(v.text, unit);
+  if (!c.problem) return c.value;
+  Spot spot = v.spot;
+  if (given.is_text() && given.text == v.text && !v.column &&
+      characters(v.text) + 2 == spot.length) {  // as it stands in the file
+    spot.column += 1 + characters(std::string_view(v.text).substr(0, c.problem->offset));
+    spot.length = std::max(1, characters(std::string_view(v.text).substr(
+                                  std::min(c.problem->offset, v.text.size()), c.problem->length)));
+  }
+  problem(c.problem->code.c_str(), spot, fmt::format("'{}': {}", key, c.problem->message),
+          c.problem->hint);
+  return std::nullopt;
+}
+
 bool Reader::read_quantity(const char* key, const Value& given, const char* unit, Range range,
                            double& target, Value& shown) {
   const Value v = expand(given, Parameters::Use::quantity);
-  double x = 0;
-  if (v.is_number()) {
-    x = v.number();
-    if (!std::isfinite(x)) {
-      problem("E13", v.spot, fmt::format("'{}' is not a finite number", key),
-              "leave the key out where no limit is meant");
-      return false;
-    }
-    if (v.column) {
-      auto it = factors_.find({v.column->unit, unit});
-      if (it == factors_.end())
-        it = factors_
-                 .emplace(std::pair(v.column->unit, std::string(unit)),
-                          units::factor(v.column->unit, unit))
-                 .first;
-      const units::Factor& f = it->second;
-      if (f.problem) {
-        Spot spot = v.column->spot;
-        if (!v.column->given)
-          problem("E07", spot, fmt::format("the column '{}' has no unit", key),
-                  fmt::format("write the unit in the title, for example \"{}[{}]\"", key, unit));
-        else
-          problem(f.problem->code.c_str(), spot,
-                  fmt::format("column '{}': {}", key, f.problem->message), f.problem->hint);
-        return false;
-      }
-      x = f(x);
-    } else if (*unit && !units::unit(unit).dimension.dimensionless()) {
-      problem("E07", v.spot,
-              fmt::format("'{}' is a number without a unit where {} is needed", key,
-                          units::name_of(units::unit(unit).dimension)),
-              fmt::format("write the unit, for example {} = \"{} {}\"", key, shown_text(v), unit));
-      return false;
-    }
-  } else if (v.is_text()) {
-    const units::Converted c = units::convert(v.text, unit);
-    if (c.problem) {
-      Spot spot = v.spot;
-      if (given.is_text() && given.text == v.text && !v.column &&
-          characters(v.text) + 2 == spot.length) {  // as it stands in the file
-        spot.column += 1 + characters(std::string_view(v.text).substr(0, c.problem->offset));
-        spot.length =
-            std::max(1, characters(std::string_view(v.text).substr(
-                            std::min(c.problem->offset, v.text.size()), c.problem->length)));
-      }
-      problem(c.problem->code.c_str(), spot, fmt::format("'{}': {}", key, c.problem->message),
-              c.problem->hint);
-      return false;
-    }
-    x = c.value;
-  } else {
+  if (!v.is_number() && !v.is_text())
     return wrong_type(key, v, *unit ? "a quantity" : "a number",
                       *unit ? fmt::format("for example {} = \"1 {}\"", key, unit) : "");
-  }
-  if (!inside(range, x)) {
+  const std::optional<double> x =
+      v.is_number() ? in_unit(key, v, unit) : convert(key, v, given, unit);
+  if (!x) return false;
+  if (!inside(range, *x)) {
     problem(
         "E14", v.spot,
         fmt::format("'{}' = {} {}", key,
@@ -179,7 +182,7 @@ bool Reader::read_quantity(const char* key, const Value& given, const char* unit
                     text_of(range)));
     return false;
   }
-  target = x;
+  target = *x;
   shown = v;
   return true;
 }

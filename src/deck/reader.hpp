@@ -8,6 +8,7 @@
 #include <deck/visitor.hpp>
 #include <deque>
 #include <map>
+#include <optional>
 
 namespace whirl::deck {
 
@@ -60,6 +61,11 @@ class Reader : public Visitor {
   void problem(const char* code, const Spot&, std::string message, std::string hint = {});
   bool wrong_type(const char* key, const Value&, const char* wanted, std::string hint = {});
   Value expand(const Value& v, Parameters::Use use = Parameters::Use::text);
+  /// The number v in the unit: that of its column, or none where none is needed.
+  std::optional<double> in_unit(const char* key, const Value& v, const char* unit);
+  /// The text v in the unit; given: as it stands in the deck.
+  std::optional<double> convert(const char* key, const Value& v, const Value& given,
+                                const char* unit);
   /// One quantity; false when reported. `shown` gets what goes into the resolved deck.
   bool read_quantity(const char* key, const Value&, const char* unit, Range, double& target,
                      Value& shown);
@@ -75,6 +81,8 @@ class Reader : public Visitor {
                 std::vector<Value> cells, const Spot& row, const Spot& header, const ListBody&);
   bool read_titles(const std::vector<Value>& titles, const ListBody&,
                    std::vector<ColumnUnit*>& columns, std::vector<std::string>& keys);
+  /// Reads the table that the deck names; its number among the sources, -1 when reported.
+  int open_table(const Value& file);
   void read_rows_from_file(const Value& file, const ListBody&, Value& columns, Value& rows);
   void read_rows_from_deck(const Value& columns, const Value& rows, const ListBody&,
                            Value& out_columns, Value& out_rows);

@@ -252,13 +252,12 @@ void Reader::read_rows_from_deck(const Value& titles, const Value& rows, const L
   }
 }
 
-void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value& out_columns,
-                                 Value& out_rows) {
+int Reader::open_table(const Value& file) {
   std::string name;
-  if (!read_text("file", file, name)) return;
+  if (!read_text("file", file, name)) return -1;
   if (!files_allowed) {
     problem("E02", file.spot, fmt::format("cannot read '{}': files are not allowed here", name));
-    return;
+    return -1;
   }
   const std::filesystem::path path = sources_[file.spot.source].folder / name;
   if (!may_be_read(sources_, path, {".csv", ".tsv", ".txt", ".dat"})) {
@@ -267,22 +266,54 @@ void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value&
                         "*.csv, *.tsv, *.txt or *.dat",
                         name),
             "move it beside the deck, or give it the name of a table");
-    return;
+    return -1;
   }
   FileText text = read_file(path, max_table_bytes);
   if (!text.ok()) {
     problem(text.code.c_str(), file.spot, text.message, text.hint);
-    return;
+    return -1;
   }
   const TextProblem bad = check_text(text.text, TextKind::table);
   const int source = sources_.add(path.string(), path.parent_path(), std::move(text.text));
+  if (bad.ok()) return source;
+  problem("E03", Spot{source, bad.line, bad.column, 1}, bad.message, bad.line ? bad.hint : "");
+  return -1;
+}
+
+namespace {
+
+/// A cell as a deck's value: a number where it is one and does not stand in quotes.
+Value value_of(const Cell& c, const Spot& spot) {
+  Value v = Value::of_text(c.text, spot);
+  double x = 0;
+  const char* first = c.text.data() + (c.text.starts_with('+') ? 1 : 0);
+  const auto n = std::from_chars(first, c.text.data() + c.text.size(), x);
+  if (!c.quoted && n.ec == std::errc() && n.ptr == c.text.data() + c.text.size() &&
+      !c.text.empty()) {
+    v.kind = Value::Kind::real;
+    v.real = x;
+  }
+  return v;
+}
+
+/// The value as it is shown again. A number in a column without unit may be a name: it keeps its
+/// spelling.
+Value shown_value(const Value& v, const Cell& c, bool has_unit) {
+  if (!v.is_number()) return v;
+  const double x = v.real;
+  const bool whole = x == std::floor(x) && std::abs(x) < 1e15;
+  return !std::isfinite(x) || (!has_unit && whole) ? Value::of_text(c.text) : v;
+}
+
+}  // namespace
+
+void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value& out_columns,
+                                 Value& out_rows) {
+  const int source = open_table(file);
+  if (source < 0) return;
   const auto at = [&](int line, int column, int length) {
     return Spot{source, line, column, length};
   };
-  if (!bad.ok()) {
-    problem("E03", at(bad.line, bad.column, 1), bad.message, bad.line ? bad.hint : "");
-    return;
-  }
   const CellTable cells = read_cells(sources_[source].text);
   if (!cells.problem.empty()) {
     problem("E10", at(cells.problem_line, cells.problem_column, 1), cells.problem);
@@ -304,22 +335,9 @@ void Reader::read_rows_from_file(const Value& file, const ListBody& body, Value&
     std::vector<Value> values;
     Value shown = Value::make_array();
     for (const auto& c : r) {
-      Value v = Value::of_text(c.text, spot(c));
-      double x = 0;
-      const char* first = c.text.data() + (c.text.starts_with('+') ? 1 : 0);
-      const auto n = std::from_chars(first, c.text.data() + c.text.size(), x);
-      if (!c.quoted && n.ec == std::errc() && n.ptr == c.text.data() + c.text.size() &&
-          !c.text.empty()) {
-        v.kind = Value::Kind::real;
-        v.real = x;
-      }
-      Value s = v;
-      if (v.is_number() && !std::isfinite(x)) s = Value::of_text(c.text);
-      // a number in a column without unit may be a name: keep its spelling
-      if (v.is_number() && keys.size() > values.size() && !columns[values.size()]->given &&
-          x == std::floor(x) && std::abs(x) < 1e15)
-        s = Value::of_text(c.text);
-      shown.items.push_back(std::move(s));
+      Value v = value_of(c, spot(c));
+      const bool has_unit = keys.size() <= values.size() || columns[values.size()]->given;
+      shown.items.push_back(shown_value(v, c, has_unit));
       values.push_back(std::move(v));
     }
     out_rows.items.push_back(std::move(shown));

@@ -1,6 +1,4 @@
 // The only file that sees nlohmann-json.
-#include <core/error.hpp>
-#include <io/file.hpp>
 #include <io/value.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -58,47 +56,10 @@ Json to_library(const Value& value) {
   return std::visit(Visitor{}, value.variant());
 }
 
-Value from_library(const Json& j) {
-  switch (j.type()) {
-    case Json::value_t::boolean: return j.get<bool>();
-    case Json::value_t::number_integer:
-    case Json::value_t::number_unsigned: return j.get<std::int64_t>();
-    case Json::value_t::number_float: return j.get<double>();
-    case Json::value_t::string: return j.get<std::string>();
-    case Json::value_t::array: {
-      Value::Array a;
-      a.reserve(j.size());
-      for (const auto& x : j)
-        a.push_back(from_library(x));
-      return a;
-    }
-    case Json::value_t::object: {
-      Value::Object o;
-      for (const auto& [k, v] : j.items())
-        o.emplace_back(k, from_library(v));
-      return o;
-    }
-    default: return {};
-  }
-}
-
 }  // namespace
 
 std::string to_json(const Value& v, int indent) {
   return to_library(v).dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }
-
-Value parse_json(std::string_view text) {
-  try {
-    return from_library(Json::parse(text));
-  } catch (const nlohmann::json::exception& e) {
-    throw Error(
-        Exit::io,
-        Diagnostic{
-            Diagnostic::Severity::error, "E92", std::string("not JSON: ") + e.what(), {}, Where{}});
-  }
-}
-
-Value read_json(const std::filesystem::path& file) { return parse_json(read_text(file)); }
 
 }  // namespace whirl::io

@@ -1,7 +1,6 @@
 // Nested values with ordered keys: the run summary and everything else that becomes JSON.
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -70,8 +69,5 @@ class Value {
 /// the infinities, which JSON lacks, become the strings "nan", "inf", "-inf". Text that is not
 /// UTF-8 has the bad bytes replaced.
 std::string to_json(const Value& v, int indent = 2);
-/// @throws Error (E92, Exit::io) when the text is not JSON.
-Value parse_json(std::string_view text);
-Value read_json(const std::filesystem::path& file);
 
 }  // namespace whirl::io

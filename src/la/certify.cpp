@@ -103,8 +103,15 @@ bool ModeSolver::Impl::only_zeros_missing() {
     if (!p.rigid) sizes.push_back(std::abs(p.lambda));
   const double scale = scale_of(sizes);
   if (!(scale < infinity)) return false;
-  for (const double share : {1e-6, 1e-5}) {
-    const double small = share * scale;
+  // A double zero whose drag is no zero of the projection (a film between two spinning lines) stands
+  // where rounding puts it; the count has said where.
+  double farthest = 0.0;
+  for (const Complex place : certificate.where)
+    farthest = std::max(farthest, std::abs(place));
+  const double by_place = std::min(3.0 * farthest, zero_rounding);
+  std::vector<double> distances{1e-6 * scale, 1e-5 * scale};
+  if (by_place > distances.back()) distances.push_back(by_place);
+  for (const double small : distances) {
     std::vector<Complex> others;
     for (const Pair& p : known)
       if (!p.rigid && std::abs(p.lambda) > small) others.push_back(p.lambda);
@@ -114,7 +121,12 @@ bool ModeSolver::Impl::only_zeros_missing() {
     others.insert(others.end(), static_cast<std::size_t>(zeros.unknown), Complex(0.0));
     const RootCount all = counter->count(*m, {certificate.radius, certificate.reach}, others);
     certificate.factorizations += all.factorizations;
-    if (all.certain && all.unknown == 0) return true;
+    if (!all.certain || all.unknown != 0) continue;
+    const auto free =
+        std::count_if(known.begin(), known.end(), [](const Pair& p) { return p.rigid; });
+    certificate.taken_for_zero = std::max<Index>(0, zeros.unknown - free - double_zeros);
+    certificate.zeros_within = small;
+    return true;
   }
   return false;
 }

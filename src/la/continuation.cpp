@@ -104,6 +104,59 @@ bool Continuation::between(ContinuationProblem& problem, const VecX& qa, double 
   return true;
 }
 
+bool Continuation::set_out(ContinuationProblem& problem, const VecX& q, double mu,
+                           const ContinuationOptions& o) {
+  if (!o.start_direction) return tangent(problem, q, mu, o, true);
+  direction_ = *o.start_direction / o.start_direction->cwiseProduct(weight_).norm();
+  mu_direction_ = 0.0;
+  return true;
+}
+
+Continuation::Advance Continuation::advance(ContinuationProblem& problem, const VecX& q, double mu,
+                                            double& ds, bool leaving, const ContinuationOptions& o,
+                                            ContinuationPoint& point) {
+  const int iterations = correct(problem, q, mu, ds, o, false);
+  if (iterations < 0) {
+    ds *= 0.5;
+    return Advance::failed;
+  }
+  point.iterations = iterations;
+  const bool passed =
+      !leaving && (trial_mu_ - o.last_mu) * (mu - o.last_mu) <= 0.0 && std::isfinite(o.last_mu);
+  if (passed) {
+    // Land on the last value: the step in proportion, then Newton at that mu.
+    const double part = (o.last_mu - mu) / (trial_mu_ - mu);
+    point.iterations = correct(problem, q, mu, part * ds, o, true);
+    if (point.iterations < 0) {
+      ds *= 0.5;
+      return Advance::failed;
+    }
+  }
+  const double before = mu_direction_;
+  last_ = direction_;
+  // At a limit point K is singular to rounding: the old tangent serves for one more step.
+  if (!tangent(problem, trial_, trial_mu_, o, false)) {
+    direction_ = last_;
+    mu_direction_ = before;
+  }
+  if (o.controlled < 0 && !leaving && ds > 1e3 * o.min_step) {
+    // A turn of more than 45 degrees in one step may have jumped to another part of the path, or
+    // back.
+    const double turn = direction_.cwiseProduct(weight_).dot(last_.cwiseProduct(weight_)) +
+                        mu_direction_ * before / (mu_weight_ * mu_weight_);
+    if (turn < 0.7) {
+      direction_ = last_;
+      mu_direction_ = before;
+      ds *= 0.5;
+      return Advance::turned;
+    }
+  }
+  point.mu = trial_mu_;
+  point.dmu = mu_direction_;
+  point.limit_point = before * mu_direction_ < 0.0;
+  return passed ? Advance::arrived : Advance::on_the_way;
+}
+
 ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, double& mu,
                                      const ContinuationOptions& o, const Accept& accept) {
   WHIRL_EXPECTS(problem.scale().size() == q.size() && problem.mu_scale() > 0.0);
@@ -114,13 +167,8 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
   ContinuationResult result;
   prepare(problem, q.size());
   double ds = std::abs(o.first_step), arc = 0.0;
+  if (!set_out(problem, q, mu, o)) return {ContinuationStatus::singular_start, 0};
   bool leaving = o.start_direction != nullptr;
-  if (leaving) {
-    direction_ = *o.start_direction / o.start_direction->cwiseProduct(weight_).norm();
-    mu_direction_ = 0.0;
-  } else if (!tangent(problem, q, mu, o, true)) {
-    return {ContinuationStatus::singular_start, 0};
-  }
   while (result.steps < o.max_steps) {
     bool landing = false;
     if (o.controlled >= 0 && std::isfinite(o.last_controlled)) {
@@ -130,45 +178,11 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
         landing = true;
       }
     }
-    const int iterations = correct(problem, q, mu, ds, o, false);
-    if (iterations < 0) {
-      ds *= 0.5;
-      if (ds < o.min_step) return result.status = ContinuationStatus::step_too_small, result;
-      continue;
-    }
-    int used = iterations;
-    const bool passed =
-        !leaving && (trial_mu_ - o.last_mu) * (mu - o.last_mu) <= 0.0 && std::isfinite(o.last_mu);
-    if (passed) {
-      // Land on the last value: the step in proportion, then Newton at that mu.
-      const double part = (o.last_mu - mu) / (trial_mu_ - mu);
-      const int landed = correct(problem, q, mu, part * ds, o, true);
-      if (landed < 0) {
-        ds *= 0.5;
-        if (ds < o.min_step) return result.status = ContinuationStatus::step_too_small, result;
-        continue;
-      }
-      used = landed;
-    }
-    const double before = mu_direction_;
-    last_ = direction_;
-    // At a limit point K is singular to rounding: the old tangent serves for one more step.
-    if (!tangent(problem, trial_, trial_mu_, o, false)) {
-      direction_ = last_;
-      mu_direction_ = before;
-    }
-    if (o.controlled < 0 && !leaving && ds > 1e3 * o.min_step) {
-      // A turn of more than 45 degrees in one step may have jumped to another part of the path, or
-      // back.
-      const double turn = direction_.cwiseProduct(weight_).dot(last_.cwiseProduct(weight_)) +
-                          mu_direction_ * before / (mu_weight_ * mu_weight_);
-      if (turn < 0.7) {
-        direction_ = last_;
-        mu_direction_ = before;
-        ds *= 0.5;
-        continue;
-      }
-    }
+    ContinuationPoint point{};
+    const Advance step = advance(problem, q, mu, ds, leaving, o, point);
+    if (step == Advance::failed && ds < o.min_step)
+      return result.status = ContinuationStatus::step_too_small, result;
+    if (step == Advance::failed || step == Advance::turned) continue;
     ++result.steps;
     // Arc length of the chord.
     const double dmu = trial_mu_ - mu;
@@ -176,12 +190,12 @@ ContinuationResult Continuation::run(ContinuationProblem& problem, VecX& q, doub
                      dmu * dmu / (mu_weight_ * mu_weight_));
     q = trial_;
     mu = trial_mu_;
-    const ContinuationPoint point{mu, arc, mu_direction_, used, before * mu_direction_ < 0.0};
+    point.arc = arc;
     leaving = false;
     if (!accept(q, point)) return result.status = ContinuationStatus::stopped, result;
-    if (passed || landing) return result;
-    ds = std::clamp(ds * std::clamp(static_cast<double>(o.wanted_iterations) / used, 0.5, 2.0),
-                    o.min_step, o.max_step);
+    if (step == Advance::arrived || landing) return result;
+    const double wanted = static_cast<double>(o.wanted_iterations) / point.iterations;
+    ds = std::clamp(ds * std::clamp(wanted, 0.5, 2.0), o.min_step, o.max_step);
   }
   result.status = ContinuationStatus::too_many_steps;
   return result;

@@ -73,6 +73,14 @@ class Continuation {
   void prepare(ContinuationProblem& problem, Index n);
   bool tangent(ContinuationProblem& problem, const VecX& q, double mu,
                const ContinuationOptions& options, bool first);
+  /// The direction of the first step; false: K is singular at the start.
+  bool set_out(ContinuationProblem& problem, const VecX& q, double mu,
+               const ContinuationOptions& options);
+  /// failed, turned: ds is halved, and nothing was taken.
+  enum class Advance { failed, turned, on_the_way, arrived };
+  /// One step of length ds from (q, mu) to trial_ and trial_mu_. point: all but its arc length.
+  Advance advance(ContinuationProblem& problem, const VecX& q, double mu, double& ds, bool leaving,
+                  const ContinuationOptions& options, ContinuationPoint& point);
   int correct(ContinuationProblem& problem, const VecX& q, double mu, double ds,
               const ContinuationOptions& options, bool fixed_mu);
 

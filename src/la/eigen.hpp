@@ -34,12 +34,13 @@ struct Mode {
   Index from = -1;  ///< which of the modes given as a start this one continues, -1: none
 };
 
-/// A motion counts as one that oscillates up to a damping ratio of 3/sqrt(10) = 0.949: beyond it
-/// hardly a second swing can be seen, and the number of such roots grows with the mesh. They are
-/// listed with the roots on the real axis.
+/// A motion counts as one that oscillates up to a damping ratio of 3/sqrt(10) = 0.949, of decay or of
+/// growth: beyond it hardly a second swing can be seen, and the number of such decaying roots grows
+/// with the mesh. They are listed with the roots on the real axis.
 inline constexpr double oscillating_reach = 3.0;
 inline bool oscillates(Complex lambda) {
-  return lambda.imag() != 0.0 && -lambda.real() <= oscillating_reach * std::abs(lambda.imag());
+  return lambda.imag() != 0.0 &&
+         std::abs(lambda.real()) <= oscillating_reach * std::abs(lambda.imag());
 }
 
 struct ModeOptions {
@@ -76,6 +77,10 @@ struct Certificate {
   std::vector<Complex> where;  ///< estimates of the missing roots, Im >= 0
   Index factorizations = 0;    ///< what it cost
   Index recovered = 0;         ///< roots the search had missed and the count led to
+  /// Roots too close to zero to be told from it, beyond the free motions known: taken for zeros of
+  /// free motions. 0: none.
+  Index taken_for_zero = 0;
+  double zeros_within = 0.0;  ///< 1/s: distance from zero of those
   bool complete() const { return counted && missing == 0; }
   /// Roots of frequency `radius` are in the region up to this damping ratio, slower ones further.
   double damping_ratio() const { return reach > 0.0 ? reach / std::hypot(reach, radius) : 0.0; }

@@ -2,6 +2,7 @@
 #include <la/eigenpairs.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace whirl::la {
 
@@ -46,6 +47,7 @@ Index Eigenpairs::count_slow_companions(const std::vector<std::size_t>& free) co
 
 void Eigenpairs::add_companions() {
   double_zeros = 0;
+  zero_rounding = 0.0;
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < known.size(); ++i)
     if (known[i].rigid) free.push_back(i);
@@ -63,6 +65,7 @@ void Eigenpairs::add_companions() {
     rounding = std::max(rounding,
                         polisher.rounding_of_stiffness(p) / std::max(std::abs(mass(i, i)), 1e-300));
   }
+  zero_rounding = 10.0 * std::sqrt(rounding);
   const DenseEigenpairs eig = eigenpairs(MatX(-DenseLu<double>(mass).solve(drag)));
   Index slow_found = count_slow_companions(free);
   for (Index j = 0; j < r; ++j) {
@@ -73,7 +76,7 @@ void Eigenpairs::add_companions() {
     }
     // What rounding of K makes of a double zero is sqrt(rounding): a drag below that cannot be told
     // from none.
-    if (!(std::norm(rate) > 100.0 * rounding)) {
+    if (!(std::abs(rate) > zero_rounding)) {
       ++double_zeros;
       continue;
     }

@@ -35,6 +35,8 @@ struct Eigenpairs : ShiftedOperator {
   Index count_slow_companions(const std::vector<std::size_t>& free) const;
   /// Free motions whose second root is zero as well.
   Index double_zeros = 0;
+  /// 1/s: what rounding of the stiffness can make of a double zero.
+  double zero_rounding = 0.0;
   /// Nothing resists the motion, but for what rounding mixed into its vector (taken off then).
   bool is_free_motion(Pair& p);
   /// The rigid-body motions in the span of the candidates' real and imaginary parts and of those

@@ -4,6 +4,7 @@
 #include <la/dense.hpp>
 #include <la/multiply.hpp>
 #include <la/polish.hpp>
+#include <optional>
 
 namespace whirl::la {
 
@@ -131,9 +132,13 @@ bool Polisher::polish(Pair& p, double tolerance, bool near) {
   const double floor =
       std::max(std::numeric_limits<double>::epsilon() * std::abs(start), 1e3 * uncertainty(p)) +
       1e-300;
-  double change = std::numeric_limits<double>::infinity();
   Complex shift;
-  // Newton. Quadratic, so that a change of 1e-3 leaves about 1e-6 for the linear phase.
+  return iterate_newton(p, near, exact, floor, shift) && refine(p, tolerance, exact, floor, shift);
+}
+
+/// Quadratic, so that a change of 1e-3 leaves about 1e-6 for the linear phase.
+bool Polisher::iterate_newton(Pair& p, bool near, bool exact, double floor, Complex& shift) {
+  double change = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 12 && change > 1e-3; ++k) {
     // A little beside: a start that is an eigenvalue already must not make Q singular.
     shift = p.lambda * (1.0 + 1e-6);
@@ -157,8 +162,11 @@ bool Polisher::polish(Pair& p, double tolerance, bool near) {
     if (!(change < 1e12)) return false;
     near = false;
   }
-  if (!(change <= 1e-3)) return false;
-  // x -= Q(shift)^-1 Q(lambda) x: the error falls by |lambda - shift| / gap each time.
+  return change <= 1e-3;
+}
+
+/// x -= Q(shift)^-1 Q(lambda) x: the error falls by |lambda - shift| / gap each time.
+bool Polisher::refine(Pair& p, double tolerance, bool exact, double floor, Complex shift) {
   double last = 0.5, step = 1.0;
   for (int k = 0; k < 8; ++k) {
     y_ = p.lambda * (p.lambda * p.Mx + p.Cx) + p.Kx;
@@ -172,7 +180,7 @@ bool Polisher::polish(Pair& p, double tolerance, bool near) {
     p.x -= y_;
     if (!evaluate(p, exact)) return false;
     const Complex next = rayleigh_root(p, p.lambda);
-    change = std::abs(next - p.lambda) / std::max(std::abs(next), floor);
+    const double change = std::abs(next - p.lambda) / std::max(std::abs(next), floor);
     p.lambda = next;
     // The vector converges linearly; what its last step leaves in lambda is below the product of
     // both.
@@ -185,7 +193,7 @@ bool Polisher::polish(Pair& p, double tolerance, bool near) {
 }
 
 void Polisher::sizes(const Pair& p, double cm, double cc, double ck) {
-  abs_x_ = p.x.cwiseAbs();
+  abs_x_ = p.x.cwiseAbs2().cwiseSqrt();  // without the care of hypot: shapes are of size 1
   size_.setZero();
   if (cm > 0.0) add_multiply_size(m_->M, cm, abs_x_, size_);
   if (cc > 0.0) add_multiply_size(m_->C, cc, abs_x_, size_);
@@ -245,35 +253,49 @@ bool Polisher::is_unresisted(const Pair& p) {
   return std::abs(p.x.dot(p.Kx)) <= rounding_of_stiffness(p);
 }
 
-void Polisher::separate(std::span<Pair*> group) {
-  WHIRL_EXPECTS(!group.empty());
-  const Index k = static_cast<Index>(group.size()), n = y_.size();
-  if (k == 1) {
-    const Complex root = rayleigh_root(*group[0], group[0]->lambda);
-    if (group[0]->lambda.imag() != 0.0 || root.imag() == 0.0) group[0]->lambda = root;
-    return;
-  }
-  MatXc X(n, k), MX(n, k), CX(n, k), KX(n, k);
-  Complex centre = 0.0;
+namespace {
+
+/// The space that a group of eigenpairs spans, by vectors of length one.
+struct Subspace {
+  MatXc X, MX, CX, KX;
+  Complex centre = 0.0;  ///< of the eigenvalues
   double radius = 0.0;
-  bool real = true;  // overdamped roots with real vectors: a real projected problem
-  for (Index j = 0; j < k; ++j) {
-    const Pair& p = *group[at(j)];
-    real = real && p.lambda.imag() == 0.0;
-    const double s = 1.0 / p.x.norm();
-    X.col(j) = s * p.x;
-    MX.col(j) = s * p.Mx;
-    CX.col(j) = s * p.Cx;
-    KX.col(j) = s * p.Kx;
-    centre += p.lambda / static_cast<double>(k);
+  bool real = true;  ///< overdamped roots with real vectors: a real projected problem
+  explicit Subspace(std::span<Pair* const> group) {
+    const Index k = static_cast<Index>(group.size()), n = group[0]->x.size();
+    for (MatXc* m : {&X, &MX, &CX, &KX})
+      m->resize(n, k);
+    for (Index j = 0; j < k; ++j) {
+      const Pair& p = *group[at(j)];
+      real = real && p.lambda.imag() == 0.0;
+      const double s = 1.0 / p.x.norm();
+      X.col(j) = s * p.x;
+      MX.col(j) = s * p.Mx;
+      CX.col(j) = s * p.Cx;
+      KX.col(j) = s * p.Kx;
+      centre += p.lambda / static_cast<double>(k);
+    }
+    for (Index j = 0; j < k; ++j)
+      radius = std::max(radius, std::abs(group[at(j)]->lambda - centre));
   }
-  for (Index j = 0; j < k; ++j)
-    radius = std::max(radius, std::abs(group[at(j)]->lambda - centre));
+  Index size() const { return X.cols(); }
+};
+
+struct ProjectedPairs {
+  VecXc lambda;
+  MatXc y;  ///< vectors of length one, in terms of X
+};
+
+/// The eigenpairs of the projected problem nearest to the centre of the group. Nothing when its
+/// vectors are dependent.
+std::optional<ProjectedPairs> solve_projected(const Subspace& s) {
+  const Index k = s.size();
   // A shift off the group, so that none of its eigenvalues is hit.
-  const Complex c = centre + 0.3 * std::max(radius, 1e-2 * std::abs(centre)) * Complex(1.0, 0.2);
-  const MatXc gram = X.adjoint() * X;
-  if (hermitian_eigenvalues(gram)(0) < 1e-8) return;
-  const MatXc a2 = X.adjoint() * MX, a1 = X.adjoint() * CX, a0 = X.adjoint() * KX;
+  const Complex c =
+      s.centre + 0.3 * std::max(s.radius, 1e-2 * std::abs(s.centre)) * Complex(1.0, 0.2);
+  const MatXc gram = s.X.adjoint() * s.X;
+  if (hermitian_eigenvalues(gram)(0) < 1e-8) return std::nullopt;
+  const MatXc a2 = s.X.adjoint() * s.MX, a1 = s.X.adjoint() * s.CX, a0 = s.X.adjoint() * s.KX;
   const DenseLu<Complex> q(c * c * a2 + c * a1 + a0);
   const double alpha = std::max(std::abs(c), 1e-300);
   MatXc op(2 * k, 2 * k);
@@ -281,23 +303,27 @@ void Polisher::separate(std::span<Pair*> group) {
   op.topRightCorner(k, k) = -alpha * q.solve(a2);
   op.bottomLeftCorner(k, k) = (MatXc::Identity(k, k) + c * op.topLeftCorner(k, k)) / alpha;
   op.bottomRightCorner(k, k) = c * op.topRightCorner(k, k) / alpha;
-  if (!op.allFinite()) return;
+  if (!op.allFinite()) return std::nullopt;
   const DenseEigenpairs eig = eigenpairs(op);
   std::vector<Index> order(at(2 * k));
   for (Index j = 0; j < 2 * k; ++j)
     order[at(j)] = j;
   std::sort(order.begin(), order.end(),
             [&](Index a, Index b) { return std::abs(eig.values(a)) > std::abs(eig.values(b)); });
-  // The k nearest to the centre, each given to the old vector it contains most of.
-  MatXc y(k, k);
-  VecXc lambda(k);
+  ProjectedPairs out{VecXc(k), MatXc(k, k)};
   for (Index j = 0; j < k; ++j) {
     const Index e = order[at(j)];
-    lambda(j) = c + 1.0 / eig.values(e);
-    y.col(j) = eig.vectors.col(e).head(k);
-    y.col(j) /= y.col(j).norm();
+    out.lambda(j) = c + 1.0 / eig.values(e);
+    out.y.col(j) = eig.vectors.col(e).head(k);
+    out.y.col(j) /= out.y.col(j).norm();
   }
-  if (!lambda.allFinite() || !y.allFinite()) return;
+  if (!out.lambda.allFinite() || !out.y.allFinite()) return std::nullopt;
+  return out;
+}
+
+/// For each old vector (row of y) the new one that contains most of it, best matches first.
+std::vector<Index> match_vectors(const MatXc& y) {
+  const Index k = y.cols();
   std::vector<bool> taken(at(k), false), given(at(k), false);
   std::vector<Index> of(at(k), 0);
   for (Index round = 0; round < k; ++round) {
@@ -313,21 +339,38 @@ void Polisher::separate(std::span<Pair*> group) {
     taken[at(bj)] = given[at(bi)] = true;
     of[at(bi)] = bj;
   }
+  return of;
+}
+
+}  // namespace
+
+void Polisher::separate(std::span<Pair*> group) {
+  WHIRL_EXPECTS(!group.empty());
+  const Index k = static_cast<Index>(group.size());
+  if (k == 1) {
+    const Complex root = rayleigh_root(*group[0], group[0]->lambda);
+    if (group[0]->lambda.imag() != 0.0 || root.imag() == 0.0) group[0]->lambda = root;
+    return;
+  }
+  const Subspace s(group);
+  const std::optional<ProjectedPairs> found = solve_projected(s);
+  if (!found) return;
+  const std::vector<Index> of = match_vectors(found->y);
   for (Index i = 0; i < k; ++i) {
     Pair& p = *group[at(i)];
-    VecXc w = y.col(of[at(i)]);
-    p.lambda = lambda(of[at(i)]);
+    VecXc w = found->y.col(of[at(i)]);
+    p.lambda = found->lambda(of[at(i)]);
     Index big = 0;
     w.cwiseAbs().maxCoeff(&big);
     w *= 1.0 / w(big);
-    if (real && std::abs(p.lambda.imag()) < 1e-9 * std::abs(p.lambda)) {
+    if (s.real && std::abs(p.lambda.imag()) < 1e-9 * std::abs(p.lambda)) {
       p.lambda = p.lambda.real();
       w = w.real().cast<Complex>().eval();
     }
-    p.x = X * w;
-    p.Mx = MX * w;
-    p.Cx = CX * w;
-    p.Kx = KX * w;
+    p.x = s.X * w;
+    p.Mx = s.MX * w;
+    p.Cx = s.CX * w;
+    p.Kx = s.KX * w;
   }
 }
 

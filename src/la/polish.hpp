@@ -54,6 +54,10 @@ class Polisher {
  private:
   double residual_norm(const Pair& p, Complex lambda);
   bool factor(Complex shift);
+  /// The two phases of polish(). exact: K x exactly; floor: least size of lambda that its change
+  /// is measured against; shift: that of the last factorisation.
+  bool iterate_newton(Pair& p, bool near, bool exact, double floor, Complex& shift);
+  bool refine(Pair& p, double tolerance, bool exact, double floor, Complex shift);
   double uncertainty(const Pair& p);
   void mask(VecXc& v) const;
   /// |K| |x| etc. into size_: sum of |cm| |M||x| + |cc| |C||x| + |ck| |K||x|.

@@ -240,12 +240,4 @@ double longest_element(const Model& m, const Shaft& shaft, const Section& s, con
   return std::max(h, s.length / most);
 }
 
-double resolved_frequency(const Model& m, const Section& s, double h, double accuracy) {
-  const EndProperties a = properties_at(m, s, false), b = properties_at(m, s, true);
-  double compliance = 0;
-  for (const EndProperties& p : {a, b})
-    if (p.EI > 0) compliance = std::max(compliance, clamped_compliance(p, h));
-  return compliance > 0 ? std::sqrt(2.0 * accuracy / compliance) : infinity;
-}
-
 }  // namespace whirl::model

@@ -38,7 +38,4 @@ bool mesh_is_chosen(const Model& m, const Section& s);
 /// hundredth of the section. infinite: one element will do.
 double longest_element(const Model& m, const Shaft& shaft, const Section& s, const Resolution& r);
 
-/// Lateral frequency up to which elements of length h resolve a section to an accuracy, rad/s.
-double resolved_frequency(const Model& m, const Section& s, double h, double accuracy);
-
 }  // namespace whirl::model

@@ -175,10 +175,10 @@ void AccuracyOutput::judge_energy(TransientEnd& end, std::vector<std::string>& w
         "the motion leaves the range in which the energies of its supports are defined (a film's "
         "clearance, a table): its energy balance is not known");
   else if (defect > 0.02 && energy_.worst_defect() > energy_.rounding())
-    warnings.push_back(
-        fmt::format("the energy balance is off by {:.2g} of the energy {}: do not trust the "
-                    "amplitudes; try a smaller tolerance",
-                    defect, measure));
+    warnings.push_back(fmt::format(
+        "the energy balance is off by {:.2g} of the energy {} ({:.1g} of all energy): do not trust "
+        "the amplitudes of vibration; try a smaller tolerance",
+        defect, measure, energy_.worst_defect() / energy_.largest_energy()));
 }
 
 /// Steps that are too long for the accuracy asked for, or rejected again and again.

@@ -165,7 +165,9 @@ FrequencyStep::FrequencyStep(run::Job& j, const model::Step& s, const std::strin
     : job(j),
       step(s),
       linear((j.build_for(s), j.system()), steady_rotation_of(j, top_speed),
-             equilibrium_options(j, load_steps)) {
+             equilibrium_options(j, load_steps)),
+      top_speed_(top_speed),
+      load_steps_(load_steps) {
   if (!s.from.empty()) linear.start_from(j.states.at(s.from).state);
   if (about_undeformed(s.law)) linear.stay_undeformed();
   type_ = type;
@@ -175,6 +177,18 @@ FrequencyStep::FrequencyStep(run::Job& j, const model::Step& s, const std::strin
   if (const auto motion = motion_asked(s.law))
     summary()["motion"] = std::string(motion_name(*motion));
   section.title = fmt::format("{}: {}", s.name, title);
+}
+
+analysis::Linearizer FrequencyStep::linearizer_of(const system::System& other) const {
+  analysis::Linearizer out(other, steady_rotation_of(job, top_speed_),
+                           equilibrium_options(job, load_steps_));
+  if (about_undeformed(step.law)) out.stay_undeformed();
+  return out;
+}
+
+analysis::Motion FrequencyStep::motion() const {
+  const auto asked = motion_asked(step.law);
+  return asked ? motion_of(*asked) : analysis::Motion::all;
 }
 
 std::string FrequencyStep::file(const std::string& name) const {
@@ -290,14 +304,41 @@ void FrequencyStep::finish(const std::string& line) {
     section.text += " " + motion_text(*motion);
   section.text += fmt::format(" Linearised {}.", about_);
   if (!claim_.empty()) section.text += " " + capital(claim_) + ".";
-  if (turns_with_stiffness(job.model) && type_ != "stability")
-    section.text +=
-        " The stiffness of the asymmetric shaft enters as its mean over a revolution; a stability "
-        "step shows where its turning makes the rotor unstable.";
+  warn_of_mean_stiffness();
   run::ProgressLine(step.name, job.options.quiet)
       .done(fmt::format("{}, {}, {}", line, about_, time.text()));
   say_held(job, step, held_in_step(job, step), section);
   if (job.model.output.report) job.report.sections.push_back(std::move(section));
+}
+
+void FrequencyStep::warn_of_mean_stiffness() {
+  const bool stiffness = turns_with_stiffness(job.model);
+  const bool in_bands = type_ == "stability" && stiffness;
+  const bool not_lateral = type_ == "torsional" || type_ == "buckling";
+  const bool in_its_axes = type_ == "unbalance_response" && turns_as_one();
+  if (in_bands || in_its_axes || not_lateral) return;
+  if (!stiffness && !turns_with_inertia(job.model)) return;
+  const std::string what = fmt::format(
+      "the {} of the asymmetric rotor enters as its mean over a revolution; where it "
+      "spins its critical speeds are a pair, with instability between them",
+      stiffness ? "stiffness" : "inertia");
+  Diagnostic d;
+  d.code = "W14";
+  d.message = fmt::format("step '{}': {}", step.name, what);
+  d.hint = stiffness ? "a stability step finds the band; an unbalance response turns with the shaft"
+                     : "an unbalance response and a transient turn with the rotor";
+  section.text += " " + capital(what) + ".";
+  warn(job, std::move(d));
+}
+
+bool turns_with_inertia(const model::Model& m) {
+  return std::any_of(m.disks.begin(), m.disks.end(), [&](const model::Disk& d) {
+    const model::Shaft& s = m.shafts[d.at.shaft];
+    if (!d.inertia || !s.rotating || s.speed_ratio == 0) return false;
+    const Mat3& J = *d.inertia;
+    const double difference = std::max(std::abs(J(1, 1) - J(2, 2)), std::abs(J(1, 2)));
+    return difference > 1e-9 * J.trace();
+  });
 }
 
 bool turns_with_stiffness(const model::Model& m) {

@@ -57,6 +57,12 @@ class FrequencyStep {
   /// "about the static equilibrium at 3000 rpm": the state that everything here is linearised
   /// about.
   const std::string& about() const { return about_; }
+  /// The same linearisation of another system of this deck, with the lines of this one.
+  analysis::Linearizer linearizer_of(const system::System& other) const;
+  /// Every line turns at the reference speed, or stands.
+  bool turns_as_one() { return linear.running().orders().size() <= 1; }
+  /// What the step asks for; all where it has no such key.
+  analysis::Motion motion() const;
   /// A name for files: `<step>_<name>`.
   std::string file(const std::string& name) const;
   /// Puts what is known of a list of modes into the summary and the section; what is missing also
@@ -70,7 +76,11 @@ class FrequencyStep {
   void finish(const std::string& line);
 
  private:
+  /// W14, where the step takes the mean of a stiffness that turns.
+  void warn_of_mean_stiffness();
   std::string type_, about_, claim_;
+  double top_speed_;
+  int load_steps_;
   Stopwatch watch_;
 };
 
@@ -92,5 +102,7 @@ void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& 
 /// A rotating shaft has unequal principal stiffnesses: matrices in fixed axes are means over the
 /// revolution, and stability is another matter.
 bool turns_with_stiffness(const model::Model& m);
+/// A disk that spins has unequal transverse moments of inertia: the same of its mass matrix.
+bool turns_with_inertia(const model::Model& m);
 
 }  // namespace whirl::results

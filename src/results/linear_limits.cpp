@@ -1,4 +1,5 @@
 #include <results/linear_limits.hpp>
+#include <analysis/spectra/periodic.hpp>
 #include <assembly/film_kernels.hpp>
 #include <run/diagnose.hpp>
 
@@ -6,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace whirl::results {
 
@@ -14,6 +16,55 @@ void warn(run::Job& job, Diagnostic d) {
   job.report.warnings.push_back(d.message);
   job.summary["warnings"].push(d.code + ": " + d.message);
   if (!job.options.quiet) run::print_diagnostics({d});
+}
+
+namespace {
+
+/// What grows at a speed, or "".
+std::string growth_at(analysis::WhirlSolver& solver, double Omega) {
+  const std::vector<analysis::WhirlMode>& modes = solver.solve(Omega);
+  const auto fastest = std::max_element(
+      modes.begin(), modes.end(), [](const analysis::WhirlMode& a, const analysis::WhirlMode& b) {
+        return a.lambda.real() < b.lambda.real();
+      });
+  if (fastest == modes.end() || fastest->growth() <= 0) return {};
+  return fmt::format("{} motion at {:.4g} Hz grows by {:.3g} 1/s", to_string(fastest->kind),
+                     to_hz(fastest->frequency), fastest->lambda.real());
+}
+
+/// In axes that turn with it the rotor has lost stiffness in an odd number of directions: it bends
+/// out at its own speed.
+std::string growth_at(analysis::RotatingAxes& axes, double Omega) {
+  if (Omega == 0.0 || axes.negative_stiffnesses(Omega) % 2 == 0) return {};
+  return "the asymmetric shaft bends out at its own speed";
+}
+
+}  // namespace
+
+void warn_of_growth(FrequencyStep& s, std::vector<double> speeds) {
+  std::sort(speeds.begin(), speeds.end());
+  speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
+  analysis::ModesOptions o;
+  o.count = 4;
+  o.judge = true;
+  o.real_roots = true;
+  analysis::WhirlSolver solver(s.linear, o);
+  std::optional<analysis::RotatingAxes> axes;
+  if ((turns_with_stiffness(s.job.model) || turns_with_inertia(s.job.model)) && s.turns_as_one())
+    axes.emplace(s.linear, speeds.back());
+  for (const double Omega : speeds) {
+    const std::string growth = axes ? growth_at(*axes, Omega) : growth_at(solver, Omega);
+    if (growth.empty()) continue;
+    Diagnostic d;
+    d.code = "W13";
+    d.message = fmt::format(
+        "step '{}': the rotor is unstable at {:.6g} rpm ({}): the steady response is never reached "
+        "there",
+        s.step.name, to_rpm(Omega), growth);
+    d.hint = "a stability step finds the onset, a transient step what the rotor does beyond it";
+    warn(s.job, std::move(d));
+    return;
+  }
 }
 
 void GapCheck::look(double Omega, std::span<const VecXc> amplitudes, double frequency) {

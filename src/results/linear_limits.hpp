@@ -1,6 +1,6 @@
 // Where results leave what they stand on: linear responses larger than the gaps of supports, tables
 // asked beyond their ends, bearings too long for the theory of short ones. Each is said once a step,
-// with place and size (W11, W12, W03). Motions in time: limits_output.cpp.
+// with place and size (W11, W12, W13, W03). Motions in time: limits_output.cpp.
 #pragma once
 #include <results/frequency.hpp>
 #include <map>
@@ -35,6 +35,10 @@ class GapCheck {
 /// W12: bearings whose table ends within low .. high (reference speed, rad/s) and whose edge
 /// coefficients are held beyond.
 void warn_of_held_tables(run::Job& job, const std::string& step, double low, double high);
+
+/// W13: at one of these speeds (reference, rad/s) a free motion grows, and the steady response there
+/// is never reached.
+void warn_of_growth(FrequencyStep& s, std::vector<double> speeds);
 
 /// Rounding of the speeds at the ends of a table, rad/s.
 double table_slack(const model::TableBearing& table);

@@ -38,14 +38,24 @@ MeshAccuracy::MeshAccuracy(FrequencyStep& s)
     : step_(s),
       error_(s.job.model, s.job.mesh, s.job.built) {}
 
-double MeshAccuracy::of(const analysis::WhirlMode& mode, double Omega, const std::string& name) {
-  if (error_.empty() || std::abs(mode.lambda) == 0.0) return 0.0;
+double MeshAccuracy::error_of(const analysis::WhirlMode& mode, double Omega) {
   std::vector<double> spin;
   for (const model::Shaft& shaft : step_.job.model.shafts)
     spin.push_back(shaft.rotating ? shaft.speed_ratio * Omega : 0.0);
-  const double error = relative_mesh_error(error_, step_.linear.at(Omega), mode, spin);
+  const double judged = relative_mesh_error(error_, step_.linear.at(Omega), mode, spin);
+  if (error_.left_out().empty()) return judged;
+  if (!refined_) refined_ = std::make_unique<RefinedModes>(step_, error_.left_out());
+  const std::optional<double> change = refined_->error(mode, Omega);
+  return change ? judged + *change / std::abs(mode.lambda) : nan;
+}
+
+double MeshAccuracy::of(const analysis::WhirlMode& mode, double Omega, const std::string& name) {
+  if ((error_.empty() && error_.left_out().empty()) || std::abs(mode.lambda) == 0.0) return 0.0;
+  const double error = error_of(mode, Omega);
   looked_ = true;
-  if (!(error <= largest_)) {
+  if (std::isnan(error)) {
+    not_judged_.push_back(name);
+  } else if (!(error <= largest_)) {
     largest_ = error;
     worst_ = name;
   }
@@ -69,11 +79,14 @@ void MeshAccuracy::report() {
   v["relative error of frequencies"] = largest_;
   v["largest at"] = worst_;
   std::string text = fmt::format("frequencies right to {} (elements)", error_text(largest_));
-  if (!error_.left_out().empty()) {
+  if (refined_) {
+    v["by a mesh twice as fine"] = io::Value::array();
     for (const std::string& shaft : error_.left_out())
-      v["not judged"].push(shaft);
-    text += fmt::format(", but for the general sections of '{}'", error_.left_out().front());
+      v["by a mesh twice as fine"].push(shaft);
   }
+  for (const std::string& mode : not_judged_)
+    v["not judged"].push(mode);
+  if (!not_judged_.empty()) text += fmt::format(", {} of the modes not judged", not_judged_.size());
   step_.claim(text);
   if (largest_ <= job.model.mesh_accuracy || warned_) return;
   warned_ = true;

@@ -4,7 +4,8 @@
 #pragma once
 #include <analysis/spectra/whirl_modes.hpp>
 #include <assembly/mesh_error.hpp>
-#include <results/frequency.hpp>
+#include <results/refined_modes.hpp>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -15,7 +16,7 @@ class MeshAccuracy {
   explicit MeshAccuracy(FrequencyStep& s);
 
   /// Relative error of the frequency of a mode found at a reference speed, rad/s; 0 on a rotor
-  /// without elements. Remembers the largest, with its name.
+  /// without elements, NaN where it could not be found. Remembers the largest, with its name.
   double of(const analysis::WhirlMode& mode, double Omega, const std::string& name);
   /// All oscillating modes of a list, named by their labels.
   void look_at(std::span<const analysis::WhirlMode> modes, double Omega);
@@ -23,10 +24,13 @@ class MeshAccuracy {
   void report();
 
  private:
+  double error_of(const analysis::WhirlMode& mode, double Omega);
   FrequencyStep& step_;
   assembly::MeshError error_;
+  std::unique_ptr<RefinedModes> refined_;  ///< made when a mode with general sections is met
   double largest_ = 0;
   std::string worst_;
+  std::vector<std::string> not_judged_;  ///< names of modes
   bool looked_ = false, warned_ = false;
 };
 

@@ -1,4 +1,5 @@
 // Deflected centre lines of a static state.
+#include <core/rotation.hpp>
 #include <results/along_shaft.hpp>
 #include <results/static_parts.hpp>
 
@@ -36,6 +37,22 @@ class DeflectedLine {
   Vec3 tangent(const system::NodeState& n, const Path::Point& p) const {
     return Vec3(meshes::section_axes(*n.chart, n.d(), n.phi) * p.triad.col(0));
   }
+  struct Turn {
+    Vec2 slope;  ///< of the section normal, along the second and third axis of the line
+    double phi;  ///< about the line, rad
+  };
+  /// Along a path the axes are those of the undeformed line at the place. A standing line turns by
+  /// less than half a turn about itself; what spins counts its turns about the axis of the line.
+  Turn turn_of(const system::NodeState& n, double s) const {
+    if (path_.empty()) return {n.d().tail<2>(), n.phi};
+    const Mat3 before = path_.after(s).triad;
+    const Mat3 now = meshes::section_axes(*n.chart, n.d(), n.phi) * before;
+    const Vec2 slope(now.col(0).dot(before.col(1)), now.col(0).dot(before.col(2)));
+    const bool opposite = 1.0 + now.col(0).dot(before.col(0)) < 1e-12;
+    if (line_.rotating || opposite) return {slope, n.phi};
+    const Mat3 bent = rotation::minimal_rotation(before.col(0), now.col(0)) * before;
+    return {slope, std::atan2(now.col(1).dot(bent.col(2)), now.col(1).dot(bent.col(1)))};
+  }
   meshes::Pose pose(const meshes::Place& p) const {
     const system::NodeState& n = node(p.node);
     return {job_.mesh.nodes[at(p.node)].position + n.u + p.offset * n.d(), n.d(), n.phi};
@@ -54,15 +71,16 @@ class DeflectedLine {
 };
 
 void DeflectedLine::add_stations(io::Table& t) {
-  const double phi0 = node(line_.first_node).phi;
+  const double phi0 = turn_of(node(line_.first_node), 0.0).phi;
   for (Index k = line_.first_station; k < line_.first_station + line_.stations; ++k) {
     const meshes::Station& station = job_.mesh.stations[at(k)];
     const system::NodeState& n = node(station.at.node);
     const Vec3 u = n.u + station.at.offset * (n.d() - Vec3::UnitX());
-    const Vec3 d = path_.empty() ? n.d() : tangent(n, path_.after(station.s));
-    t.add({line_.name, station.s, station.label(), u.x(), u.y(), u.z(), d.y(), d.z(), n.phi});
+    const Turn turn = turn_of(n, station.s);
+    t.add({line_.name, station.s, station.label(), u.x(), u.y(), u.z(), turn.slope.x(),
+           turn.slope.y(), turn.phi});
     phi_.x.push_back(station.s);
-    phi_.y.push_back(n.phi - phi0);
+    phi_.y.push_back(turn.phi - phi0);
     if (const double size = size_of(u); size > largest_) {
       largest_ = size;
       where_ = station.s;
@@ -147,8 +165,8 @@ void add_deflection(const run::Job& job, const std::string& step, const system::
                             {"u_y", "m", ""},
                             {"u_z", "m", ""},
                             {"slope_y", "rad", "d_y of the section normal"},
-                            {"slope_z", "rad", "d_z"},
-                            {"phi", "rad", "axial angle"}};
+                            {"slope_z", "rad", "d_z; along a path of the axes at the place"},
+                            {"phi", "rad", "axial angle; of standing paths about the line"}};
   for (std::size_t l = 0; l < job.mesh.lines.size(); ++l) {
     DeflectedLine line(job, state, l);
     line.add_stations(out.deflection);

@@ -22,14 +22,12 @@ Job::Job(const model::Model& m, const RunOptions& o, const std::filesystem::path
       folder(root) {}
 
 void Job::build_for(const model::Step& step) {
-  // Only drives belong to steps: without drives of its own a step shares the last system.
-  std::string key;
-  for (const model::Drive& d : model.drives)
-    if (d.step == step.name) key = step.name;
-  if (!built_for.empty() && built_for == "<" + key) return;
+  const std::string key = assembly::system_key(model, step);
+  if (!built_for.empty() && key_ == key) return;
   const PhaseTimer timer(*this, "assembly");
-  built = assembly::build_system(model, mesh, key);
-  built_for = "<" + key;
+  built = assembly::build_system(model, mesh, step.name);
+  built_for = step.name;
+  key_ = key;
 }
 
 StepState Job::start_of(const model::Step& step, std::optional<double> speed) const {

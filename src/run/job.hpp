@@ -49,7 +49,7 @@ struct Job {
   /// with Exit::no_convergence.
   std::vector<std::string> uncertified;
 
-  std::string built_for;
+  std::string built_for;  ///< name of the step that `built` was made for; empty: of none yet
 
   Job(const model::Model& m, const RunOptions& o, const std::filesystem::path& root);
   const system::System& system() const { return built.system; }
@@ -66,6 +66,9 @@ struct Job {
   /// hysteretic damping as it acts there). Errors E75, E76 when there is none.
   analysis::Equilibrium settle(StepState& start, analysis::EquilibriumOptions options = {},
                                bool in_time = false) const;
+
+ private:
+  std::string key_;  ///< assembly::system_key of `built`
 };
 
 }  // namespace whirl::run

@@ -6,7 +6,10 @@
 #include <ctime>
 #include <fmt/format.h>
 #include <sha2.h>
+#include <io/file.hpp>
 #include <io/results.hpp>
+#include <unistd.h>
+#include <cerrno>
 #include <io/value.hpp>
 #include <new>
 #include <system_error>
@@ -31,16 +34,31 @@ bool is_of_one_run(const std::string& name) {
          (name.starts_with("checkpoint/") && name.ends_with(".whirl"));
 }
 
-}  // namespace
-
-void check_space(const model::Model& model, const RunOptions& options) {
+/// The results folder, or what is there of the way to it.
+std::filesystem::path existing_part(const model::Model& model, const RunOptions& options) {
   std::filesystem::path folder =
       options.output.empty() ? std::filesystem::path(model.output.directory) : options.output;
   std::error_code ec;
   folder = std::filesystem::absolute(folder, ec);
   while (!std::filesystem::exists(folder, ec) && folder.has_relative_path())
     folder = folder.parent_path();
-  const auto space = std::filesystem::space(folder, ec);
+  return folder;
+}
+
+}  // namespace
+
+void check_folder(const model::Model& model, const RunOptions& options) {
+  const std::filesystem::path folder = existing_part(model, options);
+  std::error_code ec;
+  if (!std::filesystem::is_directory(folder, ec))
+    io::io_failure(folder, "no results can be written below the file", ENOTDIR);
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    io::io_failure(folder, "no results can be written in", errno);
+}
+
+void check_space(const model::Model& model, const RunOptions& options) {
+  std::error_code ec;
+  const auto space = std::filesystem::space(existing_part(model, options), ec);
   if (ec) return;
   const double available = static_cast<double>(space.available);
   auto problems = deck::check_output(model, available);

@@ -21,6 +21,9 @@ std::filesystem::path prepare_results(const model::Model& model, const RunOption
 /// not be there yet.
 void check_space(const model::Model& model, const RunOptions& options);
 
+/// @throws Error (Exit::io, E91): the results folder cannot be made or written to.
+void check_folder(const model::Model& model, const RunOptions& options);
+
 /// SHA-256 of the resolved deck, in hexadecimal: `sha256sum resolved.toml` gives the same.
 std::string deck_hash(const model::Model& model);
 

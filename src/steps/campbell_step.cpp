@@ -56,26 +56,62 @@ io::Table empty_critical_table() {
   return t;
 }
 
-// Intersections with the orders, solved for.
-std::vector<plot::CriticalMark> find_criticals(results::FrequencyStep& s,
-                                               const model::CampbellStep& law,
-                                               const analysis::CampbellOptions& o,
-                                               const analysis::Campbell& c, io::Table& table) {
+double highest_frequency(const analysis::Campbell& c) {
   double highest = 0;
   for (const analysis::CampbellLine& l : c.lines)
     for (double f : l.frequency)
       highest = std::max(highest, std::isnan(f) ? 0.0 : f);
+  return highest;
+}
+
+bool rises(const std::vector<double>& speeds) {
+  return std::is_sorted(speeds.begin(), speeds.end()) && speeds.front() < speeds.back();
+}
+
+/// Critical speeds of one order: those the lines of the diagram pass, and above the speeds where its
+/// lists of modes reach the order line those of a search of its own.
+std::vector<analysis::Critical> criticals_of(results::FrequencyStep& s,
+                                             const analysis::CampbellOptions& o,
+                                             analysis::CriticalOptions q,
+                                             analysis::OrderCrossings* crossings) {
+  std::vector<analysis::Critical> out;
+  const double last = std::min(q.max_speed, q.max_frequency / q.order);
+  double sure_to = 0.0;
+  if (crossings != nullptr) {
+    out = crossings->solve(s.linear, q.tolerance);
+    sure_to = std::min(crossings->sure_to(), last);
+    std::erase_if(out, [&](const analysis::Critical& c) { return c.speed > sure_to; });
+    if (sure_to >= last) return out;
+    const auto above = std::upper_bound(o.speeds.begin(), o.speeds.end(), sure_to);
+    q.grid = std::max<Index>(1, o.speeds.end() - above);
+    q.min_speed = std::max(q.min_speed, sure_to);
+  }
+  if (q.min_speed >= last) return out;
+  for (analysis::Critical& c : analysis::critical_speeds(s.linear, q))
+    if (c.speed > sure_to) out.push_back(std::move(c));
+  return out;
+}
+
+/// Intersections with the orders, solved for. crossings: one an order, or none.
+std::vector<plot::CriticalMark> find_criticals(results::FrequencyStep& s,
+                                               const model::CampbellStep& law,
+                                               const analysis::CampbellOptions& o,
+                                               const analysis::Campbell& c,
+                                               std::vector<analysis::OrderCrossings>& crossings,
+                                               io::Table& table) {
   std::vector<plot::CriticalMark> marks;
-  for (const double order : law.orders) {
+  for (std::size_t i = 0; i < law.orders.size(); ++i) {
+    const double order = law.orders[i];
     analysis::CriticalOptions q;
     q.order = order;
-    q.max_speed = std::max(std::abs(o.speeds.front()), std::abs(o.speeds.back()));
-    q.min_speed = o.speeds.front();
+    q.max_speed = std::max(o.speeds.front(), o.speeds.back());
+    q.min_speed = std::min(o.speeds.front(), o.speeds.back());
     q.motion = o.track.modes.motion;
     q.damped = law.damped;
     q.grid = static_cast<Index>(o.speeds.size());
-    q.max_frequency = highest;
-    for (const analysis::Critical& k : analysis::critical_speeds(s.linear, q)) {
+    q.max_frequency = highest_frequency(c);
+    analysis::OrderCrossings* known = crossings.empty() ? nullptr : &crossings[i];
+    for (const analysis::Critical& k : criticals_of(s, o, q, known)) {
       marks.push_back({k.speed, k.frequency, order, {}});
       table.add({order, to_rpm(k.speed), to_hz(k.frequency), std::string(to_string(k.mode.kind)),
                  results::direction_text(k.mode), results::tidy(k.mode.log_decrement),
@@ -113,15 +149,25 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   o.track.modes.damped = law.damped;
   const double top = std::max(std::abs(o.speeds.front()), std::abs(o.speeds.back()));
   results::FrequencyStep s(job, step, "campbell", "Campbell diagram", top);
+  // At standstill every rotor that turns freely has the frequency 0 = n x 0: no critical speed.
+  const double lowest = o.speeds.front() > 0 ? o.speeds.front() : 1e-3 * top;
+  std::vector<analysis::OrderCrossings> crossings;
+  if (law.damped && o.speeds.front() >= 0 && rises(o.speeds))
+    for (const double order : law.orders)
+      crossings.emplace_back(order, lowest, top, o.track.modes);
+  const auto visit = [&](double from, double to, const std::vector<analysis::TrackedMode>& modes) {
+    for (analysis::OrderCrossings& order : crossings)
+      order.look(from, to, modes);
+  };
   const analysis::Campbell c = [&] {
     const run::PhaseTimer timer(job, "Campbell diagram");
-    return analysis::campbell(s.linear, o);
+    return analysis::campbell(s.linear, o, visit);
   }();
   io::Table criticals = empty_critical_table();
   std::vector<plot::CriticalMark> marks;
-  if (top > 0 && o.speeds.front() >= 0) {
+  if (top > 0 && o.speeds.front() >= 0 && o.speeds.front() != o.speeds.back()) {
     const run::PhaseTimer timer(job, "critical speeds");
-    marks = find_criticals(s, law, o, c, criticals);
+    marks = find_criticals(s, law, o, c, crossings, criticals);
   }
   const std::size_t found = marks.size();
 

@@ -69,6 +69,7 @@ io::Table empty_table(bool damped) {
     table.columns.push_back({"log decrement", "-", ""});
     table.columns.push_back({"damping ratio", "-", "of the mode"});
     table.columns.push_back({"amplification", "-", "1/(2 damping ratio)"});
+    table.nan_means = "without damping the amplification has no limit";
   }
   return table;
 }
@@ -105,7 +106,8 @@ void CriticalRun::add_rows(double order, bool damped, const std::vector<analysis
     if (damped) {
       row.emplace_back(results::tidy(c.mode.log_decrement));
       row.emplace_back(results::tidy(c.mode.damping_ratio));
-      row.emplace_back(c.amplification());
+      const double amplification = c.amplification();
+      row.emplace_back(std::isinf(amplification) ? nan : amplification);
     }
     table.add(std::move(row));
     speeds.push(to_rpm(c.speed));

@@ -137,6 +137,7 @@ void ModalRun::solve() {
 io::Table ModalRun::empty_table() const {
   io::Table table;
   table.title = "Modes";
+  table.nan_means = "the mode was not found on a finer mesh";
   table.columns = {
       {"mode", "-", ""},
       {"label", "-", "number within its kind"},

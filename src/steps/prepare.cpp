@@ -1,5 +1,7 @@
 #include <analysis/transient/momentum_route.hpp>
+#include <analysis/spectra/periodic.hpp>
 #include <analysis/steady_rotation.hpp>
+#include <core/plugin.hpp>
 #include <run/checkpoint.hpp>
 #include <results/frequency.hpp>
 #include <steps/prepare.hpp>
@@ -9,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 namespace whirl::steps {
@@ -30,17 +33,21 @@ class Obstacles {
 
  private:
   void look_at_steps() {
-    note({}, [&] { run::check_space(model_, options_); });
+    if (note({}, [&] { run::check_folder(model_, options_); }))
+      note({}, [&] { run::check_space(model_, options_); });
     // the system without drives of any step is put together in any case: what is wrong with the
     // model itself
     if (!note({}, [&] { system_of({}); })) return;
     for (const model::Step& step : model_.steps) {
+      note(step.where, [&] { check_plugins(step); });
       if (!note(step.where, [&] { system_of(step.name); })) continue;
       note(step.where, [&] { check_turning(step); });
       if (const auto* t = std::get_if<model::TransientStep>(&step.law))
         note(step.where, [&] { check_transient(step, *t); });
-      if (const auto* s = std::get_if<model::StabilityStep>(&step.law); s && s->map)
-        note(step.where, [&] { check_map(step, *s->map); });
+      if (const auto* s = std::get_if<model::StabilityStep>(&step.law); s) {
+        note(step.where, [&] { check_axes(step); });
+        if (s->map) note(step.where, [&] { check_map(step, *s->map); });
+      }
     }
   }
 
@@ -67,12 +74,35 @@ class Obstacles {
   }
 
   const assembly::Built& system_of(const std::string& step) {
-    std::string key;
-    for (const model::Drive& d : model_.drives)
-      if (!d.step.empty() && d.step == step) key = step;
+    std::string key = "(model)";
+    for (const model::Step& s : model_.steps)
+      if (s.name == step) key = assembly::system_key(model_, s);
     const auto made = built_.find(key);
     if (made != built_.end()) return made->second;
-    return built_.emplace(key, assembly::build_system(model_, mesh_, key)).first->second;
+    return built_.emplace(key, assembly::build_system(model_, mesh_, step)).first->second;
+  }
+
+  /// E90: what the outputs of the step need is installed.
+  void check_plugins(const model::Step& step) const {
+    const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
+    const bool has_frames = !std::holds_alternative<model::CampbellStep>(step.law) &&
+                            !std::holds_alternative<model::CriticalMapStep>(step.law);
+    const bool asks = std::any_of(
+        model_.output.vtk.begin(), model_.output.vtk.end(),
+        [&](const model::VtkOutput& o) { return o.step.empty() || o.step == step.name; });
+    if (has_frames && asks) Plugin::require("vtk");
+    if (in_time && model_.output.binary) Plugin::require("hdf5");
+  }
+
+  /// E88: a rotor whose stiffness turns with it has axes in which it is simple.
+  void check_axes(const model::Step& step) {
+    if (!results::turns_with_stiffness(model_)) return;
+    analysis::SteadyRotation running;
+    for (std::size_t l = 0; l < mesh_.lines.size(); ++l)
+      running.ratio.push_back(model_.shafts[l].rotating ? model_.shafts[l].speed_ratio : 0.0);
+    const assembly::Built& built = system_of(step.name);
+    running.ratio.resize(static_cast<std::size_t>(built.system.lines()), 0.0);
+    analysis::RotatingAxes::require(analysis::SteadySystem(built.system, running));
   }
 
   /// E78: what shall turn can.

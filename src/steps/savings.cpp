@@ -27,8 +27,7 @@ Savings measure_savings(const run::Job& job) {
   model::Model general = job.model;
   general.keep_everything = true;
   try {
-    const assembly::Built built = assembly::build_system(
-        general, job.mesh, job.built_for.empty() ? "" : job.built_for.substr(1));
+    const assembly::Built built = assembly::build_system(general, job.mesh, job.built_for);
     return {evaluation(job.system()), evaluation(built.system)};
   } catch (const Error&) {
     return {};  // only the measurement is lost

@@ -276,12 +276,23 @@ analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::U
   return o;
 }
 
+/// A few of the range, and that of the highest response.
+std::vector<double> speeds_to_judge(const std::vector<double>& speeds, double highest) {
+  constexpr int parts = 8;
+  std::vector<double> out{highest};
+  for (int k = 0; k <= parts; ++k)
+    out.push_back(speeds.front() + (speeds.back() - speeds.front()) * k / parts);
+  return out;
+}
+
 }  // namespace
 
 void run_unbalance_step(run::Job& job, const model::Step& step, const model::UnbalanceStep& law) {
   analysis::UnbalanceOptions o = unbalance_options(job, law);
   const double top = std::max(std::abs(o.speeds.front()), std::abs(o.speeds.back()));
   results::FrequencyStep s(job, step, "unbalance_response", "unbalance response", top);
+  o.turns_with_rotor = s.turns_as_one() && (results::turns_with_stiffness(job.model) ||
+                                            results::turns_with_inertia(job.model));
   if (o.refine_peaks && o.speeds.back() > o.speeds.front()) {
     const run::PhaseTimer timer(job, "critical speeds");
     add_critical_speeds(s, o.speeds);
@@ -299,6 +310,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
   results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
+  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest.speed));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
                 make_table(r, k, o.probes, o.outputs), false);
@@ -313,6 +325,14 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
                        : fmt::format("Steady response to what turns out of balance, {} speeds{}.",
                                      r.points.size(),
                                      o.refine_peaks ? ", with more of them where it peaks" : "");
+  if (largest.amplitude == 0) {
+    Diagnostic d;
+    d.code = "W02";
+    d.message = fmt::format("step '{}': nothing turns that is out of balance: the response is zero",
+                            step.name);
+    d.hint = "give an [[unbalance]] whose factor is not zero at time 0, or a probe that it moves";
+    results::warn(job, std::move(d));
+  }
   const plot::DisplayUnit unit = plot::length_unit(largest.amplitude);
   s.finish(fmt::format("{} speeds, {} peaks, largest {} {} at {:.0f} rpm", r.points.size(),
                        peaks.size(), readable(unit.factor * largest.amplitude), unit.name,

@@ -20,7 +20,7 @@ namespace whirl::study {
 
 namespace {
 
-/// An exact solution given as a table: displacements of probes at instants.
+/// An exact solution given as a table (CSV, or HDF5 as `whirl run` writes it): displacements of probes at instants.
 struct Exact {
   std::vector<double> t;
   struct Column {
@@ -43,8 +43,9 @@ Exact read_exact(const std::filesystem::path& file,
                                         Where{file.string(), 0, 0, 0, ""}});
   };
   if (!std::filesystem::exists(file))
-    throw wrong("there is no file with an exact solution here", "give the path of a CSV file");
-  const io::Columns c = io::read_csv(file);
+    throw wrong("there is no file with an exact solution here",
+                "give the path of a CSV or HDF5 file");
+  const io::Columns c = file.extension() == ".h5" ? io::read_hdf5(file) : io::read_csv(file);
   Exact out;
   for (std::size_t k = 0; k < c.names.size(); ++k) {
     if (c.names[k] == "t" && c.units[k] == "s") {

@@ -23,14 +23,19 @@ struct Workspace {
   la::BlockMatrix<7> M, C, K;                ///< X-space tangents
   VecX q, v, a, loads;  ///< with the places of followers, where there are any (joints.hpp)
   Context context;
-  Index outside = -1;  ///< node that left the chart (|gamma| >= pi), or -1
-  /// Once nodes have moved to other axes (frames.hpp): each as its line's own axes see it. Of the
-  /// last evaluation, and empty where it found no node moved or one outside its chart.
-  const Frames* frames = nullptr;
+  Index outside = -1;        ///< node that left the chart (|gamma| >= pi), or -1
+  std::vector<Mat3> charts;  ///< of the last evaluation: the nodes point at them
+  /// Once nodes have moved to other axes (frames.hpp): those of the last evaluation, and each node
+  /// as its line's own axes see it; empty where it found no node moved or one outside its chart.
+  Frames frames;
   std::vector<NodeState> own;
   std::vector<AngleTransport::At> own_carried;
 
-  /// The last evaluation saw moved nodes; what `frames` has become since does not count.
+  Workspace() = default;
+  Workspace(Workspace&&) = default;  // a copy's nodes would point into the original
+  Workspace& operator=(Workspace&&) = default;
+
+  /// The last evaluation saw moved nodes.
   bool moved() const { return !own.empty(); }
   /// The node in the line's own axes: what its angle and tilt mean to everything outside it.
   const NodeState& in_own_axes(Index node) const {

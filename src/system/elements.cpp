@@ -65,8 +65,7 @@ std::array<NodeState, 2> seen_together(const System& system, const Workspace& w,
   const AngleTransport::At carried =
       AngleTransport(out[b].e(), axes.col(0)).at(out[b].d(), out[b].dd, out[b].ddd);
   const bool linked = place != links.end() && *place == pair;
-  const double link =
-      linked ? w.frames->link[static_cast<std::size_t>(place - links.begin())] : 0.0;
+  const double link = linked ? w.frames.link[static_cast<std::size_t>(place - links.begin())] : 0.0;
   if (linked) carry(out[b], carried, link + carried.angle, axes);
   return out;
 }
@@ -119,8 +118,8 @@ void Elements<N, W>::bind_links(std::span<const std::pair<Index, Index>> links) 
 
 template <int N, int W>
 bool Elements<N, W>::stands(const Workspace& w, std::size_t i) const {
-  WHIRL_EXPECTS(w.frames && w.moved());
-  const Frames& f = *w.frames;
+  WHIRL_EXPECTS(w.moved());
+  const Frames& f = w.frames;
   if constexpr (N == 2)
     if (axes() == Axes::common)
       return f.same_axes(nodes_[i][0], nodes_[i][1]) && f.link[at(links_[i])] == 0.0;
@@ -143,8 +142,8 @@ void Elements<N, W>::see(const Workspace& w, std::size_t i, Seen& out) const {
       const Vec3 d = out.second.d();
       const AngleTransport transport(out.second.e(), axes.col(0));
       out.second_carried = transport.at(d, out.second.dd, out.second.ddd);
-      carry(out.second, out.second_carried,
-            w.frames->link[at(links_[i])] + out.second_carried.angle, axes);
+      carry(out.second, out.second_carried, w.frames.link[at(links_[i])] + out.second_carried.angle,
+            axes);
       out.x[b] = &out.second;
       out.carried[b] = &out.second_carried;
       return;

@@ -75,33 +75,26 @@ void Builder::hold(Index node, int component, LawPtr law) {
   holds_.push_back({6 * node + component, std::move(law)});
 }
 
-System Builder::finalize() {
-  System& s = system_;
-  s.active_.assign(at(s.size()), 1);
-  for (const NodeDef& d : s.defs_) {
-    s.line_of_.push_back(static_cast<int>(d.line));
-    s.falling_.push_back(d.scalar ? 0.0 : 1.0);
-  }
-  // A law outranks a plain hold of the same unknown; the last law wins.
-  std::stable_sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) {
-    return a.unknown != b.unknown ? a.unknown < b.unknown : !a.law && b.law;
-  });
-  // Unknowns no element can touch: rotations of nodes with translational elements only, all but the
-  // first of scalars.
-  std::vector<int> width(at(s.nodes()), 0);
-  for (const auto& term : s.terms_) {
+std::vector<int> Builder::list_widths() const {
+  std::vector<int> width(at(system_.nodes()), 0);
+  for (const auto& term : system_.terms_) {
     std::vector<Index> touched;
     term->list_nodes(touched);
     for (Index n : touched)
       width[at(n)] = std::max(width[at(n)], term->width());
   }
-  std::vector<LawPtr> law(at(s.size()));
   for (const FollowerDef& f : followers_)  // what follows is touched through what it follows
     for (const Index n : {f.node, f.parent})
       width[at(n)] = 7;
   for (const FollowerDef& f : followers_)
     for (const Index n : {f.angle, f.slide})
       if (n >= 0) width[at(n)] = std::max(width[at(n)], 3);
+  return width;
+}
+
+void Builder::hold_untouched() {
+  System& s = system_;
+  const std::vector<int> width = list_widths();
   for (Index i = 0; i < s.nodes(); ++i) {
     const int first_free = s.defs_[at(i)].scalar ? 1
                            : width[at(i)] == 7   ? 6
@@ -110,6 +103,15 @@ System Builder::finalize() {
     for (int c = first_free; c < 6; ++c)
       s.active_[at(6 * i + c)] = 0;
   }
+}
+
+std::vector<Index> Builder::apply_holds() {
+  System& s = system_;
+  // A law outranks a plain hold of the same unknown; the last law wins.
+  std::stable_sort(holds_.begin(), holds_.end(), [](const Hold& a, const Hold& b) {
+    return a.unknown != b.unknown ? a.unknown < b.unknown : !a.law && b.law;
+  });
+  std::vector<LawPtr> law(at(s.size()));
   for (const Hold& h : holds_) {
     s.active_[at(h.unknown)] = 0;
     law[at(h.unknown)] = h.law;
@@ -126,6 +128,11 @@ System Builder::finalize() {
       s.holds_.push_back({k, law[at(k)]});
     if (follows[at(k)]) s.active_[at(k)] = 0;
   }
+  return row;
+}
+
+void Builder::freeze_pattern(const std::vector<Index>& row) {
+  System& s = system_;
   std::vector<std::pair<Index, Index>> all, kept;
   for (const auto& term : s.terms_)
     term->list_couplings(all);
@@ -150,11 +157,29 @@ System Builder::finalize() {
   s.links_.erase(std::unique(s.links_.begin(), s.links_.end()), s.links_.end());
   for (auto& term : s.terms_)
     term->bind_links(s.links_);
-  s.linear_ = followers_.empty();
+}
+
+bool Builder::is_linear() const {
+  const System& s = system_;
+  bool linear = followers_.empty();
   for (const auto& term : s.terms_)
-    s.linear_ = s.linear_ && term->linear_in_displacements();
+    linear = linear && term->linear_in_displacements();
   for (Index k = 0; k < s.size(); ++k)
-    if (k % 6 >= 3 && s.active_[at(k)]) s.linear_ = false;
+    if (k % 6 >= 3 && s.active_[at(k)]) linear = false;
+  return linear;
+}
+
+System Builder::finalize() {
+  System& s = system_;
+  s.active_.assign(at(s.size()), 1);
+  for (const NodeDef& d : s.defs_) {
+    s.line_of_.push_back(static_cast<int>(d.line));
+    s.falling_.push_back(d.scalar ? 0.0 : 1.0);
+  }
+  hold_untouched();
+  const std::vector<Index> row = apply_holds();
+  freeze_pattern(row);
+  s.linear_ = is_linear();
   for (std::size_t i = 0; i < s.terms_.size(); ++i)
     if (s.terms_[i]->cornered()) s.cornered_.push_back(i);
   return std::move(system_);
@@ -295,25 +320,29 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   m.limit_squared = rotation::chart_limit * rotation::chart_limit;
   m.state = w.nodes.data()->u.data();
   m.D = w.D.data()->data();
+  w.charts = f.chart;
   for (std::size_t i = 0; i < w.nodes.size(); ++i)
-    w.nodes[i].chart = &f.chart[static_cast<std::size_t>(f.of_node[i])];
+    w.nodes[i].chart = &w.charts[static_cast<std::size_t>(f.of_node[i])];
   static const lanes::Kernels& kernels = lanes::kernels();
   w.outside = m.count > 0 ? kernels.evaluate(m) : -1;
-  w.frames = &f;
   w.own.clear();
   w.own_carried.clear();
-  if (w.outside < 0 && f.moved()) evaluate_own_axes(w, f);
+  if (w.outside < 0 && f.moved()) {
+    w.frames = f;
+    evaluate_own_axes(w);
+  }
   return w.outside < 0;
 }
 
-void System::evaluate_own_axes(Workspace& w, const Frames& f) const {
+void System::evaluate_own_axes(Workspace& w) const {
+  const Frames& f = w.frames;
   WHIRL_EXPECTS(f.moved() && f.shift.size() == at(nodes()));
   w.own = w.nodes;
   w.own_carried.resize(w.nodes.size());
   for (std::size_t i = 0; i < w.own.size(); ++i) {
     const Index node = static_cast<Index>(i);
     if (f.of_node[i] == line_of_[i]) continue;
-    const Mat3& own = f.chart[static_cast<std::size_t>(line_of_[i])];
+    const Mat3& own = w.charts[static_cast<std::size_t>(line_of_[i])];
     NodeState& n = w.own[i];
     const Vec3 d = n.d();
     w.own_carried[i] = AngleTransport(n.e(), own.col(0)).at(d, n.dd, n.ddd);

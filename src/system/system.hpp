@@ -134,7 +134,7 @@ class System {
 
  private:
   friend class Builder;
-  void evaluate_own_axes(Workspace& w, const Frames& f) const;
+  void evaluate_own_axes(Workspace& w) const;
   void project_force(const Workspace& w, Eigen::Ref<VecX> r) const;
   /// What is left of the forces after joints have carried them, and the loads of joints.
   void loads_into(Workspace& w, const Frames& f, Eigen::Ref<VecX> r) const;
@@ -218,6 +218,19 @@ class Builder {
   System finalize();
 
  private:
+  /// Unknowns of each node that elements and joints touch: 0, 3 (translations) or 7.
+  std::vector<int> list_widths() const;
+  /// Unknowns no element can touch: rotations of nodes with translational elements only, all but
+  /// the first of scalars.
+  void hold_untouched();
+  /// Takes held unknowns and those that follow out of the active ones. Returns for each node its
+  /// row of the matrices: itself, or -1 where every unknown is held.
+  std::vector<Index> apply_holds();
+  /// The pattern of the matrices, each element's place in it, and the pairs of nodes with angles in
+  /// common.
+  void freeze_pattern(const std::vector<Index>& row);
+  bool is_linear() const;
+
   System system_;
   std::vector<Hold> holds_;
   std::vector<FollowerDef> followers_;

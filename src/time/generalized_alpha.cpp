@@ -57,29 +57,29 @@ bool GeneralizedAlpha::factor(double h) {
   return factor_real(1.0 / B, G / B, 1.0);
 }
 
-Stepper::Attempt GeneralizedAlpha::attempt(double h) {
-  Attempt out;
-  const double f = (1.0 - alpha_f_) / (1.0 - alpha_m_);
-  const double B = h * h * beta_ * f, G = h * gamma_ * f;
+/// Linear in a; then q1 - q0 and v1 - v0 that go with it.
+void GeneralizedAlpha::predict(double h) {
   if (h_last_ > 0.0)
     algorithmic0_ = a0_ + (h / h_last_) * (algorithmic_ - a0_);
   else
     algorithmic0_ = a0_;
-  // predictor: linear in a; then q1 - q0 and v1 - v0 that go with it
   a_ = a0_;
   if (h_last_ > 0.0) a_ += h * difference_;
   const double g = 1.0 / (1.0 - alpha_m_);
   e_ = (g * (1.0 - alpha_f_)) * a_ + (g * alpha_f_) * a0_ - (g * alpha_m_) * algorithmic0_;  // b1
   dq_ = h * v0_ + (h * h) * ((0.5 - beta_) * algorithmic0_ + beta_ * e_);
   dv_ = h * ((1.0 - gamma_) * algorithmic0_ + gamma_ * e_);
+}
 
+/// Newton's method from there: its status, and the iterations it took.
+void GeneralizedAlpha::correct(double B, double G, Attempt& out) {
   newton_.begin();
   for (;;) {
     q_ = q0_ + dq_;
     v_ = v0_ + dv_;
     problem_.impose(t1_eval_, q_, v_, a_);
     out.status = StepStatus::domain;
-    if (!residual(t1_eval_, q_, v_, a_, r_)) return out;
+    if (!residual(t1_eval_, q_, v_, a_, r_)) return;
     for (Index i : held_)
       r_[i] = 0.0;
     problem_.solve(Ref(r_));
@@ -94,7 +94,7 @@ Stepper::Attempt GeneralizedAlpha::attempt(double h) {
       newton_.update(0.0, 0.0);
       if (!finite) {
         out.status = StepStatus::newton;
-        return out;
+        return;
       }
       break;
     }
@@ -103,10 +103,19 @@ Stepper::Attempt GeneralizedAlpha::attempt(double h) {
     if (verdict == NewtonMonitor::Verdict::failed) {
       out.status = StepStatus::newton;
       newton_.forget();
-      return out;
+      return;
     }
   }
   out.status = StepStatus::ok;
+}
+
+Stepper::Attempt GeneralizedAlpha::attempt(double h) {
+  Attempt out;
+  const double f = (1.0 - alpha_f_) / (1.0 - alpha_m_);
+  const double B = h * h * beta_ * f, G = h * gamma_ * f;
+  predict(h);
+  correct(B, G, out);
+  if (out.status != StepStatus::ok) return out;
   if (newton_.slow()) linearize_ = true;
   add_compensated(q0_, q0_low_, dq_, q_, q_low_);
   add_compensated(v0_, v0_low_, dv_, v_, v_low_);

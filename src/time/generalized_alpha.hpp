@@ -14,6 +14,8 @@ class GeneralizedAlpha final : public Stepper {
  private:
   Attempt attempt(double h) override;
   bool factor(double h) override;
+  void predict(double h);
+  void correct(double B, double G, Attempt& out);
   void commit(double h) override;
   void rewind() override;
   void drop_history() override;

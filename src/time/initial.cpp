@@ -47,6 +47,55 @@ bool InitialSolver::factor(Problem& problem, double tau, Statistics& statistics)
   return problem.factor(1.0, tau, tau * tau);
 }
 
+double InitialSolver::take_correction(double tau, bool of_a, VecX& q, VecX& v, VecX& a) const {
+  // convergence in each class: increments against the values they correct
+  double change = 0.0, size = 0.0;
+  double change_massless = 0.0, size_massless = 0.0;
+  for (Index i = 0; i < r_.size(); ++i) {
+    switch (row_[at(i)]) {
+      case Row::dynamic:
+        a[i] -= r_[i];
+        change = std::max(change, std::abs(r_[i]));
+        size = std::max(size, std::abs(a[i]));
+        break;
+      case Row::first_order:
+        v[i] -= tau * r_[i];
+        change_massless = std::max(change_massless, std::abs(tau * r_[i]));
+        size_massless = std::max(size_massless, std::abs(v[i]));
+        break;
+      case Row::algebraic:
+        q[i] -= tau * tau * r_[i];
+        change_massless = std::max(change_massless, std::abs(tau * tau * r_[i]));
+        size_massless = std::max(size_massless, std::abs(q[i]));
+        break;
+    }
+  }
+  return std::max(size > 0.0 && of_a ? change / size : 0.0,
+                  size_massless > 0.0 ? change_massless / size_massless : 0.0);
+}
+
+StepStatus InitialSolver::iterate(Problem& problem, double t, double tau, VecX& q, VecX& v, VecX& a,
+                                  Statistics& statistics) {
+  double previous = infinity;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    ++statistics.residuals;
+    if (!problem.residual(t, q, v, a, r_)) return StepStatus::domain;
+    for (Index i : held_)
+      r_[i] = 0.0;
+    problem.solve(Ref(r_));
+    if (!r_.allFinite()) break;
+    // R is affine in a: two solutions determine it to round-off, which at an equilibrium (a = 0)
+    // is all there is of a
+    const double error = take_correction(tau, iteration < 2, q, v, a);
+    // 1e-12: what a and the error filter need; at round-off the corrections stop shrinking
+    if (error <= 1e-12 || (iteration > 1 && error <= 1e-8 && error >= 0.5 * previous))
+      return StepStatus::ok;
+    if (iteration > 3 && error > 2.0 * previous) break;
+    previous = error;
+  }
+  return StepStatus::newton;
+}
+
 StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, VecX& a,
                                 Statistics& statistics) {
   WHIRL_EXPECTS(q.size() == r_.size() && v.size() == r_.size() && a.size() == r_.size());
@@ -65,47 +114,8 @@ StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, Ve
     q = q_start_;
     v = v_start_;
     a = a_start_;
-    status = StepStatus::newton;
-    double previous = infinity;
-    for (int iteration = 0; iteration < 20; ++iteration) {
-      ++statistics.residuals;
-      if (!problem.residual(t, q, v, a, r_)) return StepStatus::domain;
-      for (Index i : held_)
-        r_[i] = 0.0;
-      problem.solve(Ref(r_));
-      if (!r_.allFinite()) break;
-      // convergence in each class: increments against the values they correct
-      double change = 0.0, size = 0.0;
-      double change_massless = 0.0, size_massless = 0.0;
-      for (Index i = 0; i < r_.size(); ++i) {
-        switch (row_[at(i)]) {
-          case Row::dynamic:
-            a[i] -= r_[i];
-            change = std::max(change, std::abs(r_[i]));
-            size = std::max(size, std::abs(a[i]));
-            break;
-          case Row::first_order:
-            v[i] -= tau * r_[i];
-            change_massless = std::max(change_massless, std::abs(tau * r_[i]));
-            size_massless = std::max(size_massless, std::abs(v[i]));
-            break;
-          case Row::algebraic:
-            q[i] -= tau * tau * r_[i];
-            change_massless = std::max(change_massless, std::abs(tau * tau * r_[i]));
-            size_massless = std::max(size_massless, std::abs(q[i]));
-            break;
-        }
-      }
-      // R is affine in a: two solutions determine it to round-off, which at an equilibrium (a = 0)
-      // is all there is of a
-      const double error = std::max(size > 0.0 && iteration < 2 ? change / size : 0.0,
-                                    size_massless > 0.0 ? change_massless / size_massless : 0.0);
-      // 1e-12: what a and the error filter need; at round-off the corrections stop shrinking
-      if (error <= 1e-12 || (iteration > 1 && error <= 1e-8 && error >= 0.5 * previous))
-        return StepStatus::ok;
-      if (iteration > 3 && error > 2.0 * previous) break;
-      previous = error;
-    }
+    status = iterate(problem, t, tau, q, v, a, statistics);
+    if (status != StepStatus::newton) return status;
   }
   return status;
 }

@@ -27,6 +27,11 @@ class InitialSolver {
  private:
   enum class Row : unsigned char { dynamic, first_order, algebraic };
   bool factor(Problem& problem, double tau, Statistics& statistics) const;
+  /// Newton with the factors of a step of length tau; `newton`: it does not converge.
+  StepStatus iterate(Problem& problem, double t, double tau, VecX& q, VecX& v, VecX& a,
+                     Statistics& statistics);
+  /// Takes the correction r_; returns its size. of_a: a, which may be zero, counts.
+  double take_correction(double tau, bool of_a, VecX& q, VecX& v, VecX& a) const;
   std::vector<Row> row_;
   std::vector<Index> held_;
   bool any_massless_ = false;

@@ -84,16 +84,11 @@ std::vector<Cplx> eigenvector(const Square<Real>& B, Cplx lambda, bool transpose
   return x;
 }
 
-/// nodes c; characteristic polynomial x^s + p[s-1] x^(s-1) + ... + p[0] of A^-1.
-Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, bool stiff) {
-  WHIRL_EXPECTS(c.size() == p.size() && (c.size() == 2 || c.size() == 3));
+/// Sets what follows from the Lagrange polynomials of the nodes c: weights, values at the ends, A,
+/// which is returned in extended precision.
+Square<Real> set_polynomials(const std::vector<Real>& c, Tableau& t) {
   const std::size_t s = c.size();
-  Tableau t;
-  t.stages = static_cast<int>(s);
-  t.order = order;
-  t.stiffly_accurate = stiff;
-
-  // Lagrange polynomials: columns of the inverse Vandermonde matrix.
+  // columns of the inverse Vandermonde matrix
   Square<Real> vander(s, std::vector<Real>(s));
   for (std::size_t i = 0; i < s; ++i)
     for (std::size_t k = 0; k < s; ++k)
@@ -118,13 +113,13 @@ Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, 
       t.A[i][j] = static_cast<double>(a);
     }
   }
-  if (stiff) {  // exactly: the last stage is the step's end
-    for (std::size_t j = 0; j < s; ++j)
-      t.at_one[j] = j + 1 == s ? 1.0 : 0.0;
-  }
-  const auto B = inverse(A);
-  for (std::size_t i = 0; i < s; ++i) {
-    t.c[i] = static_cast<double>(c[i]);
+  return A;
+}
+
+/// Sets A^-1 = B and its square.
+void set_inverse(const Square<Real>& B, Tableau& t) {
+  const std::size_t s = B.size();
+  for (std::size_t i = 0; i < s; ++i)
     for (std::size_t j = 0; j < s; ++j) {
       t.Ainv[i][j] = static_cast<double>(B[i][j]);
       Real sum = 0;
@@ -132,13 +127,22 @@ Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, 
         sum += B[i][k] * B[k][j];
       t.Ainv2[i][j] = static_cast<double>(sum);
     }
-  }
+}
 
-  // Eigenvalues: the real root by Newton, the rest from the remaining quadratic x^2 + e x + f.
+/// Eigenvalues of A^-1: one of the complex pair, and the real one of three stages.
+struct Eigenvalues {
+  Cplx complex;
+  Real real = 0;
+};
+
+/// The real root of x^s + p[s-1] x^(s-1) + ... + p[0] by Newton's method, the rest from the
+/// remaining quadratic x^2 + e x + f.
+Eigenvalues roots(const std::vector<Real>& p) {
+  const std::size_t s = p.size();
   Real e = p[1 % s], f = p[0];
-  Real root = 0;
+  Eigenvalues out;
   if (s == 3) {
-    root = -p[2] / 2;
+    Real root = -p[2] / 2;
     for (int it = 0; it < 100; ++it) {
       const Real value = ((root + p[2]) * root + p[1]) * root + p[0];
       const Real slope = (3 * root + 2 * p[2]) * root + p[1];
@@ -146,31 +150,57 @@ Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, 
     }
     e = p[2] + root;
     f = -p[0] / root;
+    out.real = root;
   }
-  const Cplx lambda(-e / 2, std::sqrt(f - e * e / 4));
-  auto pair = [&](Cplx value, std::vector<Cplx>& x, std::vector<Cplx>& w) {
-    x = eigenvector(B, value, false);
-    w = eigenvector(B, value, true);
+  out.complex = Cplx(-e / 2, std::sqrt(f - e * e / 4));
+  return out;
+}
+
+/// Vectors B x = value x and w^T B = value w^T with w^T x = 1.
+struct EigenvectorPair {
+  std::vector<Cplx> x, w;
+  EigenvectorPair(const Square<Real>& B, Cplx value)
+      : x(eigenvector(B, value, false)),
+        w(eigenvector(B, value, true)) {
     Cplx product = 0;
-    for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t i = 0; i < B.size(); ++i)
       product += w[i] * x[i];
     for (Cplx& y : w)
       y /= product;
-  };
-  std::vector<Cplx> x, w;
-  pair(lambda, x, w);
-  t.lambda_c = Complex(lambda);
+  }
+};
+
+/// nodes c; characteristic polynomial x^s + p[s-1] x^(s-1) + ... + p[0] of A^-1.
+Tableau make(const std::vector<Real>& c, const std::vector<Real>& p, int order, bool stiff) {
+  WHIRL_EXPECTS(c.size() == p.size() && (c.size() == 2 || c.size() == 3));
+  const std::size_t s = c.size();
+  Tableau t;
+  t.stages = static_cast<int>(s);
+  t.order = order;
+  t.stiffly_accurate = stiff;
+  for (std::size_t i = 0; i < s; ++i)
+    t.c[i] = static_cast<double>(c[i]);
+  const Square<Real> A = set_polynomials(c, t);
+  if (stiff) {  // exactly: the last stage is the step's end
+    for (std::size_t j = 0; j < s; ++j)
+      t.at_one[j] = j + 1 == s ? 1.0 : 0.0;
+  }
+  const Square<Real> B = inverse(A);
+  set_inverse(B, t);
+  const Eigenvalues lambda = roots(p);
+  const EigenvectorPair of_complex(B, lambda.complex);
+  t.lambda_c = Complex(lambda.complex);
   for (std::size_t i = 0; i < s; ++i) {
-    t.x_c[i] = Complex(x[i]);
-    t.w_c[i] = Complex(w[i]);
+    t.x_c[i] = Complex(of_complex.x[i]);
+    t.w_c[i] = Complex(of_complex.w[i]);
   }
   t.has_real = s == 3;
   if (t.has_real) {
-    pair(Cplx(root), x, w);
-    t.lambda_r = static_cast<double>(root);
+    const EigenvectorPair of_real(B, Cplx(lambda.real));
+    t.lambda_r = static_cast<double>(lambda.real);
     for (std::size_t i = 0; i < s; ++i) {
-      t.x_r[i] = static_cast<double>(x[i].real());
-      t.w_r[i] = static_cast<double>(w[i].real());
+      t.x_r[i] = static_cast<double>(of_real.x[i].real());
+      t.w_r[i] = static_cast<double>(of_real.w[i].real());
     }
   }
   t.mu = t.has_real ? t.lambda_r : std::abs(t.lambda_c);

@@ -92,6 +92,20 @@ TEST(Definiteness, CountsAsDenseEigenvaluesDo) {
   EXPECT_GT(unsymmetric_negative, 20);
 }
 
+TEST(Definiteness, WhatCannotBeFactoredIsNotProved) {
+  // Elimination makes numbers beyond what a double holds of this K, at every shift that is tried.
+  const system::System s = chain(5);
+  la::BlockMatrix<6> K(s.pattern());
+  K.set_zero();
+  for (Index i = 0; i < s.nodes(); ++i)
+    K.block(s.pattern().diagonal(i)).diagonal().setConstant(i == 2 || i == 3 ? 0.0 : 1e290);
+  K.block(s.pattern().slot(2, 3)) = 1e290 * Matrix<6>::Identity();
+  K.block(s.pattern().slot(3, 2)) = 1e290 * Matrix<6>::Identity();
+  const Definiteness d = judge_tangent(K, s.active(), s, 1.5);
+  EXPECT_TRUE(d.symmetric);
+  EXPECT_FALSE(d.certain);
+}
+
 TEST(Definiteness, ColumnBeyondItsLoads) {
   // pinned column: each Euler load k^2 pi^2 EI/L^2 makes two more directions, one a plane
   const double euler = pi * pi * 2000 / (1.5 * 1.5);

@@ -182,7 +182,7 @@ TEST(MeshError, ChosenMeshesKeepTheirAccuracy) {
   std::printf("worst relative error of a frequency on chosen meshes: %.1e\n", worst);
 }
 
-TEST(MeshError, ResolvedFrequencyIsWhereTheErrorReachesTheAccuracy) {
+TEST(MeshError, ElementsAreShorterWhereTheErrorReachesTheAccuracy) {
   // A pinned uniform slender shaft: consistent mass leaves (k h)^4/1440 of omega on short elements.
   const DeckModel d(R"(format = 1
 [[shaft]]
@@ -203,12 +203,19 @@ at = "p:end"
 type = "rigid"
 directions = ["y", "z"]
 )");
-  const model::Section& s = d.deck.model.shafts[0].sections[0];
-  const double h = 0.1, accuracy = 1e-3;
-  const double omega = model::resolved_frequency(d.deck.model, s, h, accuracy);
-  const double E = d.deck.model.materials[s.material].E,
-               rho = d.deck.model.materials[s.material].rho;
+  const model::Model& m = d.deck.model;
+  const model::Shaft& shaft = m.shafts[0];
+  const model::Section& s = shaft.sections[0];
+  ASSERT_TRUE(model::mesh_is_chosen(m, s));
+  const double E = m.materials[s.material].E, rho = m.materials[s.material].rho;
   const double radius2 = 0.01 * 0.01 / 16.0;  // I/A
-  const double k = std::pow(omega * omega * rho / (E * radius2), 0.25);
-  EXPECT_NEAR(std::pow(k * h, 4) / 1440.0, accuracy, 1e-9);
+  for (const int n : {3, 10, 40}) {
+    const double h = 1.0 / n, k = std::pow(1440.0 * m.mesh_accuracy, 0.25) / h;
+    const double omega = k * k * std::sqrt(E * radius2 / rho);
+    const auto chosen = [&](double share) {
+      return model::longest_element(m, shaft, s, {share * omega, 0.0, 0});
+    };
+    EXPECT_NEAR(chosen(1 - 1e-6), h, 1e-12) << n;
+    EXPECT_NEAR(chosen(1 + 1e-6), 1.0 / (n + 1), 1e-12) << n;
+  }
 }

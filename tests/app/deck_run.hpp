@@ -1,5 +1,7 @@
 // A deck run by the program as a user would, in a folder of its own that goes with the object.
 #pragma once
+#include "../io/read_json.hpp"
+
 #include <gtest/gtest.h>
 #include <io/value.hpp>
 #include <sys/wait.h>
@@ -105,7 +107,7 @@ struct DeckRun {
     std::filesystem::remove_all(folder, ec);
   }
   Columns csv(const std::string& name) const { return Columns(folder / "r" / name); }
-  io::Value summary() const { return io::read_json(folder / "r" / "summary.json"); }
+  io::Value summary() const { return tests::read_json(folder / "r" / "summary.json"); }
   /// What the summary says of a step.
   io::Value summary(const std::string& step) const { return summary().at("steps").at(step); }
   bool says(const std::string& text) const { return log.find(text) != std::string::npos; }

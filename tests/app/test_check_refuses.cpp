@@ -74,6 +74,7 @@ TEST_F(CheckRefuses, WhatRunRefuses) {
     const char* name;
     const char* code;
     std::string deck;
+    std::string run_options = " -o r";
   };
   const std::string map =
       "[[step]]\nname = \"map\"\ntype = \"critical_map\"\nstiffness_min = \"1e5 "
@@ -103,6 +104,43 @@ TEST_F(CheckRefuses, WhatRunRefuses) {
        rotor(linear +
              "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"3000 rpm\", "
              "points = 3 }\nmap = { parameter = \"unused\", values = [\"1 mm\", \"2 mm\"] }\n")},
+      {"results below a file", "E91",
+       rotor("[[step]]\ntype = \"static\"\n[output]\ndirectory = \"d.toml/r\"\n"), ""},
+      {"an asymmetric shaft among shafts of different speeds", "E88",
+       R"(format = 1
+[[shaft]]
+name = "flat"
+material = "steel"
+[[shaft.section]]
+name = "a"
+length = "1 m"
+general = { A = "1000 mm^2", Iy = "1e5 mm^4", Iz = "2e5 mm^4", J = "3e5 mm^4", kappa_y = 0.9, kappa_z = 0.9 }
+[[shaft]]
+name = "quick"
+material = "steel"
+speed_ratio = 2
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["q", 300, 40]]
+[[bearing]]
+at = "flat/a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "flat/a:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+at = "quick/q:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "quick/q:end"
+type = "rigid"
+directions = ["y", "z"]
+[[step]]
+type = "stability"
+speed = { start = "1000 rpm", stop = "3000 rpm", points = 3 }
+)"},
       {"small motions of an asymmetric shaft", "E39",
        R"(format = 1
 [[shaft]]
@@ -129,7 +167,7 @@ initial_speed = "3000 rpm"
   for (const Kind& k : kinds) {
     SCOPED_TRACE(k.name);
     write(k.deck);
-    const Said run = whirl("run d.toml -o r"), check = whirl("check d.toml"),
+    const Said run = whirl("run d.toml" + k.run_options), check = whirl("check d.toml"),
                json = whirl("check --json d.toml");
     if (run.log.find("[E90]") != std::string::npos) continue;  // built without SUNDIALS
     EXPECT_NE(run.exit, 0) << run.log;

@@ -1,4 +1,6 @@
 // The program as the user meets it: exit codes, streams, and files, through the real executable.
+#include "../io/read_json.hpp"
+
 #include <run/results_folder.hpp>
 #include <core/error.hpp>
 #include <gtest/gtest.h>
@@ -148,7 +150,7 @@ TEST_F(Cli, ColourOnATerminalUnlessNoColorIsSet) {
 TEST_F(Cli, Json) {
   write("good.toml", good);
   write("bad.toml", "format = 1\n[shaft]\nmaterial = 3\n");
-  const auto ok = io::parse_json(whirl("check good.toml --json").out);
+  const auto ok = tests::parse_json(whirl("check good.toml --json").out);
   EXPECT_TRUE(ok.at("ok").boolean());
   EXPECT_EQ(ok.at("model").at("shafts").items()[0].at("name").text(), "shaft");
   EXPECT_NEAR(ok.at("model").at("shafts").items()[0].at("mass_kg").number(),
@@ -156,7 +158,7 @@ TEST_F(Cli, Json) {
   const Result r = whirl("check bad.toml --json");
   EXPECT_EQ(r.code, 3);
   EXPECT_EQ(r.err, "");
-  const auto bad = io::parse_json(r.out);
+  const auto bad = tests::parse_json(r.out);
   EXPECT_FALSE(bad.at("ok").boolean());
   EXPECT_EQ(bad.at("diagnostics").items()[0].at("code").text(), "E06");
   EXPECT_EQ(bad.at("diagnostics").items()[0].at("line").number(), 3);
@@ -179,7 +181,7 @@ TEST_F(Cli, ResultsFolder) {
   o.output = folder_ / "results" / "deep";
   const auto where = run::prepare_results(model, o);
   EXPECT_EQ(read(where / "resolved.toml"), model.resolved);
-  const auto run = io::read_json(where / "run.json");
+  const auto run = tests::read_json(where / "run.json");
   EXPECT_EQ(run.at("sha256").text(), run::deck_hash(model));
   EXPECT_EQ(run.at("title").text(), "Two sections");
   for (const auto& e : fs::directory_iterator(where))
@@ -218,7 +220,7 @@ TEST_F(Cli, NewDecksAreGood) {
 
 TEST_F(Cli, SchemaAndReferenceNameEveryKey) {
   const Result json = whirl("schema");
-  const auto schema = io::parse_json(json.out);
+  const auto schema = tests::parse_json(json.out);
   EXPECT_EQ(schema.at("additionalProperties").boolean(), false);
   for (const char* key :
        {"shaft", "disk", "bearing", "step", "output", "parameters", "include", "format"})

@@ -79,7 +79,7 @@ every = "{} s"
 io::Value run(const Machine& m) {
   const test::DeckRun r(deck(m));
   EXPECT_EQ(r.exit, 0) << r.log;
-  return io::read_json(r.folder / "r/summary.json").at("steps").at("run");
+  return tests::read_json(r.folder / "r/summary.json").at("steps").at("run");
 }
 
 double amplitude(const io::Value& step) {

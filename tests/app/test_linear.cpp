@@ -1,4 +1,6 @@
 // linear = true in a deck: what the summary says of it, and the same motion as the general run.
+#include "../io/read_json.hpp"
+
 #include <run/options.hpp>
 #include <steps/run_deck.hpp>
 #include <core/error.hpp>
@@ -32,7 +34,7 @@ io::Value run_loss(const fs::path& folder, bool linear, double scale) {
   o.quiet = true;
   o.output = folder;
   EXPECT_EQ(steps::run_deck(m, o), 0);
-  return io::read_json(folder / "summary.json").at("steps").at("loss");
+  return tests::read_json(folder / "summary.json").at("steps").at("loss");
 }
 
 }  // namespace

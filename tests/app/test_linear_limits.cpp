@@ -221,3 +221,83 @@ TEST(LinearLimits, ABearingTooLongForTheShortTheoryIsNamedInEveryStep) {
     EXPECT_FALSE(brief.says("short bearings")) << brief.log;
   }
 }
+
+namespace {
+
+/// A disk of 10 kg on a massless shaft of 1.1e6 and 0.9e6 N/m in its two planes.
+std::string asymmetric(const std::string& parts) {
+  return R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "massless"
+E = "200 GPa"
+density = "0 kg/m^3"
+[[shaft]]
+name = "shaft"
+material = "massless"
+[[shaft.section]]
+name = "l"
+length = "500 mm"
+general = { A = "1000 mm^2", Iy = "93750 mm^4", Iz = "114583.33333333333 mm^4", J = "200000 mm^4", kappa_y = 1e9, kappa_z = 1e9 }
+[[shaft.section]]
+name = "r"
+length = "500 mm"
+general = { A = "1000 mm^2", Iy = "93750 mm^4", Iz = "114583.33333333333 mm^4", J = "200000 mm^4", kappa_y = 1e9, kappa_z = 1e9 }
+[[disk]]
+name = "mass"
+at = "l:end"
+mass = "10 kg"
+Ip = "0.005 kg.m^2"
+Id = "0.01 kg.m^2"
+[[bearing]]
+at = "l:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+at = "r:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+at = "mass"
+type = "linear"
+cyy = "100 N.s/m"
+czz = "100 N.s/m"
+[[unbalance]]
+at = "mass"
+amount = "1000 g.mm"
+[[probe]]
+name = "p"
+at = "mass"
+[output]
+report = false
+)" + parts;
+}
+
+}  // namespace
+
+// In axes that turn with the shaft the response stands still:
+//   [1.1e6 - m W^2, -c W; c W, 0.9e6 - m W^2] u = m e W^2 (1, 0),
+// a circle of radius |u| in space (F. M. Dimentberg, Flexural Vibrations of Rotating Shafts, 1961).
+TEST(LinearLimits, UnbalanceMeetsTheTwoStiffnessesOfAnAsymmetricShaft) {
+  const DeckRun run(asymmetric(
+      "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { start = \"1500 rpm\", "
+      "stop = \"4500 rpm\", points = 31, refine = \"no\" }\n"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(run.says("W13")) << run.log;  // within the band it bends out at its own speed
+  const auto table = run.csv("u_response.csv");
+  const std::size_t y = table.column("p y amplitude [m]"), z = table.column("p z amplitude [m]");
+  for (const auto& row : table.rows) {
+    const double W = row[0] * 2 * std::acos(-1.0) / 60, m = 10, c = 100, me = 1e-3;
+    const double a = 1.1e6 - m * W * W, d = 0.9e6 - m * W * W, b = c * W;
+    const double determinant = a * d + b * b;
+    const double radius = me * W * W * std::hypot(d, b) / std::abs(determinant);
+    EXPECT_NEAR(row[y], radius, 1e-6 * radius) << row[0];
+    EXPECT_NEAR(row[z], radius, 1e-6 * radius) << row[0];
+  }
+}
+
+TEST(LinearLimits, AMeanOfAStiffnessThatTurnsIsSaid) {
+  EXPECT_TRUE(DeckRun(asymmetric(modes)).says("W14"));
+  EXPECT_FALSE(DeckRun(rotor("", modes)).says("W14"));
+}

@@ -1,10 +1,12 @@
 // `whirl study`: integrators against an exact solution, meshes, and its errors.
+#include <core/plugin.hpp>
 #include <core/types.hpp>
 #include <gtest/gtest.h>
 #include <io/results.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -132,6 +134,23 @@ TEST_F(Study, MeasuresIntegratorsAgainstTheExactSolution) {
   }
   EXPECT_GT(checked, 20);
   EXPECT_LT(smallest, 3e-9);  // Gauss 6 at 1e-8; the exact table has 16 digits
+}
+
+TEST_F(Study, ExactSolutionMayBeHdf5) {
+  if (!Plugin::available("hdf5")) GTEST_SKIP() << "built without HDF5";
+  const io::Columns table = io::read_csv(example_09 + "exact.csv");
+  const auto file = io::make_hdf5_series(folder_ / "exact.h5");
+  const std::vector<io::Channel> channels{{"t", "s"}, {"disk.y", "m"}, {"disk.z", "m"}};
+  file->begin(channels);
+  for (std::size_t k = 0; k < 20; ++k)
+    file->append(std::vector<double>{table["t"][k], table["disk.y"][k], table["disk.z"][k]});
+  file->close();
+  ASSERT_EQ(study(example_09 + "deck.toml --exact exact.h5 --set step.run_up.duration='2 s' -o r"),
+            0)
+      << text_;
+  const io::Columns c = io::read_csv(folder_ / "r/study.csv");
+  const auto& error = c["error of disk.y against the exact solution"];
+  EXPECT_LT(*std::min_element(error.begin(), error.end()), 3e-9);
 }
 
 TEST_F(Study, MeshesOfStepsWithoutTime) {

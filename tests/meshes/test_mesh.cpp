@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <meshes/halved.hpp>
 #include <meshes/mesh.hpp>
 #include <meshes/mesh_tables.hpp>
 
@@ -15,7 +16,8 @@ using namespace whirl::test;
 namespace {
 
 /// What every mesh must satisfy.
-void check_invariants(const model::Model& m, const Mesh& mesh) {
+/// rounding: of node positions, relative to the length of the line.
+void check_invariants(const model::Model& m, const Mesh& mesh, double rounding = 0.0) {
   ASSERT_EQ(mesh.lines.size(), m.shafts.size());
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
     const Line& line = mesh.lines[l];
@@ -24,7 +26,7 @@ void check_invariants(const model::Model& m, const Mesh& mesh) {
       const Node& n = mesh.nodes[static_cast<std::size_t>(i)];
       EXPECT_EQ(n.line, static_cast<Index>(l));
       EXPECT_GT(n.s, last);
-      EXPECT_EQ(n.position, Vec3(line.origin + Vec3(n.s, 0, 0)));
+      EXPECT_LE((n.position - Vec3(line.origin + Vec3(n.s, 0, 0))).norm(), rounding * line.length);
       last = n.s;
     }
     Index node = line.first_node;
@@ -254,6 +256,15 @@ TEST(Mesh, RandomShaftsKeepTheInvariants) {
     SCOPED_TRACE(trial);
     const Mesh mesh = make_mesh(m);
     check_invariants(m, mesh);
+    const Halved fine = halve(mesh, {true});
+    EXPECT_EQ(fine.mesh.elements.size(), 2 * mesh.elements.size());
+    EXPECT_EQ(fine.mesh.nodes.size(), mesh.nodes.size() + mesh.elements.size());
+    check_invariants(m, fine.mesh, 1e-14);
+    for (std::size_t k = 0; k < mesh.stations.size(); ++k) {  // every place stays where it was
+      const Place p = fine.mesh.stations[k].at, old = mesh.stations[k].at;
+      EXPECT_EQ(p.node, fine.node[static_cast<std::size_t>(old.node)]);
+      EXPECT_EQ(p.offset, old.offset);
+    }
     for (const auto& d : m.disks) {
       const Place p = mesh.place(d.at);
       EXPECT_NEAR(mesh.nodes[static_cast<std::size_t>(p.node)].s + p.offset, d.at.s, 2e-9 * L);

@@ -119,6 +119,19 @@ void move(const System& s, State& x, Index node, const Vec3& axis) {
 
 }  // namespace
 
+TEST(Frames, AWorkspaceKeepsTheAxesOfItsEvaluation) {
+  const System system = everything();
+  State s = system.make_state();
+  Workspace w = system.make_workspace();
+  ASSERT_TRUE(system.evaluate_nodes(w, s.frames, 0.0, s.q, s.v, s.a));
+  const std::vector<Mat3> axes = s.frames.chart;
+  for (Mat3& chart : s.frames.chart)
+    chart.setZero();
+  s.frames.chart.emplace_back(Mat3::Zero());  // as when nodes move to axes of their own
+  for (std::size_t i = 0; i < w.nodes.size(); ++i)
+    EXPECT_EQ(*w.nodes[i].chart, axes[static_cast<std::size_t>(s.frames.of_node[i])]) << i;
+}
+
 TEST(Frames, NoForceNorEnergyDependsOnThem) {
   const System s = everything();
   std::mt19937 rng(3);

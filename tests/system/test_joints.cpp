@@ -126,7 +126,7 @@ void shift_axes(const System& s, State& x, Index node, const Vec3& axis) {
 Mat3 attitude(const System& s, const State& x, Index node) {
   const Vec2 g = x.q.segment<2>(6 * node + gamma2);
   const Mat3& E = x.frames.axes(node);
-  const Mat3& start = s.make_state().frames.chart[at(s.node(node).line)];
+  const Mat3 start = s.make_state().frames.chart[at(s.node(node).line)];
   return E * rotation::L(Vec3(0, g[0], g[1])) * rotation::L(Vec3(x.q[6 * node + spin_phi], 0, 0)) *
          start.transpose();
 }

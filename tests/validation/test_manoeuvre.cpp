@@ -47,6 +47,6 @@ TEST(Manoeuvre, BearingsCarryGyroscopicCoupleAndCentrifugalForce) {
                allowed);
   // Work of the turning and of the shock is in the balance.
   const whirl::io::Value step =
-      whirl::io::read_json(r.folder / "r/summary.json").at("steps").at("manoeuvre");
+      whirl::tests::read_json(r.folder / "r/summary.json").at("steps").at("manoeuvre");
   EXPECT_LT(step.at("accuracy").at("energy defect / energy turned over").number(), 1e-3);
 }

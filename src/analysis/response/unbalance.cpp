@@ -19,6 +19,8 @@ UnbalanceSolver::UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& opt
     : linear_(linear),
       options_(options),
       solver_(linear) {
+  if (options_.turns_with_rotor && !options_.speeds.empty())
+    axes_ = std::make_unique<RotatingAxes>(linear, options_.speeds.back());
   if (!options_.outputs.empty()) meter_ = std::make_unique<VariationMeter>(linear);
 }
 
@@ -32,6 +34,10 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     if (w == 0.0) {
       a = VecXc::Zero(linear_.system().size());  // nothing turns
       linear_.at(Omega);
+    } else if (axes_) {
+      linear_.move_to(Omega);
+      a = axes_->response(Omega, -linear_.forcing()[k]);
+      if (Omega < 0) a = a.conjugate().eval();
     } else if (solver_.prepare(Omega, w)) {
       // forcing is given as Re(f exp(i order theta)) with theta = Omega t: backward rotation runs
       // the phase backward
@@ -50,6 +56,44 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     if (options_.shapes) p.shape.push_back(std::move(a));
   }
   return p;
+}
+
+void UnbalanceSolver::find_half_power(const std::vector<SteadyPoint>& coarse, std::size_t i,
+                                      ResponsePeak& peak) {
+  const auto size = [&](const SteadyPoint& p) {
+    return p.probe[peak.order][peak.probe].orbit().major;
+  };
+  const double half = peak.amplitude / std::sqrt(2.0);
+  const auto excess = [&](double Omega) { return size(at(Omega, false)) - half; };
+  double inner = peak.speed, f_inner = peak.amplitude - half;
+  // Whether the search ends at a sample beyond the peak: the crossing, or the flank of a higher one.
+  const auto ends_at = [&](const SteadyPoint& p, double& crossing) {
+    const double f = size(p) - half;
+    if (f <= 0) {
+      crossing = find_crossing(inner, f_inner, p.Omega, f, 1e-9, excess);
+      return true;
+    }
+    if (size(p) > peak.amplitude) return true;
+    inner = p.Omega;
+    f_inner = f;
+    return false;
+  };
+  for (std::size_t j = i + 1; j-- > 0;)
+    if (coarse[j].Omega < peak.speed && ends_at(coarse[j], peak.low)) break;
+  inner = peak.speed;
+  f_inner = peak.amplitude - half;
+  for (std::size_t j = i; j < coarse.size(); ++j)
+    if (coarse[j].Omega > peak.speed && ends_at(coarse[j], peak.high)) break;
+}
+
+void UnbalanceSolver::add_points(const ResponsePeak& peak, double low, double high, double reach,
+                                 std::vector<SteadyPoint>& extra) {
+  const double width = std::isnan(peak.amplification()) ? 0.0 : peak.speed / peak.amplification();
+  for (double x : {0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0})
+    for (double sign : {-1.0, 1.0}) {
+      const double Omega = peak.speed + sign * x * width;
+      if (width > 0 && Omega > low && Omega < high && x * width < reach) extra.push_back(at(Omega));
+    }
 }
 
 void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
@@ -73,45 +117,12 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
     const SteadyPoint top_point = at(peak.speed);
     peak.amplitude = size(top_point);
     peak.phase_lag = -std::arg(top_point.probe[order][probe].forward());
-    const double half = peak.amplitude / std::sqrt(2.0);
-    const auto excess = [&](double Omega) { return evaluate(Omega) - half; };
-    double inner = peak.speed, f_inner = peak.amplitude - half;
-    for (std::size_t j = i + 1; j-- > 0;) {
-      if (coarse[j].Omega >= peak.speed) continue;
-      const double f = size(coarse[j]) - half;
-      if (f <= 0) {
-        peak.low = find_crossing(inner, f_inner, coarse[j].Omega, f, 1e-9, excess);
-        break;
-      }
-      if (size(coarse[j]) > peak.amplitude) break;  // the flank of a higher peak
-      inner = coarse[j].Omega;
-      f_inner = f;
-    }
-    inner = peak.speed;
-    f_inner = peak.amplitude - half;
-    for (std::size_t j = i; j < coarse.size(); ++j) {
-      if (coarse[j].Omega <= peak.speed) continue;
-      const double f = size(coarse[j]) - half;
-      if (f <= 0) {
-        peak.high = find_crossing(inner, f_inner, coarse[j].Omega, f, 1e-9, excess);
-        break;
-      }
-      if (size(coarse[j]) > peak.amplitude) break;
-      inner = coarse[j].Omega;
-      f_inner = f;
-    }
+    find_half_power(coarse, i, peak);
     peaks_.push_back(peak);
     if (!options_.refine_peaks) continue;
     extra.push_back(top_point);
-    // enough points to draw the peak: at fractions of the half-power width on both sides
-    const double width = std::isnan(peak.amplification()) ? 0.0 : peak.speed / peak.amplification();
-    for (double x : {0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0})
-      for (double sign : {-1.0, 1.0}) {
-        const double Omega = peak.speed + sign * x * width;
-        if (width > 0 && Omega > coarse.front().Omega && Omega < coarse.back().Omega &&
-            x * width < coarse[i + 1].Omega - coarse[i - 1].Omega)
-          extra.push_back(at(Omega));
-      }
+    add_points(peak, coarse.front().Omega, coarse.back().Omega,
+               coarse[i + 1].Omega - coarse[i - 1].Omega, extra);
   }
 }
 

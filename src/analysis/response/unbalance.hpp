@@ -3,6 +3,7 @@
 // bearings; peaks and their half-power points solved for.
 #pragma once
 #include <analysis/response/harmonic.hpp>
+#include <analysis/spectra/periodic.hpp>
 
 namespace whirl::analysis {
 
@@ -19,6 +20,7 @@ struct UnbalanceOptions {
   std::vector<Measurement> outputs;  ///< bearing forces and the like
   bool refine_peaks = true;  ///< add speeds at and around the peaks of the probes to the response
   bool shapes = false;       ///< keep the amplitudes of all unknowns
+  bool turns_with_rotor = false;  ///< solve in axes that turn with an asymmetric rotor
 };
 
 /// Amplitudes at one speed; [order] first: a rotor whose lines turn at different speeds responds
@@ -59,9 +61,16 @@ class UnbalanceSolver {
  private:
   void find_peaks(std::size_t order, std::size_t probe, const std::vector<SteadyPoint>& coarse,
                   std::vector<SteadyPoint>& extra);
+  /// Half-power points of a peak near the sample i.
+  void find_half_power(const std::vector<SteadyPoint>& coarse, std::size_t i, ResponsePeak& peak);
+  /// Enough points to draw a peak: at fractions of the half-power width on both sides, between low
+  /// and high and nearer than `reach`.
+  void add_points(const ResponsePeak& peak, double low, double high, double reach,
+                  std::vector<SteadyPoint>& extra);
   Linearizer& linear_;
   UnbalanceOptions options_;
   HarmonicSolver solver_;
+  std::unique_ptr<RotatingAxes> axes_;
   std::unique_ptr<VariationMeter> meter_;
   std::vector<ResponsePeak> peaks_;
 };

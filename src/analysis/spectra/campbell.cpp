@@ -39,63 +39,59 @@ void CampbellRecorder::take(std::size_t k, const std::vector<TrackedMode>& modes
   }
 }
 
-Campbell CampbellRecorder::finish(long speeds_solved) {
-  Campbell out = std::move(out_);
-  const auto& votes = votes_;
-  const std::size_t n = out.speeds.size();
-  out.speeds_solved = speeds_solved;
-  // A line met only between the speeds asked for has nothing to show.
-  std::vector<CampbellLine> kept;
-  for (std::size_t l = 0; l < out.lines.size(); ++l) {
-    CampbellLine& line = out.lines[l];
-    if (std::all_of(line.frequency.begin(), line.frequency.end(),
-                    [](double f) { return std::isnan(f); }))
-      continue;
-    line.kind = static_cast<ModeKind>(std::max_element(votes[l].begin(), votes[l].end()) -
-                                      votes[l].begin());
-    std::array<int, 5> directions{};
-    for (std::size_t k = 0; k < n; ++k)
-      if (!std::isnan(line.frequency[k]))
-        ++directions[static_cast<std::size_t>(line.direction_at[k])];
-    // planar (at rest) decides only when there is nothing else
-    const int planar = directions[3];
-    directions[3] = 0;
-    line.direction = static_cast<Direction>(std::max_element(directions.begin(), directions.end()) -
-                                            directions.begin());
-    if (directions[static_cast<std::size_t>(line.direction)] == 0 && planar > 0)
-      line.direction = Direction::planar;
-    kept.push_back(std::move(line));
-  }
-  out.lines = std::move(kept);
-  const auto first = [](const CampbellLine& l) {
-    for (double f : l.frequency)
-      if (!std::isnan(f)) return f;
-    return infinity;
-  };
-  const auto mean = [](const CampbellLine& l) {
-    double s = 0;
-    int c = 0;
-    for (double f : l.frequency)
-      if (!std::isnan(f)) {
-        s += f;
-        ++c;
-      }
-    return s / std::max(c, 1);
-  };
-  // Lines that start together (a pair at rest) go on by their mean: backward before forward.
-  std::stable_sort(
-      out.lines.begin(), out.lines.end(),
-      [&](const CampbellLine& a, const CampbellLine& b) { return first(a) < first(b); });
-  for (auto i = out.lines.begin(); i != out.lines.end();) {
+namespace {
+
+/// The direction at most speeds; planar (at rest) decides only when there is nothing else.
+Direction common_direction(const CampbellLine& line) {
+  std::array<int, 5> directions{};
+  for (std::size_t k = 0; k < line.frequency.size(); ++k)
+    if (!std::isnan(line.frequency[k]))
+      ++directions[static_cast<std::size_t>(line.direction_at[k])];
+  const int planar = directions[3];
+  directions[3] = 0;
+  const auto most = std::max_element(directions.begin(), directions.end());
+  if (*most == 0 && planar > 0) return Direction::planar;
+  return static_cast<Direction>(most - directions.begin());
+}
+
+double first_frequency(const CampbellLine& line) {
+  for (double f : line.frequency)
+    if (!std::isnan(f)) return f;
+  return infinity;
+}
+
+double mean_frequency(const CampbellLine& line) {
+  double s = 0;
+  int c = 0;
+  for (double f : line.frequency)
+    if (!std::isnan(f)) {
+      s += f;
+      ++c;
+    }
+  return s / std::max(c, 1);
+}
+
+/// By the first frequency. Lines that start together (a pair at rest) go on by their mean: backward
+/// before forward.
+void sort_lines(std::vector<CampbellLine>& lines) {
+  std::stable_sort(lines.begin(), lines.end(), [](const CampbellLine& a, const CampbellLine& b) {
+    return first_frequency(a) < first_frequency(b);
+  });
+  for (auto i = lines.begin(); i != lines.end();) {
     auto j = i + 1;
-    while (j != out.lines.end() && first(*j) - first(*i) <= 1e-9 * first(*j))
+    while (j != lines.end() &&
+           first_frequency(*j) - first_frequency(*i) <= 1e-9 * first_frequency(*j))
       ++j;
-    std::stable_sort(
-        i, j, [&](const CampbellLine& a, const CampbellLine& b) { return mean(a) < mean(b); });
+    std::stable_sort(i, j, [](const CampbellLine& a, const CampbellLine& b) {
+      return mean_frequency(a) < mean_frequency(b);
+    });
     i = j;
   }
+}
+
+void label_lines(std::vector<CampbellLine>& lines) {
   std::map<std::string, int> count;
-  for (CampbellLine& l : out.lines) {
+  for (CampbellLine& l : lines) {
     const std::string letter = l.kind == ModeKind::torsional        ? "T"
                                : l.kind == ModeKind::axial          ? "A"
                                : l.direction == Direction::forward  ? "F"
@@ -105,15 +101,38 @@ Campbell CampbellRecorder::finish(long speeds_solved) {
     const std::string number = std::to_string(++count[letter]);
     l.label = l.kind == ModeKind::lateral ? number + " " + letter : letter + number;
   }
+}
+
+}  // namespace
+
+Campbell CampbellRecorder::finish(long speeds_solved) {
+  Campbell out = std::move(out_);
+  out.speeds_solved = speeds_solved;
+  // A line met only between the speeds asked for has nothing to show.
+  std::vector<CampbellLine> kept;
+  for (std::size_t l = 0; l < out.lines.size(); ++l) {
+    CampbellLine& line = out.lines[l];
+    if (std::all_of(line.frequency.begin(), line.frequency.end(),
+                    [](double f) { return std::isnan(f); }))
+      continue;
+    const auto& votes = votes_[l];
+    line.kind = static_cast<ModeKind>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+    line.direction = common_direction(line);
+    kept.push_back(std::move(line));
+  }
+  out.lines = std::move(kept);
+  sort_lines(out.lines);
+  label_lines(out.lines);
   return out;
 }
 
-Campbell campbell(Linearizer& linear, const CampbellOptions& options) {
+Campbell campbell(Linearizer& linear, const CampbellOptions& options,
+                  const ModeTracker::Visit& visit) {
   CampbellRecorder recorder(options.speeds, options.shapes);
   ModeTracker tracker(linear, options.track);
   std::vector<SpectrumCertificate> certificates;
   for (std::size_t k = 0; k < options.speeds.size(); ++k) {
-    const auto& modes = tracker.advance(options.speeds[k]);
+    const auto& modes = tracker.advance(options.speeds[k], visit);
     recorder.take(k, modes, tracker.lines());
     certificates.push_back(tracker.solver().certificate());
   }

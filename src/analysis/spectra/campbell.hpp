@@ -47,6 +47,8 @@ class CampbellRecorder {
   std::vector<std::array<int, 3>> votes_;  ///< kinds, by line
 };
 
-Campbell campbell(Linearizer& linear, const CampbellOptions& options);
+/// visit: every step of the tracker, speeds put in to keep lines apart included.
+Campbell campbell(Linearizer& linear, const CampbellOptions& options,
+                  const ModeTracker::Visit& visit = {});
 
 }  // namespace whirl::analysis

@@ -1,5 +1,6 @@
 #include <analysis/spectra/critical.hpp>
 
+#include <core/contract.hpp>
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
 #include <la/dense.hpp>
@@ -76,8 +77,11 @@ void isolate(Counter& counter, const Bracket& k, double scale, std::vector<Brack
   isolate(counter, {middle, k.b, n, k.nb}, scale, out);
 }
 
-std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, double low) {
-  Counter counter(linear, o);
+/// Brackets of all changes of the count from `low` on. Coefficients against frequency can raise a
+/// mode through n Omega (frequency_dependent_modes.hpp: left out) near where it comes down: apart
+/// at the rows of the tables.
+std::vector<Bracket> bracket(Counter& counter, const CriticalOptions& o, double low,
+                             const std::vector<double>& rows) {
   std::vector<Bracket> brackets;
   double a = low;
   Index na = counter.count(a);
@@ -85,9 +89,6 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
   for (Index k = 1; k <= o.grid; ++k)
     grid.push_back(low +
                    (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid));
-  // Coefficients against frequency can raise a mode through n Omega (frequency_dependent_modes.hpp:
-  // left out) near where it comes down: apart at the rows.
-  const std::vector<double>& rows = linear.running().running().table_frequencies;
   for (const double w : rows)
     if (w > o.order * low && w < o.order * o.max_speed) grid.push_back(w / o.order);
   std::sort(grid.begin(), grid.end());
@@ -97,6 +98,56 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     a = b;
     na = nb;
   }
+  return brackets;
+}
+
+/// The modes of the bracket's middle nearest to i n Omega, as many as were counted.
+std::vector<la::Mode> modes_within(Counter& counter, const CriticalOptions& o, const Bracket& k) {
+  const Index wanted = std::abs(k.nb - k.na);
+  const double middle = 0.5 * (k.a + k.b);
+  const la::MCK& m = counter.matrices(middle, o.order * middle);
+  la::ModeOptions lo;
+  lo.count = wanted + 2;
+  lo.shift = Complex(0, o.order * middle);
+  std::vector<la::Mode> near = la::quadratic_modes(m, counter.active(), lo);
+  std::sort(near.begin(), near.end(), [&](const la::Mode& x, const la::Mode& y) {
+    return std::abs(x.lambda - *lo.shift) < std::abs(y.lambda - *lo.shift);
+  });
+  if (static_cast<Index>(near.size()) < wanted)
+    throw run_error("E77", "a critical speed was counted but its mode not found");
+  near.resize(at(wanted));
+  return near;
+}
+
+/// Newton's method on Omega from the bracket's middle, where the mode is known: its frequency less
+/// n Omega, by secant from two neighbouring speeds.
+Critical find_critical(WhirlSolver& follower, const CriticalOptions& o, const Bracket& k,
+                       WhirlMode mode) {
+  const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
+  const double middle = 0.5 * (k.a + k.b);
+  double x0 = middle, f0 = gap(x0, mode);
+  double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
+  for (int it = 0; it < 40 && f1 != 0.0; ++it) {
+    const auto next = follower.follow(x1, mode);
+    if (!next)
+      throw run_error("E77", "a critical speed was isolated but its mode was lost on the way");
+    mode = *next;
+    f1 = gap(x1, mode);
+    if (f1 == f0 || x1 == x0) break;
+    const double x2 = x1 - f1 * (x1 - x0) / (f1 - f0);
+    const bool done = std::abs(x2 - x1) <= o.tolerance * x1;
+    x0 = x1;
+    f0 = f1;
+    x1 = x2;
+    if (done) break;
+  }
+  return {x1, o.order * x1, o.order, mode};
+}
+
+std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, double low) {
+  Counter counter(linear, o);
+  const std::vector<double>& rows = linear.running().running().table_frequencies;
+  const std::vector<Bracket> brackets = bracket(counter, o, low, rows);
   ModesOptions mo;
   mo.damped = false;
   mo.motion = o.motion;
@@ -107,43 +158,10 @@ std::vector<Critical> undamped(Linearizer& linear, const CriticalOptions& o, dou
     if (!rows.empty() && k.nb < k.na &&
         counter.count(k.b, o.order * middle) >= counter.count(k.a, o.order * middle))
       continue;  // the table raised it
-    const Index wanted = std::abs(k.nb - k.na);
-    // The modes of the bracket's middle nearest to i n Omega.
-    const la::MCK& m = counter.matrices(middle, o.order * middle);
-    la::ModeOptions lo;
-    lo.count = wanted + 2;
-    lo.shift = Complex(0, o.order * middle);
-    std::vector<la::Mode> near = la::quadratic_modes(m, counter.active(), lo);
-    std::sort(near.begin(), near.end(), [&](const la::Mode& x, const la::Mode& y) {
-      return std::abs(x.lambda - *lo.shift) < std::abs(y.lambda - *lo.shift);
-    });
-    if (static_cast<Index>(near.size()) < wanted)
-      throw run_error("E77", "a critical speed was counted but its mode not found");
-    for (Index j = 0; j < wanted; ++j) {
-      // Newton's method on Omega: the frequency of the mode less n Omega, by secant from two
-      // neighbouring speeds.
-      const auto gap = [&](double Omega, const WhirlMode& w) {
-        return w.frequency - o.order * Omega;
-      };
-      WhirlMode mode =
-          describe_mode(near[at(j)], counter.matrices(middle, o.order * middle), linear);
-      double x0 = middle, f0 = gap(x0, mode);
-      double x1 = middle + (f0 == 0.0 ? 0.0 : 0.1 * (k.b - k.a) * (f0 > 0 ? 1 : -1)), f1 = f0;
-      for (int it = 0; it < 40 && f1 != 0.0; ++it) {
-        const auto next = follower.follow(x1, mode);
-        if (!next)
-          throw run_error("E77", "a critical speed was isolated but its mode was lost on the way");
-        mode = *next;
-        f1 = gap(x1, mode);
-        if (f1 == f0 || x1 == x0) break;
-        const double x2 = x1 - f1 * (x1 - x0) / (f1 - f0);
-        const bool done = std::abs(x2 - x1) <= o.tolerance * x1;
-        x0 = x1;
-        f0 = f1;
-        x1 = x2;
-        if (done) break;
-      }
-      out.push_back({x1, o.order * x1, o.order, mode});
+    for (const la::Mode& near : modes_within(counter, o, k)) {
+      const WhirlMode mode =
+          describe_mode(near, counter.matrices(middle, o.order * middle), linear);
+      out.push_back(find_critical(follower, o, k, mode));
     }
   }
   return out;
@@ -157,21 +175,9 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
   t.modes.max_frequency =
       1.1 * o.order * o.max_speed;  // only modes that reach the order line within the range matter
   ModeTracker tracker(linear, t);
-  ModesOptions mo = t.modes;
-  mo.max_frequency = infinity;
-  mo.count = 2;
-  WhirlSolver follower(linear, mo);
-  const auto gap = [&](double Omega, const WhirlMode& w) { return w.frequency - o.order * Omega; };
-  std::vector<Critical> out;
-  const auto visit = [&](double a, double b, const std::vector<TrackedMode>& modes) {
-    for (const TrackedMode& m : modes) {
-      if (!m.has_before || m.now.frequency == 0.0) continue;
-      const double ga = gap(a, m.before), gb = gap(b, m.now);
-      if ((ga > 0) == (gb > 0) && gb != 0.0) continue;
-      if (ga == 0.0) continue;  // counted at the end of the step before
-      if (const auto root = find_on_mode(follower, a, m.before, b, m.now, gap, o.tolerance))
-        out.push_back({root->speed, o.order * root->speed, o.order, root->mode});
-    }
+  OrderCrossings crossings(o.order, low, o.max_speed, t.modes);
+  const auto visit = [&](double from, double to, const std::vector<TrackedMode>& modes) {
+    crossings.look(from, to, modes);
   };
   for (Index k = 0; k <= o.grid; ++k) {
     tracker.advance(
@@ -179,9 +185,73 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
     const SpectrumCertificate& now = tracker.solver().certificate();
     if (certificate && (k == 0 || (certificate->complete() && !now.complete()))) *certificate = now;
   }
+  std::vector<Critical> out = crossings.solve(linear, o.tolerance);
+  if (certificate && crossings.sure_to() < o.max_speed)
+    certificate->open =
+        fmt::format("a mode was lost on the way to its critical speed above {:.6g} rpm",
+                    to_rpm(crossings.sure_to()));
   return out;
 }
 }  // namespace
+
+OrderCrossings::OrderCrossings(double order, double min_speed, double max_speed,
+                               const ModesOptions& modes)
+    : order_(order),
+      min_speed_(min_speed),
+      max_speed_(max_speed),
+      sure_to_(min_speed),
+      modes_(modes) {
+  WHIRL_EXPECTS(order > 0.0 && min_speed >= 0.0 && min_speed < max_speed);
+}
+
+double OrderCrossings::reach_of(const std::vector<TrackedMode>& modes) const {
+  Index oscillating = 0;
+  double highest = 0.0;
+  for (const TrackedMode& m : modes) {
+    if (!m.now.oscillates()) continue;
+    ++oscillating;
+    highest = std::max(highest, m.now.frequency);
+  }
+  return modes_.count > 0 && oscillating >= modes_.count ? highest : modes_.max_frequency;
+}
+
+void OrderCrossings::look(double from, double to, const std::vector<TrackedMode>& modes) {
+  if (to <= min_speed_ || from >= max_speed_) return;
+  if (reach_of(modes) < order_ * std::min(to, max_speed_)) sure_ = false;
+  for (const TrackedMode& m : modes) {
+    if (m.now.frequency == 0.0) continue;
+    const double now = gap(to, m.now);
+    // below the order line and not known before: it may have come from above the list
+    if (!m.has_before && m.now.oscillates() && now <= 0.0) sure_ = false;
+    if (!m.has_before) continue;
+    const double before = gap(from, m.before);
+    const bool passes = (before > 0.0) != (now > 0.0) || now == 0.0;
+    // on the line at `from`: kept at the end of the step before
+    if (passes && before != 0.0) steps_.push_back({from, to, m.before, m.now});
+  }
+  if (sure_) sure_to_ = std::min(to, max_speed_);
+}
+
+std::vector<Critical> OrderCrossings::solve(Linearizer& linear, double tolerance) {
+  ModesOptions one_at_a_time = modes_;
+  one_at_a_time.max_frequency = infinity;
+  one_at_a_time.count = 2;
+  WhirlSolver follower(linear, one_at_a_time);
+  const auto g = [this](double Omega, const WhirlMode& w) { return gap(Omega, w); };
+  std::vector<Critical> out;
+  for (const Step& s : steps_) {
+    const auto root = find_on_mode(follower, s.from, s.before, s.to, s.now, g, tolerance);
+    if (!root) {
+      sure_to_ = std::min(sure_to_, std::max(min_speed_, s.from));
+      continue;
+    }
+    if (root->speed >= min_speed_ && root->speed <= max_speed_)
+      out.push_back({root->speed, order_ * root->speed, order_, root->mode});
+  }
+  std::sort(out.begin(), out.end(),
+            [](const Critical& a, const Critical& b) { return a.speed < b.speed; });
+  return out;
+}
 
 std::vector<Critical> critical_speeds(Linearizer& linear, const CriticalOptions& options,
                                       SpectrumCertificate* certificate) {

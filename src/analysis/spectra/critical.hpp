@@ -34,10 +34,35 @@ struct Critical {
   double order = 1;
   WhirlMode mode;  ///< at that speed
   /// Of the eigenvalue there, 1/(2 zeta): what a half-power measurement would give for a lone mode.
-  /// inf when undamped.
-  double amplification() const {
-    return mode.damping_ratio > 0 ? 0.5 / mode.damping_ratio : infinity;
-  }
+  /// inf where nothing damps it beyond rounding, or it grows.
+  double amplification() const { return mode.growth() < 0 ? 0.5 / mode.damping_ratio : infinity; }
+};
+
+/// Damped critical speeds of one order, found while modes are followed over rising speeds: steps in
+/// which a frequency passes n Omega are kept, and solved for afterwards.
+class OrderCrossings {
+ public:
+  /// modes: those that are followed, which tell how far up each list reaches.
+  /// @pre order > 0, 0 <= min_speed < max_speed.
+  OrderCrossings(double order, double min_speed, double max_speed, const ModesOptions& modes);
+  /// One step of the tracker, as ModeTracker::Visit.
+  void look(double from, double to, const std::vector<TrackedMode>& modes);
+  /// In ascending order.
+  std::vector<Critical> solve(Linearizer& linear, double tolerance);
+  /// rad/s: up to here no crossing was beyond the lists of modes or, once solved for, lost.
+  double sure_to() const { return sure_to_; }
+
+ private:
+  struct Step {
+    double from, to;
+    WhirlMode before, now;
+  };
+  double gap(double Omega, const WhirlMode& w) const { return w.frequency - order_ * Omega; }
+  double reach_of(const std::vector<TrackedMode>& modes) const;
+  double order_, min_speed_, max_speed_, sure_to_;
+  bool sure_ = true;
+  ModesOptions modes_;
+  std::vector<Step> steps_;
 };
 
 /// In ascending order. certificate: of the damped modes they are crossings of, at the speed of the

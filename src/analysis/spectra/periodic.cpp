@@ -4,6 +4,7 @@
 #include <analysis/search.hpp>
 #include <core/error.hpp>
 #include <la/block_lu.hpp>
+#include <la/direct.hpp>
 #include <la/eigen.hpp>
 
 #include <algorithm>
@@ -57,17 +58,21 @@ constexpr double steady = 1e-6;
 
 }  // namespace
 
+void RotatingAxes::require(const SteadySystem& running) {
+  if (running.orders().size() > 1)
+    throw run_error("E88",
+                    "an asymmetric shaft among shafts of different speeds: no axes exist in which "
+                    "the matrices are constant or have one period",
+                    "give the shafts one speed_ratio, or use a transient step");
+}
+
 RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Motion motion)
     : linear_(linear),
       motion_(linear.system(), motion, MotionReduction::Twist::held),
       turned_(linear.system().make_matrices()),
       raw_(linear.system().make_matrices()) {
   WHIRL_EXPECTS(harmonics >= 0);
-  if (linear.running().orders().size() > 1)
-    throw run_error("E88",
-                    "an asymmetric shaft among shafts of different speeds: no axes exist in which "
-                    "the matrices are constant or have one period",
-                    "give the shafts one speed_ratio, or use a transient step");
+  require(linear.running());
   // What varies: in fixed axes (then there is something to do), and in rotating ones, over one and
   // half a revolution.
   sample(Omega, 0.0, {});
@@ -110,7 +115,7 @@ RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Mo
 
 void RotatingAxes::sample(double Omega, double theta, Complex lambda) {
   WHIRL_EXPECTS(std::isfinite(theta));
-  if (linear_.Omega() != Omega || Omega == 0.0) linear_.at(Omega);  // the equilibrium
+  if (linear_.Omega() != Omega || Omega == 0.0) linear_.move_to(Omega);
   const Equilibrium& e = linear_.equilibrium();
   SteadySystem& running = linear_.running();
   running.set_whirl(lambda, true);
@@ -207,6 +212,57 @@ double RotatingAxes::constant_share(const VecXc& x) const {
   return all > 0 ? own / all : 0.0;
 }
 
+VecXc RotatingAxes::first_order_of(const VecX& x) const {
+  const system::System& s = linear_.system();
+  const Index parts = 2 * harmonics_ + 1;
+  const Complex i(0, 1);
+  VecXc a = VecXc::Zero(s.size());
+  for (Index n = 0; n < s.nodes(); ++n) {
+    const Matrix<6> J = turn(s, linear_.equilibrium().state.frames.axes(n), n, 0.0, true);
+    const Matrix<6> lateral = -J * J;
+    const auto part = [&](Index k) { return x.segment<6>(6 * (parts * n + k)).cast<Complex>(); };
+    Eigen::Matrix<Complex, 6, 1> sum = (lateral - i * J) * part(0);
+    for (Index h = 1; h <= harmonics_; ++h) {
+      // cos and sin of m theta within axes that turn: cos theta and sin theta times those
+      const auto c = part(2 * h - 1);
+      const auto d = part(2 * h);
+      if (step_ * h == 2) sum += 0.5 * ((lateral + i * J) * c + (J - i * lateral) * d);
+      if (step_ * h == 1) sum += (Matrix<6>::Identity() - lateral) * (c - i * d);
+    }
+    a.segment<6>(6 * n) = sum;
+  }
+  return a;
+}
+
+VecXc RotatingAxes::response(double Omega, const VecXc& f) {
+  WHIRL_EXPECTS(f.size() == linear_.system().size());
+  const la::MCK& m = at(Omega);
+  const system::System& s = linear_.system();
+  const Index parts = 2 * harmonics_ + 1;
+  VecX x = VecX::Zero(6 * pattern_->size());
+  double size = 0.0, other = 0.0;
+  for (Index n = 0; n < s.nodes(); ++n) {
+    const Matrix<6> J = turn(s, linear_.equilibrium().state.frames.axes(n), n, 0.0, true);
+    // what turns with the rotor is a quarter turn further on a quarter of a revolution later
+    const Vector<6> now = -J * J * f.segment<6>(6 * n).real();
+    const Vector<6> later = -f.segment<6>(6 * n).imag();
+    const Vector<6> turned_on = J * now;
+    size = std::max(size, now.head<3>().norm());
+    other = std::max(other, (-J * J * later - turned_on).head<3>().norm());
+    x.segment<6>(6 * parts * n) = now;
+  }
+  for (Index k = 0; k < x.size(); ++k)
+    if (!active_[idx(k)]) x[k] = 0.0;
+  if (other > 1e-6 * size)
+    throw run_error("E88", "forces once a revolution that do not turn with the asymmetric rotor",
+                    "a transient step has no such limit");
+  const auto direct = la::make_direct_solver<double>(*pattern_, active_);
+  if (direct->factor(m, 0.0, 0.0, 1.0) != la::Status::ok)
+    return VecXc::Constant(f.size(), Complex(nan, nan));
+  direct->solve(x);
+  return first_order_of(x);
+}
+
 Index RotatingAxes::negative_stiffnesses(double Omega) {
   sample(Omega, 0.0, Complex(0, infinity));
   la::MCK symmetric = linear_.system().make_matrices();
@@ -233,7 +289,8 @@ class BandSearch {
  public:
   BandSearch(RotatingAxes& axes, const BandOptions& o)
       : axes_(axes),
-        solver_(axes.pattern(), axes.active(), options(axes, o)) {}
+        solver_(axes.pattern(), axes.active(), options(axes, o)),
+        tolerance_(o.tolerance) {}
 
   Growth at(double Omega) {
     const la::MCK& m = axes_.at(Omega, Complex(0, infinity));
@@ -256,7 +313,47 @@ class BandSearch {
     return best;
   }
 
+  /// The speed between a stable and an unstable one, of this growth, where the growth is zero. It
+  /// crosses zero there, or, without damping, two frequencies merge and it rises as a square root
+  /// from the rounding of a double eigenvalue. Neutral motions (growth zero at every speed) hide
+  /// the crossing, so it is extrapolated from within the band.
+  double edge(double stable, double unstable, double growth) {
+    const double level = noise(unstable);
+    const double a = passage(stable, unstable, level);
+    if (growth < 4.0 * level) return a;
+    const double b = passage(a, unstable, 3.0 * level);
+    const double x[3] = {a, 0.5 * (a + b), b};
+    double r[3];
+    for (int k = 0; k < 3; ++k)
+      r[k] = at(x[k]).rate;
+    const auto bend = [](double f0, double f1, double f2) {
+      return std::abs(f2 - 2.0 * f1 + f0) / std::abs(f2 - f0);
+    };
+    const bool root = bend(r[0] * r[0], r[1] * r[1], r[2] * r[2]) < bend(r[0], r[1], r[2]);
+    if (root)
+      for (double& v : r)
+        v *= v;
+    // the parabola x(r) at r = 0
+    double zero = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const int p = (k + 1) % 3, q = (k + 2) % 3;
+      zero += x[k] * r[p] * r[q] / ((r[k] - r[p]) * (r[k] - r[q]));
+    }
+    return std::abs(zero - a) < std::abs(b - a) + 1e-6 * std::abs(a) ? zero : a;
+  }
+  /// Growth that says nothing: harmonics left out of Hill's equations leave a false one of some
+  /// 1e-5 of the speed.
+  double noise(double Omega) const { return (axes_.constant() ? 1e-6 : 3e-5) * std::abs(Omega); }
+
  private:
+  /// Where the growth passes this level.
+  double passage(double stable, double unstable, double level) {
+    for (int k = 0; k < 60 && std::abs(unstable - stable) > tolerance_ * std::abs(unstable); ++k) {
+      const double middle = 0.5 * (stable + unstable);
+      (at(middle).rate > level ? unstable : stable) = middle;
+    }
+    return unstable;
+  }
   static la::ModeOptions options(const RotatingAxes& axes, const BandOptions& o) {
     la::ModeOptions l;
     l.count = o.modes * (2 * axes.harmonics() + 1);
@@ -264,6 +361,7 @@ class BandSearch {
   }
   RotatingAxes& axes_;
   la::ModeSolver solver_;
+  double tolerance_;
 };
 
 /// Speeds between which the rotation has taken one stiffness more than it should have: pairs of
@@ -282,11 +380,8 @@ void add_seeds(RotatingAxes& axes, double a, Index na, double b, Index nb,
   add_seeds(axes, middle, n, b, nb, edges, depth - 1);
 }
 
-}  // namespace
-
-BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
-  WHIRL_EXPECTS(o.modes > 0 && o.tolerance > 0.0);
-  WHIRL_EXPECTS(std::is_sorted(o.speeds.begin(), o.speeds.end()));
+/// The speeds asked for, and one within each stretch between seeds.
+std::vector<double> list_speeds(RotatingAxes& axes, const BandOptions& o) {
   std::vector<double> speeds = o.speeds, edges;
   for (std::size_t k = 0; k + 1 < o.speeds.size(); ++k)
     if (o.speeds[k] > 0)
@@ -297,7 +392,39 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
       speeds.push_back(0.5 * (edges[k] + edges[k + 1]));
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());
+  return speeds;
+}
 
+/// The band of the samples first to last, which all grow while their neighbours do not.
+InstabilityBand measure_band(BandSearch& search, const BandResult& samples, std::size_t first,
+                             std::size_t last) {
+  const std::vector<double>&speeds = samples.speeds, &growth = samples.growth;
+  InstabilityBand band;
+  if (first > 0) band.low = search.edge(speeds[first - 1], speeds[first], growth[first]);
+  if (last + 1 < speeds.size())
+    band.high = search.edge(speeds[last + 1], speeds[last], growth[last]);
+  std::size_t top = first;
+  for (std::size_t j = first; j <= last; ++j)
+    if (growth[j] > growth[top]) top = j;
+  // the largest growth between the neighbours of the largest sample, where the band has ends
+  const double a = top > first ? speeds[top - 1] : band.low,
+               b = top < last ? speeds[top + 1] : band.high;
+  band.speed = speeds[top];
+  if (std::isfinite(a) && std::isfinite(b))
+    band.speed = find_maximum(a, speeds[top], growth[top], b, 1e-8,
+                              [&](double Omega) { return search.at(Omega).rate; });
+  const Growth g = search.at(band.speed);
+  band.growth = g.rate;
+  band.frequency = g.frequency;
+  return band;
+}
+
+}  // namespace
+
+BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
+  WHIRL_EXPECTS(o.modes > 0 && o.tolerance > 0.0);
+  WHIRL_EXPECTS(std::is_sorted(o.speeds.begin(), o.speeds.end()));
+  const std::vector<double> speeds = list_speeds(axes, o);
   BandSearch search(axes, o);
   BandResult out;
   for (const double Omega : speeds) {
@@ -306,67 +433,13 @@ BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
     out.growth.push_back(g.rate);
     out.frequency.push_back(g.frequency);
   }
-  // At an edge the growth crosses zero, or, without damping, two frequencies merge and it rises as
-  // a square root from the rounding of a double eigenvalue. Neutral motions (growth zero at every
-  // speed) hide the crossing, so it is extrapolated from within the band. Harmonics left out of
-  // Hill's equations leave a false growth of some 1e-5 of the speed.
-  const auto noise = [&](double Omega) {
-    return (axes.constant() ? 1e-6 : 3e-5) * std::abs(Omega);
-  };
-  const auto grows = [&](std::size_t k) { return out.growth[k] > noise(speeds[k]); };
-  const auto edge = [&](std::size_t stable, std::size_t unstable) {
-    const auto where = [&](double s, double u, double level) {  // the growth passes this level
-      for (int k = 0; k < 60 && std::abs(u - s) > o.tolerance * std::abs(u); ++k) {
-        const double m = 0.5 * (s + u);
-        (search.at(m).rate > level ? u : s) = m;
-      }
-      return u;
-    };
-    const double level = noise(speeds[unstable]);
-    const double a = where(speeds[stable], speeds[unstable], level);
-    if (out.growth[unstable] < 4.0 * level) return a;
-    const double b = where(a, speeds[unstable], 3.0 * level);
-    const double x[3] = {a, 0.5 * (a + b), b};
-    double r[3];
-    for (int k = 0; k < 3; ++k)
-      r[k] = search.at(x[k]).rate;
-    const auto bend = [](double f0, double f1, double f2) {
-      return std::abs(f2 - 2.0 * f1 + f0) / std::abs(f2 - f0);
-    };
-    const bool root = bend(r[0] * r[0], r[1] * r[1], r[2] * r[2]) < bend(r[0], r[1], r[2]);
-    if (root)
-      for (double& v : r)
-        v *= v;
-    // the parabola x(r) at r = 0
-    double zero = 0.0;
-    for (int k = 0; k < 3; ++k) {
-      const int p = (k + 1) % 3, q = (k + 2) % 3;
-      zero += x[k] * r[p] * r[q] / ((r[k] - r[p]) * (r[k] - r[q]));
-    }
-    return std::abs(zero - a) < std::abs(b - a) + 1e-6 * std::abs(a) ? zero : a;
-  };
+  const auto grows = [&](std::size_t k) { return out.growth[k] > search.noise(speeds[k]); };
   for (std::size_t k = 0; k < speeds.size(); ++k) {
     if (!grows(k)) continue;
-    InstabilityBand band;
     std::size_t last = k;
     while (last + 1 < speeds.size() && grows(last + 1))
       ++last;
-    if (k > 0) band.low = edge(k - 1, k);
-    if (last + 1 < speeds.size()) band.high = edge(last + 1, last);
-    std::size_t top = k;
-    for (std::size_t j = k; j <= last; ++j)
-      if (out.growth[j] > out.growth[top]) top = j;
-    // the largest growth between the neighbours of the largest sample, where the band has ends
-    const double a = top > k ? speeds[top - 1] : band.low,
-                 b = top < last ? speeds[top + 1] : band.high;
-    band.speed = speeds[top];
-    if (std::isfinite(a) && std::isfinite(b))
-      band.speed = find_maximum(a, speeds[top], out.growth[top], b, 1e-8,
-                                [&](double Omega) { return search.at(Omega).rate; });
-    const Growth g = search.at(band.speed);
-    band.growth = g.rate;
-    band.frequency = g.frequency;
-    out.bands.push_back(band);
+    out.bands.push_back(measure_band(search, out, k, last));
     k = last;
   }
   return out;

@@ -27,6 +27,9 @@ class RotatingAxes {
   RotatingAxes(Linearizer& linear, double Omega_probe, Index harmonics = 3,
                Motion motion = Motion::lateral);
 
+  /// @throws Error E88, the lines turn at different speeds.
+  static void require(const SteadySystem& running);
+
   /// Matrices at Omega on pattern(); valid until the next call. lambda: rate in rotating axes, for
   /// hysteretic damping.
   /// @throws Error (E76) when the state lies outside the range of an element.
@@ -47,7 +50,16 @@ class RotatingAxes {
   /// nothing gyroscopic held it).
   Index negative_stiffnesses(double Omega);
 
+  /// Steady motion Re(a exp(i theta)), theta = Omega t, under forces Re(f exp(i theta)) that turn with
+  /// the rotor, both in fixed axes and of length system().size(): what unbalance does to a rotor
+  /// whose stiffness turns with it. Lateral; parts at other multiples of the speed, which unequal
+  /// supports cause, are left out of a.
+  /// NaN where the rotor stands at the edge of a band.
+  /// @throws Error (E88): the forces do not turn with the rotor.
+  VecXc response(double Omega, const VecXc& f);
+
  private:
+  VecXc first_order_of(const VecX& x) const;
   /// Matrices in rotating axes at one angle, on the system's pattern, into turned_.
   void sample(double Omega, double theta, Complex lambda);
   Linearizer& linear_;

@@ -13,50 +13,48 @@ ModeTracker::ModeTracker(Linearizer& linear, const TrackOptions& options)
       options_(options),
       solver_(linear, options.modes) {}
 
-bool ModeTracker::step(double Omega, bool last_chance) {
-  const std::vector<WhirlMode>& found = solver_.solve(Omega);
-  ++solved_;
-  const Index n = static_cast<Index>(found.size()), p = static_cast<Index>(modes_.size());
-  if (!started_) {
-    for (const WhirlMode& m : found)
-      modes_.push_back({next_id_++, m, {}, false});
-    started_ = true;
-    speed_ = Omega;
-    return true;
-  }
-  // Likeness of all pairs within reach: M products of the new modes once.
+struct ModeTracker::Likeness {
+  double score, like, apart;
+  Index old, now;
+};
+
+std::vector<ModeTracker::Likeness> ModeTracker::compare(const std::vector<WhirlMode>& found) {
+  const std::size_t n = found.size();
+  // M products of the new modes once
   const la::MCK& m = solver_.matrices();
-  std::vector<VecXc> mx(at(n));
-  std::vector<double> norm(at(n));
-  for (Index j = 0; j < n; ++j) {
-    la::multiply(m.M, found[at(j)].x, mx[at(j)]);
-    norm[at(j)] = std::abs(found[at(j)].x.dot(mx[at(j)]));
+  std::vector<VecXc> mx(n);
+  std::vector<double> norm(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    la::multiply(m.M, found[j].x, mx[j]);
+    norm[j] = std::abs(found[j].x.dot(mx[j]));
   }
-  struct Pair {
-    double score, like, apart;
-    Index old, now;
-  };
-  std::vector<Pair> pairs;
+  std::vector<Likeness> pairs;
   VecXc my;
-  for (Index i = 0; i < p; ++i) {
-    const WhirlMode& old = modes_[at(i)].now;
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    const WhirlMode& old = modes_[i].now;
     la::multiply(m.M, old.x, my);
     const double size = std::abs(old.x.dot(my));
-    for (Index j = 0; j < n; ++j) {
-      const double like = size > 0 && norm[at(j)] > 0
-                              ? std::norm(old.x.dot(mx[at(j)])) / (size * norm[at(j)])
-                              : 0.0;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double like =
+          size > 0 && norm[j] > 0 ? std::norm(old.x.dot(mx[j])) / (size * norm[j]) : 0.0;
       if (like < 0.05) continue;
-      const double apart = std::abs(found[at(j)].lambda - old.lambda) /
-                           (std::abs(old.lambda) + std::abs(found[at(j)].lambda) + 1e-300);
-      pairs.push_back({like - 0.5 * apart, like, apart, i, j});
+      const double apart = std::abs(found[j].lambda - old.lambda) /
+                           (std::abs(old.lambda) + std::abs(found[j].lambda) + 1e-300);
+      pairs.push_back(
+          {like - 0.5 * apart, like, apart, static_cast<Index>(i), static_cast<Index>(j)});
     }
   }
   std::sort(pairs.begin(), pairs.end(),
-            [](const Pair& a, const Pair& b) { return a.score > b.score; });
-  std::vector<Index> of_old(at(p), -1), of_new(at(n), -1);
+            [](const Likeness& a, const Likeness& b) { return a.score > b.score; });
+  return pairs;
+}
+
+bool ModeTracker::pair(const std::vector<WhirlMode>& found, bool last_chance,
+                       std::vector<Index>& of_new) {
+  std::vector<Index> of_old(modes_.size(), -1);
+  of_new.assign(found.size(), -1);
   bool sure = true;
-  for (const Pair& k : pairs) {
+  for (const Likeness& k : compare(found)) {
     if (of_old[at(k.old)] >= 0 || of_new[at(k.now)] >= 0) continue;
     // A planar pair at rest splits into two circles, each 0.5 like both: no doubt, whichever way
     // they are paired.
@@ -71,16 +69,27 @@ bool ModeTracker::step(double Omega, bool last_chance) {
     of_old[at(k.old)] = k.now;
     of_new[at(k.now)] = k.old;
   }
-  if (!sure && !last_chance) return false;
+  return sure;
+}
+
+bool ModeTracker::step(double Omega, bool last_chance) {
+  const std::vector<WhirlMode>& found = solver_.solve(Omega);
+  ++solved_;
+  std::vector<Index> of_new(found.size(), -1);
+  if (started_) {
+    const bool sure = pair(found, last_chance, of_new);
+    if (!sure && !last_chance) return false;
+  }
   std::vector<TrackedMode> next;
-  for (Index j = 0; j < n; ++j) {
-    const Index i = of_new[at(j)];
+  for (std::size_t j = 0; j < found.size(); ++j) {
+    const Index i = of_new[j];
     if (i >= 0)
-      next.push_back({modes_[at(i)].id, found[at(j)], modes_[at(i)].now, true});
+      next.push_back({modes_[at(i)].id, found[j], modes_[at(i)].now, true});
     else
-      next.push_back({next_id_++, found[at(j)], {}, false});
+      next.push_back({next_id_++, found[j], {}, false});
   }
   modes_ = std::move(next);
+  started_ = true;
   speed_ = Omega;
   return true;
 }

@@ -39,6 +39,12 @@ class ModeTracker {
   long speeds_solved() const { return solved_; }
 
  private:
+  /// Likeness of a mode at hand and a new one.
+  struct Likeness;
+  /// All pairs within reach, best first.
+  std::vector<Likeness> compare(const std::vector<WhirlMode>& found);
+  /// of_new: for each new mode the one at hand that it continues, or -1. False: in doubt.
+  bool pair(const std::vector<WhirlMode>& found, bool last_chance, std::vector<Index>& of_new);
   bool step(double Omega, bool last_chance);
   Linearizer& linear_;
   TrackOptions options_;

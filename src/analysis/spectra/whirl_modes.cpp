@@ -502,6 +502,12 @@ std::string SpectrumCertificate::text() const {
                        top);
   const std::string band =
       fmt::format("all roots up to {:.5g} Hz and damping ratio {:.2g}", top, list.damping_ratio());
+  if (list.missing == 0 && list.taken_for_zero > 0)
+    return band + fmt::format(
+                      " counted and found; {} of them, within {:.2g} 1/s of zero, cannot be told "
+                      "from zero and {} taken for free motion",
+                      list.taken_for_zero, list.zeros_within,
+                      list.taken_for_zero == 1 ? "is" : "are");
   if (list.missing == 0) return band + " counted and found";
   std::string out = fmt::format("INCOMPLETE: {} of {} not found", list.missing, band);
   for (const Complex z : list.where)

@@ -159,6 +159,18 @@ BucklingCount count_factors(const la::MCK& K0, const la::BlockMatrix<6>& B,
   return out;
 }
 
+/// What the loads change of K0 at the rest state: zero where it is rounding of equal sums, and with
+/// the change of K along the response u to them.
+la::BlockMatrix<6> load_stiffness(SteadySystem& running, const system::State& rest, double Omega,
+                                  la::MCK& K0, la::MCK& loaded, const VecX& u) {
+  la::BlockMatrix<6> B(running.system().pattern());
+  values(B) = values(loaded.K) - values(K0.K);
+  values(B) =
+      (values(B).array().abs() <= 1e-14 * values(K0.K).array().abs()).select(0.0, values(B));
+  add_rate(running, rest, Omega, u, B);
+  return B;
+}
+
 }  // namespace
 
 std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
@@ -196,12 +208,7 @@ std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index co
   }
   direct->solve(u);
 
-  la::BlockMatrix<6> B(system.pattern());
-  values(B) = values(loaded.K) - values(K0.K);
-  // differences of equal sums are rounding
-  values(B) =
-      (values(B).array().abs() <= 1e-14 * values(K0.K).array().abs()).select(0.0, values(B));
-  add_rate(running, rest, Omega, u, B);
+  la::BlockMatrix<6> B = load_stiffness(running, rest, Omega, K0, loaded, u);
   running.set_load(full);
   const double change = values(B).cwiseAbs().maxCoeff(),
                stiffness = values(K0.K).cwiseAbs().maxCoeff();

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace whirl::analysis {
 namespace {
@@ -68,11 +69,12 @@ class Shifted {
       m_.M.block(p.diagonal(i)).diagonal() = diagonal.segment<6>(6 * i);
   }
   bool factor(double s) { return lu_.factor(m_, s, 0.0, 1.0) == la::Status::ok; }
-  /// Negative eigenvalues of K + s diag; a pivot that vanishes moves s a little up.
-  Index negative(double s) {
+  /// Negative eigenvalues of K + s diag; a pivot that vanishes moves s a little up. Nothing when
+  /// that does not help: such factors say nothing.
+  std::optional<Index> negative(double s) {
     for (int tries = 0; tries < 8; ++tries, s += (tries < 4 ? 0.1 : 1.0) * std::abs(s))
-      if (factor(s)) break;
-    return lu_.negative_eigenvalues();
+      if (factor(s)) return lu_.negative_eigenvalues();
+    return std::nullopt;
   }
   la::BlockLu<double>& lu() { return lu_; }
 
@@ -139,17 +141,19 @@ void find_lowest(const la::BlockMatrix<6>& K, std::span<const unsigned char> fre
   VecX Kx = VecX::Zero(D.size());
   K.add_multiply(1.0, x, Kx);
   up = std::max(1e-12 * std::abs(Kx.dot(x)) / x.dot(D.cwiseProduct(x)), 1e-300);
-  while (shifted.negative(up) > 0 && up < 1e30)
+  // what cannot be factored counts as not definite: up is a shift that could
+  const auto definite = [&](double shift) { return shifted.negative(shift) == Index{0}; };
+  while (!definite(up) && up < 1e30)
     up *= 16.0;
   double down = 0.0;
   for (int k = 0; k < 60 && up - down > 0.02 * up; ++k) {
     const double middle = down > 0.0 && up > 4.0 * down ? std::sqrt(up * down)
                           : down > 0.0                  ? 0.5 * (up + down)
                                                         : up / 64.0;
-    if (shifted.negative(middle) > 0)
-      down = middle;
-    else
+    if (definite(middle))
       up = middle;
+    else
+      down = middle;
   }
   if (!shifted.factor(up)) return;
   const double mu = inverse_iteration(shifted.lu(), D, free, x, 60, 1e-12);
@@ -183,7 +187,7 @@ void count_real(const la::BlockMatrix<6>& K, std::span<const unsigned char> free
     out.negative = 0;
   }
   // one more than were found where the sign of det K says so
-  if ((out.negative % 2 != 0) != (out.sign < 0)) ++out.negative;
+  if (out.sign != 0 && (out.negative % 2 != 0) != (out.sign < 0)) ++out.negative;
 }
 
 }  // namespace
@@ -196,10 +200,13 @@ Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned
   la::BlockMatrix<6> symmetric(K.pattern());
   out.symmetric = symmetrise(K, rows, free, symmetric) <= skewness;
   Shifted half(symmetric, rows, free);
-  out.negative = half.negative(rounding);
-  out.sign = out.negative % 2 == 0 ? 1 : -1;
-  if (out.negative == 0) return out;
-  if (out.symmetric) {
+  const std::optional<Index> directions = half.negative(rounding);
+  if (directions) {
+    out.negative = *directions;
+    out.sign = out.negative % 2 == 0 ? 1 : -1;
+    if (out.negative == 0) return out;
+  }
+  if (out.symmetric && directions) {
     if (shape) find_lowest(symmetric, free, system, length, out);
     return out;
   }
@@ -207,7 +214,7 @@ Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned
   bool factored = false;
   for (double s = rounding; s < 1e-9 && !factored; s *= 2.0)
     factored = whole.factor(s);
-  if (factored) out.sign = whole.lu().determinant().second.real() < 0.0 ? -1 : 1;
+  out.sign = !factored ? 0 : whole.lu().determinant().second.real() < 0.0 ? -1 : 1;
   count_real(K, free, system, length, out);
   out.certain = factored && out.sign < 0;
   return out;

@@ -12,6 +12,7 @@
 //     certain
 //   det K < 0: an odd number of real roots lambda > 0, unstable; certain
 //   otherwise: the negative real eigenvalues among those of least size; counted, not proved
+// So too for a symmetric K that cannot be factored.
 // Loss of stability by oscillation (whirl, flutter) is not asked about here, nor whether gyroscopic
 // moments hold an even number of negative directions in a rotor that spins: modal analysis of the
 // same state answers both.
@@ -25,7 +26,7 @@ struct Definiteness {
   Index negative = 0;  ///< directions (symmetric K) or negative real eigenvalues (unsymmetric K)
   bool symmetric = true;
   bool certain = true;  ///< false: counted, not proved
-  int sign = 1;         ///< of det K
+  int sign = 1;         ///< of det K; 0: K cannot be factored
   double lowest = 0;    ///< the lowest eigenvalue of K x = mu D x, D = 1 for displacements and
                         ///< (length/10)^2 for rotations, N/m
   VecX

@@ -62,83 +62,99 @@ EquilibriumSolver::EquilibriumSolver(SteadySystem& running, EquilibriumOptions o
   if (!(length_ > 0)) length_ = 1.0;  // one body: metre and radian weigh alike
 }
 
+struct EquilibriumSolver::SpinMotions {
+  std::vector<Index> first;  ///< its first unknown phi, -1: not free
+  std::vector<VecX> e, ke;   ///< all its phi by its ratio; K times that
+  std::vector<VecX> size;    ///< of the single products, against which "zero" is measured
+  std::vector<Index> group;  ///< a line it turns with, or itself
+  Index root(Index l) const {
+    while (group[at(l)] != l)
+      l = group[at(l)];
+    return l;
+  }
+};
+
+EquilibriumSolver::SpinMotions EquilibriumSolver::spin_motions() const {
+  const system::System& sys = running_.system();
+  const Index L = sys.lines();
+  SpinMotions m{std::vector<Index>(at(L), -1), std::vector<VecX>(at(L)), std::vector<VecX>(at(L)),
+                std::vector<VecX>(at(L)), std::vector<Index>(at(L))};
+  for (Index l = 0; l < L; ++l) {
+    m.group[at(l)] = l;
+    m.e[at(l)] = VecX::Zero(sys.size());
+  }
+  for (Index i = 0; i < sys.nodes(); ++i) {
+    const Index l = sys.node(i).line, k = 6 * i + system::spin_phi;
+    if (!running_.spinning()[at(i)]) continue;
+    m.e[at(l)][k] = running_.ratio(l);
+    if (m.first[at(l)] < 0) m.first[at(l)] = free_[at(k)] ? k : -1;
+  }
+  const auto& start = sys.pattern().row_start();
+  const auto& cols = sys.pattern().cols();
+  for (Index l = 0; l < L; ++l) {
+    m.ke[at(l)] = VecX::Zero(sys.size());
+    m.size[at(l)] = VecX::Zero(sys.size());
+    if (m.first[at(l)] < 0) continue;
+    matrices_.K.add_multiply(1.0, m.e[at(l)], m.ke[at(l)]);
+    for (Index i = 0; i < sys.nodes(); ++i)
+      for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b)
+        m.size[at(l)].segment<6>(6 * i) +=
+            matrices_.K.block(b).cwiseAbs() * m.e[at(l)].segment<6>(6 * cols[at(b)]).cwiseAbs();
+  }
+  return m;
+}
+
+Index EquilibriumSolver::freely_turning(const SpinMotions& m, Index group) const {
+  const system::System& sys = running_.system();
+  VecX sum = VecX::Zero(sys.size()), scale = sum;
+  Index lead = -1;
+  for (Index l = 0; l < sys.lines(); ++l) {
+    if (m.root(l) != group) continue;
+    sum += m.ke[at(l)];
+    scale += m.size[at(l)];
+    if (lead < 0) lead = m.first[at(l)];
+  }
+  if (lead < 0) return -1;
+  for (Index i = 0; i < sys.nodes(); ++i)  // a prescribed angle holds its whole group
+    if (running_.spinning()[at(i)] && m.root(sys.node(i).line) == group &&
+        !sys.active()[at(6 * i + 3)] && !sys.followers().find(i))
+      return -1;
+  double torque = 0;
+  for (Index k = 3; k < sys.size(); k += 6)
+    torque = std::max(torque, scale[k]);
+  for (Index k = 0; k < sys.size(); ++k) {
+    const double least = std::max(scale[k], k % 6 < 3 ? torque / length_ : torque);
+    if (free_[at(k)] && std::abs(sum[k]) > 1e-9 * least) return -1;
+  }
+  return lead;
+}
+
 void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
   // A rotor turns freely when K times the motion "all its phi by its ratio" vanishes to rounding.
   // What sees phi (weight on an unbalance) holds it in no useful sense and is left out.
   const system::System& sys = running_.system();
   const Index L = sys.lines();
   if (!running_.blind_tangent(s.frames, Omega, s.q, matrices_)) return;
-  std::vector<Index> first(at(L), -1);
-  std::vector<VecX> e(at(L)), ke(at(L)), size(at(L));
-  for (Index l = 0; l < L; ++l)
-    e[at(l)] = VecX::Zero(sys.size());
-  for (Index i = 0; i < sys.nodes(); ++i) {
-    const Index l = sys.node(i).line, k = 6 * i + system::spin_phi;
-    if (!running_.spinning()[at(i)]) continue;
-    e[at(l)][k] = running_.ratio(l);
-    if (first[at(l)] < 0) first[at(l)] = free_[at(k)] ? k : -1;
-  }
-  // The size of the single products, against which "zero" is measured.
-  const auto& start = sys.pattern().row_start();
-  const auto& cols = sys.pattern().cols();
-  for (Index l = 0; l < L; ++l) {
-    ke[at(l)] = VecX::Zero(sys.size());
-    size[at(l)] = VecX::Zero(sys.size());
-    if (first[at(l)] < 0) continue;
-    matrices_.K.add_multiply(1.0, e[at(l)], ke[at(l)]);
-    for (Index i = 0; i < sys.nodes(); ++i)
-      for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b)
-        size[at(l)].segment<6>(6 * i) +=
-            matrices_.K.block(b).cwiseAbs() * e[at(l)].segment<6>(6 * cols[at(b)]).cwiseAbs();
-  }
+  SpinMotions motions = spin_motions();
   // Lines whose torques meet (gears, couplings) are one rotor.
-  std::vector<Index> group(at(L));
-  for (Index l = 0; l < L; ++l)
-    group[at(l)] = l;
-  auto root = [&](Index l) {
-    while (group[at(l)] != l)
-      l = group[at(l)];
-    return l;
-  };
   for (Index l = 0; l < L; ++l)
     for (Index m = 0; m < l; ++m) {
       bool meet = false;
       for (Index k = 0; k < sys.size() && !meet; ++k)
-        meet = e[at(m)][k] != 0.0 && std::abs(ke[at(l)][k]) > 1e-9 * size[at(l)][k];
-      if (meet) group[at(root(l))] = root(m);
+        meet = motions.e[at(m)][k] != 0.0 &&
+               std::abs(motions.ke[at(l)][k]) > 1e-9 * motions.size[at(l)][k];
+      if (meet) motions.group[at(motions.root(l))] = motions.root(m);
     }
   for (Index g = 0; g < L; ++g) {
-    if (root(g) != g) continue;
-    VecX sum = VecX::Zero(sys.size()), scale = sum;
-    Index lead = -1;
-    bool held = false;
-    for (Index l = 0; l < L; ++l) {
-      if (root(l) != g) continue;
-      sum += ke[at(l)];
-      scale += size[at(l)];
-      if (lead < 0) lead = first[at(l)];
-    }
-    for (Index i = 0; i < sys.nodes(); ++i)  // a prescribed angle holds its whole group
-      if (running_.spinning()[at(i)] && root(sys.node(i).line) == g &&
-          !sys.active()[at(6 * i + 3)] && !sys.followers().find(i))
-        held = true;
-    if (lead < 0 || held) continue;
-    double torque = 0;
-    for (Index k = 3; k < sys.size(); k += 6)
-      torque = std::max(torque, scale[k]);
-    bool resisted = false;
-    for (Index k = 0; k < sys.size(); ++k)
-      resisted = resisted || (free_[at(k)] &&
-                              std::abs(sum[k]) >
-                                  1e-9 * std::max(scale[k], k % 6 < 3 ? torque / length_ : torque));
-    if (!resisted) {
-      spin_holds_.push_back(lead);
-      free_[at(lead)] = 0;
-    }
+    if (motions.root(g) != g) continue;
+    const Index lead = freely_turning(motions, g);
+    if (lead < 0) continue;
+    spin_holds_.push_back(lead);
+    free_[at(lead)] = 0;
   }
   group_.resize(at(L));
   for (Index l = 0; l < L; ++l)
-    group_[at(l)] = root(l);
+    group_[at(l)] = motions.root(l);
 }
 
 std::string EquilibriumSolver::name_motion(Index singular) const {
@@ -223,14 +239,49 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
   return o;
 }
 
+void EquilibriumSolver::clear_held(VecX& x) const {
+  for (Index k = 0; k < x.size(); ++k)
+    if (!free_[at(k)]) x[k] = 0.0;
+}
+
+double EquilibriumSolver::step_boldly(double Omega, const system::State& s, double size) {
+  double alpha = std::min(1.0, 0.5 / size);
+  for (int halving = 0; halving < 10; ++halving, alpha *= 0.5) {
+    trial_ = s.q + alpha * step_;
+    if (running_.residual(s.frames, Omega, trial_, r_)) return alpha;
+  }
+  return 0.0;
+}
+
+double EquilibriumSolver::step_carefully(double Omega, const system::State& s, double size,
+                                         double most) {
+  double alpha = most;
+  for (int halving = 0; halving < 30; ++halving, alpha *= 0.5) {
+    trial_ = s.q + alpha * step_;
+    if (!running_.residual(s.frames, Omega, trial_, r_)) continue;
+    next_ = r_;
+    clear_held(next_);
+    solver_->solve(next_);
+    const double after = correction_size(next_);
+    if (after <= (1.0 - 0.25 * alpha) * size || (alpha == 1.0 && size < 1e-8)) return alpha;
+    if (alpha < 1e-6) break;
+  }
+  return 0.0;
+}
+
+bool EquilibriumSolver::settle(double Omega, system::State& s) {
+  s.q += step_;
+  if (!running_.residual(s.frames, Omega, s.q, r_)) {
+    s.q -= step_;
+    running_.residual(s.frames, Omega, s.q, r_);
+  }
+  return balanced(running_, Omega, s, r_, matrices_, free_);
+}
+
 EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State& s,
                                                      int& iterations, Step kind) {
   const system::System& sys = running_.system();
   if (!solver_) solver_ = la::make_direct_solver<double>(sys.pattern(), free_, options_.solver);
-  const auto masked = [&](VecX& x) {
-    for (Index k = 0; k < x.size(); ++k)
-      if (!free_[at(k)]) x[k] = 0.0;
-  };
   if (!running_.residual(s.frames, Omega, s.q, r_)) {
     why_ = "the state lies outside the range of an element or of the tilt (pi)";
     return Outcome::diverged;
@@ -238,7 +289,7 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
   double last = infinity, damping = 1.0, first = infinity;
   for (int it = 0; it < options_.max_iterations; ++it, ++iterations) {
     step_ = r_;
-    masked(step_);
+    clear_held(step_);
     if (step_.isZero(0.0)) return Outcome::converged;
     running_.tangent(s.frames, Omega, s.q, matrices_);
     if (solver_->factor(matrices_, 0.0, 0.0, 1.0) != la::Status::ok) {
@@ -259,52 +310,28 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
       return Outcome::converged;
     // Converged, or as small as rounding lets it become.
     if (is_small(step_, s.q) || (damping == 1.0 && size < 1e-8 && size > 0.25 * last)) {
-      s.q += step_;
-      if (!running_.residual(s.frames, Omega, s.q, r_)) {
-        s.q -= step_;
-        running_.residual(s.frames, Omega, s.q, r_);
-      }
-      if (balanced(running_, Omega, s, r_, matrices_, free_)) return Outcome::converged;
+      if (settle(Omega, s)) return Outcome::converged;
       last = size;
       continue;
     }
-    double alpha;
-    bool taken = false;
-    if (kind == Step::bold) {
-      // Whole steps, no turn of more than half a radian and no move of more than half the model:
-      // what slender structures in large rotation want, whose axial force rises before it falls.
-      alpha = std::min(1.0, 0.5 / size);
-      for (int halving = 0; halving < 10 && !taken; ++halving, alpha *= taken ? 1.0 : 0.5) {
-        trial_ = s.q + alpha * step_;
-        taken = running_.residual(s.frames, Omega, trial_, r_);
-      }
-      if (size > 1e4 * first) taken = false;
-    } else {
-      // Natural monotonicity: the simplified Newton correction after the step must be shorter than
-      // the correction itself.
-      alpha = std::min(1.0, 2.0 * damping);
-      for (int halving = 0; halving < 30; ++halving, alpha *= 0.5) {
-        trial_ = s.q + alpha * step_;
-        if (!running_.residual(s.frames, Omega, trial_, r_)) continue;
-        next_ = r_;
-        masked(next_);
-        solver_->solve(next_);
-        const double after = correction_size(next_);
-        if (after <= (1.0 - 0.25 * alpha) * size || (alpha == 1.0 && size < 1e-8)) {
-          taken = true;
-          break;
-        }
-        if (alpha < 1e-6) break;
-      }
-    }
-    if (!taken) {
+    double taken = kind == Step::bold
+                       ? step_boldly(Omega, s, size)
+                       : step_carefully(Omega, s, size, std::min(1.0, 2.0 * damping));
+    if (kind == Step::bold && size > 1e4 * first) taken = 0.0;
+    if (taken == 0.0) {
       why_ = "Newton's iteration finds no descent";
       return Outcome::diverged;
     }
     s.q = trial_;
-    damping = alpha;
+    damping = taken;
     last = size;
   }
+  why_ = no_convergence();
+  return Outcome::diverged;
+}
+
+std::string EquilibriumSolver::no_convergence() const {
+  const system::System& sys = running_.system();
   Index worst = 0;
   for (Index k = 0; k < step_.size(); ++k) {
     const auto weight = [&](Index i) {
@@ -312,10 +339,9 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
     };
     if (weight(k) > weight(worst)) worst = k;
   }
-  why_ = fmt::format("no convergence in {} iterations; the largest correction is that of {} of {}",
+  return fmt::format("no convergence in {} iterations; the largest correction is that of {} of {}",
                      options_.max_iterations, system::component_name(static_cast<int>(worst % 6)),
                      sys.node(worst / 6).name);
-  return Outcome::diverged;
 }
 
 bool EquilibriumSolver::change_charts(system::State& s) const {
@@ -331,6 +357,47 @@ bool EquilibriumSolver::change_charts(system::State& s) const {
   const bool moved = problem.accept(s.t, s.q, s.v, s.a);
   s.frames = problem.frames;
   return moved;
+}
+
+bool EquilibriumSolver::load_in_steps(double Omega, double t, Equilibrium& out) {
+  system::State& s = out.state;
+  const double full = running_.load();
+  const double largest = options_.load_steps > 1 ? 1.0 / options_.load_steps : 1.0;
+  double done = 0.0, step = std::min(0.25, largest);
+  s = running_.system().make_state();
+  s.t = t;
+  running_.impose(s.frames, s.q);
+  running_.set_rates(Omega, s.v);
+  system::State kept = s;
+  out.load_steps = 0;
+  bool first = true;
+  while (true) {
+    const double factor = first ? 0.0 : std::min(1.0, done + step);
+    running_.set_load(full * factor);
+    s = kept;
+    int n = 0;
+    const Outcome o = newton(Omega, s, n);
+    out.iterations += n;
+    ++out.load_steps;
+    if (o == Outcome::converged) {
+      if (options_.chart_change) change_charts(s);
+      kept = s;
+      done = factor;
+      if (factor == 1.0) break;
+      if (!first && n <= 6) step = std::min(2.0 * step, largest);
+      first = false;
+    } else {
+      step *= 0.5;
+      if (first || step < 1e-6 || out.load_steps >= options_.max_load_steps) {
+        why_ += fmt::format(" (at {:.4g} of the load)", first ? 0.0 : done);
+        running_.set_load(full);
+        return false;
+      }
+    }
+  }
+  running_.set_load(full);
+  running_.residual(s.frames, Omega, s.q, r_);
+  return true;
 }
 
 std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const system::State* start) {
@@ -356,45 +423,7 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
     s = begin;
     o = close_gaps(Omega, s, out.iterations);
   }
-  if (o != Outcome::converged) {
-    // Loads in steps from the unloaded state, doubled after an easy step, halved after a failure.
-    const double full = running_.load();
-    const double largest = options_.load_steps > 1 ? 1.0 / options_.load_steps : 1.0;
-    double done = 0.0, step = std::min(0.25, largest);
-    s = sys.make_state();
-    s.t = begin.t;
-    running_.impose(s.frames, s.q);
-    running_.set_rates(Omega, s.v);
-    system::State kept = s;
-    out.load_steps = 0;
-    bool first = true;
-    while (true) {
-      const double factor = first ? 0.0 : std::min(1.0, done + step);
-      running_.set_load(full * factor);
-      s = kept;
-      int n = 0;
-      o = newton(Omega, s, n);
-      out.iterations += n;
-      ++out.load_steps;
-      if (o == Outcome::converged) {
-        if (options_.chart_change) change_charts(s);
-        kept = s;
-        done = factor;
-        if (factor == 1.0) break;
-        if (!first && n <= 6) step = std::min(2.0 * step, largest);
-        first = false;
-      } else {
-        step *= 0.5;
-        if (first || step < 1e-6 || out.load_steps >= options_.max_load_steps) {
-          why_ += fmt::format(" (at {:.4g} of the load)", first ? 0.0 : done);
-          running_.set_load(full);
-          return std::nullopt;
-        }
-      }
-    }
-    running_.set_load(full);
-    running_.residual(s.frames, Omega, s.q, r_);
-  }
+  if (o != Outcome::converged && !load_in_steps(Omega, begin.t, out)) return std::nullopt;
   if (!spin_holds_.empty()) close_backlash(Omega, s, out.iterations);
   if (options_.chart_change) change_charts(s);
   sys.follow(s);

@@ -61,22 +61,48 @@ class EquilibriumSolver {
 
  private:
   enum class Outcome { converged, singular, diverged };
+  /// Of each line, the motion in which it turns.
+  struct SpinMotions;
   void find_spin_holds(const system::State& s, double Omega);
+  /// @pre matrices_ are those of the state.
+  SpinMotions spin_motions() const;
+  /// The unknown phi to hold of a group of lines that nothing resists or holds, else -1.
+  Index freely_turning(const SpinMotions& m, Index group) const;
   /// All phi of the lines that turn with line `group`, by their ratio.
   VecX spin_of(Index group) const;
   /// A rotor held at its angle against a torque, with play towards another one (backlash): turned
   /// on by its torque until they meet, which then holds it. s: in balance, r_ its residual; both
   /// are so again afterwards.
   void close_backlash(double Omega, system::State& s, int& iterations);
+  /// Turns the rotor of the hold until it meets another one, whose group is returned; -1 when it
+  /// meets none or no balance is found then (s is anything, and the hold stays).
+  Index turn_until_met(Index held, double Omega, system::State& s, int& iterations);
+  /// A group of lines on which the motion e of another one acts in the tangent at hand, or -1.
+  Index group_met(const VecX& e, Index group) const;
   enum class Step { bold, careful };
   Outcome newton(double Omega, system::State& s, int& iterations);
   Outcome newton(double Omega, system::State& s, int& iterations, Step kind);
+  void clear_held(VecX& x) const;
+  /// Takes the last correction as it is; whether forces balance then.
+  bool settle(double Omega, system::State& s);
+  /// Whole steps, no turn of more than half a radian and no move of more than half the model: what
+  /// slender structures in large rotation want, whose axial force rises before it falls. The part
+  /// of the correction taken (trial_, r_), or 0; so too of the next one.
+  double step_boldly(double Omega, const system::State& s, double size);
+  /// Natural monotonicity: the simplified Newton correction after the step must be shorter than the
+  /// correction itself. most: the part tried first.
+  double step_carefully(double Omega, const system::State& s, double size, double most);
+  std::string no_convergence() const;
+  /// Loads in steps from the unloaded state at time t, doubled after an easy step, halved after a
+  /// failure.
+  bool load_in_steps(double Omega, double t, Equilibrium& out);
   std::string name_motion(Index singular) const;
   /// Where supports have gaps nothing resists at first: each line is moved along the force on it
   /// until something does.
   Outcome close_gaps(double Omega, system::State& s, int& iterations);
   /// The same for what that does not close: couples, mechanisms, gaps one after another.
   Outcome let_down(double Omega, system::State& s, int& iterations);
+  struct LetDown;
   double correction_size(const VecX& d) const;
   bool is_small(const VecX& d, const VecX& q) const;
 

@@ -60,12 +60,9 @@ StudySample timed(const StudyRunner& run, const StudyCase& c, int repeats) {
   return best;
 }
 
-}  // namespace
-
-StudyResult run_study(const StudyRunner& run, const StudyOptions& options,
-                      const std::vector<Quantity>* exact) {
-  WHIRL_EXPECTS(options.repeats > 0);
-  StudyResult result;
+/// The solution that all are measured against, and how well a second scheme confirms it.
+void find_reference(const StudyRunner& run, const StudyOptions& options,
+                    const std::vector<Quantity>* exact, StudyResult& result) {
   if (exact) {
     result.reference.quantities = *exact;
     result.uncertainty.assign(exact->size(), 0.0);
@@ -81,55 +78,55 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options,
   }
   for (const Quantity& q : result.reference.quantities)
     result.quantities.push_back(q.name);
+}
 
-  for (const StudyCase& c : options.ladder) {
-    StudySample s = timed(run, c, options.repeats);
-    if (s.ok) s.errors = errors_of(s.quantities, result.reference.quantities);
-    for (std::size_t i = 0; i < result.uncertainty.size(); ++i)
-      s.counted.push_back(result.uncertainty[i] <= resolved &&
-                          result.reference.quantities[i].counts);
-    if (options.progress) options.progress(s);
-    result.samples.push_back(std::move(s));
+using LogPoint = std::pair<double, double>;  ///< -log(steps), log(error)
+
+/// Slope of log(worst error) against log(step) by least squares over equal steps from the coarsest
+/// on, as long as the slope holds: finer ones stand on another error (the mesh, motion too fast
+/// for any of these steps, the reference itself). 0: there is none.
+double fit_order(std::vector<LogPoint> p) {
+  std::sort(p.rbegin(), p.rend());
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0, steepest = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (i > 0) {
+      const double slope = (p[i - 1].second - p[i].second) / (p[i - 1].first - p[i].first);
+      if (slope > 8.0) {  // no scheme has it: the coarser step was too long to be anything
+        n = x = y = xx = xy = steepest = 0;
+      } else {
+        if (!(slope > std::max(1.0, 0.6 * steepest))) break;
+        steepest = std::max(steepest, slope);
+      }
+    }
+    n += 1;
+    x += p[i].first;
+    y += p[i].second;
+    xx += p[i].first * p[i].first;
+    xy += p[i].first * p[i].second;
   }
+  const double d = n * xx - x * x;
+  return n >= 2 && d > 1e-12 ? (n * xy - x * y) / d : 0.0;
+}
 
-  // Slope of log(worst error) against log(step) by least squares over equal steps from the coarsest
-  // on, as long as the slope holds: finer ones stand on another error (the mesh, motion too fast
-  // for any of these steps, the reference itself).
+void find_orders(StudyResult& result) {
   double floor = 1e-13;
   for (std::size_t i = 0; i < result.uncertainty.size(); ++i)
     if (const double u = result.uncertainty[i];
         u <= resolved && result.reference.quantities[i].counts)
       floor = std::max(floor, 3.0 * u);
-  std::map<std::string, std::vector<std::pair<double, double>>> points;  // -log(steps), log(error)
+  std::map<std::string, std::vector<LogPoint>> points;
   for (const StudySample& s : result.samples) {
     if (s.setting.tolerance > 0) continue;  // the steps of adaptive runs are not proportional
     if (!s.ok || !(s.worst() > floor) || !(s.worst() < 0.3) || s.steps <= 0) continue;
     points[s.setting.method].emplace_back(-std::log(static_cast<double>(s.steps)),
                                           std::log(s.worst()));
   }
-  for (auto& [name, p] : points) {
-    std::sort(p.rbegin(), p.rend());
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0, steepest = 0;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      if (i > 0) {
-        const double slope = (p[i - 1].second - p[i].second) / (p[i - 1].first - p[i].first);
-        if (slope > 8.0) {  // no scheme has it: the coarser step was too long to be anything
-          n = x = y = xx = xy = steepest = 0;
-        } else {
-          if (!(slope > std::max(1.0, 0.6 * steepest))) break;
-          steepest = std::max(steepest, slope);
-        }
-      }
-      n += 1;
-      x += p[i].first;
-      y += p[i].second;
-      xx += p[i].first * p[i].first;
-      xy += p[i].first * p[i].second;
-    }
-    const double d = n * xx - x * x;
-    result.orders.push_back({name, n >= 2 && d > 1e-12 ? (n * xy - x * y) / d : 0.0});
-  }
+  for (const auto& [name, p] : points)
+    result.orders.push_back({name, fit_order(p)});
+}
 
+/// Samples that no other beats in both error and time, and the cheapest of them for each target.
+void find_best(const StudyOptions& options, StudyResult& result) {
   for (std::size_t i = 0; i < result.samples.size(); ++i) {
     const StudySample& a = result.samples[i];
     if (!a.ok) continue;
@@ -153,6 +150,26 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options,
       }
     result.advice.push_back(advice);
   }
+}
+
+}  // namespace
+
+StudyResult run_study(const StudyRunner& run, const StudyOptions& options,
+                      const std::vector<Quantity>* exact) {
+  WHIRL_EXPECTS(options.repeats > 0);
+  StudyResult result;
+  find_reference(run, options, exact, result);
+  for (const StudyCase& c : options.ladder) {
+    StudySample s = timed(run, c, options.repeats);
+    if (s.ok) s.errors = errors_of(s.quantities, result.reference.quantities);
+    for (std::size_t i = 0; i < result.uncertainty.size(); ++i)
+      s.counted.push_back(result.uncertainty[i] <= resolved &&
+                          result.reference.quantities[i].counts);
+    if (options.progress) options.progress(s);
+    result.samples.push_back(std::move(s));
+  }
+  find_orders(result);
+  find_best(options, result);
   return result;
 }
 

@@ -46,6 +46,50 @@ struct Files {
   int count = 0;
 };
 
+/// A file that an 'include' names.
+struct Included {
+  int source = -1;  ///< -1: not taken, and said why
+  std::filesystem::path canonical;
+};
+
+Included open_included(const Value& name, int source, Files& files) {
+  const auto refuse = [&](const std::string& code, std::string message, std::string hint = "") {
+    files.diagnostics.error(code, name.spot, std::move(message), std::move(hint));
+    return Included{};
+  };
+  if (!name.is_text()) {
+    if (name.kind == Value::Kind::unreadable) return {};
+    return refuse(
+        "E06", fmt::format("'include' must be a list of file names, not {}", name_of(name.kind)));
+  }
+  if (!files.options.files_allowed)
+    return refuse("E02", fmt::format("cannot read '{}': files are not allowed here", name.text));
+  const std::filesystem::path path = files.sources[source].folder / name.text;
+  std::error_code ec;
+  const auto canonical = std::filesystem::weakly_canonical(path, ec);
+  if (std::find(files.open.begin(), files.open.end(), canonical) != files.open.end())
+    return refuse("E28", fmt::format("'{}' includes itself", name.text),
+                  "remove one 'include' of the circle");
+  if (static_cast<int>(files.open.size()) > max_include_depth || ++files.count > max_files)
+    return refuse("E28", fmt::format("more than {} files, or more than {} levels, are included",
+                                     max_files, max_include_depth));
+  if (!may_be_read(files.sources, path, {".toml"}))
+    return refuse(
+        "E02",
+        fmt::format("cannot read '{}': it lies outside the deck's folder and is not named *.toml",
+                    name.text),
+        "move it beside the deck, or give it the name of a deck");
+  FileText text = read_file(path, max_deck_bytes);
+  if (!text.ok()) return refuse(text.code, text.message, text.hint);
+  const TextProblem bad = check_text(text.text, TextKind::deck);
+  const int added = files.sources.add(path.string(), path.parent_path(), std::move(text.text));
+  if (!bad.ok()) {
+    files.diagnostics.error("E03", Spot{added, bad.line, bad.column, 1}, bad.message, bad.hint);
+    return {};
+  }
+  return {added, canonical};
+}
+
 Document parse_with_includes(int source, Files& files) {
   Document doc = parse_toml(files.sources, source, files.diagnostics);
   if (!doc.complete) return doc;
@@ -56,54 +100,10 @@ Document parse_with_includes(int source, Files& files) {
   std::vector<Value> names = list.is_array() ? list.items : std::vector<Value>{list};
   Value merged = Value::make_table(doc.root.spot);
   for (const auto& name : names) {
-    if (!name.is_text()) {
-      if (name.kind != Value::Kind::unreadable)
-        files.diagnostics.error(
-            "E06", name.spot,
-            fmt::format("'include' must be a list of file names, not {}", name_of(name.kind)));
-      continue;
-    }
-    if (!files.options.files_allowed) {
-      files.diagnostics.error(
-          "E02", name.spot, fmt::format("cannot read '{}': files are not allowed here", name.text));
-      continue;
-    }
-    const std::filesystem::path path = files.sources[source].folder / name.text;
-    std::error_code ec;
-    const auto canonical = std::filesystem::weakly_canonical(path, ec);
-    if (std::find(files.open.begin(), files.open.end(), canonical) != files.open.end()) {
-      files.diagnostics.error("E28", name.spot, fmt::format("'{}' includes itself", name.text),
-                              "remove one 'include' of the circle");
-      continue;
-    }
-    if (static_cast<int>(files.open.size()) > max_include_depth || ++files.count > max_files) {
-      files.diagnostics.error(
-          "E28", name.spot,
-          fmt::format("more than {} files, or more than {} levels, are included", max_files,
-                      max_include_depth));
-      continue;
-    }
-    if (!may_be_read(files.sources, path, {".toml"})) {
-      files.diagnostics.error(
-          "E02", name.spot,
-          fmt::format("cannot read '{}': it lies outside the deck's folder and is not named *.toml",
-                      name.text),
-          "move it beside the deck, or give it the name of a deck");
-      continue;
-    }
-    FileText text = read_file(path, max_deck_bytes);
-    if (!text.ok()) {
-      files.diagnostics.error(text.code, name.spot, text.message, text.hint);
-      continue;
-    }
-    const TextProblem bad = check_text(text.text, TextKind::deck);
-    const int added = files.sources.add(path.string(), path.parent_path(), std::move(text.text));
-    if (!bad.ok()) {
-      files.diagnostics.error("E03", Spot{added, bad.line, bad.column, 1}, bad.message, bad.hint);
-      continue;
-    }
-    files.open.push_back(canonical);
-    Document part = parse_with_includes(added, files);
+    const Included file = open_included(name, source, files);
+    if (file.source < 0) continue;
+    files.open.push_back(file.canonical);
+    Document part = parse_with_includes(file.source, files);
     files.open.pop_back();
     doc.damaged = doc.damaged || part.damaged || !part.complete;
     if (!part.complete) continue;

@@ -142,6 +142,79 @@ std::size_t sequence(std::string_view s) {
   return 0;
 }
 
+/// Where in a deck the text stands: within quotes, a comment, so many brackets.
+class TomlPlace {
+ public:
+  bool plain() const { return state_ == State::plain; }
+  bool too_deep() const { return depth_ > max_depth || dots_ > max_depth; }
+  std::string what_is_deep() const {
+    return depth_ > max_depth ? "brackets are" : "a dotted key is";
+  }
+
+  /// Takes the character at the front of `rest`, of n bytes; how many bytes it takes.
+  std::size_t take(std::string_view rest, std::size_t n) {
+    const char c = rest.front();
+    const bool escape = rest.starts_with("\\\"") || rest.starts_with("\\\\");
+    switch (state_) {
+      case State::plain: return take_plain(rest, n);
+      case State::comment:
+        if (c == '\n') state_ = State::plain;
+        break;
+      case State::basic:
+        if (escape) return 2;
+        if (c == '"' || c == '\n') state_ = State::plain;
+        break;
+      case State::literal:
+        if (c == '\'' || c == '\n') state_ = State::plain;
+        break;
+      case State::long_basic:
+        if (escape) return 2;
+        if (rest.starts_with(three_basic)) return go(State::plain, 3);
+        break;
+      case State::long_literal:
+        if (rest.starts_with(three_literal)) return go(State::plain, 3);
+        break;
+    }
+    return n;
+  }
+
+ private:
+  enum class State { plain, comment, basic, literal, long_basic, long_literal };
+  static constexpr std::string_view three_basic = "\"\"\"", three_literal = "'''";
+  std::size_t go(State to, std::size_t bytes) {
+    state_ = to;
+    return bytes;
+  }
+  std::size_t take_plain(std::string_view rest, std::size_t n) {
+    if (rest.starts_with(three_basic)) return go(State::long_basic, 3);
+    if (rest.starts_with(three_literal)) return go(State::long_literal, 3);
+    switch (rest.front()) {
+      case '#': return go(State::comment, n);
+      case '"': return go(State::basic, n);
+      case '\'': return go(State::literal, n);
+      case '[':
+      case '{':
+        ++depth_;
+        dots_ = 0;
+        break;
+      case ']':
+      case '}':
+        depth_ = std::max(0, depth_ - 1);
+        dots_ = 0;
+        break;
+      case '.': ++dots_; break;
+      case '=':
+      case ',':
+      case '\n': dots_ = 0; break;
+      default: break;
+    }
+    return n;
+  }
+
+  State state_ = State::plain;
+  int depth_ = 0, dots_ = 0;
+};
+
 }  // namespace
 
 TextProblem check_text(std::string_view text, TextKind kind) {
@@ -150,8 +223,8 @@ TextProblem check_text(std::string_view text, TextKind kind) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
     return {"the file is empty", "`whirl new` writes a deck to start from", 0, 0};
-  int line = 1, column = 1, depth = 0, dots = 0;
-  enum { plain, comment, basic, literal, long_basic, long_literal } state = plain;
+  int line = 1, column = 1;
+  TomlPlace place;
   for (std::size_t i = 0; i < text.size();) {
     const std::size_t n = sequence(text.substr(i));
     const char c = text[i];
@@ -162,67 +235,15 @@ TextProblem check_text(std::string_view text, TextKind kind) {
               "a deck is a UTF-8 text file", line, column};
     std::size_t advance = n;
     if (kind != TextKind::table) {
-      const auto triple = [&](const char* q) { return text.substr(i).starts_with(q); };
-      switch (state) {
-        case plain:
-          // Not TOML, and one of the parser's character tables does not cover them.
-          if (n > 1 && kind == TextKind::deck)
-            return {fmt::format("'{}' stands outside quotes", text.substr(i, n)),
-                    "put names and values with such letters in quotes", line, column};
-          if (c == '#')
-            state = comment;
-          else if (triple("\"\"\"")) {
-            state = long_basic;
-            advance = 3;
-          } else if (triple("'''")) {
-            state = long_literal;
-            advance = 3;
-          } else if (c == '"')
-            state = basic;
-          else if (c == '\'')
-            state = literal;
-          else if (c == '[' || c == '{') {
-            ++depth;
-            dots = 0;
-          } else if (c == ']' || c == '}') {
-            depth = std::max(0, depth - 1);
-            dots = 0;
-          } else if (c == '.')
-            ++dots;
-          else if (c == '=' || c == ',' || c == '\n')
-            dots = 0;
-          if (depth > max_depth || dots > max_depth)
-            return {fmt::format("{} nested deeper than {} levels",
-                                depth > max_depth ? "brackets are" : "a dotted key is", max_depth),
-                    "no deck needs that", line, column};
-          break;
-        case comment:
-          if (c == '\n') state = plain;
-          break;
-        case basic:
-          if (triple("\\\"") || triple("\\\\"))
-            advance = 2;
-          else if (c == '"' || c == '\n')
-            state = plain;
-          break;
-        case literal:
-          if (c == '\'' || c == '\n') state = plain;
-          break;
-        case long_basic:
-          if (triple("\\\"") || triple("\\\\"))
-            advance = 2;
-          else if (triple("\"\"\"")) {
-            state = plain;
-            advance = 3;
-          }
-          break;
-        case long_literal:
-          if (triple("'''")) {
-            state = plain;
-            advance = 3;
-          }
-          break;
-      }
+      // Not TOML, and one of the parser's character tables does not cover them.
+      if (n > 1 && kind == TextKind::deck && place.plain())
+        return {fmt::format("'{}' stands outside quotes", text.substr(i, n)),
+                "put names and values with such letters in quotes", line, column};
+      const bool plain = place.plain();
+      advance = place.take(text.substr(i), n);
+      if (plain && place.too_deep())
+        return {fmt::format("{} nested deeper than {} levels", place.what_is_deep(), max_depth),
+                "no deck needs that", line, column};
     }
     if (c == '\n') {
       ++line;

@@ -18,6 +18,7 @@
 #include <deck/text/document.hpp>
 #include <algorithm>
 #include <fmt/format.h>
+#include <optional>
 #include <set>
 
 namespace whirl::deck {
@@ -82,6 +83,47 @@ struct Piece {
   enum { none, quantity, decimal_comma } kind = none;
 };
 
+/// A number, from `start` on, and the unit behind it.
+struct BareNumber {
+  std::size_t end = 0;  ///< of the number
+  bool comma = false;   ///< it holds a decimal comma
+  Piece unit;           ///< number and unit, where one stands behind it
+};
+
+/// Reads the number that starts at `start`; nothing where none does. comma_counts: a comma between
+/// digits belongs to it.
+std::optional<BareNumber> read_number(std::string_view line, std::size_t start, bool comma_counts) {
+  const auto digit_at = [&](std::size_t k) { return k < line.size() && digit(line[k]); };
+  std::size_t k = start + (line[start] == '+' || line[start] == '-' ? 1 : 0);
+  if (!digit_at(k) && !(k < line.size() && line[k] == '.' && digit_at(k + 1))) return std::nullopt;
+  BareNumber out;
+  while (k < line.size() && (digit(line[k]) || line[k] == '.'))
+    ++k;
+  if (comma_counts && k < line.size() && line[k] == ',' && digit_at(k + 1)) {
+    out.comma = true;
+    ++k;
+    while (digit_at(k))
+      ++k;
+  }
+  if (k + 1 < line.size() && (line[k] == 'e' || line[k] == 'E') &&
+      (digit_at(k + 1) || ((line[k + 1] == '-' || line[k + 1] == '+') && digit_at(k + 2)))) {
+    k += 2;
+    while (digit_at(k))
+      ++k;
+  }
+  out.end = k;
+  std::size_t u = k;
+  while (u < line.size() && (line[u] == ' ' || line[u] == '\t'))
+    ++u;
+  if (u < line.size() && (letter(line[u]) || line[u] == '%')) {
+    std::size_t e = std::min(line.find_first_of(",]}#\"'", u), line.size());
+    while (e > u && (line[e - 1] == ' ' || line[e - 1] == '\t' || line[e - 1] == '\r'))
+      --e;
+    out.unit = {start, e, out.comma ? Piece::decimal_comma : Piece::quantity};
+  }
+  return out;
+}
+
 /// The first number in the line that is followed by a unit or holds a comma, outside strings and
 /// comments, at a place where a value can stand.
 Piece find_bare(std::string_view line) {
@@ -105,44 +147,14 @@ Piece find_bare(std::string_view line) {
     }
     if (c == '#') break;
     if (c == ' ' || c == '\t') continue;
-    const bool value_here = before == '=' || before == '[' || before == ',';
-    const std::size_t start = i;
-    std::size_t k = i + (c == '+' || c == '-' ? 1 : 0);
-    if (value_here && k < line.size() &&
-        (digit(line[k]) || (line[k] == '.' && k + 1 < line.size() && digit(line[k + 1])))) {
-      bool comma = false;
-      while (k < line.size() && (digit(line[k]) || line[k] == '.'))
-        ++k;
-      if (brackets == 0 && k + 1 < line.size() && line[k] == ',' && digit(line[k + 1])) {
-        comma = true;
-        ++k;
-        while (k < line.size() && digit(line[k]))
-          ++k;
+    if (before == '=' || before == '[' || before == ',')
+      if (const auto number = read_number(line, i, brackets == 0)) {
+        if (number->unit.kind != Piece::none) return number->unit;
+        if (number->comma) return {i, number->end, Piece::decimal_comma};
+        i = number->end - 1;
+        before = '0';
+        continue;
       }
-      if (k + 1 < line.size() && (line[k] == 'e' || line[k] == 'E') &&
-          (digit(line[k + 1]) || ((line[k + 1] == '-' || line[k + 1] == '+') &&
-                                  k + 2 < line.size() && digit(line[k + 2])))) {
-        k += 2;
-        while (k < line.size() && digit(line[k]))
-          ++k;
-      }
-      std::size_t u = k;
-      while (u < line.size() && (line[u] == ' ' || line[u] == '\t'))
-        ++u;
-      if (u < line.size() && (letter(line[u]) || line[u] == '%')) {
-        std::size_t e = u;
-        while (e < line.size() && line[e] != ',' && line[e] != ']' && line[e] != '}' &&
-               line[e] != '#' && line[e] != '"' && line[e] != '\'')
-          ++e;
-        while (e > u && (line[e - 1] == ' ' || line[e - 1] == '\t' || line[e - 1] == '\r'))
-          --e;
-        return {start, e, comma ? Piece::decimal_comma : Piece::quantity};
-      }
-      if (comma) return {start, k, Piece::decimal_comma};
-      i = k - 1;
-      before = '0';
-      continue;
-    }
     if (c == '[' || c == '{') ++brackets;
     if (c == ']' || c == '}') --brackets;
     before = c;

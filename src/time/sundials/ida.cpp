@@ -65,6 +65,10 @@ class Ida final : public Integrator {
   void reinitialize();
   void begin_step();
   StepReport step_to(double stop, bool is_break);
+  /// What IDA has counted since the last step.
+  void count_failures(StepReport& report);
+  /// Estimated error of the last step, of length h, in units of the allowance; uses yp_.
+  double local_error(double h);
   void split(double t, N_Vector y, N_Vector yp);
   int residual(double t, N_Vector y, N_Vector yp, N_Vector r);
   int linearize(double t, double cj, N_Vector y, N_Vector yp);
@@ -374,18 +378,7 @@ StepReport Ida::advance() {
   return step_to(stop, is_break);
 }
 
-StepReport Ida::step_to(double stop, bool is_break) {
-  StepReport report;
-  report.t0 = report.t1 = t0_;
-  t_stop_eval_ = is_break ? std::nextafter(stop, t0_) : infinity;
-  if (std::isfinite(stop)) check(IDASetStopTime(ida_, stop), "IDASetStopTime");
-  // without a least step IDA creeps towards an impassable state for ever
-  const double least =
-      options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
-  check(IDASetMinStep(ida_, std::min(least, options_.dt_max)), "IDASetMinStep");
-  realtype reached = t0_;
-  const double far = std::isfinite(stop) ? stop : t0_ + 1e3 * std::max(1.0, std::abs(t0_));
-  const int flag = IDASolve(ida_, far, &reached, y_.handle(), yp_.handle(), IDA_ONE_STEP);
+void Ida::count_failures(StepReport& report) {
   long errors = 0, failures = 0, iterations = 0;
   IDAGetNumErrTestFails(ida_, &errors);
   IDAGetNonlinSolvStats(ida_, &iterations, &failures);
@@ -398,6 +391,32 @@ StepReport Ida::step_to(double stop, bool is_break) {
   statistics_.rejected_error += report.rejected_error;
   statistics_.rejected_newton += report.rejected_newton;
   statistics_.newton_iterations += report.newton_iterations;
+}
+
+double Ida::local_error(double h) {
+  SerialVector& error = yp_;  // its values were read by split(), IDA writes it anew
+  if (IDAGetEstLocalErrors(ida_, error.handle()) != IDA_SUCCESS) return StepReport().error;
+  const double factor = 1.0 / allowance_;
+  increments_ = error.map().head(n_).cwiseProduct(scale_.weights());
+  const double eq = increments_.squaredNorm();
+  increments_ =
+      h * error.map().tail(n_).cwiseProduct(scale_.weights()).cwiseProduct(initial_.dynamic());
+  return factor * std::sqrt(eq + increments_.squaredNorm());
+}
+
+StepReport Ida::step_to(double stop, bool is_break) {
+  StepReport report;
+  report.t0 = report.t1 = t0_;
+  t_stop_eval_ = is_break ? std::nextafter(stop, t0_) : infinity;
+  if (std::isfinite(stop)) check(IDASetStopTime(ida_, stop), "IDASetStopTime");
+  // without a least step IDA creeps towards an impassable state for ever
+  const double least =
+      options_.dt_min > 0.0 ? options_.dt_min : std::max(1e-14 * std::abs(t0_), 1e-300);
+  check(IDASetMinStep(ida_, std::min(least, options_.dt_max)), "IDASetMinStep");
+  realtype reached = t0_;
+  const double far = std::isfinite(stop) ? stop : t0_ + 1e3 * std::max(1.0, std::abs(t0_));
+  const int flag = IDASolve(ida_, far, &reached, y_.handle(), yp_.handle(), IDA_ONE_STEP);
+  count_failures(report);
   if (flag < 0) {
     report.status = flag == IDA_ERR_FAIL                                 ? StepStatus::error_test
                     : flag == IDA_LSETUP_FAIL || flag == IDA_LSOLVE_FAIL ? StepStatus::singular
@@ -419,15 +438,7 @@ StepReport Ida::step_to(double stop, bool is_break) {
   scale_.observe(q_);
   IDAGetCurrentStep(ida_, &h_next_);
   const double h = t_ - t0_;
-  SerialVector& error = yp_;  // its values were read above, IDA writes it anew
-  if (IDAGetEstLocalErrors(ida_, error.handle()) == IDA_SUCCESS) {
-    const double factor = 1.0 / allowance_;
-    increments_ = error.map().head(n_).cwiseProduct(scale_.weights());
-    const double eq = increments_.squaredNorm();
-    increments_ =
-        h * error.map().tail(n_).cwiseProduct(scale_.weights()).cwiseProduct(initial_.dynamic());
-    report.error = factor * std::sqrt(eq + increments_.squaredNorm());
-  }
+  report.error = local_error(h);
   ++statistics_.accepted;
   statistics_.step_min = std::min(statistics_.step_min, h);
   statistics_.step_max = std::max(statistics_.step_max, h);

@@ -1,0 +1,62 @@
+#include <core/error.hpp>
+#include <results/refined_modes.hpp>
+
+#include <algorithm>
+
+namespace whirl::results {
+namespace {
+
+meshes::Halved halved(const run::Job& job, const std::vector<std::string>& shafts) {
+  std::vector<bool> lines;
+  for (const meshes::Line& l : job.mesh.lines)
+    lines.push_back(std::find(shafts.begin(), shafts.end(), l.name) != shafts.end());
+  return meshes::halve(job.mesh, lines);
+}
+
+analysis::ModesOptions one_at_a_time(const FrequencyStep& s, bool damped) {
+  analysis::ModesOptions o;
+  o.damped = damped;
+  o.certify = false;
+  o.motion = s.motion();
+  return o;
+}
+
+}  // namespace
+
+RefinedModes::RefinedModes(FrequencyStep& s, const std::vector<std::string>& shafts)
+    : fine_(halved(s.job, shafts)),
+      built_(assembly::build_system(s.job.model, fine_.mesh, s.step.name)),
+      linear_(s.linearizer_of(built_.system)),
+      damped_(linear_, one_at_a_time(s, true)),
+      undamped_(linear_, one_at_a_time(s, false)) {}
+
+VecX RefinedModes::spread(const VecX& x) const {
+  const Index added = static_cast<Index>(fine_.middles.size());
+  const Index nodes = x.size() / 6;
+  VecX out = VecX::Zero(x.size() + 6 * added);
+  for (Index n = 0; n < nodes; ++n) {
+    const bool in_mesh = n < static_cast<Index>(fine_.node.size());
+    const Index to = in_mesh ? fine_.node[static_cast<std::size_t>(n)] : n + added;
+    out.segment<6>(6 * to) = x.segment<6>(6 * n);
+  }
+  for (const meshes::Halved::Middle& m : fine_.middles)
+    out.segment<6>(6 * m.node) =
+        0.5 * (out.segment<6>(6 * m.between[0]) + out.segment<6>(6 * m.between[1]));
+  return out;
+}
+
+std::optional<double> RefinedModes::error(const analysis::WhirlMode& mode, double Omega) {
+  analysis::WhirlMode start = mode;
+  start.x = spread(mode.x.real()).cast<Complex>() + Complex(0, 1) * spread(mode.x.imag());
+  if (start.x.size() != built_.system.size()) return std::nullopt;
+  try {
+    // "undamped" modes are those of the conservative part; where nothing damps both are the same
+    const auto found = (mode.growth() == 0 ? undamped_ : damped_).follow(Omega, start);
+    if (!found) return std::nullopt;
+    return 4.0 / 3.0 * std::abs(found->lambda - mode.lambda);
+  } catch (const Error&) {  // no equilibrium, or no factorisation: not judged
+    return std::nullopt;
+  }
+}
+
+}  // namespace whirl::results

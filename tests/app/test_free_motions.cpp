@@ -1,0 +1,183 @@
+// What a deck leaves free stays free: a step of another kind changes no other, frames are held by
+// their supports alone, and what is held is said.
+#include "deck_run.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+using whirl::test::Columns;
+using whirl::test::DeckRun;
+
+namespace {
+
+/// A bar on two rings that let it slide.
+std::string sliding_bar(const std::string& parts) {
+  return R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "bar"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 400, 50]]
+[[bearing]]
+at = "a:start"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+at = "a:end"
+type = "rigid"
+directions = ["y", "z"]
+[[probe]]
+name = "p"
+at = "a:mid"
+[output]
+report = false
+every = "2 ms"
+quantities = ["positions"]
+)" + parts;
+}
+
+const std::string in_time = R"([[step]]
+name = "t"
+type = "transient"
+start = "rest"
+duration = "20 ms"
+)";
+/// Along x, of the probe, m.
+double way(const DeckRun& run) {
+  const Columns history = run.csv("t.csv");
+  const std::size_t x = history.column("p position.x [m]");
+  return history.rows.back()[x] - history.rows.front()[x];
+}
+
+const std::string modes = "[[step]]\nname = \"m\"\ntype = \"modal\"\n";
+
+}  // namespace
+
+TEST(FreeMotions, AreThoseOfTheStepAlone) {
+  const std::string thrown = "[[initial]]\nvelocity = [\"1 m/s\", \"0 m/s\", \"0 m/s\"]\n";
+  for (const std::string& before :
+       {std::string(), modes,
+        std::string("[[step]]\ntype = \"torsional\"\nmax_speed = \"3000 rpm\"\n")}) {
+    const DeckRun run(sliding_bar(thrown + before + in_time));
+    ASSERT_EQ(run.exit, 0) << run.log;
+    EXPECT_NEAR(way(run), 0.02, 1e-12) << before;  // 1 m/s for 20 ms, nothing resists
+  }
+}
+
+TEST(FreeMotions, FollowTheShakenBase) {
+  const std::string shaken =
+      "[base]\nx = { type = \"harmonic\", amplitude = \"10 m/s^2\", frequency = \"25 Hz\" }\n";
+  const DeckRun alone(sliding_bar(shaken + in_time)), beside(sliding_bar(shaken + modes + in_time));
+  ASSERT_EQ(alone.exit, 0) << alone.log;
+  ASSERT_EQ(beside.exit, 0) << beside.log;
+  EXPECT_GT(std::abs(way(alone)), 1e-5);
+  EXPECT_EQ(way(beside), way(alone));
+}
+
+// Nothing says where a bar that the base moves along starts in equilibrium.
+TEST(FreeMotions, HaveNoEquilibriumOnAShakenBase) {
+  const std::string shaken =
+      "[base]\nx = { type = \"harmonic\", amplitude = \"10 m/s^2\", frequency = \"25 Hz\" }\n";
+  const DeckRun run(sliding_bar(
+      shaken + "[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nstart = \"static\"\n"));
+  EXPECT_EQ(run.exit, 3) << run.log;
+  EXPECT_TRUE(run.says("E32")) << run.log;
+}
+
+// A right-angle frame on ball feet at A and C and a support at the corner B, loaded across its plane
+// at the middle of B-C: moments about the line A-B and about B-C give 0, 50 and 50 N.
+TEST(FreeMotions, FramesAreHeldByTheirSupportsAlone) {
+  const DeckRun run(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "frame"
+material = "steel"
+rotating = false
+path = [{ to = ["1 m", "0 m", "0 m"] }, { to = ["1 m", "1 m", "0 m"] }]
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["l1", 1000, 30], ["l2", 1000, 30]]
+[[bearing]]
+name = "A"
+at = "l1:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "B"
+at = "l1:end"
+type = "rigid"
+directions = ["z"]
+[[bearing]]
+name = "C"
+at = "l2:end"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[load]]
+at = "l2:mid"
+force = ["0 N", "0 N", "0.1 N"]
+[[step]]
+name = "s"
+type = "static"
+[output]
+report = false
+)");
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_EQ(run.log.find("held"), std::string::npos) << run.log;
+  const Columns forces = run.csv("s_supports.csv");
+  const std::size_t z = forces.column("F_z [N]");
+  EXPECT_NEAR(forces.rows[0][z], 0.0, 1e-5);
+  EXPECT_NEAR(std::abs(forces.rows[1][z]), 0.05, 1e-5);
+  EXPECT_NEAR(std::abs(forces.rows[2][z]), 0.05, 1e-5);
+}
+
+// A cantilever under the end moment 2 pi n EI/L closes on itself n times; sections stand upside down
+// at the half turns, where no smallest rotation leads.
+TEST(FreeMotions, RollUpsPassTheOpposite) {
+  for (const double turns : {0.5, 1.0, 3.0}) {
+    const double EI = 210e9 * std::numbers::pi / 64 * 1e-8;
+    const DeckRun run(fmt::format(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[material]]
+name = "m"
+E = "210 GPa"
+nu = 0.3
+density = "7850 kg/m^3"
+[[shaft]]
+name = "A"
+material = "m"
+rotating = false
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["a", 1000, 10, 60]]
+[[joint]]
+name = "clamp"
+kind = "rigid"
+at = "a:start"
+[[load]]
+at = "a:end"
+moment = ["0 N.m", "0 N.m", "{:.17g} N.m"]
+[[step]]
+name = "s"
+type = "static"
+load_steps = 60
+[output]
+report = false
+)",
+                                  2 * std::numbers::pi * turns * EI));
+    ASSERT_EQ(run.exit, 0) << run.log;
+    const auto tip = run.csv("s_deflection.csv").last();
+    const double radius = 1.0 / (2 * std::numbers::pi * turns);
+    const double angle = 2 * std::numbers::pi * turns;
+    EXPECT_NEAR(tip.at("u_x [m]"), radius * std::sin(angle) - 1.0, 1e-6) << turns;
+    EXPECT_NEAR(tip.at("u_y [m]"), radius * (1.0 - std::cos(angle)), 1e-6) << turns;
+    const Columns sections = run.csv("s_sections.csv");
+    for (const auto& row : sections.rows) {
+      const auto at = sections.named(row);
+      EXPECT_NEAR(std::hypot(at.at("M_y [N m]"), at.at("M_z [N m]")), angle * EI,
+                  1e-6 * angle * EI);
+    }
+  }
+}
