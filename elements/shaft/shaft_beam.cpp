@@ -8,6 +8,7 @@
 #include <system/stiffness_rate.hpp>
 #include <math.h>
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 namespace whirl::elements {
@@ -347,124 +348,179 @@ void add_mass(const Matrix<4>& M4, Matrix<14>& M) {
         M(pos[k] + i, pos[j] + i) += M4(k, j);
 }
 
-using Rows = Eigen::Matrix<double, 3, 14>;
+/// What a function's derivative in (lambda, d1, d2) has.
+using OnBend = std::array<Vec3, 3>;
+/// Second derivatives, all of them skew matrices [v]: v of row, column.
+using SkewBlocks = std::array<OnBend, 3>;
 
-/// The spin of a bent inside, Gamma = sum_i Z_i . c_i, c_i = a x d_i, with first and second
-/// derivatives in what it depends on (14 coordinates, phi among them for nothing).
+/// From (b, d1, d2), b = lambda/length, and lambda's part on the offsets.
+template <bool Offsets>
+void to_lambda(const ShaftBeam<Offsets>& beam, Vec3& b, Vec3& d1, Vec3& d2) {
+  b *= beam.inverse;
+  if constexpr (Offsets) {
+    d1 -= beam.c.o1 * b;
+    d2 += beam.c.o2 * b;
+  }
+}
+
+/// What Gamma = b.w, w = sum_k sigma_k x d_k' - kappa x b', consists of (shaft_beam.hpp): sigma = S
+/// delta, kappa = sum_i c_i delta_i, c = S (1, 1) + r.
+template <bool Offsets>
+struct BentShape {
+  const ShaftBeam<Offsets>& beam;
+  Vec3 b, b_rate, w;
+  Vec3 sigma[2], kappa;
+  double sum[2], c[2];
+
+  BentShape(const ShaftBeam<Offsets>& of, const Nodes<2>& x, const Strain<One>& strain) : beam(of) {
+    const Vec3 stretch = strain.chord.stretch * beam.inverse * strain.chord.a;
+    b = strain.chord.a + stretch;
+    b_rate = chord(x[0]->du, x[0]->dd, x[1]->du, x[1]->dd);
+    const Vec3 delta1 = strain.end1.delta - stretch, delta2 = strain.end2.delta - stretch;
+    for (int i = 0; i < 2; ++i) {
+      sum[i] = beam.bend[i] + beam.bend[i + 1];
+      c[i] = sum[i] + beam.bend[3 + i];
+      sigma[i] = beam.bend[i] * delta1 + beam.bend[i + 1] * delta2;
+    }
+    kappa = c[0] * delta1 + c[1] * delta2;
+    w = sigma[0].cross(x[0]->dd) + sigma[1].cross(x[1]->dd) - kappa.cross(b_rate);
+  }
+  /// b of these (x1, d1, x2, d2), or a derivative.
+  Vec3 chord(const Vec3& u1, const Vec3& d1, const Vec3& u2, const Vec3& d2) const {
+    Vec3 lambda = u2 - u1;
+    if constexpr (Offsets) lambda += beam.c.o2 * d2 - beam.c.o1 * d1;
+    return beam.inverse * lambda;
+  }
+};
+
+/// The spin of a bent inside with its derivatives.
 struct BentSpin {
   double value = 0, rate = 0;
-  Vector<14> g = Vector<14>::Zero();       ///< dGamma/dX'
-  Vector<14> g_rate = Vector<14>::Zero();  ///< its rate
-  Vector<14> E = Vector<14>::Zero();       ///< dGamma/dX
-  Vector<14> rate_by_X = Vector<14>::Zero();
-  Matrix<14> D = Matrix<14>::Zero();       ///< dg/dX
-  Matrix<14> D_rate = Matrix<14>::Zero();  ///< dg_rate/dX
-  Matrix<14> H = Matrix<14>::Zero();       ///< dE/dX
+  OnBend g, g_rate;      ///< dGamma/dX', its rate
+  OnBend E, E_rate;      ///< dGamma/dX, its rate
+  SkewBlocks D, D_rate;  ///< of g and g_rate in X
+  SkewBlocks H;          ///< of E in X
 
   template <bool Offsets>
-  BentSpin(const ShaftBeam<Offsets>& b, const Nodes<2>& x, const Strain<One>& s)
-      : o1(Offsets ? b.c.o1 : 0.0),
-        o2(Offsets ? b.c.o2 : 0.0),
-        a(s.chord.a),
-        il(s.chord.inverse) {
-    P = il * (Mat3::Identity() - a * a.transpose());
-    const Vec3* velocity[4] = {&x[0]->du, &x[0]->dd, &x[1]->du, &x[1]->dd};
-    const Vec3* accel[4] = {&x[0]->ddu, &x[0]->ddd, &x[1]->ddu, &x[1]->ddd};
-    Vector<14> v = Vector<14>::Zero();
-    for (int l = 0; l < 4; ++l)
-      v.segment<3>(pos[l]) = *velocity[l];
-    const Vec3 lambda_rate = x[1]->du - x[0]->du + o2 * x[1]->dd - o1 * x[0]->dd;
-    const Vec3 a_rate = P * lambda_rate;
-    const Mat3 P_rate = turned(a_rate, lambda_rate);
-    const Vec3 d[2] = {s.d1, s.d2}, delta[2] = {s.end1.delta, s.end2.delta};
-    Vec3 y = Vec3::Zero(), y_accel = Vec3::Zero();
-    for (int i = 0; i < 2; ++i) {
-      Vec3 z = Vec3::Zero(), z_rate = Vec3::Zero();
-      for (int l = 0; l < 4; ++l) {
-        z += b.spread(l, i) * *velocity[l];
-        z_rate += b.spread(l, i) * *accel[l];
+  BentSpin(const ShaftBeam<Offsets>& beam, const Nodes<2>& x, const Strain<One>& strain) {
+    const BentShape<Offsets> at(beam, x, strain);
+    const Vec3 &b = at.b, &b1 = at.b_rate, &w = at.w;
+    const Vec3* sigma = at.sigma;
+    const Vec3 b2 = at.chord(x[0]->ddu, x[0]->ddd, x[1]->ddu, x[1]->ddd);
+    const Vec3 *d1[2] = {&x[0]->dd, &x[1]->dd}, *d2[2] = {&x[0]->ddd, &x[1]->ddd};
+    const Vec3 kappa1 = at.c[0] * (*d1[0] - b1) + at.c[1] * (*d1[1] - b1);
+    Vec3 w1 = b2.cross(at.kappa);
+    for (int k = 0; k < 2; ++k)
+      w1 += sigma[k].cross(*d2[k]) + beam.bend[3 + k] * b1.cross(*d1[k]);
+    value = b.dot(w);
+    rate = b1.dot(w) + b.dot(w1);
+    g[0] = -b.cross(at.kappa);
+    g_rate[0] = -b1.cross(at.kappa) - b.cross(kappa1);
+    E[0] = w;
+    E_rate[0] = w1;
+    D[0][0] = at.kappa + (at.c[0] + at.c[1]) * b;
+    D_rate[0][0] = kappa1 + (at.c[0] + at.c[1]) * b1;
+    H[0][0] = Vec3::Zero();
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::size_t i = k + 1;
+      const double S1 = beam.bend[static_cast<Index>(k)], S2 = beam.bend[static_cast<Index>(i)];
+      const Vec3 turn = S1 * *d1[0] + S2 * *d1[1], turn1 = S1 * *d2[0] + S2 * *d2[1];
+      const Vec3 sigma1 = turn - at.sum[k] * b1;
+      const Vec3 eta = turn - at.c[k] * b1, eta1 = turn1 - at.c[k] * b2;
+      g[i] = b.cross(sigma[k]);
+      g_rate[i] = b1.cross(sigma[k]) + b.cross(sigma1);
+      E[i] = eta.cross(b);
+      E_rate[i] = eta1.cross(b) + eta.cross(b1);
+      E[0] -= E[i];
+      E_rate[0] -= E_rate[i];
+      D[i][0] = -sigma[k] - at.sum[k] * b;
+      D_rate[i][0] = -turn;
+      D[0][i] = -at.c[k] * b;
+      D_rate[0][i] = -at.c[k] * b1;
+      H[i][0] = eta;
+      H[0][i] = -eta;
+      for (std::size_t j = 0; j < 2; ++j) {
+        const double s = beam.bend[static_cast<Index>(k + j)];
+        D[i][j + 1] = s * b;
+        D_rate[i][j + 1] = s * b1;
+        H[i][j + 1] = Vec3::Zero();
       }
-      const int at_d = pos[2 * i + 1];
-      const Vec3& d_rate = *velocity[2 * i + 1];
-      Rows J = Rows::Zero(), J_rate = Rows::Zero(), bend = Rows::Zero();
-      put_chord(-skew(d[i]) * P, J);
-      J.middleCols<3>(at_d) += skew(a);
-      put_chord(-skew(d[i]) * P_rate - skew(d_rate) * P, J_rate);
-      J_rate.middleCols<3>(at_d) += skew(a_rate);
-      put_chord(skew(z) * P, bend);
-      const Vec3 c = a.cross(delta[i]);
-      const Vec3 c_rate = a_rate.cross(delta[i]) + a.cross(d_rate - a_rate);
-      value += z.dot(c);
-      rate += z_rate.dot(c) + z.dot(c_rate);
-      for (int l = 0; l < 4; ++l) {
-        g.segment<3>(pos[l]) += b.spread(l, i) * c;
-        g_rate.segment<3>(pos[l]) += b.spread(l, i) * c_rate;
-        D.middleRows<3>(pos[l]) += b.spread(l, i) * J;
-        D_rate.middleRows<3>(pos[l]) += b.spread(l, i) * J_rate;
-      }
-      E.segment<3>(at_d) += z.cross(a);
-      rate_by_X.segment<3>(at_d) += z_rate.cross(a);
-      H.middleRows<3>(at_d) += bend;
-      H.middleCols<3>(at_d) += bend.transpose();
-      y += d[i].cross(z);
-      y_accel += d[i].cross(z_rate);
     }
-    const Vec3 Py = P * y;
-    put_chord(Py, E);
-    put_chord(P * y_accel, rate_by_X);
-    Rows on_chord = Rows::Zero();
-    put_chord(turned(Py, y), on_chord);
-    const double share[4] = {-1.0, -o1, 1.0, o2};
-    for (int l = 0; l < 4; ++l)
-      H.middleRows<3>(pos[l]) += share[l] * on_chord;
-    rate_by_X += H * v;
+    for (OnBend* f : {&g, &g_rate, &E, &E_rate})
+      to_lambda(beam, (*f)[0], (*f)[1], (*f)[2]);
+    for (SkewBlocks* m : {&D, &D_rate, &H}) {
+      for (OnBend& row : *m)
+        to_lambda(beam, row[0], row[1], row[2]);
+      for (std::size_t j = 0; j < 3; ++j)
+        to_lambda(beam, (*m)[0][j], (*m)[1][j], (*m)[2][j]);
+    }
   }
 
- private:
-  /// Derivative of P x in lambda, x fixed and Px = P x.
-  Mat3 turned(const Vec3& Px, const Vec3& x) const {
-    return -il * (Px * a.transpose() + a * Px.transpose() + a.dot(x) * P);
+  static Vector<14> in_element(const OnBend& f) {
+    Vector<14> r;
+    r << -f[0], f[1], 0.0, f[0], f[2], 0.0;
+    return r;
   }
-  void put_chord(const Mat3& m, Rows& to) const {
-    to.middleCols<3>(0) -= m;
-    to.middleCols<3>(3) -= o1 * m;
-    to.middleCols<3>(7) += m;
-    to.middleCols<3>(10) += o2 * m;
-  }
-  void put_chord(const Vec3& f, Vector<14>& to) const {
-    to.segment<3>(0) -= f;
-    to.segment<3>(3) -= o1 * f;
-    to.segment<3>(7) += f;
-    to.segment<3>(10) += o2 * f;
-  }
-  double o1, o2;
-  Vec3 a;
-  double il;
-  Mat3 P;
 };
+
+/// m += [v] by blocks (lambda, d1, d2) of a row and a column.
+void add_skew_blocks(const SkewBlocks& v, Matrix<14>& m) {
+  const auto add = [&](int r, int q, const Vec3& x) {
+    m(r, q + 1) -= x.z();
+    m(r, q + 2) += x.y();
+    m(r + 1, q) += x.z();
+    m(r + 1, q + 2) -= x.x();
+    m(r + 2, q) -= x.y();
+    m(r + 2, q + 1) += x.x();
+  };
+  add(0, 0, v[0][0]);
+  add(7, 7, v[0][0]);
+  add(0, 7, -v[0][0]);
+  add(7, 0, -v[0][0]);
+  for (std::size_t i = 1; i < 3; ++i) {
+    const int at_d = i == 1 ? 3 : 10;
+    add(0, at_d, -v[0][i]);
+    add(7, at_d, v[0][i]);
+    add(at_d, 0, -v[i][0]);
+    add(at_d, 7, v[i][0]);
+    add(at_d, 3, v[i][1]);
+    add(at_d, 10, v[i][2]);
+  }
+}
 
 /// Of the force of s Gamma, s the mean spin, s_v = ds/dX', but for what stands in the nodes' own
 /// Gamma/2 and Gamma'/2 (add_polar_tangent): f = s' g + s (g' - E) + s_v Gamma' - Gamma/2 d x d'.
 void add_bent_tangent(const BentSpin& b, const Nodes<2>& x, const SpinRate (&sp)[2],
                       TangentX<14>& out) {
   const double s = 0.5 * (sp[0].s + sp[1].s), s_rate = 0.5 * (sp[0].sdot + sp[1].sdot);
-  Vector<14> s_v = Vector<14>::Zero(), s_q = s_v, s_rate_v = s_v, s_rate_q = s_v, moment = s_v;
+  const Vector<14> g = BentSpin::in_element(b.g), g_rate = BentSpin::in_element(b.g_rate),
+                   E = BentSpin::in_element(b.E), E_rate = BentSpin::in_element(b.E_rate);
+  const Vector<14> curl = g_rate - E, rate_v = g_rate + E;
   for (int i = 0; i < 2; ++i) {
     const NodeState& node = *x[static_cast<std::size_t>(i)];
-    const int at_d = 7 * i + 3;
-    s_v[7 * i + 6] = 0.5;
-    s_v.segment<3>(at_d) = -0.5 * sp[i].w;
-    s_q.segment<3>(at_d) = 0.5 * sp[i].s_d;
-    s_rate_v.segment<3>(at_d) = 0.5 * sp[i].sdot_dd;
-    s_rate_q.segment<3>(at_d) = 0.5 * sp[i].sdot_d;
-    moment.segment<3>(at_d) = -0.5 * node.d().cross(node.dd);
+    const int at_d = 7 * i + 3, at_phi = 7 * i + 6;
+    // (d, phi) of a node stand together
+    Vector<4> s_v, moment;
+    s_v << -0.5 * sp[i].w, 0.5;
+    moment << -0.5 * node.d().cross(node.dd), 0.0;
+    out.M.middleRows<4>(at_d) += s_v * g.transpose();
+    out.C.middleRows<4>(at_d) += s_v * rate_v.transpose() + moment * g.transpose();
+    out.K.middleRows<4>(at_d) += s_v * E_rate.transpose() + moment * E.transpose();
+    out.M.middleCols<4>(at_d) += g * s_v.transpose();
+    out.C.col(at_phi) += 0.5 * curl;
+    for (int j = 0; j < 3; ++j) {
+      out.C.col(at_d + j) += (0.5 * sp[i].sdot_dd[j]) * g + s_v[j] * curl;
+      out.K.col(at_d + j) += (0.5 * sp[i].sdot_d[j]) * g + (0.5 * sp[i].s_d[j]) * curl;
+    }
   }
-  const Vector<14> curl = b.g_rate - b.E, rate_v = b.g_rate + b.E;
-  out.M += b.g * s_v.transpose() + s_v * b.g.transpose();
-  out.C += b.g * s_rate_v.transpose() + curl * s_v.transpose() + s_v * rate_v.transpose() +
-           moment * b.g.transpose() + s * (b.D - b.D.transpose());
-  out.K += b.g * s_rate_q.transpose() + curl * s_q.transpose() + s_v * b.rate_by_X.transpose() +
-           moment * b.E.transpose() + s_rate * b.D + s * (b.D_rate - b.H);
+  SkewBlocks on_C, on_K;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      on_C[i][j] = s * (b.D[i][j] + b.D[j][i]);  // D - D^T
+      on_K[i][j] = s_rate * b.D[i][j] + s * (b.D_rate[i][j] - b.H[i][j]);
+    }
+  add_skew_blocks(on_C, out.C);
+  add_skew_blocks(on_K, out.K);
 }
 
 /// Of the polar inertia on the spins: h = polar s + Gamma/2; f_phi = h', f_d = -h' w - h d x d'.
@@ -507,23 +563,21 @@ void add_polar_tangent(const Mat2& polar, const BentSpin& bent, const Nodes<2>& 
   }
 }
 
-/// The matrix of Gamma. With a fixed, delta = Delta X and G = G4 - lumped, whose contractions with
-/// rigid motions vanish, the couple of s Gamma is -s a x G X' if Delta^T S + S^T Delta = -G, S =
-/// spread^T. Of the end rotations alone, X = R delta, S is -1/2 R^T G R (an antisymmetric part would
-/// be a rate, and vanishes where the ends are alike).
-Eigen::Matrix<double, 4, 2> spread_of(const ShaftElementConstants& c) {
+/// S11, S12, S22, r1, r2 of Gamma. With b fixed the couple of s Gamma is to be -s b x G X', G = G4 -
+/// lumped, which contracts with translations to zero and with rotations to a vector across them:
+/// X' = R delta' + a rotation at the rate b', R of the end rotations alone.
+Vector<5> bend_of(const ShaftElementConstants& c) {
   Matrix<4> G = c.G4;
   G(1, 1) -= c.polar.row(0).sum();
   G(3, 3) -= c.polar.row(1).sum();
   Eigen::Matrix<double, 4, 2> R;
   R << -c.o1, 0.0, 1.0, 0.0, 0.0, -c.o2, 0.0, 1.0;
-  const Eigen::RowVector4d slope =
-      Eigen::RowVector4d(-1.0, -c.o1, 1.0, c.o2) / c.length;  // of the chord
-  Eigen::Matrix<double, 2, 4> Delta;
-  Delta.row(0) = Eigen::RowVector4d(0.0, 1.0, 0.0, 0.0) - slope;
-  Delta.row(1) = Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0) - slope;
-  const Mat2 ends = R.transpose() * G * R;
-  return (-R.transpose() * G + 0.5 * ends * Delta).transpose();
+  const Vector<4> turn(0.0, 1.0, c.length + c.o1 - c.o2, 1.0);
+  const Mat2 S = -0.5 * R.transpose() * G * R;
+  const Vec2 r = R.transpose() * G * turn;
+  Vector<5> out;
+  out << S(0, 0), S(0, 1), S(1, 1), r;
+  return out;
 }
 
 }  // namespace
@@ -534,7 +588,8 @@ ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3
       e0(direction) {
   WHIRL_EXPECTS(constants.length > 0.0 && constants.mass >= 0.0);
   WHIRL_EXPECTS(std::abs(direction.norm() - 1.0) < 1e-9);
-  spread = spread_of(c);
+  bend = bend_of(c);
+  inverse = 1.0 / c.length;
   const double mean = 0.5 * (c.k11 + c.k22), EI = 0.5 * c.length * (mean - c.k12);
   if (!(EI > 0)) return;
   // 1/(1 + Phi); a cone without shear gives a little more or less than one
@@ -574,7 +629,8 @@ constexpr bool beam_in_place() {
   static_assert(stands(offsetof(Beam, soft_axial), Places::soft_axial));
   static_assert(stands(offsetof(Beam, soft_shear), Places::soft_shear));
   static_assert(stands(offsetof(Beam, soft_limit), Places::soft_limit));
-  static_assert(stands(offsetof(Beam, spread), Places::spread));
+  static_assert(stands(offsetof(Beam, bend), Places::bend));
+  static_assert(stands(offsetof(Beam, inverse), Places::inverse));
   static_assert(sizeof(Matrix<4>) == 16 * sizeof(double) && sizeof(Mat2) == 4 * sizeof(double));
   return stands(sizeof(Beam), Places::size) && sizeof(Vector<7>) == 7 * sizeof(double);
 }
@@ -631,13 +687,8 @@ void ShaftBeam<Offsets>::add_energy(const Nodes<2>& x, const Context& ctx, Energ
     for (int j = 0; j < 4; ++j)
       T += c.M4(k, j) * vel[k]->dot(*vel[j]);
   const Vec2 spin(x1.spin(), x2.spin());
-  const Vec3 arm[2] = {now.strain.chord.a.cross(now.strain.end1.delta),
-                       now.strain.chord.a.cross(now.strain.end2.delta)};
-  double bent = 0.0;
-  for (int i = 0; i < 2; ++i)
-    for (int l = 0; l < 4; ++l)
-      bent += spread(l, i) * vel[l]->dot(arm[i]);
-  e.kinetic += 0.5 * T + 0.5 * spin.dot(c.polar * spin) + 0.5 * spin.sum() * bent;
+  const BentShape<Offsets> bent(*this, x, now.strain);
+  e.kinetic += 0.5 * T + 0.5 * spin.dot(c.polar * spin) + 0.5 * spin.sum() * bent.b.dot(bent.w);
   // d - e0, not d - e: e moves with the chart, and the weight's moment on the directors of a cone
   // does not cancel.
   const Vec3 shift = x1.e() - e0;

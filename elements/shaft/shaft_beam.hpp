@@ -27,10 +27,12 @@
 // d2); polar inertia 1/2 s^T polar s on the nodal spins s_i = omega_i . d_i; and what the inside of
 // a bent element spins beside the straight line between s1 and s2 (s' along the shaft is the rate
 // of twist less d.(d_s x d')), to first order in it:
-//   T += (s1 + s2)/2 Gamma,   Gamma = sum_i Z_i . (a x delta_i),   Z_i = sum_l spread_li X_l'
-// spread makes the gyroscopic couple of a nearly straight element the consistent one, of matrix G4
-// instead of the lumped row sums of polar (see spread_of), so that whirl frequencies converge at the
-// order of the beam instead of Omega^2 h^2. Gamma does not see rigid motion, T is one function of
+//   T += (s1 + s2)/2 Gamma,
+//   Gamma = b.(sum_ik S_ik delta_i x delta_k' - sum_i r_i delta_i x b'),   delta_i = d_i - b,
+// b = (r2 - r1)/length the chord, which differs from a by the stretch. S, r make the gyroscopic couple
+// of a nearly straight element the consistent one, of matrix G4 instead of the lumped row sums of
+// polar (see bend_of), so that whirl frequencies converge at the order of the beam instead of
+// Omega^2 h^2. Gamma does not see rigid motion, T is one function of
 // the state: a free line keeps its energy, momentum and angular momentum however it is bent.
 // Gravity and base motion enter through NodeState::ddu.
 //
@@ -61,14 +63,15 @@ struct ShaftBeam {
       .angle = system::twist_angle, .spin = true, .weight = true};
 
   ShaftElementConstants c;
-  Eigen::Matrix<double, 4, 2> spread = Eigen::Matrix<double, 4, 2>::Zero();  ///< kg m, kg m^2
-  Vec3 e0 = Vec3::UnitX();        ///< unit vector of the unstressed element, global axes
-  double psi0 = 0;                ///< twist at zero torque, rad
-  double preload = 0;             ///< axial force at w = 0, N, tension positive
-  double soft_torque = 0;         ///< q, N m
-  double soft_axial = 0;          ///< r, m/N
-  double soft_shear = 0;          ///< 1/kGA, 1/N
-  double soft_limit = -infinity;  ///< -kGA/2, N
+  Vector<5> bend = Vector<5>::Zero();  ///< S11, S12, S22, r1, r2 of Gamma, kg m^2
+  double inverse = 0;                  ///< 1/length, 1/m
+  Vec3 e0 = Vec3::UnitX();             ///< unit vector of the unstressed element, global axes
+  double psi0 = 0;                     ///< twist at zero torque, rad
+  double preload = 0;                  ///< axial force at w = 0, N, tension positive
+  double soft_torque = 0;              ///< q, N m
+  double soft_axial = 0;               ///< r, m/N
+  double soft_shear = 0;               ///< 1/kGA, 1/N
+  double soft_limit = -infinity;       ///< -kGA/2, N
 
   ShaftBeam() = default;
   /// @pre positive length, direction a unit vector.

@@ -197,48 +197,55 @@ WHIRL_INLINE void add_inertia(const Group& g, const Node& x1, const Node& x2, V 
 struct BentSpin {
   T value, rate;
 };
-/// f += d(s c_i)/dt spread_i - s dGamma/dX, c_i = a x delta_i, s the mean spin.
+/// f += the force of s Gamma at given s, the mean spin. Gamma = b.w, w = sum_k sigma_k x d_k' + b' x
+/// kappa, with sigma = S delta, kappa = sum_i c_i delta_i, c = S (1, 1) + r, eta_i = sigma_i' - r_i b':
+///   on d_i  b x (s' sigma_i + s (sigma_i' + eta_i)) + s b' x sigma_i,
+///   on b    -b x (s' kappa + s (kappa' + eta_1 + eta_2)) - s (b' x kappa + w)
 template <bool Offsets>
 WHIRL_INLINE BentSpin add_bent_spin(const Group& g, const ElasticForce& elastic, T o1, T o2,
                                     const NodeSpin& sp1, const NodeSpin& sp2, const Node& x1,
                                     const Node& x2, V (&f)[4]) {
-  const V* const acc[4] = {&x1.ddu, &x1.ddd, &x2.ddu, &x2.ddd};
-  const V* const vel[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
-  const V* const delta[2] = {&elastic.delta1, &elastic.delta2};
-  const V d[2] = {g.e + x1.t, g.e + x2.t};
-  const V& a = elastic.chord.a;
+  const double* at[width];
+  for (int i = 0; i < width; ++i)
+    at[i] = g.element[i] + ShaftPlaces::bend;
+  T k[6];
+  load_record(at, k);
+  const T S11 = k[0], S12 = k[1], S22 = k[2], r1 = k[3], r2 = k[4], inverse = k[5];
+  const T c1 = S11 + S12 + r1, c2 = S12 + S22 + r2;
   const T spin = 0.5 * (sp1.s + sp2.s), spin_rate = 0.5 * (sp1.sdot + sp2.sdot);
-  V lambda_rate = x2.du - x1.du;
-  if constexpr (Offsets) lambda_rate = lambda_rate + (o2 * x2.dd - o1 * x1.dd);
-  const V a_rate = elastic.chord.inverse * perpendicular(a, lambda_rate);
-  BentSpin r{};
-  V y{};
-  for (int i = 0; i < 2; ++i) {
-    T column[4];
-    load_column(g.element, ShaftPlaces::spread + 4 * i, column);
-    V z{}, z_rate{};
-    for (int l = 0; l < 4; ++l) {
-      add(z, column[l] * *vel[l]);
-      add(z_rate, column[l] * *acc[l]);
-    }
-    const V c = cross(a, *delta[i]);
-    const V c_rate = cross(a_rate, *delta[i]) + cross(a, *vel[2 * i + 1] - a_rate);
-    r.value = r.value + dot(z, c);
-    r.rate = r.rate + dot(z_rate, c) + dot(z, c_rate);
-    const V p = spin_rate * c + spin * c_rate;
-    for (int l = 0; l < 4; ++l)
-      add(f[l], column[l] * p);
-    f[2 * i + 1] = f[2 * i + 1] - spin * cross(z, a);
-    add(y, cross(d[i], z));
+  const V stretch = (elastic.chord.stretch * inverse) * elastic.chord.a;
+  const V b = elastic.chord.a + stretch;
+  V lambda_rate = x2.du - x1.du, lambda_accel = x2.ddu - x1.ddu;
+  if constexpr (Offsets) {
+    lambda_rate = lambda_rate + (o2 * x2.dd - o1 * x1.dd);
+    lambda_accel = lambda_accel + (o2 * x2.ddd - o1 * x1.ddd);
   }
-  const V on_lambda = (spin * elastic.chord.inverse) * perpendicular(a, y);
+  const V b_rate = inverse * lambda_rate, b_accel = inverse * lambda_accel;
+  const V delta1 = elastic.delta1 - stretch, delta2 = elastic.delta2 - stretch;
+  const V rate1 = x1.dd - b_rate, rate2 = x2.dd - b_rate;
+  const V sigma1 = S11 * delta1 + S12 * delta2, sigma2 = S12 * delta1 + S22 * delta2;
+  const V kappa = c1 * delta1 + c2 * delta2;
+  const V sigma_rate1 = S11 * rate1 + S12 * rate2, sigma_rate2 = S12 * rate1 + S22 * rate2;
+  const V eta1 = sigma_rate1 - r1 * b_rate, eta2 = sigma_rate2 - r2 * b_rate;
+  const V turning = spin * b_rate;
+  const V p1 = cross(b, spin_rate * sigma1 + spin * (sigma_rate1 + eta1)) + cross(turning, sigma1);
+  const V p2 = cross(b, spin_rate * sigma2 + spin * (sigma_rate2 + eta2)) + cross(turning, sigma2);
+  const V sideways = cross(b_rate, kappa);
+  const V w = cross(sigma1, x1.dd) + cross(sigma2, x2.dd) + sideways;
+  const V w_rate = cross(sigma1, x1.ddd) + cross(sigma2, x2.ddd) + cross(b_accel, kappa) +
+                   cross(b_rate, r1 * x1.dd + r2 * x2.dd);
+  const V kappa_rate = c1 * rate1 + c2 * rate2;
+  const V on_lambda = inverse * (cross(b, spin_rate * kappa + spin * (kappa_rate + eta1 + eta2)) +
+                                 spin * (sideways + w));
   add(f[0], on_lambda);
+  add(f[1], p1);
   f[2] = f[2] - on_lambda;
+  add(f[3], p2);
   if constexpr (Offsets) {
     add(f[1], o1 * on_lambda);
     f[3] = f[3] - o2 * on_lambda;
   }
-  return r;
+  return {dot(b, w), dot(b_rate, w) + dot(b, w_rate)};
 }
 
 template <bool Offsets>
