@@ -125,6 +125,7 @@ double LinearMotion::power_beside(time::CRef v, time::CRef residual) {
   for (const auto& term : system().terms())
     term->add_force(w);
   general_.resize(v.size());
+  if (!system().followers().empty()) system().followers().carry_force(w, frames, general_);
   for (Index i = 0; i < system().nodes(); ++i) {
     const Vector<7>& f = w.force[at(i)];
     general_.segment<3>(6 * i) = f.head<3>();
