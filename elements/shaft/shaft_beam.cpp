@@ -8,6 +8,7 @@
 #include <system/stiffness_rate.hpp>
 #include <math.h>
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 namespace whirl::elements {
@@ -339,63 +340,198 @@ void add_elastic_tangent(const ShaftBeam<Offsets>& b, const Vec3& e, const Defor
 /// Start of (x1, d1, x2, d2) in the element's 14.
 constexpr int pos[4] = {0, 3, 7, 10};
 
-/// Of M4 X'' - s a x G4c X', s the mean spin.
-template <bool Offsets>
-void add_inertia_tangent(const ShaftBeam<Offsets>& b, const Nodes<2>& x, const SpinRate (&sp)[2],
-                         const Chord<One>& chord, TangentX<14>& out) {
-  const Vec3* velocity[4] = {&x[0]->du, &x[0]->dd, &x[1]->du, &x[1]->dd};
-  const double mean_spin = 0.5 * (sp[0].s + sp[1].s), rate = mean_spin * chord.inverse;
-  const Vec3 turning = mean_spin * chord.a;
-  auto &M = out.M, &C = out.C, &K = out.K;
-  for (int k = 0; k < 4; ++k) {
-    const int r = pos[k];
-    Vec3 v = Vec3::Zero();
-    for (int j = 0; j < 4; ++j) {
-      const int q = pos[j];
-      v += b.G4c(k, j) * *velocity[j];
-      const Vec3 g = b.G4c(k, j) * turning;
+/// Of M4 X''.
+void add_mass(const Matrix<4>& M4, Matrix<14>& M) {
+  for (int k = 0; k < 4; ++k)
+    for (int j = 0; j < 4; ++j)
       for (int i = 0; i < 3; ++i)
-        M(r + i, q + i) += b.c.M4(k, j);
-      C(r, q + 1) += g.z();
-      C(r, q + 2) -= g.y();
-      C(r + 1, q) -= g.z();
-      C(r + 1, q + 2) += g.x();
-      C(r + 2, q) += g.y();
-      C(r + 2, q + 1) -= g.x();
-    }
-    // -s a x v through the spins, then through a: s [v] P = s ([v] - (v x a) a^T)/l
-    const Vec3 av = 0.5 * chord.a.cross(v);
-    Mat3 through_a = Mat3::Zero();
-    add_skew(through_a, rate, v);
-    add_outer(through_a, -rate * v.cross(chord.a), chord.a);
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 2; ++j)
-        C(r + i, 7 * j + 6) -= av[i];
-      for (int j = 0; j < 3; ++j) {
-        C(r + i, 3 + j) += av[i] * sp[0].w[j];
-        C(r + i, 10 + j) += av[i] * sp[1].w[j];
-        K(r + i, 3 + j) -= av[i] * sp[0].s_d[j];
-        K(r + i, 10 + j) -= av[i] * sp[1].s_d[j];
-        K(r + i, j) -= through_a(i, j);
-        K(r + i, 7 + j) += through_a(i, j);
-        if constexpr (Offsets) {
-          K(r + i, 3 + j) -= b.c.o1 * through_a(i, j);
-          K(r + i, 10 + j) += b.c.o2 * through_a(i, j);
-        }
-      }
-    }
+        M(pos[k] + i, pos[j] + i) += M4(k, j);
+}
+
+/// What a function's derivative in (lambda, d1, d2) has.
+using OnBend = std::array<Vec3, 3>;
+/// Second derivatives, all of them skew matrices [v]: v of row, column.
+using SkewBlocks = std::array<OnBend, 3>;
+
+/// From (b, d1, d2), b = lambda/length, and lambda's part on the offsets.
+template <bool Offsets>
+void to_lambda(const ShaftBeam<Offsets>& beam, Vec3& b, Vec3& d1, Vec3& d2) {
+  b *= beam.inverse;
+  if constexpr (Offsets) {
+    d1 -= beam.c.o1 * b;
+    d2 += beam.c.o2 * b;
   }
 }
 
-/// Of the polar inertia on the spins: h = polar s; f_phi = h', f_d = -h' w - h d x d'.
-void add_polar_tangent(const Mat2& polar, const Nodes<2>& x, const SpinRate (&sp)[2],
-                       TangentX<14>& out) {
+/// What Gamma = b.w, w = sum_k sigma_k x d_k' - kappa x b', consists of (shaft_beam.hpp): sigma = S
+/// delta, kappa = sum_i c_i delta_i, c = S (1, 1) + r.
+template <bool Offsets>
+struct BentShape {
+  const ShaftBeam<Offsets>& beam;
+  Vec3 b, b_rate, w;
+  Vec3 sigma[2], kappa;
+  double sum[2], c[2];
+
+  BentShape(const ShaftBeam<Offsets>& of, const Nodes<2>& x, const Strain<One>& strain) : beam(of) {
+    const Vec3 stretch = strain.chord.stretch * beam.inverse * strain.chord.a;
+    b = strain.chord.a + stretch;
+    b_rate = chord(x[0]->du, x[0]->dd, x[1]->du, x[1]->dd);
+    const Vec3 delta1 = strain.end1.delta - stretch, delta2 = strain.end2.delta - stretch;
+    for (int i = 0; i < 2; ++i) {
+      sum[i] = beam.bend[i] + beam.bend[i + 1];
+      c[i] = sum[i] + beam.bend[3 + i];
+      sigma[i] = beam.bend[i] * delta1 + beam.bend[i + 1] * delta2;
+    }
+    kappa = c[0] * delta1 + c[1] * delta2;
+    w = sigma[0].cross(x[0]->dd) + sigma[1].cross(x[1]->dd) - kappa.cross(b_rate);
+  }
+  /// b of these (x1, d1, x2, d2), or a derivative.
+  Vec3 chord(const Vec3& u1, const Vec3& d1, const Vec3& u2, const Vec3& d2) const {
+    Vec3 lambda = u2 - u1;
+    if constexpr (Offsets) lambda += beam.c.o2 * d2 - beam.c.o1 * d1;
+    return beam.inverse * lambda;
+  }
+};
+
+/// The spin of a bent inside with its derivatives.
+struct BentSpin {
+  double value = 0, rate = 0;
+  OnBend g, g_rate;      ///< dGamma/dX', its rate
+  OnBend E, E_rate;      ///< dGamma/dX, its rate
+  SkewBlocks D, D_rate;  ///< of g and g_rate in X
+  SkewBlocks H;          ///< of E in X
+
+  template <bool Offsets>
+  BentSpin(const ShaftBeam<Offsets>& beam, const Nodes<2>& x, const Strain<One>& strain) {
+    const BentShape<Offsets> at(beam, x, strain);
+    const Vec3 &b = at.b, &b1 = at.b_rate, &w = at.w;
+    const Vec3* sigma = at.sigma;
+    const Vec3 b2 = at.chord(x[0]->ddu, x[0]->ddd, x[1]->ddu, x[1]->ddd);
+    const Vec3 *d1[2] = {&x[0]->dd, &x[1]->dd}, *d2[2] = {&x[0]->ddd, &x[1]->ddd};
+    const Vec3 kappa1 = at.c[0] * (*d1[0] - b1) + at.c[1] * (*d1[1] - b1);
+    Vec3 w1 = b2.cross(at.kappa);
+    for (int k = 0; k < 2; ++k)
+      w1 += sigma[k].cross(*d2[k]) + beam.bend[3 + k] * b1.cross(*d1[k]);
+    value = b.dot(w);
+    rate = b1.dot(w) + b.dot(w1);
+    g[0] = -b.cross(at.kappa);
+    g_rate[0] = -b1.cross(at.kappa) - b.cross(kappa1);
+    E[0] = w;
+    E_rate[0] = w1;
+    D[0][0] = at.kappa + (at.c[0] + at.c[1]) * b;
+    D_rate[0][0] = kappa1 + (at.c[0] + at.c[1]) * b1;
+    H[0][0] = Vec3::Zero();
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::size_t i = k + 1;
+      const double S1 = beam.bend[static_cast<Index>(k)], S2 = beam.bend[static_cast<Index>(i)];
+      const Vec3 turn = S1 * *d1[0] + S2 * *d1[1], turn1 = S1 * *d2[0] + S2 * *d2[1];
+      const Vec3 sigma1 = turn - at.sum[k] * b1;
+      const Vec3 eta = turn - at.c[k] * b1, eta1 = turn1 - at.c[k] * b2;
+      g[i] = b.cross(sigma[k]);
+      g_rate[i] = b1.cross(sigma[k]) + b.cross(sigma1);
+      E[i] = eta.cross(b);
+      E_rate[i] = eta1.cross(b) + eta.cross(b1);
+      E[0] -= E[i];
+      E_rate[0] -= E_rate[i];
+      D[i][0] = -sigma[k] - at.sum[k] * b;
+      D_rate[i][0] = -turn;
+      D[0][i] = -at.c[k] * b;
+      D_rate[0][i] = -at.c[k] * b1;
+      H[i][0] = eta;
+      H[0][i] = -eta;
+      for (std::size_t j = 0; j < 2; ++j) {
+        const double s = beam.bend[static_cast<Index>(k + j)];
+        D[i][j + 1] = s * b;
+        D_rate[i][j + 1] = s * b1;
+        H[i][j + 1] = Vec3::Zero();
+      }
+    }
+    for (OnBend* f : {&g, &g_rate, &E, &E_rate})
+      to_lambda(beam, (*f)[0], (*f)[1], (*f)[2]);
+    for (SkewBlocks* m : {&D, &D_rate, &H}) {
+      for (OnBend& row : *m)
+        to_lambda(beam, row[0], row[1], row[2]);
+      for (std::size_t j = 0; j < 3; ++j)
+        to_lambda(beam, (*m)[0][j], (*m)[1][j], (*m)[2][j]);
+    }
+  }
+
+  static Vector<14> in_element(const OnBend& f) {
+    Vector<14> r;
+    r << -f[0], f[1], 0.0, f[0], f[2], 0.0;
+    return r;
+  }
+};
+
+/// m += [v] by blocks (lambda, d1, d2) of a row and a column.
+void add_skew_blocks(const SkewBlocks& v, Matrix<14>& m) {
+  const auto add = [&](int r, int q, const Vec3& x) {
+    m(r, q + 1) -= x.z();
+    m(r, q + 2) += x.y();
+    m(r + 1, q) += x.z();
+    m(r + 1, q + 2) -= x.x();
+    m(r + 2, q) -= x.y();
+    m(r + 2, q + 1) += x.x();
+  };
+  add(0, 0, v[0][0]);
+  add(7, 7, v[0][0]);
+  add(0, 7, -v[0][0]);
+  add(7, 0, -v[0][0]);
+  for (std::size_t i = 1; i < 3; ++i) {
+    const int at_d = i == 1 ? 3 : 10;
+    add(0, at_d, -v[0][i]);
+    add(7, at_d, v[0][i]);
+    add(at_d, 0, -v[i][0]);
+    add(at_d, 7, v[i][0]);
+    add(at_d, 3, v[i][1]);
+    add(at_d, 10, v[i][2]);
+  }
+}
+
+/// Of the force of s Gamma, s the mean spin, s_v = ds/dX', but for what stands in the nodes' own
+/// Gamma/2 and Gamma'/2 (add_polar_tangent): f = s' g + s (g' - E) + s_v Gamma' - Gamma/2 d x d'.
+void add_bent_tangent(const BentSpin& b, const Nodes<2>& x, const SpinRate (&sp)[2],
+                      TangentX<14>& out) {
+  const double s = 0.5 * (sp[0].s + sp[1].s), s_rate = 0.5 * (sp[0].sdot + sp[1].sdot);
+  const Vector<14> g = BentSpin::in_element(b.g), g_rate = BentSpin::in_element(b.g_rate),
+                   E = BentSpin::in_element(b.E), E_rate = BentSpin::in_element(b.E_rate);
+  const Vector<14> curl = g_rate - E, rate_v = g_rate + E;
+  for (int i = 0; i < 2; ++i) {
+    const NodeState& node = *x[static_cast<std::size_t>(i)];
+    const int at_d = 7 * i + 3, at_phi = 7 * i + 6;
+    // (d, phi) of a node stand together
+    Vector<4> s_v, moment;
+    s_v << -0.5 * sp[i].w, 0.5;
+    moment << -0.5 * node.d().cross(node.dd), 0.0;
+    out.M.middleRows<4>(at_d) += s_v * g.transpose();
+    out.C.middleRows<4>(at_d) += s_v * rate_v.transpose() + moment * g.transpose();
+    out.K.middleRows<4>(at_d) += s_v * E_rate.transpose() + moment * E.transpose();
+    out.M.middleCols<4>(at_d) += g * s_v.transpose();
+    out.C.col(at_phi) += 0.5 * curl;
+    for (int j = 0; j < 3; ++j) {
+      out.C.col(at_d + j) += (0.5 * sp[i].sdot_dd[j]) * g + s_v[j] * curl;
+      out.K.col(at_d + j) += (0.5 * sp[i].sdot_d[j]) * g + (0.5 * sp[i].s_d[j]) * curl;
+    }
+  }
+  SkewBlocks on_C, on_K;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      on_C[i][j] = s * (b.D[i][j] + b.D[j][i]);  // D - D^T
+      on_K[i][j] = s_rate * b.D[i][j] + s * (b.D_rate[i][j] - b.H[i][j]);
+    }
+  add_skew_blocks(on_C, out.C);
+  add_skew_blocks(on_K, out.K);
+}
+
+/// Of the polar inertia on the spins: h = polar s + Gamma/2; f_phi = h', f_d = -h' w - h d x d'.
+void add_polar_tangent(const Mat2& polar, const BentSpin& bent, const Nodes<2>& x,
+                       const SpinRate (&sp)[2], TangentX<14>& out) {
   auto &M = out.M, &C = out.C, &K = out.K;
   for (int i = 0; i < 2; ++i) {
     const NodeState& node = *x[static_cast<std::size_t>(i)];
     const int r = 7 * i;
-    const double h = polar(i, 0) * sp[0].s + polar(i, 1) * sp[1].s;
-    const double hdot = polar(i, 0) * sp[0].sdot + polar(i, 1) * sp[1].sdot;
+    const double h = polar(i, 0) * sp[0].s + polar(i, 1) * sp[1].s + 0.5 * bent.value;
+    const double hdot = polar(i, 0) * sp[0].sdot + polar(i, 1) * sp[1].sdot + 0.5 * bent.rate;
     const Vec3 d = node.d(), dxd = d.cross(node.dd);
     const Mat3 W = sp[i].W();
     Mat3 on_d = Mat3::Zero(), on_dd = Mat3::Zero();
@@ -427,6 +563,23 @@ void add_polar_tangent(const Mat2& polar, const Nodes<2>& x, const SpinRate (&sp
   }
 }
 
+/// S11, S12, S22, r1, r2 of Gamma. With b fixed the couple of s Gamma is to be -s b x G X', G = G4 -
+/// lumped, which contracts with translations to zero and with rotations to a vector across them:
+/// X' = R delta' + a rotation at the rate b', R of the end rotations alone.
+Vector<5> bend_of(const ShaftElementConstants& c) {
+  Matrix<4> G = c.G4;
+  G(1, 1) -= c.polar.row(0).sum();
+  G(3, 3) -= c.polar.row(1).sum();
+  Eigen::Matrix<double, 4, 2> R;
+  R << -c.o1, 0.0, 1.0, 0.0, 0.0, -c.o2, 0.0, 1.0;
+  const Vector<4> turn(0.0, 1.0, c.length + c.o1 - c.o2, 1.0);
+  const Mat2 S = -0.5 * R.transpose() * G * R;
+  const Vec2 r = R.transpose() * G * turn;
+  Vector<5> out;
+  out << S(0, 0), S(0, 1), S(1, 1), r;
+  return out;
+}
+
 }  // namespace
 
 template <bool Offsets>
@@ -435,9 +588,8 @@ ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3
       e0(direction) {
   WHIRL_EXPECTS(constants.length > 0.0 && constants.mass >= 0.0);
   WHIRL_EXPECTS(std::abs(direction.norm() - 1.0) < 1e-9);
-  G4c = c.G4;
-  G4c(1, 1) -= c.polar.row(0).sum();
-  G4c(3, 3) -= c.polar.row(1).sum();
+  bend = bend_of(c);
+  inverse = 1.0 / c.length;
   const double mean = 0.5 * (c.k11 + c.k22), EI = 0.5 * c.length * (mean - c.k12);
   if (!(EI > 0)) return;
   // 1/(1 + Phi); a cone without shear gives a little more or less than one
@@ -477,7 +629,8 @@ constexpr bool beam_in_place() {
   static_assert(stands(offsetof(Beam, soft_axial), Places::soft_axial));
   static_assert(stands(offsetof(Beam, soft_shear), Places::soft_shear));
   static_assert(stands(offsetof(Beam, soft_limit), Places::soft_limit));
-  static_assert(stands(offsetof(Beam, G4c), Places::G4c));
+  static_assert(stands(offsetof(Beam, bend), Places::bend));
+  static_assert(stands(offsetof(Beam, inverse), Places::inverse));
   static_assert(sizeof(Matrix<4>) == 16 * sizeof(double) && sizeof(Mat2) == 4 * sizeof(double));
   return stands(sizeof(Beam), Places::size) && sizeof(Vector<7>) == 7 * sizeof(double);
 }
@@ -512,8 +665,10 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
   const Deformed now(*this, *x[0], *x[1]);
   const SpinRate spin[2] = {SpinRate(*x[0]), SpinRate(*x[1])};
   add_elastic_tangent(*this, x[0]->e(), now, out.K);
-  add_inertia_tangent(*this, x, spin, now.strain.chord, out);
-  add_polar_tangent(c.polar, x, spin, out);
+  add_mass(c.M4, out.M);
+  const BentSpin bent(*this, x, now.strain);
+  add_bent_tangent(bent, x, spin, out);
+  add_polar_tangent(c.polar, bent, x, spin, out);
 }
 
 template <bool Offsets>
@@ -532,7 +687,8 @@ void ShaftBeam<Offsets>::add_energy(const Nodes<2>& x, const Context& ctx, Energ
     for (int j = 0; j < 4; ++j)
       T += c.M4(k, j) * vel[k]->dot(*vel[j]);
   const Vec2 spin(x1.spin(), x2.spin());
-  e.kinetic += 0.5 * T + 0.5 * spin.dot(c.polar * spin);
+  const BentShape<Offsets> bent(*this, x, now.strain);
+  e.kinetic += 0.5 * T + 0.5 * spin.dot(c.polar * spin) + 0.5 * spin.sum() * bent.b.dot(bent.w);
   // d - e0, not d - e: e moves with the chart, and the weight's moment on the directors of a cone
   // does not cancel.
   const Vec3 shift = x1.e() - e0;

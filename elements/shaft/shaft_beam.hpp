@@ -24,11 +24,17 @@
 // size leaves l, n, m, tau and psi unchanged.
 //
 // Inertia: T = 1/2 X'^T (M4 (x) 1) X' with the constant M4 of shaft_constants.hpp, X = (x1, d1, x2,
-// d2); polar inertia T = 1/2 s^T polar s on the nodal spins s_i = omega_i . d_i, and the consistent
-// gyroscopic correction
-//   f_k -= (s1+s2)/2 sum_l (G4 - lumped)_kl a x X_l'
-// (skew, so it does no work; it makes whirl frequencies converge at the order of the beam instead
-// of Omega^2 h^2). Gravity and base motion enter through NodeState::ddu.
+// d2); polar inertia 1/2 s^T polar s on the nodal spins s_i = omega_i . d_i; and what the inside of
+// a bent element spins beside the straight line between s1 and s2 (s' along the shaft is the rate
+// of twist less d.(d_s x d')), to first order in it:
+//   T += (s1 + s2)/2 Gamma,
+//   Gamma = b.(sum_ik S_ik delta_i x delta_k' - sum_i r_i delta_i x b'),   delta_i = d_i - b,
+// b = (r2 - r1)/length the chord, which differs from a by the stretch. S, r make the gyroscopic couple
+// of a nearly straight element the consistent one, of matrix G4 instead of the lumped row sums of
+// polar (see bend_of), so that whirl frequencies converge at the order of the beam instead of
+// Omega^2 h^2. Gamma does not see rigid motion, T is one function of
+// the state: a free line keeps its energy, momentum and angular momentum however it is bent.
+// Gravity and base motion enter through NodeState::ddu.
 //
 // Units SI. Limits: angle between chord and normal of one element below pi; axisymmetric sections;
 // small strain. Sources: kinematics Sorokin & Zhang 2018, doi 10.18698/2308-6033-2018-10-1815;
@@ -57,14 +63,15 @@ struct ShaftBeam {
       .angle = system::twist_angle, .spin = true, .weight = true};
 
   ShaftElementConstants c;
-  Matrix<4> G4c = Matrix<4>::Zero();  ///< G4 - diag(0, polar row sum 1, 0, polar row sum 2)
-  Vec3 e0 = Vec3::UnitX();            ///< unit vector of the unstressed element, global axes
-  double psi0 = 0;                    ///< twist at zero torque, rad
-  double preload = 0;                 ///< axial force at w = 0, N, tension positive
-  double soft_torque = 0;             ///< q, N m
-  double soft_axial = 0;              ///< r, m/N
-  double soft_shear = 0;              ///< 1/kGA, 1/N
-  double soft_limit = -infinity;      ///< -kGA/2, N
+  Vector<5> bend = Vector<5>::Zero();  ///< S11, S12, S22, r1, r2 of Gamma, kg m^2
+  double inverse = 0;                  ///< 1/length, 1/m
+  Vec3 e0 = Vec3::UnitX();             ///< unit vector of the unstressed element, global axes
+  double psi0 = 0;                     ///< twist at zero torque, rad
+  double preload = 0;                  ///< axial force at w = 0, N, tension positive
+  double soft_torque = 0;              ///< q, N m
+  double soft_axial = 0;               ///< r, m/N
+  double soft_shear = 0;               ///< 1/kGA, 1/N
+  double soft_limit = -infinity;       ///< -kGA/2, N
 
   ShaftBeam() = default;
   /// @pre positive length, direction a unit vector.

@@ -17,12 +17,12 @@ struct ShaftPlaces {
   static constexpr int length = 0, o1 = 1, o2 = 2, EA_l = 3;
   static constexpr int b11 = 4, b12 = 5, b22 = 6, k11 = 7, k12 = 8, k22 = 9, GJ_l = 10, tau_c = 11;
   static constexpr int scalars = 12;  ///< so many of them
-  static constexpr int M4 = 12, polar = 44, G4c = 52;
-  static constexpr int rest = 68;  ///< start of those from e0 to soft_limit
-  static constexpr int e0 = 68, psi0 = 71, preload = 72;
-  static constexpr int soft_torque = 73, soft_axial = 74, soft_shear = 75, soft_limit = 76;
-  static constexpr int after_rest = 77;
-  static constexpr int size = 80;  ///< from one element to the next
+  static constexpr int M4 = 12, polar = 44, bend = 52, inverse = 57;
+  static constexpr int rest = 58;  ///< start of those from e0 to soft_limit
+  static constexpr int e0 = 58, psi0 = 61, preload = 62;
+  static constexpr int soft_torque = 63, soft_axial = 64, soft_shear = 65, soft_limit = 66;
+  static constexpr int after_rest = 67;
+  static constexpr int size = 68;  ///< from one element to the next
 };
 
 /// Where the numbers of a ShaftDamping stand.

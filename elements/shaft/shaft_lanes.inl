@@ -131,8 +131,10 @@ WHIRL_INLINE Shaft load_shaft(const double* const* at) {
 
 /// On (lambda, d1, d2), and the torque.
 struct ElasticForce {
-  V lambda, d1, d2, a;  // a: direction of the chord
+  V lambda, d1, d2;
   T torque;
+  Chord<Lanes> chord;
+  V delta1, delta2;
 };
 template <bool Offsets>
 WHIRL_INLINE ElasticForce elastic_force(const Shaft& k, V e, const Node& x1, const Node& x2) {
@@ -146,7 +148,13 @@ WHIRL_INLINE ElasticForce elastic_force(const Shaft& k, V e, const Node& x1, con
   const Gradient<Lanes> bending = bending_gradient(bending_slopes(c.c11, c.c12, c.c22, s), s);
   const Gradient<Lanes> g =
       elastic_gradient(bending, stress.torque, twist_gradient(twist, k.c.tau_c, s));
-  ElasticForce f{chord_gradient(s.chord, stress.N, g.a), g.d1, g.d2, s.chord.a, stress.torque};
+  ElasticForce f{chord_gradient(s.chord, stress.N, g.a),
+                 g.d1,
+                 g.d2,
+                 stress.torque,
+                 s.chord,
+                 s.end1.delta,
+                 s.end2.delta};
   if constexpr (Offsets) {
     add(f.d1, -(k.o1 * f.lambda));
     add(f.d2, k.o2 * f.lambda);
@@ -174,38 +182,89 @@ WHIRL_INLINE void load_column(const double* const* element, int place, T (&colum
   load_record(p, column);
 }
 
-/// f += M4 X'' - (s1 + s2)/2 a x G4c X' on X = (x1, d1, x2, d2).
-WHIRL_INLINE void add_inertia(const Group& g, V mean_spin, const Node& x1, const Node& x2,
-                              V (&f)[4]) {
+/// f += M4 X'' on X = (x1, d1, x2, d2).
+WHIRL_INLINE void add_inertia(const Group& g, const Node& x1, const Node& x2, V (&f)[4]) {
   const V* const acc[4] = {&x1.ddu, &x1.ddd, &x2.ddu, &x2.ddd};
-  const V* const vel[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
-  V v[4] = {};
   for (int j = 0; j < 4; ++j) {
     T column[4];
     load_column(g.element, ShaftPlaces::M4 + 4 * j, column);
     for (int k = 0; k < 4; ++k)
       add(f[k], column[k] * *acc[j]);
-    load_column(g.element, ShaftPlaces::G4c + 4 * j, column);
-    for (int k = 0; k < 4; ++k)
-      add(v[k], column[k] * *vel[j]);
   }
-  for (int k = 0; k < 4; ++k)
-    f[k] = f[k] - cross(mean_spin, v[k]);
+}
+
+/// Of the spin of a bent inside: Gamma and its rate, on the spins.
+struct BentSpin {
+  T value, rate;
+};
+/// f += the force of s Gamma at given s, the mean spin. Gamma = b.w, w = sum_k sigma_k x d_k' + b' x
+/// kappa, with sigma = S delta, kappa = sum_i c_i delta_i, c = S (1, 1) + r, eta_i = sigma_i' - r_i b':
+///   on d_i  b x (s' sigma_i + s (sigma_i' + eta_i)) + s b' x sigma_i,
+///   on b    -b x (s' kappa + s (kappa' + eta_1 + eta_2)) - s (b' x kappa + w)
+template <bool Offsets>
+WHIRL_INLINE BentSpin add_bent_spin(const Group& g, const ElasticForce& elastic, T o1, T o2,
+                                    const NodeSpin& sp1, const NodeSpin& sp2, const Node& x1,
+                                    const Node& x2, V (&f)[4]) {
+  const double* at[width];
+  for (int i = 0; i < width; ++i)
+    at[i] = g.element[i] + ShaftPlaces::bend;
+  T k[6];
+  load_record(at, k);
+  const T S11 = k[0], S12 = k[1], S22 = k[2], r1 = k[3], r2 = k[4], inverse = k[5];
+  const T c1 = S11 + S12 + r1, c2 = S12 + S22 + r2;
+  const T spin = 0.5 * (sp1.s + sp2.s), spin_rate = 0.5 * (sp1.sdot + sp2.sdot);
+  const V stretch = (elastic.chord.stretch * inverse) * elastic.chord.a;
+  const V b = elastic.chord.a + stretch;
+  V lambda_rate = x2.du - x1.du, lambda_accel = x2.ddu - x1.ddu;
+  if constexpr (Offsets) {
+    lambda_rate = lambda_rate + (o2 * x2.dd - o1 * x1.dd);
+    lambda_accel = lambda_accel + (o2 * x2.ddd - o1 * x1.ddd);
+  }
+  const V b_rate = inverse * lambda_rate, b_accel = inverse * lambda_accel;
+  const V delta1 = elastic.delta1 - stretch, delta2 = elastic.delta2 - stretch;
+  const V rate1 = x1.dd - b_rate, rate2 = x2.dd - b_rate;
+  const V sigma1 = S11 * delta1 + S12 * delta2, sigma2 = S12 * delta1 + S22 * delta2;
+  const V kappa = c1 * delta1 + c2 * delta2;
+  const V sigma_rate1 = S11 * rate1 + S12 * rate2, sigma_rate2 = S12 * rate1 + S22 * rate2;
+  const V eta1 = sigma_rate1 - r1 * b_rate, eta2 = sigma_rate2 - r2 * b_rate;
+  const V turning = spin * b_rate;
+  const V p1 = cross(b, spin_rate * sigma1 + spin * (sigma_rate1 + eta1)) + cross(turning, sigma1);
+  const V p2 = cross(b, spin_rate * sigma2 + spin * (sigma_rate2 + eta2)) + cross(turning, sigma2);
+  const V sideways = cross(b_rate, kappa);
+  const V w = cross(sigma1, x1.dd) + cross(sigma2, x2.dd) + sideways;
+  const V w_rate = cross(sigma1, x1.ddd) + cross(sigma2, x2.ddd) + cross(b_accel, kappa) +
+                   cross(b_rate, r1 * x1.dd + r2 * x2.dd);
+  const V kappa_rate = c1 * rate1 + c2 * rate2;
+  const V on_lambda = inverse * (cross(b, spin_rate * kappa + spin * (kappa_rate + eta1 + eta2)) +
+                                 spin * (sideways + w));
+  add(f[0], on_lambda);
+  add(f[1], p1);
+  f[2] = f[2] - on_lambda;
+  add(f[3], p2);
+  if constexpr (Offsets) {
+    add(f[1], o1 * on_lambda);
+    f[3] = f[3] - o2 * on_lambda;
+  }
+  return {dot(b, w), dot(b_rate, w) + dot(b, w_rate)};
 }
 
 template <bool Offsets>
 WHIRL_INLINE void add_shafts(const Elements& b, std::size_t first, int used) {
   const Group g = group_of<ShaftPlaces>(b, first, used);
   const Node x1 = load_node(g.s1), x2 = load_node(g.s2);
-  const ElasticForce elastic = elastic_force<Offsets>(load_shaft(g.element), g.e, x1, x2);
+  const Shaft shaft = load_shaft(g.element);
+  const ElasticForce elastic = elastic_force<Offsets>(shaft, g.e, x1, x2);
   const NodeSpin sp1 = spin_of(g.e, x1), sp2 = spin_of(g.e, x2);
   V f[4] = {-elastic.lambda, elastic.d1, elastic.lambda, elastic.d2};
-  add_inertia(g, (0.5 * (sp1.s + sp2.s)) * elastic.a, x1, x2, f);
+  add_inertia(g, x1, x2, f);
+  const BentSpin bent = add_bent_spin<Offsets>(g, elastic, shaft.o1, shaft.o2, sp1, sp2, x1, x2, f);
+  const T half = 0.5 * bent.value, half_rate = 0.5 * bent.rate;
   T polar[4];
   load_column(g.element, ShaftPlaces::polar, polar);
   const T p11 = polar[0], p21 = polar[1], p12 = polar[2], p22 = polar[3];
-  const T h1 = p11 * sp1.s + p12 * sp2.s, h2 = p21 * sp1.s + p22 * sp2.s;
-  const T q1 = p11 * sp1.sdot + p12 * sp2.sdot, q2 = p21 * sp1.sdot + p22 * sp2.sdot;
+  const T h1 = p11 * sp1.s + p12 * sp2.s + half, h2 = p21 * sp1.s + p22 * sp2.s + half;
+  const T q1 = p11 * sp1.sdot + p12 * sp2.sdot + half_rate;
+  const T q2 = p21 * sp1.sdot + p22 * sp2.sdot + half_rate;
   f[1] = f[1] - (q1 * sp1.w + h1 * cross(g.e + x1.t, x1.dd));
   f[3] = f[3] - (q2 * sp2.w + h2 * cross(g.e + x2.t, x2.dd));
   add_to_nodes(g, used, f[0], f[1], q1 - elastic.torque, f[2], f[3], q2 + elastic.torque);

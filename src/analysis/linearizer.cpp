@@ -55,6 +55,7 @@ void Linearizer::take_undeformed(double Omega) {
   running_.impose(s.frames, s.q);
   running_.set_rates(Omega, s.v);
   s.a.setZero();
+  system().follow(s);
   equilibrium_.reactions = VecX::Zero(system().size());
   have_ = true;
 }

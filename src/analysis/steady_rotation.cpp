@@ -61,6 +61,17 @@ std::vector<double> distance_to_spin(const system::System& s, std::span<const do
   return distance;
 }
 
+/// Lines on a joint whose speeds differ by rounding, or by small motions of the state they were read
+/// from, have one speed.
+void join_speeds(const system::System& system, std::vector<double>& ratio) {
+  for (std::size_t k = 0; k < system.followers().count(); ++k) {
+    const system::FollowerDef& f = system.followers()[k];
+    const double of_parent = ratio[at(system.node(f.parent).line)];
+    double& of_node = ratio[at(system.node(f.node).line)];
+    if (std::abs(of_node - of_parent) <= 1e-3 * std::abs(of_parent)) of_node = of_parent;
+  }
+}
+
 void add_scaled(la::MCK& y, double s, const la::MCK& x) {
   add_scaled(y.M, s, x.M);
   add_scaled(y.C, s, x.C);
@@ -98,6 +109,7 @@ SteadySystem::SteadySystem(const system::System& system, SteadyRotation running)
                             [](double w) { return std::isfinite(w); }));
   if (ratio_.empty()) ratio_.assign(at(system.lines()), 1.0);
   ratio_.resize(at(system.lines()), 0.0);
+  join_speeds(system, ratio_);
   find_spinning();
   for (Index i = 0; i < system.nodes(); ++i)
     if (spinning_[at(i)]) orders_.push_back(std::abs(ratio_[at(system.node(i).line)]));

@@ -227,10 +227,12 @@ const std::vector<CodeInfo>& error_catalogue() {
        "[[joint]]\nname = \"elbow\"\nkind = \"hinge\"\nat = \"arm/end\"\nto = "
        "\"forearm/start\"\naxis = [0, 0, 1]"},
       {"E41", "an analysis that does not go with a joint",
-       "Joints are exact in statics, load paths, modes and motions in time. Analyses that suppose "
-       "what a joint breaks refuse it by name: rotors that turn steadily with a joint between "
-       "lines that do not turn as one, kinds of motion that are left out, linear transients, the "
-       "momentum form, linearised buckling, harmonic and unbalance response.",
+       "Joints act in every analysis. Refused by name is what supposes something a joint breaks: "
+       "rotors that turn steadily with a joint between lines that do not turn as one; one kind of "
+       "motion alone (lateral, torsional, axial) where a joint stands on a line at an angle to the "
+       "x axis, for bending of one line is twist of another there; and the loads of joints "
+       "(quantities = [\"joints\"]) in linear transients, which keep no equations of their own for "
+       "them.",
        "type = \"transient\""},
       {"E61", "an unknown with neither stiffness nor mass",
        "The eigenvalue problem cannot be factored at any shift: nothing in the model resists or "

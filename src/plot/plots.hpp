@@ -135,11 +135,18 @@ struct DrawnMark {
   double s = 0, radius = 0;
   std::string name;
 };
+/// On the centre line: what is free there shows in the mark.
+struct DrawnJoint {
+  double s = 0, radius = 0;
+  std::string name, kind;  ///< "hinge" and so on
+  Marker marker = Marker::circle;
+};
 struct RotorDrawing {
   std::string title;
   std::vector<DrawnSection> sections;
   std::vector<DrawnDisk> disks;
   std::vector<DrawnMark> bearings, probes;
+  std::vector<DrawnJoint> joints;
   std::vector<double> nodes;  ///< mesh nodes, small ticks on the centre line
 };
 Figure plot_rotor(std::string name, const RotorDrawing& rotor);
@@ -151,7 +158,7 @@ struct DrawnPoint {
 struct LineDrawing {
   std::string title;
   std::vector<Vec3> line, nodes;
-  std::vector<DrawnPoint> supports, disks, probes;
+  std::vector<DrawnPoint> supports, disks, probes, joints;
 };
 Figure plot_line(std::string name, const LineDrawing& line);
 

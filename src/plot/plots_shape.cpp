@@ -1,5 +1,7 @@
 // Mode shapes and the drawing of the rotor; error against run time.
 #include <plot/plots.hpp>
+
+#include <fmt/format.h>
 #include <core/text.hpp>
 #include <algorithm>
 #include <array>
@@ -160,6 +162,7 @@ Figure plot_line(std::string name, const LineDrawing& line) {
   marks(line.supports, 1, Marker::square);
   marks(line.disks, 2, Marker::circle);
   marks(line.probes, 3, Marker::diamond);
+  marks(line.joints, 4, Marker::cross);
   f.axes.push_back(std::move(a));
   return f;
 }
@@ -285,7 +288,7 @@ void RotorPicture::add_bearings() {
   }
 }
 
-/// The centre line, nodes and probes.
+/// The centre line, nodes, joints and probes.
 void RotorPicture::add_lines() {
   Series centre;
   centre.trace_label = "centre line";
@@ -302,6 +305,13 @@ void RotorPicture::add_lines() {
     nodes.style = {ink, Dash::solid, 0, Marker::circle, 3.5};
     axes_.series.push_back(std::move(nodes));
   }
+  for (const auto& j : rotor_.joints) {
+    Series joint;
+    joint.label = fmt::format("{} ‘{}’", j.kind, j.name);
+    append(joint, mm * j.s, 0);
+    joint.style = {4, Dash::solid, 0, j.marker, 11};
+    axes_.series.push_back(std::move(joint));
+  }
   if (rotor_.probes.empty()) return;
   Series probes;
   probes.label = "probes";
@@ -311,7 +321,7 @@ void RotorPicture::add_lines() {
   axes_.series.push_back(std::move(probes));
 }
 
-/// Outside the outline: disks and bearings below, probes above.
+/// Outside the outline: disks and bearings below, probes and joints above.
 void RotorPicture::add_names() {
   for (const auto& p : rotor_.disks)
     add_name(p.s, -p.outer, p.name, 15);
@@ -319,6 +329,8 @@ void RotorPicture::add_names() {
     add_name(p.s, -(p.radius + 1.6 * glyph_), p.name, 15);
   for (const auto& p : rotor_.probes)
     add_name(p.s, p.radius + 0.6 * glyph_, p.name, -9);
+  for (const auto& j : rotor_.joints)
+    add_name(j.s, j.radius, j.name, -9);
 }
 
 Figure RotorPicture::figure(std::string name) {

@@ -6,6 +6,19 @@ namespace whirl::plot {
 
 namespace {
 
+/// A round pin for a hinge, a cross for a universal joint, a block for a slider, a seam for a weld.
+DrawnJoint mark_of(const model::Joint& j, double s, double radius) {
+  using Kind = model::JointKind;
+  switch (j.kind) {
+    case Kind::rigid: return {s, radius, j.name, "rigid joint", Marker::plus};
+    case Kind::hinge: return {s, radius, j.name, "hinge", Marker::circle};
+    case Kind::universal: return {s, radius, j.name, "universal joint", Marker::cross};
+    case Kind::spherical: return {s, radius, j.name, "ball joint", Marker::diamond};
+    case Kind::slider: return {s, radius, j.name, "slider", Marker::square};
+  }
+  return {};
+}
+
 /// Makes the drawing of one line of the mesh.
 class RotorDrawer {
  public:
@@ -96,6 +109,9 @@ RotorDrawing RotorDrawer::draw() {
       if (p && on_line(*p)) add_bearing(*p, b.name);
   for (const auto& p : model_.probes)
     if (p.at.shaft == number_) add_probe(p);
+  for (const auto& j : model_.joints)
+    for (const model::Location* p : {&j.at, j.to ? &*j.to : nullptr})
+      if (p && p->shaft == number_) d_.joints.push_back(mark_of(j, p->s, radius_at(p->s)));
   for (Index k = line.first_node; k < line.first_node + line.nodes; ++k)
     d_.nodes.push_back(mesh_.nodes[at(k)].s);
   return std::move(d_);
@@ -138,6 +154,10 @@ std::vector<LineDrawing> make_line_drawings(const model::Model& model, const mes
       add(d.disks, x.at, x.name);
     for (const auto& x : model.probes)
       add(d.probes, x.at, x.name);
+    for (const auto& x : model.joints) {
+      add(d.joints, x.at, x.name);
+      if (x.to) add(d.joints, *x.to, x.name);
+    }
     all.push_back(std::move(d));
   }
   return all;

@@ -60,10 +60,17 @@ void add_force(results::FrequencyStep& s, const model::HarmonicForce& f, double 
 std::vector<double> line_torques(const results::FrequencyStep& s, const la::MCK& m,
                                  const VecXc& a) {
   std::vector<double> out;
+  // a node on a joint has its angle from what it follows
+  const auto unknowns_of = [&](Index node) {
+    const system::Followers& all = s.job.system().followers();
+    for (const system::FollowerDef* f = all.find(node); f && !f->pinned; f = all.find(node))
+      node = f->parent;
+    return node;
+  };
   for (const meshes::Line& l : s.job.mesh.lines) {
     double most = 0;
     for (Index n = l.first_node; n + 1 < l.first_node + l.nodes; ++n)
-      if (const Index slot = m.K.pattern().slot(n, n + 1);
+      if (const Index slot = m.K.pattern().slot(unknowns_of(n), unknowns_of(n + 1));
           slot >= 0) {  // the coupling of neighbours is the element's GJ/l
         const double torque =
             std::abs(m.K.block(slot)(3, 3)) * std::abs(a[6 * (n + 1) + 3] - a[6 * n + 3]);

@@ -112,48 +112,55 @@ void finish(run::Job& job, const Stopwatch& watch) {
   job.folder.write_json("summary.json", job.summary);
 }
 
-/// What a step supposes that joints break; empty: nothing.
-std::string unfit_for_joints(const model::StepLaw& law) {
+/// Some kinds of motion alone: a line at an angle to another one would bend where that one twists.
+bool leaves_motion_out(const model::StepLaw& law) {
+  if (std::holds_alternative<model::TorsionalStep>(law)) return true;
   const auto kind = [](const auto& x) -> model::MotionKind {
     if constexpr (requires { x.motion; }) return x.motion;
     return model::MotionKind::all;
   };
-  if (std::visit(kind, law) != model::MotionKind::all)
-    return "the kinds of motion that are left out";
-  if (const auto* t = std::get_if<model::TransientStep>(&law))
-    return t->linear ? "linear = true"
-           : t->start == model::TransientStep::Start::unbalance_response
-               ? "start = \"unbalance_response\""
-               : "";
-  constexpr std::array<const char*, 11> names{"",
-                                              "",
-                                              "",
-                                              "critical speeds",
-                                              "unbalance response",
-                                              "",
-                                              "a critical-speed map",
-                                              "harmonic response",
-                                              "a torsional step",
-                                              "linearised buckling",
-                                              ""};
-  return names[law.index()];
+  return std::visit(kind, law) != model::MotionKind::all;
 }
 
+/// The first joint of a line that is not parallel to the first one; empty: none.
+std::string crooked_joint(const system::System& system) {
+  const system::State start = system.make_state();
+  for (std::size_t k = 0; k < system.followers().count(); ++k) {
+    const system::FollowerDef& f = system.followers()[k];
+    for (const Index node : {f.node, f.parent}) {
+      const Vec3 axis = start.frames.axes(node).col(0);
+      if (axis.cross(Vec3::UnitX()).norm() > 1e-9) return f.joint;
+    }
+  }
+  return {};
+}
+
+bool wants_joints(const model::Output& o) {
+  return std::find(o.quantities.begin(), o.quantities.end(), "joints") != o.quantities.end();
+}
+
+/// What a step supposes that joints break.
 void refuse_joints(const run::Job& job, const model::Step& step) {
   if (job.model.joints.empty()) return;
-  const std::string what = unfit_for_joints(step.law);
-  if (what.empty()) return;
-  const model::Joint& j = job.model.joints.front();
-  Diagnostic d{
-      Diagnostic::Severity::error, "E41",
-      fmt::format("step '{}': {} and joint '{}' do not go together", step.name, what, j.name),
-      "statics, load paths, modes and transients take joints exactly", step.where};
-  throw Error(Exit::deck, {std::move(d)});
+  const auto refuse = [&](const std::string& what, const std::string& joint, const char* hint) {
+    Diagnostic d{Diagnostic::Severity::error, "E41",
+                 fmt::format("step '{}': {} and {} do not go together", step.name, what, joint),
+                 hint, step.where};
+    throw Error(Exit::deck, {std::move(d)});
+  };
+  if (const std::string joint = crooked_joint(job.system());
+      leaves_motion_out(step.law) && !joint.empty())
+    refuse("one kind of motion alone", joint + ", of a line at an angle to the x axis,",
+           "motion = \"all\": bending of one line is twist of another");
+  const auto* t = std::get_if<model::TransientStep>(&step.law);
+  if (t && t->linear && wants_joints(job.model.output))
+    refuse("linear = true with quantities = [\"joints\"]", job.system().followers()[0].joint,
+           "leave the quantity out, or linear: loads of joints are those of the general motion");
 }
 
 void run_step(run::Job& job, const model::Step& step) {
-  refuse_joints(job, step);
   job.build_for(step);
+  refuse_joints(job, step);
   if (!job.summary.is_object() || job.summary.at("model").is_null()) describe_model(job);
   std::visit(
       [&](const auto& law) {

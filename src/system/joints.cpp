@@ -111,6 +111,12 @@ void Followers::arrange(std::vector<FollowerDef> defs, const std::vector<Vec3>& 
   }
 }
 
+const FollowerDef* Followers::find_coordinate(Index node) const {
+  for (const Follower& b : list_)
+    if (b.def.angle == node || b.def.slide == node) return &b.def;
+  return nullptr;
+}
+
 void Followers::bind(const la::BlockPattern& p) {
   const auto slot = [&p](Index i, Index j) { return i < 0 || j < 0 ? -1 : p.slot(i, j); };
   for (Follower& b : list_) {

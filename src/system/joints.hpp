@@ -48,6 +48,9 @@ class Followers {
     return k < 0 ? nullptr : &list_[static_cast<std::size_t>(k)].def;
   }
 
+  /// The follower whose angle or slide a scalar node is, or null.
+  const FollowerDef* find_coordinate(Index node) const;
+
   /// axes: what Frames::axes says of every line in the reference. Appends to `couplings` what the
   /// pattern must hold beside what elements couple.
   /// @throws std::invalid_argument: a node follows twice, or itself.

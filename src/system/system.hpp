@@ -76,6 +76,13 @@ class System {
     Workspace w = make_workspace();
     if (evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a)) followers_.complete(w, s.frames, x);
   }
+  /// x, generalised forces on all coordinates at s, becomes that on the unknowns.
+  template <class Scalar>
+  void reduce(const State& s, Eigen::Matrix<Scalar, -1, 1>& x) const {
+    if (followers_.empty()) return;
+    Workspace w = make_workspace();
+    if (evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a)) followers_.reduce(w, s.frames, x);
+  }
   /// Pairs of nodes, lower number first, whose angles elements compare, sorted.
   std::span<const std::pair<Index, Index>> links() const { return links_; }
   /// The base accelerates as time goes on.

@@ -280,7 +280,7 @@ const Elsewhere elsewhere[] = {
     {"[[shaft]]", "origin", "open"},
     {"[[shaft]]", "path", "open"},
     {"[[shaft]]", "rotary_inertia", "open"},
-    {"[[shaft]]", "mean_rotary_inertia", "open"},
+    {"[[shaft]]", "mean_rotary_inertia", "validation/test_full_sections.cpp"},
     {"[[shaft]]", "rotating", "open"},
     {"[[shaft]]", "axial_preload", "open"},
     {"[[shaft]]", "bow", "open"},

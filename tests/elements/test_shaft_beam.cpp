@@ -59,7 +59,7 @@ enum class With { nothing, rotating, external };
 
 template <bool Offsets>
 System make_system(const Mat3& triad = Mat3::Identity(), With damping = With::nothing,
-                   double stiffness = 1.0) {
+                   double stiffness = 1.0, const Vec3& gravity = Vec3(1, -2, -9.81)) {
   Builder b;
   const Index line = b.add_line("shaft", triad);
   const auto c = constants(Offsets, stiffness);
@@ -76,7 +76,7 @@ System make_system(const Mat3& triad = Mat3::Identity(), With damping = With::no
     b.add(elements::ShaftDamping<false>(c, e0, 2e-3, 1e-3, 5e-4), {n1, n2}, "external damping");
     b.add(elements::ShaftMassDamping{3.0 * c.M4}, {n1, n2}, "mass damping");
   }
-  b.set_gravity(Vec3(1, -2, -9.81));
+  b.set_gravity(gravity);
   return b.finalize();
 }
 
@@ -148,6 +148,46 @@ void check_tangent(double tilt, unsigned seed, const Mat3& triad, With damping =
 }
 
 Mat3 tilted_triad() { return rotation::L(Vec3(0.3, -0.8, 1.1)); }
+
+/// Moment about the origin of generalised forces p (or angular momentum of momenta), global axes.
+Vec3 moment_of(const System& s, const Frames& f, const VecX& q, const VecX& p) {
+  Vec3 m = Vec3::Zero();
+  for (Index i = 0; i < s.nodes(); ++i) {
+    m += (s.node(i).position + q.segment<3>(6 * i)).cross(Vec3(p.segment<3>(6 * i)));
+    for (int k = 0; k < 3; ++k) {
+      const rotation::ChartRates rate = rotation::rates_of_omega(
+          Vec2(q.segment<2>(6 * i + 4)), Vec3(f.axes(i).transpose() * Vec3::Unit(k)));
+      m[k] += p[6 * i + 3] * rate.phi + p.segment<2>(6 * i + 4).dot(rate.gamma);
+    }
+  }
+  return m;
+}
+
+/// All forces of a free element have the moment of its inertia alone: dL/dt, along a random motion.
+template <bool Offsets>
+void check_moment(double tilt, unsigned seed) {
+  const System sys = make_system<Offsets>(tilted_triad(), With::nothing, 1.0, Vec3::Zero());
+  Workspace w = sys.make_workspace();
+  const Frames f = sys.make_state().frames;
+  std::mt19937 rng(seed);
+  const Point p = random_point(rng, tilt);
+  la::MCK m = sys.make_matrices();
+  const auto momentum = [&](double t) {
+    const VecX q = p.q + t * p.v + 0.5 * t * t * p.a, v = p.v + t * p.a;
+    EXPECT_TRUE(sys.tangent(w, f, 0, q, v, p.a, m));
+    VecX on = VecX::Zero(12);
+    m.M.add_multiply(1.0, v, on);
+    return moment_of(sys, f, q, on);
+  };
+  const double h = 1e-3;
+  const Vec3 rate =
+      (45.0 * (momentum(h) - momentum(-h)) - 9.0 * (momentum(2 * h) - momentum(-2 * h)) +
+       (momentum(3 * h) - momentum(-3 * h))) /
+      (60.0 * h);
+  VecX r(12);
+  ASSERT_TRUE(sys.residual(w, f, 0, p.q, p.v, p.a, r));
+  EXPECT_LT((moment_of(sys, f, p.q, r) - rate).norm(), 1e-9 * r.norm());
+}
 
 /// Elements first to last of a line of `count`, undamped and damped.
 System part_of_line(Index count, Index first, Index last) {
@@ -339,6 +379,46 @@ TEST(ShaftBeam, PowerBalance) {
     EXPECT_NEAR(
         dE, r.dot(p.v),
         1e-8 * r.norm() * p.v.norm());  // sixth-order difference, h^6 of rates of about 10/s
+  }
+}
+
+TEST(ShaftBeam, MomentIsTheRateOfAngularMomentum) {
+  for (const unsigned seed : {3U, 4U, 5U}) {
+    check_moment<false>(0.05, seed);
+    check_moment<false>(0.5, seed);
+    check_moment<true>(0.5, seed);
+  }
+}
+
+TEST(ShaftBeam, StraightElementHasTheConsistentGyroscopicCouple) {
+  // Of matrix G4, whatever stands where: -Omega a x G4 X'.
+  const ShaftElementConstants c = constants(false);
+  const System sys = make_system<false>(Mat3::Identity(), With::nothing, 1.0, Vec3::Zero());
+  Workspace w = sys.make_workspace();
+  const double Omega = 700.0;
+  VecX v = VecX::Zero(12);
+  v[3] = v[9] = Omega;
+  const VecX zero = VecX::Zero(12);
+  la::MCK m = sys.make_matrices();
+  ASSERT_TRUE(sys.tangent(w, sys.make_state().frames, 0, zero, v, zero, m));
+  VecX across(12);
+  across << 0.0, 0.3, -0.2, 0.0, 0.7, 0.4, 0.0, -0.5, 0.1, 0.0, -0.6, 0.9;
+  VecX f = VecX::Zero(12);
+  m.C.add_multiply(1.0, across, f);
+  Vec3 rate[4], expected[4];
+  for (int i = 0; i < 2; ++i) {
+    rate[2 * i] = across.segment<3>(6 * i);
+    rate[2 * i + 1] = w.D[static_cast<std::size_t>(i)] * across.segment<2>(6 * i + 4);
+  }
+  for (int k = 0; k < 4; ++k) {
+    expected[k].setZero();
+    for (int l = 0; l < 4; ++l)
+      expected[k] -= Omega * c.G4(k, l) * Vec3::UnitX().cross(rate[l]);
+  }
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_LT((f.segment<3>(6 * i) - expected[2 * i]).norm(), 1e-12 * f.norm());
+    const Vec2 on_gamma = w.D[static_cast<std::size_t>(i)].transpose() * expected[2 * i + 1];
+    EXPECT_LT((f.segment<2>(6 * i + 4) - on_gamma).norm(), 1e-12 * f.norm());
   }
 }
 

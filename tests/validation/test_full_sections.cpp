@@ -375,20 +375,21 @@ general = {{ A = "2400 mm^2", Iy = "5e5 mm^4", Iz = "5e5 mm^4", J = "5e5 mm^4", 
   Matrix<6> K = Matrix<6>::Zero(), M = Matrix<6>::Zero();
   K.diagonal() << 5e8, 1e8, 1e8, 4e4, 1e5, 1e5;
   M.diagonal() << 20, 20, 20, 5e-3, 1e-3, 4e-3;
-  const auto turning = [&](bool mean) {
+  const auto turning = [&](const char* of_shaft, const char* of_section) {
     const DeckModel d(fmt::format(R"(format = 1
 [model]
 gravity = "0 m/s^2"
 [[shaft]]
 name = "rotor"
+{}
 [[shaft.section]]
 name = "line"
 length = "400 mm"
 min_elements = 2
-mean_rotary_inertia = {}
+{}
 {}
 )",
-                                  mean ? "true" : "false", full(K, M)));
+                                  of_shaft, of_section, full(K, M)));
     const system::System& s = d.built.system;
     system::Workspace w = s.make_workspace();
     system::State x = s.make_state();
@@ -403,8 +404,13 @@ mean_rotary_inertia = {}
     EXPECT_NEAR(a(3, 3), b(3, 3), 1e-12 * a(3, 3));
     return (a - b).bottomRightCorner<3, 3>().norm() / a.bottomRightCorner<3, 3>().norm();
   };
-  EXPECT_GT(turning(false), 0.01);
-  EXPECT_LT(turning(true), 1e-12);
+  const char *mean = "mean_rotary_inertia = true", *not_mean = "mean_rotary_inertia = false";
+  EXPECT_GT(turning("", not_mean), 0.01);
+  EXPECT_LT(turning("", mean), 1e-12);
+  // of the shaft: of all its sections that say nothing
+  EXPECT_GT(turning(not_mean, ""), 0.01);
+  EXPECT_LT(turning(mean, ""), 1e-12);
+  EXPECT_GT(turning(mean, not_mean), 0.01);
   EXPECT_NEAR(meshes::shaft_mass(model(true).deck.model, 0).mass,
               meshes::shaft_mass(model(false).deck.model, 0).mass, 1e-15);
 }

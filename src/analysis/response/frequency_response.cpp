@@ -18,10 +18,12 @@ FrequencyPoint HarmonicResponder::at(double Omega, double w, double scale) {
   VecXc a = VecXc::Zero(linear_.system().size());
   for (const HarmonicForce& f : options_.forces)
     a[f.unknown] += scale * f.amplitude;
-  if (solver_.prepare(Omega, w))
+  if (solver_.prepare(Omega, w)) {
+    linear_.system().reduce(linear_.equilibrium().state, a);
     solver_.solve(a);
-  else
+  } else {
     a.setConstant(Complex(nan, nan));  // undamped resonance met exactly
+  }
   for (const ResponseProbe& probe : options_.probes)
     p.probe.push_back(amplitude_at(linear_, a, probe.point));
   for (Index k : options_.unknowns)

@@ -104,6 +104,7 @@ void HarmonicSolver::solve(VecXc& x) {
     solve_held(x);
   else
     solver_->solve(x);
+  linear_.system().complete(linear_.equilibrium().state, x);
 }
 
 VecXc HarmonicSolver::multiply(const VecXc& x) const {

@@ -20,7 +20,7 @@ class HarmonicSolver {
   /// resists.
   bool prepare(double Omega, double w);
   /// x := S^-1 x; entries of x at unknowns that take no part are not looked at, those of held ones
-  /// become zero. At w = 0 a force that turns a free rotor has no finite answer: the entries that
+  /// become zero, nodes on joints move as what they follow (forces on them: System::reduce). At w = 0 a force that turns a free rotor has no finite answer: the entries that
   /// it moves without bound become NaN, the others are right.
   /// @pre prepare() went well; x of length system().size().
   void solve(VecXc& x);

@@ -38,6 +38,7 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
       linear_.move_to(Omega);
       a = axes_->response(Omega, -linear_.forcing()[k]);
       if (Omega < 0) a = a.conjugate().eval();
+      linear_.system().complete(linear_.equilibrium().state, a);
     } else if (solver_.prepare(Omega, w)) {
       // forcing is given as Re(f exp(i order theta)) with theta = Omega t: backward rotation runs
       // the phase backward

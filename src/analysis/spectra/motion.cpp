@@ -31,7 +31,11 @@ void copy_without(const la::BlockMatrix<6>& in, std::span<const unsigned char> o
 
 Motion kind_of_unknown(const system::System& system, Index unknown) {
   WHIRL_EXPECTS(unknown >= 0 && unknown < system.size());
-  if (system.node(unknown / 6).scalar) return Motion::lateral;
+  if (system.node(unknown / 6).scalar) {
+    const system::FollowerDef* joint = system.followers().find_coordinate(unknown / 6);
+    if (!joint || std::abs(joint->axis.x()) < 0.5) return Motion::lateral;
+    return joint->angle == unknown / 6 ? Motion::torsional : Motion::axial;
+  }
   const Index c = unknown % 6;
   return c == system::spin_phi ? Motion::torsional
          : c == system::ux     ? Motion::axial

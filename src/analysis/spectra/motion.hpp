@@ -24,7 +24,7 @@ namespace whirl::analysis {
 enum class Motion { all, lateral, torsional, axial };
 
 /// What an unknown belongs to: u_x is axial, phi torsional, the rest (internal coordinates of
-/// foundations too) lateral.
+/// foundations too) lateral. A joint's slide along the axis is axial, its angle about it torsional.
 /// @pre 0 <= unknown < system.size().
 Motion kind_of_unknown(const system::System& system, Index unknown);
 

@@ -32,11 +32,12 @@ Eigen::Map<VecX> values(la::BlockMatrix<6>& m) {
   return {m.data(), static_cast<Index>(m.value_count())};
 }
 
-/// Terms whose derivative along the response is not known exactly.
+/// Terms whose derivative along the response is not known exactly: with joints none is, which carry
+/// forces along as they turn.
 std::vector<std::size_t> other_terms(const system::System& s) {
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < s.terms().size(); ++k)
-    if (!system::find_stiffness_rate(*s.terms()[k])) out.push_back(k);
+    if (!s.followers().empty() || !system::find_stiffness_rate(*s.terms()[k])) out.push_back(k);
   return out;
 }
 
@@ -90,7 +91,8 @@ void add_rate(SteadySystem& running, const system::State& s, double Omega, const
     VecX turned = s.q;
     for (Index i = 0; i < system.nodes(); ++i)
       turned[6 * i + system::spin_phi] = w.nodes[at(i)].phi;
-    system::add_stiffness_rate({system, w, s.frames, turned, u}, weight, out);
+    if (system.followers().empty())
+      system::add_stiffness_rate({system, w, s.frames, turned, u}, weight, out);
     differences.add(w.context, s.frames, turned, v, u, weight, out);
   });
 }
@@ -217,6 +219,7 @@ std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index co
                     "add a support in that direction, or hold it rigidly");
   }
   direct->solve(u);
+  system.complete(rest, u);
 
   la::BlockMatrix<6> B = load_stiffness(running, rest, Omega, K0, loaded, u);
   running.set_load(full);
@@ -241,6 +244,7 @@ std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index co
   for (const la::Mode& m : la::linear_modes(K0.K, B, solver.free(), count)) {
     const double by = std::abs(m.lambda);
     BucklingMode b{m.lambda, m.x, by * response.rotation, by * response.displacement};
+    system.complete(rest, b.x);
     scale(b.x, system.nodes());
     out.push_back(std::move(b));
   }

@@ -125,11 +125,18 @@ double LinearMotion::power_beside(time::CRef v, time::CRef residual) {
   for (const auto& term : system().terms())
     term->add_force(w);
   general_.resize(v.size());
+  if (!system().followers().empty()) system().followers().carry_force(w, frames, general_);
   for (Index i = 0; i < system().nodes(); ++i) {
     const Vector<7>& f = w.force[at(i)];
     general_.segment<3>(6 * i) = f.head<3>();
     general_[6 * i + system::spin_phi] = f[6];
     general_.segment<2>(6 * i + 4) = w.D[at(i)].transpose() * f.segment<3>(3);
+  }
+  // loads of joints stand where their nodes have no unknowns: they do no work
+  const system::Followers& followers = system().followers();
+  for (std::size_t k = 0; k < followers.count(); ++k) {
+    const Index n = followers[k].pinned ? 3 : 6, first = 6 * followers[k].node;
+    general_.segment(first, n) = residual.segment(first, n);
   }
   const double power = v.dot(general_ - residual);
   return std::isfinite(power) ? power : nan;
