@@ -27,6 +27,7 @@ void check_drives(const model::Model& m, Problems& out);
 void check_start_speeds(const model::Model& m, Problems& out);
 /// Gears and couplings tie the speeds of two shafts together.
 void check_speeds_of_pairs(const model::Model& m, Problems& out);
+void check_speeds_of_joints(const model::Model& m, Problems& out);
 
 // validate_steps.cpp: what a step can be asked for
 void check_linear(const model::Model& m, Problems& out);

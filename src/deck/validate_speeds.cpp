@@ -256,4 +256,24 @@ void check_speeds_of_pairs(const model::Model& m, Problems& out) {
   }
 }
 
+/// Joints that leave no turning about the shafts' axis tie their speeds.
+void check_speeds_of_joints(const model::Model& m, Problems& out) {
+  for (const model::Joint& j : m.joints) {
+    const bool ties = j.kind == model::JointKind::rigid || j.kind == model::JointKind::slider ||
+                      j.kind == model::JointKind::universal;
+    if (!ties || !j.to) continue;
+    const auto &here = m.shafts[j.at.shaft], &there = m.shafts[j.to->shaft];
+    if (!here.rotating || !there.rotating) continue;  // lines that stand: assembly
+    const double a = std::abs(here.speed_ratio), c = std::abs(there.speed_ratio);
+    if (std::abs(c - a) <= 1e-6 * std::max(a, c)) continue;
+    report(
+        out, "E37",
+        fmt::format("joint '{}' turns shaft '{}' at the speed of '{}', but their speed_ratio are "
+                    "{:.6g} and {:.6g}",
+                    j.name, there.name, here.name, there.speed_ratio, here.speed_ratio),
+        fmt::format("speed_ratio = {:.10g} for shaft '{}'", here.speed_ratio, there.name),
+        there.where);
+  }
+}
+
 }  // namespace whirl::deck

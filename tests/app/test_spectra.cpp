@@ -310,6 +310,7 @@ TEST(CriticalSpeeds, ForwardAndBackwardNearlyAtOneSpeed) {
     }
     EXPECT_GT(speeds[1] / speeds[0] - 1, 1e-4);
   }
+}
 
 // The resolved deck of a run keeps what its stability map varies: it passes, and draws the same map.
 TEST(Spectra, ResolvedDeckOfAMapRunsAgain) {
