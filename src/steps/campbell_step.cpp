@@ -177,8 +177,14 @@ bool is_cut(const analysis::Campbell& c, const analysis::CampbellLine& line, std
   return false;
 }
 
+bool complete(const analysis::Campbell& c) {
+  return std::all_of(c.certificates.begin(), c.certificates.end(),
+                     [](const analysis::SpectrumCertificate& x) { return x.complete(); });
+}
+
 /// The diagram of the lines that belong to the modes asked for at some speed. Where one of them
-/// would end or begin because others take its place in the list, the list is made longer.
+/// would end or begin because others take its place in the list, the list is made longer, unless
+/// that one cannot be certified.
 analysis::Campbell follow_lines(Index asked,
                                 const std::function<analysis::Campbell(Index count)>& follow) {
   Index count = asked;
@@ -190,8 +196,14 @@ analysis::Campbell follow_lines(Index asked,
     for (std::size_t l = 0; l < c.lines.size(); ++l)
       cut = cut || (listed[l] && is_cut(c, c.lines[l], static_cast<std::size_t>(count)));
     if (!cut) break;
-    count += std::max<Index>(4, asked / 2);
-    c = follow(count);
+    const Index more = count + std::max<Index>(4, asked / 2);
+    analysis::Campbell longer_list = follow(more);
+    if (complete(c) && !complete(longer_list)) {
+      c = follow(count);
+      break;
+    }
+    c = std::move(longer_list);
+    count = more;
   }
   if (count == asked) return c;
   const std::vector<bool> listed = listed_lines(c, static_cast<std::size_t>(asked));

@@ -40,7 +40,7 @@ enum class Sampling { random, latin_hypercube, sobol };
 class Design {
  public:
   Design() = default;
-  /// @param samples of the distributions; 1 without any
+  /// samples: of the distributions; 1 without any.
   /// @throws Error (E99, Exit::usage): samples without a distribution or the other way round, a key
   /// twice, more than ten distributions for Sobol's points, more than 1e9 runs
   Design(std::vector<Factor> factors, std::int64_t samples, Sampling sampling, std::uint64_t seed);

@@ -7,7 +7,7 @@
 namespace whirl::sweep {
 
 /// Writes sweep.csv, statistics.csv, effects.csv, summary.json and sweep.html; prints the statistics.
-/// @param rows one for every run
+/// rows: one for every run.
 void write_outcome(const Plan& plan, const std::map<std::int64_t, Row>& rows,
                    const run::RunOptions& options);
 

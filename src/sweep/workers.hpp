@@ -19,8 +19,8 @@ struct WorkerOptions {
 /// out tasks as processes get free, and `take` here with what each gave, in the order they finish.
 /// worker: 0 .. processes - 1. Stops handing out once the program is to be interrupted
 /// (core/interrupt.hpp); what runs then is waited for.
-/// @param run its text must not hold a line end but may end with one; it must not throw
-/// @param take (task, how it ended, text, signal number of a crash)
+/// run: its text must not hold a line end but may end with one; it must not throw. take: the task,
+/// how it ended, the text, the signal number of a crash.
 /// @throws Error (Exit::io) when no process can be started
 void run_in_workers(std::span<const std::int64_t> tasks, const WorkerOptions& options,
                     const std::function<std::string(std::int64_t task, int worker)>& run,
