@@ -49,7 +49,7 @@ class Krylov {
   template <class Op>
   bool step(Op&& op) {
     if (next_ == size_ && !inject()) return false;
-    if (size_ + 2 > h_.rows()) {
+    if (searched() + 2 > h_.rows()) {
       const Index n = std::max<Index>(32, 2 * h_.rows());
       h_.conservativeResize(n, n);
     }
@@ -58,13 +58,13 @@ class Krylov {
     orthogonalize();
     const double after = work_.norm();
     const Index j = next_ - locked_;
-    h_.col(j).head(size_).setZero();
-    h_.col(j).head(size_ - locked_) = coefficients_.tail(size_ - locked_);
+    h_.col(j).setZero();
+    h_.col(j).head(searched()) = coefficients_.tail(searched());
     ++next_;
     if (after > 1e-13 * before && size_ < dim_) {
       // Rows beyond the processed columns start at zero for every earlier column.
-      h_.row(size_ - locked_).head(next_ - locked_).setZero();
-      h_(size_ - locked_, j) = after;
+      h_.row(searched()).head(processed()).setZero();
+      h_(searched(), j) = after;
       grow();
       basis_.col(size_++) = work_ / after;
     }
@@ -110,7 +110,7 @@ class Krylov {
     const double after = work_.norm();
     if (!(after > threshold * before)) return false;
     grow();
-    if (size_ - locked_ < h_.rows()) h_.row(size_ - locked_).setZero();
+    if (searched() < h_.rows()) h_.row(searched()).setZero();
     basis_.col(size_++) = work_ / after;
     return true;
   }

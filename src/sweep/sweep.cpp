@@ -188,6 +188,7 @@ std::string failures_text(const std::map<std::int64_t, Row>& rows) {
           fmt::format("{} (run {}{})", kind, run, row.message.empty() ? "" : ": " + row.message);
   }
   std::vector<std::pair<std::int64_t, std::string>> list;
+  list.reserve(kinds.size());
   for (auto& [kind, k] : kinds)
     list.push_back(std::move(k));
   std::stable_sort(list.begin(), list.end(),
