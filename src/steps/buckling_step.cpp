@@ -122,8 +122,9 @@ void run_buckling_step(run::Job& job, const model::Step& step, const model::Buck
   const run::PhaseTimer timer(job, "buckling");
   analysis::EquilibriumOptions options;
   options.chart_change = job.model.chart_change;
-  analysis::BucklingCount count;
-  const auto modes = analysis::buckling(s.linear.running(), law.speed, law.modes, options, &count);
+  const auto [modes, count, unloaded] =
+      analysis::buckling(s.linear.running(), law.speed, law.modes, options);
+  s.linear.set_equilibrium(unloaded);  // the shapes are drawn about it
   io::Table table;
   table.title = "Buckling";
   table.columns = {

@@ -19,7 +19,7 @@ std::vector<BucklingMode> factors(const system::System& s, Index count = 2) {
   SteadyRotation running;
   running.ratio.assign(static_cast<std::size_t>(s.lines()), 0.0);
   SteadySystem still(s, running);
-  return buckling(still, 0, count);
+  return buckling(still, 0, count).modes;
 }
 
 }  // namespace

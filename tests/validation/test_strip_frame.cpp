@@ -153,7 +153,7 @@ TEST(StripFrame, BucklingUnderRefinement) {
   std::vector<double> factor;
   for (const int n : {8, 16, 32, 64, 128, 256}) {
     Frame f(n, 0.0);
-    for (const BucklingMode& m : buckling(f.running, 0.0, 2))
+    for (const BucklingMode& m : buckling(f.running, 0.0, 2).modes)
       if (m.factor.real() > 0) factor.push_back(m.factor.real());
     std::printf("%d elements a leg: %.8f\n", n, factor.back());
   }
@@ -179,7 +179,7 @@ TEST(StripFrame, SmallForceAcrossThePlane) {
   Frame plain(16, 0.0), pushed(16, 1e-3);
   const auto smallest_positive = [](SteadySystem& r) {
     double out = infinity;
-    for (const BucklingMode& m : buckling(r, 0.0, 3))
+    for (const BucklingMode& m : buckling(r, 0.0, 3).modes)
       if (m.factor.real() > 0 && m.factor.imag() == 0) out = std::min(out, m.factor.real());
     return out;
   };

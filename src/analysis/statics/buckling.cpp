@@ -185,14 +185,16 @@ la::BlockMatrix<6> load_stiffness(SteadySystem& running, const system::State& re
 
 }  // namespace
 
-std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
-                                   const EquilibriumOptions& options, BucklingCount* counted) {
+Buckling buckling(SteadySystem& running, double Omega, Index count,
+                  const EquilibriumOptions& options) {
   WHIRL_EXPECTS(count > 0);
   const system::System& system = running.system();
   EquilibriumSolver solver(running, options);
   const double full = running.load();
   running.set_load(0.0);
-  const system::State rest = solver.solve(Omega).state;
+  Buckling out;
+  out.unloaded = solver.solve(Omega);
+  const system::State& rest = out.unloaded.state;
   if (rest.frames.moved())
     throw run_error("E76",
                     "no linearised buckling: without the loads a section is already tilted by more "
@@ -230,28 +232,25 @@ std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index co
   const double share = 1e-5 / std::max({response.displacement, response.rotation, 1e-300});
   const Definiteness unloaded = judge(K0.K, solver, system);
   const auto note_unloaded = [&] {
-    counted->unstable = unloaded.negative;
-    counted->unstable_certain = unloaded.certain;
+    out.count.unstable = unloaded.negative;
+    out.count.unstable_certain = unloaded.certain;
   };
   if (!(change * std::min(share, 1.0) > 1e-15 * stiffness)) {
-    if (unloaded.stable() || !counted) throw nothing_buckles();
-    counted->why_not = "no load changes the stiffness of the model";
+    if (unloaded.stable()) throw nothing_buckles();
+    out.count.why_not = "no load changes the stiffness of the model";
     note_unloaded();
-    return {};
+    return out;
   }
   values(B) *= -1.0;
-  std::vector<BucklingMode> out;
   for (const la::Mode& m : la::linear_modes(K0.K, B, solver.free(), count)) {
     const double by = std::abs(m.lambda);
     BucklingMode b{m.lambda, m.x, by * response.rotation, by * response.displacement};
     system.complete(rest, b.x);
     scale(b.x, system.nodes());
-    out.push_back(std::move(b));
+    out.modes.push_back(std::move(b));
   }
-  if (counted) {
-    *counted = count_factors(K0, B, solver.free(), out);
-    note_unloaded();
-  }
+  out.count = count_factors(K0, B, solver.free(), out.modes);
+  note_unloaded();
   return out;
 }
 

@@ -40,12 +40,17 @@ struct BucklingCount {
   bool complete() const { return counted && missing == 0; }
 };
 
-/// The `count` factors of least size, ascending. counted: how many there are, by inertia.
-/// None where no load changes the stiffness of a model that is unstable without loads.
+struct Buckling {
+  std::vector<BucklingMode> modes;  ///< ascending by size of the factor
+  BucklingCount count;              ///< how many there are, by inertia
+  Equilibrium unloaded;             ///< the state the factors are of
+};
+
+/// The `count` factors of least size. None where no load changes the stiffness of a model that is
+/// unstable without loads.
 /// @throws Error as EquilibriumSolver::solve; E79 no load changes the stiffness of a stable one.
-std::vector<BucklingMode> buckling(SteadySystem& running, double Omega, Index count,
-                                   const EquilibriumOptions& options = {},
-                                   BucklingCount* counted = nullptr);
+Buckling buckling(SteadySystem& running, double Omega, Index count,
+                  const EquilibriumOptions& options = {});
 
 /// E79 where a look at the loads is enough: neither gravity nor a load acts, and without them the
 /// model is stable.

@@ -1,0 +1,92 @@
+// Every kind of step alone in a deck, with the report and the frames for ParaView: nothing that is
+// drawn may rest on what another step has left behind.
+#include "deck_run.hpp"
+
+namespace {
+
+using whirl::test::DeckRun;
+namespace fs = std::filesystem;
+
+struct Kind {
+  const char* name;
+  const char* step;  ///< what stands after `type`
+};
+
+void PrintTo(const Kind& k, std::ostream* out) { *out << k.name; }
+
+constexpr const char* machine = R"(
+format = 1
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["left", 300, 40], ["right", 500, 40]]
+[[disk]]
+name = "wheel"
+at = "left:end"
+mass = "20 kg"
+Ip = "0.4 kg.m^2"
+Id = "0.2 kg.m^2"
+[[bearing]]
+name = "A"
+at = "left:start"
+type = "linear"
+kxx = "1e8 N/m"
+kyy = "2e7 N/m"
+kzz = "3e7 N/m"
+cyy = "2e3 N.s/m"
+czz = "2e3 N.s/m"
+[[bearing]]
+name = "B"
+at = "right:end"
+type = "linear"
+kyy = "2e7 N/m"
+kzz = "3e7 N/m"
+cyy = "2e3 N.s/m"
+czz = "2e3 N.s/m"
+[[unbalance]]
+at = "wheel"
+amount = "300 g.mm"
+[[load]]
+name = "thrust"
+at = "right:end"
+force = ["-2 kN", "0 N", "0 N"]
+[[probe]]
+name = "middle"
+at = "wheel"
+[[output.vtk]]
+[[step]]
+name = "s"
+type = )";
+
+class PicturesOf : public ::testing::TestWithParam<Kind> {};
+
+TEST_P(PicturesOf, AStepThatStandsAlone) {
+  const DeckRun run(machine + std::string("\"") + GetParam().name + "\"\n" + GetParam().step);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(fs::exists(run.folder / "r" / "report.html"));
+  std::size_t pictures = 0;
+  for (const fs::directory_entry& e : fs::recursive_directory_iterator(run.folder / "r"))
+    pictures += e.path().extension() == ".svg" || e.path().extension() == ".pvd";
+  EXPECT_GT(pictures, 0u) << run.log;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Steps, PicturesOf,
+    ::testing::Values(Kind{"static", ""}, Kind{"modal", "speed = \"3000 rpm\"\nmodes = 6\n"},
+                      Kind{"campbell", "speed = { stop = \"6000 rpm\", points = 5 }\n"},
+                      Kind{"critical_speeds", "max_speed = \"6000 rpm\"\n"},
+                      Kind{"critical_map",
+                           "stiffness_min = \"1e6 N/m\"\nstiffness_max = \"1e9 N/m\"\npoints = 5\n"
+                           "max_speed = \"20000 rpm\"\n"},
+                      Kind{"stability", "speed = { stop = \"6000 rpm\", points = 4 }\n"},
+                      Kind{"unbalance_response",
+                           "speed = { start = \"100 rpm\", stop = \"6000 rpm\", points = 9 }\n"},
+                      Kind{"harmonic_response",
+                           "frequency = { start = \"1 Hz\", stop = \"100 Hz\", points = 9 }\n"
+                           "force = [{ at = \"wheel\", force = [\"0 N\", \"1 N\", \"0 N\"] }]\n"},
+                      Kind{"torsional", "max_speed = \"9000 rpm\"\n"}, Kind{"buckling", ""},
+                      Kind{"transient", "duration = \"0.02 s\"\ninitial_speed = \"3000 rpm\"\n"}),
+    [](const auto& kind) { return std::string(kind.param.name); });
+
+}  // namespace
