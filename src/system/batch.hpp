@@ -1,5 +1,6 @@
 // A batch holds all elements of one kind with their nodes and the precomputed slots of their
-// blocks: one virtual call per kind and evaluation, none per element.
+// blocks. What does not need to know the kind is compiled once for all of one shape (Elements); a
+// kind adds its own formulas.
 #pragma once
 #include <core/contract.hpp>
 #include <core/rotation.hpp>
@@ -101,6 +102,10 @@ class Elements : public Term {
   void bind(const la::BlockPattern& p, const std::vector<Index>& row) override;
   void list_links(std::vector<std::pair<Index, Index>>& out) const override;
   void bind_links(std::span<const std::pair<Index, Index>> links) override;
+  void add_force(Workspace& w) const override;
+  void add_tangent(Workspace& w) const override;
+  void add_energy(const Workspace& w, const Context& c, Energy& e) const override;
+  bool sees_turning(const Context& c, std::span<const double> rate) const override;
 
  protected:
   /// Nodes as an element sees them. carried[a]: how node a's angle was brought to other axes, or
@@ -124,11 +129,19 @@ class Elements : public Term {
   void add_forces_moved(Workspace& w) const;
   void add_tangents_moved(Workspace& w) const;
 
+  /// Which matrices the tangent of an element has.
+  struct Parts {
+    bool M, C, K;
+  };
+  virtual Parts parts() const = 0;
   virtual Axes axes() const = 0;
   virtual void element_force(std::size_t i, const Nodes<N>& x, const Context& c,
                              ForceX<N * W>& f) const = 0;
   virtual void element_tangent(std::size_t i, const Nodes<N>& x, const Context& c,
                                TangentX<N * W>& t) const = 0;
+  virtual void element_energy(std::size_t i, const Nodes<N>& x, const Context& c,
+                              Energy& e) const = 0;
+  virtual Dependence element_dependence(std::size_t i, const Context& c) const = 0;
   /// The forces of elements first .. last - 1, where the kernel computes several at once.
   virtual bool forces_at_once(std::size_t first, std::size_t last, Workspace& w) const = 0;
 
@@ -155,7 +168,6 @@ class Batch final : public Elements<K::n_nodes, K::width> {
  public:
   static constexpr int N = K::n_nodes, W = K::width;
   using Base = Elements<N, W>;
-  using Base::gather;
   using Base::nodes_;
   explicit Batch(std::string kind) : Base(std::move(kind)) {}
   void add(const K& k, const std::array<Index, N>& nodes) {
@@ -225,55 +237,9 @@ class Batch final : public Elements<K::n_nodes, K::width> {
       all = all | dependence_of(k, c);
     return all;
   }
-  bool sees_turning(const Context& c, std::span<const double> rate) const override {
-    for (std::size_t i = 0; i < elements_.size(); ++i) {
-      std::array<double, N> of_nodes;
-      for (std::size_t a = 0; a < of_nodes.size(); ++a)
-        of_nodes[a] = rate[static_cast<std::size_t>(nodes_[i][a])];
-      if (dependence_of(elements_[i], c).angle.changes(of_nodes)) return true;
-    }
-    return false;
-  }
   std::vector<K>& elements() { return elements_; }
   const std::vector<K>& elements() const { return elements_; }
 
-  void add_force(Workspace& w) const override {
-    if (axes_of<K>() != Axes::any && w.moved()) return Base::add_forces_moved(w);
-    if (forces_at_once(0, elements_.size(), w)) return;
-    for (std::size_t i = 0; i < elements_.size(); ++i) {
-      ForceX<N* W> f = ForceX<N * W>::Zero();
-      elements_[i].add_force(gather(w, i), w.context, f);
-      for (int a = 0; a < N; ++a)
-        w.force[static_cast<std::size_t>(nodes_[i][a])].template head<W>() +=
-            f.template segment<W>(W * a);
-    }
-  }
-  void add_tangent(Workspace& w) const override {
-    if (axes_of<K>() != Axes::any && w.moved()) return Base::add_tangents_moved(w);
-    if constexpr (K::has_M || K::has_C || K::has_K) {
-      TangentX<N * W> t;
-      for (std::size_t i = 0; i < elements_.size(); ++i) {
-        if constexpr (K::has_M) t.M.setZero();
-        if constexpr (K::has_C) t.C.setZero();
-        if constexpr (K::has_K) t.K.setZero();
-        elements_[i].add_tangent(gather(w, i), w.context, t);
-        if constexpr (K::has_M) Base::scatter(t.M, i, w.M);
-        if constexpr (K::has_C) Base::scatter(t.C, i, w.C);
-        if constexpr (K::has_K) Base::scatter(t.K, i, w.K);
-      }
-    }
-  }
-  void add_energy(const Workspace& w, const Context& c, Energy& e) const override {
-    const bool moved = axes_of<K>() != Axes::any && w.moved();
-    typename Base::Seen seen;
-    for (std::size_t i = 0; i < elements_.size(); ++i) {
-      if (moved)
-        Base::see(w, i, seen);
-      else
-        seen.x = gather(w, i);
-      elements_[i].add_energy(seen.x, c, e);
-    }
-  }
   void list_breakpoints(std::vector<double>& out) const override {
     if constexpr (requires(const K& k) { k.breakpoints(); })
       for (const K& k : elements_)
@@ -287,6 +253,7 @@ class Batch final : public Elements<K::n_nodes, K::width> {
   static constexpr bool has_regions = requires(const K& k, const Nodes<K::n_nodes>& x) {
     k.region(x);
   };
+  typename Base::Parts parts() const override { return {K::has_M, K::has_C, K::has_K}; }
   Axes axes() const override { return axes_of<K>(); }
   void element_force(std::size_t i, const Nodes<N>& x, const Context& c,
                      ForceX<N * W>& f) const override {
@@ -295,6 +262,13 @@ class Batch final : public Elements<K::n_nodes, K::width> {
   void element_tangent(std::size_t i, const Nodes<N>& x, const Context& c,
                        TangentX<N * W>& t) const override {
     elements_[i].add_tangent(x, c, t);
+  }
+  void element_energy(std::size_t i, const Nodes<N>& x, const Context& c,
+                      Energy& e) const override {
+    elements_[i].add_energy(x, c, e);
+  }
+  Dependence element_dependence(std::size_t i, const Context& c) const override {
+    return dependence_of(elements_[i], c);
   }
   bool forces_at_once(std::size_t first, std::size_t last, Workspace& w) const override {
     if constexpr (requires {

@@ -169,6 +169,60 @@ void Elements<N, W>::scatter(const Matrix<N * W>& tangent, std::size_t i,
 }
 
 template <int N, int W>
+void Elements<N, W>::add_force(Workspace& w) const {
+  if (axes() != Axes::any && w.moved()) return add_forces_moved(w);
+  if (forces_at_once(0, nodes_.size(), w)) return;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    ForceX<N* W> f = ForceX<N * W>::Zero();
+    element_force(i, gather(w, i), w.context, f);
+    for (std::size_t a = 0; a < N; ++a)
+      w.force[at(nodes_[i][a])].template head<W>() +=
+          f.template segment<W>(W * static_cast<Index>(a));
+  }
+}
+
+template <int N, int W>
+void Elements<N, W>::add_tangent(Workspace& w) const {
+  if (axes() != Axes::any && w.moved()) return add_tangents_moved(w);
+  const Parts has = parts();
+  if (!has.M && !has.C && !has.K) return;
+  TangentX<N * W> t;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (has.M) t.M.setZero();
+    if (has.C) t.C.setZero();
+    if (has.K) t.K.setZero();
+    element_tangent(i, gather(w, i), w.context, t);
+    if (has.M) scatter(t.M, i, w.M);
+    if (has.C) scatter(t.C, i, w.C);
+    if (has.K) scatter(t.K, i, w.K);
+  }
+}
+
+template <int N, int W>
+void Elements<N, W>::add_energy(const Workspace& w, const Context& c, Energy& e) const {
+  const bool moved = axes() != Axes::any && w.moved();
+  Seen seen;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (moved)
+      see(w, i, seen);
+    else
+      seen.x = gather(w, i);
+    element_energy(i, seen.x, c, e);
+  }
+}
+
+template <int N, int W>
+bool Elements<N, W>::sees_turning(const Context& c, std::span<const double> rate) const {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    std::array<double, N> of_nodes;
+    for (std::size_t a = 0; a < N; ++a)
+      of_nodes[a] = rate[at(nodes_[i][a])];
+    if (element_dependence(i, c).angle.changes(of_nodes)) return true;
+  }
+  return false;
+}
+
+template <int N, int W>
 void Elements<N, W>::add_forces_moved(Workspace& w) const {
   if constexpr (W == 7) {
     Seen seen;
