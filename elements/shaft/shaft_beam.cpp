@@ -600,6 +600,8 @@ ShaftBeam<Offsets>::ShaftBeam(const ShaftElementConstants& constants, const Vec3
   soft_limit = -0.5 / soft_shear;  // -infinity without shear
 }
 
+namespace {
+
 /// What the kernels of shaft_lanes.hpp take for granted.
 template <bool Offsets>
 constexpr bool beam_in_place() {
@@ -635,17 +637,27 @@ constexpr bool beam_in_place() {
   return stands(sizeof(Beam), Places::size) && sizeof(Vector<7>) == 7 * sizeof(double);
 }
 
+/// A batch as the lanes see it.
 template <bool Offsets>
-void ShaftBeam<Offsets>::add_forces(std::span<const ShaftBeam> elements,
-                                    const std::array<Index, 2>* nodes, const NodeState* states,
-                                    const Context&, Vector<7>* force) {
+lanes::Elements lanes_of(std::span<const ShaftBeam<Offsets>> elements,
+                         const std::array<Index, 2>* nodes, const NodeState* states) {
   static_assert(beam_in_place<Offsets>());
-  if (elements.empty()) return;
   lanes::Elements b;
   b.element = &elements[0].c.length;
   b.count = elements.size();
   b.nodes = nodes->data();
   b.state = states[0].u.data();
+  return b;
+}
+
+}  // namespace
+
+template <bool Offsets>
+void ShaftBeam<Offsets>::add_forces(std::span<const ShaftBeam> elements,
+                                    const std::array<Index, 2>* nodes, const NodeState* states,
+                                    const Context&, Vector<7>* force) {
+  if (elements.empty()) return;
+  lanes::Elements b = lanes_of(elements, nodes, states);
   b.force = force->data();
   static const lanes::Kernels& kernels = lanes::kernels();
   (Offsets ? kernels.add_force_offset : kernels.add_force)(b);
@@ -672,29 +684,24 @@ void ShaftBeam<Offsets>::add_tangent(const Nodes<2>& x, const Context&, TangentX
 }
 
 template <bool Offsets>
+void ShaftBeam<Offsets>::add_energies(std::span<const ShaftBeam> elements,
+                                      const std::array<Index, 2>* nodes, const NodeState* states,
+                                      const Context& ctx, Energy& e) {
+  if (elements.empty()) return;
+  static const lanes::Kernels& kernels = lanes::kernels();
+  lanes::Energies sum{e.elastic, e.kinetic, e.gravity};
+  (Offsets ? kernels.add_energy_offset : kernels.add_energy)(lanes_of(elements, nodes, states),
+                                                             ctx.gravity.data(), sum);
+  e.elastic = sum.elastic;
+  e.kinetic = sum.kinetic;
+  e.gravity = sum.gravity;
+}
+
+template <bool Offsets>
 void ShaftBeam<Offsets>::add_energy(const Nodes<2>& x, const Context& ctx, Energy& e) const {
-  const NodeState &x1 = *x[0], &x2 = *x[1];
-  const Deformed now(*this, x1, x2);
-  const Stresses<One>& r = now.stress;
-  const double F1 = now.strain.end1.angle.F, F2 = now.strain.end2.angle.F;
-  e.elastic += 0.5 * c.EA_l * r.w * r.w + preload * r.w +
-               0.5 * (c.k11 * F1 + 2.0 * c.k12 * now.strain.theta12 + c.k22 * F2) +
-               0.5 * c.GJ_l * now.psi * now.psi;
-  e.elastic -= 0.5 * r.Q * r.B;
-  const Vec3* vel[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
-  double T = 0.0;
-  for (int k = 0; k < 4; ++k)
-    for (int j = 0; j < 4; ++j)
-      T += c.M4(k, j) * vel[k]->dot(*vel[j]);
-  const Vec2 spin(x1.spin(), x2.spin());
-  const BentShape<Offsets> bent(*this, x, now.strain);
-  e.kinetic += 0.5 * T + 0.5 * spin.dot(c.polar * spin) + 0.5 * spin.sum() * bent.b.dot(bent.w);
-  // d - e0, not d - e: e moves with the chart, and the weight's moment on the directors of a cone
-  // does not cancel.
-  const Vec3 shift = x1.e() - e0;
-  const Vec3 p[4] = {x1.u, x1.t + shift, x2.u, x2.t + shift};
-  for (int j = 0; j < 4; ++j)
-    e.gravity -= (c.M4(0, j) + c.M4(2, j)) * ctx.gravity.dot(p[j]);
+  const NodeState states[2] = {*x[0], *x[1]};
+  const std::array<Index, 2> nodes{0, 1};
+  add_energies({this, 1}, &nodes, states, ctx, e);
 }
 
 template <bool Offsets>

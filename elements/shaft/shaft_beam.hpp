@@ -84,6 +84,10 @@ struct ShaftBeam {
   static void add_forces(std::span<const ShaftBeam> elements, const std::array<Index, 2>* nodes,
                          const system::NodeState* states, const system::Context& ctx,
                          Vector<7>* force);
+  /// The same for energies, added in the order of the elements.
+  static void add_energies(std::span<const ShaftBeam> elements, const std::array<Index, 2>* nodes,
+                           const system::NodeState* states, const system::Context& ctx,
+                           system::Energy& e);
   void add_tangent(const system::Nodes<2>& x, const system::Context& ctx,
                    system::TangentX<14>& t) const;
   void add_energy(const system::Nodes<2>& x, const system::Context& ctx, system::Energy& e) const;

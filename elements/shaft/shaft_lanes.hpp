@@ -32,7 +32,7 @@ struct DampingPlaces {
   static constexpr int size = 11;
 };
 
-/// A batch of elements, its nodes and their forces.
+/// A batch of elements, its nodes and their forces (null where energies are asked for).
 struct Elements {
   const double* element = nullptr;  ///< the first element
   std::size_t count = 0;
@@ -41,12 +41,20 @@ struct Elements {
   double* force = nullptr;                ///< 7 a node, added to
 };
 
+/// Sums over a batch, J.
+struct Energies {
+  double elastic = 0, kinetic = 0, gravity = 0;
+};
+
 struct Kernels {
   const char* isa;
   void (*add_force)(const Elements&);         ///< ShaftBeam, nodes at the element's ends
   void (*add_force_offset)(const Elements&);  ///< ShaftBeam with offsets o1, o2
   void (*add_internal_damping)(const Elements&);
   void (*add_external_damping)(const Elements&);
+  /// gravity: acceleration, three components. The elements are added one by one, in their order.
+  void (*add_energy)(const Elements&, const double* gravity, Energies&);         ///< ShaftBeam
+  void (*add_energy_offset)(const Elements&, const double* gravity, Energies&);  ///< with o1, o2
 };
 
 /// The best set for the machine the program runs on.

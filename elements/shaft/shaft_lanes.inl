@@ -72,8 +72,8 @@ WHIRL_INLINE Group group_of(const Elements& b, std::size_t first, int used) {
     g.element[i] = b.element + static_cast<std::ptrdiff_t>(k) * Places::size;
     g.s1[i] = b.state + n1 * NodePlaces::size;
     g.s2[i] = b.state + n2 * NodePlaces::size;
-    g.f1[i] = b.force + 7 * n1;
-    g.f2[i] = b.force + 7 * n2;
+    g.f1[i] = b.force ? b.force + 7 * n1 : nullptr;
+    g.f2[i] = b.force ? b.force + 7 * n2 : nullptr;
     const double* chart;
     memcpy(&chart, g.s1[i] + NodePlaces::chart, sizeof chart);
     g.e.x[i] = chart[0];
@@ -129,6 +129,25 @@ WHIRL_INLINE Shaft load_shaft(const double* const* at) {
   return s;
 }
 
+/// Strain, twist and stresses at the places of the nodes.
+struct Deformed {
+  Strain<Lanes> strain;
+  Twist<Lanes> twist;
+  T psi;
+  Stresses<Lanes> stress;
+};
+template <bool Offsets>
+WHIRL_INLINE Deformed deformed(const Shaft& k, V e, const Node& x1, const Node& x2) {
+  V du = x2.u - x1.u;
+  if constexpr (Offsets) du = du + (k.o2 * x2.t - k.o1 * x1.t);
+  Deformed now;
+  now.strain = strain_of<Lanes>(k.c.length, k.e0, e, du, x1.t, x2.t);
+  now.twist = twist_of(e, k.c.tau_c, now.strain);
+  now.psi = x2.phi - x1.phi + now.twist.geometric - k.psi0;
+  now.stress = stresses_of(k.c, now.strain, now.psi);
+  return now;
+}
+
 /// On (lambda, d1, d2), and the torque.
 struct ElasticForce {
   V lambda, d1, d2;
@@ -138,16 +157,13 @@ struct ElasticForce {
 };
 template <bool Offsets>
 WHIRL_INLINE ElasticForce elastic_force(const Shaft& k, V e, const Node& x1, const Node& x2) {
-  V du = x2.u - x1.u;
-  if constexpr (Offsets) du = du + (k.o2 * x2.t - k.o1 * x1.t);
-  const Strain<Lanes> s = strain_of<Lanes>(k.c.length, k.e0, e, du, x1.t, x2.t);
-  const Twist<Lanes> twist = twist_of(e, k.c.tau_c, s);
-  const T psi = x2.phi - x1.phi + twist.geometric - k.psi0;
-  const Stresses<Lanes> stress = stresses_of(k.c, s, psi);
+  const Deformed now = deformed<Offsets>(k, e, x1, x2);
+  const Strain<Lanes>& s = now.strain;
+  const Stresses<Lanes>& stress = now.stress;
   const BendingStiffness<T> c = bending_stiffness_of(k.c, stress);
   const Gradient<Lanes> bending = bending_gradient(bending_slopes(c.c11, c.c12, c.c22, s), s);
   const Gradient<Lanes> g =
-      elastic_gradient(bending, stress.torque, twist_gradient(twist, k.c.tau_c, s));
+      elastic_gradient(bending, stress.torque, twist_gradient(now.twist, k.c.tau_c, s));
   ElasticForce f{chord_gradient(s.chord, stress.N, g.a),
                  g.d1,
                  g.d2,
@@ -270,6 +286,69 @@ WHIRL_INLINE void add_shafts(const Elements& b, std::size_t first, int used) {
   add_to_nodes(g, used, f[0], f[1], q1 - elastic.torque, f[2], f[3], q2 + elastic.torque);
 }
 
+/// Elastic energy; V of stresses_of.
+WHIRL_INLINE T elastic_energy(const Shaft& k, const Deformed& now) {
+  const Stresses<Lanes>& r = now.stress;
+  const T F1 = now.strain.end1.angle.F, F2 = now.strain.end2.angle.F;
+  return 0.5 * k.c.EA_l * r.w * r.w + k.c.preload * r.w +
+         0.5 * (k.c.k11 * F1 + 2.0 * k.c.k12 * now.strain.theta12 + k.c.k22 * F2) +
+         0.5 * k.c.GJ_l * now.psi * now.psi - 0.5 * r.Q * r.B;
+}
+
+/// Gamma of add_bent_spin.
+template <bool Offsets>
+WHIRL_INLINE T bent_spin(const Group& g, const Strain<Lanes>& s, T o1, T o2, const Node& x1,
+                         const Node& x2) {
+  const double* at[width];
+  for (int i = 0; i < width; ++i)
+    at[i] = g.element[i] + ShaftPlaces::bend;
+  T k[6];
+  load_record(at, k);
+  const T S11 = k[0], S12 = k[1], S22 = k[2], r1 = k[3], r2 = k[4], inverse = k[5];
+  const V stretch = (s.chord.stretch * inverse) * s.chord.a;
+  V lambda_rate = x2.du - x1.du;
+  if constexpr (Offsets) lambda_rate = lambda_rate + (o2 * x2.dd - o1 * x1.dd);
+  const V delta1 = s.end1.delta - stretch, delta2 = s.end2.delta - stretch;
+  const V kappa = (S11 + S12 + r1) * delta1 + (S12 + S22 + r2) * delta2;
+  const V w = cross(S11 * delta1 + S12 * delta2, x1.dd) +
+              cross(S12 * delta1 + S22 * delta2, x2.dd) + cross(inverse * lambda_rate, kappa);
+  return dot(s.chord.a + stretch, w);
+}
+
+template <bool Offsets>
+WHIRL_INLINE void add_energies(const Elements& b, std::size_t first, int used,
+                               const double* gravity, Energies& sum) {
+  const Group g = group_of<ShaftPlaces>(b, first, used);
+  const Node x1 = load_node(g.s1), x2 = load_node(g.s2);
+  const Shaft shaft = load_shaft(g.element);
+  const Deformed now = deformed<Offsets>(shaft, g.e, x1, x2);
+  const T elastic = elastic_energy(shaft, now);
+  // d - e0, not d - e: e moves with the chart, and the weight's moment on the directors of a cone
+  // does not cancel.
+  const V shift = g.e - shaft.e0, d1 = x1.t + shift, d2 = x2.t + shift;
+  const V* const place[4] = {&x1.u, &d1, &x2.u, &d2};
+  const V* const rate[4] = {&x1.du, &x1.dd, &x2.du, &x2.dd};
+  T kinetic{}, weight{};
+  for (int j = 0; j < 4; ++j) {
+    T column[4];
+    load_column(g.element, ShaftPlaces::M4 + 4 * j, column);
+    for (int k = 0; k < 4; ++k)
+      kinetic += column[k] * dot(*rate[k], *rate[j]);
+    weight += (column[0] + column[2]) *
+              (gravity[0] * place[j]->x + gravity[1] * place[j]->y + gravity[2] * place[j]->z);
+  }
+  T polar[4];
+  load_column(g.element, ShaftPlaces::polar, polar);
+  const T s1 = spin_of(g.e, x1).s, s2 = spin_of(g.e, x2).s;
+  kinetic += s1 * (polar[0] * s1 + polar[2] * s2) + s2 * (polar[1] * s1 + polar[3] * s2) +
+             (s1 + s2) * bent_spin<Offsets>(g, now.strain, shaft.o1, shaft.o2, x1, x2);
+  for (int i = 0; i < used; ++i) {
+    sum.elastic += elastic[i];
+    sum.kinetic += 0.5 * kinetic[i];
+    sum.gravity -= weight[i];
+  }
+}
+
 template <bool Rotating>
 WHIRL_INLINE void add_dampers(const Elements& b, std::size_t first, int used) {
   using P = DampingPlaces;
@@ -298,11 +377,24 @@ void add_all(const Elements& b) {
   if (i < b.count) Add(b, i, static_cast<int>(b.count - i));
 }
 
+template <bool Offsets>
+void add_all_energies(const Elements& b, const double* gravity, Energies& sum) {
+  std::size_t i = 0;
+  for (; i + width <= b.count; i += width)
+    add_energies<Offsets>(b, i, width, gravity, sum);
+  if (i < b.count) add_energies<Offsets>(b, i, static_cast<int>(b.count - i), gravity, sum);
+}
+
 }  // namespace
 
 const Kernels* WHIRL_LANES_TABLE() {
-  static const Kernels table{WHIRL_LANES_ISA, add_all<add_shafts<false>>, add_all<add_shafts<true>>,
-                             add_all<add_dampers<true>>, add_all<add_dampers<false>>};
+  static const Kernels table{WHIRL_LANES_ISA,
+                             add_all<add_shafts<false>>,
+                             add_all<add_shafts<true>>,
+                             add_all<add_dampers<true>>,
+                             add_all<add_dampers<false>>,
+                             add_all_energies<false>,
+                             add_all_energies<true>};
   return &table;
 }
 

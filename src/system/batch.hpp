@@ -142,6 +142,8 @@ class Elements : public Term {
   virtual void element_energy(std::size_t i, const Nodes<N>& x, const Context& c,
                               Energy& e) const = 0;
   virtual Dependence element_dependence(std::size_t i, const Context& c) const = 0;
+  /// The energies of all elements as they stand, where the kernel computes several at once.
+  virtual bool energies_at_once(const Workspace& w, const Context& c, Energy& e) const = 0;
   /// The forces of elements first .. last - 1, where the kernel computes several at once.
   virtual bool forces_at_once(std::size_t first, std::size_t last, Workspace& w) const = 0;
 
@@ -269,6 +271,19 @@ class Batch final : public Elements<K::n_nodes, K::width> {
   }
   Dependence element_dependence(std::size_t i, const Context& c) const override {
     return dependence_of(elements_[i], c);
+  }
+  bool energies_at_once(const Workspace& w, const Context& c, Energy& e) const override {
+    if constexpr (requires {
+                    K::add_energies(std::span<const K>(elements_), nodes_.data(), w.nodes.data(), c,
+                                    e);
+                  }) {
+      K::add_energies(std::span<const K>(elements_), nodes_.data(), w.nodes.data(), c, e);
+      return true;
+    }
+    (void)w;
+    (void)c;
+    (void)e;
+    return false;
   }
   bool forces_at_once(std::size_t first, std::size_t last, Workspace& w) const override {
     if constexpr (requires {

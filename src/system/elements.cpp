@@ -201,6 +201,7 @@ void Elements<N, W>::add_tangent(Workspace& w) const {
 template <int N, int W>
 void Elements<N, W>::add_energy(const Workspace& w, const Context& c, Energy& e) const {
   const bool moved = axes() != Axes::any && w.moved();
+  if (!moved && energies_at_once(w, c, e)) return;
   Seen seen;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (moved)

@@ -20,7 +20,7 @@
 //
 // Optional: static void add_forces(std::span<const K>, const std::array<Index, n_nodes>* nodes,
 // const NodeState*, const Context&, Vector<7>* force), the same for all elements of a batch at
-// once, where a kernel is fast that way.
+// once, where a kernel is fast that way; likewise add_energies(.., const Context&, Energy&).
 //
 // Optional: static constexpr Axes axes says what it takes the axes of its nodes for (below).
 //
