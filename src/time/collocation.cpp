@@ -371,18 +371,53 @@ void Collocation::rewind() {
 
 void Collocation::drop_history() { have_history_ = have_start_residual_ = false; }
 
+template <int S>
+void Collocation::dense_of(double theta, Ref q, Ref v, Ref a) const {
+  WHIRL_EXPECTS(s_ == S);
+  const Tableau::Basis b = tab_.basis(theta);
+  double on_q[S], on_v[S], on_a[S];
+  for (int j = 0; j < S; ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    on_q[j] = h_ * h_ * b.l2[k];
+    on_v[j] = h_ * b.l1[k];
+    on_a[j] = b.l[k];
+  }
+  const double along = theta * h_;
+  // one pass: the vectors are read once
+  for (Index i = 0; i < n_; ++i) {
+    double q_i = q0_[i] + along * v0_[i], v_i = v0_[i], a_i = 0.0;
+    for (int j = 0; j < S; ++j) {
+      const double stage = a_last_(i, j);
+      a_i += on_a[j] * stage;
+      v_i += on_v[j] * stage;
+      q_i += on_q[j] * stage;
+    }
+    q[i] = q_i;
+    v[i] = v_i;
+    a[i] = a_i;
+  }
+}
+
 void Collocation::dense(double theta, Ref q, Ref v, Ref a) const {
   WHIRL_EXPECTS(h_ > 0.0);
-  const Tableau::Basis b = tab_.basis(theta);
-  q = q0_ + (theta * h_) * v0_;
-  v = v0_;
-  a.setZero();
-  for (int j = 0; j < s_; ++j) {
-    const auto k = static_cast<std::size_t>(j);
-    a += b.l[k] * a_last_.col(j);
-    v += (h_ * b.l1[k]) * a_last_.col(j);
-    q += (h_ * h_ * b.l2[k]) * a_last_.col(j);
+  switch (s_) {
+    case 1: return dense_of<1>(theta, q, v, a);
+    case 2: return dense_of<2>(theta, q, v, a);
+    default: return dense_of<3>(theta, q, v, a);
   }
+}
+
+bool Collocation::dense_entries(double theta, std::span<const Index> entries, Ref q) const {
+  WHIRL_EXPECTS(h_ > 0.0);
+  const Tableau::Basis b = tab_.basis(theta);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Index k = entries[i];
+    double at = q0_[k] + (theta * h_) * v0_[k];
+    for (int j = 0; j < s_; ++j)
+      at += (h_ * h_ * b.l2[static_cast<std::size_t>(j)]) * a_last_(k, j);
+    q[static_cast<Index>(i)] = at;
+  }
+  return true;
 }
 
 void Collocation::save_history(std::vector<double>& out) const {

@@ -20,6 +20,9 @@ class Collocation final : public Stepper {
   void commit(double h) override;
   void rewind() override;
   void drop_history() override;
+  template <int S>
+  void dense_of(double theta, Ref q, Ref v, Ref a) const;
+  bool dense_entries(double theta, std::span<const Index> entries, Ref q) const override;
   void dense(double theta, Ref q, Ref v, Ref a) const override;
   void save_history(std::vector<double>& out) const override;
   const double* restore_history(const double* in) override;

@@ -15,6 +15,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <span>
 #include <vector>
 
 namespace whirl::time {
@@ -145,6 +146,15 @@ class Integrator {
   /// same interpolant.
   /// @pre vectors of length Problem::size().
   virtual void interpolate(double t, Ref q, Ref v, Ref a) const = 0;
+  /// The same of some entries of q alone, in the order given; false, and nothing written, where the
+  /// scheme has no cheaper way than interpolate(), or one of the entries is held.
+  /// @pre q of the length of entries.
+  virtual bool interpolate_entries(double t, std::span<const Index> entries, Ref q) const {
+    (void)t;
+    (void)entries;
+    (void)q;
+    return false;
+  }
 
   /// To be called by whoever used linearize() or factor() of the problem between steps.
   virtual void refresh() = 0;

@@ -439,6 +439,19 @@ void Stepper::interpolate(double t, Ref q, Ref v, Ref a) const {
   problem_.impose(t, q, v, a);
 }
 
+bool Stepper::interpolate_entries(double t, std::span<const Index> entries, Ref q) const {
+  WHIRL_EXPECTS(q.size() == static_cast<Index>(entries.size()));
+  const VecX* known = !have_step_ || t == t_ ? &q_ : t == t0_ ? &q0_ : nullptr;
+  if (known) {
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      q[static_cast<Index>(i)] = (*known)[entries[i]];
+    return true;
+  }
+  for (const Index k : entries)
+    if (std::binary_search(held_.begin(), held_.end(), k)) return false;
+  return dense_entries(((t - t0_) - t0_low_) / h_, entries, q);
+}
+
 void Stepper::add_compensated(const VecX& x, const VecX& x_low, const VecX& dx, VecX& sum,
                               VecX& low) {
   WHIRL_EXPECTS(dx.size() == x.size() && x_low.size() == x.size());

@@ -22,6 +22,7 @@ class Stepper : public Integrator {
   const VecX& a() const final { return a_; }
   double proposed_step() const final { return h_next_; }
   void interpolate(double t, Ref q, Ref v, Ref a) const final;
+  bool interpolate_entries(double t, std::span<const Index> entries, Ref q) const final;
   void refresh() final {
     linearize_ = true;
     h_factored_ = 0.0;
@@ -51,6 +52,13 @@ class Stepper : public Integrator {
   virtual void drop_history() = 0;
   /// (q, v, a) at theta = (t - t0)/h of the last step; held entries are overwritten afterwards.
   virtual void dense(double theta, Ref q, Ref v, Ref a) const = 0;
+  /// Some entries of q alone; false where dense() is as cheap.
+  virtual bool dense_entries(double theta, std::span<const Index> entries, Ref q) const {
+    (void)theta;
+    (void)entries;
+    (void)q;
+    return false;
+  }
   virtual void save_history(std::vector<double>& out) const = 0;
   virtual const double* restore_history(const double* in) = 0;
 

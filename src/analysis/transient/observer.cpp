@@ -67,17 +67,21 @@ void Recorder::restore(InArchive& in) {
 
 PeakTracker::PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference,
                          double t_from)
-    : points_(std::move(points)),
-      reference_(reference),
+    : reference_(reference),
       t_from_(t_from) {
-  for (const auto& p : points_)
-    peaks_.push_back({p.first, 0.0, 0.0, 0.0});
+  points_.reserve(points.size());
+  peaks_.reserve(points.size());
+  for (auto& [name, point] : points) {
+    points_.push_back(point);
+    peaks_.push_back({std::move(name), 0.0, 0.0, 0.0});
+  }
 }
 
 void PeakTracker::begin(const Snapshot& s) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const double r = displacement(s, points_[i].second).tail<2>().norm();
-    peaks_[i] = {points_[i].first, r, s.t(), s.node(reference_).spin()};
+    peaks_[i].amplitude = displacement(s, points_[i]).tail<2>().norm();
+    peaks_[i].time = s.t();
+    peaks_[i].speed = s.node(reference_).spin();
   }
 }
 
@@ -116,13 +120,7 @@ std::array<double, N> lagrange(double x) {
 }  // namespace
 
 void PeakTracker::look(StepAccess& s, int k) {
-  const double t = k == looks - 1 ? s.t1() : s.t0() + (s.t1() - s.t0()) * k / (looks - 1);
-  const Snapshot& now = s.at(t);
-  std::vector<Vec2>& seen = seen_[static_cast<std::size_t>(k)];
-  seen.resize(points_.size());
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    seen[i] = displacement(now, points_[i].second).tail<2>();
-  spin_[static_cast<std::size_t>(k)] = now.node(reference_).spin();
+  s.displacements(time_of(s, k), points_, seen_[static_cast<std::size_t>(k)]);
 }
 
 void PeakTracker::step(StepAccess& s) {
@@ -182,12 +180,9 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
     where = x2;
   }
   if (!(best > peak.amplitude)) return;
-  const std::array<double, looks> w = lagrange<looks>(where);
-  double spin = 0;
-  for (std::size_t k = 0; k < looks; ++k)
-    spin += w[k] * spin_[k];
-  const double t = where == looks - 1 ? s.t1() : s.t0() + (s.t1() - s.t0()) * where / (looks - 1);
-  peak = {points_[point].first, best, t, spin};
+  peak.amplitude = best;
+  peak.time = time_of(s, where);
+  peak.speed = s.at(peak.time).node(reference_).spin();
 }
 
 void PeakTracker::save(OutArchive& out) const {

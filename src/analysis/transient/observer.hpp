@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,18 @@ class StepAccess {
   virtual double t1() const = 0;
   virtual const Snapshot& at(double t) = 0;
   const Snapshot& end() { return at(t1()); }
+  /// Lateral displacements (y, z) of points, global axes, m: as at(t) says, and cheaper where the
+  /// unknowns of these points can be interpolated alone. What at() gave stays good.
+  virtual void displacements(double t, std::span<const Point> points, std::vector<Vec2>& out) {
+    lateral(at(t), points, out);
+  }
+
+ protected:
+  static void lateral(const Snapshot& s, std::span<const Point> points, std::vector<Vec2>& out) {
+    out.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+      out[i] = displacement(s, points[i]).tail<2>();
+  }
 };
 
 class Observer {
@@ -107,15 +120,17 @@ class PeakTracker final : public Observer {
 
  private:
   static constexpr int looks = 9;  ///< at k/8 of the step, k = 0 .. 8
+  static double time_of(const StepAccess& s, double k) {
+    return k == looks - 1 ? s.t1() : s.t0() + (s.t1() - s.t0()) * k / (looks - 1);
+  }
   void look(StepAccess& s, int k);
   void refine(StepAccess& s, std::size_t point, double best, double where);
 
-  std::vector<std::pair<std::string, Point>> points_;
+  std::vector<Point> points_;
   std::vector<Peak> peaks_;
   Index reference_;
   double t_from_;
   std::array<std::vector<Vec2>, looks> seen_;  ///< lateral displacements of all points
-  std::array<double, looks> spin_{};
 };
 
 /// Work and energy: E(t) - E(0) = work supplied - energy dissipated; the defect is the run's own

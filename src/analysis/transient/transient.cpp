@@ -65,12 +65,42 @@ class StepDense final : public StepAccess {
     }
     return snapshot_;
   }
+  void displacements(double t, std::span<const Point> points, std::vector<Vec2>& out) override {
+    if (!alone(t, points, out)) lateral(at(t), points, out);
+  }
 
  private:
+  /// The unknowns of these points alone; false where that is not enough.
+  bool alone(double t, std::span<const Point> points, std::vector<Vec2>& out) {
+    if (snapshot_.frames().moved() || !snapshot_.system().followers().empty()) return false;
+    entries_.clear();
+    for (const Point& p : points)
+      for (Index k = 0; k < entries_each; ++k)
+        entries_.push_back(6 * p.node + entry[static_cast<std::size_t>(k)]);
+    values_.resize(static_cast<Index>(entries_.size()));
+    if (!integrator_.interpolate_entries(std::min(t, t1_), entries_, values_)) return false;
+    out.resize(points.size());
+    rotation::Director d;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Index first = entries_each * static_cast<Index>(i);
+      out[i] = values_.segment<2>(first);
+      if (points[i].offset == 0.0) continue;
+      rotation::director(values_.segment<2>(first + 2), d);
+      const Vec3 tilt = snapshot_.frames().axes(points[i].node) * d.t;
+      out[i] += points[i].offset * tilt.tail<2>();
+    }
+    return true;
+  }
+
+  /// Of a node's unknowns: y, z and the tilt.
+  static constexpr Index entries_each = 4;
+  static constexpr std::array<Index, entries_each> entry{1, 2, system::gamma2, system::gamma2 + 1};
+
   time::Integrator& integrator_;
   std::function<void()> look_;
   Snapshot snapshot_;
-  VecX q_, v_, a_;
+  VecX q_, v_, a_, values_;
+  std::vector<Index> entries_;
   double t0_ = 0, t1_ = 0;
   bool at_end_ = false;
 };
