@@ -119,7 +119,8 @@ void add_sweep(CLI::App& app, Given& g) {
        "--vary", g.sweep.vary,
        "a key and its values: first:last:count (:log), a list, or uniform(low, high), "
        "loguniform, triangular(low, mode, high), normal(mean, deviation), lognormal(median, "
-       "deviation); several keys are combined")
+       "deviation), each also as 'LAW drawn LAW' for weighted samples; several keys are combined; "
+       "@FILE: a CSV of runs")
       ->type_name("PATH=VALUES")
       ->take_all()
       ->allow_extra_args(false);
@@ -132,12 +133,31 @@ void add_sweep(CLI::App& app, Given& g) {
   c->add_option("--samples", g.sweep.samples, "samples of the distributions")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1000000000}))
       ->type_name("N");
-  c->add_option("--sampling", g.sweep.sampling, "random, lhs (Latin hypercube, default) or sobol")
+  c->add_option(
+       "--sampling", g.sweep.sampling,
+       "random, lhs (Latin hypercube, default) or sobol; for sensitivity saltelli (Sobol's "
+       "indices), morris or one_at_a_time (tornado)")
       ->type_name("WORD");
+  c->add_option("--correlation", g.sweep.correlations,
+                "of two distributions' normal scores, -1 .. 1")
+      ->type_name("PATH,PATH=NUMBER")
+      ->take_all()
+      ->allow_extra_args(false);
+  c->add_option("--exceed", g.sweep.exceed,
+                "how probable it is that a response lies beyond a value (or NAME<VALUE)")
+      ->type_name("NAME>VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  c->add_option("--worst", g.sweep.worst,
+                "run the worst ones by this response again with their reports (default largest:10)")
+      ->type_name("NAME[:least][:COUNT]")
+      ->take_all()
+      ->allow_extra_args(false);
   c->add_option("--seed", g.sweep.seed, "of the samples: the same gives the same runs (default 1)")
       ->type_name("N");
   c->add_option("--shard", g.sweep.shard,
-                "every n-th run from the i-th, for several machines on one folder")
+                "every n-th run from the i-th, for several machines on one folder; auto: as the "
+                "queue or mpirun says")
       ->type_name("I/N");
   c->add_option("--limit", g.sweep.limit, "seconds of wall time a run may take")
       ->check(CLI::PositiveNumber)

@@ -208,6 +208,7 @@ void describe(Visitor&, model::Output&);      // output.cpp
 void describe(Visitor&, model::VtkOutput&);
 void describe(Visitor&, model::TrackingOutput&);  // postprocess.cpp
 void describe(Visitor&, model::SpectraOutput&);
+void describe(Visitor&, model::SweepPlan&);
 void describe(Visitor&, model::BaseMotion&);  // base.cpp
 void describe(Visitor&, model::BaseTurn&);
 void describe(Visitor&, model::Event&);

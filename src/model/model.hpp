@@ -479,6 +479,16 @@ struct Output {
   std::vector<VtkOutput> vtk;
 };
 
+/// What `whirl sweep` varies and looks at, where the command line does not say; texts as the
+/// options of the same names take them (src/sweep).
+struct SweepPlan {
+  std::vector<std::string> vary, response, correlation, exceed, worst;
+  int samples = 1;
+  std::string sampling = "lhs";
+  int seed = 1;
+  double limit = 0;  ///< s of wall time a run may take; 0: any
+};
+
 // ---------------------------------------------------------------- the model
 
 /// Turning of the base about an axis fixed in it and in space: a manoeuvre.
@@ -552,6 +562,7 @@ struct Model {
   std::vector<Probe> probes;
   std::vector<Step> steps;
   Output output;
+  std::optional<SweepPlan> sweep;
   std::vector<Diagnostic> warnings;
 };
 

@@ -2,7 +2,10 @@
 #include <sweep/sampling.hpp>
 #include <core/contract.hpp>
 #include <core/error.hpp>
-#include <core/types.hpp>
+#include <core/table.hpp>
+#include <io/file.hpp>
+
+#include <Eigen/Cholesky>
 
 #include <fmt/format.h>
 
@@ -119,50 +122,79 @@ struct LawName {
   const char* form;
 };
 constexpr LawName laws[] = {
-    {"uniform", Factor::Law::uniform, 2, "uniform(low, high)"},
-    {"loguniform", Factor::Law::loguniform, 2, "loguniform(low, high)"},
-    {"triangular", Factor::Law::triangular, 3, "triangular(low, mode, high)"},
-    {"normal", Factor::Law::normal, 2, "normal(mean, deviation)"},
-    {"lognormal", Factor::Law::lognormal, 2, "lognormal(median, deviation of the logarithm)"}};
+    {"uniform", Distribution::Law::uniform, 2, "uniform(low, high)"},
+    {"loguniform", Distribution::Law::loguniform, 2, "loguniform(low, high)"},
+    {"triangular", Distribution::Law::triangular, 3, "triangular(low, mode, high)"},
+    {"normal", Distribution::Law::normal, 2, "normal(mean, deviation)"},
+    {"lognormal", Distribution::Law::lognormal, 2,
+     "lognormal(median, deviation of the logarithm)"}};
 
 /// What stands against the parameters of a distribution; empty: nothing.
-std::string problem_of(const Factor& f) {
+std::string problem_of(const Distribution& f) {
   const auto& p = f.parameters;
   switch (f.law) {
-    case Factor::Law::uniform: return p[0] < p[1] ? "" : "the first value must be the lower";
-    case Factor::Law::loguniform:
+    case Distribution::Law::uniform: return p[0] < p[1] ? "" : "the first value must be the lower";
+    case Distribution::Law::loguniform:
       return 0 < p[0] && p[0] < p[1] ? "" : "the values must be above zero, the first the lower";
-    case Factor::Law::triangular:
+    case Distribution::Law::triangular:
       return p[0] <= p[1] && p[1] <= p[2] && p[0] < p[2] ? "" : "the values must ascend";
-    case Factor::Law::normal: return p[1] > 0 ? "" : "the deviation must be above zero";
-    case Factor::Law::lognormal:
+    case Distribution::Law::normal: return p[1] > 0 ? "" : "the deviation must be above zero";
+    case Distribution::Law::lognormal:
       return p[0] > 0 && p[1] > 0 ? "" : "median and deviation must be above zero";
-    case Factor::Law::values: break;
+    case Distribution::Law::values: break;
   }
   return "";
 }
 
-void read_law(const std::string& text, const LawName& law, const std::string& inside, Factor& f) {
+/// A distribution without its name and parentheses; unit: of its numbers.
+Distribution read_law(const std::string& text, const LawName& law, const std::string& inside,
+                      std::string& unit) {
+  Distribution f;
   f.law = law.law;
   std::vector<std::string> parts = split(inside, ',');
   if (parts.size() != law.parameters)
     throw bad_factor(text, fmt::format("{} values where {} belong", parts.size(), law.parameters),
                      law.form);
-  if (law.law == Factor::Law::lognormal) {  // the second is a plain number
-    f.parameters = numbers_of(text, {parts[0]}, f.unit);
+  if (law.law == Distribution::Law::lognormal) {  // the second is a plain number
+    f.parameters = numbers_of(text, {parts[0]}, unit);
     std::string none;
     f.parameters.push_back(numbers_of(text, {parts[1]}, none)[0]);
     if (none == "%") f.parameters[1] *= 0.01;
     if (!none.empty() && none != "%")
       throw bad_factor(text, "the deviation of a logarithm has no unit", law.form);
-  } else if (law.law == Factor::Law::normal && number_of(parts[1]).unit == "%") {
-    f.parameters = numbers_of(text, {parts[0]}, f.unit);
+  } else if (law.law == Distribution::Law::normal && number_of(parts[1]).unit == "%") {
+    f.parameters = numbers_of(text, {parts[0]}, unit);
     f.parameters.push_back(0.01 * number_of(parts[1]).value * std::abs(f.parameters[0]));
   } else {
-    f.parameters = numbers_of(text, parts, f.unit);
+    f.parameters = numbers_of(text, parts, unit);
   }
   if (const std::string problem = problem_of(f); !problem.empty())
     throw bad_factor(text, problem, law.form);
+  return f;
+}
+
+/// What begins like a distribution, as one; none: it does not.
+std::optional<Distribution> read_distribution(const std::string& text, const std::string& values,
+                                              std::string& unit) {
+  for (const LawName& law : laws) {
+    const std::string head = std::string(law.name) + "(";
+    if (!values.starts_with(head)) continue;
+    if (values.back() != ')') throw bad_factor(text, "no closing parenthesis", law.form);
+    return read_law(text, law, values.substr(head.size(), values.size() - head.size() - 1), unit);
+  }
+  return {};
+}
+
+/// "normal(1, 0.1) drawn uniform(0.5, 2)"
+void read_drawn(const std::string& text, const std::string& from, Factor& f) {
+  std::string unit;
+  f.drawn = read_distribution(text, from, unit);
+  if (!f.drawn)
+    throw bad_factor(text, fmt::format("'{}' is no distribution", from),
+                     "for instance normal(1, 0.1) drawn uniform(0.5, 2)");
+  if (unit != f.unit)
+    throw bad_factor(text, fmt::format("units '{}' and '{}' in one key", f.unit, unit),
+                     "write both distributions in one unit");
 }
 
 }  // namespace
@@ -176,11 +208,11 @@ Factor read_factor(const std::string& text) {
   f.path = trimmed(std::string_view(text).substr(0, equals));
   const std::string values = trimmed(std::string_view(text).substr(equals + 1));
   if (values.empty()) throw bad_factor(text, "no values", "for instance 60um:90um:7");
-  for (const LawName& law : laws) {
-    const std::string head = std::string(law.name) + "(";
-    if (!values.starts_with(head)) continue;
-    if (values.back() != ')') throw bad_factor(text, "no closing parenthesis", law.form);
-    read_law(text, law, values.substr(head.size(), values.size() - head.size() - 1), f);
+  const auto drawn = values.find(" drawn ");
+  if (auto law = read_distribution(text, trimmed(values.substr(0, drawn)), f.unit)) {
+    f.law = law->law;
+    f.parameters = std::move(law->parameters);
+    if (drawn != std::string::npos) read_drawn(text, trimmed(values.substr(drawn + 7)), f);
     return f;
   }
   const std::vector<std::string> ends = split(values, ':');
@@ -193,8 +225,75 @@ Factor read_factor(const std::string& text) {
   return f;
 }
 
-double Factor::at_quantile(double p) const {
-  WHIRL_EXPECTS(random() && p > 0 && p < 1);
+std::vector<Factor> read_runs(const std::filesystem::path& file, int number) {
+  const auto refuse = [&](const std::string& problem) {
+    return bad_factor("@" + file.string(), problem,
+                      "a table of runs: a heading of keys, then a row of values a run");
+  };
+  const CellTable table = read_cells(io::read_text(file));
+  if (!table.problem.empty())
+    throw refuse(fmt::format("line {}: {}", table.problem_line, table.problem));
+  if (table.header.empty() || table.rows.empty()) throw refuse("no runs");
+  std::vector<Factor> factors;
+  for (std::size_t k = 0; k < table.header.size(); ++k) {
+    const ColumnTitle title = split_title(table.header[k].text);
+    Factor f;
+    f.path = title.name;
+    f.unit = title.unit == "-" ? "" : title.unit;
+    f.file = number;
+    if (f.path.empty()) throw refuse(fmt::format("column {} has no heading", k + 1));
+    for (const auto& row : table.rows) {
+      if (row.size() != table.header.size() || row[k].text.empty())
+        throw refuse(fmt::format("line {}: {} values where {} belong", row[0].line, row.size(),
+                                 table.header.size()));
+      f.values.push_back(f.unit.empty() ? row[k].text : row[k].text + " " + f.unit);
+    }
+    factors.push_back(std::move(f));
+  }
+  return factors;
+}
+
+Correlation read_correlation(const std::string& text) {
+  const auto refuse = [&] {
+    return Error(Exit::usage,
+                 Diagnostic{Diagnostic::Severity::error, "E99",
+                            fmt::format("--correlation '{}' is not PATH,PATH=NUMBER", text),
+                            "a number between -1 and 1, for instance "
+                            "bearing.DE.clearance,bearing.NDE.clearance=0.8",
+                            Where{}});
+  };
+  const auto equals = text.rfind('=');
+  if (equals == std::string::npos) throw refuse();
+  const std::vector<std::string> paths = split(text.substr(0, equals), ',');
+  const Number n = number_of(trimmed(text.substr(equals + 1)));
+  if (paths.size() != 2 || paths[0].empty() || paths[1].empty() || paths[0] == paths[1] || !n.ok ||
+      !n.unit.empty() || !(std::abs(n.value) < 1.0))
+    throw refuse();
+  return {paths[0], paths[1], n.value};
+}
+
+double Distribution::density(double x) const {
+  const auto& a = parameters;
+  const auto normal = [](double z) { return std::exp(-0.5 * z * z) / std::sqrt(two_pi); };
+  const bool inside = law == Law::normal || (x >= a[0] && x <= a.back());
+  switch (law) {
+    case Law::uniform: return inside ? 1.0 / (a[1] - a[0]) : 0.0;
+    case Law::loguniform: return inside ? 1.0 / (x * std::log(a[1] / a[0])) : 0.0;
+    case Law::triangular: {
+      if (!inside) return 0.0;
+      const double top = 2.0 / (a[2] - a[0]);
+      if (x < a[1]) return top * (x - a[0]) / (a[1] - a[0]);
+      return a[2] > a[1] ? top * (a[2] - x) / (a[2] - a[1]) : top;
+    }
+    case Law::normal: return normal((x - a[0]) / a[1]) / a[1];
+    case Law::lognormal: return x > 0 ? normal(std::log(x / a[0]) / a[1]) / (a[1] * x) : 0.0;
+    case Law::values: break;
+  }
+  return nan;
+}
+
+double Distribution::at_quantile(double p) const {
+  WHIRL_EXPECTS(law != Law::values && p > 0 && p < 1);
   const auto& a = parameters;
   switch (law) {
     case Law::uniform: return a[0] + (a[1] - a[0]) * p;
@@ -211,56 +310,142 @@ double Factor::at_quantile(double p) const {
   return nan;
 }
 
+namespace {
+
+[[noreturn]] void refuse(const std::string& message, const std::string& hint) {
+  throw Error(Exit::usage, Diagnostic{Diagnostic::Severity::error, "E99", message, hint, Where{}});
+}
+
+bool is_scheme(Sampling s) {
+  return s == Sampling::saltelli || s == Sampling::morris || s == Sampling::one_at_a_time;
+}
+
+/// The first factor of a file stands for all of it.
+bool counts(const std::vector<Factor>& factors, std::size_t k) {
+  if (factors[k].random()) return false;
+  return factors[k].file < 0 || k == 0 || factors[k - 1].file != factors[k].file;
+}
+
+}  // namespace
+
 Design::Design(std::vector<Factor> factors, std::int64_t samples, Sampling sampling,
-               std::uint64_t seed)
+               std::uint64_t seed, const std::vector<Correlation>& correlations)
     : factors_(std::move(factors)),
       sampling_(sampling),
       seed_(seed) {
-  const auto refuse = [](const std::string& message, const std::string& hint) {
-    throw Error(Exit::usage,
-                Diagnostic{Diagnostic::Severity::error, "E99", message, hint, Where{}});
-  };
   double count = 1;
-  std::size_t distributions = 0;
+  std::int64_t distributions = 0;
   for (std::size_t k = 0; k < factors_.size(); ++k) {
     for (std::size_t j = 0; j < k; ++j)
       if (factors_[j].path == factors_[k].path)
         refuse(fmt::format("'{}' is varied twice", factors_[k].path), "one --vary a key");
-    if (factors_[k].random())
-      ++distributions;
-    else
-      count *= static_cast<double>(factors_[k].values.size());
+    distributions += factors_[k].random();
+    if (counts(factors_, k)) count *= static_cast<double>(factors_[k].values.size());
   }
+  if (is_scheme(sampling_)) require_no_lists();
   if (distributions == 0 && samples > 1)
     refuse("there is nothing to sample: no key has a distribution",
            "for instance --vary 'bearing.NDE.clearance=uniform(60 um, 90 um)'");
-  if (distributions > 0 && samples < 2)
+  if (distributions > 0 && samples < 2 && sampling_ != Sampling::one_at_a_time)
     refuse("distributions need a number of samples", "for instance --samples 200");
-  if (sampling_ == Sampling::sobol && distributions > sobol_dimensions)
+  if (sampling_ == Sampling::sobol && distributions > std::int64_t{sobol_dimensions})
     refuse(fmt::format("{} distributions, and Sobol's points are laid for {} at most",
                        distributions, sobol_dimensions),
            "--sampling lhs takes any number");
-  count *= static_cast<double>(std::max<std::int64_t>(samples, 1));
+  base_ = std::max<std::int64_t>(samples, 1);
+  const std::int64_t each = sampling_ == Sampling::saltelli ? distributions + 2
+                            : sampling_ == Sampling::morris ? distributions + 1
+                                                            : 1;
+  samples_ = sampling_ == Sampling::one_at_a_time ? 2 * distributions + 1 : base_ * each;
+  count *= static_cast<double>(base_) * static_cast<double>(each);
   if (count > most_runs)
     refuse(fmt::format("{:.3g} runs are more than {:.0e}", count, most_runs),
            "take fewer values, or sample them from distributions");
-  samples_ = std::max<std::int64_t>(samples, 1);
-  for (const Factor& f : factors_)
-    if (!f.random()) combinations_ *= static_cast<std::int64_t>(f.values.size());
+  for (std::size_t k = 0; k < factors_.size(); ++k)
+    if (counts(factors_, k)) combinations_ *= static_cast<std::int64_t>(factors_[k].values.size());
+  if (!correlations.empty()) correlate(correlations);
 }
 
-double Design::quantile(std::size_t dimension, std::int64_t sample) const {
+void Design::require_no_lists() const {
+  for (const Factor& f : factors_) {
+    if (!f.random())
+      refuse(fmt::format("'{}' has a list of values beside a scheme of sensitivity", f.path),
+             "give it a distribution, for instance uniform(low, high)");
+    if (f.drawn)
+      refuse(fmt::format("'{}' has weighted samples in a scheme of sensitivity", f.path),
+             "leave 'drawn' out, or take --sampling random");
+  }
+  if (factors_.empty()) refuse("nothing is varied", "for instance --vary 'a.b=uniform(1, 2)'");
+}
+
+void Design::correlate(const std::vector<Correlation>& correlations) {
+  if (is_scheme(sampling_))
+    refuse("a scheme of sensitivity takes its numbers as independent",
+           "leave --correlation out, or take --sampling lhs");
+  std::vector<std::string> paths;
+  for (const Factor& f : factors_)
+    if (f.random()) paths.push_back(f.path);
+  const auto n = static_cast<Index>(paths.size());
+  MatX r = MatX::Identity(n, n);
+  const auto place = [&](const std::string& path) {
+    const auto it = std::find(paths.begin(), paths.end(), path);
+    if (it == paths.end())
+      refuse(fmt::format("--correlation: '{}' has no distribution", path),
+             "keys as --vary has them, with a distribution each");
+    return static_cast<Index>(it - paths.begin());
+  };
+  for (const Correlation& c : correlations) {
+    const Index a = place(c.first), b = place(c.second);
+    r(a, b) = r(b, a) = c.value;
+  }
+  const Eigen::LLT<MatX> factor(r);
+  if (factor.info() != Eigen::Success)
+    refuse("the correlations contradict each other: their matrix is not positive definite",
+           "make them smaller");
+  cholesky_ = factor.matrixL();
+}
+
+double Design::independent(std::size_t dimension, std::int64_t sample) const {
+  std::size_t dimensions = 0;
   switch (sampling_) {
     case Sampling::random: return random_point(seed_, dimension, sample);
     case Sampling::latin_hypercube: return latin_point(seed_, dimension, sample, samples_);
     case Sampling::sobol: return sobol_point(seed_, dimension, sample);
+    case Sampling::saltelli:
+    case Sampling::morris:
+      dimensions = factors_.size();
+      return sampling_ == Sampling::saltelli
+                 ? saltelli_point(seed_, dimension, dimensions, sample)
+                 : morris_quantile(morris_level(seed_, dimension, dimensions, sample));
+    case Sampling::one_at_a_time: {
+      const auto own = static_cast<std::int64_t>(2 * dimension + 1);
+      return sample == own ? 0.05 : sample == own + 1 ? 0.95 : 0.5;
+    }
   }
   return nan;
 }
 
+std::vector<double> Design::quantiles(std::int64_t sample) const {
+  WHIRL_EXPECTS(sample >= 0 && sample < samples_);
+  std::vector<double> out;
+  for (const Factor& f : factors_)
+    if (f.random()) out.push_back(independent(out.size(), sample));
+  if (cholesky_.size() == 0) return out;
+  const auto n = static_cast<Index>(out.size());
+  VecX score(n);
+  for (Index k = 0; k < n; ++k)
+    score[k] = normal_quantile(out[static_cast<std::size_t>(k)]);
+  const VecX together = cholesky_ * score;
+  constexpr double least = 0x1p-53;
+  for (Index k = 0; k < n; ++k)
+    if (cholesky_(k, k) != 1.0)  // what depends on none before it stays as it is
+      out[static_cast<std::size_t>(k)] =
+          std::clamp(normal_probability(together[k]), least, 1.0 - least);
+  return out;
+}
+
 std::vector<std::string> Design::values(std::int64_t run) const {
   WHIRL_EXPECTS(run >= 0 && run < runs());
-  const std::int64_t sample = run % samples_;
   std::int64_t combination = run / samples_;
   std::vector<std::string> out(factors_.size());
   for (std::size_t k = factors_.size(); k-- > 0;) {  // the last factor changes first
@@ -268,13 +453,38 @@ std::vector<std::string> Design::values(std::int64_t run) const {
     if (f.random()) continue;
     const auto n = static_cast<std::int64_t>(f.values.size());
     out[k] = f.values[static_cast<std::size_t>(combination % n)];
-    combination /= n;
+    if (counts(factors_, k)) combination /= n;
   }
+  const std::vector<double> q = quantiles(run % samples_);
   std::size_t dimension = 0;
-  for (std::size_t k = 0; k < factors_.size(); ++k)
-    if (factors_[k].random())
-      out[k] = with_unit(factors_[k].at_quantile(quantile(dimension++, sample)), factors_[k].unit);
+  for (std::size_t k = 0; k < factors_.size(); ++k) {
+    const Factor& f = factors_[k];
+    if (!f.random()) continue;
+    const Distribution& from = f.drawn ? *f.drawn : f;
+    out[k] = with_unit(from.at_quantile(q[dimension++]), f.unit);
+  }
   return out;
+}
+
+bool Design::weighted() const {
+  return std::any_of(factors_.begin(), factors_.end(),
+                     [](const Factor& f) { return f.drawn.has_value(); });
+}
+
+double Design::weight(std::int64_t run) const {
+  WHIRL_EXPECTS(run >= 0 && run < runs());
+  if (!weighted()) return 1.0;
+  const std::vector<double> q = quantiles(run % samples_);
+  double w = 1.0;
+  std::size_t dimension = 0;
+  for (const Factor& f : factors_) {
+    if (!f.random()) continue;
+    const double p = q[dimension++];
+    if (!f.drawn) continue;
+    const double x = f.drawn->at_quantile(p);
+    w *= f.density(x) / f.drawn->density(x);
+  }
+  return w;
 }
 
 }  // namespace whirl::sweep

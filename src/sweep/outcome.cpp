@@ -1,4 +1,7 @@
 #include <sweep/outcome.hpp>
+#include <sweep/columns.hpp>
+#include <sweep/pictures.hpp>
+#include <sweep/sensitivity.hpp>
 #include <core/contract.hpp>
 #include <core/types.hpp>
 #include <io/report.hpp>
@@ -34,37 +37,6 @@ std::vector<double> ranks_of(const std::vector<double>& x) {
   return rank;
 }
 
-/// The number at the head of a value, nan for text.
-double leading_number(const std::string& value) {
-  double x = nan;
-  const auto read = std::from_chars(value.data(), value.data() + value.size(), x);
-  return read.ec == std::errc{} ? x : nan;
-}
-
-/// The sweep as columns of numbers.
-struct Columns {
-  std::vector<std::vector<double>> factors;    ///< nan: text
-  std::vector<std::vector<double>> responses;  ///< nan: failed
-  std::vector<std::string> units;              ///< of the responses
-};
-
-Columns columns_of(const Plan& plan, const Rows& rows) {
-  Columns c;
-  c.factors.resize(plan.design.factors().size());
-  c.responses.resize(plan.responses.size());
-  c.units.resize(plan.responses.size());
-  for (const auto& [run, row] : rows) {
-    const auto values = plan.design.values(run);
-    for (std::size_t k = 0; k < values.size(); ++k)
-      c.factors[k].push_back(leading_number(values[k]));
-    for (std::size_t k = 0; k < c.responses.size(); ++k) {
-      c.responses[k].push_back(row.answers[k].failure.empty() ? row.answers[k].value : nan);
-      if (c.units[k].empty()) c.units[k] = row.answers[k].unit;
-    }
-  }
-  return c;
-}
-
 io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
   io::Table t;
   t.title = "Runs";
@@ -77,6 +49,9 @@ io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
                                [](double x) { return std::isnan(x); }));
     t.columns.push_back({f.path, text[k] || f.unit.empty() ? "-" : f.unit, "varied"});
   }
+  const bool weighted = plan.design.weighted();
+  if (weighted)
+    t.columns.push_back({"weight", "-", "density of what is varied over that it was drawn from"});
   for (std::size_t k = 0; k < plan.responses.size(); ++k) {
     t.columns.push_back({plan.responses[k].name, c.units[k].empty() ? "-" : c.units[k],
                          plan.responses[k].table + ": " + plan.responses[k].column});
@@ -93,6 +68,7 @@ io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
         cells.emplace_back(values[k]);
       else
         cells.emplace_back(leading_number(values[k]));
+    if (weighted) cells.emplace_back(c.weight[t.rows.size()]);
     for (const Answer& a : row.answers) {
       cells.emplace_back(a.failure.empty() ? a.value : nan);
       cells.emplace_back(a.failure);
@@ -105,20 +81,16 @@ io::Table sweep_table(const Plan& plan, const Rows& rows, const Columns& c) {
   return t;
 }
 
-std::vector<double> finite(const std::vector<double>& x) {
-  std::vector<double> out;
-  std::copy_if(x.begin(), x.end(), std::back_inserter(out),
-               [](double v) { return !std::isnan(v); });
-  return out;
-}
-
 io::Table statistics_table(const Plan& plan, const Columns& c) {
   io::Table t;
   t.title = "Responses";
   t.nan_means = "no run gave a value";
   t.columns = {{"response", "-", ""},
                {"unit", "-", ""},
-               {"runs", "-", "that gave a value"},
+               {"runs", "-",
+                plan.design.weighted() ? "that gave a value; equivalent ones, after Kish: sum of "
+                                         "weights squared over sum of squares"
+                                       : "that gave a value"},
                {"failed", "-", "runs without a value"},
                {"mean", "-", "in the unit of the response, as all that follow"},
                {"error of the mean", "-", "standard error, of independent runs"},
@@ -133,7 +105,12 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
     const double failed = static_cast<double>(c.responses[k].size() - values.size());
     std::vector<io::Table::Cell> cells{plan.responses[k].name, c.units[k],
                                        static_cast<double>(values.size()), failed};
-    if (values.empty()) {
+    if (plan.design.weighted() && !values.empty()) {
+      const WeightedStatistics w = weighted_statistics(c.responses[k], c.weight);
+      cells[2] = w.runs;
+      for (double x : {w.mean, w.error, w.deviation, w.least, w.p05, w.median, w.p95, w.largest})
+        cells.emplace_back(x);
+    } else if (values.empty()) {
       for (int i = 0; i < 8; ++i)
         cells.emplace_back(nan);
     } else {
@@ -147,16 +124,84 @@ io::Table statistics_table(const Plan& plan, const Columns& c) {
   return t;
 }
 
-/// Values of runs in which both are numbers.
-std::pair<std::vector<double>, std::vector<double>> pairs_of(const std::vector<double>& x,
-                                                             const std::vector<double>& y) {
-  std::pair<std::vector<double>, std::vector<double>> out;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (std::isnan(x[i]) || std::isnan(y[i])) continue;
-    out.first.push_back(x[i]);
-    out.second.push_back(y[i]);
+/// How probable it is to lie beyond the limits asked for.
+io::Table probabilities_table(const Plan& plan, const Columns& c) {
+  io::Table t;
+  t.title = "Probabilities";
+  t.nan_means = "no run gave a value";
+  t.columns = {{"response", "-", ""},
+               {"unit", "-", ""},
+               {"beyond", "-", ""},
+               {"probability", "-", "of independent runs that gave a value"},
+               {"error", "-", "standard error"},
+               {"runs", "-", "that lie there"}};
+  for (const Limit& limit : plan.limits) {
+    const Probability p =
+        probability_beyond(c.responses[limit.response], c.weight, limit.value, limit.above);
+    t.add({plan.responses[limit.response].name, c.units[limit.response],
+           fmt::format("{} {:.6g}", limit.above ? ">" : "<", limit.value), p.value, p.error,
+           static_cast<double>(p.runs)});
   }
-  return out;
+  return t;
+}
+
+/// What the scheme of sensitivity found; no columns without one.
+io::Table sensitivity_table(const Plan& plan, const Columns& c) {
+  const Sampling scheme = plan.design.sampling();
+  const std::size_t keys = plan.design.factors().size();
+  io::Table t;
+  t.title = "Sensitivity";
+  t.nan_means = "no run gave a value";
+  if (scheme == Sampling::saltelli)
+    t.columns = {{"response", "-", ""},
+                 {"varied", "-", ""},
+                 {"first index", "-", "share of the variance due to the key alone"},
+                 {"error of the first", "-", "standard error, bootstrap"},
+                 {"total index", "-", "share due to the key and all it interacts with"},
+                 {"error of the total", "-", "standard error, bootstrap"},
+                 {"points", "-", "of which all runs gave a value"}};
+  else if (scheme == Sampling::morris)
+    t.columns = {{"response", "-", ""},
+                 {"varied", "-", ""},
+                 {"mean effect", "-", "mu, in the unit of the response a range of the key"},
+                 {"mean size of effects", "-", "mu*"},
+                 {"deviation of effects", "-",
+                  "sigma: not zero where the effect is not linear, or "
+                  "depends on other keys"},
+                 {"paths", "-", "that gave an effect"}};
+  else if (scheme == Sampling::one_at_a_time)
+    t.columns = {{"response", "-", ""},
+                 {"varied", "-", ""},
+                 {"at the medians", "-", "in the unit of the response, as all that follow"},
+                 {"at 5 %", "-", "of this key, the others at their medians"},
+                 {"at 95 %", "-", ""},
+                 {"swing", "-", "from 5 % to 95 %"}};
+  for (std::size_t r = 0; r < plan.responses.size() && !t.columns.empty(); ++r) {
+    std::size_t used = 0;
+    const auto& y = c.responses[r];
+    const auto sobol =
+        scheme == Sampling::saltelli ? sobol_indices(y, keys, used) : std::vector<SobolIndex>();
+    const auto morris = scheme == Sampling::morris ? morris_effects(y, keys, plan.design.seed())
+                                                   : std::vector<MorrisEffect>();
+    for (std::size_t k = 0; k < keys; ++k) {
+      std::vector<io::Table::Cell> cells{plan.responses[r].name, plan.design.factors()[k].path};
+      std::vector<double> numbers;
+      if (scheme == Sampling::saltelli) {
+        const SobolIndex i = sobol.empty() ? SobolIndex{nan, nan, nan, nan} : sobol[k];
+        numbers = {i.first, i.first_error, i.total, i.total_error, static_cast<double>(used)};
+      } else if (scheme == Sampling::morris) {
+        numbers = {morris[k].mean, morris[k].magnitude, morris[k].deviation,
+                   static_cast<double>(morris[k].paths)};
+      } else {
+        const double low = y[2 * k + 1], high = y[2 * k + 2];
+        numbers = {y[0], low, high, high - low};
+      }
+      for (const double x : numbers)
+        cells.emplace_back(x);
+      t.add(std::move(cells));
+    }
+  }
+  return t;
 }
 
 io::Table effects_table(const Plan& plan, const Columns& c) {
@@ -176,77 +221,36 @@ io::Table effects_table(const Plan& plan, const Columns& c) {
   return t;
 }
 
-plot::Figure histogram(const Plan& plan, const Columns& c, std::size_t r,
-                       const std::vector<double>& values) {
-  const Statistics s = statistics_of(values);
-  // H. A. Sturges, J. Am. Stat. Assoc. 21 (1926) 65
-  const int bins = 1 + static_cast<int>(std::ceil(std::log2(static_cast<double>(values.size()))));
-  const double width = s.largest > s.least ? (s.largest - s.least) / bins
-                                           : std::max(1e-12, 0.01 * std::abs(s.least));
-  plot::Bars bars;
-  bars.width = 0.95 * width;
-  for (int k = 0; k < bins; ++k) {
-    bars.x.push_back(s.least + (k + 0.5) * width);
-    bars.height.push_back(0);
+/// The worst runs, with their reports.
+io::ReportSection worst_section(const Plan& plan, const Rows& rows) {
+  io::ReportSection section;
+  section.title = "Worst runs";
+  for (const std::int64_t run : worst_runs(plan, rows)) {
+    std::string text = fmt::format("run {}", run);
+    for (std::size_t r = 0; r < plan.responses.size(); ++r)
+      if (const Answer& a = rows.at(run).answers[r]; a.failure.empty())
+        text +=
+            fmt::format(", {} {:.6g}{}{}", plan.responses[r].name, a.value,
+                        a.unit.empty() || a.unit == "-" ? "" : " ", a.unit == "-" ? "" : a.unit);
+    section.files.emplace_back(std::move(text), worst_folder(run) + "/report.html");
   }
-  for (double v : values)
-    ++bars.height[static_cast<std::size_t>(
-        std::clamp(static_cast<int>((v - s.least) / width), 0, bins - 1))];
-  plot::Axes axes;
-  axes.x = plot::Axis(plan.responses[r].name, c.units[r].empty() ? "-" : c.units[r]);
-  axes.y = plot::Axis("runs", "-");
-  axes.y.include_zero = true;
-  axes.legend = false;
-  axes.bars.push_back(std::move(bars));
-  axes.rules.push_back({true, s.median, "median"});
-  return {fmt::format("histogram_{}", r + 1), plan.responses[r].name, "", {axes}};
+  return section;
 }
 
-plot::Figure scatter(const Plan& plan, const Columns& c, std::size_t r) {
-  plot::Figure figure;
-  figure.name = fmt::format("dependence_{}", r + 1);
-  figure.title = plan.responses[r].name + " against what is varied";
-  for (std::size_t f = 0; f < c.factors.size(); ++f) {
-    auto [x, y] = pairs_of(c.factors[f], c.responses[r]);
-    if (x.empty()) continue;
-    const Factor& factor = plan.design.factors()[f];
-    plot::Axes axes;
-    axes.x = plot::Axis(factor.path, factor.unit.empty() ? "-" : factor.unit);
-    axes.y = plot::Axis(plan.responses[r].name, c.units[r].empty() ? "-" : c.units[r]);
-    axes.legend = false;
-    plot::Series cloud;
-    cloud.x = std::move(x);
-    cloud.y = std::move(y);
-    cloud.style.width = 0;
-    cloud.style.marker = plot::Marker::circle;
-    cloud.style.marker_size = 4;
-    cloud.style.opacity = 0.7;
-    axes.series.push_back(std::move(cloud));
-    figure.axes.push_back(std::move(axes));
-  }
-  figure.columns = figure.axes.size() > 1 ? 2 : 1;
-  figure.height = 320.0 * std::ceil(static_cast<double>(figure.axes.size()) / figure.columns);
-  return figure;
-}
-
-io::Report report_of(const Plan& plan, const Columns& c, const io::Table& statistics,
-                     const io::Table& effects, const io::Value& summary) {
+io::Report report_of(const Plan& plan, const Rows& rows, const Columns& c,
+                     std::vector<io::Table> tables, const io::Value& summary) {
   io::Report report;
   report.title = "Sweep";
   report.facts = {{"runs", std::to_string(plan.design.runs())}};
   report.summary = summary;
   io::ReportSection section;
   section.title = "Responses";
-  section.tables = {statistics, effects};
+  section.tables = std::move(tables);
   section.files = {{"all runs", "sweep.csv"}};
-  for (std::size_t r = 0; r < plan.responses.size(); ++r) {
-    const auto values = finite(c.responses[r]);
-    if (values.empty()) continue;
-    section.figures.push_back(histogram(plan, c, r, values));
-    if (plot::Figure f = scatter(plan, c, r); !f.axes.empty())
-      section.figures.push_back(std::move(f));
-  }
+  section.figures = pictures_of(plan, c);
   report.sections.push_back(std::move(section));
+  if (io::ReportSection worst = worst_section(plan, rows); !worst.files.empty())
+    report.sections.push_back(std::move(worst));
   return report;
 }
 
@@ -287,6 +291,64 @@ Statistics statistics_of(std::vector<double> values) {
   return s;
 }
 
+WeightedStatistics weighted_statistics(const std::vector<double>& values,
+                                       const std::vector<double>& weights) {
+  WHIRL_EXPECTS(values.size() == weights.size());
+  std::vector<std::pair<double, double>> known;
+  double sum = 0, squares = 0;
+  WeightedStatistics s;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::isnan(values[k])) continue;
+    known.emplace_back(values[k], weights[k]);
+    sum += weights[k];
+    squares += weights[k] * weights[k];
+    s.mean += weights[k] * values[k];
+  }
+  WHIRL_EXPECTS(!known.empty());
+  if (!(sum > 0)) return {0, nan, nan, nan, nan, nan, nan, nan, nan};
+  std::sort(known.begin(), known.end());
+  s.mean /= sum;
+  s.runs = sum * sum / squares;
+  double spread = 0, error = 0;
+  for (const auto& [x, w] : known) {
+    spread += w * (x - s.mean) * (x - s.mean);
+    error += w * w * (x - s.mean) * (x - s.mean);
+  }
+  s.deviation = std::sqrt(spread / sum);
+  s.error = std::sqrt(error) / sum;
+  s.least = known.front().first;
+  s.largest = known.back().first;
+  const auto quantile = [&](double p) {
+    double below = 0;
+    for (const auto& [x, w] : known)
+      if ((below += w) >= p * sum) return x;
+    return known.back().first;
+  };
+  s.p05 = quantile(0.05);
+  s.median = quantile(0.5);
+  s.p95 = quantile(0.95);
+  return s;
+}
+
+Probability probability_beyond(const std::vector<double>& values,
+                               const std::vector<double>& weights, double limit, bool above) {
+  WHIRL_EXPECTS(values.size() == weights.size());
+  Probability p;
+  double n = 0, squares = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::isnan(values[k])) continue;
+    ++n;
+    if (above ? !(values[k] > limit) : !(values[k] < limit)) continue;
+    ++p.runs;
+    p.value += weights[k];
+    squares += weights[k] * weights[k];
+  }
+  if (n == 0) return {nan, nan, 0};
+  p.value /= n;
+  p.error = n > 1 ? std::sqrt(std::max(0.0, squares / n - p.value * p.value) / (n - 1)) : nan;
+  return p;
+}
+
 double rank_correlation(const std::vector<double>& x, const std::vector<double>& y) {
   WHIRL_EXPECTS(x.size() == y.size());
   const auto a = ranks_of(x), b = ranks_of(y);
@@ -307,6 +369,16 @@ void write_outcome(const Plan& plan, const Rows& rows, const run::RunOptions& op
   folder.write_table("sweep.csv", sweep_table(plan, rows, c));
   folder.write_table("statistics.csv", statistics);
   folder.write_table("effects.csv", effects);
+  std::vector<io::Table> tables{statistics};
+  if (!plan.limits.empty()) {
+    tables.push_back(probabilities_table(plan, c));
+    folder.write_table("probabilities.csv", tables.back());
+  }
+  if (io::Table sensitivity = sensitivity_table(plan, c); !sensitivity.columns.empty()) {
+    tables.push_back(std::move(sensitivity));
+    folder.write_table("sensitivity.csv", tables.back());
+  }
+  tables.push_back(effects);
   io::Value summary = io::Value::object();
   summary["runs"] = plan.design.runs();
   summary["failed"] =
@@ -322,7 +394,7 @@ void write_outcome(const Plan& plan, const Rows& rows, const run::RunOptions& op
     }
   }
   folder.write_json("summary.json", summary);
-  io::write_report(folder.path("sweep.html"), report_of(plan, c, statistics, effects, summary));
+  io::write_report(folder.path("sweep.html"), report_of(plan, rows, c, tables, summary));
   if (options.json)
     std::fputs(io::to_json(summary).c_str(), stdout);
   else if (!options.quiet)

@@ -6,7 +6,8 @@
 
 namespace whirl::sweep {
 
-/// Writes sweep.csv, statistics.csv, effects.csv, summary.json and sweep.html; prints the statistics.
+/// Writes sweep.csv, statistics.csv, effects.csv, where asked for probabilities.csv and
+/// sensitivity.csv, summary.json and sweep.html; prints the statistics.
 /// rows: one for every run.
 void write_outcome(const Plan& plan, const std::map<std::int64_t, Row>& rows,
                    const run::RunOptions& options);
@@ -20,6 +21,24 @@ struct Statistics {
 };
 /// @pre at least one value
 Statistics statistics_of(std::vector<double> values);
+
+/// Of runs that count by weights: self-normalised means and quantiles.
+struct WeightedStatistics {
+  double runs = 0;  ///< unweighted runs they are worth (L. Kish, Survey Sampling, 1965)
+  double mean = 0, error = 0, deviation = 0, least = 0, p05 = 0, median = 0, p95 = 0, largest = 0;
+};
+/// nan among the values: left out.
+/// @pre one weight a value, at least one value
+WeightedStatistics weighted_statistics(const std::vector<double>& values,
+                                       const std::vector<double>& weights);
+
+/// Mean of the weights of the values beyond a limit, with its standard error.
+struct Probability {
+  double value = 0, error = 0;
+  std::size_t runs = 0;  ///< beyond
+};
+Probability probability_beyond(const std::vector<double>& values,
+                               const std::vector<double>& weights, double limit, bool above);
 
 /// Rank correlation (Spearman) of two samples, -1 .. 1; ties share their mean rank; nan when one of
 /// them does not vary.

@@ -16,13 +16,30 @@ struct Shard {
   std::int64_t index = 0, count = 1;
   std::string folder() const;
 };
-/// "2/7" -> index 1 of 7; empty: the only one.
+/// "2/7" -> index 1 of 7; empty: the only one; "auto": the element of a Slurm array, or the rank of
+/// Slurm's srun or of Open MPI's or MPICH's mpirun that this process is.
 /// @throws Error (E99, Exit::usage)
 Shard read_shard(const std::string& text);
+
+/// How probable it is that a response lies beyond a value, in the unit of the response.
+struct Limit {
+  std::size_t response = 0;
+  bool above = true;
+  double value = 0;
+};
+
+/// The runs that are made again with everything they can show.
+struct Worst {
+  std::size_t response = 0;
+  bool least = false;
+  std::size_t count = 10;
+};
 
 struct Plan {
   Design design;
   std::vector<Response> responses;
+  std::vector<Limit> limits;
+  std::vector<Worst> worst;
   Shard shard;
   std::filesystem::path root;
   std::string text;  ///< of plan.json: the same for the same sweep
@@ -34,6 +51,11 @@ Plan make_plan(const SweepOptions& options, const model::Model& model);
 /// resumed or one of several shards.
 /// @throws Error (E99, Exit::usage) when the folder holds another plan that others may still be at
 void prepare_folder(const Plan& plan, bool resume);
+
+/// Numbers of the worst runs in the order of their badness, each once; ties by their number.
+std::vector<std::int64_t> worst_runs(const Plan& plan, const std::map<std::int64_t, Row>& rows);
+/// Below the sweep's folder.
+std::string worst_folder(std::int64_t run);
 
 /// The rows of all shards.
 std::map<std::int64_t, Row> all_rows(const Plan& plan);

@@ -118,6 +118,41 @@ double sobol_point(std::uint64_t seed, std::size_t dimension, std::int64_t sampl
   return (static_cast<double>(x) + 0.5) * 0x1p-32;
 }
 
+double saltelli_point(std::uint64_t seed, std::size_t dimension, std::size_t dimensions,
+                      std::int64_t run) {
+  WHIRL_EXPECTS(dimension < dimensions && run >= 0);
+  const auto each = static_cast<std::int64_t>(dimensions) + 2;
+  const std::int64_t point = run / each, k = run % each;
+  const bool other = k == 1 || k == static_cast<std::int64_t>(dimension) + 2;
+  const std::size_t axis = dimension + (other ? dimensions : 0);
+  return 2 * dimensions <= sobol_dimensions ? sobol_point(seed, axis, point)
+                                            : random_point(seed, axis, point);
+}
+
+std::size_t morris_moved(std::uint64_t seed, std::size_t dimensions, std::int64_t path,
+                         std::size_t k) {
+  WHIRL_EXPECTS(k < dimensions && path >= 0);
+  return static_cast<std::size_t>(
+      permuted(key_of(seed, static_cast<std::size_t>(path), 4), k, dimensions));
+}
+
+double morris_level(std::uint64_t seed, std::size_t dimension, std::size_t dimensions,
+                    std::int64_t run) {
+  WHIRL_EXPECTS(dimension < dimensions && run >= 0);
+  const auto each = static_cast<std::int64_t>(dimensions) + 1;
+  const std::int64_t path = run / each;
+  const auto done = static_cast<std::size_t>(run % each);
+  bool moved = false;
+  for (std::size_t k = 0; k < done; ++k)
+    moved = moved || morris_moved(seed, dimensions, path, k) == dimension;
+  const std::uint64_t dice = mixed(key_of(seed, dimension, 5) + static_cast<std::uint64_t>(path));
+  const double low = (dice & 1U) ? 1.0 / 3.0 : 0.0;
+  const bool from_above = ((dice >> 1) & 1U) != 0;
+  return low + (moved != from_above ? 2.0 / 3.0 : 0.0);
+}
+
+double normal_probability(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
 double normal_quantile(double p) {
   WHIRL_EXPECTS(p > 0 && p < 1);
   const double q = p - 0.5;

@@ -71,9 +71,14 @@ class Runner {
                          : shard / fmt::format("worker_{}", worker);
   }
   int steps_of(std::int64_t run, const fs::path& results) const {
+    return steps_of(run, results, options_.keep);
+  }
+
+ public:
+  /// whole: with the report and the pictures of the deck. @throws as steps::run_deck
+  int steps_of(std::int64_t run, const fs::path& results, bool whole) const {
     deck::ReadOptions read = options_.read;
-    if (!options_.keep)
-      read.set.insert(read.set.end(), std::begin(tables_alone), std::end(tables_alone));
+    if (!whole) read.set.insert(read.set.end(), std::begin(tables_alone), std::end(tables_alone));
     const std::vector<std::string> values = plan_.design.values(run);
     for (std::size_t k = 0; k < values.size(); ++k)
       read.set.push_back(plan_.design.factors()[k].path + "=" + values[k]);
@@ -89,6 +94,7 @@ class Runner {
     return steps::run_deck(deck::load_model(options_.deck, read), o);
   }
 
+ private:
   const SweepOptions& options_;
   const Plan& plan_;
 };
@@ -176,6 +182,28 @@ Done run_tasks(const SweepOptions& options, const Plan& plan) {
   return done;
 }
 
+/// Makes the worst runs again with everything they can show. What fails now failed before.
+void run_worst(const SweepOptions& options, const Plan& plan,
+               const std::map<std::int64_t, Row>& rows) {
+  const std::vector<std::int64_t> runs = worst_runs(plan, rows);
+  if (runs.empty()) return;
+  std::error_code ec;
+  fs::remove_all(plan.root / "worst", ec);
+  const Runner runner(options, plan);
+  WorkerOptions w;
+  w.processes = static_cast<int>(
+      std::min<std::size_t>(runs.size(), static_cast<std::size_t>(std::max(1, options.run.jobs))));
+  const auto run = [&](std::int64_t number, int) -> std::string {
+    try {
+      runner.steps_of(number, plan.root / worst_folder(number), true);
+    } catch (const std::exception&) {
+      return "failed";
+    }
+    return "done";
+  };
+  run_in_workers(runs, w, run, [](std::int64_t, Ended, const std::string&, int) {});
+}
+
 /// "4 runs: E77, a critical speed ..", the most frequent first.
 std::string failures_text(const std::map<std::int64_t, Row>& rows) {
   std::map<std::string, std::pair<std::int64_t, std::string>> kinds;
@@ -241,14 +269,41 @@ void require_keys(const SweepOptions& options, const Plan& plan) {
 
 }  // namespace
 
-int run_sweep(const SweepOptions& options) {
-  if (options.deck == "-")
+namespace {
+
+/// What the command line leaves open is the deck's.
+SweepOptions completed(SweepOptions o, const model::Model& model) {
+  const model::SweepPlan s = model.sweep.value_or(model::SweepPlan());
+  if (o.vary.empty())
+    for (const std::string& vary : s.vary)
+      o.vary.push_back(
+          vary.starts_with('@') ? "@" + (o.deck.parent_path() / vary.substr(1)).string() : vary);
+  const auto take = [](std::vector<std::string>& mine, const std::vector<std::string>& decks) {
+    if (mine.empty()) mine = decks;
+  };
+  take(o.responses, s.response);
+  take(o.correlations, s.correlation);
+  take(o.exceed, s.exceed);
+  take(o.worst, s.worst);
+  if (!o.samples) o.samples = s.samples;
+  if (!o.seed) o.seed = static_cast<std::uint64_t>(s.seed);
+  if (o.sampling.empty()) o.sampling = s.sampling;
+  if (o.limit == 0) o.limit = s.limit;
+  return o;
+}
+
+}  // namespace
+
+int run_sweep(const SweepOptions& given) {
+  if (given.deck == "-")
     throw Error(Exit::usage, Diagnostic{Diagnostic::Severity::error, "E99",
                                         "a deck on standard input can be read once only",
                                         "write it to a file", Where{}});
   run::install_interrupt_handlers();
-  if (options.list) return list_tables(options);
-  const Plan plan = make_plan(options, deck::load_model(options.deck, options.read));
+  if (given.list) return list_tables(given);
+  const model::Model model = deck::load_model(given.deck, given.read);
+  const SweepOptions options = completed(given, model);
+  const Plan plan = make_plan(options, model);
   require_keys(options, plan);
   prepare_folder(plan, options.run.resume);
   const run::RunLock lock(plan.root / plan.shard.folder());
@@ -256,6 +311,7 @@ int run_sweep(const SweepOptions& options) {
   const Done done = run_tasks(options, plan);
   const auto rows = all_rows(plan);
   const auto missing = plan.design.runs() - static_cast<std::int64_t>(rows.size());
+  if (missing == 0 && !run::interrupted()) run_worst(options, plan, rows);
   if (missing == 0) write_outcome(plan, rows, options.run);
   if (!options.run.quiet && !options.run.json)
     std::fputs(

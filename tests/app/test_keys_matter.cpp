@@ -539,6 +539,7 @@ const Elsewhere elsewhere[] = {
     {"[output.tracking]", "orbit_speeds", "open"},
     {"[output.spectra]", "*", "app/written_decks.hpp"},
     {"[[output.vtk]]", "*", "app/test_resume.cpp, app/test_frames_in_motion.cpp"},
+    {"[sweep]", "*", "app/test_sweep.cpp"},
     {"Laws of time", "*", "app/test_cli.cpp"},
     {"law, type = \"table\"", "*", "app/test_spectra.cpp, app/test_linear_limits.cpp"},
     {"law, type = \"ramp\"", "*", "app/test_energy_balance.cpp"},

@@ -114,6 +114,92 @@ TEST_F(Sweep, AFailedRunIsARow) {
   EXPECT_NE(log_.find("1 of 3 runs failed"), std::string::npos) << log_;
 }
 
+TEST_F(Sweep, WorstRunsAreMadeAgainWithTheirReports) {
+  ASSERT_EQ(whirl(std::string("sweep d.toml -j1 -o s --worst peak:2 --worst first:least:1 "
+                              "--exceed 'peak>1e-9'") +
+                  asked),
+            0)
+      << log_;
+  const Columns table(folder_ / "s/sweep.csv");
+  const std::size_t peak = table.column("first [rpm]") + 2;
+  std::size_t worst = 0;
+  for (std::size_t k = 1; k < table.rows.size(); ++k)
+    if (table.rows[k][peak] > table.rows[worst][peak]) worst = k;
+  char name[64];
+  std::snprintf(name, sizeof name, "worst/run_%06zu/report.html", worst);
+  EXPECT_TRUE(fs::exists(folder_ / "s" / name)) << name;
+  EXPECT_NE(read("s/sweep.html").find(name), std::string::npos);
+  std::size_t folders = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder_ / "s/worst"))
+    ++folders;
+  EXPECT_GE(folders, 2u);
+  EXPECT_LE(folders, 3u);
+  EXPECT_EQ(Columns(folder_ / "s/probabilities.csv").last().at("probability [-]"), 1.0);
+}
+
+TEST_F(Sweep, RunsOfAFile) {
+  std::ofstream(folder_ / "runs.csv") << "disk.disk.mass [kg],bearing.A.kyy [N/m]\n2,1e6\n4,3e6\n";
+  ASSERT_EQ(whirl("sweep d.toml -o s --vary @runs.csv --response c_undamped:speed:1"), 0) << log_;
+  const Columns table(folder_ / "s/sweep.csv");
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.named(table.rows[1]).at("bearing.A.kyy [N/m]"), 3e6);
+}
+
+TEST_F(Sweep, DeckSaysWhatTheCommandLineDoesNot) {
+  std::ofstream(folder_ / "s.toml") << unbalanced_rotor << steps << R"([sweep]
+vary = ["disk.disk.mass=2kg:4kg:3", "bearing.A.kyy=uniform(1e6 N/m, 4e6 N/m)"]
+response = ["first=c_undamped:speed:1", "peak=r_response:P major:max"]
+samples = 4
+exceed = ["peak > 0"]
+)";
+  ASSERT_EQ(whirl("sweep s.toml -o deck"), 0) << log_;
+  ASSERT_EQ(whirl(std::string("sweep d.toml -o line") + asked), 0) << log_;
+  EXPECT_EQ(read("deck/sweep.csv"), read("line/sweep.csv"));
+  EXPECT_FALSE(read("deck/probabilities.csv").empty());
+  ASSERT_EQ(whirl("sweep s.toml -o other --seed 2 --samples 2"), 0) << log_;
+  EXPECT_EQ(Columns(folder_ / "other/sweep.csv").rows.size(), 6u);
+  ASSERT_EQ(whirl("run s.toml -q -o run"), 0) << log_;
+  ASSERT_EQ(whirl("sweep run/resolved.toml -o resolved"), 0) << log_;
+  EXPECT_EQ(read("resolved/sweep.csv"), read("deck/sweep.csv"));
+}
+
+TEST_F(Sweep, CorrelatedSensitiveAndLimitedKeysOfTheDeck) {
+  std::ofstream(folder_ / "s.toml") << unbalanced_rotor << steps << R"([sweep]
+vary = ["bearing.B.kyy=uniform(1e6 N/m, 4e6 N/m)", "bearing.A.kyy=uniform(1e6 N/m, 4e6 N/m)"]
+response = ["first=c_undamped:speed:1"]
+samples = 4
+seed = 3
+sampling = "random"
+correlation = ["bearing.A.kyy,bearing.B.kyy=0.999999"]
+worst = ["first:least:1"]
+limit = "100 s"
+)";
+  ASSERT_EQ(whirl("sweep s.toml -o s"), 0) << log_;
+  const Columns table(folder_ / "s/sweep.csv");
+  for (const auto& row : table.rows)
+    EXPECT_NEAR(table.named(row).at("bearing.A.kyy [N/m]"),
+                table.named(row).at("bearing.B.kyy [N/m]"), 1e4);
+  EXPECT_TRUE(fs::exists(folder_ / "s/worst"));
+  ASSERT_EQ(whirl("sweep s.toml -o t --sampling morris --set 'sweep.correlation=[]'"), 0) << log_;
+  EXPECT_EQ(Columns(folder_ / "t/sensitivity.csv").rows.size(), 2u);
+}
+
+TEST_F(Sweep, TasksOfASlurmArrayShareAFolder) {
+  const std::string script = WHIRL_SOURCE "/examples/sweep_on_slurm.sh";
+  for (int task = 1; task <= 3; ++task) {
+    const std::string environment = "SLURM_ARRAY_TASK_ID=" + std::to_string(task) +
+                                    " SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_COUNT=3 "
+                                    "SLURM_CPUS_PER_TASK=1 WHIRL='" WHIRL_EXE "'";
+    const std::string command = "cd '" + folder_.string() + "' && " + environment + " bash '" +
+                                script + "' d.toml -o s" + asked + " >log.txt 2>&1 </dev/null";
+    ASSERT_EQ(std::system(command.c_str()), 0) << read("log.txt");
+    EXPECT_EQ(fs::exists(folder_ / "s/sweep.csv"), task == 3);
+  }
+  ASSERT_EQ(whirl(std::string("sweep d.toml -j1 -o one") + asked), 0) << log_;
+  EXPECT_EQ(read("s/sweep.csv"), read("one/sweep.csv"));
+  EXPECT_EQ(whirl("sweep d.toml -o s --shard auto" + std::string(asked)), 2) << log_;
+}
+
 TEST_F(Sweep, WhatCannotBeSweptIsRefused) {
   const std::string response = " --response c_undamped:speed";
   for (const std::string arguments :

@@ -3,8 +3,11 @@
 #include <sweep/sampling.hpp>
 #include <core/error.hpp>
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <numeric>
 #include <set>
 
@@ -53,6 +56,46 @@ TEST(SweepDesign, CombinesListsAndSamples) {
   EXPECT_EQ(d.values(0)[0], "1");
   EXPECT_EQ(d.values(0)[2], "x");
   EXPECT_EQ(d.values(5)[2], "y");  // the last list changes first
+}
+
+TEST(SweepDesign, ListsOfAFileGoTogether) {
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("whirl_runs_" + std::to_string(::getpid()) + ".csv");
+  std::ofstream(file) << "b.A.clearance [um],b.kind\n60,plain\n75,\"lobed\"\n90,plain\n";
+  std::vector<Factor> f = read_runs(file, 0);
+  f.push_back(read_factor("m=1,2"));
+  const Design d(f, 1, Sampling::latin_hypercube, 1);
+  ASSERT_EQ(d.runs(), 6);
+  EXPECT_EQ(d.values(0), (std::vector<std::string>{"60 um", "plain", "1"}));
+  EXPECT_EQ(d.values(1), (std::vector<std::string>{"60 um", "plain", "2"}));
+  EXPECT_EQ(d.values(2), (std::vector<std::string>{"75 um", "lobed", "1"}));
+  EXPECT_EQ(d.values(5), (std::vector<std::string>{"90 um", "plain", "2"}));
+  for (const char* bad : {"", "a,b\n", "a,b\n1\n", "a,\n1,2\n", "a,b\n1,\n"}) {
+    std::ofstream(file) << bad;
+    EXPECT_THROW(read_runs(file, 0), Error) << bad;
+  }
+  std::filesystem::remove(file);
+}
+
+TEST(SweepDesign, RefusesSchemesAndCorrelationsThatCannotBe) {
+  const Factor list = read_factor("a=1,2"), x = read_factor("x=uniform(0, 1)"),
+               y = read_factor("y=uniform(0, 1)"), z = read_factor("z=uniform(0, 1)"),
+               drawn = read_factor("w=normal(0, 1) drawn normal(1, 1)");
+  for (const Sampling s : {Sampling::saltelli, Sampling::morris, Sampling::one_at_a_time}) {
+    EXPECT_THROW(Design({list, x}, 4, s, 1), Error);
+    EXPECT_THROW(Design({drawn, x}, 4, s, 1), Error);
+    EXPECT_THROW(Design({x, y}, 4, s, 1, {{"x", "y", 0.5}}), Error);
+  }
+  const auto with = [&](std::vector<Correlation> c) {
+    return Design({x, y, z, list}, 4, Sampling::random, 1, c);
+  };
+  EXPECT_NO_THROW(with({{"x", "y", 0.5}}));
+  EXPECT_THROW(with({{"x", "a", 0.5}}), Error);
+  EXPECT_THROW(with({{"x", "y", 0.9}, {"y", "z", 0.9}, {"x", "z", -0.9}}), Error);
+  for (const char* text : {"x=0.5", "x,y", "x,y=1", "x,x=0.5", "x,y=0.5 mm", "x,y,z=0.1"})
+    EXPECT_THROW(read_correlation(text), Error) << text;
+  for (const char* text : {"a=normal(0, 1) drawn 1:2:3", "a=normal(0 um, 1 um) drawn normal(1, 1)"})
+    EXPECT_THROW(read_factor(text), Error) << text;
 }
 
 TEST(SweepDesign, RefusesWhatCannotBe) {

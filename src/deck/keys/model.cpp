@@ -107,6 +107,8 @@ void describe(Visitor& v, model::Model& m) {
   v.list(beside_motion(optional("probe", "none")), m.probes, "a place whose motion is recorded");
   v.list(optional("step", "none"), m.steps, "analyses, run in this order");
   v.table(beside_motion("output"), m.output, "what is written, and where");
+  v.table(beside_motion(optional("sweep", "as the command line says")), m.sweep,
+          "many runs with keys varied: what `whirl sweep` takes where its options do not say");
 }
 
 }  // namespace whirl::deck
