@@ -137,11 +137,12 @@ TEST(NelsonMcVaugh, PublishedMeshFromADeck) {
   ASSERT_EQ(c.size(), 6u);
   const double same[] = {15486.32756, 17148.05835, 46749.42823,
                          50127.67843, 64857.59376, 95882.90353};
+  // of the paper, as other codes' verification manuals repeat them; its data are rounded
   const double printed[] = {15470, 17159, 46612, 49983, 64752, 96457};
   for (std::size_t k = 0; k < 6; ++k) {
     record.check("critical speed " + std::to_string(k + 1) + ", independent model", "rpm", c[k],
                  same[k], 1e-6 * same[k]);
-    record.check("critical speed " + std::to_string(k + 1) + ", printed", "rpm", c[k], printed[k],
+    record.check("critical speed " + std::to_string(k + 1) + ", paper", "rpm", c[k], printed[k],
                  7e-3 * printed[k]);
   }
   // the key is what does it
