@@ -65,6 +65,7 @@ class LineDrawing {
   Scene::Line draw() {
     out_.name = line_.name;
     add_stations();
+    add_stretches();
     add_pieces();
     add_disks();
     return std::move(out_);
@@ -96,6 +97,22 @@ class LineDrawing {
       const auto [before, after] = bends(s.s);
       out_.bend_before.push_back(before);
       out_.bend_after.push_back(after);
+    }
+  }
+
+  /// Which element, and with it which section forces, there is between two points. At what has a name
+  /// something may stand: a step, a support, a body, a load.
+  void add_stretches() {
+    Index next = line_.first_element;
+    for (std::size_t k = 0; k < out_.points.size(); ++k) {
+      const Station& s = mesh_.stations[static_cast<std::size_t>(line_.first_station) + k];
+      out_.breaks.push_back(!s.labels.empty());
+      if (k + 1 == out_.points.size()) return;
+      const bool elastic =
+          next < line_.first_element + line_.elements &&
+          mesh_.elements[static_cast<std::size_t>(next)].left.node == out_.points[k].node &&
+          mesh_.elements[static_cast<std::size_t>(next)].right.node == out_.points[k + 1].node;
+      out_.elements.push_back(elastic ? next++ : -1);
     }
   }
 
@@ -184,6 +201,13 @@ Scene make_scene(const model::Model& m, const Mesh& mesh) {
     scene.lines.push_back(LineDrawing(m, mesh, l, scene).draw());
   for (std::size_t i = 0; i < m.bearings.size(); ++i)
     scene.supports.push_back(support_shape(m, mesh, i, scene));
+  for (const model::Joint& j : m.joints) {
+    scene.joints.push_back({j.name, mesh.place(j.at)});
+    if (const Path& path = m.shafts[j.at.shaft].path; !path.empty()) {
+      scene.joints.back().bend = static_cast<Index>(scene.bends.size());
+      scene.bends.push_back(path.after(j.at.s).triad);
+    }
+  }
   for (const auto& p : m.probes)
     scene.trails.push_back({p.name, mesh.place(p.at)});
   return scene;

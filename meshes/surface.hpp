@@ -58,6 +58,11 @@ struct SupportShape {
 
 /// What there is to draw, in the reference state. Plain data, independent of how it is written.
 struct Scene {
+  struct Joint {
+    std::string name;
+    Place at;         ///< on the line it carries a load to
+    Index bend = -1;  ///< axes of that line there, if it is not straight along e
+  };
   struct Line {
     std::string name;
     Mat3 triad = Mat3::Identity();  ///< columns e, e2, e3
@@ -65,6 +70,10 @@ struct Scene {
     std::vector<double> radius;     ///< outer radius at each point, m (may be empty)
     std::vector<Index> bend_after,
         bend_before;  ///< axes there looking right and looking left; empty: straight along e
+    /// Of the mesh, between each point and the next; -1: rigid. May be empty, like breaks: nonzero at a
+    /// point where section forces may jump.
+    std::vector<Index> elements;
+    std::vector<unsigned char> breaks;
     std::vector<ShaftPiece> pieces;  ///< left to right
     std::vector<DiskShape> disks;
   };
@@ -77,6 +86,7 @@ struct Scene {
   std::vector<Index> node_line;  ///< index into lines of each node
   std::vector<Line> lines;
   std::vector<SupportShape> supports;
+  std::vector<Joint> joints;
   std::vector<Trail> trails;
   std::vector<Mat3> bends;  ///< columns tangent, y, z of a line that is not straight along e, in
                             ///< its triad's components

@@ -1,5 +1,7 @@
 #include <elements/shaft/hysteretic_damping.hpp>
 
+#include <Eigen/LU>
+
 #include <cmath>
 
 namespace whirl::elements {
@@ -19,29 +21,70 @@ GeneralBeamDamping::GeneralBeamDamping(const GeneralBeam& beam, double beta, dou
   with.c.alpha = without.c.alpha = 0.0;
 }
 
-void GeneralBeamDamping::add_force(const Nodes<2>& x, const Context& ctx, ForceX<14>& f) const {
-  ForceX<14> g = ForceX<14>::Zero();
-  without.add_force(x, ctx, g);
-  f -= g;
-  with.add_force(x, ctx, f);
+SectionBeamDamping::SectionBeamDamping(const SectionBeam& beam, double beta, Part part)
+    : with(beam),
+      without(beam) {
+  with.c.alpha = without.c.alpha = 0.0;
+  without.c.damping.setZero();
+  const Matrix<6> D = beta * beam.H0.inverse();
+  Matrix<6> along = Matrix<6>::Zero();
+  for (const Index i : {0, 3})
+    for (const Index k : {0, 3})
+      along(i, k) = D(i, k);
+  with.c.damping = part == Part::along ? along : Matrix<6>(D - along);
 }
 
-void GeneralBeamDamping::add_tangent(const Nodes<2>& x, const Context& ctx, TangentX<14>& t) const {
+namespace {
+
+/// What the damping of a beam adds to the beam without.
+template <class Damped>
+void add_force_of(const Damped& d, const Nodes<2>& x, const Context& ctx, ForceX<14>& f) {
+  ForceX<14> g = ForceX<14>::Zero();
+  d.without.add_force(x, ctx, g);
+  f -= g;
+  d.with.add_force(x, ctx, f);
+}
+
+template <class Damped>
+void add_tangent_of(const Damped& d, const Nodes<2>& x, const Context& ctx, TangentX<14>& t) {
   TangentX<14> g;
   g.set_zero();
-  with.add_tangent(x, ctx, g);
+  d.with.add_tangent(x, ctx, g);
   t.C += g.C;
   t.K += g.K;
   g.set_zero();
-  without.add_tangent(x, ctx, g);
+  d.without.add_tangent(x, ctx, g);
   t.C -= g.C;
   t.K -= g.K;
 }
 
-void GeneralBeamDamping::add_energy(const Nodes<2>& x, const Context& ctx, Energy& e) const {
+template <class Damped>
+void add_energy_of(const Damped& d, const Nodes<2>& x, const Context& ctx, Energy& e) {
   Energy own;
-  with.add_energy(x, ctx, own);
+  d.with.add_energy(x, ctx, own);
   e.dissipated += own.dissipated;
+}
+
+}  // namespace
+
+void GeneralBeamDamping::add_force(const Nodes<2>& x, const Context& ctx, ForceX<14>& f) const {
+  add_force_of(*this, x, ctx, f);
+}
+void GeneralBeamDamping::add_tangent(const Nodes<2>& x, const Context& ctx, TangentX<14>& t) const {
+  add_tangent_of(*this, x, ctx, t);
+}
+void GeneralBeamDamping::add_energy(const Nodes<2>& x, const Context& ctx, Energy& e) const {
+  add_energy_of(*this, x, ctx, e);
+}
+
+void SectionBeamDamping::add_force(const Nodes<2>& x, const Context& ctx, ForceX<14>& f) const {
+  add_force_of(*this, x, ctx, f);
+}
+void SectionBeamDamping::add_tangent(const Nodes<2>& x, const Context& ctx, TangentX<14>& t) const {
+  add_tangent_of(*this, x, ctx, t);
+}
+void SectionBeamDamping::add_energy(const Nodes<2>& x, const Context& ctx, Energy& e) const {
+  add_energy_of(*this, x, ctx, e);
 }
 
 namespace {
@@ -160,5 +203,6 @@ void HystereticDamping<Viscous>::add_energy(const Nodes<2>& x, const Context& ct
 
 template struct HystereticDamping<ShaftDamping<true>>;
 template struct HystereticDamping<GeneralBeamDamping>;
+template struct HystereticDamping<SectionBeamDamping>;
 
 }  // namespace whirl::elements

@@ -21,6 +21,7 @@
 // the coefficient eta/nu0 instead: equal loss per cycle at the rate nu0 alone.
 #pragma once
 #include <elements/shaft/general_beam.hpp>
+#include <elements/shaft/section_beam.hpp>
 #include <elements/shaft/shaft_damping.hpp>
 
 namespace whirl::elements {
@@ -33,6 +34,26 @@ struct GeneralBeamDamping {
   GeneralBeamDamping(const GeneralBeam& beam, double beta, double beta_twist);
   system::Dependence depends(const system::Context&) const {
     return {.angle = with.axisymmetric() ? system::no_angle : system::each_angle, .spin = true};
+  }
+  void add_force(const system::Nodes<2>& x, const system::Context& ctx,
+                 system::ForceX<14>& f) const;
+  void add_tangent(const system::Nodes<2>& x, const system::Context& ctx,
+                   system::TangentX<14>& t) const;
+  void add_energy(const system::Nodes<2>& x, const system::Context& ctx, system::Energy& e) const;
+};
+
+/// Part of the viscous law of a full section whose damping is beta times its stiffness K on the rates of
+/// its strains, axial strain and twist (1) and the lateral ones (2): K11 alone, or the rest. K12 goes with
+/// K22: where the two kinds of strain have one rate (a line that stands, rates in rotating axes) both parts
+/// are taken alike and K is whole; above the spin the factor of K22 is that of K11 as well; below it, where
+/// their rates have opposite signs, coupling turns with the section, and its mean is zero.
+struct SectionBeamDamping {
+  enum class Part { along, bending };
+  SectionBeam with, without;
+  SectionBeamDamping() = default;
+  SectionBeamDamping(const SectionBeam& beam, double beta, Part part);
+  system::Dependence depends(const system::Context&) const {
+    return {.angle = with.axisymmetric() ? system::twist_angle : system::each_angle, .spin = true};
   }
   void add_force(const system::Nodes<2>& x, const system::Context& ctx,
                  system::ForceX<14>& f) const;
@@ -64,5 +85,6 @@ struct HystereticDamping {
 
 extern template struct HystereticDamping<ShaftDamping<true>>;
 extern template struct HystereticDamping<GeneralBeamDamping>;
+extern template struct HystereticDamping<SectionBeamDamping>;
 
 }  // namespace whirl::elements

@@ -7,7 +7,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace whirl::elements {
 
@@ -487,6 +489,27 @@ void SectionBeam::set_prestress(double force, double free_strain) {
 void SectionBeam::set_damping(double beta, double beta_twist) {
   c.damping = beta * H0.llt().solve(Matrix<6>::Identity());
   c.damping(3, 3) += beta_twist / (c.length * c.S(3, 3));
+}
+
+bool SectionBeam::axisymmetric() const {
+  constexpr double share = 1e-12;
+  const auto along_axis = [](const Vec3& v) { return v.tail<2>().norm() <= 1e-10 * v.norm(); };
+  if (!is_axisymmetric(c.S, share) || !is_axisymmetric(c.damping, share)) return false;
+  // inertia of the lateral directors: the same of both, and nothing between them or with the others
+  Vector<8> size = c.M8.diagonal().cwiseAbs();
+  for (const Index i : {2, 6})
+    size.segment<2>(i).setConstant(size.segment<2>(i).maxCoeff());
+  for (Index i = 0; i < 8; ++i)
+    for (Index k = 0; k < 8; ++k) {
+      const bool lateral_i = i % 4 >= 2, lateral_k = k % 4 >= 2;
+      double rest = lateral_i || lateral_k ? c.M8(i, k) : 0.0;
+      if (i % 4 == 3 && k % 4 == 3) rest -= c.M8(i - 1, k - 1);
+      if (i % 4 == 2 && k % 4 == 2) rest = 0.0;
+      if (std::abs(rest) > share * std::sqrt(size[i] * size[k])) return false;
+    }
+  return along_axis(body1.col(0)) && along_axis(body2.col(0)) && along_axis(arm1) &&
+         along_axis(arm2) && along_axis(d0.head<3>()) &&
+         d0.tail<2>().norm() <= 1e-10 * (1 + std::abs(d0[3]));
 }
 
 void SectionBeam::add_force(const Nodes<2>& x, const Context&, ForceX<14>& f) const {

@@ -73,8 +73,12 @@ struct SectionBeam {
   static constexpr system::Axes axes = system::Axes::any;
   static constexpr bool has_M = true, has_C = true, has_K = true, quadratic_in_rates = true;
   static constexpr system::Family family = system::Family::shaft;
-  static constexpr system::Dependence depends{
-      .angle = system::each_angle, .spin = true, .weight = true};
+  /// Sees the angle unless it is axisymmetric; its twist in any case.
+  system::Dependence depends(const system::Context&) const {
+    return {.angle = axisymmetric() ? system::twist_angle : system::each_angle,
+            .spin = true,
+            .weight = true};
+  }
 
   SectionBeamConstants c;
   Vec3 chord = Vec3::UnitX();  ///< r2 - r1 in the reference configuration, m
@@ -102,6 +106,10 @@ struct SectionBeam {
   void set_prestress(double force, double free_strain);
   /// Viscous damping: beta times the stiffness (s), and beta_twist times that of the twist more.
   void set_damping(double beta, double beta_twist);
+
+  /// Nothing in it tells one direction across the axes of its nodes from another: matrices that a
+  /// turn about the axis leaves as they are, whatever they couple, and an unstressed shape along it.
+  bool axisymmetric() const;
 
   void add_force(const system::Nodes<2>& x, const system::Context& ctx,
                  system::ForceX<14>& f) const;

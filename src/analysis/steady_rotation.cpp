@@ -61,14 +61,23 @@ std::vector<double> distance_to_spin(const system::System& s, std::span<const do
   return distance;
 }
 
-/// Lines on a joint whose speeds differ by rounding, or by small motions of the state they were read
-/// from, have one speed.
+/// The node of a line that a node between lines (the end of an arm, a cross) stands on.
+Index carrier(const system::System& system, Index node) {
+  const system::FollowerDef* f = system.followers().find(node);
+  return f && f->between ? carrier(system, f->parent) : node;
+}
+
+/// Lines on a joint that ties their spins have one speed: what differs is rounding, or small motions of
+/// the state they were read from. Lines on a ball may turn at any, on a hinge along the axis too.
 void join_speeds(const system::System& system, std::vector<double>& ratio) {
   for (std::size_t k = 0; k < system.followers().count(); ++k) {
     const system::FollowerDef& f = system.followers()[k];
-    const double of_parent = ratio[at(system.node(f.parent).line)];
+    if (f.pinned) continue;
+    const double rounding = f.angle >= 0 ? 1e-6 : 1e-3;
+    if (f.between) continue;
+    const double of_parent = ratio[at(system.node(carrier(system, f.parent)).line)];
     double& of_node = ratio[at(system.node(f.node).line)];
-    if (std::abs(of_node - of_parent) <= 1e-3 * std::abs(of_parent)) of_node = of_parent;
+    if (std::abs(of_node - of_parent) <= rounding * std::abs(of_parent)) of_node = of_parent;
   }
 }
 
@@ -154,17 +163,27 @@ void SteadySystem::find_spinning() {
 
 void SteadySystem::find_unsteady_joint() {
   const system::Followers& followers = system_.followers();
+  const auto along = [](const Vec3& v) { return v.cross(Vec3::UnitX()).norm() <= 1e-9 * v.norm(); };
+  const auto rate = [&](Index i) {
+    return spinning_[at(i)] ? ratio_[at(system_.node(i).line)] : 0.0;
+  };
   for (std::size_t k = 0; k < followers.count() && unsteady_joint_.empty(); ++k) {
     const system::FollowerDef& f = followers[k];
-    const auto rate = [&](Index i) {
-      return spinning_[at(i)] ? ratio_[at(system_.node(i).line)] : 0.0;
-    };
-    const double of_node = rate(f.node), of_parent = rate(f.parent);
+    const double of_parent = rate(carrier(system_, f.parent)),
+                 of_node = f.between ? of_parent : rate(f.node);
     if (f.pinned || (of_node == 0.0 && of_parent == 0.0)) continue;
-    const Vec3 arm = system_.node(f.node).position - system_.node(f.parent).position;
-    const bool one_shaft = f.angle < 0 && f.slide < 0 && of_node == of_parent &&
-                           arm.cross(Vec3::UnitX()).norm() <= 1e-9 * arm.norm();
-    if (!one_shaft) unsteady_joint_ = f.joint;
+    // a slide or a turn along the axis of rotation, as of a spline or a flexible coupling, is at rest
+    if ((f.angle >= 0 || f.slide >= 0) && !along(f.axis))
+      unsteady_joint_ =
+          f.joint +
+          " bends or slides across the axis of lines that turn: its own axes turn too, "
+          "and small motions about a steady rotation have no constant matrices";
+    else if (of_node != of_parent)
+      unsteady_joint_ =
+          f.joint + " holds lines that do not turn as one shaft: there is no steady rotation";
+    else if (!along(system_.node(f.node).position - system_.node(f.parent).position))
+      unsteady_joint_ =
+          f.joint + " holds lines whose axes are not one: there is no steady rotation";
   }
 }
 
@@ -279,10 +298,8 @@ void SteadySystem::set_rates(double Omega, Eigen::Ref<VecX> v) const {
   WHIRL_EXPECTS(std::isfinite(Omega) && v.size() == system_.size());
   v.setZero();
   if (Omega != 0.0 && !unsteady_joint_.empty())
-    throw run_error(
-        "E41",
-        unsteady_joint_ + " holds lines that do not turn as one shaft: there is no steady rotation",
-        "a transient step follows them; lines that stand still have rotating = false");
+    throw run_error("E41", unsteady_joint_,
+                    "a transient step follows them; lines that stand still have rotating = false");
   if (Omega != 0.0)
     for (const auto& [line, node] : held_)
       throw run_error("E78",

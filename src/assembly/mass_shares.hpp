@@ -10,6 +10,7 @@ namespace whirl::assembly {
 /// A joint at s (m) of a line holds another line there that runs in another direction.
 bool joined_at_angle(const model::Model& model, std::size_t line, double s);
 
+/// Nodes that a joint makes one count together, so that a line cut and welded is the line.
 class MassShares {
  public:
   explicit MassShares(const Assembly& a);
@@ -19,6 +20,7 @@ class MassShares {
   }
 
  private:
+  void take_supports(const Assembly& a);
   const Vec3& node(const meshes::Place& p) const { return of_[static_cast<std::size_t>(p.node)]; }
   std::vector<Vec3> of_;  ///< (translation, rotation, spin) of each node
 };

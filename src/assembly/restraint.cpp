@@ -31,6 +31,18 @@ model::Directions resisted(const model::Bearing& b) {
   return out;
 }
 
+/// Small motions about the model as drawn: no equilibrium is looked for.
+bool is_about_the_drawing(const model::Step& s) {
+  return std::visit(
+      [](const auto& law) {
+        if constexpr (requires { law.about; })
+          return law.about == model::About::undeformed;
+        else
+          return false;
+      },
+      s.law);
+}
+
 /// A point whose motion counts: on a line, or nowhere (ground; pedestals resist in every direction,
 /// see add_pedestal).
 struct End {
@@ -67,7 +79,7 @@ class Restraint {
         complain(
             lines, "axial motion of {}",
             "add a thrust bearing (kxx), or a bearing of type \"rigid\" with directions = [\"x\"]");
-      } else if ((equilibrium_ || frequency_) && !moved) {
+      } else if ((equilibrium_ || (frequency_ && !free_in_space(lines))) && !moved) {
         const Index node = a_.mesh.lines[lines.front()].first_node;
         if (a_.model.keep_everything && !frequency_) {  // there it would be one more mode
           keep_axial(lines, node);
@@ -75,10 +87,14 @@ class Restraint {
         }
         a_.builder.hold(node, x);
         const bool damped = damped_axially(lines);
-        hold(fmt::format("axial motion of {} as a whole: nothing {} it; held at the {}{}",
+        hold(fmt::format("axial motion of {} as a whole: nothing {} it; held at the {}{}{}",
                          named(lines), damped ? "but damping resists" : "resists or loads",
                          a_.builder.node(node).name,
-                         damped ? ", its decay is not among the motions" : ""));
+                         damped ? ", its decay is not among the motions" : "",
+                         bent(lines) && frequency_
+                             ? ", which its modes see where it bends (about = \"undeformed\" "
+                               "leaves it free)"
+                             : ""));
       }
     }
   }
@@ -200,8 +216,10 @@ class Restraint {
       equilibrium_ = true;
     else if (const auto* t = std::get_if<model::TransientStep>(&first.law))
       equilibrium_ |= t->start == model::TransientStep::Start::static_equilibrium;
-    else
+    else {
       frequency_ = true;
+      frequency_settled_ |= !is_about_the_drawing(first);
+    }
     if (std::holds_alternative<model::TransientStep>(s.law)) in_time_ = true;
     starts_settled_ |= in_time_ && s.from.empty() && equilibrium_;
   }
@@ -224,6 +242,11 @@ class Restraint {
                             (b.to && contains(lines, static_cast<Index>(b.to->shaft)));
           return law && here && law->C(x, x) != 0.0;
         });
+  }
+  /// Bent lines that small motions about the drawing leave free: held at a node along x they would
+  /// bend otherwise. Along straight lines only axial motion knows.
+  bool free_in_space(const std::vector<std::size_t>& lines) const {
+    return bent(lines) && !frequency_settled_;
   }
   bool bent(const std::vector<std::size_t>& lines) const {
     return std::any_of(lines.begin(), lines.end(),
@@ -348,7 +371,8 @@ class Restraint {
   Assembly& a_;
   std::vector<Link> links_;
   std::vector<std::size_t> group_;
-  bool equilibrium_ = false, frequency_ = false, in_time_ = false, starts_settled_ = false;
+  bool equilibrium_ = false, frequency_ = false, in_time_ = false, starts_settled_ = false,
+       frequency_settled_ = false;  ///< some frequencies are about an equilibrium
 };
 
 }  // namespace
@@ -360,8 +384,11 @@ std::string system_key(const model::Model& m, const model::Step& step) {
   const bool settled = !first || first->start == model::TransientStep::Start::static_equilibrium;
   const bool set_moving = !m.initial.empty() || m.base.acceleration[0] || m.base.turn;
   const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
-  return fmt::format("{}{}{}", drives ? step.name : "", settled ? "" : "; from rest",
-                     in_time && set_moving ? "; set moving" : "");
+  const bool drawn =
+      is_about_the_drawing(step) &&
+      std::any_of(m.shafts.begin(), m.shafts.end(), [](const auto& s) { return !s.path.empty(); });
+  return fmt::format("{}{}{}{}", drives ? step.name : "", settled ? "" : "; from rest",
+                     in_time && set_moving ? "; set moving" : "", drawn ? "; as drawn" : "");
 }
 
 void check_restraint(Assembly& a) {

@@ -114,6 +114,18 @@ void add_hysteresis(Assembly& a, const model::Shaft& shaft, const elements::Gene
       nodes, "hysteretic damping");
 }
 
+void add_hysteresis(Assembly& a, const model::Shaft& shaft, const elements::SectionBeam& beam,
+                    const std::array<Index, 2>& nodes) {
+  const model::ShaftDamping& d = shaft.damping;
+  if (d.loss_factor == 0) return;
+  using Viscous = elements::SectionBeamDamping;
+  add_stressed(a,
+               elements::HystereticDamping<Viscous>{
+                   Viscous(beam, d.loss_factor, Viscous::Part::bending),
+                   Viscous(beam, d.loss_factor, Viscous::Part::along), stand_in_of(d)},
+               nodes, "hysteretic damping");
+}
+
 double thermal_strain(const Assembly& a, const model::Section& s) {
   return s.constants || a.model.materials.empty()
              ? 0.0
@@ -372,6 +384,7 @@ void add_full(Assembly& a, const model::Shaft& shaft, const meshes::Element& e) 
                beta_twist = bent ? d.beta_torsion : 0.0;
   if (beta != 0 || beta_twist != 0) beam.set_damping(beta, beta_twist);
   add_stressed(a, beam, nodes, "full section elements");
+  add_hysteresis(a, shaft, beam, nodes);
   if (bent) return;
   model::Shaft rest = shaft;
   rest.damping.beta_internal = 0;  // in the beam, with its twist

@@ -228,11 +228,12 @@ const std::vector<CodeInfo>& error_catalogue() {
        "\"forearm/start\"\naxis = [0, 0, 1]"},
       {"E41", "an analysis that does not go with a joint",
        "Joints act in every analysis. Refused by name is what supposes something a joint breaks: "
-       "rotors that turn steadily with a joint between lines that do not turn as one; one kind of "
+       "rotors that turn steadily with a joint between lines that do not turn as one, or one that "
+       "bends between them (a hinge across the axis, a universal joint: its axes turn, and small "
+       "motions about it have coefficients that change with the angle; slides and hinges along the "
+       "axis of rotation are taken); one kind of "
        "motion alone (lateral, torsional, axial) where a joint stands on a line at an angle to the "
-       "x axis, for bending of one line is twist of another there; and the loads of joints "
-       "(quantities = [\"joints\"]) in linear transients, which keep no equations of their own for "
-       "them.",
+       "x axis, for bending of one line is twist of another there.",
        "type = \"transient\""},
       {"E61", "an unknown with neither stiffness nor mass",
        "The eigenvalue problem cannot be factored at any shift: nothing in the model resists or "

@@ -1,5 +1,9 @@
 #include <core/section_matrices.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 namespace whirl {
 
 SectionMoments::SectionMoments(const Matrix<6>& mass) : m(mass(0, 0)) {
@@ -47,6 +51,21 @@ Matrix<6> without_rotary_inertia(const Matrix<6>& mass) {
   SectionMoments x(mass);
   x.J.setZero();
   return x.matrix();
+}
+
+bool is_axisymmetric(const Matrix<6>& section, double share) {
+  // a quarter turn: (x, y, z) -> (x, z, -y), of both halves
+  static constexpr std::array<Index, 6> from{0, 2, 1, 3, 5, 4};
+  static constexpr std::array<double, 6> sign{1, 1, -1, 1, 1, -1};
+  Vector<6> size;
+  for (Index i = 0; i < 6; ++i)
+    size[i] = std::sqrt(std::max(section(i, i), section(from[at(i)], from[at(i)])));
+  for (Index i = 0; i < 6; ++i)
+    for (Index k = 0; k < 6; ++k) {
+      const double turned = sign[at(i)] * sign[at(k)] * section(from[at(i)], from[at(k)]);
+      if (std::abs(turned - section(i, k)) > share * size[i] * size[k]) return false;
+    }
+  return true;
 }
 
 }  // namespace whirl

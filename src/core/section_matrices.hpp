@@ -26,6 +26,11 @@ Matrix<6> with_mean_rotary_inertia(const Matrix<6>& mass);
 /// Without inertia of rotation about the mass centre.
 Matrix<6> without_rotary_inertia(const Matrix<6>& mass);
 
+/// Whether a stiffness, compliance or mass matrix of a section is the same after a quarter turn about
+/// the axis, and so after any, but for `share` of its diagonal: lateral 2x2 blocks of the form a I + b J, nothing
+/// between them and the axis. Extension may twist and bending may shear such a section.
+bool is_axisymmetric(const Matrix<6>& section, double share);
+
 /// What a mass matrix says: mass per length, its centre, and moments about that.
 struct SectionMoments {
   double m = 0;                ///< kg/m

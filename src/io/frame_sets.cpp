@@ -2,6 +2,7 @@
 #include <io/frame_sets.hpp>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <type_traits>
 
 namespace whirl::io {
@@ -27,31 +28,8 @@ Index line_of(const Scene& s, const Place& p) { return s.node_line[at(p.node)]; 
 class LineSet final : public FrameSet {
  public:
   explicit LineSet(const Scene& scene) : scene_(scene) {
-    std::vector<std::int64_t> ids;
-    for (std::size_t l = 0; l < scene_.lines.size(); ++l) {
-      const auto& line = scene_.lines[l];
-      ids.clear();
-      for (std::size_t k = 0; k < line.points.size(); ++k) {
-        const bool last = k + 1 == line.points.size();
-        const Place a = line.points[k], b = last ? a : line.points[k + 1];
-        const double ra = k < line.radius.size() ? line.radius[k] : 0.0;
-        const double rb = k + 1 < line.radius.size() ? line.radius[k + 1] : ra;
-        const int n = last || a.node == b.node ? 1 : 4;
-        for (int j = 0; j < n; ++j) {
-          const double xi = static_cast<double>(j) / n;
-          ids.push_back(static_cast<std::int64_t>(places_.size()));
-          const bool bent = scene_.bent(static_cast<Index>(l));
-          const Index from = bent ? (last ? line.bend_before[k] : line.bend_after[k]) : -1,
-                      to = bent ? line.bend_before[std::min(k + 1, line.points.size() - 1)] : -1;
-          places_.push_back(meshes::make_spot(scene_, static_cast<Index>(l), a, b, xi, from, to));
-          radius_.push_back(static_cast<float>(ra + xi * (rb - ra)));
-        }
-      }
-      if (ids.size() > 1)
-        data_.lines.add(ids.data(), ids.size());
-      else if (ids.size() == 1)
-        data_.vertices.add(ids.data(), 1);
-    }
+    for (std::size_t l = 0; l < scene_.lines.size(); ++l)
+      add_line(l);
     const std::size_t n = places_.size();
     data_.points.resize(3 * n);
     for (const char* name : {"displacement", "rotation", "director", "axis2", "axis3"})
@@ -73,8 +51,8 @@ class LineSet final : public FrameSet {
       const meshes::Frame x = meshes::frame_of(f.true_poses, triad, p);
       put(data_.points, i, meshes::frame_of(f.drawn, triad, p).r);
       // tilt: of the node's axis from e; on a line along a path that of the nearer node to its left
-      const Vec3 e = triad.col(0), d = p.bent ? f.true_poses[at(p.a.node)].d : Vec3(x.axes.col(0)),
-                 axis = e.cross(d);
+      const Vec3 e = triad.col(0), near = f.true_poses[at(p.xi < 1 ? p.a.node : p.b.node)].d,
+                 d = p.bent ? near : Vec3(x.axes.col(0)), axis = e.cross(d);
       const double s = std::sqrt(axis.squaredNorm()), g = std::atan2(s, e.dot(d));
       put(arrays[0].floats(), i, x.r - p.reference);
       put(arrays[1].floats(), i, s > 0 ? Vec3(g / s * axis) : Vec3(Vec3::Zero()));
@@ -85,21 +63,104 @@ class LineSet final : public FrameSet {
     }
     add("velocity", f.state->velocity);
     add("angular_velocity", f.state->angular_velocity);
-    add("force", f.state->force);
-    add("moment", f.state->moment);
-    add("von_mises", f.state->stress);
+    add_sections("force", f.state->force);
+    add_sections("moment", f.state->moment);
+    add_sections("von_mises", f.state->stress);
   }
 
  private:
-  // Node values, linear between nodes.
+  /// Of a place: the elements whose end values its own lies between, at their left (0) or right (1)
+  /// ends; -1: none.
+  struct Ends {
+    Index a = -1, b = -1;
+  };
+
+  /// Number of the value at the nearest end of an element to the left or right of stretch k.
+  static Index end_beside(const Scene::Line& line, std::size_t k, bool left) {
+    if (line.elements.empty()) return -1;
+    for (std::size_t i = k; left ? i > 0 : i + 1 < line.elements.size();) {
+      i = left ? i - 1 : i + 1;
+      if (line.elements[i] >= 0) return 2 * line.elements[i] + (left ? 1 : 0);
+    }
+    return -1;
+  }
+  static Ends ends_of(const Scene::Line& line, std::size_t k) {
+    if (k >= line.elements.size()) return {};
+    if (const Index e = line.elements[k]; e >= 0) return {2 * e, 2 * e + 1};
+    // rigid: what the elements beside it leave at its ends
+    Ends out{end_beside(line, k, true), end_beside(line, k, false)};
+    if (out.a < 0) out.a = out.b;
+    if (out.b < 0) out.b = out.a;
+    return out;
+  }
+
+  void add_line(std::size_t l) {
+    const Scene::Line& line = scene_.lines[l];
+    std::vector<std::int64_t> ids;
+    const auto finish = [&] {
+      if (ids.size() > 1)
+        data_.lines.add(ids.data(), ids.size());
+      else if (ids.size() == 1)
+        data_.vertices.add(ids.data(), 1);
+      ids.clear();
+    };
+    const std::size_t points = line.points.size();
+    for (std::size_t k = 0; k + 1 < points || (points == 1 && k == 0); ++k) {
+      const std::size_t next = std::min(k + 1, points - 1);
+      const bool elastic = line.points[k].node != line.points[next].node;
+      const bool ends = next + 1 == points || (next < line.breaks.size() && line.breaks[next]);
+      const int n = points == 1 ? 1 : elastic ? 4 : 1;
+      for (int j = 0; j < n + (ends && points > 1 ? 1 : 0); ++j) {
+        ids.push_back(static_cast<std::int64_t>(places_.size()));
+        add_place(l, k, static_cast<double>(j) / n);
+      }
+      if (ends) finish();
+    }
+  }
+
+  /// A place in the stretch from point k to the next.
+  void add_place(std::size_t l, std::size_t k, double xi) {
+    const Scene::Line& line = scene_.lines[l];
+    const std::size_t next = std::min(k + 1, line.points.size() - 1);
+    const double ra = k < line.radius.size() ? line.radius[k] : 0.0,
+                 rb = next < line.radius.size() ? line.radius[next] : ra;
+    const bool bent = scene_.bent(static_cast<Index>(l));
+    places_.push_back(meshes::make_spot(scene_, static_cast<Index>(l), line.points[k],
+                                        line.points[next], xi, bent ? line.bend_after[k] : -1,
+                                        bent ? line.bend_before[next] : -1));
+    ends_.push_back(ends_of(line, k));
+    radius_.push_back(static_cast<float>(ra + xi * (rb - ra)));
+  }
+
+  /// Values at the ends of elements, where there are as many, else at nodes.
+  template <class T>
+  void add_sections(const char* name, std::span<const T> values) {
+    const bool known = std::any_of(scene_.lines.begin(), scene_.lines.end(),
+                                   [](const Scene::Line& l) { return !l.elements.empty(); });
+    if (!known)
+      add(name, values);
+    else
+      put_array(name, values, [&](std::size_t i) -> T {
+        const Ends& e = ends_[i];
+        if (e.a < 0) return T(0.0 * values[0]);
+        return T((1 - places_[i].xi) * values[at(e.a)] + places_[i].xi * values[at(e.b)]);
+      });
+  }
+  /// Values at nodes, linear between them.
   template <class T>
   void add(const char* name, std::span<const T> values) {
+    put_array(name, values, [&](std::size_t i) -> T {
+      const meshes::Spot& p = places_[i];
+      return T((1 - p.xi) * values[at(p.a.node)] + p.xi * values[at(p.b.node)]);
+    });
+  }
+  template <class T, class ValueAt>
+  void put_array(const char* name, std::span<const T> values, ValueAt value_at) {
     if (values.empty()) return;
     constexpr bool vector = std::is_same_v<T, Vec3>;
     auto a = array(name, vector ? 3 : 1, places_.size());
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      const auto& p = places_[i];
-      const T v = (1 - p.xi) * values[at(p.a.node)] + p.xi * values[at(p.b.node)];
+      const T v = value_at(i);
       if constexpr (vector)
         put(a.floats(), i, v);
       else
@@ -110,6 +171,7 @@ class LineSet final : public FrameSet {
 
   Scene scene_;
   std::vector<meshes::Spot> places_;
+  std::vector<Ends> ends_;  ///< of each place
   std::vector<float> radius_;
 };
 
@@ -154,18 +216,28 @@ class SupportSet final : public FrameSet {
           polyline(ring_points + 1);
       polylines_of_springs(s);
     }
+    for (std::size_t k = 0; k < scene_.joints.size(); ++k) {
+      const std::int64_t vertex = grow(1);
+      data_.vertices.add(&vertex, 1);
+    }
     data_.points.resize(3 * count_);
     data_.point_data.push_back(array("force", 3, count_));
     // Cell data follow the order of cells: all vertices, then all lines.
     std::vector<std::int32_t> number;
     for (std::size_t k = 0; k < scene_.supports.size(); ++k)
       number.push_back(static_cast<std::int32_t>(k));
+    const std::size_t joints = scene_.joints.size(), first_joint = number.size();
+    number.insert(number.end(), joints, -1);
     for (std::size_t k = 0; k < scene_.supports.size(); ++k) {
       const auto& s = scene_.supports[k];
       number.insert(number.end(), s.picture == model::Picture::bearing ? 6 : 2,
                     static_cast<std::int32_t>(k));
     }
+    std::vector<std::int32_t> joint(number.size(), -1);
+    std::iota(joint.begin() + static_cast<std::ptrdiff_t>(first_joint),
+              joint.begin() + static_cast<std::ptrdiff_t>(first_joint + joints), 0);
     data_.cell_data.push_back({"support", 1, std::move(number)});
+    if (joints > 0) data_.cell_data.push_back({"joint", 1, std::move(joint)});
   }
   const char* name() const override { return "bearings"; }
 
@@ -203,11 +275,21 @@ class SupportSet final : public FrameSet {
           helix(far - 5.0 * r * far_axes.col(q), journal.r, triad * bend.col(0), 0.5 * r, i);
       }
     }
+    for (std::size_t k = 0; k < scene_.joints.size(); ++k) {
+      if (!f.state->joint_force.empty()) put(force, i, f.state->joint_force[k]);
+      put(data_.points, i++, place_of(f.drawn, scene_.joints[k]));
+    }
   }
 
  private:
   static constexpr std::size_t ring_points = 48, spring_points = 97, turns = 6;
 
+  Vec3 place_of(std::span<const Pose> poses, const Scene::Joint& j) const {
+    if (j.bend < 0) return pose_at(poses, j.at).r;
+    const Pose& p = poses[at(j.at.node)];
+    const Mat3& triad = scene_.lines[at(line_of(scene_, j.at))].triad;
+    return p.r + j.at.offset * (section_axes(triad, p.d, p.phi) * scene_.bends[at(j.bend)].col(0));
+  }
   std::int64_t grow(std::size_t n) {
     const auto first = static_cast<std::int64_t>(count_);
     count_ += n;

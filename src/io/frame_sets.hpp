@@ -29,13 +29,15 @@ class FrameSet {
 
 /// Centre lines: displacement, rotation (Euler vector of the tilt), spin_angle, radius, director,
 /// axis2, axis3; velocity, angular_velocity, force, moment, von_mises where the state has them.
-/// Four segments between two nodes.
+/// Four segments between two nodes. Where section forces may jump a line ends and the next begins, each
+/// with a point of its own there.
 std::unique_ptr<FrameSet> make_line_set(const Scene& scene);
 /// True surface: normals, displacement of the centre line; cells: stripe (1 = painted), part (0
 /// shaft, k disk).
 std::unique_ptr<FrameSet> make_surface_set(const Scene& scene, int points_around);
 /// Supports: housing ring, journal ring and springs between them; a vertex at each journal carries
-/// `force`; cell array `support` counts them.
+/// `force`; cell array `support` counts them. A joint is a vertex with its `force`, counted by the cell array
+/// `joint` (both -1 where a cell is not of that kind; `joint` is there where there are any).
 std::unique_ptr<FrameSet> make_support_set(const Scene& scene);
 /// Paths of the trail points so far: `age` s.
 std::unique_ptr<FrameSet> make_trail_set(const Scene& scene, std::size_t longest);

@@ -24,11 +24,13 @@ struct FrameState {
       charts;  ///< triad of each line that (d, phi) refer to, after a change of chart
   std::span<const Vec3> velocity;          ///< m/s
   std::span<const Vec3> angular_velocity;  ///< rad/s
-  std::span<const Vec3>
-      force;  ///< N, internal force at the node (section to its right on its left)
+  /// At the nodes or, for a scene that knows its elements, twice as many values as those: at the left
+  /// and the right end of each. Of the part to the right on the part to the left.
+  std::span<const Vec3> force;          ///< N
   std::span<const Vec3> moment;         ///< N m
-  std::span<const double> stress;       ///< Pa, equivalent (von Mises) stress at the node
+  std::span<const double> stress;       ///< Pa, equivalent (von Mises)
   std::span<const Vec3> support_force;  ///< N on the shaft, one a support of the scene
+  std::span<const Vec3> joint_force;    ///< N on the line at `at`, one a joint of the scene
 };
 
 class FrameWriter {

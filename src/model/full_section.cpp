@@ -46,13 +46,13 @@ bool is_unequal(const Section& s, double share) {
   };
   if (s.general) return differ(s.general->Iy, s.general->Iz) || !s.general->on_line();
   if (!s.full) return false;
-  const Matrix<6>& K = s.full->stiffness;
-  Matrix<6> coupling = K;
-  coupling.diagonal().setZero();
-  const Vector<6> size = K.diagonal().cwiseSqrt().cwiseInverse();
-  return differ(K(4, 4), K(5, 5)) || differ(K(1, 1), K(2, 2)) ||
-         (size.asDiagonal() * coupling * size.asDiagonal()).cwiseAbs().maxCoeff() > share ||
+  return !is_axisymmetric(s.full->stiffness, share) ||
          SectionMoments(s.full->mass).centre.norm() > 0;
+}
+
+bool has_unequal_inertia(const Section& s, double share) {
+  if (!s.full || !s.rotary_inertia || s.mean_rotary_inertia) return false;
+  return !is_axisymmetric(s.full->mass, share);
 }
 
 }  // namespace whirl::model

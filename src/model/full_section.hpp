@@ -11,5 +11,7 @@ FullSection full_section(const Model& m, const Section& s);
 Section::Constants round_constants(const Section::Full& f);
 /// Whether the bending of a section depends on its direction by more than `share` of its stiffness.
 bool is_unequal(const Section& s, double share);
+/// Whether the rotary inertia of a section given by matrices does, with the options that act on it.
+bool has_unequal_inertia(const Section& s, double share);
 
 }  // namespace whirl::model

@@ -9,10 +9,11 @@ FrameArrays::FrameArrays(const run::Job& job)
       poses_(job.mesh.nodes.size()),
       velocity_(poses_.size()),
       omega_(poses_.size()),
-      force_(poses_.size(), Vec3::Zero()),
-      moment_(poses_.size(), Vec3::Zero()),
+      force_(2 * job.mesh.elements.size(), Vec3::Zero()),
+      moment_(force_),
       supports_(job.model.bearings.size(), Vec3::Zero()),
-      stress_(poses_.size(), 0.0) {}
+      joints_(job.model.joints.size(), Vec3::Zero()),
+      stress_(force_.size(), 0.0) {}
 
 void FrameArrays::take_nodes(const assembly::NodeAt& node) {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
@@ -24,19 +25,12 @@ void FrameArrays::take_nodes(const assembly::NodeAt& node) {
 }
 
 void FrameArrays::take_sections(const std::vector<assembly::SectionPoint>& points) {
-  std::fill(force_.begin(), force_.end(), Vec3::Zero());
-  std::fill(moment_.begin(), moment_.end(), Vec3::Zero());
-  std::fill(stress_.begin(), stress_.end(), 0.0);
   for (const assembly::SectionPoint& p : points) {
     if (p.xi != 0.0 && p.xi != 1.0) continue;
-    const meshes::Element& e = job_.mesh.elements[at(p.element)];
-    const std::size_t i = at(p.xi == 0.0 ? e.left.node : e.right.node);
-    const bool first = p.xi == 0.0 && p.element == job_.mesh.lines[at(p.line)].first_element;
-    if (p.xi == 1.0 || first) {
-      force_[i] = p.force;
-      moment_[i] = p.moment;
-    }
-    stress_[i] = std::max(stress_[i], p.von_mises);
+    const std::size_t i = 2 * at(p.element) + (p.xi == 0.0 ? 0 : 1);
+    force_[i] = p.force;
+    moment_[i] = p.moment;
+    stress_[i] = p.von_mises;
   }
 }
 
@@ -47,6 +41,8 @@ void FrameArrays::take_supports(const assembly::NodeAt& node, const system::Cont
     for (const assembly::SupportForce& f : job_.built.support_forces)
       if (f.name == job_.model.bearings[i].name) supports_[i] = f.force(node, context, reaction);
   }
+  for (std::size_t i = 0; i < joints_.size(); ++i)
+    joints_[i] = job_.built.joints[i].force(node, context, reaction);
 }
 
 io::FrameState FrameArrays::state(double time, bool in_motion) const {
@@ -61,6 +57,7 @@ io::FrameState FrameArrays::state(double time, bool in_motion) const {
   frame.moment = moment_;
   frame.stress = stress_;
   frame.support_force = supports_;
+  frame.joint_force = joints_;
   return frame;
 }
 

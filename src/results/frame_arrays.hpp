@@ -13,10 +13,10 @@ class FrameArrays {
   /// Poses and velocities of the nodes (m, m/s, rad/s, global axes).
   void take_nodes(const assembly::NodeAt& node);
   /// Section forces (N, N m, global axes: of the right part on the left one) and equivalent
-  /// stresses (Pa) at the nodes. Where two elements meet: the larger stress, and the section forces
-  /// of the element on the left.
+  /// stresses (Pa) at both ends of every element.
   void take_sections(const std::vector<assembly::SectionPoint>& points);
-  /// Force of each bearing of the model on its shaft, N, global axes.
+  /// Force of each bearing of the model on its shaft and of each joint on the line of its `at`, N, global
+  /// axes.
   void take_supports(const assembly::NodeAt& node, const system::Context& context,
                      const assembly::ReactionAt& reaction);
 
@@ -27,7 +27,7 @@ class FrameArrays {
  private:
   const run::Job& job_;
   std::vector<io::Pose> poses_;
-  std::vector<Vec3> velocity_, omega_, force_, moment_, supports_;
+  std::vector<Vec3> velocity_, omega_, force_, moment_, supports_, joints_;
   std::vector<double> stress_;
 };
 

@@ -332,9 +332,16 @@ void FrequencyStep::warn_of_mean_stiffness() {
 }
 
 bool turns_with_inertia(const model::Model& m) {
+  const auto turns = [](const model::Shaft& s) { return s.rotating && s.speed_ratio != 0; };
+  const auto of_section = [](const model::Section& x) {
+    return model::has_unequal_inertia(x, 1e-9);
+  };
+  if (std::any_of(m.shafts.begin(), m.shafts.end(), [&](const model::Shaft& s) {
+        return turns(s) && std::any_of(s.sections.begin(), s.sections.end(), of_section);
+      }))
+    return true;
   return std::any_of(m.disks.begin(), m.disks.end(), [&](const model::Disk& d) {
-    const model::Shaft& s = m.shafts[d.at.shaft];
-    if (!d.inertia || !s.rotating || s.speed_ratio == 0) return false;
+    if (!d.inertia || !turns(m.shafts[d.at.shaft])) return false;
     const Mat3& J = *d.inertia;
     const double difference = std::max(std::abs(J(1, 1) - J(2, 2)), std::abs(J(1, 2)));
     return difference > 1e-9 * J.trace();

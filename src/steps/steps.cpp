@@ -135,10 +135,6 @@ std::string crooked_joint(const system::System& system) {
   return {};
 }
 
-bool wants_joints(const model::Output& o) {
-  return std::find(o.quantities.begin(), o.quantities.end(), "joints") != o.quantities.end();
-}
-
 /// What a step supposes that joints break.
 void refuse_joints(const run::Job& job, const model::Step& step) {
   if (job.model.joints.empty()) return;
@@ -152,10 +148,6 @@ void refuse_joints(const run::Job& job, const model::Step& step) {
       leaves_motion_out(step.law) && !joint.empty())
     refuse("one kind of motion alone", joint + ", of a line at an angle to the x axis,",
            "motion = \"all\": bending of one line is twist of another");
-  const auto* t = std::get_if<model::TransientStep>(&step.law);
-  if (t && t->linear && wants_joints(job.model.output))
-    refuse("linear = true with quantities = [\"joints\"]", job.system().followers()[0].joint,
-           "leave the quantity out, or linear: loads of joints are those of the general motion");
 }
 
 void run_step(run::Job& job, const model::Step& step) {

@@ -130,7 +130,11 @@ std::unique_ptr<system::SystemProblem> transient_problem(const run::Job& job,
         job.system(), system::ProblemOptions{la::SolverKind::automatic, job.model.chart_change});
   analysis::SteadyRotation running = job.steady_rotation_of(start);
   running.time = start.state.t;
-  return std::make_unique<analysis::LinearMotion>(job.system(), running, start.speed, start.state);
+  auto motion =
+      std::make_unique<analysis::LinearMotion>(job.system(), running, start.speed, start.state);
+  const std::vector<std::string>& wanted = job.model.output.quantities;
+  if (std::find(wanted.begin(), wanted.end(), "joints") != wanted.end()) motion->take_joint_loads();
+  return motion;
 }
 
 namespace {

@@ -110,3 +110,185 @@ sys.exit(wrong > 0)
                             .c_str()),
             0);
 }
+
+// A joint is a vertex with the load it carries.
+TEST(FramesInMotion, JointsStandAmongTheSupports) {
+  if (std::system("/usr/bin/python3 -c 'import vtkmodules.vtkIOXML' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no python3-vtk9";
+  const DeckRun d(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "beam"
+material = "steel"
+rotating = false
+[[shaft.section]]
+name = "a"
+length = "1 m"
+od = "40 mm"
+[[shaft]]
+name = "post"
+material = "steel"
+rotating = false
+path = [{ to = ["1 m", "0 m", "-500 mm"] }]
+origin = ["1 m", "0 m", "0 m"]
+[[shaft.section]]
+name = "b"
+length = "500 mm"
+od = "40 mm"
+[[joint]]
+name = "wall"
+kind = "rigid"
+at = "a:start"
+[[joint]]
+name = "ball"
+kind = "spherical"
+at = "b:start"
+to = "a:end"
+[[bearing]]
+name = "foot"
+at = "b:end"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+[[load]]
+at = "a:mid"
+force = ["0 N", "200 N", "-300 N"]
+[[step]]
+name = "s"
+type = "static"
+[output]
+report = false
+[[output.vtk]]
+step = "s"
+content = ["bearings"]
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  if (d.says("VTK")) GTEST_SKIP() << "built without VTK";
+  const std::string script = R"(
+import csv, sys
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+reader = vtkXMLPolyDataReader()
+reader.SetFileName(sys.argv[1])
+reader.Update()
+poly = reader.GetOutput()
+joint = poly.GetCellData().GetArray("joint")
+support = poly.GetCellData().GetArray("support")
+force = poly.GetPointData().GetArray("force")
+assert poly.GetNumberOfVerts() == 3
+rows = [[float(x) for x in r[1:4]] for r in csv.reader(open(sys.argv[2])) if r[0] in ("wall", "ball")]
+wrong = len(rows) != 2
+places = ((0, 0, 0), (1, 0, 0))
+for k in range(2):
+    cell = [c for c in range(poly.GetNumberOfCells()) if joint.GetValue(c) == k]
+    wrong += len(cell) != 1 or support.GetValue(cell[0]) != -1
+    point = poly.GetCell(cell[0]).GetPointId(0)
+    wrong += max(abs(a - b) for a, b in zip(force.GetTuple(point), rows[k])) > 1e-4
+    wrong += max(abs(a - b) for a, b in zip(poly.GetPoint(point), places[k])) > 5e-3
+    wrong += max(abs(x) for x in rows[k]) < 10
+wrong += support.GetValue(0) != 0 or joint.GetValue(0) != -1
+sys.exit(wrong)
+)";
+  EXPECT_EQ(std::system(("/usr/bin/python3 -c '" + script + "' '" +
+                         (d.folder / "r" / "vtk" / "s_bearings" / "frame_000000.vtp").string() +
+                         "' '" + (d.folder / "r" / "s_joints.csv").string() + "'")
+                            .c_str()),
+            0);
+}
+
+// Where a support, a load or a step of the diameter makes section forces jump, both values stand in the
+// picture, each at a point of its own: those of the table of sections.
+TEST(FramesInMotion, JumpsOfSectionForcesStandWhereTheyAre) {
+  if (std::system("/usr/bin/python3 -c 'import vtkmodules.vtkIOXML' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no python3-vtk9";
+  const DeckRun d(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "r"
+material = "steel"
+[[shaft.section]]
+name = "a"
+length = "300 mm"
+od = "40 mm"
+[[shaft.section]]
+name = "b"
+length = "200 mm"
+od = "50 mm"
+[[shaft.section]]
+name = "c"
+length = "100 mm"
+od = "50 mm"
+[[shaft.section]]
+name = "hub"
+length = "80 mm"
+od = "120 mm"
+rigid = true
+[[shaft.section]]
+name = "d"
+length = "200 mm"
+od = "30 mm"
+[[bearing]]
+name = "L"
+at = "a:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "R"
+at = "b:end"
+type = "rigid"
+directions = ["y", "z"]
+[[load]]
+at = "150 mm"
+force = ["0 N", "500 N", "0 N"]
+[[load]]
+at = "d:end"
+force = ["0 N", "100 N", "40 N"]
+moment = ["0 N.m", "0 N.m", "3 N.m"]
+[[step]]
+name = "s"
+type = "static"
+[output]
+report = false
+[[output.vtk]]
+step = "s"
+content = ["line"]
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  if (d.says("VTK")) GTEST_SKIP() << "built without VTK";
+  const std::string script = R"(
+import csv, sys
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+reader = vtkXMLPolyDataReader()
+reader.SetFileName(sys.argv[1])
+reader.Update()
+poly = reader.GetOutput()
+data = poly.GetPointData()
+names = ("displacement", "force", "moment", "von_mises")
+arrays = [data.GetArray(n) for n in names]
+points = []
+for i in range(poly.GetNumberOfPoints()):
+    u, f, m, s = (a.GetTuple(i) for a in arrays)
+    lateral = lambda v: (v[1] ** 2 + v[2] ** 2) ** 0.5
+    points.append((poly.GetPoint(i)[0] - u[0], lateral(f), lateral(m), s[0], f[1]))
+rows = [[r[0]] + [float(x) for x in r[1:]] for r in csv.reader(open(sys.argv[2])) if r[0] == "r"]
+ends = [r for k, r in enumerate(rows) if k in (0, len(rows) - 1) or rows[k - 1][2] != r[2] or rows[k + 1][2] != r[2]]
+assert len(ends) >= 10
+near = lambda a, b, size: abs(a - b) < 2e-4 * size
+wrong = 0
+for r in ends:
+    s, v, m, stress = r[1], (r[4] ** 2 + r[5] ** 2) ** 0.5, r[9], r[13]
+    wrong += not any(abs(x - s) < 1e-6 and near(a, v, 500) and near(b, m, 50) and near(c, stress, 1e7) for x, a, b, c, _ in points)
+# two points at the load, at both supports but one at the end, at the steps; the rigid hub goes on from what its neighbours leave
+count = lambda s: sum(abs(x - s) < 1e-6 for x, *_ in points)
+wrong += [count(s) for s in (0.15, 0.3, 0.5, 0.0, 0.88)] != [2, 2, 2, 1, 1]
+at_load = [p[4] for p in points if abs(p[0] - 0.15) < 1e-6]
+wrong += not near(abs(at_load[1] - at_load[0]), 500, 500)
+wrong += poly.GetNumberOfLines() < 6
+sys.exit(wrong)
+)";
+  EXPECT_EQ(std::system(("/usr/bin/python3 -c '" + script + "' '" +
+                         (d.folder / "r" / "vtk" / "s_line" / "frame_000000.vtp").string() + "' '" +
+                         (d.folder / "r" / "s_sections.csv").string() + "'")
+                            .c_str()),
+            0);
+}

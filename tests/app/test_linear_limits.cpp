@@ -301,3 +301,69 @@ TEST(LinearLimits, AMeanOfAStiffnessThatTurnsIsSaid) {
   EXPECT_TRUE(DeckRun(asymmetric(modes)).says("W14"));
   EXPECT_FALSE(DeckRun(rotor("", modes)).says("W14"));
 }
+
+namespace {
+
+/// A wound tube on bearings: extension twists it, bending shears it. extra: added to a stiffness, N m^2,
+/// or a mass, kg m, about y alone.
+std::string tube(double stiffness, double mass, const std::string& step) {
+  char section[900];
+  std::snprintf(section, sizeof section, R"(
+full.stiffness = [["5e7 N", 0, 0, "1.2e5 N.m", 0, 0],
+                  [0, "1e7 N", 0, 0, "5e4 N.m", "2e4 N.m"],
+                  [0, 0, "1e7 N", 0, "-2e4 N.m", "5e4 N.m"],
+                  ["1.2e5 N.m", 0, 0, "3e3 N.m^2", 0, 0],
+                  [0, "5e4 N.m", "-2e4 N.m", 0, "%.17g N.m^2", 0],
+                  [0, "2e4 N.m", "5e4 N.m", 0, 0, "8e3 N.m^2"]]
+full.mass = [["1.2 kg/m", 0, 0, 0, 0, 0], [0, "1.2 kg/m", 0, 0, 0, 0], [0, 0, "1.2 kg/m", 0, 0, 0],
+             [0, 0, 0, "4e-4 kg.m", 0, 0], [0, 0, 0, 0, "%.17g kg.m", 0], [0, 0, 0, 0, 0, "2e-4 kg.m"]]
+)",
+                8e3 + stiffness, 2e-4 + mass);
+  return R"(format = 1
+[output]
+report = false
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "tube"
+[[shaft.section]]
+name = "a"
+length = "1 m"
+min_elements = 6)" +
+         std::string(section) + R"([[bearing]]
+name = "L"
+at = "a:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "2e6 N/m"
+kzz = "2e6 N/m"
+cyy = "300 N.s/m"
+czz = "300 N.s/m"
+[[bearing]]
+name = "R"
+at = "a:end"
+type = "linear"
+kyy = "2e6 N/m"
+kzz = "2e6 N/m"
+cyy = "300 N.s/m"
+czz = "300 N.s/m"
+)" + step;
+}
+
+}  // namespace
+
+TEST(LinearLimits, ACoupledTubeThatIsAlikeAllAroundHasNoMean) {
+  const std::string
+      modal = "[[step]]\nname = \"m\"\ntype = \"modal\"\nmodes = 8\nspeed = \"9000 rpm\"\n",
+      stability =
+          "[[step]]\nname = \"s\"\ntype = \"stability\"\nspeed = { start = \"0 rpm\", "
+          "stop = \"12000 rpm\", points = 7 }\n";
+  const DeckRun d(tube(0, 0, modal + stability));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_FALSE(d.says("W14")) << d.log;
+  EXPECT_FALSE(d.says("not certified")) << d.log;
+  EXPECT_TRUE(d.summary("s").at("certified").boolean()) << d.log;
+  const DeckRun stiff(tube(500, 0, modal)), heavy(tube(0, 5e-5, modal));
+  EXPECT_TRUE(stiff.says("the stiffness of the asymmetric rotor")) << stiff.log;
+  EXPECT_TRUE(heavy.says("the inertia of the asymmetric rotor")) << heavy.log;
+}

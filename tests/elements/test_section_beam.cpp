@@ -300,3 +300,100 @@ TEST(SectionBeam, CirclesAreExact) {
     EXPECT_NEAR(e.elastic, 0.5 * l * bending.dot(kappa), 1e-6 * e.elastic);  // of r, 1e-7
   }
 }
+
+namespace {
+
+/// Extension twists and bending shears it, the same in every direction.
+FullSection tube() {
+  FullSection s;
+  s.stiffness.diagonal() << 4e4, 2e4, 2e4, 90, 70, 70;
+  const auto couple = [&](Index i, Index k, double x) {
+    s.stiffness(i, k) = s.stiffness(k, i) = x;
+  };
+  couple(0, 3, 500);
+  couple(1, 4, 250);
+  couple(2, 5, 250);
+  couple(1, 5, -130);
+  couple(2, 4, 130);
+  s.mass = offset_mass(2.0, Vec2::Zero(), 0.012, 0.007, 0.007, 0);
+  return s;
+}
+
+SectionBeam spinning_beam(const FullSection& section, double tilt = 0.0) {
+  const double l = 0.4;
+  const SectionBeamConstants c = elements::make_section_constants(section, l, 0.3);
+  const Mat3 axes = rotation::L(Vec3(0, 0, tilt));
+  SectionBeam b(c, Vec3(l, 0, 0), axes * axes_at(0.2), axes * axes_at(0.5), Vec3(0.01, 0, 0),
+                Vec3(-0.02, 0, 0));
+  b.set_prestress(300.0, 1e-4);
+  b.set_damping(1e-3, 2e-3);
+  return b;
+}
+
+/// Largest change of the forces, relative, as both nodes turn on in some motion.
+double change_as_it_turns(const SectionBeam& b) {
+  const Mat3 chart = Mat3::Identity();
+  std::mt19937 rng(7);
+  std::normal_distribution<double> d;
+  std::array<system::NodeState, 2> n;
+  const auto any = [&](double size) { return Vec3(size * Vec3(d(rng), d(rng), d(rng))); };
+  for (system::NodeState& s : n) {
+    s.u = any(0.02);
+    s.du = any(0.1);
+    s.ddu = any(1.0);
+    const Vec3 lean(0, 0.2 * d(rng), 0.2 * d(rng));
+    const Vec3 director = rotation::L(lean) * Vec3::UnitX();
+    s.t = director - Vec3::UnitX();
+    s.dd = any(1.0).cross(director);
+    s.ddd = any(1.0).cross(director) - s.dd.squaredNorm() * director;
+    s.phi = 0.3 * d(rng);
+    s.dphi = 20 * d(rng);
+    s.ddphi = d(rng);
+    s.chart = &chart;
+  }
+  const auto force = [&](double angle) {
+    std::array<system::NodeState, 2> now = n;
+    for (system::NodeState& s : now)
+      s.phi += angle;
+    system::ForceX<14> f = system::ForceX<14>::Zero();
+    b.add_force({&now[0], &now[1]}, {}, f);
+    return Vector<14>(f);
+  };
+  const Vector<14> start = force(0);
+  double worst = 0;
+  for (const double angle : {0.4, 1.1, 2.0, 4.7})
+    worst = std::max(worst, (force(angle) - start).norm() / start.norm());
+  return worst;
+}
+
+}  // namespace
+
+TEST(SectionBeam, ACoupledSectionThatIsAlikeAllAroundDoesNotSeeItsAngle) {
+  const SectionBeam round = spinning_beam(tube());
+  EXPECT_TRUE(round.axisymmetric());
+  EXPECT_EQ(round.depends({}).angle, system::twist_angle);
+  EXPECT_LT(change_as_it_turns(round), 1e-12);
+  // every entry that tells two directions apart does
+  const auto changed = [](bool stiffness, Index i, Index k, double by) {
+    FullSection s = tube();
+    Matrix<6>& A = stiffness ? s.stiffness : s.mass;
+    A(i, k) += by;
+    if (i != k) A(k, i) += by;
+    const SectionBeam b = spinning_beam(s);
+    EXPECT_FALSE(b.axisymmetric()) << i << k;
+    EXPECT_EQ(b.depends({}).angle, system::each_angle);
+    EXPECT_GT(change_as_it_turns(b), 1e-9) << stiffness << i << k;
+  };
+  for (Index i = 0; i < 6; ++i)
+    for (Index k = i; k < 6; ++k) {
+      const bool lateral_i = i % 3 != 0, lateral_k = k % 3 != 0;
+      const double size = std::sqrt(tube().stiffness(i, i) * tube().stiffness(k, k));
+      if (lateral_i || lateral_k) changed(true, i, k, 1e-3 * size);
+    }
+  changed(false, 4, 4, 1e-4);
+  changed(false, 4, 5, 1e-4);
+  FullSection off = tube();
+  off.mass = offset_mass(2.0, Vec2(1e-4, 0), 0.012, 0.007, 0.007, 0);
+  EXPECT_FALSE(spinning_beam(off).axisymmetric());
+  EXPECT_FALSE(spinning_beam(tube(), 1e-3).axisymmetric());
+}

@@ -4,6 +4,8 @@
 #include "record.hpp"
 #include "static_model.hpp"
 
+#include <analysis/spectra/critical.hpp>
+#include <analysis/spectra/stability.hpp>
 #include <analysis/spectra/whirl_modes.hpp>
 #include <meshes/mass_properties.hpp>
 
@@ -463,4 +465,103 @@ directions = ["x", "y", "z", "rx", "ry", "rz"]
     last = worst;
   }
   EXPECT_LT(last, 3e-5);
+}
+
+TEST(FullSections, LossFactorOfCoupledSections) {
+  // Where nothing turns every strain has one rate, and every mode lambda^2 = -omega^2 (1 + i eta),
+  // whatever is coupled.
+  const double eta = 0.03;
+  const auto deck = [&](const std::string& of_shaft, const std::string& section,
+                        const std::string& supports, int elements = 6) {
+    return fmt::format(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "beam"
+{}
+[[shaft.section]]
+name = "line"
+length = "2 m"
+min_elements = {}
+{}
+{})",
+                       of_shaft, elements, section, supports);
+  };
+  const std::string loss = fmt::format("damping.internal_loss_factor = {}\n", eta);
+  const std::string clamped = R"([[bearing]]
+name = "clamp"
+at = "line:start"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+)";
+  const auto modes = [](const DeckModel& d, double Omega, Index count) {
+    Linearizer linear(d.built.system, d.running());
+    ModesOptions o;
+    o.count = count;
+    o.certify = false;
+    return whirl_modes(linear, Omega, o);
+  };
+  const std::string composite = full(composite_stiffness(), composite_mass());
+  const DeckModel still(deck("rotating = false\n" + loss, composite, clamped)),
+      none(deck("rotating = false\n", composite, clamped));
+  const auto damped = modes(still, 0.0, 8), undamped = modes(none, 0.0, 8);
+  for (std::size_t k = 0; k < 8; ++k) {
+    const Complex exact = Complex(0, 1) * undamped[k].frequency * std::sqrt(Complex(1, eta));
+    EXPECT_LT(std::abs(damped[k].lambda - exact), 1e-8 * undamped[k].frequency) << k;
+  }
+
+  // A round shaft as a full section is the round shaft, below and above its critical speeds.
+  const std::string supports = R"([[bearing]]
+name = "l"
+at = "line:start"
+type = "linear"
+kxx = "1e6 N/m"
+kyy = "2e5 N/m"
+kzz = "2e5 N/m"
+[[bearing]]
+name = "r"
+at = "line:end"
+type = "linear"
+kyy = "2e5 N/m"
+kzz = "2e5 N/m"
+)";
+  Matrix<6> K = Matrix<6>::Zero(), M = Matrix<6>::Zero();
+  K.diagonal() << 4e6, 1e6, 1e6, 3e3, 5e3, 5e3;
+  M.diagonal() << 2, 2, 2, 4e-3, 2e-3, 2e-3;
+  const std::string round =
+      R"(constants = { EA = "4e6 N", kGA = "1e6 N", GJ = "3e3 N.m^2", EI = "5e3 N.m^2", rhoA = "2 kg/m", rhoI = "2e-3 kg.m", rhoIp = "4e-3 kg.m" })";
+  const DeckModel a(deck(loss, round, supports, 24)), b(deck(loss, full(K, M), supports, 24));
+  for (const double speed : {0.0, 50.0, 300.0, 900.0}) {
+    const auto one = modes(a, speed, 5), two = modes(b, speed, 8);
+    for (std::size_t k = 0; k < 5; ++k) {
+      Complex nearest = infinity;  // frequencies of a pair are in no order
+      for (const WhirlMode& other : two)
+        if (std::abs(one[k].lambda - other.lambda) < std::abs(one[k].lambda - nearest))
+          nearest = other.lambda;
+      // the masses beside the bearings are corrected otherwise, which leaves 1e-4 of the frequencies
+      EXPECT_LT(std::abs(one[k].lambda - nearest), 3e-4 * one[k].frequency) << speed << " " << k;
+      EXPECT_NEAR(one[k].lambda.real(), nearest.real(), 5e-4 * std::abs(one[k].lambda.real()))
+          << speed << " " << k;
+    }
+  }
+
+  // Extension twists this one and bending shears it, alike all around: forward whirl is driven from
+  // its critical speed on.
+  K(0, 3) = K(3, 0) = 4e4;
+  K(1, 4) = K(4, 1) = K(2, 5) = K(5, 2) = 2e4;
+  const DeckModel tube(deck("damping.internal_loss_factor = 0.003\n", full(K, M), supports));
+  Linearizer linear(tube.built.system, tube.running());
+  CriticalOptions co;
+  co.max_speed = 400;
+  co.motion = Motion::lateral;
+  double critical = 0;
+  for (const Critical& c : critical_speeds(linear, co))
+    if (c.mode.direction == Direction::forward && critical == 0) critical = c.speed;
+  StabilityOptions so;
+  so.min_speed = 1;
+  so.max_speed = 1.5 * critical;
+  const StabilityResult r = find_instability(linear, so);
+  ASSERT_GE(r.onsets.size(), 1u);
+  EXPECT_NEAR(r.onsets[0].speed, critical, 3e-6 * critical);  // eta^2/8 is 1e-6
+  EXPECT_EQ(r.onsets[0].mode.direction, Direction::forward);
 }

@@ -7,6 +7,7 @@
 #include <analysis/spectra/critical.hpp>
 #include <analysis/statics/buckling.hpp>
 #include <analysis/transient/linear_motion.hpp>
+#include <core/error.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -140,6 +141,142 @@ TEST(JointAnalyses, WeldedRotorHasTheSameCriticalSpeeds) {
     }
 }
 
+TEST(JointAnalyses, WhatStandsOnAWeldCountsForBothSides) {
+  // The correction of the masses asks how much of what a node carries is the elements' own.
+  const std::string disk =
+      "[[disk]]\nname = \"extra\"\nat = \"{}\"\nmass = \"6 kg\"\nIp = \"0.05 kg.m^2\"\nId = "
+      "\"0.03 kg.m^2\"\n";
+  const std::string support =
+      "[[bearing]]\nname = \"middle\"\nat = \"{}\"\ntype = \"linear\"\nkyy = \"1e6 N/m\"\nkzz = "
+      "\"1e6 N/m\"\nkrxx = \"500 N.m/rad\"\nkrr = \"800 N.m/rad\"\n";
+  for (const std::string& part : {disk, support})
+    for (const char* place : {"one:end", "two:start"}) {
+      const std::string there = fmt::format(fmt::runtime(part), place);
+      const DeckModel whole(rotor_deck(false) + there), cut(rotor_deck(true) + there);
+      Linearizer of_whole(whole.built.system, whole.running()),
+          of_cut(cut.built.system, cut.running());
+      ModesOptions o;
+      o.count = 12;
+      const auto a = whirl_modes(of_whole, 3000 * rpm, o), b = whirl_modes(of_cut, 3000 * rpm, o);
+      ASSERT_EQ(a.size(), 12U);
+      ASSERT_EQ(b.size(), 12U);
+      for (std::size_t k = 0; k < a.size(); ++k)
+        EXPECT_NEAR(b[k].frequency, a[k].frequency, 1e-9 * a[k].frequency) << place << " " << k;
+    }
+}
+
+TEST(JointAnalyses, LinesOnABallKeepTheirSpeeds) {
+  // The second line spins faster by 5e-4 and by twice that: what gyroscopic couples do to a frequency
+  // is proportional to it. A weld takes speeds that differ by rounding for one.
+  const auto rotor = [](const char* joint, double ratio) {
+    std::string deck = rotor_deck(true);
+    deck.replace(deck.find("kind = \"rigid\""), 14, joint);
+    deck.insert(deck.find("origin"), fmt::format("speed_ratio = {:.17g}\n", ratio));
+    return DeckModel(deck +
+                     "[[bearing]]\nname = \"tilt\"\nat = \"two:start\"\ntype = \"linear\"\n"
+                     "krr = \"2e3 N.m/rad\"\n");
+  };
+  double f[3];
+  for (int k = 0; k < 3; ++k) {
+    const double ratio = 1 + 5e-4 * k;
+    const DeckModel m = rotor("kind = \"spherical\"", ratio);
+    EXPECT_EQ(SteadySystem(m.built.system, m.running()).ratio(1), ratio);
+    Linearizer linear(m.built.system, m.running());
+    ModesOptions o;
+    o.count = 4;
+    o.motion = Motion::lateral;
+    f[k] = whirl_modes(linear, 12000 * rpm, o).back().frequency;
+  }
+  EXPECT_GT(std::abs(f[1] - f[0]), 1e-7 * f[0]);
+  EXPECT_NEAR((f[2] - f[0]) / (f[1] - f[0]), 2.0, 0.01);
+  const DeckModel welded = rotor("kind = \"rigid\"", 1 + 1e-7);
+  EXPECT_EQ(SteadySystem(welded.built.system, welded.running()).ratio(1), 1.0);
+}
+
+TEST(JointAnalyses, SplinesAndFlexibleCouplingsTurnSteadily) {
+  // A slide along the axis leaves bending and twist those of the weld and gives a rigid body mode along
+  // it; a hinge along the axis leaves bending and axial motion, and puts its spring into the twist.
+  const auto rotor = [](const std::string& joint) {
+    std::string deck = rotor_deck(true);
+    deck.replace(deck.find("kind = \"rigid\""), 14, joint);
+    return DeckModel(deck);
+  };
+  const auto modes = [](const DeckModel& m, Motion motion) {
+    Linearizer linear(m.built.system, m.running());
+    ModesOptions o;
+    o.count = 4;
+    o.motion = motion;
+    std::vector<double> out;
+    for (const WhirlMode& x : whirl_modes(linear, 9000 * rpm, o))
+      out.push_back(x.frequency);
+    return out;
+  };
+  const DeckModel weld(rotor_deck(true)),
+      spline(rotor("kind = \"slider\"\naxis = [1, 0, 0]\nstiffness = \"2e5 N/m\"")),
+      coupling(rotor("kind = \"hinge\"\naxis = [1, 0, 0]\nstiffness = \"3e3 N.m/rad\""));
+  const auto same = [&](const DeckModel& m, Motion motion) {
+    const std::vector<double> a = modes(weld, motion), b = modes(m, motion);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k)
+      EXPECT_NEAR(a[k], b[k], 1e-9 * a[k]) << k;
+  };
+  same(spline, Motion::lateral);
+  same(spline, Motion::torsional);
+  same(coupling, Motion::lateral);
+  same(coupling, Motion::axial);
+  // two rigid parts on a soft spring: the first with its thrust bearing of 1e7 N/m, the second alone
+  const double second = 2.0 + 8000 * pi / 4 * 4e-4 * 0.4;
+  const double along = std::sqrt(1 / (1 / 2e5 + 1 / 1e7) / second);
+  EXPECT_NEAR(modes(spline, Motion::axial)[0], along, 0.01 * along);
+  const double G = 80e9, J = pi / 32 * std::pow(0.02, 4), polar = 8000 * J;
+  const double left = 0.02 + polar * 0.5, right = 0.02 + polar * 0.4,
+               soft = 1 / (0.2 / (G * J) + 1 / 3e3 + 0.4 / (G * J));
+  const double twist = std::sqrt(soft * (1 / left + 1 / right));
+  EXPECT_NEAR(modes(coupling, Motion::torsional)[0], twist, 0.02 * twist);
+  const DeckModel hinge(rotor("kind = \"hinge\"\naxis = [0, 1, 0]\nstiffness = \"3e3 N.m/rad\""));
+  try {
+    modes(hinge, Motion::all);
+    ADD_FAILURE() << "a hinge across the axis has no constant matrices";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.diagnostics().front().code, "E41");
+    EXPECT_NE(e.diagnostics().front().message.find("have no constant matrices"), std::string::npos);
+  }
+}
+
+TEST(JointAnalyses, AWeldAtARigidHubTurnsAsOne) {
+  // The joint stands at the end of a rigid stretch, an arm away from the node.
+  const auto rotor = [](bool cut) {
+    std::string deck = rotor_deck(cut);
+    const std::string hub =
+        "[[shaft.section]]\nname = \"hub\"\nlength = \"60 mm\"\nod = \"80 mm\"\nrigid = true\n";
+    deck.insert(cut ? deck.find("[[shaft]]\nname = \"rest\"")
+                    : deck.find("[[shaft.section]]\nname = \"two\""),
+                hub);
+    if (cut) {
+      deck.replace(deck.find("0.5 m"), 5, "0.56 m");
+      deck.replace(deck.find("to = \"one:end\""), 14, "to = \"hub:end\"");
+    }
+    return DeckModel(deck);
+  };
+  const auto modes = [](const DeckModel& m) {
+    Linearizer linear(m.built.system, m.running());
+    ModesOptions o;
+    o.count = 12;
+    std::vector<double> out;
+    for (const WhirlMode& x : whirl_modes(linear, 6000 * rpm, o))
+      out.push_back(x.frequency);
+    return out;
+  };
+  const std::vector<double> a = modes(rotor(false)), b = modes(rotor(true));
+  ASSERT_EQ(a.size(), b.size());
+  double worst = 0;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    worst = std::max(worst, std::abs(b[k] / a[k] - 1));
+  std::printf("weld at a rigid hub: %.1e\n", worst);
+  // the inertia of the hub counts about its own node, here one side of it, there the other
+  EXPECT_LT(worst, 1e-4);
+}
+
 TEST(JointAnalyses, WeldedRotorTwistsAsOne) {
   Rotors r;
   ModesOptions o;
@@ -182,6 +319,38 @@ TEST(JointAnalyses, WeldedRotorMovesLinearlyAsOne) {
   EXPECT_GT(size, 1e-9);
   EXPECT_LT(worst, 1e-8 * size);
   EXPECT_NEAR(a.total_phi(0, 0), b.total_phi(last_node(r.cut, 1), 1), 1e-6);
+}
+
+TEST(JointAnalyses, LoadsOfJointsInLinearMotion) {
+  // Those of the general model at the same motion, but for its square (here 1e-5 of them).
+  const DeckModel m(rotor_deck(true));
+  const system::System& s = m.built.system;
+  const double Omega = 3000 * rpm;
+  system::State start = s.make_state();
+  SteadySystem(s, m.running()).set_rates(Omega, start.v);
+  s.follow(start);
+  LinearMotion small(s, m.running(), Omega, start);
+  small.take_joint_loads();
+  TransientOptions o;
+  o.integrator.tolerance = 1e-9;
+  o.integrator.t_end = 0.05;
+  o.integrator.dt_fixed = 1e-4;
+  o.method = "radau5";
+  const TransientResult x = run_transient(small, start, o, {});
+  ASSERT_EQ(x.reason, StopReason::end_time) << x.detail;
+  VecX linear(s.size()), general(s.size());
+  ASSERT_TRUE(small.residual(x.end.t, x.end.q, x.end.v, x.end.a, linear));
+  system::SystemProblem all(s);
+  all.frames = x.end.frames;
+  ASSERT_TRUE(all.residual(x.end.t, x.end.q, x.end.v, x.end.a, general));
+  const Index b = 6 * s.followers()[0].node;
+  for (const Index part : {b, b + 3}) {  // force, moment
+    const Vec3 load = general.segment<3>(part);
+    std::printf("load of the weld: %.3e, apart %.1e\n", load.norm(),
+                (linear.segment<3>(part) - load).norm());
+    EXPECT_GT(load.norm(), part == b ? 1e-4 : 1e-5);
+    EXPECT_LT((linear.segment<3>(part) - load).norm(), 1e-4 * load.norm());
+  }
 }
 
 TEST(JointAnalyses, WeldedColumnBucklesAsOne) {

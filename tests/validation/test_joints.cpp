@@ -396,6 +396,75 @@ moment = ["0 N.m", "0 N.m", "0.1 N.m"]
   }
 }
 
+// Half of it, held in the plane of symmetry, followed along the branch: it turns over about the line of
+// its feet, bends and twists, and is back where it was after one revolution, under the opposite moment.
+TEST(Joints, HingedRightAngleFrameGoesRoundOnce) {
+  Record record("Hinged right-angle frame of strips, one revolution after buckling",
+                "J. C. Simo, L. Vu-Quoc 1986, doi 10.1016/0045-7825(86)90079-4: back in the first "
+                "place after a "
+                "whole turn, the moment reversed: -622.2 N mm");
+  const double side = 0.24 * std::sqrt(0.5);
+  const std::string strip =
+      "general = { A = \"18 mm^2\", Iy = \"0.54 mm^4\", Iz = \"1350 mm^4\", J = \"2.16 mm^4\", "
+      "kappa_y = 0.8333333333333333, kappa_z = 0.8333333333333333 }";
+  const auto carriage = [](const char* name, const Vec3& at) {
+    return fmt::format(
+        "[[shaft]]\nname = \"{0}\"\nmaterial = \"m\"\nrotating = false\norigin = [\"{1:.17g} m\", "
+        "\"{2:.17g} m\", \"0 m\"]\n[[shaft.section]]\nname = \"{0}1\"\nlength = \"10 mm\"\nod = "
+        "\"10 "
+        "mm\"\nrigid = true\n",
+        name, at.x(), at.y());
+  };
+  const auto joint = [](const char* name, const char* kind, const char* at, const char* to,
+                        const char* axis) {
+    return fmt::format("[[joint]]\nname = \"{}\"\nkind = \"{}\"\nat = \"{}\"\n{}axis = {}\n", name,
+                       kind, at, *to ? fmt::format("to = \"{}\"\n", to) : "", axis);
+  };
+  for (const int n : {8, 16}) {
+    std::string deck = head;
+    deck.replace(deck.find("200 GPa"), 7, "71.24 GPa");
+    deck.replace(deck.find("80 GPa"), 6, "71.24 GPa / 2.62");
+    const Vec3 top(side, side, 0);
+    deck += bar_line("leg", Vec3::Zero(), top, n, strip) + carriage("foot", Vec3::Zero()) +
+            carriage("low", top) + carriage("high", top) +
+            joint("rail", "slider", "foot1:start", "", "[1, 0, 0]") +
+            joint("pin", "hinge", "leg1:start", "foot1:start", "[0, 0, 1]") +
+            joint("y", "slider", "low1:start", "", "[0, 1, 0]") +
+            joint("z", "slider", "high1:start", "low1:start", "[0, 0, 1]") +
+            joint("apex", "hinge", "leg1:end", "high1:start", "[1, 0, 0]") +
+            "[[load]]\nat = \"leg1:start\"\nmoment = [\"0 N.m\", \"0 N.m\", \"-0.1 N.m\"]\n";
+    const DeckModel m(deck);
+    SteadySystem running(m.built.system, m.running());
+    LoadPathOptions o;
+    o.max_points = 1000;
+    o.last_load = 31.1;
+    o.steps = 40;
+    o.branch = 1;
+    const Index apex = last_node(m, 0), turn = m.built.joints[4].angles[0];
+    double least = 0, last_z = 0, last_load = 0, back_load = 0, angle = 0;
+    follow_load_path(running, 0.0, running.system().make_state(), o, [&](const LoadPathPoint& p) {
+      const double z = p.state->q[6 * apex + 2];
+      angle = p.state->q[6 * turn];
+      least = std::min(least, p.state->q[6 * apex + 1]);
+      // back in the plane, after it has been far below
+      if (std::abs(angle) > 1.5 * pi && z * last_z < 0) {
+        back_load = last_load + (p.load - last_load) * last_z / (last_z - z);
+        return false;
+      }
+      last_z = z;
+      last_load = p.load;
+      return true;
+    });
+    std::printf("half frame, %d elements: back at %.3f N mm, turned by %.5f, lowest %.5f m\n", n,
+                100 * back_load, angle, least);
+    EXPECT_LT(least, -0.35);
+    record.check(fmt::format("{} elements: moment where it is back in its plane", n), "N mm",
+                 100 * back_load, -622.2, 0.6);
+    record.check(fmt::format("{} elements: turn of the apex", n), "rad", std::abs(angle), two_pi,
+                 0.02);
+  }
+}
+
 namespace {
 
 /// What building the deck complains about.
@@ -441,4 +510,36 @@ TEST(Joints, WhatLocksOrIsHeldTwiceIsNamed) {
                       "directions = [\"y\"]\n")
                 .substr(0, 3),
             "E40");
+}
+
+// Lines on joints that nothing holds are one free part, which no line of it alone is.
+TEST(Joints, FreePartsAreNamedTogether) {
+  const auto message = [](const std::string& support) {
+    std::string heavy = head;
+    heavy.replace(heavy.find("\"0 m/s^2\""), 9, "\"10 m/s^2\"");
+    const DeckModel m(heavy + bar_line("beam", Vec3::Zero(), Vec3(1, 0, 0), 2, "od = \"20 mm\"") +
+                      bar_line("post", Vec3(1, 0, 0), Vec3(1, 0, -0.5), 2, "od = \"20 mm\"") +
+                      "[[joint]]\nname = \"corner\"\nkind = \"rigid\"\nat = \"post1:start\"\nto = "
+                      "\"beam1:end\"\n" +
+                      support);
+    SteadySystem running(m.built.system, m.running());
+    EquilibriumSolver solver(running);
+    try {
+      solver.solve(0.0);
+    } catch (const Error& e) {
+      return e.diagnostics().front().code + ": " + e.diagnostics().front().message;
+    }
+    return std::string();
+  };
+  const std::string both = " of shafts 'beam' and 'post' on their joints";
+  EXPECT_EQ(
+      message("").find("E75: nothing resists axial motion" + both + ", nor lateral motion along y" +
+                       both + ", nor lateral motion along z" + both + " (at 0"),
+      0U)
+      << message("");
+  const std::string y_alone = message(
+      "[[bearing]]\nname = \"foot\"\nat = \"post1:end\"\ntype = \"rigid\"\ndirections = "
+      "[\"x\", \"z\", \"rx\", \"ry\", \"rz\"]\n");
+  EXPECT_EQ(y_alone.find("E75: nothing resists lateral motion along y" + both + " (at 0"), 0U)
+      << y_alone;
 }

@@ -9,6 +9,7 @@
 #include "record.hpp"
 #include "static_model.hpp"
 
+#include <analysis/spectra/whirl_modes.hpp>
 #include <meshes/mass_properties.hpp>
 #include <meshes/scene.hpp>
 
@@ -239,4 +240,45 @@ Id = "0.01 kg.m^2"
     far = std::max(far, std::abs(std::hypot(std::hypot(x.x(), x.y()) - R, x.z()) - d / 2));
   }
   EXPECT_LT(far, 1e-5);  // cubic between the nodes of 15 degrees: R phi^4/384 is 6e-6
+}
+
+TEST(PathDecks, AFreeFrameIsHeldNowhere) {
+  // Modes about the drawing of a right-angle frame that nothing supports, against the same frame on a
+  // spring of 1 N/m along x: held at a node along x its first frequency would be 10 % lower.
+  const auto modes = [](const std::string& support) {
+    const DeckModel m(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "frame"
+material = "steel"
+rotating = false
+path = [{ to = ["600 mm", "0 mm", "0 mm"] }, { to = ["600 mm", "400 mm", "0 mm"] }]
+columns = ["name", "length[mm]", "od[mm]", "min_elements"]
+rows = [["line", 1000, 20, 10]]
+)" + support + R"([[step]]
+name = "m"
+type = "modal"
+about = "undeformed"
+)");
+    EXPECT_TRUE(m.built.held.empty());
+    analysis::Linearizer linear(m.built.system, m.running());
+    linear.stay_undeformed();
+    analysis::ModesOptions o;
+    o.count = 8;
+    std::vector<double> out;
+    for (const analysis::WhirlMode& mode : analysis::whirl_modes(linear, 0.0, o))
+      if (mode.frequency > two_pi) out.push_back(mode.frequency);
+    return out;
+  };
+  const std::vector<double> free = modes(""), soft = modes(R"([[bearing]]
+name = "soft"
+at = "line:start"
+type = "linear"
+kxx = "1 N/m"
+)");
+  ASSERT_GE(free.size(), 6u);
+  ASSERT_GE(soft.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_NEAR(free[k], soft[k], 1e-5 * soft[k]) << k;
 }

@@ -228,3 +228,50 @@ TEST(StripFrame, BranchAtTheBifurcation) {
   o.branch = 1;
   EXPECT_EQ(none.follow(o).end, LoadPathEnd::no_branch);
 }
+
+// The perfect frame through its bifurcation to five times the critical load, to either side.
+TEST(StripFrame, BranchToFiveTimesTheCriticalLoad) {
+  Record record(
+      "Strip frame on its branch to five times the critical load",
+      "exact shear-deformable rod by shooting; the perfect frame, force in its plane alone");
+  const double load = 5 * 1.08752;
+  const Vec3 force(load, 0, 0);
+  std::vector<double> error, energy;
+  Vec3 exact = Vec3::Zero();
+  for (const int n : {64, 32, 16}) {
+    Frame f(n, 0.0);
+    LoadPathOptions o;
+    o.last_load = load;
+    o.steps = 30;
+    o.branch = n == 32 ? -1 : 1;
+    const LoadPathResult r = f.follow(o);
+    ASSERT_EQ(r.end, LoadPathEnd::reached) << describe(r);
+    EXPECT_EQ(r.branched_at, 0);
+    EXPECT_TRUE(r.tangent.stable());
+    Vec3 tip = Vec3(leg, -leg, 0) + r.last.state.q.segment<3>(6 * f.tip());
+    EXPECT_GT(std::abs(tip.z()), 0.015);  // the far leg has turned over: beyond its largest
+    tip.z() = std::abs(tip.z());          // the sides are mirror images
+    if (error.empty()) {
+      exact = exact_tip(force, tip, 4000);
+      EXPECT_LT((exact - exact_tip(force, tip, 2000)).norm(), 1e-10);
+    }
+    error.push_back((tip - exact).norm());
+    const system::System& s = f.model.built.system;
+    system::Workspace w = s.make_workspace();
+    const system::State& x = r.last.state;
+    ASSERT_TRUE(
+        s.evaluate_nodes(w, x.frames, 0.0, x.q, VecX::Zero(s.size()), VecX::Zero(s.size())));
+    energy.push_back(s.energy(w).elastic);
+    record.below(fmt::format("{} elements a leg: distance of the tip from the exact place", n),
+                 "of a leg", error.back() / leg, 4e-4 * std::pow(16.0 / n, 3.8));
+  }
+  const double of_place[] = {std::log2(error[2] / error[1]), std::log2(error[1] / error[0])},
+               of_energy = std::log2((energy[2] - energy[1]) / (energy[1] - energy[0]));
+  std::printf(
+      "five times the critical load: errors %.3e %.3e %.3e m, orders %.2f %.2f; energy %.9e "
+      "J, order %.2f; tip %.6f %.6f %.6f\n",
+      error[2], error[1], error[0], of_place[0], of_place[1], energy[0], of_energy, exact.x(),
+      exact.y(), exact.z());
+  EXPECT_GT(of_place[1], 3.5);
+  EXPECT_GT(of_energy, 3.5);
+}

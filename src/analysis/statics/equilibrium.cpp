@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace whirl::analysis {
 
@@ -157,45 +158,94 @@ void EquilibriumSolver::find_spin_holds(const system::State& s, double Omega) {
     group_[at(l)] = motions.root(l);
 }
 
-std::string EquilibriumSolver::name_motion(Index singular) const {
-  // A line that K lets go as a whole, else the unknown at which elimination found nothing left.
+bool EquilibriumSolver::resists(const VecX& e) const {
   const system::System& sys = running_.system();
   const auto& start = sys.pattern().row_start();
   const auto& cols = sys.pattern().cols();
+  for (Index i = 0; i < sys.nodes(); ++i) {
+    Vector<6> sum = Vector<6>::Zero(), size = sum;
+    for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b) {
+      const auto x = e.segment<6>(6 * cols[at(b)]);
+      sum += matrices_.K.block(b) * x;
+      size += matrices_.K.block(b).cwiseAbs() * x;
+    }
+    // forces against forces, moments against moments: small couplings are not rounding of each
+    // other
+    const double force = size.head<3>().maxCoeff(), moment = size.tail<3>().maxCoeff();
+    for (Index k = 0; k < 6; ++k)
+      if (free_[at(6 * i + k)] && std::abs(sum[k]) > 1e-9 * (k < 3 ? force : moment)) return true;
+  }
+  return false;
+}
+
+std::string EquilibriumSolver::free_motions(std::span<const Index> part) const {
+  const system::System& sys = running_.system();
   constexpr const char* motion[4] = {"axial motion", "lateral motion along y",
                                      "lateral motion along z", "turning about its axis"};
+  std::string name;
+  for (std::size_t k = 0; k < part.size(); ++k)
+    name += fmt::format("{}'{}'",
+                        k == 0                 ? (part.size() > 1 ? "shafts " : "shaft ")
+                        : k + 1 == part.size() ? " and "
+                                               : ", ",
+                        sys.line_name(part[k]));
+  if (part.size() > 1) name += " on their joints";
   std::string free;
-  VecX e(sys.size());
+  for (int c = 0; c < (part.size() > 1 ? 3 : 4); ++c) {
+    VecX e = VecX::Zero(sys.size());
+    for (Index i = 0; i < sys.nodes(); ++i)
+      if (const Index k = 6 * i + c;
+          std::find(part.begin(), part.end(), sys.node(i).line) != part.end() &&
+          !sys.node(i).scalar && free_[at(k)])
+        e[k] = 1.0;
+    if (!e.isZero(0.0) && !resists(e))
+      free += fmt::format("{}{} of {}", free.empty() ? "" : ", nor ", motion[c], name);
+  }
+  return free;
+}
+
+std::vector<std::vector<Index>> EquilibriumSolver::jointed_parts() const {
+  const system::System& sys = running_.system();
+  std::vector<Index> root(at(sys.lines()));
+  std::iota(root.begin(), root.end(), Index{0});
+  const auto root_of = [&](Index l) {
+    while (root[at(l)] != l)
+      l = root[at(l)];
+    return l;
+  };
+  for (std::size_t k = 0; k < sys.followers().count(); ++k) {
+    const system::FollowerDef& f = sys.followers()[k];
+    root[at(root_of(sys.node(f.node).line))] = root_of(sys.node(f.parent).line);
+  }
+  std::vector<unsigned char> placed(at(sys.lines()),
+                                    0);  // not the lines of coordinates and crosses
+  for (Index i = 0; i < sys.nodes(); ++i) {
+    const system::FollowerDef* f = sys.followers().find(i);
+    const bool moves =
+        f ? !f->between
+          : std::find(&free_[at(6 * i)], &free_[at(6 * i)] + 6, 1) != &free_[at(6 * i)] + 6;
+    if (!sys.node(i).scalar && moves) placed[at(sys.node(i).line)] = 1;
+  }
+  std::vector<std::vector<Index>> parts(at(sys.lines()));
   for (Index l = 0; l < sys.lines(); ++l)
-    for (int c = 0; c < 4; ++c) {
-      e.setZero();
-      bool any = false;
-      for (Index i = 0; i < sys.nodes(); ++i)
-        if (const Index k = 6 * i + c;
-            sys.node(i).line == l && !sys.node(i).scalar && free_[at(k)]) {
-          e[k] = 1.0;
-          any = true;
-        }
-      if (!any) continue;
-      bool resisted = false;
-      for (Index i = 0; i < sys.nodes() && !resisted; ++i) {
-        Vector<6> sum = Vector<6>::Zero(), size = sum;
-        for (Index b = start[at(i)]; b < start[at(i) + 1]; ++b) {
-          const auto x = e.segment<6>(6 * cols[at(b)]);
-          sum += matrices_.K.block(b) * x;
-          size += matrices_.K.block(b).cwiseAbs() * x;
-        }
-        // forces against forces, moments against moments: small couplings are not rounding of each
-        // other
-        const double force = size.head<3>().maxCoeff(), moment = size.tail<3>().maxCoeff();
-        for (Index k = 0; k < 6; ++k)
-          resisted = resisted ||
-                     (free_[at(6 * i + k)] && std::abs(sum[k]) > 1e-9 * (k < 3 ? force : moment));
-      }
-      if (!resisted)
-        free += fmt::format("{}{} of shaft '{}'", free.empty() ? "" : ", nor ", motion[c],
-                            sys.line_name(l));
-    }
+    if (placed[at(l)]) parts[at(root_of(l))].push_back(l);
+  std::erase_if(parts, [](const auto& p) { return p.size() < 2; });
+  return parts;
+}
+
+std::string EquilibriumSolver::name_motion(Index singular) const {
+  // A line that K lets go as a whole, or lines on joints together, else the unknown at which
+  // elimination found nothing left.
+  const system::System& sys = running_.system();
+  std::string free;
+  const auto add = [&free](const std::string& more) {
+    if (!more.empty()) free += (free.empty() ? "" : ", nor ") + more;
+  };
+  for (Index l = 0; l < sys.lines(); ++l)
+    add(free_motions({&l, 1}));
+  if (free.empty())
+    for (const std::vector<Index>& part : jointed_parts())
+      add(free_motions(part));
   if (!free.empty()) return "nothing resists " + free;
   if (singular < 0) return "the stiffness matrix is singular";
   return fmt::format("nothing resists a motion along {} of {}",

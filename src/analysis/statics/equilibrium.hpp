@@ -12,7 +12,9 @@
 #include <la/direct.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace whirl::analysis {
 
@@ -97,6 +99,13 @@ class EquilibriumSolver {
   /// failure.
   bool load_in_steps(double Omega, double t, Equilibrium& out);
   std::string name_motion(Index singular) const;
+  /// Which translations along x, y, z, and of one line which turning, K does not resist, in words;
+  /// part: lines that move together.
+  std::string free_motions(std::span<const Index> part) const;
+  /// Lines that joints connect, where there are two and more.
+  std::vector<std::vector<Index>> jointed_parts() const;
+  /// K as it stands resists the motion e of the free unknowns.
+  bool resists(const VecX& e) const;
   /// Where supports have gaps nothing resists at first: each line is moved along the force on it
   /// until something does.
   Outcome close_gaps(double Omega, system::State& s, int& iterations);

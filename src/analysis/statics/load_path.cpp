@@ -85,9 +85,18 @@ class Loaded final : public la::ContinuationProblem {
     const system::System& s = running_.system();
     for (Index i = 0; i < s.nodes(); ++i)
       if (!s.node(i).scalar && q.segment<2>(6 * i + 4).norm() >= rotation::chart_limit)
-        return fmt::format("chart limit at {}: its section is tilted by pi from its axis",
-                           s.node(i).name);
+        return fmt::format("chart limit at {}: its section is tilted by pi from its axis{}",
+                           s.node(i).name, holds_rotation(i) ? hinges_instead : "");
     return "the next state lies outside the range of an element";
+  }
+  static constexpr const char* hinges_instead =
+      ", and a support that holds some of its rotations keeps that axis (a [[joint]] of kind "
+      "hinge, "
+      "slider or universal has no such limit)";
+  bool holds_rotation(Index node) const {
+    const auto active = running_.system().active().subspan(at(6 * node + 3), 3);
+    return !running_.system().followers().find(node) &&
+           std::find(active.begin(), active.end(), 0) != active.end();
   }
   void mask(VecX& x) const {
     for (Index k = 0; k < x.size(); ++k)

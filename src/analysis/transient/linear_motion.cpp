@@ -93,6 +93,37 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
   find_changing(start.t);
 }
 
+void LinearMotion::take_joint_loads() {
+  const system::Followers& followers = system().followers();
+  const auto& terms = system().terms();
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    std::vector<Index> touched;
+    terms[k]->list_nodes(touched);
+    if (std::any_of(touched.begin(), touched.end(), [&](Index i) { return followers.find(i); }))
+      joined_.push_back(k);
+  }
+  steady_q_ = steady_v_ = plus_ = minus_ = VecX::Zero(system().size());
+}
+
+bool LinearMotion::add_joint_loads(double t, time::CRef a, time::Ref r) {
+  // so small a part of the motion that its cube is nothing, and the difference still exact to 1e-8
+  double size = 0;
+  for (Index i = 0; i < system().nodes(); ++i)
+    size = std::max(size, q_.segment<6>(6 * i).cwiseAbs().maxCoeff());
+  const double h = size > 0 ? std::min(1e-5 / size, 1e3) : 1.0;
+  const auto loads_at = [&](double part, VecX& out) {
+    return system().residual(steady_, frames, t, steady_q_ + part * q_, steady_v_ + part * v_,
+                             part * a, out, &joined_);
+  };
+  if (!loads_at(h, plus_) || !loads_at(-h, minus_)) return false;
+  const system::Followers& followers = system().followers();
+  for (std::size_t k = 0; k < followers.count(); ++k) {
+    const Index n = followers[k].pinned ? 3 : 6, first = 6 * followers[k].node;
+    r.segment(first, n) += (plus_.segment(first, n) - minus_.segment(first, n)) / (2.0 * h);
+  }
+  return true;
+}
+
 void LinearMotion::find_changing(double t) {
   // A term is constant when it sees neither the angles of the rotor nor the time, nor the weight
   // where the base accelerates.
@@ -164,8 +195,13 @@ bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, 
     }
   if (!system().residual(steady_, frames, t, q_, v_, a_, r, &changing_)) return false;
   r += constant_;
+  if (!joined_.empty()) {
+    steady_q_ = q_;
+    steady_v_ = v_;
+  }
   q_ = q - q_;
   v_ = v - v_;
+  if (!joined_.empty() && !add_joint_loads(t, a, r)) return false;
   const la::MCK& m = matrices();
   m.M.add_multiply(1.0, a, r);
   m.C.add_multiply(1.0, v_, r);

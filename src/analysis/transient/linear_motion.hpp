@@ -7,6 +7,10 @@
 // is exact. Held unknowns follow their laws. What is left out is of second order in the motion:
 // with tilts of 1e-3 the response is right to about 1e-6.
 //
+// Loads of joints stand in the residual at nodes that follow. Held there are no unknowns, so that the
+// matrices say nothing of them: they are those of the steady motion and what changes them to first order,
+// the central difference of the general model's along the small motion.
+//
 // q is the whole state, not the deviation: whatever reads a SystemProblem reads this one.
 //
 // Energies are those of the general model at this state, so that they can be compared with those of
@@ -29,6 +33,9 @@ class LinearMotion final : public system::SystemProblem {
   /// @throws Error as Linearizer::at; E39 when the matrices turn with a rotor.
   LinearMotion(const system::System& system, const SteadyRotation& running, double Omega,
                const system::State& start, EquilibriumOptions options = {});
+
+  /// From now on residuals hold the loads of joints, which costs some evaluations of what is joined.
+  void take_joint_loads();
 
   bool is_linear() const override { return true; }
   bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
@@ -54,6 +61,8 @@ class LinearMotion final : public system::SystemProblem {
 
  private:
   void find_changing(double t);
+  /// Adds what the motion q_, v_, a beside the steady one changes of the loads of joints.
+  bool add_joint_loads(double t, time::CRef a, time::Ref r);
   /// W, of what keeps the motion to these equations; nan outside the range of an element.
   double power_beside(time::CRef v, time::CRef residual);
 
@@ -63,6 +72,9 @@ class LinearMotion final : public system::SystemProblem {
   std::vector<double> rate_;          ///< per line, rad/s
   std::vector<unsigned char> turns_;  ///< per node: its phi turns
   VecX q_, v_, a_, general_;          // scratch
+  std::vector<std::size_t>
+      joined_;  ///< terms at nodes that follow, where their loads are asked for
+  VecX steady_q_, steady_v_, plus_, minus_;  // scratch of these
   system::Workspace steady_;
   std::vector<std::size_t>
       changing_;   ///< terms whose force changes along the steady motion; the others:

@@ -483,14 +483,6 @@ void describe(Visitor& v, model::Shaft& s) {
     v.error("E05", nullptr, fmt::format("shaft '{}' has no sections", s.name),
             "give columns and rows, file = \"shaft.csv\", or [[shaft.section]]");
   if (v.clean() && !s.path.empty()) check_path(v, s);
-  if (v.clean() && s.damping.loss_factor != 0)
-    for (const auto& x : s.sections)
-      if (x.is_full())
-        v.error("E26", "damping",
-                fmt::format("shaft '{}' has a loss factor, and section '{}' is coupled, twisted or "
-                            "off the line: the loss factor is for sections without that",
-                            s.name, x.name),
-                "viscous damping: internal_beta");
 }
 
 }  // namespace whirl::deck
