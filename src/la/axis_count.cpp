@@ -1,5 +1,6 @@
-#include <la/axis_count.hpp>
 #include <core/contract.hpp>
+#include <la/axis_count.hpp>
+#include <la/log_change.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +8,6 @@
 namespace whirl::la {
 
 namespace {
-
-constexpr double surprise = 0.4;      ///< of a change of log g, what the slopes do not explain
-constexpr double largest_step = 6.0;  ///< of log g between neighbouring samples
-constexpr double offset = 1e-4;       ///< of an interval: step of the slopes
-constexpr int deepest = 16;           ///< halvings of one interval
-constexpr Index most_factorizations = 20000;
-
-/// The argument of an increment of log g in (-pi, pi].
-Complex principal(Complex step) { return {step.real(), std::remainder(step.imag(), two_pi)}; }
 
 /// Change of arg(s - root) along the path from rho to i top. Principal values do not jump on it: s -
 /// root has no negative real part for roots of the left half plane, root - s none for those of the
@@ -65,8 +57,7 @@ Complex AxisCounter::point(double t) const {
   return {0.0, t};
 }
 
-bool AxisCounter::sample(double t, Sample& out) {
-  out.t = t;
+bool AxisCounter::log_g(double t, Complex& out) {
   const Complex s = point(t);
   const auto log_det = [&](const MCK& m, Complex& log) {
     ++factorizations_;
@@ -78,40 +69,7 @@ bool AxisCounter::sample(double t, Sample& out) {
   Complex here, held;
   if (!log_det(*problem_->held, held)) return false;
   if (!log_det(problem_->at(t < problem_->rho ? 0.0 : t), here)) return false;
-  out.log_g = here - held - log_of(s, problem_->known) + log_of(s, problem_->known_held);
-  return std::isfinite(std::abs(out.log_g));
-}
-
-bool AxisCounter::slope(const Sample& a, double towards, Complex& out) {
-  Sample beside;
-  const double step = offset * (towards - a.t);
-  if (!sample(a.t + step, beside)) return false;
-  out = principal(beside.log_g - a.log_g) / step;
-  return true;
-}
-
-bool AxisCounter::settle(const Sample& a, const Sample& b, Complex slope_a, Complex slope_b,
-                         int depth, Complex& change) {
-  Sample middle;
-  Complex slope_m;
-  if (factorizations_ > most_factorizations || !sample(0.5 * (a.t + b.t), middle)) return false;
-  if (!slope(middle, b.t, slope_m)) return false;
-  // the integrals of the parabola through the slopes, and what is left of the differences
-  const double h = (b.t - a.t) / 24.0;
-  const Complex first = h * (5.0 * slope_a + 8.0 * slope_m - slope_b);
-  const Complex second = h * (5.0 * slope_b + 8.0 * slope_m - slope_a);
-  const Complex rest_first = principal(middle.log_g - a.log_g - first);
-  const Complex rest_second = principal(b.log_g - middle.log_g - second);
-  const bool expected = std::max(std::abs(rest_first), std::abs(rest_second)) < surprise;
-  const bool moderate = std::max(std::abs(first), std::abs(second)) < largest_step;
-  if (expected && moderate) {
-    change = first + rest_first + second + rest_second;
-    return true;
-  }
-  Complex before, after;
-  if (depth == 0 || !settle(a, middle, slope_a, slope_m, depth - 1, before)) return false;
-  if (!settle(middle, b, slope_m, slope_b, depth - 1, after)) return false;
-  change = before + after;
+  out = here - held - log_of(s, problem_->known) + log_of(s, problem_->known_held);
   return true;
 }
 
@@ -127,15 +85,11 @@ AxisCount AxisCounter::count(const AxisProblem& problem) {
     if (w > problem.rho * (1.0 + 1e-9) && w < problem.top * (1.0 - 1e-9)) stations.push_back(w);
   stations.push_back(problem.top);
   double change = 0.0;
-  Sample a;
-  if (!sample(0.0, a)) return out;
+  LogChange path([this](double t, Complex& log) { return log_g(t, log); });
   for (std::size_t k = 1; k < stations.size(); ++k) {
-    Sample b;
-    Complex slope_a, slope_b, piece;
-    if (!sample(stations[k], b) || !slope(a, b.t, slope_a) || !slope(b, a.t, slope_b)) return out;
-    if (!settle(a, b, slope_a, slope_b, deepest, piece)) return out;
+    Complex piece;
+    if (!path.over(stations[k - 1], stations[k], piece)) return out;
     change += piece.imag();
-    a = b;
   }
   out.factorizations = factorizations_;
   change += turns_of(problem.known, problem.rho, problem.top) -

@@ -52,19 +52,10 @@ class AxisCounter {
   AxisCount count(const AxisProblem& problem);
 
  private:
-  struct Sample {
-    double t;
-    Complex log_g;
-  };
   /// s at t: on the arc for t < rho, i t beyond.
   Complex point(double t) const;
   /// log g with the known roots divided out; false: a matrix is singular there.
-  bool sample(double t, Sample& out);
-  /// d log g/dt at a sample, from the side of `towards`.
-  bool slope(const Sample& a, double towards, Complex& out);
-  /// Change of log g over [a, b], smooth inside; false: not settled.
-  bool settle(const Sample& a, const Sample& b, Complex slope_a, Complex slope_b, int depth,
-              Complex& change);
+  bool log_g(double t, Complex& out);
 
   BlockLu<Complex> lu_;
   const AxisProblem* problem_ = nullptr;

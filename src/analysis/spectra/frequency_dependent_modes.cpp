@@ -350,40 +350,41 @@ void OwnFrequency::search_above(const Matrices& at, Node top) {
          within(top.reach) + above() < wanted_.count)
     top = node(at, top.w, 1.5 * top.reach);
   std::stable_sort(top.modes.begin(), top.modes.end(), [](const la::Mode& a, const la::Mode& b) {
-    return std::abs(a.lambda) < std::abs(b.lambda);
+    return a.lambda.imag() < b.lambda.imag();
   });
   for (const la::Mode& m : top.modes) {
-    if (m.lambda.imag() < top.w ||
-        (wanted_.count > 0 ? m.lambda.imag() : std::abs(m.lambda)) > wanted_.max_frequency)
-      continue;
-    if (wanted_.count > 0 && within(std::abs(m.lambda)) >= wanted_.count) break;
+    if (m.lambda.imag() < top.w || m.lambda.imag() > wanted_.max_frequency) continue;
+    if (wanted_.count > 0 && within(m.lambda.imag()) >= wanted_.count) break;
     if (!held_ && m.lambda.imag() > top.w && feels_tables(at, m)) at(m.lambda.imag());  // an error
     add(m);
   }
 }
 
-Index OwnFrequency::within(double radius) const {
+Index OwnFrequency::within(double w) const {
   return std::count_if(found_.begin(), found_.end(),
-                       [&](const la::Mode& m) { return std::abs(m.lambda) <= radius; });
+                       [&](const la::Mode& m) { return m.lambda.imag() <= w; });
 }
 
-void OwnFrequency::add(const la::Mode& mode) {
+bool OwnFrequency::add_new(const la::Mode& mode, std::vector<la::Mode>& to) {
   // Two planes may have one frequency: new is what the vectors known there do not span.
   std::vector<const la::Mode*> close;
-  for (const la::Mode& k : found_)
+  for (const la::Mode& k : to)
     if (std::abs(k.lambda - mode.lambda) <= 1e-7 * std::abs(mode.lambda)) close.push_back(&k);
   if (!close.empty()) {
     MatXc a(mode.x.size(), static_cast<Index>(close.size()));
     for (std::size_t j = 0; j < close.size(); ++j)
       a.col(static_cast<Index>(j)) = close[j]->x.normalized();
-    if (la::ColumnSpan<Complex>(a).outside(mode.x.normalized()).norm() < 0.05) return;
+    if (la::ColumnSpan<Complex>(a).outside(mode.x.normalized()).norm() < 0.05) return false;
   }
-  found_.push_back(mode);
-  found_.back().from = -1;
+  to.push_back(mode);
+  to.back().from = -1;
+  return true;
 }
 
-std::vector<la::Mode> OwnFrequency::solve(const Matrices& at) {
+std::vector<la::Mode> OwnFrequency::solve(const Matrices& at, bool certify) {
   found_.clear();
+  rising_.clear();
+  known_ = {};
   solved_ = 0;
   find_range(at);
   choose_rows(at);
@@ -404,21 +405,159 @@ std::vector<la::Mode> OwnFrequency::solve(const Matrices& at) {
     a = std::move(b);
   }
   if (!enough() && end < wanted_.max_frequency) search_above(at, std::move(a));
+  if (certify) complete(at);
 
-  const bool counted = wanted_.count > 0;
-  std::erase_if(found_, [&](const la::Mode& m) {
-    return (counted ? m.lambda.imag() : std::abs(m.lambda)) > wanted_.max_frequency;
-  });
-  if (counted && static_cast<Index>(found_.size()) > wanted_.count) {
-    std::stable_sort(found_.begin(), found_.end(), [](const la::Mode& x, const la::Mode& y) {
-      return std::abs(x.lambda) < std::abs(y.lambda);
-    });
-    found_.resize(entry(wanted_.count));
-  }
-  std::stable_sort(found_.begin(), found_.end(), [](const la::Mode& x, const la::Mode& y) {
+  const auto slower = [](const la::Mode& x, const la::Mode& y) {
     return x.lambda.imag() < y.lambda.imag();
-  });
+  };
+  std::erase_if(found_, [&](const la::Mode& m) { return m.lambda.imag() > wanted_.max_frequency; });
+  std::stable_sort(found_.begin(), found_.end(), slower);
+  if (wanted_.count > 0 && static_cast<Index>(found_.size()) > wanted_.count) {
+    const double first_left_out = found_[entry(wanted_.count)].lambda.imag();
+    found_.resize(entry(wanted_.count));
+    known_.top = std::min(known_.top, 0.5 * (first_left_out + found_.back().lambda.imag()));
+  }
   return found_;
+}
+
+double OwnFrequency::top_of_list(double share) const {
+  std::vector<double> w;
+  for (const la::Mode& m : found_)
+    w.push_back(m.lambda.imag());
+  std::sort(w.begin(), w.end());
+  const std::size_t wanted = entry(std::max<Index>(wanted_.count, 0));
+  const double limit = held_ ? infinity : highest_;
+  double top = wanted > 0 && w.size() >= wanted ? w[wanted - 1]
+               : std::isfinite(wanted_.max_frequency) ? wanted_.max_frequency
+               : w.empty()                             ? std::max(highest_, 1.0)
+                                                       : w.back();
+  top = std::min(top, limit);
+  // Into the next gap: of two planes with one frequency both or none are below.
+  for (auto above = std::upper_bound(w.begin(), w.end(), top * (1.0 - 1e-6));;) {
+    while (above != w.end() && *above <= top * (1.0 + 1e-6))
+      top = *above++;
+    const double next = above != w.end() ? *above : infinity;
+    if (next > top * (1.0 + 1e-6)) return std::min(limit, top + share * std::min(0.2 * top, next - top));
+  }
+}
+
+std::optional<la::WedgeCount> OwnFrequency::count_between(const Matrices& at, double low,
+                                                          double top) {
+  if (!counter_) counter_.emplace(pattern_, active_);
+  la::WedgeProblem p;
+  double last = nan;
+  const la::MCK* matrices = nullptr;
+  p.at = [&](Complex s) -> const la::MCK& {
+    if (const double w = std::clamp(s.imag(), low, top); w != last) {
+      matrices = &at(w);
+      last = w;
+    }
+    return *matrices;
+  };
+  p.low = low;
+  p.top = top;
+  p.reach = known_.reach;
+  p.stations = rows_;
+  for (const la::Mode& m : found_)
+    p.known.push_back(m.lambda);
+  for (const la::Mode& m : rising_)
+    p.rising.push_back(m.lambda);
+  const la::WedgeCount c = counter_->count(p);
+  known_.factorizations += c.factorizations;
+  if (!c.certain) return std::nullopt;
+  return c;
+}
+
+void OwnFrequency::complete(const Matrices& at) {
+  double slowest = infinity;
+  for (const la::Mode& m : found_)
+    if (m.lambda.imag() > 0.0) slowest = std::min(slowest, m.lambda.imag());
+  for (const double share : {0.5, 0.3, 0.7}) {
+    known_.reach = la::oscillating_reach * (1.0 - 0.2 * std::abs(share - 0.5));
+    known_.top = top_of_list(share);
+    known_.low = lowest_ > 0.0 ? lowest_ : share * 0.02 * std::min(slowest, known_.top);
+    if (!(known_.low < known_.top)) return;
+    const auto c = count_between(at, known_.low, known_.top);
+    if (!c) continue;
+    known_.counted = true;
+    const std::size_t before = found_.size();
+    known_.missing = c->unknown == 0 ? 0 : recover(at, known_.low, known_.top, c->unknown, 24);
+    known_.recovered = static_cast<Index>(found_.size() - before);
+    break;
+  }
+  for (const la::Mode& m : rising_)
+    known_.rising.push_back(m.lambda);
+}
+
+Index OwnFrequency::recover(const Matrices& at, double low, double top, Index missing, int depth) {
+  const bool last = depth == 0 || top - low < 1e-7 * top;
+  missing -= look_between(at, low, top, missing, last || depth % 4 == 0);
+  if (missing == 0) return 0;
+  if (!last)
+    for (const double share : {0.5, 0.37, 0.61}) {
+      const double middle = low + share * (top - low);
+      const auto lower = count_between(at, low, middle);
+      if (!lower) continue;
+      const Index above = missing - lower->unknown;
+      Index left = lower->unknown;
+      if (left != 0) left = recover(at, low, middle, left, depth - 1);
+      return left + (above == 0 ? 0 : recover(at, middle, top, above, depth - 1));
+    }
+  known_.where.emplace_back(0.0, 0.5 * (low + top));
+  return missing;
+}
+
+Index OwnFrequency::look_between(const Matrices& at, double low, double top, Index missing,
+                                 bool everywhere) {
+  const double w = 0.5 * (low + top);
+  la::ModeOptions near = wanted_;
+  near.count = 4 + 2 * std::abs(missing);
+  near.max_frequency = infinity;
+  near.real_roots = near.certify = near.growing = false;
+  Index found = 0;
+  for (const double side : {0.0, -0.3, -1.0, -2.5, 0.3, 1.0, 2.5}) {
+    near.shift = Complex(side * w, w);
+    for (const la::Mode& m : la::quadratic_modes(at(w), active_, near)) {
+      const auto r = land(at, {w, m}, low, top);
+      if (!r) continue;
+      const Complex l = r->at.mode.lambda;
+      if (!(low <= l.imag() && l.imag() <= top && std::abs(l.real()) <= known_.reach * l.imag()))
+        continue;
+      if (add_new(r->at.mode, r->rising ? rising_ : found_)) found += r->rising ? -1 : 1;
+    }
+    if (!everywhere || found == missing) return found;
+  }
+  return found;
+}
+
+std::optional<OwnFrequency::Root> OwnFrequency::land(const Matrices& at, Point p, double low,
+                                                     double top) {
+  std::optional<Point> below, above;  // the line, for a root that falls through it
+  double w0 = nan, f0 = nan;
+  for (int it = 0; it < 40; ++it) {
+    const double f = p.gap(), w = p.w;
+    if (std::abs(f) <= 1e-11 * std::abs(p.mode.lambda)) return Root{p, rises(at, p)};
+    (f > 0.0 ? above : below) = p;
+    if (above && below && above->w < below->w)
+      if (auto r = root(at, *above, *below)) return Root{r->at, rises(at, r->at)};
+    double next = std::isnan(w0) || f == f0 ? w + 0.5 * f : w - f * (w - w0) / (f - f0);
+    if (!(next >= low && next <= top)) next = w + f;
+    if (!(next >= low && next <= top)) return std::nullopt;
+    if (next == w) return Root{p, rises(at, p)};
+    w0 = w;
+    f0 = f;
+    const auto q = step(at, p, next);
+    if (!q) return std::nullopt;
+    p = *q;
+  }
+  return std::nullopt;
+}
+
+bool OwnFrequency::rises(const Matrices& at, const Point& root) {
+  const double h = 1e-7 * root.w;
+  const auto a = step(at, root, std::max(root.w - h, lowest_));
+  const auto b = step(at, root, held_ ? root.w + h : std::min(root.w + h, highest_));
+  return a && b && b->mode.lambda.imag() - a->mode.lambda.imag() > b->w - a->w;
 }
 
 Complex OwnFrequency::continued(const Matrices& at, const la::Mode& mode) {

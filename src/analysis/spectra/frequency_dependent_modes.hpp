@@ -12,13 +12,19 @@
 // Nodes: zero, those frequencies of the tables that straight lines between the others do not
 // replace to 1 % (of the largest entry there), and where the eigenvalues known so far end.
 //
-// Left out: roots at which Im lambda_k rises through the line, d Im lambda_k/dw > 1. The mass of a
-// motion seen through an undamped table is m - K'/(2 w), negative there. No passive support has
-// such a mode: where nothing is lost K falls with w (Foster's theorem). They come from poles of the
-// support that lie between two rows of its table or are heavily damped. Not found: two roots of one
-// branch closer together than 1/16 of the distance of two nodes.
+// The list is then counted by an independent method (la/wedge_count.hpp): roots at which Im lambda_k
+// falls through the line less those at which it rises. Where the count asks for more, the band is
+// divided, each part counted, and the eigenvalues nearest to the line in the middle of a part in
+// which some are missing are followed to it, until none is, or the part is too narrow to divide.
+//
+// Left out of the list: roots at which Im lambda_k rises through the line, d Im lambda_k/dw > 1. The
+// mass of a motion seen through an undamped table is m - K'/(2 w), negative there. No passive support
+// has such a mode where nothing is lost: K falls with w (Foster's theorem). They come from poles of
+// the support that lie between two rows of its table or are heavily damped. A falling root and a
+// rising one, both missing, cancel in the count.
 #pragma once
 #include <la/eigen.hpp>
+#include <la/wedge_count.hpp>
 #include <functional>
 
 namespace whirl::analysis {
@@ -33,10 +39,22 @@ class OwnFrequency {
   OwnFrequency(const la::BlockPattern& pattern, std::span<const unsigned char> active,
                const la::ModeOptions& wanted, std::vector<double> frequencies);
 
-  /// All modes that oscillate, ascending in frequency; with a count, those of least |lambda|.
+  /// All modes that oscillate, ascending in frequency; with a count, the first of them.
+  /// certify: counted (known()).
   /// @throws Error (E81): a mode wanted lies where a table does not reach (one that does not feel
   /// the tables may).
-  std::vector<la::Mode> solve(const Matrices& at);
+  std::vector<la::Mode> solve(const Matrices& at, bool certify = false);
+  /// What is known of the list of the last solve().
+  struct Known {
+    bool counted = false;          ///< the argument settled
+    Index missing = 0;             ///< falling roots less rising ones that were not found
+    double low = 0, top = 0;       ///< rad/s: band of the list
+    double reach = 0;              ///< |Re lambda| <= reach Im lambda
+    std::vector<Complex> where;    ///< middle of the narrowest parts where some are missing
+    std::vector<Complex> rising;   ///< rising roots met
+    Index factorizations = 0, recovered = 0;
+  };
+  const Known& known() const { return known_; }
   /// The mode near `start`, an eigenpair of a neighbouring problem. nullopt: lost.
   /// @throws Error (E81) as above.
   std::optional<la::Mode> settle(const Matrices& at, const la::Mode& start);
@@ -89,9 +107,24 @@ class OwnFrequency {
     bool rising;
   };
   std::optional<Root> root(const Matrices& at, Point low, Point high);
+  /// Counts found_ and looks for what is missing.
+  void complete(const Matrices& at);
+  /// A frequency above the modes wanted, in a gap between those found. share: of the gap.
+  double top_of_list(double share) const;
+  std::optional<la::WedgeCount> count_between(const Matrices& at, double low, double top);
+  /// Looks for roots missing between two frequencies. What is still missing.
+  Index recover(const Matrices& at, double low, double top, Index missing, int depth);
+  /// Follows eigenvalues near the line at the middle of a part, and adds the roots in that part.
+  /// Falling roots less rising ones it has found.
+  Index look_between(const Matrices& at, double low, double top, Index missing, bool everywhere);
+  /// The root that an eigenpair at `start` leads to without leaving [low, top].
+  std::optional<Root> land(const Matrices& at, Point start, double low, double top);
+  bool rises(const Matrices& at, const Point& root);
   bool feels_tables(const Matrices& at, const la::Mode& mode);
-  void add(const la::Mode& mode);
-  Index within(double radius) const;
+  bool add(const la::Mode& mode) { return add_new(mode, found_); }
+  static bool add_new(const la::Mode& mode, std::vector<la::Mode>& to);
+  /// Modes known of a frequency up to w.
+  Index within(double w) const;
 
   const la::BlockPattern& pattern_;
   std::vector<unsigned char> active_;
@@ -104,6 +137,9 @@ class OwnFrequency {
   std::optional<la::ModeSolver> scan_;
   Index scan_count_ = 0;
   std::vector<la::Mode> found_;
+  std::vector<la::Mode> rising_;
+  std::optional<la::WedgeCounter> counter_;
+  Known known_;
   Index solved_ = 0;
 };
 

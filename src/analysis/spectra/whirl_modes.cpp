@@ -328,21 +328,14 @@ void WhirlSolver::solve_by_frequency(double Omega) {
            : own_->reaches_zero(at) ? at(0.0)
                                     : matrices_at(Omega, Complex(0, nan));
   };
-  std::vector<la::Mode> modes = own_->solve(at);
+  std::vector<la::Mode> modes = own_->solve(at, options_.certify);
+  if (options_.certify) certificate_.take(own_->known());
   la::Certificate rest;
   if (options_.real_roots) {
     const la::Mode at_rest;
     for (const la::Mode& m : solver_.solve(own(at_rest)))
       if (m.lambda.imag() == 0.0) modes.push_back(m);
     rest = solver_.certificate();
-    const auto by_size = [](const la::Mode& a, const la::Mode& b) {
-      return std::abs(a.lambda) < std::abs(b.lambda);
-    };
-    std::stable_sort(modes.begin(), modes.end(), by_size);
-    Index oscillating = 0;
-    std::erase_if(modes, [&](const la::Mode& m) {
-      return options_.count > 0 && m.lambda.imag() != 0.0 && ++oscillating > options_.count;
-    });
     std::stable_sort(modes.begin(), modes.end(), [](const la::Mode& a, const la::Mode& b) {
       return a.lambda.imag() < b.lambda.imag();
     });
@@ -465,7 +458,7 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
         "followed to its own frequency)";
     solve_hysteretic(Omega);
   } else if (by_frequency()) {
-    certificate_.open = "supports depend on the frequency of each mode";
+    if (!options_.certify) certificate_.open = "not asked for";
     solve_by_frequency(Omega);
   } else {
     if (!options_.certify) certificate_.open = "not asked for";
@@ -491,25 +484,52 @@ std::string text_of(const SpectrumCertificate::Axis& a) {
 
 }  // namespace
 
+void SpectrumCertificate::take(const OwnFrequency::Known& k) {
+  list.counted = k.counted;
+  list.missing = k.missing;
+  list.radius = k.top;
+  list.reach = k.reach * k.top;
+  list.where = k.where;
+  list.factorizations = k.factorizations;
+  list.recovered = k.recovered;
+  by_frequency = ByFrequency{k.low, static_cast<Index>(k.rising.size())};
+}
+
 std::string SpectrumCertificate::text() const {
-  if (axis)
-    return text_of(*axis) +
-           "; that no decaying mode is missing cannot be certified on tables against frequency";
+  if (axis && !open.empty()) return text_of(*axis) + "; completeness not certified: " + open;
+  if (axis) return text_of(*axis) + "; " + text_of_list();
+  return text_of_list();
+}
+
+std::string SpectrumCertificate::text_of_list() const {
   if (!open.empty()) return "completeness not certified: " + open;
   const double top = to_hz(list.radius);
   if (!list.counted)
     return fmt::format("completeness not certified: the roots up to {:.5g} Hz could not be counted",
                        top);
-  const std::string band =
+  std::string band =
       fmt::format("all roots up to {:.5g} Hz and damping ratio {:.2g}", top, list.damping_ratio());
+  if (by_frequency)
+    band = fmt::format("all modes from {:.3g} to {:.5g} Hz and up to damping ratio {:.2g}",
+                       to_hz(by_frequency->low), top, list.damping_ratio());
   if (list.missing == 0 && list.taken_for_zero > 0)
     return band + fmt::format(
                       " counted and found; {} of them, within {:.2g} 1/s of zero, cannot be told "
                       "from zero and {} taken for free motion",
                       list.taken_for_zero, list.zeros_within,
                       list.taken_for_zero == 1 ? "is" : "are");
-  if (list.missing == 0) return band + " counted and found";
-  std::string out = fmt::format("INCOMPLETE: {} of {} not found", list.missing, band);
+  const std::string pairs =
+      by_frequency ? " (but pairs in which one branch of frequencies rises through the line along "
+                     "which tables are read, as no support does that loses nothing)" +
+                         (by_frequency->rising > 0
+                              ? fmt::format("; {} such rising roots are left out of the list",
+                                            by_frequency->rising)
+                              : std::string())
+                   : std::string();
+  if (list.missing == 0) return band + " counted and found" + pairs;
+  std::string out = list.missing > 0
+                        ? fmt::format("INCOMPLETE: {} of {} not found", list.missing, band)
+                        : fmt::format("IN DOUBT: {} more than the count of {}", -list.missing, band);
   for (const Complex z : list.where)
     out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", to_hz(z.imag()), z.real());
   return out;

@@ -76,7 +76,7 @@ struct SpectrumCertificate {
   double quiet_ratio = 0;
   /// Supports tabulated against frequency: growing roots counted along the imaginary axis, on which
   /// alone the tables say what the supports do (la/axis_count.hpp). It certifies that every growing
-  /// motion is in the list; that all decaying ones of a band are cannot be said.
+  /// motion is in the list; of the decaying ones ByFrequency says what is known.
   struct Axis {
     bool counted = false;  ///< the samples settle, and the problem at the tables' end is certified
     Index unknown = 0;     ///< growing roots beyond those found
@@ -86,6 +86,12 @@ struct SpectrumCertificate {
     bool certain() const { return counted && unknown == 0; }
   };
   std::optional<Axis> axis;
+  /// The same supports: `list` is what la/wedge_count.hpp says, of modes from `low` (rad/s) on.
+  struct ByFrequency {
+    double low = 0;
+    Index rising = 0;  ///< roots met at which a branch of frequencies rises; not in the list
+  };
+  std::optional<ByFrequency> by_frequency;
   bool complete() const { return open.empty() && list.complete(); }
   /// Every growing motion is in the list, at any frequency.
   bool stability_certain() const {
@@ -94,6 +100,10 @@ struct SpectrumCertificate {
   /// "every root up to 1234 Hz (damping ratio to 0.95) counted"; what is missing and where; or why
   /// not.
   std::string text() const;
+  void take(const OwnFrequency::Known& known);
+
+ private:
+  std::string text_of_list() const;
 };
 
 /// Modes at one speed: motions that do not oscillate first (when asked for), then by frequency.
