@@ -146,12 +146,12 @@ TEST_F(Sweep, RunsOfAFile) {
 }
 
 TEST_F(Sweep, DeckSaysWhatTheCommandLineDoesNot) {
-  std::ofstream(folder_ / "s.toml") << unbalanced_rotor << steps << R"([sweep]
+  std::ofstream(folder_ / "s.toml") << unbalanced_rotor << steps << R"deck([sweep]
 vary = ["disk.disk.mass=2kg:4kg:3", "bearing.A.kyy=uniform(1e6 N/m, 4e6 N/m)"]
 response = ["first=c_undamped:speed:1", "peak=r_response:P major:max"]
 samples = 4
 exceed = ["peak > 0"]
-)";
+)deck";
   ASSERT_EQ(whirl("sweep s.toml -o deck"), 0) << log_;
   ASSERT_EQ(whirl(std::string("sweep d.toml -o line") + asked), 0) << log_;
   EXPECT_EQ(read("deck/sweep.csv"), read("line/sweep.csv"));
@@ -164,7 +164,7 @@ exceed = ["peak > 0"]
 }
 
 TEST_F(Sweep, CorrelatedSensitiveAndLimitedKeysOfTheDeck) {
-  std::ofstream(folder_ / "s.toml") << unbalanced_rotor << steps << R"([sweep]
+  std::ofstream(folder_ / "s.toml") << unbalanced_rotor << steps << R"deck([sweep]
 vary = ["bearing.B.kyy=uniform(1e6 N/m, 4e6 N/m)", "bearing.A.kyy=uniform(1e6 N/m, 4e6 N/m)"]
 response = ["first=c_undamped:speed:1"]
 samples = 4
@@ -173,7 +173,7 @@ sampling = "random"
 correlation = ["bearing.A.kyy,bearing.B.kyy=0.999999"]
 worst = ["first:least:1"]
 limit = "100 s"
-)";
+)deck";
   ASSERT_EQ(whirl("sweep s.toml -o s"), 0) << log_;
   const Columns table(folder_ / "s/sweep.csv");
   for (const auto& row : table.rows)
