@@ -527,9 +527,9 @@ std::string SpectrumCertificate::text_of_list() const {
                               : std::string())
                    : std::string();
   if (list.missing == 0) return band + " counted and found" + pairs;
-  std::string out = list.missing > 0
-                        ? fmt::format("INCOMPLETE: {} of {} not found", list.missing, band)
-                        : fmt::format("IN DOUBT: {} more than the count of {}", -list.missing, band);
+  std::string out =
+      list.missing > 0 ? fmt::format("INCOMPLETE: {} of {} not found", list.missing, band)
+                       : fmt::format("IN DOUBT: {} more than the count of {}", -list.missing, band);
   for (const Complex z : list.where)
     out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", to_hz(z.imag()), z.real());
   return out;

@@ -125,6 +125,7 @@ void PeakTracker::look(StepAccess& s, int k) {
 
 void PeakTracker::step(StepAccess& s) {
   if (s.t1() < t_from_) return;
+  spin_known_ = false;
   // Four looks a step bracket a maximum; golden section finishes a new one.
   for (int k = 2; k < looks; k += 2)
     look(s, k);
@@ -182,7 +183,18 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
   if (!(best > peak.amplitude)) return;
   peak.amplitude = best;
   peak.time = time_of(s, where);
-  peak.speed = s.at(peak.time).node(reference_).spin();
+  peak.speed = spin_at(s, where);
+}
+
+double PeakTracker::spin_at(StepAccess& s, double k) {
+  for (int i = 0; i < spins && !spin_known_; ++i)
+    spin_[static_cast<std::size_t>(i)] = s.at(time_of(s, 2.0 * i)).node(reference_).spin();
+  spin_known_ = true;
+  const std::array<double, spins> w = lagrange<spins>(0.5 * k);
+  double spin = 0;
+  for (std::size_t i = 0; i < w.size(); ++i)
+    spin += w[i] * spin_[i];
+  return spin;
 }
 
 void PeakTracker::save(OutArchive& out) const {

@@ -125,12 +125,17 @@ class PeakTracker final : public Observer {
   }
   void look(StepAccess& s, int k);
   void refine(StepAccess& s, std::size_t point, double best, double where);
+  double spin_at(StepAccess& s, double k);
 
   std::vector<Point> points_;
   std::vector<Peak> peaks_;
   Index reference_;
   double t_from_;
   std::array<std::vector<Vec2>, looks> seen_;  ///< lateral displacements of all points
+  /// Spin at every other look of this step; looked up where a new peak asks for it.
+  static constexpr int spins = (looks + 1) / 2;
+  std::array<double, spins> spin_{};
+  bool spin_known_ = false;
 };
 
 /// Work and energy: E(t) - E(0) = work supplied - energy dissipated; the defect is the run's own
