@@ -9,6 +9,7 @@ namespace {
 
 constexpr double surprise = 0.4;      ///< of a change of log f, what the slopes do not explain
 constexpr double largest_step = 6.0;  ///< of log f between neighbouring samples
+constexpr double small_step = 1.0;    ///< one that needs no look at its middle
 constexpr double offset = 1e-4;       ///< of an interval: step of the slopes
 constexpr int deepest = 16;           ///< halvings of one interval
 constexpr Index most_samples = 4000;  ///< of one piece of a path
@@ -59,10 +60,19 @@ bool LogChange::settle(const Sample& a, const Sample& b, Complex slope_a, Comple
 
 bool LogChange::over(double from, double to, Complex& change) {
   limit_ = samples_ + most_samples;
-  Sample a, b;
+  Sample a = last_, b;
+  last_.t = nan;
   Complex slope_a, slope_b;
-  if (!sample(from, a) || !sample(to, b)) return false;
+  if ((a.t != from && !sample(from, a)) || !sample(to, b)) return false;
   if (!slope(a, to, slope_a) || !slope(b, from, slope_b)) return false;
+  last_ = b;
+  const Complex first = 0.5 * (to - from) * slope_a;
+  const Complex second = 0.5 * (to - from) * slope_b;
+  const Complex rest = principal(b.log_f - a.log_f - first - second);
+  change = first + second + rest;
+  if (2.0 * std::max(std::abs(first), std::abs(second)) < small_step &&
+      std::abs(rest) < 0.5 * surprise)
+    return true;
   return settle(a, b, slope_a, slope_b, deepest, change);
 }
 

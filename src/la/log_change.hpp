@@ -1,6 +1,7 @@
-// How much the logarithm of a function changes along a piece of a path, its argument followed from
-// sample to sample: samples are put in until slopes at both ends and in the middle explain what
-// changes between them, which no turn in between can hide from.
+// How much the logarithm of a function changes along a path, its argument followed from sample to
+// sample: samples are put in until the slopes explain what changes between them, which no turn in
+// between can hide from. (A zero close to the path turns the argument quickly, and its logarithm has
+// the slope of one over the distance to either side.)
 #pragma once
 #include <core/types.hpp>
 #include <functional>
@@ -13,6 +14,7 @@ class LogChange {
   using Function = std::function<bool(double t, Complex& log_f)>;
   explicit LogChange(Function f) : f_(std::move(f)) {}
   /// Change of log f from a to b (a < b or b < a), f smooth in between; it may bend at both ends.
+  /// Quicker where a is the b of the last call.
   /// False: the samples do not settle.
   bool over(double a, double b, Complex& change);
   Index samples() const { return samples_; }  ///< of all calls
@@ -29,6 +31,7 @@ class LogChange {
               Complex& change);
 
   Function f_;
+  Sample last_{nan, {}};
   Index samples_ = 0, limit_ = 0;
 };
 

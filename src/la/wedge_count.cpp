@@ -70,7 +70,7 @@ WedgeCount WedgeCounter::count(const WedgeProblem& p) {
     if (up[k] > 4.0 * up[k - 1])
       up.insert(up.begin() + static_cast<std::ptrdiff_t>(k), 2.0 * up[k - 1]);
   const std::vector<double> down(up.rbegin(), up.rend());
-  const std::vector<double> right{-1.0, -0.4, 0.0, 0.4, 1.0};
+  const std::vector<double> right{-1.0, 0.0, 1.0};
   const std::vector<double> left(right.rbegin(), right.rend());
   if (!follow(level(p.low), right) || !follow(ray(1.0), up) || !follow(level(p.top), left) ||
       !follow(ray(-1.0), down))

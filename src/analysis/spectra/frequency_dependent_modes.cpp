@@ -11,6 +11,11 @@
 namespace whirl::analysis {
 
 namespace {
+constexpr std::size_t most_nodes = 150;
+
+/// A branch lost below this share of the frequency goes over to the real axis, far from the line.
+constexpr double on_the_axis = 0.3;
+
 constexpr std::size_t entry(Index i) { return static_cast<std::size_t>(i); }
 
 bool covered(const OwnFrequency::Matrices& at, double w) {
@@ -82,22 +87,73 @@ Changes changes_between(const OwnFrequency::Matrices& at, const std::vector<doub
   return out;
 }
 
-/// What a straight line from row i to row j makes wrong at row r, relative to the largest entries
-/// there.
-double deviation(const Changes& c, const std::vector<double>& rows, Index i, Index j, Index r) {
-  const double w = rows[entry(r)], t = (w - rows[entry(i)]) / (rows[entry(j)] - rows[entry(i)]);
-  std::array<double, 3> size{}, off{};
-  for (Index k = 0; k < c.value.cols(); ++k) {
-    const double f = std::pow(w, c.power[entry(k)]), v = f * c.value(r, k),
-                 line = f * (c.value(i, k) + t * (c.value(j, k) - c.value(i, k)));
-    const std::size_t u = static_cast<std::size_t>(c.unit[entry(k)]);
-    size[u] = std::max({size[u], std::abs(v), std::abs(line)});
-    off[u] = std::max(off[u], std::abs(v - line));
+/// A change that matters, of each entry: its median over the rows since the first one; what is small
+/// beside the changes of other entries or within rounding does not. (The entries themselves are no
+/// measure: beside the stiffness of short elements, which grows as they get shorter, any support is
+/// soft.)
+VecX usual_change(const Changes& c, const std::vector<double>& rows) {
+  const Index n = c.value.cols();
+  VecX out = VecX::Zero(n);
+  std::array<double, 3> of_unit{};
+  std::vector<double> all;
+  for (Index k = 0; k < n; ++k) {
+    all.clear();
+    double rounding = 0;
+    for (Index r = 1; r < c.value.rows(); ++r) {
+      const double f = std::pow(rows[entry(r)], c.power[entry(k)]);
+      all.push_back(f * std::abs(c.value(r, k) - c.value(0, k)));
+      rounding = std::max(rounding, 1e-9 * f * std::abs(c.value(r, k)));
+    }
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    out(k) = std::max(*middle, rounding);
+    double& most = of_unit[entry(c.unit[entry(k)])];
+    most = std::max(most, out(k));
   }
+  for (Index k = 0; k < n; ++k)
+    out(k) = std::max(out(k), 0.003 * of_unit[entry(c.unit[entry(k)])]);
+  return out;
+}
+
+/// What a straight line from row i to row j makes wrong at row r, relative to the change of the entry
+/// since the first row, there or usual.
+double deviation(const Changes& c, const std::vector<double>& rows, const VecX& usual, Index i,
+                 Index j, Index r) {
+  const double w = rows[entry(r)], t = (w - rows[entry(i)]) / (rows[entry(j)] - rows[entry(i)]);
   double worst = 0;
-  for (std::size_t u = 0; u < 3; ++u)
-    if (size[u] > 0) worst = std::max(worst, off[u] / size[u]);
+  for (Index k = 0; k < c.value.cols(); ++k) {
+    const double f = std::pow(w, c.power[entry(k)]), base = f * c.value(0, k),
+                 v = f * c.value(r, k),
+                 line = f * (c.value(i, k) + t * (c.value(j, k) - c.value(i, k)));
+    const double size = std::max({usual(k), std::abs(v - base), std::abs(line - base)});
+    if (size > 0) worst = std::max(worst, std::abs(v - line) / size);
+  }
   return worst;
+}
+
+/// Those of all rows that straight lines between the others do not replace.
+std::vector<double> bends(const Changes& c, const std::vector<double>& all, double enough) {
+  const VecX usual = usual_change(c, all);
+  std::vector<double> out(1, all.front());
+  std::vector<std::pair<Index, Index>> open{{0, static_cast<Index>(all.size()) - 1}};
+  while (!open.empty()) {  // the lower part on top: rows come out in order
+    const auto [i, j] = open.back();
+    open.pop_back();
+    Index worst = -1;
+    double most = enough;
+    for (Index r = i + 1; r < j; ++r)
+      if (const double d = deviation(c, all, usual, i, j, r); d > most) {
+        most = d;
+        worst = r;
+      }
+    if (worst < 0) {
+      out.push_back(all[entry(j)]);
+    } else {
+      open.emplace_back(worst, j);
+      open.emplace_back(i, worst);
+    }
+  }
+  return out;
 }
 
 la::ModeOptions of_count(la::ModeOptions o, Index count) {
@@ -150,7 +206,6 @@ bool OwnFrequency::reaches_zero(const Matrices& at) {
 }
 
 void OwnFrequency::choose_rows(const Matrices& at) {
-  constexpr double enough = 0.01;
   std::vector<double> all{lowest_};
   for (const double w : frequencies_)
     if (w > lowest_ && w <= highest_ && w < wanted_.max_frequency) all.push_back(w);
@@ -159,23 +214,10 @@ void OwnFrequency::choose_rows(const Matrices& at) {
   rows_.assign(1, all.front());
   if (all.size() == 1) return;
   const Changes c = changes_between(at, all, active_);
-  std::vector<std::pair<Index, Index>> open{{0, static_cast<Index>(all.size()) - 1}};
-  while (!open.empty()) {  // the lower part on top: rows come out in order
-    const auto [i, j] = open.back();
-    open.pop_back();
-    Index worst = -1;
-    double most = enough;
-    for (Index r = i + 1; r < j; ++r)
-      if (const double d = deviation(c, all, i, j, r); d > most) {
-        most = d;
-        worst = r;
-      }
-    if (worst < 0) {
-      rows_.push_back(all[entry(j)]);
-    } else {
-      open.emplace_back(worst, j);
-      open.emplace_back(i, worst);
-    }
+  // Measured tables may have noise in every row.
+  for (double enough = 0.02; enough < 1.0; enough *= 2.0) {
+    rows_ = bends(c, all, enough);
+    if (rows_.size() <= most_nodes) return;
   }
 }
 
@@ -233,7 +275,10 @@ std::optional<OwnFrequency::Root> OwnFrequency::root(const Matrices& at, Point l
     f1 = f;
     (f > 0.0 ? low : high) = std::move(*p);
     const double now = high.w - low.w;
-    if (now <= 1e-15 * high.w) return Root{low, false};
+    if (now <= 1e-15 * high.w) {  // a jump from one branch to another is no root
+      if (std::abs(low.gap()) > 1e-7 * low.w) return std::nullopt;
+      return Root{low, false};
+    }
     slow = now < 0.5 * width ? 0 : slow + 1;
     if (now < 0.5 * width) width = now;
   }
@@ -266,7 +311,10 @@ std::optional<OwnFrequency::Point> OwnFrequency::trace(const Matrices& at, Point
     auto q = step(at, p, goal);
     const double middle = 0.5 * (p.w + goal);
     if (!q) {
-      if (stride < whole / 50) return std::nullopt;
+      if (stride < whole / 50) {
+        if (p.mode.lambda.imag() > on_the_axis * p.w) lost_ = true;
+        return std::nullopt;
+      }
       goal = middle;
       continue;
     }
@@ -285,11 +333,22 @@ std::optional<OwnFrequency::Point> OwnFrequency::trace(const Matrices& at, Point
     p = std::move(*q);
     goal = to;
   }
+  if (lost) lost_ = true;
   if (lost) return std::nullopt;
   return p;
 }
 
-void OwnFrequency::search(const Matrices& at, const Node& a, const Node& b) {
+void OwnFrequency::search_between(const Matrices& at, const Node& a, const Node& b,
+                                  int halvings) {
+  if (search(at, a, b) || halvings == 0) return;
+  const double w = 0.5 * (a.w + b.w);
+  const Node middle = node(at, w, 1.5 * w);
+  search_between(at, a, middle, halvings - 1);
+  search_between(at, middle, b, halvings - 1);
+}
+
+bool OwnFrequency::search(const Matrices& at, const Node& a, const Node& b) {
+  lost_ = false;
   // Pairs on one side of the line that have moved less than half their distance from it need no
   // second look.
   struct Pair {
@@ -319,15 +378,21 @@ void OwnFrequency::search(const Matrices& at, const Node& a, const Node& b) {
     if (!end) continue;
     std::size_t nearest = b.modes.size();
     double least = 1e-9 * std::abs(end->mode.lambda);
-    for (std::size_t k = 0; k < b.modes.size(); ++k)
-      if (const double d = std::abs(b.modes[k].lambda - end->mode.lambda); !of_b[k] && d < least) {
-        least = d;
-        nearest = k;
-      }
+    bool taken = false;
+    for (std::size_t k = 0; k < b.modes.size(); ++k) {
+      const double d = std::abs(b.modes[k].lambda - end->mode.lambda);
+      if (of_b[k] && d < 1e-9 * std::abs(end->mode.lambda)) taken = true;
+      if (of_b[k] || !(d < least)) continue;
+      least = d;
+      nearest = k;
+    }
     if (nearest < b.modes.size()) of_b[nearest] = true;
+    // Two branches cannot end in one: a step went over from one to the other.
+    if (nearest == b.modes.size() && taken) lost_ = true;
   }
   for (std::size_t k = 0; k < b.modes.size(); ++k)
     if (!of_b[k] && b.modes[k].lambda.imag() < b.w) trace(at, {b.w, b.modes[k]}, a.w);
+  return !lost_;
 }
 
 bool OwnFrequency::feels_tables(const Matrices& at, const la::Mode& mode) {
@@ -400,7 +465,7 @@ std::vector<la::Mode> OwnFrequency::solve(const Matrices& at, bool certify) {
   for (std::size_t next = 1; a.w < end && !enough();) {
     const double w = std::min(rows_[next], std::max(0.8 * a.reach, 1.2 * a.w));
     Node b = node(at, w, 1.5 * w);
-    search(at, a, b);
+    search_between(at, a, b, 5);
     if (w == rows_[next]) ++next;
     a = std::move(b);
   }
@@ -533,23 +598,27 @@ Index OwnFrequency::look_between(const Matrices& at, double low, double top, Ind
 
 std::optional<OwnFrequency::Root> OwnFrequency::land(const Matrices& at, Point p, double low,
                                                      double top) {
-  std::optional<Point> below, above;  // the line, for a root that falls through it
-  double w0 = nan, f0 = nan;
-  for (int it = 0; it < 40; ++it) {
-    const double f = p.gap(), w = p.w;
-    if (std::abs(f) <= 1e-11 * std::abs(p.mode.lambda)) return Root{p, rises(at, p)};
-    (f > 0.0 ? above : below) = p;
-    if (above && below && above->w < below->w)
-      if (auto r = root(at, *above, *below)) return Root{r->at, rises(at, r->at)};
-    double next = std::isnan(w0) || f == f0 ? w + 0.5 * f : w - f * (w - w0) / (f - f0);
-    if (!(next >= low && next <= top)) next = w + f;
-    if (!(next >= low && next <= top)) return std::nullopt;
-    if (next == w) return Root{p, rises(at, p)};
-    w0 = w;
-    f0 = f;
-    const auto q = step(at, p, next);
-    if (!q) return std::nullopt;
-    p = *q;
+  // By secant from a derivative: branches may run through the line much faster than it. Their shapes
+  // may be any two of a plane; what tells where one goes is its eigenvalue.
+  const auto moved = [&](const Point& from, double w) -> std::optional<Point> {
+    auto found = follower_.follow(at(w), from.mode);
+    if (!found || !(found->lambda.imag() > 0.0)) return std::nullopt;
+    return Point{w, std::move(*found)};
+  };
+  const auto settled = [](const Point& x) {
+    return std::abs(x.gap()) <= 1e-11 * std::abs(x.mode.lambda);
+  };
+  if (settled(p)) return Root{p, rises(at, p)};
+  auto q = moved(p, p.w + 1e-4 * (top - p.w));
+  int outside = 0;
+  for (int it = 0; it < 40 && q && q->w != p.w && q->gap() != p.gap(); ++it) {
+    if (settled(*q)) return Root{*q, rises(at, *q)};
+    double next = q->w - q->gap() * (q->w - p.w) / (q->gap() - p.gap());
+    if (!(next >= low && next <= top) && ++outside > 3) return std::nullopt;
+    next = std::clamp(next, low, top);
+    if (next == q->w) return std::nullopt;
+    p = std::move(*q);
+    q = moved(p, next);
   }
   return std::nullopt;
 }

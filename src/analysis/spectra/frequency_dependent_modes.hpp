@@ -10,7 +10,8 @@
 // the last resort: it cannot cycle.
 //
 // Nodes: zero, those frequencies of the tables that straight lines between the others do not
-// replace to 1 % (of the largest entry there), and where the eigenvalues known so far end.
+// replace to 2 % (of the change that the supports make, there or at half of the rows), where the
+// eigenvalues known so far end, and the middle of two nodes between which a branch is lost.
 //
 // The list is then counted by an independent method (la/wedge_count.hpp): roots at which Im lambda_k
 // falls through the line less those at which it rises. Where the count asks for more, the band is
@@ -93,10 +94,13 @@ class OwnFrequency {
   void find_range(const Matrices& at);
   void choose_rows(const Matrices& at);
   Node node(const Matrices& at, double w, double radius);
-  void search(const Matrices& at, const Node& a, const Node& b);
+  /// Follows what can have come through the line between two nodes; false: some branch was lost.
+  bool search(const Matrices& at, const Node& a, const Node& b);
+  /// The same, with nodes in between where a branch is lost.
+  void search_between(const Matrices& at, const Node& a, const Node& b, int halvings);
   void search_above(const Matrices& at, Node top);
   /// Goes along a branch to another w and adds the modes it meets. The place it ends at; nullopt:
-  /// it goes over to the real axis, or a root was lost.
+  /// it goes over to the real axis, or it or a root of it was lost (lost_).
   std::optional<Point> trace(const Matrices& at, Point p, double to);
   std::optional<Point> step(const Matrices& at, const Point& from, double w);
   /// Every root between two places of a branch at which it falls through the line; false: not all
@@ -141,6 +145,7 @@ class OwnFrequency {
   std::optional<la::WedgeCounter> counter_;
   Known known_;
   Index solved_ = 0;
+  bool lost_ = false;  ///< a branch, near the line or above it
 };
 
 }  // namespace whirl::analysis
