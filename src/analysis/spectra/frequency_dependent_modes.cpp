@@ -338,8 +338,7 @@ std::optional<OwnFrequency::Point> OwnFrequency::trace(const Matrices& at, Point
   return p;
 }
 
-void OwnFrequency::search_between(const Matrices& at, const Node& a, const Node& b,
-                                  int halvings) {
+void OwnFrequency::search_between(const Matrices& at, const Node& a, const Node& b, int halvings) {
   if (search(at, a, b) || halvings == 0) return;
   const double w = 0.5 * (a.w + b.w);
   const Node middle = node(at, w, 1.5 * w);
