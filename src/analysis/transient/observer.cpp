@@ -187,6 +187,8 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
 }
 
 double PeakTracker::spin_at(StepAccess& s, double k) {
+  if (points_.size() <= static_cast<std::size_t>(spins))  // a state a peak costs no more
+    return s.at(time_of(s, k)).node(reference_).spin();
   for (int i = 0; i < spins && !spin_known_; ++i)
     spin_[static_cast<std::size_t>(i)] = s.at(time_of(s, 2.0 * i)).node(reference_).spin();
   spin_known_ = true;
