@@ -73,11 +73,11 @@ void join_speeds(const system::System& system, std::vector<double>& ratio) {
   for (std::size_t k = 0; k < system.followers().count(); ++k) {
     const system::FollowerDef& f = system.followers()[k];
     if (f.pinned) continue;
-    const double rounding = f.angle >= 0 ? 1e-6 : 1e-3;
+    const double allowed = f.angle >= 0 ? 1e-6 : 1e-3;
     if (f.between) continue;
     const double of_parent = ratio[at(system.node(carrier(system, f.parent)).line)];
     double& of_node = ratio[at(system.node(f.node).line)];
-    if (std::abs(of_node - of_parent) <= rounding * std::abs(of_parent)) of_node = of_parent;
+    if (std::abs(of_node - of_parent) <= allowed * std::abs(of_parent)) of_node = of_parent;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <sweep/sampling.hpp>
 #include <sweep/sensitivity.hpp>
 #include <core/types.hpp>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <cmath>
 #include <functional>
@@ -28,7 +29,8 @@ std::vector<double> runs_of(const Design& d,
 std::vector<Factor> ishigami_factors() {
   std::vector<Factor> f;
   for (const char* name : {"a.x", "a.y", "a.z"})
-    f.push_back(read_factor(name + std::string("=uniform(-3.141592653589793, 3.141592653589793)")));
+    f.push_back(
+        read_factor(fmt::format("{}=uniform(-3.141592653589793, 3.141592653589793)", name)));
   return f;
 }
 
@@ -147,7 +149,7 @@ TEST(Densities, IntegrateToOneOverTheirQuantiles) {
   // int f dx over (a, b) = difference of the quantiles, by the midpoint rule
   for (const char* law : {"uniform(1, 3)", "loguniform(1, 100)", "triangular(1, 2, 5)",
                           "normal(3, 0.5)", "lognormal(2, 0.4)"}) {
-    const Factor f = read_factor(std::string("a.b=") + law);
+    const Factor f = read_factor(fmt::format("a.b={}", law));
     const double a = f.at_quantile(0.1), b = f.at_quantile(0.8);
     double sum = 0;
     constexpr int n = 20000;
