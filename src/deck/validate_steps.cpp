@@ -98,10 +98,11 @@ void check_maps(const model::Model& m, Problems& out) {
             out, "E80",
             fmt::format("step '{}' names bearing '{}', which the deck does not have", s.name, name),
             "", s.where);
-    const bool any = std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) {
-      return model::traits_of(b.law).acts != model::Acts::as_constraint && !b.to;
-    });
-    if (map->bearings.empty() && !any)
+    const bool some =
+        std::any_of(m.bearings.begin(), m.bearings.end(), [](const model::Bearing& b) {
+          return model::traits_of(b.law).acts != model::Acts::as_constraint && !b.to;
+        });
+    if (map->bearings.empty() && !some)
       report(out, "E80", fmt::format("step '{}' has no bearing to vary: all are rigid", s.name),
              "give the bearing a stiffness (type \"linear\")", s.where);
   }
