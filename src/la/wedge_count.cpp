@@ -67,7 +67,8 @@ WedgeCount WedgeCounter::count(const WedgeProblem& p) {
   up.push_back(p.top);
   // D may vary by powers of ten between two stations far apart.
   for (std::size_t k = 1; k < up.size(); ++k)
-    if (up[k] > 4.0 * up[k - 1]) up.insert(up.begin() + static_cast<std::ptrdiff_t>(k), 2.0 * up[k - 1]);
+    if (up[k] > 4.0 * up[k - 1])
+      up.insert(up.begin() + static_cast<std::ptrdiff_t>(k), 2.0 * up[k - 1]);
   const std::vector<double> down(up.rbegin(), up.rend());
   const std::vector<double> right{-1.0, 0.0, 1.0};
   const std::vector<double> left(right.rbegin(), right.rend());

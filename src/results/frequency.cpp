@@ -226,7 +226,8 @@ std::string stability_text(const analysis::SpectrumCertificate& c) {
         to_hz(c.list.radius), c.quiet_ratio);
   if (c.complete() && c.by_frequency)
     return fmt::format(
-        "no motion grows while it oscillates at {:.3g} to {:.5g} Hz; beyond, growth is not excluded",
+        "no motion grows while it oscillates at {:.3g} to {:.5g} Hz; beyond, growth is not "
+        "excluded",
         to_hz(c.by_frequency->low), to_hz(c.list.radius));
   if (c.complete())
     return fmt::format(

@@ -181,7 +181,8 @@ class Obstacles {
   static void check_mode(const model::TransientStep& law, const system::System& built) {
     if (law.start != model::TransientStep::Start::mode) return;
     const auto active = built.active();
-    const auto unknowns = std::count_if(active.begin(), active.end(), [](auto a) { return a != 0; });
+    const auto unknowns =
+        std::count_if(active.begin(), active.end(), [](auto a) { return a != 0; });
     if (law.mode > unknowns)
       throw run_error("E76",
                       fmt::format("the rotor has {} modes at most, one for each unknown, not {}",

@@ -49,7 +49,8 @@ io::Table verdict_table(const analysis::StabilityResult& r) {
       missing = static_cast<int>(c.list.missing);
     }
     t.add({to_rpm(v.speed), static_cast<int>(v.whirling), static_cast<int>(v.diverging), v.fastest,
-           static_cast<int>(v.neutral), v.neutral_within, std::move(top), std::move(missing), std::string(word)});
+           static_cast<int>(v.neutral), v.neutral_within, std::move(top), std::move(missing),
+           std::string(word)});
   }
   return t;
 }
@@ -93,12 +94,14 @@ std::string verdict_line(const analysis::StabilityResult& r, const std::vector<d
 std::string neutral_text(const analysis::StabilityResult& r) {
   const auto most =
       std::max_element(r.verdicts.begin(), r.verdicts.end(), [](const auto& a, const auto& b) {
-        return a.neutral < b.neutral || (a.neutral == b.neutral && a.neutral_within < b.neutral_within);
+        return a.neutral < b.neutral ||
+               (a.neutral == b.neutral && a.neutral_within < b.neutral_within);
       });
   if (most->neutral == 0) return {};
-  return fmt::format(" {} mode{} at {:.6g} rpm neutral within {:.2g} 1/s, the rounding of the matrices.",
-                     most->neutral, most->neutral == 1 ? " is" : "s are", to_rpm(most->speed),
-                     most->neutral_within);
+  return fmt::format(
+      " {} mode{} at {:.6g} rpm neutral within {:.2g} 1/s, the rounding of the matrices.",
+      most->neutral, most->neutral == 1 ? " is" : "s are", to_rpm(most->speed),
+      most->neutral_within);
 }
 
 /// Of the modes judged, at the highest speed.

@@ -179,11 +179,20 @@ void run_step(run::Job& job, const model::Step& step) {
 std::string keys_of_frequency(const model::StepLaw& law) {
   return std::visit(
       [](const auto& x) -> std::string {
-        if constexpr (requires { x.max_frequency; x.modes; })
+        if constexpr (requires {
+                        x.max_frequency;
+                        x.modes;
+                      })
           return "max_frequency, modes";
-        else if constexpr (requires { x.min_speed; x.max_speed; })
+        else if constexpr (requires {
+                             x.min_speed;
+                             x.max_speed;
+                           })
           return "min_speed, max_speed";
-        else if constexpr (requires { x.frequency; x.speeds; })
+        else if constexpr (requires {
+                             x.frequency;
+                             x.speeds;
+                           })
           return "frequency, speed";
         else if constexpr (requires { x.speed.points; })
           return "speed";

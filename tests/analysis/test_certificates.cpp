@@ -162,7 +162,8 @@ TEST(Certificates, OnsetIsWhereGrowthIsZeroOnEveryMesh) {
   for (const int elements : {4, 160}) {
     std::string rows;
     const auto row = [&](double spin, double cross) {
-      rows += fmt::format("[{}, {}, {}, {:.17g}, {:.17g}, {}, {}],\n", spin, k, k, cross, -cross, c, c);
+      rows +=
+          fmt::format("[{}, {}, {}, {:.17g}, {:.17g}, {}, {}],\n", spin, k, k, cross, -cross, c, c);
     };
     row(0, 0.0);
     row(2000, 2 * c * 300);
@@ -174,7 +175,8 @@ material = "steel"
 name = "a"
 length = "1 m"
 od = "60 mm"
-min_elements = )" + std::to_string(elements) + R"(
+min_elements = )" + std::to_string(elements) +
+                       R"(
 [[disk]]
 name = "d"
 at = "a:mid"

@@ -576,9 +576,8 @@ int expect_the_same_modes(const PedestalMachine& m, double top, int rows, double
     // order in the decay over the distance of poles.
     const double decay = -mode.lambda.real() / m.pole_distance(w);
     if (!mode.oscillates() || mode.damping_ratio > 0.05 || decay > 0.1 || error > 0.01) continue;
-    const double tolerance =
-        (0.5 * error + 1e-4 + 20 * std::pow(mode.damping_ratio, 2)) * w +
-        5 * decay * decay * m.pole_distance(w);
+    const double tolerance = (0.5 * error + 1e-4 + 20 * std::pow(mode.damping_ratio, 2)) * w +
+                             5 * decay * decay * m.pole_distance(w);
     std::size_t best = found.size();
     for (std::size_t k = 0; k < found.size(); ++k)
       if (const double off = std::abs(found[k].frequency - w);
@@ -603,7 +602,10 @@ TEST(FrequencyModes, FineTablesOfAPedestalLoseNoMode) {
     p = {{4e7, 4e7}, {3e2, 3e2}, {60, 60}, {2e7, 2e7}, {6e2, 6e2}};
   m.pedestal[0] = {{1e9, 1e9}, {1e2, 1e2}, {60, 60}, {3e7, 3e7}, {1e3, 1e3}};
   for (const int rows : {50, 100, 200, 400, 1000, 2000})
-    EXPECT_GE(expect_the_same_modes(m, two_pi * 700, rows, 200 * pi), rows < 100 ? 2 : rows < 200 ? 4 : 8) << rows;
+    EXPECT_GE(expect_the_same_modes(m, two_pi * 700, rows, 200 * pi), rows < 100   ? 2
+                                                                      : rows < 200 ? 4
+                                                                                   : 8)
+        << rows;
 }
 
 TEST(FrequencyModes, RandomPedestalsInTablesLoseNoMode) {

@@ -338,8 +338,7 @@ std::optional<OwnFrequency::Point> OwnFrequency::trace(const Matrices& at, Point
   return p;
 }
 
-void OwnFrequency::search_between(const Matrices& at, const Node& a, const Node& b,
-                                  int halvings) {
+void OwnFrequency::search_between(const Matrices& at, const Node& a, const Node& b, int halvings) {
   if (search(at, a, b) || halvings == 0) return;
   const double w = 0.5 * (a.w + b.w);
   const Node middle = node(at, w, 1.5 * w);
@@ -492,17 +491,18 @@ double OwnFrequency::top_of_list(double share) const {
   std::sort(w.begin(), w.end());
   const std::size_t wanted = entry(std::max<Index>(wanted_.count, 0));
   const double limit = held_ ? infinity : highest_;
-  double top = wanted > 0 && w.size() >= wanted ? w[wanted - 1]
+  double top = wanted > 0 && w.size() >= wanted       ? w[wanted - 1]
                : std::isfinite(wanted_.max_frequency) ? wanted_.max_frequency
-               : w.empty()                             ? std::max(highest_, 1.0)
-                                                       : w.back();
+               : w.empty()                            ? std::max(highest_, 1.0)
+                                                      : w.back();
   top = std::min(top, limit);
   // Into the next gap: of two planes with one frequency both or none are below.
   for (auto above = std::upper_bound(w.begin(), w.end(), top * (1.0 - 1e-6));;) {
     while (above != w.end() && *above <= top * (1.0 + 1e-6))
       top = *above++;
     const double next = above != w.end() ? *above : infinity;
-    if (next > top * (1.0 + 1e-6)) return std::min(limit, top + share * std::min(0.2 * top, next - top));
+    if (next > top * (1.0 + 1e-6))
+      return std::min(limit, top + share * std::min(0.2 * top, next - top));
   }
 }
 

@@ -47,12 +47,12 @@ class OwnFrequency {
   std::vector<la::Mode> solve(const Matrices& at, bool certify = false);
   /// What is known of the list of the last solve().
   struct Known {
-    bool counted = false;          ///< the argument settled
-    Index missing = 0;             ///< falling roots less rising ones that were not found
-    double low = 0, top = 0;       ///< rad/s: band of the list
-    double reach = 0;              ///< |Re lambda| <= reach Im lambda
-    std::vector<Complex> where;    ///< middle of the narrowest parts where some are missing
-    std::vector<Complex> rising;   ///< rising roots met
+    bool counted = false;         ///< the argument settled
+    Index missing = 0;            ///< falling roots less rising ones that were not found
+    double low = 0, top = 0;      ///< rad/s: band of the list
+    double reach = 0;             ///< |Re lambda| <= reach Im lambda
+    std::vector<Complex> where;   ///< middle of the narrowest parts where some are missing
+    std::vector<Complex> rising;  ///< rising roots met
     Index factorizations = 0, recovered = 0;
   };
   const Known& known() const { return known_; }

@@ -82,7 +82,7 @@ class Sweep {
  private:
   /// A line on its way through the band in which its growth cannot be told from rounding.
   struct Passage {
-    int definite = 0;  ///< last growth() that was not neutral
+    int definite = 0;      ///< last growth() that was not neutral
     bool leaving = false;  ///< grew beyond the band, and is in it without having crossed zero
     std::optional<TrackedMode> crossing;  ///< the step of its last change of sign
     double from = 0, to = 0;              ///< speeds of that step
@@ -131,8 +131,8 @@ class Sweep {
     const auto rate = [](double, const WhirlMode& w) { return w.lambda.real(); };
     const TrackedMode step = *p.crossing;
     p.crossing.reset();
-    if (const auto root = find_on_mode(follower_, p.from, step.before, p.to, step.now, rate,
-                                       options_.tolerance))
+    if (const auto root =
+            find_on_mode(follower_, p.from, step.before, p.to, step.now, rate, options_.tolerance))
       onsets.push_back({root->speed, root->mode.frequency, gains, root->mode});
   }
 

@@ -422,8 +422,7 @@ void WhirlSolver::count_hysteretic(double Omega) {
     if (!(p.low < p.top)) continue;
     p.at = [&](Complex s) -> const la::MCK& {
       const double w = std::clamp(s.imag(), p.low, p.top);
-      return motion_.reduce(
-          linear_.at(Omega, Complex(s.real(), w), w, by_frequency() ? w : nan));
+      return motion_.reduce(linear_.at(Omega, Complex(s.real(), w), w, by_frequency() ? w : nan));
     };
     const la::WedgeCount c = wedge_->count(p);
     list.factorizations += c.factorizations;
@@ -573,17 +572,18 @@ std::string SpectrumCertificate::text_of_list() const {
                       list.taken_for_zero, list.zeros_within,
                       list.taken_for_zero == 1 ? "is" : "are");
   const std::string pairs =
-      by_frequency && axis ? " (but pairs in which one branch of frequencies rises through the line along "
-                     "which tables are read, as no support does that loses nothing)" +
-                         (by_frequency->rising > 0
-                              ? fmt::format("; {} such rising roots are left out of the list",
-                                            by_frequency->rising)
-                              : std::string())
-                   : std::string();
+      by_frequency && axis
+          ? " (but pairs in which one branch of frequencies rises through the line along "
+            "which tables are read, as no support does that loses nothing)" +
+                (by_frequency->rising > 0
+                     ? fmt::format("; {} such rising roots are left out of the list",
+                                   by_frequency->rising)
+                     : std::string())
+          : std::string();
   if (list.missing == 0) return band + " counted and found" + pairs;
-  std::string out = list.missing > 0
-                        ? fmt::format("INCOMPLETE: {} of {} not found", list.missing, band)
-                        : fmt::format("IN DOUBT: {} more than the count of {}", -list.missing, band);
+  std::string out =
+      list.missing > 0 ? fmt::format("INCOMPLETE: {} of {} not found", list.missing, band)
+                       : fmt::format("IN DOUBT: {} more than the count of {}", -list.missing, band);
   for (const Complex z : list.where)
     out += fmt::format("; one near {:.4g} Hz, rate {:.3g} 1/s", to_hz(z.imag()), z.real());
   return out;
