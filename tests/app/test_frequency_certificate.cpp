@@ -121,8 +121,8 @@ TEST(FrequencyCertificate, UncoveredFrequencyNamesStepAndBearing) {
 name = "R"
 at = "b:end"
 type = "table"
-columns = ["frequency[Hz]", "kyy[N/m]", "kzz[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
-rows = [[5, 1e7, 1e7, 1e3, 1e3], [400, 1e7, 1e7, 1e3, 1e3]]
+columns = ["speed[rpm]", "frequency[Hz]", "kyy[N/m]", "kzz[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
+rows = [[0, 5, 1e7, 1e7, 1e3, 1e3], [0, 400, 1e7, 1e7, 1e3, 1e3], [20000, 5, 1e7, 1e7, 1e3, 1e3], [20000, 400, 1e7, 1e7, 1e3, 1e3]]
 )",
                            "2000");
   deck = deck.substr(0, deck.find("[[step]]")) +
