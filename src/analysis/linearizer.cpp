@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include <algorithm>
 #include <cmath>
 
@@ -92,6 +94,23 @@ void Linearizer::move_to(double Omega) {
   have_forcing_ = false;
 }
 
+namespace {
+
+/// The first node with an entry that is no number: a table was asked beyond its end there.
+std::optional<Index> first_without_number(const la::MCK& m) {
+  for (const la::BlockMatrix<6>* a : {&m.K, &m.C, &m.M}) {
+    if (Eigen::Map<const VecX>(a->data(), static_cast<Index>(a->value_count())).allFinite())
+      continue;
+    const la::BlockPattern& p = a->pattern();
+    for (Index i = 0; i < p.size(); ++i)
+      if (!a->block(p.diagonal(i)).allFinite()) return i;
+    return 0;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
   move_to(Omega);
   const auto linearise = [&] {
@@ -109,16 +128,13 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
   }
   running_.set_frequency(tables);
   linearise();
-  const auto finite = [](const la::BlockMatrix<6>& x) {
-    return Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.value_count())).allFinite();
-  };
-  if (!finite(matrices_.K) || !finite(matrices_.C) || !finite(matrices_.M))
+  if (const auto node = first_without_number(matrices_))
     throw run_error(
         "E81",
         fmt::format("a bearing table does not cover the frequency {:.6g} Hz at {:.6g} rpm",
                     to_hz(std::abs(tables)), to_rpm(Omega)),
-        "extend its frequencies, narrow the step (max_frequency, modes), or write extrapolate = "
-        "\"hold\"");
+        "extend its frequencies, narrow the range asked about, or write extrapolate = \"hold\"",
+        system().node(*node).name);
   return matrices_;
 }
 

@@ -224,6 +224,11 @@ std::string stability_text(const analysis::SpectrumCertificate& c) {
         "no motion grows at any frequency: all roots up to {:.5g} Hz counted, above it energy "
         "forbids growth by more than {:.0e} of the frequency",
         to_hz(c.list.radius), c.quiet_ratio);
+  if (c.complete() && c.by_frequency)
+    return fmt::format(
+        "no motion grows while it oscillates at {:.3g} to {:.5g} Hz; beyond, growth is not "
+        "excluded",
+        to_hz(c.by_frequency->low), to_hz(c.list.radius));
   if (c.complete())
     return fmt::format(
         "no motion grows below {:.5g} Hz; above it growth is not excluded (forces without damping "

@@ -177,6 +177,19 @@ class Obstacles {
         law);
   }
 
+  /// E76: a mode to start in that no model of so many unknowns has: each gives one at most.
+  static void check_mode(const model::TransientStep& law, const system::System& built) {
+    if (law.start != model::TransientStep::Start::mode) return;
+    const auto active = built.active();
+    const auto unknowns =
+        std::count_if(active.begin(), active.end(), [](auto a) { return a != 0; });
+    if (law.mode > unknowns)
+      throw run_error("E76",
+                      fmt::format("the rotor has {} modes at most, one for each unknown, not {}",
+                                  unknowns, law.mode),
+                      "choose a lower number");
+  }
+
   /// E74, N10, N11: the integrator can be made. E91, E94: the state it goes on from is there and
   /// fits.
   void check_transient(const model::Step& step, const model::TransientStep& law) {
@@ -185,6 +198,7 @@ class Obstacles {
       const run::Checkpoint c = run::last_state_of(law.previous, law.previous_step);
       run::check_state_fits(c, law.previous, built.system, model_.deck_path);
     }
+    check_mode(law, built.system);
     system::SystemProblem problem(built.system, {la::SolverKind::automatic, model_.chart_change});
     time::Options o;
     o.t_end = law.duration;

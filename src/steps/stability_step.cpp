@@ -35,6 +35,8 @@ io::Table verdict_table(const analysis::StabilityResult& r) {
       {"growing whirl modes", "-", ""},
       {"diverging motions", "-", ""},
       {"fastest growth", "1/s", ""},
+      {"neutral whirl modes", "-", "their growth cannot be told from rounding"},
+      {"neutral within", "1/s", "bound of that rounding"},
       {"roots counted up to", "Hz", ""},
       {"roots not found", "-", ""},
       {"certified", "-", "all: at all frequencies; band: up to the frequency counted to; no"}};
@@ -47,7 +49,8 @@ io::Table verdict_table(const analysis::StabilityResult& r) {
       missing = static_cast<int>(c.list.missing);
     }
     t.add({to_rpm(v.speed), static_cast<int>(v.whirling), static_cast<int>(v.diverging), v.fastest,
-           std::move(top), std::move(missing), std::string(word)});
+           static_cast<int>(v.neutral), v.neutral_within, std::move(top), std::move(missing),
+           std::string(word)});
   }
   return t;
 }
@@ -85,6 +88,20 @@ std::string verdict_line(const analysis::StabilityResult& r, const std::vector<d
     return line + fmt::format(" (certified up to {:.5g} Hz; above it growth is not excluded)",
                               to_hz(c.list.radius));
   return line + " (not certified: " + c.text() + ")";
+}
+
+/// Modes that neither grow nor decay, as far as can be told.
+std::string neutral_text(const analysis::StabilityResult& r) {
+  const auto most =
+      std::max_element(r.verdicts.begin(), r.verdicts.end(), [](const auto& a, const auto& b) {
+        return a.neutral < b.neutral ||
+               (a.neutral == b.neutral && a.neutral_within < b.neutral_within);
+      });
+  if (most->neutral == 0) return {};
+  return fmt::format(
+      " {} mode{} at {:.6g} rpm neutral within {:.2g} 1/s, the rounding of the matrices.",
+      most->neutral, most->neutral == 1 ? " is" : "s are", to_rpm(most->speed),
+      most->neutral_within);
 }
 
 /// Of the modes judged, at the highest speed.
@@ -197,7 +214,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   add_figures(s, r, lines);
   std::string line = verdict_line(r, speeds);
   if (law.map) line += add_stability_map(s, *law.map, o);
-  s.section.text = results::capital(line) + ".";
+  s.section.text = results::capital(line) + "." + neutral_text(r);
   s.finish(line);
 }
 

@@ -167,6 +167,64 @@ void run_step(run::Job& job, const model::Step& step) {
       step.law);
 }
 
+/// Keys of a step that say which frequencies it asks tables about.
+std::string keys_of_frequency(const model::StepLaw& law) {
+  return std::visit(
+      [](const auto& x) -> std::string {
+        if constexpr (requires {
+                        x.max_frequency;
+                        x.modes;
+                      })
+          return "max_frequency, modes";
+        else if constexpr (requires {
+                             x.min_speed;
+                             x.max_speed;
+                           })
+          return "min_speed, max_speed";
+        else if constexpr (requires {
+                             x.frequency;
+                             x.speeds;
+                           })
+          return "frequency, speed";
+        else if constexpr (requires { x.speed.points; })
+          return "speed";
+        else if constexpr (requires { x.max_speed; })
+          return "max_speed";
+        else
+          return {};
+      },
+      law);
+}
+
+/// The bearings at a node, by its name.
+std::string bearings_at(const run::Job& job, const std::string& node) {
+  std::string out;
+  for (const model::Bearing& b : job.model.bearings) {
+    const Index n = job.mesh.place(b.at).node;
+    if (n >= 0 && n < job.system().nodes() && job.system().node(n).name == node)
+      out += fmt::format("{}'{}'", out.empty() ? "" : ", ", b.name);
+  }
+  return out;
+}
+
+/// What failed while a step ran, with the step it failed in.
+Error in_step(const run::Job& job, const std::string& name, const Error& e) {
+  const auto step = std::find_if(job.model.steps.begin(), job.model.steps.end(),
+                                 [&](const model::Step& s) { return s.name == name; });
+  std::vector<Diagnostic> all = e.diagnostics();
+  for (Diagnostic& d : all) {
+    if (d.message.find("step '") == std::string::npos)
+      d.message = fmt::format("step '{}': {}", name, d.message);
+    if (step == job.model.steps.end() || d.code != "E81") continue;
+    const std::string bearings = bearings_at(job, d.where.entity);
+    if (!bearings.empty()) d.message += ", at bearing " + bearings;
+    if (const std::string keys = keys_of_frequency(step->law); !keys.empty())
+      d.hint = fmt::format(
+          "extend its frequencies, narrow the step ({}), or write extrapolate = \"hold\"", keys);
+  }
+  return Error(e.exit(), std::move(all));
+}
+
 }  // namespace
 
 void run_steps(run::Job& job) {
@@ -186,12 +244,13 @@ void run_steps(run::Job& job) {
     // steps before it are complete; of this one nothing is
     job.summary["steps"][running]["outcome"] = "interrupted";
     if (!job.options.quiet) std::fputs(fmt::format("{}: interrupted\n", running).c_str(), stderr);
-  } catch (const Error& e) {
+  } catch (const Error& unnamed) {
+    const Error e = in_step(job, running, unnamed);
     io::Value& v = job.summary["error"];
     for (const Diagnostic& d : e.diagnostics())
       v.push(d.code + ": " + d.message);
     finish(job, watch);
-    throw;
+    throw e;
   }
   describe_savings(job, watch.elapsed().wall);
   finish(job, watch);

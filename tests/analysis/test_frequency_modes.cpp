@@ -389,8 +389,11 @@ TEST(FrequencyModes, HystereticShaftOnPedestalsInTables) {
   analysis::Linearizer exact(a.built.system, a.running()), reduced(b.built.system, b.running());
   analysis::ModesOptions o = lateral(0);
   o.max_frequency = 2900;
-  const auto modes = analysis::whirl_modes(exact, 400.0, o),
-             found = analysis::whirl_modes(reduced, 400.0, o);
+  analysis::SpectrumCertificate of_masses, of_tables;
+  const auto modes = analysis::whirl_modes(exact, 400.0, o, &of_masses),
+             found = analysis::whirl_modes(reduced, 400.0, o, &of_tables);
+  EXPECT_TRUE(of_masses.complete()) << of_masses.text();
+  EXPECT_TRUE(of_tables.complete()) << of_tables.text();
   ASSERT_GE(modes.size(), 10u);
   ASSERT_EQ(found.size(), modes.size());
   for (std::size_t k = 0; k < modes.size(); ++k)

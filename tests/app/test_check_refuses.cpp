@@ -95,6 +95,10 @@ TEST_F(CheckRefuses, WhatRunRefuses) {
       {"the momentum form with a flexible shaft", "E74",
        rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nintegrator = { method = "
              "\"momentum_rk\" }\n")},
+      {"a start in a mode beyond all of them", "E76",
+       rotor(
+           linear +
+           "[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nstart = \"mode\"\nmode = 5000\n")},
       {"a fixed step of IDA", "N11",
        rotor("[[step]]\ntype = \"transient\"\nduration = \"1 ms\"\nintegrator = { method = "
              "\"ida\", dt = \"1 us\" }\n")},

@@ -113,3 +113,23 @@ TEST(FrequencyCertificate, TablesThatEndAreHeldForTheCountAndItIsSaid) {
   EXPECT_FALSE(c.at("tables held beyond their ends").boolean());
   EXPECT_NE(c.at("text").text().find("held beyond"), std::string::npos);
 }
+
+// A table that begins above the lowest speed of a search: the message names step, bearing and the keys
+// of that step.
+TEST(FrequencyCertificate, UncoveredFrequencyNamesStepAndBearing) {
+  std::string deck = rotor(R"([[bearing]]
+name = "R"
+at = "b:end"
+type = "table"
+columns = ["speed[rpm]", "frequency[Hz]", "kyy[N/m]", "kzz[N/m]", "cyy[N.s/m]", "czz[N.s/m]"]
+rows = [[0, 5, 1e7, 1e7, 1e3, 1e3], [0, 400, 1e7, 1e7, 1e3, 1e3], [20000, 5, 1e7, 1e7, 1e3, 1e3], [20000, 400, 1e7, 1e7, 1e3, 1e3]]
+)",
+                           "2000");
+  deck = deck.substr(0, deck.find("[[step]]")) +
+         "[[step]]\nname = \"c\"\ntype = \"critical_speeds\"\nmax_speed = \"12000 rpm\"\n";
+  const DeckRun run(deck);
+  EXPECT_TRUE(run.says("E81")) << run.log;
+  EXPECT_TRUE(run.says("step 'c'")) << run.log;
+  EXPECT_TRUE(run.says("bearing 'R'")) << run.log;
+  EXPECT_TRUE(run.says("min_speed")) << run.log;
+}

@@ -511,6 +511,8 @@ const Elsewhere elsewhere[] = {
     {"tracking", "#.y envelope [m]", "analysis/test_postprocess.cpp"},
     {"tracking", "#.z envelope [m]", "analysis/test_postprocess.cpp"},
     {"verdicts", "certified [-]", "analysis/test_certificates.cpp"},
+    {"verdicts", "neutral whirl modes [-]", "OnsetIsWhereGrowthIsZeroOnEveryMesh"},
+    {"verdicts", "neutral within [1/s]", "OnsetIsWhereGrowthIsZeroOnEveryMesh"},
     {"verdicts", "roots counted up to [Hz]", "analysis/test_certificates.cpp"},
 };
 

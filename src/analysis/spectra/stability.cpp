@@ -34,6 +34,10 @@ SpeedVerdict verdict_of(double speed, const std::vector<WhirlMode>& modes,
   v.speed = speed;
   v.certificate = certificate;
   for (const WhirlMode& m : modes) {
+    if (m.oscillates() && m.growth() == 0) {
+      ++v.neutral;
+      v.neutral_within = std::max(v.neutral_within, m.rounding);
+    }
     if (m.growth() <= 0) continue;
     ++(m.oscillates() ? v.whirling : v.diverging);
     v.fastest = std::max(v.fastest, m.lambda.real());
@@ -55,6 +59,7 @@ class Sweep {
   const std::vector<TrackedMode>& advance(double speed) {
     const double from = tracker_.speed();
     const std::size_t before = onsets.size();
+    deferred_ = 0;
     const auto visit = [&](double a, double b, const std::vector<TrackedMode>& modes) {
       for (const TrackedMode& m : modes)
         visit_mode(a, b, m);
@@ -75,15 +80,60 @@ class Sweep {
   ModeTracker& tracker() { return tracker_; }
 
  private:
+  /// A line on its way through the band in which its growth cannot be told from rounding.
+  struct Passage {
+    int definite = 0;      ///< last growth() that was not neutral
+    bool leaving = false;  ///< grew beyond the band, and is in it without having crossed zero
+    std::optional<TrackedMode> crossing;  ///< the step of its last change of sign
+    double from = 0, to = 0;              ///< speeds of that step
+  };
+
+  /// An onset is where the growth is zero, once it has been beyond the band on both sides: what is
+  /// known of rounding is a bound that depends on the mesh, its zero is not.
   void visit_mode(double a, double b, const TrackedMode& m) {
-    if (!m.has_before || !m.now.oscillates() || !m.before.oscillates()) return;
-    if ((m.before.growth() > 0) == (m.now.growth() > 0)) return;
-    // From exactly undamped to unstable (a conservative mode gaining damping from rotation) there
-    // is no sign change to find.
-    if ((m.before.lambda.real() > 0) == (m.now.lambda.real() > 0)) return;
+    if (!m.has_before || !m.now.oscillates() || !m.before.oscillates()) {
+      if (passages_[m.id].leaving) deferred_ -= 2;
+      passages_.erase(m.id);
+      return;
+    }
+    Passage& p = passages_[m.id];
+    if (m.before.growth() != 0) p.definite = m.before.growth();
+    const bool crosses = (m.before.lambda.real() > 0) != (m.now.lambda.real() > 0);
+    if (crosses) {
+      p.crossing = m;
+      p.from = a;
+      p.to = b;
+    }
+    const int now = m.now.growth();
+    if (p.leaving && (now > 0 || crosses)) {
+      p.leaving = false;
+      deferred_ -= 2;
+      if (now <= 0) add_crossing(p, false);
+    } else if (m.before.growth() > 0 && now <= 0) {
+      if (crosses) {
+        add_crossing(p, false);
+      } else {
+        p.leaving = true;
+        deferred_ += 2;
+      }
+    } else if (m.before.growth() <= 0 && now > 0 && p.crossing && (crosses || p.definite < 0)) {
+      // From exactly undamped to unstable (a conservative mode gaining damping from rotation) there
+      // is no change of sign to find.
+      add_crossing(p, true);
+    }
+    if (now != 0) {
+      p.definite = now;
+      p.crossing.reset();
+    }
+  }
+
+  void add_crossing(Passage& p, bool gains) {
     const auto rate = [](double, const WhirlMode& w) { return w.lambda.real(); };
-    if (const auto root = find_on_mode(follower_, a, m.before, b, m.now, rate, options_.tolerance))
-      onsets.push_back({root->speed, root->mode.frequency, m.now.growth() > 0, root->mode});
+    const TrackedMode step = *p.crossing;
+    p.crossing.reset();
+    if (const auto root =
+            find_on_mode(follower_, p.from, step.before, p.to, step.now, rate, options_.tolerance))
+      onsets.push_back({root->speed, root->mode.frequency, gains, root->mode});
   }
 
   /// Onsets between two speeds that the modes followed do not account for are isolated by the
@@ -91,7 +141,7 @@ class Sweep {
   /// is no onset: both grow before and after.
   void account(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb,
                std::size_t first_onset) {
-    Index change = growing(vb) - growing(va);
+    Index change = growing(vb) - growing(va) + deferred_;
     for (std::size_t k = first_onset; k < onsets.size(); ++k)
       change -= onsets[k].gains ? 2 : -2;
     if (change == 0) return;
@@ -176,6 +226,10 @@ class Sweep {
   TrackOptions track_;
   ModeTracker tracker_;
   WhirlSolver follower_, fresh_;
+  std::map<Index, Passage> passages_;  ///< by line
+  /// Growing roots that left or entered the band of this step without an onset, and those whose onset
+  /// is put into this step though they left before.
+  Index deferred_ = 0;
   std::vector<WhirlMode> modes_there_;
   std::map<Index, std::vector<Vec2>>
       history_;  ///< by line: speed and growth ratio of the last three

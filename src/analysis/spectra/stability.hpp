@@ -39,6 +39,8 @@ struct SpeedVerdict {
   double speed = 0;                   ///< rad/s
   Index whirling = 0, diverging = 0;  ///< growing roots: pairs that oscillate, real ones
   double fastest = 0;                 ///< 1/s: largest growth rate; 0 where nothing grows
+  Index neutral = 0;                  ///< pairs that oscillate, of a growth within rounding
+  double neutral_within = 0;          ///< 1/s: the largest of these roundings
   SpectrumCertificate certificate;
   bool stable() const { return whirling + diverging == 0; }
 };

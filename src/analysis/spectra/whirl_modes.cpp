@@ -381,10 +381,62 @@ void WhirlSolver::solve_hysteretic(double Omega) {
   std::stable_sort(modes_.begin(), modes_.end(), [](const WhirlMode& a, const WhirlMode& b) {
     return a.frequency < b.frequency;
   });
+  if (options_.certify) count_hysteretic(Omega);
   Index oscillating = 0;
   std::erase_if(modes_, [&](const WhirlMode& m) {
     return options_.count > 0 && m.oscillates() && ++oscillating > options_.count;
   });
+}
+
+void WhirlSolver::count_hysteretic(double Omega) {
+  la::WedgeProblem p;
+  for (const WhirlMode& m : modes_)  // ascending
+    if (m.frequency > 0.0) p.known.push_back(m.lambda);
+  if (p.known.empty()) return;
+  // The list ends in a gap above the modes wanted.
+  const std::size_t wanted = options_.count > 0 ? static_cast<std::size_t>(options_.count) : 0;
+  std::size_t last = p.known.size() - 1;
+  if (wanted > 0 && wanted < p.known.size()) last = wanted - 1;
+  while (last + 1 < p.known.size() && p.known[last + 1].imag() < p.known[last].imag() * (1 + 1e-6))
+    ++last;
+  const double end = p.known[last].imag();
+  double next = last + 1 < p.known.size() ? p.known[last + 1].imag() : infinity;
+  if (wanted == 0) next = std::min(next, std::max(2.0 * options_.max_frequency - end, end * 1.02));
+  const double top = end + 0.5 * std::min(next - end, 0.1 * end);
+  const double low = 0.02 * p.known.front().imag();
+  p.reach = la::oscillating_reach;
+  if (by_frequency()) p.stations = own_->frequencies();
+  std::vector<double> edges{low};
+  for (const double ratio : linear_.running().running().ratio)
+    if (const double spin = std::abs(ratio * Omega); spin > low && spin < top)
+      edges.push_back(spin);
+  edges.push_back(top);
+  std::sort(edges.begin(), edges.end());
+  if (!wedge_) wedge_.emplace(linear_.system().pattern(), motion_.active());
+  la::Certificate& list = certificate_.list;
+  list = {};
+  for (std::size_t k = 1; k < edges.size(); ++k) {
+    constexpr double beside = 1e-6;
+    p.low = k == 1 ? low : edges[k - 1] * (1.0 + beside);
+    p.top = k + 1 == edges.size() ? top : edges[k] * (1.0 - beside);
+    if (!(p.low < p.top)) continue;
+    p.at = [&](Complex s) -> const la::MCK& {
+      const double w = std::clamp(s.imag(), p.low, p.top);
+      return motion_.reduce(linear_.at(Omega, Complex(s.real(), w), w, by_frequency() ? w : nan));
+    };
+    const la::WedgeCount c = wedge_->count(p);
+    list.factorizations += c.factorizations;
+    if (!c.certain) return;
+    list.missing += c.unknown;
+    if (c.unknown > 0) list.where.emplace_back(0.0, 0.5 * (p.low + p.top));
+  }
+  // A mode at the speed of its shaft is a root on neither side: one too many.
+  if (list.missing < 0) return;
+  list.counted = true;
+  list.radius = top;
+  list.reach = p.reach * top;
+  certificate_.by_frequency = SpectrumCertificate::ByFrequency{low, 0};
+  certificate_.open.clear();
 }
 
 const std::vector<la::Mode>& WhirlSolver::judged(const la::MCK& m, double Omega,
@@ -454,8 +506,9 @@ const std::vector<WhirlMode>& WhirlSolver::solve(double Omega) {
   certificate_ = {};
   if (options_.damped && linear_.hysteretic()) {
     certificate_.open =
-        "hysteretic damping depends on the frequency of each mode (counted without it, each then "
-        "followed to its own frequency)";
+        "hysteretic damping depends on the frequency of each mode (each followed to its own "
+        "frequency), and the count of its modes did not settle";
+    if (!options_.certify) certificate_.open = "not asked for";
     solve_hysteretic(Omega);
   } else if (by_frequency()) {
     if (!options_.certify) certificate_.open = "not asked for";
@@ -519,13 +572,14 @@ std::string SpectrumCertificate::text_of_list() const {
                       list.taken_for_zero, list.zeros_within,
                       list.taken_for_zero == 1 ? "is" : "are");
   const std::string pairs =
-      by_frequency ? " (but pairs in which one branch of frequencies rises through the line along "
-                     "which tables are read, as no support does that loses nothing)" +
-                         (by_frequency->rising > 0
-                              ? fmt::format("; {} such rising roots are left out of the list",
-                                            by_frequency->rising)
-                              : std::string())
-                   : std::string();
+      by_frequency && axis
+          ? " (but pairs in which one branch of frequencies rises through the line along "
+            "which tables are read, as no support does that loses nothing)" +
+                (by_frequency->rising > 0
+                     ? fmt::format("; {} such rising roots are left out of the list",
+                                   by_frequency->rising)
+                     : std::string())
+          : std::string();
   if (list.missing == 0) return band + " counted and found" + pairs;
   std::string out =
       list.missing > 0 ? fmt::format("INCOMPLETE: {} of {} not found", list.missing, band)

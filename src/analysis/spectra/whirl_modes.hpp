@@ -11,6 +11,7 @@
 #include <analysis/spectra/frequency_dependent_modes.hpp>
 #include <la/axis_count.hpp>
 #include <la/eigen.hpp>
+#include <la/wedge_count.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -86,7 +87,8 @@ struct SpectrumCertificate {
     bool certain() const { return counted && unknown == 0; }
   };
   std::optional<Axis> axis;
-  /// The same supports: `list` is what la/wedge_count.hpp says, of modes from `low` (rad/s) on.
+  /// The same supports, and hysteretic damping: `list` is what la/wedge_count.hpp says, of modes from
+  /// `low` (rad/s) on.
   struct ByFrequency {
     double low = 0;
     Index rising = 0;  ///< roots met at which a branch of frequencies rises; not in the list
@@ -143,6 +145,9 @@ class WhirlSolver {
   std::optional<la::Mode> settle_rate(double Omega, la::Mode start);
   void solve_by_frequency(double Omega);
   void solve_hysteretic(double Omega);
+  /// Counts the modes known (all that were settled, before the list is cut to its number) by
+  /// la/wedge_count.hpp, in bands between the speeds of the shafts, at which their damping jumps.
+  void count_hysteretic(double Omega);
   /// Better vectors of modes of nearly equal frequency, within the space they span, under the
   /// damping at their mean rate.
   void separate(double Omega, std::vector<la::Mode>& group);
@@ -160,6 +165,7 @@ class WhirlSolver {
   SpectrumCertificate certificate_;
   std::optional<OwnFrequency> own_;  ///< where supports answer by frequency
   std::optional<la::AxisCounter> axis_;
+  std::optional<la::WedgeCounter> wedge_;  ///< where damping is hysteretic
   const la::MCK* matrices_ = nullptr;
   std::vector<WhirlMode> modes_;
 };
