@@ -31,8 +31,17 @@ Vec2 largest(const VecX& r, std::span<const unsigned char> free) {
 Linearizer::Linearizer(const system::System& system, SteadyRotation running,
                        EquilibriumOptions options)
     : running_(system, std::move(running)),
-      solver_(running_, options),
+      options_(options),
+      solver_(running_, options_),
       matrices_(system.make_matrices()) {}
+
+Linearizer::Linearizer(const Linearizer& other)
+    : Linearizer(other.system(), other.running_.running(), other.options_) {
+  first_ = other.first_;
+  if (other.undeformed_) stay_undeformed();
+  running_.take_polynomials(other.running_);
+  if (other.have_) set_equilibrium(other.equilibrium_);
+}
 
 void Linearizer::set_equilibrium(const Equilibrium& e) {
   WHIRL_EXPECTS(e.state.q.size() == system().size());

@@ -14,6 +14,9 @@ class Linearizer {
  public:
   explicit Linearizer(const system::System& system, SteadyRotation running = {},
                       EquilibriumOptions options = {});
+  /// Of the same system and in the same state, with a workspace of its own: for another thread.
+  Linearizer(const Linearizer& other);
+  Linearizer& operator=(const Linearizer&) = delete;
 
   /// Moves the equilibrium to Omega (rad/s, from the last one) and returns the matrices there;
   /// valid until the next call.
@@ -69,6 +72,7 @@ class Linearizer {
   bool still_balanced(double Omega);
   void take_undeformed(double Omega);
   SteadySystem running_;
+  EquilibriumOptions options_;
   EquilibriumSolver solver_;
   Equilibrium equilibrium_;
   std::optional<system::State> first_;

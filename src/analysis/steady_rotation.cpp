@@ -187,6 +187,27 @@ void SteadySystem::find_unsteady_joint() {
   }
 }
 
+void SteadySystem::take_polynomials(const SteadySystem& other) {
+  WHIRL_EXPECTS(&other.system_ == &system_);
+  polynomial_ = other.polynomial_;
+  seen_ = other.seen_;
+  scale_ = other.scale_;
+  polynomial_load_ = other.polynomial_load_;
+  seen_speed_ = other.seen_speed_;
+  polynomial_q_ = other.polynomial_q_;
+  seen_q_ = other.seen_q_;
+  polynomial_charts_ = other.polynomial_charts_;
+  p0_ = other.p0_;
+  p1_ = other.p1_;
+  k2_ = other.k2_;
+  r0_ = other.r0_;
+  r1_ = other.r1_;
+  r2_ = other.r2_;
+  f0_ = other.f0_;
+  f1_ = other.f1_;
+  f2_ = other.f2_;
+}
+
 void SteadySystem::set_load(double factor) {
   WHIRL_EXPECTS(std::isfinite(factor));
   if (workspace_.context.load != factor) {

@@ -44,6 +44,10 @@ class SteadySystem {
  public:
   explicit SteadySystem(const system::System& system, SteadyRotation running = {});
 
+  /// Takes over the polynomials that another one, of the same system and rotation, has made: they
+  /// are found from tangents at several speeds.
+  void take_polynomials(const SteadySystem& other);
+
   const system::System& system() const { return system_; }
   const SteadyRotation& running() const { return running_; }
   double ratio(Index line) const { return ratio_[static_cast<std::size_t>(line)]; }

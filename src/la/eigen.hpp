@@ -109,6 +109,8 @@ class ModeSolver {
   const std::vector<Mode>& solve_to(const MCK& m, double radius);
   /// Forgets what is known, so that the next solve() starts from nothing.
   void reset();
+  /// The next solve() starts from what the other one, of the same pattern and options, found last.
+  void start_from(const ModeSolver& other);
   /// Newton's method from one mode; nullopt when it does not converge.
   std::optional<Mode> follow(const MCK& m, const Mode& start);
 

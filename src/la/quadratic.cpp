@@ -342,6 +342,12 @@ void ModeSolver::reset() {
   impl_->sigma = 0.0;
 }
 
+void ModeSolver::start_from(const ModeSolver& other) {
+  impl_->known = other.impl_->known;
+  impl_->sigma = other.impl_->sigma;
+  impl_->alpha = other.impl_->alpha;
+}
+
 std::optional<Mode> ModeSolver::follow(const MCK& m, const Mode& start) {
   impl_->set(m);
   Pair p;

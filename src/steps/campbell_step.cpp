@@ -79,7 +79,7 @@ std::vector<analysis::Critical> criticals_of(results::FrequencyStep& s,
   const double last = std::min(q.max_speed, q.max_frequency / q.order);
   double sure_to = 0.0;
   if (crossings != nullptr) {
-    out = crossings->solve(s.linear, q.tolerance);
+    out = crossings->solve(s.linear, q.tolerance, q.threads);
     sure_to = std::min(crossings->sure_to(), last);
     std::erase_if(out, [&](const analysis::Critical& c) { return c.speed > sure_to; });
     if (sure_to >= last) return out;
@@ -111,6 +111,7 @@ std::vector<plot::CriticalMark> find_criticals(results::FrequencyStep& s,
     q.damped = law.damped;
     q.grid = static_cast<Index>(o.speeds.size());
     q.max_frequency = highest_frequency(c);
+    q.threads = s.job.options.jobs;
     analysis::OrderCrossings* known = crossings.empty() ? nullptr : &crossings[i];
     for (const analysis::Critical& k : criticals_of(s, o, q, known)) {
       marks.push_back({k.speed, k.frequency, order, {}});
@@ -122,13 +123,12 @@ std::vector<plot::CriticalMark> find_criticals(results::FrequencyStep& s,
   return marks;
 }
 
-/// Of the lines at the highest speed.
-void report_mesh(results::FrequencyStep& s, const analysis::CampbellOptions& o) {
-  analysis::ModesOptions modes = o.track.modes;
-  modes.certify = false;
-  const double Omega = o.speeds.back();
+/// Of the modes asked for, at the last speed.
+void report_mesh(results::FrequencyStep& s, const analysis::Campbell& c, Index asked) {
+  std::span<const analysis::WhirlMode> modes = c.last;
+  if (asked > 0) modes = modes.first(std::min(modes.size(), static_cast<std::size_t>(asked)));
   results::MeshAccuracy accuracy(s);
-  accuracy.look_at(analysis::whirl_modes(s.linear, Omega, modes), Omega);
+  accuracy.look_at(modes, c.speeds.back());
   accuracy.report();
 }
 
@@ -223,6 +223,7 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   o.track.modes.max_frequency = law.max_frequency;
   o.track.modes.motion = results::motion_of(law.motion);
   o.track.modes.damped = law.damped;
+  o.track.threads = job.options.jobs;
   const double top = std::max(std::abs(o.speeds.front()), std::abs(o.speeds.back()));
   results::FrequencyStep s(job, step, "campbell", "Campbell diagram", top);
   // At standstill every rotor that turns freely has the frequency 0 = n x 0: no critical speed.
@@ -258,7 +259,7 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   v["speeds solved"] = c.speeds_solved;
   for (const plot::CriticalMark& m : marks)
     v["critical speeds [rpm]"][fmt::format("{:g}x", m.order)].push(to_rpm(m.speed));
-  report_mesh(s, o);
+  report_mesh(s, c, law.modes);
   results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
   s.add_table("campbell", make_table(c), false);
   s.add_table("critical_speeds", std::move(criticals));

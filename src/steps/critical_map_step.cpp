@@ -185,6 +185,7 @@ void run_critical_map_step(run::Job& job, const model::Step& step,
   o.running = results::steady_rotation_of(job, law.max_speed);
   o.forward_only = !law.backward;
   o.undeformed = law.about == model::About::undeformed;
+  o.threads = job.options.jobs;
   for (int k = 0; k < law.points; ++k)
     o.stiffness.push_back(law.stiffness_min * std::pow(law.stiffness_max / law.stiffness_min,
                                                        static_cast<double>(k) / (law.points - 1)));

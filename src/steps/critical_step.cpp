@@ -81,6 +81,7 @@ std::vector<analysis::Critical> CriticalRun::solve(double order, bool damped) {
   o.max_speed = law_.max_speed;
   o.damped = damped;
   o.motion = results::motion_of(law_.motion);
+  o.threads = s_.job.options.jobs;
   analysis::SpectrumCertificate certificate;
   std::vector<analysis::Critical> list = analysis::critical_speeds(s_.linear, o, &certificate);
   if (damped) s_.certify(certificate, fmt::format("damped, order {:g}", order));

@@ -196,6 +196,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
                            std::max(std::abs(speeds.front()), std::abs(speeds.back())));
   o.modes = law.modes;
   o.all = true;
+  o.threads = job.options.jobs;
   const run::PhaseTimer timer(job, "stability");
   const analysis::StabilityResult r = analysis::find_instability(s.linear, o);
 

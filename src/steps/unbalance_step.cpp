@@ -126,6 +126,7 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
     o.min_speed = low;
     o.damped = true;
     o.motion = analysis::Motion::lateral;
+    o.threads = s.job.options.jobs;
     for (const analysis::Critical& c : analysis::critical_speeds(s.linear, o))
       for (const double x : {-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
         const double Omega = c.speed * (1.0 + x * c.mode.damping_ratio);
@@ -273,15 +274,17 @@ analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::U
   o.refine_peaks = law.speed.refine_peaks;
   o.probes = results::response_probes(job);
   o.outputs = results::support_measurements(job);
+  o.threads = job.options.jobs;
   return o;
 }
 
 /// The middle and the end of the range, and the highest response. The bands of an asymmetric rotor
 /// are narrow, and a look at one is cheap.
-std::vector<double> speeds_to_judge(const std::vector<double>& speeds, double highest,
+std::vector<double> speeds_to_judge(const std::vector<double>& speeds, const Largest& response,
                                     bool asymmetric) {
   const int parts = asymmetric ? 16 : 2;
-  std::vector<double> out{highest};
+  std::vector<double> out;
+  if (response.amplitude > 0) out.push_back(response.speed);
   for (int k = 1; k <= parts; ++k)
     out.push_back(speeds.front() + (speeds.back() - speeds.front()) * k / parts);
   return out;
@@ -312,7 +315,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
   results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
-  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest.speed, o.turns_with_rotor));
+  results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, o.turns_with_rotor));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
                 make_table(r, k, o.probes, o.outputs), false);

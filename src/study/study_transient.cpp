@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <mutex>
 
 namespace whirl::study {
 
@@ -162,7 +163,8 @@ struct Bench {
     start = steps::transient_start(job, step, law);
   }
   /// exact: its columns come last among the quantities. share: of the duration.
-  analysis::StudySample run(const analysis::StudyCase& c, const Exact* exact, double share = 1.0) {
+  analysis::StudySample run(const analysis::StudyCase& c, const Exact* exact,
+                            double share = 1.0) const {
     const std::unique_ptr<system::SystemProblem> equations =
         steps::transient_problem(job, law, start);
     system::SystemProblem& problem = *equations;
@@ -226,19 +228,25 @@ class Benches {
         which_(which),
         run_(run),
         root_(root) {}
-  Bench& at(int factor) {
-    auto& b = known_[factor];
-    if (!b && factor == 1) b = std::make_unique<Bench>(model_, run_, root_, which_);
-    if (!b)
-      b = std::make_unique<Bench>(refined(model_, at(1).job.mesh, factor), run_, root_, which_);
-    return *b;
+  const Bench& at(int factor) {
+    const std::lock_guard lock(mutex_);
+    return make(factor);
   }
 
  private:
+  const Bench& make(int factor) {
+    auto& b = known_[factor];
+    if (!b && factor == 1) b = std::make_unique<Bench>(model_, run_, root_, which_);
+    if (!b)
+      b = std::make_unique<Bench>(refined(model_, make(1).job.mesh, factor), run_, root_, which_);
+    return *b;
+  }
+
   const model::Model& model_;
   std::size_t which_;
   const run::RunOptions& run_;
   const std::filesystem::path& root_;
+  std::mutex mutex_;
   std::map<int, std::unique_ptr<Bench>> known_;
 };
 
@@ -254,7 +262,7 @@ struct Ground {
 // What the default accuracy costs says how tight a reference may be: one to 1e-10 on four times the
 // elements takes a hundred times as long.
 Ground survey(Benches& benches) {
-  Bench& bench = benches.at(1);
+  const Bench& bench = benches.at(1);
   Ground g;
   g.flexible = !bench.job.mesh.elements.empty();
   g.rigid_bodies = system::MomentumProblem::obstacle(bench.job.system()).empty();
@@ -307,21 +315,31 @@ std::vector<analysis::StudyCase> make_ladder(const Ground& g) {
   return ladder;
 }
 
-/// Runs the settings as they come: the reference, its check, the ladder.
+/// Settings of one series become more and more expensive.
+std::string series_of(const analysis::StudyCase& c) {
+  return c.method + (c.tolerance > 0 ? "" : " fixed") + (c.mesh_factor > 1 ? " finer" : "");
+}
+
+/// Runs the reference, its check and the ladder; each series by one thread at a time.
 class Runner {
  public:
-  Runner(Benches& benches, const Exact* exact) : benches_(benches), exact_(exact) {}
+  Runner(Benches& benches, const Exact* exact, const analysis::StudyOptions& options)
+      : benches_(benches),
+        exact_(exact),
+        options_(options) {
+    for (const analysis::StudyCase& c : options.ladder)
+      spent_[series_of(c)] = 0.0;
+  }
   analysis::StudySample operator()(const analysis::StudyCase& c) {
-    const int number = runs_++;
-    if (number < 2) {
-      analysis::StudySample s = benches_.at(c.mesh_factor).run(c, exact_);
-      if (number == 0 && exact_ && s.ok) take_exact(s);
+    const Bench& bench = benches_.at(c.mesh_factor);
+    if (c == options_.reference || c == options_.cross_check) {
+      analysis::StudySample s = bench.run(c, exact_);
+      if (c == options_.reference && exact_ && s.ok) take_exact(s);
       return s;
     }
-    double& spent =
-        spent_[c.method + (c.tolerance > 0 ? "" : " fixed") + (c.mesh_factor > 1 ? " finer" : "")];
+    double& spent = spent_.at(series_of(c));
     if (spent > patience) return left_out(c);
-    analysis::StudySample s = benches_.at(c.mesh_factor).run(c, exact_);
+    analysis::StudySample s = bench.run(c, exact_);
     spent = std::max(spent, s.seconds);
     return s;
   }
@@ -346,8 +364,8 @@ class Runner {
 
   Benches& benches_;
   const Exact* exact_;
+  const analysis::StudyOptions& options_;
   std::map<std::string, double> spent_;
-  int runs_ = 0;
 };
 
 }  // namespace
@@ -368,7 +386,9 @@ StudyPart study_transient(const model::Model& model, std::size_t which, const St
   o.progress = [&](const analysis::StudySample& s) {
     if (talk) print_study_sample(s);
   };
-  Runner runner(benches, exact.get());
+  o.series = series_of;
+  o.threads = run.jobs;
+  Runner runner(benches, exact.get(), o);
   const analysis::StudyResult r =
       analysis::run_study([&](const analysis::StudyCase& c) { return runner(c); }, o);
 

@@ -204,3 +204,14 @@ TEST(OilWhirlRuns, WhipAtLooseTolerances) {
     EXPECT_LT(steps, 0.5 * most) << tolerance;
   }
 }
+
+// A film resists nothing at rest, and nothing happens there that could be judged.
+TEST(OilWhirl, ResponseOfABalancedRotorIsZero) {
+  const DeckRun run(test::oil_whirl_rotor(R"([[step]]
+name = "response"
+type = "unbalance_response"
+speed = { start = "1500 rpm", stop = "2000 rpm", points = 6 }
+)"));
+  EXPECT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(run.says("W02")) << run.log;
+}

@@ -2,6 +2,7 @@
 #include <core/contract.hpp>
 
 #include <analysis/search.hpp>
+#include <core/parallel.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -127,18 +128,48 @@ void UnbalanceSolver::find_peaks(std::size_t order, std::size_t probe,
   }
 }
 
+std::vector<SteadyPoint> UnbalanceSolver::points_at(const std::vector<double>& speeds) {
+  constexpr std::size_t batch = 64;       // equilibria kept at a time
+  constexpr std::size_t run_length = 16;  // speeds of one solver
+  std::vector<SteadyPoint> points(speeds.size());
+  for (std::size_t from = 0; from < speeds.size(); from += batch) {
+    const std::size_t count = std::min(batch, speeds.size() - from);
+    std::vector<Equilibrium> equilibria;
+    for (std::size_t k = 0; k < count; ++k) {
+      linear_.move_to(speeds[from + k]);
+      equilibria.push_back(linear_.equilibrium());
+    }
+    run_side_by_side((count + run_length - 1) / run_length, options_.threads, [&](std::size_t r) {
+      Linearizer linear(linear_);
+      UnbalanceSolver solver(linear, options_);
+      for (std::size_t k = r * run_length; k < std::min((r + 1) * run_length, count); ++k) {
+        linear.set_equilibrium(equilibria[k]);
+        points[from + k] = solver.at(speeds[from + k]);
+      }
+    });
+  }
+  return points;
+}
+
 UnbalanceResponse UnbalanceSolver::run() {
   UnbalanceResponse out;
   const auto orders = linear_.running().orders();
   out.orders.assign(orders.begin(), orders.end());
   peaks_.clear();
-  for (double Omega : options_.speeds)
-    out.points.push_back(at(Omega));
-  std::vector<SteadyPoint> extra;
-  for (std::size_t k = 0; k < orders.size(); ++k)
-    for (std::size_t p = 0; p < options_.probes.size(); ++p)
-      find_peaks(k, p, out.points, extra);
-  std::move(extra.begin(), extra.end(), std::back_inserter(out.points));
+  out.points = points_at(options_.speeds);
+  const std::size_t probes = options_.probes.size();
+  std::vector<std::vector<SteadyPoint>> extra(orders.size() * probes);
+  std::vector<std::vector<ResponsePeak>> peaks(extra.size());
+  run_side_by_side(extra.size(), options_.threads, [&](std::size_t k) {
+    Linearizer linear(linear_);
+    UnbalanceSolver solver(linear, options_);
+    solver.find_peaks(k / probes, k % probes, out.points, extra[k]);
+    peaks[k] = std::move(solver.peaks_);
+  });
+  for (std::size_t k = 0; k < extra.size(); ++k) {
+    std::move(peaks[k].begin(), peaks[k].end(), std::back_inserter(peaks_));
+    std::move(extra[k].begin(), extra[k].end(), std::back_inserter(out.points));
+  }
   std::sort(out.points.begin(), out.points.end(),
             [](const SteadyPoint& a, const SteadyPoint& b) { return a.Omega < b.Omega; });
   // the same peak seen by two probes: keep speeds apart by 1e-7

@@ -21,6 +21,7 @@ struct UnbalanceOptions {
   bool refine_peaks = true;  ///< add speeds at and around the peaks of the probes to the response
   bool shapes = false;       ///< keep the amplitudes of all unknowns
   bool turns_with_rotor = false;  ///< solve in axes that turn with an asymmetric rotor
+  int threads = 1;                ///< 0: all processors; the results are the same for any number
 };
 
 /// Amplitudes at one speed; [order] first: a rotor whose lines turn at different speeds responds
@@ -59,6 +60,8 @@ class UnbalanceSolver {
   const std::vector<ResponsePeak>& peaks() const { return peaks_; }
 
  private:
+  /// At the speeds in their order: equilibria one after the other, responses side by side.
+  std::vector<SteadyPoint> points_at(const std::vector<double>& speeds);
   void find_peaks(std::size_t order, std::size_t probe, const std::vector<SteadyPoint>& coarse,
                   std::vector<SteadyPoint>& extra);
   /// Half-power points of a peak near the sample i.

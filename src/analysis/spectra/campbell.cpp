@@ -129,14 +129,21 @@ Campbell CampbellRecorder::finish(long speeds_solved) {
 Campbell campbell(Linearizer& linear, const CampbellOptions& options,
                   const ModeTracker::Visit& visit) {
   CampbellRecorder recorder(options.speeds, options.shapes);
-  ModeTracker tracker(linear, options.track);
+  TrackOptions track = options.track;
+  track.ahead = options.speeds;
+  ModeTracker tracker(linear, track);
   std::vector<SpectrumCertificate> certificates;
+  std::vector<WhirlMode> last;
   for (std::size_t k = 0; k < options.speeds.size(); ++k) {
     const auto& modes = tracker.advance(options.speeds[k], visit);
     recorder.take(k, modes, tracker.lines());
-    certificates.push_back(tracker.solver().certificate());
+    certificates.push_back(tracker.certificate());
+    if (k + 1 < options.speeds.size()) continue;
+    for (const TrackedMode& m : modes)
+      last.push_back(m.now);
   }
   Campbell out = recorder.finish(tracker.speeds_solved());
+  out.last = std::move(last);
   out.certificates = std::move(certificates);
   return out;
 }

@@ -29,6 +29,7 @@ struct Campbell {
   std::vector<CampbellLine> lines;                ///< by frequency at the first speed they appear
   long speeds_solved = 0;                         ///< with those put in to keep the lines apart
   std::vector<SpectrumCertificate> certificates;  ///< one a speed
+  std::vector<WhirlMode> last;                    ///< all modes followed, at the last speed
 };
 
 /// Collects the modes a tracker finds at the speeds of a diagram.

@@ -2,6 +2,7 @@
 
 #include <core/contract.hpp>
 #include <core/error.hpp>
+#include <core/parallel.hpp>
 #include <la/block_lu.hpp>
 #include <la/dense.hpp>
 #include <la/multiply.hpp>
@@ -210,18 +211,21 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
   t.modes.count = 0;
   t.modes.max_frequency =
       1.1 * o.order * o.max_speed;  // only modes that reach the order line within the range matter
+  for (Index k = 0; k <= o.grid; ++k)
+    t.ahead.push_back(low +
+                      (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid));
+  t.threads = o.threads;
   ModeTracker tracker(linear, t);
   OrderCrossings crossings(o.order, low, o.max_speed, t.modes);
   const auto visit = [&](double from, double to, const std::vector<TrackedMode>& modes) {
     crossings.look(from, to, modes);
   };
-  for (Index k = 0; k <= o.grid; ++k) {
-    tracker.advance(
-        low + (o.max_speed - low) * static_cast<double>(k) / static_cast<double>(o.grid), visit);
-    const SpectrumCertificate& now = tracker.solver().certificate();
+  for (std::size_t k = 0; k < t.ahead.size(); ++k) {
+    tracker.advance(t.ahead[k], visit);
+    const SpectrumCertificate& now = tracker.certificate();
     if (certificate && (k == 0 || (certificate->complete() && !now.complete()))) *certificate = now;
   }
-  std::vector<Critical> out = crossings.solve(linear, o.tolerance);
+  std::vector<Critical> out = crossings.solve(linear, o.tolerance, o.threads);
   if (certificate && crossings.sure_to() < o.max_speed)
     certificate->open =
         fmt::format("a mode was lost on the way to its critical speed above {:.6g} rpm",
@@ -268,17 +272,24 @@ void OrderCrossings::look(double from, double to, const std::vector<TrackedMode>
   if (sure_) sure_to_ = std::min(to, max_speed_);
 }
 
-std::vector<Critical> OrderCrossings::solve(Linearizer& linear, double tolerance) {
+std::vector<Critical> OrderCrossings::solve(const Linearizer& linear, double tolerance,
+                                            int threads) {
   ModesOptions one_at_a_time = modes_;
   one_at_a_time.max_frequency = infinity;
   one_at_a_time.count = 2;
-  WhirlSolver follower(linear, one_at_a_time);
   const auto g = [this](double Omega, const WhirlMode& w) { return gap(Omega, w); };
+  std::vector<std::optional<TrackedRoot>> roots(steps_.size());
+  run_side_by_side(steps_.size(), threads, [&](std::size_t k) {
+    const Step& s = steps_[k];
+    Linearizer own(linear);
+    WhirlSolver follower(own, one_at_a_time);
+    roots[k] = find_on_mode(follower, s.from, s.before, s.to, s.now, g, tolerance);
+  });
   std::vector<Critical> out;
-  for (const Step& s : steps_) {
-    const auto root = find_on_mode(follower, s.from, s.before, s.to, s.now, g, tolerance);
+  for (std::size_t k = 0; k < roots.size(); ++k) {
+    const auto& root = roots[k];
     if (!root) {
-      sure_to_ = std::min(sure_to_, std::max(min_speed_, s.from));
+      sure_to_ = std::min(sure_to_, std::max(min_speed_, steps_[k].from));
       continue;
     }
     if (root->speed >= min_speed_ && root->speed <= max_speed_)
@@ -349,8 +360,13 @@ class MapTracker {
 
   CriticalMap run() {
     const std::vector<double>& k = options_.stiffness;
+    constexpr std::size_t batch = 8;  // points kept at a time
+    std::vector<MapPoint> points(batch);
     for (std::size_t i = 0; i < k.size(); ++i) {
-      MapPoint next = solve(k[i]);
+      if (i % batch == 0)
+        run_side_by_side(std::min(batch, k.size() - i), options_.threads,
+                         [&](std::size_t j) { points[j] = solve(k[i + j]); });
+      MapPoint next = std::move(points[i % batch]);
       if (i > 0) advance(k[i - 1], k[i], next, 4);
       number(next);
       for (const MapPoint::Entry& e : next.entries)

@@ -26,6 +26,7 @@ struct CriticalOptions {
   Index grid = 40;                  ///< speeds of the search
   double max_frequency = infinity;  ///< rad/s: critical speeds beyond it are left out
   double tolerance = 1e-13;         ///< relative
+  int threads = 1;                  ///< 0: all processors; the results are the same for any number
 };
 
 struct Critical {
@@ -48,7 +49,7 @@ class OrderCrossings {
   /// One step of the tracker, as ModeTracker::Visit.
   void look(double from, double to, const std::vector<TrackedMode>& modes);
   /// In ascending order.
-  std::vector<Critical> solve(Linearizer& linear, double tolerance);
+  std::vector<Critical> solve(const Linearizer& linear, double tolerance, int threads = 1);
   /// rad/s: up to here no crossing was beyond the lists of modes or, once solved for, lost.
   double sure_to() const { return sure_to_; }
 
@@ -85,6 +86,7 @@ struct CriticalMapOptions {
   bool forward_only =
       true;  ///< what unbalance can excite; false: backward ones as lines of their own
   bool undeformed = false;  ///< Linearizer::stay_undeformed()
+  int threads = 1;          ///< of the stiffnesses; 0: all processors
 };
 struct CriticalMapLine {
   ModeKind kind = ModeKind::lateral;

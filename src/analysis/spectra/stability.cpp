@@ -1,8 +1,11 @@
 #include <analysis/spectra/stability.hpp>
 
+#include <core/parallel.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <optional>
 
 namespace whirl::analysis {
@@ -28,6 +31,15 @@ std::vector<double> speeds_of(const StabilityOptions& o) {
   return speeds;
 }
 
+TrackOptions track_options(const StabilityOptions& o) {
+  TrackOptions t{mode_options(o)};
+  t.ahead = speeds_of(o);
+  // A search that ends at the first onset should not have gone far beyond it.
+  if (!o.all) t.at_once = 2 * ModesAhead::run_length;
+  t.threads = o.threads;
+  return t;
+}
+
 SpeedVerdict verdict_of(double speed, const std::vector<WhirlMode>& modes,
                         const SpectrumCertificate& certificate) {
   SpeedVerdict v;
@@ -50,7 +62,7 @@ class Sweep {
  public:
   Sweep(Linearizer& linear, const StabilityOptions& options)
       : options_(options),
-        track_{mode_options(options)},
+        track_(track_options(options)),
         tracker_(linear, track_),
         follower_(linear, track_.modes),
         fresh_(linear, track_.modes) {}
@@ -68,7 +80,7 @@ class Sweep {
     std::vector<WhirlMode> now;
     for (const TrackedMode& m : modes)
       now.push_back(m.now);
-    const SpeedVerdict verdict = verdict_of(speed, now, tracker_.solver().certificate());
+    const SpeedVerdict verdict = verdict_of(speed, now, tracker_.certificate());
     if (!verdicts.empty()) account(from, speed, verdicts.back(), verdict, before);
     verdicts.push_back(verdict);
     look_between(modes);
@@ -278,31 +290,42 @@ StabilityMap stability_map(const std::function<system::System(double)>& build,
   StabilityMap map;
   map.parameter = parameter;
   map.speeds = speeds_of(options);
-  for (double p : parameter) {
-    const system::System system = build(p);
+  const std::size_t count = parameter.size();
+  map.least_log_decrement.resize(count);
+  map.onset.resize(count);
+  map.frequency.assign(count, nan);
+  StabilityOptions one_thread = options;
+  one_thread.threads = 1;
+  std::mutex building;
+  std::vector<unsigned char> certain(count);
+  run_side_by_side(count, options.threads, [&](std::size_t p) {
+    const system::System system = [&] {
+      const std::lock_guard lock(building);
+      return build(parameter[p]);
+    }();
     SteadyRotation r = running;
     for (const double Omega : map.speeds)
       r.top_speed = std::max(r.top_speed, std::abs(Omega));
     Linearizer linear(system, r);
     std::vector<double> least(map.speeds.size(), nan);
     const StabilityResult result =
-        sweep(linear, options, [&](std::size_t k, const std::vector<TrackedMode>& modes) {
+        sweep(linear, one_thread, [&](std::size_t k, const std::vector<TrackedMode>& modes) {
           for (const TrackedMode& m : modes)
             if (m.now.kind == ModeKind::lateral && m.now.frequency > 0 &&
                 !(least[k] <= m.now.log_decrement))
               least[k] = m.now.log_decrement;
         });
-    map.least_log_decrement.push_back(std::move(least));
-    map.certain.push_back(result.certain());
-    map.onset.push_back(result.stable_at_start ? nan : -infinity);
-    map.frequency.push_back(nan);
+    map.least_log_decrement[p] = std::move(least);
+    certain[p] = result.certain();
+    map.onset[p] = result.stable_at_start ? nan : -infinity;
     for (const Onset& o : result.onsets)
       if (o.gains && result.stable_at_start) {
-        map.onset.back() = o.speed;
-        map.frequency.back() = o.frequency;
+        map.onset[p] = o.speed;
+        map.frequency[p] = o.frequency;
         break;
       }
-  }
+  });
+  map.certain.assign(certain.begin(), certain.end());
   return map;
 }
 

@@ -23,6 +23,7 @@ struct StabilityOptions {
   Motion motion = Motion::all;
   double tolerance = 1e-12;  ///< relative, of the speed
   bool all = false;          ///< go on after the first crossing; else stop there
+  int threads = 1;           ///< 0: all processors; the results are the same for any number
 };
 
 struct Onset {

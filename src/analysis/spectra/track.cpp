@@ -11,7 +11,25 @@ namespace whirl::analysis {
 ModeTracker::ModeTracker(Linearizer& linear, const TrackOptions& options)
     : linear_(linear),
       options_(options),
-      solver_(linear, options.modes) {}
+      solver_(linear, options.modes) {
+  if (!options_.ahead.empty())
+    ahead_.emplace(linear, options_.modes, options_.ahead, options_.at_once, options_.threads);
+}
+
+const std::vector<WhirlMode>& ModeTracker::find(double Omega) {
+  // A speed put in between leaves the one ahead where it is.
+  if (ahead_ && !(found_ahead_ && found_ahead_->Omega == Omega))
+    if (const ModesAtSpeed* next = ahead_->at(Omega)) found_ahead_ = next;
+  if (found_ahead_ && found_ahead_->Omega == Omega) {
+    linear_.set_equilibrium(found_ahead_->equilibrium);
+    if (!started_) solver_.move_to(Omega);  // the metric of the first speed does for all
+    certificate_ = found_ahead_->certificate;
+    return found_ahead_->modes;
+  }
+  const std::vector<WhirlMode>& modes = solver_.solve(Omega);
+  certificate_ = solver_.certificate();
+  return modes;
+}
 
 struct ModeTracker::Likeness {
   double score, like, apart;
@@ -73,7 +91,7 @@ bool ModeTracker::pair(const std::vector<WhirlMode>& found, bool last_chance,
 }
 
 bool ModeTracker::step(double Omega, bool last_chance) {
-  const std::vector<WhirlMode>& found = solver_.solve(Omega);
+  const std::vector<WhirlMode>& found = find(Omega);
   ++solved_;
   std::vector<Index> of_new(found.size(), -1);
   if (started_) {

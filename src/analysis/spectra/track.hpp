@@ -5,7 +5,7 @@
 // (best pairs first). When the pairing is in doubt, a speed in between is put in, down to 1/256 of
 // the step: at a crossing the shapes then keep apart, at a veering they turn gradually.
 #pragma once
-#include <analysis/spectra/whirl_modes.hpp>
+#include <analysis/spectra/modes_ahead.hpp>
 #include <functional>
 
 namespace whirl::analysis {
@@ -16,6 +16,11 @@ struct TrackOptions {
   int halvings = 8;      ///< at most
   int most_doubts = 64;  ///< between two speeds asked for; then pairs are taken as they are (a
                          ///< rotor whose modes change beyond recognition)
+  /// rad/s: speeds that advance() will be asked for, in this order, and how many of them (0: all) are
+  /// found side by side (modes_ahead.hpp) on how many threads (0: all processors).
+  std::vector<double> ahead{};
+  std::size_t at_once = 0;
+  int threads = 1;
 };
 
 /// One mode on its way. id counts lines in order of appearance; before is valid when has_before.
@@ -36,6 +41,8 @@ class ModeTracker {
   double speed() const { return speed_; }
   Index lines() const { return next_id_; }
   WhirlSolver& solver() { return solver_; }
+  /// Of the modes at hand.
+  const SpectrumCertificate& certificate() const { return certificate_; }
   long speeds_solved() const { return solved_; }
 
  private:
@@ -46,9 +53,14 @@ class ModeTracker {
   /// of_new: for each new mode the one at hand that it continues, or -1. False: in doubt.
   bool pair(const std::vector<WhirlMode>& found, bool last_chance, std::vector<Index>& of_new);
   bool step(double Omega, bool last_chance);
+  /// From those found ahead, else solved for.
+  const std::vector<WhirlMode>& find(double Omega);
   Linearizer& linear_;
   TrackOptions options_;
   WhirlSolver solver_;
+  std::optional<ModesAhead> ahead_;
+  const ModesAtSpeed* found_ahead_ = nullptr;
+  SpectrumCertificate certificate_;
   bool started_ = false;
   double speed_ = 0;
   Index next_id_ = 0;

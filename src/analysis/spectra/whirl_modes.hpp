@@ -124,6 +124,10 @@ class WhirlSolver {
  public:
   explicit WhirlSolver(Linearizer& linear, const ModesOptions& options = {});
   const std::vector<WhirlMode>& solve(double Omega);
+  /// The next solve() starts from what the other solver, of the same system and options, found last.
+  void start_from(const WhirlSolver& other) { solver_.start_from(other.solver_); }
+  /// Moves the matrices to a speed without looking for modes.
+  void move_to(double Omega) { matrices_at(Omega, Complex(0, infinity)); }
   /// The mode near `start` at another speed, by Newton; nullopt when there is none or another one
   /// was met (shape changed).
   std::optional<WhirlMode> follow(double Omega, const WhirlMode& start);

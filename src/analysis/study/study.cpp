@@ -2,12 +2,14 @@
 #include <core/contract.hpp>
 
 #include <core/error.hpp>
+#include <core/parallel.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 
 namespace whirl::analysis {
 
@@ -67,11 +69,14 @@ void find_reference(const StudyRunner& run, const StudyOptions& options,
     result.reference.quantities = *exact;
     result.uncertainty.assign(exact->size(), 0.0);
   } else {
-    result.reference = timed(run, options.reference, 1);
+    StudySample check;
+    run_side_by_side(2, options.threads, [&](std::size_t k) {
+      (k == 0 ? result.reference : check) =
+          timed(run, k == 0 ? options.reference : options.cross_check, 1);
+    });
     if (!result.reference.ok)
       throw run_error("R20", "the reference run of the study failed: " + result.reference.note,
                       "the deck does not run at " + options.reference.label());
-    const StudySample check = timed(run, options.cross_check, 1);
     result.uncertainty = check.ok
                              ? errors_of(check.quantities, result.reference.quantities)
                              : std::vector<double>(result.reference.quantities.size(), infinity);
@@ -152,6 +157,53 @@ void find_best(const StudyOptions& options, StudyResult& result) {
   }
 }
 
+/// The samples of the ladder, told of in their order as they are there.
+class Ladder {
+ public:
+  Ladder(const StudyRunner& run, const StudyOptions& options, StudyResult& result)
+      : run_(run),
+        options_(options),
+        result_(result),
+        done_(options.ladder.size(), 0) {
+    result_.samples.resize(options.ladder.size());
+  }
+
+  void climb() {
+    std::map<std::string, std::vector<std::size_t>> series;
+    for (std::size_t k = 0; k < options_.ladder.size(); ++k)
+      series[options_.series ? options_.series(options_.ladder[k]) : std::string()].push_back(k);
+    std::vector<std::vector<std::size_t>> tasks;
+    for (auto& [name, numbers] : series)
+      tasks.push_back(std::move(numbers));
+    std::sort(tasks.begin(), tasks.end());
+    run_side_by_side(tasks.size(), options_.threads, [&](std::size_t k) {
+      for (const std::size_t number : tasks[k])
+        take(number);
+    });
+  }
+
+ private:
+  void take(std::size_t number) {
+    StudySample s = timed(run_, options_.ladder[number], options_.repeats);
+    if (s.ok) s.errors = errors_of(s.quantities, result_.reference.quantities);
+    for (std::size_t i = 0; i < result_.uncertainty.size(); ++i)
+      s.counted.push_back(result_.uncertainty[i] <= resolved &&
+                          result_.reference.quantities[i].counts);
+    const std::lock_guard lock(mutex_);
+    result_.samples[number] = std::move(s);
+    done_[number] = 1;
+    for (; told_ < done_.size() && done_[told_]; ++told_)
+      if (options_.progress) options_.progress(result_.samples[told_]);
+  }
+
+  const StudyRunner& run_;
+  const StudyOptions& options_;
+  StudyResult& result_;
+  std::mutex mutex_;
+  std::vector<unsigned char> done_;
+  std::size_t told_ = 0;
+};
+
 }  // namespace
 
 StudyResult run_study(const StudyRunner& run, const StudyOptions& options,
@@ -159,15 +211,7 @@ StudyResult run_study(const StudyRunner& run, const StudyOptions& options,
   WHIRL_EXPECTS(options.repeats > 0);
   StudyResult result;
   find_reference(run, options, exact, result);
-  for (const StudyCase& c : options.ladder) {
-    StudySample s = timed(run, c, options.repeats);
-    if (s.ok) s.errors = errors_of(s.quantities, result.reference.quantities);
-    for (std::size_t i = 0; i < result.uncertainty.size(); ++i)
-      s.counted.push_back(result.uncertainty[i] <= resolved &&
-                          result.reference.quantities[i].counts);
-    if (options.progress) options.progress(s);
-    result.samples.push_back(std::move(s));
-  }
+  Ladder(run, options, result).climb();
   find_orders(result);
   find_best(options, result);
   return result;

@@ -15,6 +15,7 @@ struct StudyCase {
   double tolerance = 0, dt = 0;
   int mesh_factor = 1;  ///< elements of the deck's mesh split into this many
   std::string label() const;
+  bool operator==(const StudyCase&) const = default;
 };
 
 /// A quantity of a run: one number or a sampled history. Errors are max |x - reference| / scale.
@@ -42,7 +43,8 @@ struct StudySample {
   double worst() const;
 };
 
-/// Runs one setting. May report failure in `ok`; must not throw for non-convergence.
+/// Runs one setting. May report failure in `ok`; must not throw for non-convergence. Settings of
+/// different series, and the reference and its check, are run side by side.
 using StudyRunner = std::function<StudySample(const StudyCase&)>;
 
 struct StudyOptions {
@@ -52,7 +54,10 @@ struct StudyOptions {
                           ///< reference's uncertainty
   std::vector<double> targets{1e-2, 1e-3, 1e-4};
   int repeats = 3;  ///< runs faster than 0.2 s are repeated; the fastest counts
-  std::function<void(const StudySample&)> progress;
+  /// Settings of one series are run one after the other, in their order. Empty: all are of one.
+  std::function<std::string(const StudyCase&)> series;
+  int threads = 1;                                   ///< for the series; 0: all processors
+  std::function<void(const StudySample&)> progress;  ///< of every setting, in their order
 };
 
 struct StudyResult {
