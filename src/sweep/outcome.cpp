@@ -362,11 +362,39 @@ double rank_correlation(const std::vector<double>& x, const std::vector<double>&
   return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : nan;
 }
 
-void write_outcome(const Plan& plan, const Rows& rows, const run::RunOptions& options) {
+namespace {
+
+/// The columns of numbers.
+void write_hdf5(const std::filesystem::path& file, const io::Table& table) {
+  std::vector<std::size_t> numbers;
+  std::vector<io::Channel> channels;
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    const auto is_text = [k](const auto& row) { return row[k].is_text; };
+    if (std::any_of(table.rows.begin(), table.rows.end(), is_text)) continue;
+    numbers.push_back(k);
+    const io::Table::Column& c = table.columns[k];
+    channels.push_back({c.name, c.unit, c.description, {}, 1.0, "runs"});
+  }
+  const io::TimeSeriesPtr out = io::make_hdf5_series(file);
+  out->begin(channels);
+  std::vector<double> values(numbers.size());
+  for (const auto& row : table.rows) {
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      values[k] = row[numbers[k]].number;
+    out->append(values);
+  }
+  out->close();
+}
+
+}  // namespace
+
+void write_outcome(const Plan& plan, const Rows& rows, const SweepOptions& options) {
   const Columns c = columns_of(plan, rows);
   io::ResultsFolder folder(plan.root);
   const io::Table statistics = statistics_table(plan, c), effects = effects_table(plan, c);
-  folder.write_table("sweep.csv", sweep_table(plan, rows, c));
+  const io::Table runs = sweep_table(plan, rows, c);
+  folder.write_table("sweep.csv", runs);
+  if (options.hdf5) write_hdf5(folder.path("sweep.h5"), runs);
   folder.write_table("statistics.csv", statistics);
   folder.write_table("effects.csv", effects);
   std::vector<io::Table> tables{statistics};
@@ -395,9 +423,9 @@ void write_outcome(const Plan& plan, const Rows& rows, const run::RunOptions& op
   }
   folder.write_json("summary.json", summary);
   io::write_report(folder.path("sweep.html"), report_of(plan, rows, c, tables, summary));
-  if (options.json)
+  if (options.run.json)
     std::fputs(io::to_json(summary).c_str(), stdout);
-  else if (!options.quiet)
+  else if (!options.run.quiet)
     print_statistics(statistics);
 }
 

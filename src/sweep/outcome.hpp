@@ -1,16 +1,17 @@
 // What a finished sweep shows: its table, statistics of the responses, and what they depend on.
 #pragma once
 #include <sweep/plan.hpp>
-#include <run/options.hpp>
 #include <map>
 
 namespace whirl::sweep {
 
 /// Writes sweep.csv, statistics.csv, effects.csv, where asked for probabilities.csv and
-/// sensitivity.csv, summary.json and sweep.html; prints the statistics.
+/// sensitivity.csv and sweep.h5 (the columns of numbers of sweep.csv), summary.json and sweep.html;
+/// prints the statistics.
 /// rows: one for every run.
+/// @throws Error (Exit::io) when a file cannot be written, or HDF5 is wanted and was not built.
 void write_outcome(const Plan& plan, const std::map<std::int64_t, Row>& rows,
-                   const run::RunOptions& options);
+                   const SweepOptions& options);
 
 /// Of the runs that gave a value.
 struct Statistics {

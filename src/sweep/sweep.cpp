@@ -1,9 +1,11 @@
 #include <sweep/sweep.hpp>
 #include <sweep/outcome.hpp>
 #include <sweep/plan.hpp>
+#include <sweep/ranks.hpp>
 #include <sweep/workers.hpp>
 #include <core/error.hpp>
 #include <core/interrupt.hpp>
+#include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
 #include <io/file.hpp>
 #include <run/interrupt.hpp>
@@ -20,7 +22,6 @@
 #include <exception>
 #include <optional>
 #include <utility>
-#include <thread>
 
 namespace whirl::sweep {
 namespace {
@@ -32,7 +33,11 @@ const char* const tables_alone[] = {"output.report=false", "output.vtk=[]"};
 
 class Runner {
  public:
-  Runner(const SweepOptions& options, const Plan& plan) : options_(options), plan_(plan) {}
+  /// rank: of this process among those of the sweep.
+  Runner(const SweepOptions& options, const Plan& plan, int rank = 0)
+      : options_(options),
+        plan_(plan),
+        rank_(rank) {}
 
   /// In the process of a worker. Never throws.
   std::string operator()(std::int64_t run, int worker) const {
@@ -68,7 +73,7 @@ class Runner {
   fs::path folder_of(std::int64_t run, int worker) const {
     const fs::path shard = plan_.root / plan_.shard.folder();
     return options_.keep ? plan_.root / "runs" / fmt::format("{:06}", run)
-                         : shard / fmt::format("worker_{}", worker);
+                         : shard / fmt::format("worker_{}_{}", rank_, worker);
   }
   int steps_of(std::int64_t run, const fs::path& results) const {
     return steps_of(run, results, options_.keep);
@@ -97,6 +102,7 @@ class Runner {
  private:
   const SweepOptions& options_;
   const Plan& plan_;
+  int rank_;
 };
 
 Row row_without_answer(std::int64_t run, Ended ended, int signal, double limit, std::size_t n) {
@@ -147,39 +153,93 @@ struct Done {
   double cpu = 0;
 };
 
-Done run_tasks(const SweepOptions& options, const Plan& plan) {
+/// Keeps the rows as they come, and tells how far it is.
+class Collector {
+ public:
+  Collector(const fs::path& file, std::uint64_t bytes, std::size_t tasks, bool quiet)
+      : out_(file, bytes),
+        tasks_(tasks),
+        progress_("sweep", quiet) {}
+  void take(const Row& row) {
+    if (row.exit == static_cast<int>(Exit::interrupted)) return;  // to be done again
+    out_.append(line_of(row));
+    ++done_.runs;
+    done_.failed += row.exit != 0;
+    done_.cpu += row.cpu;
+    progress_.update(static_cast<double>(done_.runs) / static_cast<double>(tasks_), text());
+  }
+  Done close() {
+    out_.close();
+    progress_.done(text());
+    return done_;
+  }
+
+ private:
+  std::string text() const {
+    return fmt::format("{} of {} runs, {} failed", done_.runs, tasks_, done_.failed);
+  }
+  RowFile out_;
+  std::size_t tasks_;
+  run::ProgressLine progress_;
+  Done done_;
+};
+
+/// Does the runs in processes of this one.
+void run_here(const SweepOptions& options, const Plan& plan, int processes, int rank,
+              std::span<const std::int64_t> tasks, const std::function<void(const Row&)>& take) {
+  WorkerOptions w;
+  w.processes =
+      static_cast<int>(std::min<std::int64_t>(processes, static_cast<std::int64_t>(tasks.size())));
+  w.limit = options.limit;
+  const Runner run(options, plan, rank);
+  run_in_workers(tasks, w, run,
+                 [&](std::int64_t task, Ended ended, const std::string& text, int signal) {
+                   std::optional<Row> row = ended == Ended::answered ? row_of(text) : std::nullopt;
+                   if (!row)
+                     row = row_without_answer(task, ended, signal, w.limit, plan.responses.size());
+                   take(*row);
+                 });
+}
+
+void collect_from(Ranks& ranks, std::span<const std::int64_t> tasks, Collector& rows) {
+  ranks.hand_out(tasks, [&](const std::string& lines) {
+    for (std::size_t from = 0; from < lines.size();) {
+      const std::size_t end = lines.find('\n', from);
+      const std::string_view line(lines.data() + from, end - from);
+      if (const std::optional<Row> row = row_of(line)) rows.take(*row);
+      from = end + 1;
+    }
+  });
+}
+
+/// A rank other than 0.
+void serve(Ranks& ranks, const SweepOptions& options, const Plan& plan) {
+  const int processes = std::max(1, options.run.jobs);
+  ranks.work([&](std::span<const std::int64_t> runs) {
+    std::string lines;
+    run_here(options, plan, processes, ranks.rank(), runs, [&](const Row& row) {
+      lines += line_of(row);
+      if (lines.back() != '\n') lines += '\n';
+    });
+    return lines;
+  });
+}
+
+/// ranks: null where this process does all by itself.
+Done run_tasks(const SweepOptions& options, const Plan& plan, Ranks* ranks) {
   const fs::path file = plan.root / plan.shard.folder() / "rows.tsv";
   const RowsRead before = read_rows(file);
   std::vector<std::int64_t> tasks;
   for (std::int64_t run = plan.shard.index; run < plan.design.runs(); run += plan.shard.count)
     if (!before.rows.count(run)) tasks.push_back(run);
-  Done done;
-  if (tasks.empty()) return done;
-  RowFile out(file, before.bytes);
-  WorkerOptions w;
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  w.processes = options.run.jobs > 0 ? options.run.jobs : cores;
-  w.processes = static_cast<int>(
-      std::min<std::int64_t>(w.processes, static_cast<std::int64_t>(tasks.size())));
-  w.limit = options.limit;
-  run::ProgressLine progress("sweep", options.run.quiet);
-  const Runner run(options, plan);
-  run_in_workers(
-      tasks, w, run, [&](std::int64_t task, Ended ended, const std::string& text, int signal) {
-        std::optional<Row> row = ended == Ended::answered ? row_of(text) : std::nullopt;
-        if (!row) row = row_without_answer(task, ended, signal, w.limit, plan.responses.size());
-        if (row->exit == static_cast<int>(Exit::interrupted)) return;  // to be done again
-        out.append(line_of(*row));
-        ++done.runs;
-        done.failed += row->exit != 0;
-        done.cpu += row->cpu;
-        progress.update(
-            static_cast<double>(done.runs) / static_cast<double>(tasks.size()),
-            fmt::format("{} of {} runs, {} failed", done.runs, tasks.size(), done.failed));
-      });
-  out.close();
-  progress.done(fmt::format("{} of {} runs, {} failed", done.runs, tasks.size(), done.failed));
-  return done;
+  if (tasks.empty() && !ranks) return {};
+  Collector rows(file, before.bytes, tasks.size(), options.run.quiet);
+  if (ranks)
+    collect_from(*ranks, tasks, rows);
+  else
+    run_here(options, plan, options.run.jobs > 0 ? options.run.jobs : processors(), 0, tasks,
+             [&](const Row& row) { rows.take(row); });
+  return rows.close();
 }
 
 /// Makes the worst runs again with everything they can show. What fails now failed before.
@@ -294,25 +354,27 @@ SweepOptions completed(SweepOptions o, const model::Model& model) {
 
 }  // namespace
 
-int run_sweep(const SweepOptions& given) {
-  if (given.deck == "-")
-    throw Error(Exit::usage, Diagnostic{Diagnostic::Severity::error, "E99",
-                                        "a deck on standard input can be read once only",
-                                        "write it to a file", Where{}});
-  run::install_interrupt_handlers();
-  if (given.list) return list_tables(given);
-  const model::Model model = deck::load_model(given.deck, given.read);
-  const SweepOptions options = completed(given, model);
-  const Plan plan = make_plan(options, model);
-  require_keys(options, plan);
-  prepare_folder(plan, options.run.resume);
-  const run::RunLock lock(plan.root / plan.shard.folder());
+namespace {
+
+/// Everything but the runs themselves, by the one process that keeps the rows.
+int lead(const SweepOptions& options, const Plan& plan, std::unique_ptr<Ranks> ranks) {
+  std::optional<run::RunLock> lock;
+  try {
+    require_keys(options, plan);
+    prepare_folder(plan, options.run.resume);
+    lock.emplace(plan.root / plan.shard.folder());
+  } catch (...) {
+    if (ranks) ranks->agree(false);
+    throw;
+  }
+  if (ranks) ranks->agree(true);
   const Stopwatch watch;
-  const Done done = run_tasks(options, plan);
+  const Done done = run_tasks(options, plan, ranks.get());
+  ranks.reset();
   const auto rows = all_rows(plan);
   const auto missing = plan.design.runs() - static_cast<std::int64_t>(rows.size());
   if (missing == 0 && !run::interrupted()) run_worst(options, plan, rows);
-  if (missing == 0) write_outcome(plan, rows, options.run);
+  if (missing == 0) write_outcome(plan, rows, options);
   if (!options.run.quiet && !options.run.json)
     std::fputs(
         fmt::format("{}{} runs in {:.1f} s of wall time, {:.1f} s of CPU time in them\n{}",
@@ -326,6 +388,34 @@ int run_sweep(const SweepOptions& given) {
   if (run::interrupted()) return static_cast<int>(Exit::interrupted);
   return static_cast<int>(missing == 0 && !every_response_answered(rows) ? Exit::no_convergence
                                                                          : Exit::ok);
+}
+
+}  // namespace
+
+int run_sweep(const SweepOptions& given) {
+  if (given.deck == "-")
+    throw Error(Exit::usage, Diagnostic{Diagnostic::Severity::error, "E99",
+                                        "a deck on standard input can be read once only",
+                                        "write it to a file", Where{}});
+  run::install_interrupt_handlers();
+  if (given.list) return list_tables(given);
+  std::unique_ptr<Ranks> ranks = given.shard.empty() ? join_ranks() : nullptr;
+  const bool leads = !ranks || ranks->rank() == 0;
+  std::optional<model::Model> model;
+  std::optional<SweepOptions> options;
+  std::optional<Plan> plan;
+  try {
+    model.emplace(deck::load_model(given.deck, given.read));
+    options.emplace(completed(given, *model));
+    plan.emplace(make_plan(*options, *model));
+  } catch (const Error&) {
+    // The same on every rank, and told once.
+    if (leads) throw;
+    return static_cast<int>(Exit::deck);
+  }
+  if (leads) return lead(*options, *plan, std::move(ranks));
+  if (ranks->agree(true)) serve(*ranks, *options, *plan);
+  return static_cast<int>(Exit::ok);
 }
 
 }  // namespace whirl::sweep

@@ -26,11 +26,13 @@ struct SweepOptions {
   std::string shard;
   double limit = 0;   ///< s of wall time a run may take; 0: any, or that of the deck
   bool keep = false;  ///< keep the results folder of every run
+  bool hdf5 = false;  ///< also write the table of runs to sweep.h5
   bool list = false;  ///< run the deck as it is and list what can be a response
 };
 
 /// Runs what is not there yet and, when all runs are, writes sweep.csv (one row a run),
-/// statistics.csv, effects.csv, summary.json and sweep.html.
+/// statistics.csv, effects.csv, summary.json and sweep.html. Under mpirun rank 0 hands out the runs
+/// and writes (ranks.hpp).
 /// @throws Error (E99, Exit::usage) for a sweep that cannot be made; as load_model() for its deck.
 int run_sweep(const SweepOptions& options);
 

@@ -2,6 +2,8 @@
 // shards, after being cut off, and with runs that fail.
 #include "deck_run.hpp"
 #include "unbalanced_rotor.hpp"
+#include <core/plugin.hpp>
+#include <io/results.hpp>
 
 namespace fs = std::filesystem;
 
@@ -198,6 +200,70 @@ TEST_F(Sweep, TasksOfASlurmArrayShareAFolder) {
   ASSERT_EQ(whirl(std::string("sweep d.toml -j1 -o one") + asked), 0) << log_;
   EXPECT_EQ(read("s/sweep.csv"), read("one/sweep.csv"));
   EXPECT_EQ(whirl("sweep d.toml -o s --shard auto" + std::string(asked)), 2) << log_;
+}
+
+/// Open MPI's mpirun, also for root and with more ranks than processors.
+std::string mpirun(int ranks, const std::string& arguments) {
+  return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n " +
+         std::to_string(ranks) + " '" WHIRL_EXE "' " + arguments;
+}
+
+bool has_mpi() {
+  return std::system("'" WHIRL_EXE "' version | grep -q mpi && command -v mpirun >/dev/null") == 0;
+}
+
+TEST_F(Sweep, RanksOfMpirunGiveTheSameTable) {
+  if (!has_mpi()) GTEST_SKIP() << "needs the component mpi and mpirun";
+  ASSERT_EQ(whirl(std::string("sweep d.toml -j1 -o one") + asked), 0) << log_;
+  for (const int ranks : {2, 4}) {
+    const std::string out = "ranks" + std::to_string(ranks);
+    const std::string command = "cd '" + folder_.string() + "' && " +
+                                mpirun(ranks, "sweep d.toml -o " + out + asked) +
+                                " >log.txt 2>&1 </dev/null";
+    ASSERT_EQ(std::system(command.c_str()), 0) << read("log.txt");
+    EXPECT_EQ(read(out + "/sweep.csv"), read("one/sweep.csv")) << ranks;
+  }
+  const std::string wrong = "cd '" + folder_.string() + "' && " +
+                            mpirun(3,
+                                   "sweep d.toml -o wrong --vary disk.nobody.mass=2kg "
+                                   "--response 'first=c_undamped:speed:1'") +
+                            " >log.txt 2>&1 </dev/null";
+  EXPECT_NE(std::system(wrong.c_str()), 0);
+  EXPECT_NE(read("log.txt").find("nobody"), std::string::npos) << read("log.txt");
+}
+
+TEST_F(Sweep, AKilledRankCostsNoFinishedRun) {
+  if (!has_mpi()) GTEST_SKIP() << "needs the component mpi and mpirun";
+  const std::string many =
+      std::string(asked).replace(std::string(asked).find("--samples 4"), 11, "--samples 40");
+  ASSERT_EQ(whirl("sweep d.toml -j2 -o one" + many), 0) << log_;
+  const std::string kill =
+      "cd '" + folder_.string() + "' || exit 1\n" + mpirun(3, "sweep d.toml -o cut" + many) +
+      " >log.txt 2>&1 </dev/null &\nm=$!\n"
+      "rows=cut/shard_1_of_1/rows.tsv\n"
+      "while kill -0 $m 2>/dev/null && ! { [ -e $rows ] && [ $(wc -l < $rows) -ge 5 ]; }; do sleep "
+      "0.02; done\n"
+      "for s in /proc/[0-9]*/status; do grep -q \"^PPid:[[:space:]]*$m$\" $s 2>/dev/null && "
+      "r=$(basename $(dirname $s)); done\n"
+      "kill -9 $r || exit 1\nwait $m && exit 1\nexit 0\n";
+  std::ofstream(folder_ / "kill.sh") << kill;
+  ASSERT_EQ(std::system(("bash '" + (folder_ / "kill.sh").string() + "'").c_str()), 0)
+      << read("log.txt");
+  ASSERT_FALSE(fs::exists(folder_ / "cut/sweep.csv"));
+  ASSERT_EQ(whirl("sweep d.toml -j2 --resume -o cut" + many), 0) << log_;
+  EXPECT_EQ(log_.find("120 of 120"), std::string::npos) << log_;  // some were there
+  EXPECT_EQ(read("cut/sweep.csv"), read("one/sweep.csv"));
+}
+
+TEST_F(Sweep, NumbersInHdf5AreThoseOfTheTable) {
+  if (!Plugin::available("hdf5") && std::system("'" WHIRL_EXE "' version | grep -q hdf5") != 0)
+    GTEST_SKIP() << "needs the component hdf5";
+  ASSERT_EQ(whirl(std::string("sweep d.toml -o s --hdf5") + asked), 0) << log_;
+  const io::Columns binary = io::read_hdf5(folder_ / "s/sweep.h5");
+  const io::Columns text = io::read_csv(folder_ / "s/sweep.csv");
+  for (const char* name : {"run", "disk.disk.mass", "first", "peak", "exit"})
+    EXPECT_EQ(binary[name], text[name]) << name;
+  EXPECT_EQ(binary.rows(), 12u);
 }
 
 TEST_F(Sweep, WhatCannotBeSweptIsRefused) {

@@ -45,7 +45,7 @@ for plugin in "$build"/plugins/libwhirl_*.so; do
   ls packages/"${name}"_*.deb >/dev/null
   grep -qw -- "$name" <<<"$(field "$whirl" Recommends)" || { echo "whirl does not recommend $name"; exit 1; }
 done
-if grep -qiE 'vtk|hdf5|sundials' <<<"$(field "$whirl" Depends)"; then
+if grep -qiE 'vtk|hdf5|sundials|mpi' <<<"$(field "$whirl" Depends)"; then
   echo "the program depends on what plug-ins use: $(field "$whirl" Depends)"
   exit 1
 fi

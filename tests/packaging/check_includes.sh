@@ -41,7 +41,7 @@ for folder in src/* elements meshes; do
 done
 # libraries with one door each
 for rule in 'vtk:src/io/vtk' 'ida/|arkode/|sundials/:src/time/sundials' 'klu\.h|amd\.h:src/la' 'toml\+\+:src/deck/text' \
-            'CLI/:src/app' 'nlohmann/:src/io/json.cpp' 'hdf5\.h:src/io/hdf5' 'png\.h:src/plot' 'sha2\.h:src/run'; do
+            'CLI/:src/app' 'nlohmann/:src/io/json.cpp' 'hdf5\.h:src/io/hdf5' 'png\.h:src/plot' 'sha2\.h:src/run' 'mpi\.h:src/sweep/mpi'; do
   pattern=${rule%:*} home=${rule##*:}
   if out=$(grep -rnE "#include <($pattern)" src elements meshes --include='*.hpp' --include='*.cpp' | grep -vE "^$home[/:]"); then
     echo "only $home may include $pattern:"

@@ -13,7 +13,7 @@ case "${1:-}" in
   '')      mapfile -t files < <(git ls-files "${kinds[@]}") ;;
   *)       files=("$@") ;;
 esac
-mapfile -t files < <(printf '%s\n' "${files[@]}" | grep -v '/sundials/\|/vtk/\|/hdf5/\|\.in$\|^$' || true)
+mapfile -t files < <(printf '%s\n' "${files[@]}" | grep -v '/sundials/\|/vtk/\|/hdf5/\|/mpi/\|\.in$\|^$' || true)
 [ ${#files[@]} -gt 0 ] || { echo "no source differs"; exit 0; }
 parse() {
   echo "#include \"$1\"" |
