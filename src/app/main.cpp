@@ -30,6 +30,8 @@ void add_deck(CLI::App* c, std::filesystem::path& deck, deck::ReadOptions& read)
 
 void add_run(CLI::App* c, run::RunOptions& run) {
   c->add_flag("-q,--quiet", run.quiet, "no progress and no summary");
+  c->add_flag("--savings", run.savings,
+              "measure what an evaluation costs with and without the parts that were left out");
   c->add_flag("--json", run.json, "summary as JSON on standard output");
   c->add_option("-j,--jobs", run.jobs, "threads for what can go in parallel (0: all processors)")
       ->check(CLI::Range(0, 1024))
@@ -162,6 +164,7 @@ void add_sweep(CLI::App& app, Given& g) {
   c->add_option("--limit", g.sweep.limit, "seconds of wall time a run may take")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
+  c->add_flag("--hdf5", g.sweep.hdf5, "write the table of runs to sweep.h5 as well");
   c->add_flag("--keep", g.sweep.keep, "keep the results folder of every run");
   c->add_flag("--resume", g.sweep.run.resume, "do the runs that are not done yet");
   add_run(c, g.sweep.run);

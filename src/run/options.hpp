@@ -15,6 +15,7 @@ struct RunOptions {
   bool json = false;             ///< the summary as JSON on standard output
   bool terminal = false;         ///< standard error is a terminal: one progress line, rewritten
   int jobs = 0;                  ///< threads for what can go in parallel; 0 = all processors
+  bool savings = false;          ///< measure what leaving out parts of the general model saves
   bool resume = false;           ///< continue from the last checkpoint of the results folder
   std::filesystem::path output;  ///< results folder; empty: as the deck says
   /// The model of the same deck with a key set otherwise ("parameters.clearance=75 um"), for steps

@@ -59,16 +59,17 @@ void report_nonfinite(run::Job& job) {
   }
 }
 
-/// What leaving out saved. Printed only for runs long enough that somebody waits for them.
-void describe_savings(run::Job& job, double seconds) {
-  if (job.model.keep_everything || job.built_for.empty() || run::interrupted()) return;
+/// What leaving out saved, where that is asked for: it takes building the general model.
+void describe_savings(run::Job& job) {
+  if (!job.options.savings || job.model.keep_everything || job.built_for.empty()) return;
+  if (run::interrupted()) return;
   const Savings s = measure_savings(job);
   if (!(s.everything > 0.0)) return;
   io::Value& v = job.summary["model"]["cost of one evaluation of forces and tangents"];
   v["of this model [us]"] = 1e6 * s.pruned;
   v["of the general model [us]"] = 1e6 * s.everything;
   v["saved"] = std::max(0.0, 1.0 - s.pruned / s.everything);
-  if (!job.options.quiet && seconds > 0.5 && s.everything > 1.05 * s.pruned)
+  if (!job.options.quiet)
     std::fputs(
         fmt::format("left out: {} parts of the general model this deck does not need "
                     "(summary.json); an evaluation takes {:.0f} us CPU instead of {:.0f} us\n",
@@ -252,7 +253,7 @@ void run_steps(run::Job& job) {
     finish(job, watch);
     throw e;
   }
-  describe_savings(job, watch.elapsed().wall);
+  describe_savings(job);
   finish(job, watch);
 }
 
