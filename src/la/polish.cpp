@@ -133,7 +133,14 @@ bool Polisher::polish(Pair& p, double tolerance, bool near) {
       std::max(std::numeric_limits<double>::epsilon() * std::abs(start), 1e3 * uncertainty(p)) +
       1e-300;
   Complex shift;
-  return iterate_newton(p, near, exact, floor, shift) && refine(p, tolerance, exact, floor, shift);
+  // Beside a neighbour that is nearer than the last shift was, refinement does not converge: from
+  // where it stopped, Newton's method puts the shift closer.
+  for (int attempt = 0; attempt < 4; ++attempt) {
+    if (!iterate_newton(p, near, exact, floor, shift)) return false;
+    if (refine(p, tolerance, exact, floor, shift)) return true;
+    near = false;
+  }
+  return false;
 }
 
 /// Quadratic, so that a change of 1e-3 leaves about 1e-6 for the linear phase.

@@ -34,6 +34,7 @@ WedgeCount WedgeCounter::count(const WedgeProblem& p) {
   WHIRL_EXPECTS(p.at && 0.0 < p.low && p.low < p.top && std::isfinite(p.top) && p.reach > 0.0);
   WHIRL_EXPECTS(std::is_sorted(p.stations.begin(), p.stations.end()));
   WedgeCount out;
+  if (!(p.low > 0.0)) return out;
   const auto log_of = [&](Complex s, Complex& log) {
     ++out.factorizations;
     if (lu_.factor(p.at(s), s * s, s, 1.0) != Status::ok) return false;

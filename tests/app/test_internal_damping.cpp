@@ -60,3 +60,99 @@ TEST(InternalDampingDeck, OnsetOnUnequalSupports) {
   EXPECT_NEAR(row.at("speed [rpm]") * rpm, 1116.915395, 1e-9 * 1116.9);
   EXPECT_NEAR(row.at("whirl frequency [Hz]") * two_pi, 331.662479, 2e-9 * 331.7);
 }
+
+// Forward and backward whirl of nearly one frequency, an axial mode whose vector rounding keeps from
+// its thirteenth digit, and modes that hardly oscillate: each is found at its own rate. Undamped
+// outside, the rotor gains from its loss factor exactly where the speed passes the frequency.
+TEST(InternalDampingDeck, LossFactorOfARotorOnPlainSupports) {
+  const DeckRun d(R"(format = 1
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 500, 50], ["b", 500, 50]]
+[shaft.damping]
+internal_loss_factor = 0.02
+[[disk]]
+name = "d"
+at = "a:end"
+mass = "30 kg"
+Ip = "0.4 kg.m^2"
+Id = "0.22 kg.m^2"
+[[bearing]]
+name = "L"
+at = "a:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "5e7 N/m"
+kzz = "5e7 N/m"
+[[bearing]]
+name = "R"
+at = "b:end"
+type = "linear"
+kyy = "5e7 N/m"
+kzz = "5e7 N/m"
+[[step]]
+type = "modal"
+name = "m"
+speed = "6000 rpm"
+modes = 12
+[[step]]
+type = "stability"
+name = "s"
+speed = { start = "500 rpm", stop = "9000 rpm", points = 6 }
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_TRUE(d.says("complete")) << d.log;
+  EXPECT_EQ(d.csv("m_modes.csv").rows.size(), 12u);
+  const Columns onset = d.csv("s_onset.csv");
+  ASSERT_EQ(onset.rows.size(), 1u);
+  EXPECT_NEAR(onset.named(onset.rows[0]).at("frequency / speed [-]"), 1.0, 1e-9);
+}
+
+// Heavily damped supports on pedestals: pairs of roots that hardly oscillate or not at all.
+TEST(InternalDampingDeck, LossFactorBesideOverdampedSupports) {
+  const DeckRun d(R"(format = 1
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["a", 345, 50.4], ["b", 175, 89.3], ["c", 235, 69.1], ["d", 342, 56.7], ["e", 475, 91.5]]
+[shaft.damping]
+internal_loss_factor = 0.0473
+[[disk]]
+name = "d"
+at = "b:start"
+mass = "25.52 kg"
+Ip = "0.3391 kg.m^2"
+Id = "0.3426 kg.m^2"
+[[bearing]]
+name = "L"
+at = "a:start"
+type = "linear"
+kxx = "1e7 N/m"
+kyy = "5.177e6 N/m"
+kzz = "5.177e6 N/m"
+cyy = "4.958e4 N.s/m"
+czz = "4.958e4 N.s/m"
+[[bearing]]
+name = "R"
+at = "e:end"
+type = "linear"
+kyy = "2.102e8 N/m"
+kzz = "2.102e8 N/m"
+support = { mass = "1.045 kg", kyy = "1.054e8 N/m", kzz = "1.504e8 N/m" }
+[[step]]
+type = "modal"
+name = "m"
+speed = "8724.2 rpm"
+modes = 5
+[[step]]
+type = "stability"
+name = "s"
+speed = { start = "200 rpm", stop = "8724.2 rpm", points = 4 }
+)");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_TRUE(d.says("complete")) << d.log;
+  EXPECT_TRUE(d.says("stable from 200")) << d.log;
+}

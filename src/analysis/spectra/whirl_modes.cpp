@@ -259,30 +259,38 @@ std::optional<la::Mode> WhirlSolver::settle_rate(double Omega, la::Mode mode) {
     };
     return own_->settle(at_rate, start);
   };
+  const auto finished = [from](la::Mode m) {
+    if (m.lambda.imag() < 0.0) {  // a motion that hardly oscillates: found as its other half
+      m.lambda = std::conj(m.lambda);
+      m.x = m.x.conjugate().eval();
+    }
+    m.from = from;
+    return m;
+  };
   // Where forward whirl passes the speed its damping changes sign. The side is settled in an outer
   // loop; where the frequency jumps from one side to the other with it (planes mixed by unequal
   // supports), the last one found stands.
   for (int sides = 0; sides < 6 && mode.lambda.imag() != 0.0; ++sides) {
     const double side = std::abs(mode.lambda.imag());
     bool steady = false;
+    double last_change = infinity;
     for (int round = 0; round < 40 && !steady && mode.lambda.imag() != 0.0; ++round) {
       const Complex rate = mode.lambda;
       auto next = follow(rate, side, mode);
       if (!next) return std::nullopt;
-      steady =
-          std::abs(next->lambda - rate) <=
-          (by_frequency() ? 1e-10 : 1e-13) * std::abs(rate);  // own frequencies are known to 1e-11
-      if (steady && round == 0 && sides > 0) {                // the new side changes nothing
-        mode = std::move(*next);
-        mode.from = from;
-        return mode;
-      }
+      const double change = std::abs(next->lambda - rate);
+      const double size = std::abs(rate);
+      // Every round contracts, until rounding is what is left. Own frequencies are known to 1e-11.
+      const bool at_rounding = change <= 1e-8 * size && change >= 0.9 * last_change;
+      steady = change <= (by_frequency() ? 1e-10 : 1e-13) * size || at_rounding;
+      last_change = change;
+      if (steady && round == 0 && sides > 0)  // the new side changes nothing
+        return finished(*next);
       mode = std::move(*next);
     }
     if (!steady && mode.lambda.imag() != 0.0) return std::nullopt;
   }
-  mode.from = from;
-  return mode;
+  return finished(mode);
 }
 
 void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
@@ -391,7 +399,7 @@ void WhirlSolver::solve_hysteretic(double Omega) {
 void WhirlSolver::count_hysteretic(double Omega) {
   la::WedgeProblem p;
   for (const WhirlMode& m : modes_)  // ascending
-    if (m.frequency > 0.0) p.known.push_back(m.lambda);
+    if (m.oscillates()) p.known.push_back(m.lambda);
   if (p.known.empty()) return;
   // The list ends in a gap above the modes wanted.
   const std::size_t wanted = options_.count > 0 ? static_cast<std::size_t>(options_.count) : 0;
