@@ -495,6 +495,14 @@ bool SteadySystem::make_polynomial(const system::Frames& f, double Omega, const 
   return true;
 }
 
+void SteadySystem::relax(const system::Frames& f, double Omega, VecX& q) {
+  if (!system_.relaxes()) return;
+  VecX v = VecX::Zero(q.size());
+  set_rates(Omega, v);
+  const VecX still = VecX::Zero(q.size());
+  system_.relax(workspace_, f, running_.time, q, v, still);
+}
+
 bool SteadySystem::residual(const system::Frames& f, double Omega, const VecX& q, VecX& r) {
   r.resize(q.size());
   if (fits_polynomial(f, Omega, q)) {

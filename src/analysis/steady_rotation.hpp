@@ -81,6 +81,8 @@ class SteadySystem {
   /// Held unknowns at their laws (running.time), spinning phi that is prescribed: relative to the
   /// first prescribed one.
   void impose(const system::Frames& f, Eigen::Ref<VecX> q) const;
+  /// Internal unknowns that elements balance themselves (system::System::relax) into q.
+  void relax(const system::Frames& f, double Omega, VecX& q);
   /// Mean residual; held rows are the reactions. False outside the domain of charts or elements.
   /// @pre q of length system().size(); the same of all that follow.
   bool residual(const system::Frames& f, double Omega, const VecX& q, VecX& r);

@@ -3,6 +3,7 @@
 #pragma once
 #include <meshes/mesh.hpp>
 #include <model/model.hpp>
+#include <elements/films/tilting_pad.hpp>
 #include <system/system.hpp>
 #include <functional>
 #include <string>
@@ -40,6 +41,7 @@ struct SupportCondition {
     bool film = false;
     double gap = 0, displacement = 0;  ///< m
     double load = 0, capacity = 0;     ///< N; capacity of a film: at the believed eccentricity
+    std::string detail{};              ///< more of where it stands, for messages: "pad 4 ..."
   };
   std::size_t bearing = 0;  ///< of the model
   std::string name;
@@ -47,6 +49,25 @@ struct SupportCondition {
   std::function<State(const NodeAt&)> state;
   double sommerfeld = 0;  ///< of a film: eta L D (R/c)^2, N s; times the speed in rev/s over the
                           ///< load it is the Sommerfeld number
+  /// What counts against the gap where it is not the distance from the middle, m; null: that.
+  std::function<double(const NodeAt&)> reach{};
+};
+
+/// The pads of a tilting-pad bearing.
+struct TiltingPads {
+  std::size_t bearing = 0;                   ///< of the model
+  std::vector<double> pivots;                ///< rad, one a pad
+  std::vector<std::vector<Index>> unknowns;  ///< scalar nodes of each pad: tilt, pressed
+  std::function<std::vector<elements::PadStanding>(const NodeAt&)> standing;
+  /// The face of a pad as it stands, for pictures.
+  struct Face {
+    double from, to;  ///< rad
+    double radius;    ///< less that of the journal, m
+    Vec2 centre;      ///< against the middle of the bearing, m
+  };
+  std::function<std::vector<Face>(const NodeAt&)> faces;
+  /// points: of the grid on the circumference, 0: that of the bearing.
+  std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
 };
 
 /// Load of every element of a rolling bearing.
@@ -103,6 +124,7 @@ struct Built {
   std::vector<Fine> fine;  ///< nodes whose lateral motion must be right to a small part of a
                            ///< length: journals, to their clearance, m
   std::vector<RollingLoads> rolling_loads;
+  std::vector<TiltingPads> tilting_pads;
   std::vector<DriveTorque> drive_torques;
   std::vector<Governor> governors;
   std::vector<LineSpin> spins;  ///< one a line

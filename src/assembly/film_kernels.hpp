@@ -1,6 +1,7 @@
 // The films of journal bearings as their kernels, from what the model says.
 #pragma once
 #include <elements/films/finite_journal.hpp>
+#include <elements/films/tilting_pad.hpp>
 #include <model/model.hpp>
 
 namespace whirl::assembly {
@@ -8,6 +9,11 @@ namespace whirl::assembly {
 /// nodes: points of the grid round the circumference, law.nodes or others to compare with.
 /// @throws Error E84 as JournalSurface.
 elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int nodes);
+
+/// One a pad, in their order; points: of the grid round the circumference.
+/// @throws Error E84 as make_tilting_pad.
+std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJournal& law,
+                                                    int points);
 
 /// Force of the theory of short bearings over that of one of finite length, both plain and in steady
 /// rotation. It depends on L/D and the eccentricity alone: viscosity and speed are factors of either

@@ -116,6 +116,10 @@ inline std::function<Vec2(const NodeAt&)> displacement_of(const meshes::BearingN
   };
 }
 
+/// What a film does depends on the motion of both its sides against the clearance.
+void follow_closely(Assembly& a, const meshes::BearingNodes& n, double clearance);
+double viscosity_of(const model::Oil& o);
+
 // One a law: how it comes into the system. Rigid supports: supports.cpp.
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::LinearBearing&);  // supports.cpp
@@ -130,6 +134,8 @@ void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::ShortJournal&);  // supports_film.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::FiniteJournal&);
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::TiltingPadJournal&);  // supports_pads.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::SqueezeFilm&);
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,

@@ -9,19 +9,19 @@
 #include <elements/films/squeeze_film.hpp>
 
 namespace whirl::assembly {
-namespace {
 
 double viscosity_of(const model::Oil& o) {
   return o.viscosity > 0 ? o.viscosity
                          : elements::iso_vg_viscosity(o.grade, o.temperature, o.density);
 }
 
-/// What a film does depends on the motion of both its sides against the clearance.
 void follow_closely(Assembly& a, const meshes::BearingNodes& n, double clearance) {
   WHIRL_EXPECTS(clearance > 0.0);
   for (const Index node : {n.shaft.node, n.other.node})
     if (node >= 0) a.built.fine.push_back({node, clearance});
 }
+
+namespace {
 
 /// Films: clearance, and the load they carry near it at the present spin in the direction of the
 /// displacement.

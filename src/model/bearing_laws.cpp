@@ -193,6 +193,16 @@ SupportTraits traits(const ShortJournal&) { return traits_of_journal(); }
 
 SupportTraits traits(const FiniteJournal&) { return traits_of_journal(); }
 
+std::vector<TiltingPadJournal::Pad> TiltingPadJournal::pads() const {
+  if (!own.empty()) return own;
+  std::vector<Pad> out(static_cast<std::size_t>(count), like);
+  for (int k = 0; k < count; ++k)
+    out[static_cast<std::size_t>(k)].pivot = first + two_pi * k / count;
+  return out;
+}
+
+SupportTraits traits(const TiltingPadJournal&) { return traits_of_journal(); }
+
 SupportTraits traits(const SqueezeFilm& b) {
   // the film alone carries nothing at rest
   return {.held = b.stiffness > 0 ? lateral_directions : no_direction,

@@ -94,6 +94,33 @@ struct FiniteJournal {
 };
 SupportTraits traits(const FiniteJournal&);
 
+/// Journal bearing of pads that tilt about their pivots.
+struct TiltingPadJournal {
+  double diameter = 0, length = 0, clearance = 0;  ///< m; clearance radial, as assembled
+  Oil oil;
+  struct Pad {
+    double pivot = 0;     ///< rad; from +y towards +z
+    double arc = pi / 3;  ///< rad
+    double offset = 0.5;  ///< of the pivot from the start of the pad, in arcs
+    double preload = 0;   ///< 1 - (assembled clearance)/(clearance of the pad), in [0, 1)
+  };
+  int count = 5;           ///< equal pads, the first pivot at `first`, one like `like` each
+  double first = -pi / 2;  ///< rad
+  Pad like;
+  std::vector<Pad> own;  ///< each by itself: instead of the equal ones
+  double thickness = 0;  ///< of a pad at its pivot, m
+  double inertia = 0;    ///< of a pad about its pivot, kg m2; 0: it follows at once
+  double mass = 0;       ///< of a pad, kg, along an elastic pivot
+  double pivot_stiffness = 0, pivot_damping = 0;  ///< N/m, N s/m; stiffness 0: rigid
+  double tilt_stiffness = 0;                      ///< of a flexure, N m/rad
+  std::vector<double> frequency_ratios;           ///< frequency over speed, of further coefficients
+  int nodes = 72;                                 ///< grid points round the circumference
+
+  /// All pads, in the order of the deck or of their pivots from the first.
+  std::vector<Pad> pads() const;
+};
+SupportTraits traits(const TiltingPadJournal&);
+
 /// Squeeze-film damper, with its centring spring where it has one.
 struct SqueezeFilm {
   double diameter = 0, length = 0, clearance = 0;
@@ -197,10 +224,10 @@ SupportTraits traits(const GearPair&);
 // ---------------------------------------------------------------- the list of laws
 
 /// In the order of the kinds in the deck's reference.
-using BearingLaw =
-    std::variant<LinearBearing, SpringBlock, TableBearing, RigidSupport, NonlinearSpring,
-                 ShortJournal, FiniteJournal, SqueezeFilm, BallBearing, RollerBearing,
-                 RollingEstimate, Rub, AnnularSeal, CrossCoupling, Coupling, GearPair>;
+using BearingLaw = std::variant<LinearBearing, SpringBlock, TableBearing, RigidSupport,
+                                NonlinearSpring, ShortJournal, FiniteJournal, TiltingPadJournal,
+                                SqueezeFilm, BallBearing, RollerBearing, RollingEstimate, Rub,
+                                AnnularSeal, CrossCoupling, Coupling, GearPair>;
 
 inline SupportTraits traits_of(const BearingLaw& law) {
   return std::visit([](const auto& x) { return traits(x); }, law);

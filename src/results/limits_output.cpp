@@ -94,7 +94,10 @@ void LimitWatch::look(const analysis::Snapshot& s) {
     const system::NodeState& other = s.node(x.at.other.node);
     const Vec3 apart =
         shaft.u + x.at.shaft.offset * shaft.t - other.u - x.at.other.offset * other.t;
-    const double displacement = apart.tail<2>().norm();
+    const double displacement =
+        x.condition->reach
+            ? x.condition->reach([&](Index n) -> const system::NodeState& { return s.node(n); })
+            : apart.tail<2>().norm();
     x.largest.take(displacement, s.t());
     if (std::isnan(x.begin) && displacement > x.limit) x.begin = s.t();
   }

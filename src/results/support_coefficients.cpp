@@ -102,6 +102,45 @@ double grid_error_of(const model::FiniteJournal& law, const elements::LateralMot
   return worst;
 }
 
+/// How far the coefficients that the shaft sees are from those on a finer grid.
+double pad_grid_error(const assembly::TiltingPads& ring, const assembly::NodeAt& at, int points,
+                      const PadResults& own) {
+  const int finest = elements::JournalSurface::max_nodes;
+  const int other = 2 * points <= finest ? finest : points / 2;
+  const elements::ReducedCoefficients fine =
+      elements::reduce_pads(ring.coefficients(at, other), std::abs(own.spin));
+  const elements::ReducedCoefficients& here = own.reduced.front();
+  const double k = fine.K.norm(), c = fine.C.norm();
+  return std::max(k > 0 ? (here.K - fine.K).norm() / k : 0.0,
+                  c > 0 ? (here.C - fine.C).norm() / c : 0.0);
+}
+
+/// The pads of a bearing in an evaluated state; K and C become those with the pads following.
+void describe_pads(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
+                   const system::Workspace& w) {
+  const auto* law = std::get_if<model::TiltingPadJournal>(&job.model.bearings[bearing].law);
+  if (!law) return;
+  const auto node = [&](Index k) -> const system::NodeState& { return w.in_own_axes(k); };
+  for (const assembly::TiltingPads& ring : job.built.tilting_pads) {
+    if (ring.bearing != bearing) continue;
+    PadResults p;
+    p.spin = c.spin;
+    p.pivots = ring.pivots;
+    p.pads = ring.standing(node);
+    p.drawings = ring.faces(node);
+    p.full = ring.coefficients(node, 0);
+    p.ratios = {1.0};
+    for (const double r : law->frequency_ratios)
+      if (r != 1.0) p.ratios.push_back(r);
+    for (const double r : p.ratios)
+      p.reduced.push_back(elements::reduce_pads(p.full, r * std::abs(c.spin)));
+    c.K = p.reduced.front().K;
+    c.C = p.reduced.front().C;
+    c.grid_error = pad_grid_error(ring, node, law->nodes, p);
+    c.pads = std::move(p);
+  }
+}
+
 /// Of a support without a constraint, in an evaluated state.
 Vec3 force_on_shaft(const assembly::SupportForce& support, const system::Workspace& w) {
   return support.force([&](Index k) -> const system::NodeState& { return w.in_own_axes(k); },
@@ -185,6 +224,7 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
     }
     c.name = b.name;
     describe_state(c, job, i, w);
+    describe_pads(c, job, i, w);
     find_threshold(c);
     out.push_back(std::move(c));
   }

@@ -8,6 +8,24 @@
 
 namespace whirl::results {
 
+/// A pad's face: a stretch of a circle, its radius less that of the journal, and where its centre
+/// stands.
+using PadDrawing = assembly::TiltingPads::Face;
+
+/// The pads of a tilting-pad bearing at an equilibrium.
+struct PadResults {
+  double spin = 0;             ///< of the shaft, rad/s
+  std::vector<double> pivots;  ///< rad
+  std::vector<elements::PadStanding> pads;
+  std::vector<PadDrawing> drawings;
+  elements::PadCoefficients full;
+  std::vector<double> ratios;  ///< frequencies over the speed; the first is 1
+  std::vector<elements::ReducedCoefficients> reduced;  ///< one a ratio
+
+  /// A pad that the journal has left: it carries less than 1e-5 of the largest load.
+  bool carries(std::size_t pad) const;
+};
+
 /// One bearing whose coefficients depend on where the shaft runs: F = -K r - C r' on the shaft, (y,
 /// z), at an equilibrium. Place and attitude are measured from the middle of the bearing, the
 /// attitude from the direction of the load (opposite to the force on the shaft) in the sense y ->
@@ -32,6 +50,9 @@ struct SupportCoefficients {
   /// norm; of grids more than half as fine, from those on one half as fine, which is more than the
   /// error. NaN: no grid.
   double grid_error = nan;
+  /// Of tilting pads; K and C are then what the shaft sees at the frequency of its own spin, with
+  /// the pads following.
+  std::optional<PadResults> pads{};
 };
 
 /// In the order of the deck; empty when there is none.
@@ -46,6 +67,19 @@ Matrix<6> support_stiffness(const run::Job& job, const run::StepState& s, std::s
 std::string report_grid_error(io::Value& summary, std::span<const SupportCoefficients> list);
 /// A row each; empty title and no rows when there is none.
 io::Table support_table(std::span<const SupportCoefficients> list);
+/// What stands beside the coefficients where there are tilting pads.
+struct PadTables {
+  io::Table pads;     ///< a row a pad: how it stands
+  io::Table reduced;  ///< a row a frequency
+  io::Table full;     ///< an entry a row: shaft and pads
+  bool empty() const { return pads.rows.empty(); }
+};
+PadTables pad_tables(std::span<const SupportCoefficients> list);
+/// Of the pads that carry nothing a line a bearing: "bearing 'DE': pads 1 and 2 carry nothing, ..."
+std::vector<std::string> unloaded_pads(std::span<const SupportCoefficients> list);
+/// A section through each tilting-pad bearing: journal, pads with their films, pivots and loads.
+std::vector<plot::Figure> draw_pads(const std::string& name,
+                                    std::span<const SupportCoefficients> list);
 /// Five rows a rolling bearing.
 io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list);
 

@@ -55,8 +55,12 @@ Error explain_overload(const Job& job, const analysis::SteadySystem& running,
   if (!last) {
     d.message += "; none either under 1/256 of the load";
     d.hint = hint;
-    for (const SupportCondition& c : job.built.conditions)
-      if (d.where.line == 0 && Conditions(job, start.state).of(c).film) d.where = c.where;
+    for (const SupportCondition& c : job.built.conditions) {
+      const SupportCondition::State s = Conditions(job, start.state).of(c);
+      if (s.film && d.where.line == 0) d.where = c.where;
+      if (!s.detail.empty())
+        d.message += fmt::format("; at the start of bearing '{}' {}", c.name, s.detail);
+    }
     return Error(failed.exit(), std::move(d));
   }
   // something did carry a share of it: the load is the matter, not a missing support
@@ -72,6 +76,7 @@ Error explain_overload(const Job& job, const analysis::SteadySystem& running,
                              s.load, s.displacement / s.gap);
     if (s.capacity > 0)
       d.message += fmt::format(" (about {:.4g} N at {})", s.capacity, SupportCondition::believed);
+    if (!s.detail.empty()) d.message += "; " + s.detail;
     sep = ", ";
     if (d.where.line == 0) d.where = c.where;
   }
@@ -129,6 +134,8 @@ std::string supports_at_their_limit(const Job& job, const system::State& s) {
     if (const SupportCondition::State x = now.of(c); x.film && x.displacement > (1 - near) * x.gap)
       out += fmt::format("; the journal of bearing '{}' is at the wall (eccentricity {:.6f})",
                          c.name, x.displacement / x.gap);
+    else if (x.film && !x.detail.empty())
+      out += fmt::format("; in bearing '{}' {}", c.name, x.detail);
   return out;
 }
 
@@ -148,6 +155,8 @@ void warn_of_closed_contacts(Job& job, const model::Step& step, const StepState&
           "its film is believed up to {}, where it carries about {:.4g} N",
           c.name, s.displacement / s.gap, step.name, s.load, SupportCondition::believed,
           s.capacity);
+    if (s.film && !s.detail.empty())
+      d.message += "; " + s.detail;
     else
       d.message = fmt::format(
           "contact '{}' is closed at the start of step '{}': displacement {:.4g} mm, gap {:.4g} "

@@ -271,6 +271,16 @@ void SpeedSweep::show_bearings() {
     s_.section.text += " " + results::capital(grid) + ".";
   }
   s_.add_table("coefficients", std::move(t));
+  if (results::PadTables pads = results::pad_tables(rows_); !pads.empty()) {
+    s_.add_table("pads", std::move(pads.pads), false);
+    s_.add_table("pad_coefficients", std::move(pads.reduced), false);
+    s_.add_table("full_coefficients", std::move(pads.full), false);
+    for (const std::string& unloaded : results::unloaded_pads(rows_))
+      s_.summary()["unloaded pads"].push(unloaded);
+    for (plot::Figure& f : results::draw_pads(
+             s_.file("pads"), std::span(rows_).last(std::min(rows_.size(), bearings_.size()))))
+      s_.add_figure(std::move(f));
+  }
   const std::size_t shown = std::min<std::size_t>(bearings_.size(), 8);
   const std::vector<Sweep> drawn(bearings_.begin(),
                                  bearings_.begin() + static_cast<std::ptrdiff_t>(shown));

@@ -150,6 +150,7 @@ class StaticRun {
   analysis::Definiteness tangent_;
   results::StaticResults results_;
   io::Table coefficients_, rolling_stiffness_;
+  results::PadTables pads_;
 };
 
 StaticRun::StaticRun(run::Job& job, const model::Step& step, const model::StaticStep& law)
@@ -235,6 +236,13 @@ void StaticRun::write_tables() {
     results_.lines.push_back(grid);
   }
   rolling_stiffness_ = results::rolling_stiffness_table(linear);
+  pads_ = results::pad_tables(linear);
+  for (std::string& unloaded : results::unloaded_pads(linear)) {
+    summary()["unloaded pads"].push(unloaded);
+    results_.lines.push_back(std::move(unloaded));
+  }
+  for (plot::Figure& f : results::draw_pads(step_.name + "_pads", linear))
+    results_.figures.push_back(std::move(f));
   job_.folder.write_table(file("deflection"), results_.deflection);
   job_.folder.write_table(file("supports"), results_.supports);
   job_.folder.write_table(file("sections"), results_.sections);
@@ -246,6 +254,9 @@ void StaticRun::write_tables() {
   write("rolling", results_.rolling);
   write("rolling_stiffness", rolling_stiffness_);
   write("coefficients", coefficients_);
+  write("pads", pads_.pads);
+  write("pad_coefficients", pads_.reduced);
+  write("full_coefficients", pads_.full);
 }
 
 void StaticRun::say_end(const RunTime& time) const {
@@ -286,6 +297,10 @@ void StaticRun::add_section() {
     section.files.emplace_back(title, file(what));
   };
   add(coefficients_, "bearing coefficients", "coefficients");
+  add(pads_.pads, "tilting pads", "pads");
+  add(pads_.reduced, "coefficients by frequency", "pad_coefficients");
+  if (!pads_.full.rows.empty())
+    section.files.emplace_back("full coefficients", file("full_coefficients"));
   for (const char* what : {"deflection", "supports", "sections"})
     section.files.emplace_back(what, file(what));
   add(rolling_stiffness_, "stiffness of rolling bearings", "rolling_stiffness");

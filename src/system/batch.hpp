@@ -77,6 +77,10 @@ class Term {
   virtual void add_tangent(Workspace& w) const = 0;
   /// In the given context, which need not be that of the workspace.
   virtual void add_energy(const Workspace& w, const Context& c, Energy& e) const = 0;
+  /// Elements have unknowns of their own that they can balance (kernels that have a relax()).
+  virtual bool relaxes() const = 0;
+  /// Puts them into q.
+  virtual void relax(const Workspace& w, Eigen::Ref<VecX> q) const = 0;
   virtual void list_couplings(std::vector<std::pair<Index, Index>>& out) const = 0;
   virtual void list_nodes(std::vector<Index>& out) const = 0;
   /// Appends the breakpoints of the time laws in the elements (kernels that have a breakpoints()).
@@ -164,6 +168,8 @@ extern template class Elements<1, 3>;
 extern template class Elements<1, 7>;
 extern template class Elements<2, 3>;
 extern template class Elements<2, 7>;
+extern template class Elements<3, 7>;
+extern template class Elements<4, 7>;
 
 template <Kernel K>
 class Batch final : public Elements<K::n_nodes, K::width> {
@@ -219,6 +225,30 @@ class Batch final : public Elements<K::n_nodes, K::width> {
       for (const K& k : elements_)
         if (k.cornered()) return true;
     return false;
+  }
+  bool relaxes() const override {
+    if constexpr (requires { K::own; })
+      return true;
+    else
+      return false;
+  }
+  void relax(const Workspace& w, Eigen::Ref<VecX> q) const override {
+    if constexpr (requires { K::own; })
+      for (std::size_t i = 0; i < elements_.size(); ++i) {
+        typename Base::Seen seen;
+        Base::see(w, i, seen);
+        constexpr std::size_t own = K::own, first = static_cast<std::size_t>(N) - own;
+        std::array<double, own> values;
+        for (std::size_t k = 0; k < own; ++k)
+          values[k] = q[6 * nodes_[i][first + k]];
+        elements_[i].relax(seen.x, w.context, values);
+        for (std::size_t k = 0; k < own; ++k)
+          q[6 * nodes_[i][first + k]] = values[k];
+      }
+    else {
+      (void)w;
+      (void)q;
+    }
   }
   void list_regions(const Workspace& w, std::vector<int>& out) const override {
     if constexpr (has_regions)

@@ -218,7 +218,11 @@ bool Elements<N, W>::sees_turning(const Context& c, std::span<const double> rate
     std::array<double, N> of_nodes;
     for (std::size_t a = 0; a < N; ++a)
       of_nodes[a] = rate[at(nodes_[i][a])];
-    if (element_dependence(i, c).angle.changes(of_nodes)) return true;
+    const SeenAngle angle = element_dependence(i, c).angle;
+    std::span<const double> seen(of_nodes);
+    if (angle.form == SeenAngle::Form::sum)  // of two nodes at most
+      seen = seen.first(std::min(seen.size(), angle.weight.size()));
+    if (angle.changes(seen)) return true;
   }
   return false;
 }
@@ -268,5 +272,7 @@ template class Elements<1, 3>;
 template class Elements<1, 7>;
 template class Elements<2, 3>;
 template class Elements<2, 7>;
+template class Elements<3, 7>;
+template class Elements<4, 7>;
 
 }  // namespace whirl::system

@@ -39,6 +39,11 @@
 // (a gap closes), and bool cornered() const says whether this element has any: a transient puts the
 // ends of its steps on the corners.
 //
+// Optional: own = n and void relax(const Nodes<>&, const Context&, std::array<double, n>&) const: the values
+// of its last n nodes, which are scalars that no other element touches, at which they are in balance
+// at rest, everything else being where it is. Statics begins there, and goes back there when
+// Newton's method finds no way. What it cannot balance it leaves.
+//
 // Sign: f is what stands on the LEFT: inertia + internal force - external force. Absent tangents
 // (has_* false) are never touched. Kernels do not allocate, throw, or branch on physics that the
 // deck could have left out: that is another kernel.

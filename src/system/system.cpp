@@ -210,6 +210,17 @@ std::vector<double> System::breakpoints() const {
   return out;
 }
 
+bool System::relaxes() const {
+  return std::any_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->relaxes(); });
+}
+
+void System::relax(Workspace& w, const Frames& f, double t, Eigen::Ref<VecX> q,
+                   Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a) const {
+  if (!relaxes() || !evaluate_nodes(w, f, t, q, v, a)) return;
+  for (const auto& term : terms_)
+    if (term->relaxes()) term->relax(w, q);
+}
+
 State System::make_state() const {
   State s;
   s.q = s.v = s.a = VecX::Zero(size());

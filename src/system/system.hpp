@@ -133,6 +133,12 @@ class System {
   bool tangent(Workspace& w, const Frames& f, double t, Eigen::Ref<const VecX> q,
                Eigen::Ref<const VecX> v, Eigen::Ref<const VecX> a, la::MCK& out,
                Selection only = nullptr) const;
+  /// Some elements have internal unknowns that they balance themselves (relax() of a kernel).
+  bool relaxes() const;
+  /// Puts those into q, in balance at rest with everything else where it is; nothing happens where a
+  /// node is outside its chart.
+  void relax(Workspace& w, const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<const VecX> v,
+             Eigen::Ref<const VecX> a) const;
   /// Energies and powers of the elements at the node states of the last evaluation.
   /// @pre w was evaluated.
   Energy energy(const Workspace& w) const;

@@ -74,6 +74,17 @@ double InitialSolver::take_correction(double tau, bool of_a, VecX& q, VecX& v, V
                   size_massless > 0.0 ? change_massless / size_massless : 0.0);
 }
 
+bool InitialSolver::stand_still(double tau, const VecX& q) const {
+  if (!any_massless_ || !r_.allFinite()) return false;
+  double change = 0.0, size = 0.0;
+  for (Index i = 0; i < r_.size(); ++i) {
+    if (row_[at(i)] != Row::first_order) continue;
+    change = std::max(change, std::abs(tau * r_[i]));
+    size = std::max(size, std::abs(q[i]));
+  }
+  return size > 0.0 && change <= 1e-7 * size;
+}
+
 StepStatus InitialSolver::iterate(Problem& problem, double t, double tau, VecX& q, VecX& v, VecX& a,
                                   Statistics& statistics) {
   double previous = infinity;
@@ -93,7 +104,7 @@ StepStatus InitialSolver::iterate(Problem& problem, double t, double tau, VecX& 
     if (iteration > 3 && error > 2.0 * previous) break;
     previous = error;
   }
-  return StepStatus::newton;
+  return stand_still(tau, q) ? StepStatus::ok : StepStatus::newton;
 }
 
 StepStatus InitialSolver::solve(Problem& problem, double t, VecX& q, VecX& v, VecX& a,

@@ -32,6 +32,9 @@ class InitialSolver {
                      Statistics& statistics);
   /// Takes the correction r_; returns its size. of_a: a, which may be zero, counts.
   double take_correction(double tau, bool of_a, VecX& q, VecX& v, VecX& a) const;
+  /// Massless unknowns that stand still: the last correction of their rates, r_, changes nothing of
+  /// them in a second, and would be size over size for ever.
+  bool stand_still(double tau, const VecX& q) const;
   std::vector<Row> row_;
   std::vector<Index> held_;
   bool any_massless_ = false;

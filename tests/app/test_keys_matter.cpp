@@ -420,6 +420,8 @@ const Elsewhere elsewhere[] = {
     {"[[bearing]], type = \"journal\", shape = \"two_grooves\"", "*",
      "app/test_support_decks.cpp, app/test_static_speeds.cpp"},
     {"[[bearing]], type = \"journal\", shape = \"lobes\"", "*", "app/test_support_decks.cpp"},
+    {"[[bearing]], type = \"tilting_pad\"", "*", "app/test_tilting_pads.cpp"},
+    {"[[bearing.pad]]", "*", "app/test_tilting_pads.cpp"},
     {"[[bearing]], type = \"squeeze_film\"", "*",
      "app/test_support_decks.cpp, app/test_support_balance.cpp"},
     {"[[bearing]], type = \"squeeze_film\", film = \"sealed\"", "*", "open"},

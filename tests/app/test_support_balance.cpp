@@ -164,6 +164,14 @@ std::vector<Case> cases() {
   c.push_back({"short journal off the node", beside_ends,
                beside("type = \"short_journal\"\n" + film), 6000, "rigid"});
   c.push_back({"journals", ends, two("type = \"journal\"\nshape = \"plain\"\n" + film), 6000});
+  const std::string pads = "type = \"tilting_pad\"\npreload = 0.4\n";
+  c.push_back({"tilting pads", ends, two(pads + film), 6000});
+  c.push_back({"tilting pads off the node, elastic pivots", beside_ends,
+               beside(pads +
+                      "inertia = \"1e-5 kg.m^2\"\nmass = \"0.1 kg\"\npivot_stiffness = "
+                      "\"1e8 N/m\"\n" +
+                      film),
+               6000, "rigid"});
   c.push_back(
       {"squeeze films", ends,
        two("type = \"squeeze_film\"\nfilm = \"cavitated\"\nstiffness = \"3e6 N/m\"\n" + film)});

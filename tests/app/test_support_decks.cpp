@@ -98,6 +98,8 @@ const std::string pedestal =
 const std::string film =
     "diameter = \"50 mm\"\nlength = \"25 mm\"\nclearance = \"50 um\"\nviscosity = \"20 mPa.s\"\n";
 const std::string short_film = "type = \"short_journal\"\n" + film;
+const std::string pads =
+    "type = \"tilting_pad\"\npads = 5\nfirst_pivot = \"-90 deg\"\npreload = 0.4\n" + film;
 const std::string rub =
     "type = \"rub\"\ngap = \"10 um\"\nstiffness = \"2e7 N/m\"\nfriction = 0.1\n";
 const std::string balls =
@@ -151,6 +153,14 @@ const Kind kinds[] = {
     {"plain_journal", both("type = \"journal\"\nshape = \"plain\"\n" + film)},
     {"grooved_journal", both("type = \"journal\"\nshape = \"two_grooves\"\n" + film)},
     {"lobed_journal", both("type = \"journal\"\nshape = \"lobes\"\npreload = 0.5\n" + film), 2e-5},
+    {"tilting_pads", both(pads)},
+    {"tilting_pads_with_inertia_on_elastic_pivots",
+     both(pads + "inertia = \"2e-5 kg.m^2\"\nmass = \"0.1 kg\"\npivot_stiffness = \"1e8 "
+                 "N/m\"\npivot_damping = \"1e3 N.s/m\"\n")},
+    {"tilting_pads_on_pedestals", both(pads + pedestal)},
+    {"tilting_pads_in_a_casing",
+     casing + thrust + bearing("DE", "rotor/a:start", "to = \"casing/c:start\"\n" + pads) +
+         bearing("NDE", "rotor/b:end", "to = \"casing/d:end\"\n" + pads)},
     {"squeeze_film",
      both("type = \"squeeze_film\"\nfilm = \"full\"\nstiffness = \"1e7 N/m\"\n" + film)},
     // centred: a circle, on which the film that cavitates is linear too; the springs of the three

@@ -288,6 +288,22 @@ type = "static"
 [output]
 report = false
 )"},
+      {"tilting pads", lateral_mass(50, "9.81 m/s^2", R"([[bearing]]
+name = "J"
+at = "mass"
+type = "tilting_pad"
+diameter = "50 mm"
+length = "25 mm"
+clearance = "50 um"
+viscosity = "20 mPa.s"
+preload = 0.4
+[[step]]
+name = "st"
+type = "static"
+speed = "3000 rpm"
+[output]
+report = false
+)")},
       {"arms at rest", arms("hus", R"(["10 m/s^2", "0 m/s^2", "0 m/s^2"])", R"([[joint]]
 name = "H"
 kind = "hinge"

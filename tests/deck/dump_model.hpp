@@ -131,6 +131,15 @@ class ModelDump {
                     x.groove, x.groove_at, x.lobe_at, x.lobe_offset, double(x.nodes)});
     oil(x.oil);
   }
+  void law(const model::TiltingPadJournal& x) {
+    each("tilting",
+         std::array{x.diameter, x.length, x.clearance, x.thickness, x.inertia, x.mass,
+                    x.pivot_stiffness, x.pivot_damping, x.tilt_stiffness, double(x.nodes)});
+    oil(x.oil);
+    for (const auto& p : x.pads())
+      each("pad", std::array{p.pivot, p.arc, p.offset, p.preload});
+    each("ratios", x.frequency_ratios);
+  }
   void law(const model::SqueezeFilm& x) {
     each("squeeze", std::array{x.diameter, x.length, x.clearance, double(x.film), x.groove,
                                x.groove_at, x.stiffness, x.damping});

@@ -160,6 +160,7 @@ const std::vector<Sample>& samples() {
       {"smooth_clearance", play(2e-6)},
       {"short_journal", film<model::ShortJournal>()},
       {"journal", film<model::FiniteJournal>()},
+      {"tilting_pad", film<model::TiltingPadJournal>()},
       {"squeeze_film", damper(1e6)},
       {"squeeze_film_alone", damper(0)},
       {"ball", balls(-5e-6)},

@@ -11,7 +11,7 @@ shift
 suites=("$@")
 decks=(01_paper_rotor 03_rotating_shaft_benchmark 05_campbell_nelson_mcvaugh 06_unbalance_response 07_internal_damping
        08_asymmetric_shaft 14_torsional_train 20_oil_whirl 21_rub 22_varying_compliance 23_dual_spool 24_geared_pair
-       25_casing_on_foundation 26_pad_dynamics 27_misaligned_coupling 30_static_sag 31_column_beyond_buckling 33_double_pendulum)
+       25_casing_on_foundation 26_pad_dynamics 27_misaligned_coupling 28_tilting_pads 30_static_sag 31_column_beyond_buckling 33_double_pendulum)
 
 cmake --preset asan -DWHIRL_BUILD_TESTS=ON >/dev/null
 cmake --build --preset asan --target whirl "${suites[@]/#/test_}"

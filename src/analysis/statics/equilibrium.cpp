@@ -286,6 +286,11 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
     s.q = begin;
     o = newton(Omega, s, iterations, Step::careful);
   }
+  if (o == Outcome::diverged && running_.system().relaxes()) {
+    s.q = begin;
+    running_.relax(s.frames, Omega, s.q);
+    o = newton(Omega, s, iterations, Step::relaxed);
+  }
   return o;
 }
 
@@ -304,10 +309,11 @@ double EquilibriumSolver::step_boldly(double Omega, const system::State& s, doub
 }
 
 double EquilibriumSolver::step_carefully(double Omega, const system::State& s, double size,
-                                         double most) {
+                                         double most, Step kind) {
   double alpha = most;
   for (int halving = 0; halving < 30; ++halving, alpha *= 0.5) {
     trial_ = s.q + alpha * step_;
+    if (kind == Step::relaxed && size > 1e-6) running_.relax(s.frames, Omega, trial_);
     if (!running_.residual(s.frames, Omega, trial_, r_)) continue;
     next_ = r_;
     clear_held(next_);
@@ -366,7 +372,7 @@ EquilibriumSolver::Outcome EquilibriumSolver::newton(double Omega, system::State
     }
     double taken = kind == Step::bold
                        ? step_boldly(Omega, s, size)
-                       : step_carefully(Omega, s, size, std::min(1.0, 2.0 * damping));
+                       : step_carefully(Omega, s, size, std::min(1.0, 2.0 * damping), kind);
     if (kind == Step::bold && size > 1e4 * first) taken = 0.0;
     if (taken == 0.0) {
       why_ = "Newton's iteration finds no descent";
@@ -418,6 +424,7 @@ bool EquilibriumSolver::load_in_steps(double Omega, double t, Equilibrium& out) 
   s.t = t;
   running_.impose(s.frames, s.q);
   running_.set_rates(Omega, s.v);
+  running_.relax(s.frames, Omega, s.q);
   system::State kept = s;
   out.load_steps = 0;
   bool first = true;
@@ -450,6 +457,17 @@ bool EquilibriumSolver::load_in_steps(double Omega, double t, Equilibrium& out) 
   return true;
 }
 
+namespace {
+
+/// No internal unknown has been anywhere yet.
+bool has_fresh_scalars(const system::System& s, const VecX& q) {
+  for (Index i = 0; i < s.nodes(); ++i)
+    if (s.node(i).scalar && q[6 * i] != 0.0) return false;
+  return true;
+}
+
+}  // namespace
+
 std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const system::State* start) {
   const system::System& sys = running_.system();
   Equilibrium out;
@@ -466,6 +484,7 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
   }
   for (Index k : spin_holds_)
     s.q[k] = 0.0;
+  if (has_fresh_scalars(sys, s.q)) running_.relax(s.frames, Omega, s.q);
 
   const system::State begin = s;
   Outcome o = options_.load_steps > 1 ? Outcome::diverged : newton(Omega, s, out.iterations);

@@ -81,7 +81,8 @@ class EquilibriumSolver {
   Index turn_until_met(Index held, double Omega, system::State& s, int& iterations);
   /// A group of lines on which the motion e of another one acts in the tangent at hand, or -1.
   Index group_met(const VecX& e, Index group) const;
-  enum class Step { bold, careful };
+  /// relaxed: carefully, with what elements balance themselves in balance at every trial.
+  enum class Step { bold, careful, relaxed };
   Outcome newton(double Omega, system::State& s, int& iterations);
   Outcome newton(double Omega, system::State& s, int& iterations, Step kind);
   void clear_held(VecX& x) const;
@@ -93,7 +94,7 @@ class EquilibriumSolver {
   double step_boldly(double Omega, const system::State& s, double size);
   /// Natural monotonicity: the simplified Newton correction after the step must be shorter than the
   /// correction itself. most: the part tried first.
-  double step_carefully(double Omega, const system::State& s, double size, double most);
+  double step_carefully(double Omega, const system::State& s, double size, double most, Step kind);
   std::string no_convergence() const;
   /// Loads in steps from the unloaded state at time t, doubled after an easy step, halved after a
   /// failure.

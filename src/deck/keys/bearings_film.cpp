@@ -3,6 +3,9 @@
 #include <deck/keys/bearing_kinds.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace whirl::deck {
 namespace {
 
@@ -33,11 +36,11 @@ void oil(Visitor& v, model::Oil& o) {
 }
 
 template <class Film>
-void dimensions(Visitor& v, Film& b) {
+void dimensions(Visitor& v, Film& b,
+                const char* clearance = "radial clearance (half the difference of diameters)") {
   v.quantity(required("diameter"), b.diameter, "mm", positive, "journal diameter");
   v.quantity(required("length"), b.length, "mm", positive, "axial length of the film");
-  v.quantity(required("clearance"), b.clearance, "um", positive,
-             "radial clearance (half the difference of diameters)");
+  v.quantity(required("clearance"), b.clearance, "um", positive, clearance);
   if (v.clean() && b.clearance > 0.02 * b.diameter)
     v.error("E14", "clearance",
             fmt::format("the clearance {} is not small against the diameter {}: no film",
@@ -89,6 +92,88 @@ void describe(Visitor& v, model::FiniteJournal& b) {
   };
   v.alternatives(required("shape"), shapes, "shape of the bearing surface");
   v.integer("grid", b.nodes, between(24, 360), "points round the circumference");
+}
+
+void describe(Visitor& v, model::TiltingPadJournal::Pad& p) {
+  v.quantity(required("pivot"), p.pivot, "deg", any, "angle of the pivot, from y towards z");
+  v.quantity("arc", p.arc, "deg", Range{0, two_pi, true, true}, "of the pad");
+  v.number("offset", p.offset, fraction, "of the pivot from the start of the pad, in arcs");
+  v.number("preload", p.preload, Range{0, 1, false, true},
+           "1 - (assembled clearance)/(clearance of the pad)");
+}
+
+namespace {
+
+/// Pads that reach into each other.
+void check_pads(Visitor& v, const model::TiltingPadJournal& b) {
+  struct Stretch {
+    double from, to;
+    std::size_t number;
+  };
+  std::vector<Stretch> all;
+  for (const auto& p : b.pads()) {
+    const double from = p.pivot - p.offset * p.arc,
+                 begin = from - two_pi * std::floor(from / two_pi);
+    all.push_back({begin, begin + p.arc, all.size() + 1});
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Stretch& x, const Stretch& y) { return x.from < y.from; });
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const bool last = k + 1 == all.size();
+    const Stretch& next = all[last ? 0 : k + 1];
+    const double begins = next.from + (last ? two_pi : 0.0);
+    if (all[k].to <= begins + 1e-9) continue;
+    v.error("E14", b.own.empty() ? "arc" : "pad",
+            fmt::format("pads {} and {} overlap by {}", all[k].number, next.number,
+                        units::display(all[k].to - begins, "deg")),
+            "smaller arcs, or fewer pads");
+    return;
+  }
+}
+
+}  // namespace
+
+void describe(Visitor& v, model::TiltingPadJournal& b) {
+  dimensions(v, b, "radial clearance as assembled: of a centred journal at the pivots");
+  oil(v, b.oil);
+  const bool count = v.integer(optional("pads", "5, or those listed"), b.count, between(1, 24),
+                               "number of equal pads");
+  const bool first = v.quantity(optional("first_pivot", "-90 deg"), b.first, "deg", any,
+                                "angle of the first pivot of equal pads, from y towards z: where "
+                                "the load points it is on a pad");
+  v.quantity("arc", b.like.arc, "deg", Range{0, two_pi, true, true}, "of a pad");
+  v.number("offset", b.like.offset, fraction,
+           "of the pivot from the start of its pad in arcs; 0.5: central, more: towards the end in "
+           "the sense of rotation y -> z");
+  v.number("preload", b.like.preload, Range{0, 1, false, true},
+           "1 - (assembled clearance)/(clearance of the pads)");
+  v.list(optional("pad", "equal pads"), Visitor::body_of(b.own, b.like),
+         "a pad by itself, instead of equal ones; what it leaves out is that of the bearing");
+  v.quantity("thickness", b.thickness, "mm", not_negative,
+             "of a pad at its pivot: the pivot is that far behind the film");
+  v.quantity("inertia", b.inertia, "kg.m^2", not_negative,
+             "moment of inertia of a pad about its pivot; 0: it follows the film at once");
+  const bool mass =
+      v.quantity("mass", b.mass, "kg", not_negative, "of a pad: its motion along an elastic pivot");
+  const bool elastic = v.quantity(optional("pivot_stiffness", "rigid pivots"), b.pivot_stiffness,
+                                  "N/m", positive, "of a pivot, radial");
+  const bool lossy =
+      v.quantity("pivot_damping", b.pivot_damping, "N.s/m", not_negative, "of an elastic pivot");
+  v.quantity("tilt_stiffness", b.tilt_stiffness, "N.m/rad", not_negative,
+             "of a pivot against tilting: a flexure");
+  v.quantities(beside_motion("frequency_ratios"), b.frequency_ratios, "", not_negative, -1,
+               "frequencies over the speed at which reduced coefficients are written beside the "
+               "synchronous ones");
+  v.integer("grid", b.nodes, between(24, 360), "points round the circumference");
+  if (!v.clean()) return;
+  if ((count || first) && !b.own.empty())
+    v.error("E26", count ? "pads" : "first_pivot", "equal pads and pads by themselves are given",
+            "keep one of the two");
+  else if (!elastic && (mass || lossy))
+    v.error("E05", mass ? "mass" : "pivot_damping", "a rigid pivot does not move",
+            "give pivot_stiffness, or leave it out");
+  else
+    check_pads(v, b);
 }
 
 void describe(Visitor& v, model::SqueezeFilm& b) {
@@ -178,6 +263,13 @@ void add_kinds(Kinds& k, As<model::FiniteJournal>) {
       "journal",
       "journal bearing of finite length with cavitation: plain, with axial grooves, "
       "multi-lobe; nonlinear");
+}
+
+void add_kinds(Kinds& k, As<model::TiltingPadJournal>) {
+  k.add<model::TiltingPadJournal>("tilting_pad",
+                                  "journal bearing of pads that tilt about rigid or elastic "
+                                  "pivots; their tilts are unknowns of "
+                                  "every analysis; nonlinear");
 }
 
 void add_kinds(Kinds& k, As<model::SqueezeFilm>) {

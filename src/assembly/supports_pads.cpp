@@ -1,0 +1,286 @@
+// Tilting-pad journal bearings: an element a pad, with scalar nodes for what the pad does.
+#include <core/contract.hpp>
+#include <assembly/film_kernels.hpp>
+#include <assembly/support_parts.hpp>
+#include <elements/films/oil.hpp>
+#include <elements/films/tilting_pad.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::assembly {
+
+std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJournal& law,
+                                                    int points) {
+  const std::vector<model::TiltingPadJournal::Pad> pads = law.pads();
+  double arcs = 0;
+  for (const auto& p : pads)
+    arcs += p.arc;
+  std::vector<elements::TiltingPad> out;
+  for (const auto& p : pads) {
+    elements::PadGeometry g;
+    g.radius = 0.5 * law.diameter;
+    g.length = law.length;
+    g.viscosity = viscosity_of(law.oil);
+    g.clearance = law.clearance;
+    g.preload = p.preload;
+    g.pivot = p.pivot;
+    g.arc = p.arc;
+    g.offset = p.offset;
+    g.thickness = law.thickness;
+    g.points = static_cast<int>(std::lround(points * p.arc / arcs));
+    elements::TiltingPad pad = elements::make_tilting_pad(g);
+    pad.tilt_stiffness += law.tilt_stiffness;
+    pad.inertia = law.inertia;
+    pad.mass = law.mass;
+    pad.pivot_stiffness = law.pivot_stiffness;
+    pad.pivot_damping = law.pivot_damping;
+    out.push_back(std::move(pad));
+  }
+  return out;
+}
+
+namespace {
+
+/// The pads of a bearing with the nodes they stand between.
+template <bool Pressed, bool Offsets>
+class PadRing {
+ public:
+  using Kernel = elements::TiltingPadJoint<Pressed, Offsets>;
+  static constexpr Index own = Kernel::own;
+
+  PadRing(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+          const model::TiltingPadJournal& law)
+      : law_(law),
+        offset_{n.shaft.offset, n.other.offset},
+        ends_{n.shaft.node, n.other.node},
+        pads_(make_tilting_pads(law, law.nodes)) {
+    const Index line = a.builder.add_line(fmt::format("pads of {}", name_of(b)));
+    for (std::size_t k = 0; k < pads_.size(); ++k) {
+      const auto add = [&](const char* what) {
+        return a.builder.add_node(
+            {Vec3::Zero(), line, fmt::format("{} of pad {} of {}", what, k + 1, name_of(b)), true});
+      };
+      std::vector<Index> unknowns{add("tilt")};
+      if constexpr (Pressed) unknowns.push_back(add("pivot"));
+      unknowns_.push_back(std::move(unknowns));
+    }
+  }
+
+  std::size_t pads() const { return pads_.size(); }
+  const std::vector<std::vector<Index>>& unknowns() const { return unknowns_; }
+  Kernel kernel(std::size_t k) const {
+    Kernel out;
+    out.pad = pads_[k];
+    out.offset = offset_;
+    return out;
+  }
+  std::array<Index, Kernel::n_nodes> nodes(std::size_t k) const {
+    std::array<Index, Kernel::n_nodes> out;
+    out[0] = ends_[0];
+    out[1] = ends_[1];
+    for (std::size_t i = 0; i < unknowns_[k].size(); ++i)
+      out[2 + i] = unknowns_[k][i];
+    return out;
+  }
+  typename Kernel::Nodes states(std::size_t k, const NodeAt& at) const {
+    typename Kernel::Nodes x;
+    const auto n = nodes(k);
+    for (std::size_t i = 0; i < n.size(); ++i)
+      x[i] = &at(n[i]);
+    return x;
+  }
+  /// What stands on the shaft for all pads together.
+  Vector<7> on_shaft(const NodeAt& at, const system::Context& c) const {
+    Vector<7> sum = Vector<7>::Zero();
+    for (std::size_t k = 0; k < pads(); ++k) {
+      system::ForceX<Kernel::size> f = system::ForceX<Kernel::size>::Zero();
+      kernel(k).add_force(states(k, at), c, f);
+      sum += f.template head<7>();
+    }
+    return sum;
+  }
+  std::vector<elements::PadStanding> standing(const NodeAt& at) const {
+    std::vector<elements::PadStanding> out;
+    for (std::size_t k = 0; k < pads(); ++k) {
+      const auto m = kernel(k).motion_of(states(k, at), {});
+      out.push_back(pads_[k].standing(m.journal, m.q));
+    }
+    return out;
+  }
+  std::vector<TiltingPads::Face> faces(const NodeAt& at) const {
+    std::vector<TiltingPads::Face> out;
+    for (std::size_t k = 0; k < pads(); ++k) {
+      const elements::TiltingPad& pad = pads_[k];
+      const Vec2 q = kernel(k).motion_of(states(k, at), {}).q;
+      const elements::JournalSurface& surface = *pad.film.surface;
+      const auto& arc = surface.arcs().front();
+      // r_p = r - a, e = r_p + lift n: the centre of the pad is at a - lift n
+      const Vec2 centre =
+          q.x() * pad.direction(0) + q.y() * pad.direction(1) - surface.lift() * arc.thinnest;
+      out.push_back({arc.start, arc.start + arc.length, surface.pad_clearance(), centre});
+    }
+    return out;
+  }
+  elements::PadCoefficients coefficients(const NodeAt& at, int points) const {
+    const std::vector<elements::TiltingPad> finer =
+        points > 0 ? make_tilting_pads(law_, points) : pads_;
+    const Index n = 2 + own * static_cast<Index>(pads());
+    elements::PadCoefficients out{MatX::Zero(n, n), MatX::Zero(n, n), MatX::Zero(n, n),
+                                  static_cast<int>(own)};
+    for (std::size_t k = 0; k < pads(); ++k) {
+      Kernel joint = kernel(k);
+      joint.pad = finer[k];
+      system::TangentX<Kernel::size> t;
+      t.set_zero();
+      joint.add_tangent(states(k, at), {}, t);
+      std::vector<std::pair<Index, Index>> place{{0, 1}, {1, 2}};  // of the bearing, of the kernel
+      for (Index i = 0; i < own; ++i)
+        place.emplace_back(2 + own * static_cast<Index>(k) + i, 14 + 7 * i);
+      for (const auto& [row, from_row] : place)
+        for (const auto& [column, from_column] : place) {
+          out.K(row, column) += t.K(from_row, from_column);
+          out.C(row, column) += t.C(from_row, from_column);
+          out.M(row, column) += t.M(from_row, from_column);
+        }
+    }
+    return out;
+  }
+  elements::LateralMotion journal(const NodeAt& at) const {
+    return kernel(0).motion_of(states(0, at), {}).journal;
+  }
+  /// The journal towards the pivot that it is nearest to, m.
+  double reach(const NodeAt& at) const {
+    double out = -infinity;
+    for (std::size_t k = 0; k < pads(); ++k) {
+      const auto m = kernel(k).motion_of(states(k, at), {});
+      out = std::max(out, m.journal.r.dot(pads_[k].pivot) - m.q.y());
+    }
+    return out;
+  }
+  /// The first pad that finds no balance with the journal where it is; 0: all do.
+  std::size_t tipping(const elements::LateralMotion& m) const {
+    for (std::size_t k = 0; k < pads_.size(); ++k)
+      if (!pads_[k].settled(m).allFinite()) return k + 1;
+    return 0;
+  }
+  /// What the pads carry with the journal where it is, times `factor`, and every pad in balance.
+  double capacity(elements::LateralMotion m, double factor) const {
+    m.r *= factor;
+    m.v.setZero();
+    Vec2 sum = Vec2::Zero();
+    for (const elements::TiltingPad& pad : pads_) {
+      const Vec2 q = pad.settled(m);
+      if (q.allFinite()) sum += pad.standing(m, q).force;
+    }
+    return sum.norm();
+  }
+
+ private:
+  model::TiltingPadJournal law_;
+  std::array<double, 2> offset_;
+  Pair ends_;
+  std::vector<elements::TiltingPad> pads_;
+  std::vector<std::vector<Index>> unknowns_;
+};
+
+/// Where the film with the most load stands, and the thinnest.
+std::string describe_worst(const std::vector<elements::PadStanding>& pads) {
+  const auto worst = std::max_element(pads.begin(), pads.end(),
+                                      [](const auto& x, const auto& y) { return x.load < y.load; });
+  std::string out =
+      fmt::format("pad {} carries {:.4g} N at eccentricity {:.3f}, film {:.3g} um",
+                  worst - pads.begin() + 1, worst->load, worst->eccentricity, 1e6 * worst->film);
+  const auto thinnest = std::min_element(
+      pads.begin(), pads.end(), [](const auto& x, const auto& y) { return x.film < y.film; });
+  if (thinnest != worst)
+    out += fmt::format("; the thinnest film is that of pad {}, {:.3g} um",
+                       thinnest - pads.begin() + 1, 1e6 * thinnest->film);
+  return out;
+}
+
+template <bool Pressed, bool Offsets>
+void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+              const model::TiltingPadJournal& law) {
+  using Ring = PadRing<Pressed, Offsets>;
+  const auto ring = std::make_shared<const Ring>(a, b, n, law);
+  for (std::size_t k = 0; k < ring->pads(); ++k)
+    a.built.support_terms[number_of(a, b)].push_back(
+        a.builder.add(ring->kernel(k), ring->nodes(k), "tilting pads"));
+  auto& terms = a.built.support_terms[number_of(a, b)];
+  terms.erase(std::unique(terms.begin(), terms.end()), terms.end());
+  a.built.support_forces.push_back(
+      {b.name, [ring](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+         return Vec3(-ring->on_shaft(at, c).template head<3>());
+       }});
+  a.built.support_forces.back().moment =
+      [ring, place = n.shaft](const NodeAt& at, const system::Context& c, const ReactionAt&) {
+        return moment_about_place(at(place.node), ring->on_shaft(at, c), place.offset);
+      };
+  TiltingPads pads;
+  pads.bearing = number_of(a, b);
+  for (const auto& p : law.pads())
+    pads.pivots.push_back(p.pivot);
+  pads.unknowns = ring->unknowns();
+  pads.standing = [ring](const NodeAt& at) { return ring->standing(at); };
+  pads.faces = [ring](const NodeAt& at) { return ring->faces(at); };
+  pads.coefficients = [ring](const NodeAt& at, int points) {
+    return ring->coefficients(at, points);
+  };
+  a.built.tilting_pads.push_back(std::move(pads));
+
+  const double R = 0.5 * law.diameter, slender = R / law.clearance;
+  SupportCondition condition;
+  condition.bearing = number_of(a, b);
+  condition.name = b.name;
+  condition.where = b.where;
+  condition.sommerfeld = 2.0 * viscosity_of(law.oil) * law.length * R * slender * slender;
+  condition.reach = [ring](const NodeAt& at) { return ring->reach(at); };
+  condition.state = [ring, clearance = law.clearance](const NodeAt& at) {
+    const std::vector<elements::PadStanding> now = ring->standing(at);
+    Vec2 load = Vec2::Zero();
+    for (const auto& p : now)
+      load += p.force;
+    SupportCondition::State s;
+    s.film = true;
+    s.gap = clearance;
+    s.displacement = std::max(0.0, ring->reach(at));
+    s.load = load.norm();
+    s.detail = describe_worst(now);
+    if (const std::size_t pad = ring->tipping(ring->journal(at)))
+      s.detail += fmt::format(
+          "; pad {} finds no balance there (eccentricity {:.3f} towards its pivot) and turns until "
+          "it touches",
+          pad, now[pad - 1].eccentricity);
+    constexpr double near =
+        0.8;  // of the gap: what it could carry is of interest, and found slowly
+    if (s.displacement > near * s.gap)
+      s.capacity =
+          ring->capacity(ring->journal(at), SupportCondition::believed * s.gap / s.displacement);
+    return s;
+  };
+  a.built.conditions.push_back(std::move(condition));
+}
+
+}  // namespace
+
+void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
+             const model::TiltingPadJournal& law) {
+  guarded(a, b, [&] {
+    if (b.to && a.model.shafts[b.to->shaft].rotating) {
+      throw run_error("E26", "its pads stand in a housing that does not turn",
+                      "between two turning shafts use type = \"journal\"");
+    }
+    const bool at_nodes = n.shaft.offset == 0 && n.other.offset == 0,
+               rigid = law.pivot_stiffness == 0;
+    if (rigid)
+      at_nodes ? add_ring<false, false>(a, b, n, law) : add_ring<false, true>(a, b, n, law);
+    else
+      at_nodes ? add_ring<true, false>(a, b, n, law) : add_ring<true, true>(a, b, n, law);
+    follow_closely(a, n, law.clearance);
+  });
+}
+
+}  // namespace whirl::assembly
