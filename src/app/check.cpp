@@ -24,7 +24,7 @@ const char* kind_of(const model::StepLaw& law) {
   static constexpr const char* names[] = {
       "static",    "modal",        "campbell",          "critical_speeds", "unbalance_response",
       "stability", "critical_map", "harmonic_response", "torsional",       "buckling",
-      "transient"};
+      "transient", "api_lateral",  "api_torsional",     "balancing"};
   static_assert(std::size(names) == std::variant_size_v<model::StepLaw>);
   return names[law.index()];
 }
@@ -112,12 +112,23 @@ std::function<model::Model(const std::string&)> variants_of(const std::filesyste
   };
 }
 
+/// The same with several.
+std::function<model::Model(const std::vector<std::string>&)> builds_of(
+    const std::filesystem::path& deck, const deck::ReadOptions& options) {
+  return [deck, options](const std::vector<std::string>& settings) {
+    deck::ReadOptions read = options;
+    read.set.insert(read.set.end(), settings.begin(), settings.end());
+    return deck::load_model(deck, read);
+  };
+}
+
 /// Mesh and whatever else a run would refuse. Error: what it would.
 meshes::Mesh prepare(const deck::Deck& d, const CheckOptions& o) {
   meshes::Mesh mesh = meshes::make_mesh(d.model);
   if (d.model.steps.empty()) return mesh;
   run::RunOptions run;
   run.variant = variants_of(o.deck, o.read);
+  run.build = builds_of(o.deck, o.read);
   steps::check_steps(d.model, mesh, run);
   return mesh;
 }
@@ -190,6 +201,7 @@ int run_command(const RunCommand& o) {
   }
   run::RunOptions run = o.run;
   run.variant = variants_of(o.deck, o.read);
+  run.build = builds_of(o.deck, o.read);
   return steps::run_deck(d.model, run);
 }
 

@@ -245,6 +245,11 @@ const std::vector<CodeInfo>& error_catalogue() {
        "The matrices are not those of a vibrating structure: M is "
        "indefinite, or K or M is not symmetric.",
        ""},
+      {"E63", "balancing that lacks its vectors",
+       "Every run has a vector of every sensor and speed of the initial run; probes, planes and "
+       "modes that are named exist.",
+       "columns = [\"run\", \"probe\", \"angle[deg]\", \"speed[rpm]\", \"amplitude[um]\", "
+       "\"phase[deg]\"]"},
       {"E69", "a load path that did not reach its load",
        "The path of equilibria was followed from no load, but not to the load factor or "
        "displacement it should end at: it ran out of points "
@@ -254,6 +259,15 @@ const std::vector<CodeInfo>& error_catalogue() {
        "The message says which and where. What was found "
        "is written.",
        "path = { load = 5, steps = 40, max_points = 2000 }"},
+      {"E70", "an API report that cannot be made",
+       "The step looks at journals, seals, clearances and stages of one rotor: those it names must "
+       "exist and stand on one shaft, journals must carry it laterally, and the sets of bearings "
+       "must be decks by themselves.",
+       "[[step]]\ntype = \"api_lateral\"\noperating_speed = [\"7000 rpm\", \"9450 rpm\"]\nbearings "
+       "= "
+       "[\"DE\", \"NDE\"]\nset = [{ name = \"minimum\", change = [\"bearing.DE.clearance = 60 "
+       "um\"] "
+       "}]"},
       {"E71", "the split of the rotation reached its limit",
        "A section normal turned by pi from the axis of its shaft: the axial angle and the azimuth "
        "of the transverse rotation then describe the same "

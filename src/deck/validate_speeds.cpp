@@ -54,6 +54,13 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
   if (const auto* x = std::get_if<model::StabilityStep>(&s.law)) return range(x->speed);
   if (const auto* x = std::get_if<model::HarmonicStep>(&s.law))
     return x->speeds ? range(*x->speeds) : std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::BalancingStep>(&s.law)) {
+    const auto [a, b] = std::minmax_element(x->speeds.begin(), x->speeds.end());
+    return std::pair(std::min(*a * ratio, *b * ratio), std::max(*a * ratio, *b * ratio));
+  }
+  if (const auto* x = std::get_if<model::ApiLateralStep>(&s.law))
+    return std::pair(std::min(x->min_speed * ratio, x->max_speed * ratio),
+                     std::max(x->min_speed * ratio, x->max_speed * ratio));
   if (const auto* x = std::get_if<model::BucklingStep>(&s.law))
     return std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {

@@ -42,7 +42,9 @@ bool twists(const model::StepLaw& law) {
         using T = std::decay_t<decltype(s)>;
         if constexpr (std::is_same_v<T, model::StaticStep> ||
                       std::is_same_v<T, model::TransientStep> ||
-                      std::is_same_v<T, model::CriticalMapStep>)
+                      std::is_same_v<T, model::CriticalMapStep> ||
+                      std::is_same_v<T, model::ApiLateralStep> ||
+                      std::is_same_v<T, model::BalancingStep>)
           return false;
         else if constexpr (requires { s.motion; })
           return s.motion == model::MotionKind::all || s.motion == model::MotionKind::torsional;

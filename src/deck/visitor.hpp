@@ -199,12 +199,17 @@ void describe(Visitor&, model::Unbalance&);
 void describe(Visitor&, model::PointLoad&);
 void describe(Visitor&, model::Probe&);
 void describe(Visitor&, model::InitialMotion&);
-void describe(Visitor&, model::Bearing&);     // bearings.cpp
-void describe(Visitor&, model::Joint&);       // joints.cpp
-void describe(Visitor&, model::Foundation&);  // foundations.cpp
-void describe(Visitor&, model::Drive&);       // drives.cpp
-void describe(Visitor&, model::Step&);        // steps.cpp
-void describe(Visitor&, model::Output&);      // output.cpp
+void describe(Visitor&, model::Bearing&);         // bearings.cpp
+void describe(Visitor&, model::Joint&);           // joints.cpp
+void describe(Visitor&, model::Foundation&);      // foundations.cpp
+void describe(Visitor&, model::Drive&);           // drives.cpp
+void describe(Visitor&, model::Step&);            // steps.cpp
+void describe(Visitor&, model::ApiLateralStep&);  // steps_reports.cpp
+void describe(Visitor&, model::ApiTorsionalStep&);
+void describe(Visitor&, model::BalancingStep&);
+void describe(Visitor&, model::VibrationZones&);
+void describe(Visitor&, model::TitleBlock&);
+void describe(Visitor&, model::Output&);  // output.cpp
 void describe(Visitor&, model::VtkOutput&);
 void describe(Visitor&, model::TrackingOutput&);  // postprocess.cpp
 void describe(Visitor&, model::SpectraOutput&);

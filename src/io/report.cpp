@@ -4,6 +4,7 @@
 #include <plot/svg.hpp>
 #include <core/text.hpp>
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace whirl::io {
@@ -19,7 +20,23 @@ std::string paragraphs(const std::string& text) {
   return out;
 }
 
-std::string table_html(const Table& t) {
+/// By the anchor of the figure; none where no table leads to one.
+using FigureNumbers = std::map<std::string, int>;
+
+/// A class for its colour; a link to the figure that it names.
+std::string cell_html(const Table::Cell& c, bool numeric, const FigureNumbers& numbers) {
+  using Mark = Table::Cell::Mark;
+  const std::string kind = c.mark == Mark::passed   ? "passed"
+                           : c.mark == Mark::failed ? "failed"
+                           : numeric                ? "n"
+                                                    : "";
+  std::string text = c.is_text ? escape(c.text) : readable(c.number, 6);
+  if (const auto n = numbers.find(safe_name(c.figure)); n != numbers.end())
+    text = "<a href=\"#" + n->first + "\">Figure " + std::to_string(n->second) + "</a>";
+  return (kind.empty() ? std::string("<td>") : "<td class=\"" + kind + "\">") + text + "</td>";
+}
+
+std::string table_html(const Table& t, const FigureNumbers& numbers) {
   std::string s = "<div class=\"scroll\"><table>";
   if (!t.title.empty()) s += "<caption>" + escape(t.title) + "</caption>";
   s += "<thead><tr>";
@@ -37,8 +54,7 @@ std::string table_html(const Table& t) {
   for (const auto& row : t.rows) {
     s += "<tr>";
     for (std::size_t k = 0; k < row.size(); ++k)
-      s += (numeric[k] ? "<td class=\"n\">" : "<td>") +
-           (row[k].is_text ? escape(row[k].text) : readable(row[k].number, 6)) + "</td>";
+      s += cell_html(row[k], numeric[k], numbers);
     s += "</tr>\n";
   }
   return s + "</tbody></table></div>\n";
@@ -67,9 +83,13 @@ bool turns(const plot::Figure& f) {
                      [](const plot::Axes& a) { return a.kind == plot::AxesKind::space; });
 }
 
-std::string figure_html(const plot::Figure& f, const std::string& id) {
+std::string figure_html(const plot::Figure& f, const std::string& id,
+                        const FigureNumbers& numbers) {
+  const auto number = numbers.find(id);
+  const std::string title =
+      (number == numbers.end() ? "" : "Figure " + std::to_string(number->second) + ". ") + f.title;
   std::string s = "<figure style=\"width:" + number_text(f.width) + "px\"><div class=\"bar\"><h3>" +
-                  escape(f.title) + "</h3><span class=\"hint\">";
+                  escape(title) + "</h3><span class=\"hint\">";
   s += turns(f) ? "drag turns" : "click, then wheel zooms; drag pans; shift-drag: window";
   s += "</span><button data-do=\"reset\" title=\"back to the whole picture (double "
        "click)\">reset</button>"
@@ -96,6 +116,26 @@ FigureIds figure_ids(const Report& r) {
       ids[k].push_back(std::move(id));
     }
   return ids;
+}
+
+/// Where a table leads to figures all of them have numbers.
+FigureNumbers figure_numbers(const Report& r, const FigureIds& ids) {
+  const auto leads = [](const Table& t) {
+    return std::any_of(t.rows.begin(), t.rows.end(), [](const auto& row) {
+      return std::any_of(row.begin(), row.end(),
+                         [](const Table::Cell& c) { return !c.figure.empty(); });
+    });
+  };
+  FigureNumbers numbers;
+  if (std::none_of(r.sections.begin(), r.sections.end(), [&](const ReportSection& s) {
+        return std::any_of(s.tables.begin(), s.tables.end(), leads);
+      }))
+    return numbers;
+  int n = 0;
+  for (const auto& of_section : ids)
+    for (const std::string& id : of_section)
+      numbers[id] = ++n;
+  return numbers;
 }
 
 std::string contents_html(const Report& r, const FigureIds& ids) {
@@ -126,16 +166,25 @@ std::string warnings_html(const Report& r) {
   return s + "</div>\n";
 }
 
+/// Name and text in two columns, as at the head of a drawing.
+std::string title_block_html(const Report& r) {
+  if (r.title_block.empty()) return {};
+  std::string s = "<table class=\"title-block\">";
+  for (const auto& [name, text] : r.title_block)
+    s += "<tr><th>" + escape(name) + "</th><td>" + escape(text) + "</td></tr>";
+  return s + "</table>\n";
+}
+
 std::string section_html(const ReportSection& x, const std::string& id,
-                         const std::vector<std::string>& figure_ids) {
+                         const std::vector<std::string>& figure_ids, const FigureNumbers& numbers) {
   std::string s =
       "<section id=\"" + id + "\"><h2>" + escape(x.title) + "</h2>\n" + paragraphs(x.text);
   for (const auto& t : x.tables)
-    s += table_html(t);
+    s += table_html(t, numbers);
   if (!x.figures.empty()) {
     s += "<div class=\"figures\">";
     for (std::size_t i = 0; i < x.figures.size(); ++i)
-      s += figure_html(x.figures[i], figure_ids[i]);
+      s += figure_html(x.figures[i], figure_ids[i], numbers);
     s += "</div>\n";
   }
   if (!x.files.empty()) {
@@ -159,14 +208,15 @@ std::string render_report(const Report& r) {
   s += "</style>\n</head>\n<body>\n";
   const bool nav = r.sections.size() > 1;
   const FigureIds ids = figure_ids(r);
+  const FigureNumbers numbers = figure_numbers(r, ids);
   s += nav ? "<div class=\"page with-nav\">\n" : "<div class=\"page\">\n";
   s += "<header><h1>" + escape(r.title) + "</h1>";
   if (!r.subtitle.empty()) s += "<p class=\"subtitle\">" + escape(r.subtitle) + "</p>";
-  s += "</header>\n";
+  s += title_block_html(r) + "</header>\n";
   if (nav) s += contents_html(r, ids);
   s += "<main>\n" + facts_html(r) + warnings_html(r);
   for (std::size_t k = 0; k < r.sections.size(); ++k)
-    s += section_html(r.sections[k], anchor(k), ids[k]);
+    s += section_html(r.sections[k], anchor(k), ids[k], numbers);
   if (!r.summary.is_null())
     s += "<details><summary>Run summary</summary>" + value_html(r.summary) + "</details>\n";
   if (!r.deck.empty())

@@ -22,6 +22,8 @@ struct Report {
   std::string title;
   std::string subtitle;  ///< deck name, date, version
   std::vector<std::pair<std::string, std::string>>
+      title_block;  ///< name and text: project, machine, author, ..
+  std::vector<std::pair<std::string, std::string>>
       facts;  ///< headline numbers: name, value with unit
   std::vector<std::string> warnings;
   std::vector<ReportSection> sections;  ///< in the order of the steps

@@ -101,6 +101,9 @@ class Table {
     double number = 0.0;
     std::string text;
     bool is_text = false;
+    /// Of pages alone: a figure of the report that it leads to, and its colour.
+    enum class Mark { none, passed, failed } mark = Mark::none;
+    std::string figure;
     Cell(double x) : number(x) {}
     Cell(int x) : number(x) {}
     Cell(std::string s) : text(std::move(s)), is_text(true) {}

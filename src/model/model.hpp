@@ -340,7 +340,16 @@ struct CriticalStep {
   int shapes = 4;
   About about = About::equilibrium;
 };
+/// Zones of shaft vibration, peak to peak: limits as they are, or constants over the square root of
+/// the speed.
+struct VibrationZones {
+  std::vector<double> constants{4800, 9000, 13200};  ///< A/B, B/C, C/D: um sqrt(rpm)
+  std::vector<double> limits;                        ///< m; empty: by constants
+  std::string source = "ISO 20816-3";
+};
 struct UnbalanceStep {
+  std::optional<VibrationZones> zones;
+  double balance_grade = 0;  ///< m/s (e omega); 0: none
   SpeedRange speed;
   std::array<double, 2> operating{0, 0};  ///< range of operating speeds, rad/s; 0 0 = not given
   std::vector<double> shapes_at;  ///< speeds of operating shapes, rad/s; empty = at the peaks
@@ -395,6 +404,94 @@ struct TorsionalStep {
   int modes = 6;
   About about = About::equilibrium;
 };
+/// A close clearance of the machine, looked at by an API report.
+struct ApiClearance : Entity {
+  Location at;
+  double diametral = 0;  ///< m
+};
+/// A stage whose gas or steam drives whirl.
+struct ApiStage : Entity {
+  enum class Kind { radial, axial } kind = Kind::radial;
+  std::optional<Location> at;
+  double power = 0, speed = 0;        ///< W; rad/s, 0: the highest continuous one
+  double diameter = 0, width = 0;     ///< m; of blades: mean diameter and height
+  double suction = 0, discharge = 0;  ///< densities, kg/m3
+};
+/// One build of the machine: keys of the deck that it has otherwise.
+struct ApiSet : Entity {
+  std::vector<std::string> change;  ///< "bearing.DE.clearance=60 um"
+};
+/// What an API lateral report holds against its numbers.
+struct ApiLimits {
+  double unbalance_factor = 2, unbalance_constant = 6350;  ///< -, g mm rpm/kg
+  double unbalance_speed = 0;  ///< rad/s; 0: the operating speed nearest to the mode
+  double vibration = 25.4e-6, vibration_speed = 12000 * pi / 30;  ///< m peak to peak, rad/s
+  double scale = 6, clearance = 0.75;
+  double damped = 2.5, margin_factor = 0.17, margin_offset = 1.5, margin_above = 0.10;
+  double margin = nan;  ///< a fixed one; nan: by amplification factor
+  double stage_factor = 3, axial_factor = 1.5, torque_constant = 9.55;
+  double log_decrement = 0.1, ratio = 2, ratio_in_b = 10;
+  std::vector<double> density{0, 16.53, 60}, critical_ratio{2.5, 2.5, 2.0};  ///< kg/m3, -
+  std::string source;              ///< of limits that the deck sets
+  std::vector<std::string> given;  ///< keys that the deck sets
+};
+/// Lateral analyses and their comparison with a standard, for every set of bearings.
+struct ApiLateralStep {
+  std::string standard = "API 617";
+  std::array<double, 2> operating{0, 0};  ///< rad/s, least and highest continuous speed
+  double trip = 0;                        ///< rad/s
+  double min_speed = 0, max_speed = 0;    ///< rad/s, of the response
+  int points = 121;
+  std::vector<std::string> bearings, seals, probes;
+  std::vector<double> modes;  ///< numbers; empty: all below max_speed
+  std::vector<ApiSet> sets;
+  std::vector<ApiClearance> clearances;
+  std::vector<ApiStage> stages;
+  std::optional<Location> cross_coupling_at;
+  bool at_stages = false;  ///< each stage's share where the stage is
+  ApiLimits limits;
+};
+/// A plane that takes correction masses.
+struct BalancePlane : Entity {
+  Location at;
+};
+/// A measured vibration: a run, a probe, an angle, a speed.
+struct MeasuredVector {
+  std::string run, probe;
+  double angle = 0, speed = 0, amplitude = 0, phase_lag = 0;  ///< rad, rad/s, m, rad
+};
+struct TrialRun : Entity {
+  std::string run, plane;
+  double amount = 0, phase = 0;  ///< kg m, rad
+};
+struct BalancingStep {
+  enum class Method { influence, modal } method = Method::influence;
+  std::vector<BalancePlane> planes;
+  std::vector<double> speeds;  ///< rad/s
+  std::vector<double> modes;   ///< modal: numbers, one a speed
+  std::vector<MeasuredVector> measured;
+  bool peak_to_peak = true;  ///< amplitudes measured
+  std::string initial;       ///< run without trial masses
+  std::vector<TrialRun> trials;
+};
+/// A torque that excites a train: a multiple of a shaft's speed, or at a fixed frequency.
+struct ApiTorque : Entity {
+  Location at;
+  double order = 0, frequency = 0;  ///< of the reference speed; rad/s; one of them
+  double amplitude = 0;             ///< N m, 0 to peak
+};
+struct ApiTorsionalStep {
+  std::string standard = "API 617, 671";
+  std::array<double, 2> operating{0, 0};  ///< rad/s of the reference
+  int modes = 6;
+  std::vector<double> multiples{1, 2}, orders, line_multiples{1, 2};
+  double line_frequency = 0;  ///< rad/s; 0: none
+  double margin = 0.10;
+  std::vector<ApiTorque> torques;
+  double concentration = 1, stress_limit = 0;  ///< -, Pa; 0: none
+  std::string source;
+  std::vector<std::string> given;
+};
 struct BucklingStep {
   int modes = 3;
   double speed = 0;
@@ -426,7 +523,8 @@ struct TransientStep {
 
 using StepLaw =
     std::variant<StaticStep, ModalStep, CampbellStep, CriticalStep, UnbalanceStep, StabilityStep,
-                 CriticalMapStep, HarmonicStep, TorsionalStep, BucklingStep, TransientStep>;
+                 CriticalMapStep, HarmonicStep, TorsionalStep, BucklingStep, TransientStep,
+                 ApiLateralStep, ApiTorsionalStep, BalancingStep>;
 struct Step : Entity {
   std::string from;  ///< earlier step whose result it starts from
   StepLaw law;
@@ -477,6 +575,11 @@ struct Output {
   bool csv = true, binary = false, report = true;
   bool peak_to_peak = false;
   std::vector<VtkOutput> vtk;
+};
+
+/// What stands at the head of a report, as given.
+struct TitleBlock {
+  std::string project, machine, company, author, checked, document, revision, date, notes;
 };
 
 /// What `whirl sweep` varies and looks at, where the command line does not say; texts as the
@@ -562,6 +665,7 @@ struct Model {
   std::vector<Probe> probes;
   std::vector<Step> steps;
   Output output;
+  std::optional<TitleBlock> title_block;
   std::optional<SweepPlan> sweep;
   std::vector<Diagnostic> warnings;
 };

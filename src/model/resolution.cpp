@@ -189,6 +189,11 @@ struct Demand {
   Resolution operator()(const TorsionalStep& s) const {
     return {0.0, torsional_bound(m, s.modes), 0};
   }
+  Resolution operator()(const ApiLateralStep& s) const { return {s.max_speed, 0.0, 0}; }
+  Resolution operator()(const BalancingStep& s) const { return {largest(s.speeds), 0.0, 0}; }
+  Resolution operator()(const ApiTorsionalStep& s) const {
+    return {0.0, torsional_bound(m, s.modes), 0};
+  }
   Resolution operator()(const BucklingStep& s) const {
     return {0.0, 0.0, std::max(1, (s.modes + 1) / 2)};
   }

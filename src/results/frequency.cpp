@@ -89,6 +89,7 @@ analysis::EquilibriumOptions equilibrium_options(const run::Job& job, int load_s
 std::optional<double> speed_of(const model::StepLaw& law) {
   if (const auto* x = std::get_if<model::ModalStep>(&law)) return x->speed;
   if (const auto* x = std::get_if<model::TorsionalStep>(&law)) return x->max_speed;
+  if (const auto* x = std::get_if<model::ApiTorsionalStep>(&law)) return x->operating[1];
   if (const auto* x = std::get_if<model::BucklingStep>(&law)) return x->speed;
   if (const auto* x = std::get_if<model::HarmonicStep>(&law); x && x->frequency) return x->speed;
   return std::nullopt;
@@ -117,7 +118,9 @@ std::string about_of(const model::StepLaw& law) {
 }
 
 std::optional<model::MotionKind> motion_asked(const model::StepLaw& law) {
-  if (std::holds_alternative<model::TorsionalStep>(law)) return model::MotionKind::torsional;
+  if (std::holds_alternative<model::TorsionalStep>(law) ||
+      std::holds_alternative<model::ApiTorsionalStep>(law))
+    return model::MotionKind::torsional;
   return std::visit(
       [](const auto& x) -> std::optional<model::MotionKind> {
         if constexpr (requires { x.motion; })

@@ -15,7 +15,8 @@ const char* left_out_motion(const model::StepLaw& law) {
       [](const auto& s) -> const char* {
         using T = std::decay_t<decltype(s)>;
         model::MotionKind motion = model::MotionKind::all;
-        if constexpr (std::is_same_v<T, model::TorsionalStep>)
+        if constexpr (std::is_same_v<T, model::TorsionalStep> ||
+                      std::is_same_v<T, model::ApiTorsionalStep>)
           motion = model::MotionKind::torsional;
         else if constexpr (std::is_same_v<T, model::CriticalMapStep>)
           motion = model::MotionKind::lateral;

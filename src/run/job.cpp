@@ -21,6 +21,31 @@ Job::Job(const model::Model& m, const RunOptions& o, const std::filesystem::path
       scene(meshes::make_scene(m, mesh)),
       folder(root) {}
 
+Job::Job(const model::Model& m, const Job& parent, const RunOptions& o)
+    : model(m),
+      options(o),
+      mesh(meshes::make_mesh(m)),
+      scene(meshes::make_scene(m, mesh)),
+      folder(parent.folder) {}
+
+void Job::hand_over(Job& parent, io::Value& steps) {
+  // first: what follows may move the value that `steps` is
+  if (summary.at("steps").is_object())
+    for (const auto& [name, of_step] : summary.at("steps").members())
+      steps[name] = of_step;
+  for (io::ReportSection& s : report.sections)
+    parent.report.sections.push_back(std::move(s));
+  for (std::string& w : report.warnings)
+    parent.report.warnings.push_back(std::move(w));
+  if (summary.at("warnings").is_array())
+    for (const io::Value& w : summary.at("warnings").items())
+      parent.summary["warnings"].push(w);
+  for (auto& phase : phases)
+    parent.phases.push_back(std::move(phase));
+  for (std::string& u : uncertified)
+    parent.uncertified.push_back(std::move(u));
+}
+
 void Job::build_for(const model::Step& step) {
   const std::string key = assembly::system_key(model, step);
   if (!built_for.empty() && key_ == key) return;

@@ -52,6 +52,13 @@ struct Job {
   std::string built_for;  ///< name of the step that `built` was made for; empty: of none yet
 
   Job(const model::Model& m, const RunOptions& o, const std::filesystem::path& root);
+  /// A run of another model within this one: it writes into the same folder; report, summary,
+  /// warnings and states are its own until hand_over().
+  Job(const model::Model& m, const Job& parent) : Job(m, parent, parent.options) {}
+  Job(const model::Model& m, const Job& parent, const RunOptions& o);
+  /// Gives what a run within a run has to say to the one it is part of; its steps go into `steps` of
+  /// the summary.
+  void hand_over(Job& parent, io::Value& steps);
   const system::System& system() const { return built.system; }
   Index reference() const { return built.reference; }
   /// Builds the system with the drives of a step (the same one again costs nothing).

@@ -21,6 +21,8 @@ struct RunOptions {
   /// The model of the same deck with a key set otherwise ("parameters.clearance=75 um"), for steps
   /// that vary one. Throws as load_model().
   std::function<model::Model(const std::string& setting)> variant;
+  /// The same with several keys set otherwise, for steps that vary the bearings.
+  std::function<model::Model(const std::vector<std::string>& settings)> build;
 };
 
 }  // namespace whirl::run

@@ -26,6 +26,12 @@ void run_frequency_step(run::Job& job, const model::Step& step) {
           run_harmonic_step(job, step, law);
         else if constexpr (std::is_same_v<T, model::TorsionalStep>)
           run_torsional_step(job, step, law);
+        else if constexpr (std::is_same_v<T, model::ApiLateralStep>)
+          run_api_lateral_step(job, step, law);
+        else if constexpr (std::is_same_v<T, model::ApiTorsionalStep>)
+          run_api_torsional_step(job, step, law);
+        else if constexpr (std::is_same_v<T, model::BalancingStep>)
+          run_balancing_step(job, step, law);
         else if constexpr (std::is_same_v<T, model::BucklingStep>)
           run_buckling_step(job, step, law);
       },

@@ -105,6 +105,7 @@ class ModalRun {
         options_(modes_options(job, law)),
         s_(job, step, "modal", "whirl modes", std::abs(law.speed)) {}
   void execute();
+  const std::vector<analysis::WhirlMode>& modes() const { return modes_; }
 
  private:
   void solve();
@@ -273,8 +274,11 @@ void ModalRun::execute() {
 
 }  // namespace
 
-void run_modal_step(run::Job& job, const model::Step& step, const model::ModalStep& law) {
-  ModalRun(job, step, law).execute();
+std::vector<analysis::WhirlMode> run_modal_step(run::Job& job, const model::Step& step,
+                                                const model::ModalStep& law) {
+  ModalRun run(job, step, law);
+  run.execute();
+  return run.modes();
 }
 
 }  // namespace whirl::steps

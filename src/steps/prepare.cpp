@@ -5,6 +5,7 @@
 #include <core/plugin.hpp>
 #include <run/checkpoint.hpp>
 #include <results/frequency.hpp>
+#include <steps/api_models.hpp>
 #include <steps/prepare.hpp>
 #include <run/results_folder.hpp>
 #include <steps/stability_map.hpp>
@@ -47,6 +48,8 @@ class Obstacles {
         note(step.where, [&] { check_transient(step, *t); });
       if (const auto* b = std::get_if<model::BucklingStep>(&step.law))
         note(step.where, [&] { check_buckling(step, *b); });
+      if (const auto* a = std::get_if<model::ApiLateralStep>(&step.law))
+        note(step.where, [&] { check_report(step, *a); });
       if (const auto* s = std::get_if<model::StabilityStep>(&step.law); s) {
         note(step.where, [&] { check_axes(step); });
         if (s->map) note(step.where, [&] { check_map(step, *s->map); });
@@ -208,6 +211,31 @@ class Obstacles {
       analysis::make_momentum_integrator(problem, o);
     else
       time::make_integrator(law.integrator.method, problem, o);
+  }
+
+  /// E70, and what is wrong with the deck with one of its sets of bearings.
+  void check_report(const model::Step& step, const model::ApiLateralStep& law) {
+    if (results::turns_with_stiffness(model_))
+      throw run_error("E88",
+                      fmt::format("step '{}': a report looks at round shafts, whose matrices are "
+                                  "constant in fixed axes",
+                                  step.name),
+                      "a stability step finds the bands of an asymmetric one", step.name);
+    for (const ApiMachine& a : api_machines(model_, options_, step, law)) {
+      model::Model m = a.model;
+      const auto add = [&](const std::string& name, const model::Location& at) {
+        model::Probe p;
+        p.name = name;
+        p.at = at;
+        m.probes.push_back(std::move(p));
+      };
+      for (const model::ApiClearance& c : law.clearances)
+        add(c.name, c.at);
+      for (const model::ApiStage& s : law.stages)
+        if (s.at) add(s.name, *s.at);
+      if (law.cross_coupling_at) add("cross-coupling", *law.cross_coupling_at);
+      assembly::build_system(m, meshes::make_mesh(m), step.name);
+    }
   }
 
   /// E89, and what is wrong with the deck at another value of the parameter.

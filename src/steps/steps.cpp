@@ -115,7 +115,9 @@ void finish(run::Job& job, const Stopwatch& watch) {
 
 /// Some kinds of motion alone: a line at an angle to another one would bend where that one twists.
 bool leaves_motion_out(const model::StepLaw& law) {
-  if (std::holds_alternative<model::TorsionalStep>(law)) return true;
+  if (std::holds_alternative<model::TorsionalStep>(law) ||
+      std::holds_alternative<model::ApiTorsionalStep>(law))
+    return true;
   const auto kind = [](const auto& x) -> model::MotionKind {
     if constexpr (requires { x.motion; }) return x.motion;
     return model::MotionKind::all;
@@ -226,10 +228,30 @@ Error in_step(const run::Job& job, const std::string& name, const Error& e) {
   return Error(e.exit(), std::move(all));
 }
 
+/// The title block of the deck, what is given of it.
+void put_title_block(run::Job& job) {
+  if (!job.model.title_block) return;
+  const model::TitleBlock& b = *job.model.title_block;
+  for (const auto& [name, text] : {std::pair{"Project", &b.project},
+                                   {"Machine", &b.machine},
+                                   {"Company", &b.company},
+                                   {"Author", &b.author},
+                                   {"Checked", &b.checked},
+                                   {"Document", &b.document},
+                                   {"Revision", &b.revision},
+                                   {"Date", &b.date},
+                                   {"Notes", &b.notes}}) {
+    if (text->empty()) continue;
+    job.report.title_block.emplace_back(name, *text);
+    job.summary["title block"][name] = *text;
+  }
+}
+
 }  // namespace
 
 void run_steps(run::Job& job) {
   const Stopwatch watch;
+  put_title_block(job);
   job.report.title = job.model.title.empty() ? job.model.deck_name : job.model.title;
   job.report.deck = job.model.resolved;
   for (const Diagnostic& w : job.model.warnings)

@@ -1,12 +1,15 @@
 // An unbalance-response step: Bode and polar plots of the probes, forces of the supports, operating
 // shapes, separation margins.
 #include <analysis/response/api684.hpp>
+#include <analysis/response/balancing.hpp>
 #include <analysis/spectra/critical.hpp>
+#include <meshes/mass_properties.hpp>
 #include <results/response.hpp>
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
+#include <core/contract.hpp>
 #include <core/text.hpp>
 
 #include <fmt/format.h>
@@ -101,8 +104,8 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k,
     }
   for (const SteadyPoint& x : r.points) {
     std::vector<io::Table::Cell> row{to_rpm(x.Omega)};
-    for (const analysis::PointAmplitude& a : x.probe[k])
-      results::add_probe_cells(row, a);
+    for (std::size_t p = 0; p < probes.size(); ++p)
+      results::add_probe_cells(row, x.probe[k][p]);
     for (std::size_t m = 0; m < outputs.size(); ++m)
       for (std::size_t c : {1u, 2u}) {
         row.emplace_back(std::abs(x.output[k][m][c]));
@@ -217,6 +220,104 @@ void add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
   s.add_table("margins", std::move(margins));
 }
 
+/// Borders of the zones at a speed, m peak to peak.
+std::vector<double> borders_at(const model::VibrationZones& z, double Omega) {
+  if (!z.limits.empty()) return z.limits;
+  std::vector<double> out;
+  for (const double c : z.constants)
+    out.push_back(1e-6 * c / std::sqrt(to_rpm(std::abs(Omega))));
+  return out;
+}
+
+/// Zone of every probe where it comes nearest to the borders, over the operating speeds; the borders
+/// into its figure.
+void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
+               const std::vector<analysis::ResponseProbe>& probes,
+               const model::UnbalanceStep& law) {
+  if (!law.zones) return;
+  io::Table t;
+  t.title = "Vibration zones after " + law.zones->source;
+  t.columns = {{"probe", "-", ""},
+               {"speed", "rpm", "of the operating speeds, where it comes nearest to the borders"},
+               {"amplitude", "um", "major axis, peak to peak"},
+               {"A/B", "um", ""},
+               {"B/C", "um", ""},
+               {"C/D", "um", ""},
+               {"zone", "-", ""}};
+  for (std::size_t p = 0; p < probes.size(); ++p) {
+    double nearest = -1, speed = 0, largest = 0;
+    for (const SteadyPoint& x : r.points) {
+      if (x.Omega < law.operating[0] * (1 - 1e-12) || x.Omega > law.operating[1] * (1 + 1e-12))
+        continue;
+      double pp = 0;
+      for (const auto& order : x.probe)
+        pp += 2 * order[p].orbit().major;
+      const double share = pp / borders_at(*law.zones, x.Omega).front();
+      if (share <= nearest) continue;
+      nearest = share;
+      speed = x.Omega;
+      largest = pp;
+    }
+    if (nearest < 0) continue;
+    const std::vector<double> b = borders_at(*law.zones, speed);
+    const std::string zone(1, static_cast<char>('A' + analysis::zone_of(largest, b)));
+    io::Table::Cell cell = zone;
+    using Mark = io::Table::Cell::Mark;
+    cell.mark = zone == "A" || zone == "B" ? Mark::passed : Mark::failed;
+    t.add({probes[p].name, to_rpm(speed), 1e6 * largest, 1e6 * b[0], 1e6 * b[1], 1e6 * b[2],
+           std::move(cell)});
+    s.summary()["zones"][probes[p].name] = zone;
+  }
+  s.add_table("zones", std::move(t));
+  const double factor = s.job.model.output.peak_to_peak ? 1.0 : 0.5;
+  for (plot::Figure& f : s.section.figures) {
+    if (!f.name.ends_with("_bode")) continue;
+    plot::Axes& a = f.axes.front();
+    const double unit = a.y.unit == "m" ? 1 : a.y.unit == "mm" ? 1e3 : a.y.unit == "nm" ? 1e9 : 1e6;
+    constexpr const char* names[] = {"A/B", "B/C", "C/D"};
+    for (std::size_t k = 0; k < 3; ++k) {
+      plot::Series line;
+      line.label = names[k];
+      line.style = {plot::ink, plot::Dash::dashed, 1.0};
+      for (const SteadyPoint& x : r.points) {
+        if (x.Omega < law.operating[0] || x.Omega > law.operating[1]) continue;
+        line.x.push_back(to_rpm(x.Omega));
+        line.y.push_back(unit * factor * borders_at(*law.zones, x.Omega)[k]);
+      }
+      a.series.push_back(std::move(line));
+    }
+  }
+}
+
+/// Unbalances of each shaft, added without regard to their angles, against a balance grade.
+void add_grades(results::FrequencyStep& s, const model::UnbalanceStep& law) {
+  if (!(law.balance_grade > 0)) return;
+  const model::Model& m = s.job.model;
+  io::Table t;
+  t.title = "Balance grade after ISO 21940-11";
+  t.columns = {{"shaft", "-", ""},
+               {"mass", "kg", ""},
+               {"unbalance", "g mm", "sum of the amounts"},
+               {"permissible", "g mm", "of the grade, at the highest operating speed"},
+               {"grade", "mm/s", "of the unbalances"},
+               {"result", "-", ""}};
+  for (std::size_t k = 0; k < m.shafts.size(); ++k) {
+    const double speed = std::abs(m.shafts[k].speed_ratio) * law.operating[1];
+    if (!m.shafts[k].rotating || speed == 0) continue;
+    const double mass = meshes::shaft_mass(m, k).mass;
+    double sum = 0;
+    for (const model::Unbalance& u : m.unbalances)
+      if (u.at.shaft == k) sum += std::abs(u.amount);
+    const double grade = mass > 0 ? sum * speed / mass : 0.0;
+    io::Table::Cell result = grade <= law.balance_grade * (1 + 1e-12) ? "passed" : "FAILED";
+    result.mark =
+        result.text == "passed" ? io::Table::Cell::Mark::passed : io::Table::Cell::Mark::failed;
+    t.add({m.shafts[k].name, mass, 1e6 * sum, 1e6 * law.balance_grade * mass / speed, 1e3 * grade,
+           std::move(result)});
+  }
+  s.add_table("balance_grade", std::move(t));
+}
+
 /// Where asked for, else at the distinct peaks.
 std::vector<double> shape_speeds(const model::UnbalanceStep& law,
                                  const std::vector<analysis::ResponsePeak>& peaks) {
@@ -292,8 +393,12 @@ std::vector<double> speeds_to_judge(const std::vector<double>& speeds, const Lar
 
 }  // namespace
 
-void run_unbalance_step(run::Job& job, const model::Step& step, const model::UnbalanceStep& law) {
+UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
+                                    const model::UnbalanceStep& law, std::size_t beside) {
   analysis::UnbalanceOptions o = unbalance_options(job, law);
+  WHIRL_EXPECTS(beside <= o.probes.size());
+  const std::vector<analysis::ResponseProbe> shown(
+      o.probes.begin(), o.probes.end() - static_cast<std::ptrdiff_t>(beside));
   const double top = std::max(std::abs(o.speeds.front()), std::abs(o.speeds.back()));
   results::FrequencyStep s(job, step, "unbalance_response", "unbalance response", top);
   o.turns_with_rotor = s.turns_as_one() && (results::turns_with_stiffness(job.model) ||
@@ -307,22 +412,25 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
     const run::PhaseTimer timer(job, "unbalance response");
     return solver.run();
   }();
-  const std::vector<analysis::ResponsePeak>& peaks = solver.peaks();
+  std::vector<analysis::ResponsePeak> peaks = solver.peaks();
+  std::erase_if(peaks, [&](const analysis::ResponsePeak& p) { return p.probe >= shown.size(); });
 
   s.summary()["speeds"] = r.points.size();
-  io::Table found = peak_table(s, r, o.probes, peaks);
-  const Largest largest = find_largest(r, o.probes, s.summary());
+  io::Table found = peak_table(s, r, shown, peaks);
+  const Largest largest = find_largest(r, shown, s.summary());
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
   results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
   results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, o.turns_with_rotor));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
     s.add_table(r.orders.size() > 1 ? fmt::format("response_{:g}x", r.orders[k]) : "response",
-                make_table(r, k, o.probes, o.outputs), false);
+                make_table(r, k, shown, o.outputs), false);
   s.add_table("peaks", std::move(found));
-  add_margins(s, r, o.probes, peaks, law);
-  add_probe_figures(s, r, o.probes, peaks);
+  add_margins(s, r, shown, peaks, law);
+  add_probe_figures(s, r, shown, peaks);
   add_force_figure(s, r, o.outputs);
+  add_zones(s, r, shown, law);
+  add_grades(s, law);
   add_shapes(s, r, o, shape_speeds(law, peaks), largest);
 
   s.section.text = largest.amplitude == 0
@@ -342,6 +450,7 @@ void run_unbalance_step(run::Job& job, const model::Step& step, const model::Unb
   s.finish(fmt::format("{} speeds, {} peaks, largest {} {} at {:.0f} rpm", r.points.size(),
                        peaks.size(), readable(unit.factor * largest.amplitude), unit.name,
                        to_rpm(largest.speed)));
+  return {std::move(o.probes), r, std::move(peaks)};
 }
 
 }  // namespace whirl::steps

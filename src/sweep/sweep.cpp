@@ -96,6 +96,11 @@ class Runner {
       one.set.push_back(setting);
       return deck::load_model(options_.deck, one);
     };
+    o.build = [&](const std::vector<std::string>& settings) {
+      deck::ReadOptions one = read;
+      one.set.insert(one.set.end(), settings.begin(), settings.end());
+      return deck::load_model(options_.deck, one);
+    };
     return steps::run_deck(deck::load_model(options_.deck, read), o);
   }
 

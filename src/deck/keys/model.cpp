@@ -106,6 +106,8 @@ void describe(Visitor& v, model::Model& m) {
          "initial motion of a shaft line as a rigid body");
   v.list(beside_motion(optional("probe", "none")), m.probes, "a place whose motion is recorded");
   v.list(optional("step", "none"), m.steps, "analyses, run in this order");
+  v.table(beside_motion(optional("title_block", "none")), m.title_block,
+          "what stands at the head of the report");
   v.table(beside_motion("output"), m.output, "what is written, and where");
   v.table(beside_motion(optional("sweep", "as the command line says")), m.sweep,
           "many runs with keys varied: what `whirl sweep` takes where its options do not say");

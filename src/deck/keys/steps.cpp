@@ -280,6 +280,16 @@ void describe(Visitor& v, model::UnbalanceStep& s) {
   v.quantities(optional("shapes_at", "at the peaks"), s.shapes_at, "rpm", positive, -1,
                "speeds at which the deflected rotor is drawn");
   describe_about(v, s.about);
+  const bool zones =
+      v.table(optional("zones", "none"), s.zones,
+              "zones of shaft vibration: that of every probe over the operating speeds");
+  const bool grade = v.quantity(
+      optional("balance_grade", "none"), s.balance_grade, "mm/s", positive,
+      "balance grade after ISO 21940-11: the unbalances of each shaft against it, at the "
+      "highest operating speed");
+  if (v.clean() && !given && (zones || grade))
+    v.error("E05", nullptr, "zones and grades are those of operating speeds",
+            "operating_speed = [\"7000 rpm\", \"9450 rpm\"]");
   if (!v.clean() || !given) return;
   if (range[1] < range[0])
     v.error("E21", "operating_speed", "the highest operating speed is below the lowest");
@@ -482,6 +492,18 @@ void describe(Visitor& v, model::Step& s) {
           "factors on gravity and all loads at which the rotor buckles, linearised about the "
           "unloaded state"),
       Visitor::alternative<model::TransientStep>("transient", s.law, "motion in time, nonlinear"),
+      Visitor::alternative<model::ApiLateralStep>(
+          "api_lateral", s.law,
+          "lateral report after API 617 and RP 684: critical-speed map, unbalance response and "
+          "stability of every set of bearings, and one table of what complies"),
+      Visitor::alternative<model::ApiTorsionalStep>(
+          "api_torsional", s.law,
+          "torsional report: train, interference diagram, separation margins, stresses, and one "
+          "table of what complies"),
+      Visitor::alternative<model::BalancingStep>(
+          "balancing", s.law,
+          "correction masses by influence coefficients or by modes, from the model or from "
+          "measured vectors, and the vibration that is left"),
   };
   v.alternatives(required("type"), kinds, "kind of analysis");
 }

@@ -1,0 +1,405 @@
+// An api_torsional step: the train, where multiples of the speeds and of the line frequency meet its
+// torsional modes, how far they keep away, and the stresses that stated torques cause.
+#include <analysis/response/frequency_response.hpp>
+#include <analysis/spectra/critical.hpp>
+#include <assembly/element_section.hpp>
+#include <meshes/mass_properties.hpp>
+#include <results/channels.hpp>
+#include <results/compliance.hpp>
+#include <results/frequency.hpp>
+#include <results/mesh_accuracy.hpp>
+#include <run/progress.hpp>
+#include <steps/step_kinds.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace whirl::steps {
+
+namespace {
+
+using results::Check;
+
+/// Something that excites torsion: at a multiple of the reference speed, or at a frequency.
+struct Excitation {
+  std::string name;
+  double order = 0, frequency = 0;  ///< of the reference speed; rad/s; one of them
+  /// Least and largest frequency over the operating range, rad/s.
+  std::array<double, 2> over(const std::array<double, 2>& speed) const {
+    if (order == 0) return {frequency, frequency};
+    return {order * speed[0], order * speed[1]};
+  }
+};
+
+/// Distance of a frequency from a range, as a share of its nearer end; negative inside.
+double margin_from(double f, const std::array<double, 2>& range) {
+  if (f > range[1]) return (f - range[1]) / range[1];
+  if (f < range[0]) return (range[0] - f) / range[0];
+  return -std::min(f - range[0], range[1] - f) / f;
+}
+
+/// Where a torque does most.
+struct Worst {
+  double stress = 0, torque = 0, speed = 0, frequency = 0;  ///< Pa, N m, rad/s, rad/s
+  Index element = -1;
+  bool unbounded = false;
+  double coupling = 0;  ///< N m, the largest in a coupling
+  std::string coupling_name;
+};
+
+class TorsionalReport {
+ public:
+  TorsionalReport(run::Job& job, const model::Step& step, const model::ApiTorsionalStep& law)
+      : law_(law),
+        s_(job, step, "api_torsional", "torsional report, " + law.standard, law.operating[1]) {}
+  void execute();
+
+ private:
+  void add_train();
+  void find_modes();
+  void list_excitations();
+  void add_margins();
+  void add_interference();
+  void add_stresses();
+  double ratio_of(std::size_t shaft) const {
+    const model::Shaft& s = s_.job.model.shafts[shaft];
+    return s.rotating ? std::abs(s.speed_ratio) : 0.0;
+  }
+  std::vector<double> speeds_of(double order) const;
+  void look(const VecXc& a, double Omega, double w, const la::MCK& m, Worst& worst) const;
+  Worst respond(const model::ApiTorque& torque);
+  std::string source(const char* key) const {
+    return results::source_of(law_.standard, law_.given, law_.source, {key});
+  }
+
+  const model::ApiTorsionalStep& law_;
+  results::FrequencyStep s_;
+  results::Compliance checks_;
+  std::vector<analysis::WhirlMode> modes_;
+  std::vector<Excitation> excitations_;
+};
+
+void TorsionalReport::add_train() {
+  const model::Model& m = s_.job.model;
+  io::Table shafts, bodies;
+  shafts.title = "Train: shafts";
+  shafts.columns = {{"shaft", "-", ""},
+                    {"speed ratio", "-", "to the reference"},
+                    {"mass", "kg", ""},
+                    {"inertia", "kg m2", "about its axis"},
+                    {"referred inertia", "kg m2", "times the square of the speed ratio"}};
+  for (std::size_t k = 0; k < m.shafts.size(); ++k) {
+    const meshes::MassProperties p = meshes::shaft_mass(m, k);
+    const double r = ratio_of(k);
+    shafts.add({m.shafts[k].name, m.shafts[k].rotating ? m.shafts[k].speed_ratio : 0.0, p.mass,
+                p.Ip(), r * r * p.Ip()});
+  }
+  s_.add_table("train", std::move(shafts));
+  bodies.title = "Train: bodies and couplings";
+  bodies.columns = {{"name", "-", ""},
+                    {"shaft", "-", ""},
+                    {"place", "m", "from the left end of the shaft"},
+                    {"inertia", "kg m2", "about the axis"},
+                    {"stiffness", "N m/rad", "in torsion, of a coupling"}};
+  bodies.nan_means = "a body has no stiffness, a coupling no inertia here";
+  for (const model::Disk& d : m.disks)
+    bodies.add({d.name, m.shafts[d.at.shaft].name, d.at.s, d.Ip, nan});
+  for (const model::Bearing& b : m.bearings) {
+    const auto* c = std::get_if<model::Coupling>(&b.law);
+    if (c && b.to) bodies.add({b.name, m.shafts[b.at.shaft].name, b.at.s, nan, c->K(3, 3)});
+  }
+  s_.add_table("bodies", std::move(bodies));
+}
+
+void TorsionalReport::find_modes() {
+  analysis::ModesOptions o;
+  o.count = law_.modes;
+  o.motion = analysis::Motion::torsional;
+  analysis::SpectrumCertificate certificate;
+  modes_ = analysis::whirl_modes(s_.linear, law_.operating[1], o, &certificate);
+  s_.certify(certificate);
+  results::MeshAccuracy mesh(s_);
+  mesh.look_at(modes_, law_.operating[1]);
+  mesh.report();
+  io::Table t;
+  t.title = "Torsional natural frequencies";
+  t.columns = {{"mode", "-", ""},
+               {"frequency", "Hz", ""},
+               {"frequency", "rpm", ""},
+               {"log decrement", "-", ""}};
+  for (std::size_t k = 0; k < modes_.size(); ++k) {
+    const analysis::WhirlMode& m = modes_[k];
+    t.add({static_cast<int>(k + 1), to_hz(m.frequency), to_rpm(m.frequency),
+           results::tidy(m.log_decrement)});
+    results::add_shape_figures(
+        s_, {fmt::format("mode_{}", k + 1),
+             fmt::format("Torsional mode {}: {:.5g} Hz", k + 1, to_hz(m.frequency)),
+             {},
+             &m.x,
+             analysis::ModeKind::torsional});
+  }
+  s_.add_table("modes", std::move(t));
+}
+
+/// Multiples of each shaft, orders of the reference, multiples of the line frequency, torques.
+void TorsionalReport::list_excitations() {
+  const model::Model& m = s_.job.model;
+  const auto add = [&](Excitation e) {
+    const bool known = std::any_of(excitations_.begin(), excitations_.end(), [&](const auto& x) {
+      return std::abs(x.order - e.order) < 1e-9 && std::abs(x.frequency - e.frequency) < 1e-9;
+    });
+    if (!known) excitations_.push_back(std::move(e));
+  };
+  for (std::size_t k = 0; k < m.shafts.size(); ++k)
+    for (const double n : law_.multiples)
+      if (ratio_of(k) > 0)
+        add({fmt::format("{:g}x of {}", n, m.shafts[k].name), n * ratio_of(k), 0});
+  for (const double n : law_.orders)
+    add({fmt::format("{:g}x of the reference", n), n, 0});
+  for (const double n : law_.line_multiples)
+    if (law_.line_frequency > 0)
+      add({fmt::format("{:g}x line frequency", n), 0, n * law_.line_frequency});
+  for (const model::ApiTorque& t : law_.torques)
+    add({t.name, t.order * ratio_of(t.at.shaft), t.frequency});
+}
+
+void TorsionalReport::add_margins() {
+  io::Table t;
+  t.title = "Margins of the torsional frequencies";
+  t.columns = {
+      {"mode", "-", ""},       {"frequency", "Hz", ""},
+      {"excitation", "-", ""}, {"lowest", "Hz", "over the operating speeds"},
+      {"highest", "Hz", ""},   {"margin", "%", "negative: met within the operating speeds"},
+      {"result", "-", ""}};
+  for (std::size_t k = 0; k < modes_.size(); ++k) {
+    const double f = modes_[k].frequency;
+    double least = infinity;
+    const Excitation* nearest = nullptr;
+    for (const Excitation& e : excitations_) {
+      const std::array<double, 2> range = e.over(law_.operating);
+      const double margin = margin_from(f, range);
+      t.add({static_cast<int>(k + 1), to_hz(f), e.name, to_hz(range[0]), to_hz(range[1]),
+             100 * margin, margin >= law_.margin ? "passed" : "FAILED"});
+      if (margin >= least) continue;
+      least = margin;
+      nearest = &e;
+    }
+    if (!nearest) continue;
+    Check c = results::compare("torsional margin", 100 * least, "%", Check::Rule::at_least,
+                               100 * law_.margin);
+    c.where = fmt::format("mode {}, {:.5g} Hz, {}", k + 1, to_hz(f), nearest->name);
+    c.source = source("margin");
+    c.figure = s_.file("interference");
+    checks_.add(std::move(c));
+  }
+  s_.add_table("margins", std::move(t), false);
+}
+
+void TorsionalReport::add_interference() {
+  if (modes_.empty()) return;
+  const double top = 1.25 * law_.operating[1];
+  std::vector<plot::CampbellLine> lines;
+  std::vector<plot::CriticalMark> marks;
+  std::vector<double> orders;
+  for (const Excitation& e : excitations_)
+    if (e.order > 0) orders.push_back(e.order);
+  io::Table t;
+  t.title = "Interferences";
+  t.columns = {{"excitation", "-", ""},
+               {"mode", "-", ""},
+               {"speed", "rpm", "of the reference"},
+               {"frequency", "Hz", ""},
+               {"operating", "-", "within the operating speeds"}};
+  for (std::size_t k = 0; k < modes_.size(); ++k) {
+    const double f = modes_[k].frequency;
+    plot::CampbellLine l;
+    l.label = fmt::format("T{}", k + 1);
+    l.speed = {0, top};
+    l.frequency = {f, f};
+    l.log_decrement = {results::tidy(modes_[k].log_decrement),
+                       results::tidy(modes_[k].log_decrement)};
+    lines.push_back(std::move(l));
+    for (const Excitation& e : excitations_) {
+      if (e.order == 0 || f / e.order > top) continue;
+      const double Omega = f / e.order;
+      marks.push_back({Omega, f, e.order, {}});
+      const bool within = Omega >= law_.operating[0] && Omega <= law_.operating[1];
+      t.add({e.name, static_cast<int>(k + 1), to_rpm(Omega), to_hz(f), within ? "yes" : "no"});
+    }
+  }
+  plot::Figure f = plot::plot_campbell(s_.file("interference"), "Torsional interference diagram",
+                                       lines, orders, marks);
+  plot::Axes& a = f.axes.front();
+  for (const double Omega : law_.operating)
+    a.rules.push_back({true,
+                       to_rpm(Omega),
+                       Omega == law_.operating[0] ? "lowest" : "highest",
+                       {plot::ink, plot::Dash::dash_dot, 0.8}});
+  for (const Excitation& e : excitations_)
+    if (e.order == 0)
+      a.rules.push_back({false, to_hz(e.frequency), e.name, {plot::ink, plot::Dash::dotted, 1.2}});
+  s_.add_figure(std::move(f));
+  s_.add_table("interferences", std::move(t));
+}
+
+/// Operating speeds, those at which an order meets a mode among them.
+std::vector<double> TorsionalReport::speeds_of(double order) const {
+  const auto [low, high] = law_.operating;
+  std::vector<double> out;
+  constexpr int points = 100;
+  for (int k = 0; k <= points; ++k)
+    out.push_back(low + (high - low) * k / points);
+  for (const analysis::WhirlMode& m : modes_) {
+    if (order == 0) break;
+    // the peak of a damped mode lies within its width
+    for (const double x : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+      const double Omega = std::abs(m.lambda) / order * (1.0 + x * m.damping_ratio);
+      if (Omega > low && Omega < high) out.push_back(Omega);
+    }
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+void TorsionalReport::look(const VecXc& a, double Omega, double w, const la::MCK& m,
+                           Worst& worst) const {
+  const meshes::Mesh& mesh = s_.job.mesh;
+  for (Index i = 0; i < static_cast<Index>(mesh.elements.size()); ++i) {
+    const meshes::Element& e = mesh.elements[static_cast<std::size_t>(i)];
+    const Index slot = m.K.pattern().slot(e.left.node, e.right.node);
+    if (slot < 0) continue;
+    // the coupling of neighbours is the element's GJ/l
+    const double torque = std::abs(m.K.block(slot)(3, 3)) *
+                          std::abs(a[6 * e.right.node + 3] - a[6 * e.left.node + 3]);
+    if (!std::isfinite(torque)) {
+      worst.unbounded = true;
+      continue;
+    }
+    const elements::ElementSection section = assembly::element_section(s_.job.model, e);
+    if (section.constants) continue;
+    for (const auto& [od, id] :
+         {std::pair{section.od1, section.id1}, std::pair{section.od2, section.id2}}) {
+      const double stress = law_.concentration * torque * 0.5 * od / elements::annulus_J(od, id);
+      if (!(stress > worst.stress)) continue;
+      worst.stress = stress;
+      worst.torque = torque;
+      worst.speed = Omega;
+      worst.frequency = w;
+      worst.element = i;
+    }
+  }
+  for (std::size_t i = 0; i < s_.job.model.bearings.size(); ++i) {
+    const auto* c = std::get_if<model::Coupling>(&s_.job.model.bearings[i].law);
+    const meshes::BearingNodes& n = mesh.bearings[i];
+    if (!c || n.other.node < 0) continue;
+    const double torque = std::abs(Complex(c->K(3, 3), w * c->C(3, 3)) *
+                                   (a[6 * n.shaft.node + 3] - a[6 * n.other.node + 3]));
+    if (!(torque > worst.coupling)) continue;
+    worst.coupling = torque;
+    worst.coupling_name = s_.job.model.bearings[i].name;
+  }
+}
+
+Worst TorsionalReport::respond(const model::ApiTorque& torque) {
+  Worst worst;
+  const double order = torque.order * ratio_of(torque.at.shaft);
+  const analysis::Point at = results::point_of(s_.job, torque.at);
+  analysis::HarmonicSolver solver(s_.linear, analysis::Motion::torsional);
+  for (const double Omega : speeds_of(order)) {
+    const double w = order > 0 ? order * Omega : torque.frequency;
+    if (!solver.prepare(Omega, w)) {
+      worst.unbounded = true;
+      continue;
+    }
+    VecXc a = VecXc::Zero(s_.linear.system().size());
+    a[6 * at.node + 3] = torque.amplitude;
+    solver.solve(a);
+    look(a, Omega, w, s_.linear.at(Omega), worst);
+  }
+  return worst;
+}
+
+void TorsionalReport::add_stresses() {
+  if (law_.torques.empty()) return;
+  io::Table t;
+  t.title = "Response to the torques, largest over the operating speeds";
+  t.columns = {{"torque", "-", ""},
+               {"amplitude", "N m", "0 to peak"},
+               {"speed", "rpm", "of the reference, at the largest stress"},
+               {"frequency", "Hz", ""},
+               {"shaft", "-", ""},
+               {"from", "m", "the element with the largest stress"},
+               {"to", "m", ""},
+               {"torque in the shaft", "N m", "0 to peak"},
+               {"shear stress", "MPa", "0 to peak, with the concentration"},
+               {"coupling", "-", "with the largest torque"},
+               {"torque in the coupling", "N m", "0 to peak"}};
+  for (const model::ApiTorque& torque : law_.torques) {
+    const Worst w = respond(torque);
+    std::string shaft;
+    double from = 0, to = 0;
+    if (w.element >= 0) {
+      const meshes::Element& e = s_.job.mesh.elements[static_cast<std::size_t>(w.element)];
+      shaft = s_.job.mesh.lines[static_cast<std::size_t>(e.line)].name;
+      from = e.s1;
+      to = e.s2;
+    }
+    t.add({torque.name, torque.amplitude, to_rpm(w.speed), to_hz(w.frequency), shaft, from, to,
+           w.torque, 1e-6 * w.stress, w.coupling_name, w.coupling});
+    Check c =
+        law_.stress_limit > 0
+            ? results::compare("torsional stress", 1e-6 * w.stress, "MPa", Check::Rule::at_most,
+                               1e-6 * law_.stress_limit)
+            : results::compare("torsional stress", 1e-6 * w.stress, "MPa", Check::Rule::none, nan);
+    c.where = fmt::format("{}, {}, {:.5g} rpm", torque.name, shaft, to_rpm(w.speed));
+    c.source = law_.stress_limit > 0 ? source("stress_limit") : "";
+    c.figure = s_.file("interference");
+    if (w.unbounded) {
+      c.passed = false;
+      c.remark = "a resonance without damping lies within the operating speeds";
+    }
+    checks_.add(std::move(c));
+  }
+  s_.add_table("stresses", std::move(t));
+}
+
+void TorsionalReport::execute() {
+  const run::PhaseTimer timer(s_.job, "torsional report");
+  add_train();
+  find_modes();
+  list_excitations();
+  add_interference();
+  add_margins();
+  add_stresses();
+  io::Value& v = s_.summary();
+  v["standard"] = law_.standard;
+  for (const analysis::WhirlMode& m : modes_)
+    v["frequencies [Hz]"].push(to_hz(m.frequency));
+  v["checks"] = checks_.checks().size();
+  v["failed"] = checks_.failed();
+  v["compliance"] = checks_.value();
+  io::Table t = checks_.table("Compliance");
+  s_.add_table("compliance", std::move(t));
+  // the table of what complies is what a reader looks for
+  std::rotate(s_.section.tables.rbegin(), s_.section.tables.rbegin() + 1, s_.section.tables.rend());
+  s_.section.text =
+      fmt::format("{} of {} checks failed. Operating from {:.6g} to {:.6g} rpm.", checks_.failed(),
+                  checks_.checks().size(), to_rpm(law_.operating[0]), to_rpm(law_.operating[1]));
+  run::Job& job = s_.job;
+  s_.finish(fmt::format("{}: {} of {} checks failed", law_.standard, checks_.failed(),
+                        checks_.checks().size()));
+  if (!job.options.quiet && !job.options.json) std::fputs(checks_.text().c_str(), stdout);
+}
+
+}  // namespace
+
+void run_api_torsional_step(run::Job& job, const model::Step& step,
+                            const model::ApiTorsionalStep& law) {
+  TorsionalReport(job, step, law).execute();
+}
+
+}  // namespace whirl::steps

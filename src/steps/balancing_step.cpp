@@ -1,0 +1,304 @@
+// A balancing step: influence coefficients of the planes, corrections, and what they leave.
+#include <analysis/response/balancing.hpp>
+#include <analysis/response/unbalance.hpp>
+#include <results/channels.hpp>
+#include <results/frequency.hpp>
+#include <results/response.hpp>
+#include <run/progress.hpp>
+#include <steps/api_models.hpp>
+#include <steps/step_kinds.hpp>
+#include <steps/undamped_forward.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::steps {
+
+namespace {
+
+/// One vibration that is balanced: a probe in a direction at a speed.
+struct Sensor {
+  std::size_t probe = 0;        ///< number in the model
+  double angle = 0, speed = 0;  ///< rad, rad/s
+};
+
+Error balancing_error(const model::Step& step, const std::string& message,
+                      const std::string& hint) {
+  Diagnostic d{Diagnostic::Severity::error, "E63", fmt::format("step '{}': {}", step.name, message),
+               hint, step.where};
+  return Error(Exit::deck, {std::move(d)});
+}
+
+bool same(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1.0, std::abs(b)); }
+
+class Balancing {
+ public:
+  Balancing(run::Job& job, const model::Step& step, const model::BalancingStep& law)
+      : job_(job),
+        step_(step),
+        law_(law) {}
+  void execute();
+
+ private:
+  void list_sensors();
+  const model::MeasuredVector& measured(const std::string& run, const Sensor& s) const;
+  VecXc vectors_of(const std::string& run) const;
+  VecXc respond(const model::Model& m) const;
+  model::Model with_plane(std::size_t plane) const;
+  void find_influence();
+  void find_corrections();
+  MatX shapes_at_planes(results::FrequencyStep& s) const;
+  void write(results::FrequencyStep& s) const;
+
+  run::Job& job_;
+  const model::Step& step_;
+  const model::BalancingStep& law_;
+  std::vector<Sensor> sensors_;
+  MatXc influence_;       ///< m/(kg m): a row a sensor, a column a plane
+  VecXc before_, after_;  ///< m
+  VecXc corrections_;     ///< kg m
+};
+
+/// Of measured vectors those of the initial run; else every probe along its angles (y and z where it
+/// has none) at every speed.
+void Balancing::list_sensors() {
+  const std::vector<model::Probe>& probes = job_.model.probes;
+  if (probes.empty())
+    throw balancing_error(step_, "the deck has no probe", "[[probe]] with name and at");
+  for (const double speed : law_.speeds) {
+    if (law_.measured.empty())
+      for (std::size_t p = 0; p < probes.size(); ++p)
+        for (const double angle :
+             probes[p].angles.empty() ? std::vector<double>{0, pi / 2} : probes[p].angles)
+          sensors_.push_back({p, angle, speed});
+    for (const model::MeasuredVector& m : law_.measured) {
+      const auto probe = std::find_if(probes.begin(), probes.end(),
+                                      [&](const model::Probe& x) { return x.name == m.probe; });
+      if (probe == probes.end())
+        throw balancing_error(
+            step_,
+            fmt::format("a measured vector names probe '{}', which the deck does not have",
+                        m.probe),
+            "names of probes as in the deck");
+      if (m.run == law_.initial && same(m.speed, speed))
+        sensors_.push_back({static_cast<std::size_t>(probe - probes.begin()), m.angle, speed});
+    }
+  }
+  if (sensors_.empty())
+    throw balancing_error(
+        step_, fmt::format("run '{}' has no vector at the speeds of the step", law_.initial),
+        "speeds = [..] with the speeds of the measurement");
+}
+
+const model::MeasuredVector& Balancing::measured(const std::string& run, const Sensor& s) const {
+  const std::string& probe = job_.model.probes[s.probe].name;
+  for (const model::MeasuredVector& m : law_.measured)
+    if (m.run == run && m.probe == probe && same(m.angle, s.angle) && same(m.speed, s.speed))
+      return m;
+  throw balancing_error(step_,
+                        fmt::format("run '{}' lacks the vector of probe '{}' at {:.6g} deg and "
+                                    "{:.6g} rpm",
+                                    run, probe, s.angle * 180 / pi, to_rpm(s.speed)),
+                        "every run has a vector of every sensor and speed of the initial one");
+}
+
+VecXc Balancing::vectors_of(const std::string& run) const {
+  VecXc r(static_cast<Index>(sensors_.size()));
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    const model::MeasuredVector& m = measured(run, sensors_[i]);
+    r[static_cast<Index>(i)] =
+        std::polar((law_.peak_to_peak ? 0.5 : 1.0) * m.amplitude, -m.phase_lag);
+  }
+  return r;
+}
+
+/// Response of a model at the sensors.
+VecXc Balancing::respond(const model::Model& m) const {
+  run::Job sub(m, job_);
+  model::UnbalanceStep law;
+  law.speed.values = law_.speeds;
+  model::Step step;
+  step.name = step_.name;
+  step.where = step_.where;
+  step.law = law;
+  const double top = *std::max_element(law_.speeds.begin(), law_.speeds.end());
+  results::FrequencyStep s(sub, step, "balancing", "balancing", top);
+  analysis::UnbalanceOptions o;
+  o.speeds = law_.speeds;
+  o.probes = results::response_probes(sub);
+  analysis::UnbalanceSolver solver(s.linear, o);
+  VecXc r(static_cast<Index>(sensors_.size()));
+  for (const double speed : law_.speeds) {
+    const analysis::SteadyPoint x = solver.at(speed, false);
+    for (std::size_t i = 0; i < sensors_.size(); ++i)
+      if (sensors_[i].speed == speed)
+        r[static_cast<Index>(i)] = x.probe.front()[sensors_[i].probe].along(sensors_[i].angle);
+  }
+  return r;
+}
+
+/// The balanced machine with 1 g mm in a plane.
+model::Model Balancing::with_plane(std::size_t plane) const {
+  model::Model m = balanced(job_.model);
+  model::Unbalance u;
+  u.name = law_.planes[plane].name;
+  u.at = law_.planes[plane].at;
+  u.amount = 1e-6;
+  m.unbalances.push_back(std::move(u));
+  return m;
+}
+
+void Balancing::find_influence() {
+  const auto planes = static_cast<Index>(law_.planes.size());
+  influence_.resize(static_cast<Index>(sensors_.size()), planes);
+  for (const model::TrialRun& t : law_.trials) {
+    const auto plane =
+        std::find_if(law_.planes.begin(), law_.planes.end(),
+                     [&](const model::BalancePlane& p) { return p.name == t.plane; });
+    if (plane == law_.planes.end())
+      throw balancing_error(step_,
+                            fmt::format("a trial run names plane '{}', which the step does not "
+                                        "have",
+                                        t.plane),
+                            "names of planes as in [[step.plane]]");
+    influence_.col(plane - law_.planes.begin()) =
+        (vectors_of(t.run) - before_) / std::polar(t.amount, t.phase);
+  }
+  if (!law_.trials.empty()) return;
+  for (Index k = 0; k < planes; ++k)
+    influence_.col(k) = respond(with_plane(static_cast<std::size_t>(k))) / 1e-6;
+}
+
+/// Deflections of the modes at the planes, a row a mode.
+MatX Balancing::shapes_at_planes(results::FrequencyStep& s) const {
+  const double highest = *std::max_element(law_.modes.begin(), law_.modes.end());
+  const double top = *std::max_element(law_.speeds.begin(), law_.speeds.end());
+  std::vector<analysis::Critical> found;
+  for (const double beyond : {1.5, 3.0, 10.0}) {
+    found = undamped_forward(s.linear, beyond * top);
+    if (static_cast<double>(found.size()) >= highest) break;
+  }
+  MatX phi(static_cast<Index>(law_.modes.size()), static_cast<Index>(law_.planes.size()));
+  for (std::size_t k = 0; k < law_.modes.size(); ++k) {
+    const auto number = static_cast<std::size_t>(law_.modes[k]);
+    if (number < 1 || number > found.size() || law_.modes[k] != std::floor(law_.modes[k]))
+      throw balancing_error(
+          step_,
+          fmt::format("there is no undamped mode {:g}: {} were found", law_.modes[k], found.size()),
+          "modes = [1, 2], from the lowest");
+    const analysis::Critical& c = found[number - 1];
+    s.linear.at(c.speed);
+    for (std::size_t j = 0; j < law_.planes.size(); ++j) {
+      const model::Location& at = law_.planes[j].at;
+      phi(static_cast<Index>(k), static_cast<Index>(j)) =
+          shape_along(s, c.mode.x, at.shaft).at(at.s);
+    }
+  }
+  return phi;
+}
+
+void Balancing::write(results::FrequencyStep& s) const {
+  io::Table corrections, left, influence;
+  corrections.title = "Correction masses";
+  corrections.columns = {{"plane", "-", ""},
+                         {"place", "m", "from the left end of the shaft"},
+                         {"correction", "g mm", ""},
+                         {"angle", "deg", "from the rotor mark, as the angles of unbalances"}};
+  const auto degrees = [](double x) {
+    const double d = x * 180 / pi;
+    return d < 0 ? d + 360 : d;
+  };
+  for (std::size_t j = 0; j < law_.planes.size(); ++j) {
+    const Complex w = corrections_[static_cast<Index>(j)];
+    corrections.add(
+        {law_.planes[j].name, law_.planes[j].at.s, 1e6 * std::abs(w), degrees(std::arg(w))});
+    io::Value& v = s.summary()["corrections"][law_.planes[j].name];
+    v["amount [g mm]"] = 1e6 * std::abs(w);
+    v["angle [deg]"] = degrees(std::arg(w));
+  }
+  left.title = "Vibration before and after";
+  influence.title = "Influence coefficients";
+  left.columns = {{"probe", "-", ""},         {"angle", "deg", ""},      {"speed", "rpm", ""},
+                  {"before", "um", "0-peak"}, {"lag before", "deg", ""}, {"after", "um", "0-peak"},
+                  {"lag after", "deg", ""}};
+  influence.columns = {{"probe", "-", ""}, {"angle", "deg", ""}, {"speed", "rpm", ""}};
+  for (const model::BalancePlane& p : law_.planes) {
+    influence.columns.push_back({p.name, "um/(g mm)", "0-peak"});
+    influence.columns.push_back({p.name + " lag", "deg", ""});
+  }
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    const Sensor& x = sensors_[i];
+    const auto row = static_cast<Index>(i);
+    std::vector<io::Table::Cell> head{job_.model.probes[x.probe].name, x.angle * 180 / pi,
+                                      to_rpm(x.speed)};
+    std::vector<io::Table::Cell> coefficients = head;
+    for (const Complex r : {before_[row], after_[row]}) {
+      head.emplace_back(1e6 * std::abs(r));
+      head.emplace_back(results::lag(r) * 180 / pi);
+    }
+    for (Index j = 0; j < influence_.cols(); ++j) {
+      coefficients.emplace_back(std::abs(influence_(row, j)));  // m/(kg m) = um/(g mm)
+      coefficients.emplace_back(results::lag(influence_(row, j)) * 180 / pi);
+    }
+    left.add(std::move(head));
+    influence.add(std::move(coefficients));
+  }
+  s.add_table("corrections", std::move(corrections));
+  s.add_table("residuals", std::move(left));
+  s.add_table("influence", std::move(influence));
+}
+
+void Balancing::execute() {
+  list_sensors();
+  const double top = *std::max_element(law_.speeds.begin(), law_.speeds.end());
+  // the planes are places of the mesh
+  const model::Model m = with_plane(0);
+  model::Model shaped = m;
+  for (std::size_t k = 1; k < law_.planes.size(); ++k) {
+    model::Unbalance u;
+    u.at = law_.planes[k].at;
+    shaped.unbalances.push_back(std::move(u));
+  }
+  before_ = law_.measured.empty() ? respond(job_.model) : vectors_of(law_.initial);
+  find_influence();
+  const bool modal = law_.method == model::BalancingStep::Method::modal;
+  if (modal) {
+    run::Job sub(shaped, job_);
+    model::Step step = step_;
+    step.law = model::CriticalStep{};
+    results::FrequencyStep of_modes(sub, step, "balancing", "balancing", top);
+    std::vector<std::vector<Index>> rows(law_.speeds.size());
+    for (std::size_t i = 0; i < sensors_.size(); ++i)
+      for (std::size_t k = 0; k < law_.speeds.size(); ++k)
+        if (same(sensors_[i].speed, law_.speeds[k])) rows[k].push_back(static_cast<Index>(i));
+    corrections_ = analysis::balance_by_modes(
+        influence_, before_, analysis::modal_patterns(shapes_at_planes(of_modes)), rows);
+  } else {
+    corrections_ = analysis::balance_by_influence(influence_, before_);
+  }
+  after_ = before_ + influence_ * corrections_;
+  results::FrequencyStep s(job_, step_, "balancing", "balancing", top);
+  write(s);
+  const auto rms = [](const VecXc& r) {
+    return 1e6 * r.norm() / std::sqrt(static_cast<double>(r.size()));
+  };
+  s.summary()["root mean square before 0-peak [um]"] = rms(before_);
+  s.summary()["root mean square after 0-peak [um]"] = rms(after_);
+  s.section.text = fmt::format(
+      "{}, {} planes, {} vectors; influence coefficients of {}. Root mean square of the vibration "
+      "{:.5g} um before, {:.5g} um after (0-peak).",
+      modal ? "Mode by mode" : "Least squares", law_.planes.size(), sensors_.size(),
+      law_.trials.empty() ? "the model" : "the trial runs", rms(before_), rms(after_));
+  s.finish(fmt::format("{} planes, {:.5g} um before, {:.5g} um after", law_.planes.size(),
+                       rms(before_), rms(after_)));
+}
+
+}  // namespace
+
+void run_balancing_step(run::Job& job, const model::Step& step, const model::BalancingStep& law) {
+  Balancing(job, step, law).execute();
+}
+
+}  // namespace whirl::steps

@@ -1,0 +1,20 @@
+// Undamped forward modes at their critical speeds, and their shapes along a shaft.
+#pragma once
+#include <analysis/spectra/critical.hpp>
+#include <results/frequency.hpp>
+
+namespace whirl::steps {
+
+/// Lateral modes that an unbalance drives, in ascending order, up to max_speed, rad/s.
+std::vector<analysis::Critical> undamped_forward(analysis::Linearizer& linear, double max_speed);
+
+/// A shape along a line, real, its largest 1: places s (m) and deflections u, with the cubic between
+/// the stations.
+struct RealShape {
+  std::vector<double> s, u;
+  double at(double place) const;  ///< straight between the places
+};
+/// @pre the linearisation of the step stands at the speed of the mode
+RealShape shape_along(const results::FrequencyStep& s, const VecXc& x, std::size_t line);
+
+}  // namespace whirl::steps
