@@ -1,5 +1,6 @@
 #include <analysis/spectra/modes_ahead.hpp>
 #include <core/contract.hpp>
+#include <core/error.hpp>
 #include <core/interrupt.hpp>
 #include <core/parallel.hpp>
 
