@@ -153,12 +153,10 @@ void describe(Visitor& v, model::TiltingPadJournal& b) {
              "of a pad at its pivot: the pivot is that far behind the film");
   v.quantity("inertia", b.inertia, "kg.m^2", not_negative,
              "moment of inertia of a pad about its pivot; 0: it follows the film at once");
-  const bool mass =
-      v.quantity("mass", b.mass, "kg", not_negative, "of a pad: its motion along an elastic pivot");
+  v.quantity("mass", b.mass, "kg", not_negative, "of a pad: its motion along an elastic pivot");
   const bool elastic = v.quantity(optional("pivot_stiffness", "rigid pivots"), b.pivot_stiffness,
                                   "N/m", positive, "of a pivot, radial");
-  const bool lossy =
-      v.quantity("pivot_damping", b.pivot_damping, "N.s/m", not_negative, "of an elastic pivot");
+  v.quantity("pivot_damping", b.pivot_damping, "N.s/m", not_negative, "of an elastic pivot");
   v.quantity("tilt_stiffness", b.tilt_stiffness, "N.m/rad", not_negative,
              "of a pivot against tilting: a flexure");
   v.quantities(beside_motion("frequency_ratios"), b.frequency_ratios, "", not_negative, -1,
@@ -169,8 +167,8 @@ void describe(Visitor& v, model::TiltingPadJournal& b) {
   if ((count || first) && !b.own.empty())
     v.error("E26", count ? "pads" : "first_pivot", "equal pads and pads by themselves are given",
             "keep one of the two");
-  else if (!elastic && (mass || lossy))
-    v.error("E05", mass ? "mass" : "pivot_damping", "a rigid pivot does not move",
+  else if (!elastic && (b.mass != 0 || b.pivot_damping != 0))
+    v.error("E05", b.mass != 0 ? "mass" : "pivot_damping", "a rigid pivot does not move",
             "give pivot_stiffness, or leave it out");
   else
     check_pads(v, b);
