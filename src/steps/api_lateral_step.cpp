@@ -388,6 +388,7 @@ void SetReport::add_margins(const PlacedMode& mode, const model::Step& of,
     worst->remark = fmt::format("no peak from {:.5g} to {:.5g} rpm", to_rpm(law_.min_speed),
                                 to_rpm(law_.max_speed));
     where = fmt::format("mode {}", mode.number);
+    figure = bode_of(of, r.probes.front().name);
   }
   add(*worst, where, figure,
       source({"margin", "margin_factor", "margin_offset", "margin_above", "damped"}));
