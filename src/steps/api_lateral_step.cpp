@@ -29,7 +29,7 @@ using results::Check;
 struct PlacedMode {
   int number = 0;
   double speed = 0;  ///< rad/s
-  double N = 0;      ///< of the unbalance, rad/s
+  double N = 0;      ///< of the unbalance, rad/s of the rotor
   analysis::ModePlanes planes;
   std::vector<double> amount;  ///< kg m, one a plane
 };
@@ -96,6 +96,7 @@ class SetReport {
   results::Compliance& checks_;
   analysis::JournalWeights weights_;
   std::vector<PlacedMode> modes_;
+  std::size_t order_ = 0;  ///< of the response: that of the rotor's speed
 };
 
 std::string safe_file(std::string name) {
@@ -180,6 +181,7 @@ void SetReport::draw_map() {
   law.stiffness_min = std::pow(10.0, std::floor(std::log10(least)) - 1);
   law.stiffness_max = std::pow(10.0, std::ceil(std::log10(most)) + 1);
   law.max_speed = 2 * law_.max_speed;
+  law.order = machine_.ratio;
   const model::Step s = part("map", law);
   run::Job sub(m, job_);
   sub.build_for(s);
@@ -212,8 +214,9 @@ void SetReport::place(PlacedMode& mode, results::FrequencyStep& s, const analysi
   const RealShape shape = shape_along(s, c.mode.x, machine_.shaft);
   mode.planes = analysis::place_unbalance(shape.s, shape.u, journals);
   const model::ApiLimits& l = law_.limits;
-  mode.N = l.unbalance_speed > 0 ? l.unbalance_speed
-                                 : std::clamp(c.speed, law_.operating[0], law_.operating[1]);
+  mode.N = l.unbalance_speed > 0
+               ? l.unbalance_speed
+               : machine_.ratio * std::clamp(c.speed, law_.operating[0], law_.operating[1]);
   for (const analysis::ModePlane& p : mode.planes.planes)
     mode.amount.push_back(
         analysis::api_unbalance(l.unbalance_factor, l.unbalance_constant, p.weight, mode.N));
@@ -223,11 +226,12 @@ void SetReport::write_planes(results::FrequencyStep& s) const {
   io::Table t;
   t.title = "Undamped modes and their unbalance";
   t.columns = {{"mode", "-", ""},
-               {"critical speed", "rpm", "undamped, on the mean direct stiffness of each journal"},
+               {"critical speed", "rpm",
+                "of the reference; undamped, on the mean direct stiffness of each journal"},
                {"form", "-", ""},
                {"place", "m", "from the left end of the shaft"},
                {"weight", "kg", "W of the unbalance"},
-               {"speed", "rpm", "N of the unbalance"},
+               {"speed", "rpm", "N of the unbalance, of the rotor"},
                {"unbalance", "g mm", ""},
                {"angle", "deg", ""}};
   for (const PlacedMode& m : modes_)
@@ -255,7 +259,8 @@ void SetReport::find_modes() {
   const model::Step step = part("modes", law);
   run::Job sub(m, job_);
   results::FrequencyStep s(sub, step, "undamped modes", "undamped modes", law.max_speed);
-  const std::vector<analysis::Critical> found = undamped_forward(s.linear, law.max_speed);
+  const std::vector<analysis::Critical> found =
+      undamped_forward(s.linear, law.max_speed, machine_.ratio);
   std::vector<int> asked;
   for (const double k : law_.modes)
     asked.push_back(static_cast<int>(k));
@@ -351,8 +356,8 @@ void SetReport::add_margins(const PlacedMode& mode, const model::Step& of,
   std::optional<Check> worst;
   double reserve = infinity;
   std::string where, figure;
-  for (const analysis::MarginRow& row :
-       analysis::separation_margins(r.peaks, r.probes, {law_.operating[0], law_.operating[1]})) {
+  for (const analysis::MarginRow& row : analysis::separation_margins(
+           r.peaks, r.probes, {law_.operating[0], law_.operating[1]}, order_)) {
     const bool above = row.speed > law_.operating[1];
     const double required = rule.required(row.amplification, above);
     const bool damped = !(row.amplification >= l.damped);
@@ -383,6 +388,7 @@ void SetReport::add_margins(const PlacedMode& mode, const model::Step& of,
     worst->remark = fmt::format("no peak from {:.5g} to {:.5g} rpm", to_rpm(law_.min_speed),
                                 to_rpm(law_.max_speed));
     where = fmt::format("mode {}", mode.number);
+    figure = bode_of(of, r.probes.front().name);
   }
   add(*worst, where, figure,
       source({"margin", "margin_factor", "margin_offset", "margin_above", "damped"}));
@@ -395,7 +401,8 @@ void SetReport::add_margins(const PlacedMode& mode, const model::Step& of,
 double SetReport::add_vibration(const PlacedMode& mode, const model::Step& of,
                                 const UnbalanceOutcome& r, io::ReportSection& section) {
   const model::ApiLimits& l = law_.limits;
-  const double limit = analysis::vibration_limit(l.vibration, l.vibration_speed, law_.operating[1]);
+  const double limit =
+      analysis::vibration_limit(l.vibration, l.vibration_speed, machine_.ratio * law_.operating[1]);
   double largest = 0, at = 0;
   std::size_t probe = 0;
   const std::size_t shown = r.probes.size() - law_.clearances.size();
@@ -403,7 +410,7 @@ double SetReport::add_vibration(const PlacedMode& mode, const model::Step& of,
     if (x.Omega < law_.operating[0] * (1 - 1e-12) || x.Omega > law_.operating[1] * (1 + 1e-12))
       continue;
     for (std::size_t p = 0; p < shown; ++p)
-      if (const double pp = 2 * x.probe.front()[p].orbit().major; pp > largest) {
+      if (const double pp = 2 * x.probe[order_][p].orbit().major; pp > largest) {
         largest = pp;
         at = x.Omega;
         probe = p;
@@ -443,7 +450,7 @@ void SetReport::add_clearances(const PlacedMode& mode, const model::Step& of,
     line.label = c.name;
     double most = 0, speed = 0;
     for (const analysis::SteadyPoint& x : r.response.points) {
-      const double pp = 2 * x.probe.front()[first + k].orbit().major;
+      const double pp = 2 * x.probe[order_][first + k].orbit().major;
       line.x.push_back(to_rpm(x.Omega));
       line.y.push_back(100 * scale * pp / c.diametral);
       if (x.Omega <= law_.trip * (1 + 1e-12) && pp > most) {
@@ -494,6 +501,9 @@ void SetReport::respond(const PlacedMode& mode) {
   run::Job sub(m, job_);
   sub.build_for(s);
   const UnbalanceOutcome r = run_unbalance_step(sub, s, law, law_.clearances.size());
+  for (std::size_t k = 0; k < r.response.orders.size(); ++k)
+    if (std::abs(std::abs(r.response.orders[k]) - machine_.ratio) < 1e-9 * machine_.ratio)
+      order_ = k;
   io::ReportSection spare;
   io::ReportSection& section = sub.report.sections.empty() ? spare : sub.report.sections.back();
   add_margins(mode, s, r, section);
@@ -520,7 +530,7 @@ void SetReport::judge_stability() {
     const model::Step s = part("level_2", law);
     run::Job sub(m, job_);
     sub.build_for(s);
-    with_seals = least_stable(run_modal_step(sub, s, law), law.speed);
+    with_seals = least_stable(run_modal_step(sub, s, law), machine_.ratio * law.speed);
     if (!sub.report.sections.empty() && !sub.report.sections.back().figures.empty())
       seals_figure = sub.report.sections.back().figures.front().name;
     close(sub, "stability, level 2");

@@ -85,6 +85,10 @@ void find_journals(ApiMachine& a, const model::Step& step, const model::ApiLater
                          fmt::format("journal bearings '{}' and '{}' are on different shafts",
                                      m.bearings[a.journals.front()].name, m.bearings[i].name),
                          "a report for each rotor: name its bearings in 'bearings'");
+  a.ratio = std::abs(m.shafts[a.shaft].speed_ratio);
+  if (!m.shafts[a.shaft].rotating || a.ratio == 0)
+    throw report_error(step, fmt::format("shaft '{}' does not turn", m.shafts[a.shaft].name),
+                       "name the bearings of the rotor in 'bearings'");
   std::sort(a.journals.begin(), a.journals.end(),
             [&](std::size_t x, std::size_t y) { return m.bearings[x].at.s < m.bearings[y].at.s; });
 }
@@ -123,6 +127,9 @@ model::LinearBearing isotropic(const model::LinearBearing& given, double k) {
 
 std::vector<ApiMachine> api_machines(const model::Model& model, const run::RunOptions& options,
                                      const model::Step& step, const model::ApiLateralStep& law) {
+  if (!step.from.empty())
+    throw report_error(step, "a report starts from no other step: its models are its own",
+                       "leave out 'from'");
   std::vector<ApiMachine> out;
   for (const model::ApiSet& set : law.sets) {
     if (!options.build && !set.change.empty())
@@ -145,10 +152,13 @@ std::vector<ApiMachine> api_machines(const model::Model& model, const run::RunOp
       throw Error(e.exit(), std::move(all));
     }
   }
-  if (out.empty()) out.push_back({"", "", model, {}, {}, 0});
+  if (out.empty()) out.push_back({"", "", model, {}, {}, 0, 1.0});
   for (ApiMachine& a : out) {
     find_journals(a, step, law);
     check_places(a, step, law);
+    // what a run says of itself holds for its parts
+    a.model.output = model.output;
+    a.model.keep_everything = model.keep_everything;
     a.model.output.peak_to_peak = true;
   }
   return out;

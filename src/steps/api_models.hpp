@@ -12,6 +12,7 @@ struct ApiMachine {
   model::Model model;                        ///< as given, with the set's bearings
   std::vector<std::size_t> journals, seals;  ///< numbers of bearings; journals along the shaft
   std::size_t shaft = 0;                     ///< on which the journals are
+  double ratio = 1;                          ///< of its speed to the reference, positive
 };
 
 /// The machine of every set of the step, at least one.

@@ -2,8 +2,8 @@
 
 #include <analysis/response/api617.hpp>
 #include <analysis/search.hpp>
-#include <analysis/spectra/critical.hpp>
 #include <assembly/build_system.hpp>
+#include <steps/undamped_forward.hpp>
 #include <core/text.hpp>
 
 #include <fmt/format.h>
@@ -31,9 +31,9 @@ analysis::CrossCoupledStage stage_of(const model::ApiStage& s, double highest) {
   return out;
 }
 
-double anticipated_of(const model::ApiStage& s, const model::ApiLateralStep& law) {
+double anticipated_of(const model::ApiStage& s, const model::ApiLateralStep& law, double ratio) {
   const model::ApiLimits& l = law.limits;
-  return stage_of(s, law.operating[1])
+  return stage_of(s, ratio * law.operating[1])
       .anticipated(l.stage_factor, l.axial_factor, l.torque_constant);
 }
 
@@ -77,7 +77,7 @@ Level1::Level1(run::Job& parent, const model::Step& step, const model::ApiLatera
 void Level1::add_couplings() {
   double low = infinity, high = 0;
   for (const model::ApiStage& s : law_.stages) {
-    anticipated_ += anticipated_of(s, law_);
+    anticipated_ += anticipated_of(s, law_, machine_.ratio);
     if (s.kind != model::ApiStage::Kind::radial) continue;
     low = std::min(low, s.suction);
     high = std::max(high, s.discharge);
@@ -94,7 +94,7 @@ void Level1::add_couplings() {
   };
   if (law_.at_stages) {
     for (const model::ApiStage& s : law_.stages)
-      add(*s.at, anticipated_of(s, law_) / anticipated_);
+      add(*s.at, anticipated_of(s, law_, machine_.ratio) / anticipated_);
     return;
   }
   model::Location middle;
@@ -116,7 +116,8 @@ WhirlingMode Level1::at(double q) {
   o.count = 16;
   o.motion = analysis::Motion::lateral;
   o.certify = false;
-  return least_stable(analysis::whirl_modes(linear, law_.operating[1], o), law_.operating[1]);
+  return least_stable(analysis::whirl_modes(linear, law_.operating[1], o),
+                      machine_.ratio * law_.operating[1]);
 }
 
 Level1::Curve Level1::find_curve() {
@@ -144,13 +145,10 @@ double Level1::find_critical_ratio() const {
   const model::Model m = with_rigid_journals(machine_, model_);
   const assembly::Built built = assembly::build_system(m, meshes::make_mesh(m), step_.name);
   analysis::Linearizer linear = s_->linearizer_of(built.system);
-  analysis::CriticalOptions o;
-  o.motion = analysis::Motion::lateral;
   for (const double top : {2.0, 10.0}) {
-    o.max_speed = top * law_.operating[1];
-    for (const analysis::Critical& c : analysis::critical_speeds(linear, o))
-      if (c.mode.kind == analysis::ModeKind::lateral && c.mode.forwardness > 0)
-        return law_.operating[1] / c.speed;
+    const std::vector<analysis::Critical> found =
+        undamped_forward(linear, top * law_.operating[1], machine_.ratio);
+    if (!found.empty()) return law_.operating[1] / found.front().speed;
   }
   return nan;
 }
@@ -161,7 +159,7 @@ void Level1::add_tables(const Curve& curve) {
   stages.columns = {{"stage", "-", ""}, {"kind", "-", ""}, {"cross-coupling", "N/m", ""}};
   for (const model::ApiStage& s : law_.stages)
     stages.add({s.name, s.kind == model::ApiStage::Kind::axial ? "axial" : "radial",
-                anticipated_of(s, law_)});
+                anticipated_of(s, law_, machine_.ratio)});
   stages.add({"sum, QA", "", anticipated_});
   s_->add_table("stages", std::move(stages));
   io::Table t;

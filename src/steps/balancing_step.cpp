@@ -1,6 +1,7 @@
 // A balancing step: influence coefficients of the planes, corrections, and what they leave.
 #include <analysis/response/balancing.hpp>
 #include <analysis/response/unbalance.hpp>
+#include <assembly/build_system.hpp>
 #include <results/channels.hpp>
 #include <results/frequency.hpp>
 #include <results/response.hpp>
@@ -33,6 +34,83 @@ Error balancing_error(const model::Step& step, const std::string& message,
 
 bool same(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1.0, std::abs(b)); }
 
+/// What a step is asked to balance: of measured vectors those of the initial run; else every probe
+/// along its angles (y and z where it has none) at every speed.
+std::vector<Sensor> sensors_of(const model::Model& m, const model::Step& step,
+                               const model::BalancingStep& law) {
+  if (m.probes.empty())
+    throw balancing_error(step, "the deck has no probe", "[[probe]] with name and at");
+  std::vector<Sensor> out;
+  for (const double speed : law.speeds) {
+    if (law.measured.empty())
+      for (std::size_t p = 0; p < m.probes.size(); ++p)
+        for (const double angle :
+             m.probes[p].angles.empty() ? std::vector<double>{0, pi / 2} : m.probes[p].angles)
+          out.push_back({p, angle, speed});
+    for (const model::MeasuredVector& v : law.measured) {
+      const auto probe = std::find_if(m.probes.begin(), m.probes.end(),
+                                      [&](const model::Probe& x) { return x.name == v.probe; });
+      if (probe == m.probes.end())
+        throw balancing_error(
+            step,
+            fmt::format("a measured vector names probe '{}', which the deck does not have",
+                        v.probe),
+            "names of probes as in the deck");
+      if (v.run == law.initial && same(v.speed, speed))
+        out.push_back({static_cast<std::size_t>(probe - m.probes.begin()), v.angle, speed});
+    }
+  }
+  if (out.empty())
+    throw balancing_error(
+        step, fmt::format("run '{}' has no vector at the speeds of the step", law.initial),
+        "speeds = [..] with the speeds of the measurement");
+  return out;
+}
+
+/// The measured vectors of a run at the sensors, m, 0 to peak.
+VecXc vectors_of(const model::Model& m, const model::Step& step, const model::BalancingStep& law,
+                 const std::vector<Sensor>& sensors, const std::string& run) {
+  VecXc r(static_cast<Index>(sensors.size()));
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const Sensor& s = sensors[i];
+    const std::string& probe = m.probes[s.probe].name;
+    const auto found = std::find_if(law.measured.begin(), law.measured.end(), [&](const auto& v) {
+      return v.run == run && v.probe == probe && same(v.angle, s.angle) && same(v.speed, s.speed);
+    });
+    if (found == law.measured.end())
+      throw balancing_error(
+          step,
+          fmt::format("run '{}' lacks the vector of probe '{}' at {:.6g} deg and {:.6g} rpm", run,
+                      probe, s.angle * 180 / pi, to_rpm(s.speed)),
+          "every run has a vector of every sensor and speed of the initial one");
+    r[static_cast<Index>(i)] =
+        std::polar((law.peak_to_peak ? 0.5 : 1.0) * found->amplitude, -found->phase_lag);
+  }
+  return r;
+}
+
+Index plane_of(const model::Step& step, const model::BalancingStep& law, const model::TrialRun& t) {
+  for (std::size_t j = 0; j < law.planes.size(); ++j)
+    if (law.planes[j].name == t.plane) return static_cast<Index>(j);
+  throw balancing_error(
+      step, fmt::format("a trial run names plane '{}', which the step does not have", t.plane),
+      "names of planes as in [[step.plane]]");
+}
+
+/// The balanced machine with unbalances in the planes, kg m.
+model::Model with_planes(const model::Model& given, const model::BalancingStep& law,
+                         const std::vector<double>& amounts) {
+  model::Model m = balanced(given);
+  for (std::size_t j = 0; j < law.planes.size(); ++j) {
+    model::Unbalance u;
+    u.name = law.planes[j].name;
+    u.at = law.planes[j].at;
+    u.amount = amounts[j];
+    m.unbalances.push_back(std::move(u));
+  }
+  return m;
+}
+
 class Balancing {
  public:
   Balancing(run::Job& job, const model::Step& step, const model::BalancingStep& law)
@@ -42,11 +120,10 @@ class Balancing {
   void execute();
 
  private:
-  void list_sensors();
-  const model::MeasuredVector& measured(const std::string& run, const Sensor& s) const;
-  VecXc vectors_of(const std::string& run) const;
   VecXc respond(const model::Model& m) const;
-  model::Model with_plane(std::size_t plane) const;
+  VecXc measured(const std::string& run) const {
+    return vectors_of(job_.model, step_, law_, sensors_, run);
+  }
   void find_influence();
   void find_corrections();
   MatX shapes_at_planes(results::FrequencyStep& s) const;
@@ -60,59 +137,6 @@ class Balancing {
   VecXc before_, after_;  ///< m
   VecXc corrections_;     ///< kg m
 };
-
-/// Of measured vectors those of the initial run; else every probe along its angles (y and z where it
-/// has none) at every speed.
-void Balancing::list_sensors() {
-  const std::vector<model::Probe>& probes = job_.model.probes;
-  if (probes.empty())
-    throw balancing_error(step_, "the deck has no probe", "[[probe]] with name and at");
-  for (const double speed : law_.speeds) {
-    if (law_.measured.empty())
-      for (std::size_t p = 0; p < probes.size(); ++p)
-        for (const double angle :
-             probes[p].angles.empty() ? std::vector<double>{0, pi / 2} : probes[p].angles)
-          sensors_.push_back({p, angle, speed});
-    for (const model::MeasuredVector& m : law_.measured) {
-      const auto probe = std::find_if(probes.begin(), probes.end(),
-                                      [&](const model::Probe& x) { return x.name == m.probe; });
-      if (probe == probes.end())
-        throw balancing_error(
-            step_,
-            fmt::format("a measured vector names probe '{}', which the deck does not have",
-                        m.probe),
-            "names of probes as in the deck");
-      if (m.run == law_.initial && same(m.speed, speed))
-        sensors_.push_back({static_cast<std::size_t>(probe - probes.begin()), m.angle, speed});
-    }
-  }
-  if (sensors_.empty())
-    throw balancing_error(
-        step_, fmt::format("run '{}' has no vector at the speeds of the step", law_.initial),
-        "speeds = [..] with the speeds of the measurement");
-}
-
-const model::MeasuredVector& Balancing::measured(const std::string& run, const Sensor& s) const {
-  const std::string& probe = job_.model.probes[s.probe].name;
-  for (const model::MeasuredVector& m : law_.measured)
-    if (m.run == run && m.probe == probe && same(m.angle, s.angle) && same(m.speed, s.speed))
-      return m;
-  throw balancing_error(step_,
-                        fmt::format("run '{}' lacks the vector of probe '{}' at {:.6g} deg and "
-                                    "{:.6g} rpm",
-                                    run, probe, s.angle * 180 / pi, to_rpm(s.speed)),
-                        "every run has a vector of every sensor and speed of the initial one");
-}
-
-VecXc Balancing::vectors_of(const std::string& run) const {
-  VecXc r(static_cast<Index>(sensors_.size()));
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    const model::MeasuredVector& m = measured(run, sensors_[i]);
-    r[static_cast<Index>(i)] =
-        std::polar((law_.peak_to_peak ? 0.5 : 1.0) * m.amplitude, -m.phase_lag);
-  }
-  return r;
-}
 
 /// Response of a model at the sensors.
 VecXc Balancing::respond(const model::Model& m) const {
@@ -139,36 +163,41 @@ VecXc Balancing::respond(const model::Model& m) const {
   return r;
 }
 
-/// The balanced machine with 1 g mm in a plane.
-model::Model Balancing::with_plane(std::size_t plane) const {
-  model::Model m = balanced(job_.model);
-  model::Unbalance u;
-  u.name = law_.planes[plane].name;
-  u.at = law_.planes[plane].at;
-  u.amount = 1e-6;
-  m.unbalances.push_back(std::move(u));
-  return m;
-}
-
 void Balancing::find_influence() {
   const auto planes = static_cast<Index>(law_.planes.size());
   influence_.resize(static_cast<Index>(sensors_.size()), planes);
-  for (const model::TrialRun& t : law_.trials) {
-    const auto plane =
-        std::find_if(law_.planes.begin(), law_.planes.end(),
-                     [&](const model::BalancePlane& p) { return p.name == t.plane; });
-    if (plane == law_.planes.end())
-      throw balancing_error(step_,
-                            fmt::format("a trial run names plane '{}', which the step does not "
-                                        "have",
-                                        t.plane),
-                            "names of planes as in [[step.plane]]");
-    influence_.col(plane - law_.planes.begin()) =
-        (vectors_of(t.run) - before_) / std::polar(t.amount, t.phase);
-  }
+  for (const model::TrialRun& t : law_.trials)
+    influence_.col(plane_of(step_, law_, t)) =
+        (measured(t.run) - before_) / std::polar(t.amount, t.phase);
   if (!law_.trials.empty()) return;
-  for (Index k = 0; k < planes; ++k)
-    influence_.col(k) = respond(with_plane(static_cast<std::size_t>(k))) / 1e-6;
+  constexpr double gram_millimetre = 1e-6;
+  for (Index k = 0; k < planes; ++k) {
+    std::vector<double> amounts(law_.planes.size(), 0.0);
+    amounts[static_cast<std::size_t>(k)] = gram_millimetre;
+    influence_.col(k) = respond(with_planes(job_.model, law_, amounts)) / gram_millimetre;
+  }
+}
+
+/// By modes: each at the vectors of its own speed.
+void Balancing::find_corrections() {
+  if (law_.method == model::BalancingStep::Method::influence) {
+    corrections_ = analysis::balance_by_influence(influence_, before_);
+    return;
+  }
+  // the planes are places of the mesh
+  const model::Model shaped =
+      with_planes(job_.model, law_, std::vector<double>(law_.planes.size(), 0.0));
+  run::Job sub(shaped, job_);
+  model::Step step = step_;
+  step.law = model::CriticalStep{};
+  results::FrequencyStep of_modes(sub, step, "balancing", "balancing",
+                                  *std::max_element(law_.speeds.begin(), law_.speeds.end()));
+  std::vector<std::vector<Index>> rows(law_.speeds.size());
+  for (std::size_t i = 0; i < sensors_.size(); ++i)
+    for (std::size_t k = 0; k < law_.speeds.size(); ++k)
+      if (same(sensors_[i].speed, law_.speeds[k])) rows[k].push_back(static_cast<Index>(i));
+  corrections_ = analysis::balance_by_modes(
+      influence_, before_, analysis::modal_patterns(shapes_at_planes(of_modes)), rows);
 }
 
 /// Deflections of the modes at the planes, a row a mode.
@@ -251,33 +280,11 @@ void Balancing::write(results::FrequencyStep& s) const {
 }
 
 void Balancing::execute() {
-  list_sensors();
+  sensors_ = sensors_of(job_.model, step_, law_);
   const double top = *std::max_element(law_.speeds.begin(), law_.speeds.end());
-  // the planes are places of the mesh
-  const model::Model m = with_plane(0);
-  model::Model shaped = m;
-  for (std::size_t k = 1; k < law_.planes.size(); ++k) {
-    model::Unbalance u;
-    u.at = law_.planes[k].at;
-    shaped.unbalances.push_back(std::move(u));
-  }
-  before_ = law_.measured.empty() ? respond(job_.model) : vectors_of(law_.initial);
+  before_ = law_.measured.empty() ? respond(job_.model) : measured(law_.initial);
   find_influence();
-  const bool modal = law_.method == model::BalancingStep::Method::modal;
-  if (modal) {
-    run::Job sub(shaped, job_);
-    model::Step step = step_;
-    step.law = model::CriticalStep{};
-    results::FrequencyStep of_modes(sub, step, "balancing", "balancing", top);
-    std::vector<std::vector<Index>> rows(law_.speeds.size());
-    for (std::size_t i = 0; i < sensors_.size(); ++i)
-      for (std::size_t k = 0; k < law_.speeds.size(); ++k)
-        if (same(sensors_[i].speed, law_.speeds[k])) rows[k].push_back(static_cast<Index>(i));
-    corrections_ = analysis::balance_by_modes(
-        influence_, before_, analysis::modal_patterns(shapes_at_planes(of_modes)), rows);
-  } else {
-    corrections_ = analysis::balance_by_influence(influence_, before_);
-  }
+  find_corrections();
   after_ = before_ + influence_ * corrections_;
   results::FrequencyStep s(job_, step_, "balancing", "balancing", top);
   write(s);
@@ -289,13 +296,28 @@ void Balancing::execute() {
   s.section.text = fmt::format(
       "{}, {} planes, {} vectors; influence coefficients of {}. Root mean square of the vibration "
       "{:.5g} um before, {:.5g} um after (0-peak).",
-      modal ? "Mode by mode" : "Least squares", law_.planes.size(), sensors_.size(),
-      law_.trials.empty() ? "the model" : "the trial runs", rms(before_), rms(after_));
+      law_.method == model::BalancingStep::Method::modal ? "Mode by mode" : "Least squares",
+      law_.planes.size(), sensors_.size(), law_.trials.empty() ? "the model" : "the trial runs",
+      rms(before_), rms(after_));
   s.finish(fmt::format("{} planes, {:.5g} um before, {:.5g} um after", law_.planes.size(),
                        rms(before_), rms(after_)));
 }
 
 }  // namespace
+
+void check_balancing(const model::Model& m, const model::Step& step,
+                     const model::BalancingStep& law) {
+  if (!step.from.empty())
+    throw balancing_error(step, "balancing starts from no other step", "leave out 'from'");
+  const std::vector<Sensor> sensors = sensors_of(m, step, law);
+  if (!law.measured.empty()) vectors_of(m, step, law, sensors, law.initial);
+  for (const model::TrialRun& t : law.trials) {
+    plane_of(step, law, t);
+    vectors_of(m, step, law, sensors, t.run);
+  }
+  const model::Model placed = with_planes(m, law, std::vector<double>(law.planes.size(), 0.0));
+  assembly::build_system(placed, meshes::make_mesh(placed), step.name);
+}
 
 void run_balancing_step(run::Job& job, const model::Step& step, const model::BalancingStep& law) {
   Balancing(job, step, law).execute();

@@ -9,6 +9,7 @@
 #include <steps/prepare.hpp>
 #include <run/results_folder.hpp>
 #include <steps/stability_map.hpp>
+#include <steps/step_kinds.hpp>
 #include <assembly/build_system.hpp>
 
 #include <fmt/format.h>
@@ -50,6 +51,8 @@ class Obstacles {
         note(step.where, [&] { check_buckling(step, *b); });
       if (const auto* a = std::get_if<model::ApiLateralStep>(&step.law))
         note(step.where, [&] { check_report(step, *a); });
+      if (const auto* b = std::get_if<model::BalancingStep>(&step.law))
+        note(step.where, [&] { check_balancing(model_, step, *b); });
       if (const auto* s = std::get_if<model::StabilityStep>(&step.law); s) {
         note(step.where, [&] { check_axes(step); });
         if (s->map) note(step.where, [&] { check_map(step, *s->map); });

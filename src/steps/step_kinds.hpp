@@ -39,6 +39,8 @@ void run_torsional_step(run::Job&, const model::Step&, const model::TorsionalSte
 /// Reports after standards: they run the kinds above on models of their own.
 void run_api_lateral_step(run::Job&, const model::Step&, const model::ApiLateralStep&);
 void run_api_torsional_step(run::Job&, const model::Step&, const model::ApiTorsionalStep&);
+/// @throws Error (E63) when vectors, runs, probes and planes do not fit together; as make_mesh().
+void check_balancing(const model::Model&, const model::Step&, const model::BalancingStep&);
 void run_balancing_step(run::Job&, const model::Step&, const model::BalancingStep&);
 void run_buckling_step(run::Job&, const model::Step&, const model::BucklingStep&);
 

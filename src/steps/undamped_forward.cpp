@@ -8,9 +8,11 @@
 
 namespace whirl::steps {
 
-std::vector<analysis::Critical> undamped_forward(analysis::Linearizer& linear, double max_speed) {
+std::vector<analysis::Critical> undamped_forward(analysis::Linearizer& linear, double max_speed,
+                                                 double order) {
   analysis::CriticalOptions o;
   o.max_speed = max_speed;
+  o.order = order;
   o.motion = analysis::Motion::lateral;
   std::vector<analysis::Critical> found = analysis::critical_speeds(linear, o);
   std::erase_if(found, [](const analysis::Critical& c) {

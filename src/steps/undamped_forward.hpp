@@ -5,8 +5,10 @@
 
 namespace whirl::steps {
 
-/// Lateral modes that an unbalance drives, in ascending order, up to max_speed, rad/s.
-std::vector<analysis::Critical> undamped_forward(analysis::Linearizer& linear, double max_speed);
+/// Lateral modes that an unbalance drives, in ascending order, up to max_speed, rad/s of the
+/// reference. order: speed of the unbalanced shaft over that.
+std::vector<analysis::Critical> undamped_forward(analysis::Linearizer& linear, double max_speed,
+                                                 double order = 1.0);
 
 /// A shape along a line, real, its largest 1: places s (m) and deflections u, with the cubic between
 /// the stations.

@@ -25,7 +25,7 @@ TEST(Api617, SeparationMargins) {
   EXPECT_EQ(rule.required(2.49, false), 0);
   EXPECT_NEAR(rule.required(5, false), 0.17 * (1 - 1 / 3.5), 1e-15);
   EXPECT_NEAR(rule.required(5, true), 0.10 + 0.17 * (1 - 1 / 3.5), 1e-15);
-  EXPECT_EQ(rule.required(nan, true), 0);
+  EXPECT_EQ(rule.required(whirl::nan, true), 0);
   MarginRule fixed;
   fixed.fixed = 0.15;
   EXPECT_EQ(fixed.required(5, true), 0.15);

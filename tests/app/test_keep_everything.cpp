@@ -114,6 +114,11 @@ TEST_P(KeepEverything, GivesTheSame) {
       other.keep_everything = all;
       return other;
     };
+    o.build = [&](const std::vector<std::string>& settings) {
+      deck::ReadOptions read;
+      read.set = settings;
+      return deck::load_model(deck, read);
+    };
     o.output = folder_ / (all ? "all" : "pruned");
     ASSERT_EQ(steps::run_deck(m, o), 0);
   }

@@ -5,6 +5,8 @@
 
 #include <core/types.hpp>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <complex>
 
@@ -175,6 +177,24 @@ k = "1e5 N/m"
   expect(rows[4], "level 2: log decrement", log_decrement(1e5), 0.1, "passed");
 }
 
+// A rotor at twice the reference speed: half the speeds in the deck, the same numbers.
+TEST(Reports, SpeedsOfAGearedRotorAreItsOwn) {
+  std::string deck = lateral_report(std::string(clearances) + stages);
+  const std::string shaft = "[shaft]\n", speeds = "[\"4000 rpm\", \"5000 rpm\"]";
+  deck.replace(deck.find(shaft), shaft.size(), shaft + "speed_ratio = 2\n");
+  deck.replace(deck.find(speeds), speeds.size(), "[\"2000 rpm\", \"2500 rpm\"]");
+  const DeckRun d(deck);
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const std::vector<Row> rows = compliance(d, "l");
+  ASSERT_EQ(rows.size(), 5u);
+  expect(rows[0], "separation margin", 100 * (4000 - peak) / 4000,
+         17 * (1 - 1 / (amplification - 1.5)), "passed");
+  expect(rows[1], "vibration at probes", 2e6 * response(4000), 25.4, "passed");
+  expect(rows[3], "level 1: log decrement", log_decrement(anticipated), 0.1, "passed");
+  EXPECT_NEAR(d.csv("l_modes_unbalance.csv").last().at("unbalance [g mm]"), 1e6 * unbalance(),
+              1e-6);
+}
+
 TEST(Reports, LimitsAreSettings) {
   const DeckRun d(lateral_report(std::string("trip_speed = \"5500 rpm\"\n") + clearances + stages +
                                  R"([step.limits]
@@ -224,6 +244,20 @@ TEST(Reports, WhatDoesNotFitIsSaid) {
   says(lateral_report("apply = \"stages\"\n" + std::string(stages)), "E05", "has no place");
   says(lateral_report("[step.limits]\ndensity = [\"1 kg/m^3\"]\n"), "E26", "critical speed ratios");
   says(lateral_report("modes = [7]\n"), "E70", "undamped mode 7");
+  const std::string balancing =
+      "[[step]]\nname = \"b\"\ntype = \"balancing\"\nspeeds = [\"3500 "
+      "rpm\"]\nplane = [{ name = \"disc\", at = \"mass\" }]\n";
+  const std::string vectors =
+      "[step.measured]\ncolumns = [\"run\", \"probe\", \"speed[rpm]\", \"amplitude[um]\", "
+      "\"phase[deg]\"]\nrows = [[\"a\", \"P\", 3500, 10, 30]]\n";
+  const auto trial = [](const char* run, const char* plane) {
+    return fmt::format("trial = [{{ run = \"{}\", plane = \"{}\", amount = \"5 g.mm\" }}]\n", run,
+                       plane);
+  };
+  says(lateral_report("", balancing + trial("b", "disc") + vectors), "E63", "lacks the vector");
+  says(lateral_report("", balancing + trial("a", "hub") + vectors), "E63", "names plane 'hub'");
+  says(lateral_report("", balancing + trial("a", "disc")), "E26", "measured vectors");
+  says(lateral_report("", balancing + "method = \"modal\"\n"), "E05", "lacks 'modes'");
 }
 
 namespace {
