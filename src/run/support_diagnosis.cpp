@@ -155,13 +155,12 @@ void warn_of_closed_contacts(Job& job, const model::Step& step, const StepState&
           "its film is believed up to {}, where it carries about {:.4g} N",
           c.name, s.displacement / s.gap, step.name, s.load, SupportCondition::believed,
           s.capacity);
-    if (s.film && !s.detail.empty())
-      d.message += "; " + s.detail;
     else
       d.message = fmt::format(
           "contact '{}' is closed at the start of step '{}': displacement {:.4g} mm, gap {:.4g} "
           "mm, contact force about {:.3g} N",
           c.name, step.name, 1e3 * s.displacement, 1e3 * s.gap, s.load);
+    if (!s.detail.empty()) d.message += "; " + s.detail;
     d.hint = s.film ? "the film is thinner than roughness and tilt allow: more speed or viscosity, "
                       "less clearance, a longer bearing, less load"
                     : "a larger gap, or a set point of the bearings that lifts the shaft, opens "
