@@ -104,7 +104,7 @@ void describe(Visitor& v, model::ApiSet& s) {
     key.erase(key.find_last_not_of(' ') + 1);
     key.erase(0, key.find_first_not_of(' '));
     value.erase(0, value.find_first_not_of(' '));
-    c = key + "=" + value;
+    c = fmt::format("{}={}", key, value);
   }
 }
 
