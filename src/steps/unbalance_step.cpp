@@ -323,6 +323,7 @@ std::vector<double> shape_speeds(const model::UnbalanceStep& law,
                                  const std::vector<analysis::ResponsePeak>& peaks) {
   if (!law.shapes_at.empty()) return law.shapes_at;
   std::vector<double> speeds;
+  speeds.reserve(peaks.size());
   for (const analysis::ResponsePeak& p : peaks)
     speeds.push_back(p.speed);
   std::sort(speeds.begin(), speeds.end());

@@ -226,12 +226,7 @@ class Batch final : public Elements<K::n_nodes, K::width> {
         if (k.cornered()) return true;
     return false;
   }
-  bool relaxes() const override {
-    if constexpr (requires { K::own; })
-      return true;
-    else
-      return false;
-  }
+  bool relaxes() const override { return requires { K::own; }; }
   void relax(const Workspace& w, Eigen::Ref<VecX> q) const override {
     if constexpr (requires { K::own; })
       for (std::size_t i = 0; i < elements_.size(); ++i) {

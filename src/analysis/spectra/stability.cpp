@@ -78,6 +78,7 @@ class Sweep {
     };
     const auto& modes = tracker_.advance(speed, visit);
     std::vector<WhirlMode> now;
+    now.reserve(modes.size());
     for (const TrackedMode& m : modes)
       now.push_back(m.now);
     const SpeedVerdict verdict = verdict_of(speed, now, tracker_.certificate());

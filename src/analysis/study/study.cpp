@@ -173,6 +173,7 @@ class Ladder {
     for (std::size_t k = 0; k < options_.ladder.size(); ++k)
       series[options_.series ? options_.series(options_.ladder[k]) : std::string()].push_back(k);
     std::vector<std::vector<std::size_t>> tasks;
+    tasks.reserve(series.size());
     for (auto& [name, numbers] : series)
       tasks.push_back(std::move(numbers));
     std::sort(tasks.begin(), tasks.end());
