@@ -42,6 +42,16 @@ struct NewOptions {
 /// @throws Error (E91, Exit::usage) for an example there is not, or a file that is there already.
 int new_deck(const NewOptions& options);
 
+struct ConvertOptions {
+  std::filesystem::path input;
+  std::filesystem::path output;  ///< empty: standard output
+  bool force = false;
+};
+/// A file of another program as a deck (or a table of one), and what of it was left out. The deck
+/// is read at once: what is wrong with it is printed too.
+/// @throws Error (E42, E02, E03, E91) when nothing can be made of it or written.
+int convert_model(const ConvertOptions& options);
+
 /// One command as the shell completion needs it.
 struct CommandInfo {
   std::string name;

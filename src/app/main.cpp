@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include <app/commands.hpp>
+#include <deck/text/document.hpp>
 #include <run/diagnose.hpp>
 #include <run/terminal.hpp>
 #include <core/version.hpp>
@@ -9,6 +10,7 @@
 #include <sweep/sweep.hpp>
 #include <core/interrupt.hpp>
 #include <core/isa.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -74,6 +76,7 @@ struct Given {
   bool reference = false, unit_list = false;
   std::vector<std::string> codes;
   NewOptions fresh;
+  ConvertOptions convert;
   std::string shell;
 };
 
@@ -184,6 +187,13 @@ void add_texts(CLI::App& app, Given& g) {
   c->add_option("file", g.fresh.file, "file to write (standard output when left out)");
   c->add_flag("--force", g.fresh.force, "replace an existing file");
 
+  c = app.add_subcommand("convert",
+                         "a model of another program as a deck: a rotor saved by ROSS "
+                         "(.toml, .json), a table of stations or coefficients (.csv)");
+  c->add_option("input", g.convert.input, "file to convert")->required();
+  c->add_option("output", g.convert.output, "file to write (standard output when left out)");
+  c->add_flag("--force", g.convert.force, "replace an existing file");
+
   c = app.add_subcommand("completion", "completion script for a shell");
   c->add_option("shell", g.shell, "bash or fish")
       ->required()
@@ -214,12 +224,56 @@ int execute(const CLI::App& app, Given& g) {
                                       : SchemaForm::json);
   if (is("explain")) return explain(g.codes);
   if (is("new")) return new_deck(g.fresh);
+  if (is("convert")) return convert_model(g.convert);
   if (is("completion")) {
     std::fputs(completion_script(g.shell, commands_of(app)).c_str(), stdout);
     return static_cast<int>(Exit::ok);
   }
   std::fputs(version_text().c_str(), stdout);
   return static_cast<int>(Exit::ok);
+}
+
+/// Says why the arguments cannot be taken, with the nearest word that could.
+[[noreturn]] void bad_usage(std::string message, std::string hint) {
+  Diagnostic d;
+  d.message = std::move(message);
+  d.hint = std::move(hint);
+  throw Error(Exit::usage, std::move(d));
+}
+
+/// A first word that is no command.
+void check_command(const CLI::App& app, const std::string& word) {
+  if (word.empty() || word.front() == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* c : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(c->get_name());
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  const auto near = deck::nearest(word, names);
+  std::error_code ec;
+  bad_usage(fmt::format("there is no command '{}'", word),
+            std::filesystem::is_regular_file(word, ec) ? fmt::format("whirl run '{}'", word)
+            : near.empty() ? fmt::format("the commands: {}", fmt::join(names, ", "))
+                           : fmt::format("did you mean '{}'?", near.front()));
+}
+
+/// Options that the command does not have.
+void check_options(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const auto chosen = app.get_subcommands();
+  if (chosen.empty()) return;
+  std::vector<std::string> names;
+  for (const CLI::Option* o : chosen.front()->get_options())
+    for (const std::string& n : o->get_lnames())
+      names.push_back("--" + n);
+  for (const std::string& a : arguments) {
+    const std::string option = a.substr(0, a.find('='));
+    if (option.rfind("--", 0) != 0 || option == "--" ||
+        std::find(names.begin(), names.end(), option) != names.end())
+      continue;
+    const auto near = deck::nearest(option, names);
+    bad_usage(fmt::format("`whirl {}` has no option '{}'", chosen.front()->get_name(), option),
+              near.empty() ? fmt::format("`whirl {} --help` lists them", chosen.front()->get_name())
+                           : fmt::format("did you mean '{}'?", near.front()));
+  }
 }
 
 int command_line(int argc, char** argv) {
@@ -242,8 +296,17 @@ int command_line(int argc, char** argv) {
   add_study(app, given);
   add_sweep(app, given);
   add_texts(app, given);
+  if (argc < 2) {
+    std::fputs(app.help().c_str(), stderr);
+    return static_cast<int>(Exit::usage);
+  }
+  check_command(app, argv[1]);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& e) {
+    check_options(app, {argv + 2, argv + argc});
+    app.exit(e);
+    return static_cast<int>(Exit::usage);
   } catch (const CLI::ParseError& e) {
     const int code = app.exit(e);  // prints help, version or the message
     return code == 0 ? static_cast<int>(Exit::ok) : static_cast<int>(Exit::usage);

@@ -235,6 +235,13 @@ const std::vector<CodeInfo>& error_catalogue() {
        "motion alone (lateral, torsional, axial) where a joint stands on a line at an angle to the "
        "x axis, for bending of one line is twist of another there.",
        "type = \"transient\""},
+      {"E42", "a file that cannot be converted",
+       "whirl convert reads rotors saved by ROSS (.toml, .json) and tables (.csv) of stations or "
+       "of "
+       "bearing coefficients. A shaft must come out of it: elements that follow each other with "
+       "their materials, or stations with lengths and outer diameters. Titles of columns carry "
+       "their unit.",
+       "Station, Length [mm], OD [mm], ID [mm], Mass [kg], Ip [kg.m^2], It [kg.m^2]"},
       {"E61", "an unknown with neither stiffness nor mass",
        "The eigenvalue problem cannot be factored at any shift: nothing in the model resists or "
        "carries the motion that the message names. Hold it, or give "
@@ -371,8 +378,8 @@ const std::vector<CodeInfo>& error_catalogue() {
        "beside their place and renamed, so that what was there before is unharmed.",
        ""},
       {"E92", "not a JSON file",
-       "A results file that should be JSON cannot be parsed; it was probably edited or cut off by "
-       "another program.",
+       "A file that should be JSON cannot be parsed; it was probably edited or cut off by another "
+       "program.",
        ""},
       {"E93", "unknown content of a VTK output",
        "content lists any of line, surface, bearings, orbits.",
@@ -537,6 +544,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        "critical speeds, one a principal plane, and between them the rotor bends out: an unbalance "
        "response and a stability step are computed in axes that turn with the shaft and show both.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
+      {"W20", "left out or assumed in a conversion",
+       "What another program's file says and a deck has no word for, or what a deck needs and the "
+       "file does not say. The same list stands at the head of the deck.",
+       ""},
   };
   return t;
 }

@@ -1,5 +1,7 @@
 // The only file that sees nlohmann-json.
-#include <io/value.hpp>
+#include <core/error.hpp>
+#include <io/json.hpp>
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -56,7 +58,44 @@ Json to_library(const Value& value) {
   return std::visit(Visitor{}, value.variant());
 }
 
+Value from_library(const Json& json) {
+  switch (json.type()) {
+    case Json::value_t::boolean: return json.get<bool>();
+    case Json::value_t::number_integer: return json.get<std::int64_t>();
+    case Json::value_t::number_unsigned: return json.get<std::uint64_t>();
+    case Json::value_t::number_float: return json.get<double>();
+    case Json::value_t::string: return json.get<std::string>();
+    case Json::value_t::array: {
+      Value list = Value::array();
+      for (const Json& item : json)
+        list.push(from_library(item));
+      return list;
+    }
+    case Json::value_t::object: {
+      Value object = Value::object();
+      for (const auto& [key, item] : json.items())
+        object[key] = from_library(item);
+      return object;
+    }
+    default: return {};
+  }
+}
+
 }  // namespace
+
+Value parse_json(std::string_view text, std::string_view name) {
+  try {
+    return from_library(Json::parse(text));
+  } catch (const Json::parse_error& e) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(e.byte, text.size()));
+    const auto line = 1 + std::count(text.begin(), end, '\n');
+    throw Error(Exit::io, Diagnostic{Diagnostic::Severity::error,
+                                     "E92",
+                                     "this is not JSON",
+                                     {},
+                                     Where{std::string(name), static_cast<int>(line), 0, 0, {}}});
+  }
+}
 
 std::string to_json(const Value& v, int indent) {
   return to_library(v).dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -226,7 +226,9 @@ class Batch final : public Elements<K::n_nodes, K::width> {
         if (k.cornered()) return true;
     return false;
   }
-  bool relaxes() const override { return requires { K::own; }; }
+  bool relaxes() const override {
+    return requires { K::own; };
+  }
   void relax(const Workspace& w, Eigen::Ref<VecX> q) const override {
     if constexpr (requires { K::own; })
       for (std::size_t i = 0; i < elements_.size(); ++i) {

@@ -20,7 +20,8 @@ declare -A may=(
   [steps]="core la model time system meshes assembly plot io analysis run results steps"
   [study]="core la model deck time system meshes assembly plot io analysis run results steps study"
   [sweep]="core model deck plot io run steps sweep"
-  [app]="core model deck meshes assembly plot io run steps study sweep app"
+  [convert]="core deck io convert"
+  [app]="core model deck meshes assembly plot io run steps study sweep convert app"
 )
 bad=0
 for folder in src/* elements meshes; do
