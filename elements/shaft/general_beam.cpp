@@ -395,26 +395,26 @@ void add_beam_inertia(const GeneralBeamConstants& c, const Moving<T>& x, ForceOu
   }
 }
 
-/// Moments of inertia about the triads' axes (general_beam.hpp).
-double axis_inertia(const GeneralBeamConstants& c, int axis) {
-  return axis == 0 ? -c.rhoI_l : axis == 1 ? c.rhoIz_l : c.rhoIy_l;
+/// Inertia on a director (D, B, C) of both triads.
+const Mat2& director_inertia(const GeneralBeamConstants& c, int k) {
+  const std::size_t i = static_cast<std::size_t>(k);
+  return c.triads.on[i][i];
 }
 
 /// Rotary inertia on the triads.
 template <class T>
 void add_triad_inertia(const GeneralBeam& b, const Moving<T>& x, ForceOut<T>& out) {
   const SectionMotion<T>&m1 = *x.motion[0], &m2 = *x.motion[1];
-  const double own1 = b.c.triad_own[0], own2 = b.c.triad_own[1], other = 6.0 - 0.5 * (own1 + own2);
   for (int axis = 0; axis < 3; ++axis) {
-    const double J = axis_inertia(b.c, axis);
+    const Mat2& J = director_inertia(b.c, axis);
     const V3<T> b1 = m1.turn(b.body1.col(axis)), b2 = m2.turn(b.body2.col(axis));
     V3<T> a1 = m1.accel(b1), a2 = m2.accel(b2);
     if (b.c.alpha > 0.0) {
       a1 = a1 + T(b.c.alpha) * m1.omega.cross(b1);
       a2 = a2 + T(b.c.alpha) * m2.omega.cross(b2);
     }
-    out.m[0] = out.m[0] + b1.cross(T(J * own1 / 12.0) * a1 + T(J * other / 12.0) * a2);
-    out.m[1] = out.m[1] + b2.cross(T(J * other / 12.0) * a1 + T(J * own2 / 12.0) * a2);
+    out.m[0] = out.m[0] + b1.cross(T(J(0, 0)) * a1 + T(J(0, 1)) * a2);
+    out.m[1] = out.m[1] + b2.cross(T(J(0, 1)) * a1 + T(J(1, 1)) * a2);
   }
 }
 
@@ -476,13 +476,20 @@ GeneralBeam::GeneralBeam(const GeneralBeamConstants& constants, const Vec3& chor
   if (p01.squaredNorm() + p02.squaredNorm() > 1e-20) psi_r = psi0;
 }
 
+namespace {
+bool alike_across(const TriadInertia& t) {
+  const Mat2 &B = t.on[1][1], &C = t.on[2][2];
+  return (B - C).cwiseAbs().maxCoeff() <= 1e-12 * B.cwiseAbs().maxCoeff();
+}
+}  // namespace
+
 bool GeneralBeam::axisymmetric() const {
   const auto equal = [](double a, double b) {
     return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
   };
   const auto along_axis = [](const Vec3& v) { return v.tail<2>().norm() <= 1e-10 * v.norm(); };
   return equal(c.ky_def11, c.kz_def11) && equal(c.ky_def12, c.kz_def12) &&
-         equal(c.ky_def22, c.kz_def22) && equal(c.rhoIy_l, c.rhoIz_l) && along_axis(body1.col(0)) &&
+         equal(c.ky_def22, c.kz_def22) && alike_across(c.triads) && along_axis(body1.col(0)) &&
          along_axis(body2.col(0)) && along_axis(arm1) && along_axis(arm2) &&
          p01.squaredNorm() + p02.squaredNorm() <= 1e-20;
 }
@@ -528,15 +535,11 @@ void GeneralBeam::add_energy(const Nodes<2>& x, const Context& ctx, Energy& en) 
     for (int j = 0; j < 4; ++j)
       en.kinetic += 0.5 * c.M4(k, j) * v[k].dot(v[j]);
   for (int axis = 0; axis < 3; ++axis) {
-    const double J = axis_inertia(c, axis);
+    const Mat2& J = director_inertia(c, axis);
     const Vec3 b1 = w1.cross(vec(m1.turn(body1.col(axis)))),
                b2 = w2.cross(vec(m2.turn(body2.col(axis))));
-    const double mean = 0.5 * (c.triad_own[0] + c.triad_own[1]),
-                 apart = 0.5 * (c.triad_own[0] - c.triad_own[1]);
     en.kinetic +=
-        0.5 * J *
-        (mean / 12.0 * (b1.squaredNorm() + b2.squaredNorm()) +
-         apart / 12.0 * (b1.squaredNorm() - b2.squaredNorm()) + (6.0 - mean) * b1.dot(b2) / 6.0);
+        0.5 * (J(0, 0) * b1.squaredNorm() + J(1, 1) * b2.squaredNorm()) + J(0, 1) * b1.dot(b2);
   }
   // Relative to the reference configuration, so that a change of chart leaves it alone.
   const Vec3 P[4] = {x[0]->u + X[0] - offset1, X[1] - triad1.col(0), x[1]->u + X[2] - offset2,

@@ -40,16 +40,17 @@
 // a x p_i and psi' = sigma2 - sigma1, sigma_i = (a + D_i).(omega_i - a x a')/(1 + a.D_i), which are
 // exactly the rates of the measures above. beta and beta_twist damp the same rates (viscous,
 // rotating with the section).
-// Inertia: M4 (x) 1 on (r1, D1, r2, D2), with the mean rotary inertia on the static shape
+// Inertia: M4 (x) 1 on (r1, D1, r2, D2), with the smaller rotary inertia on the static shape
 // (timoshenko_matrices.hpp); what is left of the rotary and the polar inertia on the triads, 1/2
-// sum_ij m_ij (rhoI_z B_i'.B_j' + rhoI_y C_i'.C_j' - rhoI D_i'.D_j'), m the mean of consistent and
-// lumped. Exact for every rigid motion.
+// sum_ij (m_ij^D D_i'.D_j' + m_ij^B B_i'.B_j' + m_ij^C C_i'.C_j') (triad_inertia.hpp). Exact for
+// every rigid motion.
 //
 // The tangent is by forward differentiation (core/dual.hpp): exact, about ten times the cost of the
 // axisymmetric element. Units SI. Limits: relative twist of one element below pi; angle between
 // chord and D below pi; small strain. Source of the corotational idea with transported triads:
 // Battini & Pacoste 2002, doi 10.1016/S0045-7825(01)00352-8.
 #pragma once
+#include <elements/shaft/triad_inertia.hpp>
 #include <system/kernel.hpp>
 
 namespace whirl::system {
@@ -66,16 +67,11 @@ struct GeneralBeamConstants {
   /// N m.
   double ky_def11 = 0, ky_def12 = 0, ky_def22 = 0, kz_def11 = 0, kz_def12 = 0, kz_def22 = 0;
   double b11 = 0, b12 = 0, b22 = 0;  ///< bowing coefficients
-  Matrix<4> M4 = Matrix<4>::Zero();  ///< inertia on (r1, D1, r2, D2): translation, and rotary
-                                     ///< inertia rhoI_l/length; kg, kg m, kg m^2
-  double rhoI_l = 0;                 ///< what of the rotary inertia below M4 contains, kg m^2
-  double rhoIz_l = 0, rhoIy_l = 0;   ///< rho int y^2 dA length, rho int z^2 dA length, kg m^2
-  /// 12 m_11 and 12 m_22 of the header; m_12 makes the sum one. 5: mean of consistent and lumped; 4,
-  /// consistent: where the twisting moment is not the element's own inertia alone (a bend of the
-  /// line), since what the mean adds is the inertia the moment at the node accelerates.
-  double triad_own[2] = {5, 5};
-  double beta = 0;        ///< stiffness-proportional damping of bending, rotating, s
-  double beta_twist = 0;  ///< the same of the twist, s
+  Matrix<4> M4 = Matrix<4>::Zero();  ///< inertia on (r1, D1, r2, D2): translation, and the smaller
+                                     ///< rotary inertia; kg, kg m, kg m^2
+  TriadInertia triads;               ///< the rest; no products: B and C are principal axes
+  double beta = 0;                   ///< stiffness-proportional damping of bending, rotating, s
+  double beta_twist = 0;             ///< the same of the twist, s
   double alpha = 0;  ///< mass-proportional damping, 1/s: of the velocities of the beam's own mass
 };
 

@@ -1,5 +1,7 @@
 #include <elements/shaft/section_beam.hpp>
 
+#include <elements/shaft/corrected_mass.hpp>
+
 #include <core/dual_rate.hpp>
 #include <system/stiffness_rate.hpp>
 #include <math.h>
@@ -395,31 +397,42 @@ Vector<6> screw_between(const Mat3& t1, const Mat3& t2, const Vec3& chord) {
   return s.d.values();
 }
 
+/// Phi/(1 + Phi) of the plane with the larger rotary inertia; S: compliance.
+double shear_share_of(const Matrix<6>& S, const Mat3& J, double l) {
+  const bool about_y = J(1, 1) > J(2, 2);
+  const Index shear = about_y ? 2 : 1, bend = about_y ? 4 : 5;
+  const double Phi = 12.0 * S(shear, shear) / (S(bend, bend) * l * l);
+  return Phi / (1.0 + Phi);
+}
+
 }  // namespace
 
 SectionBeamConstants make_section_constants(const FullSection& section, double l, double twist,
-                                            MassKind kind, const Vec2& share) {
+                                            MassKind kind, const TriadShare& share) {
   SectionBeamConstants c;
   c.length = l;
   c.S = section.stiffness.llt().solve(Matrix<6>::Identity());
   c.S = Matrix<6>(0.5 * (c.S + c.S.transpose()));
   const SectionMoments mass(section.mass);
-  const double rotary = 0.5 * (mass.second(1, 1) + mass.second(2, 2));
   const Matrix<6>& S = c.S;
   const Vec2 shear_centre(-S(2, 3) / S(3, 3), S(1, 3) / S(3, 3));
   MassShare mass_share;
-  mass_share.bending = Vector<4>(1, share[0], 1, share[1]);
-  const auto plane = [&](int shear, int bend, double rhoI) {
+  mass_share.bending = Vector<4>(1, share.tilt[0], 1, share.tilt[1]);
+  const auto plane = [&](int shear, int bend, double rhoI, MassKind with) {
     const double softness = S(shear, shear) - S(shear, 3) * S(shear, 3) / S(3, 3);
     ElementSection e;
     e.constants = true;
     e.given = {1.0 / S(0, 0), 1.0 / softness, 1.0 / S(3, 3), 1.0 / S(bend, bend), mass.m, rhoI, 0};
-    return make_shaft_constants(e, l, 0, 0, kind, mass_share).M4;
+    return make_shaft_constants(e, l, 0, 0, with, mass_share).M4;
   };
-  const auto mean = [&](double rhoI) {
-    return Matrix<4>(0.5 * (plane(1, 5, rhoI) + plane(2, 4, rhoI)));
+  const auto mean = [&](double rhoI, MassKind with) {
+    return Matrix<4>(0.5 * (plane(1, 5, rhoI, with) + plane(2, 4, rhoI, with)));
   };
-  const Matrix<4> translation = mean(0.0), rotation = mean(rotary) - translation;
+  const TriadInertia triads(l * mass.J, shear_share_of(c.S, mass.J, l), kind, share);
+  const double rhoI = triads.contained / l;
+  const Matrix<4> whole = mean(rhoI, MassKind::consistent);
+  const Matrix<4> shapes = mean(0.0, MassKind::consistent), rotation = whole - shapes;
+  const Matrix<4> correction = mean(rhoI, kind) - whole;
 
   // mass centres and the tangents of their line; shear centres of an untwisted section, whose line
   // has the directors for its tangents whatever the twist, and directors
@@ -438,15 +451,15 @@ SectionBeamConstants make_section_constants(const FullSection& section, double l
     centres(2 * i + 1, 4 * i + 2) -= twist / l * shear_centre[1];
     centres(2 * i + 1, 4 * i + 3) += twist / l * shear_centre[0];
   }
-  c.M8 = centres.transpose() * translation * centres + line.transpose() * rotation * line;
-  Mat3 triads = mass.second;
-  triads(0, 0) -= rotary;
-  const bool consistent = kind == MassKind::consistent;
-  const Vec2 own = l / 12.0 * (consistent ? Vec2(4, 4) : Vec2(4 + share[0], 4 + share[1]));
-  const double other = 0.5 * (l - own.sum());
+  c.M8 =
+      corrected_mass<8>(centres.transpose() * shapes * centres + line.transpose() * rotation * line,
+                        centres.transpose() * correction * centres);
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < 2; ++k)
-      c.M8.block<3, 3>(4 * i + 1, 4 * k + 1) += (i == k ? own[i] : other) * triads;
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b)
+          c.M8(4 * i + 1 + static_cast<int>(a), 4 * k + 1 + static_cast<int>(b)) +=
+              triads.on[a][b](i, k);
   return c;
 }
 

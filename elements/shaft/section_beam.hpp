@@ -34,17 +34,18 @@
 //
 // Inertia: M8 (x) 1 on (r1, D1, B1, C1, r2, D2, B2, C2), exact for rigid motion: translation along
 // the line of mass centres by the shape functions of timoshenko_matrices.hpp (mean of both planes;
-// its tangents are the directors and what the twist about the shear centre adds), transverse rotary
-// inertia on the line of shear centres and its directors with the mean of both planes, the rest and
-// the polar one on the triads with the mean of consistent and lumped. Frequencies: order 4 where
-// sections are slender or alike in both planes; coupling and unequal planes of thick elements leave
-// a part of order 2 (the corrections are those of the mean plane), 1e-5 with 16 elements.
+// its tangents are the directors and what the twist about the shear centre adds), the smaller
+// rotary inertia on the line of shear centres and its directors, the rest and the polar one on the
+// triads (triad_inertia.hpp). Frequencies: order 4 where sections are slender or alike in both
+// planes; coupling and unequal planes of thick elements leave a part of order 2 (the corrections of
+// the translation are those of the mean plane), 1e-5 with 16 elements.
 //
 // Tangents by forward differentiation (core/dual.hpp). Units SI. Limits: relative rotation of the
 // ends of one element below pi; small strain.
 #pragma once
 #include <core/section_matrices.hpp>
 #include <elements/shaft/timoshenko_matrices.hpp>
+#include <elements/shaft/triad_inertia.hpp>
 #include <system/kernel.hpp>
 
 namespace whirl::system {
@@ -62,11 +63,10 @@ struct SectionBeamConstants {
   double alpha = 0;                       ///< mass-proportional damping, 1/s
 };
 
-/// twist: angle of the section axes at the right end less that at the left, rad. share: as of
-/// GeneralBeamConstants::triad_own, 1 or 0 an end.
+/// twist: angle of the section axes at the right end less that at the left, rad.
 SectionBeamConstants make_section_constants(const FullSection& section, double length, double twist,
                                             MassKind kind = MassKind::corrected,
-                                            const Vec2& share = Vec2::Ones());
+                                            const TriadShare& share = {});
 
 struct SectionBeam {
   static constexpr int n_nodes = 2, width = 7;

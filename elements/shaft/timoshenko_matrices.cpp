@@ -1,5 +1,6 @@
 #include <elements/shaft/timoshenko_matrices.hpp>
 #include <core/contract.hpp>
+#include <elements/shaft/corrected_mass.hpp>
 
 #include <algorithm>
 #include <array>
@@ -272,7 +273,7 @@ Mat2 polar_mass(const Sampled& sp, MassKind kind, const Vec2& share) {
   if (kind == MassKind::corrected) {
     const double c = (vv - v * v / soft) / total / soft;  // c_t times the torsional stiffness
     const Mat2 a = c * share.asDiagonal() * (Mat2() << 1, -1, -1, 1).finished();
-    m += 0.5 * (a + a.transpose());
+    m = corrected_mass<2>(m, 0.5 * (a + a.transpose()));
   }
   return m;
 }
@@ -317,7 +318,7 @@ void correct_mass(const Sampled& sp, const Mat2& k, const Matrix<4>& T, const Ve
   const Matrix<4> K = end_point_stiffness(k, l);
   const double I = sp.integral(rhoI), rotary = I > 0 ? 15 * I / (15 * I + c.mass * l * l) : 0.0;
   const double cw = translation_softness(sp, k, c.mass), cd = rotation_softness(sp, k, rhoI);
-  c.M4 += weighted(K, cw, cw - rotary * (cw - cd), T, share);
+  c.M4 = corrected_mass<4>(c.M4, weighted(K, cw, cw - rotary * (cw - cd), T, share));
   c.G4 += weighted(K, 0.0, rotation_softness(sp, k, rhoIp), T, share);
 }
 

@@ -42,7 +42,8 @@
 // elements as short as the shaft is thick; with them the orders are 6 and 3, and 6 elements a
 // disk-heavy rotor's are 1e-6 to 1e-5. Rigid motion keeps its energy, but the element's weight is
 // then no longer the row sums of M4: that of the whole line is, and what is missing at a node is a
-// force and a moment of order l^4, known and constant (elements/weight_rest.hpp).
+// force and a moment of order l^4, known and constant (elements/weight_rest.hpp). Rows of different
+// shares are of both signs; corrected_mass.hpp takes no more of them than leaves the mass positive.
 //
 // The polar mass is built in the same way on the exact static twist: consistent plus c_t K_t, which
 // is rhoIp l [5/12 1/12; 1/12 5/12] for a uniform element; order 4 where l sqrt(rhoIp/GJ) is the

@@ -170,11 +170,11 @@ Vec2 moment_shares(const model::Model& m, const meshes::Element& e) {
   return Vec2(share(e.s1), share(e.s2));
 }
 
-void set_triad_mass(const Assembly& a, const meshes::Element& e,
-                    elements::GeneralBeamConstants& c) {
-  const Vec2 share = a.model.consistent_mass ? Vec2::Zero() : moment_shares(a.model, e);
-  for (int k = 0; k < 2; ++k)
-    c.triad_own[k] = 4 + share[k];
+elements::TriadShare triad_share(const Assembly& a, const MassShares& shares,
+                                 const meshes::Element& e) {
+  const Vec2 own = moment_shares(a.model, e);
+  const elements::MassShare node = shares.of(e);
+  return {own.cwiseProduct(node.spin), own.cwiseProduct(Vec2(node.bending[1], node.bending[3]))};
 }
 
 /// Constants for a general beam, which has the offsets of its ends itself; the shares are those of
@@ -213,8 +213,9 @@ elements::GeneralBeamConstants round_constants(Assembly& a, const MassShares& sh
   c.b12 = k.b12;
   c.b22 = k.b22;
   c.M4 = k.M4;
-  c.rhoIz_l = c.rhoIy_l = c.rhoI_l = 0.5 * k.polar.sum();
-  set_triad_mass(a, e, c);
+  const double polar = k.polar.sum();
+  c.triads = {Vec3(polar, 0.5 * polar, 0.5 * polar).asDiagonal().toDenseMatrix(), 0.0,
+              mass_kind(a.model), triad_share(a, shares, e)};
   c.beta = shaft.damping.beta_internal;
   return c;
 }
@@ -242,13 +243,16 @@ elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& 
   const double l = e.s2 - e.s1;
   elements::ElementSection plane;
   plane.constants = true;
+  const double rho = s.rotary_inertia ? material.rho : 0.0;
+  const double about_y = rho * (s.mean_rotary_inertia ? 0.5 * (g.Iy + g.Iz) : g.Iy);
+  const double about_z = rho * (g.Iy + g.Iz) - about_y;
   const auto constants = [&](double I, double kappa) {
     plane.given = {material.E * g.A,
                    kappa > 0 ? kappa * material.G * g.A : 0.0,
                    material.G * g.J,
                    material.E * I,
                    material.rho * g.A + s.added_mass_per_length,
-                   s.rotary_inertia ? 0.5 * material.rho * (g.Iy + g.Iz) : 0.0,
+                   std::min(about_y, about_z),
                    0};
     return between_nodes(a, shares, e, plane, 0.5);
   };
@@ -268,12 +272,10 @@ elements::GeneralBeamConstants unequal_constants(Assembly& a, const MassShares& 
   c.b12 = 0.5 * (y.b12 + z.b12);
   c.b22 = 0.5 * (y.b22 + z.b22);
   c.M4 = 0.5 * (y.M4 + z.M4);
-  const double rho = s.rotary_inertia ? material.rho * l : 0.0;
-  c.rhoIz_l = rho * g.Iz;
-  c.rhoIy_l = rho * g.Iy;
-  c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
-  if (s.mean_rotary_inertia) c.rhoIz_l = c.rhoIy_l = c.rhoI_l;
-  set_triad_mass(a, e, c);
+  const Mat3 J = l * Vec3(about_y + about_z, about_y, about_z).asDiagonal().toDenseMatrix();
+  const ShaftElementConstants& stiffer = about_z > about_y ? y : z;  // y: bending about z
+  c.triads = {J, elements::shear_share(stiffer.k11, stiffer.k12, stiffer.k22), mass_kind(a.model),
+              triad_share(a, shares, e)};
   c.beta = shaft.damping.beta_internal;
   return c;
 }
@@ -354,13 +356,14 @@ Mat3 bowed(const model::Shaft& shaft, double s, double chord_slope) {
 }
 
 /// A section that is coupled, twisted or off the line.
-void add_full(Assembly& a, const model::Shaft& shaft, const meshes::Element& e) {
+void add_full(Assembly& a, const MassShares& shares, const model::Shaft& shaft,
+              const meshes::Element& e) {
   const model::Section& s = shaft.sections[e.section];
   const model::ShaftDamping& d = shaft.damping;
   const FullSection section = model::full_section(a.model, s);
   const double l = e.s2 - e.s1;
   elements::SectionBeamConstants c = elements::make_section_constants(
-      section, l, (e.xi2 - e.xi1) * s.twist(), mass_kind(a.model), moment_shares(a.model, e));
+      section, l, (e.xi2 - e.xi1) * s.twist(), mass_kind(a.model), triad_share(a, shares, e));
   const Mat3 left = section_axes(s, e.xi1), right = section_axes(s, e.xi2);
   const std::array<Index, 2> nodes{e.left.node, e.right.node};
   const bool bent = !shaft.path.empty();
@@ -445,7 +448,7 @@ void add_shafts(Assembly& a) {
     a.built.element_forces.emplace_back();
     const model::Shaft& shaft = a.model.shafts[static_cast<std::size_t>(e.line)];
     if (shaft.sections[e.section].is_full()) {
-      add_full(a, shaft, e);
+      add_full(a, shares, shaft, e);
       continue;
     }
     if (!shaft.path.empty()) {

@@ -31,10 +31,8 @@ GeneralBeamConstants constants(double beta = 0.0) {
   c.M4 << 156, 22 * L, 54, -13 * L, 22 * L, 4 * L * L, 13 * L, -3 * L * L, 54, 13 * L, 156, -22 * L,
       -13 * L, -3 * L * L, -22 * L, 4 * L * L;
   c.M4 *= 2.0 * L / 420;
-  c.rhoIz_l = 0.03;
-  c.rhoIy_l = 0.05;
+  c.triads = {Vec3(0.08, 0.05, 0.03).asDiagonal().toDenseMatrix(), 0.4};
   c.beta = c.beta_twist = beta;
-  c.rhoI_l = 0.01;  // anything: what M4 is said to contain
   return c;
 }
 
@@ -195,11 +193,10 @@ TEST(GeneralBeam, AgreesWithTheAxisymmetricElement) {
     const double EI = 120 / g.length;
     g.ky_def11 = g.ky_def22 = EI * (4 + Phi) / (1 + Phi);
     g.ky_def12 = EI * (2 - Phi) / (1 + Phi);
-    g.rhoI_l = 0;
     g.kz_def11 = g.ky_def11;
     g.kz_def12 = g.ky_def12;
     g.kz_def22 = g.ky_def22;
-    g.rhoIz_l = g.rhoIy_l = 0;
+    g.triads = {};
     a.length = g.length;
     a.EA_l = g.EA_l;
     a.GJ_l = g.GJ_l;

@@ -205,7 +205,7 @@ TEST(SectionBeam, AgreesWithTheGeneralElementInItsLinearRange) {
   const auto plane = [&](double EI, double kGA) {
     elements::ElementSection e;
     e.constants = true;
-    e.given = {EA, kGA, GJ, EI, m, 0.5 * (rhoIy + rhoIz), 0};
+    e.given = {EA, kGA, GJ, EI, m, std::min(rhoIy, rhoIz), 0};
     return elements::make_shaft_constants(e, l);
   };
   const auto y = plane(EIz, kGAy), z = plane(EIy, kGAz);
@@ -219,9 +219,9 @@ TEST(SectionBeam, AgreesWithTheGeneralElementInItsLinearRange) {
   g.kz_def12 = z.k12;
   g.kz_def22 = z.k22;
   g.M4 = 0.5 * (y.M4 + z.M4);
-  g.rhoIz_l = rhoIz * l;
-  g.rhoIy_l = rhoIy * l;
-  g.rhoI_l = 0.5 * (g.rhoIz_l + g.rhoIy_l);
+  const auto& stiffer = rhoIz > rhoIy ? y : z;
+  g.triads = {l * Vec3(rhoIy + rhoIz, rhoIy, rhoIz).asDiagonal().toDenseMatrix(),
+              elements::shear_share(stiffer.k11, stiffer.k12, stiffer.k22)};
   const elements::GeneralBeam general(g, Vec3(l, 0, 0), axes_at(0.3), axes_at(0.3));
   const SectionBeam full(elements::make_section_constants(s, l, 0), Vec3(l, 0, 0), axes_at(0.3),
                          axes_at(0.3));

@@ -22,7 +22,7 @@ inline elements::GeneralBeamConstants general_constants(const BeamSection& s, do
   const auto plane = [&](double EI, double kGA) {
     elements::ElementSection e;
     e.constants = true;
-    e.given = {s.EA, kGA, s.GJ, EI, s.rhoA, 0.5 * (s.rhoI_B + s.rhoI_C), 0};
+    e.given = {s.EA, kGA, s.GJ, EI, s.rhoA, std::min(s.rhoI_B, s.rhoI_C), 0};
     return elements::make_shaft_constants(e, l);
   };
   const auto y = plane(s.EI_C, s.kGA_B), z = plane(s.EI_B, s.kGA_C);
@@ -40,9 +40,9 @@ inline elements::GeneralBeamConstants general_constants(const BeamSection& s, do
   c.b12 = 0.5 * (y.b12 + z.b12);
   c.b22 = 0.5 * (y.b22 + z.b22);
   c.M4 = 0.5 * (y.M4 + z.M4);
-  c.rhoIz_l = s.rhoI_C * l;
-  c.rhoIy_l = s.rhoI_B * l;
-  c.rhoI_l = 0.5 * (c.rhoIz_l + c.rhoIy_l);
+  const auto& stiffer = s.rhoI_C > s.rhoI_B ? y : z;
+  c.triads = {l * Vec3(s.rhoI_B + s.rhoI_C, s.rhoI_B, s.rhoI_C).asDiagonal().toDenseMatrix(),
+              elements::shear_share(stiffer.k11, stiffer.k12, stiffer.k22)};
   return c;
 }
 

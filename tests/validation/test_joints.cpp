@@ -1,4 +1,5 @@
 // Joints without penalty through the deck: welds against uncut lines, frames, linkages.
+#include "../la/fixtures.hpp"
 #include "joint_decks.hpp"
 #include "record.hpp"
 #include "static_model.hpp"
@@ -8,10 +9,12 @@
 #include <core/error.hpp>
 #include <system/joint_start.hpp>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
+#include <random>
 
 using namespace whirl;
 using namespace whirl::analysis;
@@ -542,4 +545,117 @@ TEST(Joints, FreePartsAreNamedTogether) {
       "[\"x\", \"z\", \"rx\", \"ry\", \"rz\"]\n");
   EXPECT_EQ(y_alone.find("E75: nothing resists lateral motion along y" + both + " (at 0"), 0U)
       << y_alone;
+}
+
+namespace {
+
+/// A flat line along +y and a link off its end.
+struct FlatLine {
+  std::string section, joint, mass = "corrected";
+  int elements = 8;
+  Vec3 to = Vec3(0, 0, 0.25);  ///< from end to end of the link, m
+  std::string deck() const {
+    std::string model = head;
+    model.replace(model.find("[[material]]"), 0, "mesh = { mass = \"" + mass + "\" }\n");
+    return model + fmt::format(R"([[shaft]]
+name = "beam"
+material = "m"
+rotating = false
+path = [{{ to = ["0 m", "1 m", "0 m"] }}]
+[[shaft.section]]
+name = "line"
+length = "1 m"
+min_elements = {}
+{}
+[[shaft]]
+name = "link"
+material = "m"
+rotating = false
+origin = ["0 m", "1 m", "0 m"]
+path = [{{ to = ["{} m", "{} m", "{} m"] }}]
+[[shaft.section]]
+name = "all"
+length = "{} m"
+min_elements = 2
+od = "48 mm"
+[[joint]]
+name = "joint"
+at = "beam:end"
+to = "link:start"
+{}
+[[bearing]]
+name = "clamp"
+at = "beam:start"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+[[bearing]]
+name = "foot"
+at = "link:end"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+)",
+                               elements, section, to.x(), 1 + to.y(), to.z(), to.norm(), joint);
+  }
+};
+
+std::string flat_section(double height, double flat) {
+  const double b = height * flat, A = b * height, Iy = height * b * b * b / 12;
+  return fmt::format(
+      "general = {{ A = \"{:.17g} m^2\", Iy = \"{:.17g} m^4\", Iz = \"{:.17g} m^4\", "
+      "J = \"{:.17g} m^4\", kappa_y = 0.83, kappa_z = 0.83 }}",
+      A, Iy, b * std::pow(height, 3) / 12, 3.7 * Iy);
+}
+
+/// Smallest eigenvalue of the mass matrix at rest, scaled to a diagonal of one.
+double least_mass(const DeckModel& d) {
+  const system::System& s = d.built.system;
+  system::Workspace w = s.make_workspace();
+  const system::State x = s.make_state();
+  la::MCK m = s.make_matrices();
+  EXPECT_TRUE(s.tangent(w, x.frames, 0, x.q, x.v, x.a, m));
+  const MatX M = la::test::dense(m.M);
+  std::vector<Index> massive;
+  for (Index i = 0; i < M.rows(); ++i)
+    if (M(i, i) != 0) massive.push_back(i);
+  const VecX size = M.diagonal()(massive).cwiseAbs().cwiseSqrt().cwiseInverse();
+  const MatX scaled = size.asDiagonal() * M(massive, massive) * size.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<MatX>(scaled).eigenvalues()[0];
+}
+
+}  // namespace
+
+TEST(Joints, MassIsPositiveWhateverMeets) {
+  // Flat sections whose elements are shorter than they are high, and elements alone between two
+  // bends or joints: the first had a rotary inertia of both signs, the second a correction of both.
+  std::mt19937 random(5);
+  const auto draw = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  for (int trial = 0; trial < 60; ++trial) {
+    FlatLine line;
+    line.section = trial % 4 == 3 ? "od = \"150 mm\""
+                                  : flat_section(std::pow(10.0, draw(-2, 0)), draw(0.01, 1));
+    line.elements = 1 + trial % 9;
+    line.mass = trial % 5 == 0 ? "consistent" : "corrected";
+    line.to = 0.25 * Vec3(draw(-1, 1), draw(-1, 1), draw(-1, 1)).normalized();
+    line.joint = fmt::format("kind = \"{}\"", trial % 2 == 0 ? "spherical" : "rigid");
+    const DeckModel d(line.deck());
+    EXPECT_GT(least_mass(d), 0.0) << line.deck();
+  }
+}
+
+TEST(Joints, AFlatLineOnABallKeepsItsEnergy) {
+  // It grew to 1e293 J within a millisecond.
+  FlatLine line;
+  line.section = flat_section(0.1, 0.1);
+  line.joint = "kind = \"spherical\"";
+  const DeckModel d(line.deck());
+  system::State x = d.built.system.make_state();
+  for (Index i = 1; i < d.mesh.lines[0].nodes; ++i)
+    x.v[6 * (d.mesh.lines[0].first_node + i)] = 0.2 * std::sin(pi * static_cast<double>(i) / 8);
+  d.built.system.follow(x);
+  const double before = energy_of(d.built.system, x);
+  const system::State y = move_to(d, x, 0.1, 1e-8);
+  EXPECT_GT(before, 1e-3);
+  EXPECT_NEAR(energy_of(d.built.system, y), before, 1e-5 * before);
 }
