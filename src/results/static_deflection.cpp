@@ -30,8 +30,10 @@ class DeflectedLine {
 
  private:
   const system::NodeState& node(Index n) const { return state_.in_own_axes(n); }
+  /// Of a shaft what lies across it, without the growth along it; of a frame, which may bend by any
+  /// amount, all.
   double size_of(const Vec3& u) const {
-    return path_.empty() ? std::hypot(u.y(), u.z()) : u.norm();
+    return line_.rotating ? std::hypot(u.y(), u.z()) : u.norm();
   }
   /// Direction of a line along a path, now.
   Vec3 tangent(const system::NodeState& n, const Path::Point& p) const {

@@ -1,6 +1,8 @@
 // Beams and shafts that turn over many times: no tilt is a limit (system/frames.hpp).
+#include "deck_model.hpp"
 #include "exact_rod.hpp"
 #include "free_motion.hpp"
+#include "static_model.hpp"
 
 #include <analysis/transient/transient.hpp>
 #include <elements/loads/spin_torque.hpp>
@@ -9,9 +11,11 @@
 #include <elements/shaft/shaft_damping.hpp>
 #include <elements/supports/spring_block.hpp>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 using namespace whirl;
 using namespace whirl::test;
@@ -95,6 +99,68 @@ TEST(ManyTurns, HelixOfTenTurnsConverges) {
     }
     EXPECT_LT(last, 1e-4);
   }
+}
+
+namespace {
+
+/// Displacement of the end of a clamped line of 10 m under a load, by a deck.
+Vec3 tip_of_deck(bool rotating, const std::string& section, int n, const Vec3& F, const Vec3& M) {
+  const DeckModel d(fmt::format(R"(format = 1
+[model]
+gravity = "0 m/s^2"
+[[shaft]]
+name = "beam"
+rotating = {}
+[[shaft.section]]
+name = "line"
+length = "10 m"
+min_elements = {}
+{}
+[[bearing]]
+name = "clamp"
+at = "beam:start"
+type = "rigid"
+directions = ["x", "y", "z", "rx", "ry", "rz"]
+[[load]]
+at = "beam:end"
+force = ["{:.17g} N", "{:.17g} N", "{:.17g} N"]
+moment = ["{:.17g} N.m", "{:.17g} N.m", "{:.17g} N.m"]
+)",
+                                rotating, n, section, F.x(), F.y(), F.z(), M.x(), M.y(), M.z()));
+  const Solved s = solve(d.deck.model);
+  const meshes::Line& line = s.mesh.lines[0];
+  return s.node(line.first_node + line.nodes - 1).u;
+}
+
+const char* round_section =
+    R"(constants = { EA = "1e6 N", kGA = "1e9 N", GJ = "100 N.m^2", EI = "100 N.m^2", rhoA = "1 kg/m", rhoI = "0.1 kg.m", rhoIp = "0.2 kg.m" })";
+
+}  // namespace
+
+TEST(ManyTurns, RollUpByFiveTurnsFromADeck) {
+  const double M = two_pi * 5 * 100 / 10;
+  for (const bool rotating : {false, true}) {
+    const Vec3 u = tip_of_deck(rotating, round_section, 40, Vec3::Zero(), Vec3(0, 0, M));
+    EXPECT_LT((u + Vec3(10, 0, 0)).norm(), 1e-8) << rotating;
+  }
+}
+
+TEST(ManyTurns, HelixOfTenTurnsFromADeck) {
+  const BeamSection section{1e6, 0, 0, 100, 100, 100};
+  const Vec3 F(0, 0, 50), M(0, 0, 20 * pi * 10);
+  ExactRod rod{section, 10};
+  rod.steps = 4000;
+  const Vec3 exact = rod.solve(F, 40, M).r - Vec3(10, 0, 0);
+  double last = 0;
+  for (const int n : {60, 120}) {
+    const double error = (tip_of_deck(false, round_section, n, F, M) - exact).norm();
+    std::printf("helix from a deck, %d elements: %.3e m\n", n, error);
+    if (last > 0) {
+      EXPECT_GT(std::log2(last / error), 3.5);
+    }
+    last = error;
+  }
+  EXPECT_LT(last, 1e-4);
 }
 
 TEST(ManyTurns, AFlexibleRotorTumblesAThousandRadians) {
