@@ -73,8 +73,9 @@ class Definitions {
 };
 
 Value quantity(const std::string& unit, const deck::Range& range, bool plain_zero = false) {
-  if (!unit.empty() && !units::unit(unit).dimension.dimensionless()) {
-    if (!plain_zero) return type("string");
+  const units::Dimension dimension = units::unit(unit).dimension;
+  if (!dimension.dimensionless()) {
+    if (!plain_zero && !dimension.plain_zero()) return type("string");
     Value zero = Value::object();
     zero["const"] = 0;
     return any_of({type("string"), zero});

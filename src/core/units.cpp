@@ -445,6 +445,12 @@ bool Dimension::dimensionless() const {
          near(cycles, 0);
 }
 
+bool Dimension::plain_zero() const {
+  Dimension degrees;
+  degrees.exponent[temperature] = 1;
+  return !(*this == degrees);
+}
+
 Parsed parse(std::string_view text) {
   try {
     return {Parser(text).run(), {}};
@@ -466,6 +472,7 @@ Converted convert(std::string_view text, std::string_view wanted) {
   Parsed p = parse(text);
   if (p.problem) return {0, p.problem};
   const Dimension want = unit(wanted).dimension;
+  if (!p.quantity.has_unit && p.quantity.value() == 0 && want.plain_zero()) return {0, {}};
   const auto scale = agree(p.quantity.dimension, want);
   if (!scale || (!p.quantity.has_unit && !want.dimensionless()))
     return {0, mismatch(text, p.quantity, want, wanted)};

@@ -24,6 +24,8 @@ struct Dimension {
   std::array<double, 6> exponent{};
   double cycles = 0;
   bool dimensionless() const;  ///< a plain number: all exponents zero, the angle's too
+  /// Zero is the same in all its units: no temperature.
+  bool plain_zero() const;
   bool operator==(const Dimension&) const = default;
 };
 
@@ -57,7 +59,7 @@ Parsed parse(std::string_view text);
 Quantity unit(std::string_view text);
 
 /// Value of `text` in the SI base units of `wanted` (not in `wanted` itself). A plain number is a
-/// problem unless `wanted` is one.
+/// problem unless `wanted` is one or it is zero and no temperature.
 struct Converted {
   double value = 0;
   std::optional<Problem> problem;

@@ -141,10 +141,11 @@ std::optional<double> Reader::in_unit(const char* key, const Value& v, const cha
               fmt::format("column '{}': {}", key, f.problem->message), f.problem->hint);
     return std::nullopt;
   }
-  if (*unit && !units::unit(unit).dimension.dimensionless()) {
+  const units::Dimension wanted = units::unit(unit).dimension;
+  if (!wanted.dimensionless() && !(x == 0 && wanted.plain_zero())) {
     problem("E07", v.spot,
             fmt::format("'{}' is a number without a unit where {} is needed", key,
-                        units::name_of(units::unit(unit).dimension)),
+                        units::name_of(wanted)),
             fmt::format("write the unit, for example {} = \"{} {}\"", key, shown_text(v), unit));
     return std::nullopt;
   }

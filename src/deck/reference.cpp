@@ -117,7 +117,8 @@ std::string reference_markdown() {
       "# Deck reference\n\nEvery table and key of a deck, format 1. A value with a dimension is a "
       "string with its unit, such as `\"75 um\"`; the unit named here is the "
       "usual one, any other of the same kind does as well (`whirl schema --units`). A bare number "
-      "is dimensionless. A place is `\"section:mid\"` (`:start`, `:end`), with "
+      "is dimensionless; zero needs no unit, but as a temperature. A place is `\"section:mid\"` "
+      "(`:start`, `:end`), with "
       "an offset where wanted (`\"section:end - 20 mm\"`), a distance from the left end (`\"1.14 "
       "m\"`), or the name of a disk or bearing; with several shafts "
       "`\"shaft/section:mid\"`. `${name}` stands for a parameter.\n\n## Top level\n\n";

@@ -203,6 +203,18 @@ TEST(Units, DecimalLiteralsAreExact) {
   EXPECT_EQ(units::convert("7.3 kN/mm", "N/m").value, 7.3e6);
 }
 
+TEST(Units, ZeroNeedsNoUnitButForTemperatures) {
+  for (const char* wanted : {"m", "N.m/rad", "rpm", "Hz", "kg.m^2", "deg", ""}) {
+    const units::Converted c = units::convert("0", wanted);
+    EXPECT_FALSE(c.problem) << wanted;
+    EXPECT_EQ(c.value, 0.0) << wanted;
+  }
+  EXPECT_EQ(units::convert("0.0", "mm").value, 0.0);
+  EXPECT_EQ(units::convert("0", "degC").problem->code, "E07");
+  EXPECT_EQ(units::convert("0", "K").problem->code, "E07");
+  EXPECT_EQ(units::convert("0 kg", "m").problem->code, "E08");
+}
+
 TEST(Units, Problems) {
   const Bad table[] = {
       {"75", "m", "E07", "\"75\" has no unit where a length is needed",

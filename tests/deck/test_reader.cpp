@@ -327,6 +327,7 @@ TEST(Reader, Overrides) {
   EXPECT_EQ(read(text, {"disk.wheel.mass=3kg", "disk.1.mass=4kg"}).model.disks[1].mass, 4);
   EXPECT_EQ(read(text, {"disk.\"x.y\".mass=5kg"}).model.disks[1].mass, 5);
   EXPECT_EQ(read(text, {"model.gravity=0 m/s^2"}).model.gravity.norm(), 0);
+  EXPECT_EQ(read(text, {"model.gravity=0"}).model.gravity.norm(), 0);
   EXPECT_EQ(read(text, {"model.chart_change=false"}).model.chart_change, false);
   EXPECT_EQ(read(text, {"shaft.rows=[[\"left\", 100, 40]]"}).model.shafts[0].length(), 0.1);
   EXPECT_EQ(read(text, {"title=two words"}).model.title, "two words");
