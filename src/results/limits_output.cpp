@@ -137,8 +137,7 @@ class LimitsOutput final : public TransientOutput {
   }
 
   void summarize(TransientEnd& end) override {
-    for (const HeldTable& x : watch_.tables())
-      judge_table(end, x);
+    judge_tables(end);
     std::vector<ShortFilm> films;
     for (const Gap& x : watch_.gaps()) {
       judge_gap(end, x);
@@ -148,29 +147,42 @@ class LimitsOutput final : public TransientOutput {
   }
 
  private:
-  static void judge_table(TransientEnd& end, const HeldTable& x);
+  void judge_tables(TransientEnd& end) const;
   static void judge_gap(TransientEnd& end, const Gap& x);
 
   std::string content_;
   LimitWatch watch_;
 };
 
-void LimitsOutput::judge_table(TransientEnd& end, const HeldTable& x) {
-  if (std::isnan(x.begin)) return;
-  const model::Bearing& b = end.job.model.bearings[x.bearing];
-  io::Value& v = end.summary["held tables"][b.name];
-  v["from [s]"] = x.begin;
-  v["table from [rpm]"] = to_rpm(x.low);
-  v["table to [rpm]"] = to_rpm(x.high);
-  v["slowest [rpm]"] = to_rpm(x.least);
-  v["fastest [rpm]"] = to_rpm(x.most);
+void LimitsOutput::judge_tables(TransientEnd& end) const {
+  const HeldTable* worst = nullptr;
+  double most = 0;
+  std::string held;
+  for (const HeldTable& x : watch_.tables()) {
+    if (std::isnan(x.begin)) continue;
+    const std::string& name = end.job.model.bearings[x.bearing].name;
+    io::Value& v = end.summary["held tables"][name];
+    v["from [s]"] = x.begin;
+    v["table from [rpm]"] = to_rpm(x.low);
+    v["table to [rpm]"] = to_rpm(x.high);
+    v["slowest [rpm]"] = to_rpm(x.least);
+    v["fastest [rpm]"] = to_rpm(x.most);
+    held += fmt::format("{}'{}'", held.empty() ? "" : ", ", name);
+    const double beyond = std::max(x.low - x.least, x.most - x.high);
+    if (beyond <= most) continue;
+    most = beyond;
+    worst = &x;
+  }
+  if (!worst) return;
+  const model::Bearing& b = end.job.model.bearings[worst->bearing];
   Diagnostic d;
   d.code = "W12";
   d.message = fmt::format(
-      "step '{}': from t = {:.6g} s the coefficients at the edge of its table are held for '{}': "
-      "the table covers {:.6g} to {:.6g} rpm, and the shaft turns at {:.6g} to {:.6g} rpm",
-      end.step.name, x.begin, b.name, to_rpm(x.low), to_rpm(x.high), to_rpm(x.least),
-      to_rpm(x.most));
+      "step '{}': the coefficients at the edge of their tables are held beyond them for {}; most "
+      "for '{}', from t = {:.6g} s, whose table covers {:.6g} to {:.6g} rpm and whose shaft turns "
+      "at {:.6g} to {:.6g} rpm",
+      end.step.name, held, b.name, worst->begin, to_rpm(worst->low), to_rpm(worst->high),
+      to_rpm(worst->least), to_rpm(worst->most));
   d.hint = "a table over all speeds of the step, or extrapolate = \"error\"";
   d.where = b.where;
   warn(end.job, std::move(d));

@@ -51,21 +51,33 @@ std::vector<plot::ResponseCurve> response_curves(const std::vector<double>& axis
   return out;
 }
 
-void add_probe_columns(io::Table& t, const std::string& name) {
+void add_probe_columns(io::Table& t, const analysis::ResponseProbe& probe) {
+  const std::string& name = probe.name;
   t.columns.push_back({name + " y amplitude", "m", "0-peak"});
   t.columns.push_back({name + " y phase lag", "deg", "behind the rotor mark"});
   t.columns.push_back({name + " z amplitude", "m", "0-peak"});
   t.columns.push_back({name + " z phase lag", "deg", ""});
+  for (const double angle : probe.angles) {
+    const std::string direction = fmt::format("{} {:g}deg", name, angle * 180 / pi);
+    t.columns.push_back({direction + " amplitude", "m", "0-peak"});
+    t.columns.push_back({direction + " phase lag", "deg", ""});
+  }
   t.columns.push_back({name + " major", "m", "half axis of the orbit"});
   t.columns.push_back({name + " minor", "m", "negative: the orbit is run against the spin"});
 }
 
-void add_probe_cells(std::vector<io::Table::Cell>& row, const analysis::PointAmplitude& a) {
+void add_probe_cells(std::vector<io::Table::Cell>& row, const analysis::ResponseProbe& probe,
+                     const analysis::PointAmplitude& a) {
   const analysis::Orbit o = a.orbit();
   row.emplace_back(std::abs(a.y));
   row.emplace_back(lag(a.y) * 180 / pi);
   row.emplace_back(std::abs(a.z));
   row.emplace_back(lag(a.z) * 180 / pi);
+  for (const double angle : probe.angles) {
+    const Complex along = a.along(angle);
+    row.emplace_back(std::abs(along));
+    row.emplace_back(lag(along) * 180 / pi);
+  }
   row.emplace_back(o.major);
   row.emplace_back(o.minor);
 }

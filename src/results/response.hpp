@@ -22,10 +22,11 @@ std::vector<plot::ResponseCurve> response_curves(const std::vector<double>& axis
                                                  const ProbeCurves& curves,
                                                  const std::string& suffix = {});
 
-/// Columns "amplitude [m]", "phase lag [deg]" of y and z, and the major and minor axis of the
-/// orbit.
-void add_probe_columns(io::Table& t, const std::string& name);
-void add_probe_cells(std::vector<io::Table::Cell>& row, const analysis::PointAmplitude& a);
+/// Columns "amplitude [m]", "phase lag [deg]" of y and z and of each of the probe's angles, and the
+/// major and minor axis of the orbit.
+void add_probe_columns(io::Table& t, const analysis::ResponseProbe& probe);
+void add_probe_cells(std::vector<io::Table::Cell>& row, const analysis::ResponseProbe& probe,
+                     const analysis::PointAmplitude& a);
 
 /// Phase lag, rad.
 inline double lag(Complex a) { return -std::arg(a); }

@@ -247,7 +247,7 @@ void HarmonicRun::add_table() {
   t.title = "Harmonic response";
   t.columns = {{"speed", "rpm", ""}, {"frequency", "Hz", "of the excitation"}};
   for (const analysis::ResponseProbe& p : options_.probes) {
-    results::add_probe_columns(t, p.name);
+    results::add_probe_columns(t, p);
     t.columns.push_back({p.name + " twist amplitude", "rad", "0-peak"});
     t.columns.push_back({p.name + " twist phase lag", "deg", "behind a force of phase 0"});
   }
@@ -261,7 +261,7 @@ void HarmonicRun::add_table() {
     const FrequencyPoint& x = points_[k];
     std::vector<io::Table::Cell> row{to_rpm(x.Omega), to_hz(x.frequency)};
     for (std::size_t p = 0; p < options_.probes.size(); ++p) {
-      results::add_probe_cells(row, x.probe[p]);
+      results::add_probe_cells(row, options_.probes[p], x.probe[p]);
       row.emplace_back(std::abs(x.unknown[p]));
       row.emplace_back(results::lag(x.unknown[p]) * 180 / pi);
     }

@@ -210,6 +210,20 @@ std::string bearings_at(const run::Job& job, const std::string& node) {
   return out;
 }
 
+/// Speeds at which films may carry too little to hold the rotor.
+void add_hint_of_films(const run::Job& job, Diagnostic& d) {
+  if (d.code != "E75" && d.code != "E76") return;
+  const auto film =
+      std::find_if(job.model.bearings.begin(), job.model.bearings.end(),
+                   [](const model::Bearing& b) { return *model::traits_of(b.law).film; });
+  if (film == job.model.bearings.end() || d.hint.find("film") != std::string::npos) return;
+  if (d.where.line == 0) d.where = film->where;
+  d.hint =
+      "a film carries nothing at rest and little at low speed: begin the speeds where it "
+      "carries the rotor; else " +
+      d.hint;
+}
+
 /// What failed while a step ran, with the step it failed in.
 Error in_step(const run::Job& job, const std::string& name, const Error& e) {
   const auto step = std::find_if(job.model.steps.begin(), job.model.steps.end(),
@@ -218,6 +232,7 @@ Error in_step(const run::Job& job, const std::string& name, const Error& e) {
   for (Diagnostic& d : all) {
     if (d.message.find("step '") == std::string::npos)
       d.message = fmt::format("step '{}': {}", name, d.message);
+    add_hint_of_films(job, d);
     if (step == job.model.steps.end() || d.code != "E81") continue;
     const std::string bearings = bearings_at(job, d.where.entity);
     if (!bearings.empty()) d.message += ", at bearing " + bearings;

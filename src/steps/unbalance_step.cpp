@@ -96,7 +96,7 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k,
   t.title = "Unbalance response" + order_suffix(r, k);
   t.columns.push_back({"speed", "rpm", ""});
   for (const analysis::ResponseProbe& p : probes)
-    results::add_probe_columns(t, p.name);
+    results::add_probe_columns(t, p);
   for (const analysis::Measurement& m : outputs)
     for (const char* c : {"y", "z"}) {
       t.columns.push_back({fmt::format("{} {}", m.name, c), "N", "0-peak"});
@@ -105,7 +105,7 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k,
   for (const SteadyPoint& x : r.points) {
     std::vector<io::Table::Cell> row{to_rpm(x.Omega)};
     for (std::size_t p = 0; p < probes.size(); ++p)
-      results::add_probe_cells(row, x.probe[k][p]);
+      results::add_probe_cells(row, probes[p], x.probe[k][p]);
     for (std::size_t m = 0; m < outputs.size(); ++m)
       for (std::size_t c : {1u, 2u}) {
         row.emplace_back(std::abs(x.output[k][m][c]));

@@ -235,6 +235,16 @@ inline std::string arms(const std::string& names, const std::string& gravity,
 }
 
 inline std::map<std::string, std::string> written_decks() {
+  const std::string unbalanced = mass_on_springs(R"([[unbalance]]
+at = "mass"
+amount = "1 kg.mm"
+phase = "60 deg"
+[[step]]
+name = "u"
+type = "unbalance_response"
+speed = { start = "1000 rpm", stop = "6000 rpm", points = 51, refine = "no" }
+)");
+  const std::string probe = "[[probe]]\nname = \"P\"\nat = \"mass\"\n";
   const std::string push = R"([[load]]
 at = "mass"
 force = ["0 N", "1 kN", "0 N"]
@@ -388,15 +398,10 @@ frequency = { start = "20 Hz", stop = "40 Hz", points = 2 }
 at = "mass"
 moment = ["10 N.m", "0 N.m", "0 N.m"]
 )")},
-      {"unbalance", mass_on_springs(R"([[unbalance]]
-at = "mass"
-amount = "1 kg.mm"
-phase = "60 deg"
-[[step]]
-name = "u"
-type = "unbalance_response"
-speed = { start = "1000 rpm", stop = "6000 rpm", points = 51, refine = "no" }
-)")},
+      {"unbalance", unbalanced},
+      {"probe at 45 degrees",
+       std::string(unbalanced)
+           .replace(unbalanced.find(probe), probe.size(), probe + "angles = [\"45 deg\"]\n")},
       {"limited", mass_on_springs(push + "duration = \"1 s\"\namplitude_limit = \"1.2 mm\"\n")},
       {"short steps",
        mass_on_springs(push + "duration = \"20 ms\"\n[step.integrator]\ndt_max = \"0.1 ms\"\n")},

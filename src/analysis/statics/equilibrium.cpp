@@ -446,7 +446,8 @@ bool EquilibriumSolver::load_in_steps(double Omega, double t, Equilibrium& out) 
     } else {
       step *= 0.5;
       if (first || step < 1e-6 || out.load_steps >= options_.max_load_steps) {
-        why_ += fmt::format(" (at {:.4g} of the load)", first ? 0.0 : done);
+        why_ += fmt::format(" (at {:.6g} rpm and {:.4g} of the load)", to_rpm(Omega),
+                            first ? 0.0 : done);
         running_.set_load(full);
         return false;
       }
