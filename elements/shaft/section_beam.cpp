@@ -451,9 +451,9 @@ SectionBeamConstants make_section_constants(const FullSection& section, double l
     centres(2 * i + 1, 4 * i + 2) -= twist / l * shear_centre[1];
     centres(2 * i + 1, 4 * i + 3) += twist / l * shear_centre[0];
   }
-  c.M8 =
-      corrected_mass<8>(centres.transpose() * shapes * centres + line.transpose() * rotation * line,
-                        centres.transpose() * correction * centres);
+  c.M8 = centres.transpose() * shapes * centres + line.transpose() * rotation * line;
+  const Matrix<8> on_centres = centres.transpose() * correction * centres;
+  c.M8 += admitted_correction(c.M8, on_centres) * on_centres;
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < 2; ++k)
       for (std::size_t a = 0; a < 3; ++a)

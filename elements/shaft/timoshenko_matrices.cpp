@@ -253,6 +253,12 @@ Matrix<4> weighted(const Matrix<4>& K, double cr, double cd, const Matrix<4>& T,
   return 0.5 * (a + a.transpose());
 }
 
+/// Rows of one share only add to the mass.
+template <class V>
+bool alike(const V& share) {
+  return (share.array() == share[0]).all();
+}
+
 /// (L1, L2): the exact static twist, and the polar mass built on it.
 Mat2 polar_mass(const Sampled& sp, MassKind kind, const Vec2& share) {
   const double soft = sp.integral([](const auto& q) { return q.soft_t; });
@@ -273,7 +279,8 @@ Mat2 polar_mass(const Sampled& sp, MassKind kind, const Vec2& share) {
   if (kind == MassKind::corrected) {
     const double c = (vv - v * v / soft) / total / soft;  // c_t times the torsional stiffness
     const Mat2 a = c * share.asDiagonal() * (Mat2() << 1, -1, -1, 1).finished();
-    m = corrected_mass<2>(m, 0.5 * (a + a.transpose()));
+    const Mat2 correction = 0.5 * (a + a.transpose());
+    m += (alike(share) ? 1.0 : admitted_correction(m, correction)) * correction;
   }
   return m;
 }
@@ -318,7 +325,8 @@ void correct_mass(const Sampled& sp, const Mat2& k, const Matrix<4>& T, const Ve
   const Matrix<4> K = end_point_stiffness(k, l);
   const double I = sp.integral(rhoI), rotary = I > 0 ? 15 * I / (15 * I + c.mass * l * l) : 0.0;
   const double cw = translation_softness(sp, k, c.mass), cd = rotation_softness(sp, k, rhoI);
-  c.M4 = corrected_mass<4>(c.M4, weighted(K, cw, cw - rotary * (cw - cd), T, share));
+  const Matrix<4> correction = weighted(K, cw, cw - rotary * (cw - cd), T, share);
+  c.M4 += (alike(share) ? 1.0 : admitted_correction(c.M4, correction)) * correction;
   c.G4 += weighted(K, 0.0, rotation_softness(sp, k, rhoIp), T, share);
 }
 
