@@ -118,13 +118,17 @@ Skin::Skin(const Scene& scene, int points_around) : around_(points_around) {
     cos_.push_back(std::cos(theta));
     sin_.push_back(std::sin(theta));
   }
-  int part = 0;
   for (std::size_t i = 0; i < scene.lines.size(); ++i) {
     triads_.push_back(scene.lines[i].triad);
-    add_shaft(scene, static_cast<Index>(i));
+    add_shaft(scene, static_cast<Index>(i), add_part(scene.lines[i].name));
     for (const auto& disk : scene.lines[i].disks)
-      add_disk(scene, static_cast<Index>(i), disk, ++part);
+      add_disk(scene, static_cast<Index>(i), disk, add_part(disk.name));
   }
+}
+
+int Skin::add_part(const std::string& name) {
+  part_names_.push_back(name);
+  return static_cast<int>(part_names_.size()) - 1;
 }
 
 std::size_t Skin::add_station(Spot s) {
@@ -132,7 +136,7 @@ std::size_t Skin::add_station(Spot s) {
   return stations_.size() - 1;
 }
 
-void Skin::add_shaft(const Scene& scene, Index line) {
+void Skin::add_shaft(const Scene& scene, Index line, int part) {
   const auto& pieces = scene.lines[static_cast<std::size_t>(line)].pieces;
   std::size_t k = 0;
   double start = 0;  // along the line, from its first piece
@@ -163,7 +167,7 @@ void Skin::add_shaft(const Scene& scene, Index line) {
     } while (k < pieces.size() && pieces[k].left.node == pieces[k - 1].right.node &&
              pieces[k].left.offset == pieces[k - 1].right.offset);
     outside.insert(outside.end(), bore.rbegin(), bore.rend());
-    revolve(outside, 0);
+    revolve(outside, part);
   }
 }
 

@@ -147,8 +147,10 @@ class Skin {
   const std::vector<Index>& quads() const { return quads_; }
   /// Per quad: 1 on the painted stripe.
   const std::vector<unsigned char>& stripe() const { return stripe_; }
-  /// Per quad: 0 = shaft, k = k-th disk of the scene (from 1).
+  /// Per quad: the number of its part, a line or a disk.
   const std::vector<int>& part() const { return part_; }
+  /// Each line and then its disks, line by line.
+  const std::vector<std::string>& part_names() const { return part_names_; }
 
   /// After a change of chart: the triad that the poses of a line refer to from now on.
   void set_chart(Index line, const Mat3& triad) { triads_[static_cast<std::size_t>(line)] = triad; }
@@ -169,7 +171,8 @@ class Skin {
     double s, radius;
   };
   std::size_t add_station(Spot s);
-  void add_shaft(const Scene& scene, Index line);
+  int add_part(const std::string& name);
+  void add_shaft(const Scene& scene, Index line, int part);
   void add_disk(const Scene& scene, Index line, const DiskShape& disk, int part);
   /// Revolves a closed polyline; the outside is on its left. Corners get two rings.
   void revolve(const std::vector<Vertex>& profile, int part);
@@ -181,6 +184,7 @@ class Skin {
   std::vector<Index> quads_;
   std::vector<unsigned char> stripe_;
   std::vector<int> part_;
+  std::vector<std::string> part_names_;
 };
 
 }  // namespace whirl::meshes

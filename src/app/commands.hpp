@@ -52,6 +52,16 @@ struct ConvertOptions {
 /// @throws Error (E42, E02, E03, E91) when nothing can be made of it or written.
 int convert_model(const ConvertOptions& options);
 
+struct ViewOptions {
+  std::filesystem::path results;
+  std::string set;               ///< step or shape; empty: that of most frames
+  std::filesystem::path script;  ///< empty: view.py in the results folder
+  bool open = false;             ///< start ParaView with it
+};
+/// A state script of ParaView that opens the frames of a results folder, arranged.
+/// @throws Error (E43) without frames, of that name or any, or without a ParaView to start; (E91).
+int view_results(const ViewOptions& options);
+
 /// One command as the shell completion needs it.
 struct CommandInfo {
   std::string name;

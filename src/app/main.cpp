@@ -77,6 +77,7 @@ struct Given {
   std::vector<std::string> codes;
   NewOptions fresh;
   ConvertOptions convert;
+  ViewOptions view;
   std::string shell;
 };
 
@@ -194,6 +195,13 @@ void add_texts(CLI::App& app, Given& g) {
   c->add_option("output", g.convert.output, "file to write (standard output when left out)");
   c->add_flag("--force", g.convert.force, "replace an existing file");
 
+  c = app.add_subcommand("view", "arrange the frames of a results folder in ParaView");
+  c->add_option("results", g.view.results, "results folder of a run")->required();
+  c->add_option("set", g.view.set, "step or shape to show (that of most frames when left out)");
+  c->add_option("--script", g.view.script, "state script to write (RESULTS/view.py)")
+      ->type_name("FILE");
+  c->add_flag("--open", g.view.open, "start ParaView with it");
+
   c = app.add_subcommand("completion", "completion script for a shell");
   c->add_option("shell", g.shell, "bash or fish")
       ->required()
@@ -225,6 +233,7 @@ int execute(const CLI::App& app, Given& g) {
   if (is("explain")) return explain(g.codes);
   if (is("new")) return new_deck(g.fresh);
   if (is("convert")) return convert_model(g.convert);
+  if (is("view")) return view_results(g.view);
   if (is("completion")) {
     std::fputs(completion_script(g.shell, commands_of(app)).c_str(), stdout);
     return static_cast<int>(Exit::ok);

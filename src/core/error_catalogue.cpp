@@ -242,6 +242,10 @@ const std::vector<CodeInfo>& error_catalogue() {
        "their materials, or stations with lengths and outer diameters. Titles of columns carry "
        "their unit.",
        "Station, Length [mm], OD [mm], ID [mm], Mass [kg], Ip [kg.m^2], It [kg.m^2]"},
+      {"E43", "no frames to look at",
+       "whirl view arranges the frames of a results folder in ParaView: those of the step or shape "
+       "that is named, or of which there are most. A deck writes frames with [[output.vtk]].",
+       "[[output.vtk]]\nframes = 100\ncontent = [\"line\", \"surface\", \"bearings\"]"},
       {"E61", "an unknown with neither stiffness nor mass",
        "The eigenvalue problem cannot be factored at any shift: nothing in the model resists or "
        "carries the motion that the message names. Hold it, or give "

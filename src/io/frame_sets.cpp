@@ -32,10 +32,10 @@ class LineSet final : public FrameSet {
       add_line(l);
     const std::size_t n = places_.size();
     data_.points.resize(3 * n);
-    for (const char* name : {"displacement", "rotation", "director", "axis2", "axis3"})
+    for (const char* name : {"displacement [m]", "rotation [rad]", "director", "axis2", "axis3"})
       data_.point_data.push_back(array(name, 3, n));
-    data_.point_data.push_back(array("spin_angle", 1, n));
-    data_.point_data.push_back({"radius", 1, radius_});
+    data_.point_data.push_back(array("spin_angle [rad]", 1, n));
+    data_.point_data.push_back({"radius [m]", 1, radius_});
   }
 
   const char* name() const override { return "line"; }
@@ -61,11 +61,11 @@ class LineSet final : public FrameSet {
       put(arrays[4].floats(), i, x.axes.col(2));
       arrays[5].floats()[i] = static_cast<float>(x.phi);
     }
-    add("velocity", f.state->velocity);
-    add("angular_velocity", f.state->angular_velocity);
-    add_sections("force", f.state->force);
-    add_sections("moment", f.state->moment);
-    add_sections("von_mises", f.state->stress);
+    add("velocity [m/s]", f.state->velocity);
+    add("angular_velocity [rad/s]", f.state->angular_velocity);
+    add_sections("force [N]", f.state->force);
+    add_sections("moment [N m]", f.state->moment);
+    add_sections("von_mises [Pa]", f.state->stress);
   }
 
  private:
@@ -186,11 +186,12 @@ class SurfaceSet final : public FrameSet {
     }
     data_.normals = "Normals";
     data_.point_data.push_back({"Normals", 3, std::vector<float>{}});
-    data_.point_data.push_back({"displacement", 3, std::vector<float>{}});
+    data_.point_data.push_back({"displacement [m]", 3, std::vector<float>{}});
     data_.cell_data.push_back(
         {"stripe", 1, std::vector<std::int32_t>(skin_.stripe().begin(), skin_.stripe().end())});
     data_.cell_data.push_back(
         {"part", 1, std::vector<std::int32_t>(skin_.part().begin(), skin_.part().end())});
+    data_.names.push_back({"part names", skin_.part_names()});
   }
   const char* name() const override { return "surface"; }
   void update(const FramePoses& f) override {
@@ -221,7 +222,7 @@ class SupportSet final : public FrameSet {
       data_.vertices.add(&vertex, 1);
     }
     data_.points.resize(3 * count_);
-    data_.point_data.push_back(array("force", 3, count_));
+    data_.point_data.push_back(array("force [N]", 3, count_));
     // Cell data follow the order of cells: all vertices, then all lines.
     std::vector<std::int32_t> number;
     for (std::size_t k = 0; k < scene_.supports.size(); ++k)
@@ -238,6 +239,7 @@ class SupportSet final : public FrameSet {
               joint.begin() + static_cast<std::ptrdiff_t>(first_joint + joints), 0);
     data_.cell_data.push_back({"support", 1, std::move(number)});
     if (joints > 0) data_.cell_data.push_back({"joint", 1, std::move(joint)});
+    name_cells();
   }
   const char* name() const override { return "bearings"; }
 
@@ -283,6 +285,16 @@ class SupportSet final : public FrameSet {
 
  private:
   static constexpr std::size_t ring_points = 48, spring_points = 97, turns = 6;
+
+  void name_cells() {
+    PolyData::Names supports{"support names", {}}, joints{"joint names", {}};
+    for (const meshes::SupportShape& s : scene_.supports)
+      supports.values.push_back(s.name);
+    for (const Scene::Joint& j : scene_.joints)
+      joints.values.push_back(j.name);
+    for (PolyData::Names* n : {&supports, &joints})
+      if (!n->values.empty()) data_.names.push_back(std::move(*n));
+  }
 
   Vec3 place_of(std::span<const Pose> poses, const Scene::Joint& j) const {
     if (j.bend < 0) return pose_at(poses, j.at).r;
@@ -351,7 +363,7 @@ class TrailSet final : public FrameSet {
       : scene_(scene),
         longest_(std::max<std::size_t>(longest, 2)),
         points_(scene.trails.size()) {
-    data_.point_data.push_back(array("age", 1, 0));
+    data_.point_data.push_back(array("age [s]", 1, 0));
   }
   const char* name() const override { return "orbits"; }
   void update(const FramePoses& f) override {

@@ -19,6 +19,8 @@ class FrameSet {
   virtual const char* name() const = 0;
   virtual void update(const FramePoses& poses) = 0;
   const PolyData& data() const { return data_; }
+  /// Something to stand with every frame.
+  void note(PolyData::Names what) { data_.names.push_back(std::move(what)); }
   /// What a later frame still needs of the earlier ones.
   virtual void save(OutArchive& out) const { (void)out; }
   virtual void restore(InArchive& in) { (void)in; }
@@ -27,13 +29,16 @@ class FrameSet {
   PolyData data_;
 };
 
+/// Names of arrays end in their unit: "displacement [m]". What the numbers of a cell array stand for
+/// is field data: "part names", "support names", "joint names".
+///
 /// Centre lines: displacement, rotation (Euler vector of the tilt), spin_angle, radius, director,
 /// axis2, axis3; velocity, angular_velocity, force, moment, von_mises where the state has them.
 /// Four segments between two nodes. Where section forces may jump a line ends and the next begins, each
 /// with a point of its own there.
 std::unique_ptr<FrameSet> make_line_set(const Scene& scene);
-/// True surface: normals, displacement of the centre line; cells: stripe (1 = painted), part (0
-/// shaft, k disk).
+/// True surface: normals, displacement of the centre line; cells: stripe (1 = painted), part (each
+/// line and its disks).
 std::unique_ptr<FrameSet> make_surface_set(const Scene& scene, int points_around);
 /// Supports: housing ring, journal ring and springs between them; a vertex at each journal carries
 /// `force`; cell array `support` counts them. A joint is a vertex with its `force`, counted by the cell array

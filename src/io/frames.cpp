@@ -239,6 +239,8 @@ class VtkFrames final : public FrameWriter {
     scene_ = scene;
     drawn_.resize(scene_.nodes.size());
     const auto add = [&](std::unique_ptr<FrameSet> set) {
+      if (options_.deformation_scale != 1.0)
+        set->note({"deformation scale", {shortest(options_.deformation_scale)}});
       Collection files(options_.directory, safe_name(options_.name) + "_" + set->name(),
                        options_.keep_until, kept, next);
       sets_.push_back(

@@ -32,10 +32,16 @@ struct PolyData {
         values;  ///< bytes would be taken for colours
     std::vector<float>& floats() { return std::get<0>(values); }
   };
+  /// What the numbers of a cell array stand for.
+  struct Names {
+    std::string name;
+    std::vector<std::string> values;
+  };
   std::vector<float> points;  ///< 3 a point
   Cells vertices, lines, polygons;
   std::vector<Array> point_data, cell_data;
   std::string normals;         ///< name of the point array that holds normals; empty: none
+  std::vector<Names> names;    ///< as field data; they change with the cells alone
   std::uint64_t topology = 0;  ///< changes when the cells do
 };
 

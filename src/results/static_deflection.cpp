@@ -30,10 +30,9 @@ class DeflectedLine {
 
  private:
   const system::NodeState& node(Index n) const { return state_.in_own_axes(n); }
-  /// Of a shaft what lies across it, without the growth along it; of a frame, which may bend by any
-  /// amount, all.
+  /// Of a straight line what lies across it, without the growth along it.
   double size_of(const Vec3& u) const {
-    return line_.rotating ? std::hypot(u.y(), u.z()) : u.norm();
+    return path_.empty() ? std::hypot(u.y(), u.z()) : u.norm();
   }
   /// Direction of a line along a path, now.
   Vec3 tangent(const system::NodeState& n, const Path::Point& p) const {
@@ -69,6 +68,7 @@ class DeflectedLine {
   plot::Series x_ = curve_of("axial"), y_ = curve_of("y"), z_ = curve_of("z"),
                phi_ = curve_of("angle");
   double largest_ = 0, where_ = 0;                    ///< m
+  double whole_ = 0;                                  ///< m, along the line too
   const meshes::Station* largest_station_ = nullptr;  ///< null: between stations
 };
 
@@ -83,6 +83,7 @@ void DeflectedLine::add_stations(io::Table& t) {
            turn.slope.y(), turn.phi});
     phi_.x.push_back(station.s);
     phi_.y.push_back(turn.phi - phi0);
+    whole_ = std::max(whole_, u.norm());
     if (const double size = size_of(u); size > largest_) {
       largest_ = size;
       where_ = station.s;
@@ -147,10 +148,16 @@ void DeflectedLine::say_largest(std::vector<std::string>& lines, io::Value& summ
   if (!(largest_ > 0)) return;
   const plot::DisplayUnit u = plot::length_unit(largest_);
   const bool named = largest_station_ && !largest_station_->labels.empty();
-  lines.push_back(fmt::format("{} '{}': largest deflection {:.4g} {} at {:.4g} m{}",
-                              line_.rotating ? "shaft" : "casing", line_.name, largest_ * u.factor,
-                              u.name, where_,
-                              named ? " (" + largest_station_->label() + ")" : std::string()));
+  std::string said = fmt::format("{} '{}': largest deflection {:.4g} {} at {:.4g} m{}",
+                                 line_.rotating ? "shaft" : "casing", line_.name,
+                                 largest_ * u.factor, u.name, where_,
+                                 named ? " (" + largest_station_->label() + ")" : std::string());
+  if (!line_.rotating && path_.empty() && whole_ > 1.01 * largest_) {
+    const plot::DisplayUnit v = plot::length_unit(whole_);
+    said += fmt::format(" across it, largest displacement {:.4g} {}", whole_ * v.factor, v.name);
+    summary["deflection"][line_.name]["largest displacement [m]"] = whole_;
+  }
+  lines.push_back(std::move(said));
   summary["deflection"][line_.name]["largest [m]"] = largest_;
   summary["deflection"][line_.name]["at [m]"] = where_;
 }

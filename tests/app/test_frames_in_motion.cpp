@@ -98,7 +98,7 @@ reader.SetFileName(sys.argv[1])
 reader.Update()
 data = reader.GetOutput().GetPointData()
 wrong = 0
-for name, expected in (("velocity", (0, 0.5, 0)), ("angular_velocity", (6.283185307, 0, 0))):
+for name, expected in (("velocity [m/s]", (0, 0.5, 0)), ("angular_velocity [rad/s]", (6.283185307, 0, 0))):
     array = data.GetArray(name)
     assert array.GetNumberOfTuples() > 1
     for i in range(array.GetNumberOfTuples()):
@@ -173,7 +173,7 @@ reader.Update()
 poly = reader.GetOutput()
 joint = poly.GetCellData().GetArray("joint")
 support = poly.GetCellData().GetArray("support")
-force = poly.GetPointData().GetArray("force")
+force = poly.GetPointData().GetArray("force [N]")
 assert poly.GetNumberOfVerts() == 3
 rows = [[float(x) for x in r[1:4]] for r in csv.reader(open(sys.argv[2])) if r[0] in ("wall", "ball")]
 wrong = len(rows) != 2
@@ -263,7 +263,7 @@ reader.SetFileName(sys.argv[1])
 reader.Update()
 poly = reader.GetOutput()
 data = poly.GetPointData()
-names = ("displacement", "force", "moment", "von_mises")
+names = ("displacement [m]", "force [N]", "moment [N m]", "von_mises [Pa]")
 arrays = [data.GetArray(n) for n in names]
 points = []
 for i in range(poly.GetNumberOfPoints()):

@@ -15,6 +15,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <optional>
@@ -56,6 +57,14 @@ vtkSmartPointer<vtkCellArray> copy(const PolyData::Cells& c) {
   return cells;
 }
 
+vtkSmartPointer<vtkStringArray> copy(const PolyData::Names& n) {
+  auto a = vtkSmartPointer<vtkStringArray>::New();
+  a->SetName(n.name.c_str());
+  for (const std::string& value : n.values)
+    a->InsertNextValue(value);
+  return a;
+}
+
 class Writer final : public PolyDataWriter {
  public:
   Writer() {
@@ -72,6 +81,9 @@ class Writer final : public PolyDataWriter {
       vertices_ = copy(data.vertices);
       lines_ = copy(data.lines);
       polygons_ = copy(data.polygons);
+      names_.clear();
+      for (const PolyData::Names& n : data.names)
+        names_.push_back(copy(n));
       topology_ = data.topology;
     }
     vtkNew<vtkPolyData> poly;
@@ -92,6 +104,8 @@ class Writer final : public PolyDataWriter {
     time_->SetValue(0, time);
     time_->Modified();  // or the range in the file stays that of the first frame
     poly->GetFieldData()->AddArray(time_);
+    for (const auto& n : names_)
+      poly->GetFieldData()->AddArray(n);
     const auto temporary = temporary_beside(file);
     writer_->SetFileName(temporary.c_str());
     writer_->SetInputData(poly);
@@ -111,6 +125,7 @@ class Writer final : public PolyDataWriter {
   vtkNew<vtkXMLPolyDataWriter> writer_;
   vtkNew<vtkDoubleArray> time_;
   vtkSmartPointer<vtkCellArray> vertices_, lines_, polygons_;
+  std::vector<vtkSmartPointer<vtkStringArray>> names_;
   std::optional<std::uint64_t> topology_;
 };
 

@@ -1,0 +1,151 @@
+// `whirl view`: the state script of ParaView beside the frames of a run.
+#include "deck_run.hpp"
+
+#include <array>
+
+using namespace whirl;
+using namespace whirl::test;
+
+namespace {
+
+const char* deck = R"(format = 1
+[[shaft]]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]"]
+rows = [["left", 200, 30], ["right", 200, 30]]
+[[disk]]
+name = "wheel"
+at = "left:end"
+mass = "4 kg"
+Id = "0.01 kg.m^2"
+Ip = "0.02 kg.m^2"
+[[bearing]]
+name = "A"
+at = "left:start"
+type = "linear"
+kxx = "1e6 N/m"
+kyy = "1e6 N/m"
+kzz = "2e6 N/m"
+[[bearing]]
+name = "B"
+at = "right:end"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "2e6 N/m"
+[[probe]]
+name = "P"
+at = "left:end"
+[[unbalance]]
+at = "left:end"
+amount = "100 g.mm"
+[[step]]
+name = "sag"
+type = "static"
+[[step]]
+name = "turn"
+type = "transient"
+start = "rest"
+duration = "20 ms"
+[[drive]]
+at = "left:start"
+type = "speed"
+speed = "3000 rpm"
+step = "turn"
+[[output.vtk]]
+frames = 5
+content = ["line", "surface", "bearings", "orbits"]
+deformation_scale = 20
+)";
+
+struct Said {
+  int exit = -1;
+  std::string text;
+};
+
+Said view(const std::filesystem::path& folder, const std::string& arguments) {
+  Said out;
+  const std::string command =
+      "cd '" + folder.string() + "' && '" WHIRL_EXE "' view " + arguments + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  std::array<char, 4096> buffer;
+  for (std::size_t n = 0; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    out.text.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  out.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return out;
+}
+
+/// Reads the script as Python does, without ParaView: frames and arrays it names must be there.
+const char* check_script = R"(
+import ast, os, re, sys
+text = open("r/view.py").read()
+tree = ast.parse(text)
+given = {}
+for node in tree.body:
+    if isinstance(node, ast.Assign) and node.targets[0].id in ("shown", "kinds", "folder"):
+        given[node.targets[0].id] = ast.literal_eval(node.value)
+    if len(given) == 3:
+        break
+assert "@" not in re.sub(r"#.*", "", text), "a mark was left"
+assert given["shown"] == sys.argv[1], given
+assert given["kinds"] == ["surface", "line", "bearings", "orbits"], given
+header = ""
+for kind in given["kinds"]:
+    listed = open(os.path.join(given["folder"], f"{given['shown']}_{kind}.pvd")).read()
+    frame = re.search(r"file=\"([^\"]+)\"", listed).group(1)
+    header += open(os.path.join(given["folder"], frame), "rb").read().split(b"<AppendedData")[0].decode()
+arrays = set(re.findall(r"Name=\"([^\"]+)\"", header))
+used = {n.value for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)
+        and re.fullmatch(r"\w+ \[[^\]]+\]|stripe|part names|deformation scale", n.value)}
+assert len(used) >= 6 and used <= arrays, (used, used - arrays)
+)";
+
+}  // namespace
+
+TEST(View, ScriptNamesFramesAndArraysThatThereAre) {
+  const DeckRun r(deck);
+  ASSERT_EQ(r.exit, 0) << r.log;
+  if (r.says("VTK")) GTEST_SKIP() << "built without VTK";
+  const Said most = view(r.folder, "r");
+  EXPECT_EQ(most.exit, 0) << most.text;
+  EXPECT_NE(most.text.find("turn (5 frames; surface, line, bearings, orbits)"), std::string::npos)
+      << most.text;
+  EXPECT_NE(most.text.find("frames there are: sag, turn"), std::string::npos) << most.text;
+  const auto holds = [&](const char* shown) {
+    std::ofstream(r.folder / "check.py") << check_script;
+    return std::system(
+               ("cd '" + r.folder.string() + "' && /usr/bin/python3 check.py " + shown).c_str()) ==
+           0;
+  };
+  EXPECT_TRUE(holds("turn"));
+  EXPECT_EQ(view(r.folder, "r turn --script other.py").exit, 0);
+  EXPECT_TRUE(std::filesystem::exists(r.folder / "other.py"));
+}
+
+TEST(View, SaysWhatThereIsNot) {
+  const DeckRun r(deck);
+  ASSERT_EQ(r.exit, 0) << r.log;
+  if (r.says("VTK")) GTEST_SKIP() << "built without VTK";
+  const Said wrong = view(r.folder, "r trun");
+  EXPECT_EQ(wrong.exit, 2) << wrong.text;
+  EXPECT_NE(wrong.text.find("did you mean 'turn'?"), std::string::npos) << wrong.text;
+  const Said empty = view(r.folder, ".");
+  EXPECT_NE(empty.exit, 0);
+  EXPECT_NE(empty.text.find("E43"), std::string::npos) << empty.text;
+}
+
+TEST(View, ParaViewShowsIt) {
+  // where ParaView is installed: it does not go together with VTK's own packages on Debian 12
+  if (std::system("command -v pvbatch >/dev/null && command -v xvfb-run >/dev/null") != 0)
+    GTEST_SKIP() << "no ParaView (pvbatch, xvfb-run)";
+  const DeckRun r(deck);
+  ASSERT_EQ(r.exit, 0) << r.log;
+  if (r.says("VTK")) GTEST_SKIP() << "built without VTK";
+  ASSERT_EQ(view(r.folder, "r").exit, 0);
+  EXPECT_EQ(std::system(("cd '" + r.folder.string() +
+                         "' && timeout 100 xvfb-run -a pvbatch r/view.py p.png >log 2>&1")
+                            .c_str()),
+            0);
+  EXPECT_GT(std::filesystem::file_size(r.folder / "p.png"), 20000u);
+}
