@@ -148,10 +148,10 @@ void DeflectedLine::say_largest(std::vector<std::string>& lines, io::Value& summ
   if (!(largest_ > 0)) return;
   const plot::DisplayUnit u = plot::length_unit(largest_);
   const bool named = largest_station_ && !largest_station_->labels.empty();
-  std::string said = fmt::format("{} '{}': largest deflection {:.4g} {} at {:.4g} m{}",
-                                 line_.rotating ? "shaft" : "casing", line_.name,
-                                 largest_ * u.factor, u.name, where_,
-                                 named ? " (" + largest_station_->label() + ")" : std::string());
+  std::string said =
+      fmt::format("{} '{}': largest deflection {:.4g} {} at {:.4g} m{}",
+                  line_.rotating ? "shaft" : "casing", line_.name, largest_ * u.factor, u.name,
+                  where_, named ? " (" + largest_station_->label() + ")" : std::string());
   if (!line_.rotating && path_.empty() && whole_ > 1.01 * largest_) {
     const plot::DisplayUnit v = plot::length_unit(whole_);
     said += fmt::format(" across it, largest displacement {:.4g} {}", whole_ * v.factor, v.name);
