@@ -286,11 +286,14 @@ void SteadySystem::sort_terms() {
   for (std::size_t k = 0; k < terms.size(); ++k) {
     all_.push_back(k);
     const bool sees = terms[k]->sees_turning(mean, rate);
-    // what acts on one node alone (the integral of a governor) holds no angle against anything
+    // what acts on one node alone (the integral of a governor) holds no angle against anything; at
+    // rest a spring against the twist holds one, which turning it would wind up
     std::vector<Index> touched;
     terms[k]->list_nodes(touched);
-    if (!sees && touched.size() > terms[k]->count()) blind_.push_back(k);
-    if (sees)
+    if (!(sees && running_.mean) && touched.size() > terms[k]->count()) blind_.push_back(k);
+    // a twist is measured from the steady turn: it has no mean over angles that wind it up
+    const bool winds = terms[k]->depends(mean).angle == system::twist_angle;
+    if (sees && !winds)
       (terms[k]->quadratic_in_rates() ? turning_smooth_ : turning_).push_back(k);
     else
       (terms[k]->quadratic_in_rates() ? smooth_ : other_).push_back(k);

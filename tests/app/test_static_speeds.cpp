@@ -226,3 +226,47 @@ TEST(StaticSpeeds, CoefficientsSayWhatTheirGridLeaves) {
   EXPECT_LT(chosen.error, 5e-3);
   EXPECT_LT(chosen.error, coarse.error);
 }
+
+namespace {
+
+std::string torsion_spring(const std::string& speed) {
+  return whirl::test::lateral_mass(10, "0 m/s^2", R"([[bearing]]
+name = "spring"
+at = "mass"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+krxx = "1e4 N.m/rad"
+crxx = "2 N.m.s/rad"
+[[load]]
+at = "mass"
+moment = ["4 N.m", "0 N.m", "0 N.m"]
+[[step]]
+name = "st"
+type = "static"
+speed = ")" + speed + "\"\n[output]\nreport = false\n");
+}
+
+}  // namespace
+
+// A shaft that stands is held by the spring against its angle; one that turns steadily winds it up
+// by nothing. It was held where it stood, and turning it got the mean torque of a revolution of the
+// spring, 24 kN m.
+TEST(StaticTwist, ASpringAgainstTheAngleOfAShaft) {
+  {
+    const DeckRun still(torsion_spring("0 rpm"));
+    ASSERT_EQ(still.exit, 0) << still.log;
+    EXPECT_NEAR(still.csv("st_deflection.csv")
+                    .named(still.csv("st_deflection.csv").rows[1])
+                    .at("phi [rad]"),
+                4e-4, 1e-12);
+  }
+  const DeckRun turning(torsion_spring("3000 rpm"));
+  ASSERT_EQ(turning.exit, 0) << turning.log;
+  const Columns supports = turning.csv("st_supports.csv");
+  double moment = 0;
+  for (const auto& row : supports.rows)
+    moment += row[supports.column("M_x [N m]")];
+  // the spring's damper: c Omega
+  EXPECT_NEAR(moment, -2.0 * 3000 * 3.14159265358979 / 30, 1e-6);
+}
