@@ -35,11 +35,24 @@ def new_view(title):
     return view
 
 
-def coloured(display, view, array, place="POINTS"):
-    ColorBy(display, (place, array) if "displacement" not in array and "[N" not in array else (place, array, "Magnitude"))
-    display.RescaleTransferFunctionToDataRange(False)
+def span(source, array):
+    """Smallest and largest magnitude over a dozen of the frames."""
+    low, high = 1e300, 0.0
+    for time in times[:: max(1, len(times) // 12)] + times[-1:]:
+        source.UpdatePipeline(time)
+        values = source.PointData[array]
+        r = values.GetRange(-1 if values.GetNumberOfComponents() > 1 else 0)
+        low, high = min(low, r[0]), max(high, r[1])
+    return low, high
+
+
+def coloured(display, view, source, array):
+    several = source.PointData[array].GetNumberOfComponents() > 1
+    ColorBy(display, ("POINTS", array, "Magnitude") if several else ("POINTS", array))
+    table = GetColorTransferFunction(array)
+    table.RescaleTransferFunction(*span(source, array))
     display.SetScalarBarVisibility(view, True)
-    bar = GetScalarBar(GetColorTransferFunction(array), view)
+    bar = GetScalarBar(table, view)
     bar.Title = array
     bar.ComponentTitle = ""
     bar.TitleColor = bar.LabelColor = black
@@ -81,7 +94,7 @@ if "surface" in sources:
     view = new_view(f"{shown}: surface")
     views.append(view)
     body, shaft = part(sources["surface"], "surface without stripe", 0, view)
-    coloured(shaft, view, "displacement [m]")
+    coloured(shaft, view, sources["surface"], "displacement [m]")
     stripe, painted = part(sources["surface"], "spin stripe", 1, view)
     plain(painted, paint)
     print("parts:", ", ".join(f"{k} {name}" for k, name in enumerate(names(sources["surface"], "part names"))))
@@ -96,7 +109,7 @@ if "line" in sources:
         tube.VaryRadius = "By Absolute Scalar"
     tube.NumberofSides = 24
     by = "von_mises [Pa]" if "von_mises [Pa]" in known else "displacement [m]"
-    coloured(Show(tube, view), view, by)
+    coloured(Show(tube, view), view, sources["line"], by)
 
 for view in views:
     if "bearings" in sources:
