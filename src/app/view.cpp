@@ -72,6 +72,7 @@ std::string chosen_set(const ViewOptions& o, const std::map<std::string, FrameSe
         ->first;
   if (sets.contains(o.set)) return o.set;
   std::vector<std::string> names;
+  names.reserve(sets.size());
   for (const auto& [name, set] : sets)
     names.push_back(name);
   const std::vector<std::string> near = deck::nearest(o.set, names);

@@ -29,6 +29,7 @@ ProbeCurves curves_of(const analysis::ResponseProbe& probe,
   for (const double angle : probe.angles) {
     c.label.push_back(fmt::format("{:g}°", angle * 180 / pi));
     std::vector<Complex> x;
+    x.reserve(amplitudes.size());
     for (const analysis::PointAmplitude& a : amplitudes)
       x.push_back(a.along(angle));
     c.amplitude.push_back(std::move(x));
