@@ -47,7 +47,7 @@ bool InitialSolver::factor(Problem& problem, double tau, Statistics& statistics)
   return problem.factor(1.0, tau, tau * tau);
 }
 
-double InitialSolver::take_correction(double tau, bool of_a, VecX& q, VecX& v, VecX& a) const {
+double InitialSolver::take_correction(double tau, bool of_a, VecX& q, VecX& v, VecX& a) {
   // convergence in each class: increments against the values they correct
   double change = 0.0, size = 0.0;
   double change_massless = 0.0, size_massless = 0.0;
@@ -70,6 +70,11 @@ double InitialSolver::take_correction(double tau, bool of_a, VecX& q, VecX& v, V
         break;
     }
   }
+  // where the massless stand still their values shrink with their corrections: the first ones are
+  // the measure then
+  constexpr double of_the_first = 1e-3;
+  largest_massless_ = std::max(largest_massless_, size_massless);
+  size_massless = std::max(size_massless, of_the_first * largest_massless_);
   return std::max(size > 0.0 && of_a ? change / size : 0.0,
                   size_massless > 0.0 ? change_massless / size_massless : 0.0);
 }
@@ -88,6 +93,7 @@ bool InitialSolver::stand_still(double tau, const VecX& q) const {
 StepStatus InitialSolver::iterate(Problem& problem, double t, double tau, VecX& q, VecX& v, VecX& a,
                                   Statistics& statistics) {
   double previous = infinity;
+  largest_massless_ = 0.0;
   for (int iteration = 0; iteration < 20; ++iteration) {
     ++statistics.residuals;
     if (!problem.residual(t, q, v, a, r_)) return StepStatus::domain;

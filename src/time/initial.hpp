@@ -31,12 +31,13 @@ class InitialSolver {
   StepStatus iterate(Problem& problem, double t, double tau, VecX& q, VecX& v, VecX& a,
                      Statistics& statistics);
   /// Takes the correction r_; returns its size. of_a: a, which may be zero, counts.
-  double take_correction(double tau, bool of_a, VecX& q, VecX& v, VecX& a) const;
+  double take_correction(double tau, bool of_a, VecX& q, VecX& v, VecX& a);
   /// Massless unknowns that stand still: the last correction of their rates, r_, changes nothing of
   /// them in a second, and would be size over size for ever.
   bool stand_still(double tau, const VecX& q) const;
   std::vector<Row> row_;
   std::vector<Index> held_;
+  double largest_massless_ = 0;  ///< rate or value of a massless unknown in this iteration
   bool any_massless_ = false;
   VecX r_, probe_, dynamic_, q_start_, v_start_, a_start_;
 };
