@@ -48,6 +48,7 @@ struct ConformanceOptions {
   double frequency = nan;  ///< rad/s, asked about (Context::frequency)
   /// Of what the element declares: what these parameters and states do not show.
   system::Dependence over_declared{};
+  std::vector<int> signals{};  ///< nodes whose rows are equations of signals: no power stands there
   double tangent_tolerance =
       1e-9;                       ///< of the largest term in the row; differences reach about 1e-12
   double power_tolerance = 1e-9;  ///< of the largest power; as above
@@ -317,7 +318,9 @@ class Conformance {
     const double rate = static_cast<double>(central(stored, h)[0]);
     const system::Energy now = energy(0.0);
     const auto x = at(0.0);
-    const X terms = force(x, context_).cwiseProduct(x.rates());
+    X terms = force(x, context_).cwiseProduct(x.rates());
+    for (const int node : o_.signals)
+      terms.template segment<K::width>(K::width * node).setZero();
     const double size =
         std::abs(rate) + std::abs(now.supplied) + std::abs(now.dissipated) +
         terms.cwiseAbs().maxCoeff() +
