@@ -46,6 +46,8 @@ std::vector<Attached> attachments(const Model& m) {
         model::traits_of(x.law).acts == model::Acts::as_constraint && !x.to && !x.pedestal;
     out.push_back({&x.at, named("bearing", x), 0.0, held});
     if (x.to) out.push_back({&*x.to, named("bearing", x), 0.0, false});
+    if (const model::Location* sensor = model::traits_of(x.law).sensor)
+      out.push_back({sensor, named("sensor of bearing", x)});
   }
   for (const auto& x : m.joints) {
     out.push_back({&x.at, named("joint", x)});

@@ -23,8 +23,8 @@ namespace {
 const char* kind_of(const model::StepLaw& law) {
   static constexpr const char* names[] = {
       "static",    "modal",        "campbell",          "critical_speeds", "unbalance_response",
-      "stability", "critical_map", "harmonic_response", "torsional",       "buckling",
-      "transient", "api_lateral",  "api_torsional",     "balancing"};
+      "stability", "critical_map", "harmonic_response", "sensitivity",     "torsional",
+      "buckling",  "transient",    "api_lateral",       "api_torsional",   "balancing"};
   static_assert(std::size(names) == std::variant_size_v<model::StepLaw>);
   return names[law.index()];
 }

@@ -70,6 +70,32 @@ struct TiltingPads {
   std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
 };
 
+/// What the controller of a magnetic bearing does.
+struct MagneticControl {
+  /// The loop of one axis, opened behind its sensor.
+  struct Loop {
+    Vec2 axis = Vec2::UnitX();     ///< in (y, z)
+    meshes::Place shaft, housing;  ///< what the sensor looks at
+    Index signal = -1;             ///< scalar node of the sensor; -1: it follows at once
+    double unit = 1;               ///< m, of that signal
+    /// What stands on the right side of these nodes' rows for a displacement added to the signal,
+    /// N/m.
+    std::vector<std::pair<Index, double>> entry;
+  };
+  std::size_t bearing = 0;          ///< of the model
+  std::array<Index, 2> currents{};  ///< scalar nodes, A per current_unit
+  double current_unit = 1;
+  std::array<Loop, 2> loops;
+  /// How an axis stands.
+  struct Standing {
+    double displacement = 0, current = 0, force = 0;  ///< m at the magnet, A, N
+  };
+  std::function<std::array<Standing, 2>(const NodeAt&, const system::Context&)> standing;
+  /// Force on the shaft, N, for small harmonic motions of it at the frequency w, rad/s, alike at
+  /// magnet and sensor: F = -Z r in (y, z). Not finite where an integrator acts and w = 0.
+  std::function<Eigen::Matrix2cd(const NodeAt&, const system::Context&, double w)> stiffness;
+};
+
 /// Load of every element of a rolling bearing.
 struct RollingLoads {
   struct Element {
@@ -125,6 +151,7 @@ struct Built {
                            ///< length: journals, to their clearance, m
   std::vector<RollingLoads> rolling_loads;
   std::vector<TiltingPads> tilting_pads;
+  std::vector<MagneticControl> magnetic_controls;
   std::vector<DriveTorque> drive_torques;
   std::vector<Governor> governors;
   std::vector<LineSpin> spins;  ///< one a line

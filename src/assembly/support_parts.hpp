@@ -149,6 +149,8 @@ void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::RollingEstimate&);
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::MagneticBearing&);  // supports_magnetic.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::Coupling&);  // supports_shafts.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&, const model::GearPair&);
 

@@ -39,6 +39,12 @@ void check_places(const model::Model& m, Problems& out) {
   }
   for (const auto& b : m.bearings) {
     on_shaft(b.at, "bearing");
+    if (const model::Location* sensor = model::traits_of(b.law).sensor) {
+      on_shaft(*sensor, "sensor");
+      if (sensor->shaft != b.at.shaft)
+        report(out, "E26", fmt::format("the sensor of '{}' looks at another shaft", b.name),
+               "sensor_at is a place on the shaft of 'at'", sensor->where);
+    }
     if (!b.to) continue;
     on_shaft(*b.to, "bearing");
     // forces on both sides are taken to meet in one point (gears: in one plane)

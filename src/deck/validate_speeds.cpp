@@ -54,6 +54,8 @@ std::optional<std::pair<double, double>> speeds_of(const model::Model& m, const 
   if (const auto* x = std::get_if<model::StabilityStep>(&s.law)) return range(x->speed);
   if (const auto* x = std::get_if<model::HarmonicStep>(&s.law))
     return x->speeds ? range(*x->speeds) : std::pair(x->speed * ratio, x->speed * ratio);
+  if (const auto* x = std::get_if<model::SensitivityStep>(&s.law))
+    return std::pair(x->speed * ratio, x->speed * ratio);
   if (const auto* x = std::get_if<model::BalancingStep>(&s.law)) {
     const auto [a, b] = std::minmax_element(x->speeds.begin(), x->speeds.end());
     return std::pair(std::min(*a * ratio, *b * ratio), std::max(*a * ratio, *b * ratio));
@@ -110,13 +112,16 @@ std::optional<std::pair<double, double>> frequencies_of(const model::Model& m,
     }
     return all.second > 0 ? std::optional(all) : std::nullopt;
   }
+  const auto ends = [](const model::FrequencyRange& f) {
+    return f.values.empty() ? std::pair(f.start, f.stop)
+                            : std::pair(f.values.front(), f.values.back());
+  };
   if (const auto* x = std::get_if<model::HarmonicStep>(&s.law)) {
     if (x->speeds) return speeds(*x->speeds, x->order);
     if (!x->frequency) return std::nullopt;
-    const auto& f = *x->frequency;
-    return f.values.empty() ? std::pair(f.start, f.stop)
-                            : std::pair(f.values.front(), f.values.back());
+    return ends(*x->frequency);
   }
+  if (const auto* x = std::get_if<model::SensitivityStep>(&s.law)) return ends(x->frequency);
   return std::nullopt;
 }
 

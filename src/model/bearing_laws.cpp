@@ -40,6 +40,7 @@ SupportTraits traits_of_journal() {
           .needs_load = true,
           .mapped = true,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -62,6 +63,7 @@ SupportTraits traits(const LinearBearing& b) {
           .needs_load = false,
           .mapped = b.K(1, 1) != 0 || b.K(2, 2) != 0,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -86,6 +88,7 @@ SupportTraits traits(const SpringBlock& b) {
           .needs_load = false,
           .mapped = b.C1 != 0,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::spring};
 }
 
@@ -142,6 +145,7 @@ SupportTraits traits(const TableBearing& b) {
           .needs_load = false,
           .mapped = held[1] || held[2],
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -160,6 +164,7 @@ SupportTraits traits(const RigidSupport& b) {
           .needs_load = false,
           .mapped = false,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -186,6 +191,7 @@ SupportTraits traits(const NonlinearSpring& b) {
           .needs_load = false,
           .mapped = lateral && !gap,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -219,6 +225,7 @@ SupportTraits traits(const SqueezeFilm& b) {
           .needs_load = false,
           .mapped = b.stiffness != 0,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -237,6 +244,7 @@ SupportTraits traits(const BallBearing& b) {
           .needs_load = b.preload == 0 && b.clearance >= 0,
           .mapped = true,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -255,6 +263,7 @@ SupportTraits traits(const RollerBearing& b) {
           .needs_load = b.clearance >= 0,
           .mapped = true,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -274,6 +283,7 @@ SupportTraits traits(const RollingEstimate& b) {
           .needs_load = false,
           .mapped = true,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -313,6 +323,25 @@ LinearBearing linear_form(const RollingEstimate& b) {
   return linear;
 }
 
+SupportTraits traits(const MagneticBearing& b) {
+  return {.held = lateral_directions,
+          .loads = NodeLoads{.lateral = true},
+          .stiffness = none,
+          .bias = Bias{},
+          .curves = Curves{},
+          .acts = Acts::between_nodes,
+          .film = false,
+          .gap = false,
+          .rolling = false,
+          .follows_spin = false,
+          .nonlinear = true,  // with its control
+          .needs_load = false,
+          .mapped = false,
+          .pair = none,
+          .sensor = b.sensor_at ? &*b.sensor_at : nullptr,
+          .picture = Picture::bearing};
+}
+
 SupportTraits traits(const Rub& b) {
   return {.held = lateral_directions,
           .loads = NodeLoads{},  // stops are left most of the time
@@ -328,6 +357,7 @@ SupportTraits traits(const Rub& b) {
           .needs_load = false,
           .mapped = false,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -346,6 +376,7 @@ SupportTraits traits(const AnnularSeal&) {
           .needs_load = false,
           .mapped = false,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -365,6 +396,7 @@ SupportTraits traits(const CrossCoupling&) {
           .needs_load = false,
           .mapped = false,
           .pair = none,
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -383,6 +415,7 @@ SupportTraits traits(const Coupling& b) {
           .needs_load = false,
           .mapped = false,
           .pair = ShaftPair{.speed_ratio = 1, .noun = "coupling", .details = {}},
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 
@@ -406,6 +439,7 @@ SupportTraits traits(const GearPair& b) {
           .needs_load = false,
           .mapped = false,
           .pair = std::move(pair),
+          .sensor = nullptr,
           .picture = Picture::bearing};
 }
 

@@ -2,6 +2,7 @@
 // beside each law its traits. How to add one: docs/developer/add_a_bearing_law.md.
 #pragma once
 #include <core/types.hpp>
+#include <model/magnetic_bearing.hpp>
 #include <model/support_traits.hpp>
 #include <array>
 #include <string>
@@ -170,6 +171,8 @@ EstimatedStiffness estimate_stiffness(const RollingEstimate&);
 /// The linear bearing it stands for.
 LinearBearing linear_form(const RollingEstimate&);
 
+SupportTraits traits(const MagneticBearing&);  // magnetic_bearing.hpp
+
 /// One-sided contact with friction: rub, stop, catcher bearing. The stator is the pedestal.
 struct Rub {
   double gap = 0, stiffness = 0, damping = 0, friction = 0;  ///< m, N/m, s/m (Hunt & Crossley), -
@@ -224,10 +227,11 @@ SupportTraits traits(const GearPair&);
 // ---------------------------------------------------------------- the list of laws
 
 /// In the order of the kinds in the deck's reference.
-using BearingLaw = std::variant<LinearBearing, SpringBlock, TableBearing, RigidSupport,
-                                NonlinearSpring, ShortJournal, FiniteJournal, TiltingPadJournal,
-                                SqueezeFilm, BallBearing, RollerBearing, RollingEstimate, Rub,
-                                AnnularSeal, CrossCoupling, Coupling, GearPair>;
+using BearingLaw =
+    std::variant<LinearBearing, SpringBlock, TableBearing, RigidSupport, NonlinearSpring,
+                 ShortJournal, FiniteJournal, TiltingPadJournal, SqueezeFilm, BallBearing,
+                 RollerBearing, RollingEstimate, MagneticBearing, Rub, AnnularSeal, CrossCoupling,
+                 Coupling, GearPair>;
 
 inline SupportTraits traits_of(const BearingLaw& law) {
   return std::visit([](const auto& x) { return traits(x); }, law);

@@ -7,6 +7,7 @@
 #include <core/path.hpp>
 #include <core/types.hpp>
 #include <model/bearing_laws.hpp>
+#include <model/location.hpp>
 #include <array>
 #include <map>
 #include <optional>
@@ -115,15 +116,6 @@ struct Shaft : Entity {
   Vec3 position(double s) const {
     return path.empty() ? Vec3(origin + Vec3(s, 0, 0)) : path.after(s).r;
   }
-};
-
-/// A place on a shaft line: distance from station 0.
-struct Location {
-  std::size_t shaft = 0;
-  double s = 0;      ///< m
-  std::string text;  ///< as written in the deck ("body2:mid")
-  Where where{};
-  int housing = -1;  ///< bearing (index) whose support is meant instead of the shaft ("DE:support")
 };
 
 // ---------------------------------------------------------------- what sits on a shaft
@@ -398,6 +390,12 @@ struct HarmonicStep {
   std::vector<double> shapes_at;  ///< frequencies of operating shapes, rad/s; empty = at the peaks
   About about = About::equilibrium;
 };
+/// Sensitivity of the control loops of magnetic bearings.
+struct SensitivityStep {
+  double speed = 0;
+  FrequencyRange frequency;
+  About about = About::equilibrium;
+};
 struct TorsionalStep {
   double max_speed = 0;
   std::vector<double> orders{1.0};
@@ -523,8 +521,8 @@ struct TransientStep {
 
 using StepLaw =
     std::variant<StaticStep, ModalStep, CampbellStep, CriticalStep, UnbalanceStep, StabilityStep,
-                 CriticalMapStep, HarmonicStep, TorsionalStep, BucklingStep, TransientStep,
-                 ApiLateralStep, ApiTorsionalStep, BalancingStep>;
+                 CriticalMapStep, HarmonicStep, SensitivityStep, TorsionalStep, BucklingStep,
+                 TransientStep, ApiLateralStep, ApiTorsionalStep, BalancingStep>;
 struct Step : Entity {
   std::string from;  ///< earlier step whose result it starts from
   StepLaw law;

@@ -186,6 +186,10 @@ struct Demand {
     if (s.speeds) top = std::max(top, std::abs(s.order) * top_of(*s.speeds));
     return {top, top, 0};
   }
+  Resolution operator()(const SensitivityStep& s) const {
+    const double top = top_of(s.frequency);
+    return {top, top, 0};
+  }
   Resolution operator()(const TorsionalStep& s) const {
     return {0.0, torsional_bound(m, s.modes), 0};
   }

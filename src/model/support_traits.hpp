@@ -3,6 +3,7 @@
 // leaves one out does not compile.
 #pragma once
 #include <core/types.hpp>
+#include <model/location.hpp>
 #include <array>
 #include <concepts>
 #include <optional>
@@ -88,6 +89,8 @@ struct SupportTraits {
   Given<bool> needs_load;    ///< it has no stiffness where it carries no load
   Given<bool> mapped;  ///< carries laterally by a stiffness that a critical-speed map can vary
   Given<std::optional<ShaftPair>> pair;  ///< only between two shafts
+  Given<const Location*>
+      sensor;  ///< another place that it measures at, in the law itself; null: none
   Given<Picture> picture;
 };
 

@@ -136,6 +136,23 @@ void add_joints(const run::Job& job, Channels& c) {
   }
 }
 
+void add_control_currents(const run::Job& job, Channels& c) {
+  if (!wants(job.model.output, "control")) return;
+  for (const assembly::MagneticControl& m : job.built.magnetic_controls) {
+    Measurement x{fmt::format("bearing {} current", job.model.bearings[m.bearing].name),
+                  "A",
+                  "control current of the axes",
+                  {"1", "2"},
+                  1.0,
+                  {}};
+    x.evaluate = [&m](const Snapshot& s, double* out) {
+      for (std::size_t k = 0; k < 2; ++k)
+        out[k] = m.current_unit * s.q()[6 * m.currents[k]];
+    };
+    c.add(std::move(x));
+  }
+}
+
 }  // namespace
 
 Point point_of(const run::Job& job, const model::Location& at) {
@@ -182,6 +199,7 @@ Channels make_channels(const run::Job& job) {
   add_support_moments(job, c);
   add_drive_torques(job, c);
   add_joints(job, c);
+  add_control_currents(job, c);
   if (wants(job.model.output, "energy")) c.add(analysis::measure_energy());
   return c;
 }

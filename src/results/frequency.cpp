@@ -88,6 +88,7 @@ analysis::EquilibriumOptions equilibrium_options(const run::Job& job, int load_s
 /// The one speed of a step's equilibrium, rad/s; null where there are several.
 std::optional<double> speed_of(const model::StepLaw& law) {
   if (const auto* x = std::get_if<model::ModalStep>(&law)) return x->speed;
+  if (const auto* x = std::get_if<model::SensitivityStep>(&law)) return x->speed;
   if (const auto* x = std::get_if<model::TorsionalStep>(&law)) return x->max_speed;
   if (const auto* x = std::get_if<model::ApiTorsionalStep>(&law)) return x->operating[1];
   if (const auto* x = std::get_if<model::BucklingStep>(&law)) return x->speed;

@@ -51,6 +51,10 @@ void warn_of_unstable(run::Job& job, const std::string& step, const analysis::De
 
 void add_stability(io::Value& v, const analysis::Definiteness& d, double Omega) {
   io::Value& s = v["stability"];
+  if (!d.judged) {
+    s["stable"] = "not judged: " + left_to_controllers;
+    return;
+  }
   s["stable"] = d.stable();
   s["unstable directions"] = static_cast<int>(d.negative);
   s["tangent"] = d.symmetric ? "symmetric" : "unsymmetric";

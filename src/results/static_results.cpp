@@ -9,6 +9,26 @@ namespace whirl::results {
 
 namespace {
 
+void add_magnets(const run::Job& job, const system::Workspace& state, StaticResults& out,
+                 io::Value& summary) {
+  out.magnets.title = "Magnetic bearings";
+  out.magnets.columns = {{"bearing", "-", ""},
+                         {"axis", "-", ""},
+                         {"displacement", "m", "of the shaft along the axis, at the magnet"},
+                         {"control current", "A", ""},
+                         {"force", "N", "on the shaft"}};
+  const auto node = [&](Index k) -> const system::NodeState& { return state.in_own_axes(k); };
+  for (const assembly::MagneticControl& m : job.built.magnetic_controls) {
+    const std::string& name = job.model.bearings[m.bearing].name;
+    double most = 0, number = 0;
+    for (const assembly::MagneticControl::Standing& s : m.standing(node, state.context)) {
+      out.magnets.add({name, ++number, s.displacement, s.current, s.force});
+      most = std::max(most, std::abs(s.current));
+    }
+    summary["magnetic bearings"][name]["largest control current [A]"] = most;
+  }
+}
+
 void add_rolling_loads(const run::Job& job, const system::Workspace& state, StaticResults& out,
                        io::Value& summary) {
   out.rolling.title = "Loads of the rolling elements";
@@ -140,6 +160,7 @@ StaticResults make_static_results(run::Job& job, const std::string& step,
   const system::Workspace& state = problem.workspace();
   add_deflection(job, step, state, out, summary);
   add_rolling_loads(job, state, out, summary);
+  add_magnets(job, state, out, summary);
   add_supports(job, loads, out, summary);
   add_joints(job, state, reactions, out, summary);
   add_spin_holds(job, spin_holds, reactions, out, summary);

@@ -11,6 +11,7 @@ namespace whirl::results {
 struct StaticResults {
   io::Table deflection, supports, sections, extremes;
   io::Table joints;   ///< loads and coordinates of joints; no rows without joints
+  io::Table magnets;  ///< currents and forces of magnetic bearings; no rows without them
   io::Table rolling;  ///< load of every ball and roller; no rows without such bearings
   std::vector<plot::Figure> figures;
   std::vector<assembly::SectionPoint> points;

@@ -141,6 +141,22 @@ void describe_pads(SupportCoefficients& c, const run::Job& job, std::size_t bear
   }
 }
 
+/// Of a magnetic bearing K and C become those with its control at the frequency of the spin. False:
+/// at rest an integrator holds against anything.
+bool take_control(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
+                  const system::Workspace& w) {
+  const auto node = [&](Index k) -> const system::NodeState& { return w.in_own_axes(k); };
+  for (const assembly::MagneticControl& m : job.built.magnetic_controls) {
+    if (m.bearing != bearing) continue;
+    const double frequency = std::abs(c.spin);
+    if (frequency == 0) return false;
+    const Eigen::Matrix2cd Z = m.stiffness(node, w.context, frequency);
+    c.K = Z.real();
+    c.C = Z.imag() / frequency;
+  }
+  return true;
+}
+
 /// Of a support without a constraint, in an evaluated state.
 Vec3 force_on_shaft(const assembly::SupportForce& support, const system::Workspace& w) {
   return support.force([&](Index k) -> const system::NodeState& { return w.in_own_axes(k); },
@@ -225,6 +241,7 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
     c.name = b.name;
     describe_state(c, job, i, w);
     describe_pads(c, job, i, w);
+    if (!take_control(c, job, i, w)) continue;
     find_threshold(c);
     out.push_back(std::move(c));
   }

@@ -24,6 +24,8 @@ void run_frequency_step(run::Job& job, const model::Step& step) {
           run_critical_map_step(job, step, law);
         else if constexpr (std::is_same_v<T, model::HarmonicStep>)
           run_harmonic_step(job, step, law);
+        else if constexpr (std::is_same_v<T, model::SensitivityStep>)
+          run_sensitivity_step(job, step, law);
         else if constexpr (std::is_same_v<T, model::TorsionalStep>)
           run_torsional_step(job, step, law);
         else if constexpr (std::is_same_v<T, model::ApiLateralStep>)

@@ -175,6 +175,7 @@ class Obstacles {
           else if constexpr (requires { s.speed.points; })
             return results::speeds_of(s.speed).back();
           else if constexpr (std::is_same_v<T, model::ModalStep> ||
+                             std::is_same_v<T, model::SensitivityStep> ||
                              std::is_same_v<T, model::BucklingStep>)
             return s.speed;
           else

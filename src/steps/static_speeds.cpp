@@ -188,6 +188,7 @@ class SpeedSweep {
   std::vector<results::SupportCoefficients> rows_;
   std::vector<Sweep> bearings_;
   int unstable_ = 0;
+  bool judges_ = true;  ///< false: controllers decide whether some are stable
   std::size_t found_ = 0;
   std::string missing_;  ///< speeds without an equilibrium
   std::optional<Error> first_error_;
@@ -222,6 +223,7 @@ void SpeedSweep::judge(double Omega, const run::StepState& state) {
       s_.linear.running(), state.state, Omega, s_.linear.equilibrium().spin_holds, unstable_ == 0);
   judged_.add({to_rpm(Omega), 1, static_cast<int>(tangent.negative), tangent.symmetric ? 1 : 0,
                tangent.certain ? 1 : 0});
+  judges_ = judges_ && tangent.judged;
   if (tangent.stable() || unstable_++ > 0) return;
   results::add_stability(s_.summary(), tangent, Omega);
   results::warn_of_unstable(job_, fmt::format("{}, {:.6g} rpm", step_.name, to_rpm(Omega)), tangent,
@@ -246,7 +248,10 @@ void SpeedSweep::add_coefficients(const run::StepState& state) {
 
 void SpeedSweep::show_equilibria() {
   io::Value& v = s_.summary();
-  if (unstable_ == 0) v["stability"]["stable"] = true;
+  if (unstable_ == 0 && judges_)
+    v["stability"]["stable"] = true;
+  else if (unstable_ == 0)
+    v["stability"]["stable"] = "not judged: " + results::left_to_controllers;
   v["unstable equilibria"] = unstable_;
   v["speeds"] = static_cast<int>(speeds_.size());
   v["equilibria"] = static_cast<int>(found_);

@@ -251,6 +251,7 @@ void StaticRun::write_tables() {
     if (!t.rows.empty()) job_.folder.write_table(file(what), t);
   };
   write("joints", results_.joints);
+  write("magnets", results_.magnets);
   write("rolling", results_.rolling);
   write("rolling_stiffness", rolling_stiffness_);
   write("coefficients", coefficients_);
@@ -265,7 +266,9 @@ void StaticRun::say_end(const RunTime& time) const {
   const std::string ended = path_ ? notes_.front()
                                   : fmt::format("{} at {:.0f} rpm, {} Newton iterations", kind,
                                                 to_rpm(state_.speed), found_.iterations);
-  run::ProgressLine(step_.name, job_.options.quiet).done(fmt::format("{}, {}", ended, time.text()));
+  run::ProgressLine(step_.name, job_.options.quiet)
+      .done(fmt::format("{}, {}{}", ended,
+                        tangent_.judged ? "" : results::left_to_controllers + ", ", time.text()));
 }
 
 /// Moves the tables and figures of the results into the report.
@@ -279,6 +282,7 @@ void StaticRun::add_section() {
   if (!tangent_.stable())
     section.text +=
         fmt::format("\n\nIt is an {}.", results::stability_line(tangent_, state_.speed));
+  if (!tangent_.judged) section.text += "\n\n" + std::string(results::left_to_controllers) + ".";
   for (const std::string& n : notes_)
     section.text += "\n\n" + n + ".";
   results::say_held(job_, step_, results::held_in_step(job_, step_, found_.spin_holds), section);
@@ -304,6 +308,7 @@ void StaticRun::add_section() {
   for (const char* what : {"deflection", "supports", "sections"})
     section.files.emplace_back(what, file(what));
   add(rolling_stiffness_, "stiffness of rolling bearings", "rolling_stiffness");
+  add(results_.magnets, "magnetic bearings", "magnets");
   add(results_.rolling, "rolling elements", "rolling");
   if (path_) section.files.emplace_back("load path", file("path"));
   job_.report.sections.push_back(std::move(section));

@@ -35,6 +35,7 @@ struct UnbalanceOutcome {
 UnbalanceOutcome run_unbalance_step(run::Job&, const model::Step&, const model::UnbalanceStep&,
                                     std::size_t beside = 0);
 void run_harmonic_step(run::Job&, const model::Step&, const model::HarmonicStep&);
+void run_sensitivity_step(run::Job&, const model::Step&, const model::SensitivityStep&);
 void run_torsional_step(run::Job&, const model::Step&, const model::TorsionalStep&);
 /// Reports after standards: they run the kinds above on models of their own.
 void run_api_lateral_step(run::Job&, const model::Step&, const model::ApiLateralStep&);

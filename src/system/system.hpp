@@ -25,6 +25,7 @@ struct NodeDef {
   Index line = 0;                ///< shaft line whose chart it uses
   std::string name;              ///< for messages: "node at 0.25 m of shaft 'hp'"
   bool scalar = false;  ///< an internal unknown: only component 0 exists, gravity does not act
+  bool signal = false;  ///< a scalar that a controller stores: no coordinate of what moves
 };
 
 /// A complete state: copy it to checkpoint.

@@ -108,6 +108,60 @@ moment = ["4 N.m", "5 N.m", "6 N.m"]
 report = false
 )";
 
+/// A mass on a magnetic bearing: shaken, at rest under its weight, and its loops.
+const std::string magnet = R"deck(format = 1
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "rigid"]
+rows = [["left", 100, true], ["right", 100, true]]
+[[disk]]
+name = "mass"
+at = "left:end"
+mass = "10 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.06 kg.m^2"
+[[bearing]]
+name = "guide"
+at = "mass"
+type = "rigid"
+directions = ["x", "rx", "ry", "rz"]
+[[bearing]]
+name = "AMB"
+at = "mass"
+type = "magnetic"
+current_stiffness = "200 N/A"
+position_stiffness = "1e5 N/m"
+sensor_bandwidth = "500 Hz"
+amplifier_bandwidth = "300 Hz"
+delay = "200 us"
+[[bearing.control]]
+type = "pid"
+p = "5000 A/m"
+i = "2e4 A/(m.s)"
+d = "20 A.s/m"
+lag = "500 us"
+[[probe]]
+name = "P"
+at = "mass"
+[[step]]
+name = "st"
+type = "static"
+[[step]]
+name = "s"
+type = "sensitivity"
+frequency = { values = ["25 Hz"] }
+[[step]]
+name = "h"
+type = "harmonic_response"
+frequency = { start = "30 Hz", stop = "40 Hz", points = 2 }
+[[step.force]]
+at = "mass"
+force = ["0 N", "100 N", "200 N"]
+[output]
+report = false
+)deck";
+
 struct Pair {
   const char* table;  ///< as the reference calls it
   const char* key;
@@ -292,6 +346,135 @@ const Pair pairs[] = {
     {"[[joint]], kind = \"universal\"", "second_axis", "arms at rest", "second_axis = [0, 0, 1]",
      "second_axis = [0, 1, 1]", "t.csv", -1, "joint U angle [rad]", -0.676540217694394, 1e-9,
      "-asin (F_y + F_z)/F"},
+    // the mass on its magnets: (-w^2 M - k_s + k_i G) q = F at 30 Hz, and what holds its weight
+    {"[[bearing]], type = \"magnetic\"", "current_stiffness", "magnet",
+     "current_stiffness = \"200 N/A\"", "current_stiffness = \"300 N/A\"", "h_response.csv", 0,
+     "P y amplitude [m]", 6.58819401625e-05, 6.6e-14, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "position_stiffness", "magnet",
+     "position_stiffness = \"1e5 N/m\"", "position_stiffness = \"3e5 N/m\"", "h_response.csv", 0,
+     "P y amplitude [m]", 0.000137581846287, 1.4e-13, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "sensor_bandwidth", "magnet",
+     "sensor_bandwidth = \"500 Hz\"", "sensor_bandwidth = \"100 Hz\"", "h_response.csv", 0,
+     "P y amplitude [m]", 0.0001269874863935, 1.3e-13, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "amplifier_bandwidth", "magnet",
+     "amplifier_bandwidth = \"300 Hz\"", "amplifier_bandwidth = \"80 Hz\"", "h_response.csv", 0,
+     "P y amplitude [m]", 0.0001314546616148, 1.3e-13, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "delay", "magnet", "delay = \"200 us\"",
+     "delay = \"2 ms\"", "h_response.csv", 0, "P y amplitude [m]", 0.0001203820310518, 1.2e-13,
+     "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "delay_order", "magnet", "delay = \"200 us\"",
+     "delay = \"5 ms\"\ndelay_order = 1", "h_response.csv", 0, "P y amplitude [m]",
+     0.0001116944032051, 1.1e-13, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "power", "magnet", "delay = \"200 us\"",
+     "delay = \"200 us\"\npower = 0.8", "h_response.csv", 0, "P y amplitude [m]",
+     0.0002203918998198, 2.2e-13, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "control_2", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control_2]]\ntype = \"pid\"\np = \"3000 A/m\"", "h_response.csv",
+     0, "P z amplitude [m]", 0.001148802629594, 1.1e-12, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "angle", "magnet",
+     "delay = \"200 us\"\n[[bearing.control]]\ntype = \"pid\"\np = \"5000 A/m\"",
+     "delay = \"200 us\"\nangle = \"30 deg\"\n[[bearing.control_2]]\ntype = \"pid\"\np = \"3000 "
+     "A/m\"\n[[bearing.control]]\ntype = \"pid\"\np = \"5000 A/m\"",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0003585392488984, 3.6e-13, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "cross", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.cross]]\ntype = \"pid\"\np = \"1000 A/m\"", "h_response.csv", 0,
+     "P y amplitude [m]", 8.579039631433e-05, 8.6e-14, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "control", "magnet",
+     "\n[[bearing.control]]\ntype = \"pid\"\np = \"5000 A/m\"",
+     "\n[[bearing.control]]\ntype = \"pid\"\np = \"4000 A/m\"", "h_response.csv", 0,
+     "P y amplitude [m]", 0.0001319691991259, 1.3e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"pid\"", "p", "magnet", "p = \"5000 A/m\"", "p = \"4000 A/m\"",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0001319691991259, 1.3e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"pid\"", "i", "magnet", "i = \"2e4 A/(m.s)\"",
+     "i = \"5e5 A/(m.s)\"", "h_response.csv", 0, "P y amplitude [m]", 0.0001588560639193, 1.6e-13,
+     "Z q = F"},
+    {"[[bearing.control]], type = \"pid\"", "d", "magnet", "d = \"20 A.s/m\"", "d = \"10 A.s/m\"",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0001568501062243, 1.6e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"pid\"", "lag", "magnet", "lag = \"500 us\"", "lag = \"5 ms\"",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0001037285239409, 1.0e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"lead_lag\"", "zero", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"lead_lag\"\nzero = \"20 Hz\"\npole = \"200 "
+     "Hz\"",
+     "h_response.csv", 0, "P y amplitude [m]", 4.582662833179e-05, 4.6e-14, "Z q = F"},
+    {"[[bearing.control]], type = \"lead_lag\"", "pole", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"lead_lag\"\nzero = \"50 Hz\"\npole = \"90 "
+     "Hz\"",
+     "h_response.csv", 0, "P y amplitude [m]", 9.236114424184e-05, 9.2e-14, "Z q = F"},
+    {"[[bearing.control]], type = \"notch\"", "frequency", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"notch\"\nfrequency = \"60 Hz\"",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0001593189835791, 1.6e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"notch\"", "damping", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"notch\"\nfrequency = \"60 Hz\"\ndamping = "
+     "0.2",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0001261218534015, 1.3e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"notch\"", "depth", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"notch\"\nfrequency = \"60 Hz\"\ndepth = 0.4",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0001531415196922, 1.5e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"low_pass\"", "frequency", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"low_pass\"\nfrequency = \"70 Hz\"",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0001378210065612, 1.4e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"low_pass\"", "order", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"low_pass\"\nfrequency = \"70 Hz\"\norder = 3",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0001105373908451, 1.1e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"transfer\"", "numerator", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"transfer\"\nnumerator = [1, "
+     "0.003]\ndenominator = [1, 0.01]",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0003924680614887, 3.9e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"transfer\"", "denominator", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"transfer\"\nnumerator = [1]\ndenominator = "
+     "[1, 0.004, 1e-5]",
+     "h_response.csv", 0, "P y amplitude [m]", 0.000109749047009, 1.1e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"transfer\"", "gain", "magnet",
+     "type = \"pid\"\np = \"5000 A/m\"\ni = \"2e4 A/(m.s)\"\nd = \"20 A.s/m\"\nlag = \"500 us\"",
+     "type = \"transfer\"\ngain = \"4000 A/m\"\nnumerator = [1, 0.01]\ndenominator = [1, 0.001]",
+     "h_response.csv", 0, "P y amplitude [m]", 7.407566978402e-05, 7.4e-14, "Z q = F"},
+    {"[[bearing.control]], type = \"state_space\"", "order", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"state_space\"\norder = 2\ncolumns = "
+     "[\"row\", \"column\", \"value\"]\nrows = [[1, 1, -100], [1, 2, 50], [1, 3, 100], [2, 1, "
+     "-60], [2, 2, -200], [2, 3, 20], [3, 1, 0.7], [3, 2, 0.3], [3, 3, 0.4]]",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0002587027480305, 2.6e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"state_space\"", "row", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"state_space\"\norder = 2\ncolumns = "
+     "[\"row\", \"column\", \"value\"]\nrows = [[1, 1, -100], [1, 2, 50], [1, 3, 100], [2, 1, "
+     "-60], [2, 2, -200], [2, 3, 20], [3, 1, 0.7], [3, 2, 0.3], [3, 3, 0.4]]",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0002587027480305, 2.6e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"state_space\"", "column", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"state_space\"\norder = 2\ncolumns = "
+     "[\"row\", \"column\", \"value\"]\nrows = [[1, 1, -100], [1, 2, 50], [1, 3, 100], [2, 1, "
+     "-60], [2, 2, -200], [2, 3, 20], [3, 1, 0.7], [3, 2, 0.3], [3, 3, 0.4]]",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0002587027480305, 2.6e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"state_space\"", "value", "magnet", "lag = \"500 us\"",
+     "lag = \"500 us\"\n[[bearing.control]]\ntype = \"state_space\"\norder = 2\ncolumns = "
+     "[\"row\", \"column\", \"value\"]\nrows = [[1, 1, -100], [1, 2, 50], [1, 3, 100], [2, 1, "
+     "-60], [2, 2, -200], [2, 3, 20], [3, 1, 0.7], [3, 2, 0.3], [3, 3, 0.4]]",
+     "h_response.csv", 0, "P y amplitude [m]", 0.0002587027480305, 2.6e-13, "Z q = F"},
+    {"[[bearing.control]], type = \"state_space\"", "gain", "magnet",
+     "type = \"pid\"\np = \"5000 A/m\"\ni = \"2e4 A/(m.s)\"\nd = \"20 A.s/m\"\nlag = \"500 us\"",
+     "type = \"state_space\"\ngain = \"4000 A/m\"\norder = 1\ncolumns = [\"row\", \"column\", "
+     "\"value\"]\nrows = [[1, 1, -1000], [1, 2, -9000], [2, 1, 1], [2, 2, 10]]",
+     "h_response.csv", 0, "P y amplitude [m]", 7.407566978402e-05, 7.4e-14, "Z q = F"},
+    {"[[bearing]], type = \"magnetic\"", "setpoint", "magnet", "delay = \"200 us\"",
+     "delay = \"200 us\"\nsetpoint = [\"0 um\", \"-40 um\"]", "st_deflection.csv", 1, "u_z [m]",
+     -4e-05, 4.0e-14, "held there by the integral"},
+    {"[[bearing]], type = \"magnetic\"", "bias_current", "magnet", "delay = \"200 us\"",
+     "delay = \"200 us\"\nbias_current = \"2 A\"\ngap = \"0.5 mm\"\nsetpoint = [\"0 um\", \"-40 "
+     "um\"]",
+     "st_magnets.csv", 1, "control current [A]", 0.5114914065576, 5.1e-10, "the square law"},
+    {"[[bearing]], type = \"magnetic\"", "gap", "magnet", "delay = \"200 us\"",
+     "delay = \"200 us\"\nbias_current = \"2 A\"\ngap = \"0.25 mm\"\nsetpoint = [\"0 um\", \"-40 "
+     "um\"]",
+     "st_magnets.csv", 1, "control current [A]", 0.5114914065576, 5.1e-10, "the square law"},
+    {"[[bearing]], type = \"magnetic\"", "saturation", "magnet", "delay = \"200 us\"",
+     "delay = \"200 us\"\nbias_current = \"2 A\"\ngap = \"0.5 mm\"\nsetpoint = [\"0 um\", \"-40 "
+     "um\"]\nsaturation = \"150 N\"",
+     "st_magnets.csv", 1, "control current [A]", 0.7573247222129, 7.6e-10,
+     "the square law saturated"},
+    {"[[bearing]], type = \"magnetic\"", "max_current", "magnet", "delay = \"200 us\"",
+     "delay = \"200 us\"\nmax_current = \"0.5 A\"", "st_magnets.csv", 1, "control current [A]",
+     0.6244056194446, 6.2e-10, "W/k_i, limited"},
+    {"[[step]], type = \"sensitivity\"", "frequency", "magnet", "values = [\"25 Hz\"]",
+     "values = [\"55 Hz\"]", "s_sensitivity.csv", 0, "largest sensitivity [-]", 1.531434053158,
+     1.5e-09, "1/(1 + L)"},
     // the block on its bearing, shaken at 30 Hz: (K + i w C - w^2 M) q = F
     {"[[bearing]], type = \"linear\"", "kxx", "block", "kxx = \"1e6 N/m\"", "kxx = \"400000 N/m\"",
      "h_response.csv", 0, "bearing block force x [N]", 825.54677836311, 8.3e-07, "(K q = F)"},
@@ -554,6 +737,24 @@ struct Elsewhere {
 /// reads what the key changes yet.
 const Elsewhere elsewhere[] = {
     {"Top level", "*", "open"},
+    {"[[bearing]], type = \"magnetic\"", "sensor_at", "app/test_magnetic_bearings.cpp"},
+    {"[[step]], type = \"sensitivity\"", "speed", "app/test_magnetic_bearings.cpp"},
+    {"[[step]], type = \"sensitivity\"", "about", "app/test_magnetic_bearings.cpp"},
+    {"[[bearing.control]]", "type", "each type has keys of its own"},
+    {"[[bearing.control_2]]", "*", "read as [[bearing.control]]"},
+    {"[[bearing.control_2]], type = \"pid\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.control_2]], type = \"lead_lag\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.control_2]], type = \"notch\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.control_2]], type = \"low_pass\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.control_2]], type = \"transfer\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.control_2]], type = \"state_space\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.cross]]", "*", "read as [[bearing.control]]"},
+    {"[[bearing.cross]], type = \"pid\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.cross]], type = \"lead_lag\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.cross]], type = \"notch\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.cross]], type = \"low_pass\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.cross]], type = \"transfer\"", "*", "read as [[bearing.control]]"},
+    {"[[bearing.cross]], type = \"state_space\"", "*", "read as [[bearing.control]]"},
     {"[model]", "axis", "open"},
     {"[model]", "chart_change", "open"},
     {"[model]", "keep_everything", "open"},
@@ -822,6 +1023,7 @@ TEST(KeysMatter, TheOtherDeckWritesWhatItsKeySays) {
   decks["hot bar"] = hot_bar();
   decks["weight"] = weight;
   decks["block"] = block;
+  decks["magnet"] = magnet;
   for (const Pair& p : pairs) {
     const std::string of = std::string(p.table) + " " + p.key + " in '" + p.deck + "'";
     std::string deck = decks.at(p.deck);

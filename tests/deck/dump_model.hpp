@@ -145,6 +145,31 @@ class ModelDump {
                                x.groove_at, x.stiffness, x.damping});
     oil(x.oil);
   }
+  void stage(const model::Pid& s) { each("pid", std::array{s.kp, s.ki, s.kd, s.lag}); }
+  void stage(const model::LeadLag& s) { each("lead_lag", std::array{s.zero, s.pole}); }
+  void stage(const model::Notch& s) { each("notch", std::array{s.frequency, s.damping, s.depth}); }
+  void stage(const model::LowPass& s) {
+    each("low_pass", std::array{s.frequency, double(s.order)});
+  }
+  void stage(const model::TransferFunction& s) {
+    each("numerator", s.numerator);
+    each("denominator", s.denominator);
+    each("gain", std::array{s.gain});
+  }
+  void stage(const model::StateSpaceStage& s) {
+    matrix("state space", s.matrix);
+    each("gain", std::array{s.gain});
+  }
+  void law(const model::MagneticBearing& x) {
+    each("magnet", std::array{x.per_current, x.per_displacement, x.bias, x.gap, x.saturation,
+                              x.current_limit, x.angle, x.sensor_bandwidth, x.amplifier_bandwidth,
+                              x.delay, double(x.delay_order), x.setpoint.x(), x.setpoint.y()});
+    if (x.sensor_at) at("sensor", *x.sensor_at);
+    law("power", x.power);
+    for (const model::Controller* c : {&x.control, &x.second, &x.cross})
+      for (const model::ControlStage& s : *c)
+        std::visit([this](const auto& y) { stage(y); }, s);
+  }
   void law(const model::BallBearing& x) {
     each("ball", std::array{double(x.balls), x.ball_diameter, x.pitch_diameter, x.contact_angle,
                             x.clearance, x.f_inner, x.f_outer, x.stiffness, x.preload,

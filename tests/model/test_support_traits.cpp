@@ -107,6 +107,17 @@ model::AnnularSeal seal() {
   b.viscosity = 1e-3;
   return b;
 }
+model::MagneticBearing magnetic() {
+  model::MagneticBearing b;
+  b.per_current = 200;
+  b.per_displacement = 1.1e6;
+  b.bias = 3;
+  b.gap = 0.5e-3;
+  b.angle = 0.3;
+  b.amplifier_bandwidth = 1e4;
+  b.control = {model::Pid{.kp = 1.4e4, .ki = 0, .kd = 20, .lag = 5e-5}};
+  return b;
+}
 model::CrossCoupling cross_coupling() {
   model::CrossCoupling b;
   b.k = 1e6;
@@ -172,6 +183,7 @@ const std::vector<Sample>& samples() {
       {"rub", rub(0)},
       {"rub_with_friction", rub(0.1)},
       {"annular_seal", seal()},
+      {"magnetic", magnetic()},
       {"cross_coupling", cross_coupling()},
       {"coupling", coupling()},
       {"gears", gears(0, -1)},
@@ -313,7 +325,7 @@ TEST_P(SupportTraits, HoldsWhatItSays) {
 
 TEST_P(SupportTraits, LoadsItsNodeAsItSays) {
   if (is_constraint() || std::holds_alternative<model::Rub>(law())) {
-    const model::NodeLoads& none = model::traits_of(law()).loads;
+    const model::NodeLoads none = model::traits_of(law()).loads;
     EXPECT_FALSE(none.lateral || none.tilting || none.torque);
     return;
   }

@@ -54,7 +54,8 @@ ModeEnergy energy_distribution(Linearizer& linear, const VecXc& x) {
     if (family != system::Family::shaft) {
       la::multiply(part.K, x, y);
       for (Index i = 0; i < s.nodes(); ++i)
-        if (const double e = x.segment<6>(6 * i).dot(y.segment<6>(6 * i)).real(); e != 0)
+        if (const double e = x.segment<6>(6 * i).dot(y.segment<6>(6 * i)).real();
+            e != 0 && !s.node(i).signal)
           out.strain.push_back({family, kind, i, -1, e});
       continue;
     }

@@ -192,6 +192,12 @@ void count_real(const la::BlockMatrix<6>& K, std::span<const unsigned char> free
 
 }  // namespace
 
+bool has_signals(const system::System& s) {
+  for (Index i = 0; i < s.nodes(); ++i)
+    if (s.node(i).signal) return true;
+  return false;
+}
+
 Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
                            const system::System& system, double length, bool shape) {
   WHIRL_EXPECTS(free.size() == at(system.size()) && length > 0.0);
@@ -215,8 +221,13 @@ Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned
   for (double s = rounding; s < 1e-9 && !factored; s *= 2.0)
     factored = whole.factor(s);
   out.sign = !factored ? 0 : whole.lu().determinant().second.real() < 0.0 ? -1 : 1;
-  count_real(K, free, system, length, out);
   out.certain = factored && out.sign < 0;
+  if (has_signals(system)) {
+    out.negative = out.certain ? 1 : 0;
+    out.judged = out.certain;
+    return out;
+  }
+  count_real(K, free, system, length, out);
   return out;
 }
 

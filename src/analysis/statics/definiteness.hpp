@@ -12,7 +12,9 @@
 //     certain
 //   det K < 0: an odd number of real roots lambda > 0, unstable; certain
 //   otherwise: the negative real eigenvalues among those of least size; counted, not proved
-// So too for a symmetric K that cannot be factored.
+// So too for a symmetric K that cannot be factored. With controllers, whose signals are states of
+// first order, small eigenvalues of K say nothing: det K < 0 remains, and where it is positive
+// nothing is claimed (judged = false).
 // Loss of stability by oscillation (whirl, flutter) is not asked about here, nor whether gyroscopic
 // moments hold an even number of negative directions in a rotor that spins: modal analysis of the
 // same state answers both.
@@ -26,6 +28,7 @@ struct Definiteness {
   Index negative = 0;  ///< directions (symmetric K) or negative real eigenvalues (unsymmetric K)
   bool symmetric = true;
   bool certain = true;  ///< false: counted, not proved
+  bool judged = true;   ///< false: controllers decide, and nothing is said here
   int sign = 1;         ///< of det K; 0: K cannot be factored
   double lowest = 0;    ///< the lowest eigenvalue of K x = mu D x, D = 1 for displacements and
                         ///< (length/10)^2 for rotations, N/m
@@ -40,6 +43,9 @@ struct Definiteness {
 /// shape: find it (some 20 factorisations, unstable equilibria only).
 Definiteness judge_tangent(const la::BlockMatrix<6>& K, std::span<const unsigned char> free,
                            const system::System& system, double length, bool shape = true);
+
+/// A controller has states in it.
+bool has_signals(const system::System& system);
 
 /// Scales a shape: largest displacement 1 (rotation, where nothing is displaced).
 void scale_shape(VecX& x, const system::System& system);

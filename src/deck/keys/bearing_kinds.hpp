@@ -46,7 +46,8 @@ void add_kinds(Kinds&, As<model::CrossCoupling>);
 void add_kinds(Kinds&, As<model::BallBearing>);  // bearings_rolling.cpp
 void add_kinds(Kinds&, As<model::RollerBearing>);
 void add_kinds(Kinds&, As<model::RollingEstimate>);
-void add_kinds(Kinds&, As<model::Coupling>);  // bearings_shafts.cpp
+void add_kinds(Kinds&, As<model::MagneticBearing>);  // bearings_magnetic.cpp
+void add_kinds(Kinds&, As<model::Coupling>);         // bearings_shafts.cpp
 void add_kinds(Kinds&, As<model::GearPair>);
 
 /// Entries kxx, kyy, ... of a 6x6 matrix: prefix 'k', 'c' or 'm'; rows force, columns motion.

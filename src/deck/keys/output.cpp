@@ -59,6 +59,7 @@ void describe(Visitor& v, model::Output& o) {
       {"joints",
        "forces and moments of the joints on the line of their 'at', their angles and "
        "slides"},
+      {"control", "control currents of magnetic bearings"},
       {"energy", "energies and their balance"},
   };
   static constexpr Option amplitudes[] = {{"zero_to_peak", ""}, {"peak_to_peak", ""}};

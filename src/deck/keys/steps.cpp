@@ -405,6 +405,19 @@ void describe(Visitor& v, model::HarmonicStep& s) {
     v.error("E26", "rotor_speed", "'rotor_speed' belongs to a range of frequencies");
 }
 
+void describe(Visitor& v, model::SensitivityStep& s) {
+  v.quantity("speed", s.speed, "rpm", any, "speed of the rotor");
+  v.table(required("frequency"), s.frequency, "frequencies of the disturbance");
+  describe_about(v, s.about);
+  const auto magnetic = [](const model::Bearing& b) {
+    return std::holds_alternative<model::MagneticBearing>(b.law);
+  };
+  const auto& bearings = v.model().bearings;
+  if (v.clean() && std::none_of(bearings.begin(), bearings.end(), magnetic))
+    v.error("E26", nullptr, "there is no control loop: no bearing is magnetic",
+            "[[bearing]] with type = \"magnetic\"");
+}
+
 void describe(Visitor& v, model::TorsionalStep& s) {
   v.integer("modes", s.modes, between(1, 10000),
             "number of torsional modes, from the lowest frequency");
@@ -484,6 +497,9 @@ void describe(Visitor& v, model::Step& s) {
           "critical_map", s.law, "undamped critical speeds against the stiffness of the supports"),
       Visitor::alternative<model::HarmonicStep>(
           "harmonic_response", s.law, "steady response to harmonic forces, synchronous or not"),
+      Visitor::alternative<model::SensitivityStep>(
+          "sensitivity", s.law,
+          "sensitivity of the control loops of magnetic bearings, with the zones of ISO 14839-3"),
       Visitor::alternative<model::TorsionalStep>(
           "torsional", s.law,
           "torsional natural frequencies and where orders of the speed meet them"),

@@ -1,0 +1,241 @@
+// A sensitivity step: how much margin the control loops of magnetic bearings have.
+#include <analysis/response/sensitivity.hpp>
+#include <analysis/search.hpp>
+#include <results/frequency.hpp>
+#include <results/linear_limits.hpp>
+#include <steps/step_kinds.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whirl::steps {
+namespace {
+
+/// Zones of ISO 14839-3:2006 for the largest |S|: A up to 3 (9.5 dB), B up to 4 (12 dB), C up to 5
+/// (14 dB), D beyond.
+constexpr std::array<double, 3> zone_ends{3.0, 4.0, 5.0};
+const char* zone_of(double sensitivity) {
+  static constexpr const char* names[] = {"A", "B", "C", "D"};
+  const auto* end = std::lower_bound(zone_ends.begin(), zone_ends.end(), sensitivity);
+  return names[end - zone_ends.begin()];
+}
+double decibel(double x) { return 20.0 * std::log10(x); }
+
+class SensitivityRun {
+ public:
+  SensitivityRun(run::Job& job, const model::Step& step, const model::SensitivityStep& law)
+      : law_(law),
+        s_(job, step, "sensitivity", "sensitivity of the control loops", std::abs(law.speed)),
+        meter_(s_.linear, opened_loops(job)) {}
+  void execute();
+
+ private:
+  struct Loop {
+    std::string name;
+    double peak = 0, at = 0;  ///< largest |S|; rad/s
+  };
+  std::vector<analysis::OpenedLoop> opened_loops(const run::Job& job);
+  void judge_stability();
+  void solve();
+  void find_peak(std::size_t loop);
+  double size_at(std::size_t loop, double w) { return std::abs(meter_.at(law_.speed, w)[loop]); }
+  void add_curves();
+  void add_peaks();
+  void add_figure();
+  std::string verdict() const;
+
+  const model::SensitivityStep& law_;
+  std::vector<Loop> loops_;
+  results::FrequencyStep s_;
+  analysis::SensitivityMeter meter_;
+  std::vector<double> grid_;                  ///< rad/s
+  std::vector<std::vector<Complex>> values_;  ///< [frequency][loop]
+  std::size_t growing_ = 0;
+};
+
+std::vector<analysis::OpenedLoop> SensitivityRun::opened_loops(const run::Job& job) {
+  std::vector<analysis::OpenedLoop> out;
+  for (const assembly::MagneticControl& c : job.built.magnetic_controls)
+    for (std::size_t axis = 0; axis < c.loops.size(); ++axis) {
+      const assembly::MagneticControl::Loop& from = c.loops[axis];
+      analysis::OpenedLoop loop;
+      for (const auto& [node, force] : from.entry)
+        loop.entry.emplace_back(6 * node, force);
+      loop.signal = from.signal >= 0 ? 6 * from.signal : -1;
+      loop.unit = from.unit;
+      loop.axis = from.axis;
+      loop.shaft = {from.shaft.node, from.shaft.offset};
+      if (job.mesh.nodes[at(from.housing.node)].kind != meshes::NodeKind::ground)
+        loop.housing = analysis::Point{from.housing.node, from.housing.offset};
+      out.push_back(std::move(loop));
+      loops_.push_back({fmt::format("{} axis {}", job.model.bearings[c.bearing].name, axis + 1)});
+    }
+  return out;
+}
+
+/// Its modes up to the end of the range: what grows, and where the curves are steep.
+void SensitivityRun::judge_stability() {
+  analysis::ModesOptions o;
+  o.count = 0;
+  o.max_frequency =
+      law_.frequency.values.empty() ? law_.frequency.stop : law_.frequency.values.back();
+  o.real_roots = true;
+  o.judge = true;
+  analysis::SpectrumCertificate certificate;
+  const std::vector<analysis::WhirlMode> modes =
+      analysis::whirl_modes(s_.linear, law_.speed, o, &certificate);
+  for (const analysis::WhirlMode& m : modes) {
+    growing_ += m.growth() > 0;
+    if (!(m.frequency > 0)) continue;
+    for (const double widths : {-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0}) {
+      const double w = m.frequency + widths * std::abs(m.lambda.real());
+      if (w > grid_.front() && w < grid_.back()) grid_.push_back(w);
+    }
+  }
+  s_.certify(certificate);
+}
+
+void SensitivityRun::solve() {
+  grid_ = results::frequencies_of(law_.frequency);
+  grid_.erase(std::remove_if(grid_.begin(), grid_.end(), [](double w) { return w <= 0; }),
+              grid_.end());
+  constexpr double per_decade = 24.0;  // for the curves' beginning on their logarithmic axis
+  const double last = grid_.back();
+  for (double w = grid_.front(); w < last; w *= std::pow(10.0, 1.0 / per_decade))
+    grid_.push_back(w);
+  std::sort(grid_.begin(), grid_.end());
+  judge_stability();
+  std::sort(grid_.begin(), grid_.end());
+  grid_.erase(
+      std::unique(grid_.begin(), grid_.end(), [](double a, double b) { return b - a < 1e-9 * b; }),
+      grid_.end());
+  const run::PhaseTimer timer(s_.job, "sensitivity");
+  for (const double w : grid_)
+    values_.push_back(meter_.at(law_.speed, w));
+  for (std::size_t k = 0; k < loops_.size(); ++k)
+    find_peak(k);
+}
+
+void SensitivityRun::find_peak(std::size_t loop) {
+  const auto size = [&](std::size_t k) { return std::abs(values_[k][loop]); };
+  std::size_t top = 0;
+  for (std::size_t k = 1; k < grid_.size(); ++k)
+    if (size(k) > size(top)) top = k;
+  loops_[loop].at = grid_[top];
+  loops_[loop].peak = size(top);
+  if (top == 0 || top + 1 == grid_.size()) return;
+  loops_[loop].at = analysis::find_maximum(grid_[top - 1], grid_[top], size(top), grid_[top + 1],
+                                           1e-9, [&](double w) { return size_at(loop, w); });
+  loops_[loop].peak = size_at(loop, loops_[loop].at);
+}
+
+void SensitivityRun::add_curves() {
+  io::Table t;
+  t.title = "Sensitivity of the loops";
+  t.columns = {{"frequency", "Hz", ""}};
+  for (const Loop& l : loops_) {
+    t.columns.push_back({l.name + " sensitivity", "-", "|S|"});
+    t.columns.push_back({l.name + " sensitivity", "dB", ""});
+    t.columns.push_back({l.name + " open loop, real", "-", "of L, S = 1/(1 + L)"});
+    t.columns.push_back({l.name + " open loop, imaginary", "-", ""});
+  }
+  for (std::size_t k = 0; k < grid_.size(); ++k) {
+    std::vector<io::Table::Cell> row{to_hz(grid_[k])};
+    for (const Complex& S : values_[k]) {
+      const Complex L = 1.0 / S - 1.0;
+      row.emplace_back(std::abs(S));
+      row.emplace_back(decibel(std::abs(S)));
+      row.emplace_back(L.real());
+      row.emplace_back(L.imag());
+    }
+    t.add(std::move(row));
+  }
+  s_.add_table("curves", std::move(t), false);
+}
+
+void SensitivityRun::add_peaks() {
+  io::Table t;
+  t.title = "Largest sensitivity of every loop";
+  t.columns = {{"loop", "-", "bearing and axis"},
+               {"largest sensitivity", "-", "|S|, the other loops closed"},
+               {"largest sensitivity", "dB", ""},
+               {"frequency", "Hz", "of the largest"},
+               {"zone", "-", "ISO 14839-3:2006: A up to 3, B up to 4, C up to 5, D beyond"}};
+  io::Value& v = s_.summary();
+  v["speed [rpm]"] = to_rpm(law_.speed);
+  v["growing motions"] = static_cast<int>(growing_);
+  for (const Loop& l : loops_) {
+    const std::string zone = growing_ > 0 ? "unstable" : zone_of(l.peak);
+    t.add({l.name, l.peak, decibel(l.peak), to_hz(l.at), zone});
+    io::Value e = io::Value::object();
+    e["loop"] = l.name;
+    e["largest sensitivity"] = l.peak;
+    e["frequency [Hz]"] = to_hz(l.at);
+    e["zone"] = zone;
+    v["loops"].push(std::move(e));
+  }
+  s_.add_table("sensitivity", std::move(t));
+}
+
+void SensitivityRun::add_figure() {
+  plot::Axes a;
+  a.x = plot::Axis("frequency", "Hz", true);
+  a.y = plot::Axis("sensitivity |S|", "dB");
+  for (std::size_t l = 0; l < loops_.size(); ++l) {
+    plot::Series y;
+    y.label = loops_[l].name;
+    for (std::size_t k = 0; k < grid_.size(); ++k) {
+      y.x.push_back(to_hz(grid_[k]));
+      y.y.push_back(decibel(std::abs(values_[k][l])));
+    }
+    a.series.push_back(std::move(y));
+  }
+  static constexpr const char* ends[] = {"end of zone A", "end of zone B", "end of zone C"};
+  for (std::size_t k = 0; k < zone_ends.size(); ++k) {
+    plot::Rule r;
+    r.vertical = false;
+    r.value = decibel(zone_ends[k]);
+    r.label = ends[k];
+    a.rules.push_back(std::move(r));
+  }
+  plot::Figure f;
+  f.name = s_.file("curves");
+  f.title = fmt::format("Sensitivity of the control loops at {:.6g} rpm", to_rpm(law_.speed));
+  f.axes = {std::move(a)};
+  s_.add_figure(std::move(f));
+}
+
+std::string SensitivityRun::verdict() const {
+  if (growing_ > 0)
+    return fmt::format("unstable: {} growing motion{}, sensitivities are no margins", growing_,
+                       growing_ == 1 ? "" : "s");
+  const auto worst = std::max_element(loops_.begin(), loops_.end(),
+                                      [](const Loop& a, const Loop& b) { return a.peak < b.peak; });
+  return fmt::format("largest sensitivity {:.4g} ({:.3g} dB) of {} at {:.4g} Hz, zone {}",
+                     worst->peak, decibel(worst->peak), worst->name, to_hz(worst->at),
+                     zone_of(worst->peak));
+}
+
+void SensitivityRun::execute() {
+  solve();
+  add_peaks();
+  add_curves();
+  add_figure();
+  s_.section.text = fmt::format(
+      "Every loop of the magnetic bearings opened behind its sensor, the others closed, at {:.6g} "
+      "rpm, {:.5g} to {:.5g} Hz: {}. Zones of ISO 14839-3:2006 for machines that are stable.",
+      to_rpm(law_.speed), to_hz(grid_.front()), to_hz(grid_.back()), verdict());
+  s_.finish(
+      fmt::format("{} loops at {:.0f} rpm, {}", loops_.size(), to_rpm(law_.speed), verdict()));
+}
+
+}  // namespace
+
+void run_sensitivity_step(run::Job& job, const model::Step& step,
+                          const model::SensitivityStep& law) {
+  SensitivityRun(job, step, law).execute();
+}
+
+}  // namespace whirl::steps

@@ -1,0 +1,310 @@
+// Magnetic bearings through the program: closed-loop poles and sensitivity of a rigid rotor (exact),
+// motion against the exact solution of its linear equations, sensors elsewhere, a rotor that
+// spins, equilibria that only control holds, a drop, messages.
+#include "deck_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace {
+
+using whirl::test::Columns;
+using whirl::test::DeckRun;
+
+/// 30 kg, held in x and against tilting, on the magnets of `bearing`.
+std::string mass(const std::string& bearing, const std::string& steps) {
+  return R"(format = 1
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "rigid"]
+rows = [["left", 100, true], ["right", 100, true]]
+[[disk]]
+name = "mass"
+at = "left:end"
+mass = "30 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.06 kg.m^2"
+[[bearing]]
+name = "guide"
+at = "mass"
+type = "rigid"
+directions = ["x", "rx", "ry", "rz"]
+[[bearing]]
+name = "AMB"
+at = "mass"
+type = "magnetic"
+)" + bearing +
+         "[[probe]]\nname = \"P\"\nat = \"mass\"\n" + steps + "[output]\nreport = false\n";
+}
+const std::string magnet = R"(current_stiffness = "250 N/A"
+position_stiffness = "1.5e6 N/m"
+sensor_bandwidth = "4000 Hz"
+amplifier_bandwidth = "1200 Hz"
+)";
+std::string control(double p, double i, double d) {
+  return fmt::format(
+      "[[bearing.control]]\ntype = \"pid\"\np = \"{} A/m\"\ni = \"{} A/(m.s)\"\nd = \"{} "
+      "A.s/m\"\nlag = \"53 us\"\n",
+      p, i, d);
+}
+const std::string modal =
+    "[[step]]\nname = \"m\"\ntype = \"modal\"\nmodes = 2\nmax_frequency = \"5000 Hz\"\n";
+const std::string loops =
+    "[[step]]\nname = \"s\"\ntype = \"sensitivity\"\nfrequency = { start = \"1 Hz\", stop = \"2000 "
+    "Hz\", points = 300 }\n";
+const std::string still = "[[step]]\nname = \"st\"\ntype = \"static\"\n";
+
+// m 30 kg, k_s 1.5e6 N/m, k_i 250 N/A, PID 1.5e4 A/m, 1e5 A/(m s), 32 A s/m with lag 53 us, amplifier
+// 1200 Hz, sensor 4000 Hz: roots of the characteristic polynomial, and the largest |1/(1 + L)|.
+TEST(MagneticBearings, PolesAndSensitivityOfARigidRotor) {
+  const DeckRun d(mass(magnet + control(1.5e4, 1e5, 32), still + modal + loops));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns modes = d.csv("m_modes.csv"), real = d.csv("m_real_roots.csv");
+  for (const auto& row : modes.rows) {
+    EXPECT_NEAR(row[modes.column("frequency [Hz]")] * 2 * M_PI, 247.593409226, 1e-7);
+    EXPECT_NEAR(row[modes.column("damping ratio [-]")],
+                124.132810086 / std::hypot(124.132810086, 247.593409226), 1e-9);
+  }
+  for (const double rate : {-11.549881174}) {
+    EXPECT_EQ(std::count_if(real.rows.begin(), real.rows.end(),
+                            [&](const auto& row) { return std::abs(row[0] - rate) < 1e-8; }),
+              2)
+        << rate;
+  }
+  const Columns s = d.csv("s_sensitivity.csv");
+  ASSERT_EQ(s.rows.size(), 2u);
+  for (const auto& row : s.rows) {
+    EXPECT_NEAR(row[s.column("largest sensitivity [-]")], 1.968359750, 1e-8);
+    EXPECT_NEAR(row[s.column("largest sensitivity [dB]")], 5.88208951, 1e-7);
+    EXPECT_NEAR(row[s.column("frequency [Hz]")], 46.4978, 1e-3);
+  }
+  EXPECT_TRUE(d.says("zone A")) << d.log;
+  // S (1 + L) = 1
+  const Columns curves = d.csv("s_curves.csv");
+  for (const auto& row : curves.rows)
+    EXPECT_NEAR(row[1] * std::hypot(1 + row[3], row[4]), 1, 1e-9);
+}
+
+// The weight comes at once: exact by the eigenvectors of the six first-order equations.
+TEST(MagneticBearings, MotionUnderItsWeight) {
+  const DeckRun d(mass(magnet + control(1.5e4, 1e5, 32),
+                       "[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"100 ms\"\nstart "
+                       "= \"rest\"\nintegrator = { tolerance = 1e-8 }\n") +
+                  "every = \"1 ms\"\nquantities = [\"probes\", \"control\", \"energy\"]\n");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("t.csv");
+  const std::size_t z = t.column("P.z [m]"), current = t.column("bearing AMB current.2 [A]");
+  struct At {
+    double t, z, i;
+  };
+  for (const At& x : {At{2e-3, -1.70669882745e-05, 0.6710705439413},
+                      At{10e-3, -0.0001461011793736, 2.458146274206},
+                      At{30e-3, -9.685580896525e-05, 1.758879997276},
+                      At{100e-3, -4.441020182912e-05, 1.442542533697}}) {
+    const auto row = std::find_if(t.rows.begin(), t.rows.end(),
+                                  [&](const auto& r) { return std::abs(r[0] - x.t) < 1e-9; });
+    ASSERT_NE(row, t.rows.end());
+    EXPECT_NEAR((*row)[z], x.z, 3e-10);
+    EXPECT_NEAR((*row)[current], x.i, 1e-5);
+  }
+}
+
+// What a table of coefficients says of it: -k_s + k_i G(i w) at the frequency of the spin.
+TEST(MagneticBearings, SynchronousCoefficients) {
+  std::string deck = mass(magnet + "angle = \"30 deg\"\n" + control(1.5e4, 1e5, 32),
+                          "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"3000 rpm\"\n");
+  deck.replace(deck.find("\"rx\", "), 6, "");
+  const DeckRun d(deck);
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns c = d.csv("st_coefficients.csv");
+  const double w = 100 * M_PI;
+  const std::complex<double> s(0, w);
+  const std::complex<double> G = (1.5e4 + 1e5 / s + 32.0 * s / (1.0 + 53e-6 * s)) /
+                                 (1.0 + s / (2 * M_PI * 1200)) / (1.0 + s / (2 * M_PI * 4000));
+  const std::complex<double> Z = -1.5e6 + 250.0 * G;
+  for (const char* k : {"kyy [N/m]", "kzz [N/m]"})
+    EXPECT_NEAR(c.rows.at(0)[c.column(k)], Z.real(), 1e-9 * std::abs(Z));
+  for (const char* k : {"cyy [N s/m]", "czz [N s/m]"})
+    EXPECT_NEAR(c.rows.at(0)[c.column(k)] * w, Z.imag(), 1e-9 * std::abs(Z));
+  EXPECT_NEAR(c.rows.at(0)[c.column("kyz [N/m]")], 0, 1e-9 * std::abs(Z));
+}
+
+/// A rigid rotor on a spring at -0.2 m, a magnet in the middle and its sensor at 0.1 m.
+std::string lever(const std::string& steps) {
+  return R"deck(format = 1
+[model]
+gravity = "0 m/s^2"
+[shaft]
+name = "rotor"
+material = "steel"
+columns = ["name", "length[mm]", "rigid"]
+rows = [["left", 200, true], ["right", 100, true]]
+[[disk]]
+name = "mass"
+at = "left:end"
+mass = "10 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.06 kg.m^2"
+[[bearing]]
+name = "spring"
+at = "left:start"
+type = "linear"
+kxx = "1e6 N/m"
+kyy = "3e5 N/m"
+kzz = "3e5 N/m"
+cyy = "200 N.s/m"
+czz = "200 N.s/m"
+[[bearing]]
+name = "AMB"
+at = "mass"
+type = "magnetic"
+current_stiffness = "200 N/A"
+position_stiffness = "1e5 N/m"
+sensor_at = "right:end"
+sensor_bandwidth = "500 Hz"
+amplifier_bandwidth = "300 Hz"
+delay = "200 us"
+[[bearing.control]]
+type = "pid"
+p = "5000 A/m"
+i = "2e4 A/(m.s)"
+d = "20 A.s/m"
+lag = "500 us"
+[[probe]]
+name = "end"
+at = "right:end"
+)deck" + steps +
+         "[output]\nreport = false\n";
+}
+std::string shaken(const char* speed) {
+  return fmt::format(
+      "[[step]]\nname = \"h\"\ntype = \"harmonic_response\"\nrotor_speed = \"{0}\"\nfrequency = "
+      "{{ values = [\"30 Hz\"] }}\n[[step.force]]\nat = \"mass\"\nforce = [\"0 N\", \"100 N\", "
+      "\"200 "
+      "N\"]\n[[step]]\nname = \"s\"\ntype = \"sensitivity\"\nspeed = \"{0}\"\nfrequency = {{ "
+      "values "
+      "= [\"30 Hz\"] }}\nabout = \"undeformed\"\n",
+      speed);
+}
+
+// Four equations of motion with gyroscopic moments, the control force on the middle from the
+// displacement of the end, solved apart from the program.
+TEST(MagneticBearings, SensorElsewhereAndSpin) {
+  struct Case {
+    const char* speed;
+    double y, z, sensitivity;
+  };
+  for (const Case& c :
+       {Case{"0 rpm", 0.0001006774395609, 0.0002013548791218, 0.3259632519219},
+        Case{"6000 rpm", 7.165925231084e-05, 0.0002465533918588, 0.6049556469263}}) {
+    const DeckRun d(lever(shaken(c.speed)));
+    ASSERT_TRUE(std::filesystem::exists(d.folder / "r/h_response.csv")) << d.log;
+    const Columns h = d.csv("h_response.csv"), s = d.csv("s_sensitivity.csv");
+    EXPECT_NEAR(h.last()["end y amplitude [m]"], c.y, 1e-12);
+    EXPECT_NEAR(h.last()["end z amplitude [m]"], c.z, 1e-12);
+    EXPECT_NEAR(s.rows.front()[s.column("largest sensitivity [-]")], c.sensitivity, 1e-9);
+  }
+}
+
+// k_i p < k_s diverges, which no negative eigenvalue of the static tangent need show: two axes alike
+// have a positive determinant. One alone has a negative one.
+TEST(MagneticBearings, EquilibriumIsNotCalledStableWhereControlDecides) {
+  {
+    const DeckRun d(mass(magnet + control(5e3, 0, 32), still + modal + loops));
+    EXPECT_FALSE(d.says("unstable equilibrium")) << d.log;
+    EXPECT_TRUE(d.says("whether controllers hold it is for a modal")) << d.log;
+    EXPECT_TRUE(d.says("2 diverging")) << d.log;
+    EXPECT_TRUE(d.says("unstable: 2 growing motions, sensitivities are no margins")) << d.log;
+  }
+  std::string second = control(1.5e4, 0, 32);
+  second.replace(second.find("control"), 7, "control_2");
+  const DeckRun d(mass(magnet + control(5e3, 0, 32) + second, still + modal));
+  EXPECT_TRUE(d.says("unstable equilibrium, 1 direction: it diverges at any mass and damping"))
+      << d.log;
+  EXPECT_TRUE(d.says("1 diverging")) << d.log;
+}
+
+// Magnets without power let go: free fall onto the catcher bearing, and every joule accounted for.
+TEST(MagneticBearings, DropOnACatcher) {
+  const std::string power =
+      "power = { type = \"table\", time = [\"0 s\", \"10 ms\", \"10.0001 ms\"], value = [1, 1, 0] "
+      "}\n";
+  const DeckRun d(
+      mass(R"(current_stiffness = "250 N/A"
+bias_current = "3 A"
+gap = "0.5 mm"
+sensor_bandwidth = "4000 Hz"
+amplifier_bandwidth = "1200 Hz"
+)" + power + control(1.5e4, 1e5, 32) +
+               R"([[bearing]]
+name = "catcher"
+at = "mass"
+type = "rub"
+gap = "0.2 mm"
+stiffness = "2e7 N/m"
+damping = "0.5 s/m"
+diameter = "80 mm"
+)",
+           still + "[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"40 ms\"\nfrom = "
+                   "\"st\"\nintegrator = { tolerance = 1e-8 }\n") +
+      "every = \"0.1 ms\"\nquantities = [\"probes\", \"control\", \"energy\"]\n");
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("t.csv");
+  const std::size_t z = t.column("P.z [m]");
+  double lowest = 0;
+  for (const auto& row : t.rows) {
+    if (row[0] < 10e-3) {
+      EXPECT_NEAR(row[z], 0, 1e-9) << row[0];
+    }
+    if (row[0] > 10.2e-3 && row[0] < 15e-3) {
+      EXPECT_NEAR(row[z], -0.5 * 9.80665 * std::pow(row[0] - 10e-3, 2), 3e-8) << row[0];
+    }
+    lowest = std::min(lowest, row[z]);
+  }
+  EXPECT_LT(lowest, -0.2e-3);
+  EXPECT_GT(lowest, -0.35e-3);
+  // against what the fall set free
+  EXPECT_LT(std::abs(d.summary("t").at("energy").at("largest defect [J]").number()),
+            1e-6 * 30 * 9.80665 * 0.2e-3);
+}
+
+TEST(MagneticBearings, Messages) {
+  const auto says = [](const std::string& bearing, const std::string& steps,
+                       const std::string& text) {
+    const DeckRun d(mass(bearing, steps));
+    EXPECT_EQ(d.exit, 3) << d.log;
+    EXPECT_TRUE(d.says(text)) << text << "\n" << d.log;
+  };
+  const std::string pid = control(1.5e4, 1e5, 32);
+  const std::string strong = "current_stiffness = \"250 N/A\"\namplifier_bandwidth = \"1 kHz\"\n";
+  says(magnet, still, "has no controller");
+  says(magnet + pid + pid, still, "2 stages of the controller make current of displacement");
+  says(magnet + "[[bearing.control]]\ntype = \"notch\"\nfrequency = \"50 Hz\"\n", still,
+       "no stage of the controller makes current");
+  says(magnet + "[[bearing.control]]\ntype = \"pid\"\np = \"1 A/m\"\nd = \"1 A.s/m\"\n", still,
+       "the derivative needs a lag");
+  says(strong + pid, still, "has no position stiffness");
+  says(strong + "position_stiffness = \"1 MN/m\"\nbias_current = \"2 A\"\n" + pid, still,
+       "needs the bias current and the gap");
+  says(strong + "position_stiffness = \"2 MN/m\"\nbias_current = \"2 A\"\ngap = \"0.5 mm\"\n" + pid,
+       still, "has at most");
+  says(strong + "bias_current = \"2 A\"\ngap = \"0.5 mm\"\nsaturation = \"100 N\"\n" + pid, still,
+       "the bias current alone pulls");
+  says(magnet + "saturation = \"100 N\"\n" + pid, still, "a linear force law does not saturate");
+  says(
+      magnet + pid +
+          "[[bearing.control]]\ntype = \"transfer\"\nnumerator = [1, 2, 3]\ndenominator = [1, 2]\n",
+      still, "higher degree");
+  const DeckRun none(
+      "format = 1\n[shaft]\nname = \"r\"\nmaterial = \"steel\"\ncolumns = [\"length[mm]\", "
+      "\"od[mm]\"]\nrows = [[100, 20]]\n[[bearing]]\nname = \"B\"\nat = \"0 m\"\ntype = "
+      "\"rigid\"\ndirections = [\"x\", \"y\", \"z\", \"ry\", \"rz\"]\n" +
+      loops);
+  EXPECT_TRUE(none.says("no bearing is magnetic")) << none.log;
+}
+
+}  // namespace
