@@ -37,6 +37,9 @@ struct SteadyRotation {
   /// differently to motions of different frequency (Context::frequency); between neighbours they
   /// change smoothly. Empty: there are none.
   std::vector<double> table_frequencies;
+  /// rad/s: up to it controllers act; 0: there is none. No energy argument bounds what they drive, so
+  /// stability is looked for up to here at least.
+  double control_bandwidth = 0;
   bool frequency_dependent() const { return !table_frequencies.empty(); }
 };
 

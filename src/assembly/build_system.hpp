@@ -85,6 +85,7 @@ struct MagneticControl {
   std::size_t bearing = 0;          ///< of the model
   std::array<Index, 2> currents{};  ///< scalar nodes, A per current_unit
   double current_unit = 1;
+  double bandwidth = 0;  ///< rad/s, of the amplifiers
   std::array<Loop, 2> loops;
   /// How an axis stands.
   struct Standing {

@@ -178,6 +178,7 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
     MagneticControl control;
     control.bearing = number_of(a, b);
     control.current_unit = signals.loop().current_unit;
+    control.bandwidth = law.amplifier_bandwidth;
     if (n.shaft.offset == 0 && n.other.offset == 0)
       add_magnet<false>(a, b, n, law, signals, control);
     else

@@ -132,6 +132,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_speeds_of_pairs(m, out);
   check_speeds_of_joints(m, out);
   check_places(m, out);
+  check_controllers(m, out);
   check_clamps(m, out);
   check_preloads(m, out);
   check_undeformed(m, out);

@@ -32,6 +32,8 @@ void check_speeds_of_joints(const model::Model& m, Problems& out);
 // validate_steps.cpp: what a step can be asked for
 void check_linear(const model::Model& m, Problems& out);
 void check_maps(const model::Model& m, Problems& out);
+/// Steps without damping on magnetic bearings.
+void check_controllers(const model::Model& m, Problems& out);
 /// A prescribed angle is held in small motions: the shaft is clamped there.
 void check_clamps(const model::Model& m, Problems& out);
 /// Steps linearised about the rotor as drawn.

@@ -110,6 +110,32 @@ void check_maps(const model::Model& m, Problems& out) {
   }
 }
 
+/// Without damping and circulation nothing is left of a controller but its magnets' negative
+/// stiffness.
+void check_controllers(const model::Model& m, Problems& out) {
+  const auto magnetic = std::find_if(m.bearings.begin(), m.bearings.end(), [](const auto& b) {
+    return std::holds_alternative<model::MagneticBearing>(b.law);
+  });
+  if (magnetic == m.bearings.end()) return;
+  const auto undamped = [](const auto& law) {
+    using T = std::decay_t<decltype(law)>;
+    if constexpr (requires { law.damped; })
+      return !law.damped;
+    else
+      return std::is_same_v<T, model::CriticalStep> || std::is_same_v<T, model::CriticalMapStep> ||
+             std::is_same_v<T, model::ApiLateralStep> || std::is_same_v<T, model::BucklingStep>;
+  };
+  for (const auto& s : m.steps)
+    if (std::visit(undamped, s.law))
+      report(out, "E26",
+             fmt::format("step '{}' knows mass, gyroscopic moments and symmetric stiffness alone, "
+                         "which is nothing of what controls magnetic bearing '{}'",
+                         s.name, magnetic->name),
+             "modal, campbell, stability, unbalance_response and sensitivity steps have its "
+             "controllers in them; or put a linear bearing in its place",
+             s.where);
+}
+
 /// A prescribed angle is held in small motions: the shaft is clamped there.
 void check_clamps(const model::Model& m, Problems& out) {
   for (const auto& d : m.drives) {

@@ -21,6 +21,8 @@ analysis::SteadyRotation steady_rotation_of(const run::Job& job, double top_spee
   r.ratio.resize(static_cast<std::size_t>(job.system().lines()), 0.0);
   r.top_speed = top_speed;
   r.table_frequencies = job.built.table_frequencies;
+  for (const assembly::MagneticControl& c : job.built.magnetic_controls)
+    r.control_bandwidth = std::max(r.control_bandwidth, c.bandwidth);
   return r;
 }
 

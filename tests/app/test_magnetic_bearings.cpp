@@ -228,6 +228,33 @@ TEST(MagneticBearings, EquilibriumIsNotCalledStableWhereControlDecides) {
   EXPECT_TRUE(d.says("1 diverging")) << d.log;
 }
 
+// What controllers drive no energy bounds: stability is looked for up to their bandwidth, whatever
+// the number of modes. A stage that is unstable by itself grows at every speed, far from the modes
+// asked for.
+TEST(MagneticBearings, StabilityIsLookedForUpToTheBandwidth) {
+  const std::string stability =
+      "[[step]]\nname = \"g\"\ntype = \"stability\"\nspeed = { start = \"0 rpm\", stop = \"3000 "
+      "rpm\", "
+      "points = 3 }\nmodes = 2\n";
+  const std::string growing =
+      "[[bearing.control]]\ntype = \"transfer\"\nnumerator = [1]\ndenominator = [-0.001, 1]\n";
+  const auto turning = [&](const std::string& bearing) {
+    std::string deck = mass(bearing, stability);
+    deck.replace(deck.find("\"rx\", "), 6, "");
+    return deck;
+  };
+  const DeckRun d(turning(magnet + control(1.5e4, 1e5, 32) + growing));
+  EXPECT_TRUE(d.says("unstable at 0 rpm already (a motion diverges")) << d.log;
+  EXPECT_FALSE(d.says(" stable")) << d.log;
+  const Columns v = d.csv("g_verdicts.csv");
+  for (const auto& row : v.rows)
+    EXPECT_GE(row[v.column("fastest growth [1/s]")], 200) << row[0];
+  const DeckRun good(turning(magnet + control(1.5e4, 1e5, 32)));
+  const Columns c = good.csv("g_verdicts.csv");
+  for (const auto& row : c.rows)
+    EXPECT_GE(row[c.column("roots counted up to [Hz]")], 1200) << row[0];
+}
+
 // Magnets without power let go: free fall onto the catcher bearing, and every joule accounted for.
 TEST(MagneticBearings, DropOnACatcher) {
   const std::string power =
@@ -299,6 +326,10 @@ TEST(MagneticBearings, Messages) {
       magnet + pid +
           "[[bearing.control]]\ntype = \"transfer\"\nnumerator = [1, 2, 3]\ndenominator = [1, 2]\n",
       still, "higher degree");
+  for (const char* step : {"type = \"critical_speeds\"\nmax_speed = \"6000 rpm\"\n",
+                           "type = \"modal\"\ndamping = \"undamped\"\n", "type = \"buckling\"\n"})
+    says(magnet + pid, "[[step]]\nname = \"u\"\n" + std::string(step),
+         "nothing of what controls magnetic bearing 'AMB'");
   const DeckRun none(
       "format = 1\n[shaft]\nname = \"r\"\nmaterial = \"steel\"\ncolumns = [\"length[mm]\", "
       "\"od[mm]\"]\nrows = [[100, 20]]\n[[bearing]]\nname = \"B\"\nat = \"0 m\"\ntype = "

@@ -459,9 +459,11 @@ const std::vector<la::Mode>& WhirlSolver::judged(const la::MCK& m, double Omega,
     known.quiet_above = quiet->above;
     known.quiet_ratio = quiet->ratio;
   }
-  // Where nothing excludes growth at high frequencies, at least those that rotors whirl at are
-  // searched.
-  const double wanted = quiet ? quiet->above : whirl_of_speed * std::abs(Omega);
+  // Where nothing excludes growth at high frequencies, at least those that rotors whirl at, and
+  // those that controllers act at, are searched.
+  const double at_speed =
+      std::max(whirl_of_speed * std::abs(Omega), linear_.running().running().control_bandwidth);
+  const double wanted = quiet ? quiet->above : at_speed;
   if (wanted > reached) {
     modes = &solver_.solve_to(m, wanted);
     known.list = solver_.certificate();
@@ -473,6 +475,11 @@ void WhirlSolver::solve_counted(double Omega) {
   const la::MCK& m = matrices_at(Omega, Complex(0, nan));
   for (const la::Mode& mode : judged(m, Omega, certificate_))
     modes_.push_back(describe_mode(mode, m, linear_));
+  // a free motion, a double root at zero, that came out as large as rounding of what is fastest here
+  constexpr double of_the_fastest = 1e-12;
+  const double radius = certificate_.list.radius;
+  for (WhirlMode& mode : modes_)
+    if (std::isfinite(radius)) mode.rounding = std::max(mode.rounding, of_the_fastest * radius);
 }
 
 void WhirlSolver::count_along_axis(double Omega, const la::Certificate& rest) {
