@@ -3,6 +3,7 @@
 #include <analysis/search.hpp>
 #include <results/frequency.hpp>
 #include <results/linear_limits.hpp>
+#include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
 #include <fmt/format.h>

@@ -62,6 +62,14 @@ def run(*command, **options):
     subprocess.run(command, check=True, **options)
 
 
+def run_quietly(*command):
+    """What it printed is shown only where it fails."""
+    print("+", shlex.join(map(str, command)), flush=True)
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0:
+        raise SystemExit(done.stdout[-8000:])
+
+
 def compiles(build, source):
     """Whether a source file of the copy passes the compiler; what it says otherwise."""
     for entry in json.loads((build / "compile_commands.json").read_text()):
@@ -127,11 +135,10 @@ def main():
     changed = sorted({file for file, how, _, _ in page if how != "new"})
     new = sorted({file for file, how, _, _ in page if how == "new"})
 
-    run("cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DWHIRL_BUILD_TESTS=ON",
-        *cached(parent, "CMAKE_BUILD_TYPE", "CMAKE_CXX_COMPILER", "CMAKE_CXX_COMPILER_LAUNCHER", "CMAKE_CXX_FLAGS", "WHIRL_WITH_VTK", "WHIRL_WITH_SUNDIALS"),
-        stdout=subprocess.DEVNULL)
+    run_quietly("cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DWHIRL_BUILD_TESTS=ON",
+        *cached(parent, "CMAKE_BUILD_TYPE", "CMAKE_CXX_COMPILER", "CMAKE_CXX_COMPILER_LAUNCHER", "CMAKE_CXX_FLAGS", "WHIRL_WITH_VTK", "WHIRL_WITH_SUNDIALS"))
     show_omissions(tree, build, page)
-    run("cmake", "--build", build, "--target", "test_elements", "test_model", "whirl", stdout=subprocess.DEVNULL)
+    run_quietly("cmake", "--build", build, "--target", "test_elements", "test_model", "whirl")
     run(build / "bin/test_elements", "--gtest_brief=1")
     run(build / "bin/test_model", "--gtest_brief=1", "--gtest_filter=*lastomer*:SupportTraitsOf.*")
     check_deck(build / "bin/whirl", tree, scratch)
