@@ -14,9 +14,6 @@ constexpr double offset = 1e-4;       ///< of an interval: step of the slopes
 constexpr int deepest = 16;           ///< halvings of one interval
 constexpr Index most_samples = 4000;  ///< of one piece of a path
 
-/// The argument of an increment of log f in (-pi, pi].
-Complex principal(Complex step) { return {step.real(), std::remainder(step.imag(), two_pi)}; }
-
 }  // namespace
 
 bool LogChange::sample(double t, Sample& out) {

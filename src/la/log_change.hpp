@@ -4,9 +4,15 @@
 // the slope of one over the distance to either side.)
 #pragma once
 #include <core/types.hpp>
+#include <cmath>
 #include <functional>
 
 namespace whirl::la {
+
+/// The increment of log f with its argument in (-pi, pi].
+inline Complex principal(Complex step) {
+  return {step.real(), std::remainder(step.imag(), two_pi)};
+}
 
 class LogChange {
  public:

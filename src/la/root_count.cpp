@@ -1,5 +1,6 @@
 #include <core/contract.hpp>
 #include <la/dense.hpp>
+#include <la/log_change.hpp>
 #include <la/root_count.hpp>
 
 #include <cmath>
@@ -8,16 +9,13 @@ namespace whirl::la {
 
 namespace {
 
-constexpr double largest_step = 12.0;  ///< of log f between neighbouring samples
+constexpr double largest_arc_step = 12.0;  ///< of log f between neighbouring samples
 constexpr double counting_surprise =
     0.4;  ///< of that, what the slopes do not explain: enough to count
 constexpr double moment_surprise = 2e-3;  ///< and to say where the roots are
 constexpr double difference = 1e-5;       ///< of the radius: step of the slope
-constexpr int deepest = 14;               ///< halvings of one interval
-constexpr Index most_samples = 400;
-
-/// The argument of an increment of log f in (-pi, pi].
-Complex principal(Complex step) { return {step.real(), std::remainder(step.imag(), two_pi)}; }
+constexpr int deepest_arc = 14;           ///< halvings of one interval
+constexpr Index most_arc_samples = 400;
 
 /// Zeros of the polynomial whose roots have the power sums p_1 .. p_n (Newton's identities).
 std::vector<Complex> roots_of_moments(const std::vector<double>& p) {
@@ -96,7 +94,7 @@ bool RootCounter::sample(double t, Sample& out) {
 
 bool RootCounter::settle(const Sample& a, const Sample& b, int depth) {
   Sample middle;
-  if (static_cast<Index>(samples_.size()) > most_samples || !sample(0.5 * (a.t + b.t), middle))
+  if (static_cast<Index>(samples_.size()) > most_arc_samples || !sample(0.5 * (a.t + b.t), middle))
     return false;
   // d log f/dt at the three, the integrals of the parabola through them, and what is left of the
   // differences.
@@ -109,7 +107,7 @@ bool RootCounter::settle(const Sample& a, const Sample& b, int depth) {
   const Complex rest_first = principal(middle.log_f - a.log_f - first);
   const Complex rest_second = principal(b.log_f - middle.log_f - second);
   const bool expected = std::max(std::abs(rest_first), std::abs(rest_second)) < surprise_;
-  const bool moderate = std::max(std::abs(first), std::abs(second)) < largest_step;
+  const bool moderate = std::max(std::abs(first), std::abs(second)) < largest_arc_step;
   if (expected && moderate) {
     middle.log_f = a.log_f + first + rest_first;
     samples_.push_back(middle);
@@ -157,7 +155,7 @@ bool RootCounter::follow_curve(double surprise) {
       continue;
     }
     const Sample last = samples_.back();
-    if (!settle(last, next, deepest)) return false;
+    if (!settle(last, next, deepest_arc)) return false;
   }
   return true;
 }

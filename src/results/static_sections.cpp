@@ -44,15 +44,15 @@ void add_section_table(const run::Job& job, StaticResults& out) {
            stress_cell(p, p.bending), stress_cell(p, p.torsion), stress_cell(p, p.von_mises)});
 }
 
-struct Extreme {
+struct SectionExtreme {
   double value = 0, s = 0;
   bool any = false;
 };
 
 /// Of one line, by magnitude, with its sign.
-Extreme find_extreme(const std::vector<SectionPoint>& points, std::size_t line, Value of,
+SectionExtreme find_extreme(const std::vector<SectionPoint>& points, std::size_t line, Value of,
                      bool stress) {
-  Extreme best;
+  SectionExtreme best;
   for (const SectionPoint& p : points) {
     if (!is_of(p, line) || (stress && !p.has_stress)) continue;
     const double v = of(p);
@@ -82,7 +82,7 @@ void add_extremes(const run::Job& job, std::size_t line, StaticResults& out, io:
   const std::string owner =
       fmt::format("{} '{}'", job.mesh.lines[line].rotating ? "shaft" : "casing", name);
   const auto add = [&](const char* label, const char* si, Value of, bool stress) {
-    const Extreme x = find_extreme(out.points, line, of, stress);
+    const SectionExtreme x = find_extreme(out.points, line, of, stress);
     if (!x.any) return x;
     const plot::DisplayUnit unit = plot::unit_for(si, std::abs(x.value));
     out.extremes.add({name, label, x.value * unit.factor, unit.name, x.s});
@@ -90,7 +90,7 @@ void add_extremes(const run::Job& job, std::size_t line, StaticResults& out, io:
     summary["largest"][name][fmt::format("{} at [m]", label)] = x.s;
     return x;
   };
-  const auto say = [&](const char* what, const char* si, const Extreme& x,
+  const auto say = [&](const char* what, const char* si, const SectionExtreme& x,
                        const std::string& more) {
     const plot::DisplayUnit u = plot::unit_for(si, x.value);
     out.lines.push_back(fmt::format("{}: largest {} {:.4g} {} at {:.4g} m{}", owner, what,
@@ -102,7 +102,7 @@ void add_extremes(const run::Job& job, std::size_t line, StaticResults& out, io:
       "shear force", "N", [](const SectionPoint& p) { return p.V.norm(); }, false);
   add(
       "torque", "N m", [](const SectionPoint& p) { return p.T; }, false);
-  const Extreme moment = add(
+  const SectionExtreme moment = add(
       "bending moment", "N m", [](const SectionPoint& p) { return p.M.norm(); }, false);
   if (moment.value > 0) say("bending moment", "N m", moment, "");
   add(
@@ -111,7 +111,7 @@ void add_extremes(const run::Job& job, std::size_t line, StaticResults& out, io:
       "bending stress", "Pa", [](const SectionPoint& p) { return p.bending; }, true);
   add(
       "torsion stress", "Pa", [](const SectionPoint& p) { return p.torsion; }, true);
-  const Extreme stress = add(
+  const SectionExtreme stress = add(
       "von Mises stress", "Pa", [](const SectionPoint& p) { return p.von_mises; }, true);
   if (!(stress.value > 0)) return;
   const double use = yield_use_of(job, out.points, line);
