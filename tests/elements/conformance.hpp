@@ -21,10 +21,8 @@
 #include <core/rotation.hpp>
 #include <system/kernel.hpp>
 #include "../core/reference.hpp"
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
-#include <map>
-#include <string>
+#include <span>
 #include <vector>
 
 namespace whirl::test {
@@ -56,6 +54,10 @@ struct ConformanceOptions {
   unsigned seed = 1;
 };
 
+/// Kinematics of a node in a chart (which outlives it) from q = (u, phi, gamma) and its rates.
+void place(system::NodeState& n, rotation::Director& o, const Vector<6>& q, const Vector<6>& v,
+           const Vector<6>& a, const Mat3& chart);
+
 /// The kinematics of N nodes at (q, v, a), and the map from X to q.
 template <int N, int W>
 struct NodeFrame {
@@ -69,18 +71,9 @@ struct NodeFrame {
     for (int i = 0; i < N; ++i) {
       auto& n = state[static_cast<std::size_t>(i)];
       auto& o = director[static_cast<std::size_t>(i)];
-      rotation::director(q.template segment<2>(6 * i + 4), v.template segment<2>(6 * i + 4),
-                         a.template segment<2>(6 * i + 4), o);
-      n.chart = &chart;
-      n.u = q.template segment<3>(6 * i);
-      n.du = v.template segment<3>(6 * i);
-      n.ddu = a.template segment<3>(6 * i) - gravity;
-      n.t = chart * o.t;
-      n.dd = chart * o.rate;
-      n.ddd = chart * o.accel;
-      n.phi = q[6 * i + 3];
-      n.dphi = v[6 * i + 3];
-      n.ddphi = a[6 * i + 3];
+      place(n, o, q.template segment<6>(6 * i), v.template segment<6>(6 * i),
+            a.template segment<6>(6 * i), chart);
+      n.ddu -= gravity;
       J.template block<3, 3>(W * i, 6 * i).setIdentity();
       if constexpr (W == 7) {
         J.template block<3, 2>(W * i + 3, 6 * i + 4) = chart * o.D;
@@ -110,444 +103,81 @@ struct NodeFrame {
   }
 };
 
-template <system::Kernel K>
-class Conformance {
+/// A kernel of any number of nodes and width, so that the suite is compiled once for all of them.
+class AnyKernel {
  public:
-  static constexpr int N = K::n_nodes, W = K::width, n = 6 * N;
-  using Q = Vector<n>;
-  using X = Vector<N * W>;
+  struct Tangents {
+    MatX M, C, K;
+  };
+  AnyKernel(int nodes_, int width_, bool has_M_, bool has_C_, bool has_K_)
+      : nodes(nodes_),
+        width(width_),
+        has_M(has_M_),
+        has_C(has_C_),
+        has_K(has_K_) {}
+  virtual ~AnyKernel() = default;
+  /// f, t: nodes * width rows; t square.
+  virtual void add_force(std::span<const system::NodeState> x, const system::Context& c,
+                         VecX& f) const = 0;
+  virtual void add_tangent(std::span<const system::NodeState> x, const system::Context& c,
+                           Tangents& t) const = 0;
+  virtual void add_energy(std::span<const system::NodeState> x, const system::Context& c,
+                          system::Energy& e) const = 0;
+  virtual system::Dependence depends(const system::Context& c) const = 0;
 
-  Conformance(const K& kernel, const ConformanceOptions& options)
-      : k_(kernel),
-        o_(options),
-        random_(options.seed),
-        turning_(options.seed + 1000) {
-    for (int i = 0; i < N; ++i) {
-      const auto fill = [i](Q& s, double u, double phi, double tilt) {
-        s.template segment<3>(6 * i).setConstant(u);
-        s[6 * i + 3] = phi;
-        s.template segment<2>(6 * i + 4).setConstant(tilt);
-      };
-      fill(q_scale_, o_.u, o_.phi, o_.tilt);
-      fill(v_scale_, o_.du, o_.dphi, o_.dtilt);
-      fill(a_scale_, o_.ddu, o_.ddphi, o_.ddtilt);
-    }
-    context_.gravity = o_.gravity;
-    context_.time = o_.time;
-    context_.frequency = o_.frequency;
+  const int nodes, width;
+  const bool has_M, has_C, has_K;
+};
+
+/// The kernel K as one of any size.
+template <system::Kernel K>
+class KernelOf final : public AnyKernel {
+ public:
+  explicit KernelOf(const K& k)
+      : AnyKernel(K::n_nodes, K::width, K::has_M, K::has_C, K::has_K),
+        k_(k) {}
+  void add_force(std::span<const system::NodeState> x, const system::Context& c,
+                 VecX& f) const override {
+    system::ForceX<size> g = Eigen::Map<const Vector<size>>(f.data());
+    k_.add_force(all(x), c, g);
+    f = g;
   }
-
-  void run() {
-    for (int s = 0; s < o_.samples && !::testing::Test::HasFailure(); ++s) {
-      draw();
-      check_accumulation();
-      check_tangents();
-      check_power();
-      check_dependence();
-      if (o_.objective) check_objectivity();
-    }
-    check_declared_is_seen();
+  void add_tangent(std::span<const system::NodeState> x, const system::Context& c,
+                   Tangents& t) const override {
+    system::TangentX<size> s;
+    s.M = Eigen::Map<const Matrix<size>>(t.M.data());
+    s.C = Eigen::Map<const Matrix<size>>(t.C.data());
+    s.K = Eigen::Map<const Matrix<size>>(t.K.data());
+    k_.add_tangent(all(x), c, s);
+    t.M = s.M;
+    t.C = s.C;
+    t.K = s.K;
+  }
+  void add_energy(std::span<const system::NodeState> x, const system::Context& c,
+                  system::Energy& e) const override {
+    k_.add_energy(all(x), c, e);
+  }
+  system::Dependence depends(const system::Context& c) const override {
+    return system::dependence_of(k_, c);
   }
 
  private:
-  void draw() {
-    const auto add = [](const std::vector<double>& x) {
-      return x.empty() ? Q(Q::Zero()) : Q(Eigen::Map<const Q>(x.data()));
-    };
-    // the length of gamma, not only its components, stays below `tilt`
-    q_ = add(o_.q0) + q_scale_.cwiseProduct(random_.vector<n>());
-    v_ = add(o_.v0) + v_scale_.cwiseProduct(random_.vector<n>());
-    for (int i = 0; i < N; ++i)
-      q_.template segment<2>(6 * i + 4) *= std::sqrt(0.5);
-    a_ = a_scale_.cwiseProduct(random_.vector<n>());
-  }
-
-  NodeFrame<N, W> frame(const Q& q, const Q& v, const Q& a) const {
-    return {q, v, a, o_.chart, o_.gravity};
-  }
-
-  X force(const NodeFrame<N, W>& x, const system::Context& c) const {
-    system::ForceX<N* W> f = X::Zero();
-    k_.add_force(x.nodes(), c, f);
-    return f;
-  }
-  Q force_q(const Q& q, const Q& v, const Q& a) const {
-    const auto x = frame(q, v, a);
-    return x.J.transpose() * force(x, context_);
-  }
-
-  system::TangentX<N * W> tangent(const NodeFrame<N, W>& x, double start) const {
-    system::TangentX<N * W> t;
-    t.M.setConstant(start);
-    t.C.setConstant(start);
-    t.K.setConstant(start);
-    k_.add_tangent(x.nodes(), context_, t);
-    return t;
-  }
-
-  void check_accumulation() {
-    const auto x = frame(q_, v_, a_);
-    const X f = force(x, context_);
-    const double size = f.cwiseAbs().maxCoeff();
-    system::ForceX<N* W> g = X::Constant(size);
-    k_.add_force(x.nodes(), context_, g);
-    EXPECT_LE((g - X::Constant(size) - f).cwiseAbs().maxCoeff(), 1e-14 * size)
-        << "add_force must add";
-    const auto t0 = tangent(x, 0.0), t1 = tangent(x, 1.0);
-    const auto same = [](const auto& a, const auto& b, const char* what) {
-      const double s = 1.0 + a.cwiseAbs().maxCoeff();
-      EXPECT_LE((b - a - std::decay_t<decltype(a)>::Constant(1.0)).cwiseAbs().maxCoeff(), 1e-14 * s)
-          << "add_tangent must add to " << what;
-    };
-    same(t0.M, t1.M, "M");
-    same(t0.C, t1.C, "C");
-    same(t0.K, t1.K, "K");
-    const auto untouched = [](bool has, const auto& a, const char* what) {
-      if (!has) {
-        EXPECT_EQ(a.cwiseAbs().maxCoeff(), 0.0)
-            << "has_" << what << " is false but " << what << " was written";
-      }
-    };
-    untouched(K::has_M, t0.M, "M");
-    untouched(K::has_C, t0.C, "C");
-    untouched(K::has_K, t0.K, "K");
-  }
-
-  void check_tangents() {
-    const auto x = frame(q_, v_, a_);
-    const auto t = tangent(x, 0.0);
-    const X f = force(x, context_);
-    const Matrix<n> M = x.J.transpose() * t.M * x.J;
-    const Matrix<n> C = x.J.transpose() * (t.C * x.J + 2.0 * t.M * x.J1);
-    Matrix<n> Kq = x.J.transpose() * (t.K * x.J + t.C * x.J1 + t.M * x.J2);
-    if constexpr (W == 7)
-      for (int i = 0; i < N; ++i) {
-        const Vec3 fd = o_.chart.transpose() * f.template segment<3>(W * i + 3);
-        Kq.template block<2, 2>(6 * i + 4, 6 * i + 4) +=
-            x.director[static_cast<std::size_t>(i)].curvature(fd);
-      }
-    // Terms of each row in force units, so that N/m, N/rad and N m/rad compare.
-    const Vector<n> row =
-        (M.cwiseAbs() * a_scale_.asDiagonal())
-            .rowwise()
-            .maxCoeff()
-            .cwiseMax((C.cwiseAbs() * v_scale_.asDiagonal())
-                          .rowwise()
-                          .maxCoeff()
-                          .cwiseMax((Kq.cwiseAbs() * q_scale_.asDiagonal())
-                                        .rowwise()
-                                        .maxCoeff()
-                                        .cwiseMax((x.J.transpose() * f).cwiseAbs())));
-    const double floor = 1e-6 * row.maxCoeff();  // a row of zeros has no scale of its own
-    compare(
-        M, [&](const Q& d) { return force_q(q_, v_, a_ + d); }, a_scale_, row, floor, "M");
-    compare(
-        C, [&](const Q& d) { return force_q(q_, v_ + d, a_); }, v_scale_, row, floor, "C");
-    compare(
-        Kq, [&](const Q& d) { return force_q(q_ + d, v_, a_); }, q_scale_, row, floor, "K");
-
-    if (o_.symmetric_M) {
-      EXPECT_LE((M - M.transpose()).cwiseAbs().maxCoeff(), 1e-13 * M.cwiseAbs().maxCoeff());
-    }
-    if (o_.semidefinite_M && K::has_M) {
-      const Matrix<n> S = 0.5 * (M + M.transpose());
-      const Eigen::SelfAdjointEigenSolver<MatX> eigen(MatX(S), Eigen::EigenvaluesOnly);
-      EXPECT_GE(eigen.eigenvalues().minCoeff(), -1e-13 * eigen.eigenvalues().maxCoeff())
-          << "negative inertia";
-    }
-    if (o_.symmetric_K) {
-      const auto rest = NodeFrame<N, W>(q_, Q(Q::Zero()), Q(Q::Zero()), o_.chart, Vec3::Zero());
-      const auto s = tangent(rest, 0.0);
-      Matrix<n> H = rest.J.transpose() * s.K * rest.J;
-      if constexpr (W == 7) {
-        const X g = force(rest, context_);
-        for (int i = 0; i < N; ++i)
-          H.template block<2, 2>(6 * i + 4, 6 * i + 4) +=
-              rest.director[static_cast<std::size_t>(i)].curvature(
-                  o_.chart.transpose() * g.template segment<3>(W * i + 3));
-      }
-      const Matrix<n> scaled = q_scale_.asDiagonal() * H * q_scale_.asDiagonal();
-      EXPECT_LE((scaled - scaled.transpose()).cwiseAbs().maxCoeff(),
-                1e-12 * scaled.cwiseAbs().maxCoeff())
-          << "K is not symmetric at rest";
-    }
-  }
-
-  template <class F>
-  void compare(const Matrix<n>& exact, const F& f, const Q& scale, const Vector<n>& row,
-               double floor, const char* what) {
-    for (int j = 0; j < n; ++j) {
-      // eighth order with a step of 1/100 of the amplitude: truncation 1e-16, rounding 1e-14 of the
-      // row
-      const Real h = 1e-2L;
-      const auto g = [&](Real s) {
-        Q d = Q::Zero();
-        d[j] = static_cast<double>(s) * scale[j];
-        return Eigen::Matrix<Real, n, 1>(f(d).template cast<Real>());
-      };
-      const Vector<n> slope = central(g, h).template cast<double>();
-      for (int i = 0; i < n; ++i)
-        EXPECT_NEAR(exact(i, j) * scale[j], slope[i],
-                    o_.tangent_tolerance * std::max(row[i], floor))
-            << what << "_q(" << i << ", " << j << "), unknowns (u, phi, gamma) a node";
-    }
-  }
-
-  // q(t) with the drawn value, rate and acceleration at t = 0 and a jerk that keeps it general.
-  void check_power() {
-    const Q jerk = a_scale_.cwiseProduct(random_.vector<n>());
-    const auto at = [&](double t) {
-      return frame(q_ + v_ * t + a_ * (t * t / 2) + jerk * (t * t * t / 6),
-                   v_ + a_ * t + jerk * (t * t / 2), a_ + jerk * t);
-    };
-    const auto energy = [&](double t) {
-      system::Context c = context_;
-      c.time += t;
-      system::Energy e;
-      k_.add_energy(at(t).nodes(), c, e);
-      return e;
-    };
-    // a step in which no unknown moves by more than 1/100 of its amplitude
-    const double h =
-        1e-2 / (1e-30 + std::max((v_.cwiseAbs().cwiseQuotient(q_scale_)).maxCoeff(),
-                                 std::sqrt(a_.cwiseAbs().cwiseQuotient(q_scale_).maxCoeff())));
-    const auto stored = [&](Real s) {
-      const system::Energy e = energy(static_cast<double>(s));
-      return Eigen::Matrix<Real, 1, 1>(Real(e.kinetic) + e.elastic + e.gravity);
-    };
-    const double rate = static_cast<double>(central(stored, h)[0]);
-    const system::Energy now = energy(0.0);
-    const auto x = at(0.0);
-    X terms = force(x, context_).cwiseProduct(x.rates());
-    for (const int node : o_.signals)
-      terms.template segment<K::width>(K::width * node).setZero();
-    const double size =
-        std::abs(rate) + std::abs(now.supplied) + std::abs(now.dissipated) +
-        terms.cwiseAbs().maxCoeff() +
-        1e-6 * (std::abs(now.kinetic) + std::abs(now.elastic) + std::abs(now.gravity)) / h;
-    EXPECT_NEAR(rate, terms.sum() + now.supplied - now.dissipated, o_.power_tolerance * size)
-        << "power balance";
-    if (o_.semidefinite_M) {
-      EXPECT_GE(now.kinetic, -1e-14 * size * h);
-    }
-    if (o_.passive) {
-      EXPECT_GE(now.dissipated, -1e-14 * size) << "a passive element generates energy";
-    }
-  }
-
-  // Turns the motion by T about the origin and expects F -> T F, m -> T m, m = d x f_d + f_phi (e +
-  // d)/(1 + e.d).
-  void check_objectivity() {
-    ASSERT_TRUE(N == 1 || static_cast<int>(o_.position.size()) == N)
-        << "objectivity needs the nodes' positions";
-    const Vec3 axis = 0.8 * random_.direction<3>();
-    const Mat3 T = rotation::L(axis);
-    Q q = q_, v = v_, a = a_;
-    const auto before = frame(q_, v_, a_);
-    for (int i = 0; i < N; ++i) {
-      const auto& s = before.state[static_cast<std::size_t>(i)];
-      const Vec3 p =
-          o_.position.empty() ? Vec3(Vec3::Zero()) : o_.position[static_cast<std::size_t>(i)];
-      q.template segment<3>(6 * i) = T * (p + s.u) - p;
-      v.template segment<3>(6 * i) = T * s.du;
-      a.template segment<3>(6 * i) = T * (s.ddu + o_.gravity);
-      const Vec2 g = q_.template segment<2>(6 * i + 4), dg = v_.template segment<2>(6 * i + 4);
-      const Vec3 omega = rotation::omega_of_rates(g, s.dphi, dg);
-      const Vec3 domega =
-          rotation::omega_rate_of_rates(g, s.dphi, dg, s.ddphi, a_.template segment<2>(6 * i + 4));
-      // phi follows the turning continuously: d phi = (e+d).d theta/(1+e.d), all in chart axes, by
-      // fine RK4
-      const Vec3 c = o_.chart.transpose() * axis;
-      double phi = s.phi;
-      Vec2 gamma = g;
-      const int steps = 400;
-      for (int k = 0; k < steps; ++k) {
-        const double h = 1.0 / steps;
-        const auto r1 = rotation::rates_of_omega(gamma, c);
-        const auto r2 = rotation::rates_of_omega(gamma + h / 2 * r1.gamma, c);
-        const auto r3 = rotation::rates_of_omega(gamma + h / 2 * r2.gamma, c);
-        const auto r4 = rotation::rates_of_omega(gamma + h * r3.gamma, c);
-        phi += h / 6 * (r1.phi + 2 * r2.phi + 2 * r3.phi + r4.phi);
-        gamma += h / 6 * (r1.gamma + 2 * r2.gamma + 2 * r3.gamma + r4.gamma);
-      }
-      const Mat3 Tc = o_.chart.transpose() * T * o_.chart;
-      gamma = rotation::gamma_of_director(
-          Tc * (Vec3::UnitX() + before.director[static_cast<std::size_t>(i)].t) - Vec3::UnitX());
-      const auto rate = rotation::rates_of_omega(gamma, Tc * omega);
-      const auto accel = rotation::accelerations_of_omega(gamma, rate.phi, rate.gamma, Tc * domega);
-      q[6 * i + 3] = phi;
-      q.template segment<2>(6 * i + 4) = gamma;
-      v[6 * i + 3] = rate.phi;
-      v.template segment<2>(6 * i + 4) = rate.gamma;
-      a[6 * i + 3] = accel.phi;
-      a.template segment<2>(6 * i + 4) = accel.gamma;
-    }
-    system::Context turned = context_;
-    turned.gravity = T * o_.gravity;
-    const NodeFrame<N, W> after(q, v, a, o_.chart, turned.gravity);
-    const X f0 = force(before, context_), f1 = force(after, turned);
-    double force_size = 0, moment_size = 0;
-    std::array<Vec3, N> F0, F1, m0, m1;
-    for (int i = 0; i < N; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      F0[k] = f0.template segment<3>(W * i);
-      F1[k] = f1.template segment<3>(W * i);
-      m0[k] = m1[k] = Vec3::Zero();
-      if constexpr (W == 7) {
-        const auto moment = [&](const system::NodeState& s, const X& f) {
-          const Vec3 fd = f.template segment<3>(W * i + 3);
-          return Vec3(s.d().cross(fd) + f[W * i + 6] * (s.e() + s.d()) / (1.0 + s.e().dot(s.d())));
-        };
-        m0[k] = moment(before.state[k], f0);
-        m1[k] = moment(after.state[k], f1);
-      }
-      force_size = std::max(force_size, F0[k].norm());
-      moment_size = std::max(moment_size, m0[k].norm());
-    }
-    for (int i = 0; i < N; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      // 1e-9: phi is carried round by 400 steps of RK4, error 1e-11
-      EXPECT_LE((F1[k] - T * F0[k]).norm(), 1e-9 * (force_size + moment_size))
-          << "force not objective, node " << i;
-      EXPECT_LE((m1[k] - T * m0[k]).norm(), 1e-9 * (force_size + moment_size))
-          << "moment not objective, node " << i;
-    }
-    system::Energy e0, e1;
-    k_.add_energy(before.nodes(), context_, e0);
-    k_.add_energy(after.nodes(), turned, e1);
-    EXPECT_NEAR(e0.elastic, e1.elastic, 1e-9 * std::abs(e0.elastic));
-    EXPECT_NEAR(e0.kinetic, e1.kinetic, 1e-9 * std::abs(e0.kinetic));
-    EXPECT_NEAR(e0.dissipated, e1.dissipated, 1e-9 * std::abs(e0.dissipated));
-  }
-
-  /// Force and tangents, one after another.
-  using Answer = Eigen::Matrix<double, Eigen::Dynamic, 1>;
-  Answer answer(const NodeFrame<N, W>& x, const system::Context& c) const {
-    constexpr int size = N * W;
-    system::TangentX<size> t;
-    t.set_zero();
-    k_.add_tangent(x.nodes(), c, t);
-    Answer a(size + 3 * size * size);
-    a << force(x, c), t.M.reshaped(), t.C.reshaped(), t.K.reshaped();
-    return a;
-  }
-  /// Parts of an answer that differ by more than rounding; what is no number in one of them
-  /// differs.
-  bool differ(const Answer& a, const Answer& b) const {
-    constexpr int size = N * W;
-    bool out = false;
-    for (int part = 0; part < 4; ++part) {
-      const int first = part == 0 ? 0 : size + (part - 1) * size * size;
-      const int length = part == 0 ? size : size * size;
-      const auto x = a.segment(first, length), y = b.segment(first, length);
-      if (x.allFinite() != y.allFinite()) return true;
-      if (!x.allFinite()) continue;
-      const double large = std::max(x.cwiseAbs().maxCoeff(), y.cwiseAbs().maxCoeff());
-      out = out || (x - y).cwiseAbs().maxCoeff() > o_.tangent_tolerance * large;
-    }
+  static constexpr int size = K::n_nodes * K::width;
+  static system::Nodes<K::n_nodes> all(std::span<const system::NodeState> x) {
+    system::Nodes<K::n_nodes> out;
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = &x[i];
     return out;
   }
-
-  /// An answer that changes must be declared; what is declared and changes is noted.
-  void judge(const char* what, bool declared, const Answer& before, const Answer& after) {
-    const bool changes = differ(before, after);
-    EXPECT_TRUE(declared || !changes) << "depends on " << what << " and does not declare it";
-    seen_[what].declared = seen_[what].declared || declared;
-    seen_[what].changes = seen_[what].changes || changes;
-  }
-
-  void check_dependence() {
-    for (const bool averaged : {false, true})
-      for (const bool hysteretic : {false, true}) {
-        system::Context c = context_;
-        c.averaged = averaged;
-        c.hysteretic = hysteretic;
-        check_angle_and_spin(c);
-        check_surroundings(c);
-      }
-  }
-
-  void check_angle_and_spin(const system::Context& c) {
-    const system::Dependence d = system::dependence_of(k_, c);
-    const auto x = frame(q_, v_, a_);
-    const Answer before = answer(x, c);
-    const auto turned = [&](const Vector<N>& by) {
-      auto y = x;
-      for (int i = 0; i < N; ++i)
-        y.state[static_cast<std::size_t>(i)].phi += by[i];
-      return answer(y, c);
-    };
-    Vector<N> by = 2.0 * turning_.vector<N>();
-    judge("the angle", d.angle.form != system::SeenAngle::Form::none, before, turned(by));
-    if (d.angle.form == system::SeenAngle::Form::sum) {
-      Vector<N> weight;
-      for (int i = 0; i < N; ++i)
-        weight[i] = d.angle.weight[static_cast<std::size_t>(i)];
-      by -= weight * (weight.dot(by) / weight.squaredNorm());
-      EXPECT_FALSE(differ(before, turned(by))) << "sees more than the declared sum of the angles";
-    }
-    auto y = x;
-    for (auto& n : y.state)
-      n.dphi += (o_.dphi > 0 ? o_.dphi : 1.0) * turning_.vector<1>()[0];
-    judge("the spin", d.spin, before, answer(y, c));
-  }
-
-  void check_surroundings(const system::Context& c) {
-    const system::Dependence d = system::dependence_of(k_, c);
-    const auto x = frame(q_, v_, a_);
-    const Answer before = answer(x, c);
-    for (const double w : {1.0, 60.0, 200.0, 500.0}) {
-      system::Context asked = c;
-      asked.frequency = w;
-      judge("the frequency", d.frequency, before, answer(x, asked));
-      system::Context shaken = c;
-      shaken.whirl = shaken.whirl_side = w;
-      shaken.growth = -0.1 * w;
-      judge("the rate", d.rate, before, answer(x, shaken));
-    }
-    for (const double dt : {0.013, 0.31, 1.7, 20.0}) {
-      system::Context later = c;
-      later.time += dt;
-      judge("the time", d.time, before, answer(x, later));
-    }
-    const Vec3 more(0.4, 1.3, -2.1);
-    system::Context heavier = c;
-    heavier.gravity += more;
-    auto y = x;
-    for (auto& n : y.state)
-      n.ddu -= more;
-    judge("the weight", d.weight, before, answer(y, heavier));
-  }
-
-  void check_declared_is_seen() {
-    const std::map<std::string, bool> excused{
-        {"the angle", o_.over_declared.angle.form != system::SeenAngle::Form::none},
-        {"the spin", o_.over_declared.spin},
-        {"the frequency", o_.over_declared.frequency},
-        {"the rate", o_.over_declared.rate},
-        {"the time", o_.over_declared.time},
-        {"the weight", o_.over_declared.weight}};
-    for (const auto& [what, seen] : seen_)
-      EXPECT_TRUE(seen.changes || !seen.declared || excused.at(what))
-          << "declares to depend on " << what << " and does not";
-  }
-
-  struct Seen {
-    bool declared = false, changes = false;
-  };
-
   const K& k_;
-  const ConformanceOptions& o_;
-  std::map<std::string, Seen> seen_;
-  Random random_;
-  Random turning_;  ///< its own, so that the states are those of the other checks alone
-  Q q_, v_, a_, q_scale_, v_scale_, a_scale_;
-  system::Context context_;
 };
+
+/// The suite (conformance.cpp).
+void check_conformance(const AnyKernel& kernel, const ConformanceOptions& options);
 
 template <system::Kernel K>
 void check_kernel(const K& kernel, const ConformanceOptions& options = {}) {
-  Conformance<K>(kernel, options).run();
+  check_conformance(KernelOf<K>(kernel), options);
 }
 
 /// A chart that is not aligned with the global axes: options.chart = tilted_chart().

@@ -1,7 +1,7 @@
 // Natural frequencies of small dense beams built from the element constants, against closed forms
 // and against an independent shooting solution of the differential equations; measured orders of
 // convergence.
-#include <elements/shaft/timoshenko_matrices.hpp>
+#include "round_sections.hpp"
 #include <complex>
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -11,26 +11,9 @@
 
 using namespace whirl;
 using namespace whirl::elements;
+using namespace whirl::test;
 
 namespace {
-
-ElementSection cone(double d1, double d2, double bore1 = 0, double bore2 = 0,
-                    ShearRule shear = ShearRule::cowper, bool rotary = true) {
-  ElementSection s;
-  s.od1 = s.mass_od1 = d1;
-  s.od2 = s.mass_od2 = d2;
-  s.id1 = s.mass_id1 = bore1;
-  s.id2 = s.mass_id2 = bore2;
-  s.E = 2.1e11;
-  s.G = 2.1e11 / 2.6;
-  s.rho = 7850;
-  s.shear = shear;
-  s.rotary_inertia = rotary;
-  return s;
-}
-ElementSection cylinder(double d, ShearRule shear = ShearRule::cowper, bool rotary = true) {
-  return cone(d, d, 0, 0, shear, rotary);
-}
 
 // ---------------------------------------------------------------- the discrete beam
 

@@ -1,6 +1,6 @@
 // Element constants against closed forms, and the natural frequencies of small beams built from
 // them.
-#include <elements/shaft/timoshenko_matrices.hpp>
+#include "round_sections.hpp"
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 #include <cmath>
@@ -8,28 +8,9 @@
 
 using namespace whirl;
 using namespace whirl::elements;
+using namespace whirl::test;
 
 namespace {
-
-ElementSection cylinder(double d, ShearRule shear = ShearRule::cowper, bool rotary = true) {
-  ElementSection s;
-  s.od1 = s.od2 = s.mass_od1 = s.mass_od2 = d;
-  s.E = 2.1e11;
-  s.G = 2.1e11 / 2.6;
-  s.rho = 7850;
-  s.shear = shear;
-  s.rotary_inertia = rotary;
-  return s;
-}
-
-ElementSection cone(double d1, double d2, double bore1 = 0, double bore2 = 0,
-                    ShearRule shear = ShearRule::cowper, bool rotary = true) {
-  ElementSection s = cylinder(d1, shear, rotary);
-  s.od2 = s.mass_od2 = d2;
-  s.id1 = s.mass_id1 = bore1;
-  s.id2 = s.mass_id2 = bore2;
-  return s;
-}
 
 /// Independent quadrature: composite midpoint with Richardson extrapolation (error ~ h^6).
 double integrate(const std::function<double(double)>& f, double a, double b) {
