@@ -51,7 +51,7 @@ struct SectionExtreme {
 
 /// Of one line, by magnitude, with its sign.
 SectionExtreme find_extreme(const std::vector<SectionPoint>& points, std::size_t line, Value of,
-                     bool stress) {
+                            bool stress) {
   SectionExtreme best;
   for (const SectionPoint& p : points) {
     if (!is_of(p, line) || (stress && !p.has_stress)) continue;

@@ -5,9 +5,9 @@
 namespace whirl::test {
 
 /// Tapered, diameters and bores at both ends, m.
-inline elements::ElementSection cone(
-    double d1, double d2, double bore1 = 0, double bore2 = 0,
-    elements::ShearRule shear = elements::ShearRule::cowper, bool rotary = true) {
+inline elements::ElementSection cone(double d1, double d2, double bore1 = 0, double bore2 = 0,
+                                     elements::ShearRule shear = elements::ShearRule::cowper,
+                                     bool rotary = true) {
   elements::ElementSection s;
   s.od1 = s.mass_od1 = d1;
   s.od2 = s.mass_od2 = d2;
@@ -21,8 +21,9 @@ inline elements::ElementSection cone(
   return s;
 }
 
-inline elements::ElementSection cylinder(
-    double d, elements::ShearRule shear = elements::ShearRule::cowper, bool rotary = true) {
+inline elements::ElementSection cylinder(double d,
+                                         elements::ShearRule shear = elements::ShearRule::cowper,
+                                         bool rotary = true) {
   return cone(d, d, 0, 0, shear, rotary);
 }
 
