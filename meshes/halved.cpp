@@ -123,4 +123,19 @@ Halved halve(const Mesh& mesh, const std::vector<bool>& lines) {
   return Halving(mesh, lines).run();
 }
 
+VecX spread(const Halved& fine, const VecX& x) {
+  const Index added = static_cast<Index>(fine.middles.size());
+  const Index nodes = x.size() / 6;
+  VecX out = VecX::Zero(x.size() + 6 * added);
+  for (Index n = 0; n < nodes; ++n) {
+    const bool in_mesh = n < static_cast<Index>(fine.node.size());
+    const Index to = in_mesh ? fine.node[static_cast<std::size_t>(n)] : n + added;
+    out.segment<6>(6 * to) = x.segment<6>(6 * n);
+  }
+  for (const meshes::Halved::Middle& m : fine.middles)
+    out.segment<6>(6 * m.node) =
+        0.5 * (out.segment<6>(6 * m.between[0]) + out.segment<6>(6 * m.between[1]));
+  return out;
+}
+
 }  // namespace whirl::meshes

@@ -17,5 +17,8 @@ struct Halved {
 
 /// @pre one flag a line of the mesh.
 Halved halve(const Mesh& mesh, const std::vector<bool>& lines);
+/// Unknowns of the nodes, six each, and of what comes behind them, on the halved mesh: in the middle
+/// of elements the mean of their ends.
+VecX spread(const Halved& fine, const VecX& x);
 
 }  // namespace whirl::meshes

@@ -4,6 +4,7 @@
 #include <core/error.hpp>
 #include <elements/rolling/hertz.hpp>
 
+#include <array>
 #include <cmath>
 
 namespace whirl::elements {
@@ -33,6 +34,24 @@ double BallContact::load(double x, double rho, double t) const {
   return delta > 0.0 ? K * delta * std::sqrt(delta) : 0.0;
 }
 
+double BallContact::gap_at(int, double x, double rho, double t) const {
+  return std::hypot(a0 + x - R * t, r0 + rho) - A0;
+}
+
+double RollerContact::gap_at(int part, double, double rho, double t) const {
+  return rho + place(part) * t - clearance;
+}
+
+bool RollerContact::evaluate_part(int part, double, double rho, double t, Local& l) const {
+  const double s = place(part), delta = rho + s * t - clearance;
+  if (delta <= 0.0) return false;
+  const double dQ = 10.0 / 9.0 * K / slices * std::pow(delta, 1.0 / 9.0), Q = 0.9 * dQ * delta;
+  l.V = 9.0 / 19.0 * Q * delta;
+  l.g << 0.0, Q, s * Q;
+  l.H << 0.0, 0.0, 0.0, 0.0, dQ, s * dQ, 0.0, s * dQ, s * s * dQ;
+  return true;
+}
+
 bool RollerContact::evaluate(double, double rho, double t, Local& l) const {
   bool touch = false;
   l.V = 0;
@@ -40,7 +59,7 @@ bool RollerContact::evaluate(double, double rho, double t, Local& l) const {
   l.H.setZero();
   const double k = K / slices;
   for (int i = 0; i < slices; ++i) {
-    const double s = length * ((i + 0.5) / slices - 0.5), delta = rho + s * t - clearance;
+    const double s = place(i), delta = rho + s * t - clearance;
     if (delta <= 0.0) continue;
     touch = true;
     const double dQ = 10.0 / 9.0 * k * std::pow(delta, 1.0 / 9.0), Q = 0.9 * dQ * delta;
@@ -70,49 +89,153 @@ Vector<6> RollingBearing<Contact>::deflection(const Nodes<2>& x) const {
   return q;
 }
 
+namespace {
+
+/// Abscissae and weights on [-1, 1] by the substitution x = tanh(pi/2 sinh t) (Takahasi & Mori,
+/// Publ. RIMS 9 (1974), doi 10.2977/prims/1195192451): exact to rounding whatever power of the
+/// distance from its ends a function begins with.
+struct EndRule {
+  static constexpr int half = 16;
+  static constexpr double step = 0.2;
+  std::array<double, 2 * half + 1> place{}, weight{};
+  EndRule() {
+    for (int k = -half; k <= half; ++k) {
+      const double u = 0.5 * pi * std::sinh(step * k), c = std::cosh(u);
+      place[static_cast<std::size_t>(k + half)] = std::tanh(u);
+      weight[static_cast<std::size_t>(k + half)] = step * 0.5 * pi * std::cosh(step * k) / (c * c);
+    }
+  }
+};
+
+const EndRule& end_rule() {
+  static const EndRule rule;
+  return rule;
+}
+
+/// Where f passes zero between a and b, at whose ends it has different signs (Illinois).
+template <class F>
+double zero_between(const F& f, double a, double fa, double b, double fb) {
+  constexpr int most = 60;
+  constexpr double close = 1e-15;
+  double x = b;
+  for (int k = 0; k < most && std::abs(b - a) > close; ++k) {
+    x = b - fb * (b - a) / (fb - fa);
+    const double fx = f(x);
+    if (fx == 0.0) break;
+    if ((fx > 0) != (fb > 0)) {
+      a = b;
+      fa = fb;
+    } else {
+      fa *= 0.5;
+    }
+    b = x;
+    fb = fx;
+  }
+  return x;
+}
+
+}  // namespace
+
 template <class Contact>
-void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p, bool with_hessian,
-                                        int copies) const {
-  WHIRL_EXPECTS(elements > 0 && copies > 0);
-  p.V = 0;
-  p.g.setZero();
-  p.H.setZero();
+void RollingBearing<Contact>::add_element(const Vector<6>& q, double c, double s, double weight,
+                                          const typename Contact::Local& l, bool with_hessian,
+                                          RollingPotential& p) {
+  const double rho = q[1] * c + q[2] * s, t = q[3] * c + q[4] * s;
+  const double rho_psi = q[2] * c - q[1] * s, t_psi = q[4] * c - q[3] * s;
+  p.V += weight * l.V;
+  Vector<6> g;
+  g << l.g.x(), l.g.y() * c, l.g.y() * s, l.g.z() * c, l.g.z() * s,
+      l.g.y() * rho_psi + l.g.z() * t_psi;
+  p.g += weight * g;
+  if (!with_hessian) return;
+  Matrix<3, 6> J;
+  J << 1, 0, 0, 0, 0, 0, 0, c, s, 0, 0, rho_psi, 0, 0, 0, c, s, t_psi;
+  p.H.noalias() += weight * (J.transpose() * l.H * J);
+  const double cross[4] = {-s * l.g.y(), c * l.g.y(), -s * l.g.z(), c * l.g.z()};
+  for (int k = 0; k < 4; ++k) {
+    p.H(1 + k, 5) += weight * cross[k];
+    p.H(5, 1 + k) += weight * cross[k];
+  }
+  p.H(5, 5) -= weight * (l.g.y() * rho + l.g.z() * t);
+}
+
+template <class Contact>
+void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p,
+                                        bool with_hessian) const {
+  WHIRL_EXPECTS(elements > 0);
+  p = {};
   typename Contact::Local l;
   // One turn of Z steps by the addition theorem: no trigonometry in the loop.
   double c = std::cos(q[5]), s = std::sin(q[5]);
-  const int n = copies * elements;
-  const double c1 = std::cos(two_pi / n), s1 = std::sin(two_pi / n);
-  for (int j = 0; j < n; ++j) {
-    const double rho = q[1] * c + q[2] * s, t = q[3] * c + q[4] * s;
-    if (contact.evaluate(q[0], rho, t, l)) {
-      const double rho_psi = q[2] * c - q[1] * s, t_psi = q[4] * c - q[3] * s;
-      p.V += l.V;
-      p.g[0] += l.g.x();
-      p.g[1] += l.g.y() * c;
-      p.g[2] += l.g.y() * s;
-      p.g[3] += l.g.z() * c;
-      p.g[4] += l.g.z() * s;
-      p.g[5] += l.g.y() * rho_psi + l.g.z() * t_psi;
-      if (with_hessian) {
-        Matrix<3, 6> J;
-        J << 1, 0, 0, 0, 0, 0, 0, c, s, 0, 0, rho_psi, 0, 0, 0, c, s, t_psi;
-        p.H.noalias() += J.transpose() * l.H * J;
-        const double cross[4] = {-s * l.g.y(), c * l.g.y(), -s * l.g.z(), c * l.g.z()};
-        for (int k = 0; k < 4; ++k) {
-          p.H(1 + k, 5) += cross[k];
-          p.H(5, 1 + k) += cross[k];
-        }
-        p.H(5, 5) -= l.g.y() * rho + l.g.z() * t;
-      }
-    }
+  const double c1 = std::cos(two_pi / elements), s1 = std::sin(two_pi / elements);
+  for (int j = 0; j < elements; ++j) {
+    if (contact.evaluate(q[0], q[1] * c + q[2] * s, q[3] * c + q[4] * s, l))
+      add_element(q, c, s, 1.0, l, with_hessian, p);
     const double next = c * c1 - s * s1;
     s = s * c1 + c * s1;
     c = next;
   }
-  if (copies > 1) {
-    p.V /= copies;
-    p.g /= copies;
-    p.H /= copies;
+}
+
+template <class Contact>
+void RollingBearing<Contact>::add_arc(const Vector<6>& q, int part, double from, double to,
+                                      bool with_hessian, RollingPotential& p) const {
+  const EndRule& rule = end_rule();
+  const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+  typename Contact::Local l;
+  for (std::size_t k = 0; k < rule.place.size(); ++k) {
+    const double a = middle + half * rule.place[k], c = std::cos(a), s = std::sin(a);
+    if (contact.evaluate_part(part, q[0], q[1] * c + q[2] * s, q[3] * c + q[4] * s, l))
+      add_element(q, c, s, elements / two_pi * half * rule.weight[k], l, with_hessian, p);
+  }
+}
+
+template <class Contact>
+void RollingBearing<Contact>::add_ring(const Vector<6>& q, int part, double from, bool with_hessian,
+                                       RollingPotential& p) const {
+  typename Contact::Local l;
+  for (int k = 0; k < smeared; ++k) {
+    const double a = from + two_pi * k / smeared, c = std::cos(a), s = std::sin(a);
+    if (contact.evaluate_part(part, q[0], q[1] * c + q[2] * s, q[3] * c + q[4] * s, l))
+      add_element(q, c, s, double(elements) / smeared, l, with_hessian, p);
+  }
+}
+
+template <class Contact>
+void RollingBearing<Contact>::mean_potential(const Vector<6>& q, RollingPotential& p,
+                                             bool with_hessian) const {
+  constexpr int looks = 48;
+  p = {};
+  // from the direction of the displacement on: the middle of the loaded arc is looked at
+  const bool shifted = q[1] != 0.0 || q[2] != 0.0;
+  const double start = shifted ? std::atan2(q[2], q[1]) : std::atan2(q[4], q[3]);
+  for (int part = 0; part < contact.parts(); ++part) {
+    const auto gap = [&](double a) {
+      const double c = std::cos(a), s = std::sin(a);
+      return contact.gap_at(part, q[0], q[1] * c + q[2] * s, q[3] * c + q[4] * s);
+    };
+    std::array<double, looks> passage;
+    std::size_t passages = 0;
+    bool enters = false;  // at the first of them
+    const double first = gap(start);
+    double before = first;
+    for (int k = 1; k <= looks; ++k) {
+      const double a = start + two_pi * (k - 1) / looks, b = start + two_pi * k / looks;
+      const double now = k == looks ? first : gap(b);
+      if ((now > 0) != (before > 0)) {
+        if (passages == 0) enters = now > 0;
+        passage[passages++] = zero_between(gap, a, before, b, now);
+      }
+      before = now;
+    }
+    if (passages == 0) {
+      if (first > 0) add_ring(q, part, start, with_hessian, p);
+      continue;
+    }
+    for (std::size_t k = enters ? 0 : 1; k < passages; k += 2) {
+      const bool last = k + 1 == passages;
+      add_arc(q, part, passage[k], last ? passage[0] + two_pi : passage[k + 1], with_hessian, p);
+    }
   }
 }
 
@@ -120,9 +243,9 @@ template <class Contact>
 void RollingBearing<Contact>::evaluate(const Nodes<2>& x, bool averaged, RollingPotential& p,
                                        bool with_hessian) const {
   Vector<6> q = deflection(x);
-  if (!averaged) return potential(q, p, with_hessian, 1);
+  if (!averaged) return potential(q, p, with_hessian);
   q[5] = 0.0;
-  potential(q, p, with_hessian, (smeared + elements - 1) / elements);
+  mean_potential(q, p, with_hessian);
   p.g[5] = 0.0;
   p.H.row(5).setZero();
   p.H.col(5).setZero();

@@ -20,7 +20,8 @@
 // Damping: -c_r v lateral, -c_a v axial (grease, mounting; N s/m).
 //
 // Frequency-domain analyses (Context::averaged) see the mean over the cage angle: the elements
-// smeared round the ring.
+// smeared round the ring, over the arcs in which they touch, to rounding in any direction of the
+// load.
 //
 // Limits: no centrifugal force or gyroscopic moment of the elements (ball bearings: n d_m below
 // about 5e5 mm/min), rings round and rigid, cage exactly at the rolling speed, tilts small (tau <<
@@ -57,6 +58,12 @@ struct BallContact {
   };
   bool evaluate(double x, double rho, double t, Local& l) const;
   double load(double x, double rho, double t) const;  ///< N
+  /// Contacts of an element that begin by themselves, each where its gap_at (m) rises above zero.
+  int parts() const { return 1; }
+  double gap_at(int part, double x, double rho, double t) const;
+  bool evaluate_part(int, double x, double rho, double t, Local& l) const {
+    return evaluate(x, rho, t, l);
+  }
 };
 
 /// Contact of a cylindrical roller.
@@ -68,6 +75,11 @@ struct RollerContact {
   using Local = BallContact::Local;
   bool evaluate(double x, double rho, double t, Local& l) const;
   double load(double x, double rho, double t) const;
+  int parts() const { return slices; }
+  double gap_at(int part, double x, double rho, double t) const;
+  bool evaluate_part(int part, double x, double rho, double t, Local& l) const;
+  /// Of a lamina along the roller from its middle, m.
+  double place(int part) const { return length * ((part + 0.5) / slices - 0.5); }
 };
 
 template <class Contact>
@@ -92,15 +104,22 @@ struct RollingBearing {
 
   /// q of the nodes; psi reduced by whole turns of the cage.
   Vector<6> deflection(const system::Nodes<2>& x) const;
-  /// with_hessian = false leaves H at zero. copies > 1: that many times the elements, each with its
-  /// part of the stiffness.
-  void potential(const Vector<6>& q, RollingPotential& p, bool with_hessian, int copies = 1) const;
+  /// with_hessian = false leaves H at zero.
+  void potential(const Vector<6>& q, RollingPotential& p, bool with_hessian) const;
+  /// The mean of it over the angle of the cage.
+  void mean_potential(const Vector<6>& q, RollingPotential& p, bool with_hessian) const;
   /// Load of every rolling element, N.
   std::vector<double> loads(const Vector<6>& q) const;
 
  private:
-  static constexpr int smeared =
-      96;  ///< at least so many elements stand for the mean over the cage angle
+  static constexpr int smeared = 96;  ///< points of the mean over a ring in contact all round
+  /// An element at an angle of cosine c and sine s.
+  static void add_element(const Vector<6>& q, double c, double s, double weight,
+                          const typename Contact::Local& l, bool with_hessian, RollingPotential& p);
+  void add_arc(const Vector<6>& q, int part, double from, double to, bool with_hessian,
+               RollingPotential& p) const;
+  void add_ring(const Vector<6>& q, int part, double from, bool with_hessian,
+                RollingPotential& p) const;
   void evaluate(const system::Nodes<2>& x, bool averaged, RollingPotential& p,
                 bool with_hessian) const;
 };

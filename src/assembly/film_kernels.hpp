@@ -10,6 +10,13 @@ namespace whirl::assembly {
 /// @throws Error E84 as JournalSurface.
 elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int nodes);
 
+/// Points round the circumference of the films of dampers.
+inline constexpr int damper_nodes = 72;
+
+/// The film of a damper of finite length or with sealed ends, on a grid of so many points.
+/// @pre a film with a grid: Film::finite or Film::sealed.
+elements::FiniteJournal make_damper_film(const model::SqueezeFilm& law, int nodes);
+
 /// One a pad, in their order; points: of the grid round the circumference.
 /// @throws Error E84 as make_tilting_pad.
 std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJournal& law,

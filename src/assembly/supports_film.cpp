@@ -87,6 +87,23 @@ elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int
   return film;
 }
 
+elements::FiniteJournal make_damper_film(const model::SqueezeFilm& law, int nodes) {
+  using Film = model::SqueezeFilm::Film;
+  WHIRL_EXPECTS(law.film == Film::finite || law.film == Film::sealed);
+  elements::FiniteJournal film;
+  film.radius = 0.5 * law.diameter;
+  film.length = law.length;
+  film.viscosity = viscosity_of(law.oil);
+  std::vector<elements::JournalPad> pads;
+  if (law.film == Film::sealed) {
+    film.seal_ends();
+    pads.push_back(
+        {law.groove_at + 0.5 * law.groove, law.groove_at - 0.5 * law.groove + two_pi, 0.0});
+  }
+  film.surface = std::make_shared<elements::JournalSurface>(law.clearance, 0.0, pads, nodes);
+  return film;
+}
+
 double short_bearing_excess(double length_over_diameter, double eccentricity) {
   WHIRL_EXPECTS(length_over_diameter > 0.0);
   WHIRL_EXPECTS(eccentricity >= 0.0 && eccentricity < 1.0);
@@ -138,20 +155,8 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
       add_damper(a, b, n, elements::ShortJournal{R, law.length, law.clearance, eta});
     else if (law.film == Film::full)
       add_damper(a, b, n, elements::ShortFullFilm{R, law.length, law.clearance, eta});
-    else {
-      elements::FiniteJournal film;
-      film.radius = R;
-      film.length = law.length;
-      film.viscosity = eta;
-      std::vector<elements::JournalPad> pads;
-      if (law.film == Film::sealed) {
-        film.seal_ends();
-        pads.push_back(
-            {law.groove_at + 0.5 * law.groove, law.groove_at - 0.5 * law.groove + two_pi, 0.0});
-      }
-      film.surface = std::make_shared<elements::JournalSurface>(law.clearance, 0.0, pads);
-      add_damper(a, b, n, film);
-    }
+    else
+      add_damper(a, b, n, make_damper_film(law, damper_nodes));
     follow_closely(a, n, law.clearance);
     a.built.conditions.push_back(
         {number_of(a, b), b.name, b.where, [r = displacement_of(n), law](const NodeAt& at) {

@@ -517,10 +517,11 @@ const std::vector<CodeInfo>& error_catalogue() {
        "model is unstable before any load acts: temperature, preload or forced places of supports "
        "have buckled it already.",
        "[[step]]\nname = \"path\"\ntype = \"static\"\npath = { load = 2 }"},
-      {"W10", "a mesh too coarse for its frequencies",
-       "The elements the deck asks for leave frequencies of the step an error above "
-       "[model.mesh] accuracy. The error is estimated mode by mode: what the mode would do on "
-       "elements a fourth as long, to first order. Without min_elements and max_element_length "
+      {"W10", "a mesh too coarse for its results",
+       "The elements the deck asks for leave frequencies of the step, or the deflections of a "
+       "static one, an error above [model.mesh] accuracy. The error is estimated mode by mode: "
+       "what the mode would do on elements a fourth as long, to first order; of deflections it is "
+       "their change on elements half as long. Without min_elements and max_element_length "
        "the program chooses elements that are short enough.",
        "[model.mesh]\naccuracy = 1e-3"},
       {"W11", "a linear response larger than a gap",

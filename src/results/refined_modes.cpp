@@ -30,24 +30,10 @@ RefinedModes::RefinedModes(FrequencyStep& s, const std::vector<std::string>& sha
       damped_(linear_, one_at_a_time(s, true)),
       undamped_(linear_, one_at_a_time(s, false)) {}
 
-VecX RefinedModes::spread(const VecX& x) const {
-  const Index added = static_cast<Index>(fine_.middles.size());
-  const Index nodes = x.size() / 6;
-  VecX out = VecX::Zero(x.size() + 6 * added);
-  for (Index n = 0; n < nodes; ++n) {
-    const bool in_mesh = n < static_cast<Index>(fine_.node.size());
-    const Index to = in_mesh ? fine_.node[static_cast<std::size_t>(n)] : n + added;
-    out.segment<6>(6 * to) = x.segment<6>(6 * n);
-  }
-  for (const meshes::Halved::Middle& m : fine_.middles)
-    out.segment<6>(6 * m.node) =
-        0.5 * (out.segment<6>(6 * m.between[0]) + out.segment<6>(6 * m.between[1]));
-  return out;
-}
-
 std::optional<double> RefinedModes::error(const analysis::WhirlMode& mode, double Omega) {
   analysis::WhirlMode start = mode;
-  start.x = spread(mode.x.real()).cast<Complex>() + Complex(0, 1) * spread(mode.x.imag());
+  start.x = meshes::spread(fine_, mode.x.real()).cast<Complex>() +
+            Complex(0, 1) * meshes::spread(fine_, mode.x.imag());
   if (start.x.size() != built_.system.size()) return std::nullopt;
   try {
     // "undamped" modes are those of the conservative part; where nothing damps both are the same

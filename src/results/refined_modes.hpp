@@ -21,7 +21,6 @@ class RefinedModes {
   std::optional<double> error(const analysis::WhirlMode& mode, double Omega);
 
  private:
-  VecX spread(const VecX& x) const;
   meshes::Halved fine_;
   assembly::Built built_;
   analysis::Linearizer linear_;

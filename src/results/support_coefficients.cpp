@@ -88,27 +88,48 @@ std::array<Mat2, 2> film_tangent(const elements::FiniteJournal& film,
   return {-t.r.topRows<2>(), -t.v.topRows<2>()};
 }
 
-double grid_error_of(const model::FiniteJournal& law, const elements::LateralMotion& m) {
-  const int finest = elements::JournalSurface::max_nodes;
-  // twice the points need not be twice the elements: a pad has four at least
-  const int other = 2 * law.nodes <= finest ? finest : law.nodes / 2;
-  const auto own = film_tangent(assembly::make_finite_journal(law, law.nodes), m);
-  const auto beside = film_tangent(assembly::make_finite_journal(law, other), m);
+/// The larger of the relative distances of two pairs K and C from the second one.
+double distance(const std::array<Mat2, 2>& own, const std::array<Mat2, 2>& other) {
   double worst = 0;
   for (int k = 0; k < 2; ++k) {
-    const double size = beside[at(k)].norm();
-    if (size > 0) worst = std::max(worst, (own[at(k)] - beside[at(k)]).norm() / size);
+    const double size = other[at(k)].norm();
+    if (size > 0) worst = std::max(worst, (own[at(k)] - other[at(k)]).norm() / size);
   }
   return worst;
+}
+
+/// Points of a grid to compare one of `nodes` with: the finest, where that is twice as fine; a pad has
+/// four elements at least, so that twice the points need not be twice the elements.
+int compared_with(int nodes) {
+  const int finest = elements::JournalSurface::max_nodes;
+  return 2 * nodes <= finest ? finest : nodes / 2;
+}
+
+double grid_error_of(const model::FiniteJournal& law, const elements::LateralMotion& m) {
+  const auto tangent = [&](int nodes) {
+    return film_tangent(assembly::make_finite_journal(law, nodes), m);
+  };
+  return distance(tangent(law.nodes), tangent(compared_with(law.nodes)));
+}
+
+/// Of a damper's film, which resists velocities alone.
+double grid_error_of(const model::SqueezeFilm& law, const Vec2& place) {
+  using Film = model::SqueezeFilm::Film;
+  if (law.film != Film::finite && law.film != Film::sealed) return nan;
+  const auto tangent = [&](int nodes) {
+    elements::FilmForce force;
+    elements::FilmTangent t;
+    assembly::make_damper_film(law, nodes).evaluate({place, Vec2::Zero(), 0.0}, force, t);
+    return std::array<Mat2, 2>{Mat2(t.F_r), Mat2(t.F_w)};
+  };
+  return distance(tangent(assembly::damper_nodes), tangent(compared_with(assembly::damper_nodes)));
 }
 
 /// How far the coefficients that the shaft sees are from those on a finer grid.
 double pad_grid_error(const assembly::TiltingPads& ring, const assembly::NodeAt& at, int points,
                       const PadResults& own) {
-  const int finest = elements::JournalSurface::max_nodes;
-  const int other = 2 * points <= finest ? finest : points / 2;
   const elements::ReducedCoefficients fine =
-      elements::reduce_pads(ring.coefficients(at, other), std::abs(own.spin));
+      elements::reduce_pads(ring.coefficients(at, compared_with(points)), std::abs(own.spin));
   const elements::ReducedCoefficients& here = own.reduced.front();
   const double k = fine.K.norm(), c = fine.C.norm();
   return std::max(k > 0 ? (here.K - fine.K).norm() / k : 0.0,
@@ -197,6 +218,8 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
     m.housing_spin = node(n.other.node).spin();
     c.grid_error = grid_error_of(*law, m);
   }
+  if (const auto* law = std::get_if<model::SqueezeFilm>(&job.model.bearings[bearing].law))
+    c.grid_error = grid_error_of(*law, c.place);
   for (const assembly::SupportCondition& x : job.built.conditions) {
     if (x.bearing != bearing) continue;
     c.clearance = x.state(node).gap;

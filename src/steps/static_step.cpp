@@ -5,6 +5,7 @@
 #include <results/held.hpp>
 #include <results/linear_limits.hpp>
 #include <results/stability_results.hpp>
+#include <results/static_accuracy.hpp>
 #include <results/static_results.hpp>
 #include <results/support_coefficients.hpp>
 #include <run/support_diagnosis.hpp>
@@ -128,6 +129,7 @@ class StaticRun {
   void write_point(const analysis::LoadPathPoint& p);
   void evaluate();
   void judge();
+  void judge_mesh();
   void write_tables();
   void say_end(const RunTime& time) const;
   void add_section();
@@ -225,6 +227,16 @@ void StaticRun::judge() {
                                           found_.spin_holds, summary());
   if (!path_ && frames_.any()) frames_.write(job_, problem_, x, x.t, results_.points);
   frames_.end();
+}
+
+/// What the elements do to one equilibrium; along a path they are not judged.
+void StaticRun::judge_mesh() {
+  if (path_) return;
+  const auto accuracy = results::static_mesh_error(job_, step_.name, state_);
+  if (!accuracy) return;
+  const std::string said = results::report_static_accuracy(job_, step_.name, *accuracy);
+  results_.deflection.title += "; " + said;
+  results_.lines.push_back(said);
 }
 
 void StaticRun::write_tables() {
@@ -326,6 +338,7 @@ void StaticRun::execute() {
   summary()["load steps"] = found_.load_steps;
   evaluate();
   judge();
+  judge_mesh();
   results::warn_of_held_tables(job_, step_.name, state_.speed, state_.speed);
   results::warn_of_short_bearings(job_, step_.name, state_.state);
   write_tables();

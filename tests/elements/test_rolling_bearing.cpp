@@ -138,6 +138,65 @@ TEST(RollingBearing, PartlyLoadedTangent) {
   }
 }
 
+// The mean over the angle of the cage: whatever the direction of the load, with few elements in
+// contact, the energy and its derivatives turn with it; a dense sum over cage angles is the reference.
+double apart(const Mat3& a, const Mat3& b) { return (a - b).norm() / b.norm(); }
+double apart(const Mat2& a, const Mat2& b) { return (a - b).norm() / b.norm(); }
+
+template <class Bearing>
+void expect_mean_turns(const Bearing& b, double shift, double tilt) {
+  Vector<6> q;
+  q << 2e-6, shift, 0, tilt, 0.3 * tilt, 0;
+  RollingPotential own, p;
+  b.mean_potential(q, own, true);
+  ASSERT_GT(own.g.norm(), 0.0);
+  Matrix<6> sum = Matrix<6>::Zero();
+  Vector<6> load = Vector<6>::Zero();
+  constexpr int angles = 4000;
+  for (int k = 0; k < angles; ++k) {
+    q[5] = two_pi / b.elements * (k + 0.5) / angles;
+    b.potential(q, p, true);
+    sum += p.H / angles;
+    load += p.g / angles;
+  }
+  q[5] = 0;
+  EXPECT_LT((load - own.g).head<3>().norm(), 1e-7 * load.head<3>().norm());
+  const Mat3 spring = own.H.topLeftCorner<3, 3>(), summed = sum.topLeftCorner<3, 3>();
+  EXPECT_LT(apart(spring, summed), 1e-4);
+  for (const double a : {0.1, 0.77, 2.9, 5.0}) {
+    Matrix<6> turn = Matrix<6>::Identity();
+    const Mat2 r = Eigen::Rotation2Dd(a).toRotationMatrix();
+    turn.block<2, 2>(1, 1) = turn.block<2, 2>(3, 3) = r;
+    b.mean_potential(turn * q, p, true);
+    EXPECT_LT((p.g - turn * own.g).head<3>().norm(), 1e-10 * own.g.head<3>().norm()) << a;
+    const Matrix<6> H = turn * own.H * turn.transpose();
+    const Mat3 turned = H.topLeftCorner<3, 3>(), found = p.H.topLeftCorner<3, 3>();
+    const Mat2 tilts = H.block<2, 2>(3, 3), found_tilts = p.H.block<2, 2>(3, 3);
+    EXPECT_LT(apart(found, turned), 1e-8) << a;
+    EXPECT_LT(apart(found_tilts, tilts), 1e-8) << a;
+  }
+}
+
+TEST(RollingBearing, MeanTurnsWithTheLoad) {
+  BallGeometry g;
+  g.balls = 7;
+  g.ball_diameter = 0.01;
+  g.pitch_diameter = 0.05;
+  g.radial_clearance = 5e-6;
+  for (const double shift : {5.2e-6, 8e-6, 3e-5})
+    for (const double tilt : {0.0, 1e-4})
+      expect_mean_turns(make_ball_bearing(g), shift, tilt);
+  RollerGeometry r;
+  r.rollers = 9;
+  r.roller_diameter = 0.01;
+  r.roller_length = 0.01;
+  r.pitch_diameter = 0.05;
+  r.radial_clearance = 5e-6;
+  for (const double shift : {8e-6, 3e-5})
+    for (const double tilt : {0.0, 3e-4})
+      expect_mean_turns(make_roller_bearing(r), shift, tilt);
+}
+
 TEST(RollingBearing, LoadSharing) {
   // radial clearance um, load N, ball under load (1) or gap (0), displacement m, tangent N/m: roots
   // of the 8-ball sum

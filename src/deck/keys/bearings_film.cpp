@@ -197,6 +197,11 @@ void describe(Visitor& v, model::SqueezeFilm& b) {
   v.quantity("stiffness", b.stiffness, "N/m", not_negative,
              "centring spring, the same along y and z; 0: none");
   v.quantity("damping", b.damping, "N.s/m", not_negative, "damping of the centring spring");
+  const bool is_short = b.film == Film::cavitated || b.film == Film::full;
+  if (v.clean() && is_short && b.length > 0.5 * b.diameter)
+    v.warning("W03", "length",
+              "the theory of short films is for lengths below about half the diameter",
+              "film = \"finite\" has no such limit");
 }
 
 void describe(Visitor& v, model::AnnularSeal& b) {
@@ -208,6 +213,11 @@ void describe(Visitor& v, model::AnnularSeal& b) {
   v.number("inlet_loss", b.inlet_loss, not_negative, "inlet loss coefficient xi");
   v.number("inlet_swirl", b.inlet_swirl, between(-2, 2),
            "circumferential inlet velocity over surface speed; 0.5: fully developed");
+  if (v.clean() && b.length > 0.75 * b.diameter)
+    v.warning("W03", "length",
+              "the short-seal theory of Black and Childs is for lengths below about three quarters "
+              "of the diameter",
+              "type = \"table\" takes coefficients from a bulk-flow solution");
 }
 
 void describe(Visitor& v, model::CrossCoupling& b) {

@@ -1,0 +1,77 @@
+#include <analysis/statics/equilibrium.hpp>
+#include <assembly/build_system.hpp>
+#include <meshes/halved.hpp>
+#include <results/linear_limits.hpp>
+#include <results/mesh_accuracy.hpp>
+#include <results/static_accuracy.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace whirl::results {
+namespace {
+
+/// The equilibrium on the halved mesh nearest the one found.
+std::optional<analysis::Equilibrium> settle_on(const system::System& fine,
+                                               const meshes::Halved& mesh, const run::Job& job,
+                                               const run::StepState& found) {
+  analysis::SteadySystem turning(fine, job.steady_rotation_of(found));
+  analysis::EquilibriumOptions options;
+  options.chart_change = job.model.chart_change;
+  analysis::EquilibriumSolver solver(turning, options);
+  system::State start = fine.make_state();
+  start.q = meshes::spread(mesh, found.state.q);
+  if (start.q.size() != fine.size()) return std::nullopt;
+  return solver.try_solve(found.speed, &start);
+}
+
+}  // namespace
+
+std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::string& step,
+                                                const run::StepState& equilibrium) {
+  const system::State& own = equilibrium.state;
+  if (job.mesh.elements.empty() || own.frames.moved()) return std::nullopt;
+  const meshes::Halved fine =
+      meshes::halve(job.mesh, std::vector<bool>(job.mesh.lines.size(), true));
+  const assembly::Built built = assembly::build_system(job.model, fine.mesh, step);
+  const auto found = settle_on(built.system, fine, job, equilibrium);
+  if (!found || found->state.frames.moved()) return std::nullopt;
+  StaticAccuracy out;
+  double most = 0;
+  for (const meshes::Line& line : job.mesh.lines)
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n) {
+      const Vec3 u = own.q.segment<3>(6 * n);
+      const Vec3 refined = found->state.q.segment<3>(6 * fine.node[static_cast<std::size_t>(n)]);
+      most = std::max(most, u.norm());
+      if (const double moved = (refined - u).norm(); moved > out.error) {
+        out.error = moved;
+        out.shaft = line.name;
+      }
+    }
+  if (!(most > 0.0)) return std::nullopt;
+  out.error *= 4.0 / 3.0 / most;
+  if (out.shaft.empty()) out.shaft = job.mesh.lines.front().name;
+  return out;
+}
+
+std::string report_static_accuracy(run::Job& job, const std::string& step,
+                                   const StaticAccuracy& a) {
+  io::Value& v = job.summary["steps"][step]["mesh"];
+  v["elements"] = job.mesh.elements.size();
+  v["relative error of deflections"] = a.error;
+  v["largest at"] = a.shaft;
+  if (a.error > job.model.mesh_accuracy) {
+    Diagnostic w;
+    w.code = "W10";
+    w.message = fmt::format(
+        "step '{}': the mesh is too coarse: deflections of shaft '{}' are off by about {} of the "
+        "largest, {} wanted",
+        step, a.shaft, error_text(a.error), error_text(job.model.mesh_accuracy));
+    w.hint = "give min_elements or max_element_length for more elements";
+    warn(job, std::move(w));
+  }
+  return fmt::format("deflections right to {} (elements)", error_text(a.error));
+}
+
+}  // namespace whirl::results
