@@ -8,6 +8,28 @@ namespace whirl::elements {
 
 using namespace system;
 
+namespace {
+
+/// A motor pushes with its largest torque up to the speed at which it has its power; a brake, of
+/// negative power, opposes the spin either way, near standstill as dry friction does.
+void add_power(const TorqueLaw::ConstantPower& p, double x, double friction_speed,
+               TorqueLaw::Value& v) {
+  const bool beyond =
+      p.power < 0 ? std::abs(x) * p.max_torque > -p.power : x * p.max_torque > p.power;
+  if (beyond) {
+    v.T += p.power / x;
+    v.dx -= p.power / (x * x);
+  } else if (p.power < 0) {
+    const double smooth = std::tanh(x / friction_speed);
+    v.T -= p.max_torque * smooth;
+    v.dx -= p.max_torque * (1.0 - smooth * smooth) / friction_speed;
+  } else {
+    v.T += p.max_torque;
+  }
+}
+
+}  // namespace
+
 TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) const {
   WHIRL_EXPECTS(speed.size() == torque.size());
   WHIRL_EXPECTS(friction_speed > 0.0);
@@ -32,13 +54,7 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) con
     v.T += 2.0 * induction->breakdown * z * zb / q;
     v.dx -= 2.0 * induction->breakdown * zb * (zb * zb - z * z) / (q * q) / induction->synchronous;
   }
-  if (power) {
-    if (x * power->max_torque > power->power) {
-      v.T += power->power / x;
-      v.dx -= power->power / (x * x);
-    } else
-      v.T += power->max_torque;
-  }
+  if (power) add_power(*power, x, friction_speed, v);
   if (dc) {
     v.T += dc->stall * (1.0 - x / dc->no_load_speed);
     v.dx -= dc->stall / dc->no_load_speed;

@@ -28,7 +28,8 @@ struct TorqueLaw {
     double breakdown = 0, slip_breakdown = 0.1, synchronous = 0;
   };
   std::optional<Induction> induction;
-  /// power/x, never above max_torque; at and below zero speed max_torque
+  /// power/x, never above max_torque; a motor has max_torque at and below zero speed, a brake (power
+  /// below zero) opposes the spin either way
   struct ConstantPower {
     double power = 0, max_torque = 0;
   };

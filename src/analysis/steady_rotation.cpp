@@ -384,15 +384,21 @@ bool SteadySystem::visit_revolution(
     const system::Frames& f, double Omega, const VecX& q,
     const std::function<void(double, const system::Workspace&)>& visit) {
   WHIRL_EXPECTS(visit != nullptr);
-  const std::size_t visits = phase_dependent() ? theta_.size() : 1;
-  for (std::size_t k = 0; k < visits; ++k) {
+  const auto visit_at = [&](double theta, double weight) {
     set_rates(Omega, v_);
     q_ = q;
     for (Index i = 0; i < system_.nodes(); ++i)
-      if (visits > 1 && spinning_[at(i)])
-        q_[6 * i + 3] += theta_[k] * ratio_[at(system_.node(i).line)];
+      if (spinning_[at(i)]) q_[6 * i + 3] += theta * ratio_[at(system_.node(i).line)];
     if (!system_.evaluate_nodes(workspace_, f, running_.time, q_, v_, a_)) return false;
-    visit(visits > 1 ? weights_(0, static_cast<Index>(k)) : 1.0, workspace_);
+    visit(weight, workspace_);
+    return true;
+  };
+  if (!phase_dependent()) return visit_at(0.0, 1.0);
+  // Either way round: the mean of what is periodic is the same, and a spring against the angle, which
+  // is measured from the steady turn, is not wound up by the samples.
+  for (std::size_t k = 0; k < theta_.size(); ++k) {
+    const double weight = 0.5 * weights_(0, static_cast<Index>(k));
+    if (!visit_at(theta_[k], weight) || !visit_at(-theta_[k], weight)) return false;
   }
   return true;
 }

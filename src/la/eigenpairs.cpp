@@ -1,3 +1,4 @@
+#include <core/interrupt.hpp>
 #include <la/dense.hpp>
 #include <la/eigenpairs.hpp>
 
@@ -190,6 +191,7 @@ bool Eigenpairs::take(std::vector<Pair>& found, bool near) {
   bool any = false;
   std::vector<Pair> rest, rigid;
   for (Pair& p : found) {
+    throw_if_interrupted();
     // Rounding of a double zero eigenvalue shows up as far as 1e-3 of the shift.
     if (!first_order && std::abs(p.lambda) < 1e-3 * std::abs(shift) && is_free_motion(p)) {
       rigid.push_back(std::move(p));

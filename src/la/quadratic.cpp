@@ -1,3 +1,4 @@
+#include <core/interrupt.hpp>
 #include <cmath>
 #include <la/dense.hpp>
 #include <la/mode_search.hpp>
@@ -95,7 +96,9 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
   ++work.searches;
   k.reset(dimension(), seed);
   lock_known(k);
-  const Index lacking = missing();
+  // Of many modes some hundred at a time: the dense part of a search grows with the cube.
+  constexpr Index most = 256;
+  const Index lacking = std::min(missing(), most);
   const bool growing = lacking > 0;
   const double radius = growing ? opt.max_frequency : wanted_radius();
   if (growing) {
@@ -106,8 +109,10 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
   const auto op = operation<Scalar>();
   while (true) {
     bool exhausted = false;
-    while (k.processed() < next_look && !exhausted)
+    while (k.processed() < next_look && !exhausted) {
+      throw_if_interrupted();
       exhausted = !k.step(op);
+    }
     if (k.processed() == 0) return false;
     Harvest h = harvest(k, exhausted, radius);
     const bool enough = growing && opt.count > 0 && h.counted >= lacking && lacking > 0;
@@ -131,6 +136,7 @@ void ModeSolver::Impl::solve_dense() {
   MatX op(d, d);
   VecX out(d);
   for (Index j = 0; j < d; ++j) {
+    throw_if_interrupted();
     apply<double>(VecX::Unit(d, j), out, *real, s, x_, t_, y_);
     op.col(j) = out;
   }

@@ -98,7 +98,7 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
   a.x = Axis("speed", "rpm");
   a.y = Axis("damped natural frequency", "Hz");
   a.x.include_zero = a.y.include_zero = true;
-  double top = 0, end = 0;
+  double top = 0, end = 0, start = 0;
   std::array<bool, 4> used{};
   bool heavy = false;
   for (const auto& l : lines) {
@@ -107,18 +107,26 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
       v = v > 0 ? v * hertz : nan;  // an overdamped mode does not oscillate
     for (const double v : y)
       if (v > top) top = v;
-    for (const double v : l.speed)
+    for (const double v : l.speed) {
       end = std::max(end, v);
+      start = std::min(start, v);
+    }
     add_line(a, l, y, "log decrement", "-", l.log_decrement, used, &heavy);
     mark_overdamped(a, l);
   }
   a.y.max = top > 0 ? 1.06 * top : nan;
   for (const double order : orders) {
-    if (!(end > 0) || !(order > 0)) continue;
-    const double limit = std::min(end, 1.06 * top / (order * hertz));
+    if (!(end > 0 || start < 0) || !(order > 0)) continue;
+    const double reach = 1.06 * top / (order * hertz);
+    const double limit = std::min(end, reach);
+    const double back = std::min(-start, reach);  // shafts that turn the other way
     Series s;
     s.x = {0, limit * rpm};
     s.y = {0, order * limit * hertz};
+    if (back > 0) {
+      s.x.insert(s.x.begin(), -back * rpm);
+      s.y.insert(s.y.begin(), order * back * hertz);
+    }
     s.style = {ink, Dash::solid, 0.8};
     s.trace_label = order_name(order) + " excitation";
     a.series.push_back(std::move(s));

@@ -1,6 +1,7 @@
 #include <model/full_section.hpp>
 #include <run/diagnose.hpp>
 #include <results/frequency.hpp>
+#include <results/turned_back.hpp>
 #include <results/held.hpp>
 #include <results/linear_limits.hpp>
 #include <run/progress.hpp>
@@ -189,6 +190,15 @@ analysis::Linearizer FrequencyStep::linearizer_of(const system::System& other) c
   analysis::Linearizer out(other, steady_rotation_of(job, top_speed_),
                            equilibrium_options(job, load_steps_));
   if (about_undeformed(step.law)) out.stay_undeformed();
+  return out;
+}
+
+analysis::Linearizer turned_back(FrequencyStep& s) {
+  analysis::SteadyRotation running = s.linear.running().running();
+  for (double& ratio : running.ratio)
+    ratio = -ratio;
+  analysis::Linearizer out(s.linear.system(), running, equilibrium_options(s.job, 1));
+  if (about_undeformed(s.step.law)) out.stay_undeformed();
   return out;
 }
 

@@ -10,7 +10,7 @@
 namespace whirl::results {
 
 /// Largest share of each support's gap (journal bearings, squeeze films, stops, rubs) that a steady
-/// harmonic response takes, the static displacement included.
+/// harmonic response takes, the static displacement included, and how far it tilts the shaft.
 class GapCheck {
  public:
   explicit GapCheck(FrequencyStep& s) : step_(s) {}
@@ -18,7 +18,8 @@ class GapCheck {
   /// the reference speed Omega, rad/s. frequency: of the excitation where it is not the speed,
   /// rad/s.
   void look(double Omega, std::span<const VecXc> amplitudes, double frequency = nan);
-  /// W11 for every gap that a response oversteps; all shares into the summary ("gaps").
+  /// W11 for every gap that a response oversteps, for tilts that are not small, and every film of which it takes so much that
+  /// coefficients of small motions mislead; all shares into the summary ("gaps").
   void report();
 
  private:
@@ -26,10 +27,19 @@ class GapCheck {
     double displacement = 0, gap = 0;  ///< m
     double speed = 0, frequency = nan;
     bool film = false;
+    double film_share = 0;  ///< of what the equilibrium leaves of the clearance
     Where where;
   };
+  struct Tilt {
+    double largest = 0;  ///< rad
+    double speed = 0, frequency = nan;
+    Index node = 0;
+  };
+  void look_at_tilts(double Omega, std::span<const VecXc> amplitudes, double frequency);
+  void report_tilt();
   FrequencyStep& step_;
   std::map<std::string, Worst> worst_;
+  Tilt tilt_;
 };
 
 /// W12: bearings whose table ends within low .. high (reference speed, rad/s) and whose edge

@@ -7,6 +7,7 @@
 #include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <results/campbell_lines.hpp>
+#include <steps/criticals_between.hpp>
 #include <steps/step_kinds.hpp>
 
 #include <fmt/format.h>
@@ -105,15 +106,18 @@ std::vector<plot::CriticalMark> find_criticals(results::FrequencyStep& s,
     const double order = law.orders[i];
     analysis::CriticalOptions q;
     q.order = order;
-    q.max_speed = std::max(o.speeds.front(), o.speeds.back());
-    q.min_speed = std::min(o.speeds.front(), o.speeds.back());
+    const double first = std::min(o.speeds.front(), o.speeds.back());
+    const double last = std::max(o.speeds.front(), o.speeds.back());
+    q.max_speed = last;
+    q.min_speed = first;
     q.motion = o.track.modes.motion;
     q.damped = law.damped;
     q.grid = static_cast<Index>(o.speeds.size());
     q.max_frequency = highest_frequency(c);
     q.threads = s.job.options.jobs;
     analysis::OrderCrossings* known = crossings.empty() ? nullptr : &crossings[i];
-    for (const analysis::Critical& k : criticals_of(s, o, q, known)) {
+    for (const analysis::Critical& k :
+         first < 0.0 ? criticals_between(s, q, first, last) : criticals_of(s, o, q, known)) {
       marks.push_back({k.speed, k.frequency, order, {}});
       table.add({order, to_rpm(k.speed), to_hz(k.frequency), std::string(to_string(k.mode.kind)),
                  results::direction_text(k.mode), results::tidy(k.mode.log_decrement),
@@ -247,7 +251,8 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   }();
   io::Table criticals = empty_critical_table();
   std::vector<plot::CriticalMark> marks;
-  if (top > 0 && o.speeds.front() >= 0 && o.speeds.front() != o.speeds.back()) {
+  const bool a_range = top > 0 && o.speeds.front() != o.speeds.back();
+  if (a_range) {
     const run::PhaseTimer timer(job, "critical speeds");
     marks = find_criticals(s, law, o, c, crossings, criticals);
   }
@@ -279,8 +284,9 @@ void run_campbell_step(run::Job& job, const model::Step& step, const model::Camp
   s.section.text += c.certificates[weakest].complete()
                         ? " At every speed the roots were counted: the list of modes is complete."
                         : " " + results::capital(c.certificates[weakest].text()) + ".";
-  s.finish(fmt::format("{} modes at {} speeds, {} critical speeds", c.lines.size(), c.speeds.size(),
-                       found));
+  const std::string searched = a_range ? fmt::format(", {} critical speeds", found) : "";
+  s.finish(fmt::format("{} modes at {} speed{}{}", c.lines.size(), c.speeds.size(),
+                       c.speeds.size() == 1 ? "" : "s", searched));
 }
 
 }  // namespace whirl::steps

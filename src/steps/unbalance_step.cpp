@@ -8,6 +8,7 @@
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
+#include <steps/criticals_between.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/contract.hpp>
 #include <core/text.hpp>
@@ -120,17 +121,15 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k,
 /// into the speeds.
 void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds) {
   const double low = speeds.front(), high = speeds.back();
-  if (!(low >= 0 && high > 0)) return;
+  if (low == high) return;
   const auto orders = s.linear.running().orders();
   for (const double order : std::vector<double>(orders.begin(), orders.end())) {
     analysis::CriticalOptions o;
     o.order = order;
-    o.max_speed = high;
-    o.min_speed = low;
     o.damped = true;
     o.motion = analysis::Motion::lateral;
     o.threads = s.job.options.jobs;
-    for (const analysis::Critical& c : analysis::critical_speeds(s.linear, o))
+    for (const analysis::Critical& c : criticals_between(s, o, low, high))
       for (const double x : {-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
         const double Omega = c.speed * (1.0 + x * c.mode.damping_ratio);
         if (Omega > low && Omega < high) speeds.push_back(Omega);
@@ -138,7 +137,7 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
   }
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end(),
-                           [](double a, double b) { return b - a < 1e-7 * b; }),
+                           [](double a, double b) { return b - a < 1e-7 * std::abs(b); }),
                speeds.end());
 }
 
@@ -247,7 +246,8 @@ void add_zones(results::FrequencyStep& s, const UnbalanceResponse& r,
   for (std::size_t p = 0; p < probes.size(); ++p) {
     double nearest = -1, speed = 0, largest = 0;
     for (const SteadyPoint& x : r.points) {
-      if (x.Omega < law.operating[0] * (1 - 1e-12) || x.Omega > law.operating[1] * (1 + 1e-12))
+      const double turns = std::abs(x.Omega);
+      if (turns < law.operating[0] * (1 - 1e-12) || turns > law.operating[1] * (1 + 1e-12))
         continue;
       double pp = 0;
       for (const auto& order : x.probe)

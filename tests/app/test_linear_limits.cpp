@@ -1,6 +1,7 @@
 // What linear results say of their limits: a mesh too coarse (W10), a response larger than a gap
 // (W11), a table held beyond its end (W12); and nothing where there is nothing to say.
 #include "deck_run.hpp"
+#include "lateral_mass.hpp"
 
 using whirl::test::DeckRun;
 namespace io = whirl::io;
@@ -79,7 +80,63 @@ TEST(LinearLimits, AResponseBeyondAGapIsNamed) {
   EXPECT_TRUE(small.says("W11")) << small.log;
   EXPECT_TRUE(small.says("'stop'")) << small.log;
   const DeckRun wide(rotor("", stop("500 mm") + response));
-  EXPECT_FALSE(wide.says("W11")) << wide.log;
+  EXPECT_FALSE(wide.says("'stop'")) << wide.log;
+}
+
+// A damper on a spring: 25 kg, unbalance a fifth of mass times clearance, 7000 rpm. The orbit of the
+// cavitated film is 0.807 of the clearance, that of its coefficients for small motions 0.49.
+TEST(LinearLimits, AFilmThatIsNoLongerThatOfSmallMotionsIsNamed) {
+  const auto damper = [](const char* unbalance) {
+    return whirl::test::lateral_mass(25, "0 m/s^2",
+                                     std::string(R"([[bearing]]
+name = "damper"
+at = "mass"
+type = "squeeze_film"
+film = "cavitated"
+diameter = "129.6 mm"
+length = "23 mm"
+clearance = "200 um"
+viscosity = "6 mPa.s"
+stiffness = "8e6 N/m"
+[[unbalance]]
+at = "mass"
+amount = ")") + unbalance +
+                                         R"( g.mm"
+[[probe]]
+at = "mass"
+[[step]]
+name = "u"
+type = "unbalance_response"
+speed = { values = ["7000 rpm"] }
+[output]
+report = false
+)");
+  };
+  const DeckRun large(damper("1000"));
+  ASSERT_EQ(large.exit, 0) << large.log;
+  EXPECT_TRUE(large.says("W11")) << large.log;
+  EXPECT_TRUE(large.says("'damper'")) << large.log;
+  const double share = large.summary("u")
+                           .at("gaps")
+                           .at("damper")
+                           .at("share of the film that the response takes")
+                           .number();
+  EXPECT_NEAR(share, 0.4906, 5e-3);  // of 24 looks a period
+  const DeckRun small(damper("100"));
+  EXPECT_FALSE(small.says("W11")) << small.log;
+}
+
+// The bearings stand in nodes of the first mode: the response to 200 g mm is a tenth of the shaft's
+// length and tilts its ends by 0.4 rad.
+TEST(LinearLimits, ATiltThatIsNotSmallIsNamed) {
+  const DeckRun large(rotor("", response));
+  ASSERT_EQ(large.exit, 0) << large.log;
+  EXPECT_TRUE(large.says("would tilt the shaft by 0.406 rad")) << large.log;
+  std::string less = rotor("", response);
+  less.replace(less.find("200 g.mm"), 8, "20 g.mm");
+  const DeckRun small(less);
+  ASSERT_EQ(small.exit, 0) << small.log;
+  EXPECT_FALSE(small.says("W11")) << small.log;
 }
 
 TEST(LinearLimits, AHeldTableIsNamed) {

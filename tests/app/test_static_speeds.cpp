@@ -269,4 +269,12 @@ TEST(StaticTwist, ASpringAgainstTheAngleOfAShaft) {
     moment += row[supports.column("M_x [N m]")];
   // the spring's damper: c Omega
   EXPECT_NEAR(moment, -2.0 * 3000 * 3.14159265358979 / 30, 1e-6);
+  // An unbalance makes the step look at the whole revolution, which said 3/4 pi times the stiffness.
+  const DeckRun unbalanced(torsion_spring("3000 rpm") +
+                           "[[unbalance]]\nat = \"mass\"\namount = \"10 g.mm\"\n");
+  ASSERT_EQ(unbalanced.exit, 0) << unbalanced.log;
+  double again = 0;
+  for (const auto& row : unbalanced.csv("st_supports.csv").rows)
+    again += row[supports.column("M_x [N m]")];
+  EXPECT_NEAR(again, moment, 1e-6);
 }

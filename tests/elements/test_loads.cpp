@@ -93,6 +93,10 @@ TEST(SpinTorque, Conformance) {
   o.dtilt = 0.5;
   check_kernel(JointTorque{kinked, Vec3::UnitX()}, o);
   check_kernel(NormalTorque{kinked, Vec3::UnitX()}, o);
+  for (const double power : {-30.0, -3000.0}) {  // a brake beyond its limit and within it
+    kinked.power->power = power;
+    check_kernel(JointTorque{kinked, Vec3::UnitX()}, o);
+  }
 }
 
 TEST(SpinTorque, Directions) {
@@ -142,6 +146,12 @@ TEST(TorqueLaw, Terms) {
   EXPECT_DOUBLE_EQ(t.at(0, 100, 0).T, 10);
   EXPECT_DOUBLE_EQ(t.at(0, 1, 0).T, 50);
   EXPECT_DOUBLE_EQ(t.at(0, -1, 0).T, 50);
+  t.power = TorqueLaw::ConstantPower{-1000, 50};  // a brake, whichever way it turns
+  EXPECT_DOUBLE_EQ(t.at(0, 100, 0).T, -10);
+  EXPECT_DOUBLE_EQ(t.at(0, 1, 0).T, -50);
+  EXPECT_DOUBLE_EQ(t.at(0, -1, 0).T, 50);
+  EXPECT_DOUBLE_EQ(t.at(0, -100, 0).T, 10);
+  EXPECT_EQ(t.at(0, 0, 0).T, 0);
   t = {};
   t.governor = TorqueLaw::Governor{100, 2, 0.5, 30, 1.0};
   EXPECT_DOUBLE_EQ(t.at(2, 95, 191).T, 2 * 5 + 0.5 * 10);

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <core/error.hpp>
+#include <core/interrupt.hpp>
 #include <gtest/gtest.h>
 #include <la/block_lu.hpp>
 #include <la/eigen.hpp>
@@ -136,6 +137,42 @@ TEST(QuadraticModes, GyroscopicRotorOnSpringsInClosedForm) {
     // Backward and forward precession: u_phi_z / u_phi_y = -+ i.
     EXPECT_NEAR(std::abs(modes[0].x(5) / modes[0].x(4) - modes[3].x(4) / modes[3].x(5)), 0.0,
                 1e-12);
+  }
+}
+
+// Of more than some hundred modes the search takes a part at a time, all near zero first.
+TEST(QuadraticModes, HundredsOfModes) {
+  Shaft s;
+  s.elements = 80;
+  const BlockPattern p(81, chain(81));
+  const Mask a = pinned(p, true);
+  const MCK m = shaft_matrices(p, s, 3000.0);
+  ModeOptions o;
+  o.count = 300;
+  o.tolerance = 1e-9;
+  const auto parts = quadratic_modes(m, a, o);
+  o.dense_below = 1000;
+  const auto whole = quadratic_modes(m, a, o);
+  ASSERT_EQ(parts.size(), 300u);
+  ASSERT_EQ(whole.size(), 300u);
+  for (std::size_t k = 0; k < 300; ++k)
+    EXPECT_NEAR(parts[k].lambda.imag(), whole[k].lambda.imag(), 1e-6 * whole[k].lambda.imag());
+}
+
+TEST(QuadraticModes, TheSearchStopsWhenAsked) {
+  const BlockPattern p(33, chain(33));
+  Shaft s;
+  s.elements = 32;
+  const MCK m = shaft_matrices(p, s, 300.0);
+  const Mask a = pinned(p, true);
+  for (const Index dense_below : {0, 1000}) {
+    ModeOptions o;
+    o.count = 8;
+    o.dense_below = dense_below;
+    interrupt::flag.store(true);
+    EXPECT_THROW(quadratic_modes(m, a, o), Interrupted);
+    interrupt::flag.store(false);
+    EXPECT_EQ(quadratic_modes(m, a, o).size(), 8u);
   }
 }
 

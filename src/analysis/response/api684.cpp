@@ -28,12 +28,12 @@ std::vector<MarginRow> separation_margins(const std::vector<ResponsePeak>& peaks
     // A peak without half-power points is too flat to have an AF of 2.5, or is cut off by the range
     // of speeds.
     r.critically_damped = !(r.amplification >= 2.5);
-    const bool above = p.speed > range.max;
+    const double speed = std::abs(p.speed);
+    const bool above = speed > range.max;
     r.required = required_margin(r.amplification, above);
-    r.actual = above ? (p.speed - range.max) / range.max
-               : p.speed < range.min
-                   ? (range.min - p.speed) / range.min
-                   : -std::min(p.speed - range.min, range.max - p.speed) / p.speed;
+    r.actual = above               ? (speed - range.max) / range.max
+               : speed < range.min ? (range.min - speed) / range.min
+                                   : -std::min(speed - range.min, range.max - speed) / speed;
     r.passed = r.critically_damped || r.actual >= r.required;
     rows.push_back(r);
   }

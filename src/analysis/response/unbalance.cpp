@@ -10,9 +10,10 @@
 namespace whirl::analysis {
 
 double ResponsePeak::amplification() const {
-  if (!std::isnan(low) && !std::isnan(high)) return speed / (high - low);
-  if (!std::isnan(high)) return speed / (2.0 * (high - speed));
-  if (!std::isnan(low)) return speed / (2.0 * (speed - low));
+  const double size = std::abs(speed);  // a rotor may turn the other way
+  if (!std::isnan(low) && !std::isnan(high)) return size / (high - low);
+  if (!std::isnan(high)) return size / (2.0 * (high - speed));
+  if (!std::isnan(low)) return size / (2.0 * (speed - low));
   return nan;
 }
 
@@ -90,7 +91,8 @@ void UnbalanceSolver::find_half_power(const std::vector<SteadyPoint>& coarse, st
 
 void UnbalanceSolver::add_points(const ResponsePeak& peak, double low, double high, double reach,
                                  std::vector<SteadyPoint>& extra) {
-  const double width = std::isnan(peak.amplification()) ? 0.0 : peak.speed / peak.amplification();
+  const double factor = peak.amplification();
+  const double width = std::isnan(factor) ? 0.0 : std::abs(peak.speed) / factor;
   for (double x : {0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 4.0})
     for (double sign : {-1.0, 1.0}) {
       const double Omega = peak.speed + sign * x * width;
@@ -175,7 +177,7 @@ UnbalanceResponse UnbalanceSolver::run() {
   // the same peak seen by two probes: keep speeds apart by 1e-7
   out.points.erase(std::unique(out.points.begin(), out.points.end(),
                                [](const SteadyPoint& a, const SteadyPoint& b) {
-                                 return b.Omega - a.Omega < 1e-7 * b.Omega;
+                                 return b.Omega - a.Omega < 1e-7 * std::abs(b.Omega);
                                }),
                    out.points.end());
   return out;
