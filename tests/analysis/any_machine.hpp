@@ -213,7 +213,7 @@ class AnyMachine {
       if (joint && std::string(at) == "start") continue;
       deck_ += fmt::format(
           "[[bearing]]\nname = \"foot {0}\"\nat = \"cp0:{0}\"\ntype = \"linear\"\n", at);
-      deck_ += matrix_keys(k, 1e-4 * k, 0.2);
+      deck_ += key("kxx", k, spring) + matrix_keys(k, 1e-4 * k, 0.2);
     }
   }
 

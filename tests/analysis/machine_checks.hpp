@@ -54,8 +54,10 @@ inline void check_machine(const DeckModel& d, double Omega, Index count, const s
   if (!certificate.complete())
     std::printf("%s at %g rpm: %s\n", name.c_str(), Omega / rpm, certificate.text().c_str());
   EXPECT_TRUE(certificate.complete() || !strict) << name << ": " << certificate.text();
-  const std::vector<Complex> all =
+  std::vector<Complex> all =
       all_roots(linear.at(Omega), linear.active(), 0.37 * certificate.list.radius);
+  // of parts without mass: infinite but for rounding
+  std::erase_if(all, [&](Complex s) { return std::abs(s) > 1e7 * certificate.list.radius; });
   double largest = 0;
   for (const Complex s : all)
     largest = std::max(largest, std::abs(s));

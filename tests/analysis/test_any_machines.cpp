@@ -26,6 +26,7 @@ constexpr Index listed = 8;
 /// What is said of a machine at one speed, as of the machine itself.
 struct Said {
   std::string refused;  ///< code of an error instead
+  double slow = 0;      ///< 1/s: what is slower is not compared
   std::vector<WhirlMode> modes;
   Vec2 place;                 ///< of the first disk in equilibrium, m
   std::vector<Orbit> orbits;  ///< of it by unbalance, one an order, m
@@ -37,6 +38,8 @@ Said what_is_said(const AnyMachine& machine, const AnyMachine::View& view, doubl
     const DeckModel d(machine.deck());
     Linearizer linear(d.built.system, d.running());
     const double Omega = share * machine.top_speed();
+    // the rest of pads that carry nothing, by a spring of the program's, and next to free spins
+    said.slow = (machine.has("tilting pads") ? 5e-2 : 1e-3) * Omega * view.scale;
     ModesOptions o;
     o.count = listed + 2;
     o.real_roots = false;
@@ -65,20 +68,21 @@ Said what_is_said(const AnyMachine& machine, const AnyMachine::View& view, doubl
 
 /// How far roots may lie apart, relative to their size, from what the equilibrium is found to. The
 /// films of dampers stand on a grid that does not turn with the load; rollers begin to touch with a
-/// power of 1/9 in their stiffness.
+/// power of 1/9 in their stiffness; what lays a pad without load goes by seconds.
 double alike(const AnyMachine& m) {
-  return m.has("squeeze film") ? 5e-4 : m.has("roller bearing") ? 2e-5 : 2e-6;
+  return m.has("squeeze film")                              ? 5e-4
+         : m.has("roller bearing") || m.has("tilting pads") ? 2e-5
+                                                            : 2e-6;
 }
 
 struct Differences {
-  int views = 0, modes = 0, refused = 0;
+  int views = 0, modes = 0, refused = 0, elsewhere = 0;
   double worst_mode = 0, worst_place = 0, worst_orbit = 0;
-  std::string at;
 };
 
 /// The same machine under a view: what differs.
 void compare(const Said& own, const Said& seen, const AnyMachine::View& view,
-             const std::string& name, double near, Differences& sum) {
+             const std::string& name, double near, bool pads, Differences& sum) {
   ++sum.views;
   ASSERT_EQ(own.refused.substr(0, 3), seen.refused.substr(0, 3)) << name << "\n"
                                                                  << own.refused << "\n"
@@ -88,11 +92,19 @@ void compare(const Said& own, const Said& seen, const AnyMachine::View& view,
     return;
   }
   const double size = std::max(own.place.norm(), 1e-9);
+  // A pad of a lightly loaded bearing may carry or rest: both are equilibria.
+  if (pads && (own.place - seen.place).norm() > 1e-3 * size) {
+    ++sum.elsewhere;
+    std::printf("%s: another equilibrium, pads that rest\n", name.c_str());
+    return;
+  }
   sum.worst_place = std::max(sum.worst_place, (own.place - seen.place).norm() / size);
   EXPECT_LT((own.place - seen.place).norm(), 1e-5 * size) << name;
   Index number = 0;
   for (const WhirlMode& m : own.modes) {
     if (++number > listed) break;
+    // heavily damped pairs stand at the border to what does not oscillate
+    if (std::abs(m.lambda) < own.slow || m.damping_ratio > 0.9) continue;
     const WhirlMode* best = nullptr;
     for (const WhirlMode& x : seen.modes)
       if (!best || std::abs(x.lambda - m.lambda) < std::abs(best->lambda - m.lambda)) best = &x;
@@ -142,16 +154,19 @@ void campaign(unsigned first, unsigned machines) {
     for (std::size_t v = 0; v < 4; ++v) {
       const AnyMachine::View view = views(seed)[v];
       compare(own, what_is_said(AnyMachine(seed, view), view, share), view, name + names[v],
-              alike(machine), sum);
+              alike(machine), machine.has("tilting pads"), sum);
     }
     if (!own.refused.empty() || machine.by_rate()) continue;
     const DeckModel d(machine.deck());
     tests::check_machine(d, share * machine.top_speed(), listed, name, tally, false);
   }
   tests::report(tally);
+  EXPECT_LE(sum.elsewhere, 1 + sum.views / 200);
+  EXPECT_GE(tally.certified, tally.solved - tally.solved / 100);
   std::printf(
-      "%d views (%d refused): roots alike to %.1e, places to %.1e, orbits to %.1e; machines with",
-      sum.views, sum.refused, sum.worst_mode, sum.worst_place, sum.worst_orbit);
+      "%d views (%d refused, %d in another equilibrium): roots alike to %.1e, places to %.1e, "
+      "orbits to %.1e; machines with",
+      sum.views, sum.refused, sum.elsewhere, sum.worst_mode, sum.worst_place, sum.worst_orbit);
   for (const auto& [kind, count] : kinds)
     std::printf(" %s %d,", kind.c_str(), count);
   std::printf("\n");
