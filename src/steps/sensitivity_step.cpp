@@ -77,12 +77,14 @@ std::vector<analysis::OpenedLoop> SensitivityRun::opened_loops(const run::Job& j
   return out;
 }
 
-/// Its modes up to the end of the range: what grows, and where the curves are steep.
+/// Its modes up to the end of the range, and as far as the controllers act: what grows, and where the
+/// curves are steep.
 void SensitivityRun::judge_stability() {
   analysis::ModesOptions o;
   o.count = 0;
-  o.max_frequency =
+  const double end =
       law_.frequency.values.empty() ? law_.frequency.stop : law_.frequency.values.back();
+  o.max_frequency = std::max(end, s_.linear.running().running().control_bandwidth);
   o.real_roots = true;
   o.judge = true;
   analysis::SpectrumCertificate certificate;

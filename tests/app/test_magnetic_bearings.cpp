@@ -58,6 +58,20 @@ const std::string loops =
     "Hz\", points = 300 }\n";
 const std::string still = "[[step]]\nname = \"st\"\ntype = \"static\"\n";
 
+// Without damping enough the loop grows at 43.5 Hz. Sensitivities asked for up to 10 Hz were 0.76 and
+// "zone A".
+TEST(MagneticBearings, LoopsThatGrowBeyondTheFrequenciesAskedForHaveNoZone) {
+  const std::string low =
+      "[[step]]\nname = \"s\"\ntype = \"sensitivity\"\nfrequency = { start = \"1 Hz\", stop = \"10 "
+      "Hz\", points = 10 }\n";
+  const DeckRun d(mass(magnet + control(1.5e4, 0, 0.5), low));
+  EXPECT_EQ(d.exit, 0) << d.log;
+  EXPECT_FALSE(d.says("zone A")) << d.log;
+  EXPECT_TRUE(d.says("unstable: 2 growing motions")) << d.log;
+  const DeckRun damped(mass(magnet + control(1.5e4, 0, 32), low));
+  EXPECT_TRUE(damped.says("zone A")) << damped.log;
+}
+
 // An amplifier that answers in 1e300 s leaves a loop open without end; no count of the roots can say
 // whether it grows. The list said "zone A" all the same.
 TEST(MagneticBearings, ALoopWhoseRootsCannotBeCountedHasNoZone) {
