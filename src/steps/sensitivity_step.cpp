@@ -77,14 +77,12 @@ std::vector<analysis::OpenedLoop> SensitivityRun::opened_loops(const run::Job& j
   return out;
 }
 
-/// Its modes up to the end of the range, and as far as the controllers act: what grows, and where the
-/// curves are steep.
+/// Its modes up to the end of the range, where the curves are steep, and what grows at all.
 void SensitivityRun::judge_stability() {
   analysis::ModesOptions o;
   o.count = 0;
-  const double end =
+  o.max_frequency =
       law_.frequency.values.empty() ? law_.frequency.stop : law_.frequency.values.back();
-  o.max_frequency = std::max(end, s_.linear.running().running().control_bandwidth);
   o.real_roots = true;
   o.judge = true;
   analysis::SpectrumCertificate certificate;
