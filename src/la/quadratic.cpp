@@ -219,10 +219,15 @@ void ModeSolver::Impl::sort_by_frequency(std::vector<std::size_t>& chosen) const
 
 std::vector<std::size_t> ModeSolver::Impl::choose_counted() const {
   const CountRegion region{certificate.radius, certificate.reach};
+  // What grows is listed wherever it was counted.
+  const auto grows = [&](const Pair& p) {
+    return opt.growing && region.contains(p.lambda) && p.lambda.real() > p.uncertainty;
+  };
   std::vector<std::size_t> oscillating, real_ones;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const Pair& p = known[i];
-    if (oscillates(p.lambda) && p.lambda.imag() <= opt.max_frequency) oscillating.push_back(i);
+    if (oscillates(p.lambda) && (p.lambda.imag() <= opt.max_frequency || grows(p)))
+      oscillating.push_back(i);
     if (!oscillates(p.lambda) && opt.real_roots && region.contains(p.lambda))
       real_ones.push_back(i);
   }
@@ -230,10 +235,8 @@ std::vector<std::size_t> ModeSolver::Impl::choose_counted() const {
   sort_by_frequency(real_ones);
   if (opt.count > 0 && static_cast<Index>(oscillating.size()) > opt.count) {
     const auto beyond = oscillating.begin() + static_cast<std::ptrdiff_t>(opt.count);
-    const auto kept = std::remove_if(beyond, oscillating.end(), [&](std::size_t i) {
-      return !(opt.growing && region.contains(known[i].lambda) &&
-               known[i].lambda.real() > known[i].uncertainty);
-    });
+    const auto kept =
+        std::remove_if(beyond, oscillating.end(), [&](std::size_t i) { return !grows(known[i]); });
     oscillating.erase(kept, oscillating.end());
   }
   real_ones.insert(real_ones.end(), oscillating.begin(), oscillating.end());

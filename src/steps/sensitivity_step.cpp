@@ -54,6 +54,7 @@ class SensitivityRun {
   std::vector<double> grid_;                  ///< rad/s
   std::vector<std::vector<Complex>> values_;  ///< [frequency][loop]
   std::size_t growing_ = 0;
+  bool counted_ = false;  ///< no growing motion is missing
 };
 
 std::vector<analysis::OpenedLoop> SensitivityRun::opened_loops(const run::Job& job) {
@@ -76,7 +77,7 @@ std::vector<analysis::OpenedLoop> SensitivityRun::opened_loops(const run::Job& j
   return out;
 }
 
-/// Its modes up to the end of the range: what grows, and where the curves are steep.
+/// Its modes up to the end of the range, where the curves are steep, and what grows at all.
 void SensitivityRun::judge_stability() {
   analysis::ModesOptions o;
   o.count = 0;
@@ -95,6 +96,7 @@ void SensitivityRun::judge_stability() {
       if (w > grid_.front() && w < grid_.back()) grid_.push_back(w);
     }
   }
+  counted_ = certificate.complete();
   s_.certify(certificate);
 }
 
@@ -168,7 +170,7 @@ void SensitivityRun::add_peaks() {
   v["speed [rpm]"] = to_rpm(law_.speed);
   v["growing motions"] = static_cast<int>(growing_);
   for (const Loop& l : loops_) {
-    const std::string zone = growing_ > 0 ? "unstable" : zone_of(l.peak);
+    const std::string zone = growing_ > 0 ? "unstable" : counted_ ? zone_of(l.peak) : "not judged";
     t.add({l.name, l.peak, decibel(l.peak), to_hz(l.at), zone});
     io::Value e = io::Value::object();
     e["loop"] = l.name;
@@ -214,9 +216,10 @@ std::string SensitivityRun::verdict() const {
                        growing_ == 1 ? "" : "s");
   const auto worst = std::max_element(loops_.begin(), loops_.end(),
                                       [](const Loop& a, const Loop& b) { return a.peak < b.peak; });
-  return fmt::format("largest sensitivity {:.4g} ({:.3g} dB) of {} at {:.4g} Hz, zone {}",
-                     worst->peak, decibel(worst->peak), worst->name, to_hz(worst->at),
-                     zone_of(worst->peak));
+  const std::string zone = counted_ ? fmt::format("zone {}", zone_of(worst->peak))
+                                    : "no zone: whether the loops are stable is not certified";
+  return fmt::format("largest sensitivity {:.4g} ({:.3g} dB) of {} at {:.4g} Hz, {}", worst->peak,
+                     decibel(worst->peak), worst->name, to_hz(worst->at), zone);
 }
 
 void SensitivityRun::execute() {

@@ -58,6 +58,31 @@ const std::string loops =
     "Hz\", points = 300 }\n";
 const std::string still = "[[step]]\nname = \"st\"\ntype = \"static\"\n";
 
+// Without damping enough the loop grows at 43.5 Hz. Sensitivities asked for up to 10 Hz were 0.76 and
+// "zone A".
+TEST(MagneticBearings, LoopsThatGrowBeyondTheFrequenciesAskedForHaveNoZone) {
+  const std::string low =
+      "[[step]]\nname = \"s\"\ntype = \"sensitivity\"\nfrequency = { start = \"1 Hz\", stop = \"10 "
+      "Hz\", points = 10 }\n";
+  const DeckRun d(mass(magnet + control(1.5e4, 0, 0.5), low));
+  EXPECT_EQ(d.exit, 0) << d.log;
+  EXPECT_FALSE(d.says("zone A")) << d.log;
+  EXPECT_TRUE(d.says("unstable: 2 growing motions")) << d.log;
+  const DeckRun damped(mass(magnet + control(1.5e4, 0, 32), low));
+  EXPECT_TRUE(damped.says("zone A")) << damped.log;
+}
+
+// An amplifier that answers in 1e300 s leaves a loop open without end; no count of the roots can say
+// whether it grows. The list said "zone A" all the same.
+TEST(MagneticBearings, ALoopWhoseRootsCannotBeCountedHasNoZone) {
+  std::string endless = magnet;
+  endless.replace(endless.find("1200 Hz"), 7, "1e-300 Hz");
+  const DeckRun d(mass(endless + control(1.5e4, 0, 32), loops));
+  EXPECT_EQ(d.exit, 4) << d.log;
+  EXPECT_FALSE(d.says("zone A")) << d.log;
+  EXPECT_TRUE(d.says("W07")) << d.log;
+}
+
 // m 30 kg, k_s 1.5e6 N/m, k_i 250 N/A, PID 1.5e4 A/m, 1e5 A/(m s), 32 A s/m with lag 53 us, amplifier
 // 1200 Hz, sensor 4000 Hz: roots of the characteristic polynomial, and the largest |1/(1 + L)|.
 TEST(MagneticBearings, PolesAndSensitivityOfARigidRotor) {

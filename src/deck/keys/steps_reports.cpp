@@ -41,6 +41,17 @@ void check_names(Visitor& v, const std::vector<T>& list, const char* key, const 
       v.error("E16", key, fmt::format("two {} are called '{}'", what, x.name));
 }
 
+/// Whole numbers, as many as a step of modes lists at most.
+bool check_mode_numbers(Visitor& v, const std::vector<double>& modes) {
+  constexpr double most = 10000;
+  for (const double m : modes)
+    if (m != std::floor(m) || m < 1 || m > most) {
+      v.error("E14", "modes", fmt::format("{:g} is no number of a mode", m), "modes = [1, 2]");
+      return false;
+    }
+  return true;
+}
+
 void describe_operating(Visitor& v, std::array<double, 2>& range) {
   std::vector<double> speeds;
   v.quantities(required("operating_speed"), speeds, "rpm", positive, 2,
@@ -217,10 +228,7 @@ void describe(Visitor& v, model::ApiLateralStep& s) {
   if (given && (s.max_speed < s.trip || s.min_speed > s.operating[0]))
     return v.error("E26", "response_speed",
                    "the response does not reach from the lowest operating speed to the trip speed");
-  for (const double m : s.modes)
-    if (m != std::floor(m))
-      return v.error("E14", "modes", fmt::format("{:g} is no number of a mode", m),
-                     "modes = [1, 2]");
+  if (!check_mode_numbers(v, s.modes)) return;
   check_names(v, s.sets, "set", "sets");
   for (const model::ApiStage& stage : s.stages)
     if (s.at_stages && !stage.at)
@@ -291,6 +299,7 @@ void describe(Visitor& v, model::BalancingStep& s) {
   if (s.planes.empty() || s.speeds.empty())
     return v.error("E20", s.planes.empty() ? "plane" : "speeds",
                    "balancing needs at least one plane and one speed");
+  if (!check_mode_numbers(v, s.modes)) return;
   const bool modal = s.method == model::BalancingStep::Method::modal;
   if (modal != !s.modes.empty())
     return v.error(
