@@ -3,7 +3,9 @@
 
 #include <core/error.hpp>
 #include <elements/rolling/hertz.hpp>
+#include <elements/rolling/roller_lanes.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::elements {
@@ -15,7 +17,7 @@ using system::Nodes;
 using system::TangentX;
 
 bool BallContact::evaluate(double x, double rho, double t, Local& l) const {
-  const double sa = a0 + x - R * t, sr = r0 + rho, A = std::hypot(sa, sr), delta = A - A0;
+  const double sa = a0 + x - R * t, sr = r0 + rho, A = std::sqrt(sa * sa + sr * sr), delta = A - A0;
   if (delta <= 0.0) return false;
   const double root = std::sqrt(delta), Q = K * delta * root, dQ = 1.5 * K * root;
   const Vec2 n(sa / A, sr / A);
@@ -29,35 +31,50 @@ bool BallContact::evaluate(double x, double rho, double t, Local& l) const {
 }
 
 double BallContact::load(double x, double rho, double t) const {
-  const double delta = std::hypot(a0 + x - R * t, r0 + rho) - A0;
+  const double sa = a0 + x - R * t, sr = r0 + rho, delta = std::sqrt(sa * sa + sr * sr) - A0;
   return delta > 0.0 ? K * delta * std::sqrt(delta) : 0.0;
 }
 
-bool RollerContact::evaluate(double, double rho, double t, Local& l) const {
-  bool touch = false;
-  l.V = 0;
-  l.g.setZero();
-  l.H.setZero();
-  const double k = K / slices;
-  for (int i = 0; i < slices; ++i) {
-    const double s = length * ((i + 0.5) / slices - 0.5), delta = rho + s * t - clearance;
-    if (delta <= 0.0) continue;
-    touch = true;
-    const double dQ = 10.0 / 9.0 * k * std::pow(delta, 1.0 / 9.0), Q = 0.9 * dQ * delta;
-    l.V += 9.0 / 19.0 * Q * delta;
-    l.g.y() += Q;
-    l.g.z() += s * Q;
-    l.H(1, 1) += dQ;
-    l.H(1, 2) += s * dQ;
-    l.H(2, 2) += s * s * dQ;
+void BallContact::evaluate(double x, const double* rho, const double* t, ContactLoads& out) const {
+  out = {};
+  for (std::size_t j = 0; j < ContactLoads::together; ++j) {
+    Local l;
+    if (!(rho[j] > -infinity) || !evaluate(x, rho[j], t[j], l)) continue;
+    out.V[j] = l.V;
+    out.gx[j] = l.g.x();
+    out.gr[j] = l.g.y();
+    out.gt[j] = l.g.z();
+    out.Hxx[j] = l.H(0, 0);
+    out.Hxr[j] = l.H(0, 1);
+    out.Hxt[j] = l.H(0, 2);
+    out.Hrr[j] = l.H(1, 1);
+    out.Hrt[j] = l.H(1, 2);
+    out.Htt[j] = l.H(2, 2);
   }
-  l.H(2, 1) = l.H(1, 2);
-  return touch;
+}
+
+void RollerContact::evaluate(double, const double* rho, const double* t, ContactLoads& out) const {
+  static_assert(ContactLoads::together == roller_lanes::together);
+  roller_lanes::Loads l;
+  roller_lanes::kernels().evaluate({10.0 / 9.0 * (K / slices), clearance, length, slices}, rho, t,
+                                   l);
+  out = {};
+  std::copy_n(l.energy, ContactLoads::together, out.V.begin());
+  std::copy_n(l.force, ContactLoads::together, out.gr.begin());
+  std::copy_n(l.moment, ContactLoads::together, out.gt.begin());
+  std::copy_n(l.slope[0], ContactLoads::together, out.Hrr.begin());
+  std::copy_n(l.slope[1], ContactLoads::together, out.Hrt.begin());
+  std::copy_n(l.slope[2], ContactLoads::together, out.Htt.begin());
 }
 
 double RollerContact::load(double, double rho, double t) const {
-  Local l;
-  return evaluate(0, rho, t, l) ? l.g.y() : 0.0;
+  std::array<double, ContactLoads::together> at, tilt{};
+  at.fill(-infinity);
+  at[0] = rho;
+  tilt[0] = t;
+  ContactLoads l;
+  evaluate(0, at.data(), tilt.data(), l);
+  return l.gr[0];
 }
 
 template <class Contact>
@@ -70,6 +87,36 @@ Vector<6> RollingBearing<Contact>::deflection(const Nodes<2>& x) const {
   return q;
 }
 
+namespace {
+
+/// Adds the contact of one rolling element at the angle of cosine c and sine s.
+void add_contact(const Vector<6>& q, double c, double s, const ContactLoads& l, std::size_t j,
+                 bool with_hessian, RollingPotential& p) {
+  const double gr = l.gr[j], gt = l.gt[j];
+  const double rho_psi = q[2] * c - q[1] * s, t_psi = q[4] * c - q[3] * s;
+  p.V += l.V[j];
+  p.g[0] += l.gx[j];
+  p.g[1] += gr * c;
+  p.g[2] += gr * s;
+  p.g[3] += gt * c;
+  p.g[4] += gt * s;
+  p.g[5] += gr * rho_psi + gt * t_psi;
+  if (!with_hessian) return;
+  Mat3 H;
+  H << l.Hxx[j], l.Hxr[j], l.Hxt[j], l.Hxr[j], l.Hrr[j], l.Hrt[j], l.Hxt[j], l.Hrt[j], l.Htt[j];
+  Matrix<3, 6> J;
+  J << 1, 0, 0, 0, 0, 0, 0, c, s, 0, 0, rho_psi, 0, 0, 0, c, s, t_psi;
+  p.H.noalias() += J.transpose() * H * J;
+  const double cross[4] = {-s * gr, c * gr, -s * gt, c * gt};
+  for (int k = 0; k < 4; ++k) {
+    p.H(1 + k, 5) += cross[k];
+    p.H(5, 1 + k) += cross[k];
+  }
+  p.H(5, 5) -= gr * (q[1] * c + q[2] * s) + gt * (q[3] * c + q[4] * s);
+}
+
+}  // namespace
+
 template <class Contact>
 void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p, bool with_hessian,
                                         int copies) const {
@@ -77,37 +124,29 @@ void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p,
   p.V = 0;
   p.g.setZero();
   p.H.setZero();
-  typename Contact::Local l;
+  constexpr int together = ContactLoads::together;
+  std::array<double, together> c, s, rho, t;
+  ContactLoads l;
   // One turn of Z steps by the addition theorem: no trigonometry in the loop.
-  double c = std::cos(q[5]), s = std::sin(q[5]);
+  double cos = std::cos(q[5]), sin = std::sin(q[5]);
   const int n = copies * elements;
   const double c1 = std::cos(two_pi / n), s1 = std::sin(two_pi / n);
-  for (int j = 0; j < n; ++j) {
-    const double rho = q[1] * c + q[2] * s, t = q[3] * c + q[4] * s;
-    if (contact.evaluate(q[0], rho, t, l)) {
-      const double rho_psi = q[2] * c - q[1] * s, t_psi = q[4] * c - q[3] * s;
-      p.V += l.V;
-      p.g[0] += l.g.x();
-      p.g[1] += l.g.y() * c;
-      p.g[2] += l.g.y() * s;
-      p.g[3] += l.g.z() * c;
-      p.g[4] += l.g.z() * s;
-      p.g[5] += l.g.y() * rho_psi + l.g.z() * t_psi;
-      if (with_hessian) {
-        Matrix<3, 6> J;
-        J << 1, 0, 0, 0, 0, 0, 0, c, s, 0, 0, rho_psi, 0, 0, 0, c, s, t_psi;
-        p.H.noalias() += J.transpose() * l.H * J;
-        const double cross[4] = {-s * l.g.y(), c * l.g.y(), -s * l.g.z(), c * l.g.z()};
-        for (int k = 0; k < 4; ++k) {
-          p.H(1 + k, 5) += cross[k];
-          p.H(5, 1 + k) += cross[k];
-        }
-        p.H(5, 5) -= l.g.y() * rho + l.g.z() * t;
-      }
+  for (int first = 0; first < n; first += together) {
+    const std::size_t count = static_cast<std::size_t>(std::min(together, n - first));
+    rho.fill(-infinity);
+    t.fill(0.0);
+    for (std::size_t j = 0; j < count; ++j) {
+      c[j] = cos;
+      s[j] = sin;
+      rho[j] = q[1] * cos + q[2] * sin;
+      t[j] = q[3] * cos + q[4] * sin;
+      const double next = cos * c1 - sin * s1;
+      sin = sin * c1 + cos * s1;
+      cos = next;
     }
-    const double next = c * c1 - s * s1;
-    s = s * c1 + c * s1;
-    c = next;
+    contact.evaluate(q[0], rho.data(), t.data(), l);
+    for (std::size_t j = 0; j < count; ++j)
+      if (l.V[j] > 0.0) add_contact(q, c[j], s[j], l, j, with_hessian, p);
   }
   if (copies > 1) {
     p.V /= copies;

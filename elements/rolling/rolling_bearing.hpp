@@ -43,6 +43,14 @@ struct RollingPotential {
   Matrix<6> H = Matrix<6>::Zero();
 };
 
+/// Contacts of some rolling elements in (x, rho, t); zero where one does not touch.
+struct ContactLoads {
+  static constexpr int together = 8;
+  std::array<double, together> V;
+  std::array<double, together> gx, gr, gt;
+  std::array<double, together> Hxx, Hxr, Hxt, Hrr, Hrt, Htt;
+};
+
 /// Contact of a ball: deflection as a function of (x, rho, t).
 struct BallContact {
   double K = 0;   ///< both contacts in series, N/m^1.5
@@ -56,6 +64,8 @@ struct BallContact {
     Mat3 H;
   };
   bool evaluate(double x, double rho, double t, Local& l) const;
+  /// Balls at rho and t, ContactLoads::together of them; one that is not there has rho = -infinity.
+  void evaluate(double x, const double* rho, const double* t, ContactLoads& out) const;
   double load(double x, double rho, double t) const;  ///< N
 };
 
@@ -65,8 +75,8 @@ struct RollerContact {
   double clearance = 0;  ///< radial (negative: interference), m
   double length = 0;     ///< effective, m
   int slices = 9;
-  using Local = BallContact::Local;
-  bool evaluate(double x, double rho, double t, Local& l) const;
+  /// As the balls'.
+  void evaluate(double x, const double* rho, const double* t, ContactLoads& out) const;
   double load(double x, double rho, double t) const;
 };
 
