@@ -129,6 +129,10 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
     o.min_speed = low;
     o.damped = true;
     o.motion = analysis::Motion::lateral;
+    // they only say where the grid is to be finer: found, not counted, and where modes cannot be
+    // followed the tracker goes in smaller steps
+    o.certify = false;
+    o.grid = 16;
     o.threads = s.job.options.jobs;
     for (const analysis::Critical& c : analysis::critical_speeds(s.linear, o))
       for (const double x : {-8.0, -4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0, 8.0}) {
