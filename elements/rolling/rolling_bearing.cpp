@@ -3,11 +3,21 @@
 
 #include <core/error.hpp>
 #include <elements/rolling/hertz.hpp>
+#include <elements/rolling/roller_lanes.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace whirl::elements {
+
+ContactLoad ContactLoads::at(std::size_t j) const {
+  ContactLoad l;
+  l.V = V[j];
+  l.g << gx[j], gr[j], gt[j];
+  l.H << Hxx[j], Hxr[j], Hxt[j], Hxr[j], Hrr[j], Hrt[j], Hxt[j], Hrt[j], Htt[j];
+  return l;
+}
 
 using system::Context;
 using system::Energy;
@@ -16,7 +26,7 @@ using system::Nodes;
 using system::TangentX;
 
 bool BallContact::evaluate(double x, double rho, double t, Local& l) const {
-  const double sa = a0 + x - R * t, sr = r0 + rho, A = std::hypot(sa, sr), delta = A - A0;
+  const double sa = a0 + x - R * t, sr = r0 + rho, A = std::sqrt(sa * sa + sr * sr), delta = A - A0;
   if (delta <= 0.0) return false;
   const double root = std::sqrt(delta), Q = K * delta * root, dQ = 1.5 * K * root;
   const Vec2 n(sa / A, sr / A);
@@ -30,7 +40,7 @@ bool BallContact::evaluate(double x, double rho, double t, Local& l) const {
 }
 
 double BallContact::load(double x, double rho, double t) const {
-  const double delta = std::hypot(a0 + x - R * t, r0 + rho) - A0;
+  const double sa = a0 + x - R * t, sr = r0 + rho, delta = std::sqrt(sa * sa + sr * sr) - A0;
   return delta > 0.0 ? K * delta * std::sqrt(delta) : 0.0;
 }
 
@@ -52,31 +62,46 @@ bool RollerContact::evaluate_part(int part, double, double rho, double t, Local&
   return true;
 }
 
-bool RollerContact::evaluate(double, double rho, double t, Local& l) const {
-  bool touch = false;
-  l.V = 0;
-  l.g.setZero();
-  l.H.setZero();
-  const double k = K / slices;
-  for (int i = 0; i < slices; ++i) {
-    const double s = place(i), delta = rho + s * t - clearance;
-    if (delta <= 0.0) continue;
-    touch = true;
-    const double dQ = 10.0 / 9.0 * k * std::pow(delta, 1.0 / 9.0), Q = 0.9 * dQ * delta;
-    l.V += 9.0 / 19.0 * Q * delta;
-    l.g.y() += Q;
-    l.g.z() += s * Q;
-    l.H(1, 1) += dQ;
-    l.H(1, 2) += s * dQ;
-    l.H(2, 2) += s * s * dQ;
+void BallContact::evaluate(double x, const double* rho, const double* t, ContactLoads& out) const {
+  out = {};
+  for (std::size_t j = 0; j < ContactLoads::together; ++j) {
+    Local l;
+    if (!(rho[j] > -infinity) || !evaluate(x, rho[j], t[j], l)) continue;
+    out.V[j] = l.V;
+    out.gx[j] = l.g.x();
+    out.gr[j] = l.g.y();
+    out.gt[j] = l.g.z();
+    out.Hxx[j] = l.H(0, 0);
+    out.Hxr[j] = l.H(0, 1);
+    out.Hxt[j] = l.H(0, 2);
+    out.Hrr[j] = l.H(1, 1);
+    out.Hrt[j] = l.H(1, 2);
+    out.Htt[j] = l.H(2, 2);
   }
-  l.H(2, 1) = l.H(1, 2);
-  return touch;
+}
+
+void RollerContact::evaluate(double, const double* rho, const double* t, ContactLoads& out) const {
+  static_assert(ContactLoads::together == roller_lanes::together);
+  roller_lanes::Loads l;
+  roller_lanes::kernels().evaluate({10.0 / 9.0 * (K / slices), clearance, length, slices}, rho, t,
+                                   l);
+  out = {};
+  std::copy_n(l.energy, ContactLoads::together, out.V.begin());
+  std::copy_n(l.force, ContactLoads::together, out.gr.begin());
+  std::copy_n(l.moment, ContactLoads::together, out.gt.begin());
+  std::copy_n(l.slope[0], ContactLoads::together, out.Hrr.begin());
+  std::copy_n(l.slope[1], ContactLoads::together, out.Hrt.begin());
+  std::copy_n(l.slope[2], ContactLoads::together, out.Htt.begin());
 }
 
 double RollerContact::load(double, double rho, double t) const {
-  Local l;
-  return evaluate(0, rho, t, l) ? l.g.y() : 0.0;
+  std::array<double, ContactLoads::together> at, tilt{};
+  at.fill(-infinity);
+  at[0] = rho;
+  tilt[0] = t;
+  ContactLoads l;
+  evaluate(0, at.data(), tilt.data(), l);
+  return l.gr[0];
 }
 
 template <class Contact>
@@ -163,17 +188,32 @@ template <class Contact>
 void RollingBearing<Contact>::potential(const Vector<6>& q, RollingPotential& p,
                                         bool with_hessian) const {
   WHIRL_EXPECTS(elements > 0);
-  p = {};
-  typename Contact::Local l;
+  p.V = 0;
+  p.g.setZero();
+  p.H.setZero();
+  constexpr int together = ContactLoads::together;
+  std::array<double, together> c, s, rho, t;
+  ContactLoads l;
   // One turn of Z steps by the addition theorem: no trigonometry in the loop.
-  double c = std::cos(q[5]), s = std::sin(q[5]);
-  const double c1 = std::cos(two_pi / elements), s1 = std::sin(two_pi / elements);
-  for (int j = 0; j < elements; ++j) {
-    if (contact.evaluate(q[0], q[1] * c + q[2] * s, q[3] * c + q[4] * s, l))
-      add_element(q, c, s, 1.0, l, with_hessian, p);
-    const double next = c * c1 - s * s1;
-    s = s * c1 + c * s1;
-    c = next;
+  double cos = std::cos(q[5]), sin = std::sin(q[5]);
+  const int n = elements;
+  const double c1 = std::cos(two_pi / n), s1 = std::sin(two_pi / n);
+  for (int first = 0; first < n; first += together) {
+    const std::size_t count = static_cast<std::size_t>(std::min(together, n - first));
+    rho.fill(-infinity);
+    t.fill(0.0);
+    for (std::size_t j = 0; j < count; ++j) {
+      c[j] = cos;
+      s[j] = sin;
+      rho[j] = q[1] * cos + q[2] * sin;
+      t[j] = q[3] * cos + q[4] * sin;
+      const double next = cos * c1 - sin * s1;
+      sin = sin * c1 + cos * s1;
+      cos = next;
+    }
+    contact.evaluate(q[0], rho.data(), t.data(), l);
+    for (std::size_t j = 0; j < count; ++j)
+      if (l.V[j] > 0.0) add_element(q, c[j], s[j], 1.0, l.at(j), with_hessian, p);
   }
 }
 

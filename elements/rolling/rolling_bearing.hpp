@@ -44,6 +44,22 @@ struct RollingPotential {
   Matrix<6> H = Matrix<6>::Zero();
 };
 
+/// Energy of one contact and its derivatives by (x, rho, t).
+struct ContactLoad {
+  double V;
+  Vec3 g;
+  Mat3 H;
+};
+
+/// Contacts of some rolling elements in (x, rho, t); zero where one does not touch.
+struct ContactLoads {
+  static constexpr int together = 8;
+  std::array<double, together> V;
+  std::array<double, together> gx, gr, gt;
+  std::array<double, together> Hxx, Hxr, Hxt, Hrr, Hrt, Htt;
+  ContactLoad at(std::size_t j) const;
+};
+
 /// Contact of a ball: deflection as a function of (x, rho, t).
 struct BallContact {
   double K = 0;   ///< both contacts in series, N/m^1.5
@@ -51,12 +67,10 @@ struct BallContact {
   double a0 = 0,
          r0 = 0;  ///< distance of groove centres in the reference position, axial and radial, m
   double R = 0;   ///< radius of the inner groove centres, m
-  struct Local {
-    double V;
-    Vec3 g;
-    Mat3 H;
-  };
+  using Local = ContactLoad;
   bool evaluate(double x, double rho, double t, Local& l) const;
+  /// Balls at rho and t, ContactLoads::together of them; one that is not there has rho = -infinity.
+  void evaluate(double x, const double* rho, const double* t, ContactLoads& out) const;
   double load(double x, double rho, double t) const;  ///< N
   /// Contacts of an element that begin by themselves, each where its gap_at (m) rises above zero.
   int parts() const { return 1; }
@@ -72,8 +86,9 @@ struct RollerContact {
   double clearance = 0;  ///< radial (negative: interference), m
   double length = 0;     ///< effective, m
   int slices = 9;
-  using Local = BallContact::Local;
-  bool evaluate(double x, double rho, double t, Local& l) const;
+  using Local = ContactLoad;
+  /// As the balls'.
+  void evaluate(double x, const double* rho, const double* t, ContactLoads& out) const;
   double load(double x, double rho, double t) const;
   int parts() const { return slices; }
   double gap_at(int part, double x, double rho, double t) const;

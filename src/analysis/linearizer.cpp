@@ -47,13 +47,15 @@ void Linearizer::set_equilibrium(const Equilibrium& e) {
   WHIRL_EXPECTS(e.state.q.size() == system().size());
   equilibrium_ = e;
   have_ = true;
+  current_ = have_forcing_ = false;
+  balanced_load_ = running_.load();
   running_.residual(e.state.frames, e.Omega, e.state.q, r_);
   floor_ = largest(r_, solver_.free());
 }
 
 void Linearizer::stay_undeformed() {
   undeformed_ = true;
-  have_ = false;
+  have_ = current_ = false;
   running_.set_load(0.0);
 }
 
@@ -69,6 +71,8 @@ void Linearizer::take_undeformed(double Omega) {
   system().follow(s);
   equilibrium_.reactions = VecX::Zero(system().size());
   have_ = true;
+  current_ = have_forcing_ = false;
+  balanced_load_ = running_.load();
 }
 
 bool Linearizer::still_balanced(double Omega) {
@@ -85,9 +89,11 @@ void Linearizer::move_to(double Omega) {
   throw_if_interrupted();
   running_.set_whirl(0.0);
   running_.set_frequency(nan);
-  if (have_ && Omega == equilibrium_.Omega && running_.running().frequency_dependent()) {
-    // One equilibrium at every frequency asked about.
-  } else if (undeformed_) {
+  if (have_ && Omega == equilibrium_.Omega && running_.load() == balanced_load_) {
+    // One equilibrium at every frequency asked about, and its forcing.
+    return;
+  }
+  if (undeformed_) {
     take_undeformed(Omega);
   } else if (still_balanced(Omega)) {
     equilibrium_.Omega = Omega;
@@ -120,8 +126,25 @@ std::optional<Index> first_without_number(const la::MCK& m) {
 
 }  // namespace
 
+Linearizer::Asked Linearizer::asked(double Omega, Complex lambda, double side,
+                                    double tables) const {
+  constexpr double none = -1.0;  // NaN would differ from itself
+  Asked a{Omega, running_.load(), 0.0, none, none, none};
+  if (running_.hysteretic() && !std::isnan(lambda.imag())) {
+    const double w = std::abs(lambda.imag());
+    a[2] = lambda.real();
+    a[3] = w;
+    a[4] = std::isnan(side) ? w : side;
+  }
+  if (running_.running().frequency_dependent() && std::isfinite(tables)) a[5] = std::abs(tables);
+  return a;
+}
+
 const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double tables) {
   move_to(Omega);
+  const Asked now = asked(Omega, lambda, side, tables);
+  if (current_ && now == made_for_) return matrices_;
+  current_ = false;
   const auto linearise = [&] {
     running_.set_whirl(std::isnan(lambda.imag()) ? Complex(0) : lambda, false, side);
     const bool inside =
@@ -131,19 +154,18 @@ const la::MCK& Linearizer::at(double Omega, Complex lambda, double side, double 
     if (!inside)
       throw run_error("E76", "no linearisation: the state lies outside the range of an element");
   };
-  if (!running_.running().frequency_dependent() || !std::isfinite(tables)) {
-    linearise();
-    return matrices_;
-  }
-  running_.set_frequency(tables);
+  const bool of_tables = running_.running().frequency_dependent() && std::isfinite(tables);
+  if (of_tables) running_.set_frequency(tables);
   linearise();
-  if (const auto node = first_without_number(matrices_))
+  if (const auto node = of_tables ? first_without_number(matrices_) : std::nullopt)
     throw run_error(
         "E81",
         fmt::format("a bearing table does not cover the frequency {:.6g} Hz at {:.6g} rpm",
                     to_hz(std::abs(tables)), to_rpm(Omega)),
         "extend its frequencies, narrow the range asked about, or write extrapolate = \"hold\"",
         system().node(*node).name);
+  made_for_ = now;
+  current_ = true;
   return matrices_;
 }
 

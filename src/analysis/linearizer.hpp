@@ -8,6 +8,8 @@
 #include <analysis/statics/equilibrium.hpp>
 #include <analysis/spectra/motion.hpp>
 
+#include <array>
+
 namespace whirl::analysis {
 
 class Linearizer {
@@ -19,7 +21,8 @@ class Linearizer {
   Linearizer& operator=(const Linearizer&) = delete;
 
   /// Moves the equilibrium to Omega (rad/s, from the last one) and returns the matrices there;
-  /// valid until the next call.
+  /// valid until the next call. What does not answer differently to another lambda is not evaluated
+  /// again: supports and dampings that know no frequency cost one evaluation a speed.
   /// @throws Error as EquilibriumSolver::solve.
   const la::MCK& at(double Omega) { return at(Omega, Complex(0, nan)); }
   /// The same as a motion x exp(lambda t) meets them, lambda = g + i w: supports that answer by
@@ -77,6 +80,13 @@ class Linearizer {
   Equilibrium equilibrium_;
   std::optional<system::State> first_;
   bool have_ = false, have_forcing_ = false, undeformed_ = false;
+  double balanced_load_ = 1;  ///< factor on loads at which equilibrium_ was found
+  /// What matrices_ were made for: speed, load, rate of hysteretic damping (growth, frequency,
+  /// side), frequency of tables.
+  using Asked = std::array<double, 6>;
+  Asked asked(double Omega, Complex lambda, double side, double tables) const;
+  bool current_ = false;  ///< matrices_ are those of made_for_ about equilibrium_
+  Asked made_for_{};
   Vec2 floor_ = Vec2::Zero();  ///< residual left at the last solution: force, moment
   la::MCK matrices_, conservative_;
   std::vector<VecXc> forcing_;

@@ -92,6 +92,9 @@ struct Kernels {
   /// y = A x with sums in twice the working precision; complex interleaved.
   void (*multiply_exact_real)(const Matrix6&, const double* x, double* y);
   void (*multiply_exact_complex)(const Matrix6&, const double* x, double* y);
+  /// y += s (A_0 x_0 + .. ) with `count` matrices on one pattern (value of Matrix6 unused).
+  void (*add_products)(const Matrix6&, int count, const double* const a[], const double* const x[],
+                       double s, double* y);
   void (*add_multiply_size)(const Matrix6&, double s, const double* x,
                             double* y);  ///< y += s |A| x
 };

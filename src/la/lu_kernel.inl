@@ -521,6 +521,33 @@ void multiply_exact_complex(const Matrix6& m, const double* x, double* y) {
   }
 }
 
+template <int Count>
+WHIRL_INLINE void add_sum_of_products(const Matrix6& m, const double* const a[],
+                                      const double* const x[], double s, double* y) {
+  for (std::ptrdiff_t i = 0; i < m.n; ++i) {
+    Col even = zero_col(), odd = zero_col();
+    for (std::ptrdiff_t k = m.start[i]; k < m.start[i + 1]; ++k)
+      for (int t = 0; t < Count; ++t) {
+        const double* const b = a[t] + 36 * k;
+        const double* const v = x[t] + 6 * m.cols[k];
+        for (int c = 0; c < 6; c += 2) {
+          even = even + load6(b + 6 * c) * splat(v[c]);
+          odd = odd + load6(b + 6 * c + 6) * splat(v[c + 1]);
+        }
+      }
+    store6(y + 6 * i, load6(y + 6 * i) + splat(s) * (even + odd));
+  }
+}
+
+void add_products(const Matrix6& m, int count, const double* const a[], const double* const x[],
+                  double s, double* y) {
+  switch (count) {
+    case 1: return add_sum_of_products<1>(m, a, x, s, y);
+    case 2: return add_sum_of_products<2>(m, a, x, s, y);
+    default: return add_sum_of_products<3>(m, a, x, s, y);
+  }
+}
+
 void add_multiply_size(const Matrix6& m, double s, const double* x, double* y) {
   for (std::ptrdiff_t i = 0; i < m.n; ++i) {
     Col even = zero_col(), odd = zero_col();
@@ -539,7 +566,7 @@ void add_multiply_size(const Matrix6& m, double s, const double* x, double* y) {
 constexpr Kernels table = {
     WHIRL_LU_ISA,        factor_any<Real>,       factor_any<Cplx>, solve<Real>,
     solve<Cplx>,         multiply_real,          multiply_complex, multiply_three,
-    multiply_exact_real, multiply_exact_complex, add_multiply_size};
+    multiply_exact_real, multiply_exact_complex, add_products,     add_multiply_size};
 
 }  // namespace
 

@@ -51,6 +51,30 @@ void multiply(const MCK& m, const VecXc& x, VecXc& Mx, VecXc& Cx, VecXc& Kx) {
   lu::kernels().multiply_three(view(m.K), a, reinterpret_cast<const double*>(x.data()), y);
 }
 
+void add_multiply(const BlockMatrix<6>& a, double s, const Eigen::Ref<const VecX>& x,
+                  Eigen::Ref<VecX> y) {
+  WHIRL_EXPECTS(x.data() != y.data());
+  WHIRL_EXPECTS(x.size() == 6 * a.pattern().size() && y.size() == x.size());
+  const double *const values = a.data(), *const vector = x.data();
+  lu::kernels().add_products(view(a), 1, &values, &vector, s, y.data());
+}
+
+void add_forces(const MCK& m, const VecX& q, const VecX& v, const VecX& a, Eigen::Ref<VecX> y) {
+  WHIRL_EXPECTS(y.size() == 6 * m.K.pattern().size());
+  WHIRL_EXPECTS(q.size() == y.size() && v.size() == y.size() && a.size() == y.size());
+  const double* const values[] = {m.K.data(), m.C.data(), m.M.data()};
+  const double* const vectors[] = {q.data(), v.data(), a.data()};
+  lu::kernels().add_products(view(m.K), 3, values, vectors, 1.0, y.data());
+}
+
+void add_forces(const MCK& m, const VecX& q, const VecX& v, Eigen::Ref<VecX> y) {
+  WHIRL_EXPECTS(y.size() == 6 * m.K.pattern().size());
+  WHIRL_EXPECTS(q.size() == y.size() && v.size() == y.size());
+  const double* const values[] = {m.K.data(), m.C.data()};
+  const double* const vectors[] = {q.data(), v.data()};
+  lu::kernels().add_products(view(m.K), 2, values, vectors, 1.0, y.data());
+}
+
 void add_multiply_size(const BlockMatrix<6>& a, double s, const VecX& x, VecX& y) {
   WHIRL_EXPECTS(x.size() == 6 * a.pattern().size());
   y.resize(x.size());

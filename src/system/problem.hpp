@@ -1,6 +1,7 @@
 // The System as the time schemes and Newton see it.
 #pragma once
 #include <la/direct.hpp>
+#include <la/multiply.hpp>
 #include <system/system.hpp>
 #include <time/problem.hpp>
 #include <memory>
@@ -29,13 +30,13 @@ class SystemProblem : public time::Problem {
   bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
   void linearize(double t, time::CRef q, time::CRef v, time::CRef a) override;
   void add_M(double s, time::CRef x, time::Ref y) const override {
-    matrices_.M.add_multiply(s, x, y);
+    la::add_multiply(matrices_.M, s, x, y);
   }
   void add_C(double s, time::CRef x, time::Ref y) const override {
-    matrices_.C.add_multiply(s, x, y);
+    la::add_multiply(matrices_.C, s, x, y);
   }
   void add_K(double s, time::CRef x, time::Ref y) const override {
-    matrices_.K.add_multiply(s, x, y);
+    la::add_multiply(matrices_.K, s, x, y);
   }
   bool factor(double cm, double cc, double ck) override;
   bool factor(Complex cm, Complex cc, Complex ck) override;

@@ -335,6 +335,33 @@ TEST(RollingBearing, RollerTiltMoment) {
   EXPECT_NEAR(p.g[1], fine.g[1], 0.005 * fine.g[1]);
 }
 
+// The kernel takes ninth roots of its own, several rollers at a time.
+TEST(RollingBearing, RollerLoadsToTheLastDigits) {
+  RollerContact c;
+  c.K = 3.7e8;
+  c.clearance = 2e-6;
+  c.length = 0.02;
+  c.slices = 1;
+  for (int k = -40; k <= -5; ++k)
+    for (int j = 0; j < 64; ++j) {
+      const double rho = c.clearance + std::ldexp(1.0 + j / 64.0, k), delta = rho - c.clearance;
+      const double Q =
+          static_cast<double>(c.K * std::pow(static_cast<long double>(delta), 10.0L / 9.0L));
+      EXPECT_NEAR(c.load(0.0, rho, 0.0), Q, 1e-15 * Q) << delta;
+    }
+  EXPECT_EQ(c.load(0.0, c.clearance, 0.0), 0.0);
+  EXPECT_EQ(c.load(0.0, -1e-5, 0.0), 0.0);
+  // slices: each with its own deflection
+  c.slices = 9;
+  const double rho = 3e-6, t = 2e-4;
+  double sum = 0;
+  for (int i = 0; i < c.slices; ++i) {
+    const double delta = rho + c.length * ((i + 0.5) / c.slices - 0.5) * t - c.clearance;
+    if (delta > 0) sum += c.K / c.slices * std::pow(delta, 10.0 / 9.0);
+  }
+  EXPECT_NEAR(c.load(0.0, rho, t), sum, 1e-14 * sum);
+}
+
 TEST(RollingBearing, VaryingComplianceCycle) {
   // m = 20 kg, c = 2000 N s/m, W = 196 N along y, clearance 5 um, shaft 10 rev/s: limit cycle by an
   // independent 8th-order run

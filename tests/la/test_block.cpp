@@ -67,6 +67,18 @@ TEST(Multiply, MatchesDense) {
   y.setOnes();
   add_multiply_size(m.K, 2.5, x, y);
   EXPECT_LT((y - VecX::Ones(54) - 2.5 * k.cwiseAbs() * x).norm(), 1e-14 * y.norm());
+  y.setOnes();
+  add_multiply(m.K, -2.5, x, y);
+  EXPECT_LT((y - VecX::Ones(54) + 2.5 * k * x).norm(), 1e-14 * y.norm());
+  const VecX v = VecX::Random(54), acceleration = VecX::Random(54);
+  const VecX two = VecX::Ones(54) + k * x + dense(m.C) * v;
+  const VecX three = two + dense(m.M) * acceleration;
+  y.setOnes();
+  add_forces(m, x, v, y);
+  EXPECT_LT((y - two).norm(), 1e-14 * y.norm());
+  y.setOnes();
+  add_forces(m, x, v, acceleration, y);
+  EXPECT_LT((y - three).norm(), 1e-14 * y.norm());
 }
 
 TEST(Multiply, ExactSumsSurviveCancellation) {

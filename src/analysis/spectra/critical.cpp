@@ -209,6 +209,7 @@ std::vector<Critical> damped(Linearizer& linear, const CriticalOptions& o, doubl
   TrackOptions t;
   t.modes.motion = o.motion;
   t.modes.count = 0;
+  t.modes.certify = o.certify;
   t.modes.max_frequency =
       1.1 * o.order * o.max_speed;  // only modes that reach the order line within the range matter
   for (Index k = 0; k <= o.grid; ++k)

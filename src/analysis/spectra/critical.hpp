@@ -22,6 +22,7 @@ struct CriticalOptions {
   double min_speed = 0;  ///< rad/s; 0 stands for a thousandth of the highest
   double max_speed = 0;  ///< rad/s
   bool damped = false;
+  bool certify = true;  ///< count the damped modes that are followed; else they are only found
   Motion motion = Motion::all;
   Index grid = 40;                  ///< speeds of the search
   double max_frequency = infinity;  ///< rad/s: critical speeds beyond it are left out

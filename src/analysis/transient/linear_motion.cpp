@@ -1,6 +1,7 @@
 #include <analysis/transient/linear_motion.hpp>
 
 #include <core/error.hpp>
+#include <la/multiply.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -45,9 +46,10 @@ constexpr double turning_share = 1e-3;
 LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& running,
                            double Omega, const system::State& start, EquilibriumOptions options)
     : SystemProblem(system, {la::SolverKind::automatic, false}),
+      still_(VecX::Zero(system.size())),
       q_(system.size()),
       v_(system.size()),
-      a_(VecX::Zero(system.size())),
+      a_(system.size()),
       steady_(system.make_workspace()) {
   Linearizer linear(system, running, options);
   linear.start_from(start);
@@ -141,7 +143,7 @@ void LinearMotion::find_changing(double t) {
     (changes ? changing_ : still).push_back(k);
   }
   constant_ = VecX::Zero(system().size());
-  if (!system().residual(steady_, frames, t, q0_, v0_, a_, constant_,
+  if (!system().residual(steady_, frames, t, q0_, v0_, still_, constant_,
                          &still)) {  // leave it to residual() to say so
     changing_.insert(changing_.end(), still.begin(), still.end());
     constant_.setZero();
@@ -193,7 +195,7 @@ bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, 
       const Index l = system().node(i).line;
       q_[6 * i + system::spin_phi] += (angle_[l] - two_pi * frames.turns[at(l)]) + rate_[at(l)] * t;
     }
-  if (!system().residual(steady_, frames, t, q_, v_, a_, r, &changing_)) return false;
+  if (!system().residual(steady_, frames, t, q_, v_, still_, r, &changing_)) return false;
   r += constant_;
   if (!joined_.empty()) {
     steady_q_ = q_;
@@ -202,10 +204,11 @@ bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, 
   q_ = q - q_;
   v_ = v - v_;
   if (!joined_.empty() && !add_joint_loads(t, a, r)) return false;
-  const la::MCK& m = matrices();
-  m.M.add_multiply(1.0, a, r);
-  m.C.add_multiply(1.0, v_, r);
-  m.K.add_multiply(1.0, q_, r);
+  a_ = a;
+  if (a_.isZero(0.0))  // before the first correction of a step
+    la::add_forces(matrices(), q_, v_, r);
+  else
+    la::add_forces(matrices(), q_, v_, a_, r);
   return true;
 }
 

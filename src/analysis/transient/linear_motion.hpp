@@ -71,6 +71,7 @@ class LinearMotion final : public system::SystemProblem {
                   ///< turns included
   std::vector<double> rate_;          ///< per line, rad/s
   std::vector<unsigned char> turns_;  ///< per node: its phi turns
+  VecX still_;                        ///< zero: accelerations of the steady motion
   VecX q_, v_, a_, general_;          // scratch
   std::vector<std::size_t>
       joined_;  ///< terms at nodes that follow, where their loads are asked for

@@ -119,6 +119,27 @@ std::array<double, N> lagrange(double x) {
 
 }  // namespace
 
+namespace {
+
+/// What the amplitude of a point does not pass in a step: its largest look, and twice what the parabola
+/// through that one and its neighbours rises above it.
+template <std::size_t N>
+double reach_of(const std::array<std::vector<Vec2>, N>& seen, std::size_t point) {
+  std::array<double, N> r;
+  for (std::size_t k = 0; k < N; ++k)
+    r[k] = seen[k][point].norm();
+  const std::size_t top =
+      static_cast<std::size_t>(std::max_element(r.begin(), r.end()) - r.begin());
+  const std::size_t middle = std::clamp<std::size_t>(top, 1, N - 2);
+  const double slope = 0.5 * (r[middle + 1] - r[middle - 1]);
+  const double curvature = 2.0 * r[middle] - r[middle + 1] - r[middle - 1];
+  if (!(std::abs(slope) <= curvature)) return r[top];  // the vertex lies beyond the neighbours
+  const double vertex = curvature > 0.0 ? r[middle] + 0.5 * slope * slope / curvature : r[middle];
+  return r[top] + 2.0 * std::max(0.0, vertex - r[top]);
+}
+
+}  // namespace
+
 void PeakTracker::look(StepAccess& s, int k) {
   s.displacements(time_of(s, k), points_, seen_[static_cast<std::size_t>(k)]);
 }
@@ -154,6 +175,7 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
     return u.norm();
   };
   Peak& peak = peaks_[point];
+  if (reach_of(seen_, point) <= peak.amplitude) return;
   double a = std::max(0.0, where - 2), b = std::min<double>(looks - 1, where + 2);
   constexpr double golden = 0.6180339887498949;
   double x1 = b - golden * (b - a), x2 = a + golden * (b - a), r1 = radius(x1), r2 = radius(x2);

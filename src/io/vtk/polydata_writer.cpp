@@ -14,6 +14,7 @@
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <SMP/Common/vtkSMPToolsAPI.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
@@ -69,8 +70,11 @@ class Writer final : public PolyDataWriter {
  public:
   Writer() {
     vtkObject::GlobalWarningDisplayOff();  // failures come back as an error code
+    // threads for arrays of a few thousand numbers cost more than the numbers
+    vtk::detail::smp::vtkSMPToolsAPI::GetInstance().SetBackend("Sequential");
     writer_->SetDataModeToAppended();
     writer_->EncodeAppendedDataOff();
+    writer_->WriteToOutputStringOn();   // into a file it writes and seeks some 260 times
     writer_->SetCompressorTypeToLZ4();  // a third of the time of zlib, for 1.7 times the size
     time_->SetName("TimeValue");
     time_->SetNumberOfValues(1);
@@ -106,19 +110,16 @@ class Writer final : public PolyDataWriter {
     poly->GetFieldData()->AddArray(time_);
     for (const auto& n : names_)
       poly->GetFieldData()->AddArray(n);
-    const auto temporary = temporary_beside(file);
-    writer_->SetFileName(temporary.c_str());
     writer_->SetInputData(poly);
     const bool ok = writer_->Write() == 1 && writer_->GetErrorCode() == vtkErrorCode::NoError;
     const auto code = writer_->GetErrorCode();
     writer_->SetInputData(nullptr);
-    if (!ok) {
-      std::error_code ec;
-      std::filesystem::remove(temporary, ec);
+    if (!ok)
       io_failure(file, std::string("VTK cannot write (") +
                            vtkErrorCode::GetStringFromErrorCode(code) + ")");
-    }
-    rename_into_place(temporary, file);
+    AppendFile out(0);  // of a name of its own until it is whole
+    out.create(file, writer_->GetOutputString());
+    out.close();
   }
 
  private:

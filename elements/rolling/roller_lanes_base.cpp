@@ -1,0 +1,4 @@
+// Contacts of rollers for the instruction set the whole program is built for.
+#define WHIRL_LANES_TABLE base_kernels
+#define WHIRL_LANES_ISA "baseline"
+#include <elements/rolling/roller_lanes.inl>
