@@ -74,7 +74,8 @@ void Linearizer::take_undeformed(double Omega) {
 bool Linearizer::still_balanced(double Omega) {
   // A rotor in linear bearings keeps its equilibrium at every speed: then the residual stays at its
   // rounding level.
-  if (!have_ || !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_))
+  if (!have_ || !system().keepers().empty() ||
+      !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_))
     return false;
   const Vec2 now = largest(r_, solver_.free());
   return now[0] <= 4.0 * floor_[0] && now[1] <= 4.0 * floor_[1];
@@ -85,8 +86,9 @@ void Linearizer::move_to(double Omega) {
   throw_if_interrupted();
   running_.set_whirl(0.0);
   running_.set_frequency(nan);
-  if (have_ && Omega == equilibrium_.Omega && running_.running().frequency_dependent()) {
-    // One equilibrium at every frequency asked about.
+  if (have_ && Omega == equilibrium_.Omega &&
+      (running_.running().frequency_dependent() || !system().keepers().empty())) {
+    // One equilibrium at every frequency asked about, and one with its temperatures.
   } else if (undeformed_) {
     take_undeformed(Omega);
   } else if (still_balanced(Omega)) {

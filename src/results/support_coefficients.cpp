@@ -88,12 +88,17 @@ std::array<Mat2, 2> film_tangent(const elements::FiniteJournal& film,
   return {-t.r.topRows<2>(), -t.v.topRows<2>()};
 }
 
-double grid_error_of(const model::FiniteJournal& law, const elements::LateralMotion& m) {
+double grid_error_of(const model::FiniteJournal& law, const elements::LateralMotion& m,
+                     std::ptrdiff_t kept_from) {
   const int finest = elements::JournalSurface::max_nodes;
   // twice the points need not be twice the elements: a pad has four at least
   const int other = 2 * law.nodes <= finest ? finest : law.nodes / 2;
-  const auto own = film_tangent(assembly::make_finite_journal(law, law.nodes), m);
-  const auto beside = film_tangent(assembly::make_finite_journal(law, other), m);
+  const auto on_grid = [&](int nodes) {
+    elements::FiniteJournal film = assembly::make_finite_journal(law, nodes);
+    film.kept_from = kept_from;
+    return film_tangent(film, m);
+  };
+  const auto own = on_grid(law.nodes), beside = on_grid(other);
   double worst = 0;
   for (int k = 0; k < 2; ++k) {
     const double size = beside[at(k)].norm();
@@ -138,6 +143,39 @@ void describe_pads(SupportCoefficients& c, const run::Job& job, std::size_t bear
     c.C = p.reduced.front().C;
     c.grid_error = pad_grid_error(ring, node, law->nodes, p);
     c.pads = std::move(p);
+  }
+}
+
+/// The films of a bearing in an evaluated state.
+void describe_films(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
+                    const system::Workspace& w) {
+  const auto node = [&](Index k) -> const system::NodeState& { return w.in_own_axes(k); };
+  for (const assembly::FilmBearing& film : job.built.films) {
+    if (film.bearing != bearing) continue;
+    FilmResults f;
+    f.pads = film.standing(node);
+    if (f.pads.empty()) continue;
+    f.fields = film.fields(node);
+    if (film.heated) f.heat = film.heat(node);
+    double sum = 0.0, count = 0.0;
+    for (const elements::FilmField& x : f.fields)
+      for (const double eta : x.viscosity) {
+        sum += eta;
+        count += 1.0;
+      }
+    f.viscosity = sum / count;
+    const auto flow = [&](const auto& law, double peak) {
+      const double R = 0.5 * law.diameter;
+      f.peak = peak;
+      f.laminar = law.flow.regime == model::FilmFlow::Regime::laminar;
+      f.reynolds = law.oil.density * R * std::abs(c.spin) * law.clearance / f.viscosity;
+      f.transition = 41.2 * std::sqrt(R / law.clearance);  // G. I. Taylor's vortices
+    };
+    const model::BearingLaw& law = job.model.bearings[bearing].law;
+    if (const auto* journal = std::get_if<model::FiniteJournal>(&law)) flow(*journal, 1.5);
+    if (const auto* tilting = std::get_if<model::TiltingPadJournal>(&law))
+      flow(*tilting, assembly::make_tilting_pads(*tilting, tilting->nodes).front().film.peak);
+    c.films = std::move(f);
   }
 }
 
@@ -195,7 +233,9 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
     m.a.setZero();
     m.spin = c.spin;
     m.housing_spin = node(n.other.node).spin();
-    c.grid_error = grid_error_of(*law, m);
+    m.kept = node(n.shaft.node).kept;
+    for (const assembly::FilmBearing& film : job.built.films)
+      if (film.bearing == bearing) c.grid_error = grid_error_of(*law, m, film.kept_from);
   }
   for (const assembly::SupportCondition& x : job.built.conditions) {
     if (x.bearing != bearing) continue;
@@ -241,6 +281,7 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
     c.name = b.name;
     describe_state(c, job, i, w);
     describe_pads(c, job, i, w);
+    describe_films(c, job, i, w);
     if (!take_control(c, job, i, w)) continue;
     find_threshold(c);
     out.push_back(std::move(c));
