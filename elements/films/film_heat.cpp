@@ -50,7 +50,7 @@ class Band {
 
 /// What a temperature in the film or the pad depends on: the loss, the journal, the oil that
 /// enters, the oil about the pad.
-enum Cause : Index { loss, of_journal, of_inlet, of_surroundings, causes };
+enum Cause : Index { of_loss, of_journal, of_inlet, of_surroundings, causes };
 using Affine = Vector<causes>;
 
 /// The energy balance of one pad.
@@ -233,7 +233,7 @@ void PadHeat::add_loss(Index i) {
     const double q = unit * (speed_ * speed_ * f.shear * (z1 - z0) -
                              2.0 * speed_ * pushed * (odd(z1) - odd(z0)) +
                              (of_flow + across) * (even(z1) - even(z0)));
-    x_(place(i, j), loss) += q;
+    x_(place(i, j), of_loss) += q;
     heat_ += q;
   }
 }
@@ -395,7 +395,7 @@ HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
   VecX b = VecX::Zero(size);
   const bool own_housing = !std::isnan(s.housing_temperature);
   const auto add = [&](Index row, double factor, const Affine& x, Index pad) {
-    b[row] -= factor * x[loss];
+    b[row] -= factor * x[of_loss];
     A(row, journal) += factor * x[of_journal];
     A(row, pad) += factor * x[of_inlet];
     if (own_housing)
@@ -416,7 +416,7 @@ HeatBalance balance_heat(std::span<const HeatPad> pads, const HeatSettings& s) {
   out.pads.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     Affine of;
-    of[loss] = 1.0;
+    of[of_loss] = 1.0;
     of[of_journal] = T[journal];
     of[of_inlet] = T[static_cast<Index>(k)];
     of[of_surroundings] = own_housing ? s.housing_temperature : of[of_inlet];

@@ -112,7 +112,8 @@ struct FiniteJournal {
   /// `knots` equidistant places from its start to its end.
   std::ptrdiff_t kept_from = -1;
   int knots = 0;
-  int kept_each() const { return knots + 2; }
+  static constexpr int kept_growths = 2;  ///< before the knots
+  int kept_each() const { return knots + kept_growths; }
   bool isoviscous() const {
     return turbulent_density == 0.0 && supply_pressure == 0.0 && kept_from < 0;
   }

@@ -57,7 +57,7 @@ void set_flow(elements::FiniteJournal& film, const model::FilmFlow& flow, const 
 namespace {
 
 /// Whether every journal is within its film.
-bool inside(const std::vector<elements::HeatPad>& pads) {
+bool all_inside(const std::vector<elements::HeatPad>& pads) {
   return std::all_of(pads.begin(), pads.end(),
                      [](const elements::HeatPad& p) { return p.film->inside(p.point); });
 }
@@ -107,7 +107,7 @@ std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const mode
   film.standing = [pads_at, density = oil.density](const NodeAt& at) {
     std::vector<elements::FilmStanding> out;
     const std::vector<elements::HeatPad> now = pads_at(at);
-    if (!inside(now)) return out;
+    if (!all_inside(now)) return out;
     for (const elements::HeatPad& p : now)
       out.push_back(elements::film_standing(*p.film, p.pad, p.point, density));
     return out;
@@ -124,17 +124,19 @@ std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const mode
     film.heat = [pads_at, settings](const NodeAt& at) {
       return elements::balance_heat(pads_at(at), settings);
     };
-    constexpr std::size_t each = knots + 2;
+    constexpr std::size_t each = knots + elements::FiniteJournal::kept_growths;
+    film.kept = pads * each;
+    film.kept_each = each;
     std::vector<double> at_first(pads * each, 0.0);
     const double fresh =
         std::log(viscosity_at(oil, settings.supply_temperature) / viscosity_of(oil));
     for (std::size_t i = 0; i < at_first.size(); ++i)
-      if (i % each >= 2) at_first[i] = fresh;
+      if (i % each >= elements::FiniteJournal::kept_growths) at_first[i] = fresh;
     system::Keeper keeper;
     keeper.name = name_of(b);
     keeper.settle = [pads_at, settings](const system::Workspace& w, std::span<double> values) {
       const std::vector<elements::HeatPad> now = pads_at(nodes_in(w));
-      if (!inside(now)) {  // a film that is not there says nothing: as it was
+      if (!all_inside(now)) {  // a film that is not there says nothing: as it was
         const double* kept = now.front().point.kept + now.front().film->kept_from;
         std::copy(kept, kept + values.size(), values.begin());
         return;
@@ -145,7 +147,7 @@ std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const mode
     };
     keeper.check = [pads_at, settings, name = name_of(b)](const system::Workspace& w) {
       const std::vector<elements::HeatPad> now = pads_at(nodes_in(w));
-      if (inside(now)) check_balance(elements::balance_heat(now, settings), settings, now, name);
+      if (all_inside(now)) check_balance(elements::balance_heat(now, settings), settings, now, name);
     };
     film.kept_from = static_cast<std::ptrdiff_t>(a.builder.keep(std::move(keeper), at_first));
   }

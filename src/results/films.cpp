@@ -363,4 +363,38 @@ void warn_of_turbulence(run::Job& job, const std::string& step,
   }
 }
 
+void report_kept_films(run::Job& job, const std::string& step, const system::State& end) {
+  if (std::none_of(job.built.films.begin(), job.built.films.end(),
+                   [](const assembly::FilmBearing& f) { return f.heated; }))
+    return;
+  system::Workspace w = job.system().make_workspace();
+  if (!job.system().evaluate_nodes(w, end.frames, end.t, end.q, end.v, end.a)) return;
+  std::vector<double> settled;
+  job.system().settle_kept(w, settled);
+  for (const assembly::FilmBearing& f : job.built.films) {
+    if (!f.heated) continue;
+    const model::Bearing& b = job.model.bearings[f.bearing];
+    double sum = 0.0, count = 0.0;
+    const std::size_t first = static_cast<std::size_t>(f.kept_from);
+    for (std::size_t i = 0; i < f.kept; ++i)
+      if (i % f.kept_each >= elements::FiniteJournal::kept_growths) {
+        sum += settled[first + i] - end.frames.kept[first + i];
+        count += 1.0;
+      }
+    const double ratio = std::exp(sum / count);
+    job.summary["steps"][step]["film viscosity in balance over that kept"][b.name] = ratio;
+    if (std::abs(ratio - 1.0) <= 0.05) continue;
+    Diagnostic d;
+    d.code = "W03";
+    d.message = fmt::format(
+        "step '{}': the film of bearing '{}' kept the temperatures of its start; in balance with "
+        "the last state its viscosity would be {:.3g} times what it was, in the mean",
+        step, b.name, ratio);
+    d.hint =
+        "start from a static step near the speed of interest: motions in time do not heat films";
+    d.where = b.where;
+    warn(job, std::move(d));
+  }
+}
+
 }  // namespace whirl::results

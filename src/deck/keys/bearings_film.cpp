@@ -240,6 +240,9 @@ void check_pads(Visitor& v, const model::TiltingPadJournal& b) {
 
 void describe(Visitor& v, model::TiltingPadJournal& b) {
   dimensions(v, b, "radial clearance as assembled: of a centred journal at the pivots");
+  v.quantity("thickness", b.thickness, "mm", not_negative,
+             "of a pad at its pivot: the pivot is that far behind the film");
+  flow_of_film(v, b.flow, b.oil, true, b.thickness);
   const bool count = v.integer(optional("pads", "5, or those listed"), b.count, between(1, 24),
                                "number of equal pads");
   const bool first = v.quantity(optional("first_pivot", "-90 deg"), b.first, "deg", any,
@@ -253,8 +256,6 @@ void describe(Visitor& v, model::TiltingPadJournal& b) {
            "1 - (assembled clearance)/(clearance of the pads)");
   v.list(optional("pad", "equal pads"), Visitor::body_of(b.own, b.like),
          "a pad by itself, instead of equal ones; what it leaves out is that of the bearing");
-  v.quantity("thickness", b.thickness, "mm", not_negative,
-             "of a pad at its pivot: the pivot is that far behind the film");
   v.quantity("inertia", b.inertia, "kg.m^2", not_negative,
              "moment of inertia of a pad about its pivot; 0: it follows the film at once");
   v.quantity("mass", b.mass, "kg", not_negative, "of a pad: its motion along an elastic pivot");
@@ -267,7 +268,6 @@ void describe(Visitor& v, model::TiltingPadJournal& b) {
                "frequencies over the speed at which reduced coefficients are written beside the "
                "synchronous ones");
   v.integer("grid", b.nodes, between(24, 360), "points round the circumference");
-  flow_of_film(v, b.flow, b.oil, true, b.thickness);
   if (!v.clean()) return;
   if ((count || first) && !b.own.empty())
     v.error("E26", count ? "pads" : "first_pivot", "equal pads and pads by themselves are given",
