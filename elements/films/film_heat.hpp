@@ -27,7 +27,7 @@
 // Limits: steady; no variation along the axis; the velocity is that of one viscosity across the
 // film; heat goes neither from pad to pad nor along the shaft.
 // Source: Szeri 2011, doi 10.1017/CBO9780511782022, ch. 9; mixing in grooves H. Heshmat and O.
-// Pinkus, J. Tribol. 108 (1986) 241, doi 10.1115/1.3261165.
+// Pinkus, J. Tribol. 108 (1986) (mixing inlet temperatures).
 #pragma once
 #include <elements/films/film_field.hpp>
 #include <functional>
