@@ -12,7 +12,7 @@
 // T_1 + r x F = 0, and
 //   T_0 = T - (r x F)/2,   T_1 = -T - (r x F)/2,
 // T = shear and lobe part. Power delivered to the nodes is F.w + T s: what the film turns into
-// heat, with the sign changed. So whirl driven by a film takes its power out of the spin of the
+// heat, with the sign changed, less the power of a pump that feeds it under pressure. So whirl driven by a film takes its power out of the spin of the
 // shaft, exactly.
 //
 //   struct Film {
@@ -31,10 +31,12 @@ namespace whirl::elements {
 struct FilmPoint {
   Vec2 r, w;        ///< displacement m; velocity in the frame turning with the mean spin, m/s
   double slip = 0;  ///< s_0 - s_1, rad/s
+  const double* kept = nullptr;  ///< what elements keep (system::NodeState::kept)
 };
 struct FilmForce {
-  Vec2 F;        ///< on the journal, N
-  double T = 0;  ///< torque on the journal beside -(r x F)/2, N m
+  Vec2 F;           ///< on the journal, N
+  double T = 0;     ///< torque on the journal beside -(r x F)/2, N m
+  double pump = 0;  ///< power of what feeds the film under pressure, W
 };
 struct FilmTangent {
   Mat2 F_r, F_w;
@@ -65,7 +67,8 @@ struct FilmLaw {
 
   static FilmPoint point(const LateralMotion& m) {
     const double mean = 0.5 * (m.spin + m.housing_spin);
-    return {m.r, Vec2(m.v.x() + mean * m.r.y(), m.v.y() - mean * m.r.x()), m.spin - m.housing_spin};
+    return {m.r, Vec2(m.v.x() + mean * m.r.y(), m.v.y() - mean * m.r.x()), m.spin - m.housing_spin,
+            m.kept};
   }
   void force(const LateralMotion& m, Vector<4>& z) const {
     FilmForce f;
@@ -109,6 +112,8 @@ struct FilmLaw {
     FilmForce f;
     film.evaluate(p, f);
     e.dissipated -= f.F.dot(p.w) + f.T * p.slip;
+    e.dissipated += f.pump;
+    e.supplied += f.pump;
   }
 
  private:

@@ -75,9 +75,32 @@ PadFilm FiniteJournal::pad(std::size_t k) const {
 FiniteJournal::PadPlace FiniteJournal::place(std::size_t k, const FilmPoint& p) const {
   WHIRL_EXPECTS(surface && k < surface->arcs().size());
   const Vec2& n = surface->arcs()[k].thinnest;
-  const double lift = surface->lift();
-  return {(p.r + lift * n) / surface->pad_clearance(),
-          p.w - 0.5 * p.slip * lift * Vec2(-n.y(), n.x())};
+  const Gap g = gap(k, p);
+  return {(p.r + g.lift * n) / g.pad, p.w - 0.5 * p.slip * g.lift * Vec2(-n.y(), n.x())};
+}
+
+FiniteJournal::Gap FiniteJournal::gap(std::size_t k, const FilmPoint& p) const {
+  const Gap cold{surface->pad_clearance(), surface->lift()};
+  if (kept_from < 0) return cold;
+  WHIRL_EXPECTS(p.kept != nullptr);
+  const double* own = p.kept + kept_from + static_cast<std::ptrdiff_t>(k) * kept_each();
+  const double assembled = surface->clearance(), pad = cold.pad + own[1] * assembled;
+  return {pad, pad - assembled * (1.0 + own[0])};
+}
+
+double FiniteJournal::pressure_unit(const Gap& g) const {
+  return source * viscosity * radius * radius / (g.pad * g.pad * g.pad);
+}
+
+PadMedium FiniteJournal::medium(std::size_t k, const FilmPoint& p) const {
+  const Gap g = gap(k, p);
+  PadMedium m;
+  if (kept_from >= 0)
+    m.log_viscosity = {p.kept + kept_from + static_cast<std::ptrdiff_t>(k) * kept_each() + 2,
+                       static_cast<std::size_t>(knots)};
+  m.reynolds = turbulent_density * radius * std::abs(p.slip) * g.pad / viscosity;
+  m.edge = supply_pressure / pressure_unit(g);
+  return m;
 }
 
 bool FiniteJournal::inside(const FilmPoint& p) const {
@@ -91,6 +114,7 @@ bool FiniteJournal::inside(const FilmPoint& p) const {
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
   WHIRL_EXPECTS(radius > 0.0 && length > 0.0 && viscosity >= 0.0);
   if (!inside(p)) return set_outside(f);
+  if (!isoviscous()) return evaluate_through(p, f);
   f.F.setZero();
   f.T = 0.0;
   const double c = surface->pad_clearance();
@@ -110,6 +134,7 @@ void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f) const {
 
 void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
   if (!inside(p)) return set_outside(f, t);
+  if (!isoviscous()) return evaluate_through(p, f, t);
   f.F.setZero();
   f.T = 0.0;
   t.F_r.setZero();
@@ -140,6 +165,81 @@ void FiniteJournal::evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) c
     t.T_r += unit / c * half_lift * (load.by_e.transpose() * across) - drag * p.slip / c * shear_e;
     t.T_w += unit * half_lift * (load.by_W.transpose() * across);
     t.T_slip -= unit * half_lift * half_lift * across.dot(load.by_W * across) + drag * shear;
+  }
+}
+
+namespace {
+
+/// int n dtheta over a pad.
+Vec2 normal_of(const JournalSurface::Arc& arc) {
+  if (arc.round) return Vec2::Zero();
+  const double end = arc.start + arc.length;
+  return Vec2(std::sin(end) - std::sin(arc.start), std::cos(arc.start) - std::cos(end));
+}
+
+/// A journal centred in its pad but for rounding has no source.
+Vec2 source_of(const FiniteJournal::PadPlace& at, double slip, double clearance) {
+  return at.W.norm() <= 1e-9 * std::abs(slip) * clearance ? Vec2(Vec2::Zero()) : at.W;
+}
+
+}  // namespace
+
+void FiniteJournal::evaluate_through(const FilmPoint& p, FilmForce& f) const {
+  f = {Vec2::Zero(), 0.0, 0.0};
+  for (std::size_t k = 0; k < surface->arcs().size(); ++k) {
+    const Gap g = gap(k, p);
+    const double unit = pressure_unit(g) * radius * length;
+    const double drag = viscosity * std::pow(radius, 3) * length / g.pad;
+    const PadFilm film = pad(k);
+    const PadMedium m = medium(k, p);
+    const PadPlace at = place(k, p);
+    const Vec2 W = source_of(at, p.slip, g.pad), normal = normal_of(surface->arcs()[k]);
+    const Vec2& n = surface->arcs()[k].thinnest;
+    double fed = 0.0;
+    const Vec2 G = film.load(at.e, W, m, fed) - m.edge * normal;
+    f.F -= unit * G;
+    f.T += 0.5 * unit * g.lift * (n.x() * G.y() - n.y() * G.x());
+    if (p.slip != 0.0) f.T -= drag * p.slip * film.shear(at.e, m).value;
+    f.pump += unit * m.edge * (fed + W.dot(normal));
+  }
+}
+
+void FiniteJournal::evaluate_through(const FilmPoint& p, FilmForce& f, FilmTangent& t) const {
+  f = {Vec2::Zero(), 0.0, 0.0};
+  t.F_r.setZero();
+  t.F_w.setZero();
+  t.F_slip.setZero();
+  t.T_r.setZero();
+  t.T_w.setZero();
+  t.T_slip = 0.0;
+  for (std::size_t k = 0; k < surface->arcs().size(); ++k) {
+    const Gap g = gap(k, p);
+    const double c = g.pad, half_lift = 0.5 * g.lift;
+    const double unit = pressure_unit(g) * radius * length;
+    const double drag = viscosity * std::pow(radius, 3) * length / c;
+    const PadFilm film = pad(k);
+    const PadMedium m = medium(k, p);
+    const PadPlace at = place(k, p);
+    const Vec2 W = source_of(at, p.slip, c), normal = normal_of(surface->arcs()[k]);
+    const Vec2& n = surface->arcs()[k].thinnest;
+    const Vec2 across(-n.y(), n.x());
+    const PadFlowLoad load = film.load_and_slopes(at.e, W, m);
+    const PadShear shear = film.shear(at.e, m);
+    const Vec2 G = load.G - m.edge * normal;
+    const double by_slip =
+        std::copysign(turbulent_density * radius * c / viscosity, p.slip);  // of reynolds
+    f.F -= unit * G;
+    t.F_r -= unit / c * load.by_e;
+    t.F_w -= unit * load.by_W;
+    t.F_slip += unit * (half_lift * (load.by_W * across) - by_slip * load.by_reynolds);
+    f.T += unit * half_lift * across.dot(G) - drag * p.slip * shear.value;
+    t.T_r +=
+        unit / c * half_lift * (load.by_e.transpose() * across) - drag * p.slip / c * shear.by_e;
+    t.T_w += unit * half_lift * (load.by_W.transpose() * across);
+    t.T_slip += unit * half_lift *
+                    across.dot(by_slip * load.by_reynolds - half_lift * (load.by_W * across)) -
+                drag * (shear.value + p.slip * by_slip * shear.by_reynolds);
+    f.pump += unit * m.edge * (load.fed + W.dot(normal));
   }
 }
 

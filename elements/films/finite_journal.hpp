@@ -23,7 +23,15 @@
 // eccentricities to 0.6; 3 % at L/D = 1 and 0.9. Grid: force within 1e-3 and coefficients within
 // 2e-3 of the converged ones at the default of 72 points, to an eccentricity of 0.9, most within
 // 1e-4 (test CoefficientsAreConverged). About 8 us a force and 13 us a tangent on one core. Limits:
-// isoviscous, laminar, no inertia, aligned.
+// no inertia, aligned.
+//
+// Beyond isoviscous laminar oil at ambient pressure (PadMedium):
+//   turbulence by the local Reynolds number rho R |s| h/eta (turbulence.hpp);
+//   supply_pressure p_s at the ends of every pad, which also stands in the grooves and behind pads
+//     that tilt: a pad gives int (P - p_s) n R L dtheta, so that a closed ring at p_s gives nothing.
+//     What the pump does is p_s times the flow that it drives, FilmForce::pump;
+//   a viscosity that varies along each pad, and clearances that grow, by what the film keeps of the
+//     last equilibrium (film_heat.hpp). Both are constants to force and tangent.
 // Sources: Reynolds equation Szeri 2011, doi 10.1017/CBO9780511782022; published coefficients Lund
 // & Thomsen, ASME 1978 (Topics in Fluid Film Bearing and Rotor Bearing System Design and
 // Optimization, pp. 1-28).
@@ -93,10 +101,35 @@ struct FiniteJournal {
   void seal_ends() {
     leakage = 0;
     source = 12;
+    peak = 1;
+  }
+
+  double peak = 1.5;             ///< pressure in the middle over the axial mean
+  double turbulent_density = 0;  ///< kg/m3; 0: laminar
+  double supply_pressure = 0;    ///< above ambient, Pa
+  /// Of what elements keep, where a film with heat begins; -1: it has none. For each pad the growth
+  /// of the assembled clearance c_b and that of c_p, both over c_b, then ln(eta/viscosity) at
+  /// `knots` equidistant places from its start to its end.
+  std::ptrdiff_t kept_from = -1;
+  int knots = 0;
+  static constexpr int kept_growths = 2;  ///< before the knots
+  int kept_each() const { return knots + kept_growths; }
+  bool isoviscous() const {
+    return turbulent_density == 0.0 && supply_pressure == 0.0 && kept_from < 0;
   }
 
   void evaluate(const FilmPoint& p, FilmForce& f) const;
   void evaluate(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
+
+  /// The clearances of pad k as they are: c_p and c_p - c_b, m.
+  struct Gap {
+    double pad, lift;
+  };
+  Gap gap(std::size_t k, const FilmPoint& p) const;
+  /// Its oil, in the units of PadFilm; refers to p.kept.
+  PadMedium medium(std::size_t k, const FilmPoint& p) const;
+  /// Pa for PadFilm's unit of pressure.
+  double pressure_unit(const Gap& g) const;
 
   /// The film of pad k in its own terms, at its displacement e and source W (in m/s).
   /// @pre k below surface->arcs().size(); radius and length positive.
@@ -107,6 +140,10 @@ struct FiniteJournal {
   PadPlace place(std::size_t k, const FilmPoint& p) const;
   /// Whether the journal is clear of every pad.
   bool inside(const FilmPoint& p) const;
+
+ private:
+  void evaluate_through(const FilmPoint& p, FilmForce& f) const;
+  void evaluate_through(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
 };
 
 using FiniteJournalBearing = LateralJoint<FilmLaw<FiniteJournal>>;

@@ -1,12 +1,31 @@
 #include <elements/films/pad_film.hpp>
+#include <elements/films/turbulence.hpp>
 #include <core/contract.hpp>
 
 #include <core/dual.hpp>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 namespace whirl::elements {
+
+double log_viscosity_at(std::span<const double> knots, double place, double& slope) {
+  WHIRL_EXPECTS(knots.size() >= 3);
+  const std::size_t last = knots.size() - 1;
+  const auto slope_at = [&](std::size_t i) {
+    if (i == 0) return 0.5 * (-3.0 * knots[0] + 4.0 * knots[1] - knots[2]);
+    if (i == last) return 0.5 * (3.0 * knots[last] - 4.0 * knots[last - 1] + knots[last - 2]);
+    return 0.5 * (knots[i + 1] - knots[i - 1]);
+  };
+  const double intervals = static_cast<double>(last), x = place * intervals;
+  const std::size_t i = static_cast<std::size_t>(std::clamp(std::floor(x), 0.0, intervals - 1.0));
+  const double s = x - static_cast<double>(i), rise = knots[i + 1] - knots[i];
+  const double first = slope_at(i), second = slope_at(i + 1);
+  const double c2 = 3.0 * rise - 2.0 * first - second, c3 = first + second - 2.0 * rise;
+  slope = intervals * (first + s * (2.0 * c2 + 3.0 * s * c3));
+  return knots[i] + s * (first + s * (c2 + s * c3));
+}
 
 namespace {
 
@@ -142,6 +161,65 @@ struct AtPoint {
   }
 };
 
+/// Oil that is alike everywhere.
+struct Alike {
+  static constexpr bool plain = true;
+  static constexpr double edge = 0.0;
+};
+
+/// PadMedium, seen at the points of the film.
+template <class T>
+class Through {
+ public:
+  static constexpr bool plain = false;
+  double edge;
+
+  Through(const PadMedium& m, double start, double arc, const T& reynolds)
+      : edge(m.edge),
+        log_(m.log_viscosity),
+        turbulent_(m.reynolds != 0.0),
+        arc_(arc),
+        middle_{std::cos(start + 0.5 * arc), std::sin(start + 0.5 * arc)},
+        reynolds_(reynolds) {}
+
+  struct Factors {
+    T along, across, shear;
+  };
+  Factors at(const AtPoint<T>& x) const {
+    const T fluidity = log_.empty() ? T(1.0) : fluidity_at(x.n);
+    if (!turbulent_) return {fluidity, fluidity, T(1.0) / fluidity};
+    const TurbulentFactors<T> f(reynolds_ * x.h * fluidity);
+    return {fluidity / f.along, fluidity / f.across, f.shear / fluidity};
+  }
+
+ private:
+  /// 1/mu
+  T fluidity_at(const Pair<T>& n) const {
+    using std::atan2;
+    const T from_middle =
+        atan2(middle_.x * n.y - middle_.y * n.x, middle_.x * n.x + middle_.y * n.y);
+    const T place = (1.0 / arc_) * (from_middle + T(0.5 * arc_));
+    double by_place = 0.0;
+    const double f = std::exp(-log_viscosity_at(log_, value(place), by_place));
+    return chain(place, f, -f * by_place);
+  }
+
+  std::span<const double> log_;
+  bool turbulent_;
+  double arc_;
+  Pair<double> middle_;
+  T reynolds_;
+};
+
+/// h^3 dgamma/dtheta through a medium.
+template <class T, class Medium>
+T flow_at(const AtPoint<T>& x, const Medium& m) {
+  if constexpr (Medium::plain)
+    return x.flow;
+  else
+    return x.flow * m.at(x).along;
+}
+
 /// A stretch of film condensed to its two ends, for the unit sources n_x and n_y.
 template <class T>
 struct Condensed {
@@ -167,9 +245,9 @@ struct FilmElement {
 };
 
 /// Integrates an element over its points zeta, which are turned on to those of the next one.
-template <class T>
-FilmElement<T> integrate_element(const Place<T>& at, const T& width, const T& over_width,
-                                 const Pair<T>& turn, double beta,
+template <class T, class Medium>
+FilmElement<T> integrate_element(const Place<T>& at, const Medium& medium, const T& width,
+                                 const T& over_width, const Pair<T>& turn, double beta,
                                  std::array<Pair<T>, points>& zeta) {
   const Reference& ref = reference();
   FilmElement<T> e;
@@ -177,8 +255,13 @@ FilmElement<T> integrate_element(const Place<T>& at, const T& width, const T& ov
   e.B.fill({T(0.0), T(0.0)});
   for (std::size_t q = 0; q < points; ++q) {
     const AtPoint<T> x(at, zeta[q]);
-    const T flow = over_width * x.flow, arc = width * x.stretch,
-            leak = beta * (x.h * x.h * x.h) * arc;
+    const T arc = width * x.stretch;
+    T flow = over_width * x.flow, leak = beta * (x.h * x.h * x.h) * arc;
+    if constexpr (!Medium::plain) {
+      const auto f = medium.at(x);
+      flow = flow * f.along;
+      leak = leak * f.across;
+    }
     const T sx = arc * x.n.x, sy = arc * x.n.y;
     for (std::size_t m = 0; m < entries; ++m)
       e.A[m] += ref.stiffness[q][m] * flow + ref.mass[q][m] * leak;
@@ -233,14 +316,14 @@ void append_element(const FilmElement<T>& e, bool first, Condensed<T>& c) {
   c.D_ab = -(back * lr);
 }
 
+/// (cos, sin) of the points of the first of elements of a width from an angle on.
 template <class T>
-Condensed<T> condense(const Place<T>& at, const T& from, const T& to, double beta, int n) {
+std::array<Pair<T>, points> first_points(const T& from, const T& width) {
   using std::cos;
   using std::sin;
   const Reference& ref = reference();
-  const T width = (1.0 / n) * (to - from), over_width = 1.0 / width;
   const auto at_angle = [](const T& angle) { return Pair<T>{cos(angle), sin(angle)}; };
-  const Pair<T> turn = at_angle(width), middle = at_angle(from + 0.5 * width);
+  const Pair<T> middle = at_angle(from + 0.5 * width);
   std::array<Pair<T>, points> zeta;
   for (std::size_t q = 0; q < points / 2; ++q) {  // points lie in pairs about the middle
     const Pair<T> away = at_angle((0.5 - ref.gauss.x[q]) * width);
@@ -250,9 +333,20 @@ Condensed<T> condense(const Place<T>& at, const T& from, const T& to, double bet
     zeta[points - 1 - q] = {cc - ss, sc + cs};
   }
   zeta[points / 2] = middle;
+  return zeta;
+}
+
+template <class T, class Medium>
+Condensed<T> condense(const Place<T>& at, const Medium& medium, const T& from, const T& to,
+                      double beta, int n) {
+  using std::cos;
+  using std::sin;
+  const T width = (1.0 / n) * (to - from), over_width = 1.0 / width;
+  const Pair<T> turn{cos(width), sin(width)};
+  std::array<Pair<T>, points> zeta = first_points(from, width);
   Condensed<T> c{0.0, 0.0, 0.0, {0.0, 0.0}, {0.0, 0.0}, 0.0, 0.0, 0.0};
   for (int k = 0; k < n; ++k) {
-    FilmElement<T> e = integrate_element(at, width, over_width, turn, beta, zeta);
+    FilmElement<T> e = integrate_element(at, medium, width, over_width, turn, beta, zeta);
     drop_bubbles(e, c);
     append_element(e, k == 0, c);
   }
@@ -317,16 +411,21 @@ int PadFilm::cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const
 
 /// Newton's method for the free ends. What flows out at an end is positive while the film is too
 /// short.
-bool PadFilm::settle(const Vec2& e, const Vec2& W, Ends& s, int elements, double tolerance,
-                     int most_passes, int& passes) const {
+template <class Medium>
+bool PadFilm::settle(const Vec2& e, const Vec2& W, const Medium& medium, Ends& s, int elements,
+                     double tolerance, int most_passes, int& passes) const {
   const Place<double> at(e.x(), e.y());
   double last[2] = {s.a, s.b}, last_out[2] = {0.0, 0.0};
   const double least = -1e-6 * W.norm();  // where two films could meet the source vanishes again
   for (int k = 0; k < most_passes; ++k) {
-    const Condensed<double> c = condense(at, s.a, s.b, beta_, elements);
+    const Condensed<double> c = condense(at, medium, s.a, s.b, beta_, elements);
     ++passes;
-    const double out[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(),
-                           c.out_b.x * W.x() + c.out_b.y * W.y()};
+    double out[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(), c.out_b.x * W.x() + c.out_b.y * W.y()};
+    if constexpr (!Medium::plain) {
+      const double p_a = s.held_a ? medium.edge : 0.0, p_b = s.held_b ? medium.edge : 0.0;
+      out[0] -= c.D_aa * p_a + c.D_ab * p_b;
+      out[1] -= c.D_ab * p_a + c.D_bb * p_b;
+    }
     const bool moves[2] = {!s.held_a && !(s.a <= s.low && out[0] >= 0.0),
                            !s.held_b && !(s.b >= s.high && out[1] >= 0.0)};
     if (!moves[0] && !moves[1]) return true;
@@ -335,7 +434,10 @@ bool PadFilm::settle(const Vec2& e, const Vec2& W, Ends& s, int elements, double
     for (int i = 0; i < 2; ++i) {
       const double angle = i == 0 ? s.a : s.b;
       const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
-      shift[i] = std::max(0.0, out[i]) * x.stretch / (x.h * x.h * x.h);
+      if constexpr (Medium::plain)
+        shift[i] = std::max(0.0, out[i]) * x.stretch / (x.h * x.h * x.h);
+      else
+        shift[i] = std::max(0.0, out[i]) / flow_at(x, medium);
       const double source = std::min(W.x() * x.n.x + W.y() * x.n.y, least);
       slope[i] = source * x.stretch - (i == 0 ? c.D_aa : c.D_bb) * shift[i];
     }
@@ -373,27 +475,103 @@ bool PadFilm::settle(const Vec2& e, const Vec2& W, Ends& s, int elements, double
   return false;
 }
 
+template <class Medium>
+void PadFilm::find(const Vec2& e, const Vec2& W, const Medium& m, Ends& s, int& passes) const {
+  if (s.held_a && s.held_b) return;
+  // from a little outside the core: at its ends there is no source to balance a flow
+  const double beyond = std::min(0.15, 0.3 * (s.b - s.a));
+  const double room_a = round_ ? 0.5 * (two_pi - (s.b - s.a)) : s.a - s.low,
+               room_b = round_ ? room_a : s.high - s.b;
+  if (!s.held_a) s.a -= std::min(beyond, 0.5 * room_a);
+  if (!s.held_b) s.b += std::min(beyond, 0.5 * room_b);
+  settle(e, W, m, s, std::max(2, elements_ / 3), 3e-3, 8, passes);
+  // the load does not feel small errors of a free end, and Newton's error goes with the square of
+  // the last step
+  settle(e, W, m, s, elements_, 1e-4, 60, passes);
+}
+
 int PadFilm::solve(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out, int& passes) const {
   int n = cores(e, W, out);
-  const auto find = [&](Ends& s) {
-    if (s.held_a && s.held_b) return;
-    // from a little outside the core: at its ends there is no source to balance a flow
-    const double beyond = std::min(0.15, 0.3 * (s.b - s.a));
-    const double room_a = round_ ? 0.5 * (two_pi - (s.b - s.a)) : s.a - s.low,
-                 room_b = round_ ? room_a : s.high - s.b;
-    if (!s.held_a) s.a -= std::min(beyond, 0.5 * room_a);
-    if (!s.held_b) s.b += std::min(beyond, 0.5 * room_b);
-    settle(e, W, s, std::max(2, elements_ / 3), 3e-3, 8, passes);
-    // the load does not feel small errors of a free end, and Newton's error goes with the square of
-    // the last step
-    settle(e, W, s, elements_, 1e-4, 60, passes);
-  };
   for (int i = 0; i < n; ++i)
-    find(out[static_cast<std::size_t>(i)]);
+    find(e, W, Alike{}, out[static_cast<std::size_t>(i)], passes);
   if (n == 2 && out[0].b >= out[1].a) {  // films from both ends that meet are one
     out[0].b = out[1].b;
     out[0].held_b = true;
     n = 1;
+  }
+  return n;
+}
+
+/// The cores, and stretches that the pressure at the ends of the pad begins.
+template <class Medium>
+int PadFilm::fed_films(const Vec2& e, const Vec2& W, const Medium& m, Films& out) const {
+  const Place<double> at(e.x(), e.y());
+  const double low = at.gamma(start_), high = at.gamma(start_ + arc_);
+  if (W.isZero(0.0)) {
+    out[0] = {low, high, low, high, low, high, true, true};
+    return 1;
+  }
+  std::array<Ends, 2> inner;
+  const int cores_found = cores(e, W, inner);
+  const auto length_from = [&](double angle) {
+    // where the flow that the edge drives is turned round by the source against it
+    const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
+    const double against = std::abs(W.x() * x.n.x + W.y() * x.n.y) * x.stretch;
+    const double length = std::sqrt(2.0 * m.edge * flow_at(x, m) / std::max(against, 1e-300));
+    return std::min(length, 0.25 * (high - low));
+  };
+  std::size_t n = 0;
+  if (cores_found == 0 || !inner[0].held_a)
+    out[n++] = {low, low + length_from(low), low, low, low, high, true, false};
+  for (int i = 0; i < cores_found; ++i) {
+    out[n] = inner[static_cast<std::size_t>(i)];
+    out[n].low = low;
+    out[n].high = high;
+    ++n;
+  }
+  if (cores_found == 0 || !out[n - 1].held_b)
+    out[n++] = {high - length_from(high), high, high, high, low, high, false, true};
+  return static_cast<int>(n);
+}
+
+/// Stretches that meet are one: what either would hold alone is less than what both hold.
+template <class Medium>
+int PadFilm::solve_through(const Vec2& e, const Vec2& W, const Medium& m, Films& out,
+                           int& passes) const {
+  if (m.edge == 0.0) {
+    if (W.isZero(0.0)) return 0;
+    std::array<Ends, 2> films;
+    int n = cores(e, W, films);
+    for (int i = 0; i < n; ++i)
+      find(e, W, m, films[static_cast<std::size_t>(i)], passes);
+    if (n == 2 && films[0].b >= films[1].a) {
+      films[0].b = films[1].b;
+      films[0].held_b = true;
+      n = 1;
+    }
+    std::copy(films.begin(), films.end(), out.begin());
+    return n;
+  }
+  int n = fed_films(e, W, m, out);
+  for (int i = 0; i < n; ++i)
+    if (Ends& s = out[static_cast<std::size_t>(i)]; !(s.held_a && s.held_b)) {
+      // films at an edge are as long as they are guessed; others as without an edge
+      if (s.core_b > s.core_a) find(e, W, m, s, passes);
+      settle(e, W, m, s, elements_, 1e-4, 60, passes);
+    }
+  for (int i = 0; i + 1 < n;) {
+    Ends &s = out[static_cast<std::size_t>(i)], &next = out[static_cast<std::size_t>(i + 1)];
+    if (s.b < next.a) {
+      ++i;
+      continue;
+    }
+    s.b = next.b;
+    s.core_b = next.core_b;
+    s.held_b = next.held_b;
+    std::copy(out.begin() + i + 2, out.begin() + n, out.begin() + i + 1);
+    --n;
+    if (!(s.held_a && s.held_b)) settle(e, W, m, s, elements_, 1e-4, 60, passes);
+    i = 0;
   }
   return n;
 }
@@ -408,7 +586,7 @@ Vec2 PadFilm::load(const Vec2& e, const Vec2& W) const {
   const Place<double> at(e.x(), e.y());
   for (int i = 0; i < n; ++i) {
     const Ends& s = films[static_cast<std::size_t>(i)];
-    const Condensed<double> c = condense(at, s.a, s.b, beta_, elements_);
+    const Condensed<double> c = condense(at, Alike{}, s.a, s.b, beta_, elements_);
     G += Vec2(c.S00 * W.x() + c.S01 * W.y(), c.S01 * W.x() + c.S11 * W.y());
   }
   return G;
@@ -431,7 +609,7 @@ PadLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W) const {
     const bool free_a = !s.held_a && s.a > s.low, free_b = !s.held_b && s.b < s.high;
     const T a = free_a ? T::variable(s.a, 2) : at.gamma(start_),
             b = free_b ? T::variable(s.b, 3) : at.gamma(start_ + arc_);
-    const Condensed<T> c = condense(at, a, b, beta_, elements_);
+    const Condensed<T> c = condense(at, Alike{}, a, b, beta_, elements_);
     const T G[2] = {c.S00 * W.x() + c.S01 * W.y(), c.S01 * W.x() + c.S11 * W.y()};
     const T flow[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(),
                        c.out_b.x * W.x() + c.out_b.y * W.y()};
@@ -488,6 +666,219 @@ double PadFilm::shear(const Vec2& e, Vec2& gradient) const {
       gradient += part / x.h * Vec2(x.n.x, x.n.y);
     }
   return sum;
+}
+
+Vec2 PadFilm::load(const Vec2& e, const Vec2& W, const PadMedium& medium, double& fed) const {
+  WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
+  const Through<double> m(medium, start_, arc_, medium.reynolds);
+  Films films;
+  int passes = 0;
+  const int n = solve_through(e, W, m, films, passes);
+  const Place<double> at(e.x(), e.y());
+  Vec2 G = Vec2::Zero();
+  fed = 0.0;
+  for (int i = 0; i < n; ++i) {
+    const Ends& s = films[static_cast<std::size_t>(i)];
+    const Condensed<double> c = condense(at, m, s.a, s.b, beta_, elements_);
+    const double p_a = s.held_a ? m.edge : 0.0, p_b = s.held_b ? m.edge : 0.0;
+    const Vec2 a(c.out_a.x, c.out_a.y), b(c.out_b.x, c.out_b.y);
+    G += Vec2(c.S00 * W.x() + c.S01 * W.y(), c.S01 * W.x() + c.S11 * W.y()) + a * p_a + b * p_b;
+    if (s.held_a) fed += c.D_aa * p_a + c.D_ab * p_b - a.dot(W);
+    if (s.held_b) fed += c.D_ab * p_a + c.D_bb * p_b - b.dot(W);
+  }
+  return G;
+}
+
+PadFlowLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W, const PadMedium& medium) const {
+  WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
+  PadFlowLoad out;
+  out.G.setZero();
+  out.by_e.setZero();
+  out.by_W.setZero();
+  out.by_reynolds.setZero();
+  if (W.isZero(0.0) && medium.edge == 0.0) {
+    out.by_W = mean_slope(e, medium);
+    return out;
+  }
+  using T = Dual<5>;  // e_x, e_y, ends a and b, Reynolds number
+  Films films;
+  int passes = 0;
+  const int n =
+      solve_through(e, W, Through<double>(medium, start_, arc_, medium.reynolds), films, passes);
+  const Through<T> m(medium, start_, arc_, T::variable(medium.reynolds, 4));
+  const Place<T> at(T::variable(e.x(), 0), T::variable(e.y(), 1));
+  for (int i = 0; i < n; ++i) {
+    const Ends& s = films[static_cast<std::size_t>(i)];
+    const bool free[2] = {!s.held_a && s.a > s.low, !s.held_b && s.b < s.high};
+    const T a = free[0] ? T::variable(s.a, 2) : at.gamma(start_),
+            b = free[1] ? T::variable(s.b, 3) : at.gamma(start_ + arc_);
+    const Condensed<T> c = condense(at, m, a, b, beta_, elements_);
+    const double edge[2] = {s.held_a ? m.edge : 0.0, s.held_b ? m.edge : 0.0};
+    const Pair<T> outflow[2] = {c.out_a, c.out_b};
+    const T in[2] = {c.D_aa * edge[0] + c.D_ab * edge[1], c.D_ab * edge[0] + c.D_bb * edge[1]};
+    const T G[2] = {
+        c.S00 * W.x() + c.S01 * W.y() + outflow[0].x * edge[0] + outflow[1].x * edge[1],
+        c.S01 * W.x() + c.S11 * W.y() + outflow[0].y * edge[0] + outflow[1].y * edge[1]};
+    Mat2 by_ends, flow_by_ends = Mat2::Identity(), flow_by_W = Mat2::Zero();
+    Matrix<2, 3> flow_by = Matrix<2, 3>::Zero(), G_by;  // e and Reynolds number
+    const auto pick = [](const T& x) { return Eigen::RowVector3d(x.g[0], x.g[1], x.g[4]); };
+    for (int k = 0; k < 2; ++k) {
+      const T flow = outflow[k].x * W.x() + outflow[k].y * W.y() - in[k];
+      if (k == 0 ? s.held_a : s.held_b) out.fed -= flow.v;
+      if (!free[k]) continue;
+      flow_by_ends.row(k) = flow.g.segment<2>(2).transpose();
+      flow_by.row(k) = pick(flow);
+      flow_by_W.row(k) << outflow[k].x.v, outflow[k].y.v;
+    }
+    Mat2 S;
+    S << c.S00.v, c.S01.v, c.S01.v, c.S11.v;
+    for (int k = 0; k < 2; ++k) {
+      out.G[k] += G[k].v;
+      G_by.row(k) = pick(G[k]);
+      by_ends.row(k) = G[k].g.segment<2>(2).transpose();
+    }
+    const Mat2 follow = by_ends * flow_by_ends.inverse();
+    const Matrix<2, 3> total = G_by - follow * flow_by;
+    out.by_e += total.leftCols<2>();
+    out.by_reynolds += total.col(2);
+    out.by_W += S - follow * flow_by_W;
+  }
+  return out;
+}
+
+Mat2 PadFilm::mean_slope(const Vec2& e, const PadMedium& medium) const {
+  constexpr int directions = 16;
+  Mat2 C = Mat2::Zero();
+  double fed = 0.0;
+  for (int k = 0; k < directions; ++k) {
+    const double angle = two_pi * (k + 0.5) / directions;
+    const Vec2 n(std::cos(angle), std::sin(angle));
+    C += 2.0 / directions * load(e, n, medium, fed) * n.transpose();
+  }
+  return C;
+}
+
+PadShear PadFilm::shear(const Vec2& e, const PadMedium& medium) const {
+  WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
+  static const Gauss<8> gauss;
+  constexpr int panels = 6;
+  using T = Dual<3>;  // e_x, e_y, Reynolds number
+  using std::cos;
+  using std::sin;
+  const Through<T> m(medium, start_, arc_, T::variable(medium.reynolds, 2));
+  const Place<T> at(T::variable(e.x(), 0), T::variable(e.y(), 1));
+  const T from = at.gamma(start_), width = (1.0 / panels) * (at.gamma(start_ + arc_) - from);
+  T sum(0.0);
+  for (int panel = 0; panel < panels; ++panel)
+    for (std::size_t q = 0; q < 8; ++q) {
+      const T angle = from + (panel + gauss.x[q]) * width;
+      const AtPoint<T> x(at, {cos(angle), sin(angle)});
+      sum += gauss.w[q] * width * x.stretch * m.at(x).shear / x.h;
+    }
+  return {sum.v, Vec2(sum.g[0], sum.g[1]), sum.g[2]};
+}
+
+namespace {
+
+/// Pressures of one stretch of film: all of its unknowns, kept.
+class StretchPressure {
+ public:
+  StretchPressure(const Place<double>& at, const Through<double>& m, double from, double to,
+                  double beta, int n, const Vec2& W, const std::array<double, 2>& ends)
+      : from_(from),
+        width_((to - from) / n),
+        n_(n),
+        x_(VecX::Zero(n * p + 1)) {
+    const Index size = x_.size();
+    MatX A = MatX::Zero(size, size);
+    VecX B = VecX::Zero(size);
+    std::array<Pair<double>, points> zeta = first_points(from, width_);
+    const Pair<double> turn{std::cos(width_), std::sin(width_)};
+    for (int k = 0; k < n; ++k) {
+      const FilmElement<double> e =
+          integrate_element(at, m, width_, 1.0 / width_, turn, beta, zeta);
+      std::size_t entry = 0;
+      for (int i = 0; i < shapes; ++i) {
+        const Pair<double>& b = e.B[static_cast<std::size_t>(i)];
+        B[place(k, i)] += b.x * W.x() + b.y * W.y();
+        for (int j = i; j < shapes; ++j, ++entry) {
+          A(place(k, i), place(k, j)) += e.A[entry];
+          if (j != i) A(place(k, j), place(k, i)) += e.A[entry];
+        }
+      }
+    }
+    const Index last = size - 1, inner = size - 2;
+    x_[0] = ends[0];
+    x_[last] = ends[1];
+    const VecX known = A.col(0) * ends[0] + A.col(last) * ends[1];
+    x_.segment(1, inner) = A.block(1, 1, inner, inner).ldlt().solve((B - known).segment(1, inner));
+  }
+  /// P and dP/dgamma.
+  Pair<double> at(double angle) const {
+    const double along = (angle - from_) / width_;
+    const int k = std::clamp(static_cast<int>(std::floor(along)), 0, n_ - 1);
+    const double x = along - k, t = 2.0 * x - 1.0;
+    std::array<double, p + 1> legendre{1.0, t};
+    for (std::size_t i = 2; i <= p; ++i) {
+      const double m = static_cast<double>(i);
+      legendre[i] = ((2 * m - 1) * t * legendre[i - 1] - (m - 1) * legendre[i - 2]) / m;
+    }
+    const double left = x_[place(k, bubbles)], right = x_[place(k, bubbles + 1)];
+    Pair<double> out{left * (1.0 - x) + right * x, right - left};
+    for (std::size_t i = 0; i < bubbles; ++i) {
+      const double m = static_cast<double>(i) + 1.0, c = x_[place(k, static_cast<int>(i))];
+      out.x += c * (legendre[i + 2] - legendre[i]) / (2.0 * (2 * m + 1));
+      out.y += c * legendre[i + 1];
+    }
+    out.y /= width_;
+    return out;
+  }
+
+ private:
+  /// Shape i of element k among the unknowns: vertex, bubbles, vertex, ...
+  static Index place(int k, int i) {
+    if (i < bubbles) return k * p + 1 + i;
+    return (k + i - bubbles) * p;
+  }
+  double from_, width_;
+  int n_;
+  VecX x_;
+};
+
+}  // namespace
+
+PadProfile PadFilm::profile(const Vec2& e, const Vec2& W, const PadMedium& medium,
+                            std::span<const double> theta) const {
+  WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
+  const Through<double> m(medium, start_, arc_, medium.reynolds);
+  Films films;
+  int passes = 0;
+  const int n = solve_through(e, W, m, films, passes);
+  const Place<double> at(e.x(), e.y());
+  PadProfile out;
+  out.pressure.assign(theta.size(), 0.0);
+  out.slope = out.pressure;
+  for (int i = 0; i < n; ++i) {
+    const Ends& s = films[static_cast<std::size_t>(i)];
+    const std::array<double, 2> ends{s.held_a ? m.edge : 0.0, s.held_b ? m.edge : 0.0};
+    const StretchPressure film(at, m, s.a, s.b, beta_, elements_, W, ends);
+    const double shift = round_ ? two_pi : 0.0;
+    for (std::size_t k = 0; k < theta.size(); ++k) {
+      const double here = at.gamma(start_ + theta[k]);
+      for (const double angle : {here - shift, here, here + shift}) {
+        const double slack = 1e-12 * (s.b - s.a);
+        if (angle < s.a - slack || angle > s.b + slack) continue;
+        const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
+        const Pair<double> P = film.at(angle);
+        out.pressure[k] = P.x;
+        out.slope[k] = P.y / x.stretch;
+        break;
+      }
+    }
+    out.films.push_back({at.theta(s.a) - start_, at.theta(s.b) - start_, !s.held_a && s.a > s.low,
+                         !s.held_b && s.b < s.high});
+  }
+  return out;
 }
 
 }  // namespace whirl::elements

@@ -17,8 +17,16 @@
 // error in energy). Free ends by Newton's method on the flow through them, whose slopes are known:
 // the source, and the condensed stiffness. Derivatives are those of the discrete load, by forward
 // mode and the implicit function theorem: exact to rounding.
+//
+// A film whose oil is not alike everywhere (PadMedium) has h^3 a_x and h^3 a_z in place of h^3, a_x =
+// 1/(mu f_x), a_z = 1/(mu f_z): mu(theta) the viscosity over that of reference, f_x and f_z what
+// turbulence adds (turbulence.hpp) at the Reynolds number of the place, reynolds h/mu. Where the
+// pad's ends stand at a pressure, a stretch of film begins there whatever the source, and ruptures
+// where P' = 0.
 #pragma once
 #include <core/types.hpp>
+#include <span>
+#include <vector>
 
 namespace whirl::elements {
 
@@ -26,6 +34,40 @@ struct PadLoad {
   Vec2 G;           ///< int P n dtheta
   Mat2 by_e, by_W;  ///< dG/de, dG/dW
 };
+
+/// The oil of a film, in the units of PadFilm.
+struct PadMedium {
+  /// ln mu at equidistant places from the start of the pad to its end, cubic between them; three at
+  /// least, or empty: mu = 1.
+  std::span<const double> log_viscosity{};
+  double reynolds = 0;  ///< of a film of thickness 1 and mu = 1; 0: laminar everywhere
+  double edge = 0;      ///< pressure at both ends of the pad, not negative
+};
+/// With the slope of the load in PadMedium::reynolds, and what the pressure at the ends brings in:
+/// flow through them beside the source.
+struct PadFlowLoad : PadLoad {
+  Vec2 by_reynolds;
+  double fed = 0;
+};
+/// int mu f_s/(1 - e.n) dtheta, f_s what turbulence adds to the shear; slopes in e and reynolds.
+struct PadShear {
+  double value;
+  Vec2 by_e;
+  double by_reynolds;
+};
+/// A pad's pressure along its arc.
+struct PadProfile {
+  std::vector<double> pressure, slope;  ///< P and dP/dtheta at the angles asked
+  struct Stretch {
+    double from, to;          ///< of film, rad from the start of the pad
+    bool free_from, free_to;  ///< ends where it forms or ruptures
+  };
+  std::vector<Stretch> films;
+};
+
+/// Between the knots of PadMedium::log_viscosity (at least three), at the place 0 to 1 along the pad:
+/// Hermite's cubic with slopes of three neighbours. slope: by the place.
+double log_viscosity_at(std::span<const double> knots, double place, double& slope);
 
 class PadFilm {
  public:
@@ -48,6 +90,15 @@ class PadFilm {
   /// int dtheta/(1 - e.n), and its gradient in e.
   double shear(const Vec2& e, Vec2& gradient) const;
 
+  // The same through a medium.
+  Vec2 load(const Vec2& e, const Vec2& W, const PadMedium& m, double& fed) const;
+  PadFlowLoad load_and_slopes(const Vec2& e, const Vec2& W, const PadMedium& m) const;
+  Mat2 mean_slope(const Vec2& e, const PadMedium& m) const;
+  PadShear shear(const Vec2& e, const PadMedium& m) const;
+  /// theta: from the start of the pad, rad, 0 to the arc.
+  PadProfile profile(const Vec2& e, const Vec2& W, const PadMedium& m,
+                     std::span<const double> theta) const;
+
  private:
   friend struct PadFilmInside;  ///< tests look at where the film is
   /// In gamma: the ends, those of the core, and how far they may move.
@@ -55,10 +106,19 @@ class PadFilm {
     double a, b, core_a, core_b, low, high;
     bool held_a, held_b;
   };
-  bool settle(const Vec2& e, const Vec2& W, Ends& ends, int elements, double tolerance,
-              int most_passes, int& passes) const;
+  static constexpr std::size_t most_films = 4;
+  using Films = std::array<Ends, most_films>;
+  template <class Medium>
+  bool settle(const Vec2& e, const Vec2& W, const Medium& m, Ends& ends, int elements,
+              double tolerance, int most_passes, int& passes) const;
+  template <class Medium>
+  void find(const Vec2& e, const Vec2& W, const Medium& m, Ends& ends, int& passes) const;
   int cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const;
   int solve(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out, int& passes) const;
+  template <class Medium>
+  int solve_through(const Vec2& e, const Vec2& W, const Medium& m, Films& out, int& passes) const;
+  template <class Medium>
+  int fed_films(const Vec2& e, const Vec2& W, const Medium& m, Films& out) const;
 
   double start_, arc_, beta_;
   bool round_;

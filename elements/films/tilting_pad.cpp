@@ -22,11 +22,11 @@ constexpr double rest_damper = 1e-5, rest_spring = 1e-6;
 
 AxialProfile axial_profile(double kappa) {
   WHIRL_EXPECTS(kappa >= 0.0);
-  if (kappa < 1e-2) return {10.0, 10.0};  // of the next order in kappa^2: 1e-5
+  if (kappa < 1e-2) return {10.0, 10.0, 1.5};  // of the next order in kappa^2: 1e-5
   const double t = std::tanh(kappa) / kappa, s = 1.0 / (std::cosh(kappa) * std::cosh(kappa));
   const double mean = 1.0 - t, square = 1.0 - 1.5 * t + 0.5 * s;
   const double slope = 2.0 * kappa * kappa * (t - s);  // mean of (L phi')^2
-  return {slope / square, 12.0 * mean * mean / square};
+  return {slope / square, 12.0 * mean * mean / square, (1.0 - std::sqrt(s)) / mean};
 }
 
 AxialProfile axial_profile_of_pad(double arc, double length_over_radius) {
@@ -59,6 +59,7 @@ TiltingPad make_tilting_pad(const PadGeometry& g) {
   const AxialProfile profile = axial_profile_of_pad(g.arc, g.length / g.radius);
   p.film.leakage = profile.leakage;
   p.film.source = profile.source;
+  p.film.peak = profile.peak;
   p.pivot = Vec2(std::cos(g.pivot), std::sin(g.pivot));
   const double clearance = p.film.surface->pad_clearance();
   p.arm = g.radius + clearance + g.thickness;
@@ -85,9 +86,10 @@ PadStanding TiltingPad::standing(const LateralMotion& m, const Vec2& q) const {
   s.pressed = q.y();
   s.force = -f.F;
   s.load = s.force.dot(pivot) + 0.0;  // not -0
-  s.film = film.surface->pad_clearance() * film.pad(0).smallest_clearance(film.place(0, at).e);
-  s.eccentricity = (m.r.dot(pivot) - q.y()) / film.surface->clearance();
-  s.power = -(f.F.dot(at.w) + f.T * at.slip);
+  const FiniteJournal::Gap gap = film.gap(0, at);
+  s.film = gap.pad * film.pad(0).smallest_clearance(film.place(0, at).e);
+  s.eccentricity = (m.r.dot(pivot) - q.y()) / (gap.pad - gap.lift);
+  s.power = f.pump - (f.F.dot(at.w) + f.T * at.slip);
   return s;
 }
 

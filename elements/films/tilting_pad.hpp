@@ -27,7 +27,7 @@
 // Appl. Math. 26, 1968, doi 10.1090/qam/99857), times 1.15 for the wedge of a pad at work, whose
 // pressure stands on a part of the arc. kappa -> 0 is the parabola.
 //
-// Limits: laminar, isoviscous, aligned; no inertia of the oil, no supply pressure; shear on the pad's
+// Limits: aligned; no inertia of the oil; shear on the pad's
 // face has no moment about the pivot; tilts are small (arm delta against the radius). The mass of a
 // pad counts for its motion along the pivot against the housing.
 // Source: J. W. Lund, ASLE Trans. 7, 1964, doi 10.1080/05698196408972064 (pad assembly).
@@ -39,6 +39,7 @@ namespace whirl::elements {
 /// Factors of (h^3 P')'/R^2 - leakage/L^2 h^3 P = source eta f for the axial mean P.
 struct AxialProfile {
   double leakage = 10, source = 10;
+  double peak = 1.5;  ///< pressure in the middle over the axial mean
 };
 /// The profile 1 - cosh(2 kappa z/L)/cosh kappa. @pre kappa >= 0.
 AxialProfile axial_profile(double kappa);

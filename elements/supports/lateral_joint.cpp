@@ -39,6 +39,7 @@ LateralMotion LateralLink<Offsets>::motion(const Nodes& x, const system::Context
   const system::NodeState &n = *x[0], &h = *x[1];
   LateralMotion m;
   m.frequency = c.frequency;
+  m.kept = n.kept;
   m.spin = s[0].s;
   m.housing_spin = s[1].s;
   m.r = (n.u - h.u).template tail<2>();

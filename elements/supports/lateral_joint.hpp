@@ -35,6 +35,7 @@ struct LateralMotion {
   double spin = 0, housing_spin = 0;            ///< rad/s
   double spin_rate = 0, housing_spin_rate = 0;  ///< rad/s2, set for energy() only
   double frequency = nan;                       ///< rad/s, Context::frequency
+  const double* kept = nullptr;                 ///< what elements keep (system::NodeState::kept)
 };
 
 /// Derivatives of z = (F_y, F_z, T_0, T_1).

@@ -78,7 +78,8 @@ void Linearizer::take_undeformed(double Omega) {
 bool Linearizer::still_balanced(double Omega) {
   // A rotor in linear bearings keeps its equilibrium at every speed: then the residual stays at its
   // rounding level.
-  if (!have_ || !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_))
+  if (!have_ || !system().keepers().empty() ||
+      !running_.residual(equilibrium_.state.frames, Omega, equilibrium_.state.q, r_))
     return false;
   const Vec2 now = largest(r_, solver_.free());
   return now[0] <= 4.0 * floor_[0] && now[1] <= 4.0 * floor_[1];

@@ -3,6 +3,7 @@
 #pragma once
 #include <meshes/mesh.hpp>
 #include <model/model.hpp>
+#include <elements/films/film_heat.hpp>
 #include <elements/films/tilting_pad.hpp>
 #include <system/system.hpp>
 #include <functional>
@@ -68,6 +69,21 @@ struct TiltingPads {
   std::function<std::vector<Face>(const NodeAt&)> faces;
   /// points: of the grid on the circumference, 0: that of the bearing.
   std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
+};
+
+/// The films of a journal bearing of finite length, one a pad, and their heat.
+struct FilmBearing {
+  std::size_t bearing = 0;  ///< of the model
+  bool heated = false;
+  std::ptrdiff_t kept_from = -1;  ///< of what elements keep; -1: it keeps nothing
+  std::size_t kept = 0, kept_each = 0;  ///< how much in all, and for each pad
+  /// Empty where the journal is outside a film.
+  std::function<std::vector<elements::FilmStanding>(const NodeAt&)> standing;
+  /// @pre the journal is inside all films (also heat).
+  std::function<std::vector<elements::FilmField>(const NodeAt&)> fields;
+  /// The balance that the state would have, which is that in the state where it is in equilibrium.
+  /// @pre heated.
+  std::function<elements::HeatBalance(const NodeAt&)> heat{};
 };
 
 /// What the controller of a magnetic bearing does.
@@ -152,6 +168,7 @@ struct Built {
                            ///< length: journals, to their clearance, m
   std::vector<RollingLoads> rolling_loads;
   std::vector<TiltingPads> tilting_pads;
+  std::vector<FilmBearing> films;
   std::vector<MagneticControl> magnetic_controls;
   std::vector<DriveTorque> drive_torques;
   std::vector<Governor> governors;

@@ -1,5 +1,6 @@
 // The films of journal bearings as their kernels, from what the model says.
 #pragma once
+#include <elements/films/film_heat.hpp>
 #include <elements/films/finite_journal.hpp>
 #include <elements/films/tilting_pad.hpp>
 #include <model/model.hpp>
@@ -21,6 +22,11 @@ elements::FiniteJournal make_damper_film(const model::SqueezeFilm& law, int node
 /// @throws Error E84 as make_tilting_pad.
 std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJournal& law,
                                                     int points);
+
+/// At a temperature, K; of a grade within its range.
+double viscosity_at(const model::Oil& o, double temperature);
+/// @pre flow.heat.
+elements::HeatSettings heat_settings(const model::FilmFlow& flow, const model::Oil& oil);
 
 /// Force of the theory of short bearings over that of one of finite length, both plain and in steady
 /// rotation. It depends on L/D and the eccentricity alone: viscosity and speed are factors of either

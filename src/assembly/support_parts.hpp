@@ -1,6 +1,7 @@
 // What the functions that add one kind of support share. Internal to src/assembly.
 #pragma once
 #include <assembly/parts.hpp>
+#include <elements/films/film_heat.hpp>
 #include <elements/supports/at_offset.hpp>
 #include <elements/supports/lateral_joint.hpp>
 #include <elements/loads/moment.hpp>
@@ -119,6 +120,14 @@ inline std::function<Vec2(const NodeAt&)> displacement_of(const meshes::BearingN
 /// What a film does depends on the motion of both its sides against the clearance.
 void follow_closely(Assembly& a, const meshes::BearingNodes& n, double clearance);
 double viscosity_of(const model::Oil& o);
+/// Turbulence and supply pressure of a film, and how much it keeps of its heat.
+void set_flow(elements::FiniteJournal& film, const model::FilmFlow& flow, const model::Oil& oil);
+/// A film bearing for results; with heat it becomes something that states keep. pads_at: its pads in
+/// a state, which live as long as the function.
+using HeatPadsAt = std::function<std::vector<elements::HeatPad>(const NodeAt&)>;
+/// Returns where what it keeps begins, -1 without heat.
+std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const model::FilmFlow& flow,
+                                const model::Oil& oil, std::size_t pads, const HeatPadsAt& pads_at);
 
 // One a law: how it comes into the system. Rigid supports: supports.cpp.
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,

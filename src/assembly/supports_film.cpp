@@ -44,6 +44,7 @@ void add_film(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
          m.a.setZero();
          m.spin = at(nodes[0]).spin();
          m.housing_spin = at(nodes[1]).spin();
+         m.kept = at(nodes[0]).kept;
          Vector<4> z;
          law.force(m, z);
          SupportCondition::State s;
@@ -84,6 +85,7 @@ elements::FiniteJournal make_finite_journal(const model::FiniteJournal& law, int
   film.viscosity = viscosity_of(law.oil);
   film.surface =
       std::make_shared<elements::JournalSurface>(law.clearance, law.preload, pads_of(law), nodes);
+  set_flow(film, law.flow, law.oil);
   return film;
 }
 
@@ -143,7 +145,27 @@ void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
              const model::FiniteJournal& law) {
-  guarded(a, b, [&] { add_film(a, b, n, make_finite_journal(law, law.nodes), law.clearance); });
+  guarded(a, b, [&] {
+    const auto film =
+        std::make_shared<elements::FiniteJournal>(make_finite_journal(law, law.nodes));
+    const HeatPadsAt pads = [film, r = displacement_of(n),
+                             nodes = Pair{n.shaft.node, n.other.node}](const NodeAt& at) {
+      elements::LateralMotion m;
+      m.r = r(at);
+      m.v.setZero();
+      m.a.setZero();
+      m.spin = at(nodes[0]).spin();
+      m.housing_spin = at(nodes[1]).spin();
+      m.kept = at(nodes[0]).kept;
+      const elements::FilmPoint p = elements::FilmLaw<elements::FiniteJournal>::point(m);
+      std::vector<elements::HeatPad> out;
+      for (std::size_t k = 0; k < film->surface->arcs().size(); ++k)
+        out.push_back({film.get(), k, p});
+      return out;
+    };
+    film->kept_from = add_film_bearing(a, b, law.flow, law.oil, film->surface->arcs().size(), pads);
+    add_film(a, b, n, *film, law.clearance);
+  });
 }
 
 void add_law(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,

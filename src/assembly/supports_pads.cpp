@@ -32,6 +32,7 @@ std::vector<elements::TiltingPad> make_tilting_pads(const model::TiltingPadJourn
     g.thickness = law.thickness;
     g.points = static_cast<int>(std::lround(points * p.arc / arcs));
     elements::TiltingPad pad = elements::make_tilting_pad(g);
+    set_flow(pad.film, law.flow, law.oil);
     pad.tilt_stiffness += law.tilt_stiffness;
     pad.inertia = law.inertia;
     pad.mass = law.mass;
@@ -69,6 +70,11 @@ class PadRing {
     }
   }
 
+  /// Where what the pads keep begins.
+  void keep_from(std::ptrdiff_t first) {
+    kept_from_ = first;
+    place_kept(pads_);
+  }
   std::size_t pads() const { return pads_.size(); }
   const std::vector<std::vector<Index>>& unknowns() const { return unknowns_; }
   Kernel kernel(std::size_t k) const {
@@ -124,9 +130,23 @@ class PadRing {
     }
     return out;
   }
+  /// The films, at rest where they stand.
+  std::vector<elements::HeatPad> films(const NodeAt& at) const {
+    std::vector<elements::HeatPad> out;
+    for (std::size_t k = 0; k < pads(); ++k) {
+      const elements::TiltingPad& pad = pads_[k];
+      const auto m = kernel(k).motion_of(states(k, at), {});
+      elements::LateralMotion still = m.journal;
+      still.v.setZero();
+      const elements::LateralMotion seen = pad.seen(still, m.q, Vec2::Zero());
+      out.push_back(
+          {&pad.film, 0, elements::FilmLaw<elements::FiniteJournal>::point(seen), law_.thickness});
+    }
+    return out;
+  }
   elements::PadCoefficients coefficients(const NodeAt& at, int points) const {
-    const std::vector<elements::TiltingPad> finer =
-        points > 0 ? make_tilting_pads(law_, points) : pads_;
+    std::vector<elements::TiltingPad> finer = points > 0 ? make_tilting_pads(law_, points) : pads_;
+    place_kept(finer);
     const Index n = 2 + own * static_cast<Index>(pads());
     elements::PadCoefficients out{MatX::Zero(n, n), MatX::Zero(n, n), MatX::Zero(n, n),
                                   static_cast<int>(own)};
@@ -179,7 +199,17 @@ class PadRing {
   }
 
  private:
+  void place_kept(std::vector<elements::TiltingPad>& pads) const {
+    if (kept_from_ < 0) return;
+    std::ptrdiff_t next = kept_from_;
+    for (elements::TiltingPad& p : pads) {
+      p.film.kept_from = next;
+      next += p.film.kept_each();
+    }
+  }
+
   model::TiltingPadJournal law_;
+  std::ptrdiff_t kept_from_ = -1;
   std::array<double, 2> offset_;
   Pair ends_;
   std::vector<elements::TiltingPad> pads_;
@@ -205,7 +235,10 @@ template <bool Pressed, bool Offsets>
 void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
               const model::TiltingPadJournal& law) {
   using Ring = PadRing<Pressed, Offsets>;
-  const auto ring = std::make_shared<const Ring>(a, b, n, law);
+  const auto made = std::make_shared<Ring>(a, b, n, law);
+  made->keep_from(add_film_bearing(a, b, law.flow, law.oil, made->pads(),
+                                   [made](const NodeAt& at) { return made->films(at); }));
+  const std::shared_ptr<const Ring> ring = made;
   for (std::size_t k = 0; k < ring->pads(); ++k)
     a.built.support_terms[number_of(a, b)].push_back(
         a.builder.add(ring->kernel(k), ring->nodes(k), "tilting pads"));

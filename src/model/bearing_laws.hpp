@@ -5,6 +5,7 @@
 #include <model/magnetic_bearing.hpp>
 #include <model/support_traits.hpp>
 #include <array>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -74,6 +75,31 @@ SupportTraits traits(const NonlinearSpring&);
 struct Oil {
   double viscosity = 0;                              ///< Pa s; 0: from the grade
   double grade = 0, temperature = 0, density = 900;  ///< ISO VG number, K, kg/m3
+  /// 1/K, of a given viscosity: that at T is viscosity exp(-thinning (T - temperature)).
+  double thinning = 0;
+};
+
+/// What the heat balance of a film needs (elements/films/film_heat.hpp).
+struct FilmHeat {
+  double supply_temperature = 0;                     ///< of fresh oil, K
+  double specific_heat = 1950, conductivity = 0.14;  ///< of the oil, J/(kg K), W/(m K)
+  enum class Feed { flooded, leading_edge } feed = Feed::flooded;
+  double carry_over = 0.75;  ///< hot oil, from the pad before, in what enters a pad
+  /// Of the pads (tilting pads: at their pivots, where thickness of the bearing says nothing else),
+  /// m; 0: nothing goes through them.
+  double wall = 0;
+  double wall_conductivity = 50;     ///< W/(m K)
+  double back_coefficient = 100;     ///< from the back and the ends of a pad to the oil, W/(m2 K)
+  double housing_temperature = nan;  ///< and of that oil, K; NaN: that of the supply
+  double shaft_expansion = 0, pad_expansion = 0, housing_expansion = 0;  ///< 1/K
+  double assembly_temperature = 293.15;  ///< at which the clearances are those given, K
+};
+
+/// How oil flows in a film beyond the isoviscous laminar one at ambient pressure.
+struct FilmFlow {
+  enum class Regime { laminar, ng_pan } regime = Regime::laminar;
+  double supply_pressure = 0;    ///< in grooves and between pads, above ambient, Pa
+  std::optional<FilmHeat> heat;  ///< nothing: one viscosity everywhere
 };
 
 /// Plain journal bearing by the short-bearing theory (pi film).
@@ -91,6 +117,7 @@ struct FiniteJournal {
   enum class Shape { plain, two_grooves, lobes } shape = Shape::plain;
   int lobes = 3;
   double groove = 0, groove_at = 0, lobe_at = 0, lobe_offset = 0.5;  ///< rad; from +y towards +z
+  FilmFlow flow;
   int nodes = 72;  ///< grid points round the circumference
 };
 SupportTraits traits(const FiniteJournal&);
@@ -99,6 +126,7 @@ SupportTraits traits(const FiniteJournal&);
 struct TiltingPadJournal {
   double diameter = 0, length = 0, clearance = 0;  ///< m; clearance radial, as assembled
   Oil oil;
+  FilmFlow flow;
   struct Pad {
     double pivot = 0;     ///< rad; from +y towards +z
     double arc = pi / 3;  ///< rad

@@ -105,9 +105,12 @@ int compared_with(int nodes) {
   return 2 * nodes <= finest ? finest : nodes / 2;
 }
 
-double grid_error_of(const model::FiniteJournal& law, const elements::LateralMotion& m) {
+double grid_error_of(const model::FiniteJournal& law, const elements::LateralMotion& m,
+                     std::ptrdiff_t kept_from) {
   const auto tangent = [&](int nodes) {
-    return film_tangent(assembly::make_finite_journal(law, nodes), m);
+    elements::FiniteJournal film = assembly::make_finite_journal(law, nodes);
+    film.kept_from = kept_from;
+    return film_tangent(film, m);
   };
   return distance(tangent(law.nodes), tangent(compared_with(law.nodes)));
 }
@@ -159,6 +162,39 @@ void describe_pads(SupportCoefficients& c, const run::Job& job, std::size_t bear
     c.C = p.reduced.front().C;
     c.grid_error = pad_grid_error(ring, node, law->nodes, p);
     c.pads = std::move(p);
+  }
+}
+
+/// The films of a bearing in an evaluated state.
+void describe_films(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
+                    const system::Workspace& w) {
+  const auto node = [&](Index k) -> const system::NodeState& { return w.in_own_axes(k); };
+  for (const assembly::FilmBearing& film : job.built.films) {
+    if (film.bearing != bearing) continue;
+    FilmResults f;
+    f.pads = film.standing(node);
+    if (f.pads.empty()) continue;
+    f.fields = film.fields(node);
+    if (film.heated) f.heat = film.heat(node);
+    double sum = 0.0, count = 0.0;
+    for (const elements::FilmField& x : f.fields)
+      for (const double eta : x.viscosity) {
+        sum += eta;
+        count += 1.0;
+      }
+    f.viscosity = sum / count;
+    const auto flow = [&](const auto& law, double peak) {
+      const double R = 0.5 * law.diameter;
+      f.peak = peak;
+      f.laminar = law.flow.regime == model::FilmFlow::Regime::laminar;
+      f.reynolds = law.oil.density * R * std::abs(c.spin) * law.clearance / f.viscosity;
+      f.transition = 41.2 * std::sqrt(R / law.clearance);  // G. I. Taylor's vortices
+    };
+    const model::BearingLaw& law = job.model.bearings[bearing].law;
+    if (const auto* journal = std::get_if<model::FiniteJournal>(&law)) flow(*journal, 1.5);
+    if (const auto* tilting = std::get_if<model::TiltingPadJournal>(&law))
+      flow(*tilting, assembly::make_tilting_pads(*tilting, tilting->nodes).front().film.peak);
+    c.films = std::move(f);
   }
 }
 
@@ -216,7 +252,9 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
     m.a.setZero();
     m.spin = c.spin;
     m.housing_spin = node(n.other.node).spin();
-    c.grid_error = grid_error_of(*law, m);
+    m.kept = node(n.shaft.node).kept;
+    for (const assembly::FilmBearing& film : job.built.films)
+      if (film.bearing == bearing) c.grid_error = grid_error_of(*law, m, film.kept_from);
   }
   if (const auto* law = std::get_if<model::SqueezeFilm>(&job.model.bearings[bearing].law))
     c.grid_error = grid_error_of(*law, c.place);
@@ -264,6 +302,7 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
     c.name = b.name;
     describe_state(c, job, i, w);
     describe_pads(c, job, i, w);
+    describe_films(c, job, i, w);
     if (!take_control(c, job, i, w)) continue;
     find_threshold(c);
     out.push_back(std::move(c));

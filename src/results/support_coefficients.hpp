@@ -26,6 +26,19 @@ struct PadResults {
   bool carries(std::size_t pad) const;
 };
 
+/// The films of a journal bearing of finite length at an equilibrium, one a pad.
+struct FilmResults {
+  std::vector<elements::FilmStanding> pads;
+  std::vector<elements::FilmField> fields;
+  std::optional<elements::HeatBalance> heat;
+  double peak = 1.5;     ///< pressure in the middle over the axial mean
+  double viscosity = 0;  ///< mean, Pa s
+  double reynolds = 0;   ///< rho R |s| c/eta of the assembled clearance
+  double transition =
+      0;  ///< Reynolds number from which on vortices and turbulence are to be expected
+  bool laminar = true;  ///< as the deck has it
+};
+
 /// One bearing whose coefficients depend on where the shaft runs: F = -K r - C r' on the shaft, (y,
 /// z), at an equilibrium. Place and attitude are measured from the middle of the bearing, the
 /// attitude from the direction of the load (opposite to the force on the shaft) in the sense y ->
@@ -53,6 +66,7 @@ struct SupportCoefficients {
   /// Of tilting pads; K and C are then what the shaft sees at the frequency of its own spin, with
   /// the pads following.
   std::optional<PadResults> pads{};
+  std::optional<FilmResults> films{};
 };
 
 /// In the order of the deck; empty when there is none.
@@ -80,6 +94,23 @@ std::vector<std::string> unloaded_pads(std::span<const SupportCoefficients> list
 /// A section through each tilting-pad bearing: journal, pads with their films, pivots and loads.
 std::vector<plot::Figure> draw_pads(const std::string& name,
                                     std::span<const SupportCoefficients> list);
+/// A row a pad, and one for the whole bearing: loss, flow, thickness, pressure, temperatures.
+io::Table film_table(std::span<const SupportCoefficients> list);
+/// Pressure, thickness and temperatures of each film bearing, unrolled and round the journal.
+std::vector<plot::Figure> draw_films(const std::string& name,
+                                     std::span<const SupportCoefficients> list);
+/// Loss, flow and temperatures against speed; no figure where there are no films. list: the states
+/// of all bearings, speed by speed.
+std::optional<plot::Figure> draw_film_trends(const std::string& name,
+                                             std::span<const SupportCoefficients> list);
+/// Films that are laminar in the deck and beyond their transition, the worst state of each bearing:
+/// warning W03.
+void warn_of_turbulence(run::Job& job, const std::string& step,
+                        std::span<const SupportCoefficients> list);
+/// What a motion in time left as it began: of each film with heat the viscosity that its balance in
+/// the last state would have over the one that acted, in the mean, into the summary; more than 5 %
+/// apart: warning W03.
+void report_kept_films(run::Job& job, const std::string& step, const system::State& end);
 /// Five rows a rolling bearing.
 io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list);
 

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view any_magic = "whirl checkpoint ";
-constexpr std::string_view magic = "whirl checkpoint 4\n";
+constexpr std::string_view magic = "whirl checkpoint 5\n";
 
 /// FNV-1a, 64 bits: finds a damaged file, not an ill-willed one.
 std::uint64_t check_sum(std::string_view s) {
@@ -75,6 +75,7 @@ std::string encode(const Checkpoint& c) {
   a.put(c.state.frames.lead);
   a.put(c.state.frames.link);
   a.put(c.state.frames.joint);
+  a.put(c.state.frames.kept);
   a.put(c.integrator.serialize());
   a.put_count(c.parts.size());
   for (const auto& [key, data] : c.parts) {
@@ -110,6 +111,7 @@ Checkpoint decode(std::string_view data) {
   c.state.frames.lead = a.numbers();
   c.state.frames.link = a.numbers();
   c.state.frames.joint = a.numbers();
+  c.state.frames.kept = a.numbers();
   c.integrator = time::IntegratorState::deserialize(a.numbers());
   for (std::uint64_t n = a.count(); n > 0; --n) {
     const Part part = part_of(a.text());
@@ -273,7 +275,8 @@ Checkpoint last_state_of(const std::string& folder, const std::string& step) {
 void check_state_fits(const Checkpoint& c, const std::string& folder, const system::System& system,
                       const std::string& deck) {
   if (c.state.q.size() == system.size() &&
-      c.state.frames.turns.size() == static_cast<std::size_t>(system.lines()))
+      c.state.frames.turns.size() == static_cast<std::size_t>(system.lines()) &&
+      c.state.frames.kept.size() == system.make_state().frames.kept.size())
     return;
   throw Error(Exit::deck, Diagnostic{Diagnostic::Severity::error, "E94",
                                      fmt::format("the run in '{}' has {} unknowns, this model {}",

@@ -286,6 +286,15 @@ void SpeedSweep::show_bearings() {
              s_.file("pads"), std::span(rows_).last(std::min(rows_.size(), bearings_.size()))))
       s_.add_figure(std::move(f));
   }
+  if (io::Table films = results::film_table(rows_); !films.rows.empty()) {
+    s_.add_table("films", std::move(films), false);
+    for (plot::Figure& f : results::draw_films(
+             s_.file("films"), std::span(rows_).last(std::min(rows_.size(), bearings_.size()))))
+      s_.add_figure(std::move(f));
+    if (auto trend = results::draw_film_trends(s_.file("film_trends"), rows_))
+      s_.add_figure(std::move(*trend));
+    results::warn_of_turbulence(job_, step_.name, rows_);
+  }
   const std::size_t shown = std::min<std::size_t>(bearings_.size(), 8);
   const std::vector<Sweep> drawn(bearings_.begin(),
                                  bearings_.begin() + static_cast<std::ptrdiff_t>(shown));

@@ -153,6 +153,7 @@ class StaticRun {
   results::StaticResults results_;
   io::Table coefficients_, rolling_stiffness_;
   results::PadTables pads_;
+  io::Table films_;
 };
 
 StaticRun::StaticRun(run::Job& job, const model::Step& step, const model::StaticStep& law)
@@ -255,6 +256,10 @@ void StaticRun::write_tables() {
   }
   for (plot::Figure& f : results::draw_pads(step_.name + "_pads", linear))
     results_.figures.push_back(std::move(f));
+  films_ = results::film_table(linear);
+  for (plot::Figure& f : results::draw_films(step_.name + "_films", linear))
+    results_.figures.push_back(std::move(f));
+  results::warn_of_turbulence(job_, step_.name, linear);
   job_.folder.write_table(file("deflection"), results_.deflection);
   job_.folder.write_table(file("supports"), results_.supports);
   job_.folder.write_table(file("sections"), results_.sections);
@@ -267,6 +272,7 @@ void StaticRun::write_tables() {
   write("rolling", results_.rolling);
   write("rolling_stiffness", rolling_stiffness_);
   write("coefficients", coefficients_);
+  write("films", films_);
   write("pads", pads_.pads);
   write("pad_coefficients", pads_.reduced);
   write("full_coefficients", pads_.full);
@@ -313,6 +319,7 @@ void StaticRun::add_section() {
     section.files.emplace_back(title, file(what));
   };
   add(coefficients_, "bearing coefficients", "coefficients");
+  add(films_, "films", "films");
   add(pads_.pads, "tilting pads", "pads");
   add(pads_.reduced, "coefficients by frequency", "pad_coefficients");
   if (!pads_.full.rows.empty())

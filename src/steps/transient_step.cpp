@@ -4,6 +4,7 @@
 #include <analysis/transient/transient.hpp>
 #include <core/interrupt.hpp>
 #include <results/held.hpp>
+#include <results/support_coefficients.hpp>
 #include <results/transient_output.hpp>
 #include <run/checkpoint.hpp>
 #include <run/interrupt.hpp>
@@ -363,6 +364,8 @@ void TransientRun::execute() {
     if (const std::string words = output->headline(); !words.empty()) headline += ", " + words;
   }
   line.done(headline);
+  if (r.reason != analysis::StopReason::failed)
+    results::report_kept_films(job_, step_.name, r.end);
   results::say_held(job_, step_, results::held_in_step(job_, step_), section);
   for (const auto& output : outputs_)
     output->report(end);

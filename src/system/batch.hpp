@@ -32,6 +32,7 @@ struct Workspace {
   Frames frames;
   std::vector<NodeState> own;
   std::vector<AngleTransport::At> own_carried;
+  std::vector<double> kept;  ///< of the last evaluation: the nodes point at them
 
   Workspace() = default;
   Workspace(Workspace&&) = default;  // a copy's nodes would point into the original

@@ -33,6 +33,9 @@ struct Frames {
   /// Per follower of a joint, rad: its phi less what is expected of it (joints.hpp), which tells
   /// whole turns.
   std::vector<double> joint;
+  /// What elements keep from one equilibrium to the next and a motion leaves as it is: temperatures
+  /// of films, and what follows from them (Builder::keep). Empty where nothing does.
+  std::vector<double> kept;
 
   bool moved() const { return chart.size() > turns.size(); }
   /// The axes that a node's phi and gamma refer to.

@@ -32,9 +32,10 @@ struct NodeState {
   Vec3 t;        ///< d - e, exact for small tilt
   Vec3 dd, ddd;  ///< d', d''
   double phi = 0.0, dphi = 0.0,
-         ddphi = 0.0;           ///< axial angle (less the whole turns), rad, and rates
-  double turns = 0.0;           ///< whole turns taken out of phi
-  const Mat3* chart = nullptr;  ///< columns e, e2, e3: the chart triad, in global axes
+         ddphi = 0.0;            ///< axial angle (less the whole turns), rad, and rates
+  double turns = 0.0;            ///< whole turns taken out of phi
+  const Mat3* chart = nullptr;   ///< columns e, e2, e3: the chart triad, in global axes
+  const double* kept = nullptr;  ///< all that elements keep (Frames::kept), the same for every node
 
   Vec3 e() const { return chart->col(0); }
   Vec3 d() const { return chart->col(0) + t; }
@@ -57,6 +58,7 @@ static_assert(offsetof(NodeState, dphi) == NodePlaces::dphi * sizeof(double));
 static_assert(offsetof(NodeState, ddphi) == NodePlaces::ddphi * sizeof(double));
 static_assert(offsetof(NodeState, turns) == NodePlaces::turns * sizeof(double));
 static_assert(offsetof(NodeState, chart) == NodePlaces::chart * sizeof(double));
+static_assert(offsetof(NodeState, kept) == NodePlaces::kept * sizeof(double));
 static_assert(sizeof(NodeState) == NodePlaces::size * sizeof(double));
 static_assert(sizeof(Mat3) == 9 * sizeof(double) && sizeof(Vec3) == 3 * sizeof(double));
 

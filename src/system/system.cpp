@@ -227,6 +227,7 @@ State System::make_state() const {
   s.frames.chart = charts_;
   s.frames.turns.assign(charts_.size(), 0.0);
   s.frames.of_node = line_of_;
+  s.frames.kept = kept_;
   if (!followers_.empty()) {
     s.frames.joint.assign(followers_.count(), 0.0);
     follow(s);
@@ -270,7 +271,26 @@ Workspace System::make_workspace() const {
   w.M = la::BlockMatrix<7>(*pattern_);
   w.C = la::BlockMatrix<7>(*pattern_);
   w.K = la::BlockMatrix<7>(*pattern_);
+  w.kept = kept_;
+  if (!kept_.empty())
+    for (NodeState& node : w.nodes)
+      node.kept = w.kept.data();
   return w;
+}
+
+void System::settle_kept(const Workspace& w, std::vector<double>& values) const {
+  values.resize(kept_.size());
+  for (const Keeper& k : keepers_)
+    k.settle(w, std::span(values).subspan(k.first, k.count));
+}
+
+std::size_t Builder::keep(Keeper k, std::span<const double> at_first) {
+  WHIRL_EXPECTS(k.settle != nullptr);
+  k.first = system_.kept_.size();
+  k.count = at_first.size();
+  system_.keepers_.push_back(std::move(k));
+  system_.kept_.insert(system_.kept_.end(), at_first.begin(), at_first.end());
+  return system_.keepers_.back().first;
 }
 
 Vec3 System::gravity_at(double t) const {
@@ -306,6 +326,8 @@ bool System::evaluate_nodes(Workspace& w, const Frames& f, double t, Eigen::Ref<
   static_assert(sizeof(Mat32) == 6 * sizeof(double));
   w.context.time = t;
   w.context.gravity = w.context.load * gravity_at(t);
+  WHIRL_EXPECTS(f.kept.size() == kept_.size());
+  if (!kept_.empty()) std::copy(f.kept.begin(), f.kept.end(), w.kept.begin());
   lanes::Motion m;
   m.count = nodes();
   if (followers_.empty()) {

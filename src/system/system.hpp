@@ -6,6 +6,7 @@
 #include <system/batch.hpp>
 #include <system/joints.hpp>
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -43,6 +44,17 @@ struct Hold {
   Index unknown;
   LawPtr law;
 };  ///< null law: held at zero
+
+/// A stretch of Frames::kept and how its owner would have it in a state: the values that belong to
+/// the node states of `w` (and to those kept there) into `values`.
+struct Keeper {
+  std::string name;  ///< of the owner, for messages
+  std::size_t first = 0, count = 0;
+  std::function<void(const Workspace& w, std::span<double> values)> settle;
+  /// Throws an Error where values that have settled cannot be (a temperature beyond the law of an
+  /// oil); null: there are no such.
+  std::function<void(const Workspace& w)> check{};
+};
 
 class System {
  public:
@@ -140,6 +152,11 @@ class System {
   /// node is outside its chart.
   void relax(Workspace& w, const Frames& f, double t, Eigen::Ref<VecX> q, Eigen::Ref<const VecX> v,
              Eigen::Ref<const VecX> a) const;
+  /// Elements with something to keep (Frames::kept), in the order of their stretches.
+  const std::vector<Keeper>& keepers() const { return keepers_; }
+  /// What they would keep at the node states of the last evaluation; of size Frames::kept.
+  /// @throws Error of an owner that finds nothing that could be kept.
+  void settle_kept(const Workspace& w, std::vector<double>& values) const;
   /// Energies and powers of the elements at the node states of the last evaluation.
   /// @pre w was evaluated.
   Energy energy(const Workspace& w) const;
@@ -173,6 +190,8 @@ class System {
   std::vector<std::unique_ptr<Term>> terms_;
   std::unordered_map<std::type_index, std::size_t> by_type_;
   std::vector<std::size_t> cornered_;
+  std::vector<Keeper> keepers_;
+  std::vector<double> kept_;  ///< at first
   bool linear_ = false;
   Vec3 gravity_ = Vec3::Zero();
   std::array<LawPtr, 3> base_;  ///< base acceleration along x, y, z; null = none
@@ -215,6 +234,10 @@ class Builder {
     static_cast<Batch<K>&>(*system_.terms_[it->second]).add(k, nodes);
     return it->second;
   }
+  /// Values that a state keeps beside its coordinates (Frames::kept), as they are at first, and who
+  /// keeps them; k.first and k.count are set here. Returns where they begin.
+  /// @pre k.settle.
+  std::size_t keep(Keeper k, std::span<const double> at_first);
   /// Elements of a kernel type so far: the next one's place in its batch.
   template <Kernel K>
   std::size_t count() const {

@@ -852,6 +852,7 @@ const Elsewhere elsewhere[] = {
     {"[[bearing]], type = \"journal\", shape = \"lobes\"", "*", "app/test_support_decks.cpp"},
     {"[[bearing]], type = \"tilting_pad\"", "*", "app/test_tilting_pads.cpp"},
     {"[[bearing.pad]]", "*", "app/test_tilting_pads.cpp"},
+    {"[bearing.heat]", "*", "app/test_hot_films.cpp"},
     {"[[bearing]], type = \"squeeze_film\"", "*",
      "app/test_support_decks.cpp, app/test_support_balance.cpp"},
     {"[[bearing]], type = \"roller\"", "*",

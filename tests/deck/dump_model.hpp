@@ -119,7 +119,16 @@ class ModelDump {
     each("F", f.F);
   }
   void oil(const model::Oil& o) {
-    each("oil", std::array{o.viscosity, o.grade, o.temperature, o.density});
+    each("oil", std::array{o.viscosity, o.grade, o.temperature, o.density, o.thinning});
+  }
+  void flow(const model::FilmFlow& f) {
+    each("flow", std::array{double(f.regime), f.supply_pressure});
+    if (!f.heat) return;
+    const model::FilmHeat& h = *f.heat;
+    each("heat", std::array{h.supply_temperature, h.specific_heat, h.conductivity, double(h.feed),
+                            h.carry_over, h.wall, h.wall_conductivity, h.back_coefficient,
+                            h.housing_temperature, h.shaft_expansion, h.pad_expansion,
+                            h.housing_expansion, h.assembly_temperature});
   }
   void law(const model::ShortJournal& x) {
     each("short", std::array{x.diameter, x.length, x.clearance});
@@ -130,12 +139,14 @@ class ModelDump {
          std::array{x.diameter, x.length, x.clearance, x.preload, double(x.shape), double(x.lobes),
                     x.groove, x.groove_at, x.lobe_at, x.lobe_offset, double(x.nodes)});
     oil(x.oil);
+    flow(x.flow);
   }
   void law(const model::TiltingPadJournal& x) {
     each("tilting",
          std::array{x.diameter, x.length, x.clearance, x.thickness, x.inertia, x.mass,
                     x.pivot_stiffness, x.pivot_damping, x.tilt_stiffness, double(x.nodes)});
     oil(x.oil);
+    flow(x.flow);
     for (const auto& p : x.pads())
       each("pad", std::array{p.pivot, p.arc, p.offset, p.preload});
     each("ratios", x.frequency_ratios);

@@ -524,7 +524,10 @@ Equilibrium EquilibriumSolver::solve(double Omega, const system::State* start) {
   WHIRL_EXPECTS(std::isfinite(Omega));
   WHIRL_EXPECTS(!start || start->q.size() == running_.system().size());
   auto out = try_solve(Omega, start);
-  if (out) return std::move(*out);
+  if (out) {
+    balance_kept(Omega, *out);
+    return std::move(*out);
+  }
   const bool singular = why_.starts_with("nothing resists");
   const std::string contradiction = singular ? obstacle_to_turning(running_) : std::string();
   if (!contradiction.empty())

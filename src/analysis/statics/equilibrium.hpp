@@ -38,6 +38,8 @@ struct Equilibrium {
   std::vector<Index> spin_holds;  ///< unknowns phi held because nothing else does; reactions[.] =
                                   ///< torque that keeps the speed
   int iterations = 0, load_steps = 1;
+  double kept_error =
+      0;  ///< what elements keep (system::Frames::kept) still changes by, the largest
 };
 
 class EquilibriumSolver {
@@ -96,6 +98,9 @@ class EquilibriumSolver {
   /// correction itself. most: the part tried first.
   double step_carefully(double Omega, const system::State& s, double size, double most, Step kind);
   std::string no_convergence() const;
+  /// Settles what elements keep, and the equilibrium with it.
+  /// @throws Error E76 when they do not settle.
+  void balance_kept(double Omega, Equilibrium& out);
   /// Loads in steps from the unloaded state at time t, doubled after an easy step, halved after a
   /// failure.
   bool load_in_steps(double Omega, double t, Equilibrium& out);

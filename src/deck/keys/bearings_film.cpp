@@ -9,30 +9,130 @@
 namespace whirl::deck {
 namespace {
 
-void oil(Visitor& v, model::Oil& o) {
-  const bool viscosity = v.quantity(optional("viscosity", "from iso_vg"), o.viscosity, "mPa.s",
-                                    positive, "dynamic viscosity");
-  const bool grade =
+/// Which keys of the oil are given.
+struct OilGiven {
+  bool viscosity = false, grade = false, temperature = false, thinning = false;
+};
+
+OilGiven oil_keys(Visitor& v, model::Oil& o, bool heated) {
+  OilGiven given;
+  given.viscosity = v.quantity(optional("viscosity", "from iso_vg"), o.viscosity, "mPa.s", positive,
+                               "dynamic viscosity");
+  given.grade =
       v.number(optional("iso_vg", "viscosity is given"), o.grade, Range{1, 5000, false, false},
                "ISO VG grade of the oil: its viscosity in mm2/s at 40 degC");
-  const bool temperature =
-      v.quantity(optional("temperature", "viscosity is given"), o.temperature, "degC", any,
-                 "temperature of the film, -30 to 200 degC, with iso_vg");
-  v.quantity("density", o.density, "kg/m^3", positive, "density of the oil, with iso_vg");
+  given.temperature = v.quantity(
+      optional("temperature", "viscosity is given"), o.temperature, "degC", any,
+      heated ? "temperature of the film, -30 to 200 degC, with iso_vg; with heat that at "
+               "which viscosity holds"
+             : "temperature of the film, -30 to 200 degC, with iso_vg");
+  v.quantity("density", o.density, "kg/m^3", positive,
+             heated ? "density of the oil, with iso_vg, turbulence and heat"
+                    : "density of the oil, with iso_vg");
+  if (heated)
+    given.thinning =
+        v.quantity(optional("thinning", "from iso_vg"), o.thinning, "1/K", not_negative,
+                   "with viscosity and heat: at T the viscosity is that given times "
+                   "exp(-thinning (T - temperature))");
+  return given;
+}
+
+void check_temperature(Visitor& v, const char* key, double T) {
+  if (T >= 243.15 && T <= 473.15) return;
+  v.error("E14", key,
+          fmt::format("{} is outside -30 to 200 degC, where the viscosity of oils is known",
+                      units::display(T, "degC")),
+          "the temperature of the film, in degC");
+}
+
+void check_oil(Visitor& v, const model::Oil& o, const OilGiven& given) {
+  if (given.temperature) check_temperature(v, "temperature", o.temperature);
   if (!v.clean()) return;
-  if (temperature && !(o.temperature >= 243.15 && o.temperature <= 473.15))
-    v.error("E14", "temperature",
-            fmt::format("{} is outside -30 to 200 degC, where the viscosity of oils is known",
-                        units::display(o.temperature, "degC")),
-            "the temperature of the film, in degC");
-  else if (viscosity && grade)
+  if (given.viscosity && given.grade)
     v.error("E26", "iso_vg", "the viscosity is given directly and by a grade",
             "keep one of the two");
-  else if (!viscosity && !grade)
+  else if (!given.viscosity && !given.grade)
     v.error("E05", nullptr, "the oil has no viscosity",
             "viscosity = \"20 mPa.s\", or iso_vg = 46 and temperature = \"50 degC\"");
-  else if (grade && !temperature)
+}
+
+void oil(Visitor& v, model::Oil& o) {
+  const OilGiven given = oil_keys(v, o, false);
+  if (!v.clean()) return;
+  check_oil(v, o, given);
+  if (v.clean() && given.grade && !given.temperature)
     v.error("E05", "iso_vg", "a grade needs 'temperature'", "temperature = \"50 degC\"");
+}
+
+void describe_heat(Visitor& v, model::FilmHeat& h, bool tilting, double thickness) {
+  using Feed = model::FilmHeat::Feed;
+  v.quantity(required("supply_temperature"), h.supply_temperature, "degC", any, "of the fresh oil");
+  v.quantity("specific_heat", h.specific_heat, "J/(kg.K)", positive, "of the oil");
+  v.quantity("conductivity", h.conductivity, "W/(m.K)", positive, "of the oil");
+  v.choice("feed", h.feed,
+           {{"flooded", "the oil of the pad before stays in the groove: carry_over 0.75"},
+            {"leading_edge", "fresh oil in a groove of the pad's leading edge: carry_over 0.3"}},
+           "how pads are fed");
+  if (h.feed == Feed::leading_edge) h.carry_over = 0.3;
+  v.number(optional("carry_over", "by feed"), h.carry_over, Range{0, 1, false, true},
+           "share of hot oil, from the pad before, in the oil that enters a pad");
+  if (tilting) h.wall = thickness;
+  v.quantity(tilting ? optional("wall", "the thickness of the pads") : Key("wall"), h.wall, "mm",
+             not_negative,
+             "thickness of the pads for the heat that goes through them; 0: none does");
+  v.quantity("wall_conductivity", h.wall_conductivity, "W/(m.K)", positive, "of the pads");
+  v.quantity("back_coefficient", h.back_coefficient, "W/(m^2.K)", not_negative,
+             "heat transfer from the back and the ends of the pads");
+  v.quantity(optional("housing_temperature", "that of the oil which enters each pad"),
+             h.housing_temperature, "degC", any, "of what is about the pads");
+  v.quantity("shaft_expansion", h.shaft_expansion, "1/K", not_negative,
+             "thermal expansion of the journal, which closes the clearance");
+  v.quantity("pad_expansion", h.pad_expansion, "1/K", not_negative,
+             tilting ? "of the pads: their thickness closes the clearance, their radius grows, and "
+                       "pads hotter at their faces open"
+                     : "of the pads, which are the bush: it opens the clearance");
+  if (tilting)
+    v.quantity("housing_expansion", h.housing_expansion, "1/K", not_negative,
+               "of the housing, which opens the clearance");
+  v.quantity("assembly_temperature", h.assembly_temperature, "degC", any,
+             "at which the clearances are those given");
+}
+
+/// Keys of what goes beyond isoviscous laminar oil at ambient pressure, and the oil's checks.
+void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting, double thickness) {
+  const OilGiven given = oil_keys(v, o, true);
+  v.choice("turbulence", f.regime,
+           {{"laminar", "none"},
+            {"ng_pan", "factors of Ng and Pan by the local Reynolds number, with density"}},
+           "what turbulence adds to the resistance of the film");
+  v.quantity("supply_pressure", f.supply_pressure, "bar", not_negative,
+             tilting ? "of the oil between the pads and behind them, above ambient"
+                     : "of the oil in the grooves, above ambient");
+  model::FilmHeat heat;
+  const bool heated = v.table(
+      optional("heat", "one viscosity everywhere"),
+      [&](Visitor& w) { describe_heat(w, heat, tilting, thickness); },
+      "temperatures of film and pads, in balance with every equilibrium; a motion in time keeps "
+      "those it begins with");
+  if (heated) f.heat = heat;
+  if (!v.clean()) return;
+  check_oil(v, o, given);
+  if (!v.clean()) return;
+  if (!heated && given.thinning)
+    v.error("E05", "thinning", "a viscosity that falls with temperature needs 'heat'",
+            "heat = { supply_temperature = \"40 degC\" }");
+  else if (!heated && given.grade && !given.temperature)
+    v.error("E05", "iso_vg", "a grade needs 'temperature', or 'heat'", "temperature = \"50 degC\"");
+  else if (heated && given.grade && given.temperature)
+    v.error("E26", "temperature", "the temperature of the film is given, and 'heat' finds it",
+            "keep one of the two");
+  else if (heated && given.viscosity && !(given.temperature && given.thinning))
+    v.error("E05", "viscosity",
+            "with 'heat' a viscosity needs the temperature at which it holds, and 'thinning'",
+            "temperature = \"40 degC\", thinning = \"0.03 1/K\"; or iso_vg instead");
+  if (!v.clean() || !heated) return;
+  check_temperature(v, "heat", heat.supply_temperature);
+  if (given.grade) o.temperature = heat.supply_temperature;
 }
 
 template <class Film>
@@ -62,7 +162,7 @@ void describe(Visitor& v, model::ShortJournal& b) {
 void describe(Visitor& v, model::FiniteJournal& b) {
   using Shape = model::FiniteJournal::Shape;
   dimensions(v, b);
-  oil(v, b.oil);
+  flow_of_film(v, b.flow, b.oil, false, 0.0);
   const Alternative shapes[] = {
       {"plain", "a cylinder without grooves", [&](Visitor&) { b.shape = Shape::plain; }},
       {"two_grooves", "a cylinder with two axial grooves, opposite each other",
@@ -92,6 +192,11 @@ void describe(Visitor& v, model::FiniteJournal& b) {
   };
   v.alternatives(required("shape"), shapes, "shape of the bearing surface");
   v.integer("grid", b.nodes, between(24, 360), "points round the circumference");
+  const bool fed = b.flow.supply_pressure > 0, heated = b.flow.heat.has_value();
+  if (v.clean() && b.shape == Shape::plain && (fed || heated))
+    v.error("E26", fed ? "supply_pressure" : "heat",
+            "a plain cylinder has no groove through which oil could come",
+            "shape = \"two_grooves\", or \"lobes\"");
 }
 
 void describe(Visitor& v, model::TiltingPadJournal::Pad& p) {
@@ -135,7 +240,9 @@ void check_pads(Visitor& v, const model::TiltingPadJournal& b) {
 
 void describe(Visitor& v, model::TiltingPadJournal& b) {
   dimensions(v, b, "radial clearance as assembled: of a centred journal at the pivots");
-  oil(v, b.oil);
+  v.quantity("thickness", b.thickness, "mm", not_negative,
+             "of a pad at its pivot: the pivot is that far behind the film");
+  flow_of_film(v, b.flow, b.oil, true, b.thickness);
   const bool count = v.integer(optional("pads", "5, or those listed"), b.count, between(1, 24),
                                "number of equal pads");
   const bool first = v.quantity(optional("first_pivot", "-90 deg"), b.first, "deg", any,
@@ -149,8 +256,6 @@ void describe(Visitor& v, model::TiltingPadJournal& b) {
            "1 - (assembled clearance)/(clearance of the pads)");
   v.list(optional("pad", "equal pads"), Visitor::body_of(b.own, b.like),
          "a pad by itself, instead of equal ones; what it leaves out is that of the bearing");
-  v.quantity("thickness", b.thickness, "mm", not_negative,
-             "of a pad at its pivot: the pivot is that far behind the film");
   v.quantity("inertia", b.inertia, "kg.m^2", not_negative,
              "moment of inertia of a pad about its pivot; 0: it follows the film at once");
   v.quantity("mass", b.mass, "kg", not_negative, "of a pad: its motion along an elastic pivot");

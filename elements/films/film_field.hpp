@@ -1,0 +1,44 @@
+// What a film does along its pads in one state: pressure, thickness, flow, loss. For results and for
+// the heat balance; the forces come from finite_journal.hpp.
+//
+// Flow through a section of the pad, relative to the housing, in the sense of theta:
+//   Q = L (R s h/2 - h^3 P'/(12 eta f_x R)),   P axial mean
+// What enters a stretch of film and does not leave at its other end leaves at the sides. Where the
+// film has ruptured the flow is that of the rupture; where none has formed yet, that of the place
+// where it does.
+#pragma once
+#include <elements/films/finite_journal.hpp>
+#include <vector>
+
+namespace whirl::elements {
+
+/// Along one pad, at equidistant angles from its start to its end, in the sense of theta.
+struct FilmField {
+  std::vector<double> theta;      ///< rad, from +y towards +z
+  std::vector<double> thickness;  ///< h, m
+  std::vector<double> pressure;   ///< axial mean P above ambient, Pa
+  std::vector<double> slope;      ///< dP/dtheta, Pa/rad
+  std::vector<double> viscosity;  ///< eta, Pa s
+  std::vector<double> flow;  ///< Q where there is film, m3/s; else that of the stretch before it
+  std::vector<unsigned char> wet;  ///< film, not ruptured
+};
+
+/// One pad's film.
+struct FilmStanding {
+  Vec2 force = Vec2::Zero();             ///< on the pad, N
+  double power = 0;                      ///< turned into heat, W
+  double inflow = 0, outflow = 0;        ///< through the leading and the trailing edge, m3/s
+  double side_flow = 0;                  ///< at both sides, m3/s
+  double thinnest = 0, thinnest_at = 0;  ///< smallest thickness, m, and where, rad
+  double highest = 0, highest_at = 0;    ///< largest pressure (in the middle), Pa, and where, rad
+  double reynolds = 0;                   ///< largest rho R |s| h/eta; 0 where no density is given
+};
+
+/// @pre the journal is inside the film at p; samples >= 3.
+FilmField sample_film(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
+                      std::size_t samples);
+/// density: of the oil for the Reynolds number, kg/m3.
+FilmStanding film_standing(const FiniteJournal& film, std::size_t pad, const FilmPoint& p,
+                           double density);
+
+}  // namespace whirl::elements

@@ -1,0 +1,100 @@
+// Equilibria together with what elements keep (system::Frames::kept): temperatures of films.
+#include <analysis/statics/equilibrium.hpp>
+#include <core/contract.hpp>
+
+#include <core/error.hpp>
+
+#include <Eigen/QR>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace whirl::analysis {
+
+namespace {
+
+VecX vector_of(const std::vector<double>& x) {
+  return Eigen::Map<const VecX>(x.data(), static_cast<Index>(x.size()));
+}
+
+/// The fixed point of x -> g(x) from pairs of x and g(x) - x (D. G. Anderson, J. ACM 12, 1965, doi
+/// 10.1145/321296.321305): of the last few, the combination whose residuals cancel best.
+class FixedPoint {
+ public:
+  /// The next x, from x and its residual.
+  VecX next(const VecX& x, const VecX& residual) {
+    if (last_residual_.size() > 0) {
+      steps_.push_back(x - last_x_);
+      changes_.push_back(residual - last_residual_);
+      if (steps_.size() > memory) {
+        steps_.pop_front();
+        changes_.pop_front();
+      }
+    }
+    last_x_ = x;
+    last_residual_ = residual;
+    // at first half of what is asked: hotter oil heats less
+    if (steps_.empty()) return x + 0.5 * residual;
+    const Index m = static_cast<Index>(steps_.size());
+    MatX D(x.size(), m), S(x.size(), m);
+    for (Index k = 0; k < m; ++k) {
+      S.col(k) = steps_[static_cast<std::size_t>(k)];
+      D.col(k) = changes_[static_cast<std::size_t>(k)];
+    }
+    const VecX share = D.colPivHouseholderQr().solve(residual);
+    return x + residual - (S + D) * share;
+  }
+
+ private:
+  static constexpr std::size_t memory = 5;
+  std::deque<VecX> steps_, changes_;
+  VecX last_x_, last_residual_;
+};
+
+}  // namespace
+
+void EquilibriumSolver::balance_kept(double Omega, Equilibrium& out) {
+  const system::System& sys = running_.system();
+  if (sys.keepers().empty()) return;
+  // of values that are logarithms or ratios
+  constexpr double tolerance = 1e-7;
+  constexpr int most = 60;
+  system::Workspace w = sys.make_workspace();
+  FixedPoint iteration;
+  std::vector<double> settled;
+  for (int round = 0; round < most; ++round) {
+    const system::State& s = out.state;
+    sys.evaluate_nodes(w, s.frames, s.t, s.q, s.v, s.a);
+    sys.settle_kept(w, settled);
+    const VecX now = vector_of(s.frames.kept), residual = vector_of(settled) - now;
+    out.kept_error = residual.cwiseAbs().maxCoeff();
+    if (out.kept_error < tolerance) {
+      for (const system::Keeper& k : sys.keepers())
+        if (k.check) k.check(w);
+      return;
+    }
+    const VecX next = iteration.next(now, residual);
+    system::State start = s;
+    start.frames.kept.assign(next.data(), next.data() + next.size());
+    auto moved = try_solve(Omega, &start);
+    if (!moved)
+      throw run_error("E76",
+                      fmt::format("no equilibrium found with the temperatures of {}: {}",
+                                  sys.keepers().front().name, why_),
+                      "a bearing may be beyond its capacity with hot oil: look at it without heat");
+    moved->iterations += out.iterations;
+    const double error = out.kept_error;
+    out = std::move(*moved);
+    out.kept_error = error;
+  }
+  throw run_error("E76",
+                  fmt::format("the temperatures of {} and the equilibrium do not settle: after {} "
+                              "rounds they still change by {:.2g} (of the logarithm of the "
+                              "viscosity, or of the clearance)",
+                              sys.keepers().front().name, most, out.kept_error),
+                  "smaller steps in speed or load; films without clearance when hot");
+}
+
+}  // namespace whirl::analysis
