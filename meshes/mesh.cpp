@@ -41,6 +41,10 @@ std::vector<Attached> attachments(const Model& m) {
     out.push_back({&x.at, named("unbalance", x)});
     if (x.to) out.push_back({&*x.to, named("unbalance", x)});
   }
+  for (const auto& x : m.cracks) {
+    out.push_back({&x.at, named("crack", x)});
+    if (x.to) out.push_back({&*x.to, named("crack", x)});
+  }
   for (const auto& x : m.bearings) {
     const bool held =
         model::traits_of(x.law).acts == model::Acts::as_constraint && !x.to && !x.pedestal;

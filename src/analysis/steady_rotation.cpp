@@ -226,22 +226,46 @@ void SteadySystem::set_whirl(Complex lambda, bool rotates, double side) {
 
 void SteadySystem::set_frequency(double w) { workspace_.context.frequency = std::abs(w); }
 
+Index SteadySystem::most_harmonics() const {
+  system::Context mean = workspace_.context;
+  mean.time = running_.time;
+  mean.averaged = true;
+  int most = 2;
+  for (const auto& term : system_.terms())
+    most = std::max(most, term->depends(mean).harmonics);
+  return most;
+}
+
 void SteadySystem::make_samples() {
   if (orders_.size() > 1) return make_samples_of_orders();
-  // four a revolution: exact up to the second harmonic, aliases of the third and fourth
-  theta_ = {0.0, 0.5 * pi, pi, 1.5 * pi};
+  // n samples a revolution: the mean is exact up to the harmonic n - 1 and the first one up to n - 2
+  const Index harmonics = most_harmonics();
+  if (harmonics <= 2) {
+    theta_ = {0.0, 0.5 * pi, pi, 1.5 * pi};
+    weights_.resize(3, 4);
+    weights_ << 0.25, 0.25, 0.25, 0.25, 0.5, 0, -0.5, 0, 0, 0.5, 0, -0.5;
+  } else {
+    // beside the quarters, where what breathes switches
+    const Index n = harmonics + 2;
+    weights_.resize(3, n);
+    for (Index k = 0; k < n; ++k) {
+      const double x = two_pi * (static_cast<double>(k) + 0.5) / static_cast<double>(n);
+      theta_.push_back(x);
+      weights_.col(k) << 1.0, 2.0 * std::cos(x), 2.0 * std::sin(x);
+    }
+    weights_ /= static_cast<double>(n);
+  }
   if (orders_.size() == 1)
     for (double& x : theta_)
       x /= orders_[0];
-  weights_.resize(3, 4);
-  weights_ << 0.25, 0.25, 0.25, 0.25, 0.5, 0, -0.5, 0, 0, 0.5, 0, -0.5;
 }
 
 void SteadySystem::make_samples_of_orders() {
   const Index k = static_cast<Index>(orders_.size());
-  std::vector<double> harmonics = orders_;
-  for (double o : orders_)
-    harmonics.push_back(2.0 * o);
+  std::vector<double> harmonics;
+  for (Index h = 1; h <= std::min<Index>(most_harmonics(), 8); ++h)
+    for (double o : orders_)
+      harmonics.push_back(static_cast<double>(h) * o);
   std::sort(harmonics.begin(), harmonics.end());
   harmonics.erase(std::unique(harmonics.begin(), harmonics.end(),
                               [](double a, double b) { return b - a < 1e-9 * b; }),

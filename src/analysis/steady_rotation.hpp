@@ -5,9 +5,9 @@
 // ways) drops out and stands in the forcing instead,
 //   R(theta) = R + sum_k Re(f_k exp(i order_k theta)) + ...,   theta = Omega t,  order_k = |ratio|,
 //   distinct values,
-// found from samples of the exact residual over theta (four a revolution when all lines have one
-// speed, else a least-squares fit with first and second harmonics of every speed; exact for what
-// has no higher harmonics). No element is known by name: what it depends on, it declares
+// found from samples of the exact residual over theta (when all lines have one speed four a
+// revolution, more where a term declares harmonics; else a least-squares fit with first and second
+// harmonics of every speed, up to eight where declared; exact for what has no higher harmonics). No element is known by name: what it depends on, it declares
 // (system/dependence.hpp). The same averages of the tangents are the matrices M, C(Omega),
 // K(Omega); an axisymmetric balanced rotor needs no average.
 //
@@ -132,6 +132,8 @@ class SteadySystem {
   void find_spinning();
   void sort_terms();
   void set_apart_frequency_terms();
+  /// Multiples of the angle that the terms declare, at least 2.
+  Index most_harmonics() const;
   void make_samples();
   void find_unsteady_joint();
   void make_samples_of_orders();

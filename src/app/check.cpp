@@ -41,6 +41,7 @@ std::string summary(const model::Model& m, const meshes::Mesh& mesh) {
                    count(m.unbalances.size(), "unbalance", "unbalances"),
                    count(mesh.nodes.size(), "node", "nodes"),
                    count(mesh.elements.size(), "shaft element", "shaft elements"));
+  if (!m.cracks.empty()) r += fmt::format("  {}\n", count(m.cracks.size(), "crack", "cracks"));
   if (!m.joints.empty()) r += fmt::format("  {}\n", count(m.joints.size(), "joint", "joints"));
   r += fmt::format("  gravity {} m/s^2 along ({:g}, {:g}, {:g})\n",
                    units::format_number(m.gravity.norm()), m.gravity.x(), m.gravity.y(),

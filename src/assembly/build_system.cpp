@@ -37,6 +37,8 @@ Built build_system(const model::Model& model, const meshes::Mesh& mesh, const st
   }
   a.builder.set_gravity(model.gravity);
   add_shafts(a);
+  add_thermal_bows(a);
+  add_cracks(a);
   add_bodies(a);
   add_unbalances(a);
   add_supports(a);

@@ -113,6 +113,12 @@ struct MagneticControl {
   std::function<Eigen::Matrix2cd(const NodeAt&, const system::Context&, double w)> stiffness;
 };
 
+/// How far a crack is open, 0 (closed) to 1; of one with a length its mean.
+struct CrackOpening {
+  std::string name;
+  std::function<double(const NodeAt&, const system::Context&)> opening;
+};
+
 /// Load of every element of a rolling bearing.
 struct RollingLoads {
   struct Element {
@@ -166,6 +172,7 @@ struct Built {
   };
   std::vector<Fine> fine;  ///< nodes whose lateral motion must be right to a small part of a
                            ///< length: journals, to their clearance, m
+  std::vector<CrackOpening> cracks;  ///< one a crack of the model, in its order
   std::vector<RollingLoads> rolling_loads;
   std::vector<TiltingPads> tilting_pads;
   std::vector<FilmBearing> films;

@@ -26,6 +26,10 @@ struct Assembly {
 
 /// Shaft and casing elements with their damping, and rigid sections as bodies.
 void add_shafts(Assembly& a);
+/// Cracks, in the elements beside them.
+void add_cracks(Assembly& a);
+/// Bows that grow or decay.
+void add_thermal_bows(Assembly& a);
 /// Disks.
 void add_bodies(Assembly& a);
 /// Unbalances, on as many nodes as can carry them.

@@ -6,6 +6,7 @@
 #include <assembly/element_section.hpp>
 #include <assembly/mass_shares.hpp>
 #include <assembly/parts.hpp>
+#include <assembly/stressed.hpp>
 #include <elements/shaft/general_beam.hpp>
 #include <elements/shaft/hysteretic_damping.hpp>
 #include <elements/shaft/section_beam.hpp>
@@ -31,17 +32,10 @@ namespace {
 
 using elements::ShaftElementConstants;
 
-/// Adds a kernel that carries stress, and notes it for the section forces of its element.
+/// To the element that is being made.
 template <system::Kernel K>
 void add_stressed(Assembly& a, const K& k, const std::array<Index, 2>& nodes, const char* kind) {
-  const std::size_t place = a.builder.count<K>();
-  a.builder.add(k, nodes, kind);
-  ElementForce& f = a.built.element_forces.back();
-  f = [place, before = std::move(f)](const system::System& s, const system::Nodes<2>& x,
-                                     const system::Context& c, system::ForceX<14>& out) {
-    if (before) before(s, x, c, out);
-    s.batch<K>()->elements()[place].add_force(x, c, out);
-  };
+  add_stressed(a, k, nodes, kind, a.built.element_forces.size() - 1);
 }
 
 bool has_weight(const model::Model& m) {
@@ -126,6 +120,9 @@ void add_hysteresis(Assembly& a, const model::Shaft& shaft, const elements::Sect
                nodes, "hysteretic damping");
 }
 
+/// Thermal ones are kernels of their own (cracks.cpp).
+bool has_residual_bow(const model::Shaft& s) { return s.bow.constant() && s.bow.amount != 0; }
+
 double thermal_strain(const Assembly& a, const model::Section& s) {
   return s.constants || a.model.materials.empty()
              ? 0.0
@@ -143,15 +140,14 @@ double preload_of(const Assembly& a, const model::Shaft& shaft, const meshes::El
 void finish_general(Assembly& a, const model::Shaft& shaft, const meshes::Element& e,
                     elements::GeneralBeam& beam, const std::array<Index, 2>& nodes) {
   beam.preload = preload_of(a, shaft, e, beam.c.EA_l * beam.c.length);
-  if (shaft.bow.amount != 0) {
-    const double L = shaft.length(), k = pi / L, A = shaft.bow.amount;
-    const double chord = A * (std::sin(k * e.s2) - std::sin(k * e.s1)) / (e.s2 - e.s1);
+  if (has_residual_bow(shaft)) {
+    const Vec2 slopes = shaft.bow.amount * bow_slopes(shaft, e);
     // body axes of the section may be turned by an angle of their own
     const double angle =
         shaft.sections[e.section].general ? shaft.sections[e.section].general->angle : 0.0;
     const Vec2 axis(std::cos(shaft.bow.phase - angle), std::sin(shaft.bow.phase - angle));
-    beam.p01 += (A * k * std::cos(k * e.s1) - chord) * axis;
-    beam.p02 += (A * k * std::cos(k * e.s2) - chord) * axis;
+    beam.p01 += slopes[0] * axis;
+    beam.p02 += slopes[1] * axis;
   }
   add_stressed(a, beam, nodes, "general beam elements");
   add_hysteresis(a, shaft, beam, nodes);
@@ -348,10 +344,8 @@ ShaftElementConstants mean_constants(const Assembly& a, const FullSection& secti
                                         mass_kind(a.model));
 }
 
-/// Slope of a bow at a place of its line.
-Mat3 bowed(const model::Shaft& shaft, double s, double chord_slope) {
-  const double k = pi / shaft.length(),
-               slope = shaft.bow.amount * k * std::cos(k * s) - chord_slope;
+/// Turn of the end of an element by the slope of a bow.
+Mat3 bowed(const model::Shaft& shaft, double slope) {
   return rotation::L(slope * Vec3(0, -std::sin(shaft.bow.phase), std::cos(shaft.bow.phase)));
 }
 
@@ -376,10 +370,9 @@ void add_full(Assembly& a, const MassShares& shares, const model::Shaft& shaft,
     beam = elements::SectionBeam(c, Vec3(l, 0, 0), left, right, Vec3(e.left.offset, 0, 0),
                                  Vec3(e.right.offset, 0, 0));
   }
-  if (shaft.bow.amount != 0) {
-    const double k = pi / shaft.length(),
-                 chord = shaft.bow.amount * (std::sin(k * e.s2) - std::sin(k * e.s1)) / l;
-    beam.set_unstressed(bowed(shaft, e.s1, chord) * left, bowed(shaft, e.s2, chord) * right);
+  if (has_residual_bow(shaft)) {
+    const Vec2 slopes = shaft.bow.amount * bow_slopes(shaft, e);
+    beam.set_unstressed(bowed(shaft, slopes[0]) * left, bowed(shaft, slopes[1]) * right);
   }
   beam.set_prestress(shaft.axial_preload, thermal_strain(a, s));
   // a line that does not turn has one kind of damping; else the twist goes with the fixed axes
@@ -459,7 +452,7 @@ void add_shafts(Assembly& a) {
       add_general(a, shares, shaft, e);
       continue;
     }
-    if (shaft.bow.amount != 0) {
+    if (has_residual_bow(shaft)) {
       add_bowed(a, shares, shaft, e);
       continue;
     }

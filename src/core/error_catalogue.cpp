@@ -362,7 +362,10 @@ const std::vector<CodeInfo>& error_catalogue() {
       {"E88", "no axes in which an asymmetric rotor is simple",
        "Motions of a shaft with unequal principal stiffnesses are looked at in axes that turn with "
        "it. With shafts of different speeds there are none "
-       "in which the matrices are constant or periodic.",
+       "in which the matrices are constant or periodic. A cracked shaft breathes at "
+       "several multiples of its speed: it has no influence coefficients, and hysteretic damping, "
+       "which is known at "
+       "one frequency at a time, has no form there.",
        "method: a transient step with a small initial disturbance"},
       {"E89", "no map over this parameter",
        "A stability map reads the deck again for each value of one of its [parameters]; it is "
@@ -544,9 +547,9 @@ const std::vector<CodeInfo>& error_catalogue() {
        "response; a stability step finds the onset.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},
       {"W14", "a mean of a stiffness that turns",
-       "The rotor has unequal principal stiffnesses or moments of inertia. Modes, critical speeds "
-       "and harmonic responses "
-       "are computed in fixed axes with their mean over a revolution. In truth unbalance meets two "
+       "The rotor has unequal principal stiffnesses or moments of inertia, or a crack. Modes, "
+       "critical speeds and harmonic responses are computed in fixed axes with their mean over a "
+       "revolution. In truth unbalance meets two "
        "critical speeds, one a principal plane, and between them the rotor bends out: an unbalance "
        "response and a stability step are computed in axes that turn with the shaft and show both.",
        "[[step]]\ntype = \"stability\"\nspeed = { start = \"1000 rpm\", stop = \"9000 rpm\" }"},

@@ -31,6 +31,15 @@ void check_places(const model::Model& m, Problems& out) {
              "the end of an unbalance lies on another shaft or not to the right of its beginning",
              "'to' is a place further right on the shaft of 'at'", u.to->where);
   }
+  for (const auto& c : m.cracks) {
+    on_shaft(c.at, "crack");
+    if (!c.to) continue;
+    on_shaft(*c.to, "crack");
+    if (c.to->shaft != c.at.shaft || !(c.to->s > c.at.s))
+      report(out, "E26",
+             "the end of a crack lies on another shaft or not to the right of its beginning",
+             "'to' is a place further right on the shaft of 'at'", c.to->where);
+  }
   for (const auto& d : m.drives)
     on_shaft(d.at, "drive");
   for (const auto& j : m.joints) {
@@ -133,6 +142,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_speeds_of_joints(m, out);
   check_places(m, out);
   check_controllers(m, out);
+  check_cracks(m, out);
   check_clamps(m, out);
   check_preloads(m, out);
   check_undeformed(m, out);

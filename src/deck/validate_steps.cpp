@@ -89,6 +89,42 @@ void check_linear(const model::Model& m, Problems& out) {
   }
 }
 
+void check_cracks(const model::Model& m, Problems& out) {
+  if (m.cracks.empty()) return;
+  const auto say = [&](const char* code, const model::Step& s, std::string what, const char* hint) {
+    report(out, code, fmt::format("step '{}': {}", s.name, what), hint, s.where);
+  };
+  for (const model::Crack& c : m.cracks) {
+    const model::Shaft& shaft = m.shafts[c.at.shaft];
+    const bool by_bending = c.breathing == model::Crack::Breathing::hinge ||
+                            c.breathing == model::Crack::Breathing::response;
+    for (const model::Step& s : m.steps) {
+      if (const auto* t = std::get_if<model::TransientStep>(&s.law); t && t->linear)
+        say("E39", s,
+            fmt::format("it is linear, but the stiffness of shaft '{}' turns with it", shaft.name),
+            "leave linear out of the step");
+      if (std::holds_alternative<model::BalancingStep>(s.law))
+        say("E88", s,
+            fmt::format("crack '{}': a cracked rotor does not answer unbalance in proportion, so "
+                        "that it has no influence coefficients",
+                        c.name),
+            "leave the crack out of the model that is balanced");
+      if (std::holds_alternative<model::UnbalanceStep>(s.law) && shaft.damping.loss_factor != 0)
+        say("E88", s,
+            fmt::format("crack '{}': the motion has several frequencies, and hysteretic damping is "
+                        "known at one at a time",
+                        c.name),
+            "internal (viscous) damping in place of internal_loss_factor");
+      if (std::holds_alternative<model::StabilityStep>(s.law) && by_bending &&
+          !shaft.bow.constant())
+        say("E88", s,
+            fmt::format("crack '{}' opens by bending, and the bow of shaft '{}' changes in time",
+                        c.name, shaft.name),
+            "leave time_constant out of the bow, or take breathing = \"mayes\"");
+    }
+  }
+}
+
 void check_maps(const model::Model& m, Problems& out) {
   for (const auto& s : m.steps) {
     const auto* map = std::get_if<model::CriticalMapStep>(&s.law);

@@ -196,6 +196,7 @@ void describe(Visitor&, model::Shaft&);
 void describe(Visitor&, model::Section&);
 void describe(Visitor&, model::Disk&);  // attachments.cpp
 void describe(Visitor&, model::Unbalance&);
+void describe(Visitor&, model::Crack&);
 void describe(Visitor&, model::PointLoad&);
 void describe(Visitor&, model::Probe&);
 void describe(Visitor&, model::InitialMotion&);

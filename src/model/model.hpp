@@ -87,11 +87,16 @@ struct ShaftDamping {
   double beta_torsion = 0;    ///< torsional viscous, s
 };
 
-/// Residual bow of an unloaded shaft: half a sine from end to end, in a plane that turns with the
-/// shaft.
+/// Residual or thermal bow of an unloaded shaft: half a sine from end to end, in a plane that turns
+/// with the shaft.
 struct Bow {
-  double amount = 0, phase = 0;
-};  ///< m at mid-length; rad, body angle from e2 towards e3
+  double amount = 0, phase = 0;  ///< m at mid-length; rad, body angle from e2 towards e3
+  /// Of a bow that grows or decays: amount + (initial - amount) exp(-t/time_constant), m, s; 0: it
+  /// is always there.
+  double initial = 0, time_constant = 0;
+  bool constant() const { return time_constant == 0; }
+  bool any() const { return amount != 0 || (!constant() && initial != 0); }
+};
 
 struct Shaft : Entity {
   Vec3 origin =
@@ -140,6 +145,28 @@ struct Unbalance : Entity {
   double amount = 0;           ///< kg m
   double phase = 0;            ///< rad, body angle from e2 towards e3
   LawPtr factor;  ///< time law multiplying amount (blade loss, thermal growth); null = 1
+};
+
+/// Transverse crack of a shaft, at a place, or as stiffness lost over a length.
+struct Crack : Entity {
+  enum class Breathing {
+    weight,    ///< by the angle of its normal to a direction in space (Mayes)
+    hinge,     ///< open or closed, by the sign of the bending moment at it
+    response,  ///< by the angle of the bending moment at it
+    open
+  };
+  Location at;
+  std::optional<Location> to;  ///< of the same shaft, to the right: stiffness lost between
+  double phase =
+      0;  ///< rad, body angle of its normal, which points to its mouth, from e2 towards e3
+  Breathing breathing = Breathing::weight;
+  double depth = 0;  ///< m, of a straight edge; 0: not given
+  double stiffness = infinity,
+         stiffness_across = infinity;  ///< of the open crack as a hinge in the
+                                       ///< shaft, N m/rad
+  double loss = 0, loss_across = 0;    ///< D of EI (1 - D f) between at and to
+  double open_direction = nan;         ///< rad from +y towards +z: the normal points there when the
+                                       ///< weight holds the crack open; nan: along gravity
 };
 
 /// Initial values of a free body or line: applied to all nodes as a rigid motion.
@@ -639,6 +666,7 @@ struct Model {
   std::vector<Shaft> shafts;
   std::vector<Disk> disks;
   std::vector<Unbalance> unbalances;
+  std::vector<Crack> cracks;
   std::vector<InitialMotion> initial;
   std::vector<Bearing> bearings;
   std::vector<Joint> joints;

@@ -105,6 +105,17 @@ void add_drive_torques(const run::Job& job, Channels& c) {
   }
 }
 
+void add_cracks(const run::Job& job, Channels& c) {
+  if (!wants(job.model.output, "cracks")) return;
+  for (const assembly::CrackOpening& k : job.built.cracks) {
+    Measurement x{"crack " + k.name + " opening", "-", "0: closed, 1: open", {}, 1.0, {}};
+    x.evaluate = [&k](const Snapshot& s, double* out) {
+      *out = k.opening(nodes_of(s), s.context());
+    };
+    c.add(std::move(x));
+  }
+}
+
 void add_joints(const run::Job& job, Channels& c) {
   if (!wants(job.model.output, "joints")) return;
   for (const assembly::JointResult& j : job.built.joints) {
@@ -198,6 +209,7 @@ Channels make_channels(const run::Job& job) {
   add_support_forces(job, c);
   add_support_moments(job, c);
   add_drive_torques(job, c);
+  add_cracks(job, c);
   add_joints(job, c);
   add_control_currents(job, c);
   if (wants(job.model.output, "energy")) c.add(analysis::measure_energy());

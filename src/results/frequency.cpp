@@ -339,10 +339,15 @@ void FrequencyStep::warn_of_mean_stiffness() {
   const bool in_its_axes = type_ == "unbalance_response" && turns_as_one();
   if (in_bands || in_its_axes || not_lateral) return;
   if (!stiffness && !turns_with_inertia(job.model)) return;
-  const std::string what = fmt::format(
-      "the {} of the asymmetric rotor enters as its mean over a revolution; where it "
-      "spins its critical speeds are a pair, with instability between them",
-      stiffness ? "stiffness" : "inertia");
+  const std::string what =
+      breathes(job.model)
+          ? "the stiffness of the cracked rotor enters as its mean over a revolution, the crack "
+            "opened by its weight and by what bends the shaft in the mean; in truth it changes as "
+            "the rotor turns"
+          : fmt::format(
+                "the {} of the asymmetric rotor enters as its mean over a revolution; where it "
+                "spins its critical speeds are a pair, with instability between them",
+                stiffness ? "stiffness" : "inertia");
   Diagnostic d;
   d.code = "W14";
   d.message = fmt::format("step '{}': {}", step.name, what);
@@ -369,7 +374,15 @@ bool turns_with_inertia(const model::Model& m) {
   });
 }
 
+bool breathes(const model::Model& m) {
+  return std::any_of(m.cracks.begin(), m.cracks.end(), [&](const model::Crack& c) {
+    const model::Shaft& s = m.shafts[c.at.shaft];
+    return s.rotating && s.speed_ratio != 0;
+  });
+}
+
 bool turns_with_stiffness(const model::Model& m) {
+  if (breathes(m)) return true;
   for (const model::Shaft& s : m.shafts)
     for (const model::Section& x : s.sections)
       if (s.rotating && s.speed_ratio != 0 &&

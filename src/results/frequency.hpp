@@ -99,8 +99,10 @@ void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d);
 void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& a,
                         double amplitude = 0);
 
-/// A rotating shaft has unequal principal stiffnesses: matrices in fixed axes are means over the
-/// revolution, and stability is another matter.
+/// A shaft that turns is cracked.
+bool breathes(const model::Model& m);
+/// A rotating shaft has unequal principal stiffnesses, or a crack: matrices in fixed axes are means
+/// over the revolution, and stability is another matter.
 bool turns_with_stiffness(const model::Model& m);
 /// A disk that spins has unequal transverse moments of inertia: the same of its mass matrix.
 bool turns_with_inertia(const model::Model& m);

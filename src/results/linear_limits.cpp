@@ -36,7 +36,7 @@ std::string growth_at(analysis::WhirlSolver& solver, double Omega) {
 /// out at its own speed.
 std::string growth_at(analysis::RotatingAxes& axes, double Omega) {
   if (Omega == 0.0 || axes.negative_stiffnesses(Omega) % 2 == 0) return {};
-  return "the asymmetric shaft bends out at its own speed";
+  return "the shaft, whose stiffness turns with it, bends out at its own speed";
 }
 
 }  // namespace

@@ -179,7 +179,7 @@ model::Model balanced(const model::Model& given) {
     d.skew = 0;
   }
   for (model::Shaft& s : m.shafts)
-    s.bow.amount = 0;
+    s.bow = {};
   for (model::Bearing& b : m.bearings)
     if (auto* c = std::get_if<model::Coupling>(&b.law))
       c->offset_y = c->offset_z = c->angle_y = c->angle_z = 0;

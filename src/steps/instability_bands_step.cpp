@@ -16,7 +16,7 @@ namespace whirl::steps {
 Error no_map_of_bands(const model::Step& step) {
   return run_error("E89",
                    fmt::format("step '{}': a map over a parameter is not drawn for asymmetric "
-                               "shafts, whose instabilities are bands",
+                               "or cracked shafts, whose instabilities are bands",
                                step.name),
                    "leave 'map' out, or give the shaft equal stiffnesses", step.name);
 }
@@ -158,14 +158,16 @@ void add_growth_figure(results::FrequencyStep& s, const BandResult& r) {
 void run_instability_bands(run::Job& job, const model::Step& step,
                            const model::StabilityStep& law) {
   const std::vector<double> speeds = results::speeds_of(law.speed);
-  results::FrequencyStep s(job, step, "stability", "instability bands of the asymmetric shaft",
+  results::FrequencyStep s(job, step, "stability",
+                           "instability bands of the shaft, whose stiffness turns with it",
                            std::max(std::abs(speeds.front()), std::abs(speeds.back())));
   const run::PhaseTimer timer(job, "stability");
   if (law.map) throw no_map_of_bands(step);
+  const bool cracked = results::breathes(job.model);
   analysis::RotatingAxes axes(s.linear, speeds.back());
   run::ProgressLine progress(step.name, job.options.quiet);
   const BandResult r = solve_bands(law, axes, speeds, progress);
-  s.summary()["supports"] = axes.constant() ? "isotropic" : "unequal";
+  if (!cracked) s.summary()["supports"] = axes.constant() ? "isotropic" : "unequal";
   add_band_table(s, r);
   add_growth_table(s, r);
   add_growth_figure(s, r);
@@ -173,10 +175,11 @@ void run_instability_bands(run::Job& job, const model::Step& step,
   const std::string why =
       axes.constant()
           ? "The supports are isotropic: in axes turning with the rotor its matrices are constant."
-          : fmt::format(
-                "Neither the shaft nor its supports are isotropic: Hill's equations with {} "
-                "harmonics.",
-                axes.harmonics());
+          : fmt::format("{}: Hill's equations with {} harmonics.",
+                        cracked ? "The crack opens and closes with the weight and with what bends "
+                                  "the shaft in the mean, not with its vibration"
+                                : "Neither the shaft nor its supports are isotropic",
+                        axes.harmonics());
   const std::string known =
       "not certified: the eigenvalues at each speed are searched for, not counted, and bands "
       "narrower than the distance of the speeds are found at critical speeds only";

@@ -221,8 +221,8 @@ class Obstacles {
   void check_report(const model::Step& step, const model::ApiLateralStep& law) {
     if (results::turns_with_stiffness(model_))
       throw run_error("E88",
-                      fmt::format("step '{}': a report looks at round shafts, whose matrices are "
-                                  "constant in fixed axes",
+                      fmt::format("step '{}': a report looks at round, sound shafts, whose "
+                                  "matrices are constant in fixed axes",
                                   step.name),
                       "a stability step finds the bands of an asymmetric one", step.name);
     for (const ApiMachine& a : api_machines(model_, options_, step, law)) {

@@ -117,6 +117,75 @@ io::Table make_table(const UnbalanceResponse& r, std::size_t k,
   return t;
 }
 
+/// Multiples of the speed in the motion of a rotor that breathes.
+io::Table multiples_table(const UnbalanceResponse& r,
+                          const std::vector<analysis::ResponseProbe>& probes, int multiples) {
+  io::Table t;
+  t.title = "Multiples of the speed";
+  t.columns.push_back({"speed", "rpm", ""});
+  for (const analysis::ResponseProbe& p : probes) {
+    for (const char* c : {"y", "z"})
+      t.columns.push_back({fmt::format("{} mean {}", p.name, c), "m", "from the undeformed shaft"});
+    for (int h = 1; h <= multiples; ++h)
+      for (const char* way : {"forward", "backward"})
+        t.columns.push_back({fmt::format("{} {}x {}", p.name, h, way), "m",
+                             "radius of the circle that turns with or against the spin"});
+  }
+  t.columns.push_back({"left out", "-", "about: the last harmonic computed over the largest"});
+  for (const SteadyPoint& x : r.points) {
+    std::vector<io::Table::Cell> row{to_rpm(x.Omega)};
+    for (std::size_t p = 0; p < probes.size(); ++p)
+      for (std::size_t h = 0; h < x.multiple.size(); ++h) {
+        const analysis::PointAmplitude& a = x.multiple[h][p];
+        row.emplace_back(h == 0 ? a.y.real() : std::abs(a.forward()));
+        row.emplace_back(h == 0 ? a.z.real() : std::abs(a.backward()));
+      }
+    row.emplace_back(x.left_out);
+    t.add(std::move(row));
+  }
+  return t;
+}
+
+plot::Figure multiples_figure(const results::FrequencyStep& s, const UnbalanceResponse& r,
+                              const analysis::ResponseProbe& probe, std::size_t p, int multiples) {
+  double largest = 0;
+  for (const SteadyPoint& x : r.points)
+    for (std::size_t h = 1; h < x.multiple.size(); ++h)
+      largest = std::max(largest, x.multiple[h][p].orbit().major);
+  const plot::DisplayUnit unit = plot::length_unit(largest);
+  plot::Axes axes;
+  axes.x = plot::Axis("speed", "rpm");
+  axes.y = plot::Axis("major axis of the orbit, 0-peak", unit.name);
+  axes.y.include_zero = true;
+  for (int h = 1; h <= multiples; ++h) {
+    plot::Series y;
+    y.label = fmt::format("{}x", h);
+    for (const SteadyPoint& x : r.points) {
+      y.x.push_back(to_rpm(x.Omega));
+      y.y.push_back(unit.factor * x.multiple[static_cast<std::size_t>(h)][p].orbit().major);
+    }
+    axes.series.push_back(std::move(y));
+  }
+  plot::Figure f;
+  f.name = s.file(probe.name + "_multiples");
+  f.title = probe.name + ": multiples of the speed";
+  f.axes.push_back(std::move(axes));
+  return f;
+}
+
+/// Of a rotor that breathes.
+void add_multiples(results::FrequencyStep& s, const UnbalanceResponse& r,
+                   const std::vector<analysis::ResponseProbe>& probes, int multiples) {
+  if (multiples == 0) return;
+  s.add_table("multiples", multiples_table(r, probes, multiples), false);
+  for (std::size_t p = 0; p < probes.size(); ++p)
+    s.add_figure(multiples_figure(s, r, probes[p], p, multiples));
+  double left_out = 0;
+  for (const SteadyPoint& x : r.points)
+    left_out = std::max(left_out, x.left_out);
+  s.summary()["left out of the Fourier series, share"] = left_out;
+}
+
 /// Damped critical speeds and places about them, so that no peak is too sharp for the grid. Sorted
 /// into the speeds.
 void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds) {
@@ -408,6 +477,7 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   results::FrequencyStep s(job, step, "unbalance_response", "unbalance response", top);
   o.turns_with_rotor = s.turns_as_one() && (results::turns_with_stiffness(job.model) ||
                                             results::turns_with_inertia(job.model));
+  if (s.turns_as_one() && results::breathes(job.model)) o.multiples = 3;
   if (o.refine_peaks && o.speeds.back() > o.speeds.front()) {
     const run::PhaseTimer timer(job, "critical speeds");
     add_critical_speeds(s, o.speeds);
@@ -433,6 +503,7 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   s.add_table("peaks", std::move(found));
   add_margins(s, r, shown, peaks, law);
   add_probe_figures(s, r, shown, peaks);
+  add_multiples(s, r, shown, o.multiples);
   add_force_figure(s, r, o.outputs);
   add_zones(s, r, shown, law);
   add_grades(s, law);

@@ -2,6 +2,7 @@
 // kernel declares it (kernel.hpp); analyses file the terms of a system by it, and none finds out by
 // trial.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -52,6 +53,8 @@ struct Dependence {
   bool rate = false;       ///< tangents: on the rate of a small motion, Context::whirl and growth
   bool time = false;       ///< on Context::time
   bool weight = false;     ///< on a common acceleration of its nodes and Context::gravity
+  int harmonics = 2;       ///< of what turns: multiples of the angle in the force, beyond which
+                           ///< little is left
 
   /// What both depend on together.
   friend constexpr Dependence operator|(const Dependence& a, const Dependence& b) {
@@ -60,7 +63,8 @@ struct Dependence {
             .frequency = a.frequency || b.frequency,
             .rate = a.rate || b.rate,
             .time = a.time || b.time,
-            .weight = a.weight || b.weight};
+            .weight = a.weight || b.weight,
+            .harmonics = std::max(a.harmonics, b.harmonics)};
   }
 };
 

@@ -299,6 +299,13 @@ class ModelDump {
       each("", std::array{u.amount, u.phase});
       law("factor", u.factor);
     }
+    for (const auto& c : m.cracks) {
+      head("crack", c);
+      at("at", c.at);
+      if (c.to) at("to", *c.to);
+      each("", std::array{c.phase, double(c.breathing), c.depth, c.stiffness, c.stiffness_across,
+                          c.loss, c.loss_across, c.open_direction});
+    }
     for (const auto& i : m.initial) {
       head("initial", i);
       put("shaft", double(i.shaft));

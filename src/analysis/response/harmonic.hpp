@@ -65,6 +65,8 @@ struct PointAmplitude {
   Orbit orbit() const { return orbit_of(y, z, sense); }
   /// Of the circle that turns with the spin.
   Complex forward() const { return 0.5 * (y + Complex(0, sense) * z); }
+  /// Of the one that turns against it, conjugate.
+  Complex backward() const { return 0.5 * (y - Complex(0, sense) * z); }
 };
 /// @pre a of length system().size(), p on one of its nodes.
 PointAmplitude amplitude_at(const Linearizer& linear, const VecXc& a, const Point& p);

@@ -2,7 +2,11 @@
 #include <core/contract.hpp>
 
 #include <analysis/search.hpp>
+#include <core/error.hpp>
 #include <core/parallel.hpp>
+#include <core/units.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +25,40 @@ UnbalanceSolver::UnbalanceSolver(Linearizer& linear, const UnbalanceOptions& opt
     : linear_(linear),
       options_(options),
       solver_(linear) {
-  if (options_.turns_with_rotor && !options_.speeds.empty())
+  if (options_.multiples > 0)
+    periodic_ = std::make_unique<PeriodicResponse>(linear, std::max(6, options_.multiples + 1));
+  else if (options_.turns_with_rotor && !options_.speeds.empty())
     axes_ = std::make_unique<RotatingAxes>(linear, options_.speeds.back());
   if (!options_.outputs.empty()) meter_ = std::make_unique<VariationMeter>(linear);
+}
+
+void UnbalanceSolver::put_multiple(const VecXc& a, SteadyPoint& p) const {
+  p.multiple.emplace_back();
+  for (const ResponseProbe& probe : options_.probes)
+    p.multiple.back().push_back(amplitude_at(linear_, a, probe.point));
+}
+
+void UnbalanceSolver::stand_still(SteadyPoint& p) const {
+  put_multiple(linear_.equilibrium().state.q.cast<Complex>(), p);
+  for (int h = 1; h <= options_.multiples; ++h)
+    put_multiple(VecXc::Zero(linear_.system().size()), p);
+}
+
+VecXc UnbalanceSolver::breathe(double Omega, SteadyPoint& p) {
+  const PeriodicMotion motion = periodic_->solve(Omega);
+  if (!motion.converged)
+    throw run_error("E76",
+                    fmt::format("no periodic motion found at {:.6g} rpm: the crack's opening and "
+                                "closing did not settle in {} rounds",
+                                to_rpm(Omega), motion.rounds),
+                    "near a band of instability there may be none; a transient step follows the "
+                    "motion itself");
+  const VecXc mean = linear_.equilibrium().state.q.cast<Complex>() + motion.amplitude[0];
+  put_multiple(mean, p);
+  for (int h = 1; h <= options_.multiples; ++h)
+    put_multiple(motion.amplitude[static_cast<std::size_t>(h)], p);
+  p.left_out = motion.last_share;
+  return motion.amplitude[1];
 }
 
 SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
@@ -36,6 +71,9 @@ SteadyPoint UnbalanceSolver::at(double Omega, bool with_outputs) {
     if (w == 0.0) {
       a = VecXc::Zero(linear_.system().size());  // nothing turns
       linear_.at(Omega);
+      if (periodic_) stand_still(p);
+    } else if (periodic_) {
+      a = breathe(Omega, p);
     } else if (axes_) {
       linear_.move_to(Omega);
       a = axes_->response(Omega, -linear_.forcing()[k]);

@@ -3,6 +3,7 @@
 // bearings; peaks and their half-power points solved for.
 #pragma once
 #include <analysis/response/harmonic.hpp>
+#include <analysis/response/periodic_response.hpp>
 #include <analysis/spectra/periodic.hpp>
 
 namespace whirl::analysis {
@@ -21,7 +22,10 @@ struct UnbalanceOptions {
   bool refine_peaks = true;  ///< add speeds at and around the peaks of the probes to the response
   bool shapes = false;       ///< keep the amplitudes of all unknowns
   bool turns_with_rotor = false;  ///< solve in axes that turn with an asymmetric rotor
-  int threads = 1;                ///< 0: all processors; the results are the same for any number
+  /// Multiples of the speed that are looked at of a rotor whose forces breathe with its turning
+  /// (periodic_response.hpp); 0: it does not.
+  int multiples = 0;
+  int threads = 1;  ///< 0: all processors; the results are the same for any number
 };
 
 /// Amplitudes at one speed; [order] first: a rotor whose lines turn at different speeds responds
@@ -31,6 +35,10 @@ struct SteadyPoint {
   std::vector<std::vector<PointAmplitude>> probe;         ///< [order][probe]
   std::vector<std::vector<std::vector<Complex>>> output;  ///< [order][output][component]
   std::vector<VecXc> shape;                               ///< [order], when asked for
+  /// [h][probe]: amplitudes of h times the speed; of 0 the mean place against the undeformed shaft,
+  /// real. Of a rotor that breathes.
+  std::vector<std::vector<PointAmplitude>> multiple;
+  double left_out = 0;  ///< of the last harmonic that was computed, share of the largest
 };
 
 struct UnbalanceResponse {
@@ -73,7 +81,14 @@ class UnbalanceSolver {
   Linearizer& linear_;
   UnbalanceOptions options_;
   HarmonicSolver solver_;
+  /// Of a rotor that breathes: amplitude of the speed itself, the others into p.
+  VecXc breathe(double Omega, SteadyPoint& p);
+  void put_multiple(const VecXc& a, SteadyPoint& p) const;
+  /// At rest.
+  void stand_still(SteadyPoint& p) const;
+
   std::unique_ptr<RotatingAxes> axes_;
+  std::unique_ptr<PeriodicResponse> periodic_;
   std::unique_ptr<VariationMeter> meter_;
   std::vector<ResponsePeak> peaks_;
 };

@@ -107,10 +107,11 @@ class Coupling {
 
 void RotatingAxes::require(const SteadySystem& running) {
   if (running.orders().size() > 1)
-    throw run_error("E88",
-                    "an asymmetric shaft among shafts of different speeds: no axes exist in which "
-                    "the matrices are constant or have one period",
-                    "give the shafts one speed_ratio, or use a transient step");
+    throw run_error(
+        "E88",
+        "an asymmetric or cracked shaft among shafts of different speeds: no axes exist in which "
+        "the matrices are constant or have one period",
+        "give the shafts one speed_ratio, or use a transient step");
 }
 
 RotatingAxes::RotatingAxes(Linearizer& linear, double Omega, Index harmonics, Motion motion)

@@ -181,6 +181,94 @@ void describe(Visitor& v, model::Unbalance& u) {
   u.amount = mass * g * 1e-3 / speed;
 }
 
+namespace {
+
+/// The ways in which a crack can be given.
+void describe_size(Visitor& v, model::Crack& c) {
+  const bool depth = v.quantity(
+      optional("depth", "stiffness or loss is given"), c.depth, "mm", positive,
+      "from the surface to the middle of the straight edge, at most a radius, in a solid round "
+      "section: the open crack's compliance follows from fracture mechanics");
+  const bool stiffness =
+      v.quantity(optional("stiffness", "depth or loss is given"), c.stiffness, "N.m/rad", positive,
+                 "of the open crack, as a hinge in the shaft, against the bending that opens it");
+  const bool across_stiffness =
+      v.quantity(optional("stiffness_across", "rigid"), c.stiffness_across, "N.m/rad", positive,
+                 "the same against bending across; not below 'stiffness'");
+  const bool loss =
+      v.number(optional("loss", "depth or stiffness is given"), c.loss, {0, 1, true, true},
+               "D: the open crack leaves EI (1 - D) from 'at' to 'to' against the "
+               "bending that opens it");
+  const bool across_loss =
+      v.number(optional("loss_across", "0"), c.loss_across, {0, 1, false, true},
+               "the same against bending across; not above 'loss'");
+  if (!v.clean()) return;
+  if (int(depth) + int(stiffness) + int(loss) > 1) {
+    v.error("E26", depth && stiffness ? "stiffness" : "loss",
+            fmt::format("crack '{}' is given in more than one way", c.name),
+            "keep one of depth, stiffness, and loss with 'to'");
+  } else if (!depth && !stiffness && !loss) {
+    v.error("E05", nullptr, fmt::format("crack '{}' has no size", c.name),
+            "give depth = \"12 mm\", or stiffness = \"2 MN.m/rad\", or loss = 0.1 and 'to'");
+  } else if (loss != c.to.has_value()) {
+    v.error("E26", loss ? "loss" : "to",
+            loss ? "a loss of stiffness needs the length over which it is: 'to' is missing"
+                 : "a crack of a depth or stiffness is at one place",
+            loss ? "to = \"body:end\"" : "leave 'to' out, or give loss = 0.1");
+  } else if (across_stiffness && !stiffness) {
+    v.error("E26", "stiffness_across", "it goes with 'stiffness'");
+  } else if (across_loss && !loss) {
+    v.error("E26", "loss_across", "it goes with 'loss'");
+  } else if (c.stiffness_across < c.stiffness) {
+    v.error("E26", "stiffness_across", "the crack is softer across than where it opens",
+            "'phase' points from the axis to the middle of its mouth");
+  } else if (c.loss_across > c.loss) {
+    v.error("E26", "loss_across", "the crack is softer across than where it opens",
+            "'phase' points from the axis to the middle of its mouth");
+  } else if (c.breathing == model::Crack::Breathing::hinge && (across_stiffness || across_loss)) {
+    v.error("E26", across_loss ? "loss_across" : "stiffness_across",
+            "a hinge opens about one axis: it has no compliance across",
+            "breathing = \"response\" has both, or leave the key out");
+  }
+}
+
+}  // namespace
+
+void describe(Visitor& v, model::Crack& c) {
+  v.name(c, "crack");
+  v.location(required("at"), c.at, place);
+  model::Location to;
+  if (v.location(optional("to", "at one place"), to,
+                 "end of the length that loses stiffness, on the same shaft"))
+    c.to = to;
+  v.quantity("phase", c.phase, "deg", any,
+             "body angle of the crack's normal, which points from the axis to the middle of its "
+             "mouth, from y towards z");
+  v.choice("breathing", c.breathing,
+           {{"mayes",
+             "open by (1 + cos)/2 of the angle between the normal and open_direction: the "
+             "weight rules"},
+            {"hinge", "open or closed, by the sign of the bending moment at it"},
+            {"response", "smoothly, by the direction of the bending moment at it"},
+            {"open", "always open, as a notch"}},
+           "how it opens and closes");
+  const bool direction =
+      v.quantity(optional("open_direction", "that of gravity"), c.open_direction, "deg", any,
+                 "of breathing \"mayes\": direction in space, from y towards z, into which the "
+                 "normal points when the crack is open; with supports on both sides the weight "
+                 "opens what points down, beyond the last support what points up");
+  describe_size(v, c);
+  if (!v.clean()) return;
+  const bool mayes = c.breathing == model::Crack::Breathing::weight;
+  if (direction && !mayes)
+    v.error("E26", "open_direction", "only breathing \"mayes\" has a direction in space");
+  if (mayes && !direction && v.model().gravity.tail<2>().norm() == 0)
+    v.error("E05", "breathing",
+            fmt::format("crack '{}' breathes with the weight, and no gravity acts across the shaft",
+                        c.name),
+            "give open_direction = \"270 deg\", or breathing = \"response\"");
+}
+
 void describe(Visitor& v, model::PointLoad& l) {
   v.name(l, "load");
   v.location(required("at"), l.at, place);

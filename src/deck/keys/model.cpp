@@ -94,6 +94,8 @@ void describe(Visitor& v, model::Model& m) {
          "more bearings");
   v.list(optional("unbalance", "none"), m.unbalances,
          "a mass times eccentricity that turns with the shaft");
+  v.list(optional("crack", "none"), m.cracks,
+         "a transverse crack of a shaft, which opens and closes as it turns");
   v.list(optional("load", "none"), m.loads, "forces and moments at a station");
   v.list(optional("drive", "none"), m.drives,
          "what turns a shaft: a prescribed speed or angle, or a torque");

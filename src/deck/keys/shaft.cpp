@@ -253,7 +253,7 @@ void check_path(Visitor& v, const model::Shaft& s) {
     v.error("E26", "path",
             fmt::format("{} has a path: a line that is not straight cannot turn about itself", who),
             "write rotating = false");
-  if (s.bow.amount != 0)
+  if (s.bow.any())
     v.error("E26", "bow", fmt::format("{} has a path and a bow", who), "put the bow into the path");
   for (const auto& x : s.sections)
     if (x.rigid)
@@ -440,11 +440,24 @@ void describe(Visitor& v, model::Shaft& s) {
   v.table(
       optional("bow", "straight"),
       [&](Visitor& w) {
-        w.quantity(required("amount"), s.bow.amount, "um", positive,
-                   "largest deviation, at mid-length");
+        w.quantity(required("amount"), s.bow.amount, "um", not_negative,
+                   "largest deviation, at mid-length; of a thermal bow what it comes to");
         w.quantity("phase", s.bow.phase, "deg", any, "angle on the shaft from e2 towards e3");
+        const bool constant = w.quantity(
+            optional("time_constant", "residual: always there"), s.bow.time_constant, "s", positive,
+            "of a thermal bow: amount + (initial - amount) exp(-t/time_constant) in "
+            "transients and in statics at rest (t = 0); a steady rotation has the amount");
+        const bool initial = w.quantity(optional("initial", "0"), s.bow.initial, "um", not_negative,
+                                        "of a thermal bow: at the start of transients");
+        if (!w.clean()) return;
+        if (initial && !constant)
+          w.error("E26", "initial", "a bow that does not change has no initial amount",
+                  "time_constant = \"10 min\" makes it a thermal bow");
+        else if (!s.bow.any())
+          w.error("E14", "amount", "the bow is zero", "leave it out");
       },
-      "residual bow of the unloaded shaft, half a sine from end to end; it turns with the shaft");
+      "residual or thermal bow of the unloaded shaft, half a sine from end to end; it turns with "
+      "the shaft");
   v.table(
       "damping", [&](Visitor& w) { describe_damping(w, s.damping); },
       "damping of the shaft material and its surroundings");

@@ -1,0 +1,201 @@
+// Cracks and thermal bows through the program: what steps write, and what is refused.
+#include "deck_run.hpp"
+
+#include <core/types.hpp>
+
+#include <cmath>
+
+namespace {
+
+using whirl::pi;
+using whirl::test::Columns;
+using whirl::test::DeckRun;
+
+/// 20 kg in the middle of a massless shaft of 2 MN/m.
+std::string rotor(const std::string& rest, const std::string& of_shaft = "") {
+  const std::string section =
+      "length = \"500 mm\"\nmin_elements = 1\n[shaft.section.constants]\n"
+      "EA = \"4e8 N\"\nGJ = \"1e5 N.m^2\"\nEI = \"41666.666666666664 "
+      "N.m^2\"\nkGA = \"1e15 N\"\nrhoA = \"0 kg/m\"\nrhoI = \"0 kg.m\"\nrhoIp = \"0 kg.m\"\n";
+  return "format = 1\n[shaft]\nname = \"s\"\n" + of_shaft +
+         "\n[[shaft.section]]\nname = \"left\"\n" + section +
+         "[[shaft.section]]\nname = \"right\"\n" + section + R"([[disk]]
+name = "d"
+at = "left:end"
+mass = "20 kg"
+Ip = "0.02 kg.m^2"
+Id = "0.01 kg.m^2"
+[[bearing]]
+name = "DE"
+at = "left:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "NDE"
+at = "right:end"
+type = "rigid"
+directions = ["y", "z"]
+[[bearing]]
+name = "air"
+at = "d"
+type = "linear"
+cyy = "126.4911064 N.s/m"
+czz = "126.4911064 N.s/m"
+[[probe]]
+name = "P"
+at = "d"
+)" + rest;
+}
+
+const std::string mayes = R"([[crack]]
+name = "c"
+at = "left:start"
+to = "right:end"
+loss = 0.1
+phase = "270 deg"
+)";
+
+const std::string unbalance =
+    "[[unbalance]]\nat = \"d\"\namount = \"2e-4 kg.m\"\nphase = \"287.1887338539247 deg\"\n";
+
+}  // namespace
+
+// Fourier terms by shooting to 1e-10 (tests/validation/test_cracked_rotor.cpp), at 0.5 and 1.1 of the
+// critical speed.
+TEST(Cracks, UnbalanceResponseWritesMultiples) {
+  const DeckRun d(rotor(mayes + unbalance +
+                        "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { values = "
+                        "[\"158.11388300841898 rad/s\", \"347.8505426185217 rad/s\"] }\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("u_multiples.csv");
+  ASSERT_GE(t.rows.size(), 2u);
+  const auto half = t.named(t.rows.front()), above = t.named(t.rows.back());
+  EXPECT_NEAR(half.at("P mean y [m]"), 1.28064e-6, 2e-11);
+  EXPECT_NEAR(half.at("P mean z [m]"), -99.06179e-6, 2e-11);
+  EXPECT_NEAR(half.at("P 1x forward [m]"), 4.76632e-6, 2e-11);
+  EXPECT_NEAR(half.at("P 1x backward [m]"), 1.04339e-6, 2e-11);
+  EXPECT_NEAR(half.at("P 2x forward [m]"), 81.09635e-6, 3e-6 * 81.09635e-6);
+  EXPECT_NEAR(half.at("P 2x backward [m]"), 0.16348e-6, 2e-11);
+  EXPECT_NEAR(half.at("P 3x forward [m]"), 0.62591e-6, 2e-11);
+  EXPECT_NEAR(above.at("P 1x forward [m]"), 56.71212e-6, 2e-11);
+  EXPECT_LT(half.at("left out [-]"), 1e-4);
+  // the first multiple is what the table of the response has
+  const Columns r = d.csv("u_response.csv");
+  const auto row = r.named(r.rows.back());
+  EXPECT_NEAR(row.at("P major [m]"), (56.71212 + 5.22612) * 1e-6, 5e-11);
+}
+
+TEST(Cracks, StabilityFindsTheBand) {
+  const DeckRun d(rotor(mayes +
+                        "[[step]]\nname = \"b\"\ntype = \"stability\"\nspeed = { start = \"2700 "
+                        "rpm\", stop = \"3100 rpm\", points = 9 }\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns bands = d.csv("b_bands.csv");
+  ASSERT_EQ(bands.rows.size(), 1u);
+  // near 0.98 of 3019.75 rpm
+  EXPECT_NEAR(bands.last().at("at [rpm]"), 0.98 * 3019.75, 30);
+}
+
+TEST(Cracks, TransientWritesTheOpening) {
+  // after Mayes: (1 + cos)/2 of the angle between the normal and straight down, the shaft turned by
+  // 40 rad/s t
+  const DeckRun d(rotor(mayes +
+                        "[[drive]]\nat = \"left:start\"\ntype = \"speed\"\nspeed = \"40 rad/s\"\n"
+                        "[[step]]\nname = \"t\"\ntype = \"transient\"\nstart = \"static\"\n"
+                        "initial_speed = \"40 rad/s\"\nduration = \"0.1 s\"\n[output]\nevery = \"5 "
+                        "ms\"\nquantities = [\"cracks\"]\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("t.csv");
+  ASSERT_GT(t.rows.size(), 10u);
+  for (const auto& row : t.rows)
+    EXPECT_NEAR(row[t.column("crack c opening [-]")], 0.5 * (1 + std::cos(40 * row[0])), 1e-6);
+}
+
+TEST(Cracks, OpenDirectionTurnsTheLaw) {
+  const DeckRun d(
+      rotor("[[crack]]\nname = \"c\"\nat = \"left:end\"\nstiffness = \"1 MN.m/rad\"\n"
+            "open_direction = \"30 deg\"\n[[step]]\nname = \"t\"\ntype = "
+            "\"transient\"\nduration = \"1 ms\"\nstart = \"rest\"\n[output]\n"
+            "quantities = [\"cracks\"]\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns t = d.csv("t.csv");
+  EXPECT_NEAR(t.rows.front()[t.column("crack c opening [-]")], 0.5 * (1 + std::cos(pi / 6)), 1e-9);
+}
+
+TEST(Cracks, MeansAreSaid) {
+  const DeckRun d(
+      rotor(mayes + "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"1000 rpm\"\n"));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  EXPECT_TRUE(d.says("W14")) << d.log;
+  EXPECT_TRUE(d.says("cracked rotor enters as its mean")) << d.log;
+}
+
+TEST(Cracks, WhatIsRefused) {
+  const auto refused = [](const std::string& deck, const char* code, const char* text) {
+    const DeckRun d(deck);
+    EXPECT_NE(d.exit, 0) << text;
+    EXPECT_TRUE(d.says(code)) << d.log;
+    EXPECT_TRUE(d.says(text)) << d.log;
+  };
+  const std::string still = "[[step]]\nname = \"st\"\ntype = \"static\"\n";
+  const std::string at_mid = "[[crack]]\nname = \"c\"\nat = \"left:end\"\n";
+  refused(rotor(at_mid + "depth = \"5 mm\"\n" + still), "E26", "is given by constants");
+  refused(rotor(at_mid + "stiffness = \"1 MN.m/rad\"\n" + still, "rotating = false"), "E26",
+          "does not turn");
+  refused(
+      rotor(mayes + "[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"1 s\"\nlinear = "
+                    "true\n"),
+      "E39", "turns with it");
+  refused(rotor(mayes + "[[step]]\nname = \"b\"\ntype = \"balancing\"\nspeeds = [\"1000 rpm\"]\n"
+                        "[[step.plane]]\nname = \"p\"\nat = \"d\"\n"),
+          "E88", "influence coefficients");
+  refused(rotor("[[crack]]\nname = \"c\"\nat = \"right:start\"\nto = \"left:start\"\nloss = 0.1\n" +
+                still),
+          "E26", "not to the right of its beginning");
+  const std::string solid = R"(format = 1
+[shaft]
+name = "s"
+material = "steel"
+columns = ["name", "length[mm]", "od[mm]", "rigid"]
+rows = [["left", 500, 50, false], ["hub", 100, 80, true], ["right", 500, 50, false]]
+[[bearing]]
+name = "DE"
+at = "left:start"
+type = "rigid"
+directions = ["x", "y", "z"]
+[[bearing]]
+name = "NDE"
+at = "right:end"
+type = "rigid"
+directions = ["y", "z"]
+)";
+  refused(solid + "[[crack]]\nname = \"c\"\nat = \"left:mid\"\ndepth = \"26 mm\"\n" + still, "E14",
+          "deep in a shaft of radius");
+  refused(solid + "[[crack]]\nname = \"c\"\nat = \"hub:mid\"\ndepth = \"10 mm\"\n" + still, "E26",
+          "no round elastic section ends");
+  refused(solid + "[[crack]]\nname = \"c\"\nat = \"nowhere\"\ndepth = \"10 mm\"\n" + still, "E18",
+          "nowhere");
+}
+
+TEST(ThermalBow, StaticsAtRestHaveItsStartAndSteadyRotationItsEnd) {
+  const std::string bow =
+      "bow = { amount = \"60 um\", initial = \"10 um\", time_constant = \"5 s\" }";
+  // held at its angle: free, it would roll
+  std::string still = rotor("[[step]]\nname = \"st\"\ntype = \"static\"\n", bow);
+  const std::string free = "[\"x\", \"y\", \"z\"]";
+  still.replace(still.find(free), free.size(), "[\"x\", \"y\", \"z\", \"rx\"]");
+  const DeckRun at_rest(still);
+  ASSERT_EQ(at_rest.exit, 0) << at_rest.log;
+  const Columns t = at_rest.csv("st_deflection.csv");
+  double most = 0;
+  for (const auto& row : t.rows)
+    most = std::max(most, row[t.column("u_y [m]")]);
+  EXPECT_NEAR(most, 10e-6, 1e-10);
+  const DeckRun turning(
+      rotor("[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { values = [\"60 "
+            "rpm\"] }\n",
+            bow));
+  ASSERT_EQ(turning.exit, 0) << turning.log;
+  const double f = 2 * pi / 316.22776601683796;
+  EXPECT_NEAR(turning.csv("u_response.csv").last().at("P major [m]"), 60e-6 / (1 - f * f), 1e-9);
+}
