@@ -1,4 +1,5 @@
 #include <results/linear_limits.hpp>
+#include <results/clearances.hpp>
 #include <analysis/spectra/periodic.hpp>
 #include <assembly/film_kernels.hpp>
 #include <run/diagnose.hpp>
@@ -67,12 +68,21 @@ void warn_of_growth(FrequencyStep& s, std::vector<double> speeds) {
   }
 }
 
+void GapCheck::look_at(const Worst& seen, const std::string& name) {
+  Worst& x = worst_[name];
+  if (x.gap > 0 && seen.displacement * x.gap <= x.displacement * seen.gap) return;
+  x = seen;
+}
+
 void GapCheck::look(double Omega, std::span<const VecXc> amplitudes, double frequency) {
   const run::Job& job = step_.job;
-  if (job.built.conditions.empty() || amplitudes.empty()) return;
+  const std::vector<std::size_t> seals = seals_of(job.model);
+  if ((job.built.conditions.empty() && seals.empty()) || amplitudes.empty()) return;
   step_.linear.at(Omega);
   const system::State& still = step_.linear.equilibrium().state;
   system::Workspace w = job.system().make_workspace();
+  const std::vector<analysis::Point> stations = station_points(job);
+  reach_.resize(stations.size(), 0.0);
   constexpr int looks = 24;  // a period: the extreme is met to 1 %
   for (int k = 0; k < looks; ++k) {
     const Complex turn = std::polar(1.0, two_pi * k / looks);
@@ -81,41 +91,53 @@ void GapCheck::look(double Omega, std::span<const VecXc> amplitudes, double freq
       q += (a * turn).real();
     job.system().evaluate_nodes(w, still.frames, still.t, q, still.v, still.a);
     const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
-    for (const assembly::SupportCondition& c : job.built.conditions) {
-      const assembly::SupportCondition::State s = c.state(node);
-      if (!(s.gap > 0)) continue;
-      Worst& x = worst_[c.name];
-      if (x.gap > 0 && s.displacement * x.gap <= x.displacement * s.gap) continue;
-      x = {s.displacement, s.gap, Omega, frequency, s.film, c.where};
+    for (const assembly::SupportCondition& c : job.built.conditions)
+      if (const assembly::SupportCondition::State s = c.state(node); s.gap > 0)
+        look_at({s.displacement, s.gap, Omega, frequency, s.film, c.where, c.bearing}, c.name);
+    for (const std::size_t b : seals)
+      look_at({displacement_at(job.mesh.bearings[b], node), seal_gap(job.model.bearings[b]), Omega,
+               frequency, true, job.model.bearings[b].where, b},
+              job.model.bearings[b].name);
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+      const system::NodeState& at = node(stations[i].node);
+      const Vec3 u = at.u + stations[i].offset * at.t;
+      reach_[i] = std::max(reach_[i], u.tail<2>().norm());
     }
   }
 }
 
-void GapCheck::report() {
+/// "at 3000 rpm and 40 Hz"
+std::string GapCheck::Worst::text() const {
+  return std::isnan(frequency)
+             ? fmt::format("at {:.6g} rpm", to_rpm(speed))
+             : fmt::format("at {:.6g} rpm and {:.5g} Hz", to_rpm(speed), to_hz(frequency));
+}
+
+void GapCheck::report(const std::string& of) {
+  std::vector<UsedGap> used;
   for (const auto& [name, x] : worst_) {
     if (!(x.gap > 0)) continue;
+    used.push_back({x.bearing, x.gap, x.displacement, x.text()});
     io::Value& v = step_.summary()["gaps"][name];
     v["gap [m]"] = x.gap;
     v["largest displacement [m]"] = x.displacement;
     v["at [rpm]"] = to_rpm(x.speed);
     if (!(x.displacement > x.gap)) continue;
-    const std::string at =
-        std::isnan(x.frequency)
-            ? fmt::format("at {:.6g} rpm", to_rpm(x.speed))
-            : fmt::format("at {:.6g} rpm and {:.5g} Hz", to_rpm(x.speed), to_hz(x.frequency));
     Diagnostic d;
     d.code = "W11";
     d.message = fmt::format(
         "step '{}': {} the response would take the shaft {:.4g} mm from the middle of '{}', whose "
         "{} is {:.4g} mm ({:.3g} times): a linear response does not know it",
-        step_.step.name, at, 1e3 * x.displacement, name, x.film ? "clearance" : "gap", 1e3 * x.gap,
-        x.displacement / x.gap);
+        step_.step.name, x.text(), 1e3 * x.displacement, name, x.film ? "clearance" : "gap",
+        1e3 * x.gap, x.displacement / x.gap);
     d.hint =
         "a transient step meets the contact or the film as it is; less unbalance, more damping "
         "or another speed keeps the response linear";
     d.where = x.where;
     warn(step_.job, std::move(d));
   }
+  if (used.empty() || !step_.job.model.output.report) return;
+  add_clearances(step_.job, step_.section, step_.file("clearances"), of, reach_, used);
 }
 
 double table_slack(const model::TableBearing& table) {

@@ -6,10 +6,11 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace whirl::results {
 
-/// Largest share of each support's gap (journal bearings, squeeze films, stops, rubs) that a steady
+/// Largest share of each support's gap (journal bearings, squeeze films, seals, stops, rubs) that a steady
 /// harmonic response takes, the static displacement included.
 class GapCheck {
  public:
@@ -18,8 +19,9 @@ class GapCheck {
   /// the reference speed Omega, rad/s. frequency: of the excitation where it is not the speed,
   /// rad/s.
   void look(double Omega, std::span<const VecXc> amplitudes, double frequency = nan);
-  /// W11 for every gap that a response oversteps; all shares into the summary ("gaps").
-  void report();
+  /// W11 for every gap that a response oversteps; all shares into the summary ("gaps"), and as a
+  /// clearance diagram into the report. of: "response to unbalance".
+  void report(const std::string& of);
 
  private:
   struct Worst {
@@ -27,8 +29,12 @@ class GapCheck {
     double speed = 0, frequency = nan;
     bool film = false;
     Where where;
+    std::size_t bearing = 0;  ///< of the model
+    std::string text() const;
   };
+  void look_at(const Worst& seen, const std::string& name);
   FrequencyStep& step_;
+  std::vector<double> reach_;  ///< of every station, m
   std::map<std::string, Worst> worst_;
 };
 
