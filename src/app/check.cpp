@@ -33,6 +33,18 @@ std::string count(std::size_t n, const char* one, const char* many) {
   return fmt::format("{} {}", n, n == 1 ? one : many);
 }
 
+/// What a run would write, as far as that is known before it.
+std::string size_line(const model::Model& m) {
+  const deck::OutputEstimate e = deck::estimate_output(m);
+  if (e.open && e.total() == 0)
+    return "  output: a row at each accepted step, whose number the run finds out\n";
+  if (e.total() == 0) return {};
+  return fmt::format("  output about {}{} (histories {}{}, pictures {})\n",
+                     e.at_most ? "at most " : "", deck::size_text(e.total()),
+                     deck::size_text(e.histories), e.open ? " and a row at each accepted step" : "",
+                     deck::size_text(e.pictures));
+}
+
 std::string summary(const model::Model& m, const meshes::Mesh& mesh) {
   std::string r = fmt::format("{}{}{}\n", m.deck_path, m.title.empty() ? "" : ": ", m.title);
   r += fmt::format("  {}, {}, {}, {}, {}, {}\n", count(m.shafts.size(), "shaft", "shafts"),
@@ -50,7 +62,7 @@ std::string summary(const model::Model& m, const meshes::Mesh& mesh) {
     r += fmt::format("  step '{}': {}{}\n", s.name, kind_of(s.law),
                      s.from.empty() ? "" : ", from '" + s.from + "'");
   if (m.steps.empty()) r += "  no steps: nothing to run\n";
-  return r;
+  return r + size_line(m);
 }
 
 io::Value summary_value(const model::Model& m, const meshes::Mesh& mesh) {

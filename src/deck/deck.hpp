@@ -45,6 +45,8 @@ struct OutputEstimate {
   double histories = 0, pictures = 0;
   bool at_most = false;  ///< rows are written inside a window of speed or amplitude only: there may
                          ///< be far fewer
+  bool open = false;     ///< a step writes a row at each accepted step: how many is not known, and
+                         ///< they are not counted here
   Where where;           ///< the step that writes most
   double total() const { return histories + pictures; }
 };

@@ -84,6 +84,7 @@ OutputEstimate estimate_output(const model::Model& m) {
     const double row =
         columns * ((m.output.csv ? csv_bytes : 0) + (m.output.binary ? binary_bytes : 0));
     const double before = e.total();
+    e.open = e.open || (!(every > 0) && row > 0);
     if (every > 0) e.histories += common(time, m.output.t0, m.output.t1).length() / every * row;
     for (const auto& o : m.output.vtk)
       if (o.step.empty() || o.step == s.name) e.pictures += bytes_of_pictures(o, time, nodes);

@@ -1,9 +1,12 @@
 #include <io/file.hpp>
 #include <io/report.hpp>
 #include <io/report/assets.hpp>
+#include <plot/plots.hpp>
 #include <plot/svg.hpp>
 #include <core/text.hpp>
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <map>
 #include <set>
 
@@ -23,17 +26,53 @@ std::string paragraphs(const std::string& text) {
 /// By the anchor of the figure; none where no table leads to one.
 using FigureNumbers = std::map<std::string, int>;
 
+/// In which unit the numbers of a column are shown: a prefix that suits the largest of them.
+plot::DisplayUnit unit_of(const Table& t, std::size_t k) {
+  const std::string& unit = t.columns[k].unit;
+  const bool metric = unit == "m" || unit == "N" || unit == "N.m" || unit == "N m" ||
+                      unit == "Pa" || unit == "J" || unit == "W";
+  if (!metric) return {1.0, unit == "-" ? "" : unit};
+  double largest = 0;
+  for (const auto& row : t.rows)
+    if (!row[k].is_text && std::isfinite(row[k].number))
+      largest = std::max(largest, std::abs(row[k].number));
+  if (unit == "m") return plot::length_unit(largest);
+  return plot::unit_for(unit == "N.m" ? "N m" : unit, largest);
+}
+
+struct ShownColumn {
+  bool numeric = false;
+  plot::DisplayUnit unit;
+};
+
+/// What stands for a number that is none.
+constexpr const char* no_number = "–";
+
 /// A class for its colour; a link to the figure that it names.
-std::string cell_html(const Table::Cell& c, bool numeric, const FigureNumbers& numbers) {
+std::string cell_html(const Table::Cell& c, const ShownColumn& column,
+                      const FigureNumbers& numbers) {
   using Mark = Table::Cell::Mark;
   const std::string kind = c.mark == Mark::passed   ? "passed"
                            : c.mark == Mark::failed ? "failed"
-                           : numeric                ? "n"
+                           : column.numeric         ? "n"
                                                     : "";
-  std::string text = c.is_text ? escape(c.text) : readable(c.number, 6);
+  std::string text = c.is_text              ? escape(c.text)
+                     : std::isnan(c.number) ? no_number
+                                            : readable(column.unit.factor * c.number, 5);
   if (const auto n = numbers.find(safe_name(c.figure)); n != numbers.end())
     text = "<a href=\"#" + n->first + "\">Figure " + std::to_string(n->second) + "</a>";
   return (kind.empty() ? std::string("<td>") : "<td class=\"" + kind + "\">") + text + "</td>";
+}
+
+/// Below a table with numbers that are none.
+std::string footnote(const Table& t) {
+  const bool missing = std::any_of(t.rows.begin(), t.rows.end(), [](const auto& row) {
+    return std::any_of(row.begin(), row.end(),
+                       [](const Table::Cell& c) { return !c.is_text && std::isnan(c.number); });
+  });
+  if (!missing) return {};
+  return std::string("<p class=\"note\">") + no_number + ": " +
+         escape(t.nan_means.empty() ? "not found" : t.nan_means) + "</p>";
 }
 
 std::string table_html(const Table& t, const FigureNumbers& numbers) {
@@ -41,23 +80,31 @@ std::string table_html(const Table& t, const FigureNumbers& numbers) {
   if (!t.title.empty()) s += "<caption>" + escape(t.title) + "</caption>";
   s += "<thead><tr>";
   // A column is set as numbers when its first cell is one.
-  std::vector<bool> numeric(t.columns.size());
+  std::vector<ShownColumn> columns(t.columns.size());
   for (std::size_t k = 0; k < t.columns.size(); ++k) {
-    numeric[k] = !t.rows.empty() && !t.rows[0][k].is_text;
+    columns[k] = {!t.rows.empty() && !t.rows[0][k].is_text, unit_of(t, k)};
     const auto& c = t.columns[k];
-    s += numeric[k] ? "<th class=\"n\"" : "<th";
+    s += columns[k].numeric ? "<th class=\"n\"" : "<th";
     if (!c.description.empty()) s += " title=\"" + escape(c.description) + '"';
-    s += ">" + escape(c.name) +
-         (c.unit.empty() || c.unit == "-" ? "" : "<small>" + escape(c.unit) + "</small>") + "</th>";
+    const std::string& unit = columns[k].unit.name;
+    s += ">" + escape(c.name) + (unit.empty() ? "" : "<small>" + escape(unit) + "</small>") +
+         "</th>";
   }
   s += "</tr></thead>\n<tbody>";
   for (const auto& row : t.rows) {
     s += "<tr>";
     for (std::size_t k = 0; k < row.size(); ++k)
-      s += cell_html(row[k], numeric[k], numbers);
+      s += cell_html(row[k], columns[k], numbers);
     s += "</tr>\n";
   }
-  return s + "</tbody></table></div>\n";
+  return s + "</tbody></table></div>" + footnote(t) + "\n";
+}
+
+/// Six digits, as JSON has it.
+std::string short_number(double x) {
+  char b[32];
+  std::snprintf(b, sizeof b, "%.6g", x);
+  return b;
 }
 
 std::string value_html(const Value& v) {
@@ -74,8 +121,38 @@ std::string value_html(const Value& v) {
     return s;
   }
   if (v.is_text()) return escape(v.text());
-  if (v.is_number()) return readable(v.number(), 7);
+  if (v.is_number()) return std::isnan(v.number()) ? no_number : readable(v.number(), 7);
   return v.is_null() ? "" : v.boolean() ? "yes" : "no";
+}
+
+/// The moments of a replay for the script: displacements as bytes, each moment on its own scale.
+std::string replay_html(const plot::Replay& r, const std::string& id) {
+  const std::size_t each = r.samples * r.points;
+  std::string bytes, scales, times, speeds, rest;
+  const auto add = [](std::string& to, double x) {
+    to += (to.empty() ? "" : ",") + short_number(x);
+  };
+  for (std::size_t m = 0; m < r.time.size(); ++m) {
+    float most = 0;
+    for (std::size_t i = m * each; i < (m + 1) * each; ++i)
+      most = std::max({most, std::abs(r.y[i]), std::abs(r.z[i])});
+    const float scale = most > 0 ? most / 127 : 1.0F;
+    for (std::size_t i = m * each; i < (m + 1) * each; ++i)
+      for (const float x : {r.y[i], r.z[i]})
+        bytes += static_cast<char>(static_cast<signed char>(std::lround(x / scale)));
+    add(scales, static_cast<double>(scale));
+    add(times, r.time[m]);
+    add(speeds, to_rpm(r.speed[m]));
+  }
+  for (const Vec3& p : r.rest)
+    for (const double x : p)
+      add(rest, x);
+  return "<script type=\"application/json\" class=\"replay\" data-for=\"" + id +
+         "\">{\"samples\":" + std::to_string(r.samples) +
+         ",\"points\":" + std::to_string(r.points) + ",\"shown\":" + std::to_string(r.shown) +
+         ",\"gain\":" + short_number(r.gain) + ",\"rest\":[" + rest + "],\"t\":[" + times +
+         "],\"rpm\":[" + speeds + "],\"scale\":[" + scales + "],\"bytes\":\"" + base64(bytes) +
+         "\"}</script>\n";
 }
 
 bool turns(const plot::Figure& f) {
@@ -94,8 +171,9 @@ std::string figure_html(const plot::Figure& f, const std::string& id,
   s += "</span><button data-do=\"reset\" title=\"back to the whole picture (double "
        "click)\">reset</button>"
        "<button data-do=\"save\" title=\"save this picture as it is now\">SVG</button></div>\n";
-  // Twice the density of the printed picture: something is left to zoom into.
-  s += plot::render_svg(f, {false, id, 2.0});
+  // Denser than the printed picture: something is left to zoom into.
+  s += plot::render_svg(f, {false, id, 1.5});
+  if (f.replay) s += replay_html(*f.replay, id);
   if (!f.caption.empty()) s += "<figcaption>" + escape(f.caption) + "</figcaption>";
   return s + "</figure>\n";
 }
@@ -138,16 +216,29 @@ FigureNumbers figure_numbers(const Report& r, const FigureIds& ids) {
   return numbers;
 }
 
+/// Sections fold over their figures, and on a narrow screen (by the script) all of it folds.
 std::string contents_html(const Report& r, const FigureIds& ids) {
-  std::string s = "<nav aria-label=\"Contents\"><ol>";
+  std::size_t figures = 0;
+  for (const auto& of_section : ids)
+    figures += of_section.size();
+  constexpr std::size_t seen_at_once = 24;
+  const std::string open = figures <= seen_at_once ? " open" : "";
+  std::string s = "<nav aria-label=\"Contents\"><details open><summary>Contents</summary><ol>";
   for (std::size_t k = 0; k < r.sections.size(); ++k) {
-    s += "<li><a href=\"#" + anchor(k) + "\">" + escape(r.sections[k].title) + "</a>";
+    const std::string link =
+        "<a href=\"#" + anchor(k) + "\">" + escape(r.sections[k].title) + "</a>";
+    s += "<li>";
+    if (ids[k].empty()) {
+      s += link + "</li>";
+      continue;
+    }
+    s += "<details" + open + "><summary>" + link + "</summary>";
     for (std::size_t i = 0; i < ids[k].size(); ++i)
       s += "<span class=\"sub\"><a href=\"#" + ids[k][i] + "\">" +
            escape(r.sections[k].figures[i].title) + "</a></span>";
-    s += "</li>";
+    s += "</details></li>";
   }
-  return s + "</ol></nav>\n";
+  return s + "</ol></details></nav>\n";
 }
 
 std::string facts_html(const Report& r) {

@@ -8,7 +8,9 @@
 #include <core/types.hpp>
 #include <model/bearing_laws.hpp>
 #include <model/location.hpp>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -574,10 +576,15 @@ struct VtkOutput {
 struct TrackingOutput {
   bool on = true;
   int samples = 48;                      ///< a turn
-  std::vector<double> orders{1.0, 2.0};  ///< whole multiples of the speed
+  std::vector<double> orders{1.0, 2.0};  ///< multiples of the speed
+  double bandwidth = 0.5;  ///< of the filter at half amplitude, multiples of the speed
   std::vector<double>
       orbit_speeds;  ///< rad/s: orbits are kept when the spin passes these, beside the largest one
   int orbit_turns = 3;  ///< turns an orbit shows
+  /// Turns of a Hann window of that bandwidth; 1: each turn by itself.
+  int filter_turns() const {
+    return std::max(1, static_cast<int>(std::ceil(2.0 / bandwidth - 1e-9)));
+  }
 };
 
 /// Spectra of the probes block by block (waterfall, full spectrum).
@@ -598,6 +605,7 @@ struct Output {
   TrackingOutput tracking;
   std::optional<SpectraOutput> spectra;
   bool csv = true, binary = false, report = true;
+  bool replay = true;  ///< in the report
   bool peak_to_peak = false;
   std::vector<VtkOutput> vtk;
 };

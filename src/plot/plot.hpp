@@ -3,6 +3,8 @@
 #pragma once
 #include <core/types.hpp>
 #include <array>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -115,6 +117,26 @@ struct SpaceSeries {
   std::vector<double> x, y, z;
   Style style{};
   bool closed_fill = false;  ///< planes: filled polygon
+  /// Complex amplitude of each point, in the units of the axes: the point is drawn where it is at
+  /// phase 0 and is at rest + Re(motion exp(i phase)); empty: it stands still.
+  std::vector<std::array<Complex, 3>> motion{};
+  /// Which points of the figure's Replay move it, [from, to); trails are the paths of each of them.
+  struct Played {
+    std::size_t from = 0, to = 0;
+    bool trails = false;
+  };
+  std::optional<Played> played{};
+};
+
+/// Moments of a motion that the report sets a figure in space to, each with the motion that begins
+/// there: samples at equal times, displacement (y, z) of points, m.
+struct Replay {
+  std::vector<double> time, speed, span;  ///< s, rad/s, s that the samples of a moment cover
+  std::size_t samples = 0, points = 0;
+  std::vector<float> y, z;  ///< [moment][sample][point]
+  std::size_t shown = 0;    ///< moment that is drawn
+  std::vector<Vec3> rest;   ///< of the points, in units of the axes
+  double gain = 1;          ///< units of the y and z axes a metre of displacement
 };
 
 enum class AxesKind { cartesian, polar, space };
@@ -150,6 +172,7 @@ struct Figure {
   std::vector<Axes> axes;
   int columns = 1;
   double width = 760, height = 420;  ///< px
+  std::shared_ptr<const Replay> replay{};
 };
 
 }  // namespace whirl::plot

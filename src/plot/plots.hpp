@@ -12,6 +12,7 @@ namespace whirl::plot {
 
 inline constexpr double rpm = to_rpm(1.0);   ///< of a speed of 1 rad/s
 inline constexpr double hertz = to_hz(1.0);  ///< of a frequency of 1 rad/s
+inline constexpr double mm = 1e3;            ///< of a length of 1 m
 
 enum class Amplitude { zero_to_peak, peak_to_peak };
 /// "0-peak" or "peak-to-peak".
@@ -110,6 +111,49 @@ struct ModeShape {
 };
 Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mode);
 
+/// A shape of a machine of several lines, where they stand: one scale for all.
+struct ShapeLine {
+  std::string label;
+  std::vector<Vec3> rest;             ///< m
+  std::vector<Eigen::Vector3cd> u;    ///< complex deflection, axes of the machine
+  std::vector<std::size_t> stations;  ///< points whose orbits are drawn
+};
+/// What joins two lines, or a line and the ground (`to` empty), and moves with them.
+struct ShapeLink {
+  std::string name;
+  Vec3 at = Vec3::Zero(), to = Vec3::Zero();
+  Eigen::Vector3cd u_at = Eigen::Vector3cd::Zero(), u_to = Eigen::Vector3cd::Zero();
+  bool to_ground = true;
+};
+struct MachineShape {
+  std::vector<ShapeLine> lines;
+  std::vector<ShapeLink> links;
+};
+Figure plot_machine_shape(std::string name, std::string title, const MachineShape& shape);
+
+/// A motion to be played back. rest: places of its points, m (here, not yet in units of the axes).
+struct ReplayedLine {
+  std::string label;
+  std::size_t from = 0, to = 0;  ///< its points of the replay
+};
+/// @pre at least one moment in which something moves.
+Figure plot_replay(std::string name, std::string title, Replay motion,
+                   std::span<const ReplayedLine> lines);
+
+/// How far from the middle a line of the machine comes, and how near to the walls about it; m.
+struct ReachLine {
+  std::string label;
+  std::vector<double> x, reach;  ///< axial position; largest distance from the middle
+};
+struct GapMark {
+  std::string name;
+  double x = 0, gap = 0;
+  double reach = 0;  ///< largest displacement against the other side of the gap
+};
+/// Clearance diagram. @pre gaps greater than zero.
+Figure plot_clearances(std::string name, std::string title, std::span<const ReachLine> lines,
+                       std::span<const GapMark> gaps);
+
 /// Error against run time, log-log; the Pareto front is drawn through the best points.
 struct StudyPoint {
   double seconds = 0, error = 0;
@@ -150,6 +194,23 @@ struct RotorDrawing {
   std::vector<double> nodes;  ///< mesh nodes, small ticks on the centre line
 };
 Figure plot_rotor(std::string name, const RotorDrawing& rotor);
+/// Several lines in one elevation: where they stand along x, and how far apart across it.
+struct MachineLine {
+  RotorDrawing drawing;      ///< bearings: those to the ground alone
+  double x = 0, height = 0;  ///< of its left end, m
+};
+/// What joins two of them: from one radius to another at a place along x, m.
+struct MachineLink {
+  std::string name;
+  double x = 0, from = 0, to = 0;
+};
+struct MachineDrawing {
+  std::string title;
+  std::string across;  ///< direction in which the heights are measured: "y", "z"
+  std::vector<MachineLine> lines;
+  std::vector<MachineLink> links;
+};
+Figure plot_machine(std::string name, const MachineDrawing& machine);
 /// A line that is not straight, in space; lengths in m.
 struct DrawnPoint {
   Vec3 r = Vec3::Zero();

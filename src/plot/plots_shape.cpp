@@ -64,8 +64,10 @@ Axes shape_in_space(const ModeShape& mode, const Moment& moment, const DisplayUn
   for (std::size_t i = 0; i < n; ++i) {
     const double s = u.factor * mode.s[i];
     const double y = (moment.factor * mode.y[i]).real(), z = (moment.factor * mode.z[i]).real();
+    const std::array<Complex, 3> motion{0.0, moment.factor * mode.y[i], moment.factor * mode.z[i]};
     append(rest, s, 0, 0);
     append(line, s, y, z);
+    line.motion.push_back(motion);
     if (n > 16 && i % (n / 13) != 0 && i + 1 != n) continue;
     for (int k = 0; k <= 48; ++k) {
       const Complex p = std::polar(1.0, two_pi * k / 48) * moment.factor;
@@ -73,6 +75,7 @@ Axes shape_in_space(const ModeShape& mode, const Moment& moment, const DisplayUn
     }
     append(orbits, nan, nan, nan);
     append(dots, s, y, z);
+    dots.motion.push_back(motion);
   }
   space.space = {std::move(rest), std::move(orbits), std::move(line), std::move(dots)};
   return space;
@@ -123,6 +126,131 @@ Figure plot_mode_shape(std::string name, std::string title, const ModeShape& mod
   return f;
 }
 
+namespace {
+
+/// A machine of several lines in space, its deflection magnified.
+class MachinePicture {
+ public:
+  explicit MachinePicture(const MachineShape& shape);
+  Axes in_space() const;
+  Axes in_planes() const;
+  const DisplayUnit& unit() const { return unit_; }
+
+ private:
+  void put(SpaceSeries& s, const Vec3& rest, const Eigen::Vector3cd& u, bool moves) const;
+  const MachineShape& shape_;
+  DisplayUnit unit_;
+  Complex to_one_;   ///< makes the largest deflection 1 at the moment shown
+  double draw_ = 0;  ///< m, of a deflection of 1
+};
+
+MachinePicture::MachinePicture(const MachineShape& shape) : shape_(shape) {
+  Vec3 lo = Vec3::Constant(infinity), hi = -lo;
+  ModeShape all;  // the moment of the largest lateral excursion of any line
+  for (const ShapeLine& l : shape.lines)
+    for (std::size_t i = 0; i < l.rest.size(); ++i) {
+      lo = lo.cwiseMin(l.rest[i]);
+      hi = hi.cwiseMax(l.rest[i]);
+      all.s.push_back(0);
+      all.y.push_back(l.u[i][1]);
+      all.z.push_back(l.u[i][2]);
+    }
+  const double size = all.s.empty() ? 1.0 : std::max((hi - lo).maxCoeff(), 1e-6);
+  unit_ = size >= 10 ? DisplayUnit{1, "m"} : DisplayUnit{1e3, "mm"};
+  to_one_ = largest_moment(all).factor;
+  draw_ = 0.14 * size;
+}
+
+void MachinePicture::put(SpaceSeries& s, const Vec3& rest, const Eigen::Vector3cd& u,
+                         bool moves) const {
+  const Eigen::Vector3cd m = unit_.factor * draw_ * to_one_ * u;
+  const Vec3 p = unit_.factor * rest + (moves ? Vec3(m.real()) : Vec3::Zero());
+  append(s, p.x(), p.y(), p.z());
+  if (moves) s.motion.push_back({m[0], m[1], m[2]});
+}
+
+Axes MachinePicture::in_space() const {
+  Axes a;
+  a.kind = AxesKind::space;
+  a.equal_aspect = true;
+  a.view = {-62, 20};
+  a.x = Axis("x", unit_.name);
+  a.y = Axis("y", unit_.name);
+  a.z = Axis("z", unit_.name);
+  a.weight = 1.8;
+  SpaceSeries rest{"", {}, {}, {}, Style{ink, Dash::dash_dot, 0.8}};
+  SpaceSeries orbits{"orbits of the stations", {}, {}, {}, Style{faint, Dash::solid, 0.9}};
+  SpaceSeries links{"supports", {}, {}, {}, Style{7, Dash::dotted, 1.2}};
+  SpaceSeries ends{"", {}, {}, {}, Style{7, Dash::solid, 0, Marker::square, 5}};
+  orbits.style.color = 7;
+  orbits.style.opacity = 0.6;
+  std::vector<SpaceSeries> lines;
+  int color = 0;
+  for (const ShapeLine& l : shape_.lines) {
+    SpaceSeries s{l.label, {}, {}, {}, Style{color++, Dash::solid, 2.4}};
+    for (std::size_t i = 0; i < l.rest.size(); ++i) {
+      put(rest, l.rest[i], l.u[i], false);
+      put(s, l.rest[i], l.u[i], true);
+    }
+    append(rest, nan, nan, nan);
+    for (const std::size_t i : l.stations) {
+      for (int k = 0; k <= 32; ++k) {
+        const Eigen::Vector3cd m = draw_ * std::polar(1.0, two_pi * k / 32) * to_one_ * l.u[i];
+        put(orbits, l.rest[i] + Vec3(m.real()), m, false);
+      }
+      append(orbits, nan, nan, nan);
+    }
+    lines.push_back(std::move(s));
+  }
+  for (const ShapeLink& l : shape_.links) {
+    put(ends, l.at, l.u_at, true);
+    if (l.to_ground || (l.at - l.to).norm() < 1e-9) continue;
+    put(links, l.at, l.u_at, true);
+    put(links, l.to, l.u_to, true);
+    append(links, nan, nan, nan);
+    links.motion.push_back({});
+  }
+  a.space = {std::move(rest), std::move(orbits)};
+  for (SpaceSeries& s : lines)
+    a.space.push_back(std::move(s));
+  if (!links.x.empty()) a.space.push_back(std::move(links));
+  if (!ends.x.empty()) a.space.push_back(std::move(ends));
+  return a;
+}
+
+/// y and z of every line at the moment shown, one scale for all.
+Axes MachinePicture::in_planes() const {
+  Axes a;
+  a.x = Axis("x", unit_.name);
+  a.y = Axis("deflection, largest of all = 1", "-");
+  int color = 0;
+  for (const ShapeLine& l : shape_.lines) {
+    for (const Index c : {1, 2}) {
+      Series s;
+      s.label = l.label + (c == 1 ? ", y" : ", z");
+      s.style = {color, c == 1 ? Dash::solid : Dash::dashed, 1.8};
+      for (std::size_t i = 0; i < l.rest.size(); ++i)
+        append(s, unit_.factor * l.rest[i].x(), (to_one_ * l.u[i][c]).real());
+      a.series.push_back(std::move(s));
+    }
+    ++color;
+  }
+  a.rules.push_back({false, 0, "", {ink, Dash::solid, 0.8}});
+  return a;
+}
+
+}  // namespace
+
+Figure plot_machine_shape(std::string name, std::string title, const MachineShape& shape) {
+  Figure f;
+  f.name = std::move(name);
+  f.title = std::move(title);
+  f.height = 680;
+  const MachinePicture picture(shape);
+  f.axes = {picture.in_space(), picture.in_planes()};
+  return f;
+}
+
 Figure plot_line(std::string name, const LineDrawing& line) {
   Figure f;
   f.name = std::move(name);
@@ -168,8 +296,6 @@ Figure plot_line(std::string name, const LineDrawing& line) {
 }
 
 namespace {
-
-constexpr double mm = 1e3;
 
 /// A rotor in its plane: parts, supports and names.
 class RotorPicture {

@@ -8,7 +8,8 @@ namespace whirl::plot {
 namespace {
 
 struct Extent {
-  double speed0 = infinity, speed1 = -infinity, frequency1 = 0, amplitude = 0;
+  double speed0 = infinity, speed1 = -infinity, amplitude = 0;
+  double frequency0 = 0, frequency1 = 0;  ///< Hz; frequency0 < 0: backward whirl apart
 };
 
 Extent extent_of(std::span<const SpectrumTrace> traces) {
@@ -16,8 +17,10 @@ Extent extent_of(std::span<const SpectrumTrace> traces) {
   for (const auto& t : traces) {
     e.speed0 = std::min(e.speed0, t.speed * rpm);
     e.speed1 = std::max(e.speed1, t.speed * rpm);
-    for (const double v : t.frequency)
+    for (const double v : t.frequency) {
+      e.frequency0 = std::min(e.frequency0, v * hertz);
       e.frequency1 = std::max(e.frequency1, v * hertz);
+    }
     for (const double v : t.amplitude)
       if (std::isfinite(v)) e.amplitude = std::max(e.amplitude, v);
   }
@@ -76,15 +79,17 @@ Series waterfall_trace(const SpectrumTrace& t, const Waterfall& w) {
 void add_order_line(Axes& a, double order, const Waterfall& w) {
   const Extent& e = w.extent;
   const double end = e.speed1 + 0.6 * w.height;
-  const double last = std::min(end, e.frequency1 * 60 / order);
+  const double edge = order > 0 ? e.frequency1 : e.frequency0;
+  const double last = std::min(end, edge * 60 / order);
+  if (last <= e.speed0) return;
   Series s;
   s.x = {e.speed0 * order / 60, last * order / 60};
   s.y = {e.speed0, last};
   s.style = {1, Dash::dashed, 0.9};
   s.trace_label = number_text(order, 3) + "×";
   const bool at_edge = last < end;
-  a.notes.push_back(
-      {last * order / 60, last, s.trace_label, false, at_edge ? -20.0 : 3.0, at_edge ? -4.0 : 0.0});
+  a.notes.push_back({last * order / 60, last, s.trace_label, false,
+                     at_edge == (order > 0) ? -24.0 : 3.0, at_edge ? -4.0 : 0.0});
   a.series.push_back(std::move(s));
 }
 
@@ -121,12 +126,15 @@ Figure plot_waterfall(std::string name, std::string title, std::span<const Spect
   a.legend = false;
   a.y.min = e.speed0 - 0.02 * (e.speed1 - e.speed0);
   a.y.max = e.speed1 + 1.05 * w.height;
-  a.x.min = 0;
+  a.x.min = e.frequency0;
   a.x.max = e.frequency1;
+  if (e.frequency0 < 0) a.x.label = "frequency, backward < 0 < forward";
   for (const SpectrumTrace* t : shown)
     a.series.push_back(waterfall_trace(*t, w));
-  for (const double order : orders)
+  for (const double order : orders) {
     add_order_line(a, order, w);
+    if (e.frequency0 < 0) add_order_line(a, -order, w);
+  }
   add_amplitude_bar(a, w);
   Figure f;
   f.name = std::move(name);

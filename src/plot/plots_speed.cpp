@@ -132,7 +132,7 @@ Figure plot_campbell(std::string name, std::string title, std::span<const Campbe
     a.series.push_back(std::move(s));
     const bool at_right = limit == end;
     a.notes.push_back({limit * rpm, order * limit * hertz, order_name(order), false,
-                       at_right ? -22.0 : 4.0, at_right ? -5.0 : 14.0});
+                       at_right ? -30.0 : 4.0, at_right ? -5.0 : 14.0});
   }
   for (const auto& c : criticals)
     a.notes.push_back({c.speed * rpm, c.frequency * hertz,
@@ -230,6 +230,54 @@ Figure plot_bode(std::string name, std::string title, std::span<const ResponseCu
   return f;
 }
 
+namespace {
+
+/// Points of a vector that one can tell apart: of a long run most lie on one another.
+std::vector<std::size_t> distinct_points(const ResponseCurve& c) {
+  const std::size_t n = std::min({c.speed.size(), c.amplitude.size(), c.phase_lag.size()});
+  double largest = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (std::isfinite(c.amplitude[i])) largest = std::max(largest, c.amplitude[i]);
+  const double apart = n > 300 ? 4e-3 * largest : 0.0;
+  std::vector<std::size_t> keep;
+  Complex last(nan, nan);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Complex x = std::polar(c.amplitude[i], c.phase_lag[i]);
+    if (std::abs(x - last) < apart && i + 1 < n && c.amplitude[i] < largest) continue;
+    keep.push_back(i);
+    last = x;
+  }
+  return keep;
+}
+
+/// Speeds are written where the vector has turned by 40 degrees or more, and at the peak.
+void note_speeds(Axes& a, const Series& s, const std::vector<double>& speeds) {
+  if (s.y.empty()) return;
+  constexpr std::size_t most = 12;  // more hide the curve
+  const auto peak =
+      static_cast<std::size_t>(std::max_element(s.y.begin(), s.y.end()) - s.y.begin());
+  const auto turned = [&](std::size_t i, double from) {
+    return std::abs(std::remainder(s.x[i] - from, 360));
+  };
+  const auto note = [&](std::size_t i) {
+    a.notes.push_back({s.x[i], s.y[i], readable(speeds[i], 4) + " rpm"});
+  };
+  note(peak);
+  double last = nan;
+  for (std::size_t i = 0; i < s.x.size() && a.notes.size() < most; ++i) {
+    if (i == peak) {
+      last = s.x[i];
+      continue;
+    }
+    if (!(s.y[i] >= 0.2 * s.y[peak]) || (!std::isnan(last) && turned(i, last) < 40)) continue;
+    if (i < peak && turned(i, s.x[peak]) < 25) continue;
+    note(i);
+    last = s.x[i];
+  }
+}
+
+}  // namespace
+
 Figure plot_polar(std::string name, std::string title, std::span<const ResponseCurve> curves,
                   Amplitude convention) {
   Figure f;
@@ -248,29 +296,12 @@ Figure plot_polar(std::string name, std::string title, std::span<const ResponseC
     Series s;
     s.label = c.label;
     Extra speed{"speed", "rpm", {}};
-    for (const double v : c.phase_lag)
-      s.x.push_back(v * 180 / pi);
-    for (const double v : c.amplitude)
-      s.y.push_back(v * factor * u.factor);
-    for (const double v : c.speed)
-      speed.values.push_back(v * rpm);
-    // On the first curve speeds are written where the vector has turned by 40 degrees or more, and
-    // at the peak.
-    double last = nan;
-    const auto peak = std::max_element(s.y.begin(), s.y.end()) - s.y.begin();
-    const double least = s.y.empty() ? 0 : 0.2 * s.y[static_cast<std::size_t>(peak)];
-    for (std::size_t i = 0; &c == &curves.front() && i < s.x.size() && i < speed.values.size();
-         ++i) {
-      const bool at_peak = static_cast<std::ptrdiff_t>(i) == peak;
-      if (!at_peak && (s.y[i] < least ||
-                       (!std::isnan(last) && std::abs(std::remainder(s.x[i] - last, 360)) < 40)))
-        continue;
-      if (!at_peak && peak > static_cast<std::ptrdiff_t>(i) &&
-          std::abs(std::remainder(s.x[i] - s.x[static_cast<std::size_t>(peak)], 360)) < 25)
-        continue;
-      a.notes.push_back({s.x[i], s.y[i], readable(speed.values[i], 4) + " rpm"});
-      last = s.x[i];
+    for (const std::size_t i : distinct_points(c)) {
+      s.x.push_back(c.phase_lag[i] * 180 / pi);
+      s.y.push_back(c.amplitude[i] * factor * u.factor);
+      speed.values.push_back(c.speed[i] * rpm);
     }
+    if (&c == &curves.front()) note_speeds(a, s, speed.values);
     s.extra.push_back(std::move(speed));
     a.series.push_back(std::move(s));
   }

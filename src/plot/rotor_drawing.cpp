@@ -163,12 +163,82 @@ std::vector<LineDrawing> make_line_drawings(const model::Model& model, const mes
   return all;
 }
 
+namespace {
+
+/// Supports between two lines, and those of a line that stand on the ground.
+void part_supports(const meshes::Mesh& mesh, const meshes::Scene& scene, MachineDrawing& machine,
+                   const std::vector<double>& heights) {
+  for (MachineLine& l : machine.lines)
+    l.drawing.bearings.clear();
+  const auto radius = [](const MachineLine& l, double s, bool inner) {
+    double r = 0;
+    for (const DrawnSection& x : l.drawing.sections)
+      if (s >= x.s0 - 1e-9 && s <= x.s1 + 1e-9)
+        r = std::max(r, inner ? std::max(x.inner_left, x.inner_right)
+                              : std::max(x.outer_left, x.outer_right));
+    return r;
+  };
+  for (const meshes::SupportShape& b : scene.supports) {
+    const meshes::Node& node = mesh.nodes[at(b.at.node)];
+    if (node.line < 0) continue;
+    MachineLine& line = machine.lines[at(node.line)];
+    const double s = node.s + b.at.offset;
+    const Index to = b.to_node ? mesh.nodes[at(b.to.node)].line : -1;
+    if (to < 0) {
+      line.drawing.bearings.push_back({s, radius(line, s, false), b.name});
+      continue;
+    }
+    const MachineLine& other = machine.lines[at(to)];
+    const double so = mesh.nodes[at(b.to.node)].s + b.to.offset;
+    const double h = heights[at(node.line)], ho = heights[at(to)];
+    const double x = line.x + s;
+    if (std::abs(h - ho) > 1e-9) {  // side by side: from surface to surface
+      const double up = ho > h ? 1 : -1;
+      machine.links.push_back(
+          {b.name, x, h + up * radius(line, s, false), ho - up * radius(other, so, false)});
+      continue;
+    }
+    const bool inside = radius(line, s, false) <= radius(other, so, false);
+    const double outer = radius(inside ? line : other, inside ? s : so, false);
+    const double bore = radius(inside ? other : line, inside ? so : s, true);
+    machine.links.push_back({b.name, x, h + outer, h + (bore > outer ? bore : outer)});
+  }
+}
+
+/// All lines in one elevation, across the direction in which they are furthest apart.
+MachineDrawing make_machine_drawing(const model::Model& model, const meshes::Mesh& mesh,
+                                    const meshes::Scene& scene) {
+  MachineDrawing machine;
+  machine.title = "Machine";
+  Vec3 low = mesh.lines.front().origin, high = low;
+  for (const meshes::Line& l : mesh.lines) {
+    low = low.cwiseMin(l.origin);
+    high = high.cwiseMax(l.origin);
+  }
+  const Index across = high.y() - low.y() > high.z() - low.z() ? 1 : 2;
+  if (high[across] - low[across] > 1e-9) machine.across = across == 1 ? "y" : "z";
+  std::vector<double> heights;
+  std::vector<RotorDrawing> drawings = make_rotor_drawings(model, mesh, scene);
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    drawings[l].title = mesh.lines[l].name;
+    heights.push_back(mesh.lines[l].origin[across]);
+    machine.lines.push_back({std::move(drawings[l]), mesh.lines[l].origin.x(), heights.back()});
+  }
+  part_supports(mesh, scene, machine, heights);
+  return machine;
+}
+
+}  // namespace
+
 std::vector<Figure> draw_model(const model::Model& model, const meshes::Mesh& mesh,
                                const meshes::Scene& scene) {
   std::vector<Figure> all;
   const auto numbered = [](const char* name, int k) {
     return k == 1 ? std::string(name) : name + ("_" + std::to_string(k));
   };
+  const auto straight = [](const model::Shaft& s) { return s.path.empty(); };
+  if (mesh.lines.size() > 1 && std::all_of(model.shafts.begin(), model.shafts.end(), straight))
+    all.push_back(plot_machine("machine", make_machine_drawing(model, mesh, scene)));
   int k = 0;
   for (const RotorDrawing& d : make_rotor_drawings(model, mesh, scene))
     all.push_back(plot_rotor(numbered("rotor", ++k), d));

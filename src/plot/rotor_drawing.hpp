@@ -12,7 +12,8 @@ std::vector<RotorDrawing> make_rotor_drawings(const model::Model& model, const m
 
 /// The lines along a path, in space: one drawing each.
 std::vector<LineDrawing> make_line_drawings(const model::Model& model, const meshes::Mesh& mesh);
-/// All of them as figures "rotor", "rotor_2" and so on, "line" and so on.
+/// All of them as figures: "machine" where there are several straight lines, "rotor", "rotor_2" and
+/// so on, "line" and so on.
 std::vector<Figure> draw_model(const model::Model& model, const meshes::Mesh& mesh,
                                const meshes::Scene& scene);
 

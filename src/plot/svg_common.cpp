@@ -4,6 +4,7 @@
 #include <core/text.hpp>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace whirl::plot::svg {
 
@@ -119,49 +120,147 @@ void axis_attributes(Canvas& c, const char* name, const Axis& a, const Scale& s)
         escape(a.unit == "-" ? "" : a.unit) + '"');
 }
 
-std::string path_of(const std::vector<double>& px, const std::vector<double>& py, bool keep_all,
-                    bool increasing, double columns, std::vector<Point>* seen) {
-  std::string d;
-  std::size_t run = 0;
-  const auto lift = [&] {
-    if (run == 1) d += "h0";  // a lone point: visible with round caps
-    run = 0;
-  };
-  const auto put = [&](double x, double y) {
-    if (std::isnan(x) || std::isnan(y)) return lift();
-    // Far outside the frame: renderers have limits.
-    x = std::clamp(x, -1e5, 1e5);
-    y = std::clamp(y, -1e5, 1e5);
-    d += run == 0 ? 'M' : run == 1 ? 'L' : ' ';
-    append_number(d, x);
-    d += ' ';
-    append_number(d, y);
-    ++run;
-    if (seen) seen->push_back({x, y});
-  };
-  if (keep_all || px.size() < 500) {
-    for (std::size_t i = 0; i < px.size(); ++i)
-      put(px[i], py[i]);
-  } else if (increasing) {
-    double lo = infinity, hi = -infinity;
-    for (const double x : px)
-      if (!std::isnan(x)) {
-        lo = std::min(lo, x);
-        hi = std::max(hi, x);
-      }
-    if (!(hi > lo)) hi = lo + 1;
-    const auto n = static_cast<std::size_t>(std::max(1.0, columns * (hi - lo)));
-    for (const auto i : decimate_columns(px, py, lo, hi, n))
-      put(px[i], py[i]);
-  } else {
-    for (const auto& piece : decimate_path(px, py, 0.5 / std::max(1.0, columns))) {
-      for (const auto i : piece)
-        put(px[i], py[i]);
-      lift();
-    }
+namespace {
+
+/// A point of a curve, and where `joined` the way to it in steps of a few px: texts keep clear of it.
+void see(std::vector<Point>& seen, const Point& p, bool joined) {
+  constexpr double step = 6;
+  if (joined && !seen.empty()) {
+    const Point from = seen.back();
+    const double length = std::hypot(p.x - from.x, p.y - from.y);
+    const int parts = length < 4000 ? static_cast<int>(length / step) : 0;
+    for (int k = 1; k < parts; ++k)
+      seen.push_back({from.x + (p.x - from.x) * k / parts, from.y + (p.y - from.y) * k / parts});
   }
-  lift();
-  return d;
+  seen.push_back(p);
+}
+
+}  // namespace
+
+namespace {
+
+/// Writes a path point by point.
+class PathText {
+ public:
+  PathText(bool by_differences, std::vector<Point>* seen)
+      : by_differences_(by_differences),
+        seen_(seen) {}
+  void put(double x, double y);
+  /// Ends a piece.
+  void lift() {
+    put_waiting();
+    if (run_ == 1) text_ += "h0";  // a lone point: visible with round caps
+    run_ = 0;
+  }
+  std::string take() {
+    lift();
+    return std::move(text_);
+  }
+
+ private:
+  void put_tenths(long tenths, bool first);
+  void put_waiting();
+  void put_difference(long x, long y);
+
+  bool by_differences_;
+  std::vector<Point>* seen_;
+  std::string text_;
+  std::size_t run_ = 0, written_ = 0;  ///< points of this piece; of them in the text
+  long x_ = 0, y_ = 0;                 ///< tenths of a px, of the last point written
+  std::optional<long> waiting_{};  ///< x of a point as high as that one, perhaps not the last such
+};
+
+/// Without what a reader does not need: "-.5" after a number needs no blank.
+void PathText::put_tenths(long tenths, bool first) {
+  const long size = std::abs(tenths);
+  if (!first && tenths >= 0) text_ += ' ';
+  if (tenths < 0) text_ += '-';
+  if (size >= 10 || size == 0) text_ += std::to_string(size / 10);
+  if (size % 10 != 0) text_ += '.' + std::to_string(size % 10);
+}
+
+void PathText::put_waiting() {
+  if (!waiting_) return;
+  const long x = *waiting_;
+  waiting_.reset();
+  put_tenths(x - x_, written_ < 2);
+  put_tenths(0, false);
+  ++written_;
+  x_ = x;
+}
+
+/// Of a level stretch, as the floor of a spectrum, only the ends.
+void PathText::put_difference(long x, long y) {
+  if (run_ == 0) {
+    text_ += 'M';
+    put_tenths(x, true);
+    put_tenths(y, false);
+    written_ = 1;
+    x_ = x;
+    y_ = y;
+    return;
+  }
+  if (run_ == 1) text_ += 'l';
+  const bool goes_on = !waiting_ || (*waiting_ >= x_ && x >= *waiting_);
+  if (y == y_ && goes_on) {
+    waiting_ = x;
+    return;
+  }
+  put_waiting();
+  put_tenths(x - x_, written_ < 2);
+  put_tenths(y - y_, false);
+  ++written_;
+  x_ = x;
+  y_ = y;
+}
+
+void PathText::put(double x, double y) {
+  if (std::isnan(x) || std::isnan(y)) return lift();
+  // Far outside the frame: renderers have limits.
+  x = std::clamp(x, -1e5, 1e5);
+  y = std::clamp(y, -1e5, 1e5);
+  if (by_differences_)
+    put_difference(std::lround(10 * x), std::lround(10 * y));
+  else {
+    text_ += run_ == 0 ? "M" : run_ == 1 ? "L" : " ";
+    append_number(text_, x);
+    text_ += ' ';
+    append_number(text_, y);
+  }
+  ++run_;
+  if (seen_) see(*seen_, {x, y}, run_ > 1);
+}
+
+}  // namespace
+
+std::string path_of(const std::vector<double>& px, const std::vector<double>& py, bool keep_all,
+                    bool increasing, const SvgOptions& options, std::vector<Point>* seen) {
+  const bool whole = keep_all || px.size() < 500;
+  PathText text(!keep_all && px.size() >= 200 && !options.standalone, seen);
+  if (whole) {
+    for (std::size_t i = 0; i < px.size(); ++i)
+      text.put(px[i], py[i]);
+    return text.take();
+  }
+  if (!increasing) {
+    for (const auto& piece : decimate_path(px, py, 0.5 / std::max(1.0, options.columns_per_px))) {
+      for (const auto i : piece)
+        text.put(px[i], py[i]);
+      text.lift();
+    }
+    return text.take();
+  }
+  double lo = infinity, hi = -infinity;
+  for (const double x : px)
+    if (!std::isnan(x)) {
+      lo = std::min(lo, x);
+      hi = std::max(hi, x);
+    }
+  if (!(hi > lo)) hi = lo + 1;
+  const auto n = static_cast<std::size_t>(std::max(1.0, options.columns_per_px * (hi - lo)));
+  for (const auto i : decimate_columns(px, py, lo, hi, n))
+    text.put(px[i], py[i]);
+  return text.take();
 }
 
 void draw_pins(Canvas& c, const std::vector<double>& px, const std::vector<double>& py,

@@ -51,6 +51,8 @@ struct Canvas {
 
 inline constexpr double tick_size = 11.5, label_size = 12.5, title_size = 13.5, legend_size = 11.5,
                         note_size = 11;
+/// A browser without the fonts asked for takes others, which are wider.
+inline constexpr double wide_fonts = 1.15;
 
 /// class and presentation attributes of a stroke or fill in palette colour k (or ink, faint).
 std::string stroke(int color, double width = 0, Dash dash = Dash::solid);
@@ -68,9 +70,10 @@ std::string axis_title(const Axis& a, int exponent = 0);
 /// data-x="lo hi log" and the label and unit that the readout shows.
 void axis_attributes(Canvas& c, const char* name, const Axis& a, const Scale& s);
 
-/// Path data of points, broken at nan. Appends what it drew to `seen` when given.
+/// Path data of points, broken at nan. Appends what it drew to `seen` when given. In the report long
+/// curves are written by their differences, in tenths of a px: half the size.
 std::string path_of(const std::vector<double>& px, const std::vector<double>& py, bool keep_all,
-                    bool increasing, double columns, std::vector<Point>* seen);
+                    bool increasing, const SvgOptions& options, std::vector<Point>* seen);
 /// Name, further values and point names of a curve as attributes for the readout.
 std::string readout_attributes(const Series& s, const std::vector<double>& px,
                                const std::vector<double>& py);

@@ -26,9 +26,6 @@ std::vector<LegendEntry> legend_entries(const Axes& a, const Colors& k) {
   return e;
 }
 
-/// A browser without the fonts asked for takes others, which are wider.
-constexpr double wide_fonts = 1.15;
-
 Box legend_size_of(const std::vector<LegendEntry>& entries) {
   if (entries.empty()) return {};
   double w = 0;
@@ -57,7 +54,7 @@ Box best_place(const Box& size, const Box& frame, const std::vector<Point>& seen
         if (p.x > t.x - 3 && p.x < t.right() + 3 && p.y > t.y - 3 && p.y < t.bottom() + 3) ++inside;
       double cost = 0.002 * (3 * iy + ix) + inside / (1.0 + static_cast<double>(seen.size()));
       for (const Box& o : taken)
-        cost += t.overlaps(o) ? 0.3 : 0;
+        cost += t.overlaps(o) ? 2 : 0;
       if (cost < least) {
         least = cost;
         best = t;

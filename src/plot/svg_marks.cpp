@@ -129,6 +129,35 @@ std::string readout_attributes(const Series& s, const std::vector<double>& px,
   return out + point_attributes(s, px, py);
 }
 
+namespace {
+
+/// A curve that runs one way but for less than one sees: exactly so, and to the right; others stay
+/// as they are.
+void from_left_to_right(std::vector<double>& px, std::vector<double>& py) {
+  constexpr double unseen = 0.3;  // px
+  for (const bool backward : {false, true}) {
+    if (backward) {
+      std::reverse(px.begin(), px.end());
+      std::reverse(py.begin(), py.end());
+    }
+    double most = -infinity, fall = 0;
+    for (const double x : px)
+      if (!std::isnan(x)) {
+        most = std::max(most, x);
+        fall = std::max(fall, most - x);
+      }
+    if (fall > unseen) continue;
+    most = -infinity;
+    for (double& x : px)
+      if (!std::isnan(x)) x = most = std::max(most, x);
+    return;
+  }
+  std::reverse(px.begin(), px.end());
+  std::reverse(py.begin(), py.end());
+}
+
+}  // namespace
+
 void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
                  std::vector<Point>& seen, std::vector<PinJob>& pins) {
   for (std::size_t i = 0; i < a.series.size(); ++i) {
@@ -140,9 +169,9 @@ void draw_series(Canvas& c, const Axes& a, const Colors& k, const Prepared& p,
       py[j] = j < s.y.size() ? ys(s.y[j]) : nan;
     }
     const bool keep = s.keep_all || !s.extra.empty() || !s.point_names.empty();
+    if (!keep) from_left_to_right(px, py);
     if (s.style.width > 0) {
-      const std::string d =
-          path_of(px, py, keep, is_increasing(px), c.options.columns_per_px, &seen);
+      const std::string d = path_of(px, py, keep, is_increasing(px), c.options, &seen);
       c.add("<path data-s=\"" + std::to_string(i) + "\"" +
             (s.right_axis ? " data-right=\"1\"" : ""));
       std::string paint = stroke(k.series[i], s.style.width, s.style.dash);
@@ -243,32 +272,76 @@ void draw_rules(Canvas& c, const Axes& a, const Prepared& p, const Box& b) {
   }
 }
 
-void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame,
-               std::vector<Box>& taken, const std::vector<Point>& seen) {
-  const double w = text_width(text, note_size);
+namespace {
+
+/// As a browser may set it.
+double note_width(const std::string& text) { return wide_fonts * text_width(text, note_size); }
+
+bool is_free(const Box& t, const std::vector<Box>& taken) {
+  return std::none_of(taken.begin(), taken.end(), [&](const Box& o) { return t.overlaps(o); });
+}
+
+bool inside(const Box& t, const Box& frame) {
+  return t.x >= frame.x + 2 && t.right() <= frame.right() - 2 && t.y >= frame.y + 2 &&
+         t.bottom() <= frame.bottom() - 2;
+}
+
+/// What a text would hide: other texts above all, then the frame's edge, then curves.
+double hidden_by(const Box& t, const Box& frame, const std::vector<Box>& taken,
+                 const std::vector<Point>& seen) {
+  double cost = inside(t, frame) ? 0 : 20;
+  for (const Box& o : taken)
+    cost += t.overlaps(o) ? 10 : 0;
+  for (const Point& q : seen)
+    cost +=
+        q.x > t.x - 2 && q.x < t.right() + 2 && q.y > t.y - 1 && q.y < t.bottom() + 1 ? 0.12 : 0;
+  return cost;
+}
+
+/// Beside a point, where it hides least.
+Box place_beside(const Point& p, double w, const Box& frame, const std::vector<Box>& taken,
+                 const std::vector<Point>& seen) {
   Box at;
   double best = infinity;
-  for (const double reach : {9.0, 20.0, 34.0, 50.0})
+  for (const double reach : {9.0, 20.0, 34.0, 50.0, 70.0, 95.0})
     for (const auto& [sx, sy] :
          {std::pair{1.0, -1.0}, {-1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}, {0.0, -1.2}, {0.0, 1.2}}) {
       const Box t{sx > 0   ? p.x + reach
                   : sx < 0 ? p.x - reach - w
                            : p.x - w / 2,
                   p.y + sy * reach - 7, w, 14};
-      double cost = reach * 0.02;
-      for (const auto& o : taken)
-        cost += t.overlaps(o) ? 10 : 0;
-      if (t.x < frame.x + 2 || t.right() > frame.right() - 2 || t.y < frame.y + 2 ||
-          t.bottom() > frame.bottom() - 2)
-        cost += 20;
-      for (const auto& q : seen)
-        cost += q.x > t.x - 2 && q.x < t.right() + 2 && q.y > t.y - 1 && q.y < t.bottom() + 1 ? 0.12
-                                                                                              : 0;
-      if (cost < best) {
-        best = cost;
-        at = t;
-      }
+      const double cost = reach * 0.02 + hidden_by(t, frame, taken, seen);
+      if (cost >= best) continue;
+      best = cost;
+      at = t;
     }
+  return at;
+}
+
+/// At a place, or as near to it as there is room.
+Box place_near(const Box& wanted, const Box& frame, const std::vector<Box>& taken,
+               const std::vector<Point>& seen) {
+  if (hidden_by(wanted, frame, taken, seen) == 0.0) return wanted;
+  Box at = wanted;
+  double best = infinity;
+  for (int rows = -6; rows <= 6; ++rows)
+    for (const double column : {0.0, -0.5, 0.5, -1.1, 1.1}) {
+      const Box t{wanted.x + column * wanted.w, wanted.y + 15.0 * rows, wanted.w, wanted.h};
+      const double cost = std::abs(rows) + 0.8 * std::abs(column) + (rows > 0 ? 0 : 0.1) +
+                          10 * hidden_by(t, frame, taken, seen);
+      if (cost >= best) continue;
+      best = cost;
+      at = t;
+    }
+  return at;
+}
+
+}  // namespace
+
+void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& frame,
+               std::vector<Box>& taken, const std::vector<Point>& seen) {
+  const double w = note_width(text);
+  const Box at = place_beside(p, w, frame, taken, seen);
   taken.push_back(at);
   c.add("<g class=\"pin\" data-p=\"" + number_text(p.x) + " " + number_text(p.y) + "\">");
   c.line(p.x, p.y, std::clamp(p.x, at.x, at.right()), at.y + at.h / 2 < p.y ? at.bottom() : at.y,
@@ -284,7 +357,7 @@ void draw_note(Canvas& c, const Point& p, const std::string& text, const Box& fr
   c.attr("width", at.w + 4);
   c.attr("height", at.h);
   c.add(" " + paper_fill() + " fill-opacity=\"0.8\"/>");
-  c.text(at.x, at.y + 11, text, note_size);
+  c.text(at.x + at.w / 2, at.y + 11, text, note_size, "middle");
   c.add("</g>\n");
 }
 
@@ -292,14 +365,13 @@ void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::
                 const std::vector<Point>& seen) {
   for (const auto& r : a.rules) {
     if (r.label.empty()) continue;
-    const double v = r.vertical ? p.x(r.value) : p.y(r.value), w = text_width(r.label, note_size);
+    const double v = r.vertical ? p.x(r.value) : p.y(r.value), w = note_width(r.label);
     if (std::isnan(v) || (r.vertical ? v < b.x || v > b.right() : v < b.y || v > b.bottom()))
       continue;
     Box at = r.vertical ? Box{v + 3, b.y + 3, w, 14} : Box{b.right() - w - 4, v - 15, w, 14};
     if (r.vertical && at.right() > b.right()) at.x = v - w - 3;
-    for (int k = 0; k < 6 && std::any_of(taken.begin(), taken.end(),
-                                         [&](const Box& o) { return at.overlaps(o); });
-         ++k) {
+    const double most = r.vertical ? b.h / 14 - 1 : b.w / (w + 10) - 1;
+    for (int k = 0; k < most && !is_free(at, taken); ++k) {
       if (r.vertical)
         at.y += 14;
       else
@@ -312,15 +384,14 @@ void draw_notes(Canvas& c, const Axes& a, const Prepared& p, const Box& b, std::
     c.add("</g>\n");
   }
   for (const auto& n : a.notes) {
-    const double x = p.x(n.x), y = (n.right_axis ? p.r : p.y)(n.y),
-                 w = text_width(n.text, note_size);
+    const double x = p.x(n.x), y = (n.right_axis ? p.r : p.y)(n.y), w = note_width(n.text);
     if (std::isnan(x) || std::isnan(y) || x < b.x - 1 || x > b.right() + 1 || y < b.y - 1 ||
         y > b.bottom() + 1)
       continue;
     if (n.leader)
       draw_note(c, {x, y}, n.text, b, taken, seen);
     else {
-      const Box at{x + n.dx, y + n.dy - 11, w, 14};
+      const Box at = place_near({x + n.dx, y + n.dy - 11, w, 14}, b, taken, seen);
       taken.push_back(at);
       c.add("<g class=\"pin\" data-p=\"" + number_text(x) + " " + number_text(y) + "\">");
       c.text(at.x, at.y + 11, n.text, note_size);

@@ -21,6 +21,7 @@ class PolarDrawing {
     return {cx_ + r * std::cos(f), cy_ - r * std::sin(f)};
   }
   void begin();
+  void put_label(const Point& p, const std::string& text, double size);
   void draw_grid();
   void draw_curve(std::size_t i);
   void draw_radii();
@@ -35,6 +36,7 @@ class PolarDrawing {
   double step_ = 1, full_ = 1;                ///< between circles, of the outermost one
   double top_ = 0, R_ = 0, cx_ = 0, cy_ = 0;  ///< px
   std::vector<Point> seen_;
+  std::vector<Box> taken_;  ///< by texts
 };
 
 PolarDrawing::PolarDrawing(Canvas& c, const Axes& a, const Box& cell)
@@ -76,11 +78,18 @@ void PolarDrawing::begin() {
     c_.text(cell_.x + 8, cell_.y + top_ - 9, a_.title, title_size, "start", "font-weight=\"600\"");
 }
 
+/// A text about a point.
+void PolarDrawing::put_label(const Point& p, const std::string& text, double size) {
+  const double w = wide_fonts * text_width(text, size);
+  taken_.push_back({p.x - w / 2, p.y - 7, w, 14});
+  c_.text(p.x, p.y + 4, text, size, "middle");
+}
+
 void PolarDrawing::draw_grid() {
   for (int deg = 0; deg < 360; deg += 30) {
     const Point p = place(deg, R_), q = place(deg, R_ + 15);
     c_.line(cx_, cy_, p.x, p.y, stroke(faint, 0.8));
-    c_.text(q.x, q.y + 4, std::to_string(deg) + "°", tick_size, "middle");
+    put_label(q, std::to_string(deg) + "°", tick_size);
   }
   for (double r = step_; r < full_ * 1.001; r += step_) {
     c_.add("<circle");
@@ -105,8 +114,8 @@ void PolarDrawing::draw_curve(std::size_t i) {
   if (s.style.width > 0)
     c_.add("<path data-s=\"" + std::to_string(i) + "\"" + rest + " " +
            stroke(colors_.series[i], s.style.width, s.style.dash) +
-           " stroke-linejoin=\"round\" d=\"" +
-           path_of(px, py, keep, false, c_.options.columns_per_px, &seen_) + "\"/>\n");
+           " stroke-linejoin=\"round\" d=\"" + path_of(px, py, keep, false, c_.options, &seen_) +
+           "\"/>\n");
   draw_pins(c_, px, py, s.style, colors_.series[i], static_cast<int>(i), false,
             s.style.width > 0 ? std::string(" data-quiet=\"1\"") : rest);
 }
@@ -116,7 +125,7 @@ void PolarDrawing::draw_radii() {
   for (double r = step_; r < full_ * 1.001; r += step_) {
     const Point p = place(a_.clockwise ? -15 : 15, R_ * r / full_);
     const auto n = static_cast<std::size_t>(std::lround(r / step_));
-    if (n < ticks_.labels.size()) c_.text(p.x, p.y + 4, ticks_.labels[n], tick_size - 1, "middle");
+    if (n < ticks_.labels.size()) put_label(p, ticks_.labels[n], tick_size - 1);
   }
 }
 
@@ -129,10 +138,9 @@ void PolarDrawing::draw() {
     draw_curve(i);
   c_.add("</g>\n");
   draw_radii();
-  std::vector<Box> taken;
   const Box inside{cx_ - R_ - 30, cy_ - R_, 2 * R_ + 60, 2 * R_};
   for (const auto& n : a_.notes)
-    draw_note(c_, place(n.x, R_ * n.y / full_), n.text, inside, taken, seen_);
+    draw_note(c_, place(n.x, R_ * n.y / full_), n.text, inside, taken_, seen_);
   c_.text(cx_, cy_ + R_ + 40, axis_title(a_.y, ticks_.exponent) + ", " + a_.x.label, label_size,
           "middle");
   draw_legend(c_, entries_, cell_, seen_, {},

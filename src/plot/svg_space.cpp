@@ -2,6 +2,7 @@
 // is turned.
 #include <plot/svg_draw.hpp>
 #include <core/text.hpp>
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
@@ -108,6 +109,7 @@ class SpaceDrawing {
   Edge edge_of(Index d) const;
   void draw_axis(Index d);
   double draw_ticks(Index d, const Edge& edge);
+  void append_motion(std::string& to, const std::array<Complex, 3>& motion) const;
   void draw_curve(std::size_t i);
 
   Canvas& c_;
@@ -123,6 +125,7 @@ class SpaceDrawing {
   std::array<double, 3> back_{};       ///< where the faces behind the data stand
   std::array<Ticks, 3> ticks_;
   std::vector<Point> seen_;
+  std::vector<Box> labels_;  ///< of the ticks
 };
 
 SpaceDrawing::SpaceDrawing(Canvas& c, const Axes& a, const Box& cell)
@@ -247,8 +250,16 @@ double SpaceDrawing::draw_ticks(Index d, const Edge& edge) {
     w[d] = scale_[at(d)](ticks.major[i]);
     const Point t = px(w);
     c_.line(t.x, t.y, t.x + 4 * edge.ox, t.y + 4 * edge.oy, stroke(ink, 0.9));
-    c_.text(t.x + 9 * edge.ox, t.y + 11 * edge.oy + 4, ticks.labels[i], tick_size - 0.5,
-            anchor_of(edge.ox));
+    const char* anchor = anchor_of(edge.ox);
+    const double x = t.x + 9 * edge.ox, y = t.y + 11 * edge.oy + 4;
+    const double width = wide_fonts * text_width(ticks.labels[i], tick_size);
+    const double left = x - width * (anchor[0] == 's' ? 0.0 : anchor[0] == 'e' ? 1.0 : 0.5);
+    const Box label{left, y - 10, width, 12};
+    if (std::any_of(labels_.begin(), labels_.end(),
+                    [&](const Box& o) { return label.overlaps(o); }))
+      continue;  // axes that meet: one of the two labels stands there
+    labels_.push_back(label);
+    c_.text(x, y, ticks.labels[i], tick_size - 0.5, anchor);
     widest = std::max(widest, text_width(ticks.labels[i], tick_size));
   }
   return widest;
@@ -273,20 +284,33 @@ void SpaceDrawing::draw_axis(Index d) {
             anchor_of(edge.ox));
 }
 
+/// Real and imaginary parts in units of the box.
+void SpaceDrawing::append_motion(std::string& to, const std::array<Complex, 3>& motion) const {
+  for (std::size_t d = 0; d < 3; ++d) {
+    const double unit = 2 * scale_[d].p1 / (scale_[d].hi - scale_[d].lo);
+    for (const double part : {motion[d].real(), motion[d].imag()}) {
+      append_number(to, unit * part, 4);
+      to += ' ';
+    }
+  }
+}
+
 void SpaceDrawing::draw_curve(std::size_t i) {
   const SpaceSeries& s = a_.space[i];
   std::vector<Vec3> p(s.x.size());
   for (std::size_t j = 0; j < p.size(); ++j)
     p[j] = {scale_[0](s.x[j]), scale_[1](s.y[j]), scale_[2](s.z[j])};
   std::vector<double> qx, qy;
-  std::string xyz;
+  std::string xyz, motion;
   for (const std::size_t j : thin(p)) {
     if (std::isnan(p[j].x() + p[j].y() + p[j].z())) {
       qx.push_back(nan);
       qy.push_back(nan);
       xyz += "| ";
+      if (!s.motion.empty()) motion += "| ";
       continue;
     }
+    if (!s.motion.empty()) append_motion(motion, s.motion[j]);
     const Point q = px(p[j]);
     qx.push_back(q.x);
     qy.push_back(q.y);
@@ -296,10 +320,15 @@ void SpaceDrawing::draw_curve(std::size_t i) {
     }
   }
   if (!xyz.empty()) xyz.pop_back();
-  std::string d = path_of(qx, qy, true, false, 1, &seen_);
+  if (!motion.empty()) motion.pop_back();
+  std::string d = path_of(qx, qy, true, false, c_.options, &seen_);
   if (s.closed_fill) d += "Z";
   const int color = colors_.space[i];
-  const std::string name = "data-name=\"" + escape(s.label) + "\" data-xyz=\"" + xyz + "\"";
+  std::string name = "data-name=\"" + escape(s.label) + "\" data-xyz=\"" + xyz + "\"" +
+                     (motion.empty() ? "" : " data-motion=\"" + motion + "\"");
+  if (s.played)
+    name += fmt::format(" data-played=\"{} {} {}\"", s.played->from, s.played->to,
+                        s.played->trails ? 1 : 0);
   c_.add("<path data-s=\"" + std::to_string(i) + "\" " + name + " " +
          (s.closed_fill ? "data-quiet=\"1\" " : ""));
   if (s.closed_fill)

@@ -90,8 +90,8 @@ struct ShapeDrawing {
   const VecXc* a = nullptr;
   analysis::ModeKind kind = analysis::ModeKind::lateral;
 };
-/// Adds a figure for each line that moves: lateral shapes in space and in two planes, twist and
-/// axial motion against position.
+/// Adds the figure of a shape: lateral ones in space and in two planes, all lines where they stand
+/// and on one scale; twist and axial motion against position.
 void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d);
 /// Frames of one period where [[output.vtk]] asks for this step. amplitude: factor on the shape; 0
 /// = such that the largest displacement is a twentieth of the rotor's length (times

@@ -1,8 +1,9 @@
 // Tracking filter of a transient's probes: CSV turn by turn, Bode and polar figures against speed,
-// response peaks, orbits with keyphasor marks. Memory is bounded: long runs are thinned for the
-// figures, the CSV holds every turn.
+// orders, the path of the shaft's centre, response peaks, orbits with keyphasor marks. Every shaft
+// has its own keyphasor; casings are looked at by that of the reference. Memory is bounded: long
+// runs are thinned for the figures, the CSV holds every turn.
 #include <analysis/spectra/whirl_modes.hpp>
-#include <analysis/transient/revolutions.hpp>
+#include <analysis/transient/order_filter.hpp>
 #include <plot/plots.hpp>
 #include <results/plot_buffer.hpp>
 #include <results/transient_output.hpp>
@@ -87,9 +88,16 @@ bool speed_changes(const std::vector<std::vector<double>>& rows) {
   return high - low > 0.02 * std::max(std::abs(low), std::abs(high));
 }
 
+/// A shaft and the probes that its keyphasor serves.
+struct Keyphasor {
+  Index node = 0;                   ///< whose angle it sees
+  std::string shaft;                ///< empty: the reference
+  std::vector<std::size_t> probes;  ///< of the model
+};
+
 class KeyphasorOutput final : public TransientOutput {
  public:
-  explicit KeyphasorOutput(const TransientSetup& s);
+  KeyphasorOutput(const TransientSetup& s, const Keyphasor& keyphasor);
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     observers.push_back(&revolutions_);
     parts.add_output({run::Part::keyphasor, content_}, *this);
@@ -99,6 +107,7 @@ class KeyphasorOutput final : public TransientOutput {
   void save(OutArchive& out);
   void restore(InArchive& in);
   void close() override {
+    filter_.end();
     if (sink_) sink_->close();
   }
   void report(TransientEnd& end) override;
@@ -121,7 +130,7 @@ class KeyphasorOutput final : public TransientOutput {
     std::vector<double> y, z;
   };
   void add_probe(const model::Probe& probe, double sense);
-  void take(const analysis::Turn& turn);
+  void take(const analysis::Turn& turn, std::span<const Complex> y, std::span<const Complex> z);
   void take_orbit(std::size_t probe, const analysis::Turn& turn);
   Orbit last_turns(std::size_t probe, double t, double speed, double size) const;
   std::size_t column(std::size_t probe, std::size_t direction, std::size_t what) const;
@@ -129,46 +138,85 @@ class KeyphasorOutput final : public TransientOutput {
   double largest_envelope(std::size_t probe) const;
   void add_synchronous(io::ReportSection& section, std::size_t probe, double size) const;
   void add_bode(io::ReportSection& section, std::size_t probe, double size) const;
+  void add_orders(io::ReportSection& section, std::size_t probe, double size) const;
+  void add_centreline(const TransientEnd& end, std::size_t probe, double size) const;
+  std::string file(const char* what) const;
+  std::string speed_name() const { return shaft_.empty() ? "speed" : "speed of " + shaft_; }
   void add_peaks(run::Job& job, io::ReportSection& section) const;
   void add_orbits(run::Job& job, io::ReportSection& section) const;
 
   static constexpr std::size_t most_orbits = 64;
   const model::Output& out_;
   const plot::Amplitude convention_ = plot::amplitude(out_.peak_to_peak);
-  std::string step_, content_;  ///< content_: what decides whether a part of a checkpoint fits
+  std::string step_, shaft_, content_;  ///< content_: whether a part of a checkpoint fits
   std::vector<Tracked> probes_;
+  std::vector<double> filtered_;  ///< orders asked for, and the first if it is not among them
+  std::size_t first_ = 0;         ///< of filtered_: order 1
   std::size_t per_direction_ = 0, columns_ = 0;
   io::TimeSeriesPtr sink_;
   PlotBuffer rows_;
   std::vector<double> row_, direction_values_;
   std::vector<std::vector<Orbit>> recent_;  ///< [probe] last turns
   std::vector<Orbit> largest_, passed_;
-  double last_speed_ = nan;
+  double last_speed_ = nan;  ///< of the orbits
+  analysis::OrderFilter filter_;
   analysis::Revolutions revolutions_;
 };
 
-KeyphasorOutput::KeyphasorOutput(const TransientSetup& s)
+std::vector<double> orders_with_the_first(std::vector<double> orders) {
+  if (std::find(orders.begin(), orders.end(), 1.0) == orders.end()) orders.push_back(1.0);
+  return orders;
+}
+
+std::vector<analysis::Point> points_of(const run::Job& job, const Keyphasor& keyphasor) {
+  const std::vector<analysis::Point> all = probe_points(job);
+  std::vector<analysis::Point> points;
+  for (const std::size_t p : keyphasor.probes)
+    points.push_back(all[p]);
+  return points;
+}
+
+KeyphasorOutput::KeyphasorOutput(const TransientSetup& s, const Keyphasor& keyphasor)
     : out_(s.job.model.output),
       step_(s.step.name),
+      shaft_(keyphasor.shaft),
+      filtered_(orders_with_the_first(out_.tracking.orders)),
+      first_(static_cast<std::size_t>(std::find(filtered_.begin(), filtered_.end(), 1.0) -
+                                      filtered_.begin())),
       rows_(0),
-      revolutions_(probe_points(s.job), s.job.reference(), out_.tracking.samples,
-                   [this](const analysis::Turn& t) { take(t); }) {
+      filter_(keyphasor.probes.size(), filtered_, out_.tracking.samples,
+              out_.tracking.filter_turns(),
+              [this](const analysis::Turn& t, std::span<const Complex> y,
+                     std::span<const Complex> z) { take(t, y, z); }),
+      revolutions_(points_of(s.job, keyphasor), keyphasor.node, out_.tracking.samples,
+                   [this](const analysis::Turn& t) {
+                     for (std::size_t p = 0; p < probes_.size(); ++p)
+                       take_orbit(p, t);
+                     last_speed_ = t.speed();
+                     filter_.take(t);
+                   }) {
   per_direction_ = 2 * out_.tracking.orders.size() + 2;
   columns_ = 2;  // t, speed
-  content_ = fmt::format("{}", out_.tracking.samples);
+  content_ =
+      fmt::format("{} filter {} {}", out_.tracking.samples, out_.tracking.filter_turns(), shaft_);
   for (double order : out_.tracking.orders)
     content_ += fmt::format(" {}X", order);
   for (double speed : out_.tracking.orbit_speeds)
     content_ += fmt::format(" @{}", speed);
   content_ += fmt::format(" turns {}", out_.tracking.orbit_turns);
   const std::vector<double> senses = probe_senses(s.job, s.start);
-  for (std::size_t p = 0; p < senses.size(); ++p)
-    add_probe(s.job.model.probes[p], senses[p]);
+  for (const std::size_t p : keyphasor.probes)
+    add_probe(s.job.model.probes[p], shaft_.empty() ? senses[p] : 1.0);
   row_.resize(columns_);
   rows_ = PlotBuffer(columns_ - 1, 2);  // whole rows alone are wanted
   recent_.resize(probes_.size());
   largest_.resize(probes_.size());
-  if (out_.csv) sink_ = io::make_csv_series(s.job.folder.path(step_ + "_tracking.csv"));
+  if (out_.csv) sink_ = io::make_csv_series(s.job.folder.path(file("tracking.csv")));
+}
+
+std::string KeyphasorOutput::file(const char* what) const {
+  return shaft_.empty() ? fmt::format("{}_{}", step_, what)
+                        : fmt::format("{}_{}_{}", step_, safe_name(shaft_), what);
 }
 
 void KeyphasorOutput::add_probe(const model::Probe& probe, double sense) {
@@ -226,19 +274,19 @@ void KeyphasorOutput::begin() {
   if (sink_) sink_->begin(channels());
 }
 
-void KeyphasorOutput::take(const analysis::Turn& turn) {
-  const double speed = turn.speed(), t = 0.5 * (turn.t0 + turn.t1);
-  row_[0] = t;
-  row_[1] = speed;
+void KeyphasorOutput::take(const analysis::Turn& turn, std::span<const Complex> y,
+                           std::span<const Complex> z) {
+  const std::size_t all = filtered_.size();
+  row_[0] = 0.5 * (turn.t0 + turn.t1);
+  row_[1] = turn.speed();
   for (std::size_t p = 0; p < probes_.size(); ++p) {
-    const std::vector<double>&y = turn.y[p], &z = turn.z[p];
     double* out = row_.data() + probes_[p].column;
-    direction_values_.resize(y.size());
+    direction_values_.resize(turn.y[p].size());
     for (const Direction& d : probes_[p].directions) {
-      for (std::size_t j = 0; j < y.size(); ++j)
-        direction_values_[j] = d.c * y[j] + d.s * z[j];
-      for (double k : out_.tracking.orders) {
-        const Complex x = analysis::synchronous(turn, direction_values_, static_cast<int>(k));
+      for (std::size_t j = 0; j < direction_values_.size(); ++j)
+        direction_values_[j] = d.c * turn.y[p][j] + d.s * turn.z[p][j];
+      for (std::size_t k = 0; k < out_.tracking.orders.size(); ++k) {
+        const Complex x = d.c * y[p * all + k] + d.s * z[p * all + k];
         *out++ = std::abs(x);
         *out++ = analysis::lag_of(turn, x);
       }
@@ -246,14 +294,12 @@ void KeyphasorOutput::take(const analysis::Turn& turn) {
       *out++ = 0.5 * (r.high - r.low);
       *out++ = r.mean;
     }
-    // against the angle of the reference, so that a rotor may turn either way
-    const analysis::Orbit circles = analysis::orbit_of(
-        analysis::synchronous(turn, y, 1), analysis::synchronous(turn, z, 1), probes_[p].sense);
+    // against the angle of the shaft, so that it may turn either way
+    const analysis::Orbit circles =
+        analysis::orbit_of(y[p * all + first_], z[p * all + first_], probes_[p].sense);
     *out++ = circles.forward;
     *out++ = circles.backward;
-    take_orbit(p, turn);
   }
-  last_speed_ = speed;
   rows_.append(row_);
   if (sink_) sink_->append(row_);
 }
@@ -306,6 +352,7 @@ void KeyphasorOutput::save(OutArchive& out) {
     put(r);
   put(largest_);
   put(passed_);
+  filter_.save(out);
   revolutions_.save(out);
 }
 
@@ -329,6 +376,7 @@ void KeyphasorOutput::restore(InArchive& in) {
     get(r);
   get(largest_);
   get(passed_);
+  filter_.restore(in);
   revolutions_.restore(in);
 }
 
@@ -336,7 +384,9 @@ void KeyphasorOutput::report(TransientEnd& end) {
   if (!out_.report) return;
   const auto& rows = rows_.kept_rows();
   if (rows.size() < 3) return;
-  if (sink_) end.section.files.emplace_back("tracking filter", step_ + "_tracking.csv");
+  if (sink_)
+    end.section.files.emplace_back(
+        shaft_.empty() ? "tracking filter" : "tracking filter of " + shaft_, file("tracking.csv"));
   for (std::size_t p = 0; p < probes_.size(); ++p) {
     const double size = largest_envelope(p);
     if (size == 0.0) continue;  // torsion alone: nothing to see here
@@ -344,6 +394,8 @@ void KeyphasorOutput::report(TransientEnd& end) {
       add_bode(end.section, p, size);
     else
       add_synchronous(end.section, p, size);
+    add_orders(end.section, p, size);
+    add_centreline(end, p, size);
   }
   add_peaks(end.job, end.section);
   add_orbits(end.job, end.section);
@@ -427,6 +479,10 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
   bode.axes[1].y.min = 0.0;
   bode.axes[1].y.max = 360.0;
   bode.axes[1].y.ticks = {0, 90, 180, 270, 360};
+  bode.axes[1].x.label = speed_name();
+  bode.caption = fmt::format(
+      "Filter of {} turn{}: half of what is {:.3g} orders away.", out_.tracking.filter_turns(),
+      out_.tracking.filter_turns() == 1 ? "" : "s", 0.5 * out_.tracking.bandwidth);
   section.figures.push_back(std::move(bode));
   section.figures.push_back(plot::plot_polar(
       id + "_polar", probe.name + ": " + order + " vector (polar)", curves, convention_));
@@ -434,15 +490,121 @@ void KeyphasorOutput::add_bode(io::ReportSection& section, std::size_t p, double
       plot::plot_bode(id + "_envelope", probe.name + ": envelope (all frequencies) against speed",
                       envelope, convention_);
   all.axes.resize(1);
+  all.axes[0].x.label = speed_name();
   all.height = 360;
   section.figures.push_back(std::move(all));
+}
+
+/// All orders that are more than a thousandth of the motion, against speed or time.
+void KeyphasorOutput::add_orders(io::ReportSection& section, std::size_t p, double size) const {
+  const auto& rows = rows_.kept_rows();
+  const bool by_speed = speed_changes(rows);
+  const plot::DisplayUnit unit = plot::length_unit(size);
+  const double factor = unit.factor * plot::factor_of(convention_);
+  plot::Axes a;
+  a.x = by_speed ? plot::Axis(speed_name(), "rpm") : plot::Axis("time", "s");
+  a.y = plot::Axis(std::string("amplitude, ") + plot::to_string(convention_), unit.name);
+  a.y.include_zero = true;
+  std::size_t shown = 0;
+  for (std::size_t k = 0; k < out_.tracking.orders.size(); ++k) {
+    bool counts = false;
+    for (std::size_t d = 0; d < probes_[p].directions.size(); ++d) {
+      plot::Series s;
+      s.label = fmt::format("{} {}X", probes_[p].directions[d].name, out_.tracking.orders[k]);
+      s.style = {static_cast<int>(k), d == 0 ? plot::Dash::solid : plot::Dash::dashed, 1.2};
+      for (const auto& r : rows) {
+        s.x.push_back(by_speed ? to_rpm(r[1]) : r[0]);
+        s.y.push_back(factor * r[column(p, d, 2 * k)]);
+        counts = counts || r[column(p, d, 2 * k)] > 1e-3 * size;
+      }
+      if (counts) a.series.push_back(std::move(s));
+    }
+    shown += counts;
+  }
+  if (shown < 2) return;
+  plot::Figure f;
+  f.name = step_ + "_" + safe_name(probes_[p].name) + "_orders";
+  f.title = probes_[p].name + ": orders of the speed";
+  f.height = 360;
+  f.axes.push_back(std::move(a));
+  section.figures.push_back(std::move(f));
+}
+
+/// Clearance of a film or stop at the place of a probe, m; 0: none there.
+double clearance_at(const run::Job& job, const std::string& probe) {
+  const auto found = std::find_if(job.model.probes.begin(), job.model.probes.end(),
+                                  [&](const model::Probe& x) { return x.name == probe; });
+  const Index node = job.mesh.place(found->at).node;
+  const system::State still = job.system().make_state();
+  system::Workspace w = job.system().make_workspace();
+  job.system().evaluate_nodes(w, still.frames, still.t, still.q, still.v, still.a);
+  for (const assembly::SupportCondition& c : job.built.conditions)
+    if (const meshes::BearingNodes& at = job.mesh.bearings[c.bearing]; at.shaft.node == node)
+      if (const auto x =
+              c.state([&](Index n) -> const system::NodeState& { return w.in_own_axes(n); });
+          x.gap > 0)
+        return x.gap;
+  return 0.0;
+}
+
+/// Where the middle of the orbit goes: what a journal in its film does while the speed changes.
+void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p, double size) const {
+  const Tracked& probe = probes_[p];
+  if (probe.directions.size() != 2 || probe.directions[0].name != "y") return;
+  const auto& rows = rows_.kept_rows();
+  const std::size_t y = column(p, 0, per_direction_ - 1), z = column(p, 1, per_direction_ - 1);
+  double path = 0, most = 0;
+  for (const auto& r : rows) {
+    path = std::max(path, std::hypot(r[y] - rows.front()[y], r[z] - rows.front()[z]));
+    most = std::max(most, std::hypot(r[y], r[z]));
+  }
+  const double gap = clearance_at(end.job, probe.name);
+  if (!(path > 0.05 * size) && !(gap > 0 && path > 0.01 * gap)) return;
+  const plot::DisplayUnit unit = plot::length_unit(std::max(most, gap));
+  plot::Axes a;
+  a.x = plot::Axis("y, mean of the turn", unit.name);
+  a.y = plot::Axis("z, mean of the turn", unit.name);
+  a.equal_aspect = true;
+  plot::Series s;
+  s.trace_label = "centre of the shaft";
+  plot::Extra speed{speed_name(), "rpm", {}};
+  const std::size_t stride = 1 + rows.size() / 1500;
+  for (std::size_t r = 0; r < rows.size(); r += stride) {
+    s.x.push_back(unit.factor * rows[r][y]);
+    s.y.push_back(unit.factor * rows[r][z]);
+    speed.values.push_back(to_rpm(rows[r][1]));
+  }
+  s.extra.push_back(std::move(speed));
+  for (const std::size_t r : {std::size_t{0}, turning_row(rows), rows.size() - 1})
+    if (r == 0 || std::hypot(rows[r][y] - rows[0][y], rows[r][z] - rows[0][z]) > 0.1 * path)
+      a.notes.push_back({unit.factor * rows[r][y], unit.factor * rows[r][z],
+                         fmt::format("{:.4g} s, {:.4g} rpm", rows[r][0], to_rpm(rows[r][1]))});
+  a.series.push_back(std::move(s));
+  if (gap > 0) {
+    plot::Series circle;
+    circle.label = "clearance";
+    circle.style = {plot::ink, plot::Dash::dashed, 1.0};
+    for (int k = 0; k <= 120; ++k) {
+      circle.x.push_back(unit.factor * gap * std::cos(two_pi * k / 120));
+      circle.y.push_back(unit.factor * gap * std::sin(two_pi * k / 120));
+    }
+    a.series.push_back(std::move(circle));
+  }
+  plot::Figure f;
+  f.name = step_ + "_" + safe_name(probe.name) + "_centreline";
+  f.title = probe.name + ": path of the shaft's centre";
+  f.width = 560;
+  f.height = 520;
+  f.axes.push_back(std::move(a));
+  end.section.figures.push_back(std::move(f));
 }
 
 void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section) const {
   const auto& rows = rows_.kept_rows();
   if (!speed_changes(rows)) return;
   io::Table t;
-  t.title = fmt::format("Peaks of the {}X response", out_.tracking.orders.front());
+  t.title = fmt::format("Peaks of the {}X response{}", out_.tracking.orders.front(),
+                        shaft_.empty() ? "" : " to shaft " + shaft_);
   t.columns = {{"probe", "-", ""},   {"direction", "-", ""},        {"speed is", "-", ""},
                {"speed", "rpm", ""}, {"amplitude 0-peak", "m", ""}, {"phase lag", "deg", ""},
                {"time", "s", ""}};
@@ -462,9 +624,9 @@ void KeyphasorOutput::add_peaks(run::Job& job, io::ReportSection& section) const
         }
       }
   if (t.rows.empty()) return;
-  job.folder.write_table(step_ + "_response_peaks.csv", t);
+  job.folder.write_table(file("response_peaks.csv"), t);
   section.tables.push_back(std::move(t));
-  section.files.emplace_back("peaks of the response", step_ + "_response_peaks.csv");
+  section.files.emplace_back("peaks of the response", file("response_peaks.csv"));
 }
 
 void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) const {
@@ -519,17 +681,44 @@ void KeyphasorOutput::add_orbits(run::Job& job, io::ReportSection& section) cons
           id + "_orbits", probes_[p].name + ": orbits at given speeds", at_speeds));
   }
   if (!t.rows.empty()) {
-    job.folder.write_table(step_ + "_orbits.csv", t);
-    section.files.emplace_back("orbits", step_ + "_orbits.csv");
+    job.folder.write_table(file("orbits.csv"), t);
+    section.files.emplace_back("orbits", file("orbits.csv"));
   }
+}
+
+/// Every shaft that turns by itself has its own; lines on a joint with that of the reference, casings
+/// and supports are seen by the reference's.
+std::vector<Keyphasor> keyphasors_of(const run::Job& job) {
+  const auto line_of = [&](Index node) { return job.mesh.nodes[at(node)].line; };
+  const Index reference = line_of(job.reference());
+  const auto joined = [&](Index line) {
+    return std::any_of(job.model.joints.begin(), job.model.joints.end(),
+                       [&](const model::Joint& j) {
+                         return j.at.shaft == at(line) || (j.to && j.to->shaft == at(line));
+                       });
+  };
+  std::vector<Keyphasor> all{{job.reference(), {}, {}}};
+  for (std::size_t p = 0; p < job.model.probes.size(); ++p) {
+    const Index line = line_of(job.mesh.place(job.model.probes[p].at).node);
+    const bool own =
+        line >= 0 && line != reference && job.mesh.lines[at(line)].rotating && !joined(line);
+    const std::string shaft = own ? job.mesh.lines[at(line)].name : "";
+    auto k =
+        std::find_if(all.begin(), all.end(), [&](const Keyphasor& x) { return x.shaft == shaft; });
+    if (k == all.end()) k = all.insert(all.end(), {job.mesh.lines[at(line)].first_node, shaft, {}});
+    k->probes.push_back(p);
+  }
+  std::erase_if(all, [](const Keyphasor& k) { return k.probes.empty(); });
+  return all;
 }
 
 }  // namespace
 
 void add_keyphasor(const TransientSetup& setup, TransientOutputs& outputs) {
   const model::Output& o = setup.job.model.output;
-  if (o.tracking.on && !setup.job.model.probes.empty() && (o.csv || o.report))
-    outputs.push_back(std::make_unique<KeyphasorOutput>(setup));
+  if (!o.tracking.on || setup.job.model.probes.empty() || !(o.csv || o.report)) return;
+  for (const Keyphasor& k : keyphasors_of(setup.job))
+    outputs.push_back(std::make_unique<KeyphasorOutput>(setup, k));
 }
 
 }  // namespace whirl::results

@@ -1,13 +1,16 @@
 // Where a motion in time leaves what its supports are known for: tables held beyond their ends
 // (W12), films pressed further than they are believed (W03), gaps that small motions do not know
 // (W11).
-#include <results/transient_output.hpp>
+#include <results/clearances.hpp>
 #include <results/linear_limits.hpp>
+#include <results/transient_output.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 namespace whirl::results {
 
@@ -34,11 +37,13 @@ struct HeldTable {
 
 /// A gap or a film on its way.
 struct Gap {
-  const assembly::SupportCondition* condition;
-  meshes::BearingNodes at;
-  double size;  ///< m
+  std::size_t bearing;
+  std::string name;
+  Where where;
+  std::function<double(const assembly::NodeAt&)> reach;  ///< m, what counts against the gap
+  double size;                                           ///< m
   bool film;
-  double limit;        ///< m: displacement beyond which the law is not believed
+  double limit;        ///< m: displacement beyond which the law is not believed; infinite: none
   Extreme largest{};   ///< m
   double begin = nan;  ///< s: first step that ended beyond
 };
@@ -76,9 +81,22 @@ LimitWatch::LimitWatch(const run::Job& job, bool small_motion) {
   for (const assembly::SupportCondition& c : job.built.conditions) {
     const assembly::SupportCondition::State x = c.state(node);
     const meshes::BearingNodes& nodes = job.mesh.bearings[c.bearing];
-    if (!(x.gap > 0) || nodes.other.node < 0 || !(x.film || small_motion)) continue;
-    const double share = x.film ? assembly::SupportCondition::believed : 1.0;
-    gaps_.push_back({&c, nodes, x.gap, x.film, share * x.gap});
+    if (!(x.gap > 0) || nodes.other.node < 0) continue;
+    // a contact that closes is what it is for, unless the motion does not know it
+    const double share = x.film         ? assembly::SupportCondition::believed
+                         : small_motion ? 1.0
+                                        : infinity;
+    const auto apart = [nodes](const assembly::NodeAt& at) { return displacement_at(nodes, at); };
+    gaps_.push_back({c.bearing, c.name, c.where,
+                     c.reach ? c.reach : std::function<double(const assembly::NodeAt&)>(apart),
+                     x.gap, x.film, share * x.gap});
+  }
+  for (const std::size_t b : seals_of(job.model)) {
+    const meshes::BearingNodes nodes = job.mesh.bearings[b];
+    const double gap = seal_gap(job.model.bearings[b]);
+    gaps_.push_back({b, job.model.bearings[b].name, job.model.bearings[b].where,
+                     [nodes](const assembly::NodeAt& at) { return displacement_at(nodes, at); },
+                     gap, true, assembly::SupportCondition::believed * gap});
   }
 }
 
@@ -89,15 +107,9 @@ void LimitWatch::look(const analysis::Snapshot& s) {
     x.most = std::max(x.most, spin);
     if (std::isnan(x.begin) && (spin < x.low - x.slack || spin > x.high + x.slack)) x.begin = s.t();
   }
+  const assembly::NodeAt node = [&s](Index n) -> const system::NodeState& { return s.node(n); };
   for (Gap& x : gaps_) {
-    const system::NodeState& shaft = s.node(x.at.shaft.node);
-    const system::NodeState& other = s.node(x.at.other.node);
-    const Vec3 apart =
-        shaft.u + x.at.shaft.offset * shaft.t - other.u - x.at.other.offset * other.t;
-    const double displacement =
-        x.condition->reach
-            ? x.condition->reach([&](Index n) -> const system::NodeState& { return s.node(n); })
-            : apart.tail<2>().norm();
+    const double displacement = x.reach(node);
     x.largest.take(displacement, s.t());
     if (std::isnan(x.begin) && displacement > x.limit) x.begin = s.t();
   }
@@ -124,16 +136,34 @@ void LimitWatch::restore(InArchive& in) {
 class LimitsOutput final : public TransientOutput {
  public:
   explicit LimitsOutput(const TransientSetup& s) : watch_(s.job, s.law.linear) {
+    if (s.job.model.output.report && !watch_.gaps().empty()) watch_stations(s.job);
     for (const HeldTable& x : watch_.tables())
       content_ += fmt::format(" {} {} {}", x.bearing, x.low, x.high);
     for (const Gap& x : watch_.gaps())
-      content_ += fmt::format(" {} {}", x.condition->name, x.size);
+      content_ += fmt::format(" {} {}", x.name, x.size);
   }
   bool empty() const { return watch_.empty(); }
 
   void attach(std::vector<analysis::Observer*>& observers, run::Parts& parts) override {
     observers.push_back(&watch_);
     parts.add({run::Part::limits, content_}, watch_);
+    if (!stations_) return;
+    observers.push_back(&*stations_);
+    parts.add({run::Part::peaks, fmt::format("{} stations", stations_->peaks().size())},
+              *stations_);
+  }
+
+  void report(TransientEnd& end) override {
+    if (!stations_) return;
+    std::vector<double> reach;
+    for (const analysis::Peak& p : stations_->peaks())
+      reach.push_back(p.amplitude);
+    std::vector<UsedGap> used;
+    for (const Gap& x : watch_.gaps())
+      used.push_back(
+          {x.bearing, x.size, x.largest.value,
+           std::isnan(x.largest.time) ? "" : fmt::format("t = {:.5g} s", x.largest.time)});
+    add_clearances(end.job, end.section, end.step.name + "_clearances", end.step.name, reach, used);
   }
 
   void summarize(TransientEnd& end) override {
@@ -141,17 +171,24 @@ class LimitsOutput final : public TransientOutput {
     std::vector<ShortFilm> films;
     for (const Gap& x : watch_.gaps()) {
       judge_gap(end, x);
-      if (x.film) films.push_back({x.condition->bearing, x.largest.value / x.size});
+      if (x.film) films.push_back({x.bearing, x.largest.value / x.size});
     }
     warn_of_short_bearings(end.job, end.step.name, films);
   }
 
  private:
+  void watch_stations(const run::Job& job) {
+    std::vector<std::pair<std::string, analysis::Point>> points;
+    for (const analysis::Point& p : station_points(job))
+      points.emplace_back("", p);
+    stations_.emplace(std::move(points), job.reference());
+  }
   void judge_tables(TransientEnd& end) const;
   static void judge_gap(TransientEnd& end, const Gap& x);
 
   std::string content_;
   LimitWatch watch_;
+  std::optional<analysis::PeakTracker> stations_;  ///< for the clearance diagram
 };
 
 void LimitsOutput::judge_tables(TransientEnd& end) const {
@@ -189,21 +226,21 @@ void LimitsOutput::judge_tables(TransientEnd& end) const {
 }
 
 void LimitsOutput::judge_gap(TransientEnd& end, const Gap& x) {
-  io::Value& v = end.summary["gaps"][x.condition->name];
+  io::Value& v = end.summary["gaps"][x.name];
   v["gap [m]"] = x.size;
   v["largest displacement [m]"] = x.largest.value;
   v["at [s]"] = x.largest.time;
   if (std::isnan(x.begin)) return;
   v["beyond from [s]"] = x.begin;
   Diagnostic d;
-  d.where = x.condition->where;
+  d.where = x.where;
   if (end.law.linear) {
     d.code = "W11";
     d.message = fmt::format(
         "step '{}': at t = {:.6g} s the shaft is {:.4g} mm from the middle of '{}', whose {} is "
         "{:.4g} mm ({:.3g} times; first beyond at t = {:.6g} s): linear motion does not know it",
-        end.step.name, x.largest.time, 1e3 * x.largest.value, x.condition->name,
-        x.film ? "clearance" : "gap", 1e3 * x.size, x.largest.value / x.size, x.begin);
+        end.step.name, x.largest.time, 1e3 * x.largest.value, x.name, x.film ? "clearance" : "gap",
+        1e3 * x.size, x.largest.value / x.size, x.begin);
     d.hint = "without linear = true the step meets the contact or the film as it is";
   } else {
     d.code = "W03";
@@ -211,7 +248,7 @@ void LimitsOutput::judge_gap(TransientEnd& end, const Gap& x) {
         "step '{}': bearing '{}' runs at eccentricities up to {:.5f} (at t = {:.6g} s; first "
         "beyond "
         "at t = {:.6g} s): its film is believed up to {}",
-        end.step.name, x.condition->name, x.largest.value / x.size, x.largest.time, x.begin,
+        end.step.name, x.name, x.largest.value / x.size, x.largest.time, x.begin,
         assembly::SupportCondition::believed);
     d.hint =
         "the film is thinner than roughness and tilt allow: more speed or viscosity, less "

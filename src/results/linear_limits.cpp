@@ -1,4 +1,5 @@
 #include <results/linear_limits.hpp>
+#include <results/clearances.hpp>
 #include <analysis/spectra/periodic.hpp>
 #include <assembly/film_kernels.hpp>
 #include <run/diagnose.hpp>
@@ -74,19 +75,35 @@ constexpr double small_in_film = 0.3;
 /// rad: what is left out goes with the square of the tilt, 1 %.
 constexpr double small_tilt = 0.1;
 
+void GapCheck::look_at(const Worst& seen, const std::string& name, double at_rest) {
+  Worst& x = worst_[name];
+  double share = x.film_share;
+  if (seen.film && seen.gap > at_rest)
+    share = std::max(share, (seen.displacement - at_rest) / (seen.gap - at_rest));
+  if (!(x.gap > 0) || seen.displacement * x.gap > x.displacement * seen.gap) x = seen;
+  x.film_share = share;
+}
+
 void GapCheck::look(double Omega, std::span<const VecXc> amplitudes, double frequency) {
   const run::Job& job = step_.job;
   if (amplitudes.empty()) return;
   look_at_tilts(Omega, amplitudes, frequency);
-  if (job.built.conditions.empty()) return;
+  const std::vector<std::size_t> seals = seals_of(job.model);
+  const std::vector<assembly::SupportCondition>& conditions = job.built.conditions;
+  if (conditions.empty() && seals.empty()) return;
   step_.linear.at(Omega);
   const system::State& still = step_.linear.equilibrium().state;
   system::Workspace w = job.system().make_workspace();
   const auto node = [&](Index n) -> const system::NodeState& { return w.in_own_axes(n); };
-  std::vector<double> at_rest;  // displacement of each support in the equilibrium
+  const auto seal = [&](std::size_t b) { return displacement_at(job.mesh.bearings[b], node); };
+  std::vector<double> at_rest, seal_at_rest;
   job.system().evaluate_nodes(w, still.frames, still.t, still.q, still.v, still.a);
-  for (const assembly::SupportCondition& c : job.built.conditions)
+  for (const assembly::SupportCondition& c : conditions)
     at_rest.push_back(c.state(node).displacement);
+  for (const std::size_t b : seals)
+    seal_at_rest.push_back(seal(b));
+  const std::vector<analysis::Point> stations = station_points(job);
+  reach_.resize(stations.size(), 0.0);
   constexpr int looks = 24;  // a period: the extreme is met to 1 %
   for (int k = 0; k < looks; ++k) {
     const Complex turn = std::polar(1.0, two_pi * k / looks);
@@ -94,15 +111,34 @@ void GapCheck::look(double Omega, std::span<const VecXc> amplitudes, double freq
     for (const VecXc& a : amplitudes)
       q += (a * turn).real();
     job.system().evaluate_nodes(w, still.frames, still.t, q, still.v, still.a);
-    for (std::size_t i = 0; i < job.built.conditions.size(); ++i) {
-      const assembly::SupportCondition& c = job.built.conditions[i];
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
+      const assembly::SupportCondition& c = conditions[i];
       const assembly::SupportCondition::State s = c.state(node);
       if (!(s.gap > 0)) continue;
-      Worst& x = worst_[c.name];
-      if (s.film && s.gap > at_rest[i])
-        x.film_share = std::max(x.film_share, (s.displacement - at_rest[i]) / (s.gap - at_rest[i]));
-      if (x.gap > 0 && s.displacement * x.gap <= x.displacement * s.gap) continue;
-      x = {s.displacement, s.gap, Omega, frequency, s.film, x.film_share, c.where};
+      look_at({.displacement = s.displacement,
+               .gap = s.gap,
+               .speed = Omega,
+               .frequency = frequency,
+               .film = s.film,
+               .where = c.where,
+               .bearing = c.bearing},
+              c.name, at_rest[i]);
+    }
+    for (std::size_t i = 0; i < seals.size(); ++i) {
+      const model::Bearing& b = job.model.bearings[seals[i]];
+      look_at({.displacement = seal(seals[i]),
+               .gap = seal_gap(b),
+               .speed = Omega,
+               .frequency = frequency,
+               .film = true,
+               .where = b.where,
+               .bearing = seals[i]},
+              b.name, seal_at_rest[i]);
+    }
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+      const system::NodeState& at = node(stations[i].node);
+      const Vec3 u = at.u + stations[i].offset * at.t;
+      reach_[i] = std::max(reach_[i], u.tail<2>().norm());
     }
   }
 }
@@ -119,6 +155,7 @@ void GapCheck::look_at_tilts(double Omega, std::span<const VecXc> amplitudes, do
 
 namespace {
 
+/// "at 3000 rpm and 40 Hz"
 std::string place_of(double speed, double frequency) {
   return std::isnan(frequency)
              ? fmt::format("at {:.6g} rpm", to_rpm(speed))
@@ -127,24 +164,27 @@ std::string place_of(double speed, double frequency) {
 
 }  // namespace
 
+std::string GapCheck::Worst::text() const { return place_of(speed, frequency); }
+
 void GapCheck::report_tilt() {
   if (!(tilt_.largest > small_tilt)) return;
   Diagnostic d;
   d.code = "W11";
   d.message = fmt::format(
       "step '{}': {} the response would tilt the shaft by {:.3g} rad ({}): a linear response is "
-      "that "
-      "of small motions",
+      "that of small motions",
       step_.step.name, place_of(tilt_.speed, tilt_.frequency), tilt_.largest,
       step_.job.system().node(tilt_.node).name);
   d.hint = "less unbalance, more damping or another speed; a transient step has no such limit";
   warn(step_.job, std::move(d));
 }
 
-void GapCheck::report() {
+void GapCheck::report(const std::string& of) {
   report_tilt();
+  std::vector<UsedGap> used;
   for (const auto& [name, x] : worst_) {
     if (!(x.gap > 0)) continue;
+    used.push_back({x.bearing, x.gap, x.displacement, x.text()});
     io::Value& v = step_.summary()["gaps"][name];
     v["gap [m]"] = x.gap;
     v["largest displacement [m]"] = x.displacement;
@@ -152,27 +192,29 @@ void GapCheck::report() {
     if (x.film) v["share of the film that the response takes"] = x.film_share;
     const bool beyond = x.displacement > x.gap;
     if (!beyond && x.film_share <= small_in_film) continue;
-    const std::string at = place_of(x.speed, x.frequency);
     Diagnostic d;
     d.code = "W11";
     d.message =
-        beyond ? fmt::format(
-                     "step '{}': {} the response would take the shaft {:.4g} mm from the "
-                     "middle of '{}', whose {} is {:.4g} mm ({:.3g} times): a linear response "
-                     "does not know it",
-                     step_.step.name, at, 1e3 * x.displacement, name, x.film ? "clearance" : "gap",
-                     1e3 * x.gap, x.displacement / x.gap)
-               : fmt::format(
-                     "step '{}': {} the response takes {:.2g} of the film that the equilibrium "
-                     "leaves in '{}' ({:.4g} of {:.4g} mm from its middle): its coefficients "
-                     "are those of small motions",
-                     step_.step.name, at, x.film_share, name, 1e3 * x.displacement, 1e3 * x.gap);
+        beyond
+            ? fmt::format(
+                  "step '{}': {} the response would take the shaft {:.4g} mm from the "
+                  "middle of '{}', whose {} is {:.4g} mm ({:.3g} times): a linear response "
+                  "does not know it",
+                  step_.step.name, x.text(), 1e3 * x.displacement, name,
+                  x.film ? "clearance" : "gap", 1e3 * x.gap, x.displacement / x.gap)
+            : fmt::format(
+                  "step '{}': {} the response takes {:.2g} of the film that the equilibrium "
+                  "leaves in '{}' ({:.4g} of {:.4g} mm from its middle): its coefficients "
+                  "are those of small motions",
+                  step_.step.name, x.text(), x.film_share, name, 1e3 * x.displacement, 1e3 * x.gap);
     d.hint =
         "a transient step meets the contact or the film as it is; less unbalance, more damping "
         "or another speed keeps the response linear";
     d.where = x.where;
     warn(step_.job, std::move(d));
   }
+  if (used.empty() || !step_.job.model.output.report) return;
+  add_clearances(step_.job, step_.section, step_.file("clearances"), of, reach_, used);
 }
 
 double table_slack(const model::TableBearing& table) {

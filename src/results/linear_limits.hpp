@@ -6,11 +6,12 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace whirl::results {
 
-/// Largest share of each support's gap (journal bearings, squeeze films, stops, rubs) that a steady
-/// harmonic response takes, the static displacement included, and how far it tilts the shaft.
+/// Largest share of each support's gap (journal bearings, squeeze films, seals, stops, rubs) that a
+/// steady harmonic response takes, the static displacement included, and how far it tilts the shaft.
 class GapCheck {
  public:
   explicit GapCheck(FrequencyStep& s) : step_(s) {}
@@ -18,9 +19,10 @@ class GapCheck {
   /// the reference speed Omega, rad/s. frequency: of the excitation where it is not the speed,
   /// rad/s.
   void look(double Omega, std::span<const VecXc> amplitudes, double frequency = nan);
-  /// W11 for every gap that a response oversteps, for tilts that are not small, and every film of which it takes so much that
-  /// coefficients of small motions mislead; all shares into the summary ("gaps").
-  void report();
+  /// W11 for every gap that a response oversteps, for tilts that are not small, and for every film of
+  /// which it takes so much that coefficients of small motions mislead; all shares into the summary
+  /// ("gaps"), and as a clearance diagram into the report. of: "response to unbalance".
+  void report(const std::string& of);
 
  private:
   struct Worst {
@@ -29,15 +31,20 @@ class GapCheck {
     bool film = false;
     double film_share = 0;  ///< of what the equilibrium leaves of the clearance
     Where where;
+    std::size_t bearing = 0;  ///< of the model
+    std::string text() const;
   };
   struct Tilt {
     double largest = 0;  ///< rad
     double speed = 0, frequency = nan;
     Index node = 0;
   };
+  /// at_rest: displacement in the equilibrium, m.
+  void look_at(const Worst& seen, const std::string& name, double at_rest);
   void look_at_tilts(double Omega, std::span<const VecXc> amplitudes, double frequency);
   void report_tilt();
   FrequencyStep& step_;
+  std::vector<double> reach_;  ///< of every station, m
   std::map<std::string, Worst> worst_;
   Tilt tilt_;
 };

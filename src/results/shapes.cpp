@@ -88,50 +88,105 @@ plot::Figure along_figure(const FrequencyStep& s, const ShapeDrawing& d) {
   return f;
 }
 
+/// Places along a line between stations and the deflection there, axes of the line: the cubic with
+/// the tilts as end slopes, so that a few elements bend like many.
+struct FinePlace {
+  double s;
+  std::size_t station;  ///< to the left
+  double fraction;      ///< of the way to the next
+  Eigen::Vector3cd u;
+};
+std::vector<FinePlace> fine_places(const std::vector<Station>& st) {
+  constexpr int parts = 6;
+  std::vector<FinePlace> out;
+  for (std::size_t k = 0; k < st.size(); ++k) {
+    const double h = k + 1 < st.size() ? st[k + 1].s - st[k].s : 0.0;
+    for (int i = 0; i < (h > 0 ? parts : 1); ++i) {
+      const double x = static_cast<double>(i) / parts, x2 = x * x, x3 = x2 * x;
+      Eigen::Vector3cd u = st[k].u;
+      if (i > 0)
+        u = (1 - 3 * x2 + 2 * x3) * st[k].u + (x - 2 * x2 + x3) * h * st[k].t +
+            (3 * x2 - 2 * x3) * st[k + 1].u + (x3 - x2) * h * st[k + 1].t;
+      out.push_back({st[k].s + x * h, k, x, u});
+    }
+  }
+  return out;
+}
+
+/// Of the one line of a machine, in its own axes.
+plot::Figure line_figure(FrequencyStep& s, const ShapeDrawing& d) {
+  plot::ModeShape m;
+  m.stations = names_on(s.job, 0);
+  for (const FinePlace& p : fine_places(stations_of(s, *d.a, 0))) {
+    m.s.push_back(p.s);
+    m.y.push_back(p.u[1]);
+    m.z.push_back(p.u[2]);
+  }
+  return plot::plot_mode_shape(s.file(d.name), d.title, m);
+}
+
+/// Displacement of a place, axes of the machine.
+Eigen::Vector3cd deflection_of(const FrequencyStep& s, const VecXc& a, const meshes::Place& p) {
+  return a.segment<3>(6 * p.node) + p.offset * tilt_of(s.linear, a, p.node);
+}
+
+/// All lines where they stand, in one scale, with what joins them.
+plot::Figure machine_figure(FrequencyStep& s, const ShapeDrawing& d) {
+  const meshes::Mesh& mesh = s.job.mesh;
+  plot::MachineShape shape;
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
+    plot::ShapeLine line;
+    line.label = mesh.lines[l].name;
+    const std::vector<Station> st = stations_of(s, *d.a, l);
+    const Mat3 axes = s.linear.equilibrium().state.frames.chart[l];
+    const std::size_t orbits_apart = 1 + st.size() / 14;
+    for (const FinePlace& p : fine_places(st)) {
+      const auto station = at(mesh.lines[l].first_station) + p.station;
+      const Vec3& left = mesh.stations[station].position;
+      const bool last = p.station + 1 == st.size();
+      const Vec3& right = last ? left : mesh.stations[station + 1].position;
+      if (p.fraction == 0.0 && (p.station % orbits_apart == 0 || last))
+        line.stations.push_back(line.rest.size());
+      line.rest.push_back(left + p.fraction * (right - left));
+      line.u.push_back(axes * p.u);
+    }
+    shape.lines.push_back(std::move(line));
+  }
+  const auto rest = [&](const meshes::Place& p) {
+    const meshes::Node& n = mesh.nodes[at(p.node)];
+    const Vec3 along = n.line < 0
+                           ? Vec3(Vec3::UnitX())
+                           : Vec3(s.linear.equilibrium().state.frames.chart[at(n.line)].col(0));
+    return Vec3(n.position + p.offset * along);
+  };
+  for (const meshes::SupportShape& b : s.job.scene.supports) {
+    plot::ShapeLink link;
+    link.name = b.name;
+    link.at = rest(b.at);
+    link.u_at = deflection_of(s, *d.a, b.at);
+    link.to_ground = !b.to_node || mesh.nodes[at(b.to.node)].line < 0;
+    if (!link.to_ground) {
+      link.to = rest(b.to);
+      link.u_to = deflection_of(s, *d.a, b.to);
+    }
+    shape.links.push_back(std::move(link));
+  }
+  plot::Figure f = plot::plot_machine_shape(s.file(d.name), d.title, shape);
+  f.caption = "All lines where they stand, their deflection magnified on one scale.";
+  return f;
+}
+
 }  // namespace
 
 void add_shape_figures(FrequencyStep& s, const ShapeDrawing& d) {
   if (!s.job.model.output.report) return;
-  if (d.kind != analysis::ModeKind::lateral) {
-    s.add_figure(along_figure(s, d));
-    return;
-  }
-  const std::size_t lines = s.job.mesh.lines.size();
-  std::vector<std::vector<Station>> stations;
-  std::vector<double> size(lines, 0.0);
-  for (std::size_t l = 0; l < lines; ++l) {
-    stations.push_back(stations_of(s, *d.a, l));
-    for (const Station& x : stations.back())
-      size[l] = std::max({size[l], std::abs(x.u[1]), std::abs(x.u[2])});
-  }
-  const double largest = *std::max_element(size.begin(), size.end());
-  for (std::size_t l = 0; l < lines; ++l) {
-    if (!(size[l] > 1e-3 * largest)) continue;
-    plot::ModeShape m;
-    m.stations = names_on(s.job, l);
-    const std::vector<Station>& st = stations[l];
-    for (std::size_t k = 0; k < st.size(); ++k) {
-      // between stations the cubic with the tilts as end slopes: a few elements bend like many
-      constexpr int parts = 6;
-      const double h = k + 1 < st.size() ? st[k + 1].s - st[k].s : 0.0;
-      for (int i = 0; i < (h > 0 ? parts : 1); ++i) {
-        const double x = static_cast<double>(i) / parts, x2 = x * x, x3 = x2 * x;
-        const auto value = [&](int c) -> Complex {
-          if (i == 0) return st[k].u[c];
-          return (1 - 3 * x2 + 2 * x3) * st[k].u[c] + (x - 2 * x2 + x3) * h * st[k].t[c] +
-                 (3 * x2 - 2 * x3) * st[k + 1].u[c] + (x3 - x2) * h * st[k + 1].t[c];
-        };
-        m.s.push_back(st[k].s + x * h);
-        m.y.push_back(value(1));
-        m.z.push_back(value(2));
-      }
-    }
-    const std::string of = lines > 1 ? fmt::format(" of {}", s.job.mesh.lines[l].name) : "";
-    plot::Figure f = plot::plot_mode_shape(
-        s.file(d.name + (lines > 1 ? "_" + s.job.mesh.lines[l].name : "")), d.title + of, m);
-    f.caption = d.caption;
-    s.add_figure(std::move(f));
-  }
+  const bool lateral = d.kind == analysis::ModeKind::lateral;
+  plot::Figure f = !lateral                      ? along_figure(s, d)
+                   : s.job.mesh.lines.size() > 1 ? machine_figure(s, d)
+                                                 : line_figure(s, d);
+  if (lateral)
+    f.caption = d.caption + (d.caption.empty() || f.caption.empty() ? "" : " ") + f.caption;
+  s.add_figure(std::move(f));
 }
 
 void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& a,

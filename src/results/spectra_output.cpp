@@ -40,6 +40,7 @@ class SpectraOutput final : public TransientOutput {
   bool speed_varies() const;
   const Trace& largest_block(std::size_t probe) const;
   plot::Figure full_spectrum(std::size_t probe) const;
+  std::vector<plot::SpectrumTrace> full_traces(std::size_t probe) const;
   std::vector<plot::SpectrumTrace> traces_of_y(std::size_t probe) const;
   double factor() const { return plot::factor_of(convention_); }
   double resolution() const { return options_.max_frequency / options_.lines; }  ///< rad/s
@@ -184,9 +185,9 @@ void SpectraOutput::report(TransientEnd& end) {
     if (speed_varies()) {
       const std::string id = step_ + "_" + safe_name(probes_[p]);
       const std::vector<plot::SpectrumTrace> traces = traces_of_y(p);
-      section.figures.push_back(
-          plot::plot_waterfall(id + "_waterfall", probes_[p] + ": spectra of y against speed",
-                               traces, "displacement y", "m", convention_, orders));
+      section.figures.push_back(plot::plot_waterfall(
+          id + "_waterfall", probes_[p] + ": full spectra against speed (cascade)", full_traces(p),
+          "displacement y + iz", "m", convention_, orders));
       section.figures.push_back(plot::plot_spectrogram(
           id + "_spectrogram", probes_[p] + ": spectra of y against speed, map", traces,
           "displacement y", "m", convention_));
@@ -238,6 +239,20 @@ plot::Figure SpectraOutput::full_spectrum(std::size_t probe) const {
           {true, order * spin, order > 0 ? "1X" : "-1X", {plot::ink, plot::Dash::dotted, 1.0}});
   f.axes.push_back(std::move(a));
   return f;
+}
+
+std::vector<plot::SpectrumTrace> SpectraOutput::full_traces(std::size_t probe) const {
+  std::vector<plot::SpectrumTrace> traces;
+  for (const Trace& t : traces_) {
+    plot::SpectrumTrace x;
+    x.speed = std::abs(t.speed);
+    for (std::size_t k = 0; k < t.full[probe].size(); ++k) {
+      x.frequency.push_back((static_cast<double>(k) - options_.lines) * resolution());
+      x.amplitude.push_back(factor() * t.full[probe][k]);
+    }
+    traces.push_back(std::move(x));
+  }
+  return traces;
 }
 
 std::vector<plot::SpectrumTrace> SpectraOutput::traces_of_y(std::size_t probe) const {

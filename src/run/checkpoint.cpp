@@ -47,6 +47,7 @@ constexpr PartName part_names[] = {
     {Part::governors, "governors"},
     {Part::wall_clock, "wall clock"},
     {Part::limits, "limits"},
+    {Part::replay, "replay"},
 };
 
 Part part_of(std::string_view name) {

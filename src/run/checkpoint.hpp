@@ -33,7 +33,8 @@ enum class Part {
   steady_motion,
   governors,
   wall_clock,
-  limits
+  limits,
+  replay
 };
 
 /// A part and what decides whether the saved one fits: the columns of a series, the probes and

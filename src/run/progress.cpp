@@ -1,5 +1,9 @@
 #include <run/progress.hpp>
+
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <unistd.h>
 
@@ -33,17 +37,39 @@ PhaseTimer::~PhaseTimer() {
   job_.phases.emplace_back(phase_, spent);
 }
 
+namespace {
+
+/// ", 3 min left"; nothing while that is a guess.
+std::string time_left(double fraction, double spent) {
+  if (!(fraction > 0.02) || spent < 2.0) return {};
+  const double left = spent * (1.0 - fraction) / fraction;
+  if (left < 90.0) return fmt::format("  {:.0f} s left", left);
+  if (left < 5400.0) return fmt::format("  {:.0f} min left", left / 60.0);
+  return fmt::format("  {:.1f} h left", left / 3600.0);
+}
+
+}  // namespace
+
 void ProgressLine::update(double fraction, const std::string& text) {
   if (quiet_) return;
+  const double t = now();
+  if (std::isnan(begin_)) {  // a resumed run is not at its start
+    begin_ = t;
+    first_ = fraction;
+  }
+  const double done = first_ < 1.0 ? (fraction - first_) / (1.0 - first_) : 1.0;
+  const std::string left = time_left(done, t - begin_);
   if (terminal_) {
-    const double t = now();
     if (t - last_time_ < 0.1) return;
     last_time_ = t;
-    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", name_.c_str(), 100.0 * fraction, text.c_str());
+    std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s%s", name_.c_str(), 100.0 * fraction, text.c_str(),
+                 left.c_str());
   } else if (const int tenth = static_cast<int>(10.0 * fraction);
              tenth > last_tenth_ && tenth < 10) {
     last_tenth_ = tenth;
-    if (tenth > 0) std::fprintf(stderr, "%s %d %%  %s\n", name_.c_str(), 10 * tenth, text.c_str());
+    if (tenth > 0)
+      std::fprintf(stderr, "%s %d %%  %s%s\n", name_.c_str(), 10 * tenth, text.c_str(),
+                   left.c_str());
   }
 }
 

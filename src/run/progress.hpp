@@ -2,6 +2,7 @@
 #pragma once
 #include <run/job.hpp>
 #include <core/stopwatch.hpp>
+#include <core/types.hpp>
 #include <io/value.hpp>
 #include <string>
 
@@ -24,7 +25,8 @@ class PhaseTimer {
   Stopwatch watch_;
 };
 
-/// Progress on a terminal (one line, rewritten) or one line per 10 %.
+/// Progress on a terminal (one line, rewritten) or one line per 10 %, with the time that is left at
+/// the mean pace so far.
 class ProgressLine {
  public:
   ProgressLine(std::string name, bool quiet);
@@ -36,6 +38,7 @@ class ProgressLine {
   bool quiet_, terminal_;
   int last_tenth_ = -1;
   double last_time_ = 0;
+  double begin_ = nan, first_ = 0;  ///< time and fraction of the first update
 };
 
 }  // namespace whirl::run

@@ -239,7 +239,7 @@ void HarmonicRun::judge_gaps() {
     const FrequencyPoint p = respond(largest_at_);
     gaps_.look(p.Omega, std::span(&p.shape, 1), p.frequency);
   }
-  gaps_.report();
+  gaps_.report("harmonic response");
 }
 
 void HarmonicRun::add_table() {

@@ -416,9 +416,10 @@ double largest_radius(analysis::Linearizer& linear, const VecXc& shape) {
   return most;
 }
 
+/// also: speeds at which the gaps are looked at beside these and that of the largest response.
 void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
                 analysis::UnbalanceOptions options, const std::vector<double>& speeds,
-                const Largest& largest) {
+                const std::vector<double>& also, const Largest& largest) {
   options.shapes = true;
   analysis::UnbalanceSolver solver(s.linear, options);
   results::GapCheck gaps(s);
@@ -440,7 +441,9 @@ void add_shapes(results::FrequencyStep& s, const UnbalanceResponse& r,
       results::write_shape_frames(s, name, x.shape[k], 1.0);
     }
   }
-  gaps.report();
+  for (const double Omega : also)
+    gaps.look(Omega, solver.at(Omega).shape);
+  gaps.report("response to unbalance");
 }
 
 analysis::UnbalanceOptions unbalance_options(const run::Job& job, const model::UnbalanceStep& law) {
@@ -507,7 +510,11 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   add_force_figure(s, r, o.outputs);
   add_zones(s, r, shown, law);
   add_grades(s, law);
-  add_shapes(s, r, o, shape_speeds(law, peaks), largest);
+  std::vector<double> also{o.speeds.front(), o.speeds.back()};
+  for (const analysis::ResponsePeak& p : peaks)
+    also.push_back(p.speed);
+  add_shapes(s, r, o, shape_speeds(law, peaks),
+             largest.amplitude > 0 ? also : std::vector<double>{}, largest);
 
   s.section.text = largest.amplitude == 0
                        ? "Nothing turns that is out of balance: the response is zero."

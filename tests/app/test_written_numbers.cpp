@@ -489,6 +489,8 @@ const Elsewhere elsewhere[] = {
     {"orbits", "z [m]", "open: the orbit itself"},
     {"peaks", "probe [-]", "open: a name"},
     {"peaks", "amplitude 0-peak [m]", "the examples in tests/CMakeLists.txt, from the summary"},
+    {"peaks", "motion 0-peak [m]", "app/test_figures.cpp"},
+    {"peaks", "motion at [s]", "app/test_figures.cpp"},
     {"peaks", "time [s]", "the examples in tests/CMakeLists.txt, from the summary"},
     {"peaks", "amplitude [rad]", "open: peaks of harmonic responses"},
     {"peaks", "frequency [Hz]", "open: peaks of harmonic responses"},

@@ -582,6 +582,28 @@ at = "rotor/0 mm"
 type = "speed"
 speed = "3000 rpm"
 )" + transient("duration = \"0.1 s\"\nstart = \"rest\"\n")))},
+      // a free vibration of half the speed: 1 kN let go on an undamped spring, sqrt(k/m) = w/2
+      {"beat", lateral_mass(10, "0 m/s^2", R"([[bearing]]
+name = "spring"
+at = "mass"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+[[probe]]
+name = "P"
+at = "mass"
+[output]
+report = false
+[output.tracking]
+bandwidth = 2
+[[load]]
+at = "mass"
+force = ["0 N", "1 kN", "0 N"]
+[[drive]]
+at = "rotor/0 mm"
+type = "speed"
+speed = "632.4555320336759 rad/s"
+)" + transient("duration = \"0.4 s\"\nstart = \"rest\"\n", "1e-9"))},
       {"ball bearing at its node", held_ball_bearing("mass")},
       {"ball bearing off its node", held_ball_bearing("right:start + 30 mm")},
   };

@@ -360,7 +360,7 @@ class ModelDump {
     const auto& o = m.output;
     out_ += "\noutput ";
     each("", std::array{o.every, double(o.csv), double(o.binary), double(o.report),
-                        double(o.peak_to_peak)});
+                        double(o.peak_to_peak), double(o.replay), o.tracking.bandwidth});
     put("directory", o.directory);
     for (const auto& q : o.quantities)
       put("quantity", q);

@@ -4,6 +4,7 @@
 #include <plot/plots.hpp>
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,80 @@ inline plot::Axes against_time(const std::string& name, const std::string& unit,
     a.series.push_back(std::move(line));
   }
   return a;
+}
+
+/// Two shafts side by side and a casing about one of them.
+inline plot::Figure gallery_machine() {
+  plot::MachineDrawing m{"Machine", "y", {}, {}};
+  const auto rod = [](const char* name, double length, double outer, double inner) {
+    plot::RotorDrawing d;
+    d.title = name;
+    d.sections = {{0, length, outer, outer, inner, inner, name}};
+    return d;
+  };
+  plot::RotorDrawing motor = rod("motor", 0.6, 0.03, 0), fan = rod("fan", 0.8, 0.04, 0);
+  motor.disks = {{0.5, 0.1, 0.03, 0.06, "pinion"}};
+  fan.disks = {{0.3, 0.2, 0.04, 0.06, "wheel"}};
+  motor.bearings = {{0.05, 0.03, "M1"}, {0.12, 0.03, "M2 beside it"}};
+  fan.bearings = {{0.1, 0.04, "F1"}, {0.7, 0.04, "F2"}};
+  m.lines = {{motor, 0, 0}, {fan, 0.2, 0.3}, {rod("casing", 0.7, 0.1, 0.09), 0, 0}};
+  m.links = {{"mesh", 0.5, 0.1, 0.1}, {"front", 0.1, 0.03, 0.09}};
+  return plot::plot_machine("machine", m);
+}
+
+/// A shaft that whirls with a radius of sin(pi x) and a casing that rocks with a third of it.
+inline plot::Figure gallery_machine_shape() {
+  plot::MachineShape m;
+  for (const auto& [name, size] : {std::pair{"rotor", 1.0}, {"casing", 1.0 / 3}}) {
+    plot::ShapeLine l{name, {}, {}, {}};
+    for (const double x : grid(0, 1, 41)) {
+      if (l.rest.size() % 10 == 0) l.stations.push_back(l.rest.size());
+      l.rest.push_back({x, 0, 0});
+      const double r = 4e-6 * size * std::sin(pi * x);
+      l.u.push_back({0.0, Complex(r, 0), Complex(0, -r)});
+    }
+    m.lines.push_back(std::move(l));
+  }
+  m.links.push_back({"foot", {0.2, 0, 0}, {}, {}, {}, true});
+  return plot::plot_machine_shape("machine_shape", "Mode of a machine", m);
+}
+
+/// A rod on a growing circle: 0.1 mm at the end of ten moments, 600 to 6000 rpm.
+inline plot::Figure gallery_replay() {
+  plot::Replay r;
+  r.samples = 24;
+  r.points = 5;
+  for (const double x : grid(0, 0.8, 5))
+    r.rest.push_back({x, 0, 0});
+  for (int m = 0; m < 10; ++m) {
+    const double speed = two_pi * 10 * (m + 1);
+    r.time.push_back(0.5 * m);
+    r.speed.push_back(speed);
+    r.span.push_back(two_pi / speed);
+    for (std::size_t k = 0; k < r.samples; ++k)
+      for (std::size_t p = 0; p < r.points; ++p) {
+        const double size = 1e-5 * (m + 1) * (0.25 * static_cast<double>(p)),
+                     angle = two_pi * static_cast<double>(k) / 23;
+        r.y.push_back(static_cast<float>(size * std::cos(angle)));
+        r.z.push_back(static_cast<float>(size * std::sin(angle)));
+      }
+  }
+  r.shown = 9;
+  const plot::ReplayedLine line{"rod", 0, 5};
+  return plot::plot_replay("replay", "Replay", std::move(r), std::span(&line, 1));
+}
+
+inline plot::Figure gallery_clearances() {
+  plot::ReachLine rotor{"rotor", {}, {}};
+  for (const double x : grid(0, 1, 21)) {
+    rotor.x.push_back(x);
+    rotor.reach.push_back(4e-5 * std::sin(pi * x));
+  }
+  const plot::GapMark gaps[] = {{"DE", 0.1, 8e-5, 2e-5},
+                                {"seal 1", 0.48, 1.5e-4, 4e-5},
+                                {"seal 2", 0.52, 1.5e-4, 4e-5},
+                                {"NDE", 0.9, 8e-5, 2e-5}};
+  return plot::plot_clearances("clearances", "Clearance diagram", std::span(&rotor, 1), gaps);
 }
 
 inline std::vector<plot::Figure> gallery() {
@@ -254,6 +329,10 @@ inline std::vector<plot::Figure> gallery() {
       r.nodes.push_back(x);
     all.push_back(plot::plot_rotor("rotor", r));
   }
+  all.push_back(gallery_machine());
+  all.push_back(gallery_machine_shape());
+  all.push_back(gallery_replay());
+  all.push_back(gallery_clearances());
   return all;
 }
 

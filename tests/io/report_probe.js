@@ -68,6 +68,33 @@
   s.dispatchEvent(new MouseEvent("dblclick", { bubbles: true }));
   check(same(d0, path.getAttribute("d")), "it does not turn back");
 
+  // A shape moves: half a cycle on, the deflection is the other way round; reset brings it back.
+  const button = (id) => svg(id).closest("figure").querySelector("[data-do=play]");
+  const shape = window.whirlFigures.find((f) => f.svg.id === "machine_shape"), shaft = svg("machine_shape").querySelector("path[data-name=rotor]");
+  check(button("machine_shape") && button("mode") && !button("bode"), "play buttons");
+  const home = shaft.getAttribute("d");
+  shape.axes[0].setPhase(Math.PI);
+  const turned = shaft.getAttribute("d");
+  check(!same(home, turned), "the shape does not move");
+  shape.axes[0].setPhase(2 * Math.PI);
+  check(same(home, shaft.getAttribute("d")), "a cycle does not end where it began");
+  shape.axes[0].setPhase(Math.PI);
+  shape.reset();
+  check(same(home, shaft.getAttribute("d")), "reset leaves the shape in motion");
+
+  // A replay: it shows what was drawn, the slider sets moment and orbit.
+  const run = svg("replay").closest("figure"), slider = run.querySelector("input[type=range]"), said = () => run.querySelector("output").textContent;
+  check(slider && slider.value === "9" && button("replay"), "replay has its slider");
+  check(said() === "4.5 s, 6000 rpm, largest 100 µm", "replay says: " + said());
+  const rod = svg("replay").querySelector("path[data-name=rod]"), last = rod.getAttribute("d");
+  slider.value = "0";
+  slider.dispatchEvent(new Event("input"));
+  check(said() === "0 s, 600 rpm, largest 10 µm", "replay at its start says: " + said());
+  check(!same(last, rod.getAttribute("d")), "the slider moves nothing");
+  slider.value = "9";
+  slider.dispatchEvent(new Event("input"));
+  check(same(last, rod.getAttribute("d")), "the slider does not bring the moment back");
+
   const out = document.createElement("pre");
   out.id = "probe";
   out.textContent = wrong.length ? wrong.join("\n") : "ok";

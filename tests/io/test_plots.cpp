@@ -12,6 +12,7 @@
 #include <plot/ticks.hpp>
 #include <png.h>
 #include <algorithm>
+#include <cstdlib>
 #include <random>
 #include <set>
 
@@ -224,11 +225,11 @@ class Gallery : public ::testing::TestWithParam<std::size_t> {
     return f;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Plots, Gallery, ::testing::Range<std::size_t>(0, 14),
+INSTANTIATE_TEST_SUITE_P(Plots, Gallery, ::testing::Range<std::size_t>(0, 18),
                          [](const auto& i) { return gallery()[i.param].name; });
 
 TEST_P(Gallery, IsWellFormedFiniteAndNamesItsUnits) {
-  ASSERT_EQ(figures().size(), 14u);
+  ASSERT_EQ(figures().size(), 18u);
   const plot::Figure& f = figures()[GetParam()];
   for (const bool standalone : {true, false}) {
     const std::string svg = plot::render_svg(f, {standalone, "", 1.0});
@@ -295,6 +296,109 @@ TEST(Svg, OneMillionPointsMakeASmallFileWithThePeakInIt) {
   const double peak = 40 + 10 * std::sin(654321 * 0.7) + 50;
   EXPECT_NEAR(highest, by + bh * (1 - peak / 100), 0.006);  // two decimals of a px
   EXPECT_NEAR(at_x, bx + bw * 654.321 / 999.999, 0.006);
+}
+
+/// Points of the first curve of a figure: absolute, or by differences behind an "l".
+std::vector<std::pair<double, double>> first_curve(const std::string& svg) {
+  const auto start = svg.find(" d=\"M", svg.find("<path data-s=\"0\"")) + 5;
+  const std::string d = svg.substr(start, svg.find('"', start) - start);
+  std::vector<std::pair<double, double>> out;
+  bool steps = false;
+  const char* p = d.c_str();
+  while (*p != 0) {
+    if (*p == 'l') steps = true;
+    if (*p == 'M' || *p == 'L' || *p == 'l' || *p == ' ') {
+      ++p;
+      continue;
+    }
+    char* end = nullptr;
+    double x = std::strtod(p, &end);
+    double y = std::strtod(end + (*end == ' ' ? 1 : 0), &end);
+    p = end;
+    if (steps) {
+      x += out.back().first;
+      y += out.back().second;
+    }
+    out.emplace_back(x, y);
+  }
+  return out;
+}
+
+TEST(Svg, LongCurvesOfTheReportAreTheSameByDifferences) {
+  plot::Figure f;
+  f.name = "long";
+  plot::Axes a;
+  a.x = plot::Axis("time", "s");
+  a.y = plot::Axis("displacement", "µm");
+  plot::Series s;
+  for (int i = 0; i < 450; ++i) {  // one piece, no point left out
+    s.x.push_back(1e-3 * i);
+    s.y.push_back(i < 200 ? 0.0 : 10 * std::sin(i * 0.37));
+  }
+  a.series.push_back(s);
+  f.axes.push_back(a);
+  const auto file = first_curve(plot::render_svg(f));
+  const auto report = first_curve(plot::render_svg(f, {false, "", 1.5}));
+  ASSERT_EQ(file.size(), 450u);
+  ASSERT_EQ(report.size(), 252u);  // of the level stretch its ends
+  EXPECT_NEAR(report[0].first, file[0].first, 0.051);
+  EXPECT_NEAR(report[1].first, file[199].first, 0.051);
+  for (std::size_t i = 2; i < report.size(); ++i) {
+    EXPECT_NEAR(report[i].first, file[i + 198].first, 0.051);
+    EXPECT_NEAR(report[i].second, file[i + 198].second, 0.051);
+  }
+}
+
+TEST(Svg, ACurveThatComesBackIsDrawnAsOneThatGoes) {
+  plot::Figure f;
+  f.name = "back";
+  plot::Axes a;
+  a.x = plot::Axis("speed", "rpm");
+  a.y = plot::Axis("amplitude", "µm");
+  plot::Series s;
+  for (int i = 0; i < 40000; ++i) {
+    s.x.push_back(9000 - 0.2 * i + (i % 2) * 1e-3);  // and shakes by less than one sees
+    s.y.push_back(std::sin(i * 0.9));
+  }
+  a.series.push_back(s);
+  f.axes.push_back(a);
+  EXPECT_LT(plot::render_svg(f, {false, "", 1.5}).size(), 60000u);
+}
+
+TEST(Clearances, WallsStandAtTheGapsAndShareIsWritten) {
+  const plot::Figure f = gallery_clearances();
+  const plot::Axes& a = f.axes.front();
+  ASSERT_EQ(a.patches.size(), 4u);
+  EXPECT_DOUBLE_EQ(a.patches[1].y[0], 150.0);  // µm
+  EXPECT_DOUBLE_EQ(a.patches[1].x[0], 480.0 - 8.0);
+  EXPECT_FALSE(a.y.logarithmic);
+  ASSERT_EQ(a.notes.size(), 4u);
+  EXPECT_EQ(a.notes[1].text, "seal 1: 26.7 %");
+  // a gap that dwarfs the motion
+  const plot::GapMark wide{"wide", 0.5, 1e-3, 1e-6};
+  const plot::ReachLine line{"rotor", {0, 1}, {1e-6, 1e-6}};
+  EXPECT_TRUE(plot::plot_clearances("c", "c", std::span(&line, 1), std::span(&wide, 1))
+                  .axes.front()
+                  .y.logarithmic);
+}
+
+TEST(MachineShape, AllLinesHaveOneScaleAndMoveByTheirMotion) {
+  const plot::Figure f = gallery_machine_shape();
+  ASSERT_EQ(f.axes.size(), 2u);
+  double rotor = 0, casing = 0;
+  for (const plot::Series& s : f.axes[1].series)
+    for (const double y : s.y)
+      (s.label.starts_with("rotor") ? rotor : casing) =
+          std::max(s.label.starts_with("rotor") ? rotor : casing, std::abs(y));
+  EXPECT_NEAR(rotor, 1.0, 1e-12);
+  EXPECT_NEAR(casing, 1.0 / 3, 1e-12);
+  for (const plot::SpaceSeries& s : f.axes[0].space) {
+    if (s.motion.empty()) continue;
+    ASSERT_EQ(s.motion.size(), s.x.size()) << s.label;
+    // rest + Re(motion): what is drawn is phase 0 about a straight line
+    for (std::size_t i = 0; i < s.x.size(); ++i)
+      EXPECT_TRUE(std::isnan(s.y[i]) || std::abs(s.y[i] - s.motion[i][1].real()) < 1e-9);
+  }
 }
 
 TEST(Svg, EmptyConstantAndBrokenDataAreDrawn) {

@@ -66,22 +66,29 @@ void Recorder::restore(InArchive& in) {
 }
 
 PeakTracker::PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference,
-                         double t_from)
-    : reference_(reference),
+                         double t_from, bool motion)
+    : start_(motion ? points.size() : 0, Vec2::Zero()),
+      reference_(reference),
       t_from_(t_from) {
   points_.reserve(points.size());
-  peaks_.reserve(points.size());
-  for (auto& [name, point] : points) {
+  peaks_.reserve(points.size() + start_.size());
+  for (const auto& [name, point] : points) {
     points_.push_back(point);
-    peaks_.push_back({std::move(name), 0.0, 0.0, 0.0});
+    peaks_.push_back({name, 0.0, 0.0, 0.0});
   }
+  for (std::size_t i = 0; i < start_.size(); ++i)
+    peaks_.push_back(peaks_[i]);
 }
 
 void PeakTracker::begin(const Snapshot& s) {
+  for (Peak& p : peaks_) {
+    p.time = s.t();
+    p.speed = s.node(reference_).spin();
+  }
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    peaks_[i].amplitude = displacement(s, points_[i]).tail<2>().norm();
-    peaks_[i].time = s.t();
-    peaks_[i].speed = s.node(reference_).spin();
+    const Vec2 u = displacement(s, points_[i]).tail<2>();
+    peaks_[i].amplitude = u.norm();
+    if (!start_.empty()) start_[i] = u;
   }
 }
 
@@ -141,7 +148,10 @@ double reach_of(const std::array<std::vector<Vec2>, N>& seen, std::size_t point)
 }  // namespace
 
 void PeakTracker::look(StepAccess& s, int k) {
-  s.displacements(time_of(s, k), points_, seen_[static_cast<std::size_t>(k)]);
+  std::vector<Vec2>& seen = seen_[static_cast<std::size_t>(k)];
+  s.displacements(time_of(s, k), points_, seen);
+  for (std::size_t i = 0; i < start_.size(); ++i)
+    seen.push_back(seen[i] - start_[i]);
 }
 
 void PeakTracker::step(StepAccess& s) {
@@ -151,7 +161,7 @@ void PeakTracker::step(StepAccess& s) {
   for (int k = 2; k < looks; k += 2)
     look(s, k);
   bool complete = false;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
+  for (std::size_t i = 0; i < peaks_.size(); ++i) {
     double best = 0.0, where = looks - 1;
     for (int k = 2; k < looks; k += 2)
       if (const double r = seen_[static_cast<std::size_t>(k)][i].norm(); r > best) {
@@ -227,6 +237,9 @@ void PeakTracker::save(OutArchive& out) const {
     out.put(p.time);
     out.put(p.speed);
   }
+  for (const Vec2& u : start_)
+    for (const double x : u)
+      out.put(x);
 }
 
 void PeakTracker::restore(InArchive& in) {
@@ -235,6 +248,9 @@ void PeakTracker::restore(InArchive& in) {
     p.time = in.number();
     p.speed = in.number();
   }
+  for (Vec2& u : start_)
+    for (double& x : u)
+      x = in.number();
 }
 
 void EnergyBalance::begin(const Snapshot& s) {

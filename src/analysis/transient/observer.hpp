@@ -110,8 +110,10 @@ class PeakTracker final : public Observer {
   /// reference: node whose spin is the speed axis. All points share the looks at the dense output
   /// of a step, four of them and nine where one comes near its peak; between looks each point moves
   /// by the polynomial through them (a thousand points cost little more than one).
+  /// motion: each point a second time, about its place at the start; peaks() lists all points, then
+  /// all of these.
   PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference,
-              double t_from = -infinity);
+              double t_from = -infinity, bool motion = false);
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
   void save(OutArchive& out) const override;
@@ -129,6 +131,7 @@ class PeakTracker final : public Observer {
 
   std::vector<Point> points_;
   std::vector<Peak> peaks_;
+  std::vector<Vec2> start_;  ///< of the points, m; empty: their motion is not asked for
   Index reference_;
   double t_from_;
   std::array<std::vector<Vec2>, looks> seen_;  ///< lateral displacements of all points

@@ -97,6 +97,9 @@ void describe(Visitor& v, model::Output& o) {
   v.flag("csv", o.csv, "histories as CSV");
   v.flag("binary", o.binary, "histories as HDF5");
   v.flag("report", o.report, "a report in HTML with the figures");
+  v.flag("replay", o.replay,
+         "transients can be played back in the report: shafts, orbits and speed from some hundred "
+         "moments");
   v.option("amplitude", amplitude, amplitudes,
            "convention of amplitudes in figures; columns of tables are zero to peak");
   o.peak_to_peak = amplitude == 1;

@@ -7,19 +7,40 @@
 
 namespace whirl::deck {
 
+namespace {
+
+/// An order that the samples of a turn show and that the filter tells from its neighbours: a Hann
+/// window of M turns lets nothing through from 2/M orders on but its side lobes.
+void check_order(Visitor& v, const model::TrackingOutput& o, double k) {
+  if (2.0 * k >= o.samples)
+    v.error("E20", "orders",
+            fmt::format("order {} is not below half the samples a turn ({})", k, o.samples));
+  const double apart = std::abs(k - std::round(k));
+  if (apart == 0.0 || o.filter_turns() * apart >= 2.0 * (1.0 - 1e-9)) return;
+  v.error(
+      "E20", "orders",
+      fmt::format("a filter of bandwidth {} does not tell order {} from order {}: at most {:.4g}",
+                  o.bandwidth, k, std::round(k), apart));
+}
+
+}  // namespace
+
 void describe(Visitor& v, model::TrackingOutput& o) {
   v.flag("on", o.on, "amplitude and phase of the probes turn by turn, as CSV and figures");
   v.integer("samples", o.samples, between(16, 1024),
-            "samples a turn, at equal angles of the reference shaft");
-  v.quantities("orders", o.orders, "", positive, -1, "multiples of the speed, whole numbers");
+            "samples a turn, at equal angles of the shaft the probe looks at");
+  v.quantities("orders", o.orders, "", positive, -1,
+               "multiples of the speed of the shaft the probe looks at; the first is drawn against "
+               "speed with its phase");
+  v.quantity("bandwidth", o.bandwidth, "", between(0.02, 2),
+             "width of the filter at half amplitude, in multiples of the speed: a Hann window of "
+             "2/bandwidth turns about each turn (2: each turn by itself)");
   v.quantities(optional("orbit_speeds", "the largest orbit alone"), o.orbit_speeds, "rpm", any, -1,
                "orbits are shown where the spin passes these speeds, beside the largest one");
   v.integer("orbit_turns", o.orbit_turns, between(1, 20), "turns an orbit shows");
-  for (double k : o.orders)
-    if (v.clean() && (k != std::round(k) || 2.0 * k >= o.samples))
-      v.error("E20", "orders",
-              fmt::format("order {} is not a whole number below half the samples a turn ({})", k,
-                          o.samples));
+  if (!v.clean()) return;
+  for (const double k : o.orders)
+    check_order(v, o, k);
 }
 
 void describe(Visitor& v, model::SpectraOutput& o) {

@@ -81,13 +81,18 @@
       of: (v) => (log ? Math.log(v / lo) / f : (v - lo) / f),
     };
   }
-  // Points of a path as [x, y, x, y ...], nan between its pieces.
+  // Points of a path as [x, y, x, y ...], nan between its pieces. Long curves give differences behind an "l".
+  const pathNumbers = (s) => (s.match(/-?(?:\d+\.?\d*|\.\d+)/g) || []).map(Number);
   function pointsOf(path) {
     const out = [];
     for (const piece of path.getAttribute("d").replace(/h0|Z/g, "").split("M")) {
       if (!piece) continue;
       if (out.length) out.push(NaN, NaN);
-      for (const s of piece.split(/[ L]/)) if (s) out.push(+s);
+      const [from, steps] = piece.split("l");
+      out.push(...pathNumbers(from));
+      let [x, y] = out.slice(-2);
+      const d = steps ? pathNumbers(steps) : [];
+      for (let i = 0; i < d.length; i += 2) out.push((x += d[i]), (y += d[i + 1]));
     }
     return Float32Array.from(out);
   }
@@ -304,6 +309,8 @@
 
   // ---------------------------------------------------------------- axes in space (the projection of svg_space.cpp)
 
+  const spaced = (s, each) => s.trim().split(/\s+/).flatMap((t) => (t === "|" ? Array(each).fill(NaN) : [+t]));
+
   class SpaceAxes {
     constructor(g) {
       this.g = g;
@@ -314,8 +321,11 @@
       this.items = [...g.querySelectorAll("[data-xyz]")].map((el) => ({
         el, s: el.dataset.s, name: el.dataset.name || "", quiet: "quiet" in el.dataset, pins: "pins" in el.dataset,
         closed: el.tagName === "path" && el.getAttribute("d").endsWith("Z"),
-        xyz: el.dataset.xyz.trim().split(/\s+/).flatMap((t) => (t === "|" ? [NaN, NaN, NaN] : [+t])),
+        xyz: spaced(el.dataset.xyz, 3),
+        motion: el.dataset.motion ? spaced(el.dataset.motion, 6) : null,
+        played: el.dataset.played ? numbers(el.dataset.played) : null,
       }));
+      for (const it of this.items) it.home = it.xyz;
       this.reset();
     }
     reset() { this.view = [...this.home]; this.magnify = 1; }
@@ -381,6 +391,11 @@
                      : `<text x="${n2(x)}" y="${n2(y)}" font-size="12.5" text-anchor="${anchor}" class="fi">${name}</text>`;
       }
       this.g.querySelector(".box").innerHTML = s;
+      this.draw();
+    }
+    // The curves alone, in the present view.
+    draw() {
+      const P = this.last ?? (this.last = this.project());
       for (const it of this.items) {
         const uses = it.pins ? it.el.querySelectorAll("use") : null;
         let path = "", pen = 0, u = 0;
@@ -393,6 +408,14 @@
         }
         if (!uses) it.el.setAttribute("d", path + (it.closed ? "Z" : ""));
       }
+    }
+    get moves() { return this.items.some((it) => it.motion); }
+    // A shape at a phase of its motion: rest + Re(motion exp(i phase)); phase 0 is what was printed.
+    setPhase(phase) {
+      const c = Math.cos(phase) - 1, s = Math.sin(phase);
+      for (const it of this.items)
+        if (it.motion) it.xyz = it.home.map((x, i) => { const k = 2 * i; return x + it.motion[k] * c - it.motion[k + 1] * s; });
+      this.draw();
     }
     turn(dx, dy) {
       this.view[0] -= 0.4 * dx;
@@ -422,9 +445,10 @@
     plot.removeAttribute("transform");
     const X = (v) => n2(sx * v + tx), Y = (v) => n2(sy * v + ty);
     for (const p of plot.querySelectorAll("path"))
-      p.setAttribute("d", p.getAttribute("d").replace(/([MLHVhZ])([^MLHVhZ]*)/g, (all, c, rest) => {
+      p.setAttribute("d", p.getAttribute("d").replace(/([MLHVlhZ])([^MLHVlhZ]*)/g, (all, c, rest) => {
         if (c === "Z" || c === "h") return all;
-        const v = rest.trim().split(/\s+/).map(Number);
+        const v = pathNumbers(rest);
+        if (c === "l") return c + v.map((u, i) => n2(u * (i % 2 ? sy : sx))).join(" ");
         return c + (c === "H" ? v.map(X) : c === "V" ? v.map(Y) : v.map((u, i) => (i % 2 ? Y(u) : X(u)))).join(" ");
       }));
     for (const r of plot.querySelectorAll("rect, image")) {
@@ -432,6 +456,102 @@
       const now = { x: X(g("x")), y: Y(g("y")), width: n2(sx * g("width")), height: n2(sy * g("height")) };
       for (const k in now) r.setAttribute(k, now[k]);
     }
+  }
+
+  // ---------------------------------------------------------------- what moves
+
+  // Calls draw(seconds since the last call) until told to stop; a button of the figure starts and stops it.
+  class Player {
+    constructor(bar, title, draw) {
+      this.draw = draw, this.running = false;
+      this.button = document.createElement("button");
+      this.button.title = title;
+      this.button.dataset.do = "play";
+      this.button.addEventListener("click", () => this.toggle());
+      bar.append(this.button);
+      this.show();
+    }
+    show() { this.button.textContent = this.running ? "pause" : "play"; }
+    toggle(on = !this.running) {
+      if (on === this.running) return;
+      this.running = on;
+      this.show();
+      if (!on) return;
+      let last = null;
+      const tick = (now) => {
+        if (!this.running) return;
+        if (last !== null) this.draw(Math.min(0.1, (now - last) / 1000));
+        last = now;
+        requestAnimationFrame(tick);
+      };
+      requestAnimationFrame(tick);
+    }
+  }
+
+  // A mode or an operating shape: two seconds a cycle.
+  function animate(axes, bar) {
+    let phase = 0;
+    const player = new Player(bar, "the shape in motion", (dt) => { phase = (phase + Math.PI * dt) % (2 * Math.PI); for (const a of axes) a.setPhase(phase); });
+    return { stop() { player.toggle(false), (phase = 0); for (const a of axes) a.setPhase(0); } };
+  }
+
+  // A transient, from the moments the run kept: the slider sets the time, and the lines go through a turn at each moment.
+  class Replay {
+    constructor(axes, data, figure, bar) {
+      Object.assign(this, data);
+      this.axes = axes;
+      const bin = atob(this.bytes);
+      this.values = Int8Array.from(bin, (c) => c.charCodeAt(0));
+      this.moment = this.shown, this.sample = 0;
+      // box units: of the places at rest, and of a metre of motion
+      const unit = (d) => (2 * axes.half[d]) / (axes.axis[d].hi - axes.axis[d].lo);
+      this.unit = [0, 1, 2].map(unit);
+      this.home = [0, 1, 2].map((d) => axes.axis[d].lo);
+      const row = document.createElement("div");
+      row.className = "replay";
+      row.innerHTML = `<input type="range" min="0" max="${this.t.length - 1}" value="${this.moment}" aria-label="time"><output></output>`;
+      figure.querySelector("svg").after(row);
+      [this.slider, this.output] = row.children;
+      this.slider.addEventListener("input", () => { this.moment = +this.slider.value; this.draw(); });
+      let held = 0;
+      this.player = new Player(bar, "the run again", (dt) => {
+        held += dt / 0.3;   // seconds a moment
+        if (held >= 1) held = 0, this.moment = (this.moment + 1) % this.t.length, this.slider.value = this.moment;
+        this.sample = Math.min(this.samples - 1, Math.floor(held * this.samples));
+        this.draw();
+      });
+      this.draw();
+    }
+    // Of a point at a sample of the present moment, in box units.
+    place(sample, point, out) {
+      const i = 2 * ((this.moment * this.samples + sample) * this.points + point), g = this.gain * this.scale[this.moment];
+      for (let d = 0; d < 3; ++d) {
+        const v = this.rest[3 * point + d] + (d ? g * this.values[i + d - 1] : 0);
+        out.push((v - this.home[d]) * this.unit[d] - this.axes.half[d]);
+      }
+    }
+    largest() {
+      const each = 2 * this.samples * this.points, from = this.moment * each;
+      let most = 0;
+      for (let i = from; i < from + each; i += 2) most = Math.max(most, Math.hypot(this.values[i], this.values[i + 1]));
+      return most * this.scale[this.moment];
+    }
+    draw() {
+      for (const it of this.axes.items) {
+        if (!it.played) continue;
+        const [from, to, trails] = it.played, xyz = [];
+        for (let p = from; p < to; ++p)
+          if (trails) {
+            for (let k = 0; k < this.samples; ++k) this.place(k, p, xyz);
+            xyz.push(NaN, NaN, NaN);
+          } else this.place(this.sample, p, xyz);
+        it.xyz = xyz;
+      }
+      this.axes.draw();
+      const m = this.largest(), [f, u] = m < 1e-3 ? [1e6, "µm"] : m < 1 ? [1e3, "mm"] : [1, "m"];
+      this.output.textContent = `${show(this.t[this.moment], 4)} s, ${show(this.rpm[this.moment], 4)} rpm, largest ${show(f * m, 3)} ${u}`;
+    }
+    stop() { this.player.toggle(false), (this.sample = 0), this.draw(); }
   }
 
   // ---------------------------------------------------------------- a figure
@@ -460,6 +580,10 @@
       const bar = svg.closest("figure")?.querySelector(".bar");
       bar?.querySelector("[data-do=reset]")?.addEventListener("click", () => this.reset());
       bar?.querySelector("[data-do=save]")?.addEventListener("click", () => this.save());
+      const moving = this.axes.filter((a) => a instanceof SpaceAxes && a.moves);
+      if (bar && moving.length) this.motion = animate(moving, bar);
+      const replay = svg.parentElement?.querySelector("script.replay");
+      if (bar && replay) this.motion = new Replay(this.axes[0], JSON.parse(replay.textContent), svg.parentElement, bar);
     }
     at(e) {
       const m = this.svg.getScreenCTM().inverse();
@@ -473,7 +597,11 @@
         b.apply();
       }
     }
-    reset() { for (const a of this.axes) a.reset(), a.apply(); this.hide(); }
+    reset() {
+      this.motion?.stop();
+      for (const a of this.axes) a.reset(), a.apply();
+      this.hide();
+    }
     hide() { readout.style.display = this.spot.style.display = "none"; }
     move(e) {
       if (this.drag) return this.pull(e);
@@ -563,6 +691,9 @@
       setTimeout(() => URL.revokeObjectURL(link.href), 1000);
     }
   }
+
+  // On a narrow screen the contents would come before everything else.
+  if (innerWidth < 1080) document.querySelector("nav > details")?.removeAttribute("open");
 
   window.whirlFigures = [...document.querySelectorAll("svg.figure")].map((svg) => new Figure(svg));
 })();

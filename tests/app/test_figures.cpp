@@ -1,0 +1,166 @@
+// What the pictures of a run rest on: keyphasors of several shafts, motion apart from sag, clearance
+// diagrams, the replay, the machine in one drawing.
+#include "deck_run.hpp"
+#include "lateral_mass.hpp"
+
+#include <core/types.hpp>
+
+#include <complex>
+
+namespace {
+
+using namespace whirl;
+using test::DeckRun;
+using test::lateral_mass;
+namespace fs = std::filesystem;
+
+constexpr double k = 1e6, m = 10, c = 600;  // N/m, kg, N s/m
+
+const std::string springs = R"([[bearing]]
+name = "spring"
+at = "mass"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+cyy = "600 N.s/m"
+czz = "600 N.s/m"
+[[unbalance]]
+at = "mass"
+amount = "1 kg.mm"
+[[probe]]
+name = "P"
+at = "mass"
+)";
+
+std::string driven(const std::string& speed, const std::string& keys) {
+  return "[[drive]]\nat = \"rotor/0 mm\"\ntype = \"speed\"\nspeed = \"" + speed +
+         "\"\n[[step]]\nname = \"t\"\ntype = \"transient\"\n" + keys +
+         "[step.integrator]\ntolerance = 1e-8\n";
+}
+
+/// Radius of the circle that 1 kg mm drives at a speed, m.
+double radius_at(double Omega) {
+  return 1e-3 * Omega * Omega / std::abs(std::complex<double>(k - m * Omega * Omega, c * Omega));
+}
+
+std::string text_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1))
+    ++n;
+  return n;
+}
+
+}  // namespace
+
+// A steady circle of radius r about a sag s: r + s from the line at rest, the width of the circle
+// from where it began.
+TEST(Figures, PeaksTellMotionFromSag) {
+  const DeckRun run(lateral_mass(m, "9.81 m/s^2", springs) +
+                    driven("3000 rpm", "duration = \"0.1 s\"\nstart = \"unbalance_response\"\n"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const auto peak = run.csv("t_peaks.csv").last();
+  const double r = radius_at(100 * pi), sag = m * 9.81 / k;
+  EXPECT_NEAR(peak.at("amplitude 0-peak [m]"), r + sag, 1e-8);
+  EXPECT_NEAR(peak.at("motion 0-peak [m]"), 2 * r, 1e-8);
+  // half a turn after the start, and every turn again
+  EXPECT_NEAR(std::remainder(peak.at("motion at [s]") - 0.01, 0.02), 0.0, 1e-4);
+}
+
+// Two shafts that nothing couples: each is seen by its own keyphasor, at its own speed.
+TEST(Figures, EveryShaftHasItsKeyphasor) {
+  const std::string two = R"([[shaft]]
+name = "other"
+origin = ["0 mm", "1 m", "0 m"]
+speed_ratio = 1.5
+material = "steel"
+columns = ["name", "length[mm]", "rigid"]
+rows = [["left2", 100, true], ["right2", 100, true]]
+[[disk]]
+name = "mass 2"
+at = "other/100 mm"
+mass = "10 kg"
+Ip = "0.1 kg.m^2"
+Id = "0.06 kg.m^2"
+[[bearing]]
+name = "guide 2"
+at = "mass 2"
+type = "rigid"
+directions = ["x", "ry", "rz"]
+[[bearing]]
+name = "spring 2"
+at = "mass 2"
+type = "linear"
+kyy = "1e6 N/m"
+kzz = "1e6 N/m"
+cyy = "600 N.s/m"
+czz = "600 N.s/m"
+[[unbalance]]
+at = "mass 2"
+amount = "1 kg.mm"
+[[probe]]
+name = "Q"
+at = "mass 2"
+[[drive]]
+at = "other/0 mm"
+type = "speed"
+speed = "4500 rpm"
+)";
+  std::string deck = lateral_mass(m, "0 m/s^2", springs + two) +
+                     driven("3000 rpm", "duration = \"1 s\"\nstart = \"rest\"\n");
+  const std::size_t one = deck.find("[shaft]");
+  deck.replace(one, 7, "[[shaft]]");
+  const DeckRun run(deck);
+  ASSERT_EQ(run.exit, 0) << run.log;
+  const auto first = run.csv("t_tracking.csv").last(),
+             other = run.csv("t_other_tracking.csv").last();
+  EXPECT_FALSE(first.contains("Q.y 1X [m]"));
+  EXPECT_NEAR(first.at("speed [rpm]"), 3000, 1e-6);
+  EXPECT_NEAR(other.at("speed [rpm]"), 4500, 1e-6);
+  EXPECT_NEAR(first.at("P.y 1X [m]"), radius_at(100 * pi), 1e-9);
+  EXPECT_NEAR(other.at("Q.y 1X [m]"), radius_at(150 * pi), 1e-9);
+  EXPECT_NEAR(other.at("Q 1X forward [m]"), radius_at(150 * pi), 1e-9);
+  EXPECT_TRUE(fs::exists(run.folder / "r" / "plots" / "machine.svg"));
+}
+
+TEST(Figures, ClearancesOfARubInResponseAndTransient) {
+  const std::string rub = R"([[bearing]]
+name = "seal ring"
+at = "mass"
+type = "rub"
+gap = "1 mm"
+stiffness = "1e8 N/m"
+)";
+  const DeckRun run(lateral_mass(m, "0 m/s^2", springs + rub) +
+                    "[[step]]\nname = \"u\"\ntype = \"unbalance_response\"\nspeed = { start = "
+                    "\"1000 rpm\", stop = \"3000 rpm\", points = 5 }\n" +
+                    driven("3000 rpm", "duration = \"0.1 s\"\nstart = \"unbalance_response\"\n"));
+  ASSERT_EQ(run.exit, 0) << run.log;
+  EXPECT_TRUE(fs::exists(run.folder / "r" / "plots" / "u_clearances.svg"));
+  const std::string steady = text_of(run.folder / "r" / "plots" / "t_clearances.svg");
+  const double share = 100 * radius_at(100 * pi) / 1e-3;
+  char expected[32];
+  std::snprintf(expected, sizeof expected, "seal ring: %.3g %%", share);
+  EXPECT_NE(steady.find(expected), std::string::npos) << expected;
+  const io::Value gap = run.summary("t").at("gaps").at("seal ring");
+  EXPECT_NEAR(gap.at("largest displacement [m]").number(), radius_at(100 * pi), 1e-8);
+}
+
+// Bounded, whatever the run; left out where a deck says so.
+TEST(Figures, AReplayIsKeptWhereADeckWantsIt) {
+  for (const bool wanted : {true, false}) {
+    const DeckRun run(lateral_mass(m, "0 m/s^2", springs) +
+                      (wanted ? "" : "[output]\nreplay = false\n") +
+                      driven("3000 rpm", "duration = \"2 s\"\nstart = \"rest\"\n"));
+    ASSERT_EQ(run.exit, 0) << run.log;
+    const std::string report = text_of(run.folder / "r" / "report.html");
+    EXPECT_EQ(count(report, "class=\"replay\" data-for"), wanted ? 1u : 0u);
+    EXPECT_LT(report.size(), 700000u);
+    EXPECT_EQ(fs::exists(run.folder / "r" / "plots" / "t_replay.svg"), wanted);
+  }
+}
