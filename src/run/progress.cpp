@@ -1,7 +1,9 @@
 #include <run/progress.hpp>
+#include <run/watch_progress.hpp>
 #include <chrono>
 #include <cstdio>
 #include <unistd.h>
+#include <utility>
 
 namespace whirl::run {
 
@@ -11,10 +13,30 @@ ProgressLine::ProgressLine(std::string name, bool quiet)
       terminal_(isatty(STDERR_FILENO) != 0) {}
 
 namespace {
+thread_local const ProgressWatcher* watching = nullptr;
+thread_local double last_told = 0;
+constexpr double rest = 0.1;  // s, between two looks
+
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+void tell(const std::string& step, double fraction, const std::string& text) {
+  if (watching == nullptr) return;
+  const double t = now();
+  if (fraction < 1.0 && t - last_told < rest) return;
+  last_told = t;
+  (*watching)(step, fraction, text);
+}
 }  // namespace
+
+WatchProgress::WatchProgress(ProgressWatcher watcher)
+    : watcher_(std::move(watcher)),
+      outer_(std::exchange(watching, &watcher_)) {
+  last_told = 0;
+}
+
+WatchProgress::~WatchProgress() { watching = outer_; }
 
 PhaseTimer::PhaseTimer(Job& job, std::string phase) : job_(job), phase_(std::move(phase)) {}
 
@@ -34,10 +56,11 @@ PhaseTimer::~PhaseTimer() {
 }
 
 void ProgressLine::update(double fraction, const std::string& text) {
+  tell(name_, fraction, text);
   if (quiet_) return;
   if (terminal_) {
     const double t = now();
-    if (t - last_time_ < 0.1) return;
+    if (t - last_time_ < rest) return;
     last_time_ = t;
     std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s", name_.c_str(), 100.0 * fraction, text.c_str());
   } else if (const int tenth = static_cast<int>(10.0 * fraction);
@@ -48,6 +71,7 @@ void ProgressLine::update(double fraction, const std::string& text) {
 }
 
 void ProgressLine::done(const std::string& text) {
+  tell(name_, 1.0, text);
   if (quiet_) return;
   std::fprintf(stderr, "%s%s: %s\n", terminal_ ? "\r\033[K" : "", name_.c_str(), text.c_str());
 }
