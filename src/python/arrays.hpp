@@ -16,7 +16,7 @@ pybind11::array_t<T> array_of(std::vector<T>&& values, std::vector<pybind11::ssi
   T* data = kept->data();
   const pybind11::capsule owner(kept.get(),
                                 [](void* p) { delete static_cast<std::vector<T>*>(p); });
-  kept.release();
+  static_cast<void>(kept.release());  // it is the capsule's
   return pybind11::array_t<T>(shape, data, owner);
 }
 

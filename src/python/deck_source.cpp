@@ -34,7 +34,7 @@ void DeckSource::set(const std::string& path, const std::string& value) {
 std::vector<std::string> DeckSource::settings() const {
   std::vector<std::string> out;
   for (const auto& [path, value] : settings_)
-    out.push_back(path + "=" + value);
+    out.push_back(fmt::format("{}={}", path, value));
   return out;
 }
 

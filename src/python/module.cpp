@@ -420,6 +420,7 @@ void bind_errors(py::module_& m) {
       "them. As text: what the program prints, with source line and caret.",
       PyExc_RuntimeError, nullptr);
   m.attr("Error") = py::handle(error_type);
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): what pybind11 calls
   py::register_exception_translator([](std::exception_ptr p) {
     try {
       if (p) std::rethrow_exception(p);

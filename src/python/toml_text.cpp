@@ -67,7 +67,7 @@ std::string inline_text(const py::handle& given, const std::string& place) {
     for (const auto& [key, item] : value.cast<py::dict>()) {
       const std::string name = py::str(key).cast<std::string>();
       out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", key_text(name),
-                         inline_text(item, place + "." + name));
+                         inline_text(item, fmt::format("{}.{}", place, name)));
     }
     return "{" + out + "}";
   }
@@ -90,8 +90,9 @@ void write_table(const py::dict& table, const std::string& heading, const std::s
   for (const auto& [key, given] : table) {
     const std::string name = py::str(key).cast<std::string>();
     if (heading.empty() && (is_list_of_tables(given) || py::isinstance<py::dict>(given))) continue;
-    out += fmt::format("{} = {}\n", key_text(name),
-                       inline_text(given, place.empty() ? name : place + "." + name));
+    out +=
+        fmt::format("{} = {}\n", key_text(name),
+                    inline_text(given, place.empty() ? name : fmt::format("{}.{}", place, name)));
   }
 }
 
