@@ -8,7 +8,9 @@ include(CMakePackageConfigHelpers)
 install(TARGETS whirl RUNTIME DESTINATION bin COMPONENT program)
 install(FILES docs/whirl.1 DESTINATION share/man/man1 COMPONENT program)
 install(FILES LICENSE DESTINATION share/doc/whirl RENAME copyright COMPONENT program)
-install(FILES README.md CHANGELOG.md docs/deck.md docs/numerics.md docs/theory.md DESTINATION share/doc/whirl COMPONENT program)
+install(FILES README.md CHANGELOG.md docs/deck.md docs/guide.md docs/numerics.md docs/python.md docs/theory.md
+        DESTINATION share/doc/whirl COMPONENT program)
+install(DIRECTORY docs/deck docs/elements docs/analyses DESTINATION share/doc/whirl COMPONENT program FILES_MATCHING PATTERN "*.md")
 
 # The program knows its own commands: it writes the completions.
 set(completions ${CMAKE_BINARY_DIR}/completions)

@@ -27,6 +27,9 @@ int run_command(const RunCommand& options);
 enum class SchemaForm { json, reference, units };
 /// JSON schema of decks, the reference of all tables and keys, or the table of units (Markdown).
 int print_schema(SchemaForm form);
+/// The same as --reference, page by page: deck.md and the folder deck.
+/// @throws Error (Exit::io) when they cannot be written.
+int write_reference(const std::filesystem::path& folder);
 std::string json_schema();
 
 /// The long text of each code, or the list of all codes.
@@ -34,12 +37,16 @@ std::string json_schema();
 int explain(const std::vector<std::string>& codes);
 
 struct NewOptions {
-  std::string example;         ///< empty: list the examples
-  std::filesystem::path file;  ///< empty: standard output
+  std::string example;               ///< name of one
+  std::string machine;               ///< of a starter; neither: list both
+  std::vector<std::string> answers;  ///< "key=value", to the questions of the starter
+  bool questions = false;            ///< print those instead
+  std::filesystem::path file;        ///< empty: standard output
   bool force = false;
 };
 /// Writes a commented deck to start from.
-/// @throws Error (E91, Exit::usage) for an example there is not, or a file that is there already.
+/// @throws Error (E91, Exit::usage) for an example or a machine there is not, or a file that is there
+/// already; of a starter also (Exit::deck) with what is wrong with the deck that the answers make.
 int new_deck(const NewOptions& options);
 
 struct ConvertOptions {

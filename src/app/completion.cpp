@@ -1,5 +1,6 @@
 #include <app/commands.hpp>
 #include <app/examples.hpp>
+#include <app/starters.hpp>
 #include <core/error.hpp>
 #include <fmt/format.h>
 
@@ -21,6 +22,13 @@ std::string example_names() {
   std::vector<std::string> r;
   for (const auto& e : examples())
     r.emplace_back(e.folder);
+  return words(r);
+}
+
+std::string machine_names() {
+  std::vector<std::string> r;
+  for (const auto& s : starters())
+    r.push_back(s.machine);
   return words(r);
 }
 
@@ -47,6 +55,7 @@ _whirl() {{
 {}  esac
   case $prev in
     --example) COMPREPLY=($(compgen -W "{}" -- "$cur")); return ;;
+    --machine) COMPREPLY=($(compgen -W "{}" -- "$cur")); return ;;
     --output) COMPREPLY=($(compgen -d -- "$cur")); return ;;
     --set|--jobs) return ;;
   esac
@@ -62,7 +71,7 @@ _whirl() {{
 }}
 complete -o filenames -F _whirl whirl
 )",
-      words(names), cases, example_names(), codes());
+      words(names), cases, example_names(), machine_names(), codes());
 }
 
 std::string fish(const std::vector<CommandInfo>& commands) {

@@ -74,6 +74,7 @@ struct Given {
   bool stability = false;
   sweep::SweepOptions sweep;
   bool reference = false, unit_list = false;
+  std::filesystem::path pages;
   std::vector<std::string> codes;
   NewOptions fresh;
   ConvertOptions convert;
@@ -177,14 +178,31 @@ void add_sweep(CLI::App& app, Given& g) {
 void add_texts(CLI::App& app, Given& g) {
   auto* c = app.add_subcommand("schema", "JSON schema of decks, for editors");
   auto* r = c->add_flag("--reference", g.reference, "all tables and keys as Markdown");
-  c->add_flag("--units", g.unit_list, "all units as Markdown")->excludes(r);
+  auto* u = c->add_flag("--units", g.unit_list, "all units as Markdown")->excludes(r);
+  c->add_option("--pages", g.pages, "the reference as pages (Markdown) in this folder")
+      ->type_name("FOLDER")
+      ->excludes(r)
+      ->excludes(u);
 
   c = app.add_subcommand("explain", "what an error code means; without a code: the list");
   c->add_option("codes", g.codes, "error codes")->type_name("CODE");
 
   c = app.add_subcommand("new",
-                         "write a commented deck to start from; without --example: the list");
-  c->add_option("--example", g.fresh.example, "which one")->type_name("NAME");
+                         "write a commented deck to start from, an example or a starter for a kind "
+                         "of machine; without either: the list");
+  auto* example =
+      c->add_option("--example", g.fresh.example, "a validated example")->type_name("NAME");
+  auto* machine = c->add_option("--machine", g.fresh.machine, "a starter for a kind of machine")
+                      ->type_name("KIND")
+                      ->excludes(example);
+  c->add_option("--answer", g.fresh.answers,
+                "answer to one of its questions: --answer speed='2980 rpm' (may be repeated)")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->allow_extra_args(false)
+      ->needs(machine);
+  c->add_flag("--questions", g.fresh.questions, "the questions of the starter instead of a deck")
+      ->needs(machine);
   c->add_option("file", g.fresh.file, "file to write (standard output when left out)");
   c->add_flag("--force", g.fresh.force, "replace an existing file");
 
@@ -226,6 +244,7 @@ int execute(const CLI::App& app, Given& g) {
     g.sweep.run.terminal = run::is_terminal(2);
     return sweep::run_sweep(g.sweep);
   }
+  if (is("schema") && !g.pages.empty()) return write_reference(g.pages);
   if (is("schema"))
     return print_schema(g.reference   ? SchemaForm::reference
                         : g.unit_list ? SchemaForm::units

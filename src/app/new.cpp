@@ -1,6 +1,8 @@
 #include <app/commands.hpp>
 #include <app/examples.hpp>
+#include <app/starters.hpp>
 #include <cstdio>
+#include <deck/deck.hpp>
 #include <deck/text/document.hpp>
 #include <fmt/format.h>
 #include <filesystem>
@@ -25,45 +27,85 @@ std::string title_of(std::string_view deck) {
   return b == std::string_view::npos ? std::string() : std::string(deck.substr(a + 1, b - a - 1));
 }
 
-}  // namespace
+/// Names on standard output, one a line; what to do with them on standard error.
+void list_all() {
+  for (const auto& e : examples())
+    std::fputs(fmt::format("{:<28} {}\n", short_name(e.folder), title_of(e.deck)).c_str(), stdout);
+  std::fflush(stdout);
+  std::string machines;
+  for (const Starter& s : starters())
+    machines += (machines.empty() ? "" : ", ") + s.machine;
+  std::fputs(fmt::format("these are examples: whirl new --example NAME deck.toml\n"
+                         "starters: whirl new --machine KIND deck.toml, of the kinds {}\n",
+                         machines)
+                 .c_str(),
+             stderr);
+}
 
-int new_deck(const NewOptions& o) {
-  if (o.example.empty()) {
-    for (const auto& e : examples())
-      std::fputs(fmt::format("{:<28} {}\n", short_name(e.folder), title_of(e.deck)).c_str(),
-                 stdout);
-    return static_cast<int>(Exit::ok);
-  }
-  const Example* found = nullptr;
+[[noreturn]] void no_such(const char* what, const std::string& name,
+                          const std::vector<std::string>& names) {
+  Diagnostic d;
+  const auto near = deck::nearest(name, names);
+  d.message = fmt::format("there is no {} '{}'", what, name);
+  d.hint =
+      near.empty() ? "`whirl new` lists them" : fmt::format("did you mean '{}'?", near.front());
+  throw Error(Exit::usage, std::move(d));
+}
+
+const Example& example_named(const std::string& name) {
   std::vector<std::string> names;
   for (const auto& e : examples()) {
     names.push_back(short_name(e.folder));
-    if (o.example == e.folder || o.example == names.back()) found = &e;
+    if (name == e.folder || name == names.back()) return e;
   }
-  if (!found) {
-    Diagnostic d;
-    const auto near = deck::nearest(o.example, names);
-    d.message = fmt::format("there is no example '{}'", o.example);
-    d.hint =
-        near.empty() ? "`whirl new` lists them" : fmt::format("did you mean '{}'?", near.front());
-    throw Error(Exit::usage, std::move(d));
+  no_such("example", name, names);
+}
+
+const Starter& starter_of(const std::string& machine) {
+  std::vector<std::string> names;
+  for (const Starter& s : starters()) {
+    names.push_back(s.machine);
+    if (machine == s.machine) return s;
   }
-  if (o.file.empty()) {
-    std::fputs(found->deck, stdout);
-    for (const ExampleFile& f : found->files)
-      std::fputs(fmt::format("note: the deck reads '{}' from its folder; give `whirl new` a file "
-                             "name and both are written\n",
-                             f.name)
-                     .c_str(),
-                 stderr);
-    return static_cast<int>(Exit::ok);
+  no_such("starter", machine, names);
+}
+
+void print_questions(const Starter& starter) {
+  for (const Question& q : starter.questions) {
+    std::string given = q.answer;
+    if (q.kind == Question::Kind::choice) given = fmt::format("{}", fmt::join(q.words, "|"));
+    if (q.kind == Question::Kind::number) given += fmt::format(" ({} to {})", q.least, q.most);
+    std::fputs(fmt::format("{:<22} {:<22} {}\n", q.key, given, q.text).c_str(), stdout);
   }
-  std::vector<std::pair<std::filesystem::path, const char*>> files{{o.file, found->deck}};
-  for (const ExampleFile& f : found->files)
-    files.emplace_back(o.file.parent_path() / f.name, f.text);
+}
+
+/// The starter with the answers that were given.
+/// @throws Error (Exit::deck) when they make no deck.
+std::string answered(const Starter& starter, const std::vector<std::string>& given) {
+  std::vector<std::pair<std::string, std::string>> answers;
+  for (const std::string& a : given) {
+    const std::size_t k = a.find('=');
+    if (k == std::string::npos) {
+      Diagnostic d;
+      d.message = fmt::format("'{}' is no answer", a);
+      d.hint = "--answer KEY=VALUE; --questions lists the keys";
+      throw Error(Exit::usage, std::move(d));
+    }
+    answers.emplace_back(a.substr(0, k), a.substr(k + 1));
+  }
+  std::string text = starter_deck(starter, answers);
+  deck::Deck read = deck::read_deck_text(text, "the deck of these answers");
+  if (!read.ok()) throw Error(Exit::deck, std::move(read.diagnostics));
+  return text;
+}
+
+using Files = std::vector<std::pair<std::filesystem::path, std::string>>;
+
+/// @throws Error E91 for one that is there already.
+void write_files(const Files& files, bool force) {
   std::error_code ec;
   for (const auto& [file, text] : files) {
-    if (o.force || !std::filesystem::exists(file, ec)) continue;
+    if (force || !std::filesystem::exists(file, ec)) continue;
     Diagnostic d;
     d.code = "E91";
     d.message = fmt::format("'{}' exists already", file.string());
@@ -72,9 +114,41 @@ int new_deck(const NewOptions& o) {
   }
   for (const auto& [file, text] : files)
     io::write_atomic(file, text);
-  std::fputs(
-      fmt::format("wrote {}; next: whirl check '{}'\n", o.file.string(), o.file.string()).c_str(),
-      stderr);
+  const std::string deck = files.front().first.string();
+  std::fputs(fmt::format("wrote {}; next: whirl check '{}'\n", deck, deck).c_str(), stderr);
+}
+
+}  // namespace
+
+int new_deck(const NewOptions& o) {
+  if (o.example.empty() && o.machine.empty()) {
+    list_all();
+    return static_cast<int>(Exit::ok);
+  }
+  if (o.questions) {
+    print_questions(starter_of(o.machine));
+    return static_cast<int>(Exit::ok);
+  }
+  Files files;
+  if (o.machine.empty()) {
+    const Example& example = example_named(o.example);
+    files.emplace_back(o.file, example.deck);
+    for (const ExampleFile& f : example.files)
+      files.emplace_back(o.file.parent_path() / f.name, f.text);
+  } else {
+    files.emplace_back(o.file, answered(starter_of(o.machine), o.answers));
+  }
+  if (!o.file.empty()) {
+    write_files(files, o.force);
+    return static_cast<int>(Exit::ok);
+  }
+  std::fputs(files.front().second.c_str(), stdout);
+  for (std::size_t k = 1; k < files.size(); ++k)
+    std::fputs(fmt::format("note: the deck reads '{}' from its folder; give `whirl new` a file "
+                           "name and both are written\n",
+                           files[k].first.string())
+                   .c_str(),
+               stderr);
   return static_cast<int>(Exit::ok);
 }
 

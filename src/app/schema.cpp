@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <deck/describer.hpp>
+#include <deck/reference.hpp>
 #include <fmt/format.h>
+#include <io/file.hpp>
 #include <io/value.hpp>
 #include <map>
 #include <set>
@@ -266,6 +268,12 @@ int print_schema(SchemaForm form) {
                            : form == SchemaForm::units   ? deck::units_markdown()
                                                          : json_schema();
   std::fputs(text.c_str(), stdout);
+  return static_cast<int>(Exit::ok);
+}
+
+int write_reference(const std::filesystem::path& folder) {
+  for (const deck::ReferencePage& page : deck::reference_pages())
+    io::write_atomic(folder / page.file, page.text);
   return static_cast<int>(Exit::ok);
 }
 

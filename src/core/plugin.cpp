@@ -20,14 +20,27 @@ namespace fs = std::filesystem;
                                    std::move(hint), Where{{}, 0, 0, 0, "plug-in '" + name + "'"}});
 }
 
-/// The program's own installation and nothing else: PREFIX/lib/whirl beside PREFIX/bin, or
-/// `plugins` of the build tree it was built in.
-std::vector<fs::path> search_path() {
+/// The file this code is in: the program, or the Python module.
+fs::path own_file() {
   std::error_code ec;
-  const fs::path exe = fs::read_symlink("/proc/self/exe", ec);
-  if (ec) return {};
-  const fs::path prefix = exe.parent_path().parent_path();
+  Dl_info info{};
+  static const char here = 0;
+  if (dladdr(&here, &info) != 0 && info.dli_fname) {
+    const fs::path library = fs::canonical(info.dli_fname, ec);
+    if (!ec && library.extension() == ".so") return library;
+  }
+  return fs::read_symlink("/proc/self/exe", ec);
+}
+
+/// Its own installation and nothing else: PREFIX/lib/whirl beside PREFIX/bin (of the module beside
+/// PREFIX/lib/python3/dist-packages), or `plugins` of the build tree it was built in.
+std::vector<fs::path> search_path() {
+  const fs::path own = own_file();
+  if (own.empty()) return {};
+  const fs::path prefix = own.parent_path().parent_path();
   std::vector<fs::path> dirs{prefix / "lib" / "whirl"};
+  if (own.extension() == ".so") dirs.push_back(prefix.parent_path() / "whirl");
+  std::error_code ec;
   if (fs::is_regular_file(prefix / "CMakeCache.txt", ec)) dirs.push_back(prefix / "plugins");
   return dirs;
 }

@@ -2,6 +2,8 @@
 #include <core/types.hpp>
 #include <io/file.hpp>
 #include <io/plain_csv.hpp>
+#include <io/table_file.hpp>
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cerrno>
@@ -160,11 +162,41 @@ std::size_t read_record(const std::string& text, std::size_t at, std::vector<std
   return std::string::npos;
 }
 
-double number(const std::string& cell) {
-  double x = nan;
+/// False of text, which leaves x at NaN.
+bool read_number(const std::string& cell, double& x) {
+  x = nan;
   const char* end = cell.data() + cell.size();
   const auto r = std::from_chars(cell.data(), end, x);
-  return r.ec == std::errc{} && r.ptr == end ? x : nan;
+  if (r.ec == std::errc{} && r.ptr == end) return true;
+  x = nan;
+  return false;
+}
+
+struct Heading {
+  std::string name, unit;
+};
+
+Heading heading_of(const std::string& cell) {
+  const auto open = cell.rfind(" [");
+  const bool has_unit = open != std::string::npos && cell.back() == ']';
+  if (!has_unit) return {cell, ""};
+  return {cell.substr(0, open), cell.substr(open + 2, cell.size() - open - 3)};
+}
+
+/// Hands the cells of each whole row to `row`, after those of the header to `header`.
+template <class Header, class Row>
+void for_each_row(const fs::path& file, Header header, Row row) {
+  const std::string text = read_text(file);
+  std::vector<std::string> cells;
+  std::size_t at = read_record(text, 0, cells);
+  if (at == std::string::npos) io_failure(file, "no header line in");
+  header(cells);
+  const std::size_t width = cells.size();
+  while ((at = read_record(text, at, cells)) != std::string::npos) {
+    if (cells.size() != width)
+      io_failure(file, "a row with " + std::to_string(cells.size()) + " cells in");
+    row(cells);
+  }
 }
 
 }  // namespace
@@ -184,25 +216,47 @@ const std::vector<double>& Columns::operator[](std::string_view name) const {
 }
 
 Columns read_csv(const fs::path& file) {
-  const std::string text = read_text(file);
   Columns c;
-  std::vector<std::string> cells;
-  std::size_t at = read_record(text, 0, cells);
-  if (at == std::string::npos) io_failure(file, "no header line in");
-  for (const auto& cell : cells) {
-    const auto open = cell.rfind(" [");
-    const bool has_unit = open != std::string::npos && cell.back() == ']';
-    c.names.push_back(has_unit ? cell.substr(0, open) : cell);
-    c.units.push_back(has_unit ? cell.substr(open + 2, cell.size() - open - 3) : "");
-  }
-  c.values.resize(c.names.size());
-  while ((at = read_record(text, at, cells)) != std::string::npos) {
-    if (cells.size() != c.names.size())
-      io_failure(file, "a row with " + std::to_string(cells.size()) + " cells in");
+  const auto header = [&c](const std::vector<std::string>& cells) {
+    for (const auto& cell : cells) {
+      Heading h = heading_of(cell);
+      c.names.push_back(std::move(h.name));
+      c.units.push_back(std::move(h.unit));
+    }
+    c.values.resize(c.names.size());
+  };
+  for_each_row(file, header, [&c](const std::vector<std::string>& cells) {
     for (std::size_t k = 0; k < cells.size(); ++k)
-      c.values[k].push_back(number(cells[k]));
-  }
+      read_number(cells[k], c.values[k].emplace_back());
+  });
   return c;
+}
+
+TableFile read_table(const fs::path& file) {
+  TableFile t;
+  std::vector<bool> has_text;
+  const auto header = [&](const std::vector<std::string>& cells) {
+    for (const auto& cell : cells) {
+      Heading h = heading_of(cell);
+      t.columns.push_back({std::move(h.name), std::move(h.unit), {}, {}});
+    }
+    has_text.resize(cells.size(), false);
+  };
+  for_each_row(file, header, [&](const std::vector<std::string>& cells) {
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const bool is_number = read_number(cells[k], t.columns[k].numbers.emplace_back());
+      has_text[k] = has_text[k] || !is_number;
+    }
+  });
+  if (std::find(has_text.begin(), has_text.end(), true) == has_text.end()) return t;
+  // a second reading, for these columns alone: histories, which are long, have none
+  for_each_row(
+      file, [](const std::vector<std::string>&) {},
+      [&](const std::vector<std::string>& cells) {
+        for (std::size_t k = 0; k < cells.size(); ++k)
+          if (has_text[k]) t.columns[k].texts.push_back(cells[k]);
+      });
+  return t;
 }
 
 void Table::add(std::vector<Cell> row) {

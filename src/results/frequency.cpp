@@ -4,6 +4,7 @@
 #include <results/turned_back.hpp>
 #include <results/held.hpp>
 #include <results/linear_limits.hpp>
+#include <results/steady_rotation.hpp>
 #include <run/progress.hpp>
 
 #include <fmt/format.h>
@@ -15,16 +16,21 @@
 
 namespace whirl::results {
 
-analysis::SteadyRotation steady_rotation_of(const run::Job& job, double top_speed) {
+analysis::SteadyRotation steady_rotation_of(const model::Model& model, const meshes::Mesh& mesh,
+                                            const assembly::Built& built, double top_speed) {
   analysis::SteadyRotation r;
-  for (std::size_t l = 0; l < job.mesh.lines.size(); ++l)
-    r.ratio.push_back(job.mesh.lines[l].rotating ? job.model.shafts[l].speed_ratio : 0.0);
-  r.ratio.resize(static_cast<std::size_t>(job.system().lines()), 0.0);
+  for (std::size_t l = 0; l < mesh.lines.size(); ++l)
+    r.ratio.push_back(mesh.lines[l].rotating ? model.shafts[l].speed_ratio : 0.0);
+  r.ratio.resize(static_cast<std::size_t>(built.system.lines()), 0.0);
   r.top_speed = top_speed;
-  r.table_frequencies = job.built.table_frequencies;
-  for (const assembly::MagneticControl& c : job.built.magnetic_controls)
+  r.table_frequencies = built.table_frequencies;
+  for (const assembly::MagneticControl& c : built.magnetic_controls)
     r.control_bandwidth = std::max(r.control_bandwidth, c.bandwidth);
   return r;
+}
+
+analysis::SteadyRotation steady_rotation_of(const run::Job& job, double top_speed) {
+  return steady_rotation_of(job.model, job.mesh, job.built, top_speed);
 }
 
 std::vector<double> speeds_of(const model::SpeedRange& r) {

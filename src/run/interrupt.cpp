@@ -1,13 +1,16 @@
 #include <run/interrupt.hpp>
+#include <run/borrowed_signals.hpp>
 #include <core/interrupt.hpp>
 
-#include <csignal>
+#include <cstddef>
 
 namespace whirl::run {
 
 namespace {
 
 volatile std::sig_atomic_t asked_by = 0;  // the first signal that asked to stop
+
+constexpr std::array<int, 4> borrowed{SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 extern "C" void on_signal(int sig) {
   interrupt::flag.store(true, std::memory_order_relaxed);
@@ -42,5 +45,24 @@ void install_interrupt_handlers() {
   // nobody reads the progress any more: the run goes on
   std::signal(SIGPIPE, SIG_IGN);
 }
+
+void ask_to_stop() { interrupt::flag.store(true, std::memory_order_relaxed); }
+
+BorrowedSignals::BorrowedSignals() {
+  for (std::size_t k = 0; k < borrowed.size(); ++k)
+    ::sigaction(borrowed[k], nullptr, &before_[k]);
+  run::asked_by = 0;
+  interrupt::flag.store(false, std::memory_order_relaxed);
+  install_interrupt_handlers();
+}
+
+BorrowedSignals::~BorrowedSignals() {
+  for (std::size_t k = 0; k < borrowed.size(); ++k)
+    ::sigaction(borrowed[k], &before_[k], nullptr);
+  run::asked_by = 0;
+  interrupt::flag.store(false, std::memory_order_relaxed);
+}
+
+int BorrowedSignals::asked_by() const { return run::asked_by; }
 
 }  // namespace whirl::run

@@ -1,4 +1,5 @@
 #include <run/progress.hpp>
+#include <run/watch_progress.hpp>
 
 #include <fmt/format.h>
 
@@ -6,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <unistd.h>
+#include <utility>
 
 namespace whirl::run {
 
@@ -15,10 +17,30 @@ ProgressLine::ProgressLine(std::string name, bool quiet)
       terminal_(isatty(STDERR_FILENO) != 0) {}
 
 namespace {
+thread_local const ProgressWatcher* watching = nullptr;
+thread_local double last_told = 0;
+constexpr double rest = 0.1;  // s, between two looks
+
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+void tell(const std::string& step, double fraction, const std::string& text) {
+  if (watching == nullptr) return;
+  const double t = now();
+  if (fraction < 1.0 && t - last_told < rest) return;
+  last_told = t;
+  (*watching)(step, fraction, text);
+}
 }  // namespace
+
+WatchProgress::WatchProgress(ProgressWatcher watcher)
+    : watcher_(std::move(watcher)),
+      outer_(std::exchange(watching, &watcher_)) {
+  last_told = 0;
+}
+
+WatchProgress::~WatchProgress() { watching = outer_; }
 
 PhaseTimer::PhaseTimer(Job& job, std::string phase) : job_(job), phase_(std::move(phase)) {}
 
@@ -51,6 +73,7 @@ std::string time_left(double fraction, double spent) {
 }  // namespace
 
 void ProgressLine::update(double fraction, const std::string& text) {
+  tell(name_, fraction, text);
   if (quiet_) return;
   const double t = now();
   if (std::isnan(begin_)) {  // a resumed run is not at its start
@@ -60,7 +83,7 @@ void ProgressLine::update(double fraction, const std::string& text) {
   const double done = first_ < 1.0 ? (fraction - first_) / (1.0 - first_) : 1.0;
   const std::string left = time_left(done, t - begin_);
   if (terminal_) {
-    if (t - last_time_ < 0.1) return;
+    if (t - last_time_ < rest) return;
     last_time_ = t;
     std::fprintf(stderr, "\r\033[K%s %3.0f %%  %s%s", name_.c_str(), 100.0 * fraction, text.c_str(),
                  left.c_str());
@@ -74,6 +97,7 @@ void ProgressLine::update(double fraction, const std::string& text) {
 }
 
 void ProgressLine::done(const std::string& text) {
+  tell(name_, 1.0, text);
   if (quiet_) return;
   std::fprintf(stderr, "%s%s: %s\n", terminal_ ? "\r\033[K" : "", name_.c_str(), text.c_str());
 }

@@ -18,6 +18,7 @@ declare -A may=(
   [run]="core la model deck time system meshes assembly io analysis run"
   [results]="core la model time system meshes assembly plot io analysis run results"
   [steps]="core la model time system meshes assembly plot io analysis run results steps"
+  [python]="core la model deck system meshes assembly io analysis run results steps python"
   [study]="core la model deck time system meshes assembly plot io analysis run results steps study"
   [sweep]="core model deck plot io run steps sweep"
   [convert]="core deck io convert"
@@ -42,7 +43,8 @@ for folder in src/* elements meshes; do
 done
 # libraries with one door each
 for rule in 'vtk:src/io/vtk' 'ida/|arkode/|sundials/:src/time/sundials' 'klu\.h|amd\.h:src/la' 'toml\+\+:src/deck/text' \
-            'CLI/:src/app' 'nlohmann/:src/io/json.cpp' 'hdf5\.h:src/io/hdf5' 'png\.h:src/plot' 'sha2\.h:src/run' 'mpi\.h:src/sweep/mpi'; do
+            'CLI/:src/app' 'nlohmann/:src/io/json.cpp' 'hdf5\.h:src/io/hdf5' 'png\.h:src/plot' 'sha2\.h:src/run' 'mpi\.h:src/sweep/mpi' \
+            'pybind11/:src/python'; do
   pattern=${rule%:*} home=${rule##*:}
   if out=$(grep -rnE "#include <($pattern)" src elements meshes --include='*.hpp' --include='*.cpp' | grep -vE "^$home[/:]"); then
     echo "only $home may include $pattern:"

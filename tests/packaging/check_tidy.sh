@@ -18,7 +18,11 @@ if [ "${1:-}" = --since ]; then
 else
   files=("$@")
 fi
+# the Python module is looked at where its headers are
+module=OFF
+[ -e /usr/include/pybind11/pybind11.h ] && module=ON
+[ $module = ON ] || mapfile -t files < <(printf '%s\n' "${files[@]}" | grep -v '^src/python/\|^$' || true)
 [ ${#files[@]} -gt 0 ] || { echo "no source differs"; exit 0; }
 # commands without precompiled headers, which are GCC's
-cmake --preset release -B build/tidy -DWHIRL_PRECOMPILE=OFF -DWHIRL_BUILD_TESTS=OFF >/dev/null
+cmake --preset release -B build/tidy -DWHIRL_PRECOMPILE=OFF -DWHIRL_BUILD_TESTS=OFF -DWHIRL_PYTHON=$module >/dev/null
 printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build/tidy --quiet

@@ -14,12 +14,18 @@ case "${1:-}" in
   *)       files=("$@") ;;
 esac
 mapfile -t files < <(printf '%s\n' "${files[@]}" | grep -v '/sundials/\|/vtk/\|/hdf5/\|/mpi/\|\.in$\|^$' || true)
+# the Python module is looked at where its headers are
+if [ -e /usr/include/pybind11/pybind11.h ]; then
+  export PYTHON_FLAGS=$(/usr/bin/python3-config --includes | sed 's/-I/-isystem /g')
+else
+  mapfile -t files < <(printf '%s\n' "${files[@]}" | grep -v '^src/python/\|^$' || true)
+fi
 [ ${#files[@]} -gt 0 ] || { echo "no source differs"; exit 0; }
 parse() {
   echo "#include \"$1\"" |
     g++ -x c++ - -std=c++20 -fsyntax-only -Wall -Wextra -Wshadow -Wconversion -Wno-psabi -Wno-unused-function -Werror \
       -Isrc -I. -isystem /usr/include/eigen3 -isystem /usr/include/suitesparse -DEIGEN_MAX_ALIGN_BYTES=32 \
-      '-DWHIRL_VERSION=""' '-DWHIRL_BUILD_TYPE=""'
+      ${PYTHON_FLAGS:-} '-DWHIRL_VERSION=""' '-DWHIRL_BUILD_TYPE=""'
 }
 export -f parse
 printf '%s\0' "${files[@]}" | xargs -0 -P "$(nproc)" -I{} bash -c 'parse {}'
