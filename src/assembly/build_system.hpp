@@ -75,7 +75,7 @@ struct TiltingPads {
 struct FilmBearing {
   std::size_t bearing = 0;  ///< of the model
   bool heated = false;
-  std::ptrdiff_t kept_from = -1;  ///< of what elements keep; -1: it keeps nothing
+  std::ptrdiff_t kept_from = -1;        ///< of what elements keep; -1: it keeps nothing
   std::size_t kept = 0, kept_each = 0;  ///< how much in all, and for each pad
   /// Empty where the journal is outside a film.
   std::function<std::vector<elements::FilmStanding>(const NodeAt&)> standing;

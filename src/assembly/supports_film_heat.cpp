@@ -147,7 +147,8 @@ std::ptrdiff_t add_film_bearing(Assembly& a, const model::Bearing& b, const mode
     };
     keeper.check = [pads_at, settings, name = name_of(b)](const system::Workspace& w) {
       const std::vector<elements::HeatPad> now = pads_at(nodes_in(w));
-      if (all_inside(now)) check_balance(elements::balance_heat(now, settings), settings, now, name);
+      if (all_inside(now))
+        check_balance(elements::balance_heat(now, settings), settings, now, name);
     };
     film.kept_from = static_cast<std::ptrdiff_t>(a.builder.keep(std::move(keeper), at_first));
   }

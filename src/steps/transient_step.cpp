@@ -364,8 +364,7 @@ void TransientRun::execute() {
     if (const std::string words = output->headline(); !words.empty()) headline += ", " + words;
   }
   line.done(headline);
-  if (r.reason != analysis::StopReason::failed)
-    results::report_kept_films(job_, step_.name, r.end);
+  if (r.reason != analysis::StopReason::failed) results::report_kept_films(job_, step_.name, r.end);
   results::say_held(job_, step_, results::held_in_step(job_, step_), section);
   for (const auto& output : outputs_)
     output->report(end);

@@ -25,6 +25,22 @@ class FixedPoint {
  public:
   /// The next x, from x and its residual.
   VecX next(const VecX& x, const VecX& residual) {
+    const VecX to = combination(x, residual);
+    // no further than where an exponential is a straight line by half
+    const double step = (to - x).cwiseAbs().maxCoeff();
+    constexpr double most = 0.4;
+    return step > most ? VecX(x + most / step * (to - x)) : to;
+  }
+
+ private:
+  VecX combination(const VecX& x, const VecX& residual) {
+    const double size = residual.norm();
+    if (size > 2.0 * smallest_) {  // astray: what was learnt does not hold here
+      steps_.clear();
+      changes_.clear();
+      last_residual_.resize(0);
+    }
+    smallest_ = std::min(size, smallest_);
     if (last_residual_.size() > 0) {
       steps_.push_back(x - last_x_);
       changes_.push_back(residual - last_residual_);
@@ -47,8 +63,8 @@ class FixedPoint {
     return x + residual - (S + D) * share;
   }
 
- private:
   static constexpr std::size_t memory = 5;
+  double smallest_ = infinity;
   std::deque<VecX> steps_, changes_;
   VecX last_x_, last_residual_;
 };
@@ -89,12 +105,15 @@ void EquilibriumSolver::balance_kept(double Omega, Equilibrium& out) {
     out = std::move(*moved);
     out.kept_error = error;
   }
+  for (const system::Keeper& k : sys.keepers())
+    if (k.check) k.check(w);  // what cannot be says more
   throw run_error("E76",
                   fmt::format("the temperatures of {} and the equilibrium do not settle: after {} "
                               "rounds they still change by {:.2g} (of the logarithm of the "
                               "viscosity, or of the clearance)",
                               sys.keepers().front().name, most, out.kept_error),
-                  "smaller steps in speed or load; films without clearance when hot");
+                  "the journal may grow into its bearing (expansions, supply_temperature, "
+                  "clearance), or the oil be too little (carry_over): look at it without heat");
 }
 
 }  // namespace whirl::analysis
