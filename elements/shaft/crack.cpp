@@ -98,7 +98,8 @@ CrackLaw::Answer CrackLaw::follow_moment(double M_xi, double M_eta) const {
     // the merit is |m|^2/2 + g W - m.M, whose gradient is the defect
     const double before = 0.5 * m.squaredNorm() + g * p.W - m.dot(M);
     double part = 1.0;
-    for (; part > 1e-6; part *= 0.5) {
+    // near the answer whole steps converge, where the merit no longer tells them apart
+    for (; step.norm() > 1e-4 * size && part > 1e-6; part *= 0.5) {
       const Vec2 next = m + part * step;
       const Potential q(c_xi, c_eta, small, next);
       const double after = 0.5 * next.squaredNorm() + g * q.W - next.dot(M);
