@@ -163,7 +163,8 @@ class LimitsOutput final : public TransientOutput {
       used.push_back(
           {x.bearing, x.size, x.largest.value,
            std::isnan(x.largest.time) ? "" : fmt::format("t = {:.5g} s", x.largest.time)});
-    add_clearances(end.job, end.section, end.step.name + "_clearances", end.step.name, reach, used);
+    add_clearances(end.job, end.section, end.step.name + "_clearance_diagram", end.step.name, reach,
+                   used);
   }
 
   void summarize(TransientEnd& end) override {

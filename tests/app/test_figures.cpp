@@ -141,8 +141,8 @@ stiffness = "1e8 N/m"
                     "\"1000 rpm\", stop = \"3000 rpm\", points = 5 }\n" +
                     driven("3000 rpm", "duration = \"0.1 s\"\nstart = \"unbalance_response\"\n"));
   ASSERT_EQ(run.exit, 0) << run.log;
-  EXPECT_TRUE(fs::exists(run.folder / "r" / "plots" / "u_clearances.svg"));
-  const std::string steady = text_of(run.folder / "r" / "plots" / "t_clearances.svg");
+  EXPECT_TRUE(fs::exists(run.folder / "r" / "plots" / "u_clearance_diagram.svg"));
+  const std::string steady = text_of(run.folder / "r" / "plots" / "t_clearance_diagram.svg");
   const double share = 100 * radius_at(100 * pi) / 1e-3;
   char expected[32];
   std::snprintf(expected, sizeof expected, "seal ring: %.3g %%", share);
