@@ -50,6 +50,23 @@ max_speed = "20000 rpm"
 name = "response"
 type = "unbalance_response"
 speed = { start = "500 rpm", stop = "12000 rpm", points = 90 }
+[[step]]
+name = "at_frequencies"
+type = "harmonic_response"
+rotor_speed = "3000 rpm"
+frequency = { start = "1 Hz", stop = "200 Hz", points = 150 }
+[[step.force]]
+at = "disk"
+force = ["0 N", "10 N", "0 N"]
+whirl = "forward"
+[[step]]
+name = "at_speeds"
+type = "harmonic_response"
+order = 2
+speed = { start = "500 rpm", stop = "6000 rpm", points = 70 }
+[[step.force]]
+at = "disk"
+force = ["0 N", "10 N", "0 N"]
 )";
 constexpr const char* steps_of_films = R"([[unbalance]]
 at = "disk1"
