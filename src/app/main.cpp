@@ -11,10 +11,14 @@
 #include <core/interrupt.hpp>
 #include <core/isa.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <fmt/format.h>
+#include <string>
+#include <unistd.h>
 
 namespace {
 
@@ -30,7 +34,7 @@ void add_deck(CLI::App* c, std::filesystem::path& deck, deck::ReadOptions& read)
       ->allow_extra_args(false);
 }
 
-void add_run(CLI::App* c, run::RunOptions& run) {
+void add_run(CLI::App* c, run::RunOptions& run, bool& reproducible) {
   c->add_flag("-q,--quiet", run.quiet, "no progress and no summary");
   c->add_flag("--savings", run.savings,
               "measure what an evaluation costs with and without the parts that were left out");
@@ -38,6 +42,8 @@ void add_run(CLI::App* c, run::RunOptions& run) {
   c->add_option("-j,--jobs", run.jobs, "threads for what can go in parallel (0: all processors)")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
+  c->add_flag("--reproducible", reproducible,
+              "the same digits on every x86-64 processor, by instructions that all of them have");
   c->add_option("-o,--output", run.output, "results folder instead of the deck's")
       ->type_name("FOLDER");
 }
@@ -70,6 +76,7 @@ struct Given {
   CheckOptions check;
   RunCommand run;
   bool keep_everything = false;
+  bool reproducible = false;
   study::StudyOptions study;
   bool stability = false;
   sweep::SweepOptions sweep;
@@ -99,7 +106,7 @@ void add_check(CLI::App& app, Given& g) {
 void add_run_command(CLI::App& app, Given& g) {
   auto* c = app.add_subcommand("run", "run the steps of a deck");
   add_deck(c, g.run.deck, g.run.read);
-  add_run(c, g.run.run);
+  add_run(c, g.run.run, g.reproducible);
   c->add_flag("--resume", g.run.run.resume, "continue from the last checkpoint");
   c->add_flag("--keep-everything", g.keep_everything,
               "build the general model instead of leaving out what the deck does not need");
@@ -109,7 +116,7 @@ void add_study(CLI::App& app, Given& g) {
   auto* c = app.add_subcommand(
       "study", "error against run time of a deck over tolerances, steps, integrators and meshes");
   add_deck(c, g.study.deck, g.study.read);
-  add_run(c, g.study.run);
+  add_run(c, g.study.run, g.reproducible);
   c->add_option("--exact", g.study.exact,
                 "exact displacements of probes to measure against as well: CSV, or HDF5 (*.h5), "
                 "with columns \"t [s]\", \"PROBE.y [m]\", ..")
@@ -172,7 +179,7 @@ void add_sweep(CLI::App& app, Given& g) {
   c->add_flag("--hdf5", g.sweep.hdf5, "write the table of runs to sweep.h5 as well");
   c->add_flag("--keep", g.sweep.keep, "keep the results folder of every run");
   c->add_flag("--resume", g.sweep.run.resume, "do the runs that are not done yet");
-  add_run(c, g.sweep.run);
+  add_run(c, g.sweep.run, g.reproducible);
 }
 
 void add_texts(CLI::App& app, Given& g) {
@@ -226,6 +233,28 @@ void add_texts(CLI::App& app, Given& g) {
       ->check(CLI::IsMember({"bash", "fish"}));
 
   app.add_subcommand("version", "version, compiler, plug-ins");
+}
+
+/// Instructions beyond those of every x86-64 round differently where they fuse a product and a sum.
+/// Whirl's own kernels are chosen by WHIRL_ISA; the C library chooses its sines when a program starts,
+/// so that this one starts again.
+void take_common_instructions(char** argv) {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value ? value : "");
+  };
+  static constexpr const char* hidden = "glibc.cpu.hwcaps=-AVX2,-AVX,-FMA,-FMA4,-AVX512F,-AVX512VL";
+  const std::string tunables = variable("GLIBC_TUNABLES");
+  if (variable("WHIRL_ISA") == "baseline" && tunables.find(hidden) != std::string::npos) return;
+  setenv("WHIRL_ISA", "baseline", 1);
+  setenv("GLIBC_TUNABLES", (tunables.empty() ? hidden : tunables + ":" + hidden).c_str(), 1);
+  std::fflush(nullptr);
+  execv("/proc/self/exe", argv);
+  Diagnostic d;
+  d.message =
+      fmt::format("--reproducible cannot start the program again: {}", std::strerror(errno));
+  d.hint = "WHIRL_ISA=baseline chooses the same kernels, but leaves the C library its own choice";
+  throw Error(Exit::io, std::move(d));
 }
 
 int execute(const CLI::App& app, Given& g) {
@@ -339,6 +368,7 @@ int command_line(int argc, char** argv) {
     const int code = app.exit(e);  // prints help, version or the message
     return code == 0 ? static_cast<int>(Exit::ok) : static_cast<int>(Exit::usage);
   }
+  if (given.reproducible) take_common_instructions(argv);
   return execute(app, given);
 }
 

@@ -7,14 +7,16 @@
 #include <results/mesh_accuracy.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
+#include <core/parallel.hpp>
 #include <core/rotation.hpp>
 #include <core/text.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
+#include <optional>
 
 namespace whirl::steps {
 
@@ -106,6 +108,29 @@ void use_frequency_axis(plot::Figure& f) {
   }
 }
 
+/// Forces that whirl do so with the spin, whichever way that is: what is asked for at speeds from
+/// zero on, and at reversed ones.
+using BothSpins = std::array<analysis::FrequencyResponseOptions, 2>;
+
+/// The responses of one thread, on a linearisation of its own.
+class Responder {
+ public:
+  Responder(analysis::Linearizer& linear, const BothSpins& options)
+      : linear_(linear),
+        options_(options) {}
+  FrequencyPoint at(double Omega, double w, double scale) {
+    const std::size_t reversed = Omega < 0 ? 1 : 0;
+    auto& solver = solver_[reversed];
+    if (!solver) solver.emplace(linear_, options_[reversed]);
+    return solver->at(Omega, w, scale);
+  }
+
+ private:
+  analysis::Linearizer& linear_;
+  const BothSpins& options_;
+  std::array<std::optional<analysis::HarmonicResponder>, 2> solver_;
+};
+
 /// A harmonic response on its way: forces, points of the grid, peaks.
 class HarmonicRun {
  public:
@@ -117,11 +142,17 @@ class HarmonicRun {
     double at, size;  ///< rad/s of frequency or of speed; m or rad
   };
 
-  analysis::HarmonicResponder& responder_at(double Omega);
   /// Against the grid's variable: rad/s of frequency or of speed.
-  FrequencyPoint respond(double x);
+  FrequencyPoint respond(double x) { return respond(responder_, x); }
+  FrequencyPoint respond(Responder& responder, double x) const;
+  double speed_at(double x) const { return asynchronous_ ? law_.speed : x; }
   void solve_grid();
+  /// Points first .. last - 1 of the grid on a linearisation of their own. equilibria: theirs, or
+  /// empty where all stand at one speed.
+  void solve_points(std::size_t first, std::size_t last,
+                    std::span<const analysis::Equilibrium> equilibria);
   void find_largest();
+  double largest_of(std::size_t probe) const;
   double size_of(const FrequencyPoint& x, std::size_t probe) const {
     return twists_ ? twist(x, probe) : lateral(x, probe);
   }
@@ -135,7 +166,14 @@ class HarmonicRun {
   void judge_gaps();
   void add_table();
   void add_peaks();
-  void find_peaks(std::size_t probe, double most, io::Table& table);
+  /// A maximum of a probe at a point of the grid, and the response at the peak beside it.
+  struct Found {
+    std::size_t probe, point;
+    double at = 0;
+    FrequencyPoint peak;
+  };
+  void list_maxima(std::size_t probe, std::vector<Found>& out) const;
+  void find_peak(Found& x) const;
   double place_on_axis(const FrequencyPoint& x) const {
     return asynchronous_ ? x.frequency : x.Omega;
   }
@@ -153,9 +191,9 @@ class HarmonicRun {
   const double top_;  ///< highest |speed|, rad/s
   results::FrequencyStep s_;
   results::GapCheck gaps_;
-  analysis::FrequencyResponseOptions options_;
-  /// Forces that whirl do so with the spin, whichever way that is: by whether it is reversed.
-  std::map<bool, analysis::HarmonicResponder> responders_;
+  BothSpins both_;
+  analysis::FrequencyResponseOptions& options_;  ///< of the first: all but forces are alike
+  Responder responder_;
   std::vector<FrequencyPoint> points_;
   std::vector<std::vector<double>> torques_;  ///< [point][line], N m
   double largest_ = 0, largest_twist_ = 0, largest_at_ = 0;
@@ -172,37 +210,61 @@ HarmonicRun::HarmonicRun(run::Job& job, const model::Step& step, const model::Ha
       top_(asynchronous_ ? std::abs(law.speed)
                          : std::max(std::abs(grid_.front()), std::abs(grid_.back()))),
       s_(job, step, "harmonic_response", "harmonic response", top_),
-      gaps_(s_) {
-  s_.linear.at(asynchronous_ ? law.speed : grid_.front());
+      gaps_(s_),
+      options_(both_.front()),
+      responder_(s_.linear, both_) {
+  s_.linear.at(speed_at(grid_.front()));
   options_.probes = results::response_probes(job);
   for (const analysis::ResponseProbe& p : options_.probes)
     options_.unknowns.push_back(6 * p.point.node + system::spin_phi);
   options_.outputs = results::support_measurements(job);
   options_.motion = results::motion_of(law.motion);
   options_.shapes = true;
+  both_[1] = both_[0];
+  for (const model::HarmonicForce& f : law_.forces) {
+    add_force(s_, f, 1.0, both_[0].forces);
+    add_force(s_, f, -1.0, both_[1].forces);
+  }
 }
 
-analysis::HarmonicResponder& HarmonicRun::responder_at(double Omega) {
-  const bool reversed = Omega < 0;
-  if (const auto known = responders_.find(reversed); known != responders_.end())
-    return known->second;
-  options_.forces.clear();
-  for (const model::HarmonicForce& f : law_.forces)
-    add_force(s_, f, reversed ? -1.0 : 1.0, options_.forces);
-  return responders_.try_emplace(reversed, s_.linear, options_).first->second;
-}
-
-FrequencyPoint HarmonicRun::respond(double x) {
-  if (asynchronous_) return responder_at(law_.speed).at(law_.speed, x);
+FrequencyPoint HarmonicRun::respond(Responder& responder, double x) const {
+  if (asynchronous_) return responder.at(law_.speed, x, 1.0);
   const double scale = law_.speed_squared ? x * x / (top_ * top_) : 1.0;
-  return responder_at(x).at(x, law_.order * std::abs(x), scale);
+  return responder.at(x, law_.order * std::abs(x), scale);
 }
 
+void HarmonicRun::solve_points(std::size_t first, std::size_t last,
+                               std::span<const analysis::Equilibrium> equilibria) {
+  analysis::Linearizer linear(s_.linear);
+  Responder responder(linear, both_);
+  for (std::size_t k = first; k < last; ++k) {
+    if (!equilibria.empty()) linear.set_equilibrium(equilibria[k - first]);
+    points_[k] = respond(responder, grid_[k]);
+    torques_[k] = line_torques(s_, linear.at(points_[k].Omega), points_[k].shape);
+  }
+}
+
+// Equilibria one after the other, responses side by side. What a thread gets at a time depends on
+// the grid alone.
 void HarmonicRun::solve_grid() {
   const run::PhaseTimer timer(job_, "harmonic response");
-  for (const double x : grid_) {
-    points_.push_back(respond(x));
-    torques_.push_back(line_torques(s_, s_.linear.at(points_.back().Omega), points_.back().shape));
+  constexpr std::size_t batch = 512;  // equilibria kept at a time
+  const std::size_t run_length = std::clamp<std::size_t>(grid_.size() / 16, 8, 64);
+  points_.resize(grid_.size());
+  torques_.resize(grid_.size());
+  for (std::size_t from = 0; from < grid_.size(); from += batch) {
+    const std::size_t count = std::min(batch, grid_.size() - from);
+    std::vector<analysis::Equilibrium> equilibria;
+    for (std::size_t k = 0; k < count && !asynchronous_; ++k) {
+      s_.linear.move_to(grid_[from + k]);
+      equilibria.push_back(s_.linear.equilibrium());
+    }
+    run_side_by_side((count + run_length - 1) / run_length, job_.options.jobs, [&](std::size_t r) {
+      const std::size_t first = r * run_length, last = std::min(first + run_length, count);
+      const std::span<const analysis::Equilibrium> all(equilibria);
+      solve_points(from + first, from + last,
+                   asynchronous_ ? all : all.subspan(first, last - first));
+    });
   }
 }
 
@@ -286,38 +348,54 @@ void HarmonicRun::add_peaks() {
                     twists_ ? "0-peak, twist" : "0-peak, major axis of the orbit"}};
   io::Value& v = s_.summary();
   v["points"] = points_.size();
+  std::vector<Found> found;
   for (std::size_t p = 0; p < options_.probes.size(); ++p) {
-    double most = 0;
-    for (const FrequencyPoint& x : points_)
-      most = std::max(most, size_of(x, p));
     const char* what = twists_ ? "largest twist 0-peak [rad]" : "largest amplitude 0-peak [m]";
-    v[what][options_.probes[p].name] = most;
-    find_peaks(p, most, table);
+    v[what][options_.probes[p].name] = largest_of(p);
+    list_maxima(p, found);
+  }
+  run_side_by_side(found.size(), job_.options.jobs, [&](std::size_t k) { find_peak(found[k]); });
+  for (const Found& x : found) {
+    const std::string& name = options_.probes[x.probe].name;
+    const double size = size_of(x.peak, x.probe);
+    table.add({name, to_rpm(x.peak.Omega), to_hz(x.peak.frequency), size});
+    io::Value e = io::Value::object();
+    e["frequency [Hz]"] = to_hz(x.peak.frequency);
+    e["speed [rpm]"] = to_rpm(x.peak.Omega);
+    e["amplitude"] = size;
+    v["peaks"][name].push(std::move(e));
+    peaks_.push_back({x.at, size});
   }
   s_.add_table("peaks", std::move(table));
 }
 
-/// most: largest of the probe's points.
-void HarmonicRun::find_peaks(std::size_t probe, double most, io::Table& table) {
-  const std::string& name = options_.probes[probe].name;
+double HarmonicRun::largest_of(std::size_t probe) const {
+  double most = 0;
+  for (const FrequencyPoint& x : points_)
+    most = std::max(most, size_of(x, probe));
+  return most;
+}
+
+void HarmonicRun::list_maxima(std::size_t probe, std::vector<Found>& out) const {
+  const double most = largest_of(probe);
   for (std::size_t k = 1; k + 1 < points_.size(); ++k) {
     const double before = size_of(points_[k - 1], probe), here = size_of(points_[k], probe),
                  after = size_of(points_[k + 1], probe);
     const bool rises = here > before && here >= after;
     if (!rises || here - std::min(before, after) < 1e-7 * most)
       continue;  // a peak of rounding is none
-    const double x = analysis::find_maximum(grid_[k - 1], grid_[k], here, grid_[k + 1], 3e-9,
-                                            [&](double y) { return size_of(respond(y), probe); });
-    const FrequencyPoint peak = respond(x);
-    const double size = size_of(peak, probe);
-    table.add({name, to_rpm(peak.Omega), to_hz(peak.frequency), size});
-    io::Value e = io::Value::object();
-    e["frequency [Hz]"] = to_hz(peak.frequency);
-    e["speed [rpm]"] = to_rpm(peak.Omega);
-    e["amplitude"] = size;
-    s_.summary()["peaks"][name].push(std::move(e));
-    peaks_.push_back({x, size});
+    out.push_back({probe, k, 0.0, {}});
   }
+}
+
+void HarmonicRun::find_peak(Found& x) const {
+  analysis::Linearizer linear(s_.linear);
+  Responder responder(linear, both_);
+  const auto size = [&](double y) { return size_of(respond(responder, y), x.probe); };
+  const std::size_t k = x.point;
+  x.at = analysis::find_maximum(grid_[k - 1], grid_[k], size_of(points_[k], x.probe), grid_[k + 1],
+                                3e-9, size);
+  x.peak = respond(responder, x.at);
 }
 
 void HarmonicRun::add_response_figures(std::size_t probe) {

@@ -3,6 +3,7 @@
 #include <analysis/search.hpp>
 #include <results/frequency.hpp>
 #include <results/linear_limits.hpp>
+#include <core/parallel.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 
@@ -29,7 +30,7 @@ class SensitivityRun {
   SensitivityRun(run::Job& job, const model::Step& step, const model::SensitivityStep& law)
       : law_(law),
         s_(job, step, "sensitivity", "sensitivity of the control loops", std::abs(law.speed)),
-        meter_(s_.linear, opened_loops(job)) {}
+        opened_(opened_loops(job)) {}
   void execute();
 
  private:
@@ -41,7 +42,6 @@ class SensitivityRun {
   void judge_stability();
   void solve();
   void find_peak(std::size_t loop);
-  double size_at(std::size_t loop, double w) { return std::abs(meter_.at(law_.speed, w)[loop]); }
   void add_curves();
   void add_peaks();
   void add_figure();
@@ -50,7 +50,7 @@ class SensitivityRun {
   const model::SensitivityStep& law_;
   std::vector<Loop> loops_;
   results::FrequencyStep s_;
-  analysis::SensitivityMeter meter_;
+  std::vector<analysis::OpenedLoop> opened_;
   std::vector<double> grid_;                  ///< rad/s
   std::vector<std::vector<Complex>> values_;  ///< [frequency][loop]
   std::size_t growing_ = 0;
@@ -115,10 +115,19 @@ void SensitivityRun::solve() {
       std::unique(grid_.begin(), grid_.end(), [](double a, double b) { return b - a < 1e-9 * b; }),
       grid_.end());
   const run::PhaseTimer timer(s_.job, "sensitivity");
-  for (const double w : grid_)
-    values_.push_back(meter_.at(law_.speed, w));
-  for (std::size_t k = 0; k < loops_.size(); ++k)
-    find_peak(k);
+  s_.linear.at(law_.speed);
+  // what a thread gets at a time depends on the grid alone
+  constexpr std::size_t run_length = 64;
+  values_.resize(grid_.size());
+  run_side_by_side((grid_.size() + run_length - 1) / run_length, s_.job.options.jobs,
+                   [&](std::size_t r) {
+                     analysis::Linearizer linear(s_.linear);
+                     analysis::SensitivityMeter meter(linear, opened_);
+                     const std::size_t end = std::min((r + 1) * run_length, grid_.size());
+                     for (std::size_t k = r * run_length; k < end; ++k)
+                       values_[k] = meter.at(law_.speed, grid_[k]);
+                   });
+  run_side_by_side(loops_.size(), s_.job.options.jobs, [&](std::size_t k) { find_peak(k); });
 }
 
 void SensitivityRun::find_peak(std::size_t loop) {
@@ -129,9 +138,12 @@ void SensitivityRun::find_peak(std::size_t loop) {
   loops_[loop].at = grid_[top];
   loops_[loop].peak = size(top);
   if (top == 0 || top + 1 == grid_.size()) return;
-  loops_[loop].at = analysis::find_maximum(grid_[top - 1], grid_[top], size(top), grid_[top + 1],
-                                           1e-9, [&](double w) { return size_at(loop, w); });
-  loops_[loop].peak = size_at(loop, loops_[loop].at);
+  analysis::Linearizer linear(s_.linear);
+  analysis::SensitivityMeter meter(linear, opened_);
+  const auto size_at = [&](double w) { return std::abs(meter.at(law_.speed, w)[loop]); };
+  loops_[loop].at =
+      analysis::find_maximum(grid_[top - 1], grid_[top], size(top), grid_[top + 1], 1e-9, size_at);
+  loops_[loop].peak = size_at(loops_[loop].at);
 }
 
 void SensitivityRun::add_curves() {
