@@ -66,9 +66,9 @@ Said what_is_said(const AnyMachine& machine, const AnyMachine::View& view, doubl
   return said;
 }
 
-/// How far roots may lie apart, relative to their size, from what the equilibrium is found to. The
-/// films of dampers stand on a grid that does not turn with the load; rollers begin to touch with a
-/// power of 1/9 in their stiffness; what lays a pad without load goes by seconds.
+/// How far roots may lie apart, relative to their size, from what the equilibrium is found to. At
+/// rest the films of dampers have a best linear law alone; rollers begin to touch with a power of 1/9
+/// in their stiffness; what lays a pad without load goes by seconds.
 double alike(const AnyMachine& m) {
   return m.has("squeeze film")                              ? 5e-4
          : m.has("roller bearing") || m.has("tilting pads") ? 2e-5

@@ -1,6 +1,7 @@
 // What a static step says of its mesh, against meshes that are much finer.
 #include "../analysis/any_machine.hpp"
 #include "deck_run.hpp"
+#include "lateral_mass.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -137,4 +138,40 @@ TEST(StaticAccuracy, OfRandomMachines) {
     EXPECT_LT(own->said, 1e-3) << seed;
   }
   EXPECT_GE(compared, 9);
+}
+
+// Films of dampers say what their grid leaves; short ones beyond their theory, and long seals, are
+// warned of when the deck is read.
+TEST(StaticAccuracy, FilmsOfDampersSayTheirGrid) {
+  const auto deck = [](const std::string& film, const char* length) {
+    return whirl::test::lateral_mass(10, "9.81 m/s^2", R"([[bearing]]
+name = "damper"
+at = "mass"
+type = "squeeze_film"
+diameter = "100 mm"
+length = ")" + std::string(length) + R"("
+clearance = "100 um"
+viscosity = "20 mPa.s"
+stiffness = "2e6 N/m"
+film = )" + film + R"(
+[[step]]
+name = "st"
+type = "static"
+[output]
+report = false
+)");
+  };
+  for (const char* film : {"\"finite\"", "\"sealed\"\ngroove_at = \"50 deg\""}) {
+    const DeckRun run(deck(film, "60 mm"));
+    ASSERT_EQ(run.exit, 0) << run.log;
+    const Columns table = run.csv("st_coefficients.csv");
+    const double error = table.rows.at(0).at(table.column("grid error [-]"));
+    EXPECT_GT(error, 0.0) << film;
+    EXPECT_LT(error, 5e-3) << film;
+    EXPECT_TRUE(run.says("(film grid)")) << run.log;
+    EXPECT_FALSE(run.says("W03")) << run.log;
+  }
+  const DeckRun brief(deck("\"full\"", "40 mm")), long_one(deck("\"full\"", "60 mm"));
+  EXPECT_FALSE(brief.says("(film grid)") || brief.says("W03")) << brief.log;
+  EXPECT_TRUE(long_one.says("W03")) << long_one.log;
 }
