@@ -3,6 +3,7 @@
 #pragma once
 #include <meshes/mesh.hpp>
 #include <model/model.hpp>
+#include <elements/films/floating_ring.hpp>
 #include <elements/films/tilting_pad.hpp>
 #include <system/system.hpp>
 #include <functional>
@@ -67,6 +68,17 @@ struct TiltingPads {
   };
   std::function<std::vector<Face>(const NodeAt&)> faces;
   /// points: of the grid on the circumference, 0: that of the bearing.
+  std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
+};
+
+/// The floating ring of a bearing.
+struct FloatingRingBearing {
+  std::size_t bearing = 0;      ///< of the model
+  std::vector<Index> unknowns;  ///< scalar nodes: y, z, spin over spin_unit, temperatures
+  double spin_unit = 1;         ///< rad/s a m
+  std::function<elements::RingStanding(const NodeAt&)> standing;
+  /// Of shaft and ring, (y, z) of both, spin, temperatures: on all but a held spin. points: of the
+  /// grid on the circumference, 0: that of the bearing.
   std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
 };
 
@@ -148,10 +160,11 @@ struct Built {
     Index node;
     double length;
   };
-  std::vector<Fine> fine;  ///< nodes whose lateral motion must be right to a small part of a
-                           ///< length: journals, to their clearance, m
+  std::vector<Fine> fine;  ///< nodes whose lateral motion, scalars that themselves must be right to
+                           ///< a small part of a length: journals, rings, to their clearance, m
   std::vector<RollingLoads> rolling_loads;
   std::vector<TiltingPads> tilting_pads;
+  std::vector<FloatingRingBearing> floating_rings;
   std::vector<MagneticControl> magnetic_controls;
   std::vector<DriveTorque> drive_torques;
   std::vector<Governor> governors;
