@@ -13,4 +13,16 @@ namespace whirl::elements {
 /// 200 deg C.
 double iso_vg_viscosity(double grade, double temperature, double density = 900.0);
 
+/// The same oil against temperature, for kernels: NaN outside the range, nothing is thrown.
+struct OilViscosity {
+  double factor = 0;  ///< ln(rho grade 1e-6/eta_x)
+
+  OilViscosity() = default;
+  /// @throws Error (E85) when grade or density are not positive.
+  OilViscosity(double grade, double density);
+  double at(double temperature) const;  ///< Pa s, of K
+  /// d ln eta/dT, 1/K.
+  double slope(double temperature) const;
+};
+
 }  // namespace whirl::elements

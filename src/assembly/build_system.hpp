@@ -4,6 +4,7 @@
 #include <meshes/mesh.hpp>
 #include <model/model.hpp>
 #include <elements/films/film_heat.hpp>
+#include <elements/films/floating_ring.hpp>
 #include <elements/films/tilting_pad.hpp>
 #include <system/system.hpp>
 #include <functional>
@@ -84,6 +85,17 @@ struct FilmBearing {
   /// The balance that the state would have, which is that in the state where it is in equilibrium.
   /// @pre heated.
   std::function<elements::HeatBalance(const NodeAt&)> heat{};
+};
+
+/// The floating ring of a bearing.
+struct FloatingRingBearing {
+  std::size_t bearing = 0;      ///< of the model
+  std::vector<Index> unknowns;  ///< scalar nodes: y, z, spin over spin_unit, temperatures
+  double spin_unit = 1;         ///< rad/s a m
+  std::function<elements::RingStanding(const NodeAt&)> standing;
+  /// Of shaft and ring, (y, z) of both, spin, temperatures: on all but a held spin. points: of the
+  /// grid on the circumference, 0: that of the bearing.
+  std::function<elements::PadCoefficients(const NodeAt&, int points)> coefficients;
 };
 
 /// What the controller of a magnetic bearing does.
@@ -170,12 +182,13 @@ struct Built {
     Index node;
     double length;
   };
-  std::vector<Fine> fine;  ///< nodes whose lateral motion must be right to a small part of a
-                           ///< length: journals, to their clearance, m
+  std::vector<Fine> fine;  ///< nodes whose lateral motion, scalars that themselves must be right to
+                           ///< a small part of a length: journals, rings, to their clearance, m
   std::vector<CrackOpening> cracks;  ///< one a crack of the model, in its order
   std::vector<RollingLoads> rolling_loads;
   std::vector<TiltingPads> tilting_pads;
   std::vector<FilmBearing> films;
+  std::vector<FloatingRingBearing> floating_rings;
   std::vector<MagneticControl> magnetic_controls;
   std::vector<DriveTorque> drive_torques;
   std::vector<Governor> governors;

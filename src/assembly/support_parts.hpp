@@ -146,7 +146,9 @@ void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::TiltingPadJournal&);  // supports_pads.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
-             const model::SqueezeFilm&);
+             const model::FloatingRing&);  // supports_rings.cpp
+void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
+             const model::SqueezeFilm&);  // supports_film.cpp
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,
              const model::AnnularSeal&);
 void add_law(Assembly&, const model::Bearing&, const meshes::BearingNodes&,

@@ -209,6 +209,34 @@ std::vector<TiltingPadJournal::Pad> TiltingPadJournal::pads() const {
 
 SupportTraits traits(const TiltingPadJournal&) { return traits_of_journal(); }
 
+double FloatingRing::ring_mass() const {
+  if (mass > 0) return mass;
+  const double out = 0.5 * outer.diameter, in = bore();
+  const double solid = pi * (out * out - in * in) * std::max(inner.length, outer.length);
+  const double drilled = 0.25 * pi * holes.number * holes.diameter * holes.diameter * thickness();
+  return ring_density * (solid - drilled);
+}
+
+double FloatingRing::ring_inertia() const {
+  if (inertia > 0) return inertia;
+  const double out = 0.5 * outer.diameter, in = bore();
+  return 0.5 * ring_mass() * (out * out + in * in);
+}
+
+double FloatingRing::inner_clearance_at(double temperature) const {
+  if (!heat) return inner.clearance;
+  return inner.clearance +
+         0.5 * inner.diameter * (heat->ring - heat->shaft) * (temperature - heat->reference);
+}
+
+double FloatingRing::outer_clearance_at(double temperature) const {
+  if (!heat) return outer.clearance;
+  return outer.clearance +
+         0.5 * outer.diameter * (heat->housing - heat->ring) * (temperature - heat->reference);
+}
+
+SupportTraits traits(const FloatingRing&) { return traits_of_journal(); }
+
 SupportTraits traits(const SqueezeFilm& b) {
   // the film alone carries nothing at rest
   return {.held = b.stiffness > 0 ? lateral_directions : no_direction,

@@ -150,6 +150,55 @@ struct TiltingPadJournal {
 };
 SupportTraits traits(const TiltingPadJournal&);
 
+/// Journal bearing whose ring floats between an inner and an outer film and turns as their drag makes
+/// it, or is pinned (semi-floating).
+struct FloatingRing {
+  struct Film {
+    double diameter = 0, length = 0, clearance = 0;  ///< m; clearance radial
+    double viscosity = 0, temperature = 0;           ///< Pa s, or K of the oil; 0: from the heat
+  };
+  Film inner;  ///< diameter of the journal
+  Film outer;  ///< outer diameter of the ring
+  enum class Theory { finite, brief } theory = Theory::finite;
+  double grade = 0, density = 900;  ///< ISO VG number, kg/m3
+  double ring_density = 8500;       ///< kg/m3
+  double mass = 0, inertia = 0;     ///< kg, kg m2 about the axis; 0: those of the annulus
+  bool pinned = false;
+  double stiffness = 0, damping = 0;  ///< of the centring of a pinned ring, N/m, N s/m
+  struct Holes {
+    int number = 0;
+    double diameter = 0;  ///< m
+  };
+  Holes holes;
+  double supply_pressure = 0;     ///< Pa above ambient; 0: not given
+  double supply_temperature = 0;  ///< K
+  /// Balance of heat: the temperatures of both films are unknowns.
+  struct Heat {
+    double specific_heat = 2000;              ///< of the oil, J/(kg K)
+    double share = 1;                         ///< of the heat that oil and ring take
+    double ring_specific_heat = 380;          ///< J/(kg K)
+    double conductance = 0;                   ///< through the ring, W/K
+    double reference = 293.15;                ///< K: at which the clearances are given
+    double shaft = 0, ring = 0, housing = 0;  ///< coefficients of expansion, 1/K
+  };
+  std::optional<Heat> heat;
+  std::vector<double> frequency_ratios;  ///< frequency over speed, of further coefficients
+  int nodes = 72;                        ///< grid points round the circumference
+
+  double bore() const { return 0.5 * inner.diameter + inner.clearance; }  ///< radius, m
+  double thickness() const { return 0.5 * outer.diameter - bore(); }      ///< of the ring, m
+  double ring_mass() const;     ///< kg: given, or of the annulus as long as the longer film
+  double ring_inertia() const;  ///< kg m2: given, or of the annulus
+  /// Length of a film less the area that the holes take from it, m.
+  double carrying_length(const Film& f) const {
+    return f.length - holes.number * holes.diameter * holes.diameter / (4.0 * f.diameter);
+  }
+  /// Clearances at one temperature of everything, K.
+  double inner_clearance_at(double temperature) const;
+  double outer_clearance_at(double temperature) const;
+};
+SupportTraits traits(const FloatingRing&);
+
 /// Squeeze-film damper, with its centring spring where it has one.
 struct SqueezeFilm {
   double diameter = 0, length = 0, clearance = 0;
@@ -257,9 +306,9 @@ SupportTraits traits(const GearPair&);
 /// In the order of the kinds in the deck's reference.
 using BearingLaw =
     std::variant<LinearBearing, SpringBlock, TableBearing, RigidSupport, NonlinearSpring,
-                 ShortJournal, FiniteJournal, TiltingPadJournal, SqueezeFilm, BallBearing,
-                 RollerBearing, RollingEstimate, MagneticBearing, Rub, AnnularSeal, CrossCoupling,
-                 Coupling, GearPair>;
+                 ShortJournal, FiniteJournal, TiltingPadJournal, FloatingRing, SqueezeFilm,
+                 BallBearing, RollerBearing, RollingEstimate, MagneticBearing, Rub, AnnularSeal,
+                 CrossCoupling, Coupling, GearPair>;
 
 inline SupportTraits traits_of(const BearingLaw& law) {
   return std::visit([](const auto& x) { return traits(x); }, law);

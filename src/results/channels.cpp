@@ -164,6 +164,45 @@ void add_control_currents(const run::Job& job, Channels& c) {
   }
 }
 
+void add_rings(const run::Job& job, Channels& c) {
+  if (!wants(job.model.output, "rings")) return;
+  for (const assembly::FloatingRingBearing& r : job.built.floating_rings) {
+    const std::string name = "bearing " + job.model.bearings[r.bearing].name;
+    const auto add = [&](const char* what, const char* unit, const char* about,
+                         std::vector<std::string> components, double scale, auto evaluate) {
+      Measurement x{
+          fmt::format("{} {}", name, what), unit, about, std::move(components), scale, {}};
+      x.evaluate = evaluate;
+      c.add(std::move(x));
+    };
+    add("ring speed", "rpm", "spin of the floating ring", {}, to_rpm(1.0),
+        [&r](const Snapshot& s, double* out) { *out = r.spin_unit * s.q()[6 * r.unknowns[2]]; });
+    add("ring", "mm", "displacement of the ring, fixed axes", {"y", "z"}, 1e3,
+        [&r](const Snapshot& s, double* out) {
+          for (std::size_t k = 0; k < 2; ++k)
+            out[k] = s.q()[6 * r.unknowns[k]];
+        });
+    const auto both = [&r](const Snapshot& s, double* out, auto of) {
+      const elements::RingStanding now = r.standing(nodes_of(s));
+      out[0] = of(now.inner);
+      out[1] = of(now.outer);
+    };
+    add("eccentricity", "-", "of each film over its clearance", {"inner", "outer"}, 1.0,
+        [both](const Snapshot& s, double* out) {
+          both(s, out, [](const elements::RingFilmStanding& f) { return f.eccentricity; });
+        });
+    add("power loss", "W", "of each film", {"inner", "outer"}, 1.0,
+        [both](const Snapshot& s, double* out) {
+          both(s, out, [](const elements::RingFilmStanding& f) { return f.power; });
+        });
+    if (r.unknowns.size() < 5) continue;
+    add("temperature", "degC", "of each film", {"inner", "outer"}, 1.0,
+        [both](const Snapshot& s, double* out) {
+          both(s, out, [](const elements::RingFilmStanding& f) { return f.temperature - 273.15; });
+        });
+  }
+}
+
 }  // namespace
 
 Point point_of(const run::Job& job, const model::Location& at) {
@@ -212,6 +251,7 @@ Channels make_channels(const run::Job& job) {
   add_cracks(job, c);
   add_joints(job, c);
   add_control_currents(job, c);
+  add_rings(job, c);
   if (wants(job.model.output, "energy")) c.add(analysis::measure_energy());
   return c;
 }

@@ -198,6 +198,52 @@ void describe_films(SupportCoefficients& c, const run::Job& job, std::size_t bea
   }
 }
 
+/// How far coefficients with the ring following are from those on a finer grid.
+double ring_grid_error(const assembly::FloatingRingBearing& bearing, const assembly::NodeAt& at,
+                       const model::FloatingRing& law, const RingResults& own) {
+  if (law.theory == model::FloatingRing::Theory::brief) return nan;
+  const int finest = elements::JournalSurface::max_nodes;
+  const int other = 2 * law.nodes <= finest ? finest : law.nodes / 2;
+  const elements::ReducedCoefficients fine =
+      elements::reduce_pads(bearing.coefficients(at, other), std::abs(own.shaft_spin));
+  const elements::ReducedCoefficients& here = own.reduced.front();
+  const double k = fine.K.norm(), c = fine.C.norm();
+  return std::max(k > 0 ? (here.K - fine.K).norm() / k : 0.0,
+                  c > 0 ? (here.C - fine.C).norm() / c : 0.0);
+}
+
+/// The ring of a bearing in an evaluated state; K and C become those with the ring following.
+void describe_ring(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
+                   const system::Workspace& w) {
+  const auto* law = std::get_if<model::FloatingRing>(&job.model.bearings[bearing].law);
+  if (!law) return;
+  const auto node = [&](Index k) -> const system::NodeState& { return w.in_own_axes(k); };
+  for (const assembly::FloatingRingBearing& ring : job.built.floating_rings) {
+    if (ring.bearing != bearing) continue;
+    RingResults r;
+    r.standing = ring.standing(node);
+    r.shaft_spin = c.spin;
+    r.spin = r.standing.spin;
+    r.turns = !law->pinned;
+    if (law->supply_pressure > 0) {
+      const double outside = 0.5 * law->outer.diameter;
+      r.starved_spin = std::sqrt(2.0 * law->supply_pressure /
+                                 (law->density * (outside * outside - law->bore() * law->bore())));
+    }
+    r.full = ring.coefficients(node, 0);
+    r.ratios = {1.0};
+    for (const double ratio : law->frequency_ratios)
+      if (ratio != 1.0) r.ratios.push_back(ratio);
+    for (const double ratio : r.ratios)
+      r.reduced.push_back(elements::reduce_pads(r.full, ratio * std::abs(c.spin)));
+    c.K = r.reduced.front().K;
+    c.C = r.reduced.front().C;
+    c.clearance = r.standing.inner.clearance + r.standing.outer.clearance;
+    c.grid_error = ring_grid_error(ring, node, *law, r);
+    c.ring = std::move(r);
+  }
+}
+
 /// Of a magnetic bearing K and C become those with its control at the frequency of the spin. False:
 /// at rest an integrator holds against anything.
 bool take_control(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
@@ -303,6 +349,7 @@ std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
     describe_state(c, job, i, w);
     describe_pads(c, job, i, w);
     describe_films(c, job, i, w);
+    describe_ring(c, job, i, w);
     if (!take_control(c, job, i, w)) continue;
     find_threshold(c);
     out.push_back(std::move(c));

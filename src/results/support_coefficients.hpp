@@ -39,6 +39,18 @@ struct FilmResults {
   bool laminar = true;  ///< as the deck has it
 };
 
+/// The floating ring of a bearing at an equilibrium.
+struct RingResults {
+  double shaft_spin = 0, spin = 0;  ///< rad/s
+  elements::RingStanding standing;
+  bool turns = true;  ///< not pinned
+  /// Spin at which the supply no longer reaches the inner film, rad/s; infinity: not known.
+  double starved_spin = infinity;
+  elements::PadCoefficients full;
+  std::vector<double> ratios;  ///< frequencies over the speed; the first is 1
+  std::vector<elements::ReducedCoefficients> reduced;  ///< one a ratio
+};
+
 /// One bearing whose coefficients depend on where the shaft runs: F = -K r - C r' on the shaft, (y,
 /// z), at an equilibrium. Place and attitude are measured from the middle of the bearing, the
 /// attitude from the direction of the load (opposite to the force on the shaft) in the sense y ->
@@ -67,6 +79,8 @@ struct SupportCoefficients {
   /// the pads following.
   std::optional<PadResults> pads{};
   std::optional<FilmResults> films{};
+  /// Of floating rings, likewise; the clearance is then that of both films together.
+  std::optional<RingResults> ring{};
 };
 
 /// In the order of the deck; empty when there is none.
@@ -111,6 +125,19 @@ void warn_of_turbulence(run::Job& job, const std::string& step,
 /// the last state would have over the one that acted, in the mean, into the summary; more than 5 %
 /// apart: warning W03.
 void report_kept_films(run::Job& job, const std::string& step, const system::State& end);
+/// The same where there are floating rings.
+struct RingTables {
+  io::Table rings;    ///< a row a bearing: how its ring stands
+  io::Table reduced;  ///< a row a frequency
+  io::Table full;     ///< an entry a row: shaft and ring
+  bool empty() const { return rings.rows.empty(); }
+};
+RingTables ring_tables(std::span<const SupportCoefficients> list);
+/// Of the rings that keep the supply from their inner film a line each.
+std::vector<std::string> starved_rings(std::span<const SupportCoefficients> list);
+/// A section through each bearing with a floating ring: journal, ring, housing.
+std::vector<plot::Figure> draw_rings(const std::string& name,
+                                     std::span<const SupportCoefficients> list);
 /// Five rows a rolling bearing.
 io::Table rolling_stiffness_table(std::span<const SupportCoefficients> list);
 

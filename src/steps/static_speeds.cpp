@@ -96,6 +96,29 @@ plot::Figure draw_locus(const std::string& name, const std::vector<Sweep>& all) 
   return f;
 }
 
+/// Speed ratios of floating rings, and the eccentricities of both films.
+plot::Figure draw_ring_speeds(const std::string& name, const std::vector<Sweep>& all) {
+  plot::Figure f = grid(name, "Floating rings against speed", all.size(), 330);
+  for (const Sweep& b : all) {
+    plot::Axes a;
+    a.title = b.name;
+    a.x = plot::Axis("speed", "rpm");
+    a.y = plot::Axis("ring speed over speed, eccentricity ratios", "-");
+    a.y.include_zero = true;
+    a.series.push_back(b.series("ring speed / speed", [](const results::SupportCoefficients& c) {
+      return c.spin != 0 ? c.ring->spin / c.spin : nan;
+    }));
+    a.series.push_back(b.series("inner eccentricity", [](const results::SupportCoefficients& c) {
+      return c.ring->standing.inner.eccentricity;
+    }));
+    a.series.push_back(b.series("outer eccentricity", [](const results::SupportCoefficients& c) {
+      return c.ring->standing.outer.eccentricity;
+    }));
+    f.axes.push_back(std::move(a));
+  }
+  return f;
+}
+
 plot::Figure draw_eccentricity(const std::string& name, const std::vector<Sweep>& all) {
   plot::Figure f = grid(name, "Eccentricity and attitude against speed", all.size(), 330);
   f.caption =
@@ -179,6 +202,7 @@ class SpeedSweep {
   void add_coefficients(const run::StepState& state);
   void show_equilibria();
   void show_bearings();
+  void show_rings();
 
   run::Job& job_;
   const model::Step& step_;
@@ -264,6 +288,23 @@ void SpeedSweep::show_equilibria() {
         fmt::format(" None at {} rpm: {}.", missing_, first_error_->diagnostics().front().message);
 }
 
+void SpeedSweep::show_rings() {
+  results::RingTables rings = results::ring_tables(rows_);
+  if (rings.empty()) return;
+  s_.add_table("rings", std::move(rings.rings), false);
+  s_.add_table("ring_coefficients", std::move(rings.reduced), false);
+  s_.add_table("full_ring_coefficients", std::move(rings.full), false);
+  for (const std::string& starved : results::starved_rings(rows_))
+    s_.summary()["starved rings"].push(starved);
+  std::vector<Sweep> ringed;
+  for (const Sweep& b : bearings_)
+    if (b.at.front().ring) ringed.push_back(b);
+  s_.add_figure(draw_ring_speeds(s_.file("ring_speeds"), ringed));
+  for (plot::Figure& f : results::draw_rings(
+           s_.file("rings"), std::span(rows_).last(std::min(rows_.size(), bearings_.size()))))
+    s_.add_figure(std::move(f));
+}
+
 void SpeedSweep::show_bearings() {
   if (rows_.empty()) {
     s_.section.text += " No bearing of this model changes its coefficients with speed or load.";
@@ -295,6 +336,7 @@ void SpeedSweep::show_bearings() {
       s_.add_figure(std::move(*trend));
     results::warn_of_turbulence(job_, step_.name, rows_);
   }
+  show_rings();
   const std::size_t shown = std::min<std::size_t>(bearings_.size(), 8);
   const std::vector<Sweep> drawn(bearings_.begin(),
                                  bearings_.begin() + static_cast<std::ptrdiff_t>(shown));

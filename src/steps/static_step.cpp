@@ -154,6 +154,7 @@ class StaticRun {
   io::Table coefficients_, rolling_stiffness_;
   results::PadTables pads_;
   io::Table films_;
+  results::RingTables rings_;
 };
 
 StaticRun::StaticRun(run::Job& job, const model::Step& step, const model::StaticStep& law)
@@ -260,6 +261,13 @@ void StaticRun::write_tables() {
   for (plot::Figure& f : results::draw_films(step_.name + "_films", linear))
     results_.figures.push_back(std::move(f));
   results::warn_of_turbulence(job_, step_.name, linear);
+  rings_ = results::ring_tables(linear);
+  for (std::string& starved : results::starved_rings(linear)) {
+    summary()["starved rings"].push(starved);
+    results_.lines.push_back(std::move(starved));
+  }
+  for (plot::Figure& f : results::draw_rings(step_.name + "_rings", linear))
+    results_.figures.push_back(std::move(f));
   job_.folder.write_table(file("deflection"), results_.deflection);
   job_.folder.write_table(file("supports"), results_.supports);
   job_.folder.write_table(file("sections"), results_.sections);
@@ -276,6 +284,9 @@ void StaticRun::write_tables() {
   write("pads", pads_.pads);
   write("pad_coefficients", pads_.reduced);
   write("full_coefficients", pads_.full);
+  write("rings", rings_.rings);
+  write("ring_coefficients", rings_.reduced);
+  write("full_ring_coefficients", rings_.full);
 }
 
 void StaticRun::say_end(const RunTime& time) const {
@@ -324,6 +335,10 @@ void StaticRun::add_section() {
   add(pads_.reduced, "coefficients by frequency", "pad_coefficients");
   if (!pads_.full.rows.empty())
     section.files.emplace_back("full coefficients", file("full_coefficients"));
+  add(rings_.rings, "floating rings", "rings");
+  add(rings_.reduced, "coefficients with the rings by frequency", "ring_coefficients");
+  if (!rings_.full.rows.empty())
+    section.files.emplace_back("full coefficients of rings", file("full_ring_coefficients"));
   for (const char* what : {"deflection", "supports", "sections"})
     section.files.emplace_back(what, file(what));
   add(rolling_stiffness_, "stiffness of rolling bearings", "rolling_stiffness");

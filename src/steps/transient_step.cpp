@@ -58,9 +58,14 @@ analysis::TransientOptions transient_options(const run::Job& job, const model::T
     length = std::max(length, l.length);
   if (length > 0.0) o.scales.length = length;
   o.linearize_inside = only_films(job);
-  for (const auto& f : job.built.fine)
+  for (const auto& f : job.built.fine) {
+    if (job.system().node(f.node).scalar) {
+      o.scales.limits.push_back({6 * f.node, f.length});
+      continue;
+    }
     for (const Index c : {1, 2})
       o.scales.limits.push_back({6 * f.node + c, f.length});
+  }
   // an angle is right to the tolerance, however many turns it has made
   for (const assembly::JointResult& j : job.built.joints)
     for (const Index angle : j.angles)

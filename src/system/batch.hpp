@@ -171,6 +171,8 @@ extern template class Elements<2, 3>;
 extern template class Elements<2, 7>;
 extern template class Elements<3, 7>;
 extern template class Elements<4, 7>;
+extern template class Elements<5, 7>;
+extern template class Elements<7, 7>;
 
 template <Kernel K>
 class Batch final : public Elements<K::n_nodes, K::width> {

@@ -27,6 +27,7 @@ struct NodeDef {
   std::string name;              ///< for messages: "node at 0.25 m of shaft 'hp'"
   bool scalar = false;  ///< an internal unknown: only component 0 exists, gravity does not act
   bool signal = false;  ///< a scalar that a controller stores: no coordinate of what moves
+  bool rate = false;    ///< a scalar that is a spin or a temperature: its row does no work on it
 };
 
 /// A complete state: copy it to checkpoint.

@@ -172,6 +172,13 @@ std::vector<Case> cases() {
                       "\"1e8 N/m\"\n" +
                       film),
                6000, "rigid"});
+  const std::string films =
+      "type = \"floating_ring\"\ninner = { diameter = \"50 mm\", length = \"25 mm\", clearance = "
+      "\"50 um\", viscosity = \"20 mPa.s\" }\nouter = { diameter = \"70 mm\", length = \"30 mm\", "
+      "clearance = \"90 um\", viscosity = \"20 mPa.s\" }\n";
+  c.push_back({"floating rings", ends, two(films), 6000});
+  c.push_back({"floating ring off the node", beside_ends, beside(films + "film = \"short\"\n"),
+               6000, "rigid"});
   c.push_back(
       {"squeeze films", ends,
        two("type = \"squeeze_film\"\nfilm = \"cavitated\"\nstiffness = \"3e6 N/m\"\n" + film)});

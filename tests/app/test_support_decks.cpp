@@ -100,6 +100,19 @@ const std::string film =
 const std::string short_film = "type = \"short_journal\"\n" + film;
 const std::string pads =
     "type = \"tilting_pad\"\npads = 5\nfirst_pivot = \"-90 deg\"\npreload = 0.4\n" + film;
+const std::string ring =
+    "type = \"floating_ring\"\ninner = { diameter = \"50 mm\", length = \"25 mm\", clearance = "
+    "\"50 "
+    "um\", viscosity = \"20 mPa.s\" }\nouter = { diameter = \"70 mm\", length = \"30 mm\", "
+    "clearance "
+    "= \"90 um\", viscosity = \"20 mPa.s\" }\n";
+const std::string hot_ring =
+    "type = \"floating_ring\"\nfilm = \"short\"\niso_vg = 32\nsupply_pressure = \"2 "
+    "bar\"\nsupply_temperature = \"50 degC\"\nheat = { ring_expansion = \"18e-6 1/K\", "
+    "shaft_expansion = \"11e-6 1/K\", housing_expansion = \"11e-6 1/K\" }\ninner = { diameter = "
+    "\"50 "
+    "mm\", length = \"25 mm\", clearance = \"50 um\" }\nouter = { diameter = \"70 mm\", length = "
+    "\"30 mm\", clearance = \"90 um\" }\n";
 const std::string rub =
     "type = \"rub\"\ngap = \"10 um\"\nstiffness = \"2e7 N/m\"\nfriction = 0.1\n";
 const std::string balls =
@@ -161,6 +174,13 @@ const Kind kinds[] = {
     {"tilting_pads_in_a_casing",
      casing + thrust + bearing("DE", "rotor/a:start", "to = \"casing/c:start\"\n" + pads) +
          bearing("NDE", "rotor/b:end", "to = \"casing/d:end\"\n" + pads)},
+    // two films in series bend more than one: 1.8e-5 of the amplitude in the first revolution
+    {"floating_rings", both(ring), 2.5e-5},
+    {"short_floating_rings_with_heat", both(hot_ring), 2.5e-5},
+    {"floating_rings_in_a_casing",
+     casing + thrust + bearing("DE", "rotor/a:start", "to = \"casing/c:start\"\n" + ring) +
+         bearing("NDE", "rotor/b:end", "to = \"casing/d:end\"\n" + ring),
+     2.5e-5},
     {"squeeze_film",
      both("type = \"squeeze_film\"\nfilm = \"full\"\nstiffness = \"1e7 N/m\"\n" + film)},
     // centred: a circle, on which the film that cavitates is linear too; the springs of the three

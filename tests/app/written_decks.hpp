@@ -314,6 +314,20 @@ speed = "3000 rpm"
 [output]
 report = false
 )")},
+      {"floating rings", lateral_mass(5, "9.81 m/s^2", R"([[bearing]]
+name = "J"
+at = "mass"
+type = "floating_ring"
+film = "short"
+inner = { diameter = "20 mm", length = "10 mm", clearance = "30 um", viscosity = "10 mPa.s" }
+outer = { diameter = "30 mm", length = "12 mm", clearance = "50 um", viscosity = "15 mPa.s" }
+[[step]]
+name = "st"
+type = "static"
+speed = "20000 rpm"
+[output]
+report = false
+)")},
       {"arms at rest", arms("hus", R"(["10 m/s^2", "0 m/s^2", "0 m/s^2"])", R"([[joint]]
 name = "H"
 kind = "hinge"

@@ -151,6 +151,19 @@ class ModelDump {
       each("pad", std::array{p.pivot, p.arc, p.offset, p.preload});
     each("ratios", x.frequency_ratios);
   }
+  void law(const model::FloatingRing& x) {
+    for (const model::FloatingRing::Film* f : {&x.inner, &x.outer})
+      each("film", std::array{f->diameter, f->length, f->clearance, f->viscosity, f->temperature});
+    each("ring",
+         std::array{double(x.theory), x.grade, x.density, x.ring_density, x.mass, x.inertia,
+                    double(x.pinned), x.stiffness, x.damping, double(x.holes.number),
+                    x.holes.diameter, x.supply_pressure, x.supply_temperature, double(x.nodes)});
+    if (x.heat)
+      each("heat", std::array{x.heat->specific_heat, x.heat->share, x.heat->ring_specific_heat,
+                              x.heat->conductance, x.heat->reference, x.heat->shaft, x.heat->ring,
+                              x.heat->housing});
+    each("ratios", x.frequency_ratios);
+  }
   void law(const model::SqueezeFilm& x) {
     each("squeeze", std::array{x.diameter, x.length, x.clearance, double(x.film), x.groove,
                                x.groove_at, x.stiffness, x.damping});

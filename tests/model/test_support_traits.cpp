@@ -68,6 +68,14 @@ Film film() {
   b.oil.viscosity = 0.02;
   return b;
 }
+model::FloatingRing ring(bool pinned, double stiffness) {
+  model::FloatingRing b;
+  b.inner = {0.05, 0.02, 1e-4, 0.02, 0};
+  b.outer = {0.07, 0.02, 1.5e-4, 0.02, 0};
+  b.pinned = pinned;
+  b.stiffness = stiffness;
+  return b;
+}
 model::SqueezeFilm damper(double stiffness) {
   auto b = film<model::SqueezeFilm>();
   b.stiffness = stiffness;
@@ -172,6 +180,9 @@ const std::vector<Sample>& samples() {
       {"short_journal", film<model::ShortJournal>()},
       {"journal", film<model::FiniteJournal>()},
       {"tilting_pad", film<model::TiltingPadJournal>()},
+      {"floating_ring", ring(false, 0)},
+      {"floating_ring_pinned", ring(true, 1e6)},
+      {"floating_ring_pinned_alone", ring(true, 0)},
       {"squeeze_film", damper(1e6)},
       {"squeeze_film_alone", damper(0)},
       {"ball", balls(-5e-6)},

@@ -55,7 +55,7 @@ ModeEnergy energy_distribution(Linearizer& linear, const VecXc& x) {
       la::multiply(part.K, x, y);
       for (Index i = 0; i < s.nodes(); ++i)
         if (const double e = x.segment<6>(6 * i).dot(y.segment<6>(6 * i)).real();
-            e != 0 && !s.node(i).signal)
+            e != 0 && !s.node(i).signal && !s.node(i).rate)
           out.strain.push_back({family, kind, i, -1, e});
       continue;
     }

@@ -40,6 +40,7 @@ void add_kinds(Kinds&, As<model::Rub>);
 void add_kinds(Kinds&, As<model::ShortJournal>);  // bearings_film.cpp
 void add_kinds(Kinds&, As<model::FiniteJournal>);
 void add_kinds(Kinds&, As<model::TiltingPadJournal>);
+void add_kinds(Kinds&, As<model::FloatingRing>);
 void add_kinds(Kinds&, As<model::SqueezeFilm>);
 void add_kinds(Kinds&, As<model::AnnularSeal>);
 void add_kinds(Kinds&, As<model::CrossCoupling>);

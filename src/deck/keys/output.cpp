@@ -61,6 +61,9 @@ void describe(Visitor& v, model::Output& o) {
        "forces and moments of the joints on the line of their 'at', their angles and "
        "slides"},
       {"control", "control currents of magnetic bearings"},
+      {"rings",
+       "spins and places of floating rings, eccentricities, power loss and temperatures of their "
+       "films"},
       {"energy", "energies and their balance"},
   };
   static constexpr Option amplitudes[] = {{"zero_to_peak", ""}, {"peak_to_peak", ""}};
