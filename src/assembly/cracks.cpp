@@ -20,7 +20,7 @@ using elements::ShaftElementConstants;
 
 constexpr double same_place = 1e-9;  ///< m
 
-std::string name_of(const model::Crack& c) { return fmt::format("crack '{}'", c.name); }
+std::string crack_name(const model::Crack& c) { return fmt::format("crack '{}'", c.name); }
 
 bool is_round(const model::Section& s) { return !s.general && !s.full; }
 
@@ -69,18 +69,18 @@ void set_compliance(Assembly& a, const model::Crack& c, const ElementEnd& end,
     a.error("E26",
             fmt::format("{}: a depth says how soft it is in a solid round section, and section "
                         "'{}' {}",
-                        name_of(c), section_of(a, e).name,
+                        crack_name(c), section_of(a, e).name,
                         s.constants ? "is given by constants" : "is hollow"),
-            "give stiffness = \"2 MN.m/rad\", or loss = 0.1 and 'to'", c, name_of(c));
+            "give stiffness = \"2 MN.m/rad\", or loss = 0.1 and 'to'", c, crack_name(c));
     return;
   }
   if (c.depth > end.radius) {
     a.error("E14",
-            fmt::format("{}: it is {} deep in a shaft of radius {}", name_of(c),
+            fmt::format("{}: it is {} deep in a shaft of radius {}", crack_name(c),
                         units::display(c.depth, "mm"), units::display(end.radius, "mm")),
             "the compliance of a crack is known up to a depth of one radius; a deeper one may be "
             "given by its stiffness",
-            c, name_of(c));
+            c, crack_name(c));
     return;
   }
   const double nu = a.model.materials.at(section_of(a, e).material).nu;
@@ -129,8 +129,8 @@ using Kernels = std::vector<std::pair<std::size_t, elements::Crack>>;  // elemen
 Kernels at_station(Assembly& a, const model::Crack& c) {
   const std::vector<ElementEnd> ends = ends_at(a, c.at);
   if (ends.empty()) {
-    a.error("E26", fmt::format("{}: no round elastic section ends at '{}'", name_of(c), c.at.text),
-            "a crack stands in or at the end of a round section that bends", c, name_of(c));
+    a.error("E26", fmt::format("{}: no round elastic section ends at '{}'", crack_name(c), c.at.text),
+            "a crack stands in or at the end of a round section that bends", c, crack_name(c));
     return {};
   }
   const auto thinner = [](const ElementEnd& x, const ElementEnd& y) { return x.radius < y.radius; };
@@ -154,8 +154,8 @@ Kernels over_length(Assembly& a, const model::Crack& c) {
     if (e.s1 < c.at.s - tiny || e.s2 > c.to->s + tiny) continue;  // its ends are nodes
     if (!is_round(section_of(a, e))) {
       a.error("E26",
-              fmt::format("{}: section '{}' is not round", name_of(c), section_of(a, e).name),
-              "a crack takes stiffness from round sections", c, name_of(c));
+              fmt::format("{}: section '{}' is not round", crack_name(c), section_of(a, e).name),
+              "a crack takes stiffness from round sections", c, crack_name(c));
       return {};
     }
     const ShaftElementConstants constants = element_constants(a.model, e);
@@ -170,8 +170,8 @@ Kernels over_length(Assembly& a, const model::Crack& c) {
     }
   }
   if (out.empty())
-    a.error("E26", fmt::format("{}: nothing between its ends bends", name_of(c)),
-            "the sections there are rigid", c, name_of(c));
+    a.error("E26", fmt::format("{}: nothing between its ends bends", crack_name(c)),
+            "the sections there are rigid", c, crack_name(c));
   return out;
 }
 
@@ -180,11 +180,11 @@ bool can_turn(Assembly& a, const model::Crack& c) {
   const model::Shaft& shaft = a.model.shafts[c.at.shaft];
   if (shaft.rotating && shaft.path.empty()) return true;
   a.error("E26",
-          fmt::format("{}: shaft '{}' {}", name_of(c), shaft.name,
+          fmt::format("{}: shaft '{}' {}", crack_name(c), shaft.name,
                       shaft.path.empty() ? "does not turn (rotating = false)"
                                          : "runs along a path and does not turn"),
           "a crack breathes as its shaft turns; a notch of a frame is a section of less stiffness",
-          c, name_of(c));
+          c, crack_name(c));
   return false;
 }
 
@@ -194,7 +194,7 @@ void add_crack(Assembly& a, const model::Crack& c) {
     const Kernels kernels = c.to ? over_length(a, c) : at_station(a, c);
     if (!c.to && c.depth > 0 && c.breathing == model::Crack::Breathing::hinge)
       a.built.notes.push_back(
-          fmt::format("{}: a hinge, without the compliance across that its depth has", name_of(c)));
+          fmt::format("{}: a hinge, without the compliance across that its depth has", crack_name(c)));
     std::vector<std::pair<std::array<Index, 2>, elements::Crack>> placed;
     for (const auto& [element, kernel] : kernels) {
       const meshes::Element& e = element_of(a, element);
