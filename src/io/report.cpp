@@ -172,7 +172,7 @@ std::string figure_html(const plot::Figure& f, const std::string& id,
        "click)\">reset</button>"
        "<button data-do=\"save\" title=\"save this picture as it is now\">SVG</button></div>\n";
   // Denser than the printed picture: something is left to zoom into.
-  s += plot::render_svg(f, {false, id, 1.5});
+  s += plot::render_svg(f, {false, id, 1.2});
   if (f.replay) s += replay_html(*f.replay, id);
   if (!f.caption.empty()) s += "<figcaption>" + escape(f.caption) + "</figcaption>";
   return s + "</figure>\n";

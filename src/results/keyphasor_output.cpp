@@ -139,7 +139,7 @@ class KeyphasorOutput final : public TransientOutput {
   void add_synchronous(io::ReportSection& section, std::size_t probe, double size) const;
   void add_bode(io::ReportSection& section, std::size_t probe, double size) const;
   void add_orders(io::ReportSection& section, std::size_t probe, double size) const;
-  void add_centreline(const TransientEnd& end, std::size_t probe, double size) const;
+  void add_centreline(const TransientEnd& end, std::size_t probe) const;
   std::string file(const char* what) const;
   std::string speed_name() const { return shaft_.empty() ? "speed" : "speed of " + shaft_; }
   void add_peaks(run::Job& job, io::ReportSection& section) const;
@@ -395,7 +395,7 @@ void KeyphasorOutput::report(TransientEnd& end) {
     else
       add_synchronous(end.section, p, size);
     add_orders(end.section, p, size);
-    add_centreline(end, p, size);
+    add_centreline(end, p);
   }
   add_peaks(end.job, end.section);
   add_orbits(end.job, end.section);
@@ -548,7 +548,7 @@ double clearance_at(const run::Job& job, const std::string& probe) {
 }
 
 /// Where the middle of the orbit goes: what a journal in its film does while the speed changes.
-void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p, double size) const {
+void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p) const {
   const Tracked& probe = probes_[p];
   if (probe.directions.size() != 2 || probe.directions[0].name != "y") return;
   const auto& rows = rows_.kept_rows();
@@ -559,7 +559,7 @@ void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p, dou
     most = std::max(most, std::hypot(r[y], r[z]));
   }
   const double gap = clearance_at(end.job, probe.name);
-  if (!(path > 0.05 * size) && !(gap > 0 && path > 0.01 * gap)) return;
+  if (!(gap > 0) || !(path > 0.01 * gap)) return;  // elsewhere it is the beat of single turns
   const plot::DisplayUnit unit = plot::length_unit(std::max(most, gap));
   plot::Axes a;
   a.x = plot::Axis("y, mean of the turn", unit.name);
@@ -575,7 +575,9 @@ void KeyphasorOutput::add_centreline(const TransientEnd& end, std::size_t p, dou
     speed.values.push_back(to_rpm(rows[r][1]));
   }
   s.extra.push_back(std::move(speed));
-  for (const std::size_t r : {std::size_t{0}, turning_row(rows), rows.size() - 1})
+  std::vector<std::size_t> noted{0, turning_row(rows), rows.size() - 1};
+  noted.erase(std::unique(noted.begin(), noted.end()), noted.end());
+  for (const std::size_t r : noted)
     if (r == 0 || std::hypot(rows[r][y] - rows[0][y], rows[r][z] - rows[0][z]) > 0.1 * path)
       a.notes.push_back({unit.factor * rows[r][y], unit.factor * rows[r][z],
                          fmt::format("{:.4g} s, {:.4g} rpm", rows[r][0], to_rpm(rows[r][1]))});

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Runs an example deck through the program and compares numbers of its summary.
 #   run_example.sh WHIRL DECK [KEY EXPECTED RELATIVE_TOLERANCE]...
-# KEY: first occurrence in summary.json counts. Also: the results that must be there are there.
+# KEY: first occurrence in summary.json counts. Also: the results that must be there are there, and the
+# figures can be read.
 set -u
 whirl=$1 deck=$2; shift 2
 dir=$(mktemp -d); trap 'rm -rf "$dir"' EXIT
@@ -13,6 +14,10 @@ for f in summary.json resolved.toml report.html run.json; do
 done
 if grep -qE '(src|href)="https?:' "$results/report.html"; then echo "report needs the network"; exit 1; fi
 bad=0
+# figures as a reader sees them: nothing leaves its axes, no text stands on another
+if command -v python3 >/dev/null && [ -d "$results/plots" ]; then
+  python3 "$(dirname "$0")/check_figures.py" "$results/plots" || bad=1
+fi
 while [ $# -ge 3 ]; do
   value=$(grep -F -m1 "\"$1\":" "$results/summary.json" | sed -E 's/.*": ([-+0-9.eE]+).*/\1/')
   awk -v k="$1" -v x="$value" -v e="$2" -v t="$3" 'BEGIN {
