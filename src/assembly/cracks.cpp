@@ -129,7 +129,8 @@ using Kernels = std::vector<std::pair<std::size_t, elements::Crack>>;  // elemen
 Kernels at_station(Assembly& a, const model::Crack& c) {
   const std::vector<ElementEnd> ends = ends_at(a, c.at);
   if (ends.empty()) {
-    a.error("E26", fmt::format("{}: no round elastic section ends at '{}'", crack_name(c), c.at.text),
+    a.error("E26",
+            fmt::format("{}: no round elastic section ends at '{}'", crack_name(c), c.at.text),
             "a crack stands in or at the end of a round section that bends", c, crack_name(c));
     return {};
   }
@@ -193,8 +194,8 @@ void add_crack(Assembly& a, const model::Crack& c) {
   if (can_turn(a, c)) {
     const Kernels kernels = c.to ? over_length(a, c) : at_station(a, c);
     if (!c.to && c.depth > 0 && c.breathing == model::Crack::Breathing::hinge)
-      a.built.notes.push_back(
-          fmt::format("{}: a hinge, without the compliance across that its depth has", crack_name(c)));
+      a.built.notes.push_back(fmt::format(
+          "{}: a hinge, without the compliance across that its depth has", crack_name(c)));
     std::vector<std::pair<std::array<Index, 2>, elements::Crack>> placed;
     for (const auto& [element, kernel] : kernels) {
       const meshes::Element& e = element_of(a, element);

@@ -110,8 +110,8 @@ template <bool Offsets>
 void add_magnet(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& n,
                 const model::MagneticBearing& law, const Signals& signals,
                 MagneticControl& control) {
-  using Joint = elements::MagnetJoint<Offsets>;
-  Joint joint;
+  using Kernel = elements::MagnetJoint<Offsets>;
+  Kernel joint;
   joint.magnet = {.per_current = law.per_current,
                   .per_displacement = law.per_displacement,
                   .bias = law.bias,
@@ -132,7 +132,7 @@ void add_magnet(Assembly& a, const model::Bearing& b, const meshes::BearingNodes
          return Vec3(0.0, F.x(), F.y());
        }});
   const auto states = [nodes](const NodeAt& at) {
-    return typename Joint::Nodes{&at(nodes[0]), &at(nodes[1]), &at(nodes[2]), &at(nodes[3])};
+    return typename Kernel::Nodes{&at(nodes[0]), &at(nodes[1]), &at(nodes[2]), &at(nodes[3])};
   };
   control.standing = [joint, states](const NodeAt& at, const system::Context& c) {
     std::array<MagneticControl::Standing, 2> out;

@@ -56,10 +56,11 @@ Scale scale_of(const Axes& a, std::size_t d) {
     lo -= 0.5 * std::max(std::abs(lo), 1e-3);
     hi += 0.5 * std::max(std::abs(hi), 1e-3);
   }
-  const double pad = 0.03 * (hi - lo);
+  const double margin = 0.03 * (hi - lo);
   const Axis& axis = d == 0 ? a.x : d == 1 ? a.y : a.z;
-  return {std::isnan(axis.min) ? lo - pad : axis.min, std::isnan(axis.max) ? hi + pad : axis.max,
-          false, -a.space_aspect[d] / 2, a.space_aspect[d] / 2};
+  return {std::isnan(axis.min) ? lo - margin : axis.min,
+          std::isnan(axis.max) ? hi + margin : axis.max, false, -a.space_aspect[d] / 2,
+          a.space_aspect[d] / 2};
 }
 
 std::array<Scale, 3> scales_of(const Axes& a) {

@@ -112,18 +112,18 @@ void Frames::follow(const System& system, std::span<const Vec3> normals) {
 void Frames::drop_unused() {
   const std::size_t lines = turns.size();
   std::vector<int> number(chart.size(), -1);
-  std::vector<Mat3> kept(chart.begin(), chart.begin() + static_cast<std::ptrdiff_t>(lines));
+  std::vector<Mat3> stay(chart.begin(), chart.begin() + static_cast<std::ptrdiff_t>(lines));
   for (std::size_t l = 0; l < lines; ++l)
     number[l] = static_cast<int>(l);
   for (int& c : of_node) {
     int& n = number[static_cast<std::size_t>(c)];
     if (n < 0) {
-      n = static_cast<int>(kept.size());
-      kept.push_back(chart[static_cast<std::size_t>(c)]);
+      n = static_cast<int>(stay.size());
+      stay.push_back(chart[static_cast<std::size_t>(c)]);
     }
     c = n;
   }
-  chart = std::move(kept);
+  chart = std::move(stay);
 }
 
 }  // namespace whirl::system

@@ -14,7 +14,7 @@ namespace whirl::analysis {
 namespace {
 
 /// Relative size of the last correction: it converges quadratically but where a force has corners.
-constexpr double tolerance = 1e-9;
+constexpr double close_enough = 1e-9;
 constexpr int most_rounds = 60;
 
 }  // namespace
@@ -167,7 +167,7 @@ PeriodicMotion PeriodicResponse::solve(double Omega) {
     x_ -= (out.rounds > 8 && size > 0.7 * before ? 0.5 : 1.0) * step;
     before = size;
     out.converged =
-        size <= tolerance * std::max(size_of(x_), 1e-9 * model_length(linear_.system()));
+        size <= close_enough * std::max(size_of(x_), 1e-9 * model_length(linear_.system()));
     if (out.converged) break;
   }
   const bool converged = out.converged;

@@ -56,4 +56,7 @@ void describe_entries(Visitor&, Matrix<6>& m, char prefix);
 /// The full matrix is given: an error, and false, when an entry is given beside it.
 bool only_matrix(Visitor&, char prefix);
 
+/// Whether a viscosity is known at T, K; if not, an error at the key.
+bool check_oil_temperature(Visitor& v, const char* key, double T);
+
 }  // namespace whirl::deck

@@ -7,6 +7,16 @@
 #include <cmath>
 
 namespace whirl::deck {
+
+bool check_oil_temperature(Visitor& v, const char* key, double T) {
+  if (T >= 243.15 && T <= 473.15) return true;
+  v.error("E14", key,
+          fmt::format("{} is outside -30 to 200 degC, where the viscosity of oils is known",
+                      units::display(T, "degC")),
+          "the temperature of the film, in degC");
+  return false;
+}
+
 namespace {
 
 /// Which keys of the oil are given.
@@ -37,16 +47,8 @@ OilGiven oil_keys(Visitor& v, model::Oil& o, bool heated) {
   return given;
 }
 
-void check_temperature(Visitor& v, const char* key, double T) {
-  if (T >= 243.15 && T <= 473.15) return;
-  v.error("E14", key,
-          fmt::format("{} is outside -30 to 200 degC, where the viscosity of oils is known",
-                      units::display(T, "degC")),
-          "the temperature of the film, in degC");
-}
-
 void check_oil(Visitor& v, const model::Oil& o, const OilGiven& given) {
-  if (given.temperature) check_temperature(v, "temperature", o.temperature);
+  if (given.temperature) check_oil_temperature(v, "temperature", o.temperature);
   if (!v.clean()) return;
   if (given.viscosity && given.grade)
     v.error("E26", "iso_vg", "the viscosity is given directly and by a grade",
@@ -131,7 +133,7 @@ void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting, d
             "with 'heat' a viscosity needs the temperature at which it holds, and 'thinning'",
             "temperature = \"40 degC\", thinning = \"0.03 1/K\"; or iso_vg instead");
   if (!v.clean() || !heated) return;
-  check_temperature(v, "heat", heat.supply_temperature);
+  check_oil_temperature(v, "heat", heat.supply_temperature);
   if (given.grade) o.temperature = heat.supply_temperature;
 }
 

@@ -6,17 +6,6 @@
 namespace whirl::deck {
 namespace {
 
-constexpr double coldest = 243.15, hottest = 473.15;  // K
-
-bool check_temperature(Visitor& v, const char* key, double temperature) {
-  if (temperature >= coldest && temperature <= hottest) return true;
-  v.error("E14", key,
-          fmt::format("{} is outside -30 to 200 degC, where the viscosity of oils is known",
-                      units::display(temperature, "degC")),
-          "the temperature of the oil, in degC");
-  return false;
-}
-
 void describe_film(Visitor& v, model::FloatingRing::Film& f, const char* diameter) {
   v.quantity(required("diameter"), f.diameter, "mm", positive, diameter);
   v.quantity(required("length"), f.length, "mm", positive, "axial length of the film");
@@ -32,7 +21,7 @@ void describe_film(Visitor& v, model::FloatingRing::Film& f, const char* diamete
     v.error("E26", "temperature", "the film has a viscosity and a temperature",
             "keep one of the two");
   else if (temperature)
-    check_temperature(v, "temperature", f.temperature);
+    check_oil_temperature(v, "temperature", f.temperature);
   if (v.clean() && f.clearance > 0.02 * f.diameter)
     v.error("E14", "clearance",
             fmt::format("the clearance {} is not small against the diameter {}: no film",
@@ -106,7 +95,7 @@ void check_heat(Visitor& v, const model::FloatingRing& b) {
             "supply_pressure = \"3 bar\" and supply_temperature = \"90 degC\"");
     return;
   }
-  if (!check_temperature(v, "supply_temperature", b.supply_temperature)) return;
+  if (!check_oil_temperature(v, "supply_temperature", b.supply_temperature)) return;
   for (const auto& [c, key] : {std::pair{b.inner_clearance_at(b.supply_temperature), "inner"},
                                std::pair{b.outer_clearance_at(b.supply_temperature), "outer"}})
     if (!(c > 0)) {
