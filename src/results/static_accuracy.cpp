@@ -23,6 +23,7 @@ std::optional<analysis::Equilibrium> settle_on(const system::System& fine,
   system::State start = fine.make_state();
   start.q = meshes::spread(mesh, found.state.q);
   if (start.q.size() != fine.size()) return std::nullopt;
+  start.frames.kept = found.state.frames.kept;  // films as warm as they were found
   return solver.try_solve(found.speed, &start);
 }
 

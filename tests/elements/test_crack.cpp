@@ -1,6 +1,7 @@
 // Breathing cracks and thermal bows: conformance, the laws of opening, compliance in series on any
 // mesh, and what fracture mechanics says of a depth.
 #include "conformance.hpp"
+#include <Eigen/Eigenvalues>
 #include <elements/shaft/crack.hpp>
 #include <elements/shaft/crack_compliance.hpp>
 #include <elements/shaft/thermal_bow.hpp>
