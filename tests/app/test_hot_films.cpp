@@ -125,7 +125,9 @@ TEST(HotFilms, FillonFourPads) {
     // the face of a loaded pad is hottest towards its end
     const double along =
         f.pad(k, "angle of hottest face [deg]") - (187.5 + 90.0 * static_cast<double>(k));
-    if (k < 2) EXPECT_GT(along - 360 * std::floor(along / 360), 40.0);
+    if (k < 2) {
+      EXPECT_GT(along - 360 * std::floor(along / 360), 40.0);
+    }
     power += f.pad(k, "power loss [W]");
     side += f.pad(k, "side flow [m^3/s]");
     to_journal += f.pad(k, "heat into journal [W]");

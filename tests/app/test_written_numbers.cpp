@@ -383,7 +383,9 @@ TEST(WrittenNumbers, AreThoseOfClosedForms) {
       const std::string summary = text_of(run.folder / "r" / "summary.json");
       EXPECT_NE(summary.find("\"step max [s]\": 0.0001"), std::string::npos) << summary;
     }
-    if (name == "limited") EXPECT_TRUE(run.says("amplitude limit exceeded")) << run.log;
+    if (name == "limited") {
+      EXPECT_TRUE(run.says("amplitude limit exceeded")) << run.log;
+    }
     if (name == "modes") {  // a spring stores strain, a disk moves
       const std::string shares = text_of(run.folder / "r" / "m_energy.csv");
       EXPECT_NE(shares.find("1,strain,linear bearings"), std::string::npos) << shares;
