@@ -63,8 +63,7 @@ struct EndBending {
       const End<NumbersOf<T>>& e = end[i];
       const T share = T(1.0) / (T(2.0) - e.n);
       const V3<T> k = cosine_force(e, q[i], M[i]);
-      fa = fa + (turning * share) * a.cross(e.delta) - k -
-           (e.angle.G * (T(1.0) - e.n)) * M[i];
+      fa = fa + (turning * share) * a.cross(e.delta) - k - (e.angle.G * (T(1.0) - e.n)) * M[i];
       const V3<T> on_D = k + e.angle.G * perpendicular(a, M[i]);
       out.m[i] = D[i].cross(on_D) + (turning * share) * (a + D[i]);
     }

@@ -86,6 +86,7 @@ not_seen = {
     "E07_missing_unit_in_title": "titles of columns are texts",
     "E07_set_is_checked": "the mistake is in --set",
     "E14_branch": "a range with a hole (0), and keys that go with another key's value",
+    "E14_mode_numbers": "modes are numbers, or words",
     "E14_names": "characters of names that would be read as something else",
     "E20_table_rows": "rows are lists of cells of any kind",
 }

@@ -202,7 +202,7 @@ TEST(HotFilms, FixedSurfacesAndGrades) {
 }
 
 TEST(HotFilms, TurbulenceAndSupplyPressure) {
-  const std::string thin = "viscosity = \"2 mPa.s\"\n";
+  const std::string thin = "viscosity = \"1 mPa.s\"\n";
   const DeckRun silent(rotor(grooved + thin, 4e3));
   EXPECT_EQ(silent.exit, 0) << silent.log;
   EXPECT_TRUE(silent.says("W03") && silent.says("Reynolds number") && silent.says("ng_pan"))

@@ -773,6 +773,7 @@ const Elsewhere elsewhere[] = {
     {"Top level", "bearing", "a table: its keys have pairs or lines"},
     {"Top level", "joint", "a table: its keys have pairs or lines"},
     {"Top level", "foundation", "a table: its keys have pairs or lines"},
+    {"Top level", "crack", "a table: its keys have pairs or lines"},
     {"Top level", "unbalance", "a table: its keys have pairs or lines"},
     {"Top level", "load", "a table: its keys have pairs or lines"},
     {"Top level", "drive", "a table: its keys have pairs or lines"},

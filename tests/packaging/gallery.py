@@ -46,6 +46,9 @@ SHOWN = {
     "34_tolerances": ("unbalance_disk_2_bode", "criticals_undamped", "speed [rpm]", 0, "first critical speed as drawn"),
     "35_magnetic_bearings": ("margins_curves", "margins_sensitivity", "largest sensitivity [-]", 0, "largest sensitivity"),
     "36_api_lateral": ("lateral_minimum_clearance_map_critical_map", "lateral_minimum_clearance_modes_unbalance", "critical speed [rpm]", 0, "first critical speed, least clearance"),
+    "37_turbocharger_floating_rings": ("run_compressor_spectrogram", "onset_onset", "whirl frequency [Hz]", 0, "frequency of the whirl at its onset"),
+    "38_cracked_rotor": ("steady_wheel_multiples", "steady_peaks", "speed [rpm]", 0, "first peak of the response"),
+    "39_hot_tilting_pads": ("measured_films_1", "measured_films", "hottest face [degC]", 1, "hottest pad, 76.5 measured"),
 }
 
 

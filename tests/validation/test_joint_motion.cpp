@@ -174,7 +174,8 @@ axis = [1, 2, 3]
     lost[k] =
         (momenta(move_to(m, x, 1.0, k == 0 ? 1e-6 : 1e-8, "gauss6")) - before).tail<3>().norm();
   EXPECT_LT(lost[1], 0.1 * lost[0]);
-  const system::State end = move_to(m, x, 14.0, 1e-6, "gauss6");
+  // the motion is chaotic: at 1e-6 what is lost differs by five times from rounding to rounding
+  const system::State end = move_to(m, x, 14.0, 1e-7, "gauss6");
   EXPECT_TRUE(end.frames.moved());
   const Vector<6> after = momenta(end);
   EXPECT_LT((after - before).head<3>().norm(), 2e-4 * before.tail<3>().norm());

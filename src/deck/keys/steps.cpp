@@ -13,7 +13,9 @@ void describe(Visitor& v, model::SpeedRange& r) {
        "unbalance response: more points where the response peaks (default of a range, not of "
        "speeds one by one)"},
       {"no", "the points alone"}};
-  int i = 0;
+  // as it is when written; when read the default is that of what is given
+  const bool filled = !r.values.empty() || r.start != 0 || r.stop != 0;
+  int i = filled && !r.refine_peaks ? 1 : 0;
   v.quantity(optional("start", "\"0 rpm\""), r.start, "rpm", any, "first speed");
   const bool stop =
       v.quantity(optional("stop", "values are given"), r.stop, "rpm", any, "last speed");
