@@ -249,7 +249,8 @@ TEST(HotFilms, BadInput) {
 TEST(HotFilms, MotionKeepsTemperatures) {
   const std::string steps =
       "[[step]]\nname = \"st\"\ntype = \"static\"\nspeed = \"4000 rpm\"\n"
-      "[[step]]\nname = \"on\"\ntype = \"transient\"\nfrom = \"st\"\nduration = \"0.02 s\"\n";
+      "[[step]]\nname = \"on\"\ntype = \"transient\"\nfrom = \"st\"\nduration = \"0.02 s\"\n"
+      "[[drive]]\nat = \"a:start\"\nstep = \"on\"\ntype = \"speed\"\nspeed = \"4000 rpm\"\n";
   const DeckRun d(rotor(four_pads + heat(), 10e3, steps));
   ASSERT_EQ(d.exit, 0) << d.log;
   const auto kept = d.summary("on").at("film viscosity in balance over that kept");
