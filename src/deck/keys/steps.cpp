@@ -13,9 +13,6 @@ void describe(Visitor& v, model::SpeedRange& r) {
        "unbalance response: more points where the response peaks (default of a range, not of "
        "speeds one by one)"},
       {"no", "the points alone"}};
-  // as it is when written; when read the default is that of what is given
-  const bool filled = !r.values.empty() || r.start != 0 || r.stop != 0;
-  int i = filled && !r.refine_peaks ? 1 : 0;
   v.quantity(optional("start", "\"0 rpm\""), r.start, "rpm", any, "first speed");
   const bool stop =
       v.quantity(optional("stop", "values are given"), r.stop, "rpm", any, "last speed");
@@ -23,8 +20,9 @@ void describe(Visitor& v, model::SpeedRange& r) {
                                 between(1, 1000000), "number of speeds, equally spaced");
   const bool values = v.quantities(optional("values", "start, stop, points"), r.values, "rpm", any,
                                    -1, "the speeds one by one");
+  int i = values ? 1 : 0;
   v.option("refine", i, refine, "refinement");
-  r.refine_peaks = i == 0 && (!values || v.given("refine"));
+  r.refine_peaks = i == 0;
   if (!v.clean()) return;
   if (values && (stop || points || v.given("start")))
     v.error("E26", "values", "the speeds are given by 'values' and by 'start', 'stop', 'points'",
