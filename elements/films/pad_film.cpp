@@ -560,7 +560,8 @@ int PadFilm::solve_through(const Vec2& e, const Vec2& W, const Medium& m, Films&
       settle(e, W, m, s, elements_, 1e-4, 60, passes);
     }
   for (int i = 0; i + 1 < n;) {
-    Ends &s = out[static_cast<std::size_t>(i)], &next = out[static_cast<std::size_t>(i + 1)];
+    const auto here = static_cast<std::size_t>(i);
+    Ends &s = out[here], &next = out[here + 1];
     if (s.b < next.a) {
       ++i;
       continue;

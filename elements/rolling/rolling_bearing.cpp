@@ -126,8 +126,9 @@ struct EndRule {
   EndRule() {
     for (int k = -half; k <= half; ++k) {
       const double u = 0.5 * pi * std::sinh(step * k), c = std::cosh(u);
-      place[static_cast<std::size_t>(k + half)] = std::tanh(u);
-      weight[static_cast<std::size_t>(k + half)] = step * 0.5 * pi * std::cosh(step * k) / (c * c);
+      const int at = k + half;
+      place[static_cast<std::size_t>(at)] = std::tanh(u);
+      weight[static_cast<std::size_t>(at)] = step * 0.5 * pi * std::cosh(step * k) / (c * c);
     }
   }
 };

@@ -232,7 +232,9 @@ std::string contents_html(const Report& r, const FigureIds& ids) {
       s += link + "</li>";
       continue;
     }
-    s += "<details" + open + "><summary>" + link + "</summary>";
+    s += "<details";
+    s += open;
+    s += "><summary>" + link + "</summary>";
     for (std::size_t i = 0; i < ids[k].size(); ++i)
       s += "<span class=\"sub\"><a href=\"#" + ids[k][i] + "\">" +
            escape(r.sections[k].figures[i].title) + "</a></span>";

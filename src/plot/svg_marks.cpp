@@ -51,10 +51,13 @@ void draw_heat(Canvas& c, const HeatMap& h, const Prepared& p) {
                          : static_cast<std::uint8_t>(std::lround(255 * std::clamp(t, 0.0, 1.0)));
   };
   std::vector<std::uint8_t> cells(static_cast<std::size_t>(h.nx) * static_cast<std::size_t>(h.ny));
+  const auto cell = [&h](int iy, int ix) {
+    return static_cast<std::size_t>(iy) * static_cast<std::size_t>(h.nx) +
+           static_cast<std::size_t>(ix);
+  };
   for (int iy = 0; iy < h.ny; ++iy)  // the picture starts at the top
     for (int ix = 0; ix < h.nx; ++ix)
-      cells[static_cast<std::size_t>((h.ny - 1 - iy) * h.nx + ix)] =
-          index(h.values[static_cast<std::size_t>(iy * h.nx + ix)]);
+      cells[cell(h.ny - 1 - iy, ix)] = index(h.values[cell(iy, ix)]);
   char range[160];
   std::snprintf(range, sizeof range, " data-heat=\"%d %d %.9g %.9g %d\"", h.nx, h.ny, lo, hi,
                 h.logarithmic ? 1 : 0);

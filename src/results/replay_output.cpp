@@ -109,6 +109,7 @@ void ReplayRecorder::restore(InArchive& in) {
   kept_.span = in.numbers();
   const auto floats = [](const std::vector<double>& x) {
     std::vector<float> out;
+    out.reserve(x.size());
     for (const double v : x)
       out.push_back(static_cast<float>(v));
     return out;
