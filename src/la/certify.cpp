@@ -78,11 +78,18 @@ Index ModeSolver::Impl::count_oscillating() const {
 
 void ModeSolver::Impl::extend_to_count() {
   const double given = least_radius;
-  for (int more = 0; more < 4 && count_oscillating() < opt.count; ++more) {
+  constexpr int rounds = 16;
+  double further = 2.0;
+  for (int more = 0;
+       more < rounds && count_oscillating() < opt.count && certificate.radius < opt.max_frequency;
+       ++more) {
+    const Index before = count_oscillating();
     least_radius =
-        2.0 * std::max(certificate.radius, wanted_radius() < infinity ? wanted_radius() : 0.0);
+        further * std::max(certificate.radius, wanted_radius() < infinity ? wanted_radius() : 0.0);
     search_all();
     certify();
+    // where nothing is new the next roots may lie decades above slow ones (controllers, free pads)
+    further = count_oscillating() > before ? 2.0 : std::min(2.0 * further, 8.0);
   }
   least_radius = given;
 }
