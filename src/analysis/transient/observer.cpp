@@ -161,7 +161,14 @@ void PeakTracker::step(StepAccess& s) {
   for (int k = 2; k < looks; k += 2)
     look(s, k);
   bool complete = false;
+  const std::size_t n = points_.size();
   for (std::size_t i = 0; i < peaks_.size(); ++i) {
+    if (i >= n && start_[i - n].isZero(0.0)) {  // about the axis it is the amplitude
+      peaks_[i].amplitude = peaks_[i - n].amplitude;
+      peaks_[i].time = peaks_[i - n].time;
+      peaks_[i].speed = peaks_[i - n].speed;
+      continue;
+    }
     double best = 0.0, where = looks - 1;
     for (int k = 2; k < looks; k += 2)
       if (const double r = seen_[static_cast<std::size_t>(k)][i].norm(); r > best) {
