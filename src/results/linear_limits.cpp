@@ -42,6 +42,19 @@ std::string growth_at(analysis::RotatingAxes& axes, double Omega) {
 
 }  // namespace
 
+void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns) {
+  if (!turns || !breathes(job.model)) return;
+  Diagnostic d;
+  d.code = "W14";
+  d.message = fmt::format(
+      "step '{}': the stiffness of the cracked rotor enters as its mean over a revolution, the "
+      "crack "
+      "opened by its weight and by what bends the shaft in the mean",
+      step);
+  d.hint = "an unbalance response and a transient turn with the shaft";
+  warn(job, std::move(d));
+}
+
 void warn_of_growth(FrequencyStep& s, std::vector<double> speeds) {
   std::sort(speeds.begin(), speeds.end());
   speeds.erase(std::unique(speeds.begin(), speeds.end()), speeds.end());

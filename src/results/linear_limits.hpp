@@ -53,6 +53,9 @@ class GapCheck {
 /// coefficients are held beyond.
 void warn_of_held_tables(run::Job& job, const std::string& step, double low, double high);
 
+/// W14: an equilibrium at speed is that of the mean stiffness of a cracked shaft over a revolution.
+void warn_of_mean_crack(run::Job& job, const std::string& step, bool turns);
+
 /// W13: at one of these speeds (reference, rad/s) a free motion grows, and the steady response there
 /// is never reached.
 void warn_of_growth(FrequencyStep& s, std::vector<double> speeds);

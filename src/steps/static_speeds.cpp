@@ -367,6 +367,7 @@ void SpeedSweep::execute() {
   }
   if (found_ == 0) throw *first_error_;
   results::warn_of_held_tables(job_, step_.name, speeds_.front(), speeds_.back());
+  results::warn_of_mean_crack(job_, step_.name, true);
   show_equilibria();
   show_bearings();
   const std::string judgement =
