@@ -118,15 +118,8 @@ RingTables ring_tables(std::span<const SupportCoefficients> list) {
   out.rings.title = "Floating rings at the equilibrium";
   out.rings.nan_means = "the bearing has no such number";
   out.rings.columns = ring_columns();
-  out.reduced.title = "Coefficients that the shaft sees with the rings following, by frequency";
-  out.reduced.columns = {{"bearing", "-", ""},
-                         {"speed", "rpm", ""},
-                         {"frequency / speed", "-", ""},
-                         {"frequency", "Hz", ""}};
-  for (const char* m : {"k", "c"})
-    for (const char* e : {"yy", "yz", "zy", "zz"})
-      out.reduced.columns.push_back(
-          {std::string("reduced ") + m + e, m[0] == 'k' ? "N/m" : "N s/m", ""});
+  out.reduced =
+      reduced_table("Coefficients that the shaft sees with the rings following, by frequency");
   out.full.title = "Full coefficients of shaft and ring";
   out.full.columns = {{"bearing", "-", ""},
                       {"speed", "rpm", ""},
@@ -139,12 +132,7 @@ RingTables ring_tables(std::span<const SupportCoefficients> list) {
     if (!c.ring) continue;
     const RingResults& r = *c.ring;
     add_ring_row(out.rings, c);
-    for (std::size_t k = 0; k < r.ratios.size(); ++k) {
-      const elements::ReducedCoefficients& x = r.reduced[k];
-      out.reduced.add({c.name, to_rpm(c.spin), r.ratios[k], to_hz(r.ratios[k] * std::abs(c.spin)),
-                       x.K(0, 0), x.K(0, 1), x.K(1, 0), x.K(1, 1), x.C(0, 0), x.C(0, 1), x.C(1, 0),
-                       x.C(1, 1)});
-    }
+    add_reduced(out.reduced, c, r.ratios, r.reduced);
     add_full_ring(out.full, c);
   }
   return out;

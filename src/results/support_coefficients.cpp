@@ -1,3 +1,4 @@
+#include <core/contract.hpp>
 #include <assembly/film_kernels.hpp>
 #include <results/mesh_accuracy.hpp>
 #include <results/support_coefficients.hpp>
@@ -128,15 +129,13 @@ double grid_error_of(const model::SqueezeFilm& law, const Vec2& place) {
   return distance(tangent(assembly::damper_nodes), tangent(compared_with(assembly::damper_nodes)));
 }
 
-/// How far the coefficients that the shaft sees are from those on a finer grid.
-double pad_grid_error(const assembly::TiltingPads& ring, const assembly::NodeAt& at, int points,
-                      const PadResults& own) {
-  const elements::ReducedCoefficients fine =
-      elements::reduce_pads(ring.coefficients(at, compared_with(points)), std::abs(own.spin));
-  const elements::ReducedCoefficients& here = own.reduced.front();
+/// How far coefficients that the shaft sees are from those on a finer grid.
+double reduced_grid_error(const elements::PadCoefficients& finer, double spin,
+                          const elements::ReducedCoefficients& own) {
+  const elements::ReducedCoefficients fine = elements::reduce_pads(finer, std::abs(spin));
   const double k = fine.K.norm(), c = fine.C.norm();
-  return std::max(k > 0 ? (here.K - fine.K).norm() / k : 0.0,
-                  c > 0 ? (here.C - fine.C).norm() / c : 0.0);
+  return std::max(k > 0 ? (own.K - fine.K).norm() / k : 0.0,
+                  c > 0 ? (own.C - fine.C).norm() / c : 0.0);
 }
 
 /// The pads of a bearing in an evaluated state; K and C become those with the pads following.
@@ -160,7 +159,8 @@ void describe_pads(SupportCoefficients& c, const run::Job& job, std::size_t bear
       p.reduced.push_back(elements::reduce_pads(p.full, r * std::abs(c.spin)));
     c.K = p.reduced.front().K;
     c.C = p.reduced.front().C;
-    c.grid_error = pad_grid_error(ring, node, law->nodes, p);
+    c.grid_error = reduced_grid_error(ring.coefficients(node, compared_with(law->nodes)), p.spin,
+                                      p.reduced.front());
     c.pads = std::move(p);
   }
 }
@@ -198,20 +198,6 @@ void describe_films(SupportCoefficients& c, const run::Job& job, std::size_t bea
   }
 }
 
-/// How far coefficients with the ring following are from those on a finer grid.
-double ring_grid_error(const assembly::FloatingRingBearing& bearing, const assembly::NodeAt& at,
-                       const model::FloatingRing& law, const RingResults& own) {
-  if (law.theory == model::FloatingRing::Theory::brief) return nan;
-  const int finest = elements::JournalSurface::max_nodes;
-  const int other = 2 * law.nodes <= finest ? finest : law.nodes / 2;
-  const elements::ReducedCoefficients fine =
-      elements::reduce_pads(bearing.coefficients(at, other), std::abs(own.shaft_spin));
-  const elements::ReducedCoefficients& here = own.reduced.front();
-  const double k = fine.K.norm(), c = fine.C.norm();
-  return std::max(k > 0 ? (here.K - fine.K).norm() / k : 0.0,
-                  c > 0 ? (here.C - fine.C).norm() / c : 0.0);
-}
-
 /// The ring of a bearing in an evaluated state; K and C become those with the ring following.
 void describe_ring(SupportCoefficients& c, const run::Job& job, std::size_t bearing,
                    const system::Workspace& w) {
@@ -239,7 +225,9 @@ void describe_ring(SupportCoefficients& c, const run::Job& job, std::size_t bear
     c.K = r.reduced.front().K;
     c.C = r.reduced.front().C;
     c.clearance = r.standing.inner.clearance + r.standing.outer.clearance;
-    c.grid_error = ring_grid_error(ring, node, *law, r);
+    if (law->theory != model::FloatingRing::Theory::brief)  // short films have no grid
+      c.grid_error = reduced_grid_error(ring.coefficients(node, compared_with(law->nodes)),
+                                        r.shaft_spin, r.reduced.front());
     c.ring = std::move(r);
   }
 }
@@ -314,6 +302,29 @@ void describe_state(SupportCoefficients& c, const run::Job& job, std::size_t bea
 }
 
 }  // namespace
+
+io::Table reduced_table(std::string title) {
+  io::Table out;
+  out.title = std::move(title);
+  out.columns = {{"bearing", "-", ""},
+                 {"speed", "rpm", ""},
+                 {"frequency / speed", "-", ""},
+                 {"frequency", "Hz", ""}};
+  for (const char* m : {"k", "c"})
+    for (const char* e : {"yy", "yz", "zy", "zz"})
+      out.columns.push_back({std::string("reduced ") + m + e, m[0] == 'k' ? "N/m" : "N s/m", ""});
+  return out;
+}
+
+void add_reduced(io::Table& t, const SupportCoefficients& c, std::span<const double> ratios,
+                 std::span<const elements::ReducedCoefficients> reduced) {
+  WHIRL_EXPECTS(ratios.size() == reduced.size());
+  for (std::size_t k = 0; k < ratios.size(); ++k) {
+    const elements::ReducedCoefficients& r = reduced[k];
+    t.add({c.name, to_rpm(c.spin), ratios[k], to_hz(ratios[k] * std::abs(c.spin)), r.K(0, 0),
+           r.K(0, 1), r.K(1, 0), r.K(1, 1), r.C(0, 0), r.C(0, 1), r.C(1, 0), r.C(1, 1)});
+  }
+}
 
 std::vector<SupportCoefficients> calc_support_coefficients(const run::Job& job,
                                                            const run::StepState& s) {

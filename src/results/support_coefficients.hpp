@@ -125,6 +125,11 @@ void warn_of_turbulence(run::Job& job, const std::string& step,
 /// the last state would have over the one that acted, in the mean, into the summary; more than 5 %
 /// apart: warning W03.
 void report_kept_films(run::Job& job, const std::string& step, const system::State& end);
+/// Coefficients that the shaft sees with what a bearing has inside following: a row a frequency.
+io::Table reduced_table(std::string title);
+/// ratios: frequencies over the speed, one for each of `reduced`.
+void add_reduced(io::Table& t, const SupportCoefficients& c, std::span<const double> ratios,
+                 std::span<const elements::ReducedCoefficients> reduced);
 /// The same where there are floating rings.
 struct RingTables {
   io::Table rings;    ///< a row a bearing: how its ring stands

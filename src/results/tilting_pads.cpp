@@ -118,15 +118,8 @@ PadTables pad_tables(std::span<const SupportCoefficients> list) {
                       {"smallest film", "m", ""},
                       {"power loss", "W", "of its film"},
                       {"carries", "-", "0: no load at any tilt; it rests where its film begins"}};
-  out.reduced.title = "Coefficients that the shaft sees with the pads following, by frequency";
-  out.reduced.columns = {{"bearing", "-", ""},
-                         {"speed", "rpm", ""},
-                         {"frequency / speed", "-", ""},
-                         {"frequency", "Hz", ""}};
-  for (const char* m : {"k", "c"})
-    for (const char* e : {"yy", "yz", "zy", "zz"})
-      out.reduced.columns.push_back(
-          {std::string("reduced ") + m + e, m[0] == 'k' ? "N/m" : "N s/m", ""});
+  out.reduced =
+      reduced_table("Coefficients that the shaft sees with the pads following, by frequency");
   out.full.title = "Full coefficients of shaft and pads";
   out.full.columns = {{"bearing", "-", ""},
                       {"speed", "rpm", ""},
@@ -144,12 +137,7 @@ PadTables pad_tables(std::span<const SupportCoefficients> list) {
                     s.load, s.tilt, s.pressed, s.eccentricity, s.film, s.power,
                     p.carries(k) ? 1 : 0});
     }
-    for (std::size_t k = 0; k < p.ratios.size(); ++k) {
-      const elements::ReducedCoefficients& r = p.reduced[k];
-      out.reduced.add({c.name, to_rpm(c.spin), p.ratios[k], to_hz(p.ratios[k] * std::abs(c.spin)),
-                       r.K(0, 0), r.K(0, 1), r.K(1, 0), r.K(1, 1), r.C(0, 0), r.C(0, 1), r.C(1, 0),
-                       r.C(1, 1)});
-    }
+    add_reduced(out.reduced, c, p.ratios, p.reduced);
     add_full(out.full, c);
   }
   return out;
