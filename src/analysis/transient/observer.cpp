@@ -65,7 +65,7 @@ void Recorder::restore(InArchive& in) {
   rows_ = static_cast<long>(in.count());
 }
 
-PeakTracker::PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference,
+PeakTracker::PeakTracker(const std::vector<std::pair<std::string, Point>>& points, Index reference,
                          double t_from, bool motion)
     : start_(motion ? points.size() : 0, Vec2::Zero()),
       reference_(reference),

@@ -112,7 +112,7 @@ class PeakTracker final : public Observer {
   /// by the polynomial through them (a thousand points cost little more than one).
   /// motion: each point a second time, about its place at the start; peaks() lists all points, then
   /// all of these.
-  PeakTracker(std::vector<std::pair<std::string, Point>> points, Index reference,
+  PeakTracker(const std::vector<std::pair<std::string, Point>>& points, Index reference,
               double t_from = -infinity, bool motion = false);
   void begin(const Snapshot& s) override;
   void step(StepAccess& s) override;
