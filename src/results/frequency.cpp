@@ -24,6 +24,7 @@ analysis::SteadyRotation steady_rotation_of(const model::Model& model, const mes
   r.ratio.resize(static_cast<std::size_t>(built.system.lines()), 0.0);
   r.top_speed = top_speed;
   r.table_frequencies = built.table_frequencies;
+  r.axially_free = built.axially_free;
   for (const assembly::MagneticControl& c : built.magnetic_controls)
     r.control_bandwidth = std::max(r.control_bandwidth, c.bandwidth);
   return r;
