@@ -181,7 +181,7 @@ class Restraint {
   };
 
   /// Groups of lines connected by links that act in one of the directions.
-  std::vector<std::vector<std::size_t>> groups(std::vector<Direction> directions) {
+  std::vector<std::vector<std::size_t>> groups(const std::vector<Direction>& directions) {
     std::iota(group_.begin(), group_.end(), std::size_t{0});
     const auto root = [this](std::size_t i) {
       while (group_[i] != i)

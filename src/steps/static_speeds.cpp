@@ -44,7 +44,8 @@ plot::Figure grid(std::string name, std::string title, std::size_t bearings, dou
   f.name = std::move(name);
   f.title = std::move(title);
   f.columns = bearings > 1 ? 2 : 1;
-  f.height = height * static_cast<double>((bearings + 1) / 2);
+  const std::size_t rows = (bearings + 1) / 2;
+  f.height = height * static_cast<double>(rows);
   return f;
 }
 

@@ -110,7 +110,13 @@ void label_lines(std::vector<CampbellLine>& lines) {
                                : l.direction == Direction::mixed    ? "M"
                                                                     : "L";
     const std::string number = std::to_string(++count[letter]);
-    l.label = l.kind == ModeKind::lateral ? number + " " + letter : letter + number;
+    if (l.kind == ModeKind::lateral) {
+      l.label = number;
+      l.label += " ";
+      l.label += letter;
+    } else {
+      l.label = letter + number;
+    }
   }
 }
 
