@@ -96,7 +96,7 @@ inline Index count_below(const std::vector<double>& frequencies, double w) {
 }
 
 /// Each critical speed is a frequency of the dense problem there; and what lies below the order line
-/// at both ends differs by those found, each counted the way it crosses.
+/// at both ends rises by no more than those found, each counted the way it crosses.
 inline void compare_criticals(Linearizer& linear, double low, double high, const std::string& name,
                               Compared& sum) {
   CriticalOptions o;
@@ -105,8 +105,9 @@ inline void compare_criticals(Linearizer& linear, double low, double high, const
   std::vector<Critical> found;
   try {
     found = critical_speeds(linear, o);
-  } catch (const Error& e) {  // pads that rest: without damping nothing holds them
-    EXPECT_EQ(e.diagnostics().front().code, "E77") << name;
+  } catch (const Error& e) {  // pads that rest: without damping nothing holds them; no equilibrium
+    const std::string code = e.diagnostics().front().code;
+    EXPECT_TRUE(code == "E77" || code == "E75" || code == "E76") << name << ": " << e.what();
     ++sum.refused;
     return;
   }
@@ -129,7 +130,8 @@ inline void compare_criticals(Linearizer& linear, double low, double high, const
   if (!alone) return;  // two together: counted twice
   const Index change = count_below(undamped_frequencies(linear, high), high) -
                        count_below(undamped_frequencies(linear, low), low);
-  EXPECT_EQ(change, crossed) << name << ", critical speeds from " << low / rpm << " to "
+  // fewer: a frequency that falls to zero (divergence) leaves the count without a critical speed
+  EXPECT_LE(change, crossed) << name << ", critical speeds from " << low / rpm << " to "
                              << high / rpm << " rpm";
 }
 
@@ -266,7 +268,8 @@ inline void compare_stability(Linearizer& linear, double low, double high, const
     ++sum.onsets;
     EXPECT_EQ(rate[1] > rate[0], x.gains) << name << ", onset at " << x.speed / rpm << " rpm, "
                                           << x.frequency << " rad/s: " << rate[0] << " " << rate[1];
-    EXPECT_LE(rate[0] * rate[1], 0.0) << name << ", onset at " << x.speed / rpm << " rpm";
+    EXPECT_LE(rate[0] * rate[1], 0.0) << name << ", onset at " << x.speed / rpm << " rpm, "
+                                      << x.frequency << " rad/s: " << rate[0] << " " << rate[1];
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 /// Of frequency and speed: what two frequencies that merge grow by within 1e-10 of where they do is
 /// its square root.
-constexpr double axis_width = 1e-4;
+constexpr double axis_width = 2e-5;
 
 ModesOptions mode_options(const StabilityOptions& o) {
   ModesOptions m;
