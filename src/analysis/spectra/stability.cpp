@@ -15,6 +15,8 @@ namespace {
 /// Of frequency and speed: what two frequencies that merge grow by within 1e-10 of where they do is
 /// its square root.
 constexpr double axis_width = 2e-5;
+/// Of the speed: the same of two real roots that part from zero as a square root.
+constexpr double zero_width = 1e-4;
 
 ModesOptions mode_options(const StabilityOptions& o) {
   ModesOptions m;
@@ -193,8 +195,11 @@ class Sweep {
     for (const WhirlMode& m : modes_there_)
       if (m.growth() > 0 && (!nearest || m.lambda.real() < nearest->lambda.real())) nearest = &m;
     if (!nearest) return;
-    const double size = std::max(nearest->frequency, std::max(std::abs(a), std::abs(b)));
-    if (nearest->lambda.real() <= axis_width * size)
+    const double speed = std::max(std::abs(a), std::abs(b));
+    const double width = nearest->frequency == 0.0
+                             ? zero_width * speed
+                             : axis_width * std::max(nearest->frequency, speed);
+    if (nearest->lambda.real() <= width)
       onsets.push_back({0.5 * (a + b), nearest->frequency, gains, *nearest});
   }
 
