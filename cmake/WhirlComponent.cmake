@@ -1,6 +1,7 @@
 # One folder is one component: a static library of its *.cpp files (or an interface, when it has none).
-#   whirl_component(NAME DIR <dir> [FOLDERS <sub-folders>] [EXCLUDE <regex>] [PCH <header>] [FAST] [DEPS <targets>])
+#   whirl_component(NAME DIR <dir> [FOLDERS <sub-folders>] [EXCLUDE <regex>] [PCH <header>] [FAST] [UNITY <n>] [DEPS <targets>])
 # FOLDERS: sub-folders that belong to the component. PCH: header precompiled for it (cmake/pch/<header>.hpp). FAST: its loops count.
+# UNITY: so many files a unit where WHIRL_UNITY joins files at all: a unit of many heavy templates costs more than its parts.
 # Installed, it is the target whirl::NAME, and its headers stand in include/whirl/NAME (cmake/WhirlInstall.cmake).
 if(WHIRL_UNITY GREATER 1)
   set(WHIRL_UNITY_BUILD ON)
@@ -51,7 +52,7 @@ function(whirl_precompile TARGET HEADER LEVEL)
 endfunction()
 
 function(whirl_component NAME)
-  cmake_parse_arguments(A "FAST" "DIR;EXCLUDE;PCH" "FOLDERS;DEPS" ${ARGN})
+  cmake_parse_arguments(A "FAST" "DIR;EXCLUDE;PCH;UNITY" "FOLDERS;DEPS" ${ARGN})
   set(level -O1)
   if(A_FAST)
     set(level -O3)
@@ -72,7 +73,11 @@ function(whirl_component NAME)
     if(A_PCH)
       whirl_precompile(whirl_${NAME} ${A_PCH} ${level})
     endif()
-    set_target_properties(whirl_${NAME} PROPERTIES UNITY_BUILD ${WHIRL_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${WHIRL_UNITY})
+    set(batch ${WHIRL_UNITY})
+    if(A_UNITY)
+      set(batch ${A_UNITY})
+    endif()
+    set_target_properties(whirl_${NAME} PROPERTIES UNITY_BUILD ${WHIRL_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${batch})
   else()
     add_library(whirl_${NAME} INTERFACE)
     target_link_libraries(whirl_${NAME} INTERFACE whirl_flags Eigen3::Eigen ${A_DEPS})

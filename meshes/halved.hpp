@@ -15,6 +15,10 @@ struct Halved {
   std::vector<Middle> middles;
 };
 
+/// Error left on the mesh at hand over the change to the halved one, of what falls with the square of
+/// the elements' length; too large of what falls faster.
+inline constexpr double error_of_change = 4.0 / 3.0;
+
 /// @pre one flag a line of the mesh.
 Halved halve(const Mesh& mesh, const std::vector<bool>& lines);
 /// Unknowns of the nodes, six each, and of what comes behind them, on the halved mesh: in the middle

@@ -8,8 +8,8 @@
 namespace whirl::results {
 
 /// One line each: "twist of shaft 'r' at 'b:end': drive 'motor' prescribes its angle". motion: of a
-/// step that takes some motions only. spin_holds: unknowns phi an equilibrium held because nothing
-/// else does.
+/// step that takes some motions only. holds: unknowns an equilibrium held because nothing else
+/// does.
 std::vector<std::string> held_in_step(const run::Job& job, const model::Step& step,
                                       std::span<const Index> holds = {});
 

@@ -39,7 +39,7 @@ std::optional<double> RefinedModes::error(const analysis::WhirlMode& mode, doubl
     // "undamped" modes are those of the conservative part; where nothing damps both are the same
     const auto found = (mode.growth() == 0 ? undamped_ : damped_).follow(Omega, start);
     if (!found) return std::nullopt;
-    return 4.0 / 3.0 * std::abs(found->lambda - mode.lambda);
+    return meshes::error_of_change * std::abs(found->lambda - mode.lambda);
   } catch (const Error&) {  // no equilibrium, or no factorisation: not judged
     return std::nullopt;
   }

@@ -11,8 +11,6 @@
 namespace whirl::results {
 namespace {
 
-constexpr double first_order = 4.0 / 3.0;
-
 /// 1/size^2 = least + curvature (x - place)^2
 struct Resonance {
   double place = 0, least = nan, curvature = nan;
@@ -86,10 +84,11 @@ PeakError peak_error(double at, double amplification, const std::function<double
   PeakError e;
   const Resonance a = fit(places, here), b = fit(places, there);
   if (a.peaks() && b.peaks()) {
-    e.amplitude = first_order * std::abs(b.amplitude() / a.amplitude() - 1.0);
-    e.amplification = first_order * std::abs(b.amplification() / a.amplification() - 1.0);
+    e.amplitude = meshes::error_of_change * std::abs(b.amplitude() / a.amplitude() - 1.0);
+    e.amplification =
+        meshes::error_of_change * std::abs(b.amplification() / a.amplification() - 1.0);
   } else {
-    e.amplitude = first_order * std::abs(there[1] / here[1] - 1.0);
+    e.amplitude = meshes::error_of_change * std::abs(there[1] / here[1] - 1.0);
   }
   return e;
 }
@@ -98,7 +97,7 @@ void AmplitudeAccuracy::add(double error, const std::string& name) {
   looked_ = true;
   if (std::isnan(error)) {
     ++not_judged_;
-  } else if (!(error <= largest_)) {
+  } else if (worst_.empty() || error > largest_) {
     largest_ = error;
     worst_ = name;
   }
@@ -108,9 +107,10 @@ void AmplitudeAccuracy::report() {
   if (!looked_) return;
   const run::Job& job = step_.job;
   io::Value& v = step_.summary()["mesh"];
-  v["relative error of amplitudes"] = largest_;
-  if (!worst_.empty()) v["largest of amplitudes at"] = worst_;
   if (not_judged_ > 0) v["amplitudes not judged"] = not_judged_;
+  if (worst_.empty()) return step_.claim_also(what_ + ": error of the elements not judged");
+  v["relative error of amplitudes"] = largest_;
+  v["largest of amplitudes at"] = worst_;
   std::string text = fmt::format("{} right to {} (elements)", what_, error_text(largest_));
   if (not_judged_ > 0) text += fmt::format(", {} of them not judged", not_judged_);
   step_.claim_also(text);

@@ -52,7 +52,7 @@ std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::
       }
     }
   if (!(most > 0.0)) return std::nullopt;
-  out.error *= 4.0 / 3.0 / most;
+  out.error *= meshes::error_of_change / most;
   if (out.shaft.empty()) out.shaft = job.mesh.lines.front().name;
   return out;
 }
@@ -67,9 +67,8 @@ bool has_deflections(const run::Job& job, const run::StepState& equilibrium) {
 
 std::string report_no_static_accuracy(run::Job& job, const std::string& step) {
   const std::string said =
-      "what the elements leave of the deflections is not judged: no such equilibrium was found on "
-      "a "
-      "mesh twice as fine";
+      "what the elements leave of the deflections is not judged: no equilibrium like it was found "
+      "on a mesh twice as fine";
   job.summary["steps"][step]["mesh"]["not judged"] = said;
   return said;
 }

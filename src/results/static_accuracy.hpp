@@ -15,8 +15,8 @@ struct StaticAccuracy {
 /// The error that elements leave of the displacements in an equilibrium: 4/3 of their change on a
 /// mesh twice as fine, which is right where it falls with the square of their length, and too large
 /// where it falls faster. nullopt: no elements, nothing displaced, axes that have moved, or no
-/// equilibrium found on that mesh. step: the one that the system is built for; load: factor on gravity and loads at which
-/// it stands.
+/// equilibrium found on that mesh. step: the one that the system is built for; load: factor on
+/// gravity and loads at which it stands.
 std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::string& step,
                                                 const run::StepState& equilibrium,
                                                 double load = 1.0);

@@ -418,12 +418,12 @@ std::vector<double> HarmonicRun::judge_amplitudes(const std::vector<Found>& peak
         here = std::max(here, size_of(own, p));
         there = std::max(there, size_of(other, p));
       }
-      accuracy.add(4.0 / 3.0 * std::abs(there / here - 1.0),
+      accuracy.add(meshes::error_of_change * std::abs(there / here - 1.0),
                    fmt::format("the largest response, at {:.6g} {}", displayed(largest_at_),
                                asynchronous_ ? "Hz" : "rpm"));
     }
-  } catch (const Error&) {
-    accuracy.add(nan, {});
+  } catch (const Error&) {  // no equilibrium of the finer mesh, or no factorisation
+    if (peaks.empty()) accuracy.add(nan, {});
   }
   for (std::size_t k = 0; k < peaks.size(); ++k)
     accuracy.add(out[k], fmt::format("the peak of probe '{}' at {:.6g} {}",

@@ -79,7 +79,7 @@ Truncation find_truncation(results::FrequencyStep& s, const model::StabilityStep
 /// "unstable from 2000 to 2100 rpm, 4000 to above 6000 rpm"
 std::string text_of(const BandResult& r) {
   if (r.bands.empty())
-    return fmt::format("stable from {:.6g} to {:.6g} rpm", to_rpm(r.speeds.front()),
+    return fmt::format("no growth found from {:.6g} to {:.6g} rpm", to_rpm(r.speeds.front()),
                        to_rpm(r.speeds.back()));
   std::string text;
   for (const InstabilityBand& b : r.bands)
@@ -228,8 +228,9 @@ void run_instability_bands(run::Job& job, const model::Step& step,
         "; Hill's determinant is cut after {} harmonics: with {} the growth rates at {} speed{} of "
         "largest growth change by {:.1g} 1/s",
         cut.harmonics, cut.harmonics + 2, cut.speeds, cut.speeds == 1 ? "" : "s", cut.change);
-    in_short += fmt::format("; Hill with {} harmonics, growth right to {:.1g} 1/s", cut.harmonics,
-                            cut.change);
+    in_short += fmt::format("; Hill with {} harmonics, ", cut.harmonics) +
+                (cut.change > 0.0 ? fmt::format("growth right to {:.1g} 1/s", cut.change)
+                                  : "growth the same with two more");
     io::Value& v = s.summary()["certificate"];
     v["harmonics"] = cut.harmonics;
     v["change of growth with two more [1/s]"] = cut.change;

@@ -71,6 +71,7 @@ class MapResults {
   double onset_rpm(std::size_t k) const {
     return at_once(k) || never(k) ? nan : to_rpm(map_.onset[k]);
   }
+  std::string remark(std::size_t k) const;
   plot::Series edge() const;
   void add_heat(plot::Axes& a) const;
 
@@ -115,10 +116,7 @@ void MapResults::add_onset_table() {
   io::Value& v = s_.summary()["map"];
   v = io::Value::array();
   for (std::size_t k = 0; k < values_.number.size(); ++k) {
-    t.add({values_.number[k], onset_rpm(k), to_hz(map_.frequency[k]),
-           std::string(at_once(k) ? "unstable at all speeds from the first"
-                       : never(k) ? "stable at all speeds"
-                                  : "")});
+    t.add({values_.number[k], onset_rpm(k), to_hz(map_.frequency[k]), remark(k)});
     io::Value e = io::Value::object();
     e[law_.parameter] = law_.values[k];
     e["onset [rpm]"] = onset_rpm(k);
@@ -140,6 +138,15 @@ void MapResults::add_rate_table() {
     t.add(std::move(row));
   }
   s_.add_table("map", std::move(t), false);
+}
+
+std::string MapResults::remark(std::size_t k) const {
+  const std::string what = at_once(k)        ? "unstable at all speeds from the first"
+                           : never(k)        ? "stable at all speeds"
+                           : !map_.placed[k] ? "grows there; where that begins is not known"
+                                             : "";
+  if (map_.certain[k]) return what;
+  return what + (what.empty() ? "" : "; ") + "not certified at all speeds";
 }
 
 plot::Series MapResults::edge() const {

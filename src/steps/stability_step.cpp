@@ -55,27 +55,41 @@ io::Table verdict_table(const analysis::StabilityResult& r) {
   return t;
 }
 
-/// "stable from .. to .. rpm", "instability above .."; and on what authority.
-std::string verdict_line(const analysis::StabilityResult& r, const std::vector<double>& speeds) {
+std::string growth_text(const analysis::SpeedVerdict& v) {
+  return v.diverging > 0 && v.whirling == 0
+             ? fmt::format("a motion diverges at {:.4g} 1/s", v.fastest)
+             : fmt::format("growth {:.4g} 1/s", v.fastest);
+}
+
+std::string onset_text(const analysis::Onset& x) {
+  const std::string what = x.divergence()
+                               ? "diverging without whirl"
+                               : fmt::format("whirling at {:.5g} Hz", to_hz(x.frequency));
+  if (!x.begins)
+    return fmt::format("growth beyond rounding above {:.6g} rpm, {}", to_rpm(x.speed), what);
+  return fmt::format("instability above {:.8g} rpm, {}", to_rpm(x.speed), what);
+}
+
+/// "stable from .. to .. rpm", "instability above ..". Stable is what is certified only.
+std::string finding(const analysis::StabilityResult& r) {
+  const analysis::SpeedVerdict &first = r.verdicts.front(), &last = r.verdicts.back();
+  if (const auto seen = r.unannounced())
+    return fmt::format("unstable at {:.6g} rpm (growth {:.4g} 1/s): where that begins is not known",
+                       to_rpm(seen->speed), seen->growth);
   std::string line;
-  const analysis::SpeedVerdict& first = r.verdicts.front();
   if (!r.stable_at_start)
-    line = fmt::format("unstable at {:.6g} rpm already ({})", to_rpm(speeds.front()),
-                       first.diverging > 0
-                           ? fmt::format("a motion diverges at {:.4g} 1/s", first.fastest)
-                           : fmt::format("growth {:.4g} 1/s", first.fastest));
-  else if (r.onsets.empty())
-    line = fmt::format("stable from {:.6g} to {:.6g} rpm", to_rpm(speeds.front()),
-                       to_rpm(speeds.back()));
-  for (const analysis::Onset& x : r.onsets) {
-    if (!x.gains) continue;
-    const std::string what = x.divergence()
-                                 ? "diverging without whirl"
-                                 : fmt::format("whirling at {:.5g} Hz", to_hz(x.frequency));
-    line += fmt::format("{}instability above {:.8g} rpm, {}", line.empty() ? "" : "; ",
-                        to_rpm(x.speed), what);
-    break;
-  }
+    line =
+        fmt::format("unstable at {:.6g} rpm already ({})", to_rpm(first.speed), growth_text(first));
+  for (const analysis::Onset& x : r.onsets)
+    if (x.gains) return line + (line.empty() ? "" : "; ") + onset_text(x);
+  if (!line.empty()) return line;
+  return fmt::format("{} from {:.6g} to {:.6g} rpm", r.certain() ? "stable" : "no growth found",
+                     to_rpm(first.speed), to_rpm(last.speed));
+}
+
+/// What was found, and on what authority.
+std::string verdict_line(const analysis::StabilityResult& r) {
+  const std::string line = finding(r);
   const analysis::SpectrumCertificate& c = weakest(r).certificate;
   if (r.certain() && c.axis)
     return line +
@@ -114,6 +128,12 @@ void report_mesh(results::FrequencyStep& s, int modes, double Omega) {
   accuracy.report();
 }
 
+std::string beyond_text(const analysis::Onset& x) {
+  if (!x.begins) return x.gains ? "grows beyond rounding" : "within rounding again";
+  if (x.divergence()) return x.gains ? "diverges" : "no longer diverges";
+  return x.gains ? "unstable" : "stable again";
+}
+
 void add_onsets(results::FrequencyStep& s, const analysis::StabilityResult& r) {
   io::Table table;
   table.title = "Onset of instability";
@@ -124,18 +144,25 @@ void add_onsets(results::FrequencyStep& s, const analysis::StabilityResult& r) {
   list = io::Value::array();
   for (const analysis::Onset& x : r.onsets) {
     table.add({to_rpm(x.speed), to_hz(x.frequency), x.ratio(), std::string(to_string(x.mode.kind)),
-               results::direction_text(x.mode),
-               x.divergence() ? (x.gains ? "diverges" : "no longer diverges")
-               : x.gains      ? "unstable"
-                              : "stable again"});
+               results::direction_text(x.mode), beyond_text(x)});
     io::Value e = io::Value::object();
     e["speed [rpm]"] = to_rpm(x.speed);
     e["whirl frequency [Hz]"] = to_hz(x.frequency);
     e["becomes unstable"] = x.gains;
     e["divergence"] = x.divergence();
+    e["growth begins there"] = x.begins;
     list.push(std::move(e));
   }
   s.add_table("onset", std::move(table));
+  io::Value& unplaced = s.summary()["growth of unknown onset"];
+  unplaced = io::Value::array();
+  for (const analysis::Unplaced& u : r.unplaced) {
+    io::Value e = io::Value::object();
+    e["seen at [rpm]"] = to_rpm(u.speed);
+    e["whirl frequency [Hz]"] = to_hz(u.frequency);
+    e["growth [1/s]"] = u.growth;
+    unplaced.push(std::move(e));
+  }
 }
 
 void add_rates(results::FrequencyStep& s, const analysis::StabilityResult& r,
@@ -213,7 +240,7 @@ void run_stability_step(run::Job& job, const model::Step& step, const model::Sta
   add_onsets(s, r);
   add_rates(s, r, lines);
   add_figures(s, r, lines);
-  std::string line = verdict_line(r, speeds);
+  std::string line = verdict_line(r);
   if (law.map) line += add_stability_map(s, *law.map, o);
   s.section.text = results::capital(line) + "." + neutral_text(r);
   s.finish(line);

@@ -219,7 +219,7 @@ class SpeedSweep {
   bool judges_ = true;  ///< false: controllers decide whether some are stable
   std::size_t found_ = 0;
   results::StaticAccuracy accuracy_;  ///< the largest error
-  int mesh_judged_ = 0;
+  int mesh_judged_ = 0, mesh_not_judged_ = 0;
   std::string missing_;  ///< speeds without an equilibrium
   std::optional<Error> first_error_;
 };
@@ -242,15 +242,23 @@ void SpeedSweep::take(double Omega) {
 void SpeedSweep::judge_mesh(double Omega, const run::StepState& state) {
   if (Omega != speeds_.front() && Omega != speeds_.back() && Omega != speeds_[speeds_.size() / 2])
     return;
+  if (!results::has_deflections(job_, state)) return;
   const auto accuracy = results::static_mesh_error(job_, step_.name, state);
-  if (!accuracy) return;
+  if (!accuracy) {
+    ++mesh_not_judged_;
+    return;
+  }
   ++mesh_judged_;
   if (accuracy_.shaft.empty() || accuracy->error > accuracy_.error) accuracy_ = *accuracy;
 }
 
 void SpeedSweep::report_mesh() {
-  if (mesh_judged_ == 0) return;
-  const std::string said = results::report_static_accuracy(job_, step_.name, accuracy_);
+  if (mesh_judged_ + mesh_not_judged_ == 0) return;
+  std::string said = mesh_judged_ > 0 ? results::report_static_accuracy(job_, step_.name, accuracy_)
+                                      : results::report_no_static_accuracy(job_, step_.name);
+  if (mesh_judged_ > 0 && mesh_not_judged_ > 0)
+    said +=
+        fmt::format(", at {} of {} speeds judged", mesh_judged_, mesh_judged_ + mesh_not_judged_);
   s_.summary()["mesh"]["judged at speeds"] = mesh_judged_;
   s_.claim(said);
   s_.section.text += " " + results::capital(said) + ".";

@@ -235,7 +235,6 @@ void StaticRun::judge() {
 void StaticRun::judge_mesh() {
   if (!results::has_deflections(job_, state_)) return;
   const auto accuracy = results::static_mesh_error(job_, step_.name, state_, load_);
-  if (!accuracy && !path_) return;
   std::string said = accuracy ? results::report_static_accuracy(job_, step_.name, *accuracy)
                               : results::report_no_static_accuracy(job_, step_.name);
   if (path_) said += fmt::format(", at load factor {:.6g}", load_);

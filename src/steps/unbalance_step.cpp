@@ -273,7 +273,7 @@ class BothMeshes {
     for (const auto& order : fine_.at(Omega, false).probe)
       for (const analysis::PointAmplitude& a : order)
         largest = std::max(largest, a.orbit().major);
-    return 4.0 / 3.0 * std::abs(largest / amplitude - 1.0);
+    return meshes::error_of_change * std::abs(largest / amplitude - 1.0);
   }
 
  private:
@@ -332,8 +332,8 @@ std::vector<results::PeakError> judge_amplitudes(results::FrequencyStep& s,
     if (peaks.empty())
       accuracy.add(meshes.error_at(largest.speed, largest.amplitude),
                    fmt::format("the largest response, at {:.6g} rpm", to_rpm(largest.speed)));
-  } catch (const Error&) {
-    accuracy.add(nan, {});
+  } catch (const Error&) {  // no equilibrium of the finer mesh, or no factorisation
+    if (peaks.empty()) accuracy.add(nan, {});
   }
   for (std::size_t k = 0; k < peaks.size(); ++k)
     accuracy.add(out[k].amplitude,
@@ -484,9 +484,8 @@ void say_opposed_unbalances(results::FrequencyStep& s) {
       if (m.shafts[a].speed_ratio != -m.shafts[b].speed_ratio) continue;
       const std::string said = fmt::format(
           "unbalances of shafts '{}' and '{}', which turn against each other at one speed, act "
-          "together at the phases given; unless something keeps the shafts in step, they may meet "
-          "at "
-          "any other",
+          "together at the phases given; unless something keeps the shafts in step, they may "
+          "meet at any other",
           m.shafts[b].name, m.shafts[a].name);
       s.summary()["assumed"].push(said);
       s.section.text += "\n\n" + results::capital(said) + ".";

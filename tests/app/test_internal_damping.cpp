@@ -154,5 +154,5 @@ speed = { start = "200 rpm", stop = "8724.2 rpm", points = 4 }
 )");
   ASSERT_EQ(d.exit, 0) << d.log;
   EXPECT_TRUE(d.says("complete")) << d.log;
-  EXPECT_TRUE(d.says("stable from 200")) << d.log;
+  EXPECT_TRUE(d.says("no growth found from 200")) << d.log;
 }

@@ -195,3 +195,50 @@ TEST(NaturalDecks, AnAxisMayBeOfAnyLength) {
   EXPECT_EQ(huge.csv("m_modes.csv").last().at("frequency [Hz]"),
             plain.csv("m_modes.csv").last().at("frequency [Hz]"));
 }
+
+namespace {
+
+/// A rigid rotor on two bearings alike, whose stiffness along y falls through zero at 6000 rpm.
+std::string softening(double mass, double stiffness, double damping, int points,
+                      const std::string& rest = "") {
+  const std::string law = fmt::format(
+      "type = \"table\"\ninterpolation = \"linear\"\ncolumns = [\"speed[rpm]\", \"kyy[N/m]\", "
+      "\"kzz[N/m]\", \"cyy[N.s/m]\", \"czz[N.s/m]\"]\nrows = [[0, {0}, {1}, {2}, {2}], [12000, "
+      "-{0}, {1}, {2}, {2}]]\n",
+      stiffness, 2 * stiffness, damping);
+  return fmt::format(
+             "format = 1\n[output]\nreport = false\n[model]\ngravity = \"0 "
+             "m/s^2\"\n[[shaft]]\nname "
+             "= \"s\"\n[[shaft.section]]\nname = \"a\"\nlength = \"0.6 m\"\nrigid = "
+             "true\n[[disk]]\nat = \"0.3 m\"\nmass = \"{} kg\"\nIp = \"1e-6 kg.m^2\"\nId = \"0.3 "
+             "kg.m^2\"\n[[bearing]]\nat = \"0 m\"\n",
+             mass) +
+         law + "[[bearing]]\nat = \"0.6 m\"\n" + law + linear("0 m", "kxx = \"1e6 N/m\"\n") +
+         fmt::format(
+             "[[step]]\nname = \"st\"\ntype = \"stability\"\nspeed = {{ stop = \"12000 "
+             "rpm\", points = {} }}\n{}",
+             points, rest);
+}
+
+}  // namespace
+
+// Bounce and tilt along y lose their stiffness at 6000 rpm both. A light rotor on stiff bearings parts
+// from zero so fast that its divergence was taken for growth that has no onset, and called stable.
+TEST(NaturalDecks, DivergenceBeginsWhereTheStiffnessEnds) {
+  for (const double mass : {0.05, 12.0})
+    for (const double stiffness : {1e5, 1e7, 1e9})
+      for (const double ratio : {0.0, 1e-3, 3.0})
+        for (const int points : {3, 6, 13}) {
+          const DeckRun run(
+              softening(mass, stiffness, ratio * std::sqrt(stiffness * mass), points));
+          const std::string what =
+              fmt::format("{} kg, {} N/m, damping {}: {}", mass, stiffness, ratio, run.log);
+          ASSERT_EQ(run.exit, 0) << what;
+          EXPECT_TRUE(run.says("instability above 6000 rpm, diverging without whirl")) << what;
+          const Columns onsets = run.csv("st_onset.csv");
+          ASSERT_EQ(onsets.rows.size(), 2u) << what;
+          for (const auto& row : onsets.rows)
+            EXPECT_NEAR(row[onsets.column("speed [rpm]")], 6000, 1e-5) << what;
+          EXPECT_EQ(run.csv("st_verdicts.csv").last().at("diverging motions [-]"), 2) << what;
+        }
+}

@@ -46,6 +46,11 @@ bool GrowthBound::positive_stiffness(double w) {
          real_.negative_eigenvalues() == 0;
 }
 
+std::optional<Index> GrowthBound::modes_below(double w) {
+  if (real_.factor(parts_, -w * w, 0.0, 1.0) != la::Status::ok) return std::nullopt;
+  return real_.negative_eigenvalues();
+}
+
 bool GrowthBound::positive_damping(double w, double eta) {
   return real_.factor(parts_, eta * w, 1.0, eta / w) == la::Status::ok &&
          real_.negative_eigenvalues() == 0;

@@ -35,6 +35,8 @@ class GrowthBound {
   /// The least of w, 2 w, 4 w, .. up to w_max (rad/s) at which the three hold with a ratio of at
   /// most 1e-5; nullopt: at none of them.
   std::optional<Quiet> first(const la::MCK& m, double w, double w_max);
+  /// Of the conservative part of the matrices last given to first(); nullopt: not counted.
+  std::optional<Index> modes_below(double w);
 
  private:
   void split(const la::MCK& m);

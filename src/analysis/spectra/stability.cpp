@@ -12,11 +12,12 @@ namespace whirl::analysis {
 
 namespace {
 
-/// Of frequency and speed: what two frequencies that merge grow by within 1e-10 of where they do is
-/// its square root.
+/// Relative width of the bracket in which a change of the number of growing roots is isolated.
+constexpr double no_width = 1e-10;
+/// Relative distance within which onsets of roots next to zero are rounding's.
+constexpr double near_by = 1e-7;
+/// Of frequency and speed: two frequencies that merge grow like the square root of the bracket.
 constexpr double axis_width = 2e-5;
-/// Of the speed: the same of two real roots that part from zero as a square root.
-constexpr double zero_width = 1e-4;
 
 ModesOptions mode_options(const StabilityOptions& o) {
   ModesOptions m;
@@ -58,9 +59,47 @@ SpeedVerdict verdict_of(double speed, const std::vector<WhirlMode>& modes,
     }
     if (m.growth() <= 0) continue;
     ++(m.oscillates() ? v.whirling : v.diverging);
+    v.growing += m.lambda.imag() != 0.0 ? 2 : 1;
     v.fastest = std::max(v.fastest, m.lambda.real());
   }
   return v;
+}
+
+/// Modes that grow at one end of a bracket and have nothing that grows at the other to continue: what
+/// is left when each root there has taken the nearest one here.
+struct Parted {
+  WhirlMode mode;
+  bool one_of_pair = false;  ///< a real root there is continued by the other of the pair
+};
+std::vector<Parted> parted(const std::vector<WhirlMode>& here,
+                           const std::vector<WhirlMode>& there) {
+  struct Root {
+    Complex s;
+    std::size_t mode;
+  };
+  const auto growing_roots = [](const std::vector<WhirlMode>& modes) {
+    std::vector<Root> roots;
+    for (std::size_t k = 0; k < modes.size(); ++k) {
+      if (modes[k].growth() <= 0) continue;
+      roots.push_back({modes[k].lambda, k});
+      if (modes[k].lambda.imag() != 0.0) roots.push_back({std::conj(modes[k].lambda), k});
+    }
+    return roots;
+  };
+  std::vector<Root> left = growing_roots(here);
+  for (const Root& r : growing_roots(there)) {
+    const auto nearest = std::min_element(
+        left.begin(), left.end(),
+        [&r](const Root& a, const Root& b) { return std::abs(a.s - r.s) < std::abs(b.s - r.s); });
+    if (nearest != left.end()) left.erase(nearest);
+  }
+  std::vector<Parted> fresh;
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    const auto roots =
+        std::count_if(left.begin(), left.end(), [k](const Root& r) { return r.mode == k; });
+    if (roots > 0) fresh.push_back({here[k], roots == 1 && here[k].lambda.imag() != 0.0});
+  }
+  return fresh;
 }
 
 /// A search for onsets on its way over the speed.
@@ -96,6 +135,7 @@ class Sweep {
 
   std::vector<Onset> onsets;
   std::vector<SpeedVerdict> verdicts;
+  std::vector<Unplaced> unplaced;
   ModeTracker& tracker() { return tracker_; }
 
  private:
@@ -152,7 +192,7 @@ class Sweep {
     p.crossing.reset();
     if (const auto root =
             find_on_mode(follower_, p.from, step.before, p.to, step.now, rate, options_.tolerance))
-      onsets.push_back({root->speed, root->mode.frequency, gains, root->mode});
+      onsets.push_back({root->speed, root->mode.frequency, gains, root->mode, true});
   }
 
   /// Onsets between two speeds that the modes followed do not account for are isolated by the
@@ -160,15 +200,14 @@ class Sweep {
   /// is no onset: both grow before and after.
   void account(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb,
                std::size_t first_onset) {
-    Index change = growing(vb) - growing(va) + deferred_;
+    Index change = vb.growing - va.growing + deferred_;
     for (std::size_t k = first_onset; k < onsets.size(); ++k)
       change -= onsets[k].gains ? 2 : -2;
     if (change == 0) return;
     onsets.resize(first_onset);
     isolate(a, b, va, vb);
+    settle();
   }
-
-  static Index growing(const SpeedVerdict& v) { return 2 * v.whirling + v.diverging; }
 
   SpeedVerdict look_at(double speed) {
     modes_there_ = fresh_.solve(speed);
@@ -176,31 +215,118 @@ class Sweep {
   }
 
   void isolate(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb) {
-    if (growing(va) == growing(vb)) return;
-    if (std::abs(b - a) <= 1e-10 * std::max(std::abs(a), std::abs(b)))
-      return add_isolated(a, b, va, vb);
+    if (va.growing == vb.growing) return;
+    const double least = 1e-6 * std::abs(track_.ahead.back() - track_.ahead.front());
+    const double size = std::max({std::abs(a), std::abs(b), least});
+    if (std::abs(b - a) <= no_width * size) return add_isolated(a, b, va, vb);
     const double middle = 0.5 * (a + b);
     const SpeedVerdict vm = look_at(middle);
     isolate(a, middle, va, vm);
     isolate(middle, b, vm, vb);
   }
 
-  /// The root that crosses in a bracket of no width: the one nearest to the axis at the end at
-  /// which more grow. Far from the axis none has crossed: growing roots came into the list from
-  /// beyond it, where growth is not excluded, or two real ones became a pair.
+  /// The roots that grow at one end of a bracket of no width only. Where both ends account for all
+  /// that grows they crossed in it; else they may have come into the list from beyond it, growing.
   void add_isolated(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb) {
-    const bool gains = growing(vb) > growing(va);
-    look_at(gains ? b : a);
-    const WhirlMode* nearest = nullptr;
-    for (const WhirlMode& m : modes_there_)
-      if (m.growth() > 0 && (!nearest || m.lambda.real() < nearest->lambda.real())) nearest = &m;
-    if (!nearest) return;
-    const double speed = std::max(std::abs(a), std::abs(b));
-    const double width = nearest->frequency == 0.0
-                             ? zero_width * speed
-                             : axis_width * std::max(nearest->frequency, speed);
-    if (nearest->lambda.real() <= width)
-      onsets.push_back({0.5 * (a + b), nearest->frequency, gains, *nearest});
+    const bool gains = vb.growing > va.growing;
+    const double few = gains ? a : b, many = gains ? b : a;
+    look_at(few);
+    const std::vector<WhirlMode> there = modes_there_;
+    look_at(many);
+    const std::vector<Parted> fresh = parted(modes_there_, there);
+    const bool all = va.certificate.stability_certain() && vb.certificate.stability_certain();
+    const double at = 0.5 * (a + b);
+    onsets.erase(std::remove_if(onsets.begin(), onsets.end(),
+                                [&](const Onset& o) {
+                                  return o.gains == gains &&
+                                         std::abs(o.speed - at) <= 10 * no_width * std::abs(at);
+                                }),
+                 onsets.end());
+    for (const Parted& p : fresh) {
+      const WhirlMode& m = p.mode;
+      const double frequency = p.one_of_pair ? 0.0 : m.frequency;
+      if (grows_within_rounding(m, there))
+        add_slow(p, few, many, gains);
+      else if (all || starts_at_the_axis(m, few, many))
+        onsets.push_back({at, frequency, gains, m, true});
+      else if (gains)
+        unplaced.push_back({many, m.frequency, m.lambda.real()});
+    }
+  }
+
+  /// Its growth is there on the other side as well, but not told from rounding.
+  static bool grows_within_rounding(const WhirlMode& m, const std::vector<WhirlMode>& there) {
+    const double rate = m.lambda.real();
+    return std::any_of(there.begin(), there.end(), [&](const WhirlMode& w) {
+      return w.growth() == 0 && w.lambda.real() > 0.5 * rate &&
+             std::abs(w.lambda - m.lambda) < rate;
+    });
+  }
+
+  /// What leaves the band of rounding at `many`: it crosses the axis a little beyond `few`, or grows
+  /// there as well.
+  void add_slow(const Parted& p, double few, double many, bool gains) {
+    const WhirlMode& m = p.mode;
+    const bool real = p.one_of_pair || m.frequency == 0.0;
+    const auto rate = [](double, const WhirlMode& x) { return x.lambda.real(); };
+    const double away = (few > many ? 1.0 : -1.0) * std::abs(few);
+    for (const double share : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
+      const double beyond = few + share * away;
+      const auto there = follower_.follow(beyond, m);
+      if (!there || there->lambda.real() >= 0.0) continue;
+      const auto root = find_on_mode(follower_, beyond, *there, many, m, rate, options_.tolerance);
+      if (root)
+        onsets.push_back({root->speed, real ? 0.0 : root->mode.frequency, gains, root->mode, true});
+      else
+        onsets.push_back({many, real ? 0.0 : m.frequency, gains, m, true});
+      return;
+    }
+    onsets.push_back({many, real ? 0.0 : m.frequency, gains, m, false});
+  }
+
+  /// Onsets against each other so near that the matrices' rounding parts them are what is left of
+  /// them.
+  void settle() {
+    std::sort(onsets.begin(), onsets.end(),
+              [](const Onset& x, const Onset& y) { return x.speed < y.speed; });
+    for (std::size_t k = 0; k < onsets.size();) {
+      const double width = near_by * std::abs(onsets[k].speed);
+      std::size_t end = k + 1;
+      bool opposed = false;
+      for (; end < onsets.size() && onsets[end].speed - onsets[end - 1].speed <= width; ++end)
+        opposed = opposed || onsets[end].gains != onsets[k].gains;
+      if (!opposed) {
+        k = end;
+        continue;
+      }
+      const double low = onsets[k].speed - width, high = onsets[end - 1].speed + width;
+      onsets.erase(onsets.begin() + static_cast<std::ptrdiff_t>(k),
+                   onsets.begin() + static_cast<std::ptrdiff_t>(end));
+      const SpeedVerdict at_low = look_at(low), at_high = look_at(high);
+      if (at_low.growing == at_high.growing) continue;
+      const std::size_t before = onsets.size();
+      add_isolated(low, high, at_low, at_high);
+      const auto added = onsets.begin() + static_cast<std::ptrdiff_t>(before);
+      std::rotate(onsets.begin() + static_cast<std::ptrdiff_t>(k), added, onsets.end());
+      k += onsets.size() - before;
+    }
+  }
+
+  /// Within rounding and what merging frequencies grow by in the bracket; or growing with the
+  /// distance from it, be it as its square root.
+  bool starts_at_the_axis(const WhirlMode& m, double few, double many) {
+    const double rate = m.lambda.real();
+    if (rate <= std::max(axis_width * std::max(m.frequency, std::abs(many)), 4 * m.rounding))
+      return true;
+    look_at(many + 100 * (many - few));
+    double nearest = infinity, further = 0;
+    for (const WhirlMode& w : modes_there_) {
+      const double away = std::abs(w.lambda - m.lambda);
+      if (w.growth() <= 0 || away >= nearest) continue;
+      nearest = away;
+      further = w.lambda.real();
+    }
+    return rate <= 0.5 * further;
   }
 
   /// A growth ratio that bends towards zero between three speeds is looked at where the parabola
@@ -246,6 +372,7 @@ class Sweep {
                        &above = verdicts[late ? n - 1 : n - 2];
     isolate(below.speed, speed, below, peak);
     isolate(speed, above.speed, peak, above);
+    settle();
   }
 
   StabilityOptions options_;
@@ -276,23 +403,36 @@ StabilityResult sweep(
       if (m.now.oscillates()) oscillating.push_back(m);
     recorder.take(k, oscillating, search.tracker().lines());
     if (each) each(k, oscillating);
-    if (!each && !o.all && !search.onsets.empty()) break;
+    const bool found = !search.onsets.empty() || !search.unplaced.empty();
+    if (!each && !o.all && found) break;
   }
   out.verdicts = std::move(search.verdicts);
   out.stable_at_start = out.verdicts.front().stable();
   out.onsets = std::move(search.onsets);
+  out.unplaced = std::move(search.unplaced);
   out.diagram = recorder.finish(search.tracker().speeds_solved());
   std::sort(out.onsets.begin(), out.onsets.end(),
             [](const Onset& a, const Onset& b) { return a.speed < b.speed; });
-  const auto same = [](const Onset& a, const Onset& b) {
-    return a.gains == b.gains && std::abs(a.speed - b.speed) <= 1e-9 * std::abs(b.speed) &&
-           std::abs(a.frequency - b.frequency) <= 1e-6 * b.frequency;
-  };
-  out.onsets.erase(std::unique(out.onsets.begin(), out.onsets.end(), same), out.onsets.end());
   return out;
 }
 
 }  // namespace
+
+std::optional<Unplaced> StabilityResult::unannounced() const {
+  if (!stable_at_start) return std::nullopt;
+  double limit = infinity;
+  for (const Onset& o : onsets)
+    if (o.gains) limit = std::min(limit, o.speed);
+  std::optional<Unplaced> first;
+  const auto take = [&](const Unplaced& seen) {
+    if (seen.speed < limit && (!first || seen.speed < first->speed)) first = seen;
+  };
+  for (const SpeedVerdict& v : verdicts)
+    if (!v.stable()) take({v.speed, nan, v.fastest});
+  for (const Unplaced& u : unplaced)
+    take(u);
+  return first;
+}
 
 StabilityResult find_instability(Linearizer& linear, const StabilityOptions& options) {
   return sweep(linear, options, {});
@@ -311,7 +451,7 @@ StabilityMap stability_map(const std::function<system::System(double)>& build,
   StabilityOptions one_thread = options;
   one_thread.threads = 1;
   std::mutex building;
-  std::vector<unsigned char> certain(count);
+  std::vector<unsigned char> certain(count), placed(count, true);
   run_side_by_side(count, options.threads, [&](std::size_t p) {
     const system::System system = [&] {
       const std::lock_guard lock(building);
@@ -332,6 +472,11 @@ StabilityMap stability_map(const std::function<system::System(double)>& build,
     map.least_log_decrement[p] = std::move(least);
     certain[p] = result.certain();
     map.onset[p] = result.stable_at_start ? nan : -infinity;
+    if (const auto seen = result.unannounced()) {
+      map.onset[p] = seen->speed;
+      placed[p] = false;
+      return;
+    }
     for (const Onset& o : result.onsets)
       if (o.gains && result.stable_at_start) {
         map.onset[p] = o.speed;
@@ -340,6 +485,7 @@ StabilityMap stability_map(const std::function<system::System(double)>& build,
       }
   });
   map.certain.assign(certain.begin(), certain.end());
+  map.placed.assign(placed.begin(), placed.end());
   return map;
 }
 

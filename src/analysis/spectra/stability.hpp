@@ -10,15 +10,17 @@
 // speed is bisected on that number. Between the speeds of the search a mode whose growth rate bends
 // towards zero is looked at where it comes nearest.
 #pragma once
-#include <algorithm>
 #include <analysis/spectra/campbell.hpp>
+
+#include <algorithm>
+#include <optional>
 
 namespace whirl::analysis {
 
 struct StabilityOptions {
   double min_speed = 0, max_speed = 0;  ///< rad/s
   Index grid = 40;                      ///< speeds of the search
-  std::vector<double> speeds;           ///< or these, monotonic
+  std::vector<double> speeds;           ///< or these, ascending
   Index modes = 12;                     ///< modes followed, of least frequency
   Motion motion = Motion::all;
   double tolerance = 1e-12;  ///< relative, of the speed
@@ -31,6 +33,9 @@ struct Onset {
   double frequency = 0;  ///< whirl frequency there, rad/s; 0: divergence
   bool gains = true;     ///< unstable above (true) or below (false) this speed
   WhirlMode mode;
+  /// False: it grows on both sides, on one by so little that rounding could be the cause (of what
+  /// nothing damps).
+  bool begins = true;
   double ratio() const { return frequency / speed; }  ///< whirl ratio
   bool divergence() const { return frequency == 0.0; }
 };
@@ -39,6 +44,7 @@ struct Onset {
 struct SpeedVerdict {
   double speed = 0;                   ///< rad/s
   Index whirling = 0, diverging = 0;  ///< growing roots: pairs that oscillate, real ones
+  Index growing = 0;                  ///< growing roots, two a pair
   double fastest = 0;                 ///< 1/s: largest growth rate; 0 where nothing grows
   Index neutral = 0;                  ///< pairs that oscillate, of a growth within rounding
   double neutral_within = 0;          ///< 1/s: the largest of these roundings
@@ -46,8 +52,16 @@ struct SpeedVerdict {
   bool stable() const { return whirling + diverging == 0; }
 };
 
+/// A motion that grows at a speed, of which it is not known where that begins: it came into the list
+/// growing, from frequencies beyond it.
+struct Unplaced {
+  double speed = 0;      ///< rad/s: where it was seen first
+  double frequency = 0;  ///< rad/s; nan: that of the verdict there
+  double growth = 0;     ///< 1/s
+};
+
 struct StabilityResult {
-  bool stable_at_start = true;         ///< at min_speed
+  bool stable_at_start = true;         ///< at the first speed
   std::vector<SpeedVerdict> verdicts;  ///< one a speed
   /// Every verdict accounts for all roots at all frequencies.
   bool certain() const {
@@ -60,7 +74,11 @@ struct StabilityResult {
                        [](const SpeedVerdict& v) { return v.certificate.complete(); });
   }
   std::vector<Onset> onsets;  ///< ascending
-  Campbell diagram;           ///< of the modes followed, at the speeds of the search
+  std::vector<Unplaced> unplaced;
+  /// Where stable at the first speed: the lowest at which something grows below every onset found.
+  /// "Stable" and "unstable above" may be said where there is none only.
+  std::optional<Unplaced> unannounced() const;
+  Campbell diagram;  ///< of the modes followed, at the speeds of the search
 };
 
 StabilityResult find_instability(Linearizer& linear, const StabilityOptions& options);
@@ -74,7 +92,10 @@ struct StabilityMap {
   /// [parameter]: first onset within the speeds, solved for, rad/s; nan: stable at all of them;
   /// -inf: unstable at the first one already.
   std::vector<double> onset;
-  std::vector<bool> certain;      ///< [parameter]: StabilityResult::certain()
+  std::vector<bool> certain;  ///< [parameter]: StabilityResult::certain()
+  /// [parameter]; false: the onset is where growth was seen first, not where it begins
+  /// (StabilityResult::unannounced).
+  std::vector<bool> placed;
   std::vector<double> frequency;  ///< of the whirl there, rad/s; nan without
 };
 StabilityMap stability_map(const std::function<system::System(double)>& build,

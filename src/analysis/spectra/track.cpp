@@ -136,16 +136,23 @@ const std::vector<TrackedMode>& ModeTracker::advance(double Omega, const Visit& 
   return modes_;
 }
 
-std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const WhirlMode& start_a,
-                                        double b, const WhirlMode& start_b,
-                                        const std::function<double(double, const WhirlMode&)>& g,
-                                        double tolerance) {
-  WHIRL_EXPECTS(a != b && tolerance > 0.0);
-  TrackedRoot lo{a, start_a}, hi{b, start_b};
-  double ga = g(a, start_a), gb = g(b, start_b);
-  if (ga == 0.0) return lo;
-  if (gb == 0.0) return hi;
-  if ((ga > 0) == (gb > 0)) return std::nullopt;
+namespace {
+
+using Measure = std::function<double(double, const WhirlMode&)>;
+
+/// Of what it has at the ends a measure leaves so much at its zero; more where one mode was taken for
+/// another on the way, which changes its sign by a jump.
+constexpr double left_at_zero = 1e-4;
+
+/// @pre g has not the same sign at both, and is zero at neither.
+std::optional<TrackedRoot> find_between(WhirlSolver& solver, TrackedRoot lo, TrackedRoot hi,
+                                        const Measure& g, double tolerance) {
+  const double a = lo.speed, b = hi.speed;
+  const double ga = g(a, lo.mode), gb = g(b, hi.mode);
+  const double zero = left_at_zero * std::max(std::abs(ga), std::abs(gb));
+  const auto checked = [zero](const TrackedRoot& root, double f) {
+    return std::abs(f) <= zero ? std::optional(root) : std::nullopt;
+  };
   const double enough = tolerance * std::max(std::abs(a), std::abs(b));
   // Trials come from the secant through the last two points, kept inside the bracket; a bisection
   // whenever the bracket has not shrunk to half in three trials.
@@ -173,17 +180,50 @@ std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const Whi
     f0 = f1;
     x1 = x;
     f1 = f;
-    if (f == 0.0 || step <= enough) return best;
+    if (f == 0.0 || step <= enough) return checked(best, f);
     if ((f > 0) == (ga > 0))
       lo = best;
     else
       hi = best;
     const double now = std::abs(hi.speed - lo.speed);
-    if (now <= enough) return best;
+    if (now <= enough) return checked(best, f);
     slow = now < 0.5 * width ? 0 : slow + 1;
     if (now < 0.5 * width) width = now;
   }
-  return best;
+  return checked(best, f1);
+}
+
+/// The mode of `from` followed in small steps to the one at which the measure changes its sign.
+std::optional<TrackedRoot> find_in_steps(WhirlSolver& solver, const TrackedRoot& from, double to,
+                                         const Measure& g, double tolerance) {
+  constexpr int steps = 32;
+  TrackedRoot last = from;
+  for (int k = 1; k <= steps; ++k) {
+    const double x = from.speed + (to - from.speed) * k / steps;
+    const auto mode = solver.follow(x, last.mode);
+    if (!mode) return std::nullopt;
+    const TrackedRoot next{x, *mode};
+    const double before = g(last.speed, last.mode), now = g(x, next.mode);
+    if (now == 0.0) return next;
+    if ((before > 0) != (now > 0)) return find_between(solver, last, next, g, tolerance);
+    last = next;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<TrackedRoot> find_on_mode(WhirlSolver& solver, double a, const WhirlMode& start_a,
+                                        double b, const WhirlMode& start_b, const Measure& g,
+                                        double tolerance) {
+  WHIRL_EXPECTS(a != b && tolerance > 0.0);
+  const TrackedRoot lo{a, start_a}, hi{b, start_b};
+  const double ga = g(a, start_a), gb = g(b, start_b);
+  if (ga == 0.0) return lo;
+  if (gb == 0.0) return hi;
+  if ((ga > 0) == (gb > 0)) return std::nullopt;
+  if (auto root = find_between(solver, lo, hi, g, tolerance)) return root;
+  return find_in_steps(solver, lo, b, g, tolerance);
 }
 
 }  // namespace whirl::analysis

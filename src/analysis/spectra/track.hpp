@@ -70,7 +70,8 @@ class ModeTracker {
 
 /// The speed between a and b at which g(Omega, lambda) of one followed mode is zero, to `tolerance`
 /// relative to the larger speed: secant safeguarded by bisection, with a mode solved for at each
-/// trial. start_a, start_b: the mode at both ends. nullopt: the mode was lost.
+/// trial. start_a, start_b: the mode at both ends. nullopt: the mode was lost, or
+/// another taken for it.
 struct TrackedRoot {
   double speed = 0;
   WhirlMode mode;

@@ -18,6 +18,9 @@ namespace {
 
 /// How far beyond the modes asked for the search goes on to where nothing can grow.
 constexpr double furthest_search = 16.0;
+/// And where so few modes lie that far, much further: stiff supports of light rotors.
+constexpr double search_of_few = 1024.0;
+constexpr Index few_modes = 64;
 constexpr double whirl_of_speed = 2.0;  ///< and at least to this multiple of the speed
 
 /// Entries of the matrices are sums of some dozen rounded terms, and the equilibrium they are taken
@@ -452,6 +455,20 @@ void WhirlSolver::count_hysteretic(double Omega) {
   certificate_.open.clear();
 }
 
+/// Where nothing grows any more, no further than can be searched.
+std::optional<GrowthBound::Quiet> WhirlSolver::quiet_above(const la::MCK& m, double reached) {
+  const double near = furthest_search * reached;
+  if (const auto quiet = bound_->first(m, reached, near)) return quiet;
+  const auto few_below = [this](double w) {
+    const auto modes = bound_->modes_below(w);
+    return modes && *modes <= few_modes;
+  };
+  if (!few_below(2.0 * near)) return std::nullopt;
+  const auto quiet = bound_->first(m, 2.0 * near, search_of_few * reached);
+  if (!quiet || !few_below(quiet->above)) return std::nullopt;
+  return quiet;
+}
+
 const std::vector<la::Mode>& WhirlSolver::judged(const la::MCK& m, double Omega,
                                                  SpectrumCertificate& known) {
   const std::vector<la::Mode>* modes = &solver_.solve(m);
@@ -459,7 +476,7 @@ const std::vector<la::Mode>& WhirlSolver::judged(const la::MCK& m, double Omega,
   if (!options_.judge || !options_.damped) return *modes;
   if (!bound_) bound_.emplace(linear_.system().pattern(), motion_.active());
   const double reached = known.list.radius;
-  const auto quiet = bound_->first(m, reached, furthest_search * reached);
+  const auto quiet = quiet_above(m, reached);
   if (quiet) {
     known.quiet_above = quiet->above;
     known.quiet_ratio = quiet->ratio;

@@ -156,6 +156,7 @@ class WhirlSolver {
   /// damping at their mean rate.
   void separate(double Omega, std::vector<la::Mode>& group);
   void solve_counted(double Omega);
+  std::optional<GrowthBound::Quiet> quiet_above(const la::MCK& m, double reached);
   /// Modes with one set of matrices and, where stability is judged, all that grows.
   const std::vector<la::Mode>& judged(const la::MCK& m, double Omega, SpectrumCertificate& known);
   /// Growing roots on supports that answer by frequency. rest: what is known of the roots with the
