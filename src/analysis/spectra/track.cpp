@@ -140,9 +140,11 @@ namespace {
 
 using Measure = std::function<double(double, const WhirlMode&)>;
 
-/// Of what it has at the ends a measure leaves so much at its zero; more where one mode was taken for
-/// another on the way, which changes its sign by a jump.
+/// Of what it has at the ends a measure leaves so much at its zero; more where it jumps: growth by
+/// hysteretic damping at the speed of the spin, where the frequency does not, or one mode taken for
+/// another on the way, where it does.
 constexpr double left_at_zero = 1e-4;
+constexpr double one_frequency = 1e-6;
 
 /// @pre g has not the same sign at both, and is zero at neither.
 std::optional<TrackedRoot> find_between(WhirlSolver& solver, TrackedRoot lo, TrackedRoot hi,
@@ -150,8 +152,10 @@ std::optional<TrackedRoot> find_between(WhirlSolver& solver, TrackedRoot lo, Tra
   const double a = lo.speed, b = hi.speed;
   const double ga = g(a, lo.mode), gb = g(b, hi.mode);
   const double zero = left_at_zero * std::max(std::abs(ga), std::abs(gb));
-  const auto checked = [zero](const TrackedRoot& root, double f) {
-    return std::abs(f) <= zero ? std::optional(root) : std::nullopt;
+  const auto checked = [&](const TrackedRoot& root, double f) {
+    const double apart = std::abs(lo.mode.lambda.imag() - hi.mode.lambda.imag());
+    const bool found = std::abs(f) <= zero || apart <= one_frequency * std::abs(root.mode.lambda);
+    return found ? std::optional(root) : std::nullopt;
   };
   const double enough = tolerance * std::max(std::abs(a), std::abs(b));
   // Trials come from the secant through the last two points, kept inside the bracket; a bisection
@@ -180,11 +184,12 @@ std::optional<TrackedRoot> find_between(WhirlSolver& solver, TrackedRoot lo, Tra
     f0 = f1;
     x1 = x;
     f1 = f;
-    if (f == 0.0 || step <= enough) return checked(best, f);
+    if (f == 0.0) return best;
     if ((f > 0) == (ga > 0))
       lo = best;
     else
       hi = best;
+    if (step <= enough) return checked(best, f);
     const double now = std::abs(hi.speed - lo.speed);
     if (now <= enough) return checked(best, f);
     slow = now < 0.5 * width ? 0 : slow + 1;
