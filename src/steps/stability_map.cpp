@@ -120,6 +120,8 @@ void MapResults::add_onset_table() {
     io::Value e = io::Value::object();
     e[law_.parameter] = law_.values[k];
     e["onset [rpm]"] = onset_rpm(k);
+    e["certified"] = static_cast<bool>(map_.certain[k]);
+    e["growth begins there"] = static_cast<bool>(map_.placed[k]);
     v.push(std::move(e));
   }
   s_.add_table("map_onset", std::move(t));
@@ -141,12 +143,13 @@ void MapResults::add_rate_table() {
 }
 
 std::string MapResults::remark(std::size_t k) const {
-  const std::string what = at_once(k)        ? "unstable at all speeds from the first"
-                           : never(k)        ? "stable at all speeds"
-                           : !map_.placed[k] ? "grows there; where that begins is not known"
-                                             : "";
+  const std::string what =
+      at_once(k) ? "unstable at all speeds from the first"
+      : never(k) ? (map_.certain[k] ? "stable at all speeds" : "no growth found at any speed")
+      : !map_.placed[k] ? "grows there; where that begins is not known"
+                        : "";
   if (map_.certain[k]) return what;
-  return what + (what.empty() ? "" : "; ") + "not certified at all speeds";
+  return what + (what.empty() ? "" : "; ") + "not certified";
 }
 
 plot::Series MapResults::edge() const {

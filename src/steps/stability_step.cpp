@@ -95,6 +95,9 @@ std::string verdict_line(const analysis::StabilityResult& r) {
     return line +
            fmt::format(" (certified at {} speeds: growing roots counted along the imaginary axis)",
                        r.verdicts.size());
+  if (r.certain() && r.growth_left() > 1e-8)
+    return line + fmt::format(" (certified at {} speeds, but growth below {:.0e} of its frequency)",
+                              r.verdicts.size(), r.growth_left());
   if (r.certain())
     return line +
            fmt::format(" (certified at {} speeds: all roots accounted for)", r.verdicts.size());

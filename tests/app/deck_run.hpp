@@ -113,11 +113,13 @@ struct DeckRun {
   bool says(const std::string& text) const { return log.find(text) != std::string::npos; }
 
  private:
+  /// Another one for each object: several of one test live at once.
   void make_folder() {
+    static int made = 0;
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder = std::filesystem::temp_directory_path() /
              ("whirl_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" +
-              std::to_string(::getpid()));
+              std::to_string(::getpid()) + "_" + std::to_string(made++));
     std::filesystem::create_directories(folder);
   }
   void run(const std::string& deck) {

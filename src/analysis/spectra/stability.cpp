@@ -1,9 +1,11 @@
+#include <analysis/spectra/onset_isolation.hpp>
 #include <analysis/spectra/stability.hpp>
 
 #include <core/parallel.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -11,13 +13,6 @@
 namespace whirl::analysis {
 
 namespace {
-
-/// Relative width of the bracket in which a change of the number of growing roots is isolated.
-constexpr double no_width = 1e-10;
-/// Relative distance within which onsets of roots next to zero are rounding's.
-constexpr double near_by = 1e-7;
-/// Of frequency and speed: two frequencies that merge grow like the square root of the bracket.
-constexpr double axis_width = 2e-5;
 
 ModesOptions mode_options(const StabilityOptions& o) {
   ModesOptions m;
@@ -47,61 +42,6 @@ TrackOptions track_options(const StabilityOptions& o) {
   return t;
 }
 
-SpeedVerdict verdict_of(double speed, const std::vector<WhirlMode>& modes,
-                        const SpectrumCertificate& certificate) {
-  SpeedVerdict v;
-  v.speed = speed;
-  v.certificate = certificate;
-  for (const WhirlMode& m : modes) {
-    if (m.oscillates() && m.growth() == 0) {
-      ++v.neutral;
-      v.neutral_within = std::max(v.neutral_within, m.rounding);
-    }
-    if (m.growth() <= 0) continue;
-    ++(m.oscillates() ? v.whirling : v.diverging);
-    v.growing += m.lambda.imag() != 0.0 ? 2 : 1;
-    v.fastest = std::max(v.fastest, m.lambda.real());
-  }
-  return v;
-}
-
-/// Modes that grow at one end of a bracket and have nothing that grows at the other to continue: what
-/// is left when each root there has taken the nearest one here.
-struct Parted {
-  WhirlMode mode;
-  bool one_of_pair = false;  ///< a real root there is continued by the other of the pair
-};
-std::vector<Parted> parted(const std::vector<WhirlMode>& here,
-                           const std::vector<WhirlMode>& there) {
-  struct Root {
-    Complex s;
-    std::size_t mode;
-  };
-  const auto growing_roots = [](const std::vector<WhirlMode>& modes) {
-    std::vector<Root> roots;
-    for (std::size_t k = 0; k < modes.size(); ++k) {
-      if (modes[k].growth() <= 0) continue;
-      roots.push_back({modes[k].lambda, k});
-      if (modes[k].lambda.imag() != 0.0) roots.push_back({std::conj(modes[k].lambda), k});
-    }
-    return roots;
-  };
-  std::vector<Root> left = growing_roots(here);
-  for (const Root& r : growing_roots(there)) {
-    const auto nearest = std::min_element(
-        left.begin(), left.end(),
-        [&r](const Root& a, const Root& b) { return std::abs(a.s - r.s) < std::abs(b.s - r.s); });
-    if (nearest != left.end()) left.erase(nearest);
-  }
-  std::vector<Parted> fresh;
-  for (std::size_t k = 0; k < here.size(); ++k) {
-    const auto roots =
-        std::count_if(left.begin(), left.end(), [k](const Root& r) { return r.mode == k; });
-    if (roots > 0) fresh.push_back({here[k], roots == 1 && here[k].lambda.imag() != 0.0});
-  }
-  return fresh;
-}
-
 /// A search for onsets on its way over the speed.
 class Sweep {
  public:
@@ -109,12 +49,11 @@ class Sweep {
       : options_(options),
         track_(track_options(options)),
         tracker_(linear, track_),
-        follower_(linear, track_.modes),
-        fresh_(linear, track_.modes) {}
+        isolation_(linear, track_.modes, track_.ahead.back() - track_.ahead.front(),
+                   options.tolerance) {}
 
   /// Goes on to a speed and finds the onsets on the way.
   const std::vector<TrackedMode>& advance(double speed) {
-    const double from = tracker_.speed();
     const std::size_t before = onsets.size();
     deferred_ = 0;
     const auto visit = [&](double a, double b, const std::vector<TrackedMode>& modes) {
@@ -126,9 +65,10 @@ class Sweep {
     now.reserve(modes.size());
     for (const TrackedMode& m : modes)
       now.push_back(m.now);
-    const SpeedVerdict verdict = verdict_of(speed, now, tracker_.certificate());
-    if (!verdicts.empty()) account(from, speed, verdicts.back(), verdict, before);
-    verdicts.push_back(verdict);
+    looks_.emplace_back(speed, std::move(now), tracker_.certificate());
+    if (looks_.size() > 3) looks_.pop_front();
+    verdicts.push_back(looks_.back().verdict);
+    if (looks_.size() > 1) account(looks_[looks_.size() - 2], looks_.back(), before);
     look_between(modes);
     return modes;
   }
@@ -190,143 +130,32 @@ class Sweep {
     const auto rate = [](double, const WhirlMode& w) { return w.lambda.real(); };
     const TrackedMode step = *p.crossing;
     p.crossing.reset();
-    if (const auto root =
-            find_on_mode(follower_, p.from, step.before, p.to, step.now, rate, options_.tolerance))
+    if (const auto root = find_on_mode(isolation_.follower(), p.from, step.before, p.to, step.now,
+                                       rate, options_.tolerance))
       onsets.push_back({root->speed, root->mode.frequency, gains, root->mode, true});
   }
 
   /// Onsets between two speeds that the modes followed do not account for are isolated by the
   /// number of growing roots. A pair of real roots that becomes an oscillating one, or the reverse,
   /// is no onset: both grow before and after.
-  void account(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb,
-               std::size_t first_onset) {
-    Index change = vb.growing - va.growing + deferred_;
+  void account(const Look& a, const Look& b, std::size_t first_onset) {
+    Index change = b.verdict.growing - a.verdict.growing + deferred_;
     for (std::size_t k = first_onset; k < onsets.size(); ++k)
       change -= onsets[k].gains ? 2 : -2;
     if (change == 0) return;
     onsets.resize(first_onset);
-    isolate(a, b, va, vb);
-    settle();
+    take(isolation_.between(a, b));
   }
 
-  SpeedVerdict look_at(double speed) {
-    modes_there_ = fresh_.solve(speed);
-    return verdict_of(speed, modes_there_, fresh_.certificate());
-  }
-
-  void isolate(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb) {
-    if (va.growing == vb.growing) return;
-    const double least = 1e-6 * std::abs(track_.ahead.back() - track_.ahead.front());
-    const double size = std::max({std::abs(a), std::abs(b), least});
-    if (std::abs(b - a) <= no_width * size) return add_isolated(a, b, va, vb);
-    const double middle = 0.5 * (a + b);
-    const SpeedVerdict vm = look_at(middle);
-    isolate(a, middle, va, vm);
-    isolate(middle, b, vm, vb);
-  }
-
-  /// The roots that grow at one end of a bracket of no width only. Where both ends account for all
-  /// that grows they crossed in it; else they may have come into the list from beyond it, growing.
-  void add_isolated(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb) {
-    const bool gains = vb.growing > va.growing;
-    const double few = gains ? a : b, many = gains ? b : a;
-    look_at(few);
-    const std::vector<WhirlMode> there = modes_there_;
-    look_at(many);
-    const std::vector<Parted> fresh = parted(modes_there_, there);
-    const bool all = va.certificate.stability_certain() && vb.certificate.stability_certain();
-    const double at = 0.5 * (a + b);
-    onsets.erase(std::remove_if(onsets.begin(), onsets.end(),
-                                [&](const Onset& o) {
-                                  return o.gains == gains &&
-                                         std::abs(o.speed - at) <= 10 * no_width * std::abs(at);
-                                }),
-                 onsets.end());
-    for (const Parted& p : fresh) {
-      const WhirlMode& m = p.mode;
-      const double frequency = p.one_of_pair ? 0.0 : m.frequency;
-      if (grows_within_rounding(m, there))
-        add_slow(p, few, many, gains);
-      else if (all || starts_at_the_axis(m, few, many))
-        onsets.push_back({at, frequency, gains, m, true});
-      else if (gains)
-        unplaced.push_back({many, m.frequency, m.lambda.real()});
-    }
-  }
-
-  /// Its growth is there on the other side as well, but not told from rounding.
-  static bool grows_within_rounding(const WhirlMode& m, const std::vector<WhirlMode>& there) {
-    const double rate = m.lambda.real();
-    return std::any_of(there.begin(), there.end(), [&](const WhirlMode& w) {
-      return w.growth() == 0 && w.lambda.real() > 0.5 * rate &&
-             std::abs(w.lambda - m.lambda) < rate;
+  /// What an interval looked at before gave again stands once.
+  void take(OnsetIsolation::Found found) {
+    std::erase_if(onsets, [&found](const Onset& old) {
+      return std::any_of(found.onsets.begin(), found.onsets.end(), [&old](const Onset& o) {
+        return o.gains == old.gains && std::abs(o.speed - old.speed) <= 1e-9 * std::abs(o.speed);
+      });
     });
-  }
-
-  /// What leaves the band of rounding at `many`: it crosses the axis a little beyond `few`, or grows
-  /// there as well.
-  void add_slow(const Parted& p, double few, double many, bool gains) {
-    const WhirlMode& m = p.mode;
-    const bool real = p.one_of_pair || m.frequency == 0.0;
-    const auto rate = [](double, const WhirlMode& x) { return x.lambda.real(); };
-    const double away = (few > many ? 1.0 : -1.0) * std::abs(few);
-    for (const double share : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
-      const double beyond = few + share * away;
-      const auto there = follower_.follow(beyond, m);
-      if (!there || there->lambda.real() >= 0.0) continue;
-      const auto root = find_on_mode(follower_, beyond, *there, many, m, rate, options_.tolerance);
-      if (root)
-        onsets.push_back({root->speed, real ? 0.0 : root->mode.frequency, gains, root->mode, true});
-      else
-        onsets.push_back({many, real ? 0.0 : m.frequency, gains, m, true});
-      return;
-    }
-    onsets.push_back({many, real ? 0.0 : m.frequency, gains, m, false});
-  }
-
-  /// Onsets against each other so near that the matrices' rounding parts them are what is left of
-  /// them.
-  void settle() {
-    std::sort(onsets.begin(), onsets.end(),
-              [](const Onset& x, const Onset& y) { return x.speed < y.speed; });
-    for (std::size_t k = 0; k < onsets.size();) {
-      const double width = near_by * std::abs(onsets[k].speed);
-      std::size_t end = k + 1;
-      bool opposed = false;
-      for (; end < onsets.size() && onsets[end].speed - onsets[end - 1].speed <= width; ++end)
-        opposed = opposed || onsets[end].gains != onsets[k].gains;
-      if (!opposed) {
-        k = end;
-        continue;
-      }
-      const double low = onsets[k].speed - width, high = onsets[end - 1].speed + width;
-      onsets.erase(onsets.begin() + static_cast<std::ptrdiff_t>(k),
-                   onsets.begin() + static_cast<std::ptrdiff_t>(end));
-      const SpeedVerdict at_low = look_at(low), at_high = look_at(high);
-      if (at_low.growing == at_high.growing) continue;
-      const std::size_t before = onsets.size();
-      add_isolated(low, high, at_low, at_high);
-      const auto added = onsets.begin() + static_cast<std::ptrdiff_t>(before);
-      std::rotate(onsets.begin() + static_cast<std::ptrdiff_t>(k), added, onsets.end());
-      k += onsets.size() - before;
-    }
-  }
-
-  /// Within rounding and what merging frequencies grow by in the bracket; or growing with the
-  /// distance from it, be it as its square root.
-  bool starts_at_the_axis(const WhirlMode& m, double few, double many) {
-    const double rate = m.lambda.real();
-    if (rate <= std::max(axis_width * std::max(m.frequency, std::abs(many)), 4 * m.rounding))
-      return true;
-    look_at(many + 100 * (many - few));
-    double nearest = infinity, further = 0;
-    for (const WhirlMode& w : modes_there_) {
-      const double away = std::abs(w.lambda - m.lambda);
-      if (w.growth() <= 0 || away >= nearest) continue;
-      nearest = away;
-      further = w.lambda.real();
-    }
-    return rate <= 0.5 * further;
+    onsets.insert(onsets.end(), found.onsets.begin(), found.onsets.end());
+    unplaced.insert(unplaced.end(), found.unplaced.begin(), found.unplaced.end());
   }
 
   /// A growth ratio that bends towards zero between three speeds is looked at where the parabola
@@ -338,12 +167,13 @@ class Sweep {
       h.push_back({verdicts.back().speed, size > 0 ? m.now.lambda.real() / size : 0.0});
       if (h.size() > 3) h.erase(h.begin());
     }
-    if (verdicts.size() < 3) return;
-    const std::size_t n = verdicts.size();
-    if (!verdicts[n - 1].stable() || !verdicts[n - 2].stable() || !verdicts[n - 3].stable()) return;
+    if (looks_.size() < 3) return;
+    if (!std::all_of(looks_.begin(), looks_.end(),
+                     [](const Look& look) { return look.verdict.stable(); }))
+      return;
     for (const TrackedMode& m : modes) {
       const std::vector<Vec2>& h = history_[m.id];
-      if (h.size() < 3 || h[0][0] != verdicts[n - 3].speed) continue;
+      if (h.size() < 3 || h[0][0] != looks_.front().speed()) continue;
       const auto peak = vertex(h);
       if (!peak || peak->second < 0.3 * h[1][1])
         continue;  // does not come much nearer to zero than the middle one
@@ -363,27 +193,22 @@ class Sweep {
   }
 
   void look_at_peak(double speed) {
-    const SpeedVerdict peak = look_at(speed);
-    if (peak.stable()) return;
-    const std::size_t n = verdicts.size();
-    const bool late =
-        (speed - verdicts[n - 2].speed) * (verdicts[n - 1].speed - verdicts[n - 2].speed) > 0;
-    const SpeedVerdict &below = verdicts[late ? n - 2 : n - 3],
-                       &above = verdicts[late ? n - 1 : n - 2];
-    isolate(below.speed, speed, below, peak);
-    isolate(speed, above.speed, peak, above);
-    settle();
+    const Look peak = isolation_.look_at(speed);
+    if (peak.verdict.stable()) return;
+    const bool late = speed > looks_[1].speed();
+    take(isolation_.between(looks_[late ? 1 : 0], peak));
+    take(isolation_.between(peak, looks_[late ? 2 : 1]));
   }
 
   StabilityOptions options_;
   TrackOptions track_;
   ModeTracker tracker_;
-  WhirlSolver follower_, fresh_;
+  OnsetIsolation isolation_;
+  std::deque<Look> looks_;             ///< the last three
   std::map<Index, Passage> passages_;  ///< by line
   /// Growing roots that left or entered the band of this step without an onset, and those whose onset
   /// is put into this step though they left before.
   Index deferred_ = 0;
-  std::vector<WhirlMode> modes_there_;
   std::map<Index, std::vector<Vec2>>
       history_;  ///< by line: speed and growth ratio of the last three
 };

@@ -52,8 +52,8 @@ struct SpeedVerdict {
   bool stable() const { return whirling + diverging == 0; }
 };
 
-/// A motion that grows at a speed, of which it is not known where that begins: it came into the list
-/// growing, from frequencies beyond it.
+/// A motion that grows at a speed, of which it is not known where that begins or ends: it came into
+/// the list growing, from frequencies beyond it, or left it so.
 struct Unplaced {
   double speed = 0;      ///< rad/s: where it was seen first
   double frequency = 0;  ///< rad/s; nan: that of the verdict there
@@ -67,6 +67,13 @@ struct StabilityResult {
   bool certain() const {
     return std::all_of(verdicts.begin(), verdicts.end(),
                        [](const SpeedVerdict& v) { return v.certificate.stability_certain(); });
+  }
+  /// The largest growth, over its frequency, that a verdict leaves open above its list.
+  double growth_left() const {
+    double most = 0;
+    for (const SpeedVerdict& v : verdicts)
+      if (!v.certificate.axis) most = std::max(most, v.certificate.quiet_ratio);
+    return most;
   }
   /// Every verdict accounts for all roots of its band.
   bool complete() const {
