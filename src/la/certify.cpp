@@ -7,6 +7,15 @@
 
 namespace whirl::la {
 
+namespace {
+
+/// Where roots gather (damping by the stiffness makes one a node of them at -1/beta), searches from
+/// place to place go through the whole space each: up to this dimension one dense solution costs less.
+constexpr Index dense_recovery = 1200;
+constexpr Index few_missing = 8;
+
+}  // namespace
+
 double ModeSolver::Impl::count_radius() const {
   std::vector<double> f;
   for (const Pair& p : known)
@@ -162,9 +171,10 @@ void ModeSolver::Impl::certify() {
       certificate.missing = 0;
       break;
     }
-    bool any = false;
-    for (const Complex place : certificate.where)
-      any = look_near(place, 0.1 * (round + 1) * radius) || any;
+    bool any = c.unknown > few_missing && dimension() <= dense_recovery && solve_dense(&region);
+    if (!any)
+      for (const Complex place : certificate.where)
+        any = look_near(place, 0.1 * (round + 1) * radius) || any;
     if (!any) any = look_everywhere(region);
     if (!any) break;
   }

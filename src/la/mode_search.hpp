@@ -35,8 +35,9 @@ struct ModeSolver::Impl : Eigenpairs {
   /// wanted radius.
   template <class Scalar>
   bool search(Krylov<Scalar>& k, unsigned seed);
-  /// Everything dense: for a handful of unknowns.
-  void solve_dense();
+  /// Everything dense: for a handful of unknowns, and for many roots in one place. within: those in
+  /// it only. True: something new.
+  bool solve_dense(const CountRegion* within = nullptr);
   void start_from_known();
   /// Indices of the known pairs to be returned.
   std::vector<std::size_t> choose() const;

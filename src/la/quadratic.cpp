@@ -130,7 +130,7 @@ bool ModeSolver::Impl::search(Krylov<Scalar>& k, unsigned seed) {
 }
 template bool ModeSolver::Impl::search(Krylov<Complex>&, unsigned);  // certify.cpp
 
-void ModeSolver::Impl::solve_dense() {
+bool ModeSolver::Impl::solve_dense(const CountRegion* within) {
   const double s = sigma;
   const Index d = dimension();
   MatX op(d, d);
@@ -150,11 +150,13 @@ void ModeSolver::Impl::solve_dense() {
     // Eigenvalues at infinity come out as rounding; double ones as its square root.
     if (!(std::abs(theta) > 1e-9 * largest)) continue;
     const Complex lambda = s + 1.0 / theta;
-    if (lambda.imag() >= 0.0) suggest(found, lambda, eig.vectors.col(j), true, nullptr);
+    if (lambda.imag() < 0.0 || (within && !within->contains(lambda))) continue;
+    suggest(found, lambda, eig.vectors.col(j), true, nullptr);
   }
-  take(found, true);
+  const bool any = take(found, true);
   sort_known();
   separate_close();
+  return any;
 }
 
 void ModeSolver::Impl::start_from_known() {
