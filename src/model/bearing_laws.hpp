@@ -99,6 +99,9 @@ struct FilmHeat {
 struct FilmFlow {
   enum class Regime { laminar, ng_pan } regime = Regime::laminar;
   double supply_pressure = 0;    ///< in grooves and between pads, above ambient, Pa
+  /// What oil there is where a film has ruptured: as much as the next film needs, or what leaves the
+  /// one before it.
+  enum class Cavitation { reynolds, mass_conserving } cavitation = Cavitation::reynolds;
   std::optional<FilmHeat> heat;  ///< nothing: one viscosity everywhere
 };
 

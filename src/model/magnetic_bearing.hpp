@@ -36,7 +36,7 @@ struct TransferFunction {
   std::vector<double> numerator, denominator;
   double gain = 0;  ///< A/m; 0: the stage has no dimension
 };
-/// x' = A x + B u, y = C x + D u with one input and one output, as [A B; C D].
+/// x' = A x + B u, y = C x + D u as [A B; C D], with one input and one output, or one an axis.
 struct StateSpaceStage {
   MatX matrix;
   double gain = 0;  ///< A/m; 0: the stage has no dimension
@@ -70,6 +70,8 @@ struct MagneticBearing {
   Controller control;
   Controller second;  ///< of axis 2; empty: as axis 1
   Controller cross;   ///< empty: none
+  /// Displacements along both axes to what is taken from their currents, in place of the others.
+  std::optional<StateSpaceStage> both;
   LawPtr power;       ///< factor on the forces; null: on
 
   const Controller& of_axis(std::size_t k) const {

@@ -83,6 +83,47 @@ TEST(MagneticBearings, ALoopWhoseRootsCannotBeCountedHasNoZone) {
   EXPECT_TRUE(d.says("W07")) << d.log;
 }
 
+// A controller of both axes as one set of matrices: p + d s/(1 + lag s) on the axes and a gain across
+// them, as control and cross have it.
+TEST(MagneticBearings, OneControllerOfBothAxes) {
+  constexpr double p = 1.5e4, d = 32, lag = 53e-6, across = 600;
+  const auto entry = [](int row, int column, double value) {
+    return fmt::format("[{}, {}, {:.17g}], ", row, column, value);
+  };
+  std::string rows;
+  for (const int k : {1, 2}) {
+    rows += entry(k, k, -1 / lag) + entry(k, k + 2, 1 / lag);
+    rows += entry(k + 2, k, -d / lag) + entry(k + 2, k + 2, p + d / lag);
+  }
+  rows += entry(3, 4, across) + entry(4, 3, -across);
+  const std::string both =
+      "[bearing.control_both]\norder = 2\ngain = \"1 A/m\"\ncolumns = [\"row\", \"column\", "
+      "\"value\"]\nrows = [" +
+      rows + "]\n";
+  const std::string cross =
+      fmt::format("[[bearing.cross]]\ntype = \"pid\"\np = \"{} A/m\"\n", across);
+  const DeckRun one(mass(magnet + both, modal)),
+      apart(mass(magnet + control(p, 0, d) + cross, modal));
+  ASSERT_EQ(one.exit, 0) << one.log;
+  ASSERT_EQ(apart.exit, 0) << apart.log;
+  const Columns got = one.csv("m_modes.csv"), want = apart.csv("m_modes.csv");
+  ASSERT_EQ(got.rows.size(), want.rows.size());
+  ASSERT_GE(got.rows.size(), 2u);
+  for (std::size_t k = 0; k < got.rows.size(); ++k)
+    for (const char* column : {"frequency [Hz]", "damping ratio [-]"})
+      EXPECT_NEAR(got.rows[k][got.column(column)], want.rows[k][want.column(column)],
+                  1e-9 * std::abs(want.rows[k][want.column(column)]));
+  const auto fails = [](const std::string& bearing, const char* code, const char* text) {
+    const DeckRun run(mass(bearing, still));
+    EXPECT_NE(run.exit, 0);
+    EXPECT_TRUE(run.says(code) && run.says(text)) << run.log;
+  };
+  fails(magnet + both + control(p, 0, d), "error[E26]", "both axes");
+  std::string large = both;
+  large.replace(large.find("[3, 4"), 5, "[3, 5");
+  fails(magnet + large, "error[E14]", "4 rows and columns");
+}
+
 // m 30 kg, k_s 1.5e6 N/m, k_i 250 N/A, PID 1.5e4 A/m, 1e5 A/(m s), 32 A s/m with lag 53 us, amplifier
 // 1200 Hz, sensor 4000 Hz: roots of the characteristic polynomial, and the largest |1/(1 + L)|.
 TEST(MagneticBearings, PolesAndSensitivityOfARigidRotor) {
