@@ -128,4 +128,3 @@ void append_element(const FilmElement<T>& e, bool first, Condensed<T>& c) {
   c.D_bb = rr - ahead * lr;
   c.D_ab = -(back * lr);
 }
-

@@ -140,8 +140,8 @@ void condense(const Tables& tables, const Stretch<N>& s, Ends<N>& out) {
   }
   Condensed<One> c = {};
   for (int first = 0; first < s.count; first += width) {
-    FilmElement<Many> e = integrate_element(tables, at, Alike{}, element_width, over_width, by_all,
-                                            s.beta, zeta);
+    FilmElement<Many> e =
+        integrate_element(tables, at, Alike{}, element_width, over_width, by_all, s.beta, zeta);
     Condensed<Many> inner = {};
     drop_bubbles(e, inner);
     const int used = s.count - first < width ? s.count - first : width;

@@ -22,7 +22,7 @@
 // is straight across the bearing: below 2 % of the force for L/D <= 0.5, or L/D <= 1 with
 // eccentricities to 0.6; 3 % at L/D = 1 and 0.9. Grid: force within 1e-3 and coefficients within
 // 2e-3 of the converged ones at the default of 72 points, to an eccentricity of 0.9, most within
-// 1e-4 (test CoefficientsAreConverged). About 8 us a force and 13 us a tangent on one core. Limits:
+// 1e-4 (test CoefficientsAreConverged). About 3 us a force and 5 us a tangent on one core. Limits:
 // no inertia, aligned.
 //
 // Beyond isoviscous laminar oil at ambient pressure (PadMedium):

@@ -126,7 +126,7 @@ Total thickness_at(const Vec2& e, const Total& angle) {
   return AtPoint<Total>(at, {cos(angle), sin(angle)}).h;
 }
 
-/// int mu f_s/h (share of the width that is wet) dtheta from one end to another; content 0: all is.
+/// int mu f_s/h (share of the width that is wet) dtheta from one end to another; no content: all is.
 Total wet_shear(const Place<Total>& at, const Through<Total>& m, const Total& from, const Total& to,
                 const Total* content) {
   static const Gauss<8> gauss;
@@ -144,17 +144,72 @@ Total wet_shear(const Place<Total>& at, const Through<Total>& m, const Total& fr
   return sum;
 }
 
+/// One stretch of film between its ends, of which it is condensed.
+struct FilmAtEnds {
+  Local a, b;
+  Condensed<Local> c;
+  bool free[2];
+  double edge[2];  ///< pressure at the ends
+
+  /// What its pressure drives out at an end.
+  Local out(int k, const Vec2& W) const {
+    const Pair<Local>& source = k == 0 ? c.out_a : c.out_b;
+    const Local in =
+        k == 0 ? c.D_aa * edge[0] + c.D_ab * edge[1] : c.D_ab * edge[0] + c.D_bb * edge[1];
+    return source.x * W.x() + source.y * W.y() - in;
+  }
+  Local load(int k, const Vec2& W) const {
+    const Local own = k == 0 ? c.S00 * W.x() + c.S01 * W.y() : c.S01 * W.x() + c.S11 * W.y();
+    return k == 0 ? own + c.out_a.x * edge[0] + c.out_b.x * edge[1]
+                  : own + c.out_a.y * edge[0] + c.out_b.y * edge[1];
+  }
+};
+
+/// Slopes of the free ends. forms: that where the film forms of the content carried to it, or -1.
+Matrix<2, givens> ends_follow(const FilmAtEnds& film, const Place<Local>& at, const Vec2& W,
+                              int forms, const Local& carry, const Total& content) {
+  Mat2 by_ends = Mat2::Identity();
+  Matrix<2, givens> by_given = Matrix<2, givens>::Zero();
+  for (int k = 0; k < 2; ++k) {
+    if (!film.free[k]) continue;
+    Local flow = film.out(k, W);
+    const Local& angle = k == 0 ? film.a : film.b;
+    const Local h = AtPoint<Local>(at, {cos(angle), sin(angle)}).h;
+    if (k == forms && h.v > content.v) {
+      flow -= carry * (h - Local(content.v));
+      by_given.row(k) += carry.v * content.g.transpose();
+    }
+    by_ends.row(k) = flow.g.segment<2>(by_a).transpose();
+    by_given.row(k) += direct(flow).transpose();
+    const Pair<Local>& source = k == 0 ? film.c.out_a : film.c.out_b;
+    by_given(k, of_Wx) += source.x.v;
+    by_given(k, of_Wy) += source.y.v;
+  }
+  return -by_ends.inverse() * by_given;
+}
+
+void add_load(PadCarriedLoad& out, const FilmAtEnds& film, const Vec2& W,
+              const Matrix<2, givens>& follow) {
+  Mat2 S;
+  S << film.c.S00.v, film.c.S01.v, film.c.S01.v, film.c.S11.v;
+  for (int k = 0; k < 2; ++k) {
+    const Total total = followed(film.load(k, W), follow);
+    out.G[k] += total.v;
+    out.by_e.row(k) += total.g.segment<2>(of_ex).transpose();
+    out.by_W.row(k) += S.row(k) + total.g.segment<2>(of_Wx).transpose();
+    out.by_reynolds[k] += total.g[of_re];
+    out.by_carry[k] += total.g[of_carry];
+  }
+}
+
 }  // namespace
 
 PadCarriedLoad PadFilm::carried(const Vec2& e, const Vec2& W, const PadMedium& medium) const {
   WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
   WHIRL_EXPECTS(medium.carry != 0.0);
   PadCarriedLoad out;
-  out.G.setZero();
-  out.by_e.setZero();
-  out.by_W.setZero();
-  out.by_reynolds.setZero();
-  out.by_carry.setZero();
+  out.G = out.by_reynolds = out.by_carry = Vec2::Zero();
+  out.by_e = out.by_W = Mat2::Zero();
   Films films;
   int passes = 0;
   const int n =
@@ -174,47 +229,19 @@ PadCarriedLoad PadFilm::carried(const Vec2& e, const Vec2& W, const PadMedium& m
   };
   for (int i = 0; i < n; ++i) {
     const Ends& s = films[static_cast<std::size_t>(up == 0 ? i : n - 1 - i)];
-    const bool free[2] = {!s.held_a && s.a > s.low, !s.held_b && s.b < s.high};
-    const Local a = free[0] ? Local::variable(s.a, by_a) : at.gamma(start_),
-                b = free[1] ? Local::variable(s.b, by_b) : at.gamma(start_ + arc_);
-    const Condensed<Local> c = condense(at, m, a, b, beta_, elements_);
-    const double edge[2] = {s.held_a ? medium.edge : 0.0, s.held_b ? medium.edge : 0.0};
-    const Pair<Local> outflow[2] = {c.out_a, c.out_b};
-    const Local in[2] = {c.D_aa * edge[0] + c.D_ab * edge[1], c.D_ab * edge[0] + c.D_bb * edge[1]};
-    Mat2 by_ends = Mat2::Identity();
-    Matrix<2, givens> by_given = Matrix<2, givens>::Zero();
-    for (int k = 0; k < 2; ++k) {
-      Local flow = outflow[k].x * W.x() + outflow[k].y * W.y() - in[k];
-      if (k == 0 ? s.held_a : s.held_b) out.fed -= flow.v;
-      if (!free[k]) continue;
-      if (k == s.forms) {
-        const Local& angle = k == 0 ? a : b;
-        const Local h = AtPoint<Local>(at, {cos(angle), sin(angle)}).h;
-        if (h.v > content.v) {
-          flow -= carry * (h - Local(content.v));
-          by_given.row(k) += carry.v * content.g.transpose();
-        }
-      }
-      by_ends.row(k) = flow.g.segment<2>(by_a).transpose();
-      by_given.row(k) += direct(flow).transpose();
-      by_given(k, of_Wx) += outflow[k].x.v;
-      by_given(k, of_Wy) += outflow[k].y.v;
-    }
-    const Matrix<2, givens> follow = -by_ends.inverse() * by_given;
-    const Local G[2] = {
-        c.S00 * W.x() + c.S01 * W.y() + outflow[0].x * edge[0] + outflow[1].x * edge[1],
-        c.S01 * W.x() + c.S11 * W.y() + outflow[0].y * edge[0] + outflow[1].y * edge[1]};
-    Mat2 S;
-    S << c.S00.v, c.S01.v, c.S01.v, c.S11.v;
-    for (int k = 0; k < 2; ++k) {
-      const Total total = followed(G[k], follow);
-      out.G[k] += total.v;
-      out.by_e.row(k) += total.g.segment<2>(of_ex).transpose();
-      out.by_W.row(k) += S.row(k) + total.g.segment<2>(of_Wx).transpose();
-      out.by_reynolds[k] += total.g[of_re];
-      out.by_carry[k] += total.g[of_carry];
-    }
-    const Total end_a = followed(a, follow), end_b = followed(b, follow);
+    FilmAtEnds film;
+    film.free[0] = !s.held_a && s.a > s.low;
+    film.free[1] = !s.held_b && s.b < s.high;
+    film.a = film.free[0] ? Local::variable(s.a, by_a) : at.gamma(start_);
+    film.b = film.free[1] ? Local::variable(s.b, by_b) : at.gamma(start_ + arc_);
+    film.edge[0] = s.held_a ? medium.edge : 0.0;
+    film.edge[1] = s.held_b ? medium.edge : 0.0;
+    film.c = condense(at, m, film.a, film.b, beta_, elements_);
+    if (s.held_a) out.fed -= film.out(0, W).v;
+    if (s.held_b) out.fed -= film.out(1, W).v;
+    const Matrix<2, givens> follow = ends_follow(film, at, W, s.forms, carry, content);
+    add_load(out, film, W, follow);
+    const Total end_a = followed(film.a, follow), end_b = followed(film.b, follow);
     const Total &begin = up == 0 ? end_a : end_b, &end = up == 0 ? end_b : end_a;
     add_shear(reached, begin, &content);
     add_shear(begin, end, nullptr);

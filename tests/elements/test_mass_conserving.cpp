@@ -184,7 +184,9 @@ TEST(MassConserving, LongJournal) {
     ASSERT_EQ(got.films.size(), k.supply > 0 ? 2u : 1u);
     EXPECT_NEAR(got.films.back().from, from, 1e-5) << k.thinnest;
     EXPECT_NEAR(got.films.back().to, end, 1e-9);
-    if (k.supply > 0) EXPECT_NEAR(got.films[0].to, rupture, 1e-6);
+    if (k.supply > 0) {
+      EXPECT_NEAR(got.films[0].to, rupture, 1e-6);
+    }
     EXPECT_NEAR(got.content[0], g, 1e-6);
     EXPECT_EQ(got.pressure[0], 0.0);
     EXPECT_NEAR(got.pressure[1] * b.pressure_unit(b.gap(0, p)), unit * rise(from, at[1], g),
