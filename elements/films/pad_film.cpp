@@ -96,6 +96,68 @@ int PadFilm::cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const
   return n;
 }
 
+namespace {
+
+/// What flows out at the ends of a stretch, less what must flow in where it forms of carried oil:
+/// positive while the film is too short.
+struct EndFlows {
+  double out[2];
+  double driven[2];        ///< by the pressure alone
+  double needed_more = 0;  ///< slope of what must flow in
+};
+template <class Ends, class Medium>
+EndFlows flows_at_ends(const Place<double>& at, const Vec2& W, const Medium& medium, const Ends& s,
+                       const Condensed<double>& c) {
+  EndFlows f;
+  f.driven[0] = c.out_a.x * W.x() + c.out_a.y * W.y();
+  f.driven[1] = c.out_b.x * W.x() + c.out_b.y * W.y();
+  if constexpr (!Medium::plain) {
+    const double p_a = s.held_a ? medium.edge : 0.0, p_b = s.held_b ? medium.edge : 0.0;
+    f.driven[0] -= c.D_aa * p_a + c.D_ab * p_b;
+    f.driven[1] -= c.D_ab * p_a + c.D_bb * p_b;
+  }
+  f.out[0] = f.driven[0];
+  f.out[1] = f.driven[1];
+  if constexpr (!Medium::plain)
+    if (s.forms >= 0) {
+      const Needed needed =
+          needed_at(at, s.forms, s.forms == 0 ? s.a : s.b, medium.carry, s.content);
+      f.out[s.forms] -= needed.flow;
+      f.needed_more = needed.by_length;
+    }
+  return f;
+}
+
+/// Slopes by lengthening the film at an end.
+struct EndSlopes {
+  double flow[2];      ///< of its flow
+  double pressure[2];  ///< at its old place
+};
+template <class Ends, class Medium>
+EndSlopes slopes_at_ends(const Place<double>& at, const Vec2& W, const Medium& medium,
+                         const Ends& s, const Condensed<double>& c, const EndFlows& f) {
+  const double least = -1e-6 * W.norm();  // where two films could meet the source vanishes again
+  EndSlopes slopes;
+  for (int i = 0; i < 2; ++i) {
+    const double angle = i == 0 ? s.a : s.b;
+    const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
+    const double driven = std::max(0.0, f.driven[i]);
+    if constexpr (Medium::plain)
+      slopes.pressure[i] = driven * x.stretch / (x.h * x.h * x.h);
+    else
+      slopes.pressure[i] = driven / flow_at(x, medium);
+    double source = W.x() * x.n.x + W.y() * x.n.y;
+    if (i != s.forms) source = std::min(source, least);
+    const double held_back = (i == 0 ? c.D_aa : c.D_bb) * slopes.pressure[i];
+    slopes.flow[i] = source * x.stretch - held_back;
+    if (i == s.forms)
+      slopes.flow[i] = std::min(slopes.flow[i] - f.needed_more, least - 0.5 * held_back);
+  }
+  return slopes;
+}
+
+}  // namespace
+
 /// Newton's method for the free ends. What flows out at an end is positive while the film is too
 /// short.
 template <class Medium>
@@ -103,43 +165,16 @@ bool PadFilm::settle(const Vec2& e, const Vec2& W, const Medium& medium, Ends& s
                      double tolerance, int most_passes, int& passes) const {
   const Place<double> at(e.x(), e.y());
   double last[2] = {s.a, s.b}, last_out[2] = {0.0, 0.0};
-  const double least = -1e-6 * W.norm();  // where two films could meet the source vanishes again
   for (int k = 0; k < most_passes; ++k) {
     const Condensed<double> c = condense(at, medium, s.a, s.b, beta_, elements);
     ++passes;
-    double out[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(), c.out_b.x * W.x() + c.out_b.y * W.y()};
-    if constexpr (!Medium::plain) {
-      const double p_a = s.held_a ? medium.edge : 0.0, p_b = s.held_b ? medium.edge : 0.0;
-      out[0] -= c.D_aa * p_a + c.D_ab * p_b;
-      out[1] -= c.D_ab * p_a + c.D_bb * p_b;
-    }
-    const double driven[2] = {out[0], out[1]};
-    double needed_more = 0.0;
-    if constexpr (!Medium::plain)
-      if (s.forms >= 0) {
-        const Needed needed =
-            needed_at(at, s.forms, s.forms == 0 ? s.a : s.b, medium.carry, s.content);
-        out[s.forms] -= needed.flow;
-        needed_more = needed.by_length;
-      }
+    const EndFlows flows = flows_at_ends(at, W, medium, s, c);
+    const double(&out)[2] = flows.out;
     const bool moves[2] = {!s.held_a && !(s.a <= s.low && out[0] >= 0.0),
                            !s.held_b && !(s.b >= s.high && out[1] >= 0.0)};
     if (!moves[0] && !moves[1]) return true;
-    double slope[2],
-        shift[2];  // of the flow by lengthening; pressure at the old end by lengthening
-    for (int i = 0; i < 2; ++i) {
-      const double angle = i == 0 ? s.a : s.b;
-      const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
-      if constexpr (Medium::plain)
-        shift[i] = std::max(0.0, driven[i]) * x.stretch / (x.h * x.h * x.h);
-      else
-        shift[i] = std::max(0.0, driven[i]) / flow_at(x, medium);
-      double source = W.x() * x.n.x + W.y() * x.n.y;
-      if (i != s.forms) source = std::min(source, least);
-      const double held_back = (i == 0 ? c.D_aa : c.D_bb) * shift[i];
-      slope[i] = source * x.stretch - held_back;
-      if (i == s.forms) slope[i] = std::min(slope[i] - needed_more, least - 0.5 * held_back);
-    }
+    const EndSlopes slopes = slopes_at_ends(at, W, medium, s, c, flows);
+    const double(&slope)[2] = slopes.flow, (&shift)[2] = slopes.pressure;
     double step[2] = {0.0, 0.0};
     if (moves[0] && moves[1]) {
       const double ab = -c.D_ab * shift[1], ba = -c.D_ab * shift[0];  // d out_a/d b, d out_b/d a
