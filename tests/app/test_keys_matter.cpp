@@ -790,6 +790,7 @@ const Elsewhere elsewhere[] = {
     {"[[step]], type = \"sensitivity\"", "speed", "app/test_magnetic_bearings.cpp"},
     {"[[step]], type = \"sensitivity\"", "about", "app/test_magnetic_bearings.cpp"},
     {"[[bearing.control]]", "type", "each type has keys of its own"},
+    {"[[bearing]], type = \"magnetic\"", "max_current_rate", "app/test_magnetic_bearings.cpp"},
     {"[[bearing]], type = \"magnetic\"", "control_both", "app/test_magnetic_bearings.cpp"},
     {"[bearing.control_both]", "*", "app/test_magnetic_bearings.cpp"},
     {"[[bearing.control_2]]", "*", "read as [[bearing.control]]"},

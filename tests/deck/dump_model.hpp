@@ -185,9 +185,10 @@ class ModelDump {
     each("gain", std::array{s.gain});
   }
   void law(const model::MagneticBearing& x) {
-    each("magnet", std::array{x.per_current, x.per_displacement, x.bias, x.gap, x.saturation,
-                              x.current_limit, x.angle, x.sensor_bandwidth, x.amplifier_bandwidth,
-                              x.delay, double(x.delay_order), x.setpoint.x(), x.setpoint.y()});
+    each("magnet",
+         std::array{x.per_current, x.per_displacement, x.bias, x.gap, x.saturation, x.current_limit,
+                    x.rate_limit, x.angle, x.sensor_bandwidth, x.amplifier_bandwidth, x.delay,
+                    double(x.delay_order), x.setpoint.x(), x.setpoint.y()});
     if (x.sensor_at) at("sensor", *x.sensor_at);
     law("power", x.power);
     if (x.both) stage(*x.both);

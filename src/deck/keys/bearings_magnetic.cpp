@@ -187,6 +187,9 @@ void describe(Visitor& v, model::MagneticBearing& b) {
              "largest force of one pair of poles; it sets in smoothly");
   v.quantity(optional("max_current", "none"), b.current_limit, "A", positive,
              "largest control current; it sets in smoothly");
+  v.quantity(optional("max_current_rate", "none"), b.rate_limit, "A/s", positive,
+             "largest rate of the current: the amplifier's voltage over the coil's inductance; it "
+             "sets in smoothly");
   v.quantity("angle", b.angle, "deg", any,
              "direction of axis 1, from y towards z; axis 2 is 90 deg further");
   model::Location at;
