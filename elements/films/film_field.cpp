@@ -29,6 +29,7 @@ class PadInState {
       offset[i] = arc_.length * static_cast<double>(i) / static_cast<double>(samples - 1);
     const PadProfile profile = pad_.profile(at_.e, at_.W, medium_, offset);
     films_ = profile.films;
+    content_ = profile.content;
     const double unit = film_.pressure_unit(gap_);
     FilmField f;
     for (std::size_t i = 0; i < samples; ++i) {
@@ -38,9 +39,11 @@ class PadInState {
       f.pressure.push_back(unit * profile.pressure[i]);
       f.slope.push_back(unit * profile.slope[i]);
       f.viscosity.push_back(viscosity(offset[i]));
-      const bool wet = film_at(offset[i]) >= 0;
-      f.wet.push_back(wet ? 1 : 0);
-      f.flow.push_back(wet ? flow(theta, f.viscosity[i], f.slope[i]) : 0.0);
+      const int wet = film_at(offset[i]);
+      f.wet.push_back(wet >= 0 ? 1 : 0);
+      f.flow.push_back(wet < 0 ? 0.0
+                               : flow(theta, f.viscosity[i],
+                                      share_driven(static_cast<std::size_t>(wet)) * f.slope[i]));
     }
     fill_dry(f);
     return f;
@@ -53,10 +56,37 @@ class PadInState {
   double dragged(double offset) const {
     return 0.5 * film_.length * film_.radius * slip_ * thickness(arc_.start + offset);
   }
-  /// Through the start and the end of a stretch. f: sampled over the pad.
-  std::array<double, 2> through(const PadProfile::Stretch& s, const FilmField& f) const {
-    return {s.free_from || arc_.round ? dragged(s.from) : f.flow.front(),
-            s.free_to || arc_.round ? dragged(s.to) : f.flow.back()};
+  bool conserves() const { return !content_.empty(); }
+  /// Film i forms of what a ruptured stretch carries to it: its flow is that of the weighted mean over
+  /// the length in which such a film conserves mass.
+  double share_driven(std::size_t i) const {
+    const PadProfile::Stretch& s = films_[i];
+    const bool forms = conserves() && (slip_ > 0.0 ? s.free_from : s.free_to);
+    return forms ? 12.0 / film_.source : 1.0;
+  }
+  /// Through the start and the end of stretch i.
+  std::array<double, 2> through(std::size_t i) const {
+    const PadProfile::Stretch& s = films_[i];
+    const double driven = film_.length * film_.radius * film_.source / 12.0 * share_driven(i);
+    std::array<double, 2> out{dragged(s.from), dragged(s.to)};
+    if (!s.free_from && !arc_.round) out[0] -= driven * s.out_from;
+    if (!s.free_to && !arc_.round) out[1] += driven * s.out_to;
+    if (!conserves()) return out;
+    // what the stretch before it, or the groove, lets go
+    if (slip_ > 0.0 && s.free_from) out[0] = dragged(i > 0 ? films_[i - 1].to : 0.0);
+    if (slip_ < 0.0 && s.free_to)
+      out[1] = dragged(i + 1 < films_.size() ? films_[i + 1].from : arc_.length);
+    return out;
+  }
+  /// Through the ends of the pad, in the sense of theta.
+  std::array<double, 2> through_pad() const {
+    const bool forward = slip_ >= 0.0;
+    if (films_.empty()) {
+      const double flow =
+          conserves() ? dragged(forward ? 0.0 : arc_.length) : dragged_through_thinnest();
+      return {flow, flow};
+    }
+    return {through(0)[0], through(films_.size() - 1)[1]};
   }
   const std::vector<PadProfile::Stretch>& films() const { return films_; }
   double smallest(double& where) const {
@@ -102,6 +132,12 @@ class PadInState {
     const bool forward = slip_ >= 0.0;
     const auto place = [&](std::size_t k) { return forward ? k : n - 1 - k; };
     double now = films_.empty() ? dragged_through_thinnest() : nan;
+    if (conserves()) {
+      for (std::size_t k = 0; k < n; ++k)
+        if (!f.wet[k])
+          f.flow[k] = 0.5 * film_.length * film_.radius * slip_ * gap_.pad * content_[k];
+      return;
+    }
     if (!films_.empty()) {
       const PadProfile::Stretch& first = forward ? films_.front() : films_.back();
       now = dragged(forward ? first.from : first.to);
@@ -121,6 +157,7 @@ class PadInState {
   double slip_;
   PadFilm pad_;
   std::vector<PadProfile::Stretch> films_;
+  std::vector<double> content_;
 };
 
 /// The film of one pad of a bearing by itself.
@@ -160,17 +197,12 @@ FilmStanding film_standing(const FiniteJournal& film, std::size_t pad, const Fil
   s.power = force.pump - (force.F.dot(p.w) + force.T * p.slip);
   s.thinnest = in.smallest(s.thinnest_at);
   const bool forward = p.slip >= 0.0;
-  if (in.films().empty()) {
-    s.inflow = s.outflow = std::abs(in.dragged_through_thinnest());
-  } else {
-    const std::array<double, 2> first = in.through(in.films().front(), f),
-                                last = in.through(in.films().back(), f);
-    s.inflow = forward ? first[0] : -last[1];
-    s.outflow = forward ? last[1] : -first[0];
-    for (const PadProfile::Stretch& stretch : in.films()) {
-      const std::array<double, 2> ends = in.through(stretch, f);
-      s.side_flow += ends[0] - ends[1];
-    }
+  const std::array<double, 2> ends = in.through_pad();
+  s.inflow = forward ? ends[0] : -ends[1];
+  s.outflow = forward ? ends[1] : -ends[0];
+  for (std::size_t i = 0; i < in.films().size(); ++i) {
+    const std::array<double, 2> through = in.through(i);
+    s.side_flow += through[0] - through[1];
   }
   for (std::size_t i = 0; i < samples; ++i) {
     if (film.peak * f.pressure[i] > s.highest) {

@@ -5,7 +5,7 @@
 //   Q = L (R s h/2 - h^3 P'/(12 eta f_x R)),   P axial mean
 // What enters a stretch of film and does not leave at its other end leaves at the sides. Where the
 // film has ruptured the flow is that of the rupture; where none has formed yet, that of the place
-// where it does.
+// where it does, or, of a film that conserves mass, that of the groove.
 #pragma once
 #include <elements/films/finite_journal.hpp>
 #include <vector>

@@ -100,6 +100,7 @@ PadMedium FiniteJournal::medium(std::size_t k, const FilmPoint& p) const {
                        static_cast<std::size_t>(knots)};
   m.reynolds = turbulent_density * radius * std::abs(p.slip) * g.pad / viscosity;
   m.edge = supply_pressure / pressure_unit(g);
+  if (mass_conserving) m.carry = 0.5 * p.slip * g.pad;
   return m;
 }
 
@@ -184,7 +185,51 @@ Vec2 source_of(const FiniteJournal::PadPlace& at, double slip, double clearance)
 
 }  // namespace
 
+/// Whether oil is carried over ruptured stretches: not at rest, nor where nothing makes a film.
+bool FiniteJournal::carries_oil(std::size_t k, const FilmPoint& p) const {
+  if (!mass_conserving || p.slip == 0.0) return false;
+  return supply_pressure > 0.0 || !source_of(place(k, p), p.slip, gap(k, p).pad).isZero(0.0);
+}
+
+/// Pad k of a film that conserves mass, in rotation.
+void FiniteJournal::add_carried(std::size_t k, const FilmPoint& p, FilmForce& f,
+                                FilmTangent& t) const {
+  const Gap g = gap(k, p);
+  const double c = g.pad, half_lift = 0.5 * g.lift;
+  const double unit = pressure_unit(g) * radius * length;
+  const double drag = viscosity * std::pow(radius, 3) * length / c;
+  const PadMedium m = medium(k, p);
+  const PadPlace at = place(k, p);
+  const Vec2 W = source_of(at, p.slip, c), normal = normal_of(surface->arcs()[k]);
+  const Vec2& n = surface->arcs()[k].thinnest;
+  const Vec2 across(-n.y(), n.x());
+  const PadCarriedLoad load = pad(k).carried(at.e, W, m);
+  const Vec2 G = load.G - m.edge * normal;
+  const double of_reynolds = std::copysign(turbulent_density * radius * c / viscosity, p.slip);
+  const double of_carry = m.carry / p.slip;
+  // W = w - slip half_lift across
+  const Vec2 G_slip =
+      of_reynolds * load.by_reynolds + of_carry * load.by_carry - half_lift * (load.by_W * across);
+  const double shear_slip = of_reynolds * load.shear.by_reynolds + of_carry * load.shear_by_carry -
+                            half_lift * load.shear_by_W.dot(across);
+  f.F -= unit * G;
+  t.F_r -= unit / c * load.by_e;
+  t.F_w -= unit * load.by_W;
+  t.F_slip -= unit * G_slip;
+  f.T += unit * half_lift * across.dot(G) - drag * p.slip * load.shear.value;
+  t.T_r +=
+      unit / c * half_lift * (load.by_e.transpose() * across) - drag * p.slip / c * load.shear.by_e;
+  t.T_w += unit * half_lift * (load.by_W.transpose() * across) - drag * p.slip * load.shear_by_W;
+  t.T_slip +=
+      unit * half_lift * across.dot(G_slip) - drag * (load.shear.value + p.slip * shear_slip);
+  f.pump += unit * m.edge * (load.fed + W.dot(normal));
+}
+
 void FiniteJournal::evaluate_through(const FilmPoint& p, FilmForce& f) const {
+  if (mass_conserving && p.slip != 0.0) {
+    FilmTangent unused;
+    return evaluate_through(p, f, unused);
+  }
   f = {Vec2::Zero(), 0.0, 0.0};
   for (std::size_t k = 0; k < surface->arcs().size(); ++k) {
     const Gap g = gap(k, p);
@@ -213,6 +258,10 @@ void FiniteJournal::evaluate_through(const FilmPoint& p, FilmForce& f, FilmTange
   t.T_w.setZero();
   t.T_slip = 0.0;
   for (std::size_t k = 0; k < surface->arcs().size(); ++k) {
+    if (carries_oil(k, p)) {
+      add_carried(k, p, f, t);
+      continue;
+    }
     const Gap g = gap(k, p);
     const double c = g.pad, half_lift = 0.5 * g.lift;
     const double unit = pressure_unit(g) * radius * length;

@@ -22,7 +22,7 @@
 // is straight across the bearing: below 2 % of the force for L/D <= 0.5, or L/D <= 1 with
 // eccentricities to 0.6; 3 % at L/D = 1 and 0.9. Grid: force within 1e-3 and coefficients within
 // 2e-3 of the converged ones at the default of 72 points, to an eccentricity of 0.9, most within
-// 1e-4 (test CoefficientsAreConverged). About 8 us a force and 13 us a tangent on one core. Limits:
+// 1e-4 (test CoefficientsAreConverged). About 3 us a force and 5 us a tangent on one core. Limits:
 // no inertia, aligned.
 //
 // Beyond isoviscous laminar oil at ambient pressure (PadMedium):
@@ -30,6 +30,16 @@
 //   supply_pressure p_s at the ends of every pad, which also stands in the grooves and behind pads
 //     that tilt: a pad gives int (P - p_s) n R L dtheta, so that a closed ring at p_s gives nothing.
 //     What the pump does is p_s times the flow that it drives, FilmForce::pump;
+//   mass_conserving: what leaves a film where it ruptures is carried on, and the next one forms where
+//     that fills the gap (Jakobsson, Floberg, Olsson; pad_film.hpp); the leading groove is full.
+//     Conserved is the mean over the length that the axial profile weighs, as Galerkin's equation has
+//     it (another one would let films part with a jump): Q = L R s content/2 in ruptured film, and in
+//     the film behind it Q = L (R s h/2 - (12/source) h^3 P'/(12 eta R)), which at its sides loses
+//     just what the slope of the profile gives. Drag of ruptured film: the share content/h of the
+//     width. In motion fronts and content are those of the momentary state: exact at rest; of small
+//     motions, where no film lies behind a ruptured one (a rupture has P' = 0 as long as it moves
+//     slower than the oil, R s/2); behind one it leaves out the time the oil takes to it and what a
+//     moving front swallows;
 //   a viscosity that varies along each pad, and clearances that grow, by what the film keeps of the
 //     last equilibrium (film_heat.hpp). Both are constants to force and tangent.
 // Sources: Reynolds equation Szeri 2011, doi 10.1017/CBO9780511782022; published coefficients Lund
@@ -107,6 +117,7 @@ struct FiniteJournal {
   double peak = 1.5;             ///< pressure in the middle over the axial mean
   double turbulent_density = 0;  ///< kg/m3; 0: laminar
   double supply_pressure = 0;    ///< above ambient, Pa
+  bool mass_conserving = false;  ///< ruptured film carries on what oil there is; needs grooves
   /// Of what elements keep, where a film with heat begins; -1: it has none. For each pad the growth
   /// of the assembled clearance c_b and that of c_p, both over c_b, then ln(eta/viscosity) at
   /// `knots` equidistant places from its start to its end.
@@ -115,7 +126,7 @@ struct FiniteJournal {
   static constexpr int kept_growths = 2;  ///< before the knots
   int kept_each() const { return knots + kept_growths; }
   bool isoviscous() const {
-    return turbulent_density == 0.0 && supply_pressure == 0.0 && kept_from < 0;
+    return turbulent_density == 0.0 && supply_pressure == 0.0 && kept_from < 0 && !mass_conserving;
   }
 
   void evaluate(const FilmPoint& p, FilmForce& f) const;
@@ -143,6 +154,8 @@ struct FiniteJournal {
 
  private:
   void evaluate_through(const FilmPoint& p, FilmForce& f) const;
+  bool carries_oil(std::size_t k, const FilmPoint& p) const;
+  void add_carried(std::size_t k, const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
   void evaluate_through(const FilmPoint& p, FilmForce& f, FilmTangent& t) const;
 };
 

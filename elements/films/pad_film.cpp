@@ -1,8 +1,6 @@
 #include <elements/films/pad_film.hpp>
-#include <elements/films/turbulence.hpp>
+#include <elements/films/pad_film_parts.hpp>
 #include <core/contract.hpp>
-
-#include <core/dual.hpp>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -27,333 +25,7 @@ double log_viscosity_at(std::span<const double> knots, double place, double& slo
   return knots[i] + s * (first + s * (c2 + s * c3));
 }
 
-namespace {
-
-constexpr int p = PadFilm::order;
-constexpr int bubbles = p - 1;
-constexpr int shapes = p + 1;  // bubbles, then the left and the right vertex
-constexpr int points =
-    p +
-    1;  // Gauss points: one more than the order asks for halves the elements a given error takes
-constexpr int entries = shapes * (shapes + 1) / 2;
-
-/// Gauss-Legendre points and weights on [0, 1].
-template <int n>
-struct Gauss {
-  std::array<double, n> x, w;
-  Gauss() {
-    for (std::size_t i = 0; i < n; ++i) {
-      double t = std::cos(pi * (static_cast<double>(i) + 0.75) / (n + 0.5));
-      double slope = 1.0;
-      for (int newton = 0; newton < 20; ++newton) {
-        double a = 1.0, b = t;
-        for (int k = 2; k <= n; ++k) {
-          const double next = ((2 * k - 1) * t * b - (k - 1) * a) / k;
-          a = b;
-          b = next;
-        }
-        slope = n * (a - t * b) / (1.0 - t * t);
-        t -= b / slope;
-      }
-      x[i] = 0.5 * (1.0 - t);
-      w[i] = 1.0 / ((1.0 - t * t) * slope * slope);
-    }
-  }
-};
-
-/// Shape functions at the Gauss points: integrated Legendre polynomials inside, linear ones at the
-/// vertices.
-struct Reference {
-  Gauss<points> gauss;
-  std::array<std::array<double, points>, shapes> value, slope;
-  /// products of two (upper triangle by rows), of their slopes; shape functions; all times the
-  /// weight of the point
-  std::array<std::array<double, entries>, points> mass, stiffness;
-  std::array<std::array<double, shapes>, points> source;
-
-  Reference() {
-    for (std::size_t q = 0; q < points; ++q) {
-      const double x = gauss.x[q], t = 2.0 * x - 1.0;
-      std::array<double, p + 1> legendre{1.0, t};
-      for (std::size_t k = 2; k <= p; ++k) {
-        const double m = static_cast<double>(k);
-        legendre[k] = ((2 * m - 1) * t * legendre[k - 1] - (m - 1) * legendre[k - 2]) / m;
-      }
-      for (std::size_t k = 0; k < bubbles; ++k) {
-        const double m = static_cast<double>(k) + 1.0;
-        value[k][q] = (legendre[k + 2] - legendre[k]) / (2.0 * (2 * m + 1));
-        slope[k][q] = legendre[k + 1];
-      }
-      value[bubbles][q] = 1.0 - x;
-      slope[bubbles][q] = -1.0;
-      value[bubbles + 1][q] = x;
-      slope[bubbles + 1][q] = 1.0;
-      std::size_t m = 0;
-      for (std::size_t i = 0; i < shapes; ++i) {
-        source[q][i] = gauss.w[q] * value[i][q];
-        for (std::size_t j = i; j < shapes; ++j, ++m) {
-          mass[q][m] = gauss.w[q] * value[i][q] * value[j][q];
-          stiffness[q][m] = gauss.w[q] * slope[i][q] * slope[j][q];
-        }
-      }
-    }
-  }
-};
-
-const Reference& reference() {
-  static const Reference r;
-  return r;
-}
-
-template <class T>
-struct Pair {
-  T x, y;
-};
-
-/// Position of the journal, and the Moebius map of the circle to Sommerfeld's angle: zeta = (z -
-/// b)/(1 - conj(b) z).
-template <class T>
-struct Place {
-  Pair<T> e, b;
-  T spread, over_spread;  ///< 1 - |b|^2 and its inverse
-
-  Place(const T& ex, const T& ey) : e{ex, ey} {
-    using std::sqrt;
-    // near contact the grading of the elements goes no further: contact off the pad is possible
-    constexpr double least = 0.02;  // of sqrt(1 - e^2)
-    const T square = ex * ex + ey * ey;
-    const double room = 1.0 - value(square);
-    T scale(0.5);
-    if (room > least * least)
-      scale = 1.0 / (1.0 + sqrt(1.0 - square));
-    else
-      scale = std::sqrt((1.0 - least) / (1.0 + least)) / sqrt(square);
-    b = {scale * ex, scale * ey};
-    spread = 1.0 - (b.x * b.x + b.y * b.y);
-    over_spread = 1.0 / spread;
-  }
-  T gamma(double theta) const {
-    using std::atan2;
-    const double c = std::cos(theta), s = std::sin(theta);
-    return theta + 2.0 * atan2(b.x * s - b.y * c, 1.0 - (b.x * c + b.y * s));
-  }
-  double theta(double angle) const {
-    const double c = std::cos(angle), s = std::sin(angle), bx = value(b.x), by = value(b.y);
-    return angle + 2.0 * std::atan2(by * c - bx * s, 1.0 + bx * c + by * s);
-  }
-};
-
-/// What the film needs at an angle gamma given by (cos, sin).
-template <class T>
-struct AtPoint {
-  Pair<T> n;
-  T h, stretch;  ///< clearance, dtheta/dgamma
-  T flow;        ///< h^3 dgamma/dtheta
-  AtPoint(const Place<T>& at, const Pair<T>& zeta) {
-    const Pair<T> sum{zeta.x + at.b.x, zeta.y + at.b.y};
-    const T re = 1.0 + at.b.x * zeta.x + at.b.y * zeta.y,
-            im = at.b.x * zeta.y - at.b.y * zeta.x;  // 1 + conj(b) zeta
-    const T square = re * re + im * im, inverse = 1.0 / square;
-    n = {(sum.x * re + sum.y * im) * inverse, (sum.y * re - sum.x * im) * inverse};
-    h = 1.0 - (at.e.x * n.x + at.e.y * n.y);
-    stretch = at.spread * inverse;
-    flow = h * h * h * square * at.over_spread;
-  }
-};
-
-/// Oil that is alike everywhere.
-struct Alike {
-  static constexpr bool plain = true;
-  static constexpr double edge = 0.0;
-};
-
-/// PadMedium, seen at the points of the film.
-template <class T>
-class Through {
- public:
-  static constexpr bool plain = false;
-  double edge;
-
-  Through(const PadMedium& m, double start, double arc, const T& reynolds)
-      : edge(m.edge),
-        log_(m.log_viscosity),
-        turbulent_(m.reynolds != 0.0),
-        arc_(arc),
-        middle_{std::cos(start + 0.5 * arc), std::sin(start + 0.5 * arc)},
-        reynolds_(reynolds) {}
-
-  struct Factors {
-    T along, across, shear;
-  };
-  Factors at(const AtPoint<T>& x) const {
-    const T fluidity = log_.empty() ? T(1.0) : fluidity_at(x.n);
-    if (!turbulent_) return {fluidity, fluidity, T(1.0) / fluidity};
-    const TurbulentFactors<T> f(reynolds_ * x.h * fluidity);
-    return {fluidity / f.along, fluidity / f.across, f.shear / fluidity};
-  }
-
- private:
-  /// 1/mu
-  T fluidity_at(const Pair<T>& n) const {
-    using std::atan2;
-    const T from_middle =
-        atan2(middle_.x * n.y - middle_.y * n.x, middle_.x * n.x + middle_.y * n.y);
-    const T place = (1.0 / arc_) * (from_middle + T(0.5 * arc_));
-    double by_place = 0.0;
-    const double f = std::exp(-log_viscosity_at(log_, value(place), by_place));
-    return chain(place, f, -f * by_place);
-  }
-
-  std::span<const double> log_;
-  bool turbulent_;
-  double arc_;
-  Pair<double> middle_;
-  T reynolds_;
-};
-
-/// h^3 dgamma/dtheta through a medium.
-template <class T, class Medium>
-T flow_at(const AtPoint<T>& x, const Medium& m) {
-  if constexpr (Medium::plain)
-    return x.flow;
-  else
-    return x.flow * m.at(x).along;
-}
-
-/// A stretch of film condensed to its two ends, for the unit sources n_x and n_y.
-template <class T>
-struct Condensed {
-  T S00, S01, S11;       ///< loads int P_i n_j dtheta with P = 0 at both ends
-  Pair<T> out_a, out_b;  ///< flow out at the ends
-  T D_aa, D_ab, D_bb;    ///< stiffness: flow in at an end for a pressure there
-};
-
-template <class T>
-void add_load(Condensed<T>& c, const T& x, const T& y, const T& inverse) {
-  const T ix = inverse * x;
-  c.S00 += ix * x;
-  c.S01 += ix * y;
-  c.S11 += inverse * y * y;
-}
-
-/// One element: stiffness (upper triangle by rows) and loads of its shapes, the bubbles first, then
-/// the shapes of its two ends.
-template <class T>
-struct FilmElement {
-  std::array<T, entries> A;
-  std::array<Pair<T>, shapes> B;
-};
-
-/// Integrates an element over its points zeta, which are turned on to those of the next one.
-template <class T, class Medium>
-FilmElement<T> integrate_element(const Place<T>& at, const Medium& medium, const T& width,
-                                 const T& over_width, const Pair<T>& turn, double beta,
-                                 std::array<Pair<T>, points>& zeta) {
-  const Reference& ref = reference();
-  FilmElement<T> e;
-  e.A.fill(T(0.0));
-  e.B.fill({T(0.0), T(0.0)});
-  for (std::size_t q = 0; q < points; ++q) {
-    const AtPoint<T> x(at, zeta[q]);
-    const T arc = width * x.stretch;
-    T flow = over_width * x.flow, leak = beta * (x.h * x.h * x.h) * arc;
-    if constexpr (!Medium::plain) {
-      const auto f = medium.at(x);
-      flow = flow * f.along;
-      leak = leak * f.across;
-    }
-    const T sx = arc * x.n.x, sy = arc * x.n.y;
-    for (std::size_t m = 0; m < entries; ++m)
-      e.A[m] += ref.stiffness[q][m] * flow + ref.mass[q][m] * leak;
-    for (std::size_t i = 0; i < shapes; ++i) {
-      e.B[i].x += ref.source[q][i] * sx;
-      e.B[i].y += ref.source[q][i] * sy;
-    }
-    const Pair<T> z = zeta[q];
-    zeta[q] = {z.x * turn.x - z.y * turn.y, z.x * turn.y + z.y * turn.x};
-  }
-  return e;
-}
-
-/// Eliminates the bubbles of an element.
-template <class T>
-void drop_bubbles(FilmElement<T>& e, Condensed<T>& c) {
-  for (std::size_t i = 0, row = 0; i < bubbles; row += shapes - i, ++i) {
-    const T inverse = 1.0 / e.A[row];
-    add_load(c, e.B[i].x, e.B[i].y, inverse);
-    std::size_t below = row + shapes - i;
-    for (std::size_t j = 1; j < shapes - i; ++j) {
-      const T factor = e.A[row + j] * inverse;
-      for (std::size_t m = j; m < shapes - i; ++m)
-        e.A[below++] -= factor * e.A[row + m];
-      e.B[i + j].x -= factor * e.B[i].x;
-      e.B[i + j].y -= factor * e.B[i].y;
-    }
-  }
-}
-
-/// Joins an element to what is condensed so far, and eliminates the vertex between them.
-template <class T>
-void append_element(const FilmElement<T>& e, bool first, Condensed<T>& c) {
-  const T &ll = e.A[entries - 3], &lr = e.A[entries - 2], &rr = e.A[entries - 1];
-  const Pair<T>&left = e.B[bubbles], &right = e.B[bubbles + 1];
-  if (first) {
-    c.D_aa = ll;
-    c.D_ab = lr;
-    c.D_bb = rr;
-    c.out_a = left;
-    c.out_b = right;
-    return;
-  }
-  const T inverse = 1.0 / (c.D_bb + ll), x = c.out_b.x + left.x, y = c.out_b.y + left.y;
-  add_load(c, x, y, inverse);
-  const T back = c.D_ab * inverse, ahead = lr * inverse;
-  c.out_a.x -= back * x;
-  c.out_a.y -= back * y;
-  c.out_b = {right.x - ahead * x, right.y - ahead * y};
-  c.D_aa -= back * c.D_ab;
-  c.D_bb = rr - ahead * lr;
-  c.D_ab = -(back * lr);
-}
-
-/// (cos, sin) of the points of the first of elements of a width from an angle on.
-template <class T>
-std::array<Pair<T>, points> first_points(const T& from, const T& width) {
-  using std::cos;
-  using std::sin;
-  const Reference& ref = reference();
-  const auto at_angle = [](const T& angle) { return Pair<T>{cos(angle), sin(angle)}; };
-  const Pair<T> middle = at_angle(from + 0.5 * width);
-  std::array<Pair<T>, points> zeta;
-  for (std::size_t q = 0; q < points / 2; ++q) {  // points lie in pairs about the middle
-    const Pair<T> away = at_angle((0.5 - ref.gauss.x[q]) * width);
-    const T cc = middle.x * away.x, ss = middle.y * away.y, sc = middle.y * away.x,
-            cs = middle.x * away.y;
-    zeta[q] = {cc + ss, sc - cs};
-    zeta[points - 1 - q] = {cc - ss, sc + cs};
-  }
-  zeta[points / 2] = middle;
-  return zeta;
-}
-
-template <class T, class Medium>
-Condensed<T> condense(const Place<T>& at, const Medium& medium, const T& from, const T& to,
-                      double beta, int n) {
-  using std::cos;
-  using std::sin;
-  const T width = (1.0 / n) * (to - from), over_width = 1.0 / width;
-  const Pair<T> turn{cos(width), sin(width)};
-  std::array<Pair<T>, points> zeta = first_points(from, width);
-  Condensed<T> c{0.0, 0.0, 0.0, {0.0, 0.0}, {0.0, 0.0}, 0.0, 0.0, 0.0};
-  for (int k = 0; k < n; ++k) {
-    FilmElement<T> e = integrate_element(at, medium, width, over_width, turn, beta, zeta);
-    drop_bubbles(e, c);
-    append_element(e, k == 0, c);
-  }
-  return c;
-}
-
-}  // namespace
+using namespace film_parts;
 
 PadFilm::PadFilm(double start, double arc, bool round, double beta, double points_on_arc)
     : start_(start),
@@ -377,6 +49,21 @@ double PadFilm::smallest_clearance(const Vec2& e) const {
   const auto at = [&](double a) { return 1.0 - e.x() * std::cos(a) - e.y() * std::sin(a); };
   return std::min(at(start_), at(start_ + arc_));
 }
+
+namespace {
+
+/// The flow that a pressure must drive back where a film forms, and its slope by lengthening the film.
+struct Needed {
+  double flow = 0, by_length = 0;
+};
+Needed needed_at(const Place<double>& at, int end, double angle, double carry, double content) {
+  const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
+  if (!(x.h > content)) return {};
+  const double slope = (at.e.x * x.n.y - at.e.y * x.n.x) * x.stretch;  // dh/dgamma
+  return {std::abs(carry) * (x.h - content), std::abs(carry) * (end == 0 ? -slope : slope)};
+}
+
+}  // namespace
 
 /// The stretches where the source is positive, and how far their ends may move.
 int PadFilm::cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const {
@@ -409,6 +96,68 @@ int PadFilm::cores(const Vec2& e, const Vec2& W, std::array<Ends, 2>& out) const
   return n;
 }
 
+namespace {
+
+/// What flows out at the ends of a stretch, less what must flow in where it forms of carried oil:
+/// positive while the film is too short.
+struct EndFlows {
+  double out[2];
+  double driven[2];        ///< by the pressure alone
+  double needed_more = 0;  ///< slope of what must flow in
+};
+template <class Ends, class Medium>
+EndFlows flows_at_ends(const Place<double>& at, const Vec2& W, const Medium& medium, const Ends& s,
+                       const Condensed<double>& c) {
+  EndFlows f;
+  f.driven[0] = c.out_a.x * W.x() + c.out_a.y * W.y();
+  f.driven[1] = c.out_b.x * W.x() + c.out_b.y * W.y();
+  if constexpr (!Medium::plain) {
+    const double p_a = s.held_a ? medium.edge : 0.0, p_b = s.held_b ? medium.edge : 0.0;
+    f.driven[0] -= c.D_aa * p_a + c.D_ab * p_b;
+    f.driven[1] -= c.D_ab * p_a + c.D_bb * p_b;
+  }
+  f.out[0] = f.driven[0];
+  f.out[1] = f.driven[1];
+  if constexpr (!Medium::plain)
+    if (s.forms >= 0) {
+      const Needed needed =
+          needed_at(at, s.forms, s.forms == 0 ? s.a : s.b, medium.carry, s.content);
+      f.out[s.forms] -= needed.flow;
+      f.needed_more = needed.by_length;
+    }
+  return f;
+}
+
+/// Slopes by lengthening the film at an end.
+struct EndSlopes {
+  double flow[2];      ///< of its flow
+  double pressure[2];  ///< at its old place
+};
+template <class Ends, class Medium>
+EndSlopes slopes_at_ends(const Place<double>& at, const Vec2& W, const Medium& medium,
+                         const Ends& s, const Condensed<double>& c, const EndFlows& f) {
+  const double least = -1e-6 * W.norm();  // where two films could meet the source vanishes again
+  EndSlopes slopes;
+  for (int i = 0; i < 2; ++i) {
+    const double angle = i == 0 ? s.a : s.b;
+    const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
+    const double driven = std::max(0.0, f.driven[i]);
+    if constexpr (Medium::plain)
+      slopes.pressure[i] = driven * x.stretch / (x.h * x.h * x.h);
+    else
+      slopes.pressure[i] = driven / flow_at(x, medium);
+    double source = W.x() * x.n.x + W.y() * x.n.y;
+    if (i != s.forms) source = std::min(source, least);
+    const double held_back = (i == 0 ? c.D_aa : c.D_bb) * slopes.pressure[i];
+    slopes.flow[i] = source * x.stretch - held_back;
+    if (i == s.forms)
+      slopes.flow[i] = std::min(slopes.flow[i] - f.needed_more, least - 0.5 * held_back);
+  }
+  return slopes;
+}
+
+}  // namespace
+
 /// Newton's method for the free ends. What flows out at an end is positive while the film is too
 /// short.
 template <class Medium>
@@ -416,31 +165,16 @@ bool PadFilm::settle(const Vec2& e, const Vec2& W, const Medium& medium, Ends& s
                      double tolerance, int most_passes, int& passes) const {
   const Place<double> at(e.x(), e.y());
   double last[2] = {s.a, s.b}, last_out[2] = {0.0, 0.0};
-  const double least = -1e-6 * W.norm();  // where two films could meet the source vanishes again
   for (int k = 0; k < most_passes; ++k) {
     const Condensed<double> c = condense(at, medium, s.a, s.b, beta_, elements);
     ++passes;
-    double out[2] = {c.out_a.x * W.x() + c.out_a.y * W.y(), c.out_b.x * W.x() + c.out_b.y * W.y()};
-    if constexpr (!Medium::plain) {
-      const double p_a = s.held_a ? medium.edge : 0.0, p_b = s.held_b ? medium.edge : 0.0;
-      out[0] -= c.D_aa * p_a + c.D_ab * p_b;
-      out[1] -= c.D_ab * p_a + c.D_bb * p_b;
-    }
+    const EndFlows flows = flows_at_ends(at, W, medium, s, c);
+    const double(&out)[2] = flows.out;
     const bool moves[2] = {!s.held_a && !(s.a <= s.low && out[0] >= 0.0),
                            !s.held_b && !(s.b >= s.high && out[1] >= 0.0)};
     if (!moves[0] && !moves[1]) return true;
-    double slope[2],
-        shift[2];  // of the flow by lengthening; pressure at the old end by lengthening
-    for (int i = 0; i < 2; ++i) {
-      const double angle = i == 0 ? s.a : s.b;
-      const AtPoint<double> x(at, {std::cos(angle), std::sin(angle)});
-      if constexpr (Medium::plain)
-        shift[i] = std::max(0.0, out[i]) * x.stretch / (x.h * x.h * x.h);
-      else
-        shift[i] = std::max(0.0, out[i]) / flow_at(x, medium);
-      const double source = std::min(W.x() * x.n.x + W.y() * x.n.y, least);
-      slope[i] = source * x.stretch - (i == 0 ? c.D_aa : c.D_bb) * shift[i];
-    }
+    const EndSlopes slopes = slopes_at_ends(at, W, medium, s, c, flows);
+    const double(&slope)[2] = slopes.flow, (&shift)[2] = slopes.pressure;
     double step[2] = {0.0, 0.0};
     if (moves[0] && moves[1]) {
       const double ab = -c.D_ab * shift[1], ba = -c.D_ab * shift[0];  // d out_a/d b, d out_b/d a
@@ -464,7 +198,8 @@ bool PadFilm::settle(const Vec2& e, const Vec2& W, const Medium& medium, Ends& s
       const double back = last[i] - end;
       const bool between = k > 0 && back != 0.0 && out[i] * last_out[i] < 0.0;
       if (between && (to - end) / back >= 1.0) to = end + back * out[i] / (out[i] - last_out[i]);
-      if (outward * (to - core) < 0.0) to = 0.5 * (end + core);
+      const double beyond = outward * (to - core);
+      if (beyond < 0.0 || (beyond == 0.0 && i == s.forms)) to = 0.5 * (end + core);
       moved = std::max(moved, std::abs(to - end));
       last[i] = end;
       last_out[i] = out[i];
@@ -538,6 +273,7 @@ int PadFilm::fed_films(const Vec2& e, const Vec2& W, const Medium& m, Films& out
 template <class Medium>
 int PadFilm::solve_through(const Vec2& e, const Vec2& W, const Medium& m, Films& out,
                            int& passes) const {
+  if (m.carry != 0.0) return carried_films(e, W, m, out, passes);
   if (m.edge == 0.0) {
     if (W.isZero(0.0)) return 0;
     std::array<Ends, 2> films;
@@ -577,6 +313,14 @@ int PadFilm::solve_through(const Vec2& e, const Vec2& W, const Medium& m, Films&
   return n;
 }
 
+// for pad_film_carried.cpp
+template bool PadFilm::settle(const Vec2&, const Vec2&, const Through<double>&, Ends&, int, double,
+                              int, int&) const;
+template void PadFilm::find(const Vec2&, const Vec2&, const Through<double>&, Ends&, int&) const;
+template int PadFilm::fed_films(const Vec2&, const Vec2&, const Through<double>&, Films&) const;
+template int PadFilm::solve_through(const Vec2&, const Vec2&, const Through<double>&, Films&,
+                                    int&) const;
+
 Vec2 PadFilm::load(const Vec2& e, const Vec2& W) const {
   WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
   Vec2 G = Vec2::Zero();
@@ -593,8 +337,7 @@ Vec2 PadFilm::load(const Vec2& e, const Vec2& W) const {
   return G;
 }
 
-// flattened: beside the other media the compiler would leave calls in it, at half its speed more
-[[gnu::flatten]] PadLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W) const {
+PadLoad PadFilm::load_and_slopes(const Vec2& e, const Vec2& W) const {
   WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
   PadLoad out{Vec2::Zero(), Mat2::Zero(), Mat2::Zero()};
   if (W.isZero(0.0)) {
@@ -670,8 +413,20 @@ Mat2 PadFilm::mean_slope(const Vec2& e) const {
 
 double PadFilm::shear(const Vec2& e, Vec2& gradient) const {
   WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
-  // in Sommerfeld's angle the integrands are a constant and a wave: two panels of eight points are
-  // exact to rounding
+  using T = Dual<2>;
+  const Place<T> at(T::variable(e.x(), 0), T::variable(e.y(), 1));
+  if (!at.graded_fully()) return shear_by_points(e, gradient);
+  // Sommerfeld's angle has dtheta/h = dgamma/sqrt(1 - e^2)
+  const T root = sqrt(1.0 - (at.e.x * at.e.x + at.e.y * at.e.y));
+  const T angle = round_ ? T(two_pi) : at.gamma(start_ + arc_) - at.gamma(start_);
+  const T sum = angle / root;
+  gradient = sum.g;
+  return sum.v;
+}
+
+/// Near contact: there the map has another eccentricity.
+double PadFilm::shear_by_points(const Vec2& e, Vec2& gradient) const {
+  // the integrands are waves of the angle: two panels of eight points are exact to rounding
   static const Gauss<8> gauss;
   const Place<double> at(e.x(), e.y());
   const double from = at.gamma(start_), half = 0.5 * (at.gamma(start_ + arc_) - from);
@@ -810,7 +565,7 @@ class StretchPressure {
     const Pair<double> turn{std::cos(width_), std::sin(width_)};
     for (int k = 0; k < n; ++k) {
       const FilmElement<double> e =
-          integrate_element(at, m, width_, 1.0 / width_, turn, beta, zeta);
+          integrate_element(reference(), at, m, width_, 1.0 / width_, turn, beta, zeta.data());
       std::size_t entry = 0;
       for (int i = 0; i < shapes; ++i) {
         const Pair<double>& b = e.B[static_cast<std::size_t>(i)];
@@ -861,6 +616,22 @@ class StretchPressure {
 
 }  // namespace
 
+/// What fills the gap where film has ruptured.
+void PadFilm::carry_content(const Vec2& e, double carry, std::span<const double> theta,
+                            PadProfile& out) const {
+  const auto thickness = [&](double place) {
+    return 1.0 - e.x() * std::cos(start_ + place) - e.y() * std::sin(start_ + place);
+  };
+  out.content.assign(theta.size(), thickness(carry > 0.0 ? 0.0 : arc_));
+  for (std::size_t k = 0; k < theta.size(); ++k)
+    for (const PadProfile::Stretch& s : out.films) {
+      const bool passed = carry > 0.0 ? s.to <= theta[k] : s.from >= theta[k];
+      if (!passed) continue;
+      out.content[k] = thickness(carry > 0.0 ? s.to : s.from);
+      if (carry < 0.0) break;
+    }
+}
+
 PadProfile PadFilm::profile(const Vec2& e, const Vec2& W, const PadMedium& medium,
                             std::span<const double> theta) const {
   WHIRL_EXPECTS(smallest_clearance(e) > 0.0);
@@ -889,9 +660,14 @@ PadProfile PadFilm::profile(const Vec2& e, const Vec2& W, const PadMedium& mediu
         break;
       }
     }
-    out.films.push_back({at.theta(s.a) - start_, at.theta(s.b) - start_, !s.held_a && s.a > s.low,
-                         !s.held_b && s.b < s.high});
+    const Condensed<double> c = condense(at, m, s.a, s.b, beta_, elements_);
+    out.films.push_back(
+        {at.theta(s.a) - start_, at.theta(s.b) - start_, !s.held_a && s.a > s.low,
+         !s.held_b && s.b < s.high,
+         c.out_a.x * W.x() + c.out_a.y * W.y() - c.D_aa * ends[0] - c.D_ab * ends[1],
+         c.out_b.x * W.x() + c.out_b.y * W.y() - c.D_ab * ends[0] - c.D_bb * ends[1]});
   }
+  if (medium.carry != 0.0) carry_content(e, medium.carry, theta, out);
   return out;
 }
 

@@ -23,8 +23,17 @@
 // turbulence adds (turbulence.hpp) at the Reynolds number of the place, reynolds h/mu. Where the
 // pad's ends stand at a pressure, a stretch of film begins there whatever the source, and ruptures
 // where P' = 0.
+//
+// Mass conserving, PadMedium::carry (B. Jakobsson, L. Floberg, Trans. Chalmers 190, 1957; K.-O. Olsson,
+// ibid. 308, 1965; H. G. Elrod, J. Lubr. Technol. 103, 1981, doi 10.1115/1.3251669): what leaves a film
+// where it ruptures, or a groove where none begins, is carried on as if the gap were `content` =
+// h(rupture) thick, and the next film forms where that fills it,
+//   h^3 a_x P' = carry (h - content) where the film forms, P' = 0 where it ruptures,
+// carry = (surface speed)/2 in the unit of W. A gap that nowhere gets so thin has no film. The content
+// is that of the present state: oil takes no time on its way (pad_film_carried.cpp).
 #pragma once
 #include <core/types.hpp>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -42,6 +51,8 @@ struct PadMedium {
   std::span<const double> log_viscosity{};
   double reynolds = 0;  ///< of a film of thickness 1 and mu = 1; 0: laminar everywhere
   double edge = 0;      ///< pressure at both ends of the pad, not negative
+  double carry = 0;     ///< oil carried over ruptured stretches, its sign that of the motion; 0: a
+                        ///< film forms where P' = 0
 };
 /// With the slope of the load in PadMedium::reynolds, and what the pressure at the ends brings in:
 /// flow through them beside the source.
@@ -55,12 +66,24 @@ struct PadShear {
   Vec2 by_e;
   double by_reynolds;
 };
+/// A mass-conserving film. Its shear is less where it has ruptured: content/h of the width is wetted.
+struct PadCarriedLoad : PadFlowLoad {
+  Vec2 by_carry;
+  PadShear shear;
+  Vec2 shear_by_W;
+  double shear_by_carry = 0;
+};
 /// A pad's pressure along its arc.
 struct PadProfile {
   std::vector<double> pressure, slope;  ///< P and dP/dtheta at the angles asked
+  std::vector<double> content;  ///< thickness that the oil carried fills where film has ruptured;
+                                ///< empty: a film that does not conserve mass
   struct Stretch {
     double from, to;          ///< of film, rad from the start of the pad
     bool free_from, free_to;  ///< ends where it forms or ruptures
+    /// What the pressure drives out of it at its ends: those of the condensed film, which balance
+    /// what the source brings to rounding.
+    double out_from, out_to;
   };
   std::vector<Stretch> films;
 };
@@ -95,6 +118,8 @@ class PadFilm {
   PadFlowLoad load_and_slopes(const Vec2& e, const Vec2& W, const PadMedium& m) const;
   Mat2 mean_slope(const Vec2& e, const PadMedium& m) const;
   PadShear shear(const Vec2& e, const PadMedium& m) const;
+  /// @pre m.carry is not 0.
+  PadCarriedLoad carried(const Vec2& e, const Vec2& W, const PadMedium& m) const;
   /// theta: from the start of the pad, rad, 0 to the arc.
   PadProfile profile(const Vec2& e, const Vec2& W, const PadMedium& m,
                      std::span<const double> theta) const;
@@ -105,6 +130,8 @@ class PadFilm {
   struct Ends {
     double a, b, core_a, core_b, low, high;
     bool held_a, held_b;
+    int forms = -1;  ///< 0, 1: the end a, b is where oil that is carried to it forms a film
+    double content = 0;
   };
   static constexpr std::size_t most_films = 4;
   using Films = std::array<Ends, most_films>;
@@ -119,6 +146,12 @@ class PadFilm {
   int solve_through(const Vec2& e, const Vec2& W, const Medium& m, Films& out, int& passes) const;
   template <class Medium>
   int fed_films(const Vec2& e, const Vec2& W, const Medium& m, Films& out) const;
+  template <class Medium>
+  int carried_films(const Vec2& e, const Vec2& W, const Medium& m, Films& out, int& passes) const;
+  double shear_by_points(const Vec2& e, Vec2& gradient) const;
+  void carry_content(const Vec2& e, double carry, std::span<const double> theta,
+                     PadProfile& out) const;
+  bool fill(const Vec2& e, int up, double content, double edge, Ends& s) const;
 
   double start_, arc_, beta_;
   bool round_;

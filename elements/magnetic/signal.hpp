@@ -4,6 +4,7 @@
 #pragma once
 #include <core/law.hpp>
 #include <system/kernel.hpp>
+#include <cmath>
 
 namespace whirl::elements {
 
@@ -26,6 +27,39 @@ struct SignalState {
     t.K(0, 0) += keep;
   }
   void add_energy(const system::Nodes<1>&, const system::Context&, system::Energy&) const {}
+};
+
+/// rate q0' - gain q1/(1 + |q1/limit|^8)^(1/8) in the row of q0: q0 follows what is asked for, q1,
+/// no faster than the limit lets it. Nodes: q0, q1, both signals.
+struct RateLimit {
+  static constexpr int n_nodes = 2, width = 3;
+  static constexpr bool has_M = false, has_C = true, has_K = true, quadratic_in_rates = true,
+                        powerless = true;
+  static constexpr system::Family family = system::Family::support;
+  static constexpr system::Dependence depends{};
+
+  double rate = 0;   ///< N s/m
+  double gain = 0;   ///< N/m
+  double limit = 0;  ///< of q1, m
+
+  /// Followed, and its slope.
+  struct Followed {
+    double value, slope;
+  };
+  Followed followed(double asked) const {
+    const double ratio = asked / limit, power = 1.0 + std::pow(ratio, 8);
+    const double root = std::pow(power, -0.125);
+    return {asked * root, root / power};
+  }
+  void add_force(const system::Nodes<2>& x, const system::Context&, system::ForceX<6>& f) const {
+    f[0] += rate * x[0]->du.x() - gain * followed(x[1]->u.x()).value;
+  }
+  void add_tangent(const system::Nodes<2>& x, const system::Context&,
+                   system::TangentX<6>& t) const {
+    t.C(0, 0) += rate;
+    t.K(0, 3) -= gain * followed(x[1]->u.x()).slope;
+  }
+  void add_energy(const system::Nodes<2>&, const system::Context&, system::Energy&) const {}
 };
 
 /// gain q1 in the row of q0; nodes: q0, q1, both signals.

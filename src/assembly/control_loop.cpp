@@ -63,8 +63,16 @@ StateSpace stage_of(const model::StateSpaceStage& s) {
 
 StateSpace on_both_axes(const StateSpace& s) { return beside(s, s); }
 
+/// Of two inputs and two outputs, which are taken from the currents.
+StateSpace controller_of_both(const model::StateSpaceStage& s) {
+  const Index n = s.matrix.rows() - 2;
+  return {s.matrix.topLeftCorner(n, n), s.matrix.topRightCorner(n, 2),
+          -s.gain * s.matrix.bottomLeftCorner(2, n), -s.gain * s.matrix.bottomRightCorner(2, 2)};
+}
+
 /// -diag(first, second) and the cross control: -c y2 to the first, +c y1 to the second.
 StateSpace make_control(const model::MagneticBearing& law) {
+  if (law.both) return controller_of_both(*law.both);
   StateSpace out = beside(make_controller(law.of_axis(0)), make_controller(law.of_axis(1)));
   out.C *= -1.0;
   out.D *= -1.0;

@@ -30,6 +30,12 @@ class Signals {
           {Vec3::Zero(), line, fmt::format("signal {} of {}", k + 1, name_of(b)), true, true}));
     for (Index k = 0; k < loop_.system.states(); ++k)
       row_.push_back(law.per_displacement / rate_of_row(k));
+    sum_ = nodes_;
+    if (law.rate_limit > 0)
+      for (const Index k : loop_.current)
+        sum_[at(k)] = a.builder.add_node(
+            {Vec3::Zero(), line, fmt::format("demand for signal {} of {}", k + 1, name_of(b)), true,
+             true});
   }
   /// x' - A x - B y = 0, row by row.
   void add(const model::Bearing& b) {
@@ -37,11 +43,15 @@ class Signals {
     auto& terms = a_.built.support_terms[number_of(a_, b)];
     for (Index k = 0; k < s.states(); ++k) {
       const double row = row_[at(k)];
-      terms.push_back(
-          a_.builder.add(elements::SignalState{row, -row * s.A(k, k)}, {node(k)}, "signals"));
+      const bool limited = sum(k) != node(k);
+      if (limited)
+        add_limit(k, terms);
+      else
+        terms.push_back(
+            a_.builder.add(elements::SignalState{row, -row * s.A(k, k)}, {node(k)}, "signals"));
       for (Index j = 0; j < s.states(); ++j)
-        if (j != k && s.A(k, j) != 0)
-          terms.push_back(a_.builder.add(elements::SignalLink{-row * s.A(k, j)}, {node(k), node(j)},
+        if ((j != k || limited) && s.A(k, j) != 0)
+          terms.push_back(a_.builder.add(elements::SignalLink{-row * s.A(k, j)}, {sum(k), node(j)},
                                          "links of signals"));
       if (!s.B.row(k).isZero(0.0)) add_sensor(k, terms);
     }
@@ -63,7 +73,7 @@ class Signals {
     for (Index k = 0; k < s.states(); ++k) {
       const double gain =
           sensor >= 0 ? s.A(k, sensor) / out.unit : s.B(k, static_cast<Index>(axis));
-      if (k != sensor && gain != 0) out.entry.emplace_back(node(k), row_[at(k)] * gain);
+      if (k != sensor && gain != 0) out.entry.emplace_back(sum(k), row_[at(k)] * gain);
     }
     return out;
   }
@@ -71,10 +81,20 @@ class Signals {
  private:
   using StateSpace = elements::StateSpace;
   Index node(Index k) const { return nodes_[at(k)]; }
+  /// In whose row A x + B y stands.
+  Index sum(Index k) const { return sum_[at(k)]; }
   /// 1/s: what a row is divided by, so that its entries are of one size.
   double rate_of_row(Index k) const {
     const StateSpace& s = loop_.system;
     return std::max(s.A.row(k).cwiseAbs().maxCoeff(), s.B.row(k).cwiseAbs().maxCoeff());
+  }
+  /// x' = w f(q) with w q = A x + B y, w the amplifier's bandwidth, f what the rate is bounded to.
+  void add_limit(Index k, std::vector<std::size_t>& terms) {
+    const double gain = row_[at(k)] * law_.amplifier_bandwidth;
+    const double limit = law_.rate_limit / (law_.amplifier_bandwidth * loop_.current_unit);
+    terms.push_back(a_.builder.add(elements::SignalState{0.0, gain}, {sum(k)}, "signals"));
+    terms.push_back(a_.builder.add(elements::RateLimit{row_[at(k)], gain, limit}, {node(k), sum(k)},
+                                   "rate limits"));
   }
   void add_sensor(Index k, std::vector<std::size_t>& terms) {
     const auto add = [&](auto sensor) {
@@ -85,12 +105,12 @@ class Signals {
         sensor.constant -= gain * law_.setpoint[static_cast<Index>(axis)];
       }
       sensor.offset = shaft_.offset;
-      terms.push_back(a_.builder.add(sensor, {node(k), shaft_.node}, "sensors"));
+      terms.push_back(a_.builder.add(sensor, {sum(k), shaft_.node}, "sensors"));
       if (a_.mesh.nodes[at(housing_.node)].kind == meshes::NodeKind::ground) return;
       sensor.gain *= -1.0;
       sensor.constant = 0.0;
       sensor.offset = housing_.offset;
-      terms.push_back(a_.builder.add(sensor, {node(k), housing_.node}, "sensors"));
+      terms.push_back(a_.builder.add(sensor, {sum(k), housing_.node}, "sensors"));
     };
     if (varies(law_.power))
       add(elements::Sensor<true>{});
@@ -102,7 +122,7 @@ class Signals {
   const model::MagneticBearing& law_;
   ControlLoop loop_;
   meshes::Place shaft_, housing_;
-  std::vector<Index> nodes_;
+  std::vector<Index> nodes_, sum_;
   std::vector<double> row_;  ///< N s/m
 };
 

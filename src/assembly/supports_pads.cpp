@@ -280,6 +280,10 @@ void add_ring(Assembly& a, const model::Bearing& b, const meshes::BearingNodes& 
     s.film = true;
     s.gap = clearance;
     s.displacement = std::max(0.0, ring->reach(at));
+    // at its trailing edge a pad is closer than at its pivot
+    for (const auto& p : now)
+      if (p.film < (1.0 - SupportCondition::believed) * s.gap)
+        s.displacement = std::max(s.displacement, s.gap - p.film);
     s.load = load.norm();
     s.detail = describe_worst(now);
     if (const std::size_t pad = ring->tipping(ring->journal(at)))

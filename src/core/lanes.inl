@@ -8,10 +8,12 @@ constexpr int width = 4;
 #else
 constexpr int width = 2;
 #endif
+// NOLINTBEGIN(modernize-use-using): attributes of vectors
 typedef double T __attribute__((vector_size(8 * width)));
 typedef double Unaligned
     __attribute__((vector_size(8 * width), aligned(8), may_alias));  // in memory
 typedef long long Mask __attribute__((vector_size(8 * width)));
+// NOLINTEND(modernize-use-using)
 
 WHIRL_INLINE T all(double s) { return T{} + s; }
 WHIRL_INLINE bool every(Mask m) {

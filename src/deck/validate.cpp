@@ -143,6 +143,7 @@ std::vector<WholeModelProblem> check_model(const model::Model& m) {
   check_places(m, out);
   check_controllers(m, out);
   check_cracks(m, out);
+  check_cavitation(m, out);
   check_clamps(m, out);
   check_preloads(m, out);
   check_undeformed(m, out);

@@ -36,6 +36,8 @@ void check_maps(const model::Model& m, Problems& out);
 void check_controllers(const model::Model& m, Problems& out);
 /// Steps that a cracked shaft does not go with.
 void check_cracks(const model::Model& m, Problems& out);
+/// What films that conserve mass do not go with.
+void check_cavitation(const model::Model& m, Problems& out);
 /// A prescribed angle is held in small motions: the shaft is clamped there.
 void check_clamps(const model::Model& m, Problems& out);
 /// Steps linearised about the rotor as drawn.

@@ -125,6 +125,43 @@ void check_cracks(const model::Model& m, Problems& out) {
   }
 }
 
+namespace {
+
+/// The bearing's film conserves mass.
+bool conserves_mass(const model::BearingLaw& law) {
+  const auto of = [](const auto& x) -> bool {
+    if constexpr (requires { x.flow.cavitation; })
+      return x.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
+    else
+      return false;
+  };
+  return std::visit(of, law);
+}
+
+}  // namespace
+
+void check_cavitation(const model::Model& m, Problems& out) {
+  for (const model::Bearing& b : m.bearings) {
+    if (!conserves_mass(b.law)) continue;
+    if (b.to && m.shafts[b.to->shaft].rotating && m.shafts[b.to->shaft].speed_ratio != 0)
+      report(
+          out, "E47",
+          fmt::format("bearing '{}': the film conserves mass, and its housing, shaft '{}', turns",
+                      b.name, m.shafts[b.to->shaft].name),
+          "cavitation = \"reynolds\" in the bearing", b.where);
+    for (const model::Step& s : m.steps) {
+      const auto* t = std::get_if<model::TransientStep>(&s.law);
+      if (!t || t->linear) continue;
+      report(out, "E47",
+             fmt::format("step '{}': the film of bearing '{}' conserves mass, and in a motion what "
+                         "its ruptured stretches hold depends on all that went before, which is "
+                         "not followed",
+                         s.name, b.name),
+             "cavitation = \"reynolds\" in the bearing, or linear = true in the step", s.where);
+    }
+  }
+}
+
 void check_maps(const model::Model& m, Problems& out) {
   for (const auto& s : m.steps) {
     const auto* map = std::get_if<model::CriticalMapStep>(&s.law);

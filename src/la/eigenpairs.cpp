@@ -21,7 +21,7 @@ void Eigenpairs::suggest(std::vector<Pair>& found, Complex lambda, const VecXc& 
   };
   if (!real_problem || std::abs(lambda.imag()) > 1e-6 * std::abs(lambda)) return push(lambda, z);
   push(lambda.real(), z.real().cast<Complex>());
-  if (lambda.imag() != 0.0) push(lambda.real(), z.imag().cast<Complex>());
+  if (lambda.imag() != 0.0 && !z.imag().isZero(0.0)) push(lambda.real(), z.imag().cast<Complex>());
 }
 
 void Eigenpairs::make_real(Pair& p) {

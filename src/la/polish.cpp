@@ -371,8 +371,10 @@ void Polisher::separate(std::span<Pair*> group) {
     w.cwiseAbs().maxCoeff(&big);
     w *= 1.0 / w(big);
     if (s.real && std::abs(p.lambda.imag()) < 1e-9 * std::abs(p.lambda)) {
+      // of a double root rounding may make a pair: its vectors are the real and the imaginary part
+      const bool second = p.lambda.imag() < 0.0 && w.imag().norm() > 1e-3 * w.norm();
       p.lambda = p.lambda.real();
-      w = w.real().cast<Complex>().eval();
+      w = (second ? VecX(w.imag()) : VecX(w.real())).cast<Complex>();
     }
     p.x = s.X * w;
     p.Mx = s.MX * w;

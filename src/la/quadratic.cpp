@@ -80,8 +80,10 @@ ModeSolver::Impl::Harvest ModeSolver::Impl::harvest(Krylov<Scalar>& k, bool exha
     if (size <= 1e-12 * std::abs(ritz.theta[0])) break;  // infinite eigenvalues
     const Complex lambda = shift + 1.0 / ritz.theta[j];
     if (1.0 / size - offset > radius) break;
-    const bool lower = lambda.imag() < 0.0;
-    if (lower && std::is_same_v<Scalar, double>) continue;
+    // Of a pair that is hardly one both vectors come real, its real and its imaginary part.
+    const bool conjugate =
+        lambda.imag() < 0.0 && !ritz.y.col(static_cast<Index>(j)).imag().isZero(0.0);
+    if (conjugate && std::is_same_v<Scalar, double>) continue;
     const VecXc z = k.searched_basis() * ritz.y.col(static_cast<Index>(j));
     const std::size_t before = h.found.size();
     suggest(h.found, lambda, z, std::is_same_v<Scalar, double>, &h.vectors);
@@ -150,8 +152,10 @@ bool ModeSolver::Impl::solve_dense(const CountRegion* within) {
     // Eigenvalues at infinity come out as rounding; double ones as its square root.
     if (!(std::abs(theta) > 1e-9 * largest)) continue;
     const Complex lambda = s + 1.0 / theta;
-    if (lambda.imag() < 0.0 || (within && !within->contains(lambda))) continue;
-    suggest(found, lambda, eig.vectors.col(j), true, nullptr);
+    if (within && !within->contains(lambda)) continue;
+    const bool real_vector = eig.vectors.col(j).imag().isZero(0.0);
+    if (lambda.imag() >= 0.0 || real_vector)
+      suggest(found, lambda, eig.vectors.col(j), true, nullptr);
   }
   const bool any = take(found, true);
   sort_known();

@@ -98,7 +98,10 @@ struct FilmHeat {
 /// How oil flows in a film beyond the isoviscous laminar one at ambient pressure.
 struct FilmFlow {
   enum class Regime { laminar, ng_pan } regime = Regime::laminar;
-  double supply_pressure = 0;    ///< in grooves and between pads, above ambient, Pa
+  double supply_pressure = 0;  ///< in grooves and between pads, above ambient, Pa
+  /// What oil there is where a film has ruptured: as much as the next film needs, or what leaves the
+  /// one before it.
+  enum class Cavitation { reynolds, mass_conserving } cavitation = Cavitation::reynolds;
   std::optional<FilmHeat> heat;  ///< nothing: one viscosity everywhere
 };
 

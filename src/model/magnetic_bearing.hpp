@@ -36,7 +36,7 @@ struct TransferFunction {
   std::vector<double> numerator, denominator;
   double gain = 0;  ///< A/m; 0: the stage has no dimension
 };
-/// x' = A x + B u, y = C x + D u with one input and one output, as [A B; C D].
+/// x' = A x + B u, y = C x + D u as [A B; C D], with one input and one output, or one an axis.
 struct StateSpaceStage {
   MatX matrix;
   double gain = 0;  ///< A/m; 0: the stage has no dimension
@@ -60,6 +60,7 @@ struct MagneticBearing {
   double bias = 0, gap = 0;     ///< A, m, of the nonlinear force law; 0: the linear one
   double saturation = 0;        ///< largest force of a pair of poles, N; 0: none
   double current_limit = 0;     ///< A; 0: none
+  double rate_limit = 0;        ///< of the current, A/s; 0: none
   double angle = 0;             ///< of axis 1, rad, from y towards z; axis 2 is 90 degrees further
   std::optional<Location> sensor_at;
   double sensor_bandwidth = 0;     ///< rad/s, of first order; 0: it follows at once
@@ -70,7 +71,9 @@ struct MagneticBearing {
   Controller control;
   Controller second;  ///< of axis 2; empty: as axis 1
   Controller cross;   ///< empty: none
-  LawPtr power;       ///< factor on the forces; null: on
+  /// Displacements along both axes to what is taken from their currents, in place of the others.
+  std::optional<StateSpaceStage> both;
+  LawPtr power;  ///< factor on the forces; null: on
 
   const Controller& of_axis(std::size_t k) const {
     return k == 1 && !second.empty() ? second : control;

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace whirl::run {
 
 namespace {
@@ -64,9 +66,16 @@ Error explain_overload(const Job& job, const analysis::SteadySystem& running,
     return Error(failed.exit(), std::move(d));
   }
   // something did carry a share of it: the load is the matter, not a missing support
-  d.code = "E76";
-  d.message =
-      fmt::format("no equilibrium found: the supports carry {:.3g} of the load; there", done);
+  const bool hot =
+      fails == 1.0 && std::any_of(job.built.films.begin(), job.built.films.end(),
+                                  [](const assembly::FilmBearing& b) { return b.heated; });
+  if (hot) {  // all of it is carried as long as temperatures stay: they are the matter
+    d.message += "; with the temperatures it began with,";
+  } else {
+    d.code = "E76";
+    d.message =
+        fmt::format("no equilibrium found: the supports carry {:.3g} of the load; there", done);
+  }
   const Conditions now(job, last->state);
   const char* sep = " ";
   for (const SupportCondition& c : job.built.conditions) {
@@ -80,7 +89,7 @@ Error explain_overload(const Job& job, const analysis::SteadySystem& running,
     sep = ", ";
     if (d.where.line == 0) d.where = c.where;
   }
-  d.hint = hint;
+  if (!hot) d.hint = hint;
   return Error(failed.exit(), std::move(d));
 }
 

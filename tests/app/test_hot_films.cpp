@@ -257,3 +257,50 @@ TEST(HotFilms, MotionKeepsTemperatures) {
   EXPECT_NEAR(kept.at("DE").number(), 1.0, 1e-3);
   EXPECT_FALSE(d.says("kept the temperatures")) << d.log;
 }
+
+// The upper pad opens from its groove: what oil that lets go fills less of it again than Reynolds'
+// condition has it.
+TEST(HotFilms, FilmsThatConserveMass) {
+  const std::string bearing = grooved + "groove_at = \"50 deg\"\nviscosity = \"20 mPa.s\"\n";
+  const Films reynolds = films_of(bearing, 2, 3e3),
+              film = films_of(bearing + "cavitation = \"mass_conserving\"\n", 2, 3e3);
+  EXPECT_NEAR(film.all("film load [N]"), 3e3, 0.01);
+  EXPECT_LT(film.pad(0, "film load [N]"), 0.6 * reynolds.pad(0, "film load [N]"));
+  EXPECT_LT(film.all("side flow [m^3/s]"), 0.7 * reynolds.all("side flow [m^3/s]"));
+  EXPECT_LT(film.all("smallest film [m]"), reynolds.all("smallest film [m]"));
+  EXPECT_NEAR(film.all("power loss [W]"), -speed * film.torque, 1e-9 * film.all("power loss [W]"));
+  for (const std::size_t k : {0u, 1u}) {
+    const double in = film.pad(k, "inflow [m^3/s]");
+    EXPECT_NEAR(in, film.pad(k, "outflow [m^3/s]") + film.pad(k, "side flow [m^3/s]"), 1e-12 * in);
+  }
+}
+
+// Equilibria and small motions know such films; a motion at large is refused.
+TEST(HotFilms, WhereFilmsConserveMass) {
+  const std::string film = grooved + "viscosity = \"20 mPa.s\"\ncavitation = \"mass_conserving\"\n";
+  const std::string drive = "[[drive]]\nat = \"a:start\"\ntype = \"speed\"\nspeed = \"4000 rpm\"\n";
+  const std::string moves =
+      "[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"1 ms\"\n" + drive;
+  const DeckRun refused(rotor(film, 10e3, moves));
+  EXPECT_EQ(refused.exit, 3) << refused.log;
+  EXPECT_TRUE(refused.says("error[E47]") && refused.says("'DE'") && refused.says("reynolds"))
+      << refused.log;
+  const DeckRun small(
+      rotor(film, 10e3,
+            "[[step]]\nname = \"m\"\ntype = \"modal\"\nspeed = \"4000 rpm\"\nmodes = 2\n"
+            "[[step]]\nname = \"t\"\ntype = \"transient\"\nlinear = true\nduration = \"1 ms\"\n" +
+                drive));
+  EXPECT_EQ(small.exit, 0) << small.log;
+  const auto fails = [](const std::string& bearing, const char* text) {
+    const DeckRun d(rotor(bearing, 4e3));
+    EXPECT_NE(d.exit, 0) << bearing;
+    EXPECT_TRUE(d.says("error[E26]") && d.says(text)) << d.log;
+  };
+  std::string plain = film;
+  plain.replace(plain.find("two_grooves"), 11, "plain");
+  fails(plain, "no groove");
+  fails(grooved +
+            "iso_vg = 32\ncavitation = \"mass_conserving\"\n"
+            "heat = { supply_temperature = \"45 degC\" }\n",
+        "counts a ruptured film as full");
+}

@@ -83,6 +83,53 @@ TEST(MagneticBearings, ALoopWhoseRootsCannotBeCountedHasNoZone) {
   EXPECT_TRUE(d.says("W07")) << d.log;
 }
 
+// A controller of both axes as one set of matrices: p + d s/(1 + lag s) on the axes and a gain across
+// them, as control and cross have it.
+TEST(MagneticBearings, OneControllerOfBothAxes) {
+  constexpr double p = 1.5e4, d = 32, lag = 53e-6, across = 600;
+  const auto entry = [](int row, int column, double value) {
+    return fmt::format("[{}, {}, {:.17g}], ", row, column, value);
+  };
+  std::string rows;
+  for (const int k : {1, 2}) {
+    rows += entry(k, k, -1 / lag) + entry(k, k + 2, 1 / lag);
+    rows += entry(k + 2, k, -d / lag) + entry(k + 2, k + 2, p + d / lag);
+  }
+  rows += entry(3, 4, across) + entry(4, 3, -across);
+  const std::string both =
+      "[bearing.control_both]\norder = 2\ngain = \"1 A/m\"\ncolumns = [\"row\", \"column\", "
+      "\"value\"]\nrows = [" +
+      rows + "]\n";
+  const std::string cross =
+      fmt::format("[[bearing.cross]]\ntype = \"pid\"\np = \"{} A/m\"\n", across);
+  const auto modes_of = [](const std::string& bearing) {  // runs of one test share a folder
+    const DeckRun run(mass(bearing, modal));
+    EXPECT_EQ(run.exit, 0) << run.log;
+    return run.csv("m_modes.csv");
+  };
+  const Columns got = modes_of(magnet + both), want = modes_of(magnet + control(p, 0, d) + cross),
+                without = modes_of(magnet + control(p, 0, d));
+  ASSERT_EQ(got.rows.size(), want.rows.size());
+  ASSERT_GE(got.rows.size(), 2u);
+  for (std::size_t k = 0; k < got.rows.size(); ++k)
+    for (const char* column : {"frequency [Hz]", "damping ratio [-]"})
+      EXPECT_NEAR(got.rows[k][got.column(column)], want.rows[k][want.column(column)],
+                  1e-9 * std::abs(want.rows[k][want.column(column)]));
+  // the gain across the axes does something
+  EXPECT_GT(std::abs(got.rows[0][got.column("damping ratio [-]")] -
+                     without.rows[0][without.column("damping ratio [-]")]),
+            1e-4);
+  const auto fails = [](const std::string& bearing, const char* code, const char* text) {
+    const DeckRun run(mass(bearing, still));
+    EXPECT_NE(run.exit, 0);
+    EXPECT_TRUE(run.says(code) && run.says(text)) << run.log;
+  };
+  fails(magnet + both + control(p, 0, d), "error[E26]", "both axes");
+  std::string large = both;
+  large.replace(large.find("[3, 4"), 5, "[3, 5");
+  fails(magnet + large, "error[E14]", "4 rows and columns");
+}
+
 // m 30 kg, k_s 1.5e6 N/m, k_i 250 N/A, PID 1.5e4 A/m, 1e5 A/(m s), 32 A s/m with lag 53 us, amplifier
 // 1200 Hz, sensor 4000 Hz: roots of the characteristic polynomial, and the largest |1/(1 + L)|.
 TEST(MagneticBearings, PolesAndSensitivityOfARigidRotor) {
@@ -136,6 +183,63 @@ TEST(MagneticBearings, MotionUnderItsWeight) {
     EXPECT_NEAR((*row)[z], x.z, 3e-10);
     EXPECT_NEAR((*row)[current], x.i, 1e-5);
   }
+}
+
+// The mass is held, the setpoint 0.1 mm away: 1.5 A are asked for at once, and the current follows
+//   i' = D/(1 + |D/r|^8)^(1/8), D = w (1.5 A - i), w = 2 pi 1200 Hz, r = 2000 A/s (D begins at
+// 11310 A/s), t(i) by Simpson's rule.
+TEST(MagneticBearings, CurrentOfLimitedRate) {
+  const std::string steps =
+      "[[step]]\nname = \"t\"\ntype = \"transient\"\nduration = \"3 ms\"\nstart = \"rest\"\n"
+      "integrator = { tolerance = 1e-8 }\n";
+  const std::string amplifier =
+      "current_stiffness = \"250 N/A\"\nposition_stiffness = \"1.5e6 N/m\"\namplifier_bandwidth = "
+      "\"1200 Hz\"\nsetpoint = [\"0 um\", \"100 um\"]\n";
+  const std::string gain = "[[bearing.control]]\ntype = \"pid\"\np = \"1.5e4 A/m\"\n";
+  const auto run = [&](const std::string& limit) {
+    std::string deck = mass(amplifier + limit + gain, steps);
+    deck.replace(deck.find("\"x\", "), 5, "\"x\", \"y\", \"z\", ");
+    const DeckRun d(deck + "every = \"0.1 ms\"\nquantities = [\"control\", \"energy\"]\n");
+    EXPECT_EQ(d.exit, 0) << d.log;
+    return d.csv("t.csv");
+  };
+  constexpr double w = 2 * M_PI * 1200, goal = 1.5, r = 2000;
+  const Columns f = run(""), b = run("max_current_rate = \"2000 A/s\"\n");
+  const std::size_t current = b.column("bearing AMB current.2 [A]");
+  for (const auto& row : f.rows)
+    EXPECT_NEAR(row[current], goal * (1 - std::exp(-w * row[0])), 1e-6) << row[0];
+  const auto time_to = [&](double i) {
+    constexpr int n = 2000;
+    double sum = 0;
+    for (int k = 0; k <= n; ++k) {
+      const double D = w * (goal - i * k / n);
+      sum += (k == 0 || k == n ? 1
+              : k % 2 == 1     ? 4
+                               : 2) *
+             std::pow(1 + std::pow(D / r, 8), 0.125) / D;
+    }
+    return sum * i / (3 * n);
+  };
+  ASSERT_GT(b.rows.size(), 20u);
+  for (const auto& row : b.rows)
+    if (row[current] < 0.99 * goal) {
+      EXPECT_NEAR(time_to(row[current]), row[0], 2e-8) << row[current];
+    }
+  EXPECT_NEAR(b.last()["bearing AMB current.2 [A]"], goal, 1e-4);
+}
+
+// Small motions know no limit: poles and sensitivity are the exact ones of the linear loop.
+TEST(MagneticBearings, SmallMotionsBelowTheLimitOfTheRate) {
+  const DeckRun d(mass(magnet + "max_current_rate = \"500 A/s\"\n" + control(1.5e4, 1e5, 32),
+                       still + modal + loops));
+  ASSERT_EQ(d.exit, 0) << d.log;
+  const Columns modes = d.csv("m_modes.csv"), s = d.csv("s_sensitivity.csv");
+  ASSERT_EQ(modes.rows.size(), 2u);
+  for (const auto& row : modes.rows)
+    EXPECT_NEAR(row[modes.column("frequency [Hz]")] * 2 * M_PI, 247.593409226, 1e-7);
+  for (const auto& row : s.rows)
+    EXPECT_NEAR(row[s.column("largest sensitivity [-]")], 1.968359750, 1e-8);
+  EXPECT_TRUE(d.says("zone A")) << d.log;
 }
 
 // What a table of coefficients says of it: -k_s + k_i G(i w) at the frequency of the spin.

@@ -122,7 +122,7 @@ class ModelDump {
     each("oil", std::array{o.viscosity, o.grade, o.temperature, o.density, o.thinning});
   }
   void flow(const model::FilmFlow& f) {
-    each("flow", std::array{double(f.regime), f.supply_pressure});
+    each("flow", std::array{double(f.regime), f.supply_pressure, double(f.cavitation)});
     if (!f.heat) return;
     const model::FilmHeat& h = *f.heat;
     each("heat", std::array{h.supply_temperature, h.specific_heat, h.conductivity, double(h.feed),
@@ -185,11 +185,13 @@ class ModelDump {
     each("gain", std::array{s.gain});
   }
   void law(const model::MagneticBearing& x) {
-    each("magnet", std::array{x.per_current, x.per_displacement, x.bias, x.gap, x.saturation,
-                              x.current_limit, x.angle, x.sensor_bandwidth, x.amplifier_bandwidth,
-                              x.delay, double(x.delay_order), x.setpoint.x(), x.setpoint.y()});
+    each("magnet",
+         std::array{x.per_current, x.per_displacement, x.bias, x.gap, x.saturation, x.current_limit,
+                    x.rate_limit, x.angle, x.sensor_bandwidth, x.amplifier_bandwidth, x.delay,
+                    double(x.delay_order), x.setpoint.x(), x.setpoint.y()});
     if (x.sensor_at) at("sensor", *x.sensor_at);
     law("power", x.power);
+    if (x.both) stage(*x.both);
     for (const model::Controller* c : {&x.control, &x.second, &x.cross})
       for (const model::ControlStage& s : *c)
         std::visit([this](const auto& y) { stage(y); }, s);

@@ -121,6 +121,26 @@ struct OnFixedGrid {
 
 }  // namespace
 
+TEST(FilmFlow, ElementsSideBySideAreAsOneByOne) {
+  // oil that is alike everywhere goes several elements at a time, any other oil one by one: 4, 5,
+  // 7, 12 and 15 elements, films at both ends of a pad and between
+  const PadMedium alike;
+  for (const double grid : {24.0, 30.0, 42.0, 72.0, 90.0}) {
+    const PadFilm pad(0.3, 4.2, false, 2.5, grid);
+    for (const double turn : {0.0, 1.3, 2.9, 4.8}) {
+      const Vec2 e(0.6 * std::cos(turn), 0.6 * std::sin(turn)), W(0.3, -0.8);
+      double fed = 0.0;
+      const Vec2 G = pad.load(e, W), one_by_one = pad.load(e, W, alike, fed);
+      EXPECT_LT((G - one_by_one).norm(), 1e-12 * G.norm()) << grid << " " << turn;
+      const PadLoad load = pad.load_and_slopes(e, W);
+      const PadFlowLoad want = pad.load_and_slopes(e, W, alike);
+      EXPECT_LT((load.G - want.G).norm(), 1e-12 * G.norm());
+      EXPECT_LT((load.by_e - want.by_e).norm(), 1e-10 * want.by_e.norm());
+      EXPECT_LT((load.by_W - want.by_W).norm(), 1e-10 * want.by_W.norm());
+    }
+  }
+}
+
 TEST(FilmFlow, Conformance) {
   ConformanceOptions o;
   o.u = 1e-2 * c;

@@ -55,8 +55,24 @@ TEST(MagneticBearing, SignalsConform) {
   o.signals = {0};
   check_kernel(SignalState{3.0, -2.0}, o);
   check_kernel(SignalLink{1.5}, o);
+  for (const double limit : {0.05, 1.0, 20.0})
+    check_kernel(RateLimit{3.0, 2.0, limit}, o);
   check_kernel(Sensor<false>{Vec3(0, 2e5, -1e5), 0.1, 30.0, nullptr}, o);
   check_kernel(Sensor<true>{Vec3(0, 2e5, -1e5), 0.1, 30.0, make_polynomial({0.5, 0.2})}, o);
+}
+
+// Small demands are followed, large ones as far as the limit; 2^(-1/8) of it where both are alike.
+TEST(MagneticBearing, RateLimit) {
+  const RateLimit r{1.0, 1.0, 2.5};
+  EXPECT_NEAR(r.followed(0.1).value, 0.1, 1e-12);
+  EXPECT_EQ(r.followed(0.0).slope, 1.0);
+  EXPECT_NEAR(r.followed(-2.5).value, -2.5 * std::pow(2.0, -0.125), 1e-14);
+  EXPECT_NEAR(r.followed(100.0).value, 2.5, 1e-9);
+  EXPECT_NEAR(r.followed(-1e30).value, -2.5, 1e-12);
+  const double h = 1e-5;
+  for (const double q : {-4.0, -2.2, 0.3, 2.5, 3.1})
+    EXPECT_NEAR(r.followed(q).slope, (r.followed(q + h).value - r.followed(q - h).value) / (2 * h),
+                1e-8);
 }
 
 // dF/di = k_i, dF/dx = k_s in the middle; k_i i alone there, by the difference of two squares.

@@ -250,6 +250,49 @@ TEST(QuadraticModes, MatchesDenseOnRandomProblems) {
   }
 }
 
+TEST(QuadraticModes, DoubleRealRootsComeTwice) {
+  // Rounding makes a pair of a double real root when the vectors found for it are taken apart: both
+  // were given the pair's real part, and the second was lost. lambda^2 + 10 lambda + 20 stands
+  // twice in the diagonal of T^-1 Q S^-1.
+  constexpr Index nodes = 3, n = 6 * nodes;
+  const BlockPattern p(nodes, {{0, 1}, {0, 2}, {1, 2}});
+  for (unsigned seed = 1; seed <= 9; ++seed) {
+    std::mt19937 rng(seed);
+    std::uniform_real_distribution<double> u(-0.15, 0.15);
+    const auto mixing = [&] {
+      return MatX(MatX::Identity(n, n) + MatX::NullaryExpr(n, n, [&] { return u(rng); }));
+    };
+    const MatX T = mixing(), S = mixing();
+    VecX mass = VecX::Ones(n), damping(n), stiffness(n);
+    for (Index i = 0; i < n; ++i) {
+      damping[i] = i < 2 ? 10.0 : 0.02 * static_cast<double>(i);
+      stiffness[i] = i < 2 ? 20.0 : std::pow(5.5 + static_cast<double>(i), 2);
+    }
+    MCK m(p);
+    const auto fill = [&](BlockMatrix<6>& to, const VecX& diagonal) {
+      const MatX full = T * diagonal.asDiagonal() * S;
+      for (Index i = 0; i < nodes; ++i)
+        for (Index j = 0; j < nodes; ++j)
+          to.block(p.slot(i, j)) = full.block<6, 6>(6 * i, 6 * j);
+    };
+    fill(m.M, mass);
+    fill(m.C, damping);
+    fill(m.K, stiffness);
+    for (const Index dense_below : {0, 1000}) {
+      ModeOptions o;
+      o.count = 0;
+      o.max_frequency = 9.0;
+      o.dense_below = dense_below;
+      const auto modes = quadratic_modes(m, all_active(p), o);
+      for (const double root : {-5.0 - std::sqrt(5.0), -5.0 + std::sqrt(5.0)}) {
+        const auto at_root = [&](const Mode& mode) { return std::abs(mode.lambda - root) < 1e-9; };
+        EXPECT_EQ(std::count_if(modes.begin(), modes.end(), at_root), 2)
+            << seed << " " << dense_below << " " << root;
+      }
+    }
+  }
+}
+
 TEST(QuadraticModes, RotorsMatchDenseInAllRegimes) {
   const BlockPattern p(9, chain(9));
   const Mask a = all_active(p);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 
 namespace whirl::analysis {
 
@@ -91,10 +92,15 @@ void EquilibriumSolver::balance_kept(double Omega, Equilibrium& out) {
         if (k.check) k.check(w);
       return;
     }
-    const VecX next = iteration.next(now, residual);
+    VecX change = iteration.next(now, residual) - now;
     system::State start = s;
-    start.frames.kept.assign(next.data(), next.data() + next.size());
-    auto moved = try_solve(Omega, &start);
+    std::optional<Equilibrium> moved;
+    constexpr int halvings = 6;  // the journal may not find its place over so large a change
+    for (int k = 0; !moved && k < halvings; ++k, change *= 0.5) {
+      const VecX next = now + change;
+      start.frames.kept.assign(next.data(), next.data() + next.size());
+      moved = try_solve(Omega, &start);
+    }
     if (!moved)
       throw run_error("E76",
                       fmt::format("no equilibrium found with the temperatures of {}: {}",

@@ -110,6 +110,14 @@ void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting, d
   v.quantity("supply_pressure", f.supply_pressure, "bar", not_negative,
              tilting ? "of the oil between the pads and behind them, above ambient"
                      : "of the oil in the grooves, above ambient");
+  v.choice("cavitation", f.cavitation,
+           {{"reynolds",
+             "a film forms and ruptures without a slope of its pressure, as if oil were "
+             "wherever it forms"},
+            {"mass_conserving",
+             "after Jakobsson, Floberg and Olsson: ruptured film carries on what "
+             "oil there is, and the next film forms where that fills the gap"}},
+           "how much oil there is where the film has ruptured");
   model::FilmHeat heat;
   const bool heated = v.table(
       optional("heat", "one viscosity everywhere"),
@@ -120,6 +128,10 @@ void flow_of_film(Visitor& v, model::FilmFlow& f, model::Oil& o, bool tilting, d
   if (!v.clean()) return;
   check_oil(v, o, given);
   if (!v.clean()) return;
+  if (heated && f.cavitation == model::FilmFlow::Cavitation::mass_conserving)
+    v.error("E26", "cavitation",
+            "the heat balance counts a ruptured film as full, a film that conserves mass does not",
+            "keep one of the two");
   if (!heated && given.thinning)
     v.error("E05", "thinning", "a viscosity that falls with temperature needs 'heat'",
             "heat = { supply_temperature = \"40 degC\" }");
@@ -194,9 +206,13 @@ void describe(Visitor& v, model::FiniteJournal& b) {
   };
   v.alternatives(required("shape"), shapes, "shape of the bearing surface");
   v.integer("grid", b.nodes, between(24, 360), "points round the circumference");
-  const bool fed = b.flow.supply_pressure > 0, heated = b.flow.heat.has_value();
-  if (v.clean() && b.shape == Shape::plain && (fed || heated))
-    v.error("E26", fed ? "supply_pressure" : "heat",
+  const bool fed = b.flow.supply_pressure > 0, heated = b.flow.heat.has_value(),
+             conserves = b.flow.cavitation == model::FilmFlow::Cavitation::mass_conserving;
+  if (v.clean() && b.shape == Shape::plain && (fed || heated || conserves))
+    v.error("E26",
+            fed      ? "supply_pressure"
+            : heated ? "heat"
+                     : "cavitation",
             "a plain cylinder has no groove through which oil could come",
             "shape = \"two_grooves\", or \"lobes\"");
 }

@@ -66,19 +66,21 @@ void describe(Visitor& v, MatrixEntry& e) {
   v.number(required("value"), e.value, any, "in s, with input and output as numbers");
 }
 
-void describe_stage(Visitor& v, model::StateSpaceStage& s) {
+/// States, factor and entries of [A B; C D] with so many inputs and outputs.
+void state_space(Visitor& v, model::StateSpaceStage& s, int ways, const Key& gain,
+                 const char* gain_doc) {
   int order = 1;
   v.integer(required("order"), order, between(1, 60), "number of states n");
-  v.quantity(optional("gain", "none: the stage has no dimension"), s.gain, "A/m", any,
-             "factor that makes current of displacement");
-  s.matrix = MatX::Zero(order + 1, order + 1);
+  v.quantity(gain, s.gain, "A/m", any, gain_doc);
+  const int size = order + ways;
+  s.matrix = MatX::Zero(size, size);
   const auto add = [&](Visitor& w) {
     MatrixEntry e;
     describe(w, e);
     if (!w.clean()) return;
-    if (e.row > order + 1 || e.column > order + 1)
-      w.error("E14", e.row > order + 1 ? "row" : "column",
-              fmt::format("the matrix [A B; C D] has {} rows and columns", order + 1));
+    if (e.row > size || e.column > size)
+      w.error("E14", e.row > size ? "row" : "column",
+              fmt::format("the matrix [A B; C D] has {} rows and columns", size));
     else
       s.matrix(e.row - 1, e.column - 1) = e.value;
   };
@@ -90,6 +92,11 @@ void describe_stage(Visitor& v, model::StateSpaceStage& s) {
          true,
          "entries of [A B; C D], x' = A x + B u, y = C x + D u, one row an entry; those left out "
          "are zero");
+}
+
+void describe_stage(Visitor& v, model::StateSpaceStage& s) {
+  state_space(v, s, 1, optional("gain", "none: the stage has no dimension"),
+              "factor that makes current of displacement");
 }
 
 }  // namespace
@@ -147,7 +154,10 @@ void check(Visitor& v, const model::MagneticBearing& b) {
                         units::display(b.per_current * b.bias / b.gap, "N/m")),
             "position_stiffness = current_stiffness bias_current/gap times the cosine of half the "
             "angle between the poles of a pair");
-  else if (b.control.empty())
+  else if (b.both && !(b.control.empty() && b.second.empty() && b.cross.empty()))
+    v.error("E26", "control_both", "the controller of both axes is given, and others beside it",
+            "keep one of the two");
+  else if (b.control.empty() && !b.both)
     v.error("E05", nullptr, "the magnetic bearing has no controller",
             "[[bearing.control]] with type = \"pid\", p, i, d, lag");
   else
@@ -177,6 +187,9 @@ void describe(Visitor& v, model::MagneticBearing& b) {
              "largest force of one pair of poles; it sets in smoothly");
   v.quantity(optional("max_current", "none"), b.current_limit, "A", positive,
              "largest control current; it sets in smoothly");
+  v.quantity(optional("max_current_rate", "none"), b.rate_limit, "A/s", positive,
+             "largest rate of the current: the amplifier's voltage over the coil's inductance; it "
+             "sets in smoothly");
   v.quantity("angle", b.angle, "deg", any,
              "direction of axis 1, from y towards z; axis 2 is 90 deg further");
   model::Location at;
@@ -198,6 +211,15 @@ void describe(Visitor& v, model::MagneticBearing& b) {
   v.list(optional("cross", "none"), b.cross,
          "cross-axis control, stages in series: what it makes of the displacement along axis 2 is "
          "taken from the current of axis 1, what it makes of that along axis 1 added to axis 2");
+  model::StateSpaceStage both;
+  const bool coupled = v.table(
+      optional("control_both", "none"),
+      [&](Visitor& w) {
+        state_space(w, both, 2, required("gain"), "factor that makes current of displacement");
+      },
+      "one controller of both axes, as matrices, in the deck or from a file, in place of control: "
+      "inputs are the displacements along axes 1 and 2, outputs what is taken from their currents");
+  if (coupled) b.both = both;
   describe_law(v, optional("power", "1"), b.power, "",
                "factor on the forces and on what the sensors see, against time: 0 off, 1 on; steps "
                "without time take it at 0");

@@ -1,0 +1,4 @@
+// Stretches of film for the instruction set the whole program is built for.
+#define WHIRL_LANES_TABLE base_kernels
+#define WHIRL_LANES_ISA "baseline"
+#include <elements/films/film_lanes.inl>
