@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ class StepAccess {
   virtual void displacements(double t, std::span<const Point> points, std::vector<Vec2>& out) {
     lateral(at(t), points, out);
   }
+  /// time::Integrator::residual_work of the step.
+  virtual std::optional<double> residual_work() { return std::nullopt; }
 
  protected:
   static void lateral(const Snapshot& s, std::span<const Point> points, std::vector<Vec2>& out) {
@@ -175,6 +178,10 @@ class EnergyBalance final : public Observer {
 
  private:
   std::vector<double> jumps_;
+  /// Where the power supplied is what closes the balance but for the work of the residual, its
+  /// integral is known without it.
+  void step_by_residual(StepAccess& s, double work);
+  bool jumps_at(double t) const;
   void look(const time::Problem::Power& p);
   double rounding_ = 0;
   double e0_ = 0, kinetic0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0,
