@@ -102,8 +102,7 @@ class Recorder final : public Observer {
   std::vector<double> row_;
 };
 
-/// Largest lateral amplitude of a point, where on the speed axis it happened, refined inside steps
-/// by golden section.
+/// Largest lateral amplitude of a point, where on the speed axis it happened, refined inside steps.
 struct Peak {
   std::string name;
   double amplitude = 0, time = 0, speed = 0;  ///< m, s, rad/s
@@ -130,6 +129,9 @@ class PeakTracker final : public Observer {
   }
   void look(StepAccess& s, int k);
   void refine(StepAccess& s, std::size_t point, double best, double where);
+  /// Where in [a, b] the amplitude of a point has its maximum nearest to x, by Newton's iteration;
+  /// -1 where that does not lead there.
+  double vertex_in(double a, double b, double x, std::size_t point) const;
   double spin_at(StepAccess& s, double k);
 
   std::vector<Point> points_;
