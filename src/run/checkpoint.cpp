@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <sstream>
 
 namespace whirl::run {
@@ -17,13 +19,21 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view any_magic = "whirl checkpoint ";
-constexpr std::string_view magic = "whirl checkpoint 5\n";
+constexpr std::string_view magic = "whirl checkpoint 6\n";
 
-/// FNV-1a, 64 bits: finds a damaged file, not an ill-willed one.
+/// FNV-1a of words of 64 bits, the rest byte by byte: finds a damaged file, not an ill-willed one.
+/// What a word changes in the lower bits alone, the fold after it carries on.
 std::uint64_t check_sum(std::string_view s) {
+  constexpr std::uint64_t prime = 1099511628211ull;
   std::uint64_t h = 14695981039346656037ull;
+  for (; s.size() >= sizeof h; s.remove_prefix(sizeof h)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, s.data(), sizeof word);
+    h = (h ^ word) * prime;
+    h ^= h >> 32;
+  }
   for (const char c : s)
-    h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+    h = (h ^ static_cast<unsigned char>(c)) * prime;
   return h;
 }
 
@@ -57,7 +67,7 @@ Part part_of(std::string_view name) {
 }
 
 std::string encode(const Checkpoint& c) {
-  OutArchive a;
+  OutArchive a(magic);
   a.put(c.deck);
   a.put(c.t_begin);
   a.put(c.speed);
@@ -84,7 +94,7 @@ std::string encode(const Checkpoint& c) {
     a.put(key.content);
     a.put(data);
   }
-  return a.data();
+  return a.take();
 }
 
 Checkpoint decode(std::string_view data) {
@@ -148,8 +158,7 @@ fs::path checkpoint_file(const fs::path& results, const std::string& step) {
 }
 
 void write_checkpoint(const fs::path& file, const Checkpoint& c) {
-  std::string data(magic);
-  data += encode(c);
+  std::string data = encode(c);
   const std::uint64_t sum = check_sum(data);
   data.append(reinterpret_cast<const char*>(&sum), sizeof sum);
   io::write_atomic(file, data);
