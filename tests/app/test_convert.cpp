@@ -69,6 +69,18 @@ TEST(Convert, RossExampleHasItsPublishedFrequencies) {
   EXPECT_NEAR(2 * std::numbers::pi * modes.rows[1][frequency], 96.28899977, 2e-4);
 }
 
+// Its tables of letters know nothing of some that may stand in quotes alone.
+TEST(Convert, TomlThatNoLibraryMayReadIsRefused) {
+  for (const std::string text : {"length \u00b7m = 1\n", "\u00e9 = 1\n", "a = \x01\n"})
+    try {
+      convert::convert_ross_toml(text, "rotor.toml");
+      FAIL() << text;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.diagnostics().front().code, "E03") << text;
+      EXPECT_EQ(e.diagnostics().front().where.line, 1) << text;
+    }
+}
+
 TEST(Convert, TomlAndJsonOfOneRotorGiveOneDeck) {
   const std::string toml = R"(ross_version = "2.3.0"
 [parameters]
