@@ -189,6 +189,15 @@ TEST(Convert, RefusesWhatMakesNoShaft) {
             "E42 node 7 is not on the shaft, which ends at node 1");
   EXPECT_EQ(refusal("{\"ShaftElement_1\": {\"n\": 0, \"L\": \"long\"}}"),
             "E42 ShaftElement '1': 'L' is text, not a number");
+  EXPECT_EQ(refusal("{" + ross_shaft(0, -0.5, 0.05) + "}"),
+            "E42 ShaftElement 's 0': its length 'L' is not positive");
+  std::string tube = "{" + ross_shaft(0, 0.5, 0.05) + "}";
+  tube.replace(tube.find("\"idl\": 0.0"), 10, "\"idl\": 0.1");
+  EXPECT_EQ(refusal(tube),
+            "E42 ShaftElement 's 0': an inner diameter is not less than the outer one");
+  std::string soft = "{" + ross_shaft(0, 0.5, 0.05) + "}";
+  soft.replace(soft.find("211e9"), 5, "-2e11");
+  EXPECT_EQ(refusal(soft), "E42 ShaftElement 's 0': rho, E or G_s of its material is not positive");
   EXPECT_EQ(refusal("[1, 2"), "E92 this is not JSON");
 }
 
