@@ -147,6 +147,7 @@ void Reader::alternatives(const Key& k, std::span<const Alternative> list, const
   const Member* m = find(must);
   int index = 0;
   std::vector<Option> words;
+  words.reserve(list.size());
   for (const auto& a : list)
     words.push_back({a.name, a.doc});
   if (!m || !read_option(k.name, m->value, words, index)) {

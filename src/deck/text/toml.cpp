@@ -15,6 +15,7 @@
 // Its table of white space has no answer for letters up to U+0499 and says that nobody asks. Texts
 // are checked for such letters outside quotes, but a mended line may end a quotation that began in
 // it: what the table does not have is no white space.
+#include <cstdint>
 #include <toml++/impl/preprocessor.h>
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE
