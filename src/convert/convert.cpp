@@ -58,6 +58,11 @@ Converted convert_ross_toml(const std::string& text, const std::string& name) {
   deck::Sources sources;
   const int source = sources.add(name, {}, text);
   deck::Diagnostics diagnostics;
+  // what the TOML library may not be asked about: letters outside quotes, deep nesting
+  if (const deck::TextProblem bad = deck::check_text(text, deck::TextKind::deck); !bad.ok()) {
+    diagnostics.error("E03", deck::Spot{source, bad.line, bad.column, 1}, bad.message, bad.hint);
+    throw Error(Exit::deck, diagnostics.take(sources));
+  }
   const deck::Document document = deck::parse_toml(sources, source, diagnostics);
   if (diagnostics.errors() > 0) throw Error(Exit::deck, diagnostics.take(sources));
   if (document.root.find("format"))

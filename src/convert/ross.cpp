@@ -57,6 +57,7 @@ std::optional<Row> as_row(const Span& span) {
   std::vector<const RossLayer*> stiff;
   for (const RossLayer* s : layers)
     if (bending(*s) > 1e-5 * whole) stiff.push_back(s);
+  if (stiff.empty()) return {};  // a modulus beyond all numbers
   for (const RossLayer* s : stiff)
     if (!(s->material == stiff.front()->material)) return {};
   for (const RossLayer* s : layers)

@@ -98,6 +98,7 @@ RossMaterial material_of(const ElementReader& r) {
   material.rho = *rho;
   material.E = *E;
   material.G = *G;
+  if (!(*rho > 0 && *E > 0 && *G > 0)) r.fail("rho, E or G_s of its material is not positive");
   return material;
 }
 
@@ -112,6 +113,9 @@ RossLayer layer_of(const Element& e, const Notes& base, Notes& notes) {
   s.id_l = r.number({"idl", "i_d_l", "i_d"}, 0);
   s.od_r = r.number({"odr", "o_d_r"}, s.od_l);
   s.id_r = r.number({"idr", "i_d_r"}, s.id_l);
+  if (!(s.length > 0)) r.fail("its length 'L' is not positive");
+  if (!(s.id_l >= 0 && s.id_l < s.od_l && s.id_r >= 0 && s.id_r < s.od_r))
+    r.fail("an inner diameter is not less than the outer one");
   s.material = material_of(r);
   s.alpha = r.number({"alpha"}, 0);
   s.beta = r.number({"beta"}, 0);

@@ -9,12 +9,15 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace whirl {
 
 class OutArchive {
  public:
+  /// head: what stands before it all.
+  explicit OutArchive(std::string_view head = {}) : data_(head) {}
   void put(double x) { raw(&x, sizeof x); }
   void put_count(std::uint64_t n) { raw(&n, sizeof n); }
   void put(std::string_view s) {
@@ -29,6 +32,8 @@ class OutArchive {
     put(std::span<const double>(x.data(), static_cast<std::size_t>(x.size())));
   }
   const std::string& data() const { return data_; }
+  /// The bytes; nothing is left.
+  std::string take() { return std::move(data_); }
 
  private:
   void raw(const void* p, std::size_t n) {

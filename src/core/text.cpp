@@ -67,8 +67,39 @@ std::string escape(std::string_view s) {
   return out;
 }
 
+namespace {
+
+/// As std::to_chars rounds, several times as fast: false, and nothing appended, where x is large, has
+/// more decimals, or lies so near to the middle of two numbers that the product may round across it.
+bool append_small_number(std::string& out, double x, int decimals) {
+  constexpr std::array<double, 4> powers{1.0, 10.0, 100.0, 1000.0};
+  if (decimals < 0 || decimals > 3 || !(std::abs(x) < 1e5)) return false;
+  const double scaled = std::abs(x) * powers[static_cast<std::size_t>(decimals)];
+  const double whole = std::floor(scaled), rest = scaled - whole;
+  if (std::abs(rest - 0.5) < 1e-6) return false;
+  long n = static_cast<long>(whole) + (rest > 0.5 ? 1 : 0);
+  while (decimals > 0 && n % 10 == 0) {
+    n /= 10;
+    --decimals;
+  }
+  std::array<char, 16> written;  // from behind
+  char *const end = written.data() + written.size(), *first = end;
+  for (int k = 0; k < decimals; ++k, n /= 10)
+    *--first = static_cast<char>('0' + n % 10);
+  if (decimals > 0) *--first = '.';
+  do
+    *--first = static_cast<char>('0' + n % 10);
+  while ((n /= 10) != 0);
+  if (std::signbit(x) && !(end - first == 1 && *first == '0')) *--first = '-';
+  out.append(first, end);
+  return true;
+}
+
+}  // namespace
+
 void append_number(std::string& out, double x, int decimals) {
   if (!std::isfinite(x)) x = 0.0;  // callers break lines before; an attribute must stay a number
+  if (append_small_number(out, x, decimals)) return;
   char b[64];
   auto r = std::to_chars(b, b + sizeof b, std::abs(x) < 1e15 ? x : std::copysign(1e15, x),
                          std::chars_format::fixed, decimals);

@@ -37,9 +37,12 @@ class Reader : public Visitor {
     bool any_key = false;  ///< unknown keys are not reported (their table has an unknown type)
     std::string path;      ///< "output" in [output]; empty at the top
     std::string entity;    ///< "disk 'impeller'"
-    const Spot* header = nullptr;     ///< of rows: where missing columns are reported
-    std::vector<Alternative> others;  ///< alternatives not chosen, for hints
-    std::string other_key;
+    const Spot* header = nullptr;  ///< of rows: where missing columns are reported
+    struct Other {
+      std::string key;
+      Alternative alternative;
+    };
+    std::vector<Other> others;  ///< alternatives not chosen and the key that chooses, for hints
   };
   struct PendingStep {
     Spot spot;

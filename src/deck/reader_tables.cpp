@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 namespace whirl::deck {
 
@@ -36,16 +37,26 @@ void Reader::in_table(const char* key, const Value& table, Value* resolved, cons
 void Reader::close_table() {
   const Scope& s = scope();
   if (s.any_key || s.header) return;
+  std::optional<std::vector<std::vector<std::string>>> of_others;
   for (const auto& m : s.table->members) {
     if (std::find(s.known.begin(), s.known.end(), m.key) != s.known.end()) continue;
     if (diagnostics_.full()) break;
     std::string hint;
-    for (const auto& other : s.others) {
-      const auto keys = key_names(other.body);
-      if (std::find(keys.begin(), keys.end(), m.key) == keys.end()) continue;
-      hint = fmt::format("it belongs to {} = \"{}\"", s.other_key, other.name);
-      break;
+    if (!of_others) {
+      // Describing an alternative makes what it describes, in place of what stands there: from the
+      // last to the first, for a choice within a chosen one comes later and refers to what that made.
+      of_others.emplace(s.others.size());
+      for (std::size_t i = s.others.size(); i-- > 0;)
+        (*of_others)[i] = key_names(s.others[i].alternative.body);
     }
+    const Scope::Other* owner = nullptr;  // the first of the innermost choice that has the key
+    for (std::size_t i = 0; i < s.others.size(); ++i) {
+      const std::vector<std::string>& keys = (*of_others)[i];
+      if (std::find(keys.begin(), keys.end(), m.key) != keys.end() &&
+          (!owner || owner->key != s.others[i].key))
+        owner = &s.others[i];
+    }
+    if (owner) hint = fmt::format("it belongs to {} = \"{}\"", owner->key, owner->alternative.name);
     if (hint.empty()) {
       std::vector<KeyShape>
           free;  // a choice of keys ("type") is none of them, nor is what is given already
@@ -136,6 +147,7 @@ void Reader::alternatives(const Key& k, std::span<const Alternative> list, const
   const Member* m = find(must);
   int index = 0;
   std::vector<Option> words;
+  words.reserve(list.size());
   for (const auto& a : list)
     words.push_back({a.name, a.doc});
   if (!m || !read_option(k.name, m->value, words, index)) {
@@ -144,8 +156,7 @@ void Reader::alternatives(const Key& k, std::span<const Alternative> list, const
   }
   put(k, Value::of_text(words[static_cast<std::size_t>(index)].name));
   for (std::size_t i = 0; i < list.size(); ++i)
-    if (static_cast<int>(i) != index) scope().others.push_back(list[i]);
-  scope().other_key = k.name;
+    if (static_cast<int>(i) != index) scope().others.push_back({k.name, list[i]});
   list[static_cast<std::size_t>(index)].body(*this);
 }
 

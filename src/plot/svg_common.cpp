@@ -3,6 +3,8 @@
 #include <plot/svg_draw.hpp>
 #include <core/text.hpp>
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -173,10 +175,18 @@ class PathText {
 /// Without what a reader does not need: "-.5" after a number needs no blank.
 void PathText::put_tenths(long tenths, bool first) {
   const long size = std::abs(tenths);
-  if (!first && tenths >= 0) text_ += ' ';
-  if (tenths < 0) text_ += '-';
-  if (size >= 10 || size == 0) text_ += std::to_string(size / 10);
-  if (size % 10 != 0) text_ += '.' + std::to_string(size % 10);
+  std::array<char, 24> written;
+  char* end = written.data();
+  if (tenths < 0)
+    *end++ = '-';
+  else if (!first)
+    *end++ = ' ';
+  if (size >= 10 || size == 0) end = std::to_chars(end, end + 20, size / 10).ptr;
+  if (size % 10 != 0) {
+    *end++ = '.';
+    *end++ = static_cast<char>('0' + size % 10);
+  }
+  text_.append(written.data(), end);
 }
 
 void PathText::put_waiting() {

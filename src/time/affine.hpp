@@ -2,6 +2,7 @@
 #pragma once
 #include <core/contract.hpp>
 #include <time/problem.hpp>
+#include <optional>
 #include <span>
 
 namespace whirl::time {
@@ -14,6 +15,9 @@ struct FreeMotion {
   std::span<const double> time;  ///< t + span, rounded as the scheme has them
 };
 
+/// Its power() counts as supplied what the stored energy gains and what is dissipated, less the work
+/// of the residual, v . R over works(): so that the balance of a run closes but for the work that
+/// the residual of the interpolant does (Integrator::residual_work).
 class AffineProblem {
  public:
   virtual ~AffineProblem() = default;
@@ -22,6 +26,14 @@ class AffineProblem {
   /// each (held entries do not move freely, or one of the columns is not finite).
   /// @pre r with a column for every time.
   virtual bool residuals_along(const FreeMotion& m, Eigen::Ref<MatX> r) = 0;
+  /// R = M a + C v + K q + (first degree in t) + x(t), x zero but for these entries; nothing where x
+  /// is not known to be so. Known once residuals_along() has succeeded.
+  virtual std::optional<std::span<const Index>> changing_entries() const = 0;
+  /// Those entries of x.
+  /// @pre values of the length of changing_entries().
+  virtual void changing(double t, Ref values) const = 0;
+  /// Per unknown: 1 where its row of R times its rate is power.
+  virtual std::span<const unsigned char> works() const = 0;
 };
 
 }  // namespace whirl::time

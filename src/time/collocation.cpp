@@ -94,6 +94,7 @@ Collocation::Collocation(std::string_view name, const Tableau& tableau, Problem&
                   &end_residual_, &start_before_})
     *x = VecX::Zero(n_);
   uc_ = VecXc::Zero(n_);
+  if (affine_) work_.emplace(tab_, problem_, *affine_);
 }
 
 bool Collocation::factor(double h) {
@@ -157,8 +158,16 @@ bool Collocation::evaluate_free_stages(double h) {
   return true;
 }
 
+std::optional<double> Collocation::residual_work() {
+  if (!affine_ || !free_stages_) return std::nullopt;
+  // what a stage solved, or the initial accelerations, has no residual
+  const bool at_rest = tab_.stiffly_accurate || !had_start_residual_;
+  return work_->of({t0_, t0_low_, h_, v0_, a0_, at_rest ? nullptr : &start_before_, a_last_});
+}
+
 bool Collocation::evaluate_stages(double h) {
-  if (affine_ && evaluate_free_stages(h)) return true;
+  free_stages_ = affine_ && evaluate_free_stages(h);
+  if (free_stages_) return true;
   for (int i = 0; i < s_; ++i) {
     const double t = set_stage(i, h);
     if (!residual(t, qs_, vs_, as_, r_.col(i))) return false;

@@ -3,6 +3,7 @@
 #pragma once
 #include <time/affine.hpp>
 #include <time/newton.hpp>
+#include <time/residual_work.hpp>
 #include <time/stepper.hpp>
 #include <time/tableau.hpp>
 
@@ -14,6 +15,7 @@ class Collocation final : public Stepper {
               const Options& options);
   std::string_view name() const override { return name_; }
   int order() const override { return tab_.order; }
+  std::optional<double> residual_work() override;
 
  private:
   Attempt attempt(double h) override;
@@ -47,7 +49,9 @@ class Collocation final : public Stepper {
 
   std::string_view name_;
   const Tableau& tab_;
-  AffineProblem* affine_;  ///< the problem, where it is linear and says so; else null
+  AffineProblem* affine_;             ///< the problem, where it is linear and says so; else null
+  std::optional<ResidualWork> work_;  ///< of such a problem
+  bool free_stages_ = false;          ///< held entries move freely in the last step
   int s_;
   double allowance_;
   NewtonMonitor newton_;

@@ -13,6 +13,7 @@
 #pragma once
 #include <time/problem.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <span>
@@ -155,6 +156,10 @@ class Integrator {
     (void)q;
     return false;
   }
+  /// Work the residual does along the interpolant of the last step, integral of v . R dt over the
+  /// unknowns, N m, right to rounding: what is missing in the balance of energy of an AffineProblem.
+  /// Nothing for other problems, and where the scheme has no cheap way to say.
+  virtual std::optional<double> residual_work() { return std::nullopt; }
 
   /// To be called by whoever used linearize() or factor() of the problem between steps.
   virtual void refresh() = 0;

@@ -69,6 +69,18 @@ TEST(Convert, RossExampleHasItsPublishedFrequencies) {
   EXPECT_NEAR(2 * std::numbers::pi * modes.rows[1][frequency], 96.28899977, 2e-4);
 }
 
+// Its tables of letters know nothing of some that may stand in quotes alone.
+TEST(Convert, TomlThatNoLibraryMayReadIsRefused) {
+  for (const std::string text : {"length \u00b7m = 1\n", "\u00e9 = 1\n", "a = \x01\n"})
+    try {
+      convert::convert_ross_toml(text, "rotor.toml");
+      FAIL() << text;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.diagnostics().front().code, "E03") << text;
+      EXPECT_EQ(e.diagnostics().front().where.line, 1) << text;
+    }
+}
+
 TEST(Convert, TomlAndJsonOfOneRotorGiveOneDeck) {
   const std::string toml = R"(ross_version = "2.3.0"
 [parameters]
@@ -177,6 +189,15 @@ TEST(Convert, RefusesWhatMakesNoShaft) {
             "E42 node 7 is not on the shaft, which ends at node 1");
   EXPECT_EQ(refusal("{\"ShaftElement_1\": {\"n\": 0, \"L\": \"long\"}}"),
             "E42 ShaftElement '1': 'L' is text, not a number");
+  EXPECT_EQ(refusal("{" + ross_shaft(0, -0.5, 0.05) + "}"),
+            "E42 ShaftElement 's 0': its length 'L' is not positive");
+  std::string tube = "{" + ross_shaft(0, 0.5, 0.05) + "}";
+  tube.replace(tube.find("\"idl\": 0.0"), 10, "\"idl\": 0.1");
+  EXPECT_EQ(refusal(tube),
+            "E42 ShaftElement 's 0': an inner diameter is not less than the outer one");
+  std::string soft = "{" + ross_shaft(0, 0.5, 0.05) + "}";
+  soft.replace(soft.find("211e9"), 5, "-2e11");
+  EXPECT_EQ(refusal(soft), "E42 ShaftElement 's 0': rho, E or G_s of its material is not positive");
   EXPECT_EQ(refusal("[1, 2"), "E92 this is not JSON");
 }
 

@@ -1,5 +1,6 @@
 #include <analysis/transient/linear_motion.hpp>
 
+#include <core/contract.hpp>
 #include <core/error.hpp>
 #include <la/multiply.hpp>
 
@@ -41,18 +42,25 @@ VecX diagonal_of(const la::BlockMatrix<6>& x) {
 /// of area shows more.
 constexpr double turning_share = 1e-3;
 
-/// r += sum over h of cosine(., h - 1) cos(h angle) + sine(., h - 1) sin(h angle) at some entries.
-void add_series(const std::vector<Index>& entry, const MatX& cosine, const MatX& sine, double angle,
-                time::Ref r) {
+/// sum over h of cosine(., h - 1) cos(h angle) + sine(., h - 1) sin(h angle); add(e, x): x more in
+/// row e.
+template <class Add>
+void sum_series(const MatX& cosine, const MatX& sine, double angle, Add&& add) {
   const double c = std::cos(angle), s = std::sin(angle);
   double ch = c, sh = s;
   for (Index h = 0; h < cosine.cols(); ++h) {
     for (Index e = 0; e < cosine.rows(); ++e)
-      r[entry[at(e)]] += ch * cosine(e, h) + sh * sine(e, h);
+      add(e, ch * cosine(e, h) + sh * sine(e, h));
     const double next = ch * c - sh * s;
     sh = sh * c + ch * s;
     ch = next;
   }
+}
+
+/// r += that, at some entries.
+void add_series(const std::vector<Index>& entry, const MatX& cosine, const MatX& sine, double angle,
+                time::Ref r) {
+  sum_series(cosine, sine, angle, [&](Index e, double x) { r[entry[at(e)]] += x; });
 }
 
 }  // namespace
@@ -63,7 +71,6 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
       still_(VecX::Zero(system.size())),
       q_(system.size()),
       v_(system.size()),
-      a_(system.size()),
       steady_(system.make_workspace()) {
   Linearizer linear(system, running, options);
   linear.start_from(start);
@@ -106,6 +113,10 @@ LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& r
     angle_[l] = start.total_phi(i, l) - q0_[6 * i + system::spin_phi] - rate_[at(l)] * start.t;
   }
   frames = start.frames;
+  works_.assign(system.active().begin(), system.active().end());
+  for (Index i = 0; i < system.nodes(); ++i)
+    if (system.node(i).signal || system.node(i).rate)
+      std::fill_n(works_.begin() + 6 * i, 6, static_cast<unsigned char>(0));
   find_changing(start.t);
 }
 
@@ -320,6 +331,19 @@ bool LinearMotion::steady_residual(double t, time::Ref r) {
   return true;
 }
 
+std::optional<std::span<const Index>> LinearMotion::changing_entries() const {
+  if (!series_.holds) return std::nullopt;
+  return std::span<const Index>(series_.entry);
+}
+
+void LinearMotion::changing(double t, time::Ref values) const {
+  WHIRL_EXPECTS(series_.holds && values.size() == static_cast<Index>(series_.entry.size()));
+  values.setZero();
+  if (series_.entry.empty()) return;
+  sum_series(series_.cosine, series_.sine, turned(series_.line, t),
+             [&](Index e, double x) { values[e] += x; });
+}
+
 bool LinearMotion::held_move_freely(const time::FreeMotion& m) const {
   constexpr double rounding = 1e-9;
   for (const system::Hold& h : system().holds()) {
@@ -338,6 +362,14 @@ bool LinearMotion::held_move_freely(const time::FreeMotion& m) const {
   return true;
 }
 
+void LinearMotion::take_bound_forces() {
+  if (at_first_.size() == q_.size() && q_ == bound_q_ && v_ == bound_v_) return;
+  bound_q_ = q_;
+  bound_v_ = v_;
+  at_first_.setZero(q_.size());
+  la::add_forces(matrices(), q_, v_, at_first_);
+}
+
 bool LinearMotion::residuals_along(const time::FreeMotion& m, Eigen::Ref<MatX> r) {
   if (!system().followers().empty() || !held_move_freely(m)) return false;
   // the steady motion goes on freely too: what lies between the two grows at their difference of
@@ -347,9 +379,8 @@ bool LinearMotion::residuals_along(const time::FreeMotion& m, Eigen::Ref<MatX> r
   place_steady(m.t, q_);
   q_ = m.q - q_;
   v_ = m.v - v0_;
-  at_first_.setZero(q_.size());
+  take_bound_forces();
   per_second_.setZero(q_.size());
-  la::add_forces(matrices(), q_, v_, at_first_);
   la::add_multiply(matrices().K, 1.0, v_, per_second_);
   for (std::size_t i = 0; i < m.time.size(); ++i)
     r.col(static_cast<Index>(i)) += at_first_ + m.span[i] * per_second_;
@@ -366,11 +397,10 @@ bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, 
   q_ = q - q_;
   v_ = v - v0_;
   if (!joined_.empty() && !add_joint_loads(t, a, r)) return false;
-  a_ = a;
-  if (a_.isZero(0.0))  // before the first correction of a step
-    la::add_forces(matrices(), q_, v_, r);
-  else
-    la::add_forces(matrices(), q_, v_, a_, r);
+  take_bound_forces();
+  r += at_first_;
+  if (!a.isZero(0.0))  // before the first correction of a step
+    la::add_multiply(matrices().M, 1.0, a, r);
   return true;
 }
 

@@ -25,6 +25,9 @@
 #include <core/archive.hpp>
 #include <system/problem.hpp>
 #include <time/affine.hpp>
+#include <optional>
+#include <span>
+#include <vector>
 
 namespace whirl::analysis {
 
@@ -42,6 +45,9 @@ class LinearMotion final : public system::SystemProblem, public time::AffineProb
   bool is_linear() const override { return true; }
   bool residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) override;
   bool residuals_along(const time::FreeMotion& m, Eigen::Ref<MatX> r) override;
+  std::optional<std::span<const Index>> changing_entries() const override;
+  void changing(double t, time::Ref values) const override;
+  std::span<const unsigned char> works() const override { return works_; }
   /// Keeps the matrices it has.
   void linearize(double, time::CRef, time::CRef, time::CRef) override {}
   Power power_here(time::CRef v, time::CRef reactions) override;
@@ -90,6 +96,8 @@ class LinearMotion final : public system::SystemProblem, public time::AffineProb
     return (angle_[line] - two_pi * frames.turns[at(line)]) + rate_[at(line)] * t;
   }
   void place_steady(double t, VecX& q) const;
+  /// at_first_ := C v_ + K q_. A scheme asks at the end of a step and at the start of the next.
+  void take_bound_forces();
   /// What is held by a law goes on at the rates of the state.
   bool held_move_freely(const time::FreeMotion& m) const;
   /// Adds what the motion q_, v_, a beside the steady one changes of the loads of joints.
@@ -101,10 +109,12 @@ class LinearMotion final : public system::SystemProblem, public time::AffineProb
   VecX angle_;    ///< per line: angle of the steady motion at t = 0 over that of q0_, rad, whole
                   ///< turns included
   std::vector<double> rate_;          ///< per line, rad/s
+  std::vector<unsigned char> works_;  ///< per unknown: its rate times its residual is power
   std::vector<unsigned char> turns_;  ///< per node: its phi turns
   VecX still_;                        ///< zero: accelerations of the steady motion
-  VecX q_, v_, a_, general_;          // scratch
+  VecX q_, v_, general_;              // scratch
   VecX at_first_, per_second_;        // of residuals along a free motion
+  VecX bound_q_, bound_v_;            ///< what at_first_ = C v + K q is of
   Series series_;
   std::vector<std::size_t>
       joined_;  ///< terms at nodes that follow, where their loads are asked for

@@ -11,7 +11,7 @@ void Snapshot::set(double t, const VecX& q, const VecX& v, const VecX& a) {
   q_ = &q;
   v_ = &v;
   a_ = &a;
-  have_reactions_ = have_energy_ = false;
+  have_reactions_ = have_energy_ = have_stored_ = false;
   problem_.system().evaluate_nodes(problem_.workspace(), problem_.frames, t, q, v, a);
 }
 
@@ -45,8 +45,16 @@ const system::Energy& Snapshot::energy() const {
     power();
     return problem_.energy();
   }
-  stored_ = system().energy(problem_.workspace());
+  if (!have_stored_) {
+    stored_ = system().energy(problem_.workspace());
+    have_stored_ = true;
+  }
   return stored_;
+}
+
+double Snapshot::dissipation() const {
+  WHIRL_EXPECTS(q_ != nullptr);
+  return have_energy_ ? power_.dissipated : system().exchange(problem_.workspace()).dissipated;
 }
 
 double Snapshot::total_phi(Index i) const { return node(i).phi + two_pi * node(i).turns; }

@@ -38,6 +38,8 @@ class Snapshot {
   time::Problem::Power power() const;
   /// Power supplied and dissipated alone: cheaper where the stored energy is not asked for.
   time::Problem::Power exchange() const;
+  /// Power dissipated, W: cheaper still.
+  double dissipation() const;
   /// phi with its whole turns, rad.
   double total_phi(Index i) const;
 
@@ -46,7 +48,7 @@ class Snapshot {
   double t_ = 0;
   const VecX *q_ = nullptr, *v_ = nullptr, *a_ = nullptr;
   mutable VecX reactions_;
-  mutable bool have_reactions_ = false, have_energy_ = false;
+  mutable bool have_reactions_ = false, have_energy_ = false, have_stored_ = false;
   mutable time::Problem::Power power_;
   mutable system::Energy stored_;  ///< without the power of reactions
 };

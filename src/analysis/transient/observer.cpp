@@ -132,17 +132,19 @@ namespace {
 /// through that one and its neighbours rises above it.
 template <std::size_t N>
 double reach_of(const std::array<std::vector<Vec2>, N>& seen, std::size_t point) {
-  std::array<double, N> r;
+  std::array<double, N> square;
   for (std::size_t k = 0; k < N; ++k)
-    r[k] = seen[k][point].norm();
+    square[k] = seen[k][point].squaredNorm();
   const std::size_t top =
-      static_cast<std::size_t>(std::max_element(r.begin(), r.end()) - r.begin());
+      static_cast<std::size_t>(std::max_element(square.begin(), square.end()) - square.begin());
   const std::size_t middle = std::clamp<std::size_t>(top, 1, N - 2);
-  const double slope = 0.5 * (r[middle + 1] - r[middle - 1]);
-  const double curvature = 2.0 * r[middle] - r[middle + 1] - r[middle - 1];
-  if (!(std::abs(slope) <= curvature)) return r[top];  // the vertex lies beyond the neighbours
-  const double vertex = curvature > 0.0 ? r[middle] + 0.5 * slope * slope / curvature : r[middle];
-  return r[top] + 2.0 * std::max(0.0, vertex - r[top]);
+  const double before = std::sqrt(square[middle - 1]), here = std::sqrt(square[middle]),
+               after = std::sqrt(square[middle + 1]), highest = std::sqrt(square[top]);
+  const double slope = 0.5 * (after - before);
+  const double curvature = 2.0 * here - after - before;
+  if (!(std::abs(slope) <= curvature)) return highest;  // the vertex lies beyond the neighbours
+  const double vertex = curvature > 0.0 ? here + 0.5 * slope * slope / curvature : here;
+  return highest + 2.0 * std::max(0.0, vertex - highest);
 }
 
 }  // namespace
@@ -169,12 +171,13 @@ void PeakTracker::step(StepAccess& s) {
       peaks_[i].speed = peaks_[i - n].speed;
       continue;
     }
-    double best = 0.0, where = looks - 1;
+    double square = 0.0, where = looks - 1;
     for (int k = 2; k < looks; k += 2)
-      if (const double r = seen_[static_cast<std::size_t>(k)][i].norm(); r > best) {
-        best = r;
+      if (const double r = seen_[static_cast<std::size_t>(k)][i].squaredNorm(); r > square) {
+        square = r;
         where = k;
       }
+    const double best = std::sqrt(square);
     if (best < 0.9 * peaks_[i].amplitude) continue;
     for (int k : {0, 1, 3, 5, 7})
       if (!complete) look(s, k);
@@ -193,7 +196,22 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
   };
   Peak& peak = peaks_[point];
   if (reach_of(seen_, point) <= peak.amplitude) return;
+  const auto take = [&](double x, double r) {
+    if (!(r > best)) return;
+    best = r;
+    where = x;
+  };
+  const auto keep = [&] {
+    if (!(best > peak.amplitude)) return;
+    peak.amplitude = best;
+    peak.time = time_of(s, where);
+    peak.speed = spin_at(s, where);
+  };
   double a = std::max(0.0, where - 2), b = std::min<double>(looks - 1, where + 2);
+  if (const double x = vertex_in(a, b, where, point); x >= a) {
+    take(x, radius(x));
+    return keep();
+  }
   constexpr double golden = 0.6180339887498949;
   double x1 = b - golden * (b - a), x2 = a + golden * (b - a), r1 = radius(x1), r2 = radius(x2);
   for (int k = 0; k < 24 && best > 0.99 * peak.amplitude; ++k) {
@@ -211,18 +229,34 @@ void PeakTracker::refine(StepAccess& s, std::size_t point, double best, double w
       r2 = radius(x2);
     }
   }
-  if (r1 > best) {
-    best = r1;
-    where = x1;
+  take(x1, r1);
+  take(x2, r2);
+  keep();
+}
+
+double PeakTracker::vertex_in(double a, double b, double x, std::size_t point) const {
+  // the polynomial through the looks, in Newton's form: u and its derivatives with x
+  std::array<Vec2, looks> c;
+  for (std::size_t k = 0; k < looks; ++k)
+    c[k] = seen_[k][point];
+  for (std::size_t order = 1; order < looks; ++order)
+    for (std::size_t k = looks - 1; k >= order; --k)
+      c[k] = (c[k] - c[k - 1]) / static_cast<double>(order);
+  for (int again = 0; again < 8; ++again) {
+    Vec2 u = c[looks - 1], u1 = Vec2::Zero(), u2 = Vec2::Zero();
+    for (std::size_t k = looks - 1; k-- > 0;) {
+      const double d = x - static_cast<double>(k);
+      u2 = u2 * d + 2.0 * u1;
+      u1 = u1 * d + u;
+      u = u * d + c[k];
+    }
+    const double slope = u.dot(u1), bend = u1.squaredNorm() + u.dot(u2);  // of half the square
+    if (!(bend < 0.0)) return -1.0;
+    const double next = std::clamp(x - slope / bend, a, b);  // or where it still rises at an end
+    if (std::abs(next - x) < 1e-7) return next;
+    x = next;
   }
-  if (r2 > best) {
-    best = r2;
-    where = x2;
-  }
-  if (!(best > peak.amplitude)) return;
-  peak.amplitude = best;
-  peak.time = time_of(s, where);
-  peak.speed = spin_at(s, where);
+  return -1.0;
 }
 
 double PeakTracker::spin_at(StepAccess& s, double k) {
@@ -268,12 +302,49 @@ void EnergyBalance::begin(const Snapshot& s) {
   largest_potential_ = std::abs(p.stored - p.kinetic);
 }
 
-void EnergyBalance::step(StepAccess& s) {
-  // Powers at the Radau points of the step: the collocation polynomial is most accurate there, and
-  // the quadrature has order 5.
+namespace {
+
+/// Radau points of a step: the collocation polynomial is most accurate there, and the quadrature has
+/// order 5.
+struct RadauPoints {
+  double c[3], b[3];
+};
+const RadauPoints& radau_points() {
   static const double r6 = std::sqrt(6.0);
-  const double c[3] = {(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0};
-  const double b[3] = {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0};
+  static const RadauPoints points{{(4.0 - r6) / 10.0, (4.0 + r6) / 10.0, 1.0},
+                                  {(16.0 - r6) / 36.0, (16.0 + r6) / 36.0, 1.0 / 9.0}};
+  return points;
+}
+
+}  // namespace
+
+bool EnergyBalance::jumps_at(double t) const {
+  return std::binary_search(jumps_.begin(), jumps_.end(), t);
+}
+
+void EnergyBalance::step_by_residual(StepAccess& s, double work) {
+  const auto& [c, b] = radau_points();
+  const double h = s.t1() - s.t0();
+  double lost = 0.0;
+  for (int k = 0; k < 2; ++k)
+    lost += h * b[k] * s.at(s.t0() + c[k] * h).dissipation();
+  if (jumps_at(s.t1())) {
+    lost += h * b[2] * s.at(std::nextafter(s.t1(), -infinity)).dissipation();
+  } else {
+    lost += h * b[2] * s.end().energy().dissipated;
+  }
+  const system::Energy& e = s.end().energy();
+  const double stored = e.kinetic + e.elastic + e.gravity;
+  dissipated_ += lost;
+  supplied_ += (stored - e1_) + lost - work;
+  e1_ = stored;
+  rounding_ += 20 * 2.2e-16 * std::max(std::abs(stored), e.kinetic);
+  look({stored, e.kinetic});
+}
+
+void EnergyBalance::step(StepAccess& s) {
+  if (const std::optional<double> work = s.residual_work()) return step_by_residual(s, *work);
+  const auto& [c, b] = radau_points();
   const double h = s.t1() - s.t0();
   for (int k = 0; k < 2; ++k) {
     const auto p = s.at(s.t0() + c[k] * h).exchange();
@@ -281,7 +352,7 @@ void EnergyBalance::step(StepAccess& s) {
     dissipated_ += h * b[k] * p.dissipated;
   }
   // Where laws jump, the end of the step sees them from the left.
-  const bool jump = std::binary_search(jumps_.begin(), jumps_.end(), s.t1());
+  const bool jump = jumps_at(s.t1());
   const auto p = jump ? s.at(std::nextafter(s.t1(), -infinity)).power() : s.end().power();
   supplied_ += h * b[2] * p.supplied;
   dissipated_ += h * b[2] * p.dissipated;

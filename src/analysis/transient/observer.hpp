@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ class StepAccess {
   virtual void displacements(double t, std::span<const Point> points, std::vector<Vec2>& out) {
     lateral(at(t), points, out);
   }
+  /// time::Integrator::residual_work of the step.
+  virtual std::optional<double> residual_work() { return std::nullopt; }
 
  protected:
   static void lateral(const Snapshot& s, std::span<const Point> points, std::vector<Vec2>& out) {
@@ -99,8 +102,7 @@ class Recorder final : public Observer {
   std::vector<double> row_;
 };
 
-/// Largest lateral amplitude of a point, where on the speed axis it happened, refined inside steps
-/// by golden section.
+/// Largest lateral amplitude of a point, where on the speed axis it happened, refined inside steps.
 struct Peak {
   std::string name;
   double amplitude = 0, time = 0, speed = 0;  ///< m, s, rad/s
@@ -127,6 +129,9 @@ class PeakTracker final : public Observer {
   }
   void look(StepAccess& s, int k);
   void refine(StepAccess& s, std::size_t point, double best, double where);
+  /// Where in [a, b] the amplitude of a point has its maximum nearest to x, by Newton's iteration;
+  /// -1 where that does not lead there.
+  double vertex_in(double a, double b, double x, std::size_t point) const;
   double spin_at(StepAccess& s, double k);
 
   std::vector<Point> points_;
@@ -175,6 +180,10 @@ class EnergyBalance final : public Observer {
 
  private:
   std::vector<double> jumps_;
+  /// Where the power supplied is what closes the balance but for the work of the residual, its
+  /// integral is known without it.
+  void step_by_residual(StepAccess& s, double work);
+  bool jumps_at(double t) const;
   void look(const time::Problem::Power& p);
   double rounding_ = 0;
   double e0_ = 0, kinetic0_ = 0, e1_ = 0, supplied_ = 0, dissipated_ = 0, worst_ = 0,

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace whirl::analysis {
 
@@ -71,6 +72,9 @@ class StepDense final : public StepAccess {
       inside_ = t;
     }
     return snapshot_;
+  }
+  std::optional<double> residual_work() override {
+    return t1_ > t0_ ? integrator_.residual_work() : std::nullopt;
   }
   void displacements(double t, std::span<const Point> points, std::vector<Vec2>& out) override {
     if (!alone(t, points, out)) lateral(at(t), points, out);

@@ -71,7 +71,12 @@ class Writer final : public PolyDataWriter {
   Writer() {
     vtkObject::GlobalWarningDisplayOff();  // failures come back as an error code
     // threads for arrays of a few thousand numbers cost more than the numbers
-    vtk::detail::smp::vtkSMPToolsAPI::GetInstance().SetBackend("Sequential");
+    // (and the backend of std::thread, which asks the system for the number of processors in every
+    // look at an array even while it does not work, is told once)
+    auto& smp = vtk::detail::smp::vtkSMPToolsAPI::GetInstance();
+    smp.SetBackend("STDThread");
+    smp.Initialize(1);
+    smp.SetBackend("Sequential");
     writer_->SetDataModeToAppended();
     writer_->EncodeAppendedDataOff();
     writer_->WriteToOutputStringOn();   // into a file it writes and seeks some 260 times
