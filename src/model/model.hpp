@@ -569,6 +569,7 @@ struct VtkOutput {
   std::vector<std::string> content{"line", "surface"};
   double deformation_scale = 1;
   int points_around = 32;
+  bool one_file = false;  ///< all frames of a set in one VTKHDF file
   Where where;
 };
 

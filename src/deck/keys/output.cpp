@@ -32,6 +32,10 @@ void describe(Visitor& v, model::VtkOutput& o) {
            "exaggeration of the lateral displacement in 'surface'");
   v.integer("points_around", o.points_around, between(3, 1000),
             "points on the circumference of 'surface'");
+  v.choice("format", o.one_file,
+           {{"vtp", "a file each frame and a .pvd that lists them"},
+            {"vtkhdf", "all frames of a set in one .vtkhdf file (ParaView 5.12 and later)"}},
+           "files");
   if (has_window && v.clean()) {
     if (!(window[1] > window[0])) v.error("E21", "window", "the window ends before it starts");
     o.t0 = window[0];
