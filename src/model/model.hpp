@@ -249,6 +249,13 @@ struct TorqueCurve {
     double breakdown = 0, slip_breakdown = 0.1, synchronous = 0;
   };  ///< Kloss: 2 Tb/(x/xb + xb/x)
   std::optional<Induction> induction;
+  /// Of a salient-pole motor that runs up: amplitude(s) cos(2 p (synchronous t - phi) + phase), twice
+  /// the slip frequency.
+  struct Pulsation {
+    double synchronous = 0, poles = 4, phase = 0;  ///< rad/s, number of poles 2 p, rad
+    std::vector<double> speed, amplitude;          ///< rad/s -> N m, linear between, held outside
+  };
+  std::optional<Pulsation> pulsation;
   struct ConstantPower {
     double power = 0, max_torque = 0;
   };

@@ -882,6 +882,7 @@ const Elsewhere elsewhere[] = {
     {"[[drive]], type = \"angle\"", "*", "app/test_step_speeds.cpp, app/test_energy_balance.cpp"},
     {"[drive.load]", "*", "app/test_resume.cpp"},
     {"[drive.induction]", "*", "validation/test_drives.cpp"},
+    {"[drive.pulsation]", "*", "app/test_shaft_torques.cpp, app/key_decks.hpp"},
     {"[drive.dc]", "*", "validation/test_drives.cpp"},
     {"[drive.governor]", "*", "app/test_governor.cpp, validation/test_drives.cpp"},
     {"[base]", "*", "app/test_energy_balance.cpp"},
@@ -948,6 +949,7 @@ const Elsewhere elsewhere[] = {
 
 /// The tables of the reference that the program writes, with their keys.
 std::set<std::pair<std::string, std::string>> keys_of_the_program() {
+    {"law, type = \"decaying\"", "*", "app/key_decks.hpp"},
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("whirl_keys_" + std::to_string(::getpid()));
   std::set<std::pair<std::string, std::string>> keys;

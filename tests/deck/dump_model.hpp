@@ -246,6 +246,11 @@ class ModelDump {
       if (t->induction)
         each("induction", std::array{t->induction->breakdown, t->induction->slip_breakdown,
                                      t->induction->synchronous});
+      if (const auto& p = t->pulsation) {
+        each("pulsation", std::array{p->synchronous, p->poles, p->phase});
+        each("of speed", p->speed);
+        each("amplitude", p->amplitude);
+      }
       if (t->dc) each("dc", std::array{t->dc->stall, t->dc->no_load_speed});
       if (t->power) each("power", std::array{t->power->power, t->power->max_torque});
       if (t->governor)
