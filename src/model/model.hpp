@@ -509,10 +509,21 @@ struct BalancingStep {
   std::vector<TrialRun> trials;
 };
 /// A torque that excites a train: a multiple of a shaft's speed, or at a fixed frequency.
+/// One of the orders of a periodic torque: amplitude cos(order phi + phase).
+struct ApiHarmonic {
+  double order = 0, amplitude = 0, phase = 0;  ///< -, N m 0 to peak, rad
+};
 struct ApiTorque : Entity {
   Location at;
-  double order = 0, frequency = 0;  ///< of the reference speed; rad/s; one of them
-  double amplitude = 0;             ///< N m, 0 to peak
+  /// Of the speed of its shaft; rad/s. Both: |frequency - order times that speed|.
+  double order = 0, frequency = 0;
+  double amplitude = 0;                ///< N m, 0 to peak
+  std::vector<ApiHarmonic> harmonics;  ///< instead of all these
+};
+/// What a transient that an earlier step ran does to the train, so many times in its life.
+struct ApiEvent : Entity {
+  std::string step;
+  double times = 1;
 };
 struct ApiTorsionalStep {
   std::string standard = "API 617, 671";
@@ -522,9 +533,19 @@ struct ApiTorsionalStep {
   double line_frequency = 0;  ///< rad/s; 0: none
   double margin = 0.10;
   std::vector<ApiTorque> torques;
+  std::vector<ApiEvent> events;
+  double damage_limit = 1;                     ///< of the sum over all events
   double concentration = 1, stress_limit = 0;  ///< -, Pa; 0: none
   std::string source;
   std::vector<std::string> given;
+};
+/// Torques that a transient sends through shafts and couplings, and the fatigue they cause.
+struct ShaftTorques {
+  double concentration = 1;  ///< factor on shear stresses
+  double yield = 0;          ///< Pa, in shear; 0: not looked at
+  /// Strengths, Pa: tensile; shear amplitudes that 1000 cycles and endless ones take; 0: no fatigue.
+  double ultimate = 0, thousand = 0, endurance = 0;
+  double cycles = 1e6;  ///< from which on the amplitude is `endurance`
 };
 struct BucklingStep {
   int modes = 3;
@@ -553,6 +574,7 @@ struct TransientStep {
   double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
   double checkpoint = 60;             ///< wall-clock s between checkpoints; 0 = none
   bool linear = false;  ///< small motions about the steadily turning equilibrium: constant matrices
+  std::optional<ShaftTorques> torques;
 };
 
 using StepLaw =

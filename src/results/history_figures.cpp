@@ -73,6 +73,7 @@ class HistoryFigures {
   void add_tilt(const model::Probe& probe);
   void add_twist(const model::Probe& probe);
   void add_forces();
+  void add_torques_against_angle();
   void add_energies();
 
  private:
@@ -335,6 +336,38 @@ void HistoryFigures::add_force(const Measurement& m, std::size_t channel) {
   add(m.name, m.name, {std::move(a)});
 }
 
+/// Torques of drives and in shafts, and those that supports between shafts pass on.
+void HistoryFigures::add_torques_against_angle() {
+  const auto angle = find("phi");
+  if (!angle) return;
+  struct Shown {
+    std::size_t channel, component;
+  };
+  std::vector<Shown> shown;
+  double size = 0;
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    const bool torque = all_[i].name.ends_with(" torque"),
+               moment = all_[i].name.ends_with(" moment");
+    if ((!torque && !moment) || !(largest(column(i).y) > 0)) continue;
+    size = std::max(size, largest(column(i).y));
+    shown.push_back({i, 0});  // of a moment the part about the axis
+  }
+  if (shown.empty()) return;
+  const plot::DisplayUnit unit = plot::unit_for("N.m", size);
+  plot::Axes a;
+  a.x = plot::Axis("angle of the reference shaft", "turns");
+  a.y = plot::Axis("torque", unit.name);
+  for (const Shown& x : shown) {
+    PlotBuffer::Points p = column(x.channel, x.component);
+    std::vector<double> turns = buffer_.values_at(start_[*angle], p.t);
+    for (double& t : turns)
+      t /= two_pi;
+    p.t = std::move(turns);
+    a.series.push_back(series(all_[x.channel].name, std::move(p), unit.factor));
+  }
+  add("torque_angle", "Torques against the angle of the machine", {std::move(a)});
+}
+
 void HistoryFigures::add_energies() {
   const auto energy = find("energy");
   if (!energy) return;
@@ -370,6 +403,7 @@ void add_history_figures(const run::Job& job, const model::Step& step, const Cha
     figures.add_twist(probe);
   }
   figures.add_forces();
+  figures.add_torques_against_angle();
   figures.add_energies();
 }
 

@@ -921,7 +921,12 @@ const Elsewhere elsewhere[] = {
     {"[step.stages]", "*", "app/test_reports.cpp"},
     {"[step.limits]", "*", "app/test_reports.cpp"},
     {"[[step]], type = \"api_torsional\"", "*", "app/test_reports.cpp"},
-    {"[[step.torque]]", "*", "app/test_reports.cpp"},
+    {"[[step.torque]]", "*", "app/test_reports.cpp, app/test_shaft_torques.cpp"},
+    {"[step.torque.harmonics]", "*", "app/test_shaft_torques.cpp"},
+    {"[step.torque.crank]", "*", "app/test_shaft_torques.cpp"},
+    {"[[step.event]]", "*", "app/test_shaft_torques.cpp"},
+    {"[step.torques]", "*", "app/test_shaft_torques.cpp"},
+    {"[[step]], type = \"transient\"", "torques", "app/test_shaft_torques.cpp"},
     {"[[step]], type = \"balancing\"", "*", "app/test_reports.cpp"},
     {"[[step.plane]]", "*", "app/test_reports.cpp"},
     {"[step.measured]", "*", "app/test_reports.cpp"},
@@ -936,20 +941,21 @@ const Elsewhere elsewhere[] = {
     {"[output]", "tracking", "a table: its keys have pairs or lines"},
     {"[output]", "replay", "app/test_figures.cpp"},
     {"[output.spectra]", "*", "app/written_decks.hpp"},
-    {"[[output.vtk]]", "*", "app/test_resume.cpp, app/test_frames_in_motion.cpp"},
+    {"[[output.vtk]]", "*",
+     "app/test_resume.cpp, app/test_frames_in_motion.cpp, app/test_view.cpp"},
     {"[sweep]", "*", "app/test_sweep.cpp"},
     {"Laws of time", "*", "app/test_cli.cpp"},
     {"law, type = \"table\"", "*", "app/test_spectra.cpp, app/test_linear_limits.cpp"},
     {"law, type = \"ramp\"", "*", "app/test_energy_balance.cpp"},
     {"law, type = \"smooth\"", "*", "app/test_step_speeds.cpp, app/test_energy_balance.cpp"},
     {"law, type = \"harmonic\"", "*", "app/test_energy_balance.cpp"},
+    {"law, type = \"decaying\"", "*", "app/key_decks.hpp"},
     {"law, type = \"polynomial\"", "*", "app/test_step_speeds.cpp, app/test_energy_balance.cpp"},
     {"law, type = \"piecewise\"", "*", "validation/test_bearing_rotors.cpp"},
 };
 
 /// The tables of the reference that the program writes, with their keys.
 std::set<std::pair<std::string, std::string>> keys_of_the_program() {
-    {"law, type = \"decaying\"", "*", "app/key_decks.hpp"},
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("whirl_keys_" + std::to_string(::getpid()));
   std::set<std::pair<std::string, std::string>> keys;

@@ -285,6 +285,9 @@ class ModelDump {
     if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {
       each("transient",
            std::array{x->duration, double(x->start), x->speed0, x->stop_speed, x->amplitude_limit});
+      if (const auto& t = x->torques)
+        each("torques", std::array{t->concentration, t->yield, t->ultimate, t->thousand,
+                                   t->endurance, t->cycles});
       const auto& o = x->integrator;
       put("method", o.method);
       each("integrator", std::array{o.tolerance, o.rho_inf, o.dt, o.dt_max, o.dt_min, o.dt_first});

@@ -60,6 +60,7 @@ void describe(Visitor& v, model::Output& o) {
        "moments and torques of the bearings that give any (tilting or torsional stiffness, "
        "friction), about their places"},
       {"torque", "torques of the drives"},
+      {"shaft_torque", "torques in the shafts at the probes"},
       {"cracks", "how far the cracks are open, from 0 to 1"},
       {"joints",
        "forces and moments of the joints on the line of their 'at', their angles and "
