@@ -183,6 +183,25 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
              axis_title(a.right, p.tr.exponent), "r");
 }
 
+/// Points over the extent of every patch, for what shall not hide one.
+void add_bodies(const Axes& a, const Prepared& p, std::vector<Point>& seen) {
+  constexpr double apart = 8;  // px
+  for (const Patch& s : a.patches) {
+    double x0 = infinity, x1 = -infinity, y0 = infinity, y1 = -infinity;
+    for (std::size_t i = 0; i < s.x.size() && i < s.y.size(); ++i) {
+      const double x = p.x(s.x[i]), y = p.y(s.y[i]);
+      if (!std::isfinite(x) || !std::isfinite(y)) continue;
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+      y0 = std::min(y0, y);
+      y1 = std::max(y1, y);
+    }
+    for (double x = x0; x <= x1; x += apart)
+      for (double y = y0; y <= y1; y += apart)
+        seen.push_back({x, y});
+  }
+}
+
 }  // namespace
 
 void data_range(const Axes& a, Scale& x, Scale& y, Scale& right) {
@@ -282,6 +301,7 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   draw_ticks(c, a, p, b, f, right);
   if (!a.heat.empty()) draw_color_bar(c, a.heat.front(), {b.right() + 14, b.y, 13, b.h});
   const Box size = legend_size_of(entries);
+  add_bodies(a, p, seen);
   draw_legend(c, entries, b, seen, taken,
               outside ? Box{b.right() + (right            ? widest_label(p.tr) + tick_length + 30
                                          : a.heat.empty() ? 8

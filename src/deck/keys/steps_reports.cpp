@@ -187,7 +187,7 @@ void describe(Visitor& v, model::ApiLateralStep& s) {
             "speeds of the response, before those at its peaks");
   v.texts(optional("bearings", "all that carry laterally to the ground, but seals"), s.bearings,
           "names of the journal bearings");
-  v.texts(optional("seals", "bearings of type seal and cross_coupling"), s.seals,
+  v.texts(optional("seals", "bearings of type annular_seal and cross_coupling"), s.seals,
           "names of seals and what else drives whirl: left out of the critical-speed map and of "
           "level 1, as given in level 2");
   v.texts(optional("probes", "all of the deck"), s.probes,
