@@ -1,7 +1,6 @@
 // Frames in one file: read back through HDF5 by the rules of the format, as VTK's reader (9.3 and later;
 // vtkHDFReader::Read) finds a step: offsets, then the part, its cells and its arrays.
-#ifdef WHIRL_TEST_HDF5
-#include "temp_folder.hpp"
+#include "../io/temp_folder.hpp"
 #include <core/archive.hpp>
 #include <core/error.hpp>
 #include <core/plugin.hpp>
@@ -290,4 +289,3 @@ TEST_F(OneFileFrames, AFileOfSomebodyElseStays) {
 
 }  // namespace
 }  // namespace whirl::io
-#endif
