@@ -40,6 +40,9 @@ struct SteadyRotation {
   /// rad/s: up to it controllers act; 0: there is none. No energy argument bounds what they drive, so
   /// stability is looked for up to here at least.
   double control_bandwidth = 0;
+  /// Lines that nothing resists or loads along their axis, one of each group that moves together: an
+  /// equilibrium holds u_x of their first node (it may stand anywhere); small motions leave it free.
+  std::vector<Index> axially_free;
   bool frequency_dependent() const { return !table_frequencies.empty(); }
 };
 

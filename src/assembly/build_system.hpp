@@ -200,6 +200,9 @@ struct Built {
   std::vector<double>
       table_frequencies;  ///< rad/s, in no order: of supports with coefficients against the
                           ///< frequency of the motion (Context::frequency)
+  std::vector<Index> axially_free;  ///< lines whose motion along their axis nothing resists or
+                                    ///< loads, one of each group that moves together: equilibria
+                                    ///< hold them (analysis::SteadyRotation)
   std::vector<std::string>
       held;  ///< motions that nothing resists and that are held for it, one line each
   std::vector<std::string>

@@ -80,21 +80,7 @@ class Restraint {
             lines, "axial motion of {}",
             "add a thrust bearing (kxx), or a bearing of type \"rigid\" with directions = [\"x\"]");
       } else if ((equilibrium_ || (frequency_ && !free_in_space(lines))) && !moved) {
-        const Index node = a_.mesh.lines[lines.front()].first_node;
-        if (a_.model.keep_everything && !frequency_) {  // there it would be one more mode
-          keep_axial(lines, node);
-          continue;
-        }
-        a_.builder.hold(node, x);
-        const bool damped = damped_axially(lines);
-        hold(fmt::format("axial motion of {} as a whole: nothing {} it; held at the {}{}{}",
-                         named(lines), damped ? "but damping resists" : "resists or loads",
-                         a_.builder.node(node).name,
-                         damped ? ", its decay is not among the motions" : "",
-                         bent(lines) && frequency_
-                             ? ", which its modes see where it bends (about = \"undeformed\" "
-                               "leaves it free)"
-                             : ""));
+        free_or_hold_axially(lines);
       }
     }
   }
@@ -157,6 +143,20 @@ class Restraint {
   }
 
  private:
+  /// Small motions keep it, equilibria hold it; a motion in time that starts from one is held.
+  void free_or_hold_axially(const std::vector<std::size_t>& lines) {
+    const Index node = a_.mesh.lines[lines.front()].first_node;
+    if (!in_time_) {
+      a_.built.axially_free.push_back(a_.builder.node(node).line);
+    } else if (a_.model.keep_everything && !frequency_) {  // there it would be one more mode
+      keep_axial(lines, node);
+    } else {
+      a_.builder.hold(node, x);
+      hold(fmt::format("axial motion of {} as a whole: nothing {} it; held at the {}", named(lines),
+                       damped_axially(lines) ? "but damping resists" : "resists or loads",
+                       a_.builder.node(node).name));
+    }
+  }
   /// What is held is also left out of the unknowns.
   void hold(const std::string& what) {
     a_.built.held.push_back(what);
@@ -181,7 +181,7 @@ class Restraint {
   };
 
   /// Groups of lines connected by links that act in one of the directions.
-  std::vector<std::vector<std::size_t>> groups(std::vector<Direction> directions) {
+  std::vector<std::vector<std::size_t>> groups(const std::vector<Direction>& directions) {
     std::iota(group_.begin(), group_.end(), std::size_t{0});
     const auto root = [this](std::size_t i) {
       while (group_[i] != i)
@@ -375,6 +375,16 @@ class Restraint {
        frequency_settled_ = false;  ///< some frequencies are about an equilibrium
 };
 
+/// A shaft that no support of its own holds along its axis.
+bool may_move_axially(const model::Model& m) {
+  for (std::size_t k = 0; k < m.shafts.size(); ++k)
+    if (std::none_of(m.bearings.begin(), m.bearings.end(), [k](const model::Bearing& b) {
+          return b.at.shaft == k && !b.to && resisted(b)[x];
+        }))
+      return true;
+  return false;
+}
+
 }  // namespace
 
 std::string system_key(const model::Model& m, const model::Step& step) {
@@ -384,11 +394,14 @@ std::string system_key(const model::Model& m, const model::Step& step) {
   const bool settled = !first || first->start == model::TransientStep::Start::static_equilibrium;
   const bool set_moving = !m.initial.empty() || m.base.acceleration[0] || m.base.turn;
   const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
+  // what is free along its axis stays so in small motions, and is held in time
+  const bool held_along = in_time && settled && !set_moving && may_move_axially(m);
   const bool drawn =
       is_about_the_drawing(step) &&
       std::any_of(m.shafts.begin(), m.shafts.end(), [](const auto& s) { return !s.path.empty(); });
-  return fmt::format("{}{}{}{}", drives ? step.name : "", settled ? "" : "; from rest",
-                     in_time && set_moving ? "; set moving" : "", drawn ? "; as drawn" : "");
+  return fmt::format("{}{}{}{}{}", drives ? step.name : "", settled ? "" : "; from rest",
+                     in_time && set_moving ? "; set moving" : "", held_along ? "; held along" : "",
+                     drawn ? "; as drawn" : "");
 }
 
 void check_restraint(Assembly& a) {

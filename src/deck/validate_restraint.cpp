@@ -15,7 +15,6 @@ namespace {
 /// follows from the stations where that plane is held: one place holds the shift, a second place or
 /// a tilting stiffness the tilt.
 struct Restraint {
-  bool axial = false;
   std::array<std::set<double>, 2> stations;  ///< held laterally along y, z
   std::array<bool, 2> tilt{};                ///< tilt in the x-y, x-z plane held by a moment
   bool lateral(int k) const { return !stations[static_cast<std::size_t>(k)].empty(); }
@@ -31,7 +30,6 @@ std::vector<Restraint> restraints(const model::Model& m) {
   std::vector<Restraint> r(m.shafts.size());
   const auto apply = [&](const model::Location& at, const model::Directions& held) {
     Restraint& x = r[at.shaft];
-    x.axial = x.axial || held[0];
     for (std::size_t k = 0; k < 2; ++k) {
       if (held[1 + k]) x.stations[k].insert(at.s);
       x.tilt[k] = x.tilt[k] || held[tilt_in_plane[k]];
@@ -48,7 +46,6 @@ std::vector<Restraint> restraints(const model::Model& m) {
         if (here.shaft == there.shaft) continue;
         const Restraint& other = r[there.shaft];
         model::Directions held = model::traits_of(b.law).held;
-        held[0] = held[0] && other.axial;
         for (std::size_t k = 0; k < 2; ++k) {
           const bool fixed =
               other.lateral(static_cast<int>(k)) && other.tilting(static_cast<int>(k));
@@ -83,10 +80,6 @@ void check_restraint(const model::Model& m, Problems& out) {
                       motion, m.shafts[k].name, needs->name),
           hint, m.shafts[k].where);
     };
-    if (!r[k].axial)
-      say("axial motion",
-          "give a bearing kxx, or add one of type \"rigid\" with directions = [\"x\"]; or start "
-          "from rest");
     for (int a = 0; a < 2; ++a) {
       const char* axis = a == 0 ? "y" : "z";
       if (!r[k].lateral(a))

@@ -87,6 +87,7 @@ std::vector<Contained> modes_that_matter(const TransientEnd& end, double speed,
                                                           : job.model.shafts[l].speed_ratio);
   }
   running.ratio.resize(at(job.system().lines()), 0.0);
+  running.axially_free = job.built.axially_free;
   running.time = state.t;
   analysis::EquilibriumOptions o;
   o.chart_change = job.model.chart_change;
@@ -240,7 +241,9 @@ void AccuracyOutput::judge_mesh(TransientEnd& end, const std::vector<Contained>&
       "{}.",
       above_the_spin, error_text(largest));
   if (largest > end.job.model.mesh_accuracy)
-    warn_of_coarse_mesh(end.job, end.step.name, worst, largest);
+    warn_of_coarse_mesh(end.job, end.step.name,
+                        fmt::format("the frequency of {} is off by about {}, {} wanted", worst,
+                                    error_text(largest), error_text(end.job.model.mesh_accuracy)));
 }
 
 /// The damping that the steps add.

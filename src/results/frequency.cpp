@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -24,6 +25,7 @@ analysis::SteadyRotation steady_rotation_of(const model::Model& model, const mes
   r.ratio.resize(static_cast<std::size_t>(built.system.lines()), 0.0);
   r.top_speed = top_speed;
   r.table_frequencies = built.table_frequencies;
+  r.axially_free = built.axially_free;
   for (const assembly::MagneticControl& c : built.magnetic_controls)
     r.control_bandwidth = std::max(r.control_bandwidth, c.bandwidth);
   return r;
@@ -36,6 +38,7 @@ analysis::SteadyRotation steady_rotation_of(const run::Job& job, double top_spee
 std::vector<double> speeds_of(const model::SpeedRange& r) {
   if (!r.values.empty()) return r.values;
   std::vector<double> out;
+  out.reserve(static_cast<std::size_t>(std::max(r.points, 0)));
   for (int k = 0; k < r.points; ++k)
     out.push_back(r.points == 1 ? r.stop : r.start + (r.stop - r.start) * k / (r.points - 1));
   return out;

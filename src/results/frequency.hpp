@@ -71,6 +71,7 @@ class FrequencyStep {
   /// What the headers of all tables from here on say of their numbers ("frequencies right to
   /// 2e-4"); also in the section's text.
   void claim(std::string text) { claim_ = std::move(text); }
+  void claim_also(const std::string& text) { claim_ += (claim_.empty() ? "" : ", ") + text; }
   /// Adds the section to the report, the run time to the summary, and a line to the terminal; each
   /// says about() and what the motion asked for leaves out.
   void finish(const std::string& line);

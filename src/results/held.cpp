@@ -39,7 +39,7 @@ const char* left_out_motion(const model::StepLaw& law) {
 }  // namespace
 
 std::vector<std::string> held_in_step(const run::Job& job, const model::Step& step,
-                                      std::span<const Index> spin_holds) {
+                                      std::span<const Index> holds) {
   std::vector<std::string> out;
   const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
   for (const model::Drive& d : job.model.drives) {
@@ -51,9 +51,11 @@ std::vector<std::string> held_in_step(const run::Job& job, const model::Step& st
                     "of the step)",
                     job.model.shafts[d.at.shaft].name, d.at.text, d.name));
   }
-  for (const Index k : spin_holds)
-    out.push_back(fmt::format("angle of {}: nothing else holds the turning of shaft '{}'",
+  for (const Index k : holds)
+    out.push_back(fmt::format("{} of {}: nothing else holds {} shaft '{}'",
+                              k % 6 == system::ux ? "axial place" : "angle",
                               job.system().node(k / 6).name,
+                              k % 6 == system::ux ? "the axial motion of" : "the turning of",
                               job.system().line_name(job.system().node(k / 6).line)));
   if (const char* motion = left_out_motion(step.law)) out.emplace_back(motion);
   out.insert(out.end(), job.built.held.begin(), job.built.held.end());

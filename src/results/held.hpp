@@ -11,7 +11,7 @@ namespace whirl::results {
 /// step that takes some motions only. spin_holds: unknowns phi an equilibrium held because nothing
 /// else does.
 std::vector<std::string> held_in_step(const run::Job& job, const model::Step& step,
-                                      std::span<const Index> spin_holds = {});
+                                      std::span<const Index> holds = {});
 
 /// The same in the summary of the step ("held"), in its section of the report and on the terminal.
 void say_held(run::Job& job, const model::Step& step, const std::vector<std::string>& held,

@@ -10,6 +10,16 @@
 namespace whirl::results {
 namespace {
 
+/// The deck says how many elements some section has, or how long they are.
+bool has_given_elements(const model::Model& m) {
+  if (m.min_elements > 0 || std::isfinite(m.max_element_length)) return true;
+  return std::any_of(m.shafts.begin(), m.shafts.end(), [](const model::Shaft& shaft) {
+    return std::any_of(shaft.sections.begin(), shaft.sections.end(), [](const model::Section& s) {
+      return s.min_elements > 0 || std::isfinite(s.max_element_length);
+    });
+  });
+}
+
 /// x^H (2 lambda M + C) x
 Complex slope_of(const la::MCK& m, Complex lambda, const VecXc& x) {
   VecXc y;
@@ -90,7 +100,9 @@ void MeshAccuracy::report() {
   step_.claim(text);
   if (largest_ <= job.model.mesh_accuracy || warned_) return;
   warned_ = true;
-  warn_of_coarse_mesh(job, step_.step.name, worst_, largest_);
+  warn_of_coarse_mesh(job, step_.step.name,
+                      fmt::format("the frequency of {} is off by about {}, {} wanted", worst_,
+                                  error_text(largest_), error_text(job.model.mesh_accuracy)));
 }
 
 double relative_mesh_error(const assembly::MeshError& error, const la::MCK& m,
@@ -100,16 +112,15 @@ double relative_mesh_error(const assembly::MeshError& error, const la::MCK& m,
   return std::abs(defect) / std::abs(slope_of(m, mode.lambda, mode.x) * mode.lambda);
 }
 
-void warn_of_coarse_mesh(run::Job& job, const std::string& step, const std::string& worst,
-                         double error) {
+void warn_of_coarse_mesh(run::Job& job, const std::string& step, const std::string& what) {
   Diagnostic w;
   w.code = "W10";
-  w.message = fmt::format(
-      "step '{}': the mesh is too coarse: the frequency of {} is off by about {}, {} wanted", step,
-      worst, error_text(error), error_text(job.model.mesh_accuracy));
-  w.hint =
-      "leave min_elements and max_element_length out and the program chooses the elements, or give "
-      "more of them";
+  w.message = fmt::format("step '{}': the mesh is too coarse: {}", step, what);
+  w.hint = has_given_elements(job.model)
+               ? "leave min_elements and max_element_length out and the program chooses the "
+                 "elements, or give more of them"
+               : "the program chose the elements, for the frequencies it expected; give "
+                 "[model.mesh] a smaller accuracy, or min_elements_per_section";
   warn(job, std::move(w));
 }
 

@@ -43,9 +43,9 @@ void report_mesh_accuracy(FrequencyStep& s, double Omega, double max_frequency);
 double relative_mesh_error(const assembly::MeshError& error, const la::MCK& m,
                            const analysis::WhirlMode& mode, std::span<const double> spin);
 
-/// W10: the frequency of `worst` is right to `error` only.
-void warn_of_coarse_mesh(run::Job& job, const std::string& step, const std::string& worst,
-                         double error);
+/// W10, with the hint that fits a mesh given or chosen. what: "the frequency of lateral 1 is off by
+/// about 2e-3, 1e-3 wanted".
+void warn_of_coarse_mesh(run::Job& job, const std::string& step, const std::string& what);
 
 /// "2e-4": one digit, rounded up, never below 1e-6.
 std::string error_text(double relative);

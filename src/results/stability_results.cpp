@@ -11,12 +11,12 @@
 namespace whirl::results {
 
 analysis::Definiteness judge_state(analysis::SteadySystem& running, const system::State& state,
-                                   double Omega, std::span<const Index> spin_holds, bool shape) {
+                                   double Omega, std::span<const Index> holds, bool shape) {
   const system::System& system = running.system();
   la::MCK m = system.make_matrices();
   if (!running.tangent(state.frames, Omega, state.q, m))
     throw run_error("E76", "the tangent of the equilibrium cannot be evaluated");
-  return analysis::judge_tangent(m.K, analysis::free_unknowns(system, spin_holds), system,
+  return analysis::judge_tangent(m.K, analysis::free_unknowns(system, holds), system,
                                  analysis::model_length(system), shape);
 }
 

@@ -8,7 +8,7 @@ namespace whirl::results {
 /// Judges the static tangent of a state at the load of `running`.
 /// @throws Error (E76) when the tangent of the state cannot be evaluated.
 analysis::Definiteness judge_state(analysis::SteadySystem& running, const system::State& state,
-                                   double Omega, std::span<const Index> spin_holds, bool shape);
+                                   double Omega, std::span<const Index> holds, bool shape);
 
 /// What is said of an equilibrium that is not judged.
 inline const std::string left_to_controllers =

@@ -15,8 +15,9 @@ namespace {
 /// The equilibrium on the halved mesh nearest the one found.
 std::optional<analysis::Equilibrium> settle_on(const system::System& fine,
                                                const meshes::Halved& mesh, const run::Job& job,
-                                               const run::StepState& found) {
+                                               const run::StepState& found, double load) {
   analysis::SteadySystem turning(fine, job.steady_rotation_of(found));
+  turning.set_load(load);
   analysis::EquilibriumOptions options;
   options.chart_change = job.model.chart_change;
   analysis::EquilibriumSolver solver(turning, options);
@@ -30,13 +31,13 @@ std::optional<analysis::Equilibrium> settle_on(const system::System& fine,
 }  // namespace
 
 std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::string& step,
-                                                const run::StepState& equilibrium) {
+                                                const run::StepState& equilibrium, double load) {
   const system::State& own = equilibrium.state;
   if (job.mesh.elements.empty() || own.frames.moved()) return std::nullopt;
   const meshes::Halved fine =
       meshes::halve(job.mesh, std::vector<bool>(job.mesh.lines.size(), true));
   const assembly::Built built = assembly::build_system(job.model, fine.mesh, step);
-  const auto found = settle_on(built.system, fine, job, equilibrium);
+  const auto found = settle_on(built.system, fine, job, equilibrium, load);
   if (!found || found->state.frames.moved()) return std::nullopt;
   StaticAccuracy out;
   double most = 0;
@@ -56,6 +57,23 @@ std::optional<StaticAccuracy> static_mesh_error(const run::Job& job, const std::
   return out;
 }
 
+bool has_deflections(const run::Job& job, const run::StepState& equilibrium) {
+  if (job.mesh.elements.empty()) return false;
+  for (const meshes::Line& line : job.mesh.lines)
+    for (Index n = line.first_node; n < line.first_node + line.nodes; ++n)
+      if (!equilibrium.state.q.segment<3>(6 * n).isZero(0.0)) return true;
+  return false;
+}
+
+std::string report_no_static_accuracy(run::Job& job, const std::string& step) {
+  const std::string said =
+      "what the elements leave of the deflections is not judged: no such equilibrium was found on "
+      "a "
+      "mesh twice as fine";
+  job.summary["steps"][step]["mesh"]["not judged"] = said;
+  return said;
+}
+
 std::string report_static_accuracy(run::Job& job, const std::string& step,
                                    const StaticAccuracy& a) {
   io::Value& v = job.summary["steps"][step]["mesh"];
@@ -63,14 +81,10 @@ std::string report_static_accuracy(run::Job& job, const std::string& step,
   v["relative error of deflections"] = a.error;
   v["largest at"] = a.shaft;
   if (a.error > job.model.mesh_accuracy) {
-    Diagnostic w;
-    w.code = "W10";
-    w.message = fmt::format(
-        "step '{}': the mesh is too coarse: deflections of shaft '{}' are off by about {} of the "
-        "largest, {} wanted",
-        step, a.shaft, error_text(a.error), error_text(job.model.mesh_accuracy));
-    w.hint = "give min_elements or max_element_length for more elements";
-    warn(job, std::move(w));
+    warn_of_coarse_mesh(
+        job, step,
+        fmt::format("deflections of shaft '{}' are off by about {} of the largest, {} wanted",
+                    a.shaft, error_text(a.error), error_text(job.model.mesh_accuracy)));
   }
   return fmt::format("deflections right to {} (elements)", error_text(a.error));
 }

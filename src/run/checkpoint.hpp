@@ -43,7 +43,7 @@ enum class Part {
 struct PartKey {
   Part part;
   std::string content{};
-  auto operator<=>(const PartKey&) const = default;
+  auto operator<=>(const PartKey&) const = default;  // NOLINT(modernize-use-nullptr): not a pointer
 };
 /// As it stands in the file.
 std::string_view to_string(Part p);

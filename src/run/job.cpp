@@ -125,6 +125,7 @@ analysis::SteadyRotation Job::steady_rotation_of(const StepState& start) const {
                                                        : 0.0);
   }
   running.ratio.resize(static_cast<std::size_t>(system().lines()), 0.0);
+  running.axially_free = built.axially_free;
   running.mean = start.speed != 0.0;  // at rest every part stands where it stands: no mean over a
                                       // revolution that nobody makes
   return running;

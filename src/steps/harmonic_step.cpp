@@ -5,6 +5,7 @@
 #include <results/response.hpp>
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
+#include <results/refined_response.hpp>
 #include <run/progress.hpp>
 #include <steps/step_kinds.hpp>
 #include <core/parallel.hpp>
@@ -174,6 +175,9 @@ class HarmonicRun {
   };
   void list_maxima(std::size_t probe, std::vector<Found>& out) const;
   void find_peak(Found& x) const;
+  /// What the elements leave of the peaks, or of the largest amplitude where there is none.
+  std::vector<double> judge_amplitudes(const std::vector<Found>& peaks);
+  BothSpins options_on(const results::RefinedModel& refined) const;
   double place_on_axis(const FrequencyPoint& x) const {
     return asynchronous_ ? x.frequency : x.Omega;
   }
@@ -345,7 +349,9 @@ void HarmonicRun::add_peaks() {
                    {"speed", "rpm", ""},
                    {"frequency", "Hz", ""},
                    {"amplitude", twists_ ? "rad" : "m",
-                    twists_ ? "0-peak, twist" : "0-peak, major axis of the orbit"}};
+                    twists_ ? "0-peak, twist" : "0-peak, major axis of the orbit"},
+                   {"mesh error of amplitude", "-", "relative, what the elements leave"}};
+  table.nan_means = "not judged";
   io::Value& v = s_.summary();
   v["points"] = points_.size();
   std::vector<Found> found;
@@ -355,18 +361,76 @@ void HarmonicRun::add_peaks() {
     list_maxima(p, found);
   }
   run_side_by_side(found.size(), job_.options.jobs, [&](std::size_t k) { find_peak(found[k]); });
-  for (const Found& x : found) {
+  const std::vector<double> errors = judge_amplitudes(found);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const Found& x = found[k];
     const std::string& name = options_.probes[x.probe].name;
     const double size = size_of(x.peak, x.probe);
-    table.add({name, to_rpm(x.peak.Omega), to_hz(x.peak.frequency), size});
+    table.add({name, to_rpm(x.peak.Omega), to_hz(x.peak.frequency), size, errors[k]});
     io::Value e = io::Value::object();
     e["frequency [Hz]"] = to_hz(x.peak.frequency);
     e["speed [rpm]"] = to_rpm(x.peak.Omega);
     e["amplitude"] = size;
+    e["mesh error of amplitude"] = errors[k];
     v["peaks"][name].push(std::move(e));
     peaks_.push_back({x.at, size});
   }
   s_.add_table("peaks", std::move(table));
+}
+
+BothSpins HarmonicRun::options_on(const results::RefinedModel& refined) const {
+  BothSpins out = both_;
+  for (analysis::FrequencyResponseOptions& o : out) {
+    for (analysis::HarmonicForce& f : o.forces)
+      f.unknown = refined.unknown(f.unknown);
+    for (analysis::ResponseProbe& p : o.probes)
+      p.point = refined.point(p.point);
+    for (Index& k : o.unknowns)
+      k = refined.unknown(k);
+    o.outputs.clear();
+    o.shapes = false;
+  }
+  return out;
+}
+
+std::vector<double> HarmonicRun::judge_amplitudes(const std::vector<Found>& peaks) {
+  std::vector<double> out(peaks.size(), nan);
+  const double most = twists_ ? largest_twist_ : largest_;
+  if (job_.mesh.elements.empty() || !(most > 0) || !std::isfinite(most)) return out;
+  results::AmplitudeAccuracy accuracy(
+      s_, peaks.empty() ? "largest amplitude" : "amplitudes of the peaks");
+  const run::PhaseTimer timer(job_, "accuracy of the mesh");
+  try {
+    results::RefinedModel refined(s_);
+    const BothSpins options = options_on(refined);
+    Responder fine(refined.linear(), options);
+    for (std::size_t k = 0; k < peaks.size(); ++k) {
+      const std::size_t probe = peaks[k].probe;
+      const auto on = [&](Responder& responder) {
+        return [&, probe](double x) { return size_of(respond(responder, x), probe); };
+      };
+      out[k] = results::peak_error(peaks[k].at, nan, on(responder_), on(fine)).amplitude;
+    }
+    if (peaks.empty()) {
+      const FrequencyPoint own = respond(largest_at_), other = respond(fine, largest_at_);
+      double here = 0, there = 0;
+      for (std::size_t p = 0; p < options_.probes.size(); ++p) {
+        here = std::max(here, size_of(own, p));
+        there = std::max(there, size_of(other, p));
+      }
+      accuracy.add(4.0 / 3.0 * std::abs(there / here - 1.0),
+                   fmt::format("the largest response, at {:.6g} {}", displayed(largest_at_),
+                               asynchronous_ ? "Hz" : "rpm"));
+    }
+  } catch (const Error&) {
+    accuracy.add(nan, {});
+  }
+  for (std::size_t k = 0; k < peaks.size(); ++k)
+    accuracy.add(out[k], fmt::format("the peak of probe '{}' at {:.6g} {}",
+                                     options_.probes[peaks[k].probe].name, displayed(peaks[k].at),
+                                     asynchronous_ ? "Hz" : "rpm"));
+  accuracy.report();
+  return out;
 }
 
 double HarmonicRun::largest_of(std::size_t probe) const {

@@ -40,6 +40,42 @@ BandResult solve_bands(const model::StabilityStep& law, analysis::RotatingAxes& 
   return analysis::find_bands(axes, o);
 }
 
+/// What the cut of Hill's determinant does to growth rates.
+struct Truncation {
+  int harmonics = 0, speeds = 0;
+  double change = 0;  ///< 1/s, with two harmonics more, the largest
+};
+
+/// Where the growth is largest: of each band, and of all speeds, three at most.
+std::vector<double> telling_speeds(const BandResult& r) {
+  std::vector<InstabilityBand> bands = r.bands;
+  std::sort(bands.begin(), bands.end(),
+            [](const InstabilityBand& a, const InstabilityBand& b) { return a.growth > b.growth; });
+  std::vector<double> out;
+  for (std::size_t k = 0; k < std::min<std::size_t>(bands.size(), 2); ++k)
+    out.push_back(bands[k].speed);
+  const auto top = std::max_element(r.growth.begin(), r.growth.end());
+  out.push_back(r.speeds[static_cast<std::size_t>(top - r.growth.begin())]);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+Truncation find_truncation(results::FrequencyStep& s, const model::StabilityStep& law,
+                           const BandResult& r, analysis::RotatingAxes& axes) {
+  Truncation t;
+  t.harmonics = static_cast<int>(axes.harmonics());
+  constexpr Index more = 2;
+  analysis::RotatingAxes finer(s.linear, r.speeds.back(), axes.harmonics() + more);
+  for (const double Omega : telling_speeds(r)) {
+    const double own = analysis::largest_growth(axes, Omega, law.modes),
+                 other = analysis::largest_growth(finer, Omega, law.modes);
+    ++t.speeds;
+    t.change = std::max(t.change, std::abs(own - other));
+  }
+  return t;
+}
+
 /// "unstable from 2000 to 2100 rpm, 4000 to above 6000 rpm"
 std::string text_of(const BandResult& r) {
   if (r.bands.empty())
@@ -180,13 +216,28 @@ void run_instability_bands(run::Job& job, const model::Step& step,
                                   "the shaft in the mean, not with its vibration"
                                 : "Neither the shaft nor its supports are isotropic",
                         axes.harmonics());
-  const std::string known =
+  std::string known =
       "not certified: the eigenvalues at each speed are searched for, not counted, and bands "
       "narrower than the distance of the speeds are found at critical speeds only";
+  known += fmt::format("; growth below {:.0e} of the speed is taken for none",
+                       analysis::unnoticed_share(axes));
+  std::string in_short = "not certified: eigenvalues searched for, not counted";
+  if (!axes.constant()) {
+    const Truncation cut = find_truncation(s, law, r, axes);
+    known += fmt::format(
+        "; Hill's determinant is cut after {} harmonics: with {} the growth rates at {} speed{} of "
+        "largest growth change by {:.1g} 1/s",
+        cut.harmonics, cut.harmonics + 2, cut.speeds, cut.speeds == 1 ? "" : "s", cut.change);
+    in_short += fmt::format("; Hill with {} harmonics, growth right to {:.1g} 1/s", cut.harmonics,
+                            cut.change);
+    io::Value& v = s.summary()["certificate"];
+    v["harmonics"] = cut.harmonics;
+    v["change of growth with two more [1/s]"] = cut.change;
+  }
   s.summary()["certificate"]["complete"] = false;
   s.summary()["certificate"]["text"] = known;
   s.section.text = results::capital(line) + ". " + why + " " + results::capital(known) + ".";
-  s.finish(line + " (not certified)");
+  s.finish(line + " (" + in_short + ")");
 }
 
 }  // namespace whirl::steps

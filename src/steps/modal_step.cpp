@@ -114,6 +114,7 @@ class ModalRun {
   void add_rates();
   void add_shape(std::size_t k);
   std::string text() const;
+  std::string doubt() const;
   std::string line() const;
 
   const model::ModalStep& law_;
@@ -243,6 +244,13 @@ std::string ModalRun::text() const {
   return text;
 }
 
+/// What grows beyond the list may not be known where nothing in it does.
+std::string ModalRun::doubt() const {
+  const bool asked = law_.damped && unstable_ + diverging_ == 0;
+  if (!asked || !certificate_.complete() || certificate_.stability_certain()) return {};
+  return fmt::format(", growth above {:.5g} Hz not excluded", to_hz(certificate_.list.radius));
+}
+
 std::string ModalRun::line() const {
   std::string line = fmt::format("{} modes at {:.0f} rpm", modes_.size(), to_rpm(law_.speed));
   for (std::size_t k = 0; k < std::min<std::size_t>(modes_.size(), 4); ++k)
@@ -255,7 +263,8 @@ std::string ModalRun::line() const {
          (diverging_ ? fmt::format(", {} diverging", diverging_) : "") +
          (certificate_.complete()            ? ", complete"
           : certificate_.stability_certain() ? ", growing ones certified"
-                                             : ", not certified");
+                                             : ", not certified") +
+         doubt();
 }
 
 void ModalRun::execute() {

@@ -110,6 +110,7 @@ class Obstacles {
       running.ratio.push_back(model_.shafts[l].rotating ? model_.shafts[l].speed_ratio : 0.0);
     const assembly::Built& built = system_of(step.name);
     running.ratio.resize(static_cast<std::size_t>(built.system.lines()), 0.0);
+    running.axially_free = built.axially_free;
     analysis::RotatingAxes::require(analysis::SteadySystem(built.system, running));
   }
 
@@ -155,6 +156,7 @@ class Obstacles {
     for (std::size_t l = 0; l < mesh_.lines.size(); ++l)
       rotation.ratio.push_back(model_.shafts[l].rotating ? model_.shafts[l].speed_ratio : 0.0);
     rotation.ratio.resize(static_cast<std::size_t>(built.system.lines()), 0.0);
+    rotation.axially_free = built.axially_free;
     analysis::SteadySystem running(built.system, rotation);
     try {
       analysis::require_loads(running, law.speed);

@@ -21,6 +21,7 @@ analysis::Linearizer linearizer_of(const run::Job& job, const run::StepState& st
                                                            : 0.0);
   }
   running.ratio.resize(static_cast<std::size_t>(job.system().lines()), 0.0);
+  running.axially_free = job.built.axially_free;
   running.time = start.state.t;
   analysis::EquilibriumOptions o;
   o.chart_change = job.model.chart_change;

@@ -1,5 +1,6 @@
 // A static step at a series of speeds: where each journal runs in its bearing, and the coefficients
 // of the bearings against speed.
+#include <results/static_accuracy.hpp>
 #include <results/frequency.hpp>
 #include <results/linear_limits.hpp>
 #include <results/stability_results.hpp>
@@ -43,7 +44,8 @@ plot::Figure grid(std::string name, std::string title, std::size_t bearings, dou
   f.name = std::move(name);
   f.title = std::move(title);
   f.columns = bearings > 1 ? 2 : 1;
-  f.height = height * static_cast<double>((bearings + 1) / 2);
+  const std::size_t rows = (bearings + 1) / 2;
+  f.height = height * static_cast<double>(rows);
   return f;
 }
 
@@ -200,6 +202,8 @@ class SpeedSweep {
   void miss(double Omega, const Error& e);
   void judge(double Omega, const run::StepState& state);
   void add_coefficients(const run::StepState& state);
+  void judge_mesh(double Omega, const run::StepState& state);
+  void report_mesh();
   void show_equilibria();
   void show_bearings();
   void show_rings();
@@ -214,6 +218,8 @@ class SpeedSweep {
   int unstable_ = 0;
   bool judges_ = true;  ///< false: controllers decide whether some are stable
   std::size_t found_ = 0;
+  results::StaticAccuracy accuracy_;  ///< the largest error
+  int mesh_judged_ = 0;
   std::string missing_;  ///< speeds without an equilibrium
   std::optional<Error> first_error_;
 };
@@ -228,7 +234,26 @@ void SpeedSweep::take(double Omega) {
   judge(Omega, state);
   if (found_++ == 0) run::warn_of_closed_contacts(job_, step_, state);
   add_coefficients(state);
+  judge_mesh(Omega, state);
   job_.states[step_.name] = std::move(state);
+}
+
+/// What the elements do to the equilibria at the ends and in the middle of the speeds.
+void SpeedSweep::judge_mesh(double Omega, const run::StepState& state) {
+  if (Omega != speeds_.front() && Omega != speeds_.back() && Omega != speeds_[speeds_.size() / 2])
+    return;
+  const auto accuracy = results::static_mesh_error(job_, step_.name, state);
+  if (!accuracy) return;
+  ++mesh_judged_;
+  if (accuracy_.shaft.empty() || accuracy->error > accuracy_.error) accuracy_ = *accuracy;
+}
+
+void SpeedSweep::report_mesh() {
+  if (mesh_judged_ == 0) return;
+  const std::string said = results::report_static_accuracy(job_, step_.name, accuracy_);
+  s_.summary()["mesh"]["judged at speeds"] = mesh_judged_;
+  s_.claim(said);
+  s_.section.text += " " + results::capital(said) + ".";
 }
 
 void SpeedSweep::miss(double Omega, const Error& e) {
@@ -244,7 +269,7 @@ void SpeedSweep::miss(double Omega, const Error& e) {
 /// The first unstable one is shown.
 void SpeedSweep::judge(double Omega, const run::StepState& state) {
   const analysis::Definiteness tangent = results::judge_state(
-      s_.linear.running(), state.state, Omega, s_.linear.equilibrium().spin_holds, unstable_ == 0);
+      s_.linear.running(), state.state, Omega, s_.linear.equilibrium().holds(), unstable_ == 0);
   judged_.add({to_rpm(Omega), 1, static_cast<int>(tangent.negative), tangent.symmetric ? 1 : 0,
                tangent.certain ? 1 : 0});
   judges_ = judges_ && tangent.judged;
@@ -368,6 +393,7 @@ void SpeedSweep::execute() {
   if (found_ == 0) throw *first_error_;
   results::warn_of_held_tables(job_, step_.name, speeds_.front(), speeds_.back());
   results::warn_of_mean_crack(job_, step_.name, true);
+  report_mesh();
   show_equilibria();
   show_bearings();
   const std::string judgement =

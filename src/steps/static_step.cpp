@@ -218,7 +218,7 @@ void StaticRun::judge() {
   turning.set_load(load_);
   const std::vector<results::SupportLoad> loads =
       results::calc_support_loads(job_, turning, x, state_.speed, found_.reactions);
-  tangent_ = results::judge_state(turning, x, state_.speed, found_.spin_holds, true);
+  tangent_ = results::judge_state(turning, x, state_.speed, found_.holds(), true);
   results::add_stability(summary(), tangent_, state_.speed);
   results::warn_of_unstable(job_, step_.name, tangent_, state_.speed);
   if (!tangent_.stable() && tangent_.shape.size() > 0)
@@ -231,12 +231,14 @@ void StaticRun::judge() {
   frames_.end();
 }
 
-/// What the elements do to one equilibrium; along a path they are not judged.
+/// What the elements do to the equilibrium; of a path to the last one, under the load it stands at.
 void StaticRun::judge_mesh() {
-  if (path_) return;
-  const auto accuracy = results::static_mesh_error(job_, step_.name, state_);
-  if (!accuracy) return;
-  const std::string said = results::report_static_accuracy(job_, step_.name, *accuracy);
+  if (!results::has_deflections(job_, state_)) return;
+  const auto accuracy = results::static_mesh_error(job_, step_.name, state_, load_);
+  if (!accuracy && !path_) return;
+  std::string said = accuracy ? results::report_static_accuracy(job_, step_.name, *accuracy)
+                              : results::report_no_static_accuracy(job_, step_.name);
+  if (path_) said += fmt::format(", at load factor {:.6g}", load_);
   results_.deflection.title += "; " + said;
   results_.lines.push_back(said);
 }
@@ -314,7 +316,7 @@ void StaticRun::add_section() {
   if (!tangent_.judged) section.text += "\n\n" + std::string(results::left_to_controllers) + ".";
   for (const std::string& n : notes_)
     section.text += "\n\n" + n + ".";
-  results::say_held(job_, step_, results::held_in_step(job_, step_, found_.spin_holds), section);
+  results::say_held(job_, step_, results::held_in_step(job_, step_, found_.holds()), section);
   if (!job_.model.output.report) return;
   if (followed_ && !followed_->critical.empty())
     section.tables.push_back(results::critical_table(*followed_));

@@ -7,6 +7,7 @@
 #include <results/response.hpp>
 #include <results/linear_limits.hpp>
 #include <results/mesh_accuracy.hpp>
+#include <results/refined_response.hpp>
 #include <run/progress.hpp>
 #include <steps/criticals_between.hpp>
 #include <steps/step_kinds.hpp>
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace whirl::steps {
 
@@ -217,10 +219,11 @@ void add_critical_speeds(results::FrequencyStep& s, std::vector<double>& speeds)
 /// The same into the summary.
 io::Table peak_table(results::FrequencyStep& s, const UnbalanceResponse& r,
                      const std::vector<analysis::ResponseProbe>& probes,
-                     const std::vector<analysis::ResponsePeak>& peaks) {
+                     const std::vector<analysis::ResponsePeak>& peaks,
+                     const std::vector<results::PeakError>& errors) {
   io::Table table;
   table.title = "Peaks of the response";
-  table.nan_means = "no half-power point on this side within the speeds";
+  table.nan_means = "no half-power point on this side within the speeds; an error: not judged";
   table.columns = {{"probe", "-", ""},
                    {"order", "-", ""},
                    {"speed", "rpm", ""},
@@ -228,19 +231,65 @@ io::Table peak_table(results::FrequencyStep& s, const UnbalanceResponse& r,
                    {"phase lag", "deg", ""},
                    {"amplification factor", "-", "from the half-power points"},
                    {"N1", "rpm", "lower half-power speed"},
-                   {"N2", "rpm", "upper half-power speed"}};
-  for (const analysis::ResponsePeak& p : peaks) {
+                   {"N2", "rpm", "upper half-power speed"},
+                   {"mesh error of amplitude", "-", "relative, what the elements leave"},
+                   {"mesh error of amplification", "-", "the same"}};
+  for (std::size_t k = 0; k < peaks.size(); ++k) {
+    const analysis::ResponsePeak& p = peaks[k];
     const std::string& name = probes[p.probe].name;
     table.add({name, r.orders[p.order], to_rpm(p.speed), p.amplitude, p.phase_lag * 180 / pi,
-               p.amplification(), to_rpm(p.low), to_rpm(p.high)});
+               p.amplification(), to_rpm(p.low), to_rpm(p.high), errors[k].amplitude,
+               errors[k].amplification});
     io::Value e = io::Value::object();
     e["speed [rpm]"] = to_rpm(p.speed);
     e["amplitude 0-peak [m]"] = p.amplitude;
     e["amplification factor"] = p.amplification();
+    e["mesh error of amplitude"] = errors[k].amplitude;
+    e["mesh error of amplification"] = errors[k].amplification;
     s.summary()["peaks"][name].push(std::move(e));
   }
   return table;
 }
+
+/// Responses on the mesh of the deck, and on one twice as fine.
+class BothMeshes {
+ public:
+  BothMeshes(results::FrequencyStep& s, analysis::UnbalanceOptions options)
+      : refined_(s),
+        own_(s.linear, with_probes_alone(options)),
+        fine_(refined_.linear(), on_refined(std::move(options))) {}
+
+  results::PeakError error_of(const analysis::ResponsePeak& peak) {
+    const auto size = [&](analysis::UnbalanceSolver& solver) {
+      return [&](double Omega) {
+        return solver.at(Omega, false).probe[peak.order][peak.probe].orbit().major;
+      };
+    };
+    return results::peak_error(peak.speed, peak.amplification(), size(own_), size(fine_));
+  }
+  /// Of the largest amplitude of all probes, where there is no peak.
+  double error_at(double Omega, double amplitude) {
+    double largest = 0;
+    for (const auto& order : fine_.at(Omega, false).probe)
+      for (const analysis::PointAmplitude& a : order)
+        largest = std::max(largest, a.orbit().major);
+    return 4.0 / 3.0 * std::abs(largest / amplitude - 1.0);
+  }
+
+ private:
+  static analysis::UnbalanceOptions with_probes_alone(analysis::UnbalanceOptions o) {
+    o.outputs.clear();
+    return o;
+  }
+  analysis::UnbalanceOptions on_refined(analysis::UnbalanceOptions o) const {
+    o.outputs.clear();
+    for (analysis::ResponseProbe& p : o.probes)
+      p.point = refined_.point(p.point);
+    return o;
+  }
+  results::RefinedModel refined_;
+  analysis::UnbalanceSolver own_, fine_;
+};
 
 /// Largest amplitude of all probes, and the speed there.
 struct Largest {
@@ -262,6 +311,36 @@ Largest find_largest(const UnbalanceResponse& r, const std::vector<analysis::Res
     summary["largest amplitude 0-peak [m]"][probes[p].name] = most;
   }
   return largest;
+}
+
+/// What the elements leave of the peaks, or of the largest amplitude where there is none; not judged
+/// where the finer mesh has no equilibrium.
+std::vector<results::PeakError> judge_amplitudes(results::FrequencyStep& s,
+                                                 const analysis::UnbalanceOptions& options,
+                                                 const std::vector<analysis::ResponseProbe>& probes,
+                                                 const std::vector<analysis::ResponsePeak>& peaks,
+                                                 const Largest& largest) {
+  std::vector<results::PeakError> out(peaks.size());
+  if (s.job.mesh.elements.empty() || !(largest.amplitude > 0)) return out;
+  results::AmplitudeAccuracy accuracy(
+      s, peaks.empty() ? "largest amplitude" : "amplitudes of the peaks");
+  const run::PhaseTimer timer(s.job, "accuracy of the mesh");
+  try {
+    BothMeshes meshes(s, options);
+    for (std::size_t k = 0; k < peaks.size(); ++k)
+      out[k] = meshes.error_of(peaks[k]);
+    if (peaks.empty())
+      accuracy.add(meshes.error_at(largest.speed, largest.amplitude),
+                   fmt::format("the largest response, at {:.6g} rpm", to_rpm(largest.speed)));
+  } catch (const Error&) {
+    accuracy.add(nan, {});
+  }
+  for (std::size_t k = 0; k < peaks.size(); ++k)
+    accuracy.add(out[k].amplitude,
+                 fmt::format("the peak of probe '{}' at {:.6g} rpm", probes[peaks[k].probe].name,
+                             to_rpm(peaks[k].speed)));
+  accuracy.report();
+  return out;
 }
 
 void add_margins(results::FrequencyStep& s, const UnbalanceResponse& r,
@@ -391,6 +470,31 @@ void add_grades(results::FrequencyStep& s, const model::UnbalanceStep& law) {
   s.add_table("balance_grade", std::move(t));
 }
 
+/// Shafts that turn against each other at one speed, both out of balance: what they do together
+/// depends on where they meet, which the phases of the deck say.
+void say_opposed_unbalances(results::FrequencyStep& s) {
+  const model::Model& m = s.job.model;
+  const auto unbalanced = [&](std::size_t k) {
+    return m.shafts[k].rotating && std::any_of(m.unbalances.begin(), m.unbalances.end(),
+                                               [k](const auto& u) { return u.at.shaft == k; });
+  };
+  for (std::size_t a = 0; a < m.shafts.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      if (!unbalanced(a) || !unbalanced(b)) continue;
+      if (m.shafts[a].speed_ratio != -m.shafts[b].speed_ratio) continue;
+      const std::string said = fmt::format(
+          "unbalances of shafts '{}' and '{}', which turn against each other at one speed, act "
+          "together at the phases given; unless something keeps the shafts in step, they may meet "
+          "at "
+          "any other",
+          m.shafts[b].name, m.shafts[a].name);
+      s.summary()["assumed"].push(said);
+      s.section.text += "\n\n" + results::capital(said) + ".";
+      if (!s.job.options.quiet)
+        std::fputs(fmt::format("  {}: assumed: {}\n", s.step.name, said).c_str(), stderr);
+    }
+}
+
 /// Where asked for, else at the distinct peaks.
 std::vector<double> shape_speeds(const model::UnbalanceStep& law,
                                  const std::vector<analysis::ResponsePeak>& peaks) {
@@ -494,10 +598,11 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
   std::erase_if(peaks, [&](const analysis::ResponsePeak& p) { return p.probe >= shown.size(); });
 
   s.summary()["speeds"] = r.points.size();
-  io::Table found = peak_table(s, r, shown, peaks);
   const Largest largest = find_largest(r, shown, s.summary());
   constexpr double beyond = 1.2;  // a peak is seen before its frequency is reached
   results::report_mesh_accuracy(s, o.speeds.back(), beyond * top);
+  io::Table found =
+      peak_table(s, r, shown, peaks, judge_amplitudes(s, o, o.probes, peaks, largest));
   results::warn_of_held_tables(job, step.name, o.speeds.front(), o.speeds.back());
   results::warn_of_growth(s, speeds_to_judge(o.speeds, largest, o.turns_with_rotor));
   for (std::size_t k = 0; k < r.orders.size(); ++k)
@@ -521,6 +626,7 @@ UnbalanceOutcome run_unbalance_step(run::Job& job, const model::Step& step,
                        : fmt::format("Steady response to what turns out of balance, {} speeds{}.",
                                      r.points.size(),
                                      o.refine_peaks ? ", with more of them where it peaks" : "");
+  say_opposed_unbalances(s);
   if (largest.amplitude == 0) {
     Diagnostic d;
     d.code = "W02";

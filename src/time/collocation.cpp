@@ -22,7 +22,9 @@
 // middle stage of where it has come to: a film whose wedge all but vanishes changes its tangent
 // within a correction.
 //
-// Predictor: the acceleration polynomial of the last step, extrapolated and integrated twice.
+// Predictor: the acceleration polynomial of the last step, extrapolated and integrated twice. Of a linear
+// problem there is none: its one iteration begins at free motion, along which the residuals of all
+// stages share their products with the matrices (AffineProblem).
 //
 // Error. Of all embedded formulas on {t0, t_1..t_s} of order s only one exists up to a factor: its
 // defect is that of the collocation polynomials u (of q) and w (of v) at the step's start,
@@ -77,6 +79,7 @@ Collocation::Collocation(std::string_view name, const Tableau& tableau, Problem&
     : Stepper(problem, options),
       name_(name),
       tab_(tableau),
+      affine_(problem.is_linear() ? dynamic_cast<AffineProblem*>(&problem) : nullptr),
       s_(tableau.stages) {
   const double exponent = static_cast<double>(s_ + 1) / tab_.order;
   allowance_ = allowance_factor(tab_) * std::pow(options.tolerance, exponent);
@@ -141,7 +144,21 @@ double Collocation::set_stage(int i, double h) {
   return t;
 }
 
+bool Collocation::evaluate_free_stages(double h) {
+  std::array<double, Tableau::max_stages> span{}, time{};
+  const auto stages = static_cast<std::size_t>(s_);
+  for (std::size_t i = 0; i < stages; ++i) {
+    span[i] = tab_.c[i] * h;
+    time[i] = stage_time(tab_.c[i], h);
+  }
+  if (!affine_->residuals_along({t0_, q0_, v0_, {span.data(), stages}, {time.data(), stages}}, r_))
+    return false;
+  statistics_.residuals += s_;
+  return true;
+}
+
 bool Collocation::evaluate_stages(double h) {
+  if (affine_ && evaluate_free_stages(h)) return true;
   for (int i = 0; i < s_; ++i) {
     const double t = set_stage(i, h);
     if (!residual(t, qs_, vs_, as_, r_.col(i))) return false;

@@ -1,6 +1,7 @@
 // Collocation (Radau IIA 5, Gauss 4, Gauss 6) for second-order implicit systems R(t, q, v, a) = 0.
 // See collocation.cpp.
 #pragma once
+#include <time/affine.hpp>
 #include <time/newton.hpp>
 #include <time/stepper.hpp>
 #include <time/tableau.hpp>
@@ -35,6 +36,8 @@ class Collocation final : public Stepper {
   bool linearize_inside(double h);
   /// Residuals of all stages at the present increments into r_; false: outside the model's domain.
   bool evaluate_stages(double h);
+  /// The same of a linear problem, whose increments are still zero; false: one by one.
+  bool evaluate_free_stages(double h);
   /// Newton on the stages; iterations and status into `out`.
   void newton(double h, Attempt& out);
   /// r_ := corrections of the stages from their residuals, Y -= r_; false when not finite.
@@ -44,6 +47,7 @@ class Collocation final : public Stepper {
 
   std::string_view name_;
   const Tableau& tab_;
+  AffineProblem* affine_;  ///< the problem, where it is linear and says so; else null
   int s_;
   double allowance_;
   NewtonMonitor newton_;

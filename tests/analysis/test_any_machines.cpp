@@ -4,6 +4,7 @@
 #include "../validation/deck_model.hpp"
 #include "any_machine.hpp"
 #include "machine_checks.hpp"
+#include "two_methods.hpp"
 
 #include <analysis/response/unbalance.hpp>
 #include <analysis/spectra/stability.hpp>
@@ -135,8 +136,29 @@ std::vector<AnyMachine::View> views(unsigned seed) {
   return out;
 }
 
+/// The same by other methods.
+void check_by_other_methods(const AnyMachine& machine, unsigned seed, double share,
+                            const std::string& name, tests::Compared& sum) {
+  const DeckModel d(machine.deck());
+  const double Omega = share * machine.top_speed();
+  Linearizer linear(d.built.system, d.running());
+  ModesOptions o;
+  o.count = listed;
+  const std::vector<WhirlMode> modes = whirl_modes(linear, Omega, o);
+  tests::compare_response(linear, Omega, name, sum);
+  tests::compare_statics(linear, d, Omega, name, sum);
+  if (machine.by_rate()) {
+    tests::compare_rates(linear, Omega, modes, name, sum);
+    return;
+  }
+  tests::compare_decay(linear, Omega, modes, name, sum);
+  tests::compare_criticals(linear, 0.5 * Omega, Omega, name, sum);
+  if (seed % 4 == 0) tests::compare_stability(linear, 0.6 * Omega, Omega, name, sum);
+}
+
 void campaign(unsigned first, unsigned machines) {
   tests::Tally tally;
+  tests::Compared compared;
   Differences sum;
   std::map<std::string, int> kinds;
   for (unsigned seed = first; seed < first + machines; ++seed) {
@@ -156,11 +178,14 @@ void campaign(unsigned first, unsigned machines) {
       compare(own, what_is_said(AnyMachine(seed, view), view, share), view, name + names[v],
               alike(machine), machine.has("tilting pads"), sum);
     }
-    if (!own.refused.empty() || machine.by_rate()) continue;
+    if (!own.refused.empty()) continue;
+    check_by_other_methods(machine, seed, share, name, compared);
+    if (machine.by_rate()) continue;
     const DeckModel d(machine.deck());
     tests::check_machine(d, share * machine.top_speed(), listed, name, tally, false);
   }
   tests::report(tally);
+  tests::report(compared);
   EXPECT_LE(sum.elsewhere, 1 + sum.views / 200);
   EXPECT_GE(tally.certified, tally.solved - tally.solved / 100);
   std::printf(

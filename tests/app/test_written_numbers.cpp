@@ -502,6 +502,8 @@ const Elsewhere elsewhere[] = {
     {"peaks", "time [s]", "the examples in tests/CMakeLists.txt, from the summary"},
     {"peaks", "amplitude [rad]", "open: peaks of harmonic responses"},
     {"peaks", "frequency [Hz]", "open: peaks of harmonic responses"},
+    {"peaks", "mesh error of amplitude [-]", "app/test_natural_decks.cpp"},
+    {"peaks", "mesh error of amplification [-]", "app/test_natural_decks.cpp"},
     {"response", "bearing # force x [N]", "open: twisting and axial responses"},
     {"response", "largest torque in # [N.m]", "open: twisting and axial responses"},
     {"response", "frequency [Hz]", "app/test_direction.cpp"},

@@ -371,6 +371,24 @@ def sites_of(path, source):
     return File(path, source).scan()
 
 
+def given_site(source, fault):
+    """A fault written by hand: {was, file, edit: [[before, after, nth], ...]}."""
+    edits = []
+    for before, after, *nth in fault["edit"]:
+        at = -1
+        for _ in range(nth[0] if nth else 1):
+            at = source.find(before, at + 1)
+            if at < 0:
+                raise ValueError(f"{fault['file']} has no '{before}' any more: {fault['was']}")
+        if before.endswith(";"):
+            text = f"{{ if ({SWITCH}on(@)) {{ {after} }} else {{ {before} }} }}"
+        else:
+            text = f"({SWITCH}on(@) ? ({after}) : ({before}))"
+        edits.append((at, len(before), text))
+    line = 1 + source.count("\n", 0, edits[0][0])
+    return Site(fault["file"], line, "given", fault["was"], 1, tuple(edits))
+
+
 def instrumented(source, sites, switch):
     """The source with the given sites, {number: site}, written into it."""
     edits = []

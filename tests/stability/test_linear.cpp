@@ -17,7 +17,8 @@ constexpr double speed = 300.0;  // rad/s
 
 /// A shaft on two unequal springs with a disk beside its middle, an unbalance, and weight; a motor
 /// holds the speed.
-system::System rotor(double unbalance, bool driven = true) {
+system::System rotor(double unbalance, bool driven = true,
+                     const LawPtr& of_speed = make_constant(speed)) {
   system::Builder b;
   b.add_line("shaft");
   add_shaft(b, round_bar(0.03), std::vector<double>(6, 0.15));
@@ -26,7 +27,7 @@ system::System rotor(double unbalance, bool driven = true) {
   b.add(elements::RigidDisk{20.0, 0.15, 0.28, 0.0}, {2}, "rigid disks");
   b.add(elements::UnbalanceMass(unbalance, 0.3), {2}, "unbalances");
   b.set_gravity(Vec3(0, 0, -9.81));
-  if (driven) b.hold(0, system::spin_phi, make_angle_of_speed(make_constant(speed), 0.0));
+  if (driven) b.hold(0, system::spin_phi, make_angle_of_speed(of_speed, 0.0));
   return b.finalize();
 }
 
@@ -75,6 +76,63 @@ TEST(Linear, LimitOfTheGeneralRotor) {
     EXPECT_EQ(y.statistics.newton_iterations, y.statistics.accepted + y.statistics.rejected_error);
     EXPECT_GT(x.statistics.newton_iterations, y.statistics.newton_iterations);
   }
+}
+
+namespace {
+
+/// The steady motion at t, as the rotor of settled() has it.
+system::State steady(const system::System& s, system::State x, double t) {
+  for (Index i = 0; i < s.nodes(); ++i) {
+    if (x.v[6 * i + system::spin_phi] == 0.0) continue;
+    x.q[6 * i + system::spin_phi] += speed * t;
+  }
+  return x;
+}
+
+}  // namespace
+
+// Along the steady motion the linear equations are the general ones, whatever turns in them; the
+// forces of what turns are a series there. Residuals of several instants of a free motion, taken
+// together, are those taken one by one.
+TEST(Linear, ResidualsAlongAFreeMotion) {
+  for (const bool driven : {true, false}) {
+    const system::System s = rotor(1e-4, driven);
+    const system::State start = settled(s);
+    system::SystemProblem general(s);
+    analysis::LinearMotion small(s, {}, speed, start);
+    VecX r(s.size()), expected(s.size());
+    const VecX still = VecX::Zero(s.size());
+    for (const double t : {0.0, 1e-3, 0.0117, 0.5, 3.7}) {
+      const system::State x = steady(s, start, t);
+      ASSERT_TRUE(small.residual(t, x.q, x.v, still, r));
+      ASSERT_TRUE(general.residual(t, x.q, x.v, still, expected));
+      // torques of the weight on the unbalance swing a free spin; all are of some N and N m
+      EXPECT_LT((r - expected).cwiseAbs().maxCoeff(), 1e-8) << t;
+      EXPECT_GT(r.cwiseAbs().maxCoeff(), 1.0) << t;
+    }
+    system::State x = steady(s, start, 0.02);
+    for (Index k = 0; k < s.size(); ++k) {
+      if (!s.active()[at(k)]) continue;
+      x.q[k] += 1e-6 * std::sin(1.0 + static_cast<double>(k));
+      x.v[k] += 1e-3 * std::cos(2.0 + static_cast<double>(k));
+    }
+    const double span[] = {1e-5, 3e-4, 1e-3}, time[] = {0.02001, 0.0203, 0.021};
+    MatX together(s.size(), 3);
+    ASSERT_TRUE(small.residuals_along({0.02, x.q, x.v, span, time}, together));
+    for (Index k = 0; k < 3; ++k) {
+      VecX q = x.q + span[k] * x.v, v = x.v, a = still;
+      small.impose(time[k], q, v, a);
+      ASSERT_TRUE(small.residual(time[k], q, v, a, r));
+      EXPECT_LT((together.col(k) - r).cwiseAbs().maxCoeff(), 1e-9 * r.cwiseAbs().maxCoeff()) << k;
+    }
+  }
+  // what is held by a law that accelerates is asked about one by one
+  const system::System s = rotor(1e-4, true, make_table({0.0, 1.0}, {speed, 2.0 * speed}));
+  const system::State start = settled(s);
+  analysis::LinearMotion small(s, {}, speed, start);
+  const double span[] = {1e-3}, time[] = {1e-3};
+  MatX together(s.size(), 1);
+  EXPECT_FALSE(small.residuals_along({0.0, start.q, start.v, span, time}, together));
 }
 
 // Equal steps: one factorisation serves the whole run, and angles come back with their whole turns.

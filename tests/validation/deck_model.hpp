@@ -33,6 +33,7 @@ struct DeckModel {
     for (const auto& s : deck.model.shafts)
       r.ratio.push_back(s.rotating ? s.speed_ratio : 0.0);
     r.table_frequencies = built.table_frequencies;
+    r.axially_free = built.axially_free;
     return r;
   }
   /// Node of the first disk.

@@ -71,25 +71,33 @@ bool HarmonicSolver::prepare(double Omega, double w) {
   if (w != 0.0 &&
       solver_->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok)
     return true;
-  std::vector<Index> first, last;
+  std::vector<Index> first, last, axial;
+  // A line that is free along its axis is never pushed along it (E32): at w = 0 it may stand anywhere.
+  for (const Index k : linear_.equilibrium().axial_holds)
+    if (w == 0.0 && motion_.takes_part(k)) axial.push_back(k);
   for (const Index k : linear_.equilibrium().spin_holds) {
     if (!motion_.takes_part(k)) continue;
     first.push_back(k);
     last.push_back(last_of_line(linear_.system(), motion_.active(), k));
   }
-  if (first.empty())
+  if (first.empty() && axial.empty())
     return w == 0.0 &&
            solver_->factor(m, Complex(0, 0), Complex(0, 0), Complex(1, 0)) == la::Status::ok;
-  spin_free_ = hold(m, w, std::move(first), first_) && hold(m, w, std::move(last), last_);
+  spin_free_ =
+      hold(m, w, std::move(first), axial, first_) && hold(m, w, std::move(last), axial, last_);
   return spin_free_;
 }
 
-bool HarmonicSolver::hold(const la::MCK& m, double w, std::vector<Index> unknowns, Held& held) {
-  if (held.at != unknowns || !held.solver) {
-    held.at = std::move(unknowns);
-    held.active.assign(motion_.active().begin(), motion_.active().end());
-    for (const Index k : held.at)
-      held.active[at(k)] = 0;
+bool HarmonicSolver::hold(const la::MCK& m, double w, std::vector<Index> unknowns,
+                          const std::vector<Index>& axial, Held& held) {
+  std::vector<unsigned char> active(motion_.active().begin(), motion_.active().end());
+  for (const Index k : unknowns)
+    active[at(k)] = 0;
+  for (const Index k : axial)
+    active[at(k)] = 0;
+  held.at = std::move(unknowns);
+  if (held.active != active || !held.solver) {
+    held.active = std::move(active);
     held.solver = la::make_direct_solver<Complex>(linear_.system().pattern(), held.active);
   }
   return held.solver->factor(m, Complex(-w * w, 0), Complex(0, w), Complex(1, 0)) == la::Status::ok;
@@ -118,8 +126,8 @@ void HarmonicSolver::solve_held(VecXc& x) {
   const VecXc f = x;
   const auto answer = [&](Held& held) {
     VecXc y = f;
-    for (const Index k : held.at)
-      y[k] = 0;
+    for (Index k = 0; k < y.size(); ++k)
+      if (!held.active[at(k)]) y[k] = 0;
     held.solver->solve(y);
     return y;
   };

@@ -33,7 +33,9 @@ class HarmonicSolver {
     std::vector<unsigned char> active;
     std::unique_ptr<la::DirectSolver<Complex>> solver;
   };
-  bool hold(const la::MCK& m, double w, std::vector<Index> unknowns, Held& held);
+  /// axial: unknowns held beside them.
+  bool hold(const la::MCK& m, double w, std::vector<Index> unknowns,
+            const std::vector<Index>& axial, Held& held);
   /// S x with the matrices prepared.
   VecXc multiply(const VecXc& x) const;
   VecXc inertia_and_damping(const VecXc& x) const;

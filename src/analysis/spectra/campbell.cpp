@@ -41,17 +41,28 @@ void CampbellRecorder::take(std::size_t k, const std::vector<TrackedMode>& modes
 
 namespace {
 
-/// The direction at most speeds; planar (at rest) decides only when there is nothing else.
-Direction common_direction(const CampbellLine& line) {
-  std::array<int, 5> directions{};
-  for (std::size_t k = 0; k < line.frequency.size(); ++k)
-    if (!std::isnan(line.frequency[k]))
-      ++directions[static_cast<std::size_t>(line.direction_at[k])];
-  const int planar = directions[3];
-  directions[3] = 0;
-  const auto most = std::max_element(directions.begin(), directions.end());
-  if (*most == 0 && planar > 0) return Direction::planar;
-  return static_cast<Direction>(most - directions.begin());
+/// The direction at most speeds, of several at equally many that at the highest speed. Planar motion
+/// and rest, where two circles at one frequency may come out as any two motions of their plane,
+/// decide only when there is nothing else.
+Direction common_direction(const CampbellLine& line, const std::vector<double>& speeds) {
+  std::array<int, 5> turning{}, others{};
+  Direction highest = Direction::none;
+  double top = -infinity;
+  for (std::size_t k = 0; k < line.frequency.size(); ++k) {
+    if (std::isnan(line.frequency[k])) continue;
+    const Direction now = line.direction_at[k];
+    const bool decides = speeds[k] != 0.0 && now != Direction::planar;
+    ++(decides ? turning : others)[static_cast<std::size_t>(now)];
+    if (!decides || speeds[k] < top) continue;
+    top = speeds[k];
+    highest = now;
+  }
+  const auto most = std::max_element(turning.begin(), turning.end());
+  if (*most > 0)
+    return turning[static_cast<std::size_t>(highest)] == *most
+               ? highest
+               : static_cast<Direction>(most - turning.begin());
+  return static_cast<Direction>(std::max_element(others.begin(), others.end()) - others.begin());
 }
 
 double first_frequency(const CampbellLine& line) {
@@ -99,7 +110,13 @@ void label_lines(std::vector<CampbellLine>& lines) {
                                : l.direction == Direction::mixed    ? "M"
                                                                     : "L";
     const std::string number = std::to_string(++count[letter]);
-    l.label = l.kind == ModeKind::lateral ? number + " " + letter : letter + number;
+    if (l.kind == ModeKind::lateral) {
+      l.label = number;
+      l.label += " ";
+      l.label += letter;
+    } else {
+      l.label = letter + number;
+    }
   }
 }
 
@@ -117,7 +134,7 @@ Campbell CampbellRecorder::finish(long speeds_solved) {
       continue;
     const auto& votes = votes_[l];
     line.kind = static_cast<ModeKind>(std::max_element(votes.begin(), votes.end()) - votes.begin());
-    line.direction = common_direction(line);
+    line.direction = common_direction(line, out.speeds);
     kept.push_back(std::move(line));
   }
   out.lines = std::move(kept);

@@ -178,7 +178,7 @@ bool RotatingAxes::still_balanced(double Omega) {
   VecX r(e.state.q.size());
   if (!linear_.running().residual(e.state.frames, Omega, e.state.q, r)) return false;
   const double arm = 0.1 * model_length(linear_.system());
-  const std::vector<unsigned char> free = free_unknowns(linear_.system(), e.spin_holds);
+  const std::vector<unsigned char> free = free_unknowns(linear_.system(), e.holds());
   for (Index k = 0; k < r.size(); ++k)
     if (free[idx(k)] && std::abs(r[k]) > unbalanced_share * force * (k % 6 < 3 ? 1.0 : arm))
       return false;
@@ -422,9 +422,8 @@ class BandSearch {
     const double middle = 0.5 * (a.speed + b.speed);
     return extrapolate(a, {middle, follow(middle, b.growth)}, b);
   }
-  /// Growth that says nothing: harmonics left out of Hill's equations leave a false one of some
-  /// 1e-5 of the speed.
-  double noise(double Omega) const { return (axes_.constant() ? 1e-6 : 3e-5) * std::abs(Omega); }
+  /// Growth that says nothing.
+  double noise(double Omega) const { return unnoticed_share(axes_) * std::abs(Omega); }
   Index evaluations = 0;
 
  private:
@@ -600,6 +599,17 @@ InstabilityBand measure_band(BandSearch& search, const std::vector<Visited>& sam
 }
 
 }  // namespace
+
+double unnoticed_share(const RotatingAxes& axes) {
+  // harmonics left out leave a false growth of some 1e-5 of the speed
+  return axes.constant() ? 1e-6 : 3e-5;
+}
+
+double largest_growth(RotatingAxes& axes, double Omega, Index modes) {
+  BandOptions o;
+  o.modes = modes;
+  return BandSearch(axes, o).at(Omega).rate;
+}
 
 BandResult find_bands(RotatingAxes& axes, const BandOptions& o) {
   WHIRL_EXPECTS(o.modes > 0 && o.tolerance > 0.0);

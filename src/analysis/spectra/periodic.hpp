@@ -100,6 +100,13 @@ struct BandResult {
   Index evaluations = 0;  ///< speeds looked at on the way, edges and maxima included
 };
 
+/// Growth, as a share of the speed, that is taken for none: what harmonics left out of Hill's equations
+/// make of nothing, or rounding where the matrices are constant.
+double unnoticed_share(const RotatingAxes& axes);
+/// Largest real part, 1/s, of the motions at a speed, rad/s; modes: of least frequency in rotating
+/// axes.
+double largest_growth(RotatingAxes& axes, double Omega, Index modes);
+
 /// Bands of parametric instability. Edges are solved for; bands narrower than the distance of the
 /// speeds are found where they belong to a critical speed (whirl at the speed itself); combination
 /// bands must be as wide as that distance to be seen.

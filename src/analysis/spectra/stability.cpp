@@ -12,6 +12,12 @@ namespace whirl::analysis {
 
 namespace {
 
+/// Of frequency and speed: what two frequencies that merge grow by within 1e-10 of where they do is
+/// its square root.
+constexpr double axis_width = 2e-5;
+/// Of the speed: the same of two real roots that part from zero as a square root.
+constexpr double zero_width = 1e-4;
+
 ModesOptions mode_options(const StabilityOptions& o) {
   ModesOptions m;
   m.count = o.modes;
@@ -180,14 +186,21 @@ class Sweep {
   }
 
   /// The root that crosses in a bracket of no width: the one nearest to the axis at the end at
-  /// which more grow.
+  /// which more grow. Far from the axis none has crossed: growing roots came into the list from
+  /// beyond it, where growth is not excluded, or two real ones became a pair.
   void add_isolated(double a, double b, const SpeedVerdict& va, const SpeedVerdict& vb) {
     const bool gains = growing(vb) > growing(va);
     look_at(gains ? b : a);
     const WhirlMode* nearest = nullptr;
     for (const WhirlMode& m : modes_there_)
       if (m.growth() > 0 && (!nearest || m.lambda.real() < nearest->lambda.real())) nearest = &m;
-    if (nearest) onsets.push_back({0.5 * (a + b), nearest->frequency, gains, *nearest});
+    if (!nearest) return;
+    const double speed = std::max(std::abs(a), std::abs(b));
+    const double width = nearest->frequency == 0.0
+                             ? zero_width * speed
+                             : axis_width * std::max(nearest->frequency, speed);
+    if (nearest->lambda.real() <= width)
+      onsets.push_back({0.5 * (a + b), nearest->frequency, gains, *nearest});
   }
 
   /// A growth ratio that bends towards zero between three speeds is looked at where the parabola

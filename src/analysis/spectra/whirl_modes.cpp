@@ -30,6 +30,11 @@ double rounding_of(const la::Mode& m) {
   return roundings_an_entry * m.uncertainty + 1e-13 * std::abs(m.lambda);
 }
 
+/// Growth below this part of |lambda| is not told from none: so much the energy bound leaves open of
+/// what lies above a list (growth_bound.hpp). What a list says may not depend on how far it goes: a
+/// twist that nothing damps is driven by cross-coupled forces, through the sag, by 1e-10.
+constexpr double unnoticed_growth = 1e-9;
+
 la::ModeOptions la_options(const ModesOptions& o, bool hysteretic) {
   la::ModeOptions l;
   l.certify = o.certify;
@@ -205,7 +210,7 @@ WhirlMode describe_mode(const la::Mode& mode, const la::MCK& m, const Linearizer
   linear.system().complete(linear.equilibrium().state, w.x);
   w.residual = mode.residual;
   w.from = mode.from;
-  w.rounding = rounding_of(mode);
+  w.rounding = std::max(rounding_of(mode), unnoticed_growth * std::abs(mode.lambda));
   w.frequency = std::abs(mode.lambda.imag());
   const double size = std::abs(mode.lambda);
   w.damping_ratio = size > 0 ? -mode.lambda.real() / size : 0.0;

@@ -51,10 +51,10 @@ bool has_signals(const system::System& system);
 void scale_shape(VecX& x, const system::System& system);
 /// Diagonal of the box around the nodes, m (1 where that is zero).
 double model_length(const system::System& system);
-/// Unknowns of an equilibrium: the system's, but for angles that only the speed holds
-/// (Equilibrium::spin_holds).
+/// Unknowns of an equilibrium: the system's, but for those held because nothing else does
+/// (Equilibrium::holds).
 std::vector<unsigned char> free_unknowns(const system::System& system,
-                                         std::span<const Index> spin_holds);
+                                         std::span<const Index> holds);
 
 /// The eigenvalue of K x = mu D x nearest to zero, and its vector, by inverse iteration from x (or
 /// a start of its own when x is empty). NaN: K cannot be factored.

@@ -46,6 +46,12 @@ bool balanced(SteadySystem& running, double Omega, const system::State& s, const
 }
 }  // namespace
 
+std::vector<Index> Equilibrium::holds() const {
+  std::vector<Index> out = spin_holds;
+  out.insert(out.end(), axial_holds.begin(), axial_holds.end());
+  return out;
+}
+
 EquilibriumSolver::EquilibriumSolver(SteadySystem& running, EquilibriumOptions options)
     : running_(running),
       options_(options),
@@ -61,6 +67,19 @@ EquilibriumSolver::EquilibriumSolver(SteadySystem& running, EquilibriumOptions o
     }
   length_ = (high - low).norm();
   if (!(length_ > 0)) length_ = 1.0;  // one body: metre and radian weigh alike
+  find_axial_holds();
+}
+
+void EquilibriumSolver::find_axial_holds() {
+  const system::System& s = running_.system();
+  for (const Index line : running_.running().axially_free) {
+    Index first = 0;
+    while (first < s.nodes() && (s.node(first).scalar || s.node(first).line != line))
+      ++first;
+    if (first == s.nodes() || !free_[at(6 * first + system::ux)]) continue;
+    axial_holds_.push_back(6 * first + system::ux);
+    free_[at(axial_holds_.back())] = 0;
+  }
 }
 
 struct EquilibriumSolver::SpinMotions {
@@ -501,6 +520,7 @@ std::optional<Equilibrium> EquilibriumSolver::try_solve(double Omega, const syst
   for (Index k = 0; k < r_.size(); ++k)
     if (free_[at(k)]) out.reactions[k] = 0.0;
   out.spin_holds = spin_holds_;
+  out.axial_holds = axial_holds_;
   return out;
 }
 

@@ -6,7 +6,8 @@
 // A rotor that is free to turn needs one more condition a rotor: the axial angle of its first node
 // is held, and the torque that keeps it at its speed comes out as a reaction. Geared lines that
 // turn together count as one rotor; gears with backlash, which do not touch at first, are turned by
-// the torque on them until their flanks meet.
+// the torque on them until their flanks meet. So too for a line that nothing resists along its axis
+// (SteadyRotation::axially_free): its first node is held there.
 #pragma once
 #include <analysis/steady_rotation.hpp>
 #include <la/direct.hpp>
@@ -35,8 +36,11 @@ struct Equilibrium {
   double Omega = 0;     ///< rad/s
   VecX reactions;       ///< at held unknowns, N and N m, exerted by the support on the model; zero
                         ///< elsewhere
-  std::vector<Index> spin_holds;  ///< unknowns phi held because nothing else does; reactions[.] =
-                                  ///< torque that keeps the speed
+  std::vector<Index> spin_holds;   ///< unknowns phi held because nothing else does; reactions[.] =
+                                   ///< torque that keeps the speed
+  std::vector<Index> axial_holds;  ///< unknowns u_x held so too
+  /// Both.
+  std::vector<Index> holds() const;
   int iterations = 0, load_steps = 1;
   double kept_error =
       0;  ///< what elements keep (system::Frames::kept) still changes by, the largest
@@ -67,6 +71,7 @@ class EquilibriumSolver {
   enum class Outcome { converged, singular, diverged };
   /// Of each line, the motion in which it turns.
   struct SpinMotions;
+  void find_axial_holds();
   void find_spin_holds(const system::State& s, double Omega);
   /// @pre matrices_ are those of the state.
   SpinMotions spin_motions() const;
@@ -126,7 +131,7 @@ class EquilibriumSolver {
   bool holds_known_ = false;
   double length_ = 1;  ///< size of the model, m
   std::vector<unsigned char> free_;
-  std::vector<Index> spin_holds_;
+  std::vector<Index> spin_holds_, axial_holds_;
   std::vector<Index> group_;  ///< of each line: the first of those it turns with
   std::unique_ptr<la::DirectSolver<double>> solver_;
   la::MCK matrices_;

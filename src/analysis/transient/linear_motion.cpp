@@ -41,6 +41,20 @@ VecX diagonal_of(const la::BlockMatrix<6>& x) {
 /// of area shows more.
 constexpr double turning_share = 1e-3;
 
+/// r += sum over h of cosine(., h - 1) cos(h angle) + sine(., h - 1) sin(h angle) at some entries.
+void add_series(const std::vector<Index>& entry, const MatX& cosine, const MatX& sine, double angle,
+                time::Ref r) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  double ch = c, sh = s;
+  for (Index h = 0; h < cosine.cols(); ++h) {
+    for (Index e = 0; e < cosine.rows(); ++e)
+      r[entry[at(e)]] += ch * cosine(e, h) + sh * sine(e, h);
+    const double next = ch * c - sh * s;
+    sh = sh * c + ch * s;
+    ch = next;
+  }
+}
+
 }  // namespace
 
 LinearMotion::LinearMotion(const system::System& system, const SteadyRotation& running,
@@ -187,22 +201,170 @@ time::Problem::Power LinearMotion::exchange_here(time::CRef v, time::CRef reacti
   return p;
 }
 
-bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
+Index LinearMotion::leading_line() const {
+  Index leading = -1;
+  for (Index i = 0; i < system().nodes(); ++i) {
+    if (!turns_[at(i)]) continue;
+    const Index line = system().node(i).line;
+    if (leading < 0) leading = line;
+    if (std::abs(rate_[at(line)]) != std::abs(rate_[at(leading)])) return -1;
+  }
+  return leading >= 0 && rate_[at(leading)] != 0.0 ? leading : -1;
+}
+
+bool LinearMotion::angles_alone() const {
+  if (system().base_moves()) return false;
+  return std::none_of(changing_.begin(), changing_.end(), [this](std::size_t k) {
+    return system().terms()[k]->depends(steady_.context).time;
+  });
+}
+
+bool LinearMotion::changing_at(Index line, double angle, VecX& out) {
+  // whole turns taken out of no line: the series is the same wherever a run is resumed
+  system::Frames apart = frames;
+  std::fill(apart.turns.begin(), apart.turns.end(), 0.0);
+  const double t = (angle - angle_[line]) / rate_[at(line)];
   q_ = q0_;
-  v_ = v0_;
   for (Index i = 0; i < system().nodes(); ++i)
     if (turns_[at(i)]) {
       const Index l = system().node(i).line;
-      q_[6 * i + system::spin_phi] += (angle_[l] - two_pi * frames.turns[at(l)]) + rate_[at(l)] * t;
+      q_[6 * i + system::spin_phi] += angle_[l] + rate_[at(l)] * t;
     }
-  if (!system().residual(steady_, frames, t, q_, v_, still_, r, &changing_)) return false;
+  return system().residual(steady_, apart, t, q_, v0_, still_, out, &changing_);
+}
+
+void LinearMotion::transform(const MatX& samples) {
+  const Index count = samples.cols(), harmonics = count / 4;
+  const double size = samples.cwiseAbs().maxCoeff();
+  series_.entry.clear();
+  for (Index i = 0; i < samples.rows(); ++i)
+    if (!samples.row(i).isZero(0.0)) series_.entry.push_back(i);
+  const Index entries = static_cast<Index>(series_.entry.size());
+  series_.mean = constant_ + samples.rowwise().mean();
+  series_.cosine = series_.sine = MatX::Zero(entries, harmonics);
+  Index last = 0;
+  for (Index h = 1; h <= harmonics; ++h) {
+    VecX cosines(count), sines(count);
+    for (Index k = 0; k < count; ++k) {
+      // of the product taken round the circle: exact wherever it comes again
+      const double angle =
+          two_pi * static_cast<double>((h * k) % count) / static_cast<double>(count);
+      cosines[k] = std::cos(angle);
+      sines[k] = std::sin(angle);
+    }
+    for (Index e = 0; e < entries; ++e) {
+      const auto values = samples.row(series_.entry[at(e)]);
+      series_.cosine(e, h - 1) = 2.0 / static_cast<double>(count) * values.dot(cosines);
+      series_.sine(e, h - 1) = 2.0 / static_cast<double>(count) * values.dot(sines);
+    }
+    const double largest = std::max(series_.cosine.col(h - 1).cwiseAbs().maxCoeff(),
+                                    series_.sine.col(h - 1).cwiseAbs().maxCoeff());
+    if (largest > 1e-15 * size) last = h;
+  }
+  series_.cosine.conservativeResize(entries, last);
+  series_.sine.conservativeResize(entries, last);
+}
+
+VecX LinearMotion::series_at(double angle) const {
+  VecX r = series_.mean;
+  add_series(series_.entry, series_.cosine, series_.sine, angle, r);
+  return r;
+}
+
+void LinearMotion::find_series() {
+  series_.sought = true;
+  series_.holds = false;
+  series_.mean = constant_;
+  if (changing_.empty()) {
+    series_.holds = true;
+    return;
+  }
+  const Index line = leading_line();
+  if (line < 0 || !angles_alone()) return;
+  constexpr Index count = 32;
+  MatX samples(system().size(), count);
+  VecX r(system().size());
+  for (Index k = 0; k < count; ++k) {
+    if (!changing_at(line, two_pi * static_cast<double>(k) / static_cast<double>(count), r)) return;
+    samples.col(k) = r;
+  }
+  const double size = samples.cwiseAbs().maxCoeff();
+  if (size > 0.0) transform(samples);
+  // between those angles, backwards, and some turns on
+  for (const double angle : {0.137, 1.31, 2.77, -0.9, -9.1, 21.3, 64.2}) {
+    if (!changing_at(line, angle, r)) return;
+    if (size == 0.0 && !r.isZero(0.0)) return;
+    if ((r + constant_ - series_at(angle)).cwiseAbs().maxCoeff() > 1e-11 * size) return;
+  }
+  series_.line = line;
+  series_.holds = true;
+}
+
+void LinearMotion::place_steady(double t, VecX& q) const {
+  q = q0_;
+  for (Index i = 0; i < system().nodes(); ++i)
+    if (turns_[at(i)]) q[6 * i + system::spin_phi] += turned(system().node(i).line, t);
+}
+
+bool LinearMotion::steady_residual(double t, time::Ref r) {
+  if (!series_.sought) find_series();
+  if (series_.holds) {
+    r = series_.mean;
+    if (!series_.entry.empty())
+      add_series(series_.entry, series_.cosine, series_.sine, turned(series_.line, t), r);
+    return true;
+  }
+  place_steady(t, q_);
+  if (!system().residual(steady_, frames, t, q_, v0_, still_, r, &changing_)) return false;
   r += constant_;
+  return true;
+}
+
+bool LinearMotion::held_move_freely(const time::FreeMotion& m) const {
+  constexpr double rounding = 1e-9;
+  for (const system::Hold& h : system().holds()) {
+    if (!h.law) continue;
+    const Index k = h.unknown;
+    const double turns =
+        k % 6 == system::spin_phi ? two_pi * frames.turns[at(system().node(k / 6).line)] : 0.0;
+    for (std::size_t i = 0; i < m.time.size(); ++i) {
+      const LawValue x = h.law->at(m.time[i]);
+      const double place = m.q[k] + m.span[i] * m.v[k];
+      if (x.ddf != 0.0 || std::abs(x.df - m.v[k]) > rounding * std::abs(x.df) ||
+          std::abs(x.f - turns - place) > rounding * std::max(1.0, std::abs(x.f)))
+        return false;
+    }
+  }
+  return true;
+}
+
+bool LinearMotion::residuals_along(const time::FreeMotion& m, Eigen::Ref<MatX> r) {
+  if (!system().followers().empty() || !held_move_freely(m)) return false;
+  // the steady motion goes on freely too: what lies between the two grows at their difference of
+  // rates
+  for (std::size_t i = 0; i < m.time.size(); ++i)
+    if (!steady_residual(m.time[i], r.col(static_cast<Index>(i)))) return false;
+  place_steady(m.t, q_);
+  q_ = m.q - q_;
+  v_ = m.v - v0_;
+  at_first_.setZero(q_.size());
+  per_second_.setZero(q_.size());
+  la::add_forces(matrices(), q_, v_, at_first_);
+  la::add_multiply(matrices().K, 1.0, v_, per_second_);
+  for (std::size_t i = 0; i < m.time.size(); ++i)
+    r.col(static_cast<Index>(i)) += at_first_ + m.span[i] * per_second_;
+  return r.allFinite();
+}
+
+bool LinearMotion::residual(double t, time::CRef q, time::CRef v, time::CRef a, time::Ref r) {
+  if (!steady_residual(t, r)) return false;
+  place_steady(t, q_);
   if (!joined_.empty()) {
     steady_q_ = q_;
-    steady_v_ = v_;
+    steady_v_ = v0_;
   }
   q_ = q - q_;
-  v_ = v - v_;
+  v_ = v - v0_;
   if (!joined_.empty() && !add_joint_loads(t, a, r)) return false;
   a_ = a;
   if (a_.isZero(0.0))  // before the first correction of a step

@@ -40,8 +40,13 @@ time::Problem::Power Snapshot::exchange() const {
 }
 
 const system::Energy& Snapshot::energy() const {
-  power();
-  return problem_.energy();
+  WHIRL_EXPECTS(q_ != nullptr);
+  if (have_energy_ || !problem_.power_needs_reactions()) {
+    power();
+    return problem_.energy();
+  }
+  stored_ = system().energy(problem_.workspace());
+  return stored_;
 }
 
 double Snapshot::total_phi(Index i) const { return node(i).phi + two_pi * node(i).turns; }

@@ -33,6 +33,7 @@ class Snapshot {
   Vec2 gamma(Index i) const;
   /// Residual of the state: its held entries are the forces the supports exert, N and N m.
   const VecX& reactions() const;
+  /// Energies by kind; what is supplied lacks the reactions' part.
   const system::Energy& energy() const;
   time::Problem::Power power() const;
   /// Power supplied and dissipated alone: cheaper where the stored energy is not asked for.
@@ -47,6 +48,7 @@ class Snapshot {
   mutable VecX reactions_;
   mutable bool have_reactions_ = false, have_energy_ = false;
   mutable time::Problem::Power power_;
+  mutable system::Energy stored_;  ///< without the power of reactions
 };
 
 /// One channel: a few numbers of one unit.

@@ -44,11 +44,16 @@ class StepDense final : public StepAccess {
         snapshot_(p),
         q_(p.size()),
         v_(p.size()),
-        a_(p.size()) {}
+        a_(p.size()),
+        fixed_(at_(p.size()), 0) {
+    for (const system::Hold& h : p.system().holds())
+      if (!h.law) fixed_[at_(h.unknown)] = 1;
+  }
   void set(double t0, double t1) {
     t0_ = t0;
     t1_ = t1;
     at_end_ = false;
+    inside_ = nan;
   }
   double t0() const override { return t0_; }
   double t1() const override { return t1_; }
@@ -58,10 +63,12 @@ class StepDense final : public StepAccess {
       // the end state itself, evaluated once however many observers ask
       if (!at_end_) snapshot_.set(t1_, integrator_.q(), integrator_.v(), integrator_.a());
       at_end_ = true;
-    } else {
+      inside_ = nan;
+    } else if (t != inside_) {
       integrator_.interpolate(t, q_, v_, a_);
       snapshot_.set(t, q_, v_, a_);
       at_end_ = false;
+      inside_ = t;
     }
     return snapshot_;
   }
@@ -70,39 +77,58 @@ class StepDense final : public StepAccess {
   }
 
  private:
+  static std::size_t at_(Index i) { return static_cast<std::size_t>(i); }
+
   /// The unknowns of these points alone; false where that is not enough.
   bool alone(double t, std::span<const Point> points, std::vector<Vec2>& out) {
     if (snapshot_.frames().moved() || !snapshot_.system().followers().empty()) return false;
-    entries_.clear();
-    for (const Point& p : points)
-      for (Index k = 0; k < entries_each; ++k)
-        entries_.push_back(6 * p.node + entry[static_cast<std::size_t>(k)]);
+    list_entries(points);
     values_.resize(static_cast<Index>(entries_.size()));
     if (!integrator_.interpolate_entries(std::min(t, t1_), entries_, values_)) return false;
     out.resize(points.size());
+    Index next = 0;
+    const auto value = [&](Index unknown) { return fixed_[at_(unknown)] ? 0.0 : values_[next++]; };
     rotation::Director d;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Index first = entries_each * static_cast<Index>(i);
-      out[i] = values_.segment<2>(first);
+      const Index first = 6 * points[i].node;
+      out[i].x() = value(first + system::uy);
+      out[i].y() = value(first + system::uz);
       if (points[i].offset == 0.0) continue;
-      rotation::director(values_.segment<2>(first + 2), d);
+      Vec2 gamma;
+      gamma.x() = value(first + system::gamma2);
+      gamma.y() = value(first + system::gamma3);
+      rotation::director(gamma, d);
       const Vec3 tilt = snapshot_.frames().axes(points[i].node) * d.t;
       out[i] += points[i].offset * tilt.tail<2>();
     }
     return true;
   }
-
-  /// Of a node's unknowns: y, z and the tilt.
-  static constexpr Index entries_each = 4;
-  static constexpr std::array<Index, entries_each> entry{1, 2, system::gamma2, system::gamma2 + 1};
+  /// What the points ask the integrator for: y and z, and the tilt of those beside their node, but
+  /// what is held at zero.
+  void list_entries(std::span<const Point> points) {
+    entries_.clear();
+    const auto ask = [this](Index unknown) {
+      if (!fixed_[at_(unknown)]) entries_.push_back(unknown);
+    };
+    for (const Point& p : points) {
+      const Index first = 6 * p.node;
+      ask(first + system::uy);
+      ask(first + system::uz);
+      if (p.offset == 0.0) continue;
+      ask(first + system::gamma2);
+      ask(first + system::gamma3);
+    }
+  }
 
   time::Integrator& integrator_;
   std::function<void()> look_;
   Snapshot snapshot_;
   VecX q_, v_, a_, values_;
+  std::vector<unsigned char> fixed_;  ///< unknowns held at zero
   std::vector<Index> entries_;
   double t0_ = 0, t1_ = 0;
-  bool at_end_ = false;
+  bool at_end_ = false;  ///< the snapshot is the step's end ..
+  double inside_ = nan;  ///< .. or this instant of the step
 };
 
 /// First time in the step where f changes sign, or infinity; last: see time::EventLocator.

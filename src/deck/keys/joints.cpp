@@ -17,12 +17,13 @@ bool describe_direction(Visitor& v, const char* key, Vec3& axis, const char* doc
   v.quantities(required(key), x, "", any, 3, doc);
   if (!v.clean() || x.size() != 3) return false;
   axis = Vec3(x[0], x[1], x[2]);
-  if (!(axis.norm() > 0)) {
+  const double size = axis.cwiseAbs().maxCoeff();
+  if (!(size > 0) || !std::isfinite(size)) {
     v.error("E14", key, "the axis has no direction: its length is zero",
             fmt::format("{} = [0, 0, 1]", key));
     return false;
   }
-  axis.normalize();
+  axis = (axis / size).normalized();  // the square of 1e300 is no number
   return true;
 }
 
