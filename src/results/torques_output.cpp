@@ -4,6 +4,7 @@
 #include <assembly/element_section.hpp>
 #include <assembly/section_results.hpp>
 #include <plot/plots.hpp>
+#include <results/along_shaft.hpp>
 #include <results/plot_buffer.hpp>
 #include <results/transient_output.hpp>
 
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace whirl::results {
 
@@ -30,12 +32,26 @@ struct CycleClasses {
 
 /// One place: an end of an element, or a coupling.
 struct Watched {
-  double per_torque = 0;  ///< shear stress a N m, 1/m3; 0: none is known
+  double per_torque = 0;            ///< shear stress a N m, 1/m3; 0: none is known
+  std::array<double, 2> earlier{};  ///< N m, at the last two looks
   double low = infinity, high = -infinity, at = 0, largest = -1;  ///< N m, N m, s, N m
   analysis::Rainflow cycles{};
   double damage = 0;
   CycleClasses classes{};
 };
+
+struct Vertex {
+  double t = 0, value = 0;
+};
+
+/// Of the parabola through three looks, where they turn: of order four in their distance. Where the
+/// slope breaks it is at most an eighth of the greater change too high.
+std::optional<Vertex> vertex_of(const std::array<double, 3>& t, const std::array<double, 3>& y) {
+  if (!((y[1] - y[0]) * (y[2] - y[1]) < 0)) return std::nullopt;
+  const double before = (y[1] - y[0]) / (t[1] - t[0]), after = (y[2] - y[1]) / (t[2] - t[1]),
+               bend = (after - before) / (t[2] - t[0]), at = 0.5 * (t[0] + t[1] - before / bend);
+  return Vertex{at, y[0] + (at - t[0]) * (before + bend * (at - t[1]))};
+}
 
 class TorqueWatch final : public analysis::Observer {
  public:
@@ -61,12 +77,15 @@ class TorqueWatch final : public analysis::Observer {
  private:
   void look(const analysis::Snapshot& s);
   void take(Watched& w, double torque, double t);
+  void note(Watched& w, double torque, double t) const;
   void count(Watched& w, const analysis::LoadCycle& c) const;
 
   const run::Job& job_;
   analysis::FatigueStrength strength_;
   std::vector<std::size_t> couplings_;
-  std::vector<Watched> places_;  ///< two an element, then the couplings
+  std::vector<Watched> places_;      ///< two an element, then the couplings
+  std::array<double, 2> earlier_{};  ///< times of the last two looks
+  std::size_t looks_ = 0;
   std::vector<double> row_;
   PlotBuffer history_;  ///< angle of the reference; each element; each coupling
 };
@@ -112,6 +131,15 @@ void TorqueWatch::count(Watched& w, const analysis::LoadCycle& c) const {
 }
 
 void TorqueWatch::take(Watched& w, double torque, double t) {
+  if (looks_ > 1)
+    if (const auto v =
+            vertex_of({earlier_[0], earlier_[1], t}, {w.earlier[0], w.earlier[1], torque}))
+      note(w, v->value, v->t);
+  note(w, torque, t);
+  w.earlier = {w.earlier[1], torque};
+}
+
+void TorqueWatch::note(Watched& w, double torque, double t) const {
   w.low = std::min(w.low, torque);
   w.high = std::max(w.high, torque);
   if (std::abs(torque) > w.largest) {
@@ -143,6 +171,8 @@ void TorqueWatch::look(const analysis::Snapshot& s) {
     take(places_[2 * elements + k], torque, s.t());
   }
   history_.append(row_);
+  earlier_ = {earlier_[1], s.t()};
+  ++looks_;
 }
 
 void TorqueWatch::finish() {
@@ -152,8 +182,11 @@ void TorqueWatch::finish() {
 
 void TorqueWatch::save(OutArchive& out) const {
   out.put_count(places_.size());
+  out.put_count(looks_);
+  for (const double t : earlier_)
+    out.put(t);
   for (const Watched& w : places_) {
-    for (const double x : {w.low, w.high, w.at, w.largest, w.damage})
+    for (const double x : {w.earlier[0], w.earlier[1], w.low, w.high, w.at, w.largest, w.damage})
       out.put(x);
     out.put(w.cycles.open());
     out.put(std::vector<double>(w.classes.count.begin(), w.classes.count.end()));
@@ -164,8 +197,11 @@ void TorqueWatch::save(OutArchive& out) const {
 
 void TorqueWatch::restore(InArchive& in) {
   if (in.count() != places_.size()) throw std::invalid_argument("torques of another run");
+  looks_ = in.count();
+  for (double& t : earlier_)
+    t = in.number();
   for (Watched& w : places_) {
-    for (double* x : {&w.low, &w.high, &w.at, &w.largest, &w.damage})
+    for (double* x : {&w.earlier[0], &w.earlier[1], &w.low, &w.high, &w.at, &w.largest, &w.damage})
       *x = in.number();
     w.cycles.reopen(in.numbers());
     for (std::array<double, CycleClasses::classes>* x : {&w.classes.count, &w.classes.damage}) {
@@ -205,8 +241,10 @@ class TorquesOutput final : public TransientOutput {
     return std::max(watch_.places()[2 * element].damage, watch_.places()[2 * element + 1].damage);
   }
   std::size_t most_stressed() const;
-  std::string name_of(std::size_t element) const;
+  std::size_t most_damaged() const;
   io::Table table() const;
+  void add_row(io::Table& t, std::vector<io::Table::Cell> part, const Watched& w,
+               double used) const;
   io::Table classes(std::size_t element) const;
   plot::Figure along() const;
   std::vector<plot::Series> series(bool against_angle) const;
@@ -225,9 +263,12 @@ std::size_t TorquesOutput::most_stressed() const {
   return most;
 }
 
-std::string TorquesOutput::name_of(std::size_t element) const {
-  const meshes::Element& e = job_.mesh.elements[element];
-  return fmt::format("{}, {:.4g} to {:.4g} m", job_.mesh.lines[at(e.line)].name, e.s1, e.s2);
+/// The most stressed one where no cycle does harm.
+std::size_t TorquesOutput::most_damaged() const {
+  std::size_t most = most_stressed();
+  for (std::size_t k = 0; k < elements(); ++k)
+    if (damage(k) > damage(most)) most = k;
+  return most;
 }
 
 void TorquesOutput::summarize(TransientEnd& end) {
@@ -241,9 +282,10 @@ void TorquesOutput::summarize(TransientEnd& end) {
   if (elements() == 0) return;
   const std::size_t most = most_stressed();
   io::Value& v = end.summary["torques"];
-  v["most stressed"] = name_of(most);
+  v["most stressed"] = element_name(job_.mesh, most);
   v["largest torque there [N m]"] = worse(most).largest;
   v["shear stress [MPa]"] = 1e-6 * keep.stress[most];
+  if (law_.yield > 0) v["of yield [%]"] = 100 * keep.stress[most] / law_.yield;
   if (watch_.counts()) v["damage"] = *std::max_element(keep.damage.begin(), keep.damage.end());
 }
 
@@ -257,32 +299,35 @@ io::Table TorquesOutput::table() const {
                {"highest", "N m", ""},
                {"largest at", "s", ""},
                {"shear stress", "MPa", "largest, with the concentration"}};
+  if (law_.yield > 0) t.columns.push_back({"of yield", "%", "share of the yield stress"});
   if (watch_.counts()) {
     t.columns.push_back({"damage", "-", "share of the life that this transient uses up"});
     t.columns.push_back({"times", "-", "that the part endures it; empty: endlessly"});
   }
   t.nan_means = "no stress is known there, no end of life";
-  const auto add = [&](const std::string& part, double from, double to, double low, double high,
-                       double when, double stress, double used) {
-    std::vector<io::Table::Cell> row{part, from, to, low, high, when, 1e-6 * stress};
-    if (watch_.counts()) {
-      row.emplace_back(used);
-      row.emplace_back(used > 0 ? 1.0 / used : nan);
-    }
-    t.add(std::move(row));
-  };
   for (std::size_t k = 0; k < elements(); ++k) {
     const meshes::Element& e = job_.mesh.elements[k];
-    const Watched& w = worse(k);
-    const bool known = w.per_torque > 0;
-    add(job_.mesh.lines[at(e.line)].name, e.s1, e.s2, w.low, w.high, w.at,
-        known ? w.per_torque * w.largest : nan, known ? damage(k) : nan);
+    add_row(t, {job_.mesh.lines[at(e.line)].name, e.s1, e.s2}, worse(k), damage(k));
   }
-  for (std::size_t k = 0; k < watch_.couplings().size(); ++k) {
-    const Watched& w = watch_.places()[2 * elements() + k];
-    add(job_.model.bearings[watch_.couplings()[k]].name, nan, nan, w.low, w.high, w.at, nan, nan);
-  }
+  for (std::size_t k = 0; k < watch_.couplings().size(); ++k)
+    add_row(t, {job_.model.bearings[watch_.couplings()[k]].name, nan, nan},
+            watch_.places()[2 * elements() + k], nan);
   return t;
+}
+
+/// part: name, from, to.
+void TorquesOutput::add_row(io::Table& t, std::vector<io::Table::Cell> part, const Watched& w,
+                            double used) const {
+  const bool known = w.per_torque > 0;
+  const double stress = known ? w.per_torque * w.largest : nan;
+  for (const double x : {w.low, w.high, w.at, 1e-6 * stress})
+    part.emplace_back(x);
+  if (law_.yield > 0) part.emplace_back(100 * stress / law_.yield);
+  if (watch_.counts()) {
+    part.emplace_back(known ? used : nan);
+    part.emplace_back(known && used > 0 ? 1.0 / used : nan);
+  }
+  t.add(std::move(part));
 }
 
 /// Of the end with the greater damage.
@@ -290,7 +335,7 @@ io::Table TorquesOutput::classes(std::size_t element) const {
   const Watched &a = watch_.places()[2 * element], &b = watch_.places()[2 * element + 1];
   const CycleClasses& c = (a.damage >= b.damage ? a : b).classes;
   io::Table t;
-  t.title = "Load cycles (rainflow) of " + name_of(element);
+  t.title = "Load cycles (rainflow) of " + element_name(job_.mesh, element);
   t.columns = {{"from", "MPa", "shear stress amplitude about zero mean (Goodman)"},
                {"to", "MPa", ""},
                {"cycles", "-", ""},
@@ -334,7 +379,8 @@ plot::Figure TorquesOutput::along() const {
 /// Of the most stressed element and of the couplings.
 std::vector<plot::Series> TorquesOutput::series(bool against_angle) const {
   std::vector<std::pair<std::string, std::size_t>> shown;
-  if (elements() > 0) shown.emplace_back("shaft " + name_of(most_stressed()), 1 + most_stressed());
+  if (elements() > 0)
+    shown.emplace_back("shaft " + element_name(job_.mesh, most_stressed()), 1 + most_stressed());
   for (std::size_t k = 0; k < watch_.couplings().size(); ++k)
     shown.emplace_back(job_.model.bearings[watch_.couplings()[k]].name, 1 + elements() + k);
   std::vector<plot::Series> out;
@@ -342,6 +388,7 @@ std::vector<plot::Series> TorquesOutput::series(bool against_angle) const {
     plot::Series s;
     s.label = name;
     s.style.width = 1.1;
+    if (channel > elements()) s.style.dash = plot::Dash::dashed;  // often over that of the shaft
     PlotBuffer::Points p = watch_.history().channel(channel);
     s.x = against_angle ? turns_of(watch_.history().values_at(0, p.t)) : std::move(p.t);
     s.y = std::move(p.y);
@@ -360,8 +407,8 @@ void TorquesOutput::add_histories(TransientEnd& end) const {
   for (const bool against_angle : {false, true}) {
     plot::Figure f;
     f.name = end.step.name + (against_angle ? "_shaft_torque_angle" : "_torques");
-    f.title = against_angle ? "Torques against the angle of the machine"
-                            : "Torques: most stressed part of the shafts, couplings";
+    f.title = std::string("Torques in the most stressed part and in couplings") +
+              (against_angle ? ", against the angle of the machine" : "");
     plot::Axes a;
     a.x = against_angle ? plot::Axis("angle of the reference shaft", "turns")
                         : plot::Axis("time", "s");
@@ -376,24 +423,23 @@ void TorquesOutput::add_histories(TransientEnd& end) const {
 }
 
 void TorquesOutput::report(TransientEnd& end) {
-  if (elements() == 0) return;
-  io::Table t = table();
-  end.job.folder.write_table(end.step.name + "_torques.csv", t);
-  std::size_t worst = most_stressed();
-  if (watch_.counts())
-    for (std::size_t k = 0; k < elements(); ++k)
-      if (damage(k) > damage(worst)) worst = k;
-  io::Table cycles;
-  if (watch_.counts()) {
-    cycles = classes(worst);
-    end.job.folder.write_table(end.step.name + "_rainflow.csv", cycles);
-  }
-  if (!end.job.model.output.report) return;
-  end.section.tables.push_back(std::move(t));
-  if (watch_.counts()) end.section.tables.push_back(std::move(cycles));
+  if (watch_.places().empty()) return;
+  const std::string& step = end.step.name;
+  const bool shown = end.job.model.output.report;
+  const auto add = [&](io::Table t, const char* what, const std::string& file) {
+    end.job.folder.write_table(file, t);
+    if (!shown) return;
+    end.section.files.emplace_back(what, file);
+    end.section.tables.push_back(std::move(t));
+  };
+  add(table(), "torques", step + "_torques.csv");
+  if (watch_.counts() && elements() > 0)
+    add(classes(most_damaged()), "load cycles", step + "_rainflow.csv");
+  if (!shown) return;
   add_histories(end);
+  if (elements() == 0) return;
   plot::Figure f = along();
-  f.name = end.step.name + "_shear_stress";
+  f.name = step + "_shear_stress";
   end.section.figures.push_back(std::move(f));
 }
 

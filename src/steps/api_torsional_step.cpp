@@ -3,7 +3,10 @@
 #include <analysis/response/frequency_response.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <assembly/element_section.hpp>
+#include <core/contract.hpp>
+#include <core/periodic.hpp>
 #include <meshes/mass_properties.hpp>
+#include <results/along_shaft.hpp>
 #include <results/channels.hpp>
 #include <results/compliance.hpp>
 #include <results/frequency.hpp>
@@ -94,6 +97,8 @@ class TorsionalReport {
             const std::vector<Component>& components, double Omega, Worst& worst) const;
   Worst respond(const model::ApiTorque& torque);
   void add_events();
+  bool add_event(const model::ApiEvent& e, io::Table& t, std::vector<double>& sum);
+  std::string without_stresses() const;
   std::string source(const char* key) const {
     return results::source_of(law_.standard, law_.given, law_.source, {key});
   }
@@ -327,48 +332,6 @@ std::vector<double> TorsionalReport::speeds_of(const std::vector<Component>& com
   return out;
 }
 
-/// Twice the amplitude of the sum of c_k exp(i o_k angle): exact at its extremes. The smallest number of
-/// turns after which it repeats is looked for up to a dozen; without one the amplitudes add up.
-double swing(const std::vector<Complex>& c, const std::vector<double>& orders) {
-  if (c.size() == 1) return 2 * std::abs(c.front());
-  double bound = 0;
-  for (const Complex& x : c)
-    bound += std::abs(x);
-  int turns = 1;
-  const auto repeats = [&] {
-    return std::all_of(orders.begin(), orders.end(), [&](double o) {
-      return std::abs(o * turns - std::round(o * turns)) < 1e-9 * o * turns;
-    });
-  };
-  while (turns <= 12 && !repeats())
-    ++turns;
-  if (turns > 12 || bound == 0) return 2 * bound;
-  const auto look = [&](double angle) {  // value and two derivatives
-    std::array<double, 3> f{};
-    for (std::size_t k = 0; k < c.size(); ++k) {
-      const Complex z = c[k] * std::polar(1.0, orders[k] * angle);
-      f[0] += z.real();
-      f[1] -= orders[k] * z.imag();
-      f[2] -= orders[k] * orders[k] * z.real();
-    }
-    return f;
-  };
-  const double highest = *std::max_element(orders.begin(), orders.end());
-  const int samples = static_cast<int>(16 * std::ceil(highest * turns));
-  double low = infinity, high = -infinity, at_low = 0, at_high = 0;
-  for (int k = 0; k < samples; ++k) {
-    const double angle = two_pi * turns * k / samples, f = look(angle)[0];
-    if (f < low) at_low = angle;
-    if (f > high) at_high = angle;
-    low = std::min(low, f);
-    high = std::max(high, f);
-  }
-  for (double* angle : {&at_low, &at_high})
-    for (int k = 0; k < 4; ++k)
-      if (const auto f = look(*angle); f[2] != 0) *angle -= f[1] / f[2];
-  return std::max(look(at_high)[0], high) - std::min(look(at_low)[0], low);
-}
-
 /// Of every element of the shafts: the coupling of neighbours is its GJ/l.
 std::vector<Complex> TorsionalReport::element_torques(const VecXc& a, const la::MCK& m) const {
   std::vector<Complex> out;
@@ -404,7 +367,7 @@ void TorsionalReport::look(const std::vector<std::vector<Complex>>& elements,
   const auto amplitude = [&](const std::vector<std::vector<Complex>>& lists, std::size_t i) {
     for (std::size_t k = 0; k < lists.size(); ++k)
       parts[k] = lists[k][i];
-    return 0.5 * swing(parts, orders);
+    return 0.5 * calc_swing(parts, orders);
   };
   for (std::size_t i = 0; i < s_.job.mesh.elements.size(); ++i) {
     const double torque = amplitude(elements, i);
@@ -503,6 +466,7 @@ void TorsionalReport::add_stresses() {
             : results::compare("torsional stress", 1e-6 * w.stress, "MPa", Check::Rule::none, nan);
     c.where = fmt::format("{}, {}, {:.5g} rpm", torque.name, shaft, to_rpm(w.speed));
     c.source = law_.stress_limit > 0 ? source("stress_limit") : "";
+    c.remark = without_stresses();
     c.figure = s_.file("interference");
     if (w.unbounded) {
       c.passed = false;
@@ -513,16 +477,51 @@ void TorsionalReport::add_stresses() {
   s_.add_table("stresses", std::move(t));
 }
 
+const model::ShaftTorques& strengths_of(const model::Model& m, const std::string& step) {
+  const auto of = std::find_if(m.steps.begin(), m.steps.end(),
+                               [&](const model::Step& s) { return s.name == step; });
+  WHIRL_EXPECTS(of != m.steps.end());
+  return *std::get<model::TransientStep>(of->law).torques;
+}
+
+std::string TorsionalReport::without_stresses() const {
+  std::string out;
+  for (const meshes::Element& e : s_.job.mesh.elements) {
+    const std::string& line = s_.job.mesh.lines[static_cast<std::size_t>(e.line)].name;
+    if (!assembly::element_section(s_.job.model, e).constants || out.ends_with(line)) continue;
+    out += (out.empty() ? "no stress is known where a section is given by its constants: " : ", ") +
+           line;
+  }
+  return out;
+}
+
+/// Adds what an event does to the damages; false: no fatigue was asked for.
+bool TorsionalReport::add_event(const model::ApiEvent& e, io::Table& t, std::vector<double>& sum) {
+  const run::ShaftDamage& d = s_.job.shaft_damage.at(e.step);
+  const auto most = static_cast<std::size_t>(std::max_element(d.stress.begin(), d.stress.end()) -
+                                             d.stress.begin());
+  for (std::size_t k = 0; k < d.damage.size(); ++k)
+    sum[k] += e.times * d.damage[k];
+  const std::string place = results::element_name(s_.job.mesh, most);
+  const bool counts = !d.damage.empty();
+  t.add({e.name, e.step, e.times, 1e-6 * d.stress[most], place,
+         counts ? *std::max_element(d.damage.begin(), d.damage.end()) : nan});
+  const double yield = strengths_of(s_.job.model, e.step).yield;
+  Check c = results::compare("transient stress", 1e-6 * d.stress[most], "MPa",
+                             yield > 0 ? Check::Rule::at_most : Check::Rule::none,
+                             yield > 0 ? 1e-6 * yield : nan);
+  c.where = fmt::format("{}, {}", e.name, place);
+  c.source = yield > 0 ? "yield stress of the deck" : "";
+  c.remark = without_stresses();
+  c.figure = e.step + "_shear_stress";
+  checks_.add(std::move(c));
+  return counts;
+}
+
 /// Transients that earlier steps ran: largest stresses, and the sum of the damages.
 void TorsionalReport::add_events() {
-  if (law_.events.empty()) return;
-  const run::Job& job = s_.job;
-  const std::vector<meshes::Element>& elements = job.mesh.elements;
-  const auto name_of = [&](std::size_t k) {
-    const meshes::Element& e = elements[k];
-    return fmt::format("{}, {:.4g} to {:.4g} m",
-                       job.mesh.lines[static_cast<std::size_t>(e.line)].name, e.s1, e.s2);
-  };
+  const std::size_t elements = s_.job.mesh.elements.size();
+  if (law_.events.empty() || elements == 0) return;
   io::Table t;
   t.title = "Transients";
   t.columns = {{"event", "-", ""},
@@ -532,36 +531,22 @@ void TorsionalReport::add_events() {
                {"shaft", "-", "with the largest stress"},
                {"damage", "-", "share of the life of one of them, largest"}};
   t.nan_means = "no fatigue is asked for in that step";
-  std::vector<double> sum(elements.size(), 0.0);
+  std::vector<double> sum(elements, 0.0);
   std::string uncounted;
+  std::size_t counted = 0;
   for (const model::ApiEvent& e : law_.events) {
-    const run::ShaftDamage& d = job.shaft_damage.at(e.step);
-    const auto most = static_cast<std::size_t>(std::max_element(d.stress.begin(), d.stress.end()) -
-                                               d.stress.begin());
-    for (std::size_t k = 0; k < d.damage.size(); ++k)
-      sum[k] += e.times * d.damage[k];
-    if (d.damage.empty()) uncounted += (uncounted.empty() ? "without " : ", ") + e.name;
-    const double damage =
-        d.damage.empty() ? nan : *std::max_element(d.damage.begin(), d.damage.end());
-    t.add({e.name, e.step, e.times, 1e-6 * d.stress[most], name_of(most), damage});
-    const auto of = std::find_if(job.model.steps.begin(), job.model.steps.end(),
-                                 [&](const model::Step& s) { return s.name == e.step; });
-    const double yield = std::get<model::TransientStep>(of->law).torques->yield;
-    Check c = results::compare("transient stress", 1e-6 * d.stress[most], "MPa",
-                               yield > 0 ? Check::Rule::at_most : Check::Rule::none,
-                               yield > 0 ? 1e-6 * yield : nan);
-    c.where = fmt::format("{}, {}", e.name, name_of(most));
-    c.source = yield > 0 ? "yield stress of the deck" : "";
-    c.figure = e.step + "_shear_stress";
-    checks_.add(std::move(c));
+    if (add_event(e, t, sum))
+      ++counted;
+    else
+      uncounted += (uncounted.empty() ? "without " : ", ") + e.name;
   }
   s_.add_table("events", std::move(t));
+  if (counted == 0) return;
   const auto worst =
       static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
-  if (uncounted.size() > 0 && sum[worst] == 0) return;
   Check c =
       results::compare("fatigue damage", sum[worst], "-", Check::Rule::at_most, law_.damage_limit);
-  c.where = name_of(worst);
+  c.where = results::element_name(s_.job.mesh, worst);
   const bool given =
       std::find(law_.given.begin(), law_.given.end(), "damage_limit") != law_.given.end();
   c.source = given ? source("damage_limit") : "Palmgren, Miner";

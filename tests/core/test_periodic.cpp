@@ -37,3 +37,18 @@ TEST(Periodic, CoefficientsOfUnevenPoints) {
     EXPECT_NEAR(std::abs(periodic_coefficient(x, f, period, k) - sum / double(n)), 0, 1e-9) << k;
   }
 }
+
+// cos x + cos 2x between 2 and -9/8 (cos x = -1/4); sin x + sin 2x both ways as far.
+TEST(Periodic, SwingOfASum) {
+  EXPECT_NEAR(calc_swing({1, 1}, {1, 2}), 3.125, 1e-14);
+  EXPECT_NEAR(calc_swing({1, 1}, {0.5, 1}), 3.125, 1e-14);
+  EXPECT_NEAR(calc_swing({1, 1}, {1.5, 3}), 3.125, 1e-14);
+  const double top = std::acos((std::sqrt(33.0) - 1) / 8);
+  EXPECT_NEAR(calc_swing({Complex(0, -1), Complex(0, -1)}, {1, 2}),
+              2 * (std::sin(top) + std::sin(2 * top)), 1e-14);
+  // a shift of x changes nothing
+  EXPECT_NEAR(calc_swing({std::polar(1.0, 0.3), std::polar(1.0, 0.6)}, {1, 2}), 3.125, 1e-14);
+  EXPECT_EQ(calc_swing({Complex(3, 4)}, {0.123}), 10);
+  EXPECT_EQ(calc_swing({Complex(3, 4), 1}, {1, std::sqrt(2.0)}), 12);  // never repeats
+  EXPECT_EQ(calc_swing({0, 0}, {1, 2}), 0);
+}
