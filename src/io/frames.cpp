@@ -166,24 +166,45 @@ class SetFiles {
   virtual void append(const PolyData& data, double time) = 0;
   virtual void thin() = 0;
   virtual std::size_t size() const = 0;
+  /// What its maker takes to go on with these files.
+  virtual void save(OutArchive& out) const = 0;
 };
 
 class SeparateFiles final : public SetFiles {
  public:
-  SeparateFiles(Collection files, PolyDataWriter* writer)
-      : files_(std::move(files)),
-        writer_(writer) {}
+  /// earlier: of save(); null: files of their own.
+  SeparateFiles(const VtkFrameOptions& o, const std::string& stem, PolyDataWriter* writer,
+                InArchive* earlier)
+      : writer_(writer),
+        files_(list_of(o, stem, earlier)) {}
   void append(const PolyData& data, double time) override {
     writer_->write(files_.next_file(), data, time);
     files_.add(time);
   }
   void thin() override { files_.thin(); }
   std::size_t size() const override { return files_.size(); }
-  const Collection& files() const { return files_; }
+  void save(OutArchive& out) const override {
+    out.put_count(files_.next());
+    out.put_count(files_.size());
+    for (const Collection::Frame& f : files_.frames()) {
+      out.put(f.time);
+      out.put(f.file);
+    }
+  }
 
  private:
-  Collection files_;
+  static Collection list_of(const VtkFrameOptions& o, const std::string& stem, InArchive* earlier) {
+    if (!earlier) return {o.directory, stem, o.keep_until};
+    const std::uint64_t next = earlier->count();
+    std::vector<Collection::Frame> kept(earlier->count());
+    for (Collection::Frame& f : kept) {
+      f.time = earlier->number();
+      f.file = earlier->text();
+    }
+    return {o.directory, stem, o.keep_until, std::move(kept), next};
+  }
   std::unique_ptr<PolyDataWriter> writer_;
+  Collection files_;
 };
 
 class OneFile final : public SetFiles {
@@ -192,7 +213,7 @@ class OneFile final : public SetFiles {
   void append(const PolyData& data, double time) override { series_->append(data, time); }
   void thin() override { series_->thin(); }
   std::size_t size() const override { return series_->size(); }
-  void save(OutArchive& out) const { series_->save(out); }
+  void save(OutArchive& out) const override { series_->save(out); }
 
  private:
   std::unique_ptr<PolyDataSeries> series_;
@@ -205,10 +226,7 @@ class VtkFrames final : public FrameWriter {
         plugin_(Plugin::load(options_.one_file ? "hdf5" : "vtk")) {}
 
   void begin(const Scene& scene) override {
-    if (options_.one_file)
-      open_one_file(scene, nullptr);
-    else
-      open(scene, {}, 0);
+    open(scene, nullptr);
     offered_ = 0;
     stride_ = 1;
   }
@@ -216,12 +234,8 @@ class VtkFrames final : public FrameWriter {
   void save(OutArchive& out) const override {
     out.put_count(offered_);
     out.put_count(stride_);
-    if (options_.one_file) {
-      for (const auto& s : sets_)
-        dynamic_cast<const OneFile&>(*s.files).save(out);
-    } else {
-      save_list(out);
-    }
+    for (const auto& s : sets_)
+      s.files->save(out);
     for (const auto& s : sets_)
       s.set->save(out);
   }
@@ -229,17 +243,7 @@ class VtkFrames final : public FrameWriter {
   void resume(const Scene& scene, InArchive& in) override {
     offered_ = in.count();
     stride_ = in.count();
-    if (options_.one_file) {
-      open_one_file(scene, &in);
-    } else {
-      const std::uint64_t next = in.count();
-      std::vector<Collection::Frame> kept(in.count());
-      for (auto& f : kept) {
-        f.time = in.number();
-        f.file = in.text();
-      }
-      open(scene, kept, next);
-    }
+    open(scene, &in);
     for (const auto& s : sets_)
       s.set->restore(in);
   }
@@ -280,43 +284,25 @@ class VtkFrames final : public FrameWriter {
     std::unique_ptr<FrameSet> set;
     std::unique_ptr<SetFiles> files;
   };
-  void save_list(OutArchive& out) const {
-    const Collection* files =
-        sets_.empty() ? nullptr : &dynamic_cast<const SeparateFiles&>(*sets_.front().files).files();
-    out.put_count(files ? files->next() : 0);
-    out.put_count(files ? files->frames().size() : 0);
-    if (!files) return;
-    for (const auto& f : files->frames()) {
-      out.put(f.time);
-      out.put(f.file);
-    }
+  /// earlier: what save() of the files of the sets put, in their order; null: new ones.
+  std::unique_ptr<SetFiles> make_files(const std::string& stem, InArchive* earlier) const {
+    if (!options_.one_file)
+      return std::make_unique<SeparateFiles>(
+          options_, stem, plugin_.function<VtkMakeWriter>(vtk_make_writer)(), earlier);
+    std::error_code ec;
+    fs::create_directories(options_.directory, ec);
+    if (ec) io_failure(options_.directory, "cannot make the folder", ec.value());
+    return std::make_unique<OneFile>(plugin_.function<Hdf5MakePolyData>(hdf5_make_polydata)(
+        options_.directory / (stem + ".vtkhdf"), earlier));
   }
-  void open(const Scene& scene, const std::vector<Collection::Frame>& kept, std::uint64_t next) {
-    make_sets(scene, [&](const std::string& stem) {
-      Collection files(options_.directory, stem, options_.keep_until, kept, next);
-      return std::make_unique<SeparateFiles>(std::move(files),
-                                             plugin_.function<VtkMakeWriter>(vtk_make_writer)());
-    });
-  }
-  /// earlier: where the files of the sets stand, in their order; null: new ones.
-  void open_one_file(const Scene& scene, InArchive* earlier) {
-    make_sets(scene, [&](const std::string& stem) {
-      std::error_code ec;
-      fs::create_directories(options_.directory, ec);
-      if (ec) io_failure(options_.directory, "cannot make the folder", ec.value());
-      return std::make_unique<OneFile>(plugin_.function<Hdf5MakePolyData>(hdf5_make_polydata)(
-          options_.directory / (stem + ".vtkhdf"), earlier));
-    });
-  }
-  template <class MakeFiles>
-  void make_sets(const Scene& scene, MakeFiles make_files) {
+  void open(const Scene& scene, InArchive* earlier) {
     sets_.clear();
     scene_ = scene;
     drawn_.resize(scene_.nodes.size());
     const auto add = [&](std::unique_ptr<FrameSet> set) {
       if (options_.deformation_scale != 1.0)
         set->note({"deformation scale", {shortest(options_.deformation_scale)}});
-      auto files = make_files(safe_name(options_.name) + "_" + set->name());
+      auto files = make_files(safe_name(options_.name) + "_" + set->name(), earlier);
       sets_.push_back({std::move(set), std::move(files)});
     };
     if (options_.line) add(make_line_set(scene_));

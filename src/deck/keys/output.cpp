@@ -34,7 +34,9 @@ void describe(Visitor& v, model::VtkOutput& o) {
             "points on the circumference of 'surface'");
   v.choice("format", o.one_file,
            {{"vtp", "a file each frame and a .pvd that lists them"},
-            {"vtkhdf", "all frames of a set in one .vtkhdf file (ParaView 5.12 and later)"}},
+            {"vtkhdf",
+             "all frames of a set in one .vtkhdf file (ParaView 5.12 and later); 'per' stands for "
+             "'/' in the names of its arrays"}},
            "files");
   if (has_window && v.clean()) {
     if (!(window[1] > window[0])) v.error("E21", "window", "the window ends before it starts");
