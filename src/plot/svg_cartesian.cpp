@@ -25,7 +25,7 @@ Ticks axis_ticks(const Axis& a, const Scale& s, double length, double spacing) {
 double widest_label(const Ticks& t) {
   double w = 0;
   for (const auto& l : t.labels)
-    w = std::max(w, text_width(l, tick_size));
+    w = std::max(w, wide_fonts * text_width(l, tick_size));
   return w;
 }
 
@@ -171,7 +171,8 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
   const auto sideways = [&](double x, double y, const std::string& t, const char* which) {
     // A title longer than its axis is set smaller.
     const double size =
-        label_size * std::clamp((b.h + 24) / std::max(1.0, text_width(t, label_size)), 0.7, 1.0);
+        label_size *
+        std::clamp((b.h + 24) / std::max(1.0, wide_fonts * text_width(t, label_size)), 0.7, 1.0);
     c.text(x, y, t, size, "middle",
            "data-label=\"" + std::string(which) + "\" transform=\"rotate(-90 " + number_text(x) +
                " " + number_text(y) + ")\"");

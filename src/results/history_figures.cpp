@@ -98,6 +98,7 @@ class HistoryFigures {
   std::size_t turning_row() const;
   void add_amplitude(const std::string& probe, const Radii& radii, const plot::DisplayUnit& unit);
   Range turns_about(std::size_t row) const;
+  double rows_a_turn(const Range& range) const;
   void add_orbit(const std::string& probe, std::size_t channel, std::size_t largest_row,
                  const plot::DisplayUnit& unit);
   void add_force(const Measurement& m, std::size_t channel);
@@ -237,6 +238,15 @@ HistoryFigures::Range HistoryFigures::turns_about(std::size_t row) const {
   return range;
 }
 
+/// Many where the angle is not known.
+double HistoryFigures::rows_a_turn(const Range& range) const {
+  const auto angle = find("phi");
+  if (!angle || range.to < range.from + 2) return infinity;
+  const std::size_t p = place(*angle);
+  const double turns = std::abs(rows_[range.to - 1][p] - rows_[range.from][p]) / two_pi;
+  return turns > 0 ? static_cast<double>(range.to - range.from - 1) / turns : infinity;
+}
+
 void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
                                std::size_t largest_row, const plot::DisplayUnit& unit) {
   const Measurement& m = all_[channel];
@@ -248,6 +258,12 @@ void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
   plot::Series s;
   s.style.width = 0.8;
   const Range range = turns_about(largest_row);
+  const double each_turn = rows_a_turn(range);
+  if (each_turn < 12) {  // straight lines between them would show a path that there is not
+    s.style.width = 0;
+    s.style.marker = plot::Marker::circle;
+    s.style.marker_size = 2;
+  }
   for (std::size_t r = range.from; r < range.to; ++r) {
     s.x.push_back(unit.factor * rows_[r][y]);
     s.y.push_back(unit.factor * rows_[r][y + 1]);
@@ -259,6 +275,9 @@ void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
                                   rpm_[largest_row])
                     : ": orbit"),
       {std::move(a)}, 520);
+  if (each_turn < 12)
+    section_.figures.back().caption = fmt::format(
+        "Rows of the history, {:.2g} a turn: too few to draw the path between them.", each_turn);
 }
 
 void HistoryFigures::add_path(const model::Probe& probe) {
@@ -322,9 +341,10 @@ void HistoryFigures::add_force(const Measurement& m, std::size_t channel) {
   if (size == 0.0) return;  // a guide that nothing loads: the CSV says so
   const bool moment = m.name.ends_with(" moment");
   const plot::DisplayUnit unit = plot::unit_for(m.unit, size);
-  plot::Axes a = time_axes(m.name.ends_with(" force") ? "force on the shaft"
-                           : moment                   ? "moment on the shaft (x: torque)"
-                                                      : "torque on the shaft",
+  plot::Axes a = time_axes(m.name.ends_with(" force")          ? "force on the shaft"
+                           : moment                            ? "moment on the shaft (x: torque)"
+                           : m.name.ends_with(" shaft torque") ? "torque in the shaft"
+                                                               : "torque on the shaft",
                            unit.name);
   for (std::size_t c = 0; c < m.width(); ++c) {
     const bool absent =
@@ -365,7 +385,7 @@ void HistoryFigures::add_torques_against_angle() {
     p.t = std::move(turns);
     a.series.push_back(series(all_[x.channel].name, std::move(p), unit.factor));
   }
-  add("torque_angle", "Torques against the angle of the machine", {std::move(a)});
+  add("torque_angle", "Recorded torques against the angle of the machine", {std::move(a)});
 }
 
 void HistoryFigures::add_energies() {

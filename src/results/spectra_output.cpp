@@ -239,10 +239,10 @@ std::string SpectraOutput::how_taken() const {
 void SpectraOutput::add_ridge(plot::Figure& map, std::size_t probe) const {
   plot::Series s;
   s.label = "ridge: strongest component";
-  s.style.color = plot::ink;
+  s.style.color = 1;  // seen on dark and bright parts of the map
   s.style.width = 0;
   s.style.marker = plot::Marker::circle;
-  s.style.marker_size = 2.5;
+  s.style.marker_size = 4.5;
   for (const Trace& t : traces_) {
     if (!(t.ridge[probe].amplitude > 0)) continue;
     s.x.push_back(to_rpm(std::abs(t.speed)));
@@ -258,8 +258,7 @@ void SpectraOutput::add_ridge(plot::Figure& map, std::size_t probe) const {
   map.caption =
       "Samples at equal times: fixed frequencies are sharp, orders smear where the speed changes "
       "within a block. Dots: the strongest component of y + iz in each block, from samples at "
-      "equal "
-      "angles where these show it higher.";
+      "equal angles where these show it higher.";
 }
 
 bool SpectraOutput::speed_varies() const {
@@ -329,8 +328,7 @@ plot::Figure SpectraOutput::full_spectrum(std::size_t probe) const {
   if (block.at_equal_angles)
     f.caption += fmt::format(
         " The speed changes by {:.0f} rpm within the block: samples at equal angles, frequencies "
-        "are "
-        "orders times the mean speed.",
+        "are orders times the mean speed.",
         to_rpm(std::abs(block.change)));
   plot::Axes a;
   a.x = plot::Axis("frequency, backward < 0 < forward", "Hz");

@@ -158,8 +158,7 @@ void describe_torque(Visitor& v, model::Drive& d) {
       !governor && !brake)
     v.error("E05", nullptr, fmt::format("drive '{}' has no torque", d.name),
             "give torque, columns and rows, load, induction, pulsation, dc, constant_power, "
-            "governor or "
-            "brake; those given are added");
+            "governor or brake; those given are added");
   d.law = std::move(t);
 }
 
