@@ -270,7 +270,7 @@ void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
   }
   a.series.push_back(std::move(s));
   const bool part = range.to - range.from < rows_.size();
-  add(probe + "_orbit",
+  add(probe + "_turns",  // "_orbit" is that of the keyphasor
       probe + (part ? fmt::format(": orbit, ten turns about the largest radius ({:.0f} rpm)",
                                   rpm_[largest_row])
                     : ": orbit"),
