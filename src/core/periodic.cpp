@@ -75,6 +75,7 @@ double calc_swing(const std::vector<Complex>& c, const std::vector<double>& orde
   const std::optional<int> turns = c.size() > 1 ? common_turns(orders) : std::nullopt;
   if (!turns || sum == 0) return 2 * sum;
   std::vector<std::size_t> cycles;
+  cycles.reserve(orders.size());
   for (const double order : orders)
     cycles.push_back(static_cast<std::size_t>(std::lround(order * *turns)));
   const std::size_t samples = 16 * *std::max_element(cycles.begin(), cycles.end());

@@ -103,6 +103,7 @@ PlotBuffer::Points PlotBuffer::channel(std::size_t k) const {
 
 std::vector<double> PlotBuffer::values_at(std::size_t k, const std::vector<double>& times) const {
   std::vector<double> out;
+  out.reserve(times.size());
   for (const double t : times) {
     const auto after = std::upper_bound(kept_.begin(), kept_.end(), t,
                                         [](double x, const auto& row) { return x < row[0]; });

@@ -361,6 +361,7 @@ void TorsionalReport::look(const std::vector<std::vector<Complex>>& elements,
                            const std::vector<Component>& components, double Omega,
                            Worst& worst) const {
   std::vector<double> orders;
+  orders.reserve(components.size());
   for (const Component& c : components)
     orders.push_back(c.per_turn);
   std::vector<Complex> parts(components.size());

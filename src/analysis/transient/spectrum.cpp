@@ -98,8 +98,9 @@ class Between {
  public:
   /// @pre at least as many samples as the polynomial takes; 0 <= x <= samples - 1.
   Between(double x, std::size_t samples) {
-    const double first =
-        std::clamp(std::floor(x) - (points / 2 - 1), 0.0, static_cast<double>(samples - points));
+    constexpr std::size_t before = points / 2 - 1;  // left of the interval of x
+    const double first = std::clamp(std::floor(x) - static_cast<double>(before), 0.0,
+                                    static_cast<double>(samples - points));
     first_ = static_cast<std::size_t>(first);
     double sum = 0;
     for (std::size_t j = 0; j < points; ++j) {

@@ -77,29 +77,8 @@ void describe_pulsation(Visitor& v, model::TorqueCurve::Pulsation& p) {
             "two, four, six, ...");
 }
 
-void describe_torque(Visitor& v, model::Drive& d) {
-  model::TorqueCurve t;
-  v.choice(
-      "kind", d.kind,
-      {{"spin", "acts on the axial angle, like a constant-velocity joint: along (e+d)/(1+e.d)"},
-       {"fixed_direction", "a moment whose direction stays that of the undeformed axis"}},
-      "what the torque does when the shaft tilts");
-  describe_law(v, optional("torque", "0"), t.of_time, "N.m", "torque, constant or a law of time");
-  const ListBody rows = speed_rows<SpeedTorque>(t.speed, [&t](const SpeedTorque& r) {
-    t.speed.push_back(r.speed);
-    t.torque.push_back(r.torque);
-  });
-  const bool table = v.rows(
-      rows, false, "torque against speed: straight lines between the rows, constant outside");
-  const bool load = v.table(
-      optional("load", "none"),
-      [&](Visitor& w) {
-        w.quantity("constant", t.constant, "N.m", not_negative, "dry friction, opposes the spin");
-        w.quantity("viscous", t.viscous, "N.m.s/rad", not_negative, "times the spin");
-        w.quantity("quadratic", t.quadratic, "N.m.s^2/rad^2", not_negative,
-                   "times the spin squared (fan, windage)");
-      },
-      "torque that opposes the spin: -(constant sign(s) + viscous s + quadratic s|s|)");
+/// Torques of motors against speed and slip; false: none of them is given.
+bool describe_motors(Visitor& v, model::TorqueCurve& t) {
   const bool induction = v.table(
       optional("induction", "none"),
       [&](Visitor& w) {
@@ -138,6 +117,33 @@ void describe_torque(Visitor& v, model::Drive& d) {
         if (w.clean()) t.power = m;
       },
       "torque power/s, limited to max_torque");
+  return induction || pulsation || dc || power;
+}
+
+void describe_torque(Visitor& v, model::Drive& d) {
+  model::TorqueCurve t;
+  v.choice(
+      "kind", d.kind,
+      {{"spin", "acts on the axial angle, like a constant-velocity joint: along (e+d)/(1+e.d)"},
+       {"fixed_direction", "a moment whose direction stays that of the undeformed axis"}},
+      "what the torque does when the shaft tilts");
+  describe_law(v, optional("torque", "0"), t.of_time, "N.m", "torque, constant or a law of time");
+  const ListBody rows = speed_rows<SpeedTorque>(t.speed, [&t](const SpeedTorque& r) {
+    t.speed.push_back(r.speed);
+    t.torque.push_back(r.torque);
+  });
+  const bool table = v.rows(
+      rows, false, "torque against speed: straight lines between the rows, constant outside");
+  const bool load = v.table(
+      optional("load", "none"),
+      [&](Visitor& w) {
+        w.quantity("constant", t.constant, "N.m", not_negative, "dry friction, opposes the spin");
+        w.quantity("viscous", t.viscous, "N.m.s/rad", not_negative, "times the spin");
+        w.quantity("quadratic", t.quadratic, "N.m.s^2/rad^2", not_negative,
+                   "times the spin squared (fan, windage)");
+      },
+      "torque that opposes the spin: -(constant sign(s) + viscous s + quadratic s|s|)");
+  const bool motor = describe_motors(v, t);
   const bool governor = v.table(
       optional("governor", "none"),
       [&](Visitor& w) {
@@ -154,8 +160,7 @@ void describe_torque(Visitor& v, model::Drive& d) {
   const bool brake =
       describe_law(v, optional("brake", "none"), t.brake, "N.m",
                    "magnitude of a torque that opposes the spin, constant or a law of time");
-  if (v.clean() && !t.of_time && !table && !load && !induction && !pulsation && !dc && !power &&
-      !governor && !brake)
+  if (v.clean() && !t.of_time && !table && !load && !motor && !governor && !brake)
     v.error("E05", nullptr, fmt::format("drive '{}' has no torque", d.name),
             "give torque, columns and rows, load, induction, pulsation, dc, constant_power, "
             "governor or brake; those given are added");
