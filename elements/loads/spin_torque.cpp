@@ -10,6 +10,29 @@ using namespace system;
 
 namespace {
 
+struct Line {
+  double value = 0, slope = 0;
+};
+
+/// Straight lines between points, held outside.
+Line interpolate(const std::vector<double>& at, const std::vector<double>& values, double x) {
+  WHIRL_EXPECTS(!at.empty() && at.size() == values.size());
+  const auto k = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), x) - at.begin());
+  if (k == 0) return {values.front(), 0.0};
+  if (k == at.size()) return {values.back(), 0.0};
+  const double slope = (values[k] - values[k - 1]) / (at[k] - at[k - 1]);
+  return {values[k - 1] + slope * (x - at[k - 1]), slope};
+}
+
+void add_pulsation(const TorqueLaw::Pulsation& p, double t, double x, double phi,
+                   TorqueLaw::Value& v) {
+  const Line amplitude = interpolate(p.speed, p.amplitude, x);
+  const double angle = p.poles * (p.synchronous * t - phi) + p.phase, c = std::cos(angle);
+  v.T += amplitude.value * c;
+  v.dx += amplitude.slope * c;
+  v.dphi += amplitude.value * p.poles * std::sin(angle);
+}
+
 /// A motor pushes with its largest torque up to the speed at which it has its power; a brake, of
 /// negative power, opposes the spin either way, near standstill as dry friction does.
 void add_power(const TorqueLaw::ConstantPower& p, double x, double friction_speed,
@@ -36,17 +59,9 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) con
   Value v;
   if (of_time) v.T += of_time->at(t).f;
   if (!speed.empty()) {
-    const auto k = std::upper_bound(speed.begin(), speed.end(), x) - speed.begin();
-    if (k == 0)
-      v.T += torque.front();
-    else if (static_cast<std::size_t>(k) == speed.size())
-      v.T += torque.back();
-    else {
-      const auto i = static_cast<std::size_t>(k);
-      const double slope = (torque[i] - torque[i - 1]) / (speed[i] - speed[i - 1]);
-      v.T += torque[i - 1] + slope * (x - speed[i - 1]);
-      v.dx += slope;
-    }
+    const Line l = interpolate(speed, torque, x);
+    v.T += l.value;
+    v.dx += l.slope;
   }
   if (induction) {
     const double zb = induction->slip_breakdown, z = 1.0 - x / induction->synchronous,
@@ -54,6 +69,7 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) con
     v.T += 2.0 * induction->breakdown * z * zb / q;
     v.dx -= 2.0 * induction->breakdown * zb * (zb * zb - z * z) / (q * q) / induction->synchronous;
   }
+  if (pulsation && !settled) add_pulsation(*pulsation, t, x, phi, v);
   if (power) add_power(*power, x, friction_speed, v);
   if (dc) {
     v.T += dc->stall * (1.0 - x / dc->no_load_speed);
@@ -82,7 +98,7 @@ TorqueLaw::Value TorqueLaw::at(double t, double x, double phi, bool settled) con
 
 bool TorqueLaw::follows_speed() const {
   return !speed.empty() || friction != 0.0 || viscous != 0.0 || quadratic != 0.0 || induction ||
-         power || dc || brake || governor;
+         pulsation || power || dc || brake || governor;
 }
 
 std::vector<double> TorqueLaw::breakpoints() const {
@@ -117,7 +133,7 @@ TorqueLaw::Value SpinTorque<A>::value(const NodeState& n, const Context& c) cons
 
 template <TorqueAction A>
 Dependence SpinTorque<A>::depends(const Context& c) const {
-  const bool counts = law.governor && law.governor->ki != 0.0 && !c.averaged;
+  const bool counts = (law.pulsation || (law.governor && law.governor->ki != 0.0)) && !c.averaged;
   return {.angle = counts ? each_angle : no_angle,
           .spin = law.follows_speed(),
           .time = counts || varies(law.of_time) || varies(law.brake)};

@@ -13,7 +13,7 @@
 
 namespace whirl::elements {
 
-/// T(t, x) = of_time + table + motors + governor - ((friction + brake(t)) tanh(x/friction_speed) +
+/// T(t, x) = of_time + table + motors + pulsation + governor - ((friction + brake(t)) tanh(x/friction_speed) +
 /// viscous x + quadratic x|x|). N m, rad/s. Terms that are zero or absent cost nothing worth
 /// mentioning.
 struct TorqueLaw {
@@ -28,6 +28,13 @@ struct TorqueLaw {
     double breakdown = 0, slip_breakdown = 0.1, synchronous = 0;
   };
   std::optional<Induction> induction;
+  /// A(x) cos(poles (synchronous t - phi) + phase): twice the slip frequency of a salient-pole motor with
+  /// that many poles. A mean over its periods is zero.
+  struct Pulsation {
+    double synchronous = 0, poles = 4, phase = 0;  ///< rad/s, -, rad
+    std::vector<double> speed, amplitude;          ///< as the table of torques
+  };
+  std::optional<Pulsation> pulsation;
   /// power/x, never above max_torque; a motor has max_torque at and below zero speed, a brake (power
   /// below zero) opposes the spin either way
   struct ConstantPower {
@@ -60,8 +67,8 @@ struct TorqueLaw {
   struct Value {
     double T = 0, dx = 0, dphi = 0, loss = 0;
   };
-  /// settled: a steady state, in which no time passes: the integral is what the steady state needs,
-  /// which is not for this law to say; it counts as zero here, and with its slope for small motions
+  /// settled: a steady state, in which no time passes: a pulsation has its mean, and the integral is
+  /// what the steady state needs, which is not for this law to say; it counts as zero here, and with its slope for small motions
   /// about the state.
   Value at(double t, double x, double phi, bool settled = false) const;
   std::vector<double> breakpoints() const;

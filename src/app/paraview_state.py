@@ -18,7 +18,10 @@ black, grey, paint = [0.0, 0.0, 0.0], [0.45, 0.45, 0.45], [0.1, 0.1, 0.1]
 
 
 def frames(kind):
-    return PVDReader(registrationName=f"{shown} {kind}", FileName=os.path.join(folder, f"{shown}_{kind}.pvd"))
+    stem, name = os.path.join(folder, f"{shown}_{kind}"), f"{shown} {kind}"
+    if os.path.exists(stem + ".pvd"):
+        return PVDReader(registrationName=name, FileName=stem + ".pvd")
+    return VTKHDFReader(registrationName=name, FileName=[stem + ".vtkhdf"])  # ParaView 5.12 and later
 
 
 def new_view(title):

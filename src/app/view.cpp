@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 struct FrameSets {
   std::vector<std::string> kinds;  ///< in the order they are arranged
   std::size_t frames = 0;
+  bool one_file = false;  ///< all of them in one, uncounted
 };
 
 Error refusal(const fs::path& results, const std::string& message, const std::string& hint) {
@@ -44,12 +45,15 @@ std::map<std::string, FrameSets> find_sets(const fs::path& vtk) {
     std::error_code ec;
     for (const fs::directory_entry& f : fs::directory_iterator(vtk, ec)) {
       const std::string stem = f.path().stem().string(), end = std::string("_") + kind;
-      if (f.path().extension() != ".pvd" || !stem.ends_with(end)) continue;
-      const std::size_t frames = count(io::read_text(f.path()), "<DataSet");
+      const bool one_file = f.path().extension() == ".vtkhdf";
+      if ((f.path().extension() != ".pvd" && !one_file) || !stem.ends_with(end)) continue;
+      // how many stand in one file ParaView finds out
+      const std::size_t frames = one_file ? 1 : count(io::read_text(f.path()), "<DataSet");
       if (frames == 0) continue;
       FrameSets& set = out[stem.substr(0, stem.size() - end.size())];
       set.kinds.push_back(kind);
       set.frames = std::max(set.frames, frames);
+      set.one_file = one_file;
     }
   }
   return out;
@@ -105,10 +109,12 @@ int view_results(const ViewOptions& o) {
   replace_all(text, "@kinds@", "[" + kinds + "]");
   replace_all(text, "@folder@", quoted(fs::absolute(vtk).lexically_normal().string()));
   io::write_atomic(script, text);
-  std::fputs(fmt::format("{}: {} ({} frames; {})\n", script.string(), shown, sets.at(shown).frames,
-                         fmt::join(sets.at(shown).kinds, ", "))
-                 .c_str(),
-             stdout);
+  const FrameSets& set = sets.at(shown);
+  const std::string frames = set.one_file ? "one file a set" : fmt::format("{} frames", set.frames);
+  std::fputs(
+      fmt::format("{}: {} ({}; {})\n", script.string(), shown, frames, fmt::join(set.kinds, ", "))
+          .c_str(),
+      stdout);
   if (sets.size() > 1) std::fputs(fmt::format("frames there are: {}\n", names).c_str(), stdout);
   if (!o.open) {
     std::fputs(fmt::format("open it: paraview --script='{}'\n", script.string()).c_str(), stdout);

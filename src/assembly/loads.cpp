@@ -19,6 +19,8 @@ elements::TorqueLaw torque_law(const model::TorqueCurve& c) {
   t.quadratic = c.quadratic;
   if (c.induction)
     t.induction = {c.induction->breakdown, c.induction->slip_breakdown, c.induction->synchronous};
+  if (const auto& p = c.pulsation)
+    t.pulsation = {p->synchronous, p->poles, p->phase, p->speed, p->amplitude};
   if (c.power) t.power = {c.power->power, c.power->max_torque};
   if (c.dc) t.dc = {c.dc->stall, c.dc->no_load_speed};
   t.brake = c.brake;

@@ -154,4 +154,15 @@ std::vector<SectionPoint> calc_section_results(const model::Model& m, const mesh
   return out;
 }
 
+// The moment of a generalized force on phi has that force as its part along the normal.
+std::array<double, 2> calc_torques(const meshes::Mesh& mesh, const Built& built,
+                                   const system::Workspace& w, std::size_t element) {
+  WHIRL_EXPECTS(built.element_forces.size() == mesh.elements.size());
+  const meshes::Element& e = mesh.elements.at(element);
+  const auto [n1, n2] = system::seen_together(built.system, w, e.left.node, e.right.node);
+  system::ForceX<14> f = system::ForceX<14>::Zero();
+  built.element_forces[element](built.system, {&n1, &n2}, w.context, f);
+  return {-f[6], f[13]};
+}
+
 }  // namespace whirl::assembly

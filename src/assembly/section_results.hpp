@@ -20,6 +20,7 @@
 // Nominal: no stress concentration.
 #pragma once
 #include <assembly/build_system.hpp>
+#include <array>
 
 namespace whirl::assembly {
 
@@ -40,5 +41,10 @@ struct SectionPoint {
 std::vector<SectionPoint> calc_section_results(const model::Model& m, const meshes::Mesh& mesh,
                                                const Built& built, const system::Workspace& w,
                                                int inner = 3);
+
+/// T at the left and at the right end of an element, N m, exact as above.
+/// @pre w was evaluated.
+std::array<double, 2> calc_torques(const meshes::Mesh& mesh, const Built& built,
+                                   const system::Workspace& w, std::size_t element);
 
 }  // namespace whirl::assembly

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 
 namespace whirl {
 
@@ -127,6 +128,29 @@ class CosineStep final : public Law {
     return f0_ * x + 0.5 * (f1_ - f0_) * x * z * z * rotation::g_minus_sin_ratio(z * z);
   }
   double t0_, t1_, f0_, f1_, w_, zero_ = 0.0;
+};
+
+class Decaying final : public Law {
+ public:
+  Decaying(double t0, double amplitude, double omega, double phase, double decay)
+      : t0_(t0),
+        amplitude_(std::polar(amplitude, phase)),
+        rate_(-1.0 / decay, omega) {}
+  LawValue at(double t) const override {
+    if (t < t0_) return {};
+    const std::complex<double> z = amplitude_ * std::exp(rate_ * (t - t0_));
+    return {z.real(), (rate_ * z).real(), (rate_ * rate_ * z).real()};
+  }
+  double integral(double t) const override { return primitive(t) - primitive(0.0); }
+  std::vector<double> breakpoints() const override { return {t0_}; }
+
+ private:
+  double primitive(double t) const {  // from t0
+    if (t <= t0_) return 0.0;
+    return (amplitude_ * (std::exp(rate_ * (t - t0_)) - 1.0) / rate_).real();
+  }
+  double t0_;
+  std::complex<double> amplitude_, rate_;
 };
 
 class Harmonic final : public Law {
@@ -343,6 +367,12 @@ LawPtr make_cosine_step(double t0, double t1, double f0, double f1) {
   require_interval(t0, t1, "cosine step");
   require_finite({f0, f1}, "cosine step");
   return std::make_shared<CosineStep>(t0, t1, f0, f1);
+}
+
+LawPtr make_decaying(double t0, double amplitude, double omega, double phase, double decay) {
+  if (!(decay > 0.0)) refuse("decaying law: the decay time must be above zero", "");
+  require_finite({t0, amplitude, omega, phase, decay}, "decaying law");
+  return std::make_shared<Decaying>(t0, amplitude, omega, phase, decay);
 }
 
 LawPtr make_harmonic(double mean, double amplitude, double omega, double phase) {

@@ -54,6 +54,9 @@ LawPtr make_smooth_step(double t0, double t1, double f0, double f1);
 LawPtr make_cosine_step(double t0, double t1, double f0, double f1);
 /// f = mean + amplitude cos(omega t + phase)
 LawPtr make_harmonic(double mean, double amplitude, double omega, double phase);
+/// f = 0 before t0, amplitude exp(-(t-t0)/decay) cos(omega (t-t0) + phase) from there on.
+/// @throws Error if decay is not above zero.
+LawPtr make_decaying(double t0, double amplitude, double omega, double phase, double decay);
 /// Polynomial sum c_k t^k
 LawPtr make_polynomial(std::vector<double> coefficients);
 /// Pieces in time: law k holds from start[k] to start[k+1]; each sees the global time; the first

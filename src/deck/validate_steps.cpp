@@ -162,6 +162,28 @@ void check_cavitation(const model::Model& m, Problems& out) {
   }
 }
 
+void check_events(const model::Model& m, Problems& out) {
+  for (std::size_t k = 0; k < m.steps.size(); ++k) {
+    const auto* report_step = std::get_if<model::ApiTorsionalStep>(&m.steps[k].law);
+    if (!report_step) continue;
+    for (const model::ApiEvent& e : report_step->events) {
+      const auto end = m.steps.begin() + static_cast<std::ptrdiff_t>(k);
+      const auto of = std::find_if(m.steps.begin(), end,
+                                   [&](const model::Step& s) { return s.name == e.step; });
+      const auto* t = of == end ? nullptr : std::get_if<model::TransientStep>(&of->law);
+      if (t && t->torques) continue;
+      report(out, "E30",
+             fmt::format("event '{}': step '{}' {}", e.name, e.step,
+                         of == end ? "stands below the report that looks at it"
+                         : !t      ? "is no transient step"
+                                   : "has no table 'torques'"),
+             "steps run in the order of the deck; [step.torques] makes a transient step keep its "
+             "torques",
+             e.where);
+    }
+  }
+}
+
 void check_maps(const model::Model& m, Problems& out) {
   for (const auto& s : m.steps) {
     const auto* map = std::get_if<model::CriticalMapStep>(&s.law);

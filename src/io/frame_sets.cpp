@@ -371,7 +371,6 @@ class TrailSet final : public FrameSet {
     times_.push_back(f.state->time);
     data_.points.clear();
     data_.lines.clear();
-    data_.vertices.clear();
     auto& age = data_.point_data[0].floats();
     age.clear();
     ++data_.topology;
@@ -386,10 +385,8 @@ class TrailSet final : public FrameSet {
           data_.points.push_back(static_cast<float>(points_[k][j][c]));
         age.push_back(static_cast<float>(f.state->time - times_[j]));
       }
-      if (id.size() > 1)
-        data_.lines.add(id.data(), id.size());
-      else
-        data_.vertices.add(id.data(), 1);
+      if (id.size() == 1) id.push_back(id.front());  // a path that has just begun is one as well
+      data_.lines.add(id.data(), id.size());
     }
   }
 

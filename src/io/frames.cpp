@@ -4,6 +4,7 @@
 #include <io/file.hpp>
 #include <io/frame_sets.hpp>
 #include <io/frames.hpp>
+#include <io/hdf5/entry.hpp>
 #include <core/text.hpp>
 #include <algorithm>
 #include <charconv>
@@ -158,12 +159,74 @@ class Collection {
   OverwriteFile file_;
 };
 
+/// The files of one set.
+class SetFiles {
+ public:
+  virtual ~SetFiles() = default;
+  virtual void append(const PolyData& data, double time) = 0;
+  virtual void thin() = 0;
+  virtual std::size_t size() const = 0;
+  /// What its maker takes to go on with these files.
+  virtual void save(OutArchive& out) const = 0;
+};
+
+class SeparateFiles final : public SetFiles {
+ public:
+  /// earlier: of save(); null: files of their own.
+  SeparateFiles(const VtkFrameOptions& o, const std::string& stem, PolyDataWriter* writer,
+                InArchive* earlier)
+      : writer_(writer),
+        files_(list_of(o, stem, earlier)) {}
+  void append(const PolyData& data, double time) override {
+    writer_->write(files_.next_file(), data, time);
+    files_.add(time);
+  }
+  void thin() override { files_.thin(); }
+  std::size_t size() const override { return files_.size(); }
+  void save(OutArchive& out) const override {
+    out.put_count(files_.next());
+    out.put_count(files_.size());
+    for (const Collection::Frame& f : files_.frames()) {
+      out.put(f.time);
+      out.put(f.file);
+    }
+  }
+
+ private:
+  static Collection list_of(const VtkFrameOptions& o, const std::string& stem, InArchive* earlier) {
+    if (!earlier) return {o.directory, stem, o.keep_until};
+    const std::uint64_t next = earlier->count();
+    std::vector<Collection::Frame> kept(earlier->count());
+    for (Collection::Frame& f : kept) {
+      f.time = earlier->number();
+      f.file = earlier->text();
+    }
+    return {o.directory, stem, o.keep_until, std::move(kept), next};
+  }
+  std::unique_ptr<PolyDataWriter> writer_;
+  Collection files_;
+};
+
+class OneFile final : public SetFiles {
+ public:
+  explicit OneFile(PolyDataSeries* series) : series_(series) {}
+  void append(const PolyData& data, double time) override { series_->append(data, time); }
+  void thin() override { series_->thin(); }
+  std::size_t size() const override { return series_->size(); }
+  void save(OutArchive& out) const override { series_->save(out); }
+
+ private:
+  std::unique_ptr<PolyDataSeries> series_;
+};
+
 class VtkFrames final : public FrameWriter {
  public:
-  explicit VtkFrames(VtkFrameOptions o) : options_(std::move(o)), plugin_(Plugin::load("vtk")) {}
+  explicit VtkFrames(VtkFrameOptions o)
+      : options_(std::move(o)),
+        plugin_(Plugin::load(options_.one_file ? "hdf5" : "vtk")) {}
 
   void begin(const Scene& scene) override {
-    open(scene, {}, 0);
+    open(scene, nullptr);
     offered_ = 0;
     stride_ = 1;
   }
@@ -171,13 +234,8 @@ class VtkFrames final : public FrameWriter {
   void save(OutArchive& out) const override {
     out.put_count(offered_);
     out.put_count(stride_);
-    out.put_count(sets_.empty() ? 0 : sets_.front().files.next());
-    out.put_count(sets_.empty() ? 0 : sets_.front().files.frames().size());
-    if (!sets_.empty())
-      for (const auto& f : sets_.front().files.frames()) {
-        out.put(f.time);
-        out.put(f.file);
-      }
+    for (const auto& s : sets_)
+      s.files->save(out);
     for (const auto& s : sets_)
       s.set->save(out);
   }
@@ -185,13 +243,7 @@ class VtkFrames final : public FrameWriter {
   void resume(const Scene& scene, InArchive& in) override {
     offered_ = in.count();
     stride_ = in.count();
-    const std::uint64_t next = in.count();
-    std::vector<Collection::Frame> kept(in.count());
-    for (auto& f : kept) {
-      f.time = in.number();
-      f.file = in.text();
-    }
-    open(scene, kept, next);
+    open(scene, &in);
     for (const auto& s : sets_)
       s.set->restore(in);
   }
@@ -202,8 +254,8 @@ class VtkFrames final : public FrameWriter {
     if (offered_++ % stride_ != 0) return;
     if (frames_ >= options_.max_frames && options_.max_frames > 1) {
       for (auto& s : sets_)
-        s.files.thin();
-      frames_ = sets_.empty() ? 0 : sets_.front().files.size();
+        s.files->thin();
+      frames_ = sets_.empty() ? 0 : sets_.front().files->size();
       const bool on_stride = (offered_ - 1) % (2 * stride_) == 0;
       stride_ *= 2;
       if (!on_stride) return;
@@ -219,8 +271,7 @@ class VtkFrames final : public FrameWriter {
     const FramePoses poses{state.nodes, drawn_, &state};
     for (auto& s : sets_) {
       s.set->update(poses);
-      s.writer->write(s.files.next_file(), s.set->data(), state.time);
-      s.files.add(state.time);
+      s.files->append(s.set->data(), state.time);
     }
     ++frames_;
   }
@@ -231,28 +282,35 @@ class VtkFrames final : public FrameWriter {
  private:
   struct Set {
     std::unique_ptr<FrameSet> set;
-    Collection files;
-    std::unique_ptr<PolyDataWriter> writer;
+    std::unique_ptr<SetFiles> files;
   };
-  void open(const Scene& scene, const std::vector<Collection::Frame>& kept, std::uint64_t next) {
+  /// earlier: what save() of the files of the sets put, in their order; null: new ones.
+  std::unique_ptr<SetFiles> make_files(const std::string& stem, InArchive* earlier) const {
+    if (!options_.one_file)
+      return std::make_unique<SeparateFiles>(
+          options_, stem, plugin_.function<VtkMakeWriter>(vtk_make_writer)(), earlier);
+    std::error_code ec;
+    fs::create_directories(options_.directory, ec);
+    if (ec) io_failure(options_.directory, "cannot make the folder", ec.value());
+    return std::make_unique<OneFile>(plugin_.function<Hdf5MakePolyData>(hdf5_make_polydata)(
+        options_.directory / (stem + ".vtkhdf"), earlier));
+  }
+  void open(const Scene& scene, InArchive* earlier) {
     sets_.clear();
     scene_ = scene;
     drawn_.resize(scene_.nodes.size());
     const auto add = [&](std::unique_ptr<FrameSet> set) {
       if (options_.deformation_scale != 1.0)
         set->note({"deformation scale", {shortest(options_.deformation_scale)}});
-      Collection files(options_.directory, safe_name(options_.name) + "_" + set->name(),
-                       options_.keep_until, kept, next);
-      sets_.push_back(
-          {std::move(set), std::move(files),
-           std::unique_ptr<PolyDataWriter>(plugin_.function<VtkMakeWriter>(vtk_make_writer)())});
+      auto files = make_files(safe_name(options_.name) + "_" + set->name(), earlier);
+      sets_.push_back({std::move(set), std::move(files)});
     };
     if (options_.line) add(make_line_set(scene_));
     if (options_.surface) add(make_surface_set(scene_, options_.points_around));
     if (options_.bearings && !scene_.supports.empty()) add(make_support_set(scene_));
     if (options_.orbits && !scene_.trails.empty())
       add(make_trail_set(scene_, options_.trail_points));
-    frames_ = sets_.empty() ? 0 : sets_.front().files.size();
+    frames_ = sets_.empty() ? 0 : sets_.front().files->size();
   }
 
   VtkFrameOptions options_;

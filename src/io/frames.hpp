@@ -1,5 +1,6 @@
 // Frames of the moving rotor. The writer draws a Scene (plain data) at node states; the VTK writer
-// is a plug-in that is loaded by make_vtk_frames() and by nothing else.
+// is a plug-in that is loaded by make_vtk_frames() and by nothing else, that of HDF5 where all frames
+// shall stand in one file.
 #pragma once
 #include <core/archive.hpp>
 #include <core/types.hpp>
@@ -56,6 +57,7 @@ struct VtkFrameOptions {
   bool line = true, surface = true, bearings = false, orbits = false;
   double deformation_scale = 1.0;  ///< magnifies displacement and tilt, not the spin
   int points_around = 32;
+  bool one_file = false;  ///< all frames of a set in `<name>_<set>.vtkhdf`, by the HDF5 plug-in
   std::uint64_t max_frames =
       5000;  ///< beyond it every other frame is removed and the stride doubles
   std::size_t trail_points = 2000;  ///< longest orbit trail, frames
@@ -66,7 +68,7 @@ struct VtkFrameOptions {
 /// @throws Error (E93) for any other.
 void set_content(VtkFrameOptions& options, std::span<const std::string> names);
 
-/// Loads the VTK plug-in.
+/// Loads the VTK plug-in (one file: that of HDF5).
 /// @throws Error (Exit::io) when it was not built or cannot be loaded.
 std::unique_ptr<FrameWriter> make_vtk_frames(VtkFrameOptions options);
 

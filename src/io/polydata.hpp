@@ -1,5 +1,6 @@
 // One picture frame as plain arrays, and the interface of what writes it to a file.
 #pragma once
+#include <core/archive.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -42,7 +43,7 @@ struct PolyData {
   std::vector<Array> point_data, cell_data;
   std::string normals;         ///< name of the point array that holds normals; empty: none
   std::vector<Names> names;    ///< as field data; they change with the cells alone
-  std::uint64_t topology = 0;  ///< changes when the cells do
+  std::uint64_t topology = 0;  ///< changes when the cells do; 0: they never do
 };
 
 /// Writes frames of one set; keeps what does not change between them.
@@ -52,6 +53,19 @@ class PolyDataWriter {
   /// Whole file or none (temporary and rename); `time` goes into the field data array TimeValue.
   /// @throws Error (Exit::io) when it cannot be written.
   virtual void write(const std::filesystem::path& file, const PolyData& data, double time) = 0;
+};
+
+/// All frames of one set in one file.
+class PolyDataSeries {
+ public:
+  virtual ~PolyDataSeries() = default;
+  /// The file is whole after it, and can be read while it grows no further.
+  /// @throws Error (Exit::io) when it cannot be written.
+  virtual void append(const PolyData& data, double time) = 0;
+  /// Leaves every other frame, the first one among them.
+  virtual void thin() = 0;
+  virtual std::size_t size() const = 0;
+  virtual void save(OutArchive& out) const = 0;
 };
 
 /// Entry point of the VTK plug-in.

@@ -26,24 +26,50 @@ std::string paragraphs(const std::string& text) {
 /// By the anchor of the figure; none where no table leads to one.
 using FigureNumbers = std::map<std::string, int>;
 
-/// In which unit the numbers of a column are shown: a prefix that suits the largest of them.
-plot::DisplayUnit unit_of(const Table& t, std::size_t k) {
-  const std::string& unit = t.columns[k].unit;
-  const bool metric = unit == "m" || unit == "N" || unit == "N.m" || unit == "N m" ||
-                      unit == "Pa" || unit == "J" || unit == "W";
-  if (!metric) return {1.0, unit == "-" ? "" : unit};
+double largest_in(const Table& t, std::size_t column) {
   double largest = 0;
   for (const auto& row : t.rows)
-    if (!row[k].is_text && std::isfinite(row[k].number))
-      largest = std::max(largest, std::abs(row[k].number));
-  if (unit == "m") return plot::length_unit(largest);
-  return plot::unit_for(unit == "N.m" ? "N m" : unit, largest);
+    if (!row[column].is_text && std::isfinite(row[column].number))
+      largest = std::max(largest, std::abs(row[column].number));
+  return largest;
 }
 
 struct ShownColumn {
   bool numeric = false;
-  plot::DisplayUnit unit;
+  plot::DisplayUnit unit{1.0, ""};
+  double zero_below = 0;  ///< what is smaller is rounding
 };
+
+/// Largest number of a column and of those beside it in the same unit: lowest and highest, from and
+/// to, components.
+double largest_beside(const Table& t, std::size_t k) {
+  const auto same = [&](std::size_t j) { return t.columns[j].unit == t.columns[k].unit; };
+  double all = largest_in(t, k);
+  for (std::size_t j = k; j-- > 0 && same(j);)
+    all = std::max(all, largest_in(t, j));
+  for (std::size_t j = k + 1; j < t.columns.size() && same(j); ++j)
+    all = std::max(all, largest_in(t, j));
+  return all;
+}
+
+/// Columns beside each other in the same unit share a prefix as long as that leaves each its digits.
+/// Shares and ratios may be small and right; of what has a unit, a million millionth of the largest
+/// is rounding.
+ShownColumn shown_as(const Table& t, std::size_t k) {
+  ShownColumn out;
+  out.numeric = !t.rows.empty() && !t.rows[0][k].is_text;  // set so when its first cell is a number
+  const std::string& unit = t.columns[k].unit;
+  if (unit == "-" || unit.empty()) return out;
+  const double own = largest_in(t, k), all = largest_beside(t, k);
+  out.zero_below = unit == "%" ? 5e-5 : 1e-12 * all;
+  out.unit.name = unit;
+  const bool metric = unit == "m" || unit == "N" || unit == "N.m" || unit == "N m" ||
+                      unit == "Pa" || unit == "J" || unit == "W";
+  if (!metric) return out;
+  const double largest = own > out.zero_below && own < 1e-2 * all ? own : all;
+  out.unit = unit == "m" ? plot::length_unit(largest) : plot::unit_for(unit, largest);
+  return out;
+}
 
 /// What stands for a number that is none.
 constexpr const char* no_number = "–";
@@ -58,7 +84,9 @@ std::string cell_html(const Table::Cell& c, const ShownColumn& column,
                                                     : "";
   std::string text = c.is_text              ? escape(c.text)
                      : std::isnan(c.number) ? no_number
-                                            : readable(column.unit.factor * c.number, 5);
+                     : std::abs(c.number) < column.zero_below
+                         ? "0"
+                         : readable(column.unit.factor * c.number, 5);
   if (const auto n = numbers.find(safe_name(c.figure)); n != numbers.end())
     text = "<a href=\"#" + n->first + "\">Figure " + std::to_string(n->second) + "</a>";
   return (kind.empty() ? std::string("<td>") : "<td class=\"" + kind + "\">") + text + "</td>";
@@ -79,10 +107,9 @@ std::string table_html(const Table& t, const FigureNumbers& numbers) {
   std::string s = "<div class=\"scroll\"><table>";
   if (!t.title.empty()) s += "<caption>" + escape(t.title) + "</caption>";
   s += "<thead><tr>";
-  // A column is set as numbers when its first cell is one.
   std::vector<ShownColumn> columns(t.columns.size());
   for (std::size_t k = 0; k < t.columns.size(); ++k) {
-    columns[k] = {!t.rows.empty() && !t.rows[0][k].is_text, unit_of(t, k)};
+    columns[k] = shown_as(t, k);
     const auto& c = t.columns[k];
     s += columns[k].numeric ? "<th class=\"n\"" : "<th";
     if (!c.description.empty()) s += " title=\"" + escape(c.description) + '"';
@@ -91,6 +118,8 @@ std::string table_html(const Table& t, const FigureNumbers& numbers) {
          "</th>";
   }
   s += "</tr></thead>\n<tbody>";
+  if (t.rows.empty())
+    s += "<tr><td colspan=\"" + std::to_string(t.columns.size()) + "\">none</td></tr>\n";
   for (const auto& row : t.rows) {
     s += "<tr>";
     for (std::size_t k = 0; k < row.size(); ++k)

@@ -249,6 +249,13 @@ struct TorqueCurve {
     double breakdown = 0, slip_breakdown = 0.1, synchronous = 0;
   };  ///< Kloss: 2 Tb/(x/xb + xb/x)
   std::optional<Induction> induction;
+  /// Of a salient-pole motor that runs up: amplitude(s) cos(2 p (synchronous t - phi) + phase), twice
+  /// the slip frequency.
+  struct Pulsation {
+    double synchronous = 0, poles = 4, phase = 0;  ///< rad/s, number of poles 2 p, rad
+    std::vector<double> speed, amplitude;          ///< rad/s -> N m, linear between, held outside
+  };
+  std::optional<Pulsation> pulsation;
   struct ConstantPower {
     double power = 0, max_torque = 0;
   };
@@ -502,10 +509,21 @@ struct BalancingStep {
   std::vector<TrialRun> trials;
 };
 /// A torque that excites a train: a multiple of a shaft's speed, or at a fixed frequency.
+/// One of the orders of a periodic torque: amplitude cos(order phi + phase).
+struct ApiHarmonic {
+  double order = 0, amplitude = 0, phase = 0;  ///< -, N m 0 to peak, rad
+};
 struct ApiTorque : Entity {
   Location at;
-  double order = 0, frequency = 0;  ///< of the reference speed; rad/s; one of them
-  double amplitude = 0;             ///< N m, 0 to peak
+  /// Of the speed of its shaft; rad/s. Both: |frequency - order times that speed|.
+  double order = 0, frequency = 0;
+  double amplitude = 0;                ///< N m, 0 to peak
+  std::vector<ApiHarmonic> harmonics;  ///< instead of all these
+};
+/// What a transient that an earlier step ran does to the train, so many times in its life.
+struct ApiEvent : Entity {
+  std::string step;
+  double times = 1;
 };
 struct ApiTorsionalStep {
   std::string standard = "API 617, 671";
@@ -515,9 +533,19 @@ struct ApiTorsionalStep {
   double line_frequency = 0;  ///< rad/s; 0: none
   double margin = 0.10;
   std::vector<ApiTorque> torques;
+  std::vector<ApiEvent> events;
+  double damage_limit = 1;                     ///< of the sum over all events
   double concentration = 1, stress_limit = 0;  ///< -, Pa; 0: none
   std::string source;
   std::vector<std::string> given;
+};
+/// Torques that a transient sends through shafts and couplings, and the fatigue they cause.
+struct ShaftTorques {
+  double concentration = 1;  ///< factor on shear stresses
+  double yield = 0;          ///< Pa, in shear; 0: not looked at
+  /// Strengths, Pa: tensile; shear amplitudes that 1000 cycles and endless ones take; 0: no fatigue.
+  double ultimate = 0, thousand = 0, endurance = 0;
+  double cycles = 1e6;  ///< from which on the amplitude is `endurance`
 };
 struct BucklingStep {
   int modes = 3;
@@ -546,6 +574,7 @@ struct TransientStep {
   double amplitude_limit = infinity;  ///< stop when a probe exceeds it, m
   double checkpoint = 60;             ///< wall-clock s between checkpoints; 0 = none
   bool linear = false;  ///< small motions about the steadily turning equilibrium: constant matrices
+  std::optional<ShaftTorques> torques;
 };
 
 using StepLaw =
@@ -569,6 +598,7 @@ struct VtkOutput {
   std::vector<std::string> content{"line", "surface"};
   double deformation_scale = 1;
   int points_around = 32;
+  bool one_file = false;  ///< all frames of a set in one VTKHDF file
   Where where;
 };
 

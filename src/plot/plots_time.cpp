@@ -39,9 +39,9 @@ DisplayUnit unit_for(const std::string& si, double m) {
   if (si == "m") return length_unit(m);
   if (si == "rad/s") return {to_rpm(1.0), "rpm"};
   if (si == "m/s") return m < 0.5 && m > 0 ? DisplayUnit{1e3, "mm/s"} : DisplayUnit{1, si};
-  if (si == "N" || si == "N m" || si == "N·m" || si == "W" || si == "J" || si == "Pa" ||
-      si == "s" || si == "Hz") {
-    const std::string name = si == "N m" ? "N·m" : si;
+  const bool moment = si == "N m" || si == "N·m" || si == "N.m";
+  if (si == "N" || moment || si == "W" || si == "J" || si == "Pa" || si == "s" || si == "Hz") {
+    const std::string name = moment ? "N·m" : si;
     struct Prefix {
       double least;
       double factor;

@@ -25,7 +25,7 @@ Ticks axis_ticks(const Axis& a, const Scale& s, double length, double spacing) {
 double widest_label(const Ticks& t) {
   double w = 0;
   for (const auto& l : t.labels)
-    w = std::max(w, text_width(l, tick_size));
+    w = std::max(w, wide_fonts * text_width(l, tick_size));
   return w;
 }
 
@@ -171,7 +171,8 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
   const auto sideways = [&](double x, double y, const std::string& t, const char* which) {
     // A title longer than its axis is set smaller.
     const double size =
-        label_size * std::clamp((b.h + 24) / std::max(1.0, text_width(t, label_size)), 0.7, 1.0);
+        label_size *
+        std::clamp((b.h + 24) / std::max(1.0, wide_fonts * text_width(t, label_size)), 0.7, 1.0);
     c.text(x, y, t, size, "middle",
            "data-label=\"" + std::string(which) + "\" transform=\"rotate(-90 " + number_text(x) +
                " " + number_text(y) + ")\"");
@@ -181,6 +182,25 @@ void draw_ticks(Canvas& c, const Axes& a, const Prepared& p, const Box& b, const
   if (right)
     sideways(b.right() + tick_length + 18 + widest_label(p.tr), b.y + b.h / 2,
              axis_title(a.right, p.tr.exponent), "r");
+}
+
+/// Points over the extent of every patch, for what shall not hide one.
+void add_bodies(const Axes& a, const Prepared& p, std::vector<Point>& seen) {
+  constexpr double apart = 8;  // px
+  for (const Patch& s : a.patches) {
+    double x0 = infinity, x1 = -infinity, y0 = infinity, y1 = -infinity;
+    for (std::size_t i = 0; i < s.x.size() && i < s.y.size(); ++i) {
+      const double x = p.x(s.x[i]), y = p.y(s.y[i]);
+      if (!std::isfinite(x) || !std::isfinite(y)) continue;
+      x0 = std::min(x0, x);
+      x1 = std::max(x1, x);
+      y0 = std::min(y0, y);
+      y1 = std::max(y1, y);
+    }
+    for (double x = x0; x <= x1; x += apart)
+      for (double y = y0; y <= y1; y += apart)
+        seen.push_back({x, y});
+  }
 }
 
 }  // namespace
@@ -282,6 +302,7 @@ void draw_cartesian(Canvas& c, const Axes& a, const Box& b, const CartesianFlags
   draw_ticks(c, a, p, b, f, right);
   if (!a.heat.empty()) draw_color_bar(c, a.heat.front(), {b.right() + 14, b.y, 13, b.h});
   const Box size = legend_size_of(entries);
+  add_bodies(a, p, seen);
   draw_legend(c, entries, b, seen, taken,
               outside ? Box{b.right() + (right            ? widest_label(p.tr) + tick_length + 30
                                          : a.heat.empty() ? 8

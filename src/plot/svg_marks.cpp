@@ -330,7 +330,8 @@ Box place_near(const Box& wanted, const Box& frame, const std::vector<Box>& take
   for (int rows = -6; rows <= 6; ++rows)
     for (const double column : {0.0, -0.5, 0.5, -1.1, 1.1}) {
       const Box t{wanted.x + column * wanted.w, wanted.y + 15.0 * rows, wanted.w, wanted.h};
-      const double cost = std::abs(rows) + 0.8 * std::abs(column) + (rows > 0 ? 0 : 0.1) +
+      // a name beside what it names looks like its neighbour's
+      const double cost = std::abs(rows) + 3.5 * std::abs(column) + (rows > 0 ? 0 : 0.1) +
                           10 * hidden_by(t, frame, taken, seen);
       if (cost >= best) continue;
       best = cost;

@@ -32,6 +32,7 @@ class PolarDrawing {
   const Colors colors_;
   const std::vector<LegendEntry> entries_;
   const Box legend_;
+  bool legend_below_ = false;
   Ticks ticks_;
   double step_ = 1, full_ = 1;                ///< between circles, of the outermost one
   double top_ = 0, R_ = 0, cx_ = 0, cy_ = 0;  ///< px
@@ -51,9 +52,15 @@ PolarDrawing::PolarDrawing(Canvas& c, const Axes& a, const Box& cell)
   step_ = ticks_.major.size() > 1 ? ticks_.major[1] - ticks_.major[0] : largest;
   full_ = std::isnan(a.y.max) ? step_ * std::ceil(largest / step_ - 0.02) : largest;
   top_ = a.title.empty() ? 8 : 26;
-  const double right = entries_.empty() ? 0 : legend_.w + 10;
-  R_ = std::max(20.0, std::min((cell.w - right - 80) / 2, (cell.h - top_ - 76) / 2));
-  cx_ = cell.x + (cell.w - right) / 2;
+  const auto radius = [&](double right, double below) {
+    return std::max(20.0, std::min((cell.w - right - 80) / 2, (cell.h - top_ - 76 - below) / 2));
+  };
+  // the legend beside the circle or below it, where it leaves more of it
+  const double right = entries_.empty() ? 0 : legend_.w + 10,
+               below = entries_.empty() ? 0 : legend_.h + 8;
+  legend_below_ = radius(0, below) > radius(right, 0);
+  R_ = legend_below_ ? radius(0, below) : radius(right, 0);
+  cx_ = cell.x + (cell.w - (legend_below_ ? 0 : right)) / 2;
   cy_ = cell.y + top_ + 20 + R_;
 }
 
@@ -143,8 +150,9 @@ void PolarDrawing::draw() {
     draw_note(c_, place(n.x, R_ * n.y / full_), n.text, inside, taken_, seen_);
   c_.text(cx_, cy_ + R_ + 40, axis_title(a_.y, ticks_.exponent) + ", " + a_.x.label, label_size,
           "middle");
-  draw_legend(c_, entries_, cell_, seen_, {},
-              {cell_.right() - legend_.w, cell_.y + top_, legend_.w, legend_.h});
+  const Point corner = legend_below_ ? Point{cx_ - legend_.w / 2, cy_ + R_ + 48}
+                                     : Point{cell_.right() - legend_.w, cell_.y + top_};
+  draw_legend(c_, entries_, cell_, seen_, {}, {corner.x, corner.y, legend_.w, legend_.h});
   c_.add("</g>\n");
 }
 

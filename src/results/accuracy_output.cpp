@@ -273,7 +273,7 @@ void AccuracyOutput::add_damping_row(TransientEnd& end, const analysis::WhirlMod
   // the mode's own damping is left out where it would not last: of a growing or heavily damped
   // mode only the frequency counts
   const double decay = steps_.mean_decay(scheme.method, scheme.rho_inf, Complex(0.0, m.frequency));
-  const double physical = m.damping_ratio, numerical = decay / m.frequency;
+  const double physical = tidy(m.damping_ratio), numerical = decay / m.frequency;
   const double lost = 1.0 - std::exp(-std::max(decay, 0.0) * steps_.seconds());
   io::Value q;
   q["frequency [Hz]"] = to_hz(m.frequency);

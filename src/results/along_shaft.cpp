@@ -7,6 +7,11 @@
 
 namespace whirl::results {
 
+std::string element_name(const meshes::Mesh& mesh, std::size_t element) {
+  const meshes::Element& e = mesh.elements.at(element);
+  return fmt::format("{}, {:.4g} to {:.4g} m", mesh.lines[at(e.line)].name, e.s1, e.s2);
+}
+
 namespace {
 
 /// Axis in the unit that suits the largest value of its curves; scales them.

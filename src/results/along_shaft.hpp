@@ -1,10 +1,12 @@
-// Figures of what a static state is along a shaft: rows of axes over the position.
+// Figures of what a static state is along a shaft: rows of axes over the position. Names of its parts.
 #pragma once
 #include <plot/plots.hpp>
 #include <run/job.hpp>
 
 namespace whirl::results {
 
+/// Shaft and extent of an element of the mesh.
+std::string element_name(const meshes::Mesh& mesh, std::size_t element);
 /// A curve that keeps all its points.
 plot::Series curve_of(std::string label);
 /// Largest |y|.

@@ -1,6 +1,7 @@
 #include <results/channels.hpp>
 
 #include <analysis/spectra/whirl_modes.hpp>
+#include <assembly/section_results.hpp>
 
 #include <fmt/format.h>
 
@@ -102,6 +103,30 @@ void add_drive_torques(const run::Job& job, Channels& c) {
       *out = d.torque(nodes_of(s), s.t(), reactions_of(s));
     };
     c.add(std::move(x));
+  }
+}
+
+void add_shaft_torques(const run::Job& job, Channels& c) {
+  if (!wants(job.model.output, "shaft_torque")) return;
+  for (const model::Probe& p : job.model.probes) {
+    const std::vector<meshes::Element>& all = job.mesh.elements;
+    const auto beside = std::find_if(all.begin(), all.end(), [&](const meshes::Element& e) {
+      return at(e.line) == p.at.shaft && p.at.s <= e.s2;
+    });
+    if (p.at.housing >= 0 || beside == all.end()) continue;
+    const double x = std::max(0.0, (p.at.s - beside->s1) / (beside->s2 - beside->s1));
+    Measurement m{p.name + " shaft torque",
+                  "N.m",
+                  "torque of the part to the right on the part to the left, left of the probe",
+                  {},
+                  1.0,
+                  {}};
+    m.evaluate = [&job, x, k = static_cast<std::size_t>(beside - all.begin())](const Snapshot& s,
+                                                                               double* out) {
+      const auto [a, b] = assembly::calc_torques(job.mesh, job.built, s.workspace(), k);
+      *out = a + x * (b - a);
+    };
+    c.add(std::move(m));
   }
 }
 
@@ -248,6 +273,7 @@ Channels make_channels(const run::Job& job) {
   add_support_forces(job, c);
   add_support_moments(job, c);
   add_drive_torques(job, c);
+  add_shaft_torques(job, c);
   add_cracks(job, c);
   add_joints(job, c);
   add_control_currents(job, c);

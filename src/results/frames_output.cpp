@@ -46,6 +46,7 @@ Frames::Frames(const run::Job& job, const model::VtkOutput& o, const std::string
   io::set_content(options, o.content);
   options.deformation_scale = o.deformation_scale;
   options.points_around = o.points_around;
+  options.one_file = o.one_file;
   options.max_frames = static_cast<std::uint64_t>(o.max_frames);
   writer_ = io::make_vtk_frames(options);
   line_ = options.line;
@@ -146,9 +147,10 @@ class FramesOutput final : public TransientOutput {
     std::string shown;
     for (const std::string& c : law_.content)
       shown += " " + c;
-    return fmt::format("{} window {} {} every {} per revolution {} scale {} around {}{}", number_,
+    return fmt::format("{} window {} {} every {} per revolution {} scale {} around {}{}{}", number_,
                        law_.t0, law_.t1, law_.every, law_.frames_per_revolution,
-                       law_.deformation_scale, law_.points_around, shown);
+                       law_.deformation_scale, law_.points_around, law_.one_file ? " one file" : "",
+                       shown);
   }
 
   const model::VtkOutput& law_;

@@ -20,8 +20,8 @@ std::vector<double> speeds_of(const model::SpeedRange& range);
 std::vector<double> frequencies_of(const model::FrequencyRange& range);
 analysis::Motion motion_of(model::MotionKind kind);
 plot::Whirl whirl_of(analysis::Direction d);
-/// Rounding of what is zero, as zero: ratios and shares of 1 (or 100 %).
-inline double tidy(double x) { return std::abs(x) < 1e-12 ? 0.0 : x; }
+/// What no eigenvalue is known to (an undamped mode), as zero: ratios and shares of 1 (or 100 %).
+inline double tidy(double x) { return std::abs(x) < 1e-9 ? 0.0 : x; }
 /// "lateral, forward", "torsional"
 std::string description(const analysis::WhirlMode& m);
 /// "lateral 1", "torsional 1", .. of a list: numbers within each kind.

@@ -73,6 +73,7 @@ class HistoryFigures {
   void add_tilt(const model::Probe& probe);
   void add_twist(const model::Probe& probe);
   void add_forces();
+  void add_torques_against_angle();
   void add_energies();
 
  private:
@@ -97,6 +98,7 @@ class HistoryFigures {
   std::size_t turning_row() const;
   void add_amplitude(const std::string& probe, const Radii& radii, const plot::DisplayUnit& unit);
   Range turns_about(std::size_t row) const;
+  double rows_a_turn(const Range& range) const;
   void add_orbit(const std::string& probe, std::size_t channel, std::size_t largest_row,
                  const plot::DisplayUnit& unit);
   void add_force(const Measurement& m, std::size_t channel);
@@ -236,6 +238,15 @@ HistoryFigures::Range HistoryFigures::turns_about(std::size_t row) const {
   return range;
 }
 
+/// Many where the angle is not known.
+double HistoryFigures::rows_a_turn(const Range& range) const {
+  const auto angle = find("phi");
+  if (!angle || range.to < range.from + 2) return infinity;
+  const std::size_t p = place(*angle);
+  const double turns = std::abs(rows_[range.to - 1][p] - rows_[range.from][p]) / two_pi;
+  return turns > 0 ? static_cast<double>(range.to - range.from - 1) / turns : infinity;
+}
+
 void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
                                std::size_t largest_row, const plot::DisplayUnit& unit) {
   const Measurement& m = all_[channel];
@@ -247,17 +258,26 @@ void HistoryFigures::add_orbit(const std::string& probe, std::size_t channel,
   plot::Series s;
   s.style.width = 0.8;
   const Range range = turns_about(largest_row);
+  const double each_turn = rows_a_turn(range);
+  if (each_turn < 12) {  // straight lines between them would show a path that there is not
+    s.style.width = 0;
+    s.style.marker = plot::Marker::circle;
+    s.style.marker_size = 2;
+  }
   for (std::size_t r = range.from; r < range.to; ++r) {
     s.x.push_back(unit.factor * rows_[r][y]);
     s.y.push_back(unit.factor * rows_[r][y + 1]);
   }
   a.series.push_back(std::move(s));
   const bool part = range.to - range.from < rows_.size();
-  add(probe + "_orbit",
+  add(probe + "_turns",  // "_orbit" is that of the keyphasor
       probe + (part ? fmt::format(": orbit, ten turns about the largest radius ({:.0f} rpm)",
                                   rpm_[largest_row])
                     : ": orbit"),
       {std::move(a)}, 520);
+  if (each_turn < 12)
+    section_.figures.back().caption = fmt::format(
+        "Rows of the history, {:.2g} a turn: too few to draw the path between them.", each_turn);
 }
 
 void HistoryFigures::add_path(const model::Probe& probe) {
@@ -321,9 +341,10 @@ void HistoryFigures::add_force(const Measurement& m, std::size_t channel) {
   if (size == 0.0) return;  // a guide that nothing loads: the CSV says so
   const bool moment = m.name.ends_with(" moment");
   const plot::DisplayUnit unit = plot::unit_for(m.unit, size);
-  plot::Axes a = time_axes(m.name.ends_with(" force") ? "force on the shaft"
-                           : moment                   ? "moment on the shaft (x: torque)"
-                                                      : "torque on the shaft",
+  plot::Axes a = time_axes(m.name.ends_with(" force")          ? "force on the shaft"
+                           : moment                            ? "moment on the shaft (x: torque)"
+                           : m.name.ends_with(" shaft torque") ? "torque in the shaft"
+                                                               : "torque on the shaft",
                            unit.name);
   for (std::size_t c = 0; c < m.width(); ++c) {
     const bool absent =
@@ -333,6 +354,38 @@ void HistoryFigures::add_force(const Measurement& m, std::size_t channel) {
           series(m.components.empty() ? "" : m.components[c], column(channel, c), unit.factor));
   }
   add(m.name, m.name, {std::move(a)});
+}
+
+/// Torques of drives and in shafts, and those that supports between shafts pass on.
+void HistoryFigures::add_torques_against_angle() {
+  const auto angle = find("phi");
+  if (!angle) return;
+  struct Shown {
+    std::size_t channel, component;
+  };
+  std::vector<Shown> shown;
+  double size = 0;
+  for (std::size_t i = 0; i < all_.size(); ++i) {
+    const bool torque = all_[i].name.ends_with(" torque"),
+               moment = all_[i].name.ends_with(" moment");
+    if ((!torque && !moment) || !(largest(column(i).y) > 0)) continue;
+    size = std::max(size, largest(column(i).y));
+    shown.push_back({i, 0});  // of a moment the part about the axis
+  }
+  if (shown.empty()) return;
+  const plot::DisplayUnit unit = plot::unit_for("N.m", size);
+  plot::Axes a;
+  a.x = plot::Axis("angle of the reference shaft", "turns");
+  a.y = plot::Axis("torque", unit.name);
+  for (const Shown& x : shown) {
+    PlotBuffer::Points p = column(x.channel, x.component);
+    std::vector<double> turns = buffer_.values_at(start_[*angle], p.t);
+    for (double& t : turns)
+      t /= two_pi;
+    p.t = std::move(turns);
+    a.series.push_back(series(all_[x.channel].name, std::move(p), unit.factor));
+  }
+  add("torque_angle", "Recorded torques against the angle of the machine", {std::move(a)});
 }
 
 void HistoryFigures::add_energies() {
@@ -370,6 +423,7 @@ void add_history_figures(const run::Job& job, const model::Step& step, const Cha
     figures.add_twist(probe);
   }
   figures.add_forces();
+  figures.add_torques_against_angle();
   figures.add_energies();
 }
 

@@ -1,5 +1,6 @@
 #include <results/plot_buffer.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace whirl::results {
@@ -25,10 +26,10 @@ void PlotBuffer::append(const std::vector<double>& row) {
   }
   if (++filled_ == stride_) filled_ = 0;
   if (rows_ % keep_stride_ == 0) {
-    if (kept_.size() == rows_capacity) {
-      for (std::size_t i = 1; i < rows_capacity / 2; ++i)
+    if (kept_.size() == rows_capacity_) {
+      for (std::size_t i = 1; i < rows_capacity_ / 2; ++i)
         kept_[i] = std::move(kept_[2 * i]);
-      kept_.resize(rows_capacity / 2);
+      kept_.resize(rows_capacity_ / 2);
       keep_stride_ *= 2;
     }
     if (rows_ % keep_stride_ == 0) kept_.push_back(row);
@@ -67,7 +68,7 @@ void PlotBuffer::restore(InArchive& in) {
   std::size_t data = 0, kept = 0;
   for (std::size_t* n : {&stride_, &rows_, &filled_, &keep_stride_, &data, &kept})
     *n = in.count();
-  if (data > capacity_ * channels_ || kept > rows_capacity)
+  if (data > capacity_ * channels_ || kept > rows_capacity_)
     throw std::invalid_argument("plot buffer of another run");
   data_.resize(data);
   kept_.resize(kept);
@@ -98,6 +99,24 @@ PlotBuffer::Points PlotBuffer::channel(std::size_t k) const {
     p.y.push_back(low_first ? x.hi : x.lo);
   }
   return p;
+}
+
+std::vector<double> PlotBuffer::values_at(std::size_t k, const std::vector<double>& times) const {
+  std::vector<double> out;
+  out.reserve(times.size());
+  for (const double t : times) {
+    const auto after = std::upper_bound(kept_.begin(), kept_.end(), t,
+                                        [](double x, const auto& row) { return x < row[0]; });
+    if (after == kept_.begin() || kept_.size() < 2) {
+      out.push_back(kept_.empty() ? 0.0 : kept_.front()[k + 1]);
+      continue;
+    }
+    const auto right = after == kept_.end() ? after - 1 : after;
+    const std::vector<double>&a = *(right - 1), &b = *right;
+    const double span = b[0] - a[0], x = span > 0 ? (t - a[0]) / span : 0.0;
+    out.push_back(a[k + 1] + x * (b[k + 1] - a[k + 1]));
+  }
+  return out;
 }
 
 }  // namespace whirl::results

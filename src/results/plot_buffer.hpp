@@ -10,10 +10,12 @@ namespace whirl::results {
 class PlotBuffer {
  public:
   /// channels: values a row beside the time. capacity: buckets kept (rows themselves, until there
-  /// are more).
-  explicit PlotBuffer(std::size_t channels, std::size_t capacity = 1 << 14)
+  /// are more). rows: whole ones kept, an even number.
+  explicit PlotBuffer(std::size_t channels, std::size_t capacity = 1 << 14,
+                      std::size_t rows = 1 << 16)
       : channels_(channels),
-        capacity_(capacity) {}
+        capacity_(capacity),
+        rows_capacity_(rows) {}
   /// row[0] is the time.
   void append(const std::vector<double>& row);
   /// Points of one channel: the rows themselves while they fit, else minimum and maximum of each
@@ -22,6 +24,8 @@ class PlotBuffer {
     std::vector<double> t, y;
   };
   Points channel(std::size_t k) const;
+  /// Of a channel without sudden changes: its values at times, straight between kept rows.
+  std::vector<double> values_at(std::size_t k, const std::vector<double>& times) const;
   std::size_t rows() const { return rows_; }
   void save(OutArchive& out) const;
   void restore(InArchive& in);
@@ -33,8 +37,7 @@ class PlotBuffer {
     double lo, hi, t_lo, t_hi;
   };
   void halve();
-  static constexpr std::size_t rows_capacity = 1 << 16;
-  std::size_t channels_, capacity_, stride_ = 1, rows_ = 0, filled_ = 0;
+  std::size_t channels_, capacity_, rows_capacity_, stride_ = 1, rows_ = 0, filled_ = 0;
   std::vector<Extreme> data_;  // bucket-major
   std::vector<std::vector<double>> kept_;
   std::size_t keep_stride_ = 1;

@@ -200,6 +200,7 @@ void write_shape_frames(FrequencyStep& s, const std::string& name, const VecXc& 
     io::set_content(options, v.content);
     options.deformation_scale = 1.0;  // in the amplitude
     options.points_around = v.points_around;
+    options.one_file = v.one_file;
     const Index nodes = static_cast<Index>(s.job.mesh.nodes.size());
     io::HarmonicShape shape;
     double largest = 0, length = 0;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace whirl::results {
@@ -30,13 +31,21 @@ class SpectraOutput final : public TransientOutput {
   void report(TransientEnd& end) override;
 
  private:
+  /// full: at equal angles where the speed changes; [probe][line].
   struct Trace {
     double t = 0, speed = 0;
     std::vector<std::vector<double>> full, y;
-  };  ///< [probe][line]
+    std::vector<analysis::Ridge> ridge;  ///< [probe]
+    double change = 0;                   ///< of the speed within the block
+    bool at_equal_angles = false;
+  };
   void take(analysis::SpectrumBlock block);
   std::vector<io::Channel> channels() const;
-  std::string csv_name(const std::string& probe) const;
+  std::vector<io::Channel> ridge_channels() const;
+  std::string csv_name(const std::string& probe, const char* what = "spectra") const;
+  void write(const analysis::SpectrumBlock& b);
+  std::string how_taken() const;
+  void add_ridge(plot::Figure& map, std::size_t probe) const;
   bool speed_varies() const;
   const Trace& largest_block(std::size_t probe) const;
   plot::Figure full_spectrum(std::size_t probe) const;
@@ -50,7 +59,7 @@ class SpectraOutput final : public TransientOutput {
   std::string step_, content_;
   std::vector<std::string> probes_;
   std::vector<double> senses_;
-  std::vector<io::TimeSeriesPtr> sinks_;  ///< one a probe
+  std::vector<io::TimeSeriesPtr> sinks_, ridges_;  ///< one a probe
   std::vector<Trace> traces_;
   std::size_t blocks_ = 0, stride_ = 1;
   std::vector<double> row_;
@@ -65,11 +74,14 @@ SpectraOutput::SpectraOutput(const TransientSetup& s)
       spectra_(probe_points(s.job), s.job.reference(), s.t_begin,
                {options_.max_frequency, options_.lines},
                [this](const analysis::SpectrumBlock& b) { take(b); }) {
-  content_ = fmt::format("{} {} {}", options_.max_frequency, options_.lines, options_.traces);
+  content_ =
+      fmt::format("{} {} {} and ridges", options_.max_frequency, options_.lines, options_.traces);
   for (const model::Probe& p : s.job.model.probes) {
     probes_.push_back(p.name);
     content_ += " " + p.name;
-    if (out_.csv) sinks_.push_back(io::make_csv_series(s.job.folder.path(csv_name(p.name))));
+    if (!out_.csv) continue;
+    sinks_.push_back(io::make_csv_series(s.job.folder.path(csv_name(p.name))));
+    ridges_.push_back(io::make_csv_series(s.job.folder.path(csv_name(p.name, "ridge"))));
   }
   row_.resize(2 + 2 * static_cast<std::size_t>(options_.lines) + 1);
 }
@@ -87,27 +99,55 @@ std::vector<io::Channel> SpectraOutput::channels() const {
   return c;
 }
 
+std::vector<io::Channel> SpectraOutput::ridge_channels() const {
+  return {{"t", "s", "middle of the block", {}, 1.0, {}},
+          {"speed", "rpm", "mean spin of the block", {}, to_rpm(1.0), {}},
+          {"change of speed", "rpm", "within the block", {}, to_rpm(1.0), {}},
+          {"frequency",
+           "Hz",
+           "of the strongest component; negative: against the spin",
+           {},
+           to_hz(1.0),
+           {}},
+          {"amplitude", "m", "of y + iz, 0-peak", {}, 1.0, {}},
+          {"equal angles", "-", "1: from samples at equal angles, 0: at equal times", {}, 1.0, {}}};
+}
+
 void SpectraOutput::begin() {
   for (auto& s : sinks_)
     s->begin(channels());
+  for (auto& s : ridges_)
+    s->begin(ridge_channels());
 }
 
 void SpectraOutput::close() {
-  for (auto& s : sinks_)
-    s->close();
+  for (auto* list : {&sinks_, &ridges_})
+    for (auto& s : *list)
+      s->close();
 }
 
-void SpectraOutput::take(analysis::SpectrumBlock b) {
-  // positive frequencies: with the spin of the shaft there
-  for (std::size_t p = 0; p < b.full.size(); ++p)
-    if ((b.speed < 0 ? -1.0 : 1.0) * senses_[p] < 0)
-      std::reverse(b.full[p].begin(), b.full[p].end());
+void SpectraOutput::write(const analysis::SpectrumBlock& b) {
   for (std::size_t p = 0; p < sinks_.size(); ++p) {
     row_[0] = b.t;
     row_[1] = b.speed;
     std::copy(b.full[p].begin(), b.full[p].end(), row_.begin() + 2);
     sinks_[p]->append(row_);
+    const analysis::Ridge& r = b.ridge[p];
+    const std::array<double, 6> row{b.t,         b.speed,     b.change,
+                                    r.frequency, r.amplitude, r.at_equal_angles ? 1.0 : 0.0};
+    ridges_[p]->append(row);
   }
+}
+
+void SpectraOutput::take(analysis::SpectrumBlock b) {
+  // positive frequencies: with the spin of the shaft there
+  for (std::size_t p = 0; p < b.full.size(); ++p) {
+    if ((b.speed < 0 ? -1.0 : 1.0) * senses_[p] > 0) continue;
+    std::reverse(b.full[p].begin(), b.full[p].end());
+    if (!b.ordered.empty()) std::reverse(b.ordered[p].begin(), b.ordered[p].end());
+    b.ridge[p].frequency *= -1;
+  }
+  write(b);
   if (blocks_++ % stride_ != 0) return;
   if (traces_.size() == static_cast<std::size_t>(options_.traces)) {
     for (std::size_t k = 1; 2 * k < traces_.size(); ++k)
@@ -116,12 +156,15 @@ void SpectraOutput::take(analysis::SpectrumBlock b) {
     stride_ *= 2;
     if ((blocks_ - 1) % stride_ != 0) return;
   }
-  traces_.push_back({b.t, b.speed, b.full, b.y});
+  const bool angles = !b.ordered.empty();
+  traces_.push_back({b.t, b.speed, angles ? std::move(b.ordered) : std::move(b.full),
+                     std::move(b.y), std::move(b.ridge), b.change, angles});
 }
 
 void SpectraOutput::save(OutArchive& out) {
-  for (auto& s : sinks_)
-    s->flush();
+  for (auto* list : {&sinks_, &ridges_})
+    for (auto& s : *list)
+      s->flush();
   out.put_count(sinks_.empty() ? 0 : sinks_.front()->rows());
   out.put_count(blocks_);
   out.put_count(stride_);
@@ -133,6 +176,11 @@ void SpectraOutput::save(OutArchive& out) {
       out.put(x);
     for (const auto& x : t.y)
       out.put(x);
+    for (const analysis::Ridge& r : t.ridge)
+      for (const double x : {r.frequency, r.amplitude, r.at_equal_angles ? 1.0 : 0.0})
+        out.put(x);
+    out.put(t.change);
+    out.put(t.at_equal_angles ? 1.0 : 0.0);
   }
   spectra_.save(out);
 }
@@ -141,6 +189,8 @@ void SpectraOutput::restore(InArchive& in) {
   const std::uint64_t rows = in.count();
   for (auto& s : sinks_)
     s->resume(channels(), rows);
+  for (auto& s : ridges_)
+    s->resume(ridge_channels(), rows);
   blocks_ = in.count();
   stride_ = in.count();
   traces_.resize(in.count());
@@ -153,12 +203,62 @@ void SpectraOutput::restore(InArchive& in) {
       x = in.numbers();
     for (auto& x : t.y)
       x = in.numbers();
+    t.ridge.resize(probes_.size());
+    for (analysis::Ridge& r : t.ridge) {
+      r.frequency = in.number();
+      r.amplitude = in.number();
+      r.at_equal_angles = in.number() != 0;
+    }
+    t.change = in.number();
+    t.at_equal_angles = in.number() != 0;
   }
   spectra_.restore(in);
 }
 
-std::string SpectraOutput::csv_name(const std::string& probe) const {
-  return fmt::format("{}_{}_spectra.csv", step_, safe_name(probe));
+std::string SpectraOutput::csv_name(const std::string& probe, const char* what) const {
+  return fmt::format("{}_{}_{}.csv", step_, safe_name(probe), what);
+}
+
+/// What was done where the speed changes within blocks, in lines of the spectrum; empty: it does not.
+std::string SpectraOutput::how_taken() const {
+  double most = 0;
+  std::size_t sharp = 0;
+  for (const Trace& t : traces_) {
+    most = std::max(most, std::abs(t.change) / resolution());
+    sharp += t.at_equal_angles ? 1 : 0;
+  }
+  if (sharp == 0) return {};
+  return fmt::format(
+      " The speed changes by up to {:.2g} lines ({:.0f} rpm) within a block: {} of {} spectra are "
+      "from samples at equal angles, their frequencies orders times the mean speed. Orders are "
+      "sharp there, fixed frequencies are spread.",
+      most, to_rpm(most * resolution()), sharp, traces_.size());
+}
+
+/// The strongest component of each block.
+void SpectraOutput::add_ridge(plot::Figure& map, std::size_t probe) const {
+  plot::Series s;
+  s.label = "ridge: strongest component";
+  s.style.color = 1;  // seen on dark and bright parts of the map
+  s.style.width = 0;
+  s.style.marker = plot::Marker::circle;
+  s.style.marker_size = 4.5;
+  for (const Trace& t : traces_) {
+    if (!(t.ridge[probe].amplitude > 0)) continue;
+    s.x.push_back(to_rpm(std::abs(t.speed)));
+    s.y.push_back(to_hz(std::abs(t.ridge[probe].frequency)));
+  }
+  plot::Axes& a = map.axes.front();
+  const plot::HeatMap& h = a.heat.front();
+  a.x.min = h.x0;  // no wider than the map
+  a.x.max = h.x1;
+  a.y.min = h.y0;
+  a.y.max = h.y1;
+  a.series.push_back(std::move(s));
+  map.caption =
+      "Samples at equal times: fixed frequencies are sharp, orders smear where the speed changes "
+      "within a block. Dots: the strongest component of y + iz in each block, from samples at "
+      "equal angles where these show it higher.";
 }
 
 bool SpectraOutput::speed_varies() const {
@@ -188,11 +288,15 @@ void SpectraOutput::report(TransientEnd& end) {
       section.figures.push_back(plot::plot_waterfall(
           id + "_waterfall", probes_[p] + ": full spectra against speed (cascade)", full_traces(p),
           "displacement y + iz", "m", convention_, orders));
+      section.figures.back().caption += how_taken();
       section.figures.push_back(plot::plot_spectrogram(
           id + "_spectrogram", probes_[p] + ": spectra of y against speed, map", traces,
           "displacement y", "m", convention_));
+      add_ridge(section.figures.back(), p);
     }
-    if (out_.csv) section.files.emplace_back("spectra of " + probes_[p], csv_name(probes_[p]));
+    if (!out_.csv) continue;
+    section.files.emplace_back("spectra of " + probes_[p], csv_name(probes_[p]));
+    section.files.emplace_back("ridge of " + probes_[p], csv_name(probes_[p], "ridge"));
   }
 }
 
@@ -221,6 +325,11 @@ plot::Figure SpectraOutput::full_spectrum(std::size_t probe) const {
   f.caption =
       "Spectrum of y + iz: positive frequencies whirl with the spin of the shaft there, negative "
       "ones against it.";
+  if (block.at_equal_angles)
+    f.caption += fmt::format(
+        " The speed changes by {:.0f} rpm within the block: samples at equal angles, frequencies "
+        "are orders times the mean speed.",
+        to_rpm(std::abs(block.change)));
   plot::Axes a;
   a.x = plot::Axis("frequency, backward < 0 < forward", "Hz");
   a.y = plot::Axis(std::string("amplitude, ") + plot::to_string(convention_), unit.name);

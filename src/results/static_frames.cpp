@@ -12,6 +12,7 @@ StaticFrames::StaticFrames(const run::Job& job, const std::string& step) {
     io::set_content(options, o.content);
     options.deformation_scale = o.deformation_scale;
     options.points_around = o.points_around;
+    options.one_file = o.one_file;
     options.max_frames = static_cast<std::uint64_t>(o.max_frames);
     writers_.push_back(io::make_vtk_frames(options));
     writers_.back()->begin(job.scene);

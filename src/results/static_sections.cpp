@@ -76,6 +76,20 @@ double yield_use_of(const run::Job& job, const std::vector<SectionPoint>& points
   return use;
 }
 
+/// What is below it is rounding, not a result: a billionth of the largest force, moment or stress
+/// (by their unit) on a line.
+double rounding_of(const std::vector<SectionPoint>& points, std::size_t line,
+                   const std::string& unit) {
+  double largest = 0;
+  for (const SectionPoint& p : points) {
+    if (!is_of(p, line)) continue;
+    largest = std::max(largest, unit == "N"     ? std::hypot(p.N, p.V.norm())
+                                : unit == "N m" ? std::hypot(p.T, p.M.norm())
+                                                : p.von_mises);
+  }
+  return 1e-9 * largest;
+}
+
 /// The largest value of every quantity on one line.
 void add_extremes(const run::Job& job, std::size_t line, StaticResults& out, io::Value& summary) {
   const std::string& name = job.mesh.lines[line].name;
@@ -84,8 +98,10 @@ void add_extremes(const run::Job& job, std::size_t line, StaticResults& out, io:
   const auto add = [&](const char* label, const char* si, Value of, bool stress) {
     const SectionExtreme x = find_extreme(out.points, line, of, stress);
     if (!x.any) return x;
-    const plot::DisplayUnit unit = plot::unit_for(si, std::abs(x.value));
-    out.extremes.add({name, label, x.value * unit.factor, unit.name, x.s});
+    const bool real = std::abs(x.value) > rounding_of(out.points, line, si);
+    const double shown = real ? x.value : 0.0;
+    const plot::DisplayUnit unit = plot::unit_for(si, std::abs(shown));
+    out.extremes.add({name, label, shown * unit.factor, unit.name, x.s});
     summary["largest"][name][fmt::format("{} [{}]", label, si)] = x.value;
     summary["largest"][name][fmt::format("{} at [m]", label)] = x.s;
     return x;

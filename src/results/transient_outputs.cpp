@@ -8,9 +8,10 @@ namespace whirl::results {
 
 // Every output of a transient, in the order of the report. add(setup, outputs) stands in the file
 // of the output.
-#define WHIRL_TRANSIENT_OUTPUTS(add)                                                              \
-  add(add_history) add(add_energy) add(add_peaks) add(add_tilt) add(add_accuracy) add(add_limits) \
-      add(add_frames) add(add_events) add(add_keyphasor) add(add_spectra) add(add_replay)
+#define WHIRL_TRANSIENT_OUTPUTS(add)                                                               \
+  add(add_history) add(add_torques) add(add_energy) add(add_peaks) add(add_tilt) add(add_accuracy) \
+      add(add_limits) add(add_frames) add(add_events) add(add_keyphasor) add(add_spectra)          \
+          add(add_replay)
 
 #define WHIRL_DECLARE(add) void add(const TransientSetup& setup, TransientOutputs& outputs);
 WHIRL_TRANSIENT_OUTPUTS(WHIRL_DECLARE)

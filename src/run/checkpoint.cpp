@@ -58,6 +58,7 @@ constexpr PartName part_names[] = {
     {Part::wall_clock, "wall clock"},
     {Part::limits, "limits"},
     {Part::replay, "replay"},
+    {Part::torques, "torques"},
 };
 
 Part part_of(std::string_view name) {

@@ -34,7 +34,8 @@ enum class Part {
   governors,
   wall_clock,
   limits,
-  replay
+  replay,
+  torques
 };
 
 /// A part and what decides whether the saved one fits: the columns of a series, the probes and

@@ -33,6 +33,12 @@ struct StepState {
   std::map<std::string, Began> governors{};
 };
 
+/// What the torques of a transient did to every element of the shafts, the worse of its two ends.
+struct ShaftDamage {
+  std::vector<double> stress;  ///< Pa, largest shear stress
+  std::vector<double> damage;  ///< share of the life; empty: no fatigue asked for
+};
+
 struct Job {
   const model::Model& model;
   const RunOptions& options;
@@ -43,6 +49,7 @@ struct Job {
   io::Report report;
   io::Value summary;
   std::map<std::string, StepState> states;
+  std::map<std::string, ShaftDamage> shaft_damage;      ///< by transient step that was asked for it
   std::vector<std::pair<std::string, RunTime>> phases;  ///< for the summary
 
   /// Steps whose lists or verdicts could not be certified although they should be: the run ends

@@ -3,7 +3,10 @@
 #include <analysis/response/frequency_response.hpp>
 #include <analysis/spectra/critical.hpp>
 #include <assembly/element_section.hpp>
+#include <core/contract.hpp>
+#include <core/periodic.hpp>
 #include <meshes/mass_properties.hpp>
+#include <results/along_shaft.hpp>
 #include <results/channels.hpp>
 #include <results/compliance.hpp>
 #include <results/frequency.hpp>
@@ -23,14 +26,25 @@ namespace {
 
 using results::Check;
 
-/// Something that excites torsion: at a multiple of the reference speed, or at a frequency.
+/// Something that excites torsion: at a multiple of the reference speed, at a frequency, or at the
+/// distance of the two.
 struct Excitation {
   std::string name;
-  double order = 0, frequency = 0;  ///< of the reference speed; rad/s; one of them
+  double order = 0, frequency = 0;  ///< of the reference speed; rad/s
+  double at(double Omega) const { return std::abs(frequency - order * Omega); }
+  bool follows() const { return order != 0; }
   /// Least and largest frequency over the operating range, rad/s.
   std::array<double, 2> over(const std::array<double, 2>& speed) const {
-    if (order == 0) return {frequency, frequency};
-    return {order * speed[0], order * speed[1]};
+    const double a = frequency - order * speed[0], b = frequency - order * speed[1];
+    const double low = a * b <= 0 ? 0.0 : std::min(std::abs(a), std::abs(b));
+    return {low, std::max(std::abs(a), std::abs(b))};
+  }
+  /// Speeds at which it has the frequency w. @pre follows().
+  std::vector<double> speeds(double w) const {
+    std::vector<double> out;
+    for (const double f : {frequency - w, frequency + w})
+      if (f / order >= 0) out.push_back(f / order);
+    return out;
   }
 };
 
@@ -38,7 +52,7 @@ struct Excitation {
 double margin_from(double f, const std::array<double, 2>& range) {
   if (f > range[1]) return (f - range[1]) / range[1];
   if (f < range[0]) return (range[0] - f) / range[0];
-  return -std::min(f - range[0], range[1] - f) / f;
+  return f == 0 ? 0.0 : -std::min(f - range[0], range[1] - f) / f;
 }
 
 /// Where a torque does most.
@@ -68,9 +82,23 @@ class TorsionalReport {
     const model::Shaft& s = s_.job.model.shafts[shaft];
     return s.rotating ? std::abs(s.speed_ratio) : 0.0;
   }
-  std::vector<double> speeds_of(double order) const;
-  void look(const VecXc& a, double Omega, double w, const la::MCK& m, Worst& worst) const;
+  /// One of the harmonics of a torque.
+  struct Component {
+    Excitation excitation;
+    Complex amplitude;    ///< N m
+    double per_turn = 0;  ///< order of the shaft it acts on
+  };
+  std::vector<Component> components_of(const model::ApiTorque& torque) const;
+  std::vector<double> speeds_of(const std::vector<Component>& components) const;
+  std::vector<Complex> element_torques(const VecXc& a, const la::MCK& m) const;
+  std::vector<Complex> coupling_torques(const VecXc& a, double w) const;
+  void look(const std::vector<std::vector<Complex>>& elements,
+            const std::vector<std::vector<Complex>>& couplings,
+            const std::vector<Component>& components, double Omega, Worst& worst) const;
   Worst respond(const model::ApiTorque& torque);
+  void add_events();
+  bool add_event(const model::ApiEvent& e, io::Table& t, std::vector<double>& sum);
+  std::string without_stresses() const;
   std::string source(const char* key) const {
     return results::source_of(law_.standard, law_.given, law_.source, {key});
   }
@@ -163,7 +191,7 @@ void TorsionalReport::list_excitations() {
     if (law_.line_frequency > 0)
       add({fmt::format("{:g}x line frequency", n), 0, n * law_.line_frequency});
   for (const model::ApiTorque& t : law_.torques)
-    add({t.name, t.order * ratio_of(t.at.shaft), t.frequency});
+    if (t.harmonics.empty()) add({t.name, t.order * ratio_of(t.at.shaft), t.frequency});
 }
 
 void TorsionalReport::add_margins() {
@@ -198,6 +226,21 @@ void TorsionalReport::add_margins() {
   s_.add_table("margins", std::move(t), false);
 }
 
+/// An excitation with a frequency and an order, in the interference diagram.
+plot::Series line_of(const Excitation& e, double top) {
+  plot::Series s;
+  s.label = e.name;
+  s.style = {plot::ink, plot::Dash::dotted, 1.2};
+  std::vector<double> speeds{0.0, top};
+  if (const double zero = e.frequency / e.order; zero > 0 && zero < top)
+    speeds.insert(speeds.begin() + 1, zero);
+  for (const double Omega : speeds) {
+    s.x.push_back(to_rpm(Omega));
+    s.y.push_back(to_hz(e.at(Omega)));
+  }
+  return s;
+}
+
 void TorsionalReport::add_interference() {
   if (modes_.empty()) return;
   const double top = 1.25 * law_.operating[1];
@@ -205,7 +248,7 @@ void TorsionalReport::add_interference() {
   std::vector<plot::CriticalMark> marks;
   std::vector<double> orders;
   for (const Excitation& e : excitations_)
-    if (e.order > 0) orders.push_back(e.order);
+    if (e.follows() && e.frequency == 0) orders.push_back(e.order);
   io::Table t;
   t.title = "Interferences";
   t.columns = {{"excitation", "-", ""},
@@ -223,11 +266,13 @@ void TorsionalReport::add_interference() {
                        results::tidy(modes_[k].log_decrement)};
     lines.push_back(std::move(l));
     for (const Excitation& e : excitations_) {
-      if (e.order == 0 || f / e.order > top) continue;
-      const double Omega = f / e.order;
-      marks.push_back({Omega, f, e.order, {}});
-      const bool within = Omega >= law_.operating[0] && Omega <= law_.operating[1];
-      t.add({e.name, static_cast<int>(k + 1), to_rpm(Omega), to_hz(f), within ? "yes" : "no"});
+      if (!e.follows()) continue;
+      for (const double Omega : e.speeds(f)) {
+        if (Omega > top) continue;
+        marks.push_back({Omega, f, e.order, {}});
+        const bool within = Omega >= law_.operating[0] && Omega <= law_.operating[1];
+        t.add({e.name, static_cast<int>(k + 1), to_rpm(Omega), to_hz(f), within ? "yes" : "no"});
+      }
     }
   }
   plot::Figure f = plot::plot_campbell(s_.file("interference"), "Torsional interference diagram",
@@ -236,7 +281,7 @@ void TorsionalReport::add_interference() {
   // modes far above all excitations would squeeze the lines they meet
   double highest = modes_.front().frequency;
   for (const Excitation& e : excitations_)
-    highest = std::max(highest, e.order > 0 ? e.order * top : e.frequency);
+    highest = std::max(highest, e.over({0.0, top})[1]);
   a.y.min = 0;
   a.y.max = 1.25 * to_hz(highest);
   for (const double Omega : law_.operating)
@@ -244,48 +289,95 @@ void TorsionalReport::add_interference() {
                        to_rpm(Omega),
                        Omega == law_.operating[0] ? "lowest" : "highest",
                        {plot::ink, plot::Dash::dash_dot, 0.8}});
-  for (const Excitation& e : excitations_)
-    if (e.order == 0)
+  for (const Excitation& e : excitations_) {
+    if (!e.follows())
       a.rules.push_back({false, to_hz(e.frequency), e.name, {plot::ink, plot::Dash::dotted, 1.2}});
+    else if (e.frequency != 0)
+      a.series.push_back(line_of(e, top));
+  }
   s_.add_figure(std::move(f));
   s_.add_table("interferences", std::move(t));
 }
 
-/// Operating speeds, those at which an order meets a mode among them.
-std::vector<double> TorsionalReport::speeds_of(double order) const {
+std::vector<TorsionalReport::Component> TorsionalReport::components_of(
+    const model::ApiTorque& torque) const {
+  const double ratio = ratio_of(torque.at.shaft);
+  if (torque.harmonics.empty())
+    return {
+        {{torque.name, torque.order * ratio, torque.frequency}, torque.amplitude, torque.order}};
+  std::vector<Component> out;
+  for (const model::ApiHarmonic& h : torque.harmonics)
+    out.push_back({{torque.name, h.order * ratio, 0}, std::polar(h.amplitude, h.phase), h.order});
+  return out;
+}
+
+/// Operating speeds, those at which a component meets a mode among them.
+std::vector<double> TorsionalReport::speeds_of(const std::vector<Component>& components) const {
   const auto [low, high] = law_.operating;
   std::vector<double> out;
   constexpr int points = 100;
   for (int k = 0; k <= points; ++k)
     out.push_back(low + (high - low) * k / points);
-  for (const analysis::WhirlMode& m : modes_) {
-    if (order == 0) break;
-    // the peak of a damped mode lies within its width
-    for (const double x : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-      const double Omega = std::abs(m.lambda) / order * (1.0 + x * m.damping_ratio);
-      if (Omega > low && Omega < high) out.push_back(Omega);
+  for (const Component& c : components)
+    for (const analysis::WhirlMode& m : modes_) {
+      if (!c.excitation.follows()) break;
+      // the peak of a damped mode lies within its width
+      for (const double x : {-1.0, -0.5, 0.0, 0.5, 1.0})
+        for (const double Omega :
+             c.excitation.speeds(std::abs(m.lambda) * (1.0 + x * m.damping_ratio)))
+          if (Omega > low && Omega < high) out.push_back(Omega);
     }
-  }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
-void TorsionalReport::look(const VecXc& a, double Omega, double w, const la::MCK& m,
-                           Worst& worst) const {
-  const meshes::Mesh& mesh = s_.job.mesh;
-  for (Index i = 0; i < static_cast<Index>(mesh.elements.size()); ++i) {
-    const meshes::Element& e = mesh.elements[static_cast<std::size_t>(i)];
+/// Of every element of the shafts: the coupling of neighbours is its GJ/l.
+std::vector<Complex> TorsionalReport::element_torques(const VecXc& a, const la::MCK& m) const {
+  std::vector<Complex> out;
+  for (const meshes::Element& e : s_.job.mesh.elements) {
     const Index slot = m.K.pattern().slot(e.left.node, e.right.node);
-    if (slot < 0) continue;
-    // the coupling of neighbours is the element's GJ/l
-    const double torque = std::abs(m.K.block(slot)(3, 3)) *
-                          std::abs(a[6 * e.right.node + 3] - a[6 * e.left.node + 3]);
+    const double stiffness = slot < 0 ? 0.0 : std::abs(m.K.block(slot)(3, 3));
+    out.push_back(stiffness * (a[6 * e.right.node + 3] - a[6 * e.left.node + 3]));
+  }
+  return out;
+}
+
+std::vector<Complex> TorsionalReport::coupling_torques(const VecXc& a, double w) const {
+  std::vector<Complex> out;
+  for (std::size_t i = 0; i < s_.job.model.bearings.size(); ++i) {
+    const auto* c = std::get_if<model::Coupling>(&s_.job.model.bearings[i].law);
+    const meshes::BearingNodes& n = s_.job.mesh.bearings[i];
+    out.push_back(c && n.other.node >= 0 ? Complex(c->K(3, 3), w * c->C(3, 3)) *
+                                               (a[6 * n.shaft.node + 3] - a[6 * n.other.node + 3])
+                                         : Complex(0.0));
+  }
+  return out;
+}
+
+/// elements, couplings: torques, one list a component.
+void TorsionalReport::look(const std::vector<std::vector<Complex>>& elements,
+                           const std::vector<std::vector<Complex>>& couplings,
+                           const std::vector<Component>& components, double Omega,
+                           Worst& worst) const {
+  std::vector<double> orders;
+  orders.reserve(components.size());
+  for (const Component& c : components)
+    orders.push_back(c.per_turn);
+  std::vector<Complex> parts(components.size());
+  const auto amplitude = [&](const std::vector<std::vector<Complex>>& lists, std::size_t i) {
+    for (std::size_t k = 0; k < lists.size(); ++k)
+      parts[k] = lists[k][i];
+    return 0.5 * calc_swing(parts, orders);
+  };
+  for (std::size_t i = 0; i < s_.job.mesh.elements.size(); ++i) {
+    const double torque = amplitude(elements, i);
     if (!std::isfinite(torque)) {
       worst.unbounded = true;
       continue;
     }
-    const elements::ElementSection section = assembly::element_section(s_.job.model, e);
+    const elements::ElementSection section =
+        assembly::element_section(s_.job.model, s_.job.mesh.elements[i]);
     if (section.constants) continue;
     for (const auto& [od, id] :
          {std::pair{section.od1, section.id1}, std::pair{section.od2, section.id2}}) {
@@ -294,16 +386,12 @@ void TorsionalReport::look(const VecXc& a, double Omega, double w, const la::MCK
       worst.stress = stress;
       worst.torque = torque;
       worst.speed = Omega;
-      worst.frequency = w;
-      worst.element = i;
+      worst.frequency = components.front().excitation.at(Omega);
+      worst.element = static_cast<Index>(i);
     }
   }
   for (std::size_t i = 0; i < s_.job.model.bearings.size(); ++i) {
-    const auto* c = std::get_if<model::Coupling>(&s_.job.model.bearings[i].law);
-    const meshes::BearingNodes& n = mesh.bearings[i];
-    if (!c || n.other.node < 0) continue;
-    const double torque = std::abs(Complex(c->K(3, 3), w * c->C(3, 3)) *
-                                   (a[6 * n.shaft.node + 3] - a[6 * n.other.node + 3]));
+    const double torque = amplitude(couplings, i);
     if (!(torque > worst.coupling)) continue;
     worst.coupling = torque;
     worst.coupling_name = s_.job.model.bearings[i].name;
@@ -312,19 +400,32 @@ void TorsionalReport::look(const VecXc& a, double Omega, double w, const la::MCK
 
 Worst TorsionalReport::respond(const model::ApiTorque& torque) {
   Worst worst;
-  const double order = torque.order * ratio_of(torque.at.shaft);
+  const std::vector<Component> components = components_of(torque);
   const analysis::Point at = results::point_of(s_.job, torque.at);
   analysis::HarmonicSolver solver(s_.linear, analysis::Motion::torsional);
-  for (const double Omega : speeds_of(order)) {
-    const double w = order > 0 ? order * Omega : torque.frequency;
-    if (!solver.prepare(Omega, w)) {
-      worst.unbounded = true;
-      continue;
+  const double slow = modes_.empty() ? 0.0 : 1e-6 * modes_.front().frequency;
+  for (const double Omega : speeds_of(components)) {
+    const la::MCK& m = s_.linear.at(Omega);
+    std::vector<std::vector<Complex>> elements, couplings;
+    bool known = true;
+    for (const Component& c : components) {
+      const double w = c.excitation.at(Omega);
+      VecXc a = VecXc::Zero(s_.linear.system().size());
+      if (!(w > slow)) {  // beside the slip frequency zero: a steady torque, which accelerates
+        known = false;
+        break;
+      }
+      if (!solver.prepare(Omega, w)) {
+        worst.unbounded = true;
+        known = false;
+        break;
+      }
+      a[6 * at.node + 3] = c.amplitude;
+      solver.solve(a);
+      elements.push_back(element_torques(a, m));
+      couplings.push_back(coupling_torques(a, w));
     }
-    VecXc a = VecXc::Zero(s_.linear.system().size());
-    a[6 * at.node + 3] = torque.amplitude;
-    solver.solve(a);
-    look(a, Omega, w, s_.linear.at(Omega), worst);
+    if (known) look(elements, couplings, components, Omega, worst);
   }
   return worst;
 }
@@ -334,9 +435,9 @@ void TorsionalReport::add_stresses() {
   io::Table t;
   t.title = "Response to the torques, largest over the operating speeds";
   t.columns = {{"torque", "-", ""},
-               {"amplitude", "N m", "0 to peak"},
+               {"amplitude", "N m", "0 to peak, of the largest harmonic"},
                {"speed", "rpm", "of the reference, at the largest stress"},
-               {"frequency", "Hz", ""},
+               {"frequency", "Hz", "of the first harmonic"},
                {"shaft", "-", ""},
                {"from", "m", "the element with the largest stress"},
                {"to", "m", ""},
@@ -354,8 +455,11 @@ void TorsionalReport::add_stresses() {
       from = e.s1;
       to = e.s2;
     }
-    t.add({torque.name, torque.amplitude, to_rpm(w.speed), to_hz(w.frequency), shaft, from, to,
-           w.torque, 1e-6 * w.stress, w.coupling_name, w.coupling});
+    double amplitude = torque.amplitude;
+    for (const model::ApiHarmonic& h : torque.harmonics)
+      amplitude = std::max(amplitude, h.amplitude);
+    t.add({torque.name, amplitude, to_rpm(w.speed), to_hz(w.frequency), shaft, from, to, w.torque,
+           1e-6 * w.stress, w.coupling_name, w.coupling});
     Check c =
         law_.stress_limit > 0
             ? results::compare("torsional stress", 1e-6 * w.stress, "MPa", Check::Rule::at_most,
@@ -363,6 +467,7 @@ void TorsionalReport::add_stresses() {
             : results::compare("torsional stress", 1e-6 * w.stress, "MPa", Check::Rule::none, nan);
     c.where = fmt::format("{}, {}, {:.5g} rpm", torque.name, shaft, to_rpm(w.speed));
     c.source = law_.stress_limit > 0 ? source("stress_limit") : "";
+    c.remark = without_stresses();
     c.figure = s_.file("interference");
     if (w.unbounded) {
       c.passed = false;
@@ -373,6 +478,84 @@ void TorsionalReport::add_stresses() {
   s_.add_table("stresses", std::move(t));
 }
 
+const model::ShaftTorques& strengths_of(const model::Model& m, const std::string& step) {
+  const auto of = std::find_if(m.steps.begin(), m.steps.end(),
+                               [&](const model::Step& s) { return s.name == step; });
+  WHIRL_EXPECTS(of != m.steps.end());
+  return *std::get<model::TransientStep>(of->law).torques;
+}
+
+std::string TorsionalReport::without_stresses() const {
+  std::string out;
+  for (const meshes::Element& e : s_.job.mesh.elements) {
+    const std::string& line = s_.job.mesh.lines[static_cast<std::size_t>(e.line)].name;
+    if (!assembly::element_section(s_.job.model, e).constants || out.ends_with(line)) continue;
+    out += (out.empty() ? "no stress is known where a section is given by its constants: " : ", ") +
+           line;
+  }
+  return out;
+}
+
+/// Adds what an event does to the damages; false: no fatigue was asked for.
+bool TorsionalReport::add_event(const model::ApiEvent& e, io::Table& t, std::vector<double>& sum) {
+  const run::ShaftDamage& d = s_.job.shaft_damage.at(e.step);
+  const auto most = static_cast<std::size_t>(std::max_element(d.stress.begin(), d.stress.end()) -
+                                             d.stress.begin());
+  for (std::size_t k = 0; k < d.damage.size(); ++k)
+    sum[k] += e.times * d.damage[k];
+  const std::string place = results::element_name(s_.job.mesh, most);
+  const bool counts = !d.damage.empty();
+  t.add({e.name, e.step, e.times, 1e-6 * d.stress[most], place,
+         counts ? *std::max_element(d.damage.begin(), d.damage.end()) : nan});
+  const double yield = strengths_of(s_.job.model, e.step).yield;
+  Check c = results::compare("transient stress", 1e-6 * d.stress[most], "MPa",
+                             yield > 0 ? Check::Rule::at_most : Check::Rule::none,
+                             yield > 0 ? 1e-6 * yield : nan);
+  c.where = fmt::format("{}, {}", e.name, place);
+  c.source = yield > 0 ? "yield stress of the deck" : "";
+  c.remark = without_stresses();
+  c.figure = e.step + "_shear_stress";
+  checks_.add(std::move(c));
+  return counts;
+}
+
+/// Transients that earlier steps ran: largest stresses, and the sum of the damages.
+void TorsionalReport::add_events() {
+  const std::size_t elements = s_.job.mesh.elements.size();
+  if (law_.events.empty() || elements == 0) return;
+  io::Table t;
+  t.title = "Transients";
+  t.columns = {{"event", "-", ""},
+               {"step", "-", ""},
+               {"times", "-", "in the life of the train"},
+               {"shear stress", "MPa", "largest"},
+               {"shaft", "-", "with the largest stress"},
+               {"damage", "-", "share of the life of one of them, largest"}};
+  t.nan_means = "no fatigue is asked for in that step";
+  std::vector<double> sum(elements, 0.0);
+  std::string uncounted;
+  std::size_t counted = 0;
+  for (const model::ApiEvent& e : law_.events) {
+    if (add_event(e, t, sum))
+      ++counted;
+    else
+      uncounted += (uncounted.empty() ? "without " : ", ") + e.name;
+  }
+  s_.add_table("events", std::move(t));
+  if (counted == 0) return;
+  const auto worst =
+      static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
+  Check c =
+      results::compare("fatigue damage", sum[worst], "-", Check::Rule::at_most, law_.damage_limit);
+  c.where = results::element_name(s_.job.mesh, worst);
+  const bool given =
+      std::find(law_.given.begin(), law_.given.end(), "damage_limit") != law_.given.end();
+  c.source = given ? source("damage_limit") : "Palmgren, Miner";
+  c.remark = uncounted;
+  c.figure = law_.events.front().step + "_shear_stress";
+  checks_.add(std::move(c));
+}
+
 void TorsionalReport::execute() {
   const run::PhaseTimer timer(s_.job, "torsional report");
   add_train();
@@ -381,6 +564,7 @@ void TorsionalReport::execute() {
   add_interference();
   add_margins();
   add_stresses();
+  add_events();
   io::Value& v = s_.summary();
   v["standard"] = law_.standard;
   for (const analysis::WhirlMode& m : modes_)

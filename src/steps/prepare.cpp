@@ -96,10 +96,9 @@ class Obstacles {
     const bool in_time = std::holds_alternative<model::TransientStep>(step.law);
     const bool has_frames = !std::holds_alternative<model::CampbellStep>(step.law) &&
                             !std::holds_alternative<model::CriticalMapStep>(step.law);
-    const bool asks = std::any_of(
-        model_.output.vtk.begin(), model_.output.vtk.end(),
-        [&](const model::VtkOutput& o) { return o.step.empty() || o.step == step.name; });
-    if (has_frames && asks) Plugin::require("vtk");
+    for (const model::VtkOutput& o : model_.output.vtk)
+      if (has_frames && (o.step.empty() || o.step == step.name))
+        Plugin::require(o.one_file ? "hdf5" : "vtk");
     if (in_time && model_.output.binary) Plugin::require("hdf5");
   }
 

@@ -88,6 +88,7 @@ not_seen = {
     "E14_branch": "a range with a hole (0), and keys that go with another key's value",
     "E14_mode_numbers": "modes are numbers, or words",
     "E14_names": "characters of names that would be read as something else",
+    "E20_keyphasor_bandwidth": "orders that a filter tells apart depend on its bandwidth",
     "E20_table_rows": "rows are lists of cells of any kind",
 }
 

@@ -732,6 +732,21 @@ load = { viscous = "0.01 N.m.s/rad", quadratic = "0.001 N.m.s^2/rad^2", constant
 )",
       R"(torque = { type = "harmonic", mean = "1 N.m", amplitude = "2 N.m", frequency = "3 rad/s", phase = "20 deg" }
 )");
+  decks["decays"] = changed(
+      "spins up", R"(torque = "1 N.m"
+)",
+      R"(torque = { type = "decaying", start = "0.1 s", amplitude = "2 N.m", frequency = "3 rad/s", phase = "20 deg", decay = "0.5 s" }
+)");
+  decks["pulsates"] = changed("spins up", R"(torque = "1 N.m"
+)",
+                              R"(torque = "1 N.m"
+[drive.pulsation]
+synchronous = "40 rad/s"
+poles = 2
+phase = "10 deg"
+columns = ["speed[rpm]", "amplitude[N.m]"]
+rows = [[0, 3], [300, 1]]
+)");
   decks["polynomial"] =
       changed("spins up", R"(torque = "1 N.m"
 )",

@@ -72,6 +72,21 @@ TEST(Figures, PeaksTellMotionFromSag) {
   EXPECT_NEAR(std::remainder(peak.at("motion at [s]") - 0.01, 0.02), 0.0, 1e-4);
 }
 
+// A path between a few rows a turn is not drawn, and the picture says so.
+TEST(Figures, AnOrbitOfFewRowsIsDots) {
+  for (const auto& [every, few] : {std::pair{"3 ms", true}, {"1 ms", false}}) {
+    const DeckRun run(lateral_mass(m, "0 m/s^2", springs) +
+                      driven("3000 rpm", "duration = \"0.2 s\"\nstart = \"unbalance_response\"\n") +
+                      "[output]\nevery = \"" + every + "\"\n");
+    ASSERT_EQ(run.exit, 0) << run.log;
+    const bool said =
+        text_of(run.folder / "r" / "report.html").find("6.7 a turn") != std::string::npos;
+    EXPECT_EQ(said, few) << every;
+    for (const char* picture : {"t_P_turns.svg", "t_P_orbit.svg"})  // this one of the keyphasor
+      EXPECT_TRUE(fs::exists(run.folder / "r" / "plots" / picture)) << picture;
+  }
+}
+
 // Two shafts that nothing couples: each is seen by its own keyphasor, at its own speed.
 TEST(Figures, EveryShaftHasItsKeyphasor) {
   const std::string two = R"([[shaft]]

@@ -1,6 +1,8 @@
 // `whirl view`: the state script of ParaView beside the frames of a run.
 #include "deck_run.hpp"
 
+#include <core/plugin.hpp>
+
 #include <array>
 
 using namespace whirl;
@@ -121,6 +123,21 @@ TEST(View, ScriptNamesFramesAndArraysThatThereAre) {
   EXPECT_TRUE(holds("turn"));
   EXPECT_EQ(view(r.folder, "r turn --script other.py").exit, 0);
   EXPECT_TRUE(std::filesystem::exists(r.folder / "other.py"));
+}
+
+TEST(View, KnowsFramesInOneFile) {
+  if (!Plugin::available("hdf5")) GTEST_SKIP() << "built without HDF5";
+  const DeckRun r(std::string(deck) + "format = \"vtkhdf\"\n");
+  ASSERT_EQ(r.exit, 0) << r.log;
+  for (const char* set : {"sag_line", "turn_surface", "turn_line", "turn_bearings", "turn_orbits"})
+    EXPECT_TRUE(std::filesystem::exists(r.folder / "r" / "vtk" / (std::string(set) + ".vtkhdf")))
+        << set;
+  EXPECT_FALSE(std::filesystem::exists(r.folder / "r" / "vtk" / "turn_line.pvd"));
+  const Said said = view(r.folder, "r turn");
+  EXPECT_EQ(said.exit, 0) << said.text;
+  EXPECT_NE(said.text.find("turn (one file a set; surface, line, bearings, orbits)"),
+            std::string::npos)
+      << said.text;
 }
 
 TEST(View, SaysWhatThereIsNot) {

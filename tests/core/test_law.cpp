@@ -24,6 +24,8 @@ std::vector<Case> all() {
           {"cosine", make_cosine_step(0.2, 1.7, 1, -4)},
           {"harmonic", make_harmonic(1, 2, 5, 0.3)},
           {"slow harmonic", make_harmonic(1, 2, 1e-9, 0.3)},
+          {"decaying", make_decaying(0.4, 2, 5, 0.3, 0.7)},
+          {"decaying from before", make_decaying(-0.6, 2, 0, 0, 0.7)},
           {"polynomial", make_polynomial({1, -2, 0.5, 0.25})},
           {"piecewise",
            make_piecewise({-0.5, 0.8, 2.0}, {table, make_harmonic(0, 1, 2, 0), make_constant(7)})},

@@ -248,6 +248,11 @@ class ModelDump {
       if (t->induction)
         each("induction", std::array{t->induction->breakdown, t->induction->slip_breakdown,
                                      t->induction->synchronous});
+      if (const auto& p = t->pulsation) {
+        each("pulsation", std::array{p->synchronous, p->poles, p->phase});
+        each("of speed", p->speed);
+        each("amplitude", p->amplitude);
+      }
       if (t->dc) each("dc", std::array{t->dc->stall, t->dc->no_load_speed});
       if (t->power) each("power", std::array{t->power->power, t->power->max_torque});
       if (t->governor)
@@ -282,6 +287,9 @@ class ModelDump {
     if (const auto* x = std::get_if<model::TransientStep>(&s.law)) {
       each("transient",
            std::array{x->duration, double(x->start), x->speed0, x->stop_speed, x->amplitude_limit});
+      if (const auto& t = x->torques)
+        each("torques", std::array{t->concentration, t->yield, t->ultimate, t->thousand,
+                                   t->endurance, t->cycles});
       const auto& o = x->integrator;
       put("method", o.method);
       each("integrator", std::array{o.tolerance, o.rho_inf, o.dt, o.dt_max, o.dt_min, o.dt_first});

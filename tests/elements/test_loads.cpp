@@ -28,6 +28,7 @@ TorqueLaw smooth_law() {
   t.dc = TorqueLaw::DcLine{1.5, 20.0};
   t.brake = make_polynomial({0.1, 0.2});
   t.governor = TorqueLaw::Governor{3.0, 0.7, 0.5, infinity, 0.2};
+  t.pulsation = TorqueLaw::Pulsation{4.0, 2, 0.3, {-50, 50}, {0.5, 2.5}};
   return t;
 }
 

@@ -72,6 +72,38 @@ TEST(Report, HoldsEverythingInOrderAndEscaped) {
   EXPECT_EQ(figures, gallery().size());
 }
 
+// What is beside each other in one unit has one prefix while that leaves it its digits; rounding is 0.
+TEST(Report, TablesHaveUnitsAndDigitsThatSuit) {
+  Table t;
+  t.columns = {{"part", "-", ""},  {"lowest", "N m", ""}, {"highest", "N m", ""},
+               {"ratio", "-", ""}, {"y", "m", ""},        {"z", "m", ""},
+               {"share", "%", ""}, {"torque", "N.m", ""}};
+  t.add({"shaft", -16840.0, 4384.0, 1e-11, 3e-22, 2e-6, 2e-6, 5.0});
+  t.add({"coupling", 1.0, 2e-9, 1.0, 0.0, 1e-9, 100.0, 25000.0});
+  Table none;
+  none.title = "Onset";
+  none.columns = {{"speed", "rpm", ""}, {"kind", "-", ""}};
+  Report r;
+  r.title = "tables";
+  r.sections = {{"one", "", {t, none}, {}, {}}};
+  const std::string html = render_report(r);
+  const auto numbers = [](std::vector<const char*> cells) {
+    std::string row;
+    for (const char* c : cells)
+      row += std::string("<td class=\"n\">") + c + "</td>";
+    return row;
+  };
+  for (const std::string& part :
+       {std::string("lowest<small>kN·m</small>"), std::string("highest<small>kN·m</small>"),
+        std::string("y<small>µm</small>"), std::string("z<small>µm</small>"),
+        std::string("torque<small>kN·m</small>"),
+        numbers({"−16.84", "4.384", "1×10⁻¹¹", "0", "2", "0", "0.005"}),
+        numbers({"0.001", "0", "1", "0", "0.001", "100", "25"}),
+        std::string("<td colspan=\"2\">none</td>")})
+    EXPECT_NE(html.find(part), std::string::npos)
+        << part << html.substr(html.find("<caption"), 900);
+}
+
 TEST(Report, SameFigureInTwoStepsGetsTwoIds) {
   Report r;
   const plot::Figure f = gallery().front();

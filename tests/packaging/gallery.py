@@ -49,6 +49,7 @@ SHOWN = {
     "37_turbocharger_floating_rings": ("run_compressor_spectrogram", "onset_onset", "whirl frequency [Hz]", 0, "frequency of the whirl at its onset"),
     "38_cracked_rotor": ("steady_wheel_multiples", "steady_peaks", "speed [rpm]", 0, "first peak of the response"),
     "39_hot_tilting_pads": ("measured_films_1", "measured_films", "hottest face [degC]", 1, "hottest pad, 76.5 measured"),
+    "41_synchronous_start": ("start_torques", "torsional_compliance", "value [-]", "last", "share of the life that 5000 starts and ten short circuits use up"),
 }
 
 

@@ -2,6 +2,7 @@
 #include <core/contract.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace whirl::analysis {
@@ -90,31 +91,147 @@ void Spectra::take(const Snapshot& s) {
   if (filled_ == length_) transform(s.t());
 }
 
+namespace {
+
+/// Values at a place between uniform samples, by the polynomial through the twelve nearest.
+class Between {
+ public:
+  /// @pre at least as many samples as the polynomial takes; 0 <= x <= samples - 1.
+  Between(double x, std::size_t samples) {
+    constexpr std::size_t before = points / 2 - 1;  // left of the interval of x
+    const double first = std::clamp(std::floor(x) - static_cast<double>(before), 0.0,
+                                    static_cast<double>(samples - points));
+    first_ = static_cast<std::size_t>(first);
+    double sum = 0;
+    for (std::size_t j = 0; j < points; ++j) {
+      const double distance = x - first - static_cast<double>(j);
+      if (distance == 0) {
+        weight_.fill(0.0);
+        weight_[j] = 1.0;
+        return;
+      }
+      weight_[j] = binomial[j] / distance;
+      sum += weight_[j];
+    }
+    for (double& w : weight_)
+      w /= sum;
+  }
+  double of(const std::vector<double>& values) const {
+    double out = 0;
+    for (std::size_t j = 0; j < points; ++j)
+      out += weight_[j] * values[first_ + j];
+    return out;
+  }
+  static constexpr std::size_t points = 12;
+
+ private:
+  /// Barycentric weights of equidistant points: binomial coefficients of alternating sign.
+  static constexpr std::array<double, points> binomial{1,   -11,  55,  -165, 330, -462,
+                                                       462, -330, 165, -55,  11,  -1};
+  std::size_t first_;
+  std::array<double, points> weight_{};
+};
+
+}  // namespace
+
+Ridge strongest(const std::vector<double>& full, double resolution) {
+  WHIRL_EXPECTS(full.size() % 2 == 1);
+  const auto middle = static_cast<std::ptrdiff_t>(full.size() / 2),
+             n = static_cast<std::ptrdiff_t>(full.size());
+  const auto value = [&](std::ptrdiff_t k) { return full[static_cast<std::size_t>(k)]; };
+  std::ptrdiff_t best = -1;
+  for (std::ptrdiff_t k = 0; k < n; ++k)
+    if (std::abs(k - middle) > 1 && (best < 0 || value(k) > value(best))) best = k;
+  if (best < 0 || !(value(best) > 0)) return {};
+  const double left = best > 0 ? value(best - 1) : 0.0,
+               right = best + 1 < n ? value(best + 1) : 0.0;
+  // a Hann window's own lines: (2 a - 1)/(a + 1) of a line away, a the ratio of the two highest
+  const double ratio = std::max(left, right) / value(best),
+               away = std::max(0.0, (2 * ratio - 1) / (ratio + 1)),
+               rise = away > 0 ? pi * away * (1 - away * away) / std::sin(pi * away) : 1.0;
+  const double line = static_cast<double>(best - middle) + (right >= left ? away : -away);
+  return {line * resolution, rise * value(best)};
+}
+
+void Spectra::spectrum_of(const std::vector<double>& y, const std::vector<double>& z,
+                          std::vector<double>& full, std::vector<double>* one_sided_y,
+                          std::vector<double>* one_sided_z) {
+  const auto lines = static_cast<std::size_t>(options_.lines);
+  const double scale = 2.0 / static_cast<double>(length_);  // 1 / sum of the window
+  double mean_y = 0.0, mean_z = 0.0;                        // a sag leaks into the lowest lines
+  for (std::size_t k = 0; k < length_; ++k) {
+    mean_y += y[k];
+    mean_z += z[k];
+  }
+  mean_y /= static_cast<double>(length_);
+  mean_z /= static_cast<double>(length_);
+  for (std::size_t k = 0; k < length_; ++k)
+    work_[k] = window_[k] * Complex(y[k] - mean_y, z[k] - mean_z);
+  fft(work_);
+  for (std::size_t k = 0; k <= lines; ++k) {
+    const Complex plus = scale * work_[k], minus = scale * work_[(length_ - k) % length_];
+    full[lines + k] = std::abs(plus);
+    full[lines - k] = std::abs(minus);
+    // y and z are real: their spectra are the even and odd parts
+    if (one_sided_y) (*one_sided_y)[k] = std::abs(plus + std::conj(minus));
+    if (one_sided_z) (*one_sided_z)[k] = std::abs(plus - std::conj(minus));
+  }
+}
+
+/// From three angles: a torsional vibration is no change of the speed.
+void Spectra::find_change(double span) {
+  const std::size_t half = length_ / 2 - 1;
+  const double h = static_cast<double>(half) * interval_;
+  block_.change = (phi_[2 * half] - 2 * phi_[half] + phi_[0]) / (h * h) * span;
+}
+
+/// The blocks of samples again, at equal angles of the reference. None where it does not turn one way.
+void Spectra::take_equal_angles() {
+  block_.ordered.clear();
+  if (!(std::abs(block_.change) > block_.resolution) || length_ < Between::points) return;
+  const double whole = phi_.back() - phi_.front();
+  for (std::size_t k = 1; k < length_; ++k)
+    if (!((phi_[k] - phi_[k - 1]) * whole > 0)) return;
+  angle_y_.resize(probes_.size(), std::vector<double>(length_));
+  angle_z_.resize(probes_.size(), std::vector<double>(length_));
+  const double last = static_cast<double>(length_ - 1);
+  std::size_t near = 0;
+  for (std::size_t k = 0; k < length_; ++k) {
+    const double target = phi_.front() + whole * static_cast<double>(k) / last;
+    while (near + 2 < length_ && (phi_[near + 1] - target) * whole < 0)
+      ++near;
+    const double slope = phi_[near + 1] - phi_[near];
+    double x = static_cast<double>(near) + (target - phi_[near]) / slope;
+    for (int pass = 0; pass < 2; ++pass) {
+      x = std::clamp(x, 0.0, last);
+      x += (target - Between(x, length_).of(phi_)) / slope;
+    }
+    const Between at(std::clamp(x, 0.0, last), length_);
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+      angle_y_[i][k] = at.of(y_[i]);
+      angle_z_[i][k] = at.of(z_[i]);
+    }
+  }
+  block_.ordered.resize(probes_.size(), std::vector<double>(block_.full.front().size()));
+  for (std::size_t i = 0; i < probes_.size(); ++i)
+    spectrum_of(angle_y_[i], angle_z_[i], block_.ordered[i], nullptr, nullptr);
+}
+
 void Spectra::transform(double t_end) {
   const double span = static_cast<double>(length_ - 1) * interval_;
   block_.t = t_end - 0.5 * span;
   block_.speed = (phi_.back() - phi_.front()) / span;
-  const auto lines = static_cast<std::size_t>(options_.lines);
-  const double scale = 2.0 / static_cast<double>(length_);  // 1 / sum of the window
+  for (std::size_t i = 0; i < probes_.size(); ++i)
+    spectrum_of(y_[i], z_[i], block_.full[i], &block_.y[i], &block_.z[i]);
+  find_change(span);
+  if (!probes_.empty()) take_equal_angles();
+  block_.ridge.clear();
   for (std::size_t i = 0; i < probes_.size(); ++i) {
-    double mean_y = 0.0, mean_z = 0.0;  // a sag leaks into the lowest lines
-    for (std::size_t k = 0; k < length_; ++k) {
-      mean_y += y_[i][k];
-      mean_z += z_[i][k];
-    }
-    mean_y /= static_cast<double>(length_);
-    mean_z /= static_cast<double>(length_);
-    for (std::size_t k = 0; k < length_; ++k)
-      work_[k] = window_[k] * Complex(y_[i][k] - mean_y, z_[i][k] - mean_z);
-    fft(work_);
-    for (std::size_t k = 0; k <= lines; ++k) {
-      const Complex plus = scale * work_[k], minus = scale * work_[(length_ - k) % length_];
-      block_.full[i][lines + k] = std::abs(plus);
-      block_.full[i][lines - k] = std::abs(minus);
-      // y and z are real: their spectra are the even and odd parts
-      block_.y[i][k] = std::abs(plus + std::conj(minus));
-      block_.z[i][k] = std::abs(plus - std::conj(minus));
-    }
+    block_.ridge.push_back(strongest(block_.full[i], block_.resolution));
+    if (block_.ordered.empty()) continue;
+    const Ridge sharp = strongest(block_.ordered[i], block_.resolution);
+    if (sharp.amplitude > block_.ridge.back().amplitude)
+      block_.ridge.back() = {sharp.frequency, sharp.amplitude, true};
   }
   sink_(block_);
   // half overlap: what the window takes from one block it gives to the next

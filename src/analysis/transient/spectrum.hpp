@@ -4,6 +4,11 @@
 // The two-sided spectrum of z = y + iz separates forward (positive frequencies) from backward whirl
 // (negative ones): a motion r exp(i w t) of radius r gives r at +w. Amplitudes are 0-peak,
 // corrected for the window's mean (1/2).
+//
+// Where the speed changes within a block by more than a line, samples at equal times smear what turns
+// with the shaft over several lines. Such a block has a second spectrum, from samples at equal angles
+// of the reference (a Lagrange polynomial through the twelve samples about each), whose frequencies are
+// orders times the mean speed: there orders are sharp, and a fixed frequency is spread.
 #pragma once
 #include <analysis/transient/observer.hpp>
 #include <functional>
@@ -22,13 +27,26 @@ struct SpectrumOptions {
       400;  ///< frequencies from 0 to the highest; a block lasts lines * 2 pi / max_frequency
 };
 
+/// The strongest component of a block, interpolated between the lines of a Hann window; of the two
+/// spectra it is taken from that in which it is higher (smearing lowers it).
+struct Ridge {
+  double frequency = 0, amplitude = 0;  ///< rad/s, signed as `full`; m, 0-peak
+  bool at_equal_angles = false;
+};
+
 /// One block of one probe: amplitudes at frequencies k dw, k = -lines .. lines, 0-peak, m.
 struct SpectrumBlock {
   double t = 0, speed = 0;  ///< middle of the block; mean spin of the reference, rad/s
   double resolution = 0;    ///< dw, rad/s
+  double change = 0;        ///< of the spin within the block, rad/s
   std::vector<std::vector<double>> full;  ///< [probe][2 lines + 1]: |amplitude| of y + iz
   std::vector<std::vector<double>> y, z;  ///< [probe][lines + 1]: one-sided, of the two directions
+  std::vector<std::vector<double>> ordered;  ///< as `full`, at equal angles; empty: no need of it
+  std::vector<Ridge> ridge;                  ///< one a probe
 };
+
+/// The highest line of a full spectrum but those next to zero, where a sag that moves leaks to.
+Ridge strongest(const std::vector<double>& full, double resolution);
 
 class Spectra final : public Observer {
  public:
@@ -45,6 +63,12 @@ class Spectra final : public Observer {
  private:
   void take(const Snapshot& s);
   void transform(double t_end);
+  void find_change(double span);
+  void take_equal_angles();
+  /// Amplitudes of the samples into what is not null.
+  void spectrum_of(const std::vector<double>& y, const std::vector<double>& z,
+                   std::vector<double>& full, std::vector<double>* one_sided_y,
+                   std::vector<double>* one_sided_z);
   std::vector<Point> probes_;
   Index reference_;
   SpectrumOptions options_;
@@ -54,7 +78,8 @@ class Spectra final : public Observer {
   Ticker ticker_;
   std::size_t filled_ = 0;
   std::vector<std::vector<double>> y_, z_;
-  std::vector<double> phi_;  ///< angle of the reference at the samples
+  std::vector<double> phi_;                             ///< angle of the reference at the samples
+  std::vector<std::vector<double>> angle_y_, angle_z_;  ///< samples at equal angles
   std::vector<double> window_;
   std::vector<Complex> work_;
   SpectrumBlock block_;

@@ -3,6 +3,8 @@
 #include <deck/visitor.hpp>
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace whirl::deck {
 namespace {
 
@@ -32,40 +34,51 @@ void describe(Visitor& v, SpeedTorque& r) {
   v.quantity(required("torque"), r.torque, "N.m", any, "torque at that spin");
 }
 
-void describe_torque(Visitor& v, model::Drive& d) {
-  model::TorqueCurve t;
-  v.choice(
-      "kind", d.kind,
-      {{"spin", "acts on the axial angle, like a constant-velocity joint: along (e+d)/(1+e.d)"},
-       {"fixed_direction", "a moment whose direction stays that of the undeformed axis"}},
-      "what the torque does when the shaft tilts");
-  describe_law(v, optional("torque", "0"), t.of_time, "N.m", "torque, constant or a law of time");
-  const ListBody rows{[&](Visitor& w) {
-                        SpeedTorque r;
-                        describe(w, r);
-                        if (w.clean() && !t.speed.empty() && !(r.speed > t.speed.back()))
-                          w.error("E21", "speed",
-                                  fmt::format("the speeds do not increase: {} after {}",
-                                              units::display(r.speed, "rpm"),
-                                              units::display(t.speed.back(), "rpm")));
-                        t.speed.push_back(r.speed);
-                        t.torque.push_back(r.torque);
-                      },
-                      [](Visitor& w) {
-                        SpeedTorque r;
-                        describe(w, r);
-                      }};
-  const bool table = v.rows(
-      rows, false, "torque against speed: straight lines between the rows, constant outside");
-  const bool load = v.table(
-      optional("load", "none"),
-      [&](Visitor& w) {
-        w.quantity("constant", t.constant, "N.m", not_negative, "dry friction, opposes the spin");
-        w.quantity("viscous", t.viscous, "N.m.s/rad", not_negative, "times the spin");
-        w.quantity("quadratic", t.quadratic, "N.m.s^2/rad^2", not_negative,
-                   "times the spin squared (fan, windage)");
-      },
-      "torque that opposes the spin: -(constant sign(s) + viscous s + quadratic s|s|)");
+struct SpeedAmplitude {
+  double speed = 0, amplitude = 0;
+};
+
+void describe(Visitor& v, SpeedAmplitude& r) {
+  v.quantity(required("speed"), r.speed, "rpm", any, "spin of the station");
+  v.quantity(required("amplitude"), r.amplitude, "N.m", not_negative, "pulsation, 0 to peak");
+}
+
+/// Rows against speed, which increases.
+template <class Row, class Add>
+ListBody speed_rows(const std::vector<double>& speeds, Add add) {
+  return {[&speeds, add](Visitor& w) {
+            Row r;
+            describe(w, r);
+            if (w.clean() && !speeds.empty() && !(r.speed > speeds.back()))
+              w.error("E21", "speed",
+                      fmt::format("the speeds do not increase: {} after {}",
+                                  units::display(r.speed, "rpm"),
+                                  units::display(speeds.back(), "rpm")));
+            add(r);
+          },
+          [](Visitor& w) {
+            Row r;
+            describe(w, r);
+          }};
+}
+
+void describe_pulsation(Visitor& v, model::TorqueCurve::Pulsation& p) {
+  v.quantity(required("synchronous"), p.synchronous, "rpm", positive, "synchronous speed");
+  v.number("poles", p.poles, between(2, 1000), "number of poles, 2 p");
+  v.quantity("phase", p.phase, "deg", any, "at time 0 and angle 0");
+  v.rows(speed_rows<SpeedAmplitude>(p.speed,
+                                    [&p](const SpeedAmplitude& r) {
+                                      p.speed.push_back(r.speed);
+                                      p.amplitude.push_back(r.amplitude);
+                                    }),
+         true, "amplitude against speed: straight lines between the rows, constant outside");
+  if (v.clean() && std::fmod(p.poles, 2.0) != 0.0)
+    v.error("E14", "poles", fmt::format("{:g} is no number of poles", p.poles),
+            "two, four, six, ...");
+}
+
+/// Torques of motors against speed and slip; false: none of them is given.
+bool describe_motors(Visitor& v, model::TorqueCurve& t) {
   const bool induction = v.table(
       optional("induction", "none"),
       [&](Visitor& w) {
@@ -76,6 +89,15 @@ void describe_torque(Visitor& v, model::Drive& d) {
         if (w.clean()) t.induction = m;
       },
       "induction motor, Kloss: 2 breakdown/(x/x_b + x_b/x) with the slip x = 1 - s/synchronous");
+  const bool pulsation = v.table(
+      optional("pulsation", "none"),
+      [&](Visitor& w) {
+        model::TorqueCurve::Pulsation p;
+        describe_pulsation(w, p);
+        if (w.clean()) t.pulsation = p;
+      },
+      "pulsating torque of a salient-pole synchronous motor that runs up, at twice the slip "
+      "frequency: amplitude cos(poles (synchronous t - angle) + phase)");
   const bool dc = v.table(
       optional("dc", "none"),
       [&](Visitor& w) {
@@ -95,6 +117,33 @@ void describe_torque(Visitor& v, model::Drive& d) {
         if (w.clean()) t.power = m;
       },
       "torque power/s, limited to max_torque");
+  return induction || pulsation || dc || power;
+}
+
+void describe_torque(Visitor& v, model::Drive& d) {
+  model::TorqueCurve t;
+  v.choice(
+      "kind", d.kind,
+      {{"spin", "acts on the axial angle, like a constant-velocity joint: along (e+d)/(1+e.d)"},
+       {"fixed_direction", "a moment whose direction stays that of the undeformed axis"}},
+      "what the torque does when the shaft tilts");
+  describe_law(v, optional("torque", "0"), t.of_time, "N.m", "torque, constant or a law of time");
+  const ListBody rows = speed_rows<SpeedTorque>(t.speed, [&t](const SpeedTorque& r) {
+    t.speed.push_back(r.speed);
+    t.torque.push_back(r.torque);
+  });
+  const bool table = v.rows(
+      rows, false, "torque against speed: straight lines between the rows, constant outside");
+  const bool load = v.table(
+      optional("load", "none"),
+      [&](Visitor& w) {
+        w.quantity("constant", t.constant, "N.m", not_negative, "dry friction, opposes the spin");
+        w.quantity("viscous", t.viscous, "N.m.s/rad", not_negative, "times the spin");
+        w.quantity("quadratic", t.quadratic, "N.m.s^2/rad^2", not_negative,
+                   "times the spin squared (fan, windage)");
+      },
+      "torque that opposes the spin: -(constant sign(s) + viscous s + quadratic s|s|)");
+  const bool motor = describe_motors(v, t);
   const bool governor = v.table(
       optional("governor", "none"),
       [&](Visitor& w) {
@@ -111,11 +160,10 @@ void describe_torque(Visitor& v, model::Drive& d) {
   const bool brake =
       describe_law(v, optional("brake", "none"), t.brake, "N.m",
                    "magnitude of a torque that opposes the spin, constant or a law of time");
-  if (v.clean() && !t.of_time && !table && !load && !induction && !dc && !power && !governor &&
-      !brake)
+  if (v.clean() && !t.of_time && !table && !load && !motor && !governor && !brake)
     v.error("E05", nullptr, fmt::format("drive '{}' has no torque", d.name),
-            "give torque, columns and rows, load, induction, dc, constant_power, governor or "
-            "brake; those given are added");
+            "give torque, columns and rows, load, induction, pulsation, dc, constant_power, "
+            "governor or brake; those given are added");
   d.law = std::move(t);
 }
 

@@ -152,6 +152,18 @@ void harmonic(Visitor& v, const Context& c) {
   build(v, *c.target, nullptr, [&] { return make_harmonic(mean, amplitude, omega, phase); });
 }
 
+void decaying(Visitor& v, const Context& c) {
+  double start = 0, amplitude = 0, omega = 0, phase = 0, decay = 1;
+  v.quantity("start", start, "s", any, "time at which it begins; nothing before");
+  v.quantity(required("amplitude"), amplitude, c.unit, any,
+             "amplitude, zero to peak, at the start");
+  v.quantity("frequency", omega, "rad/s", not_negative, "frequency (Hz, rpm or rad/s)");
+  v.quantity("phase", phase, "deg", any, "at the start: of a cosine; -90 deg makes it a sine");
+  v.quantity(required("decay"), decay, "s", positive, "time in which it falls to 1/e");
+  build(v, *c.target, nullptr,
+        [&] { return make_decaying(start, amplitude, omega, phase, decay); });
+}
+
 void polynomial(Visitor& v, const Context& c) {
   std::vector<double> a;
   v.quantities(required("coefficients"), a, c.unit, any, -1,
@@ -175,6 +187,8 @@ bool law(Visitor& v, const Key& key, LawPtr& target, const char* unit, const cha
         {"cosine", "from point to point by half a cosine",
          [=](Visitor& x) { points(x, c, Blend::cosine, false); }},
         {"harmonic", "a cosine about a mean", [=](Visitor& x) { harmonic(x, c); }},
+        {"decaying", "a cosine that decays; a sum of them makes a short circuit",
+         [=](Visitor& x) { decaying(x, c); }},
         {"polynomial", "a polynomial in time", [=](Visitor& x) { polynomial(x, c); }},
     };
     if (depth == 0) {  // one level is enough, and keeps the description finite

@@ -32,6 +32,12 @@ void describe(Visitor& v, model::VtkOutput& o) {
            "exaggeration of the lateral displacement in 'surface'");
   v.integer("points_around", o.points_around, between(3, 1000),
             "points on the circumference of 'surface'");
+  v.choice("format", o.one_file,
+           {{"vtp", "a file each frame and a .pvd that lists them"},
+            {"vtkhdf",
+             "all frames of a set in one .vtkhdf file (ParaView 5.12 and later); 'per' stands for "
+             "'/' in the names of its arrays"}},
+           "files");
   if (has_window && v.clean()) {
     if (!(window[1] > window[0])) v.error("E21", "window", "the window ends before it starts");
     o.t0 = window[0];
@@ -56,6 +62,7 @@ void describe(Visitor& v, model::Output& o) {
        "moments and torques of the bearings that give any (tilting or torsional stiffness, "
        "friction), about their places"},
       {"torque", "torques of the drives"},
+      {"shaft_torque", "torques in the shafts at the probes"},
       {"cracks", "how far the cracks are open, from 0 to 1"},
       {"joints",
        "forces and moments of the joints on the line of their 'at', their angles and "

@@ -434,6 +434,29 @@ void describe(Visitor& v, model::BucklingStep& s) {
   v.quantity("speed", s.speed, "rpm", any, "speed of the rotor");
 }
 
+void describe(Visitor& v, model::ShaftTorques& t) {
+  v.number("concentration", t.concentration, at_least(1), "factor on shear stresses");
+  v.quantity(optional("yield", "not looked at"), t.yield, "MPa", positive, "yield stress in shear");
+  const bool endurance = v.quantity(
+      optional("endurance", "no fatigue"), t.endurance, "MPa", positive,
+      "shear stress amplitude about zero that 'cycles' of them and any more do not break");
+  const bool ultimate = v.quantity(optional("ultimate", "no fatigue"), t.ultimate, "MPa", positive,
+                                   "tensile strength; 0.67 of it in shear");
+  const bool thousand =
+      v.quantity(optional("thousand", "0.9 of 0.67 of 'ultimate'"), t.thousand, "MPa", positive,
+                 "shear stress amplitude about zero that 1000 cycles take");
+  v.number("cycles", t.cycles, Range{1000, 1e12, true, false},
+           "cycles at which 'endurance' begins");
+  if (!v.clean()) return;
+  if (endurance != ultimate)
+    return v.error("E05", nullptr, "fatigue needs 'endurance' and 'ultimate'", "give both");
+  if (thousand && !endurance)
+    return v.error("E26", "thousand", "'thousand' goes with 'endurance' and 'ultimate'");
+  if (endurance && !thousand) t.thousand = 0.9 * 0.67 * t.ultimate;
+  if (endurance && !(t.thousand > t.endurance && 0.67 * t.ultimate > t.endurance))
+    v.error("E21", "endurance", "the endurance limit is not below the strength at 1000 cycles");
+}
+
 void describe(Visitor& v, model::TransientStep& s) {
   v.quantity(beside_motion(required("duration")), s.duration, "s", positive,
              "length of the run; it begins at time 0, or where the step named by 'from' ended");
@@ -473,6 +496,10 @@ void describe(Visitor& v, model::TransientStep& s) {
       "matrices, one factorisation for each length of step; loads and unbalance act as they are");
   v.quantity(beside_motion("checkpoint"), s.checkpoint, "s", not_negative,
              "wall-clock time between checkpoints, from which --resume continues; 0 s: none");
+  v.table(
+      beside_motion(optional("torques", "none")), s.torques,
+      "torques in all shafts and couplings: the largest, cycles, fatigue, pictures against time "
+      "and angle");
   v.table("integrator", s.integrator, "time integration");
 }
 

@@ -1,4 +1,5 @@
 // [[step]] of type api_lateral and api_torsional, and [title_block].
+#include <core/periodic.hpp>
 #include <core/units.hpp>
 #include <deck/visitor.hpp>
 #include <fmt/format.h>
@@ -186,7 +187,7 @@ void describe(Visitor& v, model::ApiLateralStep& s) {
             "speeds of the response, before those at its peaks");
   v.texts(optional("bearings", "all that carry laterally to the ground, but seals"), s.bearings,
           "names of the journal bearings");
-  v.texts(optional("seals", "bearings of type seal and cross_coupling"), s.seals,
+  v.texts(optional("seals", "bearings of type annular_seal and cross_coupling"), s.seals,
           "names of seals and what else drives whirl: left out of the critical-speed map and of "
           "level 1, as given in level 2");
   v.texts(optional("probes", "all of the deck"), s.probes,
@@ -322,18 +323,97 @@ void describe(Visitor& v, model::BalancingStep& s) {
   if (s.initial.empty() && !s.measured.empty()) s.initial = s.measured.front().run;
 }
 
+void describe(Visitor& v, model::ApiHarmonic& h) {
+  v.number(required("order"), h.order, positive, "excitations a revolution of its shaft");
+  v.quantity(required("amplitude"), h.amplitude, "N.m", not_negative, "0 to peak");
+  v.quantity("phase", h.phase, "deg", any, "amplitude cos(order angle + phase)");
+}
+
+namespace {
+
+struct CrankRow {
+  double angle = 0, torque = 0;
+};
+
+void describe(Visitor& v, CrankRow& r) {
+  v.quantity(required("angle"), r.angle, "deg", not_negative, "of the crank");
+  v.quantity(required("torque"), r.torque, "N.m", any, "torque there");
+}
+
+/// A crank-effort diagram, and from it the orders of the torque.
+void describe_crank(Visitor& v, model::ApiTorque& t) {
+  int turns = 0, harmonics = 24;
+  std::vector<CrankRow> rows;
+  v.choice("turns", turns, {{"one", "two-stroke engines, compressors"}, {"two", "four-stroke"}},
+           "turns of a cycle");
+  v.integer("harmonics", harmonics, between(1, 200), "multiples of the cycle that are kept");
+  v.rows(rows_of(rows), true, "torque against angle over a cycle: straight lines, periodic");
+  if (!v.clean()) return;
+  if (rows.size() < 3) return v.error("E20", "rows", "a cycle needs at least three angles");
+  const int of_cycle = turns + 1;
+  const double cycle = two_pi * of_cycle;
+  std::vector<double> angle, torque;
+  for (const CrankRow& r : rows) {
+    if (!angle.empty() && !(r.angle > angle.back()))
+      return v.error("E21", "rows", "the angles do not increase");
+    angle.push_back(r.angle);
+    torque.push_back(r.torque);
+  }
+  if (!(angle.back() < angle.front() + cycle))
+    return v.error("E21", "rows",
+                   fmt::format("the angles span a cycle of {} deg or more", 360 * of_cycle),
+                   "the last row is not the first one again");
+  for (int k = 1; k <= harmonics; ++k) {
+    const Complex c = periodic_coefficient(angle, torque, cycle, k);
+    t.harmonics.push_back({static_cast<double>(k) / of_cycle, 2.0 * std::abs(c), std::arg(c)});
+  }
+}
+
+}  // namespace
+
 void describe(Visitor& v, model::ApiTorque& t) {
   v.text(required("name"), t.name, "name in the tables");
   v.location(required("at"), t.at, "where it acts, on which shaft");
-  const bool order = v.number(optional("order", "frequency"), t.order, positive,
+  const bool order = v.number(optional("order", "frequency"), t.order, any,
                               "excitations a revolution of the shaft it acts on");
-  const bool frequency = v.quantity(optional("frequency", "order"), t.frequency, "rad/s", positive,
-                                    "of one that does not follow the speed (Hz, rpm or rad/s)");
-  v.quantity(required("amplitude"), t.amplitude, "N.m", positive, "of the torque, 0 to peak");
-  if (v.clean() && order == frequency)
-    v.error(order ? "E26" : "E05", order ? "frequency" : nullptr,
-            order ? "'order' and 'frequency' cannot both be given"
-                  : fmt::format("torque '{}' has neither 'order' nor 'frequency'", t.name));
+  const bool frequency = v.quantity(
+      optional("frequency", "order"), t.frequency, "rad/s", positive,
+      "of one that does not follow the speed (Hz, rpm or rad/s); with 'order' the excitation has "
+      "|frequency - order speed|: twice the slip of a motor that starts, sidebands of a converter");
+  const bool amplitude = v.quantity(optional("amplitude", "harmonics or crank"), t.amplitude, "N.m",
+                                    positive, "of the torque, 0 to peak");
+  const bool harmonics = v.table(
+      optional("harmonics", "none"),
+      [&](Visitor& w) { w.rows(rows_of(t.harmonics), true, "orders, one a row"); },
+      "several orders at once: of converters, engines, reciprocating machines");
+  const bool crank = v.table(
+      optional("crank", "none"), [&](Visitor& w) { describe_crank(w, t); },
+      "the same from the torque against the angle of the crank");
+  if (!v.clean()) return;
+  if (int(amplitude) + int(harmonics) + int(crank) != 1)
+    return v.error(
+        amplitude || harmonics || crank ? "E26" : "E05",
+        harmonics ? "harmonics"
+        : crank   ? "crank"
+                  : nullptr,
+        fmt::format("torque '{}' needs one of 'amplitude', 'harmonics' and 'crank'", t.name));
+  if (!amplitude && (order || frequency))
+    return v.error("E26", order ? "order" : "frequency",
+                   "'harmonics' and 'crank' have orders of their own");
+  if (!amplitude) return;
+  if (!order && !frequency)
+    return v.error("E05", nullptr,
+                   fmt::format("torque '{}' has neither 'order' nor 'frequency'", t.name));
+  if (!frequency && !(t.order > 0))
+    v.error("E14", "order", "the order must be positive",
+            "a negative one goes with 'frequency': frequency + |order| speed");
+}
+
+void describe(Visitor& v, model::ApiEvent& e) {
+  e.where = v.where();
+  v.text(required("name"), e.name, "name in the tables");
+  v.step(required("step"), e.step, "an earlier transient step with a table 'torques'");
+  v.number("times", e.times, positive, "how often it happens in the life of the train");
 }
 
 void describe(Visitor& v, model::ApiTorsionalStep& s) {
@@ -353,12 +433,18 @@ void describe(Visitor& v, model::ApiTorsionalStep& s) {
                "share of the frequency of an excitation that modes keep away from it");
   v.list(optional("torque", "none"), s.torques, "torques whose response is looked at");
   v.number("concentration", s.concentration, at_least(1), "factor on shear stresses");
+  v.list(optional("event", "none"), s.events,
+         "transients: starts, short circuits; their stresses and the fatigue they cause");
+  const bool damage = v.number("damage_limit", s.damage_limit, positive,
+                               "largest sum of the damages of all events, each times 'times'");
   const bool stress = v.quantity(optional("stress_limit", "none"), s.stress_limit, "MPa", positive,
                                  "largest shear stress, 0 to peak");
   describe_source(v, s.source);
   if (margin) s.given.emplace_back("margin");
   if (stress) s.given.emplace_back("stress_limit");
+  if (damage) s.given.emplace_back("damage_limit");
   if (v.clean()) check_names(v, s.torques, "torque", "torques");
+  if (v.clean()) check_names(v, s.events, "event", "events");
 }
 
 }  // namespace whirl::deck

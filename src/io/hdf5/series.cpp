@@ -1,4 +1,4 @@
-// Time series in HDF5. The only file that sees the HDF5 library (C API, 1.10).
+// Time series in HDF5.
 //
 // The file is written in single-writer multiple-reader mode, so others may read while it grows, and
 // a killed run leaves a readable file. Compressed chunks cannot be rewritten in place without
@@ -7,9 +7,9 @@
 // into the data sets.
 #include <core/error.hpp>
 #include <core/plugin.hpp>
-#include <hdf5.h>
 #include <io/file.hpp>
 #include <io/hdf5/entry.hpp>
+#include <io/hdf5/handle.hpp>
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -37,37 +37,6 @@ constexpr const char* layout_text =
     "SWMR read mode (h5py: "
     "swmr=True) or make it an ordinary file with h5clear -s -i. After a normal end tail is empty.";
 
-// The library is not thread-safe.
-std::mutex library;
-
-/// An HDF5 identifier and how to close it.
-class Handle {
- public:
-  Handle() = default;
-  Handle(hid_t id, herr_t (*close)(hid_t), const fs::path& file, const char* what)
-      : id_(id),
-        close_(close) {
-    if (id < 0) io_failure(file, what);
-  }
-  Handle(Handle&& o) noexcept : id_(std::exchange(o.id_, -1)), close_(o.close_) {}
-  Handle& operator=(Handle&& o) noexcept {
-    reset();
-    id_ = std::exchange(o.id_, -1);
-    close_ = o.close_;
-    return *this;
-  }
-  ~Handle() { reset(); }
-  void reset() {
-    if (id_ >= 0) close_(std::exchange(id_, -1));
-  }
-  operator hid_t() const { return id_; }
-  bool open() const { return id_ >= 0; }
-
- private:
-  hid_t id_ = -1;
-  herr_t (*close_)(hid_t) = nullptr;
-};
-
 struct Group {
   std::string name;
   std::vector<hsize_t> columns;  // columns of the row that go here
@@ -91,13 +60,6 @@ std::vector<Group> groups_of(std::span<const Channel> channels) {
     }
   }
   return groups;
-}
-
-Handle string_type() {
-  Handle t(H5Tcopy(H5T_C_S1), H5Tclose, {}, "HDF5: no string type");
-  H5Tset_size(t, H5T_VARIABLE);
-  H5Tset_cset(t, H5T_CSET_UTF8);
-  return t;
 }
 
 void write_strings(const fs::path& file, hid_t where, const char* name,
@@ -227,7 +189,7 @@ class Hdf5Series final : public TimeSeries {
 
   void begin(std::span<const Channel> channels) override {
     close();
-    const std::lock_guard lock(library);
+    const std::lock_guard lock(library());
     prepare(channels);
     base_ = used_ = flushed_ = 0;
     // Long chunks compress better; the tail that goes with them must stay small.
@@ -248,7 +210,7 @@ class Hdf5Series final : public TimeSeries {
 
   void resume(std::span<const Channel> channels, std::uint64_t rows) override {
     close();
-    const std::lock_guard lock(library);
+    const std::lock_guard lock(library());
     prepare(channels);
     Opened o = open_series(path_, true);
     bool same = o.width == width_ && o.groups.size() == groups_.size();
@@ -293,7 +255,7 @@ class Hdf5Series final : public TimeSeries {
     for (std::size_t k = 0; k < width_; ++k)
       p[k] = scale_[k] == 1.0 ? row[k] : scale_[k] * row[k];
     if (++used_ == chunk_) {
-      const std::lock_guard lock(library);
+      const std::lock_guard lock(library());
       write_data();
     }
     if (Clock::now() - last_flush_ > flush_every_) hand_over();
@@ -305,7 +267,7 @@ class Hdf5Series final : public TimeSeries {
   }
 
   void close() override {
-    const std::lock_guard lock(library);
+    const std::lock_guard lock(library());
     if (!file_.open()) return;
     if (used_ > 0) write_data();
     const State s{base_, base_, 0};
@@ -322,7 +284,7 @@ class Hdf5Series final : public TimeSeries {
  private:
   /// To the kernel: other programs see it, a power cut may lose it.
   void hand_over() {
-    const std::lock_guard lock(library);
+    const std::lock_guard lock(library());
     last_flush_ = Clock::now();
     if (!file_.open()) return;
     for (auto& g : groups_)
@@ -471,7 +433,7 @@ class Hdf5Series final : public TimeSeries {
 };
 
 void read(const fs::path& path, Columns& out) {
-  const std::lock_guard lock(library);
+  const std::lock_guard lock(library());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Opened o = open_series(path, false);
   const auto tail = read_tail(path, o, o.s[0]);
