@@ -37,6 +37,11 @@ load = { quadratic = "1e-6 N.m.s^2/rad^2" }
 [[probe]]
 name = "disk"
 at = "disk"
+[[event]]
+name = "swings"
+type = "amplitude"
+at = "disk"
+value = "0.05 mm"
 [[step]]
 name = "hold"
 type = "static"
@@ -50,6 +55,13 @@ METHOD
 [output]
 every = "0.1 ms"
 quantities = ["speed", "probes", "bearing_force", "torque", "energy"]
+[output.tracking]
+samples = 16
+orbit_speeds = ["100 rpm", "150 rpm"]
+[output.spectra]
+max_frequency = "1000 Hz"
+lines = 32
+traces = 6
 [[output.vtk]]
 frames_per_revolution = 1.0
 max_frames = 30
@@ -113,6 +125,25 @@ class Resume : public testing::Test {
       out += line + "\n";
     return out;
   }
+  /// Without what it took: of the summary the steps, of the report figures and replay.
+  static std::string without_times(const std::string& text, const std::string& extension) {
+    std::string kept;
+    if (extension == ".json") {
+      std::istringstream in(text.substr(0, text.find("\"run time by phase")));
+      for (std::string line; std::getline(in, line);)
+        if (line.find("\"run time") == std::string::npos &&
+            line.find("\"resumed at") == std::string::npos)
+          kept += line + "\n";
+      return kept;
+    }
+    for (const std::string tag : {"svg", "script"})
+      for (std::size_t from = text.find("<" + tag); from != std::string::npos;
+           from = text.find("<" + tag, from + 1)) {
+        const std::size_t to = text.find("</" + tag + ">", from);
+        kept += text.substr(from, to - from);
+      }
+    return kept;
+  }
   /// Relative path and content of what must not depend on interruptions: all but run times and the
   /// checkpoint's own.
   static std::map<std::string, std::string> files(const fs::path& root) {
@@ -120,8 +151,11 @@ class Resume : public testing::Test {
     for (const auto& e : fs::recursive_directory_iterator(root)) {
       const std::string name = fs::relative(e.path(), root).string(),
                         ext = e.path().extension().string();
-      if (e.is_regular_file() && ext != ".json" && ext != ".html" && ext != ".whirl")
-        out[name] = name == "manifest.txt" ? sorted_lines(read(e.path())) : read(e.path());
+      if (!e.is_regular_file() || ext == ".whirl" || name == "run.json") continue;
+      const std::string text = read(e.path());
+      out[name] = name == "manifest.txt"             ? sorted_lines(text)
+                  : ext == ".json" || ext == ".html" ? without_times(text, ext)
+                                                     : text;
     }
     return out;
   }
@@ -242,6 +276,18 @@ TEST_F(Resume, DamagedCheckpointIsAnError) {
   std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << c;
   EXPECT_EQ(run("a.toml", "r", true), 5);
   EXPECT_NE(read("log.txt").find("damaged checkpoint"), std::string::npos) << read("log.txt");
+}
+
+TEST_F(Resume, AnyOtherFileIsNoCheckpoint) {
+  write_deck("a.toml", "0.1 s");
+  ASSERT_EQ(run("a.toml", "r", false), 0);
+  for (const std::string text :
+       {"", "speed", "a text that is longer than what a checkpoint begins with"}) {
+    std::ofstream("r/checkpoint/run_up.whirl", std::ios::binary) << text;
+    EXPECT_EQ(run("a.toml", "r", true), 5) << text;
+    EXPECT_NE(read("log.txt").find("not a checkpoint"), std::string::npos) << read("log.txt");
+    fs::remove("log.txt");
+  }
 }
 
 TEST_F(Resume, CheckpointOfAnotherVersionIsAnError) {

@@ -391,6 +391,10 @@ TEST(WrittenNumbers, AreThoseOfClosedForms) {
     }
     if (name == "limited") {
       EXPECT_TRUE(run.says("amplitude limit exceeded")) << run.log;
+      const whirl::io::Value told = run.summary("t");
+      EXPECT_EQ(told.at("outcome").text(), "amplitude limit exceeded");
+      EXPECT_TRUE(told.at("detail").text().starts_with("P passes 0.0012 m at t = 0.0060575"))
+          << told.at("detail").text();
     }
     if (name == "modes") {  // a spring stores strain, a disk moves
       const std::string shares = text_of(run.folder / "r" / "m_energy.csv");

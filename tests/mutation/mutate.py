@@ -252,6 +252,13 @@ def list_tests(work):
     return out
 
 
+def cost_of(work):
+    """{test: seconds}, as ctest remembers them; what it has not run yet costs nothing."""
+    path = work.build / "Testing" / "Temporary" / "CTestCostData.txt"
+    rows = [line.split(" ") for line in path.read_text().split("\n")] if path.exists() else []
+    return {r[0]: float(r[2]) for r in rows if len(r) == 3}
+
+
 def limited(seconds):
     def set_limits():
         os.setsid()
@@ -288,8 +295,10 @@ def trace(work, options):
     folder.mkdir(exist_ok=True)
     known = work.load("trace/tests.json", {})
     again = re.compile(options.again) if options.again else None
+    cost = cost_of(work) if options.quick else {}
     todo = {n: t for n, t in list_tests(work).items()
-            if re.search(options.suites, n) and (n not in known or (again and again.search(n)))}
+            if re.search(options.suites, n) and (n not in known or (again and again.search(n)))
+            and cost.get(n, 0.0) <= (options.quick or 0.0)}
     numbers = [int(k) for k in data["sites"]]
     done = 0
 
@@ -483,6 +492,7 @@ def main():
     p.add_argument("--jobs", type=int, default=os.cpu_count())
     p.add_argument("--suites", default=".", help="trace, tests, run: tests whose name matches")
     p.add_argument("--again", help="run, trace, tests: these tests once more though they ran before")
+    p.add_argument("--quick", type=float, help="trace, tests: those that took ctest no longer, s; the others later, without this option")
     p.add_argument("--budget", type=float, default=0, help="run: seconds spent on one fault; then 'unfinished', which counts as survived")
     p.add_argument("--until", type=float, default=0, help="run: no new fault after this time (seconds since 1970)")
     p.add_argument("--target", action="append", help="build, tests: only these targets")
