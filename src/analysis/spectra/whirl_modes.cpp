@@ -337,19 +337,20 @@ void WhirlSolver::separate(double Omega, std::vector<la::Mode>& group) {
   }
 }
 
+const la::MCK& WhirlSolver::own_matrices(double Omega, Complex lambda) {
+  const OwnFrequency::Matrices at = at_frequency(Omega);
+  return lambda.imag() != 0.0     ? at(lambda.imag())
+         : own_->reaches_zero(at) ? at(0.0)
+                                  : matrices_at(Omega, Complex(0, nan));
+}
+
 void WhirlSolver::solve_by_frequency(double Omega) {
   const OwnFrequency::Matrices at = at_frequency(Omega);
-  const auto own = [&](const la::Mode& m) -> const la::MCK& {
-    return m.lambda.imag() != 0.0   ? at(m.lambda.imag())
-           : own_->reaches_zero(at) ? at(0.0)
-                                    : matrices_at(Omega, Complex(0, nan));
-  };
   std::vector<la::Mode> modes = own_->solve(at, options_.certify);
   if (options_.certify) certificate_.take(own_->known());
   la::Certificate rest;
   if (options_.real_roots) {
-    const la::Mode at_rest;
-    for (const la::Mode& m : solver_.solve(own(at_rest)))
+    for (const la::Mode& m : solver_.solve(own_matrices(Omega, 0.0)))
       if (m.lambda.imag() == 0.0) modes.push_back(m);
     rest = solver_.certificate();
     std::stable_sort(modes.begin(), modes.end(), [](const la::Mode& a, const la::Mode& b) {
@@ -357,12 +358,51 @@ void WhirlSolver::solve_by_frequency(double Omega) {
     });
   }
   for (const la::Mode& m : modes) {
-    modes_.push_back(describe_mode(m, own(m), linear_));
+    modes_.push_back(describe_mode(m, own_matrices(Omega, m.lambda), linear_));
     modes_.back().from = -1;
     if (options_.continued && options_.damped && m.lambda.imag() != 0.0)
       modes_.back().continued = own_->continued(at, m);
   }
-  if (options_.judge && options_.damped && options_.certify) count_along_axis(Omega, rest);
+  if (!options_.judge || !options_.damped || !options_.certify) return;
+  count_along_axis(Omega, rest);
+  const SpectrumCertificate::Axis& axis = *certificate_.axis;
+  if (!axis.counted || axis.unknown <= 0) return;
+  add_growth_beyond(Omega);
+  count_along_axis(Omega, rest);
+}
+
+void WhirlSolver::add_growth_beyond(double Omega) {
+  const OwnFrequency::Matrices at = at_frequency(Omega);
+  const OwnFrequency::Range range = own_->range(at);
+  la::ModeOptions far = la_options(options_, false);
+  far.certify = far.growing = far.real_roots = false;
+  far.count = 0;
+  far.max_frequency = range.held ? quiet_held_ : std::min(quiet_held_, range.high);
+  OwnFrequency beyond(linear_.system().pattern(), motion_.active(), far, own_->frequencies());
+  std::vector<la::Mode> growing;
+  const auto take = [&](const la::Mode& m) {
+    const auto same = [&m](const WhirlMode& k) {
+      return std::abs(k.lambda - m.lambda) <= 1e-7 * std::abs(m.lambda);
+    };
+    const bool listed = std::any_of(modes_.begin(), modes_.end(), same);
+    if (m.lambda.real() > rounding_of(m) && !listed) growing.push_back(m);
+  };
+  for (const la::Mode& m : beyond.solve(at))
+    take(m);
+  if (options_.real_roots) {
+    SpectrumCertificate at_rest;
+    for (const la::Mode& m : judged(own_matrices(Omega, 0.0), Omega, at_rest))
+      if (m.lambda.imag() == 0.0) take(m);
+  }
+  for (const la::Mode& m : growing) {
+    modes_.push_back(describe_mode(m, own_matrices(Omega, m.lambda), linear_));
+    modes_.back().from = -1;
+    if (options_.continued && m.lambda.imag() != 0.0)
+      modes_.back().continued = own_->continued(at, m);
+  }
+  std::stable_sort(modes_.begin(), modes_.end(), [](const WhirlMode& a, const WhirlMode& b) {
+    return a.frequency < b.frequency;
+  });
 }
 
 void WhirlSolver::solve_hysteretic(double Omega) {
@@ -521,6 +561,7 @@ void WhirlSolver::count_along_axis(double Omega, const la::Certificate& rest) {
   };
   for (const la::Mode& m : judged(held, Omega, of_held))
     add(m.lambda, rounding_of(m), p.known_held);
+  quiet_held_ = of_held.list.radius;
   for (const WhirlMode& m : modes_)
     add(m.lambda, m.rounding, p.known);
   // what is slower is left to the count with the coefficients of zero frequency

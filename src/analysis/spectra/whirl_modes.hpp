@@ -162,6 +162,11 @@ class WhirlSolver {
   /// Growing roots on supports that answer by frequency. rest: what is known of the roots with the
   /// coefficients of zero frequency.
   void count_along_axis(double Omega, const la::Certificate& rest);
+  /// Adds growing motions from beyond the list, where the count along the axis asks for more.
+  void add_growth_beyond(double Omega);
+  /// Matrices that a root answers to: of its own frequency; of real roots those of zero frequency
+  /// where the tables reach it, else the synchronous ones.
+  const la::MCK& own_matrices(double Omega, Complex lambda);
   Linearizer& linear_;
   ModesOptions options_;
   MotionReduction motion_;
@@ -170,6 +175,7 @@ class WhirlSolver {
   SpectrumCertificate certificate_;
   std::optional<OwnFrequency> own_;  ///< where supports answer by frequency
   std::optional<la::AxisCounter> axis_;
+  double quiet_held_ = 0;  ///< rad/s: with the ends of the tables held all that grows is slower
   std::optional<la::WedgeCounter> wedge_;  ///< where damping is hysteretic
   const la::MCK* matrices_ = nullptr;
   std::vector<WhirlMode> modes_;
